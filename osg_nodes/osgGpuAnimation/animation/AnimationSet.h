@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osgGpuAnimation/animation/Clip.h>
+#include <osgGpuAnimation/animation/MorphWeights.h>
+#include <osgGpuAnimation/animation/Result.h>
+#include <osgGpuAnimation/animation/Skeleton.h>
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace osgGpuAnimation
+{
+
+/// Joints with their inverse bind matrices (glTF 2.0, section 3.7.3).
+struct Skin
+{
+    std::string name;
+    std::vector<int> joints;                ///< joints of the skeleton
+    std::vector<AffineMatrix> inverseBinds; ///< one a joint: from the mesh's space at bind time to the joint's
+};
+
+/// One joint with one inverse bind matrix, or one block of morph weights: what the GPU computes 48 bytes for.
+///
+/// Entries are stored in level order, a level after the other, and each is computed from its parent's *entry*, so that
+/// only one 3x4 matrix a joint has to be written and read on the GPU:
+///
+///     entry = parentEntry · parentBind · T·R·S · inverseBind        parentBind = (the parent entry's inverseBind)⁻¹
+///
+/// Every joint has one main entry. A joint that several skins bind differently, or that carries a rigid mesh besides
+/// being skinned, has further entries: children of the main one, without a track of their own.
+struct PaletteEntry
+{
+    enum class Kind
+    {
+        Joint,   ///< T·R·S from the track
+        Static,  ///< no track: T·R·S = identity
+        Weights, ///< the track's twelve numbers as they are; no parent, no matrices
+    };
+
+    Kind kind = Kind::Joint;
+    int joint = -1;            ///< the joint it belongs to; -1 for weights
+    int parent = -1;           ///< an entry of an earlier level; -1: the instance's root matrix
+    int track = -1;            ///< place in a keyframe; -1 for Static
+    AffineMatrix parentBind;   ///< from the parent entry's joint to the model at bind time
+    AffineMatrix inverseBind;  ///< from the model at bind time to this joint
+};
+
+/// What AnimationSet::create takes.
+struct AnimationParts
+{
+    Skeleton skeleton;
+    std::vector<Skin> skins;
+    std::vector<int> rigidJoints; ///< joints that carry a mesh without a skin
+    std::vector<MorphWeights> morphs;
+    std::vector<Clip> clips; ///< made by ClipBuilder on the same skeleton and morphs
+};
+
+/// Skeleton, palette and clips of one kind of character: immutable and shared by all its instances, on the CPU and,
+/// once a context, on the GPU. A **track** is one JointTransform in every keyframe: the joints', then the weight blocks'.
+class AnimationSet
+{
+public:
+    /// Errors: a skin or rigid joint out of range, a skin with fewer matrices than joints, a matrix that is not finite,
+    /// a clip with a wrong number of tracks, more keyframes than 32-bit offsets reach.
+    static Result<std::shared_ptr<const AnimationSet>> create(AnimationParts parts);
+
+    const Skeleton& skeleton() const { return _parts.skeleton; }
+    const std::vector<Skin>& skins() const { return _parts.skins; }
+    const std::vector<MorphWeights>& morphs() const { return _parts.morphs; }
+    const std::vector<Clip>& clips() const { return _parts.clips; }
+
+    std::size_t trackCount() const { return _restPose.size(); }
+    const std::vector<JointTransform>& restPose() const { return _restPose; } ///< trackCount() transforms
+    std::size_t firstTrackOfMorph(std::size_t morph) const { return _firstTrackOfMorph[morph]; }
+
+    const std::vector<PaletteEntry>& palette() const { return _palette; }
+    std::size_t paletteSize() const { return _palette.size(); }
+    /// levelCount() + 1 entry indices: level l is [levels()[l], levels()[l + 1]).
+    const std::vector<std::size_t>& levels() const { return _levels; }
+    std::size_t levelCount() const { return _levels.size() - 1; }
+
+    /// The entry a vertex names for that place in the skin's joints.
+    int entryOfSkin(std::size_t skin, std::size_t place) const { return _entryOfSkin[skin][place]; }
+    /// The entry with an identity inverse bind of a rigid joint; -1 if it is not one.
+    int entryOfRigidJoint(int joint) const;
+    /// The joint's main entry; jointToModel = entry · bind, see mainBind().
+    int mainEntry(int joint) const { return _mainEntry[static_cast<std::size_t>(joint)]; }
+    /// The first entry of a morph's weight blocks; the others follow it.
+    int entryOfMorph(std::size_t morph) const { return _entryOfMorph[morph]; }
+
+    /// -1 where there is none. Of several clips of one name, the first.
+    int findClip(const std::string& name) const;
+
+    /// All keyframes lie in one buffer of JointTransforms on the GPU: the rest pose (twice), then clip after clip.
+    /// keyframeOffset is the place of a clip's first keyframe there.
+    std::size_t keyframeOffset(std::size_t clip) const { return _keyframeOffsets[clip]; }
+    /// JointTransforms in that buffer, with one keyframe of padding at the end (mixing reads keyframe + 1).
+    std::size_t keyframeBufferSize() const { return _keyframeBufferSize; }
+
+private:
+    explicit AnimationSet(AnimationParts parts);
+
+    AnimationParts _parts;
+    std::vector<JointTransform> _restPose;
+    std::vector<std::size_t> _firstTrackOfMorph;
+    std::vector<PaletteEntry> _palette;
+    std::vector<std::size_t> _levels;
+    std::vector<std::vector<int>> _entryOfSkin;
+    std::vector<int> _entryOfRigidJoint;
+    std::vector<int> _mainEntry;
+    std::vector<int> _entryOfMorph;
+    std::vector<std::size_t> _keyframeOffsets;
+    std::size_t _keyframeBufferSize = 0;
+};
+
+} // namespace osgGpuAnimation

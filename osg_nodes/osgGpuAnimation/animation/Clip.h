@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osgGpuAnimation/animation/JointTransform.h>
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace osgGpuAnimation
+{
+
+/// A clip: keyframes in time order; each keyframe is a snapshot of **all tracks** (all joints, then all weight blocks).
+///
+/// Between two keyframes a track is mixed: Linear clips mix translations, scales and weights componentwise and slerp
+/// rotations the short way; Spline clips hold for each track a value and two tangents and take the Hermite form
+/// (glTF 2.0, appendix C.5), tangents being scaled by the length of their interval already. Two keyframes at the same
+/// time are a jump (STEP): at that time the later one holds.
+///
+/// In a Spline clip a joint track whose rotation is to be slerped has translation.w == 1 in its value, else 0, and
+/// rotation values are not unit (the spline's own numbers; made unit after mixing).
+///
+/// Made by ClipBuilder; immutable.
+class Clip
+{
+public:
+    enum class Form
+    {
+        Linear, ///< one JointTransform a track a keyframe: the value
+        Spline, ///< three a track a keyframe: value, in-tangent, out-tangent
+    };
+
+    /// Where a time falls: mix keyframe and keyframe + 1 by alpha. alpha is 0 on the last keyframe.
+    struct Span
+    {
+        std::size_t keyframe = 0;
+        float alpha = 0.0f; ///< [0, 1)
+    };
+
+    const std::string& name() const { return _name; }
+    Form form() const { return _form; }
+    double duration() const { return _times.empty() ? 0.0 : _times.back(); } ///< seconds; the last keyframe's time
+    std::size_t trackCount() const { return _trackCount; }
+    std::size_t keyframeCount() const { return _times.size(); }
+    const std::vector<float>& times() const { return _times; } ///< keyframeCount() seconds, ascending, twice at a jump
+
+    /// JointTransforms from one keyframe to the next in data().
+    std::size_t keyframeStride() const { return _trackCount * (_form == Form::Spline ? 3 : 1); }
+    /// keyframeCount() * keyframeStride() transforms: by keyframe, then track, then (Spline) value, in, out.
+    const std::vector<JointTransform>& data() const { return _data; }
+
+    /// By binary search; times before the first keyframe give the first, after the last the last.
+    Span locate(double time) const;
+
+private:
+    friend class ClipBuilder;
+    Clip() = default;
+
+    std::string _name;
+    Form _form = Form::Linear;
+    std::size_t _trackCount = 0;
+    std::vector<float> _times;
+    std::vector<JointTransform> _data;
+};
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+// The layout of the GPU's buffers: one definition for GLSL and C++ (included by both).
+
+// Keyframes: RGBA32F, a joint transform is three texels (translation, rotation, scale).
+#define POSE_TEXELS_PER_TRANSFORM 3
+
+// Blend samples: RGBA32UI, a texel each: keyframe, alpha (float bits), weight (float bits), control.
+#define POSE_SAMPLE_SPLINE 1u // the clip's tracks are value, in-tangent, out-tangent
+
+// Palette entries, the static part: RGBA32F, seven texels each: head, three rows of parentBind, three of inverseBind.
+// The head's four components hold whole numbers: parent entry (-1: the root), track, POSE_ENTRY_ bits, 0.
+#define POSE_TEXELS_PER_ENTRY 7
+#define POSE_ENTRY_HAS_TRACK 1
+#define POSE_ENTRY_IS_WEIGHTS 2
+#define POSE_ENTRY_HAS_PARENT_BIND 4
+#define POSE_ENTRY_HAS_INVERSE_BIND 8
+
+// The palette: RGBA32F, a 3x4 matrix is three texels (rows). Entry e of instance i is matrix e * stride + i.
+#define POSE_TEXELS_PER_MATRIX 3
+
+// Vertex attributes of a skinned mesh: palette entries and their weights, four to a set.
+#define POSE_JOINTS_0_LOCATION 12
+#define POSE_WEIGHTS_0_LOCATION 13
+#define POSE_JOINTS_1_LOCATION 14
+#define POSE_WEIGHTS_1_LOCATION 15

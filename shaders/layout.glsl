@@ -19,7 +19,10 @@
 #define POSE_TEXELS_PER_MATRIX 3
 
 // Vertex attributes of a skinned mesh: palette entries and their weights, four to a set.
-#define POSE_JOINTS_0_LOCATION 12
+#define POSE_ENTRIES_0_LOCATION 12
 #define POSE_WEIGHTS_0_LOCATION 13
-#define POSE_JOINTS_1_LOCATION 14
+#define POSE_ENTRIES_1_LOCATION 14
 #define POSE_WEIGHTS_1_LOCATION 15
+
+// The texture unit the palette is bound to while a skinned mesh is drawn.
+#define POSE_PALETTE_UNIT 11

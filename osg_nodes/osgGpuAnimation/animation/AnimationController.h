@@ -49,16 +49,18 @@ public:
     void stop();   ///< → Stopped: time 0, rest pose
 
     /// Seconds on the clip's own time line; clamped to [0, duration]; not a number is refused (false). Any state but
-    /// Stopped shows the new time at once; Ended becomes Playing if the new time is not an end.
+    /// Stopped shows the new time at once; Ended becomes Playing unless the new time is the end that the speed leads
+    /// to. PingPong keeps its way.
     bool seek(double seconds);
     /// 1 is the file's own speed; negative runs backwards, 0 stands. Not finite is refused (false).
     bool setSpeed(double speed);
-    void setLoopMode(LoopMode mode) { _loopMode = mode; }
+    /// From the current time on; a clip that has Ended stays so until it is played or sought.
+    void setLoopMode(LoopMode mode);
 
     State state() const { return _state; }
-    int clip() const { return _clip; }       ///< -1 where none was played
-    double time() const { return _time; }    ///< seconds, in [0, duration]
-    double duration() const;                 ///< seconds, of the current clip
+    int clip() const { return _clip; }    ///< -1 where none was played
+    double time() const { return _time; } ///< seconds, in [0, duration]
+    double duration() const;              ///< seconds, of the current clip
     double speed() const { return _speed; }
     LoopMode loopMode() const { return _loopMode; }
 

@@ -31,6 +31,9 @@ struct Skin
 ///
 /// Every joint has one main entry. A joint that several skins bind differently, or that carries a rigid mesh besides
 /// being skinned, has further entries: children of the main one, without a track of their own.
+///
+/// The main entry takes the inverse bind matrix of the first skin that names the joint, if that matrix can be undone
+/// without loss (see AnimationSet.cpp), else the identity; equal matrices of one joint share an entry.
 struct PaletteEntry
 {
     enum class Kind
@@ -41,11 +44,11 @@ struct PaletteEntry
     };
 
     Kind kind = Kind::Joint;
-    int joint = -1;            ///< the joint it belongs to; -1 for weights
-    int parent = -1;           ///< an entry of an earlier level; -1: the instance's root matrix
-    int track = -1;            ///< place in a keyframe; -1 for Static
-    AffineMatrix parentBind;   ///< from the parent entry's joint to the model at bind time
-    AffineMatrix inverseBind;  ///< from the model at bind time to this joint
+    int joint = -1;           ///< the joint it belongs to; -1 for weights
+    int parent = -1;          ///< an entry of an earlier level; -1: the instance's root matrix
+    int track = -1;           ///< place in a keyframe; -1 for Static
+    AffineMatrix parentBind;  ///< from the parent entry's joint to the model at bind time
+    AffineMatrix inverseBind; ///< from the model at bind time to this joint
 };
 
 /// What AnimationSet::create takes.
@@ -59,12 +62,13 @@ struct AnimationParts
 };
 
 /// Skeleton, palette and clips of one kind of character: immutable and shared by all its instances, on the CPU and,
-/// once a context, on the GPU. A **track** is one JointTransform in every keyframe: the joints', then the weight blocks'.
+/// once a context, on the GPU. A **track** is one JointTransform in every keyframe: the joints', then the weight
+/// blocks'.
 class AnimationSet
 {
 public:
-    /// Errors: a skin or rigid joint out of range, a skin with fewer matrices than joints, a matrix that is not finite,
-    /// a clip with a wrong number of tracks, more keyframes than 32-bit offsets reach.
+    /// Errors: a skin or rigid joint out of range, a skin with fewer matrices than joints, a matrix or default weight
+    /// that is not finite, a clip with a wrong number of tracks, more keyframes than 32-bit offsets reach.
     static Result<std::shared_ptr<const AnimationSet>> create(AnimationParts parts);
 
     const Skeleton& skeleton() const { return _parts.skeleton; }
@@ -86,9 +90,9 @@ public:
     int entryOfSkin(std::size_t skin, std::size_t place) const { return _entryOfSkin[skin][place]; }
     /// The entry with an identity inverse bind of a rigid joint; -1 if it is not one.
     int entryOfRigidJoint(int joint) const;
-    /// The joint's main entry; jointToModel = entry · bind, see mainBind().
+    /// The joint's main entry; jointToModel = entry · (that entry's inverseBind)⁻¹.
     int mainEntry(int joint) const { return _mainEntry[static_cast<std::size_t>(joint)]; }
-    /// The first entry of a morph's weight blocks; the others follow it.
+    /// The first entry of a morph's weight blocks; the others follow it. -1 where it has no weights.
     int entryOfMorph(std::size_t morph) const { return _entryOfMorph[morph]; }
 
     /// -1 where there is none. Of several clips of one name, the first.
@@ -99,6 +103,8 @@ public:
     std::size_t keyframeOffset(std::size_t clip) const { return _keyframeOffsets[clip]; }
     /// JointTransforms in that buffer, with one keyframe of padding at the end (mixing reads keyframe + 1).
     std::size_t keyframeBufferSize() const { return _keyframeBufferSize; }
+    /// The contents of that buffer: keyframeBufferSize() transforms, exactly as they go to the GPU.
+    std::vector<JointTransform> keyframeBuffer() const;
 
 private:
     explicit AnimationSet(AnimationParts parts);

@@ -43,29 +43,36 @@ struct Channel
 /// itself. What no channel drives takes the rest transform. Before its first key a channel holds its first value,
 /// after its last key the last one.
 ///
-/// Computed in double precision and rounded once.
+/// Key times are 32-bit floats (as in a file) and stay exactly what they are. A turn of 180 degrees, whose way hangs on
+/// the last bit of its ends, gets a keyframe in its middle. Computed in double precision and rounded once; what a float
+/// cannot hold becomes the largest float.
 class ClipBuilder
 {
 public:
     ClipBuilder(const Skeleton& skeleton, const std::vector<MorphWeights>& morphs);
 
-    /// Errors name the channel: no times, times not finite, negative or not ascending, a wrong number of values,
-    /// values not finite, a target out of range, a rotation of length 0 at a key, two channels with one target
+    /// Errors name the channel: no times, times not finite, negative or not ascending as floats, a wrong number of
+    /// values, values not finite, a target out of range, a rotation of length 0 at a key, two channels with one target
     /// and path. The builder may go on after an error; the faulty channel is not taken up.
     Result<bool> add(Channel channel);
 
     /// The clip of all channels added since the last build. No channels: one keyframe at time 0, the rest pose.
     Clip build(std::string name);
 
-    /// Keyframes the clip would have now, and the bytes of its data: to refuse before allocating.
+    /// Bytes of the clip that build() would make now: to refuse before allocating.
     std::size_t byteSize() const;
 
 private:
+    std::size_t componentCount(const Channel& channel) const;
+    std::string describe(const Channel& channel) const;
+    std::size_t keyOf(const Channel& channel) const;
+
     std::vector<JointTransform> _rest;
     std::size_t _jointCount;
     std::vector<int> _firstTrackOfMorph;
     std::vector<std::size_t> _weightCounts;
     std::vector<Channel> _channels;
+    std::vector<bool> _driven; ///< by keyOf(): three paths a joint, then one a morph
 };
 
 /// One JointTransform a track: the joints' rest transforms, then the default weights packed into blocks.

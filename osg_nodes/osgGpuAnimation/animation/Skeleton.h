@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 namespace osgGpuAnimation
@@ -26,6 +27,7 @@ class Skeleton
 {
 public:
     /// Takes joints in any order and sorts them by depth, stable within a level.
+    /// Rest rotations are made unit (a quaternion of length 0 counts as the identity).
     /// Errors: a parent out of range, a cycle, a rest transform that is not finite.
     static Result<Skeleton> create(std::vector<Joint> joints);
 
@@ -39,7 +41,7 @@ public:
 
     /// The joint that came at this place in create()'s input.
     int jointOfInput(std::size_t inputIndex) const { return _jointOfInput[inputIndex]; }
-    /// -1 where no joint stands for that node.
+    /// The first joint that stands for that node; -1 where none does.
     int jointOfSourceNode(int node) const;
     /// The first joint of that name, -1 where there is none.
     int findJoint(const std::string& name) const;
@@ -50,6 +52,7 @@ private:
     std::vector<Joint> _joints;
     std::vector<int> _depths;
     std::vector<int> _jointOfInput;
+    std::unordered_map<int, int> _jointOfSourceNode;
 };
 
 } // namespace osgGpuAnimation

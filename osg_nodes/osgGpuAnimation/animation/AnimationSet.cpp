@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/animation/AnimationSet.h>
+
+#include "PaletteBuilder.h"
+#include <osgGpuAnimation/animation/ClipBuilder.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+template <typename T>
+std::string describe(const char* kind, std::size_t index, const T& named)
+{
+    return std::string(kind) + " " + std::to_string(index) + " \"" + named.name + "\": ";
+}
+
+std::optional<Error> findFaultInSkin(const Skin& skin, const std::string& subject, std::size_t jointCount)
+{
+    if (skin.joints.size() > skin.inverseBinds.size())
+        return Error{subject + std::to_string(skin.joints.size()) + " joints but " +
+                     std::to_string(skin.inverseBinds.size()) + " inverse bind matrices"};
+    for (std::size_t place = 0; place < skin.joints.size(); ++place)
+    {
+        const int joint = skin.joints[place];
+        if (joint < 0 || static_cast<std::size_t>(joint) >= jointCount)
+            return Error{subject + "its joint " + std::to_string(place) + " is " + std::to_string(joint) +
+                         ", but there are " + std::to_string(jointCount)};
+        if (!skin.inverseBinds[place].isFinite())
+            return Error{subject + "its inverse bind matrix " + std::to_string(place) + " is not finite"};
+    }
+    return std::nullopt;
+}
+
+std::optional<Error> findFault(const AnimationParts& parts, std::size_t trackCount)
+{
+    const std::size_t jointCount = parts.skeleton.jointCount();
+    for (std::size_t s = 0; s < parts.skins.size(); ++s)
+        if (auto fault = findFaultInSkin(parts.skins[s], describe("skin", s, parts.skins[s]), jointCount)) return fault;
+    for (int joint : parts.rigidJoints)
+        if (joint < 0 || static_cast<std::size_t>(joint) >= jointCount)
+            return Error{"rigid joint " + std::to_string(joint) + " is not one of " + std::to_string(jointCount)};
+    for (std::size_t m = 0; m < parts.morphs.size(); ++m)
+        for (float weight : parts.morphs[m].defaults)
+            if (!std::isfinite(weight))
+                return Error{describe("morph", m, parts.morphs[m]) + "a default weight is not finite"};
+    for (std::size_t c = 0; c < parts.clips.size(); ++c)
+        if (parts.clips[c].trackCount() != trackCount)
+            return Error{"clip " + std::to_string(c) + " \"" + parts.clips[c].name() +
+                         "\": " + std::to_string(parts.clips[c].trackCount()) + " tracks, but the set has " +
+                         std::to_string(trackCount)};
+    return std::nullopt;
+}
+
+} // namespace
+
+AnimationSet::AnimationSet(AnimationParts parts) : _parts(std::move(parts))
+{
+    _restPose = osgGpuAnimation::restPose(_parts.skeleton, _parts.morphs);
+    std::size_t track = _parts.skeleton.jointCount();
+    for (const MorphWeights& morph : _parts.morphs)
+    {
+        _firstTrackOfMorph.push_back(track);
+        track += morph.blockCount();
+    }
+
+    PaletteBuilder builder(_parts);
+    _palette = std::move(builder.palette);
+    _levels = std::move(builder.levels);
+    _entryOfSkin = std::move(builder.entryOfSkin);
+    _entryOfRigidJoint = std::move(builder.entryOfRigidJoint);
+    _mainEntry = std::move(builder.mainEntry);
+    _entryOfMorph = std::move(builder.entryOfMorph);
+
+    std::size_t largestStride = trackCount();
+    _keyframeBufferSize = 2 * trackCount();
+    for (const Clip& clip : _parts.clips)
+    {
+        _keyframeOffsets.push_back(_keyframeBufferSize);
+        _keyframeBufferSize += clip.data().size();
+        largestStride = std::max(largestStride, clip.keyframeStride());
+    }
+    _keyframeBufferSize += largestStride;
+}
+
+Result<std::shared_ptr<const AnimationSet>> AnimationSet::create(AnimationParts parts)
+{
+    std::size_t trackCount = parts.skeleton.jointCount();
+    for (const MorphWeights& morph : parts.morphs)
+        trackCount += morph.blockCount();
+    if (auto fault = findFault(parts, trackCount)) return *fault;
+
+    const std::shared_ptr<const AnimationSet> set(new AnimationSet(std::move(parts)));
+    if (set->keyframeBufferSize() > std::numeric_limits<std::uint32_t>::max())
+        return Error{"its clips take " + std::to_string(set->keyframeBufferSize()) +
+                     " joint transforms, more than 32-bit offsets reach"};
+    return set;
+}
+
+int AnimationSet::entryOfRigidJoint(int joint) const
+{
+    if (joint < 0 || static_cast<std::size_t>(joint) >= _entryOfRigidJoint.size()) return -1;
+    return _entryOfRigidJoint[static_cast<std::size_t>(joint)];
+}
+
+int AnimationSet::findClip(const std::string& name) const
+{
+    for (std::size_t c = 0; c < _parts.clips.size(); ++c)
+        if (_parts.clips[c].name() == name) return static_cast<int>(c);
+    return -1;
+}
+
+std::vector<JointTransform> AnimationSet::keyframeBuffer() const
+{
+    std::vector<JointTransform> buffer;
+    buffer.reserve(_keyframeBufferSize);
+    buffer.insert(buffer.end(), _restPose.begin(), _restPose.end());
+    buffer.insert(buffer.end(), _restPose.begin(), _restPose.end());
+    for (const Clip& clip : _parts.clips)
+        buffer.insert(buffer.end(), clip.data().begin(), clip.data().end());
+    // What follows the last keyframe is read but counts for nothing: it only has to be numbers.
+    while (buffer.size() < _keyframeBufferSize)
+    {
+        const std::size_t missing = std::min(_restPose.size(), _keyframeBufferSize - buffer.size());
+        buffer.insert(buffer.end(), _restPose.begin(), _restPose.begin() + static_cast<std::ptrdiff_t>(missing));
+    }
+    return buffer;
+}
+
+} // namespace osgGpuAnimation

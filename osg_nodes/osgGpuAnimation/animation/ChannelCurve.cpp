@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/animation/ChannelCurve.h>
+
+#include <osgGpuAnimation/animation/Rotation.h>
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+using Interpolation = Channel::Interpolation;
+
+glm::dvec4 unitQuaternion(const double* q)
+{
+    return Rotation::unit(glm::dvec4(q[0], q[1], q[2], q[3]));
+}
+
+void store(const glm::dvec4& q, double* out)
+{
+    for (int c = 0; c < 4; ++c)
+        out[c] = q[c];
+}
+
+/// Whether single precision could find the other way shorter. A dot product whose every term is 0 is 0 everywhere.
+bool isAmbiguous(const glm::dvec4& a, const glm::dvec4& b)
+{
+    return a * b != glm::dvec4(0.0) && std::abs(glm::dot(a, b)) < 1e-6;
+}
+
+} // namespace
+
+ChannelCurve::ChannelCurve(const Channel& channel, std::size_t componentCount)
+    : _channel(channel), _componentCount(componentCount),
+      _valuesPerKey(channel.interpolation == Interpolation::CubicSpline ? 3 : 1)
+{
+}
+
+bool ChannelCurve::isSplineRotation() const
+{
+    return _channel.path == Channel::Path::Rotation && _channel.interpolation == Interpolation::CubicSpline;
+}
+
+const double* ChannelCurve::valueOfKey(std::size_t key) const
+{
+    const std::size_t place = _valuesPerKey == 3 ? key * 3 + 1 : key; // in-tangent, value, out-tangent
+    return _channel.values.data() + place * _componentCount;
+}
+
+std::size_t ChannelCurve::keyAt(const Moment& at)
+{
+    const std::vector<double>& times = _channel.times;
+    if (times[_cursor] > at.time) _cursor = 0;
+    while (_cursor + 1 < times.size() && times[_cursor + 1] <= at.time)
+        ++_cursor;
+    return _cursor;
+}
+
+bool ChannelCurve::isHeldAt(std::size_t key, double time) const
+{
+    return time <= _channel.times.front() || key + 1 == _channel.times.size();
+}
+
+void ChannelCurve::value(const Moment& at, double* out)
+{
+    const std::size_t key = keyAt(at);
+    const bool isRotation = _channel.path == Channel::Path::Rotation;
+    const bool oldValue =
+        _channel.interpolation == Interpolation::Step && at.before && key > 0 && _channel.times[key] == at.time;
+    const double* first = valueOfKey(oldValue ? key - 1 : key);
+
+    if (_channel.interpolation == Interpolation::Step || isHeldAt(key, at.time) || at.time == _channel.times[key])
+    {
+        std::copy_n(first, _componentCount, out);
+        if (isRotation && !isSplineRotation()) store(unitQuaternion(first), out);
+        return;
+    }
+
+    const double* second = valueOfKey(key + 1);
+    const double alpha = (at.time - _channel.times[key]) / (_channel.times[key + 1] - _channel.times[key]);
+    if (_channel.interpolation == Interpolation::CubicSpline)
+        hermite(key, alpha, out);
+    else if (isRotation)
+        store(Rotation::slerp(unitQuaternion(first), unitQuaternion(second), alpha), out);
+    else
+        for (std::size_t c = 0; c < _componentCount; ++c)
+            out[c] = first[c] * (1.0 - alpha) + second[c] * alpha;
+}
+
+void ChannelCurve::hermite(std::size_t key, double alpha, double* out) const
+{
+    const double length = _channel.times[key + 1] - _channel.times[key];
+    const double square = alpha * alpha;
+    const double cube = square * alpha;
+    const double* v0 = valueOfKey(key);
+    const double* v1 = valueOfKey(key + 1);
+    for (std::size_t c = 0; c < _componentCount; ++c)
+    {
+        const double m0 = length * v0[_componentCount + c];   // the out-tangent follows the value
+        const double m1 = length * (v1 - _componentCount)[c]; // the in-tangent precedes it
+        out[c] = (2.0 * cube - 3.0 * square + 1.0) * v0[c] + (cube - 2.0 * square + alpha) * m0 +
+                 (3.0 * square - 2.0 * cube) * v1[c] + (cube - square) * m1;
+    }
+}
+
+void ChannelCurve::hermiteSlope(std::size_t key, double alpha, double factor, double* out) const
+{
+    const double length = _channel.times[key + 1] - _channel.times[key];
+    const double square = alpha * alpha;
+    const double* v0 = valueOfKey(key);
+    const double* v1 = valueOfKey(key + 1);
+    for (std::size_t c = 0; c < _componentCount; ++c)
+    {
+        const double m0 = length * v0[_componentCount + c];
+        const double m1 = length * (v1 - _componentCount)[c];
+        const double slope = 6.0 * (square - alpha) * (v0[c] - v1[c]) + (3.0 * square - 4.0 * alpha + 1.0) * m0 +
+                             (3.0 * square - 2.0 * alpha) * m1;
+        out[c] = slope * factor;
+    }
+}
+
+void ChannelCurve::tangents(const Moment& from, const Moment& to, double* outFirst, double* outLast)
+{
+    std::fill_n(outFirst, _componentCount, 0.0);
+    std::fill_n(outLast, _componentCount, 0.0);
+    const std::size_t key = keyAt(from);
+    const bool held = to.time <= _channel.times.front() || key + 1 == _channel.times.size();
+    if (held || from.time == to.time || _channel.interpolation == Interpolation::Step) return;
+
+    const double length = _channel.times[key + 1] - _channel.times[key];
+    const double share = (to.time - from.time) / length;
+    const double alpha = (from.time - _channel.times[key]) / length;
+    if (_channel.interpolation == Interpolation::CubicSpline)
+    {
+        hermiteSlope(key, alpha, share, outFirst);
+        hermiteSlope(key, (to.time - _channel.times[key]) / length, share, outLast);
+    }
+    else if (_channel.path != Channel::Path::Rotation)
+    {
+        for (std::size_t c = 0; c < _componentCount; ++c)
+            outFirst[c] = outLast[c] = (valueOfKey(key + 1)[c] - valueOfKey(key)[c]) * share;
+    }
+}
+
+void ChannelCurve::appendJumps(std::vector<double>& out) const
+{
+    if (_channel.interpolation != Interpolation::Step) return;
+    for (std::size_t key = 1; key < _channel.times.size(); ++key)
+        if (!std::equal(valueOfKey(key), valueOfKey(key) + _componentCount, valueOfKey(key - 1)))
+            out.push_back(_channel.times[key]);
+}
+
+void ChannelCurve::appendMiddlesOfHalfTurns(const std::vector<double>& times, std::vector<double>& out) const
+{
+    if (_channel.path != Channel::Path::Rotation || _channel.interpolation != Interpolation::Linear) return;
+    for (std::size_t key = 0; key + 1 < _channel.times.size(); ++key)
+    {
+        if (!isAmbiguous(unitQuaternion(valueOfKey(key)), unitQuaternion(valueOfKey(key + 1)))) continue;
+        const double from = _channel.times[key];
+        const double to = _channel.times[key + 1];
+        const auto next = std::upper_bound(times.begin(), times.end(), from);
+        const double middle = static_cast<double>(static_cast<float>(0.5 * (from + to)));
+        const bool isCut = next != times.end() && *next < to;
+        if (!isCut && from < middle && middle < to) out.push_back(middle);
+    }
+}
+
+} // namespace osgGpuAnimation

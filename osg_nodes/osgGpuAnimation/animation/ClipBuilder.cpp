@@ -1,0 +1,314 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/animation/ClipBuilder.h>
+
+#include <osgGpuAnimation/animation/ChannelCurve.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+using Path = Channel::Path;
+
+constexpr std::size_t componentsPerTrack = 12;
+constexpr JointTransform zeroTransform{glm::vec4(0.0f), glm::vec4(0.0f), glm::vec4(0.0f)};
+
+float& component(JointTransform& transform, std::size_t index)
+{
+    const auto place = static_cast<glm::vec4::length_type>(index % 4);
+    if (index < 4) return transform.translation[place];
+    return index < 8 ? transform.rotation[place] : transform.scale[place];
+}
+
+float rounded(double value)
+{
+    constexpr double largest = std::numeric_limits<float>::max();
+    return static_cast<float>(std::clamp(value, -largest, largest));
+}
+
+/// The place of a path's first number among a track's twelve.
+std::size_t firstComponent(Path path)
+{
+    return path == Path::Rotation ? 4 : path == Path::Scale ? 8 : 0;
+}
+
+const char* nameOf(Path path)
+{
+    switch (path)
+    {
+    case Path::Translation:
+        return "translation";
+    case Path::Rotation:
+        return "rotation";
+    case Path::Scale:
+        return "scale";
+    case Path::Weights:
+        return "weights";
+    }
+    return "unknown";
+}
+
+std::size_t valuesPerKey(const Channel& channel)
+{
+    return channel.interpolation == Channel::Interpolation::CubicSpline ? 3 : 1;
+}
+
+std::optional<std::string> findFaultInTimes(std::vector<double>& times)
+{
+    if (times.empty()) return "has no times";
+    for (std::size_t i = 0; i < times.size(); ++i)
+    {
+        const std::string subject = "time " + std::to_string(i) + " (" + std::to_string(times[i]) + ") ";
+        const double time = static_cast<double>(static_cast<float>(times[i]));
+        if (!std::isfinite(time)) return subject + "is not finite";
+        if (time < 0.0) return subject + "is negative";
+        if (i > 0 && time <= times[i - 1]) return subject + "is not after the one before it";
+        times[i] = time;
+    }
+    return std::nullopt;
+}
+
+std::optional<std::string> findFaultInValues(const Channel& channel, std::size_t componentCount)
+{
+    const std::size_t wanted = channel.times.size() * valuesPerKey(channel) * componentCount;
+    if (channel.values.size() != wanted)
+        return std::to_string(channel.times.size()) + " times ask for " + std::to_string(wanted) +
+               " numbers, but has " + std::to_string(channel.values.size());
+    for (std::size_t i = 0; i < channel.values.size(); ++i)
+        if (!std::isfinite(static_cast<float>(channel.values[i])))
+            return "number " + std::to_string(i) + " of its values is not finite";
+    if (channel.path != Path::Rotation) return std::nullopt;
+
+    for (std::size_t key = 0; key < channel.times.size(); ++key)
+    {
+        const double* q = channel.values.data() + 4 * (valuesPerKey(channel) == 3 ? key * 3 + 1 : key);
+        if (!(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3] > 0.0))
+            return "the quaternion of key " + std::to_string(key) + " has length 0";
+    }
+    return std::nullopt;
+}
+
+void sortUnique(std::vector<double>& times)
+{
+    std::sort(times.begin(), times.end());
+    times.erase(std::unique(times.begin(), times.end()), times.end());
+}
+
+/// The keyframes of the clip of these curves: the union of all key times, twice where one of them jumps.
+std::vector<Moment> findMoments(const std::vector<ChannelCurve>& curves)
+{
+    std::vector<double> times;
+    std::vector<double> jumps;
+    for (const ChannelCurve& curve : curves)
+    {
+        times.insert(times.end(), curve.channel().times.begin(), curve.channel().times.end());
+        curve.appendJumps(jumps);
+    }
+    sortUnique(times);
+    sortUnique(jumps);
+    std::vector<double> middles;
+    for (const ChannelCurve& curve : curves)
+        curve.appendMiddlesOfHalfTurns(times, middles);
+    times.insert(times.end(), middles.begin(), middles.end());
+    sortUnique(times);
+    if (times.empty()) times.push_back(0.0);
+
+    std::vector<Moment> moments;
+    moments.reserve(times.size() + jumps.size());
+    auto jump = jumps.begin();
+    for (double time : times)
+    {
+        if (jump != jumps.end() && *jump == time)
+        {
+            moments.push_back({time, true});
+            ++jump;
+        }
+        moments.push_back({time, false});
+    }
+    return moments;
+}
+
+/// Writes numbers into a place that recurs in every keyframe: the same part of the same track.
+class TrackWriter
+{
+public:
+    TrackWriter(std::vector<JointTransform>& data, const Clip& clip, std::size_t track, std::size_t firstComponent)
+        : _data(data), _stride(clip.keyframeStride()), _perTrack(clip.form() == Clip::Form::Spline ? 3 : 1),
+          _place(track * _perTrack), _firstComponent(firstComponent)
+    {
+    }
+
+    /// part: 0 the value, 1 the in-tangent, 2 the out-tangent. Numbers beyond a track's twelve go to the next track.
+    void write(std::size_t keyframe, std::size_t part, const std::vector<double>& numbers)
+    {
+        for (std::size_t i = 0; i < numbers.size(); ++i)
+        {
+            const std::size_t at = _firstComponent + i;
+            const std::size_t track = at / componentsPerTrack;
+            JointTransform& transform = _data[keyframe * _stride + _place + track * _perTrack + part];
+            component(transform, at % componentsPerTrack) = rounded(numbers[i]);
+        }
+    }
+
+    void markAsSplineRotation(std::size_t keyframe) { _data[keyframe * _stride + _place].translation.w = 0.0f; }
+
+private:
+    std::vector<JointTransform>& _data;
+    std::size_t _stride;
+    std::size_t _perTrack;
+    std::size_t _place;
+    std::size_t _firstComponent;
+};
+
+void writeCurve(ChannelCurve curve, const std::vector<Moment>& moments, bool spline, TrackWriter writer)
+{
+    std::vector<double> value(curve.componentCount());
+    for (std::size_t k = 0; k < moments.size(); ++k)
+    {
+        curve.value(moments[k], value.data());
+        writer.write(k, 0, value);
+        if (curve.isSplineRotation()) writer.markAsSplineRotation(k);
+    }
+    if (!spline) return;
+
+    std::vector<double> last(curve.componentCount());
+    for (std::size_t k = 0; k + 1 < moments.size(); ++k)
+    {
+        curve.tangents(moments[k], moments[k + 1], value.data(), last.data());
+        writer.write(k, 2, value);
+        writer.write(k + 1, 1, last);
+    }
+}
+
+/// Every keyframe the rest pose, with tangents of zero in a spline clip.
+void fillWithRest(const std::vector<JointTransform>& rest, std::size_t jointCount, bool spline,
+                  std::size_t keyframeCount, std::vector<JointTransform>& out)
+{
+    out.reserve(rest.size() * (spline ? 3 : 1) * keyframeCount);
+    for (std::size_t k = 0; k < keyframeCount; ++k)
+        for (std::size_t track = 0; track < rest.size(); ++track)
+        {
+            out.push_back(rest[track]);
+            if (!spline) continue;
+            if (track < jointCount) out.back().translation.w = 1.0f;
+            out.insert(out.end(), 2, zeroTransform);
+        }
+}
+
+} // namespace
+
+ClipBuilder::ClipBuilder(const Skeleton& skeleton, const std::vector<MorphWeights>& morphs)
+    : _rest(restPose(skeleton, morphs)), _jointCount(skeleton.jointCount()),
+      _driven(skeleton.jointCount() * 3 + morphs.size())
+{
+    std::size_t track = _jointCount;
+    for (const MorphWeights& morph : morphs)
+    {
+        _firstTrackOfMorph.push_back(static_cast<int>(track));
+        _weightCounts.push_back(morph.defaults.size());
+        track += morph.blockCount();
+    }
+}
+
+std::size_t ClipBuilder::componentCount(const Channel& channel) const
+{
+    if (channel.path == Path::Weights) return _weightCounts[static_cast<std::size_t>(channel.target)];
+    return channel.path == Path::Rotation ? 4 : 3;
+}
+
+std::string ClipBuilder::describe(const Channel& channel) const
+{
+    return std::string(nameOf(channel.path)) + " of " + (channel.path == Path::Weights ? "morph " : "joint ") +
+           std::to_string(channel.target) + ": ";
+}
+
+std::size_t ClipBuilder::keyOf(const Channel& channel) const
+{
+    const auto target = static_cast<std::size_t>(channel.target);
+    if (channel.path == Path::Weights) return _jointCount * 3 + target;
+    return target * 3 + static_cast<std::size_t>(channel.path);
+}
+
+Result<bool> ClipBuilder::add(Channel channel)
+{
+    const std::string subject = describe(channel);
+    const std::size_t targets = channel.path == Path::Weights ? _weightCounts.size() : _jointCount;
+    if (channel.target < 0 || static_cast<std::size_t>(channel.target) >= targets)
+        return Error{subject + "there are " + std::to_string(targets)};
+    if (_driven[keyOf(channel)]) return Error{subject + "another channel has this target already"};
+    if (componentCount(channel) == 0) return Error{subject + "it has no weights"};
+    if (auto fault = findFaultInTimes(channel.times)) return Error{subject + *fault};
+    if (auto fault = findFaultInValues(channel, componentCount(channel))) return Error{subject + *fault};
+
+    _driven[keyOf(channel)] = true;
+    _channels.push_back(std::move(channel));
+    return true;
+}
+
+std::size_t ClipBuilder::byteSize() const
+{
+    std::vector<ChannelCurve> curves;
+    bool spline = false;
+    for (const Channel& channel : _channels)
+    {
+        curves.emplace_back(channel, componentCount(channel));
+        spline = spline || channel.interpolation == Channel::Interpolation::CubicSpline;
+    }
+    const double bytesPerKeyframe =
+        static_cast<double>(sizeof(float) + _rest.size() * (spline ? 3 : 1) * sizeof(JointTransform));
+    const double bytes = bytesPerKeyframe * static_cast<double>(findMoments(curves).size());
+    constexpr auto most = std::numeric_limits<std::size_t>::max();
+    return bytes < static_cast<double>(most) ? static_cast<std::size_t>(bytes) : most;
+}
+
+Clip ClipBuilder::build(std::string name)
+{
+    Clip clip;
+    clip._name = std::move(name);
+    clip._trackCount = _rest.size();
+    std::vector<ChannelCurve> curves;
+    for (const Channel& channel : _channels)
+    {
+        curves.emplace_back(channel, componentCount(channel));
+        if (channel.interpolation == Channel::Interpolation::CubicSpline) clip._form = Clip::Form::Spline;
+    }
+
+    const bool spline = clip._form == Clip::Form::Spline;
+    const std::vector<Moment> moments = findMoments(curves);
+    for (const Moment& moment : moments)
+        clip._times.push_back(static_cast<float>(moment.time));
+    fillWithRest(_rest, _jointCount, spline, moments.size(), clip._data);
+    for (const ChannelCurve& curve : curves)
+    {
+        const auto target = static_cast<std::size_t>(curve.channel().target);
+        const bool isWeights = curve.channel().path == Path::Weights;
+        const std::size_t track = isWeights ? static_cast<std::size_t>(_firstTrackOfMorph[target]) : target;
+        writeCurve(curve, moments, spline, TrackWriter(clip._data, clip, track, firstComponent(curve.channel().path)));
+    }
+    _channels.clear();
+    _driven.assign(_driven.size(), false);
+    return clip;
+}
+
+std::vector<JointTransform> restPose(const Skeleton& skeleton, const std::vector<MorphWeights>& morphs)
+{
+    std::vector<JointTransform> tracks;
+    for (const Joint& joint : skeleton.joints())
+        tracks.push_back(joint.rest);
+    for (const MorphWeights& morph : morphs)
+    {
+        const std::size_t first = tracks.size();
+        tracks.resize(first + morph.blockCount(), zeroTransform);
+        for (std::size_t i = 0; i < morph.defaults.size(); ++i)
+            component(tracks[first + i / componentsPerTrack], i % componentsPerTrack) = morph.defaults[i];
+    }
+    return tracks;
+}
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/animation/Skeleton.h>
+
+#include <osgGpuAnimation/animation/Rotation.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+std::string describe(const std::vector<Joint>& joints, std::size_t index)
+{
+    return "joint " + std::to_string(index) + " \"" + joints[index].name + "\"";
+}
+
+bool isFinite(const glm::vec4& v)
+{
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z) && std::isfinite(v.w);
+}
+
+std::optional<Error> findFault(const std::vector<Joint>& joints)
+{
+    const auto count = static_cast<std::int64_t>(joints.size());
+    for (std::size_t i = 0; i < joints.size(); ++i)
+    {
+        const Joint& joint = joints[i];
+        if (joint.parent < -1 || joint.parent >= count)
+            return Error{describe(joints, i) + ": parent " + std::to_string(joint.parent) + " is not one of " +
+                         std::to_string(count) + " joints"};
+        if (!isFinite(joint.rest.translation) || !isFinite(joint.rest.rotation) || !isFinite(joint.rest.scale))
+            return Error{describe(joints, i) + ": its rest transform is not finite"};
+    }
+    return std::nullopt;
+}
+
+/// Depths by walking down from the roots, level by level and without recursion; -1 for joints on or under a cycle.
+std::vector<int> findDepths(const std::vector<Joint>& joints)
+{
+    std::vector<std::size_t> firstChild(joints.size() + 1, 0);
+    for (const Joint& joint : joints)
+        if (joint.parent >= 0) ++firstChild[static_cast<std::size_t>(joint.parent) + 1];
+    for (std::size_t i = 0; i < joints.size(); ++i)
+        firstChild[i + 1] += firstChild[i];
+
+    std::vector<std::size_t> children(firstChild.back());
+    std::vector<std::size_t> place(firstChild.begin(), firstChild.end() - 1);
+    std::vector<std::size_t> queue;
+    queue.reserve(joints.size());
+    std::vector<int> depths(joints.size(), -1);
+    for (std::size_t i = 0; i < joints.size(); ++i)
+    {
+        if (joints[i].parent >= 0)
+        {
+            children[place[static_cast<std::size_t>(joints[i].parent)]++] = i;
+            continue;
+        }
+        depths[i] = 0;
+        queue.push_back(i);
+    }
+    for (std::size_t head = 0; head < queue.size(); ++head)
+        for (std::size_t c = firstChild[queue[head]]; c < firstChild[queue[head] + 1]; ++c)
+        {
+            depths[children[c]] = depths[queue[head]] + 1;
+            queue.push_back(children[c]);
+        }
+    return depths;
+}
+
+JointTransform cleaned(const JointTransform& rest)
+{
+    return {glm::vec4(glm::vec3(rest.translation), 0.0f), glm::vec4(Rotation::unit(glm::dvec4(rest.rotation))),
+            glm::vec4(glm::vec3(rest.scale), 0.0f)};
+}
+
+} // namespace
+
+Result<Skeleton> Skeleton::create(std::vector<Joint> joints)
+{
+    if (std::optional<Error> fault = findFault(joints)) return *fault;
+    const std::vector<int> depths = findDepths(joints);
+    const auto lost = std::find(depths.begin(), depths.end(), -1);
+    if (lost != depths.end())
+        return Error{describe(joints, static_cast<std::size_t>(lost - depths.begin())) +
+                     ": its chain of parents runs in a circle"};
+
+    std::vector<std::size_t> order(joints.size());
+    for (std::size_t i = 0; i < order.size(); ++i)
+        order[i] = i;
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return depths[a] < depths[b]; });
+
+    Skeleton skeleton;
+    skeleton._jointOfInput.resize(joints.size());
+    for (std::size_t i = 0; i < order.size(); ++i)
+        skeleton._jointOfInput[order[i]] = static_cast<int>(i);
+    for (std::size_t i = 0; i < order.size(); ++i)
+    {
+        Joint& joint = joints[order[i]];
+        // A parent is of an earlier level, so its own place is known.
+        if (joint.parent >= 0) joint.parent = skeleton._jointOfInput[static_cast<std::size_t>(joint.parent)];
+        joint.rest = cleaned(joint.rest);
+        skeleton._depths.push_back(depths[order[i]]);
+        if (joint.sourceNode >= 0) skeleton._jointOfSourceNode.emplace(joint.sourceNode, static_cast<int>(i));
+        skeleton._joints.push_back(std::move(joint));
+    }
+    return skeleton;
+}
+
+std::size_t Skeleton::levelCount() const
+{
+    return _depths.empty() ? 0 : static_cast<std::size_t>(_depths.back()) + 1;
+}
+
+int Skeleton::jointOfSourceNode(int node) const
+{
+    const auto found = _jointOfSourceNode.find(node);
+    return found == _jointOfSourceNode.end() ? -1 : found->second;
+}
+
+int Skeleton::findJoint(const std::string& name) const
+{
+    for (std::size_t i = 0; i < _joints.size(); ++i)
+        if (_joints[i].name == name) return static_cast<int>(i);
+    return -1;
+}
+
+} // namespace osgGpuAnimation

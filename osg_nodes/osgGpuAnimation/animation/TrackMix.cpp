@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+#include "TrackMix.h"
+
+#include <osgGpuAnimation/animation/Rotation.h>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+glm::dvec4 lerp(const glm::vec4& a, const glm::vec4& b, double alpha)
+{
+    return glm::dvec4(a) * (1.0 - alpha) + glm::dvec4(b) * alpha;
+}
+
+glm::dvec4 slerp(const glm::vec4& a, const glm::vec4& b, double alpha)
+{
+    const glm::dvec4 from = Rotation::unit(glm::dvec4(a));
+    return alpha == 0.0 ? from : Rotation::slerp(from, Rotation::unit(glm::dvec4(b)), alpha);
+}
+
+MixedTrack mixLinear(const JointTransform& a, const JointTransform& b, double alpha, bool isWeights)
+{
+    return {lerp(a.translation, b.translation, alpha),
+            isWeights ? lerp(a.rotation, b.rotation, alpha) : slerp(a.rotation, b.rotation, alpha),
+            lerp(a.scale, b.scale, alpha)};
+}
+
+/// a and b each point to value, in-tangent, out-tangent.
+MixedTrack mixSpline(const JointTransform* a, const JointTransform* b, double alpha, bool isWeights)
+{
+    const double square = alpha * alpha;
+    const double cube = square * alpha;
+    const auto hermite = [&](glm::vec4 JointTransform::*part)
+    {
+        return (2.0 * cube - 3.0 * square + 1.0) * glm::dvec4(a[0].*part) +
+               (cube - 2.0 * square + alpha) * glm::dvec4(a[2].*part) +
+               (3.0 * square - 2.0 * cube) * glm::dvec4(b[0].*part) + (cube - square) * glm::dvec4(b[1].*part);
+    };
+    MixedTrack mixed{hermite(&JointTransform::translation), {}, hermite(&JointTransform::scale)};
+    const bool isSlerped = a[0].translation.w == 1.0f; // see Clip
+    if (isWeights)
+        mixed.rotation = hermite(&JointTransform::rotation);
+    else
+        mixed.rotation =
+            isSlerped ? slerp(a[0].rotation, b[0].rotation, alpha) : Rotation::unit(hermite(&JointTransform::rotation));
+    return mixed;
+}
+
+} // namespace
+
+MixedTrack MixedTrack::between(const KeyframePair& keyframes, std::size_t track, bool isWeights)
+{
+    if (keyframes.spline)
+        return mixSpline(keyframes.first + 3 * track, keyframes.second + 3 * track, keyframes.alpha, isWeights);
+    return mixLinear(keyframes.first[track], keyframes.second[track], keyframes.alpha, isWeights);
+}
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/gpu/FeedbackPass.h>
+
+#include <osg/Notify>
+
+#include <ShaderSources.h>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+template <typename GetLength, typename GetLog>
+std::string infoLog(GetLength getLength, GetLog getLog)
+{
+    GLint length = 0;
+    getLength(&length);
+    std::string log(static_cast<std::size_t>(length) + 1, '\0');
+    getLog(static_cast<GLsizei>(log.size()), log.data());
+    return log.c_str();
+}
+
+} // namespace
+
+FeedbackPass::FeedbackPass(osg::GLExtensions& gl, const char* name, std::initializer_list<const char*> source,
+                           std::initializer_list<const char*> outputs)
+    : _gl(&gl), _bytesPerVertex(outputs.size() * 4 * sizeof(float))
+{
+    std::string text = "#version 330\n";
+    text += shaders::layout_glsl;
+    for (const char* part : source)
+        text += part;
+    if (!link(name, text, outputs)) release();
+}
+
+bool FeedbackPass::link(const char* name, const std::string& source, const std::vector<const char*>& outputs)
+{
+    const GLuint shader = _gl->glCreateShader(GL_VERTEX_SHADER);
+    const char* text = source.c_str();
+    _gl->glShaderSource(shader, 1, &text, nullptr);
+    _gl->glCompileShader(shader);
+    GLint ok = GL_FALSE;
+    _gl->glGetShaderiv(shader, GL_COMPILE_STATUS, &ok);
+    if (!ok)
+    {
+        OSG_WARN << "osgGpuAnimation: pass " << name << " does not compile: "
+                 << infoLog([&](GLint* length) { _gl->glGetShaderiv(shader, GL_INFO_LOG_LENGTH, length); },
+                            [&](GLsizei size, char* log) { _gl->glGetShaderInfoLog(shader, size, nullptr, log); })
+                 << std::endl;
+        _gl->glDeleteShader(shader);
+        return false;
+    }
+    _program = _gl->glCreateProgram();
+    _gl->glAttachShader(_program, shader);
+    _gl->glDeleteShader(shader);
+    _gl->glTransformFeedbackVaryings(_program, static_cast<GLsizei>(outputs.size()), outputs.data(),
+                                     GL_INTERLEAVED_ATTRIBS);
+    _gl->glLinkProgram(_program);
+    _gl->glGetProgramiv(_program, GL_LINK_STATUS, &ok);
+    if (!ok)
+        OSG_WARN << "osgGpuAnimation: pass " << name << " does not link: "
+                 << infoLog([&](GLint* length) { _gl->glGetProgramiv(_program, GL_INFO_LOG_LENGTH, length); },
+                            [&](GLsizei size, char* log) { _gl->glGetProgramInfoLog(_program, size, nullptr, log); })
+                 << std::endl;
+    return ok == GL_TRUE;
+}
+
+GLint FeedbackPass::location(const char* uniform)
+{
+    const auto known = _locations.find(uniform);
+    if (known != _locations.end()) return known->second;
+    return _locations[uniform] = _gl->glGetUniformLocation(_program, uniform);
+}
+
+void FeedbackPass::use() { _gl->glUseProgram(_program); }
+
+void FeedbackPass::setInt(const char* uniform, int value) { _gl->glUniform1i(location(uniform), value); }
+
+void FeedbackPass::setTexture(const char* uniform, int unit, GLuint texture)
+{
+    _gl->glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+    glBindTexture(GL_TEXTURE_BUFFER, texture);
+    _gl->glUniform1i(location(uniform), unit);
+}
+
+void FeedbackPass::run(std::size_t firstVertex, std::size_t count, GLuint buffer, std::size_t byteOffset)
+{
+    if (count == 0) return;
+    _gl->glBindBufferRange(GL_TRANSFORM_FEEDBACK_BUFFER, 0, buffer, static_cast<GLintptr>(byteOffset),
+                           static_cast<GLsizeiptr>(count * _bytesPerVertex));
+    _gl->glBeginTransformFeedback(GL_POINTS);
+    glDrawArrays(GL_POINTS, static_cast<GLint>(firstVertex), static_cast<GLsizei>(count));
+    _gl->glEndTransformFeedback();
+    _gl->glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, 0);
+}
+
+void FeedbackPass::release()
+{
+    if (_program != 0) _gl->glDeleteProgram(_program);
+    discard();
+}
+
+} // namespace osgGpuAnimation

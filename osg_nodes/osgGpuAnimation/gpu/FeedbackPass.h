@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osg/GLExtensions>
+
+#include <initializer_list>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+namespace osgGpuAnimation
+{
+
+/// A vertex shader whose outputs are captured by transform feedback, nothing being rasterized: one pass of the
+/// pipeline, in one graphics context. Used between FeedbackScope's beginning and end.
+///
+///     pass.use();
+///     pass.setTexture("keyframes", 0, buffers.keyframes().texture());
+///     pass.run(firstVertex, count, out.buffer(), byteOffset, byteCount);
+class FeedbackPass
+{
+public:
+    /// source: parts of the shader, put together behind a #version line and layout.glsl. outputs: the vec4 outputs
+    /// to capture, interleaved in that order. Failure to compile or link is reported once and leaves valid() false.
+    FeedbackPass(osg::GLExtensions& gl, const char* name, std::initializer_list<const char*> source,
+                 std::initializer_list<const char*> outputs);
+    FeedbackPass(const FeedbackPass&) = delete;
+    FeedbackPass& operator=(const FeedbackPass&) = delete;
+
+    bool valid() const { return _program != 0; }
+
+    void use();
+    void setInt(const char* uniform, int value);
+    /// Binds a buffer texture to a unit and points the sampler there.
+    void setTexture(const char* uniform, int unit, GLuint texture);
+    /// Draws points [firstVertex, firstVertex + count) and writes 16 bytes an output for each into the buffer.
+    void run(std::size_t firstVertex, std::size_t count, GLuint buffer, std::size_t byteOffset);
+
+    void release();
+    void discard() { _program = 0; }
+
+private:
+    GLint location(const char* uniform);
+    bool link(const char* name, const std::string& source, const std::vector<const char*>& outputs);
+
+    osg::GLExtensions* _gl;
+    GLuint _program = 0;
+    std::size_t _bytesPerVertex;
+    std::unordered_map<std::string, GLint> _locations;
+};
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/gpu/PosePalette.h>
+
+#include <algorithm>
+#include <cstring>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+/// Brings the buffer and its record up to [first, first + count) of the source. True if it was not the same already.
+template <typename Element>
+bool uploadChanged(const std::vector<Element>& source, std::size_t first, std::size_t count,
+                   std::vector<Element>& uploaded, BufferTexture& buffer, std::size_t& bytesUploaded)
+{
+    const std::size_t bytes = count * sizeof(Element);
+    const Element* begin = source.data() + first;
+    if (uploaded.size() == count && (count == 0 || std::memcmp(uploaded.data(), begin, bytes) == 0)) return false;
+    uploaded.assign(begin, begin + count);
+    if (count == 0) return true;
+    buffer.upload(begin, bytes);
+    bytesUploaded += bytes;
+    return true;
+}
+
+} // namespace
+
+PosePalette::Chunk::Chunk(osg::GLExtensions& gl)
+    : samples(gl, GL_RGBA32UI_EXT), roots(gl, GL_RGBA32F_ARB), palette(gl, GL_RGBA32F_ARB)
+{
+}
+
+std::vector<PosePalette::Chunk*> PosePalette::upload(const PoseBatch& batch, std::size_t chunkCapacity,
+                                                     std::size_t& bytesUploaded)
+{
+    std::vector<Chunk*> changed;
+    _chunkCapacity = chunkCapacity;
+    const std::size_t stride = batch.sampleStride();
+    const bool hasRoots = !batch.rootMatrices().empty();
+    std::size_t index = 0;
+    for (std::size_t first = 0; first < batch.size(); first += chunkCapacity, ++index)
+    {
+        if (index == _chunks.size()) _chunks.push_back(std::make_unique<Chunk>(*_gl));
+        Chunk& chunk = *_chunks[index];
+        const std::size_t size = std::min(chunkCapacity, batch.size() - first);
+        bool isChanged = chunk.size != size || chunk.sampleStride != stride;
+        chunk.size = size;
+        chunk.sampleStride = stride;
+        isChanged |= uploadChanged(batch.samples(), first * stride, size * stride, chunk.uploadedSamples,
+                                   chunk.samples, bytesUploaded);
+        isChanged |= uploadChanged(batch.rootMatrices(), hasRoots ? first : 0, hasRoots ? size : 0,
+                                   chunk.uploadedRootMatrices, chunk.roots, bytesUploaded);
+        if (isChanged) changed.push_back(&chunk);
+    }
+    for (; index < _chunks.size(); ++index)
+        _chunks[index]->size = 0;
+    return changed;
+}
+
+PalettePlace PosePalette::place(std::size_t instance) const
+{
+    const std::size_t index = instance / _chunkCapacity;
+    if (index >= _chunks.size()) return {};
+    const Chunk& chunk = *_chunks[index];
+    return {chunk.palette.texture(), static_cast<int>(chunk.size), static_cast<int>(instance % _chunkCapacity)};
+}
+
+void PosePalette::release()
+{
+    for (const std::unique_ptr<Chunk>& chunk : _chunks)
+        for (BufferTexture* buffer : {&chunk->samples, &chunk->roots, &chunk->palette})
+            buffer->release();
+    _chunks.clear();
+}
+
+void PosePalette::discard()
+{
+    _chunks.clear();
+}
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osgGpuAnimation/gpu/BufferTexture.h>
+#include <osgGpuAnimation/gpu/PoseBatch.h>
+
+#include <memory>
+#include <vector>
+
+namespace osgGpuAnimation
+{
+
+/// Where the draw side finds an instance's palette: entry e is matrix e * stride + instance of the texture.
+struct PalettePlace
+{
+    GLuint texture = 0; ///< 0: none, nothing can be drawn
+    int stride = 0;
+    int instance = 0;
+};
+
+/// The GPU's side of one PoseBatch in one graphics context: its input buffers and the palette they become. Large
+/// batches are cut into chunks, each small enough for a buffer texture.
+class PosePalette
+{
+public:
+    struct Chunk
+    {
+        explicit Chunk(osg::GLExtensions& gl);
+
+        std::size_t size = 0; ///< instances
+        std::size_t sampleStride = 1;
+        std::vector<BlendSample> uploadedSamples;       ///< what `samples` holds
+        std::vector<AffineMatrix> uploadedRootMatrices; ///< what `roots` holds
+        BufferTexture samples;
+        BufferTexture roots;
+        BufferTexture palette; ///< RGBA32F: paletteSize * size matrices, entry-major
+    };
+
+    explicit PosePalette(osg::GLExtensions& gl) : _gl(&gl) {}
+
+    /// Cuts the batch's instances into chunks of at most that many and uploads what is new of each.
+    /// Returns the chunks whose content changed: they are to be evaluated. bytesUploaded is added to.
+    std::vector<Chunk*> upload(const PoseBatch& batch, std::size_t chunkCapacity, std::size_t& bytesUploaded);
+
+    PalettePlace place(std::size_t instance) const;
+    const std::vector<std::unique_ptr<Chunk>>& chunks() const { return _chunks; }
+
+    void release();
+    void discard();
+
+private:
+    osg::GLExtensions* _gl;
+    std::size_t _chunkCapacity = 1;
+    std::vector<std::unique_ptr<Chunk>> _chunks;
+};
+
+} // namespace osgGpuAnimation

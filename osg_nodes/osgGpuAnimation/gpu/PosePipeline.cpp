@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/gpu/PosePipeline.h>
+
+#include <osgGpuAnimation/gpu/FeedbackScope.h>
+
+#include <layout.glsl>
+#include <ShaderSources.h>
+
+#include <osg/ContextData>
+#include <osg/Notify>
+
+#include <algorithm>
+
+#ifndef GL_MAX_TEXTURE_BUFFER_SIZE
+#define GL_MAX_TEXTURE_BUFFER_SIZE 0x8C2B
+#endif
+#ifndef GL_COPY_READ_BUFFER
+#define GL_COPY_READ_BUFFER 0x8F36
+#define GL_COPY_WRITE_BUFFER 0x8F37
+#endif
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+constexpr std::size_t matrixBytes = sizeof(AffineMatrix);
+constexpr int unitKeyframes = 0, unitSamples = 1, unitEntries = 2, unitRoots = 3, unitPrevious = 4;
+constexpr int unitCount = 5;
+
+} // namespace
+
+PosePipeline::PosePipeline(unsigned int contextId)
+    : osg::GraphicsObjectManager("PosePipeline", contextId), _gl(osg::GLExtensions::Get(contextId, true)),
+      _scratch(*_gl, GL_RGBA32F_ARB), _mixedTracks(*_gl, GL_RGBA32F_ARB)
+{
+    osg::setGLExtensionFuncPtr(_copyBufferSubData, "glCopyBufferSubData");
+    GLint maxTexels = 0;
+    glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &maxTexels);
+    _maxTexels = static_cast<std::size_t>(std::max(maxTexels, 0));
+    _isSupported = _gl->glVersion >= 3.3f && _gl->glBeginTransformFeedback && _gl->glTexBuffer && _copyBufferSubData;
+    if (!_isSupported)
+        OSG_WARN << "osgGpuAnimation: this context has OpenGL " << _gl->glVersion
+                 << "; animated characters need 3.3 with transform feedback and are not drawn" << std::endl;
+}
+
+PosePipeline* PosePipeline::of(osg::State& state)
+{
+    PosePipeline* pipeline = osg::get<PosePipeline>(state.getContextID());
+    return pipeline->_isSupported ? pipeline : nullptr;
+}
+
+bool PosePipeline::makePasses()
+{
+    if (_posePass) return _posePass->valid();
+    _gl->glGenVertexArrays(1, &_vertexArray);
+    using namespace shaders;
+    _posePass = std::make_unique<FeedbackPass>(*_gl, "pose", std::initializer_list{mix_glsl, local_glsl, world_glsl, pose_vert},
+                                               std::initializer_list{"row0", "row1", "row2"});
+    return _posePass->valid();
+}
+
+void PosePipeline::setForm(Form form)
+{
+    _form = form;
+    if (form == Form::Fused || _mixPass) return;
+    using namespace shaders;
+    const std::initializer_list<const char*> rows{"row0", "row1", "row2"};
+    _mixPass = std::make_unique<FeedbackPass>(*_gl, "mix", std::initializer_list{mix_glsl, mix_vert},
+                                              std::initializer_list{"translation", "rotation", "scale"});
+    _localPass = std::make_unique<FeedbackPass>(*_gl, "local", std::initializer_list{local_glsl, local_vert}, rows);
+    _worldPass = std::make_unique<FeedbackPass>(*_gl, "world", std::initializer_list{world_glsl, world_vert}, rows);
+}
+
+PosePipeline::SetResources& PosePipeline::resourcesOf(const PoseBatch& batch)
+{
+    const AnimationSet& set = batch.set();
+    SetResources& resources = _sets[&set];
+    if (!resources.set.expired()) return resources;
+
+    for (const std::unique_ptr<PosePalette>& palette : resources.palettes)
+        palette->release();
+    if (resources.buffers) resources.buffers->release();
+    resources = SetResources{batch.sharedSet(), nullptr, {}};
+    const std::size_t keyframeTexels = set.keyframeBufferSize() * POSE_TEXELS_PER_TRANSFORM;
+    const std::size_t entryTexels = set.paletteSize() * POSE_TEXELS_PER_ENTRY;
+    if (std::max(keyframeTexels, entryTexels) <= _maxTexels)
+        resources.buffers = std::make_unique<AnimationBuffers>(*_gl, set);
+    else
+        OSG_WARN << "osgGpuAnimation: an animation set needs buffers of " << keyframeTexels << " texels (keyframes) and "
+                 << entryTexels << " (palette entries), this context takes at most " << _maxTexels
+                 << "; its characters are not drawn" << std::endl;
+    return resources;
+}
+
+bool PosePipeline::evaluate(osg::State& state, const PoseBatch& batch, std::size_t slot)
+{
+    if (!makePasses()) return false;
+    forgetUnusedSets();
+    SetResources& resources = resourcesOf(batch);
+    if (!resources.buffers) return false;
+    while (resources.palettes.size() <= slot)
+        resources.palettes.push_back(std::make_unique<PosePalette>(*_gl));
+
+    const AnimationSet& set = batch.set();
+    const std::size_t widest = std::max(set.paletteSize(), _form == Form::Separate ? set.trackCount() : 0);
+    const std::size_t byPalette = _maxTexels / (POSE_TEXELS_PER_MATRIX * std::max<std::size_t>(widest, 1));
+    const std::size_t chunkCapacity = std::max<std::size_t>(std::min(byPalette, _maxTexels / batch.sampleStride()), 1);
+    const std::vector<PosePalette::Chunk*> changed =
+        resources.palettes[slot]->upload(batch, chunkCapacity, _counters.bytesUploaded);
+    if (changed.empty()) return true;
+
+    const FeedbackScope scope(state, _vertexArray, unitCount);
+    for (PosePalette::Chunk* chunk : changed)
+    {
+        chunk->palette.reserve(set.paletteSize() * chunk->size * matrixBytes);
+        if (_form == Form::Fused)
+            evaluateFused(set, *resources.buffers, *chunk);
+        else
+            evaluateSeparate(set, *resources.buffers, *chunk);
+        _counters.instancesEvaluated += chunk->size;
+    }
+    return true;
+}
+
+void PosePipeline::useMixInput(FeedbackPass& pass, const AnimationSet& set, const AnimationBuffers& buffers,
+                               const PosePalette::Chunk& chunk)
+{
+    pass.use();
+    pass.setTexture("keyframes", unitKeyframes, buffers.keyframes().texture());
+    pass.setTexture("samples", unitSamples, chunk.samples.texture());
+    pass.setInt("sampleStride", static_cast<int>(chunk.sampleStride));
+    pass.setInt("instanceCount", static_cast<int>(chunk.size));
+    pass.setInt("trackCount", static_cast<int>(set.trackCount()));
+    pass.setInt("jointCount", static_cast<int>(set.skeleton().jointCount()));
+}
+
+void PosePipeline::useWorldInput(FeedbackPass& pass, const AnimationBuffers& buffers, const PosePalette::Chunk& chunk)
+{
+    pass.use();
+    pass.setInt("instanceCount", static_cast<int>(chunk.size));
+    pass.setTexture("entries", unitEntries, buffers.entries().texture());
+    pass.setTexture("roots", unitRoots, chunk.roots.texture());
+    pass.setInt("hasRoots", chunk.uploadedRootMatrices.empty() ? 0 : 1);
+}
+
+void PosePipeline::run(FeedbackPass& pass, std::size_t firstVertex, std::size_t count, const BufferTexture& out)
+{
+    pass.run(firstVertex, count, out.buffer(), firstVertex * matrixBytes);
+    ++_counters.feedbackDraws;
+}
+
+// A buffer must not be read while feedback writes to it, so levels go to the palette and to the scratch buffer by
+// turns, each at its own place; at the end the scratch buffer's levels are copied to their places in the palette.
+void PosePipeline::evaluateFused(const AnimationSet& set, const AnimationBuffers& buffers, PosePalette::Chunk& chunk)
+{
+    if (set.levelCount() > 1) _scratch.reserve(set.paletteSize() * chunk.size * matrixBytes);
+    useMixInput(*_posePass, set, buffers, chunk);
+    useWorldInput(*_posePass, buffers, chunk);
+    const std::vector<std::size_t>& levels = set.levels();
+    for (std::size_t level = 0; level < set.levelCount(); ++level)
+    {
+        const bool isOdd = level % 2 != 0;
+        _posePass->setTexture("parentLevels", unitPrevious, (isOdd ? chunk.palette : _scratch).texture());
+        run(*_posePass, levels[level] * chunk.size, (levels[level + 1] - levels[level]) * chunk.size,
+            isOdd ? _scratch : chunk.palette);
+    }
+    gatherOddLevels(set, chunk);
+}
+
+void PosePipeline::gatherOddLevels(const AnimationSet& set, const PosePalette::Chunk& chunk)
+{
+    if (set.levelCount() < 2) return;
+    _gl->glBindBuffer(GL_COPY_READ_BUFFER, _scratch.buffer());
+    _gl->glBindBuffer(GL_COPY_WRITE_BUFFER, chunk.palette.buffer());
+    const std::vector<std::size_t>& levels = set.levels();
+    for (std::size_t level = 1; level < set.levelCount(); level += 2)
+    {
+        const GLintptr offset = static_cast<GLintptr>(levels[level] * chunk.size * matrixBytes);
+        const std::size_t count = (levels[level + 1] - levels[level]) * chunk.size;
+        _copyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, offset, offset,
+                           static_cast<GLsizeiptr>(count * matrixBytes));
+    }
+    _gl->glBindBuffer(GL_COPY_READ_BUFFER, 0);
+    _gl->glBindBuffer(GL_COPY_WRITE_BUFFER, 0);
+}
+
+void PosePipeline::evaluateSeparate(const AnimationSet& set, const AnimationBuffers& buffers,
+                                    PosePalette::Chunk& chunk)
+{
+    const std::size_t trackVertices = set.trackCount() * chunk.size;
+    _mixedTracks.reserve(trackVertices * sizeof(JointTransform));
+    _scratch.reserve(trackVertices * matrixBytes);
+
+    useMixInput(*_mixPass, set, buffers, chunk);
+    run(*_mixPass, 0, trackVertices, _mixedTracks);
+
+    _localPass->use();
+    _localPass->setTexture("mixedTracks", unitPrevious, _mixedTracks.texture());
+    _localPass->setInt("instanceCount", static_cast<int>(chunk.size));
+    _localPass->setInt("jointCount", static_cast<int>(set.skeleton().jointCount()));
+    run(*_localPass, 0, trackVertices, _scratch);
+
+    useWorldInput(*_worldPass, buffers, chunk);
+    _worldPass->setTexture("localMatrices", unitPrevious, _scratch.texture());
+    run(*_worldPass, 0, set.paletteSize() * chunk.size, chunk.palette);
+}
+
+PalettePlace PosePipeline::place(const AnimationSet& set, std::size_t slot, std::size_t instance) const
+{
+    const auto known = _sets.find(&set);
+    if (known == _sets.end() || slot >= known->second.palettes.size()) return {};
+    return known->second.palettes[slot]->place(instance);
+}
+
+std::vector<AffineMatrix> PosePipeline::readPalette(osg::State& state, const AnimationSet& set, std::size_t slot,
+                                                    std::size_t instance) const
+{
+    const PalettePlace where = place(set, slot, instance);
+    std::vector<AffineMatrix> entries(where.texture == 0 ? 0 : set.paletteSize());
+    if (entries.empty()) return entries;
+    const auto& palette = *_sets.at(&set).palettes[slot];
+    for (const std::unique_ptr<PosePalette::Chunk>& chunk : palette.chunks())
+        if (chunk->palette.texture() == where.texture) _gl->glBindBuffer(GL_TEXTURE_BUFFER, chunk->palette.buffer());
+    for (std::size_t entry = 0; entry < entries.size(); ++entry)
+        _gl->glGetBufferSubData(GL_TEXTURE_BUFFER,
+                                static_cast<GLintptr>((entry * static_cast<std::size_t>(where.stride) +
+                                                       static_cast<std::size_t>(where.instance)) * matrixBytes),
+                                matrixBytes, &entries[entry]);
+    _gl->glBindBuffer(GL_TEXTURE_BUFFER, 0);
+    state.checkGLErrors("PosePipeline::readPalette");
+    return entries;
+}
+
+void PosePipeline::forgetUnusedSets()
+{
+    for (auto resources = _sets.begin(); resources != _sets.end();)
+    {
+        if (!resources->second.set.expired())
+        {
+            ++resources;
+            continue;
+        }
+        for (const std::unique_ptr<PosePalette>& palette : resources->second.palettes)
+            palette->release();
+        if (resources->second.buffers) resources->second.buffers->release();
+        resources = _sets.erase(resources);
+    }
+}
+
+void PosePipeline::flushDeletedGLObjects(double, double&) { forgetUnusedSets(); }
+
+void PosePipeline::flushAllDeletedGLObjects() { forgetUnusedSets(); }
+
+void PosePipeline::deleteAllGLObjects()
+{
+    for (auto& [set, resources] : _sets)
+    {
+        for (const std::unique_ptr<PosePalette>& palette : resources.palettes)
+            palette->release();
+        if (resources.buffers) resources.buffers->release();
+    }
+    for (FeedbackPass* pass : {_posePass.get(), _mixPass.get(), _localPass.get(), _worldPass.get()})
+        if (pass) pass->release();
+    _scratch.release();
+    _mixedTracks.release();
+    if (_vertexArray != 0) _gl->glDeleteVertexArrays(1, &_vertexArray);
+    discardAllGLObjects();
+}
+
+void PosePipeline::discardAllGLObjects()
+{
+    for (auto& [set, resources] : _sets)
+        for (const std::unique_ptr<PosePalette>& palette : resources.palettes)
+            palette->discard();
+    _sets.clear();
+    _posePass.reset();
+    _mixPass.reset();
+    _localPass.reset();
+    _worldPass.reset();
+    _scratch.discard();
+    _mixedTracks.discard();
+    _vertexArray = 0;
+}
+
+} // namespace osgGpuAnimation

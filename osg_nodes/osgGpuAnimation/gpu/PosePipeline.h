@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osgGpuAnimation/gpu/AnimationBuffers.h>
+#include <osgGpuAnimation/gpu/FeedbackPass.h>
+#include <osgGpuAnimation/gpu/PosePalette.h>
+
+#include <osg/GLObjects>
+#include <osg/State>
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <vector>
+
+namespace osgGpuAnimation
+{
+
+/// Turns pose batches into palettes on the GPU, by transform feedback: one object a graphics context, made at first
+/// use and living with the context. Only to be called on the draw side, with the context current.
+///
+///     PosePipeline* pipeline = PosePipeline::of(state);
+///     pipeline->evaluate(state, batch, 0);
+///     PalettePlace place = pipeline->place(batch.set(), 0, instance);
+///
+/// The default form computes mix, local and world in one pass, a flat draw a level of the hierarchy for all instances
+/// (see tests/benchmark/RESULTS.md); the separate form has a pass for each stage.
+class PosePipeline : public osg::GraphicsObjectManager
+{
+public:
+    enum class Form
+    {
+        Fused,    ///< one pass, a draw a level
+        Separate, ///< mix, local, world: three draws, the world stage walking up the ancestors
+    };
+
+    /// Counted since the pipeline was made.
+    struct Counters
+    {
+        std::uint64_t feedbackDraws = 0;
+        std::uint64_t instancesEvaluated = 0;
+        std::uint64_t bytesUploaded = 0; ///< a frame's instructions and root matrices, not the sets
+    };
+
+    explicit PosePipeline(unsigned int contextId);
+
+    /// The context's own; null, with one warning, where the context lacks OpenGL 3.3's transform feedback.
+    static PosePipeline* of(osg::State& state);
+
+    /// Uploads the batch and computes its palette, unless nothing changed since the last batch of the same set and
+    /// slot. Slots tell batches of one set apart: 0, 1, 2 …; a slot's palette lasts until its next evaluate.
+    /// False, with one warning a set, where the set is too large for the context's buffer textures.
+    bool evaluate(osg::State& state, const PoseBatch& batch, std::size_t slot);
+
+    /// Where an instance of the batch last evaluated for set and slot is. No texture where there is none.
+    PalettePlace place(const AnimationSet& set, std::size_t slot, std::size_t instance) const;
+
+    /// For tools and tests, never in a frame: waits for the GPU. set.paletteSize() entries of the instance.
+    std::vector<AffineMatrix> readPalette(osg::State& state, const AnimationSet& set, std::size_t slot,
+                                          std::size_t instance) const;
+
+    void setForm(Form form);
+    Form form() const { return _form; }
+    /// Texels a buffer texture may have; GL_MAX_TEXTURE_BUFFER_SIZE unless set smaller (tests).
+    void setMaxTexels(std::size_t texels) { _maxTexels = texels; }
+    std::size_t maxTexels() const { return _maxTexels; }
+    const Counters& counters() const { return _counters; }
+
+    void flushDeletedGLObjects(double currentTime, double& availableTime) override;
+    void flushAllDeletedGLObjects() override;
+    void deleteAllGLObjects() override;
+    void discardAllGLObjects() override;
+
+protected:
+    ~PosePipeline() override = default;
+
+private:
+    struct SetResources
+    {
+        std::weak_ptr<const AnimationSet> set;
+        std::unique_ptr<AnimationBuffers> buffers; ///< null: too large, reported
+        std::vector<std::unique_ptr<PosePalette>> palettes; ///< by slot
+    };
+
+    bool makePasses();
+    void forgetUnusedSets();
+    SetResources& resourcesOf(const PoseBatch& batch);
+    void evaluateFused(const AnimationSet& set, const AnimationBuffers& buffers, PosePalette::Chunk& chunk);
+    void evaluateSeparate(const AnimationSet& set, const AnimationBuffers& buffers, PosePalette::Chunk& chunk);
+    void useMixInput(FeedbackPass& pass, const AnimationSet& set, const AnimationBuffers& buffers,
+                     const PosePalette::Chunk& chunk);
+    void useWorldInput(FeedbackPass& pass, const AnimationBuffers& buffers, const PosePalette::Chunk& chunk);
+    void gatherOddLevels(const AnimationSet& set, const PosePalette::Chunk& chunk);
+    void run(FeedbackPass& pass, std::size_t firstVertex, std::size_t count, const BufferTexture& out);
+
+    osg::GLExtensions* _gl;
+    void(GL_APIENTRY* _copyBufferSubData)(GLenum, GLenum, GLintptr, GLintptr, GLsizeiptr) = nullptr;
+    std::size_t _maxTexels = 0;
+    bool _isSupported = false;
+    bool _isReported = false;
+    Form _form = Form::Fused;
+    Counters _counters;
+    GLuint _vertexArray = 0;
+    std::unique_ptr<FeedbackPass> _posePass;
+    std::unique_ptr<FeedbackPass> _mixPass;
+    std::unique_ptr<FeedbackPass> _localPass;
+    std::unique_ptr<FeedbackPass> _worldPass;
+    BufferTexture _scratch;      ///< fused: odd levels; separate: local matrices
+    BufferTexture _mixedTracks;  ///< separate: the mix stage's result
+    std::map<const AnimationSet*, SetResources> _sets;
+};
+
+} // namespace osgGpuAnimation

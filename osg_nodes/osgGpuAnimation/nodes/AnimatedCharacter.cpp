@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/nodes/AnimatedCharacter.h>
+
+#include <osgGpuAnimation/nodes/AnimationUpdateCallback.h>
+#include <osgGpuAnimation/nodes/PoseStage.h>
+#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
+
+#include <osg/NodeVisitor>
+#include <osgUtil/CullVisitor>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+std::shared_ptr<const AnimationSet> emptySet()
+{
+    static const std::shared_ptr<const AnimationSet> set =
+        AnimationSet::create({Skeleton::create({}).value(), {}, {}, {}, {}}).value();
+    return set;
+}
+
+/// Calls a function for every SkinnedGeometry below a node.
+template <typename Function>
+class SkinnedGeometryVisitor : public osg::NodeVisitor
+{
+public:
+    explicit SkinnedGeometryVisitor(Function function)
+        : osg::NodeVisitor(osg::NodeVisitor::TRAVERSE_ALL_CHILDREN), _function(function)
+    {
+    }
+    void apply(osg::Geometry& geometry) override
+    {
+        if (auto* skinned = dynamic_cast<SkinnedGeometry*>(&geometry)) _function(*skinned);
+    }
+
+private:
+    Function _function;
+};
+
+osg::BoundingBox toOsg(const Box& box)
+{
+    if (box.empty()) return {};
+    return {box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z};
+}
+
+} // namespace
+
+AnimatedCharacter::AnimatedCharacter() : AnimatedCharacter(emptySet()) {}
+
+AnimatedCharacter::AnimatedCharacter(std::shared_ptr<const AnimationSet> set)
+    : _controller(std::make_unique<AnimationController>(std::move(set)))
+{
+    // Not static: the Optimizer must flatten neither this transform nor those above into the bind pose.
+    setDataVariance(osg::Object::DYNAMIC);
+    setUpdateCallback(new AnimationUpdateCallback);
+}
+
+AnimatedCharacter::AnimatedCharacter(const AnimatedCharacter& other, const osg::CopyOp& copyop)
+    : osg::MatrixTransform(other, copyop), _controller(std::make_unique<AnimationController>(*other._controller)),
+      _clipBounds(other._clipBounds), _updateTime(other._updateTime)
+{
+}
+
+AnimatedCharacter::~AnimatedCharacter() = default;
+
+void AnimatedCharacter::update(double simulationTime)
+{
+    if (_updateTime && simulationTime != *_updateTime) _controller->advance(simulationTime - *_updateTime);
+    _updateTime = simulationTime;
+}
+
+void AnimatedCharacter::computeClipBounds()
+{
+    EntryBoxes entryBoxes(set().paletteSize());
+    SkinnedGeometryVisitor collect([&](SkinnedGeometry& geometry) { geometry.addToEntryBoxes(entryBoxes); });
+    accept(collect);
+
+    auto bounds = std::make_shared<std::vector<Box>>();
+    Box all;
+    for (int clip = -1; clip < static_cast<int>(set().clips().size()); ++clip)
+    {
+        bounds->push_back(boundsOfClip(set(), clip, entryBoxes));
+        all.add(bounds->back());
+    }
+    SkinnedGeometryVisitor setBox([&](SkinnedGeometry& geometry) { geometry.setInitialBound(toOsg(all)); });
+    accept(setBox);
+    _clipBounds = std::move(bounds);
+    dirtyBound();
+}
+
+const Box& AnimatedCharacter::clipBounds(int clip) const
+{
+    static const Box none;
+    const std::size_t index = static_cast<std::size_t>(clip + 1);
+    return _clipBounds && index < _clipBounds->size() ? (*_clipBounds)[index] : none;
+}
+
+void AnimatedCharacter::traverse(osg::NodeVisitor& visitor)
+{
+    osgUtil::CullVisitor* cullVisitor = visitor.asCullVisitor();
+    if (!cullVisitor || getNumChildren() == 0 || set().paletteSize() == 0)
+    {
+        osg::MatrixTransform::traverse(visitor);
+        return;
+    }
+    cullVisitor->pushStateSet(PoseStage::enlist(*cullVisitor, *this));
+    osg::MatrixTransform::traverse(visitor);
+    cullVisitor->popStateSet();
+}
+
+osg::BoundingSphere AnimatedCharacter::computeBound() const { return osg::MatrixTransform::computeBound(); }
+
+AnimatedCharacter* findCharacter(osg::Node& node)
+{
+    class Finder : public osg::NodeVisitor
+    {
+    public:
+        Finder() : osg::NodeVisitor(osg::NodeVisitor::TRAVERSE_ALL_CHILDREN) {}
+        void apply(osg::MatrixTransform& transform) override
+        {
+            if (!found) found = dynamic_cast<AnimatedCharacter*>(&transform);
+            if (!found) traverse(transform);
+        }
+        AnimatedCharacter* found = nullptr;
+    };
+    Finder finder;
+    node.accept(finder);
+    return finder.found;
+}
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osgGpuAnimation/animation/AnimationController.h>
+#include <osgGpuAnimation/animation/Bounds.h>
+
+#include <osg/MatrixTransform>
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace osgGpuAnimation
+{
+
+/// One animated character: owns a controller, shares an AnimationSet, and has its SkinnedGeometry drawables as
+/// children. Its matrix places the character in its parent, like any MatrixTransform's.
+///
+///     osg::ref_ptr<osg::Node> node = osgDB::readRefNodeFile("fox.glb");
+///     AnimatedCharacter* fox = findCharacter(*node);
+///     fox->controller().play("Run");
+///     osg::ref_ptr<osg::Node> another = osg::clone(node.get(), osg::CopyOp::DEEP_COPY_NODES); // its own controller
+///
+/// An AnimationUpdateCallback (installed by the constructor) advances the controller by the frame stamp's simulation
+/// time. When culled and seen, the character enlists with the PoseStage of the graphics context, which evaluates its
+/// pose on the GPU before anything draws from it; unseen it costs nothing there.
+class AnimatedCharacter : public osg::MatrixTransform
+{
+public:
+    AnimatedCharacter();
+    explicit AnimatedCharacter(std::shared_ptr<const AnimationSet> set);
+    /// Shares the set, copies the controller: time, clip and speed are those of the other, independent from now on.
+    AnimatedCharacter(const AnimatedCharacter& other, const osg::CopyOp& copyop = osg::CopyOp::SHALLOW_COPY);
+    META_Node(osgGpuAnimation, AnimatedCharacter)
+
+    const AnimationSet& set() const { return _controller->set(); }
+    AnimationController& controller() { return *_controller; }
+    const AnimationController& controller() const { return *_controller; }
+
+    /// Advances the controller by the time since the last update; the first only takes the time down. A jump of the
+    /// time, backwards too, moves the clip by as much, so the same times show the same poses.
+    /// simulationTime: seconds.
+    void update(double simulationTime);
+
+    /// Works out the bounds of every clip from the SkinnedGeometry below and gives those their bounding boxes. To be
+    /// called once when all meshes are in; copies of this node share the result.
+    void computeClipBounds();
+    /// The box of the clip in the character's own space (all its vertices at all its times); -1: the rest pose.
+    const Box& clipBounds(int clip) const;
+
+    void traverse(osg::NodeVisitor& visitor) override;
+    osg::BoundingSphere computeBound() const override;
+
+protected:
+    ~AnimatedCharacter() override;
+
+private:
+    std::unique_ptr<AnimationController> _controller;
+    std::shared_ptr<const std::vector<Box>> _clipBounds; ///< the rest pose's, then one a clip
+    std::optional<double> _updateTime;                    ///< seconds of simulation time
+};
+
+/// The first AnimatedCharacter at or below the node, depth first; null where there is none.
+AnimatedCharacter* findCharacter(osg::Node& node);
+
+} // namespace osgGpuAnimation

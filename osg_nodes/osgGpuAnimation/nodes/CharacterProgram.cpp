@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/nodes/CharacterProgram.h>
+
+#include <layout.glsl>
+#include <ShaderSources.h>
+
+#include <osg/Texture2D>
+
+#include <string>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+/// GLSL 1.40 has all that skinning needs, and in a compatibility context still the fixed pipeline's names.
+osg::Shader* makeShader(osg::Shader::Type type, std::initializer_list<const char*> parts)
+{
+    std::string source = "#version 140\n";
+    for (const char* part : parts)
+        source += part;
+    return new osg::Shader(type, source);
+}
+
+osg::Program* makeProgram()
+{
+    auto* program = new osg::Program;
+    program->setName("osgGpuAnimation character");
+    program->addShader(skinShader());
+    program->addShader(makeShader(osg::Shader::VERTEX, {shaders::character_vert}));
+    program->addShader(makeShader(osg::Shader::FRAGMENT, {shaders::character_frag}));
+    bindSkinAttributes(*program);
+    return program;
+}
+
+osg::Texture2D* whiteTexture()
+{
+    static const osg::ref_ptr<osg::Texture2D> texture = []
+    {
+        osg::ref_ptr<osg::Image> image = new osg::Image;
+        image->allocateImage(1, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE);
+        image->setColor(osg::Vec4(1, 1, 1, 1), 0, 0);
+        return osg::ref_ptr<osg::Texture2D>(new osg::Texture2D(image));
+    }();
+    return texture.get();
+}
+
+} // namespace
+
+osg::Shader* skinShader()
+{
+    static const osg::ref_ptr<osg::Shader> shader =
+        makeShader(osg::Shader::VERTEX, {shaders::layout_glsl, shaders::skin_glsl});
+    return shader.get();
+}
+
+void bindSkinAttributes(osg::Program& program)
+{
+    program.addBindAttribLocation("poseEntries0", POSE_ENTRIES_0_LOCATION);
+    program.addBindAttribLocation("poseWeights0", POSE_WEIGHTS_0_LOCATION);
+    program.addBindAttribLocation("poseEntries1", POSE_ENTRIES_1_LOCATION);
+    program.addBindAttribLocation("poseWeights1", POSE_WEIGHTS_1_LOCATION);
+}
+
+osg::Program* characterProgram()
+{
+    static const osg::ref_ptr<osg::Program> program = makeProgram();
+    return program.get();
+}
+
+void applyCharacterProgram(osg::StateSet& stateSet)
+{
+    stateSet.setAttributeAndModes(characterProgram());
+    stateSet.getOrCreateUniform("baseColorTexture", osg::Uniform::SAMPLER_2D)->set(0);
+    if (!stateSet.getUniform("alphaCutoff")) stateSet.addUniform(new osg::Uniform("alphaCutoff", 0.0f));
+    if (!stateSet.getUniform("unlit")) stateSet.addUniform(new osg::Uniform("unlit", false));
+    if (!stateSet.getTextureAttribute(0, osg::StateAttribute::TEXTURE))
+        stateSet.setTextureAttributeAndModes(0, whiteTexture());
+}
+
+} // namespace osgGpuAnimation

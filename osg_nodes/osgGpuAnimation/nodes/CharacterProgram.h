@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osg/Program>
+#include <osg/StateSet>
+
+namespace osgGpuAnimation
+{
+
+/// The program that draws SkinnedGeometry: skin.glsl, character.vert and character.frag. One object for the process.
+///
+/// It lights by OSG's light 0 as the fixed pipeline does, with the osg::Material of the state (diffuse times vertex
+/// colour is the base colour), and always samples a base colour texture on unit 0.
+/// Uniforms: `float alphaCutoff` (fragments of less alpha are dropped; default 0), `bool unlit` (default false).
+osg::Program* characterProgram();
+
+/// Puts the program, its uniforms' defaults and a white texture on unit 0 (where there is none) into the state.
+void applyCharacterProgram(osg::StateSet& stateSet);
+
+/// skin.glsl as a shader object, to be added to a program of one's own, whose vertex shader declares and calls
+///
+///     void osgGpuAnimationSkin(inout vec4 vertex, inout vec3 normal);
+///
+/// Such a program needs bindSkinAttributes() too.
+osg::Shader* skinShader();
+void bindSkinAttributes(osg::Program& program);
+
+} // namespace osgGpuAnimation

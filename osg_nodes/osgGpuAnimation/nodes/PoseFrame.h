@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osgGpuAnimation/gpu/PoseBatch.h>
+#include <osgGpuAnimation/gpu/PosePipeline.h>
+#include <osgGpuAnimation/nodes/PaletteBinding.h>
+
+#include <osg/FrameStamp>
+#include <osg/Referenced>
+#include <osg/RenderInfo>
+#include <osg/StateSet>
+
+#include <memory>
+#include <mutex>
+#include <unordered_map>
+#include <vector>
+
+namespace osgGpuAnimation
+{
+
+class AnimatedCharacter;
+
+/// All characters that are seen in one frame in one graphics context, each once, however many cameras see it: the
+/// batches they make up, and the state each is to be drawn with. Filled while cameras cull, maybe several at once;
+/// evaluated on the draw side. It is a snapshot: the next frame's update may change the controllers meanwhile.
+class PoseFrame : public osg::Referenced
+{
+public:
+    /// The frame to fill now; frames still in use elsewhere are left alone.
+    static osg::ref_ptr<PoseFrame> forContext(unsigned int contextId, unsigned int frameNumber);
+
+    /// Takes the character up, unless it is already in with the same instruction. The state holds its PaletteBinding
+    /// and stays unchanged while this frame is in use.
+    osg::StateSet* enlist(const AnimatedCharacter& character);
+
+    /// Evaluates what was enlisted and not evaluated yet.
+    void evaluate(osg::RenderInfo& renderInfo);
+
+    unsigned int frameNumber() const { return _frameNumber; }
+
+protected:
+    ~PoseFrame() override = default;
+
+private:
+    struct Batch
+    {
+        PoseBatch content;
+        std::size_t slot;
+        bool isEvaluated = false;
+    };
+    struct Enlisted
+    {
+        PoseInstruction instruction;
+        osg::StateSet* stateSet;
+    };
+
+    void reset(unsigned int frameNumber);
+    Batch& openBatch(const AnimatedCharacter& character);
+    osg::StateSet* nextState(const Batch& batch, std::size_t instance);
+
+    std::mutex _mutex;
+    unsigned int _frameNumber = 0;
+    std::vector<std::unique_ptr<Batch>> _batches;
+    std::unordered_map<const AnimationSet*, std::vector<Batch*>> _batchesOfSet; ///< the last may be open
+    std::unordered_map<const AnimatedCharacter*, Enlisted> _enlisted;
+    std::vector<osg::ref_ptr<osg::StateSet>> _states; ///< reused from frame to frame
+    std::size_t _statesUsed = 0;
+};
+
+} // namespace osgGpuAnimation

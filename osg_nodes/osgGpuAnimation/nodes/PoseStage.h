@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osgGpuAnimation/nodes/PoseFrame.h>
+
+#include <osg/Camera>
+#include <osgUtil/CullVisitor>
+
+#include <atomic>
+
+namespace osgGpuAnimation
+{
+
+/// The stage of a frame in which poses are evaluated: a nested camera that draws nothing, put before everything else
+/// that its cull visitor's main stage draws, whose pre-draw callback runs the PosePipeline. There is one a cull
+/// visitor, made and attached by the first character seen; those of one graphics context share a PoseFrame, so a
+/// character that several cameras see is evaluated once.
+class PoseStage : public osg::Camera
+{
+public:
+    /// To be called by a character while it is culled and seen. Returns the state its meshes are to be culled with.
+    static osg::StateSet* enlist(osgUtil::CullVisitor& visitor, const AnimatedCharacter& character);
+
+protected:
+    ~PoseStage() override = default;
+
+private:
+    class Evaluation;
+
+    explicit PoseStage(const osgUtil::CullVisitor& visitor);
+    static PoseStage& of(osgUtil::CullVisitor& visitor);
+    void attach(osgUtil::CullVisitor& visitor, unsigned int contextId, unsigned int frameNumber);
+
+    const osgUtil::CullVisitor* _visitor; ///< whose stage this is: cull visitors get cloned with their user data
+    osg::ref_ptr<PoseFrame> _frame;
+    std::atomic<bool> _isDrawn{true};
+};
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osgGpuAnimation/animation/Bounds.h>
+
+#include <osg/Geometry>
+
+#include <memory>
+
+namespace osgGpuAnimation
+{
+
+struct PalettePlace;
+
+/// A mesh drawn from the palette: ordinary vertex arrays in bind pose and, for each vertex, the palette entries that
+/// move it with their weights. It belongs to no character: one mesh serves all instances of a set, and the
+/// AnimatedCharacter above it says, while it is culled, whose palette is meant.
+///
+///     osg::ref_ptr<SkinnedGeometry> mesh = new SkinnedGeometry;
+///     mesh->setVertexArray(positions);
+///     mesh->setInfluences(0, entries, weights);   // osg::Vec4usArray, osg::Vec4Array: one a vertex
+///     mesh->setStateSet(material);                // with characterProgram() or one's own program on skin.glsl
+///     character->addChild(mesh);
+///
+/// Drawn with vertex buffers, never with display lists. The bounding box is the union over all clips of the set, see
+/// AnimatedCharacter::computeClipBounds().
+class SkinnedGeometry : public osg::Geometry
+{
+public:
+    SkinnedGeometry();
+    SkinnedGeometry(const SkinnedGeometry& other, const osg::CopyOp& copyop = osg::CopyOp::SHALLOW_COPY);
+    META_Node(osgGpuAnimation, SkinnedGeometry)
+
+    static constexpr unsigned int maxInfluenceSets = 2;
+
+    /// Influences of all vertices, four to a set: set 0 is needed, set 1 optional.
+    /// entries: palette entries (AnimationSet::entryOfSkin, entryOfRigidJoint), each below the set's palette size.
+    /// weights: as the file has them; entries of weight 0 are not looked at.
+    void setInfluences(unsigned int influenceSet, osg::Vec4usArray* entries, osg::Vec4Array* weights);
+    const osg::Vec4usArray* entries(unsigned int influenceSet) const;
+    const osg::Vec4Array* weights(unsigned int influenceSet) const;
+
+    /// Every vertex moves with one entry wholly: what a rigid mesh on a joint needs.
+    void setRigidEntry(unsigned short entry);
+
+    /// Grows the boxes (one an entry) by the vertices that the entries move.
+    void addToEntryBoxes(EntryBoxes& boxes) const;
+
+    /// Writes the palette's place into the program that is applied, then draws.
+    void drawImplementation(osg::RenderInfo& renderInfo) const override;
+    /// Transforms of the vertices by others (the Optimizer's) would break the bind pose: refused.
+    void accept(osg::Drawable::AttributeFunctor&) override {}
+    using osg::Geometry::accept;
+
+protected:
+    ~SkinnedGeometry() override = default;
+
+private:
+    void bindPalette(osg::State& state, const PalettePlace& place) const;
+
+    int _influences = 1; ///< of a vertex, at most
+};
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+// For tools and tests: the vertices of a SkinnedGeometry as skin.glsl moves them, to be captured by transform feedback.
+
+void osgGpuAnimationSkin(inout vec4 vertex, inout vec3 normal);
+
+out vec3 capturedPosition; // in the character's own space
+out vec3 capturedNormal;   // not made unit
+
+void main()
+{
+    vec4 vertex = gl_Vertex;
+    vec3 normal = gl_Normal;
+    osgGpuAnimationSkin(vertex, normal);
+    capturedPosition = vertex.xyz;
+    capturedNormal = normal;
+    gl_Position = vertex;
+}

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+// The mix stage as a pass of its own: gl_VertexID = track * instanceCount + instance, also in the result.
+
+uniform int instanceCount;
+uniform int trackCount;
+uniform int jointCount; // tracks from here on are weight blocks
+
+out vec4 translation;
+out vec4 rotation;
+out vec4 scale;
+
+void main()
+{
+    int track = gl_VertexID / instanceCount;
+    int instance = gl_VertexID - track * instanceCount;
+    JointTransform t = mixTrack(instance, track, trackCount, track >= jointCount);
+    translation = t.translation;
+    rotation = t.rotation;
+    scale = t.scale;
+}

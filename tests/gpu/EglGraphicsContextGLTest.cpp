@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/gpu/EglGraphicsContext.h>
+
+#include "support/GLTest.h"
+
+#include <osg/Geometry>
+#include <osg/GLExtensions>
+#include <osgViewer/Viewer>
+
+#include <array>
+#include <vector>
+
+namespace osgGpuAnimation
+{
+namespace
+{
+
+using Colour = std::array<unsigned char, 4>;
+
+Colour readPixel(int x, int y)
+{
+    Colour colour{};
+    glReadPixels(x, y, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, colour.data());
+    return colour;
+}
+
+Colour clearAndRead(float red, float green, float blue)
+{
+    glClearColor(red, green, blue, 1.0f);
+    glClear(GL_COLOR_BUFFER_BIT);
+    return readPixel(5, 5);
+}
+
+/// 1: core, 2: compatibility.
+GLint profileMask()
+{
+    constexpr GLenum contextProfileMask = 0x9126; // GL_CONTEXT_PROFILE_MASK, which older GL headers do not have
+    GLint mask = 0;
+    glGetIntegerv(contextProfileMask, &mask);
+    return mask;
+}
+
+osg::ref_ptr<osg::GraphicsContext::Traits> sizedTraits(int width, int height)
+{
+    osg::ref_ptr<osg::GraphicsContext::Traits> traits = new osg::GraphicsContext::Traits;
+    traits->width = width;
+    traits->height = height;
+    return traits;
+}
+
+class CoreContextGLTest : public GLTest
+{
+protected:
+    osg::ref_ptr<osg::GraphicsContext::Traits> traits() const override
+    {
+        osg::ref_ptr<osg::GraphicsContext::Traits> wanted = GLTest::traits();
+        wanted->glContextVersion = "3.3";
+        wanted->glContextProfileMask = 1;
+        return wanted;
+    }
+};
+
+/// Keeps the picture of the last frame that was drawn.
+class PictureCallback : public osg::Camera::DrawCallback
+{
+public:
+    void operator()(osg::RenderInfo& renderInfo) const override
+    {
+        const osg::GraphicsContext::Traits* traits = renderInfo.getState()->getGraphicsContext()->getTraits();
+        width = traits->width;
+        pixels.resize(static_cast<std::size_t>(traits->width * traits->height));
+        glReadPixels(0, 0, traits->width, traits->height, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
+        error = glGetError();
+        ++frames;
+    }
+    Colour at(int x, int y) const { return pixels[static_cast<std::size_t>(y * width + x)]; }
+
+    mutable std::vector<Colour> pixels;
+    mutable int width = 0;
+    mutable int frames = 0;
+    mutable GLenum error = GL_NO_ERROR;
+};
+
+/// A square in the plane y = 0 that a camera on -y sees in the middle half of its picture.
+osg::ref_ptr<osg::Geometry> orangeSquare()
+{
+    osg::ref_ptr<osg::Geometry> square = osg::createTexturedQuadGeometry(
+        osg::Vec3(-0.5f, 0.0f, -0.5f), osg::Vec3(1.0f, 0.0f, 0.0f), osg::Vec3(0.0f, 0.0f, 1.0f));
+    osg::ref_ptr<osg::Vec4Array> colour = new osg::Vec4Array;
+    colour->push_back(osg::Vec4(1.0f, 0.6f, 0.2f, 1.0f));
+    square->setColorArray(colour.get(), osg::Array::BIND_OVERALL);
+    square->getOrCreateStateSet()->setMode(GL_LIGHTING, osg::StateAttribute::OFF);
+    square->setUseVertexBufferObjects(true);
+    return square;
+}
+
+osg::ref_ptr<PictureCallback> view(osgViewer::Viewer& viewer, osg::Node* scene, osg::GraphicsContext* context)
+{
+    osg::ref_ptr<PictureCallback> picture = new PictureCallback;
+    osg::Camera* camera = viewer.getCamera();
+    camera->setGraphicsContext(context);
+    camera->setViewport(0, 0, context->getTraits()->width, context->getTraits()->height);
+    camera->setClearColor(osg::Vec4(0.0f, 0.0f, 1.0f, 1.0f));
+    camera->setProjectionMatrixAsOrtho(-1, 1, -1, 1, 0.1, 10);
+    camera->setViewMatrixAsLookAt(osg::Vec3(0, -5, 0), osg::Vec3(0, 0, 0), osg::Vec3(0, 0, 1));
+    camera->setFinalDrawCallback(picture.get());
+    viewer.setSceneData(scene);
+    return picture;
+}
+
+} // namespace
+
+using EglGraphicsContextGLTest = GLTest;
+
+TEST_F(EglGraphicsContextGLTest, isACompatibilityContextThatOsgKnows)
+{
+    ASSERT_TRUE(context().valid());
+    EXPECT_TRUE(context().isRealized());
+    EXPECT_FALSE(context().isCoreProfile());
+    const osg::GLExtensions* extensions = state().get<osg::GLExtensions>();
+    ASSERT_NE(extensions, nullptr);
+    EXPECT_GE(extensions->glVersion, 3.3f);
+    EXPECT_NE(extensions->glBeginTransformFeedback, nullptr);
+    EXPECT_NE(extensions->glTexBuffer, nullptr);
+    EXPECT_EQ(profileMask(), 2);
+    RecordProperty("renderer", reinterpret_cast<const char*>(glGetString(GL_RENDERER)));
+}
+
+TEST_F(EglGraphicsContextGLTest, drawsAndReadsBack)
+{
+    EXPECT_EQ(state().get<osg::GLExtensions>()->glCheckFramebufferStatus(GL_FRAMEBUFFER_EXT),
+              static_cast<GLenum>(GL_FRAMEBUFFER_COMPLETE_EXT));
+    EXPECT_EQ(clearAndRead(1.0f, 0.2f, 0.0f), (Colour{255, 51, 0, 255}));
+    GLint bits = 0;
+    glGetIntegerv(GL_DEPTH_BITS, &bits);
+    EXPECT_GE(bits, 24);
+    glGetIntegerv(GL_STENCIL_BITS, &bits);
+    EXPECT_GE(bits, 8);
+}
+
+TEST_F(EglGraphicsContextGLTest, twoContextsKeepTheirOwnPictures)
+{
+    Result<osg::ref_ptr<EglGraphicsContext>> made = EglGraphicsContext::create(32, 16);
+    ASSERT_TRUE(made) << made.error().message;
+    EglGraphicsContext& other = *made.value();
+    EXPECT_EQ(clearAndRead(1.0f, 0.0f, 0.0f), (Colour{255, 0, 0, 255}));
+
+    ASSERT_TRUE(other.realize());
+    EXPECT_EQ(readPixel(5, 5), (Colour{255, 0, 0, 255})) << "realize() gives the thread its context back";
+    EXPECT_NE(other.getState()->getContextID(), state().getContextID());
+    ASSERT_TRUE(other.makeCurrent());
+    EXPECT_EQ(clearAndRead(0.0f, 1.0f, 0.0f), (Colour{0, 255, 0, 255}));
+
+    ASSERT_TRUE(context().makeContextCurrent(&other));
+    EXPECT_EQ(readPixel(5, 5), (Colour{0, 255, 0, 255})) << "reads from the other";
+    ASSERT_TRUE(context().makeCurrent());
+    EXPECT_EQ(readPixel(5, 5), (Colour{255, 0, 0, 255}));
+}
+
+TEST_F(EglGraphicsContextGLTest, sharedContextsShareTexturesAndContextID)
+{
+    osg::ref_ptr<osg::GraphicsContext::Traits> traits = sizedTraits(8, 8);
+    traits->sharedContext = &context();
+    Result<osg::ref_ptr<EglGraphicsContext>> made = EglGraphicsContext::create(traits.get());
+    ASSERT_TRUE(made) << made.error().message;
+    GLuint texture = 0;
+    glGenTextures(1, &texture);
+    glBindTexture(GL_TEXTURE_2D, texture);
+    ASSERT_TRUE(made.value()->realize());
+    ASSERT_TRUE(made.value()->makeCurrent());
+    EXPECT_TRUE(glIsTexture(texture));
+    EXPECT_EQ(made.value()->getState()->getContextID(), state().getContextID());
+}
+
+TEST_F(EglGraphicsContextGLTest, multisamplesOrSaysThatItDoesNot)
+{
+    osg::ref_ptr<osg::GraphicsContext::Traits> traits = sizedTraits(16, 16);
+    traits->sampleBuffers = 1;
+    traits->samples = 4;
+    Result<osg::ref_ptr<EglGraphicsContext>> made = EglGraphicsContext::create(traits.get());
+    ASSERT_TRUE(made) << made.error().message;
+    ASSERT_TRUE(made.value()->realize());
+    ASSERT_TRUE(made.value()->makeCurrent());
+    GLint samples = -1;
+    glGetIntegerv(GL_SAMPLES, &samples);
+    EXPECT_EQ(samples > 0, made.value()->getTraits()->samples > 0);
+    EXPECT_EQ(clearAndRead(0.0f, 0.2f, 1.0f), (Colour{0, 51, 255, 255}));
+}
+
+TEST_F(EglGraphicsContextGLTest, refusesWhatCannotBe)
+{
+    EXPECT_FALSE(EglGraphicsContext::create(nullptr));
+    EXPECT_FALSE(EglGraphicsContext::create(0, 10));
+    EXPECT_FALSE(EglGraphicsContext::create(10, -1));
+    osg::ref_ptr<osg::GraphicsContext::Traits> traits = sizedTraits(16, 16);
+    traits->glContextVersion = "9.1";
+    Result<osg::ref_ptr<EglGraphicsContext>> made = EglGraphicsContext::create(traits.get());
+    ASSERT_FALSE(made);
+    EXPECT_NE(made.error().message.find("version and profile"), std::string::npos) << made.error().message;
+}
+
+TEST_F(CoreContextGLTest, isACoreContext)
+{
+    EXPECT_TRUE(context().isCoreProfile());
+    EXPECT_TRUE(state().getUseModelViewAndProjectionUniforms());
+    EXPECT_EQ(clearAndRead(1.0f, 0.2f, 0.0f), (Colour{255, 51, 0, 255}));
+    EXPECT_NO_GL_ERROR();
+    EXPECT_EQ(profileMask(), 1);
+}
+
+TEST_F(EglGraphicsContextGLTest, takesAWindowsPlaceInEveryThreadingModel)
+{
+    context().releaseContext();
+    for (const osgViewer::ViewerBase::ThreadingModel model :
+         {osgViewer::ViewerBase::SingleThreaded, osgViewer::ViewerBase::CullDrawThreadPerContext,
+          osgViewer::ViewerBase::DrawThreadPerContext, osgViewer::ViewerBase::CullThreadPerCameraDrawThreadPerContext})
+    {
+        SCOPED_TRACE(model);
+        Result<osg::ref_ptr<EglGraphicsContext>> made = EglGraphicsContext::create(64, 48);
+        ASSERT_TRUE(made) << made.error().message;
+        osgViewer::Viewer viewer;
+        osg::ref_ptr<PictureCallback> picture = view(viewer, orangeSquare().get(), made.value().get());
+        viewer.setThreadingModel(model);
+        viewer.realize();
+        ASSERT_TRUE(viewer.isRealized());
+        for (int frame = 0; frame < 4; ++frame)
+        {
+            viewer.frame();
+        }
+        viewer.stopThreading();
+        EXPECT_GE(picture->frames, 3);
+        EXPECT_EQ(picture->error, static_cast<GLenum>(GL_NO_ERROR));
+        EXPECT_EQ(picture->at(32, 24), (Colour{255, 153, 51, 255}));
+        EXPECT_EQ(picture->at(2, 2), (Colour{0, 0, 255, 255}));
+    }
+}
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: MIT
+#include "support/GLTest.h"
+#include "support/RandomSet.h"
+
+#include <osgGpuAnimation/animation/Pose.h>
+#include <osgGpuAnimation/gpu/PosePipeline.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+/// The largest difference of two palettes, relative to the larger of 1 and the reference's largest number.
+double difference(const std::vector<AffineMatrix>& palette, const std::vector<AffineMatrix>& reference)
+{
+    double worst = palette.size() == reference.size() ? 0.0 : 1e30;
+    double size = 1.0;
+    for (std::size_t entry = 0; entry < palette.size() && worst < 1e30; ++entry)
+        for (std::size_t row = 0; row < 3; ++row)
+            for (int column = 0; column < 4; ++column)
+            {
+                const double expected = reference[entry].rows[row][column];
+                const double found = palette[entry].rows[row][column];
+                worst = std::max(worst, std::isfinite(found) ? std::abs(found - expected) : 1e30);
+                size = std::max(size, std::abs(expected));
+            }
+    return worst / size;
+}
+
+struct Instance
+{
+    PoseInstruction instruction;
+    AffineMatrix root;
+};
+
+std::vector<Instance> randomInstances(const AnimationSet& set, std::size_t count, unsigned int seed)
+{
+    std::mt19937 random(seed);
+    std::uniform_int_distribution<int> clip(-1, static_cast<int>(set.clips().size()) - 1);
+    std::uniform_real_distribution<double> time(-0.2, 4.0);
+    std::uniform_real_distribution<float> place(-3.0f, 3.0f);
+    std::vector<Instance> instances(count);
+    for (Instance& instance : instances)
+    {
+        instance.instruction = instructionAt(set, clip(random), time(random));
+        instance.root.rows[0] = glm::vec4(0, 1, 0, place(random));
+        instance.root.rows[1] = glm::vec4(-1, 0, 0, place(random));
+    }
+    return instances;
+}
+
+struct PipelineData
+{
+    const char* name;
+    RandomSetShape shape;
+    std::size_t instances;
+    bool hasRoots;
+    std::size_t maxTexels; ///< 0: the context's own
+};
+
+void PrintTo(const PipelineData& data, std::ostream* out) { *out << data.name; }
+
+const PipelineData pipelineData[] = {
+    {"one character", {1, 30, 8, 5, false, false, false}, 1, false, 0},
+    {"many, each at its own time", {2, 30, 8, 5, false, true, true}, 100, false, 0},
+    {"with root matrices", {3, 30, 8, 5, false, true, true}, 37, true, 0},
+    {"splines", {4, 30, 8, 5, true, true, true}, 20, true, 0},
+    {"one joint", {5, 1, 1, 3, false, false, false}, 3, false, 0},
+    {"a chain of 64", {6, 64, 64, 3, false, false, false}, 10, false, 0},
+    {"in chunks, as with 65,536 texels", {7, 20, 6, 2, false, false, true}, 2500, true, 65536},
+};
+
+class PosePipelineGLTest : public GLTest, public ::testing::WithParamInterface<std::tuple<PipelineData, PosePipeline::Form>>
+{
+};
+
+TEST_P(PosePipelineGLTest, agreesWithTheCpuTwin)
+{
+    const PipelineData& data = std::get<0>(GetParam());
+    const auto set = makeRandomSet(data.shape);
+    const std::vector<Instance> instances = randomInstances(*set, data.instances, data.shape.seed + 100);
+    PoseBatch batch(set);
+    for (const Instance& instance : instances)
+        data.hasRoots ? batch.add(instance.instruction, instance.root) : batch.add(instance.instruction);
+
+    PosePipeline* pipeline = PosePipeline::of(state());
+    ASSERT_NE(pipeline, nullptr);
+    if (data.maxTexels != 0) pipeline->setMaxTexels(data.maxTexels);
+    pipeline->setForm(std::get<1>(GetParam()));
+    ASSERT_TRUE(pipeline->evaluate(state(), batch, 0));
+
+    // Rounding in float32 once a level, the twin computes in double.
+    const double tolerance = 1e-7 * (10 + data.shape.depth);
+    const std::size_t step = instances.size() / 50 + 1;
+    for (std::size_t i = 0; i < instances.size(); i += step)
+    {
+        std::vector<AffineMatrix> expected;
+        Pose::evaluate(*set, instances[i].instruction, data.hasRoots ? instances[i].root : AffineMatrix(), expected);
+        EXPECT_LT(difference(pipeline->readPalette(state(), *set, 0, i), expected), tolerance) << "instance " << i;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Sets, PosePipelineGLTest,
+                         ::testing::Combine(::testing::ValuesIn(pipelineData),
+                                            ::testing::Values(PosePipeline::Form::Fused,
+                                                              PosePipeline::Form::Separate)));
+
+using PosePipelineCostGLTest = GLTest;
+
+TEST_F(PosePipelineCostGLTest, drawsDependOnTheSetAloneNotOnTheNumberOfCharacters)
+{
+    const auto set = makeRandomSet({});
+    PosePipeline* pipeline = PosePipeline::of(state());
+    for (const std::size_t count : {1, 10, 100})
+    {
+        PoseBatch batch(set);
+        for (const Instance& instance : randomInstances(*set, count, 1))
+            batch.add(instance.instruction);
+        const PosePipeline::Counters before = pipeline->counters();
+        pipeline->evaluate(state(), batch, 0);
+        EXPECT_EQ(pipeline->counters().feedbackDraws - before.feedbackDraws, set->levelCount());
+        EXPECT_EQ(pipeline->counters().bytesUploaded - before.bytesUploaded, 16 * count);
+    }
+}
+
+TEST_F(PosePipelineCostGLTest, unchangedBatchCostsNothing)
+{
+    const auto set = makeRandomSet({});
+    PosePipeline* pipeline = PosePipeline::of(state());
+    PoseBatch batch(set);
+    batch.add(instructionAt(*set, 0, 0.4), AffineMatrix());
+    pipeline->evaluate(state(), batch, 0);
+    const PosePipeline::Counters before = pipeline->counters();
+    pipeline->evaluate(state(), batch, 0);
+    EXPECT_EQ(pipeline->counters().feedbackDraws, before.feedbackDraws);
+    EXPECT_EQ(pipeline->counters().bytesUploaded, before.bytesUploaded);
+}
+
+TEST_F(PosePipelineCostGLTest, refusesASetBeyondTheBufferTextureLimit)
+{
+    const auto set = makeRandomSet({});
+    PosePipeline* pipeline = PosePipeline::of(state());
+    pipeline->setMaxTexels(64);
+    PoseBatch batch(set);
+    batch.add({});
+    EXPECT_FALSE(pipeline->evaluate(state(), batch, 0));
+    EXPECT_EQ(pipeline->place(*set, 0, 0).texture, 0u);
+}
+
+TEST_F(PosePipelineCostGLTest, forgetsSetsThatNobodyUses)
+{
+    PosePipeline* pipeline = PosePipeline::of(state());
+    const AnimationSet* gone = nullptr;
+    {
+        const auto set = makeRandomSet({});
+        gone = set.get();
+        PoseBatch batch(set);
+        batch.add({});
+        pipeline->evaluate(state(), batch, 0);
+        EXPECT_NE(pipeline->place(*set, 0, 0).texture, 0u);
+    }
+    pipeline->flushAllDeletedGLObjects();
+    EXPECT_EQ(pipeline->place(*gone, 0, 0).texture, 0u);
+}
+
+} // namespace
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osgGpuAnimation/gpu/EglGraphicsContext.h>
+
+#include <osg/GL>
+#include <osg/State>
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <iomanip>
+#include <sstream>
+#include <string>
+
+namespace osgGpuAnimation
+{
+
+/// A test that needs GL: it starts with an EglGraphicsContext of 64x64 current, and fails if GL reports an error that
+/// it left behind. Test classes that derive from it (or are it) are named ...GLTest.
+///
+///     using PosePipelineGLTest = GLTest;
+///     TEST_F(PosePipelineGLTest, writesOneEntryAJoint) { … context().getState() … EXPECT_NO_GL_ERROR(); }
+///
+/// Where no context can be had the test is skipped with EGL's reason; with OSGGPUANIMATION_REQUIRE_GL in the
+/// environment, as in CI, it fails.
+class GLTest : public ::testing::Test
+{
+protected:
+    /// What the context is made with; a fixture of its own asks for more samples, the core profile and so on.
+    virtual osg::ref_ptr<osg::GraphicsContext::Traits> traits() const
+    {
+        osg::ref_ptr<osg::GraphicsContext::Traits> wanted = new osg::GraphicsContext::Traits;
+        wanted->width = wanted->height = 64;
+        wanted->stencil = 8;
+        return wanted;
+    }
+
+    void SetUp() override
+    {
+        Result<osg::ref_ptr<EglGraphicsContext>> made = EglGraphicsContext::create(traits().get());
+        const std::string reason = made ? "the context does not realize" : made.error().message;
+        if (!made || !made.value()->realize() || !made.value()->makeCurrent())
+        {
+            if (std::getenv("OSGGPUANIMATION_REQUIRE_GL")) FAIL() << "GL is required and there is none: " << reason;
+            GTEST_SKIP() << "no GL: " << reason;
+        }
+        _context = made.value();
+    }
+
+    void TearDown() override
+    {
+        if (!_context) return;
+        if (_context->isRealized() && _context->makeCurrent())
+        {
+            EXPECT_EQ(takeGLErrors(), "");
+        }
+        _context->close();
+        _context = nullptr;
+    }
+
+    EglGraphicsContext& context() { return *_context; }
+    osg::State& state() { return *_context->getState(); }
+
+    /// The errors GL has kept, as "0x0502 …"; empty where there are none. They are gone from GL afterwards.
+    static std::string takeGLErrors()
+    {
+        std::ostringstream errors;
+        for (int kept = 0; kept < 32; ++kept)
+        {
+            const GLenum error = glGetError();
+            if (error == GL_NO_ERROR) break;
+            errors << "0x" << std::hex << std::setw(4) << std::setfill('0') << error << " ";
+        }
+        return errors.str();
+    }
+
+private:
+    osg::ref_ptr<EglGraphicsContext> _context;
+};
+
+} // namespace osgGpuAnimation
+
+/// Where GL has kept an error: the test fails here and says which.
+#define EXPECT_NO_GL_ERROR() EXPECT_EQ(::osgGpuAnimation::GLTest::takeGLErrors(), "")

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osg/Camera>
+#include <osg/Image>
+#include <osgViewer/Viewer>
+
+namespace osgGpuAnimation
+{
+
+/// Keeps what a camera has drawn last, for tests to look at.
+class Picture : public osg::Camera::DrawCallback
+{
+public:
+    Picture() : _image(new osg::Image) {}
+
+    void operator()(osg::RenderInfo& renderInfo) const override
+    {
+        const osg::Viewport* viewport = renderInfo.getCurrentCamera()->getViewport();
+        _image->readPixels(0, 0, static_cast<int>(viewport->width()), static_cast<int>(viewport->height()), GL_RGBA,
+                           GL_UNSIGNED_BYTE);
+    }
+
+    const osg::Image& image() const { return *_image; }
+    osg::ref_ptr<osg::Image> copy() const { return new osg::Image(*_image, osg::CopyOp::DEEP_COPY_ALL); }
+
+    /// Pixels that differ from the colour of the lower left corner, the background.
+    int pixelsDrawn() const
+    {
+        int count = 0;
+        for (int y = 0; y < _image->t(); ++y)
+            for (int x = 0; x < _image->s(); ++x)
+                if (_image->getColor(x, y) != _image->getColor(0, 0)) ++count;
+        return count;
+    }
+
+    /// Pixels of two pictures that differ by more than the tolerance (a colour's part, 0 to 1) in any channel.
+    static int pixelsDifferent(const osg::Image& a, const osg::Image& b, float tolerance = 0.02f)
+    {
+        int count = a.s() == b.s() && a.t() == b.t() ? 0 : a.s() * a.t() + 1;
+        for (int y = 0; y < a.t() && count <= a.s() * a.t(); ++y)
+            for (int x = 0; x < a.s(); ++x)
+            {
+                const osg::Vec4 d = a.getColor(x, y) - b.getColor(x, y);
+                for (int channel = 0; channel < 3; ++channel)
+                    if (std::abs(d[channel]) > tolerance)
+                    {
+                        ++count;
+                        break;
+                    }
+            }
+        return count;
+    }
+
+private:
+    osg::ref_ptr<osg::Image> _image;
+};
+
+} // namespace osgGpuAnimation

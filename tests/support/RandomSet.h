@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/animation/PoseInstruction.h>
+
+#include <memory>
+#include <random>
+
+namespace osgGpuAnimation
+{
+
+/// What a made-up character has. The same numbers and seed give the same set.
+struct RandomSetShape
+{
+    unsigned int seed = 1;
+    int joints = 30;
+    int depth = 8;        ///< levels the joints are spread over
+    int keys = 5;         ///< a channel
+    bool splines = false; ///< CUBICSPLINE channels among the others
+    bool weights = true;  ///< two morph weight tracks of 5 and 30 weights
+    bool secondSkin = true;
+};
+
+/// A character with joints of all kinds: several roots, two skins with different inverse binds, rigid joints, morph
+/// weights, and three clips with channels of every path and interpolation, times of their own, and rotations whose
+/// neighbours may have opposite signs.
+std::shared_ptr<const AnimationSet> makeRandomSet(const RandomSetShape& shape);
+
+/// An instruction that shows the clip at the time (seconds, held at the ends).
+PoseInstruction instructionAt(const AnimationSet& set, int clip, double time);
+
+} // namespace osgGpuAnimation

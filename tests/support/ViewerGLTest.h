@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "support/GLTest.h"
+#include "support/Picture.h"
+
+#include <osgGA/TrackballManipulator>
+
+namespace osgGpuAnimation
+{
+
+/// A GL test that draws scenes with an osgViewer::Viewer on the test's context, the camera 10 units before the origin
+/// on -Y, looking along +Y with +Z up: a square of 4 units on each side of the origin fills the picture.
+class ViewerGLTest : public GLTest
+{
+protected:
+    void TearDown() override
+    {
+        _viewer = nullptr;
+        GLTest::TearDown();
+    }
+
+    osgViewer::Viewer& viewer()
+    {
+        if (_viewer) return *_viewer;
+        _viewer = new osgViewer::Viewer;
+        _viewer->setThreadingModel(osgViewer::ViewerBase::SingleThreaded);
+        _viewer->setKeyEventSetsDone(0);
+        osg::Camera* camera = _viewer->getCamera();
+        camera->setGraphicsContext(&context());
+        camera->setViewport(0, 0, context().getTraits()->width, context().getTraits()->height);
+        camera->setProjectionMatrixAsOrtho(-4, 4, -4, 4, 1, 20);
+        camera->setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
+        camera->setViewMatrixAsLookAt({0, -10, 0}, {0, 0, 0}, {0, 0, 1});
+        camera->setFinalDrawCallback(_picture);
+        return *_viewer;
+    }
+
+    /// Draws the scene as it is at that simulation time (seconds) and keeps the picture.
+    void drawAt(double simulationTime)
+    {
+        viewer().frame(simulationTime);
+        context().makeCurrent();
+    }
+
+    const Picture& picture() const { return *_picture; }
+
+private:
+    osg::ref_ptr<osgViewer::Viewer> _viewer;
+    osg::ref_ptr<Picture> _picture = new Picture;
+};
+
+} // namespace osgGpuAnimation

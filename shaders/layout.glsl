@@ -8,12 +8,8 @@
 #define POSE_SAMPLE_SPLINE 1u // the clip's tracks are value, in-tangent, out-tangent
 
 // Palette entries, the static part: RGBA32F, seven texels each: head, three rows of parentBind, three of inverseBind.
-// The head's four components hold whole numbers: parent entry (-1: the root), track, POSE_ENTRY_ bits, 0.
+// The head's four components hold whole numbers: parent entry (-1: the root), track (-1: none), is it weights (1 or 0), 0.
 #define POSE_TEXELS_PER_ENTRY 7
-#define POSE_ENTRY_HAS_TRACK 1
-#define POSE_ENTRY_IS_WEIGHTS 2
-#define POSE_ENTRY_HAS_PARENT_BIND 4
-#define POSE_ENTRY_HAS_INVERSE_BIND 8
 
 // The palette: RGBA32F, a 3x4 matrix is three texels (rows). Entry e of instance i is matrix e * stride + i.
 #define POSE_TEXELS_PER_MATRIX 3
@@ -26,3 +22,11 @@
 
 // The texture unit the palette is bound to while a skinned mesh is drawn.
 #define POSE_PALETTE_UNIT 11
+
+// Vertex attributes of the pose pass, whose vertices are a batch's instances and whose GL instances are palette entries:
+// per vertex the blend sample and three rows of the root matrix, per GL instance an entry's texels.
+#define POSE_SAMPLE_LOCATION 0
+#define POSE_ROOT_LOCATION 1
+#define POSE_HEAD_LOCATION 4
+#define POSE_PARENT_BIND_LOCATION 5
+#define POSE_INVERSE_BIND_LOCATION 8

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Stage 1, mix: a track's joint transform from the two keyframes of each blend sample of its instance.
 
+// The program's variant says by constants what a batch needs, since some drivers run both sides of every branch:
+// const bool hasSplines, hasSeveralSamples, hasWeights.
+
 uniform samplerBuffer keyframes;  // joint transforms, all clips of the set one after another
 uniform usamplerBuffer samples;   // sampleStride blend samples an instance
 uniform int sampleStride;
@@ -66,7 +69,7 @@ JointTransform sampleTrack(uvec4 blendSample, int track, int trackCount, bool is
 {
     int first = int(blendSample.x);
     float alpha = uintBitsToFloat(blendSample.y);
-    if ((blendSample.w & POSE_SAMPLE_SPLINE) == 0u)
+    if (!hasSplines || (blendSample.w & POSE_SAMPLE_SPLINE) == 0u)
     {
         int index = first + track;
         return interpolate(fetchTransform(index), fetchTransform(index + trackCount), alpha, isWeights);
@@ -98,10 +101,4 @@ JointTransform mixSamples(int instance, int track, int trackCount, bool isWeight
     }
     if (!isWeights) sum.rotation = normalize(sum.rotation);
     return sum;
-}
-
-JointTransform mixTrack(int instance, int track, int trackCount, bool isWeights)
-{
-    if (sampleStride > 1) return mixSamples(instance, track, trackCount, isWeights);
-    return sampleTrack(texelFetch(samples, instance), track, trackCount, isWeights);
 }

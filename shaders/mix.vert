@@ -13,7 +13,9 @@ void main()
 {
     int track = gl_VertexID / instanceCount;
     int instance = gl_VertexID - track * instanceCount;
-    JointTransform t = mixTrack(instance, track, trackCount, track >= jointCount);
+    bool isWeights = hasWeights && track >= jointCount;
+    JointTransform t = hasSeveralSamples ? mixSamples(instance, track, trackCount, isWeights)
+                                         : sampleTrack(texelFetch(samples, instance), track, trackCount, isWeights);
     translation = t.translation;
     rotation = t.rotation;
     scale = t.scale;

@@ -1,6 +1,14 @@
 // SPDX-License-Identifier: MIT
-// The default pipeline: mix, local and world in one pass, drawn a level at a time over all instances.
-// gl_VertexID = entry * instanceCount + instance, which is also the place of the result in the palette.
+// The default pipeline: mix, local and world in one pass, a draw a level of the hierarchy. The vertices of a draw are the
+// batch's instances, its GL instances the level's palette entries: what belongs to one or the other comes as an
+// attribute, so that only keyframes and parents have to be fetched. The result's place in the palette is
+// entry * instanceCount + instance. Constants of the variant: those of mix.glsl; bool isRootLevel, hasRoots.
+
+layout(location = POSE_SAMPLE_LOCATION) in uvec4 blendSample;
+layout(location = POSE_ROOT_LOCATION) in mat3x4 rootMatrix;
+layout(location = POSE_HEAD_LOCATION) in vec4 head;
+layout(location = POSE_PARENT_BIND_LOCATION) in mat3x4 parentBind;
+layout(location = POSE_INVERSE_BIND_LOCATION) in mat3x4 inverseBind;
 
 uniform samplerBuffer parentLevels; // the palette's levels computed so far that hold this level's parents
 uniform int instanceCount;
@@ -12,26 +20,26 @@ out vec4 row2;
 
 void main()
 {
-    int entry = gl_VertexID / instanceCount;
-    int instance = gl_VertexID - entry * instanceCount;
-    vec4 head = texelFetch(entries, entry * POSE_TEXELS_PER_ENTRY);
     int parent = int(head.x);
-    int kind = int(head.z);
-    bool isWeights = (kind & POSE_ENTRY_IS_WEIGHTS) != 0;
+    int track = int(head.y);
+    bool isWeights = hasWeights && head.z != 0.0;
 
     mat3x4 matrix = mat3x4(1.0);
-    if ((kind & POSE_ENTRY_HAS_TRACK) != 0)
+    if (track >= 0)
     {
-        JointTransform t = mixTrack(instance, int(head.y), trackCount, isWeights);
+        JointTransform t = hasSeveralSamples ? mixSamples(gl_VertexID, track, trackCount, isWeights)
+                                             : sampleTrack(blendSample, track, trackCount, isWeights);
         matrix = isWeights ? mat3x4(t.translation, t.rotation, t.scale)
                            : localMatrix(t.translation, t.rotation, t.scale);
     }
     if (!isWeights)
     {
-        matrix = withParentBind(entry, kind, withInverseBind(entry, kind, matrix));
-        matrix = parent < 0 ? rooted(instance, matrix)
-                            : multiplied(fetchMatrix(parentLevels, (parent * instanceCount + instance) *
-                                                                   POSE_TEXELS_PER_MATRIX), matrix);
+        matrix = multiplied(parentBind, multiplied(matrix, inverseBind));
+        if (!isRootLevel)
+            matrix = multiplied(fetchMatrix(parentLevels, (parent * instanceCount + gl_VertexID) *
+                                                          POSE_TEXELS_PER_MATRIX), matrix);
+        else if (hasRoots)
+            matrix = multiplied(rootMatrix, matrix);
     }
     row0 = matrix[0];
     row1 = matrix[1];

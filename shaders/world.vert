@@ -2,6 +2,9 @@
 // The world stage as a pass of its own, in one draw: each entry walks up its ancestors, so it costs O(depth).
 // gl_VertexID = entry * instanceCount + instance, also in the result.
 
+uniform samplerBuffer entries; // the static part of the palette entries, POSE_TEXELS_PER_ENTRY each
+uniform samplerBuffer roots;   // a 3x4 matrix an instance
+uniform bool hasRoots;
 uniform samplerBuffer localMatrices; // what local.vert wrote: matrix track * instanceCount + instance
 uniform int instanceCount;
 
@@ -19,20 +22,16 @@ void main()
     int entry = gl_VertexID / instanceCount;
     int instance = gl_VertexID - entry * instanceCount;
     vec4 head = texelFetch(entries, entry * POSE_TEXELS_PER_ENTRY);
-    int kind = int(head.z);
-
-    mat3x4 matrix = mat3x4(1.0);
-    if ((kind & POSE_ENTRY_HAS_TRACK) != 0) matrix = localOf(int(head.y), instance);
-    if ((kind & POSE_ENTRY_IS_WEIGHTS) == 0)
+    mat3x4 matrix = head.y >= 0.0 ? localOf(int(head.y), instance) : mat3x4(1.0);
+    if (head.z == 0.0)
     {
-        matrix = withInverseBind(entry, kind, matrix);
-        for (int parent = int(head.x); parent >= 0;)
+        matrix = multiplied(matrix, fetchMatrix(entries, entry * POSE_TEXELS_PER_ENTRY + 4));
+        for (int parent = int(head.x); parent >= 0; parent = int(head.x))
         {
             head = texelFetch(entries, parent * POSE_TEXELS_PER_ENTRY);
-            if ((int(head.z) & POSE_ENTRY_HAS_TRACK) != 0) matrix = multiplied(localOf(int(head.y), instance), matrix);
-            parent = int(head.x);
+            if (head.y >= 0.0) matrix = multiplied(localOf(int(head.y), instance), matrix);
         }
-        matrix = rooted(instance, matrix);
+        if (hasRoots) matrix = multiplied(fetchMatrix(roots, instance * POSE_TEXELS_PER_MATRIX), matrix);
     }
     row0 = matrix[0];
     row1 = matrix[1];

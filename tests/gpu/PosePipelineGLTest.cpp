@@ -63,7 +63,10 @@ struct PipelineData
     std::size_t maxTexels; ///< 0: the context's own
 };
 
-void PrintTo(const PipelineData& data, std::ostream* out) { *out << data.name; }
+void PrintTo(const PipelineData& data, std::ostream* out)
+{
+    *out << data.name;
+}
 
 const PipelineData pipelineData[] = {
     {"one character", {1, 30, 8, 5, false, false, false}, 1, false, 0},
@@ -75,7 +78,8 @@ const PipelineData pipelineData[] = {
     {"in chunks, as with 65,536 texels", {7, 20, 6, 2, false, false, true}, 2500, true, 65536},
 };
 
-class PosePipelineGLTest : public GLTest, public ::testing::WithParamInterface<std::tuple<PipelineData, PosePipeline::Form>>
+class PosePipelineGLTest : public GLTest,
+                           public ::testing::WithParamInterface<std::tuple<PipelineData, PosePipeline::Form>>
 {
 };
 

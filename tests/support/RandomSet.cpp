@@ -98,9 +98,8 @@ private:
             const glm::vec4 q = rotation();
             for (std::size_t i = 0; i < width; ++i)
                 out.values.push_back(static_cast<float>(isRotation && !isTangent ? q[static_cast<int>(i)]
-                                                        : path == Channel::Path::Scale && !isTangent
-                                                            ? number(0.7, 1.3)
-                                                            : number(-1, 1)));
+                                                        : path == Channel::Path::Scale && !isTangent ? number(0.7, 1.3)
+                                                                                                     : number(-1, 1)));
         }
         return out;
     }
@@ -126,7 +125,10 @@ private:
 
 } // namespace
 
-std::shared_ptr<const AnimationSet> makeRandomSet(const RandomSetShape& shape) { return Maker(shape).make(); }
+std::shared_ptr<const AnimationSet> makeRandomSet(const RandomSetShape& shape)
+{
+    return Maker(shape).make();
+}
 
 PoseInstruction instructionAt(const AnimationSet& set, int clip, double time)
 {

@@ -59,16 +59,21 @@ std::size_t valuesPerKey(const Channel& channel)
     return channel.interpolation == Channel::Interpolation::CubicSpline ? 3 : 1;
 }
 
+/// Rounds the times to floats on the way.
 std::optional<std::string> findFaultInTimes(std::vector<double>& times)
 {
     if (times.empty()) return "has no times";
     for (std::size_t i = 0; i < times.size(); ++i)
     {
-        const std::string subject = "time " + std::to_string(i) + " (" + std::to_string(times[i]) + ") ";
         const double time = static_cast<double>(static_cast<float>(times[i]));
-        if (!std::isfinite(time)) return subject + "is not finite";
-        if (time < 0.0) return subject + "is negative";
-        if (i > 0 && time <= times[i - 1]) return subject + "is not after the one before it";
+        const char* fault = nullptr;
+        if (!std::isfinite(time))
+            fault = "is not finite";
+        else if (time < 0.0)
+            fault = "is negative";
+        else if (i > 0 && time <= times[i - 1])
+            fault = "is not after the one before it";
+        if (fault) return "time " + std::to_string(i) + " (" + std::to_string(times[i]) + ") " + fault;
         times[i] = time;
     }
     return std::nullopt;

@@ -14,19 +14,10 @@ namespace
 
 using PackedEntry = std::array<glm::vec4, POSE_TEXELS_PER_ENTRY>;
 
-int kindBits(const PaletteEntry& entry)
-{
-    if (entry.kind == PaletteEntry::Kind::Weights) return POSE_ENTRY_HAS_TRACK | POSE_ENTRY_IS_WEIGHTS;
-    int bits = entry.track >= 0 ? POSE_ENTRY_HAS_TRACK : 0;
-    if (!entry.parentBind.isIdentity()) bits |= POSE_ENTRY_HAS_PARENT_BIND;
-    if (!entry.inverseBind.isIdentity()) bits |= POSE_ENTRY_HAS_INVERSE_BIND;
-    return bits;
-}
-
 PackedEntry packed(const PaletteEntry& entry)
 {
     PackedEntry out;
-    out[0] = glm::vec4(entry.parent, entry.track, kindBits(entry), 0);
+    out[0] = glm::vec4(entry.parent, entry.track, entry.kind == PaletteEntry::Kind::Weights, 0);
     for (std::size_t row = 0; row < 3; ++row)
     {
         out[1 + row] = entry.parentBind.rows[row];

@@ -47,6 +47,23 @@ void BufferTexture::uploadPart(std::size_t offset, const void* data, std::size_t
     _gl->glBindBuffer(GL_TEXTURE_BUFFER, 0);
 }
 
+void BufferTexture::bindAttributes(unsigned int location, unsigned int count, std::size_t stride,
+                                   std::size_t byteOffset, unsigned int divisor) const
+{
+    _gl->glBindBuffer(GL_ARRAY_BUFFER, _buffer);
+    for (unsigned int i = 0; i < count; ++i)
+    {
+        const auto* offset = reinterpret_cast<const GLvoid*>(byteOffset + i * texelBytes);
+        if (_format == GL_RGBA32UI_EXT)
+            _gl->glVertexAttribIPointer(location + i, 4, GL_UNSIGNED_INT, static_cast<GLsizei>(stride), offset);
+        else
+            _gl->glVertexAttribPointer(location + i, 4, GL_FLOAT, GL_FALSE, static_cast<GLsizei>(stride), offset);
+        _gl->glVertexAttribDivisor(location + i, divisor);
+        _gl->glEnableVertexAttribArray(location + i);
+    }
+    _gl->glBindBuffer(GL_ARRAY_BUFFER, 0);
+}
+
 void BufferTexture::release()
 {
     if (_buffer == 0) return;

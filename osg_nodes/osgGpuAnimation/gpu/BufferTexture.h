@@ -29,6 +29,12 @@ public:
     /// Replaces a part of what was uploaded.
     void uploadPart(std::size_t offset, const void* data, std::size_t bytes);
 
+    /// Lets vertex attributes [location, location + count) read 16 bytes each, one behind the other, from byteOffset
+    /// on, and from one element to the next stride bytes on. divisor: 0 for an element a vertex, 1 for one a GL
+    /// instance.
+    void bindAttributes(unsigned int location, unsigned int count, std::size_t stride, std::size_t byteOffset,
+                        unsigned int divisor) const;
+
     GLuint buffer() const { return _buffer; }
     GLuint texture() const { return _texture; }
     std::size_t capacity() const { return _capacity; } ///< bytes

@@ -73,9 +73,15 @@ GLint FeedbackPass::location(const char* uniform)
     return _locations[uniform] = _gl->glGetUniformLocation(_program, uniform);
 }
 
-void FeedbackPass::use() { _gl->glUseProgram(_program); }
+void FeedbackPass::use()
+{
+    _gl->glUseProgram(_program);
+}
 
-void FeedbackPass::setInt(const char* uniform, int value) { _gl->glUniform1i(location(uniform), value); }
+void FeedbackPass::setInt(const char* uniform, int value)
+{
+    _gl->glUniform1i(location(uniform), value);
+}
 
 void FeedbackPass::setTexture(const char* uniform, int unit, GLuint texture)
 {
@@ -84,15 +90,34 @@ void FeedbackPass::setTexture(const char* uniform, int unit, GLuint texture)
     _gl->glUniform1i(location(uniform), unit);
 }
 
-void FeedbackPass::run(std::size_t firstVertex, std::size_t count, GLuint buffer, std::size_t byteOffset)
+void FeedbackPass::begin(std::size_t count, GLuint buffer, std::size_t byteOffset)
 {
-    if (count == 0) return;
     _gl->glBindBufferRange(GL_TRANSFORM_FEEDBACK_BUFFER, 0, buffer, static_cast<GLintptr>(byteOffset),
                            static_cast<GLsizeiptr>(count * _bytesPerVertex));
     _gl->glBeginTransformFeedback(GL_POINTS);
-    glDrawArrays(GL_POINTS, static_cast<GLint>(firstVertex), static_cast<GLsizei>(count));
+}
+
+void FeedbackPass::end()
+{
     _gl->glEndTransformFeedback();
     _gl->glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, 0);
+}
+
+void FeedbackPass::run(std::size_t firstVertex, std::size_t count, GLuint buffer, std::size_t byteOffset)
+{
+    if (count == 0) return;
+    begin(count, buffer, byteOffset);
+    glDrawArrays(GL_POINTS, static_cast<GLint>(firstVertex), static_cast<GLsizei>(count));
+    end();
+}
+
+void FeedbackPass::runInstanced(std::size_t vertexCount, std::size_t instanceCount, GLuint buffer,
+                                std::size_t byteOffset)
+{
+    if (vertexCount == 0 || instanceCount == 0) return;
+    begin(vertexCount * instanceCount, buffer, byteOffset);
+    _gl->glDrawArraysInstanced(GL_POINTS, 0, static_cast<GLsizei>(vertexCount), static_cast<GLsizei>(instanceCount));
+    end();
 }
 
 void FeedbackPass::release()

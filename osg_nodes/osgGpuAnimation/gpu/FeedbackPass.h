@@ -35,11 +35,15 @@ public:
     void setTexture(const char* uniform, int unit, GLuint texture);
     /// Draws points [firstVertex, firstVertex + count) and writes 16 bytes an output for each into the buffer.
     void run(std::size_t firstVertex, std::size_t count, GLuint buffer, std::size_t byteOffset);
+    /// The same for vertices [0, vertexCount) of each of so many GL instances, one instance after another.
+    void runInstanced(std::size_t vertexCount, std::size_t instanceCount, GLuint buffer, std::size_t byteOffset);
 
     void release();
     void discard() { _program = 0; }
 
 private:
+    void begin(std::size_t count, GLuint buffer, std::size_t byteOffset);
+    void end();
     GLint location(const char* uniform);
     bool link(const char* name, const std::string& source, const std::vector<const char*>& outputs);
 

@@ -48,8 +48,8 @@ std::vector<PosePalette::Chunk*> PosePalette::upload(const PoseBatch& batch, std
         bool isChanged = chunk.size != size || chunk.sampleStride != stride;
         chunk.size = size;
         chunk.sampleStride = stride;
-        isChanged |= uploadChanged(batch.samples(), first * stride, size * stride, chunk.uploadedSamples,
-                                   chunk.samples, bytesUploaded);
+        isChanged |= uploadChanged(batch.samples(), first * stride, size * stride, chunk.uploadedSamples, chunk.samples,
+                                   bytesUploaded);
         isChanged |= uploadChanged(batch.rootMatrices(), hasRoots ? first : 0, hasRoots ? size : 0,
                                    chunk.uploadedRootMatrices, chunk.roots, bytesUploaded);
         if (isChanged) changed.push_back(&chunk);

@@ -29,6 +29,14 @@ constexpr std::size_t matrixBytes = sizeof(AffineMatrix);
 constexpr int unitKeyframes = 0, unitSamples = 1, unitEntries = 2, unitRoots = 3, unitPrevious = 4;
 constexpr int unitCount = 5;
 
+constexpr std::initializer_list<const char*> rowOutputs{"row0", "row1", "row2"};
+
+bool hasSplines(const AnimationSet& set)
+{
+    return std::any_of(set.clips().begin(), set.clips().end(),
+                       [](const Clip& clip) { return clip.form() == Clip::Form::Spline; });
+}
+
 } // namespace
 
 PosePipeline::PosePipeline(unsigned int contextId)
@@ -51,26 +59,37 @@ PosePipeline* PosePipeline::of(osg::State& state)
     return pipeline->_isSupported ? pipeline : nullptr;
 }
 
-bool PosePipeline::makePasses()
+FeedbackPass& PosePipeline::posePass(const PoseVariant& variant)
 {
-    if (_posePass) return _posePass->valid();
-    _gl->glGenVertexArrays(1, &_vertexArray);
+    std::unique_ptr<FeedbackPass>& pass = _posePasses[variant];
     using namespace shaders;
-    _posePass = std::make_unique<FeedbackPass>(*_gl, "pose", std::initializer_list{mix_glsl, local_glsl, world_glsl, pose_vert},
-                                               std::initializer_list{"row0", "row1", "row2"});
-    return _posePass->valid();
+    if (!pass)
+        pass = std::make_unique<FeedbackPass>(*_gl, "pose",
+                                              std::initializer_list<const char*>{variant.constants().c_str(), mix_glsl,
+                                                                                 local_glsl, world_glsl, pose_vert},
+                                              rowOutputs);
+    return *pass;
 }
 
-void PosePipeline::setForm(Form form)
+FeedbackPass& PosePipeline::mixPass(const PoseVariant& variant)
 {
-    _form = form;
-    if (form == Form::Fused || _mixPass) return;
+    std::unique_ptr<FeedbackPass>& pass = _mixPasses[variant];
     using namespace shaders;
-    const std::initializer_list<const char*> rows{"row0", "row1", "row2"};
-    _mixPass = std::make_unique<FeedbackPass>(*_gl, "mix", std::initializer_list{mix_glsl, mix_vert},
-                                              std::initializer_list{"translation", "rotation", "scale"});
-    _localPass = std::make_unique<FeedbackPass>(*_gl, "local", std::initializer_list{local_glsl, local_vert}, rows);
-    _worldPass = std::make_unique<FeedbackPass>(*_gl, "world", std::initializer_list{world_glsl, world_vert}, rows);
+    if (!pass)
+        pass = std::make_unique<FeedbackPass>(
+            *_gl, "mix", std::initializer_list<const char*>{variant.constants().c_str(), mix_glsl, mix_vert},
+            std::initializer_list<const char*>{"translation", "rotation", "scale"});
+    return *pass;
+}
+
+void PosePipeline::makeSeparatePasses()
+{
+    if (_localPass) return;
+    using namespace shaders;
+    _localPass =
+        std::make_unique<FeedbackPass>(*_gl, "local", std::initializer_list{local_glsl, local_vert}, rowOutputs);
+    _worldPass =
+        std::make_unique<FeedbackPass>(*_gl, "world", std::initializer_list{world_glsl, world_vert}, rowOutputs);
 }
 
 PosePipeline::SetResources& PosePipeline::resourcesOf(const PoseBatch& batch)
@@ -88,15 +107,19 @@ PosePipeline::SetResources& PosePipeline::resourcesOf(const PoseBatch& batch)
     if (std::max(keyframeTexels, entryTexels) <= _maxTexels)
         resources.buffers = std::make_unique<AnimationBuffers>(*_gl, set);
     else
-        OSG_WARN << "osgGpuAnimation: an animation set needs buffers of " << keyframeTexels << " texels (keyframes) and "
-                 << entryTexels << " (palette entries), this context takes at most " << _maxTexels
-                 << "; its characters are not drawn" << std::endl;
+        OSG_WARN << "osgGpuAnimation: an animation set needs buffers of " << keyframeTexels
+                 << " texels (keyframes) and " << entryTexels << " (palette entries), this context takes at most "
+                 << _maxTexels << "; its characters are not drawn" << std::endl;
     return resources;
 }
 
 bool PosePipeline::evaluate(osg::State& state, const PoseBatch& batch, std::size_t slot)
 {
-    if (!makePasses()) return false;
+    if (_noVertexArray == 0)
+    {
+        _gl->glGenVertexArrays(1, &_poseVertexArray);
+        _gl->glGenVertexArrays(1, &_noVertexArray);
+    }
     forgetUnusedSets();
     SetResources& resources = resourcesOf(batch);
     if (!resources.buffers) return false;
@@ -111,7 +134,7 @@ bool PosePipeline::evaluate(osg::State& state, const PoseBatch& batch, std::size
         resources.palettes[slot]->upload(batch, chunkCapacity, _counters.bytesUploaded);
     if (changed.empty()) return true;
 
-    const FeedbackScope scope(state, _vertexArray, unitCount);
+    const FeedbackScope scope(state, _form == Form::Fused ? _poseVertexArray : _noVertexArray, unitCount);
     for (PosePalette::Chunk* chunk : changed)
     {
         chunk->palette.reserve(set.paletteSize() * chunk->size * matrixBytes);
@@ -136,37 +159,41 @@ void PosePipeline::useMixInput(FeedbackPass& pass, const AnimationSet& set, cons
     pass.setInt("jointCount", static_cast<int>(set.skeleton().jointCount()));
 }
 
-void PosePipeline::useWorldInput(FeedbackPass& pass, const AnimationBuffers& buffers, const PosePalette::Chunk& chunk)
-{
-    pass.use();
-    pass.setInt("instanceCount", static_cast<int>(chunk.size));
-    pass.setTexture("entries", unitEntries, buffers.entries().texture());
-    pass.setTexture("roots", unitRoots, chunk.roots.texture());
-    pass.setInt("hasRoots", chunk.uploadedRootMatrices.empty() ? 0 : 1);
-}
-
-void PosePipeline::run(FeedbackPass& pass, std::size_t firstVertex, std::size_t count, const BufferTexture& out)
-{
-    pass.run(firstVertex, count, out.buffer(), firstVertex * matrixBytes);
-    ++_counters.feedbackDraws;
-}
-
 // A buffer must not be read while feedback writes to it, so levels go to the palette and to the scratch buffer by
 // turns, each at its own place; at the end the scratch buffer's levels are copied to their places in the palette.
 void PosePipeline::evaluateFused(const AnimationSet& set, const AnimationBuffers& buffers, PosePalette::Chunk& chunk)
 {
     if (set.levelCount() > 1) _scratch.reserve(set.paletteSize() * chunk.size * matrixBytes);
-    useMixInput(*_posePass, set, buffers, chunk);
-    useWorldInput(*_posePass, buffers, chunk);
+    bindInstances(chunk);
+    PoseVariant variant{hasSplines(set), chunk.sampleStride > 1, !set.morphs().empty(), true,
+                        !chunk.uploadedRootMatrices.empty()};
+    const std::size_t entryBytes = POSE_TEXELS_PER_ENTRY * BufferTexture::texelBytes;
     const std::vector<std::size_t>& levels = set.levels();
     for (std::size_t level = 0; level < set.levelCount(); ++level)
     {
+        if (level == 1) variant.isRootLevel = variant.hasRoots = variant.hasWeights = false;
         const bool isOdd = level % 2 != 0;
-        _posePass->setTexture("parentLevels", unitPrevious, (isOdd ? chunk.palette : _scratch).texture());
-        run(*_posePass, levels[level] * chunk.size, (levels[level + 1] - levels[level]) * chunk.size,
-            isOdd ? _scratch : chunk.palette);
+        FeedbackPass& pass = posePass(variant);
+        if (!pass.valid()) return;
+        if (level < 2) useMixInput(pass, set, buffers, chunk);
+        pass.setTexture("parentLevels", unitPrevious, (isOdd ? chunk.palette : _scratch).texture());
+        buffers.entries().bindAttributes(POSE_HEAD_LOCATION, POSE_TEXELS_PER_ENTRY, entryBytes,
+                                         levels[level] * entryBytes, 1);
+        pass.runInstanced(chunk.size, levels[level + 1] - levels[level], (isOdd ? _scratch : chunk.palette).buffer(),
+                          levels[level] * chunk.size * matrixBytes);
+        ++_counters.feedbackDraws;
     }
     gatherOddLevels(set, chunk);
+}
+
+void PosePipeline::bindInstances(const PosePalette::Chunk& chunk)
+{
+    chunk.samples.bindAttributes(POSE_SAMPLE_LOCATION, 1, chunk.sampleStride * sizeof(BlendSample), 0, 0);
+    if (!chunk.uploadedRootMatrices.empty())
+        chunk.roots.bindAttributes(POSE_ROOT_LOCATION, POSE_TEXELS_PER_MATRIX, matrixBytes, 0, 0);
+    else
+        for (unsigned int row = 0; row < POSE_TEXELS_PER_MATRIX; ++row)
+            _gl->glDisableVertexAttribArray(POSE_ROOT_LOCATION + row);
 }
 
 void PosePipeline::gatherOddLevels(const AnimationSet& set, const PosePalette::Chunk& chunk)
@@ -186,25 +213,37 @@ void PosePipeline::gatherOddLevels(const AnimationSet& set, const PosePalette::C
     _gl->glBindBuffer(GL_COPY_WRITE_BUFFER, 0);
 }
 
-void PosePipeline::evaluateSeparate(const AnimationSet& set, const AnimationBuffers& buffers,
-                                    PosePalette::Chunk& chunk)
+void PosePipeline::runSeparate(FeedbackPass& pass, std::size_t count, const BufferTexture& out)
+{
+    pass.run(0, count, out.buffer(), 0);
+    ++_counters.feedbackDraws;
+}
+
+void PosePipeline::evaluateSeparate(const AnimationSet& set, const AnimationBuffers& buffers, PosePalette::Chunk& chunk)
 {
     const std::size_t trackVertices = set.trackCount() * chunk.size;
     _mixedTracks.reserve(trackVertices * sizeof(JointTransform));
     _scratch.reserve(trackVertices * matrixBytes);
 
-    useMixInput(*_mixPass, set, buffers, chunk);
-    run(*_mixPass, 0, trackVertices, _mixedTracks);
+    makeSeparatePasses();
+    FeedbackPass& mixing = mixPass({hasSplines(set), chunk.sampleStride > 1, !set.morphs().empty(), false, false});
+    if (!mixing.valid() || !_localPass->valid() || !_worldPass->valid()) return;
+    useMixInput(mixing, set, buffers, chunk);
+    runSeparate(mixing, trackVertices, _mixedTracks);
 
     _localPass->use();
     _localPass->setTexture("mixedTracks", unitPrevious, _mixedTracks.texture());
     _localPass->setInt("instanceCount", static_cast<int>(chunk.size));
     _localPass->setInt("jointCount", static_cast<int>(set.skeleton().jointCount()));
-    run(*_localPass, 0, trackVertices, _scratch);
+    runSeparate(*_localPass, trackVertices, _scratch);
 
-    useWorldInput(*_worldPass, buffers, chunk);
+    _worldPass->use();
+    _worldPass->setInt("instanceCount", static_cast<int>(chunk.size));
+    _worldPass->setTexture("entries", unitEntries, buffers.entries().texture());
+    _worldPass->setTexture("roots", unitRoots, chunk.roots.texture());
+    _worldPass->setInt("hasRoots", chunk.uploadedRootMatrices.empty() ? 0 : 1);
     _worldPass->setTexture("localMatrices", unitPrevious, _scratch.texture());
-    run(*_worldPass, 0, set.paletteSize() * chunk.size, chunk.palette);
+    runSeparate(*_worldPass, set.paletteSize() * chunk.size, chunk.palette);
 }
 
 PalettePlace PosePipeline::place(const AnimationSet& set, std::size_t slot, std::size_t instance) const
@@ -226,7 +265,8 @@ std::vector<AffineMatrix> PosePipeline::readPalette(osg::State& state, const Ani
     for (std::size_t entry = 0; entry < entries.size(); ++entry)
         _gl->glGetBufferSubData(GL_TEXTURE_BUFFER,
                                 static_cast<GLintptr>((entry * static_cast<std::size_t>(where.stride) +
-                                                       static_cast<std::size_t>(where.instance)) * matrixBytes),
+                                                       static_cast<std::size_t>(where.instance)) *
+                                                      matrixBytes),
                                 matrixBytes, &entries[entry]);
     _gl->glBindBuffer(GL_TEXTURE_BUFFER, 0);
     state.checkGLErrors("PosePipeline::readPalette");
@@ -249,9 +289,25 @@ void PosePipeline::forgetUnusedSets()
     }
 }
 
-void PosePipeline::flushDeletedGLObjects(double, double&) { forgetUnusedSets(); }
+void PosePipeline::flushDeletedGLObjects(double, double&)
+{
+    forgetUnusedSets();
+}
 
-void PosePipeline::flushAllDeletedGLObjects() { forgetUnusedSets(); }
+void PosePipeline::flushAllDeletedGLObjects()
+{
+    forgetUnusedSets();
+}
+
+template <typename Function>
+void PosePipeline::forEachPass(Function function)
+{
+    for (Passes* passes : {&_posePasses, &_mixPasses})
+        for (auto& [variant, pass] : *passes)
+            function(*pass);
+    for (FeedbackPass* pass : {_localPass.get(), _worldPass.get()})
+        if (pass) function(*pass);
+}
 
 void PosePipeline::deleteAllGLObjects()
 {
@@ -261,11 +317,11 @@ void PosePipeline::deleteAllGLObjects()
             palette->release();
         if (resources.buffers) resources.buffers->release();
     }
-    for (FeedbackPass* pass : {_posePass.get(), _mixPass.get(), _localPass.get(), _worldPass.get()})
-        if (pass) pass->release();
+    forEachPass([](FeedbackPass& pass) { pass.release(); });
     _scratch.release();
     _mixedTracks.release();
-    if (_vertexArray != 0) _gl->glDeleteVertexArrays(1, &_vertexArray);
+    if (_poseVertexArray != 0) _gl->glDeleteVertexArrays(1, &_poseVertexArray);
+    if (_noVertexArray != 0) _gl->glDeleteVertexArrays(1, &_noVertexArray);
     discardAllGLObjects();
 }
 
@@ -275,13 +331,14 @@ void PosePipeline::discardAllGLObjects()
         for (const std::unique_ptr<PosePalette>& palette : resources.palettes)
             palette->discard();
     _sets.clear();
-    _posePass.reset();
-    _mixPass.reset();
+    _posePasses.clear();
+    _mixPasses.clear();
     _localPass.reset();
     _worldPass.reset();
     _scratch.discard();
     _mixedTracks.discard();
-    _vertexArray = 0;
+    _poseVertexArray = 0;
+    _noVertexArray = 0;
 }
 
 } // namespace osgGpuAnimation

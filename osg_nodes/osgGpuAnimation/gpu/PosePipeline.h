@@ -4,6 +4,7 @@
 #include <osgGpuAnimation/gpu/AnimationBuffers.h>
 #include <osgGpuAnimation/gpu/FeedbackPass.h>
 #include <osgGpuAnimation/gpu/PosePalette.h>
+#include <osgGpuAnimation/gpu/PoseVariant.h>
 
 #include <osg/GLObjects>
 #include <osg/State>
@@ -23,8 +24,8 @@ namespace osgGpuAnimation
 ///     pipeline->evaluate(state, batch, 0);
 ///     PalettePlace place = pipeline->place(batch.set(), 0, instance);
 ///
-/// The default form computes mix, local and world in one pass, a flat draw a level of the hierarchy for all instances
-/// (see tests/benchmark/RESULTS.md); the separate form has a pass for each stage.
+/// The default form computes mix, local and world in one pass, a draw a level of the hierarchy for all instances (see
+/// tests/benchmark/RESULTS.md); the separate form has a pass for each stage.
 class PosePipeline : public osg::GraphicsObjectManager
 {
 public:
@@ -59,7 +60,7 @@ public:
     std::vector<AffineMatrix> readPalette(osg::State& state, const AnimationSet& set, std::size_t slot,
                                           std::size_t instance) const;
 
-    void setForm(Form form);
+    void setForm(Form form) { _form = form; }
     Form form() const { return _form; }
     /// Texels a buffer texture may have; GL_MAX_TEXTURE_BUFFER_SIZE unless set smaller (tests).
     void setMaxTexels(std::size_t texels) { _maxTexels = texels; }
@@ -78,35 +79,41 @@ private:
     struct SetResources
     {
         std::weak_ptr<const AnimationSet> set;
-        std::unique_ptr<AnimationBuffers> buffers; ///< null: too large, reported
+        std::unique_ptr<AnimationBuffers> buffers;          ///< null: too large, reported
         std::vector<std::unique_ptr<PosePalette>> palettes; ///< by slot
     };
 
-    bool makePasses();
+    using Passes = std::map<PoseVariant, std::unique_ptr<FeedbackPass>>;
+
+    FeedbackPass& posePass(const PoseVariant& variant);
+    FeedbackPass& mixPass(const PoseVariant& variant);
+    void makeSeparatePasses();
     void forgetUnusedSets();
     SetResources& resourcesOf(const PoseBatch& batch);
+    template <typename Function>
+    void forEachPass(Function function);
+    void bindInstances(const PosePalette::Chunk& chunk);
     void evaluateFused(const AnimationSet& set, const AnimationBuffers& buffers, PosePalette::Chunk& chunk);
     void evaluateSeparate(const AnimationSet& set, const AnimationBuffers& buffers, PosePalette::Chunk& chunk);
     void useMixInput(FeedbackPass& pass, const AnimationSet& set, const AnimationBuffers& buffers,
                      const PosePalette::Chunk& chunk);
-    void useWorldInput(FeedbackPass& pass, const AnimationBuffers& buffers, const PosePalette::Chunk& chunk);
     void gatherOddLevels(const AnimationSet& set, const PosePalette::Chunk& chunk);
-    void run(FeedbackPass& pass, std::size_t firstVertex, std::size_t count, const BufferTexture& out);
+    void runSeparate(FeedbackPass& pass, std::size_t count, const BufferTexture& out);
 
     osg::GLExtensions* _gl;
     void(GL_APIENTRY* _copyBufferSubData)(GLenum, GLenum, GLintptr, GLintptr, GLsizeiptr) = nullptr;
     std::size_t _maxTexels = 0;
     bool _isSupported = false;
-    bool _isReported = false;
     Form _form = Form::Fused;
     Counters _counters;
-    GLuint _vertexArray = 0;
-    std::unique_ptr<FeedbackPass> _posePass;
-    std::unique_ptr<FeedbackPass> _mixPass;
+    GLuint _poseVertexArray = 0; ///< with the attributes of the pose pass
+    GLuint _noVertexArray = 0;   ///< without any
+    Passes _posePasses;
+    Passes _mixPasses;
     std::unique_ptr<FeedbackPass> _localPass;
     std::unique_ptr<FeedbackPass> _worldPass;
-    BufferTexture _scratch;      ///< fused: odd levels; separate: local matrices
-    BufferTexture _mixedTracks;  ///< separate: the mix stage's result
+    BufferTexture _scratch;     ///< fused: odd levels; separate: local matrices
+    BufferTexture _mixedTracks; ///< separate: the mix stage's result
     std::map<const AnimationSet*, SetResources> _sets;
 };
 

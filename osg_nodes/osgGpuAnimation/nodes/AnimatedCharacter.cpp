@@ -110,7 +110,10 @@ void AnimatedCharacter::traverse(osg::NodeVisitor& visitor)
     cullVisitor->popStateSet();
 }
 
-osg::BoundingSphere AnimatedCharacter::computeBound() const { return osg::MatrixTransform::computeBound(); }
+osg::BoundingSphere AnimatedCharacter::computeBound() const
+{
+    return osg::MatrixTransform::computeBound();
+}
 
 AnimatedCharacter* findCharacter(osg::Node& node)
 {

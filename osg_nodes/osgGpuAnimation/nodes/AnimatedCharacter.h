@@ -33,7 +33,10 @@ public:
     AnimatedCharacter(const AnimatedCharacter& other, const osg::CopyOp& copyop = osg::CopyOp::SHALLOW_COPY);
     META_Node(osgGpuAnimation, AnimatedCharacter)
 
-    const AnimationSet& set() const { return _controller->set(); }
+        const AnimationSet& set() const
+    {
+        return _controller->set();
+    }
     AnimationController& controller() { return *_controller; }
     const AnimationController& controller() const { return *_controller; }
 
@@ -57,7 +60,7 @@ protected:
 private:
     std::unique_ptr<AnimationController> _controller;
     std::shared_ptr<const std::vector<Box>> _clipBounds; ///< the rest pose's, then one a clip
-    std::optional<double> _updateTime;                    ///< seconds of simulation time
+    std::optional<double> _updateTime;                   ///< seconds of simulation time
 };
 
 /// The first AnimatedCharacter at or below the node, depth first; null where there is none.

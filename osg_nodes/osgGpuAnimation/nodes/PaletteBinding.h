@@ -21,7 +21,7 @@ public:
     PaletteBinding(const PaletteBinding& other, const osg::CopyOp& copyop = osg::CopyOp::SHALLOW_COPY);
     META_StateAttribute(osgGpuAnimation, PaletteBinding, bindingType)
 
-    void set(std::shared_ptr<const AnimationSet> set, std::size_t slot, std::size_t instance);
+        void set(std::shared_ptr<const AnimationSet> set, std::size_t slot, std::size_t instance);
     const AnimationSet* animationSet() const { return _set.get(); }
     std::size_t slot() const { return _slot; }
     std::size_t instance() const { return _instance; }

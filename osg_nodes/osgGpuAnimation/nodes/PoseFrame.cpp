@@ -72,7 +72,8 @@ PoseFrame::Batch& PoseFrame::openBatch(const AnimatedCharacter& character)
     std::vector<Batch*>& batches = _batchesOfSet[&character.set()];
     if (batches.empty() || batches.back()->isEvaluated)
     {
-        _batches.push_back(std::make_unique<Batch>(Batch{PoseBatch(character.controller().sharedSet()), batches.size()}));
+        _batches.push_back(
+            std::make_unique<Batch>(Batch{PoseBatch(character.controller().sharedSet()), batches.size()}));
         batches.push_back(_batches.back().get());
     }
     return *batches.back();

@@ -31,7 +31,7 @@ public:
     SkinnedGeometry(const SkinnedGeometry& other, const osg::CopyOp& copyop = osg::CopyOp::SHALLOW_COPY);
     META_Node(osgGpuAnimation, SkinnedGeometry)
 
-    static constexpr unsigned int maxInfluenceSets = 2;
+        static constexpr unsigned int maxInfluenceSets = 2;
 
     /// Influences of all vertices, four to a set: set 0 is needed, set 1 optional.
     /// entries: palette entries (AnimationSet::entryOfSkin, entryOfRigidJoint), each below the set's palette size.

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <tuple>
+
+namespace osgGpuAnimation
+{
+
+/// What the programs of the mix stage are made for: each variant leaves out what its batch does not need, since some
+/// drivers (llvmpipe) run both sides of every branch.
+struct PoseVariant
+{
+    bool hasSplines = false;        ///< some clip of the set is a Spline clip
+    bool hasSeveralSamples = false; ///< some instance has more than one blend sample
+    bool hasWeights = false;        ///< some of the entries are weight blocks
+    bool isRootLevel = false;       ///< entries have no parents
+    bool hasRoots = false;          ///< instances have root matrices
+
+    bool operator<(const PoseVariant& other) const { return key() < other.key(); }
+
+    /// GLSL: a constant for each member, of its name.
+    std::string constants() const
+    {
+        const auto line = [](const char* name, bool value)
+        { return std::string("const bool ") + name + (value ? " = true;\n" : " = false;\n"); };
+        return line("hasSplines", hasSplines) + line("hasSeveralSamples", hasSeveralSamples) +
+               line("hasWeights", hasWeights) + line("isRootLevel", isRootLevel) + line("hasRoots", hasRoots);
+    }
+
+private:
+    std::tuple<bool, bool, bool, bool, bool> key() const
+    {
+        return {hasSplines, hasSeveralSamples, hasWeights, isRootLevel, hasRoots};
+    }
+};
+
+} // namespace osgGpuAnimation

@@ -4,6 +4,7 @@
 uniform sampler2D baseColorTexture;
 uniform float alphaCutoff;
 uniform bool unlit;
+uniform bool flatNormals; // the mesh has none: each face its own, of the pose
 
 in vec3 viewPosition;
 in vec3 viewNormal;
@@ -14,7 +15,9 @@ out vec4 fragmentColor;
 
 vec3 litColor(vec3 baseColor)
 {
-    vec3 normal = normalize(gl_FrontFacing ? viewNormal : -viewNormal);
+    vec3 facing = gl_FrontFacing ? viewNormal : -viewNormal;
+    if (flatNormals) facing = cross(dFdx(viewPosition), dFdy(viewPosition));
+    vec3 normal = normalize(facing);
 #ifdef GL_ARB_compatibility
     vec4 position = gl_LightSource[0].position;
     vec3 toLight = normalize(position.w == 0.0 ? position.xyz : position.xyz - viewPosition);

@@ -2,6 +2,8 @@
 // Draws a SkinnedGeometry: skins, then what the fixed pipeline does.
 
 void osgGpuAnimationSkin(inout vec4 vertex, inout vec3 normal);
+void osgGpuAnimationMorphColor(inout vec4 color);
+void osgGpuAnimationMorphTextureCoordinate(inout vec2 coordinate);
 
 out vec3 viewPosition;
 out vec3 viewNormal;
@@ -16,6 +18,8 @@ void main()
     viewPosition = (gl_ModelViewMatrix * vertex).xyz;
     viewNormal = gl_NormalMatrix * normal;
     vertexColor = gl_Color;
+    osgGpuAnimationMorphColor(vertexColor);
     textureCoordinate = gl_MultiTexCoord0.xy;
+    osgGpuAnimationMorphTextureCoordinate(textureCoordinate);
     gl_Position = gl_ModelViewProjectionMatrix * vertex;
 }

@@ -20,8 +20,13 @@
 #define POSE_ENTRIES_1_LOCATION 14
 #define POSE_WEIGHTS_1_LOCATION 15
 
-// The texture unit the palette is bound to while a skinned mesh is drawn.
+// The texture units the palette and a mesh's morph targets are bound to while it is drawn.
 #define POSE_PALETTE_UNIT 11
+#define POSE_MORPH_UNIT 12
+
+// Morph targets of a mesh: RGBA32F, for each vertex, each target, the channels it has: position, normal, colour, texture
+// coordinate. Weights come from palette entries of weights, twelve each.
+#define POSE_WEIGHTS_PER_ENTRY 12
 
 // Vertex attributes of the pose pass, whose vertices are a batch's instances and whose GL instances are palette entries:
 // per vertex the blend sample and three rows of the root matrix, per GL instance an entry's texels.

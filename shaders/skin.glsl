@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Skinning by the palette (glTF 2.0, section 3.7.3.3). Link this shader into a program of one's own, declare
+// Morphing (glTF 2.0, section 3.7.2.2), then skinning by the palette (section 3.7.3.3). Link this shader into a program of one's own, declare
 //     void osgGpuAnimationSkin(inout vec4 vertex, inout vec3 normal);
 // and call it on the vertex and normal of the bind pose; they come back in the character's own space.
 // Attributes are bound to the locations of layout.glsl; SkinnedGeometry sets the uniforms when it draws.
@@ -8,6 +8,10 @@ uniform samplerBuffer posePalette; // entry e of instance i: rows at texel (e * 
 uniform int poseStride;
 uniform int poseInstance;
 uniform int poseInfluences; // of a vertex, at most: 1 to 8
+
+uniform samplerBuffer poseMorphDeltas; // targets' channels by vertex, target, channel
+uniform ivec2 poseMorph;               // number of targets (0: none), the first palette entry of their weights
+uniform ivec4 poseMorphChannels;       // channels a target has; the place of normal, colour, texture coordinate, or -1
 
 in vec4 poseEntries0;
 in vec4 poseWeights0;
@@ -30,8 +34,45 @@ mat3x4 osgGpuAnimationBlend(vec4 entries, vec4 weights, int influences)
     return sum;
 }
 
+float osgGpuAnimationMorphWeight(int target)
+{
+    int entry = poseMorph.y + target / POSE_WEIGHTS_PER_ENTRY;
+    int place = target % POSE_WEIGHTS_PER_ENTRY;
+    return texelFetch(posePalette, (entry * poseStride + poseInstance) * POSE_TEXELS_PER_MATRIX + place / 4)[place % 4];
+}
+
+// The weighted sum of one channel of all targets.
+vec4 osgGpuAnimationMorphSum(int channel)
+{
+    vec4 sum = vec4(0.0);
+    for (int target = 0; target < poseMorph.x; ++target)
+    {
+        float weight = osgGpuAnimationMorphWeight(target);
+        if (weight == 0.0) continue;
+        int texel = (gl_VertexID * poseMorph.x + target) * poseMorphChannels.x + channel;
+        sum += weight * texelFetch(poseMorphDeltas, texel);
+    }
+    return sum;
+}
+
+void osgGpuAnimationMorphColor(inout vec4 color)
+{
+    if (poseMorph.x > 0 && poseMorphChannels.z >= 0)
+        color = clamp(color + osgGpuAnimationMorphSum(poseMorphChannels.z), 0.0, 1.0);
+}
+
+void osgGpuAnimationMorphTextureCoordinate(inout vec2 coordinate)
+{
+    if (poseMorph.x > 0 && poseMorphChannels.w >= 0) coordinate += osgGpuAnimationMorphSum(poseMorphChannels.w).xy;
+}
+
 void osgGpuAnimationSkin(inout vec4 vertex, inout vec3 normal)
 {
+    if (poseMorph.x > 0)
+    {
+        vertex.xyz += osgGpuAnimationMorphSum(0).xyz;
+        if (poseMorphChannels.y >= 0) normal += osgGpuAnimationMorphSum(poseMorphChannels.y).xyz;
+    }
     mat3x4 rows = osgGpuAnimationBlend(poseEntries0, poseWeights0, poseInfluences);
     if (poseInfluences > 4) rows += osgGpuAnimationBlend(poseEntries1, poseWeights1, poseInfluences - 4);
     vertex = vec4(vertex * rows, vertex.w);

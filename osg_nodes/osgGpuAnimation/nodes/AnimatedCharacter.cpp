@@ -74,7 +74,7 @@ void AnimatedCharacter::update(double simulationTime)
 void AnimatedCharacter::computeClipBounds()
 {
     EntryBoxes entryBoxes(set().paletteSize());
-    SkinnedGeometryVisitor collect([&](SkinnedGeometry& geometry) { geometry.addToEntryBoxes(entryBoxes); });
+    SkinnedGeometryVisitor collect([&](SkinnedGeometry& geometry) { geometry.addToEntryBoxes(set(), entryBoxes); });
     accept(collect);
 
     auto bounds = std::make_shared<std::vector<Box>>();

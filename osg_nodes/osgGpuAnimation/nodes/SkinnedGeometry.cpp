@@ -2,6 +2,7 @@
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
 #include <osgGpuAnimation/gpu/PosePipeline.h>
+#include <osgGpuAnimation/nodes/MorphDeltas.h>
 #include <osgGpuAnimation/nodes/PaletteBinding.h>
 
 #include <layout.glsl>
@@ -46,7 +47,9 @@ SkinnedGeometry::SkinnedGeometry()
 }
 
 SkinnedGeometry::SkinnedGeometry(const SkinnedGeometry& other, const osg::CopyOp& copyop)
-    : osg::Geometry(other, copyop), _influences(other._influences)
+    : osg::Geometry(other, copyop), _influences(other._influences), _morphTargets(other._morphTargets),
+      _morphDeltas(other._morphDeltas), _morph(other._morph), _morphEntry(other._morphEntry),
+      _morphChannels(other._morphChannels)
 {
 }
 
@@ -84,27 +87,104 @@ void SkinnedGeometry::setRigidEntry(unsigned short entry)
     setInfluences(0, entries, weights);
 }
 
-void SkinnedGeometry::addToEntryBoxes(EntryBoxes& boxes) const
+void SkinnedGeometry::setMorphTargets(const AnimationSet& set, std::size_t morph, std::vector<MorphTarget> targets)
+{
+    const std::size_t vertexCount = getVertexArray() ? getVertexArray()->getNumElements() : 0;
+    _morphTargets = std::move(targets);
+    _morph = _morphTargets.empty() ? -1 : static_cast<int>(morph);
+    _morphEntry = _morph < 0 ? -1 : set.entryOfMorph(morph);
+    const MorphDeltas deltas = packMorphTargets(_morphTargets, vertexCount);
+    _morphDeltas = _morph < 0 ? nullptr : deltas.texture;
+    _morphChannels = deltas.channels;
+    dirtyBound();
+}
+
+void SkinnedGeometry::addToEntryBoxes(const AnimationSet& set, EntryBoxes& boxes) const
 {
     const auto* vertices = dynamic_cast<const osg::Vec3Array*>(getVertexArray());
     if (!vertices) return;
+    const std::vector<WeightRange> ranges =
+        _morph < 0 ? std::vector<WeightRange>() : weightRanges(set, static_cast<std::size_t>(_morph));
+    for (std::size_t vertex = 0; vertex < vertices->size(); ++vertex)
+    {
+        const Box reach = reachOfVertex((*vertices)[vertex], vertex, ranges);
+        forEachInfluence(vertex,
+                         [&](std::size_t entry, float)
+                         {
+                             if (entry < boxes.size()) boxes[entry].add(reach);
+                         });
+    }
+}
+
+Box SkinnedGeometry::reachOfVertex(const osg::Vec3& position, std::size_t vertex,
+                                   const std::vector<WeightRange>& ranges) const
+{
+    Box reach;
+    reach.add(glm::vec3(position.x(), position.y(), position.z()));
+    for (std::size_t target = 0; target < std::min(_morphTargets.size(), ranges.size()); ++target)
+    {
+        const osg::Vec3Array* deltas = _morphTargets[target].positions.get();
+        if (!deltas || vertex >= deltas->size()) continue;
+        const osg::Vec3& delta = (*deltas)[vertex];
+        const glm::vec3 d(delta.x(), delta.y(), delta.z());
+        reach.min += glm::min(d * ranges[target].min, d * ranges[target].max);
+        reach.max += glm::max(d * ranges[target].min, d * ranges[target].max);
+    }
+    return reach;
+}
+
+template <typename Function>
+void SkinnedGeometry::forEachInfluence(std::size_t vertex, Function function) const
+{
     for (unsigned int influenceSet = 0; influenceSet < maxInfluenceSets; ++influenceSet)
     {
         const osg::Vec4usArray* vertexEntries = entries(influenceSet);
         const osg::Vec4Array* vertexWeights = weights(influenceSet);
         if (!vertexEntries || !vertexWeights) continue;
-        const std::size_t count = std::min({vertices->size(), vertexEntries->size(), vertexWeights->size()});
-        for (std::size_t vertex = 0; vertex < count; ++vertex)
-        {
-            const osg::Vec3& position = (*vertices)[vertex];
-            for (int i = 0; i < 4; ++i)
-            {
-                const std::size_t entry = (*vertexEntries)[vertex][i];
-                if ((*vertexWeights)[vertex][i] != 0.0f && entry < boxes.size())
-                    boxes[entry].add(glm::vec3(position.x(), position.y(), position.z()));
-            }
-        }
+        if (vertex >= vertexEntries->size() || vertex >= vertexWeights->size()) continue;
+        for (int i = 0; i < 4; ++i)
+            if ((*vertexWeights)[vertex][i] != 0.0f) function((*vertexEntries)[vertex][i], (*vertexWeights)[vertex][i]);
     }
+}
+
+void SkinnedGeometry::computePositions(const std::vector<AffineMatrix>& palette,
+                                       std::vector<glm::dvec3>& outPositions) const
+{
+    outPositions.clear();
+    const auto* vertices = dynamic_cast<const osg::Vec3Array*>(getVertexArray());
+    if (!vertices) return;
+    outPositions.reserve(vertices->size());
+    for (std::size_t vertex = 0; vertex < vertices->size(); ++vertex)
+    {
+        const glm::dvec4 position(morphed((*vertices)[vertex], vertex, palette), 1.0);
+        glm::dvec3 sum(0.0);
+        forEachInfluence(vertex,
+                         [&](std::size_t entry, float weight)
+                         {
+                             if (entry >= palette.size()) return;
+                             for (int row = 0; row < 3; ++row)
+                                 sum[row] += double(weight) *
+                                             glm::dot(glm::dvec4(palette[entry].rows[std::size_t(row)]), position);
+                         });
+        outPositions.push_back(sum);
+    }
+}
+
+glm::dvec3 SkinnedGeometry::morphed(const osg::Vec3& position, std::size_t vertex,
+                                    const std::vector<AffineMatrix>& palette) const
+{
+    glm::dvec3 sum(position.x(), position.y(), position.z());
+    for (std::size_t target = 0; target < _morphTargets.size(); ++target)
+    {
+        const osg::Vec3Array* deltas = _morphTargets[target].positions.get();
+        const std::size_t entry = static_cast<std::size_t>(_morphEntry) + target / MorphWeights::weightsPerBlock;
+        if (!deltas || vertex >= deltas->size() || entry >= palette.size()) continue;
+        const std::size_t place = target % MorphWeights::weightsPerBlock;
+        const double weight = palette[entry].rows[place / 4][static_cast<int>(place % 4)];
+        const osg::Vec3& delta = (*deltas)[vertex];
+        sum += weight * glm::dvec3(delta.x(), delta.y(), delta.z());
+    }
+    return sum;
 }
 
 void SkinnedGeometry::drawImplementation(osg::RenderInfo& renderInfo) const
@@ -136,6 +216,21 @@ void SkinnedGeometry::bindPalette(osg::State& state, const PalettePlace& place) 
     gl->glUniform1i(program->getUniformLocation(strideName), place.stride);
     gl->glUniform1i(program->getUniformLocation(instanceName), place.instance);
     gl->glUniform1i(program->getUniformLocation(influencesName), _influences);
+    bindMorphTargets(state, *program);
+}
+
+void SkinnedGeometry::bindMorphTargets(osg::State& state, const osg::Program::PerContextProgram& program) const
+{
+    static const unsigned int deltasName = osg::Uniform::getNameID("poseMorphDeltas");
+    static const unsigned int morphName = osg::Uniform::getNameID("poseMorph");
+    static const unsigned int channelsName = osg::Uniform::getNameID("poseMorphChannels");
+    const osg::GLExtensions* gl = state.get<osg::GLExtensions>();
+    gl->glUniform1i(program.getUniformLocation(deltasName), POSE_MORPH_UNIT);
+    gl->glUniform2i(program.getUniformLocation(morphName), static_cast<GLint>(_morphTargets.size()), _morphEntry);
+    if (!_morphDeltas) return;
+    state.applyTextureAttribute(POSE_MORPH_UNIT, _morphDeltas.get());
+    gl->glUniform4i(program.getUniformLocation(channelsName), _morphChannels[0], _morphChannels[1], _morphChannels[2],
+                    _morphChannels[3]);
 }
 
 } // namespace osgGpuAnimation

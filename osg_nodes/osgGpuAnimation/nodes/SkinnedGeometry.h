@@ -2,10 +2,16 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/Bounds.h>
+#include <osgGpuAnimation/animation/WeightRange.h>
+#include <osgGpuAnimation/nodes/MorphTarget.h>
 
 #include <osg/Geometry>
+#include <osg/Program>
+#include <osg/TextureBuffer>
 
+#include <array>
 #include <memory>
+#include <vector>
 
 namespace osgGpuAnimation
 {
@@ -43,8 +49,18 @@ public:
     /// Every vertex moves with one entry wholly: what a rigid mesh on a joint needs.
     void setRigidEntry(unsigned short entry);
 
-    /// Grows the boxes (one an entry) by the vertices that the entries move.
-    void addToEntryBoxes(EntryBoxes& boxes) const;
+    /// Morph targets, in the order of their weights. morph: which of the set's morph weights moves them. To be called
+    /// when the vertices are in; targets' arrays are as long as theirs. No targets: none any more.
+    void setMorphTargets(const AnimationSet& set, std::size_t morph, std::vector<MorphTarget> targets);
+    const std::vector<MorphTarget>& morphTargets() const { return _morphTargets; }
+    int morph() const { return _morph; } ///< -1: none
+
+    /// Grows the boxes (one an entry) by the vertices that the entries move, wherever the clips' weights morph them.
+    void addToEntryBoxes(const AnimationSet& set, EntryBoxes& boxes) const;
+
+    /// The CPU twin of skin.glsl: where the palette (of one instance: the set's paletteSize() entries) takes each
+    /// vertex, in the character's own space; computed in double. outPositions: one a vertex.
+    void computePositions(const std::vector<AffineMatrix>& palette, std::vector<glm::dvec3>& outPositions) const;
 
     /// Writes the palette's place into the program that is applied, then draws.
     void drawImplementation(osg::RenderInfo& renderInfo) const override;
@@ -57,8 +73,18 @@ protected:
 
 private:
     void bindPalette(osg::State& state, const PalettePlace& place) const;
+    void bindMorphTargets(osg::State& state, const osg::Program::PerContextProgram& program) const;
+    template <typename Function>
+    void forEachInfluence(std::size_t vertex, Function function) const;
+    Box reachOfVertex(const osg::Vec3& position, std::size_t vertex, const std::vector<WeightRange>& ranges) const;
+    glm::dvec3 morphed(const osg::Vec3& position, std::size_t vertex, const std::vector<AffineMatrix>& palette) const;
 
     int _influences = 1; ///< of a vertex, at most
+    std::vector<MorphTarget> _morphTargets;
+    osg::ref_ptr<osg::TextureBuffer> _morphDeltas;
+    int _morph = -1;
+    int _morphEntry = -1;                             ///< the first palette entry of the weights
+    std::array<int, 4> _morphChannels{0, -1, -1, -1}; ///< as skin.glsl's poseMorphChannels
 };
 
 } // namespace osgGpuAnimation

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/nodes/MorphDeltas.h>
+
+#include <algorithm>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+/// Puts one channel of one target where the shader looks for it.
+template <typename Array>
+void pack(const Array* array, std::size_t vertexCount, std::size_t stride, osg::Vec4f* out)
+{
+    if (!array) return;
+    for (std::size_t vertex = 0; vertex < std::min(vertexCount, array->size()); ++vertex, out += stride)
+        for (int i = 0; i < Array::ElementDataType::num_components; ++i)
+            (*out)[i] = (*array)[vertex][i];
+}
+
+template <typename Array>
+bool anyHas(const std::vector<MorphTarget>& targets, osg::ref_ptr<Array> MorphTarget::*channel)
+{
+    return std::any_of(targets.begin(), targets.end(), [=](const MorphTarget& target) { return target.*channel; });
+}
+
+} // namespace
+
+MorphDeltas packMorphTargets(const std::vector<MorphTarget>& targets, std::size_t vertexCount)
+{
+    MorphDeltas deltas;
+    std::array<int, 4>& channels = deltas.channels;
+    if (anyHas(targets, &MorphTarget::normals)) channels[1] = channels[0]++;
+    if (anyHas(targets, &MorphTarget::colors)) channels[2] = channels[0]++;
+    if (anyHas(targets, &MorphTarget::textureCoordinates)) channels[3] = channels[0]++;
+
+    const std::size_t stride = targets.size() * static_cast<std::size_t>(channels[0]);
+    osg::ref_ptr<osg::Image> image = new osg::Image;
+    image->allocateImage(static_cast<int>(std::max<std::size_t>(stride * vertexCount, 1)), 1, 1, GL_RGBA, GL_FLOAT);
+    image->setInternalTextureFormat(GL_RGBA32F_ARB);
+    auto* texels = reinterpret_cast<osg::Vec4f*>(image->data());
+    std::fill(texels, texels + image->s(), osg::Vec4f());
+    for (std::size_t i = 0; i < targets.size(); ++i)
+    {
+        osg::Vec4f* first = texels + i * static_cast<std::size_t>(channels[0]);
+        pack(targets[i].positions.get(), vertexCount, stride, first);
+        if (channels[1] >= 0) pack(targets[i].normals.get(), vertexCount, stride, first + channels[1]);
+        if (channels[2] >= 0) pack(targets[i].colors.get(), vertexCount, stride, first + channels[2]);
+        if (channels[3] >= 0) pack(targets[i].textureCoordinates.get(), vertexCount, stride, first + channels[3]);
+    }
+    deltas.texture = new osg::TextureBuffer(image);
+    deltas.texture->setInternalFormat(GL_RGBA32F_ARB);
+    return deltas;
+}
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osgGpuAnimation/nodes/MorphTarget.h>
+
+#include <osg/TextureBuffer>
+
+#include <array>
+#include <vector>
+
+namespace osgGpuAnimation
+{
+
+/// Morph targets as the buffer texture that skin.glsl reads.
+struct MorphDeltas
+{
+    osg::ref_ptr<osg::TextureBuffer> texture; ///< RGBA32F: by vertex, target, channel
+    /// Channels a target has, then the places of normal, colour and texture coordinate among them (-1: it has none);
+    /// position is always the first.
+    std::array<int, 4> channels{1, -1, -1, -1};
+};
+
+MorphDeltas packMorphTargets(const std::vector<MorphTarget>& targets, std::size_t vertexCount);
+
+} // namespace osgGpuAnimation

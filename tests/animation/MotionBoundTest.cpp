@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/animation/MotionBound.h>
+
+#include <osgGpuAnimation/animation/Rotation.h>
+
+#include <glm/geometric.hpp>
+#include <glm/mat4x4.hpp>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+/// Two neighbouring keyframes of a chain of joints.
+struct Piece
+{
+    std::vector<JointTransform> first, second;
+    bool spline = false;
+    std::size_t joints = 3;
+
+    KeyframePair at(double alpha) const { return {first.data(), second.data(), alpha, spline}; }
+
+    glm::dvec3 point(double alpha, const glm::dvec3& inLastJoint) const
+    {
+        glm::dvec3 result = inLastJoint;
+        for (std::size_t j = joints; j-- > 0;)
+        {
+            const MixedTrack local = MixedTrack::between(at(alpha), j, false);
+            result =
+                Rotation::matrix(local.rotation) * (glm::dvec3(local.scale) * result) + glm::dvec3(local.translation);
+        }
+        return result;
+    }
+
+    ChainMotion motion() const
+    {
+        ChainMotion chain;
+        for (std::size_t j = 0; j < joints; ++j)
+            chain = chain.child(TrackMotion::between(at(0.0), j));
+        return chain;
+    }
+};
+
+/// shift, turn, stretch: how much each property changes; 0 leaves it alone.
+Piece makePiece(std::mt19937& random, std::size_t joints, bool spline, double shift, double turn, double stretch)
+{
+    const auto some = [&random](double size)
+    {
+        std::uniform_real_distribution<double> number(-size, size);
+        return glm::vec4(glm::dvec4(number(random), number(random), number(random), number(random)));
+    };
+    Piece piece;
+    piece.spline = spline;
+    piece.joints = joints;
+    for (std::size_t j = 0; j < joints; ++j)
+    {
+        const glm::vec4 middle = some(0.1);
+        const glm::vec4 half = some(shift);
+        const glm::vec4 rotation(glm::dvec4(Rotation::unit(glm::dvec4(some(1.0)))));
+        JointTransform a{middle - half, rotation, glm::vec4(1.0f) + some(stretch)};
+        JointTransform b{middle + half, rotation + some(turn), glm::vec4(1.0f) + some(stretch)};
+        a.translation.w = b.translation.w = 0.0f;
+        piece.first.push_back(a);
+        piece.second.push_back(b);
+        for (int tangent = 0; spline && tangent < 2; ++tangent)
+        {
+            piece.first.push_back({some(shift), some(turn), some(stretch)});
+            piece.second.push_back({some(shift), some(turn), some(stretch)});
+        }
+    }
+    return piece;
+}
+
+TEST(MotionBoundTest, NoPointStraysOrReachesFartherThanTheBound)
+{
+    struct Case
+    {
+        const char* name;
+        bool spline;
+        double shift, turn, stretch;
+    };
+    const Case cases[] = {
+        {"shift", false, 1, 0, 0},
+        {"turn", false, 0, 1, 0},
+        {"small turn", false, 0, 0.1, 0},
+        {"shift and small turn", false, 2, 0.05, 0},
+        {"stretch and small turn", false, 0, 0.05, 0.8},
+        {"all", false, 1, 0.5, 0.5},
+        {"spline: shift", true, 1, 0, 0},
+        {"spline: stretch", true, 0, 0, 0.8},
+        {"spline: turn", true, 0, 0.4, 0},
+        {"spline: small turn", true, 0, 0.05, 0},
+        {"spline: shift and small turn", true, 2, 0.02, 0},
+        {"spline: all", true, 1, 0.3, 0.5},
+    };
+    for (const Case& c : cases)
+    {
+        std::mt19937 random(11);
+        double closest = 0.0; // the largest share of its bound that a point used
+        for (int i = 0; i < 200; ++i)
+        {
+            const Piece piece = makePiece(random, i % 4 < 2 ? 1 : 3, c.spline, c.shift, c.turn, c.stretch);
+            const ChainMotion motion = piece.motion();
+            const glm::dvec3 tip = i % 2 == 0 ? glm::dvec3(0.0) : glm::dvec3(0.3, -0.4, 1.2);
+            const double radius = glm::length(tip);
+            const int steps = 64;
+            const double h = 1.0 / steps;
+            for (int s = 1; s < steps; ++s)
+            {
+                const glm::dvec3 before = piece.point((s - 1) * h, tip), here = piece.point(s * h, tip);
+                const glm::dvec3 after = piece.point((s + 1) * h, tip);
+                EXPECT_LE(glm::length(here), motion.reach(radius) * (1 + 1e-9)) << c.name;
+                const double second = glm::length(after - 2.0 * here + before) / (h * h);
+                const double bound = 8.0 * motion.strayed(radius);
+                // Second differences lose six digits of the points' sixteen.
+                EXPECT_LE(second, bound + 1e-8) << c.name << ", piece " << i;
+                if (bound > 1e-8) closest = std::max(closest, second / bound);
+            }
+        }
+        const bool isStraight = !c.spline && c.turn == 0;
+        EXPECT_GE(closest, isStraight ? 0.0 : 0.1) << c.name << ": the bound is too loose";
+    }
+}
+
+TEST(MotionBoundTest, ASplineThroughTheZeroQuaternionHasNoBoundButItsReach)
+{
+    Piece piece;
+    piece.spline = true;
+    for (std::size_t j = 0; j < piece.joints; ++j)
+    {
+        const JointTransform none{glm::vec4(0.0f), glm::vec4(0.0f), glm::vec4(0.0f)};
+        piece.first.insert(piece.first.end(), {JointTransform{{1, 0, 0, 0}, {0, 0, 0, 1}, {1, 1, 1, 0}}, none, none});
+        piece.second.insert(piece.second.end(),
+                            {JointTransform{{1, 0, 0, 0}, {0, 0, 0, -1}, {1, 1, 1, 0}}, none, none});
+    }
+    EXPECT_FALSE(std::isfinite(piece.motion().strayed(1.0)));
+    EXPECT_DOUBLE_EQ(piece.motion().reach(1.0), 4.0);
+}
+
+} // namespace
+} // namespace osgGpuAnimation

@@ -115,30 +115,21 @@ EGLConfig pickConfig(EGLDisplay display, const std::vector<EGLConfig>& configs,
 /// Null where there is none.
 EGLConfig chooseConfig(EGLDisplay display, const osg::GraphicsContext::Traits& traits)
 {
-    const auto bits = [](unsigned int count) { return static_cast<EGLint>(count); };
-    const std::array<EGLint, 23> wanted{EGL_SURFACE_TYPE,
-                                        EGL_PBUFFER_BIT,
-                                        EGL_RENDERABLE_TYPE,
-                                        EGL_OPENGL_BIT,
-                                        EGL_RED_SIZE,
-                                        bits(traits.red),
-                                        EGL_GREEN_SIZE,
-                                        bits(traits.green),
-                                        EGL_BLUE_SIZE,
-                                        bits(traits.blue),
-                                        EGL_ALPHA_SIZE,
-                                        bits(traits.alpha),
-                                        EGL_DEPTH_SIZE,
-                                        bits(traits.depth),
-                                        EGL_STENCIL_SIZE,
-                                        bits(traits.stencil),
-                                        EGL_SAMPLE_BUFFERS,
-                                        traits.samples ? 1 : 0,
-                                        EGL_SAMPLES,
-                                        bits(traits.samples),
-                                        EGL_CONFIG_CAVEAT,
-                                        EGL_DONT_CARE,
-                                        EGL_NONE};
+    std::vector<EGLint> wanted;
+    const auto ask = [&wanted](EGLint attribute, unsigned int value) {
+        wanted.insert(wanted.end(), {attribute, static_cast<EGLint>(value)});
+    };
+    ask(EGL_SURFACE_TYPE, EGL_PBUFFER_BIT);
+    ask(EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT);
+    ask(EGL_RED_SIZE, traits.red);
+    ask(EGL_GREEN_SIZE, traits.green);
+    ask(EGL_BLUE_SIZE, traits.blue);
+    ask(EGL_ALPHA_SIZE, traits.alpha);
+    ask(EGL_DEPTH_SIZE, traits.depth);
+    ask(EGL_STENCIL_SIZE, traits.stencil);
+    ask(EGL_SAMPLE_BUFFERS, traits.samples ? 1 : 0);
+    ask(EGL_SAMPLES, traits.samples);
+    wanted.push_back(EGL_NONE);
     EGLint count = 0;
     if (!eglChooseConfig(display, wanted.data(), nullptr, 0, &count) || count < 1) return nullptr;
     std::vector<EGLConfig> configs(static_cast<std::size_t>(count));

@@ -69,6 +69,9 @@ void AnimatedCharacter::update(double simulationTime)
 {
     if (_updateTime && simulationTime != *_updateTime) _controller->advance(simulationTime - *_updateTime);
     _updateTime = simulationTime;
+    if (_controller->clip() == _boundClip) return;
+    _boundClip = _controller->clip();
+    dirtyBound();
 }
 
 void AnimatedCharacter::computeClipBounds()
@@ -110,9 +113,20 @@ void AnimatedCharacter::traverse(osg::NodeVisitor& visitor)
     cullVisitor->popStateSet();
 }
 
+// The meshes' own boxes hold all clips; what is seen now is within the playing clip's.
 osg::BoundingSphere AnimatedCharacter::computeBound() const
 {
-    return osg::MatrixTransform::computeBound();
+    const osg::BoundingBox ofClip = toOsg(clipBounds(_controller->clip()));
+    if (!ofClip.valid()) return osg::MatrixTransform::computeBound();
+    osg::BoundingBox box = ofClip;
+    osg::BoundingSphere others;
+    for (const osg::ref_ptr<osg::Node>& child : _children)
+        if (!dynamic_cast<const SkinnedGeometry*>(child.get())) others.expandBy(child->getBound());
+    if (others.valid()) box.expandBy(others);
+    osg::BoundingBox placed;
+    for (unsigned int corner = 0; corner < 8; ++corner)
+        placed.expandBy(box.corner(corner) * getMatrix());
+    return osg::BoundingSphere(placed);
 }
 
 AnimatedCharacter* findCharacter(osg::Node& node)

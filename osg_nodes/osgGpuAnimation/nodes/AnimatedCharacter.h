@@ -61,6 +61,7 @@ private:
     std::unique_ptr<AnimationController> _controller;
     std::shared_ptr<const std::vector<Box>> _clipBounds; ///< the rest pose's, then one a clip
     std::optional<double> _updateTime;                   ///< seconds of simulation time
+    int _boundClip = -1;                                 ///< the clip the bound was last dirtied for
 };
 
 /// The first AnimatedCharacter at or below the node, depth first; null where there is none.

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "gltf/Materials.h"
+#include "gltf/Meshes.h"
+
+#include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
+
+#include <osg/Geometry>
+
+#include <map>
+#include <memory>
+#include <tuple>
+
+namespace osgGpuAnimation::gltf
+{
+
+/// Where a primitive is wanted. At most one of skin and joint is set; with neither it is a plain osg::Geometry, else a
+/// SkinnedGeometry.
+struct DrawablePlace
+{
+    int mesh = -1;
+    int primitive = -1;
+    int skin = -1;         ///< of the file: its joints move each vertex
+    int joint = -1;        ///< of the skeleton: carries the whole primitive
+    int morph = -1;        ///< index into the set's morphs
+    bool mirrored = false; ///< of a joint's: see MaterialUse
+
+    auto key() const { return std::tie(mesh, primitive, skin, joint, morph); }
+    bool operator<(const DrawablePlace& other) const { return key() < other.key(); }
+};
+
+/// Makes the drawables of a file. The same primitive in the same kind of place is the same object; different places
+/// share the arrays.
+class Drawables
+{
+public:
+    /// set: null where nothing moves.
+    Drawables(const tinygltf::Model& model, std::shared_ptr<const AnimationSet> set, Meshes& meshes,
+              Materials& materials, DecodedBytes& budget, Report& report);
+
+    /// Null where the primitive cannot be drawn.
+    osg::Geometry* drawable(const DrawablePlace& place);
+    /// What it is made of; null likewise.
+    const MeshPrimitive* meshPrimitive(const DrawablePlace& place)
+    {
+        return _meshes.primitive(place.mesh, place.primitive);
+    }
+
+private:
+    osg::ref_ptr<osg::Geometry> make(const DrawablePlace& place);
+    void setInfluences(SkinnedGeometry& geometry, const MeshPrimitive& mesh, const DrawablePlace& place);
+    void setColors(osg::Geometry& geometry, const MeshPrimitive& mesh, int material, bool palette);
+
+    const tinygltf::Model& _model;
+    std::shared_ptr<const AnimationSet> _set;
+    Meshes& _meshes;
+    Materials& _materials;
+    DecodedBytes& _budget;
+    Report& _report;
+    std::map<DrawablePlace, osg::ref_ptr<osg::Geometry>> _drawables;
+};
+
+} // namespace osgGpuAnimation::gltf

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: MIT
+#include "gltf/Import.h"
+
+#include "gltf/Clips.h"
+#include "gltf/ElementName.h"
+#include "gltf/SceneGraph.h"
+#include "gltf/Skins.h"
+#include "gltf/TinyGltf.h"
+
+#include <algorithm>
+#include <charconv>
+
+namespace osgGpuAnimation::gltf
+{
+
+namespace
+{
+
+constexpr std::size_t mostPaletteEntries = 65536; // a vertex names entries by 16 bits
+
+/// -1 where the text is no number.
+int toNumber(const std::string& text)
+{
+    int number = -1;
+    const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), number);
+    return fault == std::errc() && end == text.data() + text.size() ? number : -1;
+}
+
+std::string clipNames(const ImportedModel& imported)
+{
+    std::string names;
+    for (std::size_t clip = 0; imported.set && clip < imported.set->clips().size(); ++clip)
+        names += (clip == 0 ? "" : ", ") + quoted(imported.set->clips()[clip].name());
+    return names.empty() ? "none" : names;
+}
+
+/// The place in the set of the clip to play at first: by name, else by the file's animation number.
+Result<int> chooseClip(const ImportedModel& imported, const ImportOptions& options)
+{
+    if (!options.clip) return imported.set && !imported.set->clips().empty() ? 0 : -1;
+    const int named = imported.set ? imported.set->findClip(*options.clip) : -1;
+    if (named >= 0) return named;
+    const auto& animations = imported.animationOfClip;
+    const auto found = std::find(animations.begin(), animations.end(), toNumber(*options.clip));
+    if (found != animations.end()) return static_cast<int>(found - animations.begin());
+    return Error{"clip " + quoted(*options.clip) + " was asked for; the file's clips are: " + clipNames(imported)};
+}
+
+/// The whole way of one file: the steps share what they read and what they have to say.
+class Importer
+{
+public:
+    Importer(const tinygltf::Model& model, const ImportOptions& options, ImportedModel& result)
+        : _model(model), _options(options), _result(result), _report(result.messages), _budget(options.maxDecodedBytes),
+          _textures(model, _budget, _report)
+    {
+    }
+
+    /// An error, or true.
+    Result<bool> run();
+
+private:
+    Result<bool> makeSet(const NodeTree& tree, const Joints& joints, const Morphs& morphs);
+    void makeGraph(const NodeTree& tree, const Joints& joints, const Morphs& morphs);
+    void describeFile(const NodeTree& tree);
+
+    const tinygltf::Model& _model;
+    const ImportOptions& _options;
+    ImportedModel& _result;
+    Report _report;
+    DecodedBytes _budget;
+    Textures _textures; ///< begins to decode at once
+};
+
+Result<bool> Importer::makeSet(const NodeTree& tree, const Joints& joints, const Morphs& morphs)
+{
+    if (joints.skeleton.jointCount() == 0) return true;
+    Clips clips = readClips(_model, joints, morphs, _budget, _report);
+    _result.animationOfClip = std::move(clips.animationOfClip);
+    Result<std::shared_ptr<const AnimationSet>> set =
+        AnimationSet::create({joints.skeleton, readSkins(_model, joints), rigidJoints(_model, tree, joints),
+                              morphs.weights, std::move(clips.clips)});
+    if (!set) return set.error();
+    if (set.value()->paletteSize() > mostPaletteEntries)
+        return Error{"skins and joints: " + std::to_string(set.value()->paletteSize()) +
+                     " palette entries are needed, at most " + std::to_string(mostPaletteEntries) + " are possible"};
+    _result.set = set.value();
+    return true;
+}
+
+void Importer::makeGraph(const NodeTree& tree, const Joints& joints, const Morphs& morphs)
+{
+    // glTF is +Y up, OSG is +Z up: the one place where that is turned.
+    const osg::Matrixd upright = osg::Matrixd::rotate(osg::PI_2, osg::Vec3d(1, 0, 0));
+    _result.root = new osg::MatrixTransform(_options.noRotation ? osg::Matrixd::identity() : upright);
+    if (tree.scene >= 0) _result.root->setName(_model.scenes[static_cast<std::size_t>(tree.scene)].name);
+    if (_result.set)
+    {
+        _result.character = new AnimatedCharacter(_result.set);
+        _result.root->addChild(_result.character);
+    }
+    Materials materials(_model, _textures);
+    Meshes meshes(_model, _budget, _report);
+    Drawables drawables(_model, _result.set, meshes, materials, _budget, _report);
+    const SceneParts parts{_model, tree, joints, morphs, drawables, _budget, _report};
+    buildSceneGraph(parts, *_result.root, _result.character, _result.primitives);
+    if (_result.character) _result.character->computeClipBounds();
+}
+
+void Importer::describeFile(const NodeTree& tree)
+{
+    _result.scene = tree.scene;
+    _result.nodeParents = tree.parents;
+    for (const tinygltf::Node& node : _model.nodes)
+        _result.nodeNames.push_back(node.name);
+    for (const tinygltf::Material& material : _model.materials)
+        _result.materialNames.push_back(material.name);
+    _result.extensionsUsed = _model.extensionsUsed;
+    _result.generator = _model.asset.generator;
+}
+
+Result<bool> Importer::run()
+{
+    const Result<NodeTree> tree = buildNodeTree(_model, _options, _report);
+    if (!tree) return tree.error();
+    const Result<Joints> joints = buildJoints(_model, tree.value());
+    if (!joints) return joints.error();
+    const Morphs morphs = readMorphs(_model);
+    const Result<bool> made = makeSet(tree.value(), joints.value(), morphs);
+    if (!made) return made.error();
+    const Result<int> clip = chooseClip(_result, _options);
+    if (!clip) return clip.error();
+    makeGraph(tree.value(), joints.value(), morphs);
+    describeFile(tree.value());
+    if (clip.value() < 0) return true;
+    return _result.character->controller().play(static_cast<std::size_t>(clip.value()));
+}
+
+} // namespace
+
+Result<ImportedModel> importModel(const std::string& bytes, const std::string& fileName, const ImportOptions& options)
+{
+    ImportedModel result;
+    const Result<tinygltf::Model> model = loadDocument(bytes, fileName, options, result.messages);
+    if (!model) return model.error();
+    const Result<bool> imported = Importer(model.value(), options, result).run();
+    if (!imported) return imported.error();
+    return result;
+}
+
+} // namespace osgGpuAnimation::gltf

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: MIT
+#include "gltf/Joints.h"
+
+#include "gltf/NamedElement.h"
+#include "gltf/NodeTransform.h"
+
+#include <algorithm>
+
+namespace osgGpuAnimation::gltf
+{
+
+namespace
+{
+
+const tinygltf::Mesh* meshOf(const tinygltf::Model& model, const tinygltf::Node& node)
+{
+    const bool has = node.mesh >= 0 && static_cast<std::size_t>(node.mesh) < model.meshes.size();
+    return has ? &model.meshes[static_cast<std::size_t>(node.mesh)] : nullptr;
+}
+
+/// Whether something of the node's mesh goes where the node goes.
+bool carriesRigidMesh(const tinygltf::Model& model, const tinygltf::Node& node)
+{
+    const tinygltf::Mesh* mesh = meshOf(model, node);
+    return mesh && std::any_of(mesh->primitives.begin(), mesh->primitives.end(),
+                               [&](const tinygltf::Primitive& p) { return !isSkinned(model, node, p); });
+}
+
+void mark(std::vector<bool>& flags, int node)
+{
+    if (node >= 0 && static_cast<std::size_t>(node) < flags.size()) flags[static_cast<std::size_t>(node)] = true;
+}
+
+std::vector<bool> movingNodes(const tinygltf::Model& model, const NodeTree& tree)
+{
+    std::vector<bool> moves(model.nodes.size(), false);
+    for (const tinygltf::Skin& skin : model.skins)
+    {
+        for (const int joint : skin.joints)
+            mark(moves, joint);
+    }
+    for (const tinygltf::Animation& animation : model.animations)
+    {
+        for (const tinygltf::AnimationChannel& channel : animation.channels)
+        {
+            if (channel.target_path != "weights") mark(moves, channel.target_node);
+        }
+    }
+    for (const int node : tree.order)
+    {
+        const int parent = tree.parents[static_cast<std::size_t>(node)];
+        if (parent >= 0 && moves[static_cast<std::size_t>(parent)]) mark(moves, node);
+    }
+    return moves;
+}
+
+/// `moves` holds everything below a moving node too; of those only what carries a mesh becomes a joint.
+std::vector<bool> jointNodes(const tinygltf::Model& model, const NodeTree& tree, const std::vector<bool>& moves)
+{
+    std::vector<bool> joints(model.nodes.size(), false);
+    for (const tinygltf::Skin& skin : model.skins)
+    {
+        for (const int joint : skin.joints)
+            mark(joints, joint);
+    }
+    for (const tinygltf::Animation& animation : model.animations)
+    {
+        for (const tinygltf::AnimationChannel& channel : animation.channels)
+            mark(joints, channel.target_node);
+    }
+    for (std::size_t index = 0; index < joints.size(); ++index)
+    {
+        const tinygltf::Node& node = model.nodes[index];
+        const tinygltf::Mesh* mesh = meshOf(model, node);
+        const bool morphs = mesh && morphTargetCount(*mesh) > 0;
+        if (morphs || (moves[index] && carriesRigidMesh(model, node))) joints[index] = true;
+    }
+    for (auto node = tree.order.rbegin(); node != tree.order.rend(); ++node)
+    {
+        if (joints[static_cast<std::size_t>(*node)]) mark(joints, tree.parents[static_cast<std::size_t>(*node)]);
+    }
+    return joints;
+}
+
+bool isFinite(const JointTransform& joint)
+{
+    return joint.toMatrix().isFinite();
+}
+
+} // namespace
+
+bool isSkinned(const tinygltf::Model& model, const tinygltf::Node& node, const tinygltf::Primitive& primitive)
+{
+    return node.skin >= 0 && static_cast<std::size_t>(node.skin) < model.skins.size() &&
+           !model.skins[static_cast<std::size_t>(node.skin)].joints.empty() &&
+           primitive.attributes.count("JOINTS_0") > 0 && primitive.attributes.count("WEIGHTS_0") > 0;
+}
+
+std::size_t morphTargetCount(const tinygltf::Mesh& mesh)
+{
+    return mesh.primitives.empty() ? 0 : mesh.primitives.front().targets.size();
+}
+
+bool isRigidOnJoint(const tinygltf::Model& model, const Joints& joints, std::size_t node,
+                    const tinygltf::Primitive& primitive)
+{
+    const tinygltf::Node& source = model.nodes[node];
+    const tinygltf::Mesh* mesh = meshOf(model, source);
+    return mesh && joints.ofNode[node] >= 0 && (joints.moves[node] || morphTargetCount(*mesh) > 0) &&
+           !isSkinned(model, source, primitive);
+}
+
+std::vector<int> rigidJoints(const tinygltf::Model& model, const NodeTree& tree, const Joints& joints)
+{
+    std::vector<int> result;
+    for (std::size_t node = 0; node < model.nodes.size(); ++node)
+    {
+        const tinygltf::Mesh* mesh = tree.drawn[node] ? meshOf(model, model.nodes[node]) : nullptr;
+        const auto isRigid = [&](const tinygltf::Primitive& p) { return isRigidOnJoint(model, joints, node, p); };
+        if (mesh && std::any_of(mesh->primitives.begin(), mesh->primitives.end(), isRigid))
+            result.push_back(joints.ofNode[node]);
+    }
+    return result;
+}
+
+Result<Joints> buildJoints(const tinygltf::Model& model, const NodeTree& tree)
+{
+    std::vector<bool> moves = movingNodes(model, tree);
+    const std::vector<bool> isJoint = jointNodes(model, tree, moves);
+    std::vector<int> inputOfNode(model.nodes.size(), -1);
+    std::vector<bool> isSheared(model.nodes.size(), false);
+    std::vector<Joint> joints;
+    for (const int node : tree.order)
+    {
+        const auto index = static_cast<std::size_t>(node);
+        if (!isJoint[index]) continue;
+        const NodeTransform transform = decompose(model.nodes[index]);
+        if (!isFinite(transform.inner) || (transform.outer && !isFinite(*transform.outer)))
+            return Error{namedElement("nodes", index, model.nodes[index].name) +
+                         ": its transform is beyond what float numbers hold"};
+        int parent = tree.parents[index] < 0 ? -1 : inputOfNode[static_cast<std::size_t>(tree.parents[index])];
+        if (transform.outer)
+        {
+            joints.push_back({"", parent, *transform.outer, -1});
+            parent = static_cast<int>(joints.size()) - 1;
+            isSheared[index] = true;
+        }
+        inputOfNode[index] = static_cast<int>(joints.size());
+        joints.push_back({model.nodes[index].name, parent, transform.inner, node});
+    }
+    Result<Skeleton> skeleton = Skeleton::create(std::move(joints));
+    if (!skeleton) return skeleton.error();
+    Joints result{std::move(skeleton).value(), std::move(inputOfNode), std::move(moves), std::move(isSheared)};
+    for (int& joint : result.ofNode)
+    {
+        if (joint >= 0) joint = result.skeleton.jointOfInput(static_cast<std::size_t>(joint));
+    }
+    return result;
+}
+
+} // namespace osgGpuAnimation::gltf

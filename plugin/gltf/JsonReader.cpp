@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: MIT
+#include "gltf/JsonReader.h"
+
+#include "gltf/ElementName.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace osgGpuAnimation::gltf
+{
+
+namespace
+{
+
+// tinygltf recurses over what we let through: however deep the options allow, a stack of 8 MB must do.
+const std::size_t deepestJson = 1000;
+
+/// Takes the events of nlohmann's SAX parser (its names are given) and builds the tree.
+class TreeBuilder
+{
+public:
+    using Json = nlohmann::json;
+
+    TreeBuilder(JsonTree& tree, const ImportOptions& options)
+        : _tree(tree), _mostDepth(std::min(options.maxJsonDepth, deepestJson)), _mostElements(options.maxElements),
+          _mostValues(std::min<std::size_t>(options.maxDecodedBytes / bytesOfJsonValue,
+                                            std::numeric_limits<std::uint32_t>::max() - 1))
+    {
+    }
+
+    /// Room for as many values as the text can have: one, and one more for each comma and opening bracket.
+    void reserve(std::string_view text)
+    {
+        const std::size_t values =
+            std::size_t(std::count(text.begin(), text.end(), ',') + std::count(text.begin(), text.end(), '{') +
+                        std::count(text.begin(), text.end(), '[') + 1);
+        _tree.reserve(std::min(values, _mostValues), text.size());
+    }
+
+    bool null() { return add(JsonTree::Type::Null); }
+    bool boolean(bool value) { return addNumber(JsonTree::Type::Boolean, value ? 1.0 : 0.0); }
+    bool number_integer(Json::number_integer_t value) { return addNumber(JsonTree::Type::Number, double(value)); }
+    bool number_unsigned(Json::number_unsigned_t value) { return addNumber(JsonTree::Type::Number, double(value)); }
+    bool number_float(Json::number_float_t value, const std::string&)
+    {
+        return addNumber(JsonTree::Type::Number, value);
+    }
+    bool string(std::string& value)
+    {
+        if (!add(JsonTree::Type::String)) return false;
+        _tree.setText(_last, value);
+        return true;
+    }
+    bool binary(Json::binary_t&) { return false; }
+    bool start_object(std::size_t) { return open(JsonTree::Type::Object); }
+    bool start_array(std::size_t) { return open(JsonTree::Type::Array); }
+    bool key(std::string& name)
+    {
+        _key.swap(name);
+        return true;
+    }
+    bool end_object()
+    {
+        dropDuplicates();
+        return close();
+    }
+    bool end_array() { return close(); }
+    bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception& exception)
+    {
+        if (_fault.empty()) _fault = "JSON syntax: " + withoutId(exception.what());
+        return false;
+    }
+
+    const std::string& faultText() const { return _fault; }
+    const std::vector<std::uint32_t>& duplicates() const { return _duplicates; }
+
+private:
+    struct Open
+    {
+        std::uint32_t value;
+        std::uint32_t size;
+    };
+
+    static std::string withoutId(const std::string& what)
+    {
+        const std::size_t id = what.find("] ");
+        return printable(std::string_view(what).substr(id == std::string::npos ? 0 : id + 2), 200);
+    }
+
+    bool refuse(const std::string& expected)
+    {
+        _fault = "JSON: expected " + expected + ", found more";
+        return false;
+    }
+
+    bool add(JsonTree::Type type)
+    {
+        if (_tree.size() >= _mostValues)
+            return refuse("at most " + std::to_string(_mostValues) + " values in all (limit maxDecodedBytes)");
+        if (!_open.empty() && ++_open.back().size > _mostElements)
+            return refuse("arrays of at most " + std::to_string(_mostElements) + " elements (limit maxElements)");
+        _last = _tree.add(type, _key);
+        _key.clear();
+        return true;
+    }
+
+    bool addNumber(JsonTree::Type type, double value)
+    {
+        if (!add(type)) return false;
+        _tree.setNumber(_last, value);
+        return true;
+    }
+
+    bool open(JsonTree::Type type)
+    {
+        if (_open.size() >= _mostDepth)
+            return refuse("a nesting depth of at most " + std::to_string(_mostDepth) + " (limit maxJsonDepth)");
+        if (!add(type)) return false;
+        _open.push_back({_last, 0});
+        return true;
+    }
+
+    bool close()
+    {
+        _tree.end(_open.back().value, _open.back().size);
+        _open.pop_back();
+        return true;
+    }
+
+    void dropDuplicates()
+    {
+        if (_open.back().size < 2) return;
+        _members.clear();
+        for (std::uint32_t member = _open.back().value + 1; member < _tree.size(); member = _tree.endOf(member))
+            _members.emplace_back(_tree.keyOf(member), member);
+        std::sort(_members.begin(), _members.end());
+        for (std::size_t i = 1; i < _members.size(); ++i)
+            if (_members[i - 1].first == _members[i].first)
+            {
+                _tree.drop(_members[i - 1].second);
+                _duplicates.push_back(_members[i].second);
+                --_open.back().size;
+            }
+    }
+
+    JsonTree& _tree;
+    std::size_t _mostDepth;
+    std::size_t _mostElements;
+    std::size_t _mostValues;
+    std::string _key;
+    std::uint32_t _last = 0;
+    std::vector<Open> _open;
+    std::vector<std::pair<std::string_view, std::uint32_t>> _members;
+    std::vector<std::uint32_t> _duplicates;
+    std::string _fault;
+};
+
+/// nodes[3].mesh: the way from the root down to a value.
+std::string pathOf(JsonTree& tree, std::uint32_t wanted)
+{
+    std::string path;
+    for (std::uint32_t at = 0; at != wanted;)
+    {
+        const bool array = JsonValue(tree, at).is(JsonTree::Type::Array);
+        std::size_t index = 0;
+        std::uint32_t child = at + 1;
+        for (; tree.endOf(child) <= wanted; child = tree.endOf(child))
+            ++index;
+        if (array)
+            path = elementName(path, index);
+        else
+            path += (path.empty() ? "" : ".") + printable(tree.keyOf(child));
+        at = child;
+    }
+    return path;
+}
+
+} // namespace
+
+Result<JsonTree> readJson(std::string_view text, const ImportOptions& options, Report& report)
+{
+    if (text.size() >= std::numeric_limits<std::uint32_t>::max())
+        return Error{"JSON: expected a text of less than 4 GiB, found " + std::to_string(text.size()) + " bytes"};
+    JsonTree tree;
+    TreeBuilder builder(tree, options);
+    builder.reserve(text);
+    if (!nlohmann::json::sax_parse(text.begin(), text.end(), &builder)) return Error{builder.faultText()};
+    if (!tree.root().is(JsonTree::Type::Object))
+        return fault("JSON", "an object as the root", tree.root().description());
+    for (std::size_t i = 0; i < builder.duplicates().size() && i < 100; ++i)
+        report.warn(pathOf(tree, builder.duplicates()[i]) + ": the key appears twice; the last counts");
+    return tree;
+}
+
+} // namespace osgGpuAnimation::gltf

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+#include "gltf/JsonTree.h"
+
+#include "gltf/ElementName.h"
+
+#include <cmath>
+
+namespace osgGpuAnimation::gltf
+{
+
+JsonValue JsonTree::root()
+{
+    return JsonValue(*this, 0);
+}
+
+void JsonTree::reserve(std::size_t values, std::size_t textBytes)
+{
+    _nodes.reserve(values);
+    _text.reserve(textBytes);
+}
+
+std::uint32_t JsonTree::add(Type type, std::string_view key)
+{
+    Node node;
+    node.type = type;
+    node.key = std::uint32_t(_text.size());
+    node.keyLength = std::uint32_t(key.size());
+    node.end = std::uint32_t(_nodes.size() + 1);
+    _text += key;
+    _nodes.push_back(node);
+    return node.end - 1;
+}
+
+void JsonTree::setNumber(std::uint32_t value, double number)
+{
+    _nodes[value].number = number;
+}
+
+void JsonTree::setText(std::uint32_t value, std::string_view text)
+{
+    _nodes[value].text = std::uint32_t(_text.size());
+    _nodes[value].textLength = std::uint32_t(text.size());
+    _text += text;
+}
+
+void JsonTree::end(std::uint32_t container, std::uint32_t size)
+{
+    _nodes[container].end = std::uint32_t(_nodes.size());
+    _nodes[container].size = size;
+}
+
+void JsonTree::drop(std::uint32_t value)
+{
+    _nodes[value].dropped = true;
+}
+
+std::string_view JsonTree::keyOf(std::uint32_t value) const
+{
+    return std::string_view(_text).substr(_nodes[value].key, _nodes[value].keyLength);
+}
+
+bool JsonValue::isInteger() const
+{
+    return is(JsonTree::Type::Number) && std::trunc(node().number) == node().number;
+}
+
+std::string_view JsonValue::text() const
+{
+    return std::string_view(_tree->_text).substr(node().text, node().textLength);
+}
+
+std::string_view JsonValue::key() const
+{
+    return _tree->keyOf(_value);
+}
+
+JsonValue JsonValue::operator[](std::string_view member) const
+{
+    if (!is(JsonTree::Type::Object)) return JsonValue();
+    for (const JsonValue& value : *this)
+        if (value.key() == member) return value;
+    return JsonValue();
+}
+
+void JsonValue::dropFrom(const JsonValue& object) const
+{
+    _tree->_nodes[_value].dropped = true;
+    --_tree->_nodes[object._value].size;
+}
+
+std::string JsonValue::description() const
+{
+    if (!_tree) return "nothing";
+    switch (type())
+    {
+    case JsonTree::Type::Null:
+        return "null";
+    case JsonTree::Type::Boolean:
+        return boolean() ? "true" : "false";
+    case JsonTree::Type::Number:
+        return numberText(number());
+    case JsonTree::Type::String:
+        return quoted(text());
+    case JsonTree::Type::Array:
+        return "an array of " + std::to_string(size());
+    default:
+        return "an object";
+    }
+}
+
+JsonValue::Iterator::Iterator(JsonTree* tree, std::uint32_t value, std::uint32_t end)
+    : _tree(tree), _value(value), _end(end)
+{
+    skipDropped();
+}
+
+JsonValue::Iterator& JsonValue::Iterator::operator++()
+{
+    _value = _tree->endOf(_value);
+    skipDropped();
+    return *this;
+}
+
+void JsonValue::Iterator::skipDropped()
+{
+    while (_value != _end && _tree->_nodes[_value].dropped)
+        _value = _tree->endOf(_value);
+}
+
+JsonValue::Iterator JsonValue::begin() const
+{
+    if (!_tree) return Iterator(nullptr, 0, 0);
+    return Iterator(_tree, _value + 1, node().end);
+}
+
+JsonValue::Iterator JsonValue::end() const
+{
+    if (!_tree) return Iterator(nullptr, 0, 0);
+    return Iterator(_tree, node().end, node().end);
+}
+
+} // namespace osgGpuAnimation::gltf

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+#include "gltf/LoadImages.h"
+
+#include "gltf/ElementName.h"
+#include "gltf/ImageHeader.h"
+#include "gltf/Uri.h"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace osgGpuAnimation::gltf
+{
+
+namespace
+{
+
+using Bytes = std::vector<unsigned char>;
+
+bool isKnownMimeType(std::string_view type)
+{
+    return type.empty() || type == "image/png" || type == "image/jpeg" || type == "application/octet-stream";
+}
+
+Result<Bytes> readDataUri(std::string_view uri, std::size_t most, const std::string& name, Report& report)
+{
+    Result<DataUri> data = decodeDataUri(uri, most);
+    if (!data) return data.error();
+    if (!isKnownMimeType(data.value().mimeType))
+        report.warn(name + ".uri: expected image/png or image/jpeg, found " + quoted(data.value().mimeType) +
+                    "; the bytes decide");
+    return std::move(data).value().bytes;
+}
+
+Result<Bytes> readFile(std::string_view uri, const ModelFolder& folder, std::size_t most)
+{
+    const Result<RegularFile> file = folder.open(uri);
+    if (!file) return file.error();
+    if (file.value().size() > most)
+        return Error{"expected at most " + std::to_string(most) + " bytes, found " +
+                     std::to_string(file.value().size())};
+    Bytes bytes(file.value().size());
+    const Result<std::size_t> read = file.value().read(bytes.data(), bytes.size());
+    if (!read) return read.error();
+    return bytes;
+}
+
+Bytes readView(const tinygltf::Model& model, int index)
+{
+    const tinygltf::BufferView& view = model.bufferViews[std::size_t(index)];
+    const Bytes& data = model.buffers[std::size_t(view.buffer)].data;
+    const auto begin = data.begin() + std::ptrdiff_t(view.byteOffset);
+    return Bytes(begin, begin + std::ptrdiff_t(view.byteLength));
+}
+
+/// The member that the bytes come from, for messages.
+std::string sourceName(const tinygltf::Image& image)
+{
+    return image.bufferView >= 0 ? ".bufferView: " : ".uri: ";
+}
+
+Result<ImageHeader> checkBytes(const Bytes& bytes, DecodedBytes& budget)
+{
+    Result<ImageHeader> header = readImageHeader(bytes);
+    if (!header) return header;
+    if (!budget.take(bytes.size()) || !budget.take(header.value().decodedBytes))
+        return Error{"expected " + budget.limitText() + ", found a picture of " +
+                     std::to_string(header.value().decodedBytes)};
+    return header;
+}
+
+} // namespace
+
+void loadImages(const JsonValue& images, const ModelFolder& folder, DecodedBytes& budget, Report& report,
+                tinygltf::Model& model)
+{
+    for (const JsonValue& json : images)
+    {
+        const std::string name = elementName("images", model.images.size());
+        tinygltf::Image& image = model.images.emplace_back();
+        image.as_is = true;
+        const JsonValue uri = json["uri"];
+        if (const JsonValue given = json["name"]) image.name = given.text();
+        if (const JsonValue view = json["bufferView"]) image.bufferView = int(view.number());
+        if (uri && !isDataUri(uri.text())) image.uri = uri.text();
+        Result<Bytes> bytes = !uri                    ? readView(model, image.bufferView)
+                              : isDataUri(uri.text()) ? readDataUri(uri.text(), budget.left(), name, report)
+                                                      : readFile(uri.text(), folder, budget.left());
+        const Result<ImageHeader> header = bytes ? checkBytes(bytes.value(), budget) : bytes.error();
+        if (!header)
+        {
+            report.warn(name + sourceName(image) + header.error().message + "; the picture is left out");
+            continue;
+        }
+        image.image = std::move(bytes).value();
+        image.mimeType = header.value().mimeType;
+        image.width = int(header.value().width);
+        image.height = int(header.value().height);
+    }
+}
+
+} // namespace osgGpuAnimation::gltf

@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: MIT
+#include "gltf/Meshes.h"
+
+#include "gltf/Accessor.h"
+#include "gltf/DisplayColor.h"
+#include "gltf/FlatNormals.h"
+#include "gltf/NamedElement.h"
+#include "gltf/TextureCoordinates.h"
+
+#include <cstring>
+#include <numeric>
+
+namespace osgGpuAnimation::gltf
+{
+
+namespace
+{
+
+constexpr int modeTriangles = 4;
+
+/// -1 where the primitive has no such attribute or it is not of a fitting type.
+int findAccessor(const tinygltf::Model& model, const std::map<std::string, int>& attributes, const std::string& name,
+                 std::initializer_list<std::size_t> components)
+{
+    const auto found = attributes.find(name);
+    if (found == attributes.end() || found->second < 0) return -1;
+    const std::size_t count = componentCount(model.accessors[static_cast<std::size_t>(found->second)]);
+    for (const std::size_t fitting : components)
+    {
+        if (count == fitting) return found->second;
+    }
+    return -1;
+}
+
+osg::ref_ptr<osg::Vec3Array> readVectors(const tinygltf::Model& model, const std::map<std::string, int>& attributes,
+                                         const char* name)
+{
+    const int accessor = findAccessor(model, attributes, name, {3});
+    if (accessor < 0) return nullptr;
+    const std::vector<float> numbers = readFloats(model, accessor);
+    osg::ref_ptr<osg::Vec3Array> vectors = new osg::Vec3Array(static_cast<unsigned int>(numbers.size() / 3));
+    if (!numbers.empty()) std::memcpy(vectors->front().ptr(), numbers.data(), numbers.size() * sizeof(float));
+    return vectors;
+}
+
+osg::ref_ptr<osg::Vec4Array> readColors(const tinygltf::Model& model, const tinygltf::Primitive& primitive)
+{
+    const int accessor = findAccessor(model, primitive.attributes, "COLOR_0", {3, 4});
+    if (accessor < 0) return nullptr;
+    const std::vector<float> numbers = readFloats(model, accessor);
+    const std::size_t components = componentCount(model.accessors[static_cast<std::size_t>(accessor)]);
+    osg::ref_ptr<osg::Vec4Array> colors = new osg::Vec4Array(osg::Array::BIND_PER_VERTEX);
+    colors->reserve(numbers.size() / components);
+    for (std::size_t i = 0; i + components <= numbers.size(); i += components)
+        colors->push_back(
+            displayColor(numbers[i], numbers[i + 1], numbers[i + 2], components == 4 ? numbers[i + 3] : 1.0f));
+    return colors;
+}
+
+osg::ref_ptr<osg::Vec2Array> readTexCoords(const tinygltf::Model& model, const tinygltf::Primitive& primitive)
+{
+    if (primitive.material < 0 || static_cast<std::size_t>(primitive.material) >= model.materials.size())
+        return nullptr;
+    const tinygltf::TextureInfo& texture =
+        model.materials[static_cast<std::size_t>(primitive.material)].pbrMetallicRoughness.baseColorTexture;
+    if (texture.index < 0) return nullptr;
+    const TextureCoordinates coordinates(texture);
+    const std::string name = "TEXCOORD_" + std::to_string(coordinates.set());
+    const int accessor = findAccessor(model, primitive.attributes, name, {2});
+    if (accessor < 0) return nullptr;
+    const std::vector<float> numbers = readFloats(model, accessor);
+    osg::ref_ptr<osg::Vec2Array> texCoords = new osg::Vec2Array(osg::Array::BIND_PER_VERTEX);
+    texCoords->reserve(numbers.size() / 2);
+    for (std::size_t i = 0; i + 2 <= numbers.size(); i += 2)
+        texCoords->push_back(coordinates.transformed(osg::Vec2(numbers[i], numbers[i + 1])));
+    return texCoords;
+}
+
+template <typename Array>
+void pick(osg::ref_ptr<Array>& array, const std::vector<std::uint32_t>& vertices)
+{
+    if (!array) return;
+    osg::ref_ptr<Array> picked = new Array(osg::Array::BIND_PER_VERTEX);
+    picked->reserve(vertices.size());
+    for (const std::uint32_t vertex : vertices)
+        picked->push_back((*array)[vertex]);
+    array = picked;
+}
+
+/// Vertices that make whole points, lines or triangles.
+std::size_t wholeCount(int mode, std::size_t count)
+{
+    switch (mode)
+    {
+    case 0:
+        return count;
+    case 1:
+        return count - count % 2;
+    case 2:
+    case 3:
+        return count < 2 ? 0 : count;
+    case modeTriangles:
+        return count - count % 3;
+    default:
+        return count < 3 ? 0 : count;
+    }
+}
+
+template <typename Elements>
+osg::ref_ptr<osg::PrimitiveSet> makeElements(GLenum mode, const std::vector<std::uint32_t>& indices)
+{
+    osg::ref_ptr<Elements> elements = new Elements(mode);
+    elements->reserve(indices.size());
+    for (const std::uint32_t index : indices)
+        elements->push_back(static_cast<typename Elements::value_type>(index));
+    return elements;
+}
+
+osg::ref_ptr<osg::PrimitiveSet> makePrimitiveSet(int mode, const std::vector<std::uint32_t>& indices,
+                                                 std::size_t vertexCount)
+{
+    const auto glMode = static_cast<GLenum>(mode); // the same numbers in both
+    if (indices.empty()) return new osg::DrawArrays(glMode, 0, static_cast<GLsizei>(wholeCount(mode, vertexCount)));
+    return vertexCount <= 65535 ? makeElements<osg::DrawElementsUShort>(glMode, indices)
+                                : makeElements<osg::DrawElementsUInt>(glMode, indices);
+}
+
+/// The vertices in the order in which they are drawn, whole triangles only; empty where no indices say so.
+std::vector<std::uint32_t> readIndices(const tinygltf::Model& model, const tinygltf::Primitive& primitive)
+{
+    std::vector<std::uint32_t> indices;
+    if (primitive.indices >= 0) indices = readIntegers(model, primitive.indices);
+    indices.resize(wholeCount(primitive.mode, indices.size()));
+    return indices;
+}
+
+/// The way back of `sourceVertex`, to the first of several. Vertices that no triangle uses are appended to it, so that
+/// all of the file's are there to be asked for, if not drawn.
+std::vector<std::uint32_t> invert(std::vector<std::uint32_t>& sourceVertex, std::size_t vertexCount)
+{
+    std::vector<std::uint32_t> geometryVertex(vertexCount, UINT32_MAX);
+    for (std::size_t i = sourceVertex.size(); i-- > 0;)
+        geometryVertex[sourceVertex[i]] = static_cast<std::uint32_t>(i);
+    for (std::size_t vertex = 0; vertex < vertexCount; ++vertex)
+    {
+        if (geometryVertex[vertex] != UINT32_MAX) continue;
+        geometryVertex[vertex] = static_cast<std::uint32_t>(sourceVertex.size());
+        sourceVertex.push_back(static_cast<std::uint32_t>(vertex));
+    }
+    return geometryVertex;
+}
+
+/// Gives every triangle vertices of its own, with its own normal.
+void takeApart(MeshPrimitive& mesh, int mode, std::vector<std::uint32_t> vertices)
+{
+    if (vertices.empty())
+    {
+        vertices.resize(mesh.vertexCount);
+        std::iota(vertices.begin(), vertices.end(), 0u);
+    }
+    std::vector<std::uint32_t> corners = triangleCorners(mode, vertices);
+    mesh.primitiveSet = new osg::DrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(corners.size()));
+    bool same = corners.size() == mesh.vertexCount;
+    for (std::size_t i = 0; i < corners.size() && same; ++i)
+        same = corners[i] == i;
+    if (!same)
+    {
+        mesh.sourceVertex = std::move(corners);
+        mesh.geometryVertex = invert(mesh.sourceVertex, mesh.vertexCount);
+        pick(mesh.positions, mesh.sourceVertex);
+        pick(mesh.texCoords, mesh.sourceVertex);
+        pick(mesh.colors, mesh.sourceVertex);
+        for (MorphTarget& target : mesh.targets)
+        {
+            pick(target.positions, mesh.sourceVertex);
+            pick(target.normals, mesh.sourceVertex);
+        }
+    }
+    mesh.normals = flatNormals(*mesh.positions);
+}
+
+/// An upper bound of what reading takes, influences included.
+std::size_t byteSize(const tinygltf::Model& model, const tinygltf::Primitive& primitive, std::size_t vertexCount)
+{
+    constexpr std::size_t aVertex = sizeof(osg::Vec3) * 2 + sizeof(osg::Vec2) + sizeof(osg::Vec4) + 2 * 24 + 8;
+    const std::size_t aTarget = sizeof(osg::Vec3) * 2;
+    const std::size_t indices =
+        primitive.indices < 0 ? 0 : model.accessors[static_cast<std::size_t>(primitive.indices)].count;
+    const bool flat = primitive.mode >= modeTriangles && primitive.attributes.count("NORMAL") == 0;
+    const std::size_t corners =
+        !flat ? 0 : (primitive.mode == modeTriangles ? 1 : 3) * (indices ? indices : vertexCount);
+    return (vertexCount + corners) * (aVertex + aTarget * primitive.targets.size()) + 2 * 4 * indices;
+}
+
+} // namespace
+
+Meshes::Meshes(const tinygltf::Model& model, DecodedBytes& budget, Report& report)
+    : _model(model), _budget(budget), _report(report)
+{
+}
+
+const MeshPrimitive* Meshes::primitive(int mesh, int primitive)
+{
+    const auto [place, isNew] = _primitives.try_emplace({mesh, primitive});
+    if (isNew) place->second = read(mesh, primitive);
+    return place->second ? &*place->second : nullptr;
+}
+
+std::optional<MeshPrimitive> Meshes::read(int meshIndex, int primitiveIndex)
+{
+    const tinygltf::Mesh& source = _model.meshes[static_cast<std::size_t>(meshIndex)];
+    const tinygltf::Primitive& primitive = source.primitives[static_cast<std::size_t>(primitiveIndex)];
+    MeshPrimitive mesh;
+    mesh.label = namedElement("meshes", static_cast<std::size_t>(meshIndex), source.name) + ".primitives[" +
+                 std::to_string(primitiveIndex) + "]";
+    const auto refuse = [&](const std::string& why) -> std::optional<MeshPrimitive>
+    {
+        _report.warn(mesh.label + ": " + why + "; not drawn");
+        return std::nullopt;
+    };
+    const int positions = findAccessor(_model, primitive.attributes, "POSITION", {3});
+    if (positions < 0) return refuse("no POSITION");
+    if (primitive.mode < 0 || primitive.mode > 6) return refuse("mode " + std::to_string(primitive.mode));
+    mesh.vertexCount = _model.accessors[static_cast<std::size_t>(positions)].count;
+    const std::size_t bytes = byteSize(_model, primitive, mesh.vertexCount);
+    if (!_budget.take(bytes))
+        return refuse("it would take " + std::to_string(bytes) + " bytes, " + _budget.limitText());
+
+    std::vector<std::uint32_t> indices = readIndices(_model, primitive);
+    if (primitive.indices >= 0 ? indices.empty() : wholeCount(primitive.mode, mesh.vertexCount) == 0)
+        return refuse("too few vertices for one element of mode " + std::to_string(primitive.mode));
+    mesh.positions = readVectors(_model, primitive.attributes, "POSITION");
+    mesh.normals = readVectors(_model, primitive.attributes, "NORMAL");
+    mesh.texCoords = readTexCoords(_model, primitive);
+    mesh.colors = readColors(_model, primitive);
+    for (const auto& target : primitive.targets)
+        mesh.targets.push_back({readVectors(_model, target, "POSITION"), readVectors(_model, target, "NORMAL")});
+    if (!mesh.normals && primitive.mode >= modeTriangles)
+        takeApart(mesh, primitive.mode, std::move(indices));
+    else
+        mesh.primitiveSet = makePrimitiveSet(primitive.mode, indices, mesh.vertexCount);
+    return mesh;
+}
+
+} // namespace osgGpuAnimation::gltf

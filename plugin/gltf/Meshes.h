@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "gltf/DecodedBytes.h"
+#include "gltf/MorphTarget.h"
+#include "gltf/Report.h"
+
+#include <osg/Array>
+#include <osg/PrimitiveSet>
+#include <tiny_gltf.h>
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace osgGpuAnimation::gltf
+{
+
+/// A primitive's arrays as OSG draws them, in the mesh's own space.
+struct MeshPrimitive
+{
+    std::string label;           ///< `meshes[3] "Cape".primitives[0]`, for messages
+    std::size_t vertexCount = 0; ///< of the file's POSITION accessor
+    osg::ref_ptr<osg::Vec3Array> positions;
+    osg::ref_ptr<osg::Vec3Array> normals;   ///< null: points or lines without normals, which are drawn unlit
+    osg::ref_ptr<osg::Vec2Array> texCoords; ///< for the material's base colour texture, see TextureCoordinates; or null
+    osg::ref_ptr<osg::Vec4Array> colors;    ///< for display, see DisplayColor.h; or null
+    osg::ref_ptr<osg::PrimitiveSet> primitiveSet;
+    std::vector<MorphTarget> targets;
+    /// Where triangles had to be taken apart (flat normals): the file's vertex that each vertex is; else empty.
+    /// Vertices that no triangle uses come last and are not drawn.
+    std::vector<std::uint32_t> sourceVertex;
+    /// The way back, see ImportedPrimitive::geometryVertex.
+    std::vector<std::uint32_t> geometryVertex;
+};
+
+/// Reads the primitives of a file's meshes, each once: all modes, with or without indices, flat normals where a
+/// triangle mesh has none (glTF 2.0, section 3.7.2.1). What cannot be drawn is left out with a warning.
+class Meshes
+{
+public:
+    Meshes(const tinygltf::Model& model, DecodedBytes& budget, Report& report);
+
+    /// Null where there is nothing to draw.
+    const MeshPrimitive* primitive(int mesh, int primitive);
+
+private:
+    std::optional<MeshPrimitive> read(int mesh, int primitive);
+
+    const tinygltf::Model& _model;
+    DecodedBytes& _budget;
+    Report& _report;
+    std::map<std::pair<int, int>, std::optional<MeshPrimitive>> _primitives;
+};
+
+} // namespace osgGpuAnimation::gltf

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osgGpuAnimation/animation/Result.h>
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace osgGpuAnimation::gltf
+{
+
+/// A regular file opened for reading: never a folder, pipe or device, which may block or never end.
+/// Errors are sentences about the path: `base.bin: does not exist`.
+class RegularFile
+{
+public:
+    static Result<RegularFile> open(const std::string& path);
+
+    RegularFile(RegularFile&& other) noexcept;
+    RegularFile& operator=(RegularFile&&) = delete;
+    ~RegularFile();
+
+    std::size_t size() const { return _size; } ///< bytes, when it was opened
+    bool isSameAs(const std::string& path) const;
+
+    /// The first `bytes` bytes into `to`. Errors: the file cannot be read or has fewer.
+    Result<std::size_t> read(void* to, std::size_t bytes) const;
+
+private:
+    RegularFile(int descriptor, std::size_t size, std::string path);
+
+    int _descriptor;
+    std::size_t _size;
+    std::string _path;
+};
+
+/// The content of a file that the user named. Errors: it does not exist, is a folder, no regular file, empty or cannot
+/// be read.
+Result<std::string> readWholeFile(const std::string& path);
+
+} // namespace osgGpuAnimation::gltf

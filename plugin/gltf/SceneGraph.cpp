@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: MIT
+#include "gltf/SceneGraph.h"
+
+#include "gltf/Influences.h"
+#include "gltf/Instancing.h"
+#include "gltf/NamedElement.h"
+#include "gltf/NodeTransform.h"
+
+#include <glm/gtc/type_ptr.hpp>
+#include <glm/matrix.hpp>
+#include <osg/FrontFace>
+
+#include <algorithm>
+#include <set>
+
+namespace osgGpuAnimation::gltf
+{
+
+namespace
+{
+
+class SceneGraphBuilder
+{
+public:
+    SceneGraphBuilder(const SceneParts& parts, osg::MatrixTransform& root, AnimatedCharacter* character,
+                      std::vector<ImportedPrimitive>& primitives)
+        : _parts(parts), _root(root), _character(character), _primitives(primitives), _still(parts.model.nodes.size()),
+          _groups(parts.model.nodes.size())
+    {
+    }
+
+    void build()
+    {
+        for (std::size_t node = 0; node < _parts.model.nodes.size(); ++node)
+        {
+            if (_parts.tree.drawn[node]) addMesh(node);
+        }
+        buildStillNodes();
+    }
+
+private:
+    void addMesh(std::size_t node);
+    DrawablePlace placeOf(std::size_t node, int primitive) const;
+    void buildStillNodes();
+    void addStill(std::size_t node);
+    osg::Group& groupAbove(std::size_t node, osg::Matrixd& outLocal);
+
+    const SceneParts& _parts;
+    osg::MatrixTransform& _root;
+    AnimatedCharacter* _character;
+    std::vector<ImportedPrimitive>& _primitives;
+    std::vector<std::vector<osg::ref_ptr<osg::Geometry>>> _still; ///< by node: what is drawn in its place
+    std::vector<osg::ref_ptr<osg::Group>> _groups;                ///< by node: null where nothing is below
+    std::set<const osg::Geometry*> _inCharacter;
+};
+
+osg::Matrixd toOsg(const glm::dmat4& matrix)
+{
+    return osg::Matrixd(glm::value_ptr(matrix)); // columns for column vectors are rows for row vectors
+}
+
+double determinant(const osg::Matrixd& m)
+{
+    return m(0, 0) * (m(1, 1) * m(2, 2) - m(1, 2) * m(2, 1)) - m(0, 1) * (m(1, 0) * m(2, 2) - m(1, 2) * m(2, 0)) +
+           m(0, 2) * (m(1, 0) * m(2, 1) - m(1, 1) * m(2, 0));
+}
+
+void setWinding(osg::Node& node, bool mirrored)
+{
+    node.getOrCreateStateSet()->setAttributeAndModes(
+        new osg::FrontFace(mirrored ? osg::FrontFace::CLOCKWISE : osg::FrontFace::COUNTER_CLOCKWISE));
+}
+
+DrawablePlace SceneGraphBuilder::placeOf(std::size_t node, int primitive) const
+{
+    const tinygltf::Node& source = _parts.model.nodes[node];
+    const auto& primitives = _parts.model.meshes[static_cast<std::size_t>(source.mesh)].primitives;
+    const tinygltf::Primitive& primitiveSource = primitives[static_cast<std::size_t>(primitive)];
+    DrawablePlace place;
+    place.mesh = source.mesh;
+    place.primitive = primitive;
+    if (isSkinned(_parts.model, source, primitiveSource))
+        place.skin = source.skin;
+    else if (isRigidOnJoint(_parts.model, _parts.joints, node, primitiveSource))
+    {
+        place.joint = _parts.joints.ofNode[node];
+        place.mirrored = _parts.tree.isMirrored(static_cast<int>(node));
+    }
+    if (place.skin >= 0 || place.joint >= 0) place.morph = _parts.morphs.ofNode[node];
+    return place;
+}
+
+void SceneGraphBuilder::addMesh(std::size_t node)
+{
+    const tinygltf::Node& source = _parts.model.nodes[node];
+    if (source.mesh < 0 || static_cast<std::size_t>(source.mesh) >= _parts.model.meshes.size()) return;
+    const auto& primitives = _parts.model.meshes[static_cast<std::size_t>(source.mesh)].primitives;
+    bool moves = false;
+    for (std::size_t index = 0; index < primitives.size(); ++index)
+    {
+        const DrawablePlace place = placeOf(node, static_cast<int>(index));
+        osg::Geometry* geometry = _parts.drawables.drawable(place);
+        if (!geometry) continue;
+        const MeshPrimitive& mesh = *_parts.drawables.meshPrimitive(place);
+        ImportedPrimitive imported;
+        imported.node = static_cast<int>(node);
+        imported.mesh = place.mesh;
+        imported.primitive = place.primitive;
+        imported.skin = place.skin;
+        imported.morph = place.morph;
+        imported.targets = mesh.targets.size();
+        imported.vertexCount = mesh.vertexCount;
+        imported.influences = place.skin < 0 ? 0 : 4 * influenceSetCount(primitives[index]);
+        imported.geometry = geometry;
+        imported.geometryVertex = mesh.geometryVertex;
+        imported.morphTargets = mesh.targets;
+        _primitives.push_back(std::move(imported));
+        if (place.skin < 0 && place.joint < 0)
+        {
+            _primitives.back().toModel = toOsg(_parts.tree.toWorld[node]);
+            _still[node].push_back(geometry);
+            continue;
+        }
+        moves = true;
+        if (_inCharacter.insert(geometry).second) _character->addChild(geometry);
+    }
+    if (moves && isInstanced(source))
+        _parts.report.warn(namedElement("nodes", node, source.name) +
+                           ": EXT_mesh_gpu_instancing of what moves is not supported; drawn once");
+}
+
+/// The group that the node's own goes into, and the node's place in that. In a scene that names a node that is no root
+/// of the file, that node's ancestors are not drawn but still move it.
+osg::Group& SceneGraphBuilder::groupAbove(std::size_t node, osg::Matrixd& outLocal)
+{
+    const int parent = _parts.tree.parents[node];
+    const glm::dmat4& toWorld = _parts.tree.toWorld[node];
+    osg::Group* group = parent < 0 ? nullptr : _groups[static_cast<std::size_t>(parent)].get();
+    outLocal = group ? toOsg(localMatrix(_parts.model.nodes[node])) : toOsg(toWorld);
+    return group ? *group : _root;
+}
+
+void SceneGraphBuilder::addStill(std::size_t node)
+{
+    const tinygltf::Node& source = _parts.model.nodes[node];
+    osg::Matrixd local;
+    osg::Group& above = groupAbove(node, local);
+    osg::ref_ptr<osg::MatrixTransform> transform = new osg::MatrixTransform(local);
+    transform->setName(source.name);
+    above.addChild(transform);
+    _groups[node] = transform;
+    if (determinant(local) < 0.0) setWinding(*transform, _parts.tree.isMirrored(static_cast<int>(node)));
+    if (_still[node].empty()) return;
+    std::vector<osg::ref_ptr<osg::Group>> places{transform};
+    if (isInstanced(source))
+    {
+        places.clear();
+        for (const osg::Matrixd& instance : readInstances(_parts.model, node, _parts.budget, _parts.report))
+        {
+            places.push_back(new osg::MatrixTransform(instance));
+            transform->addChild(places.back());
+            if (determinant(instance) < 0.0)
+                setWinding(*places.back(), !_parts.tree.isMirrored(static_cast<int>(node)));
+        }
+    }
+    for (const osg::ref_ptr<osg::Group>& place : places)
+    {
+        for (const osg::ref_ptr<osg::Geometry>& geometry : _still[node])
+            place->addChild(geometry);
+    }
+}
+
+void SceneGraphBuilder::buildStillNodes()
+{
+    const NodeTree& tree = _parts.tree;
+    std::vector<bool> needed(tree.order.size(), false);
+    for (auto node = tree.order.rbegin(); node != tree.order.rend(); ++node)
+    {
+        const auto index = static_cast<std::size_t>(*node);
+        if (!_still[index].empty()) needed[index] = true;
+        const int parent = tree.parents[index];
+        if (needed[index] && parent >= 0 && tree.drawn[static_cast<std::size_t>(parent)])
+            needed[static_cast<std::size_t>(parent)] = true;
+    }
+    for (const int node : tree.order)
+    {
+        if (needed[static_cast<std::size_t>(node)]) addStill(static_cast<std::size_t>(node));
+    }
+}
+
+} // namespace
+
+void buildSceneGraph(const SceneParts& parts, osg::MatrixTransform& root, AnimatedCharacter* character,
+                     std::vector<ImportedPrimitive>& primitives)
+{
+    SceneGraphBuilder(parts, root, character, primitives).build();
+}
+
+} // namespace osgGpuAnimation::gltf

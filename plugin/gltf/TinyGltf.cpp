@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+#include "gltf/TinyGltf.h"
+
+#include "gltf/DecodedBytes.h"
+#include "gltf/DocumentRules.h"
+#include "gltf/DocumentSchema.h"
+#include "gltf/DracoDecompression.h"
+#include "gltf/ElementName.h"
+#include "gltf/GlbContainer.h"
+#include "gltf/JsonReader.h"
+#include "gltf/LoadBuffers.h"
+#include "gltf/LoadImages.h"
+#include "gltf/MeshoptDecompression.h"
+#include "gltf/ModelFolder.h"
+#include "gltf/NodeForest.h"
+#include "gltf/ParseModel.h"
+#include "gltf/SchemaCheck.h"
+#include "gltf/ValidateAccessors.h"
+#include "gltf/ValidateAnimations.h"
+#include "gltf/ValidateMeshes.h"
+#include "gltf/ValidateScenes.h"
+#include "gltf/ValidateSkinning.h"
+#include "gltf/ValidateSkins.h"
+
+#include <exception>
+#include <new>
+#include <utility>
+
+namespace osgGpuAnimation::gltf
+{
+
+namespace
+{
+
+/// What one load works on.
+struct Loading
+{
+    const ImportOptions& options;
+    Report& report;
+    DecodedBytes budget;
+    ModelFolder folder;
+    JsonTree json;
+    tinygltf::Model model;
+};
+
+/// Decompression, and everything that binds data and document together.
+std::optional<Error> validate(Loading& loading)
+{
+    tinygltf::Model& model = loading.model;
+    const JsonValue document = loading.json.root();
+    const Result<NodeForest> forest = NodeForest::create(model, loading.options.maxNodeDepth);
+    if (!forest) return forest.error();
+    std::optional<Error> error = decompressMeshopt(document["bufferViews"], loading.budget, model);
+    if (!error) error = validateAccessors(model, 0, loading.budget);
+    const std::size_t known = model.accessors.size();
+    if (!error) error = decompressDraco(document["meshes"], loading.budget, model);
+    if (!error) error = validateAccessors(model, known, loading.budget);
+    if (!error) error = validateScenes(model, forest.value());
+    if (!error) error = validateSkins(model, forest.value(), loading.report);
+    if (!error) error = validateMeshes(model, DecodedBytes(loading.options.maxDecodedBytes), loading.report);
+    if (!error) error = validateSkinning(model, loading.budget, loading.report);
+    if (!error) error = validateAnimations(model, loading.report);
+    return error;
+}
+
+Result<tinygltf::Model> load(const std::string& bytes, const std::string& fileName, const ImportOptions& options,
+                             Report& report)
+{
+    const Result<GlbContainer> container = splitContainer(bytes, report);
+    if (!container) return container.error();
+    Result<JsonTree> json = readJson(container.value().json, options, report);
+    if (!json) return json.error();
+    Loading loading{options,
+                    report,
+                    DecodedBytes(options.maxDecodedBytes),
+                    ModelFolder(fileName, options.allowOutsideFiles),
+                    std::move(json).value(),
+                    tinygltf::Model()};
+
+    const JsonValue document = loading.json.root();
+    if (!loading.budget.take(loading.json.size() * bytesOfJsonValue))
+        return fault("JSON", loading.budget.limitText(), std::to_string(loading.json.size()) + " values");
+    std::optional<Error> error = SchemaCheck(document, report).run(documentSchema);
+    if (!error) error = checkDocumentRules(document, report);
+    if (error) return *error;
+    const JsonValue buffers = document["buffers"], images = document["images"];
+    for (const JsonValue& ours : {buffers, images})
+        if (ours) ours.dropFrom(document);
+    error = parseModel(document, loading.model);
+    if (!error)
+        error = loadBuffers(buffers, container.value().binary, loading.folder, loading.budget, report, loading.model);
+    if (!error) error = validate(loading);
+    if (error) return *error;
+    loadImages(images, loading.folder, loading.budget, report, loading.model);
+    return std::move(loading.model);
+}
+
+} // namespace
+
+Result<tinygltf::Model> loadDocument(const std::string& bytes, const std::string& fileName,
+                                     const ImportOptions& options, Messages& messages)
+{
+    Report report(messages);
+    try
+    {
+        return load(bytes, fileName, options, report);
+    }
+    catch (const std::bad_alloc&)
+    {
+        return Error{"the document needs more memory than there is"};
+    }
+    catch (const std::exception& exception)
+    {
+        return Error{std::string("the document cannot be read: ") + printable(exception.what(), 200)};
+    }
+}
+
+} // namespace osgGpuAnimation::gltf

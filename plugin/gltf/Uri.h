@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osgGpuAnimation/animation/Result.h>
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace osgGpuAnimation::gltf
+{
+
+// The URIs of buffers and images (glTF 2.0, section 2.8). Errors here are "expected …, found …" without the element.
+
+/// What a data URI holds.
+struct DataUri
+{
+    std::string mimeType; ///< as it is written there; may be empty
+    std::vector<unsigned char> bytes;
+};
+
+bool isDataUri(std::string_view uri);
+
+/// Decodes data:[MIME type][;base64],… of any MIME type.
+/// Errors: no comma, a character that is no base64, more than `most` bytes.
+Result<DataUri> decodeDataUri(std::string_view uri, std::size_t most);
+
+/// The path that a relative URI stands for: percent-encoding is resolved, a plus sign is a plus sign.
+/// Errors: empty, a scheme or drive letter, an incomplete percent-encoding, an encoded NUL, a backslash.
+Result<std::string> decodePath(std::string_view uri);
+
+} // namespace osgGpuAnimation::gltf

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: MIT
+#include "CommandLine.h"
+
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <iostream>
+#include <map>
+
+namespace osgGpuAnimation::tool
+{
+
+namespace
+{
+
+constexpr int statusDone = 0;
+constexpr int statusFileAtFault = 1;
+constexpr int statusWrongUsage = 2;
+
+const char* const description = R"(Looks into animated glTF files as osgGpuAnimation plays them.
+
+  osggpuanim inspect fox.glb                         what is in it: joints, clips, bytes
+  osggpuanim render fox.glb -o fox.png               a picture of it, without a display
+  osggpuanim render fox.glb --clip Run --frames 48 --fps 24 -o run.png
+                                                     run.0001.png ... run.0048.png
+  osggpuanim pose fox.glb --clip Walk --time 0.25    where joints and vertices are then, as JSON)";
+
+const char* const exitStatus = "\n\nExit status: 0 done, 1 a file is at fault (the message is on standard error), "
+                               "2 wrong usage.";
+
+const char* const inspectHelp =
+    R"(What is told: joints and depth of the hierarchy, skins, palette entries (matrices computed on the GPU for each
+character), clips, meshes, materials, extensions, bytes on the GPU, warnings.
+
+  osggpuanim inspect knight.glb
+  osggpuanim inspect knight.glb --json | jq '.clips[].name')";
+
+const char* const poseHelp =
+    R"(What is written: JSON of the schema gltf-pose/1, with the world matrices of the nodes that are joints (null for
+others), joint matrices by skin, morph weights, bounding boxes and vertex positions, in the file's own axes (+Y up),
+units and numbers; matrices are column-major. Times beyond the clip hold its ends: nothing loops.
+
+  osggpuanim pose fox.glb --clip Run --time 0 --time 0.25 -o run.json
+  osggpuanim pose fox.glb --bind                             the nodes as the file has them, no clip
+  osggpuanim pose fox.glb --like oracle.json -o mine.json    clip, times, set weights, vertices of that file
+  osggpuanim pose fox.glb --clip 0 --time 1 --evaluator cpu  without a GPU)";
+
+const char* const renderHelp =
+    R"(FILE is drawn through EGL (by Mesa's software renderer where there is no GPU) from three quarters in front, the
+camera standing where everything fits all the pictures.
+
+  osggpuanim render fox.glb -o fox.png
+  osggpuanim render fox.glb --clip Walk --time 0.3 --size 1920x1080 -o walk.png
+  osggpuanim render fox.glb --frames 60 --fps 30 -o fox.png  fox.0001.png ... fox.0060.png, time going on from --time)";
+
+std::string checkFinite(const std::string& text)
+{
+    char* end = nullptr;
+    const double number = std::strtod(text.c_str(), &end);
+    return text.empty() || *end != '\0' || !std::isfinite(number) ? "'" + text + "' is not a number" : "";
+}
+
+std::string checkPng(const std::string& name)
+{
+    std::string extension = std::filesystem::path(name).extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+    return extension == ".png" ? "" : "'" + name + "' does not end in .png";
+}
+
+/// "800x600" to two numbers; throws what CLI11 reports as wrong usage.
+void readSize(const std::string& text, RenderCommand& command)
+{
+    int width = 0;
+    int height = 0;
+    char rest = '\0';
+    const bool isSize = std::sscanf(text.c_str(), "%5dx%5d%c", &width, &height, &rest) == 2;
+    if (!isSize || std::min(width, height) < 1 || std::max(width, height) > RenderCommand::maxSize)
+        throw CLI::ValidationError("--size", "'" + text + "' is not WIDTHxHEIGHT with numbers from 1 to " +
+                                                 std::to_string(RenderCommand::maxSize));
+    command.width = width;
+    command.height = height;
+}
+
+} // namespace
+
+CommandLine::CommandLine() : _app(description, "osggpuanim")
+{
+    _app.footer(std::string("`osggpuanim COMMAND --help` says more.") + exitStatus);
+    _app.require_subcommand(1);
+    addInspect();
+    addPose();
+    addRender();
+}
+
+void CommandLine::addInspect()
+{
+    _inspectApp = _app.add_subcommand("inspect", "What is in a file and what it costs");
+    _inspectApp->footer(std::string(inspectHelp) + exitStatus);
+    _inspectApp->add_option("FILE", _inspect.file, "A .gltf or .glb")->required();
+    _inspectApp->add_flag("--json", _inspect.json, "JSON, for programs");
+}
+
+void CommandLine::addPose()
+{
+    _poseApp = _app.add_subcommand("pose", "Where joints and vertices are at given times");
+    _poseApp->footer(std::string(poseHelp) + exitStatus);
+    _poseApp->add_option("FILE", _pose.file, "A .gltf or .glb")->required();
+    CLI::Option* clip = _poseApp->add_option("--clip", _pose.request.clip,
+                                             "A clip's name, or an animation's number where none has that name; "
+                                             "default: the first clip");
+    CLI::Option* time =
+        _poseApp->add_option("--time", _pose.request.times, "Seconds on the clip's own time line; may come again")
+            ->check(checkFinite)
+            ->allow_extra_args(false);
+    CLI::Option* bind =
+        _poseApp->add_flag("--bind", _pose.request.bind, "No clip: the nodes as the file has them, at time 0");
+    CLI::Option* like = _poseApp->add_option("--like", _pose.like,
+                                             "A gltf-pose/1 document whose clip, times, set weights and vertices are "
+                                             "to be taken");
+    like->excludes(clip)->excludes(time)->excludes(bind);
+    bind->excludes(clip)->excludes(time);
+    const std::map<std::string, PoseCommand::Evaluator> evaluators{{"gpu", PoseCommand::Evaluator::Gpu},
+                                                                   {"cpu", PoseCommand::Evaluator::Cpu}};
+    _poseApp
+        ->add_option("--evaluator", _pose.evaluator,
+                     "gpu (default): read back from the palette buffer and captured from the skinning shader; "
+                     "cpu: the same computed without GL")
+        ->transform(CLI::CheckedTransformer(evaluators))
+        ->option_text("gpu|cpu");
+    _poseApp->add_option("-o,--output", _pose.output, "OUT.json; default: standard output");
+}
+
+void CommandLine::addRender()
+{
+    _renderApp = _app.add_subcommand("render", "Pictures of a file, without a display");
+    _renderApp->footer(std::string(renderHelp) + exitStatus);
+    _renderApp->add_option("FILE", _render.file, "A .gltf or .glb")->required();
+    _renderApp->add_option("--clip", _render.clip,
+                           "A clip's name, or an animation's number where none has that name; default: the first clip");
+    _renderApp->add_option("--time", _render.time, "Seconds; clips loop (default 0)")->check(checkFinite);
+    _renderApp
+        ->add_option_function<std::string>(
+            "--size", [this](const std::string& text) { readSize(text, _render); }, "WxH in pixels (default 800x600)")
+        ->option_text("WxH");
+    CLI::Option* frames = _renderApp->add_option("--frames", _render.frames, "How many pictures, numbered from 0001")
+                              ->check(CLI::Range(1, 1000000));
+    _renderApp->add_option("--fps", _render.framesPerSecond, "Pictures a second (default 30)")
+        ->check(CLI::Range(0.001, 100000.0))
+        ->needs(frames);
+    _renderApp->add_option("-o,--output", _render.output, "OUT.png")->required()->check(checkPng);
+}
+
+int CommandLine::run(int argc, char** argv)
+{
+    try
+    {
+        _app.parse(argc, argv);
+        if (_poseApp->parsed() && _pose.like.empty() && !_pose.request.bind && _pose.request.times.empty())
+            throw CLI::RequiredError("pose: one of --time, --bind and --like");
+    }
+    catch (const CLI::ParseError& fault)
+    {
+        return _app.exit(fault) == 0 ? statusDone : statusWrongUsage;
+    }
+    const Result<bool> done = runCommand();
+    if (done) return statusDone;
+    std::cerr << "osggpuanim: " << done.error().message << std::endl;
+    return statusFileAtFault;
+}
+
+Result<bool> CommandLine::runCommand() const
+{
+    if (_inspectApp->parsed()) return _inspect.run();
+    if (_poseApp->parsed()) return _pose.run();
+    return _render.run();
+}
+
+} // namespace osgGpuAnimation::tool

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "InspectCommand.h"
+#include "PoseCommand.h"
+#include "RenderCommand.h"
+
+#include <CLI/App.hpp>
+
+#include <string>
+
+namespace osgGpuAnimation::tool
+{
+
+/// The words of osggpuanim's command line: what may be written, what it means, and the help that teaches it.
+class CommandLine
+{
+public:
+    CommandLine();
+
+    /// Runs what the arguments ask for. Exit status: 0 done, 1 a file is at fault, 2 wrong usage.
+    int run(int argc, char** argv);
+
+private:
+    void addInspect();
+    void addPose();
+    void addRender();
+    Result<bool> runCommand() const;
+
+    CLI::App _app;
+    CLI::App* _inspectApp = nullptr;
+    CLI::App* _poseApp = nullptr;
+    CLI::App* _renderApp = nullptr;
+    InspectCommand _inspect;
+    PoseCommand _pose;
+    RenderCommand _render;
+};
+
+} // namespace osgGpuAnimation::tool

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "PoseEvaluator.h"
+
+#include <osgGpuAnimation/gpu/EglGraphicsContext.h>
+#include <osgGpuAnimation/gpu/PosePipeline.h>
+#include <osgGpuAnimation/nodes/PaletteBinding.h>
+#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
+
+#include <osg/Program>
+#include <osg/StateSet>
+
+#include <memory>
+#include <vector>
+
+namespace osgGpuAnimation::tool
+{
+
+/// Poses by the GPU's pipeline, in a context of its own: matrices are read back from the palette buffer, positions are
+/// captured by transform feedback from the function of skin.glsl that draws characters.
+class GpuPoseEvaluator : public PoseEvaluator
+{
+public:
+    /// The model must outlive the evaluator; it has a character.
+    /// Error: there is no graphics context, or it lacks what the pipeline needs.
+    static Result<std::unique_ptr<PoseEvaluator>> create(const gltf::ImportedModel& model);
+    ~GpuPoseEvaluator() override;
+
+    std::string name() const override;
+    Result<EvaluatedPose> evaluate(const PoseInstruction& instruction,
+                                   const std::vector<FixedEntry>& fixedEntries) override;
+
+private:
+    GpuPoseEvaluator(const gltf::ImportedModel& model, osg::ref_ptr<EglGraphicsContext> context,
+                     PosePipeline& pipeline);
+
+    void writeEntries(const std::vector<FixedEntry>& fixedEntries);
+    std::vector<glm::dvec3> capture(SkinnedGeometry& points);
+
+    const gltf::ImportedModel& _model;
+    osg::ref_ptr<EglGraphicsContext> _context;
+    PosePipeline& _pipeline;
+    osg::ref_ptr<osg::StateSet> _stateSet; ///< the capturing program, and whose palette it reads
+    /// One a primitive, null where it is not drawn from the palette: its vertices in order, drawn as points.
+    std::vector<osg::ref_ptr<SkinnedGeometry>> _points;
+};
+
+} // namespace osgGpuAnimation::tool

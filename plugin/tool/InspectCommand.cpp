@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+#include "InspectCommand.h"
+
+#include "ModelFile.h"
+#include "ModelReport.h"
+
+#include <iostream>
+
+namespace osgGpuAnimation::tool
+{
+
+Result<bool> InspectCommand::run() const
+{
+    const Result<gltf::ImportedModel> model = readModel(file, {});
+    if (!model) return Error{file + ": " + model.error().message};
+    const nlohmann::ordered_json report = reportModel(model.value(), file);
+    // Names in a file may be anything; what is no UTF-8 is replaced.
+    const auto replace = nlohmann::ordered_json::error_handler_t::replace;
+    std::cout << (json ? report.dump(2, ' ', false, replace) + "\n" : reportText(report)) << std::flush;
+    if (!std::cout) return Error{"standard output: cannot be written"};
+    return true;
+}
+
+} // namespace osgGpuAnimation::tool

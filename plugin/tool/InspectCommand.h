@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osgGpuAnimation/animation/Result.h>
+
+#include <string>
+
+namespace osgGpuAnimation::tool
+{
+
+/// `osggpuanim inspect`: what is in a file and what it costs, on standard output.
+struct InspectCommand
+{
+    std::string file;
+    bool json = false; ///< for programs, instead of for people
+
+    /// Error messages begin with the name of the file at fault.
+    Result<bool> run() const;
+};
+
+} // namespace osgGpuAnimation::tool

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: MIT
+#include "ModelReport.h"
+
+#include <osgGpuAnimation/gpu/AnimationBuffers.h>
+#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
+
+#include <osg/NodeVisitor>
+#include <osg/Texture>
+
+#include <iomanip>
+#include <set>
+#include <sstream>
+
+namespace osgGpuAnimation::tool
+{
+
+namespace
+{
+
+using nlohmann::ordered_json;
+
+/// Adds up the arrays, indices and images below a node, shared ones once.
+class ByteCounter : public osg::NodeVisitor
+{
+public:
+    ByteCounter() : osg::NodeVisitor(osg::NodeVisitor::TRAVERSE_ALL_CHILDREN) {}
+
+    void apply(osg::Node& node) override
+    {
+        countTextures(node.getStateSet());
+        traverse(node);
+    }
+    void apply(osg::Geometry& geometry) override
+    {
+        osg::Geometry::ArrayList arrays;
+        geometry.getArrayList(arrays);
+        for (const osg::ref_ptr<osg::Array>& array : arrays)
+            if (_seen.insert(array.get()).second) meshBytes += array->getTotalDataSize();
+        for (const osg::ref_ptr<osg::PrimitiveSet>& primitives : geometry.getPrimitiveSetList())
+            if (_seen.insert(primitives.get()).second) meshBytes += primitives->getTotalDataSize();
+        countTextures(geometry.getStateSet());
+    }
+
+    std::size_t meshBytes = 0;
+    std::size_t textureBytes = 0;
+
+private:
+    void countTextures(const osg::StateSet* state)
+    {
+        for (unsigned int unit = 0; state && unit < state->getNumTextureAttributeLists(); ++unit)
+        {
+            const auto* texture =
+                dynamic_cast<const osg::Texture*>(state->getTextureAttribute(unit, osg::StateAttribute::TEXTURE));
+            for (unsigned int face = 0; texture && face < texture->getNumImages(); ++face)
+            {
+                const osg::Image* image = texture->getImage(face);
+                if (image && _seen.insert(image).second) textureBytes += image->getTotalSizeInBytesIncludingMipmaps();
+            }
+        }
+    }
+
+    std::set<const osg::Object*> _seen;
+};
+
+ordered_json reportJoints(const AnimationSet* set)
+{
+    ordered_json joints = {{"count", 0}, {"depth", 0}, {"roots", ordered_json::array()}};
+    if (!set) return joints;
+    joints["count"] = set->skeleton().jointCount();
+    joints["depth"] = set->skeleton().jointCount() > 0 ? set->skeleton().levelCount() : 0;
+    for (const Joint& joint : set->skeleton().joints())
+        if (joint.parent < 0) joints["roots"].push_back(joint.name);
+    return joints;
+}
+
+ordered_json reportSkins(const AnimationSet* set)
+{
+    ordered_json skins = ordered_json::array();
+    for (std::size_t s = 0; set && s < set->skins().size(); ++s)
+        skins.push_back({{"name", set->skins()[s].name}, {"joints", set->skins()[s].joints.size()}});
+    return skins;
+}
+
+ordered_json reportClips(const gltf::ImportedModel& model)
+{
+    ordered_json clips = ordered_json::array();
+    for (std::size_t c = 0; model.set && c < model.set->clips().size(); ++c)
+    {
+        const Clip& clip = model.set->clips()[c];
+        clips.push_back({{"index", model.animationOfClip[c]},
+                         {"name", clip.name()},
+                         {"seconds", clip.duration()},
+                         {"keyframes", clip.keyframeCount()},
+                         {"form", clip.form() == Clip::Form::Spline ? "spline" : "linear"}});
+    }
+    return clips;
+}
+
+ordered_json reportMeshes(const gltf::ImportedModel& model)
+{
+    std::set<int> meshes;
+    std::size_t vertices = 0, skinned = 0, rigid = 0, still = 0, targets = 0;
+    for (const gltf::ImportedPrimitive& primitive : model.primitives)
+    {
+        meshes.insert(primitive.mesh);
+        vertices += primitive.vertexCount;
+        targets += primitive.targets;
+        const bool isFromPalette = dynamic_cast<const SkinnedGeometry*>(primitive.geometry.get()) != nullptr;
+        ++(primitive.skin >= 0 ? skinned : (isFromPalette ? rigid : still));
+    }
+    return {{"count", meshes.size()}, {"primitives", model.primitives.size()},
+            {"vertices", vertices},   {"skinned", skinned},
+            {"rigid", rigid},         {"still", still},
+            {"morphTargets", targets}};
+}
+
+std::string line(const std::string& label, const std::string& text)
+{
+    std::ostringstream out;
+    out << std::left << std::setw(17) << label << text << "\n";
+    return out.str();
+}
+
+std::string number(const ordered_json& value)
+{
+    return value.dump();
+}
+
+std::string listed(const ordered_json& names)
+{
+    std::string text;
+    for (const ordered_json& name : names)
+        text += (text.empty() ? "" : ", ") + (name.get<std::string>().empty() ? "(no name)" : name.get<std::string>());
+    return text.empty() ? "none" : text;
+}
+
+std::string clipLines(const ordered_json& clips)
+{
+    std::ostringstream out;
+    for (const ordered_json& clip : clips)
+    {
+        out << "  " << std::right << std::setw(3) << clip["index"].get<int>() << "  " << std::left << std::setw(32)
+            << clip["name"].get<std::string>() << std::right << std::fixed << std::setprecision(3) << std::setw(9)
+            << clip["seconds"].get<double>() << " s" << std::setw(7) << clip["keyframes"].get<std::size_t>()
+            << " keyframes" << (clip["form"] == "spline" ? ", spline" : "") << "\n";
+    }
+    return out.str();
+}
+
+} // namespace
+
+ordered_json reportModel(const gltf::ImportedModel& model, const std::string& fileName)
+{
+    ByteCounter bytes;
+    if (model.root) model.root->accept(bytes);
+    const std::size_t animationBytes = model.set ? AnimationBuffers::byteSize(*model.set) : 0;
+    return {{"file", fileName},
+            {"generator", model.generator},
+            {"scene", model.scene},
+            {"joints", reportJoints(model.set.get())},
+            {"skins", reportSkins(model.set.get())},
+            {"paletteEntries", model.set ? model.set->paletteSize() : 0},
+            {"clips", reportClips(model)},
+            {"meshes", reportMeshes(model)},
+            {"materials", model.materialNames},
+            {"extensions", model.extensionsUsed},
+            {"gpuBytes",
+             {{"animation", animationBytes},
+              {"meshes", bytes.meshBytes},
+              {"textures", bytes.textureBytes},
+              {"total", animationBytes + bytes.meshBytes + bytes.textureBytes}}},
+            {"warnings", model.messages.warnings},
+            {"notes", model.messages.notes}};
+}
+
+std::string reportText(const ordered_json& report)
+{
+    const ordered_json& joints = report["joints"];
+    const ordered_json& meshes = report["meshes"];
+    const ordered_json& bytes = report["gpuBytes"];
+    std::string skins;
+    for (const ordered_json& skin : report["skins"])
+        skins +=
+            (skins.empty() ? "" : ", ") + skin["name"].get<std::string>() + " (" + number(skin["joints"]) + " joints)";
+
+    std::string text = line("file", report["file"].get<std::string>());
+    text += line("generator", report["generator"].get<std::string>());
+    text += line("joints",
+                 number(joints["count"]) + ", " + number(joints["depth"]) + " deep; roots: " + listed(joints["roots"]));
+    text += line("skins", number(report["skins"].size()) + (skins.empty() ? "" : ": " + skins));
+    text += line("palette entries", number(report["paletteEntries"]));
+    text += line("clips", number(report["clips"].size())) + clipLines(report["clips"]);
+    text +=
+        line("meshes", number(meshes["count"]) + ", " + number(meshes["primitives"]) + " primitives (" +
+                           number(meshes["skinned"]) + " skinned, " + number(meshes["rigid"]) + " rigid on joints, " +
+                           number(meshes["still"]) + " still), " + number(meshes["vertices"]) + " vertices, " +
+                           number(meshes["morphTargets"]) + " morph targets");
+    text += line("materials", listed(report["materials"]));
+    text += line("extensions", listed(report["extensions"]));
+    text +=
+        line("bytes on the GPU", number(bytes["total"]) + " (animation " + number(bytes["animation"]) + ", meshes " +
+                                     number(bytes["meshes"]) + ", textures " + number(bytes["textures"]) + ")");
+    text += line("warnings", number(report["warnings"].size()));
+    for (const char* kind : {"warnings", "notes"})
+        for (const ordered_json& message : report[kind])
+            text += "  " + message.get<std::string>() + "\n";
+    return text;
+}
+
+} // namespace osgGpuAnimation::tool

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "gltf/Import.h"
+
+#include <nlohmann/json.hpp>
+
+#include <string>
+
+namespace osgGpuAnimation::tool
+{
+
+/// What is in an imported file and what it costs: as JSON, or as lines for people made from the same JSON.
+///
+///     file, generator, scene
+///     joints       count, depth (levels of the hierarchy), roots (names)
+///     skins        name, joints                         a skin
+///     paletteEntries
+///     clips        index (the file's), name, seconds, keyframes, form (linear or spline)
+///     meshes       count, primitives, vertices, skinned, rigid, still (primitives each), morphTargets
+///     materials, extensions                             names
+///     gpuBytes     animation, meshes, textures, total   as they lie in GPU buffers, without what the driver adds
+///     warnings, notes
+nlohmann::ordered_json reportModel(const gltf::ImportedModel& model, const std::string& fileName);
+std::string reportText(const nlohmann::ordered_json& report);
+
+} // namespace osgGpuAnimation::tool

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: MIT
+#include "PictureViewer.h"
+
+#include <osgGpuAnimation/gpu/EglGraphicsContext.h>
+
+#include <osg/BoundingBox>
+#include <osg/Depth>
+#include <osg/Geometry>
+
+#include <algorithm>
+#include <cmath>
+
+namespace osgGpuAnimation::tool
+{
+
+namespace
+{
+
+constexpr double fieldOfView = 30.0; ///< degrees, upright
+constexpr double margin = 1.08;      ///< of the picture, around what is shown
+
+/// A quad behind everything, light at the top and a little darker at the bottom.
+osg::ref_ptr<osg::Camera> makeBackground()
+{
+    osg::ref_ptr<osg::Geometry> quad = new osg::Geometry;
+    osg::ref_ptr<osg::Vec3Array> corners = new osg::Vec3Array;
+    osg::ref_ptr<osg::Vec4Array> colors = new osg::Vec4Array;
+    for (const float y : {-1.0f, 1.0f})
+    {
+        const float grey = y > 0.0f ? 0.93f : 0.74f;
+        for (const float x : {-1.0f, 1.0f})
+        {
+            corners->push_back(osg::Vec3(x, y, 0.0f));
+            colors->push_back(osg::Vec4(grey, grey, grey * 1.01f, 1.0f));
+        }
+    }
+    quad->setVertexArray(corners);
+    quad->setColorArray(colors, osg::Array::BIND_PER_VERTEX);
+    quad->addPrimitiveSet(new osg::DrawArrays(GL_TRIANGLE_STRIP, 0, 4));
+    quad->setCullingActive(false);
+    osg::StateSet* state = quad->getOrCreateStateSet();
+    state->setMode(GL_LIGHTING, osg::StateAttribute::OFF);
+    state->setAttributeAndModes(new osg::Depth(osg::Depth::ALWAYS, 0.0, 1.0, false), osg::StateAttribute::OFF);
+
+    osg::ref_ptr<osg::Camera> camera = new osg::Camera;
+    camera->setReferenceFrame(osg::Transform::ABSOLUTE_RF);
+    camera->setProjectionMatrix(osg::Matrix::ortho2D(-1, 1, -1, 1));
+    camera->setViewMatrix(osg::Matrix::identity());
+    camera->setRenderOrder(osg::Camera::PRE_RENDER);
+    camera->setClearMask(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    camera->setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
+    camera->addChild(quad);
+    return camera;
+}
+
+void setUpLight(osgViewer::Viewer& viewer)
+{
+    viewer.setLightingMode(osg::View::SKY_LIGHT);
+    osg::Light* light = viewer.getLight();
+    light->setPosition(osg::Vec4(0.6f, -0.9f, 1.1f, 0.0f));
+    light->setAmbient(osg::Vec4(0.3f, 0.3f, 0.32f, 1.0f));
+    light->setDiffuse(osg::Vec4(0.7f, 0.7f, 0.68f, 1.0f));
+    light->setSpecular(osg::Vec4(0.2f, 0.2f, 0.2f, 1.0f));
+}
+
+/// Where an eye and what it looks at are.
+struct Standpoint
+{
+    osg::Vec3d eye;
+    osg::Vec3d middle;
+    double radius = 1.0; ///< of the points around the middle
+};
+
+/// The distance along `back` from the middle at which all points are in the picture.
+double fittingDistance(const std::vector<osg::Vec3d>& points, const Standpoint& place, const osg::Vec3d (&axes)[3],
+                       double aspect)
+{
+    const double tangent = std::tan(osg::DegreesToRadians(fieldOfView) / 2.0) / margin;
+    double distance = place.radius;
+    for (const osg::Vec3d& point : points)
+    {
+        const osg::Vec3d offset = point - place.middle;
+        const double spread = std::max(std::abs(offset * axes[1]), std::abs(offset * axes[0]) / aspect);
+        distance = std::max(distance, spread / tangent + offset * axes[2]);
+    }
+    return distance;
+}
+
+/// Somewhere along `back`, with all points in the picture, as large as can be.
+Standpoint standpoint(const std::vector<osg::Vec3d>& points, const osg::Vec3d& back, double aspect)
+{
+    osg::Vec3d right = osg::Vec3d(0, 0, 1) ^ back;
+    right.normalize();
+    const osg::Vec3d axes[] = {right, back ^ right, back};
+    osg::BoundingBoxd box; // along those axes
+    for (const osg::Vec3d& point : points)
+        box.expandBy(point * axes[0], point * axes[1], point * axes[2]);
+    if (!box.valid()) box.set(-1, -1, -1, 1, 1, 1);
+
+    Standpoint place;
+    place.middle = axes[0] * box.center().x() + axes[1] * box.center().y() + axes[2] * box.center().z();
+    place.radius = std::max(box.radius(), 1e-6);
+    double distance = fittingDistance(points, place, axes, aspect);
+    // What is near looks larger, so the middle of the points is not that of the picture: a few steps bring it there.
+    for (int step = 0; step < 4; ++step)
+    {
+        osg::BoundingBoxd seen;
+        for (const osg::Vec3d& point : points)
+        {
+            const osg::Vec3d offset = point - place.middle;
+            const double depth = distance - offset * back;
+            seen.expandBy(offset * axes[0] / depth, offset * axes[1] / depth, 0.0);
+        }
+        if (!seen.valid()) break;
+        place.middle += (axes[0] * seen.center().x() + axes[1] * seen.center().y()) * distance;
+        distance = fittingDistance(points, place, axes, aspect);
+    }
+    place.eye = place.middle + back * distance;
+    return place;
+}
+
+} // namespace
+
+class PictureViewer::ReadPixels : public osg::Camera::DrawCallback
+{
+public:
+    void operator()(osg::RenderInfo& renderInfo) const override
+    {
+        const osg::GraphicsContext::Traits* traits = renderInfo.getState()->getGraphicsContext()->getTraits();
+        image = new osg::Image;
+        image->readPixels(0, 0, traits->width, traits->height, GL_RGB, GL_UNSIGNED_BYTE);
+        if (glGetError() != GL_NO_ERROR) image = nullptr;
+    }
+
+    mutable osg::ref_ptr<osg::Image> image;
+};
+
+PictureViewer::PictureViewer() : _reader(new ReadPixels) {}
+
+PictureViewer::~PictureViewer() = default;
+
+Result<std::unique_ptr<PictureViewer>> PictureViewer::create(int width, int height)
+{
+    osg::ref_ptr<osg::GraphicsContext::Traits> traits = new osg::GraphicsContext::Traits;
+    traits->width = width;
+    traits->height = height;
+    traits->sampleBuffers = 1;
+    traits->samples = 4;
+    const Result<osg::ref_ptr<EglGraphicsContext>> context = EglGraphicsContext::create(traits);
+    if (!context) return context.error();
+
+    std::unique_ptr<PictureViewer> made(new PictureViewer);
+    osgViewer::Viewer& viewer = made->_viewer;
+    viewer.setThreadingModel(osgViewer::ViewerBase::SingleThreaded);
+    setUpLight(viewer);
+    osg::Camera* camera = viewer.getCamera();
+    camera->setGraphicsContext(context.value());
+    camera->setViewport(0, 0, width, height);
+    camera->setClearMask(GL_DEPTH_BUFFER_BIT);
+    camera->setFinalDrawCallback(made->_reader);
+    return made;
+}
+
+void PictureViewer::show(osg::Node* scene, const std::vector<osg::Vec3d>& points)
+{
+    osg::ref_ptr<osg::Group> all = new osg::Group;
+    all->addChild(makeBackground());
+    all->addChild(scene);
+    _viewer.setSceneData(all);
+
+    osg::Vec3d back(0.55, -1.0, 0.3);
+    back.normalize();
+    osg::Camera* camera = _viewer.getCamera();
+    const double aspect = camera->getViewport()->aspectRatio();
+    const Standpoint place = standpoint(points, back, aspect);
+    camera->setViewMatrixAsLookAt(place.eye, place.middle, osg::Vec3d(0, 0, 1));
+    // Near and far planes are set by what is culled.
+    camera->setProjectionMatrixAsPerspective(fieldOfView, aspect, place.radius / 100.0, place.radius * 100.0);
+    _viewer.realize();
+}
+
+osg::ref_ptr<osg::Image> PictureViewer::draw(double simulationTime)
+{
+    _reader->image = nullptr;
+    _viewer.frame(simulationTime);
+    return _reader->image;
+}
+
+} // namespace osgGpuAnimation::tool

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osgGpuAnimation/animation/Result.h>
+
+#include <osg/Image>
+#include <osg/Vec3d>
+#include <osgViewer/Viewer>
+
+#include <memory>
+#include <vector>
+
+namespace osgGpuAnimation::tool
+{
+
+/// A viewer without a display whose frames become images: soft background, light from above the camera, 4x
+/// multisampling where there is.
+///
+///     Result<std::unique_ptr<PictureViewer>> viewer = PictureViewer::create(800, 600);
+///     viewer.value()->show(scene, points);
+///     osg::ref_ptr<osg::Image> image = viewer.value()->draw(0.5);
+class PictureViewer
+{
+public:
+    /// Error: there is no graphics context, or none of that size.
+    static Result<std::unique_ptr<PictureViewer>> create(int width, int height);
+    ~PictureViewer();
+
+    /// Puts the camera where it sees these points from three quarters in front: from -Y, a little from +X and above.
+    void show(osg::Node* scene, const std::vector<osg::Vec3d>& points);
+    /// A frame at that simulation time, RGB, 8 bits each. Null where GL reported an error.
+    osg::ref_ptr<osg::Image> draw(double simulationTime);
+
+private:
+    PictureViewer();
+
+    class ReadPixels;
+
+    osgViewer::Viewer _viewer;
+    osg::ref_ptr<ReadPixels> _reader;
+};
+
+} // namespace osgGpuAnimation::tool

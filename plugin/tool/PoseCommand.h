@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "PoseRequest.h"
+
+#include <osgGpuAnimation/animation/Result.h>
+
+#include <string>
+
+namespace osgGpuAnimation::tool
+{
+
+/// `osggpuanim pose`: writes the poses that a file's joints and vertices take at given times, see PoseDocument.
+struct PoseCommand
+{
+    enum class Evaluator
+    {
+        Gpu,
+        Cpu,
+    };
+
+    std::string file;
+    std::string like;    ///< a document to take the request from; empty: `request` is it
+    PoseRequest request; ///< clip and times; bind with no times is time 0
+    Evaluator evaluator = Evaluator::Gpu;
+    std::string output; ///< empty: standard output
+
+    /// Error messages begin with the name of the file at fault.
+    Result<bool> run() const;
+};
+
+} // namespace osgGpuAnimation::tool

@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: MIT
+#include "PoseDocument.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <numeric>
+
+namespace osgGpuAnimation::tool
+{
+
+namespace
+{
+
+using nlohmann::ordered_json;
+
+/// A box in double precision, empty until something is added.
+struct PositionBox
+{
+    glm::dvec3 min{std::numeric_limits<double>::max()};
+    glm::dvec3 max{std::numeric_limits<double>::lowest()};
+
+    void add(const glm::dvec3& point)
+    {
+        min = glm::min(min, point);
+        max = glm::max(max, point);
+    }
+    bool empty() const { return min.x > max.x; }
+    double diagonal() const { return glm::length(max - min); }
+    ordered_json json() const
+    {
+        if (empty()) return nullptr;
+        return {{min.x, min.y, min.z}, {max.x, max.y, max.z}};
+    }
+};
+
+ordered_json sixteenNumbers(const glm::dmat4& matrix)
+{
+    ordered_json numbers = ordered_json::array();
+    for (glm::length_t column = 0; column < 4; ++column)
+        for (glm::length_t row = 0; row < 4; ++row)
+            numbers.push_back(matrix[column][row]);
+    return numbers;
+}
+
+/// Without a request: all vertices up to 64, else 64 spread evenly; none where nothing deforms the primitive.
+std::vector<std::uint32_t> spreadVertices(const gltf::ImportedPrimitive& primitive)
+{
+    if (primitive.skin < 0 && primitive.targets == 0) return {};
+    std::vector<std::uint32_t> vertices(std::min<std::size_t>(primitive.vertexCount, 64));
+    for (std::size_t i = 0; i < vertices.size(); ++i)
+        vertices[i] = static_cast<std::uint32_t>(i * primitive.vertexCount / vertices.size());
+    return vertices;
+}
+
+ordered_json nullIfEmpty(const std::string& text)
+{
+    return text.empty() ? ordered_json(nullptr) : ordered_json(text);
+}
+
+std::string primitiveName(const gltf::ImportedPrimitive& primitive)
+{
+    return "primitive " + std::to_string(primitive.primitive) + " of node " + std::to_string(primitive.node);
+}
+
+} // namespace
+
+Result<PoseDocument> PoseDocument::create(const gltf::ImportedModel& model, const PoseRequest& request, int clip,
+                                          const std::string& fileName, const std::string& evaluator)
+{
+    PoseDocument document(model);
+    document.addHeader(request, clip, fileName, evaluator);
+    document.addSkins();
+    if (Result<bool> added = document.addPrimitives(request); !added) return added.error();
+    document._document["frames"] = ordered_json::array();
+    return document;
+}
+
+void PoseDocument::addHeader(const PoseRequest& request, int clip, const std::string& fileName,
+                             const std::string& evaluator)
+{
+    _document["schema"] = "gltf-pose/1";
+    _document["asset"] = {{"file", std::filesystem::path(fileName).filename().string()},
+                          {"generator", nullIfEmpty(_model.generator)}};
+    _document["evaluator"] = evaluator;
+    _document["scene"] = _model.scene;
+    _document["clip"] = nullptr;
+    if (clip >= 0)
+    {
+        const Clip& played = _model.set->clips()[static_cast<std::size_t>(clip)];
+        _document["clip"] = {{"index", _model.animationOfClip[static_cast<std::size_t>(clip)]},
+                             {"name", nullIfEmpty(played.name())},
+                             {"duration", played.duration()}};
+    }
+    _document["modelSize"] = 1.0;
+    _document["nodeNames"] = ordered_json::array();
+    for (const std::string& name : _model.nodeNames)
+        _document["nodeNames"].push_back(nullIfEmpty(name));
+    _document["nodeParents"] = _model.nodeParents;
+    _document["fixedWeights"] = ordered_json::array();
+    for (const PoseRequest::FixedWeights& fixed : request.fixedWeights)
+        _document["fixedWeights"].push_back({{"node", fixed.node}, {"weights", fixed.weights}});
+}
+
+void PoseDocument::addSkins()
+{
+    ordered_json& skins = _document["skins"] = ordered_json::array();
+    if (!_model.set) return;
+    for (const Skin& skin : _model.set->skins())
+    {
+        std::vector<int> nodes;
+        for (int joint : skin.joints)
+            nodes.push_back(_model.set->skeleton().joint(static_cast<std::size_t>(joint)).sourceNode);
+        skins.push_back({{"skin", skins.size()}, {"name", nullIfEmpty(skin.name)}, {"joints", nodes}});
+    }
+}
+
+Result<bool> PoseDocument::addPrimitives(const PoseRequest& request)
+{
+    ordered_json& primitives = _document["primitives"] = ordered_json::array();
+    for (const gltf::ImportedPrimitive& primitive : _model.primitives)
+    {
+        const auto wanted = request.sampled.find({primitive.node, primitive.primitive});
+        _sampled.push_back(wanted != request.sampled.end() ? wanted->second : spreadVertices(primitive));
+        for (std::uint32_t vertex : _sampled.back())
+        {
+            if (vertex >= primitive.vertexCount)
+                return Error{primitiveName(primitive) + ": vertex " + std::to_string(vertex) +
+                             " is asked for, it has " + std::to_string(primitive.vertexCount)};
+        }
+        primitives.push_back({{"node", primitive.node},
+                              {"mesh", primitive.mesh},
+                              {"primitive", primitive.primitive},
+                              {"skin", primitive.skin < 0 ? ordered_json(nullptr) : ordered_json(primitive.skin)},
+                              {"targets", primitive.targets},
+                              {"vertices", primitive.vertexCount},
+                              {"influences", primitive.influences},
+                              {"sampled", _sampled.back()}});
+    }
+    return true;
+}
+
+void PoseDocument::add(double time, const EvaluatedPose& pose)
+{
+    ordered_json primitives = ordered_json::array();
+    PositionBox whole;
+    for (std::size_t p = 0; p < _model.primitives.size(); ++p)
+    {
+        PositionBox box;
+        const std::vector<glm::dvec3> all = positions(p, pose);
+        for (const glm::dvec3& position : all)
+        {
+            box.add(position);
+            whole.add(position);
+        }
+        ordered_json primitive = {{"bbox", box.json()}};
+        for (std::uint32_t vertex : _sampled[p])
+            primitive["positions"].push_back({all[vertex].x, all[vertex].y, all[vertex].z});
+        primitives.push_back(std::move(primitive));
+    }
+    if (_document["frames"].empty() && whole.diagonal() > 0.0 && !whole.empty())
+        _document["modelSize"] = whole.diagonal();
+    _document["frames"].push_back({{"time", time},
+                                   {"nodes", nodeMatrices(pose)},
+                                   {"skins", skinMatrices(pose)},
+                                   {"weights", weights(pose)},
+                                   {"primitives", std::move(primitives)},
+                                   {"bbox", whole.json()}});
+}
+
+ordered_json PoseDocument::nodeMatrices(const EvaluatedPose& pose) const
+{
+    ordered_json matrices = ordered_json::array();
+    for (std::size_t node = 0; node < _model.nodeParents.size(); ++node)
+    {
+        const int joint = _model.set ? _model.set->skeleton().jointOfSourceNode(static_cast<int>(node)) : -1;
+        matrices.push_back(nullptr);
+        if (joint < 0) continue;
+        // What the palette holds is joint to model, times the inverse bind.
+        const auto entry = static_cast<std::size_t>(_model.set->mainEntry(joint));
+        const glm::dmat4 inverseBind = _model.set->palette()[entry].inverseBind.toColumns();
+        if (glm::determinant(inverseBind) == 0.0) continue;
+        matrices.back() = sixteenNumbers(pose.palette[entry].toColumns() * glm::inverse(inverseBind));
+    }
+    return matrices;
+}
+
+ordered_json PoseDocument::skinMatrices(const EvaluatedPose& pose) const
+{
+    ordered_json skins = ordered_json::array();
+    for (std::size_t skin = 0; _model.set && skin < _model.set->skins().size(); ++skin)
+    {
+        ordered_json matrices = ordered_json::array();
+        for (std::size_t place = 0; place < _model.set->skins()[skin].joints.size(); ++place)
+        {
+            const auto entry = static_cast<std::size_t>(_model.set->entryOfSkin(skin, place));
+            matrices.push_back(sixteenNumbers(pose.palette[entry].toColumns()));
+        }
+        skins.push_back(std::move(matrices));
+    }
+    return skins;
+}
+
+ordered_json PoseDocument::weights(const EvaluatedPose& pose) const
+{
+    ordered_json all = ordered_json::array();
+    for (std::size_t morph = 0; _model.set && morph < _model.set->morphs().size(); ++morph)
+    {
+        const MorphWeights& weights = _model.set->morphs()[morph];
+        ordered_json numbers = ordered_json::array();
+        for (std::size_t w = 0; w < weights.defaults.size(); ++w)
+        {
+            const std::size_t entry =
+                static_cast<std::size_t>(_model.set->entryOfMorph(morph)) + w / MorphWeights::weightsPerBlock;
+            const std::size_t place = w % MorphWeights::weightsPerBlock;
+            numbers.push_back(pose.palette[entry].rows[place / 4][static_cast<glm::length_t>(place % 4)]);
+        }
+        all.push_back({{"node", weights.sourceNode}, {"weights", std::move(numbers)}});
+    }
+    return all;
+}
+
+/// One position a vertex of the file.
+std::vector<glm::dvec3> PoseDocument::positions(std::size_t primitive, const EvaluatedPose& pose) const
+{
+    const gltf::ImportedPrimitive& source = _model.primitives[primitive];
+    std::vector<glm::dvec3> ofGeometry =
+        primitive < pose.positions.size() ? pose.positions[primitive] : std::vector<glm::dvec3>();
+    if (ofGeometry.empty())
+    {
+        const auto* still = dynamic_cast<const osg::Vec3Array*>(source.geometry->getVertexArray());
+        for (std::size_t v = 0; still && v < still->size(); ++v)
+        {
+            const osg::Vec3d placed = osg::Vec3d((*still)[v]) * source.toModel;
+            ofGeometry.emplace_back(placed.x(), placed.y(), placed.z());
+        }
+    }
+    if (source.geometryVertex.empty()) return ofGeometry;
+    std::vector<glm::dvec3> ofFile;
+    for (std::uint32_t vertex : source.geometryVertex)
+        ofFile.push_back(vertex < ofGeometry.size() ? ofGeometry[vertex] : glm::dvec3(0.0));
+    return ofFile;
+}
+
+std::string PoseDocument::text() const
+{
+    return _document.dump() + "\n";
+}
+
+} // namespace osgGpuAnimation::tool

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "PoseEvaluator.h"
+#include "PoseRequest.h"
+
+#include <nlohmann/json.hpp>
+
+#include <string>
+#include <vector>
+
+namespace osgGpuAnimation::tool
+{
+
+/// Poses in the schema gltf-pose/1: JSON, in the file's own axes, units and numbers; matrices are 16 numbers,
+/// column-major for column vectors. Given are: the world matrix of every node that is a joint (null for others), the
+/// joint matrices by skin, the morph weights, and of each primitive its bounding box and the wanted vertices.
+class PoseDocument
+{
+public:
+    /// The model was imported with noRotation and outlives the document. clip: of the model's set, -1: none.
+    /// Error: the request names a vertex that a primitive does not have.
+    static Result<PoseDocument> create(const gltf::ImportedModel& model, const PoseRequest& request, int clip,
+                                       const std::string& fileName, const std::string& evaluator);
+
+    /// pose: as an evaluator made it; empty for a model without a character.
+    void add(double time, const EvaluatedPose& pose);
+
+    /// With a line break at its end.
+    std::string text() const;
+
+private:
+    explicit PoseDocument(const gltf::ImportedModel& model) : _model(model) {}
+
+    void addHeader(const PoseRequest& request, int clip, const std::string& fileName, const std::string& evaluator);
+    void addSkins();
+    Result<bool> addPrimitives(const PoseRequest& request);
+    nlohmann::ordered_json nodeMatrices(const EvaluatedPose& pose) const;
+    nlohmann::ordered_json skinMatrices(const EvaluatedPose& pose) const;
+    nlohmann::ordered_json weights(const EvaluatedPose& pose) const;
+    std::vector<glm::dvec3> positions(std::size_t primitive, const EvaluatedPose& pose) const;
+
+    const gltf::ImportedModel& _model;
+    nlohmann::ordered_json _document;
+    std::vector<std::vector<std::uint32_t>> _sampled; ///< one list a primitive
+};
+
+} // namespace osgGpuAnimation::tool

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "gltf/Import.h"
+
+#include <osgGpuAnimation/animation/PoseInstruction.h>
+
+#include <glm/vec3.hpp>
+
+#include <string>
+#include <vector>
+
+namespace osgGpuAnimation::tool
+{
+
+/// A palette entry that is given by hand instead of being worked out: a block of morph weights.
+struct FixedEntry
+{
+    std::size_t entry = 0;
+    AffineMatrix value;
+};
+
+/// A pose of a model's character, worked out.
+struct EvaluatedPose
+{
+    std::vector<AffineMatrix> palette; ///< AnimationSet::paletteSize() entries
+    /// One list a primitive of the model, one position a vertex of its geometry, in the character's own space.
+    /// Empty for primitives that are not drawn from the palette.
+    std::vector<std::vector<glm::dvec3>> positions;
+};
+
+/// A way to work out poses: on the CPU or on the GPU.
+class PoseEvaluator
+{
+public:
+    virtual ~PoseEvaluator() = default;
+
+    virtual std::string name() const = 0;
+    /// The instruction is one for the model's set; fixed entries are below its palette size.
+    virtual Result<EvaluatedPose> evaluate(const PoseInstruction& instruction,
+                                           const std::vector<FixedEntry>& fixedEntries) = 0;
+};
+
+} // namespace osgGpuAnimation::tool

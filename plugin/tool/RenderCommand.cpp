@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+#include "RenderCommand.h"
+
+#include "CpuPoseEvaluator.h"
+#include "ModelFile.h"
+#include "PictureViewer.h"
+
+#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
+
+#include <osgDB/WriteFile>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <iomanip>
+#include <sstream>
+#include <vector>
+
+namespace osgGpuAnimation::tool
+{
+
+namespace
+{
+
+/// Holds the clip there; time goes round as in the viewer.
+void showTime(AnimationController& controller, double time)
+{
+    const double duration = controller.duration();
+    const double rest = duration > 0.0 ? std::fmod(time, duration) : 0.0;
+    controller.pause();
+    controller.seek(rest < 0.0 ? rest + duration : rest);
+}
+
+/// The vertices of all that stands still.
+void addStill(const gltf::ImportedModel& model, std::vector<osg::Vec3d>& points)
+{
+    for (const gltf::ImportedPrimitive& primitive : model.primitives)
+    {
+        const auto* positions = dynamic_cast<const osg::Vec3Array*>(primitive.geometry->getVertexArray());
+        if (!positions || dynamic_cast<const SkinnedGeometry*>(primitive.geometry.get())) continue;
+        const osg::Matrixd toWorld = primitive.toModel * model.root->getMatrix();
+        for (const osg::Vec3& position : *positions)
+            points.push_back(osg::Vec3d(position) * toWorld);
+    }
+}
+
+/// The vertices of the character as it stands now.
+void addMoving(const gltf::ImportedModel& model, CpuPoseEvaluator& evaluator, std::vector<osg::Vec3d>& points)
+{
+    const osg::MatrixList places = model.character->getWorldMatrices();
+    const Result<EvaluatedPose> pose = evaluator.evaluate(model.character->controller().instruction(), {});
+    if (!pose || places.empty()) return;
+    for (const std::vector<glm::dvec3>& positions : pose.value().positions)
+        for (const glm::dvec3& position : positions)
+            points.push_back(osg::Vec3d(position.x, position.y, position.z) * places.front());
+}
+
+/// What the pictures have to show: every vertex, at every time (of very many, 64 spread evenly).
+std::vector<osg::Vec3d> pointsOf(const gltf::ImportedModel& model, const std::vector<double>& times)
+{
+    std::vector<osg::Vec3d> points;
+    addStill(model, points);
+    if (!model.character) return points;
+    CpuPoseEvaluator evaluator(model);
+    const std::size_t looks = std::min<std::size_t>(times.size(), 64);
+    for (std::size_t look = 0; look < looks; ++look)
+    {
+        showTime(model.character->controller(), times[look * times.size() / looks]);
+        addMoving(model, evaluator, points);
+    }
+    return points;
+}
+
+std::string numbered(const std::string& output, std::size_t number)
+{
+    const std::filesystem::path path(output);
+    std::ostringstream name;
+    name << path.stem().string() << "." << std::setw(4) << std::setfill('0') << number << path.extension().string();
+    return (path.parent_path() / name.str()).string();
+}
+
+} // namespace
+
+Result<bool> RenderCommand::run() const
+{
+    gltf::ImportOptions options;
+    options.clip = clip;
+    const Result<gltf::ImportedModel> model = readModel(file, options);
+    if (!model) return Error{file + ": " + model.error().message};
+    Result<std::unique_ptr<PictureViewer>> viewer = PictureViewer::create(width, height);
+    if (!viewer) return Error{file + ": " + viewer.error().message};
+    std::vector<double> times;
+    for (int frame = 0; frame < frames.value_or(1); ++frame)
+        times.push_back(time + frame / framesPerSecond);
+    viewer.value()->show(model.value().root, pointsOf(model.value(), times));
+
+    for (std::size_t frame = 0; frame < times.size(); ++frame)
+    {
+        if (model.value().character) showTime(model.value().character->controller(), times[frame]);
+        const osg::ref_ptr<osg::Image> image = viewer.value()->draw(times[frame] - time);
+        if (!image) return Error{file + ": OpenGL reports an error while drawing"};
+        const std::string name = frames ? numbered(output, frame + 1) : output;
+        if (!osgDB::writeImageFile(*image, name)) return Error{name + ": cannot be written"};
+    }
+    return true;
+}
+
+} // namespace osgGpuAnimation::tool

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osgGpuAnimation/animation/Result.h>
+
+#include <optional>
+#include <string>
+
+namespace osgGpuAnimation::tool
+{
+
+/// `osggpuanim render`: draws pictures of a file without a display, from three quarters in front, the camera standing
+/// where everything fits all the pictures.
+struct RenderCommand
+{
+    static constexpr int maxSize = 8192; ///< pixels, each way
+
+    std::string file;
+    std::optional<std::string> clip; ///< name or animation number; default: the first
+    double time = 0.0;               ///< seconds; clips loop
+    int width = 800;                 ///< pixels, [1, maxSize]
+    int height = 600;
+    std::optional<int> frames; ///< none: one picture, named `output`; else numbered ones
+    double framesPerSecond = 30.0;
+    std::string output; ///< a .png; with `frames` OUT.png stands for OUT.0001.png, OUT.0002.png …
+
+    /// Error messages begin with the name of the file at fault.
+    Result<bool> run() const;
+};
+
+} // namespace osgGpuAnimation::tool

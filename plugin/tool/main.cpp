@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+#include "CommandLine.h"
+
+#include <exception>
+#include <iostream>
+
+int main(int argc, char** argv)
+{
+    try
+    {
+        return osgGpuAnimation::tool::CommandLine().run(argc, argv);
+    }
+    catch (const std::exception& fault)
+    {
+        // Out of memory, say.
+        std::cerr << "osggpuanim: " << fault.what() << std::endl;
+        return 1;
+    }
+}

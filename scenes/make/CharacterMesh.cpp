@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+#include "CharacterMesh.h"
+#include "AmbientOcclusion.h"
+
+#include <algorithm>
+
+namespace osgGpuAnimation::scenes
+{
+
+void CharacterMesh::add(Part part, int width, int height, const Painter& painter)
+{
+    part.rect.width = width;
+    part.rect.height = height;
+    part.painter = painter;
+    _parts.push_back(std::move(part));
+}
+
+void CharacterMesh::addPair(const Part& part, int width, int height, const Painter& painter)
+{
+    add(part, width, height, painter);
+    _parts.push_back(mirrored(_parts.back(), _rig));
+}
+
+void CharacterMesh::finish()
+{
+    const double reach = 0.30; // metres: as far as a limb is from the body
+    computeLight(_parts, reach);
+    allocateRects();
+    for (const Part& part : _parts)
+        if (part.painted) _atlas.paint(part);
+}
+
+void CharacterMesh::allocateRects()
+{
+    std::vector<Part*> painted;
+    for (Part& part : _parts)
+        if (part.painted) painted.push_back(&part);
+    std::stable_sort(painted.begin(), painted.end(),
+                     [](const Part* a, const Part* b) { return a->rect.height > b->rect.height; });
+    for (Part* part : painted)
+        part->rect = _atlas.allocate(part->rect.width, part->rect.height);
+    for (std::size_t i = 1; i < _parts.size(); ++i)
+        if (!_parts[i].painted) _parts[i].rect = _parts[i - 1].rect; // a mirror image follows its original
+}
+
+PrimitiveArrays CharacterMesh::arrays() const
+{
+    PrimitiveArrays arrays;
+    for (const Part& part : _parts)
+    {
+        appendPart(arrays, part);
+        appendBindings(arrays, part);
+    }
+    return arrays;
+}
+
+void appendPart(PrimitiveArrays& arrays, const Part& part)
+{
+    const auto first = static_cast<std::uint32_t>(arrays.positions.size());
+    arrays.positions.insert(arrays.positions.end(), part.positions.begin(), part.positions.end());
+    arrays.normals.insert(arrays.normals.end(), part.normals.begin(), part.normals.end());
+    for (int row = 0; part.rect.width > 0 && row < part.rows; ++row)
+        for (int column = 0; column < part.columns; ++column)
+            arrays.textureCoordinates.push_back(part.textureCoordinate(row, column));
+    for (const auto& triangle : part.triangles())
+        for (int vertex : triangle)
+            arrays.indices.push_back(first + vertex);
+}
+
+void appendBindings(PrimitiveArrays& arrays, const Part& part)
+{
+    for (const Binding& binding : part.bindings)
+    {
+        const std::array<JointWeight, 4> entries = binding.quantised();
+        std::array<std::uint8_t, 4> joints;
+        std::array<double, 4> weights;
+        for (int place = 0; place < 4; ++place)
+        {
+            joints[place] = static_cast<std::uint8_t>(entries[place].joint);
+            weights[place] = entries[place].weight;
+        }
+        arrays.joints.push_back(joints);
+        arrays.weights.push_back(weights);
+    }
+}
+
+} // namespace osgGpuAnimation::scenes

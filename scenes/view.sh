@@ -1,0 +1,41 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# Usage: scenes/view.sh [FILE]
+# Installs what is missing on a Debian 12, builds the plugin into build/ and opens FILE (a .gltf or .glb; default: our
+# own Wanderer.glb) in the stock osgviewer. Without a display it draws a picture into build/ and says where.
+set -euo pipefail
+source "$(dirname "${BASH_SOURCE[0]}")/../tests/setup.sh"
+
+if [ $# -gt 1 ] || [[ "${1:-}" == -* ]]; then
+    sed -n '3,5s/^# //p' "${BASH_SOURCE[0]}"
+    [[ "${1:-}" == -h || "${1:-}" == --help ]] && exit 0
+    exit 2
+fi
+file=${1:-$root/scenes/Wanderer.glb}
+if [ ! -f "$file" ]; then
+    echo "There is no file $file" >&2
+    exit 1
+fi
+
+install_missing "${packages[@]}"
+build_release osgdb_gltf osggpuanim
+export OSG_LIBRARY_PATH=$build/lib${OSG_LIBRARY_PATH:+:$OSG_LIBRARY_PATH}
+
+# Fails where the display that DISPLAY names is not there; osgviewer itself ends with 0 then.
+show()
+{
+    local log status=0
+    log=$(mktemp)
+    echo "osgviewer $file (Escape ends it)"
+    osgviewer --window 100 100 1024 768 "$file" 2>&1 | tee "$log" || status=$?
+    grep -q "Unable to open display" "$log" && status=1
+    rm -f "$log"
+    return "$status"
+}
+
+if [ -n "${DISPLAY:-}" ] && show; then
+    exit 0
+fi
+picture=$build/$(basename "${file%.*}").png
+"$build/bin/osggpuanim" render "$file" --time 0.5 -o "$picture"
+echo "There is no display to show it on; a picture of $file is in $picture"

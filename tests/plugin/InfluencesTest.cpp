@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+#include "gltf/Influences.h"
+#include "plugin/ModelBuilder.h"
+
+#include <gtest/gtest.h>
+
+namespace osgGpuAnimation::gltf
+{
+
+namespace
+{
+
+/// A point with `sets` times four influences of a skin with twelve joints, each joint's weight as given.
+class InfluencesTest : public ::testing::Test
+{
+protected:
+    InfluencesTest()
+    {
+        std::vector<Joint> joints(12);
+        Skeleton skeleton = Skeleton::create(joints).value();
+        Skin skin;
+        for (int joint = 11; joint >= 0; --joint)
+        {
+            skin.joints.push_back(joint); // another order than the palette's
+            AffineMatrix bind;
+            bind.rows[0].w = static_cast<float>(joint);
+            skin.inverseBinds.push_back(bind);
+        }
+        set = AnimationSet::create({std::move(skeleton), {skin}, {}, {}, {}}).value();
+    }
+
+    std::vector<InfluenceSet> read(const std::vector<std::vector<unsigned int>>& joints,
+                                   const std::vector<std::vector<float>>& weights)
+    {
+        ModelBuilder file;
+        file.mesh({{"POSITION", file.floats(TINYGLTF_TYPE_VEC3, {0, 0, 0})}}, 0);
+        for (std::size_t i = 0; i < joints.size(); ++i)
+        {
+            file.primitive(0).attributes["JOINTS_" + std::to_string(i)] =
+                file.integers(TINYGLTF_TYPE_VEC4, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, joints[i]);
+            file.primitive(0).attributes["WEIGHTS_" + std::to_string(i)] = file.floats(TINYGLTF_TYPE_VEC4, weights[i]);
+        }
+        DecodedBytes budget(1 << 20);
+        Report report(messages);
+        Meshes meshes(file.model, budget, report);
+        return readInfluences(file.model, file.primitive(0), *meshes.primitive(0, 0), *set, 0, report);
+    }
+
+    int entry(std::size_t place) const { return set->entryOfSkin(0, place); }
+
+    std::shared_ptr<const AnimationSet> set;
+    Messages messages;
+};
+
+} // namespace
+
+TEST_F(InfluencesTest, weightsAreTakenAsTheyAre)
+{
+    const auto sets = read({{3, 1, 0, 0}}, {{0.75f, 0.5f, -0.25f, 0}});
+    ASSERT_EQ(sets.size(), 1u);
+    EXPECT_EQ((*sets[0].weights)[0], osg::Vec4(0.75f, 0.5f, -0.25f, 0));
+    EXPECT_EQ((*sets[0].entries)[0][0], entry(3));
+    EXPECT_EQ((*sets[0].entries)[0][1], entry(1));
+    EXPECT_TRUE(messages.warnings.empty());
+}
+
+TEST_F(InfluencesTest, eightInfluencesTakeTwoSets)
+{
+    const auto sets = read({{0, 1, 2, 3}, {4, 5, 6, 7}}, {{0.1f, 0.1f, 0.1f, 0.1f}, {0.2f, 0.2f, 0.1f, 0.1f}});
+    ASSERT_EQ(sets.size(), 2u);
+    EXPECT_EQ((*sets[1].entries)[0][1], entry(5));
+    EXPECT_EQ((*sets[1].weights)[0], osg::Vec4(0.2f, 0.2f, 0.1f, 0.1f));
+}
+
+TEST_F(InfluencesTest, aSetOfZerosIsDropped)
+{
+    EXPECT_EQ(read({{0, 1, 2, 3}, {4, 5, 6, 7}}, {{0.5f, 0.5f, 0, 0}, {0, 0, 0, 0}}).size(), 1u);
+}
+
+TEST_F(InfluencesTest, ofTwelveTheEightLargestAreKept)
+{
+    const auto sets = read({{0, 1, 2, 3}, {4, 5, 6, 7}, {8, 9, 10, 11}},
+                           {{0.01f, 0.01f, 0.01f, 0.01f}, {0.12f, 0.12f, 0.12f, 0.12f}, {0.12f, 0.12f, 0.12f, 0.12f}});
+    ASSERT_EQ(sets.size(), 2u);
+    float sum = 0.0f;
+    for (const InfluenceSet& influences : sets)
+    {
+        for (unsigned int i = 0; i < 4; ++i)
+        {
+            EXPECT_NEAR((*influences.weights)[0][i], 0.125f, 1e-6f);
+            sum += (*influences.weights)[0][i];
+        }
+    }
+    EXPECT_NEAR(sum, 1.0f, 1e-6f);
+    ASSERT_EQ(messages.warnings.size(), 1u);
+    EXPECT_NE(messages.warnings[0].find("more than 8 influences"), std::string::npos);
+}
+
+TEST_F(InfluencesTest, twelvePlacesWithEightWeightsLoseNothing)
+{
+    const auto sets = read({{0, 1, 2, 3}, {4, 5, 6, 7}, {8, 9, 10, 11}},
+                           {{0, 0, 0, 0}, {0.1f, 0.1f, 0.1f, 0.1f}, {0.2f, 0.2f, 0.1f, 0.1f}});
+    EXPECT_TRUE(messages.warnings.empty());
+    EXPECT_EQ((*sets[0].weights)[0][0], 0.2f);
+    EXPECT_EQ((*sets[0].entries)[0][0], entry(8));
+}
+
+TEST_F(InfluencesTest, whatNothingMovesFollowsItsFirstJoint)
+{
+    const auto sets = read({{7, 1, 2, 3}}, {{0, 0, 0, 0}});
+    EXPECT_EQ((*sets[0].entries)[0][0], entry(7));
+    EXPECT_EQ((*sets[0].weights)[0], osg::Vec4(1, 0, 0, 0));
+    ASSERT_EQ(messages.warnings.size(), 1u);
+    EXPECT_NE(messages.warnings[0].find("no weight at all"), std::string::npos);
+}
+
+TEST_F(InfluencesTest, unknownJointsLoseTheirWeight)
+{
+    const auto sets = read({{0, 200, 65535, 3}}, {{0.5f, 0.5f, 0, 0}});
+    EXPECT_EQ((*sets[0].weights)[0], osg::Vec4(0.5f, 0, 0, 0));
+    ASSERT_EQ(messages.warnings.size(), 1u);
+    EXPECT_NE(messages.warnings[0].find("a joint that the skin does not have"), std::string::npos);
+}
+
+} // namespace osgGpuAnimation::gltf

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: MIT
+#include "gltf/Meshes.h"
+#include "gltf/FlatNormals.h"
+#include "plugin/ModelBuilder.h"
+
+#include <gtest/gtest.h>
+
+namespace osgGpuAnimation::gltf
+{
+
+namespace
+{
+
+/// Reads the first primitive of the first mesh.
+struct ReadMesh
+{
+    explicit ReadMesh(const ModelBuilder& file, std::size_t bytes = std::size_t(1) << 30)
+        : budget(bytes), report(messages), meshes(file.model, budget, report), primitive(meshes.primitive(0, 0))
+    {
+    }
+
+    Messages messages;
+    DecodedBytes budget;
+    Report report;
+    Meshes meshes;
+    const MeshPrimitive* primitive;
+};
+
+/// Five points in the plane z = 0.
+int fivePoints(ModelBuilder& file)
+{
+    return file.floats(TINYGLTF_TYPE_VEC3, {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 2, 2, 0});
+}
+
+int fiveNormals(ModelBuilder& file)
+{
+    return file.floats(TINYGLTF_TYPE_VEC3, std::vector<float>(15, 0.5f));
+}
+
+struct ModeCase
+{
+    int mode;
+    std::size_t whole; ///< of five vertices
+};
+
+const ModeCase modes[] = {{0, 5}, {1, 4}, {2, 5}, {3, 5}, {4, 3}, {5, 5}, {6, 5}};
+
+const int indexTypes[] = {TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT,
+                          TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT};
+
+} // namespace
+
+TEST(MeshesTest, allModesWithoutIndices)
+{
+    for (const ModeCase& mode : modes)
+    {
+        SCOPED_TRACE(mode.mode);
+        ModelBuilder file;
+        file.mesh({{"POSITION", fivePoints(file)}, {"NORMAL", fiveNormals(file)}}, mode.mode);
+        const ReadMesh read(file);
+        ASSERT_TRUE(read.primitive);
+        EXPECT_EQ(read.primitive->vertexCount, 5u);
+        EXPECT_EQ(read.primitive->primitiveSet->getMode(), static_cast<GLenum>(mode.mode));
+        EXPECT_EQ(read.primitive->primitiveSet->getNumIndices(), mode.whole);
+        EXPECT_FALSE(read.primitive->primitiveSet->getDrawElements());
+        EXPECT_TRUE(read.primitive->geometryVertex.empty());
+    }
+}
+
+TEST(MeshesTest, allIndexTypesInAllModes)
+{
+    for (const int type : indexTypes)
+    {
+        for (const ModeCase& mode : modes)
+        {
+            ModelBuilder file;
+            const int indices = file.integers(TINYGLTF_TYPE_SCALAR, type, {4, 3, 2, 1, 0});
+            file.mesh({{"POSITION", fivePoints(file)}, {"NORMAL", fiveNormals(file)}}, mode.mode, indices);
+            const ReadMesh read(file);
+            ASSERT_TRUE(read.primitive);
+            const osg::PrimitiveSet& set = *read.primitive->primitiveSet;
+            ASSERT_TRUE(set.getDrawElements());
+            ASSERT_EQ(set.getNumIndices(), mode.whole); // a part of a triangle must not be read past the end
+            EXPECT_EQ(set.index(0), 4u);
+            EXPECT_EQ(set.index(2), 2u);
+        }
+    }
+}
+
+TEST(MeshesTest, manyVerticesTakeWideIndices)
+{
+    for (const std::size_t count : {std::size_t(65535), std::size_t(65536)})
+    {
+        ModelBuilder file;
+        const int positions = file.floats(TINYGLTF_TYPE_VEC3, std::vector<float>(3 * count, 1.0f));
+        const int indices = file.integers(TINYGLTF_TYPE_SCALAR, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT,
+                                          {static_cast<unsigned int>(count - 1)});
+        file.mesh({{"POSITION", positions}}, 0, indices);
+        const ReadMesh read(file);
+        ASSERT_TRUE(read.primitive);
+        EXPECT_EQ(read.primitive->primitiveSet->index(0), count - 1);
+        EXPECT_EQ(read.primitive->primitiveSet->getType() == osg::PrimitiveSet::DrawElementsUIntPrimitiveType,
+                  count > 65535);
+    }
+}
+
+TEST(MeshesTest, trianglesWithoutNormalsAreFlat)
+{
+    ModelBuilder file;
+    const int indices =
+        file.integers(TINYGLTF_TYPE_SCALAR, TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE, {0, 1, 2, 0, 2, 3, 1, 2});
+    file.mesh({{"POSITION", fivePoints(file)}}, TINYGLTF_MODE_TRIANGLES, indices);
+    file.primitive(0).targets.push_back({{"POSITION", fiveNormals(file)}});
+    const ReadMesh read(file);
+    ASSERT_TRUE(read.primitive);
+    const MeshPrimitive& mesh = *read.primitive;
+    EXPECT_EQ(mesh.primitiveSet->getNumIndices(), 6u);
+    ASSERT_EQ(mesh.positions->size(), 7u); // two triangles, and the vertex that none uses
+    EXPECT_EQ(mesh.sourceVertex, (std::vector<std::uint32_t>{0, 1, 2, 0, 2, 3, 4}));
+    EXPECT_EQ(mesh.geometryVertex, (std::vector<std::uint32_t>{0, 1, 2, 5, 6}));
+    EXPECT_EQ(mesh.targets[0].positions->size(), 7u);
+    EXPECT_EQ((*mesh.positions)[mesh.geometryVertex[3]], osg::Vec3(0, 1, 0));
+    EXPECT_EQ((*mesh.positions)[mesh.geometryVertex[4]], osg::Vec3(2, 2, 0));
+    for (const osg::Vec3& normal : *mesh.normals)
+        EXPECT_EQ(normal, osg::Vec3(0, 0, 1));
+}
+
+TEST(MeshesTest, alreadySeparateTrianglesStayAsTheyAre)
+{
+    ModelBuilder file;
+    file.mesh({{"POSITION", file.floats(TINYGLTF_TYPE_VEC3, {0, 0, 0, 0, 1, 0, 0, 0, 1})}});
+    const ReadMesh read(file);
+    ASSERT_TRUE(read.primitive);
+    EXPECT_TRUE(read.primitive->geometryVertex.empty());
+    EXPECT_EQ((*read.primitive->normals)[0], osg::Vec3(1, 0, 0));
+}
+
+TEST(MeshesTest, stripsAndFansKeepTheirWinding)
+{
+    EXPECT_EQ(triangleCorners(5, {10, 11, 12, 13, 14}),
+              (std::vector<std::uint32_t>{10, 11, 12, 11, 13, 12, 12, 13, 14}));
+    EXPECT_EQ(triangleCorners(6, {10, 11, 12, 13}), (std::vector<std::uint32_t>{11, 12, 10, 12, 13, 10}));
+    EXPECT_TRUE(triangleCorners(5, {1, 2}).empty());
+    EXPECT_TRUE(triangleCorners(6, {}).empty());
+}
+
+TEST(MeshesTest, linesWithoutNormalsHaveNone)
+{
+    ModelBuilder file;
+    file.mesh({{"POSITION", fivePoints(file)}}, 3);
+    EXPECT_FALSE(ReadMesh(file).primitive->normals);
+}
+
+TEST(MeshesTest, colorsAreForDisplay)
+{
+    ModelBuilder file;
+    const int positions = fivePoints(file);
+    tinygltf::Accessor* accessor = nullptr;
+    const int colors = file.integers(TINYGLTF_TYPE_VEC3, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT,
+                                     {0, 65535, 32768, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0});
+    accessor = &file.model.accessors[static_cast<std::size_t>(colors)];
+    accessor->normalized = true;
+    file.model.bufferViews[static_cast<std::size_t>(accessor->bufferView)].byteStride = 0;
+    file.mesh({{"POSITION", positions}, {"COLOR_0", colors}}, 0);
+    const ReadMesh read(file);
+    const osg::Vec4& color = (*read.primitive->colors)[0];
+    EXPECT_EQ(color.r(), 0.0f);
+    EXPECT_EQ(color.g(), 1.0f);
+    EXPECT_NEAR(color.b(), 0.7354f, 1e-3f); // half of the light
+    EXPECT_EQ(color.a(), 1.0f);
+}
+
+TEST(MeshesTest, textureCoordinatesAreTheMaterials)
+{
+    ModelBuilder file;
+    const int positions = file.floats(TINYGLTF_TYPE_VEC3, std::vector<float>(3, 0.0f));
+    const int first = file.floats(TINYGLTF_TYPE_VEC2, {0.25f, 0.75f});
+    const int second = file.floats(TINYGLTF_TYPE_VEC2, {0.5f, 1.0f});
+    file.mesh({{"POSITION", positions}, {"TEXCOORD_0", first}, {"TEXCOORD_1", second}}, 0);
+    EXPECT_FALSE(ReadMesh(file).primitive->texCoords); // no material, no texture
+    file.model.materials.resize(1);
+    file.primitive(0).material = 0;
+    tinygltf::TextureInfo& texture = file.model.materials[0].pbrMetallicRoughness.baseColorTexture;
+    texture.index = 0;
+    EXPECT_EQ((*ReadMesh(file).primitive->texCoords)[0], osg::Vec2(0.25f, 0.25f)); // v from the bottom
+    texture.texCoord = 1;
+    EXPECT_EQ((*ReadMesh(file).primitive->texCoords)[0], osg::Vec2(0.5f, 0.0f));
+    texture.texCoord = 2;
+    EXPECT_FALSE(ReadMesh(file).primitive->texCoords);
+
+    tinygltf::Value::Object transform;
+    const auto pair = [](double a, double b) {
+        return tinygltf::Value(tinygltf::Value::Array{tinygltf::Value(a), tinygltf::Value(b)});
+    };
+    transform["texCoord"] = tinygltf::Value(0);
+    transform["offset"] = pair(0.5, 0.25);
+    transform["scale"] = pair(2.0, 1.0);
+    texture.extensions["KHR_texture_transform"] = tinygltf::Value(transform);
+    EXPECT_EQ((*ReadMesh(file).primitive->texCoords)[0], osg::Vec2(1.0f, 0.0f)); // u 0.25·2+0.5, v 1-(0.75+0.25)
+    transform["rotation"] = tinygltf::Value(std::acos(-1.0) / 2.0);
+    texture.extensions["KHR_texture_transform"] = tinygltf::Value(transform);
+    const osg::Vec2 turned = (*ReadMesh(file).primitive->texCoords)[0]; // u' = v + 0.5, v' = -2u + 0.25
+    EXPECT_NEAR(turned.x(), 1.25f, 1e-6f);
+    EXPECT_NEAR(turned.y(), 1.25f, 1e-6f);
+}
+
+TEST(MeshesTest, whatCannotBeDrawnIsLeftOutByName)
+{
+    ModelBuilder nothing;
+    nothing.mesh({{"NORMAL", fiveNormals(nothing)}});
+    const ReadMesh noPositions(nothing);
+    EXPECT_FALSE(noPositions.primitive);
+    ASSERT_EQ(noPositions.messages.warnings.size(), 1u);
+    EXPECT_NE(noPositions.messages.warnings[0].find("meshes[0] \"mesh0\".primitives[0]: no POSITION"),
+              std::string::npos);
+
+    ModelBuilder few;
+    few.mesh({{"POSITION", few.floats(TINYGLTF_TYPE_VEC3, {0, 0, 0, 1, 0, 0})}});
+    EXPECT_FALSE(ReadMesh(few).primitive);
+
+    ModelBuilder much;
+    much.mesh({{"POSITION", fivePoints(much)}}, 0);
+    const ReadMesh tooMuch(much, 100);
+    EXPECT_FALSE(tooMuch.primitive);
+    EXPECT_NE(tooMuch.messages.warnings[0].find("maxDecodedBytes"), std::string::npos);
+}
+
+TEST(MeshesTest, aPrimitiveIsReadOnce)
+{
+    ModelBuilder file;
+    file.triangle();
+    ReadMesh read(file);
+    const std::size_t left = read.budget.left();
+    EXPECT_EQ(read.meshes.primitive(0, 0), read.primitive);
+    EXPECT_EQ(read.budget.left(), left);
+}
+
+} // namespace osgGpuAnimation::gltf

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+#include "gltf/OptionString.h"
+
+#include <gtest/gtest.h>
+
+namespace osgGpuAnimation::gltf
+{
+
+TEST(OptionStringTest, nothingAskedForIsTheDefault)
+{
+    const ImportOptions options = parseOptions("").value();
+    EXPECT_FALSE(options.clip);
+    EXPECT_FALSE(options.scene);
+    EXPECT_FALSE(options.noRotation);
+    EXPECT_FALSE(options.allowOutsideFiles);
+}
+
+TEST(OptionStringTest, readsAllOptions)
+{
+    const ImportOptions options = parseOptions("  clip=Walk scene=2  noRotation allowOutsideFiles maxJsonDepth=5 "
+                                               "maxNodeDepth=6 maxElements=7 maxDecodedBytes=8000000000")
+                                      .value();
+    EXPECT_EQ(options.clip, "Walk");
+    EXPECT_EQ(options.scene, 2);
+    EXPECT_TRUE(options.noRotation);
+    EXPECT_TRUE(options.allowOutsideFiles);
+    EXPECT_EQ(options.maxJsonDepth, 5u);
+    EXPECT_EQ(options.maxNodeDepth, 6u);
+    EXPECT_EQ(options.maxElements, 7u);
+    EXPECT_EQ(options.maxDecodedBytes, 8000000000u);
+}
+
+TEST(OptionStringTest, quotationMarksKeepSpaces)
+{
+    const std::pair<const char*, const char*> clips[] = {
+        {"clip=\"Walk fast\" noRotation", "Walk fast"},
+        {"\"clip=Walk fast\"", "Walk fast"},
+        {"clip=a=b", "a=b"},
+        {"clip=\"a=b c\"", "a=b c"},
+        {"clip=\"never closed", "never closed"},
+    };
+    for (const auto& [text, clip] : clips)
+    {
+        const Result<ImportOptions> options = parseOptions(text);
+        ASSERT_TRUE(options) << text;
+        EXPECT_EQ(options.value().clip.value_or("?"), clip) << text;
+    }
+}
+
+TEST(OptionStringTest, otherReadersWordsArePassedOver)
+{
+    EXPECT_TRUE(parseOptions("dds_flip OutputTextureFiles clips=3 = \"\" noRotationX"));
+    EXPECT_FALSE(parseOptions("noRotationX").value().noRotation);
+}
+
+TEST(OptionStringTest, valuesThatDoNotFitAreErrors)
+{
+    for (const char* text : {"clip=", "clip", "scene=", "scene=one", "scene=-1", "scene=1.5", "scene=99999999999",
+                             "maxElements=-1", "maxDecodedBytes=1e9"})
+    {
+        const Result<ImportOptions> options = parseOptions(text);
+        ASSERT_FALSE(options) << text;
+        EXPECT_EQ(options.error().message.rfind("option ", 0), 0u) << options.error().message;
+    }
+}
+
+} // namespace osgGpuAnimation::gltf

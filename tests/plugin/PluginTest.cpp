@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: MIT
+#include "plugin/ModelBuilder.h"
+#include "plugin/SharedAssets.h"
+
+#include <osgGpuAnimation/nodes/AnimatedCharacter.h>
+
+#include <gtest/gtest.h>
+#include <osg/Notify>
+#include <osgDB/ReadFile>
+#include <osgDB/Registry>
+#include <osgUtil/Optimizer>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+namespace osgGpuAnimation::gltf
+{
+
+namespace
+{
+
+/// Keeps what OSG says.
+class NotifyLog : public osg::NotifyHandler
+{
+public:
+    void notify(osg::NotifySeverity severity, const char* message) override
+    {
+        if (severity <= osg::NOTICE) text += message;
+    }
+    std::string text;
+};
+
+/// A folder with `arm.gltf`, in which the node "arm" slides, read through osgDB.
+class PluginTest : public ::testing::Test
+{
+protected:
+    void SetUp() override
+    {
+        osgDB::FilePathList& paths = osgDB::Registry::instance()->getLibraryFilePathList();
+        if (paths.empty() || paths.front() != OSGGPUANIMATION_PLUGIN_FOLDER)
+            paths.push_front(OSGGPUANIMATION_PLUGIN_FOLDER);
+        const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+        folder = std::filesystem::path(::testing::TempDir()) / (std::string("osggpuanimation_") + test->name());
+        std::filesystem::create_directories(folder);
+        file.node("sword", file.node("arm"), file.triangle());
+        file.animation("Slow slide");
+        file.slide(0);
+        file.animation("Slide");
+        file.slide(0);
+        write("arm.gltf", file.text());
+        osg::setNotifyHandler(log);
+    }
+
+    void TearDown() override
+    {
+        osg::setNotifyHandler(new osg::StandardNotifyHandler);
+        std::filesystem::remove_all(folder);
+    }
+
+    void write(const std::string& name, const std::string& content)
+    {
+        std::ofstream(folder / name, std::ios::binary) << content;
+    }
+
+    osgDB::ReaderWriter::ReadResult read(const std::string& name, const std::string& options = "")
+    {
+        const osg::ref_ptr<osgDB::Options> held = new osgDB::Options(options);
+        return osgDB::Registry::instance()->readNode((folder / name).string(), held);
+    }
+
+    ModelBuilder file;
+    std::filesystem::path folder;
+    osg::ref_ptr<NotifyLog> log = new NotifyLog;
+};
+
+struct FaultCase
+{
+    const char* name;
+    const char* file;
+    const char* options;
+    osgDB::ReaderWriter::ReadResult::ReadStatus status;
+    const char* message;
+};
+
+using Read = osgDB::ReaderWriter::ReadResult;
+
+const FaultCase faults[] = {
+    {"no such file", "absent.gltf", "", Read::FILE_NOT_FOUND, ""},
+    {"a folder", "folder.gltf", "", Read::ERROR_IN_READING_FILE, "folder"},
+    {"empty", "empty.glb", "", Read::ERROR_IN_READING_FILE, "empty"},
+    {"cut off", "cut.gltf", "", Read::ERROR_IN_READING_FILE, ""},
+    {"unknown clip", "arm.gltf", "clip=Jump", Read::ERROR_IN_READING_FILE, "\"Slow slide\", \"Slide\""},
+    {"unknown scene", "arm.gltf", "scene=4", Read::ERROR_IN_READING_FILE, "scene 4 of 1"},
+    {"bad option", "arm.gltf", "scene=x", Read::ERROR_IN_READING_FILE, "option scene"},
+    {"missing buffer", "lost.gltf", "", Read::ERROR_IN_READING_FILE, "lost.bin"},
+};
+
+} // namespace
+
+TEST_F(PluginTest, readsAnAnimatedNodeWithoutAWord)
+{
+    write("arm.GLTF", file.text());
+    for (const char* name : {"arm.gltf", "arm.GLTF"})
+    {
+        const osg::ref_ptr<osg::Node> node = osgDB::readRefNodeFile((folder / name).string());
+        ASSERT_TRUE(node) << name << ": " << log->text;
+        AnimatedCharacter* character = findCharacter(*node);
+        ASSERT_TRUE(character);
+        EXPECT_EQ(character->set().clips().size(), 2u);
+    }
+    EXPECT_EQ(log->text, "");
+}
+
+TEST_F(PluginTest, readsGlbUnderAnyCase)
+{
+    SKIP_WITHOUT_SHARED_FILE("assets/Fox/Fox.glb");
+    const std::string fox = readBytes(sharedFile("assets/Fox/Fox.glb"));
+    for (const char* name : {"fox.glb", "fox.Glb"})
+    {
+        write(name, fox);
+        const osg::ref_ptr<osg::Node> node = osgDB::readRefNodeFile((folder / name).string());
+        ASSERT_TRUE(node) << name << ": " << log->text;
+        EXPECT_EQ(findCharacter(*node)->set().clips().size(), 3u);
+    }
+    EXPECT_EQ(log->text, "");
+}
+
+TEST_F(PluginTest, readsStreams)
+{
+    osgDB::ReaderWriter* reader = osgDB::Registry::instance()->getReaderWriterForExtension("gltf");
+    ASSERT_TRUE(reader);
+    std::istringstream stream(file.text());
+    Read result = reader->readNode(stream, nullptr);
+    ASSERT_TRUE(result.validNode()) << result.message();
+    EXPECT_TRUE(findCharacter(*result.getNode()));
+    std::istringstream again(file.text());
+    EXPECT_TRUE(reader->readObject(again, nullptr).validObject());
+    std::istringstream rubbish("rubbish");
+    EXPECT_EQ(reader->readNode(rubbish, nullptr).status(), Read::ERROR_IN_READING_FILE);
+}
+
+TEST_F(PluginTest, findsFilesByTheDatabasePath)
+{
+    osg::ref_ptr<osgDB::Options> options = new osgDB::Options;
+    options->getDatabasePathList().push_back(folder.string());
+    EXPECT_TRUE(osgDB::readRefNodeFile("arm.gltf", options));
+}
+
+TEST_F(PluginTest, takesOptions)
+{
+    const osg::ref_ptr<osg::Node> node = read("arm.gltf", "noRotation clip=Slide").getNode();
+    ASSERT_TRUE(node);
+    EXPECT_EQ(findCharacter(*node)->controller().clip(), 1);
+    EXPECT_TRUE(node->asTransform()->asMatrixTransform()->getMatrix().isIdentity());
+    EXPECT_EQ(findCharacter(*read("arm.gltf", "clip=\"Slow slide\"").getNode())->controller().clip(), 0);
+}
+
+TEST_F(PluginTest, tellsWhatItSupports)
+{
+    osgDB::ReaderWriter* reader = osgDB::Registry::instance()->getReaderWriterForExtension("glb");
+    ASSERT_TRUE(reader);
+    EXPECT_TRUE(reader->acceptsExtension("GLTF"));
+    EXPECT_FALSE(reader->acceptsExtension("obj"));
+    for (const char* option : {"clip=NAME|INDEX", "scene=INDEX", "noRotation", "allowOutsideFiles"})
+        EXPECT_EQ(reader->supportedOptions().count(option), 1u) << option;
+    EXPECT_EQ(reader->readNode("model.obj", nullptr).status(), Read::FILE_NOT_HANDLED);
+}
+
+TEST_F(PluginTest, faultsHaveTheirStatusAndAMessage)
+{
+    std::filesystem::create_directories(folder / "folder.gltf");
+    write("empty.glb", "");
+    write("cut.gltf", file.text().substr(0, 200));
+    write("lost.gltf", R"({"asset":{"version":"2.0"},"buffers":[{"uri":"lost.bin","byteLength":4}]})");
+    for (const FaultCase& fault : faults)
+    {
+        SCOPED_TRACE(fault.name);
+        const Read result = read(fault.file, fault.options);
+        EXPECT_EQ(result.status(), fault.status) << result.message();
+        EXPECT_NE(result.message().find(fault.message), std::string::npos) << result.message();
+    }
+}
+
+TEST_F(PluginTest, anErrorIsSaidOnce)
+{
+    const osg::ref_ptr<osgDB::Options> options = new osgDB::Options("clip=Jump");
+    EXPECT_FALSE(osgDB::readRefNodeFile((folder / "arm.gltf").string(), options));
+    const std::size_t first = log->text.find("Slow slide");
+    ASSERT_NE(first, std::string::npos) << log->text;
+    EXPECT_EQ(log->text.find("Slow slide", first + 1), std::string::npos) << log->text;
+}
+
+TEST_F(PluginTest, aWarningNamesFileAndElement)
+{
+    file.model.animations[1].channels[0].target_path = "colour";
+    write("warned.gltf", file.text());
+    EXPECT_TRUE(read("warned.gltf").validNode());
+    EXPECT_NE(log->text.find("warned.gltf"), std::string::npos);
+    EXPECT_NE(log->text.find("channels[0]"), std::string::npos) << log->text;
+}
+
+TEST_F(PluginTest, theOptimizerLeavesTheCharacterWhole)
+{
+    const osg::ref_ptr<osg::Node> node = read("arm.gltf").getNode();
+    osgUtil::Optimizer optimizer;
+    optimizer.optimize(node, osgUtil::Optimizer::ALL_OPTIMIZATIONS);
+    AnimatedCharacter* character = findCharacter(*node);
+    ASSERT_TRUE(character);
+    EXPECT_EQ(character->getNumChildren(), 1u);
+    const osg::Vec3d up = osg::Vec3d(0, 1, 0) * character->getWorldMatrices().front();
+    EXPECT_NEAR((up - osg::Vec3d(0, 0, 1)).length(), 0.0, 1e-12);
+}
+
+} // namespace osgGpuAnimation::gltf

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+namespace osgGpuAnimation
+{
+
+/// A file of the folder with real characters and their poses (OSGGPUANIMATION_SHARED_ASSETS); empty where it is not
+/// there.
+inline std::string sharedFile(const std::string& name)
+{
+    const std::string path = std::string(OSGGPUANIMATION_SHARED_ASSETS) + "/" + name;
+    return std::filesystem::is_regular_file(path) ? path : "";
+}
+
+inline std::string readBytes(const std::string& path)
+{
+    std::ifstream stream(path, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(stream), {});
+}
+
+} // namespace osgGpuAnimation
+
+/// Ends the test as skipped, with the reason, where the shared file is missing.
+#define SKIP_WITHOUT_SHARED_FILE(name)                                                                                 \
+    if (::osgGpuAnimation::sharedFile(name).empty())                                                                   \
+    GTEST_SKIP() << "there is no " << (name) << " in " << OSGGPUANIMATION_SHARED_ASSETS

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace osgGpuAnimation
+{
+
+enum class DracoMethod
+{
+    Sequential,
+    Edgebreaker
+};
+
+/// The Draco stream of a mesh, without quantization. Attribute 0: positions, three floats a vertex; attribute 1:
+/// joints, four bytes a vertex. Empty where Draco fails.
+std::string encodeDraco(const std::vector<float>& positions, const std::vector<std::uint8_t>& joints,
+                        const std::vector<std::uint32_t>& indices, DracoMethod method);
+
+} // namespace osgGpuAnimation

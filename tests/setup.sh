@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: MIT
+# The set-up that scenes/view.sh, tests/run.sh and .ci/run share; for `source`, not to be run. It sets `root` (the
+# repository) and `build` (its build folder) and offers install_missing PACKAGE... and build_release [TARGET...].
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+build=$root/build
+
+# Debian 12's names. First what builds, then what shows (osgviewer, Mesa's software renderer), then what tests.
+packages=(
+    g++ cmake ninja-build
+    libopenscenegraph-dev libtinygltf-dev libdraco-dev libmeshoptimizer-dev libglm-dev libcli11-dev nlohmann-json3-dev
+    libgl-dev libegl-dev
+    openscenegraph libegl1 libegl-mesa0 libgl1 libglx-mesa0 libgl1-mesa-dri
+    libgtest-dev python3 xvfb xauth
+)
+# What .ci/run needs besides.
+ci_packages=(git clang-format)
+
+is_installed()
+{
+    [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]
+}
+
+as_root()
+{
+    if [ "$(id -u)" -eq 0 ]; then
+        "$@"
+    elif command -v sudo >/dev/null; then
+        sudo "$@"
+    else
+        echo "Please run as root (there is no sudo): $*" >&2
+        return 1
+    fi
+}
+
+# Installs those of the packages that are not there yet; touches nothing where all are.
+install_missing()
+{
+    if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
+        echo "This is no Debian: packages like these should be there: $*" >&2
+        return 0
+    fi
+    local package missing=()
+    for package in "$@"; do
+        is_installed "$package" || missing+=("$package")
+    done
+    [ ${#missing[@]} -gt 0 ] || return 0
+    echo "Installing: ${missing[*]}"
+    as_root env DEBIAN_FRONTEND=noninteractive apt-get update -q
+    as_root env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends "${missing[@]}"
+}
+
+# Configures a release build in $build and builds the targets, or everything.
+build_release()
+{
+    local generator=()
+    # A build folder keeps the generator it was made with.
+    [ -f "$build/CMakeCache.txt" ] || generator=(-G Ninja)
+    cmake -S "$root" -B "$build" "${generator[@]}" -DCMAKE_BUILD_TYPE=Release
+    cmake --build "$build" --parallel "$(nproc)" ${1:+--target "$@"}
+}

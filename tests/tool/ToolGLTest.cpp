@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+#include "support/GLTest.h"
+#include "support/Process.h"
+#include "support/ScratchFolder.h"
+#include "tool/SmallGltf.h"
+
+#include <nlohmann/json.hpp>
+#include <osgDB/ReadFile>
+
+#include <cmath>
+#include <string>
+
+namespace osgGpuAnimation
+{
+namespace
+{
+
+using nlohmann::json;
+
+class ToolGLTest : public GLTest
+{
+protected:
+    ScratchFolder folder;
+    std::string flag = folder.write("flag.gltf", swingingFlag());
+};
+
+osg::Vec4 colour(const osg::Image& image, unsigned int x, unsigned int y)
+{
+    return image.getColor(x, y);
+}
+
+/// Pixels that are not the background's, which has one colour a row.
+int drawnPixels(const osg::Image& image)
+{
+    int count = 0;
+    for (int y = 0; y < image.t(); ++y)
+        for (int x = 0; x < image.s(); ++x)
+            if ((image.getColor(x, y) - image.getColor(0, y)).length() > 0.05f) ++count;
+    return count;
+}
+
+double largestDifference(const json& a, const json& b)
+{
+    double largest = 0.0;
+    for (std::size_t i = 0; i < 16; ++i)
+        largest = std::max(largest, std::abs(a[i].get<double>() - b[i].get<double>()));
+    return largest;
+}
+
+} // namespace
+
+TEST_F(ToolGLTest, poseOnTheGpuIsPoseOnTheCpu)
+{
+    json poses[2];
+    const char* const evaluators[] = {"gpu", "cpu"};
+    for (int e = 0; e < 2; ++e)
+    {
+        const Process done = Process::run(OSGGPUANIM, {"pose", flag, "--time", "0.7", "--evaluator", evaluators[e]});
+        ASSERT_EQ(done.status, 0) << done.err;
+        poses[e] = json::parse(done.out)["frames"][0];
+    }
+    for (std::size_t node = 0; node < 2; ++node)
+        EXPECT_LE(largestDifference(poses[0]["nodes"][node], poses[1]["nodes"][node]), 1e-6) << "node " << node;
+    for (std::size_t i = 0; i < 3; ++i)
+        EXPECT_NEAR(poses[0]["bbox"][1][i].get<double>(), poses[1]["bbox"][1][i].get<double>(), 1e-6);
+}
+
+TEST_F(ToolGLTest, rendersTheFlagUprightAndRed)
+{
+    const std::string picture = folder.file("flag.png");
+    const Process done = Process::run(OSGGPUANIM, {"render", flag, "--size", "160x120", "-o", picture});
+    ASSERT_EQ(done.status, 0) << done.err;
+    EXPECT_EQ(done.err, "");
+    const osg::ref_ptr<osg::Image> image = osgDB::readRefImageFile(picture);
+    ASSERT_TRUE(image);
+    EXPECT_EQ(image->s(), 160);
+    EXPECT_EQ(image->t(), 120);
+    EXPECT_GT(drawnPixels(*image), 160 * 120 / 20);
+    EXPECT_LT(drawnPixels(*image), 160 * 120 * 9 / 10);
+    int red = 0;
+    for (int y = 0; y < image->t(); ++y)
+        for (int x = 0; x < image->s(); ++x)
+            if (colour(*image, x, y).r() > 2.0f * colour(*image, x, y).g()) ++red;
+    EXPECT_GT(red, 160 * 120 / 20);
+    // osg::Image's first row is the lowest; the background is lighter above.
+    EXPECT_GT(colour(*image, 0, 119).r(), colour(*image, 0, 0).r());
+}
+
+TEST_F(ToolGLTest, rendersNumberedPicturesThatMove)
+{
+    const Process done = Process::run(OSGGPUANIM, {"render", flag, "--clip", "Swing", "--size", "64x64", "--frames",
+                                                   "3", "--fps", "2", "-o", folder.file("swing.png")});
+    ASSERT_EQ(done.status, 0) << done.err;
+    osg::ref_ptr<osg::Image> pictures[3];
+    for (int i = 0; i < 3; ++i)
+    {
+        pictures[i] = osgDB::readRefImageFile(folder.file("swing.000" + std::to_string(i + 1) + ".png"));
+        ASSERT_TRUE(pictures[i]) << i;
+        EXPECT_GT(drawnPixels(*pictures[i]), 100);
+    }
+    EXPECT_NE(std::string(reinterpret_cast<const char*>(pictures[0]->data()), pictures[0]->getTotalSizeInBytes()),
+              std::string(reinterpret_cast<const char*>(pictures[1]->data()), pictures[1]->getTotalSizeInBytes()));
+    EXPECT_FALSE(std::filesystem::exists(folder.file("swing.png")));
+    EXPECT_FALSE(std::filesystem::exists(folder.file("swing.0004.png")));
+}
+
+TEST_F(ToolGLTest, aPictureThatCannotBeWrittenIsStatus1)
+{
+    const std::string nowhere = folder.file("no/such/flag.png");
+    const Process done = Process::run(OSGGPUANIM, {"render", flag, "--size", "8x8", "-o", nowhere});
+    EXPECT_EQ(done.status, 1);
+    EXPECT_NE(done.err.find(nowhere + ": cannot be written"), std::string::npos) << done.err;
+}
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: MIT
+#include "support/Process.h"
+#include "support/ScratchFolder.h"
+#include "tool/SmallGltf.h"
+
+#include <nlohmann/json.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace osgGpuAnimation
+{
+namespace
+{
+
+using nlohmann::json;
+using Arguments = std::vector<std::string>;
+
+class ToolTest : public ::testing::Test
+{
+protected:
+    Process run(Arguments arguments) const
+    {
+        for (std::string& argument : arguments)
+            if (argument == "FLAG") argument = flag;
+        return Process::run(OSGGPUANIM, arguments);
+    }
+
+    ScratchFolder folder;
+    std::string flag = folder.write("flag.gltf", swingingFlag());
+};
+
+std::string joined(const Arguments& arguments)
+{
+    std::string text;
+    for (const std::string& argument : arguments)
+        text += argument + " ";
+    return text;
+}
+
+} // namespace
+
+TEST_F(ToolTest, helpTeachesTheCommands)
+{
+    const Process help = run({"--help"});
+    EXPECT_EQ(help.status, 0);
+    for (const char* word : {"inspect", "pose", "render", "osggpuanim render fox.glb -o fox.png", "Exit status"})
+        EXPECT_NE(help.out.find(word), std::string::npos) << word << " in\n" << help.out;
+    for (const char* command : {"inspect", "pose", "render"})
+    {
+        const Process more = run({command, "--help"});
+        EXPECT_EQ(more.status, 0) << command;
+        EXPECT_NE(more.out.find(std::string("  osggpuanim ") + command), std::string::npos) << more.out;
+    }
+}
+
+TEST_F(ToolTest, wrongUsageEndsWithStatus2)
+{
+    const std::vector<Arguments> lines{
+        {},
+        {"dance"},
+        {"inspect"},
+        {"inspect", "FLAG", "--yaml"},
+        {"pose", "FLAG"},
+        {"pose", "FLAG", "--time"},
+        {"pose", "FLAG", "--time", "soon"},
+        {"pose", "FLAG", "--time", "nan"},
+        {"pose", "FLAG", "--time", "1", "--evaluator", "abacus"},
+        {"pose", "FLAG", "--time", "1", "--like", "FLAG"},
+        {"pose", "FLAG", "--time", "1", "--bind"},
+        {"render", "FLAG"},
+        {"render", "FLAG", "-o", "flag.jpg"},
+        {"render", "FLAG", "-o", "flag.png", "--size", "800"},
+        {"render", "FLAG", "-o", "flag.png", "--size", "0x600"},
+        {"render", "FLAG", "-o", "flag.png", "--size", "800x600x3"},
+        {"render", "FLAG", "-o", "flag.png", "--size", "8193x600"},
+        {"render", "FLAG", "-o", "flag.png", "--frames", "0"},
+        {"render", "FLAG", "-o", "flag.png", "--frames", "2", "--fps", "0"},
+        {"render", "FLAG", "-o", "flag.png", "--fps", "24"},
+    };
+    for (const Arguments& line : lines)
+    {
+        const Process done = run(line);
+        EXPECT_EQ(done.status, 2) << joined(line);
+        EXPECT_NE(done.err, "") << joined(line);
+        EXPECT_EQ(done.out, "") << joined(line);
+    }
+}
+
+TEST_F(ToolTest, aFaultyFileEndsWithStatus1AndOneLine)
+{
+    const std::string missing = folder.file("missing.glb");
+    const std::string empty = folder.write("empty.glb", "");
+    const std::string cut = folder.write("cut.gltf", swingingFlag().substr(0, 300));
+    const std::string cutGlb = folder.write("cut.glb", std::string("glTF\2\0\0\0\xff\0\0\0", 12));
+    const std::string notes = folder.write("notes.json", R"({"schema": "something else"})");
+    const std::string bare = folder.write("bare.json", R"({"schema": "gltf-pose/1", "frames": 7})");
+    const std::string greedy = folder.write("greedy.json", R"({"schema": "gltf-pose/1", "clip": null,
+        "frames": [{"time": 0}], "primitives": [{"node": 1, "primitive": 0, "sampled": [4]}]})");
+    const std::string future = folder.write("future.json", R"({"schema": "gltf-pose/1", "clip": {"index": 5},
+        "frames": [{"time": 0}]})");
+    const std::string weighted = folder.write("weighted.json", R"({"schema": "gltf-pose/1", "clip": null,
+        "frames": [{"time": 0}], "fixedWeights": [{"node": 1, "weights": [1]}]})");
+    const std::string nowhere = folder.file("no/such/folder/out");
+    struct Case
+    {
+        Arguments arguments;
+        std::string atFault; ///< the file the message begins with
+        std::string says;
+    };
+    const std::vector<Case> cases{
+        {{"inspect", missing}, missing, "no such file"},
+        {{"inspect", folder.file("")}, folder.file(""), "folder"},
+        {{"inspect", empty}, empty, "empty"},
+        {{"inspect", cut}, cut, ""},
+        {{"inspect", cutGlb}, cutGlb, ""},
+        {{"inspect", "/dev/zero"}, "/dev/zero", "not a regular file"},
+        {{"pose", missing, "--time", "0"}, missing, "no such file"},
+        {{"render", missing, "-o", folder.file("x.png")}, missing, "no such file"},
+        {{"pose", "FLAG", "--clip", "Fly", "--time", "0"}, flag, "Fly"},
+        {{"render", "FLAG", "--clip", "Fly", "-o", folder.file("x.png")}, flag, "Fly"},
+        {{"pose", "FLAG", "--like", missing}, missing, "cannot be read"},
+        {{"pose", "FLAG", "--like", folder.file("")}, folder.file(""), ""},
+        {{"pose", "FLAG", "--like", cut}, cut, ""},
+        {{"pose", "FLAG", "--like", notes}, notes, "gltf-pose/1"},
+        {{"pose", "FLAG", "--like", bare}, bare, "clip"},
+        {{"pose", "FLAG", "--like", greedy, "--evaluator", "cpu"}, flag, "vertex 4 is asked for, it has 4"},
+        {{"pose", "FLAG", "--like", future, "--evaluator", "cpu"}, flag, "animations[5]"},
+        {{"pose", "FLAG", "--like", weighted, "--evaluator", "cpu"}, flag, "no morph targets"},
+        {{"pose", "FLAG", "--time", "0", "--evaluator", "cpu", "-o", nowhere}, nowhere, "cannot be written"},
+    };
+    for (const Case& one : cases)
+    {
+        SCOPED_TRACE(joined(one.arguments));
+        const Process done = run(one.arguments);
+        EXPECT_EQ(done.status, 1);
+        EXPECT_EQ(done.out, "");
+        EXPECT_EQ(done.err.rfind("osggpuanim: " + one.atFault + ": ", 0), 0u) << done.err;
+        EXPECT_NE(done.err.find(one.says), std::string::npos) << done.err;
+        EXPECT_EQ(std::count(done.err.begin(), done.err.end(), '\n'), 1) << done.err;
+    }
+}
+
+TEST_F(ToolTest, inspectSaysWhatIsInTheFile)
+{
+    const Process done = run({"inspect", "FLAG", "--json"});
+    ASSERT_EQ(done.status, 0) << done.err;
+    const json report = json::parse(done.out);
+    EXPECT_EQ(report["joints"]["count"], 2);
+    EXPECT_EQ(report["joints"]["depth"], 2);
+    EXPECT_EQ(report["joints"]["roots"], json({"hinge"}));
+    EXPECT_EQ(report["skins"], json::array());
+    EXPECT_EQ(report["paletteEntries"], 2);
+    ASSERT_EQ(report["clips"].size(), 2u);
+    EXPECT_EQ(report["clips"][0]["name"], "Swing");
+    EXPECT_EQ(report["clips"][0]["seconds"], 2.0);
+    EXPECT_EQ(report["clips"][0]["keyframes"], 2);
+    EXPECT_EQ(report["clips"][1]["name"], "Rise");
+    EXPECT_EQ(report["meshes"]["count"], 1);
+    EXPECT_EQ(report["meshes"]["vertices"], 4);
+    EXPECT_EQ(report["meshes"]["rigid"], 1);
+    EXPECT_EQ(report["materials"], json({"red"}));
+    EXPECT_EQ(report["extensions"], json::array());
+    EXPECT_GT(report["gpuBytes"]["animation"], 0);
+    EXPECT_GE(report["gpuBytes"]["meshes"], 4 * 12);
+    EXPECT_EQ(report["gpuBytes"]["total"], report["gpuBytes"]["animation"].get<int>() +
+                                               report["gpuBytes"]["meshes"].get<int>() +
+                                               report["gpuBytes"]["textures"].get<int>());
+    EXPECT_EQ(report["warnings"], json::array());
+
+    const Process text = run({"inspect", "FLAG"});
+    EXPECT_EQ(text.status, 0);
+    for (const char* word : {"hinge", "Swing", "2.000 s", "palette entries", "red", "bytes on the GPU"})
+        EXPECT_NE(text.out.find(word), std::string::npos) << word << " in\n" << text.out;
+}
+
+TEST_F(ToolTest, poseHoldsTheClipsEndsAndTakesNamesAndNumbers)
+{
+    const Process named =
+        run({"pose", "FLAG", "--clip", "Swing", "--time", "-1", "--time", "1", "--time", "9", "--evaluator", "cpu"});
+    ASSERT_EQ(named.status, 0) << named.err;
+    const json poses = json::parse(named.out);
+    EXPECT_EQ(poses["schema"], "gltf-pose/1");
+    EXPECT_EQ(poses["clip"]["index"], 0);
+    ASSERT_EQ(poses["frames"].size(), 3u);
+    const double degrees[] = {0.0, 45.0, 90.0};
+    for (std::size_t f = 0; f < 3; ++f)
+    {
+        // Column-major: the hinge's x axis is its first column.
+        const json& hinge = poses["frames"][f]["nodes"][0];
+        const double angle = degrees[f] * std::acos(-1.0) / 180.0;
+        EXPECT_NEAR(hinge[0].get<double>(), std::cos(angle), 1e-6);
+        EXPECT_NEAR(hinge[1].get<double>(), std::sin(angle), 1e-6);
+        EXPECT_NEAR(poses["frames"][f]["nodes"][1][12].get<double>(), -std::sin(angle), 1e-6);
+    }
+    EXPECT_NEAR(poses["frames"][2]["bbox"][0][0].get<double>(), -2.0, 1e-6);
+
+    for (const Arguments& line : {Arguments{"pose", "FLAG", "--clip", "1", "--time", "0.5", "--evaluator", "cpu"},
+                                  Arguments{"pose", "FLAG", "--clip", "Rise", "--time", "0.5", "--evaluator", "cpu"}})
+    {
+        const Process done = run(line);
+        ASSERT_EQ(done.status, 0) << done.err;
+        EXPECT_NEAR(json::parse(done.out)["frames"][0]["nodes"][0][13].get<double>(), 0.5, 1e-6) << joined(line);
+    }
+    const Process bind = run({"pose", "FLAG", "--bind", "--evaluator", "cpu"});
+    ASSERT_EQ(bind.status, 0) << bind.err;
+    EXPECT_EQ(json::parse(bind.out)["clip"], nullptr);
+}
+
+TEST_F(ToolTest, poseLikeAnswersItsOwnDocument)
+{
+    const std::string first = folder.file("first.json");
+    ASSERT_EQ(run({"pose", "FLAG", "--clip", "1", "--time", "0.25", "--evaluator", "cpu", "-o", first}).status, 0);
+    const std::string second = folder.file("second.json");
+    ASSERT_EQ(run({"pose", "FLAG", "--like", first, "--evaluator", "cpu", "-o", second}).status, 0);
+    EXPECT_EQ(json::parse(std::ifstream(second)), json::parse(std::ifstream(first)));
+}
+
+} // namespace osgGpuAnimation

@@ -3,6 +3,7 @@
 
 #include "PaletteBuilder.h"
 #include <osgGpuAnimation/animation/ClipBuilder.h>
+#include <osgGpuAnimation/animation/JointMask.h>
 
 #include <algorithm>
 #include <cmath>
@@ -132,6 +133,16 @@ std::vector<JointTransform> AnimationSet::keyframeBuffer() const
         buffer.insert(buffer.end(), _restPose.begin(), _restPose.begin() + static_cast<std::ptrdiff_t>(missing));
     }
     return buffer;
+}
+
+Result<std::uint32_t> AnimationSet::addMask(const JointMask& mask) const
+{
+    if (mask.weights().size() != trackCount())
+        return Error{"a mask of " + std::to_string(mask.weights().size()) + " tracks for a set of " +
+                     std::to_string(trackCount())};
+    const std::uint32_t number = _masks.add(mask.weights());
+    if (number == 0) return Error{"the set has " + std::to_string(MaskTable::maxMasks) + " masks already"};
+    return number;
 }
 
 } // namespace osgGpuAnimation

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/Clip.h>
+#include <osgGpuAnimation/animation/MaskTable.h>
 #include <osgGpuAnimation/animation/MorphWeights.h>
 #include <osgGpuAnimation/animation/Result.h>
 #include <osgGpuAnimation/animation/Skeleton.h>
@@ -13,6 +14,8 @@
 
 namespace osgGpuAnimation
 {
+
+class JointMask;
 
 /// Joints with their inverse bind matrices (glTF 2.0, section 3.7.3).
 struct Skin
@@ -106,6 +109,12 @@ public:
     /// The contents of that buffer: keyframeBufferSize() transforms, exactly as they go to the GPU.
     std::vector<JointTransform> keyframeBuffer() const;
 
+    /// Takes a mask up for all layers that are to use it, and returns its number (see BlendSample::control). Masks are
+    /// only ever added, so a set that is in use can take more; equal ones are stored once.
+    /// Errors: the mask has not one weight a track of this set; MaskTable::maxMasks are there already.
+    Result<std::uint32_t> addMask(const JointMask& mask) const;
+    const MaskTable& masks() const { return _masks; }
+
 private:
     explicit AnimationSet(AnimationParts parts);
 
@@ -120,6 +129,7 @@ private:
     std::vector<int> _entryOfMorph;
     std::vector<std::size_t> _keyframeOffsets;
     std::size_t _keyframeBufferSize = 0;
+    mutable MaskTable _masks;
 };
 
 } // namespace osgGpuAnimation

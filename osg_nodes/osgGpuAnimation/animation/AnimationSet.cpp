@@ -60,6 +60,16 @@ std::optional<Error> findFault(const AnimationParts& parts, std::size_t trackCou
     return std::nullopt;
 }
 
+std::string quotedNames(const std::vector<Clip>& clips)
+{
+    constexpr std::size_t most = 50;
+    std::string names;
+    for (std::size_t c = 0; c < std::min(clips.size(), most); ++c)
+        names += (c == 0 ? "\"" : ", \"") + clips[c].name() + "\"";
+    if (clips.size() > most) names += ", … (" + std::to_string(clips.size()) + " in all)";
+    return names.empty() ? "none" : names;
+}
+
 } // namespace
 
 AnimationSet::AnimationSet(AnimationParts parts) : _parts(std::move(parts))
@@ -116,6 +126,20 @@ int AnimationSet::findClip(const std::string& name) const
     for (std::size_t c = 0; c < _parts.clips.size(); ++c)
         if (_parts.clips[c].name() == name) return static_cast<int>(c);
     return -1;
+}
+
+Result<std::size_t> AnimationSet::clipNamed(const std::string& name) const
+{
+    const int clip = findClip(name);
+    if (clip < 0) return Error{"there is no clip \"" + name + "\"; the clips are " + quotedNames(_parts.clips)};
+    return static_cast<std::size_t>(clip);
+}
+
+Result<std::size_t> AnimationSet::clipAt(std::size_t clip) const
+{
+    if (clip >= _parts.clips.size())
+        return Error{"there is no clip " + std::to_string(clip) + "; the clips are " + quotedNames(_parts.clips)};
+    return clip;
 }
 
 std::vector<JointTransform> AnimationSet::keyframeBuffer() const

@@ -100,6 +100,9 @@ public:
 
     /// -1 where there is none. Of several clips of one name, the first.
     int findClip(const std::string& name) const;
+    /// The clip of that name or number, or an error that lists the names there are.
+    Result<std::size_t> clipNamed(const std::string& name) const;
+    Result<std::size_t> clipAt(std::size_t clip) const;
 
     /// All keyframes lie in one buffer of JointTransforms on the GPU: the rest pose (twice), then clip after clip.
     /// keyframeOffset is the place of a clip's first keyframe there.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/AnimationController.h>
 
+#include "MotionBlend.h"
 #include "StepEvents.h"
 
 #include <algorithm>
@@ -13,11 +14,14 @@ namespace osgGpuAnimation
 AnimationController::AnimationController(std::shared_ptr<const AnimationSet> set) : _set(std::move(set))
 {
     assert(_set && "a controller plays the clips of a set");
+    _hasRootMotion = std::any_of(_set->clips().begin(), _set->clips().end(),
+                                 [](const Clip& clip) { return clip.rootMotion() != nullptr; });
     layer(0);
 }
 
 AnimationController::AnimationController(const AnimationController& other)
-    : _set(other._set), _instruction(other._instruction)
+    : _set(other._set), _instruction(other._instruction), _rootMotion(other._rootMotion),
+      _hasRootMotion(other._hasRootMotion)
 {
     copyLayers(other);
 }
@@ -27,6 +31,8 @@ AnimationController& AnimationController::operator=(const AnimationController& o
     if (this == &other) return *this;
     _set = other._set;
     _instruction = other._instruction;
+    _rootMotion = other._rootMotion;
+    _hasRootMotion = other._hasRootMotion;
     copyLayers(other);
     return *this;
 }
@@ -60,6 +66,7 @@ const PoseInstruction& AnimationController::advance(double seconds)
     for (std::size_t i = 0; i < _layerCount; ++i)
         _layers[i]->advance(step);
     show();
+    if (_hasRootMotion) goOn();
     if (_eventCallback && hasEvents()) tellEvents();
     return _instruction;
 }
@@ -70,6 +77,22 @@ void AnimationController::show()
     for (std::size_t i = 0; i < _layerCount; ++i)
         _layers[i]->collect(stack);
     stack.write(_instruction);
+}
+
+void AnimationController::goOn()
+{
+    MotionBlend blend;
+    for (std::size_t i = 0; i < _layerCount; ++i)
+        _layers[i]->collectMotion(blend);
+    const RootMotion step = blend.result();
+    if (!step.isNone()) _rootMotion = (_rootMotion.isNone() ? RootMotion{{}, 0.0, step.up} : _rootMotion) * step;
+}
+
+RootMotion AnimationController::takeRootMotion()
+{
+    const RootMotion taken = _rootMotion;
+    _rootMotion = RootMotion();
+    return taken;
 }
 
 void AnimationController::setEventCallback(EventCallback callback)

@@ -5,6 +5,7 @@
 #include <osgGpuAnimation/animation/AnimationLayer.h>
 #include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/animation/PoseInstruction.h>
+#include <osgGpuAnimation/animation/RootMotion.h>
 
 #include <array>
 #include <functional>
@@ -83,6 +84,12 @@ public:
     /// The instruction for the current times, as advance(0) would give.
     const PoseInstruction& instruction() const { return _instruction; }
 
+    /// The motion of the clips that was taken out of them (see withRootMotion), gone through by all advance() since it
+    /// was last taken: to be put before the character's own placement. Layers and crossfades blend it as they blend the
+    /// pose of the joint it came from; additive layers play no part. Seeking, playing and stopping move nothing.
+    RootMotion takeRootMotion();
+    const RootMotion& rootMotion() const { return _rootMotion; } ///< the same, left where it is
+
     /// Told from within advance(), in the thread that calls it, when all layers have moved. It may do anything with
     /// the controller (play, crossfade, set another callback …) but destroy it; events of the step that are still to
     /// come are those of the step as it was. An empty function: none.
@@ -97,12 +104,15 @@ private:
     void show();
     bool hasEvents() const;
     void tellEvents();
+    void goOn();
 
     std::shared_ptr<const AnimationSet> _set;
     std::array<std::unique_ptr<AnimationLayer>, maxLayers> _layers;
     std::size_t _layerCount = 0;
     std::shared_ptr<const EventCallback> _eventCallback;
     PoseInstruction _instruction;
+    RootMotion _rootMotion;
+    bool _hasRootMotion = false; ///< the set has
 };
 
 } // namespace osgGpuAnimation

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/AnimationLayer.h>
 
+#include "MotionBlend.h"
 #include <osgGpuAnimation/animation/AnimationController.h>
 #include <osgGpuAnimation/animation/JointMask.h>
+#include <osgGpuAnimation/animation/RootMotionCurve.h>
 
 #include <layout.glsl>
 
@@ -202,6 +204,22 @@ void AnimationLayer::collect(SampleStack& out) const
             out.addDifference(sampleOf(voice.playback, 0.0, voice.share), sample);
         else
             out.addDifference(BlendSample{0, 0.0f, sample.weight, _mask << POSE_SAMPLE_MASK_SHIFT}, sample);
+    }
+}
+
+void AnimationLayer::collectMotion(MotionBlend& out) const
+{
+    if (_state == PlayState::Stopped || _mode == Mode::Additive) return;
+    const AnimationSet& set = _owner.set();
+    const float* mask = set.masks().weights(_mask);
+    for (std::size_t v = 0; v < _mixer.voiceCount(); ++v)
+    {
+        const ClipMixer::Voice& voice = _mixer.voice(v);
+        const Clip& clip = set.clips()[static_cast<std::size_t>(voice.playback.clip())];
+        const RootMotionCurve* curve = clip.rootMotion();
+        if (!curve) continue;
+        const double weight = voice.share * _weight.value() * (mask ? static_cast<double>(mask[curve->joint]) : 1.0);
+        out.add(curve->during(clip, voice.move, voice.playback.loopMode()), weight, _standing);
     }
 }
 

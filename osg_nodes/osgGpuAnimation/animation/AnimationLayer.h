@@ -15,6 +15,7 @@ namespace osgGpuAnimation
 
 class AnimationController;
 class JointMask;
+class MotionBlend;
 
 /// Layers a controller may have.
 constexpr std::size_t maxLayers = 8;
@@ -120,6 +121,7 @@ private:
     ClipPlayback playbackOf(std::size_t clip, LoopMode loopMode) const;
     void advance(double seconds);
     void collect(SampleStack& out) const;
+    void collectMotion(MotionBlend& out) const;
     BlendSample sampleOf(const ClipPlayback& playback, double time, double share) const;
     void show();
 

@@ -72,7 +72,7 @@ std::string quotedNames(const std::vector<Clip>& clips)
 
 } // namespace
 
-AnimationSet::AnimationSet(AnimationParts parts) : _parts(std::move(parts))
+AnimationSet::AnimationSet(AnimationParts parts, const MaskTable& masks) : _parts(std::move(parts)), _masks(masks)
 {
     _restPose = osgGpuAnimation::restPose(_parts.skeleton, _parts.morphs);
     std::size_t track = _parts.skeleton.jointCount();
@@ -103,12 +103,24 @@ AnimationSet::AnimationSet(AnimationParts parts) : _parts(std::move(parts))
 
 Result<std::shared_ptr<const AnimationSet>> AnimationSet::create(AnimationParts parts)
 {
+    return make(std::move(parts), MaskTable());
+}
+
+Result<std::shared_ptr<const AnimationSet>> AnimationSet::withClips(std::vector<Clip> clips) const
+{
+    AnimationParts parts = _parts;
+    parts.clips = std::move(clips);
+    return make(std::move(parts), _masks);
+}
+
+Result<std::shared_ptr<const AnimationSet>> AnimationSet::make(AnimationParts parts, const MaskTable& masks)
+{
     std::size_t trackCount = parts.skeleton.jointCount();
     for (const MorphWeights& morph : parts.morphs)
         trackCount += morph.blockCount();
     if (auto fault = findFault(parts, trackCount)) return *fault;
 
-    const std::shared_ptr<const AnimationSet> set(new AnimationSet(std::move(parts)));
+    const std::shared_ptr<const AnimationSet> set(new AnimationSet(std::move(parts), masks));
     if (set->keyframeBufferSize() > std::numeric_limits<std::uint32_t>::max())
         return Error{"its clips take " + std::to_string(set->keyframeBufferSize()) +
                      " joint transforms, more than 32-bit offsets reach"};

@@ -74,6 +74,11 @@ public:
     /// that is not finite, a clip with a wrong number of tracks, more keyframes than 32-bit offsets reach.
     static Result<std::shared_ptr<const AnimationSet>> create(AnimationParts parts);
 
+    /// The same skeleton, skins, morphs and masks with other clips: with markers, say, see Clip::withMarkers. What a
+    /// mesh knows of this set (palette entries) holds for that one too.
+    /// Errors: those of create().
+    Result<std::shared_ptr<const AnimationSet>> withClips(std::vector<Clip> clips) const;
+
     const Skeleton& skeleton() const { return _parts.skeleton; }
     const std::vector<Skin>& skins() const { return _parts.skins; }
     const std::vector<MorphWeights>& morphs() const { return _parts.morphs; }
@@ -119,7 +124,8 @@ public:
     const MaskTable& masks() const { return _masks; }
 
 private:
-    explicit AnimationSet(AnimationParts parts);
+    AnimationSet(AnimationParts parts, const MaskTable& masks);
+    static Result<std::shared_ptr<const AnimationSet>> make(AnimationParts parts, const MaskTable& masks);
 
     AnimationParts _parts;
     std::vector<JointTransform> _restPose;

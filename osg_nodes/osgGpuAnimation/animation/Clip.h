@@ -13,6 +13,8 @@
 namespace osgGpuAnimation
 {
 
+struct RootMotionCurve;
+
 /// A clip: keyframes in time order; each keyframe is a snapshot of **all tracks** (all joints, then all weight blocks).
 ///
 /// Between two keyframes a track is mixed: Linear clips mix translations, scales and weights componentwise and slerp
@@ -58,11 +60,15 @@ public:
     /// Error: a time that is negative or not finite.
     Result<Clip> withMarkers(std::vector<ClipMarker> markers) const;
 
+    /// The motion that was taken out of this clip, see withRootMotion(); null where none was.
+    const RootMotionCurve* rootMotion() const { return _rootMotion.get(); }
+
     /// By binary search; times before the first keyframe give the first, after the last the last.
     Span locate(double time) const;
 
 private:
     friend class ClipBuilder;
+    friend class RootMotionExtractor;
     Clip() = default;
 
     std::string _name;
@@ -71,6 +77,7 @@ private:
     std::vector<float> _times;
     std::shared_ptr<std::vector<JointTransform>> _data = std::make_shared<std::vector<JointTransform>>();
     std::vector<ClipMarker> _markers;
+    std::shared_ptr<const RootMotionCurve> _rootMotion;
 };
 
 } // namespace osgGpuAnimation

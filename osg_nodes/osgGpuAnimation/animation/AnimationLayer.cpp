@@ -50,6 +50,9 @@ Result<bool> AnimationLayer::crossfade(std::size_t clip, double seconds, const C
     if (!known) return known.error();
     if (!std::isfinite(seconds) || seconds < 0.0)
         return Error{"a crossfade of " + std::to_string(seconds) + " seconds"};
+    if (options.speed && !std::isfinite(*options.speed))
+        return Error{"a crossfade to a speed of " + std::to_string(*options.speed)};
+    if (options.speed) _speed = *options.speed;
     if (options.loopMode) _loopMode = *options.loopMode;
     if (_state == PlayState::Stopped) _mixer.clear();
     ClipPlayback playback = playbackOf(clip, _loopMode);

@@ -53,7 +53,8 @@ public:
 
     /// Fades to a clip over so many seconds, from whatever is shown: another clip, a crossfade under way, nothing.
     /// Meanwhile the clips that fade out play on. 0 seconds: as play().
-    /// Errors: no such clip; seconds that are negative or not finite. The layer is unchanged then.
+    /// Errors: no such clip; seconds that are negative or not finite; a speed that is not finite. The layer is
+    /// unchanged then.
     Result<bool> crossfade(std::size_t clip, double seconds, const CrossfadeOptions& options = {});
     Result<bool> crossfade(const std::string& name, double seconds, const CrossfadeOptions& options = {});
 

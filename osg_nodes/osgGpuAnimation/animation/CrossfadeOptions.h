@@ -21,7 +21,8 @@ struct CrossfadeOptions
 {
     FadeCurve curve = FadeCurve::Linear;
     Sync sync = Sync::Start;
-    std::optional<LoopMode> loopMode; ///< of the new clip; nothing: the layer's
+    std::optional<LoopMode> loopMode = std::nullopt; ///< from the new clip on; nothing: the layer's
+    std::optional<double> speed = std::nullopt;      ///< from the new clip on, finite; nothing: the layer's
 };
 
 } // namespace osgGpuAnimation

@@ -89,6 +89,29 @@ TEST(AnimationLayerTest, TheOrderOfLayersOfEqualStandingPlaysNoPart)
             EXPECT_LE(turnBetween(poses[i][j].rotation, poses[0][j].rotation), 1e-3) << "joint " << j;
 }
 
+TEST(AnimationLayerTest, NorDoesItWhereRotationsLieOnNoOneHemisphere)
+{
+    // Turns of 0, 160 and 320 degrees: each is within a half turn of the next, but the first and the last are not.
+    const auto set = makeGaitSet();
+    const double times[] = {0.0, 1.5 * 160.0 / 360.0, 1.5 * 320.0 / 360.0};
+    const float weights[] = {0.3f, 0.4f, 0.3f};
+    std::vector<glm::vec4> hips;
+    for (const auto& order : {std::array<std::size_t, 3>{0, 1, 2}, {2, 1, 0}, {1, 2, 0}, {0, 2, 1}})
+    {
+        AnimationController controller(set);
+        for (std::size_t place = 0; place < 3; ++place)
+        {
+            AnimationLayer& layer = controller.layer(place);
+            layer.setStanding(0);
+            ASSERT_TRUE(layer.play("Turn"));
+            ASSERT_TRUE(layer.setWeight(weights[order[place]]));
+            ASSERT_TRUE(layer.seek(times[order[place]]));
+        }
+        hips.push_back(mixed(controller)[0].rotation);
+        EXPECT_LE(turnBetween(hips.back(), hips.front()), 1e-3);
+    }
+}
+
 TEST(AnimationLayerTest, AnAdditiveLayerAddsWhatIsBesidesItsReference)
 {
     const auto set = makeGaitSet();

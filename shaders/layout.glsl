@@ -5,7 +5,18 @@
 #define POSE_TEXELS_PER_TRANSFORM 3
 
 // Blend samples: RGBA32UI, a texel each: keyframe, alpha (float bits), weight (float bits), control.
-#define POSE_SAMPLE_SPLINE 1u // the clip's tracks are value, in-tangent, out-tangent
+// The upper 16 bits of control are the number of a mask (0: none), the others are bits of these:
+#define POSE_SAMPLE_SPLINE 1u    // the clip's tracks are value, in-tangent, out-tangent
+#define POSE_SAMPLE_ADDITIVE 2u  // adds its difference from the REFERENCE right before it
+#define POSE_SAMPLE_REFERENCE 4u // no share in the pose; its weight is that of the sample after it
+#define POSE_SAMPLE_ABOVE 8u     // the first of a standing above that of the samples before it
+#define POSE_SAMPLE_MASK_SHIFT 16
+
+// Additive layers leave axes of a smaller reference scale as they are.
+#define POSE_SMALLEST_SCALE 1e-6
+
+// Masks: RGBA32F, a weight a track, four to a texel, each mask beginning a texel; mask 0 is all 1.
+#define POSE_WEIGHTS_PER_MASK_TEXEL 4
 
 // Palette entries, the static part: RGBA32F, seven texels each: head, three rows of parentBind, three of inverseBind.
 // The head's four components hold whole numbers: parent entry (-1: the root), track (-1: none), is it weights (1 or 0), 0.

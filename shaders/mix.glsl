@@ -2,11 +2,13 @@
 // Stage 1, mix: a track's joint transform from the two keyframes of each blend sample of its instance.
 
 // The program's variant says by constants what a batch needs, since some drivers run both sides of every branch:
-// const bool hasSplines, hasSeveralSamples, hasWeights.
+// const bool hasSplines, hasSeveralSamples, hasWeights, hasLayers, hasMasks, hasAdditive.
 
 uniform samplerBuffer keyframes;  // joint transforms, all clips of the set one after another
 uniform usamplerBuffer samples;   // sampleStride blend samples an instance
 uniform int sampleStride;
+uniform samplerBuffer masks;      // maskStride texels a mask
+uniform int maskStride;
 
 struct JointTransform
 {
@@ -28,17 +30,21 @@ float sinc(float xx)
     return 0.999999996 + xx * (-0.16666658 + xx * (0.00833305062 + xx * (-0.000198090464 + xx * 2.60516628e-06)));
 }
 
-// Slerp the short way (glTF 2.0, appendix C.4), to 1.4e-7 in any driver: built-in acos and sin are coarse in some.
-// With u = |a - b|^2 / |a + b|^2 = tan^2(angle / 2), angle^2 is a smooth function of u, fitted on [0, 1]; sines are
-// divided by the angle, so that nothing breaks where it is 0.
+// With u = |a - b|^2 / |a + b|^2 of unit vectors, which is tan^2(angle / 2), angle^2 / 4 is a smooth function of u,
+// fitted on [0, 1]: exact to 1.4e-7 in any driver, while built-in acos and sin are coarse in some.
+float quarterSquared(float u)
+{
+    return u * (0.99999963 + u * (-0.666617055 + u * (0.509996058 + u * (-0.40925846 +
+           u * (0.313398578 + u * (-0.196748293 + u * (0.0821934253 - u * 0.0161138961)))))));
+}
+
+// Slerp the short way (glTF 2.0, appendix C.4). Sines are divided by the angle, so that nothing breaks where it is 0.
 vec4 slerpShortest(vec4 a, vec4 b, float alpha)
 {
     if (dot(a, b) < 0.0) b = -b;
     vec4 difference = a - b;
     vec4 sum = a + b;
-    float u = dot(difference, difference) / dot(sum, sum);
-    float angleSquared = u * (3.99999852 + u * (-2.66646802 + u * (2.03998423 + u * (-1.63703396 +
-                         u * (1.25359431 + u * (-0.786993173 + u * (0.328773701 - u * 0.0644555844)))))));
+    float angleSquared = 4.0 * quarterSquared(dot(difference, difference) / dot(sum, sum));
     float beta = 1.0 - alpha;
     return normalize(beta * sinc(beta * beta * angleSquared) * a + alpha * sinc(alpha * alpha * angleSquared) * b);
 }
@@ -80,25 +86,122 @@ JointTransform sampleTrack(uvec4 blendSample, int track, int trackCount, bool is
                              fetchTransform(next), alpha, isWeights);
 }
 
-// Several samples: weighted sums; rotations on the hemisphere of the first, made unit; what the weights lack of 1 is
-// filled with the rest pose, which is the set's first keyframe.
+float maskWeight(uint control, int track)
+{
+    return texelFetch(masks, int(control >> POSE_SAMPLE_MASK_SHIFT) * maskStride + track / POSE_WEIGHTS_PER_MASK_TEXEL)
+                     [track % POSE_WEIGHTS_PER_MASK_TEXEL];
+}
+
+void addScaled(inout JointTransform sum, JointTransform t, float factor)
+{
+    sum.translation += factor * t.translation;
+    sum.rotation += factor * t.rotation;
+    sum.scale += factor * t.scale;
+}
+
+// A standing's sum over what lies below it.
+JointTransform covered(JointTransform below, JointTransform standing, float weight, bool isWeights)
+{
+    float left = 1.0 - min(weight, 1.0);
+    if (!isWeights && dot(below.rotation, standing.rotation) < 0.0) below.rotation = -below.rotation;
+    JointTransform sum = JointTransform(left * below.translation, left * below.rotation, left * below.scale);
+    addScaled(sum, standing, 1.0 / max(weight, 1.0));
+    return sum;
+}
+
+vec4 quaternionProduct(vec4 a, vec4 b)
+{
+    return vec4(a.w * b.xyz + b.w * a.xyz + cross(a.xyz, b.xyz), a.w * b.w - dot(a.xyz, b.xyz));
+}
+
+// Axis times half the angle of a unit quaternion's turn by the shorter way.
+vec3 quaternionLogarithm(vec4 q)
+{
+    if (q.w < 0.0) q = -q;
+    float vv = dot(q.xyz, q.xyz);
+    return q.xyz / sinc(4.0 * quarterSquared((vv + (1.0 - q.w) * (1.0 - q.w)) / (vv + (1.0 + q.w) * (1.0 + q.w))));
+}
+
+// The logarithm's inverse, for |v| <= pi: the turn of a quarter, twice doubled, so that cosines stay far from 0.
+vec4 quaternionExponential(vec3 v)
+{
+    v *= 0.25;
+    vec3 sine = v * sinc(dot(v, v));
+    vec4 q = vec4(sine, sqrt(1.0 - dot(sine, sine)));
+    for (int i = 0; i < 2; ++i)
+        q = vec4(2.0 * q.w * q.xyz, 1.0 - 2.0 * dot(q.xyz, q.xyz));
+    return q;
+}
+
+// Differences of additive samples, summed: translation (and all of a weight block), logarithms, factors of the scale.
+struct Difference
+{
+    JointTransform sum;
+    vec3 turn;
+    vec3 growth;
+};
+
+void addDifference(inout Difference difference, JointTransform reference, JointTransform t, float weight)
+{
+    addScaled(difference.sum, t, weight);
+    addScaled(difference.sum, reference, -weight);
+    vec4 inverse = vec4(-reference.rotation.xyz, reference.rotation.w);
+    difference.turn += weight * quaternionLogarithm(quaternionProduct(inverse, t.rotation));
+    vec3 size = reference.scale.xyz;
+    vec3 isKept = vec3(lessThanEqual(abs(size), vec3(POSE_SMALLEST_SCALE)));
+    difference.growth *= 1.0 + weight * (1.0 - isKept) * (t.scale.xyz / (size + isKept) - 1.0);
+}
+
+JointTransform changed(JointTransform t, Difference difference, bool isWeights)
+{
+    if (isWeights)
+    {
+        addScaled(t, difference.sum, 1.0);
+        return t;
+    }
+    const float pi = 3.14159265;
+    float turned = length(difference.turn);
+    vec3 turn = difference.turn * (turned > pi ? pi / turned : 1.0);
+    return JointTransform(t.translation + difference.sum.translation,
+                          quaternionProduct(t.rotation, quaternionExponential(turn)),
+                          t.scale * vec4(difference.growth, 0.0));
+}
+
+// The samples of an instance to one track, as animation/PoseInstruction.h says. The rest pose is the set's first keyframe.
 JointTransform mixSamples(int instance, int track, int trackCount, bool isWeights)
 {
-    JointTransform sum = JointTransform(vec4(0.0), vec4(0.0), vec4(0.0));
-    float lacking = 1.0;
-    for (int i = 0; i <= sampleStride; ++i)
+    const JointTransform nothing = JointTransform(vec4(0.0), vec4(0.0), vec4(0.0));
+    JointTransform total = fetchTransform(track);
+    JointTransform standing = nothing;
+    JointTransform reference = nothing;
+    Difference difference = Difference(nothing, vec3(0.0), vec3(1.0));
+    vec4 hemisphere = vec4(0.0);
+    float sum = 0.0;
+    for (int i = 0; i < sampleStride; ++i)
     {
-        bool isRest = i == sampleStride;
-        uvec4 blendSample = isRest ? uvec4(0u) : texelFetch(samples, instance * sampleStride + i);
-        float weight = isRest ? max(lacking, 0.0) : uintBitsToFloat(blendSample.z);
-        if (weight < 1e-6) continue;
+        uvec4 blendSample = texelFetch(samples, instance * sampleStride + i);
+        float weight = uintBitsToFloat(blendSample.z);
+        if (hasMasks) weight *= maskWeight(blendSample.w, track);
+        if (hasLayers && (blendSample.w & POSE_SAMPLE_ABOVE) != 0u)
+        {
+            total = covered(total, standing, sum, isWeights);
+            standing = nothing;
+            sum = 0.0;
+        }
+        if (!(weight > 0.0)) continue;
         JointTransform t = sampleTrack(blendSample, track, trackCount, isWeights);
-        float side = !isWeights && dot(sum.rotation, t.rotation) < 0.0 ? -weight : weight;
-        sum.translation += weight * t.translation;
-        sum.rotation += side * t.rotation;
-        sum.scale += weight * t.scale;
-        lacking -= weight;
+        if (hasAdditive && (blendSample.w & (POSE_SAMPLE_REFERENCE | POSE_SAMPLE_ADDITIVE)) != 0u)
+        {
+            if ((blendSample.w & POSE_SAMPLE_REFERENCE) != 0u) reference = t;
+            else addDifference(difference, reference, t, weight);
+            continue;
+        }
+        if (sum == 0.0) hemisphere = t.rotation;
+        if (!isWeights && dot(hemisphere, t.rotation) < 0.0) t.rotation = -t.rotation;
+        addScaled(standing, t, weight);
+        sum += weight;
     }
-    if (!isWeights) sum.rotation = normalize(sum.rotation);
-    return sum;
+    total = covered(total, standing, sum, isWeights);
+    if (!isWeights) total.rotation = normalize(total.rotation);
+    return hasAdditive ? changed(total, difference, isWeights) : total;
 }

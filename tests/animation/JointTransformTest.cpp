@@ -66,6 +66,13 @@ TEST(JointTransformTest, AQuaternionWithoutDirectionMakesNoNaN)
     }
 }
 
+TEST(JointTransformTest, AtZeroTheSecondRotationPlaysNoPart)
+{
+    const float largest = std::numeric_limits<float>::max();
+    for (const glm::vec4& b : {glm::vec4(largest), glm::vec4(0.0f), glm::vec4(NAN), -turnAboutZ(1)})
+        EXPECT_EQ(slerpShortest(turnAboutZ(1), b, 0.0f), turnAboutZ(1));
+}
+
 TEST(JointTransformTest, InterpolatesEachPropertyItsOwnWay)
 {
     const JointTransform a{{0, 0, 0, 0}, turnAboutZ(0), {1, 1, 1, 0}};

@@ -1,87 +1,118 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <osgGpuAnimation/animation/AnimationEvent.h>
+#include <osgGpuAnimation/animation/AnimationLayer.h>
 #include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/animation/PoseInstruction.h>
+#include <osgGpuAnimation/animation/RootMotion.h>
 
+#include <array>
+#include <functional>
 #include <memory>
 #include <string>
 
 namespace osgGpuAnimation
 {
 
-/// One instance's mutable state: which clip, at what time, how fast. Copying one gives an independent instance of the
-/// same set.
+/// One instance's mutable state: which clips, at what time, how fast, on which layers. Copying one gives an independent
+/// instance of the same set.
 ///
 ///     AnimationController controller(set);
 ///     controller.play("Walk");
+///     controller.crossfade("Run", 0.25, {FadeCurve::Linear, Sync::Phase, {}});
 ///     const PoseInstruction& instruction = controller.advance(1.0 / 60.0);
+///
+/// What a controller has of play(), seek(), time() and so on speaks of its base layer, layer(0).
 ///
 /// Not thread-safe: it belongs to the update thread.
 class AnimationController
 {
 public:
-    enum class State
-    {
-        Stopped, ///< the rest pose is shown
-        Playing, ///< advance() moves the time
-        Paused,  ///< the pose of the current time is held
-        Ended,   ///< Once came to its end: that end's pose is held
-    };
-    enum class LoopMode
-    {
-        Once,     ///< time stops at duration (backwards: at 0) and the state becomes Ended
-        Loop,     ///< time == duration shows the first frame (backwards: below 0 goes on from duration)
-        PingPong, ///< turns round at duration and at 0, both shown exactly
-    };
+    using State = PlayState;
+    using LoopMode = osgGpuAnimation::LoopMode;
+    using EventCallback = std::function<void(const AnimationEvent&)>;
 
     explicit AnimationController(std::shared_ptr<const AnimationSet> set);
+    /// All but the event callback, which mostly knows whose events it is told.
+    AnimationController(const AnimationController& other);
+    /// References to layers are not valid any more.
+    AnimationController& operator=(const AnimationController& other);
+    ~AnimationController();
 
     const AnimationSet& set() const { return *_set; }
     const std::shared_ptr<const AnimationSet>& sharedSet() const { return _set; }
 
-    /// Starts a clip at its beginning (at its end where the speed is negative). The loop mode stays.
-    /// Error: no such clip; the controller is unchanged then. The message lists the names there are.
-    Result<bool> play(std::size_t clip);
-    Result<bool> play(const std::string& name);
-    void pause();  ///< Playing → Paused; otherwise nothing
-    void resume(); ///< Paused → Playing; otherwise nothing
-    void stop();   ///< → Stopped: time 0, rest pose
+    /// The layer of that number, made at the first call with all before it. index: below maxLayers (8); beyond that the
+    /// last one is meant. Layers stay where they are until the controller is assigned to or gone.
+    AnimationLayer& layer(std::size_t index);
+    const AnimationLayer& layer(std::size_t index) const;  ///< index: below layerCount()
+    std::size_t layerCount() const { return _layerCount; } ///< at least 1
 
-    /// Seconds on the clip's own time line; clamped to [0, duration]; not a number is refused (false). Any state but
-    /// Stopped shows the new time at once; Ended becomes Playing unless the new time is the end that the speed leads
-    /// to. PingPong keeps its way.
-    bool seek(double seconds);
-    /// 1 is the file's own speed; negative runs backwards, 0 stands. Not finite is refused (false).
-    bool setSpeed(double speed);
-    /// From the current time on; a clip that has Ended stays so until it is played or sought.
-    void setLoopMode(LoopMode mode);
+    // The base layer's; see AnimationLayer.
+    Result<bool> play(std::size_t clip) { return base().play(clip); }
+    Result<bool> play(const std::string& name) { return base().play(name); }
+    Result<bool> crossfade(std::size_t clip, double seconds, const CrossfadeOptions& options = {})
+    {
+        return base().crossfade(clip, seconds, options);
+    }
+    Result<bool> crossfade(const std::string& name, double seconds, const CrossfadeOptions& options = {})
+    {
+        return base().crossfade(name, seconds, options);
+    }
+    void pause() { base().pause(); }
+    void resume() { base().resume(); }
+    void stop() { base().stop(); }
+    bool seek(double seconds) { return base().seek(seconds); }
+    bool setSpeed(double speed) { return base().setSpeed(speed); }
+    void setLoopMode(LoopMode mode) { base().setLoopMode(mode); }
 
-    State state() const { return _state; }
-    int clip() const { return _clip; }    ///< -1 where none was played
-    double time() const { return _time; } ///< seconds, in [0, duration]
-    double duration() const;              ///< seconds, of the current clip
-    double speed() const { return _speed; }
-    LoopMode loopMode() const { return _loopMode; }
+    State state() const { return base().state(); }
+    bool isPlaying() const { return base().isPlaying(); }
+    int clip() const { return base().clip(); } ///< -1 where none was played
+    double time() const { return base().time(); }
+    double duration() const { return base().duration(); }
+    double normalizedTime() const { return base().normalizedTime(); }
+    double phase() const { return base().phase(); }
+    double speed() const { return base().speed(); }
+    LoopMode loopMode() const { return base().loopMode(); }
 
-    /// Moves the time by seconds · speed (when Playing) and says what to show. Does not allocate. Seconds that are not
-    /// finite count as 0. The reference holds until the next call.
+    /// Moves each layer by seconds · its speed (where it plays) and says what to show; then tells the events of that
+    /// step, in the order of time, to the callback. Does not allocate. Seconds that are not finite count as 0. The
+    /// reference holds until the next call.
     const PoseInstruction& advance(double seconds);
-    /// The instruction for the current time, as advance(0) would give.
+    /// The instruction for the current times, as advance(0) would give.
     const PoseInstruction& instruction() const { return _instruction; }
 
+    /// The motion of the clips that was taken out of them (see withRootMotion), gone through by all advance() since it
+    /// was last taken: to be put before the character's own placement. Layers and crossfades blend it as they blend the
+    /// pose of the joint it came from; additive layers play no part. Seeking, playing and stopping move nothing.
+    RootMotion takeRootMotion();
+    const RootMotion& rootMotion() const { return _rootMotion; } ///< the same, left where it is
+
+    /// Told from within advance(), in the thread that calls it, when all layers have moved. It may do anything with
+    /// the controller (play, crossfade, set another callback …) but destroy it; events of the step that are still to
+    /// come are those of the step as it was. An empty function: none.
+    void setEventCallback(EventCallback callback);
+
 private:
+    friend class AnimationLayer;
+
+    AnimationLayer& base() { return *_layers[0]; }
+    const AnimationLayer& base() const { return *_layers[0]; }
+    void copyLayers(const AnimationController& other);
     void show();
-    void moveBy(double seconds);
+    bool hasEvents() const;
+    void tellEvents();
+    void goOn();
 
     std::shared_ptr<const AnimationSet> _set;
-    State _state = State::Stopped;
-    LoopMode _loopMode = LoopMode::Loop;
-    int _clip = -1;
-    double _time = 0.0;
-    double _speed = 1.0;
-    double _direction = 1.0; ///< PingPong's way now: 1 or -1
+    std::array<std::unique_ptr<AnimationLayer>, maxLayers> _layers;
+    std::size_t _layerCount = 0;
+    std::shared_ptr<const EventCallback> _eventCallback;
     PoseInstruction _instruction;
+    RootMotion _rootMotion;
+    bool _hasRootMotion = false; ///< the set has
 };
 
 } // namespace osgGpuAnimation

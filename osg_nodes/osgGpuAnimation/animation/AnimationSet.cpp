@@ -3,6 +3,7 @@
 
 #include "PaletteBuilder.h"
 #include <osgGpuAnimation/animation/ClipBuilder.h>
+#include <osgGpuAnimation/animation/JointMask.h>
 
 #include <algorithm>
 #include <cmath>
@@ -59,9 +60,19 @@ std::optional<Error> findFault(const AnimationParts& parts, std::size_t trackCou
     return std::nullopt;
 }
 
+std::string quotedNames(const std::vector<Clip>& clips)
+{
+    constexpr std::size_t most = 50;
+    std::string names;
+    for (std::size_t c = 0; c < std::min(clips.size(), most); ++c)
+        names += (c == 0 ? "\"" : ", \"") + clips[c].name() + "\"";
+    if (clips.size() > most) names += ", … (" + std::to_string(clips.size()) + " in all)";
+    return names.empty() ? "none" : names;
+}
+
 } // namespace
 
-AnimationSet::AnimationSet(AnimationParts parts) : _parts(std::move(parts))
+AnimationSet::AnimationSet(AnimationParts parts, const MaskTable& masks) : _parts(std::move(parts)), _masks(masks)
 {
     _restPose = osgGpuAnimation::restPose(_parts.skeleton, _parts.morphs);
     std::size_t track = _parts.skeleton.jointCount();
@@ -92,12 +103,24 @@ AnimationSet::AnimationSet(AnimationParts parts) : _parts(std::move(parts))
 
 Result<std::shared_ptr<const AnimationSet>> AnimationSet::create(AnimationParts parts)
 {
+    return make(std::move(parts), MaskTable());
+}
+
+Result<std::shared_ptr<const AnimationSet>> AnimationSet::withClips(std::vector<Clip> clips) const
+{
+    AnimationParts parts = _parts;
+    parts.clips = std::move(clips);
+    return make(std::move(parts), _masks);
+}
+
+Result<std::shared_ptr<const AnimationSet>> AnimationSet::make(AnimationParts parts, const MaskTable& masks)
+{
     std::size_t trackCount = parts.skeleton.jointCount();
     for (const MorphWeights& morph : parts.morphs)
         trackCount += morph.blockCount();
     if (auto fault = findFault(parts, trackCount)) return *fault;
 
-    const std::shared_ptr<const AnimationSet> set(new AnimationSet(std::move(parts)));
+    const std::shared_ptr<const AnimationSet> set(new AnimationSet(std::move(parts), masks));
     if (set->keyframeBufferSize() > std::numeric_limits<std::uint32_t>::max())
         return Error{"its clips take " + std::to_string(set->keyframeBufferSize()) +
                      " joint transforms, more than 32-bit offsets reach"};
@@ -117,6 +140,20 @@ int AnimationSet::findClip(const std::string& name) const
     return -1;
 }
 
+Result<std::size_t> AnimationSet::clipNamed(const std::string& name) const
+{
+    const int clip = findClip(name);
+    if (clip < 0) return Error{"there is no clip \"" + name + "\"; the clips are " + quotedNames(_parts.clips)};
+    return static_cast<std::size_t>(clip);
+}
+
+Result<std::size_t> AnimationSet::clipAt(std::size_t clip) const
+{
+    if (clip >= _parts.clips.size())
+        return Error{"there is no clip " + std::to_string(clip) + "; the clips are " + quotedNames(_parts.clips)};
+    return clip;
+}
+
 std::vector<JointTransform> AnimationSet::keyframeBuffer() const
 {
     std::vector<JointTransform> buffer;
@@ -132,6 +169,16 @@ std::vector<JointTransform> AnimationSet::keyframeBuffer() const
         buffer.insert(buffer.end(), _restPose.begin(), _restPose.begin() + static_cast<std::ptrdiff_t>(missing));
     }
     return buffer;
+}
+
+Result<std::uint32_t> AnimationSet::addMask(const JointMask& mask) const
+{
+    if (mask.weights().size() != trackCount())
+        return Error{"a mask of " + std::to_string(mask.weights().size()) + " tracks for a set of " +
+                     std::to_string(trackCount())};
+    const std::uint32_t number = _masks.add(mask.weights());
+    if (number == 0) return Error{"the set has " + std::to_string(MaskTable::maxMasks) + " masks already"};
+    return number;
 }
 
 } // namespace osgGpuAnimation

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/Clip.h>
+#include <osgGpuAnimation/animation/MaskTable.h>
 #include <osgGpuAnimation/animation/MorphWeights.h>
 #include <osgGpuAnimation/animation/Result.h>
 #include <osgGpuAnimation/animation/Skeleton.h>
@@ -13,6 +14,8 @@
 
 namespace osgGpuAnimation
 {
+
+class JointMask;
 
 /// Joints with their inverse bind matrices (glTF 2.0, section 3.7.3).
 struct Skin
@@ -71,6 +74,11 @@ public:
     /// that is not finite, a clip with a wrong number of tracks, more keyframes than 32-bit offsets reach.
     static Result<std::shared_ptr<const AnimationSet>> create(AnimationParts parts);
 
+    /// The same skeleton, skins, morphs and masks with other clips: with markers, say, see Clip::withMarkers. What a
+    /// mesh knows of this set (palette entries) holds for that one too.
+    /// Errors: those of create().
+    Result<std::shared_ptr<const AnimationSet>> withClips(std::vector<Clip> clips) const;
+
     const Skeleton& skeleton() const { return _parts.skeleton; }
     const std::vector<Skin>& skins() const { return _parts.skins; }
     const std::vector<MorphWeights>& morphs() const { return _parts.morphs; }
@@ -97,6 +105,9 @@ public:
 
     /// -1 where there is none. Of several clips of one name, the first.
     int findClip(const std::string& name) const;
+    /// The clip of that name or number, or an error that lists the names there are.
+    Result<std::size_t> clipNamed(const std::string& name) const;
+    Result<std::size_t> clipAt(std::size_t clip) const;
 
     /// All keyframes lie in one buffer of JointTransforms on the GPU: the rest pose (twice), then clip after clip.
     /// keyframeOffset is the place of a clip's first keyframe there.
@@ -106,8 +117,15 @@ public:
     /// The contents of that buffer: keyframeBufferSize() transforms, exactly as they go to the GPU.
     std::vector<JointTransform> keyframeBuffer() const;
 
+    /// Takes a mask up for all layers that are to use it, and returns its number (see BlendSample::control). Masks are
+    /// only ever added, so a set that is in use can take more; equal ones are stored once.
+    /// Errors: the mask has not one weight a track of this set; MaskTable::maxMasks are there already.
+    Result<std::uint32_t> addMask(const JointMask& mask) const;
+    const MaskTable& masks() const { return _masks; }
+
 private:
-    explicit AnimationSet(AnimationParts parts);
+    AnimationSet(AnimationParts parts, const MaskTable& masks);
+    static Result<std::shared_ptr<const AnimationSet>> make(AnimationParts parts, const MaskTable& masks);
 
     AnimationParts _parts;
     std::vector<JointTransform> _restPose;
@@ -120,6 +138,7 @@ private:
     std::vector<int> _entryOfMorph;
     std::vector<std::size_t> _keyframeOffsets;
     std::size_t _keyframeBufferSize = 0;
+    mutable MaskTable _masks;
 };
 
 } // namespace osgGpuAnimation

@@ -21,4 +21,20 @@ Clip::Span Clip::locate(double time) const
     return {static_cast<std::size_t>(next - _times.begin()) - 1, std::min(alpha, justBelowOne)};
 }
 
+Result<Clip> Clip::withMarkers(std::vector<ClipMarker> markers) const
+{
+    Clip clip = *this;
+    for (ClipMarker& marker : markers)
+    {
+        if (!std::isfinite(marker.time) || marker.time < 0.0)
+            return Error{"marker \"" + marker.name + "\" of clip \"" + _name + "\": its time " +
+                         std::to_string(marker.time) + " is not one of a clip"};
+        marker.time = std::min(marker.time, duration());
+        clip._markers.push_back(std::move(marker));
+    }
+    std::stable_sort(clip._markers.begin(), clip._markers.end(),
+                     [](const ClipMarker& a, const ClipMarker& b) { return a.time < b.time; });
+    return clip;
+}
+
 } // namespace osgGpuAnimation

@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <osgGpuAnimation/animation/ClipMarker.h>
 #include <osgGpuAnimation/animation/JointTransform.h>
+#include <osgGpuAnimation/animation/Result.h>
 
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace osgGpuAnimation
 {
+
+struct RootMotionCurve;
 
 /// A clip: keyframes in time order; each keyframe is a snapshot of **all tracks** (all joints, then all weight blocks).
 ///
@@ -20,7 +25,7 @@ namespace osgGpuAnimation
 /// In a Spline clip a joint track whose rotation is to be slerped has translation.w == 1 in its value, else 0, and
 /// rotation values are not unit (the spline's own numbers; made unit after mixing).
 ///
-/// Made by ClipBuilder; immutable.
+/// Made by ClipBuilder; immutable. Copies share the keyframes.
 class Clip
 {
 public:
@@ -47,20 +52,32 @@ public:
     /// JointTransforms from one keyframe to the next in data().
     std::size_t keyframeStride() const { return _trackCount * (_form == Form::Spline ? 3 : 1); }
     /// keyframeCount() * keyframeStride() transforms: by keyframe, then track, then (Spline) value, in, out.
-    const std::vector<JointTransform>& data() const { return _data; }
+    const std::vector<JointTransform>& data() const { return *_data; }
+
+    /// By time; those of one time in the order in which they were added.
+    const std::vector<ClipMarker>& markers() const { return _markers; }
+    /// The same clip with further markers. What lies beyond the duration counts as at the duration.
+    /// Error: a time that is negative or not finite.
+    Result<Clip> withMarkers(std::vector<ClipMarker> markers) const;
+
+    /// The motion that was taken out of this clip, see withRootMotion(); null where none was.
+    const RootMotionCurve* rootMotion() const { return _rootMotion.get(); }
 
     /// By binary search; times before the first keyframe give the first, after the last the last.
     Span locate(double time) const;
 
 private:
     friend class ClipBuilder;
+    friend class RootMotionExtractor;
     Clip() = default;
 
     std::string _name;
     Form _form = Form::Linear;
     std::size_t _trackCount = 0;
     std::vector<float> _times;
-    std::vector<JointTransform> _data;
+    std::shared_ptr<std::vector<JointTransform>> _data = std::make_shared<std::vector<JointTransform>>();
+    std::vector<ClipMarker> _markers;
+    std::shared_ptr<const RootMotionCurve> _rootMotion;
 };
 
 } // namespace osgGpuAnimation

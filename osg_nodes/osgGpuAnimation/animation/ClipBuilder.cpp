@@ -256,6 +256,14 @@ Result<bool> ClipBuilder::add(Channel channel)
     return true;
 }
 
+Result<bool> ClipBuilder::addMarker(double time, std::string name)
+{
+    if (!std::isfinite(time) || time < 0.0)
+        return Error{"marker \"" + name + "\": its time " + std::to_string(time) + " is not one of a clip"};
+    _markers.push_back({time, std::move(name)});
+    return true;
+}
+
 std::size_t ClipBuilder::byteSize() const
 {
     std::vector<ChannelCurve> curves;
@@ -288,14 +296,16 @@ Clip ClipBuilder::build(std::string name)
     const std::vector<Moment> moments = findMoments(curves);
     for (const Moment& moment : moments)
         clip._times.push_back(static_cast<float>(moment.time));
-    fillWithRest(_rest, _jointCount, spline, moments.size(), clip._data);
+    fillWithRest(_rest, _jointCount, spline, moments.size(), *clip._data);
     for (const ChannelCurve& curve : curves)
     {
         const auto target = static_cast<std::size_t>(curve.channel().target);
         const bool isWeights = curve.channel().path == Path::Weights;
         const std::size_t track = isWeights ? static_cast<std::size_t>(_firstTrackOfMorph[target]) : target;
-        writeCurve(curve, moments, spline, TrackWriter(clip._data, clip, track, firstComponent(curve.channel().path)));
+        writeCurve(curve, moments, spline, TrackWriter(*clip._data, clip, track, firstComponent(curve.channel().path)));
     }
+    clip = clip.withMarkers(std::move(_markers)).value();
+    _markers.clear();
     _channels.clear();
     _driven.assign(_driven.size(), false);
     return clip;

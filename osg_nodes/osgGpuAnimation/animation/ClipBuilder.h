@@ -56,7 +56,11 @@ public:
     /// and path. The builder may go on after an error; the faulty channel is not taken up.
     Result<bool> add(Channel channel);
 
-    /// The clip of all channels added since the last build. No channels: one keyframe at time 0, the rest pose.
+    /// Error: a time that is negative or not finite. What lies beyond the clip's end counts as at its end.
+    Result<bool> addMarker(double time, std::string name);
+
+    /// The clip of all channels and markers added since the last build. No channels: one keyframe at time 0, the rest
+    /// pose.
     Clip build(std::string name);
 
     /// Bytes of the clip that build() would make now: to refuse before allocating.
@@ -72,6 +76,7 @@ private:
     std::vector<int> _firstTrackOfMorph;
     std::vector<std::size_t> _weightCounts;
     std::vector<Channel> _channels;
+    std::vector<ClipMarker> _markers;
     std::vector<bool> _driven; ///< by keyOf(): three paths a joint, then one a morph
 };
 

@@ -28,6 +28,8 @@ AffineMatrix JointTransform::toMatrix() const
 glm::vec4 slerpShortest(const glm::vec4& a, const glm::vec4& b, float alpha)
 {
     const glm::dvec4 from = Rotation::unit(glm::dvec4(a));
+    // Whatever b is (beyond what can be squared, say), nothing of it is wanted.
+    if (alpha == 0.0f) return glm::vec4(from);
     return glm::vec4(Rotation::slerp(from, Rotation::unit(glm::dvec4(b)), static_cast<double>(alpha)));
 }
 

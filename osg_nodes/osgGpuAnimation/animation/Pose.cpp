@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/Pose.h>
 
-#include "TrackMix.h"
-#include <osgGpuAnimation/animation/Rotation.h>
+#include "TrackBlend.h"
 
 #include <layout.glsl>
-
-#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cassert>
-#include <cmath>
 #include <cstring>
 
 namespace osgGpuAnimation::Pose
@@ -24,13 +20,15 @@ namespace
 struct Source
 {
     KeyframePair keyframes;
-    double weight = 0.0; ///< share of the whole
+    double weight = 0.0;
+    const float* mask = nullptr; ///< one a track; null: none
+    std::uint32_t control = 0;
 };
 
-Source findSource(const AnimationSet& set, const BlendSample& sample)
+KeyframePair findKeyframes(const AnimationSet& set, const BlendSample& sample)
 {
-    Source source;
-    source.keyframes.first = source.keyframes.second = set.restPose().data();
+    KeyframePair pair;
+    pair.first = pair.second = set.restPose().data();
     const std::size_t offset = sample.keyframe;
     std::size_t clip = set.clips().size();
     for (std::size_t low = 0; low < clip;)
@@ -41,65 +39,67 @@ Source findSource(const AnimationSet& set, const BlendSample& sample)
         else
             clip = middle;
     }
-    if (clip == 0) return source; // before the first clip lies the rest pose
+    if (clip == 0) return pair; // before the first clip lies the rest pose
 
     const Clip& data = set.clips()[clip - 1];
     const std::size_t place = offset - set.keyframeOffset(clip - 1);
     assert(place + data.keyframeStride() <= data.data().size() && "a blend sample names a keyframe of a clip");
-    if (place + data.keyframeStride() > data.data().size()) return source;
-    source.keyframes.first = source.keyframes.second = data.data().data() + place;
-    source.keyframes.alpha = static_cast<double>(sample.alpha);
-    source.keyframes.spline = (sample.control & POSE_SAMPLE_SPLINE) != 0;
+    if (place + data.keyframeStride() > data.data().size()) return pair;
+    pair.first = pair.second = data.data().data() + place;
+    pair.alpha = static_cast<double>(sample.alpha);
+    pair.spline = (sample.control & POSE_SAMPLE_SPLINE) != 0;
     // The last keyframe is never mixed with what follows it.
-    if (place + 2 * data.keyframeStride() <= data.data().size()) source.keyframes.second += data.keyframeStride();
-    return source;
+    if (place + 2 * data.keyframeStride() <= data.data().size()) pair.second += data.keyframeStride();
+    return pair;
 }
 
-/// The samples that count, and the rest pose for what their weights leave of 1.
-std::size_t findSources(const AnimationSet& set, const PoseInstruction& instruction,
-                        std::array<Source, PoseInstruction::maxSamples + 1>& out)
+/// The samples of an instruction, ready to be blended track by track.
+class Sources
 {
-    std::size_t count = 0;
-    double sum = 0.0;
-    for (std::size_t i = 0; i < std::min(instruction.sampleCount, PoseInstruction::maxSamples); ++i)
+public:
+    Sources(const AnimationSet& set, const PoseInstruction& instruction) : _set(set)
     {
-        const BlendSample& sample = instruction.samples[i];
-        if (!(sample.weight > 0.0f)) continue;
-        out[count] = findSource(set, sample);
-        out[count].weight = static_cast<double>(sample.weight);
-        sum += out[count++].weight;
+        _count = std::min(instruction.sampleCount, PoseInstruction::maxSamples);
+        for (std::size_t i = 0; i < _count; ++i)
+        {
+            const BlendSample& sample = instruction.samples[i];
+            Source& source = _sources[i];
+            source.control = sample.control;
+            if (!(sample.weight > 0.0f)) continue;
+            source.keyframes = findKeyframes(set, sample);
+            source.weight = static_cast<double>(sample.weight);
+            source.mask = set.masks().weights(sample.control >> POSE_SAMPLE_MASK_SHIFT);
+        }
     }
-    if (sum < 1.0)
-    {
-        out[count] = findSource(set, BlendSample());
-        out[count++].weight = 1.0 - sum;
-    }
-    for (std::size_t i = 0; sum > 1.0 && i < count; ++i)
-        out[i].weight /= sum;
-    return count;
-}
 
-MixedTrack mixTrack(const Source* sources, std::size_t count, std::size_t track, bool isWeights)
-{
-    MixedTrack sum;
-    glm::dvec4 hemisphere(0.0);
-    for (std::size_t i = 0; i < count; ++i)
+    JointTransform track(std::size_t track) const
     {
-        const Source& source = sources[i];
-        const MixedTrack one = MixedTrack::between(source.keyframes, track, isWeights);
-        if (i == 0) hemisphere = one.rotation;
-        const bool turned = !isWeights && glm::dot(hemisphere, one.rotation) < 0.0;
-        sum.translation += one.translation * source.weight;
-        sum.rotation += one.rotation * (turned ? -source.weight : source.weight);
-        sum.scale += one.scale * source.weight;
+        const bool isWeights = track >= _set.skeleton().jointCount();
+        TrackBlend blend(_set.restPose()[track], isWeights);
+        MixedTrack reference;
+        for (std::size_t i = 0; i < _count; ++i)
+        {
+            const Source& source = _sources[i];
+            if ((source.control & POSE_SAMPLE_ABOVE) != 0) blend.beginStanding();
+            const double weight = source.weight * (source.mask ? static_cast<double>(source.mask[track]) : 1.0);
+            if (!(weight > 0.0)) continue;
+            const MixedTrack sample = MixedTrack::between(source.keyframes, track, isWeights);
+            if ((source.control & POSE_SAMPLE_REFERENCE) != 0)
+                reference = sample;
+            else if ((source.control & POSE_SAMPLE_ADDITIVE) != 0)
+                blend.addDifference(reference, sample, weight);
+            else
+                blend.add(sample, weight);
+        }
+        const MixedTrack mixed = blend.result();
+        return {glm::vec4(mixed.translation), glm::vec4(mixed.rotation), glm::vec4(mixed.scale)};
     }
-    if (isWeights) return sum;
-    // Rotations on one hemisphere can only cancel out where each is square to the first; then that one stands.
-    sum.rotation = glm::dot(sum.rotation, sum.rotation) > 1e-20 ? Rotation::unit(sum.rotation) : hemisphere;
-    sum.translation.w = 0.0; // in a spline clip it held a flag
-    sum.scale.w = 0.0;
-    return sum;
-}
+
+private:
+    const AnimationSet& _set;
+    std::array<Source, PoseInstruction::maxSamples> _sources;
+    std::size_t _count = 0;
+};
 
 AffineMatrix weightsAsMatrix(const JointTransform& block)
 {
@@ -112,15 +112,10 @@ AffineMatrix weightsAsMatrix(const JointTransform& block)
 
 void mix(const AnimationSet& set, const PoseInstruction& instruction, std::vector<JointTransform>& outTracks)
 {
-    std::array<Source, PoseInstruction::maxSamples + 1> sources;
-    const std::size_t count = findSources(set, instruction, sources);
-    const std::size_t jointCount = set.skeleton().jointCount();
+    const Sources sources(set, instruction);
     outTracks.resize(set.trackCount());
     for (std::size_t track = 0; track < outTracks.size(); ++track)
-    {
-        const MixedTrack mixed = mixTrack(sources.data(), count, track, track >= jointCount);
-        outTracks[track] = {glm::vec4(mixed.translation), glm::vec4(mixed.rotation), glm::vec4(mixed.scale)};
-    }
+        outTracks[track] = sources.track(track);
 }
 
 void jointToModel(const AnimationSet& set, const std::vector<JointTransform>& tracks, const AffineMatrix& rootToModel,
@@ -135,6 +130,18 @@ void jointToModel(const AnimationSet& set, const std::vector<JointTransform>& tr
         const AffineMatrix& above = parent < 0 ? rootToModel : outJointToModel[static_cast<std::size_t>(parent)];
         outJointToModel[j] = above * tracks[j].toMatrix();
     }
+}
+
+AffineMatrix jointToModel(const AnimationSet& set, const PoseInstruction& instruction, std::size_t joint)
+{
+    const Skeleton& skeleton = set.skeleton();
+    assert(joint < skeleton.jointCount() && "a joint of the set");
+    const Sources sources(set, instruction);
+    AffineMatrix matrix = sources.track(joint).toMatrix();
+    for (int parent = skeleton.joint(joint).parent; parent >= 0;
+         parent = skeleton.joint(static_cast<std::size_t>(parent)).parent)
+        matrix = sources.track(static_cast<std::size_t>(parent)).toMatrix() * matrix;
+    return matrix;
 }
 
 void palette(const AnimationSet& set, const std::vector<JointTransform>& tracks,

@@ -21,6 +21,10 @@ void mix(const AnimationSet& set, const PoseInstruction& instruction, std::vecto
 void jointToModel(const AnimationSet& set, const std::vector<JointTransform>& tracks, const AffineMatrix& rootToModel,
                   std::vector<AffineMatrix>& outJointToModel);
 
+/// One joint's matrix, computed from its own chain of parents alone; does not allocate. joint: below the skeleton's
+/// jointCount().
+AffineMatrix jointToModel(const AnimationSet& set, const PoseInstruction& instruction, std::size_t joint);
+
 /// outPalette gets set.paletteSize() entries: matrices, and weight blocks as they are.
 void palette(const AnimationSet& set, const std::vector<JointTransform>& tracks,
              const std::vector<AffineMatrix>& jointToModel, std::vector<AffineMatrix>& outPalette);

@@ -3,7 +3,9 @@
 
 #include <layout.glsl>
 
+#include <algorithm>
 #include <array>
+#include <cstdint>
 #include <vector>
 
 namespace osgGpuAnimation
@@ -29,7 +31,7 @@ PackedEntry packed(const PaletteEntry& entry)
 } // namespace
 
 AnimationBuffers::AnimationBuffers(osg::GLExtensions& gl, const AnimationSet& set)
-    : _keyframes(gl, GL_RGBA32F_ARB), _entries(gl, GL_RGBA32F_ARB)
+    : _keyframes(gl, GL_RGBA32F_ARB), _entries(gl, GL_RGBA32F_ARB), _masks(gl, GL_RGBA32F_ARB)
 {
     const std::vector<JointTransform> keyframes = set.keyframeBuffer();
     _keyframes.upload(keyframes.data(), keyframes.size() * sizeof(JointTransform));
@@ -41,16 +43,38 @@ AnimationBuffers::AnimationBuffers(osg::GLExtensions& gl, const AnimationSet& se
     _entries.upload(entries.data(), entries.size() * sizeof(PackedEntry));
 }
 
+std::size_t AnimationBuffers::texelsPerMask(const AnimationSet& set)
+{
+    return (set.trackCount() + POSE_WEIGHTS_PER_MASK_TEXEL - 1) / POSE_WEIGHTS_PER_MASK_TEXEL;
+}
+
+void AnimationBuffers::updateMasks(const AnimationSet& set)
+{
+    const std::size_t count = set.masks().count();
+    if (count == _maskCount) return;
+    const std::size_t stride = texelsPerMask(set) * POSE_WEIGHTS_PER_MASK_TEXEL;
+    std::vector<float> weights((count + 1) * stride, 1.0f);
+    for (std::size_t mask = 1; mask <= count; ++mask)
+    {
+        const float* from = set.masks().weights(static_cast<std::uint32_t>(mask));
+        std::copy(from, from + set.trackCount(), weights.begin() + static_cast<std::ptrdiff_t>(mask * stride));
+    }
+    _masks.upload(weights.data(), weights.size() * sizeof(float));
+    _maskCount = count;
+}
+
 void AnimationBuffers::release()
 {
     _keyframes.release();
     _entries.release();
+    _masks.release();
 }
 
 void AnimationBuffers::discard()
 {
     _keyframes.discard();
     _entries.discard();
+    _masks.discard();
 }
 
 std::size_t AnimationBuffers::byteSize(const AnimationSet& set)

@@ -18,14 +18,23 @@ public:
     /// RGBA32F: set.paletteSize() entries of POSE_TEXELS_PER_ENTRY texels.
     const BufferTexture& entries() const { return _entries; }
 
+    /// RGBA32F: masks().count() + 1 masks of texelsPerMask texels each, mask 0 being all 1. See updateMasks().
+    const BufferTexture& masks() const { return _masks; }
+    static std::size_t texelsPerMask(const AnimationSet& set);
+    /// Uploads the set's masks if it has more than last time.
+    void updateMasks(const AnimationSet& set);
+
     void release();
     void discard();
 
+    /// Without masks.
     static std::size_t byteSize(const AnimationSet& set);
 
 private:
     BufferTexture _keyframes;
     BufferTexture _entries;
+    BufferTexture _masks;
+    std::size_t _maskCount = 0; ///< of the set's masks, in _masks
 };
 
 } // namespace osgGpuAnimation

@@ -1,16 +1,49 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/gpu/PoseBatch.h>
 
+#include <layout.glsl>
+
+#include <algorithm>
+
 namespace osgGpuAnimation
 {
 
+namespace
+{
+
+/// Not a number counts as 0.
+float clampedToUnit(float value)
+{
+    return value > 0.0f ? std::min(value, 1.0f) : 0.0f;
+}
+
+} // namespace
+
 std::size_t PoseBatch::add(const PoseInstruction& instruction)
 {
-    if (instruction.sampleCount > _sampleStride) widen(instruction.sampleCount);
+    const std::size_t count = std::min(instruction.sampleCount, PoseInstruction::maxSamples);
+    if (count > _sampleStride) widen(count);
     for (std::size_t i = 0; i < _sampleStride; ++i)
-        _samples.push_back(i < instruction.sampleCount ? instruction.samples[i] : BlendSample{0, 0.0f, 0.0f, 0});
+    {
+        BlendSample sample = i < count ? instruction.samples[i] : BlendSample{0, 0.0f, 0.0f, 0};
+        sample.alpha = clampedToUnit(sample.alpha);
+        sample.weight = clampedToUnit(sample.weight);
+        if (i < count) note(sample);
+        _samples.push_back(sample);
+    }
+    _needs.mixing = _needs.mixing || _sampleStride > 1;
     if (!_rootMatrices.empty()) _rootMatrices.emplace_back();
     return _size++;
+}
+
+void PoseBatch::note(const BlendSample& sample)
+{
+    const bool isAdditive = (sample.control & POSE_SAMPLE_ADDITIVE) != 0;
+    const bool isMasked = sample.control >> POSE_SAMPLE_MASK_SHIFT != 0;
+    _needs.layers = _needs.layers || (sample.control & POSE_SAMPLE_ABOVE) != 0;
+    _needs.additive = _needs.additive || isAdditive;
+    _needs.masks = _needs.masks || isMasked;
+    _needs.mixing = _needs.mixing || isAdditive || isMasked || sample.weight != 1.0f;
 }
 
 std::size_t PoseBatch::add(const PoseInstruction& instruction, const AffineMatrix& rootMatrix)
@@ -35,6 +68,7 @@ void PoseBatch::clear()
 {
     _size = 0;
     _sampleStride = 1;
+    _needs = Needs();
     _samples.clear();
     _rootMatrices.clear();
 }

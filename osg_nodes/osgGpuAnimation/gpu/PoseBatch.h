@@ -21,12 +21,23 @@ public:
     const AnimationSet& set() const { return *_set; }
     const std::shared_ptr<const AnimationSet>& sharedSet() const { return _set; }
 
-    /// Takes an instance up and returns its number: 0, 1, 2 …
+    /// Takes an instance up and returns its number: 0, 1, 2 … Weights and alphas that are no numbers or outside [0, 1]
+    /// count as the nearest.
     std::size_t add(const PoseInstruction& instruction);
     /// The same with a root matrix, which the instance's root joints are multiplied by. Instances without one get the
     /// identity as soon as any has one.
     std::size_t add(const PoseInstruction& instruction, const AffineMatrix& rootMatrix);
     void clear();
+
+    /// What the samples ask of the mix stage, taken together.
+    struct Needs
+    {
+        bool mixing = false; ///< several samples, or one of less than full weight
+        bool layers = false;
+        bool masks = false;
+        bool additive = false;
+    };
+    const Needs& needs() const { return _needs; }
 
     std::size_t size() const { return _size; }
     /// Blend samples an instance takes in samples(): the largest number any instance has.
@@ -38,10 +49,12 @@ public:
 
 private:
     void widen(std::size_t sampleStride);
+    void note(const BlendSample& sample);
 
     std::shared_ptr<const AnimationSet> _set;
     std::size_t _size = 0;
     std::size_t _sampleStride = 1;
+    Needs _needs;
     std::vector<BlendSample> _samples;
     std::vector<AffineMatrix> _rootMatrices;
 };

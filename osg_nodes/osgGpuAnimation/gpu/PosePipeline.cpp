@@ -26,8 +26,8 @@ namespace
 {
 
 constexpr std::size_t matrixBytes = sizeof(AffineMatrix);
-constexpr int unitKeyframes = 0, unitSamples = 1, unitEntries = 2, unitRoots = 3, unitPrevious = 4;
-constexpr int unitCount = 5;
+constexpr int unitKeyframes = 0, unitSamples = 1, unitEntries = 2, unitRoots = 3, unitPrevious = 4, unitMasks = 5;
+constexpr int unitCount = 6;
 
 constexpr std::initializer_list<const char*> rowOutputs{"row0", "row1", "row2"};
 
@@ -35,6 +35,18 @@ bool hasSplines(const AnimationSet& set)
 {
     return std::any_of(set.clips().begin(), set.clips().end(),
                        [](const Clip& clip) { return clip.form() == Clip::Form::Spline; });
+}
+
+PoseVariant mixVariant(const PoseBatch& batch)
+{
+    PoseVariant variant;
+    variant.hasSplines = hasSplines(batch.set());
+    variant.hasWeights = !batch.set().morphs().empty();
+    variant.hasSeveralSamples = batch.needs().mixing;
+    variant.hasLayers = batch.needs().layers;
+    variant.hasMasks = batch.needs().masks;
+    variant.hasAdditive = batch.needs().additive;
+    return variant;
 }
 
 } // namespace
@@ -101,7 +113,7 @@ PosePipeline::SetResources& PosePipeline::resourcesOf(const PoseBatch& batch)
     for (const std::unique_ptr<PosePalette>& palette : resources.palettes)
         palette->release();
     if (resources.buffers) resources.buffers->release();
-    resources = SetResources{batch.sharedSet(), nullptr, {}};
+    resources = SetResources{batch.sharedSet(), nullptr, {}, false};
     const std::size_t keyframeTexels = set.keyframeBufferSize() * POSE_TEXELS_PER_TRANSFORM;
     const std::size_t entryTexels = set.paletteSize() * POSE_TEXELS_PER_ENTRY;
     if (std::max(keyframeTexels, entryTexels) <= _maxTexels)
@@ -127,6 +139,11 @@ bool PosePipeline::evaluate(osg::State& state, const PoseBatch& batch, std::size
         resources.palettes.push_back(std::make_unique<PosePalette>(*_gl));
 
     const AnimationSet& set = batch.set();
+    if (batch.needs().masks)
+    {
+        if (!hasRoomForMasks(resources, set)) return false;
+        resources.buffers->updateMasks(set);
+    }
     const std::size_t widest = std::max(set.paletteSize(), _form == Form::Separate ? set.trackCount() : 0);
     const std::size_t byPalette = _maxTexels / (POSE_TEXELS_PER_MATRIX * std::max<std::size_t>(widest, 1));
     const std::size_t chunkCapacity = std::max<std::size_t>(std::min(byPalette, _maxTexels / batch.sampleStride()), 1);
@@ -139,12 +156,24 @@ bool PosePipeline::evaluate(osg::State& state, const PoseBatch& batch, std::size
     {
         chunk->palette.reserve(set.paletteSize() * chunk->size * matrixBytes);
         if (_form == Form::Fused)
-            evaluateFused(set, *resources.buffers, *chunk);
+            evaluateFused(batch, *resources.buffers, *chunk);
         else
-            evaluateSeparate(set, *resources.buffers, *chunk);
+            evaluateSeparate(batch, *resources.buffers, *chunk);
         _counters.instancesEvaluated += chunk->size;
     }
     return true;
+}
+
+bool PosePipeline::hasRoomForMasks(SetResources& resources, const AnimationSet& set) const
+{
+    const std::size_t texels = AnimationBuffers::texelsPerMask(set) * (set.masks().count() + 1);
+    if (texels <= _maxTexels) return true;
+    if (!resources.isMaskLimitReported)
+        OSG_WARN << "osgGpuAnimation: the masks of an animation set need a buffer of " << texels
+                 << " texels, this context takes at most " << _maxTexels << "; its characters are not drawn"
+                 << std::endl;
+    resources.isMaskLimitReported = true;
+    return false;
 }
 
 void PosePipeline::useMixInput(FeedbackPass& pass, const AnimationSet& set, const AnimationBuffers& buffers,
@@ -153,6 +182,8 @@ void PosePipeline::useMixInput(FeedbackPass& pass, const AnimationSet& set, cons
     pass.use();
     pass.setTexture("keyframes", unitKeyframes, buffers.keyframes().texture());
     pass.setTexture("samples", unitSamples, chunk.samples.texture());
+    pass.setTexture("masks", unitMasks, buffers.masks().texture());
+    pass.setInt("maskStride", static_cast<int>(AnimationBuffers::texelsPerMask(set)));
     pass.setInt("sampleStride", static_cast<int>(chunk.sampleStride));
     pass.setInt("instanceCount", static_cast<int>(chunk.size));
     pass.setInt("trackCount", static_cast<int>(set.trackCount()));
@@ -161,12 +192,14 @@ void PosePipeline::useMixInput(FeedbackPass& pass, const AnimationSet& set, cons
 
 // A buffer must not be read while feedback writes to it, so levels go to the palette and to the scratch buffer by
 // turns, each at its own place; at the end the scratch buffer's levels are copied to their places in the palette.
-void PosePipeline::evaluateFused(const AnimationSet& set, const AnimationBuffers& buffers, PosePalette::Chunk& chunk)
+void PosePipeline::evaluateFused(const PoseBatch& batch, const AnimationBuffers& buffers, PosePalette::Chunk& chunk)
 {
+    const AnimationSet& set = batch.set();
     if (set.levelCount() > 1) _scratch.reserve(set.paletteSize() * chunk.size * matrixBytes);
     bindInstances(chunk);
-    PoseVariant variant{hasSplines(set), chunk.sampleStride > 1, !set.morphs().empty(), true,
-                        !chunk.uploadedRootMatrices.empty()};
+    PoseVariant variant = mixVariant(batch);
+    variant.isRootLevel = true;
+    variant.hasRoots = !chunk.uploadedRootMatrices.empty();
     const std::size_t entryBytes = POSE_TEXELS_PER_ENTRY * BufferTexture::texelBytes;
     const std::vector<std::size_t>& levels = set.levels();
     for (std::size_t level = 0; level < set.levelCount(); ++level)
@@ -219,14 +252,15 @@ void PosePipeline::runSeparate(FeedbackPass& pass, std::size_t count, const Buff
     ++_counters.feedbackDraws;
 }
 
-void PosePipeline::evaluateSeparate(const AnimationSet& set, const AnimationBuffers& buffers, PosePalette::Chunk& chunk)
+void PosePipeline::evaluateSeparate(const PoseBatch& batch, const AnimationBuffers& buffers, PosePalette::Chunk& chunk)
 {
+    const AnimationSet& set = batch.set();
     const std::size_t trackVertices = set.trackCount() * chunk.size;
     _mixedTracks.reserve(trackVertices * sizeof(JointTransform));
     _scratch.reserve(trackVertices * matrixBytes);
 
     makeSeparatePasses();
-    FeedbackPass& mixing = mixPass({hasSplines(set), chunk.sampleStride > 1, !set.morphs().empty(), false, false});
+    FeedbackPass& mixing = mixPass(mixVariant(batch));
     if (!mixing.valid() || !_localPass->valid() || !_worldPass->valid()) return;
     useMixInput(mixing, set, buffers, chunk);
     runSeparate(mixing, trackVertices, _mixedTracks);

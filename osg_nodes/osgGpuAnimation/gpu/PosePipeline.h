@@ -81,6 +81,7 @@ private:
         std::weak_ptr<const AnimationSet> set;
         std::unique_ptr<AnimationBuffers> buffers;          ///< null: too large, reported
         std::vector<std::unique_ptr<PosePalette>> palettes; ///< by slot
+        bool isMaskLimitReported = false;
     };
 
     using Passes = std::map<PoseVariant, std::unique_ptr<FeedbackPass>>;
@@ -89,12 +90,13 @@ private:
     FeedbackPass& mixPass(const PoseVariant& variant);
     void makeSeparatePasses();
     void forgetUnusedSets();
+    bool hasRoomForMasks(SetResources& resources, const AnimationSet& set) const;
     SetResources& resourcesOf(const PoseBatch& batch);
     template <typename Function>
     void forEachPass(Function function);
     void bindInstances(const PosePalette::Chunk& chunk);
-    void evaluateFused(const AnimationSet& set, const AnimationBuffers& buffers, PosePalette::Chunk& chunk);
-    void evaluateSeparate(const AnimationSet& set, const AnimationBuffers& buffers, PosePalette::Chunk& chunk);
+    void evaluateFused(const PoseBatch& batch, const AnimationBuffers& buffers, PosePalette::Chunk& chunk);
+    void evaluateSeparate(const PoseBatch& batch, const AnimationBuffers& buffers, PosePalette::Chunk& chunk);
     void useMixInput(FeedbackPass& pass, const AnimationSet& set, const AnimationBuffers& buffers,
                      const PosePalette::Chunk& chunk);
     void gatherOddLevels(const AnimationSet& set, const PosePalette::Chunk& chunk);

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 
+#include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/nodes/AnimationUpdateCallback.h>
 #include <osgGpuAnimation/nodes/PoseStage.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
 #include <osg/NodeVisitor>
 #include <osgUtil/CullVisitor>
+
+#include <glm/gtc/type_ptr.hpp>
 
 namespace osgGpuAnimation
 {
@@ -64,6 +67,39 @@ AnimatedCharacter::AnimatedCharacter(const AnimatedCharacter& other, const osg::
 }
 
 AnimatedCharacter::~AnimatedCharacter() = default;
+
+Result<bool> AnimatedCharacter::setAnimationSet(std::shared_ptr<const AnimationSet> newSet)
+{
+    if (!newSet || newSet->paletteSize() != set().paletteSize())
+        return Error{"a set of " + std::to_string(newSet ? newSet->paletteSize() : 0) +
+                     " palette entries for the meshes of one of " + std::to_string(set().paletteSize())};
+    AnimationController next(std::move(newSet));
+    const AnimationController& old = *_controller;
+    next.setLoopMode(old.loopMode());
+    next.setSpeed(old.speed());
+    if (old.clip() >= 0 && old.state() != PlayState::Stopped && next.play(static_cast<std::size_t>(old.clip())))
+    {
+        next.seek(old.time());
+        if (old.state() == PlayState::Paused) next.pause();
+    }
+    *_controller = next;
+    if (_clipBounds) computeClipBounds();
+    return true;
+}
+
+osg::Matrixd AnimatedCharacter::jointToModel(std::size_t joint) const
+{
+    // A matrix for column vectors by columns is in memory one for row vectors by rows.
+    const glm::dmat4 columns = Pose::jointToModel(set(), _controller->instruction(), joint).toColumns();
+    return osg::Matrixd(glm::value_ptr(columns));
+}
+
+Result<osg::Matrixd> AnimatedCharacter::jointToModel(const std::string& joint) const
+{
+    const int index = set().skeleton().findJoint(joint);
+    if (index < 0) return Error{"there is no joint \"" + joint + "\""};
+    return jointToModel(static_cast<std::size_t>(index));
+}
 
 void AnimatedCharacter::update(double simulationTime)
 {

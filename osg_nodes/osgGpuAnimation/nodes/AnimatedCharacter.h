@@ -40,6 +40,18 @@ public:
     AnimationController& controller() { return *_controller; }
     const AnimationController& controller() const { return *_controller; }
 
+    /// The same character with another set, such as one with markers or root motion (AnimationSet::withClips,
+    /// withRootMotion): the base layer goes on with the clip of the same number, other layers are gone, bounds are
+    /// worked out anew. Do it before cloning, so that clones share the set. Error: the set's palette is another than
+    /// this one's, so the meshes would not fit.
+    Result<bool> setAnimationSet(std::shared_ptr<const AnimationSet> set);
+
+    /// Where a joint is now, in the character's own space: computed from its own chain of parents by the CPU twin,
+    /// cheap enough for every frame. joint: below the skeleton's jointCount().
+    osg::Matrixd jointToModel(std::size_t joint) const;
+    /// Error: there is no joint of that name.
+    Result<osg::Matrixd> jointToModel(const std::string& joint) const;
+
     /// Advances the controller by the time since the last update; the first only takes the time down. A jump of the
     /// time, backwards too, moves the clip by as much, so the same times show the same poses.
     /// simulationTime: seconds.

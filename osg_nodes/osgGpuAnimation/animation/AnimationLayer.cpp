@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/animation/AnimationLayer.h>
+
+#include "MotionBlend.h"
+#include <osgGpuAnimation/animation/AnimationController.h>
+#include <osgGpuAnimation/animation/JointMask.h>
+#include <osgGpuAnimation/animation/RootMotionCurve.h>
+
+#include <layout.glsl>
+
+#include <algorithm>
+#include <cmath>
+
+namespace osgGpuAnimation
+{
+
+AnimationLayer::AnimationLayer(AnimationController& owner, const AnimationLayer& other)
+    : _owner(owner), _index(other._index), _mixer(other._mixer), _state(other._state), _loopMode(other._loopMode),
+      _speed(other._speed), _weight(other._weight), _mask(other._mask), _mode(other._mode),
+      _reference(other._reference), _standing(other._standing)
+{
+    _mixer.stand();
+}
+
+ClipPlayback AnimationLayer::playbackOf(std::size_t clip, LoopMode loopMode) const
+{
+    return ClipPlayback(static_cast<int>(clip), _owner.set().clips()[clip].duration(), _speed, loopMode);
+}
+
+Result<bool> AnimationLayer::play(std::size_t clip)
+{
+    const Result<std::size_t> known = _owner.set().clipAt(clip);
+    if (!known) return known.error();
+    _mixer.start(playbackOf(clip, _loopMode));
+    _state = PlayState::Playing;
+    show();
+    return true;
+}
+
+Result<bool> AnimationLayer::play(const std::string& name)
+{
+    const Result<std::size_t> clip = _owner.set().clipNamed(name);
+    if (!clip) return clip.error();
+    return play(clip.value());
+}
+
+Result<bool> AnimationLayer::crossfade(std::size_t clip, double seconds, const CrossfadeOptions& options)
+{
+    const Result<std::size_t> known = _owner.set().clipAt(clip);
+    if (!known) return known.error();
+    if (!std::isfinite(seconds) || seconds < 0.0)
+        return Error{"a crossfade of " + std::to_string(seconds) + " seconds"};
+    if (options.speed && !std::isfinite(*options.speed))
+        return Error{"a crossfade to a speed of " + std::to_string(*options.speed)};
+    if (options.speed) _speed = *options.speed;
+    if (options.loopMode) _loopMode = *options.loopMode;
+    if (_state == PlayState::Stopped) _mixer.clear();
+    ClipPlayback playback = playbackOf(clip, _loopMode);
+    const bool sharesPhase = options.sync == Sync::Phase && !_mixer.isEmpty();
+    if (sharesPhase) playback.setPhase(_mixer.current().phase());
+    if (seconds > 0.0)
+        _mixer.fadeTo(playback, seconds, options.curve, sharesPhase);
+    else
+        _mixer.start(playback);
+    _state = PlayState::Playing;
+    show();
+    return true;
+}
+
+Result<bool> AnimationLayer::crossfade(const std::string& name, double seconds, const CrossfadeOptions& options)
+{
+    const Result<std::size_t> clip = _owner.set().clipNamed(name);
+    if (!clip) return clip.error();
+    return crossfade(clip.value(), seconds, options);
+}
+
+void AnimationLayer::pause()
+{
+    if (_state == PlayState::Playing) _state = PlayState::Paused;
+}
+
+void AnimationLayer::resume()
+{
+    if (_state == PlayState::Paused) _state = PlayState::Playing;
+}
+
+void AnimationLayer::stop()
+{
+    _state = PlayState::Stopped;
+    if (!_mixer.isEmpty())
+    {
+        _mixer.start(playbackOf(static_cast<std::size_t>(clip()), _loopMode));
+        _mixer.current().seek(0.0);
+    }
+    show();
+}
+
+bool AnimationLayer::seek(double seconds)
+{
+    if (std::isnan(seconds)) return false;
+    if (_mixer.isEmpty()) return true;
+    _mixer.current().seek(seconds);
+    if (_state == PlayState::Ended && !_mixer.current().isAtEnd()) _state = PlayState::Playing;
+    show();
+    return true;
+}
+
+bool AnimationLayer::setSpeed(double speed)
+{
+    if (!std::isfinite(speed)) return false;
+    _speed = speed;
+    if (!_mixer.isEmpty()) _mixer.current().setSpeed(speed);
+    return true;
+}
+
+void AnimationLayer::setLoopMode(LoopMode mode)
+{
+    _loopMode = mode;
+    if (!_mixer.isEmpty()) _mixer.current().setLoopMode(mode);
+    show();
+}
+
+bool AnimationLayer::setWeight(float weight)
+{
+    return fadeWeight(weight, 0.0);
+}
+
+bool AnimationLayer::fadeWeight(float weight, double seconds, FadeCurve curve)
+{
+    if (std::isnan(weight) || !std::isfinite(seconds) || seconds < 0.0) return false;
+    _weight = Fade(_weight.value(), std::clamp(static_cast<double>(weight), 0.0, 1.0), seconds, curve);
+    show();
+    return true;
+}
+
+Result<bool> AnimationLayer::setMask(const JointMask& mask)
+{
+    const Result<std::uint32_t> number = _owner.set().addMask(mask);
+    if (!number) return number.error();
+    _mask = number.value();
+    show();
+    return true;
+}
+
+void AnimationLayer::clearMask()
+{
+    _mask = 0;
+    show();
+}
+
+void AnimationLayer::setMode(Mode mode, Reference reference)
+{
+    _mode = mode;
+    _reference = reference;
+    show();
+}
+
+void AnimationLayer::setStanding(int standing)
+{
+    _standing = standing;
+    show();
+}
+
+void AnimationLayer::advance(double seconds)
+{
+    _crossfadeMoment = _weightFadeMoment = -1.0;
+    if (_state == PlayState::Paused)
+    {
+        _mixer.stand();
+        return;
+    }
+    _weightFadeMoment = _weight.advance(seconds);
+    if (_state == PlayState::Stopped)
+    {
+        _mixer.stand();
+        return;
+    }
+    _crossfadeMoment = _mixer.advance(seconds, _state == PlayState::Playing);
+    if (_mixer.voice(_mixer.voiceCount() - 1).move.hasFinished) _state = PlayState::Ended;
+}
+
+BlendSample AnimationLayer::sampleOf(const ClipPlayback& playback, double time, double share) const
+{
+    const AnimationSet& set = _owner.set();
+    const auto index = static_cast<std::size_t>(playback.clip());
+    const Clip& clip = set.clips()[index];
+    const Clip::Span span = clip.locate(time);
+    BlendSample sample;
+    sample.keyframe = static_cast<std::uint32_t>(set.keyframeOffset(index) + span.keyframe * clip.keyframeStride());
+    sample.alpha = span.alpha;
+    sample.weight = static_cast<float>(share * _weight.value());
+    sample.control = (clip.form() == Clip::Form::Spline ? POSE_SAMPLE_SPLINE : 0u) | _mask << POSE_SAMPLE_MASK_SHIFT;
+    return sample;
+}
+
+void AnimationLayer::collect(SampleStack& out) const
+{
+    if (_state == PlayState::Stopped) return;
+    for (std::size_t v = 0; v < _mixer.voiceCount(); ++v)
+    {
+        const ClipMixer::Voice& voice = _mixer.voice(v);
+        if (!(voice.share > 0.0)) continue;
+        const BlendSample sample = sampleOf(voice.playback, voice.playback.shownTime(), voice.share);
+        if (_mode == Mode::Override)
+            out.add(sample, _standing);
+        else if (_reference == Reference::FirstFrame)
+            out.addDifference(sampleOf(voice.playback, 0.0, voice.share), sample);
+        else
+            out.addDifference(BlendSample{0, 0.0f, sample.weight, _mask << POSE_SAMPLE_MASK_SHIFT}, sample);
+    }
+}
+
+void AnimationLayer::collectMotion(MotionBlend& out) const
+{
+    if (_state == PlayState::Stopped || _mode == Mode::Additive) return;
+    const AnimationSet& set = _owner.set();
+    const float* mask = set.masks().weights(_mask);
+    for (std::size_t v = 0; v < _mixer.voiceCount(); ++v)
+    {
+        const ClipMixer::Voice& voice = _mixer.voice(v);
+        const Clip& clip = set.clips()[static_cast<std::size_t>(voice.playback.clip())];
+        const RootMotionCurve* curve = clip.rootMotion();
+        if (!curve) continue;
+        const double weight = voice.share * _weight.value() * (mask ? static_cast<double>(mask[curve->joint]) : 1.0);
+        out.add(curve->during(clip, voice.move, voice.playback.loopMode()), weight, _standing);
+    }
+}
+
+void AnimationLayer::show()
+{
+    _owner.show();
+}
+
+} // namespace osgGpuAnimation

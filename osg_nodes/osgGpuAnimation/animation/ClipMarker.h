@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+namespace osgGpuAnimation
+{
+
+/// A named moment of a clip, such as a foot that touches the ground.
+struct ClipMarker
+{
+    double time = 0.0; ///< seconds on the clip's time line, in [0, duration]
+    std::string name;
+};
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osgGpuAnimation/animation/ClipPlayback.h>
+#include <osgGpuAnimation/animation/Fade.h>
+
+#include <array>
+#include <cstddef>
+
+namespace osgGpuAnimation
+{
+
+/// The clips that one layer plays at a time: one, and while it crossfades those that are on their way out, which go on
+/// playing. A crossfade may begin at any moment: what is seen then, however many clips make it up, fades as a whole
+/// while the new clip fades in, so the pose never jumps. (A frozen pose in place of the fading clips would cost 48
+/// bytes of upload a joint, and feet that stop in mid air.) Where all voices are in use, the one with the smallest
+/// share gives way.
+class ClipMixer
+{
+public:
+    static constexpr std::size_t maxVoices = 8;
+
+    struct Voice
+    {
+        ClipPlayback playback;
+        ClipMove move;            ///< of the last advance()
+        double share = 1.0;       ///< of the layer, now
+        double shareBefore = 0.0; ///< when the last crossfade began
+        int phaseGroup = 0;       ///< voices of one group run at one phase
+    };
+
+    std::size_t voiceCount() const { return _count; }
+    const Voice& voice(std::size_t index) const { return _voices[index]; } ///< oldest first
+    bool isEmpty() const { return _count == 0; }
+    /// The newest voice; there is one.
+    ClipPlayback& current() { return _voices[_count - 1].playback; }
+    const ClipPlayback& current() const { return _voices[_count - 1].playback; }
+    bool isFading() const { return !_fade.isFinished(); }
+
+    void clear() { _count = 0; }
+    /// Alone and at once.
+    void start(const ClipPlayback& playback);
+    /// Over these seconds (above 0).
+    void fadeTo(const ClipPlayback& playback, double seconds, FadeCurve curve, bool sharesPhase);
+
+    /// Moves all voices, the current one only if it is playing, and the fade. Returns when in the step the fade ended,
+    /// in [0, 1]; -1 where it did not.
+    double advance(double seconds, bool isCurrentPlaying);
+    /// There was no step: no voice has moved.
+    void stand();
+
+private:
+    void remove(std::size_t index);
+    void removeFaded();
+    void makeRoom();
+    double clipSeconds(const Voice& voice, double seconds) const;
+
+    std::array<Voice, maxVoices> _voices;
+    std::size_t _count = 0;
+    Fade _fade{1.0};
+    int _lastPhaseGroup = 0;
+};
+
+} // namespace osgGpuAnimation

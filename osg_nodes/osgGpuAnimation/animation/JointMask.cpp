@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/animation/JointMask.h>
+
+#include <algorithm>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+float clampedWeight(float weight)
+{
+    return weight > 0.0f ? std::min(weight, 1.0f) : 0.0f;
+}
+
+Error noSuchJoint(const std::string& name, std::size_t count)
+{
+    return Error{"there is no joint \"" + name + "\" among the " + std::to_string(count) + " of the set"};
+}
+
+} // namespace
+
+JointMask::JointMask(const AnimationSet& set, float weight)
+    : _jointCount(set.skeleton().jointCount()), _weights(set.trackCount(), clampedWeight(weight))
+{
+    for (std::size_t morph = 0; morph < set.morphs().size(); ++morph)
+        _firstTracks.push_back(set.firstTrackOfMorph(morph));
+    _firstTracks.push_back(set.trackCount());
+}
+
+Result<JointMask> JointMask::subtree(const AnimationSet& set, const std::string& joint, int feather)
+{
+    const Skeleton& skeleton = set.skeleton();
+    const int root = skeleton.findJoint(joint);
+    if (root < 0) return noSuchJoint(joint, skeleton.jointCount());
+    JointMask mask(set);
+    const float step = 1.0f / (static_cast<float>(std::max(feather, 0)) + 1.0f);
+    const int rootDepth = skeleton.depths()[static_cast<std::size_t>(root)];
+    std::vector<bool> isInside(skeleton.jointCount(), false);
+    for (auto j = static_cast<std::size_t>(root); j < isInside.size(); ++j)
+    {
+        const int parent = skeleton.joint(j).parent;
+        isInside[j] = static_cast<int>(j) == root || (parent >= 0 && isInside[static_cast<std::size_t>(parent)]);
+        if (isInside[j]) mask.setJoint(j, step * static_cast<float>(skeleton.depths()[j] - rootDepth + 1));
+    }
+    for (std::size_t morph = 0; morph < set.morphs().size(); ++morph)
+    {
+        const int owner = skeleton.jointOfSourceNode(set.morphs()[morph].sourceNode);
+        if (owner >= 0) mask.setMorph(morph, mask.joint(static_cast<std::size_t>(owner)));
+    }
+    return mask;
+}
+
+Result<JointMask> JointMask::joints(const AnimationSet& set, const std::vector<std::string>& names)
+{
+    JointMask mask(set);
+    for (const std::string& name : names)
+    {
+        const int joint = set.skeleton().findJoint(name);
+        if (joint < 0) return noSuchJoint(name, set.skeleton().jointCount());
+        mask.setJoint(static_cast<std::size_t>(joint), 1.0f);
+    }
+    return mask;
+}
+
+bool JointMask::setJoint(std::size_t joint, float weight)
+{
+    if (joint >= _jointCount) return false;
+    _weights[joint] = clampedWeight(weight);
+    return true;
+}
+
+bool JointMask::setMorph(std::size_t morph, float weight)
+{
+    if (morph + 1 >= _firstTracks.size()) return false;
+    std::fill(_weights.begin() + static_cast<std::ptrdiff_t>(_firstTracks[morph]),
+              _weights.begin() + static_cast<std::ptrdiff_t>(_firstTracks[morph + 1]), clampedWeight(weight));
+    return true;
+}
+
+JointMask JointMask::inverted() const
+{
+    JointMask mask = *this;
+    for (float& weight : mask._weights)
+        weight = 1.0f - weight;
+    return mask;
+}
+
+} // namespace osgGpuAnimation

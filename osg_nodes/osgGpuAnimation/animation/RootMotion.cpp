@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/animation/RootMotion.h>
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+/// v turned about a unit axis (Rodrigues).
+glm::dvec3 turned(const glm::dvec3& v, const glm::dvec3& axis, double angle)
+{
+    if (angle == 0.0) return v;
+    const double cosine = std::cos(angle);
+    return v * cosine + glm::cross(axis, v) * std::sin(angle) + axis * (glm::dot(axis, v) * (1.0 - cosine));
+}
+
+} // namespace
+
+RootMotion operator*(const RootMotion& a, const RootMotion& b)
+{
+    return {a.transformPoint(b.translation), a.yaw + b.yaw, a.up};
+}
+
+glm::dvec3 RootMotion::transformPoint(const glm::dvec3& point) const
+{
+    return turned(point, up, yaw) + translation;
+}
+
+RootMotion RootMotion::inverse() const
+{
+    return {-turned(translation, up, -yaw), -yaw, up};
+}
+
+RootMotion RootMotion::power(double times) const
+{
+    constexpr double most = 1099511627776.0;
+    auto left = static_cast<std::uint64_t>(std::min(std::abs(times), most));
+    RootMotion square = times < 0.0 ? inverse() : *this;
+    RootMotion result;
+    result.up = up;
+    for (; left > 0; left /= 2)
+    {
+        if (left % 2 != 0) result = result * square;
+        square = square * square;
+    }
+    return result;
+}
+
+glm::dmat4 RootMotion::matrix() const
+{
+    return glm::dmat4(glm::dvec4(turned({1, 0, 0}, up, yaw), 0.0), glm::dvec4(turned({0, 1, 0}, up, yaw), 0.0),
+                      glm::dvec4(turned({0, 0, 1}, up, yaw), 0.0), glm::dvec4(translation, 1.0));
+}
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/animation/RootMotionExtraction.h>
+
+#include "RootMotionExtractor.h"
+
+#include <glm/geometric.hpp>
+
+#include <cmath>
+
+namespace osgGpuAnimation
+{
+
+Result<std::shared_ptr<const AnimationSet>> withRootMotion(const AnimationSet& set, const std::string& joint,
+                                                           const RootMotionAxes& axes)
+{
+    const int index = set.skeleton().findJoint(joint);
+    if (index < 0) return Error{"there is no joint \"" + joint + "\" whose motion could be taken out"};
+    const double length = glm::length(axes.up);
+    if (!(length > 0.0) || !std::isfinite(length)) return Error{"an up axis that has no direction"};
+
+    std::vector<Clip> clips;
+    for (const Clip& clip : set.clips())
+    {
+        Result<Clip> stripped =
+            RootMotionExtractor(set.skeleton(), static_cast<std::size_t>(index), axes).extract(clip);
+        if (!stripped) return stripped.error();
+        clips.push_back(std::move(stripped).value());
+    }
+    return set.withClips(std::move(clips));
+}
+
+} // namespace osgGpuAnimation

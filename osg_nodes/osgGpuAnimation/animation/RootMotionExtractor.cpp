@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+#include "RootMotionExtractor.h"
+
+#include <osgGpuAnimation/animation/Rotation.h>
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+constexpr double pi = 3.14159265358979323846;
+
+glm::dvec4 product(const glm::dvec4& a, const glm::dvec4& b)
+{
+    const glm::dvec3 u(a), v(b);
+    return glm::dvec4(a.w * v + b.w * u + glm::cross(u, v), a.w * b.w - glm::dot(u, v));
+}
+
+glm::dvec4 conjugate(const glm::dvec4& q)
+{
+    return glm::dvec4(-glm::dvec3(q), q.w);
+}
+
+std::size_t transformsPerTrack(const Clip& clip)
+{
+    return clip.form() == Clip::Form::Spline ? 3 : 1;
+}
+
+double difference(const glm::vec4& a, const glm::vec4& b)
+{
+    return static_cast<double>(std::max(std::max(std::abs(a.x - b.x), std::abs(a.y - b.y)),
+                                        std::max(std::abs(a.z - b.z), std::abs(a.w - b.w))));
+}
+
+bool isSame(const JointTransform& a, const JointTransform& b)
+{
+    const double size = 1.0 + static_cast<double>(glm::length(a.translation) + glm::length(a.scale));
+    return difference(a.translation, b.translation) <= 1e-6 * size && difference(a.rotation, b.rotation) <= 1e-6 &&
+           difference(a.scale, b.scale) <= 1e-6 * size;
+}
+
+/// Whether it turns and scales alike in all directions, without mirroring.
+bool isSimilarity(const glm::dmat3& m)
+{
+    const double size = glm::length(m[0]);
+    constexpr double tolerance = 1e-4;
+    return size > 0.0 && std::isfinite(size) && std::abs(glm::length(m[1]) / size - 1.0) <= tolerance &&
+           std::abs(glm::length(m[2]) / size - 1.0) <= tolerance &&
+           glm::length(glm::cross(m[0], m[1]) / (size * size) - m[2] / size) <= tolerance;
+}
+
+} // namespace
+
+RootMotionExtractor::RootMotionExtractor(const Skeleton& skeleton, std::size_t joint, const RootMotionAxes& axes)
+    : _skeleton(skeleton), _joint(joint), _axes(axes)
+{
+    _axes.up = glm::normalize(_axes.up);
+}
+
+bool RootMotionExtractor::isStill(const Clip& clip, std::size_t joint) const
+{
+    const std::size_t perTrack = transformsPerTrack(clip);
+    const JointTransform* first = &clip.data()[joint * perTrack];
+    JointTransform none{glm::vec4(0.0f), glm::vec4(0.0f), glm::vec4(0.0f)};
+    for (std::size_t k = 0; k < clip.keyframeCount(); ++k)
+    {
+        const JointTransform* here = first + k * clip.keyframeStride();
+        if (!isSame(*first, *here)) return false;
+        for (std::size_t tangent = 1; tangent < perTrack; ++tangent)
+            if (!isSame(none, here[tangent])) return false;
+    }
+    return true;
+}
+
+Result<bool> RootMotionExtractor::findParent(const Clip& clip)
+{
+    _parentToModel = glm::dmat4(1.0);
+    _parentRotation = glm::dvec4(0.0, 0.0, 0.0, 1.0);
+    for (int j = _skeleton.joint(_joint).parent; j >= 0; j = _skeleton.joint(static_cast<std::size_t>(j)).parent)
+    {
+        const auto joint = static_cast<std::size_t>(j);
+        if (!isStill(clip, joint))
+            return Error{"clip \"" + clip.name() + "\" moves joint \"" + _skeleton.joint(joint).name + "\" above \"" +
+                         _skeleton.joint(_joint).name + "\", whose motion is to be taken out"};
+        const JointTransform& local = clip.data()[joint * transformsPerTrack(clip)];
+        _parentToModel = local.toMatrix().toColumns() * _parentToModel;
+        _parentRotation = product(Rotation::unit(glm::dvec4(local.rotation)), _parentRotation);
+    }
+    if (!isSimilarity(glm::dmat3(_parentToModel)))
+        return Error{"joint \"" + _skeleton.joint(_joint).name +
+                     "\" is under a scale that is not the same in all directions: its motion cannot be taken out"};
+    return true;
+}
+
+Result<Clip> RootMotionExtractor::extract(const Clip& clip)
+{
+    const Result<bool> hasParent = findParent(clip);
+    if (!hasParent) return hasParent.error();
+    Clip stripped = clip;
+    stripped._data = std::make_shared<std::vector<JointTransform>>(clip.data());
+    auto curve = std::make_shared<RootMotionCurve>();
+    curve->joint = _joint;
+    curve->up = _axes.up;
+    curve->keys.resize(clip.keyframeCount());
+    takeOutTranslation(stripped, *curve);
+    if (_axes.yaw) takeOutYaw(stripped, *curve);
+    stripped._rootMotion = std::move(curve);
+    return stripped;
+}
+
+void RootMotionExtractor::takeOutTranslation(Clip& clip, RootMotionCurve& curve) const
+{
+    const glm::dmat3 toModel(_parentToModel);
+    const glm::dmat3 toParent = glm::inverse(toModel);
+    const auto taken = [&](const glm::dvec3& v)
+    {
+        const glm::dvec3 along = _axes.up * glm::dot(_axes.up, v);
+        return (_axes.horizontal ? v - along : glm::dvec3(0.0)) + (_axes.vertical ? along : glm::dvec3(0.0));
+    };
+    const std::size_t perTrack = transformsPerTrack(clip);
+    JointTransform* key = &(*clip._data)[_joint * perTrack];
+    const glm::dvec3 first(key->translation);
+    for (std::size_t k = 0; k < curve.keys.size(); ++k, key += clip.keyframeStride())
+        for (std::size_t part = 0; part < perTrack; ++part)
+        {
+            const glm::dvec3 own(key[part].translation);
+            const glm::dvec3 way = toModel * (part == 0 ? own - first : own);
+            const glm::dvec3 gone = taken(way);
+            const glm::dvec3 left = own - toParent * gone;
+            key[part].translation = glm::vec4(glm::vec3(left), key[part].translation.w);
+            RootMotionCurve::Key& out = curve.keys[k];
+            const auto place = part == 0   ? &RootMotionCurve::Point::value
+                               : part == 1 ? &RootMotionCurve::Point::in
+                                           : &RootMotionCurve::Point::out;
+            out.displacement.*place = gone;
+            out.pivot.*place = glm::dvec3(_parentToModel * glm::dvec4(left, part == 0 ? 1.0 : 0.0));
+        }
+}
+
+/// Of a turn in the model's space: the part about up (its twist), in [-pi, pi].
+double RootMotionExtractor::yawOf(const glm::dvec4& rotation) const
+{
+    const double along = glm::dot(glm::dvec3(rotation), _axes.up);
+    if (along == 0.0 && rotation.w == 0.0) return 0.0;
+    const double angle = 2.0 * std::atan2(along, rotation.w);
+    return angle > pi ? angle - 2.0 * pi : angle < -pi ? angle + 2.0 * pi : angle;
+}
+
+void RootMotionExtractor::takeOutYaw(Clip& clip, RootMotionCurve& curve) const
+{
+    const std::size_t perTrack = transformsPerTrack(clip), stride = clip.keyframeStride();
+    JointTransform* keys = &(*clip._data)[_joint * perTrack];
+    const glm::dvec4 first = product(_parentRotation, Rotation::unit(glm::dvec4(keys->rotation)));
+    for (std::size_t k = 0; k < curve.keys.size(); ++k)
+    {
+        const glm::dvec4 now = product(_parentRotation, Rotation::unit(glm::dvec4(keys[k * stride].rotation)));
+        const double yaw = yawOf(product(now, conjugate(first)));
+        const double before = k == 0 ? 0.0 : curve.keys[k - 1].yaw;
+        curve.keys[k].yaw = yaw + 2.0 * pi * std::round((before - yaw) / (2.0 * pi));
+    }
+    const glm::dvec4 axis(
+        glm::dvec3(product(product(conjugate(_parentRotation), glm::dvec4(_axes.up, 0.0)), _parentRotation)), 0.0);
+    for (std::size_t k = 0; k < curve.keys.size(); ++k)
+    {
+        JointTransform* key = keys + k * stride;
+        const double yaw = curve.keys[k].yaw;
+        const glm::dvec4 back(glm::dvec3(axis) * -std::sin(yaw / 2.0), std::cos(yaw / 2.0));
+        const glm::dvec4 value = product(back, glm::dvec4(key->rotation));
+        const bool isSpline = perTrack == 3 && key->translation.w == 0.0f;
+        for (std::size_t part = 1; isSpline && part < 3; ++part)
+        {
+            // Beside the tangent itself, the yaw that runs on in that piece.
+            const std::size_t from = part == 1 ? (k == 0 ? 0 : k - 1) : k;
+            const std::size_t to = std::min(from + 1, curve.keys.size() - 1);
+            const double slope = part == 1 && k == 0 ? 0.0 : curve.keys[to].yaw - curve.keys[from].yaw;
+            key[part].rotation =
+                glm::vec4(product(back, glm::dvec4(key[part].rotation)) - product(axis, value) * (0.5 * slope));
+        }
+        key->rotation = glm::vec4(value);
+    }
+}
+
+} // namespace osgGpuAnimation

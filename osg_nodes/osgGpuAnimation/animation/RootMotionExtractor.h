@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osgGpuAnimation/animation/RootMotionCurve.h>
+#include <osgGpuAnimation/animation/RootMotionExtraction.h>
+
+#include <glm/mat3x3.hpp>
+
+namespace osgGpuAnimation
+{
+
+/// Takes the motion of one joint out of clips.
+class RootMotionExtractor
+{
+public:
+    RootMotionExtractor(const Skeleton& skeleton, std::size_t joint, const RootMotionAxes& axes);
+
+    Result<Clip> extract(const Clip& clip);
+
+private:
+    bool isStill(const Clip& clip, std::size_t joint) const;
+    Result<bool> findParent(const Clip& clip);
+    double yawOf(const glm::dvec4& rotation) const;
+    void takeOutTranslation(Clip& clip, RootMotionCurve& curve) const;
+    void takeOutYaw(Clip& clip, RootMotionCurve& curve) const;
+
+    const Skeleton& _skeleton;
+    std::size_t _joint;
+    RootMotionAxes _axes; ///< up is unit
+    // From the space of the joint's parent to the model.
+    glm::dmat4 _parentToModel{1.0};
+    glm::dvec4 _parentRotation{0.0, 0.0, 0.0, 1.0};
+};
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+#include "TrackBlend.h"
+
+#include <osgGpuAnimation/animation/Rotation.h>
+
+#include <layout.glsl>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+constexpr double pi = 3.14159265358979323846;
+
+void addScaled(MixedTrack& sum, const MixedTrack& track, double factor)
+{
+    sum.translation += track.translation * factor;
+    sum.rotation += track.rotation * factor;
+    sum.scale += track.scale * factor;
+}
+
+glm::dvec4 product(const glm::dvec4& a, const glm::dvec4& b)
+{
+    const glm::dvec3 u(a), v(b);
+    return glm::dvec4(a.w * v + b.w * u + glm::cross(u, v), a.w * b.w - glm::dot(u, v));
+}
+
+/// Axis times half the angle of a unit quaternion's turn by the shorter way.
+glm::dvec3 logarithm(const glm::dvec4& q)
+{
+    const glm::dvec4 d = q.w < 0.0 ? -q : q;
+    const double sine = glm::length(glm::dvec3(d));
+    return glm::dvec3(d) * (sine < 1e-12 ? 1.0 : std::atan2(sine, d.w) / sine);
+}
+
+glm::dvec4 exponential(const glm::dvec3& v)
+{
+    const double angle = glm::length(v);
+    return glm::dvec4(v * (angle < 1e-12 ? 1.0 : std::sin(angle) / angle), std::cos(angle));
+}
+
+/// sample / reference, 1 where the reference is 0.
+double ratio(double sample, double reference)
+{
+    return std::abs(reference) > static_cast<double>(POSE_SMALLEST_SCALE) ? sample / reference : 1.0;
+}
+
+} // namespace
+
+TrackBlend::TrackBlend(const JointTransform& rest, bool isWeights) : _isWeights(isWeights)
+{
+    _total = {glm::dvec4(rest.translation), glm::dvec4(rest.rotation), glm::dvec4(rest.scale)};
+}
+
+void TrackBlend::beginStanding()
+{
+    const double left = 1.0 - std::min(_weight, 1.0);
+    const double share = 1.0 / std::max(_weight, 1.0);
+    const bool isTurned = !_isWeights && glm::dot(_total.rotation, _group.rotation) < 0.0;
+    if (isTurned) _total.rotation = -_total.rotation;
+    MixedTrack total;
+    addScaled(total, _total, left);
+    addScaled(total, _group, share);
+    _total = total;
+    _group = MixedTrack();
+    _weight = 0.0;
+}
+
+void TrackBlend::add(const MixedTrack& sample, double weight)
+{
+    if (_weight == 0.0) _hemisphere = sample.rotation;
+    _weight += weight;
+    MixedTrack turned = sample;
+    if (!_isWeights && glm::dot(_hemisphere, sample.rotation) < 0.0) turned.rotation = -turned.rotation;
+    addScaled(_group, turned, weight);
+}
+
+void TrackBlend::addDifference(const MixedTrack& reference, const MixedTrack& sample, double weight)
+{
+    addScaled(_difference, sample, weight);
+    addScaled(_difference, reference, -weight);
+    if (_isWeights) return;
+    const glm::dvec4 inverse(-glm::dvec3(reference.rotation), reference.rotation.w);
+    _turn += weight * logarithm(product(inverse, sample.rotation));
+    for (int axis = 0; axis < 3; ++axis)
+        _growth[axis] *= 1.0 + weight * (ratio(sample.scale[axis], reference.scale[axis]) - 1.0);
+}
+
+MixedTrack TrackBlend::result()
+{
+    beginStanding();
+    if (_isWeights)
+    {
+        addScaled(_total, _difference, 1.0);
+        return _total;
+    }
+    // Nothing below can leave a sum of length 0: see PoseInstruction.
+    _total.rotation = Rotation::unit(_total.rotation);
+    const double turned = glm::length(_turn);
+    if (turned > 0.0)
+        _total.rotation = product(_total.rotation, exponential(turned > pi ? _turn * (pi / turned) : _turn));
+    _total.translation += _difference.translation;
+    _total.scale *= _growth;
+    _total.translation.w = 0.0; // in a spline clip it held a flag
+    _total.scale.w = 0.0;
+    return _total;
+}
+
+} // namespace osgGpuAnimation

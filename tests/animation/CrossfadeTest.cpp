@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: MIT
+#include "AllocationCount.h"
+#include "support/GaitSet.h"
+
+#include <osgGpuAnimation/animation/AnimationController.h>
+#include <osgGpuAnimation/animation/Pose.h>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+constexpr double frame = 1.0 / 60.0;
+
+std::vector<glm::vec3> jointPlaces(const AnimationController& controller)
+{
+    std::vector<JointTransform> tracks;
+    std::vector<AffineMatrix> joints;
+    Pose::mix(controller.set(), controller.instruction(), tracks);
+    Pose::jointToModel(controller.set(), tracks, AffineMatrix(), joints);
+    std::vector<glm::vec3> places;
+    for (const AffineMatrix& joint : joints)
+        places.push_back(joint.transformPoint(glm::vec3(0.0f)));
+    return places;
+}
+
+double largestStep(const std::vector<glm::vec3>& before, const std::vector<glm::vec3>& after)
+{
+    float largest = 0.0f;
+    for (std::size_t i = 0; i < before.size(); ++i)
+        largest = std::max(largest, glm::distance(before[i], after[i]));
+    return static_cast<double>(largest);
+}
+
+/// The largest step of a joint from one frame to the next while the clip plays alone.
+double stepOfClip(const std::shared_ptr<const AnimationSet>& set, std::size_t clip)
+{
+    AnimationController controller(set);
+    EXPECT_TRUE(controller.play(clip));
+    double largest = 0.0;
+    for (int i = 0; i < 600; ++i)
+    {
+        const std::vector<glm::vec3> before = jointPlaces(controller);
+        controller.advance(frame);
+        largest = std::max(largest, largestStep(before, jointPlaces(controller)));
+    }
+    return largest;
+}
+
+struct Interruptions
+{
+    const char* name;
+    int every; ///< frames between crossfades, on average
+    Sync sync;
+    FadeCurve curve;
+};
+
+TEST(CrossfadeTest, InterruptedByCrossfadesAtRandomNothingJumps)
+{
+    const auto set = makeGaitSet();
+    std::vector<double> steps;
+    for (std::size_t clip = 0; clip < 3; ++clip)
+        steps.push_back(stepOfClip(set, clip));
+    const Interruptions cases[] = {
+        {"now and then", 30, Sync::Start, FadeCurve::Linear},
+        {"often", 8, Sync::Start, FadeCurve::Linear},
+        {"nearly every frame, more than there are voices", 2, Sync::Start, FadeCurve::Linear},
+        {"in phase", 8, Sync::Phase, FadeCurve::Linear},
+        {"smoothly", 12, Sync::Phase, FadeCurve::Smooth},
+    };
+    for (const Interruptions& c : cases)
+    {
+        std::mt19937 random(11);
+        SCOPED_TRACE(c.name);
+        AnimationController controller(set);
+        ASSERT_TRUE(controller.play("Walk"));
+        double worst = 0.0;
+        for (int i = 0; i < 6000; ++i)
+        {
+            if (random() % static_cast<unsigned int>(c.every) == 0)
+            {
+                const double seconds = std::uniform_real_distribution<double>(0.35, 0.8)(random);
+                ASSERT_TRUE(controller.crossfade(random() % 3, seconds, {c.curve, c.sync, {}}));
+            }
+            const std::vector<glm::vec3> before = jointPlaces(controller);
+            controller.advance(frame);
+            double allowed = 0.0;
+            const ClipMixer& mixer = controller.layer(0).mixer();
+            for (std::size_t v = 0; v < mixer.voiceCount(); ++v)
+                allowed = std::max(allowed, steps[static_cast<std::size_t>(mixer.voice(v).playback.clip())]);
+            worst = std::max(worst, largestStep(before, jointPlaces(controller)) / allowed);
+        }
+        RecordProperty(c.name, std::to_string(worst));
+        EXPECT_LE(worst, 1.5);
+    }
+}
+
+TEST(CrossfadeTest, GoesFromOnePoseToTheOtherByItsCurve)
+{
+    const auto set = makeGaitSet();
+    for (FadeCurve curve : {FadeCurve::Linear, FadeCurve::Smooth})
+    {
+        AnimationController controller(set);
+        ASSERT_TRUE(controller.play("Walk"));
+        ASSERT_TRUE(controller.crossfade("Run", 1.0, {curve, Sync::Start, {}}));
+        EXPECT_EQ(controller.clip(), set->findClip("Run"));
+        EXPECT_TRUE(controller.layer(0).isCrossfading());
+        EXPECT_EQ(controller.instruction().sampleCount, 1u) << "still all Walk";
+        controller.advance(0.25);
+        const PoseInstruction& instruction = controller.instruction();
+        ASSERT_EQ(instruction.sampleCount, 2u);
+        const float run = curve == FadeCurve::Linear ? 0.25f : 0.15625f;
+        EXPECT_FLOAT_EQ(instruction.samples[0].weight, 1.0f - run) << "the heavier first";
+        EXPECT_FLOAT_EQ(instruction.samples[1].weight, run);
+        controller.advance(0.5);
+        EXPECT_FLOAT_EQ(controller.instruction().samples[0].weight, 1.0f - run);
+        controller.advance(0.25);
+        EXPECT_EQ(controller.instruction().sampleCount, 1u);
+        EXPECT_FLOAT_EQ(controller.instruction().samples[0].weight, 1.0f);
+        EXPECT_FALSE(controller.layer(0).isCrossfading());
+        EXPECT_DOUBLE_EQ(controller.time(), std::fmod(1.0, controller.duration()));
+    }
+}
+
+TEST(CrossfadeTest, InPhaseBothRunAtOnePaceUntilItIsOver)
+{
+    const auto set = makeGaitSet();
+    AnimationController controller(set);
+    ASSERT_TRUE(controller.play("Walk"));
+    controller.advance(0.3);
+    ASSERT_TRUE(controller.crossfade("Run", 0.5, {FadeCurve::Linear, Sync::Phase, {}}));
+    EXPECT_NEAR(controller.phase(), 0.3, 1e-6);
+    for (int i = 0; i < 29; ++i)
+    {
+        controller.advance(frame);
+        const ClipMixer& mixer = controller.layer(0).mixer();
+        ASSERT_EQ(mixer.voiceCount(), 2u);
+        EXPECT_NEAR(mixer.voice(0).playback.phase(), mixer.voice(1).playback.phase(), 1e-6);
+    }
+    controller.advance(frame);
+    const double time = controller.time();
+    controller.advance(frame);
+    EXPECT_NEAR(controller.time(), std::fmod(time + frame, controller.duration()), 1e-9) << "its own pace afterwards";
+}
+
+TEST(CrossfadeTest, FromNothingItRisesOutOfTheRestPose)
+{
+    AnimationController controller(makeGaitSet());
+    ASSERT_TRUE(controller.crossfade("Run", 1.0));
+    controller.advance(0.25);
+    EXPECT_EQ(controller.instruction().sampleCount, 1u);
+    EXPECT_FLOAT_EQ(controller.instruction().samples[0].weight, 0.25f);
+    controller.advance(0.75);
+    EXPECT_FLOAT_EQ(controller.instruction().samples[0].weight, 1.0f);
+}
+
+TEST(CrossfadeTest, RefusesWhatItCannotDoAndStaysAsItWas)
+{
+    AnimationController controller(makeGaitSet());
+    ASSERT_TRUE(controller.play("Walk"));
+    controller.advance(0.25);
+    const PoseInstruction before = controller.instruction();
+    for (double bad : {-1.0, std::nan(""), HUGE_VAL})
+        EXPECT_FALSE(controller.crossfade("Run", bad));
+    EXPECT_FALSE(controller.crossfade(9, 0.5));
+    const Result<bool> unknown = controller.crossfade("Fly", 0.5);
+    ASSERT_FALSE(unknown);
+    EXPECT_EQ(unknown.error().message, "there is no clip \"Fly\"; the clips are \"Idle\", \"Walk\", \"Run\", \"Turn\"");
+    EXPECT_EQ(controller.clip(), 1);
+    EXPECT_EQ(controller.instruction().samples[0].keyframe, before.samples[0].keyframe);
+    ASSERT_TRUE(controller.crossfade("Run", 0.0));
+    EXPECT_EQ(controller.instruction().sampleCount, 1u) << "no seconds: at once";
+}
+
+TEST(CrossfadeTest, PausedItStandsStill)
+{
+    AnimationController controller(makeGaitSet());
+    ASSERT_TRUE(controller.play("Walk"));
+    ASSERT_TRUE(controller.crossfade("Run", 0.5));
+    controller.advance(0.1);
+    controller.pause();
+    const PoseInstruction before = controller.instruction();
+    controller.advance(0.1);
+    const PoseInstruction& after = controller.instruction();
+    ASSERT_EQ(after.sampleCount, before.sampleCount);
+    for (std::size_t i = 0; i < after.sampleCount; ++i)
+    {
+        EXPECT_EQ(after.samples[i].alpha, before.samples[i].alpha);
+        EXPECT_EQ(after.samples[i].weight, before.samples[i].weight);
+        EXPECT_EQ(after.samples[i].keyframe, before.samples[i].keyframe);
+    }
+}
+
+TEST(CrossfadeTest, AdvancingDoesNotAllocate)
+{
+    AnimationController controller(makeGaitSet());
+    ASSERT_TRUE(controller.play("Walk"));
+    ASSERT_TRUE(controller.layer(1).play("Turn"));
+    const std::size_t before = allocationCount();
+    for (std::size_t i = 0; i < 1000; ++i)
+    {
+        if (i % 7 == 0) (void)controller.crossfade(i % 3, 0.5);
+        controller.advance(frame);
+    }
+    EXPECT_EQ(allocationCount(), before);
+}
+
+} // namespace
+} // namespace osgGpuAnimation

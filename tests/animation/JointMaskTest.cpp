@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/animation/JointMask.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+/// hips > spine > (arm > hand, head), hips > leg; the face hangs on the head's node, the hat on none.
+std::shared_ptr<const AnimationSet> makeSet()
+{
+    const Skeleton skeleton = Skeleton::create({{"hips", -1, {}, 0},
+                                                {"spine", 0, {}, 1},
+                                                {"leg", 0, {}, 2},
+                                                {"arm", 1, {}, 3},
+                                                {"head", 1, {}, 4},
+                                                {"hand", 3, {}, 5}})
+                                  .value();
+    const std::vector<MorphWeights> morphs{{"face", 4, std::vector<float>(14)}, {"hat", 9, {0.0f}}};
+    return AnimationSet::create({skeleton, {}, {}, morphs, {}}).value();
+}
+
+std::vector<float> weightsOf(const Result<JointMask>& mask)
+{
+    EXPECT_TRUE(mask) << (mask ? "" : mask.error().message);
+    return mask ? mask.value().weights() : std::vector<float>();
+}
+
+TEST(JointMaskTest, TakesASubtreeWithAFeatheredEdge)
+{
+    const auto set = makeSet();
+    // Joints in level order: hips, spine, leg, arm, head, hand; then the face's two blocks and the hat's one.
+    EXPECT_EQ(weightsOf(JointMask::subtree(*set, "spine")), (std::vector<float>{0, 1, 0, 1, 1, 1, 1, 1, 0}));
+    EXPECT_EQ(weightsOf(JointMask::subtree(*set, "spine", 1)), (std::vector<float>{0, 0.5f, 0, 1, 1, 1, 1, 1, 0}));
+    EXPECT_EQ(weightsOf(JointMask::subtree(*set, "spine", 3)),
+              (std::vector<float>{0, 0.25f, 0, 0.5f, 0.5f, 0.75f, 0.5f, 0.5f, 0}));
+    EXPECT_EQ(weightsOf(JointMask::subtree(*set, "leg", -3)), (std::vector<float>{0, 0, 1, 0, 0, 0, 0, 0, 0}));
+}
+
+TEST(JointMaskTest, TakesJointsByName)
+{
+    const auto set = makeSet();
+    EXPECT_EQ(weightsOf(JointMask::joints(*set, {"arm", "hips"})), (std::vector<float>{1, 0, 0, 1, 0, 0, 0, 0, 0}));
+    const Result<JointMask> faulty = JointMask::joints(*set, {"arm", "wing"});
+    ASSERT_FALSE(faulty);
+    EXPECT_EQ(faulty.error().message, "there is no joint \"wing\" among the 6 of the set");
+    EXPECT_FALSE(JointMask::subtree(*set, "tail"));
+}
+
+TEST(JointMaskTest, HoldsNothingButWeightsFromZeroToOne)
+{
+    const auto set = makeSet();
+    JointMask mask(*set, std::nanf(""));
+    EXPECT_TRUE(mask.setJoint(0, 7.0f));
+    EXPECT_TRUE(mask.setJoint(1, -7.0f));
+    EXPECT_TRUE(mask.setJoint(2, std::nanf("")));
+    EXPECT_TRUE(mask.setMorph(0, 0.25f));
+    EXPECT_FALSE(mask.setJoint(6, 1.0f));
+    EXPECT_FALSE(mask.setMorph(2, 1.0f));
+    EXPECT_EQ(mask.weights(), (std::vector<float>{1, 0, 0, 0, 0, 0, 0.25f, 0.25f, 0}));
+    EXPECT_EQ(mask.inverted().weights(), (std::vector<float>{0, 1, 1, 1, 1, 1, 0.75f, 0.75f, 1}));
+}
+
+TEST(JointMaskTest, EqualMasksAreStoredOnceInTheSet)
+{
+    const auto set = makeSet();
+    const JointMask arm = JointMask::subtree(*set, "arm").value();
+    EXPECT_EQ(set->addMask(arm).value(), 1u);
+    EXPECT_EQ(set->addMask(arm.inverted()).value(), 2u);
+    EXPECT_EQ(set->addMask(JointMask::joints(*set, {"arm", "hand"}).value()).value(), 1u);
+    EXPECT_EQ(set->masks().count(), 2u);
+    EXPECT_EQ(set->masks().weights(0), nullptr);
+    EXPECT_EQ(set->masks().weights(3), nullptr);
+    EXPECT_EQ(set->masks().weights(1)[3], 1.0f);
+}
+
+TEST(JointMaskTest, TheSetRefusesMasksOfOthersAndTooMany)
+{
+    const auto set = makeSet();
+    const auto other = AnimationSet::create({Skeleton::create({Joint()}).value(), {}, {}, {}, {}}).value();
+    const Result<std::uint32_t> foreign = set->addMask(JointMask(*other));
+    ASSERT_FALSE(foreign);
+    EXPECT_EQ(foreign.error().message, "a mask of 1 tracks for a set of 9");
+
+    JointMask mask(*set);
+    for (std::size_t i = 0; i < MaskTable::maxMasks; ++i)
+    {
+        mask.setJoint(0, static_cast<float>(i) / static_cast<float>(MaskTable::maxMasks));
+        EXPECT_TRUE(set->addMask(mask));
+    }
+    mask.setJoint(1, 1.0f);
+    const Result<std::uint32_t> tooMany = set->addMask(mask);
+    ASSERT_FALSE(tooMany);
+    EXPECT_EQ(tooMany.error().message, "the set has 1024 masks already");
+}
+
+} // namespace
+} // namespace osgGpuAnimation

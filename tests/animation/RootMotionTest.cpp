@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/animation/RootMotionExtraction.h>
+
+#include "AllocationCount.h"
+#include <osgGpuAnimation/animation/AnimationController.h>
+#include <osgGpuAnimation/animation/ClipBuilder.h>
+#include <osgGpuAnimation/animation/JointMask.h>
+#include <osgGpuAnimation/animation/Pose.h>
+#include <osgGpuAnimation/animation/RootMotionCurve.h>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <random>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+const double pi = std::acos(-1.0);
+
+/// An armature as files have it (lying on its back, in centimetres) with hips and one joint more.
+Skeleton makeSkeleton()
+{
+    Joint armature{"armature", -1, {}, 0};
+    armature.rest.rotation = glm::vec4(-std::sqrt(0.5), 0, 0, std::sqrt(0.5));
+    armature.rest.scale = glm::vec4(0.01, 0.01, 0.01, 0);
+    Joint hips{"hips", 0, {}, 1};
+    hips.rest.translation = glm::vec4(0, 0, 100, 0);
+    Joint head{"head", 1, {}, 2};
+    head.rest.translation = glm::vec4(5, 0, 60, 0);
+    return Skeleton::create({armature, hips, head}).value();
+}
+
+struct Gait
+{
+    const char* name;
+    double duration;
+    double length; ///< metres along -Z in a round
+    double yaw;    ///< radians in a round
+    bool spline;
+};
+
+/// Hips that go, bob, sway and turn. In the armature's space up is +Z and the model's -Z is +Y.
+Clip makeClip(const Skeleton& skeleton, const Gait& gait)
+{
+    constexpr int keys = 32;
+    Channel place{Channel::Path::Translation, Channel::Interpolation::Linear, 1, {}, {}};
+    Channel turn{Channel::Path::Rotation, Channel::Interpolation::Linear, 1, {}, {}};
+    const auto put = [](Channel& channel, std::initializer_list<double> v)
+    { channel.values.insert(channel.values.end(), v); };
+    for (int key = 0; key <= keys; ++key)
+    {
+        const double share = static_cast<double>(key) / keys, wave = 2.0 * pi * share;
+        place.times.push_back(gait.duration * share);
+        turn.times.push_back(gait.duration * share);
+        if (gait.spline) put(place, {3, 0, 1});
+        put(place, {4.0 * std::sin(wave), 100.0 * gait.length * share, 100.0 + 3.0 * std::sin(2.0 * wave)});
+        if (gait.spline) put(place, {3, 0, 1});
+        const double half = gait.yaw * share / 2.0, lean = 0.1 * std::sin(wave) / 2.0;
+        put(turn, {std::cos(half) * std::sin(lean), std::sin(half) * std::sin(lean), std::sin(half) * std::cos(lean),
+                   std::cos(half) * std::cos(lean)});
+    }
+    if (gait.spline) place.interpolation = Channel::Interpolation::CubicSpline;
+    ClipBuilder builder(skeleton, {});
+    EXPECT_TRUE(builder.add(place));
+    EXPECT_TRUE(builder.add(turn));
+    return builder.build(gait.name);
+}
+
+std::shared_ptr<const AnimationSet> makeSet(const std::vector<Gait>& gaits)
+{
+    const Skeleton skeleton = makeSkeleton();
+    std::vector<Clip> clips;
+    for (const Gait& gait : gaits)
+        clips.push_back(makeClip(skeleton, gait));
+    return AnimationSet::create({skeleton, {}, {}, {}, clips}).value();
+}
+
+std::shared_ptr<const AnimationSet> stripped(const AnimationSet& set, const RootMotionAxes& axes)
+{
+    auto result = withRootMotion(set, "hips", axes);
+    EXPECT_TRUE(result) << (result ? "" : result.error().message);
+    return result.value();
+}
+
+glm::dmat4 headAt(const AnimationController& controller)
+{
+    return Pose::jointToModel(controller.set(), controller.instruction(), 2).toColumns();
+}
+
+double difference(const glm::dmat4& a, const glm::dmat4& b)
+{
+    double worst = 0.0;
+    for (int c = 0; c < 4; ++c)
+        worst = std::max(worst, glm::length(a[c] - b[c]));
+    return worst;
+}
+
+TEST(RootMotionTest, MotionAndWhatIsLeftMakeTheOldPose)
+{
+    struct Case
+    {
+        const char* name;
+        RootMotionAxes axes;
+        Gait gait;
+        double tolerance; ///< metres, between keyframes; the head is 1.6 m above the ground
+    };
+    const Case cases[] = {
+        {"horizontal", {true, false, false}, {"A", 1.0, 1.5, 0.0, false}, 1e-5},
+        {"all places", {true, true, false}, {"A", 1.0, 1.5, 0.5, false}, 1e-5},
+        {"vertical", {false, true, false}, {"A", 1.0, 1.5, 0.5, false}, 1e-5},
+        {"horizontal, spline", {true, false, false}, {"A", 1.0, 1.5, 0.5, true}, 1e-5},
+        {"with yaw", {true, false, true}, {"A", 1.0, 1.5, 2.5, false}, 2e-4},
+        {"yaw alone", {false, false, true}, {"A", 1.0, 1.5, -9.0, false}, 1e-3},
+        {"all, spline", {true, true, true}, {"A", 1.0, 1.5, 2.5, true}, 2e-4},
+    };
+    for (const Case& c : cases)
+    {
+        const auto whole = makeSet({c.gait});
+        const auto left = stripped(*whole, c.axes);
+        AnimationController before(whole), after(left);
+        ASSERT_TRUE(before.play(0));
+        ASSERT_TRUE(after.play(0));
+        before.setLoopMode(LoopMode::Once);
+        after.setLoopMode(LoopMode::Once);
+        RootMotion gone;
+        for (int i = 0; i < 200; ++i)
+        {
+            before.advance(0.005);
+            after.advance(0.005);
+            gone = gone * after.takeRootMotion();
+            EXPECT_LE(difference(gone.matrix() * headAt(after), headAt(before)), c.tolerance) << c.name << " " << i;
+        }
+        // What was taken out does not show any more: the hips stay over one spot.
+        const glm::dmat4 hips = Pose::jointToModel(*left, after.instruction(), 1).toColumns();
+        EXPECT_TRUE(!c.axes.horizontal || glm::length(glm::dvec2(hips[3].x, hips[3].z)) <= 1e-5) << c.name;
+        EXPECT_TRUE(!c.axes.vertical || std::abs(hips[3].y - 1.0) <= 1e-5) << c.name;
+    }
+}
+
+TEST(RootMotionTest, AThousandLoopsDoNotDriftAtAnyFrameRate)
+{
+    for (double yaw : {0.0, 0.3})
+    {
+        const auto set = stripped(*makeSet({{"Walk", 1.1, 1.5, yaw, false}}), {true, true, true});
+        const double distance = 1500.0;
+        const RootMotion expected = set->clips()[0].rootMotion()->at(set->clips()[0], 1.1f).power(1000.0);
+        std::mt19937 random(5);
+        const std::function<double()> steps[] = {
+            [] { return 1.0 / 24.0; }, [] { return 1.0 / 60.0; },
+            [&] { return std::uniform_real_distribution<double>(0.0, 0.1)(random); }, [] { return 7.77; }};
+        for (const auto& step : steps)
+        {
+            AnimationController controller(set);
+            ASSERT_TRUE(controller.play(0));
+            RootMotion gone;
+            double time = 0.0;
+            const double end = static_cast<double>(1.1f) * 1000.0;
+            while (time < end)
+            {
+                const double next = std::min(step(), end - time);
+                controller.advance(next);
+                gone = gone * controller.takeRootMotion();
+                time = time + next >= end - 1e-9 ? end : time + next;
+            }
+            EXPECT_LE(glm::length(gone.translation - expected.translation), 1e-4 * distance);
+            EXPECT_NEAR(gone.yaw, expected.yaw, 1e-4);
+            EXPECT_TRUE(yaw != 0.0 || std::abs(gone.translation.z + distance) <= 1e-4 * distance);
+        }
+    }
+}
+
+TEST(RootMotionTest, BackwardsAndThereAndBackItComesHome)
+{
+    const auto set = stripped(*makeSet({{"Walk", 1.0, 1.5, 0.4, false}}), {true, true, true});
+    for (LoopMode mode : {LoopMode::Loop, LoopMode::PingPong})
+    {
+        AnimationController controller(set);
+        controller.setLoopMode(mode);
+        ASSERT_TRUE(controller.play(0));
+        RootMotion gone;
+        for (double step : {0.3, 0.9, 2.5, -1.1, -3.0, 0.4})
+        {
+            controller.advance(step);
+            gone = gone * controller.takeRootMotion();
+        }
+        EXPECT_LE(glm::length(gone.translation), 1e-9);
+        EXPECT_NEAR(gone.yaw, 0.0, 1e-9);
+    }
+}
+
+TEST(RootMotionTest, CrossfadesAndLayersBlendIt)
+{
+    const auto set = stripped(*makeSet({{"Walk", 1.0, 1.0, 0.0, false}, {"Run", 0.5, 2.0, 0.0, false}}), {});
+    AnimationController controller(set);
+    ASSERT_TRUE(controller.play("Walk"));
+    controller.advance(0.5);
+    EXPECT_NEAR(controller.takeRootMotion().translation.z, -0.5, 1e-6);
+    ASSERT_TRUE(controller.crossfade("Run", 1.0));
+    double last = 1.0;
+    for (int i = 1; i <= 60; ++i)
+    {
+        controller.advance(1.0 / 60.0);
+        const double speed = -controller.takeRootMotion().translation.z * 60.0;
+        // From one metre a second to four, as the weight goes.
+        EXPECT_NEAR(speed, 1.0 + 3.0 * i / 60.0, 0.01);
+        EXPECT_GE(speed, last);
+        last = speed;
+    }
+    AnimationLayer& over = controller.layer(1);
+    ASSERT_TRUE(over.play("Walk"));
+    ASSERT_TRUE(over.setMask(JointMask::subtree(*set, "head").value()));
+    controller.advance(0.25);
+    EXPECT_NEAR(controller.takeRootMotion().translation.z, -1.0, 1e-6) << "a layer without the hips does not move them";
+    over.clearMask();
+    controller.advance(0.25);
+    EXPECT_NEAR(controller.takeRootMotion().translation.z, -0.25, 1e-6) << "one with them does";
+    EXPECT_TRUE(controller.takeRootMotion().isNone());
+}
+
+TEST(RootMotionTest, WhatCannotBeTakenOutIsAClearError)
+{
+    const auto set = makeSet({{"Walk", 1.0, 1.5, 0.0, false}});
+    struct Case
+    {
+        const char* joint;
+        RootMotionAxes axes;
+        const char* message;
+    };
+    const double none = std::nan("");
+    const Case cases[] = {
+        {"tail", {}, "there is no joint \"tail\" whose motion could be taken out"},
+        {"hips", {true, false, false, {0, 0, 0}}, "an up axis that has no direction"},
+        {"hips", {true, false, false, {none, 0, 0}}, "an up axis that has no direction"},
+        {"head", {}, "clip \"Walk\" moves joint \"hips\" above \"head\", whose motion is to be taken out"},
+    };
+    for (const Case& c : cases)
+    {
+        const auto result = withRootMotion(*set, c.joint, c.axes);
+        ASSERT_FALSE(result) << c.message;
+        EXPECT_EQ(result.error().message, c.message);
+    }
+    Joint above{"above", -1, {}, 0};
+    above.rest.scale = glm::vec4(1, 2, 1, 0);
+    const Skeleton skeleton = Skeleton::create({above, {"below", 0, {}, 1}}).value();
+    const auto skewed =
+        AnimationSet::create({skeleton, {}, {}, {}, {ClipBuilder(skeleton, {}).build("Still")}}).value();
+    EXPECT_FALSE(withRootMotion(*skewed, "below"));
+    EXPECT_TRUE(withRootMotion(*skewed, "above"));
+}
+
+TEST(RootMotionTest, ADerivedSetKeepsMasksMarkersAndPalette)
+{
+    const auto set = makeSet({{"Walk", 1.0, 1.5, 0.0, false}});
+    ASSERT_TRUE(set->addMask(JointMask::subtree(*set, "head").value()));
+    const auto marked = set->withClips({set->clips()[0].withMarkers({{0.5, "step"}}).value()}).value();
+    const auto derived = stripped(*marked, {});
+    EXPECT_EQ(derived->masks().count(), 1u);
+    EXPECT_EQ(derived->clips()[0].markers().size(), 1u);
+    EXPECT_EQ(derived->paletteSize(), set->paletteSize());
+    EXPECT_EQ(set->clips()[0].rootMotion(), nullptr);
+}
+
+TEST(RootMotionTest, AdvancingDoesNotAllocate)
+{
+    AnimationController controller(stripped(*makeSet({{"Walk", 1.0, 1.5, 0.3, false}}), {true, true, true}));
+    ASSERT_TRUE(controller.play(0));
+    const std::size_t before = allocationCount();
+    for (int i = 0; i < 1000; ++i)
+        controller.advance(0.37);
+    EXPECT_EQ(allocationCount(), before);
+}
+
+} // namespace
+} // namespace osgGpuAnimation

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/animation/StateMachine.h>
+
+#include "AllocationCount.h"
+#include "support/GaitSet.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+StateGraphDescription description()
+{
+    return {{{"stand", "Idle"}, {"go", "Walk", LoopMode::Loop, 1.5}, {"spin", "Turn", LoopMode::Once}},
+            {{"stand", "go", {"speed > 0.5"}, 0.25, FadeCurve::Smooth, Sync::Phase},
+             {"go", "stand", {"speed <= 0.5", "after 1"}, 0.5},
+             {"", "spin", {"spin", "speed >= 0"}, 0.0},
+             {"spin", "stand", {"finished"}}},
+            "stand"};
+}
+
+std::shared_ptr<const StateGraph> makeGraph(const AnimationSet& set)
+{
+    const auto graph = StateGraph::create(set, description());
+    EXPECT_TRUE(graph) << (graph ? "" : graph.error().message);
+    return graph.value();
+}
+
+TEST(StateMachineTest, TakesTransitionsWhoseConditionsHold)
+{
+    const auto set = makeGaitSet();
+    AnimationController controller(set);
+    StateMachine machine(makeGraph(*set));
+    const auto step = [&](double seconds)
+    {
+        const bool changed = machine.update(controller, seconds);
+        controller.advance(seconds);
+        return changed;
+    };
+    EXPECT_TRUE(step(0.1));
+    EXPECT_EQ(machine.state(), "stand");
+    EXPECT_EQ(controller.clip(), 0);
+    EXPECT_FALSE(step(0.1));
+
+    EXPECT_TRUE(machine.set("speed", 1.0));
+    EXPECT_TRUE(step(0.1));
+    EXPECT_EQ(machine.state(), "go");
+    EXPECT_EQ(controller.clip(), 1);
+    EXPECT_EQ(controller.speed(), 1.5);
+    EXPECT_TRUE(controller.layer(0).isCrossfading());
+    EXPECT_EQ(controller.layer(0).mixer().voice(0).playback.speed(), 1.0) << "what fades out keeps its own";
+
+    EXPECT_TRUE(machine.set("speed", 0.0));
+    EXPECT_FALSE(step(0.5)) << "it has to last";
+    EXPECT_TRUE(step(0.6));
+    EXPECT_EQ(machine.state(), "stand");
+
+    EXPECT_TRUE(machine.fire("spin"));
+    EXPECT_TRUE(step(0.1));
+    EXPECT_EQ(machine.state(), "spin");
+    EXPECT_FALSE(step(2.0)) << "the trigger is used up, the clip ends in this step";
+    EXPECT_TRUE(step(0.1));
+    EXPECT_EQ(machine.state(), "stand");
+    EXPECT_EQ(controller.loopMode(), LoopMode::Loop);
+}
+
+TEST(StateMachineTest, RefusesWhatItDoesNotKnow)
+{
+    const auto set = makeGaitSet();
+    AnimationController controller(set);
+    StateMachine machine(makeGraph(*set), 2);
+    EXPECT_FALSE(machine.set("height", 1.0));
+    EXPECT_FALSE(machine.set("speed", std::nan("")));
+    EXPECT_FALSE(machine.fire("speed"));
+    EXPECT_EQ(machine.value("speed"), 0.0);
+    EXPECT_EQ(machine.value("height"), 0.0);
+    machine.update(controller, std::nan(""));
+    machine.update(controller, -HUGE_VAL);
+    EXPECT_EQ(machine.secondsInState(), 0.0);
+    EXPECT_EQ(controller.clip(), -1) << "it drives layer 2 alone";
+    EXPECT_EQ(controller.layer(2).clip(), 0);
+}
+
+TEST(StateMachineTest, UpdatingDoesNotAllocate)
+{
+    const auto set = makeGaitSet();
+    AnimationController controller(set);
+    StateMachine machine(makeGraph(*set));
+    machine.update(controller, 0.0);
+    const std::string speed = "speed";
+    const std::size_t before = allocationCount();
+    for (int i = 0; i < 300; ++i)
+    {
+        machine.set(speed, i % 40 < 20 ? 1.0 : 0.0);
+        machine.update(controller, 0.1);
+        controller.advance(0.1);
+    }
+    EXPECT_EQ(allocationCount(), before);
+}
+
+TEST(StateGraphTest, FaultsAreNamed)
+{
+    struct Case
+    {
+        void (*spoil)(StateGraphDescription&);
+        const char* message;
+    };
+    using D = StateGraphDescription;
+    const Case cases[] = {
+        {[](D& d) { d.states.clear(); }, "a state graph without states"},
+        {[](D& d) { d.states[1].name = "stand"; }, "state \"stand\": another has this name already"},
+        {[](D& d) { d.states[1].name = ""; }, "state \"\": it has no name"},
+        {[](D& d) { d.states[2].clip = "Fly"; }, "state \"spin\": there is no clip \"Fly\"; the clips are"},
+        {[](D& d) { d.states[1].speed = std::nan(""); }, "state \"go\": its speed is not finite"},
+        {[](D& d) { d.start = "run"; }, "start: there is no state \"run\""},
+        {[](D& d) { d.transitions[1].from = "run"; }, "transition 1: there is no state \"run\""},
+        {[](D& d) { d.transitions[2].to = ""; }, "transition 2: there is no state \"\""},
+        {[](D& d) { d.transitions[0].seconds = -1; }, "transition 0: a crossfade of -1.000000 seconds"},
+        {[](D& d) { d.transitions[0].seconds = std::nan(""); }, "transition 0: a crossfade of"},
+        {[](D& d) { d.transitions[3].when.clear(); }, "transition 3: it has no conditions"},
+        {[](D& d) { d.transitions[0].when = {"speed > fast"}; }, "transition 0: \"speed > fast\" is not a condition"},
+        {[](D& d) { d.transitions[0].when = {"after -1"}; }, "is not a condition"},
+        {[](D& d) { d.transitions[0].when = {"after inf"}; }, "is not a condition"},
+        {[](D& d) { d.transitions[0].when = {""}; }, "is not a condition"},
+        {[](D& d) { d.transitions[0].when = {"a b c d"}; }, "is not a condition"},
+        {[](D& d) { d.transitions[0].when = {"speed"}; }, "\"speed\" is used as a trigger and as a parameter"},
+    };
+    const auto set = makeGaitSet();
+    for (const Case& c : cases)
+    {
+        StateGraphDescription faulty = description();
+        c.spoil(faulty);
+        const auto graph = StateGraph::create(*set, faulty);
+        ASSERT_FALSE(graph) << c.message;
+        EXPECT_EQ(graph.error().message.rfind(c.message, 0) == 0 ||
+                      graph.error().message.find(c.message) != std::string::npos,
+                  true)
+            << graph.error().message;
+    }
+}
+
+} // namespace
+} // namespace osgGpuAnimation

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/nodes/JointAttachment.h>
+
+#include "support/TestCharacter.h"
+
+#include <osgGpuAnimation/animation/RootMotionExtraction.h>
+#include <osgGpuAnimation/nodes/RootMotionCallback.h>
+
+#include <osg/Geometry>
+#include <osg/Group>
+#include <osgUtil/Optimizer>
+#include <osgUtil/UpdateVisitor>
+
+#include <gtest/gtest.h>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+class JointAttachmentTest : public ::testing::Test
+{
+protected:
+    void updateAt(osg::Node& scene, double time)
+    {
+        osg::ref_ptr<osg::FrameStamp> stamp = new osg::FrameStamp;
+        stamp->setSimulationTime(time);
+        osgUtil::UpdateVisitor visitor;
+        visitor.setFrameStamp(stamp);
+        scene.accept(visitor);
+    }
+
+    /// Where a node is in the scene, by every path to it, as any visitor of OSG finds it.
+    static std::vector<osg::Vec3d> placesOf(osg::Node& scene, const std::string& name)
+    {
+        class Finder : public osg::NodeVisitor
+        {
+        public:
+            explicit Finder(const std::string& name) : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN), _name(name) {}
+            void apply(osg::Node& node) override
+            {
+                if (node.getName() == _name) places.push_back(place());
+                traverse(node);
+            }
+            std::vector<osg::Vec3d> places;
+
+        private:
+            osg::Vec3d place()
+            {
+                // Each transform sees the path down to itself, as in a cull traversal.
+                const osg::NodePath whole = getNodePath();
+                osg::Matrix matrix;
+                osg::NodeVisitor along;
+                for (osg::Node* node : whole)
+                {
+                    if (osg::Transform* transform = node->asTransform())
+                        transform->computeLocalToWorldMatrix(matrix, &along);
+                    along.pushOntoNodePath(node);
+                }
+                return matrix.getTrans();
+            }
+            std::string _name;
+        };
+        Finder finder(name);
+        scene.accept(finder);
+        return finder.places;
+    }
+
+    static osg::ref_ptr<AnimatedCharacter> characterWith(JointAttachment* attachment)
+    {
+        osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
+        osg::ref_ptr<osg::Geometry> sword = osg::createTexturedQuadGeometry({}, {1, 0, 0}, {0, 0, 1});
+        sword->setName("sword");
+        attachment->addChild(sword);
+        character->addChild(attachment);
+        return character;
+    }
+
+    static ::testing::AssertionResult isNear(const osg::Vec3d& found, const osg::Vec3d& wanted)
+    {
+        if ((found - wanted).length() < 1e-6) return ::testing::AssertionSuccess();
+        return ::testing::AssertionFailure() << found.x() << " " << found.y() << " " << found.z();
+    }
+};
+
+TEST_F(JointAttachmentTest, FollowsAJointByNameOrNumber)
+{
+    for (JointAttachment* attachment : {new JointAttachment("tip"), new JointAttachment(1)})
+    {
+        osg::ref_ptr<AnimatedCharacter> character = characterWith(attachment);
+        character->setMatrix(osg::Matrix::translate(0, 0, 5));
+        updateAt(*character, 1.0);
+        updateAt(*character, 1.5);
+        EXPECT_TRUE(isNear(placesOf(*character, "sword")[0], {0.5, 0, 5}));
+        EXPECT_TRUE(isNear(attachment->getMatrix().getTrans(), {0.5, 0, 0})) << "for bounds, which know no path";
+        character->controller().seek(2.0);
+        character->controller().setLoopMode(LoopMode::Once);
+        EXPECT_TRUE(isNear(placesOf(*character, "sword")[0], {2, 0, 5})) << "at once, as the palette is drawn";
+    }
+}
+
+TEST_F(JointAttachmentTest, TurnsWithItsJoint)
+{
+    osg::ref_ptr<AnimatedCharacter> character = characterWith(new JointAttachment("tip"));
+    ASSERT_TRUE(character->controller().play("turn"));
+    character->controller().setLoopMode(LoopMode::Once);
+    character->controller().seek(1.0);
+    const Result<osg::Matrixd> matrix = character->jointToModel("tip");
+    ASSERT_TRUE(matrix);
+    EXPECT_TRUE(isNear(osg::Vec3d(1, 0, 0) * matrix.value(), {0, 0, -1})) << "a quarter about +Y";
+    EXPECT_FALSE(character->jointToModel("wing"));
+}
+
+TEST_F(JointAttachmentTest, ClonesCarryTheirOwn)
+{
+    osg::ref_ptr<AnimatedCharacter> one = characterWith(new JointAttachment("tip"));
+    for (const auto how : {osg::CopyOp::DEEP_COPY_NODES, osg::CopyOp::SHALLOW_COPY})
+    {
+        osg::ref_ptr<AnimatedCharacter> other = osg::clone(one.get(), how);
+        one->controller().seek(0.25);
+        other->controller().seek(1.75);
+        osg::ref_ptr<osg::Group> scene = new osg::Group;
+        scene->addChild(one);
+        scene->addChild(other);
+        updateAt(*scene, 1.0);
+        const std::vector<osg::Vec3d> places = placesOf(*scene, "sword");
+        ASSERT_EQ(places.size(), 2u);
+        EXPECT_TRUE(isNear(places[0], {0.25, 0, 0}));
+        EXPECT_TRUE(isNear(places[1], {1.75, 0, 0}));
+    }
+}
+
+TEST_F(JointAttachmentTest, SurvivesTheOptimizer)
+{
+    osg::ref_ptr<osg::Group> scene = new osg::Group;
+    osg::ref_ptr<AnimatedCharacter> character = characterWith(new JointAttachment("tip"));
+    scene->addChild(character);
+    osgUtil::Optimizer().optimize(scene, osgUtil::Optimizer::DEFAULT_OPTIMIZATIONS);
+    character->controller().seek(1.25);
+    updateAt(*scene, 0.0);
+    ASSERT_EQ(character->getNumChildren(), 2u);
+    EXPECT_TRUE(
+        isNear(character->getChild(1)->asTransform()->asMatrixTransform()->getMatrix().getTrans(), {1.25, 0, 0}));
+}
+
+TEST_F(JointAttachmentTest, WithoutItsJointOrACharacterItStaysAtTheOrigin)
+{
+    osg::ref_ptr<AnimatedCharacter> character = characterWith(new JointAttachment("wing"));
+    character->controller().seek(1.0);
+    updateAt(*character, 0.0);
+    EXPECT_TRUE(isNear(placesOf(*character, "sword")[0], {0, 0, 0}));
+    osg::ref_ptr<JointAttachment> alone = new JointAttachment(7);
+    updateAt(*alone, 0.0);
+    osg::Matrix matrix;
+    osg::NodeVisitor visitor;
+    EXPECT_TRUE(alone->computeLocalToWorldMatrix(matrix, &visitor));
+    EXPECT_TRUE(matrix.isIdentity());
+}
+
+TEST_F(JointAttachmentTest, ACharacterGoesByItsRootMotion)
+{
+    osg::ref_ptr<AnimatedCharacter> character = characterWith(new JointAttachment("tip"));
+    const auto set = withRootMotion(character->set(), "base");
+    ASSERT_TRUE(set);
+    ASSERT_TRUE(character->setAnimationSet(set.value()));
+    EXPECT_EQ(character->controller().clip(), 0) << "plays on";
+    character->addUpdateCallback(new RootMotionCallback);
+    character->setMatrix(osg::Matrix::rotate(osg::PI_2, osg::Vec3d(0, 0, 1)) * osg::Matrix::translate(0, 0, 3));
+    for (int i = 0; i <= 75; ++i)
+        updateAt(*character, 0.1 * i);
+    // A metre a second along its own x, which is the world's y, through several loops of two seconds.
+    EXPECT_TRUE(isNear(character->getMatrix().getTrans(), {0, 7.5, 3}));
+    EXPECT_TRUE(isNear(placesOf(*character, "sword")[0], {0, 7.5, 3})) << "the clip itself stays where it is";
+    updateAt(*character, 7.5);
+    EXPECT_TRUE(isNear(character->getMatrix().getTrans(), {0, 7.5, 3})) << "the same time: once";
+}
+
+TEST_F(JointAttachmentTest, ASetOfAnotherPaletteIsRefused)
+{
+    osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
+    const auto other = AnimationSet::create({Skeleton::create({}).value(), {}, {}, {}, {}}).value();
+    EXPECT_FALSE(character->setAnimationSet(other));
+    EXPECT_FALSE(character->setAnimationSet(nullptr));
+    EXPECT_EQ(character->controller().clip(), 0);
+}
+
+} // namespace
+
+} // namespace osgGpuAnimation

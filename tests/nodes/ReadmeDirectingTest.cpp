@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: MIT
+#include "support/ScratchFolder.h"
+
+#include <osgGpuAnimation/animation/ClipBuilder.h>
+#include <osgGpuAnimation/animation/JointMask.h>
+#include <osgGpuAnimation/animation/RootMotionExtraction.h>
+#include <osgGpuAnimation/animation/StateMachine.h>
+#include <osgGpuAnimation/nodes/AnimatedCharacter.h>
+#include <osgGpuAnimation/nodes/JointAttachment.h>
+#include <osgGpuAnimation/nodes/RootMotionCallback.h>
+#include <osgGpuAnimation/nodes/StateGraphFile.h>
+
+#include <osg/Group>
+
+#include <gtest/gtest.h>
+
+// The snippets of the README's page "Directing a character", word for word but for the model, which is made here.
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+/// A character with the joints and clips that the snippets name.
+osg::ref_ptr<AnimatedCharacter> makeFox()
+{
+    std::vector<Joint> joints;
+    for (const char* name : {"hips", "Shoulder.R", "Hand.R", "head"})
+        joints.push_back({name, static_cast<int>(joints.size()) - 1, {}, static_cast<int>(joints.size())});
+    AnimationParts parts{Skeleton::create(joints).value(), {}, {}, {}, {}};
+    for (const char* name : {"Survey", "Walk", "Run", "Wave", "Breathe", "Jump"})
+    {
+        ClipBuilder builder(parts.skeleton, {});
+        EXPECT_TRUE(
+            builder.add({Channel::Path::Translation, Channel::Interpolation::Linear, 0, {0, 1}, {0, 1, 0, 0, 1, 2}}));
+        EXPECT_TRUE(builder.add(
+            {Channel::Path::Rotation, Channel::Interpolation::Linear, 1, {0, 1}, {0, 0, 0, 1, 0.6, 0, 0, 0.8}}));
+        parts.clips.push_back(builder.build(name));
+    }
+    return new AnimatedCharacter(AnimationSet::create(std::move(parts)).value());
+}
+
+class ReadmeDirectingTest : public ::testing::Test
+{
+protected:
+    void SetUp() override
+    {
+        _node = makeFox();
+        fox = findCharacter(*_node);
+        fox->setUpdateCallback(nullptr);
+        ASSERT_TRUE(fox->controller().play("Walk"));
+    }
+
+    AnimatedCharacter* fox = nullptr;
+
+private:
+    osg::ref_ptr<osg::Node> _node;
+};
+
+TEST_F(ReadmeDirectingTest, PlayingAndCrossfading)
+{
+    AnimationController& controller = fox->controller();
+    EXPECT_TRUE(controller.play("Walk"));
+    controller.setSpeed(1.2);
+    EXPECT_TRUE(controller.crossfade("Run", 0.3));
+
+    CrossfadeOptions options;
+    options.sync = Sync::Phase;
+    options.curve = FadeCurve::Smooth;
+    options.loopMode = LoopMode::Loop;
+    EXPECT_TRUE(controller.crossfade("Walk", 0.3, options));
+    EXPECT_EQ(controller.advance(0.1).sampleCount, 2u) << "the first crossfade had not begun to show";
+}
+
+TEST_F(ReadmeDirectingTest, LayersAndMasks)
+{
+    AnimationController& controller = fox->controller();
+    AnimationLayer& gesture = controller.layer(1);
+    Result<JointMask> arm = JointMask::subtree(fox->set(), "Shoulder.R", 1);
+    ASSERT_TRUE(arm);
+    EXPECT_TRUE(gesture.setMask(arm.value()));
+    gesture.setLoopMode(LoopMode::Once);
+    EXPECT_TRUE(gesture.crossfade("Wave", 0.2));
+    gesture.fadeWeight(0.0f, 0.4);
+
+    AnimationLayer& breath = controller.layer(2);
+    breath.setMode(AnimationLayer::Mode::Additive, AnimationLayer::Reference::FirstFrame);
+    EXPECT_TRUE(breath.play("Breathe"));
+    breath.setWeight(0.7f);
+    EXPECT_EQ(controller.advance(0.1).sampleCount, 4u) << "base, gesture, and two for what is added";
+}
+
+TEST_F(ReadmeDirectingTest, Events)
+{
+    std::string heard;
+    const auto playSound = [&](const std::string& name, float) { heard += name + ";"; };
+    Result<Clip> marked = fox->set().clips()[1].withMarkers({{0.20, "left foot"}, {0.55, "right foot"}});
+    ASSERT_TRUE(marked);
+    std::vector<Clip> clips = fox->set().clips();
+    clips[1] = marked.value();
+    EXPECT_TRUE(fox->setAnimationSet(fox->set().withClips(clips).value()));
+    fox->controller().setEventCallback(
+        [&](const AnimationEvent& event)
+        {
+            if (event.type == AnimationEvent::Type::Marker) playSound(event.marker->name, event.weight);
+            if (event.type == AnimationEvent::Type::Finished) (void)fox->controller().crossfade("Walk", 0.3);
+        });
+    fox->controller().advance(0.6);
+    EXPECT_EQ(heard, "left foot;right foot;");
+}
+
+TEST_F(ReadmeDirectingTest, RootMotionOfTheCharacterOrOfSomethingElse)
+{
+    auto set = withRootMotion(fox->set(), "hips", {true, false, true});
+    ASSERT_TRUE(set);
+    EXPECT_TRUE(fox->setAnimationSet(set.value()));
+    fox->controller().advance(0.5);
+
+    glm::dmat4 placement(1.0);
+    RootMotion step = fox->controller().takeRootMotion();
+    placement = placement * step.matrix();
+    EXPECT_NEAR(placement[3].z, 1.0, 1e-6);
+
+    fox->addUpdateCallback(new RootMotionCallback);
+    fox->controller().advance(0.25);
+    osg::NodeVisitor visitor(osg::NodeVisitor::UPDATE_VISITOR, osg::NodeVisitor::TRAVERSE_ALL_CHILDREN);
+    fox->getUpdateCallback()->run(fox, &visitor);
+    EXPECT_NEAR(fox->getMatrix().getTrans().z(), 0.5, 1e-6);
+}
+
+TEST_F(ReadmeDirectingTest, AttachmentsAndQuestions)
+{
+    AnimationController& controller = fox->controller();
+    osg::ref_ptr<osg::Group> sword = new osg::Group;
+    osg::ref_ptr<JointAttachment> hand = new JointAttachment("Hand.R");
+    hand->addChild(sword);
+    fox->addChild(hand);
+
+    Result<osg::Matrixd> head = fox->jointToModel("head");
+    ASSERT_TRUE(head);
+    EXPECT_NEAR(head.value().getTrans().y(), 1.0, 1e-6);
+    int clip = controller.clip();
+    double share = controller.normalizedTime();
+    bool walks =
+        controller.isPlaying() && clip >= 0 && fox->set().clips()[static_cast<std::size_t>(clip)].name() == "Walk";
+    EXPECT_EQ(share, 0.0);
+    EXPECT_TRUE(walks);
+}
+
+TEST_F(ReadmeDirectingTest, States)
+{
+    const ScratchFolder folder;
+    const std::string file = folder.write("fox.states.json", R"({
+  "start": "stand",
+  "states": {
+    "stand": { "clip": "Survey" },
+    "walk":  { "clip": "Walk", "speed": 1.2 },
+    "jump":  { "clip": "Jump", "loop": "once" }
+  },
+  "transitions": [
+    { "from": "stand", "to": "walk", "when": "speed > 0.1", "seconds": 0.3 },
+    { "from": "walk", "to": "stand", "when": ["speed <= 0.1", "after 0.5"], "curve": "smooth" },
+    { "to": "jump", "when": "jump" },
+    { "from": "jump", "to": "stand", "when": "finished" }
+  ]
+})");
+    const double seconds = 1.0 / 60.0;
+    auto graph = readStateGraphFile(fox->set(), file);
+    ASSERT_TRUE(graph) << graph.error().message;
+    StateMachine machine(graph.value());
+    machine.set("speed", 1.0);
+    machine.fire("jump");
+    machine.update(fox->controller(), seconds);
+    EXPECT_EQ(machine.state(), "stand");
+    machine.update(fox->controller(), seconds);
+    EXPECT_EQ(machine.state(), "walk");
+    machine.update(fox->controller(), seconds);
+    EXPECT_EQ(machine.state(), "jump");
+}
+
+} // namespace
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/animation/PoseInstruction.h>
+
+#include <random>
+
+namespace osgGpuAnimation
+{
+
+/// Adds some masks to the set: subtrees, single joints and random weights.
+void addRandomMasks(const AnimationSet& set, std::mt19937& random);
+
+/// A stack of layers as controllers may ask for, and beyond: up to three standings of up to four samples each with
+/// weights whose sum may be below or above 1, masks, and up to two additive samples.
+PoseInstruction randomLayers(const AnimationSet& set, std::mt19937& random);
+
+} // namespace osgGpuAnimation

@@ -41,7 +41,11 @@ osg::Texture2D* whiteTexture()
         osg::ref_ptr<osg::Image> image = new osg::Image;
         image->allocateImage(1, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE);
         image->setColor(osg::Vec4(1, 1, 1, 1), 0, 0);
-        return osg::ref_ptr<osg::Texture2D>(new osg::Texture2D(image));
+        osg::ref_ptr<osg::Texture2D> white = new osg::Texture2D(image);
+        // OSG's default, GL_CLAMP, mixes in the black border.
+        white->setWrap(osg::Texture::WRAP_S, osg::Texture::REPEAT);
+        white->setWrap(osg::Texture::WRAP_T, osg::Texture::REPEAT);
+        return white;
     }();
     return texture.get();
 }

@@ -15,7 +15,7 @@ namespace osgGpuAnimation
 class PaletteBinding : public osg::StateAttribute
 {
 public:
-    static constexpr Type bindingType = static_cast<Type>(0x5047); ///< beyond OSG's own types
+    static constexpr Type bindingType = static_cast<Type>(119); ///< beyond OSG's own types, within the enum's range
 
     PaletteBinding() = default;
     PaletteBinding(const PaletteBinding& other, const osg::CopyOp& copyop = osg::CopyOp::SHALLOW_COPY);

@@ -55,8 +55,9 @@ public:
     const std::vector<MorphTarget>& morphTargets() const { return _morphTargets; }
     int morph() const { return _morph; } ///< -1: none
 
-    /// Grows the boxes (one an entry) by the vertices that the entries move, wherever the clips' weights morph them.
-    void addToEntryBoxes(const AnimationSet& set, EntryBoxes& boxes) const;
+    /// Grows the boxes (one an entry) by the vertices that the entries move, wherever the clips' weights morph them
+    /// with so many additive layers that change the weights.
+    void addToEntryBoxes(const AnimationSet& set, EntryBoxes& boxes, std::size_t additiveLayers = 0) const;
 
     /// The CPU twin of skin.glsl: where the palette (of one instance: the set's paletteSize() entries) takes each
     /// vertex, in the character's own space; computed in double. outPositions: one a vertex.

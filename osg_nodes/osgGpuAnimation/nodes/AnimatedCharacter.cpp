@@ -64,6 +64,8 @@ AnimatedCharacter::AnimatedCharacter(const AnimatedCharacter& other, const osg::
     : osg::MatrixTransform(other, copyop), _controller(std::make_unique<AnimationController>(*other._controller)),
       _clipBounds(other._clipBounds), _mixBounds(other._mixBounds), _updateTime(other._updateTime)
 {
+    // osg::Node copies its other callbacks, but not these.
+    setEventCallback(copyop(other.getEventCallback()));
 }
 
 AnimatedCharacter::~AnimatedCharacter() = default;
@@ -128,14 +130,15 @@ void AnimatedCharacter::growMeshes(const Box& box)
 
 void AnimatedCharacter::computeClipBounds()
 {
-    EntryBoxes entryBoxes(set().paletteSize()), withAdded(set().paletteSize());
-    SkinnedGeometryVisitor collect(
-        [&](SkinnedGeometry& geometry)
-        {
-            geometry.addToEntryBoxes(set(), entryBoxes);
-            geometry.addToEntryBoxes(set(), withAdded, maxLayers);
-        });
+    EntryBoxes entryBoxes(set().paletteSize());
+    SkinnedGeometry::BindBoxes bindBoxes;
+    SkinnedGeometryVisitor collect([&](SkinnedGeometry& geometry)
+                                   { geometry.addToEntryBoxes(set(), entryBoxes, bindBoxes); });
     accept(collect);
+    EntryBoxes withAdded = entryBoxes;
+    SkinnedGeometryVisitor collectAdded([&](SkinnedGeometry& geometry)
+                                        { geometry.addToEntryBoxes(set(), withAdded, bindBoxes, maxLayers); });
+    if (!set().morphs().empty()) accept(collectAdded);
 
     auto bounds = std::make_shared<std::vector<Box>>();
     Box all;

@@ -2,6 +2,7 @@
 #include "gltf/Clips.h"
 
 #include "gltf/Accessor.h"
+#include "gltf/Markers.h"
 #include "gltf/NamedElement.h"
 
 #include <osgGpuAnimation/animation/ClipBuilder.h>
@@ -151,7 +152,9 @@ std::optional<Clip> ClipReader::read(std::size_t index)
         _builder = ClipBuilder(_joints.skeleton, _morphs.weights);
         return std::nullopt;
     }
-    return _builder.build(animation.name.empty() ? "clip " + std::to_string(index) : animation.name);
+    Clip clip = _builder.build(animation.name.empty() ? "clip " + std::to_string(index) : animation.name);
+    Result<Clip> marked = clip.withMarkers(readMarkers(animation.extras, _clip, _report));
+    return marked ? std::move(marked.value()) : std::move(clip);
 }
 
 } // namespace

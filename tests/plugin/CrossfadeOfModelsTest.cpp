@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+#include "gltf/Import.h"
+#include "plugin/SharedAssets.h"
+
+#include <osgGpuAnimation/animation/FadePace.h>
+#include <osgGpuAnimation/animation/Pose.h>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <random>
+
+// Crossfades interrupted by crossfades at random, at 60 Hz, over the clips of real characters: how far a joint goes in
+// a frame, against the fastest joint of the fastest clip that is seen just then.
+
+namespace osgGpuAnimation::gltf
+{
+
+namespace
+{
+
+constexpr double frame = 1.0 / 60.0;
+
+std::vector<glm::vec3> jointPlaces(const AnimationController& controller)
+{
+    std::vector<JointTransform> tracks;
+    std::vector<AffineMatrix> joints;
+    Pose::mix(controller.set(), controller.instruction(), tracks);
+    Pose::jointToModel(controller.set(), tracks, AffineMatrix(), joints);
+    std::vector<glm::vec3> places;
+    for (const AffineMatrix& joint : joints)
+        places.push_back(joint.transformPoint(glm::vec3(0.0f)));
+    return places;
+}
+
+double largestStep(const std::vector<glm::vec3>& before, const std::vector<glm::vec3>& after)
+{
+    float largest = 0.0f;
+    for (std::size_t i = 0; i < before.size(); ++i)
+        largest = std::max(largest, glm::distance(before[i], after[i]));
+    return static_cast<double>(largest);
+}
+
+double stepOfClip(const std::shared_ptr<const AnimationSet>& set, std::size_t clip)
+{
+    AnimationController controller(set);
+    EXPECT_TRUE(controller.play(clip));
+    double largest = 0.0;
+    for (int i = 0; i < 300; ++i)
+    {
+        const std::vector<glm::vec3> before = jointPlaces(controller);
+        controller.advance(frame);
+        largest = std::max(largest, largestStep(before, jointPlaces(controller)));
+    }
+    return largest;
+}
+
+struct ModelCase
+{
+    const char* name;
+    const char* file; ///< below the shared folder
+    std::vector<const char*> clips;
+    Sync sync;
+    FadeCurve curve;
+};
+
+void PrintTo(const ModelCase& model, std::ostream* out)
+{
+    *out << model.name;
+}
+
+class CrossfadeOfModelsTest : public ::testing::TestWithParam<ModelCase>
+{
+protected:
+    void load(const std::string& file)
+    {
+        const Result<ImportedModel> model = importModel(readBytes(file), file, {});
+        ASSERT_TRUE(model) << model.error().message;
+        set = model.value().set;
+        for (const char* name : GetParam().clips)
+        {
+            ASSERT_GE(set->findClip(name), 0) << name;
+            clips.push_back(static_cast<std::size_t>(set->findClip(name)));
+            steps[static_cast<int>(clips.back())] = stepOfClip(set, clips.back());
+        }
+    }
+
+    double leastSeconds() const
+    {
+        double seconds = 0.0;
+        for (std::size_t a : clips)
+            for (std::size_t b : clips)
+                seconds = std::max(seconds, leastFadeSeconds(*set, a, b, GetParam().sync));
+        return seconds * (GetParam().curve == FadeCurve::Smooth ? 1.5 : 1.0);
+    }
+
+    /// The largest step, as a share of that of the fastest clip in it.
+    double worstStep(double seconds, unsigned int every) const
+    {
+        std::mt19937 random(seed);
+        AnimationController controller(set);
+        EXPECT_TRUE(controller.play(clips[0]));
+        double worst = 0.0;
+        for (int i = 0; i < 1200; ++i)
+        {
+            if (random() % every == 0)
+            {
+                const double longer = std::uniform_real_distribution<double>(1.0, 1.3)(random);
+                EXPECT_TRUE(controller.crossfade(clips[random() % clips.size()], seconds * longer,
+                                                 {GetParam().curve, GetParam().sync, {}}));
+            }
+            const std::vector<glm::vec3> before = jointPlaces(controller);
+            controller.advance(frame);
+            double fastest = 0.0;
+            const ClipMixer& mixer = controller.layer(0).mixer();
+            for (std::size_t v = 0; v < mixer.voiceCount(); ++v)
+                fastest = std::max(fastest, steps.at(mixer.voice(v).playback.clip()));
+            worst = std::max(worst, largestStep(before, jointPlaces(controller)) / fastest);
+        }
+        return worst;
+    }
+
+    static constexpr unsigned int seed = 20261121;
+    std::shared_ptr<const AnimationSet> set;
+    std::vector<std::size_t> clips;
+    std::map<int, double> steps; ///< by clip
+};
+
+} // namespace
+
+TEST_P(CrossfadeOfModelsTest, fromTheLeastSecondsOnNoJointLeaps)
+{
+    SKIP_WITHOUT_SHARED_FILE(GetParam().file);
+    ASSERT_NO_FATAL_FAILURE(load(sharedFile(GetParam().file)));
+    const double seconds = leastSeconds();
+    std::printf("seed %u, %s: least %.3f s\n", seed, GetParam().name, seconds);
+    for (unsigned int every : {4u, 12u, 40u})
+    {
+        const double worst = worstStep(seconds, every);
+        std::printf("  a crossfade every %u frames on average: %.3f\n", every, worst);
+        EXPECT_LE(worst, 1.5) << "a crossfade every " << every << " frames on average, seed " << seed;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Models, CrossfadeOfModelsTest,
+    ::testing::Values(
+        ModelCase{"Fox", "assets/Fox/Fox.glb", {"Walk", "Run"}, Sync::Start, FadeCurve::Linear},
+        ModelCase{"FoxSmooth", "assets/Fox/Fox.glb", {"Walk", "Run"}, Sync::Start, FadeCurve::Smooth},
+        ModelCase{"FoxInPhase", "assets/Fox/Fox.glb", {"Walk", "Run"}, Sync::Phase, FadeCurve::Linear},
+        ModelCase{"FoxAll", "assets/Fox/Fox.glb", {"Survey", "Walk", "Run"}, Sync::Start, FadeCurve::Linear},
+        ModelCase{
+            "Knight", "assets/Knight/Knight.glb", {"Idle", "Walking_A", "Running_A"}, Sync::Start, FadeCurve::Linear},
+        ModelCase{
+            "KnightInPhase", "assets/Knight/Knight.glb", {"Walking_A", "Running_A"}, Sync::Phase, FadeCurve::Linear}),
+    [](const auto& info) { return std::string(info.param.name); });
+
+} // namespace osgGpuAnimation::gltf

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT
+#include "gltf/Import.h"
+#include "plugin/SharedAssets.h"
+#include "support/GLTest.h"
+#include "support/RandomLayers.h"
+#include "support/ReferenceBlend.h"
+
+#include <osgGpuAnimation/animation/Pose.h>
+#include <osgGpuAnimation/gpu/PosePipeline.h>
+#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <random>
+
+// Random stacks of layers over real characters: the GPU against its CPU twin and against the tests' own evaluation in
+// double precision.
+
+namespace osgGpuAnimation::gltf
+{
+
+namespace
+{
+
+struct LayersCase
+{
+    const char* name;
+    const char* shared; ///< below the shared folder; else our own scene
+    const char* scene;
+    std::size_t stacks;
+};
+
+glm::dvec3 moved(const AffineMatrix& entry, const glm::dvec3& point)
+{
+    glm::dvec3 result;
+    for (int row = 0; row < 3; ++row)
+        result[row] = glm::dot(glm::dvec4(entry.rows[static_cast<std::size_t>(row)]), glm::dvec4(point, 1.0));
+    return result;
+}
+
+glm::dvec3 moved(const glm::dmat4& entry, const glm::dvec3& point)
+{
+    return glm::dvec3(entry * glm::dvec4(point, 1.0));
+}
+
+class LayersOfModelsGLTest : public GLTest, public ::testing::WithParamInterface<LayersCase>
+{
+protected:
+    void load(const std::string& file)
+    {
+        const Result<ImportedModel> model = importModel(readBytes(file), file, {});
+        ASSERT_TRUE(model) << model.error().message;
+        set = model.value().set;
+        boxes.resize(set->paletteSize());
+        SkinnedGeometry::BindBoxes bindBoxes;
+        for (const ImportedPrimitive& primitive : model.value().primitives)
+            if (const auto* skinned = dynamic_cast<const SkinnedGeometry*>(primitive.geometry.get()))
+                skinned->addToEntryBoxes(*set, boxes, bindBoxes);
+        const Box rest = boundsOfClip(*set, -1, boxes);
+        size = static_cast<double>(glm::length(rest.max - rest.min));
+    }
+
+    /// The largest distance between where two palettes take a corner of the vertices that an entry moves: a vertex,
+    /// being a mean of such, is no farther off. As a share of the model's size.
+    template <typename Entry>
+    double difference(const std::vector<AffineMatrix>& palette, const std::vector<Entry>& expected) const
+    {
+        double worst = 0.0;
+        for (std::size_t e = 0; e < palette.size(); ++e)
+            for (int corner = 0; corner < 8 && set->palette()[e].joint >= 0 && !boxes[e].empty(); ++corner)
+            {
+                const Box& b = boxes[e];
+                const glm::dvec3 point((corner & 1) ? b.max.x : b.min.x, (corner & 2) ? b.max.y : b.min.y,
+                                       (corner & 4) ? b.max.z : b.min.z);
+                const double distance = glm::distance(moved(palette[e], point), moved(expected[e], point));
+                worst = std::max(worst, std::isfinite(distance) ? distance : 1e30);
+            }
+        return worst / size;
+    }
+
+    std::shared_ptr<const AnimationSet> set;
+    EntryBoxes boxes;
+    double size = 1.0;
+};
+
+} // namespace
+
+TEST_P(LayersOfModelsGLTest, randomStacksAreTheTwinsAndTheReferencesPose)
+{
+    if (GetParam().shared) SKIP_WITHOUT_SHARED_FILE(GetParam().shared);
+    constexpr unsigned int seed = 20261121;
+    ASSERT_NO_FATAL_FAILURE(load(GetParam().shared ? sharedFile(GetParam().shared)
+                                                   : std::string(OSGGPUANIMATION_SCENES) + "/" + GetParam().scene));
+    std::mt19937 random(seed);
+    addRandomMasks(*set, random);
+    PosePipeline* pipeline = PosePipeline::of(state());
+    ASSERT_NE(pipeline, nullptr);
+    std::vector<PoseInstruction> stacks(GetParam().stacks);
+    PoseBatch batch(set);
+    for (PoseInstruction& stack : stacks)
+        batch.add(stack = randomLayers(*set, random));
+    ASSERT_TRUE(pipeline->evaluate(state(), batch, 0));
+    std::size_t compared = 0;
+    double worstTwin = 0.0, worstReference = 0.0;
+    for (std::size_t i = 0; i < stacks.size(); ++i)
+    {
+        const reference::BlendedPose expected = reference::blend(*set, stacks[i]);
+        // Nearly opposite rotations: which of two ways is the shorter hangs on the last bits.
+        if (expected.closestDecision < 1e-5) continue;
+        ++compared;
+        const std::vector<AffineMatrix> palette = pipeline->readPalette(state(), *set, 0, i);
+        std::vector<AffineMatrix> twin;
+        Pose::evaluate(*set, stacks[i], AffineMatrix(), twin);
+        worstTwin = std::max(worstTwin, difference(palette, twin));
+        worstReference = std::max(worstReference, difference(palette, expected.palette(*set)));
+    }
+    std::printf("seed %u: %zu of %zu stacks; of the model's size: twin %.2e, reference %.2e\n", seed, compared,
+                stacks.size(), worstTwin, worstReference);
+    EXPECT_GE(compared, stacks.size() * 95 / 100) << "seed " << seed;
+    EXPECT_LE(worstTwin, 1e-5) << "seed " << seed;
+    EXPECT_LE(worstReference, 1e-5) << "seed " << seed;
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, LayersOfModelsGLTest,
+                         ::testing::Values(LayersCase{"Fox", "assets/Fox/Fox.glb", nullptr, 400},
+                                           LayersCase{"Knight", "assets/Knight/Knight.glb", nullptr, 300},
+                                           LayersCase{"Wanderer", nullptr, "Wanderer.glb", 300}),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+} // namespace osgGpuAnimation::gltf

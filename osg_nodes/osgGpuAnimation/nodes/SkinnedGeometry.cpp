@@ -44,6 +44,9 @@ SkinnedGeometry::SkinnedGeometry()
 {
     setUseDisplayList(false);
     setUseVertexBufferObjects(true);
+    // Besides being fast: without an object of its own a geometry shares OSG's record of what each attribute points to,
+    // which goes by the addresses of arrays and misses it when one is deleted and another takes its place.
+    setUseVertexArrayObject(true);
 }
 
 SkinnedGeometry::SkinnedGeometry(const SkinnedGeometry& other, const osg::CopyOp& copyop)

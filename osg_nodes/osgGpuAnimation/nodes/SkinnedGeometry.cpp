@@ -7,6 +7,7 @@
 
 #include <layout.glsl>
 
+#include <osg/NodeVisitor>
 #include <osg/State>
 
 #include <algorithm>
@@ -54,6 +55,14 @@ SkinnedGeometry::SkinnedGeometry(const SkinnedGeometry& other, const osg::CopyOp
       _morphTargets(other._morphTargets), _morphDeltas(other._morphDeltas), _morph(other._morph),
       _morphEntry(other._morphEntry), _morphChannels(other._morphChannels)
 {
+}
+
+void SkinnedGeometry::accept(osg::NodeVisitor& visitor)
+{
+    if (!visitor.validNodeMask(*this)) return;
+    visitor.pushOntoNodePath(this);
+    visitor.apply(static_cast<osg::Drawable&>(*this));
+    visitor.popFromNodePath();
 }
 
 void SkinnedGeometry::setInfluences(unsigned int influenceSet, osg::Vec4usArray* entries, osg::Vec4Array* weights)

@@ -7,6 +7,8 @@
 #include "gltf/Skins.h"
 #include "gltf/TinyGltf.h"
 
+#include <osgGpuAnimation/nodes/CharacterKeys.h>
+
 #include <algorithm>
 #include <charconv>
 
@@ -63,6 +65,7 @@ private:
     Result<bool> makeSet(const NodeTree& tree, const Joints& joints, const Morphs& morphs);
     void makeGraph(const NodeTree& tree, const Joints& joints, const Morphs& morphs);
     void describeFile(const NodeTree& tree);
+    Result<bool> play(int clip);
 
     const tinygltf::Model& _model;
     const ImportOptions& _options;
@@ -132,8 +135,20 @@ Result<bool> Importer::run()
     if (!clip) return clip.error();
     makeGraph(tree.value(), joints.value(), morphs);
     describeFile(tree.value());
-    if (clip.value() < 0) return true;
-    return _result.character->controller().play(static_cast<std::size_t>(clip.value()));
+    return play(clip.value());
+}
+
+Result<bool> Importer::play(int clip)
+{
+    if (!_result.character) return true;
+    if (!_options.noKeys) _result.character->addEventCallback(new CharacterKeys(_options.fadeSeconds));
+    AnimationController& controller = _result.character->controller();
+    controller.setSpeed(_options.speed);
+    controller.setLoopMode(_options.loopMode);
+    if (clip < 0) return true;
+    const Result<bool> playing = controller.play(static_cast<std::size_t>(clip));
+    if (playing && _options.start) controller.seek(*_options.start);
+    return playing;
 }
 
 } // namespace

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <osgGpuAnimation/animation/LoopMode.h>
+
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -12,9 +14,14 @@ namespace osgGpuAnimation::gltf
 struct ImportOptions
 {
     std::optional<std::string> clip; ///< name, or index where no clip has that name; default: the first
-    std::optional<int> scene;        ///< default: the file's own, else 0
-    bool noRotation = false;         ///< keep glTF's +Y up; default: turn to OSG's +Z up at the root
-    bool allowOutsideFiles = false;  ///< let URIs leave the model's folder
+    std::optional<double> start;     ///< seconds into that clip, held to its duration; default: where its speed begins
+    double speed = 1.0;              ///< of that clip, see AnimationLayer::setSpeed
+    LoopMode loopMode = LoopMode::Loop;
+    double fadeSeconds = 0.3;       ///< of the keys' crossfades, see CharacterKeys
+    bool noKeys = false;            ///< no keys for viewers on the character
+    std::optional<int> scene;       ///< default: the file's own, else 0
+    bool noRotation = false;        ///< keep glTF's +Y up; default: turn to OSG's +Z up at the root
+    bool allowOutsideFiles = false; ///< let URIs leave the model's folder
 
     std::size_t maxJsonDepth = 256;
     std::size_t maxNodeDepth = 4096;                    ///< nodes from a root to a leaf

@@ -4,6 +4,7 @@
 #include "gltf/ElementName.h"
 
 #include <charconv>
+#include <cmath>
 #include <optional>
 
 namespace osgGpuAnimation::gltf
@@ -54,12 +55,54 @@ bool readNumber(const std::string& text, Number& out)
     return true;
 }
 
+/// False where the text is not a finite number.
+bool readFinite(const std::string& text, double& out)
+{
+    const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), out);
+    return fault == std::errc() && end == text.data() + text.size() && std::isfinite(out);
+}
+
+bool readLoopMode(const std::string& text, LoopMode& out)
+{
+    const std::pair<const char*, LoopMode> modes[] = {
+        {"once", LoopMode::Once}, {"loop", LoopMode::Loop}, {"pingpong", LoopMode::PingPong}};
+    for (const auto& [name, mode] : modes)
+    {
+        if (text != name) continue;
+        out = mode;
+        return true;
+    }
+    return false;
+}
+
+/// Of those that say how the first clip plays. Nothing where the word is none of them.
+std::optional<bool> applyPlaying(const std::string& name, const std::string& value, ImportOptions& options)
+{
+    if (name == "speed") return readFinite(value, options.speed);
+    if (name == "start") return readFinite(value, options.start.emplace()) && *options.start >= 0.0;
+    if (name == "loop") return readLoopMode(value, options.loopMode);
+    if (name == "fade") return readFinite(value, options.fadeSeconds) && options.fadeSeconds >= 0.0;
+    return std::nullopt;
+}
+
+/// What a value of the option must be.
+const char* wanted(const std::string& name)
+{
+    if (name == "speed") return "a number";
+    if (name == "start" || name == "fade") return "a number of seconds, 0 or more";
+    if (name == "loop") return "once, loop or pingpong";
+    return name == "clip" ? "a name or a number" : "a whole number that is not too large";
+}
+
 /// False where the value does not fit the option.
 bool apply(const Word& word, ImportOptions& options)
 {
     const std::string value = word.value.value_or("");
+    if (const std::optional<bool> fits = applyPlaying(word.name, value, options)) return *fits;
     if (word.name == "noRotation")
         options.noRotation = true;
+    else if (word.name == "noKeys")
+        options.noKeys = true;
     else if (word.name == "allowOutsideFiles")
         options.allowOutsideFiles = true;
     else if (word.name == "clip")
@@ -83,6 +126,11 @@ const std::vector<OptionHelp>& optionHelp()
 {
     static const std::vector<OptionHelp> help = {
         {"clip=NAME|INDEX", "the clip that plays at first, by name or by number; default: the first"},
+        {"start=SECONDS", "where in that clip to begin; beyond its end: at its end"},
+        {"speed=NUMBER", "how fast it plays; negative: backwards; default: 1"},
+        {"loop=once|loop|pingpong", "what it does at its end; default: loop"},
+        {"fade=SECONDS", "how long the keys' crossfades take; default: 0.3"},
+        {"noKeys", "no keys for viewers on the character; default: n N k . , - + r j"},
         {"scene=INDEX", "the scene to show; default: the file's own"},
         {"noRotation", "keep glTF's +Y up; default: +Z up"},
         {"allowOutsideFiles", "let a model read files outside its own folder"},
@@ -100,7 +148,8 @@ Result<ImportOptions> parseOptions(const std::string& text)
     for (const Word& word : split(text))
     {
         if (!apply(word, options))
-            return Error{"option " + word.name + ": " + quoted(word.value.value_or("")) + " is not a value for it"};
+            return Error{"option " + word.name + ": " + quoted(word.value.value_or("")) + " is not " +
+                         wanted(word.name)};
     }
     return options;
 }

@@ -30,6 +30,39 @@ TEST(OptionStringTest, readsAllOptions)
     EXPECT_EQ(options.maxDecodedBytes, 8000000000u);
 }
 
+TEST(OptionStringTest, readsHowTheClipPlays)
+{
+    const ImportOptions none = parseOptions("").value();
+    EXPECT_EQ(none.speed, 1.0);
+    EXPECT_EQ(none.loopMode, LoopMode::Loop);
+    EXPECT_FALSE(none.start);
+    EXPECT_FALSE(none.noKeys);
+    const ImportOptions options = parseOptions("speed=-1.5 start=0.25 loop=pingpong fade=0 noKeys").value();
+    EXPECT_EQ(options.speed, -1.5);
+    EXPECT_EQ(options.start, 0.25);
+    EXPECT_EQ(options.loopMode, LoopMode::PingPong);
+    EXPECT_EQ(options.fadeSeconds, 0.0);
+    EXPECT_TRUE(options.noKeys);
+    EXPECT_EQ(parseOptions("loop=once").value().loopMode, LoopMode::Once);
+    EXPECT_EQ(parseOptions("loop=loop").value().loopMode, LoopMode::Loop);
+}
+
+TEST(OptionStringTest, errorsSayWhatIsWanted)
+{
+    const std::pair<const char*, const char*> cases[] = {
+        {"loop=twice", "option loop: \"twice\" is not once, loop or pingpong"},
+        {"speed=fast", "option speed: \"fast\" is not a number"},
+        {"fade=-1", "option fade: \"-1\" is not a number of seconds, 0 or more"},
+        {"scene=one", "option scene: \"one\" is not a whole number that is not too large"},
+    };
+    for (const auto& [text, message] : cases)
+    {
+        const Result<ImportOptions> options = parseOptions(text);
+        ASSERT_FALSE(options) << text;
+        EXPECT_EQ(options.error().message, message);
+    }
+}
+
 TEST(OptionStringTest, quotationMarksKeepSpaces)
 {
     const std::pair<const char*, const char*> clips[] = {
@@ -55,8 +88,29 @@ TEST(OptionStringTest, otherReadersWordsArePassedOver)
 
 TEST(OptionStringTest, valuesThatDoNotFitAreErrors)
 {
-    for (const char* text : {"clip=", "clip", "scene=", "scene=one", "scene=-1", "scene=1.5", "scene=99999999999",
-                             "maxElements=-1", "maxDecodedBytes=1e9"})
+    for (const char* text : {"clip=",
+                             "clip",
+                             "scene=",
+                             "scene=one",
+                             "scene=-1",
+                             "scene=1.5",
+                             "scene=99999999999",
+                             "maxElements=-1",
+                             "maxDecodedBytes=1e9",
+                             "speed",
+                             "speed=",
+                             "speed=nan",
+                             "speed=inf",
+                             "speed=1x",
+                             "speed=1e999",
+                             "start=-0.5",
+                             "start=nan",
+                             "start=",
+                             "loop=",
+                             "loop=Once",
+                             "fade=-0.1",
+                             "fade=inf",
+                             "fade=x"})
     {
         const Result<ImportOptions> options = parseOptions(text);
         ASSERT_FALSE(options) << text;

@@ -3,6 +3,7 @@
 #include "plugin/SharedAssets.h"
 
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
+#include <osgGpuAnimation/nodes/CharacterKeys.h>
 
 #include <gtest/gtest.h>
 #include <osg/Notify>
@@ -92,6 +93,8 @@ const FaultCase faults[] = {
     {"cut off", "cut.gltf", "", Read::ERROR_IN_READING_FILE, ""},
     {"unknown clip", "arm.gltf", "clip=Jump", Read::ERROR_IN_READING_FILE, "\"Slow slide\", \"Slide\""},
     {"unknown scene", "arm.gltf", "scene=4", Read::ERROR_IN_READING_FILE, "scene 4 of 1"},
+    {"bad loop mode", "arm.gltf", "loop=thrice", Read::ERROR_IN_READING_FILE, "once, loop or pingpong"},
+    {"bad speed", "arm.gltf", "speed=fast", Read::ERROR_IN_READING_FILE, "option speed"},
     {"bad option", "arm.gltf", "scene=x", Read::ERROR_IN_READING_FILE, "option scene"},
     {"missing buffer", "lost.gltf", "", Read::ERROR_IN_READING_FILE, "lost.bin"},
 };
@@ -156,13 +159,31 @@ TEST_F(PluginTest, takesOptions)
     EXPECT_EQ(findCharacter(*read("arm.gltf", "clip=\"Slow slide\"").getNode())->controller().clip(), 0);
 }
 
+TEST_F(PluginTest, playsAsTheOptionsSay)
+{
+    const osg::ref_ptr<osg::Node> node = read("arm.gltf", "clip=Slide speed=-2 start=0.25 loop=once fade=1").getNode();
+    ASSERT_TRUE(node);
+    AnimatedCharacter* character = findCharacter(*node);
+    EXPECT_EQ(character->controller().speed(), -2.0);
+    EXPECT_EQ(character->controller().time(), 0.25);
+    EXPECT_EQ(character->controller().loopMode(), LoopMode::Once);
+    const auto* keys = dynamic_cast<const CharacterKeys*>(character->getEventCallback());
+    ASSERT_TRUE(keys);
+    EXPECT_EQ(keys->fadeSeconds(), 1.0);
+    EXPECT_EQ(findCharacter(*read("arm.gltf", "start=100").getNode())->controller().time(), 1.0) << "held to its end";
+    EXPECT_EQ(findCharacter(*read("arm.gltf", "speed=-1").getNode())->controller().time(), 1.0) << "from its end";
+    EXPECT_FALSE(findCharacter(*read("arm.gltf", "noKeys").getNode())->getEventCallback());
+    EXPECT_EQ(log->text, "");
+}
+
 TEST_F(PluginTest, tellsWhatItSupports)
 {
     osgDB::ReaderWriter* reader = osgDB::Registry::instance()->getReaderWriterForExtension("glb");
     ASSERT_TRUE(reader);
     EXPECT_TRUE(reader->acceptsExtension("GLTF"));
     EXPECT_FALSE(reader->acceptsExtension("obj"));
-    for (const char* option : {"clip=NAME|INDEX", "scene=INDEX", "noRotation", "allowOutsideFiles"})
+    for (const char* option : {"clip=NAME|INDEX", "scene=INDEX", "noRotation", "allowOutsideFiles", "start=SECONDS",
+                               "speed=NUMBER", "loop=once|loop|pingpong", "fade=SECONDS", "noKeys"})
         EXPECT_EQ(reader->supportedOptions().count(option), 1u) << option;
     EXPECT_EQ(reader->readNode("model.obj", nullptr).status(), Read::FILE_NOT_HANDLED);
 }

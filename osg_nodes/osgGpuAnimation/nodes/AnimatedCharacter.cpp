@@ -62,8 +62,10 @@ AnimatedCharacter::AnimatedCharacter(std::shared_ptr<const AnimationSet> set)
 
 AnimatedCharacter::AnimatedCharacter(const AnimatedCharacter& other, const osg::CopyOp& copyop)
     : osg::MatrixTransform(other, copyop), _controller(std::make_unique<AnimationController>(*other._controller)),
-      _clipBounds(other._clipBounds), _updateTime(other._updateTime)
+      _clipBounds(other._clipBounds), _mixBounds(other._mixBounds), _updateTime(other._updateTime)
 {
+    // osg::Node copies its other callbacks, but not these.
+    setEventCallback(copyop(other.getEventCallback()));
 }
 
 AnimatedCharacter::~AnimatedCharacter() = default;
@@ -105,9 +107,25 @@ void AnimatedCharacter::update(double simulationTime)
 {
     if (_updateTime && simulationTime != *_updateTime) _controller->advance(simulationTime - *_updateTime);
     _updateTime = simulationTime;
-    if (_controller->clip() == _boundClip) return;
-    _boundClip = _controller->clip();
+    findPlayedClips(*_controller, _playedNow);
+    if (_playedNow == _played) return;
+    std::swap(_played, _playedNow);
     dirtyBound();
+    if (_mixBounds) growMeshes(boundsOf(_played));
+}
+
+// The meshes' own boxes hold each clip. Clones share the meshes, so what a mix needs besides is added for all.
+void AnimatedCharacter::growMeshes(const Box& box)
+{
+    if (box.empty()) return;
+    SkinnedGeometryVisitor grow(
+        [&](SkinnedGeometry& geometry)
+        {
+            osg::BoundingBox grown = geometry.getInitialBound();
+            grown.expandBy(toOsg(box));
+            if (grown != geometry.getInitialBound()) geometry.setInitialBound(grown);
+        });
+    accept(grow);
 }
 
 void AnimatedCharacter::computeClipBounds()
@@ -117,6 +135,10 @@ void AnimatedCharacter::computeClipBounds()
     SkinnedGeometryVisitor collect([&](SkinnedGeometry& geometry)
                                    { geometry.addToEntryBoxes(set(), entryBoxes, bindBoxes); });
     accept(collect);
+    EntryBoxes withAdded = entryBoxes;
+    SkinnedGeometryVisitor collectAdded([&](SkinnedGeometry& geometry)
+                                        { geometry.addToEntryBoxes(set(), withAdded, bindBoxes, maxLayers); });
+    if (!set().morphs().empty()) accept(collectAdded);
 
     auto bounds = std::make_shared<std::vector<Box>>();
     Box all;
@@ -128,6 +150,8 @@ void AnimatedCharacter::computeClipBounds()
     SkinnedGeometryVisitor setBox([&](SkinnedGeometry& geometry) { geometry.setInitialBound(toOsg(all)); });
     accept(setBox);
     _clipBounds = std::move(bounds);
+    _mixBounds = std::make_shared<const MixBounds>(set(), std::move(entryBoxes), std::move(withAdded));
+    _played.clear();
     dirtyBound();
 }
 
@@ -151,12 +175,24 @@ void AnimatedCharacter::traverse(osg::NodeVisitor& visitor)
     cullVisitor->popStateSet();
 }
 
-// The meshes' own boxes hold all clips; what is seen now is within the playing clip's.
+Box AnimatedCharacter::boundsOf(const std::vector<PlayedClip>& played) const
+{
+    const bool isAlone = played.size() == 1 && played.front().part == PlayedClip::Part::Mixed;
+    if (isAlone || !_mixBounds) return clipBounds(isAlone ? played.front().clip : _controller->clip());
+    return _mixBounds->box(played);
+}
+
+Box AnimatedCharacter::currentBounds() const
+{
+    std::vector<PlayedClip> played;
+    findPlayedClips(*_controller, played);
+    return boundsOf(played);
+}
+
 osg::BoundingSphere AnimatedCharacter::computeBound() const
 {
-    const osg::BoundingBox ofClip = toOsg(clipBounds(_controller->clip()));
-    if (!ofClip.valid()) return osg::MatrixTransform::computeBound();
-    osg::BoundingBox box = ofClip;
+    osg::BoundingBox box = toOsg(currentBounds());
+    if (!box.valid()) return osg::MatrixTransform::computeBound();
     osg::BoundingSphere others;
     for (const osg::ref_ptr<osg::Node>& child : _children)
         if (!dynamic_cast<const SkinnedGeometry*>(child.get())) others.expandBy(child->getBound());

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/AnimationController.h>
-#include <osgGpuAnimation/animation/Bounds.h>
+#include <osgGpuAnimation/animation/MixBounds.h>
 
 #include <osg/MatrixTransform>
 
@@ -63,17 +63,27 @@ public:
     /// The box of the clip in the character's own space (all its vertices at all its times); -1: the rest pose.
     const Box& clipBounds(int clip) const;
 
+    /// The box of all that plays now, in the character's own space: the clip's where one plays alone, else that of any
+    /// mix of the clips that the layers play, see MixBounds. Empty before computeClipBounds().
+    Box currentBounds() const;
+
     void traverse(osg::NodeVisitor& visitor) override;
+    /// Of currentBounds(); update() sees to it that it is asked for again when other clips play.
     osg::BoundingSphere computeBound() const override;
 
 protected:
     ~AnimatedCharacter() override;
 
 private:
+    Box boundsOf(const std::vector<PlayedClip>& played) const;
+    void growMeshes(const Box& box);
+
     std::unique_ptr<AnimationController> _controller;
     std::shared_ptr<const std::vector<Box>> _clipBounds; ///< the rest pose's, then one a clip
+    std::shared_ptr<const MixBounds> _mixBounds;         ///< there with _clipBounds
     std::optional<double> _updateTime;                   ///< seconds of simulation time
-    int _boundClip = -1;                                 ///< the clip the bound was last dirtied for
+    std::vector<PlayedClip> _played;                     ///< what the bound was last dirtied for
+    std::vector<PlayedClip> _playedNow;                  ///< kept for its memory
 };
 
 /// The first AnimatedCharacter at or below the node, depth first; null where there is none.

@@ -114,7 +114,8 @@ void SkinnedGeometry::setMorphTargets(const AnimationSet& set, std::size_t morph
     dirtyBound();
 }
 
-void SkinnedGeometry::addToEntryBoxes(const AnimationSet& set, EntryBoxes& boxes, BindBoxes& bindBoxes) const
+void SkinnedGeometry::addToEntryBoxes(const AnimationSet& set, EntryBoxes& boxes, BindBoxes& bindBoxes,
+                                      std::size_t additiveLayers) const
 {
     const auto* vertices = dynamic_cast<const osg::Vec3Array*>(getVertexArray());
     if (!vertices) return;
@@ -127,8 +128,13 @@ void SkinnedGeometry::addToEntryBoxes(const AnimationSet& set, EntryBoxes& boxes
             boxes[static_cast<std::size_t>(_rigidEntry)].add(known->second);
         return;
     }
-    const std::vector<WeightRange> ranges =
-        _morph < 0 ? std::vector<WeightRange>() : weightRanges(set, static_cast<std::size_t>(_morph));
+    std::vector<WeightRange> ranges;
+    if (_morph >= 0) ranges = weightRanges(set, static_cast<std::size_t>(_morph));
+    for (WeightRange& range : ranges)
+    {
+        const float added = (range.max - range.min) * static_cast<float>(additiveLayers);
+        range = {range.min - added, range.max + added};
+    }
     for (std::size_t vertex = 0; vertex < vertices->size(); ++vertex)
     {
         const Box reach = reachOfVertex((*vertices)[vertex], vertex, ranges);

@@ -64,8 +64,10 @@ public:
 
     /// The boxes of vertex arrays in bind pose, so that an array which many meshes share is looked through once.
     using BindBoxes = std::map<const osg::Array*, Box>;
-    /// Grows the boxes (one an entry) by the vertices that the entries move, wherever the clips' weights morph them.
-    void addToEntryBoxes(const AnimationSet& set, EntryBoxes& boxes, BindBoxes& bindBoxes) const;
+    /// Grows the boxes (one an entry) by the vertices that the entries move, wherever the clips' weights morph them
+    /// with so many additive layers that change the weights.
+    void addToEntryBoxes(const AnimationSet& set, EntryBoxes& boxes, BindBoxes& bindBoxes,
+                         std::size_t additiveLayers = 0) const;
 
     /// The CPU twin of skin.glsl: where the palette (of one instance: the set's paletteSize() entries) takes each
     /// vertex, in the character's own space; computed in double. outPositions: one a vertex.

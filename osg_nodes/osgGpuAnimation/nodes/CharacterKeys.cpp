@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/nodes/CharacterKeys.h>
+
+#include <osgGpuAnimation/nodes/JointLines.h>
+
+#include <osg/ApplicationUsage>
+#include <osg/Notify>
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+struct KeyHelp
+{
+    const char* keys;
+    const char* does;
+};
+
+constexpr KeyHelp keyHelp[] = {
+    {"n", "next clip"},  {"N", "previous clip"},     {"k", "pause, resume"},
+    {".", "a frame on"}, {",", "a frame back"},      {"-", "slower"},
+    {"+", "faster"},     {"r", "run the other way"}, {"j", "joints on, off"},
+};
+
+constexpr double frameSeconds = 1.0 / 30.0;
+constexpr double speedFactor = 1.25;
+constexpr double slowest = 1.0 / 64.0, fastest = 64.0;
+
+template <typename Function>
+void forEachLayer(AnimationController& controller, Function function)
+{
+    for (std::size_t i = 0; i < controller.layerCount(); ++i)
+        function(controller.layer(i));
+}
+
+bool isAnyPlaying(AnimationController& controller)
+{
+    bool isPlaying = false;
+    forEachLayer(controller, [&](AnimationLayer& layer) { isPlaying = isPlaying || layer.isPlaying(); });
+    return isPlaying;
+}
+
+void setPaused(AnimationController& controller, bool isPaused)
+{
+    forEachLayer(controller, [&](AnimationLayer& layer) { isPaused ? layer.pause() : layer.resume(); });
+}
+
+/// Fades do not go back: they stand while clips do.
+void step(AnimationController& controller, double seconds)
+{
+    // What has come to its end can still go back.
+    forEachLayer(controller,
+                 [&](AnimationLayer& layer)
+                 {
+                     if (layer.state() == PlayState::Ended && seconds < 0.0)
+                         layer.seek(layer.time() + seconds * layer.speed());
+                 });
+    setPaused(controller, false);
+    controller.advance(seconds);
+    setPaused(controller, true);
+    OSG_NOTICE << "at " << controller.time() << " s of " << controller.duration() << std::endl;
+}
+
+void multiplySpeed(AnimationController& controller, double factor)
+{
+    forEachLayer(controller,
+                 [&](AnimationLayer& layer)
+                 {
+                     const double speed = std::clamp(std::abs(layer.speed() * factor), slowest, fastest);
+                     layer.setSpeed(std::copysign(speed, layer.speed() * factor));
+                     // At the end that the old way led to there is a way back now.
+                     if (factor < 0.0 && layer.state() == PlayState::Ended) layer.seek(layer.time());
+                 });
+    OSG_NOTICE << "speed " << controller.speed() << std::endl;
+}
+
+void tellKeysOnce()
+{
+    static std::once_flag told;
+    std::call_once(told,
+                   []
+                   {
+                       std::string text;
+                       for (const KeyHelp& key : keyHelp)
+                           text += (text.empty() ? "" : "; ") + std::string(key.keys) + " " + key.does;
+                       OSG_NOTICE << "Keys of animated characters: " << text << std::endl;
+                   });
+}
+
+} // namespace
+
+CharacterKeys::CharacterKeys(const CharacterKeys& other, const osg::CopyOp& copyop)
+    : osg::Object(other, copyop), osg::Callback(other, copyop), osgGA::GUIEventHandler(other, copyop),
+      _fadeSeconds(other._fadeSeconds)
+{
+}
+
+bool CharacterKeys::handle(const osgGA::GUIEventAdapter& event, osgGA::GUIActionAdapter& action, osg::Object* object,
+                           osg::NodeVisitor*)
+{
+    auto* character = dynamic_cast<AnimatedCharacter*>(object);
+    if (!character || event.getHandled()) return false;
+    if (event.getEventType() == osgGA::GUIEventAdapter::FRAME) tellKeysOnce();
+    if (event.getEventType() != osgGA::GUIEventAdapter::KEYDOWN) return false;
+    if (isFirstTime(event, *object) && press(event.getKey(), *character)) action.requestRedraw();
+    return false;
+}
+
+// A character with several parents meets each event once a parent.
+bool CharacterKeys::isFirstTime(const osgGA::GUIEventAdapter& event, const osg::Object& character)
+{
+    if (_event != &event) _told.clear();
+    _event = &event;
+    if (std::find(_told.begin(), _told.end(), &character) != _told.end()) return false;
+    _told.push_back(&character);
+    return true;
+}
+
+void CharacterKeys::getUsage(osg::ApplicationUsage& usage) const
+{
+    for (const KeyHelp& key : keyHelp)
+        usage.addKeyboardMouseBinding(key.keys, std::string("Animated characters: ") + key.does);
+}
+
+void CharacterKeys::changeClip(AnimationController& controller, int step) const
+{
+    const std::vector<Clip>& clips = controller.set().clips();
+    const int count = static_cast<int>(clips.size());
+    if (count == 0) return;
+    const int clip = controller.clip() < 0 ? 0 : (controller.clip() + step + count) % count;
+    if (controller.crossfade(static_cast<std::size_t>(clip), _fadeSeconds))
+        OSG_NOTICE << "clip \"" << clips[static_cast<std::size_t>(clip)].name() << "\", " << clip + 1 << " of " << count
+                   << std::endl;
+}
+
+bool CharacterKeys::press(int key, AnimatedCharacter& character) const
+{
+    AnimationController& controller = character.controller();
+    switch (key)
+    {
+    case 'n':
+        changeClip(controller, 1);
+        return true;
+    case 'N':
+        changeClip(controller, -1);
+        return true;
+    case 'k':
+        setPaused(controller, isAnyPlaying(controller));
+        return true;
+    case '.':
+        step(controller, frameSeconds);
+        return true;
+    case ',':
+        step(controller, -frameSeconds);
+        return true;
+    case '-':
+    case osgGA::GUIEventAdapter::KEY_KP_Subtract:
+        multiplySpeed(controller, 1.0 / speedFactor);
+        return true;
+    case '+':
+    case '=':
+    case osgGA::GUIEventAdapter::KEY_KP_Add:
+        multiplySpeed(controller, speedFactor);
+        return true;
+    case 'r':
+        multiplySpeed(controller, -1.0);
+        return true;
+    case 'j':
+        showJointLines(character, !hasJointLines(character));
+        return true;
+    default:
+        return false;
+    }
+}
+
+} // namespace osgGpuAnimation

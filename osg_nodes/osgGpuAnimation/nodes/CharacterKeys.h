@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osgGpuAnimation/nodes/AnimatedCharacter.h>
+
+#include <osgGA/GUIEventHandler>
+
+#include <vector>
+
+namespace osgGpuAnimation
+{
+
+/// Keys for someone who looks at an AnimatedCharacter in a viewer: an event callback on the character. None of them is
+/// a key of osgviewer's, and none is kept from other handlers, so all characters of a scene follow.
+///
+///     character->addEventCallback(new CharacterKeys);
+///
+/// | key | does |
+/// | --- | --- |
+/// | n N | next, previous clip, with a crossfade |
+/// | k | pauses and resumes all layers |
+/// | . , | a thirtieth of a second on, back; pauses |
+/// | - + | slower, faster (= is + without shift) |
+/// | r | the other way |
+/// | j | joints as lines over the mesh |
+///
+/// At the first frame of the first viewer that reaches one, the keys are told at osg::NOTICE, once a process; what a
+/// key did is told there too. An application that never has a viewer never hears of it.
+///
+/// Characters may share one: it keeps nothing of theirs.
+class CharacterKeys : public osgGA::GUIEventHandler
+{
+public:
+    CharacterKeys() = default;
+    /// fadeSeconds: of the crossfades, at least 0.
+    explicit CharacterKeys(double fadeSeconds) : _fadeSeconds(fadeSeconds) {}
+    CharacterKeys(const CharacterKeys& other, const osg::CopyOp& copyop);
+    META_Object(osgGpuAnimation, CharacterKeys)
+
+        double fadeSeconds() const
+    {
+        return _fadeSeconds;
+    }
+
+    using osgGA::GUIEventHandler::handle;
+    bool handle(const osgGA::GUIEventAdapter& event, osgGA::GUIActionAdapter& action, osg::Object* object,
+                osg::NodeVisitor* visitor) override;
+    void getUsage(osg::ApplicationUsage& usage) const override;
+
+    /// False where the key is none of these.
+    bool press(int key, AnimatedCharacter& character) const;
+
+protected:
+    ~CharacterKeys() override = default;
+
+private:
+    bool isFirstTime(const osgGA::GUIEventAdapter& event, const osg::Object& character);
+    void changeClip(AnimationController& controller, int step) const;
+
+    double _fadeSeconds = 0.3;
+    osg::ref_ptr<const osgGA::GUIEventAdapter> _event; ///< the last one
+    std::vector<const osg::Object*> _told;             ///< who has had it
+};
+
+} // namespace osgGpuAnimation

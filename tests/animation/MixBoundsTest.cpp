@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/animation/MixBounds.h>
+
+#include "support/GaitSet.h"
+#include "support/RandomSet.h"
+
+#include <osgGpuAnimation/animation/JointMask.h>
+#include <osgGpuAnimation/animation/Pose.h>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+double number(std::mt19937& random, double low, double high)
+{
+    return std::uniform_real_distribution<double>(low, high)(random);
+}
+
+EntryBoxes someBoxes(const AnimationSet& set)
+{
+    Box box;
+    box.add(glm::vec3(-0.1f, -0.2f, 0.1f));
+    box.add(glm::vec3(0.3f, 0.2f, 0.4f));
+    return EntryBoxes(set.paletteSize(), box);
+}
+
+/// How far a corner of an entry's box is outside, at the controller's pose; and where all corners are.
+double outside(const Box& bounds, const AnimationController& controller, const EntryBoxes& boxes, Box& seen)
+{
+    std::vector<AffineMatrix> palette;
+    Pose::evaluate(controller.set(), controller.instruction(), AffineMatrix(), palette);
+    double worst = 0.0;
+    for (std::size_t e = 0; e < palette.size(); ++e)
+        for (int corner = 0; corner < 8 && controller.set().palette()[e].joint >= 0; ++corner)
+        {
+            const Box& b = boxes[e];
+            const glm::vec3 at = palette[e].transformPoint(
+                {(corner & 1) ? b.max.x : b.min.x, (corner & 2) ? b.max.y : b.min.y, (corner & 4) ? b.max.z : b.min.z});
+            seen.add(at);
+            for (int axis = 0; axis < 3; ++axis)
+                worst = std::max({worst, static_cast<double>(bounds.min[axis] - at[axis]),
+                                  static_cast<double>(at[axis] - bounds.max[axis])});
+        }
+    return worst;
+}
+
+void setUpRandomly(AnimationController& controller, std::mt19937& random)
+{
+    const std::size_t clips = controller.set().clips().size();
+    for (std::size_t layer = 0, count = 1 + random() % 4; layer < count; ++layer)
+    {
+        AnimationLayer& l = controller.layer(layer);
+        const AnimationLayer::Reference reference =
+            random() % 2 ? AnimationLayer::Reference::RestPose : AnimationLayer::Reference::FirstFrame;
+        l.setMode(layer > 0 && random() % 3 == 0 ? AnimationLayer::Mode::Additive : AnimationLayer::Mode::Override,
+                  reference);
+        l.setWeight(random() % 2 ? 1.0f : static_cast<float>(number(random, 0.0, 1.0)));
+        if (layer > 0 && random() % 2)
+        {
+            const auto joint = random() % controller.set().skeleton().jointCount();
+            const auto mask = JointMask::subtree(controller.set(), controller.set().skeleton().joint(joint).name, 1);
+            if (mask) (void)l.setMask(mask.value());
+        }
+        if (random() % 4) (void)l.play(random() % clips);
+        for (std::size_t fades = random() % 4; fades > 0; --fades)
+        {
+            (void)l.crossfade(random() % clips, number(random, 0.1, 1.0));
+            controller.advance(number(random, 0.0, 0.5));
+        }
+    }
+}
+
+TEST(MixBoundsTest, HoldWhateverLayersAndCrossfadesShow)
+{
+    constexpr unsigned int seed = 404;
+    std::mt19937 random(seed);
+    for (unsigned int character = 0; character < 12; ++character)
+    {
+        const auto set = character == 0 ? makeGaitSet()
+                                        : makeRandomSet({seed + character, 16, 6, 5, character % 2 == 1, true, true});
+        const EntryBoxes boxes = someBoxes(*set);
+        const MixBounds bounds(*set, boxes, boxes);
+        std::vector<PlayedClip> played;
+        for (int stack = 0; stack < 60; ++stack)
+        {
+            AnimationController controller(set);
+            setUpRandomly(controller, random);
+            for (int frame = 0; frame < 20; ++frame)
+            {
+                controller.advance(number(random, 0.0, 0.2));
+                findPlayedClips(controller, played);
+                Box seen;
+                ASSERT_LE(outside(bounds.box(played), controller, boxes, seen), 0.0)
+                    << "seed " << seed << ", character " << character << ", stack " << stack << ", frame " << frame;
+            }
+        }
+    }
+}
+
+TEST(MixBoundsTest, OfGaitsTheyAreNotMuchWiderThanTheGaits)
+{
+    const auto set = makeGaitSet();
+    const EntryBoxes boxes = someBoxes(*set);
+    const MixBounds bounds(*set, boxes, boxes);
+    Box gaits;
+    for (const char* name : {"Walk", "Run"})
+        gaits.add(boundsOfClip(*set, set->findClip(name), boxes));
+    const Box mixed = bounds.box({{set->findClip("Walk")}, {set->findClip("Run")}});
+    // A joint's sway is taken as a ball, so what swings in one plane is given room to its sides as well.
+    EXPECT_LE(glm::length(mixed.max - mixed.min), 2.5f * glm::length(gaits.max - gaits.min));
+}
+
+TEST(MixBoundsTest, ClipsPlayedAreThoseThatShow)
+{
+    const auto set = makeGaitSet();
+    AnimationController controller(set);
+    std::vector<PlayedClip> played;
+    const auto clips = [&]
+    {
+        findPlayedClips(controller, played);
+        std::vector<int> numbers;
+        for (const PlayedClip& clip : played)
+            numbers.push_back(clip.clip);
+        return numbers;
+    };
+    EXPECT_EQ(clips(), (std::vector<int>{-1})) << "nothing plays: the rest pose";
+    ASSERT_TRUE(controller.crossfade(2, 1.0));
+    EXPECT_EQ(clips(), (std::vector<int>{2, -1})) << "rises out of the rest pose";
+    ASSERT_TRUE(controller.play(1));
+    EXPECT_EQ(clips(), (std::vector<int>{1}));
+    ASSERT_TRUE(controller.crossfade(2, 1.0));
+    EXPECT_EQ(clips(), (std::vector<int>{1, 2}));
+    controller.advance(2.0);
+    controller.advance(0.1);
+    EXPECT_EQ(clips(), (std::vector<int>{2})) << "the fade is over";
+    controller.layer(1).setMode(AnimationLayer::Mode::Additive);
+    ASSERT_TRUE(controller.layer(1).play(0));
+    EXPECT_EQ(clips(), (std::vector<int>{2, 0}));
+    EXPECT_EQ(played[1].part, PlayedClip::Part::AddedToRest);
+    controller.layer(1).setWeight(0.0f);
+    EXPECT_EQ(clips(), (std::vector<int>{2}));
+    controller.layer(0).setWeight(0.5f);
+    EXPECT_EQ(clips(), (std::vector<int>{2, -1})) << "what weights leave of 1";
+}
+
+} // namespace
+} // namespace osgGpuAnimation

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: MIT
+#include "support/TestCharacter.h"
+
+#include <osgGpuAnimation/nodes/CharacterKeys.h>
+#include <osgGpuAnimation/nodes/JointLines.h>
+
+#include <gtest/gtest.h>
+#include <osg/Notify>
+#include <osgGA/EventVisitor>
+
+#include <string>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+class NoticeLog : public osg::NotifyHandler
+{
+public:
+    void notify(osg::NotifySeverity, const char* message) override { text += message; }
+    std::string text;
+};
+
+class Actions : public osgGA::GUIActionAdapter
+{
+public:
+    void requestRedraw() override { ++redraws; }
+    void requestContinuousUpdate(bool) override {}
+    void requestWarpPointer(float, float) override {}
+    int redraws = 0;
+};
+
+/// A character with the keys on it, and a scene that gets events as in a viewer.
+class CharacterKeysTest : public ::testing::Test
+{
+protected:
+    void SetUp() override
+    {
+        character->addEventCallback(new CharacterKeys);
+        scene->addChild(character);
+        osg::setNotifyHandler(log);
+    }
+    void TearDown() override { osg::setNotifyHandler(new osg::StandardNotifyHandler); }
+
+    void send(osgGA::GUIEventAdapter::EventType type, int key = 0)
+    {
+        osg::ref_ptr<osgGA::GUIEventAdapter> event = new osgGA::GUIEventAdapter;
+        event->setEventType(type);
+        event->setKey(key);
+        osg::ref_ptr<osgGA::EventVisitor> visitor = new osgGA::EventVisitor;
+        visitor->setActionAdapter(&actions);
+        visitor->addEvent(event);
+        scene->accept(*visitor);
+    }
+    void press(int key) { send(osgGA::GUIEventAdapter::KEYDOWN, key); }
+
+    osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
+    AnimationController& controller = character->controller();
+    osg::ref_ptr<osg::Group> scene = new osg::Group;
+    osg::ref_ptr<NoticeLog> log = new NoticeLog;
+    Actions actions;
+};
+
+TEST_F(CharacterKeysTest, theKeysAreToldAtTheFirstFrameAndOnlyThen)
+{
+    EXPECT_EQ(log->text, "");
+    send(osgGA::GUIEventAdapter::FRAME);
+    EXPECT_NE(log->text.find("n next clip"), std::string::npos) << log->text;
+    log->text.clear();
+    send(osgGA::GUIEventAdapter::FRAME);
+    EXPECT_EQ(log->text, "");
+}
+
+TEST_F(CharacterKeysTest, nextAndPreviousClipFade)
+{
+    press('n');
+    EXPECT_EQ(controller.clip(), 1);
+    EXPECT_TRUE(controller.layer(0).isCrossfading());
+    press('n');
+    EXPECT_EQ(controller.clip(), 0);
+    press('N');
+    EXPECT_EQ(controller.clip(), 1);
+    EXPECT_NE(log->text.find("clip \"turn\", 2 of 2"), std::string::npos) << log->text;
+    EXPECT_EQ(actions.redraws, 3);
+}
+
+TEST_F(CharacterKeysTest, pauseHoldsAllLayers)
+{
+    ASSERT_TRUE(controller.layer(1).play(1));
+    press('k');
+    EXPECT_EQ(controller.layer(0).state(), PlayState::Paused);
+    EXPECT_EQ(controller.layer(1).state(), PlayState::Paused);
+    press('k');
+    EXPECT_TRUE(controller.layer(0).isPlaying());
+    EXPECT_TRUE(controller.layer(1).isPlaying());
+}
+
+TEST_F(CharacterKeysTest, aFrameOnAndBack)
+{
+    press('.');
+    EXPECT_NEAR(controller.time(), 1.0 / 30.0, 1e-9);
+    EXPECT_EQ(controller.state(), PlayState::Paused);
+    press('.');
+    press(',');
+    EXPECT_NEAR(controller.time(), 1.0 / 30.0, 1e-9);
+    controller.setLoopMode(LoopMode::Once);
+    controller.resume();
+    controller.advance(100.0);
+    ASSERT_EQ(controller.state(), PlayState::Ended);
+    press(',');
+    EXPECT_LT(controller.time(), controller.duration()) << "back from its end";
+    EXPECT_EQ(controller.state(), PlayState::Paused);
+}
+
+TEST_F(CharacterKeysTest, slowerFasterAndTheOtherWay)
+{
+    press('+');
+    EXPECT_DOUBLE_EQ(controller.speed(), 1.25);
+    press('-');
+    press('-');
+    EXPECT_DOUBLE_EQ(controller.speed(), 0.8);
+    press('r');
+    EXPECT_DOUBLE_EQ(controller.speed(), -0.8);
+    press('=');
+    EXPECT_DOUBLE_EQ(controller.speed(), -1.0);
+    for (int i = 0; i < 100; ++i)
+        press('+');
+    EXPECT_DOUBLE_EQ(controller.speed(), -64.0);
+    controller.setLoopMode(LoopMode::Once);
+    controller.advance(100.0);
+    ASSERT_EQ(controller.state(), PlayState::Ended);
+    press('r');
+    EXPECT_TRUE(controller.isPlaying()) << "there is a way back now";
+}
+
+TEST_F(CharacterKeysTest, jointsComeAndGo)
+{
+    EXPECT_FALSE(hasJointLines(*character));
+    press('j');
+    ASSERT_TRUE(hasJointLines(*character));
+    const auto* lines = dynamic_cast<const SkinnedGeometry*>(character->getChild(1));
+    ASSERT_TRUE(lines);
+    EXPECT_EQ(lines->getVertexArray()->getNumElements(), 2u) << "tip has a parent, base has none";
+    press('j');
+    EXPECT_FALSE(hasJointLines(*character));
+}
+
+TEST_F(CharacterKeysTest, aCharacterUnderTwoParentsHearsAKeyOnce)
+{
+    osg::ref_ptr<osg::Group> second = new osg::Group;
+    second->addChild(character);
+    scene->addChild(second);
+    press('k');
+    EXPECT_EQ(controller.state(), PlayState::Paused);
+}
+
+TEST_F(CharacterKeysTest, clonesThatShareTheKeysAllFollow)
+{
+    osg::ref_ptr<AnimatedCharacter> clone = osg::clone(character.get(), osg::CopyOp::DEEP_COPY_NODES);
+    scene->addChild(clone);
+    press('n');
+    EXPECT_EQ(controller.clip(), 1);
+    EXPECT_EQ(clone->controller().clip(), 1);
+}
+
+TEST_F(CharacterKeysTest, otherKeysAndKeysThatOthersTookAreLeftAlone)
+{
+    for (int key : {'s', 'f', 'h', 'w', 'l', 't', 'b', 'm', 'e', 'z', 'Z', 'c', 'C', 'v', 'o',
+                    '1', '7', '*', '/', '<', '>', ' ', 'q', 'a', 'p', '(', ')', '[', ']'})
+        press(key);
+    EXPECT_EQ(actions.redraws, 0) << "keys of osgviewer and its manipulators";
+    EXPECT_EQ(log->text, "");
+}
+
+} // namespace
+
+} // namespace osgGpuAnimation

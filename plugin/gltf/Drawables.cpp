@@ -12,6 +12,7 @@ namespace
 constexpr std::size_t bytesADrawable = 1024;
 constexpr std::size_t bytesAnInfluencedVertex =
     SkinnedGeometry::maxInfluenceSets * (sizeof(osg::Vec4us) + sizeof(osg::Vec4));
+constexpr std::size_t bytesAMorphedVertex = 4 * sizeof(osg::Vec4); ///< a target, at most
 
 osg::ref_ptr<osg::Vec4Array> overall(const osg::Vec4& color)
 {
@@ -77,7 +78,9 @@ osg::ref_ptr<osg::Geometry> Drawables::make(const DrawablePlace& place)
     const tinygltf::Mesh& sourceMesh = _model.meshes[static_cast<std::size_t>(place.mesh)];
     const tinygltf::Primitive& source = sourceMesh.primitives[static_cast<std::size_t>(place.primitive)];
     const bool palette = place.skin >= 0 || place.joint >= 0;
-    const std::size_t bytes = mesh->positions->size() * (palette ? bytesAnInfluencedVertex : 0) + bytesADrawable;
+    const std::size_t bytesAVertex = (place.skin >= 0 ? bytesAnInfluencedVertex : 0) +
+                                     (place.morph >= 0 ? mesh->targets.size() * bytesAMorphedVertex : 0);
+    const std::size_t bytes = mesh->positions->size() * bytesAVertex + bytesADrawable;
     if (!_budget.take(bytes))
     {
         _report.warn(mesh->label + ": it would take " + std::to_string(bytes) + " bytes, " + _budget.limitText() +
@@ -89,18 +92,21 @@ osg::ref_ptr<osg::Geometry> Drawables::make(const DrawablePlace& place)
     geometry->setName(sourceMesh.name);
     geometry->setUseDisplayList(false);
     geometry->setUseVertexBufferObjects(true);
+    geometry->setUseVertexArrayObject(true);
     geometry->setVertexArray(mesh->positions);
     if (mesh->normals) geometry->setNormalArray(mesh->normals, osg::Array::BIND_PER_VERTEX);
     if (mesh->texCoords) geometry->setTexCoordArray(0, mesh->texCoords, osg::Array::BIND_PER_VERTEX);
     setColors(*geometry, *mesh, source.material, palette);
     geometry->addPrimitiveSet(mesh->primitiveSet);
     if (palette) setInfluences(*skinned, *mesh, place);
+    if (place.morph >= 0) skinned->setMorphTargets(*_set, static_cast<std::size_t>(place.morph), mesh->targets);
 
     MaterialUse use;
     use.material = source.material;
     use.palette = palette;
     use.mirrored = place.mirrored;
     use.lit = mesh->normals.valid();
+    use.flat = palette && mesh->isFlat;
     use.textured = mesh->texCoords.valid();
     use.colored = mesh->colors.valid();
     if (_materials.wantsTexture(use.material) && !use.textured)

@@ -3,7 +3,6 @@
 
 #include "gltf/ImportOptions.h"
 #include "gltf/Messages.h"
-#include "gltf/MorphTarget.h"
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
@@ -31,11 +30,10 @@ struct ImportedPrimitive
     std::size_t vertexCount = 0;          ///< of the file's POSITION accessor
     std::size_t influences = 0;           ///< joints a vertex can name: 4 a JOINTS_n set
     osg::ref_ptr<osg::Geometry> geometry; ///< a SkinnedGeometry where it is drawn from the palette
-    /// vertexCount numbers: a vertex of `geometry` that stands for the file's vertex; empty where they are the same.
-    std::vector<std::uint32_t> geometryVertex;
+    /// vertexCount numbers: a vertex of `geometry` that stands for the file's vertex; null where they are the same.
+    std::shared_ptr<const std::vector<std::uint32_t>> geometryVertex;
     osg::Matrixd
         toModel; ///< of a plain geometry: its place at rest, in the file's axes; identity for a SkinnedGeometry
-    std::vector<MorphTarget> morphTargets; ///< `targets` of them, over the vertices of `geometry`
 };
 
 /// What a file became.

@@ -119,6 +119,7 @@ osg::ref_ptr<osg::StateSet> Materials::make(const MaterialUse& use)
     if (use.palette)
     {
         if (!lit) state->addUniform(new osg::Uniform("unlit", true));
+        if (use.flat) state->addUniform(new osg::Uniform("flatNormals", true));
         applyCharacterProgram(*state);
     }
     else

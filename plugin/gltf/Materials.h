@@ -20,10 +20,11 @@ struct MaterialUse
     bool palette = false;  ///< drawn by the character program, else by the fixed pipeline
     bool mirrored = false; ///< front faces are clockwise
     bool lit = true;       ///< false: points and lines without normals
+    bool flat = false;     ///< of the palette's: the file has no normals, each face takes its own of the pose
     bool textured = false; ///< has coordinates for the base colour texture
     bool colored = false;  ///< has colours of its own for each vertex
 
-    auto key() const { return std::tie(material, palette, mirrored, lit, textured, colored); }
+    auto key() const { return std::tie(material, palette, mirrored, lit, flat, textured, colored); }
     bool operator<(const MaterialUse& other) const { return key() < other.key(); }
 };
 

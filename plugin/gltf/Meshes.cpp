@@ -2,12 +2,10 @@
 #include "gltf/Meshes.h"
 
 #include "gltf/Accessor.h"
-#include "gltf/DisplayColor.h"
 #include "gltf/FlatNormals.h"
 #include "gltf/NamedElement.h"
-#include "gltf/TextureCoordinates.h"
+#include "gltf/VertexAttributes.h"
 
-#include <cstring>
 #include <numeric>
 
 namespace osgGpuAnimation::gltf
@@ -17,64 +15,6 @@ namespace
 {
 
 constexpr int modeTriangles = 4;
-
-/// -1 where the primitive has no such attribute or it is not of a fitting type.
-int findAccessor(const tinygltf::Model& model, const std::map<std::string, int>& attributes, const std::string& name,
-                 std::initializer_list<std::size_t> components)
-{
-    const auto found = attributes.find(name);
-    if (found == attributes.end() || found->second < 0) return -1;
-    const std::size_t count = componentCount(model.accessors[static_cast<std::size_t>(found->second)]);
-    for (const std::size_t fitting : components)
-    {
-        if (count == fitting) return found->second;
-    }
-    return -1;
-}
-
-osg::ref_ptr<osg::Vec3Array> readVectors(const tinygltf::Model& model, const std::map<std::string, int>& attributes,
-                                         const char* name)
-{
-    const int accessor = findAccessor(model, attributes, name, {3});
-    if (accessor < 0) return nullptr;
-    const std::vector<float> numbers = readFloats(model, accessor);
-    osg::ref_ptr<osg::Vec3Array> vectors = new osg::Vec3Array(static_cast<unsigned int>(numbers.size() / 3));
-    if (!numbers.empty()) std::memcpy(vectors->front().ptr(), numbers.data(), numbers.size() * sizeof(float));
-    return vectors;
-}
-
-osg::ref_ptr<osg::Vec4Array> readColors(const tinygltf::Model& model, const tinygltf::Primitive& primitive)
-{
-    const int accessor = findAccessor(model, primitive.attributes, "COLOR_0", {3, 4});
-    if (accessor < 0) return nullptr;
-    const std::vector<float> numbers = readFloats(model, accessor);
-    const std::size_t components = componentCount(model.accessors[static_cast<std::size_t>(accessor)]);
-    osg::ref_ptr<osg::Vec4Array> colors = new osg::Vec4Array(osg::Array::BIND_PER_VERTEX);
-    colors->reserve(numbers.size() / components);
-    for (std::size_t i = 0; i + components <= numbers.size(); i += components)
-        colors->push_back(
-            displayColor(numbers[i], numbers[i + 1], numbers[i + 2], components == 4 ? numbers[i + 3] : 1.0f));
-    return colors;
-}
-
-osg::ref_ptr<osg::Vec2Array> readTexCoords(const tinygltf::Model& model, const tinygltf::Primitive& primitive)
-{
-    if (primitive.material < 0 || static_cast<std::size_t>(primitive.material) >= model.materials.size())
-        return nullptr;
-    const tinygltf::TextureInfo& texture =
-        model.materials[static_cast<std::size_t>(primitive.material)].pbrMetallicRoughness.baseColorTexture;
-    if (texture.index < 0) return nullptr;
-    const TextureCoordinates coordinates(texture);
-    const std::string name = "TEXCOORD_" + std::to_string(coordinates.set());
-    const int accessor = findAccessor(model, primitive.attributes, name, {2});
-    if (accessor < 0) return nullptr;
-    const std::vector<float> numbers = readFloats(model, accessor);
-    osg::ref_ptr<osg::Vec2Array> texCoords = new osg::Vec2Array(osg::Array::BIND_PER_VERTEX);
-    texCoords->reserve(numbers.size() / 2);
-    for (std::size_t i = 0; i + 2 <= numbers.size(); i += 2)
-        texCoords->push_back(coordinates.transformed(osg::Vec2(numbers[i], numbers[i + 1])));
-    return texCoords;
-}
 
 template <typename Array>
 void pick(osg::ref_ptr<Array>& array, const std::vector<std::uint32_t>& vertices)
@@ -166,7 +106,7 @@ void takeApart(MeshPrimitive& mesh, int mode, std::vector<std::uint32_t> vertice
     if (!same)
     {
         mesh.sourceVertex = std::move(corners);
-        mesh.geometryVertex = invert(mesh.sourceVertex, mesh.vertexCount);
+        mesh.geometryVertex = std::make_shared<std::vector<std::uint32_t>>(invert(mesh.sourceVertex, mesh.vertexCount));
         pick(mesh.positions, mesh.sourceVertex);
         pick(mesh.texCoords, mesh.sourceVertex);
         pick(mesh.colors, mesh.sourceVertex);
@@ -174,16 +114,19 @@ void takeApart(MeshPrimitive& mesh, int mode, std::vector<std::uint32_t> vertice
         {
             pick(target.positions, mesh.sourceVertex);
             pick(target.normals, mesh.sourceVertex);
+            pick(target.colors, mesh.sourceVertex);
+            pick(target.textureCoordinates, mesh.sourceVertex);
         }
     }
     mesh.normals = flatNormals(*mesh.positions);
+    mesh.isFlat = true;
 }
 
 /// An upper bound of what reading takes, influences included.
 std::size_t byteSize(const tinygltf::Model& model, const tinygltf::Primitive& primitive, std::size_t vertexCount)
 {
     constexpr std::size_t aVertex = sizeof(osg::Vec3) * 2 + sizeof(osg::Vec2) + sizeof(osg::Vec4) + 2 * 24 + 8;
-    const std::size_t aTarget = sizeof(osg::Vec3) * 2;
+    const std::size_t aTarget = sizeof(osg::Vec3) * 2 + sizeof(osg::Vec4) + sizeof(osg::Vec2);
     const std::size_t indices =
         primitive.indices < 0 ? 0 : model.accessors[static_cast<std::size_t>(primitive.indices)].count;
     const bool flat = primitive.mode >= modeTriangles && primitive.attributes.count("NORMAL") == 0;
@@ -231,10 +174,9 @@ std::optional<MeshPrimitive> Meshes::read(int meshIndex, int primitiveIndex)
         return refuse("too few vertices for one element of mode " + std::to_string(primitive.mode));
     mesh.positions = readVectors(_model, primitive.attributes, "POSITION");
     mesh.normals = readVectors(_model, primitive.attributes, "NORMAL");
-    mesh.texCoords = readTexCoords(_model, primitive);
+    mesh.texCoords = readTextureCoordinates(_model, primitive);
     mesh.colors = readColors(_model, primitive);
-    for (const auto& target : primitive.targets)
-        mesh.targets.push_back({readVectors(_model, target, "POSITION"), readVectors(_model, target, "NORMAL")});
+    mesh.targets = readMorphTargets(_model, primitive);
     if (!mesh.normals && primitive.mode >= modeTriangles)
         takeApart(mesh, primitive.mode, std::move(indices));
     else

@@ -2,15 +2,16 @@
 #pragma once
 
 #include "gltf/DecodedBytes.h"
-#include "gltf/MorphTarget.h"
 #include "gltf/Report.h"
 
 #include <osg/Array>
 #include <osg/PrimitiveSet>
+#include <osgGpuAnimation/nodes/MorphTarget.h>
 #include <tiny_gltf.h>
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -34,7 +35,8 @@ struct MeshPrimitive
     /// Vertices that no triangle uses come last and are not drawn.
     std::vector<std::uint32_t> sourceVertex;
     /// The way back, see ImportedPrimitive::geometryVertex.
-    std::vector<std::uint32_t> geometryVertex;
+    std::shared_ptr<const std::vector<std::uint32_t>> geometryVertex;
+    bool isFlat = false; ///< the file has no normals: those here are the faces' own, at rest
 };
 
 /// Reads the primitives of a file's meshes, each once: all modes, with or without indices, flat normals where a

@@ -113,7 +113,6 @@ void SceneGraphBuilder::addMesh(std::size_t node)
         imported.influences = place.skin < 0 ? 0 : 4 * influenceSetCount(primitives[index]);
         imported.geometry = geometry;
         imported.geometryVertex = mesh.geometryVertex;
-        imported.morphTargets = mesh.targets;
         _primitives.push_back(std::move(imported));
         if (place.skin < 0 && place.joint < 0)
         {

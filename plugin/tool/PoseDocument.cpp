@@ -241,9 +241,9 @@ std::vector<glm::dvec3> PoseDocument::positions(std::size_t primitive, const Eva
             ofGeometry.emplace_back(placed.x(), placed.y(), placed.z());
         }
     }
-    if (source.geometryVertex.empty()) return ofGeometry;
+    if (!source.geometryVertex) return ofGeometry;
     std::vector<glm::dvec3> ofFile;
-    for (std::uint32_t vertex : source.geometryVertex)
+    for (std::uint32_t vertex : *source.geometryVertex)
         ofFile.push_back(vertex < ofGeometry.size() ? ofGeometry[vertex] : glm::dvec3(0.0));
     return ofFile;
 }

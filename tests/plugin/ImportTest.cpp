@@ -269,7 +269,9 @@ TEST(ImportTest, morphTargetsComeWithTheirPrimitive)
     EXPECT_TRUE(isSkinned(primitive)); // drawn from the palette, so that the weights reach it
     EXPECT_EQ(primitive.targets, 1u);
     ASSERT_EQ(primitive.morph, 0);
-    EXPECT_EQ((*primitive.morphTargets[0].positions)[2], osg::Vec3(0, 0, 3));
+    const auto& geometry = dynamic_cast<const SkinnedGeometry&>(*primitive.geometry);
+    ASSERT_EQ(geometry.morphTargets().size(), 1u);
+    EXPECT_EQ((*geometry.morphTargets()[0].positions)[2], osg::Vec3(0, 0, 3));
     EXPECT_EQ(model.set->morphs()[0].defaults, std::vector<float>{0.5f});
 }
 

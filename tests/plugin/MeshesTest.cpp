@@ -63,7 +63,7 @@ TEST(MeshesTest, allModesWithoutIndices)
         EXPECT_EQ(read.primitive->primitiveSet->getMode(), static_cast<GLenum>(mode.mode));
         EXPECT_EQ(read.primitive->primitiveSet->getNumIndices(), mode.whole);
         EXPECT_FALSE(read.primitive->primitiveSet->getDrawElements());
-        EXPECT_TRUE(read.primitive->geometryVertex.empty());
+        EXPECT_EQ(read.primitive->geometryVertex, nullptr);
     }
 }
 
@@ -117,10 +117,11 @@ TEST(MeshesTest, trianglesWithoutNormalsAreFlat)
     EXPECT_EQ(mesh.primitiveSet->getNumIndices(), 6u);
     ASSERT_EQ(mesh.positions->size(), 7u); // two triangles, and the vertex that none uses
     EXPECT_EQ(mesh.sourceVertex, (std::vector<std::uint32_t>{0, 1, 2, 0, 2, 3, 4}));
-    EXPECT_EQ(mesh.geometryVertex, (std::vector<std::uint32_t>{0, 1, 2, 5, 6}));
+    ASSERT_NE(mesh.geometryVertex, nullptr);
+    EXPECT_EQ(*mesh.geometryVertex, (std::vector<std::uint32_t>{0, 1, 2, 5, 6}));
     EXPECT_EQ(mesh.targets[0].positions->size(), 7u);
-    EXPECT_EQ((*mesh.positions)[mesh.geometryVertex[3]], osg::Vec3(0, 1, 0));
-    EXPECT_EQ((*mesh.positions)[mesh.geometryVertex[4]], osg::Vec3(2, 2, 0));
+    EXPECT_EQ((*mesh.positions)[(*mesh.geometryVertex)[3]], osg::Vec3(0, 1, 0));
+    EXPECT_EQ((*mesh.positions)[(*mesh.geometryVertex)[4]], osg::Vec3(2, 2, 0));
     for (const osg::Vec3& normal : *mesh.normals)
         EXPECT_EQ(normal, osg::Vec3(0, 0, 1));
 }
@@ -131,7 +132,7 @@ TEST(MeshesTest, alreadySeparateTrianglesStayAsTheyAre)
     file.mesh({{"POSITION", file.floats(TINYGLTF_TYPE_VEC3, {0, 0, 0, 0, 1, 0, 0, 0, 1})}});
     const ReadMesh read(file);
     ASSERT_TRUE(read.primitive);
-    EXPECT_TRUE(read.primitive->geometryVertex.empty());
+    EXPECT_EQ(read.primitive->geometryVertex, nullptr);
     EXPECT_EQ((*read.primitive->normals)[0], osg::Vec3(1, 0, 0));
 }
 

@@ -58,10 +58,10 @@ glm::dvec3 ModelVertices::morphed(const ImportedPrimitive& primitive, std::size_
     glm::dvec3 position = toGlm(base[vertex]);
     if (primitive.morph < 0) return position;
     const std::vector<double> amounts = weights(primitive.morph);
-    for (std::size_t target = 0; target < primitive.morphTargets.size(); ++target)
+    const auto& targets = dynamic_cast<const SkinnedGeometry&>(*primitive.geometry).morphTargets();
+    for (std::size_t target = 0; target < targets.size(); ++target)
     {
-        if (primitive.morphTargets[target].positions)
-            position += amounts[target] * toGlm((*primitive.morphTargets[target].positions)[vertex]);
+        if (targets[target].positions) position += amounts[target] * toGlm((*targets[target].positions)[vertex]);
     }
     return position;
 }
@@ -75,6 +75,9 @@ glm::dvec3 ModelVertices::placed(const ImportedPrimitive& primitive, std::size_t
         const osg::Vec3d result = osg::Vec3d(position.x, position.y, position.z) * primitive.toModel;
         return glm::dvec3(result.x(), result.y(), result.z());
     }
+    if (skinned->rigidEntry() >= 0)
+        return glm::dvec3(_palette[static_cast<std::size_t>(skinned->rigidEntry())].toColumns() *
+                          glm::dvec4(position, 1.0));
     glm::dvec3 sum(0.0);
     for (unsigned int set = 0; set < SkinnedGeometry::maxInfluenceSets && skinned->entries(set); ++set)
     {
@@ -93,8 +96,7 @@ std::vector<glm::dvec3> ModelVertices::positions(const ImportedPrimitive& primit
 {
     std::vector<glm::dvec3> result;
     for (std::size_t vertex = 0; vertex < primitive.vertexCount; ++vertex)
-        result.push_back(
-            placed(primitive, primitive.geometryVertex.empty() ? vertex : primitive.geometryVertex[vertex]));
+        result.push_back(placed(primitive, primitive.geometryVertex ? (*primitive.geometryVertex)[vertex] : vertex));
     return result;
 }
 

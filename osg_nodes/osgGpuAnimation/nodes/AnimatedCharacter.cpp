@@ -113,7 +113,9 @@ void AnimatedCharacter::update(double simulationTime)
 void AnimatedCharacter::computeClipBounds()
 {
     EntryBoxes entryBoxes(set().paletteSize());
-    SkinnedGeometryVisitor collect([&](SkinnedGeometry& geometry) { geometry.addToEntryBoxes(set(), entryBoxes); });
+    SkinnedGeometry::BindBoxes bindBoxes;
+    SkinnedGeometryVisitor collect([&](SkinnedGeometry& geometry)
+                                   { geometry.addToEntryBoxes(set(), entryBoxes, bindBoxes); });
     accept(collect);
 
     auto bounds = std::make_shared<std::vector<Box>>();

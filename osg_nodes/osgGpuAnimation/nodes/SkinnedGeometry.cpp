@@ -44,12 +44,15 @@ SkinnedGeometry::SkinnedGeometry()
 {
     setUseDisplayList(false);
     setUseVertexBufferObjects(true);
+    // Besides being fast: without an object of its own a geometry shares OSG's record of what each attribute points to,
+    // which goes by the addresses of arrays and misses it when one is deleted and another takes its place.
+    setUseVertexArrayObject(true);
 }
 
 SkinnedGeometry::SkinnedGeometry(const SkinnedGeometry& other, const osg::CopyOp& copyop)
-    : osg::Geometry(other, copyop), _influences(other._influences), _morphTargets(other._morphTargets),
-      _morphDeltas(other._morphDeltas), _morph(other._morph), _morphEntry(other._morphEntry),
-      _morphChannels(other._morphChannels)
+    : osg::Geometry(other, copyop), _influences(other._influences), _rigidEntry(other._rigidEntry),
+      _morphTargets(other._morphTargets), _morphDeltas(other._morphDeltas), _morph(other._morph),
+      _morphEntry(other._morphEntry), _morphChannels(other._morphChannels)
 {
 }
 
@@ -59,6 +62,7 @@ void SkinnedGeometry::setInfluences(unsigned int influenceSet, osg::Vec4usArray*
     setVertexAttribArray(entriesLocation(influenceSet), entries, osg::Array::BIND_PER_VERTEX);
     setVertexAttribArray(weightsLocation(influenceSet), weights, osg::Array::BIND_PER_VERTEX);
     _influences = 1;
+    _rigidEntry = -1;
     for (unsigned int i = 0; i < maxInfluenceSets; ++i)
     {
         const int used = this->weights(i) ? influencesUsed(*this->weights(i)) : 0;
@@ -79,12 +83,14 @@ const osg::Vec4Array* SkinnedGeometry::weights(unsigned int influenceSet) const
 
 void SkinnedGeometry::setRigidEntry(unsigned short entry)
 {
-    const unsigned int count = getVertexArray() ? getVertexArray()->getNumElements() : 0;
-    osg::ref_ptr<osg::Vec4usArray> entries = new osg::Vec4usArray(count);
-    std::fill(entries->begin(), entries->end(), osg::Vec4us(entry, 0, 0, 0));
-    osg::ref_ptr<osg::Vec4Array> weights = new osg::Vec4Array(count);
-    std::fill(weights->begin(), weights->end(), osg::Vec4(1, 0, 0, 0));
-    setInfluences(0, entries, weights);
+    for (unsigned int i = 0; i < maxInfluenceSets; ++i)
+    {
+        setVertexAttribArray(entriesLocation(i), nullptr);
+        setVertexAttribArray(weightsLocation(i), nullptr);
+    }
+    _rigidEntry = entry;
+    _influences = 1;
+    dirtyBound();
 }
 
 void SkinnedGeometry::setMorphTargets(const AnimationSet& set, std::size_t morph, std::vector<MorphTarget> targets)
@@ -99,10 +105,19 @@ void SkinnedGeometry::setMorphTargets(const AnimationSet& set, std::size_t morph
     dirtyBound();
 }
 
-void SkinnedGeometry::addToEntryBoxes(const AnimationSet& set, EntryBoxes& boxes) const
+void SkinnedGeometry::addToEntryBoxes(const AnimationSet& set, EntryBoxes& boxes, BindBoxes& bindBoxes) const
 {
     const auto* vertices = dynamic_cast<const osg::Vec3Array*>(getVertexArray());
     if (!vertices) return;
+    if (_rigidEntry >= 0 && _morph < 0)
+    {
+        const auto [known, isNew] = bindBoxes.try_emplace(vertices);
+        for (std::size_t vertex = 0; isNew && vertex < vertices->size(); ++vertex)
+            known->second.add(reachOfVertex((*vertices)[vertex], vertex, {}));
+        if (static_cast<std::size_t>(_rigidEntry) < boxes.size())
+            boxes[static_cast<std::size_t>(_rigidEntry)].add(known->second);
+        return;
+    }
     const std::vector<WeightRange> ranges =
         _morph < 0 ? std::vector<WeightRange>() : weightRanges(set, static_cast<std::size_t>(_morph));
     for (std::size_t vertex = 0; vertex < vertices->size(); ++vertex)
@@ -136,6 +151,7 @@ Box SkinnedGeometry::reachOfVertex(const osg::Vec3& position, std::size_t vertex
 template <typename Function>
 void SkinnedGeometry::forEachInfluence(std::size_t vertex, Function function) const
 {
+    if (_rigidEntry >= 0) function(static_cast<std::size_t>(_rigidEntry), 1.0f);
     for (unsigned int influenceSet = 0; influenceSet < maxInfluenceSets; ++influenceSet)
     {
         const osg::Vec4usArray* vertexEntries = entries(influenceSet);
@@ -216,6 +232,11 @@ void SkinnedGeometry::bindPalette(osg::State& state, const PalettePlace& place) 
     gl->glUniform1i(program->getUniformLocation(strideName), place.stride);
     gl->glUniform1i(program->getUniformLocation(instanceName), place.instance);
     gl->glUniform1i(program->getUniformLocation(influencesName), _influences);
+    if (_rigidEntry >= 0)
+    {
+        gl->glVertexAttrib4f(POSE_ENTRIES_0_LOCATION, static_cast<GLfloat>(_rigidEntry), 0, 0, 0);
+        gl->glVertexAttrib4f(POSE_WEIGHTS_0_LOCATION, 1, 0, 0, 0);
+    }
     bindMorphTargets(state, *program);
 }
 

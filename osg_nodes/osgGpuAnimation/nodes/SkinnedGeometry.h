@@ -10,6 +10,7 @@
 #include <osg/TextureBuffer>
 
 #include <array>
+#include <map>
 #include <memory>
 #include <vector>
 
@@ -48,6 +49,7 @@ public:
 
     /// Every vertex moves with one entry wholly: what a rigid mesh on a joint needs.
     void setRigidEntry(unsigned short entry);
+    int rigidEntry() const { return _rigidEntry; } ///< -1: influences are per vertex
 
     /// Morph targets, in the order of their weights. morph: which of the set's morph weights moves them. To be called
     /// when the vertices are in; targets' arrays are as long as theirs. No targets: none any more.
@@ -55,8 +57,10 @@ public:
     const std::vector<MorphTarget>& morphTargets() const { return _morphTargets; }
     int morph() const { return _morph; } ///< -1: none
 
+    /// The boxes of vertex arrays in bind pose, so that an array which many meshes share is looked through once.
+    using BindBoxes = std::map<const osg::Array*, Box>;
     /// Grows the boxes (one an entry) by the vertices that the entries move, wherever the clips' weights morph them.
-    void addToEntryBoxes(const AnimationSet& set, EntryBoxes& boxes) const;
+    void addToEntryBoxes(const AnimationSet& set, EntryBoxes& boxes, BindBoxes& bindBoxes) const;
 
     /// The CPU twin of skin.glsl: where the palette (of one instance: the set's paletteSize() entries) takes each
     /// vertex, in the character's own space; computed in double. outPositions: one a vertex.
@@ -79,7 +83,8 @@ private:
     Box reachOfVertex(const osg::Vec3& position, std::size_t vertex, const std::vector<WeightRange>& ranges) const;
     glm::dvec3 morphed(const osg::Vec3& position, std::size_t vertex, const std::vector<AffineMatrix>& palette) const;
 
-    int _influences = 1; ///< of a vertex, at most
+    int _influences = 1;  ///< of a vertex, at most
+    int _rigidEntry = -1; ///< the entry that moves all vertices wholly; -1: influences are per vertex
     std::vector<MorphTarget> _morphTargets;
     osg::ref_ptr<osg::TextureBuffer> _morphDeltas;
     int _morph = -1;

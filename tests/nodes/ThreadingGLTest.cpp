@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+#include "support/TestCharacter.h"
+#include "support/ViewerGLTest.h"
+
+#include <osg/Group>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+/// The same frames under every threading model of osgViewer: what is drawn is the pose of the frame's own time.
+class ThreadingGLTest : public ViewerGLTest, public ::testing::WithParamInterface<osgViewer::ViewerBase::ThreadingModel>
+{
+protected:
+    static osg::ref_ptr<osg::Group> scene()
+    {
+        osg::ref_ptr<osg::Group> group = new osg::Group;
+        for (int i = 0; i < 5; ++i)
+        {
+            osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
+            character->controller().setSpeed(0.2 * i);
+            character->setMatrix(osg::Matrix::translate(-3.5, 0, -3.5 + 1.4 * i));
+            group->addChild(character);
+        }
+        return group;
+    }
+
+    /// Draws frames at times 0, 0.1 … and gives the last one's picture.
+    osg::ref_ptr<osg::Image> drawn(osgViewer::ViewerBase::ThreadingModel model)
+    {
+        context().releaseContext();
+        viewer().setThreadingModel(model);
+        viewer().setSceneData(scene());
+        viewer().realize();
+        for (int frame = 0; frame <= 30; ++frame)
+            viewer().frame(0.1 * frame);
+        viewer().stopThreading();
+        context().makeCurrent();
+        return picture().copy();
+    }
+};
+
+TEST_P(ThreadingGLTest, drawsTheFramesOwnPoses)
+{
+    const osg::ref_ptr<osg::Image> expected = drawn(osgViewer::ViewerBase::SingleThreaded);
+    EXPECT_GT(picture().pixelsDrawn(), 200);
+    const osg::ref_ptr<osg::Image> found = drawn(GetParam());
+    EXPECT_EQ(Picture::pixelsDifferent(*expected, *found), 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, ThreadingGLTest,
+                         ::testing::Values(osgViewer::ViewerBase::SingleThreaded,
+                                           osgViewer::ViewerBase::CullDrawThreadPerContext,
+                                           osgViewer::ViewerBase::DrawThreadPerContext,
+                                           osgViewer::ViewerBase::CullThreadPerCameraDrawThreadPerContext));
+
+} // namespace
+
+} // namespace osgGpuAnimation

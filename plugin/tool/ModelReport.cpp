@@ -30,15 +30,17 @@ public:
         countTextures(node.getStateSet());
         traverse(node);
     }
-    void apply(osg::Geometry& geometry) override
+    void apply(osg::Drawable& drawable) override
     {
+        countTextures(drawable.getStateSet());
+        const auto* geometry = dynamic_cast<const osg::Geometry*>(&drawable);
+        if (!geometry) return;
         osg::Geometry::ArrayList arrays;
-        geometry.getArrayList(arrays);
+        geometry->getArrayList(arrays);
         for (const osg::ref_ptr<osg::Array>& array : arrays)
             if (_seen.insert(array.get()).second) meshBytes += array->getTotalDataSize();
-        for (const osg::ref_ptr<osg::PrimitiveSet>& primitives : geometry.getPrimitiveSetList())
+        for (const osg::ref_ptr<osg::PrimitiveSet>& primitives : geometry->getPrimitiveSetList())
             if (_seen.insert(primitives.get()).second) meshBytes += primitives->getTotalDataSize();
-        countTextures(geometry.getStateSet());
     }
 
     std::size_t meshBytes = 0;

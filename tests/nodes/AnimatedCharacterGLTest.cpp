@@ -74,6 +74,21 @@ TEST_F(AnimatedCharacterGLTest, survivesTheOptimizerAsOsgviewerRunsIt)
     EXPECT_TRUE(showsSquareAt(-0.5, -1));
 }
 
+TEST_F(AnimatedCharacterGLTest, theOptimizerMergesNoMeshesOfDifferentJoints)
+{
+    osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
+    osg::ref_ptr<SkinnedGeometry> aside = makeTestSquare(2);
+    aside->setStateSet(character->getChild(0)->getStateSet());
+    character->addChild(aside);
+    character->computeClipBounds();
+    osg::ref_ptr<osg::Group> root = new osg::Group;
+    root->addChild(character);
+    osgUtil::Optimizer().optimize(root, osgUtil::Optimizer::ALL_OPTIMIZATIONS);
+    viewer().setSceneData(root);
+    drawAt(0);
+    EXPECT_EQ(picture().pixelsDrawn(), 2 * pixelsPerUnit * pixelsPerUnit);
+}
+
 TEST_F(AnimatedCharacterGLTest, aCloneIsIndependent)
 {
     osg::ref_ptr<AnimatedCharacter> one = makeTestCharacter();

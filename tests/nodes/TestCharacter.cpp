@@ -23,7 +23,9 @@ Clip makeClip(const Skeleton& skeleton, const char* name, Channel::Path path, st
     return builder.build(name);
 }
 
-osg::ref_ptr<SkinnedGeometry> makeSquare(int entry)
+} // namespace
+
+osg::ref_ptr<SkinnedGeometry> makeTestSquare(int joint)
 {
     osg::ref_ptr<SkinnedGeometry> square = new SkinnedGeometry;
     osg::ref_ptr<osg::Vec3Array> positions = new osg::Vec3Array;
@@ -37,19 +39,23 @@ osg::ref_ptr<SkinnedGeometry> makeSquare(int entry)
     std::fill(colors->begin(), colors->end(), osg::Vec4(1, 1, 1, 1));
     square->setColorArray(colors);
     square->addPrimitiveSet(new osg::DrawArrays(GL_TRIANGLE_FAN, 0, 4));
-    square->setRigidEntry(static_cast<unsigned short>(entry));
+    square->setRigidEntry(static_cast<unsigned short>(testCharacterSet()->entryOfRigidJoint(joint)));
     applyCharacterProgram(*square->getOrCreateStateSet());
     square->getOrCreateStateSet()->getUniform("unlit")->set(true);
     return square;
 }
 
-} // namespace
-
 std::shared_ptr<const AnimationSet> testCharacterSet()
 {
     static const std::shared_ptr<const AnimationSet> set = []
     {
-        AnimationParts parts{Skeleton::create({{"base", -1, {}, 0}, {"tip", 0, {}, 1}}).value(), {}, {1}, {}, {}};
+        JointTransform aside;
+        aside.translation.x = 2.0f;
+        AnimationParts parts{Skeleton::create({{"base", -1, {}, 0}, {"tip", 0, {}, 1}, {"side", 0, aside, 2}}).value(),
+                             {},
+                             {1, 2},
+                             {},
+                             {}};
         const double half = std::sqrt(0.5);
         parts.clips.push_back(
             makeClip(parts.skeleton, "shift", Channel::Path::Translation, {0, 2}, {0, 0, 0, 2, 0, 0}));
@@ -63,7 +69,7 @@ std::shared_ptr<const AnimationSet> testCharacterSet()
 osg::ref_ptr<AnimatedCharacter> makeTestCharacter()
 {
     osg::ref_ptr<AnimatedCharacter> character = new AnimatedCharacter(testCharacterSet());
-    character->addChild(makeSquare(testCharacterSet()->entryOfRigidJoint(1)));
+    character->addChild(makeTestSquare(1));
     character->computeClipBounds();
     const Result<bool> playing = character->controller().play("shift");
     assert(playing && "the clip is there");

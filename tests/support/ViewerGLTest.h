@@ -16,8 +16,9 @@ class ViewerGLTest : public GLTest
 protected:
     void TearDown() override
     {
-        _viewer = nullptr;
+        // As with a window: closing the context has the viewer's cameras release what their scenes have in it.
         GLTest::TearDown();
+        _viewer = nullptr;
     }
 
     osgViewer::Viewer& viewer()

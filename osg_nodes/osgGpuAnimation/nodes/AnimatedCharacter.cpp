@@ -33,9 +33,9 @@ public:
         : osg::NodeVisitor(osg::NodeVisitor::TRAVERSE_ALL_CHILDREN), _function(function)
     {
     }
-    void apply(osg::Geometry& geometry) override
+    void apply(osg::Drawable& drawable) override
     {
-        if (auto* skinned = dynamic_cast<SkinnedGeometry*>(&geometry)) _function(*skinned);
+        if (auto* skinned = dynamic_cast<SkinnedGeometry*>(&drawable)) _function(*skinned);
     }
 
 private:

@@ -4,8 +4,10 @@
 #include <layout.glsl>
 #include <ShaderSources.h>
 
+#include <osg/observer_ptr>
 #include <osg/Texture2D>
 
+#include <mutex>
 #include <string>
 
 namespace osgGpuAnimation
@@ -23,9 +25,31 @@ osg::Shader* makeShader(osg::Shader::Type type, std::initializer_list<const char
     return new osg::Shader(type, source);
 }
 
-osg::Program* makeProgram()
+/// What all users share at a time, made by the first. It lives as long as some scene has it: OSG releases the GL
+/// objects of what is in scenes when a context is closed, and an object that outlives them would keep stale ones.
+template <typename Object>
+class Shared
 {
-    auto* program = new osg::Program;
+public:
+    template <typename Make>
+    osg::ref_ptr<Object> get(Make make)
+    {
+        const std::lock_guard<std::mutex> lock(_mutex);
+        osg::ref_ptr<Object> object;
+        if (_object.lock(object)) return object;
+        object = make();
+        _object = object.get();
+        return object;
+    }
+
+private:
+    std::mutex _mutex;
+    osg::observer_ptr<Object> _object;
+};
+
+osg::ref_ptr<osg::Program> makeProgram()
+{
+    osg::ref_ptr<osg::Program> program = new osg::Program;
     program->setName("osgGpuAnimation character");
     program->addShader(skinShader());
     program->addShader(makeShader(osg::Shader::VERTEX, {shaders::character_vert}));
@@ -34,29 +58,34 @@ osg::Program* makeProgram()
     return program;
 }
 
-osg::Texture2D* whiteTexture()
+osg::ref_ptr<osg::Texture2D> makeWhiteTexture()
 {
-    static const osg::ref_ptr<osg::Texture2D> texture = []
-    {
-        osg::ref_ptr<osg::Image> image = new osg::Image;
-        image->allocateImage(1, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE);
-        image->setColor(osg::Vec4(1, 1, 1, 1), 0, 0);
-        osg::ref_ptr<osg::Texture2D> white = new osg::Texture2D(image);
-        // OSG's default, GL_CLAMP, mixes in the black border.
-        white->setWrap(osg::Texture::WRAP_S, osg::Texture::REPEAT);
-        white->setWrap(osg::Texture::WRAP_T, osg::Texture::REPEAT);
-        return white;
-    }();
-    return texture.get();
+    osg::ref_ptr<osg::Image> image = new osg::Image;
+    image->allocateImage(1, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE);
+    image->setColor(osg::Vec4(1, 1, 1, 1), 0, 0);
+    osg::ref_ptr<osg::Texture2D> white = new osg::Texture2D(image);
+    // OSG's default, GL_CLAMP, mixes in the black border.
+    white->setWrap(osg::Texture::WRAP_S, osg::Texture::REPEAT);
+    white->setWrap(osg::Texture::WRAP_T, osg::Texture::REPEAT);
+    return white;
+}
+
+osg::ref_ptr<osg::Texture2D> whiteTexture()
+{
+    static Shared<osg::Texture2D> shared;
+    return shared.get(makeWhiteTexture);
 }
 
 } // namespace
 
-osg::Shader* skinShader()
+osg::ref_ptr<osg::Shader> skinShader()
 {
-    static const osg::ref_ptr<osg::Shader> shader =
-        makeShader(osg::Shader::VERTEX, {shaders::layout_glsl, shaders::skin_glsl});
-    return shader.get();
+    static Shared<osg::Shader> shared;
+    return shared.get(
+        [] {
+            return osg::ref_ptr<osg::Shader>(
+                makeShader(osg::Shader::VERTEX, {shaders::layout_glsl, shaders::skin_glsl}));
+        });
 }
 
 void bindSkinAttributes(osg::Program& program)
@@ -67,10 +96,10 @@ void bindSkinAttributes(osg::Program& program)
     program.addBindAttribLocation("poseWeights1", POSE_WEIGHTS_1_LOCATION);
 }
 
-osg::Program* characterProgram()
+osg::ref_ptr<osg::Program> characterProgram()
 {
-    static const osg::ref_ptr<osg::Program> program = makeProgram();
-    return program.get();
+    static Shared<osg::Program> shared;
+    return shared.get(makeProgram);
 }
 
 void applyCharacterProgram(osg::StateSet& stateSet)

@@ -7,12 +7,12 @@
 namespace osgGpuAnimation
 {
 
-/// The program that draws SkinnedGeometry: skin.glsl, character.vert and character.frag. One object for the process.
+/// The program that draws SkinnedGeometry: skin.glsl, character.vert and character.frag. All users share one object.
 ///
 /// It lights by OSG's light 0 as the fixed pipeline does, with the osg::Material of the state (diffuse times vertex
 /// colour is the base colour), and always samples a base colour texture on unit 0.
 /// Uniforms: `float alphaCutoff` (fragments of less alpha are dropped; default 0), `bool unlit` (default false).
-osg::Program* characterProgram();
+osg::ref_ptr<osg::Program> characterProgram();
 
 /// Puts the program, its uniforms' defaults and a white texture on unit 0 (where there is none) into the state.
 void applyCharacterProgram(osg::StateSet& stateSet);
@@ -22,7 +22,7 @@ void applyCharacterProgram(osg::StateSet& stateSet);
 ///     void osgGpuAnimationSkin(inout vec4 vertex, inout vec3 normal);
 ///
 /// Such a program needs bindSkinAttributes() too.
-osg::Shader* skinShader();
+osg::ref_ptr<osg::Shader> skinShader();
 void bindSkinAttributes(osg::Program& program);
 
 } // namespace osgGpuAnimation

@@ -27,22 +27,18 @@ bool isSame(const PoseInstruction& a, const PoseInstruction& b)
 osg::ref_ptr<PoseFrame> PoseFrame::forContext(unsigned int contextId, unsigned int frameNumber)
 {
     static std::mutex mutex;
-    static std::unordered_map<unsigned int, std::vector<osg::ref_ptr<PoseFrame>>> framesOfContext;
+    static std::unordered_map<unsigned int, std::vector<osg::ref_ptr<PoseFrame>>> framesOfContext; // the latest last
     const std::lock_guard<std::mutex> lock(mutex);
     std::vector<osg::ref_ptr<PoseFrame>>& frames = framesOfContext[contextId];
-    osg::ref_ptr<PoseFrame> unused;
-    for (const osg::ref_ptr<PoseFrame>& frame : frames)
-    {
-        if (frame->frameNumber() == frameNumber) return frame;
-        if (frame->referenceCount() == 1) unused = frame;
-    }
-    if (!unused)
-    {
-        unused = new PoseFrame;
-        frames.push_back(unused);
-    }
-    unused->reset(frameNumber);
-    return unused;
+    // Of frames before the latest, the palettes have been written over.
+    if (!frames.empty() && frames.back()->frameNumber() == frameNumber) return frames.back();
+    const auto unused = std::find_if(frames.begin(), frames.end(),
+                                     [](const osg::ref_ptr<PoseFrame>& frame) { return frame->referenceCount() == 1; });
+    osg::ref_ptr<PoseFrame> next = unused == frames.end() ? new PoseFrame : unused->get();
+    if (unused != frames.end()) frames.erase(unused);
+    frames.push_back(next);
+    next->reset(frameNumber);
+    return next;
 }
 
 void PoseFrame::reset(unsigned int frameNumber)
@@ -99,7 +95,9 @@ void PoseFrame::evaluate(osg::RenderInfo& renderInfo)
     PosePipeline* pipeline = PosePipeline::of(state);
     for (const std::unique_ptr<Batch>& batch : _batches)
     {
-        if (batch->isEvaluated) continue;
+        // A context made anew under an old one's number has none of its palettes.
+        if (batch->isEvaluated && pipeline && pipeline->place(batch->content.set(), batch->slot, 0).texture != 0)
+            continue;
         batch->isEvaluated = true;
         if (pipeline) pipeline->evaluate(state, batch->content, batch->slot);
     }

@@ -7,6 +7,7 @@
 
 #include <layout.glsl>
 
+#include <osg/NodeVisitor>
 #include <osg/State>
 
 #include <algorithm>
@@ -44,6 +45,9 @@ SkinnedGeometry::SkinnedGeometry()
 {
     setUseDisplayList(false);
     setUseVertexBufferObjects(true);
+    // Besides being fast: without an object of its own a geometry shares OSG's record of what each attribute points to,
+    // which goes by the addresses of arrays and misses it when one is deleted and another takes its place.
+    setUseVertexArrayObject(true);
 }
 
 SkinnedGeometry::SkinnedGeometry(const SkinnedGeometry& other, const osg::CopyOp& copyop)
@@ -51,6 +55,14 @@ SkinnedGeometry::SkinnedGeometry(const SkinnedGeometry& other, const osg::CopyOp
       _morphTargets(other._morphTargets), _morphDeltas(other._morphDeltas), _morph(other._morph),
       _morphEntry(other._morphEntry), _morphChannels(other._morphChannels)
 {
+}
+
+void SkinnedGeometry::accept(osg::NodeVisitor& visitor)
+{
+    if (!visitor.validNodeMask(*this)) return;
+    visitor.pushOntoNodePath(this);
+    visitor.apply(static_cast<osg::Drawable&>(*this));
+    visitor.popFromNodePath();
 }
 
 void SkinnedGeometry::setInfluences(unsigned int influenceSet, osg::Vec4usArray* entries, osg::Vec4Array* weights)

@@ -36,9 +36,14 @@ class SkinnedGeometry : public osg::Geometry
 public:
     SkinnedGeometry();
     SkinnedGeometry(const SkinnedGeometry& other, const osg::CopyOp& copyop = osg::CopyOp::SHALLOW_COPY);
-    META_Node(osgGpuAnimation, SkinnedGeometry)
+    META_Object(osgGpuAnimation, SkinnedGeometry)
+        /// To visitors it is a Drawable, not a Geometry: what merges geometries, reorders or transforms their vertices
+        /// (the Optimizer) would part them from their palette entries and morph targets.
+        void accept(osg::NodeVisitor& visitor) override;
+    osg::Geometry* asGeometry() override { return nullptr; }
+    const osg::Geometry* asGeometry() const override { return nullptr; }
 
-        static constexpr unsigned int maxInfluenceSets = 2;
+    static constexpr unsigned int maxInfluenceSets = 2;
 
     /// Influences of all vertices, four to a set: set 0 is needed, set 1 optional.
     /// entries: palette entries (AnimationSet::entryOfSkin, entryOfRigidJoint), each below the set's palette size.

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace osgGpuAnimation::benchmark
+{
+
+/// How much is measured.
+struct Effort
+{
+    int rounds = 9;                ///< of cheap things
+    int frameRounds = 5;           ///< of whole frames
+    std::size_t barCount = 1000;   ///< characters the bars speak of
+    std::size_t frameCount = 1000; ///< characters of the frames' bars
+    std::vector<std::size_t> poseCounts{1, 10, 100, 1000, 10000};
+    std::vector<std::size_t> frameCounts{1, 10, 100, 1000};
+    std::size_t largestReference = 1000; ///< osgAnimation's characters, at most
+
+    static Effort quick() { return {5, 3, 1000, 100, {10, 100, 1000, 10000}, {10, 100}, 1000}; }
+};
+
+} // namespace osgGpuAnimation::benchmark

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: MIT
+#include "Measurements.h"
+#include "Scenes.h"
+#include "StagedViewer.h"
+
+#include <algorithm>
+#include <iostream>
+#include <malloc.h>
+#include <map>
+
+namespace osgGpuAnimation::benchmark
+{
+
+namespace
+{
+
+constexpr const char* framePlot = "frame-over-n.svg";
+constexpr double frameTime = 1.0 / 60.0;
+
+/// A scene in a viewer of its own, and what its frames took.
+struct Contestant
+{
+    std::shared_ptr<StagedViewer> viewer;
+    double time = 0.0;
+    Series whole, updateAndCull, draw;
+
+    FrameCost frame() { return viewer->frame(time += frameTime); }
+    void measure()
+    {
+        const FrameCost cost = frame();
+        whole.push_back(cost.whole());
+        updateAndCull.push_back(cost.updateAndCull());
+        draw.push_back(cost.draw);
+    }
+};
+
+Result<Contestant> contestant(osg::Node* scene, const osg::BoundingSphere& sight)
+{
+    Result<std::shared_ptr<StagedViewer>> viewer = StagedViewer::create(scene, sight);
+    if (!viewer) return viewer.error();
+    Contestant made;
+    made.viewer = std::move(viewer.value());
+    return made;
+}
+
+/// Frames until programs are made, buffers are there and osgAnimation has set itself up; then rounds by turns.
+void race(std::vector<Contestant>& contestants, int rounds)
+{
+    for (Contestant& each : contestants)
+        for (int frame = 0; frame < 3; ++frame)
+            each.frame();
+    for (int round = 0; round < rounds; ++round)
+        for (Contestant& each : contestants)
+            each.measure();
+}
+
+std::string check(std::vector<Contestant>& contestants)
+{
+    for (std::size_t i = 0; i < contestants.size(); ++i)
+    {
+        const std::string errors = contestants[i].viewer->takeErrors();
+        if (!errors.empty()) return "GL reports " + errors + "in scene " + std::to_string(i);
+        if (contestants[i].viewer->pixelsDrawn() < 4) return "scene " + std::to_string(i) + " is empty";
+    }
+    return "";
+}
+
+Row named(Row row, const Subject& subject, std::size_t count, const char* what, const char* unit, const char* other)
+{
+    row.subject = subject.name;
+    row.count = count;
+    row.what = what;
+    row.unit = unit;
+    row.otherName = other;
+    return row;
+}
+
+double frameBar(const Subject& subject)
+{
+    const std::map<std::string, double> bars{{"Fox", 1.5}, {"CesiumMan", 6.0}, {"Knight", 3.0}};
+    const auto known = bars.find(subject.name);
+    return known == bars.end() ? 0.0 : known->second;
+}
+
+void addFrameRows(const Subject& subject, std::size_t count, const std::vector<Contestant>& contestants,
+                  const Effort& effort, Report& report)
+{
+    const double characters = static_cast<double>(count);
+    const double milliseconds = 1e3 / characters;
+    const char* names[] = {"", ", osgAnimation software", ", osgAnimation hardware"};
+    for (std::size_t i = 0; i < contestants.size(); ++i)
+        report.addPoint(framePlot, subject.name + names[i], characters,
+                        cpuOf(contestants[i].whole).median * milliseconds);
+    if (count != effort.frameCount) return;
+    const bool isHardwareBetter = cpuOf(contestants[2].whole).median < cpuOf(contestants[1].whole).median;
+    const Contestant& better = contestants[isHardwareBetter ? 2 : 1];
+    const char* name = isHardwareBetter ? "osgAnimation hardware" : "osgAnimation software";
+    Row row = named(compared(contestants[0].whole, better.whole, milliseconds, true), subject, count,
+                    "whole frame, 64x64", "ms a character", name);
+    if (frameBar(subject) > 0.0)
+    {
+        row.bar = frameBar(subject) == 1.5 ? "≥ 1.5" : frameBar(subject) == 6.0 ? "≥ 6" : "≥ 3";
+        row.isMet = row.ratio.median >= frameBar(subject);
+    }
+    report.add(row);
+    row = named(compared(contestants[0].updateAndCull, better.updateAndCull, 1e6 / characters, true), subject, count,
+                "update + cull, separate nodes", "µs a character", name);
+    row.bar = "ours ≤ 5 µs";
+    row.isMet = row.ours.median <= 5.0;
+    report.add(row);
+}
+
+/// Bytes taken from the heap; with a GL in software that is the GPU's memory too.
+double bytesInUse()
+{
+    const struct mallinfo2 info = mallinfo2();
+    return static_cast<double>(info.uordblks + info.hblkhd);
+}
+
+/// What a scene's characters take and how long its first frame does.
+struct Start
+{
+    double bytes = 0.0;
+    Spent spent;
+    int pixels = 0; ///< that show something
+};
+
+template <typename MakeScene>
+Result<Start> start(MakeScene makeScene, const osg::BoundingSphere& sight)
+{
+    osg::ref_ptr<osg::Group> root = new osg::Group;
+    Result<Contestant> made = contestant(root, sight);
+    if (!made) return made.error();
+    Contestant viewing = made.value();
+    viewing.frame();
+    Start start;
+    const double before = bytesInUse();
+    const Stopwatch stopwatch;
+    auto scene = makeScene();
+    root->addChild(scene.root);
+    viewing.frame();
+    start.spent = stopwatch.elapsed();
+    viewing.frame();
+    viewing.frame();
+    start.bytes = bytesInUse() - before;
+    if (const std::string errors = viewing.viewer->takeErrors(); !errors.empty()) return Error{errors};
+    start.pixels = viewing.viewer->pixelsDrawn();
+    return start;
+}
+
+} // namespace
+
+Result<bool> measureFrames(const Subject& subject, const Effort& effort, Report& report)
+{
+    report.describePlot(framePlot, "Whole frame at 64x64: CPU time a character", "characters", "ms a character");
+    ReferenceKit kit(subject);
+    for (const std::size_t count : effort.frameCounts)
+    {
+        std::cerr << subject.name << ": frames of " << count << std::endl;
+        CharacterScene ours(subject, count);
+        ReferenceScene software(subject, kit, ReferenceMode::Software, count);
+        ReferenceScene hardware(subject, kit, ReferenceMode::Hardware, count);
+        std::vector<Contestant> contestants;
+        for (osg::Node* scene : {ours.root.get(), software.root.get(), hardware.root.get()})
+        {
+            Result<Contestant> made = contestant(scene, ours.root->getBound());
+            if (!made) return made.error();
+            contestants.push_back(std::move(made.value()));
+        }
+        race(contestants, effort.frameRounds);
+        if (const std::string wrong = check(contestants); !wrong.empty()) return Error{wrong};
+        contestants[0].viewer->makeCurrent();
+        if (const std::string wrong = ours.check(contestants[0].viewer->state()); !wrong.empty()) return Error{wrong};
+        addFrameRows(subject, count, contestants, effort, report);
+    }
+    return true;
+}
+
+Result<bool> measureSkinning(const Subject& subject, const Effort& effort, Report& report)
+{
+    std::cerr << subject.name << ": skinning" << std::endl;
+    const std::size_t count = effort.frameCount;
+    CharacterScene ours(subject, count);
+    ours.pause(); // palettes stay, so that nothing but the draws is left
+    const osg::ref_ptr<osg::Group> plain = makeUnskinnedScene(subject, count);
+    std::vector<Contestant> contestants;
+    for (osg::Node* scene : {static_cast<osg::Node*>(ours.root.get()), static_cast<osg::Node*>(plain.get())})
+    {
+        Result<Contestant> made = contestant(scene, ours.root->getBound());
+        if (!made) return made.error();
+        contestants.push_back(std::move(made.value()));
+    }
+    race(contestants, effort.rounds);
+    if (const std::string wrong = check(contestants); !wrong.empty()) return Error{wrong};
+    Row row = named(compared(contestants[0].draw, contestants[1].draw, 1e6 / static_cast<double>(count), false),
+                    subject, count, "skinned draw", "µs a character", "the same without skinning");
+    row.bar = "≤ 1.6";
+    row.isMet = row.ratio.median <= 1.6;
+    report.add(row);
+    return true;
+}
+
+Result<bool> measureStart(const Subject& subject, const Effort& effort, Report& report)
+{
+    std::cerr << subject.name << ": first frame and memory" << std::endl;
+    constexpr std::size_t count = 1000;
+    const osg::BoundingSphere sight = CharacterScene(subject, count).root->getBound();
+    std::vector<double> seconds, bytes;
+    for (int round = 0; round < std::min(effort.frameRounds, 3); ++round)
+    {
+        const Result<Start> many = start([&] { return CharacterScene(subject, count); }, sight);
+        if (!many) return many.error();
+        const Result<Start> one = start([&] { return CharacterScene(subject, 1); }, sight);
+        if (!one) return one.error();
+        if (many.value().pixels < 4) return Error{"an empty picture"};
+        seconds.push_back(many.value().spent.cpu);
+        bytes.push_back((many.value().bytes - one.value().bytes) / (1024.0 * (count - 1)));
+    }
+    Row row = named({}, subject, count, "first frame, nodes made and drawn", "s", "");
+    row.ours = figureOf(seconds);
+    row.bar = "≤ 0.3 s";
+    row.isMet = row.ours.median <= 0.3;
+    report.add(row);
+    row = named({}, subject, count, "memory, CPU and GPU", "KiB a character", "");
+    row.ours = figureOf(bytes);
+    const double limit = 4.0 + 48.0 * static_cast<double>(subject.set().paletteSize()) / 1024.0;
+    row.bar = "≤ 4 KiB + 48 B an entry";
+    row.isMet = row.ours.median <= limit;
+    report.add(row);
+    return true;
+}
+
+} // namespace osgGpuAnimation::benchmark

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+#include "PoseCrowd.h"
+
+#include "StagedViewer.h"
+#include "Subject.h"
+
+#include <osgGpuAnimation/animation/Pose.h>
+#include <osgGpuAnimation/gpu/FeedbackScope.h>
+
+#include <cmath>
+
+namespace osgGpuAnimation::benchmark
+{
+
+namespace
+{
+
+constexpr const char* floorShader = R"(
+out vec4 row0;
+out vec4 row1;
+out vec4 row2;
+void main()
+{
+    row0 = row1 = row2 = vec4(float(gl_VertexID));
+}
+)";
+
+} // namespace
+
+PoseCrowd::PoseCrowd(std::shared_ptr<const AnimationSet> set, std::size_t clip, std::size_t count,
+                     osg::GraphicsContext& context)
+    : _set(std::move(set)), _controllers(count, AnimationController(_set)), _batch(_set), _context(&context)
+{
+    static std::size_t slots = 0;
+    _slot = slots++;
+    for (std::size_t i = 0; i < count; ++i)
+    {
+        static_cast<void>(_controllers[i].play(clip));
+        _controllers[i].seek(phaseOf(i, _controllers[i].duration()));
+    }
+}
+
+PoseCrowd::~PoseCrowd() = default;
+
+Spent PoseCrowd::step(double seconds, PosePipeline::Form form)
+{
+    osg::State& state = *_context->getState();
+    PosePipeline* pipeline = PosePipeline::of(state);
+    if (!pipeline) return {};
+    pipeline->setForm(form);
+    glFinish();
+    const Stopwatch stopwatch;
+    _batch.clear();
+    for (AnimationController& controller : _controllers)
+        _batch.add(controller.advance(seconds));
+    pipeline->evaluate(state, _batch, _slot);
+    glFinish();
+    return stopwatch.elapsed();
+}
+
+std::string PoseCrowd::check()
+{
+    osg::State& state = *_context->getState();
+    PosePipeline* pipeline = PosePipeline::of(state);
+    if (!pipeline) return "there is no pose pipeline";
+    for (const std::size_t instance : {std::size_t(0), count() / 2, count() - 1})
+    {
+        const std::string wrong = difference(*_set, _controllers[instance].instruction(),
+                                             pipeline->readPalette(state, *_set, _slot, instance));
+        if (!wrong.empty()) return "instance " + std::to_string(instance) + ": " + wrong;
+    }
+    return takeGlErrors();
+}
+
+FeedbackFloor::FeedbackFloor(std::size_t matrices, osg::GraphicsContext& context)
+    : _matrices(matrices), _context(&context),
+      _pass(*context.getState()->get<osg::GLExtensions>(), "floor", {floorShader}, {"row0", "row1", "row2"}),
+      _out(*context.getState()->get<osg::GLExtensions>(), GL_RGBA32F_ARB)
+{
+    context.getState()->get<osg::GLExtensions>()->glGenVertexArrays(1, &_vertexArray);
+    _out.reserve(matrices * sizeof(AffineMatrix));
+}
+
+FeedbackFloor::~FeedbackFloor()
+{
+    _pass.release();
+    _out.release();
+    _context->getState()->get<osg::GLExtensions>()->glDeleteVertexArrays(1, &_vertexArray);
+}
+
+Spent FeedbackFloor::step()
+{
+    glFinish();
+    const Stopwatch stopwatch;
+    {
+        const FeedbackScope scope(*_context->getState(), _vertexArray, 0);
+        _pass.use();
+        _pass.run(0, _matrices, _out.buffer(), 0);
+    }
+    glFinish();
+    return stopwatch.elapsed();
+}
+
+std::string difference(const AnimationSet& set, const PoseInstruction& instruction,
+                       const std::vector<AffineMatrix>& palette)
+{
+    std::vector<AffineMatrix> expected;
+    Pose::evaluate(set, instruction, AffineMatrix(), expected);
+    if (palette.size() != expected.size()) return "there is no palette";
+    float size = 1.0f;
+    float largest = 0.0f;
+    for (std::size_t entry = 0; entry < expected.size(); ++entry)
+        for (std::size_t row = 0; row < 3; ++row)
+            for (int column = 0; column < 4; ++column)
+            {
+                const float wanted = expected[entry].rows[row][column];
+                const float got = palette[entry].rows[row][column];
+                if (!std::isfinite(got)) return "entry " + std::to_string(entry) + " is no number";
+                size = std::max(size, std::abs(wanted));
+                largest = std::max(largest, std::abs(wanted - got));
+            }
+    return largest <= 1e-4f * size ? "" : "differs from the CPU's by " + std::to_string(largest);
+}
+
+} // namespace osgGpuAnimation::benchmark

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "Stopwatch.h"
+
+#include <osgGpuAnimation/animation/AnimationController.h>
+#include <osgGpuAnimation/gpu/EglGraphicsContext.h>
+#include <osgGpuAnimation/gpu/PosePipeline.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace osgGpuAnimation::benchmark
+{
+
+/// So many controllers of one set and their palettes, without a scene: all from advance() to the finished palette.
+/// Needs its graphics context current.
+class PoseCrowd
+{
+public:
+    PoseCrowd(std::shared_ptr<const AnimationSet> set, std::size_t clip, std::size_t count,
+              osg::GraphicsContext& context);
+    ~PoseCrowd();
+
+    /// Moves everybody on and computes all palettes, until the GPU has finished.
+    Spent step(double seconds, PosePipeline::Form form = PosePipeline::Form::Fused);
+
+    /// Reads some palettes back and compares them with the CPU twin's. Empty: all is well.
+    std::string check();
+
+    std::size_t count() const { return _controllers.size(); }
+
+private:
+    std::shared_ptr<const AnimationSet> _set;
+    std::vector<AnimationController> _controllers;
+    PoseBatch _batch;
+    osg::ref_ptr<osg::GraphicsContext> _context;
+    std::size_t _slot;
+};
+
+/// A feedback pass that writes as many bytes as a palette, and nothing else: the floor.
+class FeedbackFloor
+{
+public:
+    FeedbackFloor(std::size_t matrices, osg::GraphicsContext& context);
+    ~FeedbackFloor();
+
+    Spent step();
+
+private:
+    std::size_t _matrices;
+    osg::ref_ptr<osg::GraphicsContext> _context;
+    FeedbackPass _pass;
+    BufferTexture _out;
+    GLuint _vertexArray = 0;
+};
+
+/// Is the palette what the CPU twin makes of the instruction? Empty: yes, to 1e-4 of its largest number.
+std::string difference(const AnimationSet& set, const PoseInstruction& instruction,
+                       const std::vector<AffineMatrix>& palette);
+
+} // namespace osgGpuAnimation::benchmark

@@ -1,0 +1,315 @@
+// SPDX-License-Identifier: MIT
+#include "ReferenceKit.h"
+
+#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
+
+#include <osgAnimation/Channel>
+#include <osgAnimation/RigTransformHardware>
+#include <osgAnimation/Sampler>
+#include <osgAnimation/StackedQuaternionElement>
+#include <osgAnimation/StackedScaleElement>
+#include <osgAnimation/StackedTranslateElement>
+#include <osgAnimation/UpdateBone>
+
+#include <layout.glsl>
+#include <ShaderSources.h>
+
+#include <glm/gtc/type_ptr.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace osgGpuAnimation::benchmark
+{
+
+namespace
+{
+
+/// What osgAnimation's hardware mode wants: its own names, and MAX_MATRIX in place of the palette's size.
+constexpr const char* hardwareVertexShader = R"(#version 140
+uniform mat4 matrixPalette[MAX_MATRIX];
+uniform uint nbBonesPerVertex;
+in vec4 boneWeight0;
+in vec4 boneWeight1;
+out vec3 viewPosition;
+out vec3 viewNormal;
+out vec4 vertexColor;
+out vec2 textureCoordinate;
+
+void main()
+{
+    mat4 matrix = boneWeight0.y * matrixPalette[int(boneWeight0.x)] + boneWeight0.w * matrixPalette[int(boneWeight0.z)];
+    if (nbBonesPerVertex > 2u)
+        matrix += boneWeight1.y * matrixPalette[int(boneWeight1.x)] + boneWeight1.w * matrixPalette[int(boneWeight1.z)];
+    vec4 vertex = matrix * gl_Vertex;
+    viewPosition = (gl_ModelViewMatrix * vertex).xyz;
+    viewNormal = gl_NormalMatrix * (mat3(matrix) * gl_Normal);
+    vertexColor = gl_Color;
+    textureCoordinate = gl_MultiTexCoord0.xy;
+    gl_Position = gl_ModelViewProjectionMatrix * vertex;
+}
+)";
+
+/// In the place of skin.glsl: the vertex as it is.
+constexpr const char* noSkin = R"(
+void osgGpuAnimationSkin(inout vec4 vertex, inout vec3 normal) {}
+void osgGpuAnimationMorphColor(inout vec4 color) {}
+void osgGpuAnimationMorphTextureCoordinate(inout vec2 coordinate) {}
+)";
+
+osg::ref_ptr<osg::Program> makeProgram(const std::string& vertex)
+{
+    osg::ref_ptr<osg::Program> program = new osg::Program;
+    program->addShader(new osg::Shader(osg::Shader::VERTEX, vertex));
+    program->addShader(new osg::Shader(osg::Shader::FRAGMENT, std::string("#version 140\n") + shaders::character_frag));
+    return program;
+}
+
+osg::Program* unskinnedProgram()
+{
+    static const osg::ref_ptr<osg::Program> program = []
+    {
+        osg::ref_ptr<osg::Program> made = makeProgram(std::string("#version 140\n") + shaders::character_vert);
+        made->addShader(new osg::Shader(osg::Shader::VERTEX, std::string("#version 140\n") + noSkin));
+        return made;
+    }();
+    return program.get();
+}
+
+std::string boneName(std::size_t entry)
+{
+    return "entry " + std::to_string(entry);
+}
+
+osg::Vec3 toVec3(const glm::vec4& v)
+{
+    return {v.x, v.y, v.z};
+}
+
+osg::Quat toQuat(const glm::vec4& q)
+{
+    return {q.x, q.y, q.z, q.w};
+}
+
+osg::Matrixd toMatrix(const AffineMatrix& matrix)
+{
+    const glm::dmat4 columns = matrix.toColumns();
+    return osg::Matrixd(glm::value_ptr(columns));
+}
+
+/// The clip at each of its keyframes; a first keyframe after 0 also at 0, since osgAnimation counts from the first.
+template <typename Container, typename Convert>
+osg::ref_ptr<Container> keyframesOf(const Clip& clip, std::size_t joint, Convert convert)
+{
+    using Key = typename Container::KeyType;
+    osg::ref_ptr<Container> container = new Container;
+    const std::size_t step = clip.form() == Clip::Form::Spline ? 3 : 1;
+    if (clip.times().front() > 0.0f) container->push_back(Key(0.0, convert(clip.data()[joint * step])));
+    for (std::size_t keyframe = 0; keyframe < clip.keyframeCount(); ++keyframe)
+        container->push_back(Key(static_cast<double>(clip.times()[keyframe]),
+                                 convert(clip.data()[keyframe * clip.keyframeStride() + joint * step])));
+    return container;
+}
+
+template <typename Channel, typename Container>
+osg::ref_ptr<osgAnimation::Channel> makeChannel(int entry, const char* name, Container* keyframes)
+{
+    osg::ref_ptr<Channel> channel = new Channel;
+    channel->setName(name);
+    channel->setTargetName(boneName(static_cast<std::size_t>(entry)));
+    channel->getOrCreateSampler()->setKeyframeContainer(keyframes);
+    return channel;
+}
+
+} // namespace
+
+ReferenceKit::ReferenceKit(const Subject& subject) : _subject(subject), _isNeeded(subject.set().paletteSize())
+{
+    const AnimationSet& set = subject.set();
+    for (std::size_t entry = 0; entry < set.paletteSize(); ++entry)
+        _isNeeded[entry] = set.palette()[entry].kind == PaletteEntry::Kind::Joint;
+    for (const gltf::ImportedPrimitive& primitive : subject.model.primitives)
+        shareMesh(primitive);
+    for (std::size_t joint = 0; joint < set.skeleton().jointCount(); ++joint)
+        shareChannels(joint);
+}
+
+void ReferenceKit::shareChannels(std::size_t joint)
+{
+    const AnimationSet& set = _subject.set();
+    const Clip& clip = set.clips()[_subject.clip];
+    const int entry = set.mainEntry(static_cast<int>(joint));
+    const auto vectors = [&](glm::vec4 JointTransform::*part, const char* name)
+    {
+        if (!isDriven(set, clip, joint, part)) return;
+        const auto convert = [part](const JointTransform& t) { return toVec3(t.*part); };
+        _channels.push_back(
+            {entry, name, keyframesOf<osgAnimation::Vec3KeyframeContainer>(clip, joint, convert), nullptr});
+    };
+    vectors(&JointTransform::translation, "translate");
+    vectors(&JointTransform::scale, "scale");
+    if (!isDriven(set, clip, joint, &JointTransform::rotation)) return;
+    const auto convert = [](const JointTransform& t) { return toQuat(t.rotation); };
+    _channels.push_back(
+        {entry, "rotate", nullptr, keyframesOf<osgAnimation::QuatKeyframeContainer>(clip, joint, convert)});
+}
+
+void ReferenceKit::shareMesh(const gltf::ImportedPrimitive& primitive)
+{
+    const auto* skinned = dynamic_cast<const SkinnedGeometry*>(primitive.geometry.get());
+    if (!skinned) return;
+    SharedMesh mesh;
+    mesh.source = unskinned(*skinned);
+    if (primitive.skin < 0)
+    {
+        mesh.rigidEntry = (*skinned->entries(0))[0].x();
+        const auto joint = _subject.set().palette()[static_cast<std::size_t>(mesh.rigidEntry)].joint;
+        mesh.rigidEntry = _subject.set().mainEntry(joint);
+        _meshes.push_back(mesh);
+        return;
+    }
+    mesh.influences = new osgAnimation::VertexInfluenceMap;
+    for (unsigned int influenceSet = 0; influenceSet < SkinnedGeometry::maxInfluenceSets; ++influenceSet)
+    {
+        const osg::Vec4usArray* entries = skinned->entries(influenceSet);
+        const osg::Vec4Array* weights = skinned->weights(influenceSet);
+        for (unsigned int vertex = 0; entries && weights && vertex < entries->size(); ++vertex)
+            for (int i = 0; i < 4; ++i)
+            {
+                const std::size_t entry = (*entries)[vertex][i];
+                if (!((*weights)[vertex][i] > 1e-4f)) continue; // osgAnimation leaves smaller ones out, and warns
+                _isNeeded[entry] = true;
+                osgAnimation::VertexInfluence& influence = (*mesh.influences)[boneName(entry)];
+                influence.setName(boneName(entry));
+                influence.emplace_back(vertex, (*weights)[vertex][i]);
+            }
+    }
+    std::string source = hardwareVertexShader;
+    // Filled in here: osgAnimation would do it once for each character, and warn from the second on.
+    source.replace(source.find("MAX_MATRIX"), 10, std::to_string(mesh.influences->size()) + "/*MAX_MATRIX*/");
+    mesh.hardwareProgram = makeProgram(source);
+    _meshes.push_back(mesh);
+}
+
+osg::ref_ptr<osgAnimation::Bone> ReferenceKit::makeBone(std::size_t entry) const
+{
+    const PaletteEntry& from = _subject.set().palette()[entry];
+    osg::ref_ptr<osgAnimation::Bone> bone = new osgAnimation::Bone(boneName(entry));
+    bone->setInvBindMatrixInSkeletonSpace(toMatrix(from.inverseBind));
+    osg::ref_ptr<osgAnimation::UpdateBone> update = new osgAnimation::UpdateBone(boneName(entry));
+    bone->setUpdateCallback(update);
+    if (from.kind != PaletteEntry::Kind::Joint) return bone;
+    const JointTransform& rest = _subject.set().restPose()[static_cast<std::size_t>(from.track)];
+    osgAnimation::StackedTransform& stack = update->getStackedTransforms();
+    stack.push_back(new osgAnimation::StackedTranslateElement("translate", toVec3(rest.translation)));
+    stack.push_back(new osgAnimation::StackedQuaternionElement("rotate", toQuat(rest.rotation)));
+    const Clip& clip = _subject.set().clips()[_subject.clip];
+    const bool isScaled = toVec3(rest.scale) != osg::Vec3(1, 1, 1) ||
+                          isDriven(_subject.set(), clip, static_cast<std::size_t>(from.joint), &JointTransform::scale);
+    if (isScaled) stack.push_back(new osgAnimation::StackedScaleElement("scale", toVec3(rest.scale)));
+    return bone;
+}
+
+osg::ref_ptr<osgAnimation::Animation> ReferenceKit::makeAnimation(double phase) const
+{
+    osg::ref_ptr<osgAnimation::Animation> animation = new osgAnimation::Animation;
+    animation->setPlayMode(osgAnimation::Animation::LOOP);
+    for (const SharedChannel& channel : _channels)
+        if (channel.rotations)
+            animation->addChannel(makeChannel<osgAnimation::QuatSphericalLinearChannel>(channel.entry, channel.name,
+                                                                                        channel.rotations.get()));
+        else
+            animation->addChannel(
+                makeChannel<osgAnimation::Vec3LinearChannel>(channel.entry, channel.name, channel.vectors.get()));
+    animation->computeDuration();
+    animation->setStartTime(-phase);
+    return animation;
+}
+
+ReferenceCharacter ReferenceKit::make(ReferenceMode mode, double phase)
+{
+    ReferenceCharacter character;
+    character.skeleton = new osgAnimation::Skeleton;
+    const std::vector<PaletteEntry>& palette = _subject.set().palette();
+    for (std::size_t entry = 0; entry < palette.size(); ++entry)
+    {
+        character.boneOfEntry.push_back(_isNeeded[entry] ? makeBone(entry) : nullptr);
+        if (!_isNeeded[entry]) continue;
+        const int parent = palette[entry].parent;
+        osg::Group* above = parent < 0 ? static_cast<osg::Group*>(character.skeleton.get())
+                                       : character.boneOfEntry[static_cast<std::size_t>(parent)].get();
+        above->addChild(character.boneOfEntry.back());
+    }
+    if (mode != ReferenceMode::Bones) addMeshes(character, mode);
+
+    osg::ref_ptr<osgAnimation::BasicAnimationManager> manager = new osgAnimation::BasicAnimationManager;
+    osg::ref_ptr<osgAnimation::Animation> animation = makeAnimation(phase);
+    manager->registerAnimation(animation);
+    manager->playAnimation(animation);
+    animation->setStartTime(-phase);
+    // The manager first, then what the skeleton itself does, then the bones below.
+    manager->addNestedCallback(character.skeleton->getUpdateCallback());
+    character.skeleton->setUpdateCallback(manager);
+    return character;
+}
+
+void ReferenceKit::addMeshes(ReferenceCharacter& character, ReferenceMode mode) const
+{
+    for (const SharedMesh& mesh : _meshes)
+        if (mesh.rigidEntry >= 0)
+            character.boneOfEntry[static_cast<std::size_t>(mesh.rigidEntry)]->addChild(mesh.source);
+        else
+            character.skeleton->addChild(makeRig(mesh, mode));
+}
+
+osg::ref_ptr<osg::Geometry> ReferenceKit::makeRig(const SharedMesh& mesh, ReferenceMode mode) const
+{
+    osg::ref_ptr<osgAnimation::RigGeometry> rig = new osgAnimation::RigGeometry;
+    rig->setInfluenceMap(mesh.influences);
+    rig->setSourceGeometry(mesh.source);
+    if (mode == ReferenceMode::Software) return rig;
+    // The rig takes its source's state and puts its own palette into it: each needs a state of its own.
+    osg::ref_ptr<osg::Geometry> source = new osg::Geometry(*mesh.source, osg::CopyOp::SHALLOW_COPY);
+    source->setStateSet(new osg::StateSet(*mesh.source->getStateSet(), osg::CopyOp::SHALLOW_COPY));
+    source->getStateSet()->setAttributeAndModes(mesh.hardwareProgram);
+    rig->setSourceGeometry(source);
+    rig->setRigTransformImplementation(new osgAnimation::RigTransformHardware);
+    return rig;
+}
+
+osg::ref_ptr<osg::Geometry> unskinned(const osg::Geometry& geometry)
+{
+    osg::ref_ptr<osg::Geometry> plain = new osg::Geometry(geometry, osg::CopyOp::SHALLOW_COPY);
+    osg::Geometry::ArrayList none;
+    plain->setVertexAttribArrayList(none);
+    plain->setUseDisplayList(false);
+    plain->setUseVertexBufferObjects(true);
+    osg::ref_ptr<osg::StateSet> state = geometry.getStateSet()
+                                            ? new osg::StateSet(*geometry.getStateSet(), osg::CopyOp::SHALLOW_COPY)
+                                            : new osg::StateSet;
+    state->setAttributeAndModes(unskinnedProgram());
+    plain->setStateSet(state);
+    return plain;
+}
+
+double largestDifference(const ReferenceCharacter& character, const std::vector<AffineMatrix>& palette)
+{
+    double largest = 0.0;
+    double size = 1.0;
+    for (std::size_t entry = 0; entry < std::min(palette.size(), character.boneOfEntry.size()); ++entry)
+    {
+        const osgAnimation::Bone* bone = character.boneOfEntry[entry].get();
+        if (!bone) continue;
+        const osg::Matrixd ours = toMatrix(palette[entry]);
+        const osg::Matrixd theirs = bone->getInvBindMatrixInSkeletonSpace() * bone->getMatrixInSkeletonSpace();
+        for (int row = 0; row < 4; ++row)
+            for (int column = 0; column < 3; ++column)
+            {
+                size = std::max(size, std::abs(ours(row, column)));
+                largest = std::max(largest, std::abs(ours(row, column) - theirs(row, column)));
+            }
+    }
+    return largest / size;
+}
+
+} // namespace osgGpuAnimation::benchmark

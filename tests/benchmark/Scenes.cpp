@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: MIT
+#include "Scenes.h"
+
+#include "PoseCrowd.h"
+
+#include <osgGpuAnimation/animation/Pose.h>
+#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
+
+#include <osg/Notify>
+#include <osgUtil/UpdateVisitor>
+
+#include <cmath>
+
+namespace osgGpuAnimation::benchmark
+{
+
+namespace
+{
+
+/// In the order of numbers, along the rows of a square.
+osg::Matrixd placement(const Subject& subject, std::size_t number, std::size_t count)
+{
+    const auto columns = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(count))));
+    const double spacing = 1.5 * subject.model.root->getBound().radius();
+    return subject.model.root->getMatrix() * osg::Matrixd::translate(spacing * static_cast<double>(number % columns),
+                                                                     spacing * static_cast<double>(number / columns),
+                                                                     0.0);
+}
+
+double durationOf(const Subject& subject)
+{
+    return subject.set().clips()[subject.clip].duration();
+}
+
+} // namespace
+
+CharacterScene::CharacterScene(const Subject& subject, std::size_t count)
+{
+    for (std::size_t i = 0; i < count; ++i)
+    {
+        osg::ref_ptr<AnimatedCharacter> character =
+            osg::clone(subject.model.character.get(), osg::CopyOp::DEEP_COPY_NODES);
+        character->setMatrix(placement(subject, i, count));
+        static_cast<void>(character->controller().play(subject.clip));
+        character->controller().seek(phaseOf(i, durationOf(subject)));
+        root->addChild(character);
+        characters.push_back(character);
+    }
+}
+
+void CharacterScene::pause()
+{
+    for (const osg::ref_ptr<AnimatedCharacter>& character : characters)
+        character->controller().pause();
+}
+
+std::string CharacterScene::check(osg::State& state) const
+{
+    PosePipeline* pipeline = PosePipeline::of(state);
+    if (!pipeline) return "there is no pose pipeline";
+    for (const std::size_t i : {std::size_t(0), characters.size() / 2, characters.size() - 1})
+    {
+        // Everybody is in sight, so numbers within the frame's batch are those of the nodes.
+        const AnimationController& controller = characters[i]->controller();
+        const std::string wrong = difference(controller.set(), controller.instruction(),
+                                             pipeline->readPalette(state, controller.set(), 0, i));
+        if (!wrong.empty()) return "character " + std::to_string(i) + ": " + wrong;
+    }
+    return "";
+}
+
+ReferenceScene::ReferenceScene(const Subject& subject, ReferenceKit& kit, ReferenceMode mode, std::size_t count)
+{
+    for (std::size_t i = 0; i < count; ++i)
+    {
+        characters.push_back(kit.make(mode, phaseOf(i, durationOf(subject))));
+        characters.back().skeleton->setMatrix(placement(subject, i, count));
+        root->addChild(characters.back().skeleton);
+    }
+    // The first update links and sets up; hardware mode warns of each character that shares its program with another.
+    const osg::NotifySeverity level = osg::getNotifyLevel();
+    osg::setNotifyLevel(osg::FATAL);
+    update(0.0);
+    osg::setNotifyLevel(level);
+}
+
+void ReferenceScene::update(double time)
+{
+    osgUtil::UpdateVisitor visitor;
+    osg::ref_ptr<osg::FrameStamp> stamp = new osg::FrameStamp;
+    stamp->setSimulationTime(time);
+    stamp->setReferenceTime(time);
+    visitor.setFrameStamp(stamp);
+    root->accept(visitor);
+}
+
+std::string ReferenceScene::check(const Subject& subject, double time)
+{
+    update(time);
+    for (const std::size_t i : {std::size_t(0), characters.size() / 2, characters.size() - 1})
+    {
+        AnimationController controller(subject.model.set);
+        static_cast<void>(controller.play(subject.clip));
+        controller.seek(std::fmod(phaseOf(i, durationOf(subject)) + time, durationOf(subject)));
+        controller.advance(0.0);
+        std::vector<AffineMatrix> palette;
+        Pose::evaluate(subject.set(), controller.instruction(), AffineMatrix(), palette);
+        // Times are floats here and there, and quaternions get other roundings.
+        if (const double largest = largestDifference(characters[i], palette); !(largest < 1e-3))
+            return "osgAnimation's character " + std::to_string(i) + " differs by " + std::to_string(largest) +
+                   " of its size";
+    }
+    return "";
+}
+
+osg::ref_ptr<osg::Group> makeUnskinnedScene(const Subject& subject, std::size_t count)
+{
+    osg::ref_ptr<osg::Group> meshes = new osg::Group;
+    for (const gltf::ImportedPrimitive& primitive : subject.model.primitives)
+        if (dynamic_cast<SkinnedGeometry*>(primitive.geometry.get())) meshes->addChild(unskinned(*primitive.geometry));
+    osg::ref_ptr<osg::Group> root = new osg::Group;
+    for (std::size_t i = 0; i < count; ++i)
+    {
+        osg::ref_ptr<osg::MatrixTransform> place = new osg::MatrixTransform(placement(subject, i, count));
+        for (unsigned int mesh = 0; mesh < meshes->getNumChildren(); ++mesh)
+            place->addChild(meshes->getChild(mesh));
+        root->addChild(place);
+    }
+    return root;
+}
+
+} // namespace osgGpuAnimation::benchmark

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+#include "StagedViewer.h"
+
+#include <osgGpuAnimation/gpu/EglGraphicsContext.h>
+
+#include <osgViewer/Renderer>
+
+#include <sstream>
+#include <vector>
+
+namespace osgGpuAnimation::benchmark
+{
+
+namespace
+{
+
+constexpr int pictureSize = 64;
+
+} // namespace
+
+Result<std::shared_ptr<StagedViewer>> StagedViewer::create(osg::Node* scene, const osg::BoundingSphere& sight)
+{
+    Result<osg::ref_ptr<EglGraphicsContext>> context = EglGraphicsContext::create(pictureSize, pictureSize);
+    if (!context) return context.error();
+    std::shared_ptr<StagedViewer> made(new StagedViewer(context.value()));
+    osgViewer::Viewer& viewer = made->_viewer;
+    viewer.setThreadingModel(osgViewer::ViewerBase::SingleThreaded);
+    viewer.setReleaseContextAtEndOfFrameHint(false);
+    osg::Camera* camera = viewer.getCamera();
+    camera->setGraphicsContext(context.value());
+    camera->setViewport(0, 0, pictureSize, pictureSize);
+    camera->setClearColor(osg::Vec4(0, 0, 0, 0));
+    camera->setCullingMode(osg::CullSettings::VIEW_FRUSTUM_CULLING);
+    viewer.setSceneData(scene);
+    made->lookAt(sight);
+    viewer.realize();
+    if (!viewer.isRealized()) return Error{"the viewer cannot be realized"};
+    return made;
+}
+
+StagedViewer::~StagedViewer()
+{
+    _viewer.setSceneData(nullptr);
+    _context->close();
+}
+
+void StagedViewer::lookAt(const osg::BoundingSphere& sight)
+{
+    osg::Vec3d back(0.3, -1.0, 0.8);
+    back.normalize();
+    osg::Camera* camera = _viewer.getCamera();
+    camera->setViewMatrixAsLookAt(sight.center() + back * sight.radius() * 4.0, sight.center(), osg::Vec3d(0, 0, 1));
+    camera->setProjectionMatrixAsPerspective(35.0, 1.0, sight.radius(), sight.radius() * 10.0);
+}
+
+FrameCost StagedViewer::frame(double time)
+{
+    FrameCost cost;
+    _context->makeCurrent();
+    const Stopwatch update;
+    if (!_hasDrawn)
+    {
+        _hasDrawn = true;
+        _viewer.frame(time);
+        _context->makeCurrent();
+        glFinish();
+        cost.draw = update.elapsed();
+        return cost;
+    }
+    _viewer.advance(time);
+    _viewer.updateTraversal();
+    cost.update = update.elapsed();
+    auto* renderer = static_cast<osgViewer::Renderer*>(_viewer.getCamera()->getRenderer());
+    osgUtil::SceneView& sceneView = *renderer->getSceneView(0);
+    sceneView.setFrameStamp(_viewer.getFrameStamp());
+    const Stopwatch cull;
+    sceneView.cull();
+    cost.cull = cull.elapsed();
+    const Stopwatch draw;
+    sceneView.draw();
+    glFinish();
+    cost.draw = draw.elapsed();
+    return cost;
+}
+
+std::string StagedViewer::takeErrors()
+{
+    _context->makeCurrent();
+    return takeGlErrors();
+}
+
+int StagedViewer::pixelsDrawn()
+{
+    _context->makeCurrent();
+    std::vector<unsigned char> pixels(std::size_t(4) * pictureSize * pictureSize);
+    glReadPixels(0, 0, pictureSize, pictureSize, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
+    int drawn = 0;
+    for (std::size_t pixel = 0; pixel < pixels.size(); pixel += 4)
+        if (pixels[pixel] != 0 || pixels[pixel + 1] != 0 || pixels[pixel + 2] != 0) ++drawn;
+    return drawn;
+}
+
+std::string takeGlErrors()
+{
+    std::ostringstream errors;
+    for (int kept = 0; kept < 32; ++kept)
+    {
+        const GLenum error = glGetError();
+        if (error == GL_NO_ERROR) break;
+        errors << "0x" << std::hex << error << " ";
+    }
+    return errors.str();
+}
+
+} // namespace osgGpuAnimation::benchmark

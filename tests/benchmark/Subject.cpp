@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+#include "Subject.h"
+
+#include <cmath>
+#include <fstream>
+#include <iterator>
+
+namespace osgGpuAnimation::benchmark
+{
+
+namespace
+{
+
+std::size_t drivenJoints(const AnimationSet& set, const Clip& clip)
+{
+    std::size_t count = 0;
+    for (std::size_t joint = 0; joint < set.skeleton().jointCount(); ++joint)
+        if (isDriven(set, clip, joint, &JointTransform::translation) ||
+            isDriven(set, clip, joint, &JointTransform::rotation) || isDriven(set, clip, joint, &JointTransform::scale))
+            ++count;
+    return count;
+}
+
+} // namespace
+
+std::size_t Subject::vertexCount() const
+{
+    std::size_t count = 0;
+    for (const gltf::ImportedPrimitive& primitive : model.primitives)
+        count += primitive.vertexCount;
+    return count;
+}
+
+Result<Subject> loadSubject(const std::string& name, const std::string& fileName)
+{
+    std::ifstream stream(fileName, std::ios::binary);
+    const std::string bytes(std::istreambuf_iterator<char>(stream), {});
+    Result<gltf::ImportedModel> model = gltf::importModel(bytes, fileName, {});
+    if (!model) return model.error();
+    Subject subject{name, std::move(model.value()), 0};
+    if (!subject.model.set || subject.set().clips().empty()) return Error{"nothing moves"};
+    std::size_t most = 0;
+    for (std::size_t clip = 0; clip < subject.set().clips().size(); ++clip)
+    {
+        const std::size_t driven = drivenJoints(subject.set(), subject.set().clips()[clip]);
+        if (driven <= most) continue;
+        most = driven;
+        subject.clip = clip;
+    }
+    return subject;
+}
+
+bool isDriven(const AnimationSet& set, const Clip& clip, std::size_t joint, glm::vec4 JointTransform::*part)
+{
+    const std::size_t step = clip.form() == Clip::Form::Spline ? 3 : 1;
+    for (std::size_t keyframe = 0; keyframe < clip.keyframeCount(); ++keyframe)
+        if (glm::vec3 difference(clip.data()[keyframe * clip.keyframeStride() + joint * step].*part -
+                                 set.restPose()[joint].*part);
+            difference != glm::vec3(0.0f))
+            return true;
+    return false;
+}
+
+double phaseOf(std::size_t character, double duration)
+{
+    // Multiples of the golden ratio lie evenly, whatever their number.
+    return duration * std::fmod(0.618033988749895 * static_cast<double>(character + 1), 1.0);
+}
+
+} // namespace osgGpuAnimation::benchmark

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: MIT
+#include "Measurements.h"
+#include "StagedViewer.h"
+
+#include <osgGpuAnimation/gpu/EglGraphicsContext.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <set>
+#include <thread>
+
+namespace osgGpuAnimation::benchmark
+{
+
+namespace
+{
+
+constexpr const char* usage = R"(osggpuanim_benchmark [options] OUTPUT_FOLDER
+    measures this kit against osgAnimation, prints a table and writes benchmark.json and plots into the folder
+    --quick           fewer characters and rounds
+    --only PART       pose, depth, frames, skinning or start; may be given several times
+    --subject NAME    Wanderer, Fox, CesiumMan or Knight; may be given several times
+)";
+
+struct Request
+{
+    std::string folder;
+    bool isQuick = false;
+    std::set<std::string> parts;    ///< empty: all
+    std::set<std::string> subjects; ///< empty: all
+
+    bool has(const std::string& part) const { return parts.empty() || parts.count(part) != 0; }
+};
+
+bool parse(int count, char** words, Request& request)
+{
+    for (int i = 1; i < count; ++i)
+    {
+        const std::string word = words[i];
+        const bool hasValue = i + 1 < count;
+        if (word == "--quick")
+            request.isQuick = true;
+        else if (word == "--only" && hasValue)
+            request.parts.insert(words[++i]);
+        else if (word == "--subject" && hasValue)
+            request.subjects.insert(words[++i]);
+        else if (word.rfind("--", 0) == 0 || !request.folder.empty())
+            return false;
+        else
+            request.folder = word;
+    }
+    return !request.folder.empty();
+}
+
+std::vector<Subject> loadSubjects(const Request& request)
+{
+    const std::string assets = std::string(OSGGPUANIMATION_SHARED_ASSETS) + "/assets/";
+    const std::pair<const char*, std::string> files[] = {
+        {"Wanderer", std::string(OSGGPUANIMATION_SOURCE_FOLDER) + "/scenes/Wanderer.glb"},
+        {"Fox", assets + "Fox/Fox.glb"},
+        {"CesiumMan", assets + "CesiumMan/CesiumMan.glb"},
+        {"Knight", assets + "Knight/Knight.glb"}};
+    std::vector<Subject> subjects;
+    for (const auto& [name, file] : files)
+    {
+        if (!request.subjects.empty() && request.subjects.count(name) == 0) continue;
+        if (!std::filesystem::is_regular_file(file))
+        {
+            std::cerr << name << ": not there, left out" << std::endl;
+            continue;
+        }
+        Result<Subject> subject = loadSubject(name, file);
+        if (!subject)
+        {
+            std::cerr << name << ": " << subject.error().message << std::endl;
+            continue;
+        }
+        std::cerr << name << ": " << subject.value().jointCount() << " joints, " << subject.value().set().paletteSize()
+                  << " palette entries, " << subject.value().set().levelCount() << " levels, "
+                  << subject.value().vertexCount() << " vertices, clip "
+                  << subject.value().set().clips()[subject.value().clip].name() << std::endl;
+        subjects.push_back(std::move(subject.value()));
+    }
+    return subjects;
+}
+
+std::map<std::string, std::string> describeMachine()
+{
+    std::map<std::string, std::string> machine;
+    std::ifstream cpuInfo("/proc/cpuinfo");
+    for (std::string line; std::getline(cpuInfo, line);)
+        if (line.rfind("model name", 0) == 0) machine["processor"] = line.substr(line.find(':') + 2);
+    machine["cores"] = std::to_string(std::thread::hardware_concurrency());
+    machine["GL renderer"] = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+    machine["GL version"] = reinterpret_cast<const char*>(glGetString(GL_VERSION));
+    machine["compiler"] = __VERSION__;
+    machine["times"] = "CPU time of the process on all cores, unless they say wall";
+    return machine;
+}
+
+Result<bool> measureSubject(const Request& request, const Effort& effort, const Subject& subject,
+                            osg::GraphicsContext& context, Report& report)
+{
+    const std::pair<const char*, Result<bool> (*)(const Subject&, const Effort&, Report&)> inViewers[] = {
+        {"frames", measureFrames}, {"skinning", measureSkinning}, {"start", measureStart}};
+    if (request.has("pose"))
+        if (Result<bool> done = measurePose(subject, effort, context, report); !done) return done;
+    context.releaseContext();
+    for (const auto& [part, measure] : inViewers)
+        if (request.has(part))
+            if (Result<bool> done = measure(subject, effort, report); !done) return done;
+    context.makeCurrent();
+    return true;
+}
+
+Result<bool> measureAll(const Request& request, osg::GraphicsContext& context, Report& report)
+{
+    const Effort effort = request.isQuick ? Effort::quick() : Effort();
+    if (request.has("depth"))
+        if (Result<bool> done = measureDepth(effort, context, report); !done) return done;
+    for (const Subject& subject : loadSubjects(request))
+        if (Result<bool> done = measureSubject(request, effort, subject, context, report); !done)
+            return Error{subject.name + ": " + done.error().message};
+    if (const std::string errors = takeGlErrors(); !errors.empty()) return Error{"GL reports " + errors};
+    return true;
+}
+
+int run(const Request& request)
+{
+    const Result<osg::ref_ptr<EglGraphicsContext>> context = EglGraphicsContext::create(64, 64);
+    if (!context || !context.value()->realize() || !context.value()->makeCurrent())
+    {
+        std::cerr << "no GL: " << (context ? "the context does not realize" : context.error().message) << std::endl;
+        return 1;
+    }
+    const std::map<std::string, std::string> machine = describeMachine();
+    Report report;
+    if (const Result<bool> done = measureAll(request, *context.value(), report); !done)
+    {
+        std::cerr << "no report, since a result is wrong: " << done.error().message << std::endl;
+        return 1;
+    }
+    for (const auto& [name, value] : machine)
+        std::cout << name << ": " << value << "\n";
+    std::cout << "\n";
+    report.printTable(std::cout);
+    if (report.write(request.folder, machine)) return 0;
+    std::cerr << "cannot write into " << request.folder << std::endl;
+    return 1;
+}
+
+} // namespace
+
+} // namespace osgGpuAnimation::benchmark
+
+int main(int count, char** words)
+{
+    using namespace osgGpuAnimation::benchmark;
+    Request request;
+    if (parse(count, words, request)) return run(request);
+    std::cerr << usage;
+    return 2;
+}

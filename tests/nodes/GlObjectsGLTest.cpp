@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+#include "support/TestCharacter.h"
+#include "support/ViewerGLTest.h"
+
+#include <osg/GLExtensions>
+#include <osg/Group>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+/// GL objects come and go with contexts, scenes and sets.
+class GlObjectsGLTest : public ViewerGLTest
+{
+protected:
+    struct Count
+    {
+        int buffers = 0;
+        int textures = 0;
+        int programs = 0;
+    };
+
+    /// GL objects there are, by asking for every name that can have been given out so far.
+    Count count()
+    {
+        constexpr GLuint namesToTry = 5000;
+        const osg::GLExtensions* gl = state().get<osg::GLExtensions>();
+        Count result;
+        for (GLuint name = 1; name < namesToTry; ++name)
+        {
+            if (gl->glIsBuffer(name)) ++result.buffers;
+            if (glIsTexture(name)) ++result.textures;
+            if (gl->glIsProgram(name)) ++result.programs;
+        }
+        return result;
+    }
+};
+
+TEST_F(GlObjectsGLTest, charactersSurviveTheReleaseOfTheirGlObjects)
+{
+    osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
+    viewer().setSceneData(character);
+    drawAt(0);
+    const int drawn = picture().pixelsDrawn();
+    EXPECT_GT(drawn, 0);
+    character->releaseGLObjects(&state());
+    drawAt(0);
+    EXPECT_EQ(picture().pixelsDrawn(), drawn);
+    character->resizeGLObjectBuffers(16);
+    drawAt(0);
+    EXPECT_EQ(picture().pixelsDrawn(), drawn);
+}
+
+TEST_F(GlObjectsGLTest, aSceneMovesToAnotherContext)
+{
+    osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
+    int drawn = 0;
+    for (int round = 0; round < 3; ++round)
+    {
+        viewer().setSceneData(character);
+        drawAt(0);
+        if (round == 0) drawn = picture().pixelsDrawn();
+        EXPECT_GT(drawn, 0);
+        EXPECT_EQ(picture().pixelsDrawn(), drawn) << "context " << round;
+        TearDown();
+        SetUp();
+    }
+}
+
+TEST_F(GlObjectsGLTest, addingAndRemovingCharactersLeavesNothingBehind)
+{
+    osg::ref_ptr<osg::Group> root = new osg::Group;
+    viewer().setSceneData(root);
+    const auto round = [&](int number)
+    {
+        osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
+        root->addChild(character);
+        drawAt(0.1 * number);
+        root->removeChild(character);
+        character = nullptr;
+        drawAt(0.1 * number + 0.05);
+        // What was deleted is handed back when a frame has time for it.
+        osg::flushAllDeletedGLObjects(state().getContextID());
+    };
+    for (int number = 0; number < 5; ++number)
+        round(number);
+    const Count before = count();
+    for (int number = 5; number < 200; ++number)
+        round(number);
+    const Count after = count();
+    EXPECT_EQ(after.buffers, before.buffers);
+    EXPECT_EQ(after.textures, before.textures);
+    EXPECT_EQ(after.programs, before.programs);
+}
+
+} // namespace
+
+} // namespace osgGpuAnimation

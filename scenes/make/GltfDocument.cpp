@@ -158,6 +158,15 @@ int GltfDocument::addAnimation(const std::string& name)
     return static_cast<int>(_model.animations.size()) - 1;
 }
 
+void GltfDocument::addMarker(int animation, double time, const std::string& name)
+{
+    tinygltf::Value& extras = _model.animations[animation].extras;
+    tinygltf::Value::Array markers;
+    if (extras.Has("markers")) markers = extras.Get("markers").Get<tinygltf::Value::Array>();
+    markers.emplace_back(tinygltf::Value::Object{{"name", tinygltf::Value(name)}, {"time", tinygltf::Value(time)}});
+    extras = tinygltf::Value(tinygltf::Value::Object{{"markers", tinygltf::Value(markers)}});
+}
+
 void GltfDocument::addTranslations(int animation, int node, int times, const std::vector<glm::dvec3>& values)
 {
     addChannel(animation, node, "translation", times, addFloats(flattened(values), TINYGLTF_TYPE_VEC3, 0, false));

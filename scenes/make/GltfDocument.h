@@ -53,6 +53,8 @@ public:
     /// times: seconds, shared by all channels of a clip; the sampler input that addChannel takes.
     int addTimes(const std::vector<double>& times);
     int addAnimation(const std::string& name);
+    /// Into the animation's extras: {"markers": [{"name": …, "time": seconds}, …]}.
+    void addMarker(int animation, double time, const std::string& name);
     void addTranslations(int animation, int node, int times, const std::vector<glm::dvec3>& values);
     void addRotations(int animation, int node, int times, const std::vector<glm::dquat>& values);
 

@@ -47,6 +47,8 @@ void addClip(GltfDocument& document, const Rig& rig, const std::vector<int>& nod
 
     const int input = document.addTimes(times);
     const int animation = document.addAnimation(motion.name);
+    for (const MotionMarker& marker : motion.markers)
+        document.addMarker(animation, motion.seconds * marker.phase, marker.name);
     for (std::size_t i = 0; i < rig.joints().size(); ++i)
     {
         const int joint = static_cast<int>(i);

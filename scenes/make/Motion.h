@@ -5,9 +5,17 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 namespace osgGpuAnimation::scenes
 {
+
+/// A named moment of a clip.
+struct MotionMarker
+{
+    double phase = 0.0; ///< [0, 1]
+    std::string name;
+};
 
 /// A clip to be sampled: `pose` sets the pose at a phase; at phase 1 it must be the one of phase 0.
 struct Motion
@@ -16,6 +24,7 @@ struct Motion
     double seconds = 1.0;
     int samples = 24; ///< keyframes in the clip, less the last one, which repeats the first
     std::function<void(double phase, RigPose& pose)> pose;
+    std::vector<MotionMarker> markers = {};
 };
 
 class GltfDocument;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/Import.h"
 #include "plugin/ModelBuilder.h"
+#include "plugin/SharedAssets.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -76,6 +77,19 @@ TEST(MarkersTest, OtherExtrasAreNobodysBusiness)
     ASSERT_TRUE(model);
     ASSERT_EQ(model.value().messages.warnings.size(), 1u);
     EXPECT_NE(model.value().messages.warnings[0].find("extras.markers: no array"), std::string::npos);
+}
+
+TEST(MarkersTest, TheWanderersFeetAreMarked)
+{
+    const std::string file = OSGGPUANIMATION_SCENES "/Wanderer.glb";
+    const Result<ImportedModel> model = importModel(readBytes(file), file, {});
+    ASSERT_TRUE(model) << model.error().message;
+    const AnimationSet& set = *model.value().set;
+    const std::vector<ClipMarker>& markers = set.clips()[set.clipNamed("Run").value()].markers();
+    ASSERT_EQ(markers.size(), 2u);
+    EXPECT_EQ(markers[0].name, "left foot");
+    EXPECT_EQ(markers[1].name, "right foot");
+    EXPECT_NEAR(markers[1].time, 0.3, 1e-6);
 }
 
 } // namespace

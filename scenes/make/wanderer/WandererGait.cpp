@@ -129,14 +129,15 @@ void poseRun(double phase, RigPose& pose)
 
 } // namespace
 
+// A foot's stride begins where it meets the ground.
 Motion wandererWalk()
 {
-    return {"Walk", 0.96, 24, poseWalk};
+    return {"Walk", 0.96, 24, poseWalk, {{0.0, "left foot"}, {0.5, "right foot"}}};
 }
 
 Motion wandererRun()
 {
-    return {"Run", 0.60, 18, poseRun};
+    return {"Run", 0.60, 18, poseRun, {{0.0, "left foot"}, {0.5, "right foot"}}};
 }
 
 } // namespace osgGpuAnimation::scenes

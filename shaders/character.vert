@@ -2,6 +2,7 @@
 // Draws a SkinnedGeometry: skins, then what the fixed pipeline does.
 
 void osgGpuAnimationSkin(inout vec4 vertex, inout vec3 normal);
+vec4 osgGpuAnimationTint();
 void osgGpuAnimationMorphColor(inout vec4 color);
 void osgGpuAnimationMorphTextureCoordinate(inout vec2 coordinate);
 
@@ -19,6 +20,7 @@ void main()
     viewNormal = gl_NormalMatrix * normal;
     vertexColor = gl_Color;
     osgGpuAnimationMorphColor(vertexColor);
+    vertexColor *= osgGpuAnimationTint();
     textureCoordinate = gl_MultiTexCoord0.xy;
     osgGpuAnimationMorphTextureCoordinate(textureCoordinate);
     gl_Position = gl_ModelViewProjectionMatrix * vertex;

@@ -31,9 +31,10 @@
 #define POSE_ENTRIES_1_LOCATION 14
 #define POSE_WEIGHTS_1_LOCATION 15
 
-// The texture units the palette and a mesh's morph targets are bound to while it is drawn.
+// The texture units the palette, a mesh's morph targets and the instances' tints are bound to while it is drawn.
 #define POSE_PALETTE_UNIT 11
 #define POSE_MORPH_UNIT 12
+#define POSE_TINT_UNIT 13
 
 // Morph targets of a mesh: RGBA32F, for each vertex, each target, the channels it has: position, normal, colour, texture
 // coordinate. Weights come from palette entries of weights, twelve each.

@@ -2,25 +2,39 @@
 // Morphing (glTF 2.0, section 3.7.2.2), then skinning by the palette (section 3.7.3.3). Link this shader into a program of one's own, declare
 //     void osgGpuAnimationSkin(inout vec4 vertex, inout vec3 normal);
 // and call it on the vertex and normal of the bind pose; they come back in the character's own space.
-// Attributes are bound to the locations of layout.glsl; SkinnedGeometry sets the uniforms when it draws.
+// In instanced draws each GL instance is an instance of its own, see AnimatedCrowd; vec4 osgGpuAnimationTint() is its
+// colour. Attributes are bound to the locations of layout.glsl; SkinnedGeometry sets the uniforms when it draws.
 
 uniform samplerBuffer posePalette; // entry e of instance i: rows at texel (e * poseStride + i) * 3
 uniform int poseStride;
-uniform int poseInstance;
+uniform int poseInstance; // that of the draw's first GL instance
 uniform int poseInfluences; // of a vertex, at most: 1 to 8
 
 uniform samplerBuffer poseMorphDeltas; // targets' channels by vertex, target, channel
 uniform ivec2 poseMorph;               // number of targets (0: none), the first palette entry of their weights
 uniform ivec4 poseMorphChannels;       // channels a target has; the place of normal, colour, texture coordinate, or -1
 
+uniform samplerBuffer poseTints; // by instance
+uniform bool poseTinted;
+
 in vec4 poseEntries0;
 in vec4 poseWeights0;
 in vec4 poseEntries1;
 in vec4 poseWeights1;
 
+int osgGpuAnimationInstance()
+{
+    return poseInstance + gl_InstanceID;
+}
+
+vec4 osgGpuAnimationTint()
+{
+    return poseTinted ? texelFetch(poseTints, osgGpuAnimationInstance()) : vec4(1.0);
+}
+
 mat3x4 osgGpuAnimationEntry(float entry)
 {
-    int texel = (int(entry) * poseStride + poseInstance) * POSE_TEXELS_PER_MATRIX;
+    int texel = (int(entry) * poseStride + osgGpuAnimationInstance()) * POSE_TEXELS_PER_MATRIX;
     return mat3x4(texelFetch(posePalette, texel), texelFetch(posePalette, texel + 1),
                   texelFetch(posePalette, texel + 2));
 }
@@ -38,7 +52,8 @@ float osgGpuAnimationMorphWeight(int target)
 {
     int entry = poseMorph.y + target / POSE_WEIGHTS_PER_ENTRY;
     int place = target % POSE_WEIGHTS_PER_ENTRY;
-    return texelFetch(posePalette, (entry * poseStride + poseInstance) * POSE_TEXELS_PER_MATRIX + place / 4)[place % 4];
+    int texel = (entry * poseStride + osgGpuAnimationInstance()) * POSE_TEXELS_PER_MATRIX;
+    return texelFetch(posePalette, texel + place / 4)[place % 4];
 }
 
 // The weighted sum of one channel of all targets.

@@ -2,6 +2,7 @@
 #include "gltf/OptionString.h"
 
 #include "gltf/ElementName.h"
+#include "gltf/OptionWord.h"
 
 #include <charconv>
 #include <cmath>
@@ -12,37 +13,6 @@ namespace osgGpuAnimation::gltf
 
 namespace
 {
-
-struct Word
-{
-    std::string name;
-    std::optional<std::string> value;
-};
-
-std::vector<Word> split(const std::string& text)
-{
-    std::vector<Word> words;
-    bool quotes = false;
-    bool inWord = false;
-    for (const char letter : text)
-    {
-        if (letter == '"')
-            quotes = !quotes;
-        else if (letter == ' ' && !quotes)
-        {
-            inWord = false;
-            continue;
-        }
-        if (!inWord) words.emplace_back();
-        inWord = true;
-        Word& word = words.back();
-        if (letter == '=' && !word.value)
-            word.value.emplace();
-        else if (letter != '"')
-            (word.value ? *word.value : word.name) += letter;
-    }
-    return words;
-}
 
 /// False where the text is not a whole number from 0 to what Number holds.
 template <typename Number>
@@ -95,7 +65,7 @@ const char* wanted(const std::string& name)
 }
 
 /// False where the value does not fit the option.
-bool apply(const Word& word, ImportOptions& options)
+bool apply(const OptionWord& word, ImportOptions& options)
 {
     const std::string value = word.value.value_or("");
     if (const std::optional<bool> fits = applyPlaying(word.name, value, options)) return *fits;
@@ -145,7 +115,7 @@ const std::vector<OptionHelp>& optionHelp()
 Result<ImportOptions> parseOptions(const std::string& text)
 {
     ImportOptions options;
-    for (const Word& word : split(text))
+    for (const OptionWord& word : splitOptions(text))
     {
         if (!apply(word, options))
             return Error{"option " + word.name + ": " + quoted(word.value.value_or("")) + " is not " +

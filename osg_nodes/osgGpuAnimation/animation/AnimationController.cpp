@@ -60,6 +60,11 @@ const AnimationLayer& AnimationController::layer(std::size_t index) const
     return *_layers[index];
 }
 
+bool AnimationController::isPlainLoop() const
+{
+    return _layerCount == 1 && !_eventCallback && !_hasRootMotion && base().isPlainLoop();
+}
+
 const PoseInstruction& AnimationController::advance(double seconds)
 {
     const double step = std::isfinite(seconds) ? seconds : 0.0;

@@ -77,6 +77,10 @@ public:
     double speed() const { return base().speed(); }
     LoopMode loopMode() const { return base().loopMode(); }
 
+    /// Whether clip, time, speed and state say all there is of it: one plain layer (AnimationLayer::isPlainLoop),
+    /// nobody to tell events to, a set without root motion.
+    bool isPlainLoop() const;
+
     /// Moves each layer by seconds · its speed (where it plays) and says what to show; then tells the events of that
     /// step, in the order of time, to the callback. Does not allocate. Seconds that are not finite count as 0. The
     /// reference holds until the next call.

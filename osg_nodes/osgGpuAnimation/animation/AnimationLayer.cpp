@@ -181,15 +181,9 @@ void AnimationLayer::advance(double seconds)
 
 BlendSample AnimationLayer::sampleOf(const ClipPlayback& playback, double time, double share) const
 {
-    const AnimationSet& set = _owner.set();
-    const auto index = static_cast<std::size_t>(playback.clip());
-    const Clip& clip = set.clips()[index];
-    const Clip::Span span = clip.locate(time);
-    BlendSample sample;
-    sample.keyframe = static_cast<std::uint32_t>(set.keyframeOffset(index) + span.keyframe * clip.keyframeStride());
-    sample.alpha = span.alpha;
+    BlendSample sample = _owner.set().sampleAt(playback.clip(), time);
     sample.weight = static_cast<float>(share * _weight.value());
-    sample.control = (clip.form() == Clip::Form::Spline ? POSE_SAMPLE_SPLINE : 0u) | _mask << POSE_SAMPLE_MASK_SHIFT;
+    sample.control |= _mask << POSE_SAMPLE_MASK_SHIFT;
     return sample;
 }
 
@@ -208,6 +202,17 @@ void AnimationLayer::collect(SampleStack& out) const
         else
             out.addDifference(BlendSample{0, 0.0f, sample.weight, _mask << POSE_SAMPLE_MASK_SHIFT}, sample);
     }
+}
+
+bool AnimationLayer::isPlainLoop() const
+{
+    const bool isDefault = _mode == Mode::Override && _reference == Reference::RestPose && _mask == 0 &&
+                           _standing == static_cast<int>(_index) && _weight.isFinished() && _weight.value() == 1.0;
+    if (!isDefault || _loopMode != LoopMode::Loop || _state == PlayState::Ended) return false;
+    if (_mixer.isEmpty()) return _state == PlayState::Stopped;
+    const ClipPlayback& current = _mixer.current();
+    return _state != PlayState::Stopped && !_mixer.isFading() && current.loopMode() == LoopMode::Loop &&
+           current.speed() == _speed;
 }
 
 void AnimationLayer::collectMotion(MotionBlend& out) const

@@ -104,6 +104,9 @@ public:
     void setStanding(int standing);
     int standing() const { return _standing; }
 
+    /// Whether nothing was asked of it but a clip that plays, or pauses, in a loop (or nothing at all): clip, time,
+    /// speed and state say everything then.
+    bool isPlainLoop() const;
     /// For those who want to know which clips are seen just now.
     const ClipMixer& mixer() const { return _mixer; }
     /// When in the last advance() the crossfade, the fade of the weight was over: [0, 1], -1: it was not.

@@ -5,6 +5,8 @@
 #include <osgGpuAnimation/animation/ClipBuilder.h>
 #include <osgGpuAnimation/animation/JointMask.h>
 
+#include <layout.glsl>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -152,6 +154,17 @@ Result<std::size_t> AnimationSet::clipAt(std::size_t clip) const
     if (clip >= _parts.clips.size())
         return Error{"there is no clip " + std::to_string(clip) + "; the clips are " + quotedNames(_parts.clips)};
     return clip;
+}
+
+BlendSample AnimationSet::sampleAt(int clip, double time) const
+{
+    if (clip < 0) return {};
+    const auto index = static_cast<std::size_t>(clip);
+    const Clip& played = _parts.clips[index];
+    const Clip::Span span = played.locate(time);
+    const std::size_t keyframe = _keyframeOffsets[index] + span.keyframe * played.keyframeStride();
+    return {static_cast<std::uint32_t>(keyframe), span.alpha, 1.0f,
+            played.form() == Clip::Form::Spline ? POSE_SAMPLE_SPLINE : 0u};
 }
 
 std::vector<JointTransform> AnimationSet::keyframeBuffer() const

@@ -4,6 +4,7 @@
 #include <osgGpuAnimation/animation/Clip.h>
 #include <osgGpuAnimation/animation/MaskTable.h>
 #include <osgGpuAnimation/animation/MorphWeights.h>
+#include <osgGpuAnimation/animation/PoseInstruction.h>
 #include <osgGpuAnimation/animation/Result.h>
 #include <osgGpuAnimation/animation/Skeleton.h>
 
@@ -112,6 +113,8 @@ public:
     /// All keyframes lie in one buffer of JointTransforms on the GPU: the rest pose (twice), then clip after clip.
     /// keyframeOffset is the place of a clip's first keyframe there.
     std::size_t keyframeOffset(std::size_t clip) const { return _keyframeOffsets[clip]; }
+    /// The clip at that time (seconds on its own time line) as a sample of full weight. clip -1: the rest pose.
+    BlendSample sampleAt(int clip, double time) const;
     /// JointTransforms in that buffer, with one keyframe of padding at the end (mixing reads keyframe + 1).
     std::size_t keyframeBufferSize() const { return _keyframeBufferSize; }
     /// The contents of that buffer: keyframeBufferSize() transforms, exactly as they go to the GPU.

@@ -13,7 +13,7 @@ namespace osgGpuAnimation
 class BufferTexture
 {
 public:
-    /// format: GL_RGBA32F or GL_RGBA32UI; 16 bytes a texel.
+    /// format: GL_RGBA32F or GL_RGBA32UI, 16 bytes a texel; GL_RGBA8, 4 bytes, for shaders alone.
     BufferTexture(osg::GLExtensions& gl, GLenum format) : _gl(&gl), _format(format) {}
     ~BufferTexture() = default;
     BufferTexture(const BufferTexture&) = delete;

@@ -4,6 +4,7 @@
 #include <layout.glsl>
 
 #include <algorithm>
+#include <cstring>
 
 namespace osgGpuAnimation
 {
@@ -33,6 +34,7 @@ std::size_t PoseBatch::add(const PoseInstruction& instruction)
     }
     _needs.mixing = _needs.mixing || _sampleStride > 1;
     if (!_rootMatrices.empty()) _rootMatrices.emplace_back();
+    if (!_tints.empty()) _tints.push_back(white);
     return _size++;
 }
 
@@ -54,6 +56,41 @@ std::size_t PoseBatch::add(const PoseInstruction& instruction, const AffineMatri
     return instance;
 }
 
+std::size_t PoseBatch::add(const BlendSample& sample, const AffineMatrix& rootMatrix)
+{
+    if (_sampleStride != 1 || _rootMatrices.size() != _size)
+    {
+        PoseInstruction instruction;
+        instruction.samples[0] = sample;
+        return add(instruction, rootMatrix);
+    }
+    _samples.push_back(sample);
+    _samples.back().alpha = clampedToUnit(sample.alpha);
+    _samples.back().weight = clampedToUnit(sample.weight);
+    note(_samples.back());
+    _rootMatrices.push_back(rootMatrix);
+    if (!_tints.empty()) _tints.push_back(white);
+    return _size++;
+}
+
+void PoseBatch::setTint(std::size_t instance, std::uint32_t rgba)
+{
+    if (_tints.empty() && rgba == white) return;
+    _tints.resize(_size, white);
+    _tints[instance] = rgba;
+}
+
+bool PoseBatch::isSame(const PoseBatch& other) const
+{
+    const auto same = [](const auto& left, const auto& right)
+    {
+        return left.size() == right.size() &&
+               (left.empty() || std::memcmp(left.data(), right.data(), left.size() * sizeof(left[0])) == 0);
+    };
+    return _set == other._set && _sampleStride == other._sampleStride && same(_samples, other._samples) &&
+           same(_rootMatrices, other._rootMatrices) && same(_tints, other._tints);
+}
+
 void PoseBatch::widen(std::size_t sampleStride)
 {
     std::vector<BlendSample> widened(_size * sampleStride, BlendSample{0, 0.0f, 0.0f, 0});
@@ -71,6 +108,13 @@ void PoseBatch::clear()
     _needs = Needs();
     _samples.clear();
     _rootMatrices.clear();
+    _tints.clear();
+}
+
+void PoseBatch::reset(std::shared_ptr<const AnimationSet> set)
+{
+    clear();
+    _set = std::move(set);
 }
 
 } // namespace osgGpuAnimation

@@ -5,6 +5,7 @@
 #include <osgGpuAnimation/animation/PoseInstruction.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -27,7 +28,15 @@ public:
     /// The same with a root matrix, which the instance's root joints are multiplied by. Instances without one get the
     /// identity as soon as any has one.
     std::size_t add(const PoseInstruction& instruction, const AffineMatrix& rootMatrix);
+    /// The same for an instance that shows one sample.
+    std::size_t add(const BlendSample& sample, const AffineMatrix& rootMatrix);
+    /// What the instance's colour is multiplied by. rgba: 8 bits each, red lowest. Others stay white.
+    void setTint(std::size_t instance, std::uint32_t rgba);
     void clear();
+    /// Empty again, for instances of another set, or of none until the next reset; the storage is kept.
+    void reset(std::shared_ptr<const AnimationSet> set);
+
+    static constexpr std::uint32_t white = 0xFFFFFFFFu;
 
     /// What the samples ask of the mix stage, taken together.
     struct Needs
@@ -46,6 +55,10 @@ public:
     const std::vector<BlendSample>& samples() const { return _samples; }
     /// size() matrices, or none where no instance has one.
     const std::vector<AffineMatrix>& rootMatrices() const { return _rootMatrices; }
+    /// size() colours, or none where all are white.
+    const std::vector<std::uint32_t>& tints() const { return _tints; }
+    /// Whether both say the same of the same set, instance by instance.
+    bool isSame(const PoseBatch& other) const;
 
 private:
     void widen(std::size_t sampleStride);
@@ -57,6 +70,7 @@ private:
     Needs _needs;
     std::vector<BlendSample> _samples;
     std::vector<AffineMatrix> _rootMatrices;
+    std::vector<std::uint32_t> _tints;
 };
 
 } // namespace osgGpuAnimation

@@ -28,7 +28,7 @@ bool uploadChanged(const std::vector<Element>& source, std::size_t first, std::s
 } // namespace
 
 PosePalette::Chunk::Chunk(osg::GLExtensions& gl)
-    : samples(gl, GL_RGBA32UI_EXT), roots(gl, GL_RGBA32F_ARB), palette(gl, GL_RGBA32F_ARB)
+    : samples(gl, GL_RGBA32UI_EXT), roots(gl, GL_RGBA32F_ARB), tints(gl, GL_RGBA8), palette(gl, GL_RGBA32F_ARB)
 {
 }
 
@@ -52,6 +52,10 @@ std::vector<PosePalette::Chunk*> PosePalette::upload(const PoseBatch& batch, std
                                    bytesUploaded);
         isChanged |= uploadChanged(batch.rootMatrices(), hasRoots ? first : 0, hasRoots ? size : 0,
                                    chunk.uploadedRootMatrices, chunk.roots, bytesUploaded);
+        const bool hasTints = !batch.tints().empty();
+        // Tints are for the draw alone: the palette stays as it is.
+        uploadChanged(batch.tints(), hasTints ? first : 0, hasTints ? size : 0, chunk.uploadedTints, chunk.tints,
+                      bytesUploaded);
         if (isChanged) changed.push_back(&chunk);
     }
     for (; index < _chunks.size(); ++index)
@@ -64,13 +68,14 @@ PalettePlace PosePalette::place(std::size_t instance) const
     const std::size_t index = instance / _chunkCapacity;
     if (index >= _chunks.size()) return {};
     const Chunk& chunk = *_chunks[index];
-    return {chunk.palette.texture(), static_cast<int>(chunk.size), static_cast<int>(instance % _chunkCapacity)};
+    return {chunk.palette.texture(), static_cast<int>(chunk.size), static_cast<int>(instance % _chunkCapacity),
+            chunk.uploadedTints.empty() ? 0 : chunk.tints.texture()};
 }
 
 void PosePalette::release()
 {
     for (const std::unique_ptr<Chunk>& chunk : _chunks)
-        for (BufferTexture* buffer : {&chunk->samples, &chunk->roots, &chunk->palette})
+        for (BufferTexture* buffer : {&chunk->samples, &chunk->roots, &chunk->tints, &chunk->palette})
             buffer->release();
     _chunks.clear();
 }

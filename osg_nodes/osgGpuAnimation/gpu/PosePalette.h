@@ -16,6 +16,7 @@ struct PalettePlace
     GLuint texture = 0; ///< 0: none, nothing can be drawn
     int stride = 0;
     int instance = 0;
+    GLuint tints = 0; ///< RGBA8, one an instance; 0: all white
 };
 
 /// The GPU's side of one PoseBatch in one graphics context: its input buffers and the palette they become. Large
@@ -31,8 +32,10 @@ public:
         std::size_t sampleStride = 1;
         std::vector<BlendSample> uploadedSamples;       ///< what `samples` holds
         std::vector<AffineMatrix> uploadedRootMatrices; ///< what `roots` holds
+        std::vector<std::uint32_t> uploadedTints;       ///< what `tints` holds
         BufferTexture samples;
         BufferTexture roots;
+        BufferTexture tints;
         BufferTexture palette; ///< RGBA32F: paletteSize * size matrices, entry-major
     };
 

@@ -2,6 +2,7 @@
 #include <osgGpuAnimation/nodes/AnimationUpdateCallback.h>
 
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
+#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 
 #include <osg/NodeVisitor>
 
@@ -15,8 +16,11 @@ AnimationUpdateCallback::AnimationUpdateCallback(const AnimationUpdateCallback& 
 
 void AnimationUpdateCallback::operator()(osg::Node* node, osg::NodeVisitor* visitor)
 {
-    auto* character = dynamic_cast<AnimatedCharacter*>(node);
-    if (character && visitor->getFrameStamp()) character->update(visitor->getFrameStamp()->getSimulationTime());
+    if (const osg::FrameStamp* stamp = visitor->getFrameStamp())
+    {
+        if (auto* character = dynamic_cast<AnimatedCharacter*>(node)) character->update(stamp->getSimulationTime());
+        if (auto* crowd = dynamic_cast<AnimatedCrowd*>(node)) crowd->update(stamp->getSimulationTime());
+    }
     traverse(node, visitor);
 }
 

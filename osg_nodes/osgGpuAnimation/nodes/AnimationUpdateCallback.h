@@ -6,8 +6,8 @@
 namespace osgGpuAnimation
 {
 
-/// Updates the AnimatedCharacter it is on with the frame stamp's simulation time. It has no state of its own, so
-/// copies of a character may share it.
+/// Updates the AnimatedCharacter or AnimatedCrowd it is on with the frame stamp's simulation time. It has no state of
+/// its own, so copies of a character may share it.
 class AnimationUpdateCallback : public osg::NodeCallback
 {
 public:

@@ -10,7 +10,7 @@
 namespace osgGpuAnimation
 {
 
-/// Says, along the state graph of one frame, whose palette the SkinnedGeometry below is drawn from: a place in a
+/// Says, along the state graph of one frame, whose palettes the SkinnedGeometry below is drawn from: places in a
 /// PoseBatch of that frame. Made by PoseFrame; applying it does nothing by itself.
 class PaletteBinding : public osg::StateAttribute
 {
@@ -21,10 +21,12 @@ public:
     PaletteBinding(const PaletteBinding& other, const osg::CopyOp& copyop = osg::CopyOp::SHALLOW_COPY);
     META_StateAttribute(osgGpuAnimation, PaletteBinding, bindingType)
 
-        void set(std::shared_ptr<const AnimationSet> set, std::size_t slot, std::size_t instance);
+        void set(std::shared_ptr<const AnimationSet> set, std::size_t slot, std::size_t instance,
+                 std::size_t instanceCount = 1);
     const AnimationSet* animationSet() const { return _set.get(); }
     std::size_t slot() const { return _slot; }
-    std::size_t instance() const { return _instance; }
+    std::size_t instance() const { return _instance; }           ///< the first to be drawn
+    std::size_t instanceCount() const { return _instanceCount; } ///< that are to be drawn, one after another
 
     int compare(const osg::StateAttribute& other) const override;
     void apply(osg::State&) const override {}
@@ -36,6 +38,7 @@ private:
     std::shared_ptr<const AnimationSet> _set;
     std::size_t _slot = 0;
     std::size_t _instance = 0;
+    std::size_t _instanceCount = 1;
 };
 
 } // namespace osgGpuAnimation

@@ -44,6 +44,13 @@ osg::ref_ptr<PoseFrame> PoseFrame::forContext(unsigned int contextId, unsigned i
 void PoseFrame::reset(unsigned int frameNumber)
 {
     _frameNumber = frameNumber;
+    for (const std::unique_ptr<Batch>& batch : _batches)
+    {
+        batch->content->reset(nullptr);
+        _spareBatches.push_back(std::move(batch->content));
+    }
+    // As many again as were in use, and no more, wait for the next frame.
+    _spareBatches.resize(std::min(_spareBatches.size(), 2 * _batches.size()));
     _batches.clear();
     _batchesOfSet.clear();
     _enlisted.clear();
@@ -58,7 +65,7 @@ osg::StateSet* PoseFrame::enlist(const AnimatedCharacter& character)
     if (known != _enlisted.end() && isSame(known->second.instruction, instruction)) return known->second.stateSet;
 
     Batch& batch = openBatch(character);
-    osg::StateSet* stateSet = nextState(batch, batch.content.add(instruction));
+    osg::StateSet* stateSet = nextState(batch, batch.content->add(instruction), 1);
     _enlisted[&character] = {instruction, stateSet};
     return stateSet;
 }
@@ -66,16 +73,48 @@ osg::StateSet* PoseFrame::enlist(const AnimatedCharacter& character)
 PoseFrame::Batch& PoseFrame::openBatch(const AnimatedCharacter& character)
 {
     std::vector<Batch*>& batches = _batchesOfSet[&character.set()];
-    if (batches.empty() || batches.back()->isEvaluated)
-    {
-        _batches.push_back(
-            std::make_unique<Batch>(Batch{PoseBatch(character.controller().sharedSet()), batches.size()}));
-        batches.push_back(_batches.back().get());
-    }
+    const auto open = std::find_if(batches.begin(), batches.end(), [](const Batch* batch) { return batch->isOpen(); });
+    return open != batches.end() ? **open : addBatch(spareBatch(character.controller().sharedSet()));
+}
+
+PoseFrame::Batch& PoseFrame::addBatch(std::unique_ptr<PoseBatch> content)
+{
+    std::vector<Batch*>& batches = _batchesOfSet[&content->set()];
+    _batches.push_back(std::make_unique<Batch>(Batch{std::move(content), batches.size()}));
+    batches.push_back(_batches.back().get());
     return *batches.back();
 }
 
-osg::StateSet* PoseFrame::nextState(const Batch& batch, std::size_t instance)
+std::unique_ptr<PoseBatch> PoseFrame::spareBatch(std::shared_ptr<const AnimationSet> set)
+{
+    if (_spareBatches.empty()) return std::make_unique<PoseBatch>(std::move(set));
+    std::unique_ptr<PoseBatch> batch = std::move(_spareBatches.back());
+    _spareBatches.pop_back();
+    batch->reset(std::move(set));
+    return batch;
+}
+
+std::unique_ptr<PoseBatch> PoseFrame::makeBatch(std::shared_ptr<const AnimationSet> set)
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    return spareBatch(std::move(set));
+}
+
+osg::StateSet* PoseFrame::enlist(std::unique_ptr<PoseBatch> content)
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    for (const Batch* batch : _batchesOfSet[&content->set()])
+        if (batch->stateOfAll && batch->content->isSame(*content))
+        {
+            _spareBatches.push_back(std::move(content));
+            return batch->stateOfAll;
+        }
+    Batch& batch = addBatch(std::move(content));
+    batch.stateOfAll = nextState(batch, 0, batch.content->size());
+    return batch.stateOfAll;
+}
+
+osg::StateSet* PoseFrame::nextState(const Batch& batch, std::size_t instance, std::size_t instanceCount)
 {
     if (_statesUsed == _states.size())
     {
@@ -84,7 +123,7 @@ osg::StateSet* PoseFrame::nextState(const Batch& batch, std::size_t instance)
     }
     osg::StateSet* stateSet = _states[_statesUsed++].get();
     auto* binding = static_cast<PaletteBinding*>(stateSet->getAttribute(PaletteBinding::bindingType));
-    binding->set(batch.content.sharedSet(), batch.slot, instance);
+    binding->set(batch.content->sharedSet(), batch.slot, instance, instanceCount);
     return stateSet;
 }
 
@@ -99,7 +138,7 @@ void PoseFrame::evaluate(osg::RenderInfo& renderInfo)
         if (batch->isEvaluated && pipeline && pipeline->place(batch->content.set(), batch->slot, 0).texture != 0)
             continue;
         batch->isEvaluated = true;
-        if (pipeline) pipeline->evaluate(state, batch->content, batch->slot);
+        if (pipeline) pipeline->evaluate(state, *batch->content, batch->slot);
     }
 }
 

@@ -33,6 +33,12 @@ public:
     /// and stays unchanged while this frame is in use.
     osg::StateSet* enlist(const AnimatedCharacter& character);
 
+    /// An empty batch, to be filled by the caller alone and enlisted; its storage is that of earlier frames.
+    std::unique_ptr<PoseBatch> makeBatch(std::shared_ptr<const AnimationSet> set);
+    /// Takes a whole batch up, unless the same is in already (several cameras may see the same). The state is that for
+    /// drawing all its instances. batch: not empty.
+    osg::StateSet* enlist(std::unique_ptr<PoseBatch> batch);
+
     /// Evaluates what was enlisted and not evaluated yet.
     void evaluate(osg::RenderInfo& renderInfo);
 
@@ -44,9 +50,12 @@ protected:
 private:
     struct Batch
     {
-        PoseBatch content;
+        std::unique_ptr<PoseBatch> content;
         std::size_t slot;
+        osg::StateSet* stateOfAll = nullptr; ///< null: a batch of characters, which have states of their own
         bool isEvaluated = false;
+
+        bool isOpen() const { return !stateOfAll && !isEvaluated; }
     };
     struct Enlisted
     {
@@ -56,12 +65,15 @@ private:
 
     void reset(unsigned int frameNumber);
     Batch& openBatch(const AnimatedCharacter& character);
-    osg::StateSet* nextState(const Batch& batch, std::size_t instance);
+    Batch& addBatch(std::unique_ptr<PoseBatch> content);
+    std::unique_ptr<PoseBatch> spareBatch(std::shared_ptr<const AnimationSet> set);
+    osg::StateSet* nextState(const Batch& batch, std::size_t instance, std::size_t instanceCount);
 
     std::mutex _mutex;
     unsigned int _frameNumber = 0;
     std::vector<std::unique_ptr<Batch>> _batches;
-    std::unordered_map<const AnimationSet*, std::vector<Batch*>> _batchesOfSet; ///< the last may be open
+    std::unordered_map<const AnimationSet*, std::vector<Batch*>> _batchesOfSet; ///< one may be open
+    std::vector<std::unique_ptr<PoseBatch>> _spareBatches;
     std::unordered_map<const AnimatedCharacter*, Enlisted> _enlisted;
     std::vector<osg::ref_ptr<osg::StateSet>> _states; ///< reused from frame to frame
     std::size_t _statesUsed = 0;

@@ -48,11 +48,16 @@ PoseStage& PoseStage::of(osgUtil::CullVisitor& visitor)
 
 osg::StateSet* PoseStage::enlist(osgUtil::CullVisitor& visitor, const AnimatedCharacter& character)
 {
+    return frame(visitor).enlist(character);
+}
+
+PoseFrame& PoseStage::frame(osgUtil::CullVisitor& visitor)
+{
     PoseStage& stage = of(visitor);
     const unsigned int frameNumber = visitor.getFrameStamp() ? visitor.getFrameStamp()->getFrameNumber() : 0;
     if (stage._isDrawn || !stage._frame || stage._frame->frameNumber() != frameNumber)
         stage.attach(visitor, visitor.getRenderInfo().getContextID(), frameNumber);
-    return stage._frame->enlist(character);
+    return *stage._frame;
 }
 
 // Attached to the visitor's main stage, wherever the traversal is now: a shadow camera's stage may come later.

@@ -20,6 +20,8 @@ class PoseStage : public osg::Camera
 public:
     /// To be called by a character while it is culled and seen. Returns the state its meshes are to be culled with.
     static osg::StateSet* enlist(osgUtil::CullVisitor& visitor, const AnimatedCharacter& character);
+    /// The frame that the visitor's cull is part of, for those that enlist otherwise.
+    static PoseFrame& frame(osgUtil::CullVisitor& visitor);
 
 protected:
     ~PoseStage() override = default;

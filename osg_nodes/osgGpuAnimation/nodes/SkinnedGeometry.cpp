@@ -2,6 +2,7 @@
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
 #include <osgGpuAnimation/gpu/PosePipeline.h>
+#include <osgGpuAnimation/nodes/InstancedDraw.h>
 #include <osgGpuAnimation/nodes/MorphDeltas.h>
 #include <osgGpuAnimation/nodes/PaletteBinding.h>
 
@@ -225,11 +226,53 @@ void SkinnedGeometry::drawImplementation(osg::RenderInfo& renderInfo) const
         static_cast<const PaletteBinding*>(state.getLastAppliedAttribute(PaletteBinding::bindingType));
     if (!binding || !binding->animationSet()) return;
     const PosePipeline* pipeline = PosePipeline::of(state);
-    const PalettePlace place =
-        pipeline ? pipeline->place(*binding->animationSet(), binding->slot(), binding->instance()) : PalettePlace{};
+    if (!pipeline) return;
+    if (binding->instanceCount() > 1)
+    {
+        drawInstances(renderInfo, *binding, *pipeline);
+        return;
+    }
+    const PalettePlace place = pipeline->place(*binding->animationSet(), binding->slot(), binding->instance());
     if (place.texture == 0) return;
     bindPalette(state, place);
     osg::Geometry::drawImplementation(renderInfo);
+}
+
+// As osg::Geometry::drawImplementation, but for the primitives: those draw themselves with a number of instances that
+// is their own, while here it is the frame's.
+void SkinnedGeometry::drawInstances(osg::RenderInfo& renderInfo, const PaletteBinding& binding,
+                                    const PosePipeline& pipeline) const
+{
+    if (containsDeprecatedData()) return;
+    osg::State& state = *renderInfo.getState();
+    const bool usesBuffers = state.useVertexBufferObject(_supportsVertexBufferObjects && _useVertexBufferObjects);
+    const bool usesArrayObject = usesBuffers && state.useVertexArrayObject(_useVertexArrayObject);
+    osg::VertexArrayState* arrays = state.getCurrentVertexArrayState();
+    arrays->setVertexBufferObjectSupported(usesBuffers);
+    drawVertexArraysImplementation(renderInfo);
+    const std::size_t end = binding.instance() + binding.instanceCount();
+    for (std::size_t first = binding.instance(); first < end;)
+    {
+        // What is in one chunk of the palette is drawn at once.
+        const PalettePlace place = pipeline.place(*binding.animationSet(), binding.slot(), first);
+        if (place.texture == 0 || place.stride <= place.instance) break;
+        const std::size_t count = std::min(end - first, static_cast<std::size_t>(place.stride - place.instance));
+        drawPrimitives(state, place, static_cast<int>(count));
+        first += count;
+    }
+    if (usesBuffers && !usesArrayObject)
+    {
+        arrays->unbindVertexBufferObject();
+        arrays->unbindElementBufferObject();
+    }
+}
+
+void SkinnedGeometry::drawPrimitives(osg::State& state, const PalettePlace& first, int count) const
+{
+    const bool usesBuffers = state.useVertexBufferObject(_supportsVertexBufferObjects && _useVertexBufferObjects);
+    bindPalette(state, first);
+    for (const osg::ref_ptr<osg::PrimitiveSet>& primitives : _primitives)
+        drawInstanced(state, *primitives, count, usesBuffers);
 }
 
 void SkinnedGeometry::bindPalette(osg::State& state, const PalettePlace& place) const
@@ -240,6 +283,8 @@ void SkinnedGeometry::bindPalette(osg::State& state, const PalettePlace& place) 
     static const unsigned int strideName = osg::Uniform::getNameID("poseStride");
     static const unsigned int instanceName = osg::Uniform::getNameID("poseInstance");
     static const unsigned int influencesName = osg::Uniform::getNameID("poseInfluences");
+    static const unsigned int tintsName = osg::Uniform::getNameID("poseTints");
+    static const unsigned int tintedName = osg::Uniform::getNameID("poseTinted");
     const osg::GLExtensions* gl = state.get<osg::GLExtensions>();
     state.setActiveTextureUnit(POSE_PALETTE_UNIT);
     glBindTexture(GL_TEXTURE_BUFFER, place.texture);
@@ -251,6 +296,13 @@ void SkinnedGeometry::bindPalette(osg::State& state, const PalettePlace& place) 
     {
         gl->glVertexAttrib4f(POSE_ENTRIES_0_LOCATION, static_cast<GLfloat>(_rigidEntry), 0, 0, 0);
         gl->glVertexAttrib4f(POSE_WEIGHTS_0_LOCATION, 1, 0, 0, 0);
+    }
+    gl->glUniform1i(program->getUniformLocation(tintsName), POSE_TINT_UNIT);
+    gl->glUniform1i(program->getUniformLocation(tintedName), place.tints != 0 ? 1 : 0);
+    if (place.tints != 0)
+    {
+        state.setActiveTextureUnit(POSE_TINT_UNIT);
+        glBindTexture(GL_TEXTURE_BUFFER, place.tints);
     }
     bindMorphTargets(state, *program);
 }

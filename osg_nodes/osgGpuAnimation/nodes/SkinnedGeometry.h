@@ -17,6 +17,8 @@
 namespace osgGpuAnimation
 {
 
+class PaletteBinding;
+class PosePipeline;
 struct PalettePlace;
 
 /// A mesh drawn from the palette: ordinary vertex arrays in bind pose and, for each vertex, the palette entries that
@@ -73,7 +75,7 @@ public:
     /// vertex, in the character's own space; computed in double. outPositions: one a vertex.
     void computePositions(const std::vector<AffineMatrix>& palette, std::vector<glm::dvec3>& outPositions) const;
 
-    /// Writes the palette's place into the program that is applied, then draws.
+    /// Writes the palette's place into the program that is applied, then draws; all instances of a crowd at once.
     void drawImplementation(osg::RenderInfo& renderInfo) const override;
     /// Transforms of the vertices by others (the Optimizer's) would break the bind pose: refused.
     void accept(osg::Drawable::AttributeFunctor&) override {}
@@ -83,6 +85,8 @@ protected:
     ~SkinnedGeometry() override = default;
 
 private:
+    void drawInstances(osg::RenderInfo& renderInfo, const PaletteBinding& binding, const PosePipeline& pipeline) const;
+    void drawPrimitives(osg::State& state, const PalettePlace& first, int count) const;
     void bindPalette(osg::State& state, const PalettePlace& place) const;
     void bindMorphTargets(osg::State& state, const osg::Program::PerContextProgram& program) const;
     template <typename Function>

@@ -1,0 +1,352 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+
+#include <osgGpuAnimation/animation/Pose.h>
+#include <osgGpuAnimation/nodes/AnimatedCharacter.h>
+#include <osgGpuAnimation/nodes/AnimationUpdateCallback.h>
+#include <osgGpuAnimation/nodes/CrowdView.h>
+#include <osgGpuAnimation/nodes/PosedMesh.h>
+#include <osgGpuAnimation/nodes/PoseStage.h>
+
+#include <osgUtil/CullVisitor>
+#include <osgUtil/IntersectionVisitor>
+
+#include <algorithm>
+#include <cmath>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+/// Calls a function for every SkinnedGeometry among a group's children.
+template <typename Function>
+void forEachMesh(const osg::Group& group, Function function)
+{
+    for (unsigned int child = 0; child < group.getNumChildren(); ++child)
+    {
+        const auto* mesh = dynamic_cast<const SkinnedGeometry*>(group.getChild(child));
+        if (mesh) function(*mesh);
+    }
+}
+
+std::vector<Box> clipBoundsOf(const AnimationSet& set, const osg::Group& meshes)
+{
+    EntryBoxes entryBoxes(set.paletteSize());
+    forEachMesh(meshes, [&](const SkinnedGeometry& mesh) { mesh.addToEntryBoxes(set, entryBoxes); });
+    std::vector<Box> bounds;
+    for (int clip = -1; clip < static_cast<int>(set.clips().size()); ++clip)
+        bounds.push_back(boundsOfClip(set, clip, entryBoxes));
+    return bounds;
+}
+
+std::shared_ptr<const AnimationSet> emptySet()
+{
+    const osg::ref_ptr<AnimatedCharacter> nobody = new AnimatedCharacter;
+    return nobody->controller().sharedSet();
+}
+
+std::uint32_t toRgba(const osg::Vec4& color)
+{
+    std::uint32_t rgba = 0;
+    for (int channel = 0; channel < 4; ++channel)
+    {
+        // Written so that what is not a number counts as 0.
+        const float value = color[channel] > 0.0f ? std::min(color[channel], 1.0f) : 0.0f;
+        rgba |= static_cast<std::uint32_t>(std::lround(value * 255.0f)) << 8 * channel;
+    }
+    return rgba;
+}
+
+Error noSuchInstance()
+{
+    return Error{"the crowd has no such instance (any more)"};
+}
+
+/// What an intersector meets of an instance: computed only where its sphere is hit.
+class InstanceNode : public osg::Node
+{
+public:
+    InstanceNode(const AnimatedCrowd& crowd, std::size_t index) : _crowd(crowd), _index(index) {}
+
+    void traverse(osg::NodeVisitor& visitor) override
+    {
+        const AnimatedCrowd::Instance instance = _crowd.instances().handleOf(_index);
+        forEachMesh(_crowd,
+                    [&](const SkinnedGeometry& mesh)
+                    {
+                        if (!visitor.validNodeMask(mesh)) return;
+                        const osg::ref_ptr<osg::Geometry> posed = _crowd.posedMesh(instance, mesh);
+                        // The hit's node path leads through this node, and only the drawable is kept.
+                        posed->setUserData(this);
+                        posed->accept(visitor);
+                    });
+    }
+
+    osg::BoundingSphere computeBound() const override
+    {
+        const glm::vec4& sphere = _crowd.instances().sphere(_index);
+        return {osg::Vec3(sphere.x, sphere.y, sphere.z), sphere.w};
+    }
+
+private:
+    const AnimatedCrowd& _crowd;
+    std::size_t _index;
+};
+
+} // namespace
+
+AnimatedCrowd::AnimatedCrowd() : AnimatedCrowd(emptySet(), {}) {}
+
+AnimatedCrowd::AnimatedCrowd(std::shared_ptr<const AnimationSet> set,
+                             const std::vector<osg::ref_ptr<SkinnedGeometry>>& meshes)
+    : _instances(std::move(set))
+{
+    // Not static: the Optimizer must not flatten the transforms above into the bind pose.
+    setDataVariance(osg::Object::DYNAMIC);
+    setUpdateCallback(new AnimationUpdateCallback);
+    for (const osg::ref_ptr<SkinnedGeometry>& mesh : meshes)
+        addChild(mesh);
+    _instances.setClipBounds(clipBoundsOf(*_instances.set(), *this));
+}
+
+AnimatedCrowd::AnimatedCrowd(const AnimatedCharacter& character) : _instances(character.controller().sharedSet())
+{
+    setDataVariance(osg::Object::DYNAMIC);
+    setUpdateCallback(new AnimationUpdateCallback);
+    setName(character.getName());
+    if (character.getStateSet()) setStateSet(const_cast<osg::StateSet*>(character.getStateSet()));
+    forEachMesh(character, [&](const SkinnedGeometry& mesh) { addChild(const_cast<SkinnedGeometry*>(&mesh)); });
+    std::vector<Box> bounds;
+    for (int clip = -1; clip < static_cast<int>(set().clips().size()); ++clip)
+        bounds.push_back(character.clipBounds(clip));
+    const bool areKnown = std::any_of(bounds.begin(), bounds.end(), [](const Box& box) { return !box.empty(); });
+    _instances.setClipBounds(areKnown ? bounds : clipBoundsOf(set(), *this));
+}
+
+AnimatedCrowd::AnimatedCrowd(const AnimatedCrowd& other, const osg::CopyOp& copyop)
+    : osg::Transform(other, copyop), _instances(other._instances), _origin(other._origin), _hasOrigin(other._hasOrigin),
+      _updateTime(other._updateTime)
+{
+}
+
+AnimatedCrowd::~AnimatedCrowd() = default;
+
+Result<AffineMatrix> AnimatedCrowd::toRootMatrix(const osg::Matrixd& placement, const osg::Vec3d& origin) const
+{
+    AffineMatrix root;
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 4; ++column)
+            root.rows[static_cast<std::size_t>(row)][column] =
+                static_cast<float>(placement(column, row) - (column == 3 ? origin[row] : 0.0));
+    if (!root.isFinite()) return Error{"the placement is not finite, seen from the crowd's origin"};
+    if (placement(0, 3) != 0.0 || placement(1, 3) != 0.0 || placement(2, 3) != 0.0 || placement(3, 3) != 1.0)
+        return Error{"the placement is not affine: its last column is not 0, 0, 0, 1"};
+    const glm::dvec3 x(placement(0, 0), placement(0, 1), placement(0, 2));
+    const glm::dvec3 y(placement(1, 0), placement(1, 1), placement(1, 2));
+    const glm::dvec3 z(placement(2, 0), placement(2, 1), placement(2, 2));
+    if (glm::dot(glm::cross(x, y), z) < 0.0)
+        return Error{"the placement mirrors: its determinant is below 0, faces would be seen from inside"};
+    return root;
+}
+
+Result<AnimatedCrowd::Instance> AnimatedCrowd::add(const osg::Matrixd& placement, const AnimationController& controller,
+                                                   const osg::Vec4& tint)
+{
+    if (size() >= maxInstances)
+        return Error{"the crowd has " + std::to_string(size()) + " instances, the most that one can have"};
+    if (&controller.set() != &set()) return Error{"the controller is for another set than the crowd's"};
+    const osg::Vec3d origin = _hasOrigin ? _origin : placement.getTrans();
+    const Result<AffineMatrix> root = toRootMatrix(placement, origin);
+    if (!root) return root.error();
+    _origin = origin;
+    _hasOrigin = true;
+    dirtyBound();
+    return _instances.add(root.value(), controller, toRgba(tint));
+}
+
+bool AnimatedCrowd::remove(Instance instance)
+{
+    if (!contains(instance)) return false;
+    _instances.remove(_instances.indexOf(instance));
+    dirtyBound();
+    return true;
+}
+
+Result<bool> AnimatedCrowd::move(Instance instance, const osg::Matrixd& placement)
+{
+    const std::size_t index = _instances.indexOf(instance);
+    if (index == CrowdInstances::none) return noSuchInstance();
+    const Result<AffineMatrix> root = toRootMatrix(placement, _origin);
+    if (!root) return root.error();
+    _instances.move(index, root.value());
+    dirtyBound();
+    return true;
+}
+
+Result<bool> AnimatedCrowd::setTint(Instance instance, const osg::Vec4& tint)
+{
+    const std::size_t index = _instances.indexOf(instance);
+    if (index == CrowdInstances::none) return noSuchInstance();
+    _instances.setTint(index, toRgba(tint));
+    return true;
+}
+
+AnimationController* AnimatedCrowd::controller(Instance instance)
+{
+    const std::size_t index = _instances.indexOf(instance);
+    if (index == CrowdInstances::none) return nullptr;
+    dirtyBound();
+    return &_instances.controller(index);
+}
+
+osg::Matrixd AnimatedCrowd::placement(Instance instance) const
+{
+    const AffineMatrix& root = _instances.rootMatrix(_instances.indexOf(instance));
+    osg::Matrixd placement;
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 4; ++column)
+            placement(column, row) = static_cast<double>(root.rows[static_cast<std::size_t>(row)][column]) +
+                                     (column == 3 ? _origin[row] : 0.0);
+    return placement;
+}
+
+void AnimatedCrowd::setOrigin(const osg::Vec3d& origin)
+{
+    const osg::Vec3d shift = _origin - origin;
+    for (std::size_t index = 0; index < size(); ++index)
+    {
+        AffineMatrix root = _instances.rootMatrix(index);
+        for (int row = 0; row < 3; ++row)
+            root.rows[static_cast<std::size_t>(row)].w =
+                static_cast<float>(static_cast<double>(root.rows[static_cast<std::size_t>(row)].w) + shift[row]);
+        _instances.move(index, root);
+    }
+    _origin = origin;
+    _hasOrigin = true;
+    dirtyBound();
+}
+
+void AnimatedCrowd::update(double simulationTime)
+{
+    const double step = _updateTime ? simulationTime - *_updateTime : 0.0;
+    _updateTime = simulationTime;
+    if (_instances.advance(step)) dirtyBound();
+}
+
+std::optional<AnimatedCrowd::Instance> AnimatedCrowd::instanceOf(const osg::Drawable* hit)
+{
+    const auto* posed = dynamic_cast<const PosedMesh*>(hit);
+    return posed ? std::optional<Instance>(posed->instance()) : std::nullopt;
+}
+
+osg::ref_ptr<osg::Geometry> AnimatedCrowd::posedMesh(Instance instance, const SkinnedGeometry& mesh) const
+{
+    osg::ref_ptr<osg::Vec3Array> positions = new osg::Vec3Array;
+    const std::size_t index = _instances.indexOf(instance);
+    if (index != CrowdInstances::none)
+    {
+        std::vector<AffineMatrix> palette;
+        Pose::evaluate(set(), _instances.instruction(index), _instances.rootMatrix(index), palette);
+        std::vector<glm::dvec3> computed;
+        mesh.computePositions(palette, computed);
+        for (const glm::dvec3& position : computed)
+            positions->push_back(osg::Vec3(position.x, position.y, position.z));
+    }
+    return new PosedMesh(mesh, positions, instance);
+}
+
+void AnimatedCrowd::acceptInstances(osg::PrimitiveFunctor& functor) const
+{
+    for (std::size_t index = 0; index < size(); ++index)
+        forEachMesh(*this,
+                    [&](const SkinnedGeometry& mesh) { posedMesh(_instances.handleOf(index), mesh)->accept(functor); });
+}
+
+void AnimatedCrowd::traverse(osg::NodeVisitor& visitor)
+{
+    if (osgUtil::CullVisitor* cullVisitor = visitor.asCullVisitor())
+        cull(*cullVisitor);
+    else if (dynamic_cast<osgUtil::IntersectionVisitor*>(&visitor))
+        intersect(visitor);
+    else
+        osg::Transform::traverse(visitor);
+}
+
+void AnimatedCrowd::cull(osgUtil::CullVisitor& visitor)
+{
+    CrowdView view(visitor);
+    static thread_local std::vector<std::uint32_t> seen; // keeps its storage from cull to cull
+    _instances.findSeen(isCullingActive() ? view.planes() : std::vector<glm::vec4>(), seen);
+    const bool isSeen = !seen.empty() && set().paletteSize() > 0;
+    if (isSeen)
+    {
+        PoseFrame& frame = PoseStage::frame(visitor);
+        std::unique_ptr<PoseBatch> batch = frame.makeBatch(sharedSet());
+        _instances.addTo(*batch, seen);
+        view.look(_instances, seen);
+        visitor.pushStateSet(frame.enlist(std::move(batch)));
+    }
+    for (const osg::ref_ptr<osg::Node>& child : _children)
+    {
+        auto* mesh = dynamic_cast<SkinnedGeometry*>(child.get());
+        if (!mesh)
+            child->accept(visitor);
+        else if (isSeen)
+            view.draw(*mesh);
+    }
+    if (isSeen) visitor.popStateSet();
+}
+
+void AnimatedCrowd::intersect(osg::NodeVisitor& visitor)
+{
+    for (std::size_t index = 0; index < size(); ++index)
+    {
+        const osg::ref_ptr<InstanceNode> instance = new InstanceNode(*this, index);
+        instance->accept(visitor);
+    }
+    for (const osg::ref_ptr<osg::Node>& child : _children)
+        if (!dynamic_cast<SkinnedGeometry*>(child.get())) child->accept(visitor);
+}
+
+osg::BoundingSphere AnimatedCrowd::computeBound() const
+{
+    osg::BoundingBox box;
+    for (std::size_t index = 0; index < size(); ++index)
+    {
+        const glm::vec4& sphere = _instances.sphere(index);
+        if (sphere.w < 0.0f) continue;
+        box.expandBy(sphere.x - sphere.w, sphere.y - sphere.w, sphere.z - sphere.w);
+        box.expandBy(sphere.x + sphere.w, sphere.y + sphere.w, sphere.z + sphere.w);
+    }
+    osg::BoundingSphere bound;
+    if (box.valid()) bound = osg::BoundingSphere(box);
+    for (const osg::ref_ptr<osg::Node>& child : _children)
+        if (!dynamic_cast<const SkinnedGeometry*>(child.get())) bound.expandBy(child->getBound());
+    if (!bound.valid()) return bound;
+    const osg::Vec3d center = osg::Vec3d(bound.center()) + _origin;
+    // A bound's numbers may be floats: far out their rounding must not cut the crowd off.
+    return {osg::BoundingSphere::vec_type(center),
+            static_cast<osg::BoundingSphere::value_type>(bound.radius() + 1e-6 * center.length())};
+}
+
+bool AnimatedCrowd::computeLocalToWorldMatrix(osg::Matrix& matrix, osg::NodeVisitor*) const
+{
+    if (_referenceFrame == RELATIVE_RF)
+        matrix.preMultTranslate(_origin);
+    else
+        matrix.makeTranslate(_origin);
+    return true;
+}
+
+bool AnimatedCrowd::computeWorldToLocalMatrix(osg::Matrix& matrix, osg::NodeVisitor*) const
+{
+    if (_referenceFrame == RELATIVE_RF)
+        matrix.postMultTranslate(-_origin);
+    else
+        matrix.makeTranslate(-_origin);
+    return true;
+}
+
+} // namespace osgGpuAnimation

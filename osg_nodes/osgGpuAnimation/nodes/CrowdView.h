@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osgGpuAnimation/nodes/CrowdInstances.h>
+
+#include <osg/Drawable>
+#include <osgUtil/CullVisitor>
+
+#include <cstdint>
+#include <vector>
+
+namespace osgGpuAnimation
+{
+
+/// A crowd as one camera sees it while it is culled: what is in view, how far away, and how meshes are handed on to be
+/// drawn. Lives as long as the crowd's own traversal, in its space.
+class CrowdView
+{
+public:
+    explicit CrowdView(osgUtil::CullVisitor& visitor) : _visitor(visitor) {}
+
+    /// What an instance must reach the inner side of: n · p + d >= 0. The view's, and one for what is too small.
+    std::vector<glm::vec4> planes() const;
+    /// Tells the camera's near and far planes of them. indices: those that are seen, at least one.
+    void look(const CrowdInstances& instances, const std::vector<std::uint32_t>& indices);
+    /// Hands the mesh on to be drawn, at the depth of those looked at.
+    void draw(osg::Drawable& mesh);
+
+private:
+    osgUtil::CullVisitor& _visitor;
+    float _depth = 0.0f; ///< before the eye
+};
+
+} // namespace osgGpuAnimation

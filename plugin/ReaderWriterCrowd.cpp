@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+#include "crowd/CrowdGrid.h"
+
+#include <osg/Notify>
+#include <osgDB/FileNameUtils>
+#include <osgDB/ReadFile>
+#include <osgDB/Registry>
+
+#include <new>
+
+namespace osgGpuAnimation
+{
+
+/// The pseudo-loader for crowds: `fox.glb.40x40.crowd` reads `fox.glb`, by whatever plugin, and shows its animated
+/// character 1600 times in 40 columns and 40 rows, each with a clip and a time of its own.
+class ReaderWriterCrowd : public osgDB::ReaderWriter
+{
+public:
+    ReaderWriterCrowd()
+    {
+        supportsExtension("crowd", "pseudo-loader: MODEL.COLUMNSxROWS.crowd");
+        for (const auto& [name, help] : crowd::optionHelp())
+            supportsOption(name, help);
+    }
+
+    const char* className() const override { return "osgGpuAnimation crowd pseudo-loader"; }
+
+    ReadResult readObject(const std::string& fileName, const Options* options) const override
+    {
+        return readNode(fileName, options);
+    }
+
+    ReadResult readNode(const std::string& fileName, const Options* options) const override
+    {
+        if (!acceptsExtension(osgDB::getLowerCaseFileExtension(fileName))) return ReadResult::FILE_NOT_HANDLED;
+        try
+        {
+            return read(osgDB::getNameLessExtension(fileName), options);
+        }
+        catch (const std::bad_alloc&)
+        {
+            return ReadResult::INSUFFICIENT_MEMORY_TO_LOAD;
+        }
+    }
+
+private:
+    ReadResult read(const std::string& name, const Options* options) const
+    {
+        const Result<crowd::CrowdOptions> wanted =
+            crowd::parseCrowd(name, options ? options->getOptionString() : std::string());
+        if (!wanted) return ReadResult(wanted.error().message);
+        const std::string& modelFile = wanted.value().modelFile;
+        ReadResult model = osgDB::Registry::instance()->readNode(modelFile, options);
+        if (!model.validNode())
+        {
+            if (!model.message().empty()) return ReadResult(modelFile + ": " + model.message());
+            return ReadResult("the crowd's model " + modelFile + " cannot be read");
+        }
+        const Result<osg::ref_ptr<AnimatedCrowd>> crowd = crowd::makeCrowd(*model.getNode(), wanted.value());
+        if (!crowd) return ReadResult(modelFile + ": " + crowd.error().message);
+        return ReadResult(crowd.value().get());
+    }
+};
+
+} // namespace osgGpuAnimation
+
+using osgGpuAnimation::ReaderWriterCrowd;
+REGISTER_OSGPLUGIN(crowd, ReaderWriterCrowd)

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+#include "crowd/CrowdGrid.h"
+
+#include <osgGpuAnimation/nodes/AnimatedCharacter.h>
+
+#include <charconv>
+#include <random>
+
+namespace osgGpuAnimation::crowd
+{
+
+namespace
+{
+
+/// How much room there is between one and the next, as a part of the larger side.
+constexpr double gap = 0.2;
+
+Result<std::size_t> findClip(const AnimationSet& set, const std::string& nameOrNumber)
+{
+    const Result<std::size_t> named = set.clipNamed(nameOrNumber);
+    if (named) return named;
+    std::size_t number = 0;
+    const char* end = nameOrNumber.data() + nameOrNumber.size();
+    const auto read = std::from_chars(nameOrNumber.data(), end, number);
+    return read.ec == std::errc() && read.ptr == end ? set.clipAt(number) : named;
+}
+
+Result<std::vector<std::size_t>> findClips(const AnimationSet& set, const std::vector<std::string>& wanted)
+{
+    std::vector<std::size_t> clips;
+    for (const std::string& name : wanted)
+    {
+        const Result<std::size_t> clip = findClip(set, name);
+        if (!clip) return clip.error();
+        clips.push_back(clip.value());
+    }
+    if (wanted.empty())
+        for (std::size_t clip = 0; clip < set.clips().size(); ++clip)
+            clips.push_back(clip);
+    return clips;
+}
+
+/// The larger side of the clips' boxes on the ground, as the character stands in the model. 1 where there is nothing.
+double widthOf(const AnimatedCharacter& character, const osg::Matrixd& placement, const std::vector<std::size_t>& clips,
+               bool isYUp)
+{
+    osg::BoundingBoxd placed;
+    const auto add = [&](int clip)
+    {
+        const Box& box = character.clipBounds(clip);
+        for (int corner = 0; corner < 8 && !box.empty(); ++corner)
+            placed.expandBy(osg::Vec3d(corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
+                                       corner & 4 ? box.max.z : box.min.z) *
+                            placement);
+    };
+    if (clips.empty()) add(-1);
+    for (const std::size_t clip : clips)
+        add(static_cast<int>(clip));
+    if (!placed.valid()) return 1.0;
+    const osg::Vec3d size = placed._max - placed._min;
+    const double width = std::max(size.x(), isYUp ? size.z() : size.y());
+    return width > 0.0 ? width : 1.0;
+}
+
+/// A share of 1 that is the same with every standard library.
+double share(std::mt19937& random)
+{
+    return static_cast<double>(random()) / 4294967296.0;
+}
+
+AnimationController randomController(const AnimatedCrowd& crowd, const std::vector<std::size_t>& clips,
+                                     std::mt19937& random)
+{
+    AnimationController controller(crowd.sharedSet());
+    if (clips.empty()) return controller;
+    const auto choice = static_cast<std::size_t>(share(random) * static_cast<double>(clips.size()));
+    if (controller.play(clips[choice])) controller.seek(share(random) * controller.duration());
+    return controller;
+}
+
+} // namespace
+
+Result<osg::ref_ptr<AnimatedCrowd>> makeCrowd(osg::Node& model, const CrowdOptions& options)
+{
+    const AnimatedCharacter* character = findCharacter(model);
+    if (!character) return Error{"there is no animated character in it"};
+    const Result<std::vector<std::size_t>> clips = findClips(character->set(), options.clips);
+    if (!clips) return clips.error();
+
+    osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*character);
+    const osg::Matrixd placement = character->getWorldMatrices().front();
+    const double spacing =
+        options.spacing.value_or((1.0 + gap) * widthOf(*character, placement, clips.value(), options.isYUp));
+    crowd->setOrigin(placement.getTrans());
+    std::mt19937 random(options.seed);
+    for (std::size_t place = 0; place < options.columns * options.rows; ++place)
+    {
+        const auto column = static_cast<double>(place % options.columns);
+        const auto row = static_cast<double>(place / options.columns);
+        const double x = spacing * (column - 0.5 * static_cast<double>(options.columns - 1));
+        const double y = spacing * (row - 0.5 * static_cast<double>(options.rows - 1));
+        const osg::Matrixd moved = osg::Matrixd::translate(x, options.isYUp ? 0.0 : y, options.isYUp ? -y : 0.0);
+        const Result<AnimatedCrowd::Instance> added =
+            crowd->add(placement * moved, randomController(*crowd, clips.value(), random));
+        if (!added) return added.error();
+    }
+    return crowd;
+}
+
+} // namespace osgGpuAnimation::crowd

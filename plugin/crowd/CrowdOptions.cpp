@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+#include "crowd/CrowdOptions.h"
+
+#include "gltf/ElementName.h"
+#include "gltf/OptionWord.h"
+
+#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+
+#include <charconv>
+#include <cmath>
+
+namespace osgGpuAnimation::crowd
+{
+
+namespace
+{
+
+/// False where the text is not a number, wholly.
+template <typename Number>
+bool readNumber(const std::string& text, Number& out)
+{
+    const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), out);
+    return fault == std::errc() && end == text.data() + text.size();
+}
+
+Result<bool> readSize(const std::string& size, CrowdOptions& out)
+{
+    const std::size_t cross = size.find_first_of("xX");
+    if (cross == std::string::npos || !readNumber(size.substr(0, cross), out.columns) ||
+        !readNumber(size.substr(cross + 1), out.rows))
+        return Error{gltf::quoted(size) + " is not a size like 40x40 (columns x rows)"};
+    if (out.columns == 0 || out.rows == 0) return Error{"a crowd of " + size + " has nobody in it"};
+    if (out.rows > AnimatedCrowd::maxInstances / out.columns)
+        return Error{"a crowd of " + size + " is more than the " + std::to_string(AnimatedCrowd::maxInstances) +
+                     " that one can have"};
+    return true;
+}
+
+/// The parts between commas.
+std::vector<std::string> splitAtCommas(const std::string& text)
+{
+    std::vector<std::string> parts(1);
+    for (const char letter : text)
+    {
+        if (letter == ',')
+            parts.emplace_back();
+        else
+            parts.back() += letter;
+    }
+    return parts;
+}
+
+/// False where the value does not fit the option.
+bool apply(const gltf::OptionWord& word, CrowdOptions& out)
+{
+    const std::string value = word.value.value_or("");
+    if (word.name == "noRotation") out.isYUp = true;
+    if (word.name == "seed") return readNumber(value, out.seed);
+    if (word.name == "spacing")
+        return readNumber(value, out.spacing.emplace()) && std::isfinite(*out.spacing) && *out.spacing > 0.0;
+    if (word.name != "clips") return true;
+    out.clips = splitAtCommas(value);
+    for (const std::string& clip : out.clips)
+        if (clip.empty()) return false;
+    return true;
+}
+
+} // namespace
+
+std::vector<std::pair<const char*, const char*>> optionHelp()
+{
+    return {
+        {"clips=NAME|INDEX,...", "the clips to choose from; default: all"},
+        {"spacing=UNITS", "from one to the next; default: by the bounds"},
+        {"seed=NUMBER", "another number, other clips and times; default: 1"},
+        {"noRotation", "keep glTF's +Y up; default: +Z up"},
+    };
+}
+
+Result<CrowdOptions> parseCrowd(const std::string& name, const std::string& options)
+{
+    CrowdOptions crowd;
+    const std::size_t dot = name.rfind('.');
+    if (dot == std::string::npos || dot == 0)
+        return Error{gltf::quoted(name) + " is not a model's file with a size, like fox.glb.40x40.crowd"};
+    crowd.modelFile = name.substr(0, dot);
+    const Result<bool> size = readSize(name.substr(dot + 1), crowd);
+    if (!size) return size.error();
+    for (const gltf::OptionWord& word : gltf::splitOptions(options))
+        if (!apply(word, crowd))
+            return Error{"option " + word.name + ": " + gltf::quoted(word.value.value_or("")) +
+                         " is not a value for it"};
+    return crowd;
+}
+
+} // namespace osgGpuAnimation::crowd

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+#include "gltf/OptionWord.h"
+
+namespace osgGpuAnimation::gltf
+{
+
+std::vector<OptionWord> splitOptions(const std::string& text)
+{
+    std::vector<OptionWord> words;
+    bool quotes = false;
+    bool inWord = false;
+    for (const char letter : text)
+    {
+        if (letter == '"')
+            quotes = !quotes;
+        else if (letter == ' ' && !quotes)
+        {
+            inWord = false;
+            continue;
+        }
+        if (!inWord) words.emplace_back();
+        inWord = true;
+        OptionWord& word = words.back();
+        if (letter == '=' && !word.value)
+            word.value.emplace();
+        else if (letter != '"')
+            (word.value ? *word.value : word.name) += letter;
+    }
+    return words;
+}
+
+} // namespace osgGpuAnimation::gltf

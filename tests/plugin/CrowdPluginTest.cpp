@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: MIT
+#include "plugin/ModelBuilder.h"
+
+#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+
+#include <gtest/gtest.h>
+#include <osgDB/Registry>
+
+#include <filesystem>
+#include <fstream>
+#include <set>
+
+namespace osgGpuAnimation::gltf
+{
+
+namespace
+{
+
+using Read = osgDB::ReaderWriter::ReadResult;
+
+/// A folder with `arm.gltf`, which has two clips, and `still.gltf`, which has nothing that moves.
+class CrowdPluginTest : public ::testing::Test
+{
+protected:
+    void SetUp() override
+    {
+        osgDB::FilePathList& paths = osgDB::Registry::instance()->getLibraryFilePathList();
+        if (paths.empty() || paths.front() != OSGGPUANIMATION_PLUGIN_FOLDER)
+            paths.push_front(OSGGPUANIMATION_PLUGIN_FOLDER);
+        const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+        folder = std::filesystem::path(::testing::TempDir()) / (std::string("osggpuanimation_crowd_") + test->name());
+        std::filesystem::create_directories(folder);
+        ModelBuilder still;
+        still.node("stone", -1, still.triangle());
+        write("still.gltf", still.text());
+        ModelBuilder arm;
+        arm.node("sword", arm.node("arm"), arm.triangle());
+        arm.animation("Slow slide");
+        arm.slide(0);
+        arm.animation("Slide");
+        arm.slide(0);
+        write("arm.gltf", arm.text());
+    }
+
+    void TearDown() override { std::filesystem::remove_all(folder); }
+
+    void write(const std::string& name, const std::string& content)
+    {
+        std::ofstream(folder / name, std::ios::binary) << content;
+    }
+
+    Read read(const std::string& name, const std::string& options = "")
+    {
+        const osg::ref_ptr<osgDB::Options> held = new osgDB::Options(options);
+        return osgDB::Registry::instance()->readNode((folder / name).string(), held);
+    }
+
+    osg::ref_ptr<AnimatedCrowd> readCrowd(const std::string& name, const std::string& options = "")
+    {
+        Read result = read(name, options);
+        osg::ref_ptr<AnimatedCrowd> crowd = dynamic_cast<AnimatedCrowd*>(result.getNode());
+        EXPECT_TRUE(crowd) << result.message();
+        return crowd;
+    }
+
+    static osg::Vec3d placeOf(const AnimatedCrowd& crowd, std::size_t index)
+    {
+        return crowd.placement(crowd.instances().handleOf(index)).getTrans();
+    }
+
+    static std::vector<std::pair<int, double>> playedBy(const AnimatedCrowd& crowd)
+    {
+        std::vector<std::pair<int, double>> played;
+        for (std::size_t index = 0; index < crowd.size(); ++index)
+        {
+            const AnimationController controller = crowd.instances().controllerCopy(index);
+            played.emplace_back(controller.clip(), controller.time());
+        }
+        return played;
+    }
+
+    std::filesystem::path folder;
+};
+
+struct FaultCase
+{
+    const char* file;
+    const char* options;
+    const char* message;
+};
+
+const FaultCase faults[] = {
+    {"arm.gltf.0x0.crowd", "", "nobody"},
+    {"arm.gltf.3x0.crowd", "", "nobody"},
+    {"arm.gltf.1001x1000.crowd", "", "1000000"},
+    {"arm.gltf.99999999999999999999x2.crowd", "", "size"},
+    {"arm.gltf.4294967296x4294967296.crowd", "", "1000000"},
+    {"arm.gltf.-3x4.crowd", "", "size"},
+    {"arm.gltf.3x.crowd", "", "size"},
+    {"arm.gltf.3y4.crowd", "", "size"},
+    {"arm.gltf.crowd", "", "size"},
+    {"arm.crowd", "", "size"},
+    {"absent.gltf.2x2.crowd", "", "absent.gltf"},
+    {"still.gltf.2x2.crowd", "", "no animated character"},
+    {"arm.gltf.2x2.crowd", "clips=Jump", "\"Slide\""},
+    {"arm.gltf.2x2.crowd", "clips=Slide,", "option clips"},
+    {"arm.gltf.2x2.crowd", "spacing=0", "option spacing"},
+    {"arm.gltf.2x2.crowd", "spacing=nan", "option spacing"},
+    {"arm.gltf.2x2.crowd", "spacing=1e300", "placement"},
+    {"arm.gltf.2x2.crowd", "seed=-1", "option seed"},
+};
+
+} // namespace
+
+TEST_F(CrowdPluginTest, readsColumnsAndRowsByTheBounds)
+{
+    const osg::ref_ptr<AnimatedCrowd> crowd = readCrowd("arm.gltf.4x3.crowd");
+    ASSERT_TRUE(crowd);
+    ASSERT_EQ(crowd->size(), 12u);
+    const double spacing = placeOf(*crowd, 1).x() - placeOf(*crowd, 0).x();
+    EXPECT_GT(spacing, 0.0);
+    EXPECT_NEAR(placeOf(*crowd, 4).y() - placeOf(*crowd, 0).y(), spacing, 1e-4 * spacing);
+    EXPECT_NEAR(placeOf(*crowd, 0).x() + placeOf(*crowd, 11).x(), 0.0, 1e-4 * spacing);
+    EXPECT_EQ(placeOf(*crowd, 0).z(), placeOf(*crowd, 11).z());
+    EXPECT_NEAR((osg::Matrixd::transform3x3(osg::Vec3d(0, 1, 0), crowd->placement(crowd->instances().handleOf(0))) -
+                 osg::Vec3d(0, 0, 1))
+                    .length(),
+                0.0, 1e-6)
+        << "+Z is up, as for the model itself";
+}
+
+TEST_F(CrowdPluginTest, theSeedFixesClipsAndTimes)
+{
+    const auto first = playedBy(*readCrowd("arm.gltf.5x5.crowd"));
+    EXPECT_EQ(playedBy(*readCrowd("arm.gltf.5X5.CROWD")), first);
+    EXPECT_NE(playedBy(*readCrowd("arm.gltf.5x5.crowd", "seed=2")), first);
+    std::set<int> clips;
+    std::set<double> times;
+    for (const auto& [clip, time] : first)
+    {
+        clips.insert(clip);
+        times.insert(time);
+    }
+    EXPECT_EQ(clips, (std::set<int>{0, 1}));
+    EXPECT_GT(times.size(), 20u);
+}
+
+TEST_F(CrowdPluginTest, takesOptions)
+{
+    for (const char* clips : {"clips=Slide", "clips=1", "clips=\"Slide,1\""})
+        for (const auto& [clip, time] : playedBy(*readCrowd("arm.gltf.3x3.crowd", clips)))
+            EXPECT_EQ(clip, 1) << clips;
+    const osg::ref_ptr<AnimatedCrowd> wide = readCrowd("arm.gltf.2x2.crowd", "spacing=7.5");
+    EXPECT_NEAR(placeOf(*wide, 1).x() - placeOf(*wide, 0).x(), 7.5, 1e-6);
+    EXPECT_NEAR(placeOf(*wide, 2).y() - placeOf(*wide, 0).y(), 7.5, 1e-6);
+    const osg::ref_ptr<AnimatedCrowd> yUp = readCrowd("arm.gltf.2x2.crowd", "spacing=7.5 noRotation");
+    EXPECT_NEAR(placeOf(*yUp, 0).z() - placeOf(*yUp, 2).z(), 7.5, 1e-6);
+    osgDB::ReaderWriter* reader = osgDB::Registry::instance()->getReaderWriterForExtension("crowd");
+    ASSERT_TRUE(reader);
+    for (const char* option : {"clips=NAME|INDEX,...", "spacing=UNITS", "seed=NUMBER"})
+        EXPECT_EQ(reader->supportedOptions().count(option), 1u) << option;
+    EXPECT_EQ(reader->readNode("fox.glb", nullptr).status(), Read::FILE_NOT_HANDLED);
+}
+
+TEST_F(CrowdPluginTest, faultsHaveAMessage)
+{
+    for (const FaultCase& fault : faults)
+    {
+        SCOPED_TRACE(std::string(fault.file) + " " + fault.options);
+        const Read result = read(fault.file, fault.options);
+        EXPECT_EQ(result.status(), Read::ERROR_IN_READING_FILE);
+        EXPECT_NE(result.message().find(fault.message), std::string::npos) << result.message();
+    }
+}
+
+} // namespace osgGpuAnimation::gltf

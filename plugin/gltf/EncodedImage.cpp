@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/EncodedImage.h"
 
-#include <osgDB/Registry>
+#include "gltf/JpegDecoder.h"
+#include "gltf/PngDecoder.h"
 
 #include <algorithm>
 #include <cstdint>
 #include <optional>
-#include <sstream>
 #include <string>
 
 namespace osgGpuAnimation::gltf
@@ -19,7 +19,7 @@ using Bytes = std::vector<unsigned char>;
 
 struct Header
 {
-    const char* extension = ""; ///< of the osgPlugin that reads it
+    bool isPng = false; ///< else a JPEG
     std::uint64_t width = 0;
     std::uint64_t height = 0;
     std::uint64_t bytesAPixel = 0;
@@ -54,7 +54,7 @@ std::optional<Header> pngHeader(const Bytes& bytes)
     if (bytes.size() < 33 || !std::equal(std::begin(signature), std::end(signature), bytes.begin()))
         return std::nullopt;
     const std::uint64_t bytesAChannel = bytes[24] > 8 ? 2 : 1;
-    return Header{"png", bigEndian(bytes, 16, 4), bigEndian(bytes, 20, 4), 4 * bytesAChannel, 1040};
+    return Header{true, bigEndian(bytes, 16, 4), bigEndian(bytes, 20, 4), 4 * bytesAChannel, 1040};
 }
 
 /// Walks the segments to the frame header (ITU-T T.81, annex B).
@@ -66,7 +66,7 @@ std::optional<Header> jpegHeader(const Bytes& bytes)
     {
         const unsigned char marker = bytes[at + 1];
         const bool isFrame = marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
-        if (isFrame) return Header{"jpg", bigEndian(bytes, at + 7, 2), bigEndian(bytes, at + 5, 2), 4, 1040};
+        if (isFrame) return Header{false, bigEndian(bytes, at + 7, 2), bigEndian(bytes, at + 5, 2), 4, 1040};
         at += marker == 0xff ? 1 : 2 + std::size_t(bigEndian(bytes, at + 2, 2));
     }
     return std::nullopt;
@@ -85,7 +85,7 @@ std::string objection(const Bytes& bytes, const Header& header, DecodedBytes& bu
     const std::uint64_t decoded = header.width * header.height * header.bytesAPixel;
     if (decoded / header.densest > bytes.size())
         return sizeText(header) + " cannot come from " + std::to_string(bytes.size()) + " bytes";
-    if (header.extension == std::string("png") && !hasAllChunks(bytes)) return "the PNG is cut off";
+    if (header.isPng && !hasAllChunks(bytes)) return "the PNG is cut off";
     if (!budget.take(decoded)) return sizeText(header) + " are too many, " + budget.limitText();
     return {};
 }
@@ -99,17 +99,14 @@ Result<EncodedImage> EncodedImage::examine(const Bytes& bytes, DecodedBytes& bud
     if (!header) return Error{"neither a PNG nor a JPEG"};
     const std::string fault = objection(bytes, *header, budget);
     if (!fault.empty()) return Error{fault};
-    osgDB::ReaderWriter* reader = osgDB::Registry::instance()->getReaderWriterForExtension(header->extension);
-    if (!reader) return Error{std::string("OSG's plugin for ") + header->extension + " is not installed"};
-    return EncodedImage(bytes, *reader);
+    return EncodedImage(bytes, header->isPng, std::size_t(header->width), std::size_t(header->height));
 }
 
 Result<osg::ref_ptr<osg::Image>> EncodedImage::decode() const
 {
-    std::istringstream stream(std::string(_bytes->begin(), _bytes->end()));
-    osgDB::ReaderWriter::ReadResult result = _reader->readImage(stream, nullptr);
-    if (!result.validImage()) return Error{"the picture is damaged"};
-    return osg::ref_ptr<osg::Image>(result.getImage());
+    const osg::ref_ptr<osg::Image> image = (_isPng ? decodePng : decodeJpeg)(*_bytes, _width, _height);
+    if (!image) return Error{"the picture is damaged"};
+    return image;
 }
 
 } // namespace osgGpuAnimation::gltf

@@ -6,8 +6,8 @@
 #include <osgGpuAnimation/animation/Result.h>
 
 #include <osg/Image>
-#include <osgDB/ReaderWriter>
 
+#include <cstddef>
 #include <vector>
 
 namespace osgGpuAnimation::gltf
@@ -19,20 +19,23 @@ class EncodedImage
 {
 public:
     /// Takes what the picture will need from the budget. The bytes must stay where they are.
-    /// Errors: not such a picture, cut off, too large for its bytes or for the budget, OSG's plugin is not installed.
+    /// Errors: not such a picture, cut off, too large for its bytes or for the budget.
     static Result<EncodedImage> examine(const std::vector<unsigned char>& bytes, DecodedBytes& budget);
 
-    /// Decodes with OSG's own plugin; may be called on another thread. Error: the picture is damaged.
+    /// Decodes all of it; OSG's own readers lose memory over damaged pictures. May be called on another thread. Error:
+    /// the picture is damaged.
     Result<osg::ref_ptr<osg::Image>> decode() const;
 
 private:
-    EncodedImage(const std::vector<unsigned char>& bytes, osgDB::ReaderWriter& reader)
-        : _bytes(&bytes), _reader(&reader)
+    EncodedImage(const std::vector<unsigned char>& bytes, bool isPng, std::size_t width, std::size_t height)
+        : _bytes(&bytes), _isPng(isPng), _width(width), _height(height)
     {
     }
 
     const std::vector<unsigned char>* _bytes;
-    osg::ref_ptr<osgDB::ReaderWriter> _reader;
+    bool _isPng; ///< else a JPEG
+    std::size_t _width;
+    std::size_t _height;
 };
 
 } // namespace osgGpuAnimation::gltf

@@ -4,6 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstring>
+#include <iterator>
+
 namespace osgGpuAnimation::gltf
 {
 
@@ -11,6 +15,11 @@ namespace
 {
 
 using Bytes = std::vector<unsigned char>;
+
+Bytes bytesOf(const std::string& text)
+{
+    return Bytes(text.begin(), text.end());
+}
 
 struct DamageCase
 {
@@ -25,6 +34,16 @@ const DamageCase damages[] = {
     {"cut in the header", [](Bytes& png) { png.resize(20); }, "neither a PNG nor a JPEG"},
     {"cut off", [](Bytes& png) { png.resize(png.size() - 20); }, "cut off"},
     {"chunk past the end", [](Bytes& png) { png[33] = 0x7f; }, "cut off"},
+    {"other pixels than their checksum", [](Bytes& png) { png[45] ^= 0xff; }, "damaged"},
+    {"another chunk in the header's place", [](Bytes& png) { png[12] = 'J'; }, "damaged"},
+    {"a JPEG of 16 bits a channel",
+     [](Bytes& png)
+     {
+         png = bytesOf(encodedPicture("jpg", 2, 2));
+         const unsigned char frame[] = {0xff, 0xc0};
+         *(std::search(png.begin(), png.end(), std::begin(frame), std::end(frame)) + 4) = 16;
+     },
+     "damaged"},
     {"no width", [](Bytes& png) { png[18] = png[19] = 0; }, "0 x 2 pixels"},
     {"16384 x 16384", [](Bytes& png) { png[18] = png[22] = 0x40; }, "cannot come from"},
     {"2147483647 pixels", [](Bytes& png) { png[16] = 0x7f; }, "too many"},
@@ -48,11 +67,6 @@ Result<osg::ref_ptr<osg::Image>> decodeImage(const Bytes& bytes, DecodedBytes& b
     const Result<EncodedImage> image = EncodedImage::examine(bytes, budget);
     if (!image) return image.error();
     return image.value().decode();
-}
-
-Bytes bytesOf(const std::string& text)
-{
-    return Bytes(text.begin(), text.end());
 }
 
 } // namespace
@@ -84,6 +98,19 @@ TEST(EncodedImageTest, damageIsAnError)
         ASSERT_FALSE(image);
         EXPECT_NE(image.error().message.find(damage.message), std::string::npos) << image.error().message;
     }
+}
+
+TEST(EncodedImageTest, gammaDoesNotCount)
+{
+    std::string png = encodedPicture("png", 2, 2);
+    const DecodedBytes ample(1 << 20);
+    DecodedBytes budget = ample;
+    const auto plain = decodeImage(bytesOf(png), budget);
+    png.insert(33, std::string("\0\0\0\4gAMA\0\1\x86\xa0\x31\xe8\x96\x5f", 16)); // 1.0, with its checksum
+    const auto marked = decodeImage(bytesOf(png), budget);
+    ASSERT_TRUE(plain && marked);
+    ASSERT_EQ(plain.value()->getTotalSizeInBytes(), marked.value()->getTotalSizeInBytes());
+    EXPECT_EQ(0, std::memcmp(plain.value()->data(), marked.value()->data(), plain.value()->getTotalSizeInBytes()));
 }
 
 TEST(EncodedImageTest, keepsToTheBudget)

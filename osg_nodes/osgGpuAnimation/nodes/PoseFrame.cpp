@@ -22,6 +22,11 @@ bool isSame(const PoseInstruction& a, const PoseInstruction& b)
            std::equal(a.samples.begin(), a.samples.begin() + a.sampleCount, b.samples.begin(), same);
 }
 
+PaletteBinding& bindingOf(osg::StateSet& stateSet)
+{
+    return static_cast<PaletteBinding&>(*stateSet.getAttribute(PaletteBinding::bindingType));
+}
+
 } // namespace
 
 osg::ref_ptr<PoseFrame> PoseFrame::forContext(unsigned int contextId, unsigned int frameNumber)
@@ -37,6 +42,9 @@ osg::ref_ptr<PoseFrame> PoseFrame::forContext(unsigned int contextId, unsigned i
     osg::ref_ptr<PoseFrame> next = unused == frames.end() ? new PoseFrame : unused->get();
     if (unused != frames.end()) frames.erase(unused);
     frames.push_back(next);
+    // Frames that are over keep no sets alive.
+    for (const osg::ref_ptr<PoseFrame>& frame : frames)
+        if (frame->referenceCount() == 1) frame->reset(frame->frameNumber());
     next->reset(frameNumber);
     return next;
 }
@@ -54,6 +62,8 @@ void PoseFrame::reset(unsigned int frameNumber)
     _batches.clear();
     _batchesOfSet.clear();
     _enlisted.clear();
+    for (std::size_t i = 0; i < _statesUsed; ++i)
+        bindingOf(*_states[i]).set(nullptr, 0, 0, 0);
     _statesUsed = 0;
 }
 
@@ -62,7 +72,10 @@ osg::StateSet* PoseFrame::enlist(const AnimatedCharacter& character)
     const PoseInstruction& instruction = character.controller().instruction();
     const std::lock_guard<std::mutex> lock(_mutex);
     const auto known = _enlisted.find(&character);
-    if (known != _enlisted.end() && isSame(known->second.instruction, instruction)) return known->second.stateSet;
+    // The address may be that of another character by now, in a viewer whose frames have the same numbers.
+    if (known != _enlisted.end() && isSame(known->second.instruction, instruction) &&
+        bindingOf(*known->second.stateSet).animationSet() == &character.set())
+        return known->second.stateSet;
 
     Batch& batch = openBatch(character);
     osg::StateSet* stateSet = nextState(batch, batch.content->add(instruction), 1);
@@ -122,8 +135,7 @@ osg::StateSet* PoseFrame::nextState(const Batch& batch, std::size_t instance, st
         _states.back()->setAttribute(new PaletteBinding);
     }
     osg::StateSet* stateSet = _states[_statesUsed++].get();
-    auto* binding = static_cast<PaletteBinding*>(stateSet->getAttribute(PaletteBinding::bindingType));
-    binding->set(batch.content->sharedSet(), batch.slot, instance, instanceCount);
+    bindingOf(*stateSet).set(batch.content->sharedSet(), batch.slot, instance, instanceCount);
     return stateSet;
 }
 
@@ -135,7 +147,7 @@ void PoseFrame::evaluate(osg::RenderInfo& renderInfo)
     for (const std::unique_ptr<Batch>& batch : _batches)
     {
         // A context made anew under an old one's number has none of its palettes.
-        if (batch->isEvaluated && pipeline && pipeline->place(batch->content.set(), batch->slot, 0).texture != 0)
+        if (batch->isEvaluated && pipeline && pipeline->place(batch->content->set(), batch->slot, 0).texture != 0)
             continue;
         batch->isEvaluated = true;
         if (pipeline) pipeline->evaluate(state, *batch->content, batch->slot);

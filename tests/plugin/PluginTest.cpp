@@ -6,14 +6,18 @@
 #include <osgGpuAnimation/nodes/CharacterKeys.h>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 #include <osg/Notify>
 #include <osgDB/ReadFile>
 #include <osgDB/Registry>
 #include <osgUtil/Optimizer>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <regex>
 #include <sstream>
+#include <vector>
 
 namespace osgGpuAnimation::gltf
 {
@@ -200,6 +204,30 @@ TEST_F(PluginTest, faultsHaveTheirStatusAndAMessage)
         const Read result = read(fault.file, fault.options);
         EXPECT_EQ(result.status(), fault.status) << result.message();
         EXPECT_NE(result.message().find(fault.message), std::string::npos) << result.message();
+    }
+}
+
+TEST_F(PluginTest, faultyFilesAnswerAsExpected)
+{
+    SKIP_WITHOUT_SHARED_FILE("bad_gltf/expected.json");
+    const std::filesystem::path list = sharedFile("bad_gltf/expected.json");
+    const nlohmann::json expected = nlohmann::json::parse(readBytes(list.string()));
+    const osg::ref_ptr<osgDB::Options> options = new osgDB::Options;
+    for (const auto& [name, entry] : expected.items())
+    {
+        SCOPED_TRACE(name);
+        log->text.clear();
+        const std::string path = (list.parent_path() / name).string();
+        Read result = osgDB::Registry::instance()->readNode(path, options);
+        const std::string said = result.message() + log->text;
+        const nlohmann::json accepted = entry.value("accept", nlohmann::json::array({entry["expect"]}));
+        const char* const outcome = !result.validNode() ? "error" : entry["expect"] == "valid" ? "valid" : "tolerate";
+        EXPECT_EQ(std::count(accepted.begin(), accepted.end(), outcome), 1) << outcome << ": " << said;
+        const auto names = [&](const std::string& pattern)
+        { return std::regex_search(said, std::regex(pattern, std::regex::icase)); };
+        const std::vector<std::string> patterns = entry["message_any"];
+        const bool isNamed = std::any_of(patterns.begin(), patterns.end(), names);
+        EXPECT_TRUE(isNamed || entry["expect"] == "valid" || entry.value("silent", false)) << said;
     }
 }
 

@@ -110,9 +110,13 @@ std::vector<Moment> findMoments(const std::vector<ChannelCurve>& curves)
 {
     std::vector<double> times;
     std::vector<double> jumps;
+    const std::vector<double>* before = nullptr;
     for (const ChannelCurve& curve : curves)
     {
-        times.insert(times.end(), curve.channel().times.begin(), curve.channel().times.end());
+        // Channels mostly have the times of the one before, and sorting takes long.
+        const std::vector<double>& own = curve.channel().times;
+        if (!before || own != *before) times.insert(times.end(), own.begin(), own.end());
+        before = &own;
         curve.appendJumps(jumps);
     }
     sortUnique(times);

@@ -98,10 +98,10 @@ void PosePipeline::makeSeparatePasses()
 {
     if (_localPass) return;
     using namespace shaders;
-    _localPass =
-        std::make_unique<FeedbackPass>(*_gl, "local", std::initializer_list<const char*>{local_glsl, local_vert}, rowOutputs);
-    _worldPass =
-        std::make_unique<FeedbackPass>(*_gl, "world", std::initializer_list<const char*>{world_glsl, world_vert}, rowOutputs);
+    _localPass = std::make_unique<FeedbackPass>(*_gl, "local",
+                                                std::initializer_list<const char*>{local_glsl, local_vert}, rowOutputs);
+    _worldPass = std::make_unique<FeedbackPass>(*_gl, "world",
+                                                std::initializer_list<const char*>{world_glsl, world_vert}, rowOutputs);
 }
 
 PosePipeline::SetResources& PosePipeline::resourcesOf(const PoseBatch& batch)

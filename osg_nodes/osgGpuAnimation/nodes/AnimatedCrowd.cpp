@@ -34,7 +34,8 @@ void forEachMesh(const osg::Group& group, Function function)
 std::vector<Box> clipBoundsOf(const AnimationSet& set, const osg::Group& meshes)
 {
     EntryBoxes entryBoxes(set.paletteSize());
-    forEachMesh(meshes, [&](const SkinnedGeometry& mesh) { mesh.addToEntryBoxes(set, entryBoxes); });
+    SkinnedGeometry::BindBoxes bindBoxes;
+    forEachMesh(meshes, [&](const SkinnedGeometry& mesh) { mesh.addToEntryBoxes(set, entryBoxes, bindBoxes); });
     std::vector<Box> bounds;
     for (int clip = -1; clip < static_cast<int>(set.clips().size()); ++clip)
         bounds.push_back(boundsOfClip(set, clip, entryBoxes));

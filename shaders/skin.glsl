@@ -4,6 +4,10 @@
 // and call it on the vertex and normal of the bind pose; they come back in the character's own space.
 // In instanced draws each GL instance is an instance of its own, see AnimatedCrowd; vec4 osgGpuAnimationTint() is its
 // colour. Attributes are bound to the locations of layout.glsl; SkinnedGeometry sets the uniforms when it draws.
+//
+// What a mesh does not need may be left out by OSG's shader defines (StateSet::setDefine, see applySkinDefines): some
+// drivers (llvmpipe) run both sides of every branch. Without them the uniforms decide.
+#pragma import_defines(POSE_INFLUENCES, POSE_NO_MORPHS)
 
 uniform samplerBuffer posePalette; // entry e of instance i: rows at texel (e * poseStride + i) * 3
 uniform int poseStride;
@@ -16,6 +20,15 @@ uniform ivec4 poseMorphChannels;       // channels a target has; the place of no
 
 uniform samplerBuffer poseTints; // by instance
 uniform bool poseTinted;
+
+#ifndef POSE_INFLUENCES
+#define POSE_INFLUENCES poseInfluences
+#endif
+#ifdef POSE_NO_MORPHS
+#define POSE_MORPH_TARGETS 0
+#else
+#define POSE_MORPH_TARGETS poseMorph.x
+#endif
 
 in vec4 poseEntries0;
 in vec4 poseWeights0;
@@ -60,7 +73,7 @@ float osgGpuAnimationMorphWeight(int target)
 vec4 osgGpuAnimationMorphSum(int channel)
 {
     vec4 sum = vec4(0.0);
-    for (int target = 0; target < poseMorph.x; ++target)
+    for (int target = 0; target < POSE_MORPH_TARGETS; ++target)
     {
         float weight = osgGpuAnimationMorphWeight(target);
         if (weight == 0.0) continue;
@@ -72,24 +85,24 @@ vec4 osgGpuAnimationMorphSum(int channel)
 
 void osgGpuAnimationMorphColor(inout vec4 color)
 {
-    if (poseMorph.x > 0 && poseMorphChannels.z >= 0)
+    if (POSE_MORPH_TARGETS > 0 && poseMorphChannels.z >= 0)
         color = clamp(color + osgGpuAnimationMorphSum(poseMorphChannels.z), 0.0, 1.0);
 }
 
 void osgGpuAnimationMorphTextureCoordinate(inout vec2 coordinate)
 {
-    if (poseMorph.x > 0 && poseMorphChannels.w >= 0) coordinate += osgGpuAnimationMorphSum(poseMorphChannels.w).xy;
+    if (POSE_MORPH_TARGETS > 0 && poseMorphChannels.w >= 0) coordinate += osgGpuAnimationMorphSum(poseMorphChannels.w).xy;
 }
 
 void osgGpuAnimationSkin(inout vec4 vertex, inout vec3 normal)
 {
-    if (poseMorph.x > 0)
+    if (POSE_MORPH_TARGETS > 0)
     {
         vertex.xyz += osgGpuAnimationMorphSum(0).xyz;
         if (poseMorphChannels.y >= 0) normal += osgGpuAnimationMorphSum(poseMorphChannels.y).xyz;
     }
-    mat3x4 rows = osgGpuAnimationBlend(poseEntries0, poseWeights0, poseInfluences);
-    if (poseInfluences > 4) rows += osgGpuAnimationBlend(poseEntries1, poseWeights1, poseInfluences - 4);
+    mat3x4 rows = osgGpuAnimationBlend(poseEntries0, poseWeights0, POSE_INFLUENCES);
+    if (POSE_INFLUENCES > 4) rows += osgGpuAnimationBlend(poseEntries1, poseWeights1, POSE_INFLUENCES - 4);
     vertex = vec4(vertex * rows, vertex.w);
 
     // Normals go by the inverse transpose, which is the cofactor matrix but for the determinant.

@@ -109,6 +109,8 @@ osg::ref_ptr<osg::Geometry> Drawables::make(const DrawablePlace& place)
     use.flat = palette && mesh->isFlat;
     use.textured = mesh->texCoords.valid();
     use.colored = mesh->colors.valid();
+    use.influences = palette ? skinned->influenceCount() : 0;
+    use.morphed = palette && place.morph >= 0;
     if (_materials.wantsTexture(use.material) && !use.textured)
         _report.warn(mesh->label + ": lacks the texture coordinates that its material asks for");
     geometry->setStateSet(_materials.stateSet(use));

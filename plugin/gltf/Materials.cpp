@@ -121,6 +121,7 @@ osg::ref_ptr<osg::StateSet> Materials::make(const MaterialUse& use)
         if (!lit) state->addUniform(new osg::Uniform("unlit", true));
         if (use.flat) state->addUniform(new osg::Uniform("flatNormals", true));
         applyCharacterProgram(*state);
+        applySkinDefines(*state, use.influences, use.morphed);
     }
     else
     {

@@ -23,8 +23,13 @@ struct MaterialUse
     bool flat = false;     ///< of the palette's: the file has no normals, each face takes its own of the pose
     bool textured = false; ///< has coordinates for the base colour texture
     bool colored = false;  ///< has colours of its own for each vertex
+    int influences = 0;    ///< of the palette's: what a vertex has at most
+    bool morphed = false;  ///< of the palette's: has morph targets
 
-    auto key() const { return std::tie(material, palette, mirrored, lit, flat, textured, colored); }
+    auto key() const
+    {
+        return std::tie(material, palette, mirrored, lit, flat, textured, colored, influences, morphed);
+    }
     bool operator<(const MaterialUse& other) const { return key() < other.key(); }
 };
 

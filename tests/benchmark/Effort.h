@@ -10,8 +10,8 @@ namespace osgGpuAnimation::benchmark
 /// How much is measured.
 struct Effort
 {
-    int rounds = 9;                ///< of cheap things
-    int frameRounds = 5;           ///< of whole frames
+    int rounds = 7;                ///< of cheap things
+    int frameRounds = 3;           ///< of whole frames
     std::size_t barCount = 1000;   ///< characters the bars speak of
     std::size_t frameCount = 1000; ///< characters of the frames' bars
     std::vector<std::size_t> poseCounts{1, 10, 100, 1000, 10000};

@@ -162,8 +162,8 @@ void ReferenceKit::shareMesh(const gltf::ImportedPrimitive& primitive)
     mesh.source = unskinned(*skinned);
     if (primitive.skin < 0)
     {
-        mesh.rigidEntry = (*skinned->entries(0))[0].x();
-        const auto joint = _subject.set().palette()[static_cast<std::size_t>(mesh.rigidEntry)].joint;
+        const int joint = _subject.set().skeleton().jointOfSourceNode(primitive.node);
+        if (joint < 0) return;
         mesh.rigidEntry = _subject.set().mainEntry(joint);
         _meshes.push_back(mesh);
         return;

@@ -112,4 +112,13 @@ void applyCharacterProgram(osg::StateSet& stateSet)
         stateSet.setTextureAttributeAndModes(0, whiteTexture());
 }
 
+void applySkinDefines(osg::StateSet& stateSet, int influences, bool hasMorphs)
+{
+    stateSet.setDefine("POSE_INFLUENCES", std::to_string(influences));
+    if (hasMorphs)
+        stateSet.removeDefine("POSE_NO_MORPHS");
+    else
+        stateSet.setDefine("POSE_NO_MORPHS");
+}
+
 } // namespace osgGpuAnimation

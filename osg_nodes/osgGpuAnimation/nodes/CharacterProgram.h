@@ -25,4 +25,9 @@ void applyCharacterProgram(osg::StateSet& stateSet);
 osg::ref_ptr<osg::Shader> skinShader();
 void bindSkinAttributes(osg::Program& program);
 
+/// Tells skin.glsl, by shader defines of the state its meshes are drawn with, what it can leave out: a third of the
+/// cost of a draw in llvmpipe. influences: what a vertex of these meshes has at most
+/// (SkinnedGeometry::influenceCount()), 1 to 8. hasMorphs: some of them has morph targets.
+void applySkinDefines(osg::StateSet& stateSet, int influences, bool hasMorphs);
+
 } // namespace osgGpuAnimation

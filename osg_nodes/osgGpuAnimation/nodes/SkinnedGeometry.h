@@ -54,6 +54,9 @@ public:
     const osg::Vec4usArray* entries(unsigned int influenceSet) const;
     const osg::Vec4Array* weights(unsigned int influenceSet) const;
 
+    /// Influences a vertex has, at most: 1 to 8.
+    int influenceCount() const { return _influences; }
+
     /// Every vertex moves with one entry wholly: what a rigid mesh on a joint needs.
     void setRigidEntry(unsigned short entry);
     int rigidEntry() const { return _rigidEntry; } ///< -1: influences are per vertex

@@ -16,7 +16,7 @@ namespace osgGpuAnimation
 ///
 ///     pass.use();
 ///     pass.setTexture("keyframes", 0, buffers.keyframes().texture());
-///     pass.run(firstVertex, count, out.buffer(), byteOffset, byteCount);
+///     pass.run(firstVertex, count, out.buffer(), byteOffset);
 class FeedbackPass
 {
 public:

@@ -9,6 +9,7 @@
 #include <layout.glsl>
 
 #include <osg/NodeVisitor>
+#include <osg/Notify>
 #include <osg/State>
 
 #include <algorithm>
@@ -307,6 +308,18 @@ void SkinnedGeometry::bindPalette(osg::State& state, const PalettePlace& place) 
     bindMorphTargets(state, *program);
 }
 
+void SkinnedGeometry::releaseGLObjects(osg::State* state) const
+{
+    osg::Geometry::releaseGLObjects(state);
+    if (_morphDeltas) _morphDeltas->releaseGLObjects(state);
+}
+
+void SkinnedGeometry::resizeGLObjectBuffers(unsigned int maxSize)
+{
+    osg::Geometry::resizeGLObjectBuffers(maxSize);
+    if (_morphDeltas) _morphDeltas->resizeGLObjectBuffers(maxSize);
+}
+
 void SkinnedGeometry::bindMorphTargets(osg::State& state, const osg::Program::PerContextProgram& program) const
 {
     static const unsigned int deltasName = osg::Uniform::getNameID("poseMorphDeltas");
@@ -314,8 +327,16 @@ void SkinnedGeometry::bindMorphTargets(osg::State& state, const osg::Program::Pe
     static const unsigned int channelsName = osg::Uniform::getNameID("poseMorphChannels");
     const osg::GLExtensions* gl = state.get<osg::GLExtensions>();
     gl->glUniform1i(program.getUniformLocation(deltasName), POSE_MORPH_UNIT);
-    gl->glUniform2i(program.getUniformLocation(morphName), static_cast<GLint>(_morphTargets.size()), _morphEntry);
-    if (!_morphDeltas) return;
+    const PosePipeline* pipeline = PosePipeline::of(state);
+    const bool fits =
+        _morphDeltas && pipeline && static_cast<std::size_t>(_morphDeltas->getImage()->s()) <= pipeline->maxTexels();
+    if (_morphDeltas && !fits && !_isMorphLimitReported.exchange(true))
+        OSG_WARN << "osgGpuAnimation: the morph targets of mesh \"" << getName() << "\" need a buffer of "
+                 << _morphDeltas->getImage()->s() << " texels, more than this context takes; it is drawn unmorphed"
+                 << std::endl;
+    const GLint targets = fits ? static_cast<GLint>(_morphTargets.size()) : 0;
+    gl->glUniform2i(program.getUniformLocation(morphName), targets, _morphEntry);
+    if (!fits) return;
     state.applyTextureAttribute(POSE_MORPH_UNIT, _morphDeltas.get());
     gl->glUniform4i(program.getUniformLocation(channelsName), _morphChannels[0], _morphChannels[1], _morphChannels[2],
                     _morphChannels[3]);

@@ -10,6 +10,7 @@
 #include <osg/TextureBuffer>
 
 #include <array>
+#include <atomic>
 #include <map>
 #include <memory>
 #include <vector>
@@ -80,6 +81,8 @@ public:
 
     /// Writes the palette's place into the program that is applied, then draws; all instances of a crowd at once.
     void drawImplementation(osg::RenderInfo& renderInfo) const override;
+    void releaseGLObjects(osg::State* state = nullptr) const override;
+    void resizeGLObjectBuffers(unsigned int maxSize) override;
     /// Transforms of the vertices by others (the Optimizer's) would break the bind pose: refused.
     void accept(osg::Drawable::AttributeFunctor&) override {}
     using osg::Geometry::accept;
@@ -101,6 +104,7 @@ private:
     int _rigidEntry = -1; ///< the entry that moves all vertices wholly; -1: influences are per vertex
     std::vector<MorphTarget> _morphTargets;
     osg::ref_ptr<osg::TextureBuffer> _morphDeltas;
+    mutable std::atomic<bool> _isMorphLimitReported{false};
     int _morph = -1;
     int _morphEntry = -1;                             ///< the first palette entry of the weights
     std::array<int, 4> _morphChannels{0, -1, -1, -1}; ///< as skin.glsl's poseMorphChannels

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "AllocationCount.h"
 #include "support/GaitSet.h"
+#include "support/JointSteps.h"
 
 #include <osgGpuAnimation/animation/AnimationController.h>
 #include <osgGpuAnimation/animation/Pose.h>
@@ -18,43 +19,6 @@ namespace osgGpuAnimation
 namespace
 {
 
-constexpr double frame = 1.0 / 60.0;
-
-std::vector<glm::vec3> jointPlaces(const AnimationController& controller)
-{
-    std::vector<JointTransform> tracks;
-    std::vector<AffineMatrix> joints;
-    Pose::mix(controller.set(), controller.instruction(), tracks);
-    Pose::jointToModel(controller.set(), tracks, AffineMatrix(), joints);
-    std::vector<glm::vec3> places;
-    for (const AffineMatrix& joint : joints)
-        places.push_back(joint.transformPoint(glm::vec3(0.0f)));
-    return places;
-}
-
-double largestStep(const std::vector<glm::vec3>& before, const std::vector<glm::vec3>& after)
-{
-    float largest = 0.0f;
-    for (std::size_t i = 0; i < before.size(); ++i)
-        largest = std::max(largest, glm::distance(before[i], after[i]));
-    return static_cast<double>(largest);
-}
-
-/// The largest step of a joint from one frame to the next while the clip plays alone.
-double stepOfClip(const std::shared_ptr<const AnimationSet>& set, std::size_t clip)
-{
-    AnimationController controller(set);
-    EXPECT_TRUE(controller.play(clip));
-    double largest = 0.0;
-    for (int i = 0; i < 600; ++i)
-    {
-        const std::vector<glm::vec3> before = jointPlaces(controller);
-        controller.advance(frame);
-        largest = std::max(largest, largestStep(before, jointPlaces(controller)));
-    }
-    return largest;
-}
-
 struct Interruptions
 {
     const char* name;
@@ -68,7 +32,7 @@ TEST(CrossfadeTest, InterruptedByCrossfadesAtRandomNothingJumps)
     const auto set = makeGaitSet();
     std::vector<double> steps;
     for (std::size_t clip = 0; clip < 3; ++clip)
-        steps.push_back(stepOfClip(set, clip));
+        steps.push_back(stepOfClip(set, clip, 600));
     const Interruptions cases[] = {
         {"now and then", 30, Sync::Start, FadeCurve::Linear},
         {"often", 8, Sync::Start, FadeCurve::Linear},
@@ -91,7 +55,7 @@ TEST(CrossfadeTest, InterruptedByCrossfadesAtRandomNothingJumps)
                 ASSERT_TRUE(controller.crossfade(random() % 3, seconds, {c.curve, c.sync, {}}));
             }
             const std::vector<glm::vec3> before = jointPlaces(controller);
-            controller.advance(frame);
+            controller.advance(frameSeconds);
             double allowed = 0.0;
             const ClipMixer& mixer = controller.layer(0).mixer();
             for (std::size_t v = 0; v < mixer.voiceCount(); ++v)
@@ -140,15 +104,16 @@ TEST(CrossfadeTest, InPhaseBothRunAtOnePaceUntilItIsOver)
     EXPECT_NEAR(controller.phase(), 0.3, 1e-6);
     for (int i = 0; i < 29; ++i)
     {
-        controller.advance(frame);
+        controller.advance(frameSeconds);
         const ClipMixer& mixer = controller.layer(0).mixer();
         ASSERT_EQ(mixer.voiceCount(), 2u);
         EXPECT_NEAR(mixer.voice(0).playback.phase(), mixer.voice(1).playback.phase(), 1e-6);
     }
-    controller.advance(frame);
+    controller.advance(frameSeconds);
     const double time = controller.time();
-    controller.advance(frame);
-    EXPECT_NEAR(controller.time(), std::fmod(time + frame, controller.duration()), 1e-9) << "its own pace afterwards";
+    controller.advance(frameSeconds);
+    EXPECT_NEAR(controller.time(), std::fmod(time + frameSeconds, controller.duration()), 1e-9)
+        << "its own pace afterwards";
 }
 
 TEST(CrossfadeTest, FromNothingItRisesOutOfTheRestPose)
@@ -208,7 +173,7 @@ TEST(CrossfadeTest, AdvancingDoesNotAllocate)
     for (std::size_t i = 0; i < 1000; ++i)
     {
         if (i % 7 == 0) (void)controller.crossfade(i % 3, 0.5);
-        controller.advance(frame);
+        controller.advance(frameSeconds);
     }
     EXPECT_EQ(allocationCount(), before);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/Import.h"
 #include "plugin/SharedAssets.h"
+#include "support/JointSteps.h"
 
 #include <osgGpuAnimation/animation/FadePace.h>
 #include <osgGpuAnimation/animation/Pose.h>
@@ -20,42 +21,6 @@ namespace osgGpuAnimation::gltf
 
 namespace
 {
-
-constexpr double frame = 1.0 / 60.0;
-
-std::vector<glm::vec3> jointPlaces(const AnimationController& controller)
-{
-    std::vector<JointTransform> tracks;
-    std::vector<AffineMatrix> joints;
-    Pose::mix(controller.set(), controller.instruction(), tracks);
-    Pose::jointToModel(controller.set(), tracks, AffineMatrix(), joints);
-    std::vector<glm::vec3> places;
-    for (const AffineMatrix& joint : joints)
-        places.push_back(joint.transformPoint(glm::vec3(0.0f)));
-    return places;
-}
-
-double largestStep(const std::vector<glm::vec3>& before, const std::vector<glm::vec3>& after)
-{
-    float largest = 0.0f;
-    for (std::size_t i = 0; i < before.size(); ++i)
-        largest = std::max(largest, glm::distance(before[i], after[i]));
-    return static_cast<double>(largest);
-}
-
-double stepOfClip(const std::shared_ptr<const AnimationSet>& set, std::size_t clip)
-{
-    AnimationController controller(set);
-    EXPECT_TRUE(controller.play(clip));
-    double largest = 0.0;
-    for (int i = 0; i < 300; ++i)
-    {
-        const std::vector<glm::vec3> before = jointPlaces(controller);
-        controller.advance(frame);
-        largest = std::max(largest, largestStep(before, jointPlaces(controller)));
-    }
-    return largest;
-}
 
 struct ModelCase
 {
@@ -83,7 +48,7 @@ protected:
         {
             ASSERT_GE(set->findClip(name), 0) << name;
             clips.push_back(static_cast<std::size_t>(set->findClip(name)));
-            steps[static_cast<int>(clips.back())] = stepOfClip(set, clips.back());
+            steps[static_cast<int>(clips.back())] = stepOfClip(set, clips.back(), 300);
         }
     }
 
@@ -112,7 +77,7 @@ protected:
                                                  {GetParam().curve, GetParam().sync, {}}));
             }
             const std::vector<glm::vec3> before = jointPlaces(controller);
-            controller.advance(frame);
+            controller.advance(frameSeconds);
             double fastest = 0.0;
             const ClipMixer& mixer = controller.layer(0).mixer();
             for (std::size_t v = 0; v < mixer.voiceCount(); ++v)

@@ -3,10 +3,15 @@
 #include "serializers/ValueReader.h"
 #include "serializers/ValueWriter.h"
 
+#include <osgGpuAnimation/nodes/SeparateLoads.h>
+
 #include <osgDB/ObjectWrapper>
 
 namespace osgGpuAnimation::serializers
 {
+
+// Whatever of ours is read has a set.
+static SeparateLoads::Installation separateLoads;
 
 static bool checkContents(const StoredAnimationSet& stored)
 {

@@ -5,6 +5,7 @@
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimationUpdateCallback.h>
 #include <osgGpuAnimation/nodes/CrowdView.h>
+#include <osgGpuAnimation/nodes/FlattenedPlace.h>
 #include <osgGpuAnimation/nodes/PosedMesh.h>
 #include <osgGpuAnimation/nodes/PoseStage.h>
 
@@ -281,7 +282,7 @@ void AnimatedCrowd::traverse(osg::NodeVisitor& visitor)
         cull(*cullVisitor);
     else if (dynamic_cast<osgUtil::IntersectionVisitor*>(&visitor))
         intersect(visitor);
-    else
+    else if (!keepFlattenedPlace(*this, visitor))
         osg::Transform::traverse(visitor);
 }
 

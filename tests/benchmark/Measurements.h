@@ -34,4 +34,7 @@ Result<bool> measureSkinning(const Subject& subject, const Effort& effort, Repor
 /// Bytes and the first frame of many characters.
 Result<bool> measureStart(const Subject& subject, const Effort& effort, Report& report);
 
+/// Loading its file, against what tinygltf takes to parse it and decode its pictures.
+Result<bool> measureLoad(const Subject& subject, const Effort& effort, Report& report);
+
 } // namespace osgGpuAnimation::benchmark

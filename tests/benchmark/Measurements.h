@@ -18,6 +18,10 @@ namespace osgGpuAnimation::benchmark
 /// The context is current.
 Result<bool> measurePose(const Subject& subject, const Effort& effort, osg::GraphicsContext& context, Report& report);
 
+/// Four blend samples a character against one, as layers and crossfades ask for. The context is current.
+Result<bool> measureSamples(const Subject& subject, const Effort& effort, osg::GraphicsContext& context,
+                            Report& report);
+
 /// A joint's cost in chains of 8 to 64. The context is current.
 Result<bool> measureDepth(const Effort& effort, osg::GraphicsContext& context, Report& report);
 

@@ -3,6 +3,7 @@
 
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/nodes/AnimationUpdateCallback.h>
+#include <osgGpuAnimation/nodes/DepthPass.h>
 #include <osgGpuAnimation/nodes/PoseStage.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
@@ -171,6 +172,7 @@ void AnimatedCharacter::traverse(osg::NodeVisitor& visitor)
         osg::MatrixTransform::traverse(visitor);
         return;
     }
+    const DepthPass pass(*cullVisitor);
     cullVisitor->pushStateSet(PoseStage::enlist(*cullVisitor, *this));
     osg::MatrixTransform::traverse(visitor);
     cullVisitor->popStateSet();

@@ -242,7 +242,7 @@ TEST_F(SerializersTest, shadersAreNotInTheFile)
 {
     ASSERT_TRUE(osgDB::writeNodeFile(*scene, files.folder.file("arm.osgt")));
     const std::string text = textOf(files.folder.file("arm.osgt"));
-    EXPECT_NE(text.find("osgGpuAnimation::CharacterProgram"), std::string::npos);
+    EXPECT_NE(text.find("osgGpuAnimation::SurfaceProgram"), std::string::npos);
     EXPECT_EQ(text.find("osg::Shader"), std::string::npos);
     const osg::ref_ptr<osg::Node> read = osgDB::readRefNodeFile(files.folder.file("arm.osgt"));
     const auto programOf = [](AnimatedCharacter& of)

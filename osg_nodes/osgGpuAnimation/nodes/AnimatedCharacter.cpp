@@ -3,6 +3,7 @@
 
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/nodes/AnimationUpdateCallback.h>
+#include <osgGpuAnimation/nodes/DepthPass.h>
 #include <osgGpuAnimation/nodes/FlattenedPlace.h>
 #include <osgGpuAnimation/nodes/PoseStage.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
@@ -172,6 +173,7 @@ void AnimatedCharacter::traverse(osg::NodeVisitor& visitor)
         if (!keepFlattenedPlace(*this, visitor)) osg::MatrixTransform::traverse(visitor);
         return;
     }
+    const DepthPass pass(*cullVisitor);
     cullVisitor->pushStateSet(PoseStage::enlist(*cullVisitor, *this));
     osg::MatrixTransform::traverse(visitor);
     cullVisitor->popStateSet();

@@ -27,6 +27,9 @@ Drawables::Drawables(const tinygltf::Model& model, std::shared_ptr<const Animati
                      Materials& materials, DecodedBytes& budget, Report& report)
     : _model(model), _set(std::move(set)), _meshes(meshes), _materials(materials), _budget(budget), _report(report)
 {
+    std::map<std::vector<int>, int> skins;
+    for (std::size_t skin = 0; _set && skin < _set->skins().size(); ++skin)
+        _firstAlike.push_back(skins.try_emplace(_set->entriesOfSkin(skin), static_cast<int>(skin)).first->second);
 }
 
 osg::Geometry* Drawables::drawable(const DrawablePlace& place)

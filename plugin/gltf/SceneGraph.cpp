@@ -11,6 +11,7 @@
 #include <osg/FrontFace>
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 namespace osgGpuAnimation::gltf
@@ -44,6 +45,7 @@ private:
     void buildStillNodes();
     void addStill(std::size_t node);
     osg::Group& groupAbove(std::size_t node, osg::Matrixd& outLocal);
+    static void addShared(osg::Group& place, osg::ref_ptr<osg::Geometry>& geometry);
 
     const SceneParts& _parts;
     osg::MatrixTransform& _root;
@@ -51,6 +53,8 @@ private:
     std::vector<ImportedPrimitive>& _primitives;
     std::vector<std::vector<osg::ref_ptr<osg::Geometry>>> _still; ///< by node: what is drawn in its place
     std::vector<osg::ref_ptr<osg::Group>> _groups;                ///< by node: null where nothing is below
+    /// By the object a place asks for: the one over the same arrays that still has room for parents.
+    std::map<const osg::Geometry*, osg::ref_ptr<osg::Geometry>> _open;
     std::set<const osg::Geometry*> _inCharacter;
 };
 
@@ -80,7 +84,7 @@ DrawablePlace SceneGraphBuilder::placeOf(std::size_t node, int primitive) const
     place.mesh = source.mesh;
     place.primitive = primitive;
     if (isSkinned(_parts.model, source, primitiveSource))
-        place.skin = source.skin;
+        place.skin = _parts.drawables.firstAlike(source.skin);
     else if (isRigidOnJoint(_parts.model, _parts.joints, node, primitiveSource))
     {
         place.joint = _parts.joints.ofNode[node];
@@ -106,7 +110,7 @@ void SceneGraphBuilder::addMesh(std::size_t node)
         imported.node = static_cast<int>(node);
         imported.mesh = place.mesh;
         imported.primitive = place.primitive;
-        imported.skin = place.skin;
+        imported.skin = place.skin < 0 ? -1 : source.skin;
         imported.morph = place.morph;
         imported.targets = mesh.targets.size();
         imported.vertexCount = mesh.vertexCount;
@@ -139,6 +143,15 @@ osg::Group& SceneGraphBuilder::groupAbove(std::size_t node, osg::Matrixd& outLoc
     return group ? *group : _root;
 }
 
+/// An object that very many share takes OSG very long to part from them, since it looks for each among all: another
+/// object over the same arrays goes on. geometry: becomes that one.
+void SceneGraphBuilder::addShared(osg::Group& place, osg::ref_ptr<osg::Geometry>& geometry)
+{
+    constexpr unsigned int manyParents = 4096;
+    if (geometry->getNumParents() >= manyParents) geometry = new osg::Geometry(*geometry, osg::CopyOp::SHALLOW_COPY);
+    place.addChild(geometry);
+}
+
 void SceneGraphBuilder::addStill(std::size_t node)
 {
     const tinygltf::Node& source = _parts.model.nodes[node];
@@ -165,7 +178,7 @@ void SceneGraphBuilder::addStill(std::size_t node)
     for (const osg::ref_ptr<osg::Group>& place : places)
     {
         for (const osg::ref_ptr<osg::Geometry>& geometry : _still[node])
-            place->addChild(geometry);
+            addShared(*place, _open.try_emplace(geometry.get(), geometry).first->second);
     }
 }
 

@@ -3,6 +3,7 @@
 
 #include "gltf/Materials.h"
 #include "gltf/Meshes.h"
+#include "gltf/Reach.h"
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
@@ -52,6 +53,7 @@ public:
 
 private:
     osg::ref_ptr<osg::Geometry> make(const DrawablePlace& place);
+    double farthestOf(const DrawablePlace& place, const MeshPrimitive& mesh) const;
     void setInfluences(SkinnedGeometry& geometry, const MeshPrimitive& mesh, const DrawablePlace& place);
     void setColors(osg::Geometry& geometry, const MeshPrimitive& mesh, int material, bool palette);
 
@@ -62,6 +64,7 @@ private:
     DecodedBytes& _budget;
     Report& _report;
     std::vector<int> _firstAlike; ///< by skin
+    std::vector<Reach> _entries;  ///< by palette entry
     std::map<DrawablePlace, osg::ref_ptr<osg::Geometry>> _drawables;
 };
 

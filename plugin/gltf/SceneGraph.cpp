@@ -5,6 +5,7 @@
 #include "gltf/Instancing.h"
 #include "gltf/NamedElement.h"
 #include "gltf/NodeTransform.h"
+#include "gltf/Reach.h"
 
 #include <glm/gtc/type_ptr.hpp>
 #include <glm/matrix.hpp>
@@ -26,7 +27,7 @@ public:
     SceneGraphBuilder(const SceneParts& parts, osg::MatrixTransform& root, AnimatedCharacter* character,
                       std::vector<ImportedPrimitive>& primitives)
         : _parts(parts), _root(root), _character(character), _primitives(primitives), _still(parts.model.nodes.size()),
-          _groups(parts.model.nodes.size())
+          _stillRadius(parts.model.nodes.size(), 0.0), _groups(parts.model.nodes.size())
     {
     }
 
@@ -52,6 +53,7 @@ private:
     AnimatedCharacter* _character;
     std::vector<ImportedPrimitive>& _primitives;
     std::vector<std::vector<osg::ref_ptr<osg::Geometry>>> _still; ///< by node: what is drawn in its place
+    std::vector<double> _stillRadius;                             ///< by node: of its farthest vertex
     std::vector<osg::ref_ptr<osg::Group>> _groups;                ///< by node: null where nothing is below
     /// By the object a place asks for: the one over the same arrays that still has room for parents.
     std::map<const osg::Geometry*, osg::ref_ptr<osg::Geometry>> _open;
@@ -67,6 +69,12 @@ double determinant(const osg::Matrixd& m)
 {
     return m(0, 0) * (m(1, 1) * m(2, 2) - m(1, 2) * m(2, 1)) - m(0, 1) * (m(1, 0) * m(2, 2) - m(1, 2) * m(2, 0)) +
            m(0, 2) * (m(1, 0) * m(2, 1) - m(1, 1) * m(2, 0));
+}
+
+/// Are points at that distance within what can be drawn?
+bool reaches(const Reach& reach, double radius)
+{
+    return reach.fits() && reach.of(radius) <= Reach::farthest;
 }
 
 void setWinding(osg::Node& node, bool mirrored)
@@ -106,6 +114,13 @@ void SceneGraphBuilder::addMesh(std::size_t node)
         osg::Geometry* geometry = _parts.drawables.drawable(place);
         if (!geometry) continue;
         const MeshPrimitive& mesh = *_parts.drawables.meshPrimitive(place);
+        const bool isStill = place.skin < 0 && place.joint < 0;
+        if (isStill && !reaches(Reach::of(_parts.tree.toWorld[node]), mesh.radius))
+        {
+            _parts.report.warn(namedElement("nodes", node, source.name) + ": it takes vertices of " + mesh.label + ' ' +
+                               beyondFarthest() + "; not drawn");
+            continue;
+        }
         ImportedPrimitive imported;
         imported.node = static_cast<int>(node);
         imported.mesh = place.mesh;
@@ -118,10 +133,11 @@ void SceneGraphBuilder::addMesh(std::size_t node)
         imported.geometry = geometry;
         imported.geometryVertex = mesh.geometryVertex;
         _primitives.push_back(std::move(imported));
-        if (place.skin < 0 && place.joint < 0)
+        if (isStill)
         {
             _primitives.back().toModel = toOsg(_parts.tree.toWorld[node]);
             _still[node].push_back(geometry);
+            _stillRadius[node] = std::max(_stillRadius[node], mesh.radius);
             continue;
         }
         moves = true;
@@ -167,8 +183,16 @@ void SceneGraphBuilder::addStill(std::size_t node)
     if (isInstanced(source))
     {
         places.clear();
+        const Reach reach = Reach::of(_parts.tree.toWorld[node]);
+        const double radius = _stillRadius[node];
         for (const osg::Matrixd& instance : readInstances(_parts.model, node, _parts.budget, _parts.report))
         {
+            if (!reaches(reach * Reach::of(glm::make_mat4(instance.ptr())), radius))
+            {
+                _parts.report.warn(namedElement("nodes", node, source.name) +
+                                   ": EXT_mesh_gpu_instancing takes an instance " + beyondFarthest() + "; not drawn");
+                continue;
+            }
             places.push_back(new osg::MatrixTransform(instance));
             transform->addChild(places.back());
             if (determinant(instance) < 0.0)

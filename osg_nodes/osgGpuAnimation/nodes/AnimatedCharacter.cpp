@@ -4,6 +4,7 @@
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/nodes/AnimationUpdateCallback.h>
 #include <osgGpuAnimation/nodes/DepthPass.h>
+#include <osgGpuAnimation/nodes/FlattenedPlace.h>
 #include <osgGpuAnimation/nodes/PoseStage.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
@@ -169,7 +170,7 @@ void AnimatedCharacter::traverse(osg::NodeVisitor& visitor)
     osgUtil::CullVisitor* cullVisitor = visitor.asCullVisitor();
     if (!cullVisitor || getNumChildren() == 0 || set().paletteSize() == 0)
     {
-        osg::MatrixTransform::traverse(visitor);
+        if (!keepFlattenedPlace(*this, visitor)) osg::MatrixTransform::traverse(visitor);
         return;
     }
     const DepthPass pass(*cullVisitor);

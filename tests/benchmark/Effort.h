@@ -11,6 +11,7 @@ namespace osgGpuAnimation::benchmark
 struct Effort
 {
     int rounds = 7;                ///< of cheap things
+    int loadRounds = 21;           ///< of loading a file
     int frameRounds = 3;           ///< of whole frames
     std::size_t barCount = 1000;   ///< characters the bars speak of
     std::size_t frameCount = 1000; ///< characters of the frames' bars
@@ -18,7 +19,7 @@ struct Effort
     std::vector<std::size_t> frameCounts{1, 10, 100, 1000};
     std::size_t largestReference = 1000; ///< osgAnimation's characters, at most
 
-    static Effort quick() { return {5, 3, 1000, 100, {10, 100, 1000, 10000}, {10, 100}, 1000}; }
+    static Effort quick() { return {5, 11, 3, 1000, 100, {10, 100, 1000, 10000}, {10, 100}, 1000}; }
 };
 
 } // namespace osgGpuAnimation::benchmark

@@ -47,17 +47,6 @@ private:
     osg::observer_ptr<Object> _object;
 };
 
-osg::ref_ptr<osg::Program> makeProgram()
-{
-    osg::ref_ptr<osg::Program> program = new osg::Program;
-    program->setName("osgGpuAnimation character");
-    program->addShader(skinShader());
-    program->addShader(makeShader(osg::Shader::VERTEX, {shaders::character_vert}));
-    program->addShader(makeShader(osg::Shader::FRAGMENT, {shaders::character_frag}));
-    bindSkinAttributes(*program);
-    return program;
-}
-
 osg::ref_ptr<osg::Texture2D> makeWhiteTexture()
 {
     osg::ref_ptr<osg::Image> image = new osg::Image;
@@ -77,6 +66,20 @@ osg::ref_ptr<osg::Texture2D> whiteTexture()
 }
 
 } // namespace
+
+CharacterProgram::CharacterProgram()
+{
+    setName("osgGpuAnimation character");
+    addShader(skinShader());
+    addShader(makeShader(osg::Shader::VERTEX, {shaders::character_vert}));
+    addShader(makeShader(osg::Shader::FRAGMENT, {shaders::character_frag}));
+    bindSkinAttributes(*this);
+}
+
+CharacterProgram::CharacterProgram(const CharacterProgram& other, const osg::CopyOp& copyop)
+    : osg::Program(other, copyop)
+{
+}
 
 osg::ref_ptr<osg::Shader> skinShader()
 {
@@ -99,7 +102,7 @@ void bindSkinAttributes(osg::Program& program)
 osg::ref_ptr<osg::Program> characterProgram()
 {
     static Shared<osg::Program> shared;
-    return shared.get(makeProgram);
+    return shared.get([] { return osg::ref_ptr<osg::Program>(new CharacterProgram); });
 }
 
 void applyCharacterProgram(osg::StateSet& stateSet)

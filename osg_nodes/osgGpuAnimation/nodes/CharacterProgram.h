@@ -7,6 +7,18 @@
 namespace osgGpuAnimation
 {
 
+/// What characterProgram() is. It has a class of its own so that files name it instead of holding its shaders: they are
+/// made anew by the library that reads them.
+class CharacterProgram : public osg::Program
+{
+public:
+    CharacterProgram();
+    CharacterProgram(const CharacterProgram& other, const osg::CopyOp& copyop = osg::CopyOp::SHALLOW_COPY);
+    META_StateAttribute(osgGpuAnimation, CharacterProgram, PROGRAM)
+
+        protected : ~CharacterProgram() override = default;
+};
+
 /// The program that draws SkinnedGeometry: skin.glsl, character.vert and character.frag. All users share one object.
 ///
 /// It lights by OSG's light 0 as the fixed pipeline does, with the osg::Material of the state (diffuse times vertex

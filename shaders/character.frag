@@ -123,8 +123,30 @@ vec3 litColor(vec3 base)
 {
     Light sum = Light(vec3(0.0), vec3(0.0), vec3(0.0));
     vec3 normal = facingNormal();
-    for (int index = 0; index < 8; ++index)
-        if ((DRAW_LIGHTS & (1 << index)) != 0) addLight(index, normal, sum);
+#if DRAW_LIGHTS & 1
+    addLight(0, normal, sum);
+#endif
+#if DRAW_LIGHTS & 2
+    addLight(1, normal, sum);
+#endif
+#if DRAW_LIGHTS & 4
+    addLight(2, normal, sum);
+#endif
+#if DRAW_LIGHTS & 8
+    addLight(3, normal, sum);
+#endif
+#if DRAW_LIGHTS & 16
+    addLight(4, normal, sum);
+#endif
+#if DRAW_LIGHTS & 32
+    addLight(5, normal, sum);
+#endif
+#if DRAW_LIGHTS & 64
+    addLight(6, normal, sum);
+#endif
+#if DRAW_LIGHTS & 128
+    addLight(7, normal, sum);
+#endif
     vec3 withoutLights = gl_FrontMaterial.emission.rgb + base * gl_LightModel.ambient.rgb;
     vec3 color = withoutLights + base * (sum.ambient + sum.diffuse) + gl_FrontMaterial.specular.rgb * sum.specular;
 #if DRAW_SHADOW_MAPS

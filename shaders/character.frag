@@ -7,6 +7,11 @@ uniform float alphaCutoff;
 uniform bool unlit;
 uniform bool flatNormals; // the mesh has none: each face its own, of the pose
 
+#ifndef GL_ARB_compatibility
+uniform vec4 materialDiffuse;
+uniform vec4 materialEmission;
+#endif
+
 uniform sampler2DShadow shadowMaps[7];  // of texture units 1 to 7
 uniform vec2 osgShadow_ambientBias;     // osgShadow::ShadowMap's: what is left in its shadow, and the rest
 
@@ -25,6 +30,8 @@ vec4 baseColor()
 #endif
 #ifdef GL_ARB_compatibility
     color *= gl_FrontMaterial.diffuse;
+#else
+    color *= materialDiffuse;
 #endif
     if (color.a < alphaCutoff) discard;
     return color;
@@ -172,7 +179,7 @@ vec3 foggedColor(vec3 color)
 
 vec3 litColor(vec3 base)
 {
-    return base * (0.2 + 0.8 * max(dot(facingNormal(), normalize(-viewPosition)), 0.0));
+    return materialEmission.rgb + base * (0.2 + 0.8 * max(dot(facingNormal(), normalize(-viewPosition)), 0.0));
 }
 
 #endif

@@ -73,7 +73,8 @@ AnimatedCharacter::~AnimatedCharacter() = default;
 
 Result<bool> AnimatedCharacter::setAnimationSet(std::shared_ptr<const AnimationSet> newSet)
 {
-    if (!newSet || newSet->paletteSize() != set().paletteSize())
+    const bool isFirst = set().paletteSize() == 0;
+    if (!newSet || (!isFirst && newSet->paletteSize() != set().paletteSize()))
         return Error{"a set of " + std::to_string(newSet ? newSet->paletteSize() : 0) +
                      " palette entries for the meshes of one of " + std::to_string(set().paletteSize())};
     AnimationController next(std::move(newSet));

@@ -135,6 +135,16 @@ AnimatedCrowd::AnimatedCrowd(const AnimatedCrowd& other, const osg::CopyOp& copy
 
 AnimatedCrowd::~AnimatedCrowd() = default;
 
+Result<bool> AnimatedCrowd::setAnimationSet(std::shared_ptr<const AnimationSet> newSet)
+{
+    if (size() > 0 || set().paletteSize() > 0) return Error{"a crowd that has a set keeps it"};
+    if (!newSet) return Error{"a crowd needs a set"};
+    _instances.setSet(std::move(newSet));
+    _instances.setClipBounds(clipBoundsOf(set(), *this));
+    dirtyBound();
+    return true;
+}
+
 Result<AffineMatrix> AnimatedCrowd::toRootMatrix(const osg::Matrixd& placement, const osg::Vec3d& origin) const
 {
     AffineMatrix root;

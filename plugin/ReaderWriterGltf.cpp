@@ -3,7 +3,7 @@
 #include "gltf/OptionString.h"
 #include "gltf/RegularFile.h"
 
-#include <osgGpuAnimation/nodes/SeparateLoads.h>
+#include "cache/SeparateLoads.h"
 
 #include <osg/Notify>
 #include <osgDB/FileNameUtils>

@@ -4,7 +4,7 @@
 #include "serializers/ValueReader.h"
 #include "serializers/ValueWriter.h"
 
-#include <osgGpuAnimation/nodes/SeparateLoads.h>
+#include "cache/SeparateLoads.h"
 
 #include <osgDB/ObjectWrapper>
 

@@ -13,8 +13,7 @@ namespace osgGpuAnimation
 ///
 ///     static SeparateLoads::Installation separateLoads; // in a plugin: from when it is loaded until it is closed
 ///
-/// It is osgDB's read file callback, and only where there is none: an application that sets its own goes without, or
-/// calls this one's functions.
+/// It is osgDB's read file callback, and only where there is none: an application that sets its own goes without.
 class SeparateLoads : public osgDB::ReadFileCallback
 {
 public:

@@ -65,6 +65,7 @@ public:
 private:
     Result<bool> makeSet(const NodeTree& tree, const Joints& joints, const Morphs& morphs);
     void makeGraph(const NodeTree& tree, const Joints& joints, const Morphs& morphs);
+    Result<bool> finishClips();
     void describeFile(const NodeTree& tree);
     Result<bool> play(int clip);
 
@@ -113,7 +114,21 @@ void Importer::makeGraph(const NodeTree& tree, const Joints& joints, const Morph
     Drawables drawables(_model, _result.set, meshes, materials, _budget, _report);
     const SceneParts parts{_model, tree, joints, morphs, drawables, _budget, _report};
     buildSceneGraph(parts, *_result.root, _result.character, _result.primitives);
-    if (_result.character) _result.character->computeClipBounds();
+}
+
+/// Once the meshes are in, which say how far an error of a joint reaches.
+Result<bool> Importer::finishClips()
+{
+    if (!_result.character) return true;
+    if (_options.compact && !_result.set->clips().empty())
+    {
+        Result<CompactedCharacter> compacted = compactClipsOf(*_result.character, *_options.compact);
+        if (!compacted) return compacted.error();
+        _result.compacted = std::move(compacted).value();
+        _result.set = _result.character->controller().sharedSet();
+    }
+    _result.character->computeClipBounds();
+    return true;
 }
 
 void Importer::describeFile(const NodeTree& tree)
@@ -140,6 +155,8 @@ Result<bool> Importer::run()
     const Result<int> clip = chooseClip(_result, _options);
     if (!clip) return clip.error();
     makeGraph(tree.value(), joints.value(), morphs);
+    const Result<bool> finished = finishClips();
+    if (!finished) return finished.error();
     describeFile(tree.value());
     return play(clip.value());
 }

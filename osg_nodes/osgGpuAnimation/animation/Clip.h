@@ -13,6 +13,8 @@
 namespace osgGpuAnimation
 {
 
+struct ClipParts;
+struct CompactTracks;
 struct RootMotionCurve;
 
 /// A clip: keyframes in time order; each keyframe is a snapshot of **all tracks** (all joints, then all weight blocks).
@@ -42,6 +44,13 @@ public:
         float alpha = 0.0f; ///< [0, 1)
     };
 
+    /// A clip of these keyframes, as another said them of itself: to keep clips elsewhere than in a glTF file. For
+    /// what has channels there is ClipBuilder.
+    /// Errors: no keyframes; times that are not finite, negative, descending or more than twice the same; numbers that
+    /// are not finite; a wrong number of them; in a Linear clip a joint's rotation of length 0; a marker's time or a
+    /// root motion that is none of such a clip.
+    static Result<Clip> create(ClipParts parts);
+
     const std::string& name() const { return _name; }
     Form form() const { return _form; }
     double duration() const { return _times.empty() ? 0.0 : _times.back(); } ///< seconds; the last keyframe's time
@@ -63,11 +72,15 @@ public:
     /// The motion that was taken out of this clip, see withRootMotion(); null where none was.
     const RootMotionCurve* rootMotion() const { return _rootMotion.get(); }
 
+    /// How a compact clip goes to the GPU, see compactClips(); data() then holds what that decodes to. Null: exactly.
+    const CompactTracks* compactTracks() const { return _compactTracks.get(); }
+
     /// By binary search; times before the first keyframe give the first, after the last the last.
     Span locate(double time) const;
 
 private:
     friend class ClipBuilder;
+    friend class ClipCompactor;
     friend class RootMotionExtractor;
     Clip() = default;
 
@@ -78,6 +91,7 @@ private:
     std::shared_ptr<std::vector<JointTransform>> _data = std::make_shared<std::vector<JointTransform>>();
     std::vector<ClipMarker> _markers;
     std::shared_ptr<const RootMotionCurve> _rootMotion;
+    std::shared_ptr<const CompactTracks> _compactTracks;
 };
 
 } // namespace osgGpuAnimation

@@ -42,8 +42,8 @@ public:
 
     /// The same character with another set, such as one with markers or root motion (AnimationSet::withClips,
     /// withRootMotion): the base layer goes on with the clip of the same number, other layers are gone, bounds are
-    /// worked out anew. Do it before cloning, so that clones share the set. Error: the set's palette is another than
-    /// this one's, so the meshes would not fit.
+    /// worked out anew. Do it before cloning, so that clones share the set. A character that was made without a set
+    /// takes any. Error: the set's palette is another than this one's, so the meshes would not fit.
     Result<bool> setAnimationSet(std::shared_ptr<const AnimationSet> set);
 
     /// Where a joint is now, in the character's own space: computed from its own chain of parents by the CPU twin,
@@ -67,6 +67,12 @@ public:
     /// mix of the clips that the layers play, see MixBounds. Empty before computeClipBounds().
     Box currentBounds() const;
 
+    /// Whether characters that OSG would draw alike, one after another, may be drawn by one instanced draw a mesh
+    /// primitive, see CharacterDraws. Programs that have no part in it (they do not link skin.glsl) are drawn one by
+    /// one.
+    void setDrawnTogether(bool together) { _isDrawnTogether = together; }
+    bool isDrawnTogether() const { return _isDrawnTogether; } ///< default: true
+
     void traverse(osg::NodeVisitor& visitor) override;
     /// Of currentBounds(); update() sees to it that it is asked for again when other clips play.
     osg::BoundingSphere computeBound() const override;
@@ -84,6 +90,7 @@ private:
     std::optional<double> _updateTime;                   ///< seconds of simulation time
     std::vector<PlayedClip> _played;                     ///< what the bound was last dirtied for
     std::vector<PlayedClip> _playedNow;                  ///< kept for its memory
+    bool _isDrawnTogether = true;
 };
 
 /// The first AnimatedCharacter at or below the node, depth first; null where there is none.

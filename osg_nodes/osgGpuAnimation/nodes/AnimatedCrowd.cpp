@@ -5,6 +5,8 @@
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimationUpdateCallback.h>
 #include <osgGpuAnimation/nodes/CrowdView.h>
+#include <osgGpuAnimation/nodes/DepthPass.h>
+#include <osgGpuAnimation/nodes/FlattenedPlace.h>
 #include <osgGpuAnimation/nodes/PosedMesh.h>
 #include <osgGpuAnimation/nodes/PoseStage.h>
 
@@ -133,6 +135,16 @@ AnimatedCrowd::AnimatedCrowd(const AnimatedCrowd& other, const osg::CopyOp& copy
 }
 
 AnimatedCrowd::~AnimatedCrowd() = default;
+
+Result<bool> AnimatedCrowd::setAnimationSet(std::shared_ptr<const AnimationSet> newSet)
+{
+    if (size() > 0 || set().paletteSize() > 0) return Error{"a crowd that has a set keeps it"};
+    if (!newSet) return Error{"a crowd needs a set"};
+    _instances.setSet(std::move(newSet));
+    _instances.setClipBounds(clipBoundsOf(set(), *this));
+    dirtyBound();
+    return true;
+}
 
 Result<AffineMatrix> AnimatedCrowd::toRootMatrix(const osg::Matrixd& placement, const osg::Vec3d& origin) const
 {
@@ -271,12 +283,13 @@ void AnimatedCrowd::traverse(osg::NodeVisitor& visitor)
         cull(*cullVisitor);
     else if (dynamic_cast<osgUtil::IntersectionVisitor*>(&visitor))
         intersect(visitor);
-    else
+    else if (!keepFlattenedPlace(*this, visitor))
         osg::Transform::traverse(visitor);
 }
 
 void AnimatedCrowd::cull(osgUtil::CullVisitor& visitor)
 {
+    const DepthPass pass(visitor);
     CrowdView view(visitor);
     static thread_local std::vector<std::uint32_t> seen; // keeps its storage from cull to cull
     _instances.findSeen(isCullingActive() ? view.planes() : std::vector<glm::vec4>(), seen);

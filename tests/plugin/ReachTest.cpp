@@ -28,13 +28,19 @@ bool isFinite(const JointTransform& transform)
     return transform.toMatrix().isFinite();
 }
 
+bool areFinite(const std::vector<JointTransform>& transforms)
+{
+    return std::all_of(transforms.begin(), transforms.end(),
+                       [](const JointTransform& transform) { return isFinite(transform); });
+}
+
 /// Keyframes, static data of the palette, and the palette at times of every clip.
 bool isFinite(const std::shared_ptr<const AnimationSet>& shared)
 {
     const AnimationSet& set = *shared;
-    const std::vector<JointTransform> keyframes = set.keyframeBuffer();
-    bool good = std::all_of(keyframes.begin(), keyframes.end(),
-                            [](const JointTransform& transform) { return isFinite(transform); });
+    bool good = areFinite(set.restPose());
+    for (const Clip& clip : set.clips())
+        good = good && areFinite(clip.data());
     for (const PaletteEntry& entry : set.palette())
         good = good && entry.inverseBind.isFinite() && entry.parentBind.isFinite();
     AnimationController controller(shared);

@@ -37,6 +37,13 @@ std::optional<std::string> readAll(std::istream& stream, std::size_t limit)
     return bytes;
 }
 
+/// osgDB puts the file's name in front of a message.
+std::string withoutSubject(const std::string& message, const std::string& path)
+{
+    const std::string subject = path + ": ";
+    return message.rfind(subject, 0) == 0 ? message.substr(subject.size()) : message;
+}
+
 } // namespace
 
 /// The osgPlugin for glTF 2.0: .gltf and .glb become an animated OSG graph, see gltf::importModel().
@@ -77,7 +84,7 @@ osgDB::ReaderWriter::ReadResult ReaderWriterGltf::readNode(const std::string& fi
     try
     {
         const Result<std::string> bytes = gltf::readWholeFile(path);
-        if (!bytes) return ReadResult(bytes.error().message);
+        if (!bytes) return ReadResult(withoutSubject(bytes.error().message, path));
         return import(bytes.value(), path, options);
     }
     catch (const std::bad_alloc&)
@@ -108,6 +115,8 @@ osgDB::ReaderWriter::ReadResult ReaderWriterGltf::import(const std::string& byte
 {
     const Result<gltf::ImportOptions> importOptions = gltf::parseOptions(options ? options->getOptionString() : "");
     if (!importOptions) return ReadResult(importOptions.error().message);
+    for (const std::string& hint : gltf::misspeltOptions(options ? options->getOptionString() : ""))
+        OSG_WARN << className() << ": " << hint << std::endl;
     const Result<gltf::ImportedModel> model = gltf::importModel(bytes, fileName, importOptions.value());
     if (!model) return ReadResult(model.error().message);
     const std::string subject = fileName.empty() ? "glTF stream" : fileName;

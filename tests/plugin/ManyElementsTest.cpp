@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include <chrono>
+#include <ctime>
 #include <string>
 
 namespace osgGpuAnimation::gltf
@@ -103,14 +103,14 @@ TEST(ManyElementsTest, staySmallAndQuick)
     {
         const long before = peakMemory();
         SCOPED_TRACE(many.name);
-        const auto start = std::chrono::steady_clock::now();
+        const std::clock_t start = std::clock(); // of the processor: other programs may run
         const Result<ImportedModel> model = importModel(many.text, "", {});
         EXPECT_EQ(bool(model), *many.message == '\0');
         if (!model)
         {
             EXPECT_NE(model.error().message.find(many.message), std::string::npos) << model.error().message;
         }
-        EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), mostSeconds);
+        EXPECT_LT(double(std::clock() - start) / CLOCKS_PER_SEC, mostSeconds);
         if (memoryIsMeasurable)
         {
             EXPECT_LT(peakMemory() - before, mostMebibytes);

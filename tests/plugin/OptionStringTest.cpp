@@ -125,4 +125,23 @@ TEST(OptionStringTest, valuesThatDoNotFitAreErrors)
     }
 }
 
+TEST(OptionStringTest, MisspeltOptionsAreNamed)
+{
+    const std::pair<const char*, const char*> words[] = {
+        {"clip=Run speed=2 noRotation maxElements=5", ""},
+        {"clips=Run,Walk spacing=2 seed=7 noTriStripPolygons dds_flip", ""}, // others'
+        {"Clip=Run", "\"clip\""},
+        {"norotation", "\"noRotation\""},
+        {"spead=2", "\"speed\""},
+        {"cliq=2", "\"clip\""},
+    };
+    for (const auto& [text, meant] : words)
+    {
+        SCOPED_TRACE(text);
+        const std::vector<std::string> hints = misspeltOptions(text);
+        ASSERT_EQ(hints.size(), *meant == '\0' ? 0u : 1u);
+        EXPECT_TRUE(hints.empty() || hints.front().find(meant) != std::string::npos) << hints.front();
+    }
+}
+
 } // namespace osgGpuAnimation::gltf

@@ -206,6 +206,7 @@ TEST_F(PluginTest, faultsHaveTheirStatusAndAMessage)
         const Read result = read(fault.file, fault.options);
         EXPECT_EQ(result.status(), fault.status) << result.message();
         EXPECT_NE(result.message().find(fault.message), std::string::npos) << result.message();
+        EXPECT_EQ(result.message().find(fault.file), std::string::npos) << "osgDB says it: " << result.message();
     }
 }
 

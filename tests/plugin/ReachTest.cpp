@@ -28,15 +28,16 @@ bool isFinite(const JointTransform& transform)
     return transform.toMatrix().isFinite();
 }
 
+bool areFinite(const std::vector<JointTransform>& transforms)
+{
+    return std::all_of(transforms.begin(), transforms.end(),
+                       [](const JointTransform& transform) { return isFinite(transform); });
+}
+
 /// Keyframes, static data of the palette, and the palette at times of every clip.
 bool isFinite(const std::shared_ptr<const AnimationSet>& shared)
 {
     const AnimationSet& set = *shared;
-    const auto areFinite = [](const std::vector<JointTransform>& transforms)
-    {
-        return std::all_of(transforms.begin(), transforms.end(),
-                           [](const JointTransform& transform) { return isFinite(transform); });
-    };
     bool good = areFinite(set.restPose());
     for (const Clip& clip : set.clips())
         good = good && areFinite(clip.data());

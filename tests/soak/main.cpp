@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT
+// Usage: soak [--seconds N] [--seed S] FILE
+// Clones, removes, changes clips, moves the camera, changes the window's size and the threading model, at random but
+// the same for the same seed, with the file's character. Prints GL errors and the growth of the process's memory since
+// the first minute. Exit status 0: no GL error, and at most 2 % more memory.
+
+#include "SoakScene.h"
+#include "SoakViewer.h"
+
+#include <osgDB/ReadFile>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <iostream>
+#include <string>
+
+namespace
+{
+
+using namespace osgGpuAnimation;
+
+struct Arguments
+{
+    double seconds = 600.0;
+    unsigned int seed = 1;
+    std::string file;
+};
+
+bool parse(int count, char** words, Arguments& arguments)
+{
+    for (int i = 1; i < count; ++i)
+    {
+        const bool hasValue = i + 1 < count;
+        if (std::strcmp(words[i], "--seconds") == 0 && hasValue)
+            arguments.seconds = std::atof(words[++i]);
+        else if (std::strcmp(words[i], "--seed") == 0 && hasValue)
+            arguments.seed = static_cast<unsigned int>(std::atoi(words[++i]));
+        else if (words[i][0] != '-' && arguments.file.empty())
+            arguments.file = words[i];
+        else
+            return false;
+    }
+    return !arguments.file.empty() && arguments.seconds > 0.0;
+}
+
+/// Kibibytes that the process has in memory.
+long residentMemory()
+{
+    std::ifstream status("/proc/self/status");
+    for (std::string line; std::getline(status, line);)
+        if (line.rfind("VmRSS:", 0) == 0) return std::atol(line.c_str() + 6);
+    return 0;
+}
+
+class Clock
+{
+public:
+    double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - _start).count(); }
+
+private:
+    std::chrono::steady_clock::time_point _start = std::chrono::steady_clock::now();
+};
+
+bool changeViewer(SoakViewer& viewer, unsigned int frame, std::mt19937& random)
+{
+    if (frame % 7 == 0) viewer.moveCamera(random);
+    if (frame % 90 == 0) viewer.changeThreading(random);
+    return frame % 400 != 399 || viewer.reopen(random);
+}
+
+int soak(const Arguments& arguments, osg::ref_ptr<osg::Node> model)
+{
+    std::mt19937 random(arguments.seed);
+    SoakScene scene(model);
+    SoakViewer viewer(scene.root());
+    const Clock clock;
+    const double warmUp = std::min(60.0, arguments.seconds / 3);
+    long most = 0, mostAtFirst = 0;
+    unsigned int frame = 0;
+    double told = 0.0;
+    for (; clock.seconds() < arguments.seconds; ++frame)
+    {
+        scene.change(random);
+        if (!changeViewer(viewer, frame, random)) return 1;
+        viewer.frame(frame / 60.0);
+        long& highest = clock.seconds() < warmUp ? mostAtFirst : most;
+        if (frame % 20 == 0) highest = std::max(highest, residentMemory());
+        if (clock.seconds() < told + 30.0) continue;
+        told = clock.seconds();
+        std::cout << static_cast<int>(told) << " s, " << frame << " frames, " << residentMemory() << " KiB, "
+                  << viewer.glErrors() << " GL errors" << std::endl;
+    }
+    const double growth = mostAtFirst > 0 ? 100.0 * double(most - mostAtFirst) / double(mostAtFirst) : 0.0;
+    std::cout << frame << " frames, " << viewer.glErrors() << " GL errors, most memory in the first "
+              << static_cast<int>(warmUp) << " s " << mostAtFirst << " KiB, afterwards " << most << " KiB: " << growth
+              << " %" << std::endl;
+    return viewer.glErrors() == 0 && growth <= 2.0 ? 0 : 1;
+}
+
+} // namespace
+
+int main(int count, char** words)
+{
+    Arguments arguments;
+    if (!parse(count, words, arguments))
+    {
+        std::cerr << "Usage: soak [--seconds N] [--seed S] FILE" << std::endl;
+        return 2;
+    }
+    const osg::ref_ptr<osg::Node> model = osgDB::readRefNodeFile(arguments.file);
+    if (!model || !findCharacter(*model))
+    {
+        std::cerr << arguments.file << " holds no animated character" << std::endl;
+        return 2;
+    }
+    return soak(arguments, model);
+}

@@ -73,6 +73,14 @@ void SoakScene::changeCrowd(std::mt19937& random)
     if (const auto added = _crowd->add(randomPlace(random), controller)) _instances.push_back(added.value());
 }
 
+void SoakScene::clear()
+{
+    _clones->removeChildren(0, _clones->getNumChildren());
+    for (const AnimatedCrowd::Instance instance : _instances)
+        _crowd->remove(instance);
+    _instances.clear();
+}
+
 void SoakScene::change(std::mt19937& random)
 {
     const bool isFull = _clones->getNumChildren() >= mostClones;

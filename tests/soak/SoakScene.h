@@ -22,6 +22,8 @@ public:
 
     osg::Group& root() { return *_root; }
     void change(std::mt19937& random);
+    /// Takes everything out.
+    void clear();
 
 private:
     void cloneOne(std::mt19937& random);

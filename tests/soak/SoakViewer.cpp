@@ -90,9 +90,8 @@ void SoakViewer::changeThreading(std::mt19937& random)
     _viewer->setThreadingModel(models[std::uniform_int_distribution<int>(0, 3)(random)]);
 }
 
-bool SoakViewer::reopen(std::mt19937& random)
+bool SoakViewer::open(std::mt19937& random)
 {
-    close();
     std::uniform_int_distribution<int> size(100, 500);
     const int width = size(random);
     return open(width, size(random));

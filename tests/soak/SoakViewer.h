@@ -22,14 +22,14 @@ public:
     void frame(double time);
     void moveCamera(std::mt19937& random);
     void changeThreading(std::mt19937& random);
-    /// Closes the window and opens one of another size.
-    bool reopen(std::mt19937& random);
+    void close();
+    /// A window of another size.
+    bool open(std::mt19937& random);
 
     int glErrors() const { return _glErrors; }
 
 private:
     bool open(int width, int height);
-    void close();
 
     osg::ref_ptr<osg::Group> _scene;
     osg::ref_ptr<osgViewer::Viewer> _viewer;

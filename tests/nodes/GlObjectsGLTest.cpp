@@ -87,7 +87,7 @@ TEST_F(GlObjectsGLTest, addingAndRemovingCharactersLeavesNothingBehind)
     for (int number = 0; number < 5; ++number)
         round(number);
     const Count before = count();
-    for (int number = 5; number < 200; ++number)
+    for (int number = 5; number < 1000; ++number)
         round(number);
     const Count after = count();
     EXPECT_EQ(after.buffers, before.buffers);

@@ -61,7 +61,7 @@ void setMotion(PoseVariant& variant, const PackedKeyframes::Track& motion)
 
 PosePipeline::PosePipeline(unsigned int contextId)
     : osg::GraphicsObjectManager("PosePipeline", contextId), _gl(osg::GLExtensions::Get(contextId, true)),
-      _scratch(*_gl, GL_RGBA32F_ARB), _mixedTracks(*_gl, GL_RGBA32F_ARB)
+      _vertexArrays(*_gl), _scratch(*_gl, GL_RGBA32F_ARB), _mixedTracks(*_gl, GL_RGBA32F_ARB)
 {
     osg::setGLExtensionFuncPtr(_copyBufferSubData, "glCopyBufferSubData");
     GLint maxTexels = 0;
@@ -136,11 +136,6 @@ PosePipeline::SetResources& PosePipeline::resourcesOf(const PoseBatch& batch)
 
 bool PosePipeline::evaluate(osg::State& state, const PoseBatch& batch, std::size_t slot)
 {
-    if (_noVertexArray == 0)
-    {
-        _gl->glGenVertexArrays(1, &_poseVertexArray);
-        _gl->glGenVertexArrays(1, &_noVertexArray);
-    }
     forgetUnusedSets();
     SetResources& resources = resourcesOf(batch);
     if (!resources.buffers) return false;
@@ -160,7 +155,8 @@ bool PosePipeline::evaluate(osg::State& state, const PoseBatch& batch, std::size
         resources.palettes[slot]->upload(batch, chunkCapacity, _counters.bytesUploaded);
     if (changed.empty()) return true;
 
-    const FeedbackScope scope(state, _form == Form::Fused ? _poseVertexArray : _noVertexArray, unitCount);
+    const FeedbackVertexArrays::Names& vertexArrays = _vertexArrays.of(state);
+    const FeedbackScope scope(state, _form == Form::Fused ? vertexArrays.pose : vertexArrays.empty, unitCount);
     for (PosePalette::Chunk* chunk : changed)
     {
         chunk->palette.reserve(set.paletteSize() * chunk->size * matrixBytes);
@@ -370,8 +366,7 @@ void PosePipeline::deleteAllGLObjects()
     forEachPass([](FeedbackPass& pass) { pass.release(); });
     _scratch.release();
     _mixedTracks.release();
-    if (_poseVertexArray != 0) _gl->glDeleteVertexArrays(1, &_poseVertexArray);
-    if (_noVertexArray != 0) _gl->glDeleteVertexArrays(1, &_noVertexArray);
+    _vertexArrays.release();
     discardAllGLObjects();
 }
 
@@ -387,8 +382,7 @@ void PosePipeline::discardAllGLObjects()
     _worldPass.reset();
     _scratch.discard();
     _mixedTracks.discard();
-    _poseVertexArray = 0;
-    _noVertexArray = 0;
+    _vertexArrays.discard();
 }
 
 } // namespace osgGpuAnimation

@@ -3,6 +3,7 @@
 
 #include <osgGpuAnimation/gpu/AnimationBuffers.h>
 #include <osgGpuAnimation/gpu/FeedbackPass.h>
+#include <osgGpuAnimation/gpu/FeedbackVertexArrays.h>
 #include <osgGpuAnimation/gpu/PosePalette.h>
 #include <osgGpuAnimation/gpu/PoseVariant.h>
 
@@ -108,8 +109,7 @@ private:
     bool _isSupported = false;
     Form _form = Form::Fused;
     Counters _counters;
-    GLuint _poseVertexArray = 0; ///< with the attributes of the pose pass
-    GLuint _noVertexArray = 0;   ///< without any
+    FeedbackVertexArrays _vertexArrays;
     Passes _posePasses;
     Passes _mixPasses;
     std::unique_ptr<FeedbackPass> _localPass;

@@ -12,7 +12,7 @@ packages=(
     libpng-dev libjpeg-dev
     libgl-dev libegl-dev
     openscenegraph libegl1 libegl-mesa0 libgl1 libglx-mesa0 libgl1-mesa-dri
-    libgtest-dev python3 xvfb xauth
+    libgtest-dev libbenchmark-dev python3 xvfb xauth dpkg-dev file
 )
 # What .ci/run needs besides.
 ci_packages=(git clang-format)

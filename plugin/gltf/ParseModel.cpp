@@ -3,9 +3,9 @@
 
 #include "gltf/ElementName.h"
 #include "gltf/JsonWriter.h"
+#include "gltf/PlainElements.h"
 
 #include <cstddef>
-#include <future>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,46 +16,53 @@ namespace osgGpuAnimation::gltf
 namespace
 {
 
-// From here on a second thread saves more than it costs.
-const std::size_t manyValues = 10000;
-
-/// The indices of a primitive that tinygltf would refuse, because their accessor has no buffer view.
-struct HiddenIndices
+/// The indices of the primitives, in the order of the document: tinygltf looks up their accessors, which it does not
+/// get, and refuses those without a buffer view.
+std::vector<int> takeIndices(const JsonValue& meshes)
 {
-    std::size_t mesh = 0;
-    std::size_t primitive = 0;
-    int accessor = -1;
-};
-
-std::vector<bool> accessorsWithView(const JsonValue& document)
-{
-    std::vector<bool> flags;
-    for (const JsonValue& accessor : document["accessors"])
-        flags.push_back(bool(accessor["bufferView"]));
-    return flags;
-}
-
-std::vector<HiddenIndices> hideIndices(const JsonValue& document)
-{
-    const std::vector<bool> withView = accessorsWithView(document);
-    std::vector<HiddenIndices> hidden;
-    std::size_t m = 0;
-    for (const JsonValue& mesh : document["meshes"])
-    {
-        std::size_t p = 0;
+    std::vector<int> taken;
+    for (const JsonValue& mesh : meshes)
         for (const JsonValue& primitive : mesh["primitives"])
         {
             const JsonValue indices = primitive["indices"];
-            if (indices && !withView[std::size_t(indices.number())])
-            {
-                hidden.push_back({m, p, int(indices.number())});
-                indices.dropFrom(primitive);
-            }
-            ++p;
+            taken.push_back(indices ? int(indices.number()) : -1);
+            if (indices) indices.dropFrom(primitive);
         }
-        ++m;
+    return taken;
+}
+
+/// Puts back what takeIndices() took. False: there are more or fewer primitives than before.
+bool giveIndices(const std::vector<int>& taken, tinygltf::Model& model)
+{
+    std::size_t next = 0;
+    for (tinygltf::Mesh& mesh : model.meshes)
+        for (tinygltf::Primitive& primitive : mesh.primitives)
+        {
+            if (next == taken.size()) return false;
+            primitive.indices = taken[next++];
+        }
+    return next == taken.size();
+}
+
+/// Channels and samplers of an animation.
+struct Tracks
+{
+    std::vector<tinygltf::AnimationChannel> channels;
+    std::vector<tinygltf::AnimationSampler> samplers;
+};
+
+std::vector<Tracks> takeTracks(const JsonValue& animations)
+{
+    std::vector<Tracks> taken;
+    if (animations) taken.reserve(animations.size());
+    for (const JsonValue& animation : animations)
+    {
+        const JsonValue channels = animation["channels"], samplers = animation["samplers"];
+        taken.push_back({readChannels(channels), readAnimationSamplers(samplers)});
+        for (const JsonValue& list : {channels, samplers})
+            if (list) list.dropFrom(animation);
     }
-    return hidden;
+    return taken;
 }
 
 /// No file is tinygltf's to open.
@@ -95,8 +102,7 @@ std::optional<Error> compareSize(const JsonValue& json, const char* name, const 
 /// tinygltf drops members that it does not like without a word; nothing here should be of that kind.
 std::optional<Error> compareSizes(const JsonValue& document, const tinygltf::Model& model)
 {
-    std::optional<Error> error = compareSize(document["accessors"], "accessors", model.accessors);
-    if (!error) error = compareSize(document["bufferViews"], "bufferViews", model.bufferViews);
+    std::optional<Error> error = compareSize(document["animations"], "animations", model.animations);
     if (!error) error = compareSize(document["meshes"], "meshes", model.meshes);
     if (!error) error = compareSize(document["nodes"], "nodes", model.nodes);
     if (!error) error = compareSize(document["skins"], "skins", model.skins);
@@ -109,59 +115,36 @@ std::optional<Error> compareSizes(const JsonValue& document, const tinygltf::Mod
 }
 
 template <typename Element>
-void reserve(const JsonValue& document, const char* name, std::vector<Element>& elements)
+void reserve(const JsonValue& json, std::vector<Element>& elements)
 {
-    if (const JsonValue json = document[name]) elements.reserve(json.size());
-}
-
-/// tinygltf's elements are half a kilobyte each and would be moved as its vectors grow: a fifth of its time.
-void reserve(const JsonValue& document, tinygltf::Model& model)
-{
-    reserve(document, "accessors", model.accessors);
-    reserve(document, "bufferViews", model.bufferViews);
-    reserve(document, "nodes", model.nodes);
-    reserve(document, "meshes", model.meshes);
-}
-
-std::optional<Error> parseAnimations(const JsonValue& animations, std::vector<tinygltf::Animation>& result)
-{
-    if (!animations) return std::nullopt;
-    tinygltf::Model model;
-    model.animations.reserve(animations.size());
-    if (std::optional<Error> error = runTinyGltf("{\"animations\":" + writeJson(animations) + '}', model)) return error;
-    result = std::move(model.animations);
-    return compareSize(animations, "animations", result);
-}
-
-/// All but the animations.
-std::optional<Error> parseRest(const JsonValue& document, tinygltf::Model& model)
-{
-    const std::vector<HiddenIndices> hidden = hideIndices(document);
-    const std::string text = writeJson(document);
-    reserve(document, model);
-    if (std::optional<Error> error = runTinyGltf(text, model)) return error;
-    if (std::optional<Error> error = compareSizes(document, model)) return error;
-    for (const HiddenIndices& indices : hidden)
-        model.meshes[indices.mesh].primitives[indices.primitive].indices = indices.accessor;
-    return std::nullopt;
+    if (json) elements.reserve(json.size());
 }
 
 } // namespace
 
 std::optional<Error> parseModel(const JsonValue& document, tinygltf::Model& model)
 {
-    const JsonValue animations = document["animations"];
-    if (animations) animations.dropFrom(document);
-    const bool beside = animations && animations.valuesBelow() >= manyValues;
-    std::vector<tinygltf::Animation> parsed;
-    // Each works on its own part of the tree. Where no thread is to be had, the call is made by get().
-    std::future<std::optional<Error>> task =
-        std::async(beside ? std::launch::async | std::launch::deferred : std::launch::deferred, parseAnimations,
-                   animations, std::ref(parsed));
-    std::optional<Error> error = parseRest(document, model);
-    const std::optional<Error> animationError = task.get();
-    model.animations = std::move(parsed);
-    return error ? error : animationError;
+    const JsonValue accessors = document["accessors"], bufferViews = document["bufferViews"];
+    for (const JsonValue& list : {accessors, bufferViews})
+        if (list) list.dropFrom(document);
+    std::vector<Tracks> tracks = takeTracks(document["animations"]);
+    const std::vector<int> indices = takeIndices(document["meshes"]);
+
+    // tinygltf's elements are half a kilobyte each and would be moved as its vectors grow.
+    reserve(document["nodes"], model.nodes);
+    reserve(document["meshes"], model.meshes);
+    if (std::optional<Error> error = runTinyGltf(writeJson(document), model)) return error;
+    if (std::optional<Error> error = compareSizes(document, model)) return error;
+
+    model.accessors = readAccessors(accessors);
+    model.bufferViews = readBufferViews(bufferViews);
+    for (std::size_t i = 0; i < tracks.size(); ++i)
+    {
+        model.animations[i].channels = std::move(tracks[i].channels);
+        model.animations[i].samplers = std::move(tracks[i].samplers);
+    }
+    if (giveIndices(indices, model)) return std::nullopt;
+    return fault("meshes", std::to_string(indices.size()) + " primitives after tinygltf has read them", "others");
 }
 
 } // namespace osgGpuAnimation::gltf

@@ -13,8 +13,8 @@ namespace osgGpuAnimation::gltf
 {
 
 /// Lets tinygltf parse a document that has passed all checks, without buffers and images (the caller's to fill in).
-/// Many animations are parsed on a thread of their own, beside the rest; their members may be dropped from the
-/// document. Returns an error where tinygltf refuses it all the same, or leaves something out.
+/// Members of the document are dropped from it on the way. Returns an error where tinygltf refuses it all the same, or
+/// leaves something out.
 std::optional<Error> parseModel(const JsonValue& document, tinygltf::Model& model);
 
 } // namespace osgGpuAnimation::gltf

@@ -41,19 +41,19 @@ struct Loading
     ModelFolder folder;
     JsonTree json;
     tinygltf::Model model;
+    JsonValue bufferViews, meshes; ///< of the document, for what tinygltf does not know
 };
 
 /// Decompression, and everything that binds data and document together.
 std::optional<Error> validate(Loading& loading)
 {
     tinygltf::Model& model = loading.model;
-    const JsonValue document = loading.json.root();
     const Result<NodeForest> forest = NodeForest::create(model, loading.options.maxNodeDepth);
     if (!forest) return forest.error();
-    std::optional<Error> error = decompressMeshopt(document["bufferViews"], loading.budget, model);
+    std::optional<Error> error = decompressMeshopt(loading.bufferViews, loading.budget, model);
     if (!error) error = validateAccessors(model, 0, loading.budget);
     const std::size_t known = model.accessors.size();
-    if (!error) error = decompressDraco(document["meshes"], loading.budget, model);
+    if (!error) error = decompressDraco(loading.meshes, loading.budget, model);
     if (!error) error = validateAccessors(model, known, loading.budget);
     if (!error) error = validateScenes(model, forest.value());
     if (!error) error = validateSkins(model, forest.value(), loading.report);
@@ -75,7 +75,9 @@ Result<tinygltf::Model> load(const std::string& bytes, const std::string& fileNa
                     DecodedBytes(options.maxDecodedBytes),
                     ModelFolder(fileName, options.allowOutsideFiles),
                     std::move(json).value(),
-                    tinygltf::Model()};
+                    tinygltf::Model(),
+                    JsonValue(),
+                    JsonValue()};
 
     const JsonValue document = loading.json.root();
     if (!loading.budget.take(loading.json.size() * bytesOfJsonValue))
@@ -86,6 +88,8 @@ Result<tinygltf::Model> load(const std::string& bytes, const std::string& fileNa
     const JsonValue buffers = document["buffers"], images = document["images"];
     for (const JsonValue& ours : {buffers, images})
         if (ours) ours.dropFrom(document);
+    loading.bufferViews = document["bufferViews"];
+    loading.meshes = document["meshes"];
     error = parseModel(document, loading.model);
     if (!error)
         error = loadBuffers(buffers, container.value().binary, loading.folder, loading.budget, report, loading.model);

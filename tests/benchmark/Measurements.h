@@ -18,6 +18,10 @@ namespace osgGpuAnimation::benchmark
 /// The context is current.
 Result<bool> measurePose(const Subject& subject, const Effort& effort, osg::GraphicsContext& context, Report& report);
 
+/// Four blend samples a character against one, as layers and crossfades ask for. The context is current.
+Result<bool> measureSamples(const Subject& subject, const Effort& effort, osg::GraphicsContext& context,
+                            Report& report);
+
 /// A joint's cost in chains of 8 to 64. The context is current.
 Result<bool> measureDepth(const Effort& effort, osg::GraphicsContext& context, Report& report);
 
@@ -27,7 +31,13 @@ Result<bool> measureFrames(const Subject& subject, const Effort& effort, Report&
 /// Skinned draws against the same meshes and shader without skinning.
 Result<bool> measureSkinning(const Subject& subject, const Effort& effort, Report& report);
 
+/// One crowd node against as many separate nodes: whole frames, and what the CPU does of them.
+Result<bool> measureCrowd(const Subject& subject, const Effort& effort, Report& report);
+
 /// Bytes and the first frame of many characters.
 Result<bool> measureStart(const Subject& subject, const Effort& effort, Report& report);
+
+/// Loading its file, against what tinygltf takes to parse it and decode its pictures.
+Result<bool> measureLoad(const Subject& subject, const Effort& effort, Report& report);
 
 } // namespace osgGpuAnimation::benchmark

@@ -42,6 +42,16 @@ PoseCrowd::PoseCrowd(std::shared_ptr<const AnimationSet> set, std::size_t clip, 
 
 PoseCrowd::~PoseCrowd() = default;
 
+void PoseCrowd::crossfade(std::size_t clip)
+{
+    constexpr double hours = 36000.0;
+    for (AnimationController& controller : _controllers)
+    {
+        static_cast<void>(controller.crossfade(clip, hours));
+        controller.advance(0.4 * hours);
+    }
+}
+
 Spent PoseCrowd::step(double seconds, PosePipeline::Form form)
 {
     osg::State& state = *_context->getState();

@@ -23,6 +23,9 @@ public:
               osg::GraphicsContext& context);
     ~PoseCrowd();
 
+    /// Everybody begins a crossfade that goes on for hours: one more blend sample each.
+    void crossfade(std::size_t clip);
+
     /// Moves everybody on and computes all palettes, until the GPU has finished.
     Spent step(double seconds, PosePipeline::Form form = PosePipeline::Form::Fused);
 

@@ -37,7 +37,7 @@ Result<Subject> loadSubject(const std::string& name, const std::string& fileName
     const std::string bytes(std::istreambuf_iterator<char>(stream), {});
     Result<gltf::ImportedModel> model = gltf::importModel(bytes, fileName, {});
     if (!model) return model.error();
-    Subject subject{name, std::move(model.value()), 0};
+    Subject subject{name, fileName, std::move(model.value()), 0};
     if (!subject.model.set || subject.set().clips().empty()) return Error{"nothing moves"};
     std::size_t most = 0;
     for (std::size_t clip = 0; clip < subject.set().clips().size(); ++clip)

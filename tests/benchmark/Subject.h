@@ -12,6 +12,7 @@ namespace osgGpuAnimation::benchmark
 struct Subject
 {
     std::string name;
+    std::string fileName;
     gltf::ImportedModel model;
     std::size_t clip = 0; ///< the one that moves the most joints; of several, the first
 

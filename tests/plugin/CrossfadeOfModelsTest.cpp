@@ -109,17 +109,39 @@ TEST_P(CrossfadeOfModelsTest, fromTheLeastSecondsOnNoJointLeaps)
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Models, CrossfadeOfModelsTest,
-    ::testing::Values(
-        ModelCase{"Fox", "assets/Fox/Fox.glb", {"Walk", "Run"}, Sync::Start, FadeCurve::Linear},
-        ModelCase{"FoxSmooth", "assets/Fox/Fox.glb", {"Walk", "Run"}, Sync::Start, FadeCurve::Smooth},
-        ModelCase{"FoxInPhase", "assets/Fox/Fox.glb", {"Walk", "Run"}, Sync::Phase, FadeCurve::Linear},
-        ModelCase{"FoxAll", "assets/Fox/Fox.glb", {"Survey", "Walk", "Run"}, Sync::Start, FadeCurve::Linear},
-        ModelCase{
-            "Knight", "assets/Knight/Knight.glb", {"Idle", "Walking_A", "Running_A"}, Sync::Start, FadeCurve::Linear},
-        ModelCase{
-            "KnightInPhase", "assets/Knight/Knight.glb", {"Walking_A", "Running_A"}, Sync::Phase, FadeCurve::Linear}),
-    [](const auto& info) { return std::string(info.param.name); });
+/// Between gaits the bounds of leastFadeSeconds leave much room: the fades that people ask for do not leap either.
+class CrossfadeOfGaitsTest : public CrossfadeOfModelsTest
+{
+};
+
+TEST_P(CrossfadeOfGaitsTest, threeTenthsOfASecondAreEnough)
+{
+    SKIP_WITHOUT_SHARED_FILE(GetParam().file);
+    ASSERT_NO_FATAL_FAILURE(load(sharedFile(GetParam().file)));
+    for (unsigned int every : {4u, 12u, 40u})
+    {
+        const double worst = worstStep(0.3, every);
+        std::printf("seed %u, %s, a crossfade every %u frames on average: %.3f\n", seed, GetParam().name, every, worst);
+        EXPECT_LE(worst, 1.5) << "a crossfade every " << every << " frames on average, seed " << seed;
+    }
+}
+
+const ModelCase gaits[] = {
+    {"Fox", "assets/Fox/Fox.glb", {"Walk", "Run"}, Sync::Start, FadeCurve::Linear},
+    {"FoxSmooth", "assets/Fox/Fox.glb", {"Walk", "Run"}, Sync::Start, FadeCurve::Smooth},
+    {"FoxInPhase", "assets/Fox/Fox.glb", {"Walk", "Run"}, Sync::Phase, FadeCurve::Linear},
+    {"Knight", "assets/Knight/Knight.glb", {"Idle", "Walking_A", "Running_A"}, Sync::Start, FadeCurve::Linear},
+    {"KnightInPhase", "assets/Knight/Knight.glb", {"Walking_A", "Running_A"}, Sync::Phase, FadeCurve::Linear},
+};
+
+const ModelCase withASlowClip[] = {
+    {"FoxAll", "assets/Fox/Fox.glb", {"Survey", "Walk", "Run"}, Sync::Start, FadeCurve::Linear},
+};
+
+const auto nameOf = [](const auto& info) { return std::string(info.param.name); };
+
+INSTANTIATE_TEST_SUITE_P(Gaits, CrossfadeOfModelsTest, ::testing::ValuesIn(gaits), nameOf);
+INSTANTIATE_TEST_SUITE_P(Slow, CrossfadeOfModelsTest, ::testing::ValuesIn(withASlowClip), nameOf);
+INSTANTIATE_TEST_SUITE_P(Gaits, CrossfadeOfGaitsTest, ::testing::ValuesIn(gaits), nameOf);
 
 } // namespace osgGpuAnimation::gltf

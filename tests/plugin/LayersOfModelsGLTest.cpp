@@ -100,26 +100,31 @@ TEST_P(LayersOfModelsGLTest, randomStacksAreTheTwinsAndTheReferencesPose)
     ASSERT_NE(pipeline, nullptr);
     std::vector<PoseInstruction> stacks(GetParam().stacks);
     PoseBatch batch(set);
+    std::size_t drawn = 0;
     for (PoseInstruction& stack : stacks)
-        batch.add(stack = randomLayers(*set, random));
+    {
+        // Nearly opposite rotations: which of two ways is the shorter hangs on the last bits. Another stack, then.
+        do
+        {
+            stack = randomLayers(*set, random);
+            ++drawn;
+        } while (reference::blend(*set, stack).closestDecision < 1e-5);
+        batch.add(stack);
+    }
     ASSERT_TRUE(pipeline->evaluate(state(), batch, 0));
-    std::size_t compared = 0;
     double worstTwin = 0.0, worstReference = 0.0;
     for (std::size_t i = 0; i < stacks.size(); ++i)
     {
         const reference::BlendedPose expected = reference::blend(*set, stacks[i]);
-        // Nearly opposite rotations: which of two ways is the shorter hangs on the last bits.
-        if (expected.closestDecision < 1e-5) continue;
-        ++compared;
         const std::vector<AffineMatrix> palette = pipeline->readPalette(state(), *set, 0, i);
         std::vector<AffineMatrix> twin;
         Pose::evaluate(*set, stacks[i], AffineMatrix(), twin);
         worstTwin = std::max(worstTwin, difference(palette, twin));
         worstReference = std::max(worstReference, difference(palette, expected.palette(*set)));
     }
-    std::printf("seed %u: %zu of %zu stacks; of the model's size: twin %.2e, reference %.2e\n", seed, compared,
-                stacks.size(), worstTwin, worstReference);
-    EXPECT_GE(compared, stacks.size() * 95 / 100) << "seed " << seed;
+    std::printf("seed %u: %zu stacks of %zu drawn; of the model's size: twin %.2e, reference %.2e\n", seed,
+                stacks.size(), drawn, worstTwin, worstReference);
+    EXPECT_LE(drawn, stacks.size() * 102 / 100) << "seed " << seed;
     EXPECT_LE(worstTwin, 1e-5) << "seed " << seed;
     EXPECT_LE(worstReference, 1e-5) << "seed " << seed;
 }

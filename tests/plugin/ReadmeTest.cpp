@@ -1,11 +1,24 @@
 // SPDX-License-Identifier: MIT
+#include "support/ScratchFolder.h"
+#include "support/WorkingFolder.h"
+
+#include <osgGpuAnimation/gpu/EglGraphicsContext.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
+#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 
 #include <osg/MatrixTransform>
+#include <osgDB/FileUtils>
 #include <osgDB/ReadFile>
 #include <osgDB/Registry>
+#include <osgUtil/LineSegmentIntersector>
+#include <osgViewer/Viewer>
 
 #include <gtest/gtest.h>
+
+#include <iostream>
+
+// The README's snippets that read a file, on our own scene under the name they use. That they are the README's,
+// tests/house/SnippetTest.cpp sees to.
 
 namespace osgGpuAnimation
 {
@@ -13,17 +26,31 @@ namespace osgGpuAnimation
 namespace
 {
 
-/// The README's "Ten lines", on our own scene in place of the fox.
-TEST(ReadmeTest, tenLines)
+class ReadmeTest : public ::testing::Test
 {
-    osgDB::Registry::instance()->getLibraryFilePathList().push_front(OSGGPUANIMATION_PLUGIN_FOLDER);
+protected:
+    void SetUp() override
+    {
+        osgDB::Registry::instance()->getLibraryFilePathList().push_front(OSGGPUANIMATION_PLUGIN_FOLDER);
+        std::filesystem::copy_file(OSGGPUANIMATION_SCENES "/Wanderer.glb", _folder.file("fox.glb"));
+        EXPECT_FALSE(osgDB::findDataFile("fox.glb").empty());
+    }
+
+private:
+    ScratchFolder _folder;
+    WorkingFolder _here{_folder.file("")};
+};
+
+TEST_F(ReadmeTest, tenLines)
+{
     osg::ref_ptr<osg::Group> scene = new osg::Group;
 
-    osg::ref_ptr<osg::Node> node = osgDB::readRefNodeFile(OSGGPUANIMATION_SCENES "/Wanderer.glb");
+    osg::ref_ptr<osg::Node> node = osgDB::readRefNodeFile("fox.glb");
     ASSERT_TRUE(node.valid());
-    AnimatedCharacter* wanderer = findCharacter(*node);
-    ASSERT_NE(wanderer, nullptr);
-    EXPECT_TRUE(wanderer->controller().crossfade("Run", 0.25));
+    AnimatedCharacter* fox = findCharacter(*node);
+    ASSERT_NE(fox, nullptr);
+    if (auto faded = fox->controller().crossfade("Run", 0.25); !faded) std::cerr << faded.error().message << std::endl;
+    EXPECT_EQ(fox->controller().clip(), fox->set().findClip("Run"));
 
     osg::ref_ptr<osg::Node> other = osg::clone(node.get(), osg::CopyOp::DEEP_COPY_NODES);
     findCharacter(*other)->controller().setSpeed(0.5);
@@ -33,9 +60,42 @@ TEST(ReadmeTest, tenLines)
     scene->addChild(node);
     scene->addChild(beside);
 
-    EXPECT_EQ(wanderer->controller().speed(), 1.0);
-    EXPECT_EQ(&wanderer->set(), &findCharacter(*other)->set());
-    EXPECT_NE(&wanderer->controller(), &findCharacter(*other)->controller());
+    EXPECT_EQ(fox->controller().speed(), 1.0);
+    EXPECT_EQ(&fox->set(), &findCharacter(*other)->set());
+    EXPECT_NE(&fox->controller(), &findCharacter(*other)->controller());
+}
+
+TEST_F(ReadmeTest, crowds)
+{
+    osg::ref_ptr<osg::Node> model = osgDB::readRefNodeFile("fox.glb");
+    ASSERT_TRUE(model.valid());
+    osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*findCharacter(*model));
+
+    AnimationController controller(crowd->sharedSet());
+    EXPECT_TRUE(controller.play("Run"));
+    controller.seek(0.4);
+    auto fox = crowd->add(osg::Matrix::translate(100, 20, 0), controller, osg::Vec4(1, 0.8, 0.8, 1));
+    if (!fox) std::cerr << fox.error().message << std::endl;
+    ASSERT_TRUE(fox);
+
+    EXPECT_TRUE(crowd->move(fox.value(), osg::Matrix::translate(101, 20, 0)));
+    EXPECT_TRUE(crowd->controller(fox.value())->crossfade("Walk", 0.3));
+    crowd->remove(fox.value());
+
+    osgUtil::LineSegmentIntersector::Intersection hit;
+    auto instance = AnimatedCrowd::instanceOf(hit.drawable);
+    EXPECT_FALSE(instance) << "nothing was hit";
+}
+
+TEST_F(ReadmeTest, withoutADisplay)
+{
+    osgViewer::Viewer viewer;
+    auto context = EglGraphicsContext::create(800, 600);
+    if (!context)
+        std::cerr << context.error().message << std::endl;
+    else
+        viewer.getCamera()->setGraphicsContext(context.value());
+    EXPECT_TRUE(!context || viewer.getCamera()->getGraphicsContext() == context.value());
 }
 
 } // namespace

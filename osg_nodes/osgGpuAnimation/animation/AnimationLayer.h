@@ -16,6 +16,7 @@ namespace osgGpuAnimation
 class AnimationController;
 class JointMask;
 class MotionBlend;
+struct LayerSnapshot;
 
 /// Layers a controller may have.
 constexpr std::size_t maxLayers = 8;
@@ -71,6 +72,11 @@ public:
     bool setSpeed(double speed);
     /// From the current time on; a clip that has Ended stays so until it is played or sought.
     void setLoopMode(LoopMode mode);
+
+    /// All there is of it, to be kept and restored, by a layer of the same set or of one like it. What comes after
+    /// goes on as if nothing had been. Errors: whatever no layer of this set could have said; nothing changes then.
+    LayerSnapshot snapshot() const;
+    Result<bool> restore(const LayerSnapshot& snapshot);
 
     PlayState state() const { return _state; }
     bool isPlaying() const { return _state == PlayState::Playing; }

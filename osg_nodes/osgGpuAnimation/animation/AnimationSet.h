@@ -82,6 +82,7 @@ public:
 
     const Skeleton& skeleton() const { return _parts.skeleton; }
     const std::vector<Skin>& skins() const { return _parts.skins; }
+    const std::vector<int>& rigidJoints() const { return _parts.rigidJoints; } ///< as they were given
     const std::vector<MorphWeights>& morphs() const { return _parts.morphs; }
     const std::vector<Clip>& clips() const { return _parts.clips; }
 

@@ -13,6 +13,7 @@
 namespace osgGpuAnimation
 {
 
+struct ClipParts;
 struct CompactTracks;
 struct RootMotionCurve;
 
@@ -42,6 +43,13 @@ public:
         std::size_t keyframe = 0;
         float alpha = 0.0f; ///< [0, 1)
     };
+
+    /// A clip of these keyframes, as another said them of itself: to keep clips elsewhere than in a glTF file. For
+    /// what has channels there is ClipBuilder.
+    /// Errors: no keyframes; times that are not finite, negative, descending or more than twice the same; numbers that
+    /// are not finite; a wrong number of them; in a Linear clip a joint's rotation of length 0; a marker's time or a
+    /// root motion that is none of such a clip.
+    static Result<Clip> create(ClipParts parts);
 
     const std::string& name() const { return _name; }
     Form form() const { return _form; }

@@ -30,6 +30,19 @@ void ClipMixer::start(const ClipPlayback& playback)
     _fade = Fade(1.0);
 }
 
+void ClipMixer::restore(const std::vector<Voice>& voices, const Fade& fade)
+{
+    _count = std::min(voices.size(), maxVoices);
+    _lastPhaseGroup = 0;
+    for (std::size_t i = 0; i < _count; ++i)
+    {
+        _voices[i] = voices[i];
+        _voices[i].move = ClipMove();
+        _lastPhaseGroup = std::max(_lastPhaseGroup, voices[i].phaseGroup);
+    }
+    _fade = fade;
+}
+
 void ClipMixer::fadeTo(const ClipPlayback& playback, double seconds, FadeCurve curve, bool sharesPhase)
 {
     removeFaded();

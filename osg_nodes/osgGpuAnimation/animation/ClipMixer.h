@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstddef>
+#include <vector>
 
 namespace osgGpuAnimation
 {
@@ -37,7 +38,11 @@ public:
     const ClipPlayback& current() const { return _voices[_count - 1].playback; }
     bool isFading() const { return !_fade.isFinished(); }
 
+    const Fade& fade() const { return _fade; } ///< from 0 to 1, the current voice's
+
     void clear() { _count = 0; }
+    /// As it was when it said so of itself. voices: oldest first, at most maxVoices are taken.
+    void restore(const std::vector<Voice>& voices, const Fade& fade);
     /// Alone and at once.
     void start(const ClipPlayback& playback);
     /// Over these seconds (above 0).

@@ -46,6 +46,13 @@ void ClipPlayback::seek(double seconds)
     _isFresh = true;
 }
 
+void ClipPlayback::restore(double time, bool isReturning, bool isFresh)
+{
+    seek(time);
+    _direction = isReturning && _loopMode == LoopMode::PingPong ? -1.0 : 1.0;
+    _isFresh = isFresh;
+}
+
 void ClipPlayback::setPhase(double phase)
 {
     if (_loopMode != LoopMode::PingPong)

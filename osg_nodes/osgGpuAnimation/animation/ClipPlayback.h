@@ -39,6 +39,11 @@ public:
     /// Whether there is no way on in Once, at this speed.
     bool isAtEnd() const { return _time == (_speed < 0.0 ? 0.0 : _duration); }
 
+    bool isReturning() const { return _direction < 0.0; } ///< on the second half of PingPong's round
+    bool isFresh() const { return _isFresh; }             ///< whether nothing has been told of this time yet
+
+    /// As it was when it said so of itself. time: clamped to [0, duration].
+    void restore(double time, bool isReturning, bool isFresh);
     void setSpeed(double speed) { _speed = speed; }
     void setLoopMode(LoopMode mode);
     void seek(double seconds);   ///< clamped to [0, duration]

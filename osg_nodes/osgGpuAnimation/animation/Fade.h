@@ -20,7 +20,11 @@ public:
     Fade(double from, double to, double seconds, FadeCurve curve);
 
     double value() const { return _value; }
+    double origin() const { return _from; }
     double target() const { return _to; }
+    double seconds() const { return _seconds; }
+    double elapsed() const { return _elapsed; } ///< seconds; beyond seconds() where it has arrived
+    FadeCurve curve() const { return _curve; }
     bool isFinished() const { return _elapsed >= _seconds; }
     /// Moves on (seconds below 0 count as 0). Returns which share of the seconds it took to arrive, in [0, 1]; -1 where
     /// it did not arrive or had before.

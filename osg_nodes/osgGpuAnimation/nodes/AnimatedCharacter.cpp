@@ -3,6 +3,7 @@
 
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/nodes/AnimationUpdateCallback.h>
+#include <osgGpuAnimation/nodes/DepthPass.h>
 #include <osgGpuAnimation/nodes/PoseStage.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
@@ -72,7 +73,8 @@ AnimatedCharacter::~AnimatedCharacter() = default;
 
 Result<bool> AnimatedCharacter::setAnimationSet(std::shared_ptr<const AnimationSet> newSet)
 {
-    if (!newSet || newSet->paletteSize() != set().paletteSize())
+    const bool isFirst = set().paletteSize() == 0;
+    if (!newSet || (!isFirst && newSet->paletteSize() != set().paletteSize()))
         return Error{"a set of " + std::to_string(newSet ? newSet->paletteSize() : 0) +
                      " palette entries for the meshes of one of " + std::to_string(set().paletteSize())};
     AnimationController next(std::move(newSet));
@@ -170,6 +172,7 @@ void AnimatedCharacter::traverse(osg::NodeVisitor& visitor)
         osg::MatrixTransform::traverse(visitor);
         return;
     }
+    const DepthPass pass(*cullVisitor);
     cullVisitor->pushStateSet(PoseStage::enlist(*cullVisitor, *this));
     osg::MatrixTransform::traverse(visitor);
     cullVisitor->popStateSet();

@@ -42,8 +42,8 @@ public:
 
     /// The same character with another set, such as one with markers or root motion (AnimationSet::withClips,
     /// withRootMotion): the base layer goes on with the clip of the same number, other layers are gone, bounds are
-    /// worked out anew. Do it before cloning, so that clones share the set. Error: the set's palette is another than
-    /// this one's, so the meshes would not fit.
+    /// worked out anew. Do it before cloning, so that clones share the set. A character that was made without a set
+    /// takes any. Error: the set's palette is another than this one's, so the meshes would not fit.
     Result<bool> setAnimationSet(std::shared_ptr<const AnimationSet> set);
 
     /// Where a joint is now, in the character's own space: computed from its own chain of parents by the CPU twin,

@@ -5,6 +5,7 @@
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimationUpdateCallback.h>
 #include <osgGpuAnimation/nodes/CrowdView.h>
+#include <osgGpuAnimation/nodes/DepthPass.h>
 #include <osgGpuAnimation/nodes/PosedMesh.h>
 #include <osgGpuAnimation/nodes/PoseStage.h>
 
@@ -133,6 +134,16 @@ AnimatedCrowd::AnimatedCrowd(const AnimatedCrowd& other, const osg::CopyOp& copy
 }
 
 AnimatedCrowd::~AnimatedCrowd() = default;
+
+Result<bool> AnimatedCrowd::setAnimationSet(std::shared_ptr<const AnimationSet> newSet)
+{
+    if (size() > 0 || set().paletteSize() > 0) return Error{"a crowd that has a set keeps it"};
+    if (!newSet) return Error{"a crowd needs a set"};
+    _instances.setSet(std::move(newSet));
+    _instances.setClipBounds(clipBoundsOf(set(), *this));
+    dirtyBound();
+    return true;
+}
 
 Result<AffineMatrix> AnimatedCrowd::toRootMatrix(const osg::Matrixd& placement, const osg::Vec3d& origin) const
 {
@@ -277,6 +288,7 @@ void AnimatedCrowd::traverse(osg::NodeVisitor& visitor)
 
 void AnimatedCrowd::cull(osgUtil::CullVisitor& visitor)
 {
+    const DepthPass pass(visitor);
     CrowdView view(visitor);
     static thread_local std::vector<std::uint32_t> seen; // keeps its storage from cull to cull
     _instances.findSeen(isCullingActive() ? view.planes() : std::vector<glm::vec4>(), seen);

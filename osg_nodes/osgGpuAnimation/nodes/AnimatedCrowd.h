@@ -55,6 +55,10 @@ public:
     }
     const std::shared_ptr<const AnimationSet>& sharedSet() const { return _instances.set(); }
 
+    /// For a crowd that was made without a set: works out the bounds from the meshes that are there. Error: it has
+    /// instances, or a set already.
+    Result<bool> setAnimationSet(std::shared_ptr<const AnimationSet> set);
+
     /// placement: affine, from the character's own space to the space this node is in. controller: one of the crowd's
     /// set; it is copied. tint: what the colour is multiplied by, [0, 1] each.
     /// Errors: a placement that is not finite, not affine, or mirrors (its determinant is below 0); a controller of

@@ -42,6 +42,8 @@ public:
         return _fadeSeconds;
     }
 
+    void setFadeSeconds(double seconds) { _fadeSeconds = seconds; } ///< at least 0
+
     using osgGA::GUIEventHandler::handle;
     bool handle(const osgGA::GUIEventAdapter& event, osgGA::GUIActionAdapter& action, osg::Object* object,
                 osg::NodeVisitor* visitor) override;

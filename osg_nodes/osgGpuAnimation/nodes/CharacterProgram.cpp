@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/CharacterProgram.h>
 
+#include <osgGpuAnimation/nodes/SurfaceProgram.h>
+
 #include <layout.glsl>
 #include <ShaderSources.h>
 
@@ -49,12 +51,8 @@ private:
 
 osg::ref_ptr<osg::Program> makeProgram()
 {
-    osg::ref_ptr<osg::Program> program = new osg::Program;
+    osg::ref_ptr<osg::Program> program = new SurfaceProgram;
     program->setName("osgGpuAnimation character");
-    program->addShader(skinShader());
-    program->addShader(makeShader(osg::Shader::VERTEX, {shaders::character_vert}));
-    program->addShader(makeShader(osg::Shader::FRAGMENT, {shaders::character_frag}));
-    bindSkinAttributes(*program);
     return program;
 }
 
@@ -104,7 +102,8 @@ osg::ref_ptr<osg::Program> characterProgram()
 
 void applyCharacterProgram(osg::StateSet& stateSet)
 {
-    stateSet.setAttributeAndModes(characterProgram());
+    // Casting cameras of osgShadow override programs with none, which would draw the bind pose.
+    stateSet.setAttributeAndModes(characterProgram(), osg::StateAttribute::ON | osg::StateAttribute::PROTECTED);
     stateSet.getOrCreateUniform("baseColorTexture", osg::Uniform::SAMPLER_2D)->set(0);
     if (!stateSet.getUniform("alphaCutoff")) stateSet.addUniform(new osg::Uniform("alphaCutoff", 0.0f));
     if (!stateSet.getUniform("unlit")) stateSet.addUniform(new osg::Uniform("unlit", false));

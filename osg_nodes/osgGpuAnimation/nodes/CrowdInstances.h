@@ -26,6 +26,7 @@ public:
     CrowdInstances& operator=(const CrowdInstances&) = delete;
 
     const std::shared_ptr<const AnimationSet>& set() const { return _set; }
+    void setSet(std::shared_ptr<const AnimationSet> set) { _set = std::move(set); } ///< while there are no instances
     std::size_t size() const { return _rootMatrices.size(); }
     static constexpr std::size_t none = ~std::size_t(0);
     std::size_t indexOf(Handle handle) const; ///< none where the handle names no instance (any more)

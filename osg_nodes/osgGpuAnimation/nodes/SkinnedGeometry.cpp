@@ -106,10 +106,16 @@ void SkinnedGeometry::setRigidEntry(unsigned short entry)
 
 void SkinnedGeometry::setMorphTargets(const AnimationSet& set, std::size_t morph, std::vector<MorphTarget> targets)
 {
+    const int entry = targets.empty() ? -1 : set.entryOfMorph(morph);
+    setMorphTargets(static_cast<int>(morph), entry, std::move(targets));
+}
+
+void SkinnedGeometry::setMorphTargets(int morph, int entry, std::vector<MorphTarget> targets)
+{
     const std::size_t vertexCount = getVertexArray() ? getVertexArray()->getNumElements() : 0;
     _morphTargets = std::move(targets);
-    _morph = _morphTargets.empty() ? -1 : static_cast<int>(morph);
-    _morphEntry = _morph < 0 ? -1 : set.entryOfMorph(morph);
+    _morph = _morphTargets.empty() ? -1 : morph;
+    _morphEntry = _morphTargets.empty() ? -1 : entry;
     const MorphDeltas deltas = packMorphTargets(_morphTargets, vertexCount);
     _morphDeltas = _morph < 0 ? nullptr : deltas.texture;
     _morphChannels = deltas.channels;

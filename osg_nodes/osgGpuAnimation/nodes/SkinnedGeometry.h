@@ -65,8 +65,11 @@ public:
     /// Morph targets, in the order of their weights. morph: which of the set's morph weights moves them. To be called
     /// when the vertices are in; targets' arrays are as long as theirs. No targets: none any more.
     void setMorphTargets(const AnimationSet& set, std::size_t morph, std::vector<MorphTarget> targets);
+    /// The same where the set is not known yet. entry: the set's entryOfMorph(morph).
+    void setMorphTargets(int morph, int entry, std::vector<MorphTarget> targets);
     const std::vector<MorphTarget>& morphTargets() const { return _morphTargets; }
-    int morph() const { return _morph; } ///< -1: none
+    int morph() const { return _morph; }           ///< -1: none
+    int morphEntry() const { return _morphEntry; } ///< the first palette entry of the weights; -1: none
 
     /// The boxes of vertex arrays in bind pose, so that an array which many meshes share is looked through once.
     using BindBoxes = std::map<const osg::Array*, Box>;

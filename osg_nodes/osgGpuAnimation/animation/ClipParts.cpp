@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/animation/ClipParts.h>
+
+#include <osgGpuAnimation/animation/RootMotionCurve.h>
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+bool isFinite(const glm::vec4& v)
+{
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z) && std::isfinite(v.w);
+}
+
+bool isFinite(const RootMotionCurve::Point& point)
+{
+    const glm::dvec3 sum = glm::abs(point.value) + glm::abs(point.in) + glm::abs(point.out);
+    return std::isfinite(sum.x + sum.y + sum.z);
+}
+
+std::optional<std::string> findFaultInTimes(const std::vector<float>& times)
+{
+    if (times.empty()) return "it has no keyframes";
+    for (std::size_t k = 0; k < times.size(); ++k)
+    {
+        const char* fault = nullptr;
+        if (!std::isfinite(times[k]) || times[k] < 0.0f)
+            fault = "is not one of a clip";
+        else if (k > 0 && times[k] < times[k - 1])
+            fault = "is before the one before it";
+        else if (k > 1 && times[k] == times[k - 2])
+            fault = "is there more than twice";
+        if (fault) return "time " + std::to_string(k) + " (" + std::to_string(times[k]) + ") " + fault;
+    }
+    return std::nullopt;
+}
+
+std::optional<std::string> findFaultInData(const ClipParts& parts)
+{
+    const std::size_t perTrack = parts.form == Clip::Form::Spline ? 3 : 1;
+    const std::size_t wanted = parts.times.size() * parts.trackCount * perTrack;
+    if (parts.data.size() != wanted)
+        return std::to_string(wanted) + " joint transforms are needed, but there are " +
+               std::to_string(parts.data.size());
+    for (std::size_t i = 0; i < wanted; ++i)
+    {
+        const JointTransform& transform = parts.data[i];
+        const std::size_t track = i / perTrack % parts.trackCount;
+        const std::string place =
+            "track " + std::to_string(track) + " at keyframe " + std::to_string(i / perTrack / parts.trackCount) + ": ";
+        if (!isFinite(transform.translation) || !isFinite(transform.rotation) || !isFinite(transform.scale))
+            return place + "a number is not finite";
+        if (perTrack == 1 && track < parts.jointCount && !(glm::length(transform.rotation) > 0.0f))
+            return place + "the rotation has length 0";
+    }
+    return std::nullopt;
+}
+
+std::optional<std::string> findFaultInMotion(const ClipParts& parts)
+{
+    if (!parts.rootMotion) return std::nullopt;
+    const RootMotionCurve& curve = *parts.rootMotion;
+    if (curve.joint >= parts.jointCount) return "its root motion is that of no joint";
+    if (curve.keys.size() != parts.times.size())
+        return "its root motion has " + std::to_string(curve.keys.size()) + " keys for " +
+               std::to_string(parts.times.size()) + " keyframes";
+    const double length = glm::length(curve.up);
+    bool isSound = length > 0.0 && std::isfinite(length);
+    for (const RootMotionCurve::Key& key : curve.keys)
+        isSound = isSound && isFinite(key.displacement) && isFinite(key.pivot) && std::isfinite(key.yaw);
+    return isSound ? std::nullopt : std::optional<std::string>("a number of its root motion is not finite");
+}
+
+} // namespace
+
+Result<Clip> Clip::create(ClipParts parts)
+{
+    std::optional<std::string> fault = findFaultInTimes(parts.times);
+    if (!fault) fault = findFaultInData(parts);
+    if (!fault) fault = findFaultInMotion(parts);
+    if (fault) return Error{"clip \"" + parts.name + "\": " + *fault};
+    Clip clip;
+    clip._name = std::move(parts.name);
+    clip._form = parts.form;
+    clip._trackCount = parts.trackCount;
+    clip._times = std::move(parts.times);
+    clip._data = std::make_shared<std::vector<JointTransform>>(std::move(parts.data));
+    clip._rootMotion = std::move(parts.rootMotion);
+    return clip.withMarkers(std::move(parts.markers));
+}
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osgGpuAnimation/animation/Clip.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace osgGpuAnimation
+{
+
+struct RootMotionCurve;
+
+/// What Clip::create takes: all that a clip says of itself.
+struct ClipParts
+{
+    std::string name;
+    Clip::Form form = Clip::Form::Linear;
+    std::size_t jointCount = 0;       ///< the first tracks, whose transforms are joints'
+    std::size_t trackCount = 0;       ///< joints, then weight blocks
+    std::vector<float> times;         ///< as Clip::times()
+    std::vector<JointTransform> data; ///< as Clip::data()
+    std::vector<ClipMarker> markers;
+    std::shared_ptr<const RootMotionCurve> rootMotion; ///< null: none
+};
+
+} // namespace osgGpuAnimation

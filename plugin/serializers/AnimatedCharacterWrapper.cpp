@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+#include "serializers/MeshCheck.h"
+#include "serializers/StoredAnimationSet.h"
+#include "serializers/StoredController.h"
+#include "serializers/ValueReader.h"
+#include "serializers/ValueWriter.h"
+
+#include <osgGpuAnimation/nodes/AnimatedCharacter.h>
+
+#include <osgDB/ObjectWrapper>
+
+namespace osgGpuAnimation::serializers
+{
+
+/// Its callbacks are those of the file.
+static AnimatedCharacter* makeCharacter()
+{
+    AnimatedCharacter* character = new AnimatedCharacter;
+    character->setUpdateCallback(nullptr);
+    return character;
+}
+
+static bool checkAnimationSet(const AnimatedCharacter&)
+{
+    return true;
+}
+
+static bool writeAnimationSet(osgDB::OutputStream& stream, const AnimatedCharacter& character)
+{
+    ValueWriter out(stream);
+    writeSet(out, character.controller().sharedSet());
+    return true;
+}
+
+static bool readAnimationSet(osgDB::InputStream& stream, AnimatedCharacter& character)
+{
+    ValueReader in(stream);
+    const std::shared_ptr<const AnimationSet> set = readSet(in);
+    if (!set) return false;
+    const Result<bool> taken = character.setAnimationSet(set);
+    if (!taken) in.fail(taken.error().message);
+    removeUnfitMeshes(character, *set);
+    return in.isGood();
+}
+
+/// Bounds are worked out again where there were some.
+static bool checkClipBounds(const AnimatedCharacter& character)
+{
+    return !character.clipBounds(-1).empty();
+}
+
+static bool writeClipBounds(osgDB::OutputStream& stream, const AnimatedCharacter&)
+{
+    ValueWriter(stream).flag(true).endLine();
+    return true;
+}
+
+static bool readClipBounds(osgDB::InputStream& stream, AnimatedCharacter& character)
+{
+    ValueReader in(stream);
+    const bool hasBounds = in.flag();
+    if (hasBounds && in.isGood()) character.computeClipBounds();
+    return in.isGood();
+}
+
+static bool checkController(const AnimatedCharacter&)
+{
+    return true;
+}
+
+static bool writeController(osgDB::OutputStream& stream, const AnimatedCharacter& character)
+{
+    ValueWriter out(stream);
+    writeController(out, character.controller());
+    return true;
+}
+
+static bool readController(osgDB::InputStream& stream, AnimatedCharacter& character)
+{
+    ValueReader in(stream);
+    readController(in, character.controller());
+    character.dirtyBound();
+    return in.isGood();
+}
+
+REGISTER_OBJECT_WRAPPER(osgGpuAnimation_AnimatedCharacter, makeCharacter(), osgGpuAnimation::AnimatedCharacter,
+                        "osgGpuAnimation::ExactNumbers osg::Object osg::Node osg::Group osg::Transform "
+                        "osg::MatrixTransform osgGpuAnimation::AnimatedCharacter")
+{
+    ADD_USER_SERIALIZER(AnimationSet);
+    ADD_USER_SERIALIZER(ClipBounds);
+    ADD_USER_SERIALIZER(Controller);
+}
+
+} // namespace osgGpuAnimation::serializers

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: MIT
+#include "plugin/ModelBuilder.h"
+#include "plugin/StoredScene.h"
+
+#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+
+#include <gtest/gtest.h>
+#include <osg/Notify>
+
+#include <fstream>
+#include <regex>
+#include <sstream>
+
+// Kept scenes are not trusted either: what is wrong has a message, and what is left can be updated.
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+using Read = osgDB::ReaderWriter::ReadResult;
+
+class WarningLog : public osg::NotifyHandler
+{
+public:
+    void notify(osg::NotifySeverity severity, const char* message) override
+    {
+        if (severity <= osg::WARN) text += message;
+    }
+    std::string text;
+};
+
+enum class Answer
+{
+    Error,    ///< nothing is read; the message says why
+    NoMesh,   ///< a warning, and one mesh less
+    NoPlaying ///< a warning, and the layer stands
+};
+
+struct FaultCase
+{
+    const char* name;
+    const char* pattern; ///< a regular expression for what is in the .osgt …
+    const char* instead; ///< … once
+    Answer answer;
+    const char* message;
+};
+
+const FaultCase faults[] = {
+    {"a newer version", "Contents 1", "Contents 2", Answer::Error, "version of an animation set"},
+    {"a version that is no number", "Contents 1", "Contents x", Answer::Error, "\"x\""},
+    {"too few joints", "Joints 3 ", "Joints 2 ", Answer::Error, "Skins"},
+    {"too many joints", "Joints 3 ", "Joints 4000000000 ", Answer::Error, "Joint"},
+    {"a number of joints below 0", "Joints 3 ", "Joints -3 ", Answer::Error, "-3"},
+    {"a parent that is not there", "Joint 0 2 ", "Joint 7 2 ", Answer::Error, "parent 7"},
+    {"parents in a circle", "Joint -1 0 arm", "Joint 1 0 arm", Answer::Error, "circle"},
+    {"parents out of order", "(Joint -1 0 arm.*\n)( *Joint 0 1 .*\n)", "$2$1", Answer::Error, "joint 0"},
+    {"a rest pose that is not finite", "Joint 0 1 sword 0", "Joint 0 1 sword nan", Answer::Error, "not finite"},
+    {"a rest pose that is a word", "Joint 0 1 sword 0", "Joint 0 1 sword zero", Answer::Error, "zero"},
+    {"a skin's joint out of range", "(InverseBinds 2 .*\n *)Joint 0", "$1Joint 9", Answer::Error, "joint 0 is 9"},
+    {"an inverse bind that is infinite", "(InverseBinds 2 .*\n *)Joint 0 1", "$1Joint 0 inf", Answer::Error, "finite"},
+    {"a rigid joint out of range", "RigidJoints 1 1", "RigidJoints 1 99", Answer::Error, "rigid joint 99"},
+    {"times that descend", "(Times 2 .*\n *)0 1 ", "$1 5 1 ", Answer::Error, "time 1"},
+    {"times below 0", "(Times 2 .*\n *)0 1 ", "$1 -1 1 ", Answer::Error, "time 0"},
+    {"times that are not finite", "(Times 2 .*\n *)0 1 ", "$1 0 inf ", Answer::Error, "time 1"},
+    {"no times", "Times 2 .*\n *0 1 ", "Times 0 {\n", Answer::Error, "no keyframes"},
+    {"fewer keyframes than times", "Keyframes 72 ", "Keyframes 60 ", Answer::Error, "Markers"},
+    {"more keyframes than there are", "Keyframes 72 ", "Keyframes 4294967295 ", Answer::Error, "}"},
+    {"a rotation of length 0", "(Keyframes 72 .*\n *0 0 0 0 0 0 0 )1", "$1 0", Answer::Error, "length 0"},
+    {"a keyframe that is not finite", "(Keyframes 72 .*\n *)0", "$1 nan", Answer::Error, "not finite"},
+    {"a marker before the clip", "Markers 0 \\{", "Markers 1 {\nMarker -2 step\n", Answer::Error, "step"},
+    {"a motion without its keys", "RootMotion 0 \\{",
+     "RootMotion 1 {\nJoint 0 0 1 0 Key 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 "
+     "0 0 0 0\n",
+     Answer::Error, "1 keys for 2"},
+    {"a motion of no joint", "RootMotion 0 \\{",
+     "RootMotion 1 {\nJoint 9 0 1 0 Key 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 "
+     "0\n",
+     Answer::Error, "no joint"},
+    {"a newer controller", "Controller 1", "Controller 2", Answer::Error, "version of a controller"},
+    {"nine layers", "Layers 1 ", "Layers 9 ", Answer::Error, "9 layers"},
+    {"a state that there is not", "Layer 1 1 1", "Layer 4 1 1", Answer::Error, "state is 4"},
+    {"a loop mode that there is not", "Layer 1 1 1", "Layer 1 3 1", Answer::Error, "loop mode is 3"},
+    {"a speed that is not finite", "Layer 1 1 1", "Layer 1 1 nan", Answer::NoPlaying, "speed"},
+    {"a clip that is not there", "Voice 0 ", "Voice 2 ", Answer::NoPlaying, "clip 2 of 2"},
+    {"a time that is not finite", "Voice 0 0", "Voice 0 inf", Answer::NoPlaying, "time"},
+    {"a share above 1", "Voice 0 0 1 1 0 1 1 ", "Voice 0 0 1 1 0 1 2 ", Answer::NoPlaying, "share"},
+    {"in step with nobody", "(Voice 0 0 1 1 0 1 1 0) 0", "$1 77", Answer::NoPlaying, "step"},
+    {"playing, but nothing", "Voices 1 .*\n *Voice.*\n", "Voices 0 {\n", Answer::NoPlaying, "no clip"},
+    {"a mask of another set", "Mask 0 \\{", "Mask 2 {\n0.5 0.5\n", Answer::NoPlaying, "mask"},
+    {"a weight that cannot be", "Weight 1 ", "Weight nan ", Answer::NoPlaying, "fade"},
+    {"a rigid entry out of range", "Influences [0-9]+ ", "Influences 900 ", Answer::NoMesh, "900 as an entry"},
+    {"a rigid entry that no vertex can name", "Influences [0-9]+ ", "Influences 70000 ", Answer::Error, "70000"},
+    {"an entry out of range", "(Vec4usArray [^]*?vector 3 .*\n *)[0-9]+ ", "$1 500 ", Answer::NoMesh,
+     "500 as an entry"},
+    {"influences for fewer vertices", "(Vec4usArray [^]*?)vector 3 .*\n.*\n.*\n", "$1vector 1 {\n", Answer::NoMesh,
+     "1 elements"},
+    {"vertices that are not there", "osg::DrawArrays \\{([^]*?)Count 3", "osg::DrawArrays {$1Count 300", Answer::NoMesh,
+     "as a vertex"},
+    {"no set", "osgGpuAnimation::StoredAnimationSet \\{\n *UniqueID", "osg::Group {\nUniqueID", Answer::Error, ""},
+    {"another object as the set", "osgGpuAnimation::StoredAnimationSet \\{\n *UniqueID [0-9]+",
+     "osgGpuAnimation::StoredAnimationSet {\nUniqueID 1", Answer::Error, "without an animation set"},
+};
+
+class FaultyStoredScenesTest : public ::testing::Test
+{
+protected:
+    void SetUp() override
+    {
+        gltf::ModelBuilder model;
+        const int arm = model.node("arm");
+        model.node("sword", arm, model.triangle());
+        const int hand = model.node("hand", arm);
+        const int skinned = model.node("skinned", -1, model.skinnedTriangle());
+        model.at(skinned).skin = model.skin({arm, hand});
+        model.animation("Slide");
+        model.slide(arm);
+        model.animation("Again");
+        model.slide(arm);
+        const osg::ref_ptr<osg::Node> scene = osgDB::readRefNodeFile(files.folder.write("arm.gltf", model.text()));
+        ASSERT_TRUE(scene);
+        meshes = findCharacter(*scene)->getNumChildren();
+        for (const char* format : {"osgt", "osgb", "osgx"})
+            ASSERT_TRUE(osgDB::writeNodeFile(*scene, files.folder.file(std::string("arm.") + format)));
+        osg::setNotifyHandler(log);
+    }
+
+    void TearDown() override { osg::setNotifyHandler(new osg::StandardNotifyHandler); }
+
+    std::string content(const std::string& name)
+    {
+        std::ifstream stream(files.folder.file(name), std::ios::binary);
+        return std::string(std::istreambuf_iterator<char>(stream), {});
+    }
+
+    Read readContent(const std::string& name, const std::string& text)
+    {
+        log->text.clear();
+        Read result = osgDB::Registry::instance()->readNode(files.folder.write(name, text), nullptr);
+        // What came through is used.
+        if (result.validNode())
+            if (AnimatedCharacter* character = findCharacter(*result.getNode()))
+                for (int frame = 0; frame < 3; ++frame)
+                {
+                    character->update(0.3 * frame);
+                    character->getBound();
+                }
+        return result;
+    }
+
+    StoredScene files;
+    unsigned int meshes = 0;
+    osg::ref_ptr<WarningLog> log = new WarningLog;
+};
+
+} // namespace
+
+TEST_F(FaultyStoredScenesTest, faultsHaveAMessage)
+{
+    const std::string sound = content("arm.osgt");
+    ASSERT_TRUE(readContent("sound.osgt", sound).validNode()) << log->text;
+    for (const FaultCase& fault : faults)
+    {
+        SCOPED_TRACE(fault.name);
+        const std::string faulty = std::regex_replace(sound, std::regex(fault.pattern), fault.instead,
+                                                      std::regex_constants::format_first_only);
+        ASSERT_NE(faulty, sound) << "the pattern is not in the file";
+        Read result = readContent("faulty.osgt", faulty);
+        const std::string said = result.message() + log->text;
+        EXPECT_NE(said.find(fault.message), std::string::npos) << said;
+        EXPECT_EQ(result.validNode(), fault.answer != Answer::Error) << said;
+        AnimatedCharacter* character = result.validNode() ? findCharacter(*result.getNode()) : nullptr;
+        if (!character) continue;
+        EXPECT_EQ(character->getNumChildren(), fault.answer == Answer::NoMesh ? meshes - 1 : meshes) << said;
+        EXPECT_EQ(character->controller().clip(), fault.answer == Answer::NoPlaying ? -1 : 0) << said;
+    }
+}
+
+// Not in the midst of a quoted word of OSG's own: it would look for the closing quote for ever.
+TEST_F(FaultyStoredScenesTest, textThatIsCutOffIsAnError)
+{
+    // OSG's XML takes a file without its end for one that ends there: what is whole by then counts.
+    for (const char* name : {"arm.osgt", "arm.osgx"})
+    {
+        const std::string sound = content(name);
+        const std::size_t first = sound.find("StoredAnimationSet"), last = sound.rfind("RootMotion");
+        ASSERT_LT(first, last);
+        for (std::size_t length = first + 40; length < last; length += 41)
+        {
+            SCOPED_TRACE(length);
+            Read result = readContent(std::string("cut-") + name, sound.substr(0, length));
+            EXPECT_FALSE(result.validNode());
+        }
+    }
+}
+
+TEST_F(FaultyStoredScenesTest, bytesThatAreCutOffAreAnError)
+{
+    const std::string sound = content("arm.osgb");
+    const std::size_t first = sound.find("StoredAnimationSet");
+    ASSERT_NE(first, std::string::npos);
+    for (std::size_t length = first; length + 64 < sound.size(); length += 23)
+    {
+        SCOPED_TRACE(length);
+        EXPECT_FALSE(readContent("cut.osgb", sound.substr(0, length)).validNode());
+    }
+}
+
+TEST_F(FaultyStoredScenesTest, changedBytesDoNoHarm)
+{
+    const std::string sound = content("arm.osgb");
+    const std::size_t first = sound.find("StoredAnimationSet") + 40;
+    std::size_t errors = 0;
+    for (std::size_t at = first; at < sound.size(); at += 3)
+    {
+        std::string changed = sound;
+        changed[at] = static_cast<char>(changed[at] ^ (at % 2 ? 0xFF : 0x7F));
+        errors += !readContent("changed.osgb", changed).validNode();
+    }
+    EXPECT_GT(errors, 50u);
+}
+
+} // namespace osgGpuAnimation

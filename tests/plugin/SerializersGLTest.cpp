@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: MIT
+#include "plugin/SharedAssets.h"
+#include "plugin/StoredScene.h"
+#include "support/ViewerGLTest.h"
+
+#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+
+#include <osgUtil/Optimizer>
+
+// What is kept in .osgb, .osgt and .osgx shows the same poses and pictures at the same times.
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+struct ModelCase
+{
+    const char* name;
+    const char* shared; ///< below the shared folder; else our own scene
+    const char* scene;
+};
+
+class SerializersGLTest : public ViewerGLTest, public ::testing::WithParamInterface<ModelCase>
+{
+protected:
+    osg::ref_ptr<osg::GraphicsContext::Traits> traits() const override
+    {
+        auto wanted = ViewerGLTest::traits();
+        wanted->width = wanted->height = 128;
+        return wanted;
+    }
+
+    static std::string file()
+    {
+        if (GetParam().shared) return sharedFile(GetParam().shared);
+        return std::string(OSGGPUANIMATION_SCENES) + "/" + GetParam().scene;
+    }
+
+    /// The whole scene in the picture, in a quarter view.
+    void show(osg::Node& scene)
+    {
+        viewer().setSceneData(&scene);
+        const osg::BoundingSphere bound = scene.getBound();
+        const double radius = bound.radius();
+        viewer().getCamera()->setProjectionMatrixAsOrtho(-radius, radius, -radius, radius, radius, 6.0 * radius);
+        viewer().getCamera()->setViewMatrixAsLookAt(bound.center() + osg::Vec3(1, -2, 0.7f) * bound.radius(),
+                                                    bound.center(), osg::Vec3(0, 0, 1));
+    }
+
+    std::vector<osg::ref_ptr<osg::Image>> pictures(osg::Node& scene)
+    {
+        std::vector<osg::ref_ptr<osg::Image>> taken;
+        show(scene);
+        for (const double time : {0.0, 0.1, 0.37, 1.7})
+        {
+            drawAt(time);
+            taken.push_back(picture().copy());
+        }
+        return taken;
+    }
+
+    StoredScene files;
+};
+
+const ModelCase models[] = {
+    {"Fox", "assets/Fox/Fox.glb", nullptr},
+    {"CesiumMan", "assets/CesiumMan/CesiumMan.glb", nullptr},
+    {"Knight", "assets/Knight/Knight.glb", nullptr},
+    {"AnimatedMorphCube", "assets/AnimatedMorphCube/AnimatedMorphCube.gltf", nullptr},
+    {"SplinesAndSteps", "assets/interpolation_test/interpolation_test.gltf", nullptr},
+    {"Wanderer", nullptr, "Wanderer.glb"},
+    {"Serpent", nullptr, "Serpent.glb"},
+};
+
+} // namespace
+
+TEST_P(SerializersGLTest, filesShowTheSamePosesAndPictures)
+{
+    if (GetParam().shared) SKIP_WITHOUT_SHARED_FILE(GetParam().shared);
+    for (const std::string format : {"osgb", "osgt", "osgx"})
+    {
+        SCOPED_TRACE(format);
+        const osg::ref_ptr<osg::Node> original = osgDB::readRefNodeFile(file());
+        ASSERT_TRUE(original);
+        AnimationController& first = findCharacter(*original)->controller();
+        first.setSpeed(0.8);
+        first.advance(0.4);
+        const std::size_t last = first.set().clips().size() - 1;
+        ASSERT_TRUE(first.crossfade(last, 0.5));
+        first.advance(0.2);
+
+        const osg::ref_ptr<osg::Node> read = files.throughFile(*original, format);
+        ASSERT_TRUE(read);
+        ASSERT_TRUE(findCharacter(*read));
+        EXPECT_EQ(findCharacter(*read)->getNumChildren(), findCharacter(*original)->getNumChildren());
+        AnimationController second = findCharacter(*read)->controller();
+        EXPECT_TRUE(haveSameKeyframes(first.set(), second.set()));
+        EXPECT_LE(paletteDifference(first, second), 1e-6f);
+
+        const auto expected = pictures(*original);
+        const auto found = pictures(*read);
+        EXPECT_GT(Picture::pixelsDifferent(*expected[0], *expected[2]), 5) << "nothing moves";
+        for (std::size_t i = 0; i < expected.size(); ++i)
+            EXPECT_EQ(Picture::pixelsDifferent(*expected[i], *found[i], 0.0f), 0) << "picture " << i;
+        EXPECT_LE(paletteDifference(findCharacter(*original)->controller(), findCharacter(*read)->controller()), 1e-6f);
+    }
+}
+
+TEST_P(SerializersGLTest, theOptimizerMayComeBefore)
+{
+    if (GetParam().shared) SKIP_WITHOUT_SHARED_FILE(GetParam().shared);
+    const osg::ref_ptr<osg::Node> original = osgDB::readRefNodeFile(file());
+    const auto expected = pictures(*original);
+    const osg::ref_ptr<osg::Node> other = osgDB::readRefNodeFile(file());
+    osgUtil::Optimizer().optimize(other, osgUtil::Optimizer::DEFAULT_OPTIMIZATIONS);
+    const osg::ref_ptr<osg::Node> read = files.throughFile(*other, "osgb");
+    ASSERT_TRUE(read);
+    const auto found = pictures(*read);
+    for (std::size_t i = 0; i < expected.size(); ++i)
+        EXPECT_EQ(Picture::pixelsDifferent(*expected[i], *found[i], 0.0f), 0) << "picture " << i;
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, SerializersGLTest, ::testing::ValuesIn(models),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: MIT
+#include "plugin/ModelBuilder.h"
+#include "plugin/StoredScene.h"
+
+#include <osgGpuAnimation/animation/JointMask.h>
+#include <osgGpuAnimation/animation/RootMotionCurve.h>
+#include <osgGpuAnimation/animation/RootMotionExtraction.h>
+#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+#include <osgGpuAnimation/nodes/AnimationUpdateCallback.h>
+#include <osgGpuAnimation/nodes/CharacterKeys.h>
+#include <osgGpuAnimation/nodes/JointAttachment.h>
+#include <osgGpuAnimation/nodes/RootMotionCallback.h>
+
+#include <gtest/gtest.h>
+#include <osg/Notify>
+#include <osg/Program>
+#include <osgDB/FileUtils>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+const char* const formats[] = {"osgb", "osgt", "osgx"};
+
+/// Keeps what OSG warns of.
+class WarningLog : public osg::NotifyHandler
+{
+public:
+    void notify(osg::NotifySeverity severity, const char* message) override
+    {
+        if (severity <= osg::WARN) text += message;
+    }
+    std::string text;
+};
+
+/// A sword on an arm that slides (two clips), and a skinned triangle; read through osgDB.
+class SerializersTest : public ::testing::Test
+{
+protected:
+    void SetUp() override
+    {
+        gltf::ModelBuilder model;
+        const int arm = model.node("arm \"1\" <&{ä");
+        model.node("sword", arm, model.triangle());
+        const int skinned = model.node("skinned", -1, model.skinnedTriangle());
+        model.at(skinned).skin = model.skin({arm, model.node("hand", arm)});
+        model.animation("Slow slide");
+        model.slide(arm);
+        model.animation("");
+        model.channel(arm, "rotation", {0, 2}, TINYGLTF_TYPE_VEC4, {0, 0, 0, 1, 0, 1, 0, 0});
+        scene = osgDB::readRefNodeFile(files.folder.write("arm.gltf", model.text()));
+        ASSERT_TRUE(scene);
+        osg::setNotifyHandler(log);
+    }
+
+    void TearDown() override { osg::setNotifyHandler(new osg::StandardNotifyHandler); }
+
+    AnimatedCharacter& character() { return *findCharacter(*scene); }
+
+    StoredScene files;
+    osg::ref_ptr<osg::Node> scene;
+    osg::ref_ptr<WarningLog> log = new WarningLog;
+};
+
+std::string textOf(const std::string& file)
+{
+    std::ifstream stream(file, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(stream), {});
+}
+
+void setUpLayers(AnimationController& controller)
+{
+    controller.setLoopMode(LoopMode::PingPong);
+    controller.setSpeed(0.7);
+    ASSERT_TRUE(controller.play(0));
+    controller.advance(1.9);
+    CrossfadeOptions inStep;
+    inStep.sync = Sync::Phase;
+    inStep.curve = FadeCurve::Smooth;
+    ASSERT_TRUE(controller.crossfade(1, 0.8, inStep));
+    controller.advance(0.3);
+    AnimationLayer& over = controller.layer(1);
+    ASSERT_TRUE(over.setMask(JointMask(controller.set(), 0.3f)));
+    over.setLoopMode(LoopMode::Once);
+    ASSERT_TRUE(over.play(1));
+    over.fadeWeight(0.2f, 1.0, FadeCurve::Smooth);
+    AnimationLayer& added = controller.layer(2);
+    added.setMode(AnimationLayer::Mode::Additive, AnimationLayer::Reference::FirstFrame);
+    ASSERT_TRUE(added.play(0));
+    added.setStanding(7);
+    controller.advance(0.25);
+}
+
+} // namespace
+
+TEST_F(SerializersTest, layersGoOnWhereTheyWere)
+{
+    setUpLayers(character().controller());
+    for (const char* format : formats)
+    {
+        SCOPED_TRACE(format);
+        const osg::ref_ptr<osg::Node> read = files.throughFile(*scene, format);
+        ASSERT_TRUE(read && findCharacter(*read));
+        AnimationController first = character().controller();
+        AnimationController& second = findCharacter(*read)->controller();
+        EXPECT_EQ(second.layerCount(), 3u);
+        EXPECT_EQ(second.layer(2).standing(), 7);
+        EXPECT_EQ(second.loopMode(), LoopMode::PingPong);
+        EXPECT_EQ(second.set().clips()[1].name(), first.set().clips()[1].name());
+        EXPECT_EQ(second.set().skeleton().joint(0).name, first.set().skeleton().joint(0).name);
+        for (int step = 0; step < 40; ++step)
+        {
+            EXPECT_EQ(paletteDifference(first, second), 0.0f) << "step " << step;
+            first.advance(0.07);
+            second.advance(0.07);
+        }
+    }
+    EXPECT_EQ(log->text, "");
+}
+
+TEST_F(SerializersTest, everythingBelowACharacterComesBack)
+{
+    osg::ref_ptr<JointAttachment> hand = new JointAttachment("hand");
+    hand->addChild(new osg::Group);
+    character().addChild(hand);
+    character().addChild(new JointAttachment(2));
+    auto moving = withRootMotion(character().set(), "arm \"1\" <&{ä", {true, false, false});
+    ASSERT_TRUE(moving) << moving.error().message;
+    std::vector<Clip> clips = moving.value()->clips();
+    clips[0] = clips[0].withMarkers({{0.25, "left foot"}, {0.5, ""}}).value();
+    ASSERT_TRUE(character().setAnimationSet(moving.value()->withClips(clips).value()));
+    character().addUpdateCallback(new RootMotionCallback);
+    for (const char* format : formats)
+    {
+        SCOPED_TRACE(format);
+        const osg::ref_ptr<osg::Node> read = files.throughFile(*scene, format);
+        ASSERT_TRUE(read && findCharacter(*read));
+        AnimatedCharacter& back = *findCharacter(*read);
+        ASSERT_EQ(back.getNumChildren(), character().getNumChildren());
+        const auto* byName = dynamic_cast<JointAttachment*>(back.getChild(back.getNumChildren() - 2));
+        const auto* byNumber = dynamic_cast<JointAttachment*>(back.getChild(back.getNumChildren() - 1));
+        ASSERT_TRUE(byName && byNumber);
+        EXPECT_EQ(byName->jointName(), "hand");
+        EXPECT_EQ(byName->getNumChildren(), 1u);
+        EXPECT_EQ(byNumber->joint(), 2);
+        EXPECT_TRUE(dynamic_cast<AnimationUpdateCallback*>(back.getUpdateCallback()));
+        EXPECT_TRUE(dynamic_cast<RootMotionCallback*>(back.getUpdateCallback()->getNestedCallback()));
+        EXPECT_TRUE(dynamic_cast<CharacterKeys*>(back.getEventCallback()));
+        const Clip& clip = back.set().clips()[0];
+        ASSERT_EQ(clip.markers().size(), 2u);
+        EXPECT_EQ(clip.markers()[0].name, "left foot");
+        EXPECT_EQ(clip.markers()[0].time, 0.25);
+        ASSERT_TRUE(clip.rootMotion());
+        EXPECT_EQ(clip.rootMotion()->keys.size(), clip.keyframeCount());
+        EXPECT_EQ(clip.rootMotion()->at(clip, 0.5).translation, clips[0].rootMotion()->at(clips[0], 0.5).translation);
+        EXPECT_EQ(back.currentBounds().max, character().currentBounds().max);
+    }
+    EXPECT_EQ(log->text, "");
+}
+
+TEST_F(SerializersTest, aCharacterWithoutCallbacksHasNoneAfterwards)
+{
+    character().setUpdateCallback(nullptr);
+    character().setEventCallback(nullptr);
+    const osg::ref_ptr<osg::Node> read = files.throughFile(*scene, "osgb");
+    ASSERT_TRUE(read && findCharacter(*read));
+    EXPECT_FALSE(findCharacter(*read)->getUpdateCallback());
+    EXPECT_FALSE(findCharacter(*read)->getEventCallback());
+}
+
+TEST_F(SerializersTest, charactersOfOneSetShareItAfterwards)
+{
+    osg::ref_ptr<osg::Group> both = new osg::Group;
+    both->addChild(scene);
+    const osg::ref_ptr<osg::Node> clone = osg::clone(scene.get(), osg::CopyOp::DEEP_COPY_NODES);
+    findCharacter(*clone)->controller().setSpeed(3.0);
+    both->addChild(clone);
+    for (const char* format : formats)
+    {
+        const osg::ref_ptr<osg::Node> read = files.throughFile(*both, format);
+        ASSERT_TRUE(read && read->asGroup()->getNumChildren() == 2);
+        AnimatedCharacter* first = findCharacter(*read->asGroup()->getChild(0));
+        AnimatedCharacter* second = findCharacter(*read->asGroup()->getChild(1));
+        ASSERT_TRUE(first && second && first != second);
+        EXPECT_EQ(&first->set(), &second->set());
+        EXPECT_EQ(first->controller().speed(), 1.0);
+        EXPECT_EQ(second->controller().speed(), 3.0);
+        EXPECT_EQ(first->getChild(0), second->getChild(0)) << "the meshes";
+    }
+}
+
+TEST_F(SerializersTest, aCrowdKeepsItsInstances)
+{
+    osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(character());
+    crowd->setOrigin(osg::Vec3d(1e6, -2e6, 30));
+    AnimationController controller(crowd->sharedSet());
+    ASSERT_TRUE(crowd->add(osg::Matrixd::translate(1e6, -2e6, 31), controller));
+    ASSERT_TRUE(controller.play(1));
+    controller.seek(0.3);
+    controller.setSpeed(-0.5);
+    ASSERT_TRUE(crowd->add(osg::Matrixd::rotate(1, 0, 0, 1) * osg::Matrixd::translate(1e6 + 5, -2e6, 30), controller,
+                           osg::Vec4(0.2f, 0.4f, 1, 1)));
+    controller.pause();
+    ASSERT_TRUE(crowd->add(osg::Matrixd::translate(1e6, -2e6 - 3, 30), controller));
+    setUpLayers(controller);
+    ASSERT_TRUE(crowd->add(osg::Matrixd::translate(1e6, -2e6, 40), controller));
+    crowd->update(0.0);
+    crowd->update(0.4);
+    for (const char* format : formats)
+    {
+        SCOPED_TRACE(format);
+        const osg::ref_ptr<osg::Node> read = files.throughFile(*crowd, format);
+        auto* back = dynamic_cast<AnimatedCrowd*>(read.get());
+        ASSERT_TRUE(back);
+        ASSERT_EQ(back->size(), crowd->size());
+        EXPECT_EQ(back->origin(), crowd->origin());
+        EXPECT_EQ(back->getNumChildren(), crowd->getNumChildren());
+        EXPECT_NEAR((back->getBound().center() - crowd->getBound().center()).length(), 0.0, 1e-9);
+        EXPECT_EQ(back->instances().controllerCount(), crowd->instances().controllerCount());
+        for (std::size_t i = 0; i < crowd->size(); ++i)
+        {
+            AnimationController first = crowd->instances().controllerCopy(i);
+            AnimationController second = back->instances().controllerCopy(i);
+            EXPECT_EQ(back->instances().rootMatrix(i).rows, crowd->instances().rootMatrix(i).rows);
+            EXPECT_EQ(back->instances().tint(i), crowd->instances().tint(i));
+            EXPECT_EQ(second.state(), first.state());
+            EXPECT_LE(paletteDifference(first, second), 1e-6f);
+            EXPECT_LE(paletteDifference((first.advance(0.6), first), (second.advance(0.6), second)), 1e-6f);
+        }
+    }
+    EXPECT_EQ(log->text, "");
+}
+
+TEST_F(SerializersTest, shadersAreNotInTheFile)
+{
+    ASSERT_TRUE(osgDB::writeNodeFile(*scene, files.folder.file("arm.osgt")));
+    const std::string text = textOf(files.folder.file("arm.osgt"));
+    EXPECT_NE(text.find("osgGpuAnimation::SurfaceProgram"), std::string::npos);
+    EXPECT_EQ(text.find("osg::Shader"), std::string::npos);
+    const osg::ref_ptr<osg::Node> read = osgDB::readRefNodeFile(files.folder.file("arm.osgt"));
+    const auto programOf = [](AnimatedCharacter& of)
+    { return of.getChild(0)->getStateSet()->getAttribute(osg::StateAttribute::PROGRAM); };
+    EXPECT_EQ(programOf(*findCharacter(*read)), programOf(character()));
+}
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "support/ScratchFolder.h"
+
+#include <osgGpuAnimation/animation/Pose.h>
+#include <osgGpuAnimation/nodes/AnimatedCharacter.h>
+
+#include <osgDB/ReadFile>
+#include <osgDB/Registry>
+#include <osgDB/WriteFile>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <string>
+#include <vector>
+
+namespace osgGpuAnimation
+{
+
+/// For tests that keep scenes in OSG's own formats: plugins of the build are found, files are in a folder of the
+/// test's.
+class StoredScene
+{
+public:
+    StoredScene()
+    {
+        osgDB::FilePathList& paths = osgDB::Registry::instance()->getLibraryFilePathList();
+        if (paths.empty() || paths.front() != OSGGPUANIMATION_PLUGIN_FOLDER)
+            paths.push_front(OSGGPUANIMATION_PLUGIN_FOLDER);
+    }
+
+    /// The node as it comes back from a file of that format; null where it does not.
+    osg::ref_ptr<osg::Node> throughFile(const osg::Node& node, const std::string& format) const
+    {
+        const std::string file = folder.file("scene." + format);
+        return osgDB::writeNodeFile(node, file) ? osgDB::readRefNodeFile(file) : nullptr;
+    }
+
+    ScratchFolder folder;
+};
+
+/// The largest difference of two palettes' numbers; huge where they are not of one size.
+inline float paletteDifference(const AnimationController& a, const AnimationController& b)
+{
+    std::vector<AffineMatrix> first, second;
+    Pose::evaluate(a.set(), a.instruction(), AffineMatrix(), first);
+    Pose::evaluate(b.set(), b.instruction(), AffineMatrix(), second);
+    if (first.size() != second.size()) return 1e30f;
+    float worst = 0.0f;
+    for (std::size_t entry = 0; entry < first.size(); ++entry)
+        for (std::size_t row = 0; row < 3; ++row)
+            for (int column = 0; column < 4; ++column)
+            {
+                const float difference = std::abs(first[entry].rows[row][column] - second[entry].rows[row][column]);
+                worst = std::max(worst, std::isfinite(difference) ? difference : 1e30f);
+            }
+    return worst;
+}
+
+/// Whether the keyframes of two sets are the same bit by bit.
+inline bool haveSameKeyframes(const AnimationSet& a, const AnimationSet& b)
+{
+    const auto same = [](const std::vector<JointTransform>& first, const std::vector<JointTransform>& second)
+    {
+        return first.size() == second.size() &&
+               std::memcmp(first.data(), second.data(), first.size() * sizeof(JointTransform)) == 0;
+    };
+    bool areSame = same(a.restPose(), b.restPose()) && a.clips().size() == b.clips().size();
+    for (std::size_t clip = 0; areSame && clip < a.clips().size(); ++clip)
+        areSame = same(a.clips()[clip].data(), b.clips()[clip].data());
+    return areSame;
+}
+
+} // namespace osgGpuAnimation

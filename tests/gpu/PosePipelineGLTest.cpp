@@ -171,10 +171,10 @@ TEST_F(PosePipelineCostGLTest, sendsTheRootsThatMovedAlone)
     }
 }
 
-using ShaderSource = void(GL_APIENTRY*)(GLuint, GLsizei, const GLchar* const*, const GLint*);
+using ShaderSource = void(GL_APIENTRY*)(GLuint, GLsizei, const GLchar**, const GLint*);
 ShaderSource realShaderSource = nullptr;
 
-void GL_APIENTRY faultyShaderSource(GLuint shader, GLsizei, const GLchar* const*, const GLint*)
+void GL_APIENTRY faultyShaderSource(GLuint shader, GLsizei, const GLchar**, const GLint*)
 {
     const char* text = "#version 330\nvoid main() { nothing of this name }\n";
     realShaderSource(shader, 1, &text, nullptr);

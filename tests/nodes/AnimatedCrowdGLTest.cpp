@@ -4,7 +4,7 @@
 #include "support/ViewerGLTest.h"
 
 #include <osgGpuAnimation/animation/PackedKeyframes.h>
-#include <osgGpuAnimation/animation/PackedKeyframes.h>
+#include <osgGpuAnimation/gpu/PosePipeline.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 
 #include <osg/Group>

@@ -46,6 +46,11 @@
 #define POSE_PALETTE_UNIT 11
 #define POSE_MORPH_UNIT 12
 #define POSE_TINT_UNIT 13
+#define POSE_PLACEMENT_UNIT 14
+
+// Placements of instances drawn together: RGBA32F, four texels each: three rows of the matrix to the eye's space, then
+// the pose's number in its batch.
+#define POSE_TEXELS_PER_PLACEMENT 4
 
 // Morph targets of a mesh: RGBA32F, for each vertex, each target, the channels it has: position, normal, colour, texture
 // coordinate. Weights come from palette entries of weights, twelve each.

@@ -3,6 +3,7 @@
 
 #include "gltf/Clips.h"
 #include "gltf/ElementName.h"
+#include "gltf/Reach.h"
 #include "gltf/SceneGraph.h"
 #include "gltf/Skins.h"
 #include "gltf/TinyGltf.h"
@@ -85,6 +86,11 @@ Result<bool> Importer::makeSet(const NodeTree& tree, const Joints& joints, const
         AnimationSet::create({joints.skeleton, readSkins(_model, joints), rigidJoints(_model, tree, joints),
                               morphs.weights, std::move(clips.clips)});
     if (!set) return set.error();
+    for (std::size_t skin = 0; skin < set.value()->skins().size(); ++skin)
+        for (const AffineMatrix& matrix : set.value()->skins()[skin].inverseBinds)
+            if (!Reach::of(matrix.toColumns()).fits())
+                return Error{elementName("skins", skin) + ".inverseBindMatrices: one takes its joint " +
+                             beyondFarthest()};
     if (set.value()->paletteSize() > mostPaletteEntries)
         return Error{"skins and joints: " + std::to_string(set.value()->paletteSize()) +
                      " palette entries are needed, at most " + std::to_string(mostPaletteEntries) + " are possible"};

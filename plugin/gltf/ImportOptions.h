@@ -25,9 +25,10 @@ struct ImportOptions
     bool allowOutsideFiles = false; ///< let URIs leave the model's folder
 
     std::size_t maxJsonDepth = 256;
-    std::size_t maxNodeDepth = 4096;                    ///< nodes from a root to a leaf
-    std::size_t maxElements = 1u << 24;                 ///< of any one array of the document
-    std::size_t maxDecodedBytes = std::size_t(2) << 30; ///< buffers, accessors and images, all together
+    std::size_t maxNodeDepth = 4096;                       ///< nodes from a root to a leaf
+    std::size_t maxElements = 1u << 24;                    ///< of any one array of the document
+    std::size_t maxDocumentBytes = std::size_t(448) << 20; ///< what the JSON becomes, without the data it points to
+    std::size_t maxDecodedBytes = std::size_t(2) << 30;    ///< buffers, accessors and images, all together
 };
 
 } // namespace osgGpuAnimation::gltf

@@ -87,6 +87,8 @@ bool apply(const OptionWord& word, ImportOptions& options)
         return readNumber(value, options.maxNodeDepth);
     else if (word.name == "maxElements")
         return readNumber(value, options.maxElements);
+    else if (word.name == "maxDocumentBytes")
+        return readNumber(value, options.maxDocumentBytes);
     else if (word.name == "maxDecodedBytes")
         return readNumber(value, options.maxDecodedBytes);
     return word.name != "clip" || !value.empty();
@@ -110,6 +112,7 @@ const std::vector<OptionHelp>& optionHelp()
         {"maxJsonDepth=N", "how deep JSON may nest; default: 256"},
         {"maxNodeDepth=N", "nodes from a root to a leaf; default: 4096"},
         {"maxElements=N", "elements of any one array; default: 16777216"},
+        {"maxDocumentBytes=N", "bytes of nodes, materials, channels ... in memory; default: 448 MiB"},
         {"maxDecodedBytes=N", "bytes of buffers, arrays and pictures, all together; default: 2 GiB"},
     };
     return help;

@@ -98,6 +98,8 @@ public:
 
     /// The entry a vertex names for that place in the skin's joints.
     int entryOfSkin(std::size_t skin, std::size_t place) const { return _entryOfSkin[skin][place]; }
+    /// The entries of all places of a skin's joints, in their order: skins with equal ones move vertices alike.
+    const std::vector<int>& entriesOfSkin(std::size_t skin) const { return _entryOfSkin[skin]; }
     /// The entry with an identity inverse bind of a rigid joint; -1 if it is not one.
     int entryOfRigidJoint(int joint) const;
     /// The joint's main entry; jointToModel = entry · (that entry's inverseBind)⁻¹.

@@ -170,11 +170,7 @@ bool PosePipeline::evaluate(osg::State& state, const PoseBatch& batch, std::size
         chunk->palette.reserve(set.paletteSize() * chunk->size * matrixBytes);
         chunk->isEvaluated = _form == Form::Fused ? evaluateFused(batch, *resources.buffers, *chunk)
                                                   : evaluateSeparate(batch, *resources.buffers, *chunk);
-        if (!chunk->isEvaluated)
-        {
-            resources.palettes[slot]->invalidate();
-            return false;
-        }
+        if (!chunk->isEvaluated) return false;
         _counters.instancesEvaluated += chunk->size;
     }
     return true;

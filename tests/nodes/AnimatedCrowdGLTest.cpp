@@ -183,6 +183,18 @@ TEST_F(AnimatedCrowdGLTest, chunksOfASmallBufferTextureShowTheSame)
     EXPECT_EQ(Picture::pixelsDifferent(*whole, *cut), 0);
 }
 
+TEST_F(AnimatedCrowdGLTest, separateCharactersInChunksOfASmallBufferTextureShowTheSame)
+{
+    const osg::ref_ptr<osg::Image> whole = pictureOf(makeCharacters(12), {0.0, 0.5});
+    const std::size_t needed = PackedKeyframes(*testCharacterSet()).texels().size();
+    for (const std::size_t limit : {std::size_t(65536), std::max(needed, 3 * testCharacterSet()->paletteSize() * 5)})
+    {
+        pipeline().setMaxTexels(limit);
+        EXPECT_EQ(Picture::pixelsDifferent(*whole, *pictureOf(makeCharacters(12), {0.0, 0.5})), 0) << limit;
+        EXPECT_LE(Picture::pixelsDifferent(*whole, *pictureOf(makeCrowd(12), {0.0, 0.5})), edgePixels) << limit;
+    }
+}
+
 // What is white is 204 of 255: GL's own material has a diffuse part of 0.8.
 TEST_F(AnimatedCrowdGLTest, tintsMultiplyTheColour)
 {

@@ -145,7 +145,11 @@ bool PosePipeline::evaluate(osg::State& state, const PoseBatch& batch, std::size
     const AnimationSet& set = batch.set();
     if (batch.needs().masks)
     {
-        if (!hasRoomForMasks(resources, set)) return false;
+        if (!hasRoomForMasks(resources, set))
+        {
+            resources.palettes[slot]->invalidate();
+            return false;
+        }
         resources.buffers->updateMasks(set);
     }
     const std::size_t widest = std::max(set.paletteSize(), _form == Form::Separate ? set.trackCount() : 0);
@@ -160,10 +164,9 @@ bool PosePipeline::evaluate(osg::State& state, const PoseBatch& batch, std::size
     for (PosePalette::Chunk* chunk : changed)
     {
         chunk->palette.reserve(set.paletteSize() * chunk->size * matrixBytes);
-        if (_form == Form::Fused)
-            evaluateFused(batch, *resources.buffers, *chunk);
-        else
-            evaluateSeparate(batch, *resources.buffers, *chunk);
+        chunk->isEvaluated = _form == Form::Fused ? evaluateFused(batch, *resources.buffers, *chunk)
+                                                  : evaluateSeparate(batch, *resources.buffers, *chunk);
+        if (!chunk->isEvaluated) return false;
         _counters.instancesEvaluated += chunk->size;
     }
     return true;
@@ -197,7 +200,7 @@ void PosePipeline::useMixInput(FeedbackPass& pass, const AnimationSet& set, cons
 
 // A buffer must not be read while feedback writes to it, so levels go to the palette and to the scratch buffer by
 // turns, each at its own place; at the end the scratch buffer's levels are copied to their places in the palette.
-void PosePipeline::evaluateFused(const PoseBatch& batch, const AnimationBuffers& buffers, PosePalette::Chunk& chunk)
+bool PosePipeline::evaluateFused(const PoseBatch& batch, const AnimationBuffers& buffers, PosePalette::Chunk& chunk)
 {
     const AnimationSet& set = batch.set();
     if (set.levelCount() > 1) _scratch.reserve(set.paletteSize() * chunk.size * matrixBytes);
@@ -214,7 +217,7 @@ void PosePipeline::evaluateFused(const PoseBatch& batch, const AnimationBuffers&
         setMotion(variant, buffers.levels()[level]);
         const bool isOdd = level % 2 != 0;
         FeedbackPass& pass = posePass(variant);
-        if (!pass.valid()) return;
+        if (!pass.valid()) return false;
         if (&pass != current) useMixInput(pass, set, buffers, chunk);
         current = &pass;
         pass.setTexture("parentLevels", unitPrevious, (isOdd ? chunk.palette : _scratch).texture());
@@ -225,6 +228,7 @@ void PosePipeline::evaluateFused(const PoseBatch& batch, const AnimationBuffers&
         ++_counters.feedbackDraws;
     }
     gatherOddLevels(set, chunk);
+    return true;
 }
 
 void PosePipeline::bindInstances(const PosePalette::Chunk& chunk)
@@ -260,7 +264,7 @@ void PosePipeline::runSeparate(FeedbackPass& pass, std::size_t count, const Buff
     ++_counters.feedbackDraws;
 }
 
-void PosePipeline::evaluateSeparate(const PoseBatch& batch, const AnimationBuffers& buffers, PosePalette::Chunk& chunk)
+bool PosePipeline::evaluateSeparate(const PoseBatch& batch, const AnimationBuffers& buffers, PosePalette::Chunk& chunk)
 {
     const AnimationSet& set = batch.set();
     const std::size_t trackVertices = set.trackCount() * chunk.size;
@@ -273,7 +277,7 @@ void PosePipeline::evaluateSeparate(const PoseBatch& batch, const AnimationBuffe
     variant.translationMotion = std::max(variant.translationMotion, PartMotion::Held);
     variant.scaleMotion = std::max(variant.scaleMotion, PartMotion::Held);
     FeedbackPass& mixing = mixPass(variant);
-    if (!mixing.valid() || !_localPass->valid() || !_worldPass->valid()) return;
+    if (!mixing.valid() || !_localPass->valid() || !_worldPass->valid()) return false;
     useMixInput(mixing, set, buffers, chunk);
     runSeparate(mixing, trackVertices, _mixedTracks);
 
@@ -290,6 +294,7 @@ void PosePipeline::evaluateSeparate(const PoseBatch& batch, const AnimationBuffe
     _worldPass->setInt("hasRoots", chunk.uploadedRootMatrices.empty() ? 0 : 1);
     _worldPass->setTexture("localMatrices", unitPrevious, _scratch.texture());
     runSeparate(*_worldPass, set.paletteSize() * chunk.size, chunk.palette);
+    return true;
 }
 
 PalettePlace PosePipeline::place(const AnimationSet& set, std::size_t slot, std::size_t instance) const

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/PoseStage.h>
 
+#include <osgGpuAnimation/nodes/PoseStatistics.h>
+
 #include <osg/UserDataContainer>
 
 #include <limits>
@@ -15,7 +17,7 @@ public:
 
     void operator()(osg::RenderInfo& renderInfo) const override
     {
-        _stage._frame->evaluate(renderInfo);
+        _stage._frame->evaluate(renderInfo, PoseStatistics::wanted(renderInfo));
         _stage._isDrawn = true;
     }
 

@@ -235,14 +235,15 @@ void SkinnedGeometry::drawImplementation(osg::RenderInfo& renderInfo) const
     const PosePipeline* pipeline = PosePipeline::of(state);
     if (!pipeline) return;
     if (binding->instanceCount() > 1)
-    {
         drawInstances(renderInfo, *binding, *pipeline);
-        return;
+    else if (const PalettePlace place = pipeline->place(*binding->animationSet(), binding->slot(), binding->instance());
+             place.texture != 0)
+    {
+        bindPalette(state, place);
+        osg::Geometry::drawImplementation(renderInfo);
     }
-    const PalettePlace place = pipeline->place(*binding->animationSet(), binding->slot(), binding->instance());
-    if (place.texture == 0) return;
-    bindPalette(state, place);
-    osg::Geometry::drawImplementation(renderInfo);
+    // Whatever OSG compiles between frames would take the element buffer away from a vertex array left bound.
+    state.unbindVertexArrayObject();
 }
 
 // As osg::Geometry::drawImplementation, but for the primitives: those draw themselves with a number of instances that

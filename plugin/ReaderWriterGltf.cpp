@@ -3,6 +3,8 @@
 #include "gltf/OptionString.h"
 #include "gltf/RegularFile.h"
 
+#include <osgGpuAnimation/nodes/SeparateLoads.h>
+
 #include <osg/Notify>
 #include <osgDB/FileNameUtils>
 #include <osgDB/FileUtils>
@@ -115,6 +117,8 @@ osgDB::ReaderWriter::ReadResult ReaderWriterGltf::import(const std::string& byte
         OSG_INFO << subject << ": " << note << std::endl;
     return ReadResult(model.value().root.get());
 }
+
+static SeparateLoads::Installation separateLoads;
 
 } // namespace osgGpuAnimation
 

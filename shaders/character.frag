@@ -1,10 +1,19 @@
 // SPDX-License-Identifier: MIT
-// Base colour times light 0 of OSG, per fragment. In a core profile, which has no lights: a headlight.
+// Base colour, lit per fragment by OSG's lights as the fixed pipeline does, in the shadow maps of osgShadow's techniques,
+// with fog. In a core profile, which has no lights: a headlight. DRAW_... are those of nodes/SurfaceState.h.
 
 uniform sampler2D baseColorTexture;
 uniform float alphaCutoff;
 uniform bool unlit;
 uniform bool flatNormals; // the mesh has none: each face its own, of the pose
+
+#ifndef GL_ARB_compatibility
+uniform vec4 materialDiffuse;
+uniform vec4 materialEmission;
+#endif
+
+uniform sampler2DShadow shadowMaps[7];  // of texture units 1 to 7
+uniform vec2 osgShadow_ambientBias;     // osgShadow::ShadowMap's: what is left in its shadow, and the rest
 
 in vec3 viewPosition;
 in vec3 viewNormal;
@@ -13,31 +22,182 @@ in vec2 textureCoordinate;
 
 out vec4 fragmentColor;
 
-vec3 litColor(vec3 baseColor)
+vec4 baseColor()
+{
+    vec4 color = vertexColor;
+#if DRAW_TEXTURE
+    color *= texture(baseColorTexture, textureCoordinate);
+#endif
+#ifdef GL_ARB_compatibility
+    color *= gl_FrontMaterial.diffuse;
+#else
+    color *= materialDiffuse;
+#endif
+    if (color.a < alphaCutoff) discard;
+    return color;
+}
+
+vec3 facingNormal()
 {
     vec3 facing = gl_FrontFacing ? viewNormal : -viewNormal;
     if (flatNormals) facing = cross(dFdx(viewPosition), dFdy(viewPosition));
-    vec3 normal = normalize(facing);
+    return normalize(facing);
+}
+
 #ifdef GL_ARB_compatibility
-    vec4 position = gl_LightSource[0].position;
-    vec3 toLight = normalize(position.w == 0.0 ? position.xyz : position.xyz - viewPosition);
+
+struct Light
+{
+    vec3 ambient;
+    vec3 diffuse;
+    vec3 specular;
+};
+
+// OpenGL 2.1, section 2.14.1.
+void addLight(int index, vec3 normal, inout Light sum)
+{
+    vec4 position = gl_LightSource[index].position;
+    vec3 toLight = normalize(position.xyz);
+    float strength = 1.0;
+    if ((DRAW_POINT_LIGHTS & (1 << index)) != 0)
+    {
+        vec3 way = position.xyz / position.w - viewPosition;
+        float range = length(way);
+        toLight = way / range;
+        strength = 1.0 / (gl_LightSource[index].constantAttenuation + gl_LightSource[index].linearAttenuation * range +
+                          gl_LightSource[index].quadraticAttenuation * range * range);
+        float along = dot(-toLight, normalize(gl_LightSource[index].spotDirection));
+        if (gl_LightSource[index].spotCosCutoff > -1.0)
+            strength *= along < gl_LightSource[index].spotCosCutoff
+                            ? 0.0
+                            : pow(max(along, 0.0001), gl_LightSource[index].spotExponent);
+    }
     vec3 halfway = normalize(toLight - normalize(viewPosition));
     float diffuse = max(dot(normal, toLight), 0.0);
     float specular = diffuse > 0.0 ? pow(max(dot(normal, halfway), 0.0), max(gl_FrontMaterial.shininess, 1.0)) : 0.0;
-    vec3 ambient = gl_LightModel.ambient.rgb + gl_LightSource[0].ambient.rgb;
-    return gl_FrontMaterial.emission.rgb + baseColor * (ambient + diffuse * gl_LightSource[0].diffuse.rgb) +
-           specular * gl_FrontMaterial.specular.rgb * gl_LightSource[0].specular.rgb;
+    sum.ambient += strength * gl_LightSource[index].ambient.rgb;
+    sum.diffuse += strength * diffuse * gl_LightSource[index].diffuse.rgb;
+    sum.specular += strength * specular * gl_LightSource[index].specular.rgb;
+}
+
+// The technique has set the unit's texture coordinates to be generated from the view position.
+float unshadowed(sampler2DShadow map, int unit)
+{
+    vec4 position = vec4(viewPosition, 1.0);
+    return textureProj(map, vec4(dot(gl_EyePlaneS[unit], position), dot(gl_EyePlaneT[unit], position),
+                                 dot(gl_EyePlaneR[unit], position), dot(gl_EyePlaneQ[unit], position)));
+}
+
+float unshadowedByAll()
+{
+    float share = 1.0;
+#if DRAW_SHADOW_MAPS & 2
+    share *= unshadowed(shadowMaps[0], 1);
+#endif
+#if DRAW_SHADOW_MAPS & 4
+    share *= unshadowed(shadowMaps[1], 2);
+#endif
+#if DRAW_SHADOW_MAPS & 8
+    share *= unshadowed(shadowMaps[2], 3);
+#endif
+#if DRAW_SHADOW_MAPS & 16
+    share *= unshadowed(shadowMaps[3], 4);
+#endif
+#if DRAW_SHADOW_MAPS & 32
+    share *= unshadowed(shadowMaps[4], 5);
+#endif
+#if DRAW_SHADOW_MAPS & 64
+    share *= unshadowed(shadowMaps[5], 6);
+#endif
+#if DRAW_SHADOW_MAPS & 128
+    share *= unshadowed(shadowMaps[6], 7);
+#endif
+    return share;
+}
+
+// As the techniques' own shaders do it to what they draw.
+vec3 shadowedColor(vec3 color, vec3 colorWithoutLights)
+{
+    float share = unshadowedByAll();
+#if DRAW_SHADOW_BIAS
+    return color * (osgShadow_ambientBias.x + share * osgShadow_ambientBias.y);
 #else
-    return baseColor * (0.2 + 0.8 * max(dot(normal, normalize(-viewPosition)), 0.0));
+    return mix(colorWithoutLights, color, share);
 #endif
 }
 
+vec3 litColor(vec3 base)
+{
+    Light sum = Light(vec3(0.0), vec3(0.0), vec3(0.0));
+    vec3 normal = facingNormal();
+#if DRAW_LIGHTS & 1
+    addLight(0, normal, sum);
+#endif
+#if DRAW_LIGHTS & 2
+    addLight(1, normal, sum);
+#endif
+#if DRAW_LIGHTS & 4
+    addLight(2, normal, sum);
+#endif
+#if DRAW_LIGHTS & 8
+    addLight(3, normal, sum);
+#endif
+#if DRAW_LIGHTS & 16
+    addLight(4, normal, sum);
+#endif
+#if DRAW_LIGHTS & 32
+    addLight(5, normal, sum);
+#endif
+#if DRAW_LIGHTS & 64
+    addLight(6, normal, sum);
+#endif
+#if DRAW_LIGHTS & 128
+    addLight(7, normal, sum);
+#endif
+    vec3 withoutLights = gl_FrontMaterial.emission.rgb + base * gl_LightModel.ambient.rgb;
+    vec3 color = withoutLights + base * (sum.ambient + sum.diffuse) + gl_FrontMaterial.specular.rgb * sum.specular;
+#if DRAW_SHADOW_MAPS
+    color = shadowedColor(color, withoutLights);
+#endif
+    return color;
+}
+
+vec3 foggedColor(vec3 color)
+{
+    float depth = abs(viewPosition.z);
+#if DRAW_FOG == 1
+    float clear = (gl_Fog.end - depth) * gl_Fog.scale;
+#elif DRAW_FOG == 2
+    float clear = exp(-gl_Fog.density * depth);
+#else
+    float clear = exp(-gl_Fog.density * gl_Fog.density * depth * depth);
+#endif
+    return mix(gl_Fog.color.rgb, color, clamp(clear, 0.0, 1.0));
+}
+
+#else
+
+vec3 litColor(vec3 base)
+{
+    return materialEmission.rgb + base * (0.2 + 0.8 * max(dot(facingNormal(), normalize(-viewPosition)), 0.0));
+}
+
+#endif
+
 void main()
 {
-    vec4 baseColor = vertexColor * texture(baseColorTexture, textureCoordinate);
-#ifdef GL_ARB_compatibility
-    baseColor *= gl_FrontMaterial.diffuse;
+#if DRAW_COLOR
+    vec4 color = baseColor();
+#if DRAW_LIGHTING
+    if (!unlit) color.rgb = litColor(color.rgb);
 #endif
-    if (baseColor.a < alphaCutoff) discard;
-    fragmentColor = vec4(unlit ? baseColor.rgb : litColor(baseColor.rgb), baseColor.a);
+#if DRAW_FOG && defined(GL_ARB_compatibility)
+    color.rgb = foggedColor(color.rgb);
+#endif
+    fragmentColor = color;
+#elif DRAW_ALPHA
+    fragmentColor = baseColor();
+#else
+    fragmentColor = vec4(1.0);
+#endif
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Draws a SkinnedGeometry: skins, then what the fixed pipeline does.
+// Draws a SkinnedGeometry: skins, then what the fixed pipeline does. DRAW_... are those of nodes/SurfaceState.h.
 
 void osgGpuAnimationSkin(inout vec4 vertex, inout vec3 normal);
 vec4 osgGpuAnimationTint();
@@ -11,6 +11,18 @@ out vec3 viewNormal;
 out vec4 vertexColor;
 out vec2 textureCoordinate;
 
+void passSurface()
+{
+    vertexColor = gl_Color;
+    osgGpuAnimationMorphColor(vertexColor);
+    vertexColor *= osgGpuAnimationTint();
+    textureCoordinate = gl_MultiTexCoord0.xy;
+    osgGpuAnimationMorphTextureCoordinate(textureCoordinate);
+#if DRAW_TEXTURE_MATRIX && defined(GL_ARB_compatibility)
+    textureCoordinate = (gl_TextureMatrix[0] * vec4(textureCoordinate, 0.0, 1.0)).xy;
+#endif
+}
+
 void main()
 {
     vec4 vertex = gl_Vertex;
@@ -18,10 +30,11 @@ void main()
     osgGpuAnimationSkin(vertex, normal);
     viewPosition = (gl_ModelViewMatrix * vertex).xyz;
     viewNormal = gl_NormalMatrix * normal;
-    vertexColor = gl_Color;
-    osgGpuAnimationMorphColor(vertexColor);
-    vertexColor *= osgGpuAnimationTint();
-    textureCoordinate = gl_MultiTexCoord0.xy;
-    osgGpuAnimationMorphTextureCoordinate(textureCoordinate);
+#if DRAW_COLOR || DRAW_ALPHA
+    passSurface();
+#endif
+#if DRAW_CLIP_PLANES && defined(GL_ARB_compatibility)
+    gl_ClipVertex = vec4(viewPosition, 1.0);
+#endif
     gl_Position = gl_ModelViewProjectionMatrix * vertex;
 }

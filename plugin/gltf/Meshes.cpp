@@ -4,7 +4,9 @@
 #include "gltf/Accessor.h"
 #include "gltf/FlatNormals.h"
 #include "gltf/NamedElement.h"
+#include "gltf/Reach.h"
 #include "gltf/VertexAttributes.h"
+#include "gltf/VertexCache.h"
 
 #include <numeric>
 
@@ -74,6 +76,12 @@ std::vector<std::uint32_t> readIndices(const tinygltf::Model& model, const tinyg
     return indices;
 }
 
+bool isBlended(const tinygltf::Model& model, const tinygltf::Primitive& primitive)
+{
+    return primitive.material >= 0 &&
+           model.materials[static_cast<std::size_t>(primitive.material)].alphaMode == "BLEND";
+}
+
 /// The way back of `sourceVertex`, to the first of several. Vertices that no triangle uses are appended to it, so that
 /// all of the file's are there to be asked for, if not drawn.
 std::vector<std::uint32_t> invert(std::vector<std::uint32_t>& sourceVertex, std::size_t vertexCount)
@@ -132,7 +140,7 @@ std::size_t byteSize(const tinygltf::Model& model, const tinygltf::Primitive& pr
     const bool flat = primitive.mode >= modeTriangles && primitive.attributes.count("NORMAL") == 0;
     const std::size_t corners =
         !flat ? 0 : (primitive.mode == modeTriangles ? 1 : 3) * (indices ? indices : vertexCount);
-    return (vertexCount + corners) * (aVertex + aTarget * primitive.targets.size()) + 2 * 4 * indices;
+    return (vertexCount + corners) * (aVertex + aTarget * primitive.targets.size()) + 3 * 4 * indices;
 }
 
 } // namespace
@@ -177,10 +185,17 @@ std::optional<MeshPrimitive> Meshes::read(int meshIndex, int primitiveIndex)
     mesh.texCoords = readTextureCoordinates(_model, primitive);
     mesh.colors = readColors(_model, primitive);
     mesh.targets = readMorphTargets(_model, primitive);
+    mesh.radius = radiusOf(*mesh.positions);
+    for (const MorphTarget& target : mesh.targets)
+        mesh.targetRadii.push_back(target.positions ? radiusOf(*target.positions) : 0.0);
     if (!mesh.normals && primitive.mode >= modeTriangles)
+    {
         takeApart(mesh, primitive.mode, std::move(indices));
-    else
-        mesh.primitiveSet = makePrimitiveSet(primitive.mode, indices, mesh.vertexCount);
+        return mesh;
+    }
+    if (primitive.mode == modeTriangles && !isBlended(_model, primitive))
+        optimizeForVertexCache(indices, mesh.vertexCount);
+    mesh.primitiveSet = makePrimitiveSet(primitive.mode, indices, mesh.vertexCount);
     return mesh;
 }
 

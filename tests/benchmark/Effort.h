@@ -10,16 +10,17 @@ namespace osgGpuAnimation::benchmark
 /// How much is measured.
 struct Effort
 {
-    int rounds = 7;                ///< of cheap things
-    int loadRounds = 21;           ///< of loading a file
-    int frameRounds = 3;           ///< of whole frames
-    std::size_t barCount = 1000;   ///< characters the bars speak of
-    std::size_t frameCount = 1000; ///< characters of the frames' bars
+    int rounds = 7;                 ///< of cheap things
+    int loadRounds = 21;            ///< of loading a file
+    int frameRounds = 3;            ///< of whole frames
+    std::size_t barCount = 1000;    ///< characters the bars speak of
+    std::size_t frameCount = 1000;  ///< characters of the frames' bars
+    std::size_t crowdCount = 10000; ///< instances of the crowd's bar
     std::vector<std::size_t> poseCounts{1, 10, 100, 1000, 10000};
     std::vector<std::size_t> frameCounts{1, 10, 100, 1000};
     std::size_t largestReference = 1000; ///< osgAnimation's characters, at most
 
-    static Effort quick() { return {5, 11, 3, 1000, 100, {10, 100, 1000, 10000}, {10, 100}, 1000}; }
+    static Effort quick() { return {5, 11, 3, 1000, 100, 10000, {10, 100, 1000, 10000}, {10, 100}, 1000}; }
 };
 
 } // namespace osgGpuAnimation::benchmark

@@ -117,10 +117,9 @@ double bytesInUse()
     return static_cast<double>(info.uordblks + info.hblkhd);
 }
 
-/// What a scene's characters take and how long its first frame does.
+/// How long the first frame of a scene takes.
 struct Start
 {
-    double bytes = 0.0;
     Spent spent;
     int pixels = 0; ///< that show something
 };
@@ -134,18 +133,35 @@ Result<Start> start(MakeScene makeScene, const osg::BoundingSphere& sight)
     Contestant viewing = made.value();
     viewing.frame();
     Start start;
-    const double before = bytesInUse();
     const Stopwatch stopwatch;
     auto scene = makeScene();
     root->addChild(scene.root);
     viewing.frame();
     start.spent = stopwatch.elapsed();
-    viewing.frame();
-    viewing.frame();
-    start.bytes = bytesInUse() - before;
     if (const std::string errors = viewing.viewer->takeErrors(); !errors.empty()) return Error{errors};
     start.pixels = viewing.viewer->pixelsDrawn();
     return start;
+}
+
+/// Bytes that a scene takes, CPU and GPU, when it has been drawn three times.
+template <typename MakeScene>
+Result<double> footprint(MakeScene makeScene, const osg::BoundingSphere& sight)
+{
+    osg::ref_ptr<osg::Group> root = new osg::Group;
+    Result<Contestant> made = contestant(root, sight);
+    if (!made) return made.error();
+    Contestant viewing = made.value();
+    viewing.viewer->lookAside();
+    viewing.frame();
+    const double before = bytesInUse();
+    auto scene = makeScene();
+    root->addChild(scene.root);
+    for (int frame = 0; frame < 3; ++frame)
+        viewing.frame();
+    const double bytes = bytesInUse() - before;
+    if (const std::string errors = viewing.viewer->takeErrors(); !errors.empty()) return Error{errors};
+    if (const std::string wrong = scene.check(viewing.viewer->state()); !wrong.empty()) return Error{wrong};
+    return bytes;
 }
 
 } // namespace
@@ -176,6 +192,42 @@ Result<bool> measureFrames(const Subject& subject, const Effort& effort, Report&
     return true;
 }
 
+Result<bool> measureCrowd(const Subject& subject, const Effort& effort, Report& report)
+{
+    const auto race = [&](std::size_t count, int rounds, bool hasNodes) -> Result<std::vector<Contestant>>
+    {
+        std::cerr << subject.name << ": a crowd of " << count << std::endl;
+        std::vector<osg::ref_ptr<osg::Node>> scenes{CrowdScene(subject, count).root};
+        if (hasNodes) scenes.push_back(CharacterScene(subject, count).root);
+        std::vector<Contestant> contestants;
+        for (const osg::ref_ptr<osg::Node>& scene : scenes)
+        {
+            Result<Contestant> made = contestant(scene, scenes.front()->getBound());
+            if (!made) return made.error();
+            contestants.push_back(std::move(made.value()));
+        }
+        benchmark::race(contestants, rounds);
+        if (const std::string wrong = check(contestants); !wrong.empty()) return Error{wrong};
+        return contestants;
+    };
+    const Result<std::vector<Contestant>> both = race(effort.frameCount, effort.frameRounds, true);
+    if (!both) return both.error();
+    const double characters = static_cast<double>(effort.frameCount);
+    report.add(named(compared(both.value()[0].whole, both.value()[1].whole, 1e3 / characters, true), subject,
+                     effort.frameCount, "whole frame of a crowd node", "ms a character", "separate nodes"));
+    const Result<std::vector<Contestant>> large = race(effort.crowdCount, 1, false);
+    if (!large) return large.error();
+    Row row = named({}, subject, effort.crowdCount, "update + cull, crowd", "µs a character", "");
+    std::vector<double> seconds;
+    for (const Spent& spent : large.value()[0].updateAndCull)
+        seconds.push_back(1e6 * spent.cpu / static_cast<double>(effort.crowdCount));
+    row.ours = figureOf(seconds);
+    row.bar = "≤ 0.15 µs";
+    row.isMet = row.ours.median <= 0.15;
+    report.add(row);
+    return true;
+}
+
 Result<bool> measureSkinning(const Subject& subject, const Effort& effort, Report& report)
 {
     std::cerr << subject.name << ": skinning" << std::endl;
@@ -203,18 +255,19 @@ Result<bool> measureSkinning(const Subject& subject, const Effort& effort, Repor
 Result<bool> measureStart(const Subject& subject, const Effort& effort, Report& report)
 {
     std::cerr << subject.name << ": first frame and memory" << std::endl;
-    constexpr std::size_t count = 1000;
+    constexpr std::size_t count = 1000, few = 10; // few have all that is there once: programs, the set
     const osg::BoundingSphere sight = CharacterScene(subject, count).root->getBound();
     std::vector<double> seconds, bytes;
     for (int round = 0; round < std::min(effort.frameRounds, 3); ++round)
     {
         const Result<Start> many = start([&] { return CharacterScene(subject, count); }, sight);
         if (!many) return many.error();
-        const Result<Start> one = start([&] { return CharacterScene(subject, 1); }, sight);
-        if (!one) return one.error();
+        const Result<double> ofMany = footprint([&] { return CharacterScene(subject, count); }, sight);
+        const Result<double> ofFew = footprint([&] { return CharacterScene(subject, few); }, sight);
+        if (!ofMany || !ofFew) return ofMany ? ofFew.error() : ofMany.error();
         if (many.value().pixels < 4) return Error{"an empty picture"};
         seconds.push_back(many.value().spent.cpu);
-        bytes.push_back((many.value().bytes - one.value().bytes) / (1024.0 * (count - 1)));
+        bytes.push_back((ofMany.value() - ofFew.value()) / (1024.0 * (count - few)));
     }
     Row row = named({}, subject, count, "first frame, nodes made and drawn", "s", "");
     row.ours = figureOf(seconds);

@@ -31,6 +31,9 @@ Result<bool> measureFrames(const Subject& subject, const Effort& effort, Report&
 /// Skinned draws against the same meshes and shader without skinning.
 Result<bool> measureSkinning(const Subject& subject, const Effort& effort, Report& report);
 
+/// One crowd node against as many separate nodes: whole frames, and what the CPU does of them.
+Result<bool> measureCrowd(const Subject& subject, const Effort& effort, Report& report);
+
 /// Bytes and the first frame of many characters.
 Result<bool> measureStart(const Subject& subject, const Effort& effort, Report& report);
 

@@ -69,6 +69,17 @@ std::string CharacterScene::check(osg::State& state) const
     return "";
 }
 
+CrowdScene::CrowdScene(const Subject& subject, std::size_t count) : root(new AnimatedCrowd(*subject.model.character))
+{
+    for (std::size_t i = 0; i < count; ++i)
+    {
+        AnimationController controller(root->sharedSet());
+        static_cast<void>(controller.play(subject.clip));
+        controller.seek(phaseOf(i, durationOf(subject)));
+        static_cast<void>(root->add(placement(subject, i, count), controller));
+    }
+}
+
 ReferenceScene::ReferenceScene(const Subject& subject, ReferenceKit& kit, ReferenceMode mode, std::size_t count)
 {
     for (std::size_t i = 0; i < count; ++i)

@@ -4,6 +4,7 @@
 #include "ReferenceKit.h"
 
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
+#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 
 #include <osg/Group>
 
@@ -25,6 +26,14 @@ struct CharacterScene
 
     osg::ref_ptr<osg::Group> root = new osg::Group;
     std::vector<osg::ref_ptr<AnimatedCharacter>> characters;
+};
+
+/// The same characters, placements and clips in one AnimatedCrowd.
+struct CrowdScene
+{
+    CrowdScene(const Subject& subject, std::size_t count);
+
+    osg::ref_ptr<AnimatedCrowd> root;
 };
 
 /// The same with osgAnimation.

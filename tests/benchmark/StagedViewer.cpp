@@ -46,11 +46,20 @@ StagedViewer::~StagedViewer()
 
 void StagedViewer::lookAt(const osg::BoundingSphere& sight)
 {
+    _sight = sight;
     osg::Vec3d back(0.3, -1.0, 0.8);
     back.normalize();
     osg::Camera* camera = _viewer.getCamera();
     camera->setViewMatrixAsLookAt(sight.center() + back * sight.radius() * 4.0, sight.center(), osg::Vec3d(0, 0, 1));
     camera->setProjectionMatrixAsPerspective(35.0, 1.0, sight.radius(), sight.radius() * 10.0);
+}
+
+void StagedViewer::lookAside()
+{
+    osg::Camera* camera = _viewer.getCamera();
+    camera->setCullingMode(osg::CullSettings::NO_CULLING);
+    camera->setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
+    camera->setViewMatrix(camera->getViewMatrix() * osg::Matrixd::translate(1000.0 * _sight.radius(), 0.0, 0.0));
 }
 
 FrameCost StagedViewer::frame(double time)

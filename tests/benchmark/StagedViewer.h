@@ -36,6 +36,10 @@ public:
     /// The frame of that simulation time, in seconds. The first is an ordinary viewer.frame(), timed as draw.
     FrameCost frame(double time);
 
+    /// From the next frame on all is culled and drawn as before, with no triangle of it in the picture: llvmpipe keeps
+    /// the triangles of past pictures, up to 36 MiB a picture, which are nobody's memory in particular.
+    void lookAside();
+
     /// The rest needs a frame before it. What GL reports and has not been asked for; empty: nothing.
     std::string takeErrors();
     /// Pixels of the last frame that are not the background's.
@@ -47,6 +51,7 @@ private:
     explicit StagedViewer(osg::ref_ptr<osg::GraphicsContext> context) : _context(std::move(context)) {}
     void lookAt(const osg::BoundingSphere& sight);
 
+    osg::BoundingSphere _sight;
     osg::ref_ptr<osg::GraphicsContext> _context;
     osgViewer::Viewer _viewer;
     bool _hasDrawn = false;

@@ -69,6 +69,7 @@ struct BeginFeedbackTag;
 struct UploadTag;
 struct UploadPartTag;
 struct GetUniformLocationTag;
+struct DrawInstancedTag;
 
 template <typename Function>
 void forEachPointer(osg::GLExtensions& gl, Function function)
@@ -84,6 +85,7 @@ void forEachPointer(osg::GLExtensions& gl, Function function)
     function(static_cast<BeginFeedbackTag*>(nullptr), gl.glBeginTransformFeedback, "glBeginTransformFeedback");
     function(static_cast<UploadTag*>(nullptr), gl.glBufferData, "glBufferData");
     function(static_cast<UploadPartTag*>(nullptr), gl.glBufferSubData, "glBufferSubData");
+    function(static_cast<DrawInstancedTag*>(nullptr), gl.glDrawArraysInstanced, "glDrawArraysInstanced");
     function(static_cast<GetUniformLocationTag*>(nullptr), gl.glGetUniformLocation, "glGetUniformLocation");
 }
 

@@ -13,6 +13,8 @@ TEST(OptionStringTest, nothingAskedForIsTheDefault)
     EXPECT_FALSE(options.scene);
     EXPECT_FALSE(options.noRotation);
     EXPECT_FALSE(options.allowOutsideFiles);
+    EXPECT_FALSE(options.compact);
+    EXPECT_EQ(parseOptions("compact=1e-4").value().compact, 1e-4);
 }
 
 TEST(OptionStringTest, readsAllOptions)
@@ -97,6 +99,11 @@ TEST(OptionStringTest, valuesThatDoNotFitAreErrors)
                              "scene=99999999999",
                              "maxElements=-1",
                              "maxDecodedBytes=1e9",
+                             "compact",
+                             "compact=0",
+                             "compact=-1e-4",
+                             "compact=nan",
+                             "compact=inf",
                              "speed",
                              "speed=",
                              "speed=nan",

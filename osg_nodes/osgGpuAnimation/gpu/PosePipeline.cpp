@@ -49,6 +49,14 @@ PoseVariant mixVariant(const PoseBatch& batch)
     return variant;
 }
 
+void setMotion(PoseVariant& variant, const PackedKeyframes::Track& motion)
+{
+    variant.translationMotion = motion.translation;
+    variant.scaleMotion = motion.scale;
+    variant.hasExactKeys = motion.hasExactKeys;
+    variant.hasCompactKeys = motion.hasCompactKeys;
+}
+
 } // namespace
 
 PosePipeline::PosePipeline(unsigned int contextId)
@@ -114,10 +122,11 @@ PosePipeline::SetResources& PosePipeline::resourcesOf(const PoseBatch& batch)
         palette->release();
     if (resources.buffers) resources.buffers->release();
     resources = SetResources{batch.sharedSet(), nullptr, {}, false};
-    const std::size_t keyframeTexels = set.keyframeBufferSize() * POSE_TEXELS_PER_TRANSFORM;
+    const PackedKeyframes keyframes(set);
+    const std::size_t keyframeTexels = keyframes.texels().size();
     const std::size_t entryTexels = set.paletteSize() * POSE_TEXELS_PER_ENTRY;
     if (std::max(keyframeTexels, entryTexels) <= _maxTexels)
-        resources.buffers = std::make_unique<AnimationBuffers>(*_gl, set);
+        resources.buffers = std::make_unique<AnimationBuffers>(*_gl, set, keyframes);
     else
         OSG_WARN << "osgGpuAnimation: an animation set needs buffers of " << keyframeTexels
                  << " texels (keyframes) and " << entryTexels << " (palette entries), this context takes at most "
@@ -186,7 +195,7 @@ void PosePipeline::useMixInput(FeedbackPass& pass, const AnimationSet& set, cons
     pass.setInt("maskStride", static_cast<int>(AnimationBuffers::texelsPerMask(set)));
     pass.setInt("sampleStride", static_cast<int>(chunk.sampleStride));
     pass.setInt("instanceCount", static_cast<int>(chunk.size));
-    pass.setInt("trackCount", static_cast<int>(set.trackCount()));
+    pass.setInt("restTexel", static_cast<int>(buffers.restTexel()));
     pass.setInt("jointCount", static_cast<int>(set.skeleton().jointCount()));
 }
 
@@ -202,13 +211,16 @@ void PosePipeline::evaluateFused(const PoseBatch& batch, const AnimationBuffers&
     variant.hasRoots = !chunk.uploadedRootMatrices.empty();
     const std::size_t entryBytes = POSE_TEXELS_PER_ENTRY * BufferTexture::texelBytes;
     const std::vector<std::size_t>& levels = set.levels();
+    const FeedbackPass* current = nullptr;
     for (std::size_t level = 0; level < set.levelCount(); ++level)
     {
         if (level == 1) variant.isRootLevel = variant.hasRoots = variant.hasWeights = false;
+        setMotion(variant, buffers.levels()[level]);
         const bool isOdd = level % 2 != 0;
         FeedbackPass& pass = posePass(variant);
         if (!pass.valid()) return;
-        if (level < 2) useMixInput(pass, set, buffers, chunk);
+        if (&pass != current) useMixInput(pass, set, buffers, chunk);
+        current = &pass;
         pass.setTexture("parentLevels", unitPrevious, (isOdd ? chunk.palette : _scratch).texture());
         buffers.entries().bindAttributes(POSE_HEAD_LOCATION, POSE_TEXELS_PER_ENTRY, entryBytes,
                                          levels[level] * entryBytes, 1);
@@ -260,7 +272,11 @@ void PosePipeline::evaluateSeparate(const PoseBatch& batch, const AnimationBuffe
     _scratch.reserve(trackVertices * matrixBytes);
 
     makeSeparatePasses();
-    FeedbackPass& mixing = mixPass(mixVariant(batch));
+    PoseVariant variant = mixVariant(batch);
+    setMotion(variant, buffers.anyTrack());
+    variant.translationMotion = std::max(variant.translationMotion, PartMotion::Held);
+    variant.scaleMotion = std::max(variant.scaleMotion, PartMotion::Held);
+    FeedbackPass& mixing = mixPass(variant);
     if (!mixing.valid() || !_localPass->valid() || !_worldPass->valid()) return;
     useMixInput(mixing, set, buffers, chunk);
     runSeparate(mixing, trackVertices, _mixedTracks);

@@ -5,6 +5,8 @@
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimationUpdateCallback.h>
 #include <osgGpuAnimation/nodes/CrowdView.h>
+#include <osgGpuAnimation/nodes/DepthPass.h>
+#include <osgGpuAnimation/nodes/FlattenedPlace.h>
 #include <osgGpuAnimation/nodes/PosedMesh.h>
 #include <osgGpuAnimation/nodes/PoseStage.h>
 
@@ -281,12 +283,13 @@ void AnimatedCrowd::traverse(osg::NodeVisitor& visitor)
         cull(*cullVisitor);
     else if (dynamic_cast<osgUtil::IntersectionVisitor*>(&visitor))
         intersect(visitor);
-    else
+    else if (!keepFlattenedPlace(*this, visitor))
         osg::Transform::traverse(visitor);
 }
 
 void AnimatedCrowd::cull(osgUtil::CullVisitor& visitor)
 {
+    const DepthPass pass(visitor);
     CrowdView view(visitor);
     static thread_local std::vector<std::uint32_t> seen; // keeps its storage from cull to cull
     _instances.findSeen(isCullingActive() ? view.planes() : std::vector<glm::vec4>(), seen);

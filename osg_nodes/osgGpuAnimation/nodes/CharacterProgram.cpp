@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/CharacterProgram.h>
 
+#include <osgGpuAnimation/nodes/SurfaceProgram.h>
+
 #include <layout.glsl>
 #include <ShaderSources.h>
 
@@ -47,6 +49,13 @@ private:
     osg::observer_ptr<Object> _object;
 };
 
+osg::ref_ptr<osg::Program> makeProgram()
+{
+    osg::ref_ptr<osg::Program> program = new SurfaceProgram;
+    program->setName("osgGpuAnimation character");
+    return program;
+}
+
 osg::ref_ptr<osg::Texture2D> makeWhiteTexture()
 {
     osg::ref_ptr<osg::Image> image = new osg::Image;
@@ -66,20 +75,6 @@ osg::ref_ptr<osg::Texture2D> whiteTexture()
 }
 
 } // namespace
-
-CharacterProgram::CharacterProgram()
-{
-    setName("osgGpuAnimation character");
-    addShader(skinShader());
-    addShader(makeShader(osg::Shader::VERTEX, {shaders::character_vert}));
-    addShader(makeShader(osg::Shader::FRAGMENT, {shaders::character_frag}));
-    bindSkinAttributes(*this);
-}
-
-CharacterProgram::CharacterProgram(const CharacterProgram& other, const osg::CopyOp& copyop)
-    : osg::Program(other, copyop)
-{
-}
 
 osg::ref_ptr<osg::Shader> skinShader()
 {
@@ -102,12 +97,13 @@ void bindSkinAttributes(osg::Program& program)
 osg::ref_ptr<osg::Program> characterProgram()
 {
     static Shared<osg::Program> shared;
-    return shared.get([] { return osg::ref_ptr<osg::Program>(new CharacterProgram); });
+    return shared.get(makeProgram);
 }
 
 void applyCharacterProgram(osg::StateSet& stateSet)
 {
-    stateSet.setAttributeAndModes(characterProgram());
+    // Casting cameras of osgShadow override programs with none, which would draw the bind pose.
+    stateSet.setAttributeAndModes(characterProgram(), osg::StateAttribute::ON | osg::StateAttribute::PROTECTED);
     stateSet.getOrCreateUniform("baseColorTexture", osg::Uniform::SAMPLER_2D)->set(0);
     if (!stateSet.getUniform("alphaCutoff")) stateSet.addUniform(new osg::Uniform("alphaCutoff", 0.0f));
     if (!stateSet.getUniform("unlit")) stateSet.addUniform(new osg::Uniform("unlit", false));

@@ -7,23 +7,14 @@
 namespace osgGpuAnimation
 {
 
-/// What characterProgram() is. It has a class of its own so that files name it instead of holding its shaders: they are
-/// made anew by the library that reads them.
-class CharacterProgram : public osg::Program
-{
-public:
-    CharacterProgram();
-    CharacterProgram(const CharacterProgram& other, const osg::CopyOp& copyop = osg::CopyOp::SHALLOW_COPY);
-    META_StateAttribute(osgGpuAnimation, CharacterProgram, PROGRAM)
-
-        protected : ~CharacterProgram() override = default;
-};
-
-/// The program that draws SkinnedGeometry: skin.glsl, character.vert and character.frag. All users share one object.
+/// The program that draws SkinnedGeometry: skin.glsl, character.vert and character.frag, in variants (SurfaceProgram)
+/// by the modes of the state. All users share one object.
 ///
-/// It lights by OSG's light 0 as the fixed pipeline does, with the osg::Material of the state (diffuse times vertex
-/// colour is the base colour), and always samples a base colour texture on unit 0.
-/// Uniforms: `float alphaCutoff` (fragments of less alpha are dropped; default 0), `bool unlit` (default false).
+/// It does what the fixed pipeline would: OSG's lights that are on, with attenuation and spots, osg::LightModel's
+/// ambient, osg::Material (diffuse times vertex colour is the base colour, lit or not), fog, clip planes, the texture
+/// of unit 0 with its matrix where GL_TEXTURE_2D is on, and the shadow maps of osgShadow's techniques. In a pass that
+/// writes depth alone it does nothing but skin. Uniforms: `float alphaCutoff` (fragments of less alpha are dropped;
+/// default 0), `bool unlit` (default false).
 osg::ref_ptr<osg::Program> characterProgram();
 
 /// Puts the program, its uniforms' defaults and a white texture on unit 0 (where there is none) into the state.

@@ -13,15 +13,9 @@ namespace osgGpuAnimation
 namespace
 {
 
-bool isSame(const PoseInstruction& a, const PoseInstruction& b)
+bool isSame(const BlendSample& a, const BlendSample& b)
 {
-    const auto same = [](const BlendSample& left, const BlendSample& right)
-    {
-        return left.keyframe == right.keyframe && left.alpha == right.alpha && left.weight == right.weight &&
-               left.control == right.control;
-    };
-    return a.sampleCount == b.sampleCount &&
-           std::equal(a.samples.begin(), a.samples.begin() + a.sampleCount, b.samples.begin(), same);
+    return a.keyframe == b.keyframe && a.alpha == b.alpha && a.weight == b.weight && a.control == b.control;
 }
 
 /// Several cameras may have poses evaluated in one frame.
@@ -72,25 +66,46 @@ void PoseFrame::reset(unsigned int frameNumber)
     _batches.clear();
     _batchesOfSet.clear();
     _enlisted.clear();
-    for (std::size_t i = 0; i < _statesUsed; ++i)
-        bindingOf(*_states[i]).set(nullptr, 0, 0, 0);
-    _statesUsed = 0;
+    _samples.clear();
+    _states.reset();
+    _placedStates.reset();
 }
 
-osg::StateSet* PoseFrame::enlist(const AnimatedCharacter& character)
+EnlistedPose PoseFrame::enlist(const AnimatedCharacter& character)
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    Enlisted& enlisted = _enlisted[&character];
+    if (!isStill(enlisted, character))
+    {
+        const PoseInstruction& instruction = character.controller().instruction();
+        Batch& batch = openBatch(character);
+        enlisted = {&batch, batch.content->add(instruction), _samples.size(), instruction.sampleCount, nullptr};
+        _samples.insert(_samples.end(), instruction.samples.begin(),
+                        instruction.samples.begin() + static_cast<std::ptrdiff_t>(instruction.sampleCount));
+    }
+    return {enlisted.batch->slot, enlisted.instance};
+}
+
+// The address may be that of another character by now, in a viewer whose frames have the same numbers.
+bool PoseFrame::isStill(const Enlisted& known, const AnimatedCharacter& character) const
 {
     const PoseInstruction& instruction = character.controller().instruction();
-    const std::lock_guard<std::mutex> lock(_mutex);
-    const auto known = _enlisted.find(&character);
-    // The address may be that of another character by now, in a viewer whose frames have the same numbers.
-    if (known != _enlisted.end() && isSame(known->second.instruction, instruction) &&
-        bindingOf(*known->second.stateSet).animationSet() == &character.set())
-        return known->second.stateSet;
+    return known.batch && &known.batch->content->set() == &character.set() &&
+           known.sampleCount == instruction.sampleCount &&
+           std::equal(instruction.samples.begin(),
+                      instruction.samples.begin() + static_cast<std::ptrdiff_t>(instruction.sampleCount),
+                      _samples.begin() + static_cast<std::ptrdiff_t>(known.firstSample), isSame);
+}
 
-    Batch& batch = openBatch(character);
-    osg::StateSet* stateSet = nextState(batch, batch.content->add(instruction), 1);
-    _enlisted[&character] = {instruction, stateSet};
-    return stateSet;
+osg::StateSet* PoseFrame::stateOf(const AnimatedCharacter& character, EnlistedPose pose)
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    Enlisted& enlisted = _enlisted[&character];
+    // A camera that culls at the same time may have enlisted it with another instruction meanwhile.
+    const bool isOther = enlisted.batch->slot != pose.slot || enlisted.instance != pose.instance;
+    if (isOther) return stateOf(*_batchesOfSet[&character.set()][pose.slot], pose.instance, 1);
+    if (!enlisted.stateSet) enlisted.stateSet = stateOf(*enlisted.batch, enlisted.instance, 1);
+    return enlisted.stateSet;
 }
 
 PoseFrame::Batch& PoseFrame::openBatch(const AnimatedCharacter& character)
@@ -133,20 +148,44 @@ osg::StateSet* PoseFrame::enlist(std::unique_ptr<PoseBatch> content)
             return batch->stateOfAll;
         }
     Batch& batch = addBatch(std::move(content));
-    batch.stateOfAll = nextState(batch, 0, batch.content->size());
+    batch.stateOfAll = stateOf(batch, 0, batch.content->size());
     return batch.stateOfAll;
 }
 
-osg::StateSet* PoseFrame::nextState(const Batch& batch, std::size_t instance, std::size_t instanceCount)
+osg::StateSet* PoseFrame::stateOf(const Batch& batch, std::size_t instance, std::size_t instanceCount)
 {
-    if (_statesUsed == _states.size())
+    osg::StateSet& stateSet = _states.next(false);
+    bindingOf(stateSet).set(batch.content->sharedSet(), batch.slot, instance, instanceCount);
+    return &stateSet;
+}
+
+PlacedState PoseFrame::placedState(const AnimationSet& set, std::size_t slot)
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    osg::StateSet& stateSet = _placedStates.next(true);
+    PaletteBinding& binding = bindingOf(stateSet);
+    binding.setPlaced(_batchesOfSet[&set][slot]->content->sharedSet(), slot);
+    return {&stateSet, &binding};
+}
+
+osg::StateSet& PoseFrame::StatePool::next(bool isPlaced)
+{
+    if (used == states.size())
     {
-        _states.push_back(new osg::StateSet);
-        _states.back()->setAttribute(new PaletteBinding);
+        states.push_back(new osg::StateSet);
+        states.back()->setAttribute(new PaletteBinding);
+        if (isPlaced) states.back()->setDefine("POSE_PLACED");
     }
-    osg::StateSet* stateSet = _states[_statesUsed++].get();
-    bindingOf(*stateSet).set(batch.content->sharedSet(), batch.slot, instance, instanceCount);
-    return stateSet;
+    return *states[used++];
+}
+
+void PoseFrame::StatePool::reset()
+{
+    // What the last frame did not need is not kept for ever.
+    states.resize(std::min(states.size(), 2 * used));
+    for (const osg::ref_ptr<osg::StateSet>& state : states)
+        bindingOf(*state).set(nullptr, 0, 0, 0);
+    used = 0;
 }
 
 void PoseFrame::evaluate(osg::RenderInfo& renderInfo, osg::Stats* stats)

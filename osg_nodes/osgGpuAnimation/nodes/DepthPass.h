@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osg/State>
+#include <osg/StateSet>
+#include <osgUtil/CullVisitor>
+
+namespace osgGpuAnimation
+{
+
+/// While it lives: where the camera that is culled for has a depth buffer and no colour buffer attached, as osgShadow's
+/// have, the state of all that is culled has the shader define POSE_DEPTH_ONLY. Programs may leave out what makes
+/// colours then; the kit's own does.
+class DepthPass
+{
+public:
+    explicit DepthPass(osgUtil::CullVisitor& visitor);
+    ~DepthPass();
+    DepthPass(const DepthPass&) = delete;
+    DepthPass& operator=(const DepthPass&) = delete;
+
+private:
+    osgUtil::CullVisitor* _visitor; ///< null: it is no such camera
+};
+
+/// Whether the define is on in the state as it is.
+bool isDepthPass(osg::State& state);
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osgGpuAnimation/nodes/SurfaceState.h>
+
+#include <osg/Program>
+
+#include <map>
+#include <mutex>
+
+namespace osgGpuAnimation
+{
+
+/// The attribute behind characterProgram(): a program for each SurfaceState there is, made when it is first met. It
+/// looks at the state each time that a StateSet with it is applied.
+///
+/// It is meant to be set PROTECTED, so that programs that override from above (osgShadow's casting cameras, osgFX)
+/// do not draw the bind pose. One that overrides and links skin.glsl itself is given way to.
+class SurfaceProgram : public osg::Program
+{
+public:
+    SurfaceProgram() = default;
+    /// Shares the shaders; programs are made anew.
+    SurfaceProgram(const SurfaceProgram& other, const osg::CopyOp& copyop = osg::CopyOp::SHALLOW_COPY);
+
+    /// osg::State's default for the type of attribute: no program.
+    osg::Object* cloneType() const override { return new osg::Program; }
+    osg::Object* clone(const osg::CopyOp& copyop) const override { return new SurfaceProgram(*this, copyop); }
+    bool isSameKindAs(const osg::Object* object) const override
+    {
+        return dynamic_cast<const SurfaceProgram*>(object) != nullptr;
+    }
+    const char* libraryName() const override { return "osgGpuAnimation"; }
+    const char* className() const override { return "SurfaceProgram"; }
+
+    void apply(osg::State& state) const override;
+    void compileGLObjects(osg::State& state) const override;
+    void setThreadSafeRefUnref(bool threadSafe) override;
+    void resizeGLObjectBuffers(unsigned int maxSize) override;
+    void releaseGLObjects(osg::State* state = nullptr) const override;
+
+    /// The program for such a state.
+    osg::ref_ptr<osg::Program> variant(const SurfaceState& surface) const;
+
+protected:
+    ~SurfaceProgram() override = default;
+
+private:
+    mutable std::mutex _mutex; ///< draw threads of several contexts make variants
+    mutable std::map<SurfaceState, osg::ref_ptr<osg::Program>> _variants;
+};
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/nodes/SurfaceState.h>
+
+#include <osgGpuAnimation/nodes/DepthPass.h>
+
+#include <osg/ColorMask>
+#include <osg/Fog>
+#include <osg/Light>
+#include <osg/TexGen>
+#include <osg/Texture>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+constexpr unsigned int lightCount = 8;
+constexpr unsigned int generatedUnits = 8; ///< texture units whose coordinates OpenGL 2 can generate
+
+template <typename Attribute>
+const Attribute* applied(const osg::State& state, osg::StateAttribute::Type type, unsigned int member = 0)
+{
+    return static_cast<const Attribute*>(state.getLastAppliedAttribute(type, member));
+}
+
+/// A mode by the state sets of the way down to the mesh: in the core profile OSG switches no modes of the fixed
+/// pipeline, but users still set them.
+template <typename ModeOf>
+bool isSetOn(osg::State& state, ModeOf modeOf)
+{
+    osg::StateAttribute::GLModeValue value = osg::StateAttribute::OFF;
+    for (const osg::StateSet* stateSet : state.getStateSetStack())
+    {
+        const osg::StateAttribute::GLModeValue here =
+            stateSet ? modeOf(*stateSet) : osg::StateAttribute::GLModeValue(osg::StateAttribute::INHERIT);
+        if (here & osg::StateAttribute::INHERIT) continue;
+        if ((value & osg::StateAttribute::OVERRIDE) && !(here & osg::StateAttribute::PROTECTED)) continue;
+        value = here;
+    }
+    return (value & osg::StateAttribute::ON) != 0;
+}
+
+bool isLightingOn(osg::State& state)
+{
+    if (!state.getUseModelViewAndProjectionUniforms()) return state.getLastAppliedMode(GL_LIGHTING);
+    return isSetOn(state, [](const osg::StateSet& stateSet) { return stateSet.getMode(GL_LIGHTING); });
+}
+
+bool isTexturingOn(osg::State& state)
+{
+    if (!state.getUseModelViewAndProjectionUniforms()) return state.getLastAppliedTextureMode(0, GL_TEXTURE_2D);
+    return isSetOn(state, [](const osg::StateSet& stateSet) { return stateSet.getTextureMode(0, GL_TEXTURE_2D); });
+}
+
+bool isColorMasked(const osg::State& state)
+{
+    const auto* mask = applied<osg::ColorMask>(state, osg::StateAttribute::COLORMASK);
+    return mask && !mask->getRedMask() && !mask->getGreenMask() && !mask->getBlueMask() && !mask->getAlphaMask();
+}
+
+/// The material is where its program is: in the state sets of the way down to the mesh, which OSG keeps at hand.
+bool leavesPartsOut(osg::State& state)
+{
+    const osg::State::StateSetStack& way = state.getStateSetStack();
+    for (auto stateSet = way.rbegin(); stateSet != way.rend(); ++stateSet)
+    {
+        if (!*stateSet) continue;
+        float cutoff = 0.0f;
+        const osg::Uniform* uniform = (*stateSet)->getUniform("alphaCutoff");
+        if ((*stateSet)->getMode(GL_BLEND) & osg::StateAttribute::ON) return true;
+        if (uniform && uniform->get(cutoff)) return cutoff > 0.0f;
+    }
+    return false;
+}
+
+bool isPointLight(const osg::State& state, unsigned int index)
+{
+    const auto* light = applied<osg::Light>(state, osg::StateAttribute::LIGHT, index);
+    return light && light->getPosition().w() != 0.0f;
+}
+
+bool isShadowMap(const osg::State& state, unsigned int unit)
+{
+    if (!state.getLastAppliedTextureMode(unit, GL_TEXTURE_GEN_S)) return false;
+    if (!state.getLastAppliedTextureMode(unit, GL_TEXTURE_2D)) return false;
+    const auto* texture =
+        dynamic_cast<const osg::Texture*>(state.getLastAppliedTextureAttribute(unit, osg::StateAttribute::TEXTURE));
+    return texture && texture->getShadowComparison() && texture->getTextureTarget() == GL_TEXTURE_2D;
+}
+
+bool hasUniform(const osg::State& state, const char* name)
+{
+    const auto known = state.getUniformMap().find(name);
+    return known != state.getUniformMap().end() && !known->second.uniformVec.empty();
+}
+
+SurfaceState::Fog fogOf(const osg::State& state)
+{
+    const auto* fog = applied<osg::Fog>(state, osg::StateAttribute::FOG);
+    if (!fog || !state.getLastAppliedMode(GL_FOG)) return SurfaceState::Fog::None;
+    switch (fog->getMode())
+    {
+    case osg::Fog::LINEAR:
+        return SurfaceState::Fog::Linear;
+    case osg::Fog::EXP:
+        return SurfaceState::Fog::Exp;
+    default:
+        return SurfaceState::Fog::Exp2;
+    }
+}
+
+void readLights(const osg::State& state, SurfaceState& surface)
+{
+    surface.lights = 0;
+    for (unsigned int index = 0; index < lightCount; ++index)
+    {
+        if (!state.getLastAppliedMode(GL_LIGHT0 + index)) continue;
+        surface.lights |= static_cast<std::uint8_t>(1u << index);
+        if (isPointLight(state, index)) surface.pointLights |= static_cast<std::uint8_t>(1u << index);
+    }
+    for (unsigned int unit = 1; unit < generatedUnits; ++unit)
+        if (isShadowMap(state, unit)) surface.shadowMaps |= static_cast<std::uint8_t>(1u << unit);
+    surface.hasShadowBias = surface.shadowMaps != 0 && hasUniform(state, "osgShadow_ambientBias");
+}
+
+} // namespace
+
+SurfaceState SurfaceState::of(osg::State& state)
+{
+    SurfaceState surface;
+    surface.lights = 0;
+    surface.isDepthOnly = isDepthPass(state) || isColorMasked(state);
+    surface.isAlphaNeeded = surface.isDepthOnly && leavesPartsOut(state);
+    surface.isLit = !surface.isDepthOnly && isLightingOn(state);
+    surface.isTextured = (!surface.isDepthOnly || surface.isAlphaNeeded) && isTexturingOn(state);
+    surface.hasTextureMatrix =
+        surface.isTextured && state.getLastAppliedTextureAttribute(0, osg::StateAttribute::TEXMAT) != nullptr;
+    for (unsigned int plane = 0; plane < 6; ++plane)
+        surface.hasClipPlanes = surface.hasClipPlanes || state.getLastAppliedMode(GL_CLIP_PLANE0 + plane);
+    if (surface.isLit) readLights(state, surface);
+    if (!surface.isDepthOnly) surface.fog = fogOf(state);
+    return surface;
+}
+
+std::string SurfaceState::defines() const
+{
+    const auto line = [](const char* name, unsigned int value)
+    { return std::string("#define ") + name + " " + std::to_string(value) + "\n"; };
+    return line("DRAW_COLOR", !isDepthOnly) + line("DRAW_ALPHA", isAlphaNeeded) + line("DRAW_LIGHTING", isLit) +
+           line("DRAW_TEXTURE", isTextured) + line("DRAW_TEXTURE_MATRIX", hasTextureMatrix) +
+           line("DRAW_CLIP_PLANES", hasClipPlanes) + line("DRAW_LIGHTS", lights) +
+           line("DRAW_POINT_LIGHTS", pointLights) + line("DRAW_SHADOW_MAPS", shadowMaps) +
+           line("DRAW_SHADOW_BIAS", hasShadowBias) + line("DRAW_FOG", static_cast<unsigned int>(fog));
+}
+
+} // namespace osgGpuAnimation

@@ -5,6 +5,7 @@
 #include <osgGpuAnimation/gpu/EglGraphicsContext.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+#include <osgGpuAnimation/nodes/PoseStatistics.h>
 
 #include <osg/MatrixTransform>
 #include <osgDB/FileUtils>
@@ -117,6 +118,13 @@ TEST_F(ReadmeTest, ourPluginIsChosenByAnAlias)
         registry->addFileExtensionAlias(extension, extension); // as it was
     ASSERT_NE(reader, nullptr);
     EXPECT_STREQ(reader->className(), "osgGpuAnimation glTF 2.0 reader");
+}
+
+TEST_F(ReadmeTest, statistics)
+{
+    osgViewer::Viewer viewer;
+    viewer.addEventHandler(new PoseStatistics);
+    EXPECT_EQ(viewer.getEventHandlers().size(), 1u);
 }
 
 TEST_F(ReadmeTest, withoutADisplay)

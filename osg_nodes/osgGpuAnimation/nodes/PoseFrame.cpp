@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/PoseFrame.h>
 
+#include <osgGpuAnimation/gpu/FeedbackTimer.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
+#include <osgGpuAnimation/nodes/PoseStatistics.h>
 
 #include <algorithm>
 
@@ -14,6 +16,14 @@ namespace
 bool isSame(const BlendSample& a, const BlendSample& b)
 {
     return a.keyframe == b.keyframe && a.alpha == b.alpha && a.weight == b.weight && a.control == b.control;
+}
+
+/// Several cameras may have poses evaluated in one frame.
+void addTo(osg::Stats& stats, unsigned int frameNumber, const char* attribute, double amount)
+{
+    double before = 0.0;
+    stats.getAttribute(frameNumber, attribute, before);
+    stats.setAttribute(frameNumber, attribute, before + amount);
 }
 
 PaletteBinding& bindingOf(osg::StateSet& stateSet)
@@ -178,11 +188,28 @@ void PoseFrame::StatePool::reset()
     used = 0;
 }
 
-void PoseFrame::evaluate(osg::RenderInfo& renderInfo)
+void PoseFrame::evaluate(osg::RenderInfo& renderInfo, osg::Stats* stats)
 {
     const std::lock_guard<std::mutex> lock(_mutex);
     osg::State& state = *renderInfo.getState();
     PosePipeline* pipeline = PosePipeline::of(state);
+    if (!stats || !pipeline)
+    {
+        evaluateBatches(state, pipeline);
+        return;
+    }
+    FeedbackTimer& timer = FeedbackTimer::of(state);
+    const std::uint64_t evaluatedBefore = pipeline->counters().instancesEvaluated;
+    timer.begin();
+    evaluateBatches(state, pipeline);
+    timer.end(_frameNumber);
+    record(*stats, pipeline->counters().instancesEvaluated - evaluatedBefore);
+    for (const FeedbackTimer::Measured& measured : timer.takeFinished())
+        addTo(*stats, measured.frameNumber, PoseStatistics::timeTaken, measured.seconds);
+}
+
+void PoseFrame::evaluateBatches(osg::State& state, PosePipeline* pipeline)
+{
     for (const std::unique_ptr<Batch>& batch : _batches)
     {
         // A context made anew under an old one's number has none of its palettes.
@@ -191,6 +218,19 @@ void PoseFrame::evaluate(osg::RenderInfo& renderInfo)
         batch->isEvaluated = true;
         if (pipeline) pipeline->evaluate(state, *batch->content, batch->slot);
     }
+}
+
+void PoseFrame::record(osg::Stats& stats, std::uint64_t evaluated) const
+{
+    std::size_t seen = 0, joints = 0;
+    for (const std::unique_ptr<Batch>& batch : _batches)
+    {
+        seen += batch->content->size();
+        joints += batch->content->size() * batch->content->set().skeleton().jointCount();
+    }
+    stats.setAttribute(_frameNumber, PoseStatistics::charactersSeen, static_cast<double>(seen));
+    stats.setAttribute(_frameNumber, PoseStatistics::jointsSeen, static_cast<double>(joints));
+    addTo(stats, _frameNumber, PoseStatistics::charactersEvaluated, static_cast<double>(evaluated));
 }
 
 } // namespace osgGpuAnimation

@@ -9,6 +9,7 @@
 #include <osg/Referenced>
 #include <osg/RenderInfo>
 #include <osg/StateSet>
+#include <osg/Stats>
 
 #include <memory>
 #include <mutex>
@@ -57,8 +58,9 @@ public:
     /// drawing all its instances. batch: not empty.
     osg::StateSet* enlist(std::unique_ptr<PoseBatch> batch);
 
-    /// Evaluates what was enlisted and not evaluated yet.
-    void evaluate(osg::RenderInfo& renderInfo);
+    /// Evaluates what was enlisted and not evaluated yet. stats: where to record what there was to do, see
+    /// PoseStatistics; null: nowhere.
+    void evaluate(osg::RenderInfo& renderInfo, osg::Stats* stats = nullptr);
 
     unsigned int frameNumber() const { return _frameNumber; }
 
@@ -94,6 +96,8 @@ private:
     };
 
     void reset(unsigned int frameNumber);
+    void evaluateBatches(osg::State& state, PosePipeline* pipeline);
+    void record(osg::Stats& stats, std::uint64_t evaluated) const;
     bool isStill(const Enlisted& known, const AnimatedCharacter& character) const;
     Batch& openBatch(const AnimatedCharacter& character);
     Batch& addBatch(std::unique_ptr<PoseBatch> content);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/PoseStage.h>
 
+#include <osgGpuAnimation/nodes/PoseStatistics.h>
+
 #include <osg/UserDataContainer>
 
 #include <limits>
@@ -13,7 +15,10 @@ class PoseStage::Evaluation : public osg::Camera::DrawCallback
 public:
     explicit Evaluation(PoseStage& stage) : _stage(stage) {}
 
-    void operator()(osg::RenderInfo& renderInfo) const override { _stage._frame->evaluate(renderInfo); }
+    void operator()(osg::RenderInfo& renderInfo) const override
+    {
+        _stage._frame->evaluate(renderInfo, PoseStatistics::wanted(renderInfo));
+    }
 
 private:
     PoseStage& _stage; ///< owns this callback

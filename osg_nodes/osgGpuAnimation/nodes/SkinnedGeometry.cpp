@@ -235,12 +235,18 @@ void SkinnedGeometry::drawImplementation(osg::RenderInfo& renderInfo) const
     if (!binding || !binding->animationSet()) return;
     const PosePipeline* pipeline = PosePipeline::of(state);
     if (!pipeline) return;
-    if (binding->serial() != 0) return drawPlaced(renderInfo, *binding, *pipeline);
-    if (binding->instanceCount() > 1) return drawInstances(renderInfo, *binding, *pipeline);
-    const PalettePlace place = pipeline->place(*binding->animationSet(), binding->slot(), binding->instance());
-    if (place.texture == 0) return;
-    bindPalette(state, place);
-    osg::Geometry::drawImplementation(renderInfo);
+    if (binding->serial() != 0)
+        drawPlaced(renderInfo, *binding, *pipeline);
+    else if (binding->instanceCount() > 1)
+        drawInstances(renderInfo, *binding, *pipeline);
+    else if (const PalettePlace place = pipeline->place(*binding->animationSet(), binding->slot(), binding->instance());
+             place.texture != 0)
+    {
+        bindPalette(state, place);
+        osg::Geometry::drawImplementation(renderInfo);
+    }
+    // Whatever OSG compiles between frames would take the element buffer away from a vertex array left bound.
+    state.unbindVertexArrayObject();
 }
 
 void SkinnedGeometry::drawInstances(osg::RenderInfo& renderInfo, const PaletteBinding& binding,

@@ -4,61 +4,106 @@
 #include <layout.glsl>
 
 #include <algorithm>
+#include <cassert>
+#include <tuple>
 
 namespace osgGpuAnimation
 {
 
-bool SampleStack::comesBefore(const Placed& a, const Placed& b)
+bool SampleStack::comesBefore(const Item& a, const Item& b)
 {
+    if (a.isDifference != b.isDifference) return b.isDifference;
     if (a.standing != b.standing) return a.standing < b.standing;
     if (a.sample.weight != b.sample.weight) return a.sample.weight > b.sample.weight;
-    if (a.sample.keyframe != b.sample.keyframe) return a.sample.keyframe < b.sample.keyframe;
-    return a.sample.alpha < b.sample.alpha;
+    const auto rest = [](const Item& item)
+    {
+        return std::tie(item.sample.keyframe, item.sample.alpha, item.sample.control, item.reference.keyframe,
+                        item.reference.alpha);
+    };
+    return rest(a) < rest(b);
 }
 
 void SampleStack::add(const BlendSample& sample, int standing)
 {
-    if (!(sample.weight > 0.0f)) return;
-    const Placed placed{sample, standing};
-    std::size_t place = _placedCount++;
-    for (; place > 0 && comesBefore(placed, _placed[place - 1]); --place)
-        _placed[place] = _placed[place - 1];
-    _placed[place] = placed;
-    if (_placedCount + 2 * _differenceCount > PoseInstruction::maxSamples) removeLightest();
+    insert({sample, BlendSample(), standing, false});
 }
 
 void SampleStack::addDifference(const BlendSample& reference, const BlendSample& sample)
 {
-    if (!(sample.weight > 0.0f) || _differenceCount == maxDifferences) return;
-    _differences[_differenceCount++] = {reference, sample};
-    while (_placedCount + 2 * _differenceCount > PoseInstruction::maxSamples)
-        removeLightest();
+    insert({sample, reference, 0, true});
+}
+
+void SampleStack::insert(const Item& item)
+{
+    if (!(item.sample.weight > 0.0f)) return;
+    assert(_count < maxItems && "no more than all voices of all layers");
+    if (_count == maxItems) return;
+    std::size_t place = _count++;
+    for (; place > 0 && comesBefore(item, _places[place - 1].item); --place)
+        _places[place].item = _places[place - 1].item;
+    _places[place].item = item;
+    _sampleCount += item.isDifference ? 2 : 1;
+}
+
+/// Whether a sample is the first, and so the heaviest, of its standing.
+bool SampleStack::isAbove(std::size_t index) const
+{
+    const Item& item = _places[index].item;
+    return !item.isDifference && (index == 0 || _places[index - 1].item.standing != item.standing);
 }
 
 void SampleStack::removeLightest()
 {
-    const auto end = _placed.begin() + static_cast<std::ptrdiff_t>(_placedCount);
-    const auto lightest = std::min_element(
-        _placed.begin(), end, [](const Placed& a, const Placed& b) { return a.sample.weight < b.sample.weight; });
-    std::move(lightest + 1, end, lightest);
-    --_placedCount;
+    // There is one: standings are no more than half of what an instruction holds.
+    std::size_t lightest = _count;
+    for (std::size_t i = 0; i < _count; ++i)
+        if (!isAbove(i) &&
+            (lightest == _count || _places[i].item.sample.weight <= _places[lightest].item.sample.weight))
+            lightest = i;
+    assert(lightest < _count && "some standing has two samples, or there are differences");
+    if (lightest == _count) lightest = _count - 1;
+    const Item removed = _places[lightest].item;
+    std::move(_places.begin() + static_cast<std::ptrdiff_t>(lightest) + 1,
+              _places.begin() + static_cast<std::ptrdiff_t>(_count),
+              _places.begin() + static_cast<std::ptrdiff_t>(lightest));
+    --_count;
+    _sampleCount -= removed.isDifference ? 2 : 1;
+    if (!removed.isDifference) fillStanding(removed.standing, removed.sample.weight);
 }
 
-void SampleStack::write(PoseInstruction& out) const
+/// A standing's sum counts up to 1, see PoseInstruction: it is kept as far as that.
+void SampleStack::fillStanding(int standing, float removed)
 {
+    float left = 0.0f;
+    for (std::size_t i = 0; i < _count; ++i)
+        if (!_places[i].item.isDifference && _places[i].item.standing == standing)
+            left += _places[i].item.sample.weight;
+    const float whole = std::min(left + removed, 1.0f);
+    if (!(left > 0.0f) || left >= whole) return;
+    for (std::size_t i = 0; i < _count; ++i)
+        if (!_places[i].item.isDifference && _places[i].item.standing == standing)
+            _places[i].item.sample.weight *= whole / left;
+}
+
+void SampleStack::write(PoseInstruction& out)
+{
+    while (_sampleCount > PoseInstruction::maxSamples)
+        removeLightest();
     out.sampleCount = 0;
-    for (std::size_t i = 0; i < _placedCount; ++i)
+    for (std::size_t i = 0; i < _count; ++i)
     {
-        BlendSample& sample = out.samples[out.sampleCount++] = _placed[i].sample;
-        if (i > 0 && _placed[i].standing != _placed[i - 1].standing) sample.control |= POSE_SAMPLE_ABOVE;
-    }
-    for (std::size_t i = 0; i < _differenceCount; ++i)
-    {
-        BlendSample& reference = out.samples[out.sampleCount++] = _differences[i].reference;
-        BlendSample& sample = out.samples[out.sampleCount++] = _differences[i].sample;
-        reference.weight = sample.weight;
-        reference.control |= POSE_SAMPLE_REFERENCE;
-        sample.control |= POSE_SAMPLE_ADDITIVE;
+        const Item& item = _places[i].item;
+        if (item.isDifference)
+        {
+            BlendSample& reference = out.samples[out.sampleCount++] = item.reference;
+            reference.weight = item.sample.weight;
+            reference.control |= POSE_SAMPLE_REFERENCE;
+        }
+        BlendSample& sample = out.samples[out.sampleCount++] = item.sample;
+        if (item.isDifference)
+            sample.control |= POSE_SAMPLE_ADDITIVE;
+        else if (i > 0 && isAbove(i))
+            sample.control |= POSE_SAMPLE_ABOVE;
     }
     if (out.sampleCount == 0) out.samples[out.sampleCount++] = BlendSample();
 }

@@ -4,6 +4,7 @@
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimationUpdateCallback.h>
+#include <osgGpuAnimation/nodes/CrowdBatches.h>
 #include <osgGpuAnimation/nodes/CrowdView.h>
 #include <osgGpuAnimation/nodes/DepthPass.h>
 #include <osgGpuAnimation/nodes/FlattenedPlace.h>
@@ -130,7 +131,7 @@ AnimatedCrowd::AnimatedCrowd(const AnimatedCharacter& character) : _instances(ch
 
 AnimatedCrowd::AnimatedCrowd(const AnimatedCrowd& other, const osg::CopyOp& copyop)
     : osg::Transform(other, copyop), _instances(other._instances), _origin(other._origin), _hasOrigin(other._hasOrigin),
-      _updateTime(other._updateTime)
+      _updateTime(other._updateTime), _updateRate(other._updateRate)
 {
 }
 
@@ -293,24 +294,33 @@ void AnimatedCrowd::cull(osgUtil::CullVisitor& visitor)
     CrowdView view(visitor);
     static thread_local std::vector<std::uint32_t> seen; // keeps its storage from cull to cull
     _instances.findSeen(isCullingActive() ? view.planes() : std::vector<glm::vec4>(), seen);
-    const bool isSeen = !seen.empty() && set().paletteSize() > 0;
-    if (isSeen)
+    std::vector<osg::StateSet*> states;
+    if (!seen.empty() && set().paletteSize() > 0)
     {
-        PoseFrame& frame = PoseStage::frame(visitor);
-        std::unique_ptr<PoseBatch> batch = frame.makeBatch(sharedSet());
-        _instances.addTo(*batch, seen);
         view.look(_instances, seen);
-        visitor.pushStateSet(frame.enlist(std::move(batch)));
+        states = enlistCrowd(PoseStage::frame(visitor), _instances, view, _updateRate, seen);
     }
     for (const osg::ref_ptr<osg::Node>& child : _children)
     {
-        auto* mesh = dynamic_cast<SkinnedGeometry*>(child.get());
-        if (!mesh)
-            child->accept(visitor);
-        else if (isSeen)
-            view.draw(*mesh);
+        if (!dynamic_cast<const SkinnedGeometry*>(child.get())) child->accept(visitor);
     }
-    if (isSeen) visitor.popStateSet();
+    for (osg::StateSet* state : states)
+    {
+        visitor.pushStateSet(state);
+        forEachMesh(*this, [&](const SkinnedGeometry& mesh) { view.draw(const_cast<SkinnedGeometry&>(mesh)); });
+        visitor.popStateSet();
+    }
+}
+
+Result<bool> AnimatedCrowd::setUpdateRate(const UpdateRate& rate)
+{
+    if (rate.every < 1 || rate.every > UpdateRate::maxEvery)
+        return Error{"poses every " + std::to_string(rate.every) + " updates: it must be 1 to " +
+                     std::to_string(UpdateRate::maxEvery)};
+    if (!(rate.pixels >= 0.0f)) return Error{"an update rate for less than " + std::to_string(rate.pixels) + " pixels"};
+    if (rate.every != _updateRate.every) _instances.setGroupCount(rate.every);
+    _updateRate = rate;
+    return true;
 }
 
 void AnimatedCrowd::intersect(osg::NodeVisitor& visitor)

@@ -4,6 +4,7 @@
 #include <osgGpuAnimation/animation/Result.h>
 #include <osgGpuAnimation/nodes/CrowdInstances.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
+#include <osgGpuAnimation/nodes/UpdateRate.h>
 
 #include <osg/PrimitiveSet>
 #include <osg/Transform>
@@ -82,6 +83,12 @@ public:
     void setOrigin(const osg::Vec3d& origin);
     const osg::Vec3d& origin() const { return _origin; }
 
+    /// Saves evaluations of what is small on screen; without it every instance has its pose in each frame. Several
+    /// cameras see their own: what is large in one is up to date there. Instances with controllers always are.
+    /// Error: every is not in [1, UpdateRate::maxEvery], or pixels is negative or no number.
+    Result<bool> setUpdateRate(const UpdateRate& rate);
+    const UpdateRate& updateRate() const { return _updateRate; }
+
     /// Advances by the time since the last update; the first only takes the time down. simulationTime: seconds.
     void update(double simulationTime);
 
@@ -110,6 +117,7 @@ private:
     osg::Vec3d _origin;
     bool _hasOrigin = false;
     std::optional<double> _updateTime; ///< seconds of simulation time
+    UpdateRate _updateRate;
 };
 
 } // namespace osgGpuAnimation

@@ -34,10 +34,11 @@ void takeOut(std::vector<Element>& elements, std::size_t index)
 } // namespace
 
 CrowdInstances::CrowdInstances(const CrowdInstances& other)
-    : _set(other._set), _clock(other._clock), _clipBounds(other._clipBounds), _allBounds(other._allBounds),
-      _rootMatrices(other._rootMatrices), _spheres(other._spheres), _tints(other._tints), _playbacks(other._playbacks),
-      _handles(other._handles), _indexOfPlace(other._indexOfPlace), _usesOfPlace(other._usesOfPlace),
-      _freePlaces(other._freePlaces), _tinted(other._tinted)
+    : _set(other._set), _clock(other._clock), _groupClocks(other._groupClocks), _nextGroup(other._nextGroup),
+      _clipBounds(other._clipBounds), _allBounds(other._allBounds), _rootMatrices(other._rootMatrices),
+      _spheres(other._spheres), _tints(other._tints), _playbacks(other._playbacks), _handles(other._handles),
+      _indexOfPlace(other._indexOfPlace), _usesOfPlace(other._usesOfPlace), _freePlaces(other._freePlaces),
+      _tinted(other._tinted)
 {
     for (const std::unique_ptr<AnimationController>& controller : other._controllers)
         _controllers.push_back(controller ? std::make_unique<AnimationController>(*controller) : nullptr);
@@ -159,6 +160,8 @@ std::size_t CrowdInstances::controllerCount() const
 bool CrowdInstances::advance(double seconds)
 {
     if (std::isfinite(seconds)) _clock += seconds;
+    _groupClocks[_nextGroup] = _clock;
+    _nextGroup = (_nextGroup + 1) % _groupClocks.size();
     bool haveSpheresChanged = false;
     for (std::size_t index = 0; index < _controllers.size(); ++index)
     {
@@ -172,6 +175,18 @@ bool CrowdInstances::advance(double seconds)
         haveSpheresChanged = true;
     }
     return haveSpheresChanged;
+}
+
+void CrowdInstances::setGroupCount(std::size_t groups)
+{
+    _groupClocks.assign(groups, _clock);
+    _nextGroup = 0;
+}
+
+// By the handle, which stays when others are removed.
+std::size_t CrowdInstances::groupOf(std::size_t index) const
+{
+    return _controllers[index] ? groupCount() : (_handles[index] & 0xFFFFFFFFu) % groupCount();
 }
 
 void CrowdInstances::findSeen(const std::vector<glm::vec4>& planes, std::vector<std::uint32_t>& outIndices) const
@@ -189,12 +204,22 @@ void CrowdInstances::findSeen(const std::vector<glm::vec4>& planes, std::vector<
 
 void CrowdInstances::addTo(PoseBatch& batch, const std::vector<std::uint32_t>& indices) const
 {
+    addTo(batch, indices, _clock);
+}
+
+void CrowdInstances::addGroupTo(PoseBatch& batch, const std::vector<std::uint32_t>& indices, std::size_t group) const
+{
+    addTo(batch, indices, _groupClocks[group]);
+}
+
+void CrowdInstances::addTo(PoseBatch& batch, const std::vector<std::uint32_t>& indices, double clock) const
+{
     for (const std::uint32_t index : indices)
     {
         if (_controllers[index])
             batch.add(_controllers[index]->instruction(), _rootMatrices[index]);
         else
-            batch.add(_playbacks[index].sample(*_set, _clock), _rootMatrices[index]);
+            batch.add(_playbacks[index].sample(*_set, clock), _rootMatrices[index]);
     }
     if (_tinted == 0) return;
     for (std::size_t place = 0; place < indices.size(); ++place)

@@ -53,17 +53,28 @@ public:
     /// Moves all times on. True where spheres have changed.
     bool advance(double seconds);
 
+    /// Deals the instances out to groups by turns, of which each advance() brings one up to date. groups: 1 and more.
+    void setGroupCount(std::size_t groups);
+    std::size_t groupCount() const { return _groupClocks.size(); }
+    /// Those of instances that play one clip in a loop; others have none (groupCount()), since each advance moves them.
+    std::size_t groupOf(std::size_t index) const;
+
     /// Indices of the instances that have something on the inner side of all planes: n · p + d >= 0.
     void findSeen(const std::vector<glm::vec4>& planes, std::vector<std::uint32_t>& outIndices) const;
     /// Adds them, in that order.
     void addTo(PoseBatch& batch, const std::vector<std::uint32_t>& indices) const;
+    /// The same with the poses that their group has; indices: all of one.
+    void addGroupTo(PoseBatch& batch, const std::vector<std::uint32_t>& indices, std::size_t group) const;
 
 private:
+    void addTo(PoseBatch& batch, const std::vector<std::uint32_t>& indices, double clock) const;
     glm::vec4 placedSphere(std::size_t index) const;
     Handle newHandle(std::size_t index);
 
     std::shared_ptr<const AnimationSet> _set;
-    double _clock = 0.0; ///< seconds
+    double _clock = 0.0;                   ///< seconds
+    std::vector<double> _groupClocks{0.0}; ///< what the clock was when each group was last up to date
+    std::size_t _nextGroup = 0;
     std::vector<Box> _clipBounds;
     Box _allBounds;
     std::vector<AffineMatrix> _rootMatrices;

@@ -32,10 +32,16 @@ std::vector<glm::vec4> CrowdView::planes() const
             bit <<= 1;
         }
     }
-    // OSG's measure of what is too small, p · v · pixels > radius, has the form of a plane.
-    const osg::Vec4 pixel = culling.getPixelSizeVector() * -culling.getSmallFeatureCullingPixelSize();
-    if (mask & osg::CullingSet::SMALL_FEATURE_CULLING) planes.emplace_back(pixel.x(), pixel.y(), pixel.z(), pixel.w());
+    if (mask & osg::CullingSet::SMALL_FEATURE_CULLING)
+        planes.push_back(sizePlane(culling.getSmallFeatureCullingPixelSize()));
     return planes;
+}
+
+// OSG's measure of what is too small, p · v · pixels > radius, has the form of a plane.
+glm::vec4 CrowdView::sizePlane(float pixels) const
+{
+    const osg::Vec4 pixel = _visitor.getCurrentCullingSet().getPixelSizeVector() * -pixels;
+    return {pixel.x(), pixel.y(), pixel.z(), pixel.w()};
 }
 
 void CrowdView::look(const CrowdInstances& instances, const std::vector<std::uint32_t>& indices)

@@ -21,6 +21,8 @@ public:
 
     /// What an instance must reach the inner side of: n · p + d >= 0. The view's, and one for what is too small.
     std::vector<glm::vec4> planes() const;
+    /// Likewise, for what is at least that many pixels large.
+    glm::vec4 sizePlane(float pixels) const;
     /// Tells the camera's near and far planes of them. indices: those that are seen, at least one.
     void look(const CrowdInstances& instances, const std::vector<std::uint32_t>& indices);
     /// Hands the mesh on to be drawn, at the depth of those looked at.

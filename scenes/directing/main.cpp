@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Usage: direct_scenes SCENES FOLDER
 // Reads SCENES/Wanderer.glb and draws into FOLDER, without a display: Crossfade.png, Mask.png, Additive.png and
-// Attachment.png, each a row of wanderers. The plugin is looked for where OSG_LIBRARY_PATH says. Ends with 77 where
-// there is no GL.
+// Attachment.png, each a row of wanderers, and Crowd.png, thousands of them. The plugin is looked for where
+// OSG_LIBRARY_PATH says. Ends with 77 where there is no GL.
 
 #include <osgGpuAnimation/animation/JointMask.h>
 #include <osgGpuAnimation/gpu/EglGraphicsContext.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
+#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
 
 #include <osg/Material>
@@ -18,6 +19,7 @@
 
 #include <functional>
 #include <iostream>
+#include <random>
 #include <string>
 
 using namespace osgGpuAnimation;
@@ -113,6 +115,40 @@ osg::ref_ptr<osg::Group> makeRow(const osg::Node& model, const Direction& direct
     return row;
 }
 
+/// A field of wanderers, most of them walking the same way, each at its own time and a little out of line.
+osg::ref_ptr<AnimatedCrowd> makeCrowd(AnimatedCharacter& wanderer)
+{
+    osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(wanderer);
+    const osg::Matrixd upright = osg::computeLocalToWorld(wanderer.getParentalNodePaths().front());
+    std::mt19937 random(7);
+    const auto between = [&](double low, double high)
+    { return low + (high - low) * static_cast<double>(random()) / static_cast<double>(std::mt19937::max()); };
+    constexpr int columns = 60, rows = 70;
+    for (int i = 0; i < columns * rows; ++i)
+    {
+        const char* clips[] = {"Walk", "Walk", "Walk", "Wave", "Idle", "Run"};
+        AnimationController controller(crowd->sharedSet());
+        if (!succeeds(controller.play(clips[random() % 6]))) return crowd;
+        controller.seek(between(0.0, 3.0));
+        const osg::Vec3d place(1.3 * (i % columns - 0.5 * columns) + between(-0.4, 0.4),
+                               1.3 * (i / columns) + between(-0.4, 0.4), 0.0);
+        const double shade = between(0.7, 1.0);
+        const osg::Vec4 tint(shade, shade * between(0.8, 1.0), shade * between(0.7, 1.0), 1.0);
+        if (!succeeds(crowd->add(upright * osg::Matrixd::rotate(between(0.1, 0.7), osg::Vec3d(0, 0, 1)) *
+                                     osg::Matrixd::translate(place),
+                                 controller, tint)))
+            return crowd;
+    }
+    return crowd;
+}
+
+/// Where the camera stands and what it looks at.
+struct Sight
+{
+    osg::Vec3d eye, center;
+    double angle; ///< degrees, from top to bottom
+};
+
 class ReadPixels : public osg::Camera::DrawCallback
 {
 public:
@@ -124,7 +160,7 @@ public:
     mutable osg::ref_ptr<osg::Image> image;
 };
 
-Result<bool> drawRow(osg::Node* row, const std::string& file)
+Result<bool> draw(osg::Node* scene, const Sight& sight, const std::string& file)
 {
     osg::ref_ptr<osg::GraphicsContext::Traits> traits = new osg::GraphicsContext::Traits;
     traits->width = width;
@@ -142,11 +178,11 @@ Result<bool> drawRow(osg::Node* row, const std::string& file)
     camera->setGraphicsContext(context.value());
     camera->setViewport(0, 0, width, height);
     camera->setClearColor(osg::Vec4(0.86f, 0.88f, 0.9f, 1.0f));
-    camera->setProjectionMatrixAsPerspective(22.0, static_cast<double>(width) / height, 1.0, 100.0);
-    camera->setViewMatrixAsLookAt(osg::Vec3d(0, -5.6, 1.2), osg::Vec3d(0, 0, 0.86), osg::Vec3d(0, 0, 1));
+    camera->setProjectionMatrixAsPerspective(sight.angle, static_cast<double>(width) / height, 1.0, 100.0);
+    camera->setViewMatrixAsLookAt(sight.eye, sight.center, osg::Vec3d(0, 0, 1));
     osg::ref_ptr<ReadPixels> reader = new ReadPixels;
     camera->setFinalDrawCallback(reader);
-    viewer.setSceneData(row);
+    viewer.setSceneData(scene);
     viewer.realize();
     viewer.frame(0.0);
     if (!osgDB::writeImageFile(*reader->image, file)) return Error{file + ": cannot be written"};
@@ -169,6 +205,11 @@ int main(int argc, char** argv)
     const std::pair<const char*, Direction> pictures[] = {
         {"Crossfade", crossfade}, {"Mask", maskedWave}, {"Additive", additiveWave}, {"Attachment", holdStaff}};
     for (const auto& [name, direction] : pictures)
-        if (!succeeds(drawRow(makeRow(*model, direction), std::string(argv[2]) + "/" + name + ".png"))) return 1;
-    return 0;
+        if (!succeeds(draw(makeRow(*model, direction), {{0, -5.6, 1.2}, {0, 0, 0.86}, 22.0},
+                           std::string(argv[2]) + "/" + name + ".png")))
+            return 1;
+    AnimatedCharacter* wanderer = findCharacter(*model);
+    if (!wanderer) return 1;
+    const Sight fromAbove{{-2, -4.5, 4.2}, {1, 9, 0}, 36.0};
+    return succeeds(draw(makeCrowd(*wanderer), fromAbove, std::string(argv[2]) + "/Crowd.png")) ? 0 : 1;
 }

@@ -3,6 +3,8 @@
 #include "gltf/OptionString.h"
 #include "gltf/RegularFile.h"
 
+#include "cache/SeparateLoads.h"
+
 #include <osg/Notify>
 #include <osgDB/FileNameUtils>
 #include <osgDB/FileUtils>
@@ -33,6 +35,13 @@ std::optional<std::string> readAll(std::istream& stream, std::size_t limit)
     }
     if (stream.bad()) return std::nullopt;
     return bytes;
+}
+
+/// osgDB puts the file's name in front of a message.
+std::string withoutSubject(const std::string& message, const std::string& path)
+{
+    const std::string subject = path + ": ";
+    return message.rfind(subject, 0) == 0 ? message.substr(subject.size()) : message;
 }
 
 } // namespace
@@ -75,7 +84,7 @@ osgDB::ReaderWriter::ReadResult ReaderWriterGltf::readNode(const std::string& fi
     try
     {
         const Result<std::string> bytes = gltf::readWholeFile(path);
-        if (!bytes) return ReadResult(bytes.error().message);
+        if (!bytes) return ReadResult(withoutSubject(bytes.error().message, path));
         return import(bytes.value(), path, options);
     }
     catch (const std::bad_alloc&)
@@ -106,6 +115,8 @@ osgDB::ReaderWriter::ReadResult ReaderWriterGltf::import(const std::string& byte
 {
     const Result<gltf::ImportOptions> importOptions = gltf::parseOptions(options ? options->getOptionString() : "");
     if (!importOptions) return ReadResult(importOptions.error().message);
+    for (const std::string& hint : gltf::misspeltOptions(options ? options->getOptionString() : ""))
+        OSG_WARN << className() << ": " << hint << std::endl;
     const Result<gltf::ImportedModel> model = gltf::importModel(bytes, fileName, importOptions.value());
     if (!model) return ReadResult(model.error().message);
     const std::string subject = fileName.empty() ? "glTF stream" : fileName;
@@ -115,6 +126,8 @@ osgDB::ReaderWriter::ReadResult ReaderWriterGltf::import(const std::string& byte
         OSG_INFO << subject << ": " << note << std::endl;
     return ReadResult(model.value().root.get());
 }
+
+static SeparateLoads::Installation separateLoads;
 
 } // namespace osgGpuAnimation
 

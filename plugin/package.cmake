@@ -22,7 +22,7 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${CMAKE_LIBRARY_OUTPUT_DIRECTORY
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_RECOMMENDS openscenegraph)
 set(CPACK_COMPONENT_RUNTIME_DESCRIPTION "GPU skeletal animation for OpenSceneGraph: libraries and plugins
- The plugins osgdb_gltf (.gltf, .glb) and osgdb_crowd, the node kit's library, and the tool osggpuanim.")
+ The plugins for .gltf, .glb, .crowd and for OSG's own formats, the node kit's library, and the tool osggpuanim.")
 
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libosggpuanimation-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)

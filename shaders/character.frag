@@ -7,6 +7,11 @@ uniform float alphaCutoff;
 uniform bool unlit;
 uniform bool flatNormals; // the mesh has none: each face its own, of the pose
 
+#ifndef GL_ARB_compatibility
+uniform vec4 materialDiffuse;
+uniform vec4 materialEmission;
+#endif
+
 uniform sampler2DShadow shadowMaps[7];  // of texture units 1 to 7
 uniform vec2 osgShadow_ambientBias;     // osgShadow::ShadowMap's: what is left in its shadow, and the rest
 
@@ -25,6 +30,8 @@ vec4 baseColor()
 #endif
 #ifdef GL_ARB_compatibility
     color *= gl_FrontMaterial.diffuse;
+#else
+    color *= materialDiffuse;
 #endif
     if (color.a < alphaCutoff) discard;
     return color;
@@ -123,8 +130,30 @@ vec3 litColor(vec3 base)
 {
     Light sum = Light(vec3(0.0), vec3(0.0), vec3(0.0));
     vec3 normal = facingNormal();
-    for (int index = 0; index < 8; ++index)
-        if ((DRAW_LIGHTS & (1 << index)) != 0) addLight(index, normal, sum);
+#if DRAW_LIGHTS & 1
+    addLight(0, normal, sum);
+#endif
+#if DRAW_LIGHTS & 2
+    addLight(1, normal, sum);
+#endif
+#if DRAW_LIGHTS & 4
+    addLight(2, normal, sum);
+#endif
+#if DRAW_LIGHTS & 8
+    addLight(3, normal, sum);
+#endif
+#if DRAW_LIGHTS & 16
+    addLight(4, normal, sum);
+#endif
+#if DRAW_LIGHTS & 32
+    addLight(5, normal, sum);
+#endif
+#if DRAW_LIGHTS & 64
+    addLight(6, normal, sum);
+#endif
+#if DRAW_LIGHTS & 128
+    addLight(7, normal, sum);
+#endif
     vec3 withoutLights = gl_FrontMaterial.emission.rgb + base * gl_LightModel.ambient.rgb;
     vec3 color = withoutLights + base * (sum.ambient + sum.diffuse) + gl_FrontMaterial.specular.rgb * sum.specular;
 #if DRAW_SHADOW_MAPS
@@ -150,7 +179,7 @@ vec3 foggedColor(vec3 color)
 
 vec3 litColor(vec3 base)
 {
-    return base * (0.2 + 0.8 * max(dot(facingNormal(), normalize(-viewPosition)), 0.0));
+    return materialEmission.rgb + base * (0.2 + 0.8 * max(dot(facingNormal(), normalize(-viewPosition)), 0.0));
 }
 
 #endif

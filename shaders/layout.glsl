@@ -1,8 +1,18 @@
 // SPDX-License-Identifier: MIT
 // The layout of the GPU's buffers: one definition for GLSL and C++ (included by both).
 
-// Keyframes: RGBA32F, a joint transform is three texels (translation, rotation, scale).
+// Keyframes: RGBA32UI, see animation/PackedKeyframes.h. A joint transform is three texels (translation, rotation, scale).
 #define POSE_TEXELS_PER_TRANSFORM 3
+#define POSE_PLACE_HELD 0x80000000u // a place in half texels: counted from the buffer's beginning, not from the record's
+
+// Rotations of compact clips: three whole numbers of 20 bits; a component is (number - zero) * step.
+#define POSE_ROTATION_ZERO 524288.0f
+#define POSE_ROTATION_STEP 1.348702e-6f // the largest of the three is below sqrt(1 / 2)
+
+// What of a part (translation, scale) the mix stage fetches: PartMotion in C++.
+#define POSE_PART_FIXED 0
+#define POSE_PART_HELD 1
+#define POSE_PART_MOVING 2
 
 // Blend samples: RGBA32UI, a texel each: keyframe, alpha (float bits), weight (float bits), control.
 // The upper 16 bits of control are the number of a mask (0: none), the others are bits of these:
@@ -18,9 +28,10 @@
 // Masks: RGBA32F, a weight a track, four to a texel, each mask beginning a texel; mask 0 is all 1.
 #define POSE_WEIGHTS_PER_MASK_TEXEL 4
 
-// Palette entries, the static part: RGBA32F, seven texels each: head, three rows of parentBind, three of inverseBind.
+// Palette entries, the static part: RGBA32F, nine texels each: head, three rows of parentBind, three of inverseBind,
+// translation and scale at rest.
 // The head's four components hold whole numbers: parent entry (-1: the root), track (-1: none), is it weights (1 or 0), 0.
-#define POSE_TEXELS_PER_ENTRY 7
+#define POSE_TEXELS_PER_ENTRY 9
 
 // The palette: RGBA32F, a 3x4 matrix is three texels (rows). Entry e of instance i is matrix e * stride + i.
 #define POSE_TEXELS_PER_MATRIX 3
@@ -35,6 +46,11 @@
 #define POSE_PALETTE_UNIT 11
 #define POSE_MORPH_UNIT 12
 #define POSE_TINT_UNIT 13
+#define POSE_PLACEMENT_UNIT 14
+
+// Placements of instances drawn together: RGBA32F, four texels each: three rows of the matrix to the eye's space, then
+// the pose's number in its batch.
+#define POSE_TEXELS_PER_PLACEMENT 4
 
 // Morph targets of a mesh: RGBA32F, for each vertex, each target, the channels it has: position, normal, colour, texture
 // coordinate. Weights come from palette entries of weights, twelve each.
@@ -47,3 +63,4 @@
 #define POSE_HEAD_LOCATION 4
 #define POSE_PARENT_BIND_LOCATION 5
 #define POSE_INVERSE_BIND_LOCATION 8
+#define POSE_REST_LOCATION 11

@@ -2,9 +2,11 @@
 // Stage 1, mix: a track's joint transform from the two keyframes of each blend sample of its instance.
 
 // The program's variant says by constants what a batch needs, since some drivers run both sides of every branch:
-// const bool hasSplines, hasSeveralSamples, hasWeights, hasLayers, hasMasks, hasAdditive.
+// const bool hasSplines, hasSeveralSamples, hasWeights, hasLayers, hasMasks, hasAdditive; hasExactKeys, hasCompactKeys:
+// the forms of what moves in the tracks that are mixed; const int translationMotion, scaleMotion: POSE_PART_FIXED ...
 
-uniform samplerBuffer keyframes;  // joint transforms, all clips of the set one after another
+uniform usamplerBuffer keyframes; // of all clips of the set, see animation/PackedKeyframes.h
+uniform int restTexel;            // in it: the rest pose, POSE_TEXELS_PER_TRANSFORM a track
 uniform usamplerBuffer samples;   // sampleStride blend samples an instance
 uniform int sampleStride;
 uniform samplerBuffer masks;      // maskStride texels a mask
@@ -17,11 +19,93 @@ struct JointTransform
     vec4 scale;
 };
 
-JointTransform fetchTransform(int index)
+// The translation and scale of a track at rest, given where their motion is POSE_PART_FIXED.
+struct RestParts
 {
-    int texel = index * POSE_TEXELS_PER_TRANSFORM;
-    return JointTransform(texelFetch(keyframes, texel), texelFetch(keyframes, texel + 1),
-                          texelFetch(keyframes, texel + 2));
+    vec4 translation;
+    vec4 scale;
+};
+
+JointTransform fetchRest(int track)
+{
+    int texel = restTexel + track * POSE_TEXELS_PER_TRANSFORM;
+    return JointTransform(uintBitsToFloat(texelFetch(keyframes, texel)),
+                          uintBitsToFloat(texelFetch(keyframes, texel + 1)),
+                          uintBitsToFloat(texelFetch(keyframes, texel + 2)));
+}
+
+// Where the numbers of a track between two keyframes are.
+struct TrackPlace
+{
+    uvec4 parts; // places of translation, rotation, scale; w: texel of the ranges of a compact track, 0: exact
+    uint first;  // the places of the keyframes' records
+    uint second;
+};
+
+TrackPlace placeOf(uvec4 blendSample, int track)
+{
+    uvec4 keyframe = texelFetch(keyframes, int(blendSample.x));
+    return TrackPlace(texelFetch(keyframes, int(keyframe.z) + track), keyframe.x, keyframe.y);
+}
+
+bool isHeld(uint part)
+{
+    return (part & POSE_PLACE_HELD) != 0u;
+}
+
+bool isCompact(TrackPlace place, uint part)
+{
+    return hasCompactKeys && !isHeld(part) && (!hasExactKeys || place.parts.w != 0u);
+}
+
+uint placeIn(uint record, uint part)
+{
+    return isHeld(part) ? part & ~POSE_PLACE_HELD : record + part;
+}
+
+uvec3 packedNumbers(uvec2 words)
+{
+    return uvec3(words.x & 0xFFFFFu, (words.x >> 20) | ((words.y & 0xFFu) << 12), (words.y >> 8) & 0xFFFFFu);
+}
+
+vec4 packedRotation(uvec2 words)
+{
+    vec3 v = (vec3(packedNumbers(words)) - POSE_ROTATION_ZERO) * POSE_ROTATION_STEP;
+    float rest = sqrt(max(1.0 - dot(v, v), 0.0));
+    uint place = words.y >> 28;
+    return vec4(place == 0u ? rest : v.x, place == 1u ? rest : (place == 0u ? v.x : v.y),
+                place == 2u ? rest : (place == 3u ? v.z : v.y), place == 3u ? rest : v.z);
+}
+
+// The half of a texel that begins at that place.
+uvec2 halfTexel(uvec4 texel, uint place)
+{
+    return (place & 1u) == 0u ? texel.xy : texel.zw;
+}
+
+vec4 rotationIn(uint record, TrackPlace track)
+{
+    uint place = placeIn(record, track.parts.y);
+    uvec4 texel = texelFetch(keyframes, int(place >> 1));
+    vec4 exact = uintBitsToFloat(texel);
+    return isCompact(track, track.parts.y) ? packedRotation(halfTexel(texel, place)) : exact;
+}
+
+// A translation or scale; the texel of its range is only read where it is compact.
+vec4 mixedPart(TrackPlace track, uint part, int rangeTexel, float alpha, int motion)
+{
+    uint place = placeIn(track.first, part);
+    uvec4 texel = texelFetch(keyframes, int(place >> 1));
+    vec4 a = uintBitsToFloat(texel);
+    if (motion == POSE_PART_HELD) return a;
+    uint next = placeIn(track.second, part);
+    uvec4 nextTexel = texelFetch(keyframes, int(next >> 1));
+    vec4 b = uintBitsToFloat(nextTexel);
+    if (!isCompact(track, part)) return mix(a, b, alpha);
+    vec3 base = uintBitsToFloat(texelFetch(keyframes, rangeTexel).xyz);
+    vec3 size = uintBitsToFloat(texelFetch(keyframes, rangeTexel + 1).xyz);
+    return vec4(mix(base + size * vec3(packedNumbers(halfTexel(texel, place))),
+                    base + size * vec3(packedNumbers(halfTexel(nextTexel, next))), alpha), 0.0);
 }
 
 // sin(x) / x for x * x in [0, (pi / 2)^2], to 4e-9.
@@ -49,41 +133,57 @@ vec4 slerpShortest(vec4 a, vec4 b, float alpha)
     return normalize(beta * sinc(beta * beta * angleSquared) * a + alpha * sinc(alpha * alpha * angleSquared) * b);
 }
 
-JointTransform interpolate(JointTransform a, JointTransform b, float alpha, bool isWeights)
+JointTransform interpolate(TrackPlace track, RestParts rest, float alpha, bool isWeights)
 {
-    return JointTransform(mix(a.translation, b.translation, alpha),
-                          isWeights ? mix(a.rotation, b.rotation, alpha) : slerpShortest(a.rotation, b.rotation, alpha),
-                          mix(a.scale, b.scale, alpha));
+    vec4 a = rotationIn(track.first, track);
+    vec4 b = rotationIn(track.second, track);
+    vec4 rotation = isWeights ? mix(a, b, alpha) : slerpShortest(a, b, alpha);
+    int ranges = int(track.parts.w);
+    return JointTransform(
+        translationMotion == POSE_PART_FIXED ? rest.translation
+                                             : mixedPart(track, track.parts.x, ranges, alpha, translationMotion),
+        rotation,
+        scaleMotion == POSE_PART_FIXED ? rest.scale : mixedPart(track, track.parts.z, ranges + 2, alpha, scaleMotion));
+}
+
+// A part of a spline keyframe: its value, in-tangent (1) or out-tangent (2). What is held has tangents of 0.
+vec4 splinePart(uint record, uint part, uint tangent)
+{
+    vec4 number = uintBitsToFloat(texelFetch(keyframes, int(placeIn(record, part) >> 1) + (isHeld(part) ? 0 : int(tangent))));
+    return tangent != 0u && isHeld(part) ? vec4(0.0) : number;
+}
+
+vec4 hermite(TrackPlace track, uint part, vec4 h)
+{
+    return h.x * splinePart(track.first, part, 0u) + h.y * splinePart(track.first, part, 2u) +
+           h.z * splinePart(track.second, part, 1u) + h.w * splinePart(track.second, part, 0u);
 }
 
 // Hermite form (glTF 2.0, appendix C.5); tangents are scaled by the interval already.
-JointTransform interpolateSpline(JointTransform a, JointTransform aOut, JointTransform bIn, JointTransform b,
-                                 float alpha, bool isWeights)
+JointTransform interpolateSpline(TrackPlace track, RestParts rest, float alpha, bool isWeights)
 {
     float alpha2 = alpha * alpha;
     float alpha3 = alpha2 * alpha;
     vec4 h = vec4(2.0 * alpha3 - 3.0 * alpha2 + 1.0, alpha3 - 2.0 * alpha2 + alpha, alpha3 - alpha2,
                   3.0 * alpha2 - 2.0 * alpha3);
-    vec4 rotation = h.x * a.rotation + h.y * aOut.rotation + h.z * bIn.rotation + h.w * b.rotation;
-    bool slerped = a.translation.w == 1.0 && !isWeights;
-    if (!isWeights) rotation = slerped ? slerpShortest(a.rotation, b.rotation, alpha) : normalize(rotation);
-    return JointTransform(h.x * a.translation + h.y * aOut.translation + h.z * bIn.translation + h.w * b.translation,
-                          rotation, h.x * a.scale + h.y * aOut.scale + h.z * bIn.scale + h.w * b.scale);
+    vec4 translation = rest.translation;
+    if (translationMotion != POSE_PART_FIXED) translation = hermite(track, track.parts.x, h);
+    // A mark, not a number: 1 where the rotation is slerped.
+    float mark = translationMotion == POSE_PART_FIXED ? rest.translation.w : splinePart(track.first, track.parts.x, 0u).w;
+    vec4 rotation = hermite(track, track.parts.y, h);
+    vec4 slerped = slerpShortest(splinePart(track.first, track.parts.y, 0u), splinePart(track.second, track.parts.y, 0u),
+                                 alpha);
+    if (!isWeights) rotation = mark == 1.0 ? slerped : normalize(rotation);
+    return JointTransform(translation, rotation,
+                          scaleMotion == POSE_PART_FIXED ? rest.scale : hermite(track, track.parts.z, h));
 }
 
-JointTransform sampleTrack(uvec4 blendSample, int track, int trackCount, bool isWeights)
+JointTransform sampleTrack(uvec4 blendSample, int track, RestParts rest, bool isWeights)
 {
-    int first = int(blendSample.x);
     float alpha = uintBitsToFloat(blendSample.y);
-    if (!hasSplines || (blendSample.w & POSE_SAMPLE_SPLINE) == 0u)
-    {
-        int index = first + track;
-        return interpolate(fetchTransform(index), fetchTransform(index + trackCount), alpha, isWeights);
-    }
-    int index = first + 3 * track;
-    int next = index + 3 * trackCount;
-    return interpolateSpline(fetchTransform(index), fetchTransform(index + 2), fetchTransform(next + 1),
-                             fetchTransform(next), alpha, isWeights);
+    TrackPlace place = placeOf(blendSample, track);
+    if (!hasSplines || (blendSample.w & POSE_SAMPLE_SPLINE) == 0u) return interpolate(place, rest, alpha, isWeights);
+    return interpolateSpline(place, rest, alpha, isWeights);
 }
 
 float maskWeight(uint control, int track)
@@ -167,11 +267,11 @@ JointTransform changed(JointTransform t, Difference difference, bool isWeights)
                           t.scale * vec4(difference.growth, 0.0));
 }
 
-// The samples of an instance to one track, as animation/PoseInstruction.h says. The rest pose is the set's first keyframe.
-JointTransform mixSamples(int instance, int track, int trackCount, bool isWeights)
+// The samples of an instance to one track, as animation/PoseInstruction.h says.
+JointTransform mixSamples(int instance, int track, RestParts rest, bool isWeights)
 {
     const JointTransform nothing = JointTransform(vec4(0.0), vec4(0.0), vec4(0.0));
-    JointTransform total = fetchTransform(track);
+    JointTransform total = fetchRest(track);
     JointTransform standing = nothing;
     JointTransform reference = nothing;
     Difference difference = Difference(nothing, vec3(0.0), vec3(1.0));
@@ -189,7 +289,7 @@ JointTransform mixSamples(int instance, int track, int trackCount, bool isWeight
             sum = 0.0;
         }
         if (!(weight > 0.0)) continue;
-        JointTransform t = sampleTrack(blendSample, track, trackCount, isWeights);
+        JointTransform t = sampleTrack(blendSample, track, rest, isWeights);
         if (hasAdditive && (blendSample.w & (POSE_SAMPLE_REFERENCE | POSE_SAMPLE_ADDITIVE)) != 0u)
         {
             if ((blendSample.w & POSE_SAMPLE_REFERENCE) != 0u) reference = t;

@@ -2,7 +2,6 @@
 // The mix stage as a pass of its own: gl_VertexID = track * instanceCount + instance, also in the result.
 
 uniform int instanceCount;
-uniform int trackCount;
 uniform int jointCount; // tracks from here on are weight blocks
 
 out vec4 translation;
@@ -14,8 +13,9 @@ void main()
     int track = gl_VertexID / instanceCount;
     int instance = gl_VertexID - track * instanceCount;
     bool isWeights = hasWeights && track >= jointCount;
-    JointTransform t = hasSeveralSamples ? mixSamples(instance, track, trackCount, isWeights)
-                                         : sampleTrack(texelFetch(samples, instance), track, trackCount, isWeights);
+    const RestParts none = RestParts(vec4(0.0), vec4(0.0)); // no part is POSE_PART_FIXED here
+    JointTransform t = hasSeveralSamples ? mixSamples(instance, track, none, isWeights)
+                                         : sampleTrack(texelFetch(samples, instance), track, none, isWeights);
     translation = t.translation;
     rotation = t.rotation;
     scale = t.scale;

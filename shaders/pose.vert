@@ -9,10 +9,10 @@ layout(location = POSE_ROOT_LOCATION) in mat3x4 rootMatrix;
 layout(location = POSE_HEAD_LOCATION) in vec4 head;
 layout(location = POSE_PARENT_BIND_LOCATION) in mat3x4 parentBind;
 layout(location = POSE_INVERSE_BIND_LOCATION) in mat3x4 inverseBind;
+layout(location = POSE_REST_LOCATION) in vec4 restParts[2]; // translation, scale
 
 uniform samplerBuffer parentLevels; // the palette's levels computed so far that hold this level's parents
 uniform int instanceCount;
-uniform int trackCount;
 
 out vec4 row0;
 out vec4 row1;
@@ -27,8 +27,9 @@ void main()
     mat3x4 matrix = mat3x4(1.0);
     if (track >= 0)
     {
-        JointTransform t = hasSeveralSamples ? mixSamples(gl_VertexID, track, trackCount, isWeights)
-                                             : sampleTrack(blendSample, track, trackCount, isWeights);
+        RestParts rest = RestParts(restParts[0], restParts[1]);
+        JointTransform t = hasSeveralSamples ? mixSamples(gl_VertexID, track, rest, isWeights)
+                                             : sampleTrack(blendSample, track, rest, isWeights);
         matrix = isWeights ? mat3x4(t.translation, t.rotation, t.scale)
                            : localMatrix(t.translation, t.rotation, t.scale);
     }

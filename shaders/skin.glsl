@@ -1,22 +1,28 @@
 // SPDX-License-Identifier: MIT
 // Morphing (glTF 2.0, section 3.7.2.2), then skinning by the palette (section 3.7.3.3). Link this shader into a program of one's own, declare
 //     void osgGpuAnimationSkin(inout vec4 vertex, inout vec3 normal);
-// and call it on the vertex and normal of the bind pose; they come back in the character's own space.
+// and call it on the vertex and normal of the bind pose; they come back in the space that gl_ModelViewMatrix leads from:
+// the character's own, or the eye's where several characters are drawn together.
 // In instanced draws each GL instance is an instance of its own, see AnimatedCrowd; vec4 osgGpuAnimationTint() is its
 // colour. Attributes are bound to the locations of layout.glsl; SkinnedGeometry sets the uniforms when it draws.
 //
 // What a mesh does not need may be left out by OSG's shader defines (StateSet::setDefine, see applySkinDefines): some
 // drivers (llvmpipe) run both sides of every branch. Without them the uniforms decide.
-#pragma import_defines(POSE_INFLUENCES, POSE_NO_MORPHS)
+#pragma import_defines(POSE_INFLUENCES, POSE_NO_MORPHS, POSE_PLACED)
 
 uniform samplerBuffer posePalette; // entry e of instance i: rows at texel (e * poseStride + i) * 3
 uniform int poseStride;
-uniform int poseInstance; // that of the draw's first GL instance
+uniform int poseInstance; // that of the draw's first GL instance; POSE_PLACED: of the batch's, as the palette counts
 uniform int poseInfluences; // of a vertex, at most: 1 to 8
 
 uniform samplerBuffer poseMorphDeltas; // targets' channels by vertex, target, channel
 uniform ivec2 poseMorph;               // number of targets (0: none), the first palette entry of their weights
 uniform ivec4 poseMorphChannels;       // channels a target has; the place of normal, colour, texture coordinate, or -1
+
+#ifdef POSE_PLACED
+uniform samplerBuffer posePlacements; // where each GL instance stands and which pose it has
+uniform int posePlacement;            // the draw's first
+#endif
 
 uniform samplerBuffer poseTints; // by instance
 uniform bool poseTinted;
@@ -35,10 +41,22 @@ in vec4 poseWeights0;
 in vec4 poseEntries1;
 in vec4 poseWeights1;
 
+#ifdef POSE_PLACED
+vec4 osgGpuAnimationPlacementTexel(int place)
+{
+    return texelFetch(posePlacements, (posePlacement + gl_InstanceID) * POSE_TEXELS_PER_PLACEMENT + place);
+}
+
+int osgGpuAnimationInstance()
+{
+    return poseInstance + int(osgGpuAnimationPlacementTexel(3).x);
+}
+#else
 int osgGpuAnimationInstance()
 {
     return poseInstance + gl_InstanceID;
 }
+#endif
 
 vec4 osgGpuAnimationTint()
 {
@@ -94,6 +112,18 @@ void osgGpuAnimationMorphTextureCoordinate(inout vec2 coordinate)
     if (POSE_MORPH_TARGETS > 0 && poseMorphChannels.w >= 0) coordinate += osgGpuAnimationMorphSum(poseMorphChannels.w).xy;
 }
 
+void osgGpuAnimationMove(mat3x4 rows, inout vec4 vertex, inout vec3 normal)
+{
+    vertex = vec4(vertex * rows, vertex.w);
+
+    // Normals go by the inverse transpose, which is the cofactor matrix but for the determinant.
+    vec3 cofactor0 = cross(rows[1].xyz, rows[2].xyz);
+    vec3 cofactor1 = cross(rows[2].xyz, rows[0].xyz);
+    vec3 cofactor2 = cross(rows[0].xyz, rows[1].xyz);
+    vec3 turned = vec3(dot(cofactor0, normal), dot(cofactor1, normal), dot(cofactor2, normal));
+    normal = dot(rows[0].xyz, cofactor0) < 0.0 ? -turned : turned;
+}
+
 void osgGpuAnimationSkin(inout vec4 vertex, inout vec3 normal)
 {
     if (POSE_MORPH_TARGETS > 0)
@@ -103,12 +133,9 @@ void osgGpuAnimationSkin(inout vec4 vertex, inout vec3 normal)
     }
     mat3x4 rows = osgGpuAnimationBlend(poseEntries0, poseWeights0, POSE_INFLUENCES);
     if (POSE_INFLUENCES > 4) rows += osgGpuAnimationBlend(poseEntries1, poseWeights1, POSE_INFLUENCES - 4);
-    vertex = vec4(vertex * rows, vertex.w);
-
-    // Normals go by the inverse transpose, which is the cofactor matrix but for the determinant.
-    vec3 cofactor0 = cross(rows[1].xyz, rows[2].xyz);
-    vec3 cofactor1 = cross(rows[2].xyz, rows[0].xyz);
-    vec3 cofactor2 = cross(rows[0].xyz, rows[1].xyz);
-    vec3 turned = vec3(dot(cofactor0, normal), dot(cofactor1, normal), dot(cofactor2, normal));
-    normal = dot(rows[0].xyz, cofactor0) < 0.0 ? -turned : turned;
+    osgGpuAnimationMove(rows, vertex, normal);
+#ifdef POSE_PLACED
+    osgGpuAnimationMove(mat3x4(osgGpuAnimationPlacementTexel(0), osgGpuAnimationPlacementTexel(1),
+                               osgGpuAnimationPlacementTexel(2)), vertex, normal);
+#endif
 }

@@ -2,6 +2,7 @@
 #include "crowd/CrowdGrid.h"
 
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
+#include <osgGpuAnimation/nodes/PoseStatistics.h>
 
 #include <charconv>
 #include <random>
@@ -104,6 +105,7 @@ Result<osg::ref_ptr<AnimatedCrowd>> makeCrowd(osg::Node& model, const CrowdOptio
             crowd->add(placement * moved, randomController(*crowd, clips.value(), random));
         if (!added) return added.error();
     }
+    crowd->addEventCallback(new PoseStatistics);
     return crowd;
 }
 

@@ -4,6 +4,7 @@
 #include "gltf/Accessor.h"
 #include "gltf/Markers.h"
 #include "gltf/NamedElement.h"
+#include "gltf/Reach.h"
 
 #include <osgGpuAnimation/animation/ClipBuilder.h>
 
@@ -153,6 +154,11 @@ std::optional<Clip> ClipReader::read(std::size_t index)
         return std::nullopt;
     }
     Clip clip = _builder.build(animation.name.empty() ? "clip " + std::to_string(index) : animation.name);
+    if (!fits(_joints.skeleton, clip))
+    {
+        fail("it takes joints or weights " + beyondFarthest());
+        return std::nullopt;
+    }
     Result<Clip> marked = clip.withMarkers(readMarkers(animation.extras, _clip, _report));
     return marked ? std::move(marked.value()) : std::move(clip);
 }

@@ -3,6 +3,11 @@
 
 #include "gltf/Influences.h"
 
+#include <osgGpuAnimation/animation/WeightRange.h>
+
+#include <algorithm>
+#include <cmath>
+
 namespace osgGpuAnimation::gltf
 {
 
@@ -27,6 +32,10 @@ Drawables::Drawables(const tinygltf::Model& model, std::shared_ptr<const Animati
                      Materials& materials, DecodedBytes& budget, Report& report)
     : _model(model), _set(std::move(set)), _meshes(meshes), _materials(materials), _budget(budget), _report(report)
 {
+    if (_set) _entries = reachOfEntries(*_set);
+    std::map<std::vector<int>, int> skins;
+    for (std::size_t skin = 0; _set && skin < _set->skins().size(); ++skin)
+        _firstAlike.push_back(skins.try_emplace(_set->entriesOfSkin(skin), static_cast<int>(skin)).first->second);
 }
 
 osg::Geometry* Drawables::drawable(const DrawablePlace& place)
@@ -71,10 +80,34 @@ void Drawables::setInfluences(SkinnedGeometry& geometry, const MeshPrimitive& me
         geometry.setInfluences(i, sets[i].entries, sets[i].weights);
 }
 
+/// How far out a vertex of the primitive comes to lie at the most, by joints and morph targets; where nothing moves, in
+/// its own space.
+double Drawables::farthestOf(const DrawablePlace& place, const MeshPrimitive& mesh) const
+{
+    double radius = mesh.radius;
+    const std::vector<WeightRange> weights =
+        place.morph < 0 ? std::vector<WeightRange>() : weightRanges(*_set, static_cast<std::size_t>(place.morph));
+    for (std::size_t target = 0; target < std::min(weights.size(), mesh.targetRadii.size()); ++target)
+        radius += mesh.targetRadii[target] *
+                  std::max(std::abs(double(weights[target].min)), std::abs(double(weights[target].max)));
+    if (place.skin < 0 && place.joint < 0) return radius;
+    Reach reach{0.0, 0.0};
+    if (place.joint >= 0) reach = _entries[static_cast<std::size_t>(_set->entryOfRigidJoint(place.joint))];
+    if (place.skin >= 0)
+        for (const int entry : _set->entriesOfSkin(static_cast<std::size_t>(place.skin)))
+            reach.add(_entries[static_cast<std::size_t>(entry)]);
+    return reach.of(radius);
+}
+
 osg::ref_ptr<osg::Geometry> Drawables::make(const DrawablePlace& place)
 {
     const MeshPrimitive* mesh = _meshes.primitive(place.mesh, place.primitive);
     if (!mesh) return nullptr;
+    if (!(farthestOf(place, *mesh) <= Reach::farthest))
+    {
+        _report.warn(mesh->label + ": its vertices come to lie " + beyondFarthest() + "; not drawn");
+        return nullptr;
+    }
     const tinygltf::Mesh& sourceMesh = _model.meshes[static_cast<std::size_t>(place.mesh)];
     const tinygltf::Primitive& source = sourceMesh.primitives[static_cast<std::size_t>(place.primitive)];
     const bool palette = place.skin >= 0 || place.joint >= 0;

@@ -3,6 +3,7 @@
 
 #include "gltf/Materials.h"
 #include "gltf/Meshes.h"
+#include "gltf/Reach.h"
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
@@ -22,7 +23,7 @@ struct DrawablePlace
 {
     int mesh = -1;
     int primitive = -1;
-    int skin = -1;         ///< of the file: its joints move each vertex
+    int skin = -1;         ///< its joints move each vertex: the first of those in the file that move vertices alike
     int joint = -1;        ///< of the skeleton: carries the whole primitive
     int morph = -1;        ///< index into the set's morphs
     bool mirrored = false; ///< of a joint's: see MaterialUse
@@ -40,6 +41,8 @@ public:
     Drawables(const tinygltf::Model& model, std::shared_ptr<const AnimationSet> set, Meshes& meshes,
               Materials& materials, DecodedBytes& budget, Report& report);
 
+    /// The first skin of the file with the same palette entries as this one.
+    int firstAlike(int skin) const { return _firstAlike[static_cast<std::size_t>(skin)]; }
     /// Null where the primitive cannot be drawn.
     osg::Geometry* drawable(const DrawablePlace& place);
     /// What it is made of; null likewise.
@@ -50,6 +53,7 @@ public:
 
 private:
     osg::ref_ptr<osg::Geometry> make(const DrawablePlace& place);
+    double farthestOf(const DrawablePlace& place, const MeshPrimitive& mesh) const;
     void setInfluences(SkinnedGeometry& geometry, const MeshPrimitive& mesh, const DrawablePlace& place);
     void setColors(osg::Geometry& geometry, const MeshPrimitive& mesh, int material, bool palette);
 
@@ -59,6 +63,8 @@ private:
     Materials& _materials;
     DecodedBytes& _budget;
     Report& _report;
+    std::vector<int> _firstAlike; ///< by skin
+    std::vector<Reach> _entries;  ///< by palette entry
     std::map<DrawablePlace, osg::ref_ptr<osg::Geometry>> _drawables;
 };
 

@@ -3,6 +3,7 @@
 
 #include "gltf/Clips.h"
 #include "gltf/ElementName.h"
+#include "gltf/Reach.h"
 #include "gltf/SceneGraph.h"
 #include "gltf/Skins.h"
 #include "gltf/TinyGltf.h"
@@ -64,6 +65,7 @@ public:
 private:
     Result<bool> makeSet(const NodeTree& tree, const Joints& joints, const Morphs& morphs);
     void makeGraph(const NodeTree& tree, const Joints& joints, const Morphs& morphs);
+    Result<bool> finishClips();
     void describeFile(const NodeTree& tree);
     Result<bool> play(int clip);
 
@@ -84,6 +86,11 @@ Result<bool> Importer::makeSet(const NodeTree& tree, const Joints& joints, const
         AnimationSet::create({joints.skeleton, readSkins(_model, joints), rigidJoints(_model, tree, joints),
                               morphs.weights, std::move(clips.clips)});
     if (!set) return set.error();
+    for (std::size_t skin = 0; skin < set.value()->skins().size(); ++skin)
+        for (const AffineMatrix& matrix : set.value()->skins()[skin].inverseBinds)
+            if (!Reach::of(matrix.toColumns()).fits())
+                return Error{elementName("skins", skin) + ".inverseBindMatrices: one takes its joint " +
+                             beyondFarthest()};
     if (set.value()->paletteSize() > mostPaletteEntries)
         return Error{"skins and joints: " + std::to_string(set.value()->paletteSize()) +
                      " palette entries are needed, at most " + std::to_string(mostPaletteEntries) + " are possible"};
@@ -107,7 +114,21 @@ void Importer::makeGraph(const NodeTree& tree, const Joints& joints, const Morph
     Drawables drawables(_model, _result.set, meshes, materials, _budget, _report);
     const SceneParts parts{_model, tree, joints, morphs, drawables, _budget, _report};
     buildSceneGraph(parts, *_result.root, _result.character, _result.primitives);
-    if (_result.character) _result.character->computeClipBounds();
+}
+
+/// Once the meshes are in, which say how far an error of a joint reaches.
+Result<bool> Importer::finishClips()
+{
+    if (!_result.character) return true;
+    if (_options.compact && !_result.set->clips().empty())
+    {
+        Result<CompactedCharacter> compacted = compactClipsOf(*_result.character, *_options.compact);
+        if (!compacted) return compacted.error();
+        _result.compacted = std::move(compacted).value();
+        _result.set = _result.character->controller().sharedSet();
+    }
+    _result.character->computeClipBounds();
+    return true;
 }
 
 void Importer::describeFile(const NodeTree& tree)
@@ -134,6 +155,8 @@ Result<bool> Importer::run()
     const Result<int> clip = chooseClip(_result, _options);
     if (!clip) return clip.error();
     makeGraph(tree.value(), joints.value(), morphs);
+    const Result<bool> finished = finishClips();
+    if (!finished) return finished.error();
     describeFile(tree.value());
     return play(clip.value());
 }

@@ -5,13 +5,14 @@
 #include "gltf/Messages.h"
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
-#include <osgGpuAnimation/nodes/AnimatedCharacter.h>
+#include <osgGpuAnimation/nodes/CompactCharacter.h>
 
 #include <osg/Geometry>
 #include <osg/MatrixTransform>
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,10 +45,11 @@ struct ImportedModel
     std::shared_ptr<const AnimationSet> set;   ///< the character's; null likewise
     std::vector<ImportedPrimitive> primitives; ///< by node, then primitive
 
-    int scene = 0;                      ///< the scene that was taken, -1: the file has none
-    std::vector<std::string> nodeNames; ///< one a node of the file; empty where it has none
-    std::vector<int> nodeParents;       ///< -1 for roots
-    std::vector<int> animationOfClip;   ///< the file's animation number of each clip of the set
+    int scene = 0;                               ///< the scene that was taken, -1: the file has none
+    std::vector<std::string> nodeNames;          ///< one a node of the file; empty where it has none
+    std::vector<int> nodeParents;                ///< -1 for roots
+    std::optional<CompactedCharacter> compacted; ///< where compact clips were asked for
+    std::vector<int> animationOfClip;            ///< the file's animation number of each clip of the set
     std::vector<std::string> materialNames;
     std::vector<std::string> extensionsUsed;
     std::string generator; ///< asset.generator

@@ -18,15 +18,17 @@ struct ImportOptions
     double speed = 1.0;              ///< of that clip, see AnimationLayer::setSpeed
     LoopMode loopMode = LoopMode::Loop;
     double fadeSeconds = 0.3;       ///< of the keys' crossfades, see CharacterKeys
+    std::optional<double> compact;  ///< compact clips, off by at most that fraction of the model's size; above 0
     bool noKeys = false;            ///< no keys for viewers on the character
     std::optional<int> scene;       ///< default: the file's own, else 0
     bool noRotation = false;        ///< keep glTF's +Y up; default: turn to OSG's +Z up at the root
     bool allowOutsideFiles = false; ///< let URIs leave the model's folder
 
     std::size_t maxJsonDepth = 256;
-    std::size_t maxNodeDepth = 4096;                    ///< nodes from a root to a leaf
-    std::size_t maxElements = 1u << 24;                 ///< of any one array of the document
-    std::size_t maxDecodedBytes = std::size_t(2) << 30; ///< buffers, accessors and images, all together
+    std::size_t maxNodeDepth = 4096;                       ///< nodes from a root to a leaf
+    std::size_t maxElements = 1u << 24;                    ///< of any one array of the document
+    std::size_t maxDocumentBytes = std::size_t(448) << 20; ///< what the JSON becomes, without the data it points to
+    std::size_t maxDecodedBytes = std::size_t(2) << 30;    ///< buffers, accessors and images, all together
 };
 
 } // namespace osgGpuAnimation::gltf

@@ -3,6 +3,7 @@
 
 #include "gltf/NamedElement.h"
 #include "gltf/NodeTransform.h"
+#include "gltf/Reach.h"
 
 #include <algorithm>
 
@@ -150,6 +151,14 @@ Result<Joints> buildJoints(const tinygltf::Model& model, const NodeTree& tree)
     }
     Result<Skeleton> skeleton = Skeleton::create(std::move(joints));
     if (!skeleton) return skeleton.error();
+    const std::vector<Reach> reaches = reachAtRest(skeleton.value());
+    for (std::size_t joint = 0; joint < reaches.size(); ++joint)
+        if (!reaches[joint].fits())
+        {
+            const auto node = static_cast<std::size_t>(std::max(skeleton.value().joint(joint).sourceNode, 0));
+            return Error{namedElement("nodes", node, model.nodes[node].name) +
+                         ": its transform and those above take it " + beyondFarthest()};
+        }
     Joints result{std::move(skeleton).value(), std::move(inputOfNode), std::move(moves), std::move(isSheared)};
     for (int& joint : result.ofNode)
     {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/JsonReader.h"
 
+#include "gltf/DocumentBytes.h"
 #include "gltf/ElementName.h"
 
 #include <nlohmann/json.hpp>
@@ -26,7 +27,7 @@ public:
 
     TreeBuilder(JsonTree& tree, const ImportOptions& options)
         : _tree(tree), _mostDepth(std::min(options.maxJsonDepth, deepestJson)), _mostElements(options.maxElements),
-          _mostValues(std::min<std::size_t>(options.maxDecodedBytes / bytesOfJsonValue,
+          _mostValues(std::min<std::size_t>(options.maxDocumentBytes / bytesOfJsonValue,
                                             std::numeric_limits<std::uint32_t>::max() - 1))
     {
     }
@@ -99,7 +100,7 @@ private:
     bool add(JsonTree::Type type)
     {
         if (_tree.size() >= _mostValues)
-            return refuse("at most " + std::to_string(_mostValues) + " values in all (limit maxDecodedBytes)");
+            return refuse("at most " + std::to_string(_mostValues) + " values in all (limit maxDocumentBytes)");
         if (!_open.empty() && ++_open.back().size > _mostElements)
             return refuse("arrays of at most " + std::to_string(_mostElements) + " elements (limit maxElements)");
         _last = _tree.add(type, _key);

@@ -7,14 +7,10 @@
 
 #include <osgGpuAnimation/animation/Result.h>
 
-#include <cstddef>
 #include <string_view>
 
 namespace osgGpuAnimation::gltf
 {
-
-/// What one JSON value costs at most by the time it is part of a tinygltf model.
-constexpr std::size_t bytesOfJsonValue = 512;
 
 /// Parses a JSON text within the limits of the options, without recursion: strict syntax, UTF-8 and numbers that fit a
 /// double (section 2.7). Of two members with one key the last counts, with a warning.

@@ -4,6 +4,7 @@
 #include "gltf/Accessor.h"
 #include "gltf/FlatNormals.h"
 #include "gltf/NamedElement.h"
+#include "gltf/Reach.h"
 #include "gltf/VertexAttributes.h"
 #include "gltf/VertexCache.h"
 
@@ -184,6 +185,9 @@ std::optional<MeshPrimitive> Meshes::read(int meshIndex, int primitiveIndex)
     mesh.texCoords = readTextureCoordinates(_model, primitive);
     mesh.colors = readColors(_model, primitive);
     mesh.targets = readMorphTargets(_model, primitive);
+    mesh.radius = radiusOf(*mesh.positions);
+    for (const MorphTarget& target : mesh.targets)
+        mesh.targetRadii.push_back(target.positions ? radiusOf(*target.positions) : 0.0);
     if (!mesh.normals && primitive.mode >= modeTriangles)
     {
         takeApart(mesh, primitive.mode, std::move(indices));

@@ -31,6 +31,8 @@ struct MeshPrimitive
     osg::ref_ptr<osg::Vec4Array> colors;    ///< for display, see DisplayColor.h; or null
     osg::ref_ptr<osg::PrimitiveSet> primitiveSet;
     std::vector<MorphTarget> targets;
+    double radius = 0.0;             ///< of the farthest vertex from the mesh's origin
+    std::vector<double> targetRadii; ///< by target: the longest way of a vertex
     /// Where triangles had to be taken apart (flat normals): the file's vertex that each vertex is; else empty.
     /// Vertices that no triangle uses come last and are not drawn.
     std::vector<std::uint32_t> sourceVertex;

@@ -4,6 +4,7 @@
 #include "gltf/ElementName.h"
 #include "gltf/OptionWord.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <optional>
@@ -58,6 +59,7 @@ std::optional<bool> applyPlaying(const std::string& name, const std::string& val
 /// What a value of the option must be.
 const char* wanted(const std::string& name)
 {
+    if (name == "compact") return "a number above 0";
     if (name == "speed") return "a number";
     if (name == "start" || name == "fade") return "a number of seconds, 0 or more";
     if (name == "loop") return "once, loop or pingpong";
@@ -69,6 +71,7 @@ bool apply(const OptionWord& word, ImportOptions& options)
 {
     const std::string value = word.value.value_or("");
     if (const std::optional<bool> fits = applyPlaying(word.name, value, options)) return *fits;
+    if (word.name == "compact") return readFinite(value, options.compact.emplace()) && *options.compact > 0.0;
     if (word.name == "noRotation")
         options.noRotation = true;
     else if (word.name == "noKeys")
@@ -85,9 +88,25 @@ bool apply(const OptionWord& word, ImportOptions& options)
         return readNumber(value, options.maxNodeDepth);
     else if (word.name == "maxElements")
         return readNumber(value, options.maxElements);
+    else if (word.name == "maxDocumentBytes")
+        return readNumber(value, options.maxDocumentBytes);
     else if (word.name == "maxDecodedBytes")
         return readNumber(value, options.maxDecodedBytes);
     return word.name != "clip" || !value.empty();
+}
+
+char lowered(char letter)
+{
+    return letter >= 'A' && letter <= 'Z' ? char(letter - 'A' + 'a') : letter;
+}
+
+/// But for the case of the letters, is at most one of them wrong?
+bool isNearly(const std::string& word, const std::string& option)
+{
+    if (word.size() != option.size()) return false;
+    const auto same = [](char a, char b) { return lowered(a) == lowered(b); };
+    const auto [differs, inOption] = std::mismatch(word.begin(), word.end(), option.begin(), same);
+    return differs == word.end() || std::equal(differs + 1, word.end(), inOption + 1, same);
 }
 
 } // namespace
@@ -100,6 +119,7 @@ const std::vector<OptionHelp>& optionHelp()
         {"speed=NUMBER", "how fast it plays; negative: backwards; default: 1"},
         {"loop=once|loop|pingpong", "what it does at its end; default: loop"},
         {"fade=SECONDS", "how long the keys' crossfades take; default: 0.3"},
+        {"compact=FRACTION", "smaller clips, off by at most that fraction of the model's size; default: exact"},
         {"noKeys", "no keys for viewers on the character; default: n N k . , - + r j"},
         {"scene=INDEX", "the scene to show; default: the file's own"},
         {"noRotation", "keep glTF's +Y up; default: +Z up"},
@@ -107,9 +127,31 @@ const std::vector<OptionHelp>& optionHelp()
         {"maxJsonDepth=N", "how deep JSON may nest; default: 256"},
         {"maxNodeDepth=N", "nodes from a root to a leaf; default: 4096"},
         {"maxElements=N", "elements of any one array; default: 16777216"},
+        {"maxDocumentBytes=N", "bytes of nodes, materials, channels ... in memory; default: 448 MiB"},
         {"maxDecodedBytes=N", "bytes of buffers, arrays and pictures, all together; default: 2 GiB"},
     };
     return help;
+}
+
+std::vector<std::string> misspeltOptions(const std::string& text)
+{
+    std::vector<std::string> hints;
+    for (const OptionWord& word : splitOptions(text))
+    {
+        std::string meant;
+        for (const auto& [usage, explanation] : optionHelp())
+        {
+            const std::string option = std::string(usage).substr(0, std::string(usage).find('='));
+            if (word.name == option)
+            {
+                meant.clear();
+                break;
+            }
+            if (isNearly(word.name, option)) meant = option;
+        }
+        if (!meant.empty()) hints.push_back(quoted(word.name) + " is unknown; is " + quoted(meant) + " meant?");
+    }
+    return hints;
 }
 
 Result<ImportOptions> parseOptions(const std::string& text)

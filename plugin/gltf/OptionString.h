@@ -23,4 +23,8 @@ const std::vector<OptionHelp>& optionHelp();
 /// Errors: a value that is missing or no number where one is needed.
 Result<ImportOptions> parseOptions(const std::string& text);
 
+/// A sentence about each word that is nearly one of the options, but for the case of its letters or one wrong
+/// letter: `"cliq" is unknown; is "clip" meant?`. Other words are taken for other readers': osgDB hands all to all.
+std::vector<std::string> misspeltOptions(const std::string& text);
+
 } // namespace osgGpuAnimation::gltf

@@ -133,6 +133,8 @@ std::optional<Error> parseModel(const JsonValue& document, tinygltf::Model& mode
     // tinygltf's elements are half a kilobyte each and would be moved as its vectors grow.
     reserve(document["nodes"], model.nodes);
     reserve(document["meshes"], model.meshes);
+    reserve(document["materials"], model.materials);
+    reserve(document["textures"], model.textures);
     if (std::optional<Error> error = runTinyGltf(writeJson(document), model)) return error;
     if (std::optional<Error> error = compareSizes(document, model)) return error;
 

@@ -5,12 +5,14 @@
 #include "gltf/Instancing.h"
 #include "gltf/NamedElement.h"
 #include "gltf/NodeTransform.h"
+#include "gltf/Reach.h"
 
 #include <glm/gtc/type_ptr.hpp>
 #include <glm/matrix.hpp>
 #include <osg/FrontFace>
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 namespace osgGpuAnimation::gltf
@@ -25,7 +27,7 @@ public:
     SceneGraphBuilder(const SceneParts& parts, osg::MatrixTransform& root, AnimatedCharacter* character,
                       std::vector<ImportedPrimitive>& primitives)
         : _parts(parts), _root(root), _character(character), _primitives(primitives), _still(parts.model.nodes.size()),
-          _groups(parts.model.nodes.size())
+          _stillRadius(parts.model.nodes.size(), 0.0), _groups(parts.model.nodes.size())
     {
     }
 
@@ -44,13 +46,17 @@ private:
     void buildStillNodes();
     void addStill(std::size_t node);
     osg::Group& groupAbove(std::size_t node, osg::Matrixd& outLocal);
+    static void addShared(osg::Group& place, osg::ref_ptr<osg::Geometry>& geometry);
 
     const SceneParts& _parts;
     osg::MatrixTransform& _root;
     AnimatedCharacter* _character;
     std::vector<ImportedPrimitive>& _primitives;
     std::vector<std::vector<osg::ref_ptr<osg::Geometry>>> _still; ///< by node: what is drawn in its place
+    std::vector<double> _stillRadius;                             ///< by node: of its farthest vertex
     std::vector<osg::ref_ptr<osg::Group>> _groups;                ///< by node: null where nothing is below
+    /// By the object a place asks for: the one over the same arrays that still has room for parents.
+    std::map<const osg::Geometry*, osg::ref_ptr<osg::Geometry>> _open;
     std::set<const osg::Geometry*> _inCharacter;
 };
 
@@ -63,6 +69,12 @@ double determinant(const osg::Matrixd& m)
 {
     return m(0, 0) * (m(1, 1) * m(2, 2) - m(1, 2) * m(2, 1)) - m(0, 1) * (m(1, 0) * m(2, 2) - m(1, 2) * m(2, 0)) +
            m(0, 2) * (m(1, 0) * m(2, 1) - m(1, 1) * m(2, 0));
+}
+
+/// Are points at that distance within what can be drawn?
+bool reaches(const Reach& reach, double radius)
+{
+    return reach.fits() && reach.of(radius) <= Reach::farthest;
 }
 
 void setWinding(osg::Node& node, bool mirrored)
@@ -80,7 +92,7 @@ DrawablePlace SceneGraphBuilder::placeOf(std::size_t node, int primitive) const
     place.mesh = source.mesh;
     place.primitive = primitive;
     if (isSkinned(_parts.model, source, primitiveSource))
-        place.skin = source.skin;
+        place.skin = _parts.drawables.firstAlike(source.skin);
     else if (isRigidOnJoint(_parts.model, _parts.joints, node, primitiveSource))
     {
         place.joint = _parts.joints.ofNode[node];
@@ -102,11 +114,18 @@ void SceneGraphBuilder::addMesh(std::size_t node)
         osg::Geometry* geometry = _parts.drawables.drawable(place);
         if (!geometry) continue;
         const MeshPrimitive& mesh = *_parts.drawables.meshPrimitive(place);
+        const bool isStill = place.skin < 0 && place.joint < 0;
+        if (isStill && !reaches(Reach::of(_parts.tree.toWorld[node]), mesh.radius))
+        {
+            _parts.report.warn(namedElement("nodes", node, source.name) + ": it takes vertices of " + mesh.label + ' ' +
+                               beyondFarthest() + "; not drawn");
+            continue;
+        }
         ImportedPrimitive imported;
         imported.node = static_cast<int>(node);
         imported.mesh = place.mesh;
         imported.primitive = place.primitive;
-        imported.skin = place.skin;
+        imported.skin = place.skin < 0 ? -1 : source.skin;
         imported.morph = place.morph;
         imported.targets = mesh.targets.size();
         imported.vertexCount = mesh.vertexCount;
@@ -114,10 +133,11 @@ void SceneGraphBuilder::addMesh(std::size_t node)
         imported.geometry = geometry;
         imported.geometryVertex = mesh.geometryVertex;
         _primitives.push_back(std::move(imported));
-        if (place.skin < 0 && place.joint < 0)
+        if (isStill)
         {
             _primitives.back().toModel = toOsg(_parts.tree.toWorld[node]);
             _still[node].push_back(geometry);
+            _stillRadius[node] = std::max(_stillRadius[node], mesh.radius);
             continue;
         }
         moves = true;
@@ -139,6 +159,15 @@ osg::Group& SceneGraphBuilder::groupAbove(std::size_t node, osg::Matrixd& outLoc
     return group ? *group : _root;
 }
 
+/// An object that very many share takes OSG very long to part from them, since it looks for each among all: another
+/// object over the same arrays goes on. geometry: becomes that one.
+void SceneGraphBuilder::addShared(osg::Group& place, osg::ref_ptr<osg::Geometry>& geometry)
+{
+    constexpr unsigned int manyParents = 4096;
+    if (geometry->getNumParents() >= manyParents) geometry = new osg::Geometry(*geometry, osg::CopyOp::SHALLOW_COPY);
+    place.addChild(geometry);
+}
+
 void SceneGraphBuilder::addStill(std::size_t node)
 {
     const tinygltf::Node& source = _parts.model.nodes[node];
@@ -154,8 +183,16 @@ void SceneGraphBuilder::addStill(std::size_t node)
     if (isInstanced(source))
     {
         places.clear();
+        const Reach reach = Reach::of(_parts.tree.toWorld[node]);
+        const double radius = _stillRadius[node];
         for (const osg::Matrixd& instance : readInstances(_parts.model, node, _parts.budget, _parts.report))
         {
+            if (!reaches(reach * Reach::of(glm::make_mat4(instance.ptr())), radius))
+            {
+                _parts.report.warn(namedElement("nodes", node, source.name) +
+                                   ": EXT_mesh_gpu_instancing takes an instance " + beyondFarthest() + "; not drawn");
+                continue;
+            }
             places.push_back(new osg::MatrixTransform(instance));
             transform->addChild(places.back());
             if (determinant(instance) < 0.0)
@@ -165,7 +202,7 @@ void SceneGraphBuilder::addStill(std::size_t node)
     for (const osg::ref_ptr<osg::Group>& place : places)
     {
         for (const osg::ref_ptr<osg::Geometry>& geometry : _still[node])
-            place->addChild(geometry);
+            addShared(*place, _open.try_emplace(geometry.get(), geometry).first->second);
     }
 }
 

@@ -2,6 +2,7 @@
 #include "gltf/TinyGltf.h"
 
 #include "gltf/DecodedBytes.h"
+#include "gltf/DocumentBytes.h"
 #include "gltf/DocumentRules.h"
 #include "gltf/DocumentSchema.h"
 #include "gltf/DracoDecompression.h"
@@ -80,9 +81,8 @@ Result<tinygltf::Model> load(const std::string& bytes, const std::string& fileNa
                     JsonValue()};
 
     const JsonValue document = loading.json.root();
-    if (!loading.budget.take(loading.json.size() * bytesOfJsonValue))
-        return fault("JSON", loading.budget.limitText(), std::to_string(loading.json.size()) + " values");
-    std::optional<Error> error = SchemaCheck(document, report).run(documentSchema);
+    std::optional<Error> error = checkDocumentBytes(loading.json, options.maxDocumentBytes);
+    if (!error) error = SchemaCheck(document, report).run(documentSchema);
     if (!error) error = checkDocumentRules(document, report);
     if (error) return *error;
     const JsonValue buffers = document["buffers"], images = document["images"];

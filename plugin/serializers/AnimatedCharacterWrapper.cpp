@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "serializers/MeshCheck.h"
+#include "serializers/RequiredProperty.h"
 #include "serializers/StoredAnimationSet.h"
 #include "serializers/StoredController.h"
 #include "serializers/ValueReader.h"
@@ -18,11 +19,6 @@ static AnimatedCharacter* makeCharacter()
     AnimatedCharacter* character = new AnimatedCharacter;
     character->setUpdateCallback(nullptr);
     return character;
-}
-
-static bool checkAnimationSet(const AnimatedCharacter&)
-{
-    return true;
 }
 
 static bool writeAnimationSet(osgDB::OutputStream& stream, const AnimatedCharacter& character)
@@ -63,11 +59,6 @@ static bool readClipBounds(osgDB::InputStream& stream, AnimatedCharacter& charac
     return in.isGood();
 }
 
-static bool checkController(const AnimatedCharacter&)
-{
-    return true;
-}
-
 static bool writeController(osgDB::OutputStream& stream, const AnimatedCharacter& character)
 {
     ValueWriter out(stream);
@@ -87,9 +78,9 @@ REGISTER_OBJECT_WRAPPER(osgGpuAnimation_AnimatedCharacter, makeCharacter(), osgG
                         "osgGpuAnimation::ExactNumbers osg::Object osg::Node osg::Group osg::Transform "
                         "osg::MatrixTransform osgGpuAnimation::AnimatedCharacter")
 {
-    ADD_USER_SERIALIZER(AnimationSet);
+    ADD_REQUIRED_SERIALIZER(AnimationSet);
     ADD_USER_SERIALIZER(ClipBounds);
-    ADD_USER_SERIALIZER(Controller);
+    ADD_REQUIRED_SERIALIZER(Controller);
 }
 
 } // namespace osgGpuAnimation::serializers

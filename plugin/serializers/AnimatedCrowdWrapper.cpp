@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "serializers/MeshCheck.h"
+#include "serializers/RequiredProperty.h"
 #include "serializers/StoredAnimationSet.h"
 #include "serializers/StoredController.h"
 #include "serializers/ValueReader.h"
@@ -100,11 +101,6 @@ static AnimatedCrowd* makeCrowd()
     return crowd;
 }
 
-static bool checkAnimationSet(const AnimatedCrowd&)
-{
-    return true;
-}
-
 static bool writeAnimationSet(osgDB::OutputStream& stream, const AnimatedCrowd& crowd)
 {
     ValueWriter out(stream);
@@ -156,7 +152,7 @@ REGISTER_OBJECT_WRAPPER(osgGpuAnimation_AnimatedCrowd, makeCrowd(), osgGpuAnimat
                         "osgGpuAnimation::ExactNumbers osg::Object osg::Node osg::Group osg::Transform "
                         "osgGpuAnimation::AnimatedCrowd")
 {
-    ADD_USER_SERIALIZER(AnimationSet);
+    ADD_REQUIRED_SERIALIZER(AnimationSet);
     ADD_USER_SERIALIZER(Instances);
 }
 

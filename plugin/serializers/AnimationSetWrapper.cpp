@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: MIT
+#include "serializers/RequiredProperty.h"
 #include "serializers/StoredAnimationSet.h"
 #include "serializers/ValueReader.h"
 #include "serializers/ValueWriter.h"
+
+#include "cache/SeparateLoads.h"
 
 #include <osgDB/ObjectWrapper>
 
 namespace osgGpuAnimation::serializers
 {
 
-static bool checkContents(const StoredAnimationSet& stored)
-{
-    return stored.set() != nullptr;
-}
+// Whatever of ours is read has a set.
+static SeparateLoads::Installation separateLoads;
 
 static bool readContents(osgDB::InputStream& stream, StoredAnimationSet& stored)
 {
@@ -30,7 +31,7 @@ static bool writeContents(osgDB::OutputStream& stream, const StoredAnimationSet&
 REGISTER_OBJECT_WRAPPER2(osgGpuAnimation_StoredAnimationSet, new StoredAnimationSet, StoredAnimationSet,
                          "osgGpuAnimation::StoredAnimationSet", "osgGpuAnimation::StoredAnimationSet")
 {
-    ADD_USER_SERIALIZER(Contents);
+    ADD_REQUIRED_SERIALIZER(Contents);
 }
 
 } // namespace osgGpuAnimation::serializers

@@ -5,6 +5,7 @@
 
 #include <osgGpuAnimation/nodes/AnimationUpdateCallback.h>
 #include <osgGpuAnimation/nodes/CharacterKeys.h>
+#include <osgGpuAnimation/nodes/PoseStatistics.h>
 #include <osgGpuAnimation/nodes/RootMotionCallback.h>
 
 #include <osgDB/ObjectWrapper>
@@ -30,6 +31,14 @@ REGISTER_OBJECT_WRAPPER(osgGpuAnimation_RootMotionCallback, new RootMotionCallba
 {
 }
 } // namespace motion
+
+namespace statistics
+{
+REGISTER_OBJECT_WRAPPER(osgGpuAnimation_PoseStatistics, new PoseStatistics, osgGpuAnimation::PoseStatistics,
+                        "osg::Object osg::Callback osgGpuAnimation::PoseStatistics")
+{
+}
+} // namespace statistics
 
 static bool checkFadeSeconds(const CharacterKeys&)
 {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "serializers/RequiredProperty.h"
 #include "serializers/ValueReader.h"
 #include "serializers/ValueWriter.h"
 
@@ -8,11 +9,6 @@
 
 namespace osgGpuAnimation::serializers
 {
-
-static bool checkJoint(const JointAttachment&)
-{
-    return true;
-}
 
 static bool writeJoint(osgDB::OutputStream& stream, const JointAttachment& attachment)
 {
@@ -36,7 +32,7 @@ REGISTER_OBJECT_WRAPPER(osgGpuAnimation_JointAttachment, new JointAttachment, os
                         "osgGpuAnimation::ExactNumbers osg::Object osg::Node osg::Group osg::Transform "
                         "osg::MatrixTransform osgGpuAnimation::JointAttachment")
 {
-    ADD_USER_SERIALIZER(Joint);
+    ADD_REQUIRED_SERIALIZER(Joint);
 }
 
 } // namespace osgGpuAnimation::serializers

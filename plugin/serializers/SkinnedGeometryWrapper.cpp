@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "serializers/RequiredProperty.h"
 #include "serializers/ValueReader.h"
 #include "serializers/ValueWriter.h"
 
@@ -31,11 +32,6 @@ osg::ref_ptr<Array> readArray(ValueReader& in, const char* name)
 } // namespace
 
 // Influences are vertex attributes, which OSG has written; this is where they count.
-static bool checkInfluences(const SkinnedGeometry&)
-{
-    return true;
-}
-
 static bool writeInfluences(osgDB::OutputStream& stream, const SkinnedGeometry& mesh)
 {
     ValueWriter(stream).integer(mesh.rigidEntry()).endLine();
@@ -104,7 +100,7 @@ REGISTER_OBJECT_WRAPPER(osgGpuAnimation_SkinnedGeometry, new SkinnedGeometry, os
                         "osgGpuAnimation::ExactNumbers osg::Object osg::Node osg::Drawable osg::Geometry "
                         "osgGpuAnimation::SkinnedGeometry")
 {
-    ADD_USER_SERIALIZER(Influences);
+    ADD_REQUIRED_SERIALIZER(Influences);
     ADD_USER_SERIALIZER(MorphTargets);
 }
 

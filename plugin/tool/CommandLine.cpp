@@ -66,6 +66,13 @@ std::string checkFinite(const std::string& text)
     return text.empty() || *end != '\0' || !std::isfinite(number) ? "'" + text + "' is not a number" : "";
 }
 
+std::string checkAboveZero(const std::string& text)
+{
+    const std::string fault = checkFinite(text);
+    if (!fault.empty()) return fault;
+    return std::strtod(text.c_str(), nullptr) > 0.0 ? "" : "'" + text + "' is not above 0";
+}
+
 std::string checkPng(const std::string& name)
 {
     std::string extension = std::filesystem::path(name).extension().string();
@@ -105,6 +112,11 @@ void CommandLine::addInspect()
     _inspectApp->footer(std::string(inspectHelp) + exitStatus);
     _inspectApp->add_option("FILE", _inspect.file, "A .gltf or .glb")->required();
     _inspectApp->add_flag("--json", _inspect.json, "JSON, for programs");
+    _inspectApp
+        ->add_option("--compact", _inspect.compact,
+                     "With compact clips, off by at most that fraction of the model's size (1e-4, say)")
+        ->check(checkAboveZero)
+        ->option_text("FRACTION");
 }
 
 void CommandLine::addPose()

@@ -11,7 +11,9 @@ namespace osgGpuAnimation::tool
 
 Result<bool> InspectCommand::run() const
 {
-    const Result<gltf::ImportedModel> model = readModel(file, {});
+    gltf::ImportOptions options;
+    if (compact > 0.0) options.compact = compact;
+    const Result<gltf::ImportedModel> model = readModel(file, options);
     if (!model) return Error{file + ": " + model.error().message};
     const nlohmann::ordered_json report = reportModel(model.value(), file);
     // Names in a file may be anything; what is no UTF-8 is replaced.

@@ -12,7 +12,8 @@ namespace osgGpuAnimation::tool
 struct InspectCommand
 {
     std::string file;
-    bool json = false; ///< for programs, instead of for people
+    double compact = 0.0; ///< see gltf::ImportOptions; 0: exact
+    bool json = false;    ///< for programs, instead of for people
 
     /// Error messages begin with the name of the file at fault.
     Result<bool> run() const;

@@ -7,6 +7,7 @@
 #include <osg/NodeVisitor>
 #include <osg/Texture>
 
+#include <algorithm>
 #include <iomanip>
 #include <set>
 #include <sstream>
@@ -98,6 +99,29 @@ ordered_json reportClips(const gltf::ImportedModel& model)
     return clips;
 }
 
+/// bytes: on the GPU. snapshotBytes: what snapshots of all joints, 48 bytes each, would take.
+ordered_json reportKeyframes(const gltf::ImportedModel& model)
+{
+    ordered_json keyframes = {{"count", 0}, {"bytes", 0}, {"snapshotBytes", 0}};
+    if (!model.set) return keyframes;
+    std::size_t count = 0, transforms = 0;
+    for (const Clip& clip : model.set->clips())
+    {
+        count += clip.keyframeCount();
+        transforms += clip.data().size();
+    }
+    keyframes = {{"count", count},
+                 {"bytes", PackedKeyframes(*model.set).byteSize()},
+                 {"snapshotBytes", transforms * sizeof(JointTransform)}};
+    if (!model.compacted) return keyframes;
+    const CompactedCharacter& compacted = *model.compacted;
+    keyframes["error"] =
+        compacted.errors.empty() ? 0.0 : *std::max_element(compacted.errors.begin(), compacted.errors.end());
+    keyframes["tolerance"] = compacted.tolerance;
+    keyframes["modelSize"] = compacted.modelSize;
+    return keyframes;
+}
+
 ordered_json reportMeshes(const gltf::ImportedModel& model)
 {
     std::set<int> meshes;
@@ -155,7 +179,8 @@ ordered_json reportModel(const gltf::ImportedModel& model, const std::string& fi
 {
     ByteCounter bytes;
     if (model.root) model.root->accept(bytes);
-    const std::size_t animationBytes = model.set ? AnimationBuffers::byteSize(*model.set) : 0;
+    const std::size_t animationBytes =
+        model.set ? AnimationBuffers::byteSize(*model.set, PackedKeyframes(*model.set)) : 0;
     return {{"file", fileName},
             {"generator", model.generator},
             {"scene", model.scene},
@@ -163,6 +188,7 @@ ordered_json reportModel(const gltf::ImportedModel& model, const std::string& fi
             {"skins", reportSkins(model.set.get())},
             {"paletteEntries", model.set ? model.set->paletteSize() : 0},
             {"clips", reportClips(model)},
+            {"keyframes", reportKeyframes(model)},
             {"meshes", reportMeshes(model)},
             {"materials", model.materialNames},
             {"extensions", model.extensionsUsed},
@@ -192,6 +218,13 @@ std::string reportText(const ordered_json& report)
     text += line("skins", number(report["skins"].size()) + (skins.empty() ? "" : ": " + skins));
     text += line("palette entries", number(report["paletteEntries"]));
     text += line("clips", number(report["clips"].size())) + clipLines(report["clips"]);
+    const ordered_json& keyframes = report["keyframes"];
+    text += line("keyframes",
+                 number(keyframes["count"]) + ", " + number(keyframes["bytes"]) +
+                     " bytes on the GPU (snapshots: " + number(keyframes["snapshotBytes"]) + ")" +
+                     (keyframes.contains("error") ? "; at most " + number(keyframes["error"]) +
+                                                        " off, the model's size being " + number(keyframes["modelSize"])
+                                                  : ", exact"));
     text +=
         line("meshes", number(meshes["count"]) + ", " + number(meshes["primitives"]) + " primitives (" +
                            number(meshes["skinned"]) + " skinned, " + number(meshes["rigid"]) + " rigid on joints, " +

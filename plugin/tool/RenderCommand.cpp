@@ -7,7 +7,7 @@
 
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
-#include <osgDB/WriteFile>
+#include <osgDB/Registry>
 
 #include <algorithm>
 #include <cmath>
@@ -100,7 +100,9 @@ Result<bool> RenderCommand::run() const
         const osg::ref_ptr<osg::Image> image = viewer.value()->draw(times[frame] - time);
         if (!image) return Error{file + ": OpenGL reports an error while drawing"};
         const std::string name = frames ? numbered(output, frame + 1) : output;
-        if (!osgDB::writeImageFile(*image, name)) return Error{name + ": cannot be written"};
+        // Not by writeImageFile(), which says on its own that it failed.
+        if (!osgDB::Registry::instance()->writeImage(*image, name, nullptr).success())
+            return Error{name + ": cannot be written"};
     }
     return true;
 }

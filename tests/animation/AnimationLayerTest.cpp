@@ -236,7 +236,7 @@ TEST(AnimationLayerTest, WhateverIsAskedTheInstructionStaysInOrder)
             const BlendSample& sample = instruction.samples[s];
             ASSERT_TRUE(sample.alpha >= 0.0f && sample.alpha < 1.0f);
             ASSERT_TRUE(sample.weight > 0.0f && sample.weight <= 1.0f);
-            ASSERT_LT(sample.keyframe, set->keyframeBufferSize());
+            ASSERT_LT(sample.keyframe, set->keyframeCount());
             ASSERT_EQ((sample.control & POSE_SAMPLE_ADDITIVE) != 0, isReferred);
             isReferred = (sample.control & POSE_SAMPLE_REFERENCE) != 0;
         }

@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 namespace osgGpuAnimation
@@ -172,30 +171,17 @@ TEST(AnimationSetTest, EveryPaletteIsInLevelOrderAndWhole)
     }
 }
 
-TEST(AnimationSetTest, TheKeyframeBufferHoldsTheRestPoseTwiceThenTheClipsThenPadding)
+TEST(AnimationSetTest, KeyframesAreNumberedFromTheRestPoseOn)
 {
     RandomCharacter linear(3, {8, false, true, false, 1.0, 1.0});
-    RandomCharacter spline(3, {});
     const Skeleton skeleton = linear.skeleton();
-    const Clip first = linear.clip(skeleton);
-    const Clip second = spline.clip(skeleton);
-    ASSERT_EQ(first.form(), Clip::Form::Linear);
-    ASSERT_EQ(second.form(), Clip::Form::Spline);
+    const Clip first = linear.clip(skeleton), second = linear.clip(skeleton);
     const auto set = make({skeleton, {}, {}, linear.morphs, {first, second}});
-    const std::size_t tracks = set->trackCount();
-    EXPECT_EQ(set->keyframeOffset(0), 2 * tracks);
-    EXPECT_EQ(set->keyframeOffset(1), 2 * tracks + first.data().size());
-    EXPECT_EQ(set->keyframeBufferSize(), 2 * tracks + first.data().size() + second.data().size() + 3 * tracks);
-
-    const std::vector<JointTransform> buffer = set->keyframeBuffer();
-    ASSERT_EQ(buffer.size(), set->keyframeBufferSize());
-    const auto holds = [&buffer](std::size_t offset, const std::vector<JointTransform>& expected)
-    { return std::memcmp(&buffer[offset], expected.data(), expected.size() * sizeof(JointTransform)) == 0; };
-    EXPECT_TRUE(holds(0, set->restPose()));
-    EXPECT_TRUE(holds(tracks, set->restPose()));
-    EXPECT_TRUE(holds(set->keyframeOffset(0), first.data()));
-    EXPECT_TRUE(holds(set->keyframeOffset(1), second.data()));
-    EXPECT_TRUE(holds(buffer.size() - tracks, set->restPose()));
+    EXPECT_EQ(set->firstKeyframe(0), 1u);
+    EXPECT_EQ(set->firstKeyframe(1), 1u + first.keyframeCount());
+    EXPECT_EQ(set->keyframeCount(), 1u + first.keyframeCount() + second.keyframeCount());
+    EXPECT_EQ(set->sampleAt(-1, 1.0).keyframe, 0u);
+    EXPECT_EQ(set->sampleAt(1, second.duration()).keyframe, set->keyframeCount() - 1);
 }
 
 TEST(AnimationSetTest, MayHaveNoJointsAtAll)
@@ -203,7 +189,7 @@ TEST(AnimationSetTest, MayHaveNoJointsAtAll)
     const auto set = make({Skeleton::create({}).value(), {}, {}, {}, {}});
     EXPECT_EQ(set->paletteSize(), 0u);
     EXPECT_EQ(set->levelCount(), 0u);
-    EXPECT_TRUE(set->keyframeBuffer().empty());
+    EXPECT_EQ(set->keyframeCount(), 1u);
 }
 
 TEST(AnimationSetTest, ADeepChainIsBuiltAsWell)

@@ -55,8 +55,7 @@ std::vector<JointTransform> mixAt(const AnimationSet& set, double time)
     const Clip& clip = set.clips()[0];
     const Clip::Span span = clip.locate(time);
     PoseInstruction instruction;
-    instruction.samples[0].keyframe =
-        static_cast<std::uint32_t>(set.keyframeOffset(0) + span.keyframe * clip.keyframeStride());
+    instruction.samples[0].keyframe = static_cast<std::uint32_t>(set.firstKeyframe(0) + span.keyframe);
     instruction.samples[0].alpha = span.alpha;
     instruction.samples[0].control = clip.form() == Clip::Form::Spline ? 1u : 0u;
     std::vector<JointTransform> tracks;

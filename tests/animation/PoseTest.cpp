@@ -184,7 +184,7 @@ protected:
         instruction.sampleCount = weights.size();
         for (std::size_t i = 0; i < weights.size(); ++i)
         {
-            instruction.samples[i].keyframe = static_cast<std::uint32_t>(_set->keyframeOffset(i % 2));
+            instruction.samples[i].keyframe = static_cast<std::uint32_t>(_set->firstKeyframe(i % 2));
             instruction.samples[i].weight = weights[i];
         }
         std::vector<JointTransform> tracks;
@@ -241,7 +241,7 @@ TEST(PoseTest, OneSampleOfFullWeightIsInterpolate)
     const Clip& clip = set->clips()[0];
     ASSERT_GE(clip.keyframeCount(), 2u);
     PoseInstruction instruction;
-    instruction.samples[0] = {static_cast<std::uint32_t>(set->keyframeOffset(0)), 0.3f, 1.0f, 0};
+    instruction.samples[0] = {static_cast<std::uint32_t>(set->firstKeyframe(0)), 0.3f, 1.0f, 0};
     std::vector<JointTransform> tracks;
     Pose::mix(*set, instruction, tracks);
     for (std::size_t j = 0; j < set->skeleton().jointCount(); ++j)
@@ -260,7 +260,8 @@ TEST(PoseTest, NothingIsReadBehindTheLastKeyframe)
     const Clip& clip = set->clips()[0];
     const std::size_t last = (clip.keyframeCount() - 1) * clip.keyframeStride();
     PoseInstruction instruction;
-    instruction.samples[0] = {static_cast<std::uint32_t>(set->keyframeOffset(0) + last), 0.5f, 1.0f, 0};
+    instruction.samples[0] = {static_cast<std::uint32_t>(set->firstKeyframe(0) + clip.keyframeCount() - 1), 0.5f, 1.0f,
+                              0};
     std::vector<JointTransform> tracks;
     Pose::mix(*set, instruction, tracks);
     for (std::size_t j = 0; j < set->skeleton().jointCount(); ++j)

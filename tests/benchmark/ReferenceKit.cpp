@@ -2,6 +2,7 @@
 #include "ReferenceKit.h"
 
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
+#include <osgGpuAnimation/nodes/SurfaceState.h>
 
 #include <osgAnimation/Channel>
 #include <osgAnimation/RigTransformHardware>
@@ -57,11 +58,17 @@ void osgGpuAnimationMorphColor(inout vec4 color) {}
 void osgGpuAnimationMorphTextureCoordinate(inout vec2 coordinate) {}
 )";
 
+/// The variant of the kit's shaders that its own program takes in these scenes: one light far away.
+std::string surfacePrologue()
+{
+    return "#version 140\n" + SurfaceState().defines();
+}
+
 osg::ref_ptr<osg::Program> makeProgram(const std::string& vertex)
 {
     osg::ref_ptr<osg::Program> program = new osg::Program;
     program->addShader(new osg::Shader(osg::Shader::VERTEX, vertex));
-    program->addShader(new osg::Shader(osg::Shader::FRAGMENT, std::string("#version 140\n") + shaders::character_frag));
+    program->addShader(new osg::Shader(osg::Shader::FRAGMENT, surfacePrologue() + shaders::character_frag));
     return program;
 }
 
@@ -69,7 +76,7 @@ osg::Program* unskinnedProgram()
 {
     static const osg::ref_ptr<osg::Program> program = []
     {
-        osg::ref_ptr<osg::Program> made = makeProgram(std::string("#version 140\n") + shaders::character_vert);
+        osg::ref_ptr<osg::Program> made = makeProgram(surfacePrologue() + shaders::character_vert);
         made->addShader(new osg::Shader(osg::Shader::VERTEX, std::string("#version 140\n") + noSkin));
         return made;
     }();

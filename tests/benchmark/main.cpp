@@ -103,8 +103,11 @@ Result<bool> measureSubject(const Request& request, const Effort& effort, const 
                             osg::GraphicsContext& context, Report& report)
 {
     const std::pair<const char*, Result<bool> (*)(const Subject&, const Effort&, Report&)> inViewers[] = {
-        {"frames", measureFrames}, {"crowd", measureCrowd}, {"skinning", measureSkinning},
-        {"start", measureStart},   {"load", measureLoad}};
+        {"frames", measureFrames},
+        {"crowd", measureCrowd},
+        {"skinning", measureSkinning},
+        {"start", measureStart},
+        {"load", measureLoad}};
     if (request.has("samples"))
         if (Result<bool> done = measureSamples(subject, effort, context, report); !done) return done;
     if (request.has("pose"))

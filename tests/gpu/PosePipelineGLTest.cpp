@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "support/GLTest.h"
+#include "support/RandomLayers.h"
 #include "support/RandomSet.h"
 
 #include <osgGpuAnimation/animation/Pose.h>
@@ -143,6 +144,90 @@ TEST_F(PosePipelineCostGLTest, unchangedBatchCostsNothing)
     pipeline->evaluate(state(), batch, 0);
     EXPECT_EQ(pipeline->counters().feedbackDraws, before.feedbackDraws);
     EXPECT_EQ(pipeline->counters().bytesUploaded, before.bytesUploaded);
+}
+
+TEST_F(PosePipelineCostGLTest, sendsTheRootsThatMovedAlone)
+{
+    const auto set = makeRandomSet({});
+    PosePipeline* pipeline = PosePipeline::of(state());
+    std::vector<Instance> instances = randomInstances(*set, 100, 1);
+    for (const std::vector<std::size_t>& moved : {std::vector<std::size_t>{}, {0}, {57}, {99}, {40, 60}, {0, 99}})
+    {
+        for (const std::size_t i : moved)
+            instances[i].root.rows[0].w += 1.0f;
+        PoseBatch batch(set);
+        for (const Instance& instance : instances)
+            batch.add(instance.instruction, instance.root);
+        const PosePipeline::Counters before = pipeline->counters();
+        ASSERT_TRUE(pipeline->evaluate(state(), batch, 0));
+        const std::size_t sent = moved.empty() ? 100 * (16 + 48) : (moved.back() - moved.front() + 1) * 48;
+        EXPECT_EQ(pipeline->counters().bytesUploaded - before.bytesUploaded, sent);
+        for (const std::size_t i : {0, 40, 57, 99})
+        {
+            std::vector<AffineMatrix> expected;
+            Pose::evaluate(*set, instances[i].instruction, instances[i].root, expected);
+            EXPECT_LT(difference(pipeline->readPalette(state(), *set, 0, i), expected), 2e-6) << "instance " << i;
+        }
+    }
+}
+
+using ShaderSource = void(GL_APIENTRY*)(GLuint, GLsizei, const GLchar**, const GLint*);
+ShaderSource realShaderSource = nullptr;
+
+void GL_APIENTRY faultyShaderSource(GLuint shader, GLsizei, const GLchar**, const GLint*)
+{
+    const char* text = "#version 330\nvoid main() { nothing of this name }\n";
+    realShaderSource(shader, 1, &text, nullptr);
+}
+
+TEST_F(PosePipelineCostGLTest, aPassThatDoesNotCompileLeavesNoPalette)
+{
+    const auto set = makeRandomSet({});
+    PosePipeline* pipeline = PosePipeline::of(state());
+    osg::GLExtensions* gl = state().get<osg::GLExtensions>();
+    for (const PosePipeline::Form form : {PosePipeline::Form::Fused, PosePipeline::Form::Separate})
+    {
+        pipeline->deleteAllGLObjects();
+        pipeline->setForm(form);
+        PoseBatch single(set), layered(set);
+        single.add(instructionAt(*set, 0, 0.5));
+        PoseInstruction two = instructionAt(*set, 0, 0.5);
+        two.samples[1] = two.samples[0];
+        two.sampleCount = 2;
+        layered.add(two);
+        ASSERT_TRUE(pipeline->evaluate(state(), single, 0));
+        EXPECT_NE(pipeline->place(*set, 0, 0).texture, 0u);
+
+        // The variant of two samples is not there yet.
+        realShaderSource = gl->glShaderSource;
+        gl->glShaderSource = faultyShaderSource;
+        for (int frame = 0; frame < 3; ++frame)
+        {
+            EXPECT_FALSE(pipeline->evaluate(state(), layered, 0)) << "frame " << frame;
+            EXPECT_EQ(pipeline->place(*set, 0, 0).texture, 0u) << "not the pose of before";
+        }
+        gl->glShaderSource = realShaderSource;
+        ASSERT_TRUE(pipeline->evaluate(state(), single, 0));
+        EXPECT_NE(pipeline->place(*set, 0, 0).texture, 0u);
+    }
+}
+
+TEST_F(PosePipelineCostGLTest, masksBeyondTheBufferTextureLimitLeaveNoPalette)
+{
+    const auto set = makeRandomSet({});
+    PosePipeline* pipeline = PosePipeline::of(state());
+    PoseBatch plain(set), masked(set);
+    PoseInstruction instruction = instructionAt(*set, 0, 0.5);
+    plain.add(instruction);
+    ASSERT_TRUE(pipeline->evaluate(state(), plain, 0));
+    EXPECT_NE(pipeline->place(*set, 0, 0).texture, 0u);
+    std::mt19937 random(1);
+    addRandomMasks(*set, random);
+    instruction.samples[0].control |= 1u << 16;
+    masked.add(instruction);
+    pipeline->setMaxTexels(1);
+    EXPECT_FALSE(pipeline->evaluate(state(), masked, 0));
+    EXPECT_EQ(pipeline->place(*set, 0, 0).texture, 0u);
 }
 
 TEST_F(PosePipelineCostGLTest, refusesASetBeyondTheBufferTextureLimit)

@@ -33,7 +33,7 @@ foreach(library libopenscenegraph161 libtinygltf2d libmeshoptimizer2d libpng16-1
     expect_said("Depends:[^\n]* ${library}[ ,\n]")
 endforeach()
 expect_said("shlibs")
-foreach(plugin gltf glb osggpuanimation crowd)
+foreach(plugin gltf glb osggpuanimation crowd serializers_osggpuanimation)
     expect_file(${LIBDIR}/${PLUGINS}/osgdb_${plugin}.so)
 endforeach()
 expect_file(${LIBDIR}/libosgGpuAnimation.so.0)

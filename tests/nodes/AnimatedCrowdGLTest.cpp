@@ -3,6 +3,7 @@
 #include "support/TestCharacter.h"
 #include "support/ViewerGLTest.h"
 
+#include <osgGpuAnimation/animation/PackedKeyframes.h>
 #include <osgGpuAnimation/gpu/PosePipeline.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 
@@ -76,8 +77,8 @@ protected:
     PosePipeline& pipeline() { return *PosePipeline::of(state()); }
 };
 
-// Positions on the way to the GPU differ in their last bits at most (a crowd's are root times palette in one matrix):
-// edges that fall between two pixels may go to either side, 8 pixels an edge.
+// Positions on the way to the GPU differ in their last bits at most (a crowd's are root times palette in one
+// matrix): edges that fall between two pixels may go to either side, 8 pixels an edge.
 constexpr int edgePixels = 16;
 
 TEST_F(AnimatedCrowdGLTest, looksLikeSeparateCharactersAtTheSameTimes)
@@ -175,11 +176,23 @@ TEST_F(AnimatedCrowdGLTest, chunksOfASmallBufferTextureShowTheSame)
     const osg::ref_ptr<osg::Image> whole = pictureOf(makeCrowd(12), {0.0, 0.5});
     // Room for the set itself and a few instances' palettes.
     const std::size_t perInstance = 3 * testCharacterSet()->paletteSize();
-    pipeline().setMaxTexels(std::max(testCharacterSet()->keyframeBufferSize() * 3, perInstance * 5));
+    pipeline().setMaxTexels(std::max(PackedKeyframes(*testCharacterSet()).texels().size(), perInstance * 5));
     const PosePipeline::Counters before = pipeline().counters();
     const osg::ref_ptr<osg::Image> cut = pictureOf(makeCrowd(12), {0.0, 0.5});
     EXPECT_GT(pipeline().counters().feedbackDraws - before.feedbackDraws, 2 * testCharacterSet()->levelCount());
     EXPECT_EQ(Picture::pixelsDifferent(*whole, *cut), 0);
+}
+
+TEST_F(AnimatedCrowdGLTest, separateCharactersInChunksOfASmallBufferTextureShowTheSame)
+{
+    const osg::ref_ptr<osg::Image> whole = pictureOf(makeCharacters(12), {0.0, 0.5});
+    const std::size_t needed = PackedKeyframes(*testCharacterSet()).texels().size();
+    for (const std::size_t limit : {std::size_t(65536), std::max(needed, 3 * testCharacterSet()->paletteSize() * 5)})
+    {
+        pipeline().setMaxTexels(limit);
+        EXPECT_EQ(Picture::pixelsDifferent(*whole, *pictureOf(makeCharacters(12), {0.0, 0.5})), 0) << limit;
+        EXPECT_LE(Picture::pixelsDifferent(*whole, *pictureOf(makeCrowd(12), {0.0, 0.5})), edgePixels) << limit;
+    }
 }
 
 // What is white is 204 of 255: GL's own material has a diffuse part of 0.8.

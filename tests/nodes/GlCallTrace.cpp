@@ -62,11 +62,14 @@ struct MapRangeTag;
 struct GetSubDataTag;
 struct BeginQueryTag;
 struct QueryResultTag;
+struct QueryResult64Tag;
+struct TimeStampTag;
 struct WaitTag;
 struct BeginFeedbackTag;
 struct UploadTag;
 struct UploadPartTag;
 struct GetUniformLocationTag;
+struct DrawInstancedTag;
 
 template <typename Function>
 void forEachPointer(osg::GLExtensions& gl, Function function)
@@ -76,10 +79,13 @@ void forEachPointer(osg::GLExtensions& gl, Function function)
     function(static_cast<GetSubDataTag*>(nullptr), gl.glGetBufferSubData, "glGetBufferSubData");
     function(static_cast<BeginQueryTag*>(nullptr), gl.glBeginQuery, "glBeginQuery");
     function(static_cast<QueryResultTag*>(nullptr), gl.glGetQueryObjectuiv, "glGetQueryObjectuiv");
+    function(static_cast<QueryResult64Tag*>(nullptr), gl.glGetQueryObjectui64v, "glGetQueryObjectui64v");
+    function(static_cast<TimeStampTag*>(nullptr), gl.glQueryCounter, "glQueryCounter");
     function(static_cast<WaitTag*>(nullptr), gl.glClientWaitSync, "glClientWaitSync");
     function(static_cast<BeginFeedbackTag*>(nullptr), gl.glBeginTransformFeedback, "glBeginTransformFeedback");
     function(static_cast<UploadTag*>(nullptr), gl.glBufferData, "glBufferData");
     function(static_cast<UploadPartTag*>(nullptr), gl.glBufferSubData, "glBufferSubData");
+    function(static_cast<DrawInstancedTag*>(nullptr), gl.glDrawArraysInstanced, "glDrawArraysInstanced");
     function(static_cast<GetUniformLocationTag*>(nullptr), gl.glGetUniformLocation, "glGetUniformLocation");
 }
 

@@ -87,12 +87,39 @@ TEST_F(GlObjectsGLTest, addingAndRemovingCharactersLeavesNothingBehind)
     for (int number = 0; number < 5; ++number)
         round(number);
     const Count before = count();
-    for (int number = 5; number < 200; ++number)
+    for (int number = 5; number < 1000; ++number)
         round(number);
     const Count after = count();
     EXPECT_EQ(after.buffers, before.buffers);
     EXPECT_EQ(after.textures, before.textures);
     EXPECT_EQ(after.programs, before.programs);
+}
+
+// As the DatabasePager does, and osgviewer when it first shows its help or statistics.
+TEST_F(GlObjectsGLTest, whatIsCompiledBetweenFramesTakesNothingFromThem)
+{
+    osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
+    auto& mesh = dynamic_cast<SkinnedGeometry&>(*character->getChild(0));
+    const GLushort corners[] = {0, 1, 2, 0, 2, 3};
+    mesh.setPrimitiveSet(0, new osg::DrawElementsUShort(GL_TRIANGLES, 6, corners));
+    viewer().setSceneData(character);
+    drawAt(0.0);
+    drawAt(0.0);
+    EXPECT_GT(picture().pixelsDrawn(), 50);
+    const osg::ref_ptr<osg::Image> before = picture().copy();
+
+    osg::ref_ptr<osg::Geometry> other = new osg::Geometry;
+    other->setUseDisplayList(false);
+    other->setUseVertexBufferObjects(true);
+    other->setVertexArray(new osg::Vec3Array(3));
+    const GLushort triangle[] = {0, 1, 2};
+    other->addPrimitiveSet(new osg::DrawElementsUShort(GL_TRIANGLES, 3, triangle));
+    osg::RenderInfo renderInfo(&state(), nullptr);
+    other->compileGLObjects(renderInfo);
+
+    drawAt(0.0);
+    EXPECT_NO_GL_ERROR();
+    EXPECT_EQ(Picture::pixelsDifferent(*before, *picture().copy()), 0);
 }
 
 } // namespace

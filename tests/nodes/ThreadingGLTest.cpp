@@ -2,6 +2,8 @@
 #include "support/TestCharacter.h"
 #include "support/ViewerGLTest.h"
 
+#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+
 #include <osg/Group>
 
 namespace osgGpuAnimation
@@ -17,12 +19,17 @@ protected:
     static osg::ref_ptr<osg::Group> scene()
     {
         osg::ref_ptr<osg::Group> group = new osg::Group;
+        osg::ref_ptr<AnimatedCharacter> first = makeTestCharacter();
+        osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*first);
+        group->addChild(crowd);
         for (int i = 0; i < 5; ++i)
         {
-            osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
+            // Of one mesh, so that they are drawn together.
+            osg::ref_ptr<AnimatedCharacter> character = osg::clone(first.get(), osg::CopyOp::DEEP_COPY_NODES);
             character->controller().setSpeed(0.2 * i);
             character->setMatrix(osg::Matrix::translate(-3.5, 0, -3.5 + 1.4 * i));
             group->addChild(character);
+            EXPECT_TRUE(crowd->add(osg::Matrix::translate(0.5, 0, -3.5 + 1.4 * i), character->controller()));
         }
         return group;
     }

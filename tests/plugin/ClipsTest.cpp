@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace osgGpuAnimation::gltf
 {
 
@@ -179,6 +181,40 @@ TEST(ClipsTest, weightsDriveTheMorphOfTheirNode)
     const JointTransform& last = clip.data()[clip.keyframeStride() + 3]; // two joints, then the morphs
     EXPECT_EQ(last.translation.x, 1.0f);
     EXPECT_EQ(last.translation.y, 0.5f);
+}
+
+TEST(ClipsTest, normalizedIntegersAreTheNumbersTheyStandFor)
+{
+    struct Type
+    {
+        int component;
+        unsigned int one;
+    };
+    for (const Type& type :
+         {Type{TINYGLTF_COMPONENT_TYPE_BYTE, 127}, Type{TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE, 255},
+          Type{TINYGLTF_COMPONENT_TYPE_SHORT, 32767}, Type{TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, 65535}})
+    {
+        SCOPED_TRACE(type.component);
+        ModelBuilder file;
+        const int mesh = file.triangle();
+        file.primitive(mesh).targets = {file.primitive(mesh).attributes};
+        file.node("face", -1, mesh);
+        file.animation("quantized");
+        file.channel(0, "rotation", {0, 1}, TINYGLTF_TYPE_VEC4, {});
+        file.channel(0, "weights", {0, 1}, TINYGLTF_TYPE_SCALAR, {});
+        std::vector<tinygltf::AnimationSampler>& samplers = file.model.animations[0].samplers;
+        samplers[0].output = file.integers(TINYGLTF_TYPE_VEC4, type.component, {0, 0, 0, type.one, 0, 0, type.one, 0});
+        samplers[1].output = file.integers(TINYGLTF_TYPE_SCALAR, type.component, {0, type.one});
+        for (const tinygltf::AnimationSampler& sampler : samplers)
+            file.model.accessors[static_cast<std::size_t>(sampler.output)].normalized = true;
+        const ReadClips read(file);
+        ASSERT_EQ(read.clips.clips.size(), 1u) << read.warning(0);
+        const Clip& clip = read.clips.clips[0];
+        ASSERT_EQ(clip.trackCount(), 2u);
+        const JointTransform* const last = clip.data().data() + (clip.keyframeCount() - 1) * clip.keyframeStride();
+        EXPECT_EQ(std::abs(last[0].rotation.z), 1.0f);
+        EXPECT_EQ(last[1].translation.x, 1.0f) << "the first weight";
+    }
 }
 
 } // namespace osgGpuAnimation::gltf

@@ -93,10 +93,10 @@ TEST(JsonReaderTest, KeepsToItsLimits)
     EXPECT_NE(many.error().message.find("maxElements"), std::string::npos);
 
     options = ImportOptions();
-    options.maxDecodedBytes = 2048;
+    options.maxDocumentBytes = 512;
     const Result<JsonTree> heavy = read(R"({"a":[1,2,3,4]})", messages, options);
     ASSERT_FALSE(heavy);
-    EXPECT_NE(heavy.error().message.find("maxDecodedBytes"), std::string::npos);
+    EXPECT_NE(heavy.error().message.find("maxDocumentBytes"), std::string::npos);
 }
 
 TEST(JsonReaderTest, LastOfTwoEqualKeysCountsWithAWarning)

@@ -13,6 +13,8 @@ TEST(OptionStringTest, nothingAskedForIsTheDefault)
     EXPECT_FALSE(options.scene);
     EXPECT_FALSE(options.noRotation);
     EXPECT_FALSE(options.allowOutsideFiles);
+    EXPECT_FALSE(options.compact);
+    EXPECT_EQ(parseOptions("compact=1e-4").value().compact, 1e-4);
 }
 
 TEST(OptionStringTest, readsAllOptions)
@@ -97,6 +99,11 @@ TEST(OptionStringTest, valuesThatDoNotFitAreErrors)
                              "scene=99999999999",
                              "maxElements=-1",
                              "maxDecodedBytes=1e9",
+                             "compact",
+                             "compact=0",
+                             "compact=-1e-4",
+                             "compact=nan",
+                             "compact=inf",
                              "speed",
                              "speed=",
                              "speed=nan",
@@ -115,6 +122,25 @@ TEST(OptionStringTest, valuesThatDoNotFitAreErrors)
         const Result<ImportOptions> options = parseOptions(text);
         ASSERT_FALSE(options) << text;
         EXPECT_EQ(options.error().message.rfind("option ", 0), 0u) << options.error().message;
+    }
+}
+
+TEST(OptionStringTest, MisspeltOptionsAreNamed)
+{
+    const std::pair<const char*, const char*> words[] = {
+        {"clip=Run speed=2 noRotation maxElements=5", ""},
+        {"clips=Run,Walk spacing=2 seed=7 noTriStripPolygons dds_flip", ""}, // others'
+        {"Clip=Run", "\"clip\""},
+        {"norotation", "\"noRotation\""},
+        {"spead=2", "\"speed\""},
+        {"cliq=2", "\"clip\""},
+    };
+    for (const auto& [text, meant] : words)
+    {
+        SCOPED_TRACE(text);
+        const std::vector<std::string> hints = misspeltOptions(text);
+        ASSERT_EQ(hints.size(), *meant == '\0' ? 0u : 1u);
+        EXPECT_TRUE(hints.empty() || hints.front().find(meant) != std::string::npos) << hints.front();
     }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "plugin/ModelBuilder.h"
 #include "plugin/SharedAssets.h"
+#include "support/PeakMemory.h"
 
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/CharacterKeys.h>
@@ -13,6 +14,7 @@
 #include <osgUtil/Optimizer>
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <regex>
@@ -204,6 +206,7 @@ TEST_F(PluginTest, faultsHaveTheirStatusAndAMessage)
         const Read result = read(fault.file, fault.options);
         EXPECT_EQ(result.status(), fault.status) << result.message();
         EXPECT_NE(result.message().find(fault.message), std::string::npos) << result.message();
+        EXPECT_EQ(result.message().find(fault.file), std::string::npos) << "osgDB says it: " << result.message();
     }
 }
 
@@ -212,13 +215,21 @@ TEST_F(PluginTest, faultyFilesAnswerAsExpected)
     SKIP_WITHOUT_SHARED_FILE("bad_gltf/expected.json");
     const std::filesystem::path list = sharedFile("bad_gltf/expected.json");
     const nlohmann::json expected = nlohmann::json::parse(readBytes(list.string()));
+    EXPECT_EQ(expected.size(), 293u);
     const osg::ref_ptr<osgDB::Options> options = new osgDB::Options;
     for (const auto& [name, entry] : expected.items())
     {
         SCOPED_TRACE(name);
         log->text.clear();
         const std::string path = (list.parent_path() / name).string();
+        const long memory = peakMemory();
+        const auto start = std::chrono::steady_clock::now();
         Read result = osgDB::Registry::instance()->readNode(path, options);
+        EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), mostSeconds);
+        if (memoryIsMeasurable)
+        {
+            EXPECT_LT(peakMemory() - memory, mostMebibytes);
+        }
         const std::string said = result.message() + log->text;
         const nlohmann::json accepted = entry.value("accept", nlohmann::json::array({entry["expect"]}));
         const char* const outcome = !result.validNode() ? "error" : entry["expect"] == "valid" ? "valid" : "tolerate";

@@ -5,11 +5,13 @@
 #include <osgGpuAnimation/gpu/EglGraphicsContext.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+#include <osgGpuAnimation/nodes/PoseStatistics.h>
 
 #include <osg/MatrixTransform>
 #include <osgDB/FileUtils>
 #include <osgDB/ReadFile>
 #include <osgDB/Registry>
+#include <osgUtil/IntersectionVisitor>
 #include <osgUtil/LineSegmentIntersector>
 #include <osgViewer/Viewer>
 
@@ -80,11 +82,49 @@ TEST_F(ReadmeTest, crowds)
 
     EXPECT_TRUE(crowd->move(fox.value(), osg::Matrix::translate(101, 20, 0)));
     EXPECT_TRUE(crowd->controller(fox.value())->crossfade("Walk", 0.3));
-    crowd->remove(fox.value());
 
-    osgUtil::LineSegmentIntersector::Intersection hit;
+    osg::ref_ptr<osgUtil::LineSegmentIntersector> ray =
+        new osgUtil::LineSegmentIntersector(osg::Vec3d(101, 21, 100), osg::Vec3d(101, 21, -100));
+    osgUtil::IntersectionVisitor visitor(ray);
+    crowd->accept(visitor);
+    ASSERT_TRUE(ray->containsIntersections());
+    osgUtil::LineSegmentIntersector::Intersection hit = ray->getFirstIntersection();
     auto instance = AnimatedCrowd::instanceOf(hit.drawable);
-    EXPECT_FALSE(instance) << "nothing was hit";
+    EXPECT_EQ(instance, fox.value());
+
+    crowd->remove(fox.value());
+    EXPECT_EQ(crowd->size(), 0u);
+}
+
+TEST_F(ReadmeTest, loadingWithOptions)
+{
+    osg::ref_ptr<osgDB::Options> options = new osgDB::Options("clip=Walk noKeys");
+    osg::ref_ptr<osg::Node> node = osgDB::readRefNodeFile("fox.glb", options);
+    ASSERT_TRUE(node.valid());
+    const AnimatedCharacter& walker = *findCharacter(*node);
+    EXPECT_EQ(walker.set().clips()[static_cast<std::size_t>(walker.controller().clip())].name(), "Walk");
+    EXPECT_EQ(walker.getEventCallback(), nullptr);
+}
+
+TEST_F(ReadmeTest, ourPluginIsChosenByAnAlias)
+{
+    osgDB::Registry::instance()->addFileExtensionAlias("glb", "osggpuanimation");
+    osgDB::Registry::instance()->addFileExtensionAlias("gltf", "osggpuanimation");
+    osgDB::Registry* registry = osgDB::Registry::instance();
+    EXPECT_EQ(registry->createLibraryNameForExtension("glb"),
+              registry->createLibraryNameForExtension("osggpuanimation"));
+    const osgDB::ReaderWriter* reader = registry->getReaderWriterForExtension("glb");
+    for (const char* extension : {"glb", "gltf"})
+        registry->addFileExtensionAlias(extension, extension); // as it was
+    ASSERT_NE(reader, nullptr);
+    EXPECT_STREQ(reader->className(), "osgGpuAnimation glTF 2.0 reader");
+}
+
+TEST_F(ReadmeTest, statistics)
+{
+    osgViewer::Viewer viewer;
+    viewer.addEventHandler(new PoseStatistics);
+    EXPECT_EQ(viewer.getEventHandlers().size(), 1u);
 }
 
 TEST_F(ReadmeTest, withoutADisplay)

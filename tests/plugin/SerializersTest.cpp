@@ -109,7 +109,8 @@ TEST_F(SerializersTest, layersGoOnWhereTheyWere)
         ASSERT_TRUE(read && findCharacter(*read));
         AnimationController first = character().controller();
         AnimationController& second = findCharacter(*read)->controller();
-        EXPECT_EQ(second.layerCount(), 3u);
+        ASSERT_EQ(second.layerCount(), 3u);
+        ASSERT_EQ(second.set().clips().size(), 2u);
         EXPECT_EQ(second.layer(2).standing(), 7);
         EXPECT_EQ(second.loopMode(), LoopMode::PingPong);
         EXPECT_EQ(second.set().clips()[1].name(), first.set().clips()[1].name());

@@ -62,9 +62,16 @@ inline float paletteDifference(const AnimationController& a, const AnimationCont
 /// Whether the keyframes of two sets are the same bit by bit.
 inline bool haveSameKeyframes(const AnimationSet& a, const AnimationSet& b)
 {
-    const std::vector<JointTransform> first = a.keyframeBuffer(), second = b.keyframeBuffer();
-    return first.size() == second.size() &&
-           std::memcmp(first.data(), second.data(), first.size() * sizeof(JointTransform)) == 0;
+    if (a.clips().size() != b.clips().size()) return false;
+    for (std::size_t clip = 0; clip < a.clips().size(); ++clip)
+    {
+        const std::vector<JointTransform>& first = a.clips()[clip].data();
+        const std::vector<JointTransform>& second = b.clips()[clip].data();
+        const bool isSame = first.size() == second.size() &&
+                            std::memcmp(first.data(), second.data(), first.size() * sizeof(JointTransform)) == 0;
+        if (!isSame || a.clips()[clip].times() != b.clips()[clip].times()) return false;
+    }
+    return true;
 }
 
 } // namespace osgGpuAnimation

@@ -2,9 +2,11 @@
 #include "support/Process.h"
 
 #include <array>
+#include <chrono>
 #include <cstdio>
 #include <fcntl.h>
 #include <spawn.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -59,12 +61,16 @@ Process Process::run(const std::string& program, const std::vector<std::string>&
     words.push_back(nullptr);
 
     Process process;
+    const auto start = std::chrono::steady_clock::now();
     pid_t child = 0;
     const int failure = posix_spawnp(&child, program.c_str(), &actions, nullptr, words.data(), environ);
     posix_spawn_file_actions_destroy(&actions);
     int state = 0;
-    if (failure == 0 && waitpid(child, &state, 0) == child)
+    rusage usage{};
+    if (failure == 0 && wait4(child, &state, 0, &usage) == child)
         process.status = WIFEXITED(state) ? WEXITSTATUS(state) : 128 + WTERMSIG(state);
+    process.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    process.peakMebibytes = usage.ru_maxrss / 1024;
     process.out = out.content();
     process.err = err.content();
     return process;

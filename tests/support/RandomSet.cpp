@@ -136,9 +136,9 @@ PoseInstruction instructionAt(const AnimationSet& set, int clip, double time)
     if (clip < 0) return instruction;
     const Clip& content = set.clips()[static_cast<std::size_t>(clip)];
     const Clip::Span span = content.locate(time);
-    instruction.samples[0] = {static_cast<std::uint32_t>(set.keyframeOffset(static_cast<std::size_t>(clip)) +
-                                                         span.keyframe * content.keyframeStride()),
-                              span.alpha, 1.0f, content.form() == Clip::Form::Spline ? POSE_SAMPLE_SPLINE : 0u};
+    instruction.samples[0] = {
+        static_cast<std::uint32_t>(set.firstKeyframe(static_cast<std::size_t>(clip)) + span.keyframe), span.alpha, 1.0f,
+        content.form() == Clip::Form::Spline ? POSE_SAMPLE_SPLINE : 0u};
     return instruction;
 }
 

@@ -87,7 +87,8 @@ private:
     const JointTransform* keyframe(std::size_t clip, std::size_t place) const
     {
         const Clip& content = _set.clips()[clip];
-        return &content.data()[place + _track * (content.form() == Clip::Form::Spline ? 3 : 1)];
+        return &content
+                    .data()[place * content.keyframeStride() + _track * (content.form() == Clip::Form::Spline ? 3 : 1)];
     }
 
     Numbers mixed(const JointTransform* a, const JointTransform* b, double t, bool isSpline,
@@ -117,12 +118,12 @@ private:
         for (std::size_t clip = 0; clip < _set.clips().size(); ++clip)
         {
             const Clip& content = _set.clips()[clip];
-            const std::size_t first = _set.keyframeOffset(clip);
-            if (sample.keyframe < first || sample.keyframe >= first + content.data().size()) continue;
+            const std::size_t first = _set.firstKeyframe(clip);
+            if (sample.keyframe < first || sample.keyframe >= first + content.keyframeCount()) continue;
             const std::size_t place = sample.keyframe - first;
-            const bool isLast = place + content.keyframeStride() >= content.data().size();
+            const bool isLast = place + 1 >= content.keyframeCount();
             a = keyframe(clip, place);
-            b = isLast ? a : keyframe(clip, place + content.keyframeStride());
+            b = isLast ? a : keyframe(clip, place + 1);
             isSpline = content.form() == Clip::Form::Spline;
         }
         const double t = static_cast<double>(sample.alpha);

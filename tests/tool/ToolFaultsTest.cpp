@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "support/PeakMemory.h"
 #include "support/Process.h"
 
 #include <nlohmann/json.hpp>
@@ -37,6 +38,11 @@ void expectAnswer(const Process& inspect, const json& entry)
     const char* const outcome = inspect.status == 1 ? "error" : entry["expect"] == "valid" ? "valid" : "tolerate";
     EXPECT_EQ(std::count(accepted.begin(), accepted.end(), outcome), 1) << outcome << ": " << said;
     EXPECT_TRUE(entry["expect"] == "valid" || entry.value("silent", false) || names(entry, said)) << said;
+    EXPECT_LT(inspect.seconds, mostSeconds);
+    if (memoryIsMeasurable)
+    {
+        EXPECT_LT(inspect.peakMebibytes, mostMebibytes);
+    }
 }
 
 } // namespace
@@ -46,6 +52,7 @@ TEST(ToolFaultsTest, inspectAnswersFaultyFilesAsExpected)
     std::ifstream list(faultyFiles + "expected.json");
     if (!list) GTEST_SKIP() << "there is no " << faultyFiles << "expected.json";
     const json expected = json::parse(list);
+    EXPECT_EQ(expected.size(), 293u);
     for (const auto& [name, entry] : expected.items())
     {
         SCOPED_TRACE(name);

@@ -63,6 +63,18 @@ std::optional<Error> findFault(const AnimationParts& parts, std::size_t trackCou
     return std::nullopt;
 }
 
+/// Places on the GPU have 31 bits and count half texels, six a transform (see PackedKeyframes).
+std::optional<Error> findFaultInSize(const std::vector<Clip>& clips)
+{
+    constexpr std::size_t most = (std::size_t(1) << 31) / 16;
+    std::size_t transforms = 0;
+    for (const Clip& clip : clips)
+        transforms += clip.data().size() + clip.trackCount() + clip.keyframeCount();
+    if (transforms <= most) return std::nullopt;
+    return Error{"its clips take " + std::to_string(transforms) + " joint transforms, more than the " +
+                 std::to_string(most) + " that places on the GPU reach"};
+}
+
 std::string namesOf(const std::vector<Clip>& clips)
 {
     return quotedNames(clips, [](const Clip& clip) { return clip.name(); });
@@ -88,15 +100,11 @@ AnimationSet::AnimationSet(AnimationParts parts, const MaskTable& masks) : _part
     _mainEntry = std::move(builder.mainEntry);
     _entryOfMorph = std::move(builder.entryOfMorph);
 
-    std::size_t largestStride = trackCount();
-    _keyframeBufferSize = 2 * trackCount();
     for (const Clip& clip : _parts.clips)
     {
-        _keyframeOffsets.push_back(_keyframeBufferSize);
-        _keyframeBufferSize += clip.data().size();
-        largestStride = std::max(largestStride, clip.keyframeStride());
+        _firstKeyframes.push_back(_keyframeCount);
+        _keyframeCount += clip.keyframeCount();
     }
-    _keyframeBufferSize += largestStride;
 }
 
 Result<std::shared_ptr<const AnimationSet>> AnimationSet::create(AnimationParts parts)
@@ -118,11 +126,8 @@ Result<std::shared_ptr<const AnimationSet>> AnimationSet::make(AnimationParts pa
         trackCount += morph.blockCount();
     if (auto fault = findFault(parts, trackCount)) return *fault;
 
-    const std::shared_ptr<const AnimationSet> set(new AnimationSet(std::move(parts), masks));
-    if (set->keyframeBufferSize() > std::numeric_limits<std::uint32_t>::max())
-        return Error{"its clips take " + std::to_string(set->keyframeBufferSize()) +
-                     " joint transforms, more than 32-bit offsets reach"};
-    return set;
+    if (auto fault = findFaultInSize(parts.clips)) return *fault;
+    return std::shared_ptr<const AnimationSet>(new AnimationSet(std::move(parts), masks));
 }
 
 int AnimationSet::entryOfRigidJoint(int joint) const
@@ -158,26 +163,8 @@ BlendSample AnimationSet::sampleAt(int clip, double time) const
     const auto index = static_cast<std::size_t>(clip);
     const Clip& played = _parts.clips[index];
     const Clip::Span span = played.locate(time);
-    const std::size_t keyframe = _keyframeOffsets[index] + span.keyframe * played.keyframeStride();
-    return {static_cast<std::uint32_t>(keyframe), span.alpha, 1.0f,
+    return {static_cast<std::uint32_t>(_firstKeyframes[index] + span.keyframe), span.alpha, 1.0f,
             played.form() == Clip::Form::Spline ? POSE_SAMPLE_SPLINE : 0u};
-}
-
-std::vector<JointTransform> AnimationSet::keyframeBuffer() const
-{
-    std::vector<JointTransform> buffer;
-    buffer.reserve(_keyframeBufferSize);
-    buffer.insert(buffer.end(), _restPose.begin(), _restPose.end());
-    buffer.insert(buffer.end(), _restPose.begin(), _restPose.end());
-    for (const Clip& clip : _parts.clips)
-        buffer.insert(buffer.end(), clip.data().begin(), clip.data().end());
-    // What follows the last keyframe is read but counts for nothing: it only has to be numbers.
-    while (buffer.size() < _keyframeBufferSize)
-    {
-        const std::size_t missing = std::min(_restPose.size(), _keyframeBufferSize - buffer.size());
-        buffer.insert(buffer.end(), _restPose.begin(), _restPose.begin() + static_cast<std::ptrdiff_t>(missing));
-    }
-    return buffer;
 }
 
 Result<std::uint32_t> AnimationSet::addMask(const JointMask& mask) const

@@ -98,6 +98,8 @@ public:
 
     /// The entry a vertex names for that place in the skin's joints.
     int entryOfSkin(std::size_t skin, std::size_t place) const { return _entryOfSkin[skin][place]; }
+    /// The entries of all places of a skin's joints, in their order: skins with equal ones move vertices alike.
+    const std::vector<int>& entriesOfSkin(std::size_t skin) const { return _entryOfSkin[skin]; }
     /// The entry with an identity inverse bind of a rigid joint; -1 if it is not one.
     int entryOfRigidJoint(int joint) const;
     /// The joint's main entry; jointToModel = entry · (that entry's inverseBind)⁻¹.
@@ -111,15 +113,11 @@ public:
     Result<std::size_t> clipNamed(const std::string& name) const;
     Result<std::size_t> clipAt(std::size_t clip) const;
 
-    /// All keyframes lie in one buffer of JointTransforms on the GPU: the rest pose (twice), then clip after clip.
-    /// keyframeOffset is the place of a clip's first keyframe there.
-    std::size_t keyframeOffset(std::size_t clip) const { return _keyframeOffsets[clip]; }
+    /// All keyframes of the set are numbered: 0 is the rest pose, then clip after clip (see BlendSample::keyframe).
+    std::size_t firstKeyframe(std::size_t clip) const { return _firstKeyframes[clip]; }
+    std::size_t keyframeCount() const { return _keyframeCount; } ///< the rest pose and those of all clips
     /// The clip at that time (seconds on its own time line) as a sample of full weight. clip -1: the rest pose.
     BlendSample sampleAt(int clip, double time) const;
-    /// JointTransforms in that buffer, with one keyframe of padding at the end (mixing reads keyframe + 1).
-    std::size_t keyframeBufferSize() const { return _keyframeBufferSize; }
-    /// The contents of that buffer: keyframeBufferSize() transforms, exactly as they go to the GPU.
-    std::vector<JointTransform> keyframeBuffer() const;
 
     /// Takes a mask up for all layers that are to use it, and returns its number (see BlendSample::control). Masks are
     /// only ever added, so a set that is in use can take more; equal ones are stored once.
@@ -140,8 +138,8 @@ private:
     std::vector<int> _entryOfRigidJoint;
     std::vector<int> _mainEntry;
     std::vector<int> _entryOfMorph;
-    std::vector<std::size_t> _keyframeOffsets;
-    std::size_t _keyframeBufferSize = 0;
+    std::vector<std::size_t> _firstKeyframes;
+    std::size_t _keyframeCount = 1;
     mutable MaskTable _masks;
 };
 

@@ -14,6 +14,7 @@ namespace osgGpuAnimation
 {
 
 struct ClipParts;
+struct CompactTracks;
 struct RootMotionCurve;
 
 /// A clip: keyframes in time order; each keyframe is a snapshot of **all tracks** (all joints, then all weight blocks).
@@ -71,11 +72,15 @@ public:
     /// The motion that was taken out of this clip, see withRootMotion(); null where none was.
     const RootMotionCurve* rootMotion() const { return _rootMotion.get(); }
 
+    /// How a compact clip goes to the GPU, see compactClips(); data() then holds what that decodes to. Null: exactly.
+    const CompactTracks* compactTracks() const { return _compactTracks.get(); }
+
     /// By binary search; times before the first keyframe give the first, after the last the last.
     Span locate(double time) const;
 
 private:
     friend class ClipBuilder;
+    friend class ClipCompactor;
     friend class RootMotionExtractor;
     Clip() = default;
 
@@ -86,6 +91,7 @@ private:
     std::shared_ptr<std::vector<JointTransform>> _data = std::make_shared<std::vector<JointTransform>>();
     std::vector<ClipMarker> _markers;
     std::shared_ptr<const RootMotionCurve> _rootMotion;
+    std::shared_ptr<const CompactTracks> _compactTracks;
 };
 
 } // namespace osgGpuAnimation

@@ -40,8 +40,7 @@ std::vector<Places> posesOf(const AnimationSet& set, std::size_t clip)
         const Clip::Span span = source.locate(source.duration() * static_cast<double>(i) / poseCount);
         PoseInstruction instruction;
         BlendSample& sample = instruction.samples[0];
-        sample.keyframe =
-            static_cast<std::uint32_t>(set.keyframeOffset(clip) + span.keyframe * source.keyframeStride());
+        sample.keyframe = static_cast<std::uint32_t>(set.firstKeyframe(clip) + span.keyframe);
         sample.alpha = span.alpha;
         sample.control = source.form() == Clip::Form::Spline ? POSE_SAMPLE_SPLINE : 0u;
         Pose::mix(set, instruction, tracks);

@@ -29,12 +29,12 @@ KeyframePair findKeyframes(const AnimationSet& set, const BlendSample& sample)
 {
     KeyframePair pair;
     pair.first = pair.second = set.restPose().data();
-    const std::size_t offset = sample.keyframe;
+    const std::size_t keyframe = sample.keyframe;
     std::size_t clip = set.clips().size();
     for (std::size_t low = 0; low < clip;)
     {
         const std::size_t middle = low + (clip - low) / 2;
-        if (set.keyframeOffset(middle) <= offset)
+        if (set.firstKeyframe(middle) <= keyframe)
             low = middle + 1;
         else
             clip = middle;
@@ -42,14 +42,14 @@ KeyframePair findKeyframes(const AnimationSet& set, const BlendSample& sample)
     if (clip == 0) return pair; // before the first clip lies the rest pose
 
     const Clip& data = set.clips()[clip - 1];
-    const std::size_t place = offset - set.keyframeOffset(clip - 1);
-    assert(place + data.keyframeStride() <= data.data().size() && "a blend sample names a keyframe of a clip");
-    if (place + data.keyframeStride() > data.data().size()) return pair;
-    pair.first = pair.second = data.data().data() + place;
+    const std::size_t place = keyframe - set.firstKeyframe(clip - 1);
+    assert(place < data.keyframeCount() && "a blend sample names a keyframe of a clip");
+    if (place >= data.keyframeCount()) return pair;
+    pair.first = pair.second = data.data().data() + place * data.keyframeStride();
     pair.alpha = static_cast<double>(sample.alpha);
     pair.spline = (sample.control & POSE_SAMPLE_SPLINE) != 0;
     // The last keyframe is never mixed with what follows it.
-    if (place + 2 * data.keyframeStride() <= data.data().size()) pair.second += data.keyframeStride();
+    if (place + 1 < data.keyframeCount()) pair.second += data.keyframeStride();
     return pair;
 }
 

@@ -12,7 +12,7 @@ namespace osgGpuAnimation
 /// Additive layers take two: their reference, then themselves.
 struct BlendSample
 {
-    std::uint32_t keyframe = 0; ///< offset of the first of the two in the set's keyframe buffer, in JointTransforms
+    std::uint32_t keyframe = 0; ///< the first of the two, see AnimationSet::firstKeyframe(); 0: the rest pose
     float alpha = 0.0f;         ///< [0, 1): 0 is the first keyframe
     float weight = 1.0f;        ///< [0, 1]; negative and not a number count as 0
     std::uint32_t control = 0;  ///< bits of layout.glsl: POSE_SAMPLE_SPLINE …, and the mask's number << 16

@@ -107,6 +107,7 @@ Result<Clip> RootMotionExtractor::extract(const Clip& clip)
     const Result<bool> hasParent = findParent(clip);
     if (!hasParent) return hasParent.error();
     Clip stripped = clip;
+    stripped._compactTracks = nullptr;
     stripped._data = std::make_shared<std::vector<JointTransform>>(clip.data());
     auto curve = std::make_shared<RootMotionCurve>();
     curve->joint = _joint;

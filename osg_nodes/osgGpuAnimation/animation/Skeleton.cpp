@@ -2,7 +2,6 @@
 #include <osgGpuAnimation/animation/Skeleton.h>
 
 #include <osgGpuAnimation/animation/QuotedNames.h>
-
 #include <osgGpuAnimation/animation/Rotation.h>
 
 #include <algorithm>

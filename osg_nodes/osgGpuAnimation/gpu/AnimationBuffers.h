@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/animation/PackedKeyframes.h>
 #include <osgGpuAnimation/gpu/BufferTexture.h>
 
 namespace osgGpuAnimation
@@ -11,10 +11,15 @@ namespace osgGpuAnimation
 class AnimationBuffers
 {
 public:
-    AnimationBuffers(osg::GLExtensions& gl, const AnimationSet& set);
+    AnimationBuffers(osg::GLExtensions& gl, const AnimationSet& set, const PackedKeyframes& keyframes);
 
-    /// RGBA32F: set.keyframeBufferSize() joint transforms, three texels each.
+    /// RGBA32UI: the texels of a PackedKeyframes.
     const BufferTexture& keyframes() const { return _keyframes; }
+    std::size_t restTexel() const { return _restTexel; } ///< see PackedKeyframes
+    /// What moves in a level of the palette: one a level of the set.
+    const std::vector<PackedKeyframes::Track>& levels() const { return _levels; }
+    /// What moves in any track.
+    const PackedKeyframes::Track& anyTrack() const { return _anyTrack; }
     /// RGBA32F: set.paletteSize() entries of POSE_TEXELS_PER_ENTRY texels.
     const BufferTexture& entries() const { return _entries; }
 
@@ -24,13 +29,16 @@ public:
     /// Uploads the set's masks if it has more than last time.
     void updateMasks(const AnimationSet& set);
 
+    /// Without masks.
+    static std::size_t byteSize(const AnimationSet& set, const PackedKeyframes& keyframes);
+
     void release();
     void discard();
 
-    /// Without masks.
-    static std::size_t byteSize(const AnimationSet& set);
-
 private:
+    std::size_t _restTexel;
+    std::vector<PackedKeyframes::Track> _levels;
+    PackedKeyframes::Track _anyTrack;
     BufferTexture _keyframes;
     BufferTexture _entries;
     BufferTexture _masks;

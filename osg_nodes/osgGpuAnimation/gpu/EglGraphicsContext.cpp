@@ -166,6 +166,27 @@ EGLContext createContext(EGLDisplay display, EGLConfig config, const osg::Graphi
     return eglCreateContext(display, config, shared, attributes.data());
 }
 
+/// An OSG that knows the fixed pipeline goes on switching its modes, which are errors in the core profile. Here it
+/// takes them for unknown.
+class CoreState : public osg::State
+{
+public:
+    CoreState()
+    {
+        for (const osg::StateAttribute::GLMode mode :
+             {GL_LIGHTING, GL_FOG, GL_NORMALIZE, GL_RESCALE_NORMAL, GL_ALPHA_TEST, GL_COLOR_MATERIAL})
+            setModeValidity(mode, false);
+        for (unsigned int light = 0; light < 8; ++light)
+            setModeValidity(GL_LIGHT0 + light, false);
+        _textureModeMapList.resize(16);
+        for (ModeMap& modes : _textureModeMapList)
+            for (const osg::StateAttribute::GLMode mode :
+                 {GL_TEXTURE_1D, GL_TEXTURE_2D, GL_TEXTURE_3D, GL_TEXTURE_CUBE_MAP, GL_TEXTURE_RECTANGLE,
+                  GL_TEXTURE_GEN_S, GL_TEXTURE_GEN_T, GL_TEXTURE_GEN_R, GL_TEXTURE_GEN_Q})
+                modes[mode].valid = false;
+    }
+};
+
 /// Whatever EGL context the thread has now, given back at the end.
 class CurrentContextKeeper
 {
@@ -247,7 +268,7 @@ Result<bool> EglGraphicsContext::open()
 
 void EglGraphicsContext::setUpState()
 {
-    osg::ref_ptr<osg::State> state = new osg::State;
+    osg::ref_ptr<osg::State> state = _core ? new CoreState : new osg::State;
     setState(state.get());
     state->setGraphicsContext(this);
     if (_traits->sharedContext.valid())

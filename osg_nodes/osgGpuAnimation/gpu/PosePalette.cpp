@@ -11,6 +11,7 @@ namespace
 {
 
 /// Brings the buffer and its record up to [first, first + count) of the source. True if it was not the same already.
+/// Where only a part is another, as with one of many that moved, that part is sent.
 template <typename Element>
 bool uploadChanged(const std::vector<Element>& source, std::size_t first, std::size_t count,
                    std::vector<Element>& uploaded, BufferTexture& buffer, std::size_t& bytesUploaded)
@@ -18,6 +19,22 @@ bool uploadChanged(const std::vector<Element>& source, std::size_t first, std::s
     const std::size_t bytes = count * sizeof(Element);
     const Element* begin = source.data() + first;
     if (uploaded.size() == count && (count == 0 || std::memcmp(uploaded.data(), begin, bytes) == 0)) return false;
+    if (uploaded.size() == count)
+    {
+        const auto isSame = [&](std::size_t i) { return std::memcmp(&uploaded[i], begin + i, sizeof(Element)) == 0; };
+        std::size_t from = 0, to = count;
+        while (isSame(from))
+            ++from;
+        while (isSame(to - 1))
+            --to;
+        if (2 * (to - from) <= count)
+        {
+            std::copy(begin + from, begin + to, uploaded.begin() + static_cast<std::ptrdiff_t>(from));
+            buffer.uploadPart(from * sizeof(Element), begin + from, (to - from) * sizeof(Element));
+            bytesUploaded += (to - from) * sizeof(Element);
+            return true;
+        }
+    }
     uploaded.assign(begin, begin + count);
     if (count == 0) return true;
     buffer.upload(begin, bytes);
@@ -56,7 +73,8 @@ std::vector<PosePalette::Chunk*> PosePalette::upload(const PoseBatch& batch, std
         // Tints are for the draw alone: the palette stays as it is.
         uploadChanged(batch.tints(), hasTints ? first : 0, hasTints ? size : 0, chunk.uploadedTints, chunk.tints,
                       bytesUploaded);
-        if (isChanged) changed.push_back(&chunk);
+        chunk.isEvaluated = chunk.isEvaluated && !isChanged;
+        if (!chunk.isEvaluated) changed.push_back(&chunk);
     }
     for (; index < _chunks.size(); ++index)
         _chunks[index]->size = 0;
@@ -68,8 +86,15 @@ PalettePlace PosePalette::place(std::size_t instance) const
     const std::size_t index = instance / _chunkCapacity;
     if (index >= _chunks.size()) return {};
     const Chunk& chunk = *_chunks[index];
+    if (!chunk.isEvaluated) return {};
     return {chunk.palette.texture(), static_cast<int>(chunk.size), static_cast<int>(instance % _chunkCapacity),
             chunk.uploadedTints.empty() ? 0 : chunk.tints.texture()};
+}
+
+void PosePalette::invalidate()
+{
+    for (const std::unique_ptr<Chunk>& chunk : _chunks)
+        chunk->isEvaluated = false;
 }
 
 void PosePalette::release()

@@ -36,16 +36,21 @@ public:
         BufferTexture samples;
         BufferTexture roots;
         BufferTexture tints;
-        BufferTexture palette; ///< RGBA32F: paletteSize * size matrices, entry-major
+        bool isEvaluated = false; ///< `palette` is what the inputs ask for
+        BufferTexture palette;    ///< RGBA32F: paletteSize * size matrices, entry-major
     };
 
     explicit PosePalette(osg::GLExtensions& gl) : _gl(&gl) {}
 
     /// Cuts the batch's instances into chunks of at most that many and uploads what is new of each.
-    /// Returns the chunks whose content changed: they are to be evaluated. bytesUploaded is added to.
+    /// Returns the chunks that are to be evaluated: those whose content changed, and those that have not been yet.
+    /// bytesUploaded is added to.
     std::vector<Chunk*> upload(const PoseBatch& batch, std::size_t chunkCapacity, std::size_t& bytesUploaded);
 
+    /// No texture where the instance's chunk has not been evaluated.
     PalettePlace place(std::size_t instance) const;
+    /// No chunk counts as evaluated any more.
+    void invalidate();
     const std::vector<std::unique_ptr<Chunk>>& chunks() const { return _chunks; }
 
     void release();

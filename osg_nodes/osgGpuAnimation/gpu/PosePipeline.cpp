@@ -49,11 +49,19 @@ PoseVariant mixVariant(const PoseBatch& batch)
     return variant;
 }
 
+void setMotion(PoseVariant& variant, const PackedKeyframes::Track& motion)
+{
+    variant.translationMotion = motion.translation;
+    variant.scaleMotion = motion.scale;
+    variant.hasExactKeys = motion.hasExactKeys;
+    variant.hasCompactKeys = motion.hasCompactKeys;
+}
+
 } // namespace
 
 PosePipeline::PosePipeline(unsigned int contextId)
     : osg::GraphicsObjectManager("PosePipeline", contextId), _gl(osg::GLExtensions::Get(contextId, true)),
-      _scratch(*_gl, GL_RGBA32F_ARB), _mixedTracks(*_gl, GL_RGBA32F_ARB)
+      _vertexArrays(*_gl), _scratch(*_gl, GL_RGBA32F_ARB), _mixedTracks(*_gl, GL_RGBA32F_ARB)
 {
     osg::setGLExtensionFuncPtr(_copyBufferSubData, "glCopyBufferSubData");
     GLint maxTexels = 0;
@@ -114,10 +122,11 @@ PosePipeline::SetResources& PosePipeline::resourcesOf(const PoseBatch& batch)
         palette->release();
     if (resources.buffers) resources.buffers->release();
     resources = SetResources{batch.sharedSet(), nullptr, {}, false};
-    const std::size_t keyframeTexels = set.keyframeBufferSize() * POSE_TEXELS_PER_TRANSFORM;
+    const PackedKeyframes keyframes(set);
+    const std::size_t keyframeTexels = keyframes.texels().size();
     const std::size_t entryTexels = set.paletteSize() * POSE_TEXELS_PER_ENTRY;
     if (std::max(keyframeTexels, entryTexels) <= _maxTexels)
-        resources.buffers = std::make_unique<AnimationBuffers>(*_gl, set);
+        resources.buffers = std::make_unique<AnimationBuffers>(*_gl, set, keyframes);
     else
         OSG_WARN << "osgGpuAnimation: an animation set needs buffers of " << keyframeTexels
                  << " texels (keyframes) and " << entryTexels << " (palette entries), this context takes at most "
@@ -127,11 +136,6 @@ PosePipeline::SetResources& PosePipeline::resourcesOf(const PoseBatch& batch)
 
 bool PosePipeline::evaluate(osg::State& state, const PoseBatch& batch, std::size_t slot)
 {
-    if (_noVertexArray == 0)
-    {
-        _gl->glGenVertexArrays(1, &_poseVertexArray);
-        _gl->glGenVertexArrays(1, &_noVertexArray);
-    }
     forgetUnusedSets();
     SetResources& resources = resourcesOf(batch);
     if (!resources.buffers) return false;
@@ -141,7 +145,11 @@ bool PosePipeline::evaluate(osg::State& state, const PoseBatch& batch, std::size
     const AnimationSet& set = batch.set();
     if (batch.needs().masks)
     {
-        if (!hasRoomForMasks(resources, set)) return false;
+        if (!hasRoomForMasks(resources, set))
+        {
+            resources.palettes[slot]->invalidate();
+            return false;
+        }
         resources.buffers->updateMasks(set);
     }
     const std::size_t widest = std::max(set.paletteSize(), _form == Form::Separate ? set.trackCount() : 0);
@@ -151,14 +159,14 @@ bool PosePipeline::evaluate(osg::State& state, const PoseBatch& batch, std::size
         resources.palettes[slot]->upload(batch, chunkCapacity, _counters.bytesUploaded);
     if (changed.empty()) return true;
 
-    const FeedbackScope scope(state, _form == Form::Fused ? _poseVertexArray : _noVertexArray, unitCount);
+    const FeedbackVertexArrays::Names& vertexArrays = _vertexArrays.of(state);
+    const FeedbackScope scope(state, _form == Form::Fused ? vertexArrays.pose : vertexArrays.empty, unitCount);
     for (PosePalette::Chunk* chunk : changed)
     {
         chunk->palette.reserve(set.paletteSize() * chunk->size * matrixBytes);
-        if (_form == Form::Fused)
-            evaluateFused(batch, *resources.buffers, *chunk);
-        else
-            evaluateSeparate(batch, *resources.buffers, *chunk);
+        chunk->isEvaluated = _form == Form::Fused ? evaluateFused(batch, *resources.buffers, *chunk)
+                                                  : evaluateSeparate(batch, *resources.buffers, *chunk);
+        if (!chunk->isEvaluated) return false;
         _counters.instancesEvaluated += chunk->size;
     }
     return true;
@@ -186,13 +194,13 @@ void PosePipeline::useMixInput(FeedbackPass& pass, const AnimationSet& set, cons
     pass.setInt("maskStride", static_cast<int>(AnimationBuffers::texelsPerMask(set)));
     pass.setInt("sampleStride", static_cast<int>(chunk.sampleStride));
     pass.setInt("instanceCount", static_cast<int>(chunk.size));
-    pass.setInt("trackCount", static_cast<int>(set.trackCount()));
+    pass.setInt("restTexel", static_cast<int>(buffers.restTexel()));
     pass.setInt("jointCount", static_cast<int>(set.skeleton().jointCount()));
 }
 
 // A buffer must not be read while feedback writes to it, so levels go to the palette and to the scratch buffer by
 // turns, each at its own place; at the end the scratch buffer's levels are copied to their places in the palette.
-void PosePipeline::evaluateFused(const PoseBatch& batch, const AnimationBuffers& buffers, PosePalette::Chunk& chunk)
+bool PosePipeline::evaluateFused(const PoseBatch& batch, const AnimationBuffers& buffers, PosePalette::Chunk& chunk)
 {
     const AnimationSet& set = batch.set();
     if (set.levelCount() > 1) _scratch.reserve(set.paletteSize() * chunk.size * matrixBytes);
@@ -202,13 +210,16 @@ void PosePipeline::evaluateFused(const PoseBatch& batch, const AnimationBuffers&
     variant.hasRoots = !chunk.uploadedRootMatrices.empty();
     const std::size_t entryBytes = POSE_TEXELS_PER_ENTRY * BufferTexture::texelBytes;
     const std::vector<std::size_t>& levels = set.levels();
+    const FeedbackPass* current = nullptr;
     for (std::size_t level = 0; level < set.levelCount(); ++level)
     {
         if (level == 1) variant.isRootLevel = variant.hasRoots = variant.hasWeights = false;
+        setMotion(variant, buffers.levels()[level]);
         const bool isOdd = level % 2 != 0;
         FeedbackPass& pass = posePass(variant);
-        if (!pass.valid()) return;
-        if (level < 2) useMixInput(pass, set, buffers, chunk);
+        if (!pass.valid()) return false;
+        if (&pass != current) useMixInput(pass, set, buffers, chunk);
+        current = &pass;
         pass.setTexture("parentLevels", unitPrevious, (isOdd ? chunk.palette : _scratch).texture());
         buffers.entries().bindAttributes(POSE_HEAD_LOCATION, POSE_TEXELS_PER_ENTRY, entryBytes,
                                          levels[level] * entryBytes, 1);
@@ -217,6 +228,7 @@ void PosePipeline::evaluateFused(const PoseBatch& batch, const AnimationBuffers&
         ++_counters.feedbackDraws;
     }
     gatherOddLevels(set, chunk);
+    return true;
 }
 
 void PosePipeline::bindInstances(const PosePalette::Chunk& chunk)
@@ -252,7 +264,7 @@ void PosePipeline::runSeparate(FeedbackPass& pass, std::size_t count, const Buff
     ++_counters.feedbackDraws;
 }
 
-void PosePipeline::evaluateSeparate(const PoseBatch& batch, const AnimationBuffers& buffers, PosePalette::Chunk& chunk)
+bool PosePipeline::evaluateSeparate(const PoseBatch& batch, const AnimationBuffers& buffers, PosePalette::Chunk& chunk)
 {
     const AnimationSet& set = batch.set();
     const std::size_t trackVertices = set.trackCount() * chunk.size;
@@ -260,8 +272,12 @@ void PosePipeline::evaluateSeparate(const PoseBatch& batch, const AnimationBuffe
     _scratch.reserve(trackVertices * matrixBytes);
 
     makeSeparatePasses();
-    FeedbackPass& mixing = mixPass(mixVariant(batch));
-    if (!mixing.valid() || !_localPass->valid() || !_worldPass->valid()) return;
+    PoseVariant variant = mixVariant(batch);
+    setMotion(variant, buffers.anyTrack());
+    variant.translationMotion = std::max(variant.translationMotion, PartMotion::Held);
+    variant.scaleMotion = std::max(variant.scaleMotion, PartMotion::Held);
+    FeedbackPass& mixing = mixPass(variant);
+    if (!mixing.valid() || !_localPass->valid() || !_worldPass->valid()) return false;
     useMixInput(mixing, set, buffers, chunk);
     runSeparate(mixing, trackVertices, _mixedTracks);
 
@@ -278,6 +294,7 @@ void PosePipeline::evaluateSeparate(const PoseBatch& batch, const AnimationBuffe
     _worldPass->setInt("hasRoots", chunk.uploadedRootMatrices.empty() ? 0 : 1);
     _worldPass->setTexture("localMatrices", unitPrevious, _scratch.texture());
     runSeparate(*_worldPass, set.paletteSize() * chunk.size, chunk.palette);
+    return true;
 }
 
 PalettePlace PosePipeline::place(const AnimationSet& set, std::size_t slot, std::size_t instance) const
@@ -354,8 +371,7 @@ void PosePipeline::deleteAllGLObjects()
     forEachPass([](FeedbackPass& pass) { pass.release(); });
     _scratch.release();
     _mixedTracks.release();
-    if (_poseVertexArray != 0) _gl->glDeleteVertexArrays(1, &_poseVertexArray);
-    if (_noVertexArray != 0) _gl->glDeleteVertexArrays(1, &_noVertexArray);
+    _vertexArrays.release();
     discardAllGLObjects();
 }
 
@@ -371,8 +387,7 @@ void PosePipeline::discardAllGLObjects()
     _worldPass.reset();
     _scratch.discard();
     _mixedTracks.discard();
-    _poseVertexArray = 0;
-    _noVertexArray = 0;
+    _vertexArrays.discard();
 }
 
 } // namespace osgGpuAnimation

@@ -3,6 +3,7 @@
 
 #include <osgGpuAnimation/gpu/AnimationBuffers.h>
 #include <osgGpuAnimation/gpu/FeedbackPass.h>
+#include <osgGpuAnimation/gpu/FeedbackVertexArrays.h>
 #include <osgGpuAnimation/gpu/PosePalette.h>
 #include <osgGpuAnimation/gpu/PoseVariant.h>
 
@@ -50,7 +51,8 @@ public:
 
     /// Uploads the batch and computes its palette, unless nothing changed since the last batch of the same set and
     /// slot. Slots tell batches of one set apart: 0, 1, 2 …; a slot's palette lasts until its next evaluate.
-    /// False, with one warning a set, where the set is too large for the context's buffer textures.
+    /// False, with one warning, where the set is too large for the context's buffer textures or a pass does not
+    /// compile: the batch then has no palette, and its characters are not drawn.
     bool evaluate(osg::State& state, const PoseBatch& batch, std::size_t slot);
 
     /// Where an instance of the batch last evaluated for set and slot is. No texture where there is none.
@@ -95,8 +97,8 @@ private:
     template <typename Function>
     void forEachPass(Function function);
     void bindInstances(const PosePalette::Chunk& chunk);
-    void evaluateFused(const PoseBatch& batch, const AnimationBuffers& buffers, PosePalette::Chunk& chunk);
-    void evaluateSeparate(const PoseBatch& batch, const AnimationBuffers& buffers, PosePalette::Chunk& chunk);
+    bool evaluateFused(const PoseBatch& batch, const AnimationBuffers& buffers, PosePalette::Chunk& chunk);
+    bool evaluateSeparate(const PoseBatch& batch, const AnimationBuffers& buffers, PosePalette::Chunk& chunk);
     void useMixInput(FeedbackPass& pass, const AnimationSet& set, const AnimationBuffers& buffers,
                      const PosePalette::Chunk& chunk);
     void gatherOddLevels(const AnimationSet& set, const PosePalette::Chunk& chunk);
@@ -108,8 +110,7 @@ private:
     bool _isSupported = false;
     Form _form = Form::Fused;
     Counters _counters;
-    GLuint _poseVertexArray = 0; ///< with the attributes of the pose pass
-    GLuint _noVertexArray = 0;   ///< without any
+    FeedbackVertexArrays _vertexArrays;
     Passes _posePasses;
     Passes _mixPasses;
     std::unique_ptr<FeedbackPass> _localPass;

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <osgGpuAnimation/animation/PartMotion.h>
+
+#include <initializer_list>
 #include <string>
-#include <tuple>
 
 namespace osgGpuAnimation
 {
@@ -19,6 +21,10 @@ struct PoseVariant
     bool hasLayers = false;         ///< some instance has samples of several standings
     bool hasMasks = false;          ///< some sample has a mask
     bool hasAdditive = false;       ///< some sample is additive
+    bool hasExactKeys = false;      ///< some clip moves some of the tracks, in full precision
+    bool hasCompactKeys = false;    ///< some compact clip moves some of the tracks
+    PartMotion translationMotion = PartMotion::Held; ///< of the tracks, the most that any does in any clip
+    PartMotion scaleMotion = PartMotion::Held;
 
     bool operator<(const PoseVariant& other) const { return key() < other.key(); }
 
@@ -27,15 +33,24 @@ struct PoseVariant
     {
         const auto line = [](const char* name, bool value)
         { return std::string("const bool ") + name + (value ? " = true;\n" : " = false;\n"); };
+        const auto motion = [](const char* name, PartMotion value)
+        { return std::string("const int ") + name + " = " + std::to_string(static_cast<int>(value)) + ";\n"; };
         return line("hasSplines", hasSplines) + line("hasSeveralSamples", hasSeveralSamples) +
                line("hasWeights", hasWeights) + line("isRootLevel", isRootLevel) + line("hasRoots", hasRoots) +
-               line("hasLayers", hasLayers) + line("hasMasks", hasMasks) + line("hasAdditive", hasAdditive);
+               line("hasLayers", hasLayers) + line("hasMasks", hasMasks) + line("hasAdditive", hasAdditive) +
+               line("hasExactKeys", hasExactKeys) + line("hasCompactKeys", hasCompactKeys) +
+               motion("translationMotion", translationMotion) + motion("scaleMotion", scaleMotion);
     }
 
 private:
-    std::tuple<bool, bool, bool, bool, bool, bool, bool, bool> key() const
+    /// A number of its own for each variant.
+    unsigned int key() const
     {
-        return {hasSplines, hasSeveralSamples, hasWeights, isRootLevel, hasRoots, hasLayers, hasMasks, hasAdditive};
+        unsigned int key = 0;
+        for (const bool has : {hasSplines, hasSeveralSamples, hasWeights, isRootLevel, hasRoots, hasLayers, hasMasks,
+                               hasAdditive, hasExactKeys, hasCompactKeys})
+            key = 2 * key + (has ? 1 : 0);
+        return (4 * key + static_cast<unsigned int>(translationMotion)) * 4 + static_cast<unsigned int>(scaleMotion);
     }
 };
 

@@ -4,6 +4,7 @@
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/nodes/AnimationUpdateCallback.h>
 #include <osgGpuAnimation/nodes/DepthPass.h>
+#include <osgGpuAnimation/nodes/FlattenedPlace.h>
 #include <osgGpuAnimation/nodes/PoseStage.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
@@ -63,7 +64,8 @@ AnimatedCharacter::AnimatedCharacter(std::shared_ptr<const AnimationSet> set)
 
 AnimatedCharacter::AnimatedCharacter(const AnimatedCharacter& other, const osg::CopyOp& copyop)
     : osg::MatrixTransform(other, copyop), _controller(std::make_unique<AnimationController>(*other._controller)),
-      _clipBounds(other._clipBounds), _mixBounds(other._mixBounds), _updateTime(other._updateTime)
+      _clipBounds(other._clipBounds), _mixBounds(other._mixBounds), _updateTime(other._updateTime),
+      _isDrawnTogether(other._isDrawnTogether)
 {
     // osg::Node copies its other callbacks, but not these.
     setEventCallback(copyop(other.getEventCallback()));
@@ -162,13 +164,11 @@ void AnimatedCharacter::traverse(osg::NodeVisitor& visitor)
     osgUtil::CullVisitor* cullVisitor = visitor.asCullVisitor();
     if (!cullVisitor || getNumChildren() == 0 || set().paletteSize() == 0)
     {
-        osg::MatrixTransform::traverse(visitor);
+        if (!keepFlattenedPlace(*this, visitor)) osg::MatrixTransform::traverse(visitor);
         return;
     }
     const DepthPass pass(*cullVisitor);
-    cullVisitor->pushStateSet(PoseStage::enlist(*cullVisitor, *this));
-    osg::MatrixTransform::traverse(visitor);
-    cullVisitor->popStateSet();
+    PoseStage::draw(*cullVisitor, *this);
 }
 
 Box AnimatedCharacter::boundsOf(const std::vector<PlayedClip>& played) const

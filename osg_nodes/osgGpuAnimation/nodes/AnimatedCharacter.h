@@ -67,6 +67,12 @@ public:
     /// mix of the clips that the layers play, see MixBounds. Empty before computeClipBounds().
     Box currentBounds() const;
 
+    /// Whether characters that OSG would draw alike, one after another, may be drawn by one instanced draw a mesh
+    /// primitive, see CharacterDraws. Programs that have no part in it (they do not link skin.glsl) are drawn one by
+    /// one.
+    void setDrawnTogether(bool together) { _isDrawnTogether = together; }
+    bool isDrawnTogether() const { return _isDrawnTogether; } ///< default: true
+
     void traverse(osg::NodeVisitor& visitor) override;
     /// Of currentBounds(); update() sees to it that it is asked for again when other clips play.
     osg::BoundingSphere computeBound() const override;
@@ -84,6 +90,7 @@ private:
     std::optional<double> _updateTime;                   ///< seconds of simulation time
     std::vector<PlayedClip> _played;                     ///< what the bound was last dirtied for
     std::vector<PlayedClip> _playedNow;                  ///< kept for its memory
+    bool _isDrawnTogether = true;
 };
 
 /// The first AnimatedCharacter at or below the node, depth first; null where there is none.

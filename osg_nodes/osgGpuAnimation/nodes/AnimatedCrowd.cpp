@@ -6,6 +6,7 @@
 #include <osgGpuAnimation/nodes/AnimationUpdateCallback.h>
 #include <osgGpuAnimation/nodes/CrowdView.h>
 #include <osgGpuAnimation/nodes/DepthPass.h>
+#include <osgGpuAnimation/nodes/FlattenedPlace.h>
 #include <osgGpuAnimation/nodes/PosedMesh.h>
 #include <osgGpuAnimation/nodes/PoseStage.h>
 
@@ -282,7 +283,7 @@ void AnimatedCrowd::traverse(osg::NodeVisitor& visitor)
         cull(*cullVisitor);
     else if (dynamic_cast<osgUtil::IntersectionVisitor*>(&visitor))
         intersect(visitor);
-    else
+    else if (!keepFlattenedPlace(*this, visitor))
         osg::Transform::traverse(visitor);
 }
 

@@ -2,6 +2,7 @@
 #include <osgGpuAnimation/nodes/CharacterKeys.h>
 
 #include <osgGpuAnimation/nodes/JointLines.h>
+#include <osgGpuAnimation/nodes/PoseStatistics.h>
 
 #include <osg/ApplicationUsage>
 #include <osg/Notify>
@@ -111,6 +112,7 @@ bool CharacterKeys::handle(const osgGA::GUIEventAdapter& event, osgGA::GUIAction
     if (!character || event.getHandled()) return false;
     if (event.getEventType() == osgGA::GUIEventAdapter::FRAME) tellKeysOnce();
     if (event.getEventType() != osgGA::GUIEventAdapter::KEYDOWN) return false;
+    PoseStatistics::addLines(action);
     if (isFirstTime(event, *object) && press(event.getKey(), *character)) action.requestRedraw();
     return false;
 }

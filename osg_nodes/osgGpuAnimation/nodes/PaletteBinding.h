@@ -2,10 +2,12 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/gpu/PlacementBuffers.h>
 
 #include <osg/StateAttribute>
 
 #include <memory>
+#include <vector>
 
 namespace osgGpuAnimation
 {
@@ -23,6 +25,15 @@ public:
 
         void set(std::shared_ptr<const AnimationSet> set, std::size_t slot, std::size_t instance,
                  std::size_t instanceCount = 1);
+    /// For instances that are drawn together, each at a placement of its own; there are none at first.
+    void setPlaced(std::shared_ptr<const AnimationSet> set, std::size_t slot);
+    void add(const Placement& placement) { _placements.push_back(placement); }
+    const std::vector<Placement>& placements() const { return _placements; }
+    std::uint64_t serial() const
+    {
+        return _serial;
+    } ///< of the list of placements; 0: instances stand where the draw does
+
     const AnimationSet* animationSet() const { return _set.get(); }
     std::size_t slot() const { return _slot; }
     std::size_t instance() const { return _instance; }           ///< the first to be drawn
@@ -39,6 +50,8 @@ private:
     std::size_t _slot = 0;
     std::size_t _instance = 0;
     std::size_t _instanceCount = 1;
+    std::vector<Placement> _placements;
+    std::uint64_t _serial = 0;
 };
 
 } // namespace osgGpuAnimation

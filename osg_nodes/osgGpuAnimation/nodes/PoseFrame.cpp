@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/PoseFrame.h>
 
+#include <osgGpuAnimation/gpu/FeedbackTimer.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
+#include <osgGpuAnimation/nodes/PoseStatistics.h>
 
 #include <algorithm>
 
@@ -11,15 +13,17 @@ namespace osgGpuAnimation
 namespace
 {
 
-bool isSame(const PoseInstruction& a, const PoseInstruction& b)
+bool isSame(const BlendSample& a, const BlendSample& b)
 {
-    const auto same = [](const BlendSample& left, const BlendSample& right)
-    {
-        return left.keyframe == right.keyframe && left.alpha == right.alpha && left.weight == right.weight &&
-               left.control == right.control;
-    };
-    return a.sampleCount == b.sampleCount &&
-           std::equal(a.samples.begin(), a.samples.begin() + a.sampleCount, b.samples.begin(), same);
+    return a.keyframe == b.keyframe && a.alpha == b.alpha && a.weight == b.weight && a.control == b.control;
+}
+
+/// Several cameras may have poses evaluated in one frame.
+void addTo(osg::Stats& stats, unsigned int frameNumber, const char* attribute, double amount)
+{
+    double before = 0.0;
+    stats.getAttribute(frameNumber, attribute, before);
+    stats.setAttribute(frameNumber, attribute, before + amount);
 }
 
 PaletteBinding& bindingOf(osg::StateSet& stateSet)
@@ -62,25 +66,46 @@ void PoseFrame::reset(unsigned int frameNumber)
     _batches.clear();
     _batchesOfSet.clear();
     _enlisted.clear();
-    for (std::size_t i = 0; i < _statesUsed; ++i)
-        bindingOf(*_states[i]).set(nullptr, 0, 0, 0);
-    _statesUsed = 0;
+    _samples.clear();
+    _states.reset();
+    _placedStates.reset();
 }
 
-osg::StateSet* PoseFrame::enlist(const AnimatedCharacter& character)
+EnlistedPose PoseFrame::enlist(const AnimatedCharacter& character)
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    Enlisted& enlisted = _enlisted[&character];
+    if (!isStill(enlisted, character))
+    {
+        const PoseInstruction& instruction = character.controller().instruction();
+        Batch& batch = openBatch(character);
+        enlisted = {&batch, batch.content->add(instruction), _samples.size(), instruction.sampleCount, nullptr};
+        _samples.insert(_samples.end(), instruction.samples.begin(),
+                        instruction.samples.begin() + static_cast<std::ptrdiff_t>(instruction.sampleCount));
+    }
+    return {enlisted.batch->slot, enlisted.instance};
+}
+
+// The address may be that of another character by now, in a viewer whose frames have the same numbers.
+bool PoseFrame::isStill(const Enlisted& known, const AnimatedCharacter& character) const
 {
     const PoseInstruction& instruction = character.controller().instruction();
-    const std::lock_guard<std::mutex> lock(_mutex);
-    const auto known = _enlisted.find(&character);
-    // The address may be that of another character by now, in a viewer whose frames have the same numbers.
-    if (known != _enlisted.end() && isSame(known->second.instruction, instruction) &&
-        bindingOf(*known->second.stateSet).animationSet() == &character.set())
-        return known->second.stateSet;
+    return known.batch && &known.batch->content->set() == &character.set() &&
+           known.sampleCount == instruction.sampleCount &&
+           std::equal(instruction.samples.begin(),
+                      instruction.samples.begin() + static_cast<std::ptrdiff_t>(instruction.sampleCount),
+                      _samples.begin() + static_cast<std::ptrdiff_t>(known.firstSample), isSame);
+}
 
-    Batch& batch = openBatch(character);
-    osg::StateSet* stateSet = nextState(batch, batch.content->add(instruction), 1);
-    _enlisted[&character] = {instruction, stateSet};
-    return stateSet;
+osg::StateSet* PoseFrame::stateOf(const AnimatedCharacter& character, EnlistedPose pose)
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    Enlisted& enlisted = _enlisted[&character];
+    // A camera that culls at the same time may have enlisted it with another instruction meanwhile.
+    const bool isOther = enlisted.batch->slot != pose.slot || enlisted.instance != pose.instance;
+    if (isOther) return stateOf(*_batchesOfSet[&character.set()][pose.slot], pose.instance, 1);
+    if (!enlisted.stateSet) enlisted.stateSet = stateOf(*enlisted.batch, enlisted.instance, 1);
+    return enlisted.stateSet;
 }
 
 PoseFrame::Batch& PoseFrame::openBatch(const AnimatedCharacter& character)
@@ -123,27 +148,68 @@ osg::StateSet* PoseFrame::enlist(std::unique_ptr<PoseBatch> content)
             return batch->stateOfAll;
         }
     Batch& batch = addBatch(std::move(content));
-    batch.stateOfAll = nextState(batch, 0, batch.content->size());
+    batch.stateOfAll = stateOf(batch, 0, batch.content->size());
     return batch.stateOfAll;
 }
 
-osg::StateSet* PoseFrame::nextState(const Batch& batch, std::size_t instance, std::size_t instanceCount)
+osg::StateSet* PoseFrame::stateOf(const Batch& batch, std::size_t instance, std::size_t instanceCount)
 {
-    if (_statesUsed == _states.size())
-    {
-        _states.push_back(new osg::StateSet);
-        _states.back()->setAttribute(new PaletteBinding);
-    }
-    osg::StateSet* stateSet = _states[_statesUsed++].get();
-    bindingOf(*stateSet).set(batch.content->sharedSet(), batch.slot, instance, instanceCount);
-    return stateSet;
+    osg::StateSet& stateSet = _states.next(false);
+    bindingOf(stateSet).set(batch.content->sharedSet(), batch.slot, instance, instanceCount);
+    return &stateSet;
 }
 
-void PoseFrame::evaluate(osg::RenderInfo& renderInfo)
+PlacedState PoseFrame::placedState(const AnimationSet& set, std::size_t slot)
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    osg::StateSet& stateSet = _placedStates.next(true);
+    PaletteBinding& binding = bindingOf(stateSet);
+    binding.setPlaced(_batchesOfSet[&set][slot]->content->sharedSet(), slot);
+    return {&stateSet, &binding};
+}
+
+osg::StateSet& PoseFrame::StatePool::next(bool isPlaced)
+{
+    if (used == states.size())
+    {
+        states.push_back(new osg::StateSet);
+        states.back()->setAttribute(new PaletteBinding);
+        if (isPlaced) states.back()->setDefine("POSE_PLACED");
+    }
+    return *states[used++];
+}
+
+void PoseFrame::StatePool::reset()
+{
+    // What the last frame did not need is not kept for ever.
+    states.resize(std::min(states.size(), 2 * used));
+    for (const osg::ref_ptr<osg::StateSet>& state : states)
+        bindingOf(*state).set(nullptr, 0, 0, 0);
+    used = 0;
+}
+
+void PoseFrame::evaluate(osg::RenderInfo& renderInfo, osg::Stats* stats)
 {
     const std::lock_guard<std::mutex> lock(_mutex);
     osg::State& state = *renderInfo.getState();
     PosePipeline* pipeline = PosePipeline::of(state);
+    if (!stats || !pipeline)
+    {
+        evaluateBatches(state, pipeline);
+        return;
+    }
+    FeedbackTimer& timer = FeedbackTimer::of(state);
+    const std::uint64_t evaluatedBefore = pipeline->counters().instancesEvaluated;
+    timer.begin();
+    evaluateBatches(state, pipeline);
+    timer.end(_frameNumber);
+    record(*stats, pipeline->counters().instancesEvaluated - evaluatedBefore);
+    for (const FeedbackTimer::Measured& measured : timer.takeFinished())
+        addTo(*stats, measured.frameNumber, PoseStatistics::timeTaken, measured.seconds);
+}
+
+void PoseFrame::evaluateBatches(osg::State& state, PosePipeline* pipeline)
+{
     for (const std::unique_ptr<Batch>& batch : _batches)
     {
         // A context made anew under an old one's number has none of its palettes.
@@ -152,6 +218,19 @@ void PoseFrame::evaluate(osg::RenderInfo& renderInfo)
         batch->isEvaluated = true;
         if (pipeline) pipeline->evaluate(state, *batch->content, batch->slot);
     }
+}
+
+void PoseFrame::record(osg::Stats& stats, std::uint64_t evaluated) const
+{
+    std::size_t seen = 0, joints = 0;
+    for (const std::unique_ptr<Batch>& batch : _batches)
+    {
+        seen += batch->content->size();
+        joints += batch->content->size() * batch->content->set().skeleton().jointCount();
+    }
+    stats.setAttribute(_frameNumber, PoseStatistics::charactersSeen, static_cast<double>(seen));
+    stats.setAttribute(_frameNumber, PoseStatistics::jointsSeen, static_cast<double>(joints));
+    addTo(stats, _frameNumber, PoseStatistics::charactersEvaluated, static_cast<double>(evaluated));
 }
 
 } // namespace osgGpuAnimation

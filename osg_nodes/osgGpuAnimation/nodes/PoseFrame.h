@@ -9,6 +9,7 @@
 #include <osg/Referenced>
 #include <osg/RenderInfo>
 #include <osg/StateSet>
+#include <osg/Stats>
 
 #include <memory>
 #include <mutex>
@@ -20,6 +21,20 @@ namespace osgGpuAnimation
 
 class AnimatedCharacter;
 
+/// Where a frame has a character's pose: an instance of the batch of that slot.
+struct EnlistedPose
+{
+    std::size_t slot = 0;
+    std::size_t instance = 0;
+};
+
+/// The state for drawing characters together, and its binding, to be given their placements.
+struct PlacedState
+{
+    osg::StateSet* stateSet;
+    PaletteBinding* binding;
+};
+
 /// All characters that are seen in one frame in one graphics context, each once, however many cameras see it: the
 /// batches they make up, and the state each is to be drawn with. Filled while cameras cull, maybe several at once;
 /// evaluated on the draw side. It is a snapshot: the next frame's update may change the controllers meanwhile.
@@ -29,9 +44,13 @@ public:
     /// The frame to fill now; frames still in use elsewhere are left alone.
     static osg::ref_ptr<PoseFrame> forContext(unsigned int contextId, unsigned int frameNumber);
 
-    /// Takes the character up, unless it is already in with the same instruction. The state holds its PaletteBinding
-    /// and stays unchanged while this frame is in use.
-    osg::StateSet* enlist(const AnimatedCharacter& character);
+    /// Takes the character up, unless it is already in with the same instruction.
+    EnlistedPose enlist(const AnimatedCharacter& character);
+    /// The state for drawing the enlisted character as it is: it holds its PaletteBinding and stays unchanged while
+    /// this frame is in use.
+    osg::StateSet* stateOf(const AnimatedCharacter& character, EnlistedPose pose);
+    /// A new state for drawing instances of that batch together.
+    PlacedState placedState(const AnimationSet& set, std::size_t slot);
 
     /// An empty batch, to be filled by the caller alone and enlisted; its storage is that of earlier frames.
     std::unique_ptr<PoseBatch> makeBatch(std::shared_ptr<const AnimationSet> set);
@@ -39,8 +58,9 @@ public:
     /// drawing all its instances. batch: not empty.
     osg::StateSet* enlist(std::unique_ptr<PoseBatch> batch);
 
-    /// Evaluates what was enlisted and not evaluated yet.
-    void evaluate(osg::RenderInfo& renderInfo);
+    /// Evaluates what was enlisted and not evaluated yet. stats: where to record what there was to do, see
+    /// PoseStatistics; null: nowhere.
+    void evaluate(osg::RenderInfo& renderInfo, osg::Stats* stats = nullptr);
 
     unsigned int frameNumber() const { return _frameNumber; }
 
@@ -59,15 +79,30 @@ private:
     };
     struct Enlisted
     {
-        PoseInstruction instruction;
-        osg::StateSet* stateSet;
+        const Batch* batch;
+        std::size_t instance;
+        std::size_t firstSample; ///< of its instruction's, in _samples
+        std::size_t sampleCount;
+        osg::StateSet* stateSet; ///< null: not asked for yet
+    };
+    /// States that are used again from frame to frame.
+    struct StatePool
+    {
+        std::vector<osg::ref_ptr<osg::StateSet>> states;
+        std::size_t used = 0;
+
+        osg::StateSet& next(bool isPlaced);
+        void reset();
     };
 
     void reset(unsigned int frameNumber);
+    void evaluateBatches(osg::State& state, PosePipeline* pipeline);
+    void record(osg::Stats& stats, std::uint64_t evaluated) const;
+    bool isStill(const Enlisted& known, const AnimatedCharacter& character) const;
     Batch& openBatch(const AnimatedCharacter& character);
     Batch& addBatch(std::unique_ptr<PoseBatch> content);
     std::unique_ptr<PoseBatch> spareBatch(std::shared_ptr<const AnimationSet> set);
-    osg::StateSet* nextState(const Batch& batch, std::size_t instance, std::size_t instanceCount);
+    osg::StateSet* stateOf(const Batch& batch, std::size_t instance, std::size_t instanceCount);
 
     std::mutex _mutex;
     unsigned int _frameNumber = 0;
@@ -75,8 +110,9 @@ private:
     std::unordered_map<const AnimationSet*, std::vector<Batch*>> _batchesOfSet; ///< one may be open
     std::vector<std::unique_ptr<PoseBatch>> _spareBatches;
     std::unordered_map<const AnimatedCharacter*, Enlisted> _enlisted;
-    std::vector<osg::ref_ptr<osg::StateSet>> _states; ///< reused from frame to frame
-    std::size_t _statesUsed = 0;
+    std::vector<BlendSample> _samples; ///< of those enlisted
+    StatePool _states;
+    StatePool _placedStates;
 };
 
 } // namespace osgGpuAnimation

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/PoseStage.h>
 
+#include <osgGpuAnimation/nodes/PoseStatistics.h>
+
 #include <osg/UserDataContainer>
 
 #include <limits>
@@ -15,8 +17,7 @@ public:
 
     void operator()(osg::RenderInfo& renderInfo) const override
     {
-        _stage._frame->evaluate(renderInfo);
-        _stage._isDrawn = true;
+        _stage._frame->evaluate(renderInfo, PoseStatistics::wanted(renderInfo));
     }
 
 private:
@@ -46,25 +47,40 @@ PoseStage& PoseStage::of(osgUtil::CullVisitor& visitor)
     return *stage;
 }
 
-osg::StateSet* PoseStage::enlist(osgUtil::CullVisitor& visitor, const AnimatedCharacter& character)
+void PoseStage::draw(osgUtil::CullVisitor& visitor, AnimatedCharacter& character)
 {
-    return frame(visitor).enlist(character);
+    PoseStage& stage = current(visitor);
+    stage._draws.draw(visitor, character, *stage._frame, stage._frame->enlist(character));
 }
 
 PoseFrame& PoseStage::frame(osgUtil::CullVisitor& visitor)
 {
+    return *current(visitor)._frame;
+}
+
+// Each cull traversal begins with an empty stage: whether this one is in it tells traversals apart.
+bool PoseStage::isAttached(osgUtil::CullVisitor& visitor) const
+{
+    for (const auto& [order, stage] : visitor.getRenderStage()->getPreRenderList())
+        if (stage->getCamera() == this) return true;
+    return false;
+}
+
+PoseStage& PoseStage::current(osgUtil::CullVisitor& visitor)
+{
     PoseStage& stage = of(visitor);
     const unsigned int frameNumber = visitor.getFrameStamp() ? visitor.getFrameStamp()->getFrameNumber() : 0;
-    if (stage._isDrawn || !stage._frame || stage._frame->frameNumber() != frameNumber)
+    if (!stage._frame || !stage.isAttached(visitor) || stage._frame->frameNumber() != frameNumber)
         stage.attach(visitor, visitor.getRenderInfo().getContextID(), frameNumber);
-    return *stage._frame;
+    return stage;
 }
 
 // Attached to the visitor's main stage, wherever the traversal is now: a shadow camera's stage may come later.
 void PoseStage::attach(osgUtil::CullVisitor& visitor, unsigned int contextId, unsigned int frameNumber)
 {
+    _draws.clear();
+    _frame = nullptr; // so that its storage can be used again
     _frame = PoseFrame::forContext(contextId, frameNumber);
-    _isDrawn = false;
     osgUtil::RenderBin* current = visitor.getCurrentRenderBin();
     visitor.setCurrentRenderBin(visitor.getRenderStage());
     accept(visitor);

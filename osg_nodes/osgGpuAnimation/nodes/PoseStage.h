@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <osgGpuAnimation/nodes/CharacterDraws.h>
 #include <osgGpuAnimation/nodes/PoseFrame.h>
 
 #include <osg/Camera>
 #include <osgUtil/CullVisitor>
-
-#include <atomic>
 
 namespace osgGpuAnimation
 {
@@ -18,8 +17,8 @@ namespace osgGpuAnimation
 class PoseStage : public osg::Camera
 {
 public:
-    /// To be called by a character while it is culled and seen. Returns the state its meshes are to be culled with.
-    static osg::StateSet* enlist(osgUtil::CullVisitor& visitor, const AnimatedCharacter& character);
+    /// To be called by a character while it is culled and seen: has its pose evaluated and its children drawn.
+    static void draw(osgUtil::CullVisitor& visitor, AnimatedCharacter& character);
     /// The frame that the visitor's cull is part of, for those that enlist otherwise.
     static PoseFrame& frame(osgUtil::CullVisitor& visitor);
 
@@ -31,11 +30,13 @@ private:
 
     explicit PoseStage(const osgUtil::CullVisitor& visitor);
     static PoseStage& of(osgUtil::CullVisitor& visitor);
+    static PoseStage& current(osgUtil::CullVisitor& visitor);
+    bool isAttached(osgUtil::CullVisitor& visitor) const;
     void attach(osgUtil::CullVisitor& visitor, unsigned int contextId, unsigned int frameNumber);
 
     const osgUtil::CullVisitor* _visitor; ///< whose stage this is: cull visitors get cloned with their user data
     osg::ref_ptr<PoseFrame> _frame;
-    std::atomic<bool> _isDrawn{true};
+    CharacterDraws _draws;
 };
 
 } // namespace osgGpuAnimation

@@ -5,6 +5,7 @@
 #include <osgGpuAnimation/nodes/InstancedDraw.h>
 #include <osgGpuAnimation/nodes/MorphDeltas.h>
 #include <osgGpuAnimation/nodes/PaletteBinding.h>
+#include <osgGpuAnimation/nodes/PlacedDraw.h>
 
 #include <layout.glsl>
 
@@ -234,21 +235,61 @@ void SkinnedGeometry::drawImplementation(osg::RenderInfo& renderInfo) const
     if (!binding || !binding->animationSet()) return;
     const PosePipeline* pipeline = PosePipeline::of(state);
     if (!pipeline) return;
-    if (binding->instanceCount() > 1)
-    {
+    if (binding->serial() != 0)
+        drawPlaced(renderInfo, *binding, *pipeline);
+    else if (binding->instanceCount() > 1)
         drawInstances(renderInfo, *binding, *pipeline);
-        return;
+    else if (const PalettePlace place = pipeline->place(*binding->animationSet(), binding->slot(), binding->instance());
+             place.texture != 0)
+    {
+        bindPalette(state, place);
+        osg::Geometry::drawImplementation(renderInfo);
     }
-    const PalettePlace place = pipeline->place(*binding->animationSet(), binding->slot(), binding->instance());
-    if (place.texture == 0) return;
-    bindPalette(state, place);
-    osg::Geometry::drawImplementation(renderInfo);
+    // Whatever OSG compiles between frames would take the element buffer away from a vertex array left bound.
+    state.unbindVertexArrayObject();
+}
+
+void SkinnedGeometry::drawInstances(osg::RenderInfo& renderInfo, const PaletteBinding& binding,
+                                    const PosePipeline& pipeline) const
+{
+    const auto draw = [&](osg::State& state)
+    {
+        const std::size_t end = binding.instance() + binding.instanceCount();
+        for (std::size_t first = binding.instance(); first < end;)
+        {
+            // What is in one chunk of the palette is drawn at once.
+            const PalettePlace place = pipeline.place(*binding.animationSet(), binding.slot(), first);
+            if (place.texture == 0 || place.stride <= place.instance) break;
+            const std::size_t count = std::min(end - first, static_cast<std::size_t>(place.stride - place.instance));
+            drawPrimitives(state, place, static_cast<int>(count));
+            first += count;
+        }
+    };
+    withVertexArrays(renderInfo, draw);
+}
+
+void SkinnedGeometry::drawPlaced(osg::RenderInfo& renderInfo, const PaletteBinding& binding,
+                                 const PosePipeline& pipeline) const
+{
+    const PlacedDraw placed(*renderInfo.getState(), binding);
+    const auto draw = [&](osg::State& state)
+    {
+        for (std::size_t first = 0; first < binding.placements().size();)
+        {
+            const PlacedDraw::Run run = placed.run(pipeline, first);
+            if (run.place.texture == 0) break;
+            placed.use(first);
+            drawPrimitives(state, run.place, static_cast<int>(run.count));
+            first += run.count;
+        }
+    };
+    withVertexArrays(renderInfo, draw);
 }
 
 // As osg::Geometry::drawImplementation, but for the primitives: those draw themselves with a number of instances that
 // is their own, while here it is the frame's.
-void SkinnedGeometry::drawInstances(osg::RenderInfo& renderInfo, const PaletteBinding& binding,
-                                    const PosePipeline& pipeline) const
+template <typename Draw>
+void SkinnedGeometry::withVertexArrays(osg::RenderInfo& renderInfo, Draw draw) const
 {
     if (containsDeprecatedData()) return;
     osg::State& state = *renderInfo.getState();
@@ -257,16 +298,7 @@ void SkinnedGeometry::drawInstances(osg::RenderInfo& renderInfo, const PaletteBi
     osg::VertexArrayState* arrays = state.getCurrentVertexArrayState();
     arrays->setVertexBufferObjectSupported(usesBuffers);
     drawVertexArraysImplementation(renderInfo);
-    const std::size_t end = binding.instance() + binding.instanceCount();
-    for (std::size_t first = binding.instance(); first < end;)
-    {
-        // What is in one chunk of the palette is drawn at once.
-        const PalettePlace place = pipeline.place(*binding.animationSet(), binding.slot(), first);
-        if (place.texture == 0 || place.stride <= place.instance) break;
-        const std::size_t count = std::min(end - first, static_cast<std::size_t>(place.stride - place.instance));
-        drawPrimitives(state, place, static_cast<int>(count));
-        first += count;
-    }
+    draw(state);
     if (usesBuffers && !usesArrayObject)
     {
         arrays->unbindVertexBufferObject();

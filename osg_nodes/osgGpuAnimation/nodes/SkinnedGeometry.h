@@ -95,6 +95,9 @@ protected:
 
 private:
     void drawInstances(osg::RenderInfo& renderInfo, const PaletteBinding& binding, const PosePipeline& pipeline) const;
+    void drawPlaced(osg::RenderInfo& renderInfo, const PaletteBinding& binding, const PosePipeline& pipeline) const;
+    template <typename Draw>
+    void withVertexArrays(osg::RenderInfo& renderInfo, Draw draw) const;
     void drawPrimitives(osg::State& state, const PalettePlace& first, int count) const;
     void bindPalette(osg::State& state, const PalettePlace& place) const;
     void bindMorphTargets(osg::State& state, const osg::Program::PerContextProgram& program) const;

@@ -6,6 +6,7 @@
 #include <ShaderSources.h>
 
 #include <osg/GLExtensions>
+#include <osg/Material>
 
 #include <array>
 #include <string>
@@ -50,6 +51,22 @@ void setShadowUnits(osg::State& state)
                                                  static_cast<GLsizei>(units.size()), units.data());
 }
 
+/// The core profile's shaders have no gl_FrontMaterial.
+void setMaterial(osg::State& state)
+{
+    static const unsigned int diffuseName = osg::Uniform::getNameID("materialDiffuse");
+    static const unsigned int emissionName = osg::Uniform::getNameID("materialEmission");
+    const osg::Program::PerContextProgram* applied = state.getLastAppliedProgramObject();
+    if (!applied) return;
+    const auto* material =
+        dynamic_cast<const osg::Material*>(state.getLastAppliedAttribute(osg::StateAttribute::MATERIAL));
+    const osg::Vec4 diffuse = material ? material->getDiffuse(osg::Material::FRONT) : osg::Vec4(1, 1, 1, 1);
+    const osg::Vec4 emission = material ? material->getEmission(osg::Material::FRONT) : osg::Vec4(0, 0, 0, 1);
+    const osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
+    gl.glUniform4fv(applied->getUniformLocation(diffuseName), 1, diffuse.ptr());
+    gl.glUniform4fv(applied->getUniformLocation(emissionName), 1, emission.ptr());
+}
+
 } // namespace
 
 SurfaceProgram::SurfaceProgram(const SurfaceProgram& other, const osg::CopyOp& copyop) : osg::Program(other, copyop) {}
@@ -77,6 +94,7 @@ void SurfaceProgram::apply(osg::State& state) const
         const SurfaceState surface = SurfaceState::of(state);
         variant(surface)->apply(state);
         if (surface.shadowMaps != 0) setShadowUnits(state);
+        if (state.getUseModelViewAndProjectionUniforms()) setMaterial(state);
     }
     // The next StateSet may have other modes and the same program, which OSG would take for applied.
     state.haveAppliedAttribute(osg::StateAttribute::PROGRAM);

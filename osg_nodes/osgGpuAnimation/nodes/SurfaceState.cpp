@@ -24,6 +24,35 @@ const Attribute* applied(const osg::State& state, osg::StateAttribute::Type type
     return static_cast<const Attribute*>(state.getLastAppliedAttribute(type, member));
 }
 
+/// A mode by the state sets of the way down to the mesh: in the core profile OSG switches no modes of the fixed
+/// pipeline, but users still set them.
+template <typename ModeOf>
+bool isSetOn(osg::State& state, ModeOf modeOf)
+{
+    osg::StateAttribute::GLModeValue value = osg::StateAttribute::OFF;
+    for (const osg::StateSet* stateSet : state.getStateSetStack())
+    {
+        const osg::StateAttribute::GLModeValue here =
+            stateSet ? modeOf(*stateSet) : osg::StateAttribute::GLModeValue(osg::StateAttribute::INHERIT);
+        if (here & osg::StateAttribute::INHERIT) continue;
+        if ((value & osg::StateAttribute::OVERRIDE) && !(here & osg::StateAttribute::PROTECTED)) continue;
+        value = here;
+    }
+    return (value & osg::StateAttribute::ON) != 0;
+}
+
+bool isLightingOn(osg::State& state)
+{
+    if (!state.getUseModelViewAndProjectionUniforms()) return state.getLastAppliedMode(GL_LIGHTING);
+    return isSetOn(state, [](const osg::StateSet& stateSet) { return stateSet.getMode(GL_LIGHTING); });
+}
+
+bool isTexturingOn(osg::State& state)
+{
+    if (!state.getUseModelViewAndProjectionUniforms()) return state.getLastAppliedTextureMode(0, GL_TEXTURE_2D);
+    return isSetOn(state, [](const osg::StateSet& stateSet) { return stateSet.getTextureMode(0, GL_TEXTURE_2D); });
+}
+
 bool isColorMasked(const osg::State& state)
 {
     const auto* mask = applied<osg::ColorMask>(state, osg::StateAttribute::COLORMASK);
@@ -103,9 +132,8 @@ SurfaceState SurfaceState::of(osg::State& state)
     surface.lights = 0;
     surface.isDepthOnly = isDepthPass(state) || isColorMasked(state);
     surface.isAlphaNeeded = surface.isDepthOnly && leavesPartsOut(state);
-    surface.isLit = !surface.isDepthOnly && state.getLastAppliedMode(GL_LIGHTING);
-    surface.isTextured =
-        (!surface.isDepthOnly || surface.isAlphaNeeded) && state.getLastAppliedTextureMode(0, GL_TEXTURE_2D);
+    surface.isLit = !surface.isDepthOnly && isLightingOn(state);
+    surface.isTextured = (!surface.isDepthOnly || surface.isAlphaNeeded) && isTexturingOn(state);
     surface.hasTextureMatrix =
         surface.isTextured && state.getLastAppliedTextureAttribute(0, osg::StateAttribute::TEXMAT) != nullptr;
     for (unsigned int plane = 0; plane < 6; ++plane)

@@ -48,7 +48,7 @@ void overrideBy(osg::Node& fox, osg::Program& program)
     fox.getOrCreateStateSet()->setAttributeAndModes(&program, osg::StateAttribute::ON | osg::StateAttribute::OVERRIDE);
 }
 
-class OwnProgramGLTest : public ViewerGLTest
+class ReadmeShadersGLTest : public ViewerGLTest
 {
 protected:
     osg::ref_ptr<osg::Image> pictureOf(osg::Node* subject)
@@ -73,7 +73,7 @@ protected:
     static osg::Vec4 colorOfTheMiddle(const osg::Image& image) { return image.getColor(32 + 12, 32); }
 };
 
-TEST_F(OwnProgramGLTest, skinsWithOneCallOnAMeshAndFromAbove)
+TEST_F(ReadmeShadersGLTest, skinsWithOneCallOnAMeshAndFromAbove)
 {
     const osg::ref_ptr<osg::Image> plain = pictureOf(makePanelCharacter());
     osg::ref_ptr<AnimatedCharacter> ofMesh = makePanelCharacter();
@@ -95,7 +95,7 @@ TEST_F(OwnProgramGLTest, skinsWithOneCallOnAMeshAndFromAbove)
 }
 
 // One that cannot skin would draw the bind pose.
-TEST_F(OwnProgramGLTest, aProgramFromAboveThatDoesNotSkinIsNotTaken)
+TEST_F(ReadmeShadersGLTest, aProgramFromAboveThatDoesNotSkinIsNotTaken)
 {
     const osg::ref_ptr<osg::Image> plain = pictureOf(makePanelCharacter());
     for (osg::ref_ptr<osg::Program> program :
@@ -113,7 +113,7 @@ TEST_F(OwnProgramGLTest, aProgramFromAboveThatDoesNotSkinIsNotTaken)
     }
 }
 
-TEST_F(OwnProgramGLTest, effectsOfOsgFxShowTheAnimatedPose)
+TEST_F(ReadmeShadersGLTest, effectsOfOsgFxShowTheAnimatedPose)
 {
     const osg::ref_ptr<osg::Image> plain = pictureOf(makePanelCharacter());
     // Lines round the panel, 16 pixels an edge, are up to two wide.

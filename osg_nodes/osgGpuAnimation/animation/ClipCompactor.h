@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "PoseDistance.h"
+
+#include <vector>
+
+namespace osgGpuAnimation
+{
+
+/// Makes compact clips of a set's clips, see compactClips().
+class ClipCompactor
+{
+public:
+    /// tolerance: in the model's units, above 0.
+    ClipCompactor(const AnimationSet& set, const EntryBoxes& entryBoxes, double tolerance);
+
+    /// The compact clip, or the same where it cannot be had within the tolerance.
+    Clip compact(const Clip& clip);
+    double error() const { return _error; } ///< of the clip compact() gave last, in the model's units
+
+private:
+    Clip attempt(const Clip& clip, double share);
+    void holdStill(const Clip& clip, std::vector<JointTransform>& data, double most) const;
+    std::vector<std::size_t> keptKeyframes(const Clip& clip, const std::vector<JointTransform>& data, double most);
+    std::size_t farthest(const Clip& clip, const std::vector<JointTransform>& data, std::size_t from, double most);
+    double worstWithin(const Clip& clip, std::size_t from, std::size_t to, const JointTransform* a,
+                       const JointTransform* b, double enough);
+    void mix(const JointTransform* a, const JointTransform* b, double alpha, std::vector<JointTransform>& out) const;
+    double errorOf(const Clip& clip, const Clip& made, const std::vector<std::size_t>& kept);
+
+    const AnimationSet& _set;
+    double _tolerance;
+    double _size;
+    PoseDistance _distance;
+    double _error = 0.0;
+    std::vector<JointTransform> _exactPose, _madePose;
+};
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/animation/CompactClips.h>
+
+#include "ClipCompactor.h"
+#include <osgGpuAnimation/animation/Pose.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace osgGpuAnimation
+{
+
+Result<CompactedSet> compactClips(const AnimationSet& set, const EntryBoxes& entryBoxes, const CompactOptions& options)
+{
+    if (!(options.tolerance > 0.0) || !std::isfinite(options.tolerance))
+        return Error{"a tolerance of " + std::to_string(options.tolerance) + " for compact clips: it must be above 0"};
+    if (entryBoxes.size() != set.paletteSize())
+        return Error{std::to_string(entryBoxes.size()) + " boxes for " + std::to_string(set.paletteSize()) +
+                     " palette entries"};
+    CompactedSet result;
+    std::vector<Clip> clips;
+    ClipCompactor compactor(set, entryBoxes, options.tolerance);
+    for (const Clip& clip : set.clips())
+    {
+        clips.push_back(compactor.compact(clip));
+        result.errors.push_back(compactor.error());
+    }
+    auto made = set.withClips(std::move(clips));
+    if (!made) return made.error();
+    result.set = std::move(made).value();
+    return result;
+}
+
+double modelSize(const AnimationSet& set, const EntryBoxes& entryBoxes)
+{
+    Box box = boundsOfClip(set, -1, entryBoxes);
+    if (box.empty())
+    {
+        std::vector<AffineMatrix> joints;
+        Pose::jointToModel(set, set.restPose(), AffineMatrix(), joints);
+        for (const AffineMatrix& joint : joints)
+            box.add(joint.transformPoint(glm::vec3(0.0f)));
+    }
+    if (box.empty()) return 0.0;
+    const glm::vec3 sides = box.max - box.min;
+    return static_cast<double>(std::max({sides.x, sides.y, sides.z}));
+}
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osgGpuAnimation/animation/AffineMatrix.h>
+#include <osgGpuAnimation/gpu/BufferTexture.h>
+
+#include <osg/GLObjects>
+#include <osg/State>
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace osgGpuAnimation
+{
+
+/// Where one instance of an instanced draw stands, as skin.glsl reads it: four texels.
+struct Placement
+{
+    AffineMatrix toEye; ///< from the character's own space to the eye's
+    float pose = 0.0f;  ///< its number in the PoseBatch, a whole one
+    std::array<float, 3> unused{};
+};
+
+static_assert(sizeof(Placement) == 4 * BufferTexture::texelBytes, "a placement is four texels");
+
+/// One graphics context's buffer textures of placements: the last few lists that were drawn, since all meshes of the
+/// same characters follow one another. Only to be called on the draw side, with the context current.
+class PlacementBuffers : public osg::GraphicsObjectManager
+{
+public:
+    explicit PlacementBuffers(unsigned int contextId);
+
+    static PlacementBuffers& of(osg::State& state);
+
+    /// The texture of the list, uploaded unless it is there. serial: the list's, never again another's. Lists must fit
+    /// into maxPlacements.
+    GLuint texture(std::uint64_t serial, const std::vector<Placement>& placements);
+
+    /// What the smallest buffer texture that OpenGL promises (65,536 texels) takes.
+    static constexpr std::size_t maxPlacements = 16384;
+
+    void flushDeletedGLObjects(double, double&) override {}
+    void flushAllDeletedGLObjects() override {}
+    void deleteAllGLObjects() override;
+    void discardAllGLObjects() override;
+
+protected:
+    ~PlacementBuffers() override = default;
+
+private:
+    struct List
+    {
+        std::uint64_t serial = 0; ///< 0: none yet
+        std::unique_ptr<BufferTexture> buffer;
+    };
+
+    std::array<List, 2> _lists;
+    std::size_t _oldest = 0;
+};
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/nodes/CharacterDraws.h>
+
+#include <osgGpuAnimation/nodes/AnimatedCharacter.h>
+#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+bool isOrderedByState(osgUtil::RenderBin::SortMode mode)
+{
+    return mode == osgUtil::RenderBin::SORT_BY_STATE || mode == osgUtil::RenderBin::SORT_BY_STATE_THEN_FRONT_TO_BACK;
+}
+
+bool isOrderedByState(const osg::StateSet* stateSet)
+{
+    if (!stateSet) return true;
+    if (!stateSet->getBinName().empty() && stateSet->getBinName() != "RenderBin") return false;
+    return !stateSet->useRenderBinDetails() || isOrderedByState(osgUtil::RenderBin::getDefaultRenderBinSortMode());
+}
+
+bool canBeDrawnTogether(const SkinnedGeometry& mesh)
+{
+    return !mesh.getCullCallback() && !mesh.getDrawCallback() && mesh.getBoundingBox().valid() &&
+           isOrderedByState(mesh.getStateSet());
+}
+
+bool canDrawTogether(osgUtil::CullVisitor& visitor)
+{
+    const osg::CullSettings::ComputeNearFarMode mode = visitor.getComputeNearFarMode();
+    return isOrderedByState(visitor.getCurrentRenderBin()->getSortMode()) &&
+           (mode == osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR ||
+            mode == osg::CullSettings::COMPUTE_NEAR_FAR_USING_BOUNDING_VOLUMES) &&
+           visitor.getCurrentCullingSet().getStateFrustumList().empty();
+}
+
+SkinnedGeometry* asShared(osg::Node* child)
+{
+    auto* mesh = dynamic_cast<SkinnedGeometry*>(child);
+    return mesh && canBeDrawnTogether(*mesh) ? mesh : nullptr;
+}
+
+AffineMatrix toAffine(const osg::Matrix& matrix)
+{
+    AffineMatrix affine;
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 4; ++column)
+            affine.rows[static_cast<std::size_t>(row)][column] = static_cast<float>(matrix(column, row));
+    return affine;
+}
+
+} // namespace
+
+bool CharacterDraws::Group::holds(const Group& other) const
+{
+    return bin == other.bin && projection == other.projection && traversalMask == other.traversalMask &&
+           set == other.set && slot == other.slot && meshes == other.meshes;
+}
+
+void CharacterDraws::draw(osgUtil::CullVisitor& visitor, AnimatedCharacter& character, PoseFrame& frame,
+                          EnlistedPose pose)
+{
+    const bool isTogether =
+        character.isDrawnTogether() && canDrawTogether(visitor) && drawTogether(visitor, character, frame, pose);
+    osg::StateSet* state = nullptr;
+    for (unsigned int i = 0; i < character.getNumChildren(); ++i)
+    {
+        osg::Node* child = character.getChild(i);
+        if (isTogether && asShared(child)) continue;
+        if (!state) visitor.pushStateSet(state = frame.stateOf(character, pose));
+        child->accept(visitor);
+    }
+    if (state) visitor.popStateSet();
+}
+
+// True where the meshes that can be shared are dealt with; false where they are to be drawn as they are.
+bool CharacterDraws::drawTogether(osgUtil::CullVisitor& visitor, const AnimatedCharacter& character, PoseFrame& frame,
+                                  EnlistedPose pose)
+{
+    _asked.bin = visitor.getCurrentRenderBin();
+    _asked.projection = visitor.getProjectionMatrix();
+    _asked.traversalMask = visitor.getTraversalMask();
+    _asked.set = &character.set();
+    _asked.slot = pose.slot;
+    _asked.meshes.clear();
+    for (unsigned int i = 0; i < character.getNumChildren(); ++i)
+    {
+        SkinnedGeometry* mesh = asShared(const_cast<osg::Node*>(character.getChild(i)));
+        if (mesh && visitor.validNodeMask(*mesh)) _asked.meshes.push_back(mesh);
+    }
+    if (_asked.meshes.empty()) return false;
+    std::vector<Group>& groups = _groups[visitor.getCurrentStateGraph()];
+    const auto group =
+        std::find_if(groups.begin(), groups.end(), [&](const Group& known) { return known.holds(_asked); });
+    if (group == groups.end())
+    {
+        groups.push_back(_asked);
+        for (const SkinnedGeometry* mesh : _asked.meshes)
+            groups.back().box.expandBy(mesh->getBoundingBox());
+        return false;
+    }
+
+    // As CullVisitor goes about a drawable.
+    const osg::RefMatrix& toEye = *visitor.getModelViewMatrix();
+    if (character.isCullingActive() && visitor.isCulled(group->box)) return true;
+    const bool hasNearFar = visitor.getComputeNearFarMode() != osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR;
+    if (hasNearFar && !visitor.updateCalculatedNearFar(toEye, group->box)) return true;
+    const AffineMatrix placement = toAffine(toEye);
+    if (!placement.isFinite()) return true;
+    if (!group->together || group->together->placements().size() >= PlacementBuffers::maxPlacements)
+        open(visitor, *group, frame, visitor.getDistanceFromEyePoint(group->box.center(), false));
+    group->together->add({placement, static_cast<float>(pose.instance)});
+    return true;
+}
+
+void CharacterDraws::open(osgUtil::CullVisitor& visitor, Group& group, PoseFrame& frame, float depth)
+{
+    PlacedState placed = frame.placedState(*group.set, group.slot);
+    group.together = placed.binding;
+    const osg::ref_ptr<osg::RefMatrix> eye = new osg::RefMatrix;
+    visitor.pushStateSet(placed.stateSet);
+    for (SkinnedGeometry* mesh : group.meshes)
+    {
+        osg::StateSet* stateSet = mesh->getStateSet();
+        if (stateSet) visitor.pushStateSet(stateSet);
+        visitor.addDrawableAndDepth(mesh, eye.get(), depth);
+        if (stateSet) visitor.popStateSet();
+    }
+    visitor.popStateSet();
+}
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osgGpuAnimation/nodes/PoseFrame.h>
+
+#include <osgUtil/CullVisitor>
+
+#include <unordered_map>
+#include <vector>
+
+namespace osgGpuAnimation
+{
+
+class SkinnedGeometry;
+
+/// What one cull visitor draws of the characters it sees in a frame. The first of several that OSG would draw alike
+/// (the same meshes below the same state, in a bin whose order is the state's) is drawn as it is; all after it
+/// together, by one instanced draw a mesh primitive.
+///
+/// Drawn as they are: meshes with callbacks, in bins sorted by depth or traversal, and deeper than the character's own
+/// children; everything where near and far planes come from primitives, or where a StateSet of its own sets a
+/// character apart.
+class CharacterDraws
+{
+public:
+    /// At the beginning of a cull traversal.
+    void clear() { _groups.clear(); }
+
+    /// Hands what is below the character on to be drawn. pose: what the frame has enlisted it as.
+    void draw(osgUtil::CullVisitor& visitor, AnimatedCharacter& character, PoseFrame& frame, EnlistedPose pose);
+
+private:
+    /// Characters that differ in nothing but their poses and placements.
+    struct Group
+    {
+        const osgUtil::RenderBin* bin;
+        const osg::RefMatrix* projection;
+        osg::Node::NodeMask traversalMask;
+        const AnimationSet* set;
+        std::size_t slot;
+        std::vector<SkinnedGeometry*> meshes;
+        osg::BoundingBox box;               ///< of the meshes
+        PaletteBinding* together = nullptr; ///< null: nobody but the first was seen
+
+        bool holds(const Group& other) const;
+    };
+
+    bool drawTogether(osgUtil::CullVisitor& visitor, const AnimatedCharacter& character, PoseFrame& frame,
+                      EnlistedPose pose);
+    void open(osgUtil::CullVisitor& visitor, Group& group, PoseFrame& frame, float depth);
+
+    std::unordered_map<const osgUtil::StateGraph*, std::vector<Group>> _groups;
+    Group _asked; ///< kept for its memory
+};
+
+} // namespace osgGpuAnimation

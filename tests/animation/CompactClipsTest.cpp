@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/animation/CompactClips.h>
+
+#include "support/GaitSet.h"
+#include "support/PoseErrors.h"
+#include "support/RandomSet.h"
+#include <osgGpuAnimation/animation/ClipBuilder.h>
+#include <osgGpuAnimation/animation/CompactTracks.h>
+#include <osgGpuAnimation/animation/PackedKeyframes.h>
+#include <osgGpuAnimation/animation/RootMotionCurve.h>
+#include <osgGpuAnimation/animation/RootMotionExtraction.h>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+std::shared_ptr<const AnimationSet> setOf(const Skeleton& skeleton, const std::vector<MorphWeights>& morphs, Clip clip)
+{
+    return AnimationSet::create({skeleton, {}, {}, morphs, {std::move(clip)}}).value();
+}
+
+/// A root and a child one unit away.
+Skeleton twoJoints()
+{
+    std::vector<Joint> joints(2);
+    joints[1].parent = 0;
+    joints[1].rest.translation = glm::vec4(1, 0, 0, 0);
+    return Skeleton::create(joints).value();
+}
+
+/// The root goes from 0 to `end` in that many even steps.
+Channel straightWay(int steps, double end)
+{
+    Channel channel{Channel::Path::Translation, Channel::Interpolation::Linear, 0, {}, {}};
+    for (int i = 0; i <= steps; ++i)
+    {
+        channel.times.push_back(i);
+        channel.values.insert(channel.values.end(), {end * i / steps, 0.0, 0.0});
+    }
+    return channel;
+}
+
+TEST(CompactClipsTest, randomSetsStayWithinTheTolerance)
+{
+    for (unsigned int seed = 1; seed <= 12; ++seed)
+        for (const double tolerance : {1e-1, 1e-3, 1e-5})
+        {
+            SCOPED_TRACE("seed " + std::to_string(seed) + ", tolerance " + std::to_string(tolerance));
+            const auto exact = makeRandomSet({seed, 20, 6, 6, seed % 3 == 0, true, true});
+            const EntryBoxes boxes = cubes(*exact, 1.0f);
+            const Result<CompactedSet> compact = compactClips(*exact, boxes, {tolerance});
+            ASSERT_TRUE(compact) << compact.error().message;
+            for (int clip = 0; clip < static_cast<int>(exact->clips().size()); ++clip)
+            {
+                const double error = compact.value().errors[static_cast<std::size_t>(clip)];
+                EXPECT_LE(error, tolerance);
+                // What is told is what is found; the twin rounds once more, at numbers up to 30.
+                EXPECT_LE(largestDistance(*exact, *compact.value().set, clip, boxes, 0), error + 1e-5);
+            }
+            EXPECT_LE(PackedKeyframes(*compact.value().set).byteSize(), PackedKeyframes(*exact).byteSize());
+        }
+}
+
+TEST(CompactClipsTest, keyframesThatTheirNeighboursTellAreDropped)
+{
+    ClipBuilder builder(twoJoints(), {});
+    ASSERT_TRUE(builder.add(straightWay(1000, 5.0)));
+    const auto exact = setOf(twoJoints(), {}, builder.build("walk"));
+    const CompactedSet compact = compactClips(*exact, cubes(*exact, 1.0f), {1e-4}).value();
+    EXPECT_EQ(compact.set->clips()[0].keyframeCount(), 2u);
+    EXPECT_EQ(compact.set->clips()[0].duration(), 1000.0);
+    EXPECT_LE(largestDistance(*exact, *compact.set, 0, cubes(*exact, 1.0f), 100), 1e-4);
+}
+
+TEST(CompactClipsTest, jumpsStay)
+{
+    ClipBuilder builder(twoJoints(), {});
+    ASSERT_TRUE(builder.add(
+        {Channel::Path::Translation, Channel::Interpolation::Step, 1, {0, 1, 2}, {0, 0, 0, 1, 0, 0, 0, 3, 0}}));
+    const auto exact = setOf(twoJoints(), {}, builder.build("steps"));
+    const CompactedSet compact = compactClips(*exact, cubes(*exact, 1.0f), {1e-4}).value();
+    EXPECT_NE(compact.set->clips()[0].compactTracks(), nullptr);
+    for (const double time : {0.0, 0.999, 1.0, 1.5, 1.999, 2.0})
+        EXPECT_LE(distanceAt(*exact, *compact.set, 0, time, cubes(*exact, 1.0f)), 1e-4) << time;
+}
+
+TEST(CompactClipsTest, whatHardlyMovesIsHeldAtRest)
+{
+    ClipBuilder builder(twoJoints(), {});
+    ASSERT_TRUE(builder.add(straightWay(4, 5.0)));
+    ASSERT_TRUE(builder.add(
+        {Channel::Path::Translation, Channel::Interpolation::Linear, 1, {0, 4}, {1.0, 1e-7, 0, 1.0, 0, -1e-7}}));
+    const auto exact = setOf(twoJoints(), {}, builder.build("walk"));
+    const CompactedSet compact = compactClips(*exact, cubes(*exact, 1.0f), {1e-4}).value();
+    EXPECT_EQ(compact.set->clips()[0].compactTracks()->columnCount, 1u);
+    const PackedKeyframes packed(*compact.set);
+    EXPECT_EQ(packed.tracks()[0].translation, PartMotion::Moving);
+    EXPECT_EQ(packed.tracks()[1].translation, PartMotion::Fixed);
+}
+
+TEST(CompactClipsTest, morphWeightsAreExact)
+{
+    const std::vector<MorphWeights> morphs{{"face", -1, {0.5f, 0.0f}}};
+    ClipBuilder builder(twoJoints(), morphs);
+    ASSERT_TRUE(builder.add({Channel::Path::Weights,
+                             Channel::Interpolation::Linear,
+                             0,
+                             {0, 1, 2, 3},
+                             {0.1, 0, 0.3, 0.7, 0.1, 0.2, 0.1, 0.2}}));
+    const auto exact = setOf(twoJoints(), morphs, builder.build("talk"));
+    const CompactedSet compact = compactClips(*exact, cubes(*exact, 1.0f), {0.1}).value();
+    const Clip& clip = compact.set->clips()[0];
+    ASSERT_EQ(clip.keyframeCount(), 4u) << "a tolerance is about places, not weights";
+    for (std::size_t k = 0; k < 4; ++k)
+        EXPECT_EQ(clip.data()[k * 3 + 2].translation, exact->clips()[0].data()[k * 3 + 2].translation);
+}
+
+TEST(CompactClipsTest, aToleranceThatCannotBeKeptLeavesTheClipExact)
+{
+    const auto exact = makeRandomSet({3, 30, 10, 6, false, false, false});
+    const CompactedSet compact = compactClips(*exact, cubes(*exact, 100.0f), {1e-9}).value();
+    for (std::size_t clip = 0; clip < exact->clips().size(); ++clip)
+    {
+        EXPECT_EQ(compact.set->clips()[clip].compactTracks(), nullptr);
+        EXPECT_EQ(&compact.set->clips()[clip].data(), &exact->clips()[clip].data());
+        EXPECT_EQ(compact.errors[clip], 0.0);
+    }
+}
+
+TEST(CompactClipsTest, whatCannotBeATolerance)
+{
+    const auto set = makeRandomSet({});
+    for (const double tolerance : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()})
+    {
+        const Result<CompactedSet> compact = compactClips(*set, cubes(*set, 1.0f), {tolerance});
+        ASSERT_FALSE(compact) << tolerance;
+        EXPECT_NE(compact.error().message.find("tolerance"), std::string::npos);
+    }
+    EXPECT_FALSE(compactClips(*set, {}, {1e-3})) << "a box an entry is wanted";
+}
+
+TEST(CompactClipsTest, rootMotionStaysAndTakingItOutOfACompactClipMakesThatExact)
+{
+    ClipBuilder builder(twoJoints(), {});
+    ASSERT_TRUE(builder.add(straightWay(10, 5.0)));
+    const auto exact = setOf(twoJoints(), {}, builder.build("walk"));
+    const auto stripped = withRootMotion(*exact, exact->skeleton().joint(0).name, {}).value();
+    const CompactedSet compact = compactClips(*stripped, cubes(*stripped, 1.0f), {1e-3}).value();
+    ASSERT_NE(compact.set->clips()[0].rootMotion(), nullptr);
+    EXPECT_EQ(compact.set->clips()[0].rootMotion()->keys.size(), compact.set->clips()[0].keyframeCount());
+
+    const CompactedSet first = compactClips(*exact, cubes(*exact, 1.0f), {1e-3}).value();
+    const auto then = withRootMotion(*first.set, exact->skeleton().joint(0).name, {}).value();
+    EXPECT_EQ(then->clips()[0].compactTracks(), nullptr);
+    EXPECT_NE(first.set->clips()[0].compactTracks(), nullptr);
+}
+
+TEST(CompactClipsTest, aSetOfNothingAndOfStillsIsCompactAsWell)
+{
+    const auto empty = AnimationSet::create({Skeleton::create({}).value(), {}, {}, {}, {}}).value();
+    EXPECT_TRUE(compactClips(*empty, {}, {1e-3}));
+    const Skeleton skeleton = Skeleton::create({Joint()}).value();
+    ClipBuilder builder(skeleton, {});
+    const auto still = setOf(skeleton, {}, builder.build("still"));
+    EXPECT_TRUE(compactClips(*still, EntryBoxes(still->paletteSize()), {1e-3}));
+}
+
+TEST(PackedTripleTest, numbersAndRotationsComeBack)
+{
+    std::mt19937 random(11);
+    std::uniform_int_distribution<std::uint32_t> number(0, PackedTriple::largest);
+    std::uniform_real_distribution<float> component(-1.0f, 1.0f);
+    for (int i = 0; i < 10000; ++i)
+    {
+        const glm::uvec3 numbers(number(random), number(random), number(random));
+        const PackedTriple packed = PackedTriple::of(numbers, static_cast<std::uint32_t>(i % 4));
+        EXPECT_EQ(packed.numbers(), numbers);
+        EXPECT_EQ(packed.place(), static_cast<std::uint32_t>(i % 4));
+
+        const glm::vec4 q = glm::normalize(
+            glm::vec4(component(random), component(random), component(random), component(random) + 0.01f));
+        const glm::vec4 back = PackedTriple::ofRotation(q).rotation();
+        // Half a step in three components, and what that does to the fourth.
+        EXPECT_LE(glm::length(glm::dot(q, back) < 0.0f ? q + back : q - back), 3e-6f);
+    }
+}
+
+} // namespace
+
+} // namespace osgGpuAnimation

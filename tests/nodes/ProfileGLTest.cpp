@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: MIT
+#include "nodes/Panel.h"
+#include "support/TestCharacter.h"
+#include "support/ViewerGLTest.h"
+
+#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+
+#include <osg/GLExtensions>
+#include <osg/Image>
+#include <osg/Notify>
+
+#ifndef GL_FRAMEBUFFER_SRGB
+#define GL_FRAMEBUFFER_SRGB 0x8DB9
+#endif
+#ifndef GL_SRGB8_ALPHA8
+#define GL_SRGB8_ALPHA8 0x8C43
+#endif
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+/// A kind of context to draw in.
+struct ProfileCase
+{
+    const char* name;
+    unsigned int profileMask; ///< as GraphicsContext::Traits'
+    const char* version;
+    unsigned int samples;
+};
+
+void PrintTo(const ProfileCase& profile, std::ostream* out)
+{
+    *out << profile.name;
+}
+
+void setUnlit(osg::Node& mesh)
+{
+    mesh.getStateSet()->getOrCreateUniform("unlit", osg::Uniform::BOOL)->set(true);
+}
+
+/// Characters and a crowd: textured panels in grey, without light.
+osg::ref_ptr<osg::Group> makeScene()
+{
+    osg::ref_ptr<osg::Group> group = new osg::Group;
+    osg::ref_ptr<AnimatedCharacter> character = makePanelCharacter();
+    setUnlit(*character->getChild(0));
+    character->setMatrix(osg::Matrix::translate(-2.75, 0, -2.75));
+    group->addChild(character);
+    osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*character);
+    AnimationController controller(crowd->sharedSet());
+    EXPECT_TRUE(controller.play("shift"));
+    EXPECT_TRUE(crowd->add(osg::Matrix::translate(-0.25, 0, 0), controller));
+    EXPECT_TRUE(crowd->add(osg::Matrix::translate(-2.75, 0, 2.75), controller, osg::Vec4(1, 0.5f, 0, 1)));
+    group->addChild(crowd);
+    return group;
+}
+
+constexpr ProfileCase stock{"Stock", 0, "1.0", 0};
+
+class ProfileGLTest : public ViewerGLTest
+{
+protected:
+    osg::ref_ptr<osg::GraphicsContext::Traits> traits() const override
+    {
+        osg::ref_ptr<osg::GraphicsContext::Traits> wanted = ViewerGLTest::traits();
+        wanted->glContextProfileMask = _profile.profileMask;
+        wanted->glContextVersion = _profile.version;
+        wanted->samples = _profile.samples;
+        return wanted;
+    }
+
+    void changeTo(const ProfileCase& profile)
+    {
+        ViewerGLTest::TearDown();
+        _profile = profile;
+        ViewerGLTest::SetUp();
+    }
+
+    osg::ref_ptr<osg::Image> pictureOf(osg::Node* scene)
+    {
+        // An OSG with the fixed pipeline puts a Material here, which is an error in the core profile.
+        viewer().getCamera()->getOrCreateStateSet()->clear();
+        viewer().setLightingMode(osg::View::NO_LIGHT);
+        viewer().setSceneData(scene);
+        drawAt(0);
+        drawAt(0.5);
+        return picture().copy();
+    }
+
+private:
+    ProfileCase _profile = stock;
+};
+
+class ProfilesGLTest : public ProfileGLTest, public ::testing::WithParamInterface<ProfileCase>
+{
+};
+
+/// Keeps what OSG warns of.
+class Warnings : public osg::NotifyHandler
+{
+public:
+    void notify(osg::NotifySeverity severity, const char* message) override
+    {
+        if (severity <= osg::WARN && *message != '\n') texts.push_back(message);
+    }
+    std::vector<std::string> texts;
+};
+
+TEST_P(ProfilesGLTest, charactersAndCrowdsLookTheSame)
+{
+    const osg::ref_ptr<osg::Image> expected = pictureOf(makeScene());
+    EXPECT_GT(picture().pixelsDrawn(), 3 * 200);
+    changeTo(GetParam());
+    ASSERT_EQ(context().isCoreProfile(), GetParam().profileMask == 1);
+    osg::setNotifyHandler(new Warnings); // of the fixed pipeline in the core profile, see below
+    const osg::ref_ptr<osg::Image> found = pictureOf(makeScene());
+    osg::setNotifyHandler(new osg::StandardNotifyHandler);
+    // Multisampling softens edges: four panels' worth of 16 pixels each, twice.
+    EXPECT_LE(Picture::pixelsDifferent(*expected, *found), GetParam().samples > 0 ? 4 * 4 * 16 * 2 : 0);
+    if (context().isCoreProfile()) takeGLErrors();
+}
+
+/// Notes whether drawing a mesh leaves an error in GL.
+class ErrorNotes : public osg::Drawable::DrawCallback
+{
+public:
+    void drawImplementation(osg::RenderInfo& renderInfo, const osg::Drawable* drawable) const override
+    {
+        while (glGetError() != GL_NO_ERROR)
+        {
+        }
+        drawable->drawImplementation(renderInfo);
+        ++draws;
+        if (glGetError() != GL_NO_ERROR) ++errors;
+    }
+    mutable int draws = 0;
+    mutable int errors = 0;
+};
+
+// An OSG with the fixed pipeline, as Debian's, makes errors of its own in the core profile (matrices, materials, mipmap
+// modes) and warns of them; what it does otherwise is looked at around each mesh.
+TEST_P(ProfilesGLTest, leavesNoGlErrors)
+{
+    changeTo(GetParam());
+    osg::ref_ptr<osg::Group> scene = makeScene();
+    osg::ref_ptr<ErrorNotes> notes = new ErrorNotes;
+    static_cast<osg::Drawable&>(*scene->getChild(0)->asGroup()->getChild(0)).setDrawCallback(notes);
+    osg::ref_ptr<Warnings> warnings = new Warnings;
+    osg::setNotifyHandler(warnings);
+    pictureOf(scene);
+    osg::setNotifyHandler(new osg::StandardNotifyHandler);
+    EXPECT_EQ(notes->draws, 4); // the character's and the crowd's, two frames
+    EXPECT_EQ(notes->errors, 0);
+    if (context().isCoreProfile())
+        takeGLErrors();
+    else
+        EXPECT_TRUE(warnings->texts.empty()) << warnings->texts.front();
+}
+
+/// While it lives, the context's functions are those of OpenGL 2.1. (OSG keeps them for the next context of its
+/// number.)
+class OldDriver
+{
+public:
+    explicit OldDriver(osg::GLExtensions& gl) : _gl(gl) { swap(); }
+    ~OldDriver() { swap(); }
+    OldDriver(const OldDriver&) = delete;
+    OldDriver& operator=(const OldDriver&) = delete;
+
+private:
+    void swap()
+    {
+        std::swap(_gl.glVersion, _version);
+        std::swap(_gl.glBeginTransformFeedback, _beginFeedback);
+        std::swap(_gl.glDrawArraysInstanced, _drawArrays);
+        std::swap(_gl.glDrawElementsInstanced, _drawElements);
+        std::swap(_gl.glVertexAttribDivisor, _divisor);
+    }
+
+    osg::GLExtensions& _gl;
+    float _version = 2.1f;
+    decltype(osg::GLExtensions::glBeginTransformFeedback) _beginFeedback = nullptr;
+    decltype(osg::GLExtensions::glDrawArraysInstanced) _drawArrays = nullptr;
+    decltype(osg::GLExtensions::glDrawElementsInstanced) _drawElements = nullptr;
+    decltype(osg::GLExtensions::glVertexAttribDivisor) _divisor = nullptr;
+};
+
+TEST_F(ProfileGLTest, withoutFeedbackAndInstancingAllElseIsDrawnAndOneMessageSaysWhy)
+{
+    osg::ref_ptr<osg::Group> scene = makeScene();
+    const osg::ref_ptr<osg::Node> plain = makeBaked(*makePanelCharacter());
+    scene->addChild(plain);
+    const osg::ref_ptr<osg::Image> expected = pictureOf(plain);
+    changeTo(stock);
+    const OldDriver old(*state().get<osg::GLExtensions>());
+    osg::ref_ptr<Warnings> warnings = new Warnings;
+    osg::setNotifyHandler(warnings);
+    const osg::ref_ptr<osg::Image> found = pictureOf(scene);
+    osg::setNotifyHandler(new osg::StandardNotifyHandler);
+    EXPECT_EQ(Picture::pixelsDifferent(*expected, *found), 0);
+    ASSERT_EQ(warnings->texts.size(), 1u);
+    EXPECT_NE(warnings->texts[0].find("OpenGL 2.1; animated characters need 3.3"), std::string::npos)
+        << warnings->texts[0];
+    EXPECT_NO_GL_ERROR();
+}
+
+TEST_F(ProfileGLTest, colorsAreEncodedByAnSrgbFramebuffer)
+{
+    osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*makePanelCharacter());
+    setUnlit(*crowd->getChild(0));
+    crowd->getOrCreateStateSet()->setTextureMode(0, GL_TEXTURE_2D, osg::StateAttribute::OVERRIDE);
+    ASSERT_TRUE(crowd->add(osg::Matrix(), AnimationController(crowd->sharedSet()), osg::Vec4(0.5f, 0.5f, 0.5f, 1)));
+    osg::ref_ptr<osg::Image> encoded = new osg::Image;
+    encoded->allocateImage(64, 64, 1, GL_RGBA, GL_UNSIGNED_BYTE);
+    encoded->setInternalTextureFormat(GL_SRGB8_ALPHA8);
+    osg::ref_ptr<osg::Camera> camera = new osg::Camera;
+    camera->setRenderOrder(osg::Camera::PRE_RENDER);
+    camera->setRenderTargetImplementation(osg::Camera::FRAME_BUFFER_OBJECT);
+    camera->attach(osg::Camera::COLOR_BUFFER, encoded);
+    camera->setViewport(0, 0, 64, 64);
+    camera->getOrCreateStateSet()->setMode(GL_FRAMEBUFFER_SRGB, osg::StateAttribute::ON);
+    camera->addChild(crowd);
+    pictureOf(camera);
+    EXPECT_NO_GL_ERROR();
+    // 0.5 of the tint times the material's 0.8, linear, is 0.665 in sRGB.
+    EXPECT_NEAR(encoded->getColor(32u, 32u).r(), 0.665f, 0.01f);
+}
+
+INSTANTIATE_TEST_SUITE_P(Profiles, ProfilesGLTest,
+                         ::testing::Values(stock, ProfileCase{"Core33", 1, "3.3", 0},
+                                           ProfileCase{"Core45", 1, "4.5", 0},
+                                           ProfileCase{"Compatibility33", 2, "3.3", 0},
+                                           ProfileCase{"Multisampled", 0, "1.0", 4}),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+} // namespace
+
+} // namespace osgGpuAnimation

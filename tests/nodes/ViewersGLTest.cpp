@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: MIT
+#include "support/TestCharacter.h"
+#include "support/ViewerGLTest.h"
+
+#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+
+#include <osg/Group>
+#include <osgViewer/CompositeViewer>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+using Threading = osgViewer::ViewerBase::ThreadingModel;
+
+constexpr Threading threadings[] = {
+    osgViewer::ViewerBase::SingleThreaded, osgViewer::ViewerBase::CullDrawThreadPerContext,
+    osgViewer::ViewerBase::DrawThreadPerContext, osgViewer::ViewerBase::CullThreadPerCameraDrawThreadPerContext};
+
+/// Several characters and a crowd at their own speeds.
+osg::ref_ptr<osg::Group> makeScene()
+{
+    osg::ref_ptr<osg::Group> group = new osg::Group;
+    for (int i = 0; i < 4; ++i)
+    {
+        osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
+        character->controller().setSpeed(0.3 * i);
+        character->setMatrix(osg::Matrix::translate(-3.5, 0, -3.5 + 1.5 * i));
+        group->addChild(character);
+    }
+    osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*makeTestCharacter());
+    AnimationController controller(crowd->sharedSet());
+    EXPECT_TRUE(controller.play("turn"));
+    EXPECT_TRUE(crowd->add(osg::Matrix::translate(1.5, 0, 2), controller));
+    EXPECT_TRUE(crowd->add(osg::Matrix::translate(1.5, 0, -2), controller));
+    group->addChild(crowd);
+    return group;
+}
+
+osg::ref_ptr<EglGraphicsContext> makeContext(EglGraphicsContext* shared = nullptr)
+{
+    osg::ref_ptr<osg::GraphicsContext::Traits> traits = new osg::GraphicsContext::Traits;
+    traits->width = traits->height = 64;
+    traits->sharedContext = shared;
+    return EglGraphicsContext::create(traits.get()).value();
+}
+
+void setCamera(osg::Camera& camera, osg::GraphicsContext* context, Picture* picture)
+{
+    camera.setGraphicsContext(context);
+    camera.setViewport(0, 0, 64, 64);
+    camera.setProjectionMatrixAsOrtho(-4, 4, -4, 4, 1, 20);
+    camera.setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
+    camera.setViewMatrixAsLookAt({0, -10, 0}, {0, 0, 0}, {0, 0, 1});
+    camera.setFinalDrawCallback(picture);
+}
+
+/// One scene in several contexts, views and cameras at once.
+class ViewersGLTest : public ViewerGLTest
+{
+protected:
+    /// What the time looks like in one context and one thread.
+    osg::ref_ptr<osg::Image> expectedAt(double time)
+    {
+        viewer().setSceneData(makeScene());
+        drawAt(0);
+        drawAt(time);
+        EXPECT_GT(picture().pixelsDrawn(), 200);
+        osg::ref_ptr<osg::Image> image = picture().copy();
+        viewer().setSceneData(nullptr);
+        context().releaseContext();
+        return image;
+    }
+};
+
+struct TwoContextsCase
+{
+    const char* name;
+    bool areShared; ///< one context number for both, GL objects too
+};
+
+void PrintTo(const TwoContextsCase& contexts, std::ostream* out)
+{
+    *out << contexts.name;
+}
+
+class TwoContextsGLTest : public ViewersGLTest, public ::testing::WithParamInterface<TwoContextsCase>
+{
+};
+
+TEST_P(TwoContextsGLTest, aSlaveCameraOnAContextOfItsOwnShowsTheSameUnderEveryThreadingModel)
+{
+    const osg::ref_ptr<osg::Image> expected = expectedAt(2.3);
+    osg::ref_ptr<EglGraphicsContext> first = makeContext();
+    osg::ref_ptr<EglGraphicsContext> second = makeContext(GetParam().areShared ? first.get() : nullptr);
+    osg::ref_ptr<Picture> ofFirst = new Picture, ofSecond = new Picture;
+    osgViewer::Viewer both;
+    both.setKeyEventSetsDone(0);
+    both.setThreadingModel(osgViewer::ViewerBase::SingleThreaded);
+    setCamera(*both.getCamera(), first, ofFirst);
+    osg::ref_ptr<osg::Camera> slave = new osg::Camera;
+    slave->setGraphicsContext(second);
+    slave->setViewport(0, 0, 64, 64);
+    slave->setFinalDrawCallback(ofSecond);
+    both.addSlave(slave, true);
+    both.setSceneData(makeScene());
+    both.realize();
+    both.frame(0); // clips begin here
+    int frame = 0;
+    // Switched while it runs; each model draws a few frames and ends with one at the time looked at.
+    for (int round = 0; round < 2; ++round)
+        for (const Threading threading : threadings)
+        {
+            // What OSG keeps by the context's number is no more made for two threads than ours.
+            if (GetParam().areShared && threading != osgViewer::ViewerBase::SingleThreaded) continue;
+            both.setThreadingModel(threading);
+            for (int i = 0; i < 3; ++i)
+                both.frame(0.1 * ++frame);
+            both.frame(2.3);
+            both.stopThreading();
+            EXPECT_EQ(Picture::pixelsDifferent(*expected, ofFirst->image()), 0) << threading;
+            EXPECT_EQ(Picture::pixelsDifferent(*expected, ofSecond->image()), 0) << threading;
+            both.startThreading();
+        }
+}
+
+INSTANTIATE_TEST_SUITE_P(Contexts, TwoContextsGLTest,
+                         ::testing::Values(TwoContextsCase{"Apart", false}, TwoContextsCase{"Shared", true}),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+TEST_F(ViewersGLTest, twoViewsOfACompositeViewerShowOneScene)
+{
+    const osg::ref_ptr<osg::Image> expected = expectedAt(2.3);
+    for (const Threading threading : threadings)
+    {
+        osgViewer::CompositeViewer composite;
+        composite.setThreadingModel(threading);
+        osg::ref_ptr<osg::Group> scene = makeScene();
+        osg::ref_ptr<Picture> pictures[] = {new Picture, new Picture};
+        for (const osg::ref_ptr<Picture>& picture : pictures)
+        {
+            osg::ref_ptr<osgViewer::View> view = new osgViewer::View;
+            setCamera(*view->getCamera(), makeContext(), picture);
+            view->setSceneData(scene);
+            composite.addView(view);
+        }
+        composite.realize();
+        for (const double time : {0.0, 1.0, 2.3})
+            composite.frame(time);
+        composite.stopThreading();
+        for (const osg::ref_ptr<Picture>& picture : pictures)
+            EXPECT_EQ(Picture::pixelsDifferent(*expected, picture->image()), 0) << threading;
+    }
+}
+
+TEST_F(ViewersGLTest, nothingIsDynamicThatIsDrawn)
+{
+    class DynamicDrawables : public osg::NodeVisitor
+    {
+    public:
+        DynamicDrawables() : osg::NodeVisitor(osg::NodeVisitor::TRAVERSE_ALL_CHILDREN) {}
+        void apply(osg::Drawable& drawable) override
+        {
+            ++drawables;
+            dynamic += drawable.getDataVariance() == osg::Object::DYNAMIC;
+            if (const osg::StateSet* state = drawable.getStateSet())
+                dynamic += state->getDataVariance() == osg::Object::DYNAMIC;
+        }
+        int drawables = 0;
+        int dynamic = 0;
+    } visitor;
+    makeScene()->accept(visitor);
+    EXPECT_EQ(visitor.drawables, 5);
+    EXPECT_EQ(visitor.dynamic, 0);
+}
+
+TEST_F(ViewersGLTest, aWindowIsClosedAndOpenedAgainOverOneScene)
+{
+    const osg::ref_ptr<osg::Image> expected = expectedAt(2.3);
+    osg::ref_ptr<osg::Group> scene = makeScene();
+    osgViewer::Viewer other;
+    other.setThreadingModel(osgViewer::ViewerBase::SingleThreaded);
+    other.setKeyEventSetsDone(0);
+    for (int round = 0; round < 3; ++round)
+    {
+        osg::ref_ptr<Picture> picture = new Picture;
+        osg::ref_ptr<EglGraphicsContext> window = makeContext();
+        setCamera(*other.getCamera(), window, picture);
+        other.setSceneData(scene);
+        other.realize();
+        other.frame(0);
+        other.frame(2.3);
+        EXPECT_EQ(Picture::pixelsDifferent(*expected, picture->image()), 0) << round;
+        other.setThreadingModel(osgViewer::ViewerBase::SingleThreaded);
+        window->close();
+        other.getCamera()->setGraphicsContext(nullptr);
+    }
+}
+
+} // namespace
+
+} // namespace osgGpuAnimation

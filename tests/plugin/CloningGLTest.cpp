@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: MIT
+#include "plugin/SharedAssets.h"
+#include "plugin/StoredScene.h"
+#include "support/ViewerGLTest.h"
+
+#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+
+#include <osg/NodeCallback>
+
+#include <cstdio>
+#include <ctime>
+
+// Copies and shared nodes, made as applications make them: each shows what its own controller says.
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+struct CopyCase
+{
+    const char* name;
+    unsigned int flags;
+};
+
+const CopyCase copies[] = {
+    {"Shallow", osg::CopyOp::SHALLOW_COPY},
+    {"DeepNodes", osg::CopyOp::DEEP_COPY_NODES},
+    {"DeepNodesAndCallbacks", osg::CopyOp::DEEP_COPY_NODES | osg::CopyOp::DEEP_COPY_CALLBACKS},
+    {"DeepAll", osg::CopyOp::DEEP_COPY_ALL},
+};
+
+std::string wanderer()
+{
+    return std::string(OSGGPUANIMATION_SCENES) + "/Wanderer.glb";
+}
+
+double cpuMilliseconds()
+{
+    return 1e3 * static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
+
+class CloningGLTest : public ViewerGLTest
+{
+protected:
+    osg::ref_ptr<osg::Node> load() { return osgDB::readRefNodeFile(wanderer()); }
+
+    osg::ref_ptr<osg::Image> pictureOf(osg::Node& scene, double time)
+    {
+        viewer().setSceneData(&scene);
+        drawAt(time);
+        return picture().copy();
+    }
+
+    /// Of a scene of its own, taken at these times one after another: the last one.
+    osg::ref_ptr<osg::Image> expectedAt(const std::string& clip, const std::vector<double>& times)
+    {
+        const osg::ref_ptr<osg::Node> scene = load();
+        EXPECT_TRUE(findCharacter(*scene)->controller().play(clip));
+        osg::ref_ptr<osg::Image> last;
+        for (const double time : times)
+            last = pictureOf(*scene, time);
+        return last;
+    }
+
+    static std::string clipName(std::size_t clip, const AnimationSet& set) { return set.clips()[clip].name(); }
+
+    StoredScene plugins;
+};
+
+/// Copies what is below while the update traversal is there.
+class CopyWhileUpdating : public osg::NodeCallback
+{
+public:
+    explicit CopyWhileUpdating(unsigned int flags) : _flags(flags) {}
+
+    void operator()(osg::Node* node, osg::NodeVisitor* visitor) override
+    {
+        traverse(node, visitor);
+        if (!copy) copy = osg::clone(node->asGroup()->getChild(0), osg::CopyOp(_flags));
+    }
+
+    osg::ref_ptr<osg::Node> copy;
+
+private:
+    unsigned int _flags;
+};
+
+} // namespace
+
+class CopiesGLTest : public CloningGLTest, public ::testing::WithParamInterface<CopyCase>
+{
+protected:
+    /// The character alone: a shallow copy of a node above it would have the same one below.
+    static osg::ref_ptr<AnimatedCharacter> copyOf(osg::Node& scene)
+    {
+        return osg::clone(findCharacter(scene), osg::CopyOp(GetParam().flags));
+    }
+
+    void expectIndependent(osg::Node& original, AnimatedCharacter& copy)
+    {
+        AnimatedCharacter& first = *findCharacter(original);
+        ASSERT_NE(&first, &copy);
+        EXPECT_EQ(&first.set(), &copy.set());
+        const std::string last = clipName(first.set().clips().size() - 1, first.set());
+        const osg::ref_ptr<osg::Image> before = pictureOf(original, 1.0);
+        ASSERT_TRUE(copy.controller().play(last));
+        copy.controller().setSpeed(0.5);
+        EXPECT_EQ(Picture::pixelsDifferent(*before, *pictureOf(original, 1.0)), 0);
+        EXPECT_NE(first.controller().clip(), copy.controller().clip());
+        // The loaded root turns +Y to +Z, and so it is for the copy.
+        osg::ref_ptr<osg::MatrixTransform> place =
+            new osg::MatrixTransform(osg::Matrix::rotate(osg::PI_2, osg::Vec3d(1, 0, 0)));
+        place->addChild(&copy);
+        pictureOf(*place, 1.0);
+        copy.controller().seek(0.0);
+        copy.controller().setSpeed(1.0);
+        const osg::ref_ptr<osg::Image> shown = pictureOf(*place, 1.5);
+        EXPECT_EQ(Picture::pixelsDifferent(*shown, *expectedAt(last, {1.0, 1.5})), 0);
+        EXPECT_EQ(Picture::pixelsDifferent(*before, *pictureOf(original, 1.0)), 0);
+    }
+};
+
+TEST_P(CopiesGLTest, madeBeforeTheFirstFrame)
+{
+    const osg::ref_ptr<osg::Node> scene = load();
+    const osg::ref_ptr<AnimatedCharacter> copy = copyOf(*scene);
+    expectIndependent(*scene, *copy);
+}
+
+TEST_P(CopiesGLTest, madeAfterFrames)
+{
+    const osg::ref_ptr<osg::Node> scene = load();
+    pictureOf(*scene, 0.0);
+    pictureOf(*scene, 0.4);
+    const osg::ref_ptr<AnimatedCharacter> copy = copyOf(*scene);
+    EXPECT_EQ(copy->controller().time(), findCharacter(*scene)->controller().time());
+    expectIndependent(*scene, *copy);
+}
+
+TEST_P(CopiesGLTest, madeDuringTheUpdate)
+{
+    osg::ref_ptr<osg::Group> scene = new osg::Group;
+    const osg::ref_ptr<osg::Node> loaded = load();
+    scene->addChild(loaded);
+    osg::ref_ptr<CopyWhileUpdating> callback = new CopyWhileUpdating(GetParam().flags | osg::CopyOp::DEEP_COPY_NODES);
+    scene->setUpdateCallback(callback);
+    pictureOf(*scene, 0.0);
+    ASSERT_TRUE(callback->copy);
+    expectIndependent(*loaded, *osg::ref_ptr<AnimatedCharacter>(findCharacter(*callback->copy)));
+}
+
+INSTANTIATE_TEST_SUITE_P(Ways, CopiesGLTest, ::testing::ValuesIn(copies),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+TEST_F(CloningGLTest, underSeveralParentsItIsOneCharacterDrawnTwice)
+{
+    const osg::ref_ptr<osg::Node> character = load();
+    osg::ref_ptr<osg::Group> scene = new osg::Group;
+    for (const double x : {-2.0, 2.0})
+    {
+        osg::ref_ptr<osg::MatrixTransform> place = new osg::MatrixTransform(osg::Matrix::translate(x, 0, 0));
+        place->addChild(character);
+        scene->addChild(place);
+    }
+    pictureOf(*scene, 0.0);
+    const osg::ref_ptr<osg::Image> shown = pictureOf(*scene, 0.5);
+    EXPECT_NEAR(findCharacter(*character)->controller().time(), 0.5, 1e-9) << "advanced once a frame";
+    int different = 0;
+    for (int y = 0; y < 64; ++y)
+        for (int x = 0; x < 32; ++x)
+            different += (shown->getColor(x, y) - shown->getColor(x + 32, y)).length() > 0.05f;
+    EXPECT_LE(different, 4) << "the halves of the picture";
+    EXPECT_GT(picture().pixelsDrawn(), 40);
+}
+
+TEST_F(CloningGLTest, movesFromOneViewerToAnother)
+{
+    const osg::ref_ptr<osg::Node> scene = load();
+    const osg::ref_ptr<osg::Image> first = pictureOf(*scene, 0.0);
+    viewer().setSceneData(nullptr);
+    drawAt(0.1);
+    const Result<osg::ref_ptr<EglGraphicsContext>> made = EglGraphicsContext::create(64, 64);
+    ASSERT_TRUE(made) << made.error().message;
+    {
+        osgViewer::Viewer other;
+        osg::ref_ptr<Picture> seen = new Picture;
+        other.setThreadingModel(osgViewer::ViewerBase::SingleThreaded);
+        other.getCamera()->setGraphicsContext(made.value());
+        other.getCamera()->setViewport(0, 0, 64, 64);
+        other.getCamera()->setProjectionMatrix(viewer().getCamera()->getProjectionMatrix());
+        other.getCamera()->setViewMatrix(viewer().getCamera()->getViewMatrix());
+        other.getCamera()->setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
+        other.getCamera()->setFinalDrawCallback(seen);
+        other.setSceneData(scene);
+        other.frame(0.0);
+        EXPECT_EQ(Picture::pixelsDifferent(*first, seen->image()), 0);
+        other.setSceneData(nullptr);
+        made.value()->close();
+    }
+    context().makeCurrent();
+    EXPECT_EQ(Picture::pixelsDifferent(*first, *pictureOf(*scene, 0.0)), 0);
+}
+
+TEST_F(CloningGLTest, theObjectCacheHandsOutCharactersOfTheirOwn)
+{
+    const osg::ref_ptr<osg::Node> source = load();
+    ASSERT_TRUE(osgDB::writeNodeFile(*source, plugins.folder.file("kept.osgb")));
+    const std::string files[] = {wanderer(), plugins.folder.file("kept.osgb"), wanderer() + ".0,0,90.rot"};
+    for (const std::string& file : files)
+        for (const auto hint : {osgDB::Options::CACHE_NODES, osgDB::Options::CACHE_ALL})
+        {
+            SCOPED_TRACE(file);
+            osg::ref_ptr<osgDB::Options> options = new osgDB::Options;
+            options->setObjectCacheHint(hint);
+            const osg::ref_ptr<osg::Node> one = osgDB::readRefNodeFile(file, options);
+            ASSERT_TRUE(one && findCharacter(*one));
+            findCharacter(*one)->update(0.0);
+            findCharacter(*one)->update(0.7);
+            const osg::ref_ptr<osg::Node> other = osgDB::readRefNodeFile(file, options);
+            ASSERT_TRUE(other && findCharacter(*other));
+            EXPECT_NE(findCharacter(*one), findCharacter(*other));
+            EXPECT_EQ(&findCharacter(*one)->set(), &findCharacter(*other)->set()) << "it is cached";
+            EXPECT_EQ(findCharacter(*other)->controller().time(), 0.0);
+            osgDB::Registry::instance()->clearObjectCache();
+        }
+    osg::ref_ptr<osgDB::Options> options = new osgDB::Options;
+    options->setObjectCacheHint(osgDB::Options::CACHE_ALL);
+    const std::string still = plugins.folder.file("still.osgb");
+    ASSERT_TRUE(osgDB::writeNodeFile(*osg::ref_ptr<osg::Group>(new osg::Group), still));
+    EXPECT_EQ(osgDB::readRefNodeFile(still, options), osgDB::readRefNodeFile(still, options)) << "as OSG has it";
+    const osg::ref_ptr<osg::Node> crowd = osgDB::readRefNodeFile(wanderer() + ".2x2.crowd", options);
+    EXPECT_NE(crowd, osgDB::readRefNodeFile(wanderer() + ".2x2.crowd", options));
+    osgDB::Registry::instance()->clearObjectCache();
+}
+
+TEST_F(CloningGLTest, aThousandCopiesAreMadeWithoutAPause)
+{
+    for (const std::string name : {"assets/Fox/Fox.glb", "assets/Knight/Knight.glb"})
+    {
+        SKIP_WITHOUT_SHARED_FILE(name);
+        const osg::ref_ptr<osg::Node> scene = osgDB::readRefNodeFile(sharedFile(name));
+        osg::ref_ptr<osg::Group> all = new osg::Group;
+        const double start = cpuMilliseconds();
+        for (int i = 0; i < 1000; ++i)
+            all->addChild(osg::clone(scene.get(), osg::CopyOp::DEEP_COPY_NODES));
+        const double copied = cpuMilliseconds() - start;
+        viewer().setSceneData(all);
+        const double before = cpuMilliseconds();
+        viewer().advance(0.0);
+        viewer().updateTraversal();
+        all->getBound();
+        const double updated = cpuMilliseconds() - before;
+        std::printf("%s: 1,000 copies %.1f ms, the first update %.1f ms\n", name.c_str(), copied, updated);
+        EXPECT_LE(copied, 50.0) << name;
+        EXPECT_LE(updated, 50.0) << name;
+    }
+}
+
+TEST_F(CloningGLTest, theFirstFrameOfAThousandCopiesIsAsTheNext)
+{
+    const osg::ref_ptr<osg::Node> scene = load();
+    pictureOf(*scene, 0.0); // programs and buffers are there
+    osg::ref_ptr<osg::Group> all = new osg::Group;
+    for (int i = 0; i < 1000; ++i)
+        all->addChild(osg::clone(scene.get(), osg::CopyOp::DEEP_COPY_NODES));
+    viewer().setSceneData(all);
+    double frames[4] = {};
+    for (int frame = 0; frame < 4; ++frame)
+    {
+        const double before = cpuMilliseconds();
+        drawAt(0.1 + 0.02 * frame);
+        frames[frame] = cpuMilliseconds() - before;
+    }
+    std::printf("frames: %.0f %.0f %.0f %.0f ms\n", frames[0], frames[1], frames[2], frames[3]);
+    EXPECT_LE(frames[0], 1.5 * std::max({frames[1], frames[2], frames[3]}) + 50.0);
+}
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: MIT
+// Small files that ask for much.
+#include "gltf/Import.h"
+#include "plugin/ModelBuilder.h"
+#include "support/PeakMemory.h"
+
+#include <gtest/gtest.h>
+
+#include <ctime>
+#include <string>
+
+namespace osgGpuAnimation::gltf
+{
+
+namespace
+{
+
+constexpr unsigned int vertices = 99999;
+constexpr int nodes = 20000;
+
+/// One mesh of 99,999 vertices.
+struct LargeMesh : ModelBuilder
+{
+    std::map<std::string, int> attributes{
+        {"POSITION", floats(TINYGLTF_TYPE_VEC3, std::vector<float>(3 * vertices, 1.0f))}};
+
+    void beSkinned()
+    {
+        const std::vector<unsigned int> joints(4 * vertices, 0);
+        std::vector<float> weights;
+        for (unsigned int i = 0; i < vertices; ++i)
+            weights.insert(weights.end(), {1, 0, 0, 0});
+        attributes["JOINTS_0"] = integers(TINYGLTF_TYPE_VEC4, TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE, joints);
+        attributes["WEIGHTS_0"] = floats(TINYGLTF_TYPE_VEC4, weights);
+    }
+};
+
+std::string staticNodes()
+{
+    LargeMesh file;
+    const int mesh = file.mesh(file.attributes);
+    for (int i = 0; i < nodes; ++i)
+        file.node("", -1, mesh);
+    return file.text();
+}
+
+std::string nodesOnAnAnimatedJoint()
+{
+    LargeMesh file;
+    const int mesh = file.mesh(file.attributes);
+    const int joint = file.node("joint");
+    file.animation("slide");
+    file.slide(joint);
+    for (int i = 0; i < nodes; ++i)
+        file.node("", joint, mesh);
+    return file.text();
+}
+
+/// A skin for each node, all of one joint.
+std::string skinnedNodes()
+{
+    LargeMesh file;
+    file.beSkinned();
+    const int mesh = file.mesh(file.attributes);
+    const int joint = file.node("joint");
+    for (int i = 0; i < nodes; ++i)
+    {
+        const int skin = file.skin({joint});
+        file.at(file.node("", -1, mesh)).skin = skin;
+    }
+    return file.text();
+}
+
+/// A document of a list of so many empty objects.
+std::string emptyObjects(const std::string& list, std::size_t count)
+{
+    std::string text = R"({"asset":{"version":"2.0"},")" + list + "\":[{}";
+    for (std::size_t i = 1; i < count; ++i)
+        text += ",{}";
+    return text + "]}";
+}
+
+struct ManyCase
+{
+    const char* name;
+    std::string text;
+    const char* message; ///< of the error; empty: it is drawn
+};
+
+} // namespace
+
+TEST(ManyElementsTest, staySmallAndQuick)
+{
+    const ManyCase cases[] = {
+        {"static", staticNodes(), ""},
+        {"on an animated joint", nodesOnAnAnimatedJoint(), ""},
+        {"skinned", skinnedNodes(), ""},
+        {"300,000 empty nodes", emptyObjects("nodes", 300000), ""},
+        {"1,000,000 empty nodes", emptyObjects("nodes", 1000000), "nodes: expected a document of at most"},
+        {"1,000,000 empty materials", emptyObjects("materials", 1000000), "materials: expected a document of at most"},
+    };
+    for (const ManyCase& many : cases)
+    {
+        const long before = peakMemory();
+        SCOPED_TRACE(many.name);
+        const std::clock_t start = std::clock(); // of the processor: other programs may run
+        const Result<ImportedModel> model = importModel(many.text, "", {});
+        EXPECT_EQ(bool(model), *many.message == '\0');
+        if (!model)
+        {
+            EXPECT_NE(model.error().message.find(many.message), std::string::npos) << model.error().message;
+        }
+        EXPECT_LT(double(std::clock() - start) / CLOCKS_PER_SEC, mostSeconds);
+        if (memoryIsMeasurable)
+        {
+            EXPECT_LT(peakMemory() - before, mostMebibytes);
+        }
+    }
+}
+
+TEST(ManyElementsTest, theDocumentsLimitIsTheCallers)
+{
+    ImportOptions options;
+    options.maxDocumentBytes = 1000000;
+    EXPECT_TRUE(importModel(emptyObjects("nodes", 1000), "", options));
+    const Result<ImportedModel> refused = importModel(emptyObjects("nodes", 2000), "", options);
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().message.find("limit maxDocumentBytes), found 2000"), std::string::npos)
+        << refused.error().message;
+}
+
+} // namespace osgGpuAnimation::gltf

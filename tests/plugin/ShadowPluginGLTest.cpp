@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+#include "plugin/SharedAssets.h"
+#include "support/ViewerGLTest.h"
+
+#include <osgDB/ReadFile>
+#include <osgDB/Registry>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+/// OSG's pseudo-loader over our files: `osgviewer fox.glb.shadow`.
+class ShadowPluginGLTest : public ViewerGLTest
+{
+protected:
+    osg::ref_ptr<osg::GraphicsContext::Traits> traits() const override
+    {
+        osg::ref_ptr<osg::GraphicsContext::Traits> wanted = ViewerGLTest::traits();
+        wanted->width = wanted->height = 256;
+        return wanted;
+    }
+
+    osg::ref_ptr<osg::Image> pictureOf(const std::string& file, double time)
+    {
+        osgDB::FilePathList& paths = osgDB::Registry::instance()->getLibraryFilePathList();
+        if (paths.empty() || paths.front() != OSGGPUANIMATION_PLUGIN_FOLDER)
+            paths.push_front(OSGGPUANIMATION_PLUGIN_FOLDER);
+        const osg::ref_ptr<osg::Node> scene = osgDB::readRefNodeFile(file);
+        EXPECT_TRUE(scene) << file;
+        if (!scene) return new osg::Image;
+        const osg::BoundingSphere bound = scene->getBound();
+        osg::Camera& camera = *viewer().getCamera();
+        const double reach = bound.radius();
+        camera.setProjectionMatrixAsOrtho(-reach, reach, -reach, reach, 0, 4 * reach);
+        camera.setViewMatrixAsLookAt(bound.center() + osg::Vec3(0.6f, -1.5f, 0.5f) * reach, bound.center(), {0, 0, 1});
+        viewer().setLightingMode(osg::View::SKY_LIGHT);
+        viewer().getLight()->setPosition(osg::Vec4(1, -0.5f, 0.7f, 0));
+        viewer().setSceneData(scene);
+        drawAt(0);
+        drawAt(time);
+        return picture().copy();
+    }
+};
+
+TEST_F(ShadowPluginGLTest, shadowsFallOnTheCharacterAndMoveWithIt)
+{
+    SKIP_WITHOUT_SHARED_FILE("assets/Fox/Fox.glb");
+    const std::string fox = sharedFile("assets/Fox/Fox.glb");
+    for (const char* model : {"", ".2x2.crowd"})
+    {
+        const osg::ref_ptr<osg::Image> lit = pictureOf(fox + model, 0.3);
+        const int drawn = picture().pixelsDrawn();
+        const osg::ref_ptr<osg::Image> shadowed = pictureOf(fox + model + ".shadow", 0.3);
+        EXPECT_GT(drawn, 100) << model;
+        EXPECT_EQ(picture().pixelsDrawn(), drawn) << model;
+        EXPECT_GT(Picture::pixelsDifferent(*lit, *shadowed, 0.05f), 10) << model;
+        EXPECT_GT(Picture::pixelsDifferent(*shadowed, *pictureOf(fox + model + ".shadow", 0.6), 0.05f), 10) << model;
+    }
+}
+
+} // namespace
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+#include "SoakViewer.h"
+
+#include <osgGpuAnimation/gpu/EglGraphicsContext.h>
+
+#include <iostream>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+class ErrorCount : public osg::Camera::DrawCallback
+{
+public:
+    explicit ErrorCount(std::atomic<int>& errors) : _errors(errors) {}
+    void operator()(osg::RenderInfo&) const override
+    {
+        for (int kept = 0; kept < 32 && glGetError() != GL_NO_ERROR; ++kept)
+            ++_errors;
+    }
+
+private:
+    std::atomic<int>& _errors;
+};
+
+} // namespace
+
+SoakViewer::SoakViewer(osg::Group& scene) : _scene(&scene)
+{
+    open(320, 240);
+}
+
+SoakViewer::~SoakViewer()
+{
+    close();
+}
+
+bool SoakViewer::open(int width, int height)
+{
+    const Result<osg::ref_ptr<EglGraphicsContext>> window = EglGraphicsContext::create(width, height);
+    if (!window)
+    {
+        std::cerr << window.error().message << std::endl;
+        return false;
+    }
+    _window = window.value();
+    _viewer = new osgViewer::Viewer;
+    _viewer->setKeyEventSetsDone(0);
+    _viewer->setThreadingModel(osgViewer::ViewerBase::SingleThreaded);
+    osg::Camera& camera = *_viewer->getCamera();
+    camera.setGraphicsContext(_window);
+    camera.setViewport(0, 0, width, height);
+    camera.setProjectionMatrixAsPerspective(40.0, double(width) / height, 1.0, 10000.0);
+    camera.setFinalDrawCallback(new ErrorCount(_glErrors));
+    _viewer->setSceneData(_scene);
+    _viewer->realize();
+    return _viewer->isRealized();
+}
+
+void SoakViewer::close()
+{
+    if (!_viewer) return;
+    _viewer->stopThreading();
+    _window->close();
+    _viewer = nullptr;
+    _window = nullptr;
+}
+
+void SoakViewer::frame(double time)
+{
+    _viewer->frame(time);
+}
+
+void SoakViewer::moveCamera(std::mt19937& random)
+{
+    const osg::BoundingSphere bound = _scene->getBound();
+    std::uniform_real_distribution<double> way(-1.0, 1.0);
+    osg::Vec3d from(way(random), way(random), 0.3 + 0.2 * way(random));
+    from = bound.center() + from * bound.radius();
+    _viewer->getCamera()->setViewMatrixAsLookAt(from, bound.center(), {0, 0, 1});
+}
+
+void SoakViewer::changeThreading(std::mt19937& random)
+{
+    const osgViewer::ViewerBase::ThreadingModel models[] = {
+        osgViewer::ViewerBase::SingleThreaded, osgViewer::ViewerBase::CullDrawThreadPerContext,
+        osgViewer::ViewerBase::DrawThreadPerContext, osgViewer::ViewerBase::CullThreadPerCameraDrawThreadPerContext};
+    _viewer->setThreadingModel(models[std::uniform_int_distribution<int>(0, 3)(random)]);
+}
+
+bool SoakViewer::open(std::mt19937& random)
+{
+    std::uniform_int_distribution<int> size(100, 500);
+    const int width = size(random);
+    return open(width, size(random));
+}
+
+} // namespace osgGpuAnimation

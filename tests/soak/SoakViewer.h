@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osg/Group>
+#include <osgViewer/Viewer>
+
+#include <atomic>
+#include <random>
+
+namespace osgGpuAnimation
+{
+
+/// Draws a scene without a display while its window's size, the camera and the threading model change.
+class SoakViewer
+{
+public:
+    explicit SoakViewer(osg::Group& scene);
+    ~SoakViewer();
+    SoakViewer(const SoakViewer&) = delete;
+    SoakViewer& operator=(const SoakViewer&) = delete;
+
+    void frame(double time);
+    void moveCamera(std::mt19937& random);
+    void changeThreading(std::mt19937& random);
+    void close();
+    /// A window of another size.
+    bool open(std::mt19937& random);
+
+    int glErrors() const { return _glErrors; }
+
+private:
+    bool open(int width, int height);
+
+    osg::ref_ptr<osg::Group> _scene;
+    osg::ref_ptr<osgViewer::Viewer> _viewer;
+    osg::ref_ptr<osg::GraphicsContext> _window;
+    std::atomic<int> _glErrors{0};
+};
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT
+// Usage: soak [--seconds N] [--seed S] FILE
+// Clones, removes, changes clips, moves the camera, changes the window's size and the threading model, at random but
+// the same for the same seed, with the file's character. Prints GL errors and how much more memory is in use, the
+// window closed and the scene empty, than in the first minute. Exit status 0: no GL error, and at most 2 % more memory.
+
+#include "SoakScene.h"
+#include "SoakViewer.h"
+
+#include <osgDB/ReadFile>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <iostream>
+#include <malloc.h>
+#include <string>
+#include <vector>
+
+namespace
+{
+
+using namespace osgGpuAnimation;
+
+struct Arguments
+{
+    double seconds = 600.0;
+    unsigned int seed = 1;
+    std::string file;
+};
+
+bool parse(int count, char** words, Arguments& arguments)
+{
+    for (int i = 1; i < count; ++i)
+    {
+        const bool hasValue = i + 1 < count;
+        if (std::strcmp(words[i], "--seconds") == 0 && hasValue)
+            arguments.seconds = std::atof(words[++i]);
+        else if (std::strcmp(words[i], "--seed") == 0 && hasValue)
+            arguments.seed = static_cast<unsigned int>(std::atoi(words[++i]));
+        else if (words[i][0] != '-' && arguments.file.empty())
+            arguments.file = words[i];
+        else
+            return false;
+    }
+    return !arguments.file.empty() && arguments.seconds > 0.0;
+}
+
+/// Kibibytes that the process has in memory, what is free given back.
+long residentMemory()
+{
+    malloc_trim(0);
+    std::ifstream status("/proc/self/status");
+    for (std::string line; std::getline(status, line);)
+        if (line.rfind("VmRSS:", 0) == 0) return std::atol(line.c_str() + 6);
+    return 0;
+}
+
+/// Single readings scatter by a tenth: threads come and go with the windows. 0: there are none.
+long median(std::vector<long> values)
+{
+    if (values.empty()) return 0;
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+class Clock
+{
+public:
+    double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - _start).count(); }
+
+private:
+    std::chrono::steady_clock::time_point _start = std::chrono::steady_clock::now();
+};
+
+constexpr unsigned int framesOfAWindow = 200;
+
+void changeViewer(SoakViewer& viewer, unsigned int frame, std::mt19937& random)
+{
+    if (frame % 7 == 0) viewer.moveCamera(random);
+    if (frame % 60 == 0) viewer.changeThreading(random);
+}
+
+int soak(const Arguments& arguments, osg::ref_ptr<osg::Node> model)
+{
+    std::mt19937 random(arguments.seed);
+    SoakScene scene(model);
+    SoakViewer viewer(scene.root());
+    const Clock clock;
+    const double warmUp = std::min(60.0, arguments.seconds / 3);
+    std::vector<long> atRest, atRestAtFirst; // with the window closed and the scene empty
+    unsigned int frame = 0;
+    while (clock.seconds() < arguments.seconds)
+    {
+        scene.change(random);
+        changeViewer(viewer, frame, random);
+        viewer.frame(frame / 60.0);
+        if (++frame % framesOfAWindow != 0) continue;
+        viewer.close();
+        scene.clear();
+        const double seconds = clock.seconds();
+        const long memory = residentMemory();
+        (seconds < warmUp ? atRestAtFirst : atRest).push_back(memory);
+        std::cout << static_cast<int>(seconds) << " s, " << frame << " frames, " << memory << " KiB at rest, "
+                  << viewer.glErrors() << " GL errors" << std::endl;
+        if (!viewer.open(random)) return 1;
+    }
+    const long before = median(atRestAtFirst), after = median(atRest);
+    const double growth = before > 0 ? 100.0 * double(after - before) / double(before) : 100.0;
+    std::cout << frame << " frames, " << viewer.glErrors() << " GL errors, median of memory at rest in the first "
+              << static_cast<int>(warmUp) << " s " << before << " KiB, afterwards " << after << " KiB: " << growth
+              << " %" << std::endl;
+    return viewer.glErrors() == 0 && growth <= 2.0 ? 0 : 1;
+}
+
+} // namespace
+
+int main(int count, char** words)
+{
+    Arguments arguments;
+    if (!parse(count, words, arguments))
+    {
+        std::cerr << "Usage: soak [--seconds N] [--seed S] FILE" << std::endl;
+        return 2;
+    }
+    const osg::ref_ptr<osg::Node> model = osgDB::readRefNodeFile(arguments.file);
+    if (!model || !findCharacter(*model))
+    {
+        std::cerr << arguments.file << " holds no animated character" << std::endl;
+        return 2;
+    }
+    return soak(arguments, model);
+}

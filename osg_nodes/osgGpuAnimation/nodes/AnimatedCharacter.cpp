@@ -79,22 +79,15 @@ Result<bool> AnimatedCharacter::setAnimationSet(std::shared_ptr<const AnimationS
     if (!newSet || (!isFirst && newSet->paletteSize() != set().paletteSize()))
         return Error{"a set of " + std::to_string(newSet ? newSet->paletteSize() : 0) +
                      " palette entries for the meshes of one of " + std::to_string(set().paletteSize())};
-    AnimationController next(std::move(newSet));
-    const AnimationController& old = *_controller;
-    next.setLoopMode(old.loopMode());
-    next.setSpeed(old.speed());
-    if (old.clip() >= 0 && old.state() != PlayState::Stopped && next.play(static_cast<std::size_t>(old.clip())))
-    {
-        next.seek(old.time());
-        if (old.state() == PlayState::Paused) next.pause();
-    }
-    *_controller = next;
+    *_controller = AnimationController(std::move(newSet), *_controller);
     if (_clipBounds) computeClipBounds();
     return true;
 }
 
-osg::Matrixd AnimatedCharacter::jointToModel(std::size_t joint) const
+Result<osg::Matrixd> AnimatedCharacter::jointToModel(std::size_t joint) const
 {
+    const std::size_t count = set().skeleton().jointCount();
+    if (joint >= count) return Error{"there is no joint " + std::to_string(joint) + " among " + std::to_string(count)};
     // A matrix for column vectors by columns is in memory one for row vectors by rows.
     const glm::dmat4 columns = Pose::jointToModel(set(), _controller->instruction(), joint).toColumns();
     return osg::Matrixd(glm::value_ptr(columns));
@@ -102,9 +95,9 @@ osg::Matrixd AnimatedCharacter::jointToModel(std::size_t joint) const
 
 Result<osg::Matrixd> AnimatedCharacter::jointToModel(const std::string& joint) const
 {
-    const int index = set().skeleton().findJoint(joint);
-    if (index < 0) return Error{"there is no joint \"" + joint + "\""};
-    return jointToModel(static_cast<std::size_t>(index));
+    const Result<std::size_t> index = set().skeleton().jointNamed(joint);
+    if (!index) return index.error();
+    return jointToModel(index.value());
 }
 
 void AnimatedCharacter::update(double simulationTime)

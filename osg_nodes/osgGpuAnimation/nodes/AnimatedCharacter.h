@@ -41,15 +41,15 @@ public:
     const AnimationController& controller() const { return *_controller; }
 
     /// The same character with another set, such as one with markers or root motion (AnimationSet::withClips,
-    /// withRootMotion): the base layer goes on with the clip of the same number, other layers are gone, bounds are
+    /// withRootMotion): its controller goes on with the clips of the same numbers (see AnimationController), bounds are
     /// worked out anew. Do it before cloning, so that clones share the set. A character that was made without a set
     /// takes any. Error: the set's palette is another than this one's, so the meshes would not fit.
     Result<bool> setAnimationSet(std::shared_ptr<const AnimationSet> set);
 
     /// Where a joint is now, in the character's own space: computed from its own chain of parents by the CPU twin,
-    /// cheap enough for every frame. joint: below the skeleton's jointCount().
-    osg::Matrixd jointToModel(std::size_t joint) const;
-    /// Error: there is no joint of that name.
+    /// cheap enough for every frame. joint: below the skeleton's jointCount(). Error: it is not.
+    Result<osg::Matrixd> jointToModel(std::size_t joint) const;
+    /// Error: there is no joint of that name; it lists the names there are.
     Result<osg::Matrixd> jointToModel(const std::string& joint) const;
 
     /// Advances the controller by the time since the last update; the first only takes the time down. A jump of the

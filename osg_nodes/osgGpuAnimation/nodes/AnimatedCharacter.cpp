@@ -5,6 +5,7 @@
 #include <osgGpuAnimation/nodes/AnimationUpdateCallback.h>
 #include <osgGpuAnimation/nodes/DepthPass.h>
 #include <osgGpuAnimation/nodes/FlattenedPlace.h>
+#include <osgGpuAnimation/nodes/PosedMeshes.h>
 #include <osgGpuAnimation/nodes/PoseStage.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
@@ -55,7 +56,7 @@ osg::BoundingBox toOsg(const Box& box)
 AnimatedCharacter::AnimatedCharacter() : AnimatedCharacter(emptySet()) {}
 
 AnimatedCharacter::AnimatedCharacter(std::shared_ptr<const AnimationSet> set)
-    : _controller(std::make_unique<AnimationController>(std::move(set)))
+    : _controller(std::make_unique<AnimationController>(std::move(set))), _posedMeshes(std::make_unique<PosedMeshes>())
 {
     // Not static: the Optimizer must flatten neither this transform nor those above into the bind pose.
     setDataVariance(osg::Object::DYNAMIC);
@@ -65,7 +66,7 @@ AnimatedCharacter::AnimatedCharacter(std::shared_ptr<const AnimationSet> set)
 AnimatedCharacter::AnimatedCharacter(const AnimatedCharacter& other, const osg::CopyOp& copyop)
     : osg::MatrixTransform(other, copyop), _controller(std::make_unique<AnimationController>(*other._controller)),
       _clipBounds(other._clipBounds), _mixBounds(other._mixBounds), _updateTime(other._updateTime),
-      _isDrawnTogether(other._isDrawnTogether)
+      _posedMeshes(std::make_unique<PosedMeshes>()), _isDrawnTogether(other._isDrawnTogether)
 {
     // osg::Node copies its other callbacks, but not these.
     setEventCallback(copyop(other.getEventCallback()));
@@ -157,6 +158,17 @@ const Box& AnimatedCharacter::clipBounds(int clip) const
     static const Box none;
     const std::size_t index = static_cast<std::size_t>(clip + 1);
     return _clipBounds && index < _clipBounds->size() ? (*_clipBounds)[index] : none;
+}
+
+osg::ref_ptr<osg::Geometry> AnimatedCharacter::posedMesh(const SkinnedGeometry& mesh) const
+{
+    return _posedMeshes->of(mesh, _controller->sharedSet(), _controller->instruction(), AffineMatrix());
+}
+
+void AnimatedCharacter::acceptPosed(osg::PrimitiveFunctor& functor)
+{
+    SkinnedGeometryVisitor accepting([&](SkinnedGeometry& geometry) { posedMesh(geometry)->accept(functor); });
+    accept(accepting);
 }
 
 void AnimatedCharacter::traverse(osg::NodeVisitor& visitor)

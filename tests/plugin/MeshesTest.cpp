@@ -257,6 +257,9 @@ TEST(MeshesTest, textureCoordinatesAreTheMaterials)
     EXPECT_EQ((*ReadMesh(file).primitive->texCoords)[0], osg::Vec2(0.5f, 0.0f));
     texture.texCoord = 2;
     EXPECT_FALSE(ReadMesh(file).primitive->texCoords);
+    file.primitive(0).attributes["TEXCOORD_3"] = first; // whatever the sets before it
+    texture.texCoord = 3;
+    EXPECT_EQ((*ReadMesh(file).primitive->texCoords)[0], osg::Vec2(0.25f, 0.25f));
 
     tinygltf::Value::Object transform;
     const auto pair = [](double a, double b) {

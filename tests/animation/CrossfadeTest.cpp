@@ -116,6 +116,26 @@ TEST(CrossfadeTest, InPhaseBothRunAtOnePaceUntilItIsOver)
         << "its own pace afterwards";
 }
 
+TEST(CrossfadeTest, InPhaseAThereAndBackKeepsPaceWithALoop)
+{
+    for (LoopMode mode : {LoopMode::PingPong, LoopMode::Loop})
+    {
+        AnimationController controller(makeGaitSet());
+        controller.setLoopMode(mode);
+        ASSERT_TRUE(controller.play("Walk"));
+        controller.advance(0.3);
+        const LoopMode other = mode == LoopMode::Loop ? LoopMode::PingPong : LoopMode::Loop;
+        ASSERT_TRUE(controller.crossfade("Run", 2.0, {FadeCurve::Linear, Sync::Phase, other}));
+        for (int i = 0; i < 100; ++i)
+        {
+            controller.advance(frameSeconds);
+            const ClipMixer& mixer = controller.layer(0).mixer();
+            ASSERT_EQ(mixer.voiceCount(), 2u);
+            EXPECT_NEAR(mixer.voice(0).playback.phase(), mixer.voice(1).playback.phase(), 1e-6);
+        }
+    }
+}
+
 TEST(CrossfadeTest, FromNothingItRisesOutOfTheRestPose)
 {
     AnimationController controller(makeGaitSet());
@@ -134,7 +154,11 @@ TEST(CrossfadeTest, RefusesWhatItCannotDoAndStaysAsItWas)
     controller.advance(0.25);
     const PoseInstruction before = controller.instruction();
     for (double bad : {-1.0, std::nan(""), HUGE_VAL})
-        EXPECT_FALSE(controller.crossfade("Run", bad));
+    {
+        const Result<bool> refused = controller.crossfade("Run", bad);
+        ASSERT_FALSE(refused);
+        EXPECT_EQ(refused.error().message.rfind("a crossfade to clip \"Run\" of ", 0), 0u) << refused.error().message;
+    }
     EXPECT_FALSE(controller.crossfade(9, 0.5));
     const Result<bool> unknown = controller.crossfade("Fly", 0.5);
     ASSERT_FALSE(unknown);

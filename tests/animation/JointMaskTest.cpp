@@ -48,7 +48,8 @@ TEST(JointMaskTest, TakesJointsByName)
     EXPECT_EQ(weightsOf(JointMask::joints(*set, {"arm", "hips"})), (std::vector<float>{1, 0, 0, 1, 0, 0, 0, 0, 0}));
     const Result<JointMask> faulty = JointMask::joints(*set, {"arm", "wing"});
     ASSERT_FALSE(faulty);
-    EXPECT_EQ(faulty.error().message, "there is no joint \"wing\" among the 6 of the set");
+    EXPECT_EQ(faulty.error().message,
+              "there is no joint \"wing\"; the joints are \"hips\", \"spine\", \"leg\", \"arm\", \"head\", \"hand\"");
     EXPECT_FALSE(JointMask::subtree(*set, "tail"));
 }
 

@@ -208,7 +208,7 @@ TEST(RootMotionTest, CrossfadesAndLayersBlendIt)
         controller.advance(1.0 / 60.0);
         const double speed = -controller.takeRootMotion().translation.z * 60.0;
         // From one metre a second to four, as the weight goes.
-        EXPECT_NEAR(speed, 1.0 + 3.0 * i / 60.0, 0.01);
+        EXPECT_NEAR(speed, 1.0 + 3.0 * (i - 0.5) / 60.0, 1e-3);
         EXPECT_GE(speed, last);
         last = speed;
     }
@@ -223,6 +223,45 @@ TEST(RootMotionTest, CrossfadesAndLayersBlendIt)
     EXPECT_TRUE(controller.takeRootMotion().isNone());
 }
 
+TEST(RootMotionTest, CrossfadesGoTheSameWayAtAnyFrameRate)
+{
+    const auto set = stripped(*makeSet({{"Stand", 1.0, 0.0, 0.0, false}, {"Run", 0.5, 2.0, 0.0, false}}), {});
+    for (FadeCurve curve : {FadeCurve::Linear, FadeCurve::Smooth})
+        for (double rate : {5.0, 12.0, 60.0, 1000.0})
+        {
+            AnimationController controller(set);
+            ASSERT_TRUE(controller.play("Stand"));
+            ASSERT_TRUE(controller.crossfade("Run", 0.3, {curve, Sync::Start}));
+            ASSERT_TRUE(controller.layer(1).play("Stand"));
+            controller.layer(1).setWeight(0.0f);
+            for (int i = 0; i < static_cast<int>(rate); ++i)
+                controller.advance(1.0 / rate);
+            // Four metres a second, of which the fade takes half of 0.3 s.
+            EXPECT_NEAR(controller.takeRootMotion().translation.z, -4.0 * 0.85, 1e-4) << rate;
+            controller.layer(1).fadeWeight(1.0f, 0.3, curve);
+            for (int i = 0; i < static_cast<int>(rate); ++i)
+                controller.advance(1.0 / rate);
+            EXPECT_NEAR(controller.takeRootMotion().translation.z, -4.0 * 0.15, 1e-4) << rate;
+        }
+}
+
+TEST(RootMotionTest, AClipWithoutAnyHoldsWhatItHides)
+{
+    const auto whole = makeSet({{"Walk", 1.0, 1.0, 0.0, false}, {"Sit", 1.0, 0.0, 0.0, false}});
+    const auto set = whole->withClips({stripped(*whole, {})->clips()[0], whole->clips()[1]}).value();
+    AnimationController controller(set);
+    ASSERT_TRUE(controller.play("Walk"));
+    ASSERT_TRUE(controller.layer(1).play("Sit"));
+    controller.advance(0.5);
+    EXPECT_TRUE(controller.takeRootMotion().isNone());
+    controller.layer(1).setWeight(0.5f);
+    controller.advance(0.5);
+    EXPECT_NEAR(controller.takeRootMotion().translation.z, -0.25, 1e-6);
+    ASSERT_TRUE(controller.layer(1).setMask(JointMask::subtree(*set, "head").value()));
+    controller.advance(0.5);
+    EXPECT_NEAR(controller.takeRootMotion().translation.z, -0.5, 1e-6) << "its hips are not seen";
+}
+
 TEST(RootMotionTest, WhatCannotBeTakenOutIsAClearError)
 {
     const auto set = makeSet({{"Walk", 1.0, 1.5, 0.0, false}});
@@ -234,7 +273,7 @@ TEST(RootMotionTest, WhatCannotBeTakenOutIsAClearError)
     };
     const double none = std::nan("");
     const Case cases[] = {
-        {"tail", {}, "there is no joint \"tail\" whose motion could be taken out"},
+        {"tail", {}, "there is no joint \"tail\"; the joints are \"armature\", \"hips\", \"head\""},
         {"hips", {true, false, false, {0, 0, 0}}, "an up axis that has no direction"},
         {"hips", {true, false, false, {none, 0, 0}}, "an up axis that has no direction"},
         {"head", {}, "clip \"Walk\" moves joint \"hips\" above \"head\", whose motion is to be taken out"},
@@ -245,6 +284,9 @@ TEST(RootMotionTest, WhatCannotBeTakenOutIsAClearError)
         ASSERT_FALSE(result) << c.message;
         EXPECT_EQ(result.error().message, c.message);
     }
+    const auto twice = withRootMotion(*stripped(*set, {}), "hips", {true, false, true});
+    ASSERT_FALSE(twice);
+    EXPECT_EQ(twice.error().message, "clip \"Walk\" has had its root motion taken out already, from joint \"hips\"");
     Joint above{"above", -1, {}, 0};
     above.rest.scale = glm::vec4(1, 2, 1, 0);
     const Skeleton skeleton = Skeleton::create({above, {"below", 0, {}, 1}}).value();

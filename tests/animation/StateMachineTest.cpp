@@ -86,6 +86,40 @@ TEST(StateMachineTest, RefusesWhatItDoesNotKnow)
     EXPECT_EQ(controller.layer(2).clip(), 0);
 }
 
+TEST(StateMachineTest, AControllerOfAnotherSetStaysAsItIs)
+{
+    const auto set = makeGaitSet();
+    const auto poor = set->withClips({set->clips()[0]}).value();
+    AnimationController controller(poor);
+    StateMachine machine(makeGraph(*set));
+    EXPECT_TRUE(machine.update(controller, 0.1)) << "the first clip is there";
+    machine.set("speed", 1.0);
+    machine.fire("spin");
+    EXPECT_FALSE(machine.update(controller, 0.1));
+    EXPECT_EQ(machine.state(), "stand");
+    EXPECT_NEAR(machine.secondsInState(), 0.1, 1e-9);
+    EXPECT_EQ(controller.clip(), 0);
+
+    AnimationController empty(set->withClips({}).value());
+    StateMachine other(makeGraph(*set));
+    EXPECT_FALSE(other.update(empty, 0.1));
+    EXPECT_EQ(empty.clip(), -1);
+    AnimationController right(set);
+    EXPECT_TRUE(other.update(right, 0.1)) << "it has not begun yet";
+}
+
+TEST(StateMachineTest, ComparisonsNeedNoSpaces)
+{
+    for (const char* text : {"speed>=-0.5", "speed >=-0.5", "speed>= -0.5", " speed  >=  -0.5 "})
+    {
+        const Result<StateCondition> condition = StateCondition::parse(text);
+        ASSERT_TRUE(condition) << text;
+        EXPECT_EQ(condition.value().test, StateCondition::Test::AtLeast) << text;
+        EXPECT_EQ(condition.value().parameter, "speed") << text;
+        EXPECT_EQ(condition.value().value, -0.5) << text;
+    }
+}
+
 TEST(StateMachineTest, UpdatingDoesNotAllocate)
 {
     const auto set = makeGaitSet();
@@ -117,10 +151,11 @@ TEST(StateGraphTest, FaultsAreNamed)
         {[](D& d) { d.states[1].name = ""; }, "state \"\": it has no name"},
         {[](D& d) { d.states[2].clip = "Fly"; }, "state \"spin\": there is no clip \"Fly\"; the clips are"},
         {[](D& d) { d.states[1].speed = std::nan(""); }, "state \"go\": its speed is not finite"},
-        {[](D& d) { d.start = "run"; }, "start: there is no state \"run\""},
+        {[](D& d) { d.start = "run"; }, "start: there is no state \"run\"; the states are \"stand\", \"go\", \"spin\""},
         {[](D& d) { d.transitions[1].from = "run"; }, "transition 1: there is no state \"run\""},
         {[](D& d) { d.transitions[2].to = ""; }, "transition 2: there is no state \"\""},
-        {[](D& d) { d.transitions[0].seconds = -1; }, "transition 0: a crossfade of -1.000000 seconds"},
+        {[](D& d) { d.transitions[0].seconds = -1; },
+         "transition 0: a crossfade of -1.000000 seconds: expected a finite number, at least 0"},
         {[](D& d) { d.transitions[0].seconds = std::nan(""); }, "transition 0: a crossfade of"},
         {[](D& d) { d.transitions[3].when.clear(); }, "transition 3: it has no conditions"},
         {[](D& d) { d.transitions[0].when = {"speed > fast"}; }, "transition 0: \"speed > fast\" is not a condition"},
@@ -128,6 +163,15 @@ TEST(StateGraphTest, FaultsAreNamed)
         {[](D& d) { d.transitions[0].when = {"after inf"}; }, "is not a condition"},
         {[](D& d) { d.transitions[0].when = {""}; }, "is not a condition"},
         {[](D& d) { d.transitions[0].when = {"a b c d"}; }, "is not a condition"},
+        {[](D& d) { d.transitions[0].when = {"speed>"}; }, "is not a condition"},
+        {[](D& d) { d.transitions[0].when = {"speed => 1"}; }, "is not a condition"},
+        {[](D& d) { d.transitions[0].when = {"0 < speed < 1"}; }, "is not a condition"},
+        {[](D& d) { d.transitions[0].when = {"jump!"}; }, "is not a condition"},
+        {[](D& d) { d.transitions[0].when = {"Finished"}; }, "is not a condition"},
+        {[](D& d) { d.transitions[0].when = {"finished"}; }, "transition 0: \"finished\" never comes"},
+        {[](D& d) { d.transitions[2].when = {"finished"}; }, "transition 2: \"finished\" never comes"},
+        {[](D& d) { d.states.resize(1025); }, "a state graph of 1025 states: at most 1024 are possible"},
+        {[](D& d) { d.transitions.resize(8193); }, "a state graph of 8193 transitions: at most 8192 are possible"},
         {[](D& d) { d.transitions[0].when = {"speed"}; }, "\"speed\" is used as a trigger and as a parameter"},
     };
     const auto set = makeGaitSet();

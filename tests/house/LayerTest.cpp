@@ -33,7 +33,7 @@ const Layer layers[] = {
     {"osg_nodes/osgGpuAnimation/animation",
      R"(^(osg|osg[A-Z]\w*|GL|EGL|OpenThreads)/|^tiny_gltf|^osgGpuAnimation/(gpu|nodes)/|^(gltf|tool)/)"},
     {"osg_nodes/osgGpuAnimation/gpu", R"(^osgGpuAnimation/nodes/|^tiny_gltf|^(gltf|tool)/|^osg(Viewer|DB|GA)/)"},
-    {"osg_nodes/osgGpuAnimation/nodes", R"(^tiny_gltf|^(gltf|tool)/|^osg(Viewer|DB)/)"},
+    {"osg_nodes/osgGpuAnimation/nodes", R"(^tiny_gltf|^(gltf|tool)/|^osgDB/)"},
     {"plugin/gltf", R"(^tool/|^osgViewer/)"},
 };
 

@@ -110,7 +110,23 @@ TEST_F(CharacterKeysTest, aFrameOnAndBack)
     controller.advance(100.0);
     ASSERT_EQ(controller.state(), PlayState::Ended);
     press(',');
-    EXPECT_LT(controller.time(), controller.duration()) << "back from its end";
+    EXPECT_NEAR(controller.time(), controller.duration() - 1.0 / 30.0, 1e-9) << "back from its end";
+    EXPECT_EQ(controller.state(), PlayState::Paused);
+    press(',');
+    EXPECT_NEAR(controller.time(), controller.duration() - 2.0 / 30.0, 1e-9);
+}
+
+TEST_F(CharacterKeysTest, aPausedCharacterShowsTheNextClipAndStaysPaused)
+{
+    press('k');
+    press('n');
+    EXPECT_EQ(controller.clip(), 1);
+    EXPECT_EQ(controller.state(), PlayState::Paused);
+    EXPECT_FALSE(controller.layer(0).isCrossfading()) << "a fade would stand still too";
+    ASSERT_EQ(controller.instruction().sampleCount, 1u);
+    EXPECT_EQ(controller.instruction().samples[0].weight, 1.0f);
+    press('N');
+    EXPECT_EQ(controller.clip(), 0);
     EXPECT_EQ(controller.state(), PlayState::Paused);
 }
 

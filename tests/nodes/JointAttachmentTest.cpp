@@ -3,6 +3,7 @@
 
 #include "support/TestCharacter.h"
 
+#include <osgGpuAnimation/animation/JointMask.h>
 #include <osgGpuAnimation/animation/RootMotionExtraction.h>
 #include <osgGpuAnimation/nodes/RootMotionCallback.h>
 
@@ -109,7 +110,13 @@ TEST_F(JointAttachmentTest, TurnsWithItsJoint)
     const Result<osg::Matrixd> matrix = character->jointToModel("tip");
     ASSERT_TRUE(matrix);
     EXPECT_TRUE(isNear(osg::Vec3d(1, 0, 0) * matrix.value(), {0, 0, -1})) << "a quarter about +Y";
-    EXPECT_FALSE(character->jointToModel("wing"));
+    const Result<osg::Matrixd> none = character->jointToModel("wing");
+    ASSERT_FALSE(none);
+    EXPECT_EQ(none.error().message, "there is no joint \"wing\"; the joints are \"base\", \"tip\", \"side\"");
+    ASSERT_TRUE(character->jointToModel(1));
+    EXPECT_TRUE(character->jointToModel(1).value() == matrix.value());
+    for (std::size_t outside : {std::size_t(3), std::size_t(99999), ~std::size_t(0)})
+        EXPECT_FALSE(character->jointToModel(outside)) << "there are three";
 }
 
 TEST_F(JointAttachmentTest, ClonesCarryTheirOwn)
@@ -156,6 +163,72 @@ TEST_F(JointAttachmentTest, WithoutItsJointOrACharacterItStaysAtTheOrigin)
     osg::NodeVisitor visitor;
     EXPECT_TRUE(alone->computeLocalToWorldMatrix(matrix, &visitor));
     EXPECT_TRUE(matrix.isIdentity());
+}
+
+TEST_F(JointAttachmentTest, SharedByCharactersOfDifferentSetsItWarnsOnce)
+{
+    class Warnings : public osg::NotifyHandler
+    {
+    public:
+        void notify(osg::NotifySeverity, const char* message) override
+        {
+            count += std::string(message).find("an attachment follows") != std::string::npos ? 1 : 0;
+        }
+        int count = 0;
+    };
+    osg::ref_ptr<JointAttachment> attachment = new JointAttachment("wing");
+    osg::ref_ptr<osg::Group> scene = new osg::Group;
+    scene->addChild(characterWith(attachment));
+    osg::ref_ptr<AnimatedCharacter> other = makeTestCharacter();
+    ASSERT_TRUE(other->setAnimationSet(other->set().withClips(other->set().clips()).value()));
+    other->addChild(attachment);
+    scene->addChild(other);
+    osg::ref_ptr<Warnings> warnings = new Warnings;
+    osg::setNotifyHandler(warnings);
+    for (int frame = 0; frame < 5; ++frame)
+        updateAt(*scene, 0.1 * frame);
+    EXPECT_EQ(warnings->count, 1);
+    attachment->setJoint("fin");
+    updateAt(*scene, 1.0);
+    EXPECT_EQ(warnings->count, 2) << "another joint";
+    osg::setNotifyHandler(new osg::StandardNotifyHandler);
+}
+
+TEST_F(JointAttachmentTest, ANewSetChangesNothingElse)
+{
+    osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
+    const auto moving = withRootMotion(character->set(), "base").value();
+    ASSERT_TRUE(character->setAnimationSet(moving));
+    AnimationController& controller = character->controller();
+    controller.layer(0).setWeight(0.5f);
+    controller.layer(0).setStanding(3);
+    ASSERT_TRUE(controller.layer(0).setMask(JointMask::subtree(*moving, "base").value()));
+    ASSERT_TRUE(controller.layer(1).play("turn"));
+    controller.layer(1).setLoopMode(LoopMode::Once);
+    controller.advance(100.0);
+    ASSERT_EQ(controller.layer(1).state(), PlayState::Ended);
+    const RootMotion motion = controller.rootMotion();
+    ASSERT_FALSE(motion.isNone());
+
+    ASSERT_TRUE(character->setAnimationSet(moving->withClips(moving->clips()).value()));
+    EXPECT_EQ(controller.layer(0).weight(), 0.5f);
+    EXPECT_EQ(controller.layer(0).standing(), 3);
+    EXPECT_NE(controller.layer(0).mask(), 0u);
+    ASSERT_EQ(controller.layerCount(), 2u);
+    EXPECT_EQ(controller.layer(1).state(), PlayState::Ended);
+    EXPECT_EQ(controller.layer(1).clip(), 1);
+    EXPECT_EQ(controller.rootMotion().translation, motion.translation);
+    int finished = 0;
+    controller.setEventCallback([&](const AnimationEvent& event)
+                                { finished += event.type == AnimationEvent::Type::Finished ? 1 : 0; });
+    controller.advance(0.1);
+    EXPECT_EQ(finished, 0) << "told before";
+
+    controller.layer(1).setSpeed(2.0);
+    ASSERT_TRUE(character->setAnimationSet(moving->withClips({moving->clips()[0]}).value()));
+    EXPECT_TRUE(controller.isPlaying());
+    EXPECT_EQ(controller.layer(1).state(), PlayState::Stopped) << "its clip is not there any more";
+    EXPECT_EQ(controller.layer(1).speed(), 2.0);
 }
 
 TEST_F(JointAttachmentTest, ACharacterGoesByItsRootMotion)

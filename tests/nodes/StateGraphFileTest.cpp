@@ -61,7 +61,7 @@ TEST(StateGraphFileTest, FaultsAreNamed)
         {R"({"states": []})", "states: expected an object, found array"},
         {R"({"states": {"a": 1}})", "states.a: expected an object, found number"},
         {R"({"states": {"a": {"clip": 1}}})", "states.a.clip: expected a string, found number"},
-        {R"({"states": {"a": {}}})", "state \"a\": there is no clip \"\""},
+        {R"({"states": {"a": {}}})", "states.a: it has no \"clip\""},
         {R"({"states": {"a": {"clip": "Walk", "loop": "twice"}}})",
          "states.a.loop: \"twice\" is not one of \"loop\", \"once\", \"pingpong\""},
         {R"({"states": {"a": {"clip": "Walk", "sped": 1}}})", "states.a: unknown member \"sped\""},
@@ -69,7 +69,10 @@ TEST(StateGraphFileTest, FaultsAreNamed)
         {R"({"states": {"a": {"clip": "Walk"}}, "transitions": [7]})",
          "transitions[0]: expected an object, found number"},
         {R"({"states": {"a": {"clip": "Walk"}}, "transitions": [{"to": "b", "when": "x"}]})",
-         "transition 0: there is no state \"b\""},
+         "transition 0: there is no state \"b\"; the states are \"a\""},
+        {R"({"states": {"a": {"clip": "Walk"}}, "transitions": [{"when": "x"}]})", "transitions[0]: it has no \"to\""},
+        {R"({"states": {"a": {"clip": "Walk"}, "a": {"clip": "Run"}}})", "member \"a\" comes twice"},
+        {R"({"states": {"a": {"clip": "Walk", "clip": "Run"}}})", "member \"clip\" comes twice"},
         {R"({"states": {"a": {"clip": "Walk"}}, "transitions": [{"to": "a", "when": [1]}]})",
          "transitions[0].when: expected a string, found number"},
         {R"({"states": {"a": {"clip": "Walk"}}, "transitions": [{"to": "a", "when": "x", "seconds": "1"}]})",
@@ -83,7 +86,29 @@ TEST(StateGraphFileTest, FaultsAreNamed)
         ASSERT_FALSE(graph) << c.json;
         EXPECT_NE(graph.error().message.find(c.message), std::string::npos) << graph.error().message;
     }
-    EXPECT_FALSE(parseStateGraph(*set, std::string(1 << 20, '['))) << "deep nesting is an error like any other";
+}
+
+TEST(StateGraphFileTest, DeepAndLongTextsAreErrorsLikeAnyOther)
+{
+    const auto set = makeGaitSet();
+    const auto nested = [](std::size_t depth)
+    { return "{\"states\":{\"a\":" + std::string(depth, '[') + std::string(depth, ']') + "}}"; };
+    for (std::size_t depth : {300u, 30000u})
+    {
+        const auto deep = parseStateGraph(*set, nested(depth));
+        ASSERT_FALSE(deep);
+        EXPECT_NE(deep.error().message.find("nested more than 256 deep"), std::string::npos) << deep.error().message;
+    }
+    EXPECT_FALSE(parseStateGraph(*set, nested(200)));
+    EXPECT_FALSE(parseStateGraph(*set, std::string(60000, '[')));
+
+    std::string many = "{\"states\":{\"a\":{\"clip\":\"Walk\"}";
+    for (int i = 0; i < 100000; ++i)
+        many += ",\"b" + std::to_string(i) + "\":0";
+    const auto tooLong = parseStateGraph(*set, many + "}}");
+    ASSERT_FALSE(tooLong);
+    EXPECT_NE(tooLong.error().message.find("bytes, at most 65536 are read"), std::string::npos)
+        << tooLong.error().message;
 }
 
 TEST(StateGraphFileTest, ReadsFilesAndNamesThemInErrors)
@@ -95,9 +120,12 @@ TEST(StateGraphFileTest, ReadsFilesAndNamesThemInErrors)
     const auto faulty = readStateGraphFile(*set, bad);
     ASSERT_FALSE(faulty);
     EXPECT_EQ(faulty.error().message, bad + ": a state graph without states");
-    EXPECT_FALSE(readStateGraphFile(*set, folder.file("none.json")));
-    EXPECT_FALSE(readStateGraphFile(*set, folder.file("")));
-    EXPECT_FALSE(readStateGraphFile(*set, folder.write("huge.json", std::string((1 << 20) + 1, ' '))));
+    const auto fault = [&](const std::string& file) { return readStateGraphFile(*set, file).error().message; };
+    const std::string none = folder.file("none.json");
+    EXPECT_EQ(fault(none), none + ": there is no such file");
+    EXPECT_EQ(fault(folder.file("")), folder.file("") + ": is not a file but a folder");
+    const std::string huge = folder.write("huge.json", std::string((1 << 16) + 1, ' '));
+    EXPECT_EQ(fault(huge), huge + ": 65537 bytes, at most 65536 are read");
 }
 
 } // namespace

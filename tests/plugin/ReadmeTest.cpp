@@ -5,6 +5,7 @@
 #include <osgGpuAnimation/gpu/EglGraphicsContext.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+#include <osgGpuAnimation/nodes/PickedJoint.h>
 #include <osgGpuAnimation/nodes/PoseStatistics.h>
 
 #include <osg/MatrixTransform>
@@ -94,6 +95,22 @@ TEST_F(ReadmeTest, crowds)
 
     crowd->remove(fox.value());
     EXPECT_EQ(crowd->size(), 0u);
+}
+
+TEST_F(ReadmeTest, picking)
+{
+    const osg::ref_ptr<osg::Node> scene = osgDB::readRefNodeFile("fox.glb");
+    ASSERT_TRUE(scene.valid());
+    const osg::Vec3d from = scene->getBound().center() + osg::Vec3(0, 0, 2) * scene->getBound().radius();
+    const osg::Vec3d to = from - osg::Vec3d(0, 0, 4) * scene->getBound().radius();
+
+    osg::ref_ptr<osgUtil::LineSegmentIntersector> picker = new osgUtil::LineSegmentIntersector(from, to);
+    osgUtil::IntersectionVisitor picking(picker);
+    scene->accept(picking);
+    auto picked = jointOf(picker->getFirstIntersection());
+    if (picked) std::cout << picked->set->skeleton().joint(picked->joint).name << std::endl;
+    ASSERT_TRUE(picked);
+    EXPECT_EQ(picked->character, findCharacter(*scene));
 }
 
 TEST_F(ReadmeTest, loadingWithOptions)

@@ -3,6 +3,7 @@
 
 #include "MotionBlend.h"
 #include "StepEvents.h"
+#include <osgGpuAnimation/animation/LayerSnapshot.h>
 
 #include <algorithm>
 #include <cassert>
@@ -14,14 +15,28 @@ namespace osgGpuAnimation
 AnimationController::AnimationController(std::shared_ptr<const AnimationSet> set) : _set(std::move(set))
 {
     assert(_set && "a controller plays the clips of a set");
-    _hasRootMotion = std::any_of(_set->clips().begin(), _set->clips().end(),
-                                 [](const Clip& clip) { return clip.rootMotion() != nullptr; });
+    const auto moving = std::find_if(_set->clips().begin(), _set->clips().end(),
+                                     [](const Clip& clip) { return clip.rootMotion() != nullptr; });
+    if (moving != _set->clips().end()) _rootMotionCurve = moving->rootMotion();
     layer(0);
+}
+
+AnimationController::AnimationController(std::shared_ptr<const AnimationSet> set, const AnimationController& other)
+    : AnimationController(std::move(set))
+{
+    for (std::size_t i = 0; i < other._layerCount; ++i)
+    {
+        const AnimationLayer& before = *other._layers[i];
+        if (layer(i).restore(before.snapshot())) continue;
+        layer(i).setLoopMode(before.loopMode());
+        layer(i).setSpeed(before.speed());
+    }
+    _rootMotion = other._rootMotion;
 }
 
 AnimationController::AnimationController(const AnimationController& other)
     : _set(other._set), _instruction(other._instruction), _rootMotion(other._rootMotion),
-      _hasRootMotion(other._hasRootMotion)
+      _rootMotionCurve(other._rootMotionCurve)
 {
     copyLayers(other);
 }
@@ -32,7 +47,7 @@ AnimationController& AnimationController::operator=(const AnimationController& o
     _set = other._set;
     _instruction = other._instruction;
     _rootMotion = other._rootMotion;
-    _hasRootMotion = other._hasRootMotion;
+    _rootMotionCurve = other._rootMotionCurve;
     copyLayers(other);
     return *this;
 }
@@ -62,7 +77,7 @@ const AnimationLayer& AnimationController::layer(std::size_t index) const
 
 bool AnimationController::isPlainLoop() const
 {
-    return _layerCount == 1 && !_eventCallback && !_hasRootMotion && base().isPlainLoop();
+    return _layerCount == 1 && !_eventCallback && !_rootMotionCurve && base().isPlainLoop();
 }
 
 const PoseInstruction& AnimationController::advance(double seconds)
@@ -71,7 +86,7 @@ const PoseInstruction& AnimationController::advance(double seconds)
     for (std::size_t i = 0; i < _layerCount; ++i)
         _layers[i]->advance(step);
     show();
-    if (_hasRootMotion) goOn();
+    if (_rootMotionCurve) goOn();
     if (_eventCallback && hasEvents()) tellEvents();
     return _instruction;
 }

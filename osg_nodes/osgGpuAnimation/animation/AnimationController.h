@@ -15,6 +15,8 @@
 namespace osgGpuAnimation
 {
 
+struct RootMotionCurve;
+
 /// One instance's mutable state: which clips, at what time, how fast, on which layers. Copying one gives an independent
 /// instance of the same set.
 ///
@@ -34,6 +36,10 @@ public:
     using EventCallback = std::function<void(const AnimationEvent&)>;
 
     explicit AnimationController(std::shared_ptr<const AnimationSet> set);
+    /// Goes on as another does, with another set (one with markers, say): its layers with the clips of the same
+    /// numbers, and the root motion that was not taken yet. A layer that plays clips which this set has not, or whose
+    /// mask does not fit it, stands Stopped with its speed and loop mode. The event callback is not taken over.
+    AnimationController(std::shared_ptr<const AnimationSet> set, const AnimationController& other);
     /// All but the event callback, which mostly knows whose events it is told.
     AnimationController(const AnimationController& other);
     /// References to layers are not valid any more.
@@ -90,7 +96,8 @@ public:
 
     /// The motion of the clips that was taken out of them (see withRootMotion), gone through by all advance() since it
     /// was last taken: to be put before the character's own placement. Layers and crossfades blend it as they blend the
-    /// pose of the joint it came from; additive layers play no part. Seeking, playing and stopping move nothing.
+    /// pose of the joint it came from, by their mean shares during each advance(); clips without any stand still, and
+    /// additive layers play no part. Seeking, playing and stopping move nothing.
     RootMotion takeRootMotion();
     const RootMotion& rootMotion() const { return _rootMotion; } ///< the same, left where it is
 
@@ -116,7 +123,7 @@ private:
     std::shared_ptr<const EventCallback> _eventCallback;
     PoseInstruction _instruction;
     RootMotion _rootMotion;
-    bool _hasRootMotion = false; ///< the set has
+    const RootMotionCurve* _rootMotionCurve = nullptr; ///< the first that a clip of the set has
 };
 
 } // namespace osgGpuAnimation

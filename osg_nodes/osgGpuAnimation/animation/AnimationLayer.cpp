@@ -49,9 +49,11 @@ Result<bool> AnimationLayer::crossfade(std::size_t clip, double seconds, const C
     const Result<std::size_t> known = _owner.set().clipAt(clip);
     if (!known) return known.error();
     if (!std::isfinite(seconds) || seconds < 0.0)
-        return Error{"a crossfade of " + std::to_string(seconds) + " seconds"};
+        return Error{"a crossfade to clip \"" + _owner.set().clips()[clip].name() + "\" of " + std::to_string(seconds) +
+                     " seconds: expected a finite number, at least 0"};
     if (options.speed && !std::isfinite(*options.speed))
-        return Error{"a crossfade to a speed of " + std::to_string(*options.speed)};
+        return Error{"a crossfade to clip \"" + _owner.set().clips()[clip].name() + "\" at a speed of " +
+                     std::to_string(*options.speed) + ": expected a finite number"};
     if (options.speed) _speed = *options.speed;
     if (options.loopMode) _loopMode = *options.loopMode;
     if (_state == PlayState::Stopped) _mixer.clear();
@@ -217,17 +219,21 @@ bool AnimationLayer::isPlainLoop() const
 
 void AnimationLayer::collectMotion(MotionBlend& out) const
 {
-    if (_state == PlayState::Stopped || _mode == Mode::Additive) return;
+    const RootMotionCurve* const usual = _owner._rootMotionCurve;
+    if (_state == PlayState::Stopped || _mode == Mode::Additive || !usual) return;
     const AnimationSet& set = _owner.set();
     const float* mask = set.masks().weights(_mask);
     for (std::size_t v = 0; v < _mixer.voiceCount(); ++v)
     {
         const ClipMixer::Voice& voice = _mixer.voice(v);
         const Clip& clip = set.clips()[static_cast<std::size_t>(voice.playback.clip())];
-        const RootMotionCurve* curve = clip.rootMotion();
-        if (!curve) continue;
-        const double weight = voice.share * _weight.value() * (mask ? static_cast<double>(mask[curve->joint]) : 1.0);
-        out.add(curve->during(clip, voice.move, voice.playback.loopMode()), weight, _standing);
+        // A clip of which nothing was taken out stands still, and holds what it hides.
+        const RootMotionCurve* const curve = clip.rootMotion() ? clip.rootMotion() : usual;
+        const double weight = voice.meanShare * _weight.mean() * (mask ? static_cast<double>(mask[curve->joint]) : 1.0);
+        const bool isStill = clip.rootMotion() == nullptr;
+        out.add(isStill ? RootMotion{glm::dvec3(0.0), 0.0, curve->up}
+                        : curve->during(clip, voice.move, voice.playback.loopMode()),
+                weight, _standing);
     }
 }
 

@@ -4,6 +4,7 @@
 #include "PaletteBuilder.h"
 #include <osgGpuAnimation/animation/ClipBuilder.h>
 #include <osgGpuAnimation/animation/JointMask.h>
+#include <osgGpuAnimation/animation/QuotedNames.h>
 
 #include <layout.glsl>
 
@@ -74,14 +75,9 @@ std::optional<Error> findFaultInSize(const std::vector<Clip>& clips)
                  std::to_string(most) + " that places on the GPU reach"};
 }
 
-std::string quotedNames(const std::vector<Clip>& clips)
+std::string namesOf(const std::vector<Clip>& clips)
 {
-    constexpr std::size_t most = 50;
-    std::string names;
-    for (std::size_t c = 0; c < std::min(clips.size(), most); ++c)
-        names += (c == 0 ? "\"" : ", \"") + clips[c].name() + "\"";
-    if (clips.size() > most) names += ", … (" + std::to_string(clips.size()) + " in all)";
-    return names.empty() ? "none" : names;
+    return quotedNames(clips, [](const Clip& clip) { return clip.name(); });
 }
 
 } // namespace
@@ -150,14 +146,14 @@ int AnimationSet::findClip(const std::string& name) const
 Result<std::size_t> AnimationSet::clipNamed(const std::string& name) const
 {
     const int clip = findClip(name);
-    if (clip < 0) return Error{"there is no clip \"" + name + "\"; the clips are " + quotedNames(_parts.clips)};
+    if (clip < 0) return Error{"there is no clip \"" + name + "\"; the clips are " + namesOf(_parts.clips)};
     return static_cast<std::size_t>(clip);
 }
 
 Result<std::size_t> AnimationSet::clipAt(std::size_t clip) const
 {
     if (clip >= _parts.clips.size())
-        return Error{"there is no clip " + std::to_string(clip) + "; the clips are " + quotedNames(_parts.clips)};
+        return Error{"there is no clip " + std::to_string(clip) + "; the clips are " + namesOf(_parts.clips)};
     return clip;
 }
 

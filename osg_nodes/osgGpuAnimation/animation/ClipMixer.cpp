@@ -95,9 +95,16 @@ double ClipMixer::advance(double seconds, bool isCurrentPlaying)
     if (_count > 0 && (moment >= 0.0 || isFading()))
     {
         for (std::size_t i = 0; i + 1 < _count; ++i)
+        {
             _voices[i].share = _voices[i].shareBefore * (1.0 - _fade.value());
+            _voices[i].meanShare = _voices[i].shareBefore * (1.0 - _fade.mean());
+        }
         _voices[_count - 1].share = _fade.value();
+        _voices[_count - 1].meanShare = _fade.mean();
     }
+    else
+        for (std::size_t i = 0; i < _count; ++i)
+            _voices[i].meanShare = _voices[i].share;
     for (std::size_t i = 0; i < _count; ++i)
     {
         Voice& voice = _voices[i];
@@ -116,18 +123,18 @@ void ClipMixer::stand()
 double ClipMixer::clipSeconds(const Voice& voice, double seconds) const
 {
     double speed = voice.playback.speed();
-    double members = 0.0, share = 0.0, duration = 0.0;
+    double members = 0.0, share = 0.0, round = 0.0;
     for (std::size_t i = 0; _count > 1 && i < _count; ++i)
     {
         const Voice& other = _voices[i];
         if (other.phaseGroup != voice.phaseGroup) continue;
         members += 1.0;
-        share += other.share;
-        duration += other.share * other.playback.duration();
+        share += other.meanShare;
+        round += other.meanShare * other.playback.roundSeconds();
         speed = other.playback.speed(); // in the end the newest one's
     }
-    if (members > 1.0 && duration > 0.0)
-        speed *= voice.playback.duration() * share / duration;
+    if (members > 1.0 && round > 0.0)
+        speed *= voice.playback.roundSeconds() * share / round;
     else if (members > 1.0)
         speed = voice.playback.speed();
     return finiteProduct(seconds, speed);

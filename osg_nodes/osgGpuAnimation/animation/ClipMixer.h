@@ -26,6 +26,7 @@ public:
         ClipPlayback playback;
         ClipMove move;            ///< of the last advance()
         double share = 1.0;       ///< of the layer, now
+        double meanShare = 1.0;   ///< over the last advance(): its way counts by this, whatever the frame rate
         double shareBefore = 0.0; ///< when the last crossfade began
         int phaseGroup = 0;       ///< voices of one group run at one phase
     };

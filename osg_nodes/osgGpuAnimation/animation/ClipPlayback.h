@@ -27,6 +27,8 @@ public:
 
     int clip() const { return _clip; }
     double duration() const { return _duration; }
+    /// Seconds of the clip in a round: PingPong's goes there and back.
+    double roundSeconds() const { return _loopMode == LoopMode::PingPong ? 2.0 * _duration : _duration; }
     double time() const { return _time; } ///< seconds, in [0, duration]
     double speed() const { return _speed; }
     LoopMode loopMode() const { return _loopMode; }

@@ -20,6 +20,7 @@ public:
     Fade(double from, double to, double seconds, FadeCurve curve);
 
     double value() const { return _value; }
+    double mean() const { return _mean; } ///< over the seconds of the last advance()
     double origin() const { return _from; }
     double target() const { return _to; }
     double seconds() const { return _seconds; }
@@ -33,6 +34,7 @@ public:
 private:
     double _from, _to;
     double _value = _to;
+    double _mean = _value;
     double _elapsed = 0.0;
     double _seconds = 0.0;
     FadeCurve _curve = FadeCurve::Linear;

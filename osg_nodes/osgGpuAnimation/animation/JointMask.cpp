@@ -14,11 +14,6 @@ float clampedWeight(float weight)
     return weight > 0.0f ? std::min(weight, 1.0f) : 0.0f;
 }
 
-Error noSuchJoint(const std::string& name, std::size_t count)
-{
-    return Error{"there is no joint \"" + name + "\" among the " + std::to_string(count) + " of the set"};
-}
-
 } // namespace
 
 JointMask::JointMask(const AnimationSet& set, float weight)
@@ -32,8 +27,9 @@ JointMask::JointMask(const AnimationSet& set, float weight)
 Result<JointMask> JointMask::subtree(const AnimationSet& set, const std::string& joint, int feather)
 {
     const Skeleton& skeleton = set.skeleton();
-    const int root = skeleton.findJoint(joint);
-    if (root < 0) return noSuchJoint(joint, skeleton.jointCount());
+    const Result<std::size_t> found = skeleton.jointNamed(joint);
+    if (!found) return found.error();
+    const int root = static_cast<int>(found.value());
     JointMask mask(set);
     const float step = 1.0f / (static_cast<float>(std::max(feather, 0)) + 1.0f);
     const int rootDepth = skeleton.depths()[static_cast<std::size_t>(root)];
@@ -57,9 +53,9 @@ Result<JointMask> JointMask::joints(const AnimationSet& set, const std::vector<s
     JointMask mask(set);
     for (const std::string& name : names)
     {
-        const int joint = set.skeleton().findJoint(name);
-        if (joint < 0) return noSuchJoint(name, set.skeleton().jointCount());
-        mask.setJoint(static_cast<std::size_t>(joint), 1.0f);
+        const Result<std::size_t> joint = set.skeleton().jointNamed(name);
+        if (!joint) return joint.error();
+        mask.setJoint(joint.value(), 1.0f);
     }
     return mask;
 }

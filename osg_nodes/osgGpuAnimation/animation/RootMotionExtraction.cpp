@@ -13,16 +13,15 @@ namespace osgGpuAnimation
 Result<std::shared_ptr<const AnimationSet>> withRootMotion(const AnimationSet& set, const std::string& joint,
                                                            const RootMotionAxes& axes)
 {
-    const int index = set.skeleton().findJoint(joint);
-    if (index < 0) return Error{"there is no joint \"" + joint + "\" whose motion could be taken out"};
+    const Result<std::size_t> index = set.skeleton().jointNamed(joint);
+    if (!index) return index.error();
     const double length = glm::length(axes.up);
     if (!(length > 0.0) || !std::isfinite(length)) return Error{"an up axis that has no direction"};
 
     std::vector<Clip> clips;
     for (const Clip& clip : set.clips())
     {
-        Result<Clip> stripped =
-            RootMotionExtractor(set.skeleton(), static_cast<std::size_t>(index), axes).extract(clip);
+        Result<Clip> stripped = RootMotionExtractor(set.skeleton(), index.value(), axes).extract(clip);
         if (!stripped) return stripped.error();
         clips.push_back(std::move(stripped).value());
     }

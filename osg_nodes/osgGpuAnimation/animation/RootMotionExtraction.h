@@ -26,8 +26,9 @@ struct RootMotionAxes
 ///
 /// At keyframes, and between them as long as yaw is not taken out, motion and what is left make up the very same pose
 /// as before; with yaw they differ between keyframes as the arc from its chord.
-/// Errors: no such joint; an up axis of no length or not finite; a clip that moves a joint above this one; a joint
-/// under a transform that is not rotation, translation and uniform scale (what is left could not be written as one).
+/// Errors: no such joint; a clip whose root motion was taken out before (its motion would be lost: begin with the set
+/// as it was); an up axis of no length or not finite; a clip that moves a joint above this one; a joint under a
+/// transform that is not rotation, translation and uniform scale (what is left could not be written as one).
 Result<std::shared_ptr<const AnimationSet>> withRootMotion(const AnimationSet& set, const std::string& joint,
                                                            const RootMotionAxes& axes = {});
 

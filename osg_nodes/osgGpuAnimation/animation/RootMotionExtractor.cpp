@@ -101,6 +101,9 @@ Result<bool> RootMotionExtractor::findParent(const Clip& clip)
 
 Result<Clip> RootMotionExtractor::extract(const Clip& clip)
 {
+    if (const RootMotionCurve* taken = clip.rootMotion())
+        return Error{"clip \"" + clip.name() + "\" has had its root motion taken out already, from joint \"" +
+                     _skeleton.joint(taken->joint).name + "\""};
     const Result<bool> hasParent = findParent(clip);
     if (!hasParent) return hasParent.error();
     Clip stripped = clip;

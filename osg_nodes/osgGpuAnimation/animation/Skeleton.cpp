@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/Skeleton.h>
 
+#include <osgGpuAnimation/animation/QuotedNames.h>
 #include <osgGpuAnimation/animation/Rotation.h>
 
 #include <algorithm>
@@ -127,6 +128,15 @@ int Skeleton::findJoint(const std::string& name) const
     for (std::size_t i = 0; i < _joints.size(); ++i)
         if (_joints[i].name == name) return static_cast<int>(i);
     return -1;
+}
+
+Result<std::size_t> Skeleton::jointNamed(const std::string& name) const
+{
+    const int joint = findJoint(name);
+    if (joint < 0)
+        return Error{"there is no joint \"" + name + "\"; the joints are " +
+                     quotedNames(_joints, [](const Joint& known) { return known.name; })};
+    return static_cast<std::size_t>(joint);
 }
 
 } // namespace osgGpuAnimation

@@ -45,6 +45,8 @@ public:
     int jointOfSourceNode(int node) const;
     /// The first joint of that name, -1 where there is none.
     int findJoint(const std::string& name) const;
+    /// The same. Error: there is none; it lists the names there are.
+    Result<std::size_t> jointNamed(const std::string& name) const;
 
 private:
     Skeleton() = default;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/StateCondition.h>
 
+#include <algorithm>
 #include <cmath>
 #include <locale>
 #include <optional>
@@ -16,6 +17,8 @@ namespace
 
 using Test = StateCondition::Test;
 
+constexpr char signs[] = "<>=!"; // of comparisons: in no name
+
 std::optional<double> toNumber(const std::string& word)
 {
     std::istringstream stream(word);
@@ -23,6 +26,23 @@ std::optional<double> toNumber(const std::string& word)
     double value = 0.0;
     if (!(stream >> value) || !stream.eof() || !std::isfinite(value)) return std::nullopt;
     return value;
+}
+
+std::vector<std::string> toWords(const std::string& text)
+{
+    std::istringstream stream(text);
+    std::vector<std::string> words;
+    for (std::string word; words.size() < 3 && stream >> word;)
+        words.push_back(word);
+    return words;
+}
+
+/// Whether it is a word of the language, in whatever case: no name for a trigger.
+bool isReserved(std::string word)
+{
+    for (char& letter : word)
+        if (letter >= 'A' && letter <= 'Z') letter = static_cast<char>(letter - 'A' + 'a');
+    return word == "finished" || word == "after";
 }
 
 std::optional<Test> toComparison(const std::string& word)
@@ -35,22 +55,31 @@ std::optional<Test> toComparison(const std::string& word)
     return std::nullopt;
 }
 
+/// PARAMETER > NUMBER, with or without spaces; sign: where the first character of the comparison is.
+std::optional<StateCondition> parseComparison(const std::string& text, std::size_t sign)
+{
+    const std::size_t end = std::min(text.find_first_not_of(signs, sign), text.size());
+    const std::vector<std::string> names = toWords(text.substr(0, sign)), values = toWords(text.substr(end));
+    const auto test = toComparison(text.substr(sign, end - sign));
+    if (!test || names.size() != 1 || values.size() != 1) return std::nullopt;
+    const auto value = toNumber(values[0]);
+    if (!value) return std::nullopt;
+    return StateCondition{*test, names[0], *value};
+}
+
 } // namespace
 
 Result<StateCondition> StateCondition::parse(const std::string& text)
 {
-    std::istringstream stream(text);
-    std::vector<std::string> words;
-    for (std::string word; words.size() < 4 && stream >> word;)
-        words.push_back(word);
+    const std::size_t sign = text.find_first_of(signs);
+    const std::vector<std::string> words = sign == std::string::npos ? toWords(text) : std::vector<std::string>();
+    if (sign != std::string::npos)
+        if (const auto comparison = parseComparison(text, sign)) return *comparison;
     if (words.size() == 1 && words[0] == "finished") return StateCondition{Test::Finished, "", 0.0};
     if (words.size() == 2 && words[0] == "after")
         if (const auto seconds = toNumber(words[1]); seconds && *seconds >= 0.0)
             return StateCondition{Test::After, "", *seconds};
-    if (words.size() == 3)
-        if (const auto test = toComparison(words[1]))
-            if (const auto value = toNumber(words[2])) return StateCondition{*test, words[0], *value};
-    if (words.size() == 1 && !toComparison(words[0]) && !toNumber(words[0]) && words[0] != "after")
+    if (words.size() == 1 && !toNumber(words[0]) && !isReserved(words[0]))
         return StateCondition{Test::Fired, words[0], 0.0};
     return Error{"\"" + text +
                  "\" is not a condition: expected \"PARAMETER > NUMBER\" (or >= < <= == !=), "

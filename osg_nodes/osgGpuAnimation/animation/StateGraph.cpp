@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/StateGraph.h>
 
+#include <osgGpuAnimation/animation/QuotedNames.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -18,12 +20,21 @@ std::size_t placeOf(const std::string& name, std::vector<std::string>& names)
     return place;
 }
 
+Error tooMany(const char* what, std::size_t count, std::size_t most)
+{
+    return Error{"a state graph of " + std::to_string(count) + " " + what + ": at most " + std::to_string(most) +
+                 " are possible"};
+}
+
 } // namespace
 
 Result<std::shared_ptr<const StateGraph>> StateGraph::create(const AnimationSet& set,
                                                              const StateGraphDescription& description)
 {
     if (description.states.empty()) return Error{"a state graph without states"};
+    if (description.states.size() > maxStates) return tooMany("states", description.states.size(), maxStates);
+    if (description.transitions.size() > maxTransitions)
+        return tooMany("transitions", description.transitions.size(), maxTransitions);
     std::shared_ptr<StateGraph> graph(new StateGraph);
     for (const StateDescription& state : description.states)
     {
@@ -73,15 +84,35 @@ Result<bool> StateGraph::addTransition(const TransitionDescription& description)
     transition.options.loopMode = _states[transition.to].loopMode;
     transition.options.speed = _states[transition.to].speed;
     if (!std::isfinite(description.seconds) || description.seconds < 0.0)
-        return Error{"a crossfade of " + std::to_string(description.seconds) + " seconds"};
+        return Error{"a crossfade of " + std::to_string(description.seconds) +
+                     " seconds: expected a finite number, at least 0"};
     if (description.when.empty()) return Error{"it has no conditions"};
     for (const std::string& text : description.when)
     {
         const Result<bool> added = addCondition(transition, text);
         if (!added) return added.error();
     }
+    if (waitsForAnEnd(transition) && !hasAnEnd(transition))
+        return Error{"\"finished\" never comes: no state that it leads on from plays once"};
     _transitions.push_back(std::move(transition));
     return true;
+}
+
+bool StateGraph::waitsForAnEnd(const Transition& transition)
+{
+    return std::any_of(transition.conditions.begin(), transition.conditions.end(),
+                       [](const Condition& condition) { return condition.test == StateCondition::Test::Finished; });
+}
+
+/// Whether a state that it leads on from plays once.
+bool StateGraph::hasAnEnd(const Transition& transition) const
+{
+    for (std::size_t s = 0; s < _states.size(); ++s)
+    {
+        const bool isFrom = transition.from < 0 ? s != transition.to : s == static_cast<std::size_t>(transition.from);
+        if (isFrom && _states[s].loopMode == LoopMode::Once) return true;
+    }
+    return false;
 }
 
 Result<bool> StateGraph::addCondition(Transition& transition, const std::string& text)
@@ -101,7 +132,9 @@ Result<bool> StateGraph::addCondition(Transition& transition, const std::string&
 Result<std::size_t> StateGraph::stateNamed(const std::string& name) const
 {
     const int state = findState(name);
-    if (state < 0) return Error{"there is no state \"" + name + "\""};
+    if (state < 0)
+        return Error{"there is no state \"" + name + "\"; the states are " +
+                     quotedNames(_states, [](const State& known) { return known.name; })};
     return static_cast<std::size_t>(state);
 }
 

@@ -70,9 +70,12 @@ public:
         CrossfadeOptions options;
     };
 
-    /// Errors, by the name of the state or the number of the transition: no states, two of one name or one without, a
-    /// clip or state that is not there, a transition without conditions, a faulty condition, seconds that are negative
-    /// or not finite, a speed that is not finite, one name for a parameter and a trigger.
+    static constexpr std::size_t maxStates = 1024, maxTransitions = 8192;
+
+    /// Errors, by the name of the state or the number of the transition: no states, more states or transitions than
+    /// these, two of one name or one without, a clip or state that is not there, a transition without conditions, a
+    /// faulty condition, "finished" where no state that it leads on from plays once, seconds that are negative or not
+    /// finite, a speed that is not finite, one name for a parameter and a trigger.
     static Result<std::shared_ptr<const StateGraph>> create(const AnimationSet& set,
                                                             const StateGraphDescription& description);
 
@@ -91,6 +94,8 @@ private:
     Result<bool> addTransition(const TransitionDescription& description);
     Result<bool> addCondition(Transition& transition, const std::string& text);
     Result<std::size_t> stateNamed(const std::string& name) const;
+    static bool waitsForAnEnd(const Transition& transition);
+    bool hasAnEnd(const Transition& transition) const;
 
     std::vector<State> _states;
     std::vector<Transition> _transitions;

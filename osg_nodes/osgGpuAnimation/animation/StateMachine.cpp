@@ -55,10 +55,8 @@ bool StateMachine::update(AnimationController& controller, double seconds)
     if (!_hasStarted)
     {
         const StateGraph::State& state = _graph->states()[_state];
-        layer.setLoopMode(state.loopMode);
-        layer.setSpeed(state.speed);
-        _hasStarted = static_cast<bool>(layer.play(state.clip));
-        assert(_hasStarted && "the controller plays the set that the graph was made for");
+        const CrossfadeOptions options{FadeCurve::Linear, Sync::Start, state.loopMode, state.speed};
+        _hasStarted = static_cast<bool>(layer.crossfade(state.clip, 0.0, options));
         return _hasStarted;
     }
     if (std::isfinite(seconds)) _seconds += std::max(seconds, 0.0);
@@ -68,8 +66,7 @@ bool StateMachine::update(AnimationController& controller, double seconds)
             transition.from < 0 ? transition.to != _state : static_cast<std::size_t>(transition.from) == _state;
         const auto isMet = [&](const StateGraph::Condition& condition) { return holds(condition, layer); };
         if (!isFromHere || !std::all_of(transition.conditions.begin(), transition.conditions.end(), isMet)) continue;
-        enter(transition, layer);
-        return true;
+        return enter(transition, layer);
     }
     return false;
 }
@@ -101,16 +98,15 @@ bool StateMachine::holds(const StateGraph::Condition& condition, const Animation
     return false;
 }
 
-void StateMachine::enter(const StateGraph::Transition& transition, AnimationLayer& layer)
+bool StateMachine::enter(const StateGraph::Transition& transition, AnimationLayer& layer)
 {
+    const std::size_t clip = _graph->states()[transition.to].clip;
+    if (!layer.crossfade(clip, transition.seconds, transition.options)) return false;
     for (const StateGraph::Condition& condition : transition.conditions)
         if (condition.test == StateCondition::Test::Fired) _isFired[condition.parameter] = false;
     _state = transition.to;
     _seconds = 0.0;
-    const StateGraph::State& state = _graph->states()[_state];
-    const Result<bool> isPlaying = layer.crossfade(state.clip, transition.seconds, transition.options);
-    assert(isPlaying && "the graph was checked against the set");
-    (void)isPlaying;
+    return true;
 }
 
 } // namespace osgGpuAnimation

@@ -36,13 +36,14 @@ public:
 
     /// Plays the start state at the first call. Then takes the first transition, in the graph's order, that leads on
     /// from the present state and whose conditions all hold; at most one a call. Does not allocate.
-    /// The controller plays the set that the graph was made for. seconds: since the last call; below 0 and not finite
-    /// count as 0. True where the state changed.
+    /// The controller plays the set that the graph was made for; one whose set has no clip of the next state's number
+    /// stays as it is, and so does the state. seconds: since the last call; below 0 and not finite count as 0. True
+    /// where the state changed.
     bool update(AnimationController& controller, double seconds);
 
 private:
     bool holds(const StateGraph::Condition& condition, const AnimationLayer& layer) const;
-    void enter(const StateGraph::Transition& transition, AnimationLayer& layer);
+    bool enter(const StateGraph::Transition& transition, AnimationLayer& layer);
 
     std::shared_ptr<const StateGraph> _graph;
     std::size_t _layer;

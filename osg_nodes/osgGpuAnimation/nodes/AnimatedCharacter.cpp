@@ -5,6 +5,7 @@
 #include <osgGpuAnimation/nodes/AnimationUpdateCallback.h>
 #include <osgGpuAnimation/nodes/DepthPass.h>
 #include <osgGpuAnimation/nodes/FlattenedPlace.h>
+#include <osgGpuAnimation/nodes/PosedMeshes.h>
 #include <osgGpuAnimation/nodes/PoseStage.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
@@ -55,7 +56,7 @@ osg::BoundingBox toOsg(const Box& box)
 AnimatedCharacter::AnimatedCharacter() : AnimatedCharacter(emptySet()) {}
 
 AnimatedCharacter::AnimatedCharacter(std::shared_ptr<const AnimationSet> set)
-    : _controller(std::make_unique<AnimationController>(std::move(set)))
+    : _controller(std::make_unique<AnimationController>(std::move(set))), _posedMeshes(std::make_unique<PosedMeshes>())
 {
     // Not static: the Optimizer must flatten neither this transform nor those above into the bind pose.
     setDataVariance(osg::Object::DYNAMIC);
@@ -65,7 +66,7 @@ AnimatedCharacter::AnimatedCharacter(std::shared_ptr<const AnimationSet> set)
 AnimatedCharacter::AnimatedCharacter(const AnimatedCharacter& other, const osg::CopyOp& copyop)
     : osg::MatrixTransform(other, copyop), _controller(std::make_unique<AnimationController>(*other._controller)),
       _clipBounds(other._clipBounds), _mixBounds(other._mixBounds), _updateTime(other._updateTime),
-      _isDrawnTogether(other._isDrawnTogether)
+      _posedMeshes(std::make_unique<PosedMeshes>()), _isDrawnTogether(other._isDrawnTogether)
 {
     // osg::Node copies its other callbacks, but not these.
     setEventCallback(copyop(other.getEventCallback()));
@@ -79,22 +80,15 @@ Result<bool> AnimatedCharacter::setAnimationSet(std::shared_ptr<const AnimationS
     if (!newSet || (!isFirst && newSet->paletteSize() != set().paletteSize()))
         return Error{"a set of " + std::to_string(newSet ? newSet->paletteSize() : 0) +
                      " palette entries for the meshes of one of " + std::to_string(set().paletteSize())};
-    AnimationController next(std::move(newSet));
-    const AnimationController& old = *_controller;
-    next.setLoopMode(old.loopMode());
-    next.setSpeed(old.speed());
-    if (old.clip() >= 0 && old.state() != PlayState::Stopped && next.play(static_cast<std::size_t>(old.clip())))
-    {
-        next.seek(old.time());
-        if (old.state() == PlayState::Paused) next.pause();
-    }
-    *_controller = next;
+    *_controller = AnimationController(std::move(newSet), *_controller);
     if (_clipBounds) computeClipBounds();
     return true;
 }
 
-osg::Matrixd AnimatedCharacter::jointToModel(std::size_t joint) const
+Result<osg::Matrixd> AnimatedCharacter::jointToModel(std::size_t joint) const
 {
+    const std::size_t count = set().skeleton().jointCount();
+    if (joint >= count) return Error{"there is no joint " + std::to_string(joint) + " among " + std::to_string(count)};
     // A matrix for column vectors by columns is in memory one for row vectors by rows.
     const glm::dmat4 columns = Pose::jointToModel(set(), _controller->instruction(), joint).toColumns();
     return osg::Matrixd(glm::value_ptr(columns));
@@ -102,9 +96,9 @@ osg::Matrixd AnimatedCharacter::jointToModel(std::size_t joint) const
 
 Result<osg::Matrixd> AnimatedCharacter::jointToModel(const std::string& joint) const
 {
-    const int index = set().skeleton().findJoint(joint);
-    if (index < 0) return Error{"there is no joint \"" + joint + "\""};
-    return jointToModel(static_cast<std::size_t>(index));
+    const Result<std::size_t> index = set().skeleton().jointNamed(joint);
+    if (!index) return index.error();
+    return jointToModel(index.value());
 }
 
 void AnimatedCharacter::update(double simulationTime)
@@ -164,6 +158,17 @@ const Box& AnimatedCharacter::clipBounds(int clip) const
     static const Box none;
     const std::size_t index = static_cast<std::size_t>(clip + 1);
     return _clipBounds && index < _clipBounds->size() ? (*_clipBounds)[index] : none;
+}
+
+osg::ref_ptr<osg::Geometry> AnimatedCharacter::posedMesh(const SkinnedGeometry& mesh) const
+{
+    return _posedMeshes->of(mesh, _controller->sharedSet(), _controller->instruction(), AffineMatrix());
+}
+
+void AnimatedCharacter::acceptPosed(osg::PrimitiveFunctor& functor)
+{
+    SkinnedGeometryVisitor accepting([&](SkinnedGeometry& geometry) { posedMesh(geometry)->accept(functor); });
+    accept(accepting);
 }
 
 void AnimatedCharacter::traverse(osg::NodeVisitor& visitor)

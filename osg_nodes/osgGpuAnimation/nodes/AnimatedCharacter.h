@@ -4,7 +4,9 @@
 #include <osgGpuAnimation/animation/AnimationController.h>
 #include <osgGpuAnimation/animation/MixBounds.h>
 
+#include <osg/Geometry>
 #include <osg/MatrixTransform>
+#include <osg/PrimitiveSet>
 
 #include <memory>
 #include <optional>
@@ -12,6 +14,9 @@
 
 namespace osgGpuAnimation
 {
+
+class PosedMeshes;
+class SkinnedGeometry;
 
 /// One animated character: owns a controller, shares an AnimationSet, and has its SkinnedGeometry drawables as
 /// children. Its matrix places the character in its parent, like any MatrixTransform's.
@@ -41,15 +46,15 @@ public:
     const AnimationController& controller() const { return *_controller; }
 
     /// The same character with another set, such as one with markers or root motion (AnimationSet::withClips,
-    /// withRootMotion): the base layer goes on with the clip of the same number, other layers are gone, bounds are
+    /// withRootMotion): its controller goes on with the clips of the same numbers (see AnimationController), bounds are
     /// worked out anew. Do it before cloning, so that clones share the set. A character that was made without a set
     /// takes any. Error: the set's palette is another than this one's, so the meshes would not fit.
     Result<bool> setAnimationSet(std::shared_ptr<const AnimationSet> set);
 
     /// Where a joint is now, in the character's own space: computed from its own chain of parents by the CPU twin,
-    /// cheap enough for every frame. joint: below the skeleton's jointCount().
-    osg::Matrixd jointToModel(std::size_t joint) const;
-    /// Error: there is no joint of that name.
+    /// cheap enough for every frame. joint: below the skeleton's jointCount(). Error: it is not.
+    Result<osg::Matrixd> jointToModel(std::size_t joint) const;
+    /// Error: there is no joint of that name; it lists the names there are.
     Result<osg::Matrixd> jointToModel(const std::string& joint) const;
 
     /// Advances the controller by the time since the last update; the first only takes the time down. A jump of the
@@ -73,6 +78,13 @@ public:
     void setDrawnTogether(bool together) { _isDrawnTogether = together; }
     bool isDrawnTogether() const { return _isDrawnTogether; } ///< default: true
 
+    /// A mesh below this node as the character shows it now, in the character's own space: computed by the CPU twin,
+    /// and kept until the pose is another. Intersectors meet it in the mesh's place.
+    osg::ref_ptr<osg::Geometry> posedMesh(const SkinnedGeometry& mesh) const;
+    /// Gives the functor the primitives of all meshes below in their present pose. (A mesh by itself gives those of its
+    /// bind pose: it belongs to no character.)
+    void acceptPosed(osg::PrimitiveFunctor& functor);
+
     void traverse(osg::NodeVisitor& visitor) override;
     /// Of currentBounds(); update() sees to it that it is asked for again when other clips play.
     osg::BoundingSphere computeBound() const override;
@@ -90,6 +102,7 @@ private:
     std::optional<double> _updateTime;                   ///< seconds of simulation time
     std::vector<PlayedClip> _played;                     ///< what the bound was last dirtied for
     std::vector<PlayedClip> _playedNow;                  ///< kept for its memory
+    std::unique_ptr<PosedMeshes> _posedMeshes;           ///< its own: no copy shares it
     bool _isDrawnTogether = true;
 };
 

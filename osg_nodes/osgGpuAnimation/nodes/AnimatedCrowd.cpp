@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 
-#include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimationUpdateCallback.h>
 #include <osgGpuAnimation/nodes/CrowdView.h>
 #include <osgGpuAnimation/nodes/DepthPass.h>
 #include <osgGpuAnimation/nodes/FlattenedPlace.h>
-#include <osgGpuAnimation/nodes/PosedMesh.h>
+#include <osgGpuAnimation/nodes/PosedInstances.h>
 #include <osgGpuAnimation/nodes/PoseStage.h>
 
 #include <osgUtil/CullVisitor>
 #include <osgUtil/IntersectionVisitor>
+#include <osgUtil/Statistics>
 
 #include <algorithm>
 #include <cmath>
@@ -104,7 +104,7 @@ AnimatedCrowd::AnimatedCrowd() : AnimatedCrowd(emptySet(), {}) {}
 
 AnimatedCrowd::AnimatedCrowd(std::shared_ptr<const AnimationSet> set,
                              const std::vector<osg::ref_ptr<SkinnedGeometry>>& meshes)
-    : _instances(std::move(set))
+    : _instances(std::move(set)), _posed(std::make_unique<PosedInstances>())
 {
     // Not static: the Optimizer must not flatten the transforms above into the bind pose.
     setDataVariance(osg::Object::DYNAMIC);
@@ -114,7 +114,8 @@ AnimatedCrowd::AnimatedCrowd(std::shared_ptr<const AnimationSet> set,
     _instances.setClipBounds(clipBoundsOf(*_instances.set(), *this));
 }
 
-AnimatedCrowd::AnimatedCrowd(const AnimatedCharacter& character) : _instances(character.controller().sharedSet())
+AnimatedCrowd::AnimatedCrowd(const AnimatedCharacter& character)
+    : _instances(character.controller().sharedSet()), _posed(std::make_unique<PosedInstances>())
 {
     setDataVariance(osg::Object::DYNAMIC);
     setUpdateCallback(new AnimationUpdateCallback);
@@ -129,8 +130,8 @@ AnimatedCrowd::AnimatedCrowd(const AnimatedCharacter& character) : _instances(ch
 }
 
 AnimatedCrowd::AnimatedCrowd(const AnimatedCrowd& other, const osg::CopyOp& copyop)
-    : osg::Transform(other, copyop), _instances(other._instances), _origin(other._origin), _hasOrigin(other._hasOrigin),
-      _updateTime(other._updateTime)
+    : osg::Transform(other, copyop), _instances(other._instances), _posed(std::make_unique<PosedInstances>()),
+      _origin(other._origin), _hasOrigin(other._hasOrigin), _updateTime(other._updateTime)
 {
 }
 
@@ -251,23 +252,16 @@ void AnimatedCrowd::update(double simulationTime)
 std::optional<AnimatedCrowd::Instance> AnimatedCrowd::instanceOf(const osg::Drawable* hit)
 {
     const auto* posed = dynamic_cast<const PosedMesh*>(hit);
-    return posed ? std::optional<Instance>(posed->instance()) : std::nullopt;
+    return posed ? posed->instance() : std::nullopt;
 }
 
 osg::ref_ptr<osg::Geometry> AnimatedCrowd::posedMesh(Instance instance, const SkinnedGeometry& mesh) const
 {
-    osg::ref_ptr<osg::Vec3Array> positions = new osg::Vec3Array;
     const std::size_t index = _instances.indexOf(instance);
-    if (index != CrowdInstances::none)
-    {
-        std::vector<AffineMatrix> palette;
-        Pose::evaluate(set(), _instances.instruction(index), _instances.rootMatrix(index), palette);
-        std::vector<glm::dvec3> computed;
-        mesh.computePositions(palette, computed);
-        for (const glm::dvec3& position : computed)
-            positions->push_back(osg::Vec3(position.x, position.y, position.z));
-    }
-    return new PosedMesh(mesh, positions, instance);
+    if (index == CrowdInstances::none) return new PosedMesh(mesh, new osg::Vec3Array, instance);
+    const osg::ref_ptr<PosedMesh> kept =
+        _posed->of(instance)->of(mesh, sharedSet(), _instances.instruction(index), _instances.rootMatrix(index));
+    return new PosedMesh(mesh, dynamic_cast<osg::Vec3Array*>(kept->getVertexArray()), instance);
 }
 
 void AnimatedCrowd::acceptInstances(osg::PrimitiveFunctor& functor) const
@@ -283,6 +277,8 @@ void AnimatedCrowd::traverse(osg::NodeVisitor& visitor)
         cull(*cullVisitor);
     else if (dynamic_cast<osgUtil::IntersectionVisitor*>(&visitor))
         intersect(visitor);
+    else if (dynamic_cast<osgUtil::StatsVisitor*>(&visitor))
+        count(visitor);
     else if (!keepFlattenedPlace(*this, visitor))
         osg::Transform::traverse(visitor);
 }
@@ -322,6 +318,17 @@ void AnimatedCrowd::intersect(osg::NodeVisitor& visitor)
     }
     for (const osg::ref_ptr<osg::Node>& child : _children)
         if (!dynamic_cast<SkinnedGeometry*>(child.get())) child->accept(visitor);
+}
+
+// Statistics tell the instances of what is in the graph: a mesh is there as often as the crowd shows it.
+void AnimatedCrowd::count(osg::NodeVisitor& visitor)
+{
+    for (const osg::ref_ptr<osg::Node>& child : _children)
+    {
+        const std::size_t times = dynamic_cast<SkinnedGeometry*>(child.get()) ? size() : 1;
+        for (std::size_t time = 0; time < times; ++time)
+            child->accept(visitor);
+    }
 }
 
 osg::BoundingSphere AnimatedCrowd::computeBound() const

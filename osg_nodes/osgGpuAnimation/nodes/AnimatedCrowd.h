@@ -15,6 +15,7 @@ namespace osgGpuAnimation
 {
 
 class AnimatedCharacter;
+class PosedInstances;
 
 /// Thousands of instances of one character in one node: each with its own placement, controller and tint, all drawn by
 /// one instanced draw a mesh primitive.
@@ -88,7 +89,7 @@ public:
     /// The instance that an intersector has hit: of the Intersection's drawable. Nothing where it is no crowd's.
     static std::optional<Instance> instanceOf(const osg::Drawable* hit);
     /// The mesh as the instance shows it now, computed by the CPU twin, in the crowd's own space; its instanceOf() is
-    /// the instance.
+    /// the instance. No positions where there is no such instance. See jointOf() for a hit's joint.
     osg::ref_ptr<osg::Geometry> posedMesh(Instance instance, const SkinnedGeometry& mesh) const;
     /// Gives the functor the primitives of all instances in their present pose: slow, computed by the CPU twin.
     void acceptInstances(osg::PrimitiveFunctor& functor) const;
@@ -105,8 +106,10 @@ private:
     Result<AffineMatrix> toRootMatrix(const osg::Matrixd& placement, const osg::Vec3d& origin) const;
     void cull(osgUtil::CullVisitor& visitor);
     void intersect(osg::NodeVisitor& visitor);
+    void count(osg::NodeVisitor& visitor);
 
     CrowdInstances _instances;
+    std::unique_ptr<PosedInstances> _posed; ///< its own: no copy shares it
     osg::Vec3d _origin;
     bool _hasOrigin = false;
     std::optional<double> _updateTime; ///< seconds of simulation time

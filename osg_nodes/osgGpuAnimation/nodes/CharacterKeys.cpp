@@ -8,6 +8,7 @@
 #include <osg/Notify>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <mutex>
 
@@ -55,15 +56,17 @@ void setPaused(AnimationController& controller, bool isPaused)
 /// Fades do not go back: they stand while clips do.
 void step(AnimationController& controller, double seconds)
 {
-    // What has come to its end can still go back.
+    setPaused(controller, false);
+    std::array<bool, maxLayers> hasEnded{};
+    forEachLayer(controller,
+                 [&](AnimationLayer& layer) { hasEnded[layer.index()] = layer.state() == PlayState::Ended; });
+    controller.advance(seconds);
+    // What had come to its end does not advance, but can still go back.
     forEachLayer(controller,
                  [&](AnimationLayer& layer)
                  {
-                     if (layer.state() == PlayState::Ended && seconds < 0.0)
-                         layer.seek(layer.time() + seconds * layer.speed());
+                     if (hasEnded[layer.index()] && seconds < 0.0) layer.seek(layer.time() + seconds * layer.speed());
                  });
-    setPaused(controller, false);
-    controller.advance(seconds);
     setPaused(controller, true);
     OSG_NOTICE << "at " << controller.time() << " s of " << controller.duration() << std::endl;
 }
@@ -136,7 +139,12 @@ void CharacterKeys::changeClip(AnimationController& controller, int step) const
     const int count = static_cast<int>(clips.size());
     if (count == 0) return;
     const int clip = controller.clip() < 0 ? 0 : (controller.clip() + step + count) % count;
-    if (controller.crossfade(static_cast<std::size_t>(clip), _fadeSeconds))
+    // A fade stands while all is paused: what is paused shows the next clip at once, and stays so.
+    const bool isPaused = controller.state() == PlayState::Paused;
+    const bool isShown =
+        static_cast<bool>(controller.crossfade(static_cast<std::size_t>(clip), isPaused ? 0.0 : _fadeSeconds));
+    if (isPaused) controller.pause();
+    if (isShown)
         OSG_NOTICE << "clip \"" << clips[static_cast<std::size_t>(clip)].name() << "\", " << clip + 1 << " of " << count
                    << std::endl;
 }

@@ -17,7 +17,7 @@ namespace osgGpuAnimation
 ///
 /// | key | does |
 /// | --- | --- |
-/// | n N | next, previous clip, with a crossfade |
+/// | n N | next, previous clip, with a crossfade; at once, and still paused, where all is paused |
 /// | k | pauses and resumes all layers |
 /// | . , | a thirtieth of a second on, back; pauses |
 /// | - + | slower, faster (= is + without shift) |

@@ -41,7 +41,7 @@ JointAttachment::JointAttachment(int joint) : JointAttachment()
 
 JointAttachment::JointAttachment(const JointAttachment& other, const osg::CopyOp& copyop)
     : osg::MatrixTransform(other, copyop), _jointName(other._jointName), _joint(other._joint),
-      _resolvedSet(other._resolvedSet), _resolvedJoint(other._resolvedJoint)
+      _resolvedSet(other._resolvedSet), _resolvedJoint(other._resolvedJoint), _hasWarned(other._hasWarned)
 {
     setNumChildrenRequiringUpdateTraversal(getNumChildrenRequiringUpdateTraversal() + 1);
 }
@@ -53,6 +53,7 @@ void JointAttachment::setJoint(const std::string& name)
     _jointName = name;
     _joint = -1;
     _resolvedSet.reset();
+    _hasWarned = false;
 }
 
 void JointAttachment::setJoint(int joint)
@@ -60,6 +61,7 @@ void JointAttachment::setJoint(int joint)
     _jointName.clear();
     _joint = joint;
     _resolvedSet.reset();
+    _hasWarned = false;
 }
 
 int JointAttachment::jointIn(const AnimationSet& set) const
@@ -74,17 +76,19 @@ void JointAttachment::resolve(const AnimatedCharacter& character)
     if (&character.set() == _resolvedSet.get()) return;
     _resolvedJoint = jointIn(character.set());
     _resolvedSet = character.controller().sharedSet();
-    if (_resolvedJoint < 0)
-        OSG_WARN << "osgGpuAnimation: an attachment follows joint "
-                 << (_jointName.empty() ? std::to_string(_joint) : "\"" + _jointName + "\"") << ", but \""
-                 << character.getName() << "\" has none such among its " << character.set().skeleton().jointCount()
-                 << "; it stays at the character's origin" << std::endl;
+    if (_resolvedJoint >= 0 || _hasWarned) return;
+    _hasWarned = true;
+    OSG_WARN << "osgGpuAnimation: an attachment follows joint "
+             << (_jointName.empty() ? std::to_string(_joint) : "\"" + _jointName + "\"") << ", but \""
+             << character.getName() << "\" has none such among its " << character.set().skeleton().jointCount()
+             << "; it stays at the character's origin" << std::endl;
 }
 
 osg::Matrixd JointAttachment::matrixIn(const AnimatedCharacter& character) const
 {
     const int joint = jointIn(character.set());
-    return joint < 0 ? osg::Matrixd() : character.jointToModel(static_cast<std::size_t>(joint));
+    const Result<osg::Matrixd> matrix = character.jointToModel(static_cast<std::size_t>(joint));
+    return matrix ? matrix.value() : osg::Matrixd();
 }
 
 void JointAttachment::traverse(osg::NodeVisitor& visitor)

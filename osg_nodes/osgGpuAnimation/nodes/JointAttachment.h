@@ -21,7 +21,7 @@ class AnimationSet;
 /// It takes the joint's matrix from the CPU twin of that joint's chain of parents, nothing is read back. The character
 /// is found anew on the way from the root each time, so clones of a character carry what theirs hold, and one
 /// attachment may be shared by several. Set its place in the hand by a transform below it. Where there is no such joint
-/// it stays at the character's origin, with one warning.
+/// it stays at the character's origin, with one warning, however many share it.
 class JointAttachment : public osg::MatrixTransform
 {
 public:
@@ -53,6 +53,7 @@ private:
     int _joint = -1;
     std::shared_ptr<const AnimationSet> _resolvedSet; ///< the last set the name was looked up in
     int _resolvedJoint = -1;
+    bool _hasWarned = false;
 };
 
 } // namespace osgGpuAnimation

@@ -1,34 +1,32 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <osg/Geometry>
+#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
 #include <cstdint>
+#include <optional>
 
 namespace osgGpuAnimation
 {
 
-/// A mesh as one instance of a crowd shows it at one moment: what intersectors hit. Never drawn.
+/// A mesh as a character, or one instance of a crowd, shows it at one moment: what intersectors hit. Never drawn.
+/// It lends the mesh's primitives, texture coordinates and state, so that what is asked of a hit's drawable is there.
 class PosedMesh : public osg::Geometry
 {
 public:
-    /// mesh: lends its primitives.
-    PosedMesh(const osg::Geometry& mesh, osg::Vec3Array* positions, std::uint64_t instance) : _instance(instance)
-    {
-        setUseDisplayList(false);
-        setUseVertexBufferObjects(false);
-        setName(mesh.getName());
-        setVertexArray(positions);
-        setPrimitiveSetList(mesh.getPrimitiveSetList());
-    }
+    /// positions: one a vertex of the mesh. instance: where it is a crowd's.
+    PosedMesh(const SkinnedGeometry& mesh, osg::Vec3Array* positions,
+              std::optional<std::uint64_t> instance = std::nullopt);
 
-    std::uint64_t instance() const { return _instance; }
+    const SkinnedGeometry& mesh() const { return *_mesh; }
+    std::optional<std::uint64_t> instance() const { return _instance; }
 
 protected:
     ~PosedMesh() override = default;
 
 private:
-    std::uint64_t _instance;
+    osg::ref_ptr<const SkinnedGeometry> _mesh;
+    std::optional<std::uint64_t> _instance;
 };
 
 } // namespace osgGpuAnimation

@@ -2,6 +2,7 @@
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
 #include <osgGpuAnimation/gpu/PosePipeline.h>
+#include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/InstancedDraw.h>
 #include <osgGpuAnimation/nodes/MorphDeltas.h>
 #include <osgGpuAnimation/nodes/PaletteBinding.h>
@@ -42,6 +43,15 @@ int influencesUsed(const osg::Vec4Array& weights)
     return used;
 }
 
+/// The character that the visitor has come through last; null where there is none.
+const AnimatedCharacter* characterAbove(const osg::NodeVisitor& visitor)
+{
+    const osg::NodePath& path = visitor.getNodePath();
+    for (auto node = path.rbegin(); node != path.rend(); ++node)
+        if (const auto* character = dynamic_cast<const AnimatedCharacter*>(*node)) return character;
+    return nullptr;
+}
+
 } // namespace
 
 SkinnedGeometry::SkinnedGeometry()
@@ -63,6 +73,11 @@ SkinnedGeometry::SkinnedGeometry(const SkinnedGeometry& other, const osg::CopyOp
 void SkinnedGeometry::accept(osg::NodeVisitor& visitor)
 {
     if (!visitor.validNodeMask(*this)) return;
+    if (visitor.getVisitorType() == osg::NodeVisitor::INTERSECTION_VISITOR)
+    {
+        const AnimatedCharacter* character = characterAbove(visitor);
+        if (character) return character->posedMesh(*this)->accept(visitor);
+    }
     visitor.pushOntoNodePath(this);
     visitor.apply(static_cast<osg::Drawable&>(*this));
     visitor.popFromNodePath();
@@ -170,21 +185,6 @@ Box SkinnedGeometry::reachOfVertex(const osg::Vec3& position, std::size_t vertex
         reach.max += glm::max(d * ranges[target].min, d * ranges[target].max);
     }
     return reach;
-}
-
-template <typename Function>
-void SkinnedGeometry::forEachInfluence(std::size_t vertex, Function function) const
-{
-    if (_rigidEntry >= 0) function(static_cast<std::size_t>(_rigidEntry), 1.0f);
-    for (unsigned int influenceSet = 0; influenceSet < maxInfluenceSets; ++influenceSet)
-    {
-        const osg::Vec4usArray* vertexEntries = entries(influenceSet);
-        const osg::Vec4Array* vertexWeights = weights(influenceSet);
-        if (!vertexEntries || !vertexWeights) continue;
-        if (vertex >= vertexEntries->size() || vertex >= vertexWeights->size()) continue;
-        for (int i = 0; i < 4; ++i)
-            if ((*vertexWeights)[vertex][i] != 0.0f) function((*vertexEntries)[vertex][i], (*vertexWeights)[vertex][i]);
-    }
 }
 
 void SkinnedGeometry::computePositions(const std::vector<AffineMatrix>& palette,

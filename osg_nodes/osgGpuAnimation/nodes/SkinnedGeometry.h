@@ -41,7 +41,8 @@ public:
     SkinnedGeometry(const SkinnedGeometry& other, const osg::CopyOp& copyop = osg::CopyOp::SHALLOW_COPY);
     META_Object(osgGpuAnimation, SkinnedGeometry)
         /// To visitors it is a Drawable, not a Geometry: what merges geometries, reorders or transforms their vertices
-        /// (the Optimizer) would part them from their palette entries and morph targets.
+        /// (the Optimizer) would part them from their palette entries and morph targets. Intersection visitors that
+        /// come through an AnimatedCharacter meet its PosedMesh instead.
         void accept(osg::NodeVisitor& visitor) override;
     osg::Geometry* asGeometry() override { return nullptr; }
     const osg::Geometry* asGeometry() const override { return nullptr; }
@@ -78,6 +79,10 @@ public:
     void addToEntryBoxes(const AnimationSet& set, EntryBoxes& boxes, BindBoxes& bindBoxes,
                          std::size_t additiveLayers = 0) const;
 
+    /// function(std::size_t entry, float weight), for each palette entry that moves the vertex.
+    template <typename Function>
+    void forEachInfluence(std::size_t vertex, Function function) const;
+
     /// The CPU twin of skin.glsl: where the palette (of one instance: the set's paletteSize() entries) takes each
     /// vertex, in the character's own space; computed in double. outPositions: one a vertex.
     void computePositions(const std::vector<AffineMatrix>& palette, std::vector<glm::dvec3>& outPositions) const;
@@ -101,8 +106,6 @@ private:
     void drawPrimitives(osg::State& state, const PalettePlace& first, int count) const;
     void bindPalette(osg::State& state, const PalettePlace& place) const;
     void bindMorphTargets(osg::State& state, const osg::Program::PerContextProgram& program) const;
-    template <typename Function>
-    void forEachInfluence(std::size_t vertex, Function function) const;
     Box reachOfVertex(const osg::Vec3& position, std::size_t vertex, const std::vector<WeightRange>& ranges) const;
     glm::dvec3 morphed(const osg::Vec3& position, std::size_t vertex, const std::vector<AffineMatrix>& palette) const;
 
@@ -115,5 +118,20 @@ private:
     int _morphEntry = -1;                             ///< the first palette entry of the weights
     std::array<int, 4> _morphChannels{0, -1, -1, -1}; ///< as skin.glsl's poseMorphChannels
 };
+
+template <typename Function>
+void SkinnedGeometry::forEachInfluence(std::size_t vertex, Function function) const
+{
+    if (_rigidEntry >= 0) function(static_cast<std::size_t>(_rigidEntry), 1.0f);
+    for (unsigned int influenceSet = 0; influenceSet < maxInfluenceSets; ++influenceSet)
+    {
+        const osg::Vec4usArray* vertexEntries = entries(influenceSet);
+        const osg::Vec4Array* vertexWeights = weights(influenceSet);
+        if (!vertexEntries || !vertexWeights) continue;
+        if (vertex >= vertexEntries->size() || vertex >= vertexWeights->size()) continue;
+        for (int i = 0; i < 4; ++i)
+            if ((*vertexWeights)[vertex][i] != 0.0f) function((*vertexEntries)[vertex][i], (*vertexWeights)[vertex][i]);
+    }
+}
 
 } // namespace osgGpuAnimation

@@ -3,11 +3,15 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <initializer_list>
 #include <iterator>
+#include <set>
 #include <utility>
+#include <vector>
 
 namespace osgGpuAnimation
 {
@@ -18,13 +22,45 @@ namespace
 // Kept in the order in which they are written: without "start" the first state is meant.
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t largestFile = 1 << 20;
+constexpr std::size_t largestText = 1 << 16;
+constexpr int deepest = 256;
 
 /// What is at fault with a member; caught where the text is read.
 struct Fault
 {
     std::string message;
 };
+
+/// Watches the parser, which by itself takes any depth and of members of one name the last.
+class ParserWatch
+{
+public:
+    bool operator()(int depth, Json::parse_event_t event, const Json& parsed)
+    {
+        using Event = Json::parse_event_t;
+        if (event == Event::object_start || event == Event::array_start)
+        {
+            if (depth >= deepest) throw Fault{"nested more than " + std::to_string(deepest) + " deep"};
+            _members.resize(static_cast<std::size_t>(depth) + 1);
+            _members.back().clear();
+        }
+        if (event == Event::key)
+        {
+            const std::string& name = parsed.get_ref<const std::string&>();
+            if (!_members[static_cast<std::size_t>(depth) - 1].insert(name).second)
+                throw Fault{"member \"" + name + "\" comes twice"};
+        }
+        return true;
+    }
+
+private:
+    std::vector<std::set<std::string>> _members; ///< of each object around the present place
+};
+
+Error tooLong(std::uintmax_t size)
+{
+    return Error{std::to_string(size) + " bytes, at most " + std::to_string(largestText) + " are read"};
+}
 
 template <typename T>
 using Words = std::initializer_list<std::pair<const char*, T>>;
@@ -47,6 +83,11 @@ void readText(const Json& object, const char* name, const std::string& where, st
     if (found == object.end()) return;
     if (!found->is_string()) throw Fault{where + "." + name + ": expected a string, found " + found->type_name()};
     out = found->get<std::string>();
+}
+
+void requireMember(const Json& object, const char* name, const std::string& where)
+{
+    if (!object.contains(name)) throw Fault{where + ": it has no \"" + name + "\""};
 }
 
 void readNumber(const Json& object, const char* name, const std::string& where, double& out)
@@ -78,6 +119,7 @@ StateDescription toState(const std::string& name, const Json& json)
 {
     const std::string where = "states." + name;
     checkObject(json, where, {"clip", "loop", "speed"});
+    requireMember(json, "clip", where);
     StateDescription state;
     state.name = name;
     readText(json, "clip", where, state.clip);
@@ -91,18 +133,22 @@ StateDescription toState(const std::string& name, const Json& json)
 std::vector<std::string> toConditions(const Json& json, const std::string& where)
 {
     std::vector<std::string> conditions;
-    const Json list = json.is_array() ? json : Json::array({json});
-    for (const Json& condition : list)
+    const auto add = [&](const Json& condition)
     {
         if (!condition.is_string()) throw Fault{where + ": expected a string, found " + condition.type_name()};
         conditions.push_back(condition.get<std::string>());
-    }
+    };
+    if (json.is_array())
+        std::for_each(json.begin(), json.end(), add);
+    else
+        add(json);
     return conditions;
 }
 
 TransitionDescription toTransition(const Json& json, const std::string& where)
 {
     checkObject(json, where, {"from", "to", "when", "seconds", "curve", "sync"});
+    requireMember(json, "to", where);
     TransitionDescription transition;
     readText(json, "from", where, transition.from);
     readText(json, "to", where, transition.to);
@@ -119,15 +165,20 @@ StateGraphDescription toDescription(const Json& json)
     checkObject(json, "the file", {"start", "states", "transitions"});
     StateGraphDescription description;
     readText(json, "start", "the file", description.start);
-    const Json states = json.value("states", Json::object());
-    if (!states.is_object()) throw Fault{std::string("states: expected an object, found ") + states.type_name()};
-    for (const auto& state : states.items())
-        description.states.push_back(toState(state.key(), state.value()));
-    const Json transitions = json.value("transitions", Json::array());
-    if (!transitions.is_array())
-        throw Fault{std::string("transitions: expected an array, found ") + transitions.type_name()};
-    for (std::size_t t = 0; t < transitions.size(); ++t)
-        description.transitions.push_back(toTransition(transitions[t], "transitions[" + std::to_string(t) + "]"));
+    if (const auto states = json.find("states"); states != json.end())
+    {
+        if (!states->is_object()) throw Fault{std::string("states: expected an object, found ") + states->type_name()};
+        for (const auto& state : states->items())
+            description.states.push_back(toState(state.key(), state.value()));
+    }
+    if (const auto transitions = json.find("transitions"); transitions != json.end())
+    {
+        if (!transitions->is_array())
+            throw Fault{std::string("transitions: expected an array, found ") + transitions->type_name()};
+        for (const Json& transition : *transitions)
+            description.transitions.push_back(
+                toTransition(transition, "transitions[" + std::to_string(description.transitions.size()) + "]"));
+    }
     return description;
 }
 
@@ -135,9 +186,11 @@ StateGraphDescription toDescription(const Json& json)
 
 Result<std::shared_ptr<const StateGraph>> parseStateGraph(const AnimationSet& set, const std::string& json)
 {
+    if (json.size() > largestText) return tooLong(json.size());
     try
     {
-        return StateGraph::create(set, toDescription(Json::parse(json)));
+        ParserWatch watch;
+        return StateGraph::create(set, toDescription(Json::parse(json, std::ref(watch))));
     }
     catch (const Fault& fault)
     {
@@ -152,11 +205,13 @@ Result<std::shared_ptr<const StateGraph>> parseStateGraph(const AnimationSet& se
 Result<std::shared_ptr<const StateGraph>> readStateGraphFile(const AnimationSet& set, const std::string& file)
 {
     std::error_code error;
-    if (!std::filesystem::is_regular_file(file, error)) return Error{file + ": there is no such file"};
+    const std::filesystem::file_status status = std::filesystem::status(file, error);
+    if (!std::filesystem::exists(status)) return Error{file + ": there is no such file"};
+    if (std::filesystem::is_directory(status)) return Error{file + ": is not a file but a folder"};
+    if (!std::filesystem::is_regular_file(status)) return Error{file + ": is not a plain file"};
     const std::uintmax_t size = std::filesystem::file_size(file, error);
-    if (error || size > largestFile)
-        return Error{file + ": " + std::to_string(size) + " bytes, at most " + std::to_string(largestFile) +
-                     " are read"};
+    if (error) return Error{file + ": " + error.message()};
+    if (size > largestText) return Error{file + ": " + tooLong(size).message};
     std::ifstream stream(file, std::ios::binary);
     const std::string text{std::istreambuf_iterator<char>(stream), {}};
     if (!stream.good() && !stream.eof()) return Error{file + ": cannot be read"};

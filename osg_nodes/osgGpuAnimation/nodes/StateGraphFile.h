@@ -29,11 +29,11 @@ namespace osgGpuAnimation
 /// instead of an array. What is left out is as in StateDescription and TransitionDescription; a transition without
 /// "from" leads on from every state.
 ///
-/// Errors name the member: JSON that is none, members of a wrong type or an unknown name, and those of
-/// StateGraph::create.
+/// Errors name the member: JSON that is none, of more than 64 KiB or nested more than 256 deep; members of a wrong type
+/// or an unknown name, that come twice or are missing; and those of StateGraph::create.
 Result<std::shared_ptr<const StateGraph>> parseStateGraph(const AnimationSet& set, const std::string& json);
 
-/// The same from a file of at most 1 MiB. Errors begin with its name.
+/// The same from a file of at most 64 KiB. Errors begin with its name.
 Result<std::shared_ptr<const StateGraph>> readStateGraphFile(const AnimationSet& set, const std::string& file);
 
 } // namespace osgGpuAnimation

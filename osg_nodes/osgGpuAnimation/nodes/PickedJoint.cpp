@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/nodes/PickedJoint.h>
+
+#include <osgGpuAnimation/nodes/PosedMesh.h>
+
+#include <algorithm>
+#include <map>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+/// A vertex and its share in the point that was hit.
+struct Corner
+{
+    std::size_t vertex;
+    double share;
+};
+
+std::optional<std::size_t> heaviestJoint(const AnimationSet& set, const SkinnedGeometry& mesh,
+                                         const std::vector<Corner>& corners)
+{
+    std::map<int, double> weightOfJoint;
+    for (const Corner& corner : corners)
+        mesh.forEachInfluence(corner.vertex,
+                              [&](std::size_t entry, float weight)
+                              {
+                                  const int joint = entry < set.paletteSize() ? set.palette()[entry].joint : -1;
+                                  if (joint >= 0) weightOfJoint[joint] += corner.share * static_cast<double>(weight);
+                              });
+    const auto heaviest = std::max_element(weightOfJoint.begin(), weightOfJoint.end(),
+                                           [](const auto& a, const auto& b) { return a.second < b.second; });
+    if (heaviest == weightOfJoint.end()) return std::nullopt;
+    return static_cast<std::size_t>(heaviest->first);
+}
+
+std::optional<PickedJoint> pick(const osg::NodePath& path, const osg::Drawable* hit, const std::vector<Corner>& corners)
+{
+    const auto* posed = dynamic_cast<const PosedMesh*>(hit);
+    if (!posed) return std::nullopt;
+    PickedJoint picked;
+    picked.mesh = &posed->mesh();
+    for (const osg::Node* node : path)
+    {
+        const auto* crowd = posed->instance() ? dynamic_cast<const AnimatedCrowd*>(node) : nullptr;
+        const auto* character = posed->instance() ? nullptr : dynamic_cast<const AnimatedCharacter*>(node);
+        if (crowd) picked.crowd = crowd;
+        if (character) picked.character = character;
+    }
+    if (picked.crowd) picked.instance = *posed->instance();
+    if (!picked.crowd && !picked.character) return std::nullopt;
+    picked.set = picked.crowd ? &picked.crowd->set() : &picked.character->set();
+    const std::optional<std::size_t> joint = heaviestJoint(*picked.set, *picked.mesh, corners);
+    if (!joint) return std::nullopt;
+    picked.joint = *joint;
+    return picked;
+}
+
+} // namespace
+
+std::optional<PickedJoint> jointOf(const osgUtil::LineSegmentIntersector::Intersection& hit)
+{
+    std::vector<Corner> corners;
+    for (std::size_t i = 0; i < std::min(hit.indexList.size(), hit.ratioList.size()); ++i)
+        corners.push_back({hit.indexList[i], hit.ratioList[i]});
+    return pick(hit.nodePath, hit.drawable.get(), corners);
+}
+
+std::optional<PickedJoint> jointOf(const osgUtil::PolytopeIntersector::Intersection& hit)
+{
+    const auto* posed = dynamic_cast<const PosedMesh*>(hit.drawable.get());
+    const auto* positions = posed ? dynamic_cast<const osg::Vec3Array*>(posed->getVertexArray()) : nullptr;
+    if (!positions || positions->empty()) return std::nullopt;
+    const osg::Vec3 point(hit.localIntersectionPoint);
+    const auto nearest = std::min_element(positions->begin(), positions->end(),
+                                          [&](const osg::Vec3& a, const osg::Vec3& b)
+                                          { return (a - point).length2() < (b - point).length2(); });
+    return pick(hit.nodePath, posed, {{static_cast<std::size_t>(nearest - positions->begin()), 1.0}});
+}
+
+} // namespace osgGpuAnimation

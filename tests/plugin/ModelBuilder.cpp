@@ -24,7 +24,7 @@ int ModelBuilder::accessor(int type, int componentType, std::size_t count, const
     view.byteOffset = buffer.size();
     view.byteLength = bytes;
     buffer.resize(buffer.size() + (bytes + 3) / 4 * 4);
-    std::memcpy(buffer.data() + view.byteOffset, data, bytes);
+    if (bytes > 0) std::memcpy(buffer.data() + view.byteOffset, data, bytes);
     tinygltf::Accessor accessor;
     accessor.bufferView = static_cast<int>(model.bufferViews.size());
     accessor.type = type;

@@ -42,15 +42,17 @@
 #define POSE_ENTRIES_1_LOCATION 14
 #define POSE_WEIGHTS_1_LOCATION 15
 
+// Vertex attributes of instances that are drawn together, one a GL instance: three rows of the matrix to the eye's space,
+// then the pose's number in its batch. Where OSG has texture coordinates of units above 0 or secondary colours, if anything.
+#define POSE_PLACEMENT_ROW_0_LOCATION 6
+#define POSE_PLACEMENT_ROW_1_LOCATION 7
+#define POSE_PLACEMENT_ROW_2_LOCATION 10
+#define POSE_PLACED_POSE_LOCATION 11
+
 // The texture units the palette, a mesh's morph targets and the instances' tints are bound to while it is drawn.
 #define POSE_PALETTE_UNIT 11
 #define POSE_MORPH_UNIT 12
 #define POSE_TINT_UNIT 13
-#define POSE_PLACEMENT_UNIT 14
-
-// Placements of instances drawn together: RGBA32F, four texels each: three rows of the matrix to the eye's space, then
-// the pose's number in its batch.
-#define POSE_TEXELS_PER_PLACEMENT 4
 
 // Morph targets of a mesh: RGBA32F, for each vertex, each target, the channels it has: position, normal, colour, texture
 // coordinate. Weights come from palette entries of weights, twelve each.

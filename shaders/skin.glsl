@@ -19,11 +19,6 @@ uniform samplerBuffer poseMorphDeltas; // targets' channels by vertex, target, c
 uniform ivec2 poseMorph;               // number of targets (0: none), the first palette entry of their weights
 uniform ivec4 poseMorphChannels;       // channels a target has; the place of normal, colour, texture coordinate, or -1
 
-#ifdef POSE_PLACED
-uniform samplerBuffer posePlacements; // where each GL instance stands and which pose it has
-uniform int posePlacement;            // the draw's first
-#endif
-
 uniform samplerBuffer poseTints; // by instance
 uniform bool poseTinted;
 
@@ -42,14 +37,14 @@ in vec4 poseEntries1;
 in vec4 poseWeights1;
 
 #ifdef POSE_PLACED
-vec4 osgGpuAnimationPlacementTexel(int place)
-{
-    return texelFetch(posePlacements, (posePlacement + gl_InstanceID) * POSE_TEXELS_PER_PLACEMENT + place);
-}
+in vec4 posePlacementRow0; // where the GL instance stands
+in vec4 posePlacementRow1;
+in vec4 posePlacementRow2;
+in vec4 posePlacedPose; // x: its number in the batch
 
 int osgGpuAnimationInstance()
 {
-    return poseInstance + int(osgGpuAnimationPlacementTexel(3).x);
+    return poseInstance + int(posePlacedPose.x);
 }
 #else
 int osgGpuAnimationInstance()
@@ -135,7 +130,6 @@ void osgGpuAnimationSkin(inout vec4 vertex, inout vec3 normal)
     if (POSE_INFLUENCES > 4) rows += osgGpuAnimationBlend(poseEntries1, poseWeights1, POSE_INFLUENCES - 4);
     osgGpuAnimationMove(rows, vertex, normal);
 #ifdef POSE_PLACED
-    osgGpuAnimationMove(mat3x4(osgGpuAnimationPlacementTexel(0), osgGpuAnimationPlacementTexel(1),
-                               osgGpuAnimationPlacementTexel(2)), vertex, normal);
+    osgGpuAnimationMove(mat3x4(posePlacementRow0, posePlacementRow1, posePlacementRow2), vertex, normal);
 #endif
 }

@@ -101,7 +101,7 @@ double Drawables::farthestOf(const DrawablePlace& place, const MeshPrimitive& me
 
 osg::ref_ptr<osg::Geometry> Drawables::make(const DrawablePlace& place)
 {
-    const MeshPrimitive* mesh = _meshes.primitive(place.mesh, place.primitive);
+    const MeshPrimitive* mesh = meshPrimitive(place);
     if (!mesh) return nullptr;
     if (!(farthestOf(place, *mesh) <= Reach::farthest))
     {

@@ -48,7 +48,7 @@ public:
     /// What it is made of; null likewise.
     const MeshPrimitive* meshPrimitive(const DrawablePlace& place)
     {
-        return _meshes.primitive(place.mesh, place.primitive);
+        return _meshes.primitive(place.mesh, place.primitive, place.skin >= 0);
     }
 
 private:

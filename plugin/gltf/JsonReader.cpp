@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <utility>
 
 namespace osgGpuAnimation::gltf
@@ -179,6 +180,20 @@ std::string pathOf(JsonTree& tree, std::uint32_t wanted)
     return path;
 }
 
+/// The parser takes the first NUL for the end of the text.
+std::optional<Error> checkEnd(std::string_view text, Report& report)
+{
+    const std::size_t end = text.find('\0');
+    if (end == std::string_view::npos) return std::nullopt;
+    const std::size_t more = text.find_first_not_of('\0', end);
+    if (more != std::string_view::npos)
+        return Error{"JSON syntax: expected the end of the text after the NUL at byte " + std::to_string(end) +
+                     ", found more at byte " + std::to_string(more)};
+    report.warn("JSON: expected the end of the text at byte " + std::to_string(end) + ", found " +
+                std::to_string(text.size() - end) + " bytes of NUL; ignored");
+    return std::nullopt;
+}
+
 } // namespace
 
 Result<JsonTree> readJson(std::string_view text, const ImportOptions& options, Report& report)
@@ -189,6 +204,7 @@ Result<JsonTree> readJson(std::string_view text, const ImportOptions& options, R
     TreeBuilder builder(tree, options);
     builder.reserve(text);
     if (!nlohmann::json::sax_parse(text.begin(), text.end(), &builder)) return Error{builder.faultText()};
+    if (const std::optional<Error> more = checkEnd(text, report)) return *more;
     if (!tree.root().is(JsonTree::Type::Object))
         return fault("JSON", "an object as the root", tree.root().description());
     for (std::size_t i = 0; i < builder.duplicates().size() && i < 100; ++i)

@@ -2,6 +2,7 @@
 #include "gltf/Meshes.h"
 
 #include "gltf/Accessor.h"
+#include "gltf/FlatMesh.h"
 #include "gltf/FlatNormals.h"
 #include "gltf/NamedElement.h"
 #include "gltf/Reach.h"
@@ -98,15 +99,54 @@ std::vector<std::uint32_t> invert(std::vector<std::uint32_t>& sourceVertex, std:
     return geometryVertex;
 }
 
-/// Gives every triangle vertices of its own, with its own normal.
-void takeApart(MeshPrimitive& mesh, int mode, std::vector<std::uint32_t> vertices)
+void pickVertices(MeshPrimitive& mesh)
 {
-    if (vertices.empty())
+    pick(mesh.positions, mesh.sourceVertex);
+    pick(mesh.texCoords, mesh.sourceVertex);
+    pick(mesh.colors, mesh.sourceVertex);
+    for (MorphTarget& target : mesh.targets)
     {
-        vertices.resize(mesh.vertexCount);
-        std::iota(vertices.begin(), vertices.end(), 0u);
+        pick(target.positions, mesh.sourceVertex);
+        pick(target.normals, mesh.sourceVertex);
+        pick(target.colors, mesh.sourceVertex);
+        pick(target.textureCoordinates, mesh.sourceVertex);
     }
-    std::vector<std::uint32_t> corners = triangleCorners(mode, vertices);
+}
+
+/// indices: none where the vertices are drawn in their order.
+std::vector<std::uint32_t> cornersOf(const MeshPrimitive& mesh, int mode, std::vector<std::uint32_t> indices)
+{
+    if (indices.empty())
+    {
+        indices.resize(mesh.vertexCount);
+        std::iota(indices.begin(), indices.end(), 0u);
+    }
+    return triangleCorners(mode, indices);
+}
+
+/// Makes one vertex of those that differ in nothing.
+void join(MeshPrimitive& mesh, const tinygltf::Model& model, const tinygltf::Primitive& primitive,
+          std::vector<std::uint32_t> indices)
+{
+    std::vector<std::uint32_t> corners = cornersOf(mesh, primitive.mode, std::move(indices));
+    JoinedVertices joined = joinVertices(model, primitive, mesh);
+    for (std::uint32_t& corner : corners)
+        corner = joined.vertexOf[corner];
+    mesh.sourceVertex.resize(joined.count);
+    for (std::size_t vertex = mesh.vertexCount; vertex-- > 0;)
+        mesh.sourceVertex[joined.vertexOf[vertex]] = static_cast<std::uint32_t>(vertex);
+    mesh.geometryVertex = std::make_shared<std::vector<std::uint32_t>>(std::move(joined.vertexOf));
+    pickVertices(mesh);
+    if (!isBlended(model, primitive)) optimizeForVertexCache(corners, joined.count);
+    mesh.primitiveSet = makePrimitiveSet(modeTriangles, corners, joined.count);
+    mesh.normals = smoothNormals(*mesh.positions, corners);
+    mesh.isFlat = true;
+}
+
+/// Gives every triangle vertices of its own, with its own normal.
+void takeApart(MeshPrimitive& mesh, int mode, std::vector<std::uint32_t> indices)
+{
+    std::vector<std::uint32_t> corners = cornersOf(mesh, mode, std::move(indices));
     mesh.primitiveSet = new osg::DrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(corners.size()));
     bool same = corners.size() == mesh.vertexCount;
     for (std::size_t i = 0; i < corners.size() && same; ++i)
@@ -115,19 +155,15 @@ void takeApart(MeshPrimitive& mesh, int mode, std::vector<std::uint32_t> vertice
     {
         mesh.sourceVertex = std::move(corners);
         mesh.geometryVertex = std::make_shared<std::vector<std::uint32_t>>(invert(mesh.sourceVertex, mesh.vertexCount));
-        pick(mesh.positions, mesh.sourceVertex);
-        pick(mesh.texCoords, mesh.sourceVertex);
-        pick(mesh.colors, mesh.sourceVertex);
-        for (MorphTarget& target : mesh.targets)
-        {
-            pick(target.positions, mesh.sourceVertex);
-            pick(target.normals, mesh.sourceVertex);
-            pick(target.colors, mesh.sourceVertex);
-            pick(target.textureCoordinates, mesh.sourceVertex);
-        }
+        pickVertices(mesh);
     }
     mesh.normals = flatNormals(*mesh.positions);
     mesh.isFlat = true;
+}
+
+bool isFlat(const tinygltf::Primitive& primitive)
+{
+    return primitive.mode >= modeTriangles && primitive.attributes.count("NORMAL") == 0;
 }
 
 /// An upper bound of what reading takes, influences included.
@@ -137,9 +173,8 @@ std::size_t byteSize(const tinygltf::Model& model, const tinygltf::Primitive& pr
     const std::size_t aTarget = sizeof(osg::Vec3) * 2 + sizeof(osg::Vec4) + sizeof(osg::Vec2);
     const std::size_t indices =
         primitive.indices < 0 ? 0 : model.accessors[static_cast<std::size_t>(primitive.indices)].count;
-    const bool flat = primitive.mode >= modeTriangles && primitive.attributes.count("NORMAL") == 0;
     const std::size_t corners =
-        !flat ? 0 : (primitive.mode == modeTriangles ? 1 : 3) * (indices ? indices : vertexCount);
+        !isFlat(primitive) ? 0 : (primitive.mode == modeTriangles ? 1 : 3) * (indices ? indices : vertexCount);
     return (vertexCount + corners) * (aVertex + aTarget * primitive.targets.size()) + 3 * 4 * indices;
 }
 
@@ -150,14 +185,17 @@ Meshes::Meshes(const tinygltf::Model& model, DecodedBytes& budget, Report& repor
 {
 }
 
-const MeshPrimitive* Meshes::primitive(int mesh, int primitive)
+const MeshPrimitive* Meshes::primitive(int mesh, int primitive, bool skinned)
 {
-    const auto [place, isNew] = _primitives.try_emplace({mesh, primitive});
-    if (isNew) place->second = read(mesh, primitive);
+    const tinygltf::Primitive& source =
+        _model.meshes[static_cast<std::size_t>(mesh)].primitives[static_cast<std::size_t>(primitive)];
+    const bool joined = skinned && isFlat(source);
+    const auto [place, isNew] = _primitives.try_emplace({mesh, primitive, joined});
+    if (isNew) place->second = read(mesh, primitive, joined);
     return place->second ? &*place->second : nullptr;
 }
 
-std::optional<MeshPrimitive> Meshes::read(int meshIndex, int primitiveIndex)
+std::optional<MeshPrimitive> Meshes::read(int meshIndex, int primitiveIndex, bool joined)
 {
     const tinygltf::Mesh& source = _model.meshes[static_cast<std::size_t>(meshIndex)];
     const tinygltf::Primitive& primitive = source.primitives[static_cast<std::size_t>(primitiveIndex)];
@@ -190,7 +228,10 @@ std::optional<MeshPrimitive> Meshes::read(int meshIndex, int primitiveIndex)
         mesh.targetRadii.push_back(target.positions ? radiusOf(*target.positions) : 0.0);
     if (!mesh.normals && primitive.mode >= modeTriangles)
     {
-        takeApart(mesh, primitive.mode, std::move(indices));
+        if (joined)
+            join(mesh, _model, primitive, std::move(indices));
+        else
+            takeApart(mesh, primitive.mode, std::move(indices));
         return mesh;
     }
     if (primitive.mode == modeTriangles && !isBlended(_model, primitive))

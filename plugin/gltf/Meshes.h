@@ -14,7 +14,7 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <utility>
+#include <tuple>
 #include <vector>
 
 namespace osgGpuAnimation::gltf
@@ -33,12 +33,15 @@ struct MeshPrimitive
     std::vector<MorphTarget> targets;
     double radius = 0.0;             ///< of the farthest vertex from the mesh's origin
     std::vector<double> targetRadii; ///< by target: the longest way of a vertex
-    /// Where triangles had to be taken apart (flat normals): the file's vertex that each vertex is; else empty.
+    /// Where triangles had to be taken apart (flat normals) or vertices joined: the file's vertex that each vertex is;
+    /// else empty.
     /// Vertices that no triangle uses come last and are not drawn.
     std::vector<std::uint32_t> sourceVertex;
     /// The way back, see ImportedPrimitive::geometryVertex.
     std::shared_ptr<const std::vector<std::uint32_t>> geometryVertex;
-    bool isFlat = false; ///< the file has no normals: those here are the faces' own, at rest
+    /// The file has no normals. Those here are the faces' own; of what is skinned, where the program finds the faces'
+    /// own, a vertex is shared by faces and its normal is between theirs.
+    bool isFlat = false;
 };
 
 /// Reads the primitives of a file's meshes, each once: all modes, with or without indices, flat normals where a
@@ -48,16 +51,16 @@ class Meshes
 public:
     Meshes(const tinygltf::Model& model, DecodedBytes& budget, Report& report);
 
-    /// Null where there is nothing to draw.
-    const MeshPrimitive* primitive(int mesh, int primitive);
+    /// skinned: for a skin's joints, which makes vertices dear. Null where there is nothing to draw.
+    const MeshPrimitive* primitive(int mesh, int primitive, bool skinned = false);
 
 private:
-    std::optional<MeshPrimitive> read(int mesh, int primitive);
+    std::optional<MeshPrimitive> read(int mesh, int primitive, bool joined);
 
     const tinygltf::Model& _model;
     DecodedBytes& _budget;
     Report& _report;
-    std::map<std::pair<int, int>, std::optional<MeshPrimitive>> _primitives;
+    std::map<std::tuple<int, int, bool>, std::optional<MeshPrimitive>> _primitives;
 };
 
 } // namespace osgGpuAnimation::gltf

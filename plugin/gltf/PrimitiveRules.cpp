@@ -52,6 +52,7 @@ void leaveOutGaps(const JsonValue& attributes, const std::string& name, Report& 
     for (const JsonValue& attribute : attributes)
     {
         const AttributeSemantic semantic = *AttributeSemantic::parse(attribute.key());
+        if (semantic.kind == Kind::TexCoord) continue; // each is read for itself, by the texture that names it
         for (int before = 0; before < semantic.set; ++before)
             if (!sets[std::size_t(semantic.kind)].test(std::size_t(before)))
             {

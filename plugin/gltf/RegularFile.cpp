@@ -4,6 +4,7 @@
 #include "gltf/ElementName.h"
 
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -17,6 +18,9 @@ namespace
 {
 
 const std::size_t mostPathText = 200;
+
+// A GLB says its length in 32 bits. A file with holes can claim far more than its disk holds.
+const std::uint64_t mostBytesOfAFile = std::uint64_t(1) << 32;
 
 Error about(const std::string& path, const std::string& what)
 {
@@ -95,7 +99,9 @@ Result<std::string> readWholeFile(const std::string& path)
     if (!file) return file.error();
     if (file.value().size() == 0) return about(path, "the file is empty");
     std::string content;
-    if (file.value().size() > content.max_size()) return about(path, "the file is too large");
+    if (file.value().size() > mostBytesOfAFile || file.value().size() > content.max_size())
+        return about(path, "expected a file of at most " + std::to_string(mostBytesOfAFile) + " bytes, found " +
+                               std::to_string(file.value().size()));
     content.resize(file.value().size());
     const Result<std::size_t> read = file.value().read(content.data(), content.size());
     if (!read) return read.error();

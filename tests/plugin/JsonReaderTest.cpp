@@ -65,6 +65,16 @@ TEST(JsonReaderTest, RefusesWhatIsNoJson)
         EXPECT_NE(rewritten(text).find(message), std::string::npos) << text << " -> " << rewritten(text);
 }
 
+TEST(JsonReaderTest, NulIsNoEndOfTheText)
+{
+    Messages messages;
+    EXPECT_TRUE(read(std::string("{}\0\0", 4), messages)); // what some writers fill a GLB's chunk with
+    ASSERT_EQ(messages.warnings.size(), 1u);
+    EXPECT_EQ(messages.warnings[0], "JSON: expected the end of the text at byte 2, found 2 bytes of NUL; ignored");
+    EXPECT_NE(rewritten(std::string("{}\0{}", 5)).find("after the NUL at byte 2, found more at byte 3"),
+              std::string::npos);
+}
+
 TEST(JsonReaderTest, MessagesStayShortAndPrintable)
 {
     const std::string message = rewritten("{\"a\":" + std::string(100000, '\xff'));

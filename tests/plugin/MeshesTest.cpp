@@ -3,6 +3,7 @@
 #include "gltf/FlatNormals.h"
 #include "plugin/ModelBuilder.h"
 
+#include <functional>
 #include <gtest/gtest.h>
 
 namespace osgGpuAnimation::gltf
@@ -126,6 +127,74 @@ TEST(MeshesTest, trianglesWithoutNormalsAreFlat)
         EXPECT_EQ(normal, osg::Vec3(0, 0, 1));
 }
 
+/// Two triangles of a square, each with corners of its own, and a vertex that none uses: vertices 1 and 3, 2 and 5 are
+/// at the same places.
+void addSquare(ModelBuilder& file)
+{
+    file.mesh({{"POSITION",
+                file.floats(TINYGLTF_TYPE_VEC3, {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 7, 7, 7})}});
+    file.primitive(0).indices =
+        file.integers(TINYGLTF_TYPE_SCALAR, TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE, {0, 1, 2, 3, 4, 5});
+}
+
+struct JoiningCase
+{
+    const char* name;
+    std::function<void(ModelBuilder&)> make;
+    std::vector<std::uint32_t> vertexOf; ///< expected
+};
+
+const JoiningCase joiningCases[] = {
+    {"places", [](ModelBuilder&) {}, {0, 1, 2, 1, 3, 2, 4}},
+    {"weights that differ",
+     [](ModelBuilder& file)
+     {
+         std::vector<float> weights(4 * 7, 0.25f);
+         weights[4 * 3] = 0.5f;
+         file.primitive(0).attributes["JOINTS_0"] = file.integers(
+             TINYGLTF_TYPE_VEC4, TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE, std::vector<unsigned int>(4 * 7, 0));
+         file.primitive(0).attributes["WEIGHTS_0"] = file.floats(TINYGLTF_TYPE_VEC4, weights);
+     },
+     {0, 1, 2, 3, 4, 2, 5}},
+    {"the last of many targets that differs",
+     [](ModelBuilder& file)
+     {
+         std::vector<float> ways(3 * 7, 0.5f);
+         const int alike = file.floats(TINYGLTF_TYPE_VEC3, ways);
+         ways[3 * 5] = 1.0f;
+         file.primitive(0).targets.assign(40, {{"POSITION", alike}});
+         file.primitive(0).targets.push_back({{"POSITION", file.floats(TINYGLTF_TYPE_VEC3, ways)}});
+     },
+     {0, 1, 2, 1, 3, 4, 5}},
+};
+
+TEST(MeshesTest, verticesAlikeAreJoinedForThePalette)
+{
+    for (const JoiningCase& joining : joiningCases)
+    {
+        SCOPED_TRACE(joining.name);
+        ModelBuilder file;
+        addSquare(file);
+        joining.make(file);
+        ReadMesh read(file);
+        const MeshPrimitive* mesh = read.meshes.primitive(0, 0, true);
+        ASSERT_TRUE(mesh);
+        EXPECT_TRUE(mesh->isFlat);
+        ASSERT_NE(mesh->geometryVertex, nullptr);
+        EXPECT_EQ(*mesh->geometryVertex, joining.vertexOf);
+        ASSERT_EQ(mesh->sourceVertex.size(), mesh->positions->size());
+        ASSERT_EQ(mesh->normals->size(), mesh->positions->size());
+        for (std::size_t vertex = 0; vertex < mesh->sourceVertex.size(); ++vertex)
+            EXPECT_EQ(joining.vertexOf[mesh->sourceVertex[vertex]], vertex);
+        EXPECT_EQ(mesh->primitiveSet->getNumIndices(), 6u);
+        for (unsigned int corner = 0; corner < 6; ++corner)
+            EXPECT_EQ((*mesh->normals)[mesh->primitiveSet->index(corner)], osg::Vec3(0, 0, 1));
+        // Without a palette each triangle keeps vertices of its own.
+        EXPECT_NE(read.meshes.primitive(0, 0), mesh);
+        EXPECT_EQ(read.primitive->positions->size(), 7u);
+    }
+}
+
 TEST(MeshesTest, alreadySeparateTrianglesStayAsTheyAre)
 {
     ModelBuilder file;
@@ -188,6 +257,9 @@ TEST(MeshesTest, textureCoordinatesAreTheMaterials)
     EXPECT_EQ((*ReadMesh(file).primitive->texCoords)[0], osg::Vec2(0.5f, 0.0f));
     texture.texCoord = 2;
     EXPECT_FALSE(ReadMesh(file).primitive->texCoords);
+    file.primitive(0).attributes["TEXCOORD_3"] = first; // whatever the sets before it
+    texture.texCoord = 3;
+    EXPECT_EQ((*ReadMesh(file).primitive->texCoords)[0], osg::Vec2(0.25f, 0.25f));
 
     tinygltf::Value::Object transform;
     const auto pair = [](double a, double b) {

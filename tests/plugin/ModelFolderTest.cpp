@@ -28,6 +28,9 @@ protected:
         scratch.write("model/model.gltf", "{}");
         scratch.write("model/in.bin", "inside");
         scratch.write("model/a b+c.bin", "spaced");
+        scratch.write("model/r\xc3\xbc"
+                      "be.bin",
+                      "accented");
         scratch.write("model/deep/below.bin", "below");
         ASSERT_EQ(mkfifo(scratch.file("model/pipe").c_str(), 0600), 0);
         fs::create_symlink("../outside.bin", scratch.file("model/link-out.bin"));
@@ -61,6 +64,11 @@ TEST_F(ModelFolderTest, ReadsInTheFolderAndBelow)
     EXPECT_EQ(read("deep/../in.bin"), "inside");
     EXPECT_EQ(read("link-in.bin"), "inside");
     EXPECT_EQ(read("a%20b+c.bin"), "spaced");
+    EXPECT_EQ(read("a b+c.bin"), "spaced");
+    EXPECT_EQ(read("r%C3%BCbe.bin"), "accented");
+    EXPECT_EQ(read("r\xc3\xbc"
+                   "be.bin"),
+              "accented");
     EXPECT_EQ(read("in.bin", false, "link-to-model/model.gltf"), "inside");
 }
 
@@ -111,9 +119,13 @@ TEST_F(ModelFolderTest, AStreamHasNoFiles)
 TEST_F(ModelFolderTest, WholeFilesSayWhatIsWrong)
 {
     scratch.write("empty.glb", "");
+    fs::resize_file(scratch.write("holes.glb", "glTF"), (std::uintmax_t(1) << 32) + 1); // takes no room on the disk
     EXPECT_EQ(readWholeFile(scratch.file("outside.bin")).value(), "outside");
-    const std::pair<const char*, const char*> faults[] = {
-        {"none.glb", "does not exist"}, {"model", "a folder"}, {"empty.glb", "is empty"}, {"model/pipe", "a pipe"}};
+    const std::pair<const char*, const char*> faults[] = {{"none.glb", "does not exist"},
+                                                          {"model", "a folder"},
+                                                          {"empty.glb", "is empty"},
+                                                          {"holes.glb", "at most 4294967296 bytes, found 4294967297"},
+                                                          {"model/pipe", "a pipe"}};
     for (const auto& [name, message] : faults)
     {
         const Result<std::string> content = readWholeFile(scratch.file(name));

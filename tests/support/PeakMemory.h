@@ -1,20 +1,19 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "support/Slowdown.h"
+
 #include <sys/resource.h>
 
 namespace osgGpuAnimation
 {
 
-// What the project's bars for faulty files speak of.
+// What the project's bars for faulty files speak of; the time is the processor's.
 constexpr long mostMebibytes = 512;
-constexpr double mostSeconds = 5.0;
+constexpr double mostSeconds = 5.0 * slowdown;
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool memoryIsMeasurable = false; ///< freed memory is kept back, and every byte has a shadow
-#else
-constexpr bool memoryIsMeasurable = true;
-#endif
+/// A sanitizer keeps freed memory back, and every byte has a shadow.
+constexpr bool memoryIsMeasurable = !isSanitized;
 
 /// The most memory that this process has had, in MiB.
 inline long peakMemory()

@@ -2,7 +2,6 @@
 #include "support/Process.h"
 
 #include <array>
-#include <chrono>
 #include <cstdio>
 #include <fcntl.h>
 #include <spawn.h>
@@ -43,6 +42,11 @@ private:
     std::FILE* _file;
 };
 
+double secondsOf(const timeval& time)
+{
+    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+}
+
 } // namespace
 
 Process Process::run(const std::string& program, const std::vector<std::string>& arguments)
@@ -61,7 +65,6 @@ Process Process::run(const std::string& program, const std::vector<std::string>&
     words.push_back(nullptr);
 
     Process process;
-    const auto start = std::chrono::steady_clock::now();
     pid_t child = 0;
     const int failure = posix_spawnp(&child, program.c_str(), &actions, nullptr, words.data(), environ);
     posix_spawn_file_actions_destroy(&actions);
@@ -69,7 +72,7 @@ Process Process::run(const std::string& program, const std::vector<std::string>&
     rusage usage{};
     if (failure == 0 && wait4(child, &state, 0, &usage) == child)
         process.status = WIFEXITED(state) ? WEXITSTATUS(state) : 128 + WTERMSIG(state);
-    process.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    process.seconds = secondsOf(usage.ru_utime) + secondsOf(usage.ru_stime);
     process.peakMebibytes = usage.ru_maxrss / 1024;
     process.out = out.content();
     process.err = err.content();

@@ -11,7 +11,7 @@ namespace osgGpuAnimation
 struct Process
 {
     int status = -1;        ///< exit status; 128 + n where signal n ended it, -1 where it did not start
-    double seconds = 0.0;   ///< from its start to its end
+    double seconds = 0.0;   ///< of the processor: other programs may run
     long peakMebibytes = 0; ///< the most memory it had
     std::string out;        ///< what it wrote to standard output
     std::string err;        ///< and to standard error

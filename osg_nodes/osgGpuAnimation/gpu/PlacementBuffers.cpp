@@ -17,15 +17,15 @@ PlacementBuffers& PlacementBuffers::of(osg::State& state)
     return *osg::get<PlacementBuffers>(state.getContextID());
 }
 
-GLuint PlacementBuffers::texture(std::uint64_t serial, const std::vector<Placement>& placements)
+const BufferTexture& PlacementBuffers::buffer(std::uint64_t serial, const std::vector<Placement>& placements)
 {
     for (const List& list : _lists)
-        if (list.serial == serial) return list.buffer->texture();
+        if (list.serial == serial) return *list.buffer;
     List& list = _lists[_oldest];
     _oldest = (_oldest + 1) % _lists.size();
     list.serial = serial;
     list.buffer->upload(placements.data(), placements.size() * sizeof(Placement));
-    return list.buffer->texture();
+    return *list.buffer;
 }
 
 void PlacementBuffers::deleteAllGLObjects()

@@ -15,7 +15,7 @@
 namespace osgGpuAnimation
 {
 
-/// Where one instance of an instanced draw stands, as skin.glsl reads it: four texels.
+/// Where one instance of an instanced draw stands, as skin.glsl reads it: four vertex attributes.
 struct Placement
 {
     AffineMatrix toEye; ///< from the character's own space to the eye's
@@ -23,9 +23,9 @@ struct Placement
     std::array<float, 3> unused{};
 };
 
-static_assert(sizeof(Placement) == 4 * BufferTexture::texelBytes, "a placement is four texels");
+static_assert(sizeof(Placement) == 4 * BufferTexture::texelBytes, "a placement is four attributes");
 
-/// One graphics context's buffer textures of placements: the last few lists that were drawn, since all meshes of the
+/// One graphics context's buffers of placements: the last few lists that were drawn, since all meshes of the
 /// same characters follow one another. Only to be called on the draw side, with the context current.
 class PlacementBuffers : public osg::GraphicsObjectManager
 {
@@ -34,12 +34,8 @@ public:
 
     static PlacementBuffers& of(osg::State& state);
 
-    /// The texture of the list, uploaded unless it is there. serial: the list's, never again another's. Lists must fit
-    /// into maxPlacements.
-    GLuint texture(std::uint64_t serial, const std::vector<Placement>& placements);
-
-    /// What the smallest buffer texture that OpenGL promises (65,536 texels) takes.
-    static constexpr std::size_t maxPlacements = 16384;
+    /// The buffer of the list, uploaded unless it is there. serial: the list's, never again another's.
+    const BufferTexture& buffer(std::uint64_t serial, const std::vector<Placement>& placements);
 
     void flushDeletedGLObjects(double, double&) override {}
     void flushAllDeletedGLObjects() override {}

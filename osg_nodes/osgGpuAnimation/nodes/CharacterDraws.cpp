@@ -2,6 +2,7 @@
 #include <osgGpuAnimation/nodes/CharacterDraws.h>
 
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
+#include <osgGpuAnimation/nodes/PlacedDraw.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
 #include <algorithm>
@@ -28,7 +29,7 @@ bool isOrderedByState(const osg::StateSet* stateSet)
 bool canBeDrawnTogether(const SkinnedGeometry& mesh)
 {
     return !mesh.getCullCallback() && !mesh.getDrawCallback() && mesh.getBoundingBox().valid() &&
-           isOrderedByState(mesh.getStateSet());
+           isOrderedByState(mesh.getStateSet()) && !PlacedDraw::isRefusedBy(mesh);
 }
 
 bool canDrawTogether(osgUtil::CullVisitor& visitor)
@@ -113,8 +114,7 @@ bool CharacterDraws::drawTogether(osgUtil::CullVisitor& visitor, const AnimatedC
     if (hasNearFar && !visitor.updateCalculatedNearFar(toEye, group->box)) return true;
     const AffineMatrix placement = toAffine(toEye);
     if (!placement.isFinite()) return true;
-    if (!group->together || group->together->placements().size() >= PlacementBuffers::maxPlacements)
-        open(visitor, *group, frame, visitor.getDistanceFromEyePoint(group->box.center(), false));
+    if (!group->together) open(visitor, *group, frame, visitor.getDistanceFromEyePoint(group->box.center(), false));
     group->together->add({placement, static_cast<float>(pose.instance)});
     return true;
 }

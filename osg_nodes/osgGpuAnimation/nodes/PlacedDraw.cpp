@@ -5,11 +5,17 @@
 
 #include <osg/GLExtensions>
 
+#include <algorithm>
+#include <iterator>
+
 namespace osgGpuAnimation
 {
 
 namespace
 {
+
+constexpr unsigned int attributeLocations[] = {POSE_PLACEMENT_ROW_0_LOCATION, POSE_PLACEMENT_ROW_1_LOCATION,
+                                               POSE_PLACEMENT_ROW_2_LOCATION, POSE_PLACED_POSE_LOCATION};
 
 std::size_t poseOf(const Placement& placement)
 {
@@ -29,21 +35,23 @@ osg::ref_ptr<osg::RefMatrix> toMatrix(const AffineMatrix& affine)
 
 PlacedDraw::PlacedDraw(osg::State& state, const PaletteBinding& binding) : _state(state), _binding(binding)
 {
-    static const unsigned int placementsName = osg::Uniform::getNameID("posePlacements");
-    static const unsigned int firstName = osg::Uniform::getNameID("posePlacement");
     const osg::Program::PerContextProgram* program = state.getLastAppliedProgramObject();
-    const GLint placements = program ? program->getUniformLocation(placementsName) : -1;
-    if (placements < 0) return;
-    _firstLocation = program->getUniformLocation(firstName);
-    const GLuint texture = PlacementBuffers::of(state).texture(binding.serial(), binding.placements());
-    state.setActiveTextureUnit(POSE_PLACEMENT_UNIT);
-    glBindTexture(GL_TEXTURE_BUFFER, texture);
-    state.get<osg::GLExtensions>()->glUniform1i(placements, POSE_PLACEMENT_UNIT);
+    if (!program || program->getAttribLocation("posePlacedPose") != POSE_PLACED_POSE_LOCATION) return;
+    _placements = &PlacementBuffers::of(state).buffer(binding.serial(), binding.placements());
 }
 
 PlacedDraw::~PlacedDraw()
 {
-    if (_firstLocation >= 0) return;
+    if (_placements)
+    {
+        const osg::GLExtensions& gl = *_state.get<osg::GLExtensions>();
+        for (const unsigned int location : attributeLocations)
+        {
+            gl.glDisableVertexAttribArray(location);
+            gl.glVertexAttribDivisor(location, 0);
+        }
+        return;
+    }
     _state.applyModelViewMatrix(new osg::RefMatrix);
     _state.applyModelViewAndProjectionUniformsIfRequired();
 }
@@ -53,7 +61,7 @@ PlacedDraw::Run PlacedDraw::run(const PosePipeline& pipeline, std::size_t first)
     const std::vector<Placement>& placements = _binding.placements();
     const std::size_t pose = poseOf(placements[first]);
     Run run{pipeline.place(*_binding.animationSet(), _binding.slot(), pose), 1};
-    if (_firstLocation < 0 || run.place.texture == 0) return run;
+    if (!_placements || run.place.texture == 0) return run;
     const std::size_t chunkBegin = pose - static_cast<std::size_t>(run.place.instance);
     const std::size_t chunkEnd = chunkBegin + static_cast<std::size_t>(run.place.stride);
     const auto isInChunk = [&](std::size_t other) { return other >= chunkBegin && other < chunkEnd; };
@@ -65,13 +73,28 @@ PlacedDraw::Run PlacedDraw::run(const PosePipeline& pipeline, std::size_t first)
 
 void PlacedDraw::use(std::size_t first) const
 {
-    if (_firstLocation >= 0)
+    if (_placements)
     {
-        _state.get<osg::GLExtensions>()->glUniform1i(_firstLocation, static_cast<GLint>(first));
+        // What is bound below is not what OSG knows to be bound.
+        _state.getCurrentVertexArrayState()->unbindVertexBufferObject();
+        std::size_t offset = first * sizeof(Placement);
+        for (const unsigned int location : attributeLocations)
+        {
+            _placements->bindAttributes(location, 1, sizeof(Placement), offset, 1);
+            offset += BufferTexture::texelBytes;
+        }
         return;
     }
     _state.applyModelViewMatrix(toMatrix(_binding.placements()[first].toEye));
     _state.applyModelViewAndProjectionUniformsIfRequired();
+}
+
+bool PlacedDraw::isRefusedBy(const osg::Geometry& mesh)
+{
+    // Contexts may alias numbered attributes with texture coordinates and secondary colours.
+    return mesh.getNumTexCoordArrays() > 1 || mesh.getSecondaryColorArray() ||
+           std::any_of(std::begin(attributeLocations), std::end(attributeLocations),
+                       [&](unsigned int location) { return mesh.getVertexAttribArray(location) != nullptr; });
 }
 
 } // namespace osgGpuAnimation

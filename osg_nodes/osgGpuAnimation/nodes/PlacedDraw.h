@@ -4,6 +4,7 @@
 #include <osgGpuAnimation/gpu/PosePipeline.h>
 #include <osgGpuAnimation/nodes/PaletteBinding.h>
 
+#include <osg/Geometry>
 #include <osg/State>
 
 #include <cstddef>
@@ -12,7 +13,7 @@ namespace osgGpuAnimation
 {
 
 /// While a mesh of several placed characters is drawn: tells the program where they stand. A program that cannot be
-/// told (it lacks the uniform posePlacements) is given one after another, by the model-view matrix.
+/// told (it does not link skin.glsl) is given one after another, by the model-view matrix.
 class PlacedDraw
 {
 public:
@@ -30,13 +31,16 @@ public:
 
     /// From the placement of that number on.
     Run run(const PosePipeline& pipeline, std::size_t first) const;
-    /// To be called before the run that begins there is drawn.
+    /// To be called before the run that begins there is drawn, with the mesh's vertex arrays set up.
     void use(std::size_t first) const;
+
+    /// Whether the mesh has vertex arrays where placements go.
+    static bool isRefusedBy(const osg::Geometry& mesh);
 
 private:
     osg::State& _state;
     const PaletteBinding& _binding;
-    GLint _firstLocation = -1; ///< -1: one after another
+    const BufferTexture* _placements = nullptr; ///< null: one after another
 };
 
 } // namespace osgGpuAnimation

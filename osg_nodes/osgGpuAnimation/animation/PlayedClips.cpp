@@ -2,6 +2,7 @@
 #include <osgGpuAnimation/animation/PlayedClips.h>
 
 #include <algorithm>
+#include <cstddef>
 
 namespace osgGpuAnimation
 {
@@ -9,9 +10,9 @@ namespace osgGpuAnimation
 namespace
 {
 
-void addOnce(const PlayedClip& clip, std::vector<PlayedClip>& out)
+void addAtMost(std::ptrdiff_t times, const PlayedClip& clip, std::vector<PlayedClip>& out)
 {
-    if (std::find(out.begin(), out.end(), clip) == out.end()) out.push_back(clip);
+    if (std::count(out.begin(), out.end(), clip) < times) out.push_back(clip);
 }
 
 /// Whether nothing below the layer is seen.
@@ -30,13 +31,14 @@ std::size_t samplesOf(const AnimationLayer& layer)
     return layer.mixer().voiceCount() * (layer.mode() == AnimationLayer::Mode::Additive ? 2 : 1);
 }
 
+// A clip that fades into itself is twice in it: mixed of two times it may show what it shows at none.
 void addVoices(const AnimationLayer& layer, std::vector<PlayedClip>& out)
 {
     for (std::size_t v = 0; v < layer.mixer().voiceCount(); ++v)
     {
         const int clip = layer.mixer().voice(v).playback.clip();
         if (layer.mode() == AnimationLayer::Mode::Override)
-            addOnce({clip, PlayedClip::Part::Mixed}, out);
+            addAtMost(2, {clip, PlayedClip::Part::Mixed}, out);
         else if (layer.reference() == AnimationLayer::Reference::RestPose)
             out.push_back({clip, PlayedClip::Part::AddedToRest});
         else
@@ -60,7 +62,7 @@ void findPlayedClips(const AnimationController& controller, std::vector<PlayedCl
         addVoices(layer, out);
     }
     // Where samples give way the others' weights may be too few.
-    if (!isRestHidden || samples > PoseInstruction::maxSamples) addOnce({-1, PlayedClip::Part::Mixed}, out);
+    if (!isRestHidden || samples > PoseInstruction::maxSamples) addAtMost(1, {-1, PlayedClip::Part::Mixed}, out);
 }
 
 } // namespace osgGpuAnimation

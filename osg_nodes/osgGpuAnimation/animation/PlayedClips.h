@@ -25,7 +25,8 @@ struct PlayedClip
 };
 
 /// All clips whose samples may make up the pose now, whatever the layers' weights and masks; the rest pose among them
-/// where it may show through. Mixed clips come once, added ones once a layer and voice. out: what was in it is gone.
+/// where it may show through. Mixed clips come once (twice where voices mix several of its times),
+/// added ones once a layer and voice. out: what was in it is gone.
 void findPlayedClips(const AnimationController& controller, std::vector<PlayedClip>& out);
 
 } // namespace osgGpuAnimation

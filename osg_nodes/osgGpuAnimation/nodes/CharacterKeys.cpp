@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iostream>
 #include <mutex>
 
 namespace osgGpuAnimation
@@ -93,7 +94,8 @@ void tellKeysOnce()
                        std::string text;
                        for (const KeyHelp& key : keyHelp)
                            text += (text.empty() ? "" : "; ") + std::string(key.keys) + " " + key.does;
-                       OSG_NOTICE << "Keys of animated characters: " << text << std::endl;
+                       if (osg::isNotifyEnabled(osg::NOTICE))
+                           std::cout << "Keys of animated characters: " << text << std::endl;
                    });
 }
 

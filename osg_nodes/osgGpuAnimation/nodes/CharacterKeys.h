@@ -24,8 +24,9 @@ namespace osgGpuAnimation
 /// | r | the other way |
 /// | j | joints as lines over the mesh |
 ///
-/// At the first frame of the first viewer that reaches one, the keys are told at osg::NOTICE, once a process; what a
-/// key did is told there too. An application that never has a viewer never hears of it.
+/// At the first frame of the first viewer that reaches one, the keys are told on standard output, once a process: they
+/// are help for who looks on, no notice about the file. Who sets OSG's notify level below NOTICE is not told. What a
+/// key did is told at osg::NOTICE. An application that never has a viewer never hears of it.
 ///
 /// Characters may share one: it keeps nothing of theirs.
 class CharacterKeys : public osgGA::GUIEventHandler

@@ -3,6 +3,7 @@
 
 #include <osgGpuAnimation/gpu/PosePipeline.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
+#include <osgGpuAnimation/nodes/BoxNearFar.h>
 #include <osgGpuAnimation/nodes/InstancedDraw.h>
 #include <osgGpuAnimation/nodes/MorphDeltas.h>
 #include <osgGpuAnimation/nodes/PaletteBinding.h>
@@ -16,6 +17,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <optional>
 
 namespace osgGpuAnimation
 {
@@ -78,6 +80,8 @@ void SkinnedGeometry::accept(osg::NodeVisitor& visitor)
         const AnimatedCharacter* character = characterAbove(visitor);
         if (character) return character->posedMesh(*this)->accept(visitor);
     }
+    std::optional<BoxNearFar> boxes;
+    if (osgUtil::CullVisitor* cullVisitor = visitor.asCullVisitor()) boxes.emplace(*cullVisitor);
     visitor.pushOntoNodePath(this);
     visitor.apply(static_cast<osg::Drawable&>(*this));
     visitor.popFromNodePath();

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+#include "plugin/SharedAssets.h"
+
+#include <osgGpuAnimation/nodes/AnimatedCharacter.h>
+
+#include <gtest/gtest.h>
+#include <osg/Notify>
+#include <osgDB/ReadFile>
+#include <osgDB/Registry>
+#include <osgDB/WriteFile>
+#include <osgGA/EventVisitor>
+
+#include "support/ScratchFolder.h"
+
+// A good file prints nothing at NOTICE: read, shown for a frame, written in OSG's format, read back.
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+class NoticeLog : public osg::NotifyHandler
+{
+public:
+    void notify(osg::NotifySeverity, const char* message) override { text += message; }
+    std::string text;
+};
+
+class QuietFilesTest : public ::testing::TestWithParam<std::string>
+{
+protected:
+    void SetUp() override
+    {
+        osgDB::Registry::instance()->getLibraryFilePathList().push_front(OSGGPUANIMATION_PLUGIN_FOLDER);
+        _level = osg::getNotifyLevel();
+        osg::setNotifyLevel(osg::NOTICE);
+        osg::setNotifyHandler(log);
+    }
+    void TearDown() override
+    {
+        osg::setNotifyHandler(new osg::StandardNotifyHandler);
+        osg::setNotifyLevel(_level);
+    }
+
+    osg::ref_ptr<NoticeLog> log = new NoticeLog;
+
+private:
+    osg::NotifySeverity _level = osg::NOTICE;
+};
+
+std::string fileOf(const std::string& name)
+{
+    return name.find('/') == std::string::npos ? std::string(OSGGPUANIMATION_SCENES) + "/" + name : sharedFile(name);
+}
+
+TEST_P(QuietFilesTest, printNothingAtNotice)
+{
+    const std::string file = fileOf(GetParam());
+    if (file.empty()) GTEST_SKIP() << "there is no " << GetParam();
+    const ScratchFolder folder;
+    osg::ref_ptr<osg::Node> node = osgDB::readRefNodeFile(file);
+    for (const char* kept : {"kept.osgb", "kept.osgt"})
+    {
+        ASSERT_TRUE(node.valid());
+        const osg::ref_ptr<osgGA::GUIEventAdapter> frame = new osgGA::GUIEventAdapter;
+        frame->setEventType(osgGA::GUIEventAdapter::FRAME);
+        const osg::ref_ptr<osgGA::EventVisitor> visitor = new osgGA::EventVisitor;
+        visitor->addEvent(frame);
+        node->accept(*visitor);
+        ASSERT_TRUE(osgDB::writeNodeFile(*node, folder.file(kept)));
+        node = osgDB::readRefNodeFile(folder.file(kept));
+    }
+    EXPECT_EQ(log->text, "");
+}
+
+INSTANTIATE_TEST_SUITE_P(Files, QuietFilesTest,
+                         ::testing::Values("Wanderer.glb", "Serpent.glb", "assets/Fox/Fox.glb",
+                                           "assets/CesiumMan/CesiumMan.glb", "assets/Knight/Knight.glb",
+                                           "assets/AnimatedMorphCube/AnimatedMorphCube.gltf",
+                                           "assets/SimpleSkin/SimpleSkin.gltf"));
+
+} // namespace
+
+} // namespace osgGpuAnimation

@@ -17,7 +17,8 @@ class SkinnedGeometry;
 /// (the same meshes below the same state, in a bin whose order is the state's) is drawn as it is; all after it
 /// together, by one instanced draw a mesh primitive.
 ///
-/// Drawn as they are: meshes with callbacks or arrays where placements go (PlacedDraw::isRefusedBy), in bins sorted by depth or traversal, and deeper than the character's own
+/// Drawn as they are: meshes with callbacks or arrays where placements go (PlacedDraw::isRefusedBy), in bins sorted by
+/// depth or traversal, and deeper than the character's own
 /// children; everything where near and far planes come from primitives, or where a StateSet of its own sets a
 /// character apart.
 class CharacterDraws

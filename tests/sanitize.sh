@@ -9,7 +9,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 build=$root/build-thread
 
 install_missing "${packages[@]}"
-# Unity: half the time. -O1: a Debug build would draw too slowly.
+# Unity: the headers are read once for many files. -O1: a Debug build would draw too slowly.
 cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O1 \
       -DOSGGPUANIMATION_SANITIZER=thread -DOSGGPUANIMATION_UNITY=ON
 cmake --build "$build" --parallel "$(nproc)" --target sanitized_tests

@@ -35,8 +35,8 @@ private:
     std::string _path;
 };
 
-/// The content of a file that the user named. Errors: it does not exist, is a folder, no regular file, empty, of more than
-/// 4 GiB or cannot be read.
+/// The content of a file that the user named. Errors: it does not exist, is a folder, no regular file, empty, of more
+/// than 4 GiB or cannot be read.
 Result<std::string> readWholeFile(const std::string& path);
 
 } // namespace osgGpuAnimation::gltf

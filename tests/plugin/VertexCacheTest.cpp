@@ -101,6 +101,18 @@ TEST(VertexCacheTest, theSameTrianglesWithTheirVerticesShadedOnce)
     EXPECT_LT(shadedVertices(after), 3u * gridSize * gridSize / 2);
 }
 
+TEST(VertexCacheTest, trianglesThatAllMeetInOneVertexStayAsTheyAre)
+{
+    // By the square of them it would take minutes.
+    std::vector<std::uint32_t> fan;
+    constexpr std::uint32_t triangles = 600000;
+    for (std::uint32_t i = 0; i < triangles; ++i)
+        fan.insert(fan.end(), {0, i + 1, i + 2});
+    std::vector<std::uint32_t> ordered = fan;
+    optimizeForVertexCache(ordered, triangles + 2);
+    EXPECT_EQ(ordered, fan);
+}
+
 TEST(VertexCacheTest, nothingToDraw)
 {
     std::vector<std::uint32_t> none;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
+#include "Contestant.h"
 #include "Measurements.h"
 #include "Scenes.h"
-#include "StagedViewer.h"
 
 #include <algorithm>
 #include <iostream>
@@ -15,65 +15,6 @@ namespace
 {
 
 constexpr const char* framePlot = "frame-over-n.svg";
-constexpr double frameTime = 1.0 / 60.0;
-
-/// A scene in a viewer of its own, and what its frames took.
-struct Contestant
-{
-    std::shared_ptr<StagedViewer> viewer;
-    double time = 0.0;
-    Series whole, updateAndCull, draw;
-
-    FrameCost frame() { return viewer->frame(time += frameTime); }
-    void measure()
-    {
-        const FrameCost cost = frame();
-        whole.push_back(cost.whole());
-        updateAndCull.push_back(cost.updateAndCull());
-        draw.push_back(cost.draw);
-    }
-};
-
-Result<Contestant> contestant(osg::Node* scene, const osg::BoundingSphere& sight)
-{
-    Result<std::shared_ptr<StagedViewer>> viewer = StagedViewer::create(scene, sight);
-    if (!viewer) return viewer.error();
-    Contestant made;
-    made.viewer = std::move(viewer.value());
-    return made;
-}
-
-/// Frames until programs are made, buffers are there and osgAnimation has set itself up; then rounds by turns.
-void race(std::vector<Contestant>& contestants, int rounds)
-{
-    for (Contestant& each : contestants)
-        for (int frame = 0; frame < 3; ++frame)
-            each.frame();
-    for (int round = 0; round < rounds; ++round)
-        for (Contestant& each : contestants)
-            each.measure();
-}
-
-std::string check(std::vector<Contestant>& contestants)
-{
-    for (std::size_t i = 0; i < contestants.size(); ++i)
-    {
-        const std::string errors = contestants[i].viewer->takeErrors();
-        if (!errors.empty()) return "GL reports " + errors + "in scene " + std::to_string(i);
-        if (contestants[i].viewer->pixelsDrawn() < 4) return "scene " + std::to_string(i) + " is empty";
-    }
-    return "";
-}
-
-Row named(Row row, const Subject& subject, std::size_t count, const char* what, const char* unit, const char* other)
-{
-    row.subject = subject.name;
-    row.count = count;
-    row.what = what;
-    row.unit = unit;
-    row.otherName = other;
-    return row;
-}
 
 double frameBar(const Subject& subject)
 {
@@ -225,36 +166,6 @@ Result<bool> measureCrowd(const Subject& subject, const Effort& effort, Report& 
     row.bar = "≤ 0.15 µs";
     row.isMet = row.ours.median <= 0.15;
     report.add(row);
-    return true;
-}
-
-Result<bool> measureSkinning(const Subject& subject, const Effort& effort, Report& report)
-{
-    std::cerr << subject.name << ": skinning" << std::endl;
-    const std::size_t count = effort.frameCount;
-    CharacterScene ours(subject, count);
-    CharacterScene apart(subject, count);
-    for (CharacterScene* scene : {&ours, &apart})
-        scene->pause(); // palettes stay, so that nothing but the draws is left
-    for (const osg::ref_ptr<AnimatedCharacter>& character : apart.characters)
-        character->setDrawnTogether(false);
-    const osg::ref_ptr<osg::Group> plain = makeUnskinnedScene(subject, count);
-    std::vector<Contestant> contestants;
-    for (const osg::ref_ptr<osg::Group>& scene : {ours.root, plain, apart.root})
-    {
-        Result<Contestant> made = contestant(scene, ours.root->getBound());
-        if (!made) return made.error();
-        contestants.push_back(std::move(made.value()));
-    }
-    race(contestants, effort.rounds);
-    if (const std::string wrong = check(contestants); !wrong.empty()) return Error{wrong};
-    Row row = named(compared(contestants[0].draw, contestants[1].draw, 1e6 / static_cast<double>(count), false),
-                    subject, count, "skinned draw", "µs a character", "the same without skinning");
-    row.bar = "≤ 1.6";
-    row.isMet = row.ratio.median <= 1.6;
-    report.add(row);
-    report.add(named(compared(contestants[2].draw, contestants[1].draw, 1e6 / static_cast<double>(count), false),
-                     subject, count, "skinned draw, one by one", "µs a character", "the same without skinning"));
     return true;
 }
 

@@ -87,8 +87,20 @@ PalettePlace PosePalette::place(std::size_t instance) const
     if (index >= _chunks.size()) return {};
     const Chunk& chunk = *_chunks[index];
     if (!chunk.isEvaluated) return {};
-    return {chunk.palette.texture(), static_cast<int>(chunk.size), static_cast<int>(instance % _chunkCapacity),
-            chunk.uploadedTints.empty() ? 0 : chunk.tints.texture()};
+    return {chunk.palette.texture(),
+            static_cast<int>(chunk.size),
+            static_cast<int>(instance % _chunkCapacity),
+            chunk.uploadedTints.empty() ? 0 : chunk.tints.texture(),
+            index * _chunkCapacity,
+            chunk.evaluation};
+}
+
+std::size_t PosePalette::instanceCount() const
+{
+    std::size_t count = 0;
+    for (const std::unique_ptr<Chunk>& chunk : _chunks)
+        count += chunk->size;
+    return count;
 }
 
 void PosePalette::invalidate()

@@ -4,6 +4,7 @@
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/PlacedDraw.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
+#include <osgGpuAnimation/nodes/SkinningScope.h>
 
 #include <algorithm>
 #include <cmath>
@@ -127,6 +128,7 @@ void CharacterDraws::open(osgUtil::CullVisitor& visitor, Group& group, PoseFrame
     visitor.pushStateSet(placed.stateSet);
     for (SkinnedGeometry* mesh : group.meshes)
     {
+        const SkinningScope skinning(visitor, *mesh);
         osg::StateSet* stateSet = mesh->getStateSet();
         if (stateSet) visitor.pushStateSet(stateSet);
         visitor.addDrawableAndDepth(mesh, eye.get(), depth);

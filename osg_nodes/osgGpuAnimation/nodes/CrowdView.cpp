@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/CrowdView.h>
 
+#include <osgGpuAnimation/nodes/SkinningScope.h>
+
 #include <glm/geometric.hpp>
 
 namespace osgGpuAnimation
@@ -68,9 +70,10 @@ void CrowdView::look(const CrowdInstances& instances, const std::vector<std::uin
     _visitor.updateCalculatedNearFar(toEye, boxAround(farthestSphere));
 }
 
-void CrowdView::draw(osg::Drawable& mesh)
+void CrowdView::draw(SkinnedGeometry& mesh)
 {
     if (!_visitor.validNodeMask(mesh)) return;
+    const SkinningScope skinning(_visitor, mesh);
     osg::StateSet* stateSet = mesh.getStateSet();
     if (stateSet) _visitor.pushStateSet(stateSet);
     _visitor.addDrawableAndDepth(&mesh, _visitor.getModelViewMatrix(), _depth);

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <osgGpuAnimation/nodes/CrowdInstances.h>
+#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
-#include <osg/Drawable>
 #include <osgUtil/CullVisitor>
 
 #include <cstdint>
@@ -26,7 +26,7 @@ public:
     /// Tells the camera's near and far planes of them. indices: those that are seen, at least one.
     void look(const CrowdInstances& instances, const std::vector<std::uint32_t>& indices);
     /// Hands the mesh on to be drawn, at the depth of those looked at.
-    void draw(osg::Drawable& mesh);
+    void draw(SkinnedGeometry& mesh);
 
 private:
     osgUtil::CullVisitor& _visitor;

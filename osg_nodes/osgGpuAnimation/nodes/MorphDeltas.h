@@ -3,6 +3,7 @@
 
 #include <osgGpuAnimation/nodes/MorphTarget.h>
 
+#include <osg/State>
 #include <osg/TextureBuffer>
 
 #include <array>
@@ -21,5 +22,9 @@ struct MorphDeltas
 };
 
 MorphDeltas packMorphTargets(const std::vector<MorphTarget>& targets, std::size_t vertexCount);
+
+/// Binds them for the program that is applied. entry: the first palette entry of the weights. False where they are more
+/// than the context's buffer textures take: the program is told that there are none.
+bool bindMorphTargets(osg::State& state, const MorphDeltas& deltas, std::size_t targetCount, int entry);
 
 } // namespace osgGpuAnimation

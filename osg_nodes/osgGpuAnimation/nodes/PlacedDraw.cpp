@@ -56,16 +56,18 @@ PlacedDraw::~PlacedDraw()
     _state.applyModelViewAndProjectionUniformsIfRequired();
 }
 
-PlacedDraw::Run PlacedDraw::run(const PosePipeline& pipeline, std::size_t first) const
+PlacedDraw::Run PlacedDraw::run(const PosePipeline& pipeline, SkinnedRead& skinned, std::size_t first) const
 {
     const std::vector<Placement>& placements = _binding.placements();
     const std::size_t pose = poseOf(placements[first]);
     Run run{pipeline.place(*_binding.animationSet(), _binding.slot(), pose), 1};
+    if (!skinned.find(pose)) run.place.texture = 0;
     if (!_placements || run.place.texture == 0) return run;
-    const std::size_t chunkBegin = pose - static_cast<std::size_t>(run.place.instance);
-    const std::size_t chunkEnd = chunkBegin + static_cast<std::size_t>(run.place.stride);
-    const auto isInChunk = [&](std::size_t other) { return other >= chunkBegin && other < chunkEnd; };
-    while (first + run.count < placements.size() && isInChunk(poseOf(placements[first + run.count])))
+    const std::size_t chunkBegin = run.place.chunkBegin;
+    const std::size_t begin = std::max(chunkBegin, skinned.begin());
+    const std::size_t end = std::min(chunkBegin + static_cast<std::size_t>(run.place.stride), skinned.end());
+    const auto isAlike = [&](std::size_t other) { return other >= begin && other < end; };
+    while (first + run.count < placements.size() && isAlike(poseOf(placements[first + run.count])))
         ++run.count;
     run.place.instance = -static_cast<int>(chunkBegin);
     return run;

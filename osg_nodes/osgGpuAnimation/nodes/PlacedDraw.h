@@ -3,6 +3,7 @@
 
 #include <osgGpuAnimation/gpu/PosePipeline.h>
 #include <osgGpuAnimation/nodes/PaletteBinding.h>
+#include <osgGpuAnimation/nodes/SkinnedRead.h>
 
 #include <osg/Geometry>
 #include <osg/State>
@@ -29,8 +30,8 @@ public:
     PlacedDraw(const PlacedDraw&) = delete;
     PlacedDraw& operator=(const PlacedDraw&) = delete;
 
-    /// From the placement of that number on.
-    Run run(const PosePipeline& pipeline, std::size_t first) const;
+    /// From the placement of that number on; `skinned` goes there.
+    Run run(const PosePipeline& pipeline, SkinnedRead& skinned, std::size_t first) const;
     /// To be called before the run that begins there is drawn, with the mesh's vertex arrays set up.
     void use(std::size_t first) const;
 

@@ -3,6 +3,7 @@
 
 #include <osgGpuAnimation/gpu/FeedbackTimer.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
+#include <osgGpuAnimation/nodes/MeshReads.h>
 #include <osgGpuAnimation/nodes/PoseStatistics.h>
 
 #include <algorithm>
@@ -188,7 +189,7 @@ void PoseFrame::StatePool::reset()
     used = 0;
 }
 
-void PoseFrame::evaluate(osg::RenderInfo& renderInfo, osg::Stats* stats)
+void PoseFrame::evaluate(osg::RenderInfo& renderInfo, MeshReads& reads, osg::Stats* stats)
 {
     const std::lock_guard<std::mutex> lock(_mutex);
     osg::State& state = *renderInfo.getState();
@@ -196,12 +197,14 @@ void PoseFrame::evaluate(osg::RenderInfo& renderInfo, osg::Stats* stats)
     if (!stats || !pipeline)
     {
         evaluateBatches(state, pipeline);
+        reads.skin(renderInfo, _frameNumber);
         return;
     }
     FeedbackTimer& timer = FeedbackTimer::of(state);
     const std::uint64_t evaluatedBefore = pipeline->counters().instancesEvaluated;
     timer.begin();
     evaluateBatches(state, pipeline);
+    reads.skin(renderInfo, _frameNumber);
     timer.end(_frameNumber);
     record(*stats, pipeline->counters().instancesEvaluated - evaluatedBefore);
     for (const FeedbackTimer::Measured& measured : timer.takeFinished())

@@ -20,6 +20,7 @@ namespace osgGpuAnimation
 {
 
 class AnimatedCharacter;
+class MeshReads;
 
 /// Where a frame has a character's pose: an instance of the batch of that slot.
 struct EnlistedPose
@@ -59,8 +60,8 @@ public:
     osg::StateSet* enlist(std::unique_ptr<PoseBatch> batch);
 
     /// Evaluates what was enlisted and not evaluated yet. stats: where to record what there was to do, see
-    /// PoseStatistics; null: nowhere.
-    void evaluate(osg::RenderInfo& renderInfo, osg::Stats* stats = nullptr);
+    /// PoseStatistics; null: nowhere. reads: what will be drawn next, to be skinned if it is to be skinned once.
+    void evaluate(osg::RenderInfo& renderInfo, MeshReads& reads, osg::Stats* stats = nullptr);
 
     unsigned int frameNumber() const { return _frameNumber; }
 

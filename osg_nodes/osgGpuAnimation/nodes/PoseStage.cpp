@@ -17,7 +17,7 @@ public:
 
     void operator()(osg::RenderInfo& renderInfo) const override
     {
-        _stage._frame->evaluate(renderInfo, PoseStatistics::wanted(renderInfo));
+        _stage._frame->evaluate(renderInfo, _stage._reads, PoseStatistics::wanted(renderInfo));
     }
 
 private:
@@ -58,6 +58,11 @@ PoseFrame& PoseStage::frame(osgUtil::CullVisitor& visitor)
     return *current(visitor)._frame;
 }
 
+MeshReads& PoseStage::reads(osgUtil::CullVisitor& visitor)
+{
+    return current(visitor)._reads;
+}
+
 // Each cull traversal begins with an empty stage: whether this one is in it tells traversals apart.
 bool PoseStage::isAttached(osgUtil::CullVisitor& visitor) const
 {
@@ -79,6 +84,7 @@ PoseStage& PoseStage::current(osgUtil::CullVisitor& visitor)
 void PoseStage::attach(osgUtil::CullVisitor& visitor, unsigned int contextId, unsigned int frameNumber)
 {
     _draws.clear();
+    _reads.begin(contextId);
     _frame = nullptr; // so that its storage can be used again
     _frame = PoseFrame::forContext(contextId, frameNumber);
     osgUtil::RenderBin* current = visitor.getCurrentRenderBin();

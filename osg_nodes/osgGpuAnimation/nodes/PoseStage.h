@@ -2,6 +2,7 @@
 #pragma once
 
 #include <osgGpuAnimation/nodes/CharacterDraws.h>
+#include <osgGpuAnimation/nodes/MeshReads.h>
 #include <osgGpuAnimation/nodes/PoseFrame.h>
 
 #include <osg/Camera>
@@ -21,6 +22,8 @@ public:
     static void draw(osgUtil::CullVisitor& visitor, AnimatedCharacter& character);
     /// The frame that the visitor's cull is part of, for those that enlist otherwise.
     static PoseFrame& frame(osgUtil::CullVisitor& visitor);
+    /// What the visitor hands on to be drawn in that frame.
+    static MeshReads& reads(osgUtil::CullVisitor& visitor);
 
 protected:
     ~PoseStage() override = default;
@@ -37,6 +40,7 @@ private:
     const osgUtil::CullVisitor* _visitor; ///< whose stage this is: cull visitors get cloned with their user data
     osg::ref_ptr<PoseFrame> _frame;
     CharacterDraws _draws;
+    MeshReads _reads;
 };
 
 } // namespace osgGpuAnimation

@@ -2,12 +2,14 @@
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
 #include <osgGpuAnimation/gpu/PosePipeline.h>
+#include <osgGpuAnimation/gpu/SkinnedVertices.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/BoxNearFar.h>
 #include <osgGpuAnimation/nodes/InstancedDraw.h>
-#include <osgGpuAnimation/nodes/MorphDeltas.h>
 #include <osgGpuAnimation/nodes/PaletteBinding.h>
+#include <osgGpuAnimation/nodes/PaletteUniforms.h>
 #include <osgGpuAnimation/nodes/PlacedDraw.h>
+#include <osgGpuAnimation/nodes/SkinningScope.h>
 
 #include <layout.glsl>
 
@@ -45,6 +47,12 @@ int influencesUsed(const osg::Vec4Array& weights)
     return used;
 }
 
+std::uint64_t newNumber()
+{
+    static std::atomic<std::uint64_t> last{0};
+    return ++last;
+}
+
 /// The character that the visitor has come through last; null where there is none.
 const AnimatedCharacter* characterAbove(const osg::NodeVisitor& visitor)
 {
@@ -56,7 +64,7 @@ const AnimatedCharacter* characterAbove(const osg::NodeVisitor& visitor)
 
 } // namespace
 
-SkinnedGeometry::SkinnedGeometry()
+SkinnedGeometry::SkinnedGeometry() : _number(newNumber())
 {
     setUseDisplayList(false);
     setUseVertexBufferObjects(true);
@@ -68,7 +76,7 @@ SkinnedGeometry::SkinnedGeometry()
 SkinnedGeometry::SkinnedGeometry(const SkinnedGeometry& other, const osg::CopyOp& copyop)
     : osg::Geometry(other, copyop), _influences(other._influences), _rigidEntry(other._rigidEntry),
       _morphTargets(other._morphTargets), _morphDeltas(other._morphDeltas), _morph(other._morph),
-      _morphEntry(other._morphEntry), _morphChannels(other._morphChannels)
+      _morphEntry(other._morphEntry), _skinning(other._skinning), _number(newNumber())
 {
 }
 
@@ -81,7 +89,12 @@ void SkinnedGeometry::accept(osg::NodeVisitor& visitor)
         if (character) return character->posedMesh(*this)->accept(visitor);
     }
     std::optional<BoxNearFar> boxes;
-    if (osgUtil::CullVisitor* cullVisitor = visitor.asCullVisitor()) boxes.emplace(*cullVisitor);
+    std::optional<SkinningScope> skinning;
+    if (osgUtil::CullVisitor* cullVisitor = visitor.asCullVisitor())
+    {
+        boxes.emplace(*cullVisitor);
+        skinning.emplace(*cullVisitor, *this);
+    }
     visitor.pushOntoNodePath(this);
     visitor.apply(static_cast<osg::Drawable&>(*this));
     visitor.popFromNodePath();
@@ -136,9 +149,8 @@ void SkinnedGeometry::setMorphTargets(int morph, int entry, std::vector<MorphTar
     _morphTargets = std::move(targets);
     _morph = _morphTargets.empty() ? -1 : morph;
     _morphEntry = _morphTargets.empty() ? -1 : entry;
-    const MorphDeltas deltas = packMorphTargets(_morphTargets, vertexCount);
-    _morphDeltas = _morph < 0 ? nullptr : deltas.texture;
-    _morphChannels = deltas.channels;
+    _morphDeltas = packMorphTargets(_morphTargets, vertexCount);
+    if (_morph < 0) _morphDeltas.texture = nullptr;
     dirtyBound();
 }
 
@@ -239,14 +251,16 @@ void SkinnedGeometry::drawImplementation(osg::RenderInfo& renderInfo) const
     if (!binding || !binding->animationSet()) return;
     const PosePipeline* pipeline = PosePipeline::of(state);
     if (!pipeline) return;
+    SkinnedRead skinned(state, *this, *binding);
     if (binding->serial() != 0)
-        drawPlaced(renderInfo, *binding, *pipeline);
+        drawPlaced(renderInfo, *binding, *pipeline, skinned);
     else if (binding->instanceCount() > 1)
-        drawInstances(renderInfo, *binding, *pipeline);
+        drawInstances(renderInfo, *binding, *pipeline, skinned);
     else if (const PalettePlace place = pipeline->place(*binding->animationSet(), binding->slot(), binding->instance());
-             place.texture != 0)
+             place.texture != 0 && skinned.find(binding->instance()))
     {
         bindPalette(state, place);
+        skinned.bind(place);
         osg::Geometry::drawImplementation(renderInfo);
     }
     // Whatever OSG compiles between frames would take the element buffer away from a vertex array left bound.
@@ -254,18 +268,21 @@ void SkinnedGeometry::drawImplementation(osg::RenderInfo& renderInfo) const
 }
 
 void SkinnedGeometry::drawInstances(osg::RenderInfo& renderInfo, const PaletteBinding& binding,
-                                    const PosePipeline& pipeline) const
+                                    const PosePipeline& pipeline, SkinnedRead& skinned) const
 {
     const auto draw = [&](osg::State& state)
     {
         const std::size_t end = binding.instance() + binding.instanceCount();
         for (std::size_t first = binding.instance(); first < end;)
         {
-            // What is in one chunk of the palette is drawn at once.
+            // What is in one chunk of the palette, and was skinned into one buffer, is drawn at once.
             const PalettePlace place = pipeline.place(*binding.animationSet(), binding.slot(), first);
-            if (place.texture == 0 || place.stride <= place.instance) break;
-            const std::size_t count = std::min(end - first, static_cast<std::size_t>(place.stride - place.instance));
-            drawPrimitives(state, place, static_cast<int>(count));
+            if (place.texture == 0 || place.stride <= place.instance || !skinned.find(first)) break;
+            const std::size_t behind = place.chunkBegin + static_cast<std::size_t>(place.stride);
+            const std::size_t count = std::min({end, behind, skinned.end()}) - first;
+            bindPalette(state, place);
+            skinned.bind(place);
+            drawPrimitives(state, static_cast<int>(count));
             first += count;
         }
     };
@@ -273,17 +290,19 @@ void SkinnedGeometry::drawInstances(osg::RenderInfo& renderInfo, const PaletteBi
 }
 
 void SkinnedGeometry::drawPlaced(osg::RenderInfo& renderInfo, const PaletteBinding& binding,
-                                 const PosePipeline& pipeline) const
+                                 const PosePipeline& pipeline, SkinnedRead& skinned) const
 {
     const PlacedDraw placed(*renderInfo.getState(), binding);
     const auto draw = [&](osg::State& state)
     {
         for (std::size_t first = 0; first < binding.placements().size();)
         {
-            const PlacedDraw::Run run = placed.run(pipeline, first);
+            const PlacedDraw::Run run = placed.run(pipeline, skinned, first);
             if (run.place.texture == 0) break;
             placed.use(first);
-            drawPrimitives(state, run.place, static_cast<int>(run.count));
+            bindPalette(state, run.place);
+            skinned.bind(run.place);
+            drawPrimitives(state, static_cast<int>(run.count));
             first += run.count;
         }
     };
@@ -310,78 +329,73 @@ void SkinnedGeometry::withVertexArrays(osg::RenderInfo& renderInfo, Draw draw) c
     }
 }
 
-void SkinnedGeometry::drawPrimitives(osg::State& state, const PalettePlace& first, int count) const
+void SkinnedGeometry::captureVertices(osg::RenderInfo& renderInfo, const PalettePlace& first, int count,
+                                      GLuint buffer) const
+{
+    // As osg::Drawable::draw.
+    osg::State& state = *renderInfo.getState();
+    osg::VertexArrayState* arrays = state.getCurrentVertexArrayState();
+    const bool usesArrayObject = state.useVertexArrayObject(_useVertexArrayObject);
+    if (usesArrayObject)
+    {
+        osg::ref_ptr<osg::VertexArrayState>& own = _vertexArrayStateList[state.getContextID()];
+        if (!own) own = createVertexArrayState(renderInfo);
+        arrays = own;
+    }
+    const osg::State::SetCurrentVertexArrayStateProxy current(state, arrays);
+    state.bindVertexArrayObject(arrays);
+    const auto capture = [&](osg::State&)
+    {
+        const osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
+        bindPalette(state, first);
+        gl.glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, buffer);
+        gl.glBeginTransformFeedback(GL_POINTS);
+        gl.glDrawArraysInstanced(GL_POINTS, 0, static_cast<GLsizei>(vertexCount()), count);
+        gl.glEndTransformFeedback();
+        gl.glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, 0);
+    };
+    withVertexArrays(renderInfo, capture);
+    if (usesArrayObject) arrays->setRequiresSetArrays(getDataVariance() == osg::Object::DYNAMIC);
+    state.unbindVertexArrayObject();
+}
+
+SkinOncePass::Variant SkinnedGeometry::onceVariant() const
+{
+    return {_influences, _morph >= 0, getNormalArray() || _morphDeltas.channels[1] >= 0};
+}
+
+void SkinnedGeometry::drawPrimitives(osg::State& state, int count) const
 {
     const bool usesBuffers = state.useVertexBufferObject(_supportsVertexBufferObjects && _useVertexBufferObjects);
-    bindPalette(state, first);
     for (const osg::ref_ptr<osg::PrimitiveSet>& primitives : _primitives)
         drawInstanced(state, *primitives, count, usesBuffers);
 }
 
 void SkinnedGeometry::bindPalette(osg::State& state, const PalettePlace& place) const
 {
-    const osg::Program::PerContextProgram* program = state.getLastAppliedProgramObject();
-    if (!program) return;
-    static const unsigned int paletteName = osg::Uniform::getNameID("posePalette");
-    static const unsigned int strideName = osg::Uniform::getNameID("poseStride");
-    static const unsigned int instanceName = osg::Uniform::getNameID("poseInstance");
-    static const unsigned int influencesName = osg::Uniform::getNameID("poseInfluences");
-    static const unsigned int tintsName = osg::Uniform::getNameID("poseTints");
-    static const unsigned int tintedName = osg::Uniform::getNameID("poseTinted");
-    const osg::GLExtensions* gl = state.get<osg::GLExtensions>();
-    state.setActiveTextureUnit(POSE_PALETTE_UNIT);
-    glBindTexture(GL_TEXTURE_BUFFER, place.texture);
-    gl->glUniform1i(program->getUniformLocation(paletteName), POSE_PALETTE_UNIT);
-    gl->glUniform1i(program->getUniformLocation(strideName), place.stride);
-    gl->glUniform1i(program->getUniformLocation(instanceName), place.instance);
-    gl->glUniform1i(program->getUniformLocation(influencesName), _influences);
-    if (_rigidEntry >= 0)
-    {
-        gl->glVertexAttrib4f(POSE_ENTRIES_0_LOCATION, static_cast<GLfloat>(_rigidEntry), 0, 0, 0);
-        gl->glVertexAttrib4f(POSE_WEIGHTS_0_LOCATION, 1, 0, 0, 0);
-    }
-    gl->glUniform1i(program->getUniformLocation(tintsName), POSE_TINT_UNIT);
-    gl->glUniform1i(program->getUniformLocation(tintedName), place.tints != 0 ? 1 : 0);
-    if (place.tints != 0)
-    {
-        state.setActiveTextureUnit(POSE_TINT_UNIT);
-        glBindTexture(GL_TEXTURE_BUFFER, place.tints);
-    }
-    bindMorphTargets(state, *program);
+    if (osgGpuAnimation::bindPalette(state, *this, place) || _isMorphLimitReported.exchange(true)) return;
+    OSG_WARN << "osgGpuAnimation: the morph targets of mesh \"" << getName() << "\" need a buffer of "
+             << _morphDeltas.texture->getImage()->s() << " texels, more than this context takes; it is drawn unmorphed"
+             << std::endl;
 }
 
 void SkinnedGeometry::releaseGLObjects(osg::State* state) const
 {
     osg::Geometry::releaseGLObjects(state);
-    if (_morphDeltas) _morphDeltas->releaseGLObjects(state);
+    if (_morphDeltas.texture) _morphDeltas.texture->releaseGLObjects(state);
+    _oncePass->releaseGLObjects(state);
+    // What is there under a number that is nobody's any more, each context frees by itself.
+    if (state)
+        SkinnedVertices::of(*state).release(_number);
+    else
+        _number = newNumber();
 }
 
 void SkinnedGeometry::resizeGLObjectBuffers(unsigned int maxSize)
 {
     osg::Geometry::resizeGLObjectBuffers(maxSize);
-    if (_morphDeltas) _morphDeltas->resizeGLObjectBuffers(maxSize);
-}
-
-void SkinnedGeometry::bindMorphTargets(osg::State& state, const osg::Program::PerContextProgram& program) const
-{
-    static const unsigned int deltasName = osg::Uniform::getNameID("poseMorphDeltas");
-    static const unsigned int morphName = osg::Uniform::getNameID("poseMorph");
-    static const unsigned int channelsName = osg::Uniform::getNameID("poseMorphChannels");
-    const osg::GLExtensions* gl = state.get<osg::GLExtensions>();
-    gl->glUniform1i(program.getUniformLocation(deltasName), POSE_MORPH_UNIT);
-    const PosePipeline* pipeline = PosePipeline::of(state);
-    const bool fits =
-        _morphDeltas && pipeline && static_cast<std::size_t>(_morphDeltas->getImage()->s()) <= pipeline->maxTexels();
-    if (_morphDeltas && !fits && !_isMorphLimitReported.exchange(true))
-        OSG_WARN << "osgGpuAnimation: the morph targets of mesh \"" << getName() << "\" need a buffer of "
-                 << _morphDeltas->getImage()->s() << " texels, more than this context takes; it is drawn unmorphed"
-                 << std::endl;
-    const GLint targets = fits ? static_cast<GLint>(_morphTargets.size()) : 0;
-    gl->glUniform2i(program.getUniformLocation(morphName), targets, _morphEntry);
-    if (!fits) return;
-    state.applyTextureAttribute(POSE_MORPH_UNIT, _morphDeltas.get());
-    gl->glUniform4i(program.getUniformLocation(channelsName), _morphChannels[0], _morphChannels[1], _morphChannels[2],
-                    _morphChannels[3]);
+    if (_morphDeltas.texture) _morphDeltas.texture->resizeGLObjectBuffers(maxSize);
+    _oncePass->resizeGLObjectBuffers(maxSize);
 }
 
 } // namespace osgGpuAnimation

@@ -3,11 +3,12 @@
 
 #include <osgGpuAnimation/animation/Bounds.h>
 #include <osgGpuAnimation/animation/WeightRange.h>
-#include <osgGpuAnimation/nodes/MorphTarget.h>
+#include <osgGpuAnimation/nodes/MorphDeltas.h>
+#include <osgGpuAnimation/nodes/Skinning.h>
+#include <osgGpuAnimation/nodes/SkinOncePass.h>
 
 #include <osg/Geometry>
 #include <osg/Program>
-#include <osg/TextureBuffer>
 
 #include <array>
 #include <atomic>
@@ -20,6 +21,7 @@ namespace osgGpuAnimation
 
 class PaletteBinding;
 class PosePipeline;
+class SkinnedRead;
 struct PalettePlace;
 
 /// A mesh drawn from the palette: ordinary vertex arrays in bind pose and, for each vertex, the palette entries that
@@ -69,8 +71,29 @@ public:
     /// The same where the set is not known yet. entry: the set's entryOfMorph(morph).
     void setMorphTargets(int morph, int entry, std::vector<MorphTarget> targets);
     const std::vector<MorphTarget>& morphTargets() const { return _morphTargets; }
-    int morph() const { return _morph; }           ///< -1: none
+    int morph() const { return _morph; } ///< -1: none
+    const MorphDeltas& morphDeltas() const { return _morphDeltas; }
     int morphEntry() const { return _morphEntry; } ///< the first palette entry of the weights; -1: none
+
+    /// When vertices are skinned. Once: vertices and normals lie on the GPU for all instances seen, 32 bytes a vertex
+    /// (16 without normals), from the second frame on; what does not fit is skinned by every draw, see SkinningPlan.
+    /// Programs of one's own that link skin.glsl need not know, unless they change the vertex before they call it:
+    /// those want EveryDraw.
+    void setSkinning(Skinning skinning) { _skinning = skinning; }
+    Skinning skinning() const { return _skinning; } ///< default: Auto
+    /// Whether it depends on what is drawn how the mesh is skinned.
+    bool mayBeSkinnedOnce() const
+    {
+        return _skinning == Skinning::Once || (_skinning == Skinning::Auto && !_morphTargets.empty());
+    }
+
+    /// What the passes that skin once go by. A number that no other mesh has:
+    std::uint64_t number() const { return _number; }
+    std::size_t vertexCount() const { return getVertexArray() ? getVertexArray()->getNumElements() : 0; }
+    int skinnedTexels() const { return onceVariant().hasNormals ? 2 : 1; } ///< of a vertex
+    SkinOncePass::Variant onceVariant() const;
+    /// Runs the pass that is applied over all vertices, for so many instances from the first on.
+    void captureVertices(osg::RenderInfo& renderInfo, const PalettePlace& first, int count, GLuint buffer) const;
 
     /// The boxes of vertex arrays in bind pose, so that an array which many meshes share is looked through once.
     using BindBoxes = std::map<const osg::Array*, Box>;
@@ -99,24 +122,27 @@ protected:
     ~SkinnedGeometry() override = default;
 
 private:
-    void drawInstances(osg::RenderInfo& renderInfo, const PaletteBinding& binding, const PosePipeline& pipeline) const;
-    void drawPlaced(osg::RenderInfo& renderInfo, const PaletteBinding& binding, const PosePipeline& pipeline) const;
+    void drawInstances(osg::RenderInfo& renderInfo, const PaletteBinding& binding, const PosePipeline& pipeline,
+                       SkinnedRead& skinned) const;
+    void drawPlaced(osg::RenderInfo& renderInfo, const PaletteBinding& binding, const PosePipeline& pipeline,
+                    SkinnedRead& skinned) const;
     template <typename Draw>
     void withVertexArrays(osg::RenderInfo& renderInfo, Draw draw) const;
-    void drawPrimitives(osg::State& state, const PalettePlace& first, int count) const;
+    void drawPrimitives(osg::State& state, int count) const;
     void bindPalette(osg::State& state, const PalettePlace& place) const;
-    void bindMorphTargets(osg::State& state, const osg::Program::PerContextProgram& program) const;
     Box reachOfVertex(const osg::Vec3& position, std::size_t vertex, const std::vector<WeightRange>& ranges) const;
     glm::dvec3 morphed(const osg::Vec3& position, std::size_t vertex, const std::vector<AffineMatrix>& palette) const;
 
     int _influences = 1;  ///< of a vertex, at most
     int _rigidEntry = -1; ///< the entry that moves all vertices wholly; -1: influences are per vertex
     std::vector<MorphTarget> _morphTargets;
-    osg::ref_ptr<osg::TextureBuffer> _morphDeltas;
+    MorphDeltas _morphDeltas;
     mutable std::atomic<bool> _isMorphLimitReported{false};
     int _morph = -1;
-    int _morphEntry = -1;                             ///< the first palette entry of the weights
-    std::array<int, 4> _morphChannels{0, -1, -1, -1}; ///< as skin.glsl's poseMorphChannels
+    int _morphEntry = -1; ///< the first palette entry of the weights
+    Skinning _skinning = Skinning::Auto;
+    mutable std::atomic<std::uint64_t> _number;
+    osg::ref_ptr<SkinOncePass> _oncePass = SkinOncePass::shared(); ///< kept alive, and released, by its meshes
 };
 
 template <typename Function>

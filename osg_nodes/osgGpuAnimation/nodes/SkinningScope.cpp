@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/nodes/SkinningScope.h>
+
+#include <osgGpuAnimation/nodes/PoseStage.h>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+const PaletteBinding* bindingAbove(osgUtil::CullVisitor& visitor)
+{
+    for (const osgUtil::StateGraph* graph = visitor.getCurrentStateGraph(); graph; graph = graph->_parent)
+    {
+        const osg::StateSet* stateSet = graph->getStateSet();
+        if (!stateSet) continue;
+        const osg::StateAttribute* binding = stateSet->getAttribute(PaletteBinding::bindingType);
+        if (binding) return static_cast<const PaletteBinding*>(binding);
+    }
+    return nullptr;
+}
+
+} // namespace
+
+SkinningScope::SkinningScope(osgUtil::CullVisitor& visitor, const SkinnedGeometry& mesh)
+{
+    if (!mesh.mayBeSkinnedOnce()) return;
+    const PaletteBinding* binding = bindingAbove(visitor);
+    osg::StateSet* state = binding ? PoseStage::reads(visitor).add(mesh, *binding) : nullptr;
+    if (!state) return;
+    visitor.pushStateSet(state);
+    _visitor = &visitor;
+}
+
+SkinningScope::~SkinningScope()
+{
+    if (_visitor) _visitor->popStateSet();
+}
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osgUtil/CullVisitor>
+
+namespace osgGpuAnimation
+{
+
+class SkinnedGeometry;
+
+/// While it lives: what is culled is the mesh, for the instances of the PaletteBinding that the visitor has come
+/// through last. The frame takes that down, and has the mesh drawn in the way it is skinned: see SkinningPlan.
+class SkinningScope
+{
+public:
+    SkinningScope(osgUtil::CullVisitor& visitor, const SkinnedGeometry& mesh);
+    ~SkinningScope();
+    SkinningScope(const SkinningScope&) = delete;
+    SkinningScope& operator=(const SkinningScope&) = delete;
+
+private:
+    osgUtil::CullVisitor* _visitor = nullptr; ///< null: nothing is to be taken back
+};
+
+} // namespace osgGpuAnimation

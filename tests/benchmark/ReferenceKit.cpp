@@ -54,6 +54,7 @@ void main()
 /// In the place of skin.glsl: the vertex as it is.
 constexpr const char* noSkin = R"(
 void osgGpuAnimationSkin(inout vec4 vertex, inout vec3 normal) {}
+vec4 osgGpuAnimationTint() { return vec4(1.0); }
 void osgGpuAnimationMorphColor(inout vec4 color) {}
 void osgGpuAnimationMorphTextureCoordinate(inout vec2 coordinate) {}
 )";

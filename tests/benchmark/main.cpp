@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "Measurements.h"
 #include "StagedViewer.h"
+#include "WarningWatch.h"
 
 #include <osgGpuAnimation/gpu/EglGraphicsContext.h>
 
@@ -122,6 +123,8 @@ Result<bool> measureSubject(const Request& request, const Effort& effort, const 
 
 Result<bool> measureAll(const Request& request, osg::GraphicsContext& context, Report& report)
 {
+    const osg::ref_ptr<WarningWatch> watch = new WarningWatch;
+    osg::setNotifyHandler(watch);
     const Effort effort = request.isQuick ? Effort::quick() : Effort();
     if (request.has("depth"))
         if (Result<bool> done = measureDepth(effort, context, report); !done) return done;
@@ -129,6 +132,7 @@ Result<bool> measureAll(const Request& request, osg::GraphicsContext& context, R
         if (Result<bool> done = measureSubject(request, effort, subject, context, report); !done)
             return Error{subject.name + ": " + done.error().message};
     if (const std::string errors = takeGlErrors(); !errors.empty()) return Error{"GL reports " + errors};
+    if (!watch->warnings().empty()) return Error{"OSG says: " + watch->warnings()};
     return true;
 }
 

@@ -87,11 +87,14 @@ void addFrameRows(const Subject& subject, std::size_t count, const std::vector<C
 {
     const double characters = static_cast<double>(count);
     const double milliseconds = 1e3 / characters;
-    const char* names[] = {"", ", osgAnimation software", ", osgAnimation hardware"};
+    const char* names[] = {"", ", osgAnimation software", ", osgAnimation hardware",
+                           ", osgAnimation hardware, a program each"};
     for (std::size_t i = 0; i < contestants.size(); ++i)
         report.addPoint(framePlot, subject.name + names[i], characters,
                         cpuOf(contestants[i].whole).median * milliseconds);
     if (count != effort.frameCount) return;
+    report.add(named(compared(contestants[0].whole, contestants[3].whole, milliseconds, true), subject, count,
+                     "whole frame, 64x64", "ms a character", "osgAnimation hardware, a program each"));
     const bool isHardwareBetter = cpuOf(contestants[2].whole).median < cpuOf(contestants[1].whole).median;
     const Contestant& better = contestants[isHardwareBetter ? 2 : 1];
     const char* name = isHardwareBetter ? "osgAnimation hardware" : "osgAnimation software";
@@ -176,8 +179,9 @@ Result<bool> measureFrames(const Subject& subject, const Effort& effort, Report&
         CharacterScene ours(subject, count);
         ReferenceScene software(subject, kit, ReferenceMode::Software, count);
         ReferenceScene hardware(subject, kit, ReferenceMode::Hardware, count);
+        ReferenceScene apart(subject, kit, ReferenceMode::HardwareApart, count);
         std::vector<Contestant> contestants;
-        for (osg::Node* scene : {ours.root.get(), software.root.get(), hardware.root.get()})
+        for (osg::Node* scene : {ours.root.get(), software.root.get(), hardware.root.get(), apart.root.get()})
         {
             Result<Contestant> made = contestant(scene, ours.root->getBound());
             if (!made) return made.error();

@@ -279,7 +279,9 @@ osg::ref_ptr<osg::Geometry> ReferenceKit::makeRig(const SharedMesh& mesh, Refere
     // The rig takes its source's state and puts its own palette into it: each needs a state of its own.
     osg::ref_ptr<osg::Geometry> source = new osg::Geometry(*mesh.source, osg::CopyOp::SHALLOW_COPY);
     source->setStateSet(new osg::StateSet(*mesh.source->getStateSet(), osg::CopyOp::SHALLOW_COPY));
-    source->getStateSet()->setAttributeAndModes(mesh.hardwareProgram);
+    osg::ref_ptr<osg::Program> program = mesh.hardwareProgram;
+    if (mode == ReferenceMode::HardwareApart) program = new osg::Program(*program, osg::CopyOp::DEEP_COPY_ALL);
+    source->getStateSet()->setAttributeAndModes(program);
     rig->setSourceGeometry(source);
     rig->setRigTransformImplementation(new osgAnimation::RigTransformHardware);
     return rig;

@@ -8,8 +8,8 @@
 namespace osgGpuAnimation::benchmark
 {
 
-/// Takes what OSG says: figures are worth nothing where a program did not link (a notice) or OSG met a GL error, which it
-/// then takes away from glGetError. Passes everything on to standard error.
+/// Takes what OSG says: figures are worth nothing where a program did not link (a notice) or OSG met a GL error, which
+/// it then takes away from glGetError. Passes everything on to standard error.
 class WarningWatch : public osg::NotifyHandler
 {
 public:

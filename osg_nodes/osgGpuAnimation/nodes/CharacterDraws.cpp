@@ -2,11 +2,11 @@
 #include <osgGpuAnimation/nodes/CharacterDraws.h>
 
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
+#include <osgGpuAnimation/nodes/OsgMatrix.h>
 #include <osgGpuAnimation/nodes/PlacedDraw.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace osgGpuAnimation
 {
@@ -45,15 +45,6 @@ SkinnedGeometry* asShared(osg::Node* child)
 {
     auto* mesh = dynamic_cast<SkinnedGeometry*>(child);
     return mesh && canBeDrawnTogether(*mesh) ? mesh : nullptr;
-}
-
-AffineMatrix toAffine(const osg::Matrix& matrix)
-{
-    AffineMatrix affine;
-    for (int row = 0; row < 3; ++row)
-        for (int column = 0; column < 4; ++column)
-            affine.rows[static_cast<std::size_t>(row)][column] = static_cast<float>(matrix(column, row));
-    return affine;
 }
 
 } // namespace

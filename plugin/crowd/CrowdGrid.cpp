@@ -49,10 +49,11 @@ double widthOf(const AnimatedCharacter& character, const osg::Matrixd& placement
     const auto add = [&](int clip)
     {
         const Box& box = character.clipBounds(clip);
-        for (int corner = 0; corner < 8 && !box.empty(); ++corner)
-            placed.expandBy(osg::Vec3d(corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
-                                       corner & 4 ? box.max.z : box.min.z) *
-                            placement);
+        for (int i = 0; i < 8 && !box.empty(); ++i)
+        {
+            const glm::vec3 corner = box.corner(i);
+            placed.expandBy(osg::Vec3d(corner.x, corner.y, corner.z) * placement);
+        }
     };
     if (clips.empty()) add(-1);
     for (const std::size_t clip : clips)

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "plugin/PluginFolder.h"
 #include "plugin/SharedAssets.h"
 
 #include <osgGpuAnimation/animation/Pose.h>
@@ -7,7 +8,6 @@
 
 #include <gtest/gtest.h>
 #include <osgDB/ReadFile>
-#include <osgDB/Registry>
 
 #include <algorithm>
 #include <cstdio>
@@ -36,7 +36,7 @@ protected:
     void SetUp() override
     {
         if (file().empty()) GTEST_SKIP() << "there is no " << GetParam();
-        osgDB::Registry::instance()->getLibraryFilePathList().push_front(OSGGPUANIMATION_PLUGIN_FOLDER);
+        usePluginsOfTheBuild();
         node = osgDB::readRefNodeFile(file());
         ASSERT_TRUE(node.valid());
         character = findCharacter(*node);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "plugin/ModelBuilder.h"
 #include "plugin/StoredScene.h"
+#include "support/NotifyLog.h"
 
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 
 #include <gtest/gtest.h>
-#include <osg/Notify>
 
 #include <fstream>
 #include <regex>
@@ -20,16 +20,6 @@ namespace
 {
 
 using Read = osgDB::ReaderWriter::ReadResult;
-
-class WarningLog : public osg::NotifyHandler
-{
-public:
-    void notify(osg::NotifySeverity severity, const char* message) override
-    {
-        if (severity <= osg::WARN) text += message;
-    }
-    std::string text;
-};
 
 enum class Answer
 {
@@ -155,7 +145,7 @@ protected:
 
     StoredScene files;
     unsigned int meshes = 0;
-    osg::ref_ptr<WarningLog> log = new WarningLog;
+    osg::ref_ptr<NotifyLog> log = new NotifyLog(osg::WARN);
 };
 
 } // namespace

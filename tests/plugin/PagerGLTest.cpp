@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
+#include "plugin/PluginFolder.h"
 #include "support/ViewerGLTest.h"
 
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 
 #include <osg/PagedLOD>
 #include <osgDB/DatabasePager>
-#include <osgDB/Registry>
 
 #include <chrono>
 #include <thread>
@@ -24,9 +24,7 @@ protected:
 
     osg::ref_ptr<osg::Group> makeScene()
     {
-        osgDB::FilePathList& paths = osgDB::Registry::instance()->getLibraryFilePathList();
-        if (paths.empty() || paths.front() != OSGGPUANIMATION_PLUGIN_FOLDER)
-            paths.push_front(OSGGPUANIMATION_PLUGIN_FOLDER);
+        usePluginsOfTheBuild();
         osg::ref_ptr<osg::Group> group = new osg::Group;
         for (int place = 0; place < places; ++place)
         {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "plugin/ModelBuilder.h"
 #include "plugin/StoredScene.h"
+#include "support/NotifyLog.h"
 
 #include <osgGpuAnimation/animation/JointMask.h>
 #include <osgGpuAnimation/animation/RootMotionCurve.h>
@@ -12,7 +13,6 @@
 #include <osgGpuAnimation/nodes/RootMotionCallback.h>
 
 #include <gtest/gtest.h>
-#include <osg/Notify>
 #include <osg/Program>
 #include <osgDB/FileUtils>
 
@@ -27,17 +27,6 @@ namespace
 {
 
 const char* const formats[] = {"osgb", "osgt", "osgx"};
-
-/// Keeps what OSG warns of.
-class WarningLog : public osg::NotifyHandler
-{
-public:
-    void notify(osg::NotifySeverity severity, const char* message) override
-    {
-        if (severity <= osg::WARN) text += message;
-    }
-    std::string text;
-};
 
 /// A sword on an arm that slides (two clips), and a skinned triangle; read through osgDB.
 class SerializersTest : public ::testing::Test
@@ -65,7 +54,7 @@ protected:
 
     StoredScene files;
     osg::ref_ptr<osg::Node> scene;
-    osg::ref_ptr<WarningLog> log = new WarningLog;
+    osg::ref_ptr<NotifyLog> log = new NotifyLog(osg::WARN);
 };
 
 std::string textOf(const std::string& file)

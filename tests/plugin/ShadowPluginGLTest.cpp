@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
+#include "plugin/PluginFolder.h"
 #include "plugin/SharedAssets.h"
 #include "support/ViewerGLTest.h"
 
 #include <osgDB/ReadFile>
-#include <osgDB/Registry>
 
 namespace osgGpuAnimation
 {
@@ -24,9 +24,7 @@ protected:
 
     osg::ref_ptr<osg::Image> pictureOf(const std::string& file, double time)
     {
-        osgDB::FilePathList& paths = osgDB::Registry::instance()->getLibraryFilePathList();
-        if (paths.empty() || paths.front() != OSGGPUANIMATION_PLUGIN_FOLDER)
-            paths.push_front(OSGGPUANIMATION_PLUGIN_FOLDER);
+        usePluginsOfTheBuild();
         const osg::ref_ptr<osg::Node> scene = osgDB::readRefNodeFile(file);
         EXPECT_TRUE(scene) << file;
         if (!scene) return new osg::Image;

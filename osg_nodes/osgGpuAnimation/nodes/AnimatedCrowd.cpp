@@ -7,6 +7,7 @@
 #include <osgGpuAnimation/nodes/CrowdView.h>
 #include <osgGpuAnimation/nodes/DepthPass.h>
 #include <osgGpuAnimation/nodes/FlattenedPlace.h>
+#include <osgGpuAnimation/nodes/OsgMatrix.h>
 #include <osgGpuAnimation/nodes/PosedInstances.h>
 #include <osgGpuAnimation/nodes/PoseStage.h>
 
@@ -39,10 +40,7 @@ std::vector<Box> clipBoundsOf(const AnimationSet& set, const osg::Group& meshes)
     EntryBoxes entryBoxes(set.paletteSize());
     SkinnedGeometry::BindBoxes bindBoxes;
     forEachMesh(meshes, [&](const SkinnedGeometry& mesh) { mesh.addToEntryBoxes(set, entryBoxes, bindBoxes); });
-    std::vector<Box> bounds;
-    for (int clip = -1; clip < static_cast<int>(set.clips().size()); ++clip)
-        bounds.push_back(boundsOfClip(set, clip, entryBoxes));
-    return bounds;
+    return boundsOfClips(set, entryBoxes);
 }
 
 std::shared_ptr<const AnimationSet> emptySet()
@@ -151,11 +149,9 @@ Result<bool> AnimatedCrowd::setAnimationSet(std::shared_ptr<const AnimationSet> 
 
 Result<AffineMatrix> AnimatedCrowd::toRootMatrix(const osg::Matrixd& placement, const osg::Vec3d& origin) const
 {
-    AffineMatrix root;
-    for (int row = 0; row < 3; ++row)
-        for (int column = 0; column < 4; ++column)
-            root.rows[static_cast<std::size_t>(row)][column] =
-                static_cast<float>(placement(column, row) - (column == 3 ? origin[row] : 0.0));
+    osg::Matrixd fromOrigin = placement;
+    fromOrigin.setTrans(placement.getTrans() - origin);
+    const AffineMatrix root = toAffine(fromOrigin);
     if (!root.isFinite()) return Error{"the placement is not finite, seen from the crowd's origin"};
     if (placement(0, 3) != 0.0 || placement(1, 3) != 0.0 || placement(2, 3) != 0.0 || placement(3, 3) != 1.0)
         return Error{"the placement is not affine: its last column is not 0, 0, 0, 1"};
@@ -219,12 +215,8 @@ AnimationController* AnimatedCrowd::controller(Instance instance)
 
 osg::Matrixd AnimatedCrowd::placement(Instance instance) const
 {
-    const AffineMatrix& root = _instances.rootMatrix(_instances.indexOf(instance));
-    osg::Matrixd placement;
-    for (int row = 0; row < 3; ++row)
-        for (int column = 0; column < 4; ++column)
-            placement(column, row) = static_cast<double>(root.rows[static_cast<std::size_t>(row)][column]) +
-                                     (column == 3 ? _origin[row] : 0.0);
+    osg::Matrixd placement = toOsg(_instances.rootMatrix(_instances.indexOf(instance)));
+    placement.setTrans(placement.getTrans() + _origin);
     return placement;
 }
 

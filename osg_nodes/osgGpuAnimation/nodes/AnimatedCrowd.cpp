@@ -8,6 +8,7 @@
 #include <osgGpuAnimation/nodes/DepthPass.h>
 #include <osgGpuAnimation/nodes/FlattenedPlace.h>
 #include <osgGpuAnimation/nodes/OsgMatrix.h>
+#include <osgGpuAnimation/nodes/PlacedDraw.h>
 #include <osgGpuAnimation/nodes/PosedInstances.h>
 #include <osgGpuAnimation/nodes/PoseStage.h>
 
@@ -61,6 +62,14 @@ std::uint32_t toRgba(const osg::Vec4& color)
     return rgba;
 }
 
+/// What cannot be drawn at placements of its own has to be up to date.
+bool areAllPlaceable(const osg::Group& meshes)
+{
+    bool areAll = true;
+    forEachMesh(meshes, [&](const SkinnedGeometry& mesh) { areAll = areAll && !PlacedDraw::isRefusedBy(mesh); });
+    return areAll;
+}
+
 Error noSuchInstance()
 {
     return Error{"the crowd has no such instance (any more)"};
@@ -103,7 +112,7 @@ AnimatedCrowd::AnimatedCrowd() : AnimatedCrowd(emptySet(), {}) {}
 
 AnimatedCrowd::AnimatedCrowd(std::shared_ptr<const AnimationSet> set,
                              const std::vector<osg::ref_ptr<SkinnedGeometry>>& meshes)
-    : _instances(std::move(set)), _posed(std::make_unique<PosedInstances>())
+    : _instances(std::move(set)), _posed(std::make_unique<PosedInstances>()), _batches(std::make_unique<CrowdBatches>())
 {
     // Not static: the Optimizer must not flatten the transforms above into the bind pose.
     setDataVariance(osg::Object::DYNAMIC);
@@ -114,7 +123,8 @@ AnimatedCrowd::AnimatedCrowd(std::shared_ptr<const AnimationSet> set,
 }
 
 AnimatedCrowd::AnimatedCrowd(const AnimatedCharacter& character)
-    : _instances(character.controller().sharedSet()), _posed(std::make_unique<PosedInstances>())
+    : _instances(character.controller().sharedSet()), _posed(std::make_unique<PosedInstances>()),
+      _batches(std::make_unique<CrowdBatches>())
 {
     setDataVariance(osg::Object::DYNAMIC);
     setUpdateCallback(new AnimationUpdateCallback);
@@ -130,8 +140,8 @@ AnimatedCrowd::AnimatedCrowd(const AnimatedCharacter& character)
 
 AnimatedCrowd::AnimatedCrowd(const AnimatedCrowd& other, const osg::CopyOp& copyop)
     : osg::Transform(other, copyop), _instances(other._instances), _posed(std::make_unique<PosedInstances>()),
-      _origin(other._origin), _hasOrigin(other._hasOrigin), _updateTime(other._updateTime),
-      _updateRate(other._updateRate)
+      _batches(std::make_unique<CrowdBatches>()), _origin(other._origin), _hasOrigin(other._hasOrigin),
+      _updateTime(other._updateTime), _updateRate(other._updateRate)
 {
 }
 
@@ -283,20 +293,23 @@ void AnimatedCrowd::cull(osgUtil::CullVisitor& visitor)
     CrowdView view(visitor);
     static thread_local std::vector<std::uint32_t> seen; // keeps its storage from cull to cull
     _instances.findSeen(isCullingActive() ? view.planes() : std::vector<glm::vec4>(), seen);
-    std::vector<osg::StateSet*> states;
+    std::vector<CrowdBatches::Draw> draws;
     if (!seen.empty() && set().paletteSize() > 0)
     {
         view.look(_instances, seen);
-        states = enlistCrowd(PoseStage::frame(visitor), _instances, view, _updateRate, seen);
+        const UpdateRate rate = areAllPlaceable(*this) ? _updateRate : UpdateRate();
+        draws = _batches->enlist(PoseStage::frame(visitor), _instances, visitor, rate, seen);
     }
     for (const osg::ref_ptr<osg::Node>& child : _children)
     {
         if (!dynamic_cast<const SkinnedGeometry*>(child.get())) child->accept(visitor);
     }
-    for (osg::StateSet* state : states)
+    const osg::ref_ptr<osg::RefMatrix> eye = new osg::RefMatrix;
+    for (const CrowdBatches::Draw& draw : draws)
     {
-        visitor.pushStateSet(state);
-        forEachMesh(*this, [&](const SkinnedGeometry& mesh) { view.draw(const_cast<SkinnedGeometry&>(mesh)); });
+        visitor.pushStateSet(draw.stateSet);
+        osg::RefMatrix* toEye = draw.isPlaced ? eye.get() : visitor.getModelViewMatrix();
+        forEachMesh(*this, [&](const SkinnedGeometry& mesh) { view.draw(const_cast<SkinnedGeometry&>(mesh), toEye); });
         visitor.popStateSet();
     }
 }

@@ -20,7 +20,7 @@ namespace
 constexpr const char* usage = R"(osggpuanim_benchmark [options] OUTPUT_FOLDER
     measures this kit against osgAnimation, prints a table and writes benchmark.json and plots into the folder
     --quick           fewer characters and rounds
-    --only PART       pose, samples, depth, frames, crowd, skinning, start or load; may be given several times
+    --only PART       pose, samples, depth, frames, crowd, rate, skinning, start or load; may be given several times
     --subject NAME    Wanderer, Fox, CesiumMan or Knight; may be given several times
 )";
 
@@ -104,11 +104,8 @@ Result<bool> measureSubject(const Request& request, const Effort& effort, const 
                             osg::GraphicsContext& context, Report& report)
 {
     const std::pair<const char*, Result<bool> (*)(const Subject&, const Effort&, Report&)> inViewers[] = {
-        {"frames", measureFrames},
-        {"crowd", measureCrowd},
-        {"skinning", measureSkinning},
-        {"start", measureStart},
-        {"load", measureLoad}};
+        {"frames", measureFrames},     {"crowd", measureCrowd}, {"rate", measureUpdateRate},
+        {"skinning", measureSkinning}, {"start", measureStart}, {"load", measureLoad}};
     if (request.has("samples"))
         if (Result<bool> done = measureSamples(subject, effort, context, report); !done) return done;
     if (request.has("pose"))

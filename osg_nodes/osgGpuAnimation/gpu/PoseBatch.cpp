@@ -56,7 +56,7 @@ std::size_t PoseBatch::add(const PoseInstruction& instruction, const AffineMatri
     return instance;
 }
 
-std::size_t PoseBatch::add(const BlendSample& sample)
+std::size_t PoseBatch::addSample(const BlendSample& sample)
 {
     if (_sampleStride != 1)
     {
@@ -73,9 +73,9 @@ std::size_t PoseBatch::add(const BlendSample& sample)
     return _size++;
 }
 
-std::size_t PoseBatch::add(const BlendSample& sample, const AffineMatrix& rootMatrix)
+std::size_t PoseBatch::addSample(const BlendSample& sample, const AffineMatrix& rootMatrix)
 {
-    const std::size_t instance = add(sample);
+    const std::size_t instance = addSample(sample);
     _rootMatrices.resize(_size);
     _rootMatrices[instance] = rootMatrix;
     return instance;

@@ -43,7 +43,7 @@ bool CrowdGroups::take(const CrowdInstances& instances, std::size_t number, std:
     {
         place = static_cast<std::uint32_t>(group.members.size());
         group.members.push_back(handle);
-        group.poses.add(instances.groupSample(index));
+        group.poses.addSample(instances.groupSample(index));
     }
     else if (place >= group.members.size() || group.members[place] != handle)
         return false;

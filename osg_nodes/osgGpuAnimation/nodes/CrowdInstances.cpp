@@ -214,7 +214,7 @@ void CrowdInstances::addTo(PoseBatch& batch, const std::vector<std::uint32_t>& i
         if (_controllers[index])
             batch.add(_controllers[index]->instruction(), _rootMatrices[index]);
         else
-            batch.add(_playbacks[index].sample(*_set, _clock), _rootMatrices[index]);
+            batch.addSample(_playbacks[index].sample(*_set, _clock), _rootMatrices[index]);
     }
     if (_tinted == 0) return;
     for (std::size_t place = 0; place < indices.size(); ++place)

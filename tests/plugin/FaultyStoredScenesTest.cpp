@@ -8,9 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <regex>
-#include <sstream>
 
 // Kept scenes are not trusted either: what is wrong has a message, and what is left can be updated.
 

@@ -17,10 +17,6 @@
 #include <osg/Program>
 #include <osgDB/FileUtils>
 
-#include <filesystem>
-#include <fstream>
-#include <sstream>
-
 namespace osgGpuAnimation
 {
 

@@ -26,18 +26,11 @@ class BoundsOfModelsTest : public ::testing::TestWithParam<std::string>
 protected:
     static constexpr int timesAClip = 200; ///< finer than the keyframes' own times, in every file there is
 
-    std::string file() const
-    {
-        const std::string& name = GetParam();
-        if (name.find('/') != std::string::npos) return sharedFile(name);
-        return std::string(OSGGPUANIMATION_SCENES) + "/" + name;
-    }
-
     void SetUp() override
     {
-        if (file().empty()) GTEST_SKIP() << "there is no " << GetParam();
+        if (modelFile(GetParam()).empty()) GTEST_SKIP() << "there is no " << GetParam();
         usePluginsOfTheBuild();
-        node = osgDB::readRefNodeFile(file());
+        node = osgDB::readRefNodeFile(modelFile(GetParam()));
         ASSERT_TRUE(node.valid());
         character = findCharacter(*node);
         ASSERT_NE(character, nullptr);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "plugin/ModelBuilder.h"
+#include "plugin/SharedAssets.h"
 #include "plugin/StoredScene.h"
 #include "support/NotifyLog.h"
 
@@ -7,9 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <regex>
-#include <sstream>
 
 // Kept scenes are not trusted either: what is wrong has a message, and what is left can be updated.
 
@@ -122,11 +121,7 @@ protected:
 
     void TearDown() override { osg::setNotifyHandler(new osg::StandardNotifyHandler); }
 
-    std::string content(const std::string& name)
-    {
-        std::ifstream stream(files.folder.file(name), std::ios::binary);
-        return std::string(std::istreambuf_iterator<char>(stream), {});
-    }
+    std::string content(const std::string& name) { return readBytes(files.folder.file(name)); }
 
     Read readContent(const std::string& name, const std::string& text)
     {

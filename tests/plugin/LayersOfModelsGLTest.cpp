@@ -90,8 +90,7 @@ TEST_P(LayersOfModelsGLTest, randomStacksAreTheTwinsAndTheReferencesPose)
 {
     if (GetParam().shared) SKIP_WITHOUT_SHARED_FILE(GetParam().shared);
     constexpr unsigned int seed = 20261121;
-    ASSERT_NO_FATAL_FAILURE(load(GetParam().shared ? sharedFile(GetParam().shared)
-                                                   : std::string(OSGGPUANIMATION_SCENES) + "/" + GetParam().scene));
+    ASSERT_NO_FATAL_FAILURE(load(GetParam().shared ? sharedFile(GetParam().shared) : ownScene(GetParam().scene)));
     std::mt19937 random(seed);
     addRandomMasks(*set, random);
     PosePipeline* pipeline = PosePipeline::of(state());

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "plugin/PluginFolder.h"
+#include "plugin/SharedAssets.h"
 #include "support/ViewerGLTest.h"
 
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
@@ -29,7 +30,7 @@ protected:
         for (int place = 0; place < places; ++place)
         {
             osg::ref_ptr<osg::PagedLOD> paged = new osg::PagedLOD;
-            paged->setFileName(0, OSGGPUANIMATION_SCENES "/Wanderer.glb");
+            paged->setFileName(0, ownScene("Wanderer.glb"));
             paged->setRange(0, 0.0f, 100.0f);
             paged->setCenter(osg::Vec3(0, 0, 0));
             paged->setRadius(4.0f);

@@ -43,7 +43,7 @@ protected:
     std::string file() const
     {
         if (GetParam().shared) return sharedFile(GetParam().shared);
-        return std::string(OSGGPUANIMATION_SCENES) + "/" + GetParam().scene;
+        return ownScene(GetParam().scene);
     }
 
     void load()

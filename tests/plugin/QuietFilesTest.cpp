@@ -41,14 +41,9 @@ private:
     osg::NotifySeverity _level = osg::NOTICE;
 };
 
-std::string fileOf(const std::string& name)
-{
-    return name.find('/') == std::string::npos ? std::string(OSGGPUANIMATION_SCENES) + "/" + name : sharedFile(name);
-}
-
 TEST_P(QuietFilesTest, printNothingAtNotice)
 {
-    const std::string file = fileOf(GetParam());
+    const std::string file = modelFile(GetParam());
     if (file.empty()) GTEST_SKIP() << "there is no " << GetParam();
     const ScratchFolder folder;
     osg::ref_ptr<osg::Node> node = osgDB::readRefNodeFile(file);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "plugin/ModelBuilder.h"
+#include "plugin/SharedAssets.h"
 #include "plugin/StoredScene.h"
 #include "support/NotifyLog.h"
 
@@ -15,10 +16,6 @@
 #include <gtest/gtest.h>
 #include <osg/Program>
 #include <osgDB/FileUtils>
-
-#include <filesystem>
-#include <fstream>
-#include <sstream>
 
 namespace osgGpuAnimation
 {
@@ -56,12 +53,6 @@ protected:
     osg::ref_ptr<osg::Node> scene;
     osg::ref_ptr<NotifyLog> log = new NotifyLog(osg::WARN);
 };
-
-std::string textOf(const std::string& file)
-{
-    std::ifstream stream(file, std::ios::binary);
-    return std::string(std::istreambuf_iterator<char>(stream), {});
-}
 
 void setUpLayers(AnimationController& controller)
 {
@@ -230,7 +221,7 @@ TEST_F(SerializersTest, aCrowdKeepsItsInstances)
 TEST_F(SerializersTest, shadersAreNotInTheFile)
 {
     ASSERT_TRUE(osgDB::writeNodeFile(*scene, files.folder.file("arm.osgt")));
-    const std::string text = textOf(files.folder.file("arm.osgt"));
+    const std::string text = readBytes(files.folder.file("arm.osgt"));
     EXPECT_NE(text.find("osgGpuAnimation::SurfaceProgram"), std::string::npos);
     EXPECT_EQ(text.find("osg::Shader"), std::string::npos);
     const osg::ref_ptr<osg::Node> read = osgDB::readRefNodeFile(files.folder.file("arm.osgt"));

@@ -15,12 +15,7 @@ namespace
 class ShadowPluginGLTest : public ViewerGLTest
 {
 protected:
-    osg::ref_ptr<osg::GraphicsContext::Traits> traits() const override
-    {
-        osg::ref_ptr<osg::GraphicsContext::Traits> wanted = ViewerGLTest::traits();
-        wanted->width = wanted->height = 256;
-        return wanted;
-    }
+    int pictureSide() const override { return 256; }
 
     osg::ref_ptr<osg::Image> pictureOf(const std::string& file, double time)
     {
@@ -35,10 +30,7 @@ protected:
         camera.setViewMatrixAsLookAt(bound.center() + osg::Vec3(0.6f, -1.5f, 0.5f) * reach, bound.center(), {0, 0, 1});
         viewer().setLightingMode(osg::View::SKY_LIGHT);
         viewer().getLight()->setPosition(osg::Vec4(1, -0.5f, 0.7f, 0));
-        viewer().setSceneData(scene);
-        drawAt(0);
-        drawAt(time);
-        return picture().copy();
+        return ViewerGLTest::pictureOf(scene, {0, time});
     }
 };
 

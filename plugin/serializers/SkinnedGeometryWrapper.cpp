@@ -96,12 +96,32 @@ static bool readMorphTargets(osgDB::InputStream& stream, SkinnedGeometry& mesh)
     return in.isGood();
 }
 
+static bool checkSkinning(const SkinnedGeometry& mesh)
+{
+    return mesh.skinning() != Skinning::Auto;
+}
+
+static bool writeSkinning(osgDB::OutputStream& stream, const SkinnedGeometry& mesh)
+{
+    ValueWriter(stream).integer(static_cast<int>(mesh.skinning())).endLine();
+    return true;
+}
+
+static bool readSkinning(osgDB::InputStream& stream, SkinnedGeometry& mesh)
+{
+    ValueReader in(stream);
+    const std::int32_t skinning = in.integer("when a mesh is skinned", 0, static_cast<int>(Skinning::Once));
+    if (in.isGood()) mesh.setSkinning(static_cast<Skinning>(skinning));
+    return in.isGood();
+}
+
 REGISTER_OBJECT_WRAPPER(osgGpuAnimation_SkinnedGeometry, new SkinnedGeometry, osgGpuAnimation::SkinnedGeometry,
                         "osgGpuAnimation::ExactNumbers osg::Object osg::Node osg::Drawable osg::Geometry "
                         "osgGpuAnimation::SkinnedGeometry")
 {
     ADD_REQUIRED_SERIALIZER(Influences);
     ADD_USER_SERIALIZER(MorphTargets);
+    ADD_USER_SERIALIZER(Skinning);
 }
 
 } // namespace osgGpuAnimation::serializers

@@ -176,6 +176,19 @@ TEST_F(SerializersTest, charactersOfOneSetShareItAfterwards)
     }
 }
 
+TEST_F(SerializersTest, aMeshIsSkinnedWhenItWas)
+{
+    for (const Skinning skinning : {Skinning::Auto, Skinning::EveryDraw, Skinning::Once})
+        for (const char* format : formats)
+        {
+            dynamic_cast<SkinnedGeometry&>(*character().getChild(0)).setSkinning(skinning);
+            const osg::ref_ptr<osg::Node> kept = files.throughFile(*scene, format);
+            ASSERT_TRUE(kept) << format;
+            const auto& mesh = dynamic_cast<SkinnedGeometry&>(*findCharacter(*kept)->getChild(0));
+            EXPECT_EQ(mesh.skinning(), skinning) << format;
+        }
+}
+
 TEST_F(SerializersTest, aCrowdKeepsItsInstances)
 {
     osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(character());

@@ -3,9 +3,9 @@
 
 #include "gltf/ElementName.h"
 #include "gltf/OptionWord.h"
+#include "gltf/ParsedNumber.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
 
@@ -19,18 +19,19 @@ namespace
 template <typename Number>
 bool readNumber(const std::string& text, Number& out)
 {
-    Number number = 0;
-    const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (fault != std::errc() || end != text.data() + text.size() || !(number >= 0)) return false;
-    out = number;
+    const std::optional<Number> number = parsedNumber<Number>(text);
+    if (!number || !(*number >= 0)) return false;
+    out = *number;
     return true;
 }
 
 /// False where the text is not a finite number.
 bool readFinite(const std::string& text, double& out)
 {
-    const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), out);
-    return fault == std::errc() && end == text.data() + text.size() && std::isfinite(out);
+    const std::optional<double> number = parsedNumber<double>(text);
+    if (!number || !std::isfinite(*number)) return false;
+    out = *number;
+    return true;
 }
 
 bool readLoopMode(const std::string& text, LoopMode& out)

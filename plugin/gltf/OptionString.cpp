@@ -83,6 +83,8 @@ bool apply(const OptionWord& word, ImportOptions& options)
         options.clip = value;
     else if (word.name == "scene")
         return readNumber(value, options.scene.emplace());
+    else if (word.name == "maxJsonBytes")
+        return readNumber(value, options.maxJsonBytes);
     else if (word.name == "maxJsonDepth")
         return readNumber(value, options.maxJsonDepth);
     else if (word.name == "maxNodeDepth")
@@ -125,6 +127,7 @@ const std::vector<OptionHelp>& optionHelp()
         {"scene=INDEX", "the scene to show; default: the file's own"},
         {"noRotation", "keep glTF's +Y up; default: +Z up"},
         {"allowOutsideFiles", "let a model read files outside its own folder"},
+        {"maxJsonBytes=N", "bytes of the JSON text, data URIs and all; default: 512 MiB"},
         {"maxJsonDepth=N", "how deep JSON may nest; default: 256"},
         {"maxNodeDepth=N", "nodes from a root to a leaf; default: 4096"},
         {"maxElements=N", "elements of any one array; default: 16777216"},

@@ -40,7 +40,7 @@ bool bindPalette(osg::State& state, const SkinnedGeometry& mesh, const PalettePl
         state.setActiveTextureUnit(POSE_TINT_UNIT);
         glBindTexture(GL_TEXTURE_BUFFER, place.tints);
     }
-    return bindMorphTargets(state, mesh.morphDeltas(), mesh.morphTargets().size(), mesh.morphEntry());
+    return bindMorphTargets(state, mesh.packedMorphTargets(), mesh.morphTargets().size(), mesh.morphEntry());
 }
 
 } // namespace osgGpuAnimation

@@ -29,7 +29,7 @@ SkinnedVertices::Versions versionsOf(const SkinnedGeometry& mesh)
         add(mesh.entries(influenceSet));
         add(mesh.weights(influenceSet));
     }
-    add(mesh.morphDeltas().texture ? mesh.morphDeltas().texture->getImage() : nullptr);
+    add(mesh.morphDeltas() ? mesh.morphDeltas()->getImage() : nullptr);
     versions.emplace_back(nullptr, static_cast<unsigned int>(mesh.rigidEntry()));
     versions.emplace_back(nullptr, static_cast<unsigned int>(mesh.morphEntry()));
     return versions;

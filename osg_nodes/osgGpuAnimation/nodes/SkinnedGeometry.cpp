@@ -149,6 +149,7 @@ void SkinnedGeometry::setMorphTargets(int morph, int entry, std::vector<MorphTar
     _morphTargets = std::move(targets);
     _morph = _morphTargets.empty() ? -1 : morph;
     _morphEntry = _morphTargets.empty() ? -1 : entry;
+    _morphDeltas.texture = nullptr; // packed anew where nobody else has them: the arrays may have changed
     _morphDeltas = packMorphTargets(_morphTargets, vertexCount);
     if (_morph < 0) _morphDeltas.texture = nullptr;
     dirtyBound();

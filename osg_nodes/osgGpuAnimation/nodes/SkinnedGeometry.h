@@ -71,8 +71,10 @@ public:
     /// The same where the set is not known yet. entry: the set's entryOfMorph(morph).
     void setMorphTargets(int morph, int entry, std::vector<MorphTarget> targets);
     const std::vector<MorphTarget>& morphTargets() const { return _morphTargets; }
-    int morph() const { return _morph; } ///< -1: none
-    const MorphDeltas& morphDeltas() const { return _morphDeltas; }
+    /// What they are drawn from; meshes whose targets are the same arrays share it. Null: there are none.
+    const osg::TextureBuffer* morphDeltas() const { return _morphDeltas.texture.get(); }
+    const MorphDeltas& packedMorphTargets() const { return _morphDeltas; }
+    int morph() const { return _morph; }           ///< -1: none
     int morphEntry() const { return _morphEntry; } ///< the first palette entry of the weights; -1: none
 
     /// When vertices are skinned. Once: vertices and normals lie on the GPU for all instances seen, 32 bytes a vertex

@@ -333,8 +333,7 @@ void SkinnedGeometry::withVertexArrays(osg::RenderInfo& renderInfo, Draw draw) c
 void SkinnedGeometry::captureVertices(osg::RenderInfo& renderInfo, const PalettePlace& first, int count,
                                       GLuint buffer) const
 {
-    // As osg::Drawable::draw.
-    osg::State& state = *renderInfo.getState();
+    osg::State& state = *renderInfo.getState(); // as osg::Drawable::draw
     osg::VertexArrayState* arrays = state.getCurrentVertexArrayState();
     const bool usesArrayObject = state.useVertexArrayObject(_useVertexArrayObject);
     if (usesArrayObject)
@@ -376,8 +375,7 @@ void SkinnedGeometry::bindPalette(osg::State& state, const PalettePlace& place) 
 {
     if (osgGpuAnimation::bindPalette(state, *this, place) || _isMorphLimitReported.exchange(true)) return;
     OSG_WARN << "osgGpuAnimation: the morph targets of mesh \"" << getName() << "\" need a buffer of "
-             << _morphDeltas.texture->getImage()->s() << " texels, more than this context takes; it is drawn unmorphed"
-             << std::endl;
+             << morphDeltas()->getImage()->s() << " texels, more than this context takes; it is drawn unmorphed\n";
 }
 
 void SkinnedGeometry::releaseGLObjects(osg::State* state) const

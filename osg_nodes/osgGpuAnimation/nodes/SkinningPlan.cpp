@@ -26,8 +26,8 @@ osg::ref_ptr<SkinningPlan> SkinningPlan::forContext(unsigned int contextId)
 // difference.
 int SkinningPlan::breakEven(std::size_t morphTargets)
 {
-    if (morphTargets == 0) return 0;
-    return morphTargets == 1 ? 4 : morphTargets < 4 ? 3 : 2;
+    if (morphTargets < 2) return 0;
+    return morphTargets < 4 ? 4 : morphTargets < 8 ? 3 : 2;
 }
 
 std::shared_ptr<const SkinningPlan::Meshes> SkinningPlan::once() const

@@ -58,6 +58,7 @@ Spent PoseCrowd::step(double seconds, PosePipeline::Form form)
     PosePipeline* pipeline = PosePipeline::of(state);
     if (!pipeline) return {};
     pipeline->setForm(form);
+    pipeline->setChunkSize(_chunkSize);
     glFinish();
     const Stopwatch stopwatch;
     _batch.clear();

@@ -26,6 +26,9 @@ public:
     /// Everybody begins a crossfade that goes on for hours: one more blend sample each.
     void crossfade(std::size_t clip);
 
+    /// Instances that step() has the pipeline evaluate at a time.
+    void setChunkSize(std::size_t instances) { _chunkSize = instances; }
+
     /// Moves everybody on and computes all palettes, until the GPU has finished.
     Spent step(double seconds, PosePipeline::Form form = PosePipeline::Form::Fused);
 
@@ -40,6 +43,7 @@ private:
     PoseBatch _batch;
     osg::ref_ptr<osg::GraphicsContext> _context;
     std::size_t _slot;
+    std::size_t _chunkSize = PosePipeline::usualChunkSize;
 };
 
 /// A feedback pass that writes as many bytes as a palette, and nothing else: the floor.

@@ -67,7 +67,9 @@ public:
     /// Texels a buffer texture may have; GL_MAX_TEXTURE_BUFFER_SIZE unless set smaller (tests).
     void setMaxTexels(std::size_t texels) { _maxTexels = texels; }
     std::size_t maxTexels() const { return _maxTexels; }
-    /// Instances that are evaluated at a time, at most; fewer where a buffer texture takes no more. above 0.
+    /// Instances that are evaluated at a time, at most; fewer where a buffer texture takes no more. Above 0. The usual
+    /// size is the fastest one measured, by little (tests/benchmark/RESULTS.md), and bounds the scratch buffer.
+    static constexpr std::size_t usualChunkSize = 4096;
     void setChunkSize(std::size_t instances) { _chunkSize = instances; }
     std::size_t chunkSize() const { return _chunkSize; }
     const Counters& counters() const { return _counters; }
@@ -111,7 +113,7 @@ private:
     osg::GLExtensions* _gl;
     void(GL_APIENTRY* _copyBufferSubData)(GLenum, GLenum, GLintptr, GLintptr, GLsizeiptr) = nullptr;
     std::size_t _maxTexels = 0;
-    std::size_t _chunkSize = 16384;
+    std::size_t _chunkSize = usualChunkSize;
     bool _isSupported = false;
     Form _form = Form::Fused;
     Counters _counters;

@@ -3,6 +3,8 @@
 
 #include <glm/geometric.hpp>
 
+#include <array>
+
 namespace osgGpuAnimation
 {
 
@@ -31,6 +33,24 @@ void dealOut(const CrowdInstances& instances, const glm::vec4& sizePlane, Indice
     seen.resize(kept);
 }
 
+/// By what their poses cost to mix; those that are too few for a batch join the next dearer.
+void sortByLoad(const CrowdInstances& instances, const Indices& seen, std::array<Indices, PoseBatch::loadCount>& loads)
+{
+    for (Indices& load : loads)
+        load.clear();
+    for (const std::uint32_t index : seen)
+        loads[static_cast<std::size_t>(instances.load(index))].push_back(index);
+    std::size_t dearer = loads.size() - 1;
+    for (std::size_t load = dearer; load-- > 0;)
+        if (!loads[load].empty() && loads[load].size() < PoseBatch::worthABatch && !loads[dearer].empty())
+        {
+            loads[dearer].insert(loads[dearer].end(), loads[load].begin(), loads[load].end());
+            loads[load].clear();
+        }
+        else if (!loads[load].empty())
+            dearer = load;
+}
+
 } // namespace
 
 std::vector<osg::StateSet*> enlistCrowd(PoseFrame& frame, const CrowdInstances& instances, const CrowdView& view,
@@ -50,10 +70,15 @@ std::vector<osg::StateSet*> enlistCrowd(PoseFrame& frame, const CrowdInstances& 
         instances.addGroupTo(*batch, groups[group], group);
         states.push_back(frame.enlist(std::move(batch)));
     }
-    if (seen.empty()) return states;
-    std::unique_ptr<PoseBatch> batch = frame.makeBatch(instances.set());
-    instances.addTo(*batch, seen);
-    states.push_back(frame.enlist(std::move(batch)));
+    static thread_local std::array<Indices, PoseBatch::loadCount> loads;
+    sortByLoad(instances, seen, loads);
+    for (const Indices& load : loads)
+    {
+        if (load.empty()) continue;
+        std::unique_ptr<PoseBatch> batch = frame.makeBatch(instances.set());
+        instances.addTo(*batch, load);
+        states.push_back(frame.enlist(std::move(batch)));
+    }
     return states;
 }
 

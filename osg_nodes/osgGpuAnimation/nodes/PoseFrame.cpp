@@ -115,7 +115,10 @@ osg::StateSet* PoseFrame::stateOf(const AnimatedCharacter& character, EnlistedPo
 PoseFrame::Batch& PoseFrame::openBatch(const AnimatedCharacter& character)
 {
     std::vector<Batch*>& batches = _batchesOfSet[&character.set()];
-    const auto open = std::find_if(batches.begin(), batches.end(), [](const Batch* batch) { return batch->isOpen(); });
+    const PoseInstruction& instruction = character.controller().instruction();
+    const auto open =
+        std::find_if(batches.begin(), batches.end(),
+                     [&](const Batch* batch) { return batch->isOpen() && batch->content->suits(instruction); });
     return open != batches.end() ? **open : addBatch(spareBatch(character.controller().sharedSet()));
 }
 

@@ -109,7 +109,7 @@ private:
     unsigned int _frameNumber = 0;
     double _referenceTime = 0.0; ///< seconds
     std::vector<std::unique_ptr<Batch>> _batches;
-    std::unordered_map<const AnimationSet*, std::vector<Batch*>> _batchesOfSet; ///< one may be open
+    std::unordered_map<const AnimationSet*, std::vector<Batch*>> _batchesOfSet; ///< open ones: of several loads
     std::vector<std::unique_ptr<PoseBatch>> _spareBatches;
     std::unordered_map<const AnimatedCharacter*, Enlisted> _enlisted;
     std::vector<BlendSample> _samples; ///< of those enlisted

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "plugin/ModelBuilder.h"
+#include "plugin/SharedAssets.h"
 #include "plugin/StoredScene.h"
+#include "support/NotifyLog.h"
 
 #include <osgGpuAnimation/animation/JointMask.h>
 #include <osgGpuAnimation/animation/RootMotionCurve.h>
@@ -12,13 +14,8 @@
 #include <osgGpuAnimation/nodes/RootMotionCallback.h>
 
 #include <gtest/gtest.h>
-#include <osg/Notify>
 #include <osg/Program>
 #include <osgDB/FileUtils>
-
-#include <filesystem>
-#include <fstream>
-#include <sstream>
 
 namespace osgGpuAnimation
 {
@@ -27,17 +24,6 @@ namespace
 {
 
 const char* const formats[] = {"osgb", "osgt", "osgx"};
-
-/// Keeps what OSG warns of.
-class WarningLog : public osg::NotifyHandler
-{
-public:
-    void notify(osg::NotifySeverity severity, const char* message) override
-    {
-        if (severity <= osg::WARN) text += message;
-    }
-    std::string text;
-};
 
 /// A sword on an arm that slides (two clips), and a skinned triangle; read through osgDB.
 class SerializersTest : public ::testing::Test
@@ -65,14 +51,8 @@ protected:
 
     StoredScene files;
     osg::ref_ptr<osg::Node> scene;
-    osg::ref_ptr<WarningLog> log = new WarningLog;
+    osg::ref_ptr<NotifyLog> log = new NotifyLog(osg::WARN);
 };
-
-std::string textOf(const std::string& file)
-{
-    std::ifstream stream(file, std::ios::binary);
-    return std::string(std::istreambuf_iterator<char>(stream), {});
-}
 
 void setUpLayers(AnimationController& controller)
 {
@@ -241,7 +221,7 @@ TEST_F(SerializersTest, aCrowdKeepsItsInstances)
 TEST_F(SerializersTest, shadersAreNotInTheFile)
 {
     ASSERT_TRUE(osgDB::writeNodeFile(*scene, files.folder.file("arm.osgt")));
-    const std::string text = textOf(files.folder.file("arm.osgt"));
+    const std::string text = readBytes(files.folder.file("arm.osgt"));
     EXPECT_NE(text.find("osgGpuAnimation::SurfaceProgram"), std::string::npos);
     EXPECT_EQ(text.find("osg::Shader"), std::string::npos);
     const osg::ref_ptr<osg::Node> read = osgDB::readRefNodeFile(files.folder.file("arm.osgt"));

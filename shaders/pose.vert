@@ -11,7 +11,8 @@ layout(location = POSE_PARENT_BIND_LOCATION) in mat3x4 parentBind;
 layout(location = POSE_INVERSE_BIND_LOCATION) in mat3x4 inverseBind;
 layout(location = POSE_REST_LOCATION) in vec4 restParts[2]; // translation, scale
 
-uniform samplerBuffer parentLevels; // the palette's levels computed so far that hold this level's parents
+uniform samplerBuffer parentLevels; // levels of the palette, this one's parents among them
+uniform int firstParent;            // where it begins: parents' numbers are counted from there
 uniform int instanceCount;
 
 out vec4 row0;
@@ -37,7 +38,7 @@ void main()
     {
         matrix = multiplied(parentBind, multiplied(matrix, inverseBind));
         if (!isRootLevel)
-            matrix = multiplied(fetchMatrix(parentLevels, (parent * instanceCount + gl_VertexID) *
+            matrix = multiplied(fetchMatrix(parentLevels, ((parent - firstParent) * instanceCount + gl_VertexID) *
                                                           POSE_TEXELS_PER_MATRIX), matrix);
         else if (hasRoots)
             matrix = multiplied(rootMatrix, matrix);

@@ -22,6 +22,9 @@ Result<bool> measurePose(const Subject& subject, const Effort& effort, osg::Grap
 Result<bool> measureSamples(const Subject& subject, const Effort& effort, osg::GraphicsContext& context,
                             Report& report);
 
+/// The same characters in chunks of so many instances each. The context is current.
+Result<bool> measureChunks(const Subject& subject, const Effort& effort, osg::GraphicsContext& context, Report& report);
+
 /// A joint's cost in chains of 8 to 64. The context is current.
 Result<bool> measureDepth(const Effort& effort, osg::GraphicsContext& context, Report& report);
 

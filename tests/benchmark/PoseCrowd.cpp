@@ -29,10 +29,12 @@ void main()
 
 PoseCrowd::PoseCrowd(std::shared_ptr<const AnimationSet> set, std::size_t clip, std::size_t count,
                      osg::GraphicsContext& context)
-    : _set(std::move(set)), _controllers(count, AnimationController(_set)), _batch(_set), _context(&context)
+    : _set(std::move(set)), _controllers(count, AnimationController(_set)),
+      _batches(PoseBatch::loadCount, PoseBatch(_set)), _places(count), _context(&context)
 {
     static std::size_t slots = 0;
-    _slot = slots++;
+    _firstSlot = slots;
+    slots += _batches.size();
     for (std::size_t i = 0; i < count; ++i)
     {
         static_cast<void>(_controllers[i].play(clip));
@@ -42,14 +44,22 @@ PoseCrowd::PoseCrowd(std::shared_ptr<const AnimationSet> set, std::size_t clip, 
 
 PoseCrowd::~PoseCrowd() = default;
 
-void PoseCrowd::crossfade(std::size_t clip)
+void PoseCrowd::crossfade(std::size_t clip, std::size_t every)
 {
     constexpr double hours = 36000.0;
-    for (AnimationController& controller : _controllers)
+    for (std::size_t i = 0; i < count(); i += every)
     {
-        static_cast<void>(controller.crossfade(clip, hours));
-        controller.advance(0.4 * hours);
+        static_cast<void>(_controllers[i].crossfade(clip, hours));
+        _controllers[i].advance(0.4 * hours);
     }
+}
+
+PoseCrowd::Place PoseCrowd::add(const PoseInstruction& instruction)
+{
+    std::size_t batch = 0;
+    while (_isDealtOut && !_batches[batch].suits(instruction))
+        ++batch;
+    return {batch, _batches[batch].add(instruction)};
 }
 
 Spent PoseCrowd::step(double seconds, PosePipeline::Form form)
@@ -58,12 +68,15 @@ Spent PoseCrowd::step(double seconds, PosePipeline::Form form)
     PosePipeline* pipeline = PosePipeline::of(state);
     if (!pipeline) return {};
     pipeline->setForm(form);
+    pipeline->setChunkSize(_chunkSize);
     glFinish();
     const Stopwatch stopwatch;
-    _batch.clear();
-    for (AnimationController& controller : _controllers)
-        _batch.add(controller.advance(seconds));
-    pipeline->evaluate(state, _batch, _slot);
+    for (PoseBatch& batch : _batches)
+        batch.clear();
+    for (std::size_t i = 0; i < count(); ++i)
+        _places[i] = add(_controllers[i].advance(seconds));
+    for (std::size_t batch = 0; batch < _batches.size(); ++batch)
+        if (_batches[batch].size() > 0) pipeline->evaluate(state, _batches[batch], _firstSlot + batch);
     glFinish();
     return stopwatch.elapsed();
 }
@@ -75,8 +88,10 @@ std::string PoseCrowd::check()
     if (!pipeline) return "there is no pose pipeline";
     for (const std::size_t instance : {std::size_t(0), count() / 2, count() - 1})
     {
-        const std::string wrong = difference(*_set, _controllers[instance].instruction(),
-                                             pipeline->readPalette(state, *_set, _slot, instance));
+        const Place& place = _places[instance];
+        const std::string wrong =
+            difference(*_set, _controllers[instance].instruction(),
+                       pipeline->readPalette(state, *_set, _firstSlot + place.batch, place.instance));
         if (!wrong.empty()) return "instance " + std::to_string(instance) + ": " + wrong;
     }
     return takeGlErrors();

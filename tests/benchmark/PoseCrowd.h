@@ -23,8 +23,13 @@ public:
               osg::GraphicsContext& context);
     ~PoseCrowd();
 
-    /// Everybody begins a crossfade that goes on for hours: one more blend sample each.
-    void crossfade(std::size_t clip);
+    /// Every so-manieth begins a crossfade that goes on for hours: one more blend sample each.
+    void crossfade(std::size_t clip, std::size_t every = 1);
+    /// Whether those of another load get batches of their own, as PoseFrame does it; otherwise all go into one.
+    void setDealtOut(bool isDealtOut) { _isDealtOut = isDealtOut; }
+
+    /// Instances that step() has the pipeline evaluate at a time.
+    void setChunkSize(std::size_t instances) { _chunkSize = instances; }
 
     /// Moves everybody on and computes all palettes, until the GPU has finished.
     Spent step(double seconds, PosePipeline::Form form = PosePipeline::Form::Fused);
@@ -37,9 +42,18 @@ public:
 private:
     std::shared_ptr<const AnimationSet> _set;
     std::vector<AnimationController> _controllers;
-    PoseBatch _batch;
+    struct Place
+    {
+        std::size_t batch, instance;
+    };
+    Place add(const PoseInstruction& instruction);
+
+    std::vector<PoseBatch> _batches;
+    std::vector<Place> _places; ///< of the last step, a character each
+    bool _isDealtOut = true;
     osg::ref_ptr<osg::GraphicsContext> _context;
-    std::size_t _slot;
+    std::size_t _firstSlot;
+    std::size_t _chunkSize = PosePipeline::usualChunkSize;
 };
 
 /// A feedback pass that writes as many bytes as a palette, and nothing else: the floor.

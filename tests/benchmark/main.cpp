@@ -20,7 +20,7 @@ namespace
 constexpr const char* usage = R"(osggpuanim_benchmark [options] OUTPUT_FOLDER
     measures this kit against osgAnimation, prints a table and writes benchmark.json and plots into the folder
     --quick           fewer characters and rounds
-    --only PART       pose, samples, depth, frames, crowd, rate, skinning, start or load; may be given several times
+    --only PART       pose, samples, chunks, depth, frames, crowd, rate, skinning, start or load; several times, too
     --subject NAME    Wanderer, Fox, CesiumMan or Knight; may be given several times
 )";
 
@@ -108,6 +108,8 @@ Result<bool> measureSubject(const Request& request, const Effort& effort, const 
         {"skinning", measureSkinning}, {"start", measureStart}, {"load", measureLoad}};
     if (request.has("samples"))
         if (Result<bool> done = measureSamples(subject, effort, context, report); !done) return done;
+    if (request.has("chunks"))
+        if (Result<bool> done = measureChunks(subject, effort, context, report); !done) return done;
     if (request.has("pose"))
         if (Result<bool> done = measurePose(subject, effort, context, report); !done) return done;
     context.releaseContext();

@@ -2,6 +2,7 @@
 #include "support/TestCharacter.h"
 #include "support/ViewerGLTest.h"
 
+#include <osgGpuAnimation/gpu/PosePipeline.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 
 #include <osg/Group>
@@ -197,6 +198,30 @@ TEST_F(ViewersGLTest, aWindowIsClosedAndOpenedAgainOverOneScene)
         window->close();
         other.getCamera()->setGraphicsContext(nullptr);
     }
+}
+
+TEST_F(ViewersGLTest, anotherViewersFrameOfTheSameNumberHasItsOwnCharactersAlone)
+{
+    std::uint64_t evaluated[2] = {};
+    unsigned int contextIds[2] = {};
+    const osg::ref_ptr<osg::Node> scenes[] = {makeScene(), makeScene()};
+    for (const int round : {0, 1})
+    {
+        osg::ref_ptr<EglGraphicsContext> window = makeContext();
+        osgViewer::Viewer other;
+        other.setThreadingModel(osgViewer::ViewerBase::SingleThreaded);
+        other.setReleaseContextAtEndOfFrameHint(false);
+        setCamera(*other.getCamera(), window, new Picture);
+        other.setSceneData(scenes[round]);
+        other.realize();
+        other.frame(0);
+        contextIds[round] = window->getState()->getContextID();
+        evaluated[round] = PosePipeline::of(*window->getState())->counters().instancesEvaluated;
+        window->close();
+    }
+    ASSERT_EQ(contextIds[0], contextIds[1]);
+    EXPECT_GT(evaluated[0], 0u);
+    EXPECT_EQ(evaluated[0], evaluated[1]);
 }
 
 } // namespace

@@ -23,22 +23,22 @@ double finiteProduct(double a, double b)
 
 void ClipMixer::start(const ClipPlayback& playback)
 {
-    _count = 1;
-    _voices[0] = Voice();
-    _voices[0].playback = playback;
-    _voices[0].phaseGroup = ++_lastPhaseGroup;
+    _voices.clear();
+    Voice& voice = _voices.emplace_back();
+    voice.playback = playback;
+    voice.phaseGroup = ++_lastPhaseGroup;
     _fade = Fade(1.0);
 }
 
 void ClipMixer::restore(const std::vector<Voice>& voices, const Fade& fade)
 {
-    _count = std::min(voices.size(), maxVoices);
+    const std::size_t count = std::min(voices.size(), maxVoices);
+    _voices.assign(voices.begin(), voices.begin() + static_cast<std::ptrdiff_t>(count));
     _lastPhaseGroup = 0;
-    for (std::size_t i = 0; i < _count; ++i)
+    for (Voice& voice : _voices)
     {
-        _voices[i] = voices[i];
-        _voices[i].move = ClipMove();
-        _lastPhaseGroup = std::max(_lastPhaseGroup, voices[i].phaseGroup);
+        voice.move = ClipMove();
+        _lastPhaseGroup = std::max(_lastPhaseGroup, voice.phaseGroup);
     }
     _fade = fade;
 }
@@ -47,11 +47,10 @@ void ClipMixer::fadeTo(const ClipPlayback& playback, double seconds, FadeCurve c
 {
     removeFaded();
     makeRoom();
-    const int group = sharesPhase && _count > 0 ? _voices[_count - 1].phaseGroup : ++_lastPhaseGroup;
-    for (std::size_t i = 0; i < _count; ++i)
-        _voices[i].shareBefore = _voices[i].share;
-    Voice& voice = _voices[_count++];
-    voice = Voice();
+    const int group = sharesPhase && !isEmpty() ? _voices.back().phaseGroup : ++_lastPhaseGroup;
+    for (Voice& before : _voices)
+        before.shareBefore = before.share;
+    Voice& voice = _voices.emplace_back();
     voice.playback = playback;
     voice.share = 0.0;
     voice.phaseGroup = group;
@@ -60,55 +59,52 @@ void ClipMixer::fadeTo(const ClipPlayback& playback, double seconds, FadeCurve c
 
 void ClipMixer::remove(std::size_t index)
 {
-    std::move(_voices.begin() + static_cast<std::ptrdiff_t>(index) + 1,
-              _voices.begin() + static_cast<std::ptrdiff_t>(_count),
-              _voices.begin() + static_cast<std::ptrdiff_t>(index));
-    --_count;
+    _voices.erase(_voices.begin() + static_cast<std::ptrdiff_t>(index));
 }
 
 void ClipMixer::removeFaded()
 {
-    for (std::size_t i = _count; i-- > 0;)
-        if (i + 1 < _count && (_fade.isFinished() || _voices[i].share < negligible)) remove(i);
+    for (std::size_t i = _voices.size(); i-- > 0;)
+        if (i + 1 < _voices.size() && (_fade.isFinished() || _voices[i].share < negligible)) remove(i);
 }
 
 void ClipMixer::makeRoom()
 {
-    if (_count < maxVoices) return;
+    if (_voices.size() < maxVoices) return;
     std::size_t least = 0;
     double whole = 0.0;
-    for (std::size_t i = 0; i < _count; ++i)
+    for (std::size_t i = 0; i < _voices.size(); ++i)
     {
         whole += _voices[i].share;
         if (_voices[i].share < _voices[least].share) least = i;
     }
     const double grown = whole / (whole - _voices[least].share);
     remove(least);
-    for (std::size_t i = 0; i < _count; ++i)
-        _voices[i].share *= grown;
+    for (Voice& voice : _voices)
+        voice.share *= grown;
 }
 
 double ClipMixer::advance(double seconds, bool isCurrentPlaying)
 {
-    if (_count > 1) removeFaded();
+    if (_voices.size() > 1) removeFaded();
     const double moment = _fade.advance(seconds);
-    if (_count > 0 && (moment >= 0.0 || isFading()))
+    if (!isEmpty() && (moment >= 0.0 || isFading()))
     {
-        for (std::size_t i = 0; i + 1 < _count; ++i)
+        for (std::size_t i = 0; i + 1 < _voices.size(); ++i)
         {
             _voices[i].share = _voices[i].shareBefore * (1.0 - _fade.value());
             _voices[i].meanShare = _voices[i].shareBefore * (1.0 - _fade.mean());
         }
-        _voices[_count - 1].share = _fade.value();
-        _voices[_count - 1].meanShare = _fade.mean();
+        _voices.back().share = _fade.value();
+        _voices.back().meanShare = _fade.mean();
     }
     else
-        for (std::size_t i = 0; i < _count; ++i)
-            _voices[i].meanShare = _voices[i].share;
-    for (std::size_t i = 0; i < _count; ++i)
+        for (Voice& voice : _voices)
+            voice.meanShare = voice.share;
+    for (std::size_t i = 0; i < _voices.size(); ++i)
     {
         Voice& voice = _voices[i];
-        const bool isPlaying = i + 1 < _count || isCurrentPlaying;
+        const bool isPlaying = i + 1 < _voices.size() || isCurrentPlaying;
         voice.move = isPlaying ? voice.playback.move(clipSeconds(voice, seconds)) : ClipMove();
     }
     return moment;
@@ -116,15 +112,15 @@ double ClipMixer::advance(double seconds, bool isCurrentPlaying)
 
 void ClipMixer::stand()
 {
-    for (std::size_t i = 0; i < _count; ++i)
-        _voices[i].move = ClipMove();
+    for (Voice& voice : _voices)
+        voice.move = ClipMove();
 }
 
 double ClipMixer::clipSeconds(const Voice& voice, double seconds) const
 {
     double speed = voice.playback.speed();
     double members = 0.0, share = 0.0, round = 0.0;
-    for (std::size_t i = 0; _count > 1 && i < _count; ++i)
+    for (std::size_t i = 0; _voices.size() > 1 && i < _voices.size(); ++i)
     {
         const Voice& other = _voices[i];
         if (other.phaseGroup != voice.phaseGroup) continue;

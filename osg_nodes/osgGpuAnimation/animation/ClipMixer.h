@@ -4,7 +4,6 @@
 #include <osgGpuAnimation/animation/ClipPlayback.h>
 #include <osgGpuAnimation/animation/Fade.h>
 
-#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -15,7 +14,7 @@ namespace osgGpuAnimation
 /// playing. A crossfade may begin at any moment: what is seen then, however many clips make it up, fades as a whole
 /// while the new clip fades in, so the pose never jumps. (A frozen pose in place of the fading clips would cost 48
 /// bytes of upload a joint, and feet that stop in mid air.) Where all voices are in use, the one with the smallest
-/// share gives way.
+/// share gives way. Memory is taken where more clips play at once than ever before, and kept.
 class ClipMixer
 {
 public:
@@ -31,17 +30,17 @@ public:
         int phaseGroup = 0;       ///< voices of one group run at one phase
     };
 
-    std::size_t voiceCount() const { return _count; }
+    std::size_t voiceCount() const { return _voices.size(); }
     const Voice& voice(std::size_t index) const { return _voices[index]; } ///< oldest first
-    bool isEmpty() const { return _count == 0; }
+    bool isEmpty() const { return _voices.empty(); }
     /// The newest voice; there is one.
-    ClipPlayback& current() { return _voices[_count - 1].playback; }
-    const ClipPlayback& current() const { return _voices[_count - 1].playback; }
+    ClipPlayback& current() { return _voices.back().playback; }
+    const ClipPlayback& current() const { return _voices.back().playback; }
     bool isFading() const { return !_fade.isFinished(); }
 
     const Fade& fade() const { return _fade; } ///< from 0 to 1, the current voice's
 
-    void clear() { _count = 0; }
+    void clear() { _voices.clear(); }
     /// As it was when it said so of itself. voices: oldest first, at most maxVoices are taken.
     void restore(const std::vector<Voice>& voices, const Fade& fade);
     /// Alone and at once.
@@ -61,8 +60,7 @@ private:
     void makeRoom();
     double clipSeconds(const Voice& voice, double seconds) const;
 
-    std::array<Voice, maxVoices> _voices;
-    std::size_t _count = 0;
+    std::vector<Voice> _voices; ///< at most maxVoices
     Fade _fade{1.0};
     int _lastPhaseGroup = 0;
 };

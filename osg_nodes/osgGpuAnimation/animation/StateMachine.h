@@ -35,7 +35,8 @@ public:
     bool fire(const std::string& trigger);
 
     /// Plays the start state at the first call. Then takes the first transition, in the graph's order, that leads on
-    /// from the present state and whose conditions all hold; at most one a call. Does not allocate.
+    /// from the present state and whose conditions all hold; at most one a call. Allocates
+    /// only where more clips fade on the layer than ever did before.
     /// The controller plays the set that the graph was made for; one whose set has no clip of the next state's number
     /// stays as it is, and so does the state. seconds: since the last call; below 0 and not finite count as 0. True
     /// where the state changed.

@@ -18,7 +18,34 @@ float clampedToUnit(float value)
     return value > 0.0f ? std::min(value, 1.0f) : 0.0f;
 }
 
+bool isPlain(const BlendSample& sample)
+{
+    return sample.weight == 1.0f && (sample.control & POSE_SAMPLE_ADDITIVE) == 0 &&
+           sample.control >> POSE_SAMPLE_MASK_SHIFT == 0;
+}
+
+PoseBatch::Load loadOfSamples(std::size_t count)
+{
+    return count <= 4 ? PoseBatch::Load::Few : PoseBatch::Load::Many;
+}
+
 } // namespace
+
+PoseBatch::Load PoseBatch::loadOf(const PoseInstruction& instruction)
+{
+    const bool isAlone = instruction.sampleCount == 1 && isPlain(instruction.samples[0]);
+    return isAlone ? Load::Plain : loadOfSamples(instruction.sampleCount);
+}
+
+PoseBatch::Load PoseBatch::load() const
+{
+    return _needs.mixing ? loadOfSamples(_sampleStride) : Load::Plain;
+}
+
+bool PoseBatch::suits(const PoseInstruction& instruction) const
+{
+    return _size < worthABatch || loadOf(instruction) == load();
+}
 
 std::size_t PoseBatch::add(const PoseInstruction& instruction)
 {
@@ -45,7 +72,7 @@ void PoseBatch::note(const BlendSample& sample)
     _needs.layers = _needs.layers || (sample.control & POSE_SAMPLE_ABOVE) != 0;
     _needs.additive = _needs.additive || isAdditive;
     _needs.masks = _needs.masks || isMasked;
-    _needs.mixing = _needs.mixing || isAdditive || isMasked || sample.weight != 1.0f;
+    _needs.mixing = _needs.mixing || !isPlain(sample);
 }
 
 std::size_t PoseBatch::add(const PoseInstruction& instruction, const AffineMatrix& rootMatrix)

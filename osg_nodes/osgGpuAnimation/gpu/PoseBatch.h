@@ -14,6 +14,9 @@ namespace osgGpuAnimation
 
 /// What all instances of one set are to show in one frame: a snapshot, independent of the controllers it came from.
 /// Filled on the cull side, read on the draw side.
+///
+/// Each instance costs as many blend samples as the one that has most, so instances of another load are better put into
+/// a batch of their own where there are many: see suits().
 class PoseBatch
 {
 public:
@@ -31,6 +34,21 @@ public:
     /// The same for instances that show one sample.
     std::size_t addSample(const BlendSample& sample);
     std::size_t addSample(const BlendSample& sample, const AffineMatrix& rootMatrix);
+
+    /// What a pose costs to mix.
+    enum class Load
+    {
+        Plain, ///< one sample, as it is: nothing to mix
+        Few,   ///< a crossfade or two: up to four samples
+        Many,
+    };
+    static constexpr std::size_t loadCount = 3;
+    static Load loadOf(const PoseInstruction& instruction);
+    /// Instances whose mixing costs as much as another batch: with fewer, one of another load may join them.
+    static constexpr std::size_t worthABatch = 128;
+    /// Whether the instruction may come in without making many dearer, or being dear itself for the sake of others.
+    bool suits(const PoseInstruction& instruction) const;
+
     /// What the instance's colour is multiplied by. rgba: 8 bits each, red lowest. Others stay white.
     void setTint(std::size_t instance, std::uint32_t rgba);
     void clear();
@@ -64,6 +82,7 @@ public:
 private:
     void widen(std::size_t sampleStride);
     void note(const BlendSample& sample);
+    Load load() const;
 
     std::shared_ptr<const AnimationSet> _set;
     std::size_t _size = 0;

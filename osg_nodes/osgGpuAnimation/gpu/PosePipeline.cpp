@@ -31,30 +31,13 @@ constexpr int unitCount = 6;
 
 constexpr std::initializer_list<const char*> rowOutputs{"row0", "row1", "row2"};
 
-bool hasSplines(const AnimationSet& set)
+/// In the levels below a palette's first, third ... one.
+std::size_t oddEntries(const AnimationSet& set)
 {
-    return std::any_of(set.clips().begin(), set.clips().end(),
-                       [](const Clip& clip) { return clip.form() == Clip::Form::Spline; });
-}
-
-PoseVariant mixVariant(const PoseBatch& batch)
-{
-    PoseVariant variant;
-    variant.hasSplines = hasSplines(batch.set());
-    variant.hasWeights = !batch.set().morphs().empty();
-    variant.hasSeveralSamples = batch.needs().mixing;
-    variant.hasLayers = batch.needs().layers;
-    variant.hasMasks = batch.needs().masks;
-    variant.hasAdditive = batch.needs().additive;
-    return variant;
-}
-
-void setMotion(PoseVariant& variant, const PackedKeyframes::Track& motion)
-{
-    variant.translationMotion = motion.translation;
-    variant.scaleMotion = motion.scale;
-    variant.hasExactKeys = motion.hasExactKeys;
-    variant.hasCompactKeys = motion.hasCompactKeys;
+    std::size_t count = 0;
+    for (std::size_t level = 1; level < set.levelCount(); level += 2)
+        count += set.levels()[level + 1] - set.levels()[level];
+    return count;
 }
 
 } // namespace
@@ -152,11 +135,8 @@ bool PosePipeline::evaluate(osg::State& state, const PoseBatch& batch, std::size
         }
         resources.buffers->updateMasks(set);
     }
-    const std::size_t widest = std::max(set.paletteSize(), _form == Form::Separate ? set.trackCount() : 0);
-    const std::size_t byPalette = _maxTexels / (POSE_TEXELS_PER_MATRIX * std::max<std::size_t>(widest, 1));
-    const std::size_t chunkCapacity = std::max<std::size_t>(std::min(byPalette, _maxTexels / batch.sampleStride()), 1);
     const std::vector<PosePalette::Chunk*> changed =
-        resources.palettes[slot]->upload(batch, chunkCapacity, _counters.bytesUploaded);
+        resources.palettes[slot]->upload(batch, chunkCapacity(batch), _counters.bytesUploaded);
     if (changed.empty()) return true;
 
     const FeedbackVertexArrays::Names& vertexArrays = _vertexArrays.of(state);
@@ -171,6 +151,14 @@ bool PosePipeline::evaluate(osg::State& state, const PoseBatch& batch, std::size
         _counters.instancesEvaluated += chunk->size;
     }
     return true;
+}
+
+std::size_t PosePipeline::chunkCapacity(const PoseBatch& batch) const
+{
+    const AnimationSet& set = batch.set();
+    const std::size_t widest = std::max(set.paletteSize(), _form == Form::Separate ? set.trackCount() : 0);
+    const std::size_t byPalette = _maxTexels / (POSE_TEXELS_PER_MATRIX * std::max<std::size_t>(widest, 1));
+    return std::max<std::size_t>(std::min({byPalette, _maxTexels / batch.sampleStride(), _chunkSize}), 1);
 }
 
 bool PosePipeline::hasRoomForMasks(SetResources& resources, const AnimationSet& set) const
@@ -200,33 +188,41 @@ void PosePipeline::useMixInput(FeedbackPass& pass, const AnimationSet& set, cons
 }
 
 // A buffer must not be read while feedback writes to it, so levels go to the palette and to the scratch buffer by
-// turns, each at its own place; at the end the scratch buffer's levels are copied to their places in the palette.
+// turns. The scratch buffer has the odd levels one behind the other; at the end they are copied to their places in the
+// palette.
 bool PosePipeline::evaluateFused(const PoseBatch& batch, const AnimationBuffers& buffers, PosePalette::Chunk& chunk)
 {
     const AnimationSet& set = batch.set();
-    if (set.levelCount() > 1) _scratch.reserve(set.paletteSize() * chunk.size * matrixBytes);
+    if (set.levelCount() > 1) _scratch.reserve(oddEntries(set) * chunk.size * matrixBytes);
     bindInstances(chunk);
-    PoseVariant variant = mixVariant(batch);
+    PoseVariant variant = PoseVariant::of(batch);
     variant.isRootLevel = true;
     variant.hasRoots = !chunk.uploadedRootMatrices.empty();
     const std::size_t entryBytes = POSE_TEXELS_PER_ENTRY * BufferTexture::texelBytes;
     const std::vector<std::size_t>& levels = set.levels();
     const FeedbackPass* current = nullptr;
+    std::size_t firstParent = 0; // entry of the palette that the buffer read from begins with
+    std::size_t oddEntry = 0;    // entries in the scratch buffer so far
     for (std::size_t level = 0; level < set.levelCount(); ++level)
     {
         if (level == 1) variant.isRootLevel = variant.hasRoots = variant.hasWeights = false;
-        setMotion(variant, buffers.levels()[level]);
+        variant.setMotion(buffers.levels()[level]);
         const bool isOdd = level % 2 != 0;
+        const std::size_t count = levels[level + 1] - levels[level];
         FeedbackPass& pass = posePass(variant);
         if (!pass.valid()) return false;
         if (&pass != current) useMixInput(pass, set, buffers, chunk);
         current = &pass;
         pass.setTexture("parentLevels", unitPrevious, (isOdd ? chunk.palette : _scratch).texture());
+        pass.setInt("firstParent", static_cast<int>(isOdd ? 0 : firstParent));
         buffers.entries().bindAttributes(POSE_HEAD_LOCATION, POSE_TEXELS_PER_ENTRY, entryBytes,
                                          levels[level] * entryBytes, 1);
-        pass.runInstanced(chunk.size, levels[level + 1] - levels[level], (isOdd ? _scratch : chunk.palette).buffer(),
-                          levels[level] * chunk.size * matrixBytes);
+        pass.runInstanced(chunk.size, count, (isOdd ? _scratch : chunk.palette).buffer(),
+                          (isOdd ? oddEntry : levels[level]) * chunk.size * matrixBytes);
         ++_counters.feedbackDraws;
+        if (!isOdd) continue;
+        firstParent = levels[level] - oddEntry;
+        oddEntry += count;
     }
     gatherOddLevels(set, chunk);
     return true;
@@ -248,12 +244,14 @@ void PosePipeline::gatherOddLevels(const AnimationSet& set, const PosePalette::C
     _gl->glBindBuffer(GL_COPY_READ_BUFFER, _scratch.buffer());
     _gl->glBindBuffer(GL_COPY_WRITE_BUFFER, chunk.palette.buffer());
     const std::vector<std::size_t>& levels = set.levels();
+    const std::size_t entryBytes = chunk.size * matrixBytes;
+    std::size_t from = 0;
     for (std::size_t level = 1; level < set.levelCount(); level += 2)
     {
-        const GLintptr offset = static_cast<GLintptr>(levels[level] * chunk.size * matrixBytes);
-        const std::size_t count = (levels[level + 1] - levels[level]) * chunk.size;
-        _copyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, offset, offset,
-                           static_cast<GLsizeiptr>(count * matrixBytes));
+        const std::size_t bytes = (levels[level + 1] - levels[level]) * entryBytes;
+        _copyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, static_cast<GLintptr>(from),
+                           static_cast<GLintptr>(levels[level] * entryBytes), static_cast<GLsizeiptr>(bytes));
+        from += bytes;
     }
     _gl->glBindBuffer(GL_COPY_READ_BUFFER, 0);
     _gl->glBindBuffer(GL_COPY_WRITE_BUFFER, 0);
@@ -273,8 +271,8 @@ bool PosePipeline::evaluateSeparate(const PoseBatch& batch, const AnimationBuffe
     _scratch.reserve(trackVertices * matrixBytes);
 
     makeSeparatePasses();
-    PoseVariant variant = mixVariant(batch);
-    setMotion(variant, buffers.anyTrack());
+    PoseVariant variant = PoseVariant::of(batch);
+    variant.setMotion(buffers.anyTrack());
     variant.translationMotion = std::max(variant.translationMotion, PartMotion::Held);
     variant.scaleMotion = std::max(variant.scaleMotion, PartMotion::Held);
     FeedbackPass& mixing = mixPass(variant);

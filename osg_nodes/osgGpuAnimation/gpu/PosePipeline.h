@@ -70,6 +70,11 @@ public:
     /// Texels a buffer texture may have; GL_MAX_TEXTURE_BUFFER_SIZE unless set smaller (tests).
     void setMaxTexels(std::size_t texels) { _maxTexels = texels; }
     std::size_t maxTexels() const { return _maxTexels; }
+    /// Instances that are evaluated at a time, at most; fewer where a buffer texture takes no more. Above 0. The usual
+    /// size is the fastest one measured, by little (tests/benchmark/RESULTS.md), and bounds the scratch buffer.
+    static constexpr std::size_t usualChunkSize = 4096;
+    void setChunkSize(std::size_t instances) { _chunkSize = instances; }
+    std::size_t chunkSize() const { return _chunkSize; }
     const Counters& counters() const { return _counters; }
 
     void flushDeletedGLObjects(double currentTime, double& availableTime) override;
@@ -95,6 +100,7 @@ private:
     FeedbackPass& mixPass(const PoseVariant& variant);
     void makeSeparatePasses();
     void forgetUnusedSets();
+    std::size_t chunkCapacity(const PoseBatch& batch) const;
     bool hasRoomForMasks(SetResources& resources, const AnimationSet& set) const;
     SetResources& resourcesOf(const PoseBatch& batch);
     template <typename Function>
@@ -110,6 +116,7 @@ private:
     osg::GLExtensions* _gl;
     void(GL_APIENTRY* _copyBufferSubData)(GLenum, GLenum, GLintptr, GLintptr, GLsizeiptr) = nullptr;
     std::size_t _maxTexels = 0;
+    std::size_t _chunkSize = usualChunkSize;
     bool _isSupported = false;
     Form _form = Form::Fused;
     Counters _counters;
@@ -119,7 +126,7 @@ private:
     Passes _mixPasses;
     std::unique_ptr<FeedbackPass> _localPass;
     std::unique_ptr<FeedbackPass> _worldPass;
-    BufferTexture _scratch;     ///< fused: odd levels; separate: local matrices
+    BufferTexture _scratch;     ///< fused: the odd levels, compactly; separate: local matrices
     BufferTexture _mixedTracks; ///< separate: the mix stage's result
     std::map<const AnimationSet*, SetResources> _sets;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <osgGpuAnimation/animation/PackedKeyframes.h>
 #include <osgGpuAnimation/animation/PartMotion.h>
 
 #include <initializer_list>
@@ -8,6 +9,8 @@
 
 namespace osgGpuAnimation
 {
+
+class PoseBatch;
 
 /// What the programs of the mix stage are made for: each variant leaves out what its batch does not need, since some
 /// drivers (llvmpipe) run both sides of every branch.
@@ -25,6 +28,11 @@ struct PoseVariant
     bool hasCompactKeys = false;    ///< some compact clip moves some of the tracks
     PartMotion translationMotion = PartMotion::Held; ///< of the tracks, the most that any does in any clip
     PartMotion scaleMotion = PartMotion::Held;
+
+    /// What the batch asks of the mix stage; of tracks that stay as they are.
+    static PoseVariant of(const PoseBatch& batch);
+    /// The most that any of the tracks does.
+    void setMotion(const PackedKeyframes::Track& motion);
 
     bool operator<(const PoseVariant& other) const { return key() < other.key(); }
 

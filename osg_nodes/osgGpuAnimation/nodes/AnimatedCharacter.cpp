@@ -37,7 +37,7 @@ osg::BoundingBox toOsg(const Box& box)
 AnimatedCharacter::AnimatedCharacter() : AnimatedCharacter(emptySet()) {}
 
 AnimatedCharacter::AnimatedCharacter(std::shared_ptr<const AnimationSet> set)
-    : _controller(std::make_unique<AnimationController>(std::move(set))), _posedMeshes(std::make_unique<PosedMeshes>())
+    : _controller(std::make_unique<AnimationController>(std::move(set)))
 {
     // Not static: the Optimizer must flatten neither this transform nor those above into the bind pose.
     setDataVariance(osg::Object::DYNAMIC);
@@ -47,7 +47,7 @@ AnimatedCharacter::AnimatedCharacter(std::shared_ptr<const AnimationSet> set)
 AnimatedCharacter::AnimatedCharacter(const AnimatedCharacter& other, const osg::CopyOp& copyop)
     : osg::MatrixTransform(other, copyop), _controller(std::make_unique<AnimationController>(*other._controller)),
       _clipBounds(other._clipBounds), _mixBounds(other._mixBounds), _updateTime(other._updateTime),
-      _posedMeshes(std::make_unique<PosedMeshes>()), _isDrawnTogether(other._isDrawnTogether)
+      _isDrawnTogether(other._isDrawnTogether)
 {
     // osg::Node copies its other callbacks, but not these.
     setEventCallback(copyop(other.getEventCallback()));
@@ -138,6 +138,7 @@ const Box& AnimatedCharacter::clipBounds(int clip) const
 
 osg::ref_ptr<osg::Geometry> AnimatedCharacter::posedMesh(const SkinnedGeometry& mesh) const
 {
+    std::call_once(_posedMeshesMade, [this] { _posedMeshes = std::make_unique<PosedMeshes>(); });
     return _posedMeshes->of(mesh, _controller->sharedSet(), _controller->instruction(), AffineMatrix());
 }
 

@@ -9,6 +9,7 @@
 #include <osg/PrimitiveSet>
 
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <vector>
 
@@ -102,7 +103,8 @@ private:
     std::optional<double> _updateTime;                   ///< seconds of simulation time
     std::vector<PlayedClip> _played;                     ///< what the bound was last dirtied for
     std::vector<PlayedClip> _playedNow;                  ///< kept for its memory
-    std::unique_ptr<PosedMeshes> _posedMeshes;           ///< its own: no copy shares it
+    mutable std::unique_ptr<PosedMeshes> _posedMeshes;   ///< its own: no copy shares it; made when first asked
+    mutable std::once_flag _posedMeshesMade;
     bool _isDrawnTogether = true;
 };
 

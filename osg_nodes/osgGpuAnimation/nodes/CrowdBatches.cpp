@@ -3,6 +3,8 @@
 
 #include <osgGpuAnimation/nodes/OsgMatrix.h>
 
+#include <array>
+
 namespace osgGpuAnimation
 {
 
@@ -30,6 +32,26 @@ std::vector<CrowdBatches::Draw> enlistGroups(PoseFrame& frame, const CrowdInstan
     return draws;
 }
 
+using Indices = std::vector<std::uint32_t>;
+
+/// By what their poses cost to mix; those that are too few for a batch join the next dearer.
+void sortByLoad(const CrowdInstances& instances, const Indices& seen, std::array<Indices, PoseBatch::loadCount>& loads)
+{
+    for (Indices& load : loads)
+        load.clear();
+    for (const std::uint32_t index : seen)
+        loads[static_cast<std::size_t>(instances.load(index))].push_back(index);
+    std::size_t dearer = loads.size() - 1;
+    for (std::size_t load = dearer; load-- > 0;)
+        if (!loads[load].empty() && loads[load].size() < PoseBatch::worthABatch && !loads[dearer].empty())
+        {
+            loads[dearer].insert(loads[dearer].end(), loads[load].begin(), loads[load].end());
+            loads[load].clear();
+        }
+        else if (!loads[load].empty())
+            dearer = load;
+}
+
 } // namespace
 
 CrowdGroups& CrowdBatches::groupsOf(const osg::Camera* camera, unsigned int frameNumber)
@@ -54,10 +76,15 @@ std::vector<CrowdBatches::Draw> CrowdBatches::enlist(PoseFrame& frame, const Cro
         groups.update(instances, CrowdView(visitor).sizePlane(rate.pixels), seen);
         draws = enlistGroups(frame, instances, groups, *visitor.getModelViewMatrix());
     }
-    if (seen.empty()) return draws;
-    std::unique_ptr<PoseBatch> batch = frame.makeBatch(instances.set());
-    instances.addTo(*batch, seen);
-    draws.push_back({frame.enlist(std::move(batch)).stateSet, false});
+    static thread_local std::array<Indices, PoseBatch::loadCount> loads;
+    sortByLoad(instances, seen, loads);
+    for (const Indices& load : loads)
+    {
+        if (load.empty()) continue;
+        std::unique_ptr<PoseBatch> batch = frame.makeBatch(instances.set());
+        instances.addTo(*batch, load);
+        draws.push_back({frame.enlist(std::move(batch)).stateSet, false});
+    }
     return draws;
 }
 

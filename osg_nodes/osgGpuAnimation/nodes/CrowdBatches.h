@@ -16,9 +16,10 @@
 namespace osgGpuAnimation
 {
 
-/// Has the poses of what cameras see of a crowd evaluated: in one batch what is to be up to date, and in one more for
-/// each group of small instances (see UpdateRate) the poses of its last turn, which the pipeline still has. Keeps a
-/// camera's groups as long as it sees the crowd. Several cameras may cull at once.
+/// Has the poses of what cameras see of a crowd evaluated: what is to be up to date in one batch for those that show
+/// one clip and one for those whose clips are mixed, where there are many (PoseBatch::Load), and in one more for each
+/// group of small instances (see UpdateRate) the poses of its last turn, which the pipeline still has. Keeps a camera's
+/// groups as long as it sees the crowd. Several cameras may cull at once.
 class CrowdBatches
 {
 public:

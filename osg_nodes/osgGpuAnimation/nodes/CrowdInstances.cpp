@@ -207,6 +207,11 @@ void CrowdInstances::findSeen(const std::vector<glm::vec4>& planes, std::vector<
     }
 }
 
+PoseBatch::Load CrowdInstances::load(std::size_t index) const
+{
+    return _controllers[index] ? PoseBatch::loadOf(_controllers[index]->instruction()) : PoseBatch::Load::Plain;
+}
+
 void CrowdInstances::addTo(PoseBatch& batch, const std::vector<std::uint32_t>& indices) const
 {
     for (const std::uint32_t index : indices)

@@ -48,6 +48,7 @@ public:
     std::uint32_t tint(std::size_t index) const { return _tints[index]; }
     bool isTinted() const { return _tinted != 0; } ///< any of them
     PoseInstruction instruction(std::size_t index) const;
+    PoseBatch::Load load(std::size_t index) const; ///< of its instruction
     /// Holds until the next advance(), which takes it back where a CrowdPlayback will do.
     AnimationController& controller(std::size_t index);
     AnimationController controllerCopy(std::size_t index) const;

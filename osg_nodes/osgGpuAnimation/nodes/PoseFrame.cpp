@@ -34,14 +34,17 @@ PaletteBinding& bindingOf(osg::StateSet& stateSet)
 
 } // namespace
 
-osg::ref_ptr<PoseFrame> PoseFrame::forContext(unsigned int contextId, unsigned int frameNumber)
+osg::ref_ptr<PoseFrame> PoseFrame::forContext(unsigned int contextId, const osg::FrameStamp* stamp)
 {
+    const unsigned int frameNumber = stamp ? stamp->getFrameNumber() : 0;
+    const double referenceTime = stamp ? stamp->getReferenceTime() : 0.0;
     static std::mutex mutex;
     static std::unordered_map<unsigned int, std::vector<osg::ref_ptr<PoseFrame>>> framesOfContext; // the latest last
     const std::lock_guard<std::mutex> lock(mutex);
     std::vector<osg::ref_ptr<PoseFrame>>& frames = framesOfContext[contextId];
     // Of frames before the latest, the palettes have been written over.
-    if (!frames.empty() && frames.back()->frameNumber() == frameNumber) return frames.back();
+    if (!frames.empty() && frames.back()->_frameNumber == frameNumber && frames.back()->_referenceTime == referenceTime)
+        return frames.back();
     const auto unused = std::find_if(frames.begin(), frames.end(),
                                      [](const osg::ref_ptr<PoseFrame>& frame) { return frame->referenceCount() == 1; });
     osg::ref_ptr<PoseFrame> next = unused == frames.end() ? new PoseFrame : unused->get();
@@ -49,14 +52,15 @@ osg::ref_ptr<PoseFrame> PoseFrame::forContext(unsigned int contextId, unsigned i
     frames.push_back(next);
     // Frames that are over keep no sets alive.
     for (const osg::ref_ptr<PoseFrame>& frame : frames)
-        if (frame->referenceCount() == 1) frame->reset(frame->frameNumber());
-    next->reset(frameNumber);
+        if (frame->referenceCount() == 1) frame->reset();
+    next->reset();
+    next->_frameNumber = frameNumber;
+    next->_referenceTime = referenceTime;
     return next;
 }
 
-void PoseFrame::reset(unsigned int frameNumber)
+void PoseFrame::reset()
 {
-    _frameNumber = frameNumber;
     for (const std::unique_ptr<Batch>& batch : _batches)
     {
         batch->content->reset(nullptr);
@@ -112,7 +116,10 @@ osg::StateSet* PoseFrame::stateOf(const AnimatedCharacter& character, EnlistedPo
 PoseFrame::Batch& PoseFrame::openBatch(const AnimatedCharacter& character)
 {
     std::vector<Batch*>& batches = _batchesOfSet[&character.set()];
-    const auto open = std::find_if(batches.begin(), batches.end(), [](const Batch* batch) { return batch->isOpen(); });
+    const PoseInstruction& instruction = character.controller().instruction();
+    const auto open =
+        std::find_if(batches.begin(), batches.end(),
+                     [&](const Batch* batch) { return batch->isOpen() && batch->content->suits(instruction); });
     return open != batches.end() ? **open : addBatch(spareBatch(character.controller().sharedSet()));
 }
 

@@ -49,8 +49,9 @@ struct PlacedState
 class PoseFrame : public osg::Referenced
 {
 public:
-    /// The frame to fill now; frames still in use elsewhere are left alone.
-    static osg::ref_ptr<PoseFrame> forContext(unsigned int contextId, unsigned int frameNumber);
+    /// The frame to fill now; frames still in use elsewhere are left alone. stamp: number and reference time say which
+    /// frame it is, since another viewer's may have the same number; null: frame 0.
+    static osg::ref_ptr<PoseFrame> forContext(unsigned int contextId, const osg::FrameStamp* stamp);
 
     /// Takes the character up, unless it is already in with the same instruction.
     EnlistedPose enlist(const AnimatedCharacter& character);
@@ -102,7 +103,7 @@ private:
         void reset();
     };
 
-    void reset(unsigned int frameNumber);
+    void reset();
     void evaluateBatches(osg::State& state, PosePipeline* pipeline);
     void record(osg::Stats& stats, std::uint64_t evaluated) const;
     bool isStill(const Enlisted& known, const AnimatedCharacter& character) const;
@@ -113,8 +114,9 @@ private:
 
     std::mutex _mutex;
     unsigned int _frameNumber = 0;
+    double _referenceTime = 0.0; ///< seconds
     std::vector<std::unique_ptr<Batch>> _batches;
-    std::unordered_map<const AnimationSet*, std::vector<Batch*>> _batchesOfSet; ///< one may be open
+    std::unordered_map<const AnimationSet*, std::vector<Batch*>> _batchesOfSet; ///< open ones: of several loads
     std::vector<std::unique_ptr<PoseBatch>> _spareBatches;
     std::unordered_map<const AnimatedCharacter*, Enlisted> _enlisted;
     std::vector<BlendSample> _samples; ///< of those enlisted

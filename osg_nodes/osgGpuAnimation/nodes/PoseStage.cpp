@@ -90,17 +90,17 @@ PoseStage& PoseStage::current(osgUtil::CullVisitor& visitor)
     PoseStage& stage = of(visitor);
     const unsigned int frameNumber = visitor.getFrameStamp() ? visitor.getFrameStamp()->getFrameNumber() : 0;
     if (!stage._frame || !stage.isAttached(visitor) || stage._frame->frameNumber() != frameNumber)
-        stage.attach(visitor, visitor.getRenderInfo().getContextID(), frameNumber);
+        stage.attach(visitor);
     return stage;
 }
 
 // Attached to the visitor's main stage, wherever the traversal is now: a shadow camera's stage may come later.
-void PoseStage::attach(osgUtil::CullVisitor& visitor, unsigned int contextId, unsigned int frameNumber)
+void PoseStage::attach(osgUtil::CullVisitor& visitor)
 {
     _draws.clear();
-    _reads.begin(contextId);
+    _reads.begin(visitor.getRenderInfo().getContextID());
     _frame = nullptr; // so that its storage can be used again
-    _frame = PoseFrame::forContext(contextId, frameNumber);
+    _frame = PoseFrame::forContext(visitor.getRenderInfo().getContextID(), visitor.getFrameStamp());
     osgUtil::RenderBin* current = visitor.getCurrentRenderBin();
     visitor.setCurrentRenderBin(visitor.getRenderStage());
     accept(visitor);

@@ -35,7 +35,7 @@ private:
     static PoseStage& of(osgUtil::CullVisitor& visitor);
     static PoseStage& current(osgUtil::CullVisitor& visitor);
     bool isAttached(osgUtil::CullVisitor& visitor) const;
-    void attach(osgUtil::CullVisitor& visitor, unsigned int contextId, unsigned int frameNumber);
+    void attach(osgUtil::CullVisitor& visitor);
 
     const osgUtil::CullVisitor* _visitor; ///< whose stage this is: cull visitors get cloned with their user data
     osg::ref_ptr<PoseFrame> _frame;

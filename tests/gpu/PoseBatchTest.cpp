@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+#include "support/RandomSet.h"
+
+#include <osgGpuAnimation/gpu/PoseBatch.h>
+
+#include <layout.glsl>
+
+#include <gtest/gtest.h>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+using Load = PoseBatch::Load;
+
+struct LoadData
+{
+    const char* name;
+    std::size_t count;
+    float weight;
+    std::uint32_t control;
+    Load load;
+};
+
+const LoadData loadData[] = {
+    {"one clip", 1, 1.0f, POSE_SAMPLE_SPLINE, Load::Plain},
+    {"one that fades in", 1, 0.5f, 0, Load::Few},
+    {"one with a mask", 1, 1.0f, 1u << POSE_SAMPLE_MASK_SHIFT, Load::Few},
+    {"one that is added", 1, 1.0f, POSE_SAMPLE_ADDITIVE, Load::Few},
+    {"a crossfade", 2, 0.5f, 0, Load::Few},
+    {"four", 4, 0.25f, 0, Load::Few},
+    {"five", 5, 0.2f, 0, Load::Many},
+    {"as many as there may be", PoseInstruction::maxSamples, 0.1f, 0, Load::Many},
+};
+
+PoseInstruction instructionOf(const LoadData& data)
+{
+    PoseInstruction instruction;
+    instruction.sampleCount = data.count;
+    for (std::size_t i = 0; i < data.count; ++i)
+        instruction.samples[i] = {0, 0.0f, data.weight, data.control};
+    return instruction;
+}
+
+TEST(PoseBatchTest, loadsAreToldApart)
+{
+    for (const LoadData& data : loadData)
+        EXPECT_EQ(PoseBatch::loadOf(instructionOf(data)), data.load) << data.name;
+}
+
+TEST(PoseBatchTest, aFullBatchSuitsThoseOfItsLoadAlone)
+{
+    for (const LoadData& inside : loadData)
+    {
+        PoseBatch batch(makeRandomSet({}));
+        for (std::size_t i = 0; i < PoseBatch::worthABatch; ++i)
+        {
+            for (const LoadData& other : loadData)
+                EXPECT_TRUE(batch.suits(instructionOf(other)))
+                    << other.name << " beside " << i << " of " << inside.name;
+            batch.add(instructionOf(inside));
+        }
+        for (const LoadData& other : loadData)
+            EXPECT_EQ(batch.suits(instructionOf(other)), other.load == inside.load)
+                << other.name << " beside " << inside.name;
+    }
+}
+
+} // namespace
+
+} // namespace osgGpuAnimation

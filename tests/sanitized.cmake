@@ -9,7 +9,9 @@ if(OSGGPUANIMATION_SANITIZER STREQUAL address)
 endif()
 add_executable(sanitized_tests EXCLUDE_FROM_ALL ${sanitized_sources} ${support_sources})
 set(OSGGPUANIMATION_UNITY ON) # for this program in any case: its files are the other programs' too
-osggpuanimation_unity(sanitized_tests nodes/NestedCameraGLTest.cpp nodes/ViewersGLTest.cpp)
+# Those with names like others have stay apart.
+list(FILTER sanitized_sources INCLUDE REGEX "GLTest")
+osggpuanimation_unity(sanitized_tests ${sanitized_sources})
 target_link_libraries(sanitized_tests PRIVATE osgGpuAnimation_build osgGpuAnimation_gltf nlohmann_json::nlohmann_json
                       GTest::gtest GTest::gtest_main)
 target_include_directories(sanitized_tests PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})

@@ -20,6 +20,13 @@ namespace
 class PagerGLTest : public ViewerGLTest
 {
 protected:
+    void TearDown() override
+    {
+        // A thread that drops a texture while OSG discards its context's would drop it twice.
+        if (viewer().getDatabasePager()) viewer().getDatabasePager()->cancel();
+        ViewerGLTest::TearDown();
+    }
+
     static constexpr int places = 4;
 
     osg::ref_ptr<osg::Group> makeScene()

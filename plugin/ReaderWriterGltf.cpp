@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/Import.h"
+#include "gltf/ModelBytes.h"
 #include "gltf/OptionString.h"
-#include "gltf/RegularFile.h"
 
 #include "cache/SeparateLoads.h"
 
@@ -10,41 +10,11 @@
 #include <osgDB/FileUtils>
 #include <osgDB/Registry>
 
-#include <istream>
 #include <new>
-#include <optional>
 #include <string>
 
 namespace osgGpuAnimation
 {
-
-namespace
-{
-
-constexpr std::size_t mostBytesOfAStream = std::size_t(2) << 30;
-
-/// All of the stream; nothing where it fails or holds more than the limit.
-std::optional<std::string> readAll(std::istream& stream, std::size_t limit)
-{
-    std::string bytes;
-    char block[65536];
-    while (stream.read(block, sizeof(block)) || stream.gcount() > 0)
-    {
-        bytes.append(block, static_cast<std::size_t>(stream.gcount()));
-        if (bytes.size() > limit) return std::nullopt;
-    }
-    if (stream.bad()) return std::nullopt;
-    return bytes;
-}
-
-/// osgDB puts the file's name in front of a message.
-std::string withoutSubject(const std::string& message, const std::string& path)
-{
-    const std::string subject = path + ": ";
-    return message.rfind(subject, 0) == 0 ? message.substr(subject.size()) : message;
-}
-
-} // namespace
 
 /// The osgPlugin for glTF 2.0: .gltf and .glb become an animated OSG graph, see gltf::importModel().
 /// Errors go into the ReadResult, which osgDB prints; warnings are printed here at WARN, notes at INFO.
@@ -73,8 +43,14 @@ public:
     ReadResult readNode(std::istream& stream, const Options* options) const override;
 
 private:
-    ReadResult import(const std::string& bytes, const std::string& fileName, const Options* options) const;
+    ReadResult import(const std::string& bytes, const std::string& fileName, const Options* options,
+                      const gltf::ImportOptions& importOptions) const;
 };
+
+static Result<gltf::ImportOptions> optionsOf(const osgDB::Options* options)
+{
+    return gltf::parseOptions(options ? options->getOptionString() : "");
+}
 
 osgDB::ReaderWriter::ReadResult ReaderWriterGltf::readNode(const std::string& fileName, const Options* options) const
 {
@@ -83,9 +59,11 @@ osgDB::ReaderWriter::ReadResult ReaderWriterGltf::readNode(const std::string& fi
     if (path.empty()) return ReadResult::FILE_NOT_FOUND;
     try
     {
-        const Result<std::string> bytes = gltf::readWholeFile(path);
-        if (!bytes) return ReadResult(withoutSubject(bytes.error().message, path));
-        return import(bytes.value(), path, options);
+        const Result<gltf::ImportOptions> importOptions = optionsOf(options);
+        if (!importOptions) return ReadResult(importOptions.error().message);
+        const Result<std::string> bytes = gltf::readModelFile(path, importOptions.value());
+        if (!bytes) return ReadResult(bytes.error().message);
+        return import(bytes.value(), path, options, importOptions.value());
     }
     catch (const std::bad_alloc&)
     {
@@ -97,12 +75,15 @@ osgDB::ReaderWriter::ReadResult ReaderWriterGltf::readNode(std::istream& stream,
 {
     try
     {
-        const std::optional<std::string> bytes = readAll(stream, mostBytesOfAStream);
-        if (!bytes) return ReadResult("the stream cannot be read, or does not end");
+        const Result<gltf::ImportOptions> importOptions = optionsOf(options);
+        if (!importOptions) return ReadResult(importOptions.error().message);
+        const Result<std::string> bytes = gltf::readModelStream(stream, importOptions.value());
+        if (!bytes) return ReadResult(bytes.error().message);
         // A stream has no folder of its own; external files are found in the folder that the options put first.
         const bool hasFolder = options && !options->getDatabasePathList().empty();
-        return import(*bytes, hasFolder ? osgDB::concatPaths(options->getDatabasePathList().front(), "stream") : "",
-                      options);
+        return import(bytes.value(),
+                      hasFolder ? osgDB::concatPaths(options->getDatabasePathList().front(), "stream") : "", options,
+                      importOptions.value());
     }
     catch (const std::bad_alloc&)
     {
@@ -111,13 +92,12 @@ osgDB::ReaderWriter::ReadResult ReaderWriterGltf::readNode(std::istream& stream,
 }
 
 osgDB::ReaderWriter::ReadResult ReaderWriterGltf::import(const std::string& bytes, const std::string& fileName,
-                                                         const Options* options) const
+                                                         const Options* options,
+                                                         const gltf::ImportOptions& importOptions) const
 {
-    const Result<gltf::ImportOptions> importOptions = gltf::parseOptions(options ? options->getOptionString() : "");
-    if (!importOptions) return ReadResult(importOptions.error().message);
     for (const std::string& hint : gltf::misspeltOptions(options ? options->getOptionString() : ""))
         OSG_WARN << className() << ": " << hint << std::endl;
-    const Result<gltf::ImportedModel> model = gltf::importModel(bytes, fileName, importOptions.value());
+    const Result<gltf::ImportedModel> model = gltf::importModel(bytes, fileName, importOptions);
     if (!model) return ReadResult(model.error().message);
     const std::string subject = fileName.empty() ? "glTF stream" : fileName;
     for (const std::string& warning : model.value().messages.warnings)

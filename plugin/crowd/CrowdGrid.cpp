@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "crowd/CrowdGrid.h"
 
+#include "gltf/ParsedNumber.h"
+
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/PoseStatistics.h>
 
-#include <charconv>
 #include <random>
 
 namespace osgGpuAnimation::crowd
@@ -20,10 +21,8 @@ Result<std::size_t> findClip(const AnimationSet& set, const std::string& nameOrN
 {
     const Result<std::size_t> named = set.clipNamed(nameOrNumber);
     if (named) return named;
-    std::size_t number = 0;
-    const char* end = nameOrNumber.data() + nameOrNumber.size();
-    const auto read = std::from_chars(nameOrNumber.data(), end, number);
-    return read.ec == std::errc() && read.ptr == end ? set.clipAt(number) : named;
+    const std::optional<std::size_t> number = gltf::parsedNumber<std::size_t>(nameOrNumber);
+    return number ? set.clipAt(*number) : named;
 }
 
 Result<std::vector<std::size_t>> findClips(const AnimationSet& set, const std::vector<std::string>& wanted)
@@ -49,10 +48,11 @@ double widthOf(const AnimatedCharacter& character, const osg::Matrixd& placement
     const auto add = [&](int clip)
     {
         const Box& box = character.clipBounds(clip);
-        for (int corner = 0; corner < 8 && !box.empty(); ++corner)
-            placed.expandBy(osg::Vec3d(corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
-                                       corner & 4 ? box.max.z : box.min.z) *
-                            placement);
+        for (int i = 0; i < 8 && !box.empty(); ++i)
+        {
+            const glm::vec3 corner = box.corner(i);
+            placed.expandBy(osg::Vec3d(corner.x, corner.y, corner.z) * placement);
+        }
     };
     if (clips.empty()) add(-1);
     for (const std::size_t clip : clips)

@@ -3,10 +3,10 @@
 
 #include "gltf/ElementName.h"
 #include "gltf/OptionWord.h"
+#include "gltf/ParsedNumber.h"
 
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 
-#include <charconv>
 #include <cmath>
 
 namespace osgGpuAnimation::crowd
@@ -19,8 +19,9 @@ namespace
 template <typename Number>
 bool readNumber(const std::string& text, Number& out)
 {
-    const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), out);
-    return fault == std::errc() && end == text.data() + text.size();
+    const std::optional<Number> number = gltf::parsedNumber<Number>(text);
+    if (number) out = *number;
+    return number.has_value();
 }
 
 Result<bool> readSize(const std::string& size, CrowdOptions& out)

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/AttributeSemantic.h"
 
-#include <charconv>
+#include "gltf/ParsedNumber.h"
+
 #include <utility>
 
 namespace osgGpuAnimation::gltf
@@ -16,11 +17,8 @@ using Kind = AttributeSemantic::Kind;
 std::optional<int> parseSet(std::string_view digits)
 {
     if (digits.empty() || digits.size() > 2 || (digits.size() == 2 && digits[0] == '0')) return std::nullopt;
-    int set = 0;
-    const char* const end = digits.data() + digits.size();
-    const std::from_chars_result read = std::from_chars(digits.data(), end, set);
-    if (read.ec != std::errc() || read.ptr != end || set < 0 || set >= AttributeSemantic::mostSets) return std::nullopt;
-    return set;
+    const std::optional<int> set = parsedNumber<int>(digits);
+    return set && *set >= 0 && *set < AttributeSemantic::mostSets ? set : std::nullopt;
 }
 
 } // namespace

@@ -17,7 +17,8 @@ namespace
 constexpr std::size_t bytesADrawable = 1024;
 constexpr std::size_t bytesAnInfluencedVertex =
     SkinnedGeometry::maxInfluenceSets * (sizeof(osg::Vec4us) + sizeof(osg::Vec4));
-constexpr std::size_t bytesAMorphedVertex = 4 * sizeof(osg::Vec4); ///< a target, at most
+// A target, at most. What is packed of it is shared, but bounds are looked for vertex by vertex for each drawable.
+constexpr std::size_t bytesAMorphedVertex = 4 * sizeof(osg::Vec4);
 
 osg::ref_ptr<osg::Vec4Array> overall(const osg::Vec4& color)
 {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "gltf/AlikeVertices.h"
 #include "gltf/Meshes.h"
 
 #include <cstdint>
@@ -11,14 +12,6 @@ namespace osgGpuAnimation::gltf
 
 /// How the vertices of a triangle mesh without normals become a mesh: triangles that were taken apart for a normal of
 /// their own are again joined where vertices agree in all the file says of them.
-///
-/// vertexOf: for each of the file's vertices, the joined one: below count; numbered in the file's order.
-struct JoinedVertices
-{
-    std::vector<std::uint32_t> vertexOf;
-    std::size_t count = 0;
-};
-
 /// Compares what the mesh has read (positions, texture coordinates, colours, targets) and the file's influences,
 /// byte by byte.
 JoinedVertices joinVertices(const tinygltf::Model& model, const tinygltf::Primitive& primitive,

@@ -3,6 +3,7 @@
 
 #include "gltf/ElementName.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 
@@ -100,6 +101,19 @@ Result<GlbContainer> splitContainer(std::string_view bytes, Report& report)
         at += chunkHeaderBytes + chunk.value().data.size();
     }
     return container;
+}
+
+std::size_t claimedJsonBytes(std::string_view beginning, std::size_t fileBytes)
+{
+    if (beginning.substr(0, magic.size()) != magic) return fileBytes;
+    if (beginning.size() < bytesBeforeJson) return 0;
+    return std::min<std::size_t>(littleEndian(beginning, headerBytes), fileBytes - bytesBeforeJson);
+}
+
+std::optional<Error> checkJsonBytes(std::size_t bytes, std::size_t limit)
+{
+    if (bytes <= limit) return std::nullopt;
+    return fault("JSON", "a text of at most " + bytesText(limit) + " (limit maxJsonBytes)", std::to_string(bytes));
 }
 
 } // namespace osgGpuAnimation::gltf

@@ -3,6 +3,7 @@
 
 #include "gltf/Clips.h"
 #include "gltf/ElementName.h"
+#include "gltf/ParsedNumber.h"
 #include "gltf/Reach.h"
 #include "gltf/SceneGraph.h"
 #include "gltf/Skins.h"
@@ -11,7 +12,6 @@
 #include <osgGpuAnimation/nodes/CharacterKeys.h>
 
 #include <algorithm>
-#include <charconv>
 
 namespace osgGpuAnimation::gltf
 {
@@ -20,14 +20,6 @@ namespace
 {
 
 constexpr std::size_t mostPaletteEntries = 65536; // a vertex names entries by 16 bits
-
-/// -1 where the text is no number.
-int toNumber(const std::string& text)
-{
-    int number = -1;
-    const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), number);
-    return fault == std::errc() && end == text.data() + text.size() ? number : -1;
-}
 
 std::string clipNames(const ImportedModel& imported)
 {
@@ -44,7 +36,7 @@ Result<int> chooseClip(const ImportedModel& imported, const ImportOptions& optio
     const int named = imported.set ? imported.set->findClip(*options.clip) : -1;
     if (named >= 0) return named;
     const auto& animations = imported.animationOfClip;
-    const auto found = std::find(animations.begin(), animations.end(), toNumber(*options.clip));
+    const auto found = std::find(animations.begin(), animations.end(), parsedNumber<int>(*options.clip).value_or(-1));
     if (found != animations.end()) return static_cast<int>(found - animations.begin());
     return Error{"clip " + quoted(*options.clip) + " was asked for; the file's clips are: " + clipNames(imported)};
 }

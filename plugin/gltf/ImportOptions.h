@@ -24,6 +24,7 @@ struct ImportOptions
     bool noRotation = false;        ///< keep glTF's +Y up; default: turn to OSG's +Z up at the root
     bool allowOutsideFiles = false; ///< let URIs leave the model's folder
 
+    std::size_t maxJsonBytes = std::size_t(512) << 20; ///< of the JSON text, data URIs and all
     std::size_t maxJsonDepth = 256;
     std::size_t maxNodeDepth = 4096;                       ///< nodes from a root to a leaf
     std::size_t maxElements = 1u << 24;                    ///< of any one array of the document

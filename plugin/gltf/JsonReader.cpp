@@ -3,6 +3,7 @@
 
 #include "gltf/DocumentBytes.h"
 #include "gltf/ElementName.h"
+#include "gltf/JsonText.h"
 
 #include <nlohmann/json.hpp>
 
@@ -26,16 +27,18 @@ class TreeBuilder
 public:
     using Json = nlohmann::json;
 
-    TreeBuilder(JsonTree& tree, const ImportOptions& options)
-        : _tree(tree), _mostDepth(std::min(options.maxJsonDepth, deepestJson)), _mostElements(options.maxElements),
+    TreeBuilder(JsonText& source, JsonTree& tree, const ImportOptions& options)
+        : _source(source), _tree(tree), _mostDepth(std::min(options.maxJsonDepth, deepestJson)),
+          _mostElements(options.maxElements),
           _mostValues(std::min<std::size_t>(options.maxDocumentBytes / bytesOfJsonValue,
                                             std::numeric_limits<std::uint32_t>::max() - 1))
     {
     }
 
     /// Room for as many values as the text can have: one, and one more for each comma and opening bracket.
-    void reserve(std::string_view text)
+    void reserve()
     {
+        const std::string_view text = _source.text();
         const std::size_t values =
             std::size_t(std::count(text.begin(), text.end(), ',') + std::count(text.begin(), text.end(), '{') +
                         std::count(text.begin(), text.end(), '[') + 1);
@@ -53,7 +56,10 @@ public:
     bool string(std::string& value)
     {
         if (!add(JsonTree::Type::String)) return false;
-        _tree.setText(_last, value);
+        if (const std::optional<std::string_view> data = _source.dataAt(_strings++))
+            _tree.setOutsideText(_last, *data);
+        else
+            _tree.setText(_last, value);
         return true;
     }
     bool binary(Json::binary_t&) { return false; }
@@ -61,6 +67,7 @@ public:
     bool start_array(std::size_t) { return open(JsonTree::Type::Array); }
     bool key(std::string& name)
     {
+        ++_strings;
         _key.swap(name);
         return true;
     }
@@ -72,7 +79,9 @@ public:
     bool end_array() { return close(); }
     bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception& exception)
     {
-        if (_fault.empty()) _fault = "JSON syntax: " + withoutId(exception.what());
+        if (!_fault.empty()) return false;
+        _fault = "JSON syntax: " + withoutId(exception.what());
+        if (_source.dataBytes() > 0) _fault += " (counted without the data URIs)";
         return false;
     }
 
@@ -148,7 +157,9 @@ private:
             }
     }
 
+    JsonText& _source;
     JsonTree& _tree;
+    std::size_t _strings = 0; ///< met so far, keys among them
     std::size_t _mostDepth;
     std::size_t _mostElements;
     std::size_t _mostValues;
@@ -200,10 +211,17 @@ Result<JsonTree> readJson(std::string_view text, const ImportOptions& options, R
 {
     if (text.size() >= std::numeric_limits<std::uint32_t>::max())
         return Error{"JSON: expected a text of less than 4 GiB, found " + std::to_string(text.size()) + " bytes"};
+    JsonText source(text);
+    if (source.otherBytes() > options.maxDocumentBytes / bytesOfJsonLetter)
+        return fault("JSON",
+                     "strings of at most " + std::to_string(options.maxDocumentBytes / bytesOfJsonLetter) +
+                         " bytes in all, less data (limit maxDocumentBytes)",
+                     std::to_string(source.otherBytes()));
     JsonTree tree;
-    TreeBuilder builder(tree, options);
-    builder.reserve(text);
-    if (!nlohmann::json::sax_parse(text.begin(), text.end(), &builder)) return Error{builder.faultText()};
+    TreeBuilder builder(source, tree, options);
+    builder.reserve();
+    if (!nlohmann::json::sax_parse(source.text().begin(), source.text().end(), &builder))
+        return Error{builder.faultText()};
     if (const std::optional<Error> more = checkEnd(text, report)) return *more;
     if (!tree.root().is(JsonTree::Type::Object))
         return fault("JSON", "an object as the root", tree.root().description());

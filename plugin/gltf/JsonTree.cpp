@@ -43,6 +43,13 @@ void JsonTree::setText(std::uint32_t value, std::string_view text)
     _text += text;
 }
 
+void JsonTree::setOutsideText(std::uint32_t value, std::string_view text)
+{
+    _nodes[value].text = std::uint32_t(_outside.size());
+    _nodes[value].isTextOutside = true;
+    _outside.push_back(text);
+}
+
 void JsonTree::end(std::uint32_t container, std::uint32_t size)
 {
     _nodes[container].end = std::uint32_t(_nodes.size());
@@ -66,6 +73,7 @@ bool JsonValue::isInteger() const
 
 std::string_view JsonValue::text() const
 {
+    if (node().isTextOutside) return _tree->_outside[node().text];
     return std::string_view(_tree->_text).substr(node().text, node().textLength);
 }
 

@@ -36,6 +36,8 @@ public:
     std::uint32_t add(Type type, std::string_view key);
     void setNumber(std::uint32_t value, double number);
     void setText(std::uint32_t value, std::string_view text);
+    /// The same for text that stays where it is, in bytes that outlive the tree.
+    void setOutsideText(std::uint32_t value, std::string_view text);
     void end(std::uint32_t container, std::uint32_t size);
     void drop(std::uint32_t value);
     std::size_t size() const { return _nodes.size(); }
@@ -56,10 +58,12 @@ private:
         std::uint32_t size = 0; ///< elements or members
         Type type = Type::Null;
         bool dropped = false;
+        bool isTextOutside = false; ///< text is an index of _outside
     };
 
     std::vector<Node> _nodes;
     std::string _text;
+    std::vector<std::string_view> _outside;
 };
 
 /// A value of a tree, or none: asking a missing value for a member gives a missing value again.

@@ -30,17 +30,15 @@ Result<Bytes> readFile(std::string_view uri, std::size_t byteLength, const Model
     return bytes;
 }
 
-Result<Bytes> readUri(std::string_view uri, std::size_t byteLength, const ModelFolder& folder, std::size_t most)
+Result<Bytes> readUri(std::string_view uri, std::size_t byteLength, const ModelFolder& folder)
 {
     if (!isDataUri(uri)) return readFile(uri, byteLength, folder);
-    Result<DataUri> data = decodeDataUri(uri, most);
+    Result<DataUri> data = decodeDataUri(uri, byteLength);
     if (!data) return data.error();
-    Bytes bytes = std::move(data).value().bytes;
-    if (bytes.size() < byteLength)
+    if (data.value().bytes.size() < byteLength)
         return Error{"expected " + std::to_string(byteLength) + " bytes of data, found " +
-                     std::to_string(bytes.size())};
-    bytes.resize(byteLength);
-    return bytes;
+                     std::to_string(data.value().bytes.size())};
+    return std::move(data).value().bytes;
 }
 
 Result<Bytes> readBinaryChunk(std::string_view binary, std::size_t byteLength, Report& report)
@@ -80,11 +78,10 @@ std::optional<Error> loadBuffers(const JsonValue& buffers, const std::optional<s
             warnOfMissing(buffer, name, report);
             continue;
         }
-        const std::size_t most = budget.left();
         if (!budget.take(byteLength))
             return fault(name + ".byteLength", budget.limitText(), std::to_string(byteLength));
         Result<Bytes> bytes =
-            uri ? readUri(uri.text(), byteLength, folder, most) : readBinaryChunk(*binary, byteLength, report);
+            uri ? readUri(uri.text(), byteLength, folder) : readBinaryChunk(*binary, byteLength, report);
         if (!bytes) return Error{name + (uri ? ".uri: " : ".byteLength: ") + bytes.error().message};
         loaded.data = std::move(bytes).value();
         if (uri && !isDataUri(uri.text())) loaded.uri = uri.text();

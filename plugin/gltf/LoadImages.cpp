@@ -22,9 +22,19 @@ bool isKnownMimeType(std::string_view type)
     return type.empty() || type == "image/png" || type == "image/jpeg" || type == "application/octet-stream";
 }
 
-Result<Bytes> readDataUri(std::string_view uri, std::size_t most, const std::string& name, Report& report)
+Error tooLarge(const DecodedBytes& budget, std::size_t bytes)
 {
-    Result<DataUri> data = decodeDataUri(uri, most);
+    return Error{"expected " + budget.limitText() + ", found a picture of " + std::to_string(bytes)};
+}
+
+// What is read counts, a picture or not: many images may name the same data, and each is looked through.
+
+Result<Bytes> readDataUri(std::string_view uri, DecodedBytes& budget, const std::string& name, Report& report)
+{
+    const Result<std::size_t> size = bytesOfDataUri(uri);
+    if (!size) return size.error();
+    if (!budget.take(size.value())) return tooLarge(budget, size.value());
+    Result<DataUri> data = decodeDataUri(uri, size.value());
     if (!data) return data.error();
     if (!isKnownMimeType(data.value().mimeType))
         report.warn(name + ".uri: expected image/png or image/jpeg, found " + quoted(data.value().mimeType) +
@@ -32,22 +42,21 @@ Result<Bytes> readDataUri(std::string_view uri, std::size_t most, const std::str
     return std::move(data).value().bytes;
 }
 
-Result<Bytes> readFile(std::string_view uri, const ModelFolder& folder, std::size_t most)
+Result<Bytes> readFile(std::string_view uri, const ModelFolder& folder, DecodedBytes& budget)
 {
     const Result<RegularFile> file = folder.open(uri);
     if (!file) return file.error();
-    if (file.value().size() > most)
-        return Error{"expected at most " + std::to_string(most) + " bytes, found " +
-                     std::to_string(file.value().size())};
+    if (!budget.take(file.value().size())) return tooLarge(budget, file.value().size());
     Bytes bytes(file.value().size());
     const Result<std::size_t> read = file.value().read(bytes.data(), bytes.size());
     if (!read) return read.error();
     return bytes;
 }
 
-Bytes readView(const tinygltf::Model& model, int index)
+Result<Bytes> readView(const tinygltf::Model& model, int index, DecodedBytes& budget)
 {
     const tinygltf::BufferView& view = model.bufferViews[std::size_t(index)];
+    if (!budget.take(view.byteLength)) return tooLarge(budget, view.byteLength);
     const Bytes& data = model.buffers[std::size_t(view.buffer)].data;
     const auto begin = data.begin() + std::ptrdiff_t(view.byteOffset);
     return Bytes(begin, begin + std::ptrdiff_t(view.byteLength));
@@ -63,9 +72,7 @@ Result<ImageHeader> checkBytes(const Bytes& bytes, DecodedBytes& budget)
 {
     Result<ImageHeader> header = readImageHeader(bytes);
     if (!header) return header;
-    if (!budget.take(bytes.size()) || !budget.take(header.value().decodedBytes))
-        return Error{"expected " + budget.limitText() + ", found a picture of " +
-                     std::to_string(header.value().decodedBytes)};
+    if (!budget.take(header.value().decodedBytes)) return tooLarge(budget, header.value().decodedBytes);
     return header;
 }
 
@@ -83,9 +90,9 @@ void loadImages(const JsonValue& images, const ModelFolder& folder, DecodedBytes
         if (const JsonValue given = json["name"]) image.name = given.text();
         if (const JsonValue view = json["bufferView"]) image.bufferView = int(view.number());
         if (uri && !isDataUri(uri.text())) image.uri = uri.text();
-        Result<Bytes> bytes = !uri                    ? readView(model, image.bufferView)
-                              : isDataUri(uri.text()) ? readDataUri(uri.text(), budget.left(), name, report)
-                                                      : readFile(uri.text(), folder, budget.left());
+        Result<Bytes> bytes = !uri                    ? readView(model, image.bufferView, budget)
+                              : isDataUri(uri.text()) ? readDataUri(uri.text(), budget, name, report)
+                                                      : readFile(uri.text(), folder, budget);
         const Result<ImageHeader> header = bytes ? checkBytes(bytes.value(), budget) : bytes.error();
         if (!header)
         {

@@ -3,9 +3,9 @@
 
 #include "gltf/ElementName.h"
 #include "gltf/OptionWord.h"
+#include "gltf/ParsedNumber.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
 
@@ -19,18 +19,19 @@ namespace
 template <typename Number>
 bool readNumber(const std::string& text, Number& out)
 {
-    Number number = 0;
-    const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (fault != std::errc() || end != text.data() + text.size() || !(number >= 0)) return false;
-    out = number;
+    const std::optional<Number> number = parsedNumber<Number>(text);
+    if (!number || !(*number >= 0)) return false;
+    out = *number;
     return true;
 }
 
 /// False where the text is not a finite number.
 bool readFinite(const std::string& text, double& out)
 {
-    const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), out);
-    return fault == std::errc() && end == text.data() + text.size() && std::isfinite(out);
+    const std::optional<double> number = parsedNumber<double>(text);
+    if (!number || !std::isfinite(*number)) return false;
+    out = *number;
+    return true;
 }
 
 bool readLoopMode(const std::string& text, LoopMode& out)
@@ -82,6 +83,8 @@ bool apply(const OptionWord& word, ImportOptions& options)
         options.clip = value;
     else if (word.name == "scene")
         return readNumber(value, options.scene.emplace());
+    else if (word.name == "maxJsonBytes")
+        return readNumber(value, options.maxJsonBytes);
     else if (word.name == "maxJsonDepth")
         return readNumber(value, options.maxJsonDepth);
     else if (word.name == "maxNodeDepth")
@@ -124,6 +127,7 @@ const std::vector<OptionHelp>& optionHelp()
         {"scene=INDEX", "the scene to show; default: the file's own"},
         {"noRotation", "keep glTF's +Y up; default: +Z up"},
         {"allowOutsideFiles", "let a model read files outside its own folder"},
+        {"maxJsonBytes=N", "bytes of the JSON text, data URIs and all; default: 512 MiB"},
         {"maxJsonDepth=N", "how deep JSON may nest; default: 256"},
         {"maxNodeDepth=N", "nodes from a root to a leaf; default: 4096"},
         {"maxElements=N", "elements of any one array; default: 16777216"},

@@ -84,11 +84,10 @@ std::vector<Reach> reachAtRest(const Skeleton& skeleton)
 
 std::vector<Reach> reachOfClip(const Skeleton& skeleton, const Clip& clip)
 {
-    const std::size_t step = clip.form() == Clip::Form::Spline ? 3 : 1;
     std::vector<Largest> locals(skeleton.jointCount());
     for (std::size_t keyframe = 0; keyframe < clip.keyframeCount(); ++keyframe)
         for (std::size_t joint = 0; joint < locals.size(); ++joint)
-            locals[joint].add(&clip.data()[keyframe * clip.keyframeStride() + joint * step], step);
+            locals[joint].add(clip.at(keyframe, joint), clip.transformsPerTrack());
     return chained(skeleton, locals);
 }
 

@@ -7,6 +7,8 @@
 #include "gltf/NodeTransform.h"
 #include "gltf/Reach.h"
 
+#include <osgGpuAnimation/nodes/OsgMatrix.h>
+
 #include <glm/gtc/type_ptr.hpp>
 #include <glm/matrix.hpp>
 #include <osg/FrontFace>
@@ -59,11 +61,6 @@ private:
     std::map<const osg::Geometry*, osg::ref_ptr<osg::Geometry>> _open;
     std::set<const osg::Geometry*> _inCharacter;
 };
-
-osg::Matrixd toOsg(const glm::dmat4& matrix)
-{
-    return osg::Matrixd(glm::value_ptr(matrix)); // columns for column vectors are rows for row vectors
-}
 
 double determinant(const osg::Matrixd& m)
 {

@@ -69,6 +69,7 @@ Result<tinygltf::Model> load(const std::string& bytes, const std::string& fileNa
 {
     const Result<GlbContainer> container = splitContainer(bytes, report);
     if (!container) return container.error();
+    if (std::optional<Error> error = checkJsonBytes(container.value().json.size(), options.maxJsonBytes)) return *error;
     Result<JsonTree> json = readJson(container.value().json, options, report);
     if (!json) return json.error();
     Loading loading{options,

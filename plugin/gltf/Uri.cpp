@@ -14,6 +14,24 @@ namespace osgGpuAnimation::gltf
 namespace
 {
 
+using Bytes = std::vector<unsigned char>;
+
+/// data:KIND,PAYLOAD
+struct DataUriParts
+{
+    std::string_view kind;
+    std::string_view payload; ///< base64 without padding, or percent-encoded
+    bool isBase64 = false;
+
+    /// What the payload decodes to where nothing is wrong with it.
+    std::size_t bytes() const
+    {
+        if (isBase64) return payload.size() / 4 * 3 + payload.size() % 4 * 3 / 4;
+        const auto encoded = std::size_t(std::count(payload.begin(), payload.end(), '%'));
+        return payload.size() - 2 * std::min(encoded, payload.size() / 3);
+    }
+};
+
 Error unexpected(const std::string& expected, const std::string& found)
 {
     return Error{"expected " + expected + ", found " + found};
@@ -27,21 +45,23 @@ int hexDigit(char c)
     return -1;
 }
 
-Result<std::string> decodePercent(std::string_view text)
+/// Out: a string or bytes, of which no more than `most` are kept.
+template <typename Out>
+Result<Out> decodePercent(std::string_view text, std::size_t most)
 {
-    std::string out;
-    out.reserve(text.size());
+    Out out;
+    out.reserve(most);
     for (std::size_t i = 0; i < text.size(); ++i)
     {
         if (text[i] != '%')
         {
-            out += text[i];
+            if (out.size() < most) out.push_back(static_cast<typename Out::value_type>(text[i]));
             continue;
         }
         const int high = i + 1 < text.size() ? hexDigit(text[i + 1]) : -1;
         const int low = i + 2 < text.size() ? hexDigit(text[i + 2]) : -1;
         if (high < 0 || low < 0) return unexpected("two hexadecimal digits after %", quoted(text.substr(i, 3)));
-        out += static_cast<char>(high * 16 + low);
+        if (out.size() < most) out.push_back(static_cast<typename Out::value_type>(high * 16 + low));
         i += 2;
     }
     return out;
@@ -59,13 +79,18 @@ constexpr std::array<std::uint8_t, 256> base64Values()
     return values;
 }
 
-Result<std::vector<unsigned char>> decodeBase64(std::string_view text)
+std::string_view withoutPadding(std::string_view base64)
+{
+    for (int padding = 0; padding < 2 && !base64.empty() && base64.back() == '='; ++padding)
+        base64.remove_suffix(1);
+    return base64;
+}
+
+Result<Bytes> decodeBase64(std::string_view text, std::size_t most)
 {
     static constexpr std::array<std::uint8_t, 256> values = base64Values();
-    for (int padding = 0; padding < 2 && !text.empty() && text.back() == '='; ++padding)
-        text.remove_suffix(1);
-    std::vector<unsigned char> out;
-    out.reserve(text.size() / 4 * 3 + 3);
+    Bytes out;
+    out.reserve(most);
     std::uint32_t bits = 0;
     int count = 0;
     for (std::size_t i = 0; i < text.size(); ++i)
@@ -78,24 +103,28 @@ Result<std::vector<unsigned char>> decodeBase64(std::string_view text)
         count += 6;
         if (count < 8) continue;
         count -= 8;
-        out.push_back(static_cast<unsigned char>(bits >> count));
+        if (out.size() < most) out.push_back(static_cast<unsigned char>(bits >> count));
     }
     if (count == 6) return unexpected("base64", "data that ends in the middle of a byte");
     return out;
-}
-
-Result<std::vector<unsigned char>> decodePayload(std::string_view payload, bool base64)
-{
-    if (base64) return decodeBase64(payload);
-    const Result<std::string> text = decodePercent(payload);
-    if (!text) return text.error();
-    return std::vector<unsigned char>(text.value().begin(), text.value().end());
 }
 
 bool equalsIgnoringCase(std::string_view text, std::string_view lower)
 {
     return std::equal(text.begin(), text.end(), lower.begin(), lower.end(),
                       [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; });
+}
+
+Result<DataUriParts> splitDataUri(std::string_view uri)
+{
+    const std::size_t comma = uri.find(',');
+    if (comma == std::string_view::npos) return unexpected("a comma and data after data:", quoted(uri));
+    DataUriParts parts{uri.substr(5, comma - 5), uri.substr(comma + 1), false};
+    const std::string_view marker = ";base64";
+    parts.isBase64 = parts.kind.size() >= marker.size() &&
+                     equalsIgnoringCase(parts.kind.substr(parts.kind.size() - marker.size()), marker);
+    if (parts.isBase64) parts.payload = withoutPadding(parts.payload);
+    return parts;
 }
 
 /// http: or C: at the beginning (RFC 3986, section 3.1).
@@ -117,17 +146,20 @@ bool isDataUri(std::string_view uri)
     return equalsIgnoringCase(uri.substr(0, 5), "data:");
 }
 
+Result<std::size_t> bytesOfDataUri(std::string_view uri)
+{
+    const Result<DataUriParts> parts = splitDataUri(uri);
+    if (!parts) return parts.error();
+    return parts.value().bytes();
+}
+
 Result<DataUri> decodeDataUri(std::string_view uri, std::size_t most)
 {
-    const std::size_t comma = uri.find(',');
-    if (comma == std::string_view::npos) return unexpected("a comma and data after data:", quoted(uri));
-    std::string_view kind = uri.substr(5, comma - 5);
-    const std::string_view payload = uri.substr(comma + 1);
-    const std::string_view marker = ";base64";
-    const bool base64 =
-        kind.size() >= marker.size() && equalsIgnoringCase(kind.substr(kind.size() - marker.size()), marker);
-    if (payload.size() / 4 * 3 > most) return unexpected("at most " + std::to_string(most) + " bytes", "more");
-    Result<std::vector<unsigned char>> bytes = decodePayload(payload, base64);
+    const Result<DataUriParts> parts = splitDataUri(uri);
+    if (!parts) return parts.error();
+    const auto& [kind, payload, isBase64] = parts.value();
+    const std::size_t kept = std::min(most, parts.value().bytes());
+    Result<Bytes> bytes = isBase64 ? decodeBase64(payload, kept) : decodePercent<Bytes>(payload, kept);
     if (!bytes) return bytes.error();
     return DataUri{std::string(kind.substr(0, kind.find(';'))), std::move(bytes).value()};
 }
@@ -136,7 +168,7 @@ Result<std::string> decodePath(std::string_view uri)
 {
     if (uri.empty()) return unexpected("a relative path or a data URI", "an empty text");
     if (hasScheme(uri)) return unexpected("a relative path or a data URI", quoted(uri));
-    Result<std::string> path = decodePercent(uri);
+    Result<std::string> path = decodePercent<std::string>(uri, uri.size());
     if (!path) return path;
     if (path.value().find('\0') != std::string::npos) return unexpected("a path without NUL", quoted(uri));
     if (path.value().find('\\') != std::string::npos)

@@ -22,8 +22,13 @@ struct DataUri
 
 bool isDataUri(std::string_view uri);
 
-/// Decodes data:[MIME type][;base64],… of any MIME type.
-/// Errors: no comma, a character that is no base64, more than `most` bytes.
+/// How many bytes a data URI stands for, told by its length: to be asked before memory is claimed for them.
+/// Error: no comma.
+Result<std::size_t> bytesOfDataUri(std::string_view uri);
+
+/// Decodes data:[MIME type][;base64],… of any MIME type. Of longer data the first `most` bytes are kept; the rest is
+/// looked at for faults only.
+/// Errors: no comma, a character that is no base64.
 Result<DataUri> decodeDataUri(std::string_view uri, std::size_t most);
 
 /// The path that a relative URI stands for: percent-encoding is resolved, a plus sign is a plus sign.

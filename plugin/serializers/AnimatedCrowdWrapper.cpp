@@ -7,6 +7,7 @@
 #include "serializers/ValueWriter.h"
 
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+#include <osgGpuAnimation/nodes/OsgMatrix.h>
 
 #include <osgDB/ObjectWrapper>
 
@@ -83,11 +84,8 @@ void readInstance(ValueReader& in, AnimatedCrowd& crowd)
         readController(in, controller);
     }
     if (!in.isGood()) return;
-    osg::Matrixd placement;
-    for (int row = 0; row < 3; ++row)
-        for (int column = 0; column < 4; ++column)
-            placement(column, row) = static_cast<double>(root.rows[static_cast<std::size_t>(row)][column]) +
-                                     (column == 3 ? crowd.origin()[row] : 0.0);
+    osg::Matrixd placement = toOsg(root);
+    placement.setTrans(placement.getTrans() + crowd.origin());
     const auto added = crowd.add(placement, controller, toColor(tint));
     if (!added) in.fail("an instance of a crowd: " + added.error().message);
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "ModelFile.h"
 
+#include "gltf/ModelBytes.h"
+
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
 namespace osgGpuAnimation::tool
 {
@@ -17,13 +17,9 @@ Result<gltf::ImportedModel> readModel(const std::string& fileName, const gltf::I
     // A pipe or a device could block for ever, or never end.
     if (!std::filesystem::is_regular_file(status)) return Error{"is not a regular file"};
 
-    std::ifstream file(fileName, std::ios::binary);
-    std::ostringstream content;
-    if (!file || (std::filesystem::file_size(fileName, failure) > 0 && !(content << file.rdbuf())))
-        return Error{"cannot be read"};
-    const std::string bytes = content.str();
-    if (bytes.empty()) return Error{"is empty"};
-    return gltf::importModel(bytes, fileName, options);
+    const Result<std::string> bytes = gltf::readModelFile(fileName, options);
+    if (!bytes) return bytes.error();
+    return gltf::importModel(bytes.value(), fileName, options);
 }
 
 } // namespace osgGpuAnimation::tool

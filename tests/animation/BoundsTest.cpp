@@ -44,9 +44,7 @@ void addTrue(const RandomCharacter& character, const std::vector<Box>& boxOfInpu
     for (std::size_t j = 0; j < joints.size(); ++j)
         for (int corner = 0; corner < 8 && !boxOfInput[j].empty(); ++corner)
         {
-            const Box& b = boxOfInput[j];
-            const glm::dvec4 point((corner & 1) ? b.max.x : b.min.x, (corner & 2) ? b.max.y : b.min.y,
-                                   (corner & 4) ? b.max.z : b.min.z, 1.0);
+            const glm::dvec4 point(glm::dvec3(boxOfInput[j].corner(corner)), 1.0);
             out.add(glm::vec3(glm::dvec3(joints[j] * point)));
         }
 }
@@ -187,6 +185,17 @@ TEST(BoundsTest, HugeValuesGiveABoxOfNumbers)
         }
         EXPECT_FALSE(bounds.empty());
         EXPECT_TRUE(std::isfinite(glm::length(bounds.max - bounds.min)));
+    }
+}
+
+TEST(BoundsTest, EachCornerIsThereOnce)
+{
+    for (int i = 0; i < 8; ++i)
+    {
+        const glm::vec3 corner = box({1, 20, 300}, {2, 40, 600}).corner(i);
+        EXPECT_EQ(corner.x, (i & 1) != 0 ? 2 : 1);
+        EXPECT_EQ(corner.y, (i & 2) != 0 ? 40 : 20);
+        EXPECT_EQ(corner.z, (i & 4) != 0 ? 600 : 300);
     }
 }
 

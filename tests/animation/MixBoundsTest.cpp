@@ -41,9 +41,7 @@ double outside(const Box& bounds, const AnimationController& controller, const E
     for (std::size_t e = 0; e < palette.size(); ++e)
         for (int corner = 0; corner < 8 && controller.set().palette()[e].joint >= 0; ++corner)
         {
-            const Box& b = boxes[e];
-            const glm::vec3 at = palette[e].transformPoint(
-                {(corner & 1) ? b.max.x : b.min.x, (corner & 2) ? b.max.y : b.min.y, (corner & 4) ? b.max.z : b.min.z});
+            const glm::vec3 at = palette[e].transformPoint(boxes[e].corner(corner));
             seen.add(at);
             for (int axis = 0; axis < 3; ++axis)
                 worst = std::max({worst, static_cast<double>(bounds.min[axis] - at[axis]),

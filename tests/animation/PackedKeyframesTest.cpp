@@ -73,13 +73,12 @@ void expectAllThere(const AnimationSet& set)
     for (std::size_t c = 0; c < set.clips().size(); ++c)
     {
         const Clip& clip = set.clips()[c];
-        const std::size_t perTrack = clip.form() == Clip::Form::Spline ? 3 : 1;
         for (std::size_t k = 0; k < clip.keyframeCount(); ++k)
             for (std::size_t track = 0; track < set.trackCount(); ++track)
                 for (const bool next : {false, true})
                 {
                     const std::size_t read = next ? std::min(k + 1, clip.keyframeCount() - 1) : k;
-                    const JointTransform& expected = clip.data()[read * clip.keyframeStride() + track * perTrack];
+                    const JointTransform& expected = *clip.at(read, track);
                     const JointTransform found = reader.read(set.firstKeyframe(c) + k, track, next);
                     ASSERT_EQ(std::memcmp(&found, &expected, sizeof(found)), 0)
                         << "clip " << c << ", keyframe " << k << ", track " << track;

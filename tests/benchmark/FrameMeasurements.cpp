@@ -34,6 +34,23 @@ struct Contestant
     }
 };
 
+/// Moves all instances of a crowd on in each update.
+class Walk : public osg::NodeCallback
+{
+public:
+    void operator()(osg::Node* node, osg::NodeVisitor* visitor) override
+    {
+        auto& crowd = static_cast<AnimatedCrowd&>(*node);
+        for (std::size_t index = 0; index < crowd.size(); ++index)
+        {
+            const AnimatedCrowd::Instance instance = crowd.instances().handleOf(index);
+            static_cast<void>(
+                crowd.move(instance, osg::Matrixd::translate(1e-3, 0.0, 0.0) * crowd.placement(instance)));
+        }
+        traverse(node, visitor);
+    }
+};
+
 Result<Contestant> contestant(osg::Node* scene, const osg::BoundingSphere& sight)
 {
     Result<std::shared_ptr<StagedViewer>> viewer = StagedViewer::create(scene, sight);
@@ -87,11 +104,14 @@ void addFrameRows(const Subject& subject, std::size_t count, const std::vector<C
 {
     const double characters = static_cast<double>(count);
     const double milliseconds = 1e3 / characters;
-    const char* names[] = {"", ", osgAnimation software", ", osgAnimation hardware"};
+    const char* names[] = {"", ", osgAnimation software", ", osgAnimation hardware",
+                           ", osgAnimation hardware, a program each"};
     for (std::size_t i = 0; i < contestants.size(); ++i)
         report.addPoint(framePlot, subject.name + names[i], characters,
                         cpuOf(contestants[i].whole).median * milliseconds);
     if (count != effort.frameCount) return;
+    report.add(named(compared(contestants[0].whole, contestants[3].whole, milliseconds, true), subject, count,
+                     "whole frame, 64x64", "ms a character", "osgAnimation hardware, a program each"));
     const bool isHardwareBetter = cpuOf(contestants[2].whole).median < cpuOf(contestants[1].whole).median;
     const Contestant& better = contestants[isHardwareBetter ? 2 : 1];
     const char* name = isHardwareBetter ? "osgAnimation hardware" : "osgAnimation software";
@@ -176,8 +196,9 @@ Result<bool> measureFrames(const Subject& subject, const Effort& effort, Report&
         CharacterScene ours(subject, count);
         ReferenceScene software(subject, kit, ReferenceMode::Software, count);
         ReferenceScene hardware(subject, kit, ReferenceMode::Hardware, count);
+        ReferenceScene apart(subject, kit, ReferenceMode::HardwareApart, count);
         std::vector<Contestant> contestants;
-        for (osg::Node* scene : {ours.root.get(), software.root.get(), hardware.root.get()})
+        for (osg::Node* scene : {ours.root.get(), software.root.get(), hardware.root.get(), apart.root.get()})
         {
             Result<Contestant> made = contestant(scene, ours.root->getBound());
             if (!made) return made.error();
@@ -225,6 +246,28 @@ Result<bool> measureCrowd(const Subject& subject, const Effort& effort, Report& 
     row.bar = "≤ 0.15 µs";
     row.isMet = row.ours.median <= 0.15;
     report.add(row);
+    return true;
+}
+
+Result<bool> measureUpdateRate(const Subject& subject, const Effort& effort, Report& report)
+{
+    std::cerr << subject.name << ": update rates" << std::endl;
+    CrowdScene rated(subject, effort.frameCount), always(subject, effort.frameCount);
+    if (const auto set = rated.root->setUpdateRate(UpdateRate{4, 1e6f}); !set) return set.error();
+    std::vector<Contestant> contestants;
+    for (const CrowdScene* scene : {&rated, &always})
+    {
+        scene->root->addUpdateCallback(new Walk);
+        Result<Contestant> made = contestant(scene->root, scene->root->getBound());
+        if (!made) return made.error();
+        contestants.push_back(std::move(made.value()));
+    }
+    race(contestants, effort.rounds);
+    if (const std::string wrong = check(contestants); !wrong.empty()) return Error{wrong};
+    report.add(
+        named(compared(contestants[0].whole, contestants[1].whole, 1e3 / static_cast<double>(effort.frameCount), true),
+              subject, effort.frameCount, "whole frame of a walking crowd, poses every 4th update", "ms a character",
+              "poses in every update"));
     return true;
 }
 

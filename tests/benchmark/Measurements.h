@@ -34,6 +34,9 @@ Result<bool> measureSkinning(const Subject& subject, const Effort& effort, Repor
 /// One crowd node against as many separate nodes: whole frames, and what the CPU does of them.
 Result<bool> measureCrowd(const Subject& subject, const Effort& effort, Report& report);
 
+/// A crowd whose instances get poses every fourth update, all of them moving, against the same with poses in each.
+Result<bool> measureUpdateRate(const Subject& subject, const Effort& effort, Report& report);
+
 /// Bytes and the first frame of many characters.
 Result<bool> measureStart(const Subject& subject, const Effort& effort, Report& report);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "ReferenceKit.h"
 
+#include <osgGpuAnimation/nodes/OsgMatrix.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 #include <osgGpuAnimation/nodes/SurfaceState.h>
 
@@ -14,8 +15,6 @@
 
 #include <layout.glsl>
 #include <ShaderSources.h>
-
-#include <glm/gtc/type_ptr.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -54,6 +53,7 @@ void main()
 /// In the place of skin.glsl: the vertex as it is.
 constexpr const char* noSkin = R"(
 void osgGpuAnimationSkin(inout vec4 vertex, inout vec3 normal) {}
+vec4 osgGpuAnimationTint() { return vec4(1.0); }
 void osgGpuAnimationMorphColor(inout vec4 color) {}
 void osgGpuAnimationMorphTextureCoordinate(inout vec2 coordinate) {}
 )";
@@ -98,23 +98,15 @@ osg::Quat toQuat(const glm::vec4& q)
     return {q.x, q.y, q.z, q.w};
 }
 
-osg::Matrixd toMatrix(const AffineMatrix& matrix)
-{
-    const glm::dmat4 columns = matrix.toColumns();
-    return osg::Matrixd(glm::value_ptr(columns));
-}
-
 /// The clip at each of its keyframes; a first keyframe after 0 also at 0, since osgAnimation counts from the first.
 template <typename Container, typename Convert>
 osg::ref_ptr<Container> keyframesOf(const Clip& clip, std::size_t joint, Convert convert)
 {
     using Key = typename Container::KeyType;
     osg::ref_ptr<Container> container = new Container;
-    const std::size_t step = clip.form() == Clip::Form::Spline ? 3 : 1;
-    if (clip.times().front() > 0.0f) container->push_back(Key(0.0, convert(clip.data()[joint * step])));
+    if (clip.times().front() > 0.0f) container->push_back(Key(0.0, convert(*clip.at(0, joint))));
     for (std::size_t keyframe = 0; keyframe < clip.keyframeCount(); ++keyframe)
-        container->push_back(Key(static_cast<double>(clip.times()[keyframe]),
-                                 convert(clip.data()[keyframe * clip.keyframeStride() + joint * step])));
+        container->push_back(Key(static_cast<double>(clip.times()[keyframe]), convert(*clip.at(keyframe, joint))));
     return container;
 }
 
@@ -202,7 +194,7 @@ osg::ref_ptr<osgAnimation::Bone> ReferenceKit::makeBone(std::size_t entry) const
 {
     const PaletteEntry& from = _subject.set().palette()[entry];
     osg::ref_ptr<osgAnimation::Bone> bone = new osgAnimation::Bone(boneName(entry));
-    bone->setInvBindMatrixInSkeletonSpace(toMatrix(from.inverseBind));
+    bone->setInvBindMatrixInSkeletonSpace(toOsg(from.inverseBind));
     osg::ref_ptr<osgAnimation::UpdateBone> update = new osgAnimation::UpdateBone(boneName(entry));
     bone->setUpdateCallback(update);
     if (from.kind != PaletteEntry::Kind::Joint) return bone;
@@ -278,7 +270,9 @@ osg::ref_ptr<osg::Geometry> ReferenceKit::makeRig(const SharedMesh& mesh, Refere
     // The rig takes its source's state and puts its own palette into it: each needs a state of its own.
     osg::ref_ptr<osg::Geometry> source = new osg::Geometry(*mesh.source, osg::CopyOp::SHALLOW_COPY);
     source->setStateSet(new osg::StateSet(*mesh.source->getStateSet(), osg::CopyOp::SHALLOW_COPY));
-    source->getStateSet()->setAttributeAndModes(mesh.hardwareProgram);
+    osg::ref_ptr<osg::Program> program = mesh.hardwareProgram;
+    if (mode == ReferenceMode::HardwareApart) program = new osg::Program(*program, osg::CopyOp::DEEP_COPY_ALL);
+    source->getStateSet()->setAttributeAndModes(program);
     rig->setSourceGeometry(source);
     rig->setRigTransformImplementation(new osgAnimation::RigTransformHardware);
     return rig;
@@ -307,7 +301,7 @@ double largestDifference(const ReferenceCharacter& character, const std::vector<
     {
         const osgAnimation::Bone* bone = character.boneOfEntry[entry].get();
         if (!bone) continue;
-        const osg::Matrixd ours = toMatrix(palette[entry]);
+        const osg::Matrixd ours = toOsg(palette[entry]);
         const osg::Matrixd theirs = bone->getInvBindMatrixInSkeletonSpace() * bone->getMatrixInSkeletonSpace();
         for (int row = 0; row < 4; ++row)
             for (int column = 0; column < 3; ++column)

@@ -18,9 +18,10 @@ namespace osgGpuAnimation::benchmark
 /// How osgAnimation's characters are skinned.
 enum class ReferenceMode
 {
-    Bones,    ///< not at all: no meshes
-    Software, ///< RigTransformSoftware
-    Hardware, ///< RigTransformHardware
+    Bones,         ///< not at all: no meshes
+    Software,      ///< RigTransformSoftware
+    Hardware,      ///< RigTransformHardware, one program a mesh for all characters
+    HardwareApart, ///< RigTransformHardware, a program for each character's mesh, as OSG's own examples have it
 };
 
 /// One character as osgAnimation has it.

@@ -52,10 +52,8 @@ Result<Subject> loadSubject(const std::string& name, const std::string& fileName
 
 bool isDriven(const AnimationSet& set, const Clip& clip, std::size_t joint, glm::vec4 JointTransform::*part)
 {
-    const std::size_t step = clip.form() == Clip::Form::Spline ? 3 : 1;
     for (std::size_t keyframe = 0; keyframe < clip.keyframeCount(); ++keyframe)
-        if (glm::vec3 difference(clip.data()[keyframe * clip.keyframeStride() + joint * step].*part -
-                                 set.restPose()[joint].*part);
+        if (glm::vec3 difference(clip.at(keyframe, joint)->*part - set.restPose()[joint].*part);
             difference != glm::vec3(0.0f))
             return true;
     return false;

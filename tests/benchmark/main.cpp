@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "Measurements.h"
 #include "StagedViewer.h"
+#include "WarningWatch.h"
 
 #include <osgGpuAnimation/gpu/EglGraphicsContext.h>
 
@@ -19,7 +20,7 @@ namespace
 constexpr const char* usage = R"(osggpuanim_benchmark [options] OUTPUT_FOLDER
     measures this kit against osgAnimation, prints a table and writes benchmark.json and plots into the folder
     --quick           fewer characters and rounds
-    --only PART       pose, samples, depth, frames, crowd, skinning, start or load; may be given several times
+    --only PART       pose, samples, depth, frames, crowd, rate, skinning, start or load; may be given several times
     --subject NAME    Wanderer, Fox, CesiumMan or Knight; may be given several times
 )";
 
@@ -103,11 +104,8 @@ Result<bool> measureSubject(const Request& request, const Effort& effort, const 
                             osg::GraphicsContext& context, Report& report)
 {
     const std::pair<const char*, Result<bool> (*)(const Subject&, const Effort&, Report&)> inViewers[] = {
-        {"frames", measureFrames},
-        {"crowd", measureCrowd},
-        {"skinning", measureSkinning},
-        {"start", measureStart},
-        {"load", measureLoad}};
+        {"frames", measureFrames},     {"crowd", measureCrowd}, {"rate", measureUpdateRate},
+        {"skinning", measureSkinning}, {"start", measureStart}, {"load", measureLoad}};
     if (request.has("samples"))
         if (Result<bool> done = measureSamples(subject, effort, context, report); !done) return done;
     if (request.has("pose"))
@@ -122,6 +120,8 @@ Result<bool> measureSubject(const Request& request, const Effort& effort, const 
 
 Result<bool> measureAll(const Request& request, osg::GraphicsContext& context, Report& report)
 {
+    const osg::ref_ptr<WarningWatch> watch = new WarningWatch;
+    osg::setNotifyHandler(watch);
     const Effort effort = request.isQuick ? Effort::quick() : Effort();
     if (request.has("depth"))
         if (Result<bool> done = measureDepth(effort, context, report); !done) return done;
@@ -129,6 +129,7 @@ Result<bool> measureAll(const Request& request, osg::GraphicsContext& context, R
         if (Result<bool> done = measureSubject(request, effort, subject, context, report); !done)
             return Error{subject.name + ": " + done.error().message};
     if (const std::string errors = takeGlErrors(); !errors.empty()) return Error{"GL reports " + errors};
+    if (!watch->warnings().empty()) return Error{"OSG says: " + watch->warnings()};
     return true;
 }
 

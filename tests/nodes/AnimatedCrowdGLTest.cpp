@@ -59,14 +59,6 @@ protected:
         return group;
     }
 
-    osg::ref_ptr<osg::Image> pictureOf(osg::Node* scene, std::initializer_list<double> times)
-    {
-        viewer().setSceneData(scene);
-        for (const double time : times)
-            drawAt(time);
-        return picture().copy();
-    }
-
     /// "red green blue", of 255 each.
     std::string colorAt(unsigned int x, unsigned int y)
     {

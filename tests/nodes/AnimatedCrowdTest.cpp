@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "nodes/TriangleBox.h"
 #include "support/TestCharacter.h"
 
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
@@ -51,19 +52,6 @@ const BadPlacement badPlacements[] = {
     {"beyond floats", with(0, 0, 1e300), "not finite"},
     {"a projection", with(2, 3, -1.0), "not affine"},
     {"a mirror", osg::Matrixd::scale(1, -1, 1), "mirrors"},
-};
-
-class TriangleCount
-{
-public:
-    void operator()(const osg::Vec3& a, const osg::Vec3& b, const osg::Vec3& c, bool = false)
-    {
-        ++triangles;
-        for (const osg::Vec3& corner : {a, b, c})
-            box.expandBy(corner);
-    }
-    int triangles = 0;
-    osg::BoundingBox box;
 };
 
 } // namespace
@@ -205,7 +193,7 @@ TEST(AnimatedCrowdTest, primitiveFunctorsGetAllInstancesInTheirPose)
     const osg::ref_ptr<AnimatedCrowd> crowd = emptyCrowd();
     for (int i = 0; i < 3; ++i)
         ASSERT_TRUE(crowd->add(osg::Matrixd::translate(10.0 * i, 0, 0), playing("shift", 1.0)));
-    osg::TriangleFunctor<TriangleCount> count;
+    osg::TriangleFunctor<TriangleBox> count;
     crowd->acceptInstances(count);
     EXPECT_EQ(count.triangles, 6);
     EXPECT_EQ(count.box._min, osg::Vec3(1, 0, 0));

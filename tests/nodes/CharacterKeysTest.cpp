@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
+#include "support/NotifyLog.h"
 #include "support/TestCharacter.h"
 
 #include <osgGpuAnimation/nodes/CharacterKeys.h>
 #include <osgGpuAnimation/nodes/JointLines.h>
 
 #include <gtest/gtest.h>
-#include <osg/Notify>
 #include <osgGA/EventVisitor>
 
 #include <iostream>
@@ -17,13 +17,6 @@ namespace osgGpuAnimation
 
 namespace
 {
-
-class NoticeLog : public osg::NotifyHandler
-{
-public:
-    void notify(osg::NotifySeverity, const char* message) override { text += message; }
-    std::string text;
-};
 
 class Actions : public osgGA::GUIActionAdapter
 {
@@ -61,7 +54,7 @@ protected:
     osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
     AnimationController& controller = character->controller();
     osg::ref_ptr<osg::Group> scene = new osg::Group;
-    osg::ref_ptr<NoticeLog> log = new NoticeLog;
+    osg::ref_ptr<NotifyLog> log = new NotifyLog(osg::DEBUG_FP);
     Actions actions;
 };
 

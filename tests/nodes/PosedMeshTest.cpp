@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "nodes/TriangleBox.h"
 #include "support/TestCharacter.h"
 
 #include <osgGpuAnimation/nodes/PickedJoint.h>
@@ -32,18 +33,6 @@ osg::ref_ptr<AnimatedCharacter> shiftedCharacter()
     character->controller().seek(1.5);
     return character;
 }
-
-struct TriangleBox
-{
-    void operator()(const osg::Vec3& a, const osg::Vec3& b, const osg::Vec3& c, bool = false)
-    {
-        ++triangles;
-        for (const osg::Vec3& corner : {a, b, c})
-            box.expandBy(corner);
-    }
-    int triangles = 0;
-    osg::BoundingBox box;
-};
 
 } // namespace
 

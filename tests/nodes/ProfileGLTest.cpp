@@ -84,10 +84,7 @@ protected:
         // An OSG with the fixed pipeline puts a Material here, which is an error in the core profile.
         viewer().getCamera()->getOrCreateStateSet()->clear();
         viewer().setLightingMode(osg::View::NO_LIGHT);
-        viewer().setSceneData(scene);
-        drawAt(0);
-        drawAt(0.5);
-        return picture().copy();
+        return ViewerGLTest::pictureOf(scene, {0, 0.5});
     }
 
 private:

@@ -54,10 +54,7 @@ protected:
     osg::ref_ptr<osg::Image> pictureOf(osg::Node* subject)
     {
         viewer().getCamera()->setClearMask(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
-        viewer().setSceneData(subject);
-        drawAt(0);
-        drawAt(1.5);
-        return picture().copy();
+        return ViewerGLTest::pictureOf(subject, {0, 1.5});
     }
 
     /// Pixels drawn in one picture and not in the other.

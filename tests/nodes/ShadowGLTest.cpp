@@ -33,12 +33,7 @@ void PrintTo(const TechniqueCase& technique, std::ostream* out)
 class ShadowGLTest : public ViewerGLTest, public ::testing::WithParamInterface<TechniqueCase>
 {
 protected:
-    osg::ref_ptr<osg::GraphicsContext::Traits> traits() const override
-    {
-        osg::ref_ptr<osg::GraphicsContext::Traits> wanted = ViewerGLTest::traits();
-        wanted->width = wanted->height = 128;
-        return wanted;
-    }
+    int pictureSide() const override { return 128; }
 
     osg::ref_ptr<osg::Image> pictureOf(osg::Node* subject, double time, osgShadow::ShadowTechnique* technique)
     {
@@ -55,10 +50,7 @@ protected:
         viewer().setLightingMode(osg::View::NO_LIGHT);
         scene->getOrCreateStateSet()->setMode(GL_LIGHTING, osg::StateAttribute::ON);
         scene->getOrCreateStateSet()->setMode(GL_LIGHT0, osg::StateAttribute::ON);
-        viewer().setSceneData(scene);
-        drawAt(0);
-        drawAt(time);
-        return picture().copy();
+        return ViewerGLTest::pictureOf(scene, {0, time});
     }
     osg::ref_ptr<osg::Image> pictureOf(osg::Node* subject, double time)
     {

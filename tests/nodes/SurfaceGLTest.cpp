@@ -74,12 +74,7 @@ void addPointLight(osg::StateSet& state, float spotCutoff)
 class SurfaceGLTest : public ViewerGLTest, public ::testing::WithParamInterface<StateCase>
 {
 protected:
-    osg::ref_ptr<osg::GraphicsContext::Traits> traits() const override
-    {
-        osg::ref_ptr<osg::GraphicsContext::Traits> wanted = ViewerGLTest::traits();
-        wanted->width = wanted->height = 128;
-        return wanted;
-    }
+    int pictureSide() const override { return 128; }
 
     osg::ref_ptr<osg::Image> pictureOf(osg::Node* subject, const std::function<void(osg::StateSet&)>& set)
     {
@@ -90,9 +85,7 @@ protected:
         state.setAttributeAndModes(light(0, osg::Vec4(-0.3f, -1.0f, 0.4f, 0.0f)));
         set(state);
         viewer().setLightingMode(osg::View::NO_LIGHT);
-        viewer().setSceneData(root);
-        drawAt(0.0);
-        return picture().copy();
+        return ViewerGLTest::pictureOf(root, {0.0});
     }
 };
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "plugin/PluginFolder.h"
 #include "plugin/SharedAssets.h"
 
 #include <osgGpuAnimation/animation/Pose.h>
@@ -7,7 +8,6 @@
 
 #include <gtest/gtest.h>
 #include <osgDB/ReadFile>
-#include <osgDB/Registry>
 
 #include <algorithm>
 #include <cstdio>
@@ -26,18 +26,11 @@ class BoundsOfModelsTest : public ::testing::TestWithParam<std::string>
 protected:
     static constexpr int timesAClip = 200; ///< finer than the keyframes' own times, in every file there is
 
-    std::string file() const
-    {
-        const std::string& name = GetParam();
-        if (name.find('/') != std::string::npos) return sharedFile(name);
-        return std::string(OSGGPUANIMATION_SCENES) + "/" + name;
-    }
-
     void SetUp() override
     {
-        if (file().empty()) GTEST_SKIP() << "there is no " << GetParam();
-        osgDB::Registry::instance()->getLibraryFilePathList().push_front(OSGGPUANIMATION_PLUGIN_FOLDER);
-        node = osgDB::readRefNodeFile(file());
+        if (modelFile(GetParam()).empty()) GTEST_SKIP() << "there is no " << GetParam();
+        usePluginsOfTheBuild();
+        node = osgDB::readRefNodeFile(modelFile(GetParam()));
         ASSERT_TRUE(node.valid());
         character = findCharacter(*node);
         ASSERT_NE(character, nullptr);

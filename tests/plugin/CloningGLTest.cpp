@@ -34,7 +34,7 @@ const CopyCase copies[] = {
 
 std::string wanderer()
 {
-    return std::string(OSGGPUANIMATION_SCENES) + "/Wanderer.glb";
+    return ownScene("Wanderer.glb");
 }
 
 double cpuMilliseconds()
@@ -49,9 +49,7 @@ protected:
 
     osg::ref_ptr<osg::Image> pictureOf(osg::Node& scene, double time)
     {
-        viewer().setSceneData(&scene);
-        drawAt(time);
-        return picture().copy();
+        return ViewerGLTest::pictureOf(&scene, {time});
     }
 
     /// Of a scene of its own, taken at these times one after another: the last one.

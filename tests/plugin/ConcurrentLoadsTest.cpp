@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "plugin/ModelBuilder.h"
+#include "plugin/SharedAssets.h"
 #include "plugin/StoredScene.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +32,7 @@ protected:
         model.node("sword", arm, model.triangle());
         model.animation("Slide");
         model.slide(arm);
-        const std::string wanderer = std::string(OSGGPUANIMATION_SCENES) + "/Wanderer.glb";
+        const std::string wanderer = ownScene("Wanderer.glb");
         files = {stored.folder.write("arm.gltf", model.text()), wanderer, stored.folder.file("kept.osgb")};
         ASSERT_TRUE(osgDB::writeNodeFile(*osgDB::readRefNodeFile(wanderer), files.back()));
         for (const std::string& file : files)

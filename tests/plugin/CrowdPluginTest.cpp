@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "plugin/ModelBuilder.h"
+#include "plugin/PluginFolder.h"
 
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 
@@ -24,9 +25,7 @@ class CrowdPluginTest : public ::testing::Test
 protected:
     void SetUp() override
     {
-        osgDB::FilePathList& paths = osgDB::Registry::instance()->getLibraryFilePathList();
-        if (paths.empty() || paths.front() != OSGGPUANIMATION_PLUGIN_FOLDER)
-            paths.push_front(OSGGPUANIMATION_PLUGIN_FOLDER);
+        usePluginsOfTheBuild();
         const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
         folder = std::filesystem::path(::testing::TempDir()) / (std::string("osggpuanimation_crowd_") + test->name());
         std::filesystem::create_directories(folder);

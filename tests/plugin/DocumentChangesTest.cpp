@@ -192,4 +192,23 @@ TEST(DocumentChangesTest, AnswersEachChange)
     }
 }
 
+TEST(DocumentChangesTest, UnknownExtensionsAreOneNoteEach)
+{
+    Json document = baseDocument();
+    document["extensionsUsed"] = {"EXT_no", "EXT_neither"};
+    const LoadedDocument answer = load(document.dump());
+    expectAnswer(answer, Expect::Valid, "");
+    ASSERT_EQ(answer.messages.notes.size(), 2u);
+    EXPECT_NE(answer.messages.notes[0].find("EXT_no"), std::string::npos) << answer.messages.notes[0];
+    EXPECT_NE(answer.messages.notes[1].find("EXT_neither"), std::string::npos) << answer.messages.notes[1];
+}
+
+TEST(DocumentChangesTest, CamerasAreLeftOut)
+{
+    Json document = baseDocument();
+    document["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.7}, {"znear", 0.1}}}}};
+    document["nodes"][0]["camera"] = 0;
+    expectAnswer(load(document.dump()), Expect::Valid, "");
+}
+
 } // namespace osgGpuAnimation::gltf

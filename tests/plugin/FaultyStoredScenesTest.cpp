@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "plugin/ModelBuilder.h"
+#include "plugin/SharedAssets.h"
 #include "plugin/StoredScene.h"
+#include "support/NotifyLog.h"
 
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 
 #include <gtest/gtest.h>
-#include <osg/Notify>
 
-#include <fstream>
 #include <regex>
-#include <sstream>
 
 // Kept scenes are not trusted either: what is wrong has a message, and what is left can be updated.
 
@@ -20,16 +19,6 @@ namespace
 {
 
 using Read = osgDB::ReaderWriter::ReadResult;
-
-class WarningLog : public osg::NotifyHandler
-{
-public:
-    void notify(osg::NotifySeverity severity, const char* message) override
-    {
-        if (severity <= osg::WARN) text += message;
-    }
-    std::string text;
-};
 
 enum class Answer
 {
@@ -154,11 +143,7 @@ protected:
 
     void TearDown() override { osg::setNotifyHandler(new osg::StandardNotifyHandler); }
 
-    std::string content(const std::string& name)
-    {
-        std::ifstream stream(files.folder.file(name), std::ios::binary);
-        return std::string(std::istreambuf_iterator<char>(stream), {});
-    }
+    std::string content(const std::string& name) { return readBytes(files.folder.file(name)); }
 
     Read readContent(const std::string& name, const std::string& text)
     {
@@ -194,7 +179,7 @@ protected:
 
     StoredScene files;
     unsigned int meshes = 0;
-    osg::ref_ptr<WarningLog> log = new WarningLog;
+    osg::ref_ptr<NotifyLog> log = new NotifyLog(osg::WARN);
 };
 
 } // namespace

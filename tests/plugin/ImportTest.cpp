@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "gltf/Import.h"
-#include "plugin/ModelBuilder.h"
+#include "plugin/ImportedFile.h"
 
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
@@ -18,21 +17,6 @@ namespace
 Result<ImportedModel> import(const ModelBuilder& file, const ImportOptions& options = {})
 {
     return importModel(file.text(), "", options);
-}
-
-ImportedModel imported(const ModelBuilder& file, const ImportOptions& options = {})
-{
-    Result<ImportedModel> model = import(file, options);
-    EXPECT_TRUE(model) << model.error().message;
-    return model ? model.value() : ImportedModel{};
-}
-
-const ImportedPrimitive& primitiveOf(const ImportedModel& model, int node)
-{
-    for (const ImportedPrimitive& primitive : model.primitives)
-        if (primitive.node == node) return primitive;
-    ADD_FAILURE() << "nothing of node " << node << " came into the graph";
-    return model.primitives.front();
 }
 
 bool isSkinned(const ImportedPrimitive& primitive)

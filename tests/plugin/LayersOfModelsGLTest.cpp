@@ -72,9 +72,7 @@ protected:
         for (std::size_t e = 0; e < palette.size(); ++e)
             for (int corner = 0; corner < 8 && set->palette()[e].joint >= 0 && !boxes[e].empty(); ++corner)
             {
-                const Box& b = boxes[e];
-                const glm::dvec3 point((corner & 1) ? b.max.x : b.min.x, (corner & 2) ? b.max.y : b.min.y,
-                                       (corner & 4) ? b.max.z : b.min.z);
+                const glm::dvec3 point(boxes[e].corner(corner));
                 const double distance = glm::distance(moved(palette[e], point), moved(expected[e], point));
                 worst = std::max(worst, std::isfinite(distance) ? distance : 1e30);
             }
@@ -92,8 +90,7 @@ TEST_P(LayersOfModelsGLTest, randomStacksAreTheTwinsAndTheReferencesPose)
 {
     if (GetParam().shared) SKIP_WITHOUT_SHARED_FILE(GetParam().shared);
     constexpr unsigned int seed = 20261121;
-    ASSERT_NO_FATAL_FAILURE(load(GetParam().shared ? sharedFile(GetParam().shared)
-                                                   : std::string(OSGGPUANIMATION_SCENES) + "/" + GetParam().scene));
+    ASSERT_NO_FATAL_FAILURE(load(GetParam().shared ? sharedFile(GetParam().shared) : ownScene(GetParam().scene)));
     std::mt19937 random(seed);
     addRandomMasks(*set, random);
     PosePipeline* pipeline = PosePipeline::of(state());

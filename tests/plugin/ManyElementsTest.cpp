@@ -71,6 +71,34 @@ std::string skinnedNodes()
     return file.text();
 }
 
+/// Each with weights of its own.
+std::string morphingNodes()
+{
+    LargeMesh file;
+    const int mesh = file.mesh(file.attributes);
+    file.primitive(mesh).targets.push_back({{"POSITION", file.attributes["POSITION"]}});
+    for (int i = 0; i < nodes; ++i)
+        file.at(file.node("", -1, mesh)).weights = {0.5};
+    return file.text();
+}
+
+/// Ten buffers of so many bytes each in data URIs.
+std::string dataUris(std::size_t bytes)
+{
+    const std::string buffer = R"({"byteLength":)" + std::to_string(bytes) + R"(,"uri":"data:;base64,)" +
+                               std::string(bytes / 3 * 4, 'A') + "\"}";
+    std::string text = R"({"asset":{"version":"2.0"},"buffers":[)" + buffer;
+    for (int i = 1; i < 10; ++i)
+        text += ',' + buffer;
+    return text + "]}";
+}
+
+/// One long string that is no data.
+std::string longName(std::size_t letters)
+{
+    return R"({"asset":{"version":"2.0","generator":")" + std::string(letters, 'x') + R"("}})";
+}
+
 /// A document of a list of so many empty objects.
 std::string emptyObjects(const std::string& list, std::size_t count)
 {
@@ -95,6 +123,10 @@ TEST(ManyElementsTest, staySmallAndQuick)
         {"static", staticNodes(), ""},
         {"on an animated joint", nodesOnAnAnimatedJoint(), ""},
         {"skinned", skinnedNodes(), ""},
+        {"morphing", morphingNodes(), ""},
+        {"ten data URIs of 12 MB", dataUris(12000000), ""},
+        {"a long string", longName(70000000), ""},
+        {"a longer string", longName(100000000), "JSON: expected strings of at most"},
         {"300,000 empty nodes", emptyObjects("nodes", 300000), ""},
         {"1,000,000 empty nodes", emptyObjects("nodes", 1000000), "nodes: expected a document of at most"},
         {"1,000,000 empty materials", emptyObjects("materials", 1000000), "materials: expected a document of at most"},
@@ -116,6 +148,16 @@ TEST(ManyElementsTest, staySmallAndQuick)
             EXPECT_LT(peakMemory() - before, mostMebibytes);
         }
     }
+}
+
+TEST(ManyElementsTest, dataUrisCountBeforeTheyAreDecoded)
+{
+    ImportOptions options;
+    options.maxDecodedBytes = 100000000;
+    const Result<ImportedModel> model = importModel(dataUris(12000000), "", options);
+    ASSERT_FALSE(model);
+    EXPECT_EQ(model.error().message.rfind("buffers[8].byteLength: expected at most 100000000 bytes", 0), 0u)
+        << model.error().message;
 }
 
 TEST(ManyElementsTest, theDocumentsLimitIsTheCallers)

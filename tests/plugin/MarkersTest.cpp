@@ -81,7 +81,7 @@ TEST(MarkersTest, OtherExtrasAreNobodysBusiness)
 
 TEST(MarkersTest, TheWanderersFeetAreMarked)
 {
-    const std::string file = OSGGPUANIMATION_SCENES "/Wanderer.glb";
+    const std::string file = ownScene("Wanderer.glb");
     const Result<ImportedModel> model = importModel(readBytes(file), file, {});
     ASSERT_TRUE(model) << model.error().message;
     const AnimationSet& set = *model.value().set;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "plugin/ModelBuilder.h"
+#include "plugin/ImportedFile.h"
 #include "plugin/ModelVertices.h"
 
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
@@ -14,21 +14,11 @@ namespace osgGpuAnimation::gltf
 namespace
 {
 
-ImportedModel imported(const ModelBuilder& file)
+ImportedModel unrotated(const ModelBuilder& file)
 {
     ImportOptions options;
     options.noRotation = true;
-    Result<ImportedModel> model = importModel(file.text(), "", options);
-    EXPECT_TRUE(model) << model.error().message;
-    return model ? model.value() : ImportedModel{};
-}
-
-const ImportedPrimitive& primitiveOf(const ImportedModel& model, int node)
-{
-    for (const ImportedPrimitive& primitive : model.primitives)
-        if (primitive.node == node) return primitive;
-    ADD_FAILURE() << "nothing of node " << node << " came into the graph";
-    return model.primitives.front();
+    return imported(file, options);
 }
 
 /// Where a vertex of the node's mesh is at rest.
@@ -94,7 +84,7 @@ TEST(OddModelsTest, quantizedPositionsAndTargetsAreTheNumbersTheyStandFor)
         const int node = file.node("stone", -1, mesh);
         if (isSigned) file.at(node).weights = {0.5};
         const double expected = (isSigned ? 1.5 : 1.0) * type.expected;
-        EXPECT_NEAR(place(imported(file), node, 1).x, expected, 1e-6 * std::abs(expected));
+        EXPECT_NEAR(place(unrotated(file), node, 1).x, expected, 1e-6 * std::abs(expected));
     }
 }
 
@@ -115,7 +105,7 @@ TEST(OddModelsTest, integerWeightsAreShares)
         file.primitive(mesh).attributes["WEIGHTS_0"] = weights;
         const int body = file.node("body", -1, mesh);
         file.at(body).skin = file.skin({here, there});
-        const ImportedModel model = imported(file);
+        const ImportedModel model = unrotated(file);
         expectAt(place(model, body, 1), {1, 0, 2});
         expectAt(place(model, body, 2), {0, 1, 10});
     }
@@ -133,7 +123,7 @@ TEST(OddModelsTest, aSkinnedMeshLeavesItsNodesPlaceAsideAndAnUnskinnedOneDoesNot
     file.at(body).translation = {100, 0, 0};
     const int statue = file.node("statue", -1, mesh); // the same mesh, joints and all, without a skin
     file.at(statue).translation = {100, 0, 0};
-    const ImportedModel model = imported(file);
+    const ImportedModel model = unrotated(file);
     expectAt(place(model, body, 1), {1, 0, 4});
     expectAt(place(model, statue, 1), {101, 0, 0});
 }
@@ -154,7 +144,7 @@ TEST(OddModelsTest, jointsUnderTwoSkinsHaveTwoInverseBinds)
             file.floats(TINYGLTF_TYPE_MAT4, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, x, 0, 0, 1, //
                                              1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, x, 0, 0, 1});
     }
-    const ImportedModel model = imported(file);
+    const ImportedModel model = unrotated(file);
     expectAt(place(model, bodies[0], 1), {2, 0, 0});
     expectAt(place(model, bodies[1], 1), {12, 0, 0});
 }
@@ -175,7 +165,7 @@ TEST(OddModelsTest, aMorphedVertexIsSkinnedAfterwards)
     }
     file.skin({hip, file.node("tip", hip)});
     file.at(bodies[1]).weights = {0.25}; // the node's before the mesh's
-    const ImportedModel model = imported(file);
+    const ImportedModel model = unrotated(file);
     expectAt(place(model, bodies[0], 1), {3, 0, 6});
     expectAt(place(model, bodies[1], 1), {3, 0, 1.5});
 }
@@ -196,7 +186,7 @@ TEST(OddModelsTest, morphTargetsBringNormalsColorsAndTextureCoordinates)
     file.model.textures.resize(1);
     file.model.textures[0].name = "without a picture";
     const int face = file.node("face", -1, mesh);
-    const ImportedModel model = imported(file);
+    const ImportedModel model = unrotated(file);
     const auto& geometry = dynamic_cast<const SkinnedGeometry&>(*primitiveOf(model, face).geometry);
     ASSERT_EQ(geometry.morphTargets().size(), 1u);
     const MorphTarget& target = geometry.morphTargets()[0];
@@ -224,7 +214,7 @@ TEST(OddModelsTest, textureCoordinatesNeedNoSetsBeforeThem)
     file.model.textures.resize(1);
     file.model.textures[0].name = "without a picture";
     const int stone = file.node("stone", -1, mesh);
-    const ImportedModel model = imported(file);
+    const ImportedModel model = unrotated(file);
     const auto* found = dynamic_cast<const osg::Vec2Array*>(primitiveOf(model, stone).geometry->getTexCoordArray(0));
     ASSERT_TRUE(found);
     EXPECT_EQ((*found)[0], osg::Vec2(0.25f, 0.75f));
@@ -242,7 +232,7 @@ TEST(OddModelsTest, zeroScaleCollapsesWhatHangsBelow)
     const int body = file.node("body", -1, mesh);
     file.at(body).skin = file.skin({gone, knee});
     const int stone = file.node("stone", knee, file.triangle());
-    const ImportedModel model = imported(file);
+    const ImportedModel model = unrotated(file);
     expectAt(place(model, body, 2), {1, 2, 3});
     expectAt(place(model, stone, 2), {1, 2, 3});
 }

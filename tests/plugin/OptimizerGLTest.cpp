@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "plugin/SharedAssets.h"
 #include "plugin/StoredScene.h"
 #include "support/ViewerGLTest.h"
 
@@ -54,14 +55,7 @@ const FlagCase flagCases[] = {
 class OptimizerGLTest : public ViewerGLTest, public ::testing::WithParamInterface<FlagCase>
 {
 protected:
-    osg::ref_ptr<osg::GraphicsContext::Traits> traits() const override
-    {
-        auto wanted = ViewerGLTest::traits();
-        wanted->width = wanted->height = 160;
-        return wanted;
-    }
-
-    static std::string ownScene(const std::string& name) { return std::string(OSGGPUANIMATION_SCENES) + "/" + name; }
+    int pictureSide() const override { return 160; }
 
     static osg::ref_ptr<osg::MatrixTransform> placed(osg::Node* node, const osg::Matrix& matrix)
     {

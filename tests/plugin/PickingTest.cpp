@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "plugin/PluginFolder.h"
 #include "plugin/PosedTriangles.h"
 #include "plugin/SharedAssets.h"
 
@@ -7,7 +8,6 @@
 #include <gtest/gtest.h>
 #include <osg/MatrixTransform>
 #include <osgDB/ReadFile>
-#include <osgDB/Registry>
 #include <osgUtil/IntersectionVisitor>
 
 #include <cmath>
@@ -43,12 +43,12 @@ protected:
     std::string file() const
     {
         if (GetParam().shared) return sharedFile(GetParam().shared);
-        return std::string(OSGGPUANIMATION_SCENES) + "/" + GetParam().scene;
+        return ownScene(GetParam().scene);
     }
 
     void load()
     {
-        osgDB::Registry::instance()->getLibraryFilePathList().push_front(OSGGPUANIMATION_PLUGIN_FOLDER);
+        usePluginsOfTheBuild();
         const osg::ref_ptr<osgDB::Options> options = new osgDB::Options("noKeys");
         options->setBuildKdTreesHint(osgDB::Options::BUILD_KDTREES);
         node = osgDB::readRefNodeFile(file(), options);
@@ -93,6 +93,14 @@ protected:
     {
         for (unsigned int i = 0; i < character->getNumChildren(); ++i)
             if (auto* mesh = dynamic_cast<SkinnedGeometry*>(character->getChild(i))) function(*mesh);
+    }
+
+    PosedTriangles trianglesOfCharacter() const
+    {
+        PosedTriangles triangles;
+        const osg::Matrixd toWorld = osg::computeLocalToWorld(character->getParentalNodePaths().front());
+        forEachMesh([&](const SkinnedGeometry& mesh) { triangles.add(mesh, character->controller(), toWorld); });
+        return triangles;
     }
 
     /// A ray that comes from somewhere outside and goes by a point of the mesh, more or less.
@@ -150,9 +158,7 @@ TEST_P(PickingTest, raysMeetACharacterAsItIsPosed)
     {
         playAnything(character->controller());
         character->update(0.0);
-        PosedTriangles triangles;
-        const osg::Matrixd toWorld = osg::computeLocalToWorld(character->getParentalNodePaths().front());
-        forEachMesh([&](const SkinnedGeometry& mesh) { triangles.add(mesh, character->controller(), toWorld); });
+        const PosedTriangles triangles = trianglesOfCharacter();
         for (int i = 0; i < raysAPose; ++i)
         {
             SCOPED_TRACE(testing::Message() << "pose " << pose << ", ray " << i << ", seed " << seed);
@@ -199,9 +205,7 @@ TEST_P(PickingTest, polytopesMeetACharacterAsItIsPosed)
     {
         playAnything(character->controller());
         character->update(0.0);
-        PosedTriangles triangles;
-        const osg::Matrixd toWorld = osg::computeLocalToWorld(character->getParentalNodePaths().front());
-        forEachMesh([&](const SkinnedGeometry& mesh) { triangles.add(mesh, character->controller(), toWorld); });
+        const PosedTriangles triangles = trianglesOfCharacter();
         const double half = 1e-3 * triangles.size();
         const osg::Vec3d point = triangles.points()[random() % triangles.points().size()];
         for (const bool isThere : {true, false})

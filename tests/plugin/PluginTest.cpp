@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "plugin/ModelBuilder.h"
+#include "plugin/PluginFolder.h"
 #include "plugin/SharedAssets.h"
+#include "support/NotifyLog.h"
 #include "support/PeakMemory.h"
 
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
@@ -8,7 +10,6 @@
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-#include <osg/Notify>
 #include <osgDB/ReadFile>
 #include <osgDB/Registry>
 #include <osgUtil/Optimizer>
@@ -27,26 +28,13 @@ namespace osgGpuAnimation::gltf
 namespace
 {
 
-/// Keeps what OSG says.
-class NotifyLog : public osg::NotifyHandler
-{
-public:
-    void notify(osg::NotifySeverity severity, const char* message) override
-    {
-        if (severity <= osg::NOTICE) text += message;
-    }
-    std::string text;
-};
-
 /// A folder with `arm.gltf`, in which the node "arm" slides, read through osgDB.
 class PluginTest : public ::testing::Test
 {
 protected:
     void SetUp() override
     {
-        osgDB::FilePathList& paths = osgDB::Registry::instance()->getLibraryFilePathList();
-        if (paths.empty() || paths.front() != OSGGPUANIMATION_PLUGIN_FOLDER)
-            paths.push_front(OSGGPUANIMATION_PLUGIN_FOLDER);
+        usePluginsOfTheBuild();
         const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
         folder = std::filesystem::path(::testing::TempDir()) / (std::string("osggpuanimation_") + test->name());
         std::filesystem::create_directories(folder);
@@ -78,7 +66,7 @@ protected:
 
     ModelBuilder file;
     std::filesystem::path folder;
-    osg::ref_ptr<NotifyLog> log = new NotifyLog;
+    osg::ref_ptr<NotifyLog> log = new NotifyLog(osg::NOTICE);
 };
 
 struct FaultCase

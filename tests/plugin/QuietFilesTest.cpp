@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: MIT
+#include "plugin/PluginFolder.h"
 #include "plugin/SharedAssets.h"
+#include "support/NotifyLog.h"
+#include "support/ScratchFolder.h"
 
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 
 #include <gtest/gtest.h>
-#include <osg/Notify>
 #include <osgDB/ReadFile>
-#include <osgDB/Registry>
 #include <osgDB/WriteFile>
 #include <osgGA/EventVisitor>
-
-#include "support/ScratchFolder.h"
 
 // A good file prints nothing at NOTICE: read, shown for a frame, written in OSG's format, read back.
 
@@ -20,19 +19,12 @@ namespace osgGpuAnimation
 namespace
 {
 
-class NoticeLog : public osg::NotifyHandler
-{
-public:
-    void notify(osg::NotifySeverity, const char* message) override { text += message; }
-    std::string text;
-};
-
 class QuietFilesTest : public ::testing::TestWithParam<std::string>
 {
 protected:
     void SetUp() override
     {
-        osgDB::Registry::instance()->getLibraryFilePathList().push_front(OSGGPUANIMATION_PLUGIN_FOLDER);
+        usePluginsOfTheBuild();
         _level = osg::getNotifyLevel();
         osg::setNotifyLevel(osg::NOTICE);
         osg::setNotifyHandler(log);
@@ -43,20 +35,15 @@ protected:
         osg::setNotifyLevel(_level);
     }
 
-    osg::ref_ptr<NoticeLog> log = new NoticeLog;
+    osg::ref_ptr<NotifyLog> log = new NotifyLog(osg::DEBUG_FP);
 
 private:
     osg::NotifySeverity _level = osg::NOTICE;
 };
 
-std::string fileOf(const std::string& name)
-{
-    return name.find('/') == std::string::npos ? std::string(OSGGPUANIMATION_SCENES) + "/" + name : sharedFile(name);
-}
-
 TEST_P(QuietFilesTest, printNothingAtNotice)
 {
-    const std::string file = fileOf(GetParam());
+    const std::string file = modelFile(GetParam());
     if (file.empty()) GTEST_SKIP() << "there is no " << GetParam();
     const ScratchFolder folder;
     osg::ref_ptr<osg::Node> node = osgDB::readRefNodeFile(file);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "plugin/PluginFolder.h"
 #include "support/ScratchFolder.h"
 #include "support/WorkingFolder.h"
 
@@ -34,7 +35,7 @@ class ReadmeTest : public ::testing::Test
 protected:
     void SetUp() override
     {
-        osgDB::Registry::instance()->getLibraryFilePathList().push_front(OSGGPUANIMATION_PLUGIN_FOLDER);
+        usePluginsOfTheBuild();
         std::filesystem::copy_file(OSGGPUANIMATION_SCENES "/Wanderer.glb", _folder.file("fox.glb"));
         EXPECT_FALSE(osgDB::findDataFile("fox.glb").empty());
     }

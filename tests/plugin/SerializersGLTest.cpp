@@ -25,17 +25,12 @@ struct ModelCase
 class SerializersGLTest : public ViewerGLTest, public ::testing::WithParamInterface<ModelCase>
 {
 protected:
-    osg::ref_ptr<osg::GraphicsContext::Traits> traits() const override
-    {
-        auto wanted = ViewerGLTest::traits();
-        wanted->width = wanted->height = 128;
-        return wanted;
-    }
+    int pictureSide() const override { return 128; }
 
     static std::string file()
     {
         if (GetParam().shared) return sharedFile(GetParam().shared);
-        return std::string(OSGGPUANIMATION_SCENES) + "/" + GetParam().scene;
+        return ownScene(GetParam().scene);
     }
 
     /// The whole scene in the picture, in a quarter view.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "plugin/ModelBuilder.h"
+#include "plugin/SharedAssets.h"
 #include "plugin/StoredScene.h"
+#include "support/NotifyLog.h"
 
 #include <osgGpuAnimation/animation/CompactTracks.h>
 #include <osgGpuAnimation/animation/JointMask.h>
@@ -14,14 +16,11 @@
 #include <osgGpuAnimation/nodes/RootMotionCallback.h>
 
 #include <gtest/gtest.h>
-#include <osg/Notify>
 #include <osg/Program>
 #include <osgDB/FileUtils>
 
 #include <filesystem>
-#include <fstream>
 #include <regex>
-#include <sstream>
 
 namespace osgGpuAnimation
 {
@@ -30,17 +29,6 @@ namespace
 {
 
 const char* const formats[] = {"osgb", "osgt", "osgx"};
-
-/// Keeps what OSG warns of.
-class WarningLog : public osg::NotifyHandler
-{
-public:
-    void notify(osg::NotifySeverity severity, const char* message) override
-    {
-        if (severity <= osg::WARN) text += message;
-    }
-    std::string text;
-};
 
 /// A sword on an arm that slides (two clips), and a skinned triangle; read through osgDB.
 class SerializersTest : public ::testing::Test
@@ -68,14 +56,8 @@ protected:
 
     StoredScene files;
     osg::ref_ptr<osg::Node> scene;
-    osg::ref_ptr<WarningLog> log = new WarningLog;
+    osg::ref_ptr<NotifyLog> log = new NotifyLog(osg::WARN);
 };
-
-std::string textOf(const std::string& file)
-{
-    std::ifstream stream(file, std::ios::binary);
-    return std::string(std::istreambuf_iterator<char>(stream), {});
-}
 
 void setUpLayers(AnimationController& controller)
 {
@@ -244,7 +226,7 @@ TEST_F(SerializersTest, aCrowdKeepsItsInstances)
 TEST_F(SerializersTest, shadersAreNotInTheFile)
 {
     ASSERT_TRUE(osgDB::writeNodeFile(*scene, files.folder.file("arm.osgt")));
-    const std::string text = textOf(files.folder.file("arm.osgt"));
+    const std::string text = readBytes(files.folder.file("arm.osgt"));
     EXPECT_NE(text.find("osgGpuAnimation::SurfaceProgram"), std::string::npos);
     EXPECT_EQ(text.find("osg::Shader"), std::string::npos);
     const osg::ref_ptr<osg::Node> read = osgDB::readRefNodeFile(files.folder.file("arm.osgt"));
@@ -255,7 +237,7 @@ TEST_F(SerializersTest, shadersAreNotInTheFile)
 
 TEST_F(SerializersTest, compactClipsStayCompact)
 {
-    const std::string file = OSGGPUANIMATION_SCENES "/Wanderer.glb";
+    const std::string file = ownScene("Wanderer.glb");
     const osg::ref_ptr<osg::Node> exact = osgDB::readRefNodeFile(file);
     const osg::ref_ptr<osg::Node> compact = osgDB::readRefNodeFile(file, new osgDB::Options("compact=1e-4"));
     ASSERT_TRUE(exact && compact);
@@ -281,7 +263,7 @@ TEST_F(SerializersTest, compactClipsStayCompact)
 TEST_F(SerializersTest, setsOfTheFirstVersionAreRead)
 {
     ASSERT_TRUE(files.throughFile(*scene, "osgt"));
-    std::string text = textOf(files.folder.file("scene.osgt"));
+    std::string text = readBytes(files.folder.file("scene.osgt"));
     const std::string second = text;
     text = std::regex_replace(text, std::regex("Contents 2"), "Contents 1");
     text = std::regex_replace(text, std::regex("(Clip .*) 0 0 *\n"), "$1 0\n");

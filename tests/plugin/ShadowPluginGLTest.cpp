@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
+#include "plugin/PluginFolder.h"
 #include "plugin/SharedAssets.h"
 #include "support/ViewerGLTest.h"
 
 #include <osgDB/ReadFile>
-#include <osgDB/Registry>
 
 namespace osgGpuAnimation
 {
@@ -15,18 +15,11 @@ namespace
 class ShadowPluginGLTest : public ViewerGLTest
 {
 protected:
-    osg::ref_ptr<osg::GraphicsContext::Traits> traits() const override
-    {
-        osg::ref_ptr<osg::GraphicsContext::Traits> wanted = ViewerGLTest::traits();
-        wanted->width = wanted->height = 256;
-        return wanted;
-    }
+    int pictureSide() const override { return 256; }
 
     osg::ref_ptr<osg::Image> pictureOf(const std::string& file, double time)
     {
-        osgDB::FilePathList& paths = osgDB::Registry::instance()->getLibraryFilePathList();
-        if (paths.empty() || paths.front() != OSGGPUANIMATION_PLUGIN_FOLDER)
-            paths.push_front(OSGGPUANIMATION_PLUGIN_FOLDER);
+        usePluginsOfTheBuild();
         const osg::ref_ptr<osg::Node> scene = osgDB::readRefNodeFile(file);
         EXPECT_TRUE(scene) << file;
         if (!scene) return new osg::Image;
@@ -37,10 +30,7 @@ protected:
         camera.setViewMatrixAsLookAt(bound.center() + osg::Vec3(0.6f, -1.5f, 0.5f) * reach, bound.center(), {0, 0, 1});
         viewer().setLightingMode(osg::View::SKY_LIGHT);
         viewer().getLight()->setPosition(osg::Vec4(1, -0.5f, 0.7f, 0));
-        viewer().setSceneData(scene);
-        drawAt(0);
-        drawAt(time);
-        return picture().copy();
+        return ViewerGLTest::pictureOf(scene, {0, time});
     }
 };
 

@@ -18,6 +18,18 @@ inline std::string sharedFile(const std::string& name)
     return std::filesystem::is_regular_file(path) ? path : "";
 }
 
+/// A file of our own scenes.
+inline std::string ownScene(const std::string& name)
+{
+    return std::string(OSGGPUANIMATION_SCENES) + "/" + name;
+}
+
+/// A shared file where the name has folders, else one of our own scenes.
+inline std::string modelFile(const std::string& name)
+{
+    return name.find('/') == std::string::npos ? ownScene(name) : sharedFile(name);
+}
+
 inline std::string readBytes(const std::string& path)
 {
     std::ifstream stream(path, std::ios::binary);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "plugin/SharedAssets.h"
 #include "plugin/StoredScene.h"
 #include "support/ViewerGLTest.h"
 
@@ -38,11 +39,7 @@ class SimulationTimeGLTest : public ViewerGLTest, public ::testing::WithParamInt
 protected:
     osg::ref_ptr<osg::Image> pictureAfter(const std::string& file, const std::vector<double>& times)
     {
-        const osg::ref_ptr<osg::Node> scene = osgDB::readRefNodeFile(std::string(OSGGPUANIMATION_SCENES) + "/" + file);
-        viewer().setSceneData(scene);
-        for (const double time : times)
-            drawAt(time);
-        return picture().copy();
+        return pictureOf(osgDB::readRefNodeFile(ownScene(file)), times);
     }
 
     StoredScene plugins;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "plugin/PluginFolder.h"
 #include "support/ScratchFolder.h"
 
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 
 #include <osgDB/ReadFile>
-#include <osgDB/Registry>
 #include <osgDB/WriteFile>
 
 #include <algorithm>
@@ -24,12 +24,7 @@ namespace osgGpuAnimation
 class StoredScene
 {
 public:
-    StoredScene()
-    {
-        osgDB::FilePathList& paths = osgDB::Registry::instance()->getLibraryFilePathList();
-        if (paths.empty() || paths.front() != OSGGPUANIMATION_PLUGIN_FOLDER)
-            paths.push_front(OSGGPUANIMATION_PLUGIN_FOLDER);
-    }
+    StoredScene() { usePluginsOfTheBuild(); }
 
     /// The node as it comes back from a file of that format; null where it does not.
     osg::ref_ptr<osg::Node> throughFile(const osg::Node& node, const std::string& format) const

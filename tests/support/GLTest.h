@@ -27,11 +27,14 @@ namespace osgGpuAnimation
 class GLTest : public ::testing::Test
 {
 protected:
+    /// Pixels across and down.
+    virtual int pictureSide() const { return 64; }
+
     /// What the context is made with; a fixture of its own asks for more samples, the core profile and so on.
     virtual osg::ref_ptr<osg::GraphicsContext::Traits> traits() const
     {
         osg::ref_ptr<osg::GraphicsContext::Traits> wanted = new osg::GraphicsContext::Traits;
-        wanted->width = wanted->height = 64;
+        wanted->width = wanted->height = pictureSide();
         wanted->stencil = 8;
         return wanted;
     }

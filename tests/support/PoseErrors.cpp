@@ -22,15 +22,12 @@ double distanceAt(const AnimationSet& a, const AnimationSet& b, int clip, double
     for (std::size_t entry = 0; entry < boxes.size(); ++entry)
     {
         if (boxes[entry].empty() || a.palette()[entry].kind == PaletteEntry::Kind::Weights) continue;
-        for (const float x : {boxes[entry].min.x, boxes[entry].max.x})
-            for (const float y : {boxes[entry].min.y, boxes[entry].max.y})
-                for (const float z : {boxes[entry].min.z, boxes[entry].max.z})
-                {
-                    const glm::vec3 corner(x, y, z);
-                    const float apart =
-                        glm::distance(ofA[entry].transformPoint(corner), ofB[entry].transformPoint(corner));
-                    worst = std::max(worst, static_cast<double>(apart));
-                }
+        for (int i = 0; i < 8; ++i)
+        {
+            const glm::vec3 corner = boxes[entry].corner(i);
+            const float apart = glm::distance(ofA[entry].transformPoint(corner), ofB[entry].transformPoint(corner));
+            worst = std::max(worst, static_cast<double>(apart));
+        }
     }
     return worst;
 }

@@ -86,9 +86,7 @@ private:
 
     const JointTransform* keyframe(std::size_t clip, std::size_t place) const
     {
-        const Clip& content = _set.clips()[clip];
-        return &content
-                    .data()[place * content.keyframeStride() + _track * (content.form() == Clip::Form::Spline ? 3 : 1)];
+        return _set.clips()[clip].at(place, _track);
     }
 
     Numbers mixed(const JointTransform* a, const JointTransform* b, double t, bool isSpline,

@@ -6,6 +6,8 @@
 
 #include <osgGA/TrackballManipulator>
 
+#include <vector>
+
 namespace osgGpuAnimation
 {
 
@@ -42,6 +44,15 @@ protected:
     {
         viewer().frame(simulationTime);
         context().makeCurrent();
+    }
+
+    /// The scene as it is at the last of these times, when it has been drawn at each of them.
+    osg::ref_ptr<osg::Image> pictureOf(osg::Node* scene, const std::vector<double>& times)
+    {
+        viewer().setSceneData(scene);
+        for (const double time : times)
+            drawAt(time);
+        return picture().copy();
     }
 
     const Picture& picture() const { return *_picture; }

@@ -17,7 +17,8 @@ struct Box
     bool empty() const { return min.x > max.x; }
     void add(const glm::vec3& point);
     void add(const Box& box);
-    void grow(float margin); ///< on every side; nothing where empty
+    void grow(float margin);       ///< on every side; nothing where empty
+    glm::vec3 corner(int i) const; ///< i in [0, 8): bit 0 set is at max.x, bit 1 at max.y, bit 2 at max.z
 };
 
 /// For each palette entry, the box of the vertices it moves, in the mesh's space at bind time (before the entry).
@@ -27,5 +28,8 @@ using EntryBoxes = std::vector<Box>;
 /// combination of where its entries take it, and between the times looked at the arcs' heights are added) and tight
 /// (looked at as often as the joints' turning asks for). clip -1: the rest pose.
 Box boundsOfClip(const AnimationSet& set, int clip, const EntryBoxes& entryBoxes);
+
+/// The rest pose's and then those of all clips in turn: clip c's is at c + 1.
+std::vector<Box> boundsOfClips(const AnimationSet& set, const EntryBoxes& entryBoxes);
 
 } // namespace osgGpuAnimation

@@ -58,10 +58,17 @@ public:
     std::size_t keyframeCount() const { return _times.size(); }
     const std::vector<float>& times() const { return _times; } ///< keyframeCount() seconds, ascending, twice at a jump
 
+    std::size_t transformsPerTrack() const { return transformsPerTrack(_form); } ///< in a keyframe
+    static constexpr std::size_t transformsPerTrack(Form form) { return form == Form::Spline ? 3 : 1; }
     /// JointTransforms from one keyframe to the next in data().
-    std::size_t keyframeStride() const { return _trackCount * (_form == Form::Spline ? 3 : 1); }
+    std::size_t keyframeStride() const { return _trackCount * transformsPerTrack(); }
     /// keyframeCount() * keyframeStride() transforms: by keyframe, then track, then (Spline) value, in, out.
     const std::vector<JointTransform>& data() const { return *_data; }
+    /// The track's transformsPerTrack() transforms in a keyframe.
+    const JointTransform* at(std::size_t keyframe, std::size_t track) const
+    {
+        return data().data() + keyframe * keyframeStride() + track * transformsPerTrack();
+    }
 
     /// By time; those of one time in the order in which they were added.
     const std::vector<ClipMarker>& markers() const { return _markers; }

@@ -148,8 +148,8 @@ class TrackWriter
 {
 public:
     TrackWriter(std::vector<JointTransform>& data, const Clip& clip, std::size_t track, std::size_t firstComponent)
-        : _data(data), _stride(clip.keyframeStride()), _perTrack(clip.form() == Clip::Form::Spline ? 3 : 1),
-          _place(track * _perTrack), _firstComponent(firstComponent)
+        : _data(data), _stride(clip.keyframeStride()), _perTrack(clip.transformsPerTrack()), _place(track * _perTrack),
+          _firstComponent(firstComponent)
     {
     }
 

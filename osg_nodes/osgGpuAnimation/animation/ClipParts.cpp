@@ -16,11 +16,6 @@ namespace osgGpuAnimation
 namespace
 {
 
-bool isFinite(const glm::vec4& v)
-{
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z) && std::isfinite(v.w);
-}
-
 bool isFinite(const RootMotionCurve::Point& point)
 {
     const glm::dvec3 sum = glm::abs(point.value) + glm::abs(point.in) + glm::abs(point.out);
@@ -46,7 +41,7 @@ std::optional<std::string> findFaultInTimes(const std::vector<float>& times)
 
 std::optional<std::string> findFaultInData(const ClipParts& parts)
 {
-    const std::size_t perTrack = parts.form == Clip::Form::Spline ? 3 : 1;
+    const std::size_t perTrack = Clip::transformsPerTrack(parts.form);
     const std::size_t wanted = parts.times.size() * parts.trackCount * perTrack;
     if (parts.data.size() != wanted)
         return std::to_string(wanted) + " joint transforms are needed, but there are " +
@@ -55,12 +50,14 @@ std::optional<std::string> findFaultInData(const ClipParts& parts)
     {
         const JointTransform& transform = parts.data[i];
         const std::size_t track = i / perTrack % parts.trackCount;
-        const std::string place =
-            "track " + std::to_string(track) + " at keyframe " + std::to_string(i / perTrack / parts.trackCount) + ": ";
-        if (!isFinite(transform.translation) || !isFinite(transform.rotation) || !isFinite(transform.scale))
-            return place + "a number is not finite";
-        if (perTrack == 1 && track < parts.jointCount && !(glm::length(transform.rotation) > 0.0f))
-            return place + "the rotation has length 0";
+        const char* fault = nullptr;
+        if (!transform.isFinite())
+            fault = "a number is not finite";
+        else if (perTrack == 1 && track < parts.jointCount && !(glm::length(transform.rotation) > 0.0f))
+            fault = "the rotation has length 0";
+        if (fault)
+            return "track " + std::to_string(track) + " at keyframe " +
+                   std::to_string(i / perTrack / parts.trackCount) + ": " + fault;
     }
     return std::nullopt;
 }

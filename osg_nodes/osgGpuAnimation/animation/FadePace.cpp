@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/FadePace.h>
 
-#include <osgGpuAnimation/animation/AnimationController.h>
 #include <osgGpuAnimation/animation/Pose.h>
-
-#include <layout.glsl>
 
 #include <glm/geometric.hpp>
 
@@ -31,18 +28,14 @@ double farthest(const Places& a, const Places& b)
 
 std::vector<Places> posesOf(const AnimationSet& set, std::size_t clip)
 {
-    const Clip& source = set.clips()[clip];
     std::vector<Places> poses;
     std::vector<JointTransform> tracks;
     std::vector<AffineMatrix> joints;
     for (std::size_t i = 0; i <= poseCount; ++i)
     {
-        const Clip::Span span = source.locate(source.duration() * static_cast<double>(i) / poseCount);
         PoseInstruction instruction;
-        BlendSample& sample = instruction.samples[0];
-        sample.keyframe = static_cast<std::uint32_t>(set.firstKeyframe(clip) + span.keyframe);
-        sample.alpha = span.alpha;
-        sample.control = source.form() == Clip::Form::Spline ? POSE_SAMPLE_SPLINE : 0u;
+        instruction.samples[0] =
+            set.sampleAt(static_cast<int>(clip), set.clips()[clip].duration() * static_cast<double>(i) / poseCount);
         Pose::mix(set, instruction, tracks);
         Pose::jointToModel(set, tracks, AffineMatrix(), joints);
         Places places;

@@ -41,7 +41,7 @@ void forEachPoint(const Clip& clip, std::size_t joint, Function function)
     const bool isSpline = clip.form() == Clip::Form::Spline;
     for (std::size_t k = 0; k < clip.keyframeCount(); ++k)
     {
-        const JointTransform* value = &clip.data()[k * clip.keyframeStride() + joint * (isSpline ? 3 : 1)];
+        const JointTransform* value = clip.at(k, joint);
         const glm::dvec3 translation(value->translation), scale(value->scale);
         const glm::dvec4 rotation(value->rotation);
         function(translation, rotation, scale);

@@ -3,6 +3,8 @@
 
 #include <osgGpuAnimation/animation/Rotation.h>
 
+#include <cmath>
+
 namespace osgGpuAnimation
 {
 
@@ -15,6 +17,14 @@ glm::vec4 lerp(const glm::vec4& a, const glm::vec4& b, double alpha)
 }
 
 } // namespace
+
+bool JointTransform::isFinite() const
+{
+    for (const glm::vec4& part : {translation, rotation, scale})
+        for (int i = 0; i < 4; ++i)
+            if (!std::isfinite(part[i])) return false;
+    return true;
+}
 
 AffineMatrix JointTransform::toMatrix() const
 {

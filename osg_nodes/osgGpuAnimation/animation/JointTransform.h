@@ -16,6 +16,7 @@ struct JointTransform
 
     /// L = T · R · S for column vectors (glTF 2.0, section 3.5.3). The rotation is made unit first.
     AffineMatrix toMatrix() const;
+    bool isFinite() const; ///< all twelve numbers
 };
 
 static_assert(sizeof(JointTransform) == 48, "a joint transform is 48 bytes on the GPU");

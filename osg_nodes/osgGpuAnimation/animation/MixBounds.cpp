@@ -111,8 +111,7 @@ const JointTransform& MixBounds::firstOf(int clip, std::size_t joint) const
     if (clip < 0 || static_cast<std::size_t>(clip) >= _set.clips().size()) return _set.restPose()[joint];
     const Clip& source = _set.clips()[static_cast<std::size_t>(clip)];
     if (source.keyframeCount() == 0) return _set.restPose()[joint];
-    const std::size_t width = source.form() == Clip::Form::Spline ? 3 : 1;
-    return source.data()[source.locate(0.0).keyframe * source.keyframeStride() + joint * width];
+    return *source.at(source.locate(0.0).keyframe, joint);
 }
 
 MixBounds::Ranges MixBounds::rangesOf(const std::vector<PlayedClip>& played) const

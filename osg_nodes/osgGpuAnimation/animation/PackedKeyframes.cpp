@@ -28,15 +28,10 @@ glm::uvec4 texel(const glm::vec4& value)
     return {words[0], words[1], words[2], words[3]};
 }
 
-std::size_t transformsPerTrack(const Clip& clip)
-{
-    return clip.form() == Clip::Form::Spline ? 3 : 1;
-}
-
 bool moves(const Clip& clip, std::size_t track, Part part)
 {
-    const std::size_t perTrack = transformsPerTrack(clip);
-    const JointTransform* first = &clip.data()[track * perTrack];
+    const std::size_t perTrack = clip.transformsPerTrack();
+    const JointTransform* first = clip.at(0, track);
     for (std::size_t k = 0; k < clip.keyframeCount(); ++k)
     {
         const JointTransform* here = first + k * clip.keyframeStride();
@@ -106,14 +101,14 @@ void PackedKeyframes::addClip(const Clip& clip, std::size_t firstKeyframe)
 
 void PackedKeyframes::placeExactTrack(const Clip& clip, std::size_t track)
 {
-    const std::size_t perTrack = transformsPerTrack(clip);
+    const std::size_t perTrack = clip.transformsPerTrack();
     glm::uvec4& entry = _table[track];
     for (std::size_t part = 0; part < parts.size(); ++part)
     {
         auto& place = entry[static_cast<glm::uvec4::length_type>(part)];
         if (!moves(clip, track, parts[part]))
         {
-            place = held(clip.data()[track * perTrack].*parts[part]);
+            place = held(clip.at(0, track)->*parts[part]);
             continue;
         }
         place = _recordSize;
@@ -147,7 +142,7 @@ void PackedKeyframes::placeCompactTrack(const Clip& clip, std::size_t track)
 
 void PackedKeyframes::note(const Clip& clip, std::size_t track, const glm::uvec4& places)
 {
-    const JointTransform& value = clip.data()[track * transformsPerTrack(clip)];
+    const JointTransform& value = clip.data()[track * clip.transformsPerTrack()];
     const JointTransform& rest = _set.restPose()[track];
     const auto widen = [&](PartMotion& motion, std::uint32_t place, Part part)
     {
@@ -160,7 +155,7 @@ void PackedKeyframes::note(const Clip& clip, std::size_t track, const glm::uvec4
 
 void PackedKeyframes::writeRecord(const Clip& clip, std::size_t keyframe, std::vector<std::uint32_t>& words) const
 {
-    const std::size_t perTrack = transformsPerTrack(clip);
+    const std::size_t perTrack = clip.transformsPerTrack();
     for (const Column& column : _columns)
     {
         if (column.compact >= 0)
@@ -170,7 +165,7 @@ void PackedKeyframes::writeRecord(const Clip& clip, std::size_t keyframe, std::v
             words.insert(words.end(), {compact.keyframes[place].low, compact.keyframes[place].high});
             continue;
         }
-        const JointTransform* transform = &clip.data()[keyframe * clip.keyframeStride() + column.track * perTrack];
+        const JointTransform* transform = clip.at(keyframe, column.track);
         for (std::size_t i = 0; i < perTrack; ++i)
         {
             const std::array<std::uint32_t, 4> number = bits(transform[i].*column.part);

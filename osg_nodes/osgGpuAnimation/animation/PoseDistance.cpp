@@ -22,9 +22,7 @@ PoseDistance::PoseDistance(const AnimationSet& set, const EntryBoxes& entryBoxes
         if (box.empty() || moved.joint < 0) continue;
         std::vector<glm::vec3>& points = _points[static_cast<std::size_t>(moved.joint)];
         for (int corner = 0; corner < 8; ++corner)
-            points.push_back(moved.inverseBind.transformPoint({(corner & 1) != 0 ? box.max.x : box.min.x,
-                                                               (corner & 2) != 0 ? box.max.y : box.min.y,
-                                                               (corner & 4) != 0 ? box.max.z : box.min.z}));
+            points.push_back(moved.inverseBind.transformPoint(box.corner(corner)));
     }
 }
 

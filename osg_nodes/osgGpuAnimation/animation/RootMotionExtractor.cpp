@@ -28,11 +28,6 @@ glm::dvec4 conjugate(const glm::dvec4& q)
     return glm::dvec4(-glm::dvec3(q), q.w);
 }
 
-std::size_t transformsPerTrack(const Clip& clip)
-{
-    return clip.form() == Clip::Form::Spline ? 3 : 1;
-}
-
 double difference(const glm::vec4& a, const glm::vec4& b)
 {
     return static_cast<double>(std::max(std::max(std::abs(a.x - b.x), std::abs(a.y - b.y)),
@@ -66,8 +61,8 @@ RootMotionExtractor::RootMotionExtractor(const Skeleton& skeleton, std::size_t j
 
 bool RootMotionExtractor::isStill(const Clip& clip, std::size_t joint) const
 {
-    const std::size_t perTrack = transformsPerTrack(clip);
-    const JointTransform* first = &clip.data()[joint * perTrack];
+    const std::size_t perTrack = clip.transformsPerTrack();
+    const JointTransform* first = clip.at(0, joint);
     JointTransform none{glm::vec4(0.0f), glm::vec4(0.0f), glm::vec4(0.0f)};
     for (std::size_t k = 0; k < clip.keyframeCount(); ++k)
     {
@@ -89,7 +84,7 @@ Result<bool> RootMotionExtractor::findParent(const Clip& clip)
         if (!isStill(clip, joint))
             return Error{"clip \"" + clip.name() + "\" moves joint \"" + _skeleton.joint(joint).name + "\" above \"" +
                          _skeleton.joint(_joint).name + "\", whose motion is to be taken out"};
-        const JointTransform& local = clip.data()[joint * transformsPerTrack(clip)];
+        const JointTransform& local = clip.data()[joint * clip.transformsPerTrack()];
         _parentToModel = local.toMatrix().toColumns() * _parentToModel;
         _parentRotation = product(Rotation::unit(glm::dvec4(local.rotation)), _parentRotation);
     }
@@ -128,7 +123,7 @@ void RootMotionExtractor::takeOutTranslation(Clip& clip, RootMotionCurve& curve)
         const glm::dvec3 along = _axes.up * glm::dot(_axes.up, v);
         return (_axes.horizontal ? v - along : glm::dvec3(0.0)) + (_axes.vertical ? along : glm::dvec3(0.0));
     };
-    const std::size_t perTrack = transformsPerTrack(clip);
+    const std::size_t perTrack = clip.transformsPerTrack();
     JointTransform* key = &(*clip._data)[_joint * perTrack];
     const glm::dvec3 first(key->translation);
     for (std::size_t k = 0; k < curve.keys.size(); ++k, key += clip.keyframeStride())
@@ -159,7 +154,7 @@ double RootMotionExtractor::yawOf(const glm::dvec4& rotation) const
 
 void RootMotionExtractor::takeOutYaw(Clip& clip, RootMotionCurve& curve) const
 {
-    const std::size_t perTrack = transformsPerTrack(clip), stride = clip.keyframeStride();
+    const std::size_t perTrack = clip.transformsPerTrack(), stride = clip.keyframeStride();
     JointTransform* keys = &(*clip._data)[_joint * perTrack];
     const glm::dvec4 first = product(_parentRotation, Rotation::unit(glm::dvec4(keys->rotation)));
     for (std::size_t k = 0; k < curve.keys.size(); ++k)

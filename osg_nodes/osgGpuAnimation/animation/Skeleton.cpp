@@ -5,7 +5,6 @@
 #include <osgGpuAnimation/animation/Rotation.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <optional>
 
@@ -20,11 +19,6 @@ std::string describe(const std::vector<Joint>& joints, std::size_t index)
     return "joint " + std::to_string(index) + " \"" + joints[index].name + "\"";
 }
 
-bool isFinite(const glm::vec4& v)
-{
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z) && std::isfinite(v.w);
-}
-
 std::optional<Error> findFault(const std::vector<Joint>& joints)
 {
     const auto count = static_cast<std::int64_t>(joints.size());
@@ -34,8 +28,7 @@ std::optional<Error> findFault(const std::vector<Joint>& joints)
         if (joint.parent < -1 || joint.parent >= count)
             return Error{describe(joints, i) + ": parent " + std::to_string(joint.parent) + " is not one of " +
                          std::to_string(count) + " joints"};
-        if (!isFinite(joint.rest.translation) || !isFinite(joint.rest.rotation) || !isFinite(joint.rest.scale))
-            return Error{describe(joints, i) + ": its rest transform is not finite"};
+        if (!joint.rest.isFinite()) return Error{describe(joints, i) + ": its rest transform is not finite"};
     }
     return std::nullopt;
 }

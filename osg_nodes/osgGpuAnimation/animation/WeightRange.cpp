@@ -28,7 +28,7 @@ void includeClip(WeightRange& range, const Clip& clip, std::size_t track, std::s
     const bool isSpline = clip.form() == Clip::Form::Spline;
     for (std::size_t keyframe = 0; keyframe < clip.keyframeCount(); ++keyframe)
     {
-        const JointTransform* transform = &clip.data()[keyframe * clip.keyframeStride() + track * (isSpline ? 3 : 1)];
+        const JointTransform* transform = clip.at(keyframe, track);
         const float value = weightIn(transform[0], place);
         include(range, value);
         if (!isSpline) continue;

@@ -28,8 +28,9 @@ public:
     /// The same with a root matrix, which the instance's root joints are multiplied by. Instances without one get the
     /// identity as soon as any has one.
     std::size_t add(const PoseInstruction& instruction, const AffineMatrix& rootMatrix);
-    /// The same for an instance that shows one sample.
-    std::size_t add(const BlendSample& sample, const AffineMatrix& rootMatrix);
+    /// The same for instances that show one sample.
+    std::size_t addSample(const BlendSample& sample);
+    std::size_t addSample(const BlendSample& sample, const AffineMatrix& rootMatrix);
     /// What the instance's colour is multiplied by. rgba: 8 bits each, red lowest. Others stay white.
     void setTint(std::size_t instance, std::uint32_t rgba);
     void clear();

@@ -5,14 +5,13 @@
 #include <osgGpuAnimation/nodes/AnimationUpdateCallback.h>
 #include <osgGpuAnimation/nodes/DepthPass.h>
 #include <osgGpuAnimation/nodes/FlattenedPlace.h>
+#include <osgGpuAnimation/nodes/OsgMatrix.h>
 #include <osgGpuAnimation/nodes/PosedMeshes.h>
 #include <osgGpuAnimation/nodes/PoseStage.h>
-#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
+#include <osgGpuAnimation/nodes/SkinnedGeometryVisitor.h>
 
 #include <osg/NodeVisitor>
 #include <osgUtil/CullVisitor>
-
-#include <glm/gtc/type_ptr.hpp>
 
 namespace osgGpuAnimation
 {
@@ -26,24 +25,6 @@ std::shared_ptr<const AnimationSet> emptySet()
         AnimationSet::create({Skeleton::create({}).value(), {}, {}, {}, {}}).value();
     return set;
 }
-
-/// Calls a function for every SkinnedGeometry below a node.
-template <typename Function>
-class SkinnedGeometryVisitor : public osg::NodeVisitor
-{
-public:
-    explicit SkinnedGeometryVisitor(Function function)
-        : osg::NodeVisitor(osg::NodeVisitor::TRAVERSE_ALL_CHILDREN), _function(function)
-    {
-    }
-    void apply(osg::Drawable& drawable) override
-    {
-        if (auto* skinned = dynamic_cast<SkinnedGeometry*>(&drawable)) _function(*skinned);
-    }
-
-private:
-    Function _function;
-};
 
 osg::BoundingBox toOsg(const Box& box)
 {
@@ -89,9 +70,7 @@ Result<osg::Matrixd> AnimatedCharacter::jointToModel(std::size_t joint) const
 {
     const std::size_t count = set().skeleton().jointCount();
     if (joint >= count) return Error{"there is no joint " + std::to_string(joint) + " among " + std::to_string(count)};
-    // A matrix for column vectors by columns is in memory one for row vectors by rows.
-    const glm::dmat4 columns = Pose::jointToModel(set(), _controller->instruction(), joint).toColumns();
-    return osg::Matrixd(glm::value_ptr(columns));
+    return toOsg(Pose::jointToModel(set(), _controller->instruction(), joint));
 }
 
 Result<osg::Matrixd> AnimatedCharacter::jointToModel(const std::string& joint) const
@@ -138,13 +117,10 @@ void AnimatedCharacter::computeClipBounds()
                                         { geometry.addToEntryBoxes(set(), withAdded, bindBoxes, maxLayers); });
     if (!set().morphs().empty()) accept(collectAdded);
 
-    auto bounds = std::make_shared<std::vector<Box>>();
+    auto bounds = std::make_shared<std::vector<Box>>(boundsOfClips(set(), entryBoxes));
     Box all;
-    for (int clip = -1; clip < static_cast<int>(set().clips().size()); ++clip)
-    {
-        bounds->push_back(boundsOfClip(set(), clip, entryBoxes));
-        all.add(bounds->back());
-    }
+    for (const Box& box : *bounds)
+        all.add(box);
     SkinnedGeometryVisitor setBox([&](SkinnedGeometry& geometry) { geometry.setInitialBound(toOsg(all)); });
     accept(setBox);
     _clipBounds = std::move(bounds);

@@ -7,6 +7,8 @@
 #include <osgGpuAnimation/nodes/CrowdView.h>
 #include <osgGpuAnimation/nodes/DepthPass.h>
 #include <osgGpuAnimation/nodes/FlattenedPlace.h>
+#include <osgGpuAnimation/nodes/OsgMatrix.h>
+#include <osgGpuAnimation/nodes/PlacedDraw.h>
 #include <osgGpuAnimation/nodes/PosedInstances.h>
 #include <osgGpuAnimation/nodes/PoseStage.h>
 
@@ -39,10 +41,7 @@ std::vector<Box> clipBoundsOf(const AnimationSet& set, const osg::Group& meshes)
     EntryBoxes entryBoxes(set.paletteSize());
     SkinnedGeometry::BindBoxes bindBoxes;
     forEachMesh(meshes, [&](const SkinnedGeometry& mesh) { mesh.addToEntryBoxes(set, entryBoxes, bindBoxes); });
-    std::vector<Box> bounds;
-    for (int clip = -1; clip < static_cast<int>(set.clips().size()); ++clip)
-        bounds.push_back(boundsOfClip(set, clip, entryBoxes));
-    return bounds;
+    return boundsOfClips(set, entryBoxes);
 }
 
 std::shared_ptr<const AnimationSet> emptySet()
@@ -61,6 +60,14 @@ std::uint32_t toRgba(const osg::Vec4& color)
         rgba |= static_cast<std::uint32_t>(std::lround(value * 255.0f)) << 8 * channel;
     }
     return rgba;
+}
+
+/// What cannot be drawn at placements of its own has to be up to date.
+bool areAllPlaceable(const osg::Group& meshes)
+{
+    bool areAll = true;
+    forEachMesh(meshes, [&](const SkinnedGeometry& mesh) { areAll = areAll && !PlacedDraw::isRefusedBy(mesh); });
+    return areAll;
 }
 
 Error noSuchInstance()
@@ -105,7 +112,7 @@ AnimatedCrowd::AnimatedCrowd() : AnimatedCrowd(emptySet(), {}) {}
 
 AnimatedCrowd::AnimatedCrowd(std::shared_ptr<const AnimationSet> set,
                              const std::vector<osg::ref_ptr<SkinnedGeometry>>& meshes)
-    : _instances(std::move(set)), _posed(std::make_unique<PosedInstances>())
+    : _instances(std::move(set)), _posed(std::make_unique<PosedInstances>()), _batches(std::make_unique<CrowdBatches>())
 {
     // Not static: the Optimizer must not flatten the transforms above into the bind pose.
     setDataVariance(osg::Object::DYNAMIC);
@@ -116,7 +123,8 @@ AnimatedCrowd::AnimatedCrowd(std::shared_ptr<const AnimationSet> set,
 }
 
 AnimatedCrowd::AnimatedCrowd(const AnimatedCharacter& character)
-    : _instances(character.controller().sharedSet()), _posed(std::make_unique<PosedInstances>())
+    : _instances(character.controller().sharedSet()), _posed(std::make_unique<PosedInstances>()),
+      _batches(std::make_unique<CrowdBatches>())
 {
     setDataVariance(osg::Object::DYNAMIC);
     setUpdateCallback(new AnimationUpdateCallback);
@@ -132,8 +140,8 @@ AnimatedCrowd::AnimatedCrowd(const AnimatedCharacter& character)
 
 AnimatedCrowd::AnimatedCrowd(const AnimatedCrowd& other, const osg::CopyOp& copyop)
     : osg::Transform(other, copyop), _instances(other._instances), _posed(std::make_unique<PosedInstances>()),
-      _origin(other._origin), _hasOrigin(other._hasOrigin), _updateTime(other._updateTime),
-      _updateRate(other._updateRate)
+      _batches(std::make_unique<CrowdBatches>()), _origin(other._origin), _hasOrigin(other._hasOrigin),
+      _updateTime(other._updateTime), _updateRate(other._updateRate)
 {
 }
 
@@ -151,11 +159,9 @@ Result<bool> AnimatedCrowd::setAnimationSet(std::shared_ptr<const AnimationSet> 
 
 Result<AffineMatrix> AnimatedCrowd::toRootMatrix(const osg::Matrixd& placement, const osg::Vec3d& origin) const
 {
-    AffineMatrix root;
-    for (int row = 0; row < 3; ++row)
-        for (int column = 0; column < 4; ++column)
-            root.rows[static_cast<std::size_t>(row)][column] =
-                static_cast<float>(placement(column, row) - (column == 3 ? origin[row] : 0.0));
+    osg::Matrixd fromOrigin = placement;
+    fromOrigin.setTrans(placement.getTrans() - origin);
+    const AffineMatrix root = toAffine(fromOrigin);
     if (!root.isFinite()) return Error{"the placement is not finite, seen from the crowd's origin"};
     if (placement(0, 3) != 0.0 || placement(1, 3) != 0.0 || placement(2, 3) != 0.0 || placement(3, 3) != 1.0)
         return Error{"the placement is not affine: its last column is not 0, 0, 0, 1"};
@@ -219,12 +225,8 @@ AnimationController* AnimatedCrowd::controller(Instance instance)
 
 osg::Matrixd AnimatedCrowd::placement(Instance instance) const
 {
-    const AffineMatrix& root = _instances.rootMatrix(_instances.indexOf(instance));
-    osg::Matrixd placement;
-    for (int row = 0; row < 3; ++row)
-        for (int column = 0; column < 4; ++column)
-            placement(column, row) = static_cast<double>(root.rows[static_cast<std::size_t>(row)][column]) +
-                                     (column == 3 ? _origin[row] : 0.0);
+    osg::Matrixd placement = toOsg(_instances.rootMatrix(_instances.indexOf(instance)));
+    placement.setTrans(placement.getTrans() + _origin);
     return placement;
 }
 
@@ -291,20 +293,23 @@ void AnimatedCrowd::cull(osgUtil::CullVisitor& visitor)
     CrowdView view(visitor);
     static thread_local std::vector<std::uint32_t> seen; // keeps its storage from cull to cull
     _instances.findSeen(isCullingActive() ? view.planes() : std::vector<glm::vec4>(), seen);
-    std::vector<osg::StateSet*> states;
+    std::vector<CrowdBatches::Draw> draws;
     if (!seen.empty() && set().paletteSize() > 0)
     {
         view.look(_instances, seen);
-        states = enlistCrowd(PoseStage::frame(visitor), _instances, view, _updateRate, seen);
+        const UpdateRate rate = areAllPlaceable(*this) ? _updateRate : UpdateRate();
+        draws = _batches->enlist(PoseStage::frame(visitor), _instances, visitor, rate, seen);
     }
     for (const osg::ref_ptr<osg::Node>& child : _children)
     {
         if (!dynamic_cast<const SkinnedGeometry*>(child.get())) child->accept(visitor);
     }
-    for (osg::StateSet* state : states)
+    const osg::ref_ptr<osg::RefMatrix> eye = new osg::RefMatrix;
+    for (const CrowdBatches::Draw& draw : draws)
     {
-        visitor.pushStateSet(state);
-        forEachMesh(*this, [&](const SkinnedGeometry& mesh) { view.draw(const_cast<SkinnedGeometry&>(mesh)); });
+        visitor.pushStateSet(draw.stateSet);
+        osg::RefMatrix* toEye = draw.isPlaced ? eye.get() : visitor.getModelViewMatrix();
+        forEachMesh(*this, [&](const SkinnedGeometry& mesh) { view.draw(const_cast<SkinnedGeometry&>(mesh), toEye); });
         visitor.popStateSet();
     }
 }

@@ -16,6 +16,7 @@ namespace osgGpuAnimation
 {
 
 class AnimatedCharacter;
+class CrowdBatches;
 class PosedInstances;
 
 /// Thousands of instances of one character in one node: each with its own placement, controller and tint, all drawn by
@@ -117,6 +118,7 @@ private:
 
     CrowdInstances _instances;
     std::unique_ptr<PosedInstances> _posed; ///< its own: no copy shares it
+    std::unique_ptr<CrowdBatches> _batches; ///< likewise
     osg::Vec3d _origin;
     bool _hasOrigin = false;
     std::optional<double> _updateTime; ///< seconds of simulation time

@@ -2,11 +2,11 @@
 #include <osgGpuAnimation/nodes/CharacterDraws.h>
 
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
+#include <osgGpuAnimation/nodes/OsgMatrix.h>
 #include <osgGpuAnimation/nodes/PlacedDraw.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace osgGpuAnimation
 {
@@ -47,15 +47,6 @@ SkinnedGeometry* asShared(osg::Node* child)
     return mesh && canBeDrawnTogether(*mesh) ? mesh : nullptr;
 }
 
-AffineMatrix toAffine(const osg::Matrix& matrix)
-{
-    AffineMatrix affine;
-    for (int row = 0; row < 3; ++row)
-        for (int column = 0; column < 4; ++column)
-            affine.rows[static_cast<std::size_t>(row)][column] = static_cast<float>(matrix(column, row));
-    return affine;
-}
-
 } // namespace
 
 bool CharacterDraws::Group::holds(const Group& other) const
@@ -67,22 +58,23 @@ bool CharacterDraws::Group::holds(const Group& other) const
 void CharacterDraws::draw(osgUtil::CullVisitor& visitor, AnimatedCharacter& character, PoseFrame& frame,
                           EnlistedPose pose)
 {
-    const bool isTogether =
-        character.isDrawnTogether() && canDrawTogether(visitor) && drawTogether(visitor, character, frame, pose);
+    std::vector<osg::Node*> others; // not kept for its memory: there may be characters below them
+    const bool isTogether = character.isDrawnTogether() && canDrawTogether(visitor) &&
+                            drawTogether(visitor, character, frame, pose, others);
     osg::StateSet* state = nullptr;
-    for (unsigned int i = 0; i < character.getNumChildren(); ++i)
+    const auto count = isTogether ? static_cast<unsigned int>(others.size()) : character.getNumChildren();
+    for (unsigned int i = 0; i < count; ++i)
     {
-        osg::Node* child = character.getChild(i);
-        if (isTogether && asShared(child)) continue;
+        osg::Node* child = isTogether ? others[i] : character.getChild(i);
         if (!state) visitor.pushStateSet(state = frame.stateOf(character, pose));
         child->accept(visitor);
     }
     if (state) visitor.popStateSet();
 }
 
-// True where the meshes that can be shared are dealt with; false where they are to be drawn as they are.
-bool CharacterDraws::drawTogether(osgUtil::CullVisitor& visitor, const AnimatedCharacter& character, PoseFrame& frame,
-                                  EnlistedPose pose)
+// True where the meshes that can be shared are dealt with; false where all is to be drawn as it is.
+bool CharacterDraws::drawTogether(osgUtil::CullVisitor& visitor, AnimatedCharacter& character, PoseFrame& frame,
+                                  EnlistedPose pose, std::vector<osg::Node*>& outOthers)
 {
     _asked.bin = visitor.getCurrentRenderBin();
     _asked.projection = visitor.getProjectionMatrix();
@@ -92,8 +84,11 @@ bool CharacterDraws::drawTogether(osgUtil::CullVisitor& visitor, const AnimatedC
     _asked.meshes.clear();
     for (unsigned int i = 0; i < character.getNumChildren(); ++i)
     {
-        SkinnedGeometry* mesh = asShared(const_cast<osg::Node*>(character.getChild(i)));
-        if (mesh && visitor.validNodeMask(*mesh)) _asked.meshes.push_back(mesh);
+        SkinnedGeometry* mesh = asShared(character.getChild(i));
+        if (!mesh)
+            outOthers.push_back(character.getChild(i));
+        else if (visitor.validNodeMask(*mesh))
+            _asked.meshes.push_back(mesh);
     }
     if (_asked.meshes.empty()) return false;
     std::vector<Group>& groups = _groups[visitor.getCurrentStateGraph()];

@@ -46,8 +46,8 @@ private:
         bool holds(const Group& other) const;
     };
 
-    bool drawTogether(osgUtil::CullVisitor& visitor, const AnimatedCharacter& character, PoseFrame& frame,
-                      EnlistedPose pose);
+    bool drawTogether(osgUtil::CullVisitor& visitor, AnimatedCharacter& character, PoseFrame& frame, EnlistedPose pose,
+                      std::vector<osg::Node*>& outOthers);
     void open(osgUtil::CullVisitor& visitor, Group& group, PoseFrame& frame, float depth);
 
     std::unordered_map<const osgUtil::StateGraph*, std::vector<Group>> _groups;

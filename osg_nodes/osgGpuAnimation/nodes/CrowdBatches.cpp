@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/CrowdBatches.h>
 
-#include <glm/geometric.hpp>
+#include <osgGpuAnimation/nodes/OsgMatrix.h>
 
 namespace osgGpuAnimation
 {
@@ -9,52 +9,56 @@ namespace osgGpuAnimation
 namespace
 {
 
-using Indices = std::vector<std::uint32_t>;
-
-/// Takes what is small out of `seen` and into the groups.
-void dealOut(const CrowdInstances& instances, const glm::vec4& sizePlane, Indices& seen, std::vector<Indices>& groups)
+std::vector<CrowdBatches::Draw> enlistGroups(PoseFrame& frame, const CrowdInstances& instances,
+                                             const CrowdGroups& groups, const osg::Matrixd& crowdToEye)
 {
-    groups.resize(instances.groupCount());
-    for (Indices& group : groups)
-        group.clear();
-    std::size_t kept = 0;
-    for (const std::uint32_t index : seen)
+    std::vector<CrowdBatches::Draw> draws;
+    const AffineMatrix toEye = toAffine(crowdToEye);
+    for (const CrowdGroups::Group& group : groups.groups())
     {
-        const glm::vec4& sphere = instances.sphere(index);
-        const bool isLarge = glm::dot(glm::vec3(sizePlane), glm::vec3(sphere)) + sizePlane.w >= -sphere.w;
-        const std::size_t group = isLarge ? instances.groupCount() : instances.groupOf(index);
-        if (group == instances.groupCount())
-            seen[kept++] = index;
-        else
-            groups[group].push_back(index);
+        if (group.members.empty()) continue;
+        std::unique_ptr<PoseBatch> batch = frame.makeBatch(instances.set());
+        *batch = group.poses;
+        // Also where none is shown, so that those after it have the slot, and with it the palette, of the frame before.
+        const std::size_t slot = frame.enlist(std::move(batch)).slot;
+        if (group.shown.empty()) continue;
+        const PlacedState placed = frame.placedState(*instances.set(), slot);
+        for (const CrowdGroups::Shown& shown : group.shown)
+            placed.binding->add({toEye * instances.rootMatrix(shown.index), static_cast<float>(shown.number)});
+        draws.push_back({placed.stateSet, true});
     }
-    seen.resize(kept);
+    return draws;
 }
 
 } // namespace
 
-std::vector<osg::StateSet*> enlistCrowd(PoseFrame& frame, const CrowdInstances& instances, const CrowdView& view,
-                                        const UpdateRate& rate, Indices& seen)
+CrowdGroups& CrowdBatches::groupsOf(const osg::Camera* camera, unsigned int frameNumber)
 {
-    std::vector<osg::StateSet*> states;
-    static thread_local std::vector<Indices> groups; // keeps its storage from cull to cull
+    const std::lock_guard<std::mutex> lock(_mutex);
+    // A camera that sees it again after more than a frame begins anew. Pipelined threads are a frame apart.
+    for (auto kept = _kept.begin(); kept != _kept.end();)
+        kept = frameNumber > kept->second.frameNumber + 2 ? _kept.erase(kept) : std::next(kept);
+    Kept& kept = _kept[camera];
+    kept.frameNumber = frameNumber;
+    return kept.groups;
+}
+
+std::vector<CrowdBatches::Draw> CrowdBatches::enlist(PoseFrame& frame, const CrowdInstances& instances,
+                                                     osgUtil::CullVisitor& visitor, const UpdateRate& rate,
+                                                     std::vector<std::uint32_t>& seen)
+{
+    std::vector<Draw> draws;
     if (rate.every > 1)
-        dealOut(instances, view.sizePlane(rate.pixels), seen, groups);
-    else
-        groups.clear();
-    // Groups first: so each has the slot, and with it the palette, of the frame before.
-    for (std::size_t group = 0; group < groups.size(); ++group)
     {
-        if (groups[group].empty()) continue;
-        std::unique_ptr<PoseBatch> batch = frame.makeBatch(instances.set());
-        instances.addGroupTo(*batch, groups[group], group);
-        states.push_back(frame.enlist(std::move(batch)));
+        CrowdGroups& groups = groupsOf(visitor.getCurrentCamera(), frame.frameNumber());
+        groups.update(instances, CrowdView(visitor).sizePlane(rate.pixels), seen);
+        draws = enlistGroups(frame, instances, groups, *visitor.getModelViewMatrix());
     }
-    if (seen.empty()) return states;
+    if (seen.empty()) return draws;
     std::unique_ptr<PoseBatch> batch = frame.makeBatch(instances.set());
     instances.addTo(*batch, seen);
-    states.push_back(frame.enlist(std::move(batch)));
-    return states;
+    draws.push_back({frame.enlist(std::move(batch)).stateSet, false});
+    return draws;
 }
 
 } // namespace osgGpuAnimation

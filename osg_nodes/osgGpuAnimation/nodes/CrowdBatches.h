@@ -1,26 +1,49 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <osgGpuAnimation/nodes/CrowdGroups.h>
 #include <osgGpuAnimation/nodes/CrowdInstances.h>
 #include <osgGpuAnimation/nodes/CrowdView.h>
 #include <osgGpuAnimation/nodes/PoseFrame.h>
 #include <osgGpuAnimation/nodes/UpdateRate.h>
 
-#include <osg/StateSet>
+#include <osg/Camera>
 
-#include <cstdint>
-#include <vector>
+#include <memory>
+#include <mutex>
+#include <unordered_map>
 
 namespace osgGpuAnimation
 {
 
-/// Has the poses of what a camera sees of a crowd evaluated, in one batch, and one more for each group of instances
-/// that are small enough not to be up to date. A group's batch says the same until its turn comes, so the pipeline
-/// keeps its palette; it is computed anew when an instance comes, goes or is moved.
-///
-/// seen: indices; used up. Returns the states under which the crowd's meshes are to be drawn, each in turn; they are
-/// the frame's.
-std::vector<osg::StateSet*> enlistCrowd(PoseFrame& frame, const CrowdInstances& instances, const CrowdView& view,
-                                        const UpdateRate& rate, std::vector<std::uint32_t>& seen);
+/// Has the poses of what cameras see of a crowd evaluated: in one batch what is to be up to date, and in one more for
+/// each group of small instances (see UpdateRate) the poses of its last turn, which the pipeline still has. Keeps a
+/// camera's groups as long as it sees the crowd. Several cameras may cull at once.
+class CrowdBatches
+{
+public:
+    /// How the crowd's meshes are to be drawn, once for each of these.
+    struct Draw
+    {
+        osg::StateSet* stateSet; ///< the frame's
+        bool isPlaced;           ///< instances stand in the eye's space already
+    };
+
+    /// frame: that of the visitor's cull. seen: indices; used up.
+    std::vector<Draw> enlist(PoseFrame& frame, const CrowdInstances& instances, osgUtil::CullVisitor& visitor,
+                             const UpdateRate& rate, std::vector<std::uint32_t>& seen);
+
+private:
+    struct Kept
+    {
+        CrowdGroups groups;
+        unsigned int frameNumber = 0; ///< in which they were last used
+    };
+
+    CrowdGroups& groupsOf(const osg::Camera* camera, unsigned int frameNumber);
+
+    std::mutex _mutex;
+    std::unordered_map<const osg::Camera*, Kept> _kept;
+};
 
 } // namespace osgGpuAnimation

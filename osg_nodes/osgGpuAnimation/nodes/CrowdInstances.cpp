@@ -46,7 +46,7 @@ CrowdInstances::CrowdInstances(const CrowdInstances& other)
 
 std::size_t CrowdInstances::indexOf(Handle handle) const
 {
-    const std::size_t place = handle & 0xFFFFFFFFu;
+    const std::size_t place = placeOf(handle);
     if (place >= _indexOfPlace.size() || _usesOfPlace[place] != handle >> 32) return none;
     const std::size_t index = _indexOfPlace[place];
     return index < size() && _handles[index] == handle ? index : none;
@@ -102,7 +102,7 @@ CrowdInstances::Handle CrowdInstances::add(const AffineMatrix& rootMatrix, const
 
 void CrowdInstances::remove(std::size_t index)
 {
-    const std::size_t place = _handles[index] & 0xFFFFFFFFu;
+    const std::size_t place = placeOf(_handles[index]);
     ++_usesOfPlace[place];
     _freePlaces.push_back(static_cast<std::uint32_t>(place));
     _tinted -= _tints[index] != PoseBatch::white;
@@ -112,7 +112,7 @@ void CrowdInstances::remove(std::size_t index)
     takeOut(_playbacks, index);
     takeOut(_controllers, index);
     takeOut(_handles, index);
-    if (index < size()) _indexOfPlace[_handles[index] & 0xFFFFFFFFu] = static_cast<std::uint32_t>(index);
+    if (index < size()) _indexOfPlace[placeOf(_handles[index])] = static_cast<std::uint32_t>(index);
 }
 
 void CrowdInstances::move(std::size_t index, const AffineMatrix& rootMatrix)
@@ -186,7 +186,12 @@ void CrowdInstances::setGroupCount(std::size_t groups)
 // By the handle, which stays when others are removed.
 std::size_t CrowdInstances::groupOf(std::size_t index) const
 {
-    return _controllers[index] ? groupCount() : (_handles[index] & 0xFFFFFFFFu) % groupCount();
+    return _controllers[index] ? groupCount() : placeOf(_handles[index]) % groupCount();
+}
+
+BlendSample CrowdInstances::groupSample(std::size_t index) const
+{
+    return _playbacks[index].sample(*_set, _groupClocks[groupOf(index)]);
 }
 
 void CrowdInstances::findSeen(const std::vector<glm::vec4>& planes, std::vector<std::uint32_t>& outIndices) const
@@ -204,22 +209,12 @@ void CrowdInstances::findSeen(const std::vector<glm::vec4>& planes, std::vector<
 
 void CrowdInstances::addTo(PoseBatch& batch, const std::vector<std::uint32_t>& indices) const
 {
-    addTo(batch, indices, _clock);
-}
-
-void CrowdInstances::addGroupTo(PoseBatch& batch, const std::vector<std::uint32_t>& indices, std::size_t group) const
-{
-    addTo(batch, indices, _groupClocks[group]);
-}
-
-void CrowdInstances::addTo(PoseBatch& batch, const std::vector<std::uint32_t>& indices, double clock) const
-{
     for (const std::uint32_t index : indices)
     {
         if (_controllers[index])
             batch.add(_controllers[index]->instruction(), _rootMatrices[index]);
         else
-            batch.add(_playbacks[index].sample(*_set, clock), _rootMatrices[index]);
+            batch.addSample(_playbacks[index].sample(*_set, _clock), _rootMatrices[index]);
     }
     if (_tinted == 0) return;
     for (std::size_t place = 0; place < indices.size(); ++place)

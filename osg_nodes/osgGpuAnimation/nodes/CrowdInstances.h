@@ -31,6 +31,9 @@ public:
     static constexpr std::size_t none = ~std::size_t(0);
     std::size_t indexOf(Handle handle) const; ///< none where the handle names no instance (any more)
     Handle handleOf(std::size_t index) const { return _handles[index]; }
+    /// A number below placeCount(), which no other instance has at the same time.
+    static std::size_t placeOf(Handle handle) { return handle & 0xFFFFFFFFu; }
+    std::size_t placeCount() const { return _indexOfPlace.size(); }
 
     /// The box that holds every vertex of an instance while it plays the clip: at clip + 1, the rest pose's first.
     void setClipBounds(const std::vector<Box>& clipBounds);
@@ -43,6 +46,7 @@ public:
     const AffineMatrix& rootMatrix(std::size_t index) const { return _rootMatrices[index]; }
     const glm::vec4& sphere(std::size_t index) const { return _spheres[index]; } ///< centre, radius; negative: nothing
     std::uint32_t tint(std::size_t index) const { return _tints[index]; }
+    bool isTinted() const { return _tinted != 0; } ///< any of them
     PoseInstruction instruction(std::size_t index) const;
     /// Holds until the next advance(), which takes it back where a CrowdPlayback will do.
     AnimationController& controller(std::size_t index);
@@ -58,16 +62,17 @@ public:
     std::size_t groupCount() const { return _groupClocks.size(); }
     /// Those of instances that play one clip in a loop; others have none (groupCount()), since each advance moves them.
     std::size_t groupOf(std::size_t index) const;
+    /// Seconds; changes when the group is brought up to date.
+    double groupClock(std::size_t group) const { return _groupClocks[group]; }
+    /// What the instance shows as of its group's clock; only for one that has a group.
+    BlendSample groupSample(std::size_t index) const;
 
     /// Indices of the instances that have something on the inner side of all planes: n · p + d >= 0.
     void findSeen(const std::vector<glm::vec4>& planes, std::vector<std::uint32_t>& outIndices) const;
     /// Adds them, in that order.
     void addTo(PoseBatch& batch, const std::vector<std::uint32_t>& indices) const;
-    /// The same with the poses that their group has; indices: all of one.
-    void addGroupTo(PoseBatch& batch, const std::vector<std::uint32_t>& indices, std::size_t group) const;
 
 private:
-    void addTo(PoseBatch& batch, const std::vector<std::uint32_t>& indices, double clock) const;
     glm::vec4 placedSphere(std::size_t index) const;
     Handle newHandle(std::size_t index);
 

@@ -68,12 +68,12 @@ void CrowdView::look(const CrowdInstances& instances, const std::vector<std::uin
     _visitor.updateCalculatedNearFar(toEye, boxAround(farthestSphere));
 }
 
-void CrowdView::draw(osg::Drawable& mesh)
+void CrowdView::draw(osg::Drawable& mesh, osg::RefMatrix* toEye)
 {
     if (!_visitor.validNodeMask(mesh)) return;
     osg::StateSet* stateSet = mesh.getStateSet();
     if (stateSet) _visitor.pushStateSet(stateSet);
-    _visitor.addDrawableAndDepth(&mesh, _visitor.getModelViewMatrix(), _depth);
+    _visitor.addDrawableAndDepth(&mesh, toEye, _depth);
     if (stateSet) _visitor.popStateSet();
 }
 

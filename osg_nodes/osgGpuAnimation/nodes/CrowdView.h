@@ -25,8 +25,8 @@ public:
     glm::vec4 sizePlane(float pixels) const;
     /// Tells the camera's near and far planes of them. indices: those that are seen, at least one.
     void look(const CrowdInstances& instances, const std::vector<std::uint32_t>& indices);
-    /// Hands the mesh on to be drawn, at the depth of those looked at.
-    void draw(osg::Drawable& mesh);
+    /// Hands the mesh on to be drawn, at the depth of those looked at. toEye: from where its instances are placed.
+    void draw(osg::Drawable& mesh, osg::RefMatrix* toEye);
 
 private:
     osgUtil::CullVisitor& _visitor;

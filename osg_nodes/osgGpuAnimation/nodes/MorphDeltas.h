@@ -20,6 +20,8 @@ struct MorphDeltas
     std::array<int, 4> channels{1, -1, -1, -1};
 };
 
+/// Targets of the same arrays as others that are still in use share their texture with them, so that one mesh under
+/// many nodes is packed once. Arrays that change are to be dirty()ed, as everywhere in OSG. Any thread may call it.
 MorphDeltas packMorphTargets(const std::vector<MorphTarget>& targets, std::size_t vertexCount);
 
 } // namespace osgGpuAnimation

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/PlacedDraw.h>
 
+#include <osgGpuAnimation/nodes/OsgMatrix.h>
+
 #include <layout.glsl>
 
 #include <osg/GLExtensions>
@@ -20,15 +22,6 @@ constexpr unsigned int attributeLocations[] = {POSE_PLACEMENT_ROW_0_LOCATION, PO
 std::size_t poseOf(const Placement& placement)
 {
     return static_cast<std::size_t>(placement.pose);
-}
-
-osg::ref_ptr<osg::RefMatrix> toMatrix(const AffineMatrix& affine)
-{
-    osg::ref_ptr<osg::RefMatrix> matrix = new osg::RefMatrix;
-    for (int row = 0; row < 3; ++row)
-        for (int column = 0; column < 4; ++column)
-            (*matrix)(column, row) = static_cast<double>(affine.rows[static_cast<std::size_t>(row)][column]);
-    return matrix;
 }
 
 } // namespace
@@ -85,7 +78,7 @@ void PlacedDraw::use(std::size_t first) const
         }
         return;
     }
-    _state.applyModelViewMatrix(toMatrix(_binding.placements()[first].toEye));
+    _state.applyModelViewMatrix(new osg::RefMatrix(toOsg(_binding.placements()[first].toEye)));
     _state.applyModelViewAndProjectionUniformsIfRequired();
 }
 

@@ -138,18 +138,18 @@ std::unique_ptr<PoseBatch> PoseFrame::makeBatch(std::shared_ptr<const AnimationS
     return spareBatch(std::move(set));
 }
 
-osg::StateSet* PoseFrame::enlist(std::unique_ptr<PoseBatch> content)
+EnlistedBatch PoseFrame::enlist(std::unique_ptr<PoseBatch> content)
 {
     const std::lock_guard<std::mutex> lock(_mutex);
     for (const Batch* batch : _batchesOfSet[&content->set()])
         if (batch->stateOfAll && batch->content->isSame(*content))
         {
             _spareBatches.push_back(std::move(content));
-            return batch->stateOfAll;
+            return {batch->slot, batch->stateOfAll};
         }
     Batch& batch = addBatch(std::move(content));
     batch.stateOfAll = stateOf(batch, 0, batch.content->size());
-    return batch.stateOfAll;
+    return {batch.slot, batch.stateOfAll};
 }
 
 osg::StateSet* PoseFrame::stateOf(const Batch& batch, std::size_t instance, std::size_t instanceCount)

@@ -28,6 +28,13 @@ struct EnlistedPose
     std::size_t instance = 0;
 };
 
+/// Where a frame has a batch that was enlisted whole.
+struct EnlistedBatch
+{
+    std::size_t slot;
+    osg::StateSet* stateSet; ///< for drawing all its instances
+};
+
 /// The state for drawing characters together, and its binding, to be given their placements.
 struct PlacedState
 {
@@ -54,9 +61,8 @@ public:
 
     /// An empty batch, to be filled by the caller alone and enlisted; its storage is that of earlier frames.
     std::unique_ptr<PoseBatch> makeBatch(std::shared_ptr<const AnimationSet> set);
-    /// Takes a whole batch up, unless the same is in already (several cameras may see the same). The state is that for
-    /// drawing all its instances. batch: not empty.
-    osg::StateSet* enlist(std::unique_ptr<PoseBatch> batch);
+    /// Takes a whole batch up, unless the same is in already (several cameras may see the same). batch: not empty.
+    EnlistedBatch enlist(std::unique_ptr<PoseBatch> batch);
 
     /// Evaluates what was enlisted and not evaluated yet. stats: where to record what there was to do, see
     /// PoseStatistics; null: nowhere.

@@ -6,10 +6,22 @@
 
 #include <osg/UserDataContainer>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace osgGpuAnimation
 {
+
+namespace
+{
+
+bool isFinite(const osg::Matrixd& matrix)
+{
+    return std::all_of(matrix.ptr(), matrix.ptr() + 16, [](double number) { return std::isfinite(number); });
+}
+
+} // namespace
 
 class PoseStage::Evaluation : public osg::Camera::DrawCallback
 {
@@ -51,6 +63,8 @@ PoseStage& PoseStage::of(osgUtil::CullVisitor& visitor)
 
 void PoseStage::draw(osgUtil::CullVisitor& visitor, AnimatedCharacter& character)
 {
+    // Nowhere: the camera's far plane would go there too, and nothing be seen any more.
+    if (!isFinite(*visitor.getModelViewMatrix())) return;
     PoseStage& stage = current(visitor);
     stage._draws.draw(visitor, character, *stage._frame, stage._frame->enlist(character));
 }

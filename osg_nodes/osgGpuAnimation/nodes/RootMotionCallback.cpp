@@ -2,10 +2,9 @@
 #include <osgGpuAnimation/nodes/RootMotionCallback.h>
 
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
+#include <osgGpuAnimation/nodes/OsgMatrix.h>
 
 #include <osg/NodeVisitor>
-
-#include <glm/gtc/type_ptr.hpp>
 
 namespace osgGpuAnimation
 {
@@ -20,9 +19,7 @@ void RootMotionCallback::operator()(osg::Node* node, osg::NodeVisitor* visitor)
     if (auto* character = dynamic_cast<AnimatedCharacter*>(node))
     {
         const RootMotion motion = character->controller().takeRootMotion();
-        // A matrix for column vectors by columns is in memory one for row vectors by rows.
-        const glm::dmat4 columns = motion.matrix();
-        if (!motion.isNone()) character->preMult(osg::Matrixd(glm::value_ptr(columns)));
+        if (!motion.isNone()) character->preMult(toOsg(motion.matrix()));
     }
     traverse(node, visitor);
 }

@@ -137,8 +137,9 @@ void SkinnedGeometry::setMorphTargets(int morph, int entry, std::vector<MorphTar
     _morphTargets = std::move(targets);
     _morph = _morphTargets.empty() ? -1 : morph;
     _morphEntry = _morphTargets.empty() ? -1 : entry;
+    _morphDeltas = nullptr; // packed anew where nobody else has them: the arrays may have changed
     const MorphDeltas deltas = packMorphTargets(_morphTargets, vertexCount);
-    _morphDeltas = _morph < 0 ? nullptr : deltas.texture;
+    if (_morph >= 0) _morphDeltas = deltas.texture;
     _morphChannels = deltas.channels;
     dirtyBound();
 }

@@ -69,6 +69,8 @@ public:
     /// The same where the set is not known yet. entry: the set's entryOfMorph(morph).
     void setMorphTargets(int morph, int entry, std::vector<MorphTarget> targets);
     const std::vector<MorphTarget>& morphTargets() const { return _morphTargets; }
+    /// What they are drawn from; meshes whose targets are the same arrays share it. Null: there are none.
+    const osg::TextureBuffer* morphDeltas() const { return _morphDeltas.get(); }
     int morph() const { return _morph; }           ///< -1: none
     int morphEntry() const { return _morphEntry; } ///< the first palette entry of the weights; -1: none
 

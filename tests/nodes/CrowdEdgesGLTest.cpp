@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+#include "support/TestCharacter.h"
+#include "support/ViewerGLTest.h"
+
+#include <osgGpuAnimation/gpu/PosePipeline.h>
+#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+
+#include <osg/Group>
+#include <osg/Timer>
+#include <osgUtil/SceneView>
+#include <osgViewer/Renderer>
+
+#include <cmath>
+#include <limits>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+/// What is unusual to do with characters and crowds: very many, in the midst of a frame, at places that are none.
+class CrowdEdgesGLTest : public ViewerGLTest
+{
+protected:
+    static AnimationController still() { return AnimationController(testCharacterSet()); }
+
+    osgUtil::SceneView& sceneView()
+    {
+        return *static_cast<osgViewer::Renderer*>(viewer().getCamera()->getRenderer())->getSceneView(0);
+    }
+
+    /// A frame whose scene is changed between its cull and its draw.
+    template <typename Change>
+    void drawWithChange(Change change)
+    {
+        viewer().advance(1.0);
+        viewer().updateTraversal();
+        context().makeCurrent();
+        sceneView().setFrameStamp(viewer().getFrameStamp());
+        sceneView().cull();
+        change();
+        sceneView().draw();
+    }
+};
+
+TEST_F(CrowdEdgesGLTest, aMillionInstancesOfWhichAFewAreSeen)
+{
+    osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*makeTestCharacter());
+    std::vector<AnimatedCrowd::Instance> instances;
+    instances.reserve(AnimatedCrowd::maxInstances);
+    for (std::size_t index = 0; index < AnimatedCrowd::maxInstances; ++index)
+    {
+        // The first six stand in the picture, all others in a square kilometre beside it.
+        const auto number = static_cast<double>(index);
+        const osg::Matrixd place =
+            index < 6 ? osg::Matrixd::translate(-3.0, 0.0, -3.5 + 1.25 * number)
+                      : osg::Matrixd::translate(100.0 + std::fmod(number, 1000.0), std::floor(number / 1000.0), 0.0);
+        instances.push_back(crowd->add(place, still()).value());
+    }
+    const Result<AnimatedCrowd::Instance> oneMore = crowd->add(osg::Matrixd(), still());
+    ASSERT_FALSE(oneMore);
+    EXPECT_NE(oneMore.error().message.find("1000000"), std::string::npos);
+
+    viewer().setSceneData(crowd);
+    drawAt(0);
+    EXPECT_EQ(picture().pixelsDrawn(), 6 * 64);
+    EXPECT_EQ(PosePipeline::of(state())->counters().instancesEvaluated, 6u);
+    for (const AnimatedCrowd::Instance instance : instances)
+        ASSERT_TRUE(crowd->remove(instance));
+    drawAt(1);
+    EXPECT_EQ(picture().pixelsDrawn(), 0);
+    EXPECT_FALSE(crowd->getBound().valid());
+}
+
+TEST_F(CrowdEdgesGLTest, whatIsRemovedAfterItsCullIsDrawnOnceMore)
+{
+    osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*makeTestCharacter());
+    std::vector<AnimatedCrowd::Instance> instances;
+    for (int index = 0; index < 3; ++index)
+        instances.push_back(crowd->add(osg::Matrixd::translate(-3.0, 0.0, -3.0 + 2.0 * index), still()).value());
+    osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
+    character->setMatrix(osg::Matrixd::translate(1.0, 0.0, 0.0));
+    osg::ref_ptr<osg::Group> root = new osg::Group;
+    root->addChild(crowd);
+    root->addChild(character);
+    viewer().setSceneData(root);
+    viewer().realize();
+    drawWithChange(
+        [&]
+        {
+            for (const AnimatedCrowd::Instance instance : instances)
+                EXPECT_TRUE(crowd->remove(instance));
+            EXPECT_TRUE(crowd->add(osg::Matrixd(), still()));
+            root->removeChildren(0, 2);
+            crowd = nullptr;
+            character = nullptr;
+        });
+    Picture after;
+    osg::RenderInfo renderInfo(&state(), nullptr);
+    renderInfo.pushCamera(viewer().getCamera());
+    after(renderInfo);
+    EXPECT_EQ(after.pixelsDrawn(), 4 * 64);
+    drawAt(2);
+    EXPECT_EQ(picture().pixelsDrawn(), 0);
+}
+
+TEST_F(CrowdEdgesGLTest, placesThatAreNoNumbersLeaveTheOthersAsTheyAre)
+{
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const double infinity = std::numeric_limits<double>::infinity();
+    const osg::Matrixd faulty[] = {osg::Matrixd::translate(nan, 0, 0), osg::Matrixd::translate(0, infinity, 0),
+                                   osg::Matrixd::scale(nan, nan, nan), osg::Matrixd::scale(0, 0, 0)};
+    osg::ref_ptr<osg::Group> root = new osg::Group;
+    viewer().getCamera()->setComputeNearFarMode(osg::CullSettings::COMPUTE_NEAR_FAR_USING_BOUNDING_VOLUMES);
+    for (int index = 0; index < 3; ++index)
+    {
+        osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
+        character->setMatrix(osg::Matrixd::translate(-3.0, 0.0, -3.0 + 2.0 * index));
+        root->addChild(character);
+    }
+    viewer().setSceneData(root);
+    drawAt(0);
+    ASSERT_EQ(picture().pixelsDrawn(), 3 * 64);
+    for (const osg::Matrixd& matrix : faulty)
+    {
+        osg::ref_ptr<AnimatedCharacter> lost = makeTestCharacter();
+        lost->setMatrix(matrix);
+        root->insertChild(0, lost);
+        drawAt(1);
+        EXPECT_EQ(picture().pixelsDrawn(), 3 * 64) << matrix(0, 0) << " " << matrix(3, 0) << " " << matrix(3, 1);
+        root->removeChild(lost);
+    }
+}
+
+TEST_F(CrowdEdgesGLTest, aSceneViewWithoutAFrameStampDrawsItToo)
+{
+    osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*makeTestCharacter());
+    ASSERT_TRUE(crowd->add(osg::Matrixd::translate(-2.0, 0.0, 0.0), still()));
+    osg::ref_ptr<osg::Group> root = new osg::Group;
+    root->addChild(crowd);
+    root->addChild(makeTestCharacter());
+    viewer().setSceneData(root);
+    viewer().realize();
+    context().makeCurrent();
+    sceneView().setFrameStamp(nullptr);
+    sceneView().cull();
+    sceneView().draw();
+    Picture drawn;
+    osg::RenderInfo renderInfo(&state(), nullptr);
+    renderInfo.pushCamera(viewer().getCamera());
+    drawn(renderInfo);
+    EXPECT_EQ(drawn.pixelsDrawn(), 2 * 64);
+}
+
+} // namespace
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+#include "gltf/Import.h"
+#include "plugin/ModelBuilder.h"
+#include "plugin/StoredScene.h"
+
+#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
+
+#include <gtest/gtest.h>
+
+namespace osgGpuAnimation::gltf
+{
+
+namespace
+{
+
+/// The meshes of a scene that are drawn from the palette.
+class MeshCollector : public osg::NodeVisitor
+{
+public:
+    MeshCollector() : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN) {}
+    void apply(osg::Drawable& drawable) override
+    {
+        if (auto* mesh = dynamic_cast<SkinnedGeometry*>(&drawable)) meshes.push_back(mesh);
+    }
+    std::vector<SkinnedGeometry*> meshes;
+};
+
+std::vector<SkinnedGeometry*> meshesOf(osg::Node& node)
+{
+    MeshCollector collector;
+    node.accept(collector);
+    return collector.meshes;
+}
+
+/// One mesh under two nodes with weights of their own.
+osg::ref_ptr<osg::Node> twoFaces()
+{
+    ModelBuilder file;
+    const int mesh = file.triangle();
+    file.primitive(mesh).targets = {{{"POSITION", file.floats(TINYGLTF_TYPE_VEC3, {0, 0, 3, 0, 0, 0, 0, 0, 0})}}};
+    file.at(file.node("glad", -1, mesh)).weights = {1.0};
+    file.at(file.node("sad", -1, mesh)).weights = {0.5};
+    const Result<ImportedModel> model = importModel(file.text(), "", {});
+    EXPECT_TRUE(model) << model.error().message;
+    return model ? model.value().root : nullptr;
+}
+
+void expectShared(osg::Node* scene)
+{
+    ASSERT_TRUE(scene);
+    const std::vector<SkinnedGeometry*> meshes = meshesOf(*scene);
+    ASSERT_EQ(meshes.size(), 2u);
+    EXPECT_NE(meshes[0]->morphEntry(), meshes[1]->morphEntry());
+    ASSERT_TRUE(meshes[0]->morphDeltas());
+    EXPECT_EQ(meshes[0]->morphDeltas(), meshes[1]->morphDeltas());
+    const auto* texel = reinterpret_cast<const osg::Vec4f*>(meshes[0]->morphDeltas()->getImage()->data());
+    EXPECT_EQ(*texel, osg::Vec4f(0, 0, 3, 0));
+}
+
+} // namespace
+
+TEST(MorphDeltasTest, oneMeshUnderTwoNodesIsPackedOnce)
+{
+    expectShared(twoFaces());
+}
+
+TEST(MorphDeltasTest, copiesAndStoredScenesShareToo)
+{
+    const osg::ref_ptr<osg::Node> scene = twoFaces();
+    expectShared(osg::clone(scene.get(), osg::CopyOp::DEEP_COPY_NODES));
+    const StoredScene stored;
+    for (const char* format : {"osgb", "osgt", "osgx"})
+        expectShared(stored.throughFile(*scene, format));
+}
+
+TEST(MorphDeltasTest, changedArraysArePackedAnew)
+{
+    const osg::ref_ptr<osg::Node> scene = twoFaces();
+    const std::vector<SkinnedGeometry*> meshes = meshesOf(*scene);
+    ASSERT_EQ(meshes.size(), 2u);
+    const std::vector<MorphTarget> targets = meshes[0]->morphTargets();
+    targets[0].positions->front() = osg::Vec3(7, 0, 0);
+    targets[0].positions->dirty();
+    meshes[0]->setMorphTargets(meshes[0]->morph(), meshes[0]->morphEntry(), targets);
+    EXPECT_NE(meshes[0]->morphDeltas(), meshes[1]->morphDeltas());
+    EXPECT_EQ(*reinterpret_cast<const osg::Vec4f*>(meshes[0]->morphDeltas()->getImage()->data()),
+              osg::Vec4f(7, 0, 0, 0));
+    meshes[1]->setMorphTargets(meshes[1]->morph(), meshes[1]->morphEntry(), targets);
+    EXPECT_EQ(meshes[0]->morphDeltas(), meshes[1]->morphDeltas());
+    meshes[0]->setMorphTargets(-1, -1, {});
+    EXPECT_FALSE(meshes[0]->morphDeltas());
+}
+
+} // namespace osgGpuAnimation::gltf

@@ -5,6 +5,7 @@
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/BoxNearFar.h>
 #include <osgGpuAnimation/nodes/InstancedDraw.h>
+#include <osgGpuAnimation/nodes/MeshVertexArrays.h>
 #include <osgGpuAnimation/nodes/MorphDeltas.h>
 #include <osgGpuAnimation/nodes/PaletteBinding.h>
 #include <osgGpuAnimation/nodes/PlacedDraw.h>
@@ -240,6 +241,7 @@ void SkinnedGeometry::drawImplementation(osg::RenderInfo& renderInfo) const
     if (!binding || !binding->animationSet()) return;
     const PosePipeline* pipeline = PosePipeline::of(state);
     if (!pipeline) return;
+    const MeshVertexArrays arrays(state);
     if (binding->serial() != 0)
         drawPlaced(renderInfo, *binding, *pipeline);
     else if (binding->instanceCount() > 1)
@@ -250,8 +252,19 @@ void SkinnedGeometry::drawImplementation(osg::RenderInfo& renderInfo) const
         bindPalette(state, place);
         osg::Geometry::drawImplementation(renderInfo);
     }
-    // Whatever OSG compiles between frames would take the element buffer away from a vertex array left bound.
-    state.unbindVertexArrayObject();
+}
+
+osg::VertexArrayState* SkinnedGeometry::createVertexArrayStateImplementation(osg::RenderInfo& renderInfo) const
+{
+    osg::VertexArrayState* arrays = osg::Geometry::createVertexArrayStateImplementation(renderInfo);
+    if (MeshVertexArrays::isNumberShared(*renderInfo.getState())) MeshVertexArrays::removeObject(*arrays);
+    return arrays;
+}
+
+void SkinnedGeometry::compileGLObjects(osg::RenderInfo& renderInfo) const
+{
+    // Where there is no vertex array object to be prepared, the first draw makes the buffers.
+    if (!MeshVertexArrays::isNumberShared(*renderInfo.getState())) osg::Geometry::compileGLObjects(renderInfo);
 }
 
 void SkinnedGeometry::drawInstances(osg::RenderInfo& renderInfo, const PaletteBinding& binding,

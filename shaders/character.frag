@@ -7,8 +7,8 @@ uniform float alphaCutoff;
 uniform bool unlit;
 uniform bool flatNormals; // the mesh has none: each face its own, of the pose
 
+uniform vec4 materialDiffuse; // gl_FrontMaterial's follows other meshes' colours where colours take the material's place
 #ifndef GL_ARB_compatibility
-uniform vec4 materialDiffuse;
 uniform vec4 materialEmission;
 #endif
 
@@ -28,11 +28,7 @@ vec4 baseColor()
 #if DRAW_TEXTURE
     color *= texture(baseColorTexture, textureCoordinate);
 #endif
-#ifdef GL_ARB_compatibility
-    color *= gl_FrontMaterial.diffuse;
-#else
     color *= materialDiffuse;
-#endif
     if (color.a < alphaCutoff) discard;
     return color;
 }

@@ -1,16 +1,24 @@
 # SPDX-License-Identifier: MIT
-# What .ci/run runs under ThreadSanitizer, as one program with nothing more to compile: sanitized.ViewersGLTest…
-set(sanitized_sources nodes/TestCharacter.cpp nodes/ThreadingGLTest.cpp nodes/ViewersGLTest.cpp plugin/PagerGLTest.cpp
-    plugin/ConcurrentLoadsTest.cpp plugin/ModelBuilder.cpp)
+# What .ci/run runs under the sanitizers, as one program with nothing more to compile: sanitized.ViewersGLTest…
+# With ThreadSanitizer what has several threads, with AddressSanitizer also what clones, releases, keeps and reads.
+set(sanitized_sources nodes/TestCharacter.cpp nodes/NestedCameraGLTest.cpp nodes/ThreadingGLTest.cpp
+    nodes/ViewersGLTest.cpp plugin/PagerGLTest.cpp plugin/ConcurrentLoadsTest.cpp plugin/ModelBuilder.cpp)
+if(OSGGPUANIMATION_SANITIZER STREQUAL address)
+    list(APPEND sanitized_sources nodes/AnimatedCharacterGLTest.cpp nodes/AnimatedCrowdGLTest.cpp
+         nodes/CharacterDrawsGLTest.cpp nodes/GlCallTrace.cpp nodes/GlObjectsGLTest.cpp plugin/CloningGLTest.cpp plugin/SerializersGLTest.cpp)
+endif()
 add_executable(sanitized_tests EXCLUDE_FROM_ALL ${sanitized_sources} ${support_sources})
 set(OSGGPUANIMATION_UNITY ON) # for this program in any case: its files are the other programs' too
-osggpuanimation_unity(sanitized_tests nodes/ViewersGLTest.cpp)
+# Those with names like others have stay apart.
+list(FILTER sanitized_sources INCLUDE REGEX "GLTest|GlCallTrace")
+osggpuanimation_unity(sanitized_tests ${sanitized_sources})
 target_link_libraries(sanitized_tests PRIVATE osgGpuAnimation_build osgGpuAnimation_gltf nlohmann_json::nlohmann_json
                       GTest::gtest GTest::gtest_main)
+set_target_properties(sanitized_tests PROPERTIES ENABLE_EXPORTS ON) # for GlCallTrace
 target_include_directories(sanitized_tests PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
 target_compile_definitions(sanitized_tests PRIVATE OSGGPUANIMATION_SHARED_ASSETS="${OSGGPUANIMATION_SHARED_ASSETS}"
                            OSGGPUANIMATION_PLUGIN_FOLDER="${CMAKE_LIBRARY_OUTPUT_DIRECTORY}"
                            OSGGPUANIMATION_SCENES="${CMAKE_SOURCE_DIR}/scenes")
-add_dependencies(sanitized_tests osgdb_gltf osgdb_serializers_osggpuanimation)
+add_dependencies(sanitized_tests osgdb_gltf osgdb_crowd osgdb_serializers_osggpuanimation)
 gtest_discover_tests(sanitized_tests TEST_PREFIX sanitized. DISCOVERY_TIMEOUT 60
                      PROPERTIES TIMEOUT ${test_timeout} ENVIRONMENT "${discovered_environment}")

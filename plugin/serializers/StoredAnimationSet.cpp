@@ -14,7 +14,7 @@ namespace osgGpuAnimation::serializers
 namespace
 {
 
-constexpr std::int32_t version = 1;
+constexpr std::int32_t version = 2; ///< 1: no compact clips
 
 void writeMatrix(ValueWriter& out, const AffineMatrix& matrix)
 {
@@ -178,13 +178,13 @@ void StoredAnimationSet::write(ValueWriter& out) const
 
 void StoredAnimationSet::read(ValueReader& in)
 {
-    in.integer("the version of an animation set", 1, version);
+    const std::int32_t found = in.integer("the version of an animation set", 1, version);
     Result<Skeleton> skeleton = readSkeleton(in);
     if (!skeleton) return in.fail(skeleton.error().message);
     std::vector<Skin> skins = readSkins(in);
     std::vector<int> rigidJoints = readRigidJoints(in);
     std::vector<MorphWeights> morphs = readMorphs(in);
-    std::vector<Clip> clips = readClips(in, skeleton.value(), morphs);
+    std::vector<Clip> clips = readClips(in, skeleton.value(), morphs, found > 1);
     if (!in.isGood()) return;
     Result<std::shared_ptr<const AnimationSet>> made = AnimationSet::create(
         {std::move(skeleton).value(), std::move(skins), std::move(rigidJoints), std::move(morphs), std::move(clips)});

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "serializers/StoredClips.h"
 
+#include "serializers/StoredCompactTracks.h"
 #include "serializers/ValueReader.h"
 #include "serializers/ValueWriter.h"
 
@@ -16,6 +17,8 @@ namespace
 {
 
 constexpr std::size_t floatsATransform = sizeof(JointTransform) / sizeof(float);
+/// Of all compact clips of a set together; the default of glTF's readers.
+constexpr std::size_t maxCompactBytes = std::size_t(2) << 30;
 
 void writeVector(ValueWriter& out, const glm::dvec3& vector)
 {
@@ -123,30 +126,40 @@ void writeClips(ValueWriter& out, const std::vector<Clip>& clips)
     out.open("Clips", clips.size());
     for (const Clip& clip : clips)
     {
-        out.property("Clip").text(clip.name()).flag(clip.form() == Clip::Form::Spline).endLine();
+        out.property("Clip").text(clip.name()).flag(clip.form() == Clip::Form::Spline);
+        out.flag(clip.compactTracks() != nullptr).endLine();
         out.block("Times", clip.times().data(), clip.times().size(), 8);
-        out.block("Keyframes", &clip.data().data()->translation.x, clip.data().size() * floatsATransform,
-                  floatsATransform);
+        if (clip.compactTracks())
+            writeCompactKeyframes(out, clip);
+        else
+            out.block("Keyframes", &clip.data().data()->translation.x, clip.data().size() * floatsATransform,
+                      floatsATransform);
         writeMarkers(out, clip.markers());
         writeMotion(out, clip.rootMotion());
     }
     out.close();
 }
 
-std::vector<Clip> readClips(ValueReader& in, const Skeleton& skeleton, const std::vector<MorphWeights>& morphs)
+std::vector<Clip> readClips(ValueReader& in, const Skeleton& skeleton, const std::vector<MorphWeights>& morphs,
+                            bool mayBeCompact)
 {
     std::vector<Clip> clips;
+    std::size_t bytesLeft = maxCompactBytes;
     const std::size_t count = in.open("Clips");
     for (std::size_t c = 0; c < count && in.isGood(); ++c)
     {
         ClipParts parts;
         parts.name = in.property("Clip").text();
         parts.form = in.flag() ? Clip::Form::Spline : Clip::Form::Linear;
+        const bool isCompact = mayBeCompact && in.flag();
         parts.jointCount = parts.trackCount = skeleton.jointCount();
         for (const MorphWeights& morph : morphs)
             parts.trackCount += morph.blockCount();
         parts.times = in.block("Times");
-        parts.data = toTransforms(in.block("Keyframes"));
+        if (isCompact)
+            readCompactKeyframes(in, parts, bytesLeft);
+        else
+            parts.data = toTransforms(in.block("Keyframes"));
         parts.markers = readMarkers(in);
         parts.rootMotion = readMotion(in);
         if (!in.isGood()) break;

@@ -203,14 +203,14 @@ TEST_F(AnimatedCrowdGLTest, tintsMultiplyTheColour)
     const AnimatedCrowd::Instance red = crowd->add(osg::Matrix::translate(2, 0, 0), still, {1, 0, 0, 1}).value();
     viewer().setSceneData(crowd);
     drawAt(0);
-    EXPECT_EQ(colorAt(12, 36), "204 204 204");
-    EXPECT_EQ(colorAt(52, 36), "204 0 0");
+    EXPECT_EQ(colorAt(12, 36), "255 255 255");
+    EXPECT_EQ(colorAt(52, 36), "255 0 0");
     ASSERT_TRUE(crowd->setTint(red, {0, 0, 1, 1}));
     drawAt(1);
-    EXPECT_EQ(colorAt(52, 36), "0 0 204");
+    EXPECT_EQ(colorAt(52, 36), "0 0 255");
     ASSERT_TRUE(crowd->setTint(red, {1, 1, 1, 1}));
     drawAt(2);
-    EXPECT_EQ(colorAt(52, 36), "204 204 204");
+    EXPECT_EQ(colorAt(52, 36), "255 255 255");
 }
 
 TEST_F(AnimatedCrowdGLTest, farOutItKeepsItsPlaceToThePixel)

@@ -154,6 +154,14 @@ INSTANTIATE_TEST_SUITE_P(
                           (material.get()->*set)(osg::Material::FRONT_AND_BACK, osg::Vec4(0.2f, 0.9f, 0.3f, 0.5f));
                       state.setAttributeAndModes(material, on | override);
                   }},
+        StateCase{"ColorsInTheMaterialsPlace",
+                  [](osg::StateSet& state)
+                  {
+                      osg::ref_ptr<osg::Material> material = new osg::Material;
+                      material->setDiffuse(osg::Material::FRONT_AND_BACK, osg::Vec4(0.2f, 0.9f, 0.3f, 1.0f));
+                      material->setColorMode(osg::Material::AMBIENT_AND_DIFFUSE);
+                      state.setAttributeAndModes(material, on | override);
+                  }},
         StateCase{"BlendedOver",
                   [](osg::StateSet& state)
                   {

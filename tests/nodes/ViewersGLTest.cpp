@@ -106,8 +106,14 @@ TEST_P(TwoContextsGLTest, aSlaveCameraOnAContextOfItsOwnShowsTheSameUnderEveryTh
     slave->setViewport(0, 0, 64, 64);
     slave->setFinalDrawCallback(ofSecond);
     both.addSlave(slave, true);
-    both.setSceneData(makeScene());
+    osg::ref_ptr<osg::Group> scene = new osg::Group;
+    both.setSceneData(scene);
     both.realize();
+    // Comes when the contexts are there, and something else has come and gone before.
+    scene->addChild(makeScene()->getChild(0));
+    both.frame(0);
+    scene->removeChildren(0, 1);
+    scene->addChild(makeScene());
     both.frame(0); // clips begin here
     int frame = 0;
     // Switched while it runs; each model draws a few frames and ends with one at the time looked at.
@@ -153,6 +159,30 @@ TEST_F(ViewersGLTest, twoViewsOfACompositeViewerShowOneScene)
         composite.stopThreading();
         for (const osg::ref_ptr<Picture>& picture : pictures)
             EXPECT_EQ(Picture::pixelsDifferent(*expected, picture->image()), 0) << threading;
+    }
+}
+
+TEST_F(ViewersGLTest, aContextThatSharesComesWhenTheFirstHasDrawn)
+{
+    const osg::ref_ptr<osg::Image> expected = expectedAt(2.3);
+    osg::ref_ptr<osg::Group> scene = makeScene();
+    osgViewer::CompositeViewer composite;
+    composite.setThreadingModel(osgViewer::ViewerBase::SingleThreaded);
+    osg::ref_ptr<EglGraphicsContext> contexts[2];
+    osg::ref_ptr<Picture> pictures[2];
+    for (int i = 0; i < 2; ++i)
+    {
+        contexts[i] = makeContext(contexts[0]);
+        pictures[i] = new Picture;
+        osg::ref_ptr<osgViewer::View> view = new osgViewer::View;
+        setCamera(*view->getCamera(), contexts[i], pictures[i]);
+        view->setSceneData(scene);
+        composite.addView(view);
+        composite.realize();
+        for (const double time : {0.0, 1.0, 2.3})
+            composite.frame(time);
+        for (int drawn = 0; drawn <= i; ++drawn)
+            EXPECT_EQ(Picture::pixelsDifferent(*expected, pictures[drawn]->image()), 0) << i << drawn;
     }
 }
 

@@ -22,9 +22,10 @@ using Read = osgDB::ReaderWriter::ReadResult;
 
 enum class Answer
 {
-    Error,    ///< nothing is read; the message says why
-    NoMesh,   ///< a warning, and one mesh less
-    NoPlaying ///< a warning, and the layer stands
+    Error,     ///< nothing is read; the message says why
+    NoMesh,    ///< a warning, and one mesh less
+    NoPlaying, ///< a warning, and the layer stands
+    NoFault    ///< taken for the nearest that can be
 };
 
 struct FaultCase
@@ -37,8 +38,8 @@ struct FaultCase
 };
 
 const FaultCase faults[] = {
-    {"a newer version", "Contents 1", "Contents 2", Answer::Error, "version of an animation set"},
-    {"a version that is no number", "Contents 1", "Contents x", Answer::Error, "\"x\""},
+    {"a newer version", "Contents 2", "Contents 3", Answer::Error, "version of an animation set"},
+    {"a version that is no number", "Contents 2", "Contents x", Answer::Error, "\"x\""},
     {"too few joints", "Joints 3 ", "Joints 2 ", Answer::Error, "Skins"},
     {"too many joints", "Joints 3 ", "Joints 4000000000 ", Answer::Error, "Joint"},
     {"a number of joints below 0", "Joints 3 ", "Joints -3 ", Answer::Error, "-3"},
@@ -90,16 +91,37 @@ const FaultCase faults[] = {
     {"no property of a set", "AnimationSet \\{", "Other {", Answer::Error, "without its AnimationSet"},
     {"no controller", "Controller 1", "Other 1", Answer::Error, "without its Controller"},
     {"no influences", "Influences -?[0-9]+", "Other 1", Answer::Error, "without its Influences"},
-    {"a set without contents", "Contents 1", "Other 1", Answer::Error, "without its Contents"},
+    {"a set without contents", "Contents 2", "Other 1", Answer::Error, "without its Contents"},
     {"no set", "osgGpuAnimation::StoredAnimationSet \\{\n *UniqueID", "osg::Group {\nUniqueID", Answer::Error, ""},
     {"another object as the set", "osgGpuAnimation::StoredAnimationSet \\{\n *UniqueID [0-9]+",
      "osgGpuAnimation::StoredAnimationSet {\nUniqueID 1", Answer::Error, "without an animation set"},
+};
+
+const FaultCase compactFaults[] = {
+    {"a column that is not there", "Track 0 ", "Track 99 ", Answer::Error, "compact keyframes are not"},
+    {"a column below none", "Track 0 ", "Track -7 ", Answer::Error, "compact keyframes are not"},
+    {"a range that is not finite", "Track 0 -1 -1 0", "Track 0 -1 -1 inf", Answer::Error, "compact keyframes are not"},
+    {"fewer joints", "Compact 3 ", "Compact 2 ", Answer::Error, ""},
+    {"more joints", "Compact 3 ", "Compact 4000000000 ", Answer::Error, "Track"},
+    {"less that is held", "Held 36 ", "Held 24 ", Answer::Error, ""},
+    {"half a number", "Packed 6 (.*)\n *[0-9]+ ", "Packed 5 $1\n", Answer::Error, "the numbers of its compact"},
+    {"a number that cannot be", "(Packed 6 .*\n *)[0-9]+ ", "$1 nan ", Answer::NoFault, ""},
+    {"weights of nobody", "Weights 0 \\{", "Weights 12 {\n0 0 0 0 0 0 0 0 0 0 0 0\n", Answer::Error, "the numbers"},
+    {"a Spline that is compact", "Clip Slide 0 1", "Clip Slide 1 1", Answer::Error, "compact keyframes are not"},
+    {"exact keyframes", "Clip Slide 0 1", "Clip Slide 0 0", Answer::Error, "Keyframes"},
 };
 
 class FaultyStoredScenesTest : public ::testing::Test
 {
 protected:
     void SetUp() override
+    {
+        osg::setNotifyHandler(log);
+        write("arm", nullptr);
+        write("compact", new osgDB::Options("compact=0.001"));
+    }
+
+    void write(const std::string& name, const osgDB::Options* options)
     {
         gltf::ModelBuilder model;
         const int arm = model.node("arm");
@@ -111,12 +133,12 @@ protected:
         model.slide(arm);
         model.animation("Again");
         model.slide(arm);
-        const osg::ref_ptr<osg::Node> scene = osgDB::readRefNodeFile(files.folder.write("arm.gltf", model.text()));
+        const osg::ref_ptr<osg::Node> scene =
+            osgDB::readRefNodeFile(files.folder.write(name + ".gltf", model.text()), options);
         ASSERT_TRUE(scene);
         meshes = findCharacter(*scene)->getNumChildren();
-        for (const char* format : {"osgt", "osgb", "osgx"})
-            ASSERT_TRUE(osgDB::writeNodeFile(*scene, files.folder.file(std::string("arm.") + format)));
-        osg::setNotifyHandler(log);
+        for (const char* format : {".osgt", ".osgb", ".osgx"})
+            ASSERT_TRUE(osgDB::writeNodeFile(*scene, files.folder.file(name + format)));
     }
 
     void TearDown() override { osg::setNotifyHandler(new osg::StandardNotifyHandler); }
@@ -138,6 +160,23 @@ protected:
         return result;
     }
 
+    void expectAnswer(const std::string& sound, const FaultCase& fault)
+    {
+        SCOPED_TRACE(fault.name);
+        ASSERT_TRUE(readContent("sound.osgt", sound).validNode()) << log->text;
+        const std::string faulty = std::regex_replace(sound, std::regex(fault.pattern), fault.instead,
+                                                      std::regex_constants::format_first_only);
+        ASSERT_NE(faulty, sound) << "the pattern is not in the file";
+        Read result = readContent("faulty.osgt", faulty);
+        const std::string said = result.message() + log->text;
+        EXPECT_NE(said.find(fault.message), std::string::npos) << said;
+        EXPECT_EQ(result.validNode(), fault.answer != Answer::Error) << said;
+        AnimatedCharacter* character = result.validNode() ? findCharacter(*result.getNode()) : nullptr;
+        if (!character) return;
+        EXPECT_EQ(character->getNumChildren(), fault.answer == Answer::NoMesh ? meshes - 1 : meshes) << said;
+        EXPECT_EQ(character->controller().clip(), fault.answer == Answer::NoPlaying ? -1 : 0) << said;
+    }
+
     StoredScene files;
     unsigned int meshes = 0;
     osg::ref_ptr<NotifyLog> log = new NotifyLog(osg::WARN);
@@ -147,23 +186,14 @@ protected:
 
 TEST_F(FaultyStoredScenesTest, faultsHaveAMessage)
 {
-    const std::string sound = content("arm.osgt");
-    ASSERT_TRUE(readContent("sound.osgt", sound).validNode()) << log->text;
     for (const FaultCase& fault : faults)
-    {
-        SCOPED_TRACE(fault.name);
-        const std::string faulty = std::regex_replace(sound, std::regex(fault.pattern), fault.instead,
-                                                      std::regex_constants::format_first_only);
-        ASSERT_NE(faulty, sound) << "the pattern is not in the file";
-        Read result = readContent("faulty.osgt", faulty);
-        const std::string said = result.message() + log->text;
-        EXPECT_NE(said.find(fault.message), std::string::npos) << said;
-        EXPECT_EQ(result.validNode(), fault.answer != Answer::Error) << said;
-        AnimatedCharacter* character = result.validNode() ? findCharacter(*result.getNode()) : nullptr;
-        if (!character) continue;
-        EXPECT_EQ(character->getNumChildren(), fault.answer == Answer::NoMesh ? meshes - 1 : meshes) << said;
-        EXPECT_EQ(character->controller().clip(), fault.answer == Answer::NoPlaying ? -1 : 0) << said;
-    }
+        expectAnswer(content("arm.osgt"), fault);
+}
+
+TEST_F(FaultyStoredScenesTest, faultsOfCompactClipsHaveAMessage)
+{
+    for (const FaultCase& fault : compactFaults)
+        expectAnswer(content("compact.osgt"), fault);
 }
 
 // Not in the midst of a quoted word of OSG's own: it would look for the closing quote for ever.
@@ -186,7 +216,7 @@ TEST_F(FaultyStoredScenesTest, textThatIsCutOffIsAnError)
 
 TEST_F(FaultyStoredScenesTest, bytesThatAreCutOffAreAnError)
 {
-    const std::string sound = content("arm.osgb");
+    const std::string sound = content("compact.osgb");
     const std::size_t first = sound.find("StoredAnimationSet");
     ASSERT_NE(first, std::string::npos);
     for (std::size_t length = first; length + 64 < sound.size(); length += 23)
@@ -198,16 +228,19 @@ TEST_F(FaultyStoredScenesTest, bytesThatAreCutOffAreAnError)
 
 TEST_F(FaultyStoredScenesTest, changedBytesDoNoHarm)
 {
-    const std::string sound = content("arm.osgb");
-    const std::size_t first = sound.find("StoredAnimationSet") + 40;
-    std::size_t errors = 0;
-    for (std::size_t at = first; at < sound.size(); at += 3)
+    for (const char* name : {"arm.osgb", "compact.osgb"})
     {
-        std::string changed = sound;
-        changed[at] = static_cast<char>(changed[at] ^ (at % 2 ? 0xFF : 0x7F));
-        errors += !readContent("changed.osgb", changed).validNode();
+        const std::string sound = content(name);
+        const std::size_t first = sound.find("StoredAnimationSet") + 40;
+        std::size_t errors = 0;
+        for (std::size_t at = first; at < sound.size(); at += 3)
+        {
+            std::string changed = sound;
+            changed[at] = static_cast<char>(changed[at] ^ (at % 2 ? 0xFF : 0x7F));
+            errors += !readContent("changed.osgb", changed).validNode();
+        }
+        EXPECT_GT(errors, 50u) << name;
     }
-    EXPECT_GT(errors, 50u);
 }
 
 } // namespace osgGpuAnimation

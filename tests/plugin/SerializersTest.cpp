@@ -4,7 +4,9 @@
 #include "plugin/StoredScene.h"
 #include "support/NotifyLog.h"
 
+#include <osgGpuAnimation/animation/CompactTracks.h>
 #include <osgGpuAnimation/animation/JointMask.h>
+#include <osgGpuAnimation/animation/PackedKeyframes.h>
 #include <osgGpuAnimation/animation/RootMotionCurve.h>
 #include <osgGpuAnimation/animation/RootMotionExtraction.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
@@ -16,6 +18,9 @@
 #include <gtest/gtest.h>
 #include <osg/Program>
 #include <osgDB/FileUtils>
+
+#include <filesystem>
+#include <regex>
 
 namespace osgGpuAnimation
 {
@@ -241,6 +246,44 @@ TEST_F(SerializersTest, shadersAreNotInTheFile)
     const auto programOf = [](AnimatedCharacter& of)
     { return of.getChild(0)->getStateSet()->getAttribute(osg::StateAttribute::PROGRAM); };
     EXPECT_EQ(programOf(*findCharacter(*read)), programOf(character()));
+}
+
+TEST_F(SerializersTest, compactClipsStayCompact)
+{
+    const std::string file = ownScene("Wanderer.glb");
+    const osg::ref_ptr<osg::Node> exact = osgDB::readRefNodeFile(file);
+    const osg::ref_ptr<osg::Node> compact = osgDB::readRefNodeFile(file, new osgDB::Options("compact=1e-4"));
+    ASSERT_TRUE(exact && compact);
+    const AnimationSet& set = findCharacter(*compact)->set();
+    ASSERT_TRUE(set.clips().front().compactTracks());
+    ASSERT_TRUE(files.throughFile(*exact, "osgb"));
+    const auto exactBytes = std::filesystem::file_size(files.folder.file("scene.osgb"));
+    for (const char* format : formats)
+    {
+        SCOPED_TRACE(format);
+        const osg::ref_ptr<osg::Node> read = files.throughFile(*compact, format);
+        ASSERT_TRUE(read && findCharacter(*read));
+        const AnimationSet& found = findCharacter(*read)->set();
+        EXPECT_TRUE(haveSameKeyframes(set, found));
+        EXPECT_EQ(PackedKeyframes(found).texels(), PackedKeyframes(set).texels()) << "what goes to the GPU";
+        if (std::string(format) == "osgb")
+        {
+            EXPECT_LT(std::filesystem::file_size(files.folder.file("scene.osgb")), exactBytes);
+        }
+    }
+}
+
+TEST_F(SerializersTest, setsOfTheFirstVersionAreRead)
+{
+    ASSERT_TRUE(files.throughFile(*scene, "osgt"));
+    std::string text = readBytes(files.folder.file("scene.osgt"));
+    const std::string second = text;
+    text = std::regex_replace(text, std::regex("Contents 2"), "Contents 1");
+    text = std::regex_replace(text, std::regex("(Clip .*) 0 0 *\n"), "$1 0\n");
+    ASSERT_NE(text, second);
+    const osg::ref_ptr<osg::Node> read = osgDB::readRefNodeFile(files.folder.write("first.osgt", text));
+    ASSERT_TRUE(read && findCharacter(*read)) << log->text;
+    EXPECT_TRUE(haveSameKeyframes(character().set(), findCharacter(*read)->set()));
 }
 
 } // namespace osgGpuAnimation

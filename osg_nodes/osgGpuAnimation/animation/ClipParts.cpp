@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/ClipParts.h>
 
+#include <osgGpuAnimation/animation/CompactTracks.h>
 #include <osgGpuAnimation/animation/RootMotionCurve.h>
 
 #include <glm/geometric.hpp>
@@ -76,11 +77,23 @@ std::optional<std::string> findFaultInMotion(const ClipParts& parts)
     return isSound ? std::nullopt : std::optional<std::string>("a number of its root motion is not finite");
 }
 
+/// Before the data: they are part of it.
+std::optional<std::string> findFaultInCompactTracks(const ClipParts& parts)
+{
+    if (!parts.compactTracks) return std::nullopt;
+    const bool isSound =
+        parts.form == Clip::Form::Linear && parts.data.size() == parts.times.size() * parts.trackCount &&
+        parts.jointCount <= parts.trackCount && parts.compactTracks->isFor(parts.jointCount, parts.times.size());
+    return isSound ? std::nullopt : std::optional<std::string>("its compact keyframes are not those of such a clip");
+}
+
 } // namespace
 
 Result<Clip> Clip::create(ClipParts parts)
 {
     std::optional<std::string> fault = findFaultInTimes(parts.times);
+    if (!fault) fault = findFaultInCompactTracks(parts);
+    if (!fault && parts.compactTracks) parts.compactTracks->unpack(parts.data, parts.trackCount);
     if (!fault) fault = findFaultInData(parts);
     if (!fault) fault = findFaultInMotion(parts);
     if (fault) return Error{"clip \"" + parts.name + "\": " + *fault};
@@ -91,6 +104,7 @@ Result<Clip> Clip::create(ClipParts parts)
     clip._times = std::move(parts.times);
     clip._data = std::make_shared<std::vector<JointTransform>>(std::move(parts.data));
     clip._rootMotion = std::move(parts.rootMotion);
+    clip._compactTracks = std::move(parts.compactTracks);
     return clip.withMarkers(std::move(parts.markers));
 }
 

@@ -10,6 +10,7 @@
 namespace osgGpuAnimation
 {
 
+struct CompactTracks;
 struct RootMotionCurve;
 
 /// What Clip::create takes: all that a clip says of itself.
@@ -22,7 +23,8 @@ struct ClipParts
     std::vector<float> times;         ///< as Clip::times()
     std::vector<JointTransform> data; ///< as Clip::data()
     std::vector<ClipMarker> markers;
-    std::shared_ptr<const RootMotionCurve> rootMotion; ///< null: none
+    std::shared_ptr<const RootMotionCurve> rootMotion;  ///< null: none
+    std::shared_ptr<const CompactTracks> compactTracks; ///< null: exact; else what moves in data is what they decode to
 };
 
 } // namespace osgGpuAnimation

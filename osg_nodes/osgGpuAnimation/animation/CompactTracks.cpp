@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/CompactTracks.h>
 
+#include <glm/common.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -38,6 +40,12 @@ CompactTracks::Range rangeOf(const TrackKeys& keys, Part part)
         most = glm::max(most, glm::vec3(keys[k].*part));
     }
     return {least, (most - least) / static_cast<float>(PackedTriple::largest)};
+}
+
+bool isFinite(const CompactTracks::Range& range)
+{
+    const glm::vec3 sum = glm::abs(range.base) + glm::abs(range.step);
+    return std::isfinite(sum.x + sum.y + sum.z);
 }
 
 } // namespace
@@ -87,21 +95,44 @@ CompactTracks CompactTracks::pack(std::vector<JointTransform>& data, std::size_t
     return compact;
 }
 
+bool CompactTracks::isFor(std::size_t jointCount, std::size_t keyframeCount) const
+{
+    const auto isColumn = [&](int column)
+    { return column == -1 || (column >= 0 && static_cast<std::size_t>(column) < columnCount); };
+    const auto isSound = [&](const Track& track)
+    {
+        return isColumn(track.translation) && isColumn(track.rotation) && isColumn(track.scale) &&
+               isFinite(track.translationRange) && isFinite(track.scaleRange);
+    };
+    return tracks.size() == jointCount && keyframes.size() == columnCount * keyframeCount &&
+           std::all_of(tracks.begin(), tracks.end(), isSound);
+}
+
+void CompactTracks::unpack(std::vector<JointTransform>& data, std::size_t trackCount) const
+{
+    const std::size_t keyframeCount = trackCount == 0 ? 0 : data.size() / trackCount;
+    for (std::size_t k = 0; k < keyframeCount; ++k)
+        for (std::size_t joint = 0; joint < tracks.size(); ++joint)
+            unpackTransform(k, tracks[joint], data[k * trackCount + joint]);
+}
+
+void CompactTracks::unpackTransform(std::size_t keyframe, const Track& track, JointTransform& transform) const
+{
+    const auto at = [&](int column) { return keyframes[keyframe * columnCount + static_cast<std::size_t>(column)]; };
+    if (track.translation >= 0)
+        transform.translation = glm::vec4(track.translationRange.unpack(at(track.translation)), 0.0f);
+    if (track.rotation >= 0) transform.rotation = at(track.rotation).rotation();
+    if (track.scale >= 0) transform.scale = glm::vec4(track.scaleRange.unpack(at(track.scale)), 0.0f);
+}
+
 void CompactTracks::packTransform(std::size_t keyframe, const Track& track, JointTransform& transform)
 {
     const auto at = [&](int column) -> PackedTriple&
     { return keyframes[keyframe * columnCount + static_cast<std::size_t>(column)]; };
-    const auto packPart = [&](int column, const Range& range, glm::vec4& part)
-    {
-        if (column < 0) return;
-        at(column) = range.pack(glm::vec3(part));
-        part = glm::vec4(range.unpack(at(column)), 0.0f);
-    };
-    packPart(track.translation, track.translationRange, transform.translation);
-    packPart(track.scale, track.scaleRange, transform.scale);
-    if (track.rotation < 0) return;
-    at(track.rotation) = PackedTriple::ofRotation(transform.rotation);
-    transform.rotation = at(track.rotation).rotation();
+    if (track.translation >= 0) at(track.translation) = track.translationRange.pack(glm::vec3(transform.translation));
+    if (track.rotation >= 0) at(track.rotation) = PackedTriple::ofRotation(transform.rotation);
+    if (track.scale >= 0) at(track.scale) = track.scaleRange.pack(glm::vec3(transform.scale));
+    unpackTransform(keyframe, track, transform);
 }
 
 } // namespace osgGpuAnimation

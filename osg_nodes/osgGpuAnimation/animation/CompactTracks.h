@@ -41,8 +41,13 @@ struct CompactTracks
 
     /// data: snapshots of trackCount transforms, the joints' first; what moves becomes what it decodes to.
     static CompactTracks pack(std::vector<JointTransform>& data, std::size_t trackCount, std::size_t jointCount);
+    /// Whether these can be the keyframes of a clip of so many joints and keyframes.
+    bool isFor(std::size_t jointCount, std::size_t keyframeCount) const;
+    /// What moves, in snapshots of trackCount transforms, becomes what it decodes to.
+    void unpack(std::vector<JointTransform>& data, std::size_t trackCount) const;
 
 private:
+    void unpackTransform(std::size_t keyframe, const Track& track, JointTransform& transform) const;
     void packTransform(std::size_t keyframe, const Track& track, JointTransform& transform);
 };
 

@@ -180,7 +180,11 @@ osg::BoundingSphere AnimatedCharacter::computeBound() const
     if (!box.valid()) return osg::MatrixTransform::computeBound();
     osg::BoundingSphere others;
     for (const osg::ref_ptr<osg::Node>& child : _children)
-        if (!dynamic_cast<const SkinnedGeometry*>(child.get())) others.expandBy(child->getBound());
+    {
+        // Meshes are asked for theirs, too: cameras that cull at once must find all bounds computed.
+        const osg::BoundingSphere& bound = child->getBound();
+        if (!dynamic_cast<const SkinnedGeometry*>(child.get())) others.expandBy(bound);
+    }
     if (others.valid()) box.expandBy(others);
     osg::BoundingBox placed;
     for (unsigned int corner = 0; corner < 8; ++corner)

@@ -360,7 +360,11 @@ osg::BoundingSphere AnimatedCrowd::computeBound() const
     osg::BoundingSphere bound;
     if (box.valid()) bound = osg::BoundingSphere(box);
     for (const osg::ref_ptr<osg::Node>& child : _children)
-        if (!dynamic_cast<const SkinnedGeometry*>(child.get())) bound.expandBy(child->getBound());
+    {
+        // Meshes are asked for theirs, too: cameras that cull at once must find all bounds computed.
+        const osg::BoundingSphere& ofChild = child->getBound();
+        if (!dynamic_cast<const SkinnedGeometry*>(child.get())) bound.expandBy(ofChild);
+    }
     if (!bound.valid()) return bound;
     const osg::Vec3d center = osg::Vec3d(bound.center()) + _origin;
     // A bound's numbers may be floats: far out their rounding must not cut the crowd off.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/PoseStage.h>
 
+#include <osgGpuAnimation/gpu/DeletionLists.h>
 #include <osgGpuAnimation/nodes/PoseStatistics.h>
 
 #include <osg/UserDataContainer>
@@ -29,6 +30,7 @@ public:
 
     void operator()(osg::RenderInfo& renderInfo) const override
     {
+        DeletionLists::make(*renderInfo.getState());
         _stage._frame->evaluate(renderInfo, _stage._reads, PoseStatistics::wanted(renderInfo));
     }
 

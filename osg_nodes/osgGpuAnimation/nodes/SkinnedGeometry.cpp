@@ -6,6 +6,7 @@
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/BoxNearFar.h>
 #include <osgGpuAnimation/nodes/InstancedDraw.h>
+#include <osgGpuAnimation/nodes/MeshVertexArrays.h>
 #include <osgGpuAnimation/nodes/PaletteBinding.h>
 #include <osgGpuAnimation/nodes/PaletteUniforms.h>
 #include <osgGpuAnimation/nodes/PlacedDraw.h>
@@ -252,6 +253,7 @@ void SkinnedGeometry::drawImplementation(osg::RenderInfo& renderInfo) const
     if (!binding || !binding->animationSet()) return;
     const PosePipeline* pipeline = PosePipeline::of(state);
     if (!pipeline) return;
+    const MeshVertexArrays arrays(state);
     SkinnedRead skinned(state, *this, *binding);
     if (binding->serial() != 0)
         drawPlaced(renderInfo, *binding, *pipeline, skinned);
@@ -264,8 +266,19 @@ void SkinnedGeometry::drawImplementation(osg::RenderInfo& renderInfo) const
         skinned.bind(place);
         osg::Geometry::drawImplementation(renderInfo);
     }
-    // Whatever OSG compiles between frames would take the element buffer away from a vertex array left bound.
-    state.unbindVertexArrayObject();
+}
+
+osg::VertexArrayState* SkinnedGeometry::createVertexArrayStateImplementation(osg::RenderInfo& renderInfo) const
+{
+    osg::VertexArrayState* arrays = osg::Geometry::createVertexArrayStateImplementation(renderInfo);
+    if (MeshVertexArrays::isNumberShared(*renderInfo.getState())) MeshVertexArrays::removeObject(*arrays);
+    return arrays;
+}
+
+void SkinnedGeometry::compileGLObjects(osg::RenderInfo& renderInfo) const
+{
+    // Where there is no vertex array object to be prepared, the first draw makes the buffers.
+    if (!MeshVertexArrays::isNumberShared(*renderInfo.getState())) osg::Geometry::compileGLObjects(renderInfo);
 }
 
 void SkinnedGeometry::drawInstances(osg::RenderInfo& renderInfo, const PaletteBinding& binding,
@@ -354,9 +367,11 @@ void SkinnedGeometry::captureVertices(osg::RenderInfo& renderInfo, const Palette
         gl.glEndTransformFeedback();
         gl.glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, 0);
     };
-    withVertexArrays(renderInfo, capture);
+    {
+        const MeshVertexArrays meshArrays(state);
+        withVertexArrays(renderInfo, capture);
+    }
     if (usesArrayObject) arrays->setRequiresSetArrays(getDataVariance() == osg::Object::DYNAMIC);
-    state.unbindVertexArrayObject();
 }
 
 SkinOncePass::Variant SkinnedGeometry::onceVariant() const

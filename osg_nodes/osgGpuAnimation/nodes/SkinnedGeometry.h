@@ -114,6 +114,8 @@ public:
 
     /// Writes the palette's place into the program that is applied, then draws; all instances of a crowd at once.
     void drawImplementation(osg::RenderInfo& renderInfo) const override;
+    osg::VertexArrayState* createVertexArrayStateImplementation(osg::RenderInfo& renderInfo) const override;
+    void compileGLObjects(osg::RenderInfo& renderInfo) const override;
     void releaseGLObjects(osg::State* state = nullptr) const override;
     void resizeGLObjectBuffers(unsigned int maxSize) override;
     /// Transforms of the vertices by others (the Optimizer's) would break the bind pose: refused.

@@ -51,7 +51,13 @@ void setShadowUnits(osg::State& state)
                                                  static_cast<GLsizei>(units.size()), units.data());
 }
 
-/// The core profile's shaders have no gl_FrontMaterial.
+bool givesWayToColors(const osg::Material& material)
+{
+    return material.getColorMode() == osg::Material::DIFFUSE ||
+           material.getColorMode() == osg::Material::AMBIENT_AND_DIFFUSE;
+}
+
+/// What shaders of the compatibility profile cannot rely on, and those of the core profile do not have.
 void setMaterial(osg::State& state)
 {
     static const unsigned int diffuseName = osg::Uniform::getNameID("materialDiffuse");
@@ -60,7 +66,8 @@ void setMaterial(osg::State& state)
     if (!applied) return;
     const auto* material =
         dynamic_cast<const osg::Material*>(state.getLastAppliedAttribute(osg::StateAttribute::MATERIAL));
-    const osg::Vec4 diffuse = material ? material->getDiffuse(osg::Material::FRONT) : osg::Vec4(1, 1, 1, 1);
+    const bool isOwn = material && !givesWayToColors(*material);
+    const osg::Vec4 diffuse = isOwn ? material->getDiffuse(osg::Material::FRONT) : osg::Vec4(1, 1, 1, 1);
     const osg::Vec4 emission = material ? material->getEmission(osg::Material::FRONT) : osg::Vec4(0, 0, 0, 1);
     const osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
     gl.glUniform4fv(applied->getUniformLocation(diffuseName), 1, diffuse.ptr());
@@ -94,7 +101,7 @@ void SurfaceProgram::apply(osg::State& state) const
         const SurfaceState surface = SurfaceState::of(state);
         variant(surface)->apply(state);
         if (surface.shadowMaps != 0) setShadowUnits(state);
-        if (state.getUseModelViewAndProjectionUniforms()) setMaterial(state);
+        setMaterial(state);
     }
     // The next StateSet may have other modes and the same program, which OSG would take for applied.
     state.haveAppliedAttribute(osg::StateAttribute::PROGRAM);

@@ -13,6 +13,8 @@
 #include <osgAnimation/StackedTranslateElement>
 #include <osgAnimation/UpdateBone>
 
+#include <osg/Material>
+
 #include <layout.glsl>
 #include <ShaderSources.h>
 
@@ -288,6 +290,10 @@ osg::ref_ptr<osg::Geometry> unskinned(const osg::Geometry& geometry)
     osg::ref_ptr<osg::StateSet> state = geometry.getStateSet()
                                             ? new osg::StateSet(*geometry.getStateSet(), osg::CopyOp::SHALLOW_COPY)
                                             : new osg::StateSet;
+    const auto* material = dynamic_cast<const osg::Material*>(state->getAttribute(osg::StateAttribute::MATERIAL));
+    const osg::Vec4 white(1, 1, 1, 1);
+    state->addUniform(
+        new osg::Uniform("materialDiffuse", material ? material->getDiffuse(osg::Material::FRONT) : white));
     state->setAttributeAndModes(unskinnedProgram());
     plain->setStateSet(state);
     return plain;

@@ -85,6 +85,8 @@ Result<bool> measureOnce(const Subject& subject, std::size_t count, std::size_t 
             const Spent spent = contestants[0].frame().draw;
             if (round >= 0) series[skinning == Skinning::Once ? 1 : 0].push_back(spent);
         }
+    // The subject's other scenes have the same meshes.
+    forEachMesh(scene, [](SkinnedGeometry& mesh) { mesh.setSkinning(Skinning::Auto); });
     if (const std::string wrong = check(contestants); !wrong.empty()) return Error{wrong};
     const std::string what = "frame's draws, " + std::to_string(readers) + (readers == 1 ? " camera" : " cameras") +
                              (morphTargets == 0 ? "" : ", morph targets: " + std::to_string(morphTargets));

@@ -151,11 +151,31 @@ TEST_F(UpdateRateGLTest, whatMovesOrGoesIsShownAtOnceAndIsNotEvaluated)
         EXPECT_GT(picture().pixelsDrawn(), 5 * 64);
         EXPECT_LE(Picture::pixelsDifferent(*expected, picture().image()), 16) << round;
     }
+    for (std::size_t i = 3; i < instances.size(); ++i)
+        ASSERT_TRUE(crowd->setTint(instances[i], osg::Vec4(1, 1, 1, 1)));
+    const osg::ref_ptr<osg::Image> white = plain();
+    scene(crowd);
+    drawAt(time);
+    EXPECT_LE(Picture::pixelsDifferent(*white, picture().image()), 16);
     const std::uint64_t before = PosePipeline::of(state())->counters().instancesEvaluated;
     ASSERT_TRUE(crowd->move(instances[5], osg::Matrixd::translate(1.0, 0.0, 1.0)));
     ASSERT_TRUE(crowd->remove(instances[6]));
     drawAt(time);
-    EXPECT_EQ(PosePipeline::of(state())->counters().instancesEvaluated, before);
+    // No more than the group whose turn it is, without the one that went.
+    EXPECT_LT(PosePipeline::of(state())->counters().instancesEvaluated - before, everybody / every);
+}
+
+TEST_F(UpdateRateGLTest, turnsComeWhileTimeStandsStill)
+{
+    ASSERT_TRUE(crowd->setUpdateRate({every, 1e6f}));
+    for (unsigned int frame = 0; frame < 2 * every; ++frame)
+        drawAt(step);
+    for (std::size_t i = 0; i < instances.size(); ++i)
+        crowd->controller(instances[i])->seek(1.25 + 0.01 * static_cast<double>(i)); // equal groups would share a slot
+    for (unsigned int frame = 0; frame <= every; ++frame)
+        drawAt(step);
+    for (std::size_t i = 0; i < instances.size(); ++i)
+        EXPECT_LT(lateness(instances[i], i % every, i / every), every) << "instance " << i;
 }
 
 TEST_F(UpdateRateGLTest, whatComesIsUpToDateUntilItsTurn)

@@ -70,10 +70,11 @@ public:
     void trim(const Subject& subject, std::size_t pieceCount);
     Place place(const Subject& subject, std::size_t instance) const;
 
-    /// Frees what is there of a mesh.
+    /// Frees what is there of a mesh. As all of this, on the draw side.
     void release(std::uint64_t mesh);
 
-    /// Bytes that all meshes together are to take at most: beyond it they are skinned by every draw.
+    /// Bytes that all meshes together are to take at most, by what was seen a frame before: beyond it they are skinned
+    /// by every draw. The frame in which more come into view may take more.
     void setMaxBytes(std::size_t bytes) { _maxBytes = bytes; }
     std::size_t maxBytes() const { return _maxBytes; } ///< default: 256 MiB
     /// Counted since the start: instances of meshes skinned.

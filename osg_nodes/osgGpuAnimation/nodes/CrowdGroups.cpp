@@ -15,11 +15,11 @@ void CrowdGroups::update(const CrowdInstances& instances, const glm::vec4& sizeP
     {
         Group& group = _groups[number];
         group.shown.clear();
-        if (!group.isNew && group.clock == instances.groupClock(number)) continue;
+        if (!group.isNew && group.turn == instances.groupTurn(number)) continue;
         _isTurn[number] = true;
         group.poses.clear();
         group.members.clear();
-        group.clock = instances.groupClock(number);
+        group.turn = instances.groupTurn(number);
         group.isNew = false;
     }
 
@@ -47,7 +47,7 @@ bool CrowdGroups::take(const CrowdInstances& instances, std::size_t number, std:
     }
     else if (place >= group.members.size() || group.members[place] != handle)
         return false;
-    if (instances.isTinted()) group.poses.setTint(place, instances.tint(index));
+    group.poses.setTint(place, instances.tint(index));
     group.shown.push_back({index, place});
     return true;
 }

@@ -28,7 +28,7 @@ public:
         PoseBatch poses;
         std::vector<CrowdInstances::Handle> members; ///< by their numbers
         std::vector<Shown> shown;
-        double clock = 0.0; ///< that of the poses
+        std::uint32_t turn = 0; ///< that of the poses
         bool isNew = true;
     };
 

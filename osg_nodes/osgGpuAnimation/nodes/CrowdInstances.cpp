@@ -34,7 +34,7 @@ void takeOut(std::vector<Element>& elements, std::size_t index)
 } // namespace
 
 CrowdInstances::CrowdInstances(const CrowdInstances& other)
-    : _set(other._set), _clock(other._clock), _groupClocks(other._groupClocks), _nextGroup(other._nextGroup),
+    : _set(other._set), _clock(other._clock), _groups(other._groups), _nextGroup(other._nextGroup),
       _clipBounds(other._clipBounds), _allBounds(other._allBounds), _rootMatrices(other._rootMatrices),
       _spheres(other._spheres), _tints(other._tints), _playbacks(other._playbacks), _handles(other._handles),
       _indexOfPlace(other._indexOfPlace), _usesOfPlace(other._usesOfPlace), _freePlaces(other._freePlaces),
@@ -160,8 +160,8 @@ std::size_t CrowdInstances::controllerCount() const
 bool CrowdInstances::advance(double seconds)
 {
     if (std::isfinite(seconds)) _clock += seconds;
-    _groupClocks[_nextGroup] = _clock;
-    _nextGroup = (_nextGroup + 1) % _groupClocks.size();
+    _groups[_nextGroup] = {_clock, _groups[_nextGroup].turns + 1};
+    _nextGroup = (_nextGroup + 1) % _groups.size();
     bool haveSpheresChanged = false;
     for (std::size_t index = 0; index < _controllers.size(); ++index)
     {
@@ -179,7 +179,7 @@ bool CrowdInstances::advance(double seconds)
 
 void CrowdInstances::setGroupCount(std::size_t groups)
 {
-    _groupClocks.assign(groups, _clock);
+    _groups.assign(groups, Group{_clock, 0});
     _nextGroup = 0;
 }
 
@@ -191,7 +191,7 @@ std::size_t CrowdInstances::groupOf(std::size_t index) const
 
 BlendSample CrowdInstances::groupSample(std::size_t index) const
 {
-    return _playbacks[index].sample(*_set, _groupClocks[groupOf(index)]);
+    return _playbacks[index].sample(*_set, _groups[groupOf(index)].clock);
 }
 
 void CrowdInstances::findSeen(const std::vector<glm::vec4>& planes, std::vector<std::uint32_t>& outIndices) const

@@ -46,7 +46,6 @@ public:
     const AffineMatrix& rootMatrix(std::size_t index) const { return _rootMatrices[index]; }
     const glm::vec4& sphere(std::size_t index) const { return _spheres[index]; } ///< centre, radius; negative: nothing
     std::uint32_t tint(std::size_t index) const { return _tints[index]; }
-    bool isTinted() const { return _tinted != 0; } ///< any of them
     PoseInstruction instruction(std::size_t index) const;
     PoseBatch::Load load(std::size_t index) const; ///< of its instruction
     /// Holds until the next advance(), which takes it back where a CrowdPlayback will do.
@@ -60,11 +59,11 @@ public:
 
     /// Deals the instances out to groups by turns, of which each advance() brings one up to date. groups: 1 and more.
     void setGroupCount(std::size_t groups);
-    std::size_t groupCount() const { return _groupClocks.size(); }
+    std::size_t groupCount() const { return _groups.size(); }
     /// Those of instances that play one clip in a loop; others have none (groupCount()), since each advance moves them.
     std::size_t groupOf(std::size_t index) const;
-    /// Seconds; changes when the group is brought up to date.
-    double groupClock(std::size_t group) const { return _groupClocks[group]; }
+    /// How often the group was brought up to date.
+    std::uint32_t groupTurn(std::size_t group) const { return _groups[group].turns; }
     /// What the instance shows as of its group's clock; only for one that has a group.
     BlendSample groupSample(std::size_t index) const;
 
@@ -74,12 +73,18 @@ public:
     void addTo(PoseBatch& batch, const std::vector<std::uint32_t>& indices) const;
 
 private:
+    struct Group
+    {
+        double clock = 0.0;      ///< what it was when the group was last up to date
+        std::uint32_t turns = 0; ///< see groupTurn()
+    };
+
     glm::vec4 placedSphere(std::size_t index) const;
     Handle newHandle(std::size_t index);
 
     std::shared_ptr<const AnimationSet> _set;
-    double _clock = 0.0;                   ///< seconds
-    std::vector<double> _groupClocks{0.0}; ///< what the clock was when each group was last up to date
+    double _clock = 0.0; ///< seconds
+    std::vector<Group> _groups{Group()};
     std::size_t _nextGroup = 0;
     std::vector<Box> _clipBounds;
     Box _allBounds;

@@ -42,10 +42,11 @@ osg::StateSet* MeshReads::add(const SkinnedGeometry& mesh, const PaletteBinding&
     return isOnce ? skinnedState(mesh.skinnedTexels()) : nullptr;
 }
 
-void MeshReads::skin(osg::RenderInfo& renderInfo, unsigned int frameNumber)
+void MeshReads::skin(osg::RenderInfo& renderInfo, std::uint64_t frame)
 {
     osg::State& state = *renderInfo.getState();
     const PosePipeline* pipeline = PosePipeline::of(state);
+    _plan->begin(state, frame);
     SkinOnceRun run(renderInfo);
     for (const Read& read : _reads)
     {
@@ -53,8 +54,7 @@ void MeshReads::skin(osg::RenderInfo& renderInfo, unsigned int frameNumber)
         const PaletteBinding& binding = *read.binding;
         const AnimationSet& set = *binding.animationSet();
         const std::size_t drawn = binding.serial() != 0 ? binding.placements().size() : binding.instanceCount();
-        _plan->count(state, frameNumber, *read.mesh, set, binding.slot(), pipeline->instanceCount(set, binding.slot()),
-                     drawn);
+        _plan->count(*read.mesh, set, binding.slot(), pipeline->instanceCount(set, binding.slot()), drawn);
         if (read.isOnce) run.skin(*read.mesh, set, binding.slot());
     }
     _reads.clear();

@@ -24,8 +24,8 @@ public:
     /// drawn with, above its own; null: none.
     osg::StateSet* add(const SkinnedGeometry& mesh, const PaletteBinding& binding);
 
-    /// On the draw side, when the palettes are there. frameNumber: the frame that was culled.
-    void skin(osg::RenderInfo& renderInfo, unsigned int frameNumber);
+    /// On the draw side, when the palettes are there. frame: the PoseFrame's serial number.
+    void skin(osg::RenderInfo& renderInfo, std::uint64_t frame);
 
 private:
     struct Read

@@ -39,6 +39,7 @@ osg::ref_ptr<PoseFrame> PoseFrame::forContext(unsigned int contextId, const osg:
     const unsigned int frameNumber = stamp ? stamp->getFrameNumber() : 0;
     const double referenceTime = stamp ? stamp->getReferenceTime() : 0.0;
     static std::mutex mutex;
+    static std::uint64_t lastSerial = 0;
     static std::unordered_map<unsigned int, std::vector<osg::ref_ptr<PoseFrame>>> framesOfContext; // the latest last
     const std::lock_guard<std::mutex> lock(mutex);
     std::vector<osg::ref_ptr<PoseFrame>>& frames = framesOfContext[contextId];
@@ -55,6 +56,7 @@ osg::ref_ptr<PoseFrame> PoseFrame::forContext(unsigned int contextId, const osg:
         if (frame->referenceCount() == 1) frame->reset();
     next->reset();
     next->_frameNumber = frameNumber;
+    next->_serial = ++lastSerial;
     next->_referenceTime = referenceTime;
     return next;
 }
@@ -204,14 +206,14 @@ void PoseFrame::evaluate(osg::RenderInfo& renderInfo, MeshReads& reads, osg::Sta
     if (!stats || !pipeline)
     {
         evaluateBatches(state, pipeline);
-        reads.skin(renderInfo, _frameNumber);
+        reads.skin(renderInfo, _serial);
         return;
     }
     FeedbackTimer& timer = FeedbackTimer::of(state);
     const std::uint64_t evaluatedBefore = pipeline->counters().instancesEvaluated;
     timer.begin();
     evaluateBatches(state, pipeline);
-    reads.skin(renderInfo, _frameNumber);
+    reads.skin(renderInfo, _serial);
     timer.end(_frameNumber);
     record(*stats, pipeline->counters().instancesEvaluated - evaluatedBefore);
     for (const FeedbackTimer::Measured& measured : timer.takeFinished())

@@ -71,6 +71,7 @@ public:
     void evaluate(osg::RenderInfo& renderInfo, MeshReads& reads, osg::Stats* stats = nullptr);
 
     unsigned int frameNumber() const { return _frameNumber; }
+    std::uint64_t serial() const { return _serial; } ///< no other frame has it, another viewer's neither
 
 protected:
     ~PoseFrame() override = default;
@@ -114,6 +115,7 @@ private:
 
     std::mutex _mutex;
     unsigned int _frameNumber = 0;
+    std::uint64_t _serial = 0;
     double _referenceTime = 0.0; ///< seconds
     std::vector<std::unique_ptr<Batch>> _batches;
     std::unordered_map<const AnimationSet*, std::vector<Batch*>> _batchesOfSet; ///< open ones: of several loads

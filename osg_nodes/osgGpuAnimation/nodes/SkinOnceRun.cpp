@@ -97,6 +97,8 @@ void SkinOnceRun::fill(SkinnedVertices::Piece& piece, const SkinnedGeometry& mes
                        std::size_t count)
 {
     use(SkinOncePass::shared()->state(mesh.onceVariant()));
+    // Making room binds to the unit that is active, which must be none that OSG keeps a record of.
+    _renderInfo.getState()->setActiveTextureUnit(POSE_SKINNED_UNIT);
     const std::size_t texels = mesh.vertexCount() * static_cast<std::size_t>(mesh.skinnedTexels());
     piece.vertices.reserve(count * texels * BufferTexture::texelBytes);
     mesh.captureVertices(_renderInfo, first, static_cast<int>(count), piece.vertices.buffer());

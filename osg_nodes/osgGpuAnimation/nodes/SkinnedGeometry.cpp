@@ -2,7 +2,6 @@
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
 #include <osgGpuAnimation/gpu/PosePipeline.h>
-#include <osgGpuAnimation/gpu/SkinnedVertices.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/BoxNearFar.h>
 #include <osgGpuAnimation/nodes/InstancedDraw.h>
@@ -398,11 +397,8 @@ void SkinnedGeometry::releaseGLObjects(osg::State* state) const
     osg::Geometry::releaseGLObjects(state);
     if (_morphDeltas.texture) _morphDeltas.texture->releaseGLObjects(state);
     _oncePass->releaseGLObjects(state);
-    // What is there under a number that is nobody's any more, each context frees by itself.
-    if (state)
-        SkinnedVertices::of(*state).release(_number);
-    else
-        _number = newNumber();
+    // What is there under a number that is nobody's any more, each context's draw side frees by itself.
+    _number = newNumber();
 }
 
 void SkinnedGeometry::resizeGLObjectBuffers(unsigned int maxSize)

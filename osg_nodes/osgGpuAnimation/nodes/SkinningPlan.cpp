@@ -36,14 +36,16 @@ std::shared_ptr<const SkinningPlan::Meshes> SkinningPlan::once() const
     return _once;
 }
 
-void SkinningPlan::count(osg::State& state, unsigned int frameNumber, const SkinnedGeometry& mesh,
-                         const AnimationSet& set, std::size_t slot, std::size_t posed, std::size_t drawn)
+void SkinningPlan::begin(osg::State& state, std::uint64_t frame)
 {
-    if (frameNumber != _frameNumber)
-    {
-        decide(state);
-        _frameNumber = frameNumber;
-    }
+    if (frame == _frame) return;
+    decide(state);
+    _frame = frame;
+}
+
+void SkinningPlan::count(const SkinnedGeometry& mesh, const AnimationSet& set, std::size_t slot, std::size_t posed,
+                         std::size_t drawn)
+{
     Tally& tally = tallyOf(mesh);
     tally.drawn += drawn;
     const std::pair<const AnimationSet*, std::size_t> batch(&set, slot);
@@ -82,6 +84,9 @@ void SkinningPlan::decide(osg::State& state)
         bytes += tally.posed * tally.texels * BufferTexture::texelBytes;
         once->insert(tally.mesh);
     }
+    // Whoever is not there any more has another number, or is skinned by every draw again.
+    for (const std::uint64_t mesh : *_once)
+        if (once->count(mesh) == 0) SkinnedVertices::of(state).release(mesh);
     _tallies.clear();
     _tallyOfMesh.clear();
     const std::lock_guard<std::mutex> lock(_mutex);
@@ -91,10 +96,11 @@ void SkinningPlan::decide(osg::State& state)
 bool SkinningPlan::fits(osg::State& state, const Tally& tally, std::size_t bytesTaken)
 {
     const PosePipeline* pipeline = PosePipeline::of(state);
-    if (!pipeline || tally.texels == 0 || !SkinOncePass::shared()->works(state, tally.variant)) return false;
+    if (!pipeline || tally.texels == 0) return false;
     const std::size_t maxBytes = SkinnedVertices::of(state).maxBytes();
     const std::size_t bytes = tally.posed * tally.texels * BufferTexture::texelBytes;
-    if (tally.texels <= pipeline->maxTexels() && bytes <= maxBytes - std::min(bytesTaken, maxBytes)) return true;
+    if (tally.texels <= pipeline->maxTexels() && bytes <= maxBytes - std::min(bytesTaken, maxBytes))
+        return SkinOncePass::shared()->works(state, tally.variant);
     if (tally.skinning == Skinning::Once && _reported.insert(tally.mesh).second)
         OSG_WARN << "osgGpuAnimation: mesh \"" << tally.name << "\" is skinned by every draw: once, its " << tally.posed
                  << " instances would take " << tally.texels << " texels each, " << bytes << " bytes together beside "

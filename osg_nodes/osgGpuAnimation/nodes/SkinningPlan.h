@@ -43,10 +43,12 @@ public:
     /// The meshes that are skinned once, as it was decided last.
     std::shared_ptr<const Meshes> once() const;
 
-    /// Takes down, on the draw side, that so many instances are drawn of a mesh in the poses of that batch, which has
-    /// `posed` instances. With the first draw of a frame it is decided about the frame before.
-    void count(osg::State& state, unsigned int frameNumber, const SkinnedGeometry& mesh, const AnimationSet& set,
-               std::size_t slot, std::size_t posed, std::size_t drawn);
+    /// On the draw side, before what is drawn in a frame is counted: with a frame that is new it is decided about the
+    /// one before. frame: see PoseFrame::serial().
+    void begin(osg::State& state, std::uint64_t frame);
+    /// Takes down that so many instances are drawn of a mesh in the poses of that batch, which has `posed` instances.
+    void count(const SkinnedGeometry& mesh, const AnimationSet& set, std::size_t slot, std::size_t posed,
+               std::size_t drawn);
 
 private:
     struct Tally
@@ -69,7 +71,7 @@ private:
 
     mutable std::mutex _mutex;
     std::shared_ptr<const Meshes> _once = std::make_shared<Meshes>();
-    unsigned int _frameNumber = 0;
+    std::uint64_t _frame = 0;    ///< see PoseFrame::serial()
     std::vector<Tally> _tallies; ///< of the frame, in the order of their first draws
     std::unordered_map<std::uint64_t, std::size_t> _tallyOfMesh;
     Meshes _reported; ///< as not to fit

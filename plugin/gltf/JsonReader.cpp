@@ -215,7 +215,7 @@ Result<JsonTree> readJson(std::string_view text, const ImportOptions& options, R
     if (source.otherBytes() > options.maxDocumentBytes / bytesOfJsonLetter)
         return fault("JSON",
                      "strings of at most " + std::to_string(options.maxDocumentBytes / bytesOfJsonLetter) +
-                         " bytes in all, less data (limit maxDocumentBytes)",
+                         " bytes in all, less data URIs without escapes (limit maxDocumentBytes)",
                      std::to_string(source.otherBytes()));
     JsonTree tree;
     TreeBuilder builder(source, tree, options);

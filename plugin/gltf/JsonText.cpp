@@ -31,7 +31,10 @@ JsonText::JsonText(std::string_view text) : _whole(text)
             isPlain = isPlain && text[at] >= 0x20 && text[at] < 0x7f && text[at] != '\\';
             if (text[at] == '\\') ++at;
         }
-        if (at < text.size()) readString(begin, at, isPlain);
+        if (at < text.size())
+            readString(begin, at, isPlain);
+        else
+            _otherBytes += text.size() - begin; // the parser keeps it until it misses the end
     }
     shorten();
 }
@@ -46,9 +49,10 @@ void JsonText::readString(std::size_t begin, std::size_t end, bool isPlain)
         _key = string;
         if (_depth == rootDepth) _list = string;
     }
-    else if (_depth == elementDepth && _key == "uri" && (_list == "buffers" || _list == "images") && isDataUri(string))
+    else if (isPlain && string.size() >= leastTaken && _depth == elementDepth && _key == "uri" &&
+             (_list == "buffers" || _list == "images") && isDataUri(string))
     {
-        if (isPlain && string.size() >= leastTaken) _data.emplace_back(number, string);
+        _data.emplace_back(number, string);
         return;
     }
     _otherBytes += string.size();

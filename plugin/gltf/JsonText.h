@@ -13,7 +13,8 @@ namespace osgGpuAnimation::gltf
 
 /// A JSON text from which the data URIs of buffers and images were taken: the parser keeps several copies of each
 /// string that it reads, and these can be nearly all of a file. They stay where they are, in the caller's bytes, which
-/// must outlive this and what is made of it. Strings of a few letters, and those with escapes, are left to the parser.
+/// must outlive this and what is made of it. Short ones, and those with escapes or beyond ASCII, are left to the
+/// parser.
 class JsonText
 {
 public:
@@ -29,11 +30,9 @@ public:
     std::optional<std::string_view> dataAt(std::size_t string);
 
     std::size_t dataBytes() const { return _whole.size() - text().size(); } ///< of all that was taken out
-    std::size_t otherBytes() const
-    {
-        return _otherBytes;
-    } ///< of the strings and keys that are no data of buffers and
-      ///< images
+    /// Of the strings and keys that the parser gets: all that were not taken out.
+    std::size_t otherBytes() const { return _otherBytes; }
+
 private:
     void readString(std::size_t begin, std::size_t end, bool isPlain);
     void shorten();

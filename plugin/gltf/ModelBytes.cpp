@@ -39,7 +39,7 @@ Result<std::string> readModelFile(const std::string& path, const ImportOptions& 
     if (!file) return withoutPath(file.error(), path);
     if (const std::optional<Error> error = checkBeginning(file.value(), options.maxJsonBytes))
         return withoutPath(*error, path);
-    Result<std::string> bytes = readWholeFile(path);
+    Result<std::string> bytes = file.value().readWhole();
     return bytes ? std::move(bytes) : withoutPath(bytes.error(), path);
 }
 

@@ -93,19 +93,23 @@ Result<std::size_t> RegularFile::read(void* to, std::size_t bytes) const
     return done;
 }
 
+Result<std::string> RegularFile::readWhole() const
+{
+    if (_size == 0) return about(_path, "the file is empty");
+    std::string content;
+    if (_size > mostBytesOfAFile || _size > content.max_size())
+        return about(_path, "expected a file of at most " + std::to_string(mostBytesOfAFile) + " bytes, found " +
+                                std::to_string(_size));
+    content.resize(_size);
+    const Result<std::size_t> done = read(content.data(), content.size());
+    if (!done) return done.error();
+    return content;
+}
+
 Result<std::string> readWholeFile(const std::string& path)
 {
     const Result<RegularFile> file = RegularFile::open(path);
-    if (!file) return file.error();
-    if (file.value().size() == 0) return about(path, "the file is empty");
-    std::string content;
-    if (file.value().size() > mostBytesOfAFile || file.value().size() > content.max_size())
-        return about(path, "expected a file of at most " + std::to_string(mostBytesOfAFile) + " bytes, found " +
-                               std::to_string(file.value().size()));
-    content.resize(file.value().size());
-    const Result<std::size_t> read = file.value().read(content.data(), content.size());
-    if (!read) return read.error();
-    return content;
+    return file ? file.value().readWhole() : file.error();
 }
 
 } // namespace osgGpuAnimation::gltf

@@ -26,6 +26,8 @@ public:
 
     /// The first `bytes` bytes into `to`. Errors: the file cannot be read or has fewer.
     Result<std::size_t> read(void* to, std::size_t bytes) const;
+    /// All of it. Errors: it is empty, of more than 4 GiB or cannot be read.
+    Result<std::string> readWhole() const;
 
 private:
     RegularFile(int descriptor, std::size_t size, std::string path);

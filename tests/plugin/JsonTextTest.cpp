@@ -74,8 +74,16 @@ TEST(JsonTextTest, otherStringsAreTheParsers)
         JsonText text(whole);
         EXPECT_EQ(text.text().data(), whole.data()) << whole.substr(0, 60);
         EXPECT_EQ(text.dataBytes(), 0u);
+        EXPECT_GT(text.otherBytes(), whole.size() > 3000 ? 3000u : 40u) << whole.substr(0, 60);
         read(whole);
     }
+}
+
+TEST(JsonTextTest, unendedStringsCount)
+{
+    EXPECT_EQ(JsonText("{\"a\":\"" + longUri).otherBytes(), 1 + longUri.size());
+    EXPECT_EQ(JsonText("\"\\").otherBytes(), 1u);
+    EXPECT_EQ(JsonText("\"").otherBytes(), 0u);
 }
 
 TEST(JsonTextTest, faultyTextIsTheParsersToRefuse)

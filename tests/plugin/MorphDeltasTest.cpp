@@ -3,7 +3,7 @@
 #include "plugin/ModelBuilder.h"
 #include "plugin/StoredScene.h"
 
-#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
+#include <osgGpuAnimation/nodes/SkinnedGeometryVisitor.h>
 
 #include <gtest/gtest.h>
 
@@ -13,23 +13,12 @@ namespace osgGpuAnimation::gltf
 namespace
 {
 
-/// The meshes of a scene that are drawn from the palette.
-class MeshCollector : public osg::NodeVisitor
-{
-public:
-    MeshCollector() : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN) {}
-    void apply(osg::Drawable& drawable) override
-    {
-        if (auto* mesh = dynamic_cast<SkinnedGeometry*>(&drawable)) meshes.push_back(mesh);
-    }
-    std::vector<SkinnedGeometry*> meshes;
-};
-
 std::vector<SkinnedGeometry*> meshesOf(osg::Node& node)
 {
-    MeshCollector collector;
-    node.accept(collector);
-    return collector.meshes;
+    std::vector<SkinnedGeometry*> meshes;
+    SkinnedGeometryVisitor visitor([&](SkinnedGeometry& mesh) { meshes.push_back(&mesh); });
+    node.accept(visitor);
+    return meshes;
 }
 
 /// One mesh under two nodes with weights of their own.

@@ -44,7 +44,8 @@ osg::ref_ptr<PoseFrame> PoseFrame::forContext(unsigned int contextId, const osg:
     const std::lock_guard<std::mutex> lock(mutex);
     std::vector<osg::ref_ptr<PoseFrame>>& frames = framesOfContext[contextId];
     // Of frames before the latest, the palettes have been written over.
-    if (!frames.empty() && frames.back()->_frameNumber == frameNumber && frames.back()->_referenceTime == referenceTime)
+    if (!frames.empty() && frames.back()->_frameNumber == frameNumber &&
+        frames.back()->_referenceTime == referenceTime && (!stamp || frames.back()->_stamp.valid()))
         return frames.back();
     const auto unused = std::find_if(frames.begin(), frames.end(),
                                      [](const osg::ref_ptr<PoseFrame>& frame) { return frame->referenceCount() == 1; });
@@ -58,6 +59,7 @@ osg::ref_ptr<PoseFrame> PoseFrame::forContext(unsigned int contextId, const osg:
     next->_frameNumber = frameNumber;
     next->_serial = ++lastSerial;
     next->_referenceTime = referenceTime;
+    next->_stamp = stamp;
     return next;
 }
 

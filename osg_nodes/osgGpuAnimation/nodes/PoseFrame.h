@@ -6,6 +6,7 @@
 #include <osgGpuAnimation/nodes/PaletteBinding.h>
 
 #include <osg/FrameStamp>
+#include <osg/observer_ptr>
 #include <osg/Referenced>
 #include <osg/RenderInfo>
 #include <osg/StateSet>
@@ -116,7 +117,8 @@ private:
     std::mutex _mutex;
     unsigned int _frameNumber = 0;
     std::uint64_t _serial = 0;
-    double _referenceTime = 0.0; ///< seconds
+    double _referenceTime = 0.0;                     ///< seconds
+    osg::observer_ptr<const osg::FrameStamp> _stamp; ///< gone with its viewer; first frames' times are often equal
     std::vector<std::unique_ptr<Batch>> _batches;
     std::unordered_map<const AnimationSet*, std::vector<Batch*>> _batchesOfSet; ///< open ones: of several loads
     std::vector<std::unique_ptr<PoseBatch>> _spareBatches;

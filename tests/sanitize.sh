@@ -7,6 +7,8 @@ set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
 install_missing "${packages[@]}"
+# Two plugins hold the import, one the other's equal: 1 reports what differs in size alone.
+export ASAN_OPTIONS=detect_odr_violation=1
 for sanitizer in thread address; do
     build=$root/build-$sanitizer
     # Unity: the headers are read once for many files. -O1: a Debug build would draw too slowly.

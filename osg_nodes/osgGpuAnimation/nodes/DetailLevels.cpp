@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/nodes/DetailLevels.h>
+
+#include <osgGpuAnimation/animation/Pose.h>
+#include <osgGpuAnimation/nodes/KeyPoses.h>
+#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
+#include <osgGpuAnimation/nodes/SurfaceReduction.h>
+
+#include <glm/common.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+constexpr std::size_t poseCount = 12;
+constexpr int finestFraction = 8;        ///< the finest level is the mesh's size through 2 to that power
+constexpr int seamFraction = 4;          ///< from that fraction of the size on, texture seams count no more
+constexpr double worthwhile = 0.85;      ///< of the triangles of the level before
+constexpr std::size_t fewTriangles = 16; ///< for which no level is worth its trouble
+
+template <typename OsgArray, typename Vector>
+void copyTo(const osg::Array* array, std::size_t count, std::vector<Vector>& out)
+{
+    const auto* values = dynamic_cast<const OsgArray*>(array);
+    if (!values || values->size() != count) return;
+    for (const auto& value : *values)
+    {
+        Vector copied;
+        for (int i = 0; i < Vector::length(); ++i)
+            copied[i] = std::isfinite(value[i]) ? value[i] : 0.0f;
+        out.push_back(copied);
+    }
+}
+
+bool isFinite(const glm::vec3& position)
+{
+    // Squares of what is beyond are not.
+    constexpr float farthest = 1e18f;
+    return std::abs(position.x) < farthest && std::abs(position.y) < farthest && std::abs(position.z) < farthest;
+}
+
+/// Without poses where the mesh is nowhere in one.
+PosedSurface surfaceOf(const SkinnedGeometry& mesh, const AnimationSet& set)
+{
+    PosedSurface surface;
+    std::vector<AffineMatrix> palette;
+    std::vector<glm::dvec3> positions;
+    for (const PoseInstruction& pose : keyPoses(set, poseCount))
+    {
+        Pose::evaluate(set, pose, AffineMatrix(), palette);
+        mesh.computePositions(palette, positions);
+        surface.poses.emplace_back(positions.begin(), positions.end());
+        const std::vector<glm::vec3>& posed = surface.poses.back();
+        if (!posed.empty() && std::all_of(posed.begin(), posed.end(), isFinite)) continue;
+        surface.poses.clear();
+        return surface;
+    }
+    const std::size_t count = positions.size();
+    copyTo<osg::Vec3Array>(mesh.getNormalArray(), count, surface.normals);
+    if (mesh.getNumTexCoordArrays() > 0) copyTo<osg::Vec2Array>(mesh.getTexCoordArray(0), count, surface.texCoords);
+    return surface;
+}
+
+/// In the rest pose.
+double sizeOf(const PosedSurface& surface)
+{
+    glm::dvec3 least(surface.poses.front().front()), greatest = least;
+    for (const glm::vec3& position : surface.poses.front())
+    {
+        least = glm::min(least, glm::dvec3(position));
+        greatest = glm::max(greatest, glm::dvec3(position));
+    }
+    return glm::distance(least, greatest);
+}
+
+/// Whole triangles; none where it is anything else.
+std::vector<std::uint32_t> trianglesOf(const osg::PrimitiveSet& primitives, std::size_t vertexCount)
+{
+    std::vector<std::uint32_t> indices;
+    const osg::DrawElements* elements = primitives.getDrawElements();
+    if (!elements || primitives.getMode() != GL_TRIANGLES || !elements->getDataPointer()) return indices;
+    for (unsigned int i = 0; i + 2 < elements->getNumIndices(); i += 3)
+        for (unsigned int corner = i; corner < i + 3; ++corner)
+        {
+            if (elements->index(corner) >= vertexCount) return {};
+            indices.push_back(elements->index(corner));
+        }
+    return indices;
+}
+
+template <typename Elements>
+osg::ref_ptr<osg::DrawElements> makeElements(const std::vector<std::uint32_t>& indices)
+{
+    osg::ref_ptr<Elements> elements = new Elements(GL_TRIANGLES);
+    elements->assign(indices.begin(), indices.end());
+    return elements;
+}
+
+} // namespace
+
+int DetailLevels::levelOf(double error)
+{
+    return error > 0.0 && std::isfinite(error) ? std::ilogb(error) : allTriangles;
+}
+
+DetailLevels::DetailLevels(const SkinnedGeometry& mesh, const AnimationSet& set)
+    : _vertices(mesh.getVertexArray()), _modifiedCount(_vertices ? _vertices->getModifiedCount() : 0)
+{
+    for (const osg::ref_ptr<osg::PrimitiveSet>& primitives : mesh.getPrimitiveSetList())
+        _primitives.push_back({primitives, primitives->getModifiedCount(), {}});
+    const PosedSurface surface = surfaceOf(mesh, set);
+    if (surface.poses.empty()) return;
+    for (Primitives& primitives : _primitives)
+        addSteps(surface, primitives);
+}
+
+void DetailLevels::addSteps(const PosedSurface& surface, Primitives& primitives)
+{
+    const std::vector<std::uint32_t> original = trianglesOf(*primitives.original, surface.vertexCount());
+    const double size = sizeOf(surface);
+    if (original.size() < 3 * fewTriangles || !(size > 0.0)) return;
+    SurfaceReduction reduction(surface, original);
+    std::size_t kept = original.size() / 3;
+    const int coarsest = std::ilogb(size);
+    for (int level = coarsest - finestFraction; level < coarsest; ++level)
+    {
+        const double limit = std::ldexp(1.0, level);
+        reduction.reduce(limit, level < coarsest - seamFraction);
+        const bool isWorthwhile =
+            static_cast<double>(reduction.triangleCount()) < worthwhile * static_cast<double>(kept);
+        if (!isWorthwhile || reduction.error() > limit) continue;
+        const std::vector<std::uint32_t> indices = reduction.indices();
+        kept = indices.size() / 3;
+        osg::ref_ptr<osg::DrawElements> elements = surface.vertexCount() <= 65535
+                                                       ? makeElements<osg::DrawElementsUShort>(indices)
+                                                       : makeElements<osg::DrawElementsUInt>(indices);
+        elements->setElementBufferObject(_buffer);
+        primitives.steps.push_back({level, elements});
+    }
+    if (primitives.steps.empty()) return;
+    const int first = primitives.steps.front().level;
+    _finest = _finest == allTriangles ? first : std::min(_finest, first);
+    _coarsest = std::max(_coarsest, primitives.steps.back().level);
+}
+
+bool DetailLevels::isOf(const SkinnedGeometry& mesh) const
+{
+    if (mesh.getVertexArray() != _vertices || mesh.getNumPrimitiveSets() != _primitives.size()) return false;
+    if (_vertices && _vertices->getModifiedCount() != _modifiedCount) return false;
+    for (unsigned int i = 0; i < _primitives.size(); ++i)
+    {
+        const osg::PrimitiveSet* now = mesh.getPrimitiveSet(i);
+        if (now != _primitives[i].original || now->getModifiedCount() != _primitives[i].modifiedCount) return false;
+    }
+    return true;
+}
+
+const osg::DrawElements* DetailLevels::elements(std::size_t primitiveSet, int level) const
+{
+    const osg::DrawElements* found = nullptr;
+    if (primitiveSet >= _primitives.size()) return found;
+    for (const Step& step : _primitives[primitiveSet].steps)
+        if (step.level <= level) found = step.elements;
+    return found;
+}
+
+void DetailLevels::releaseGLObjects(osg::State* state) const
+{
+    _buffer->releaseGLObjects(state);
+}
+
+void DetailLevels::resizeGLObjectBuffers(unsigned int maxSize) const
+{
+    _buffer->resizeGLObjectBuffers(maxSize);
+}
+
+} // namespace osgGpuAnimation

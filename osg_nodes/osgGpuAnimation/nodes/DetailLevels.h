@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osgGpuAnimation/animation/AnimationSet.h>
+
+#include <osg/Array>
+#include <osg/PrimitiveSet>
+#include <osg/State>
+
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <vector>
+
+namespace osgGpuAnimation
+{
+
+class SkinnedGeometry;
+struct PosedSurface;
+
+/// A mesh drawn with fewer triangles over the same vertices, so that palettes, influences, morph targets and what is
+/// skinned once stay as they are. A **level** is the error that it may have, as a power of two in the character's own
+/// units, whatever space the mesh's arrays are in: at level -3 no vertex of the mesh is farther than 1/8 from the
+/// surface that is drawn. So one level says the same of all meshes of a character.
+///
+/// Made by SurfaceReduction in twelve poses at once (keyPoses() of the set), in each of which the level's error is
+/// kept; in other poses it may be more: no more than half as much in tests at random times of real characters' clips.
+/// Primitive sets other than indexed triangles are drawn whole at all levels, as are meshes with positions that are not
+/// finite. Of each piece of a mesh at least a triangle is left.
+///
+/// Immutable but for its GL objects, which OSG keeps by context; shared by the threads that cull and draw.
+class DetailLevels
+{
+public:
+    static constexpr int allTriangles = std::numeric_limits<int>::min(); ///< the level without an error
+
+    /// The level of at most that error; allTriangles where it is not above 0.
+    static int levelOf(double error);
+
+    /// Takes time by points of the mesh times poses: see SurfaceReduction.
+    DetailLevels(const SkinnedGeometry& mesh, const AnimationSet& set);
+
+    /// Whether it was made for what the mesh's arrays and primitives are now.
+    bool isOf(const SkinnedGeometry& mesh) const;
+
+    /// The finest and the coarsest level that has triangles of its own; allTriangles: there is none.
+    int finest() const { return _finest; }
+    int coarsest() const { return _coarsest; }
+    /// What is drawn in the place of the mesh's primitive set of that number; null: itself.
+    const osg::DrawElements* elements(std::size_t primitiveSet, int level) const;
+
+    void releaseGLObjects(osg::State* state) const;
+    void resizeGLObjectBuffers(unsigned int maxSize) const;
+
+private:
+    struct Step
+    {
+        int level; ///< from that on
+        osg::ref_ptr<osg::DrawElements> elements;
+    };
+    struct Primitives
+    {
+        osg::ref_ptr<const osg::PrimitiveSet> original;
+        unsigned int modifiedCount; ///< of the original
+        std::vector<Step> steps;    ///< by rising levels
+    };
+
+    void addSteps(const PosedSurface& surface, Primitives& primitives);
+
+    osg::ref_ptr<const osg::Array> _vertices;
+    unsigned int _modifiedCount = 0; ///< of the vertices
+    std::vector<Primitives> _primitives;
+    osg::ref_ptr<osg::ElementBufferObject> _buffer = new osg::ElementBufferObject;
+    int _finest = allTriangles;
+    int _coarsest = allTriangles;
+};
+
+} // namespace osgGpuAnimation

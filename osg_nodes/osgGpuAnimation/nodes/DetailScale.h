@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osgUtil/CullVisitor>
+
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+namespace osgGpuAnimation
+{
+
+/// Which of the DetailLevels a camera needs of what it sees: those whose error is at most so many pixels there, in
+/// small feature culling's measure. Lives as long as the traversal is in that space.
+class DetailScale
+{
+public:
+    /// pixelError: pixels; 0: all triangles.
+    DetailScale(osgUtil::CullVisitor& visitor, float pixelError);
+
+    /// centre, radius: of what is drawn, in the visitor's space. scale: units of that space to one of the
+    /// character's own. The nearest point decides; what reaches behind the eye has all triangles.
+    int level(const glm::vec3& centre, float radius, float scale) const;
+
+private:
+    glm::vec4 _errorAt{0.0f}; ///< · (x, y, z, 1): how far off a point there may be drawn, in the visitor's space
+    float _slope = 0.0f;      ///< what that changes by for a step of 1, at most
+};
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: MIT
+#include "support/TestCharacter.h"
+
+#include <osgGpuAnimation/animation/ClipBuilder.h>
+#include <osgGpuAnimation/nodes/DetailLevels.h>
+#include <osgGpuAnimation/nodes/MeshDetail.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <thread>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+constexpr unsigned int columns = 64, rows = 16;
+
+/// Joint 1 at x = 4 bends by a quarter in the clip.
+std::shared_ptr<const AnimationSet> armSet()
+{
+    JointTransform elbow;
+    elbow.translation.x = 4.0f;
+    AnimationParts parts{Skeleton::create({{"shoulder", -1, {}, 0}, {"elbow", 0, elbow, 1}}).value(), {}, {}, {}, {}};
+    AffineMatrix fromModel;
+    fromModel.rows[0].w = -4.0f;
+    parts.skins.push_back({"arm", {0, 1}, {AffineMatrix(), fromModel}});
+    ClipBuilder builder(parts.skeleton, {});
+    const double half = std::sqrt(0.5);
+    EXPECT_TRUE(builder.add(
+        {Channel::Path::Rotation, Channel::Interpolation::Linear, 1, {0, 1}, {0, 0, 0, 1, 0, 0, half, half}}));
+    parts.clips.push_back(builder.build("bend"));
+    return AnimationSet::create(std::move(parts)).value();
+}
+
+/// A tube along x from 0 to 8, open at its ends, that the two joints bend in the middle.
+osg::ref_ptr<SkinnedGeometry> makeTube(const AnimationSet& set)
+{
+    osg::ref_ptr<SkinnedGeometry> tube = new SkinnedGeometry;
+    osg::ref_ptr<osg::Vec3Array> positions = new osg::Vec3Array;
+    osg::ref_ptr<osg::Vec4usArray> entries = new osg::Vec4usArray;
+    osg::ref_ptr<osg::Vec4Array> weights = new osg::Vec4Array;
+    osg::ref_ptr<osg::DrawElementsUShort> triangles = new osg::DrawElementsUShort(GL_TRIANGLES);
+    for (unsigned int column = 0; column <= columns; ++column)
+        for (unsigned int row = 0; row < rows; ++row)
+        {
+            const double x = 8.0 * column / columns, angle = 2.0 * osg::PI * row / rows;
+            positions->push_back(osg::Vec3(x, 0.5 * std::cos(angle), 0.5 * std::sin(angle)));
+            const float share = static_cast<float>(std::min(1.0, std::max(0.0, x - 3.5)));
+            entries->push_back(osg::Vec4us(set.entryOfSkin(0, 0), set.entryOfSkin(0, 1), 0, 0));
+            weights->push_back(osg::Vec4(1.0f - share, share, 0, 0));
+            if (column == columns) continue;
+            const unsigned int next = (row + 1) % rows;
+            for (const unsigned int vertex : {row, next, rows + row, next, rows + next, rows + row})
+                triangles->push_back(static_cast<GLushort>(column * rows + vertex));
+        }
+    tube->setVertexArray(positions);
+    tube->setInfluences(0, entries, weights);
+    tube->addPrimitiveSet(triangles);
+    return tube;
+}
+
+/// Indices that are drawn of the first primitive set.
+std::size_t drawn(const SkinnedGeometry& mesh, const DetailLevels& levels, int level)
+{
+    const osg::DrawElements* elements = levels.elements(0, level);
+    return (elements ? *elements : *mesh.getPrimitiveSet(0)).getNumIndices();
+}
+
+bool has(const DetailLevels& levels)
+{
+    return levels.finest() != DetailLevels::allTriangles;
+}
+
+TEST(DetailLevelsTest, areCalledAfterPowersOfTwo)
+{
+    EXPECT_EQ(DetailLevels::levelOf(1.0), 0);
+    EXPECT_EQ(DetailLevels::levelOf(1.99), 0);
+    EXPECT_EQ(DetailLevels::levelOf(0.25), -2);
+    EXPECT_EQ(DetailLevels::levelOf(0.24), -3);
+    for (const double nothing : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()})
+        EXPECT_EQ(DetailLevels::levelOf(nothing), DetailLevels::allTriangles);
+}
+
+TEST(DetailLevelsTest, keepAnElbowThatBendsInAClip)
+{
+    const std::shared_ptr<const AnimationSet> bending = armSet();
+    const auto still = bending->withClips({}).value();
+    const osg::ref_ptr<SkinnedGeometry> tube = makeTube(*bending);
+    const DetailLevels ofBending(*tube, *bending), ofStill(*tube, *still);
+    const int level = -5; // 1/32 of a tube that is 1 thick
+    EXPECT_LT(drawn(*tube, ofStill, level), 300u) << "straight, it needs but its ends";
+    EXPECT_GT(drawn(*tube, ofBending, level), 2 * drawn(*tube, ofStill, level));
+    EXPECT_LT(drawn(*tube, ofBending, level), tube->getPrimitiveSet(0)->getNumIndices() / 4);
+    EXPECT_EQ(drawn(*tube, ofBending, DetailLevels::allTriangles), tube->getPrimitiveSet(0)->getNumIndices());
+}
+
+TEST(DetailLevelsTest, speakOfTheCharactersUnitsWhateverTheMeshs)
+{
+    // The same tube a hundred times as large in its own space, and made smaller by its palette.
+    AffineMatrix small;
+    for (int row = 0; row < 3; ++row)
+        small.rows[static_cast<std::size_t>(row)][row] = 0.01f;
+    AnimationParts parts{Skeleton::create({{"root", -1, {}, 0}}).value(), {{"skin", {0}, {small}}}, {}, {}, {}};
+    const auto set = AnimationSet::create(std::move(parts)).value();
+    const auto armed = armSet();
+    const osg::ref_ptr<SkinnedGeometry> tube = makeTube(*armed), large = makeTube(*armed);
+    for (osg::Vec3& position : static_cast<osg::Vec3Array&>(*large->getVertexArray()))
+        position *= 100.0f;
+    large->setRigidEntry(static_cast<unsigned short>(set->entryOfSkin(0, 0)));
+    const DetailLevels levels(*tube, *armed->withClips({}).value()), ofLarge(*large, *set);
+    ASSERT_TRUE(has(levels));
+    EXPECT_EQ(ofLarge.finest(), levels.finest());
+    EXPECT_EQ(ofLarge.coarsest(), levels.coarsest());
+}
+
+TEST(DetailLevelsTest, keepTextureCoordinatesOnTheirSideOfASeam)
+{
+    // A flat strip of two halves that meet in vertices of two texture coordinates each.
+    const auto set = testCharacterSet();
+    osg::ref_ptr<SkinnedGeometry> strip = new SkinnedGeometry;
+    osg::ref_ptr<osg::Vec3Array> positions = new osg::Vec3Array;
+    osg::ref_ptr<osg::Vec2Array> texCoords = new osg::Vec2Array;
+    osg::ref_ptr<osg::DrawElementsUInt> triangles = new osg::DrawElementsUInt(GL_TRIANGLES);
+    for (const unsigned int half : {0u, 1u})
+        for (unsigned int column = 0; column <= 20; ++column)
+            for (unsigned int row = 0; row <= 20; ++row)
+            {
+                positions->push_back(osg::Vec3(20.0f * half + column, row, 0));
+                texCoords->push_back(osg::Vec2(0.5f * half + 0.01f * column, 0.01f * row));
+                if (column == 20 || row == 20) continue;
+                const unsigned int corner = half * 441 + column * 21 + row;
+                for (const unsigned int vertex : {0u, 21u, 1u, 1u, 21u, 22u})
+                    triangles->push_back(corner + vertex);
+            }
+    strip->setVertexArray(positions);
+    strip->setTexCoordArray(0, texCoords);
+    strip->setRigidEntry(static_cast<unsigned short>(set->entryOfRigidJoint(1)));
+    strip->addPrimitiveSet(triangles);
+    const DetailLevels levels(*strip, *set->withClips({}).value());
+    const osg::DrawElements* few = levels.elements(0, levels.finest());
+    ASSERT_NE(few, nullptr);
+    EXPECT_LE(few->getNumIndices(), 3u * 40u) << "it is flat";
+    for (unsigned int i = 0; i < few->getNumIndices(); i += 3)
+        for (unsigned int corner = 1; corner < 3; ++corner)
+            EXPECT_EQ(few->index(i) < 441, few->index(i + corner) < 441) << "triangle " << i / 3;
+}
+
+TEST(DetailLevelsTest, areNotMadeWhereThereIsNothingToGain)
+{
+    const auto set = armSet();
+    const auto none = [&](const char* what, const auto& change)
+    {
+        const osg::ref_ptr<SkinnedGeometry> tube = makeTube(*set);
+        change(*tube);
+        EXPECT_FALSE(has(DetailLevels(*tube, *set))) << what;
+    };
+    const auto positionsOf = [](SkinnedGeometry& mesh) -> osg::Vec3Array&
+    { return static_cast<osg::Vec3Array&>(*mesh.getVertexArray()); };
+    none("lines", [](SkinnedGeometry& mesh) { mesh.getPrimitiveSet(0)->setMode(GL_LINES); });
+    none("not a number", [&](SkinnedGeometry& mesh) { positionsOf(mesh)[5].x() = std::nanf(""); });
+    none("beyond all bounds", [&](SkinnedGeometry& mesh) { positionsOf(mesh)[5].x() = 3e38f; });
+    none("all at one place",
+         [&](SkinnedGeometry& mesh)
+         {
+             for (osg::Vec3& position : positionsOf(mesh))
+                 position.set(1, 2, 3);
+         });
+    none("an index out of range",
+         [](SkinnedGeometry& mesh) { static_cast<osg::DrawElementsUShort&>(*mesh.getPrimitiveSet(0))[7] = 60000; });
+    none("no vertices", [](SkinnedGeometry& mesh) { mesh.setVertexArray(nullptr); });
+    none("no primitives", [](SkinnedGeometry& mesh) { mesh.removePrimitiveSet(0, 1); });
+    none("no indices",
+         [](SkinnedGeometry& mesh) { static_cast<osg::DrawElementsUShort&>(*mesh.getPrimitiveSet(0)).clear(); });
+    none("without indices",
+         [](SkinnedGeometry& mesh) { mesh.setPrimitiveSet(0, new osg::DrawArrays(GL_TRIANGLES, 0, 3 * columns)); });
+}
+
+TEST(DetailLevelsTest, endOnFansOfThousands)
+{
+    // All triangles meet in one vertex, and all vertices but it lie at two places.
+    const auto set = armSet();
+    const osg::ref_ptr<SkinnedGeometry> tube = makeTube(*set);
+    auto& triangles = static_cast<osg::DrawElementsUShort&>(*tube->getPrimitiveSet(0));
+    triangles.clear();
+    for (GLushort vertex = 1; vertex + 1 < static_cast<GLushort>(tube->vertexCount()); ++vertex)
+        for (const int corner : {0, int(vertex), vertex + 1})
+            triangles.push_back(static_cast<GLushort>(corner));
+    const DetailLevels fan(*tube, *set);
+    EXPECT_LE(drawn(*tube, fan, 10), triangles.size());
+    auto& positions = static_cast<osg::Vec3Array&>(*tube->getVertexArray());
+    for (std::size_t vertex = 1; vertex < positions.size(); ++vertex)
+        positions[vertex].set(vertex % 2, 1, 0);
+    const DetailLevels doubles(*tube, *set);
+    EXPECT_GE(drawn(*tube, doubles, 10), 3u);
+}
+
+TEST(DetailLevelsTest, areMadeOncePerMeshAndAnewWhenItChanges)
+{
+    const auto set = armSet();
+    const osg::ref_ptr<SkinnedGeometry> tube = makeTube(*set);
+    const MeshDetail detail;
+    EXPECT_EQ(detail.known(*tube), nullptr);
+    std::vector<std::shared_ptr<const DetailLevels>> seen(4);
+    std::vector<std::thread> threads;
+    for (std::shared_ptr<const DetailLevels>& levels : seen)
+        threads.emplace_back([&] { levels = detail.of(*tube, *set); });
+    for (std::thread& thread : threads)
+        thread.join();
+    for (const std::shared_ptr<const DetailLevels>& levels : seen)
+        EXPECT_EQ(levels, seen.front());
+    EXPECT_EQ(detail.known(*tube), seen.front());
+    tube->getVertexArray()->dirty();
+    EXPECT_EQ(detail.known(*tube), nullptr);
+    EXPECT_NE(detail.of(*tube, *set), seen.front());
+    tube->getPrimitiveSet(0)->dirty();
+    EXPECT_EQ(detail.known(*tube), nullptr);
+}
+
+} // namespace
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: MIT
+#include "gltf/Import.h"
+#include "plugin/SharedAssets.h"
+
+#include <osgGpuAnimation/animation/Pose.h>
+#include <osgGpuAnimation/nodes/AnimatedCharacter.h>
+#include <osgGpuAnimation/nodes/DetailLevels.h>
+#include <osgGpuAnimation/nodes/SkinnedGeometryVisitor.h>
+#include <osgGpuAnimation/nodes/TriangleDistance.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+// Levels of detail of real characters, against all triangles of the level, in poses of their own.
+
+namespace osgGpuAnimation::gltf
+{
+
+namespace
+{
+
+struct ModelCase
+{
+    const char* file;
+    std::size_t trianglesFar;  ///< of all meshes, at most, where a sixteenth of the size may be off
+    std::size_t trianglesNear; ///< likewise, a 256th
+};
+
+void PrintTo(const ModelCase& model, std::ostream* out)
+{
+    *out << model.file;
+}
+
+std::vector<unsigned int> indicesAt(const SkinnedGeometry& mesh, const DetailLevels& levels, int level)
+{
+    const osg::DrawElements* drawn = levels.elements(0, level);
+    if (!drawn) drawn = mesh.getPrimitiveSet(0)->getDrawElements();
+    std::vector<unsigned int> indices;
+    for (unsigned int i = 0; i < drawn->getNumIndices(); ++i)
+        indices.push_back(drawn->index(i));
+    return indices;
+}
+
+/// How far every seventh vertex is from the triangles at most.
+double largestDistance(const std::vector<glm::dvec3>& positions, const std::vector<unsigned int>& indices)
+{
+    double largest = 0.0;
+    for (std::size_t vertex = 0; vertex < positions.size(); vertex += 7)
+    {
+        double nearest = 1e300;
+        for (std::size_t i = 0; i + 2 < indices.size() && nearest > largest; i += 3)
+            nearest =
+                std::min(nearest, squaredDistanceToTriangle(positions[vertex], positions[indices[i]],
+                                                            positions[indices[i + 1]], positions[indices[i + 2]]));
+        largest = std::max(largest, nearest);
+    }
+    return std::sqrt(largest);
+}
+
+class DetailOfModelsTest : public ::testing::TestWithParam<ModelCase>
+{
+protected:
+    void SetUp() override
+    {
+        const std::string file = modelFile(GetParam().file);
+        if (file.empty()) GTEST_SKIP() << "there is no " << GetParam().file;
+        const Result<ImportedModel> imported = importModel(readBytes(file), file, {});
+        ASSERT_TRUE(imported) << imported.error().message;
+        model = imported.value();
+        const Box& box = model.character->clipBounds(-1);
+        size = static_cast<double>(glm::length(box.max - box.min));
+        SkinnedGeometryVisitor collect([&](SkinnedGeometry& mesh) { meshes.push_back(&mesh); });
+        model.character->accept(collect);
+        ASSERT_FALSE(meshes.empty());
+        for (const SkinnedGeometry* mesh : meshes)
+            levels.push_back(std::make_unique<DetailLevels>(*mesh, *model.set));
+    }
+
+    std::size_t trianglesAt(int level) const
+    {
+        std::size_t indices = 0;
+        for (std::size_t i = 0; i < meshes.size(); ++i)
+            indices += indicesAt(*meshes[i], *levels[i], level).size();
+        return indices / 3;
+    }
+
+    std::vector<AffineMatrix> paletteAt(int clip, double time) const
+    {
+        PoseInstruction instruction;
+        instruction.samples[0] = model.set->sampleAt(clip, time);
+        std::vector<AffineMatrix> palette;
+        Pose::evaluate(*model.set, instruction, AffineMatrix(), palette);
+        return palette;
+    }
+
+    ImportedModel model;
+    double size = 0.0;
+    std::vector<osg::ref_ptr<SkinnedGeometry>> meshes;
+    std::vector<std::unique_ptr<DetailLevels>> levels;
+};
+
+TEST_P(DetailOfModelsTest, areOffByNoMoreThanTheirLevelSays)
+{
+    std::mt19937 random(7);
+    std::vector<std::vector<AffineMatrix>> palettes{paletteAt(-1, 0.0)};
+    for (int i = 0; i < 12; ++i)
+    {
+        const std::size_t clip = random() % model.set->clips().size();
+        const double time = model.set->clips()[clip].duration() * static_cast<double>(random() % 1000) / 1000.0;
+        palettes.push_back(paletteAt(static_cast<int>(clip), time));
+    }
+    for (std::size_t i = 0; i < meshes.size(); ++i)
+        for (int level = levels[i]->finest(); level <= levels[i]->coarsest(); ++level)
+            for (std::size_t pose = 0; pose < palettes.size(); ++pose)
+            {
+                std::vector<glm::dvec3> positions;
+                meshes[i]->computePositions(palettes[pose], positions);
+                // The rest pose is one of those that were looked at; others may be a little farther off.
+                EXPECT_LE(largestDistance(positions, indicesAt(*meshes[i], *levels[i], level)),
+                          (pose == 0 ? 1.0001 : 1.5) * std::ldexp(1.0, level))
+                    << meshes[i]->getName() << " at level " << level << " in pose " << pose;
+            }
+}
+
+TEST_P(DetailOfModelsTest, haveFewerTrianglesTheFartherOffTheyMayBe)
+{
+    std::size_t before = trianglesAt(DetailLevels::allTriangles);
+    for (int level = -40; level < 20; ++level)
+    {
+        const std::size_t now = trianglesAt(level);
+        EXPECT_LE(now, before) << "level " << level;
+        before = now;
+    }
+    EXPECT_LE(trianglesAt(DetailLevels::levelOf(size / 16.0)), GetParam().trianglesFar);
+    EXPECT_LE(trianglesAt(DetailLevels::levelOf(size / 256.0)), GetParam().trianglesNear);
+}
+
+TEST_P(DetailOfModelsTest, nameVerticesThereAreAndNoTriangleTwice)
+{
+    for (std::size_t i = 0; i < meshes.size(); ++i)
+        for (int level = levels[i]->finest(); level <= levels[i]->coarsest(); ++level)
+        {
+            const std::vector<unsigned int> indices = indicesAt(*meshes[i], *levels[i], level);
+            ASSERT_EQ(indices.size() % 3, 0u);
+            EXPECT_GE(indices.size(), 3u);
+            std::vector<std::array<unsigned int, 3>> triangles;
+            for (std::size_t corner = 0; corner < indices.size(); corner += 3)
+                triangles.push_back({indices[corner], indices[corner + 1], indices[corner + 2]});
+            for (const auto& triangle : triangles)
+                EXPECT_LT(*std::max_element(triangle.begin(), triangle.end()), meshes[i]->vertexCount());
+            std::sort(triangles.begin(), triangles.end());
+            EXPECT_EQ(std::adjacent_find(triangles.begin(), triangles.end()), triangles.end());
+        }
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, DetailOfModelsTest,
+                         ::testing::Values(ModelCase{"Wanderer.glb", 170, 3600}, ModelCase{"Serpent.glb", 60, 1050},
+                                           ModelCase{"assets/Fox/Fox.glb", 60, 576},
+                                           ModelCase{"assets/CesiumMan/CesiumMan.glb", 75, 1150},
+                                           ModelCase{"assets/Knight/Knight.glb", 150, 4300}));
+
+} // namespace
+
+} // namespace osgGpuAnimation::gltf

@@ -105,6 +105,8 @@ Result<osg::ref_ptr<AnimatedCrowd>> makeCrowd(osg::Node& model, const CrowdOptio
             crowd->add(placement * moved, randomController(*crowd, clips.value(), random));
         if (!added) return added.error();
     }
+    if (options.pixelError)
+        if (const Result<bool> taken = crowd->setPixelError(*options.pixelError); !taken) return taken.error();
     crowd->addEventCallback(new PoseStatistics);
     return crowd;
 }

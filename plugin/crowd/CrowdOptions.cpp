@@ -57,6 +57,8 @@ bool apply(const gltf::OptionWord& word, CrowdOptions& out)
     const std::string value = word.value.value_or("");
     if (word.name == "noRotation") out.isYUp = true;
     if (word.name == "seed") return readNumber(value, out.seed);
+    if (word.name == "pixelError")
+        return readNumber(value, out.pixelError.emplace()) && std::isfinite(*out.pixelError) && *out.pixelError >= 0.0f;
     if (word.name == "spacing")
         return readNumber(value, out.spacing.emplace()) && std::isfinite(*out.spacing) && *out.spacing > 0.0;
     if (word.name != "clips") return true;
@@ -73,6 +75,7 @@ std::vector<std::pair<const char*, const char*>> optionHelp()
     return {
         {"clips=NAME|INDEX,...", "the clips to choose from; default: all"},
         {"spacing=UNITS", "from one to the next; default: by the bounds"},
+        {"pixelError=PIXELS", "fewer triangles where that hides how far they are off; default: 0, all triangles"},
         {"seed=NUMBER", "another number, other clips and times; default: 1"},
         {"noRotation", "keep glTF's +Y up; default: +Z up"},
     };

@@ -18,10 +18,11 @@ struct CrowdOptions
 {
     std::string modelFile;
     std::size_t columns = 1, rows = 1;
-    std::vector<std::string> clips; ///< names or numbers to choose from; none: all
-    std::optional<double> spacing;  ///< units of the scene, from one to the next
-    std::uint32_t seed = 1;         ///< the same clips and times at each load
-    bool isYUp = false;             ///< the model keeps glTF's +Y up: the ground is XZ
+    std::vector<std::string> clips;  ///< names or numbers to choose from; none: all
+    std::optional<double> spacing;   ///< units of the scene, from one to the next
+    std::optional<float> pixelError; ///< see AnimatedCrowd::setPixelError; none: the character's own
+    std::uint32_t seed = 1;          ///< the same clips and times at each load
+    bool isYUp = false;              ///< the model keeps glTF's +Y up: the ground is XZ
 };
 
 /// An option with a line on what it does.

@@ -108,7 +108,7 @@ void Importer::makeGraph(const NodeTree& tree, const Joints& joints, const Morph
     buildSceneGraph(parts, *_result.root, _result.character, _result.primitives);
 }
 
-/// Once the meshes are in, which say how far an error of a joint reaches.
+/// Once the meshes are in, which say how far an error of a joint reaches, and which are drawn at levels of detail.
 Result<bool> Importer::finishClips()
 {
     if (!_result.character) return true;
@@ -120,7 +120,7 @@ Result<bool> Importer::finishClips()
         _result.set = _result.character->controller().sharedSet();
     }
     _result.character->computeClipBounds();
-    return true;
+    return _result.character->setPixelError(static_cast<float>(_options.pixelError));
 }
 
 void Importer::describeFile(const NodeTree& tree)

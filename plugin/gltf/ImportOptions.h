@@ -19,6 +19,7 @@ struct ImportOptions
     LoopMode loopMode = LoopMode::Loop;
     double fadeSeconds = 0.3;       ///< of the keys' crossfades, see CharacterKeys
     std::optional<double> compact;  ///< compact clips, off by at most that fraction of the model's size; above 0
+    double pixelError = 0.0;        ///< see AnimatedCharacter::setPixelError; 0 or more
     bool noKeys = false;            ///< no keys for viewers on the character
     std::optional<int> scene;       ///< default: the file's own, else 0
     bool noRotation = false;        ///< keep glTF's +Y up; default: turn to OSG's +Z up at the root

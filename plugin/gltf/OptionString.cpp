@@ -61,6 +61,7 @@ std::optional<bool> applyPlaying(const std::string& name, const std::string& val
 const char* wanted(const std::string& name)
 {
     if (name == "compact") return "a number above 0";
+    if (name == "pixelError") return "a number of pixels, 0 or more";
     if (name == "speed") return "a number";
     if (name == "start" || name == "fade") return "a number of seconds, 0 or more";
     if (name == "loop") return "once, loop or pingpong";
@@ -73,6 +74,7 @@ bool apply(const OptionWord& word, ImportOptions& options)
     const std::string value = word.value.value_or("");
     if (const std::optional<bool> fits = applyPlaying(word.name, value, options)) return *fits;
     if (word.name == "compact") return readFinite(value, options.compact.emplace()) && *options.compact > 0.0;
+    if (word.name == "pixelError") return readFinite(value, options.pixelError) && options.pixelError >= 0.0;
     if (word.name == "noRotation")
         options.noRotation = true;
     else if (word.name == "noKeys")
@@ -123,6 +125,7 @@ const std::vector<OptionHelp>& optionHelp()
         {"loop=once|loop|pingpong", "what it does at its end; default: loop"},
         {"fade=SECONDS", "how long the keys' crossfades take; default: 0.3"},
         {"compact=FRACTION", "smaller clips, off by at most that fraction of the model's size; default: exact"},
+        {"pixelError=PIXELS", "fewer triangles where that hides how far they are off; default: 0, all triangles"},
         {"noKeys", "no keys for viewers on the character; default: n N k . , - + r j"},
         {"scene=INDEX", "the scene to show; default: the file's own"},
         {"noRotation", "keep glTF's +Y up; default: +Z up"},

@@ -39,23 +39,37 @@ static bool readAnimationSet(osgDB::InputStream& stream, AnimatedCharacter& char
     return in.isGood();
 }
 
-/// Bounds are worked out again where there were some.
+/// What is worked out again where it was there, one bit each; a file without a pixel error has the first alone.
+enum Extra : std::int32_t
+{
+    hasClipBounds = 1,
+    hasPixelError = 2, ///< which follows
+};
+
 static bool checkClipBounds(const AnimatedCharacter& character)
 {
-    return !character.clipBounds(-1).empty();
+    return !character.clipBounds(-1).empty() || character.pixelError() > 0.0f;
 }
 
-static bool writeClipBounds(osgDB::OutputStream& stream, const AnimatedCharacter&)
+static bool writeClipBounds(osgDB::OutputStream& stream, const AnimatedCharacter& character)
 {
-    ValueWriter(stream).flag(true).endLine();
+    ValueWriter out(stream);
+    const bool hasError = character.pixelError() > 0.0f;
+    out.integer((character.clipBounds(-1).empty() ? 0 : hasClipBounds) | (hasError ? hasPixelError : 0));
+    if (hasError) out.real(static_cast<double>(character.pixelError()));
+    out.endLine();
     return true;
 }
 
 static bool readClipBounds(osgDB::InputStream& stream, AnimatedCharacter& character)
 {
     ValueReader in(stream);
-    const bool hasBounds = in.flag();
-    if (hasBounds && in.isGood()) character.computeClipBounds();
+    const std::int32_t extras = in.integer("what a character has", 0, hasClipBounds | hasPixelError);
+    const double pixelError = extras & hasPixelError ? in.real() : 0.0;
+    if (!in.isGood()) return false;
+    if (extras & hasClipBounds) character.computeClipBounds();
+    const Result<bool> taken = character.setPixelError(static_cast<float>(pixelError));
+    if (!taken) in.fail("a character: " + taken.error().message);
     return in.isGood();
 }
 

@@ -60,6 +60,12 @@ void readPlain(ValueReader& in, AnimationController& controller)
     if (isPaused) controller.pause();
 }
 
+void readPixelError(ValueReader& in, AnimatedCrowd& crowd)
+{
+    const Result<bool> taken = crowd.setPixelError(static_cast<float>(in.real()));
+    if (!taken) in.fail("a crowd: " + taken.error().message);
+}
+
 osg::Vec4 toColor(std::uint32_t rgba)
 {
     osg::Vec4 color;
@@ -115,15 +121,19 @@ static bool readAnimationSet(osgDB::InputStream& stream, AnimatedCrowd& crowd)
     return in.isGood();
 }
 
+/// Version 1 has no pixel error: what has none stays readable for what knows no other version.
 static bool checkInstances(const AnimatedCrowd& crowd)
 {
-    return crowd.size() > 0;
+    return crowd.size() > 0 || crowd.pixelError() > 0.0f;
 }
 
 static bool writeInstances(osgDB::OutputStream& stream, const AnimatedCrowd& crowd)
 {
     ValueWriter out(stream);
-    out.integer(1).real(crowd.origin().x()).real(crowd.origin().y()).real(crowd.origin().z()).endLine();
+    const bool hasPixelError = crowd.pixelError() > 0.0f;
+    out.integer(hasPixelError ? 2 : 1).real(crowd.origin().x()).real(crowd.origin().y()).real(crowd.origin().z());
+    if (hasPixelError) out.real(static_cast<double>(crowd.pixelError()));
+    out.endLine();
     out.open("List", crowd.size());
     for (std::size_t index = 0; index < crowd.size(); ++index)
         writeInstance(out, crowd.instances(), index);
@@ -134,9 +144,10 @@ static bool writeInstances(osgDB::OutputStream& stream, const AnimatedCrowd& cro
 static bool readInstances(osgDB::InputStream& stream, AnimatedCrowd& crowd)
 {
     ValueReader in(stream);
-    in.integer("the version of a crowd", 1, 1);
+    const std::int32_t version = in.integer("the version of a crowd", 1, 2);
     const double x = in.real(), y = in.real();
     crowd.setOrigin(osg::Vec3d(x, y, in.real()));
+    if (version > 1) readPixelError(in, crowd);
     const std::size_t count = in.open("List");
     for (std::size_t i = 0; i < count && in.isGood(); ++i)
         readInstance(in, crowd);

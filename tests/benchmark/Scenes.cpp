@@ -54,6 +54,12 @@ void CharacterScene::pause()
         character->controller().pause();
 }
 
+void CharacterScene::setPixelError(float pixels)
+{
+    for (const osg::ref_ptr<AnimatedCharacter>& character : characters)
+        static_cast<void>(character->setPixelError(pixels));
+}
+
 std::string CharacterScene::check(osg::State& state) const
 {
     PosePipeline* pipeline = PosePipeline::of(state);

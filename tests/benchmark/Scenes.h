@@ -21,6 +21,7 @@ struct CharacterScene
 
     /// Holds everybody where they are.
     void pause();
+    void setPixelError(float pixels); ///< everybody's
     /// After a frame, with its state: reads some palettes back. Empty: all is well.
     std::string check(osg::State& state) const;
 

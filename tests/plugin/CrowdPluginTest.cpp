@@ -149,6 +149,8 @@ TEST_F(CrowdPluginTest, takesOptions)
     for (const char* clips : {"clips=Slide", "clips=1", "clips=\"Slide,1\""})
         for (const auto& [clip, time] : playedBy(*readCrowd("arm.gltf.3x3.crowd", clips)))
             EXPECT_EQ(clip, 1) << clips;
+    EXPECT_EQ(readCrowd("arm.gltf.2x2.crowd", "")->pixelError(), 0.0f);
+    EXPECT_EQ(readCrowd("arm.gltf.2x2.crowd", "pixelError=0.5")->pixelError(), 0.5f);
     const osg::ref_ptr<AnimatedCrowd> wide = readCrowd("arm.gltf.2x2.crowd", "spacing=7.5");
     EXPECT_NEAR(placeOf(*wide, 1).x() - placeOf(*wide, 0).x(), 7.5, 1e-6);
     EXPECT_NEAR(placeOf(*wide, 2).y() - placeOf(*wide, 0).y(), 7.5, 1e-6);
@@ -156,7 +158,7 @@ TEST_F(CrowdPluginTest, takesOptions)
     EXPECT_NEAR(placeOf(*yUp, 0).z() - placeOf(*yUp, 2).z(), 7.5, 1e-6);
     osgDB::ReaderWriter* reader = osgDB::Registry::instance()->getReaderWriterForExtension("crowd");
     ASSERT_TRUE(reader);
-    for (const char* option : {"clips=NAME|INDEX,...", "spacing=UNITS", "seed=NUMBER"})
+    for (const char* option : {"clips=NAME|INDEX,...", "spacing=UNITS", "seed=NUMBER", "pixelError=PIXELS"})
         EXPECT_EQ(reader->supportedOptions().count(option), 1u) << option;
     EXPECT_EQ(reader->readNode("fox.glb", nullptr).status(), Read::FILE_NOT_HANDLED);
 }

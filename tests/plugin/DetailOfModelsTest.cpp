@@ -157,10 +157,10 @@ TEST_P(DetailOfModelsTest, nameVerticesThereAreAndNoTriangleTwice)
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, DetailOfModelsTest,
-                         ::testing::Values(ModelCase{"Wanderer.glb", 170, 3600}, ModelCase{"Serpent.glb", 60, 1050},
-                                           ModelCase{"assets/Fox/Fox.glb", 60, 576},
-                                           ModelCase{"assets/CesiumMan/CesiumMan.glb", 75, 1150},
-                                           ModelCase{"assets/Knight/Knight.glb", 150, 4300}));
+                         ::testing::Values(ModelCase{"Wanderer.glb", 330, 3600}, ModelCase{"Serpent.glb", 130, 1050},
+                                           ModelCase{"assets/Fox/Fox.glb", 140, 576},
+                                           ModelCase{"assets/CesiumMan/CesiumMan.glb", 160, 1150},
+                                           ModelCase{"assets/Knight/Knight.glb", 700, 4300}));
 
 } // namespace
 

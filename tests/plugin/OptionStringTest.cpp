@@ -40,12 +40,15 @@ TEST(OptionStringTest, readsHowTheClipPlays)
     EXPECT_EQ(none.loopMode, LoopMode::Loop);
     EXPECT_FALSE(none.start);
     EXPECT_FALSE(none.noKeys);
-    const ImportOptions options = parseOptions("speed=-1.5 start=0.25 loop=pingpong fade=0 noKeys").value();
+    const ImportOptions options =
+        parseOptions("speed=-1.5 start=0.25 loop=pingpong fade=0 noKeys pixelError=0.5").value();
     EXPECT_EQ(options.speed, -1.5);
     EXPECT_EQ(options.start, 0.25);
     EXPECT_EQ(options.loopMode, LoopMode::PingPong);
     EXPECT_EQ(options.fadeSeconds, 0.0);
     EXPECT_TRUE(options.noKeys);
+    EXPECT_EQ(options.pixelError, 0.5);
+    EXPECT_EQ(none.pixelError, 0.0);
     EXPECT_EQ(parseOptions("loop=once").value().loopMode, LoopMode::Once);
     EXPECT_EQ(parseOptions("loop=loop").value().loopMode, LoopMode::Loop);
 }
@@ -55,6 +58,7 @@ TEST(OptionStringTest, errorsSayWhatIsWanted)
     const std::pair<const char*, const char*> cases[] = {
         {"loop=twice", "option loop: \"twice\" is not once, loop or pingpong"},
         {"speed=fast", "option speed: \"fast\" is not a number"},
+        {"pixelError=-1", "option pixelError: \"-1\" is not a number of pixels, 0 or more"},
         {"fade=-1", "option fade: \"-1\" is not a number of seconds, 0 or more"},
         {"scene=one", "option scene: \"one\" is not a whole number that is not too large"},
     };
@@ -105,6 +109,10 @@ TEST(OptionStringTest, valuesThatDoNotFitAreErrors)
                              "compact=-1e-4",
                              "compact=nan",
                              "compact=inf",
+                             "pixelError",
+                             "pixelError=-0.5",
+                             "pixelError=nan",
+                             "pixelError=inf",
                              "speed",
                              "speed=",
                              "speed=nan",

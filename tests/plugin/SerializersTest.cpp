@@ -194,6 +194,29 @@ TEST_F(SerializersTest, aMeshIsSkinnedWhenItWas)
         }
 }
 
+TEST_F(SerializersTest, pixelErrorsComeBack)
+{
+    const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(character());
+    for (const char* format : formats)
+        for (const float pixels : {0.0f, 0.3f})
+        {
+            ASSERT_TRUE(character().setPixelError(pixels));
+            ASSERT_TRUE(crowd->setPixelError(pixels));
+            const osg::ref_ptr<osg::Node> again = files.throughFile(*scene, format);
+            const osg::ref_ptr<osg::Node> crowdAgain = files.throughFile(*crowd, format);
+            ASSERT_TRUE(again && crowdAgain) << format;
+            EXPECT_EQ(findCharacter(*again)->pixelError(), pixels) << format;
+            EXPECT_EQ(findCharacter(*again)->clipBounds(0).max, character().clipBounds(0).max) << format;
+            EXPECT_EQ(dynamic_cast<AnimatedCrowd&>(*crowdAgain).pixelError(), pixels) << format;
+        }
+    for (const float wrong : {-0.5f, std::nanf(""), std::numeric_limits<float>::infinity()})
+    {
+        EXPECT_FALSE(character().setPixelError(wrong));
+        EXPECT_FALSE(crowd->setPixelError(wrong));
+        EXPECT_EQ(crowd->pixelError(), 0.3f);
+    }
+}
+
 TEST_F(SerializersTest, aCrowdKeepsItsInstances)
 {
     osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(character());

@@ -14,6 +14,8 @@
 #include <osg/NodeVisitor>
 #include <osgUtil/CullVisitor>
 
+#include <cmath>
+
 namespace osgGpuAnimation
 {
 
@@ -48,7 +50,7 @@ AnimatedCharacter::AnimatedCharacter(std::shared_ptr<const AnimationSet> set)
 AnimatedCharacter::AnimatedCharacter(const AnimatedCharacter& other, const osg::CopyOp& copyop)
     : osg::MatrixTransform(other, copyop), _controller(std::make_unique<AnimationController>(*other._controller)),
       _clipBounds(other._clipBounds), _mixBounds(other._mixBounds), _updateTime(other._updateTime),
-      _isDrawnTogether(other._isDrawnTogether)
+      _isDrawnTogether(other._isDrawnTogether), _pixelError(other._pixelError)
 {
     // osg::Node copies its other callbacks, but not these.
     setEventCallback(copyop(other.getEventCallback()));
@@ -64,6 +66,20 @@ Result<bool> AnimatedCharacter::setAnimationSet(std::shared_ptr<const AnimationS
                      " palette entries for the meshes of one of " + std::to_string(set().paletteSize())};
     *_controller = AnimationController(std::move(newSet), *_controller);
     if (_clipBounds) computeClipBounds();
+    // The clips that levels of detail are made by are others.
+    SkinnedGeometryVisitor forget([](SkinnedGeometry& geometry) { geometry.forgetDetailLevels(); });
+    accept(forget);
+    return setPixelError(_pixelError);
+}
+
+Result<bool> AnimatedCharacter::setPixelError(float pixels)
+{
+    if (!(pixels >= 0.0f) || !std::isfinite(pixels))
+        return Error{"a pixel error of " + std::to_string(pixels) + ": it must be a number, 0 or more"};
+    _pixelError = pixels;
+    if (pixels == 0.0f || set().paletteSize() == 0) return true;
+    SkinnedGeometryVisitor make([&](SkinnedGeometry& geometry) { geometry.detailLevels(set()); });
+    accept(make);
     return true;
 }
 

@@ -4,10 +4,12 @@
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimationUpdateCallback.h>
 #include <osgGpuAnimation/nodes/CrowdBatches.h>
+#include <osgGpuAnimation/nodes/CrowdInstanceNode.h>
 #include <osgGpuAnimation/nodes/CrowdView.h>
 #include <osgGpuAnimation/nodes/DepthPass.h>
 #include <osgGpuAnimation/nodes/EntryReach.h>
 #include <osgGpuAnimation/nodes/FlattenedPlace.h>
+#include <osgGpuAnimation/nodes/MeshesOfGroup.h>
 #include <osgGpuAnimation/nodes/OsgMatrix.h>
 #include <osgGpuAnimation/nodes/PlacedDraw.h>
 #include <osgGpuAnimation/nodes/PosedInstances.h>
@@ -25,17 +27,6 @@ namespace osgGpuAnimation
 
 namespace
 {
-
-/// Calls a function for every SkinnedGeometry among a group's children.
-template <typename Function>
-void forEachMesh(const osg::Group& group, Function function)
-{
-    for (unsigned int child = 0; child < group.getNumChildren(); ++child)
-    {
-        const auto* mesh = dynamic_cast<const SkinnedGeometry*>(group.getChild(child));
-        if (mesh) function(*mesh);
-    }
-}
 
 std::vector<Box> clipBoundsOf(const AnimationSet& set, const osg::Group& meshes)
 {
@@ -75,37 +66,6 @@ Error noSuchInstance()
     return Error{"the crowd has no such instance (any more)"};
 }
 
-/// What an intersector meets of an instance: computed only where its sphere is hit.
-class InstanceNode : public osg::Node
-{
-public:
-    InstanceNode(const AnimatedCrowd& crowd, std::size_t index) : _crowd(crowd), _index(index) {}
-
-    void traverse(osg::NodeVisitor& visitor) override
-    {
-        const AnimatedCrowd::Instance instance = _crowd.instances().handleOf(_index);
-        forEachMesh(_crowd,
-                    [&](const SkinnedGeometry& mesh)
-                    {
-                        if (!visitor.validNodeMask(mesh)) return;
-                        const osg::ref_ptr<osg::Geometry> posed = _crowd.posedMesh(instance, mesh);
-                        // The hit's node path leads through this node, and only the drawable is kept.
-                        posed->setUserData(this);
-                        posed->accept(visitor);
-                    });
-    }
-
-    osg::BoundingSphere computeBound() const override
-    {
-        const glm::vec4& sphere = _crowd.instances().sphere(_index);
-        return {osg::Vec3(sphere.x, sphere.y, sphere.z), sphere.w};
-    }
-
-private:
-    const AnimatedCrowd& _crowd;
-    std::size_t _index;
-};
-
 } // namespace
 
 AnimatedCrowd::AnimatedCrowd() : AnimatedCrowd(emptySet(), {}) {}
@@ -124,7 +84,7 @@ AnimatedCrowd::AnimatedCrowd(std::shared_ptr<const AnimationSet> set,
 
 AnimatedCrowd::AnimatedCrowd(const AnimatedCharacter& character)
     : _instances(character.controller().sharedSet()), _posed(std::make_unique<PosedInstances>()),
-      _batches(std::make_unique<CrowdBatches>())
+      _batches(std::make_unique<CrowdBatches>()), _pixelError(character.pixelError())
 {
     setDataVariance(osg::Object::DYNAMIC);
     setUpdateCallback(new AnimationUpdateCallback);
@@ -141,7 +101,7 @@ AnimatedCrowd::AnimatedCrowd(const AnimatedCharacter& character)
 AnimatedCrowd::AnimatedCrowd(const AnimatedCrowd& other, const osg::CopyOp& copyop)
     : osg::Transform(other, copyop), _instances(other._instances), _posed(std::make_unique<PosedInstances>()),
       _batches(std::make_unique<CrowdBatches>()), _origin(other._origin), _hasOrigin(other._hasOrigin),
-      _updateTime(other._updateTime), _updateRate(other._updateRate)
+      _updateTime(other._updateTime), _updateRate(other._updateRate), _pixelError(other._pixelError)
 {
 }
 
@@ -154,7 +114,7 @@ Result<bool> AnimatedCrowd::setAnimationSet(std::shared_ptr<const AnimationSet> 
     _instances.setSet(std::move(newSet));
     _instances.setClipBounds(clipBoundsOf(set(), *this));
     dirtyBound();
-    return true;
+    return setPixelError(_pixelError);
 }
 
 Result<AffineMatrix> AnimatedCrowd::toRootMatrix(const osg::Matrixd& placement, const osg::Vec3d& origin) const
@@ -296,7 +256,9 @@ void AnimatedCrowd::cull(osgUtil::CullVisitor& visitor)
     {
         view.look(_instances, seen);
         const UpdateRate rate = _updateRate.every > 1 && areAllPlaceable(*this) ? _updateRate : UpdateRate();
-        draws = _batches->enlist(PoseStage::frame(visitor), _instances, visitor, rate, seen);
+        const DetailScale scale(visitor, _pixelError, _pixelError > 0.0f ? DetailRange(*this, set()) : DetailRange());
+        const CrowdDetail detail(_instances, scale);
+        draws = _batches->enlist(PoseStage::frame(visitor), _instances, visitor, rate, detail, seen);
     }
     for (const osg::ref_ptr<osg::Node>& child : _children)
     {
@@ -323,11 +285,20 @@ Result<bool> AnimatedCrowd::setUpdateRate(const UpdateRate& rate)
     return true;
 }
 
+Result<bool> AnimatedCrowd::setPixelError(float pixels)
+{
+    if (!(pixels >= 0.0f) || !std::isfinite(pixels))
+        return Error{"a pixel error of " + std::to_string(pixels) + ": it must be a number, 0 or more"};
+    _pixelError = pixels;
+    if (pixels > 0.0f && set().paletteSize() > 0) static_cast<void>(DetailRange(*this, set()));
+    return true;
+}
+
 void AnimatedCrowd::intersect(osg::NodeVisitor& visitor)
 {
     for (std::size_t index = 0; index < size(); ++index)
     {
-        const osg::ref_ptr<InstanceNode> instance = new InstanceNode(*this, index);
+        const osg::ref_ptr<CrowdInstanceNode> instance = new CrowdInstanceNode(*this, index);
         instance->accept(visitor);
     }
     for (const osg::ref_ptr<osg::Node>& child : _children)

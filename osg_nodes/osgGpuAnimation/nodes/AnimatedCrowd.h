@@ -46,7 +46,8 @@ public:
     AnimatedCrowd();
     /// meshes: made for the set's palette.
     AnimatedCrowd(std::shared_ptr<const AnimationSet> set, const std::vector<osg::ref_ptr<SkinnedGeometry>>& meshes);
-    /// Shares the character's set, meshes and state, and copies its bounds; its own placement plays no part.
+    /// Shares the character's set, meshes and state, and copies its bounds and pixel error; its own placement plays no
+    /// part.
     explicit AnimatedCrowd(const AnimatedCharacter& character);
     /// The instances are copied, under the same names.
     AnimatedCrowd(const AnimatedCrowd& other, const osg::CopyOp& copyop = osg::CopyOp::SHALLOW_COPY);
@@ -91,6 +92,13 @@ public:
     Result<bool> setUpdateRate(const UpdateRate& rate);
     const UpdateRate& updateRate() const { return _updateRate; }
 
+    /// How far the surface that is drawn may be off on screen, in pixels: where that hides it, instances are drawn with
+    /// fewer triangles, each level of detail in use by one instanced draw a mesh primitive. 0 (the default): all
+    /// triangles. See AnimatedCharacter::setPixelError().
+    /// Error: pixels is negative or no number.
+    Result<bool> setPixelError(float pixels);
+    float pixelError() const { return _pixelError; }
+
     /// Advances by the time since the last update; the first only takes the time down. simulationTime: seconds.
     void update(double simulationTime);
 
@@ -123,6 +131,7 @@ private:
     bool _hasOrigin = false;
     std::optional<double> _updateTime; ///< seconds of simulation time
     UpdateRate _updateRate;
+    float _pixelError = 0.0f; ///< pixels
 };
 
 } // namespace osgGpuAnimation

@@ -2,6 +2,7 @@
 #include <osgGpuAnimation/nodes/CharacterDraws.h>
 
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
+#include <osgGpuAnimation/nodes/DetailScale.h>
 #include <osgGpuAnimation/nodes/OsgMatrix.h>
 #include <osgGpuAnimation/nodes/PlacedDraw.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
@@ -53,35 +54,52 @@ SkinnedGeometry* asShared(osg::Node* child)
 bool CharacterDraws::Group::holds(const Group& other) const
 {
     return bin == other.bin && projection == other.projection && traversalMask == other.traversalMask &&
-           set == other.set && slot == other.slot && meshes == other.meshes;
+           set == other.set && slot == other.slot && level == other.level && meshes == other.meshes;
 }
 
 void CharacterDraws::draw(osgUtil::CullVisitor& visitor, AnimatedCharacter& character, PoseFrame& frame,
                           EnlistedPose pose)
 {
+    const int level = levelOf(visitor, character);
     std::vector<osg::Node*> others; // not kept for its memory: there may be characters below them
     const bool isTogether = character.isDrawnTogether() && canDrawTogether(visitor) &&
-                            drawTogether(visitor, character, frame, pose, others);
+                            drawTogether(visitor, character, frame, pose, level, others);
     osg::StateSet* state = nullptr;
     const auto count = isTogether ? static_cast<unsigned int>(others.size()) : character.getNumChildren();
     for (unsigned int i = 0; i < count; ++i)
     {
         osg::Node* child = isTogether ? others[i] : character.getChild(i);
-        if (!state) visitor.pushStateSet(state = frame.stateOf(character, pose));
+        if (!state) visitor.pushStateSet(state = frame.stateOf(character, pose, level));
         child->accept(visitor);
     }
     if (state) visitor.popStateSet();
 }
 
+int CharacterDraws::levelOf(osgUtil::CullVisitor& visitor, const AnimatedCharacter& character)
+{
+    if (!(character.pixelError() > 0.0f)) return DetailLevels::allTriangles;
+    const auto [range, isNew] = _ranges.try_emplace(&character.set());
+    if (isNew) range->second = DetailRange(character, character.set());
+    osg::BoundingBox box;
+    for (unsigned int i = 0; i < character.getNumChildren(); ++i)
+        if (const auto* mesh = dynamic_cast<const SkinnedGeometry*>(character.getChild(i)))
+            box.expandBy(mesh->getBoundingBox());
+    if (!box.valid()) return DetailLevels::allTriangles;
+    const osg::Vec3 centre = box.center();
+    return DetailScale(visitor, character.pixelError(), range->second)
+        .level(glm::vec3(centre.x(), centre.y(), centre.z()), box.radius(), 1.0f);
+}
+
 // True where the meshes that can be shared are dealt with; false where all is to be drawn as it is.
 bool CharacterDraws::drawTogether(osgUtil::CullVisitor& visitor, AnimatedCharacter& character, PoseFrame& frame,
-                                  EnlistedPose pose, std::vector<osg::Node*>& outOthers)
+                                  EnlistedPose pose, int level, std::vector<osg::Node*>& outOthers)
 {
     _asked.bin = visitor.getCurrentRenderBin();
     _asked.projection = visitor.getProjectionMatrix();
     _asked.traversalMask = visitor.getTraversalMask();
     _asked.set = &character.set();
     _asked.slot = pose.slot;
+    _asked.level = level;
     _asked.meshes.clear();
     for (unsigned int i = 0; i < character.getNumChildren(); ++i)
     {
@@ -117,7 +135,7 @@ bool CharacterDraws::drawTogether(osgUtil::CullVisitor& visitor, AnimatedCharact
 
 void CharacterDraws::open(osgUtil::CullVisitor& visitor, Group& group, PoseFrame& frame, float depth)
 {
-    PlacedState placed = frame.placedState(*group.set, group.slot);
+    PlacedState placed = frame.placedState(*group.set, group.slot, group.level);
     group.together = placed.binding;
     const osg::ref_ptr<osg::RefMatrix> eye = new osg::RefMatrix;
     visitor.pushStateSet(placed.stateSet);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <osgGpuAnimation/nodes/DetailRange.h>
 #include <osgGpuAnimation/nodes/PoseFrame.h>
 
 #include <osgUtil/CullVisitor>
@@ -25,7 +26,11 @@ class CharacterDraws
 {
 public:
     /// At the beginning of a cull traversal.
-    void clear() { _groups.clear(); }
+    void clear()
+    {
+        _groups.clear();
+        _ranges.clear();
+    }
 
     /// Hands what is below the character on to be drawn. pose: what the frame has enlisted it as.
     void draw(osgUtil::CullVisitor& visitor, AnimatedCharacter& character, PoseFrame& frame, EnlistedPose pose);
@@ -39,6 +44,7 @@ private:
         osg::Node::NodeMask traversalMask;
         const AnimationSet* set;
         std::size_t slot;
+        int level; ///< of detail
         std::vector<SkinnedGeometry*> meshes;
         osg::BoundingBox box;               ///< of the meshes
         PaletteBinding* together = nullptr; ///< null: nobody but the first was seen
@@ -47,11 +53,13 @@ private:
     };
 
     bool drawTogether(osgUtil::CullVisitor& visitor, AnimatedCharacter& character, PoseFrame& frame, EnlistedPose pose,
-                      std::vector<osg::Node*>& outOthers);
+                      int level, std::vector<osg::Node*>& outOthers);
+    int levelOf(osgUtil::CullVisitor& visitor, const AnimatedCharacter& character);
     void open(osgUtil::CullVisitor& visitor, Group& group, PoseFrame& frame, float depth);
 
     std::unordered_map<const osgUtil::StateGraph*, std::vector<Group>> _groups;
-    Group _asked; ///< kept for its memory
+    std::unordered_map<const AnimationSet*, DetailRange> _ranges; ///< of the first character's meshes
+    Group _asked;                                                 ///< kept for its memory
 };
 
 } // namespace osgGpuAnimation

@@ -4,6 +4,7 @@
 #include <osgGpuAnimation/nodes/OsgMatrix.h>
 
 #include <array>
+#include <map>
 
 namespace osgGpuAnimation
 {
@@ -12,7 +13,8 @@ namespace
 {
 
 std::vector<CrowdBatches::Draw> enlistGroups(PoseFrame& frame, const CrowdInstances& instances,
-                                             const CrowdGroups& groups, const osg::Matrixd& crowdToEye)
+                                             const CrowdGroups& groups, const CrowdDetail& detail,
+                                             const osg::Matrixd& crowdToEye)
 {
     std::vector<CrowdBatches::Draw> draws;
     const AffineMatrix toEye = toAffine(crowdToEye);
@@ -23,11 +25,19 @@ std::vector<CrowdBatches::Draw> enlistGroups(PoseFrame& frame, const CrowdInstan
         *batch = group.poses;
         // Also where none is shown, so that those after it have the slot, and with it the palette, of the frame before.
         const std::size_t slot = frame.enlist(std::move(batch)).slot;
-        if (group.shown.empty()) continue;
-        const PlacedState placed = frame.placedState(*instances.set(), slot);
+        std::map<int, PaletteBinding*> bindings; // by level
         for (const CrowdGroups::Shown& shown : group.shown)
-            placed.binding->add({toEye * instances.rootMatrix(shown.index), static_cast<float>(shown.number)});
-        draws.push_back({placed.stateSet, true});
+        {
+            const int level = detail.isOn() ? detail.levelOf(shown.index) : DetailLevels::allTriangles;
+            PaletteBinding*& binding = bindings[level];
+            if (!binding)
+            {
+                const PlacedState placed = frame.placedState(*instances.set(), slot, level);
+                binding = placed.binding;
+                draws.push_back({placed.stateSet, true});
+            }
+            binding->add({toEye * instances.rootMatrix(shown.index), static_cast<float>(shown.number)});
+        }
     }
     return draws;
 }
@@ -67,23 +77,32 @@ CrowdGroups& CrowdBatches::groupsOf(const osg::Camera* camera, unsigned int fram
 
 std::vector<CrowdBatches::Draw> CrowdBatches::enlist(PoseFrame& frame, const CrowdInstances& instances,
                                                      osgUtil::CullVisitor& visitor, const UpdateRate& rate,
-                                                     std::vector<std::uint32_t>& seen)
+                                                     const CrowdDetail& detail, std::vector<std::uint32_t>& seen)
 {
     std::vector<Draw> draws;
     if (rate.every > 1)
     {
         CrowdGroups& groups = groupsOf(visitor.getCurrentCamera(), frame.frameNumber());
         groups.update(instances, CrowdView(visitor).sizePlane(rate.pixels), seen);
-        draws = enlistGroups(frame, instances, groups, *visitor.getModelViewMatrix());
+        draws = enlistGroups(frame, instances, groups, detail, *visitor.getModelViewMatrix());
     }
     static thread_local std::array<Indices, PoseBatch::loadCount> loads;
     sortByLoad(instances, seen, loads);
-    for (const Indices& load : loads)
+    std::vector<CrowdDetail::Run> runs;
+    for (Indices& load : loads)
     {
         if (load.empty()) continue;
+        if (detail.isOn()) detail.sort(load, runs);
         std::unique_ptr<PoseBatch> batch = frame.makeBatch(instances.set());
         instances.addTo(*batch, load);
-        draws.push_back({frame.enlist(std::move(batch)).stateSet, false});
+        const EnlistedBatch enlisted = frame.enlist(std::move(batch));
+        if (!detail.isOn()) draws.push_back({enlisted.stateSet, false});
+        std::size_t first = 0;
+        for (const CrowdDetail::Run& run : runs)
+        {
+            draws.push_back({frame.partState(*instances.set(), enlisted.slot, first, run.count, run.level), false});
+            first += run.count;
+        }
     }
     return draws;
 }

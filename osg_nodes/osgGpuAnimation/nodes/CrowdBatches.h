@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <osgGpuAnimation/nodes/CrowdDetail.h>
 #include <osgGpuAnimation/nodes/CrowdGroups.h>
 #include <osgGpuAnimation/nodes/CrowdInstances.h>
 #include <osgGpuAnimation/nodes/CrowdView.h>
@@ -30,9 +31,10 @@ public:
         bool isPlaced;           ///< instances stand in the eye's space already
     };
 
-    /// frame: that of the visitor's cull. seen: indices; used up.
+    /// frame: that of the visitor's cull. detail: by which each level of detail in use is drawn by itself. seen:
+    /// indices; used up.
     std::vector<Draw> enlist(PoseFrame& frame, const CrowdInstances& instances, osgUtil::CullVisitor& visitor,
-                             const UpdateRate& rate, std::vector<std::uint32_t>& seen);
+                             const UpdateRate& rate, const CrowdDetail& detail, std::vector<std::uint32_t>& seen);
 
 private:
     struct Kept

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/DetailLevels.h>
 
+#include <osgGpuAnimation/animation/Bounds.h>
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/nodes/KeyPoses.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 #include <osgGpuAnimation/nodes/SurfaceReduction.h>
 
-#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -18,8 +19,10 @@ namespace
 {
 
 constexpr std::size_t poseCount = 12;
-constexpr int finestFraction = 8;        ///< the finest level is the mesh's size through 2 to that power
-constexpr int seamFraction = 4;          ///< from that fraction of the size on, texture seams count no more
+// The finest level is the mesh's size through 2 to that power, and the coarsest, which alone lets texture seams go, is
+// the character's: coarser ones save little more, and what is cut off hulls would make small characters thin.
+constexpr int finestFraction = 8;
+constexpr int coarsestFraction = 5;
 constexpr double worthwhile = 0.85;      ///< of the triangles of the level before
 constexpr std::size_t fewTriangles = 16; ///< for which no level is worth its trouble
 
@@ -66,16 +69,28 @@ PosedSurface surfaceOf(const SkinnedGeometry& mesh, const AnimationSet& set)
     return surface;
 }
 
-/// In the rest pose.
-double sizeOf(const PosedSurface& surface)
+Box boxAround(const std::vector<glm::vec3>& positions)
 {
-    glm::dvec3 least(surface.poses.front().front()), greatest = least;
-    for (const glm::vec3& position : surface.poses.front())
-    {
-        least = glm::min(least, glm::dvec3(position));
-        greatest = glm::max(greatest, glm::dvec3(position));
-    }
-    return glm::distance(least, greatest);
+    Box box;
+    for (const glm::vec3& position : positions)
+        box.add(position);
+    return box;
+}
+
+/// Of all joints in the rest pose.
+Box boxAroundJoints(const AnimationSet& set)
+{
+    std::vector<AffineMatrix> joints;
+    Pose::jointToModel(set, set.restPose(), AffineMatrix(), joints);
+    Box box;
+    for (const AffineMatrix& joint : joints)
+        box.add(joint.transformPoint(glm::vec3(0.0f)));
+    return box;
+}
+
+double sizeOf(const Box& box)
+{
+    return box.empty() ? 0.0 : glm::distance(glm::dvec3(box.min), glm::dvec3(box.max));
 }
 
 /// Whole triangles; none where it is anything else.
@@ -115,22 +130,23 @@ DetailLevels::DetailLevels(const SkinnedGeometry& mesh, const AnimationSet& set)
         _primitives.push_back({primitives, primitives->getModifiedCount(), {}});
     const PosedSurface surface = surfaceOf(mesh, set);
     if (surface.poses.empty()) return;
+    const double size = sizeOf(boxAround(surface.poses.front()));
+    if (!(size > 0.0)) return;
+    const int coarsest = std::ilogb(std::max(size, sizeOf(boxAroundJoints(set)))) - coarsestFraction;
     for (Primitives& primitives : _primitives)
-        addSteps(surface, primitives);
+        addSteps(surface, std::ilogb(size) - finestFraction, coarsest, primitives);
 }
 
-void DetailLevels::addSteps(const PosedSurface& surface, Primitives& primitives)
+void DetailLevels::addSteps(const PosedSurface& surface, int finest, int coarsest, Primitives& primitives)
 {
     const std::vector<std::uint32_t> original = trianglesOf(*primitives.original, surface.vertexCount());
-    const double size = sizeOf(surface);
-    if (original.size() < 3 * fewTriangles || !(size > 0.0)) return;
+    if (original.size() < 3 * fewTriangles) return;
     SurfaceReduction reduction(surface, original);
     std::size_t kept = original.size() / 3;
-    const int coarsest = std::ilogb(size);
-    for (int level = coarsest - finestFraction; level < coarsest; ++level)
+    for (int level = finest; level <= coarsest; ++level)
     {
         const double limit = std::ldexp(1.0, level);
-        reduction.reduce(limit, level < coarsest - seamFraction);
+        reduction.reduce(limit, level < coarsest);
         const bool isWorthwhile =
             static_cast<double>(reduction.triangleCount()) < worthwhile * static_cast<double>(kept);
         if (!isWorthwhile || reduction.error() > limit) continue;

@@ -28,6 +28,9 @@ struct PosedSurface;
 /// Primitive sets other than indexed triangles are drawn whole at all levels, as are meshes with positions that are not
 /// finite. Of each piece of a mesh at least a triangle is left.
 ///
+/// No level is coarser than a 32nd of the character's size, or small characters would get thin; the coarsest alone does
+/// not keep texture coordinates on their side of a seam.
+///
 /// Immutable but for its GL objects, which OSG keeps by context; shared by the threads that cull and draw.
 class DetailLevels
 {
@@ -65,7 +68,7 @@ private:
         std::vector<Step> steps;    ///< by rising levels
     };
 
-    void addSteps(const PosedSurface& surface, Primitives& primitives);
+    void addSteps(const PosedSurface& surface, int finest, int coarsest, Primitives& primitives);
 
     osg::ref_ptr<const osg::Array> _vertices;
     unsigned int _modifiedCount = 0; ///< of the vertices

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/DetailScale.h>
 
-#include <osgGpuAnimation/nodes/DetailLevels.h>
-
 #include <glm/geometric.hpp>
 
 namespace osgGpuAnimation
 {
 
-DetailScale::DetailScale(osgUtil::CullVisitor& visitor, float pixelError)
+DetailScale::DetailScale(osgUtil::CullVisitor& visitor, float pixelError, const DetailRange& range) : _range(range)
 {
     if (!(pixelError > 0.0f)) return;
     // OSG divides a radius by the vector's product with the place and has a diameter in pixels.
@@ -20,7 +18,7 @@ DetailScale::DetailScale(osgUtil::CullVisitor& visitor, float pixelError)
 int DetailScale::level(const glm::vec3& centre, float radius, float scale) const
 {
     const float error = glm::dot(_errorAt, glm::vec4(centre, 1.0f)) - _slope * radius;
-    return DetailLevels::levelOf(error / scale);
+    return _range.held(DetailLevels::levelOf(error / scale));
 }
 
 } // namespace osgGpuAnimation

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <osgGpuAnimation/nodes/DetailRange.h>
+
 #include <osgUtil/CullVisitor>
 
 #include <glm/vec3.hpp>
@@ -14,14 +16,18 @@ namespace osgGpuAnimation
 class DetailScale
 {
 public:
-    /// pixelError: pixels; 0: all triangles.
-    DetailScale(osgUtil::CullVisitor& visitor, float pixelError);
+    /// pixelError: pixels; 0: all triangles. range: of what is drawn.
+    DetailScale(osgUtil::CullVisitor& visitor, float pixelError, const DetailRange& range);
 
     /// centre, radius: of what is drawn, in the visitor's space. scale: units of that space to one of the
     /// character's own. The nearest point decides; what reaches behind the eye has all triangles.
     int level(const glm::vec3& centre, float radius, float scale) const;
 
+    /// Whether there is more than one.
+    bool isOn() const { return _errorAt != glm::vec4(0.0f); }
+
 private:
+    DetailRange _range;
     glm::vec4 _errorAt{0.0f}; ///< · (x, y, z, 1): how far off a point there may be drawn, in the visitor's space
     float _slope = 0.0f;      ///< what that changes by for a step of 1, at most
 };

@@ -9,7 +9,7 @@ namespace osgGpuAnimation
 
 PaletteBinding::PaletteBinding(const PaletteBinding& other, const osg::CopyOp& copyop)
     : osg::StateAttribute(other, copyop), _set(other._set), _slot(other._slot), _instance(other._instance),
-      _instanceCount(other._instanceCount), _placements(other._placements), _serial(other._serial)
+      _instanceCount(other._instanceCount), _placements(other._placements), _serial(other._serial), _level(other._level)
 {
 }
 
@@ -22,6 +22,7 @@ void PaletteBinding::set(std::shared_ptr<const AnimationSet> set, std::size_t sl
     _instanceCount = instanceCount;
     _placements.clear();
     _serial = 0;
+    _level = DetailLevels::allTriangles;
 }
 
 void PaletteBinding::setPlaced(std::shared_ptr<const AnimationSet> set, std::size_t slot)
@@ -34,8 +35,9 @@ void PaletteBinding::setPlaced(std::shared_ptr<const AnimationSet> set, std::siz
 int PaletteBinding::compare(const osg::StateAttribute& other) const
 {
     COMPARE_StateAttribute_Types(PaletteBinding, other);
-    const auto left = std::make_tuple(_set.get(), _slot, _instance, _instanceCount, _serial);
-    const auto right = std::make_tuple(rhs._set.get(), rhs._slot, rhs._instance, rhs._instanceCount, rhs._serial);
+    const auto left = std::make_tuple(_set.get(), _slot, _instance, _instanceCount, _serial, _level);
+    const auto right =
+        std::make_tuple(rhs._set.get(), rhs._slot, rhs._instance, rhs._instanceCount, rhs._serial, rhs._level);
     return left < right ? -1 : (right < left ? 1 : 0);
 }
 

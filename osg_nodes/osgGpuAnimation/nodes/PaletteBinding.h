@@ -4,6 +4,8 @@
 #include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/gpu/PlacementBuffers.h>
 
+#include <osgGpuAnimation/nodes/DetailLevels.h>
+
 #include <osg/StateAttribute>
 
 #include <memory>
@@ -25,6 +27,9 @@ public:
 
         void set(std::shared_ptr<const AnimationSet> set, std::size_t slot, std::size_t instance,
                  std::size_t instanceCount = 1);
+    /// At which level of detail the instances are drawn; set() and setPlaced() make it all triangles.
+    void setLevel(int level) { _level = level; }
+    int level() const { return _level; }
     /// For instances that are drawn together, each at a placement of its own; there are none at first.
     void setPlaced(std::shared_ptr<const AnimationSet> set, std::size_t slot);
     void add(const Placement& placement) { _placements.push_back(placement); }
@@ -52,6 +57,7 @@ private:
     std::size_t _instanceCount = 1;
     std::vector<Placement> _placements;
     std::uint64_t _serial = 0;
+    int _level = DetailLevels::allTriangles;
 };
 
 } // namespace osgGpuAnimation

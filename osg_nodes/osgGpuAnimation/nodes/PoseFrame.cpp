@@ -106,14 +106,15 @@ bool PoseFrame::isStill(const Enlisted& known, const AnimatedCharacter& characte
                       _samples.begin() + static_cast<std::ptrdiff_t>(known.firstSample), isSame);
 }
 
-osg::StateSet* PoseFrame::stateOf(const AnimatedCharacter& character, EnlistedPose pose)
+osg::StateSet* PoseFrame::stateOf(const AnimatedCharacter& character, EnlistedPose pose, int level)
 {
     const std::lock_guard<std::mutex> lock(_mutex);
     Enlisted& enlisted = _enlisted[&character];
     // A camera that culls at the same time may have enlisted it with another instruction meanwhile.
     const bool isOther = enlisted.batch->slot != pose.slot || enlisted.instance != pose.instance;
-    if (isOther) return stateOf(*_batchesOfSet[&character.set()][pose.slot], pose.instance, 1);
-    if (!enlisted.stateSet) enlisted.stateSet = stateOf(*enlisted.batch, enlisted.instance, 1);
+    if (isOther) return stateOf(*_batchesOfSet[&character.set()][pose.slot], pose.instance, 1, level);
+    if (level != DetailLevels::allTriangles) return stateOf(*enlisted.batch, enlisted.instance, 1, level);
+    if (!enlisted.stateSet) enlisted.stateSet = stateOf(*enlisted.batch, enlisted.instance, 1, level);
     return enlisted.stateSet;
 }
 
@@ -160,23 +161,32 @@ EnlistedBatch PoseFrame::enlist(std::unique_ptr<PoseBatch> content)
             return {batch->slot, batch->stateOfAll};
         }
     Batch& batch = addBatch(std::move(content));
-    batch.stateOfAll = stateOf(batch, 0, batch.content->size());
+    batch.stateOfAll = stateOf(batch, 0, batch.content->size(), DetailLevels::allTriangles);
     return {batch.slot, batch.stateOfAll};
 }
 
-osg::StateSet* PoseFrame::stateOf(const Batch& batch, std::size_t instance, std::size_t instanceCount)
+osg::StateSet* PoseFrame::stateOf(const Batch& batch, std::size_t instance, std::size_t instanceCount, int level)
 {
     osg::StateSet& stateSet = _states.next(false);
     bindingOf(stateSet).set(batch.content->sharedSet(), batch.slot, instance, instanceCount);
+    bindingOf(stateSet).setLevel(level);
     return &stateSet;
 }
 
-PlacedState PoseFrame::placedState(const AnimationSet& set, std::size_t slot)
+osg::StateSet* PoseFrame::partState(const AnimationSet& set, std::size_t slot, std::size_t first, std::size_t count,
+                                    int level)
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    return stateOf(*_batchesOfSet[&set][slot], first, count, level);
+}
+
+PlacedState PoseFrame::placedState(const AnimationSet& set, std::size_t slot, int level)
 {
     const std::lock_guard<std::mutex> lock(_mutex);
     osg::StateSet& stateSet = _placedStates.next(true);
     PaletteBinding& binding = bindingOf(stateSet);
     binding.setPlaced(_batchesOfSet[&set][slot]->content->sharedSet(), slot);
+    binding.setLevel(level);
     return {&stateSet, &binding};
 }
 

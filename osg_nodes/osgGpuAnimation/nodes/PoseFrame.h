@@ -56,11 +56,14 @@ public:
 
     /// Takes the character up, unless it is already in with the same instruction.
     EnlistedPose enlist(const AnimatedCharacter& character);
-    /// The state for drawing the enlisted character as it is: it holds its PaletteBinding and stays unchanged while
-    /// this frame is in use.
-    osg::StateSet* stateOf(const AnimatedCharacter& character, EnlistedPose pose);
+    /// The state for drawing the enlisted character as it is, at a level of detail: it holds its PaletteBinding and
+    /// stays unchanged while this frame is in use.
+    osg::StateSet* stateOf(const AnimatedCharacter& character, EnlistedPose pose, int level);
     /// A new state for drawing instances of that batch together.
-    PlacedState placedState(const AnimationSet& set, std::size_t slot);
+    PlacedState placedState(const AnimationSet& set, std::size_t slot, int level);
+    /// A new state for drawing so many instances of that batch, from the first on.
+    osg::StateSet* partState(const AnimationSet& set, std::size_t slot, std::size_t first, std::size_t count,
+                             int level);
 
     /// An empty batch, to be filled by the caller alone and enlisted; its storage is that of earlier frames.
     std::unique_ptr<PoseBatch> makeBatch(std::shared_ptr<const AnimationSet> set);
@@ -112,7 +115,7 @@ private:
     Batch& openBatch(const AnimatedCharacter& character);
     Batch& addBatch(std::unique_ptr<PoseBatch> content);
     std::unique_ptr<PoseBatch> spareBatch(std::shared_ptr<const AnimationSet> set);
-    osg::StateSet* stateOf(const Batch& batch, std::size_t instance, std::size_t instanceCount);
+    osg::StateSet* stateOf(const Batch& batch, std::size_t instance, std::size_t instanceCount, int level);
 
     std::mutex _mutex;
     unsigned int _frameNumber = 0;

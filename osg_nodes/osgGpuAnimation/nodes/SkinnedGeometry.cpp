@@ -76,7 +76,7 @@ SkinnedGeometry::SkinnedGeometry() : _number(newNumber())
 SkinnedGeometry::SkinnedGeometry(const SkinnedGeometry& other, const osg::CopyOp& copyop)
     : osg::Geometry(other, copyop), _influences(other._influences), _rigidEntry(other._rigidEntry),
       _morphTargets(other._morphTargets), _morphDeltas(other._morphDeltas), _morph(other._morph),
-      _morphEntry(other._morphEntry), _skinning(other._skinning), _number(newNumber())
+      _morphEntry(other._morphEntry), _skinning(other._skinning), _detail(other._detail), _number(newNumber())
 {
 }
 
@@ -112,6 +112,7 @@ void SkinnedGeometry::setInfluences(unsigned int influenceSet, osg::Vec4usArray*
         const int used = this->weights(i) ? influencesUsed(*this->weights(i)) : 0;
         if (used > 0) _influences = std::max(_influences, static_cast<int>(4 * i) + used);
     }
+    forgetDetailLevels();
     dirtyBound();
 }
 
@@ -134,6 +135,7 @@ void SkinnedGeometry::setRigidEntry(unsigned short entry)
     }
     _rigidEntry = entry;
     _influences = 1;
+    forgetDetailLevels();
     dirtyBound();
 }
 
@@ -152,6 +154,7 @@ void SkinnedGeometry::setMorphTargets(int morph, int entry, std::vector<MorphTar
     _morphDeltas.texture = nullptr; // packed anew where nobody else has them: the arrays may have changed
     _morphDeltas = packMorphTargets(_morphTargets, vertexCount);
     if (_morph < 0) _morphDeltas.texture = nullptr;
+    forgetDetailLevels();
     dirtyBound();
 }
 
@@ -207,7 +210,7 @@ void SkinnedGeometry::drawImplementation(osg::RenderInfo& renderInfo) const
     SkinnedRead skinned(state, *this, *binding);
     if (binding->serial() != 0)
         drawPlaced(renderInfo, *binding, *pipeline, skinned);
-    else if (binding->instanceCount() > 1)
+    else if (binding->instanceCount() > 1 || binding->level() != DetailLevels::allTriangles)
         drawInstances(renderInfo, *binding, *pipeline, skinned);
     else if (const PalettePlace place = pipeline->place(*binding->animationSet(), binding->slot(), binding->instance());
              place.texture != 0 && skinned.find(binding->instance()))
@@ -246,7 +249,7 @@ void SkinnedGeometry::drawInstances(osg::RenderInfo& renderInfo, const PaletteBi
             const std::size_t count = std::min({end, behind, skinned.end()}) - first;
             bindPalette(state, place);
             skinned.bind(place);
-            drawPrimitives(state, static_cast<int>(count));
+            drawPrimitives(state, static_cast<int>(count), binding.level());
             first += count;
         }
     };
@@ -266,7 +269,7 @@ void SkinnedGeometry::drawPlaced(osg::RenderInfo& renderInfo, const PaletteBindi
             placed.use(first);
             bindPalette(state, run.place);
             skinned.bind(run.place);
-            drawPrimitives(state, static_cast<int>(run.count));
+            drawPrimitives(state, static_cast<int>(run.count), binding.level());
             first += run.count;
         }
     };
@@ -329,11 +332,16 @@ SkinOncePass::Variant SkinnedGeometry::onceVariant() const
     return {_influences, _morph >= 0, getNormalArray() || _morphDeltas.channels[1] >= 0};
 }
 
-void SkinnedGeometry::drawPrimitives(osg::State& state, int count) const
+void SkinnedGeometry::drawPrimitives(osg::State& state, int count, int level) const
 {
     const bool usesBuffers = state.useVertexBufferObject(_supportsVertexBufferObjects && _useVertexBufferObjects);
-    for (const osg::ref_ptr<osg::PrimitiveSet>& primitives : _primitives)
-        drawInstanced(state, *primitives, count, usesBuffers);
+    std::shared_ptr<const DetailLevels> levels;
+    if (level != DetailLevels::allTriangles) levels = _detail.known(*this);
+    for (std::size_t i = 0; i < _primitives.size(); ++i)
+    {
+        const osg::PrimitiveSet* fewer = levels ? levels->elements(i, level) : nullptr;
+        drawInstanced(state, fewer ? *fewer : *_primitives[i], count, usesBuffers);
+    }
 }
 
 void SkinnedGeometry::bindPalette(osg::State& state, const PalettePlace& place) const
@@ -347,6 +355,7 @@ void SkinnedGeometry::releaseGLObjects(osg::State* state) const
 {
     osg::Geometry::releaseGLObjects(state);
     if (_morphDeltas.texture) _morphDeltas.texture->releaseGLObjects(state);
+    _detail.releaseGLObjects(state);
     _oncePass->releaseGLObjects(state);
     // What is there under a number that is nobody's any more, each context's draw side frees by itself.
     _number = newNumber();
@@ -356,6 +365,7 @@ void SkinnedGeometry::resizeGLObjectBuffers(unsigned int maxSize)
 {
     osg::Geometry::resizeGLObjectBuffers(maxSize);
     if (_morphDeltas.texture) _morphDeltas.texture->resizeGLObjectBuffers(maxSize);
+    _detail.resizeGLObjectBuffers(maxSize);
     _oncePass->resizeGLObjectBuffers(maxSize);
 }
 

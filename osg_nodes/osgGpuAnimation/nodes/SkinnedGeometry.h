@@ -2,6 +2,7 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/nodes/MeshDetail.h>
 #include <osgGpuAnimation/nodes/MorphDeltas.h>
 #include <osgGpuAnimation/nodes/Skinning.h>
 #include <osgGpuAnimation/nodes/SkinOncePass.h>
@@ -87,6 +88,10 @@ public:
         return _skinning == Skinning::Once || (_skinning == Skinning::Auto && !_morphTargets.empty());
     }
 
+    /// Its levels of detail, see AnimatedCharacter::setPixelError(); made when first asked, by the poses of the set.
+    std::shared_ptr<const DetailLevels> detailLevels(const AnimationSet& set) const { return _detail.of(*this, set); }
+    void forgetDetailLevels() { _detail.forget(); }
+
     /// What the passes that skin once go by. A number that no other mesh has:
     std::uint64_t number() const { return _number; }
     std::size_t vertexCount() const { return getVertexArray() ? getVertexArray()->getNumElements() : 0; }
@@ -125,7 +130,7 @@ private:
                     SkinnedRead& skinned) const;
     template <typename Draw>
     void withVertexArrays(osg::RenderInfo& renderInfo, Draw draw) const;
-    void drawPrimitives(osg::State& state, int count) const;
+    void drawPrimitives(osg::State& state, int count, int level) const;
     void bindPalette(osg::State& state, const PalettePlace& place) const;
     glm::dvec3 morphed(const osg::Vec3& position, std::size_t vertex, const std::vector<AffineMatrix>& palette) const;
 
@@ -137,6 +142,7 @@ private:
     int _morph = -1;
     int _morphEntry = -1; ///< the first palette entry of the weights
     Skinning _skinning = Skinning::Auto;
+    MeshDetail _detail;
     mutable std::atomic<std::uint64_t> _number;
     osg::ref_ptr<SkinOncePass> _oncePass = SkinOncePass::shared(); ///< kept alive, and released, by its meshes
 };

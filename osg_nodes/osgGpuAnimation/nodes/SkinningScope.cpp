@@ -25,9 +25,11 @@ const PaletteBinding* bindingAbove(osgUtil::CullVisitor& visitor)
 
 SkinningScope::SkinningScope(osgUtil::CullVisitor& visitor, const SkinnedGeometry& mesh)
 {
-    if (!mesh.mayBeSkinnedOnce()) return;
     const PaletteBinding* binding = bindingAbove(visitor);
-    osg::StateSet* state = binding ? PoseStage::reads(visitor).add(mesh, *binding) : nullptr;
+    if (!binding) return;
+    if (binding->level() != DetailLevels::allTriangles) mesh.detailLevels(*binding->animationSet());
+    if (!mesh.mayBeSkinnedOnce()) return;
+    osg::StateSet* state = PoseStage::reads(visitor).add(mesh, *binding);
     if (!state) return;
     visitor.pushStateSet(state);
     _visitor = &visitor;

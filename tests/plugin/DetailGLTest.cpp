@@ -1,0 +1,338 @@
+// SPDX-License-Identifier: MIT
+#include "plugin/PluginFolder.h"
+#include "plugin/SharedAssets.h"
+#include "support/ThreadingModels.h"
+#include "support/ViewerGLTest.h"
+
+#include <osgGpuAnimation/nodes/AnimatedCharacter.h>
+#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+#include <osgGpuAnimation/nodes/SkinnedGeometryVisitor.h>
+
+#include <osg/GLExtensions>
+#include <osgDB/ReadFile>
+#include <osgUtil/Optimizer>
+
+#include <array>
+
+// Characters drawn at levels of detail look as with all triangles, but for what half a pixel may hide: pictures differ
+// by less than those of all triangles do when the camera turns by half a pixel.
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+/// Counts what a camera draws in a frame, points that poses are captured with included.
+class PrimitiveCount : public osg::Referenced
+{
+public:
+    struct Begin : osg::Camera::DrawCallback
+    {
+        explicit Begin(PrimitiveCount& count) : count(count) {}
+        void operator()(osg::RenderInfo& renderInfo) const override
+        {
+            osg::GLExtensions& gl = *renderInfo.getState()->get<osg::GLExtensions>();
+            gl.glGenQueries(1, &count.query);
+            gl.glBeginQuery(GL_PRIMITIVES_GENERATED, count.query);
+        }
+        PrimitiveCount& count;
+    };
+    struct End : osg::Camera::DrawCallback
+    {
+        End(PrimitiveCount& count, const Picture& picture) : count(count), picture(picture) {}
+        void operator()(osg::RenderInfo& renderInfo) const override
+        {
+            osg::GLExtensions& gl = *renderInfo.getState()->get<osg::GLExtensions>();
+            gl.glEndQuery(GL_PRIMITIVES_GENERATED);
+            gl.glGetQueryObjectuiv(count.query, GL_QUERY_RESULT, &count.primitives);
+            gl.glDeleteQueries(1, &count.query);
+            picture(renderInfo);
+        }
+        PrimitiveCount& count;
+        const Picture& picture;
+    };
+
+    GLuint query = 0;
+    GLuint primitives = 0;
+};
+
+int pixelsDrawn(const osg::Image& image)
+{
+    int count = 0;
+    for (int y = 0; y < image.t(); ++y)
+        for (int x = 0; x < image.s(); ++x)
+            count += image.getColor(x, y) != image.getColor(0, 0);
+    return count;
+}
+
+/// The mean colour of what is drawn, over the background.
+osg::Vec4 meanColor(const osg::Image& image)
+{
+    osg::Vec4 sum;
+    float count = 0.0f;
+    for (int y = 0; y < image.t(); ++y)
+        for (int x = 0; x < image.s(); ++x)
+        {
+            if (image.getColor(x, y) == image.getColor(0, 0)) continue;
+            sum += image.getColor(x, y);
+            count += 1.0f;
+        }
+    return sum / std::max(count, 1.0f);
+}
+
+/// The mean of the channels' differences, 0 to 1, over all pixels that show something in either picture.
+double meanDifference(const osg::Image& a, const osg::Image& b)
+{
+    double sum = 0.0, count = 0.0;
+    for (int y = 0; y < a.t(); ++y)
+        for (int x = 0; x < a.s(); ++x)
+        {
+            const osg::Vec4 first = a.getColor(x, y), second = b.getColor(x, y), background = a.getColor(0, 0);
+            if (first == background && second == background) continue;
+            for (int channel = 0; channel < 3; ++channel)
+                sum += std::abs(first[channel] - second[channel]) / 3.0;
+            count += 1.0;
+        }
+    return count > 0.0 ? sum / count : 1.0;
+}
+
+class DetailGLTest : public ViewerGLTest
+{
+protected:
+    static constexpr int side = 256; ///< pixels
+    static constexpr int across = 5; ///< characters, and as many deep
+
+    int pictureSide() const override { return side; }
+
+    void SetUp() override
+    {
+        usePluginsOfTheBuild();
+        ViewerGLTest::SetUp();
+    }
+
+    /// 25 characters of a model, in a crowd or each by itself, at times of their own.
+    static osg::ref_ptr<osg::Group> makeScene(const std::string& file, bool isCrowd, float pixelError)
+    {
+        const osg::ref_ptr<osg::Node> model = osgDB::readRefNodeFile(file);
+        const osg::ref_ptr<AnimatedCharacter> character = findCharacter(*model);
+        EXPECT_TRUE(character->setPixelError(pixelError));
+        const osg::Matrixd upright = character->getWorldMatrices().front();
+        const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*character);
+        EXPECT_EQ(crowd->pixelError(), pixelError);
+        osg::ref_ptr<osg::Group> scene = new osg::Group;
+        if (isCrowd) scene->addChild(crowd);
+        for (int i = 0; i < across * across; ++i)
+        {
+            const osg::ref_ptr<AnimatedCharacter> copy = osg::clone(character.get(), osg::CopyOp::DEEP_COPY_NODES);
+            EXPECT_EQ(copy->pixelError(), pixelError);
+            copy->controller().seek(0.17 * i);
+            const double gap = 2.0 * character->getBound().radius();
+            copy->setMatrix(upright * osg::Matrix::translate(gap * (i % across - across / 2), gap * (i / across), 0.0));
+            if (isCrowd)
+                EXPECT_TRUE(crowd->add(copy->getMatrix(), copy->controller()));
+            else
+                scene->addChild(copy);
+        }
+        return scene;
+    }
+
+    /// The camera from where the scene is so many pixels wide.
+    static void look(osg::Camera& camera, const osg::Node& scene, double pixels)
+    {
+        const osg::BoundingSphere bound = scene.getBound();
+        const double half = osg::DegreesToRadians(15.0);
+        const double distance = bound.radius() * side / (std::tan(half) * pixels) + bound.radius();
+        camera.setProjectionMatrixAsPerspective(30.0, 1.0, 0.1 * bound.radius(), distance + 2.0 * bound.radius());
+        camera.setViewMatrixAsLookAt(bound.center() + osg::Vec3(0.3f, -1.0f, 0.4f) * (distance / std::sqrt(1.25)),
+                                     bound.center(), {0, 0, 1});
+    }
+
+    osg::ref_ptr<osg::Image> pictureOf(osg::Node& scene, double pixels)
+    {
+        look(*viewer().getCamera(), scene, pixels);
+        return drawn(scene);
+    }
+
+    osg::ref_ptr<osg::Image> drawn(osg::Node& scene)
+    {
+        viewer().getCamera()->setInitialDrawCallback(new PrimitiveCount::Begin(*_count));
+        viewer().getCamera()->setFinalDrawCallback(new PrimitiveCount::End(*_count, picture()));
+        return ViewerGLTest::pictureOf(&scene, {0.0, 0.1, 0.2});
+    }
+
+    GLuint primitives() const { return _count->primitives; } ///< of the last frame
+
+private:
+    osg::ref_ptr<PrimitiveCount> _count = new PrimitiveCount;
+};
+
+struct ModelCase
+{
+    const char* file;
+    bool isCrowd;
+};
+
+void PrintTo(const ModelCase& model, std::ostream* out)
+{
+    *out << model.file << (model.isCrowd ? ", a crowd" : ", nodes");
+}
+
+class DetailModelsGLTest : public DetailGLTest, public ::testing::WithParamInterface<ModelCase>
+{
+};
+
+TEST_P(DetailModelsGLTest, lookAsWithAllTriangles)
+{
+    const std::string file = modelFile(GetParam().file);
+    if (file.empty()) GTEST_SKIP() << "there is no " << GetParam().file;
+    const osg::ref_ptr<osg::Group> all = makeScene(file, GetParam().isCrowd, 0.0f);
+    const osg::ref_ptr<osg::Group> fewer = makeScene(file, GetParam().isCrowd, 0.5f);
+    // A camera that sees them 1,000, 200 and 40 pixels wide, and so each about 150, 30 and 6.
+    for (const double pixels : {1000.0, 200.0, 40.0})
+    {
+        const osg::ref_ptr<osg::Image> expected = pictureOf(*all, pixels);
+        const GLuint ofAll = primitives();
+        const osg::ref_ptr<osg::Image> found = pictureOf(*fewer, pixels);
+        const GLuint ofFewer = primitives();
+        const int expectedPixels = pixelsDrawn(*expected), foundPixels = pixelsDrawn(*found);
+        // What half a pixel does to all triangles.
+        look(*viewer().getCamera(), *all, pixels);
+        viewer().getCamera()->setProjectionMatrix(viewer().getCamera()->getProjectionMatrix() *
+                                                  osg::Matrix::translate(1.0 / side, 0.0, 0.0));
+        const double moved = meanDifference(*expected, *drawn(*all));
+        const double difference = meanDifference(*expected, *found);
+        const float tone = (meanColor(*expected) - meanColor(*found)).length();
+        EXPECT_LT(difference, moved) << "at " << pixels << " pixels";
+        EXPECT_LT(tone, 0.12f) << "at " << pixels << " pixels";
+        EXPECT_NEAR(foundPixels, expectedPixels, 0.2 * expectedPixels + 10.0) << "at " << pixels << " pixels";
+        const GLuint least = pixels > 200.0 ? 1 : pixels > 40.0 ? 2 : 4; // times fewer
+        EXPECT_LE(least * ofFewer, ofAll) << "at " << pixels << " pixels";
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, DetailModelsGLTest,
+                         ::testing::Values(ModelCase{"Wanderer.glb", true}, ModelCase{"Wanderer.glb", false},
+                                           ModelCase{"Serpent.glb", true}, ModelCase{"assets/Fox/Fox.glb", false},
+                                           ModelCase{"assets/CesiumMan/CesiumMan.glb", true},
+                                           ModelCase{"assets/Knight/Knight.glb", true},
+                                           ModelCase{"assets/Knight/Knight.glb", false}));
+
+TEST_F(DetailGLTest, whatIsNearHasAllTrianglesWhateverAnotherCameraSees)
+{
+    for (const bool isCrowd : {true, false})
+    {
+        osg::ref_ptr<osg::Image> pictures[2];
+        GLuint counts[2];
+        for (const bool isFewer : {false, true})
+        {
+            const osg::ref_ptr<osg::Group> scene = makeScene(ownScene("Wanderer.glb"), isCrowd, isFewer ? 0.03f : 0.0f);
+            const osg::ref_ptr<osg::Group> views = new osg::Group;
+            for (const bool isFar : {false, true})
+            {
+                const osg::ref_ptr<osg::Camera> camera = new osg::Camera;
+                camera->setReferenceFrame(osg::Transform::ABSOLUTE_RF);
+                camera->setRenderOrder(osg::Camera::POST_RENDER);
+                camera->setClearMask(0);
+                camera->setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
+                camera->setViewport(isFar ? side / 2 : 0, 0, side / 2, side / 2);
+                look(*camera, *scene, isFar ? 60.0 : 4000.0);
+                camera->addChild(scene);
+                views->addChild(camera);
+            }
+            pictures[isFewer] = drawn(*views);
+            counts[isFewer] = primitives();
+        }
+        EXPECT_LT(counts[1], 0.9 * counts[0]);
+        int different = 0, shown = 0;
+        for (int y = 0; y < side; ++y)
+            for (int x = 0; x < side / 2; ++x)
+            {
+                different += pictures[0]->getColor(x, y) != pictures[1]->getColor(x, y);
+                shown += pictures[0]->getColor(x, y) != pictures[0]->getColor(0, side - 1);
+            }
+        EXPECT_EQ(different, 0);
+        EXPECT_GT(shown, 1000);
+    }
+}
+
+TEST_F(DetailGLTest, goWithSkinningOnceUpdateRatesAndTheOptimizer)
+{
+    for (const bool isCrowd : {true, false})
+    {
+        const osg::ref_ptr<osg::Group> scene = makeScene(ownScene("Wanderer.glb"), isCrowd, 0.5f);
+        const osg::ref_ptr<osg::Image> expected = pictureOf(*scene, 200.0);
+        const GLuint ofFirst = primitives();
+        const auto setSkinning = [&](Skinning skinning)
+        {
+            SkinnedGeometryVisitor set([&](SkinnedGeometry& mesh) { mesh.setSkinning(skinning); });
+            scene->accept(set);
+        };
+        setSkinning(Skinning::Once);
+        EXPECT_EQ(Picture::pixelsDifferent(*expected, *drawn(*scene), 1.5f / 255.0f), 0);
+        setSkinning(Skinning::EveryDraw);
+        if (isCrowd)
+        {
+            auto& crowd = static_cast<AnimatedCrowd&>(*scene->getChild(0));
+            for (std::size_t index = 0; index < crowd.size(); ++index)
+                crowd.controller(crowd.instances().handleOf(index))->setSpeed(0.0);
+            const osg::ref_ptr<osg::Image> still = drawn(*scene);
+            EXPECT_TRUE(crowd.setUpdateRate(UpdateRate{2, 1000.0f}));
+            // Placed in the eye's space by floats, edges may fall on other pixels.
+            EXPECT_LT(Picture::pixelsDifferent(*still, *drawn(*scene)), 40);
+            EXPECT_LT(primitives(), 2 * ofFirst);
+            continue;
+        }
+        osgUtil::Optimizer optimizer;
+        optimizer.optimize(scene, osgUtil::Optimizer::ALL_OPTIMIZATIONS);
+        // Flattened matrices are rounded otherwise.
+        EXPECT_LT(Picture::pixelsDifferent(*expected, *drawn(*scene)), 5);
+        EXPECT_LE(primitives(), ofFirst);
+    }
+}
+
+TEST_F(DetailGLTest, comeBackWhenGLObjectsWereReleased)
+{
+    const osg::ref_ptr<osg::Group> scene = makeScene(ownScene("Wanderer.glb"), true, 0.5f);
+    const osg::ref_ptr<osg::Image> before = pictureOf(*scene, 200.0);
+    scene->releaseGLObjects();
+    scene->resizeGLObjectBuffers(64);
+    EXPECT_EQ(Picture::pixelsDifferent(*before, *drawn(*scene)), 0);
+}
+
+class DetailThreadingGLTest : public DetailGLTest,
+                              public ::testing::WithParamInterface<osgViewer::ViewerBase::ThreadingModel>
+{
+protected:
+    osg::ref_ptr<osg::Image> drawn(osgViewer::ViewerBase::ThreadingModel model)
+    {
+        osg::ref_ptr<osg::Group> scene = makeScene(ownScene("Wanderer.glb"), true, 0.5f);
+        scene->addChild(makeScene(ownScene("Wanderer.glb"), false, 0.5f));
+        // The cull traversal has to make levels.
+        SkinnedGeometryVisitor forget([](SkinnedGeometry& mesh) { mesh.forgetDetailLevels(); });
+        scene->accept(forget);
+        context().releaseContext();
+        viewer().setThreadingModel(model);
+        viewer().setSceneData(scene);
+        look(*viewer().getCamera(), *scene, 200.0);
+        viewer().realize();
+        for (int frame = 0; frame <= 10; ++frame)
+            viewer().frame(0.1 * frame);
+        viewer().stopThreading();
+        context().makeCurrent();
+        return picture().copy();
+    }
+};
+
+TEST_P(DetailThreadingGLTest, drawsTheSame)
+{
+    const osg::ref_ptr<osg::Image> expected = drawn(osgViewer::ViewerBase::SingleThreaded);
+    EXPECT_GT(picture().pixelsDrawn(), 500);
+    EXPECT_EQ(Picture::pixelsDifferent(*expected, *drawn(GetParam())), 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, DetailThreadingGLTest, ::testing::ValuesIn(threadingModels));
+
+} // namespace
+
+} // namespace osgGpuAnimation

@@ -103,6 +103,7 @@ TEST(OptionStringTest, valuesThatDoNotFitAreErrors)
                              "compact",
                              "compact=0",
                              "compact=-1e-4",
+                             "compact=1.5",
                              "compact=nan",
                              "compact=inf",
                              "speed",

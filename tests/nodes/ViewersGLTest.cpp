@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "support/NotifyLog.h"
 #include "support/TestCharacter.h"
+#include "support/ThreadingModels.h"
 #include "support/ViewerGLTest.h"
 
 #include <osgGpuAnimation/gpu/PosePipeline.h>
@@ -16,10 +17,6 @@ namespace
 {
 
 using Threading = osgViewer::ViewerBase::ThreadingModel;
-
-constexpr Threading threadings[] = {
-    osgViewer::ViewerBase::SingleThreaded, osgViewer::ViewerBase::CullDrawThreadPerContext,
-    osgViewer::ViewerBase::DrawThreadPerContext, osgViewer::ViewerBase::CullThreadPerCameraDrawThreadPerContext};
 
 /// Several characters and a crowd at their own speeds.
 osg::ref_ptr<osg::Group> makeScene()
@@ -119,7 +116,7 @@ TEST_P(TwoContextsGLTest, aSlaveCameraOnAContextOfItsOwnShowsTheSameUnderEveryTh
     int frame = 0;
     // Switched while it runs; each model draws a few frames and ends with one at the time looked at.
     for (int round = 0; round < 2; ++round)
-        for (const Threading threading : threadings)
+        for (const Threading threading : threadingModels)
         {
             // What OSG keeps by the context's number is no more made for two threads than ours.
             if (GetParam().areShared && threading != osgViewer::ViewerBase::SingleThreaded) continue;
@@ -141,7 +138,7 @@ INSTANTIATE_TEST_SUITE_P(Contexts, TwoContextsGLTest,
 TEST_F(ViewersGLTest, twoViewsOfACompositeViewerShowOneScene)
 {
     const osg::ref_ptr<osg::Image> expected = expectedAt(2.3);
-    for (const Threading threading : threadings)
+    for (const Threading threading : threadingModels)
     {
         osgViewer::CompositeViewer composite;
         composite.setThreadingModel(threading);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "SoakViewer.h"
 
+#include "support/ThreadingModels.h"
+
 #include <osgGpuAnimation/gpu/EglGraphicsContext.h>
 
 #include <iostream>
@@ -85,10 +87,7 @@ void SoakViewer::moveCamera(std::mt19937& random)
 
 void SoakViewer::changeThreading(std::mt19937& random)
 {
-    const osgViewer::ViewerBase::ThreadingModel models[] = {
-        osgViewer::ViewerBase::SingleThreaded, osgViewer::ViewerBase::CullDrawThreadPerContext,
-        osgViewer::ViewerBase::DrawThreadPerContext, osgViewer::ViewerBase::CullThreadPerCameraDrawThreadPerContext};
-    _viewer->setThreadingModel(models[std::uniform_int_distribution<int>(0, 3)(random)]);
+    _viewer->setThreadingModel(threadingModels[std::uniform_int_distribution<int>(0, 3)(random)]);
 }
 
 bool SoakViewer::open(std::mt19937& random)

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "support/NotifyLog.h"
 #include "support/TestCharacter.h"
 #include "support/ThreadingModels.h"
 #include "support/ViewerGLTest.h"
@@ -181,6 +182,36 @@ TEST_F(ViewersGLTest, aContextThatSharesComesWhenTheFirstHasDrawn)
         for (int drawn = 0; drawn <= i; ++drawn)
             EXPECT_EQ(Picture::pixelsDifferent(*expected, pictures[drawn]->image()), 0) << i << drawn;
     }
+}
+
+// With a vertex array object's name that is another context's the picture may be right all the same, but not the call.
+TEST_F(ViewersGLTest, contextsThatShareEvaluateTheirOwnCharactersWithoutErrors)
+{
+    const osg::ref_ptr<osg::Image> expected = expectedAt(2.3);
+    const osg::ref_ptr<NotifyLog> log = new NotifyLog(osg::NOTICE);
+    osg::setNotifyHandler(log); // OSG says there which errors GL has
+    {
+        osgViewer::CompositeViewer composite;
+        composite.setThreadingModel(osgViewer::ViewerBase::SingleThreaded);
+        osg::ref_ptr<EglGraphicsContext> first = makeContext();
+        for (const osg::ref_ptr<EglGraphicsContext>& context : {first, makeContext(first)})
+        {
+            osg::ref_ptr<osgViewer::View> view = new osgViewer::View;
+            setCamera(*view->getCamera(), context, new Picture);
+            view->setSceneData(makeScene());
+            composite.addView(view);
+        }
+        composite.realize();
+        for (const double time : {0.0, 1.0, 2.3})
+            composite.frame(time);
+        for (unsigned int i = 0; i < 2; ++i)
+        {
+            const osg::Camera::DrawCallback* drawn = composite.getView(i)->getCamera()->getFinalDrawCallback();
+            EXPECT_EQ(Picture::pixelsDifferent(*expected, static_cast<const Picture*>(drawn)->image()), 0) << i;
+        }
+    }
+    osg::setNotifyHandler(new osg::StandardNotifyHandler);
+    EXPECT_EQ(log->text.find("OpenGL error"), std::string::npos) << log->text;
 }
 
 TEST_F(ViewersGLTest, nothingIsDynamicThatIsDrawn)

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "nodes/GlCallTrace.h"
-#include "nodes/Panel.h"
+#include "support/MeshSkinning.h"
 #include "support/ViewerGLTest.h"
 
 #include <osgGpuAnimation/animation/ClipBuilder.h>
 #include <osgGpuAnimation/gpu/PosePipeline.h>
 #include <osgGpuAnimation/gpu/SkinnedVertices.h>
+#include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/CharacterProgram.h>
 
@@ -103,11 +104,6 @@ osg::ref_ptr<AnimatedCharacter> makeFlag(const FlagOptions& options)
     character->computeClipBounds();
     EXPECT_TRUE(character->controller().play("swing"));
     return character;
-}
-
-void setSkinning(AnimatedCharacter& character, Skinning skinning)
-{
-    dynamic_cast<SkinnedGeometry&>(*character.getChild(0)).setSkinning(skinning);
 }
 
 class SkinOnceGLTest : public ViewerGLTest

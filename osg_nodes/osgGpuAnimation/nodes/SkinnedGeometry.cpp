@@ -76,7 +76,7 @@ SkinnedGeometry::SkinnedGeometry() : _number(newNumber())
 SkinnedGeometry::SkinnedGeometry(const SkinnedGeometry& other, const osg::CopyOp& copyop)
     : osg::Geometry(other, copyop), _influences(other._influences), _rigidEntry(other._rigidEntry),
       _morphTargets(other._morphTargets), _morphDeltas(other._morphDeltas), _morph(other._morph),
-      _morphEntry(other._morphEntry), _skinning(other._skinning), _number(newNumber())
+      _morphEntry(other._morphEntry), _skinning(other.skinning()), _number(newNumber())
 {
 }
 

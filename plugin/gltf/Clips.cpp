@@ -10,6 +10,7 @@
 
 #include <optional>
 #include <set>
+#include <string_view>
 #include <utility>
 
 namespace osgGpuAnimation::gltf
@@ -18,7 +19,7 @@ namespace osgGpuAnimation::gltf
 namespace
 {
 
-std::optional<Channel::Path> pathOf(const std::string& name)
+std::optional<Channel::Path> pathOf(std::string_view name)
 {
     if (name == "translation") return Channel::Path::Translation;
     if (name == "rotation") return Channel::Path::Rotation;
@@ -27,7 +28,7 @@ std::optional<Channel::Path> pathOf(const std::string& name)
     return std::nullopt;
 }
 
-std::optional<Channel::Interpolation> interpolationOf(const std::string& name)
+std::optional<Channel::Interpolation> interpolationOf(std::string_view name)
 {
     if (name == "STEP") return Channel::Interpolation::Step;
     if (name == "LINEAR" || name.empty()) return Channel::Interpolation::Linear;
@@ -85,19 +86,19 @@ int ClipReader::targetOf(const tinygltf::AnimationChannel& channel, Channel::Pat
 {
     const auto node = static_cast<std::size_t>(channel.target_node);
     if (node >= _model.nodes.size()) return -1;
-    const std::string where = _clip + "." + _channel + ": ";
+    const auto where = [&] { return _clip + "." + _channel + ": "; };
     const int target = path == Channel::Path::Weights ? _morphs.ofNode[node] : _joints.ofNode[node];
     if (target < 0)
-        warn(where + namedElement("nodes", node, _model.nodes[node].name) + " has no morph targets; channel skipped");
+        warn(where() + namedElement("nodes", node, _model.nodes[node].name) + " has no morph targets; channel skipped");
     else if (path != Channel::Path::Weights && _joints.isSheared[node])
     {
-        warn(where + namedElement("nodes", node, _model.nodes[node].name) +
+        warn(where() + namedElement("nodes", node, _model.nodes[node].name) +
              " has a matrix that shears and cannot be animated; channel skipped");
         return -1;
     }
     else if (!_driven.emplace(channel.target_node, path).second)
     {
-        warn(where + channel.target_path + " of nodes[" + std::to_string(node) +
+        warn(where() + channel.target_path + " of nodes[" + std::to_string(node) +
              "] is driven by another channel already; channel skipped");
         return -1;
     }

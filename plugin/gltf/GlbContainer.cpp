@@ -93,7 +93,9 @@ Result<GlbContainer> splitContainer(std::string_view bytes, Report& report)
         const Result<Chunk> chunk = readChunk(glb.value(), at, number);
         if (!chunk) return chunk.error();
         if (number == 0 && chunk.value().type != jsonType)
-            return fault("GLB chunk 0", "the JSON chunk", "type " + std::to_string(chunk.value().type));
+            return fault("GLB chunk 0", "the JSON chunk",
+                         chunk.value().type == binaryType ? "the BIN chunk"
+                                                          : "type " + std::to_string(chunk.value().type));
         if (number == 0)
             container.json = chunk.value().data;
         else

@@ -35,15 +35,7 @@ public:
     {
     }
 
-    /// Room for as many values as the text can have: one, and one more for each comma and opening bracket.
-    void reserve()
-    {
-        const std::string_view text = _source.text();
-        const std::size_t values =
-            std::size_t(std::count(text.begin(), text.end(), ',') + std::count(text.begin(), text.end(), '{') +
-                        std::count(text.begin(), text.end(), '[') + 1);
-        _tree.reserve(std::min(values, _mostValues), text.size());
-    }
+    void reserve() { _tree.reserve(std::min(_source.mostValues(), _mostValues), _source.text().size()); }
 
     bool null() { return add(JsonTree::Type::Null); }
     bool boolean(bool value) { return addNumber(JsonTree::Type::Boolean, value ? 1.0 : 0.0); }
@@ -141,13 +133,21 @@ private:
         return true;
     }
 
+    using Member = std::pair<std::string_view, std::uint32_t>;
+
+    /// Any order with alike ones side by side: lengths mostly differ, and are sooner compared.
+    static bool isBefore(const Member& a, const Member& b)
+    {
+        return a.first.size() != b.first.size() ? a.first.size() < b.first.size() : a < b;
+    }
+
     void dropDuplicates()
     {
         if (_open.back().size < 2) return;
         _members.clear();
         for (std::uint32_t member = _open.back().value + 1; member < _tree.size(); member = _tree.endOf(member))
             _members.emplace_back(_tree.keyOf(member), member);
-        std::sort(_members.begin(), _members.end());
+        std::sort(_members.begin(), _members.end(), isBefore);
         for (std::size_t i = 1; i < _members.size(); ++i)
             if (_members[i - 1].first == _members[i].first)
             {
@@ -166,7 +166,7 @@ private:
     std::string _key;
     std::uint32_t _last = 0;
     std::vector<Open> _open;
-    std::vector<std::pair<std::string_view, std::uint32_t>> _members;
+    std::vector<Member> _members;
     std::vector<std::uint32_t> _duplicates;
     std::string _fault;
 };

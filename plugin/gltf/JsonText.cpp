@@ -21,7 +21,12 @@ JsonText::JsonText(std::string_view text) : _whole(text)
     for (std::size_t at = 0; at < text.size(); ++at)
     {
         const char c = text[at];
-        if (c == '{' || c == '[') ++_depth;
+        if (c == ',') ++_mostValues;
+        if (c == '{' || c == '[')
+        {
+            ++_depth;
+            ++_mostValues;
+        }
         if (c == '}' || c == ']') --_depth;
         if (c != '"') continue;
         const std::size_t begin = at + 1;

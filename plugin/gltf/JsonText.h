@@ -29,6 +29,8 @@ public:
     /// for rising numbers.
     std::optional<std::string_view> dataAt(std::size_t string);
 
+    /// At least as many as it has values: one, and one more for each comma and opening bracket outside strings.
+    std::size_t mostValues() const { return _mostValues; }
     std::size_t dataBytes() const { return _whole.size() - text().size(); } ///< of all that was taken out
     /// Of the strings and keys that the parser gets: all that were not taken out.
     std::size_t otherBytes() const { return _otherBytes; }
@@ -43,6 +45,7 @@ private:
     std::size_t _nextData = 0;
     std::size_t _strings = 0;
     std::size_t _otherBytes = 0;
+    std::size_t _mostValues = 1;
     std::ptrdiff_t _depth = 0;
     std::string_view _list; ///< the last key of the root object
     std::string_view _key;

@@ -61,11 +61,6 @@ void JsonTree::drop(std::uint32_t value)
     _nodes[value].dropped = true;
 }
 
-std::string_view JsonTree::keyOf(std::uint32_t value) const
-{
-    return std::string_view(_text).substr(_nodes[value].key, _nodes[value].keyLength);
-}
-
 bool JsonValue::isInteger() const
 {
     return is(JsonTree::Type::Number) && std::trunc(node().number) == node().number;
@@ -75,11 +70,6 @@ std::string_view JsonValue::text() const
 {
     if (node().isTextOutside) return _tree->_outside[node().text];
     return std::string_view(_tree->_text).substr(node().text, node().textLength);
-}
-
-std::string_view JsonValue::key() const
-{
-    return _tree->keyOf(_value);
 }
 
 JsonValue JsonValue::operator[](std::string_view member) const
@@ -114,37 +104,6 @@ std::string JsonValue::description() const
     default:
         return "an object";
     }
-}
-
-JsonValue::Iterator::Iterator(JsonTree* tree, std::uint32_t value, std::uint32_t end)
-    : _tree(tree), _value(value), _end(end)
-{
-    skipDropped();
-}
-
-JsonValue::Iterator& JsonValue::Iterator::operator++()
-{
-    _value = _tree->endOf(_value);
-    skipDropped();
-    return *this;
-}
-
-void JsonValue::Iterator::skipDropped()
-{
-    while (_value != _end && _tree->_nodes[_value].dropped)
-        _value = _tree->endOf(_value);
-}
-
-JsonValue::Iterator JsonValue::begin() const
-{
-    if (!_tree) return Iterator(nullptr, 0, 0);
-    return Iterator(_tree, _value + 1, node().end);
-}
-
-JsonValue::Iterator JsonValue::end() const
-{
-    if (!_tree) return Iterator(nullptr, 0, 0);
-    return Iterator(_tree, node().end, node().end);
 }
 
 } // namespace osgGpuAnimation::gltf

@@ -121,4 +121,47 @@ private:
     std::uint32_t _value = 0;
 };
 
+// Called for every value of a document, a few times each.
+
+inline std::string_view JsonTree::keyOf(std::uint32_t value) const
+{
+    return std::string_view(_text).substr(_nodes[value].key, _nodes[value].keyLength);
+}
+
+inline std::string_view JsonValue::key() const
+{
+    return _tree->keyOf(_value);
+}
+
+inline JsonValue::Iterator::Iterator(JsonTree* tree, std::uint32_t value, std::uint32_t end)
+    : _tree(tree), _value(value), _end(end)
+{
+    skipDropped();
+}
+
+inline JsonValue::Iterator& JsonValue::Iterator::operator++()
+{
+    _value = _tree->endOf(_value);
+    skipDropped();
+    return *this;
+}
+
+inline void JsonValue::Iterator::skipDropped()
+{
+    while (_value != _end && _tree->_nodes[_value].dropped)
+        _value = _tree->endOf(_value);
+}
+
+inline JsonValue::Iterator JsonValue::begin() const
+{
+    if (!_tree) return Iterator(nullptr, 0, 0);
+    return Iterator(_tree, _value + 1, node().end);
+}
+
+inline JsonValue::Iterator JsonValue::end() const
+{
+    if (!_tree) return Iterator(nullptr, 0, 0);
+    return Iterator(_tree, node().end, node().end);
+}
+
 } // namespace osgGpuAnimation::gltf

@@ -14,8 +14,6 @@ namespace osgGpuAnimation::gltf
 namespace
 {
 
-constexpr std::size_t mostBytesOfAStream = std::size_t(2) << 30;
-
 std::optional<Error> checkBeginning(const RegularFile& file, std::size_t maxJsonBytes)
 {
     std::string beginning(std::min(file.size(), bytesBeforeJson), '\0');
@@ -27,7 +25,7 @@ std::optional<Error> checkBeginning(const RegularFile& file, std::size_t maxJson
 /// RegularFile's messages begin with the path.
 Error withoutPath(const Error& error, const std::string& path)
 {
-    const std::string subject = path + ": ";
+    const std::string subject = subjectOfFile(path);
     return error.message.rfind(subject, 0) == 0 ? Error{error.message.substr(subject.size())} : error;
 }
 
@@ -43,7 +41,7 @@ Result<std::string> readModelFile(const std::string& path, const ImportOptions& 
     return bytes ? std::move(bytes) : withoutPath(bytes.error(), path);
 }
 
-Result<std::string> readModelStream(std::istream& stream, const ImportOptions& options)
+Result<std::string> readModelStream(std::istream& stream, const ImportOptions& options, std::size_t mostBytes)
 {
     std::string bytes;
     char block[65536];
@@ -52,11 +50,12 @@ Result<std::string> readModelStream(std::istream& stream, const ImportOptions& o
     {
         bytes.append(block, static_cast<std::size_t>(stream.gcount()));
         if (bytes.size() < bytesBeforeJson) continue;
-        if (!json) json = claimedJsonBytes(bytes, mostBytesOfAStream);
+        if (!json) json = claimedJsonBytes(bytes, mostBytes);
         // A GLB may claim more than it has: that is for the container to say.
         if (*json > options.maxJsonBytes && bytes.size() - bytesBeforeJson > options.maxJsonBytes)
             return *checkJsonBytes(bytes.size() - bytesBeforeJson, options.maxJsonBytes);
-        if (bytes.size() > mostBytesOfAStream) return Error{"the stream holds more than 2 GiB, or does not end"};
+        if (bytes.size() > mostBytes)
+            return Error{"the stream holds more than " + std::to_string(mostBytes) + " bytes, or does not end"};
     }
     if (stream.bad()) return Error{"the stream cannot be read"};
     return bytes;

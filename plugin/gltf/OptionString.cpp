@@ -59,7 +59,7 @@ std::optional<bool> applyPlaying(const std::string& name, const std::string& val
 /// What a value of the option must be.
 const char* wanted(const std::string& name)
 {
-    if (name == "compact") return "a number above 0";
+    if (name == "compact") return "a number above 0, at most 1";
     if (name == "speed") return "a number";
     if (name == "start" || name == "fade") return "a number of seconds, 0 or more";
     if (name == "loop") return "once, loop or pingpong";
@@ -71,7 +71,7 @@ bool apply(const OptionWord& word, ImportOptions& options)
 {
     const std::string value = word.value.value_or("");
     if (const std::optional<bool> fits = applyPlaying(word.name, value, options)) return *fits;
-    if (word.name == "compact") return readFinite(value, options.compact.emplace()) && *options.compact > 0.0;
+    if (word.name == "compact") return readFinite(value, options.compact.emplace()) && *options.compact > 0.0 && *options.compact <= 1.0;
     if (word.name == "noRotation")
         options.noRotation = true;
     else if (word.name == "noKeys")

@@ -24,7 +24,7 @@ const std::uint64_t mostBytesOfAFile = std::uint64_t(1) << 32;
 
 Error about(const std::string& path, const std::string& what)
 {
-    return Error{printable(path, mostPathText) + ": " + what};
+    return Error{subjectOfFile(path) + what};
 }
 
 std::string kindText(mode_t mode)
@@ -41,6 +41,11 @@ std::string systemText(int code)
 }
 
 } // namespace
+
+std::string subjectOfFile(const std::string& path)
+{
+    return printable(path, mostPathText) + ": ";
+}
 
 Result<RegularFile> RegularFile::open(const std::string& path)
 {

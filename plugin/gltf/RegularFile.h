@@ -37,6 +37,9 @@ private:
     std::string _path;
 };
 
+/// How errors about a file begin: its path, shortened where it is long, and a colon.
+std::string subjectOfFile(const std::string& path);
+
 /// The content of a file that the user named. Errors: it does not exist, is a folder, no regular file, empty, of more
 /// than 4 GiB or cannot be read.
 Result<std::string> readWholeFile(const std::string& path);

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <map>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -36,8 +37,13 @@ std::string in(int accessor)
     return " in " + elementName("accessors", std::size_t(accessor));
 }
 
+bool isCubic(const tinygltf::AnimationSampler& sampler)
+{
+    return std::string_view(sampler.interpolation) == "CUBICSPLINE";
+}
+
 /// Empty where an output may drive the path, else what is expected.
-std::string wrongOutputFormat(const tinygltf::Accessor& output, const std::string& path)
+std::string wrongOutputFormat(const tinygltf::Accessor& output, std::string_view path)
 {
     if (path == "rotation")
         return output.type == TINYGLTF_TYPE_VEC4 && isFloatOrNormalized(output)
@@ -54,8 +60,7 @@ std::string wrongOutputFormat(const tinygltf::Accessor& output, const std::strin
 class AnimationValidation
 {
 public:
-    AnimationValidation(Model& model, Report& report)
-        : _model(model), _report(report), _seenInputs(model.accessors.size())
+    AnimationValidation(Model& model, Report& report) : _model(model), _report(report), _inputs(model.accessors.size())
     {
     }
 
@@ -69,33 +74,64 @@ public:
         for (std::size_t c = 0; c < animation.channels.size(); ++c)
             if (animation.channels[c].target_node >= 0)
                 if (std::optional<Error> error = validateChannel(a, c)) return error;
+        emptyIfFaulty(a);
         return std::nullopt;
     }
 
 private:
+    enum class Times
+    {
+        Unseen,
+        Good,
+        Negative, ///< the first one
+        Twice,    ///< one of them
+    };
+
     const tinygltf::Accessor& accessorOf(int index) const { return _model.accessors[std::size_t(index)]; }
 
     std::optional<Error> validateInput(int input, const std::string& name)
     {
         const tinygltf::Accessor& accessor = accessorOf(input);
-        if (_seenInputs[std::size_t(input)]) return std::nullopt;
-        _seenInputs[std::size_t(input)] = true;
+        Times& seen = _inputs[std::size_t(input)];
+        if (seen != Times::Unseen) return std::nullopt;
         if (accessor.type != TINYGLTF_TYPE_SCALAR || !isFloat(accessor))
             return fault(name, "SCALAR of float", formatText(accessor) + in(input));
         const std::vector<float> times = readFloats(_model, input);
-        if (times[0] < 0.0f) _report.warn(name + ": the first time is negative" + in(input));
-        bool equal = false;
+        seen = times[0] < 0.0f ? Times::Negative : Times::Good;
         for (std::size_t i = 1; i < times.size(); ++i)
         {
             if (times[i] < times[i - 1])
                 return fault(name, "times that increase",
                              numberText(times[i]) + " after " + numberText(times[i - 1]) + in(input));
-            if (times[i] == times[i - 1] && !equal)
-                _report.warn(name + ": expected times that increase, found " + numberText(times[i]) + " twice" +
-                             in(input));
-            equal = equal || times[i] == times[i - 1];
+            if (times[i] == times[i - 1]) seen = Times::Twice;
         }
         return std::nullopt;
+    }
+
+    /// Takes the channels from an animation that has no clip in it because of its times.
+    void emptyIfFaulty(std::size_t a)
+    {
+        tinygltf::Animation& animation = _model.animations[a];
+        for (const tinygltf::AnimationChannel& channel : animation.channels)
+        {
+            if (channel.target_node < 0) continue;
+            const int input = animation.samplers[std::size_t(channel.sampler)].input;
+            const Times times = _inputs[std::size_t(input)];
+            if (times == Times::Good) continue;
+            _report.warn(elementName("animations", a, "samplers", std::size_t(channel.sampler)) + ".input: " +
+                         (times == Times::Twice ? "expected times that increase, found " + firstTwice(input) + " twice"
+                                                : "the first time is negative") +
+                         in(input) + "; clip " + (animation.name.empty() ? "" : quoted(animation.name) + " ") +
+                         "skipped");
+            animation.channels.clear();
+            return;
+        }
+    }
+
+    std::string firstTwice(int input) const
+    {
+        const std::vector<float> times = readFloats(_model, input);
+        return numberText(*std::adjacent_find(times.begin(), times.end()));
     }
 
     std::optional<Error> validateChannel(std::size_t a, std::size_t c)
@@ -114,21 +150,21 @@ private:
         if (values == 0)
             return fault(channelName() + ".target", "a node with morph targets for weights",
                          elementName("nodes", std::size_t(channel.target_node)) + ", which has none");
-        const std::size_t perTime = values * (sampler.interpolation == "CUBICSPLINE" ? 3 : 1);
+        const std::size_t perTime = values * (isCubic(sampler) ? 3 : 1);
         const std::size_t times = accessorOf(sampler.input).count;
         if (output.count / perTime != times || output.count % perTime != 0)
             return fault(samplerName(),
                          std::to_string(perTime) + " values for each of " + std::to_string(times) + " times",
                          std::to_string(output.count) + " values" + in(sampler.output));
         warnOfMatrix(channel, channelName);
-        if (channel.target_path == "rotation") mendRotations(sampler, samplerName);
+        if (std::string_view(channel.target_path) == "rotation") mendRotations(sampler, samplerName);
         return std::nullopt;
     }
 
     /// 1, or the number of morph targets for weights.
     std::size_t valuesOfKey(const tinygltf::AnimationChannel& channel) const
     {
-        if (channel.target_path != "weights") return 1;
+        if (std::string_view(channel.target_path) != "weights") return 1;
         const int mesh = _model.nodes[std::size_t(channel.target_node)].mesh;
         return mesh < 0 ? 0 : _model.meshes[std::size_t(mesh)].primitives.front().targets.size();
     }
@@ -145,7 +181,7 @@ private:
     template <typename Name>
     void mendRotations(tinygltf::AnimationSampler& sampler, const Name& name)
     {
-        const bool cubic = sampler.interpolation == "CUBICSPLINE";
+        const bool cubic = isCubic(sampler);
         int& seen = _rotations.try_emplace(std::pair(sampler.output, cubic), unseen).first->second;
         if (seen != unseen)
         {
@@ -179,7 +215,7 @@ private:
 
     Model& _model;
     Report& _report;
-    std::vector<bool> _seenInputs; ///< one an accessor of the file
+    std::vector<Times> _inputs; ///< one an accessor of the file
     /// The accessor to take for a rotation output, by the file's accessor and whether it is read as CUBICSPLINE.
     std::map<std::pair<int, bool>, int> _rotations;
 };

@@ -3,10 +3,23 @@
 
 #include "gltf/ModelBytes.h"
 
+#include <osgDB/FileNameUtils>
+
 #include <filesystem>
 
 namespace osgGpuAnimation::tool
 {
+
+namespace
+{
+
+bool isCalledGltf(const std::string& fileName)
+{
+    const std::string extension = osgDB::getLowerCaseFileExtension(fileName);
+    return extension == "gltf" || extension == "glb";
+}
+
+} // namespace
 
 Result<gltf::ImportedModel> readModel(const std::string& fileName, const gltf::ImportOptions& options)
 {
@@ -19,7 +32,10 @@ Result<gltf::ImportedModel> readModel(const std::string& fileName, const gltf::I
 
     const Result<std::string> bytes = gltf::readModelFile(fileName, options);
     if (!bytes) return bytes.error();
-    return gltf::importModel(bytes.value(), fileName, options);
+    Result<gltf::ImportedModel> model = gltf::importModel(bytes.value(), fileName, options);
+    if (!model && !isCalledGltf(fileName))
+        return Error{"only .gltf and .glb files can be read here, and this is none: " + model.error().message};
+    return model;
 }
 
 } // namespace osgGpuAnimation::tool

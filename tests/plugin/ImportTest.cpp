@@ -57,6 +57,21 @@ struct ArmAndStone : ModelBuilder
     int mesh, root, arm, sword, stone;
 };
 
+/// A node with a mesh, instanced.
+struct ThreeStones : ModelBuilder
+{
+    ThreeStones() : stone(node("stone", -1, triangle()))
+    {
+        tinygltf::Value::Object attributes, extension;
+        attributes["TRANSLATION"] = tinygltf::Value(floats(TINYGLTF_TYPE_VEC3, {0, 0, 0, 5, 0, 0, 0, 7, 0}));
+        attributes["SCALE"] = tinygltf::Value(floats(TINYGLTF_TYPE_VEC3, {1, 1, 1, -2, 2, 2, 1, 1, 1}));
+        extension["attributes"] = tinygltf::Value(attributes);
+        at(stone).extensions["EXT_mesh_gpu_instancing"] = tinygltf::Value(extension);
+        model.extensionsUsed = {"EXT_mesh_gpu_instancing"};
+    }
+    int stone;
+};
+
 } // namespace
 
 TEST(ImportTest, whatMovesIsTheCharactersAndTheRestIsPlain)
@@ -206,21 +221,25 @@ TEST(ImportTest, mirroredPlacesTurnTheWinding)
 
 TEST(ImportTest, instancesAreTransformsOverOneGeometry)
 {
-    ModelBuilder file;
-    const int stone = file.node("stone", -1, file.triangle());
-    tinygltf::Value::Object attributes, extension;
-    attributes["TRANSLATION"] = tinygltf::Value(file.floats(TINYGLTF_TYPE_VEC3, {0, 0, 0, 5, 0, 0, 0, 7, 0}));
-    attributes["SCALE"] = tinygltf::Value(file.floats(TINYGLTF_TYPE_VEC3, {1, 1, 1, -2, 2, 2, 1, 1, 1}));
-    extension["attributes"] = tinygltf::Value(attributes);
-    file.at(stone).extensions["EXT_mesh_gpu_instancing"] = tinygltf::Value(extension);
-    file.model.extensionsUsed = {"EXT_mesh_gpu_instancing"};
+    const ThreeStones file;
     const ImportedModel model = imported(file);
-    const osg::Geometry& geometry = *primitiveOf(model, stone).geometry;
+    const osg::Geometry& geometry = *primitiveOf(model, file.stone).geometry;
     ASSERT_EQ(geometry.getNumParents(), 3u);
     const auto& second = dynamic_cast<const osg::MatrixTransform&>(*geometry.getParent(1));
     EXPECT_EQ(osg::Vec3d(1, 0, 0) * second.getMatrix(), osg::Vec3d(3, 0, 0));
     EXPECT_TRUE(second.getStateSet()->getAttribute(osg::StateAttribute::FRONTFACE));
     EXPECT_TRUE(model.messages.warnings.empty());
+}
+
+TEST(ImportTest, instancesAreLimited)
+{
+    const ThreeStones file;
+    ImportOptions options;
+    options.maxDecodedBytes = 2000; // an instance counts as 1024 bytes
+    const ImportedModel model = imported(file, options);
+    EXPECT_EQ(primitiveOf(model, file.stone).geometry->getNumParents(), 1u);
+    ASSERT_EQ(model.messages.warnings.size(), 1u);
+    EXPECT_NE(model.messages.warnings[0].find("3 are too many; the mesh is drawn once"), std::string::npos);
 }
 
 TEST(ImportTest, aFaultyInstancingDrawsOnceWithAWarning)

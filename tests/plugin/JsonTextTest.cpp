@@ -55,6 +55,14 @@ TEST(JsonTextTest, longDataUrisOfBuffersAndImagesStayWhereTheyAre)
     }
 }
 
+TEST(JsonTextTest, valuesAreCountedOutsideStrings)
+{
+    const std::pair<const char*, std::size_t> texts[] = {
+        {"{}", 2}, {"7", 1}, {R"({"a,[{\"":[1,2,{"b":"{,"}]})", 6}, {"[1,2", 3}, {"", 1}};
+    for (const auto& [text, values] : texts)
+        EXPECT_EQ(JsonText(text).mostValues(), values) << text;
+}
+
 TEST(JsonTextTest, otherStringsAreTheParsers)
 {
     const std::string texts[] = {

@@ -9,6 +9,8 @@
 
 #include <filesystem>
 #include <sstream>
+#include <streambuf>
+#include <tuple>
 
 namespace osgGpuAnimation::gltf
 {
@@ -24,6 +26,32 @@ std::string json(std::size_t bytes)
     const std::string text = R"({"asset":{"version":"2.0"}})";
     return text + std::string(bytes - text.size(), ' ');
 }
+
+/// A beginning, and spaces for ever after.
+class EndlessStream : public std::streambuf
+{
+public:
+    explicit EndlessStream(std::string beginning) : _block(std::move(beginning)) { setWhole(); }
+    std::size_t given() const { return _given; }
+
+protected:
+    int_type underflow() override
+    {
+        _block.assign(4096, ' ');
+        setWhole();
+        return traits_type::to_int_type(_block[0]);
+    }
+
+private:
+    void setWhole()
+    {
+        _given += _block.size();
+        setg(_block.data(), _block.data(), _block.data() + _block.size());
+    }
+
+    std::string _block;
+    std::size_t _given = 0;
+};
 
 struct ModelBytesTest : ::testing::Test
 {
@@ -79,6 +107,45 @@ TEST_F(ModelBytesTest, jsonKeepsToItsLimit)
         SCOPED_TRACE(content.substr(0, 4) + " of " + std::to_string(content.size()));
         for (const std::string& found : {readFile(content), readStream(content)})
             EXPECT_TRUE(expected.empty() ? found.empty() : found.find(expected) != std::string::npos) << found;
+    }
+}
+
+TEST_F(ModelBytesTest, errorsOfLongPathsBeginWithoutThem)
+{
+    const std::string path = scratch.file(std::string(250, 'x'));
+    const Result<std::string> missing = readModelFile(path, options);
+    ASSERT_FALSE(missing);
+    EXPECT_EQ(missing.error().message, "the file does not exist");
+}
+
+TEST_F(ModelBytesTest, aStreamMayHaveNoEnd)
+{
+    const std::string glbBeginning = glb({{jsonChunk, json(100)}, {binaryChunk, ""}}, 2, 0xffffffff);
+    const std::tuple<std::string, std::size_t, std::string> cases[] = {
+        {"{", std::size_t(2) << 30, "JSON: expected a text of at most 1000 bytes (limit maxJsonBytes), found "},
+        {glbBeginning, 1000000, "the stream holds more than 1000000 bytes, or does not end"},
+    };
+    options.maxJsonBytes = limit;
+    for (const auto& [beginning, mostBytes, expected] : cases)
+    {
+        SCOPED_TRACE(expected);
+        EndlessStream endless(beginning);
+        std::istream stream(&endless);
+        const Result<std::string> bytes = readModelStream(stream, options, mostBytes);
+        ASSERT_FALSE(bytes);
+        EXPECT_EQ(bytes.error().message.substr(0, expected.size()), expected);
+        EXPECT_LT(endless.given(), 1200000u); // not much more is asked for than is let through
+    }
+}
+
+TEST_F(ModelBytesTest, aStreamOfTheMostBytesIsRead)
+{
+    const std::string content = glb({{jsonChunk, json(100)}, {binaryChunk, std::string(200000, 'a')}});
+    for (const std::size_t mostBytes : {content.size(), content.size() - 1})
+    {
+        std::istringstream stream(content);
+        const Result<std::string> bytes = readModelStream(stream, options, mostBytes);
+        EXPECT_EQ(bool(bytes), mostBytes == content.size());
     }
 }
 

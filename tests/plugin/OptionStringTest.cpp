@@ -3,6 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
+#include <iterator>
+#include <string>
+#include <tuple>
+
 namespace osgGpuAnimation::gltf
 {
 
@@ -20,7 +25,8 @@ TEST(OptionStringTest, nothingAskedForIsTheDefault)
 TEST(OptionStringTest, readsAllOptions)
 {
     const ImportOptions options = parseOptions("  clip=Walk scene=2  noRotation allowOutsideFiles maxJsonDepth=5 "
-                                               "maxJsonBytes=4 maxNodeDepth=6 maxElements=7 maxDecodedBytes=8000000000")
+                                               "maxJsonBytes=4 maxNodeDepth=6 maxElements=7 maxDocumentBytes=8 "
+                                               "maxDecodedBytes=8000000000")
                                       .value();
     EXPECT_EQ(options.clip, "Walk");
     EXPECT_EQ(options.scene, 2);
@@ -30,7 +36,35 @@ TEST(OptionStringTest, readsAllOptions)
     EXPECT_EQ(options.maxJsonDepth, 5u);
     EXPECT_EQ(options.maxNodeDepth, 6u);
     EXPECT_EQ(options.maxElements, 7u);
+    EXPECT_EQ(options.maxDocumentBytes, 8u);
     EXPECT_EQ(options.maxDecodedBytes, 8000000000u);
+}
+
+TEST(OptionStringTest, limitsAreByDefaultWhatTheHelpSays)
+{
+    const ImportOptions options = parseOptions("").value();
+    constexpr std::size_t mebibyte = std::size_t(1) << 20;
+    const std::tuple<std::string, std::size_t, std::string> limits[] = {
+        {"maxJsonBytes=N", options.maxJsonBytes / mebibyte, " MiB"},
+        {"maxJsonDepth=N", options.maxJsonDepth, ""},
+        {"maxNodeDepth=N", options.maxNodeDepth, ""},
+        {"maxElements=N", options.maxElements, ""},
+        {"maxDocumentBytes=N", options.maxDocumentBytes / mebibyte, " MiB"},
+        {"maxDecodedBytes=N", options.maxDecodedBytes / mebibyte / 1024, " GiB"},
+    };
+    std::size_t told = 0;
+    for (const auto& [usage, help] : optionHelp())
+        for (const auto& [name, value, unit] : limits)
+        {
+            if (usage != name) continue;
+            ++told;
+            const std::string text = help;
+            EXPECT_EQ(text.substr(text.rfind(": ") + 2), std::to_string(value) + unit) << usage;
+        }
+    EXPECT_EQ(told, std::size(limits));
+    EXPECT_EQ(options.maxJsonBytes % mebibyte + options.maxDocumentBytes % mebibyte +
+                  options.maxDecodedBytes % (1024 * mebibyte),
+              0u);
 }
 
 TEST(OptionStringTest, readsHowTheClipPlays)
@@ -103,6 +137,7 @@ TEST(OptionStringTest, valuesThatDoNotFitAreErrors)
                              "compact",
                              "compact=0",
                              "compact=-1e-4",
+                             "compact=1.5",
                              "compact=nan",
                              "compact=inf",
                              "speed",

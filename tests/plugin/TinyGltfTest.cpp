@@ -2,6 +2,7 @@
 #include "gltf/TinyGltf.h"
 
 #include "gltf/Accessor.h"
+#include "gltf/Import.h"
 #include "plugin/GlbText.h"
 #include "plugin/LoadedDocument.h"
 #include "support/ScratchFolder.h"
@@ -63,6 +64,31 @@ TEST(TinyGltfTest, KeyTimesDoNotDecrease)
         file.channel(hip, "translation", input, TINYGLTF_TYPE_VEC3, {0, 0, 0, 1, 0, 0});
         expectAnswer(load(file.text()), expect, message);
     }
+}
+
+TEST(TinyGltfTest, AFaultInTimesIsSaidOnceForEachClipThatItCosts)
+{
+    ModelBuilder file = baseModel();
+    for (const char* name : {"second", "", "unharmed"})
+    {
+        file.animation(name);
+        file.channel(hip, "translation", {0, 1, 1}, TINYGLTF_TYPE_VEC3, {0, 0, 0, 1, 0, 0, 1, 0, 0});
+        file.channel(hip, "scale", {0, 1, 1}, TINYGLTF_TYPE_VEC3, {1, 1, 1, 1, 1, 1, 1, 1, 1});
+    }
+    auto& animations = file.model.animations;
+    animations[2].samplers = animations[1].samplers; // one accessor in two clips
+    animations[3].channels.clear();                  // no channel has anything of those samplers
+    file.slide(hip);
+    const Result<ImportedModel> model = importModel(file.text(), "", {});
+    ASSERT_TRUE(model) << model.error().message;
+    EXPECT_EQ(model.value().animationOfClip, (std::vector<int>{0, 3}));
+    const std::vector<std::string>& warnings = model.value().messages.warnings;
+    ASSERT_EQ(warnings.size(), 2u);
+    const std::string fault = ".samplers[0].input: expected times that increase, found 1 twice in accessors[";
+    EXPECT_EQ(warnings[0].rfind("animations[1]" + fault, 0), 0u) << warnings[0];
+    EXPECT_NE(warnings[0].find("]; clip \"second\" skipped"), std::string::npos) << warnings[0];
+    EXPECT_EQ(warnings[1].rfind("animations[2]" + fault, 0), 0u) << warnings[1];
+    EXPECT_NE(warnings[1].find("]; clip skipped"), std::string::npos) << warnings[1];
 }
 
 TEST(TinyGltfTest, RotationsOfLengthZeroHoldTheOneBefore)

@@ -94,6 +94,7 @@ TEST_F(ToolTest, wrongUsageEndsWithStatus2)
 TEST_F(ToolTest, aFaultyFileEndsWithStatus1AndOneLine)
 {
     const std::string missing = folder.file("missing.glb");
+    const std::string scene = folder.write("scene.osgb", std::string("\xa1\x91\x45\x10\x1a\xfb\x80\x1e\1\0\0\0", 12));
     const std::string empty = folder.write("empty.glb", "");
     const std::string cut = folder.write("cut.gltf", swingingFlag().substr(0, 300));
     const std::string cutGlb = folder.write("cut.glb", std::string("glTF\2\0\0\0\xff\0\0\0", 12));
@@ -122,6 +123,7 @@ TEST_F(ToolTest, aFaultyFileEndsWithStatus1AndOneLine)
         {{"pose", missing, "--time", "0"}, missing, "no such file"},
         {{"render", missing, "-o", folder.file("x.png")}, missing, "no such file"},
         {{"pose", "FLAG", "--clip", "Fly", "--time", "0"}, flag, "Fly"},
+        {{"render", scene, "-o", folder.file("x.png")}, scene, "only .gltf and .glb files can be read here"},
         {{"render", "FLAG", "--clip", "Fly", "-o", folder.file("x.png")}, flag, "Fly"},
         {{"pose", "FLAG", "--like", missing}, missing, "cannot be read"},
         {{"pose", "FLAG", "--like", folder.file("")}, folder.file(""), ""},

@@ -27,6 +27,19 @@ void store(const glm::dvec4& q, double* out)
         out[c] = q[c];
 }
 
+/// Far from isAmbiguous() in any case, said without making them unit.
+bool isClear(const double* a, const double* b)
+{
+    double product = 0.0, squareOfA = 0.0, squareOfB = 0.0;
+    for (int c = 0; c < 4; ++c)
+    {
+        product += a[c] * b[c];
+        squareOfA += a[c] * a[c];
+        squareOfB += b[c] * b[c];
+    }
+    return product * product > 1e-6 * squareOfA * squareOfB; // false for what is beyond double
+}
+
 /// Whether single precision could find the other way shorter. A dot product whose every term is 0 is 0 everywhere.
 bool isAmbiguous(const glm::dvec4& a, const glm::dvec4& b)
 {
@@ -160,6 +173,7 @@ void ChannelCurve::appendMiddlesOfHalfTurns(const std::vector<double>& times, st
     if (_channel.path != Channel::Path::Rotation || _channel.interpolation != Interpolation::Linear) return;
     for (std::size_t key = 0; key + 1 < _channel.times.size(); ++key)
     {
+        if (isClear(valueOfKey(key), valueOfKey(key + 1))) continue;
         if (!isAmbiguous(unitQuaternion(valueOfKey(key)), unitQuaternion(valueOfKey(key + 1)))) continue;
         const double from = _channel.times[key];
         const double to = _channel.times[key + 1];

@@ -105,18 +105,27 @@ void sortUnique(std::vector<double>& times)
     times.erase(std::unique(times.begin(), times.end()), times.end());
 }
 
+/// Both ascend.
+bool areAmong(const std::vector<double>& all, const std::vector<double>& some)
+{
+    return all == some || (some.size() < all.size() &&
+                           std::all_of(some.begin(), some.end(),
+                                       [&](double time) { return std::binary_search(all.begin(), all.end(), time); }));
+}
+
 /// The keyframes of the clip of these curves: the union of all key times, twice where one of them jumps.
 std::vector<Moment> findMoments(const std::vector<ChannelCurve>& curves)
 {
     std::vector<double> times;
     std::vector<double> jumps;
-    const std::vector<double>* before = nullptr;
+    const std::vector<double> none;
+    const std::vector<double>* most = &none;
     for (const ChannelCurve& curve : curves)
     {
-        // Channels mostly have the times of the one before, and sorting takes long.
+        // Channels mostly have the times of one before, or some of them, and sorting takes long.
         const std::vector<double>& own = curve.channel().times;
-        if (!before || own != *before) times.insert(times.end(), own.begin(), own.end());
-        before = &own;
+        if (!areAmong(*most, own)) times.insert(times.end(), own.begin(), own.end());
+        if (own.size() > most->size()) most = &own;
         curve.appendJumps(jumps);
     }
     sortUnique(times);
@@ -246,14 +255,14 @@ std::size_t ClipBuilder::keyOf(const Channel& channel) const
 
 Result<bool> ClipBuilder::add(Channel channel)
 {
-    const std::string subject = describe(channel);
+    const auto subject = [&] { return describe(channel); };
     const std::size_t targets = channel.path == Path::Weights ? _weightCounts.size() : _jointCount;
     if (channel.target < 0 || static_cast<std::size_t>(channel.target) >= targets)
-        return Error{subject + "there are " + std::to_string(targets)};
-    if (_driven[keyOf(channel)]) return Error{subject + "another channel has this target already"};
-    if (componentCount(channel) == 0) return Error{subject + "it has no weights"};
-    if (auto fault = findFaultInTimes(channel.times)) return Error{subject + *fault};
-    if (auto fault = findFaultInValues(channel, componentCount(channel))) return Error{subject + *fault};
+        return Error{subject() + "there are " + std::to_string(targets)};
+    if (_driven[keyOf(channel)]) return Error{subject() + "another channel has this target already"};
+    if (componentCount(channel) == 0) return Error{subject() + "it has no weights"};
+    if (auto fault = findFaultInTimes(channel.times)) return Error{subject() + *fault};
+    if (auto fault = findFaultInValues(channel, componentCount(channel))) return Error{subject() + *fault};
 
     _driven[keyOf(channel)] = true;
     _channels.push_back(std::move(channel));

@@ -287,6 +287,40 @@ TEST_F(SkinOnceGLTest, whatDoesNotFitIsSkinnedByEveryDraw)
     EXPECT_EQ(instancesSkinned(), before);
 }
 
+TEST_F(SkinOnceGLTest, theFrameInWhichMoreComeIntoViewTakesNoMoreEither)
+{
+    constexpr std::size_t bytesOfOne = 81 * 32;
+    for (const bool isCrowd : {false, true})
+    {
+        SCOPED_TRACE(isCrowd);
+        const osg::ref_ptr<AnimatedCharacter> flag = makeFlag({0, true, Skinning::EveryDraw});
+        const auto makeScene = [&](int count) -> osg::ref_ptr<osg::Node>
+        {
+            if (isCrowd) return makeCrowd(*flag, count);
+            return makeSeparate(*flag, count);
+        };
+        std::vector<osg::ref_ptr<osg::Image>> expected;
+        viewer().setSceneData(makeScene(12));
+        for (int frame = 0; frame < 5; ++frame)
+        {
+            drawAt(0.2 * frame);
+            expected.push_back(picture().copy());
+        }
+        setSkinning(*flag, Skinning::Once);
+        SkinnedVertices::of(state()).setMaxBytes(11 * bytesOfOne);
+        pictureOf(makeScene(3));
+        EXPECT_GE(SkinnedVertices::of(state()).bytes(), 3 * bytesOfOne);
+        viewer().setSceneData(makeScene(12));
+        for (std::size_t frame = 0; frame < expected.size(); ++frame)
+        {
+            drawAt(0.2 * static_cast<double>(frame));
+            EXPECT_LE(SkinnedVertices::of(state()).bytes(), 11 * bytesOfOne) << frame;
+            EXPECT_EQ(Picture::pixelsDifferent(*expected[frame], picture().image(), 1.5f / 255.0f), 0) << frame;
+        }
+        EXPECT_NO_GL_ERROR();
+    }
+}
+
 TEST_F(SkinOnceGLTest, bufferTexturesOfAFewInstancesShowTheSame)
 {
     const osg::ref_ptr<AnimatedCharacter> flag = makeFlag({0, true, Skinning::Auto});

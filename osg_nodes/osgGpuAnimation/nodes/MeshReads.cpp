@@ -20,13 +20,13 @@ osg::StateSet* makeSkinnedState(int texels)
     return state;
 }
 
-osg::StateSet* skinnedState(int texels)
+} // namespace
+
+osg::StateSet* MeshReads::skinnedState(int texels)
 {
     static const std::array<osg::ref_ptr<osg::StateSet>, 2> states{makeSkinnedState(1), makeSkinnedState(2)};
     return states[static_cast<std::size_t>(texels - 1)];
 }
-
-} // namespace
 
 void MeshReads::begin(unsigned int contextId)
 {

@@ -5,7 +5,8 @@ set(sanitized_sources nodes/TestCharacter.cpp nodes/NestedCameraGLTest.cpp nodes
     nodes/ViewersGLTest.cpp plugin/PagerGLTest.cpp plugin/ConcurrentLoadsTest.cpp plugin/ModelBuilder.cpp)
 if(OSGGPUANIMATION_SANITIZER STREQUAL address)
     list(APPEND sanitized_sources nodes/AnimatedCharacterGLTest.cpp nodes/AnimatedCrowdGLTest.cpp
-         nodes/CharacterDrawsGLTest.cpp nodes/GlCallTrace.cpp nodes/GlObjectsGLTest.cpp plugin/CloningGLTest.cpp plugin/SerializersGLTest.cpp)
+         nodes/CharacterDrawsGLTest.cpp nodes/GlCallTrace.cpp nodes/GlObjectsGLTest.cpp nodes/Flag.cpp nodes/SkinOnceGLTest.cpp
+         plugin/CloningGLTest.cpp plugin/SerializersGLTest.cpp)
 endif()
 add_executable(sanitized_tests EXCLUDE_FROM_ALL ${sanitized_sources} ${support_sources})
 set(OSGGPUANIMATION_UNITY ON) # for this program in any case: its files are the other programs' too
@@ -13,7 +14,7 @@ set(OSGGPUANIMATION_UNITY ON) # for this program in any case: its files are the 
 list(FILTER sanitized_sources INCLUDE REGEX "GLTest|GlCallTrace")
 osggpuanimation_unity(sanitized_tests ${sanitized_sources})
 target_link_libraries(sanitized_tests PRIVATE osgGpuAnimation_build osgGpuAnimation_gltf nlohmann_json::nlohmann_json
-                      GTest::gtest GTest::gtest_main)
+                      ${OSGSHADOW_LIBRARIES} GTest::gtest GTest::gtest_main)
 set_target_properties(sanitized_tests PROPERTIES ENABLE_EXPORTS ON) # for GlCallTrace
 target_include_directories(sanitized_tests PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
 target_compile_definitions(sanitized_tests PRIVATE OSGGPUANIMATION_SHARED_ASSETS="${OSGGPUANIMATION_SHARED_ASSETS}"

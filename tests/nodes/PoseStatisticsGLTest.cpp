@@ -3,10 +3,12 @@
 #include "support/TestCharacter.h"
 #include "support/ViewerGLTest.h"
 
+#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/CharacterKeys.h>
 #include <osgGpuAnimation/nodes/PoseStatistics.h>
 
 #include <osg/Group>
+#include <osgUtil/Statistics>
 #include <osgViewer/ViewerEventHandlers>
 
 namespace osgGpuAnimation
@@ -97,6 +99,48 @@ TEST_F(PoseStatisticsGLTest, countsAndTimeAreRecordedWhileStatsAreOn)
     ASSERT_TRUE(viewer().getViewerStats()->getAveragedAttribute(PoseStatistics::timeTaken, seconds));
     EXPECT_GT(seconds, 0.0);
     EXPECT_LT(seconds, 1.0);
+}
+
+TEST_F(PoseStatisticsGLTest, aCamerasStatisticsCountWhatItsDrawsShow)
+{
+    const osg::ref_ptr<AnimatedCharacter> first = makeTestCharacter();
+    const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*first);
+    const osg::ref_ptr<osg::Group> group = new osg::Group;
+    group->addChild(crowd);
+    for (int i = 0; i < 7; ++i)
+    {
+        const osg::Matrixd place = osg::Matrixd::translate(i < 5 ? -3.5 + 1.2 * i : 100, 0, 0); // two are out of view
+        ASSERT_TRUE(crowd->add(place, first->controller()));
+        const osg::ref_ptr<AnimatedCharacter> together = osg::clone(first.get(), osg::CopyOp::DEEP_COPY_NODES);
+        together->setMatrix(place);
+        group->addChild(together);
+    }
+    const osg::ref_ptr<AnimatedCharacter> apart = makeTestCharacter();
+    group->addChild(apart);
+    osgUtil::Statistics once;
+    static_cast<osg::Drawable&>(*first->getChild(0)).accept(once);
+    ASSERT_GT(once._vertexCount, 0u);
+    viewer().setSceneData(group);
+    const auto visible = [&](const char* attribute)
+    {
+        double value = -1.0;
+        const osg::Stats& stats = *viewer().getCamera()->getStats();
+        stats.getAttribute(viewer().getFrameStamp()->getFrameNumber(), attribute, value);
+        return value;
+    };
+    for (const bool isCollected : {true, false, true})
+    {
+        viewer().getCamera()->getStats()->collectStats("scene", isCollected);
+        for (const double time : {0.1, 0.2, 0.3})
+        {
+            drawAt(time);
+            // 5 of the crowd, 5 drawn together, one by itself.
+            EXPECT_EQ(visible("Visible vertex count"), isCollected ? 11.0 * once._vertexCount : -1.0) << time;
+            // The crowd's draw, the first of those together, the others of them, and the last.
+            EXPECT_EQ(visible("Visible number of drawables"), isCollected ? 4.0 : -1.0) << time;
+        }
+    }
+    EXPECT_NO_GL_ERROR();
 }
 
 TEST_F(PoseStatisticsGLTest, aKeyAddsTheLinesOnceWhileNothingIsShown)

@@ -62,6 +62,12 @@ std::size_t SkinnedVertices::bytes() const
     return bytes;
 }
 
+bool SkinnedVertices::hasRoomFor(const Piece& piece, std::size_t bytes) const
+{
+    const std::size_t capacity = piece.vertices.capacity();
+    return bytes <= capacity || this->bytes() - capacity + piece.vertices.capacityFor(bytes) <= _maxBytes;
+}
+
 void SkinnedVertices::release(std::uint64_t mesh)
 {
     auto skinned = _skinned.lower_bound({mesh, nullptr, 0});

@@ -73,8 +73,10 @@ public:
     /// Frees what is there of a mesh. As all of this, on the draw side.
     void release(std::uint64_t mesh);
 
-    /// Bytes that all meshes together are to take at most, by what was seen a frame before: beyond it they are skinned
-    /// by every draw. The frame in which more come into view may take more.
+    /// Whether all meshes together keep within maxBytes when the piece grows to that many bytes.
+    bool hasRoomFor(const Piece& piece, std::size_t bytes) const;
+
+    /// Bytes that all meshes together take at most: what is beyond it is skinned by every draw.
     void setMaxBytes(std::size_t bytes) { _maxBytes = bytes; }
     std::size_t maxBytes() const { return _maxBytes; } ///< default: 256 MiB
     /// Counted since the start: instances of meshes skinned.

@@ -20,13 +20,13 @@ osg::StateSet* makeSkinnedState(int texels)
     return state;
 }
 
-osg::StateSet* skinnedState(int texels)
+} // namespace
+
+osg::StateSet* MeshReads::skinnedState(int texels)
 {
     static const std::array<osg::ref_ptr<osg::StateSet>, 2> states{makeSkinnedState(1), makeSkinnedState(2)};
     return states[static_cast<std::size_t>(texels - 1)];
 }
-
-} // namespace
 
 void MeshReads::begin(unsigned int contextId)
 {
@@ -53,8 +53,8 @@ void MeshReads::skin(osg::RenderInfo& renderInfo, std::uint64_t frame)
         if (!pipeline) break;
         const PaletteBinding& binding = *read.binding;
         const AnimationSet& set = *binding.animationSet();
-        const std::size_t drawn = binding.serial() != 0 ? binding.placements().size() : binding.instanceCount();
-        _plan->count(*read.mesh, set, binding.slot(), pipeline->instanceCount(set, binding.slot()), drawn);
+        _plan->count(*read.mesh, set, binding.slot(), pipeline->instanceCount(set, binding.slot()),
+                     binding.drawnCount());
         if (read.isOnce) run.skin(*read.mesh, set, binding.slot());
     }
     _reads.clear();

@@ -24,6 +24,9 @@ public:
     /// drawn with, above its own; null: none.
     osg::StateSet* add(const SkinnedGeometry& mesh, const PaletteBinding& binding);
 
+    /// That state.
+    static osg::StateSet* skinnedState(int texels);
+
     /// On the draw side, when the palettes are there. frame: the PoseFrame's serial number.
     void skin(osg::RenderInfo& renderInfo, std::uint64_t frame);
 

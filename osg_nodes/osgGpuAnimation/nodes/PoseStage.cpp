@@ -4,6 +4,7 @@
 #include <osgGpuAnimation/gpu/DeletionLists.h>
 #include <osgGpuAnimation/nodes/PoseStatistics.h>
 
+#include <osg/Stats>
 #include <osg/UserDataContainer>
 
 #include <algorithm>
@@ -79,6 +80,12 @@ MeshReads& PoseStage::reads(osgUtil::CullVisitor& visitor)
     return current(visitor)._reads;
 }
 
+void PoseStage::count(osgUtil::CullVisitor& visitor, const SkinnedGeometry& mesh, const PaletteBinding& binding)
+{
+    PoseStage& stage = current(visitor);
+    if (stage._counted) stage._counted->add(mesh, binding);
+}
+
 // Each cull traversal begins with an empty stage: whether this one is in it tells traversals apart.
 bool PoseStage::isAttached(osgUtil::CullVisitor& visitor) const
 {
@@ -96,10 +103,26 @@ PoseStage& PoseStage::current(osgUtil::CullVisitor& visitor)
     return stage;
 }
 
+void PoseStage::countDraws(osgUtil::CullVisitor& visitor)
+{
+    const osg::Camera* camera = visitor.getRenderStage()->getCamera();
+    const osg::Stats* stats = camera ? camera->getStats() : nullptr;
+    const bool isWanted = stats && stats->collectStats("scene");
+    if (isWanted == _counted.valid())
+    {
+        if (_counted) _counted->clear();
+        return;
+    }
+    removeChildren(0, getNumChildren());
+    _counted = isWanted ? new DrawnInstances : nullptr;
+    if (_counted) addChild(_counted);
+}
+
 // Attached to the visitor's main stage, wherever the traversal is now: a shadow camera's stage may come later.
 void PoseStage::attach(osgUtil::CullVisitor& visitor)
 {
     _draws.clear();
+    countDraws(visitor);
     _reads.begin(visitor.getRenderInfo().getContextID());
     _frame = nullptr; // so that its storage can be used again
     _frame = PoseFrame::forContext(visitor.getRenderInfo().getContextID(), visitor.getFrameStamp());

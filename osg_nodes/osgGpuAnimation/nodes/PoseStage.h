@@ -2,6 +2,7 @@
 #pragma once
 
 #include <osgGpuAnimation/nodes/CharacterDraws.h>
+#include <osgGpuAnimation/nodes/DrawnInstances.h>
 #include <osgGpuAnimation/nodes/MeshReads.h>
 #include <osgGpuAnimation/nodes/PoseFrame.h>
 
@@ -24,6 +25,8 @@ public:
     static PoseFrame& frame(osgUtil::CullVisitor& visitor);
     /// What the visitor hands on to be drawn in that frame.
     static MeshReads& reads(osgUtil::CullVisitor& visitor);
+    /// Has the statistics of the visitor's camera, where there are any, count what a draw of the mesh shows.
+    static void count(osgUtil::CullVisitor& visitor, const SkinnedGeometry& mesh, const PaletteBinding& binding);
 
 protected:
     ~PoseStage() override = default;
@@ -36,11 +39,13 @@ private:
     static PoseStage& current(osgUtil::CullVisitor& visitor);
     bool isAttached(osgUtil::CullVisitor& visitor) const;
     void attach(osgUtil::CullVisitor& visitor);
+    void countDraws(osgUtil::CullVisitor& visitor);
 
     const osgUtil::CullVisitor* _visitor; ///< whose stage this is: cull visitors get cloned with their user data
     osg::ref_ptr<PoseFrame> _frame;
     CharacterDraws _draws;
     MeshReads _reads;
+    osg::ref_ptr<DrawnInstances> _counted; ///< null: no statistics of the camera are collected
 };
 
 } // namespace osgGpuAnimation

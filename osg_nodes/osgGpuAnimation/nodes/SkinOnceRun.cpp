@@ -86,25 +86,27 @@ void SkinOnceRun::skin(const SkinnedGeometry& mesh, const AnimationSet& set, std
         {
             piece.first = first;
             piece.versions = versions;
-            fill(piece, mesh, place, count);
+            if (!fill(piece, mesh, place, count)) return _skinned.trim(subject, 0);
         }
         first += count;
     }
     _skinned.trim(subject, number);
 }
 
-void SkinOnceRun::fill(SkinnedVertices::Piece& piece, const SkinnedGeometry& mesh, const PalettePlace& first,
+bool SkinOnceRun::fill(SkinnedVertices::Piece& piece, const SkinnedGeometry& mesh, const PalettePlace& first,
                        std::size_t count)
 {
+    const std::size_t bytes = count * mesh.skinnedTexelCount() * BufferTexture::texelBytes;
+    if (!_skinned.hasRoomFor(piece, bytes)) return false;
     use(SkinOncePass::shared()->state(mesh.onceVariant()));
     // Making room binds to the unit that is active, which must be none that OSG keeps a record of.
     _renderInfo.getState()->setActiveTextureUnit(POSE_SKINNED_UNIT);
-    const std::size_t texels = mesh.skinnedTexelCount();
-    piece.vertices.reserve(count * texels * BufferTexture::texelBytes);
+    piece.vertices.reserve(bytes);
     mesh.captureVertices(_renderInfo, first, static_cast<int>(count), piece.vertices.buffer());
     piece.count = count;
     piece.evaluation = first.evaluation;
     _skinned.count(count);
+    return true;
 }
 
 } // namespace osgGpuAnimation

@@ -23,12 +23,14 @@ public:
     SkinOnceRun(const SkinOnceRun&) = delete;
     SkinOnceRun& operator=(const SkinOnceRun&) = delete;
 
-    /// The mesh for all instances of the batch of that set and slot.
+    /// The mesh for all instances of the batch of that set and slot; for none where not all find room: they are
+    /// skinned by their draws then.
     void skin(const SkinnedGeometry& mesh, const AnimationSet& set, std::size_t slot);
 
 private:
     void use(osg::StateSet* stateSet);
-    void fill(SkinnedVertices::Piece& piece, const SkinnedGeometry& mesh, const PalettePlace& first, std::size_t count);
+    /// False where there is no room.
+    bool fill(SkinnedVertices::Piece& piece, const SkinnedGeometry& mesh, const PalettePlace& first, std::size_t count);
 
     osg::RenderInfo& _renderInfo;
     SkinnedVertices& _skinned;

@@ -6,6 +6,7 @@
 #include <osgGpuAnimation/nodes/BoxNearFar.h>
 #include <osgGpuAnimation/nodes/InstancedDraw.h>
 #include <osgGpuAnimation/nodes/MeshVertexArrays.h>
+#include <osgGpuAnimation/nodes/OwnSkinning.h>
 #include <osgGpuAnimation/nodes/PaletteBinding.h>
 #include <osgGpuAnimation/nodes/PaletteUniforms.h>
 #include <osgGpuAnimation/nodes/PlacedDraw.h>
@@ -76,7 +77,7 @@ SkinnedGeometry::SkinnedGeometry() : _number(newNumber())
 SkinnedGeometry::SkinnedGeometry(const SkinnedGeometry& other, const osg::CopyOp& copyop)
     : osg::Geometry(other, copyop), _influences(other._influences), _rigidEntry(other._rigidEntry),
       _morphTargets(other._morphTargets), _morphDeltas(other._morphDeltas), _morph(other._morph),
-      _morphEntry(other._morphEntry), _skinning(other._skinning), _detail(other._detail), _number(newNumber())
+      _morphEntry(other._morphEntry), _skinning(other.skinning()), _detail(other._detail), _number(newNumber())
 {
 }
 
@@ -207,7 +208,14 @@ void SkinnedGeometry::drawImplementation(osg::RenderInfo& renderInfo) const
     const PosePipeline* pipeline = PosePipeline::of(state);
     if (!pipeline) return;
     const MeshVertexArrays arrays(state);
-    SkinnedRead skinned(state, *this, *binding);
+    std::optional<OwnSkinning> own;
+    std::optional<SkinnedRead> read(std::in_place, state, *this, *binding);
+    if (read->isMissing())
+    {
+        own.emplace(state, *this);
+        read.emplace(state, *this, *binding);
+    }
+    SkinnedRead& skinned = *read;
     if (binding->serial() != 0)
         drawPlaced(renderInfo, *binding, *pipeline, skinned);
     else if (binding->instanceCount() > 1 || binding->level() != DetailLevels::allTriangles)

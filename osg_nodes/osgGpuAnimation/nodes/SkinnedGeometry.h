@@ -77,7 +77,7 @@ public:
     int morphEntry() const { return _morphEntry; } ///< the first palette entry of the weights; -1: none
 
     /// When vertices are skinned. Once: vertices and normals lie on the GPU for all instances seen, 32 bytes a vertex
-    /// (16 without normals), from the second frame on; what does not fit is skinned by every draw, see SkinningPlan.
+    /// (16 without normals), from the third frame on; what does not fit is skinned by every draw, see SkinningPlan.
     /// Programs of one's own that link skin.glsl need not know, unless they change the vertex before they call it:
     /// those want EveryDraw.
     void setSkinning(Skinning skinning) { _skinning = skinning; }
@@ -140,8 +140,8 @@ private:
     MorphDeltas _morphDeltas;
     mutable std::atomic<bool> _isMorphLimitReported{false};
     int _morph = -1;
-    int _morphEntry = -1; ///< the first palette entry of the weights
-    Skinning _skinning = Skinning::Auto;
+    int _morphEntry = -1;                            ///< the first palette entry of the weights
+    std::atomic<Skinning> _skinning{Skinning::Auto}; ///< draw threads may be looking while it is set
     MeshDetail _detail;
     mutable std::atomic<std::uint64_t> _number;
     osg::ref_ptr<SkinOncePass> _oncePass = SkinOncePass::shared(); ///< kept alive, and released, by its meshes

@@ -19,6 +19,8 @@ class SkinnedRead
 public:
     SkinnedRead(osg::State& state, const SkinnedGeometry& mesh, const PaletteBinding& binding);
 
+    /// Whether the program that is applied reads what is not there: all instances of the batch are, or none.
+    bool isMissing() { return !find(0); }
     /// Goes to the instance. False where it has not been skinned, so that it cannot be drawn.
     bool find(std::size_t instance);
     /// The instances around it that can be drawn with it.

@@ -42,6 +42,7 @@ SkinningScope::~SkinningScope()
 
 void addMeshAndDepth(osgUtil::CullVisitor& visitor, SkinnedGeometry& mesh, osg::RefMatrix* toEye, float depth)
 {
+    if (const PaletteBinding* binding = bindingAbove(visitor)) PoseStage::count(visitor, mesh, *binding);
     const SkinningScope skinning(visitor, mesh);
     osg::StateSet* stateSet = mesh.getStateSet();
     if (stateSet) visitor.pushStateSet(stateSet);

@@ -46,11 +46,15 @@ public:
 private:
     ReadResult read(const std::string& name, const Options* options) const
     {
-        const Result<crowd::CrowdOptions> wanted =
-            crowd::parseCrowd(name, options ? options->getOptionString() : std::string());
+        const std::string given = options ? options->getOptionString() : std::string();
+        const Result<crowd::CrowdOptions> wanted = crowd::parseCrowd(name, given);
         if (!wanted) return ReadResult(wanted.error().message);
+        for (const std::string& hint : crowd::optionHints(given))
+            OSG_WARN << className() << ": " << hint << std::endl;
         const std::string& modelFile = wanted.value().modelFile;
-        ReadResult model = osgDB::Registry::instance()->readNode(modelFile, options);
+        osg::ref_ptr<Options> forModel = options ? options->cloneOptions() : new Options;
+        forModel->setOptionString(crowd::modelOptions(given));
+        ReadResult model = osgDB::Registry::instance()->readNode(modelFile, forModel.get());
         if (!model.validNode())
         {
             if (!model.message().empty()) return ReadResult(modelFile + ": " + model.message());

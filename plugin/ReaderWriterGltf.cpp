@@ -95,7 +95,8 @@ osgDB::ReaderWriter::ReadResult ReaderWriterGltf::import(const std::string& byte
                                                          const Options* options,
                                                          const gltf::ImportOptions& importOptions) const
 {
-    for (const std::string& hint : gltf::misspeltOptions(options ? options->getOptionString() : ""))
+    const std::string given = options ? options->getOptionString() : "";
+    for (const std::string& hint : gltf::misspeltOptions(given, gltf::optionHelp()))
         OSG_WARN << className() << ": " << hint << std::endl;
     const Result<gltf::ImportedModel> model = gltf::importModel(bytes, fileName, importOptions);
     if (!model) return ReadResult(model.error().message);

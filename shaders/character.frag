@@ -14,6 +14,7 @@ uniform vec4 materialEmission;
 
 uniform sampler2DShadow shadowMaps[7];  // of texture units 1 to 7
 uniform vec2 osgShadow_ambientBias;     // osgShadow::ShadowMap's: what is left in its shadow, and the rest
+uniform vec2 ambientBias;               // osgShadow::ParallelSplitShadowMap's: what all gains, and its shadow loses
 
 in vec3 viewPosition;
 in vec3 viewNormal;
@@ -80,8 +81,12 @@ void addLight(int index, vec3 normal, inout Light sum)
 float unshadowed(sampler2DShadow map, int unit)
 {
     vec4 position = vec4(viewPosition, 1.0);
-    return textureProj(map, vec4(dot(gl_EyePlaneS[unit], position), dot(gl_EyePlaneT[unit], position),
-                                 dot(gl_EyePlaneR[unit], position), dot(gl_EyePlaneQ[unit], position)));
+    vec4 place = vec4(dot(gl_EyePlaneS[unit], position), dot(gl_EyePlaneT[unit], position),
+                      dot(gl_EyePlaneR[unit], position), dot(gl_EyePlaneQ[unit], position));
+#if DRAW_SHADOW_SPLITS
+    place.z -= 0.001954 * place.w; // by which its own shader keeps surfaces out of their own shadow: 1/512
+#endif
+    return textureProj(map, place);
 }
 
 float unshadowedByAll()
@@ -117,6 +122,8 @@ vec3 shadowedColor(vec3 color, vec3 colorWithoutLights)
     float share = unshadowedByAll();
 #if DRAW_SHADOW_BIAS
     return color * (osgShadow_ambientBias.x + share * osgShadow_ambientBias.y);
+#elif DRAW_SHADOW_SPLITS
+    return color * (1.0 + ambientBias.x) * (1.0 - ambientBias.y * (1.0 - share));
 #else
     return mix(colorWithoutLights, color, share);
 #endif

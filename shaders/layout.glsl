@@ -61,10 +61,11 @@
 #define POSE_WEIGHTS_PER_ENTRY 12
 
 // Vertex attributes of the pose pass, whose vertices are a batch's instances and whose GL instances are palette entries:
-// per vertex the blend sample and three rows of the root matrix, per GL instance an entry's texels.
+// per vertex the first blend samples and three rows of the root matrix, per GL instance an entry's texels.
 #define POSE_SAMPLE_LOCATION 0
-#define POSE_ROOT_LOCATION 1
-#define POSE_HEAD_LOCATION 4
-#define POSE_PARENT_BIND_LOCATION 5
-#define POSE_INVERSE_BIND_LOCATION 8
-#define POSE_REST_LOCATION 11
+#define POSE_SAMPLES_AS_ATTRIBUTES 4 // where an instance has more, all are fetched
+#define POSE_ROOT_LOCATION 4
+#define POSE_HEAD_LOCATION 7
+#define POSE_PARENT_BIND_LOCATION 8
+#define POSE_INVERSE_BIND_LOCATION 11
+#define POSE_REST_LOCATION 14

@@ -8,6 +8,11 @@ out vec4 translation;
 out vec4 rotation;
 out vec4 scale;
 
+uvec4 sampleOf(int instance, int number)
+{
+    return texelFetch(samples, instance * sampleStride + number);
+}
+
 void main()
 {
     int track = gl_VertexID / instanceCount;

@@ -4,7 +4,7 @@
 // attribute, so that only keyframes and parents have to be fetched. The result's place in the palette is
 // entry * instanceCount + instance. Constants of the variant: those of mix.glsl; bool isRootLevel, hasRoots.
 
-layout(location = POSE_SAMPLE_LOCATION) in uvec4 blendSample;
+layout(location = POSE_SAMPLE_LOCATION) in uvec4 blendSamples[sampleCount > 0 ? sampleCount : 1];
 layout(location = POSE_ROOT_LOCATION) in mat3x4 rootMatrix;
 layout(location = POSE_HEAD_LOCATION) in vec4 head;
 layout(location = POSE_PARENT_BIND_LOCATION) in mat3x4 parentBind;
@@ -19,6 +19,11 @@ out vec4 row0;
 out vec4 row1;
 out vec4 row2;
 
+uvec4 sampleOf(int instance, int number)
+{
+    return sampleCount > 0 ? blendSamples[number] : texelFetch(samples, instance * sampleStride + number);
+}
+
 void main()
 {
     int parent = int(head.x);
@@ -30,7 +35,7 @@ void main()
     {
         RestParts rest = RestParts(restParts[0], restParts[1]);
         JointTransform t = hasSeveralSamples ? mixSamples(gl_VertexID, track, rest, isWeights)
-                                             : sampleTrack(blendSample, track, rest, isWeights);
+                                             : sampleTrack(blendSamples[0], track, rest, isWeights);
         matrix = isWeights ? mat3x4(t.translation, t.rotation, t.scale)
                            : localMatrix(t.translation, t.rotation, t.scale);
     }

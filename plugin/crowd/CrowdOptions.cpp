@@ -2,11 +2,13 @@
 #include "crowd/CrowdOptions.h"
 
 #include "gltf/ElementName.h"
+#include "gltf/OptionString.h"
 #include "gltf/OptionWord.h"
 #include "gltf/ParsedNumber.h"
 
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace osgGpuAnimation::crowd
@@ -68,14 +70,34 @@ bool apply(const gltf::OptionWord& word, CrowdOptions& out)
 
 } // namespace
 
-std::vector<std::pair<const char*, const char*>> optionHelp()
+const std::vector<gltf::OptionHelp>& optionHelp()
 {
-    return {
+    static const std::vector<gltf::OptionHelp> help = {
         {"clips=NAME|INDEX,...", "the clips to choose from; default: all"},
         {"spacing=UNITS", "from one to the next; default: by the bounds"},
         {"seed=NUMBER", "another number, other clips and times; default: 1"},
         {"noRotation", "keep glTF's +Y up; default: +Z up"},
     };
+    return help;
+}
+
+std::string modelOptions(const std::string& options)
+{
+    std::vector<gltf::OptionWord> words = gltf::splitOptions(options);
+    const auto isCrowds = [](const gltf::OptionWord& word)
+    { return word.name == "clips" || word.name == "spacing" || word.name == "seed"; };
+    words.erase(std::remove_if(words.begin(), words.end(), isCrowds), words.end());
+    return gltf::joinOptions(words);
+}
+
+std::vector<std::string> optionHints(const std::string& options)
+{
+    std::vector<std::string> hints = gltf::misspeltOptions(options, optionHelp(), gltf::optionHelp());
+    const std::vector<std::string> singles{"clip", "start", "speed", "loop", "fade"};
+    for (const gltf::OptionWord& word : gltf::splitOptions(options))
+        if (std::find(singles.begin(), singles.end(), word.name) != singles.end())
+            hints.push_back(gltf::quoted(word.name) + " is for single characters and does nothing to a crowd");
+    return hints;
 }
 
 Result<CrowdOptions> parseCrowd(const std::string& name, const std::string& options)

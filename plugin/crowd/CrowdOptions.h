@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "gltf/OptionSpelling.h"
+
 #include <osgGpuAnimation/animation/Result.h>
 
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace osgGpuAnimation::crowd
@@ -24,8 +25,15 @@ struct CrowdOptions
     bool isYUp = false;             ///< the model keeps glTF's +Y up: the ground is XZ
 };
 
-/// An option with a line on what it does.
-std::vector<std::pair<const char*, const char*>> optionHelp();
+/// The options of a crowd, with a line on what each does.
+const std::vector<gltf::OptionHelp>& optionHelp();
+
+/// The option string without what is the crowd's alone: what its model is to be read with.
+std::string modelOptions(const std::string& options);
+
+/// A sentence about each word that is nearly one of a crowd's options, and about each that is one of a model's but does
+/// nothing to a crowd.
+std::vector<std::string> optionHints(const std::string& options);
 
 /// name: without the `.crowd`. options: osgDB's option string; other readers' words are passed over.
 /// Errors: no file name before the size, a size that is not COLUMNSxROWS, of nothing, or of more than a crowd can hold;

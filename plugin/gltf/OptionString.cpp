@@ -5,7 +5,6 @@
 #include "gltf/OptionWord.h"
 #include "gltf/ParsedNumber.h"
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -60,7 +59,7 @@ std::optional<bool> applyPlaying(const std::string& name, const std::string& val
 /// What a value of the option must be.
 const char* wanted(const std::string& name)
 {
-    if (name == "compact") return "a number above 0";
+    if (name == "compact") return "a number above 0, at most 1";
     if (name == "speed") return "a number";
     if (name == "start" || name == "fade") return "a number of seconds, 0 or more";
     if (name == "loop") return "once, loop or pingpong";
@@ -72,7 +71,7 @@ bool apply(const OptionWord& word, ImportOptions& options)
 {
     const std::string value = word.value.value_or("");
     if (const std::optional<bool> fits = applyPlaying(word.name, value, options)) return *fits;
-    if (word.name == "compact") return readFinite(value, options.compact.emplace()) && *options.compact > 0.0;
+    if (word.name == "compact") return readFinite(value, options.compact.emplace()) && *options.compact > 0.0 && *options.compact <= 1.0;
     if (word.name == "noRotation")
         options.noRotation = true;
     else if (word.name == "noKeys")
@@ -98,20 +97,6 @@ bool apply(const OptionWord& word, ImportOptions& options)
     return word.name != "clip" || !value.empty();
 }
 
-char lowered(char letter)
-{
-    return letter >= 'A' && letter <= 'Z' ? char(letter - 'A' + 'a') : letter;
-}
-
-/// But for the case of the letters, is at most one of them wrong?
-bool isNearly(const std::string& word, const std::string& option)
-{
-    if (word.size() != option.size()) return false;
-    const auto same = [](char a, char b) { return lowered(a) == lowered(b); };
-    const auto [differs, inOption] = std::mismatch(word.begin(), word.end(), option.begin(), same);
-    return differs == word.end() || std::equal(differs + 1, word.end(), inOption + 1, same);
-}
-
 } // namespace
 
 const std::vector<OptionHelp>& optionHelp()
@@ -135,27 +120,6 @@ const std::vector<OptionHelp>& optionHelp()
         {"maxDecodedBytes=N", "bytes of buffers, arrays and pictures, all together; default: 2 GiB"},
     };
     return help;
-}
-
-std::vector<std::string> misspeltOptions(const std::string& text)
-{
-    std::vector<std::string> hints;
-    for (const OptionWord& word : splitOptions(text))
-    {
-        std::string meant;
-        for (const auto& [usage, explanation] : optionHelp())
-        {
-            const std::string option = std::string(usage).substr(0, std::string(usage).find('='));
-            if (word.name == option)
-            {
-                meant.clear();
-                break;
-            }
-            if (isNearly(word.name, option)) meant = option;
-        }
-        if (!meant.empty()) hints.push_back(quoted(word.name) + " is unknown; is " + quoted(meant) + " meant?");
-    }
-    return hints;
 }
 
 Result<ImportOptions> parseOptions(const std::string& text)

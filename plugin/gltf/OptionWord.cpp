@@ -29,4 +29,15 @@ std::vector<OptionWord> splitOptions(const std::string& text)
     return words;
 }
 
+std::string joinOptions(const std::vector<OptionWord>& words)
+{
+    std::string text;
+    for (const OptionWord& word : words)
+    {
+        if (!text.empty()) text += ' ';
+        text += '"' + word.name + (word.value ? "=" + *word.value : "") + '"';
+    }
+    return text;
+}
+
 } // namespace osgGpuAnimation::gltf

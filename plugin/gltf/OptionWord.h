@@ -19,4 +19,7 @@ struct OptionWord
 /// (`clip="Walk fast"`).
 std::vector<OptionWord> splitOptions(const std::string& text);
 
+/// A string that splitOptions() makes the same words of.
+std::string joinOptions(const std::vector<OptionWord>& words);
+
 } // namespace osgGpuAnimation::gltf

@@ -84,9 +84,7 @@ void readInstance(ValueReader& in, AnimatedCrowd& crowd)
         readController(in, controller);
     }
     if (!in.isGood()) return;
-    osg::Matrixd placement = toOsg(root);
-    placement.setTrans(placement.getTrans() + crowd.origin());
-    const auto added = crowd.add(placement, controller, toColor(tint));
+    const auto added = crowd.add(toOsg(root, crowd.origin()), controller, toColor(tint));
     if (!added) in.fail("an instance of a crowd: " + added.error().message);
 }
 

@@ -66,11 +66,12 @@ std::string checkFinite(const std::string& text)
     return text.empty() || *end != '\0' || !std::isfinite(number) ? "'" + text + "' is not a number" : "";
 }
 
-std::string checkAboveZero(const std::string& text)
+std::string checkFraction(const std::string& text)
 {
     const std::string fault = checkFinite(text);
     if (!fault.empty()) return fault;
-    return std::strtod(text.c_str(), nullptr) > 0.0 ? "" : "'" + text + "' is not above 0";
+    const double number = std::strtod(text.c_str(), nullptr);
+    return number > 0.0 && number <= 1.0 ? "" : "'" + text + "' is not above 0 and at most 1";
 }
 
 std::string checkPng(const std::string& name)
@@ -115,7 +116,7 @@ void CommandLine::addInspect()
     _inspectApp
         ->add_option("--compact", _inspect.compact,
                      "With compact clips, off by at most that fraction of the model's size (1e-4, say)")
-        ->check(checkAboveZero)
+        ->check(checkFraction)
         ->option_text("FRACTION");
 }
 

@@ -85,6 +85,7 @@ Result<bool> RenderCommand::run() const
 {
     gltf::ImportOptions options;
     options.clip = clip;
+    options.noKeys = true; // nobody is there to press them
     const Result<gltf::ImportedModel> model = readModel(file, options);
     if (!model) return Error{file + ": " + model.error().message};
     Result<std::unique_ptr<PictureViewer>> viewer = PictureViewer::create(width, height);

@@ -2,6 +2,7 @@
 #include <osgGpuAnimation/gpu/EglGraphicsContext.h>
 
 #include "support/GLTest.h"
+#include "support/ThreadingModels.h"
 
 #include <osg/Geometry>
 #include <osg/GLExtensions>
@@ -211,9 +212,7 @@ TEST_F(CoreContextGLTest, isACoreContext)
 TEST_F(EglGraphicsContextGLTest, takesAWindowsPlaceInEveryThreadingModel)
 {
     context().releaseContext();
-    for (const osgViewer::ViewerBase::ThreadingModel model :
-         {osgViewer::ViewerBase::SingleThreaded, osgViewer::ViewerBase::CullDrawThreadPerContext,
-          osgViewer::ViewerBase::DrawThreadPerContext, osgViewer::ViewerBase::CullThreadPerCameraDrawThreadPerContext})
+    for (const osgViewer::ViewerBase::ThreadingModel model : threadingModels)
     {
         SCOPED_TRACE(model);
         Result<osg::ref_ptr<EglGraphicsContext>> made = EglGraphicsContext::create(64, 48);

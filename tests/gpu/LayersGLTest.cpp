@@ -82,6 +82,40 @@ TEST_P(LayersGLTest, aThousandRandomStacksAreTheTwinsAndTheReferencesPose)
     EXPECT_LE(worstReference, 1e-5);
 }
 
+TEST_P(LayersGLTest, batchesOfAnyNumberOfSamplesAfterAnyOther)
+{
+    std::mt19937 random(20261121);
+    const auto set = makeRandomSet({});
+    PosePipeline* pipeline = PosePipeline::of(state());
+    ASSERT_NE(pipeline, nullptr);
+    pipeline->setForm(GetParam());
+    std::uniform_real_distribution<float> unit(0.0f, 1.0f);
+    for (const std::size_t count : {4, 1, 16, 2, 5, 3, 4, 6, 1})
+    {
+        SCOPED_TRACE(std::to_string(count) + " samples");
+        PoseBatch batch(set);
+        std::vector<PoseInstruction> stacks(9);
+        for (PoseInstruction& stack : stacks)
+        {
+            stack.sampleCount = count;
+            for (std::size_t i = 0; i < count; ++i)
+            {
+                stack.samples[i] = instructionAt(*set, i % set->clips().size(), unit(random)).samples[0];
+                stack.samples[i].weight = i == 0 ? 0.6f : 0.4f * unit(random) / static_cast<float>(count);
+            }
+            batch.add(stack);
+        }
+        ASSERT_EQ(batch.sampleStride(), count);
+        ASSERT_TRUE(pipeline->evaluate(state(), batch, 0));
+        for (std::size_t i = 0; i < stacks.size(); ++i)
+        {
+            std::vector<AffineMatrix> twin;
+            Pose::evaluate(*set, stacks[i], AffineMatrix(), twin);
+            EXPECT_LE(difference(pipeline->readPalette(state(), *set, 0, i), twin), 1e-5);
+        }
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Forms, LayersGLTest,
                          ::testing::Values(PosePipeline::Form::Fused, PosePipeline::Form::Separate));
 

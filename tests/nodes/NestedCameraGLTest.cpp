@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "support/TestCharacter.h"
+#include "support/ThreadingModels.h"
 #include "support/ViewerGLTest.h"
 
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
@@ -131,11 +132,7 @@ TEST_P(NestedCameraGLTest, filmsWhatTheViewerSeesToo)
     expectPictures(true);
 }
 
-INSTANTIATE_TEST_SUITE_P(Models, NestedCameraGLTest,
-                         ::testing::Values(osgViewer::ViewerBase::SingleThreaded,
-                                           osgViewer::ViewerBase::CullDrawThreadPerContext,
-                                           osgViewer::ViewerBase::DrawThreadPerContext,
-                                           osgViewer::ViewerBase::CullThreadPerCameraDrawThreadPerContext));
+INSTANTIATE_TEST_SUITE_P(Models, NestedCameraGLTest, ::testing::ValuesIn(threadingModels));
 
 } // namespace
 

@@ -7,8 +7,10 @@
 #include <osg/LightSource>
 #include <osg/ShapeDrawable>
 #include <osgShadow/LightSpacePerspectiveShadowMap>
+#include <osgShadow/ParallelSplitShadowMap>
 #include <osgShadow/ShadowedScene>
 #include <osgShadow/ShadowMap>
+#include <osgShadow/SoftShadowMap>
 #include <osgShadow/StandardShadowMap>
 #include <osgShadow/ViewDependentShadowMap>
 
@@ -22,6 +24,8 @@ struct TechniqueCase
 {
     const char* name;
     osgShadow::ShadowTechnique* (*make)();
+    bool needsPerspective = false;
+    int mapsOfPanel = 1; ///< depth maps that the panel is drawn into
 };
 
 void PrintTo(const TechniqueCase& technique, std::ostream* out)
@@ -43,6 +47,7 @@ protected:
         around->addDrawable(new osg::ShapeDrawable(new osg::Box(osg::Vec3(-1, -2, 1), 0.3f, 0.1f, 4)));
         osg::ref_ptr<osg::LightSource> light = new osg::LightSource;
         light->getLight()->setPosition(osg::Vec4(-0.5f, -1.0f, 0.7f, 0.0f));
+        light->getLight()->setDirection(osg::Vec3(0.5f, 1.0f, -0.7f)); // what ParallelSplitShadowMap goes by
         osg::ref_ptr<osgShadow::ShadowedScene> scene = new osgShadow::ShadowedScene;
         for (osg::Node* child : std::initializer_list<osg::Node*>{subject, around, light})
             scene->addChild(child);
@@ -50,6 +55,9 @@ protected:
         viewer().setLightingMode(osg::View::NO_LIGHT);
         scene->getOrCreateStateSet()->setMode(GL_LIGHTING, osg::StateAttribute::ON);
         scene->getOrCreateStateSet()->setMode(GL_LIGHT0, osg::StateAttribute::ON);
+        // The same square of 4 units on each side, where the panel is.
+        if (GetParam().needsPerspective)
+            viewer().getCamera()->setProjectionMatrixAsFrustum(-0.4, 0.4, -0.4, 0.4, 1, 20);
         return ViewerGLTest::pictureOf(scene, {0, time});
     }
     osg::ref_ptr<osg::Image> pictureOf(osg::Node* subject, double time)
@@ -126,7 +134,7 @@ TEST_P(ShadowGLTest, theDepthPassHasTheLeanProgram)
     osg::ref_ptr<ProgramNotes> notes = new ProgramNotes;
     static_cast<osg::Drawable&>(*character->getChild(0)).setDrawCallback(notes);
     pictureOf(character, 1);
-    EXPECT_EQ(notes->depthDraws, 2); // frames
+    EXPECT_EQ(notes->depthDraws, 2 * GetParam().mapsOfPanel); // frames
     EXPECT_EQ(notes->colorDraws, 2);
 }
 
@@ -136,14 +144,16 @@ osgShadow::ShadowTechnique* make()
     return new Technique;
 }
 
-INSTANTIATE_TEST_SUITE_P(Techniques, ShadowGLTest,
-                         ::testing::Values(TechniqueCase{"ShadowMap", make<osgShadow::ShadowMap>},
-                                           TechniqueCase{"ViewDependentShadowMap",
-                                                         make<osgShadow::ViewDependentShadowMap>},
-                                           TechniqueCase{"StandardShadowMap", make<osgShadow::StandardShadowMap>},
-                                           TechniqueCase{"LightSpacePerspectiveShadowMap",
-                                                         make<osgShadow::LightSpacePerspectiveShadowMapVB>}),
-                         [](const auto& info) { return std::string(info.param.name); });
+INSTANTIATE_TEST_SUITE_P(
+    Techniques, ShadowGLTest,
+    ::testing::Values(TechniqueCase{"ShadowMap", make<osgShadow::ShadowMap>},
+                      TechniqueCase{"ViewDependentShadowMap", make<osgShadow::ViewDependentShadowMap>},
+                      TechniqueCase{"StandardShadowMap", make<osgShadow::StandardShadowMap>},
+                      TechniqueCase{"LightSpacePerspectiveShadowMap",
+                                    make<osgShadow::LightSpacePerspectiveShadowMapVB>},
+                      TechniqueCase{"ParallelSplitShadowMap", make<osgShadow::ParallelSplitShadowMap>, true, 2},
+                      TechniqueCase{"SoftShadowMap", make<osgShadow::SoftShadowMap>}),
+    [](const auto& info) { return std::string(info.param.name); });
 
 } // namespace
 

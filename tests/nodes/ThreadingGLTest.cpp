@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "support/TestCharacter.h"
+#include "support/ThreadingModels.h"
 #include "support/ViewerGLTest.h"
 
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
@@ -57,11 +58,7 @@ TEST_P(ThreadingGLTest, drawsTheFramesOwnPoses)
     EXPECT_EQ(Picture::pixelsDifferent(*expected, *found), 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Models, ThreadingGLTest,
-                         ::testing::Values(osgViewer::ViewerBase::SingleThreaded,
-                                           osgViewer::ViewerBase::CullDrawThreadPerContext,
-                                           osgViewer::ViewerBase::DrawThreadPerContext,
-                                           osgViewer::ViewerBase::CullThreadPerCameraDrawThreadPerContext));
+INSTANTIATE_TEST_SUITE_P(Models, ThreadingGLTest, ::testing::ValuesIn(threadingModels));
 
 } // namespace
 

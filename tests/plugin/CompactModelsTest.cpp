@@ -6,6 +6,7 @@
 
 #include <osgGpuAnimation/animation/CompactTracks.h>
 #include <osgGpuAnimation/animation/PackedKeyframes.h>
+#include <osgGpuAnimation/nodes/EntryReach.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
 #include <gtest/gtest.h>
@@ -34,12 +35,10 @@ void PrintTo(const ModelCase& model, std::ostream* out)
 /// What each palette entry moves.
 EntryBoxes boxesOf(const ImportedModel& model)
 {
-    EntryBoxes boxes(model.set->paletteSize());
-    SkinnedGeometry::BindBoxes bindBoxes;
+    EntryReach reach(*model.set);
     for (const ImportedPrimitive& primitive : model.primitives)
-        if (auto* mesh = dynamic_cast<SkinnedGeometry*>(primitive.geometry.get()))
-            mesh->addToEntryBoxes(*model.set, boxes, bindBoxes);
-    return boxes;
+        if (auto* mesh = dynamic_cast<SkinnedGeometry*>(primitive.geometry.get())) reach.add(*mesh);
+    return reach.boxes();
 }
 
 class CompactModelsTest : public ::testing::TestWithParam<ModelCase>

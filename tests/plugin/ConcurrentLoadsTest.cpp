@@ -9,7 +9,10 @@
 #include <set>
 #include <thread>
 
-// Files read by several threads at once through osgDB, as DatabasePagers and loading screens do.
+// Files read by several threads at once through osgDB, as DatabasePagers and loading screens do. What is asserted is
+// that loads are right and, where osgDB's cache hands one scene out, copies (plugin/cache/SeparateLoads.h). That what
+// loads share in the process (meshes' numbers, programs, morph textures) is made for several threads, ThreadSanitizer
+// sees.
 
 namespace osgGpuAnimation
 {

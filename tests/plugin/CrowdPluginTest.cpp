@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "plugin/ModelBuilder.h"
 #include "plugin/PluginFolder.h"
+#include "support/NotifyLog.h"
 
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 
@@ -159,6 +160,27 @@ TEST_F(CrowdPluginTest, takesOptions)
     for (const char* option : {"clips=NAME|INDEX,...", "spacing=UNITS", "seed=NUMBER"})
         EXPECT_EQ(reader->supportedOptions().count(option), 1u) << option;
     EXPECT_EQ(reader->readNode("fox.glb", nullptr).status(), Read::FILE_NOT_HANDLED);
+}
+
+TEST_F(CrowdPluginTest, saysWhichOptionsItTakesForMisspelt)
+{
+    const std::pair<const char*, const char*> cases[] = {
+        {"clips=Slide spacing=3 seed=7 noRotation noKeys maxNodeDepth=9", ""}, // nothing of it from the model's reader
+        {"sped=7", "\"seed\""},
+        {"spaceing=3", "\"spacing\""},
+        {"clip=Slide", "single characters"},
+        {"speed=2", "single characters"},
+    };
+    for (const auto& [options, hint] : cases)
+    {
+        SCOPED_TRACE(options);
+        const osg::ref_ptr<NotifyLog> log = new NotifyLog(osg::WARN);
+        osg::setNotifyHandler(log);
+        readCrowd("arm.gltf.2x2.crowd", options);
+        osg::setNotifyHandler(new osg::StandardNotifyHandler);
+        EXPECT_EQ(log->text.empty(), *hint == '\0') << log->text;
+        EXPECT_NE(log->text.find(hint), std::string::npos) << log->text;
+    }
 }
 
 TEST_F(CrowdPluginTest, faultsHaveAMessage)

@@ -7,6 +7,7 @@
 
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/gpu/PosePipeline.h>
+#include <osgGpuAnimation/nodes/EntryReach.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
 #include <glm/geometric.hpp>
@@ -54,11 +55,11 @@ protected:
         const Result<ImportedModel> model = importModel(readBytes(file), file, {});
         ASSERT_TRUE(model) << model.error().message;
         set = model.value().set;
-        boxes.resize(set->paletteSize());
-        SkinnedGeometry::BindBoxes bindBoxes;
+        EntryReach reach(*set);
         for (const ImportedPrimitive& primitive : model.value().primitives)
             if (const auto* skinned = dynamic_cast<const SkinnedGeometry*>(primitive.geometry.get()))
-                skinned->addToEntryBoxes(*set, boxes, bindBoxes);
+                reach.add(*skinned);
+        boxes = reach.boxes();
         const Box rest = boundsOfClip(*set, -1, boxes);
         size = static_cast<double>(glm::length(rest.max - rest.min));
     }

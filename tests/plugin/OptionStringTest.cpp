@@ -137,6 +137,7 @@ TEST(OptionStringTest, valuesThatDoNotFitAreErrors)
                              "compact",
                              "compact=0",
                              "compact=-1e-4",
+                             "compact=1.5",
                              "compact=nan",
                              "compact=inf",
                              "speed",
@@ -164,16 +165,21 @@ TEST(OptionStringTest, MisspeltOptionsAreNamed)
 {
     const std::pair<const char*, const char*> words[] = {
         {"clip=Run speed=2 noRotation maxElements=5", ""},
-        {"clips=Run,Walk spacing=2 seed=7 noTriStripPolygons dds_flip", ""}, // others'
+        {"spacing=2 noTriStripPolygons dds_flip noColors", ""}, // others'
         {"Clip=Run", "\"clip\""},
         {"norotation", "\"noRotation\""},
         {"spead=2", "\"speed\""},
         {"cliq=2", "\"clip\""},
+        {"clips=Run", "\"clip\""},
+        {"cip=Run", "\"clip\""},
+        {"sepeed=2", "\"speed\""},
+        {"sclae=2 spede=2", "\"speed\""},
+        {"noRotations", "\"noRotation\""},
     };
     for (const auto& [text, meant] : words)
     {
         SCOPED_TRACE(text);
-        const std::vector<std::string> hints = misspeltOptions(text);
+        const std::vector<std::string> hints = misspeltOptions(text, optionHelp());
         ASSERT_EQ(hints.size(), *meant == '\0' ? 0u : 1u);
         EXPECT_TRUE(hints.empty() || hints.front().find(meant) != std::string::npos) << hints.front();
     }

@@ -153,6 +153,8 @@ TEST_F(ReadmeTest, withoutADisplay)
         std::cerr << context.error().message << std::endl;
     else
         viewer.getCamera()->setGraphicsContext(context.value());
+    viewer.getCamera()->setViewport(0, 0, 800, 600);
+    viewer.setThreadingModel(osgViewer::ViewerBase::SingleThreaded); // a picture is there when frame() returns
     EXPECT_TRUE(!context || viewer.getCamera()->getGraphicsContext() == context.value());
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "SoakViewer.h"
 
+#include "support/ThreadingModels.h"
+
 #include <osgGpuAnimation/gpu/EglGraphicsContext.h>
 
 #include <iostream>
@@ -27,8 +29,14 @@ private:
 
 } // namespace
 
-SoakViewer::SoakViewer(osg::Group& scene) : _scene(&scene)
+// One viewer for all windows: osgViewer keeps a few hundred bytes for every viewer that there ever was (its list of
+// Scenes).
+SoakViewer::SoakViewer(osg::Group& scene) : _scene(&scene), _viewer(new osgViewer::Viewer)
 {
+    _viewer->setKeyEventSetsDone(0);
+    _viewer->setThreadingModel(osgViewer::ViewerBase::SingleThreaded);
+    _viewer->getCamera()->setFinalDrawCallback(new ErrorCount(_glErrors));
+    _viewer->setSceneData(_scene);
     open(320, 240);
 }
 
@@ -46,25 +54,20 @@ bool SoakViewer::open(int width, int height)
         return false;
     }
     _window = window.value();
-    _viewer = new osgViewer::Viewer;
-    _viewer->setKeyEventSetsDone(0);
-    _viewer->setThreadingModel(osgViewer::ViewerBase::SingleThreaded);
     osg::Camera& camera = *_viewer->getCamera();
     camera.setGraphicsContext(_window);
     camera.setViewport(0, 0, width, height);
     camera.setProjectionMatrixAsPerspective(40.0, double(width) / height, 1.0, 10000.0);
-    camera.setFinalDrawCallback(new ErrorCount(_glErrors));
-    _viewer->setSceneData(_scene);
     _viewer->realize();
     return _viewer->isRealized();
 }
 
 void SoakViewer::close()
 {
-    if (!_viewer) return;
+    if (!_window) return;
     _viewer->stopThreading();
     _window->close();
-    _viewer = nullptr;
+    _viewer->getCamera()->setGraphicsContext(nullptr);
     _window = nullptr;
 }
 
@@ -84,10 +87,7 @@ void SoakViewer::moveCamera(std::mt19937& random)
 
 void SoakViewer::changeThreading(std::mt19937& random)
 {
-    const osgViewer::ViewerBase::ThreadingModel models[] = {
-        osgViewer::ViewerBase::SingleThreaded, osgViewer::ViewerBase::CullDrawThreadPerContext,
-        osgViewer::ViewerBase::DrawThreadPerContext, osgViewer::ViewerBase::CullThreadPerCameraDrawThreadPerContext};
-    _viewer->setThreadingModel(models[std::uniform_int_distribution<int>(0, 3)(random)]);
+    _viewer->setThreadingModel(threadingModels[std::uniform_int_distribution<int>(0, 3)(random)]);
 }
 
 bool SoakViewer::open(std::mt19937& random)

@@ -71,6 +71,7 @@ TEST_F(ToolGLTest, rendersTheFlagUprightAndRed)
     const Process done = Process::run(OSGGPUANIM, {"render", flag, "--size", "160x120", "-o", picture});
     ASSERT_EQ(done.status, 0) << done.err;
     EXPECT_EQ(done.err, "");
+    EXPECT_EQ(done.out.find("Keys of"), std::string::npos) << done.out;
     const osg::ref_ptr<osg::Image> image = osgDB::readRefImageFile(picture);
     ASSERT_TRUE(image);
     EXPECT_EQ(image->s(), 160);

@@ -196,6 +196,7 @@ bool PosePipeline::evaluateFused(const PoseBatch& batch, const AnimationBuffers&
     if (set.levelCount() > 1) _scratch.reserve(oddEntries(set) * chunk.size * matrixBytes);
     bindInstances(chunk);
     PoseVariant variant = PoseVariant::of(batch);
+    if (chunk.sampleStride <= POSE_SAMPLES_AS_ATTRIBUTES) variant.sampleCount = static_cast<int>(chunk.sampleStride);
     variant.isRootLevel = true;
     variant.hasRoots = !chunk.uploadedRootMatrices.empty();
     const std::size_t entryBytes = POSE_TEXELS_PER_ENTRY * BufferTexture::texelBytes;
@@ -230,7 +231,12 @@ bool PosePipeline::evaluateFused(const PoseBatch& batch, const AnimationBuffers&
 
 void PosePipeline::bindInstances(const PosePalette::Chunk& chunk)
 {
-    chunk.samples.bindAttributes(POSE_SAMPLE_LOCATION, 1, chunk.sampleStride * sizeof(BlendSample), 0, 0);
+    // Compatibility profiles want attribute 0 enabled, so one sample is bound even where all are fetched.
+    const bool areAttributes = chunk.sampleStride <= POSE_SAMPLES_AS_ATTRIBUTES;
+    const auto sampleCount = areAttributes ? static_cast<unsigned int>(chunk.sampleStride) : 1u;
+    chunk.samples.bindAttributes(POSE_SAMPLE_LOCATION, sampleCount, chunk.sampleStride * sizeof(BlendSample), 0, 0);
+    for (unsigned int unused = sampleCount; unused < POSE_SAMPLES_AS_ATTRIBUTES; ++unused)
+        _gl->glDisableVertexAttribArray(POSE_SAMPLE_LOCATION + unused);
     if (!chunk.uploadedRootMatrices.empty())
         chunk.roots.bindAttributes(POSE_ROOT_LOCATION, POSE_TEXELS_PER_MATRIX, matrixBytes, 0, 0);
     else

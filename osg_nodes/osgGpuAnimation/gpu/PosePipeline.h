@@ -74,7 +74,6 @@ public:
     /// size is the fastest one measured, by little (tests/benchmark/RESULTS.md), and bounds the scratch buffer.
     static constexpr std::size_t usualChunkSize = 4096;
     void setChunkSize(std::size_t instances) { _chunkSize = instances; }
-    std::size_t chunkSize() const { return _chunkSize; }
     const Counters& counters() const { return _counters; }
 
     void flushDeletedGLObjects(double currentTime, double& availableTime) override;

@@ -3,7 +3,10 @@
 
 #include <osgGpuAnimation/gpu/PoseBatch.h>
 
+#include <layout.glsl>
+
 #include <algorithm>
+#include <initializer_list>
 
 namespace osgGpuAnimation
 {
@@ -28,6 +31,30 @@ void PoseVariant::setMotion(const PackedKeyframes::Track& motion)
     scaleMotion = motion.scale;
     hasExactKeys = motion.hasExactKeys;
     hasCompactKeys = motion.hasCompactKeys;
+}
+
+std::string PoseVariant::constants() const
+{
+    const auto line = [](const char* name, bool value)
+    { return std::string("const bool ") + name + (value ? " = true;\n" : " = false;\n"); };
+    const auto number = [](const char* name, int value)
+    { return std::string("const int ") + name + " = " + std::to_string(value) + ";\n"; };
+    return line("hasSplines", hasSplines) + line("hasSeveralSamples", hasSeveralSamples) +
+           line("hasWeights", hasWeights) + line("isRootLevel", isRootLevel) + line("hasRoots", hasRoots) +
+           line("hasLayers", hasLayers) + line("hasMasks", hasMasks) + line("hasAdditive", hasAdditive) +
+           line("hasExactKeys", hasExactKeys) + line("hasCompactKeys", hasCompactKeys) +
+           number("sampleCount", sampleCount) + number("translationMotion", static_cast<int>(translationMotion)) +
+           number("scaleMotion", static_cast<int>(scaleMotion));
+}
+
+unsigned int PoseVariant::key() const
+{
+    unsigned int key = 0;
+    for (const bool has : {hasSplines, hasSeveralSamples, hasWeights, isRootLevel, hasRoots, hasLayers, hasMasks,
+                           hasAdditive, hasExactKeys, hasCompactKeys})
+        key = 2 * key + (has ? 1 : 0);
+    key = key * (POSE_SAMPLES_AS_ATTRIBUTES + 1) + static_cast<unsigned int>(sampleCount);
+    return (4 * key + static_cast<unsigned int>(translationMotion)) * 4 + static_cast<unsigned int>(scaleMotion);
 }
 
 } // namespace osgGpuAnimation

@@ -4,7 +4,6 @@
 #include <osgGpuAnimation/animation/PackedKeyframes.h>
 #include <osgGpuAnimation/animation/PartMotion.h>
 
-#include <initializer_list>
 #include <string>
 
 namespace osgGpuAnimation
@@ -26,6 +25,7 @@ struct PoseVariant
     bool hasAdditive = false;       ///< some sample is additive
     bool hasExactKeys = false;      ///< some clip moves some of the tracks, in full precision
     bool hasCompactKeys = false;    ///< some compact clip moves some of the tracks
+    int sampleCount = 0; ///< blend samples of an instance, where they are attributes; 0: there are more, to be fetched
     PartMotion translationMotion = PartMotion::Held; ///< of the tracks, the most that any does in any clip
     PartMotion scaleMotion = PartMotion::Held;
 
@@ -37,29 +37,11 @@ struct PoseVariant
     bool operator<(const PoseVariant& other) const { return key() < other.key(); }
 
     /// GLSL: a constant for each member, of its name.
-    std::string constants() const
-    {
-        const auto line = [](const char* name, bool value)
-        { return std::string("const bool ") + name + (value ? " = true;\n" : " = false;\n"); };
-        const auto motion = [](const char* name, PartMotion value)
-        { return std::string("const int ") + name + " = " + std::to_string(static_cast<int>(value)) + ";\n"; };
-        return line("hasSplines", hasSplines) + line("hasSeveralSamples", hasSeveralSamples) +
-               line("hasWeights", hasWeights) + line("isRootLevel", isRootLevel) + line("hasRoots", hasRoots) +
-               line("hasLayers", hasLayers) + line("hasMasks", hasMasks) + line("hasAdditive", hasAdditive) +
-               line("hasExactKeys", hasExactKeys) + line("hasCompactKeys", hasCompactKeys) +
-               motion("translationMotion", translationMotion) + motion("scaleMotion", scaleMotion);
-    }
+    std::string constants() const;
 
 private:
     /// A number of its own for each variant.
-    unsigned int key() const
-    {
-        unsigned int key = 0;
-        for (const bool has : {hasSplines, hasSeveralSamples, hasWeights, isRootLevel, hasRoots, hasLayers, hasMasks,
-                               hasAdditive, hasExactKeys, hasCompactKeys})
-            key = 2 * key + (has ? 1 : 0);
-        return (4 * key + static_cast<unsigned int>(translationMotion)) * 4 + static_cast<unsigned int>(scaleMotion);
-    }
+    unsigned int key() const;
 };
 
 } // namespace osgGpuAnimation

@@ -4,6 +4,7 @@
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/nodes/AnimationUpdateCallback.h>
 #include <osgGpuAnimation/nodes/DepthPass.h>
+#include <osgGpuAnimation/nodes/EntryReach.h>
 #include <osgGpuAnimation/nodes/FlattenedPlace.h>
 #include <osgGpuAnimation/nodes/OsgMatrix.h>
 #include <osgGpuAnimation/nodes/PosedMeshes.h>
@@ -107,24 +108,21 @@ void AnimatedCharacter::growMeshes(const Box& box)
 
 void AnimatedCharacter::computeClipBounds()
 {
-    EntryBoxes entryBoxes(set().paletteSize());
-    SkinnedGeometry::BindBoxes bindBoxes;
-    SkinnedGeometryVisitor collect([&](SkinnedGeometry& geometry)
-                                   { geometry.addToEntryBoxes(set(), entryBoxes, bindBoxes); });
+    EntryReach reach(set());
+    SkinnedGeometryVisitor collect([&](SkinnedGeometry& geometry) { reach.add(geometry); });
     accept(collect);
-    EntryBoxes withAdded = entryBoxes;
-    SkinnedGeometryVisitor collectAdded([&](SkinnedGeometry& geometry)
-                                        { geometry.addToEntryBoxes(set(), withAdded, bindBoxes, maxLayers); });
+    EntryReach withAdded(reach, maxLayers);
+    SkinnedGeometryVisitor collectAdded([&](SkinnedGeometry& geometry) { withAdded.add(geometry); });
     if (!set().morphs().empty()) accept(collectAdded);
 
-    auto bounds = std::make_shared<std::vector<Box>>(boundsOfClips(set(), entryBoxes));
+    auto bounds = std::make_shared<std::vector<Box>>(boundsOfClips(set(), reach.boxes()));
     Box all;
     for (const Box& box : *bounds)
         all.add(box);
     SkinnedGeometryVisitor setBox([&](SkinnedGeometry& geometry) { geometry.setInitialBound(toOsg(all)); });
     accept(setBox);
     _clipBounds = std::move(bounds);
-    _mixBounds = std::make_shared<const MixBounds>(set(), std::move(entryBoxes), std::move(withAdded));
+    _mixBounds = std::make_shared<const MixBounds>(set(), reach.boxes(), withAdded.boxes());
     _played.clear();
     dirtyBound();
 }

@@ -6,6 +6,7 @@
 #include <osgGpuAnimation/nodes/CrowdBatches.h>
 #include <osgGpuAnimation/nodes/CrowdView.h>
 #include <osgGpuAnimation/nodes/DepthPass.h>
+#include <osgGpuAnimation/nodes/EntryReach.h>
 #include <osgGpuAnimation/nodes/FlattenedPlace.h>
 #include <osgGpuAnimation/nodes/OsgMatrix.h>
 #include <osgGpuAnimation/nodes/PlacedDraw.h>
@@ -38,10 +39,9 @@ void forEachMesh(const osg::Group& group, Function function)
 
 std::vector<Box> clipBoundsOf(const AnimationSet& set, const osg::Group& meshes)
 {
-    EntryBoxes entryBoxes(set.paletteSize());
-    SkinnedGeometry::BindBoxes bindBoxes;
-    forEachMesh(meshes, [&](const SkinnedGeometry& mesh) { mesh.addToEntryBoxes(set, entryBoxes, bindBoxes); });
-    return boundsOfClips(set, entryBoxes);
+    EntryReach reach(set);
+    forEachMesh(meshes, [&](const SkinnedGeometry& mesh) { reach.add(mesh); });
+    return boundsOfClips(set, reach.boxes());
 }
 
 std::shared_ptr<const AnimationSet> emptySet()
@@ -225,9 +225,7 @@ AnimationController* AnimatedCrowd::controller(Instance instance)
 
 osg::Matrixd AnimatedCrowd::placement(Instance instance) const
 {
-    osg::Matrixd placement = toOsg(_instances.rootMatrix(_instances.indexOf(instance)));
-    placement.setTrans(placement.getTrans() + _origin);
-    return placement;
+    return toOsg(_instances.rootMatrix(_instances.indexOf(instance)), _origin);
 }
 
 void AnimatedCrowd::setOrigin(const osg::Vec3d& origin)
@@ -297,7 +295,7 @@ void AnimatedCrowd::cull(osgUtil::CullVisitor& visitor)
     if (!seen.empty() && set().paletteSize() > 0)
     {
         view.look(_instances, seen);
-        const UpdateRate rate = areAllPlaceable(*this) ? _updateRate : UpdateRate();
+        const UpdateRate rate = _updateRate.every > 1 && areAllPlaceable(*this) ? _updateRate : UpdateRate();
         draws = _batches->enlist(PoseStage::frame(visitor), _instances, visitor, rate, seen);
     }
     for (const osg::ref_ptr<osg::Node>& child : _children)

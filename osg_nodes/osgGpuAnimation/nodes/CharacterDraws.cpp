@@ -122,13 +122,7 @@ void CharacterDraws::open(osgUtil::CullVisitor& visitor, Group& group, PoseFrame
     const osg::ref_ptr<osg::RefMatrix> eye = new osg::RefMatrix;
     visitor.pushStateSet(placed.stateSet);
     for (SkinnedGeometry* mesh : group.meshes)
-    {
-        const SkinningScope skinning(visitor, *mesh);
-        osg::StateSet* stateSet = mesh->getStateSet();
-        if (stateSet) visitor.pushStateSet(stateSet);
-        visitor.addDrawableAndDepth(mesh, eye.get(), depth);
-        if (stateSet) visitor.popStateSet();
-    }
+        addMeshAndDepth(visitor, *mesh, eye.get(), depth);
     visitor.popStateSet();
 }
 

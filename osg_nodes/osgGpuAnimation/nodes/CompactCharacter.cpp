@@ -2,18 +2,28 @@
 #include <osgGpuAnimation/nodes/CompactCharacter.h>
 
 #include <osgGpuAnimation/animation/CompactClips.h>
+#include <osgGpuAnimation/nodes/EntryReach.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometryVisitor.h>
 
 namespace osgGpuAnimation
 {
 
+namespace
+{
+
+EntryBoxes entryBoxesOf(AnimatedCharacter& character)
+{
+    EntryReach reach(character.set());
+    SkinnedGeometryVisitor collect([&](SkinnedGeometry& mesh) { reach.add(mesh); });
+    character.accept(collect);
+    return reach.boxes();
+}
+
+} // namespace
+
 Result<CompactedCharacter> compactClipsOf(AnimatedCharacter& character, double fraction)
 {
-    EntryBoxes boxes(character.set().paletteSize());
-    SkinnedGeometry::BindBoxes bindBoxes;
-    SkinnedGeometryVisitor collect([&](SkinnedGeometry& mesh)
-                                   { mesh.addToEntryBoxes(character.set(), boxes, bindBoxes); });
-    character.accept(collect);
+    const EntryBoxes boxes = entryBoxesOf(character);
     CompactedCharacter result;
     result.modelSize = modelSize(character.set(), boxes);
     result.tolerance = fraction * result.modelSize;

@@ -72,12 +72,7 @@ void CrowdView::look(const CrowdInstances& instances, const std::vector<std::uin
 
 void CrowdView::draw(SkinnedGeometry& mesh, osg::RefMatrix* toEye)
 {
-    if (!_visitor.validNodeMask(mesh)) return;
-    const SkinningScope skinning(_visitor, mesh);
-    osg::StateSet* stateSet = mesh.getStateSet();
-    if (stateSet) _visitor.pushStateSet(stateSet);
-    _visitor.addDrawableAndDepth(&mesh, toEye, _depth);
-    if (stateSet) _visitor.popStateSet();
+    if (_visitor.validNodeMask(mesh)) addMeshAndDepth(_visitor, mesh, toEye, _depth);
 }
 
 } // namespace osgGpuAnimation

@@ -22,6 +22,14 @@ inline osg::Matrixd toOsg(const AffineMatrix& matrix)
     return toOsg(matrix.toColumns());
 }
 
+/// The same in the space in which what it is relative to, the origin, lies.
+inline osg::Matrixd toOsg(const AffineMatrix& matrix, const osg::Vec3d& origin)
+{
+    osg::Matrixd placed = toOsg(matrix);
+    placed.setTrans(placed.getTrans() + origin);
+    return placed;
+}
+
 /// What is affine of it, rounded to float.
 inline AffineMatrix toAffine(const osg::Matrixd& matrix)
 {

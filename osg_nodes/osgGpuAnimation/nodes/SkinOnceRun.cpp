@@ -67,7 +67,7 @@ void SkinOnceRun::use(osg::StateSet* stateSet)
 
 void SkinOnceRun::skin(const SkinnedGeometry& mesh, const AnimationSet& set, std::size_t slot)
 {
-    const std::size_t texels = mesh.vertexCount() * static_cast<std::size_t>(mesh.skinnedTexels());
+    const std::size_t texels = mesh.skinnedTexelCount();
     const std::size_t capacity = _pipeline && texels > 0 ? _pipeline->maxTexels() / texels : 0;
     if (capacity == 0) return;
     const SkinnedVertices::Subject subject{mesh.number(), &set, slot};
@@ -99,7 +99,7 @@ void SkinOnceRun::fill(SkinnedVertices::Piece& piece, const SkinnedGeometry& mes
     use(SkinOncePass::shared()->state(mesh.onceVariant()));
     // Making room binds to the unit that is active, which must be none that OSG keeps a record of.
     _renderInfo.getState()->setActiveTextureUnit(POSE_SKINNED_UNIT);
-    const std::size_t texels = mesh.vertexCount() * static_cast<std::size_t>(mesh.skinnedTexels());
+    const std::size_t texels = mesh.skinnedTexelCount();
     piece.vertices.reserve(count * texels * BufferTexture::texelBytes);
     mesh.captureVertices(_renderInfo, first, static_cast<int>(count), piece.vertices.buffer());
     piece.count = count;

@@ -155,55 +155,6 @@ void SkinnedGeometry::setMorphTargets(int morph, int entry, std::vector<MorphTar
     dirtyBound();
 }
 
-void SkinnedGeometry::addToEntryBoxes(const AnimationSet& set, EntryBoxes& boxes, BindBoxes& bindBoxes,
-                                      std::size_t additiveLayers) const
-{
-    const auto* vertices = dynamic_cast<const osg::Vec3Array*>(getVertexArray());
-    if (!vertices) return;
-    if (_rigidEntry >= 0 && _morph < 0)
-    {
-        const auto [known, isNew] = bindBoxes.try_emplace(vertices);
-        for (std::size_t vertex = 0; isNew && vertex < vertices->size(); ++vertex)
-            known->second.add(reachOfVertex((*vertices)[vertex], vertex, {}));
-        if (static_cast<std::size_t>(_rigidEntry) < boxes.size())
-            boxes[static_cast<std::size_t>(_rigidEntry)].add(known->second);
-        return;
-    }
-    std::vector<WeightRange> ranges;
-    if (_morph >= 0) ranges = weightRanges(set, static_cast<std::size_t>(_morph));
-    for (WeightRange& range : ranges)
-    {
-        const float added = (range.max - range.min) * static_cast<float>(additiveLayers);
-        range = {range.min - added, range.max + added};
-    }
-    for (std::size_t vertex = 0; vertex < vertices->size(); ++vertex)
-    {
-        const Box reach = reachOfVertex((*vertices)[vertex], vertex, ranges);
-        forEachInfluence(vertex,
-                         [&](std::size_t entry, float)
-                         {
-                             if (entry < boxes.size()) boxes[entry].add(reach);
-                         });
-    }
-}
-
-Box SkinnedGeometry::reachOfVertex(const osg::Vec3& position, std::size_t vertex,
-                                   const std::vector<WeightRange>& ranges) const
-{
-    Box reach;
-    reach.add(glm::vec3(position.x(), position.y(), position.z()));
-    for (std::size_t target = 0; target < std::min(_morphTargets.size(), ranges.size()); ++target)
-    {
-        const osg::Vec3Array* deltas = _morphTargets[target].positions.get();
-        if (!deltas || vertex >= deltas->size()) continue;
-        const osg::Vec3& delta = (*deltas)[vertex];
-        const glm::vec3 d(delta.x(), delta.y(), delta.z());
-        reach.min += glm::min(d * ranges[target].min, d * ranges[target].max);
-        reach.max += glm::max(d * ranges[target].min, d * ranges[target].max);
-    }
-    return reach;
-}
-
 void SkinnedGeometry::computePositions(const std::vector<AffineMatrix>& palette,
                                        std::vector<glm::dvec3>& outPositions) const
 {

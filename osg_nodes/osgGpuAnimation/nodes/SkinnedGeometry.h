@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <osgGpuAnimation/animation/Bounds.h>
-#include <osgGpuAnimation/animation/WeightRange.h>
+#include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/nodes/MorphDeltas.h>
 #include <osgGpuAnimation/nodes/Skinning.h>
 #include <osgGpuAnimation/nodes/SkinOncePass.h>
@@ -12,7 +11,6 @@
 
 #include <array>
 #include <atomic>
-#include <map>
 #include <memory>
 #include <vector>
 
@@ -93,16 +91,11 @@ public:
     std::uint64_t number() const { return _number; }
     std::size_t vertexCount() const { return getVertexArray() ? getVertexArray()->getNumElements() : 0; }
     int skinnedTexels() const { return onceVariant().hasNormals ? 2 : 1; } ///< of a vertex
+    /// Of an instance.
+    std::size_t skinnedTexelCount() const { return vertexCount() * static_cast<std::size_t>(skinnedTexels()); }
     SkinOncePass::Variant onceVariant() const;
     /// Runs the pass that is applied over all vertices, for so many instances from the first on.
     void captureVertices(osg::RenderInfo& renderInfo, const PalettePlace& first, int count, GLuint buffer) const;
-
-    /// The boxes of vertex arrays in bind pose, so that an array which many meshes share is looked through once.
-    using BindBoxes = std::map<const osg::Array*, Box>;
-    /// Grows the boxes (one an entry) by the vertices that the entries move, wherever the clips' weights morph them
-    /// with so many additive layers that change the weights.
-    void addToEntryBoxes(const AnimationSet& set, EntryBoxes& boxes, BindBoxes& bindBoxes,
-                         std::size_t additiveLayers = 0) const;
 
     /// function(std::size_t entry, float weight), for each palette entry that moves the vertex.
     template <typename Function>
@@ -134,7 +127,6 @@ private:
     void withVertexArrays(osg::RenderInfo& renderInfo, Draw draw) const;
     void drawPrimitives(osg::State& state, int count) const;
     void bindPalette(osg::State& state, const PalettePlace& place) const;
-    Box reachOfVertex(const osg::Vec3& position, std::size_t vertex, const std::vector<WeightRange>& ranges) const;
     glm::dvec3 morphed(const osg::Vec3& position, std::size_t vertex, const std::vector<AffineMatrix>& palette) const;
 
     int _influences = 1;  ///< of a vertex, at most

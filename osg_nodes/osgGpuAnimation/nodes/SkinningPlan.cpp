@@ -8,6 +8,7 @@
 #include <osg/Notify>
 
 #include <algorithm>
+#include <map>
 
 namespace osgGpuAnimation
 {
@@ -58,7 +59,7 @@ SkinningPlan::Tally& SkinningPlan::tallyOf(const SkinnedGeometry& mesh)
 {
     const auto [known, isNew] = _tallyOfMesh.try_emplace(mesh.number(), _tallies.size());
     if (!isNew) return _tallies[known->second];
-    const std::size_t texels = mesh.vertexCount() * static_cast<std::size_t>(mesh.skinnedTexels());
+    const std::size_t texels = mesh.skinnedTexelCount();
     _tallies.push_back({mesh.number(),
                         mesh.skinning(),
                         breakEven(mesh.morphTargets().size()),
@@ -75,12 +76,19 @@ void SkinningPlan::decide(osg::State& state)
 {
     std::shared_ptr<Meshes> once = std::make_shared<Meshes>();
     std::size_t bytes = 0;
+    std::map<SkinOncePass::Variant, bool> tried;
+    const auto works = [&](const SkinOncePass::Variant& variant)
+    {
+        const auto [known, isNew] = tried.try_emplace(variant);
+        if (isNew) known->second = SkinOncePass::shared()->works(state, variant);
+        return known->second;
+    };
     for (const Tally& tally : _tallies)
     {
         const bool isCheaper =
             tally.breakEven > 0 && tally.drawn >= static_cast<std::size_t>(tally.breakEven) * tally.posed;
         if (tally.skinning == Skinning::Auto && !isCheaper) continue;
-        if (!fits(state, tally, bytes)) continue;
+        if (!fits(state, tally, bytes) || !works(tally.variant)) continue;
         bytes += tally.posed * tally.texels * BufferTexture::texelBytes;
         once->insert(tally.mesh);
     }
@@ -99,8 +107,7 @@ bool SkinningPlan::fits(osg::State& state, const Tally& tally, std::size_t bytes
     if (!pipeline || tally.texels == 0) return false;
     const std::size_t maxBytes = SkinnedVertices::of(state).maxBytes();
     const std::size_t bytes = tally.posed * tally.texels * BufferTexture::texelBytes;
-    if (tally.texels <= pipeline->maxTexels() && bytes <= maxBytes - std::min(bytesTaken, maxBytes))
-        return SkinOncePass::shared()->works(state, tally.variant);
+    if (tally.texels <= pipeline->maxTexels() && bytes <= maxBytes - std::min(bytesTaken, maxBytes)) return true;
     if (tally.skinning == Skinning::Once && _reported.insert(tally.mesh).second)
         OSG_WARN << "osgGpuAnimation: mesh \"" << tally.name << "\" is skinned by every draw: once, its " << tally.posed
                  << " instances would take " << tally.texels << " texels each, " << bytes << " bytes together beside "

@@ -38,4 +38,13 @@ SkinningScope::~SkinningScope()
     if (_visitor) _visitor->popStateSet();
 }
 
+void addMeshAndDepth(osgUtil::CullVisitor& visitor, SkinnedGeometry& mesh, osg::RefMatrix* toEye, float depth)
+{
+    const SkinningScope skinning(visitor, mesh);
+    osg::StateSet* stateSet = mesh.getStateSet();
+    if (stateSet) visitor.pushStateSet(stateSet);
+    visitor.addDrawableAndDepth(&mesh, toEye, depth);
+    if (stateSet) visitor.popStateSet();
+}
+
 } // namespace osgGpuAnimation

@@ -22,4 +22,8 @@ private:
     osgUtil::CullVisitor* _visitor = nullptr; ///< null: nothing is to be taken back
 };
 
+/// Hands the mesh on to be drawn in its SkinningScope, as CullVisitor does once it knows that a drawable is seen.
+/// toEye: from where its instances are placed. depth: theirs before the eye.
+void addMeshAndDepth(osgUtil::CullVisitor& visitor, SkinnedGeometry& mesh, osg::RefMatrix* toEye, float depth);
+
 } // namespace osgGpuAnimation

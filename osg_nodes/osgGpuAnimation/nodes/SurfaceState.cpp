@@ -122,6 +122,7 @@ void readLights(const osg::State& state, SurfaceState& surface)
     for (unsigned int unit = 1; unit < generatedUnits; ++unit)
         if (isShadowMap(state, unit)) surface.shadowMaps |= static_cast<std::uint8_t>(1u << unit);
     surface.hasShadowBias = surface.shadowMaps != 0 && hasUniform(state, "osgShadow_ambientBias");
+    surface.hasShadowSplits = surface.shadowMaps != 0 && hasUniform(state, "zShadow0");
 }
 
 } // namespace
@@ -151,7 +152,8 @@ std::string SurfaceState::defines() const
            line("DRAW_TEXTURE", isTextured) + line("DRAW_TEXTURE_MATRIX", hasTextureMatrix) +
            line("DRAW_CLIP_PLANES", hasClipPlanes) + line("DRAW_LIGHTS", lights) +
            line("DRAW_POINT_LIGHTS", pointLights) + line("DRAW_SHADOW_MAPS", shadowMaps) +
-           line("DRAW_SHADOW_BIAS", hasShadowBias) + line("DRAW_FOG", static_cast<unsigned int>(fog));
+           line("DRAW_SHADOW_BIAS", hasShadowBias) + line("DRAW_SHADOW_SPLITS", hasShadowSplits) +
+           line("DRAW_FOG", static_cast<unsigned int>(fog));
 }
 
 } // namespace osgGpuAnimation

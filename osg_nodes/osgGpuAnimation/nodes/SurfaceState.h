@@ -33,6 +33,7 @@ struct SurfaceState
     std::uint8_t pointLights = 0;  ///< of those, the ones that have a place: with attenuation, maybe spots
     std::uint8_t shadowMaps = 0;   ///< a bit for each texture unit, 1 to 7, with a depth map on generated coordinates
     bool hasShadowBias = false;    ///< osgShadow::ShadowMap's way of darkening: by its uniform osgShadow_ambientBias
+    bool hasShadowSplits = false;  ///< osgShadow::ParallelSplitShadowMap's: by its uniform zShadow0
     Fog fog = Fog::None;           ///< GL_FOG, and the osg::Fog's mode
 
     /// As the state is now; to be asked while its attributes are applied, the modes already being so.
@@ -44,10 +45,10 @@ struct SurfaceState
     bool operator<(const SurfaceState& other) const { return key() < other.key(); }
 
 private:
-    std::tuple<bool, bool, bool, bool, bool, bool, bool, unsigned, unsigned, unsigned, Fog> key() const
+    std::tuple<bool, bool, bool, bool, bool, bool, bool, bool, unsigned, unsigned, unsigned, Fog> key() const
     {
-        return {isDepthOnly, isAlphaNeeded, isLit,      isTextured, hasTextureMatrix, hasClipPlanes, hasShadowBias,
-                lights,      pointLights,   shadowMaps, fog};
+        return {isDepthOnly,   isAlphaNeeded,   isLit,  isTextured,  hasTextureMatrix, hasClipPlanes,
+                hasShadowBias, hasShadowSplits, lights, pointLights, shadowMaps,       fog};
     }
 };
 

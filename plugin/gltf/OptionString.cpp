@@ -71,7 +71,8 @@ bool apply(const OptionWord& word, ImportOptions& options)
 {
     const std::string value = word.value.value_or("");
     if (const std::optional<bool> fits = applyPlaying(word.name, value, options)) return *fits;
-    if (word.name == "compact") return readFinite(value, options.compact.emplace()) && *options.compact > 0.0 && *options.compact <= 1.0;
+    if (word.name == "compact")
+        return readFinite(value, options.compact.emplace()) && *options.compact > 0.0 && *options.compact <= 1.0;
     if (word.name == "noRotation")
         options.noRotation = true;
     else if (word.name == "noKeys")

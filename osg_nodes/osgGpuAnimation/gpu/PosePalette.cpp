@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/gpu/PosePalette.h>
 
+#include <layout.glsl>
+
 #include <algorithm>
 #include <cstring>
 
@@ -47,6 +49,25 @@ bool uploadChanged(const std::vector<Element>& source, std::size_t first, std::s
 PosePalette::Chunk::Chunk(osg::GLExtensions& gl)
     : samples(gl, GL_RGBA32UI_EXT), roots(gl, GL_RGBA32F_ARB), tints(gl, GL_RGBA8), palette(gl, GL_RGBA32F_ARB)
 {
+}
+
+bool PosePalette::Chunk::hasSamplesAsAttributes() const
+{
+    return sampleStride <= POSE_SAMPLES_AS_ATTRIBUTES;
+}
+
+void PosePalette::Chunk::bindInstances(osg::GLExtensions& gl) const
+{
+    // Compatibility profiles want attribute 0 enabled, so one sample is bound even where all are fetched.
+    const unsigned int sampleCount = hasSamplesAsAttributes() ? static_cast<unsigned int>(sampleStride) : 1u;
+    samples.bindAttributes(POSE_SAMPLE_LOCATION, sampleCount, sampleStride * sizeof(BlendSample), 0, 0);
+    for (unsigned int unused = sampleCount; unused < POSE_SAMPLES_AS_ATTRIBUTES; ++unused)
+        gl.glDisableVertexAttribArray(POSE_SAMPLE_LOCATION + unused);
+    if (!uploadedRootMatrices.empty())
+        roots.bindAttributes(POSE_ROOT_LOCATION, POSE_TEXELS_PER_MATRIX, sizeof(AffineMatrix), 0, 0);
+    else
+        for (unsigned int row = 0; row < POSE_TEXELS_PER_MATRIX; ++row)
+            gl.glDisableVertexAttribArray(POSE_ROOT_LOCATION + row);
 }
 
 std::vector<PosePalette::Chunk*> PosePalette::upload(const PoseBatch& batch, std::size_t chunkCapacity,

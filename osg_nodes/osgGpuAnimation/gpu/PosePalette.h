@@ -31,6 +31,11 @@ public:
     {
         explicit Chunk(osg::GLExtensions& gl);
 
+        /// Whether the pose pass gets all samples as attributes; otherwise it fetches them.
+        bool hasSamplesAsAttributes() const;
+        /// Makes the instances the vertices of the pose pass.
+        void bindInstances(osg::GLExtensions& gl) const;
+
         std::size_t size = 0; ///< instances
         std::size_t sampleStride = 1;
         std::vector<BlendSample> uploadedSamples;       ///< what `samples` holds

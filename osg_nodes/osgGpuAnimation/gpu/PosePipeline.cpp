@@ -194,9 +194,9 @@ bool PosePipeline::evaluateFused(const PoseBatch& batch, const AnimationBuffers&
 {
     const AnimationSet& set = batch.set();
     if (set.levelCount() > 1) _scratch.reserve(oddEntries(set) * chunk.size * matrixBytes);
-    bindInstances(chunk);
+    chunk.bindInstances(*_gl);
     PoseVariant variant = PoseVariant::of(batch);
-    if (chunk.sampleStride <= POSE_SAMPLES_AS_ATTRIBUTES) variant.sampleCount = static_cast<int>(chunk.sampleStride);
+    if (chunk.hasSamplesAsAttributes()) variant.sampleCount = static_cast<int>(chunk.sampleStride);
     variant.isRootLevel = true;
     variant.hasRoots = !chunk.uploadedRootMatrices.empty();
     const std::size_t entryBytes = POSE_TEXELS_PER_ENTRY * BufferTexture::texelBytes;
@@ -227,21 +227,6 @@ bool PosePipeline::evaluateFused(const PoseBatch& batch, const AnimationBuffers&
     }
     gatherOddLevels(set, chunk);
     return true;
-}
-
-void PosePipeline::bindInstances(const PosePalette::Chunk& chunk)
-{
-    // Compatibility profiles want attribute 0 enabled, so one sample is bound even where all are fetched.
-    const bool areAttributes = chunk.sampleStride <= POSE_SAMPLES_AS_ATTRIBUTES;
-    const auto sampleCount = areAttributes ? static_cast<unsigned int>(chunk.sampleStride) : 1u;
-    chunk.samples.bindAttributes(POSE_SAMPLE_LOCATION, sampleCount, chunk.sampleStride * sizeof(BlendSample), 0, 0);
-    for (unsigned int unused = sampleCount; unused < POSE_SAMPLES_AS_ATTRIBUTES; ++unused)
-        _gl->glDisableVertexAttribArray(POSE_SAMPLE_LOCATION + unused);
-    if (!chunk.uploadedRootMatrices.empty())
-        chunk.roots.bindAttributes(POSE_ROOT_LOCATION, POSE_TEXELS_PER_MATRIX, matrixBytes, 0, 0);
-    else
-        for (unsigned int row = 0; row < POSE_TEXELS_PER_MATRIX; ++row)
-            _gl->glDisableVertexAttribArray(POSE_ROOT_LOCATION + row);
 }
 
 void PosePipeline::gatherOddLevels(const AnimationSet& set, const PosePalette::Chunk& chunk)

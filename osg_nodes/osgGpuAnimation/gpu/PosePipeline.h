@@ -104,7 +104,6 @@ private:
     SetResources& resourcesOf(const PoseBatch& batch);
     template <typename Function>
     void forEachPass(Function function);
-    void bindInstances(const PosePalette::Chunk& chunk);
     bool evaluateFused(const PoseBatch& batch, const AnimationBuffers& buffers, PosePalette::Chunk& chunk);
     bool evaluateSeparate(const PoseBatch& batch, const AnimationBuffers& buffers, PosePalette::Chunk& chunk);
     void useMixInput(FeedbackPass& pass, const AnimationSet& set, const AnimationBuffers& buffers,

@@ -60,7 +60,7 @@ std::optional<bool> applyPlaying(const std::string& name, const std::string& val
 const char* wanted(const std::string& name)
 {
     if (name == "compact") return "a number above 0, at most 1";
-    if (name == "pixelError") return "a number of pixels, 0 or more";
+    if (name == "pixelError") return "a number of pixels from 0 to 1000000";
     if (name == "speed") return "a number";
     if (name == "start" || name == "fade") return "a number of seconds, 0 or more";
     if (name == "loop") return "once, loop or pingpong";
@@ -74,7 +74,8 @@ bool apply(const OptionWord& word, ImportOptions& options)
     if (const std::optional<bool> fits = applyPlaying(word.name, value, options)) return *fits;
     if (word.name == "compact")
         return readFinite(value, options.compact.emplace()) && *options.compact > 0.0 && *options.compact <= 1.0;
-    if (word.name == "pixelError") return readFinite(value, options.pixelError) && options.pixelError >= 0.0;
+    if (word.name == "pixelError")
+        return readFinite(value, options.pixelError) && options.pixelError >= 0.0 && options.pixelError <= 1e6;
     if (word.name == "noRotation")
         options.noRotation = true;
     else if (word.name == "noKeys")

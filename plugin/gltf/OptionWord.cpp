@@ -35,7 +35,9 @@ std::string joinOptions(const std::vector<OptionWord>& words)
     for (const OptionWord& word : words)
     {
         if (!text.empty()) text += ' ';
-        text += '"' + word.name + (word.value ? "=" + *word.value : "") + '"';
+        const std::string whole = word.name + (word.value ? "=" + *word.value : "");
+        const bool needsQuotes = whole.find(' ') != std::string::npos; // OSG's own readers know none
+        text += needsQuotes ? '"' + whole + '"' : whole;
     }
     return text;
 }

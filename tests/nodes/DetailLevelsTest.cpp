@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <thread>
@@ -196,6 +197,47 @@ TEST(DetailLevelsTest, endOnFansOfThousands)
         positions[vertex].set(vertex % 2, 1, 0);
     const DetailLevels doubles(*tube, *set);
     EXPECT_GE(drawn(*tube, doubles, 10), 3u);
+}
+
+/// A flat disc of rings of so many points around one that all triangles of the first ring meet in.
+osg::ref_ptr<SkinnedGeometry> makeDisc(unsigned int points, unsigned int rings)
+{
+    osg::ref_ptr<SkinnedGeometry> disc = new SkinnedGeometry;
+    osg::ref_ptr<osg::Vec3Array> positions = new osg::Vec3Array(1);
+    osg::ref_ptr<osg::DrawElementsUInt> triangles = new osg::DrawElementsUInt(GL_TRIANGLES);
+    for (unsigned int ring = 0; ring < rings; ++ring)
+        for (unsigned int point = 0; point < points; ++point)
+        {
+            const double angle = 2.0 * osg::PI * point / points, radius = 1.0 + ring;
+            positions->push_back(osg::Vec3(radius * std::cos(angle), radius * std::sin(angle), 0.0f));
+            const unsigned int here = 1 + ring * points + point, next = 1 + ring * points + (point + 1) % points;
+            for (const unsigned int corner : {ring == 0 ? 0 : here - points, here, next})
+                triangles->push_back(corner);
+            if (ring == 0) continue;
+            for (const unsigned int corner : {here - points, next, next - points})
+                triangles->push_back(corner);
+        }
+    disc->setVertexArray(positions);
+    disc->addPrimitiveSet(triangles);
+    disc->setRigidEntry(0);
+    return disc;
+}
+
+TEST(DetailLevelsTest, takeNoTimeByTheSquareOfTheTrianglesAtAPoint)
+{
+    const osg::ref_ptr<SkinnedGeometry> disc = makeDisc(30000, 3);
+    const auto begin = std::chrono::steady_clock::now();
+    const DetailLevels levels(*disc, *armSet());
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(60)); // by the square: many minutes
+    EXPECT_LT(drawn(*disc, levels, 10), disc->getPrimitiveSet(0)->getNumIndices());
+}
+
+TEST(DetailLevelsTest, areNotMadeOfVeryLargeMeshes)
+{
+    const osg::ref_ptr<SkinnedGeometry> disc = makeDisc(DetailLevels::mostVertices / 2, 2);
+    const DetailLevels levels(*disc, *armSet());
+    EXPECT_EQ(levels.finest(), DetailLevels::allTriangles);
+    EXPECT_EQ(drawn(*disc, levels, 10), disc->getPrimitiveSet(0)->getNumIndices());
 }
 
 TEST(DetailLevelsTest, areMadeOncePerMeshAndAnewWhenItChanges)

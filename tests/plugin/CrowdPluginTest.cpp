@@ -164,6 +164,27 @@ TEST_F(CrowdPluginTest, takesOptions)
     EXPECT_EQ(reader->readNode("fox.glb", nullptr).status(), Read::FILE_NOT_HANDLED);
 }
 
+TEST_F(CrowdPluginTest, handsOtherWordsToTheModelsReaderAsTheyAre)
+{
+    /// Takes what it is given down; arms are its only models.
+    class Listener : public osgDB::ReaderWriter
+    {
+    public:
+        Listener() { supportsExtension("listened", ""); }
+        Read readNode(const std::string&, const Options* options) const override
+        {
+            heard = options->getOptionString();
+            return Read::FILE_NOT_FOUND;
+        }
+        mutable std::string heard;
+    };
+    const osg::ref_ptr<Listener> listener = new Listener;
+    osgDB::Registry::instance()->addReaderWriter(listener);
+    read("arm.listened.2x2.crowd", "dds_flip seed=2 \"clips=a b\" \"name=with space\" noRotation");
+    osgDB::Registry::instance()->removeReaderWriter(listener);
+    EXPECT_EQ(listener->heard, "dds_flip \"name=with space\" noRotation");
+}
+
 TEST_F(CrowdPluginTest, saysWhichOptionsItTakesForMisspelt)
 {
     const std::pair<const char*, const char*> cases[] = {

@@ -92,7 +92,7 @@ TEST(OptionStringTest, errorsSayWhatIsWanted)
     const std::pair<const char*, const char*> cases[] = {
         {"loop=twice", "option loop: \"twice\" is not once, loop or pingpong"},
         {"speed=fast", "option speed: \"fast\" is not a number"},
-        {"pixelError=-1", "option pixelError: \"-1\" is not a number of pixels, 0 or more"},
+        {"pixelError=-1", "option pixelError: \"-1\" is not a number of pixels from 0 to 1000000"},
         {"fade=-1", "option fade: \"-1\" is not a number of seconds, 0 or more"},
         {"scene=one", "option scene: \"one\" is not a whole number that is not too large"},
     };
@@ -147,6 +147,7 @@ TEST(OptionStringTest, valuesThatDoNotFitAreErrors)
                              "pixelError",
                              "pixelError=-0.5",
                              "pixelError=nan",
+                             "pixelError=1e7",
                              "pixelError=inf",
                              "speed",
                              "speed=",

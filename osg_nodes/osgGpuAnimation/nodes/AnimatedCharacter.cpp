@@ -74,12 +74,9 @@ Result<bool> AnimatedCharacter::setAnimationSet(std::shared_ptr<const AnimationS
 
 Result<bool> AnimatedCharacter::setPixelError(float pixels)
 {
-    if (!(pixels >= 0.0f) || !std::isfinite(pixels))
-        return Error{"a pixel error of " + std::to_string(pixels) + ": it must be a number, 0 or more"};
+    if (!DetailRange::isPixelError(pixels)) return DetailRange::noPixelError(pixels);
     _pixelError = pixels;
-    if (pixels == 0.0f || set().paletteSize() == 0) return true;
-    SkinnedGeometryVisitor make([&](SkinnedGeometry& geometry) { geometry.detailLevels(set()); });
-    accept(make);
+    if (pixels > 0.0f && set().paletteSize() > 0) static_cast<void>(DetailRange(*this, set()));
     return true;
 }
 

@@ -287,8 +287,7 @@ Result<bool> AnimatedCrowd::setUpdateRate(const UpdateRate& rate)
 
 Result<bool> AnimatedCrowd::setPixelError(float pixels)
 {
-    if (!(pixels >= 0.0f) || !std::isfinite(pixels))
-        return Error{"a pixel error of " + std::to_string(pixels) + ": it must be a number, 0 or more"};
+    if (!DetailRange::isPixelError(pixels)) return DetailRange::noPixelError(pixels);
     _pixelError = pixels;
     if (pixels > 0.0f && set().paletteSize() > 0) static_cast<void>(DetailRange(*this, set()));
     return true;

@@ -23,8 +23,11 @@ constexpr std::size_t poseCount = 12;
 // the character's: coarser ones save little more, and what is cut off hulls would make small characters thin.
 constexpr int finestFraction = 8;
 constexpr int coarsestFraction = 5;
+constexpr int mostBeyondSize =
+    10; ///< powers of two: what is so much smaller than its character is one triangle by then
 constexpr double worthwhile = 0.85;      ///< of the triangles of the level before
 constexpr std::size_t fewTriangles = 16; ///< for which no level is worth its trouble
+constexpr std::size_t entriesATriangle = 8;
 
 template <typename OsgArray, typename Vector>
 void copyTo(const osg::Array* array, std::size_t count, std::vector<Vector>& out)
@@ -84,7 +87,7 @@ Box boxAroundJoints(const AnimationSet& set)
     Pose::jointToModel(set, set.restPose(), AffineMatrix(), joints);
     Box box;
     for (const AffineMatrix& joint : joints)
-        box.add(joint.transformPoint(glm::vec3(0.0f)));
+        if (const glm::vec3 place = joint.transformPoint(glm::vec3(0.0f)); isFinite(place)) box.add(place);
     return box;
 }
 
@@ -108,6 +111,16 @@ std::vector<std::uint32_t> trianglesOf(const osg::PrimitiveSet& primitives, std:
     return indices;
 }
 
+/// Whether posing the whole palette takes no more than working on the triangles does: of many small parts that move for
+/// themselves no levels are made.
+bool isWorthPoses(const SkinnedGeometry& mesh, const AnimationSet& set)
+{
+    std::size_t most = 0;
+    for (const osg::ref_ptr<osg::PrimitiveSet>& primitives : mesh.getPrimitiveSetList())
+        most = std::max<std::size_t>(most, primitives->getNumIndices() / 3);
+    return most >= std::max(fewTriangles, set.paletteSize() / entriesATriangle);
+}
+
 template <typename Elements>
 osg::ref_ptr<osg::DrawElements> makeElements(const std::vector<std::uint32_t>& indices)
 {
@@ -128,11 +141,13 @@ DetailLevels::DetailLevels(const SkinnedGeometry& mesh, const AnimationSet& set)
 {
     for (const osg::ref_ptr<osg::PrimitiveSet>& primitives : mesh.getPrimitiveSetList())
         _primitives.push_back({primitives, primitives->getModifiedCount(), {}});
+    if (mesh.vertexCount() > mostVertices || !isWorthPoses(mesh, set)) return;
     const PosedSurface surface = surfaceOf(mesh, set);
     if (surface.poses.empty()) return;
     const double size = sizeOf(boxAround(surface.poses.front()));
     if (!(size > 0.0)) return;
-    const int coarsest = std::ilogb(std::max(size, sizeOf(boxAroundJoints(set)))) - coarsestFraction;
+    const int coarsest = std::min(std::ilogb(std::max(size, sizeOf(boxAroundJoints(set)))) - coarsestFraction,
+                                  std::ilogb(size) + mostBeyondSize);
     for (Primitives& primitives : _primitives)
         addSteps(surface, std::ilogb(size) - finestFraction, coarsest, primitives);
 }
@@ -145,6 +160,7 @@ void DetailLevels::addSteps(const PosedSurface& surface, int finest, int coarses
     std::size_t kept = original.size() / 3;
     for (int level = finest; level <= coarsest; ++level)
     {
+        if (reduction.triangleCount() <= 1) break;
         const double limit = std::ldexp(1.0, level);
         reduction.reduce(limit, level < coarsest);
         const bool isWorthwhile =

@@ -26,7 +26,7 @@ struct PosedSurface;
 /// Made by SurfaceReduction in twelve poses at once (keyPoses() of the set), in each of which the level's error is
 /// kept; in other poses it may be more: no more than half as much in tests at random times of real characters' clips.
 /// Primitive sets other than indexed triangles are drawn whole at all levels, as are meshes with positions that are not
-/// finite. Of each piece of a mesh at least a triangle is left.
+/// finite or with more than mostVertices. Of each piece of a mesh at least a triangle is left.
 ///
 /// No level is coarser than a 32nd of the character's size, or small characters would get thin; the coarsest alone does
 /// not keep texture coordinates on their side of a seam.
@@ -36,6 +36,7 @@ class DetailLevels
 {
 public:
     static constexpr int allTriangles = std::numeric_limits<int>::min(); ///< the level without an error
+    static constexpr std::size_t mostVertices = 100'000; ///< of a mesh that levels are made of; they take seconds then
 
     /// The level of at most that error; allTriangles where it is not above 0.
     static int levelOf(double error);

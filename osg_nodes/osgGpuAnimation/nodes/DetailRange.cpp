@@ -4,15 +4,24 @@
 #include <osgGpuAnimation/nodes/MeshesOfGroup.h>
 
 #include <algorithm>
+#include <string>
 
 namespace osgGpuAnimation
 {
 
+Error DetailRange::noPixelError(float pixels)
+{
+    return Error{"a pixel error of " + std::to_string(pixels) + ": it must be a number from 0 to 1000000"};
+}
+
 DetailRange::DetailRange(const osg::Group& meshes, const AnimationSet& set)
 {
+    std::size_t vertices = 0;
     forEachMesh(meshes,
                 [&](const SkinnedGeometry& mesh)
                 {
+                    vertices += mesh.vertexCount();
+                    if (vertices > mostVertices) return;
                     const std::shared_ptr<const DetailLevels> levels = mesh.detailLevels(set);
                     if (levels->finest() == DetailLevels::allTriangles) return;
                     _finest = std::min(_finest, levels->finest());

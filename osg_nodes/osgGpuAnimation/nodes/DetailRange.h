@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <osgGpuAnimation/animation/Result.h>
 #include <osgGpuAnimation/nodes/DetailLevels.h>
 
 #include <osg/Group>
@@ -13,6 +14,14 @@ namespace osgGpuAnimation
 class DetailRange
 {
 public:
+    /// Vertices of all meshes together that levels are made of: those that come later are drawn whole.
+    static constexpr std::size_t mostVertices = 10 * DetailLevels::mostVertices;
+    static constexpr float largestPixelError = 1e6f;
+
+    /// What setPixelError() of characters and crowds takes, and its error for the rest.
+    static bool isPixelError(float pixels) { return pixels >= 0.0f && pixels <= largestPixelError; }
+    static Error noPixelError(float pixels);
+
     DetailRange() = default;
     /// Of the SkinnedGeometry among a group's children; makes levels where there are none yet.
     DetailRange(const osg::Group& meshes, const AnimationSet& set);

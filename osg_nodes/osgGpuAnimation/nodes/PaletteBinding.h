@@ -3,7 +3,6 @@
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/gpu/PlacementBuffers.h>
-
 #include <osgGpuAnimation/nodes/DetailLevels.h>
 
 #include <osg/StateAttribute>

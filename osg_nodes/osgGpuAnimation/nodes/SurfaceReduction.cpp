@@ -17,7 +17,7 @@ namespace
 constexpr double borderWeight = 4.0;       ///< of planes that hold open borders in place, beside the triangles' own
 constexpr double lengthCost = 1e-4;        ///< of an edge's squared length: of equals, the shorter goes first
 constexpr double sharpestTurn = 0.05;      ///< cosine between a triangle and what becomes of it
-constexpr std::size_t mostTriangles = 100; ///< at an edge: fans of thousands would take time by their square
+constexpr std::size_t mostTriangles = 100; ///< at an edge or beside it: fans would take time by their square
 constexpr int mostPasses = 3;              ///< over all edges that are left, for one limit
 constexpr double texCoordsCount = 100.0;   ///< beside normals, where a vertex is chosen
 
@@ -221,11 +221,14 @@ bool SurfaceReduction::findVertex(std::uint32_t given, std::uint32_t from, std::
 /// either point, and to their neighbours.
 bool SurfaceReduction::isNear(std::uint32_t from, std::uint32_t to, const std::vector<Corners>& moved) const
 {
+    for (const std::uint32_t neighbour : _mesh.neighboursOf(to))
+        if (_mesh.trianglesAt(neighbour).size() > mostTriangles) return false;
     const std::vector<Corners> atTo = cornersAfter(to, from, moved);
     if (!areNear(from, atTo) || !areNear(to, atTo)) return false;
     for (const std::uint32_t neighbour : _mesh.neighboursOf(from))
     {
         if (neighbour == to) continue;
+        if (_mesh.trianglesAt(neighbour).size() > mostTriangles) return false;
         // Only by triangles at the neighbour itself: what happens to others would not be seen there.
         const std::vector<Corners> there = cornersAfter(neighbour, from, moved);
         if (!areNear(neighbour, there.empty() ? atTo : there)) return false;

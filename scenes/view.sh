@@ -18,7 +18,7 @@ if [ ! -f "$file" ]; then
 fi
 
 install_missing "${packages[@]}"
-build_release osgdb_gltf osggpuanim
+build_release osgdb_gltf osgdb_crowd osgdb_serializers_osggpuanimation osggpuanim
 export OSG_LIBRARY_PATH=$build/lib${OSG_LIBRARY_PATH:+:$OSG_LIBRARY_PATH}
 
 # Fails where the display that DISPLAY names is not there; osgviewer itself ends with 0 then.

@@ -9,6 +9,7 @@
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace osgGpuAnimation::crowd
@@ -16,6 +17,15 @@ namespace osgGpuAnimation::crowd
 
 namespace
 {
+
+constexpr std::array<const char*, 3> ofCrowdsAlone{"clips", "spacing", "seed"};
+constexpr std::array<const char*, 5> ofSinglesAlone{"clip", "start", "speed", "loop", "fade"};
+
+template <typename Names>
+bool isAmong(const Names& names, const std::string& name)
+{
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
 
 /// False where the text is not a number, wholly.
 template <typename Number>
@@ -87,18 +97,23 @@ const std::vector<gltf::OptionHelp>& optionHelp()
 std::string modelOptions(const std::string& options)
 {
     std::vector<gltf::OptionWord> words = gltf::splitOptions(options);
-    const auto isCrowds = [](const gltf::OptionWord& word)
-    { return word.name == "clips" || word.name == "spacing" || word.name == "seed"; };
-    words.erase(std::remove_if(words.begin(), words.end(), isCrowds), words.end());
+    const auto isNotTheModels = [](const gltf::OptionWord& word)
+    { return isAmong(ofCrowdsAlone, word.name) || isAmong(ofSinglesAlone, word.name); };
+    words.erase(std::remove_if(words.begin(), words.end(), isNotTheModels), words.end());
     return gltf::joinOptions(words);
 }
 
 std::vector<std::string> optionHints(const std::string& options)
 {
-    std::vector<std::string> hints = gltf::misspeltOptions(options, optionHelp(), gltf::optionHelp());
-    const std::vector<std::string> singles{"clip", "start", "speed", "loop", "fade"};
+    // Those that the model's reader knows too are for it to tell.
+    std::vector<gltf::OptionHelp> own = optionHelp();
+    own.erase(std::remove_if(own.begin(), own.end(),
+                             [](const gltf::OptionHelp& help)
+                             { return !isAmong(ofCrowdsAlone, gltf::optionName(help)); }),
+              own.end());
+    std::vector<std::string> hints = gltf::misspeltOptions(options, own, gltf::optionHelp());
     for (const gltf::OptionWord& word : gltf::splitOptions(options))
-        if (std::find(singles.begin(), singles.end(), word.name) != singles.end())
+        if (isAmong(ofSinglesAlone, word.name))
             hints.push_back(gltf::quoted(word.name) + " is for single characters and does nothing to a crowd");
     return hints;
 }

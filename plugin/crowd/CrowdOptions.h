@@ -29,7 +29,8 @@ struct CrowdOptions
 /// The options of a crowd, with a line on what each does.
 const std::vector<gltf::OptionHelp>& optionHelp();
 
-/// The option string without what is the crowd's alone: what its model is to be read with.
+/// The option string without what is the crowd's alone and what is for single characters: what its model is to be
+/// read with.
 std::string modelOptions(const std::string& options);
 
 /// A sentence about each word that is nearly one of a crowd's options, and about each that is one of a model's but does

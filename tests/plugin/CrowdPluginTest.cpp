@@ -180,7 +180,7 @@ TEST_F(CrowdPluginTest, handsOtherWordsToTheModelsReaderAsTheyAre)
     };
     const osg::ref_ptr<Listener> listener = new Listener;
     osgDB::Registry::instance()->addReaderWriter(listener);
-    read("arm.listened.2x2.crowd", "dds_flip seed=2 \"clips=a b\" \"name=with space\" noRotation");
+    read("arm.listened.2x2.crowd", "dds_flip seed=2 clip=Run \"clips=a b\" \"name=with space\" noRotation");
     osgDB::Registry::instance()->removeReaderWriter(listener);
     EXPECT_EQ(listener->heard, "dds_flip \"name=with space\" noRotation");
 }

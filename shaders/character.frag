@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Base colour, lit per fragment by OSG's lights as the fixed pipeline does, in the shadow maps of osgShadow's techniques,
-// with fog. In a core profile, which has no lights: a headlight. DRAW_... are those of nodes/SurfaceState.h.
+// with fog. In a core profile, which has no lights: a headlight. DRAW_... are those of nodes/SurfaceState.h. Of what the
+// vertex shader puts out, the linker leaves out what is not read here: that is why nothing is read that may be done
+// without. POSE_COLORED: the mesh has colours, or morphs them; POSE_TINTED: the instances drawn have tints.
+#pragma import_defines(POSE_COLORED, POSE_TINTED)
 
 uniform sampler2D baseColorTexture;
 uniform float alphaCutoff;
-uniform bool unlit;
-uniform bool flatNormals; // the mesh has none: each face its own, of the pose
 
 uniform vec4 materialDiffuse; // gl_FrontMaterial's follows other meshes' colours where colours take the material's place
 #ifndef GL_ARB_compatibility
@@ -25,20 +26,24 @@ out vec4 fragmentColor;
 
 vec4 baseColor()
 {
-    vec4 color = vertexColor;
+    vec4 color = materialDiffuse;
+#if defined(POSE_COLORED) || defined(POSE_TINTED)
+    color *= vertexColor;
+#endif
 #if DRAW_TEXTURE
     color *= texture(baseColorTexture, textureCoordinate);
 #endif
-    color *= materialDiffuse;
     if (color.a < alphaCutoff) discard;
     return color;
 }
 
 vec3 facingNormal()
 {
-    vec3 facing = gl_FrontFacing ? viewNormal : -viewNormal;
-    if (flatNormals) facing = cross(dFdx(viewPosition), dFdy(viewPosition));
-    return normalize(facing);
+#if DRAW_FLAT_NORMALS
+    return normalize(cross(dFdx(viewPosition), dFdy(viewPosition)));
+#else
+    return normalize(gl_FrontFacing ? viewNormal : -viewNormal);
+#endif
 }
 
 #ifdef GL_ARB_compatibility
@@ -69,12 +74,14 @@ void addLight(int index, vec3 normal, inout Light sum)
                             ? 0.0
                             : pow(max(along, 0.0001), gl_LightSource[index].spotExponent);
     }
-    vec3 halfway = normalize(toLight - normalize(viewPosition));
     float diffuse = max(dot(normal, toLight), 0.0);
-    float specular = diffuse > 0.0 ? pow(max(dot(normal, halfway), 0.0), max(gl_FrontMaterial.shininess, 1.0)) : 0.0;
     sum.ambient += strength * gl_LightSource[index].ambient.rgb;
     sum.diffuse += strength * diffuse * gl_LightSource[index].diffuse.rgb;
+#if DRAW_SPECULAR
+    vec3 halfway = normalize(toLight - normalize(viewPosition));
+    float specular = diffuse > 0.0 ? pow(max(dot(normal, halfway), 0.0), max(gl_FrontMaterial.shininess, 1.0)) : 0.0;
     sum.specular += strength * specular * gl_LightSource[index].specular.rgb;
+#endif
 }
 
 // The technique has set the unit's texture coordinates to be generated from the view position.
@@ -192,7 +199,7 @@ void main()
 #if DRAW_COLOR
     vec4 color = baseColor();
 #if DRAW_LIGHTING
-    if (!unlit) color.rgb = litColor(color.rgb);
+    color.rgb = litColor(color.rgb);
 #endif
 #if DRAW_FOG && defined(GL_ARB_compatibility)
     color.rgb = foggedColor(color.rgb);

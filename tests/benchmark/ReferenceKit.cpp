@@ -20,6 +20,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace osgGpuAnimation::benchmark
 {
@@ -60,28 +61,32 @@ void osgGpuAnimationMorphColor(inout vec4 color) {}
 void osgGpuAnimationMorphTextureCoordinate(inout vec2 coordinate) {}
 )";
 
-/// The variant of the kit's shaders that its own program takes in these scenes: one light far away.
-std::string surfacePrologue()
+/// The variant of the kit's shaders that its own program takes for the mesh in these scenes: one light far away.
+std::string surfacePrologue(const osg::Geometry& mesh)
 {
-    return "#version 140\n" + SurfaceState().defines();
+    SurfaceState surface;
+    const osg::Uniform* flatNormals = mesh.getStateSet() ? mesh.getStateSet()->getUniform("flatNormals") : nullptr;
+    if (flatNormals) flatNormals->get(surface.hasFlatNormals);
+    return "#version 140\n" + surface.defines();
 }
 
-osg::ref_ptr<osg::Program> makeProgram(const std::string& vertex)
+osg::ref_ptr<osg::Program> makeProgram(const osg::Geometry& mesh, const std::string& vertex)
 {
     osg::ref_ptr<osg::Program> program = new osg::Program;
     program->addShader(new osg::Shader(osg::Shader::VERTEX, vertex));
-    program->addShader(new osg::Shader(osg::Shader::FRAGMENT, surfacePrologue() + shaders::character_frag));
+    program->addShader(new osg::Shader(osg::Shader::FRAGMENT, surfacePrologue(mesh) + shaders::character_frag));
     return program;
 }
 
-osg::Program* unskinnedProgram()
+/// Shared by all meshes of the same variant.
+osg::Program* unskinnedProgram(const osg::Geometry& mesh)
 {
-    static const osg::ref_ptr<osg::Program> program = []
-    {
-        osg::ref_ptr<osg::Program> made = makeProgram(surfacePrologue() + shaders::character_vert);
-        made->addShader(new osg::Shader(osg::Shader::VERTEX, std::string("#version 140\n") + noSkin));
-        return made;
-    }();
+    static std::map<std::string, osg::ref_ptr<osg::Program>> programs;
+    const std::string prologue = surfacePrologue(mesh);
+    osg::ref_ptr<osg::Program>& program = programs[prologue];
+    if (program) return program.get();
+    program = makeProgram(mesh, prologue + shaders::character_vert);
+    program->addShader(new osg::Shader(osg::Shader::VERTEX, std::string("#version 140\n") + noSkin));
     return program.get();
 }
 
@@ -188,7 +193,7 @@ void ReferenceKit::shareMesh(const gltf::ImportedPrimitive& primitive)
     std::string source = hardwareVertexShader;
     // Filled in here: osgAnimation would do it once for each character, and warn from the second on.
     source.replace(source.find("MAX_MATRIX"), 10, std::to_string(mesh.influences->size()) + "/*MAX_MATRIX*/");
-    mesh.hardwareProgram = makeProgram(source);
+    mesh.hardwareProgram = makeProgram(*mesh.source, source);
     _meshes.push_back(mesh);
 }
 
@@ -280,7 +285,7 @@ osg::ref_ptr<osg::Geometry> ReferenceKit::makeRig(const SharedMesh& mesh, Refere
     return rig;
 }
 
-osg::ref_ptr<osg::Geometry> unskinned(const osg::Geometry& geometry)
+osg::ref_ptr<osg::Geometry> unskinned(const SkinnedGeometry& geometry)
 {
     osg::ref_ptr<osg::Geometry> plain = new osg::Geometry(geometry, osg::CopyOp::SHALLOW_COPY);
     osg::Geometry::ArrayList none;
@@ -294,7 +299,8 @@ osg::ref_ptr<osg::Geometry> unskinned(const osg::Geometry& geometry)
     const osg::Vec4 white(1, 1, 1, 1);
     state->addUniform(
         new osg::Uniform("materialDiffuse", material ? material->getDiffuse(osg::Material::FRONT) : white));
-    state->setAttributeAndModes(unskinnedProgram());
+    if (geometry.hasColors()) state->setDefine("POSE_COLORED");
+    state->setAttributeAndModes(unskinnedProgram(geometry));
     plain->setStateSet(state);
     return plain;
 }

@@ -12,6 +12,11 @@
 
 #include <vector>
 
+namespace osgGpuAnimation
+{
+class SkinnedGeometry;
+}
+
 namespace osgGpuAnimation::benchmark
 {
 
@@ -74,7 +79,7 @@ private:
 };
 
 /// The mesh in bind pose with the same state, its program drawing it as it is: what skinning is measured against.
-osg::ref_ptr<osg::Geometry> unskinned(const osg::Geometry& geometry);
+osg::ref_ptr<osg::Geometry> unskinned(const SkinnedGeometry& geometry);
 
 /// The largest distance between the character's bones and the palette entries they stand for, by the size of what the
 /// entries move.

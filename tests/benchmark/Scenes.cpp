@@ -134,7 +134,8 @@ osg::ref_ptr<osg::Group> makeUnskinnedScene(const Subject& subject, std::size_t 
 {
     osg::ref_ptr<osg::Group> meshes = new osg::Group;
     for (const gltf::ImportedPrimitive& primitive : subject.model.primitives)
-        if (dynamic_cast<SkinnedGeometry*>(primitive.geometry.get())) meshes->addChild(unskinned(*primitive.geometry));
+        if (const auto* mesh = dynamic_cast<const SkinnedGeometry*>(primitive.geometry.get()))
+            meshes->addChild(unskinned(*mesh));
     osg::ref_ptr<osg::Group> root = new osg::Group;
     for (std::size_t i = 0; i < count; ++i)
     {

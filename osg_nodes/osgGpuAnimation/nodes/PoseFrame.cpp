@@ -76,8 +76,9 @@ void PoseFrame::reset()
     _batchesOfSet.clear();
     _enlisted.clear();
     _samples.clear();
-    _states.reset();
-    _placedStates.reset();
+    for (auto& states : _states)
+        for (StatePool& pool : states)
+            pool.reset();
 }
 
 EnlistedPose PoseFrame::enlist(const AnimatedCharacter& character)
@@ -167,7 +168,7 @@ EnlistedBatch PoseFrame::enlist(std::unique_ptr<PoseBatch> content)
 
 osg::StateSet* PoseFrame::stateOf(const Batch& batch, std::size_t instance, std::size_t instanceCount, int level)
 {
-    osg::StateSet& stateSet = _states.next(false);
+    osg::StateSet& stateSet = nextState(batch, false);
     bindingOf(stateSet).set(batch.content->sharedSet(), batch.slot, instance, instanceCount);
     bindingOf(stateSet).setLevel(level);
     return &stateSet;
@@ -183,20 +184,28 @@ osg::StateSet* PoseFrame::partState(const AnimationSet& set, std::size_t slot, s
 PlacedState PoseFrame::placedState(const AnimationSet& set, std::size_t slot, int level)
 {
     const std::lock_guard<std::mutex> lock(_mutex);
-    osg::StateSet& stateSet = _placedStates.next(true);
+    const Batch& batch = *_batchesOfSet[&set][slot];
+    osg::StateSet& stateSet = nextState(batch, true);
     PaletteBinding& binding = bindingOf(stateSet);
-    binding.setPlaced(_batchesOfSet[&set][slot]->content->sharedSet(), slot);
+    binding.setPlaced(batch.content->sharedSet(), slot);
     binding.setLevel(level);
     return {&stateSet, &binding};
 }
 
-osg::StateSet& PoseFrame::StatePool::next(bool isPlaced)
+osg::StateSet& PoseFrame::nextState(const Batch& batch, bool isPlaced)
+{
+    const bool isTinted = !batch.content->tints().empty();
+    return _states[isPlaced][isTinted].next(isPlaced, isTinted);
+}
+
+osg::StateSet& PoseFrame::StatePool::next(bool isPlaced, bool isTinted)
 {
     if (used == states.size())
     {
         states.push_back(new osg::StateSet);
         states.back()->setAttribute(new PaletteBinding);
         if (isPlaced) states.back()->setDefine("POSE_PLACED");
+        if (isTinted) states.back()->setDefine("POSE_TINTED");
     }
     return *states[used++];
 }

@@ -104,7 +104,7 @@ private:
         std::vector<osg::ref_ptr<osg::StateSet>> states;
         std::size_t used = 0;
 
-        osg::StateSet& next(bool isPlaced);
+        osg::StateSet& next(bool isPlaced, bool isTinted);
         void reset();
     };
 
@@ -116,6 +116,7 @@ private:
     Batch& addBatch(std::unique_ptr<PoseBatch> content);
     std::unique_ptr<PoseBatch> spareBatch(std::shared_ptr<const AnimationSet> set);
     osg::StateSet* stateOf(const Batch& batch, std::size_t instance, std::size_t instanceCount, int level);
+    osg::StateSet& nextState(const Batch& batch, bool isPlaced);
 
     std::mutex _mutex;
     unsigned int _frameNumber = 0;
@@ -127,8 +128,7 @@ private:
     std::vector<std::unique_ptr<PoseBatch>> _spareBatches;
     std::unordered_map<const AnimatedCharacter*, Enlisted> _enlisted;
     std::vector<BlendSample> _samples; ///< of those enlisted
-    StatePool _states;
-    StatePool _placedStates;
+    StatePool _states[2][2];           ///< by whether instances are placed by the draw, and whether they have tints
 };
 
 } // namespace osgGpuAnimation

@@ -199,6 +199,15 @@ glm::dvec3 SkinnedGeometry::morphed(const osg::Vec3& position, std::size_t verte
     return sum;
 }
 
+bool SkinnedGeometry::hasColors() const
+{
+    if (_morphDeltas.channels[2] >= 0) return true;
+    const osg::Array* colors = getColorArray();
+    if (!colors || colors->getBinding() != osg::Array::BIND_OVERALL) return colors;
+    const auto* overall = dynamic_cast<const osg::Vec4Array*>(colors);
+    return !overall || overall->empty() || overall->front() != osg::Vec4(1, 1, 1, 1);
+}
+
 void SkinnedGeometry::drawImplementation(osg::RenderInfo& renderInfo) const
 {
     osg::State& state = *renderInfo.getState();

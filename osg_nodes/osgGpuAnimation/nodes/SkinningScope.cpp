@@ -21,23 +21,39 @@ const PaletteBinding* bindingAbove(osgUtil::CullVisitor& visitor)
     return nullptr;
 }
 
+osg::StateSet& coloredState()
+{
+    static const osg::ref_ptr<osg::StateSet> state = []
+    {
+        osg::ref_ptr<osg::StateSet> made = new osg::StateSet;
+        made->setDefine("POSE_COLORED");
+        return made;
+    }();
+    return *state;
+}
+
 } // namespace
 
-SkinningScope::SkinningScope(osgUtil::CullVisitor& visitor, const SkinnedGeometry& mesh)
+SkinningScope::SkinningScope(osgUtil::CullVisitor& visitor, const SkinnedGeometry& mesh) : _visitor(visitor)
 {
     const PaletteBinding* binding = bindingAbove(visitor);
     if (!binding) return;
     if (binding->level() != DetailLevels::allTriangles) mesh.detailLevels(*binding->animationSet());
+    if (mesh.hasColors()) push(coloredState());
     if (!mesh.mayBeSkinnedOnce()) return;
-    osg::StateSet* state = PoseStage::reads(visitor).add(mesh, *binding);
-    if (!state) return;
-    visitor.pushStateSet(state);
-    _visitor = &visitor;
+    if (osg::StateSet* state = PoseStage::reads(visitor).add(mesh, *binding)) push(*state);
 }
 
 SkinningScope::~SkinningScope()
 {
-    if (_visitor) _visitor->popStateSet();
+    while (_pushed-- > 0)
+        _visitor.popStateSet();
+}
+
+void SkinningScope::push(osg::StateSet& stateSet)
+{
+    _visitor.pushStateSet(&stateSet);
+    ++_pushed;
 }
 
 void addMeshAndDepth(osgUtil::CullVisitor& visitor, SkinnedGeometry& mesh, osg::RefMatrix* toEye, float depth)

@@ -9,8 +9,8 @@ namespace osgGpuAnimation
 class SkinnedGeometry;
 
 /// While it lives: what is culled is the mesh, for the instances of the PaletteBinding that the visitor has come
-/// through last. The frame takes that down, and has the mesh drawn in the way it is skinned: see SkinningPlan. Levels
-/// of detail are made if they are needed.
+/// through last. The frame takes that down, and has the mesh drawn in the way it is skinned: see SkinningPlan. Its
+/// program is told of its colours. Levels of detail are made if they are needed.
 class SkinningScope
 {
 public:
@@ -20,7 +20,10 @@ public:
     SkinningScope& operator=(const SkinningScope&) = delete;
 
 private:
-    osgUtil::CullVisitor* _visitor = nullptr; ///< null: nothing is to be taken back
+    void push(osg::StateSet& stateSet);
+
+    osgUtil::CullVisitor& _visitor;
+    int _pushed = 0; ///< state sets, to be taken back
 };
 
 /// Hands the mesh on to be drawn in its SkinningScope, as CullVisitor does once it knows that a drawable is seen.

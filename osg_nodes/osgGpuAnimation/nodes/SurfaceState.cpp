@@ -6,6 +6,7 @@
 #include <osg/ColorMask>
 #include <osg/Fog>
 #include <osg/Light>
+#include <osg/Material>
 #include <osg/TexGen>
 #include <osg/Texture>
 
@@ -74,6 +75,38 @@ bool leavesPartsOut(osg::State& state)
     return false;
 }
 
+/// The uniform that the program will see: of the state set that is being applied, or of those above. Null: there is
+/// none.
+const osg::Uniform* uniformOf(osg::State& state, const std::string& name)
+{
+    const auto known = state.getUniformMap().find(name);
+    const bool hasAbove = known != state.getUniformMap().end() && !known->second.uniformVec.empty();
+    const osg::State::StateSetStack& way = state.getStateSetStack();
+    const osg::StateSet::RefUniformPair* own = way.empty() || !way.back() ? nullptr : way.back()->getUniformPair(name);
+    if (!hasAbove) return own ? own->first.get() : nullptr;
+    const auto& [above, value] = known->second.uniformVec.back();
+    const bool isOverridden =
+        (value & osg::StateAttribute::OVERRIDE) && !(own && (own->second & osg::StateAttribute::PROTECTED));
+    return own && !isOverridden ? own->first.get() : above;
+}
+
+bool isOn(osg::State& state, const std::string& name)
+{
+    const osg::Uniform* uniform = uniformOf(state, name);
+    if (!uniform) return false;
+    const auto isSet = [](const auto* numbers) { return numbers && !numbers->empty() && numbers->front() != 0; };
+    return isSet(uniform->getIntArray()) || isSet(uniform->getUIntArray()) || isSet(uniform->getFloatArray());
+}
+
+bool isShiny(const osg::State& state)
+{
+    const auto* material = applied<osg::Material>(state, osg::StateAttribute::MATERIAL);
+    if (!material) return false; // OpenGL's own is black
+    const osg::Vec4& specular = material->getSpecular(osg::Material::FRONT);
+    return material->getColorMode() == osg::Material::SPECULAR || specular.x() != 0.0f || specular.y() != 0.0f ||
+           specular.z() != 0.0f;
+}
+
 bool isPointLight(const osg::State& state, unsigned int index)
 {
     const auto* light = applied<osg::Light>(state, osg::StateAttribute::LIGHT, index);
@@ -133,7 +166,9 @@ SurfaceState SurfaceState::of(osg::State& state)
     surface.lights = 0;
     surface.isDepthOnly = isDepthPass(state) || isColorMasked(state);
     surface.isAlphaNeeded = surface.isDepthOnly && leavesPartsOut(state);
-    surface.isLit = !surface.isDepthOnly && isLightingOn(state);
+    surface.isLit = !surface.isDepthOnly && isLightingOn(state) && !isOn(state, "unlit");
+    surface.hasFlatNormals = surface.isLit && isOn(state, "flatNormals");
+    surface.hasSpecular = surface.isLit && isShiny(state);
     surface.isTextured = (!surface.isDepthOnly || surface.isAlphaNeeded) && isTexturingOn(state);
     surface.hasTextureMatrix =
         surface.isTextured && state.getLastAppliedTextureAttribute(0, osg::StateAttribute::TEXMAT) != nullptr;
@@ -149,6 +184,7 @@ std::string SurfaceState::defines() const
     const auto line = [](const char* name, unsigned int value)
     { return std::string("#define ") + name + " " + std::to_string(value) + "\n"; };
     return line("DRAW_COLOR", !isDepthOnly) + line("DRAW_ALPHA", isAlphaNeeded) + line("DRAW_LIGHTING", isLit) +
+           line("DRAW_FLAT_NORMALS", hasFlatNormals) + line("DRAW_SPECULAR", hasSpecular) +
            line("DRAW_TEXTURE", isTextured) + line("DRAW_TEXTURE_MATRIX", hasTextureMatrix) +
            line("DRAW_CLIP_PLANES", hasClipPlanes) + line("DRAW_LIGHTS", lights) +
            line("DRAW_POINT_LIGHTS", pointLights) + line("DRAW_SHADOW_MAPS", shadowMaps) +

@@ -25,7 +25,9 @@ struct SurfaceState
 
     bool isDepthOnly = false;      ///< no colour is written: by ColorMask, or POSE_DEPTH_ONLY (see DepthPass)
     bool isAlphaNeeded = false;    ///< alphaCutoff or blending leave parts of the surface out
-    bool isLit = true;             ///< GL_LIGHTING
+    bool isLit = true;             ///< GL_LIGHTING, and no uniform `unlit`
+    bool hasFlatNormals = false;   ///< lit, by the uniform `flatNormals`: each face by its own normal, of the pose
+    bool hasSpecular = false;      ///< lit, and the osg::Material's specular is not black
     bool isTextured = true;        ///< GL_TEXTURE_2D on unit 0
     bool hasTextureMatrix = false; ///< an osg::TexMat on unit 0
     bool hasClipPlanes = false;    ///< any GL_CLIP_PLANEi
@@ -45,10 +47,12 @@ struct SurfaceState
     bool operator<(const SurfaceState& other) const { return key() < other.key(); }
 
 private:
-    std::tuple<bool, bool, bool, bool, bool, bool, bool, bool, unsigned, unsigned, unsigned, Fog> key() const
+    std::tuple<bool, bool, bool, bool, bool, bool, bool, bool, bool, bool, unsigned, unsigned, unsigned, Fog>
+    key() const
     {
-        return {isDepthOnly,   isAlphaNeeded,   isLit,  isTextured,  hasTextureMatrix, hasClipPlanes,
-                hasShadowBias, hasShadowSplits, lights, pointLights, shadowMaps,       fog};
+        return {
+            isDepthOnly,   isAlphaNeeded, isLit,           hasFlatNormals, hasSpecular, isTextured, hasTextureMatrix,
+            hasClipPlanes, hasShadowBias, hasShadowSplits, lights,         pointLights, shadowMaps, fog};
     }
 };
 

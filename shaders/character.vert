@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Draws a SkinnedGeometry: skins, then what the fixed pipeline does. DRAW_... are those of nodes/SurfaceState.h.
+#pragma import_defines(POSE_PLACED)
 
 void osgGpuAnimationSkin(inout vec4 vertex, inout vec3 normal);
 vec4 osgGpuAnimationTint();
@@ -28,8 +29,13 @@ void main()
     vec4 vertex = gl_Vertex;
     vec3 normal = gl_Normal;
     osgGpuAnimationSkin(vertex, normal);
+#ifdef POSE_PLACED
+    viewPosition = vertex.xyz; // it comes back in the eye's space
+    viewNormal = normal;
+#else
     viewPosition = (gl_ModelViewMatrix * vertex).xyz;
     viewNormal = gl_NormalMatrix * normal;
+#endif
 #if DRAW_COLOR || DRAW_ALPHA
     passSurface();
 #endif

@@ -44,6 +44,15 @@ public:
         return object;
     }
 
+    /// Null: nobody has it.
+    osg::ref_ptr<Object> known()
+    {
+        const std::lock_guard<std::mutex> lock(_mutex);
+        osg::ref_ptr<Object> object;
+        _object.lock(object);
+        return object;
+    }
+
 private:
     std::mutex _mutex;
     osg::observer_ptr<Object> _object;
@@ -68,10 +77,10 @@ osg::ref_ptr<osg::Texture2D> makeWhiteTexture()
     return white;
 }
 
-osg::ref_ptr<osg::Texture2D> whiteTexture()
+Shared<osg::Texture2D>& whiteTexture()
 {
     static Shared<osg::Texture2D> shared;
-    return shared.get(makeWhiteTexture);
+    return shared;
 }
 
 } // namespace
@@ -112,7 +121,12 @@ void applyCharacterProgram(osg::StateSet& stateSet)
     if (!stateSet.getUniform("alphaCutoff")) stateSet.addUniform(new osg::Uniform("alphaCutoff", 0.0f));
     if (!stateSet.getUniform("unlit")) stateSet.addUniform(new osg::Uniform("unlit", false));
     if (!stateSet.getTextureAttribute(0, osg::StateAttribute::TEXTURE))
-        stateSet.setTextureAttributeAndModes(0, whiteTexture());
+        stateSet.setTextureAttributeAndModes(0, whiteTexture().get(makeWhiteTexture));
+}
+
+bool isWhiteTexture(const osg::StateAttribute* texture)
+{
+    return texture && texture == whiteTexture().known().get();
 }
 
 void applySkinDefines(osg::StateSet& stateSet, int influences, bool hasMorphs)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/SurfaceState.h>
 
+#include <osgGpuAnimation/nodes/CharacterProgram.h>
 #include <osgGpuAnimation/nodes/DepthPass.h>
 
 #include <osg/ColorMask>
@@ -50,6 +51,7 @@ bool isLightingOn(osg::State& state)
 
 bool isTexturingOn(osg::State& state)
 {
+    if (isWhiteTexture(state.getLastAppliedTextureAttribute(0, osg::StateAttribute::TEXTURE))) return false;
     if (!state.getUseModelViewAndProjectionUniforms()) return state.getLastAppliedTextureMode(0, GL_TEXTURE_2D);
     return isSetOn(state, [](const osg::StateSet& stateSet) { return stateSet.getTextureMode(0, GL_TEXTURE_2D); });
 }

@@ -23,12 +23,12 @@ struct SurfaceState
         Exp2
     };
 
-    bool isDepthOnly = false;      ///< no colour is written: by ColorMask, or POSE_DEPTH_ONLY (see DepthPass)
-    bool isAlphaNeeded = false;    ///< alphaCutoff or blending leave parts of the surface out
-    bool isLit = true;             ///< GL_LIGHTING, and no uniform `unlit`
-    bool hasFlatNormals = false;   ///< lit, by the uniform `flatNormals`: each face by its own normal, of the pose
-    bool hasSpecular = false;      ///< lit, and the osg::Material's specular is not black
-    bool isTextured = true;        ///< GL_TEXTURE_2D on unit 0
+    bool isDepthOnly = false;    ///< no colour is written: by ColorMask, or POSE_DEPTH_ONLY (see DepthPass)
+    bool isAlphaNeeded = false;  ///< alphaCutoff or blending leave parts of the surface out
+    bool isLit = true;           ///< GL_LIGHTING, and no uniform `unlit`
+    bool hasFlatNormals = false; ///< lit, by the uniform `flatNormals`: each face by its own normal, of the pose
+    bool hasSpecular = false;    ///< lit, and the osg::Material's specular is not black
+    bool isTextured = true;      ///< GL_TEXTURE_2D on unit 0, and not just the white texture of applyCharacterProgram()
     bool hasTextureMatrix = false; ///< an osg::TexMat on unit 0
     bool hasClipPlanes = false;    ///< any GL_CLIP_PLANEi
     std::uint8_t lights = 1;       ///< a bit for each GL_LIGHTi that is on

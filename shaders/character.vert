@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Draws a SkinnedGeometry: skins, then what the fixed pipeline does. DRAW_... are those of nodes/SurfaceState.h.
-#pragma import_defines(POSE_PLACED)
+// POSE_COLORED: the mesh has colours, or morphs them.
+#pragma import_defines(POSE_COLORED, POSE_PLACED)
 
 void osgGpuAnimationSkin(inout vec4 vertex, inout vec3 normal);
 vec4 osgGpuAnimationTint();
@@ -14,9 +15,12 @@ out vec2 textureCoordinate;
 
 void passSurface()
 {
-    vertexColor = gl_Color;
-    osgGpuAnimationMorphColor(vertexColor);
-    vertexColor *= osgGpuAnimationTint();
+    vertexColor = osgGpuAnimationTint();
+#ifdef POSE_COLORED
+    vec4 color = gl_Color; // without an array it is anything: OSG's materials leave theirs there
+    osgGpuAnimationMorphColor(color);
+    vertexColor *= color;
+#endif
     textureCoordinate = gl_MultiTexCoord0.xy;
     osgGpuAnimationMorphTextureCoordinate(textureCoordinate);
 #if DRAW_TEXTURE_MATRIX && defined(GL_ARB_compatibility)

@@ -20,6 +20,7 @@ uniform vec2 ambientBias;               // osgShadow::ParallelSplitShadowMap's: 
 in vec3 viewPosition;
 in vec3 viewNormal;
 in vec4 vertexColor;
+in vec2 tintBytes;
 in vec2 textureCoordinate;
 
 out vec4 fragmentColor;
@@ -27,8 +28,12 @@ out vec4 fragmentColor;
 vec4 baseColor()
 {
     vec4 color = materialDiffuse;
-#if defined(POSE_COLORED) || defined(POSE_TINTED)
+#ifdef POSE_COLORED
     color *= vertexColor;
+#elif defined(POSE_TINTED)
+    vec2 bytes = round(tintBytes);
+    vec2 high = floor(bytes / 256.0);
+    color *= vec4(high, bytes - 256.0 * high).xzyw / 255.0;
 #endif
 #if DRAW_TEXTURE
     color *= texture(baseColorTexture, textureCoordinate);

@@ -11,11 +11,14 @@ void osgGpuAnimationMorphTextureCoordinate(inout vec2 coordinate);
 out vec3 viewPosition;
 out vec3 viewNormal;
 out vec4 vertexColor;
+out vec2 tintBytes; // two each, of a tint without colours: half the numbers to interpolate
 out vec2 textureCoordinate;
 
 void passSurface()
 {
     vertexColor = osgGpuAnimationTint();
+    vec4 bytes = round(255.0 * vertexColor);
+    tintBytes = 256.0 * bytes.xz + bytes.yw;
 #ifdef POSE_COLORED
     vec4 color = gl_Color; // without an array it is anything: OSG's materials leave theirs there
     osgGpuAnimationMorphColor(color);

@@ -48,8 +48,8 @@ Result<bool> AnimationLayer::crossfade(std::size_t clip, double seconds, const C
     const Result<std::size_t> known = _owner->set().clipAt(clip);
     if (!known) return known.error();
     if (!std::isfinite(seconds) || seconds < 0.0)
-        return Error{"a crossfade to clip \"" + _owner->set().clips()[clip].name() + "\" of " + std::to_string(seconds) +
-                     " seconds: expected a finite number, at least 0"};
+        return Error{"a crossfade to clip \"" + _owner->set().clips()[clip].name() + "\" of " +
+                     std::to_string(seconds) + " seconds: expected a finite number, at least 0"};
     if (options.speed && !std::isfinite(*options.speed))
         return Error{"a crossfade to clip \"" + _owner->set().clips()[clip].name() + "\" at a speed of " +
                      std::to_string(*options.speed) + ": expected a finite number"};

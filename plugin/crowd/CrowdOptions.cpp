@@ -63,6 +63,15 @@ std::vector<std::string> splitAtCommas(const std::string& text)
     return parts;
 }
 
+/// What a value of the option must be.
+const char* wanted(const std::string& name)
+{
+    if (name == "seed") return "a whole number from 0 to 4294967295";
+    if (name == "spacing") return "a number of units above 0";
+    if (name == "pixelError") return "a number of pixels from 0 to 1000000";
+    return "names or numbers of clips apart by commas";
+}
+
 /// False where the value does not fit the option.
 bool apply(const gltf::OptionWord& word, CrowdOptions& out)
 {
@@ -131,8 +140,8 @@ Result<CrowdOptions> parseCrowd(const std::string& name, const std::string& opti
     if (!size) return size.error();
     for (const gltf::OptionWord& word : gltf::splitOptions(options))
         if (!apply(word, crowd))
-            return Error{"option " + word.name + ": " + gltf::quoted(word.value.value_or("")) +
-                         " is not a value for it"};
+            return Error{"option " + word.name + ": " + gltf::quoted(word.value.value_or("")) + " is not " +
+                         wanted(word.name)};
     return crowd;
 }
 

@@ -10,7 +10,8 @@
 
 int main(int argumentCount, char** arguments)
 {
-    osg::ref_ptr<osg::Node> scene = argumentCount == 3 ? osgDB::readRefNodeFile(arguments[1]) : nullptr;
+    osg::ref_ptr<osgDB::Options> options = new osgDB::Options("noKeys");
+    osg::ref_ptr<osg::Node> scene = argumentCount == 3 ? osgDB::readRefNodeFile(arguments[1], options) : nullptr;
     auto context = osgGpuAnimation::EglGraphicsContext::create(800, 600);
     if (!context) std::cerr << context.error().message << std::endl;
     if (!scene || !context) return 1;

@@ -114,11 +114,15 @@ TEST_F(TiltedHomeTest, anyOtherViewStaysAsItIs)
         beginFrame();
         EXPECT_EQ(view(), before) << eye.x() << " " << eye.y() << " " << eye.z();
     }
-    const osg::Vec3d place(30, 10, 5);
-    trackball->setByInverseMatrix(osg::Matrixd::lookAt(place, middle + osg::Vec3d(3, 0, 0), up));
-    const osg::Matrixd before = view();
-    beginFrame();
-    EXPECT_EQ(view(), before);
+    // Past the middle: turned, and moved to the side.
+    const osg::Vec3d place(30, 10, 5), aside(3, 0, 0);
+    for (const osg::Vec3d& eye : {place, place + aside})
+    {
+        trackball->setByInverseMatrix(osg::Matrixd::lookAt(eye, middle + aside, up));
+        const osg::Matrixd before = view();
+        beginFrame();
+        EXPECT_EQ(view(), before) << eye.x();
+    }
 }
 
 TEST_F(TiltedHomeTest, theApplicationsOwnHomeStays)

@@ -61,6 +61,21 @@ void osgGpuAnimationMorphColor(inout vec4 color) {}
 void osgGpuAnimationMorphTextureCoordinate(inout vec2 coordinate) {}
 )";
 
+constexpr const char* leastVertexShader = R"(#version 140
+void main()
+{
+    gl_Position = gl_ModelViewProjectionMatrix * gl_Vertex;
+}
+)";
+
+constexpr const char* leastFragmentShader = R"(#version 140
+out vec4 fragmentColor;
+void main()
+{
+    fragmentColor = vec4(1.0);
+}
+)";
+
 /// The variant of the kit's shaders that its own program takes for the mesh in these scenes: one light far away.
 std::string surfacePrologue(const osg::Geometry& mesh)
 {
@@ -87,6 +102,19 @@ osg::Program* unskinnedProgram(const osg::Geometry& mesh)
     if (program) return program.get();
     program = makeProgram(mesh, prologue + shaders::character_vert);
     program->addShader(new osg::Shader(osg::Shader::VERTEX, std::string("#version 140\n") + noSkin));
+    return program.get();
+}
+
+/// What no way to draw the triangles can do without.
+osg::Program* leastProgram()
+{
+    static const osg::ref_ptr<osg::Program> program = []
+    {
+        osg::ref_ptr<osg::Program> made = new osg::Program;
+        made->addShader(new osg::Shader(osg::Shader::VERTEX, leastVertexShader));
+        made->addShader(new osg::Shader(osg::Shader::FRAGMENT, leastFragmentShader));
+        return made;
+    }();
     return program.get();
 }
 
@@ -165,7 +193,7 @@ void ReferenceKit::shareMesh(const gltf::ImportedPrimitive& primitive)
     const auto* skinned = dynamic_cast<const SkinnedGeometry*>(primitive.geometry.get());
     if (!skinned) return;
     SharedMesh mesh;
-    mesh.source = unskinned(*skinned);
+    mesh.source = unskinned(*skinned, Shading::AsCharacters);
     if (primitive.skin < 0)
     {
         const int joint = _subject.set().skeleton().jointOfSourceNode(primitive.node);
@@ -285,7 +313,7 @@ osg::ref_ptr<osg::Geometry> ReferenceKit::makeRig(const SharedMesh& mesh, Refere
     return rig;
 }
 
-osg::ref_ptr<osg::Geometry> unskinned(const SkinnedGeometry& geometry)
+osg::ref_ptr<osg::Geometry> unskinned(const SkinnedGeometry& geometry, Shading shading)
 {
     osg::ref_ptr<osg::Geometry> plain = new osg::Geometry(geometry, osg::CopyOp::SHALLOW_COPY);
     osg::Geometry::ArrayList none;
@@ -300,7 +328,7 @@ osg::ref_ptr<osg::Geometry> unskinned(const SkinnedGeometry& geometry)
     state->addUniform(
         new osg::Uniform("materialDiffuse", material ? material->getDiffuse(osg::Material::FRONT) : white));
     if (geometry.hasColors()) state->setDefine("POSE_COLORED");
-    state->setAttributeAndModes(unskinnedProgram(geometry));
+    state->setAttributeAndModes(shading == Shading::Least ? leastProgram() : unskinnedProgram(geometry));
     plain->setStateSet(state);
     return plain;
 }

@@ -14,7 +14,8 @@ namespace osgGpuAnimation
 class DetailRange
 {
 public:
-    /// Vertices of all meshes together that levels are made of: those that come later are drawn whole.
+    /// Vertices of a group's meshes together that levels are made of: meshes that come later are drawn whole, unless
+    /// another group shows them too.
     static constexpr std::size_t mostVertices = 10 * DetailLevels::mostVertices;
     static constexpr float largestPixelError = 1e6f;
 
@@ -23,7 +24,8 @@ public:
     static Error noPixelError(float pixels);
 
     DetailRange() = default;
-    /// Of the SkinnedGeometry among a group's children; makes levels where there are none yet.
+    /// Of the SkinnedGeometry among a group's children; makes levels where there are none yet. Nothing else does:
+    /// what else is drawn at a level is drawn whole.
     DetailRange(const osg::Group& meshes, const AnimationSet& set);
 
     int held(int level) const

@@ -27,7 +27,6 @@ SkinningScope::SkinningScope(osgUtil::CullVisitor& visitor, const SkinnedGeometr
 {
     const PaletteBinding* binding = bindingAbove(visitor);
     if (!binding) return;
-    if (binding->level() != DetailLevels::allTriangles) mesh.detailLevels(*binding->animationSet());
     if (!mesh.mayBeSkinnedOnce()) return;
     osg::StateSet* state = PoseStage::reads(visitor).add(mesh, *binding);
     if (!state) return;

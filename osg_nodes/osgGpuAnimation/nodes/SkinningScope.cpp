@@ -27,6 +27,7 @@ SkinningScope::SkinningScope(osgUtil::CullVisitor& visitor, const SkinnedGeometr
 {
     const PaletteBinding* binding = bindingAbove(visitor);
     if (!binding) return;
+    if (binding->isOfMany()) PoseStage::count(visitor, mesh, *binding);
     if (!mesh.mayBeSkinnedOnce()) return;
     osg::StateSet* state = PoseStage::reads(visitor).add(mesh, *binding);
     if (!state) return;
@@ -41,7 +42,6 @@ SkinningScope::~SkinningScope()
 
 void addMeshAndDepth(osgUtil::CullVisitor& visitor, SkinnedGeometry& mesh, osg::RefMatrix* toEye, float depth)
 {
-    if (const PaletteBinding* binding = bindingAbove(visitor)) PoseStage::count(visitor, mesh, *binding);
     const SkinningScope skinning(visitor, mesh);
     osg::StateSet* stateSet = mesh.getStateSet();
     if (stateSet) visitor.pushStateSet(stateSet);

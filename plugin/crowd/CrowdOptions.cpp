@@ -7,6 +7,7 @@
 #include "gltf/ParsedNumber.h"
 
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+#include <osgGpuAnimation/nodes/DetailRange.h>
 
 #include <algorithm>
 #include <array>
@@ -70,7 +71,7 @@ bool apply(const gltf::OptionWord& word, CrowdOptions& out)
     if (word.name == "noRotation") out.isYUp = true;
     if (word.name == "seed") return readNumber(value, out.seed);
     if (word.name == "pixelError")
-        return readNumber(value, out.pixelError.emplace()) && *out.pixelError >= 0.0f && *out.pixelError <= 1e6f;
+        return readNumber(value, out.pixelError.emplace()) && DetailRange::isPixelError(*out.pixelError);
     if (word.name == "spacing")
         return readNumber(value, out.spacing.emplace()) && std::isfinite(*out.spacing) && *out.spacing > 0.0;
     if (word.name != "clips") return true;

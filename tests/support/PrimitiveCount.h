@@ -8,7 +8,7 @@
 namespace osgGpuAnimation
 {
 
-/// Counts what a camera draws in a frame, shadow maps and points that poses are captured with included.
+/// Counts what a camera draws in a frame, but for what is drawn before it (poses, shadow maps and so on).
 ///
 ///     const osg::ref_ptr<PrimitiveCount> count = new PrimitiveCount;
 ///     count->attach(*viewer().getCamera(), picture()); // in the place of its initial and final draw callbacks

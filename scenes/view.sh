@@ -1,21 +1,27 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Usage: scenes/view.sh [FILE]
-# Installs what is missing on a Debian 12, builds the plugin into build/ and opens FILE (a .gltf or .glb; default: our
-# own Wanderer.glb) in the stock osgviewer. Without a display it draws a picture into build/ and says where.
+# Installs what is missing on a Debian 12, builds the plugins into build/ and opens FILE (a .gltf or .glb; default: our
+# own Wanderer.glb) in the stock osgviewer. Pseudo-loaders may follow: Wanderer.glb.20x20.crowd. Without a display it
+# draws a picture (of the model alone) into build/ and says where.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/../tests/setup.sh"
 
 if [ $# -gt 1 ] || [[ "${1:-}" == -* ]]; then
-    sed -n '3,5s/^# //p' "${BASH_SOURCE[0]}"
+    sed -n '3,6s/^# //p' "${BASH_SOURCE[0]}"
     [[ "${1:-}" == -h || "${1:-}" == --help ]] && exit 0
     exit 2
 fi
 file=${1:-$root/scenes/Wanderer.glb}
-if [ ! -f "$file" ]; then
-    echo "There is no file $file" >&2
-    exit 1
-fi
+# The longest part of the name that is a file: what follows is for OSG's pseudo-loaders (.20x20.crowd, .90,0,0.rot).
+model=$file
+while [ ! -f "$model" ]; do
+    if [[ "$(basename "$model")" != ?*.* ]]; then
+        echo "There is no file $file" >&2
+        exit 1
+    fi
+    model=${model%.*}
+done
 
 install_missing "${packages[@]}"
 build_release osgdb_gltf osgdb_crowd osgdb_serializers_osggpuanimation osggpuanim
@@ -36,6 +42,6 @@ show()
 if [ -n "${DISPLAY:-}" ] && show; then
     exit 0
 fi
-picture=$build/$(basename "${file%.*}").png
-"$build/bin/osggpuanim" render "$file" --time 0.5 -o "$picture"
-echo "There is no display to show it on; a picture of $file is in $picture"
+picture=$build/$(basename "${model%.*}").png
+"$build/bin/osggpuanim" render "$model" --time 0.5 -o "$picture"
+echo "There is no display to show $file on; a picture of $model is in $picture"

@@ -19,7 +19,7 @@ namespace osgGpuAnimation::crowd
 namespace
 {
 
-constexpr std::array<const char*, 3> ofCrowdsAlone{"clips", "spacing", "seed"};
+constexpr std::array<const char*, 4> ofCrowdsAlone{"clips", "spacing", "seed", "noTilt"};
 constexpr std::array<const char*, 5> ofSinglesAlone{"clip", "start", "speed", "loop", "fade"};
 
 template <typename Names>
@@ -64,11 +64,21 @@ std::vector<std::string> splitAtCommas(const std::string& text)
     return parts;
 }
 
+/// What a value of the option must be.
+const char* wanted(const std::string& name)
+{
+    if (name == "seed") return "a whole number from 0 to 4294967295";
+    if (name == "spacing") return "a number of units above 0";
+    if (name == "pixelError") return "a number of pixels from 0 to 1000000";
+    return "names or numbers of clips apart by commas";
+}
+
 /// False where the value does not fit the option.
 bool apply(const gltf::OptionWord& word, CrowdOptions& out)
 {
     const std::string value = word.value.value_or("");
     if (word.name == "noRotation") out.isYUp = true;
+    if (word.name == "noTilt") out.tiltsHome = false;
     if (word.name == "seed") return readNumber(value, out.seed);
     if (word.name == "pixelError")
         return readNumber(value, out.pixelError.emplace()) && DetailRange::isPixelError(*out.pixelError);
@@ -90,6 +100,7 @@ const std::vector<gltf::OptionHelp>& optionHelp()
         {"spacing=UNITS", "from one to the next; default: by the bounds"},
         {"pixelError=PIXELS", "fewer triangles where that hides how far they are off; default: 0, all triangles"},
         {"seed=NUMBER", "another number, other clips and times; default: 1"},
+        {"noTilt", "leave viewers' home view level; default: from a little above"},
         {"noRotation", "keep glTF's +Y up; default: +Z up"},
     };
     return help;
@@ -130,8 +141,8 @@ Result<CrowdOptions> parseCrowd(const std::string& name, const std::string& opti
     if (!size) return size.error();
     for (const gltf::OptionWord& word : gltf::splitOptions(options))
         if (!apply(word, crowd))
-            return Error{"option " + word.name + ": " + gltf::quoted(word.value.value_or("")) +
-                         " is not a value for it"};
+            return Error{"option " + word.name + ": " + gltf::quoted(word.value.value_or("")) + " is not " +
+                         wanted(word.name)};
     return crowd;
 }
 

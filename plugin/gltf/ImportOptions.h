@@ -18,7 +18,7 @@ struct ImportOptions
     double speed = 1.0;              ///< of that clip, see AnimationLayer::setSpeed
     LoopMode loopMode = LoopMode::Loop;
     double fadeSeconds = 0.3;       ///< of the keys' crossfades, see CharacterKeys
-    std::optional<double> compact;  ///< compact clips, off by at most that fraction of the model's size; above 0
+    std::optional<double> compact;  ///< compact clips, see CompactedCharacter: off by at most that fraction; above 0
     double pixelError = 0.0;        ///< see AnimatedCharacter::setPixelError; 0 or more
     bool noKeys = false;            ///< no keys for viewers on the character
     std::optional<int> scene;       ///< default: the file's own, else 0

@@ -113,7 +113,7 @@ const std::vector<OptionHelp>& optionHelp()
         {"speed=NUMBER", "how fast it plays; negative: backwards; default: 1"},
         {"loop=once|loop|pingpong", "what it does at its end; default: loop"},
         {"fade=SECONDS", "how long the keys' crossfades take; default: 0.3"},
-        {"compact=FRACTION", "smaller clips, off by at most that fraction of the model's size; default: exact"},
+        {"compact=FRACTION", "smaller clips, off by at most that fraction of the model's longest side; default: exact"},
         {"pixelError=PIXELS", "fewer triangles where that hides how far they are off; default: 0, all triangles"},
         {"noKeys", "no keys for viewers on the character; default: n N k . , - + r j"},
         {"scene=INDEX", "the scene to show; default: the file's own"},

@@ -39,24 +39,33 @@ static bool readAnimationSet(osgDB::InputStream& stream, AnimatedCharacter& char
     return in.isGood();
 }
 
-/// What is worked out again where it was there, one bit each; a file without a pixel error has the first alone.
+/// What is not as by default, one bit each; older readers know those that come first.
 enum Extra : std::int32_t
 {
-    hasClipBounds = 1,
+    hasClipBounds = 1, ///< which are worked out again
     hasPixelError = 2, ///< which follows
+    isDrawnAlone = 4,
 };
+
+static std::int32_t extrasOf(const AnimatedCharacter& character)
+{
+    std::int32_t extras = character.clipBounds(-1).empty() ? 0 : hasClipBounds;
+    if (character.pixelError() > 0.0f) extras |= hasPixelError;
+    if (!character.isDrawnTogether()) extras |= isDrawnAlone;
+    return extras;
+}
 
 static bool checkClipBounds(const AnimatedCharacter& character)
 {
-    return !character.clipBounds(-1).empty() || character.pixelError() > 0.0f;
+    return extrasOf(character) != 0;
 }
 
 static bool writeClipBounds(osgDB::OutputStream& stream, const AnimatedCharacter& character)
 {
     ValueWriter out(stream);
-    const bool hasError = character.pixelError() > 0.0f;
-    out.integer((character.clipBounds(-1).empty() ? 0 : hasClipBounds) | (hasError ? hasPixelError : 0));
-    if (hasError) out.real(static_cast<double>(character.pixelError()));
+    const std::int32_t extras = extrasOf(character);
+    out.integer(extras);
+    if (extras & hasPixelError) out.real(static_cast<double>(character.pixelError()));
     out.endLine();
     return true;
 }
@@ -64,9 +73,10 @@ static bool writeClipBounds(osgDB::OutputStream& stream, const AnimatedCharacter
 static bool readClipBounds(osgDB::InputStream& stream, AnimatedCharacter& character)
 {
     ValueReader in(stream);
-    const std::int32_t extras = in.integer("what a character has", 0, hasClipBounds | hasPixelError);
+    const std::int32_t extras = in.integer("what a character has", 0, hasClipBounds | hasPixelError | isDrawnAlone);
     const double pixelError = extras & hasPixelError ? in.real() : 0.0;
     if (!in.isGood()) return false;
+    character.setDrawnTogether(!(extras & isDrawnAlone));
     if (extras & hasClipBounds) character.computeClipBounds();
     const Result<bool> taken = character.setPixelError(static_cast<float>(pixelError));
     if (!taken) in.fail("a character: " + taken.error().message);

@@ -66,6 +66,31 @@ void readPixelError(ValueReader& in, AnimatedCrowd& crowd)
     if (!taken) in.fail("a crowd: " + taken.error().message);
 }
 
+void readUpdateRate(ValueReader& in, AnimatedCrowd& crowd)
+{
+    UpdateRate rate;
+    rate.every = static_cast<unsigned int>(in.integer("updates from one pose to the next", 1, UpdateRate::maxEvery));
+    rate.pixels = static_cast<float>(in.real());
+    if (!in.isGood()) return;
+    const Result<bool> taken = crowd.setUpdateRate(rate);
+    if (!taken) in.fail("a crowd: " + taken.error().message);
+}
+
+/// What else is in a crowd of the version: what is as by default stays readable for what knows older ones.
+enum Version : std::int32_t
+{
+    plain = 1,
+    withPixelError = 2,
+    withUpdateRate = 3, ///< after the pixel error
+};
+
+Version versionOf(const AnimatedCrowd& crowd)
+{
+    const UpdateRate& rate = crowd.updateRate();
+    if (rate.every > 1 || rate.pixels > 0.0f) return withUpdateRate;
+    return crowd.pixelError() > 0.0f ? withPixelError : plain;
+}
+
 osg::Vec4 toColor(std::uint32_t rgba)
 {
     osg::Vec4 color;
@@ -121,18 +146,20 @@ static bool readAnimationSet(osgDB::InputStream& stream, AnimatedCrowd& crowd)
     return in.isGood();
 }
 
-/// Version 1 has no pixel error: what has none stays readable for what knows no other version.
 static bool checkInstances(const AnimatedCrowd& crowd)
 {
-    return crowd.size() > 0 || crowd.pixelError() > 0.0f;
+    return crowd.size() > 0 || versionOf(crowd) != plain;
 }
 
 static bool writeInstances(osgDB::OutputStream& stream, const AnimatedCrowd& crowd)
 {
     ValueWriter out(stream);
-    const bool hasPixelError = crowd.pixelError() > 0.0f;
-    out.integer(hasPixelError ? 2 : 1).real(crowd.origin().x()).real(crowd.origin().y()).real(crowd.origin().z());
-    if (hasPixelError) out.real(static_cast<double>(crowd.pixelError()));
+    const Version version = versionOf(crowd);
+    out.integer(version).real(crowd.origin().x()).real(crowd.origin().y()).real(crowd.origin().z());
+    if (version >= withPixelError) out.real(static_cast<double>(crowd.pixelError()));
+    if (version >= withUpdateRate)
+        out.integer(static_cast<std::int32_t>(crowd.updateRate().every))
+            .real(static_cast<double>(crowd.updateRate().pixels));
     out.endLine();
     out.open("List", crowd.size());
     for (std::size_t index = 0; index < crowd.size(); ++index)
@@ -144,10 +171,11 @@ static bool writeInstances(osgDB::OutputStream& stream, const AnimatedCrowd& cro
 static bool readInstances(osgDB::InputStream& stream, AnimatedCrowd& crowd)
 {
     ValueReader in(stream);
-    const std::int32_t version = in.integer("the version of a crowd", 1, 2);
+    const std::int32_t version = in.integer("the version of a crowd", plain, withUpdateRate);
     const double x = in.real(), y = in.real();
     crowd.setOrigin(osg::Vec3d(x, y, in.real()));
-    if (version > 1) readPixelError(in, crowd);
+    if (version >= withPixelError) readPixelError(in, crowd);
+    if (version >= withUpdateRate) readUpdateRate(in, crowd);
     const std::size_t count = in.open("List");
     for (std::size_t i = 0; i < count && in.isGood(); ++i)
         readInstance(in, crowd);

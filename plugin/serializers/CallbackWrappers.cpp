@@ -7,6 +7,7 @@
 #include <osgGpuAnimation/nodes/CharacterKeys.h>
 #include <osgGpuAnimation/nodes/PoseStatistics.h>
 #include <osgGpuAnimation/nodes/RootMotionCallback.h>
+#include <osgGpuAnimation/nodes/TiltedHome.h>
 
 #include <osgDB/ObjectWrapper>
 
@@ -39,6 +40,14 @@ REGISTER_OBJECT_WRAPPER(osgGpuAnimation_PoseStatistics, new PoseStatistics, osgG
 {
 }
 } // namespace statistics
+
+namespace home
+{
+REGISTER_OBJECT_WRAPPER(osgGpuAnimation_TiltedHome, new TiltedHome, osgGpuAnimation::TiltedHome,
+                        "osg::Object osg::Callback osgGpuAnimation::TiltedHome")
+{
+}
+} // namespace home
 
 static bool checkFadeSeconds(const CharacterKeys&)
 {

@@ -115,7 +115,7 @@ void CommandLine::addInspect()
     _inspectApp->add_flag("--json", _inspect.json, "JSON, for programs");
     _inspectApp
         ->add_option("--compact", _inspect.compact,
-                     "With compact clips, off by at most that fraction of the model's size (1e-4, say)")
+                     "With compact clips, off by at most that fraction of the model's longest side (1e-4, say)")
         ->check(checkFraction)
         ->option_text("FRACTION");
 }

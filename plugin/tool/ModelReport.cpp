@@ -118,7 +118,7 @@ ordered_json reportKeyframes(const gltf::ImportedModel& model)
     keyframes["error"] =
         compacted.errors.empty() ? 0.0 : *std::max_element(compacted.errors.begin(), compacted.errors.end());
     keyframes["tolerance"] = compacted.tolerance;
-    keyframes["modelSize"] = compacted.modelSize;
+    keyframes["longestSide"] = compacted.longestSide;
     return keyframes;
 }
 
@@ -152,11 +152,34 @@ std::string number(const ordered_json& value)
     return value.dump();
 }
 
+/// For people: three digits are enough.
+std::string rounded(const ordered_json& value)
+{
+    std::ostringstream out;
+    out << std::setprecision(3) << value.get<double>();
+    return out.str();
+}
+
+/// How far compact clips are off.
+std::string errorOf(const ordered_json& keyframes)
+{
+    if (!keyframes.contains("error")) return ", exact";
+    const double side = keyframes["longestSide"];
+    const double share = side > 0.0 ? keyframes["error"].get<double>() / side : 0.0;
+    return "; at most " + rounded(keyframes["error"]) + " off, " + rounded(share) + " of the longest side, which is " +
+           rounded(side);
+}
+
+std::string nameOr(const ordered_json& name)
+{
+    return name.get<std::string>().empty() ? "(no name)" : name.get<std::string>();
+}
+
 std::string listed(const ordered_json& names)
 {
     std::string text;
     for (const ordered_json& name : names)
-        text += (text.empty() ? "" : ", ") + (name.get<std::string>().empty() ? "(no name)" : name.get<std::string>());
+        text += (text.empty() ? "" : ", ") + nameOr(name);
     return text.empty() ? "none" : text;
 }
 
@@ -208,8 +231,7 @@ std::string reportText(const ordered_json& report)
     const ordered_json& bytes = report["gpuBytes"];
     std::string skins;
     for (const ordered_json& skin : report["skins"])
-        skins +=
-            (skins.empty() ? "" : ", ") + skin["name"].get<std::string>() + " (" + number(skin["joints"]) + " joints)";
+        skins += (skins.empty() ? "" : ", ") + nameOr(skin["name"]) + " (" + number(skin["joints"]) + " joints)";
 
     std::string text = line("file", report["file"].get<std::string>());
     text += line("generator", report["generator"].get<std::string>());
@@ -219,12 +241,9 @@ std::string reportText(const ordered_json& report)
     text += line("palette entries", number(report["paletteEntries"]));
     text += line("clips", number(report["clips"].size())) + clipLines(report["clips"]);
     const ordered_json& keyframes = report["keyframes"];
-    text += line("keyframes",
-                 number(keyframes["count"]) + ", " + number(keyframes["bytes"]) +
-                     " bytes on the GPU (snapshots: " + number(keyframes["snapshotBytes"]) + ")" +
-                     (keyframes.contains("error") ? "; at most " + number(keyframes["error"]) +
-                                                        " off, the model's size being " + number(keyframes["modelSize"])
-                                                  : ", exact"));
+    text += line("keyframes", number(keyframes["count"]) + ", " + number(keyframes["bytes"]) +
+                                  " bytes on the GPU (snapshots: " + number(keyframes["snapshotBytes"]) + ")" +
+                                  errorOf(keyframes));
     text +=
         line("meshes", number(meshes["count"]) + ", " + number(meshes["primitives"]) + " primitives (" +
                            number(meshes["skinned"]) + " skinned, " + number(meshes["rigid"]) + " rigid on joints, " +

@@ -15,6 +15,8 @@ namespace osgGpuAnimation::tool
 /// Poses in the schema gltf-pose/1: JSON, in the file's own axes, units and numbers; matrices are 16 numbers,
 /// column-major for column vectors. Given are: the world matrix of every node that is a joint (null for others), the
 /// joint matrices by skin, the morph weights, and of each primitive its bounding box and the wanted vertices.
+/// `modelSize`, by which lengths are compared, is the diagonal of the first pose's box (of compact clips it is the
+/// longest side at rest that counts).
 class PoseDocument
 {
 public:

@@ -97,13 +97,14 @@ std::string PoseCrowd::check()
     return takeGlErrors();
 }
 
-FeedbackFloor::FeedbackFloor(std::size_t matrices, osg::GraphicsContext& context)
-    : _matrices(matrices), _context(&context),
+FeedbackFloor::FeedbackFloor(std::size_t matrices, Primitive primitive, osg::GraphicsContext& context)
+    : _matrices(primitive == Primitive::Triangles ? (matrices + 2) / 3 * 3 : matrices), _primitive(primitive),
+      _context(&context),
       _pass(*context.getState()->get<osg::GLExtensions>(), "floor", {floorShader}, {"row0", "row1", "row2"}),
       _out(*context.getState()->get<osg::GLExtensions>(), GL_RGBA32F_ARB)
 {
     context.getState()->get<osg::GLExtensions>()->glGenVertexArrays(1, &_vertexArray);
-    _out.reserve(matrices * sizeof(AffineMatrix));
+    _out.reserve(_matrices * sizeof(AffineMatrix));
 }
 
 FeedbackFloor::~FeedbackFloor()
@@ -120,7 +121,10 @@ Spent FeedbackFloor::step()
     {
         const FeedbackScope scope(*_context->getState(), _vertexArray, 0);
         _pass.use();
-        _pass.run(0, _matrices, _out.buffer(), 0);
+        if (_primitive == Primitive::Points)
+            _pass.run(0, _matrices, _out.buffer(), 0);
+        else
+            _pass.runInstanced(_matrices, 1, _out.buffer(), 0);
     }
     glFinish();
     return stopwatch.elapsed();

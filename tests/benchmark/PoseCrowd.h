@@ -56,17 +56,25 @@ private:
     std::size_t _chunkSize = PosePipeline::usualChunkSize;
 };
 
-/// A feedback pass that writes as many bytes as a palette, and nothing else: the floor.
+/// A feedback pass that writes as many bytes as a palette, and nothing else: the floor. In points as the design has it,
+/// or in triangles, up to two matrices more, which is the least that llvmpipe can do.
 class FeedbackFloor
 {
 public:
-    FeedbackFloor(std::size_t matrices, osg::GraphicsContext& context);
+    enum class Primitive
+    {
+        Points,
+        Triangles,
+    };
+
+    FeedbackFloor(std::size_t matrices, Primitive primitive, osg::GraphicsContext& context);
     ~FeedbackFloor();
 
     Spent step();
 
 private:
     std::size_t _matrices;
+    Primitive _primitive;
     osg::ref_ptr<osg::GraphicsContext> _context;
     FeedbackPass _pass;
     BufferTexture _out;

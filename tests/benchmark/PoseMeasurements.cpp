@@ -21,14 +21,16 @@ constexpr double frameTime = 1.0 / 60.0;
 /// Times of one count of one subject's characters.
 struct PoseSeries
 {
-    Series ours, floor, bones, hardware;
+    Series ours, floor, triangleFloor, bones, hardware;
 };
 
 Result<PoseSeries> poseSeries(const Subject& subject, ReferenceKit& kit, std::size_t count, const Effort& effort,
                               osg::GraphicsContext& context)
 {
     PoseCrowd crowd(subject.model.set, subject.clip, count, context);
-    FeedbackFloor floor(subject.set().paletteSize() * count, context);
+    const std::size_t matrices = subject.set().paletteSize() * count;
+    FeedbackFloor floor(matrices, FeedbackFloor::Primitive::Points, context);
+    FeedbackFloor triangleFloor(matrices, FeedbackFloor::Primitive::Triangles, context);
     std::vector<std::function<Spent()>> contestants{[&] { return crowd.step(frameTime); }};
 
     std::unique_ptr<ReferenceScene> bones, hardware;
@@ -39,7 +41,7 @@ Result<PoseSeries> poseSeries(const Subject& subject, ReferenceKit& kit, std::si
         scene.update(time += frameTime);
         return stopwatch.elapsed();
     };
-    // The pose and the floor each come after an update of osgAnimation's, which leaves the caches cold to both.
+    // The pose and each floor come after an update of osgAnimation's, which leaves the caches cold to all.
     const bool hasReference = count <= effort.largestReference;
     if (hasReference)
     {
@@ -49,13 +51,15 @@ Result<PoseSeries> poseSeries(const Subject& subject, ReferenceKit& kit, std::si
     }
     contestants.push_back([&] { return floor.step(); });
     if (hasReference) contestants.push_back([&] { return updating(*hardware); });
+    contestants.push_back([&] { return triangleFloor.step(); });
+    if (hasReference) contestants.push_back([&] { return updating(*bones); });
     std::vector<Series> series = interleaved(effort.rounds, contestants);
     if (const std::string wrong = crowd.check(); !wrong.empty()) return Error{wrong};
     if (bones)
         for (const double moment : {0.4, 1.7, 3.1})
             if (const std::string wrong = bones->check(subject, moment); !wrong.empty()) return Error{wrong};
-    if (!hasReference) return PoseSeries{series[0], series[1], {}, {}};
-    return PoseSeries{series[0], series[2], series[1], series[3]};
+    if (!hasReference) return PoseSeries{series[0], series[1], series[2], {}, {}};
+    return PoseSeries{series[0], series[2], series[4], series[1], series[3]};
 }
 
 void addPosePoints(const Subject& subject, std::size_t count, const PoseSeries& series, Report& report)
@@ -91,6 +95,8 @@ void addPoseRows(const Subject& subject, std::size_t count, const PoseSeries& se
     row.bar = "≤ 2.5";
     row.isMet = row.ratio.median <= 2.5;
     add(row, "pose", "ns a palette entry", "an empty feedback pass");
+    add(compared(series.ours, series.triangleFloor, perEntry, false), "pose", "ns a palette entry",
+        "an empty feedback pass of triangles");
 }
 
 void addGrowth(const Subject& subject, const std::map<std::size_t, Figure>& perCharacter, Report& report)

@@ -60,6 +60,21 @@ void osgGpuAnimationMorphColor(inout vec4 color) {}
 void osgGpuAnimationMorphTextureCoordinate(inout vec2 coordinate) {}
 )";
 
+constexpr const char* leastVertexShader = R"(#version 140
+void main()
+{
+    gl_Position = gl_ModelViewProjectionMatrix * gl_Vertex;
+}
+)";
+
+constexpr const char* leastFragmentShader = R"(#version 140
+out vec4 fragmentColor;
+void main()
+{
+    fragmentColor = vec4(1.0);
+}
+)";
+
 /// The variant of the kit's shaders that its own program takes in these scenes: one light far away.
 std::string surfacePrologue()
 {
@@ -80,6 +95,19 @@ osg::Program* unskinnedProgram()
     {
         osg::ref_ptr<osg::Program> made = makeProgram(surfacePrologue() + shaders::character_vert);
         made->addShader(new osg::Shader(osg::Shader::VERTEX, std::string("#version 140\n") + noSkin));
+        return made;
+    }();
+    return program.get();
+}
+
+/// What no way to draw the triangles can do without.
+osg::Program* leastProgram()
+{
+    static const osg::ref_ptr<osg::Program> program = []
+    {
+        osg::ref_ptr<osg::Program> made = new osg::Program;
+        made->addShader(new osg::Shader(osg::Shader::VERTEX, leastVertexShader));
+        made->addShader(new osg::Shader(osg::Shader::FRAGMENT, leastFragmentShader));
         return made;
     }();
     return program.get();
@@ -160,7 +188,7 @@ void ReferenceKit::shareMesh(const gltf::ImportedPrimitive& primitive)
     const auto* skinned = dynamic_cast<const SkinnedGeometry*>(primitive.geometry.get());
     if (!skinned) return;
     SharedMesh mesh;
-    mesh.source = unskinned(*skinned);
+    mesh.source = unskinned(*skinned, Shading::AsCharacters);
     if (primitive.skin < 0)
     {
         const int joint = _subject.set().skeleton().jointOfSourceNode(primitive.node);
@@ -280,7 +308,7 @@ osg::ref_ptr<osg::Geometry> ReferenceKit::makeRig(const SharedMesh& mesh, Refere
     return rig;
 }
 
-osg::ref_ptr<osg::Geometry> unskinned(const osg::Geometry& geometry)
+osg::ref_ptr<osg::Geometry> unskinned(const osg::Geometry& geometry, Shading shading)
 {
     osg::ref_ptr<osg::Geometry> plain = new osg::Geometry(geometry, osg::CopyOp::SHALLOW_COPY);
     osg::Geometry::ArrayList none;
@@ -294,7 +322,7 @@ osg::ref_ptr<osg::Geometry> unskinned(const osg::Geometry& geometry)
     const osg::Vec4 white(1, 1, 1, 1);
     state->addUniform(
         new osg::Uniform("materialDiffuse", material ? material->getDiffuse(osg::Material::FRONT) : white));
-    state->setAttributeAndModes(unskinnedProgram());
+    state->setAttributeAndModes(shading == Shading::Least ? leastProgram() : unskinnedProgram());
     plain->setStateSet(state);
     return plain;
 }

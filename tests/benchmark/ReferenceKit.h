@@ -73,8 +73,15 @@ private:
     std::vector<SharedMesh> _meshes;
 };
 
+/// How a mesh is drawn that is not skinned.
+enum class Shading
+{
+    AsCharacters, ///< as the kit's own program draws it
+    Least,        ///< the position and one colour: what no way to draw its triangles can do without
+};
+
 /// The mesh in bind pose with the same state, its program drawing it as it is: what skinning is measured against.
-osg::ref_ptr<osg::Geometry> unskinned(const osg::Geometry& geometry);
+osg::ref_ptr<osg::Geometry> unskinned(const osg::Geometry& geometry, Shading shading);
 
 /// The largest distance between the character's bones and the palette entries they stand for, by the size of what the
 /// entries move.

@@ -130,11 +130,12 @@ std::string ReferenceScene::check(const Subject& subject, double time)
     return "";
 }
 
-osg::ref_ptr<osg::Group> makeUnskinnedScene(const Subject& subject, std::size_t count)
+osg::ref_ptr<osg::Group> makeUnskinnedScene(const Subject& subject, std::size_t count, Shading shading)
 {
     osg::ref_ptr<osg::Group> meshes = new osg::Group;
     for (const gltf::ImportedPrimitive& primitive : subject.model.primitives)
-        if (dynamic_cast<SkinnedGeometry*>(primitive.geometry.get())) meshes->addChild(unskinned(*primitive.geometry));
+        if (dynamic_cast<SkinnedGeometry*>(primitive.geometry.get()))
+            meshes->addChild(unskinned(*primitive.geometry, shading));
     osg::ref_ptr<osg::Group> root = new osg::Group;
     for (std::size_t i = 0; i < count; ++i)
     {

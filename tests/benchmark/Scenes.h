@@ -51,7 +51,7 @@ struct ReferenceScene
     std::vector<ReferenceCharacter> characters;
 };
 
-/// The meshes as they are in bind pose, by the same shader without skinning.
-osg::ref_ptr<osg::Group> makeUnskinnedScene(const Subject& subject, std::size_t count);
+/// The meshes as they are in bind pose.
+osg::ref_ptr<osg::Group> makeUnskinnedScene(const Subject& subject, std::size_t count, Shading shading);
 
 } // namespace osgGpuAnimation::benchmark

@@ -108,9 +108,10 @@ Result<bool> measureSkinning(const Subject& subject, const Effort& effort, Repor
         scene->pause(); // palettes stay, so that nothing but the draws is left
     for (const osg::ref_ptr<AnimatedCharacter>& character : apart.characters)
         character->setDrawnTogether(false);
-    const osg::ref_ptr<osg::Group> plain = makeUnskinnedScene(subject, count);
+    const osg::ref_ptr<osg::Group> plain = makeUnskinnedScene(subject, count, Shading::AsCharacters);
+    const osg::ref_ptr<osg::Group> least = makeUnskinnedScene(subject, count, Shading::Least);
     std::vector<Contestant> contestants;
-    for (const osg::ref_ptr<osg::Group>& scene : {ours.root, plain, apart.root})
+    for (const osg::ref_ptr<osg::Group>& scene : {ours.root, plain, apart.root, least})
     {
         Result<Contestant> made = contestant(scene, ours.root->getBound());
         if (!made) return made.error();
@@ -125,6 +126,8 @@ Result<bool> measureSkinning(const Subject& subject, const Effort& effort, Repor
     report.add(row);
     report.add(named(compared(contestants[2].draw, contestants[1].draw, 1e6 / static_cast<double>(count), false),
                      subject, count, "skinned draw, one by one", "µs a character", "the same without skinning"));
+    report.add(named(compared(contestants[0].draw, contestants[3].draw, 1e6 / static_cast<double>(count), false),
+                     subject, count, "skinned draw", "µs a character", "the same triangles in one colour"));
     for (const std::size_t characters : effort.onceCounts)
     {
         const bool areFew = characters == effort.onceCounts.front();

@@ -183,14 +183,14 @@ TEST_F(CharacterDrawsGLTest, chunksOfPalettesAreDrawnOneAfterAnother)
     const osg::ref_ptr<osg::Group> scene = makeCharacters(everybody);
     const osg::ref_ptr<osg::Image> whole = pictureOf(*scene, true);
     const std::size_t texels = PosePipeline::of(state())->maxTexels();
-    PosePipeline::of(state())->setMaxTexels(5 * 3 * testCharacterSet()->paletteSize()); // five to a chunk
+    PosePipeline::of(state())->setMaxTexels(6 * 3 * testCharacterSet()->paletteSize()); // six to a chunk
     characterOf(*scene, 0).controller().seek(0.01);
     characterOf(*scene, 0).controller().seek(0.0);
     for (int index = 0; index < everybody; ++index)
         characterOf(*scene, index).setDrawnTogether(true);
     drawAt(0.0);
     EXPECT_LE(Picture::pixelsDifferent(*whole, picture().image()), 0);
-    EXPECT_EQ(drawsOf(*scene), 2 + 2 * 5);
+    EXPECT_EQ(drawsOf(*scene), 2 + 2 * 4);
     PosePipeline::of(state())->setMaxTexels(texels);
 }
 

@@ -4,8 +4,10 @@
 #include "support/NotifyLog.h"
 
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+#include <osgGpuAnimation/nodes/TiltedHome.h>
 
 #include <gtest/gtest.h>
+#include <osgDB/FileNameUtils>
 #include <osgDB/Registry>
 
 #include <filesystem>
@@ -103,11 +105,12 @@ const FaultCase faults[] = {
     {"absent.gltf.2x2.crowd", "", "absent.gltf"},
     {"still.gltf.2x2.crowd", "", "no animated character"},
     {"arm.gltf.2x2.crowd", "clips=Jump", "\"Slide\""},
-    {"arm.gltf.2x2.crowd", "clips=Slide,", "option clips"},
-    {"arm.gltf.2x2.crowd", "spacing=0", "option spacing"},
+    {"arm.gltf.2x2.crowd", "clips=Slide,", "option clips: \"Slide,\" is not names or numbers of clips apart by commas"},
+    {"arm.gltf.2x2.crowd", "spacing=0", "option spacing: \"0\" is not a number of units above 0"},
     {"arm.gltf.2x2.crowd", "spacing=nan", "option spacing"},
     {"arm.gltf.2x2.crowd", "spacing=1e300", "placement"},
-    {"arm.gltf.2x2.crowd", "seed=-1", "option seed"},
+    {"arm.gltf.2x2.crowd", "pixelError=-1", "option pixelError: \"-1\" is not a number of pixels from 0 to 1000000"},
+    {"arm.gltf.2x2.crowd", "seed=-1", "option seed: \"-1\" is not a whole number from 0 to 4294967295"},
 };
 
 } // namespace
@@ -164,6 +167,19 @@ TEST_F(CrowdPluginTest, takesOptions)
     EXPECT_EQ(reader->readNode("fox.glb", nullptr).status(), Read::FILE_NOT_HANDLED);
 }
 
+TEST_F(CrowdPluginTest, tiltsTheHomeViewUnlessToldNotTo)
+{
+    const std::pair<const char*, bool> cases[] = {{"", true}, {"noTilt", false}, {"noRotation", false}};
+    for (const auto& [options, isTilted] : cases)
+    {
+        const osg::ref_ptr<AnimatedCrowd> crowd = readCrowd("arm.gltf.4x4.crowd", options);
+        bool hasTilt = false;
+        for (osg::Callback* callback = crowd->getEventCallback(); callback; callback = callback->getNestedCallback())
+            hasTilt = hasTilt || dynamic_cast<TiltedHome*>(callback);
+        EXPECT_EQ(hasTilt, isTilted) << options;
+    }
+}
+
 TEST_F(CrowdPluginTest, handsOtherWordsToTheModelsReaderAsTheyAre)
 {
     /// Takes what it is given down; arms are its only models.
@@ -171,8 +187,9 @@ TEST_F(CrowdPluginTest, handsOtherWordsToTheModelsReaderAsTheyAre)
     {
     public:
         Listener() { supportsExtension("listened", ""); }
-        Read readNode(const std::string&, const Options* options) const override
+        Read readNode(const std::string& file, const Options* options) const override
         {
+            if (!acceptsExtension(osgDB::getFileExtension(file))) return Read::FILE_NOT_HANDLED;
             heard = options->getOptionString();
             return Read::FILE_NOT_FOUND;
         }

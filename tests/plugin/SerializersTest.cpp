@@ -14,12 +14,14 @@
 #include <osgGpuAnimation/nodes/CharacterKeys.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
 #include <osgGpuAnimation/nodes/RootMotionCallback.h>
+#include <osgGpuAnimation/nodes/TiltedHome.h>
 
 #include <gtest/gtest.h>
 #include <osg/Program>
 #include <osgDB/FileUtils>
 
 #include <filesystem>
+#include <fstream>
 #include <regex>
 
 namespace osgGpuAnimation
@@ -53,6 +55,15 @@ protected:
     void TearDown() override { osg::setNotifyHandler(new osg::StandardNotifyHandler); }
 
     AnimatedCharacter& character() { return *findCharacter(*scene); }
+
+    /// The node's .osgt.
+    std::string textOf(const osg::Node& node) const
+    {
+        const std::string file = files.folder.file("text.osgt");
+        EXPECT_TRUE(osgDB::writeNodeFile(node, file));
+        std::ifstream stream(file);
+        return std::string(std::istreambuf_iterator<char>(stream), {});
+    }
 
     StoredScene files;
     osg::ref_ptr<osg::Node> scene;
@@ -217,10 +228,46 @@ TEST_F(SerializersTest, pixelErrorsComeBack)
     }
 }
 
+TEST_F(SerializersTest, updateRatesAndDrawnAloneComeBack)
+{
+    const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(character());
+    for (const char* format : formats)
+        for (const unsigned int every : {1u, 4u, UpdateRate::maxEvery})
+            for (const float pixels : {0.0f, 0.3f})
+            {
+                const UpdateRate rate{every, every > 1 ? 20.25f : 0.0f};
+                character().setDrawnTogether(every == 1);
+                ASSERT_TRUE(character().setPixelError(pixels));
+                ASSERT_TRUE(crowd->setPixelError(pixels));
+                ASSERT_TRUE(crowd->setUpdateRate(rate));
+                const osg::ref_ptr<osg::Node> again = files.throughFile(*scene, format);
+                const osg::ref_ptr<osg::Node> crowdAgain = files.throughFile(*crowd, format);
+                ASSERT_TRUE(again && crowdAgain) << format;
+                EXPECT_EQ(findCharacter(*again)->isDrawnTogether(), every == 1) << format;
+                EXPECT_EQ(findCharacter(*again)->pixelError(), pixels) << format;
+                EXPECT_EQ(dynamic_cast<AnimatedCrowd&>(*crowdAgain).updateRate().every, rate.every) << format;
+                EXPECT_EQ(dynamic_cast<AnimatedCrowd&>(*crowdAgain).updateRate().pixels, rate.pixels) << format;
+                EXPECT_EQ(dynamic_cast<AnimatedCrowd&>(*crowdAgain).pixelError(), pixels) << format;
+            }
+}
+
+TEST_F(SerializersTest, whatIsAsByDefaultIsReadableAsBefore)
+{
+    const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(character());
+    ASSERT_TRUE(crowd->add(osg::Matrixd(), AnimationController(crowd->sharedSet())));
+    EXPECT_NE(textOf(*crowd).find("Instances 1 "), std::string::npos);
+    EXPECT_NE(textOf(*scene).find("ClipBounds 1 \n"), std::string::npos);
+    character().setDrawnTogether(false);
+    ASSERT_TRUE(crowd->setUpdateRate(UpdateRate{2, 8.0f}));
+    EXPECT_NE(textOf(*crowd).find("Instances 3 "), std::string::npos);
+    EXPECT_NE(textOf(*scene).find("ClipBounds 5 \n"), std::string::npos);
+}
+
 TEST_F(SerializersTest, aCrowdKeepsItsInstances)
 {
     osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(character());
     crowd->setOrigin(osg::Vec3d(1e6, -2e6, 30));
+    crowd->addEventCallback(new TiltedHome);
     AnimationController controller(crowd->sharedSet());
     ASSERT_TRUE(crowd->add(osg::Matrixd::translate(1e6, -2e6, 31), controller));
     ASSERT_TRUE(controller.play(1));
@@ -242,6 +289,7 @@ TEST_F(SerializersTest, aCrowdKeepsItsInstances)
         ASSERT_TRUE(back);
         ASSERT_EQ(back->size(), crowd->size());
         EXPECT_EQ(back->origin(), crowd->origin());
+        EXPECT_TRUE(dynamic_cast<TiltedHome*>(back->getEventCallback()));
         EXPECT_EQ(back->getNumChildren(), crowd->getNumChildren());
         EXPECT_NEAR((back->getBound().center() - crowd->getBound().center()).length(), 0.0, 1e-9);
         EXPECT_EQ(back->instances().controllerCount(), crowd->instances().controllerCount());

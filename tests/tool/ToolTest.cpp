@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <regex>
 #include <string>
 #include <vector>
 
@@ -178,6 +179,21 @@ TEST_F(ToolTest, inspectSaysWhatIsInTheFile)
     EXPECT_EQ(text.status, 0);
     for (const char* word : {"hinge", "Swing", "2.000 s", "palette entries", "red", "bytes on the GPU"})
         EXPECT_NE(text.out.find(word), std::string::npos) << word << " in\n" << text.out;
+}
+
+TEST_F(ToolTest, inspectSaysHowFarCompactClipsAreOff)
+{
+    const Process done = run({"inspect", "FLAG", "--compact", "1e-3", "--json"});
+    ASSERT_EQ(done.status, 0) << done.err;
+    const json keyframes = json::parse(done.out)["keyframes"];
+    EXPECT_GT(keyframes["longestSide"], 0.0);
+    EXPECT_NEAR(keyframes["tolerance"].get<double>(), 1e-3 * keyframes["longestSide"].get<double>(), 1e-12);
+    EXPECT_LE(keyframes["error"], keyframes["tolerance"]);
+    // People get three digits.
+    const Process text = run({"inspect", "FLAG", "--compact", "1e-3"});
+    static const std::regex words(
+        R"(; at most \d[-.\de]{0,7} off, \d[-.\de]{0,7} of the longest side, which is \d[.\d]{0,4}\n)");
+    EXPECT_TRUE(std::regex_search(text.out, words)) << text.out;
 }
 
 TEST_F(ToolTest, poseHoldsTheClipsEndsAndTakesNamesAndNumbers)

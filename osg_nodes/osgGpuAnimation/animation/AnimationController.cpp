@@ -12,21 +12,21 @@
 namespace osgGpuAnimation
 {
 
-AnimationController::AnimationController(std::shared_ptr<const AnimationSet> set) : _set(std::move(set))
+AnimationController::AnimationController(std::shared_ptr<const AnimationSet> set)
+    : _set(std::move(set)), _base(*this, 0)
 {
     assert(_set && "a controller plays the clips of a set");
     const auto moving = std::find_if(_set->clips().begin(), _set->clips().end(),
                                      [](const Clip& clip) { return clip.rootMotion() != nullptr; });
     if (moving != _set->clips().end()) _rootMotionCurve = moving->rootMotion();
-    layer(0);
 }
 
 AnimationController::AnimationController(std::shared_ptr<const AnimationSet> set, const AnimationController& other)
     : AnimationController(std::move(set))
 {
-    for (std::size_t i = 0; i < other._layerCount; ++i)
+    for (std::size_t i = 0; i < other.layerCount(); ++i)
     {
-        const AnimationLayer& before = *other._layers[i];
+        const AnimationLayer& before = other.layer(i);
         if (layer(i).restore(before.snapshot())) continue;
         layer(i).setLoopMode(before.loopMode());
         layer(i).setSpeed(before.speed());
@@ -35,10 +35,10 @@ AnimationController::AnimationController(std::shared_ptr<const AnimationSet> set
 }
 
 AnimationController::AnimationController(const AnimationController& other)
-    : _set(other._set), _instruction(other._instruction), _rootMotion(other._rootMotion),
-      _rootMotionCurve(other._rootMotionCurve)
+    : _set(other._set), _rootMotionCurve(other._rootMotionCurve), _base(*this, other._base),
+      _instruction(other._instruction), _rootMotion(other._rootMotion)
 {
-    copyLayers(other);
+    copyUpperLayers(other);
 }
 
 AnimationController& AnimationController::operator=(const AnimationController& other)
@@ -48,43 +48,45 @@ AnimationController& AnimationController::operator=(const AnimationController& o
     _instruction = other._instruction;
     _rootMotion = other._rootMotion;
     _rootMotionCurve = other._rootMotionCurve;
-    copyLayers(other);
+    _base = AnimationLayer(*this, other._base);
+    copyUpperLayers(other);
     return *this;
 }
 
 AnimationController::~AnimationController() = default;
 
-void AnimationController::copyLayers(const AnimationController& other)
+void AnimationController::copyUpperLayers(const AnimationController& other)
 {
-    _layerCount = other._layerCount;
-    for (std::size_t i = 0; i < maxLayers; ++i)
-        _layers[i].reset(other._layers[i] ? new AnimationLayer(*this, *other._layers[i]) : nullptr);
+    _upper.clear();
+    for (const std::unique_ptr<AnimationLayer>& layer : other._upper)
+        _upper.emplace_back(new AnimationLayer(*this, *layer));
 }
 
 AnimationLayer& AnimationController::layer(std::size_t index)
 {
     index = std::min(index, maxLayers - 1);
-    for (; _layerCount <= index; ++_layerCount)
-        _layers[_layerCount].reset(new AnimationLayer(*this, _layerCount));
-    return *_layers[index];
+    while (layerCount() <= index)
+        _upper.emplace_back(new AnimationLayer(*this, layerCount()));
+    return index == 0 ? _base : *_upper[index - 1];
 }
 
 const AnimationLayer& AnimationController::layer(std::size_t index) const
 {
-    assert(index < _layerCount && "a layer that was made");
-    return *_layers[index];
+    assert(index < layerCount() && "a layer that was made");
+    return index == 0 ? _base : *_upper[index - 1];
 }
 
 bool AnimationController::isPlainLoop() const
 {
-    return _layerCount == 1 && !_eventCallback && !_rootMotionCurve && base().isPlainLoop();
+    return _upper.empty() && !_eventCallback && !_rootMotionCurve && base().isPlainLoop();
 }
 
 const PoseInstruction& AnimationController::advance(double seconds)
 {
     const double step = std::isfinite(seconds) ? seconds : 0.0;
-    for (std::size_t i = 0; i < _layerCount; ++i)
-        _layers[i]->advance(step);
+    _base.advance(step);
+    for (const std::unique_ptr<AnimationLayer>& layer : _upper)
+        layer->advance(step);
     show();
     if (_rootMotionCurve) goOn();
     if (_eventCallback && hasEvents()) tellEvents();
@@ -94,16 +96,18 @@ const PoseInstruction& AnimationController::advance(double seconds)
 void AnimationController::show()
 {
     SampleStack stack;
-    for (std::size_t i = 0; i < _layerCount; ++i)
-        _layers[i]->collect(stack);
+    _base.collect(stack);
+    for (const std::unique_ptr<AnimationLayer>& layer : _upper)
+        layer->collect(stack);
     stack.write(_instruction);
 }
 
 void AnimationController::goOn()
 {
     MotionBlend blend;
-    for (std::size_t i = 0; i < _layerCount; ++i)
-        _layers[i]->collectMotion(blend);
+    _base.collectMotion(blend);
+    for (const std::unique_ptr<AnimationLayer>& layer : _upper)
+        layer->collectMotion(blend);
     const RootMotion step = blend.result();
     if (!step.isNone()) _rootMotion = (_rootMotion.isNone() ? RootMotion{{}, 0.0, step.up} : _rootMotion) * step;
 }
@@ -122,7 +126,8 @@ void AnimationController::setEventCallback(EventCallback callback)
 
 bool AnimationController::hasEvents() const
 {
-    return std::any_of(_layers.begin(), _layers.begin() + static_cast<std::ptrdiff_t>(_layerCount),
+    return StepEvents::hasEvents(_base, *_set) ||
+           std::any_of(_upper.begin(), _upper.end(),
                        [this](const auto& layer) { return StepEvents::hasEvents(*layer, *_set); });
 }
 
@@ -132,8 +137,8 @@ void AnimationController::tellEvents()
     const std::shared_ptr<const EventCallback> callback = _eventCallback;
     const std::shared_ptr<const AnimationSet> set = _set;
     StepEvents events;
-    for (std::size_t i = 0; i < _layerCount; ++i)
-        events.add(*_layers[i], *set);
+    for (std::size_t i = 0; i < layerCount(); ++i)
+        events.add(layer(i), *set);
     AnimationEvent event;
     while (events.next(event))
         (*callback)(event);

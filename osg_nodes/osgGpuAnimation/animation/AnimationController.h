@@ -7,10 +7,10 @@
 #include <osgGpuAnimation/animation/PoseInstruction.h>
 #include <osgGpuAnimation/animation/RootMotion.h>
 
-#include <array>
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace osgGpuAnimation
 {
@@ -53,7 +53,7 @@ public:
     /// last one is meant. Layers stay where they are until the controller is assigned to or gone.
     AnimationLayer& layer(std::size_t index);
     const AnimationLayer& layer(std::size_t index) const;  ///< index: below layerCount()
-    std::size_t layerCount() const { return _layerCount; } ///< at least 1
+    std::size_t layerCount() const { return 1 + _upper.size(); } ///< at least 1
 
     // The base layer's; see AnimationLayer.
     Result<bool> play(std::size_t clip) { return base().play(clip); }
@@ -109,21 +109,22 @@ public:
 private:
     friend class AnimationLayer;
 
-    AnimationLayer& base() { return *_layers[0]; }
-    const AnimationLayer& base() const { return *_layers[0]; }
-    void copyLayers(const AnimationController& other);
+    AnimationLayer& base() { return _base; }
+    const AnimationLayer& base() const { return _base; }
+    void copyUpperLayers(const AnimationController& other);
     void show();
     bool hasEvents() const;
     void tellEvents();
     void goOn();
 
+    // What every advance() needs comes first and in one piece: with thousands of controllers each comes from memory.
     std::shared_ptr<const AnimationSet> _set;
-    std::array<std::unique_ptr<AnimationLayer>, maxLayers> _layers;
-    std::size_t _layerCount = 0;
+    const RootMotionCurve* _rootMotionCurve = nullptr; ///< the first that a clip of the set has
     std::shared_ptr<const EventCallback> _eventCallback;
+    std::vector<std::unique_ptr<AnimationLayer>> _upper; ///< layers 1, 2 ...
+    AnimationLayer _base;
     PoseInstruction _instruction;
     RootMotion _rootMotion;
-    const RootMotionCurve* _rootMotionCurve = nullptr; ///< the first that a clip of the set has
 };
 
 } // namespace osgGpuAnimation

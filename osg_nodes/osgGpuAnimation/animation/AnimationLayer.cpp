@@ -14,22 +14,21 @@
 namespace osgGpuAnimation
 {
 
-AnimationLayer::AnimationLayer(AnimationController& owner, const AnimationLayer& other)
-    : _owner(owner), _index(other._index), _mixer(other._mixer), _state(other._state), _loopMode(other._loopMode),
-      _speed(other._speed), _weight(other._weight), _mask(other._mask), _mode(other._mode),
-      _reference(other._reference), _standing(other._standing)
+AnimationLayer::AnimationLayer(AnimationController& owner, const AnimationLayer& other) : AnimationLayer(other)
 {
+    _owner = &owner;
+    _crossfadeMoment = _weightFadeMoment = -1.0;
     _mixer.stand();
 }
 
 ClipPlayback AnimationLayer::playbackOf(std::size_t clip, LoopMode loopMode) const
 {
-    return ClipPlayback(static_cast<int>(clip), _owner.set().clips()[clip].duration(), _speed, loopMode);
+    return ClipPlayback(static_cast<int>(clip), _owner->set().clips()[clip].duration(), _speed, loopMode);
 }
 
 Result<bool> AnimationLayer::play(std::size_t clip)
 {
-    const Result<std::size_t> known = _owner.set().clipAt(clip);
+    const Result<std::size_t> known = _owner->set().clipAt(clip);
     if (!known) return known.error();
     _mixer.start(playbackOf(clip, _loopMode));
     _state = PlayState::Playing;
@@ -39,20 +38,20 @@ Result<bool> AnimationLayer::play(std::size_t clip)
 
 Result<bool> AnimationLayer::play(const std::string& name)
 {
-    const Result<std::size_t> clip = _owner.set().clipNamed(name);
+    const Result<std::size_t> clip = _owner->set().clipNamed(name);
     if (!clip) return clip.error();
     return play(clip.value());
 }
 
 Result<bool> AnimationLayer::crossfade(std::size_t clip, double seconds, const CrossfadeOptions& options)
 {
-    const Result<std::size_t> known = _owner.set().clipAt(clip);
+    const Result<std::size_t> known = _owner->set().clipAt(clip);
     if (!known) return known.error();
     if (!std::isfinite(seconds) || seconds < 0.0)
-        return Error{"a crossfade to clip \"" + _owner.set().clips()[clip].name() + "\" of " + std::to_string(seconds) +
-                     " seconds: expected a finite number, at least 0"};
+        return Error{"a crossfade to clip \"" + _owner->set().clips()[clip].name() + "\" of " +
+                     std::to_string(seconds) + " seconds: expected a finite number, at least 0"};
     if (options.speed && !std::isfinite(*options.speed))
-        return Error{"a crossfade to clip \"" + _owner.set().clips()[clip].name() + "\" at a speed of " +
+        return Error{"a crossfade to clip \"" + _owner->set().clips()[clip].name() + "\" at a speed of " +
                      std::to_string(*options.speed) + ": expected a finite number"};
     if (options.speed) _speed = *options.speed;
     if (options.loopMode) _loopMode = *options.loopMode;
@@ -71,7 +70,7 @@ Result<bool> AnimationLayer::crossfade(std::size_t clip, double seconds, const C
 
 Result<bool> AnimationLayer::crossfade(const std::string& name, double seconds, const CrossfadeOptions& options)
 {
-    const Result<std::size_t> clip = _owner.set().clipNamed(name);
+    const Result<std::size_t> clip = _owner->set().clipNamed(name);
     if (!clip) return clip.error();
     return crossfade(clip.value(), seconds, options);
 }
@@ -137,7 +136,7 @@ bool AnimationLayer::fadeWeight(float weight, double seconds, FadeCurve curve)
 
 Result<bool> AnimationLayer::setMask(const JointMask& mask)
 {
-    const Result<std::uint32_t> number = _owner.set().addMask(mask);
+    const Result<std::uint32_t> number = _owner->set().addMask(mask);
     if (!number) return number.error();
     _mask = number.value();
     show();
@@ -183,7 +182,7 @@ void AnimationLayer::advance(double seconds)
 
 BlendSample AnimationLayer::sampleOf(const ClipPlayback& playback, double time, double share) const
 {
-    BlendSample sample = _owner.set().sampleAt(playback.clip(), time);
+    BlendSample sample = _owner->set().sampleAt(playback.clip(), time);
     sample.weight = static_cast<float>(share * _weight.value());
     sample.control |= _mask << POSE_SAMPLE_MASK_SHIFT;
     return sample;
@@ -219,9 +218,9 @@ bool AnimationLayer::isPlainLoop() const
 
 void AnimationLayer::collectMotion(MotionBlend& out) const
 {
-    const RootMotionCurve* const usual = _owner._rootMotionCurve;
+    const RootMotionCurve* const usual = _owner->_rootMotionCurve;
     if (_state == PlayState::Stopped || _mode == Mode::Additive || !usual) return;
-    const AnimationSet& set = _owner.set();
+    const AnimationSet& set = _owner->set();
     const float* mask = set.masks().weights(_mask);
     for (std::size_t v = 0; v < _mixer.voiceCount(); ++v)
     {
@@ -239,7 +238,7 @@ void AnimationLayer::collectMotion(MotionBlend& out) const
 
 void AnimationLayer::show()
 {
-    _owner.show();
+    _owner->show();
 }
 
 } // namespace osgGpuAnimation

@@ -123,10 +123,12 @@ private:
     friend class AnimationController;
 
     AnimationLayer(AnimationController& owner, std::size_t index)
-        : _owner(owner), _index(index), _standing(static_cast<int>(index))
+        : _owner(&owner), _index(index), _standing(static_cast<int>(index))
     {
     }
     AnimationLayer(AnimationController& owner, const AnimationLayer& other);
+    AnimationLayer(const AnimationLayer&) = default;
+    AnimationLayer& operator=(const AnimationLayer&) = default;
 
     ClipPlayback playbackOf(std::size_t clip, LoopMode loopMode) const;
     void advance(double seconds);
@@ -135,7 +137,7 @@ private:
     BlendSample sampleOf(const ClipPlayback& playback, double time, double share) const;
     void show();
 
-    AnimationController& _owner;
+    AnimationController* _owner;
     std::size_t _index;
     ClipMixer _mixer;
     PlayState _state = PlayState::Stopped;

@@ -34,7 +34,7 @@ bool isNear(const std::vector<JointTransform>& data, std::size_t track, std::siz
 } // namespace
 
 ClipCompactor::ClipCompactor(const AnimationSet& set, const EntryBoxes& entryBoxes, double tolerance)
-    : _set(set), _tolerance(tolerance), _size(modelSize(set, entryBoxes)), _distance(set, entryBoxes),
+    : _set(set), _tolerance(tolerance), _size(longestSide(set, entryBoxes)), _distance(set, entryBoxes),
       _exactPose(set.trackCount()), _madePose(set.trackCount())
 {
 }

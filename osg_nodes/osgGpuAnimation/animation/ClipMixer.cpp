@@ -21,108 +21,113 @@ double finiteProduct(double a, double b)
 
 } // namespace
 
+void ClipMixer::clear()
+{
+    _leaving.clear();
+    _current = Voice();
+}
+
 void ClipMixer::start(const ClipPlayback& playback)
 {
-    _voices.clear();
-    Voice& voice = _voices.emplace_back();
-    voice.playback = playback;
-    voice.phaseGroup = ++_lastPhaseGroup;
+    clear();
+    _current.playback = playback;
+    _current.phaseGroup = ++_lastPhaseGroup;
     _fade = Fade(1.0);
 }
 
 void ClipMixer::restore(const std::vector<Voice>& voices, const Fade& fade)
 {
-    const std::size_t count = std::min(voices.size(), maxVoices);
-    _voices.assign(voices.begin(), voices.begin() + static_cast<std::ptrdiff_t>(count));
-    _lastPhaseGroup = 0;
-    for (Voice& voice : _voices)
-    {
-        voice.move = ClipMove();
-        _lastPhaseGroup = std::max(_lastPhaseGroup, voice.phaseGroup);
-    }
+    clear();
     _fade = fade;
+    _lastPhaseGroup = 0;
+    if (voices.empty()) return;
+    const auto last = voices.begin() + static_cast<std::ptrdiff_t>(std::min(voices.size(), maxVoices)) - 1;
+    _leaving.assign(voices.begin(), last);
+    _current = *last;
+    stand();
+    for (std::size_t i = 0; i < voiceCount(); ++i)
+        _lastPhaseGroup = std::max(_lastPhaseGroup, voice(i).phaseGroup);
 }
 
 void ClipMixer::fadeTo(const ClipPlayback& playback, double seconds, FadeCurve curve, bool sharesPhase)
 {
     removeFaded();
     makeRoom();
-    const int group = sharesPhase && !isEmpty() ? _voices.back().phaseGroup : ++_lastPhaseGroup;
-    for (Voice& before : _voices)
+    const int group = sharesPhase && !isEmpty() ? _current.phaseGroup : ++_lastPhaseGroup;
+    if (!isEmpty()) _leaving.push_back(_current);
+    for (Voice& before : _leaving)
         before.shareBefore = before.share;
-    Voice& voice = _voices.emplace_back();
-    voice.playback = playback;
-    voice.share = 0.0;
-    voice.phaseGroup = group;
+    _current = Voice();
+    _current.playback = playback;
+    _current.share = 0.0;
+    _current.phaseGroup = group;
     _fade = Fade(0.0, 1.0, seconds, curve);
 }
 
 void ClipMixer::remove(std::size_t index)
 {
-    _voices.erase(_voices.begin() + static_cast<std::ptrdiff_t>(index));
+    if (index == _leaving.size()) _current = _leaving[--index];
+    _leaving.erase(_leaving.begin() + static_cast<std::ptrdiff_t>(index));
 }
 
 void ClipMixer::removeFaded()
 {
-    for (std::size_t i = _voices.size(); i-- > 0;)
-        if (i + 1 < _voices.size() && (_fade.isFinished() || _voices[i].share < negligible)) remove(i);
+    for (std::size_t i = _leaving.size(); i-- > 0;)
+        if (_fade.isFinished() || _leaving[i].share < negligible) remove(i);
 }
 
 void ClipMixer::makeRoom()
 {
-    if (_voices.size() < maxVoices) return;
+    if (voiceCount() < maxVoices) return;
     std::size_t least = 0;
     double whole = 0.0;
-    for (std::size_t i = 0; i < _voices.size(); ++i)
+    for (std::size_t i = 0; i < maxVoices; ++i)
     {
-        whole += _voices[i].share;
-        if (_voices[i].share < _voices[least].share) least = i;
+        whole += at(i).share;
+        if (at(i).share < at(least).share) least = i;
     }
-    const double grown = whole / (whole - _voices[least].share);
+    const double grown = whole / (whole - at(least).share);
     remove(least);
-    for (Voice& voice : _voices)
-        voice.share *= grown;
+    for (std::size_t i = 0; i < voiceCount(); ++i)
+        at(i).share *= grown;
 }
 
 double ClipMixer::advance(double seconds, bool isCurrentPlaying)
 {
-    if (_voices.size() > 1) removeFaded();
+    removeFaded();
     const double moment = _fade.advance(seconds);
-    if (!isEmpty() && (moment >= 0.0 || isFading()))
+    if (moment >= 0.0 || isFading())
     {
-        for (std::size_t i = 0; i + 1 < _voices.size(); ++i)
+        for (Voice& voice : _leaving)
         {
-            _voices[i].share = _voices[i].shareBefore * (1.0 - _fade.value());
-            _voices[i].meanShare = _voices[i].shareBefore * (1.0 - _fade.mean());
+            voice.share = voice.shareBefore * (1.0 - _fade.value());
+            voice.meanShare = voice.shareBefore * (1.0 - _fade.mean());
         }
-        _voices.back().share = _fade.value();
-        _voices.back().meanShare = _fade.mean();
+        _current.share = _fade.value();
+        _current.meanShare = _fade.mean();
     }
     else
-        for (Voice& voice : _voices)
-            voice.meanShare = voice.share;
-    for (std::size_t i = 0; i < _voices.size(); ++i)
-    {
-        Voice& voice = _voices[i];
-        const bool isPlaying = i + 1 < _voices.size() || isCurrentPlaying;
-        voice.move = isPlaying ? voice.playback.move(clipSeconds(voice, seconds)) : ClipMove();
-    }
+        for (std::size_t i = 0; i < voiceCount(); ++i)
+            at(i).meanShare = at(i).share;
+    for (Voice& voice : _leaving)
+        voice.move = voice.playback.move(clipSeconds(voice, seconds));
+    _current.move = isCurrentPlaying ? _current.playback.move(clipSeconds(_current, seconds)) : ClipMove();
     return moment;
 }
 
 void ClipMixer::stand()
 {
-    for (Voice& voice : _voices)
-        voice.move = ClipMove();
+    for (std::size_t i = 0; i < voiceCount(); ++i)
+        at(i).move = ClipMove();
 }
 
 double ClipMixer::clipSeconds(const Voice& voice, double seconds) const
 {
     double speed = voice.playback.speed();
     double members = 0.0, share = 0.0, round = 0.0;
-    for (std::size_t i = 0; _voices.size() > 1 && i < _voices.size(); ++i)
+    for (std::size_t i = 0; !_leaving.empty() && i < voiceCount(); ++i)
     {
-        const Voice& other = _voices[i];
+        const Voice& other = this->voice(i);
         if (other.phaseGroup != voice.phaseGroup) continue;
         members += 1.0;
         share += other.meanShare;

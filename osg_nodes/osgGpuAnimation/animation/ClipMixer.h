@@ -14,7 +14,7 @@ namespace osgGpuAnimation
 /// playing. A crossfade may begin at any moment: what is seen then, however many clips make it up, fades as a whole
 /// while the new clip fades in, so the pose never jumps. (A frozen pose in place of the fading clips would cost 48
 /// bytes of upload a joint, and feet that stop in mid air.) Where all voices are in use, the one with the smallest
-/// share gives way. Memory is taken where more clips play at once than ever before, and kept.
+/// share gives way. Memory is taken where more clips fade out at once than ever before, and kept.
 class ClipMixer
 {
 public:
@@ -30,17 +30,20 @@ public:
         int phaseGroup = 0;       ///< voices of one group run at one phase
     };
 
-    std::size_t voiceCount() const { return _voices.size(); }
-    const Voice& voice(std::size_t index) const { return _voices[index]; } ///< oldest first
-    bool isEmpty() const { return _voices.empty(); }
+    std::size_t voiceCount() const { return isEmpty() ? 0 : _leaving.size() + 1; }
+    const Voice& voice(std::size_t index) const ///< oldest first
+    {
+        return index < _leaving.size() ? _leaving[index] : _current;
+    }
+    bool isEmpty() const { return _current.playback.clip() < 0; }
     /// The newest voice; there is one.
-    ClipPlayback& current() { return _voices.back().playback; }
-    const ClipPlayback& current() const { return _voices.back().playback; }
+    ClipPlayback& current() { return _current.playback; }
+    const ClipPlayback& current() const { return _current.playback; }
     bool isFading() const { return !_fade.isFinished(); }
 
     const Fade& fade() const { return _fade; } ///< from 0 to 1, the current voice's
 
-    void clear() { _voices.clear(); }
+    void clear();
     /// As it was when it said so of itself. voices: oldest first, at most maxVoices are taken.
     void restore(const std::vector<Voice>& voices, const Fade& fade);
     /// Alone and at once.
@@ -55,12 +58,14 @@ public:
     void stand();
 
 private:
+    Voice& at(std::size_t index) { return index < _leaving.size() ? _leaving[index] : _current; }
     void remove(std::size_t index);
     void removeFaded();
     void makeRoom();
     double clipSeconds(const Voice& voice, double seconds) const;
 
-    std::vector<Voice> _voices; ///< at most maxVoices
+    Voice _current; ///< in place: of thousands of characters nearly all play one clip, and every frame reads it
+    std::vector<Voice> _leaving; ///< below maxVoices
     Fade _fade{1.0};
     int _lastPhaseGroup = 0;
 };

@@ -31,7 +31,7 @@ Result<CompactedSet> compactClips(const AnimationSet& set, const EntryBoxes& ent
     return result;
 }
 
-double modelSize(const AnimationSet& set, const EntryBoxes& entryBoxes)
+double longestSide(const AnimationSet& set, const EntryBoxes& entryBoxes)
 {
     Box box = boundsOfClip(set, -1, entryBoxes);
     if (box.empty())

@@ -12,7 +12,7 @@ namespace osgGpuAnimation
 struct CompactOptions
 {
     /// In the model's units, above 0: how far a vertex, or the origin of a joint, may be from where the exact clip has
-    /// it. A fraction of modelSize(), say.
+    /// it. A fraction of longestSide(), say.
     double tolerance = 0.0;
 };
 
@@ -26,7 +26,7 @@ struct CompactedSet
 /// The set with its clips made smaller, on the GPU and on the CPU: what hardly moves is held still, keyframes that
 /// their neighbours tell are dropped, and numbers are rounded to 20 bits of their range, see CompactTracks.
 ///
-///     const auto compact = compactClips(set, entryBoxes, {1e-4 * modelSize(set, entryBoxes)});
+///     const auto compact = compactClips(set, entryBoxes, {1e-4 * longestSide(set, entryBoxes)});
 ///
 /// The error is looked for at every keyframe of the exact clip and halfway between them, at the corners of the boxes of
 /// what each palette entry moves (a vertex is a convex combination of those) and at the joints' origins; a clip that
@@ -39,6 +39,6 @@ Result<CompactedSet> compactClips(const AnimationSet& set, const EntryBoxes& ent
 
 /// The longest side of the box of the rest pose, in the model's units; of its joints' origins where no entry moves
 /// vertices.
-double modelSize(const AnimationSet& set, const EntryBoxes& entryBoxes);
+double longestSide(const AnimationSet& set, const EntryBoxes& entryBoxes);
 
 } // namespace osgGpuAnimation

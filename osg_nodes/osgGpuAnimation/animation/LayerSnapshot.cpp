@@ -96,8 +96,8 @@ LayerSnapshot AnimationLayer::snapshot() const
     }
     snapshot.crossfade = stateOf(_mixer.fade());
     snapshot.weight = stateOf(_weight);
-    if (const float* weights = _owner.set().masks().weights(_mask))
-        snapshot.mask.assign(weights, weights + _owner.set().trackCount());
+    if (const float* weights = _owner->set().masks().weights(_mask))
+        snapshot.mask.assign(weights, weights + _owner->set().trackCount());
     snapshot.mode = _mode;
     snapshot.reference = _reference;
     snapshot.standing = _standing;
@@ -106,7 +106,7 @@ LayerSnapshot AnimationLayer::snapshot() const
 
 Result<bool> AnimationLayer::restore(const LayerSnapshot& snapshot)
 {
-    const AnimationSet& set = _owner.set();
+    const AnimationSet& set = _owner->set();
     if (const std::optional<std::string> fault = findFault(snapshot, set)) return Error{"a layer with " + *fault};
     std::uint32_t mask = 0;
     if (!snapshot.mask.empty())

@@ -40,8 +40,8 @@ struct PoseInstruction
 {
     static constexpr std::size_t maxSamples = 16;
 
-    std::array<BlendSample, maxSamples> samples;
     std::size_t sampleCount = 1; ///< [1, maxSamples]
+    std::array<BlendSample, maxSamples> samples;
 };
 
 } // namespace osgGpuAnimation

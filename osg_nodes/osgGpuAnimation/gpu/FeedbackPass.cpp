@@ -90,11 +90,11 @@ void FeedbackPass::setTexture(const char* uniform, int unit, GLuint texture)
     _gl->glUniform1i(location(uniform), unit);
 }
 
-void FeedbackPass::begin(std::size_t count, GLuint buffer, std::size_t byteOffset)
+void FeedbackPass::begin(GLenum mode, std::size_t count, GLuint buffer, std::size_t byteOffset)
 {
     _gl->glBindBufferRange(GL_TRANSFORM_FEEDBACK_BUFFER, 0, buffer, static_cast<GLintptr>(byteOffset),
                            static_cast<GLsizeiptr>(count * _bytesPerVertex));
-    _gl->glBeginTransformFeedback(GL_POINTS);
+    _gl->glBeginTransformFeedback(mode);
 }
 
 void FeedbackPass::end()
@@ -106,7 +106,7 @@ void FeedbackPass::end()
 void FeedbackPass::run(std::size_t firstVertex, std::size_t count, GLuint buffer, std::size_t byteOffset)
 {
     if (count == 0) return;
-    begin(count, buffer, byteOffset);
+    begin(GL_POINTS, count, buffer, byteOffset);
     glDrawArrays(GL_POINTS, static_cast<GLint>(firstVertex), static_cast<GLsizei>(count));
     end();
 }
@@ -115,8 +115,9 @@ void FeedbackPass::runInstanced(std::size_t vertexCount, std::size_t instanceCou
                                 std::size_t byteOffset)
 {
     if (vertexCount == 0 || instanceCount == 0) return;
-    begin(vertexCount * instanceCount, buffer, byteOffset);
-    _gl->glDrawArraysInstanced(GL_POINTS, 0, static_cast<GLsizei>(vertexCount), static_cast<GLsizei>(instanceCount));
+    const GLenum mode = vertexCount % verticesOfFastest == 0 ? GL_TRIANGLES : GL_POINTS;
+    begin(mode, vertexCount * instanceCount, buffer, byteOffset);
+    _gl->glDrawArraysInstanced(mode, 0, static_cast<GLsizei>(vertexCount), static_cast<GLsizei>(instanceCount));
     end();
 }
 

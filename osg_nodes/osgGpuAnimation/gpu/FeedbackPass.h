@@ -24,6 +24,9 @@ public:
     /// to capture, interleaved in that order. Failure to compile or link is reported once and leaves valid() false.
     FeedbackPass(osg::GLExtensions& gl, const char* name, std::initializer_list<const char*> source,
                  std::initializer_list<const char*> outputs);
+    /// Multiples of so many vertices an instance are drawn the fastest way.
+    static constexpr std::size_t verticesOfFastest = 3;
+
     FeedbackPass(const FeedbackPass&) = delete;
     FeedbackPass& operator=(const FeedbackPass&) = delete;
 
@@ -35,14 +38,15 @@ public:
     void setTexture(const char* uniform, int unit, GLuint texture);
     /// Draws points [firstVertex, firstVertex + count) and writes 16 bytes an output for each into the buffer.
     void run(std::size_t firstVertex, std::size_t count, GLuint buffer, std::size_t byteOffset);
-    /// The same for vertices [0, vertexCount) of each of so many GL instances, one instance after another.
+    /// The same for vertices [0, vertexCount) of each of so many GL instances, one instance after another; as triangles
+    /// where they are threes, since llvmpipe has less to do for each primitive than for its vertices.
     void runInstanced(std::size_t vertexCount, std::size_t instanceCount, GLuint buffer, std::size_t byteOffset);
 
     void release();
     void discard() { _program = 0; }
 
 private:
-    void begin(std::size_t count, GLuint buffer, std::size_t byteOffset);
+    void begin(GLenum mode, std::size_t count, GLuint buffer, std::size_t byteOffset);
     void end();
     GLint location(const char* uniform);
     bool link(const char* name, const std::string& source, const std::vector<const char*>& outputs);

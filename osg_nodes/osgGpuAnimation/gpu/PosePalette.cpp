@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/gpu/PosePalette.h>
 
+#include <osgGpuAnimation/gpu/FeedbackPass.h>
+
 #include <layout.glsl>
 
 #include <algorithm>
@@ -12,10 +14,10 @@ namespace osgGpuAnimation
 namespace
 {
 
-/// Brings the buffer and its record up to [first, first + count) of the source. True if it was not the same already.
-/// Where only a part is another, as with one of many that moved, that part is sent.
+/// Brings the buffer, with room for so many, and its record up to [first, first + count) of the source. True if it was
+/// not the same already. Where only a part is another, as with one of many that moved, that part is sent.
 template <typename Element>
-bool uploadChanged(const std::vector<Element>& source, std::size_t first, std::size_t count,
+bool uploadChanged(const std::vector<Element>& source, std::size_t first, std::size_t count, std::size_t room,
                    std::vector<Element>& uploaded, BufferTexture& buffer, std::size_t& bytesUploaded)
 {
     const std::size_t bytes = count * sizeof(Element);
@@ -39,12 +41,19 @@ bool uploadChanged(const std::vector<Element>& source, std::size_t first, std::s
     }
     uploaded.assign(begin, begin + count);
     if (count == 0) return true;
+    buffer.reserve(room * sizeof(Element));
     buffer.upload(begin, bytes);
     bytesUploaded += bytes;
     return true;
 }
 
 } // namespace
+
+std::size_t PosePalette::widthOf(std::size_t size)
+{
+    constexpr std::size_t step = FeedbackPass::verticesOfFastest;
+    return size < step ? size : (size + step - 1) / step * step;
+}
 
 PosePalette::Chunk::Chunk(osg::GLExtensions& gl)
     : samples(gl, GL_RGBA32UI_EXT), roots(gl, GL_RGBA32F_ARB), tints(gl, GL_RGBA8), palette(gl, GL_RGBA32F_ARB)
@@ -85,15 +94,16 @@ std::vector<PosePalette::Chunk*> PosePalette::upload(const PoseBatch& batch, std
         const std::size_t size = std::min(chunkCapacity, batch.size() - first);
         bool isChanged = chunk.size != size || chunk.sampleStride != stride;
         chunk.size = size;
+        chunk.width = widthOf(size);
         chunk.sampleStride = stride;
-        isChanged |= uploadChanged(batch.samples(), first * stride, size * stride, chunk.uploadedSamples, chunk.samples,
-                                   bytesUploaded);
+        isChanged |= uploadChanged(batch.samples(), first * stride, size * stride, chunk.width * stride,
+                                   chunk.uploadedSamples, chunk.samples, bytesUploaded);
         isChanged |= uploadChanged(batch.rootMatrices(), hasRoots ? first : 0, hasRoots ? size : 0,
-                                   chunk.uploadedRootMatrices, chunk.roots, bytesUploaded);
+                                   hasRoots ? chunk.width : 0, chunk.uploadedRootMatrices, chunk.roots, bytesUploaded);
         const bool hasTints = !batch.tints().empty();
         // Tints are for the draw alone: the palette stays as it is.
-        uploadChanged(batch.tints(), hasTints ? first : 0, hasTints ? size : 0, chunk.uploadedTints, chunk.tints,
-                      bytesUploaded);
+        uploadChanged(batch.tints(), hasTints ? first : 0, hasTints ? size : 0, hasTints ? size : 0,
+                      chunk.uploadedTints, chunk.tints, bytesUploaded);
         chunk.isEvaluated = chunk.isEvaluated && !isChanged;
         if (!chunk.isEvaluated) changed.push_back(&chunk);
     }
@@ -109,10 +119,11 @@ PalettePlace PosePalette::place(std::size_t instance) const
     const Chunk& chunk = *_chunks[index];
     if (!chunk.isEvaluated) return {};
     return {chunk.palette.texture(),
-            static_cast<int>(chunk.size),
+            static_cast<int>(chunk.width),
             static_cast<int>(instance % _chunkCapacity),
             chunk.uploadedTints.empty() ? 0 : chunk.tints.texture(),
             index * _chunkCapacity,
+            index * _chunkCapacity + chunk.size,
             chunk.evaluation};
 }
 

@@ -19,6 +19,7 @@ struct PalettePlace
     int instance = 0;
     GLuint tints = 0;             ///< RGBA8, one an instance; 0: all white
     std::size_t chunkBegin = 0;   ///< the number in the batch of instance 0
+    std::size_t chunkEnd = 0;     ///< behind the last that is in this texture
     std::uint64_t evaluation = 0; ///< never again another's
 };
 
@@ -36,7 +37,8 @@ public:
         /// Makes the instances the vertices of the pose pass.
         void bindInstances(osg::GLExtensions& gl) const;
 
-        std::size_t size = 0; ///< instances
+        std::size_t size = 0;  ///< instances
+        std::size_t width = 0; ///< widthOf(size): the palette's stride
         std::size_t sampleStride = 1;
         std::vector<BlendSample> uploadedSamples;       ///< what `samples` holds
         std::vector<AffineMatrix> uploadedRootMatrices; ///< what `roots` holds
@@ -46,8 +48,12 @@ public:
         BufferTexture tints;
         bool isEvaluated = false;     ///< `palette` is what the inputs ask for
         std::uint64_t evaluation = 0; ///< that made it so
-        BufferTexture palette;        ///< RGBA32F: paletteSize * size matrices, entry-major
+        BufferTexture palette;        ///< RGBA32F: paletteSize * width matrices, entry-major
     };
+
+    /// Places for so many instances: filled up, with instances at rest, to what the feedback pass draws the fastest
+    /// way.
+    static std::size_t widthOf(std::size_t size);
 
     explicit PosePalette(osg::GLExtensions& gl) : _gl(&gl) {}
 

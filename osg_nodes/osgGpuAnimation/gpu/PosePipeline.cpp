@@ -143,7 +143,7 @@ bool PosePipeline::evaluate(osg::State& state, const PoseBatch& batch, std::size
     const FeedbackScope scope(state, _form == Form::Fused ? vertexArrays.pose : vertexArrays.empty, unitCount);
     for (PosePalette::Chunk* chunk : changed)
     {
-        chunk->palette.reserve(set.paletteSize() * chunk->size * matrixBytes);
+        chunk->palette.reserve(set.paletteSize() * chunk->width * matrixBytes);
         chunk->isEvaluated = _form == Form::Fused ? evaluateFused(batch, *resources.buffers, *chunk)
                                                   : evaluateSeparate(batch, *resources.buffers, *chunk);
         if (!chunk->isEvaluated) return false;
@@ -158,7 +158,11 @@ std::size_t PosePipeline::chunkCapacity(const PoseBatch& batch) const
     const AnimationSet& set = batch.set();
     const std::size_t widest = std::max(set.paletteSize(), _form == Form::Separate ? set.trackCount() : 0);
     const std::size_t byPalette = _maxTexels / (POSE_TEXELS_PER_MATRIX * std::max<std::size_t>(widest, 1));
-    return std::max<std::size_t>(std::min({byPalette, _maxTexels / batch.sampleStride(), _chunkSize}), 1);
+    std::size_t capacity =
+        std::max<std::size_t>(std::min({byPalette, _maxTexels / batch.sampleStride(), _chunkSize}), 1);
+    while (PosePalette::widthOf(capacity) > capacity)
+        --capacity;
+    return capacity;
 }
 
 bool PosePipeline::hasRoomForMasks(SetResources& resources, const AnimationSet& set) const
@@ -182,7 +186,7 @@ void PosePipeline::useMixInput(FeedbackPass& pass, const AnimationSet& set, cons
     pass.setTexture("masks", unitMasks, buffers.masks().texture());
     pass.setInt("maskStride", static_cast<int>(AnimationBuffers::texelsPerMask(set)));
     pass.setInt("sampleStride", static_cast<int>(chunk.sampleStride));
-    pass.setInt("instanceCount", static_cast<int>(chunk.size));
+    pass.setInt("instanceCount", static_cast<int>(chunk.width));
     pass.setInt("restTexel", static_cast<int>(buffers.restTexel()));
     pass.setInt("jointCount", static_cast<int>(set.skeleton().jointCount()));
 }
@@ -193,7 +197,7 @@ void PosePipeline::useMixInput(FeedbackPass& pass, const AnimationSet& set, cons
 bool PosePipeline::evaluateFused(const PoseBatch& batch, const AnimationBuffers& buffers, PosePalette::Chunk& chunk)
 {
     const AnimationSet& set = batch.set();
-    if (set.levelCount() > 1) _scratch.reserve(oddEntries(set) * chunk.size * matrixBytes);
+    if (set.levelCount() > 1) _scratch.reserve(oddEntries(set) * chunk.width * matrixBytes);
     chunk.bindInstances(*_gl);
     PoseVariant variant = PoseVariant::of(batch);
     if (chunk.hasSamplesAsAttributes()) variant.sampleCount = static_cast<int>(chunk.sampleStride);
@@ -218,8 +222,8 @@ bool PosePipeline::evaluateFused(const PoseBatch& batch, const AnimationBuffers&
         pass.setInt("firstParent", static_cast<int>(isOdd ? 0 : firstParent));
         buffers.entries().bindAttributes(POSE_HEAD_LOCATION, POSE_TEXELS_PER_ENTRY, entryBytes,
                                          levels[level] * entryBytes, 1);
-        pass.runInstanced(chunk.size, count, (isOdd ? _scratch : chunk.palette).buffer(),
-                          (isOdd ? oddEntry : levels[level]) * chunk.size * matrixBytes);
+        pass.runInstanced(chunk.width, count, (isOdd ? _scratch : chunk.palette).buffer(),
+                          (isOdd ? oddEntry : levels[level]) * chunk.width * matrixBytes);
         ++_counters.feedbackDraws;
         if (!isOdd) continue;
         firstParent = levels[level] - oddEntry;
@@ -235,7 +239,7 @@ void PosePipeline::gatherOddLevels(const AnimationSet& set, const PosePalette::C
     _gl->glBindBuffer(GL_COPY_READ_BUFFER, _scratch.buffer());
     _gl->glBindBuffer(GL_COPY_WRITE_BUFFER, chunk.palette.buffer());
     const std::vector<std::size_t>& levels = set.levels();
-    const std::size_t entryBytes = chunk.size * matrixBytes;
+    const std::size_t entryBytes = chunk.width * matrixBytes;
     std::size_t from = 0;
     for (std::size_t level = 1; level < set.levelCount(); level += 2)
     {
@@ -257,7 +261,7 @@ void PosePipeline::runSeparate(FeedbackPass& pass, std::size_t count, const Buff
 bool PosePipeline::evaluateSeparate(const PoseBatch& batch, const AnimationBuffers& buffers, PosePalette::Chunk& chunk)
 {
     const AnimationSet& set = batch.set();
-    const std::size_t trackVertices = set.trackCount() * chunk.size;
+    const std::size_t trackVertices = set.trackCount() * chunk.width;
     _mixedTracks.reserve(trackVertices * sizeof(JointTransform));
     _scratch.reserve(trackVertices * matrixBytes);
 
@@ -273,17 +277,17 @@ bool PosePipeline::evaluateSeparate(const PoseBatch& batch, const AnimationBuffe
 
     _localPass->use();
     _localPass->setTexture("mixedTracks", unitPrevious, _mixedTracks.texture());
-    _localPass->setInt("instanceCount", static_cast<int>(chunk.size));
+    _localPass->setInt("instanceCount", static_cast<int>(chunk.width));
     _localPass->setInt("jointCount", static_cast<int>(set.skeleton().jointCount()));
     runSeparate(*_localPass, trackVertices, _scratch);
 
     _worldPass->use();
-    _worldPass->setInt("instanceCount", static_cast<int>(chunk.size));
+    _worldPass->setInt("instanceCount", static_cast<int>(chunk.width));
     _worldPass->setTexture("entries", unitEntries, buffers.entries().texture());
     _worldPass->setTexture("roots", unitRoots, chunk.roots.texture());
     _worldPass->setInt("hasRoots", chunk.uploadedRootMatrices.empty() ? 0 : 1);
     _worldPass->setTexture("localMatrices", unitPrevious, _scratch.texture());
-    runSeparate(*_worldPass, set.paletteSize() * chunk.size, chunk.palette);
+    runSeparate(*_worldPass, set.paletteSize() * chunk.width, chunk.palette);
     return true;
 }
 

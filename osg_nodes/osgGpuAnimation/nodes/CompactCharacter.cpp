@@ -25,8 +25,8 @@ Result<CompactedCharacter> compactClipsOf(AnimatedCharacter& character, double f
 {
     const EntryBoxes boxes = entryBoxesOf(character);
     CompactedCharacter result;
-    result.modelSize = modelSize(character.set(), boxes);
-    result.tolerance = fraction * result.modelSize;
+    result.longestSide = longestSide(character.set(), boxes);
+    result.tolerance = fraction * result.longestSide;
     Result<CompactedSet> compacted = compactClips(character.set(), boxes, {result.tolerance});
     if (!compacted) return compacted.error();
     const Result<bool> taken = character.setAnimationSet(compacted.value().set);

@@ -58,7 +58,7 @@ PlacedDraw::Run PlacedDraw::run(const PosePipeline& pipeline, SkinnedRead& skinn
     if (!_placements || run.place.texture == 0) return run;
     const std::size_t chunkBegin = run.place.chunkBegin;
     const std::size_t begin = std::max(chunkBegin, skinned.begin());
-    const std::size_t end = std::min(chunkBegin + static_cast<std::size_t>(run.place.stride), skinned.end());
+    const std::size_t end = std::min(run.place.chunkEnd, skinned.end());
     const auto isAlike = [&](std::size_t other) { return other >= begin && other < end; };
     while (first + run.count < placements.size() && isAlike(poseOf(placements[first + run.count])))
         ++run.count;

@@ -78,7 +78,7 @@ void SkinOnceRun::skin(const SkinnedGeometry& mesh, const AnimationSet& set, std
     {
         const PalettePlace place = _pipeline->place(set, slot, first);
         if (place.texture == 0) break;
-        const std::size_t count = std::min(place.chunkBegin + static_cast<std::size_t>(place.stride) - first, capacity);
+        const std::size_t count = std::min(place.chunkEnd - first, capacity);
         SkinnedVertices::Piece& piece = _skinned.piece(subject, number);
         const bool isThere = piece.first == first && piece.count == count && piece.evaluation == place.evaluation &&
                              piece.versions == versions;

@@ -252,9 +252,8 @@ void SkinnedGeometry::drawInstances(osg::RenderInfo& renderInfo, const PaletteBi
         {
             // What is in one chunk of the palette, and was skinned into one buffer, is drawn at once.
             const PalettePlace place = pipeline.place(*binding.animationSet(), binding.slot(), first);
-            if (place.texture == 0 || place.stride <= place.instance || !skinned.find(first)) break;
-            const std::size_t behind = place.chunkBegin + static_cast<std::size_t>(place.stride);
-            const std::size_t count = std::min({end, behind, skinned.end()}) - first;
+            if (place.texture == 0 || place.chunkEnd <= first || !skinned.find(first)) break;
+            const std::size_t count = std::min({end, place.chunkEnd, skinned.end()}) - first;
             bindPalette(state, place);
             skinned.bind(place);
             drawPrimitives(state, static_cast<int>(count), binding.level());

@@ -65,11 +65,11 @@ std::vector<std::string> splitAtCommas(const std::string& text)
 }
 
 /// What a value of the option must be.
-const char* wanted(const std::string& name)
+std::string wanted(const std::string& name)
 {
     if (name == "seed") return "a whole number from 0 to 4294967295";
     if (name == "spacing") return "a number of units above 0";
-    if (name == "pixelError") return "a number of pixels from 0 to 1000000";
+    if (name == "pixelError") return "a number of pixels from 0 to " + std::to_string(DetailRange::largestPixelError);
     return "names or numbers of clips apart by commas";
 }
 

@@ -7,6 +7,7 @@
 #include "gltf/ParsedNumber.h"
 
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+#include <osgGpuAnimation/nodes/DetailRange.h>
 
 #include <algorithm>
 #include <array>
@@ -64,11 +65,11 @@ std::vector<std::string> splitAtCommas(const std::string& text)
 }
 
 /// What a value of the option must be.
-const char* wanted(const std::string& name)
+std::string wanted(const std::string& name)
 {
     if (name == "seed") return "a whole number from 0 to 4294967295";
     if (name == "spacing") return "a number of units above 0";
-    if (name == "pixelError") return "a number of pixels from 0 to 1000000";
+    if (name == "pixelError") return "a number of pixels from 0 to " + std::to_string(DetailRange::largestPixelError);
     return "names or numbers of clips apart by commas";
 }
 
@@ -80,7 +81,7 @@ bool apply(const gltf::OptionWord& word, CrowdOptions& out)
     if (word.name == "noTilt") out.tiltsHome = false;
     if (word.name == "seed") return readNumber(value, out.seed);
     if (word.name == "pixelError")
-        return readNumber(value, out.pixelError.emplace()) && *out.pixelError >= 0.0f && *out.pixelError <= 1e6f;
+        return readNumber(value, out.pixelError.emplace()) && DetailRange::isPixelError(*out.pixelError);
     if (word.name == "spacing")
         return readNumber(value, out.spacing.emplace()) && std::isfinite(*out.spacing) && *out.spacing > 0.0;
     if (word.name != "clips") return true;

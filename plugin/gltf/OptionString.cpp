@@ -5,6 +5,8 @@
 #include "gltf/OptionWord.h"
 #include "gltf/ParsedNumber.h"
 
+#include <osgGpuAnimation/nodes/DetailRange.h>
+
 #include <cmath>
 #include <optional>
 
@@ -57,10 +59,10 @@ std::optional<bool> applyPlaying(const std::string& name, const std::string& val
 }
 
 /// What a value of the option must be.
-const char* wanted(const std::string& name)
+std::string wanted(const std::string& name)
 {
     if (name == "compact") return "a number above 0, at most 1";
-    if (name == "pixelError") return "a number of pixels from 0 to 1000000";
+    if (name == "pixelError") return "a number of pixels from 0 to " + std::to_string(DetailRange::largestPixelError);
     if (name == "speed") return "a number";
     if (name == "start" || name == "fade") return "a number of seconds, 0 or more";
     if (name == "loop") return "once, loop or pingpong";
@@ -75,7 +77,7 @@ bool apply(const OptionWord& word, ImportOptions& options)
     if (word.name == "compact")
         return readFinite(value, options.compact.emplace()) && *options.compact > 0.0 && *options.compact <= 1.0;
     if (word.name == "pixelError")
-        return readFinite(value, options.pixelError) && options.pixelError >= 0.0 && options.pixelError <= 1e6;
+        return readFinite(value, options.pixelError) && DetailRange::isPixelError(options.pixelError);
     if (word.name == "noRotation")
         options.noRotation = true;
     else if (word.name == "noKeys")

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
+#include "house/FileText.h"
+
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
 #include <regex>
 #include <sstream>
 #include <string>
@@ -55,12 +56,6 @@ std::vector<std::string> forbiddenIncludes(const std::string& text, const Layer&
     return found;
 }
 
-std::string readFile(const fs::path& path)
-{
-    std::ifstream file(path);
-    return {std::istreambuf_iterator<char>(file), {}};
-}
-
 class LayerTest : public ::testing::TestWithParam<Layer>
 {
 };
@@ -73,7 +68,7 @@ TEST_P(LayerTest, includesOnlyDownwards)
     {
         if (entry.path().extension() != ".h" && entry.path().extension() != ".cpp") continue;
         ++files;
-        for (const std::string& name : forbiddenIncludes(readFile(entry.path()), GetParam()))
+        for (const std::string& name : forbiddenIncludes(fileText(entry.path()), GetParam()))
             ADD_FAILURE() << entry.path() << " includes " << name;
     }
     EXPECT_GT(files, 3u) << "the check must have something to check";

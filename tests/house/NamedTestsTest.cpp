@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
+#include "house/FileText.h"
+
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -22,14 +23,6 @@ namespace fs = std::filesystem;
 
 const fs::path sources = OSGGPUANIMATION_SOURCE_FOLDER;
 
-std::string readFile(const fs::path& path)
-{
-    std::ifstream file(path);
-    std::ostringstream text;
-    text << file.rdbuf();
-    return text.str();
-}
-
 /// "Suite" and "Suite.name" of all tests in a source.
 void addTests(const std::string& code, std::set<std::string>& tests)
 {
@@ -45,7 +38,7 @@ std::set<std::string> allTests()
 {
     std::set<std::string> tests;
     for (const auto& entry : fs::recursive_directory_iterator(sources / "tests"))
-        if (entry.path().extension() == ".cpp") addTests(readFile(entry.path()), tests);
+        if (entry.path().extension() == ".cpp") addTests(fileText(entry.path()), tests);
     return tests;
 }
 
@@ -80,7 +73,7 @@ std::vector<std::string> rowsWithout(const std::string& markdown)
 TEST(NamedTestsTest, everyTestThatTheReadmeNamesIsThere)
 {
     const std::set<std::string> tests = allTests();
-    const std::vector<std::string> names = named(readFile(sources / "README.md"));
+    const std::vector<std::string> names = named(fileText(sources / "README.md"));
     ASSERT_GE(names.size(), 100u);
     for (const std::string& name : names)
         EXPECT_EQ(tests.count(name), 1u) << name;
@@ -88,7 +81,7 @@ TEST(NamedTestsTest, everyTestThatTheReadmeNamesIsThere)
 
 TEST(NamedTestsTest, everyRowOfTheTablesNamesATest)
 {
-    const std::string readme = readFile(sources / "README.md");
+    const std::string readme = fileText(sources / "README.md");
     ASSERT_NE(readme.find("| test |"), std::string::npos);
     for (const std::string& row : rowsWithout(readme))
         EXPECT_NE(row.find("| looked at |"), std::string::npos) << row;

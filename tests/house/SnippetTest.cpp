@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
+#include "house/FileText.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
-#include <fstream>
 #include <regex>
 #include <sstream>
 #include <string>
@@ -20,14 +21,6 @@ namespace
 {
 
 namespace fs = std::filesystem;
-
-std::string readFile(const fs::path& path)
-{
-    std::ifstream file(path);
-    std::ostringstream text;
-    text << file.rdbuf();
-    return text.str();
-}
 
 /// Without comments and white space. (A text with // in a string would lose its line's end: there is none.)
 std::string bare(const std::string& code)
@@ -82,7 +75,7 @@ std::string compiledText()
     for (const auto& entry : fs::recursive_directory_iterator(fs::path(OSGGPUANIMATION_SOURCE_FOLDER) / "tests"))
     {
         const std::string name = entry.path().filename().string();
-        if (name.rfind("Readme", 0) == 0 && entry.path().extension() == ".cpp") text += bare(readFile(entry.path()));
+        if (name.rfind("Readme", 0) == 0 && entry.path().extension() == ".cpp") text += bare(fileText(entry.path()));
     }
     static const std::regex expectation(R"(EXPECT_TRUE\(|\(void\))");
     return std::regex_replace(text, expectation, "");
@@ -101,7 +94,7 @@ std::vector<std::string> missing(const std::string& markdown, const std::string&
 
 TEST(SnippetTest, everyStatementOfTheReadmeIsCompiledByATest)
 {
-    const std::string readme = readFile(fs::path(OSGGPUANIMATION_SOURCE_FOLDER) / "README.md");
+    const std::string readme = fileText(fs::path(OSGGPUANIMATION_SOURCE_FOLDER) / "README.md");
     ASSERT_GE(snippets(readme).size(), 8u);
     for (const std::string& statement : missing(readme, compiledText()))
         ADD_FAILURE() << "in no test: " << statement;

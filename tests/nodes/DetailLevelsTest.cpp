@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
+#include "nodes/Tube.h"
 #include "support/TestCharacter.h"
 
-#include <osgGpuAnimation/animation/ClipBuilder.h>
 #include <osgGpuAnimation/nodes/DetailLevels.h>
 #include <osgGpuAnimation/nodes/MeshDetail.h>
 
@@ -17,52 +17,6 @@ namespace osgGpuAnimation
 
 namespace
 {
-
-constexpr unsigned int columns = 64, rows = 16;
-
-/// Joint 1 at x = 4 bends by a quarter in the clip.
-std::shared_ptr<const AnimationSet> armSet()
-{
-    JointTransform elbow;
-    elbow.translation.x = 4.0f;
-    AnimationParts parts{Skeleton::create({{"shoulder", -1, {}, 0}, {"elbow", 0, elbow, 1}}).value(), {}, {}, {}, {}};
-    AffineMatrix fromModel;
-    fromModel.rows[0].w = -4.0f;
-    parts.skins.push_back({"arm", {0, 1}, {AffineMatrix(), fromModel}});
-    ClipBuilder builder(parts.skeleton, {});
-    const double half = std::sqrt(0.5);
-    EXPECT_TRUE(builder.add(
-        {Channel::Path::Rotation, Channel::Interpolation::Linear, 1, {0, 1}, {0, 0, 0, 1, 0, 0, half, half}}));
-    parts.clips.push_back(builder.build("bend"));
-    return AnimationSet::create(std::move(parts)).value();
-}
-
-/// A tube along x from 0 to 8, open at its ends, that the two joints bend in the middle.
-osg::ref_ptr<SkinnedGeometry> makeTube(const AnimationSet& set)
-{
-    osg::ref_ptr<SkinnedGeometry> tube = new SkinnedGeometry;
-    osg::ref_ptr<osg::Vec3Array> positions = new osg::Vec3Array;
-    osg::ref_ptr<osg::Vec4usArray> entries = new osg::Vec4usArray;
-    osg::ref_ptr<osg::Vec4Array> weights = new osg::Vec4Array;
-    osg::ref_ptr<osg::DrawElementsUShort> triangles = new osg::DrawElementsUShort(GL_TRIANGLES);
-    for (unsigned int column = 0; column <= columns; ++column)
-        for (unsigned int row = 0; row < rows; ++row)
-        {
-            const double x = 8.0 * column / columns, angle = 2.0 * osg::PI * row / rows;
-            positions->push_back(osg::Vec3(x, 0.5 * std::cos(angle), 0.5 * std::sin(angle)));
-            const float share = static_cast<float>(std::min(1.0, std::max(0.0, x - 3.5)));
-            entries->push_back(osg::Vec4us(set.entryOfSkin(0, 0), set.entryOfSkin(0, 1), 0, 0));
-            weights->push_back(osg::Vec4(1.0f - share, share, 0, 0));
-            if (column == columns) continue;
-            const unsigned int next = (row + 1) % rows;
-            for (const unsigned int vertex : {row, next, rows + row, next, rows + next, rows + row})
-                triangles->push_back(static_cast<GLushort>(column * rows + vertex));
-        }
-    tube->setVertexArray(positions);
-    tube->setInfluences(0, entries, weights);
-    tube->addPrimitiveSet(triangles);
-    return tube;
-}
 
 /// Indices that are drawn of the first primitive set.
 std::size_t drawn(const SkinnedGeometry& mesh, const DetailLevels& levels, int level)
@@ -177,7 +131,7 @@ TEST(DetailLevelsTest, areNotMadeWhereThereIsNothingToGain)
     none("no indices",
          [](SkinnedGeometry& mesh) { static_cast<osg::DrawElementsUShort&>(*mesh.getPrimitiveSet(0)).clear(); });
     none("without indices",
-         [](SkinnedGeometry& mesh) { mesh.setPrimitiveSet(0, new osg::DrawArrays(GL_TRIANGLES, 0, 3 * columns)); });
+         [](SkinnedGeometry& mesh) { mesh.setPrimitiveSet(0, new osg::DrawArrays(GL_TRIANGLES, 0, 3 * tubeColumns)); });
 }
 
 TEST(DetailLevelsTest, endOnFansOfThousands)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "plugin/PluginFolder.h"
 #include "plugin/SharedAssets.h"
+#include "support/PrimitiveCount.h"
 #include "support/ThreadingModels.h"
 #include "support/ViewerGLTest.h"
 
@@ -8,7 +9,6 @@
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometryVisitor.h>
 
-#include <osg/GLExtensions>
 #include <osgDB/ReadFile>
 #include <osgUtil/Optimizer>
 
@@ -22,40 +22,6 @@ namespace osgGpuAnimation
 
 namespace
 {
-
-/// Counts what a camera draws in a frame, points that poses are captured with included.
-class PrimitiveCount : public osg::Referenced
-{
-public:
-    struct Begin : osg::Camera::DrawCallback
-    {
-        explicit Begin(PrimitiveCount& count) : count(count) {}
-        void operator()(osg::RenderInfo& renderInfo) const override
-        {
-            osg::GLExtensions& gl = *renderInfo.getState()->get<osg::GLExtensions>();
-            gl.glGenQueries(1, &count.query);
-            gl.glBeginQuery(GL_PRIMITIVES_GENERATED, count.query);
-        }
-        PrimitiveCount& count;
-    };
-    struct End : osg::Camera::DrawCallback
-    {
-        End(PrimitiveCount& count, const Picture& picture) : count(count), picture(picture) {}
-        void operator()(osg::RenderInfo& renderInfo) const override
-        {
-            osg::GLExtensions& gl = *renderInfo.getState()->get<osg::GLExtensions>();
-            gl.glEndQuery(GL_PRIMITIVES_GENERATED);
-            gl.glGetQueryObjectuiv(count.query, GL_QUERY_RESULT, &count.primitives);
-            gl.glDeleteQueries(1, &count.query);
-            picture(renderInfo);
-        }
-        PrimitiveCount& count;
-        const Picture& picture;
-    };
-
-    GLuint query = 0;
-    GLuint primitives = 0;
-};
 
 int pixelsDrawn(const osg::Image& image)
 {
@@ -79,22 +45,6 @@ osg::Vec4 meanColor(const osg::Image& image)
             count += 1.0f;
         }
     return sum / std::max(count, 1.0f);
-}
-
-/// The mean of the channels' differences, 0 to 1, over all pixels that show something in either picture.
-double meanDifference(const osg::Image& a, const osg::Image& b)
-{
-    double sum = 0.0, count = 0.0;
-    for (int y = 0; y < a.t(); ++y)
-        for (int x = 0; x < a.s(); ++x)
-        {
-            const osg::Vec4 first = a.getColor(x, y), second = b.getColor(x, y), background = a.getColor(0, 0);
-            if (first == background && second == background) continue;
-            for (int channel = 0; channel < 3; ++channel)
-                sum += std::abs(first[channel] - second[channel]) / 3.0;
-            count += 1.0;
-        }
-    return count > 0.0 ? sum / count : 1.0;
 }
 
 class DetailGLTest : public ViewerGLTest
@@ -156,12 +106,11 @@ protected:
 
     osg::ref_ptr<osg::Image> drawn(osg::Node& scene)
     {
-        viewer().getCamera()->setInitialDrawCallback(new PrimitiveCount::Begin(*_count));
-        viewer().getCamera()->setFinalDrawCallback(new PrimitiveCount::End(*_count, picture()));
+        _count->attach(*viewer().getCamera(), picture());
         return ViewerGLTest::pictureOf(&scene, {0.0, 0.1, 0.2});
     }
 
-    GLuint primitives() const { return _count->primitives; } ///< of the last frame
+    GLuint primitives() const { return _count->primitives(); } ///< of the last frame
 
 private:
     osg::ref_ptr<PrimitiveCount> _count = new PrimitiveCount;
@@ -200,8 +149,8 @@ TEST_P(DetailModelsGLTest, lookAsWithAllTriangles)
         look(*viewer().getCamera(), *all, pixels);
         viewer().getCamera()->setProjectionMatrix(viewer().getCamera()->getProjectionMatrix() *
                                                   osg::Matrix::translate(1.0 / side, 0.0, 0.0));
-        const double moved = meanDifference(*expected, *drawn(*all));
-        const double difference = meanDifference(*expected, *found);
+        const double moved = Picture::meanDifference(*expected, *drawn(*all));
+        const double difference = Picture::meanDifference(*expected, *found);
         const float tone = (meanColor(*expected) - meanColor(*found)).length();
         EXPECT_LT(difference, moved) << "at " << pixels << " pixels";
         EXPECT_LT(tone, 0.12f) << "at " << pixels << " pixels";

@@ -52,6 +52,23 @@ public:
         return count;
     }
 
+    /// The mean of the channels' differences, 0 to 1, over all pixels that show something in either picture, of which
+    /// a's lower left corner is the background.
+    static double meanDifference(const osg::Image& a, const osg::Image& b)
+    {
+        double sum = 0.0, count = 0.0;
+        for (int y = 0; y < a.t(); ++y)
+            for (int x = 0; x < a.s(); ++x)
+            {
+                const osg::Vec4 first = a.getColor(x, y), second = b.getColor(x, y), background = a.getColor(0, 0);
+                if (first == background && second == background) continue;
+                for (int channel = 0; channel < 3; ++channel)
+                    sum += std::abs(first[channel] - second[channel]) / 3.0;
+                count += 1.0;
+            }
+        return count > 0.0 ? sum / count : 1.0;
+    }
+
 private:
     osg::ref_ptr<osg::Image> _image;
 };

@@ -52,7 +52,7 @@ public:
     /// The layer of that number, made at the first call with all before it. index: below maxLayers (8); beyond that the
     /// last one is meant. Layers stay where they are until the controller is assigned to or gone.
     AnimationLayer& layer(std::size_t index);
-    const AnimationLayer& layer(std::size_t index) const;  ///< index: below layerCount()
+    const AnimationLayer& layer(std::size_t index) const;        ///< index: below layerCount()
     std::size_t layerCount() const { return 1 + _upper.size(); } ///< at least 1
 
     // The base layer's; see AnimationLayer.

@@ -4,6 +4,7 @@
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/nodes/AnimationUpdateCallback.h>
 #include <osgGpuAnimation/nodes/DepthPass.h>
+#include <osgGpuAnimation/nodes/DetailRange.h>
 #include <osgGpuAnimation/nodes/EntryReach.h>
 #include <osgGpuAnimation/nodes/FlattenedPlace.h>
 #include <osgGpuAnimation/nodes/OsgMatrix.h>
@@ -13,8 +14,6 @@
 
 #include <osg/NodeVisitor>
 #include <osgUtil/CullVisitor>
-
-#include <cmath>
 
 namespace osgGpuAnimation
 {
@@ -74,10 +73,9 @@ Result<bool> AnimatedCharacter::setAnimationSet(std::shared_ptr<const AnimationS
 
 Result<bool> AnimatedCharacter::setPixelError(float pixels)
 {
-    if (!DetailRange::isPixelError(pixels)) return DetailRange::noPixelError(pixels);
-    _pixelError = pixels;
-    if (pixels > 0.0f && set().paletteSize() > 0) static_cast<void>(DetailRange(*this, set()));
-    return true;
+    const Result<bool> prepared = DetailRange::prepare(pixels, *this, set());
+    if (prepared) _pixelError = pixels;
+    return prepared;
 }
 
 Result<osg::Matrixd> AnimatedCharacter::jointToModel(std::size_t joint) const

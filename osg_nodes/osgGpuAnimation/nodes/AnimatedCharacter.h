@@ -81,9 +81,10 @@ public:
 
     /// How far the surface that is drawn may be off on screen, in pixels: where that hides it, meshes are drawn with
     /// fewer triangles, see DetailLevels. 0 (the default): with all. Each camera sees what its distance allows, by
-    /// small feature culling's measure; what is near has all triangles. Makes the levels of all meshes below at once,
-    /// which takes about 0.1 s for 3,000 vertices; for meshes that are added later, the first cull does. Error: pixels
-    /// is negative or no number.
+    /// small feature culling's measure; what is near has all triangles. Makes the levels of its meshes at once, which
+    /// takes its time, see SurfaceReduction; of those that are added or changed later, the next cull does. Drawn whole
+    /// are meshes that are not its own children, and what comes after DetailRange::mostVertices. Error: pixels is below
+    /// 0, above DetailRange::largestPixelError or no number.
     Result<bool> setPixelError(float pixels);
     float pixelError() const { return _pixelError; }
 

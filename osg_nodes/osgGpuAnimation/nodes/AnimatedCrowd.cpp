@@ -7,6 +7,7 @@
 #include <osgGpuAnimation/nodes/CrowdInstanceNode.h>
 #include <osgGpuAnimation/nodes/CrowdView.h>
 #include <osgGpuAnimation/nodes/DepthPass.h>
+#include <osgGpuAnimation/nodes/DetailRange.h>
 #include <osgGpuAnimation/nodes/EntryReach.h>
 #include <osgGpuAnimation/nodes/FlattenedPlace.h>
 #include <osgGpuAnimation/nodes/MeshesOfGroup.h>
@@ -287,10 +288,9 @@ Result<bool> AnimatedCrowd::setUpdateRate(const UpdateRate& rate)
 
 Result<bool> AnimatedCrowd::setPixelError(float pixels)
 {
-    if (!DetailRange::isPixelError(pixels)) return DetailRange::noPixelError(pixels);
-    _pixelError = pixels;
-    if (pixels > 0.0f && set().paletteSize() > 0) static_cast<void>(DetailRange(*this, set()));
-    return true;
+    const Result<bool> prepared = DetailRange::prepare(pixels, *this, set());
+    if (prepared) _pixelError = pixels;
+    return prepared;
 }
 
 void AnimatedCrowd::intersect(osg::NodeVisitor& visitor)

@@ -94,8 +94,7 @@ public:
 
     /// How far the surface that is drawn may be off on screen, in pixels: where that hides it, instances are drawn with
     /// fewer triangles, each level of detail in use by one instanced draw a mesh primitive. 0 (the default): all
-    /// triangles. See AnimatedCharacter::setPixelError().
-    /// Error: pixels is negative or no number.
+    /// triangles. For meshes that are drawn whole, the time it takes and errors see AnimatedCharacter::setPixelError().
     Result<bool> setPixelError(float pixels);
     float pixelError() const { return _pixelError; }
 

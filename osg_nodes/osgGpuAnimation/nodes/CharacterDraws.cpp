@@ -3,9 +3,9 @@
 
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/DetailScale.h>
+#include <osgGpuAnimation/nodes/MeshesOfGroup.h>
 #include <osgGpuAnimation/nodes/OsgMatrix.h>
 #include <osgGpuAnimation/nodes/PlacedDraw.h>
-#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 #include <osgGpuAnimation/nodes/SkinningScope.h>
 
 #include <algorithm>
@@ -57,6 +57,14 @@ bool CharacterDraws::Group::holds(const Group& other) const
            set == other.set && slot == other.slot && level == other.level && meshes == other.meshes;
 }
 
+bool CharacterDraws::Detail::isOf(const AnimatedCharacter& character) const
+{
+    if (children.size() != character.getNumChildren()) return false;
+    for (unsigned int i = 0; i < character.getNumChildren(); ++i)
+        if (children[i] != character.getChild(i)) return false;
+    return true;
+}
+
 void CharacterDraws::draw(osgUtil::CullVisitor& visitor, AnimatedCharacter& character, PoseFrame& frame,
                           EnlistedPose pose)
 {
@@ -78,16 +86,23 @@ void CharacterDraws::draw(osgUtil::CullVisitor& visitor, AnimatedCharacter& char
 int CharacterDraws::levelOf(osgUtil::CullVisitor& visitor, const AnimatedCharacter& character)
 {
     if (!(character.pixelError() > 0.0f)) return DetailLevels::allTriangles;
-    const auto [range, isNew] = _ranges.try_emplace(&character.set());
-    if (isNew) range->second = DetailRange(character, character.set());
-    osg::BoundingBox box;
+    const Detail& detail = detailOf(character);
+    if (!detail.box.valid()) return DetailLevels::allTriangles;
+    const osg::Vec3 centre = detail.box.center();
+    return DetailScale(visitor, character.pixelError(), detail.range)
+        .level(glm::vec3(centre.x(), centre.y(), centre.z()), detail.box.radius(), 1.0f);
+}
+
+// Characters of one set share their meshes as a rule; where they do not, each one's have levels.
+const CharacterDraws::Detail& CharacterDraws::detailOf(const AnimatedCharacter& character)
+{
+    Detail& detail = _details[&character.set()];
+    if (detail.isOf(character)) return detail;
+    detail = {{}, DetailRange(character, character.set()), {}};
     for (unsigned int i = 0; i < character.getNumChildren(); ++i)
-        if (const auto* mesh = dynamic_cast<const SkinnedGeometry*>(character.getChild(i)))
-            box.expandBy(mesh->getBoundingBox());
-    if (!box.valid()) return DetailLevels::allTriangles;
-    const osg::Vec3 centre = box.center();
-    return DetailScale(visitor, character.pixelError(), range->second)
-        .level(glm::vec3(centre.x(), centre.y(), centre.z()), box.radius(), 1.0f);
+        detail.children.push_back(character.getChild(i));
+    forEachMesh(character, [&](const SkinnedGeometry& mesh) { detail.box.expandBy(mesh.getBoundingBox()); });
+    return detail;
 }
 
 // True where the meshes that can be shared are dealt with; false where all is to be drawn as it is.

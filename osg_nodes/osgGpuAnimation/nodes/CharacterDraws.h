@@ -29,7 +29,7 @@ public:
     void clear()
     {
         _groups.clear();
-        _ranges.clear();
+        _details.clear();
     }
 
     /// Hands what is below the character on to be drawn. pose: what the frame has enlisted it as.
@@ -51,15 +51,25 @@ private:
 
         bool holds(const Group& other) const;
     };
+    /// What levels of detail go by.
+    struct Detail
+    {
+        std::vector<const osg::Node*> children;
+        DetailRange range;
+        osg::BoundingBox box; ///< of the meshes
+
+        bool isOf(const AnimatedCharacter& character) const;
+    };
 
     bool drawTogether(osgUtil::CullVisitor& visitor, AnimatedCharacter& character, PoseFrame& frame, EnlistedPose pose,
                       int level, std::vector<osg::Node*>& outOthers);
     int levelOf(osgUtil::CullVisitor& visitor, const AnimatedCharacter& character);
+    const Detail& detailOf(const AnimatedCharacter& character);
     void open(osgUtil::CullVisitor& visitor, Group& group, PoseFrame& frame, float depth);
 
     std::unordered_map<const osgUtil::StateGraph*, std::vector<Group>> _groups;
-    std::unordered_map<const AnimationSet*, DetailRange> _ranges; ///< of the first character's meshes
-    Group _asked;                                                 ///< kept for its memory
+    std::unordered_map<const AnimationSet*, Detail> _details; ///< of each set's last character
+    Group _asked;                                             ///< kept for its memory
 };
 
 } // namespace osgGpuAnimation

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/DepthPass.h>
 
-#include <osg/Camera>
-
 #include <algorithm>
 #include <string>
 
@@ -29,19 +27,12 @@ osg::StateSet* depthOnlyState()
     return state.get();
 }
 
-bool hasColorBuffer(const osg::Camera& camera)
-{
-    const osg::Camera::BufferAttachmentMap& buffers = camera.getBufferAttachmentMap();
-    return buffers.empty() || std::any_of(buffers.begin(), buffers.end(),
-                                          [](const auto& buffer) { return buffer.first >= osg::Camera::COLOR_BUFFER; });
-}
-
 } // namespace
 
 DepthPass::DepthPass(osgUtil::CullVisitor& visitor) : _visitor(nullptr)
 {
     const osg::Camera* camera = visitor.getCurrentCamera();
-    if (!camera || hasColorBuffer(*camera)) return;
+    if (!camera || !isOf(*camera)) return;
     _visitor = &visitor;
     _visitor->pushStateSet(depthOnlyState());
 }
@@ -49,6 +40,14 @@ DepthPass::DepthPass(osgUtil::CullVisitor& visitor) : _visitor(nullptr)
 DepthPass::~DepthPass()
 {
     if (_visitor) _visitor->popStateSet();
+}
+
+bool DepthPass::isOf(const osg::Camera& camera)
+{
+    const osg::Camera::BufferAttachmentMap& buffers = camera.getBufferAttachmentMap();
+    return !buffers.empty() &&
+           std::none_of(buffers.begin(), buffers.end(),
+                        [](const auto& buffer) { return buffer.first >= osg::Camera::COLOR_BUFFER; });
 }
 
 bool isDepthPass(osg::State& state)

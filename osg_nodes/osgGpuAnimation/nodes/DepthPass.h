@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <osg/Camera>
 #include <osg/State>
 #include <osg/StateSet>
 #include <osgUtil/CullVisitor>
@@ -18,6 +19,9 @@ public:
     ~DepthPass();
     DepthPass(const DepthPass&) = delete;
     DepthPass& operator=(const DepthPass&) = delete;
+
+    /// Whether it is such a camera.
+    static bool isOf(const osg::Camera& camera);
 
 private:
     osgUtil::CullVisitor* _visitor; ///< null: it is no such camera

@@ -9,9 +9,13 @@
 namespace osgGpuAnimation
 {
 
-Error DetailRange::noPixelError(float pixels)
+Result<bool> DetailRange::prepare(float pixels, const osg::Group& meshes, const AnimationSet& set)
 {
-    return Error{"a pixel error of " + std::to_string(pixels) + ": it must be a number from 0 to 1000000"};
+    if (!isPixelError(pixels))
+        return Error{"a pixel error of " + std::to_string(pixels) + ": it must be a number from 0 to " +
+                     std::to_string(largestPixelError)};
+    if (pixels > 0.0f && set.paletteSize() > 0) static_cast<void>(DetailRange(meshes, set));
+    return true;
 }
 
 DetailRange::DetailRange(const osg::Group& meshes, const AnimationSet& set)

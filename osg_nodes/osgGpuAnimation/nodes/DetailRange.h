@@ -14,16 +14,20 @@ namespace osgGpuAnimation
 class DetailRange
 {
 public:
-    /// Vertices of all meshes together that levels are made of: those that come later are drawn whole.
+    /// Vertices of a group's meshes together that levels are made of: meshes that come later are drawn whole, unless
+    /// another group shows them too.
     static constexpr std::size_t mostVertices = 10 * DetailLevels::mostVertices;
-    static constexpr float largestPixelError = 1e6f;
+    static constexpr int largestPixelError = 1'000'000;
 
-    /// What setPixelError() of characters and crowds takes, and its error for the rest.
-    static bool isPixelError(float pixels) { return pixels >= 0.0f && pixels <= largestPixelError; }
-    static Error noPixelError(float pixels);
+    /// What setPixelError() of characters and crowds takes.
+    static bool isPixelError(double pixels) { return pixels >= 0.0 && pixels <= largestPixelError; }
+    /// Makes the levels of the SkinnedGeometry among a group's children that are drawn with that pixel error: none
+    /// where it is 0, or the set has nothing to draw. Error: it is no pixel error.
+    static Result<bool> prepare(float pixels, const osg::Group& meshes, const AnimationSet& set);
 
     DetailRange() = default;
-    /// Of the SkinnedGeometry among a group's children; makes levels where there are none yet.
+    /// Of the SkinnedGeometry among a group's children; makes levels where there are none yet. Nothing else does:
+    /// what else is drawn at a level is drawn whole.
     DetailRange(const osg::Group& meshes, const AnimationSet& set);
 
     int held(int level) const

@@ -12,7 +12,9 @@ namespace osgGpuAnimation
 {
 
 /// Which of the DetailLevels a camera needs of what it sees: those whose error is at most so many pixels there, in
-/// small feature culling's measure. Lives as long as the traversal is in that space.
+/// small feature culling's measure. Shadow maps (see DepthPass) show the levels of the camera that they are for: were
+/// the surface that casts a shadow finer than the one that is lit, this would lie in it here and there. Lives as long
+/// as the traversal is in that space.
 class DetailScale
 {
 public:

@@ -25,7 +25,7 @@ public:
     static PoseFrame& frame(osgUtil::CullVisitor& visitor);
     /// What the visitor hands on to be drawn in that frame.
     static MeshReads& reads(osgUtil::CullVisitor& visitor);
-    /// Has the statistics of the visitor's camera, where there are any, count what a draw of the mesh shows.
+    /// Has the statistics of the visitor's camera, where there are any, count what a draw of the mesh for many shows.
     static void count(osgUtil::CullVisitor& visitor, const SkinnedGeometry& mesh, const PaletteBinding& binding);
 
 protected:

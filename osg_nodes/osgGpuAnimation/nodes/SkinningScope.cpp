@@ -38,7 +38,7 @@ SkinningScope::SkinningScope(osgUtil::CullVisitor& visitor, const SkinnedGeometr
 {
     const PaletteBinding* binding = bindingAbove(visitor);
     if (!binding) return;
-    if (binding->level() != DetailLevels::allTriangles) mesh.detailLevels(*binding->animationSet());
+    if (binding->isOfMany()) PoseStage::count(visitor, mesh, *binding);
     if (mesh.hasColors()) push(coloredState());
     if (!mesh.mayBeSkinnedOnce()) return;
     if (osg::StateSet* state = PoseStage::reads(visitor).add(mesh, *binding)) push(*state);
@@ -58,7 +58,6 @@ void SkinningScope::push(osg::StateSet& stateSet)
 
 void addMeshAndDepth(osgUtil::CullVisitor& visitor, SkinnedGeometry& mesh, osg::RefMatrix* toEye, float depth)
 {
-    if (const PaletteBinding* binding = bindingAbove(visitor)) PoseStage::count(visitor, mesh, *binding);
     const SkinningScope skinning(visitor, mesh);
     osg::StateSet* stateSet = mesh.getStateSet();
     if (stateSet) visitor.pushStateSet(stateSet);

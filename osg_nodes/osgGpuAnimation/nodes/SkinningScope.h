@@ -9,8 +9,8 @@ namespace osgGpuAnimation
 class SkinnedGeometry;
 
 /// While it lives: what is culled is the mesh, for the instances of the PaletteBinding that the visitor has come
-/// through last. The frame takes that down, and has the mesh drawn in the way it is skinned: see SkinningPlan. Its
-/// program is told of its colours. Levels of detail are made if they are needed.
+/// through last. The frame takes that down and counts it, and has the mesh drawn in the way it is skinned: see
+/// SkinningPlan. Its program is told of its colours.
 class SkinningScope
 {
 public:

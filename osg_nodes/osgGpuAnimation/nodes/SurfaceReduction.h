@@ -24,7 +24,7 @@ namespace osgGpuAnimation
 /// that went to its ends stay near the triangles there. Triangles never turn over, in any of the poses. Of each piece
 /// that hangs together at least a triangle is left.
 ///
-/// Time goes by points times poses: some 0.1 s for 3,000 points, 8 poses and 8 limits.
+/// Time goes by points times poses: some 0.1 s for the 2,300 points of 3,300 vertices in 12 poses, all limits together.
 class SurfaceReduction
 {
 public:

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+#include "nodes/Tube.h"
+#include "support/PrimitiveCount.h"
+#include "support/ViewerGLTest.h"
+
+#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+#include <osgGpuAnimation/nodes/DetailRange.h>
+
+// Which meshes are drawn with fewer triangles, by how many a frame draws.
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+constexpr float pixelError = 100.0f; ///< whatever has levels is drawn at its coarsest
+
+class DetailDrawsGLTest : public ViewerGLTest
+{
+protected:
+    /// In the scene's second frame.
+    GLuint trianglesOf(osg::Node& scene)
+    {
+        viewer().getCamera()->setProjectionMatrixAsOrtho(-20, 20, -20, 20, 1, 20);
+        _count->attach(*viewer().getCamera(), picture());
+        pictureOf(&scene, {0.0, 0.1});
+        return _count->primitives();
+    }
+
+    static osg::ref_ptr<AnimatedCrowd> crowdOf(const AnimatedCharacter& character)
+    {
+        const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(character);
+        EXPECT_TRUE(crowd->add(osg::Matrix(), character.controller()));
+        return crowd;
+    }
+
+private:
+    osg::ref_ptr<PrimitiveCount> _count = new PrimitiveCount;
+};
+
+/// Has so many vertices and no levels; it takes no time to find that out.
+osg::ref_ptr<SkinnedGeometry> makeBlank(std::size_t vertices)
+{
+    const osg::ref_ptr<SkinnedGeometry> blank = new SkinnedGeometry;
+    blank->setVertexArray(new osg::Vec3Array(static_cast<unsigned int>(vertices)));
+    blank->setRigidEntry(0);
+    return blank;
+}
+
+void fillUp(AnimatedCharacter& character)
+{
+    for (std::size_t vertices = 0; vertices < DetailRange::mostVertices; vertices += DetailLevels::mostVertices)
+        character.addChild(makeBlank(DetailLevels::mostVertices));
+}
+
+TEST_F(DetailDrawsGLTest, whatComesAfterTheMostVerticesIsDrawnWhole)
+{
+    const osg::ref_ptr<AnimatedCharacter> character = makeTubeCharacter(armSet());
+    ASSERT_TRUE(character->setPixelError(pixelError));
+    EXPECT_LT(trianglesOf(*character), tubeTriangles / 4);
+    fillUp(*character);
+    character->addChild(makeShownTube(character->set()));
+    ASSERT_TRUE(character->setPixelError(pixelError));
+    for (const osg::ref_ptr<osg::Node>& scene : std::vector<osg::ref_ptr<osg::Node>>{character, crowdOf(*character)})
+    {
+        const GLuint triangles = trianglesOf(*scene);
+        EXPECT_GE(triangles, tubeTriangles) << scene->className();
+        EXPECT_LT(triangles, tubeTriangles + tubeTriangles / 4) << scene->className();
+    }
+}
+
+TEST_F(DetailDrawsGLTest, whatIsNotTheCharactersOwnChildIsDrawnWhole)
+{
+    const osg::ref_ptr<AnimatedCharacter> character = makeTubeCharacter(armSet());
+    ASSERT_TRUE(character->setPixelError(pixelError));
+    const osg::ref_ptr<osg::Group> group = new osg::Group;
+    group->addChild(makeShownTube(character->set()));
+    character->addChild(group);
+    const GLuint triangles = trianglesOf(*character);
+    EXPECT_GE(triangles, tubeTriangles);
+    EXPECT_LT(triangles, tubeTriangles + tubeTriangles / 4);
+}
+
+TEST_F(DetailDrawsGLTest, charactersOfASetHaveLevelsOfTheirOwnMeshes)
+{
+    const auto set = armSet();
+    const osg::ref_ptr<osg::Group> scene = new osg::Group;
+    for (int i = 0; i < 4; ++i)
+    {
+        const osg::ref_ptr<AnimatedCharacter> character = makeTubeCharacter(set);
+        ASSERT_TRUE(character->setPixelError(pixelError));
+        // Later than that: the cull has to make them.
+        character->setChild(0, makeShownTube(*set));
+        if (i % 2 == 1) character->insertChild(0, makeBlank(1));
+        scene->addChild(character);
+    }
+    EXPECT_LT(trianglesOf(*scene), tubeTriangles);
+
+    const osg::ref_ptr<AnimatedCharacter> large = makeTubeCharacter(set);
+    ASSERT_TRUE(large->setPixelError(pixelError));
+    fillUp(*large);
+    large->addChild(makeShownTube(*set));
+    scene->addChild(large);
+    const GLuint triangles = trianglesOf(*scene);
+    EXPECT_GE(triangles, tubeTriangles);
+    EXPECT_LT(triangles, 2 * tubeTriangles);
+}
+
+} // namespace
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: MIT
+#include "nodes/Tube.h"
+#include "support/MeshSkinning.h"
+#include "support/PrimitiveCount.h"
+#include "support/ViewerGLTest.h"
+
+#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+
+#include <osg/BlendFunc>
+#include <osg/Depth>
+#include <osg/LightSource>
+#include <osg/Material>
+#include <osg/ShapeDrawable>
+#include <osgShadow/LightSpacePerspectiveShadowMap>
+#include <osgShadow/ParallelSplitShadowMap>
+#include <osgShadow/ShadowedScene>
+#include <osgShadow/ShadowMap>
+#include <osgShadow/SoftShadowMap>
+#include <osgShadow/StandardShadowMap>
+#include <osgShadow/ViewDependentShadowMap>
+
+// Whatever a mesh or its scene has besides, it does not show that it is drawn at a level of detail: pictures differ by
+// less than those of all triangles do when the camera turns by half a pixel.
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+enum class Surface
+{
+    Plain,
+    Transparent, ///< as a glTF material with alphaMode BLEND has it
+    Morphed,
+    MorphedOnce,
+};
+
+using MakeShadows = osgShadow::ShadowTechnique* (*)();
+
+struct PictureCase
+{
+    const char* name;
+    Surface surface;
+    MakeShadows makeShadows = nullptr;
+};
+
+void PrintTo(const PictureCase& picture, std::ostream* out)
+{
+    *out << picture.name;
+}
+
+void makeTransparent(osg::StateSet& state)
+{
+    osg::ref_ptr<osg::Material> material = new osg::Material;
+    material->setDiffuse(osg::Material::FRONT_AND_BACK, osg::Vec4(0.9f, 0.5f, 0.3f, 0.5f));
+    state.setAttribute(material);
+    state.setAttributeAndModes(new osg::BlendFunc);
+    state.setAttributeAndModes(new osg::Depth(osg::Depth::LESS, 0.0, 1.0, false));
+    state.setRenderingHint(osg::StateSet::TRANSPARENT_BIN);
+}
+
+osg::ref_ptr<AnimatedCharacter> makeCharacter(Surface surface)
+{
+    const bool hasMorph = surface == Surface::Morphed || surface == Surface::MorphedOnce;
+    osg::ref_ptr<AnimatedCharacter> tube = makeTubeCharacter(armSet(hasMorph));
+    setSkinning(*tube, surface == Surface::MorphedOnce ? Skinning::Once : Skinning::EveryDraw);
+    if (surface == Surface::Transparent) makeTransparent(*tube->getChild(0)->getOrCreateStateSet());
+    return tube;
+}
+
+osg::ref_ptr<osg::LightSource> makeLight()
+{
+    osg::ref_ptr<osg::LightSource> light = new osg::LightSource;
+    light->getLight()->setPosition(osg::Vec4(-0.4f, 0.3f, 1.0f, 0.0f));
+    light->getLight()->setDirection(osg::Vec3(0.4f, -0.3f, -1.0f)); // what ParallelSplitShadowMap goes by
+    return light;
+}
+
+template <typename Technique>
+osgShadow::ShadowTechnique* make()
+{
+    return new Technique;
+}
+
+class DetailSceneGLTest : public ViewerGLTest
+{
+protected:
+    static constexpr int side = 256; ///< pixels
+    static constexpr int across = 3; ///< tubes, and as many deep
+    const osg::Vec3d centre{14, 14, 0};
+
+    int pictureSide() const override { return side; }
+
+    /// Tubes at times of their own, above a floor.
+    osg::ref_ptr<osg::Group> makeScene(const PictureCase& look, bool isCrowd, float pixelError)
+    {
+        const osg::ref_ptr<AnimatedCharacter> tube = makeCharacter(look.surface);
+        EXPECT_TRUE(tube->setPixelError(pixelError));
+        const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*tube);
+        const osg::ref_ptr<osg::Group> scene = look.makeShadows ? makeShadowed(look.makeShadows) : new osg::Group;
+        if (!look.makeShadows) scene->addChild(makeLight());
+        if (isCrowd) scene->addChild(crowd);
+        for (int i = 0; i < across * across; ++i)
+        {
+            const osg::ref_ptr<AnimatedCharacter> copy = osg::clone(tube.get(), osg::CopyOp::DEEP_COPY_NODES);
+            copy->controller().seek(0.1 * i);
+            copy->setMatrix(osg::Matrix::translate(10.0 * (i % across), 10.0 * (i / across), 0.0));
+            if (isCrowd)
+                EXPECT_TRUE(crowd->add(copy->getMatrix(), copy->controller()));
+            else
+                scene->addChild(copy);
+        }
+        osg::ref_ptr<osg::Geode> floor = new osg::Geode;
+        floor->addDrawable(new osg::ShapeDrawable(new osg::Box(osg::Vec3(14, 14, -2), 34, 34, 0.2f)));
+        scene->addChild(floor);
+        return scene;
+    }
+
+    osg::Group* makeShadowed(MakeShadows makeShadows)
+    {
+        _techniques.push_back(makeShadows());
+        auto* scene = new osgShadow::ShadowedScene(_techniques.back());
+        scene->addChild(makeLight());
+        scene->getOrCreateStateSet()->setMode(GL_LIGHTING, osg::StateAttribute::ON);
+        scene->getOrCreateStateSet()->setMode(GL_LIGHT0, osg::StateAttribute::ON);
+        return scene;
+    }
+
+    /// Has the camera see it from where a tube is so many pixels long. shift: of the picture, pixels.
+    static void look(osg::Camera& camera, const osg::Vec3d& at, double pixels, double shift)
+    {
+        const double half = osg::DegreesToRadians(15.0);
+        const double distance = 8.0 * side / (2.0 * std::tan(half) * pixels);
+        camera.setProjectionMatrixAsPerspective(30.0, 1.0, 0.2 * distance, 40.0 + 2.0 * distance);
+        camera.setProjectionMatrix(camera.getProjectionMatrix() * osg::Matrix::translate(2.0 * shift / side, 0.0, 0.0));
+        camera.setViewMatrixAsLookAt(at + osg::Vec3d(0.2, -0.5, 0.8) * distance, at, {0, 0, 1});
+    }
+
+    osg::ref_ptr<osg::Image> drawn(osg::Node& scene)
+    {
+        viewer().setLightingMode(osg::View::NO_LIGHT);
+        _count->attach(*viewer().getCamera(), picture());
+        return pictureOf(&scene, {0.0, 0.1, 0.2, 0.3});
+    }
+
+    GLuint primitives() const { return _count->primitives(); } ///< of the last frame
+
+private:
+    osg::ref_ptr<PrimitiveCount> _count = new PrimitiveCount;
+    // OSG 3.6.5 never returns from the end of a viewer whose StandardShadowMap is gone (osg::Identifier).
+    std::vector<osg::ref_ptr<osgShadow::ShadowTechnique>> _techniques;
+};
+
+class DetailPicturesGLTest : public DetailSceneGLTest, public ::testing::WithParamInterface<PictureCase>
+{
+protected:
+    osg::ref_ptr<osg::Group> makeScene(bool isCrowd, float pixelError)
+    {
+        return DetailSceneGLTest::makeScene(GetParam(), isCrowd, pixelError);
+    }
+
+    osg::ref_ptr<osg::Image> pictureAt(osg::Group& scene, double pixels, double shift = 0.0)
+    {
+        look(*viewer().getCamera(), centre, pixels, shift);
+        return drawn(scene);
+    }
+};
+
+TEST_P(DetailPicturesGLTest, lookAsWithAllTriangles)
+{
+    constexpr float visible = 0.1f; ///< of a colour
+    for (const bool isCrowd : {false, true})
+        for (const double pixels : {60.0, 25.0})
+        {
+            const osg::ref_ptr<osg::Group> all = makeScene(isCrowd, 0.0f), fewer = makeScene(isCrowd, 0.5f);
+            const osg::ref_ptr<osg::Image> expected = pictureAt(*all, pixels);
+            const GLuint ofAll = primitives();
+            const osg::ref_ptr<osg::Image> found = pictureAt(*fewer, pixels);
+            EXPECT_LT(4 * primitives(), ofAll);
+            const osg::ref_ptr<osg::Image> moved = pictureAt(*all, pixels, 0.5);
+            EXPECT_LT(2.0 * Picture::meanDifference(*expected, *found), Picture::meanDifference(*expected, *moved));
+            EXPECT_LT(2 * Picture::pixelsDifferent(*expected, *found, visible),
+                      Picture::pixelsDifferent(*expected, *moved, visible));
+        }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Cases, DetailPicturesGLTest,
+    ::testing::Values(PictureCase{"Plain", Surface::Plain}, PictureCase{"Transparent", Surface::Transparent},
+                      PictureCase{"Morphed", Surface::Morphed}, PictureCase{"MorphedOnce", Surface::MorphedOnce},
+                      PictureCase{"ShadowMap", Surface::Morphed, make<osgShadow::ShadowMap>},
+                      PictureCase{"ViewDependentShadowMap", Surface::Morphed, make<osgShadow::ViewDependentShadowMap>},
+                      PictureCase{"StandardShadowMap", Surface::Morphed, make<osgShadow::StandardShadowMap>},
+                      PictureCase{"LightSpacePerspectiveShadowMap", Surface::Morphed,
+                                  make<osgShadow::LightSpacePerspectiveShadowMapVB>},
+                      PictureCase{"ParallelSplitShadowMap", Surface::Morphed, make<osgShadow::ParallelSplitShadowMap>},
+                      PictureCase{"SoftShadowMap", Surface::Morphed, make<osgShadow::SoftShadowMap>}),
+    [](const auto& info) { return std::string(info.param.name); });
+
+// What casts a shadow and what is lit have to be one surface. Primitives of shadow maps are counted where they are
+// drawn for a camera below the viewer's own. That one, which sees all from near by, has no say.
+TEST_F(DetailSceneGLTest, shadowMapsHaveTheLevelsOfTheCameraThatTheyAreFor)
+{
+    const PictureCase plain{"Plain", Surface::Plain}, shadows{"ShadowMap", Surface::Plain, make<osgShadow::ShadowMap>};
+    for (const bool isCrowd : {false, true})
+    {
+        const auto primitivesOf = [&](const PictureCase& what, float pixelError)
+        {
+            const osg::ref_ptr<osg::MatrixTransform> moved = new osg::MatrixTransform;
+            moved->setMatrix(osg::Matrix::rotate(1.0, 0, 0, 1) * osg::Matrix::translate(300, -200, 100));
+            moved->addChild(makeScene(what, isCrowd, pixelError));
+            const osg::ref_ptr<osg::Camera> camera = new osg::Camera;
+            camera->setReferenceFrame(osg::Transform::ABSOLUTE_RF);
+            camera->setRenderOrder(osg::Camera::POST_RENDER);
+            camera->setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
+            camera->setViewport(0, 0, side, side);
+            camera->addChild(moved);
+            look(*camera, centre * moved->getMatrix(), 25.0, 0.0);
+            look(*viewer().getCamera(), centre * moved->getMatrix(), 2500.0, 0.0);
+            viewer().getCamera()->setProjectionMatrixAsOrtho(-1, 1, -1, 1, 1, 1000);
+            const osg::ref_ptr<osg::Group> scene = new osg::Group;
+            scene->addChild(makeLight()); // osgShadow looks for lights in what the viewer's own camera sees
+            scene->addChild(camera);
+            drawn(*scene);
+            return primitives();
+        };
+        const GLuint ofAll = primitivesOf(plain, 0.0f), ofFewer = primitivesOf(plain, 0.5f);
+        EXPECT_LT(4 * ofFewer, ofAll);
+        EXPECT_EQ(primitivesOf(shadows, 0.0f), 2 * ofAll);
+        EXPECT_EQ(primitivesOf(shadows, 0.5f), 2 * ofFewer);
+    }
+}
+
+} // namespace
+
+} // namespace osgGpuAnimation

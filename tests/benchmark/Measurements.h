@@ -31,7 +31,10 @@ Result<bool> measureDepth(const Effort& effort, osg::GraphicsContext& context, R
 /// Whole frames, their stages, memory and the first frame, in viewers of their own.
 Result<bool> measureFrames(const Subject& subject, const Effort& effort, Report& report);
 
-/// Skinned draws against the same meshes and shader without skinning.
+/// Skinned draws against the same meshes and shader without skinning, and against the least that draws the triangles.
+Result<bool> measureDraws(const Subject& subject, const Effort& effort, Report& report);
+
+/// Meshes skinned by every draw against those skinned once a frame.
 Result<bool> measureSkinning(const Subject& subject, const Effort& effort, Report& report);
 
 /// One crowd node against as many separate nodes: whole frames, and what the CPU does of them.

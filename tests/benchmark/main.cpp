@@ -5,6 +5,8 @@
 
 #include <osgGpuAnimation/gpu/EglGraphicsContext.h>
 
+#include <malloc.h>
+
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -20,7 +22,9 @@ namespace
 constexpr const char* usage = R"(osggpuanim_benchmark [options] OUTPUT_FOLDER
     measures this kit against osgAnimation, prints a table and writes benchmark.json and plots into the folder
     --quick           fewer characters and rounds
-    --only PART       pose, samples, chunks, depth, frames, crowd, rate, skinning, start or load; several times, too
+    --only PART       pose, samples, chunks, depth, frames, crowd, rate, draws, skinning, start or load; several times,
+                      too
+    --return-memory   leave it to glibc whether freed memory goes back to the kernel
     --subject NAME    Wanderer, Fox, CesiumMan or Knight; may be given several times
 )";
 
@@ -28,6 +32,7 @@ struct Request
 {
     std::string folder;
     bool isQuick = false;
+    bool returnsMemory = false;
     std::set<std::string> parts;    ///< empty: all
     std::set<std::string> subjects; ///< empty: all
 
@@ -42,6 +47,8 @@ bool parse(int count, char** words, Request& request)
         const bool hasValue = i + 1 < count;
         if (word == "--quick")
             request.isQuick = true;
+        else if (word == "--return-memory")
+            request.returnsMemory = true;
         else if (word == "--only" && hasValue)
             request.parts.insert(words[++i]);
         else if (word == "--subject" && hasValue)
@@ -104,7 +111,7 @@ Result<bool> measureSubject(const Request& request, const Effort& effort, const 
                             osg::GraphicsContext& context, Report& report)
 {
     const std::pair<const char*, Result<bool> (*)(const Subject&, const Effort&, Report&)> inViewers[] = {
-        {"frames", measureFrames},     {"crowd", measureCrowd}, {"rate", measureUpdateRate},
+        {"frames", measureFrames},     {"crowd", measureCrowd}, {"rate", measureUpdateRate}, {"draws", measureDraws},
         {"skinning", measureSkinning}, {"start", measureStart}, {"load", measureLoad}};
     if (request.has("samples"))
         if (Result<bool> done = measureSamples(subject, effort, context, report); !done) return done;
@@ -135,8 +142,18 @@ Result<bool> measureAll(const Request& request, osg::GraphicsContext& context, R
     return true;
 }
 
+/// What llvmpipe takes for a draw and frees again is kept. By itself glibc gives it back to the kernel and has it anew,
+/// page by page, or does not: chance decides for each run, and a fifth of a frame hangs on it, osgAnimation's too.
+void keepFreedMemory()
+{
+    mallopt(M_MMAP_THRESHOLD, 1 << 30);
+    mallopt(M_TRIM_THRESHOLD, 2000000000);
+    mallopt(M_TOP_PAD, 1 << 24);
+}
+
 int run(const Request& request)
 {
+    if (!request.returnsMemory) keepFreedMemory();
     const Result<osg::ref_ptr<EglGraphicsContext>> context = EglGraphicsContext::create(64, 64);
     if (!context || !context.value()->realize() || !context.value()->makeCurrent())
     {

@@ -14,7 +14,6 @@ namespace osgGpuAnimation::benchmark
 namespace
 {
 
-constexpr const char* framePlot = "frame-over-n.svg";
 constexpr float pixelError = 0.5f;
 
 /// Moves all instances of a crowd on in each update.
@@ -34,6 +33,12 @@ public:
     }
 };
 
+/// One a subject.
+std::string framePlot(const Subject& subject)
+{
+    return "frame-over-n-" + subject.name + ".svg";
+}
+
 double frameBar(const Subject& subject)
 {
     const std::map<std::string, double> bars{{"Fox", 1.5}, {"CesiumMan", 6.0}, {"Knight", 3.0}};
@@ -46,11 +51,10 @@ void addFrameRows(const Subject& subject, std::size_t count, const std::vector<C
 {
     const double characters = static_cast<double>(count);
     const double milliseconds = 1e3 / characters;
-    const char* names[] = {"", ", osgAnimation software", ", osgAnimation hardware",
-                           ", osgAnimation hardware, a program each", ", pixel error 0.5"};
+    const char* names[] = {"osgGpuAnimation", "osgAnimation software", "osgAnimation hardware",
+                           "osgAnimation hardware, a program each", "osgGpuAnimation, pixel error 0.5"};
     for (std::size_t i = 0; i < contestants.size(); ++i)
-        report.addPoint(framePlot, subject.name + names[i], characters,
-                        cpuOf(contestants[i].whole).median * milliseconds);
+        report.addPoint(framePlot(subject), names[i], characters, cpuOf(contestants[i].whole).median * milliseconds);
     if (count != effort.frameCount) return;
     report.add(named(compared(contestants[0].whole, contestants[3].whole, milliseconds, true), subject, count,
                      "whole frame, 64x64", "ms a character", "osgAnimation hardware, a program each"));
@@ -148,7 +152,8 @@ Result<double> footprint(MakeScene makeScene, const osg::BoundingSphere& sight)
 
 Result<bool> measureFrames(const Subject& subject, const Effort& effort, Report& report)
 {
-    report.describePlot(framePlot, "Whole frame at 64x64: CPU time a character", "characters", "ms a character");
+    report.describePlot(framePlot(subject), subject.name + ", whole frame at 64x64: CPU time a character", "characters",
+                        "ms a character");
     ReferenceKit kit(subject);
     for (const std::size_t count : effort.frameCounts)
     {

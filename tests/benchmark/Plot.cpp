@@ -11,10 +11,20 @@ namespace osgGpuAnimation::benchmark
 namespace
 {
 
-constexpr double width = 760, height = 420, left = 70, right = 230, top = 40, bottom = 50; // pixels
+constexpr double width = 850, height = 420, left = 70, right = 320, top = 40, bottom = 50; // pixels
 constexpr const char* colors[] = {"#1f77b4", "#d62728", "#2ca02c", "#9467bd", "#ff7f0e", "#8c564b",
                                   "#e377c2", "#7f7f7f", "#17becf", "#bcbd22", "#000000", "#aec7e8"};
 constexpr const char* dashes[] = {"none", "6 3", "2 3"};
+
+std::string partBeforeComma(const std::string& name)
+{
+    return name.substr(0, name.find(','));
+}
+
+std::string partFromComma(const std::string& name)
+{
+    return name.substr(std::min(name.find(','), name.size()));
+}
 
 void writeText(std::ostream& out, double x, double y, const char* anchor, const std::string& text)
 {
@@ -104,11 +114,20 @@ void Plot::writeAxes(std::ostream& out, const Frame& frame) const
         << "\" y=\"16\" text-anchor=\"middle\">" << _yTitle << "</text>\n";
 }
 
+std::size_t Plot::placeAmong(std::string (*part)(const std::string& name), std::size_t number) const
+{
+    std::vector<std::string> parts;
+    for (const Line& line : _lines)
+        if (std::find(parts.begin(), parts.end(), part(line.name)) == parts.end()) parts.push_back(part(line.name));
+    const auto place = std::find(parts.begin(), parts.end(), part(_lines[number].name));
+    return static_cast<std::size_t>(place - parts.begin());
+}
+
 void Plot::writeLine(std::ostream& out, const Frame& frame, std::size_t number) const
 {
     const Line& line = _lines[number];
-    const std::string color = colors[number % std::size(colors)];
-    const std::string dash = dashes[number / std::size(colors) % std::size(dashes)];
+    const std::string color = colors[placeAmong(partBeforeComma, number) % std::size(colors)];
+    const std::string dash = dashes[placeAmong(partFromComma, number) % std::size(dashes)];
     out << "<polyline fill=\"none\" stroke-width=\"2\" stroke=\"" << color << "\" stroke-dasharray=\"" << dash
         << "\" points=\"";
     for (const auto& [x, y] : line.points)

@@ -198,37 +198,73 @@ INSTANTIATE_TEST_SUITE_P(
                       PictureCase{"SoftShadowMap", Surface::Morphed, make<osgShadow::SoftShadowMap>}),
     [](const auto& info) { return std::string(info.param.name); });
 
-// What casts a shadow and what is lit have to be one surface. Primitives of shadow maps are counted where they are
-// drawn for a camera below the viewer's own. That one, which sees all from near by, has no say.
-TEST_F(DetailSceneGLTest, shadowMapsHaveTheLevelsOfTheCameraThatTheyAreFor)
+// Primitives of shadow maps are counted where they are drawn for a camera below the viewer's own.
+class DetailShadowsGLTest : public DetailSceneGLTest
 {
-    const PictureCase plain{"Plain", Surface::Plain}, shadows{"ShadowMap", Surface::Plain, make<osgShadow::ShadowMap>};
+protected:
+    using Look = void (*)(osg::Camera& camera, const osg::Vec3d& centre);
+    static constexpr PictureCase plain{"Plain", Surface::Plain};
+    static constexpr PictureCase shadows{"ShadowMap", Surface::Plain, make<osgShadow::ShadowMap>};
+
+    /// For a camera that looks so at the scene's centre. The viewer's own, which sees all from near by, has no say.
+    GLuint primitivesOf(osg::Group& shown, Look look)
+    {
+        const osg::ref_ptr<osg::MatrixTransform> moved = new osg::MatrixTransform;
+        moved->setMatrix(osg::Matrix::rotate(1.0, 0, 0, 1) * osg::Matrix::translate(300, -200, 100));
+        moved->addChild(&shown);
+        const osg::ref_ptr<osg::Camera> camera = new osg::Camera;
+        camera->setReferenceFrame(osg::Transform::ABSOLUTE_RF);
+        camera->setRenderOrder(osg::Camera::POST_RENDER);
+        camera->setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
+        camera->setViewport(0, 0, side, side);
+        camera->addChild(moved);
+        look(*camera, centre * moved->getMatrix());
+        DetailSceneGLTest::look(*viewer().getCamera(), centre * moved->getMatrix(), 2500.0, 0.0);
+        viewer().getCamera()->setProjectionMatrixAsOrtho(-1, 1, -1, 1, 1, 1000);
+        const osg::ref_ptr<osg::Group> scene = new osg::Group;
+        scene->addChild(makeLight()); // osgShadow looks for lights in what the viewer's own camera sees
+        scene->addChild(camera);
+        drawn(*scene);
+        return primitives();
+    }
+};
+
+// What casts a shadow and what is lit have to be one surface.
+TEST_F(DetailShadowsGLTest, shadowMapsHaveTheLevelsOfTheCameraThatTheyAreFor)
+{
+    const Look fromFarOff = [](osg::Camera& camera, const osg::Vec3d& at) { look(camera, at, 25.0, 0.0); };
     for (const bool isCrowd : {false, true})
     {
         const auto primitivesOf = [&](const PictureCase& what, float pixelError)
-        {
-            const osg::ref_ptr<osg::MatrixTransform> moved = new osg::MatrixTransform;
-            moved->setMatrix(osg::Matrix::rotate(1.0, 0, 0, 1) * osg::Matrix::translate(300, -200, 100));
-            moved->addChild(makeScene(what, isCrowd, pixelError));
-            const osg::ref_ptr<osg::Camera> camera = new osg::Camera;
-            camera->setReferenceFrame(osg::Transform::ABSOLUTE_RF);
-            camera->setRenderOrder(osg::Camera::POST_RENDER);
-            camera->setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
-            camera->setViewport(0, 0, side, side);
-            camera->addChild(moved);
-            look(*camera, centre * moved->getMatrix(), 25.0, 0.0);
-            look(*viewer().getCamera(), centre * moved->getMatrix(), 2500.0, 0.0);
-            viewer().getCamera()->setProjectionMatrixAsOrtho(-1, 1, -1, 1, 1, 1000);
-            const osg::ref_ptr<osg::Group> scene = new osg::Group;
-            scene->addChild(makeLight()); // osgShadow looks for lights in what the viewer's own camera sees
-            scene->addChild(camera);
-            drawn(*scene);
-            return primitives();
-        };
+        { return DetailShadowsGLTest::primitivesOf(*makeScene(what, isCrowd, pixelError), fromFarOff); };
         const GLuint ofAll = primitivesOf(plain, 0.0f), ofFewer = primitivesOf(plain, 0.5f);
         EXPECT_LT(4 * ofFewer, ofAll);
         EXPECT_EQ(primitivesOf(shadows, 0.0f), 2 * ofAll);
         EXPECT_EQ(primitivesOf(shadows, 0.5f), 2 * ofFewer);
+    }
+}
+
+// That camera's own measure has no answer there, and what it does not show cannot shade itself in its picture.
+TEST_F(DetailShadowsGLTest, castersBehindTheEyeHaveTheLevelsOfTheShadowMap)
+{
+    const Look awayFromAfar = [](osg::Camera& camera, const osg::Vec3d& at)
+    {
+        camera.setProjectionMatrixAsPerspective(30.0, 1.0, 1.0, 1000.0);
+        camera.setViewMatrixAsLookAt(at + osg::Vec3d(0, 0, 200), at + osg::Vec3d(0, 0, 300), {0, 1, 0});
+    };
+    for (const bool isCrowd : {false, true})
+    {
+        const auto primitivesOf = [&](float pixelError)
+        {
+            const osg::ref_ptr<osg::Group> scene = makeScene(shadows, isCrowd, pixelError);
+            const osg::ref_ptr<osg::Geode> before = new osg::Geode; // or nothing at all would be drawn
+            before->addDrawable(new osg::ShapeDrawable(new osg::Box(centre + osg::Vec3d(0, 0, 250), 10.0f)));
+            scene->addChild(before);
+            return DetailShadowsGLTest::primitivesOf(*scene, awayFromAfar);
+        };
+        const GLuint ofAll = primitivesOf(0.0f);
+        EXPECT_GE(ofAll, across * across * tubeTriangles);
+        EXPECT_LT(20 * primitivesOf(0.5f), ofAll);
     }
 }
 

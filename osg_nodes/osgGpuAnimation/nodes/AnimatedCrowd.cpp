@@ -257,7 +257,8 @@ void AnimatedCrowd::cull(osgUtil::CullVisitor& visitor)
     {
         view.look(_instances, seen);
         const UpdateRate rate = _updateRate.every > 1 && areAllPlaceable(*this) ? _updateRate : UpdateRate();
-        const DetailScale scale(visitor, _pixelError, _pixelError > 0.0f ? DetailRange(*this, set()) : DetailRange());
+        const DetailScale scale(visitor, PoseStage::detailView(visitor), _pixelError,
+                                _pixelError > 0.0f ? DetailRange(*this, set()) : DetailRange());
         const CrowdDetail detail(_instances, scale);
         draws = _batches->enlist(PoseStage::frame(visitor), _instances, visitor, rate, detail, seen);
     }

@@ -65,10 +65,10 @@ bool CharacterDraws::Detail::isOf(const AnimatedCharacter& character) const
     return true;
 }
 
-void CharacterDraws::draw(osgUtil::CullVisitor& visitor, AnimatedCharacter& character, PoseFrame& frame,
-                          EnlistedPose pose)
+void CharacterDraws::draw(osgUtil::CullVisitor& visitor, DetailView& view, AnimatedCharacter& character,
+                          PoseFrame& frame, EnlistedPose pose)
 {
-    const int level = levelOf(visitor, character);
+    const int level = levelOf(visitor, view, character);
     std::vector<osg::Node*> others; // not kept for its memory: there may be characters below them
     const bool isTogether = character.isDrawnTogether() && canDrawTogether(visitor) &&
                             drawTogether(visitor, character, frame, pose, level, others);
@@ -83,13 +83,13 @@ void CharacterDraws::draw(osgUtil::CullVisitor& visitor, AnimatedCharacter& char
     if (state) visitor.popStateSet();
 }
 
-int CharacterDraws::levelOf(osgUtil::CullVisitor& visitor, const AnimatedCharacter& character)
+int CharacterDraws::levelOf(osgUtil::CullVisitor& visitor, DetailView& view, const AnimatedCharacter& character)
 {
     if (!(character.pixelError() > 0.0f)) return DetailLevels::allTriangles;
     const Detail& detail = detailOf(character);
     if (!detail.box.valid()) return DetailLevels::allTriangles;
     const osg::Vec3 centre = detail.box.center();
-    return DetailScale(visitor, character.pixelError(), detail.range)
+    return DetailScale(visitor, view, character.pixelError(), detail.range)
         .level(glm::vec3(centre.x(), centre.y(), centre.z()), detail.box.radius(), 1.0f);
 }
 

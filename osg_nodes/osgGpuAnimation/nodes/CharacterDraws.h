@@ -2,6 +2,7 @@
 #pragma once
 
 #include <osgGpuAnimation/nodes/DetailRange.h>
+#include <osgGpuAnimation/nodes/DetailView.h>
 #include <osgGpuAnimation/nodes/PoseFrame.h>
 
 #include <osgUtil/CullVisitor>
@@ -32,8 +33,9 @@ public:
         _details.clear();
     }
 
-    /// Hands what is below the character on to be drawn. pose: what the frame has enlisted it as.
-    void draw(osgUtil::CullVisitor& visitor, AnimatedCharacter& character, PoseFrame& frame, EnlistedPose pose);
+    /// Hands what is below the character on to be drawn. pose: what the frame has enlisted it as. view: the visitor's.
+    void draw(osgUtil::CullVisitor& visitor, DetailView& view, AnimatedCharacter& character, PoseFrame& frame,
+              EnlistedPose pose);
 
 private:
     /// Characters that differ in nothing but their poses and placements.
@@ -63,7 +65,7 @@ private:
 
     bool drawTogether(osgUtil::CullVisitor& visitor, AnimatedCharacter& character, PoseFrame& frame, EnlistedPose pose,
                       int level, std::vector<osg::Node*>& outOthers);
-    int levelOf(osgUtil::CullVisitor& visitor, const AnimatedCharacter& character);
+    int levelOf(osgUtil::CullVisitor& visitor, DetailView& view, const AnimatedCharacter& character);
     const Detail& detailOf(const AnimatedCharacter& character);
     void open(osgUtil::CullVisitor& visitor, Group& group, PoseFrame& frame, float depth);
 

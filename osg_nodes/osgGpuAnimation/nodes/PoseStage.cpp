@@ -67,12 +67,17 @@ void PoseStage::draw(osgUtil::CullVisitor& visitor, AnimatedCharacter& character
     // Nowhere: the camera's far plane would go there too, and nothing be seen any more.
     if (!isFinite(*visitor.getModelViewMatrix())) return;
     PoseStage& stage = current(visitor);
-    stage._draws.draw(visitor, character, *stage._frame, stage._frame->enlist(character));
+    stage._draws.draw(visitor, stage._detailView, character, *stage._frame, stage._frame->enlist(character));
 }
 
 PoseFrame& PoseStage::frame(osgUtil::CullVisitor& visitor)
 {
     return *current(visitor)._frame;
+}
+
+DetailView& PoseStage::detailView(osgUtil::CullVisitor& visitor)
+{
+    return current(visitor)._detailView;
 }
 
 MeshReads& PoseStage::reads(osgUtil::CullVisitor& visitor)
@@ -122,6 +127,7 @@ void PoseStage::countDraws(osgUtil::CullVisitor& visitor)
 void PoseStage::attach(osgUtil::CullVisitor& visitor)
 {
     _draws.clear();
+    _detailView.clear();
     countDraws(visitor);
     _reads.begin(visitor.getRenderInfo().getContextID());
     _frame = nullptr; // so that its storage can be used again

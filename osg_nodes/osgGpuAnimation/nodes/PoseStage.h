@@ -2,6 +2,7 @@
 #pragma once
 
 #include <osgGpuAnimation/nodes/CharacterDraws.h>
+#include <osgGpuAnimation/nodes/DetailView.h>
 #include <osgGpuAnimation/nodes/DrawnInstances.h>
 #include <osgGpuAnimation/nodes/MeshReads.h>
 #include <osgGpuAnimation/nodes/PoseFrame.h>
@@ -23,6 +24,8 @@ public:
     static void draw(osgUtil::CullVisitor& visitor, AnimatedCharacter& character);
     /// The frame that the visitor's cull is part of, for those that enlist otherwise.
     static PoseFrame& frame(osgUtil::CullVisitor& visitor);
+    /// What levels of detail go by where the visitor is.
+    static DetailView& detailView(osgUtil::CullVisitor& visitor);
     /// What the visitor hands on to be drawn in that frame.
     static MeshReads& reads(osgUtil::CullVisitor& visitor);
     /// Has the statistics of the visitor's camera, where there are any, count what a draw of the mesh for many shows.
@@ -44,6 +47,7 @@ private:
     const osgUtil::CullVisitor* _visitor; ///< whose stage this is: cull visitors get cloned with their user data
     osg::ref_ptr<PoseFrame> _frame;
     CharacterDraws _draws;
+    DetailView _detailView;
     MeshReads _reads;
     osg::ref_ptr<DrawnInstances> _counted; ///< null: no statistics of the camera are collected
 };

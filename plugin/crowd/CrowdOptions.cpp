@@ -69,7 +69,7 @@ std::string wanted(const std::string& name)
 {
     if (name == "seed") return "a whole number from 0 to 4294967295";
     if (name == "spacing") return "a number of units above 0";
-    if (name == "pixelError") return "a number of pixels from 0 to " + std::to_string(DetailRange::largestPixelError);
+    if (name == "pixelError") return DetailRange::pixelErrorsTaken();
     return "names or numbers of clips apart by commas";
 }
 

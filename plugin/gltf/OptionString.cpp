@@ -62,7 +62,7 @@ std::optional<bool> applyPlaying(const std::string& name, const std::string& val
 std::string wanted(const std::string& name)
 {
     if (name == "compact") return "a number above 0, at most 1";
-    if (name == "pixelError") return "a number of pixels from 0 to " + std::to_string(DetailRange::largestPixelError);
+    if (name == "pixelError") return DetailRange::pixelErrorsTaken();
     if (name == "speed") return "a number";
     if (name == "start" || name == "fade") return "a number of seconds, 0 or more";
     if (name == "loop") return "once, loop or pingpong";

@@ -37,7 +37,7 @@ void expectTakesPixelErrors(Animated& animated)
         EXPECT_EQ(static_cast<bool>(taken), isTaken) << pixels;
         EXPECT_EQ(animated.pixelError(), isTaken ? pixels : 2.0f);
         if (taken) continue;
-        EXPECT_NE(taken.error().message.find("it must be a number from 0 to 1000000"), std::string::npos);
+        EXPECT_NE(taken.error().message.find("it must be a number of pixels from 0 to 1000000"), std::string::npos);
     }
 }
 

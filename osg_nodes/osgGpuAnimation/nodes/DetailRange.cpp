@@ -4,16 +4,19 @@
 #include <osgGpuAnimation/nodes/MeshesOfGroup.h>
 
 #include <algorithm>
-#include <string>
 
 namespace osgGpuAnimation
 {
 
+std::string DetailRange::pixelErrorsTaken()
+{
+    return "a number of pixels from 0 to " + std::to_string(largestPixelError);
+}
+
 Result<bool> DetailRange::prepare(float pixels, const osg::Group& meshes, const AnimationSet& set)
 {
     if (!isPixelError(pixels))
-        return Error{"a pixel error of " + std::to_string(pixels) + ": it must be a number from 0 to " +
-                     std::to_string(largestPixelError)};
+        return Error{"a pixel error of " + std::to_string(pixels) + ": it must be " + pixelErrorsTaken()};
     if (pixels > 0.0f && set.paletteSize() > 0) static_cast<void>(DetailRange(meshes, set));
     return true;
 }

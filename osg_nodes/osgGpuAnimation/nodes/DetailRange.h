@@ -6,6 +6,8 @@
 
 #include <osg/Group>
 
+#include <string>
+
 namespace osgGpuAnimation
 {
 
@@ -21,6 +23,8 @@ public:
 
     /// What setPixelError() of characters and crowds takes.
     static bool isPixelError(double pixels) { return pixels >= 0.0 && pixels <= largestPixelError; }
+    /// In words: what it must be.
+    static std::string pixelErrorsTaken();
     /// Makes the levels of the SkinnedGeometry among a group's children that are drawn with that pixel error: none
     /// where it is 0, or the set has nothing to draw. Error: it is no pixel error.
     static Result<bool> prepare(float pixels, const osg::Group& meshes, const AnimationSet& set);

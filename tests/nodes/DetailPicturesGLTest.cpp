@@ -206,6 +206,8 @@ protected:
     static constexpr PictureCase plain{"Plain", Surface::Plain};
     static constexpr PictureCase shadows{"ShadowMap", Surface::Plain, make<osgShadow::ShadowMap>};
 
+    static void fromFarOff(osg::Camera& camera, const osg::Vec3d& at) { look(camera, at, 25.0, 0.0); }
+
     /// For a camera that looks so at the scene's centre. The viewer's own, which sees all from near by, has no say.
     GLuint primitivesOf(osg::Group& shown, Look look)
     {
@@ -232,7 +234,6 @@ protected:
 // What casts a shadow and what is lit have to be one surface.
 TEST_F(DetailShadowsGLTest, shadowMapsHaveTheLevelsOfTheCameraThatTheyAreFor)
 {
-    const Look fromFarOff = [](osg::Camera& camera, const osg::Vec3d& at) { look(camera, at, 25.0, 0.0); };
     for (const bool isCrowd : {false, true})
     {
         const auto primitivesOf = [&](const PictureCase& what, float pixelError)
@@ -265,6 +266,34 @@ TEST_F(DetailShadowsGLTest, castersBehindTheEyeHaveTheLevelsOfTheShadowMap)
         const GLuint ofAll = primitivesOf(0.0f);
         EXPECT_GE(ofAll, across * across * tubeTriangles);
         EXPECT_LT(20 * primitivesOf(0.5f), ofAll);
+    }
+}
+
+// Where a camera from near by makes depths alone, it is taken for a shadow map's.
+TEST_F(DetailShadowsGLTest, camerasWithAColourBufferHaveLevelsOfTheirOwn)
+{
+    const GLuint ofFewer = primitivesOf(*makeScene(plain, false, 0.5f), fromFarOff);
+    for (const bool hasColour : {false, true})
+    {
+        const osg::ref_ptr<osg::Group> scene = makeScene(plain, false, 0.5f);
+        const osg::ref_ptr<osg::Camera> depths = new osg::Camera;
+        depths->setReferenceFrame(osg::Transform::ABSOLUTE_RF);
+        depths->setRenderOrder(osg::Camera::PRE_RENDER);
+        depths->setRenderTargetImplementation(osg::Camera::FRAME_BUFFER_OBJECT);
+        depths->attach(osg::Camera::DEPTH_BUFFER, GL_DEPTH_COMPONENT24);
+        if (hasColour) depths->attach(osg::Camera::COLOR_BUFFER, GL_RGBA);
+        depths->setViewport(0, 0, side, side);
+        depths->setCullingMode(osg::CullSettings::NO_CULLING);
+        depths->setProjectionMatrixAsOrtho(-1, 1, -1, 1, 1, 1000);
+        depths->addChild(scene);
+        const osg::ref_ptr<osg::Group> both = new osg::Group;
+        both->addChild(scene);
+        both->addChild(depths);
+        const GLuint ofBoth = primitivesOf(*both, fromFarOff);
+        if (hasColour)
+            EXPECT_GT(ofBoth, 8 * ofFewer);
+        else
+            EXPECT_EQ(ofBoth, 2 * ofFewer);
     }
 }
 

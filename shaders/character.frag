@@ -2,7 +2,8 @@
 // Base colour, lit per fragment by OSG's lights as the fixed pipeline does, in the shadow maps of osgShadow's techniques,
 // with fog. In a core profile, which has no lights: a headlight. DRAW_... are those of nodes/SurfaceState.h. Of what the
 // vertex shader puts out, the linker leaves out what is not read here: that is why nothing is read that may be done
-// without. POSE_COLORED: the mesh has colours, or morphs them; POSE_TINTED: the instances drawn have tints.
+// without. POSE_COLORED: the mesh has colours, its own or those of morph targets; POSE_TINTED: the instances drawn have
+// tints.
 #pragma import_defines(POSE_COLORED, POSE_TINTED)
 
 uniform sampler2D baseColorTexture;
@@ -20,7 +21,6 @@ uniform vec2 ambientBias;               // osgShadow::ParallelSplitShadowMap's: 
 in vec3 viewPosition;
 in vec3 viewNormal;
 in vec4 vertexColor;
-in vec2 tintBytes;
 in vec2 textureCoordinate;
 
 out vec4 fragmentColor;
@@ -28,12 +28,8 @@ out vec4 fragmentColor;
 vec4 baseColor()
 {
     vec4 color = materialDiffuse;
-#ifdef POSE_COLORED
+#if defined(POSE_COLORED) || defined(POSE_TINTED)
     color *= vertexColor;
-#elif defined(POSE_TINTED)
-    vec2 bytes = round(tintBytes);
-    vec2 high = floor(bytes / 256.0);
-    color *= vec4(high, bytes - 256.0 * high).xzyw / 255.0;
 #endif
 #if DRAW_TEXTURE
     color *= texture(baseColorTexture, textureCoordinate);

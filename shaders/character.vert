@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Draws a SkinnedGeometry: skins, then what the fixed pipeline does. DRAW_... are those of nodes/SurfaceState.h.
-// POSE_COLORED: the mesh has colours, or morphs them.
+// POSE_COLORED: 1: the mesh has colours; 2: its morph targets alone give it some.
 #pragma import_defines(POSE_COLORED, POSE_PLACED)
 
 void osgGpuAnimationSkin(inout vec4 vertex, inout vec3 normal);
@@ -11,16 +11,17 @@ void osgGpuAnimationMorphTextureCoordinate(inout vec2 coordinate);
 out vec3 viewPosition;
 out vec3 viewNormal;
 out vec4 vertexColor;
-out vec2 tintBytes; // two each, of a tint without colours: half the numbers to interpolate
 out vec2 textureCoordinate;
 
 void passSurface()
 {
     vertexColor = osgGpuAnimationTint();
-    vec4 bytes = round(255.0 * vertexColor);
-    tintBytes = 256.0 * bytes.xz + bytes.yw;
 #ifdef POSE_COLORED
-    vec4 color = gl_Color; // without an array it is anything: OSG's materials leave theirs there
+#if POSE_COLORED == 1
+    vec4 color = gl_Color;
+#else
+    vec4 color = vec4(1.0); // without an array OSG's materials leave theirs in gl_Color
+#endif
     osgGpuAnimationMorphColor(color);
     vertexColor *= color;
 #endif

@@ -327,7 +327,7 @@ osg::ref_ptr<osg::Geometry> unskinned(const SkinnedGeometry& geometry, Shading s
     const osg::Vec4 white(1, 1, 1, 1);
     state->addUniform(
         new osg::Uniform("materialDiffuse", material ? material->getDiffuse(osg::Material::FRONT) : white));
-    if (geometry.hasColors()) state->setDefine("POSE_COLORED");
+    if (geometry.colors() != SkinnedGeometry::Colors::White) state->setDefine("POSE_COLORED", "1");
     state->setAttributeAndModes(shading == Shading::Least ? leastProgram() : unskinnedProgram(geometry));
     plain->setStateSet(state);
     return plain;

@@ -20,13 +20,13 @@ namespace osgGpuAnimation
 class FeedbackPass
 {
 public:
+    /// Multiples of so many vertices an instance are drawn the fastest way.
+    static constexpr std::size_t verticesOfFastest = 3;
+
     /// source: parts of the shader, put together behind a #version line and layout.glsl. outputs: the vec4 outputs
     /// to capture, interleaved in that order. Failure to compile or link is reported once and leaves valid() false.
     FeedbackPass(osg::GLExtensions& gl, const char* name, std::initializer_list<const char*> source,
                  std::initializer_list<const char*> outputs);
-    /// Multiples of so many vertices an instance are drawn the fastest way.
-    static constexpr std::size_t verticesOfFastest = 3;
-
     FeedbackPass(const FeedbackPass&) = delete;
     FeedbackPass& operator=(const FeedbackPass&) = delete;
 

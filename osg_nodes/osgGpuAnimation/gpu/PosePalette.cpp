@@ -22,6 +22,7 @@ bool uploadChanged(const std::vector<Element>& source, std::size_t first, std::s
 {
     const std::size_t bytes = count * sizeof(Element);
     const Element* begin = source.data() + first;
+    if (count > 0 && buffer.reserve(room * sizeof(Element))) uploaded.clear(); // nothing is in it any more
     if (uploaded.size() == count && (count == 0 || std::memcmp(uploaded.data(), begin, bytes) == 0)) return false;
     if (uploaded.size() == count)
     {
@@ -41,7 +42,6 @@ bool uploadChanged(const std::vector<Element>& source, std::size_t first, std::s
     }
     uploaded.assign(begin, begin + count);
     if (count == 0) return true;
-    buffer.reserve(room * sizeof(Element));
     buffer.upload(begin, bytes);
     bytesUploaded += bytes;
     return true;

@@ -51,8 +51,9 @@ public:
         BufferTexture palette;        ///< RGBA32F: paletteSize * width matrices, entry-major
     };
 
-    /// Places for so many instances: filled up, with instances at rest, to what the feedback pass draws the fastest
-    /// way.
+    /// Places of so many instances: filled up to what the feedback pass draws the fastest way. Those beyond are
+    /// computed from whatever lies in the buffers, whose numbers a fetch out of range at most makes other numbers, and
+    /// never read.
     static std::size_t widthOf(std::size_t size);
 
     explicit PosePalette(osg::GLExtensions& gl) : _gl(&gl) {}

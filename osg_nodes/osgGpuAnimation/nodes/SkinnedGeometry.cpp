@@ -199,13 +199,16 @@ glm::dvec3 SkinnedGeometry::morphed(const osg::Vec3& position, std::size_t verte
     return sum;
 }
 
-bool SkinnedGeometry::hasColors() const
+SkinnedGeometry::Colors SkinnedGeometry::colors() const
 {
-    if (_morphDeltas.channels[2] >= 0) return true;
-    const osg::Array* colors = getColorArray();
-    if (!colors || colors->getBinding() != osg::Array::BIND_OVERALL) return colors;
-    const auto* overall = dynamic_cast<const osg::Vec4Array*>(colors);
-    return !overall || overall->empty() || overall->front() != osg::Vec4(1, 1, 1, 1);
+    const bool areMorphed = _morphDeltas.channels[2] >= 0;
+    const osg::Array* array = getColorArray();
+    const int binding = array ? array->getBinding() : osg::Array::BIND_UNDEFINED;
+    if (binding == osg::Array::BIND_UNDEFINED || binding == osg::Array::BIND_OFF)
+        return areMorphed ? Colors::Targets : Colors::White; // OSG does not hand on what is bound so
+    const auto* overall = binding == osg::Array::BIND_OVERALL ? dynamic_cast<const osg::Vec4Array*>(array) : nullptr;
+    const bool isWhite = overall && !overall->empty() && overall->front() == osg::Vec4(1, 1, 1, 1);
+    return isWhite && !areMorphed ? Colors::White : Colors::Array;
 }
 
 void SkinnedGeometry::drawImplementation(osg::RenderInfo& renderInfo) const

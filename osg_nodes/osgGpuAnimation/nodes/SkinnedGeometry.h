@@ -88,8 +88,14 @@ public:
         return _skinning == Skinning::Once || (_skinning == Skinning::Auto && !_morphTargets.empty());
     }
 
-    /// Whether vertices have colours, or morph targets give them some. Else they are white.
-    bool hasColors() const;
+    /// Where the vertices' colours come from.
+    enum class Colors
+    {
+        White,   ///< they have none
+        Array,   ///< to which morph targets may add
+        Targets, ///< morph targets add to white
+    };
+    Colors colors() const;
 
     /// Its levels of detail, see AnimatedCharacter::setPixelError(); made when first asked, by the poses of the set.
     std::shared_ptr<const DetailLevels> detailLevels(const AnimationSet& set) const { return _detail.of(*this, set); }

@@ -21,15 +21,17 @@ const PaletteBinding* bindingAbove(osgUtil::CullVisitor& visitor)
     return nullptr;
 }
 
-osg::StateSet& coloredState()
+osg::ref_ptr<osg::StateSet> makeColoredState(const std::string& colors)
 {
-    static const osg::ref_ptr<osg::StateSet> state = []
-    {
-        osg::ref_ptr<osg::StateSet> made = new osg::StateSet;
-        made->setDefine("POSE_COLORED");
-        return made;
-    }();
-    return *state;
+    osg::ref_ptr<osg::StateSet> state = new osg::StateSet;
+    state->setDefine("POSE_COLORED", colors);
+    return state;
+}
+
+osg::StateSet& coloredState(SkinnedGeometry::Colors colors)
+{
+    static const osg::ref_ptr<osg::StateSet> ofArray = makeColoredState("1"), ofTargets = makeColoredState("2");
+    return colors == SkinnedGeometry::Colors::Array ? *ofArray : *ofTargets;
 }
 
 } // namespace
@@ -39,7 +41,8 @@ SkinningScope::SkinningScope(osgUtil::CullVisitor& visitor, const SkinnedGeometr
     const PaletteBinding* binding = bindingAbove(visitor);
     if (!binding) return;
     if (binding->isOfMany()) PoseStage::count(visitor, mesh, *binding);
-    if (mesh.hasColors()) push(coloredState());
+    const SkinnedGeometry::Colors colors = mesh.colors();
+    if (colors != SkinnedGeometry::Colors::White) push(coloredState(colors));
     if (!mesh.mayBeSkinnedOnce()) return;
     if (osg::StateSet* state = PoseStage::reads(visitor).add(mesh, *binding)) push(*state);
 }

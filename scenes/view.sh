@@ -24,7 +24,8 @@ while [ ! -f "$model" ]; do
 done
 
 install_missing "${packages[@]}"
-build_release osgdb_gltf osgdb_crowd osgdb_serializers_osggpuanimation osggpuanim
+configure_release
+build_targets osgdb_gltf osgdb_crowd osgdb_serializers_osggpuanimation osggpuanim
 export OSG_LIBRARY_PATH=$build/lib${OSG_LIBRARY_PATH:+:$OSG_LIBRARY_PATH}
 
 # Fails where the display that DISPLAY names is not there; osgviewer itself ends with 0 then.

@@ -13,7 +13,7 @@ for sanitizer in thread address; do
     build=$root/build-$sanitizer
     # Unity: the headers are read once for many files. -O1: a Debug build would draw too slowly.
     cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O1 \
-          -DOSGGPUANIMATION_SANITIZER=$sanitizer -DOSGGPUANIMATION_UNITY=ON
+          -DBUILD_TESTING=ON -DOSGGPUANIMATION_SANITIZER=$sanitizer -DOSGGPUANIMATION_UNITY=ON
     cmake --build "$build" --parallel "$(nproc)" --target sanitized_tests
     ctest --test-dir "$build" -j2 --output-on-failure --no-tests=error -R '^sanitized\.' "$@"
 done

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 # The set-up that scenes/view.sh, tests/run.sh and .ci/run share; for `source`, not to be run. It sets `root` (the
-# repository) and `build` (its build folder) and offers install_missing PACKAGE... and build_release [TARGET...].
+# repository) and `build` (its build folder) and offers install_missing PACKAGE..., configure_release [CMAKE'S OPTION...]
+# and build_targets [TARGET...].
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build=$root/build
@@ -51,12 +52,17 @@ install_missing()
     as_root env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends "${missing[@]}"
 }
 
-# Configures a release build in $build and builds the targets, or everything.
-build_release()
+# Configures a release build in $build. With or without tests is as it was there, unless an option says so.
+configure_release()
 {
     local generator=()
     # A build folder keeps the generator it was made with.
     [ -f "$build/CMakeCache.txt" ] || generator=(-G Ninja)
-    cmake -S "$root" -B "$build" "${generator[@]}" -DCMAKE_BUILD_TYPE=Release
+    cmake -S "$root" -B "$build" "${generator[@]}" -DCMAKE_BUILD_TYPE=Release "$@"
+}
+
+# Builds the targets in $build, or everything.
+build_targets()
+{
     cmake --build "$build" --parallel "$(nproc)" ${1:+--target "$@"}
 }

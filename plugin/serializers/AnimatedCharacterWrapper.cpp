@@ -55,12 +55,12 @@ static std::int32_t extrasOf(const AnimatedCharacter& character)
     return extras;
 }
 
-static bool checkClipBounds(const AnimatedCharacter& character)
+static bool checkExtras(const AnimatedCharacter& character)
 {
     return extrasOf(character) != 0;
 }
 
-static bool writeClipBounds(osgDB::OutputStream& stream, const AnimatedCharacter& character)
+static bool writeExtras(osgDB::OutputStream& stream, const AnimatedCharacter& character)
 {
     ValueWriter out(stream);
     const std::int32_t extras = extrasOf(character);
@@ -70,7 +70,7 @@ static bool writeClipBounds(osgDB::OutputStream& stream, const AnimatedCharacter
     return true;
 }
 
-static bool readClipBounds(osgDB::InputStream& stream, AnimatedCharacter& character)
+static bool readExtras(osgDB::InputStream& stream, AnimatedCharacter& character)
 {
     ValueReader in(stream);
     const std::int32_t extras = in.integer("what a character has", 0, hasClipBounds | hasPixelError | isDrawnAlone);
@@ -103,7 +103,9 @@ REGISTER_OBJECT_WRAPPER(osgGpuAnimation_AnimatedCharacter, makeCharacter(), osgG
                         "osg::MatrixTransform osgGpuAnimation::AnimatedCharacter")
 {
     ADD_REQUIRED_SERIALIZER(AnimationSet);
-    ADD_USER_SERIALIZER(ClipBounds);
+    // In files they have the name of the first of them.
+    wrapper->addSerializer(new osgDB::UserSerializer<MyClass>("ClipBounds", &checkExtras, &readExtras, &writeExtras),
+                           osgDB::BaseSerializer::RW_USER);
     ADD_REQUIRED_SERIALIZER(Controller);
 }
 

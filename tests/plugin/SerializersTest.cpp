@@ -12,12 +12,14 @@
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/AnimationUpdateCallback.h>
 #include <osgGpuAnimation/nodes/CharacterKeys.h>
+#include <osgGpuAnimation/nodes/CharacterProgram.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
 #include <osgGpuAnimation/nodes/RootMotionCallback.h>
 #include <osgGpuAnimation/nodes/TiltedHome.h>
 
 #include <gtest/gtest.h>
 #include <osg/Program>
+#include <osg/Texture2D>
 #include <osgDB/FileUtils>
 
 #include <filesystem>
@@ -317,6 +319,26 @@ TEST_F(SerializersTest, shadersAreNotInTheFile)
     const auto programOf = [](AnimatedCharacter& of)
     { return of.getChild(0)->getStateSet()->getAttribute(osg::StateAttribute::PROGRAM); };
     EXPECT_EQ(programOf(*findCharacter(*read)), programOf(character()));
+}
+
+TEST_F(SerializersTest, theWhiteTextureIsKnownInCopiesAndFiles)
+{
+    const auto textureOf = [](osg::Node& of)
+    {
+        const osg::Node& mesh = *findCharacter(of)->getChild(0);
+        return static_cast<const osg::Texture2D*>(
+            mesh.getStateSet()->getTextureAttribute(0, osg::StateAttribute::TEXTURE));
+    };
+    const osg::Texture2D* white = textureOf(*scene);
+    ASSERT_TRUE(white);
+    EXPECT_TRUE(isWhiteTexture(white));
+    const osg::ref_ptr<osg::Texture2D> copy = osg::clone(white, osg::CopyOp::DEEP_COPY_ALL);
+    EXPECT_TRUE(isWhiteTexture(copy));
+    for (const char* format : formats)
+        EXPECT_TRUE(isWhiteTexture(textureOf(*files.throughFile(*scene, format)))) << format;
+    EXPECT_FALSE(isWhiteTexture(nullptr));
+    copy->setName(""); // in files of before it has none
+    EXPECT_FALSE(isWhiteTexture(copy));
 }
 
 TEST_F(SerializersTest, compactClipsStayCompact)

@@ -44,15 +44,6 @@ public:
         return object;
     }
 
-    /// Null: nobody has it.
-    osg::ref_ptr<Object> known()
-    {
-        const std::lock_guard<std::mutex> lock(_mutex);
-        osg::ref_ptr<Object> object;
-        _object.lock(object);
-        return object;
-    }
-
 private:
     std::mutex _mutex;
     osg::observer_ptr<Object> _object;
@@ -65,22 +56,26 @@ osg::ref_ptr<osg::Program> makeProgram()
     return program;
 }
 
+/// What it is known by: copies and files have it too, and draw threads need no lock to compare it.
+constexpr const char* whiteTextureName = "osgGpuAnimation white";
+
 osg::ref_ptr<osg::Texture2D> makeWhiteTexture()
 {
     osg::ref_ptr<osg::Image> image = new osg::Image;
     image->allocateImage(1, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE);
     image->setColor(osg::Vec4(1, 1, 1, 1), 0, 0);
     osg::ref_ptr<osg::Texture2D> white = new osg::Texture2D(image);
+    white->setName(whiteTextureName);
     // OSG's default, GL_CLAMP, mixes in the black border.
     white->setWrap(osg::Texture::WRAP_S, osg::Texture::REPEAT);
     white->setWrap(osg::Texture::WRAP_T, osg::Texture::REPEAT);
     return white;
 }
 
-Shared<osg::Texture2D>& whiteTexture()
+osg::ref_ptr<osg::Texture2D> whiteTexture()
 {
     static Shared<osg::Texture2D> shared;
-    return shared;
+    return shared.get(makeWhiteTexture);
 }
 
 } // namespace
@@ -121,12 +116,12 @@ void applyCharacterProgram(osg::StateSet& stateSet)
     if (!stateSet.getUniform("alphaCutoff")) stateSet.addUniform(new osg::Uniform("alphaCutoff", 0.0f));
     if (!stateSet.getUniform("unlit")) stateSet.addUniform(new osg::Uniform("unlit", false));
     if (!stateSet.getTextureAttribute(0, osg::StateAttribute::TEXTURE))
-        stateSet.setTextureAttributeAndModes(0, whiteTexture().get(makeWhiteTexture));
+        stateSet.setTextureAttributeAndModes(0, whiteTexture());
 }
 
 bool isWhiteTexture(const osg::StateAttribute* texture)
 {
-    return texture && texture == whiteTexture().known().get();
+    return texture && texture->getName() == whiteTextureName;
 }
 
 void applySkinDefines(osg::StateSet& stateSet, int influences, bool hasMorphs)

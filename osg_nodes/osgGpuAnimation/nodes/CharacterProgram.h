@@ -14,13 +14,14 @@ namespace osgGpuAnimation
 /// ambient, osg::Material (diffuse times vertex colour is the base colour, lit or not), fog, clip planes, the texture
 /// of unit 0 with its matrix where GL_TEXTURE_2D is on, and the shadow maps of osgShadow's techniques. In a pass that
 /// writes depth alone it does nothing but skin. Uniforms: `float alphaCutoff` (fragments of less alpha are dropped;
-/// default 0), `bool unlit` (default false).
+/// default 0), `bool unlit` (default false), `bool flatNormals` (lit, each face by its own normal, of the pose; default
+/// false).
 osg::ref_ptr<osg::Program> characterProgram();
 
 /// Puts the program, its uniforms' defaults and a white texture on unit 0 (where there is none) into the state.
 void applyCharacterProgram(osg::StateSet& stateSet);
 
-/// Whether it is that texture: the program does without.
+/// Whether it is that texture or, by its name, a copy of it, from a file too: the program does without.
 bool isWhiteTexture(const osg::StateAttribute* texture);
 
 /// skin.glsl as a shader object, to be added to a program of one's own, whose vertex shader declares and calls

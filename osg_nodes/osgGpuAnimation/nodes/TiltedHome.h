@@ -16,7 +16,7 @@ namespace osgGpuAnimation
 /// the same distance. Nothing of the manipulator's is set but where it is now, and where it is anywhere else, where the
 /// application has set a home position itself, or where the node's +Z is not the world's, nothing happens at all.
 ///
-/// Nodes may share one: it keeps nothing of theirs.
+/// Nodes may share one: it keeps nothing of theirs. Scenes that are kept in OSG's formats keep it.
 class TiltedHome : public osgGA::GUIEventHandler
 {
 public:

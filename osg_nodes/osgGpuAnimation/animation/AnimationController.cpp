@@ -78,15 +78,21 @@ const AnimationLayer& AnimationController::layer(std::size_t index) const
 
 bool AnimationController::isPlainLoop() const
 {
-    return _upper.empty() && !_eventCallback && !_rootMotionCurve && base().isPlainLoop();
+    return _upper.empty() && !_eventCallback && !_rootMotionCurve && _base.isPlainLoop();
+}
+
+template <typename Function>
+void AnimationController::forEachLayer(Function function)
+{
+    function(_base);
+    for (const std::unique_ptr<AnimationLayer>& layer : _upper)
+        function(*layer);
 }
 
 const PoseInstruction& AnimationController::advance(double seconds)
 {
     const double step = std::isfinite(seconds) ? seconds : 0.0;
-    _base.advance(step);
-    for (const std::unique_ptr<AnimationLayer>& layer : _upper)
-        layer->advance(step);
+    forEachLayer([step](AnimationLayer& layer) { layer.advance(step); });
     show();
     if (_rootMotionCurve) goOn();
     if (_eventCallback && hasEvents()) tellEvents();
@@ -96,18 +102,14 @@ const PoseInstruction& AnimationController::advance(double seconds)
 void AnimationController::show()
 {
     SampleStack stack;
-    _base.collect(stack);
-    for (const std::unique_ptr<AnimationLayer>& layer : _upper)
-        layer->collect(stack);
+    forEachLayer([&stack](const AnimationLayer& layer) { layer.collect(stack); });
     stack.write(_instruction);
 }
 
 void AnimationController::goOn()
 {
     MotionBlend blend;
-    _base.collectMotion(blend);
-    for (const std::unique_ptr<AnimationLayer>& layer : _upper)
-        layer->collectMotion(blend);
+    forEachLayer([&blend](const AnimationLayer& layer) { layer.collectMotion(blend); });
     const RootMotion step = blend.result();
     if (!step.isNone()) _rootMotion = (_rootMotion.isNone() ? RootMotion{{}, 0.0, step.up} : _rootMotion) * step;
 }
@@ -137,8 +139,7 @@ void AnimationController::tellEvents()
     const std::shared_ptr<const EventCallback> callback = _eventCallback;
     const std::shared_ptr<const AnimationSet> set = _set;
     StepEvents events;
-    for (std::size_t i = 0; i < layerCount(); ++i)
-        events.add(layer(i), *set);
+    forEachLayer([&](const AnimationLayer& layer) { events.add(layer, *set); });
     AnimationEvent event;
     while (events.next(event))
         (*callback)(event);

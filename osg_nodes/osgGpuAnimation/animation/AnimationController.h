@@ -56,32 +56,32 @@ public:
     std::size_t layerCount() const { return 1 + _upper.size(); } ///< at least 1
 
     // The base layer's; see AnimationLayer.
-    Result<bool> play(std::size_t clip) { return base().play(clip); }
-    Result<bool> play(const std::string& name) { return base().play(name); }
+    Result<bool> play(std::size_t clip) { return _base.play(clip); }
+    Result<bool> play(const std::string& name) { return _base.play(name); }
     Result<bool> crossfade(std::size_t clip, double seconds, const CrossfadeOptions& options = {})
     {
-        return base().crossfade(clip, seconds, options);
+        return _base.crossfade(clip, seconds, options);
     }
     Result<bool> crossfade(const std::string& name, double seconds, const CrossfadeOptions& options = {})
     {
-        return base().crossfade(name, seconds, options);
+        return _base.crossfade(name, seconds, options);
     }
-    void pause() { base().pause(); }
-    void resume() { base().resume(); }
-    void stop() { base().stop(); }
-    bool seek(double seconds) { return base().seek(seconds); }
-    bool setSpeed(double speed) { return base().setSpeed(speed); }
-    void setLoopMode(LoopMode mode) { base().setLoopMode(mode); }
+    void pause() { _base.pause(); }
+    void resume() { _base.resume(); }
+    void stop() { _base.stop(); }
+    bool seek(double seconds) { return _base.seek(seconds); }
+    bool setSpeed(double speed) { return _base.setSpeed(speed); }
+    void setLoopMode(LoopMode mode) { _base.setLoopMode(mode); }
 
-    State state() const { return base().state(); }
-    bool isPlaying() const { return base().isPlaying(); }
-    int clip() const { return base().clip(); } ///< -1 where none was played
-    double time() const { return base().time(); }
-    double duration() const { return base().duration(); }
-    double normalizedTime() const { return base().normalizedTime(); }
-    double phase() const { return base().phase(); }
-    double speed() const { return base().speed(); }
-    LoopMode loopMode() const { return base().loopMode(); }
+    State state() const { return _base.state(); }
+    bool isPlaying() const { return _base.isPlaying(); }
+    int clip() const { return _base.clip(); } ///< -1 where none was played
+    double time() const { return _base.time(); }
+    double duration() const { return _base.duration(); }
+    double normalizedTime() const { return _base.normalizedTime(); }
+    double phase() const { return _base.phase(); }
+    double speed() const { return _base.speed(); }
+    LoopMode loopMode() const { return _base.loopMode(); }
 
     /// Whether clip, time, speed and state say all there is of it: one plain layer (AnimationLayer::isPlainLoop),
     /// nobody to tell events to, a set without root motion.
@@ -109,8 +109,8 @@ public:
 private:
     friend class AnimationLayer;
 
-    AnimationLayer& base() { return _base; }
-    const AnimationLayer& base() const { return _base; }
+    template <typename Function>
+    void forEachLayer(Function function); ///< of a layer; from the base up
     void copyUpperLayers(const AnimationController& other);
     void show();
     bool hasEvents() const;

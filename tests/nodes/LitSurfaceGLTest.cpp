@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+#include "nodes/LitSurfaceGLTest.h"
+
+#include <osg/LightModel>
+#include <osg/LightSource>
+
+namespace osgGpuAnimation
+{
+
+void setUniform(osg::Geometry& mesh, const char* name)
+{
+    mesh.getOrCreateStateSet()->getOrCreateUniform(name, osg::Uniform::BOOL)->set(true);
+}
+
+osg::ref_ptr<osg::Vec4Array> one(const osg::Vec4& color)
+{
+    return new osg::Vec4Array(1, &color);
+}
+
+osg::ref_ptr<osg::Group> LitSurfaceGLTest::lit(osg::Node* subject)
+{
+    osg::ref_ptr<osg::LightSource> root = new osg::LightSource;
+    root->addChild(subject);
+    osg::ref_ptr<osg::Light> light = new osg::Light(0);
+    light->setPosition(osg::Vec4(-0.3f, -1.0f, 0.4f, 0.0f));
+    light->setAmbient(osg::Vec4(0.05f, 0.05f, 0.05f, 1));
+    light->setDiffuse(osg::Vec4(0.6f, 0.5f, 0.7f, 1));
+    light->setSpecular(osg::Vec4(1, 1, 1, 1));
+    osg::ref_ptr<osg::LightModel> model = new osg::LightModel;
+    model->setLocalViewer(true); // shine as ours is: by where the eye is, and not on the texture but over it
+    model->setColorControl(osg::LightModel::SEPARATE_SPECULAR_COLOR);
+    root->setLight(light); // which sets its mode, too
+    osg::StateSet& state = *root->getOrCreateStateSet();
+    state.setMode(GL_LIGHTING, osg::StateAttribute::ON);
+    state.setAttributeAndModes(model);
+    viewer().setLightingMode(osg::View::NO_LIGHT);
+    return root;
+}
+
+} // namespace osgGpuAnimation

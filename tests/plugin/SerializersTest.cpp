@@ -13,6 +13,7 @@
 #include <osgGpuAnimation/nodes/AnimationUpdateCallback.h>
 #include <osgGpuAnimation/nodes/CharacterKeys.h>
 #include <osgGpuAnimation/nodes/CharacterProgram.h>
+#include <osgGpuAnimation/nodes/SurfaceState.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
 #include <osgGpuAnimation/nodes/RootMotionCallback.h>
 #include <osgGpuAnimation/nodes/TiltedHome.h>

@@ -21,9 +21,6 @@ osg::ref_ptr<osg::Program> characterProgram();
 /// Puts the program, its uniforms' defaults and a white texture on unit 0 (where there is none) into the state.
 void applyCharacterProgram(osg::StateSet& stateSet);
 
-/// Whether it is that texture or, by its name, a copy of it, from a file too: the program does without.
-bool isWhiteTexture(const osg::StateAttribute* texture);
-
 /// skin.glsl as a shader object, to be added to a program of one's own, whose vertex shader declares and calls
 ///
 ///     void osgGpuAnimationSkin(inout vec4 vertex, inout vec3 normal);

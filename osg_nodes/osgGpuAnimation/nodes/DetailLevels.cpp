@@ -4,7 +4,6 @@
 #include <osgGpuAnimation/animation/Bounds.h>
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/nodes/KeyPoses.h>
-#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 #include <osgGpuAnimation/nodes/SurfaceReduction.h>
 
 #include <glm/geometric.hpp>
@@ -51,7 +50,7 @@ bool isFinite(const glm::vec3& position)
 }
 
 /// Without poses where the mesh is nowhere in one.
-PosedSurface surfaceOf(const SkinnedGeometry& mesh, const AnimationSet& set)
+PosedSurface surfaceOf(const osg::Geometry& mesh, const AnimationSet& set, const DetailLevels::Skinning& skin)
 {
     PosedSurface surface;
     std::vector<AffineMatrix> palette;
@@ -59,7 +58,7 @@ PosedSurface surfaceOf(const SkinnedGeometry& mesh, const AnimationSet& set)
     for (const PoseInstruction& pose : keyPoses(set, poseCount))
     {
         Pose::evaluate(set, pose, AffineMatrix(), palette);
-        mesh.computePositions(palette, positions);
+        skin(palette, positions);
         surface.poses.emplace_back(positions.begin(), positions.end());
         const std::vector<glm::vec3>& posed = surface.poses.back();
         if (!posed.empty() && std::all_of(posed.begin(), posed.end(), isFinite)) continue;
@@ -113,7 +112,7 @@ std::vector<std::uint32_t> trianglesOf(const osg::PrimitiveSet& primitives, std:
 
 /// Whether posing the whole palette takes no more than working on the triangles does: of many small parts that move for
 /// themselves no levels are made.
-bool isWorthPoses(const SkinnedGeometry& mesh, const AnimationSet& set)
+bool isWorthPoses(const osg::Geometry& mesh, const AnimationSet& set)
 {
     std::size_t most = 0;
     for (const osg::ref_ptr<osg::PrimitiveSet>& primitives : mesh.getPrimitiveSetList())
@@ -136,13 +135,14 @@ int DetailLevels::levelOf(double error)
     return error > 0.0 && std::isfinite(error) ? std::ilogb(error) : allTriangles;
 }
 
-DetailLevels::DetailLevels(const SkinnedGeometry& mesh, const AnimationSet& set)
+DetailLevels::DetailLevels(const osg::Geometry& mesh, const AnimationSet& set, const Skinning& skin)
     : _vertices(mesh.getVertexArray()), _modifiedCount(_vertices ? _vertices->getModifiedCount() : 0)
 {
     for (const osg::ref_ptr<osg::PrimitiveSet>& primitives : mesh.getPrimitiveSetList())
         _primitives.push_back({primitives, primitives->getModifiedCount(), {}});
-    if (mesh.vertexCount() > mostVertices || !isWorthPoses(mesh, set)) return;
-    const PosedSurface surface = surfaceOf(mesh, set);
+    const std::size_t vertexCount = _vertices ? _vertices->getNumElements() : 0;
+    if (vertexCount > mostVertices || !isWorthPoses(mesh, set)) return;
+    const PosedSurface surface = surfaceOf(mesh, set, skin);
     if (surface.poses.empty()) return;
     const double size = sizeOf(boxAround(surface.poses.front()));
     if (!(size > 0.0)) return;
@@ -180,7 +180,7 @@ void DetailLevels::addSteps(const PosedSurface& surface, int finest, int coarses
     _coarsest = std::max(_coarsest, primitives.steps.back().level);
 }
 
-bool DetailLevels::isOf(const SkinnedGeometry& mesh) const
+bool DetailLevels::isOf(const osg::Geometry& mesh) const
 {
     if (mesh.getVertexArray() != _vertices || mesh.getNumPrimitiveSets() != _primitives.size()) return false;
     if (_vertices && _vertices->getModifiedCount() != _modifiedCount) return false;

@@ -3,11 +3,13 @@
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
 
-#include <osg/Array>
-#include <osg/PrimitiveSet>
+#include <osg/Geometry>
 #include <osg/State>
 
+#include <glm/vec3.hpp>
+
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <vector>
@@ -15,7 +17,6 @@
 namespace osgGpuAnimation
 {
 
-class SkinnedGeometry;
 struct PosedSurface;
 
 /// A mesh drawn with fewer triangles over the same vertices, so that palettes, influences, morph targets and what is
@@ -41,11 +42,15 @@ public:
     /// The level of at most that error; allTriangles where it is not above 0.
     static int levelOf(double error);
 
-    /// Takes time by points of the mesh times poses: see SurfaceReduction.
-    DetailLevels(const SkinnedGeometry& mesh, const AnimationSet& set);
+    /// The positions of the mesh in the pose of a palette (the set's paletteSize() entries): one a vertex.
+    using Skinning =
+        std::function<void(const std::vector<AffineMatrix>& palette, std::vector<glm::dvec3>& outPositions)>;
+
+    /// The cost grows with the mesh's points times poses: see SurfaceReduction.
+    DetailLevels(const osg::Geometry& mesh, const AnimationSet& set, const Skinning& skin);
 
     /// Whether it was made for what the mesh's arrays and primitives are now.
-    bool isOf(const SkinnedGeometry& mesh) const;
+    bool isOf(const osg::Geometry& mesh) const;
 
     /// The finest and the coarsest level that has triangles of its own; allTriangles: there is none.
     int finest() const { return _finest; }

@@ -1,23 +1,22 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/MeshDetail.h>
 
-#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
-
 namespace osgGpuAnimation
 {
 
-std::shared_ptr<const DetailLevels> MeshDetail::known(const SkinnedGeometry& mesh) const
+std::shared_ptr<const DetailLevels> MeshDetail::known(const osg::Geometry& mesh) const
 {
     std::shared_ptr<const DetailLevels> levels = std::atomic_load(&_levels);
     return levels && levels->isOf(mesh) ? levels : nullptr;
 }
 
-std::shared_ptr<const DetailLevels> MeshDetail::of(const SkinnedGeometry& mesh, const AnimationSet& set) const
+std::shared_ptr<const DetailLevels> MeshDetail::of(const osg::Geometry& mesh, const AnimationSet& set,
+                                                   const DetailLevels::Skinning& skin) const
 {
     if (std::shared_ptr<const DetailLevels> levels = known(mesh)) return levels;
     const std::lock_guard<std::mutex> lock(_mutex);
     if (std::shared_ptr<const DetailLevels> levels = known(mesh)) return levels;
-    auto made = std::make_shared<const DetailLevels>(mesh, set);
+    auto made = std::make_shared<const DetailLevels>(mesh, set, skin);
     std::atomic_store(&_levels, std::shared_ptr<const DetailLevels>(made));
     return made;
 }

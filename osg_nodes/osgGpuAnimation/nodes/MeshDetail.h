@@ -19,9 +19,10 @@ public:
     MeshDetail& operator=(const MeshDetail&) = delete;
 
     /// Several threads that ask wait for the one that makes them.
-    std::shared_ptr<const DetailLevels> of(const SkinnedGeometry& mesh, const AnimationSet& set) const;
+    std::shared_ptr<const DetailLevels> of(const osg::Geometry& mesh, const AnimationSet& set,
+                                           const DetailLevels::Skinning& skin) const;
     /// Null: they were not made, or are of what the mesh was before.
-    std::shared_ptr<const DetailLevels> known(const SkinnedGeometry& mesh) const;
+    std::shared_ptr<const DetailLevels> known(const osg::Geometry& mesh) const;
     /// When what the vertices go by has changed.
     void forget();
 

@@ -211,6 +211,13 @@ SkinnedGeometry::Colors SkinnedGeometry::colors() const
     return isWhite && !areMorphed ? Colors::White : Colors::Array;
 }
 
+std::shared_ptr<const DetailLevels> SkinnedGeometry::detailLevels(const AnimationSet& set) const
+{
+    return _detail.of(*this, set,
+                      [this](const std::vector<AffineMatrix>& palette, std::vector<glm::dvec3>& out)
+                      { computePositions(palette, out); });
+}
+
 void SkinnedGeometry::drawImplementation(osg::RenderInfo& renderInfo) const
 {
     osg::State& state = *renderInfo.getState();

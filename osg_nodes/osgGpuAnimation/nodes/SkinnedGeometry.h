@@ -98,7 +98,7 @@ public:
     Colors colors() const;
 
     /// Its levels of detail, see AnimatedCharacter::setPixelError(); made when first asked, by the poses of the set.
-    std::shared_ptr<const DetailLevels> detailLevels(const AnimationSet& set) const { return _detail.of(*this, set); }
+    std::shared_ptr<const DetailLevels> detailLevels(const AnimationSet& set) const;
     void forgetDetailLevels() { _detail.forget(); }
 
     /// What the passes that skin once go by. A number that no other mesh has:

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/SurfaceProgram.h>
 
-#include <osgGpuAnimation/nodes/CharacterProgram.h>
-
 #include <ShaderSources.h>
 
 #include <osg/GLExtensions>
@@ -20,25 +18,6 @@ namespace
 osg::Shader* makeShader(osg::Shader::Type type, const SurfaceState& surface, const char* source)
 {
     return new osg::Shader(type, "#version 140\n" + surface.defines() + source);
-}
-
-bool linksSkin(const osg::Program& program)
-{
-    const osg::ref_ptr<osg::Shader> skin = skinShader();
-    for (unsigned int i = 0; i < program.getNumShaders(); ++i)
-        if (program.getShader(i) == skin) return true;
-    return false;
-}
-
-/// The outermost program above that overrides and can skin; null: there is none.
-const osg::Program* overriding(osg::State& state, const osg::Program& program)
-{
-    for (const auto& [attribute, value] : state.getAttributeVec(&program))
-    {
-        const auto* other = dynamic_cast<const osg::Program*>(attribute);
-        if ((value & osg::StateAttribute::OVERRIDE) && other && other != &program && linksSkin(*other)) return other;
-    }
-    return nullptr;
 }
 
 void setShadowUnits(osg::State& state)
@@ -74,7 +53,26 @@ void setMaterial(osg::State& state)
     gl.glUniform4fv(applied->getUniformLocation(emissionName), 1, emission.ptr());
 }
 
+osg::ref_ptr<osg::Texture2D> makeWhiteTexture()
+{
+    osg::ref_ptr<osg::Image> image = new osg::Image;
+    image->allocateImage(1, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE);
+    image->setColor(osg::Vec4(1, 1, 1, 1), 0, 0);
+    osg::ref_ptr<osg::Texture2D> white = new osg::Texture2D(image);
+    white->setName(whiteTextureName);
+    // OSG's default, GL_CLAMP, mixes in the black border.
+    white->setWrap(osg::Texture::WRAP_S, osg::Texture::REPEAT);
+    white->setWrap(osg::Texture::WRAP_T, osg::Texture::REPEAT);
+    return white;
+}
+
 } // namespace
+
+osg::ref_ptr<osg::Texture2D> whiteTexture()
+{
+    static SharedObject<osg::Texture2D> shared;
+    return shared.get(makeWhiteTexture);
+}
 
 SurfaceProgram::SurfaceProgram(const SurfaceProgram& other, const osg::CopyOp& copyop) : osg::Program(other, copyop) {}
 
@@ -85,16 +83,36 @@ osg::ref_ptr<osg::Program> SurfaceProgram::variant(const SurfaceState& surface) 
     if (program) return program;
     program = new osg::Program;
     program->setName("osgGpuAnimation character");
-    program->addShader(skinShader());
+    for (unsigned int i = 0; i < getNumShaders(); ++i)
+        program->addShader(const_cast<osg::Shader*>(getShader(i)));
+    for (const auto& [name, location] : getAttribBindingList())
+        program->addBindAttribLocation(name, location);
     program->addShader(makeShader(osg::Shader::VERTEX, surface, shaders::character_vert));
     program->addShader(makeShader(osg::Shader::FRAGMENT, surface, shaders::character_frag));
-    bindSkinAttributes(*program);
     return program;
+}
+
+bool SurfaceProgram::sharesSkin(const osg::Program& other) const
+{
+    for (unsigned int i = 0; i < other.getNumShaders(); ++i)
+        if (other.getShader(i) == getShader(0)) return true;
+    return false;
+}
+
+/// The outermost program above that overrides and can skin; null: there is none.
+const osg::Program* SurfaceProgram::overriding(osg::State& state) const
+{
+    for (const auto& [attribute, value] : state.getAttributeVec(this))
+    {
+        const auto* other = dynamic_cast<const osg::Program*>(attribute);
+        if ((value & osg::StateAttribute::OVERRIDE) && other && other != this && sharesSkin(*other)) return other;
+    }
+    return nullptr;
 }
 
 void SurfaceProgram::apply(osg::State& state) const
 {
-    if (const osg::Program* other = overriding(state, *this))
+    if (const osg::Program* other = overriding(state))
         other->apply(state);
     else
     {

@@ -3,7 +3,9 @@
 
 #include <osgGpuAnimation/nodes/SurfaceState.h>
 
+#include <osg/observer_ptr>
 #include <osg/Program>
+#include <osg/Texture2D>
 
 #include <map>
 #include <mutex>
@@ -11,8 +13,31 @@
 namespace osgGpuAnimation
 {
 
+/// An object that all users share, made by the first. It lives as long as some scene has it: OSG releases the GL
+/// objects of what is in scenes when a context is closed, and an object that outlives them would keep stale ones.
+template <typename Object>
+class SharedObject
+{
+public:
+    template <typename Make>
+    osg::ref_ptr<Object> get(Make make)
+    {
+        const std::lock_guard<std::mutex> lock(_mutex);
+        osg::ref_ptr<Object> object;
+        if (_object.lock(object)) return object;
+        object = make();
+        _object = object.get();
+        return object;
+    }
+
+private:
+    std::mutex _mutex;
+    osg::observer_ptr<Object> _object;
+};
+
 /// The attribute behind characterProgram(): a program for each SurfaceState there is, made when it is first met. It
-/// looks at the state each time that a StateSet with it is applied.
+/// reads the state each time that a StateSet with it is applied. Every permutation links the shaders, and binds the
+/// attributes, of this program; the first shader is skin.glsl.
 ///
 /// It is meant to be set PROTECTED, so that programs that override from above (osgShadow's casting cameras, osgFX)
 /// do not draw the bind pose. One that overrides and links skin.glsl itself is given way to.
@@ -46,8 +71,14 @@ protected:
     ~SurfaceProgram() override = default;
 
 private:
+    bool sharesSkin(const osg::Program& other) const;
+    const osg::Program* overriding(osg::State& state) const;
+
     mutable std::mutex _mutex; ///< draw threads of several contexts make variants
     mutable std::map<SurfaceState, osg::ref_ptr<osg::Program>> _variants;
 };
+
+/// One white texel, shared by all: for meshes without a texture where another program samples unit 0.
+osg::ref_ptr<osg::Texture2D> whiteTexture();
 
 } // namespace osgGpuAnimation

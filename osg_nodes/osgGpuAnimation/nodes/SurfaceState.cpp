@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/SurfaceState.h>
 
-#include <osgGpuAnimation/nodes/CharacterProgram.h>
 #include <osgGpuAnimation/nodes/DepthPass.h>
 
 #include <osg/ColorMask>
@@ -192,6 +191,11 @@ std::string SurfaceState::defines() const
            line("DRAW_POINT_LIGHTS", pointLights) + line("DRAW_SHADOW_MAPS", shadowMaps) +
            line("DRAW_SHADOW_BIAS", hasShadowBias) + line("DRAW_SHADOW_SPLITS", hasShadowSplits) +
            line("DRAW_FOG", static_cast<unsigned int>(fog));
+}
+
+bool isWhiteTexture(const osg::StateAttribute* texture)
+{
+    return texture && texture->getName() == whiteTextureName;
 }
 
 } // namespace osgGpuAnimation

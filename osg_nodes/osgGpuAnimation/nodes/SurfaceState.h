@@ -56,4 +56,9 @@ private:
     }
 };
 
+/// Whether it is whiteTexture() or, by its name, a copy of it, from a file too: shaders leave the texture out.
+bool isWhiteTexture(const osg::StateAttribute* texture);
+/// The name of whiteTexture(): copies and files keep it, and draw threads need no lock to compare it.
+constexpr const char* whiteTextureName = "osgGpuAnimation white";
+
 } // namespace osgGpuAnimation

@@ -49,12 +49,10 @@
 #define POSE_PLACEMENT_ROW_2_LOCATION 10
 #define POSE_PLACED_POSE_LOCATION 11
 
-// The texture units the palette, a mesh's morph targets, the instances' tints and a mesh's skinned vertices are bound to
-// while it is drawn.
+// The texture units that hold the palette, a mesh's morph targets and the instances' tints during its draw.
 #define POSE_PALETTE_UNIT 11
 #define POSE_MORPH_UNIT 12
 #define POSE_TINT_UNIT 13
-#define POSE_SKINNED_UNIT 14
 
 // Morph targets of a mesh: RGBA32F, for each vertex, each target, the channels it has: position, normal, colour, texture
 // coordinate. Weights come from palette entries of weights, twelve each.

@@ -7,9 +7,8 @@
 // colour. Attributes are bound to the locations of layout.glsl; SkinnedGeometry sets the uniforms when it draws.
 //
 // What a mesh does not need may be left out by OSG's shader defines (StateSet::setDefine, see applySkinDefines): some
-// drivers (llvmpipe) run both sides of every branch. Without them the uniforms decide. POSE_SKINNED is set where a pass of
-// the frame has skinned the mesh already (Skinning::Once): then the function reads what came out.
-#pragma import_defines(POSE_INFLUENCES, POSE_NO_MORPHS, POSE_PLACED, POSE_SKINNED)
+// drivers (llvmpipe) run both sides of every branch. Without them the uniforms decide.
+#pragma import_defines(POSE_INFLUENCES, POSE_NO_MORPHS, POSE_PLACED)
 
 uniform samplerBuffer posePalette; // entry e of instance i: rows at texel (e * poseStride + i) * 3
 uniform int poseStride;
@@ -22,11 +21,6 @@ uniform ivec4 poseMorphChannels;       // channels a target has; the place of no
 
 uniform samplerBuffer poseTints; // by instance
 uniform bool poseTinted;
-
-#ifdef POSE_SKINNED
-uniform samplerBuffer poseSkinned; // by instance, by vertex: its position and, where POSE_SKINNED is 2, its normal
-uniform ivec2 poseSkinnedPlace;    // the first instance that is there, vertices an instance
-#endif
 
 #ifndef POSE_INFLUENCES
 #define POSE_INFLUENCES poseInfluences
@@ -125,17 +119,7 @@ void osgGpuAnimationMove(mat3x4 rows, inout vec4 vertex, inout vec3 normal)
     normal = dot(rows[0].xyz, cofactor0) < 0.0 ? -turned : turned;
 }
 
-#ifdef POSE_SKINNED
-void osgGpuAnimationPose(inout vec4 vertex, inout vec3 normal)
-{
-    int number = (osgGpuAnimationInstance() - poseSkinnedPlace.x) * poseSkinnedPlace.y + gl_VertexID;
-    vertex.xyz = texelFetch(poseSkinned, number * POSE_SKINNED).xyz;
-#if POSE_SKINNED == 2
-    normal = texelFetch(poseSkinned, number * POSE_SKINNED + 1).xyz;
-#endif
-}
-#else
-void osgGpuAnimationPose(inout vec4 vertex, inout vec3 normal)
+void osgGpuAnimationSkin(inout vec4 vertex, inout vec3 normal)
 {
     if (POSE_MORPH_TARGETS > 0)
     {
@@ -145,12 +129,6 @@ void osgGpuAnimationPose(inout vec4 vertex, inout vec3 normal)
     mat3x4 rows = osgGpuAnimationBlend(poseEntries0, poseWeights0, POSE_INFLUENCES);
     if (POSE_INFLUENCES > 4) rows += osgGpuAnimationBlend(poseEntries1, poseWeights1, POSE_INFLUENCES - 4);
     osgGpuAnimationMove(rows, vertex, normal);
-}
-#endif
-
-void osgGpuAnimationSkin(inout vec4 vertex, inout vec3 normal)
-{
-    osgGpuAnimationPose(vertex, normal);
 #ifdef POSE_PLACED
     osgGpuAnimationMove(mat3x4(posePlacementRow0, posePlacementRow1, posePlacementRow2), vertex, normal);
 #endif

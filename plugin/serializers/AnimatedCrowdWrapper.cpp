@@ -66,14 +66,11 @@ void readPixelError(ValueReader& in, AnimatedCrowd& crowd)
     if (!taken) in.fail("a crowd: " + taken.error().message);
 }
 
-void readUpdateRate(ValueReader& in, AnimatedCrowd& crowd)
+/// Scenes of older versions may have an update rate: it is read and dropped.
+void skipUpdateRate(ValueReader& in)
 {
-    UpdateRate rate;
-    rate.every = static_cast<unsigned int>(in.integer("updates from one pose to the next", 1, UpdateRate::maxEvery));
-    rate.pixels = static_cast<float>(in.real());
-    if (!in.isGood()) return;
-    const Result<bool> taken = crowd.setUpdateRate(rate);
-    if (!taken) in.fail("a crowd: " + taken.error().message);
+    in.integer("updates from one pose to the next", 1, 16);
+    in.real();
 }
 
 /// What else is in a crowd of the version: what is as by default stays readable for what knows older ones.
@@ -81,13 +78,11 @@ enum Version : std::int32_t
 {
     plain = 1,
     withPixelError = 2,
-    withUpdateRate = 3, ///< after the pixel error
+    withUpdateRate = 3, ///< after the pixel error; not written any more
 };
 
 Version versionOf(const AnimatedCrowd& crowd)
 {
-    const UpdateRate& rate = crowd.updateRate();
-    if (rate.every > 1 || rate.pixels > 0.0f) return withUpdateRate;
     return crowd.pixelError() > 0.0f ? withPixelError : plain;
 }
 
@@ -157,9 +152,6 @@ static bool writeInstances(osgDB::OutputStream& stream, const AnimatedCrowd& cro
     const Version version = versionOf(crowd);
     out.integer(version).real(crowd.origin().x()).real(crowd.origin().y()).real(crowd.origin().z());
     if (version >= withPixelError) out.real(static_cast<double>(crowd.pixelError()));
-    if (version >= withUpdateRate)
-        out.integer(static_cast<std::int32_t>(crowd.updateRate().every))
-            .real(static_cast<double>(crowd.updateRate().pixels));
     out.endLine();
     out.open("List", crowd.size());
     for (std::size_t index = 0; index < crowd.size(); ++index)
@@ -175,7 +167,7 @@ static bool readInstances(osgDB::InputStream& stream, AnimatedCrowd& crowd)
     const double x = in.real(), y = in.real();
     crowd.setOrigin(osg::Vec3d(x, y, in.real()));
     if (version >= withPixelError) readPixelError(in, crowd);
-    if (version >= withUpdateRate) readUpdateRate(in, crowd);
+    if (version >= withUpdateRate) skipUpdateRate(in);
     const std::size_t count = in.open("List");
     for (std::size_t i = 0; i < count && in.isGood(); ++i)
         readInstance(in, crowd);

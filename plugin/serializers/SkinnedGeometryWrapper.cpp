@@ -96,22 +96,21 @@ static bool readMorphTargets(osgDB::InputStream& stream, SkinnedGeometry& mesh)
     return in.isGood();
 }
 
-static bool checkSkinning(const SkinnedGeometry& mesh)
+// Scenes of older versions may say when a mesh is skinned: the value is read and dropped.
+static bool checkSkinning(const SkinnedGeometry&)
 {
-    return mesh.skinning() != Skinning::Auto;
+    return false;
 }
 
-static bool writeSkinning(osgDB::OutputStream& stream, const SkinnedGeometry& mesh)
+static bool writeSkinning(osgDB::OutputStream&, const SkinnedGeometry&)
 {
-    ValueWriter(stream).integer(static_cast<int>(mesh.skinning())).endLine();
     return true;
 }
 
-static bool readSkinning(osgDB::InputStream& stream, SkinnedGeometry& mesh)
+static bool readSkinning(osgDB::InputStream& stream, SkinnedGeometry&)
 {
     ValueReader in(stream);
-    const std::int32_t skinning = in.integer("when a mesh is skinned", 0, static_cast<int>(Skinning::Once));
-    if (in.isGood()) mesh.setSkinning(static_cast<Skinning>(skinning));
+    in.integer("when a mesh is skinned", 0, 2);
     return in.isGood();
 }
 

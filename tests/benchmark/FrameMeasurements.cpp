@@ -16,23 +16,6 @@ namespace
 
 constexpr float pixelError = 0.5f;
 
-/// Moves all instances of a crowd on in each update.
-class Walk : public osg::NodeCallback
-{
-public:
-    void operator()(osg::Node* node, osg::NodeVisitor* visitor) override
-    {
-        auto& crowd = static_cast<AnimatedCrowd&>(*node);
-        for (std::size_t index = 0; index < crowd.size(); ++index)
-        {
-            const AnimatedCrowd::Instance instance = crowd.instances().handleOf(index);
-            static_cast<void>(
-                crowd.move(instance, osg::Matrixd::translate(1e-3, 0.0, 0.0) * crowd.placement(instance)));
-        }
-        traverse(node, visitor);
-    }
-};
-
 /// One a subject.
 std::string framePlot(const Subject& subject)
 {
@@ -228,28 +211,6 @@ Result<bool> measureCrowd(const Subject& subject, const Effort& effort, Report& 
         row.isMet = row.ours.median <= 0.15;
         report.add(row);
     }
-    return true;
-}
-
-Result<bool> measureUpdateRate(const Subject& subject, const Effort& effort, Report& report)
-{
-    std::cerr << subject.name << ": update rates" << std::endl;
-    CrowdScene rated(subject, effort.frameCount), always(subject, effort.frameCount);
-    if (const auto set = rated.root->setUpdateRate(UpdateRate{4, 1e6f}); !set) return set.error();
-    std::vector<Contestant> contestants;
-    for (const CrowdScene* scene : {&rated, &always})
-    {
-        scene->root->addUpdateCallback(new Walk);
-        Result<Contestant> made = contestant(scene->root, scene->root->getBound());
-        if (!made) return made.error();
-        contestants.push_back(std::move(made.value()));
-    }
-    race(contestants, effort.rounds);
-    if (const std::string wrong = check(contestants); !wrong.empty()) return Error{wrong};
-    report.add(
-        named(compared(contestants[0].whole, contestants[1].whole, 1e3 / static_cast<double>(effort.frameCount), true),
-              subject, effort.frameCount, "whole frame of a walking crowd, poses every 4th update", "ms a character",
-              "poses in every update"));
     return true;
 }
 

@@ -34,14 +34,8 @@ Result<bool> measureFrames(const Subject& subject, const Effort& effort, Report&
 /// Skinned draws against the same meshes and shader without skinning, and against the least that draws the triangles.
 Result<bool> measureDraws(const Subject& subject, const Effort& effort, Report& report);
 
-/// Meshes skinned by every draw against those skinned once a frame.
-Result<bool> measureSkinning(const Subject& subject, const Effort& effort, Report& report);
-
 /// One crowd node against as many separate nodes: whole frames, and what the CPU does of them.
 Result<bool> measureCrowd(const Subject& subject, const Effort& effort, Report& report);
-
-/// A crowd whose instances get poses every fourth update, all of them moving, against the same with poses in each.
-Result<bool> measureUpdateRate(const Subject& subject, const Effort& effort, Report& report);
 
 /// Bytes and the first frame of many characters.
 Result<bool> measureStart(const Subject& subject, const Effort& effort, Report& report);

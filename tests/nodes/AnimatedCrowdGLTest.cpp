@@ -11,6 +11,8 @@
 #include <osg/Texture2D>
 #include <osgUtil/Optimizer>
 
+#include <map>
+
 namespace osgGpuAnimation
 {
 
@@ -211,6 +213,42 @@ TEST_F(AnimatedCrowdGLTest, tintsMultiplyTheColour)
     ASSERT_TRUE(crowd->setTint(red, {1, 1, 1, 1}));
     drawAt(2);
     EXPECT_EQ(colorAt(52, 36), "255 255 255");
+}
+
+// The last instance takes the index of a removed one: place, bounds, tint and clip go with it, and so does its name.
+TEST_F(AnimatedCrowdGLTest, whenSomeAreRemovedTheOthersKeepWhatIsTheirs)
+{
+    using Names = std::map<int, AnimatedCrowd::Instance>;
+    const auto add = [](AnimatedCrowd& crowd, std::initializer_list<int> numbers)
+    {
+        Names names;
+        for (const int number : numbers)
+        {
+            // The first three lie outside the view.
+            const osg::Matrixd place = number < 3 ? osg::Matrix::translate(20 + number, 0, 0) : placeOf(number - 3);
+            const osg::Vec4 tint(number % 2, number / 2 % 2, number / 4 % 2, 1);
+            names[number] = crowd.add(place, controllerOf(number), tint).value();
+        }
+        return names;
+    };
+    const auto change = [](AnimatedCrowd& crowd, const Names& names)
+    {
+        EXPECT_TRUE(crowd.setTint(names.at(14), {0.5f, 0.25f, 1, 1}));
+        EXPECT_TRUE(crowd.move(names.at(13), osg::Matrix::translate(-4, 0, 2.5)));
+        EXPECT_TRUE(crowd.move(names.at(5), osg::Matrix::translate(0.5, 0, -3.5)));
+    };
+    const osg::ref_ptr<AnimatedCrowd> fewer = new AnimatedCrowd(*makeTestCharacter());
+    fewer->setOrigin(osg::Vec3d());
+    change(*fewer, add(*fewer, {1, 2, 3, 5, 6, 7, 8, 9, 10, 11, 13, 14}));
+    const osg::ref_ptr<osg::Image> expected = pictureOf(fewer, {0.0, 0.5});
+    EXPECT_GT(picture().pixelsDrawn(), 8 * 64);
+    const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*makeTestCharacter());
+    crowd->setOrigin(osg::Vec3d());
+    const Names names = add(*crowd, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14});
+    for (const int number : {0, 12, 4})
+        EXPECT_TRUE(crowd->remove(names.at(number)));
+    change(*crowd, names);
+    EXPECT_EQ(Picture::pixelsDifferent(*expected, *pictureOf(crowd, {0.0, 0.5})), 0);
 }
 
 TEST_F(AnimatedCrowdGLTest, farOutItKeepsItsPlaceToThePixel)

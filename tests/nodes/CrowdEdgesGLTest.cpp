@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include "nodes/Tube.h"
+#include "support/PrimitiveCount.h"
 #include "support/TestCharacter.h"
 #include "support/ViewerGLTest.h"
 
@@ -151,6 +153,42 @@ TEST_F(CrowdEdgesGLTest, aSceneViewWithoutAFrameStampDrawsItToo)
     renderInfo.pushCamera(viewer().getCamera());
     drawn(renderInfo);
     EXPECT_EQ(drawn.pixelsDrawn(), 2 * 64);
+}
+
+// Instances of one level of detail are drawn together: the draws of the others begin in the midst of the batch.
+TEST_F(CrowdEdgesGLTest, tintsAreTheInstancesOwnAtEveryLevelOfDetail)
+{
+    const osg::ref_ptr<AnimatedCharacter> tube = makeTubeCharacter(armSet());
+    const osg::ref_ptr<PrimitiveCount> count = new PrimitiveCount;
+    count->attach(*viewer().getCamera(), picture());
+    viewer().getCamera()->setProjectionMatrixAsPerspective(30, 1, 1, 1000);
+    const auto makeCrowd = [&]
+    {
+        osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*tube);
+        EXPECT_TRUE(crowd->setPixelError(0.25f));
+        crowd->setOrigin(osg::Vec3d());
+        return crowd;
+    };
+    const osg::ref_ptr<AnimatedCrowd> all = makeCrowd();
+    const osg::ref_ptr<osg::Group> alone = new osg::Group;
+    GLuint primitivesAlone = 0;
+    for (int i = 0; i < 6; ++i)
+    {
+        const double away = i % 3 == 0 ? 45.0 : i % 3 == 1 ? 90.0 : 180.0;
+        const osg::Matrixd place =
+            osg::Matrixd::translate((i < 3 ? -0.2 : 0.03) * away, away - 10.0, (i % 3 - 1) * 0.16 * away);
+        const osg::Vec4 tint(0.3f * static_cast<float>(i % 3), i < 3 ? 0.3f : 0.6f, 1, 1);
+        ASSERT_TRUE(all->add(place, tube->controller(), tint));
+        const osg::ref_ptr<AnimatedCrowd> one = makeCrowd();
+        ASSERT_TRUE(one->add(place, tube->controller(), tint));
+        alone->addChild(one);
+        pictureOf(one, {0.0});
+        EXPECT_NE(count->primitives(), primitivesAlone) << "a level of its own, " << i;
+        primitivesAlone = count->primitives();
+    }
+    const osg::ref_ptr<osg::Image> expected = pictureOf(alone, {0.0});
+    EXPECT_GT(picture().pixelsDrawn(), 100);
+    EXPECT_EQ(Picture::pixelsDifferent(*expected, *pictureOf(all, {0.0})), 0);
 }
 
 } // namespace

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include "nodes/Tube.h"
-#include "support/MeshSkinning.h"
 #include "support/PrimitiveCount.h"
 #include "support/ViewerGLTest.h"
 
@@ -33,7 +32,6 @@ enum class Surface
     Plain,
     Transparent, ///< as a glTF material with alphaMode BLEND has it
     Morphed,
-    MorphedOnce,
 };
 
 using MakeShadows = osgShadow::ShadowTechnique* (*)();
@@ -62,9 +60,7 @@ void makeTransparent(osg::StateSet& state)
 
 osg::ref_ptr<AnimatedCharacter> makeCharacter(Surface surface)
 {
-    const bool hasMorph = surface == Surface::Morphed || surface == Surface::MorphedOnce;
-    osg::ref_ptr<AnimatedCharacter> tube = makeTubeCharacter(armSet(hasMorph));
-    setSkinning(*tube, surface == Surface::MorphedOnce ? Skinning::Once : Skinning::EveryDraw);
+    osg::ref_ptr<AnimatedCharacter> tube = makeTubeCharacter(armSet(surface == Surface::Morphed));
     if (surface == Surface::Transparent) makeTransparent(*tube->getChild(0)->getOrCreateStateSet());
     return tube;
 }
@@ -188,7 +184,7 @@ TEST_P(DetailPicturesGLTest, lookAsWithAllTriangles)
 INSTANTIATE_TEST_SUITE_P(
     Cases, DetailPicturesGLTest,
     ::testing::Values(PictureCase{"Plain", Surface::Plain}, PictureCase{"Transparent", Surface::Transparent},
-                      PictureCase{"Morphed", Surface::Morphed}, PictureCase{"MorphedOnce", Surface::MorphedOnce},
+                      PictureCase{"Morphed", Surface::Morphed},
                       PictureCase{"ShadowMap", Surface::Morphed, make<osgShadow::ShadowMap>},
                       PictureCase{"ViewDependentShadowMap", Surface::Morphed, make<osgShadow::ViewDependentShadowMap>},
                       PictureCase{"StandardShadowMap", Surface::Morphed, make<osgShadow::StandardShadowMap>},

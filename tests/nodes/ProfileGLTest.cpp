@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "nodes/Panel.h"
-#include "support/MeshSkinning.h"
 #include "support/TestCharacter.h"
 #include "support/ViewerGLTest.h"
 
-#include <osgGpuAnimation/gpu/SkinnedVertices.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 
 #include <osg/GLExtensions>
@@ -86,7 +84,7 @@ protected:
         // An OSG with the fixed pipeline puts a Material here, which is an error in the core profile.
         viewer().getCamera()->getOrCreateStateSet()->clear();
         viewer().setLightingMode(osg::View::NO_LIGHT);
-        return ViewerGLTest::pictureOf(scene, {0, 0.25, 0.5}); // the third frame is the first to be skinned once
+        return ViewerGLTest::pictureOf(scene, {0, 0.25, 0.5});
     }
 
 private:
@@ -115,16 +113,9 @@ TEST_P(ProfilesGLTest, charactersAndCrowdsLookTheSame)
     changeTo(GetParam());
     ASSERT_EQ(context().isCoreProfile(), GetParam().profileMask == 1);
     osg::setNotifyHandler(new Warnings); // of the fixed pipeline in the core profile, see below
-    for (const Skinning skinning : skinnings)
-    {
-        const osg::ref_ptr<osg::Group> scene = makeScene();
-        setSkinning(*scene, skinning);
-        const osg::ref_ptr<osg::Image> found = pictureOf(scene);
-        // Multisampling softens edges: four panels' worth of 16 pixels each, twice.
-        EXPECT_LE(Picture::pixelsDifferent(*expected, *found), GetParam().samples > 0 ? 4 * 4 * 16 * 2 : 0)
-            << nameOf(skinning);
-        EXPECT_EQ(SkinnedVertices::of(state()).bytes() > 0, skinning == Skinning::Once);
-    }
+    const osg::ref_ptr<osg::Image> found = pictureOf(makeScene());
+    // Multisampling softens edges: four panels' worth of 16 pixels each, twice.
+    EXPECT_LE(Picture::pixelsDifferent(*expected, *found), GetParam().samples > 0 ? 4 * 4 * 16 * 2 : 0);
     osg::setNotifyHandler(new osg::StandardNotifyHandler);
     if (context().isCoreProfile()) takeGLErrors();
 }
@@ -151,23 +142,19 @@ public:
 TEST_P(ProfilesGLTest, leavesNoGlErrors)
 {
     changeTo(GetParam());
-    for (const Skinning skinning : skinnings)
-    {
-        osg::ref_ptr<osg::Group> scene = makeScene();
-        setSkinning(*scene, skinning);
-        osg::ref_ptr<ErrorNotes> notes = new ErrorNotes;
-        static_cast<osg::Drawable&>(*scene->getChild(0)->asGroup()->getChild(0)).setDrawCallback(notes);
-        osg::ref_ptr<Warnings> warnings = new Warnings;
-        osg::setNotifyHandler(warnings);
-        pictureOf(scene);
-        osg::setNotifyHandler(new osg::StandardNotifyHandler);
-        EXPECT_EQ(notes->draws, 6); // the character's and the crowd's, three frames
-        EXPECT_EQ(notes->errors, 0) << nameOf(skinning);
-        if (context().isCoreProfile())
-            takeGLErrors();
-        else
-            EXPECT_TRUE(warnings->texts.empty()) << warnings->texts.front();
-    }
+    osg::ref_ptr<osg::Group> scene = makeScene();
+    osg::ref_ptr<ErrorNotes> notes = new ErrorNotes;
+    static_cast<osg::Drawable&>(*scene->getChild(0)->asGroup()->getChild(0)).setDrawCallback(notes);
+    osg::ref_ptr<Warnings> warnings = new Warnings;
+    osg::setNotifyHandler(warnings);
+    pictureOf(scene);
+    osg::setNotifyHandler(new osg::StandardNotifyHandler);
+    EXPECT_EQ(notes->draws, 6); // the character's and the crowd's, three frames
+    EXPECT_EQ(notes->errors, 0);
+    if (context().isCoreProfile())
+        takeGLErrors();
+    else
+        EXPECT_TRUE(warnings->texts.empty()) << warnings->texts.front();
 }
 
 /// While it lives, the context's functions are those of OpenGL 2.1. (OSG keeps them for the next context of its

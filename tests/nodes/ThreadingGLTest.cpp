@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "support/MeshSkinning.h"
 #include "support/TestCharacter.h"
 #include "support/ThreadingModels.h"
 #include "support/ViewerGLTest.h"
 
-#include <osgGpuAnimation/gpu/SkinnedVertices.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 
 #include <osg/Group>
@@ -17,9 +15,8 @@ namespace
 
 using Threading = osgViewer::ViewerBase::ThreadingModel;
 
-/// The same frames under every threading model of osgViewer, skinned by every draw and once: what is drawn is the pose
-/// of the frame's own time.
-class ThreadingGLTest : public ViewerGLTest, public ::testing::WithParamInterface<std::tuple<Threading, Skinning>>
+/// Draws the same frames under every threading model of osgViewer: each frame shows the poses of its own time.
+class ThreadingGLTest : public ViewerGLTest, public ::testing::WithParamInterface<Threading>
 {
 protected:
     static osg::ref_ptr<osg::Group> scene()
@@ -40,20 +37,15 @@ protected:
         return group;
     }
 
-    /// Draws frames at times 0, 0.1 … and gives the last one's picture. The way to skin changes each frame to the next
-    /// of those given.
-    osg::ref_ptr<osg::Image> drawn(Threading model, const std::vector<Skinning>& ways)
+    /// Draws frames at times 0, 0.1 … and returns the last one's picture.
+    osg::ref_ptr<osg::Image> drawn(Threading model)
     {
         context().releaseContext();
         viewer().setThreadingModel(model);
-        const osg::ref_ptr<osg::Group> group = scene();
-        viewer().setSceneData(group);
+        viewer().setSceneData(scene());
         viewer().realize();
-        for (std::size_t frame = 0; frame <= 30; ++frame)
-        {
-            setSkinning(*group, ways[frame % ways.size()]);
-            viewer().frame(0.1 * static_cast<double>(frame));
-        }
+        for (int frame = 0; frame <= 30; ++frame)
+            viewer().frame(0.1 * frame);
         viewer().stopThreading();
         context().makeCurrent();
         return picture().copy();
@@ -62,26 +54,13 @@ protected:
 
 TEST_P(ThreadingGLTest, drawsTheFramesOwnPoses)
 {
-    const auto [model, skinning] = GetParam();
-    const osg::ref_ptr<osg::Image> expected = drawn(osgViewer::ViewerBase::SingleThreaded, {Skinning::EveryDraw});
+    const osg::ref_ptr<osg::Image> expected = drawn(osgViewer::ViewerBase::SingleThreaded);
     EXPECT_GT(picture().pixelsDrawn(), 200);
-    const osg::ref_ptr<osg::Image> found = drawn(model, {skinning});
+    const osg::ref_ptr<osg::Image> found = drawn(GetParam());
     EXPECT_EQ(Picture::pixelsDifferent(*expected, *found), 0);
-    EXPECT_EQ(SkinnedVertices::of(state()).instancesSkinned() > 0, skinning == Skinning::Once);
 }
 
-TEST_P(ThreadingGLTest, theWayToSkinMayChangeWhileItRuns)
-{
-    const auto [model, skinning] = GetParam();
-    const osg::ref_ptr<osg::Image> expected = drawn(osgViewer::ViewerBase::SingleThreaded, {Skinning::EveryDraw});
-    const osg::ref_ptr<osg::Image> found =
-        drawn(model, {Skinning::Once, Skinning::Once, Skinning::Once, skinning, Skinning::Auto});
-    EXPECT_EQ(Picture::pixelsDifferent(*expected, *found), 0);
-    EXPECT_GT(SkinnedVertices::of(state()).instancesSkinned(), 0u);
-}
-
-INSTANTIATE_TEST_SUITE_P(Models, ThreadingGLTest,
-                         ::testing::Combine(::testing::ValuesIn(threadingModels), ::testing::ValuesIn(skinnings)));
+INSTANTIATE_TEST_SUITE_P(Models, ThreadingGLTest, ::testing::ValuesIn(threadingModels));
 
 } // namespace
 

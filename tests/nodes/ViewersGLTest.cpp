@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "support/MeshSkinning.h"
 #include "support/NotifyLog.h"
 #include "support/TestCharacter.h"
 #include "support/ThreadingModels.h"
@@ -20,7 +19,7 @@ namespace
 using Threading = osgViewer::ViewerBase::ThreadingModel;
 
 /// Several characters and a crowd at their own speeds.
-osg::ref_ptr<osg::Group> makeScene(Skinning skinning = Skinning::EveryDraw)
+osg::ref_ptr<osg::Group> makeScene()
 {
     osg::ref_ptr<osg::Group> group = new osg::Group;
     for (int i = 0; i < 4; ++i)
@@ -36,7 +35,6 @@ osg::ref_ptr<osg::Group> makeScene(Skinning skinning = Skinning::EveryDraw)
     EXPECT_TRUE(crowd->add(osg::Matrix::translate(1.5, 0, 2), controller));
     EXPECT_TRUE(crowd->add(osg::Matrix::translate(1.5, 0, -2), controller));
     group->addChild(crowd);
-    setSkinning(*group, skinning);
     return group;
 }
 
@@ -80,7 +78,6 @@ struct TwoContextsCase
 {
     const char* name;
     bool areShared; ///< one context number for both, GL objects too
-    Skinning skinning;
 };
 
 void PrintTo(const TwoContextsCase& contexts, std::ostream* out)
@@ -111,10 +108,10 @@ TEST_P(TwoContextsGLTest, aSlaveCameraOnAContextOfItsOwnShowsTheSameUnderEveryTh
     both.setSceneData(scene);
     both.realize();
     // Comes when the contexts are there, and something else has come and gone before.
-    scene->addChild(makeScene(GetParam().skinning)->getChild(0));
+    scene->addChild(makeScene()->getChild(0));
     both.frame(0);
     scene->removeChildren(0, 1);
-    scene->addChild(makeScene(GetParam().skinning));
+    scene->addChild(makeScene());
     both.frame(0); // clips begin here
     int frame = 0;
     // Switched while it runs; each model draws a few frames and ends with one at the time looked at.
@@ -135,25 +132,17 @@ TEST_P(TwoContextsGLTest, aSlaveCameraOnAContextOfItsOwnShowsTheSameUnderEveryTh
 }
 
 INSTANTIATE_TEST_SUITE_P(Contexts, TwoContextsGLTest,
-                         ::testing::Values(TwoContextsCase{"Apart", false, Skinning::EveryDraw},
-                                           TwoContextsCase{"Shared", true, Skinning::EveryDraw},
-                                           TwoContextsCase{"ApartSkinnedOnce", false, Skinning::Once},
-                                           TwoContextsCase{"SharedSkinnedOnce", true, Skinning::Once}),
+                         ::testing::Values(TwoContextsCase{"Apart", false}, TwoContextsCase{"Shared", true}),
                          [](const auto& info) { return std::string(info.param.name); });
 
-/// As ViewersGLTest, skinned by every draw and once.
-class SkinnedViewersGLTest : public ViewersGLTest, public ::testing::WithParamInterface<Skinning>
-{
-};
-
-TEST_P(SkinnedViewersGLTest, twoViewsOfACompositeViewerShowOneScene)
+TEST_F(ViewersGLTest, twoViewsOfACompositeViewerShowOneScene)
 {
     const osg::ref_ptr<osg::Image> expected = expectedAt(2.3);
     for (const Threading threading : threadingModels)
     {
         osgViewer::CompositeViewer composite;
         composite.setThreadingModel(threading);
-        osg::ref_ptr<osg::Group> scene = makeScene(GetParam());
+        osg::ref_ptr<osg::Group> scene = makeScene();
         osg::ref_ptr<Picture> pictures[] = {new Picture, new Picture};
         for (const osg::ref_ptr<Picture>& picture : pictures)
         {
@@ -171,10 +160,10 @@ TEST_P(SkinnedViewersGLTest, twoViewsOfACompositeViewerShowOneScene)
     }
 }
 
-TEST_P(SkinnedViewersGLTest, aContextThatSharesComesWhenTheFirstHasDrawn)
+TEST_F(ViewersGLTest, aContextThatSharesComesWhenTheFirstHasDrawn)
 {
     const osg::ref_ptr<osg::Image> expected = expectedAt(2.3);
-    osg::ref_ptr<osg::Group> scene = makeScene(GetParam());
+    osg::ref_ptr<osg::Group> scene = makeScene();
     osgViewer::CompositeViewer composite;
     composite.setThreadingModel(osgViewer::ViewerBase::SingleThreaded);
     osg::ref_ptr<EglGraphicsContext> contexts[2];
@@ -196,7 +185,7 @@ TEST_P(SkinnedViewersGLTest, aContextThatSharesComesWhenTheFirstHasDrawn)
 }
 
 // With a vertex array object's name that is another context's the picture may be right all the same, but not the call.
-TEST_P(SkinnedViewersGLTest, contextsThatShareEvaluateTheirOwnCharactersWithoutErrors)
+TEST_F(ViewersGLTest, contextsThatShareEvaluateTheirOwnCharactersWithoutErrors)
 {
     const osg::ref_ptr<osg::Image> expected = expectedAt(2.3);
     const osg::ref_ptr<NotifyLog> log = new NotifyLog(osg::NOTICE);
@@ -209,7 +198,7 @@ TEST_P(SkinnedViewersGLTest, contextsThatShareEvaluateTheirOwnCharactersWithoutE
         {
             osg::ref_ptr<osgViewer::View> view = new osgViewer::View;
             setCamera(*view->getCamera(), context, new Picture);
-            view->setSceneData(makeScene(GetParam()));
+            view->setSceneData(makeScene());
             composite.addView(view);
         }
         composite.realize();
@@ -246,10 +235,10 @@ TEST_F(ViewersGLTest, nothingIsDynamicThatIsDrawn)
     EXPECT_EQ(visitor.dynamic, 0);
 }
 
-TEST_P(SkinnedViewersGLTest, aWindowIsClosedAndOpenedAgainOverOneScene)
+TEST_F(ViewersGLTest, aWindowIsClosedAndOpenedAgainOverOneScene)
 {
     const osg::ref_ptr<osg::Image> expected = expectedAt(2.3);
-    osg::ref_ptr<osg::Group> scene = makeScene(GetParam());
+    osg::ref_ptr<osg::Group> scene = makeScene();
     osgViewer::Viewer other;
     other.setThreadingModel(osgViewer::ViewerBase::SingleThreaded);
     other.setKeyEventSetsDone(0);
@@ -268,9 +257,6 @@ TEST_P(SkinnedViewersGLTest, aWindowIsClosedAndOpenedAgainOverOneScene)
         other.getCamera()->setGraphicsContext(nullptr);
     }
 }
-
-INSTANTIATE_TEST_SUITE_P(Skinnings, SkinnedViewersGLTest, ::testing::ValuesIn(skinnings),
-                         [](const auto& info) { return std::string(nameOf(info.param)); });
 
 TEST_F(ViewersGLTest, anotherViewersFrameOfTheSameNumberHasItsOwnCharactersAlone)
 {

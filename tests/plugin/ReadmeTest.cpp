@@ -84,9 +84,7 @@ TEST_F(ReadmeTest, crowds)
     EXPECT_TRUE(crowd->move(fox.value(), osg::Matrix::translate(101, 20, 0)));
     EXPECT_TRUE(crowd->controller(fox.value())->crossfade("Walk", 0.3));
 
-    if (auto rate = crowd->setUpdateRate(UpdateRate{4, 20.0f}); !rate) std::cerr << rate.error().message << std::endl;
     if (auto pixels = crowd->setPixelError(0.5f); !pixels) std::cerr << pixels.error().message << std::endl;
-    EXPECT_EQ(crowd->updateRate().every, 4u);
     EXPECT_EQ(crowd->pixelError(), 0.5f);
 
     osg::ref_ptr<osgUtil::LineSegmentIntersector> ray =

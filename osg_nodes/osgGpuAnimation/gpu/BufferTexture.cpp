@@ -15,19 +15,12 @@ void BufferTexture::create()
     glGenTextures(1, &_texture);
 }
 
-std::size_t BufferTexture::capacityFor(std::size_t bytes) const
-{
-    bytes = std::max<std::size_t>(bytes, texelBytes);
-    if (bytes <= _capacity || _capacity == 0) return std::max(bytes, _capacity);
-    return std::max(bytes, _capacity + _capacity / 2);
-}
-
 bool BufferTexture::reserve(std::size_t bytes)
 {
-    const std::size_t capacity = capacityFor(bytes);
-    if (capacity == _capacity) return false;
+    bytes = std::max(bytes, texelBytes);
+    if (bytes <= _capacity) return false;
     if (_buffer == 0) create();
-    _capacity = capacity;
+    _capacity = std::max(bytes, _capacity + _capacity / 2);
     _gl->glBindBuffer(GL_TEXTURE_BUFFER, _buffer);
     _gl->glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(_capacity), nullptr, GL_DYNAMIC_COPY);
     glBindTexture(GL_TEXTURE_BUFFER, _texture);

@@ -37,8 +37,6 @@ public:
 
     GLuint buffer() const { return _buffer; }
     GLuint texture() const { return _texture; }
-    std::size_t capacity() const { return _capacity; } ///< bytes
-    std::size_t capacityFor(std::size_t bytes) const;  ///< that reserve(bytes) would make it
 
     void release();
     void discard();

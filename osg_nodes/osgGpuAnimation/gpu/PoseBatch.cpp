@@ -83,29 +83,22 @@ std::size_t PoseBatch::add(const PoseInstruction& instruction, const AffineMatri
     return instance;
 }
 
-std::size_t PoseBatch::addSample(const BlendSample& sample)
+std::size_t PoseBatch::addSample(const BlendSample& sample, const AffineMatrix& rootMatrix)
 {
     if (_sampleStride != 1)
     {
         PoseInstruction instruction;
         instruction.samples[0] = sample;
-        return add(instruction);
+        return add(instruction, rootMatrix);
     }
     _samples.push_back(sample);
     _samples.back().alpha = clampedToUnit(sample.alpha);
     _samples.back().weight = clampedToUnit(sample.weight);
     note(_samples.back());
-    if (!_rootMatrices.empty()) _rootMatrices.emplace_back();
+    _rootMatrices.resize(_size);
+    _rootMatrices.push_back(rootMatrix);
     if (!_tints.empty()) _tints.push_back(white);
     return _size++;
-}
-
-std::size_t PoseBatch::addSample(const BlendSample& sample, const AffineMatrix& rootMatrix)
-{
-    const std::size_t instance = addSample(sample);
-    _rootMatrices.resize(_size);
-    _rootMatrices[instance] = rootMatrix;
-    return instance;
 }
 
 void PoseBatch::setTint(std::size_t instance, std::uint32_t rgba)

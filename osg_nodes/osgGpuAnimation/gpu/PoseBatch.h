@@ -31,8 +31,7 @@ public:
     /// The same with a root matrix, which the instance's root joints are multiplied by. Instances without one get the
     /// identity as soon as any has one.
     std::size_t add(const PoseInstruction& instruction, const AffineMatrix& rootMatrix);
-    /// The same for instances that show one sample.
-    std::size_t addSample(const BlendSample& sample);
+    /// The same for an instance that shows one sample.
     std::size_t addSample(const BlendSample& sample, const AffineMatrix& rootMatrix);
 
     /// What a pose costs to mix.

@@ -123,16 +123,7 @@ PalettePlace PosePalette::place(std::size_t instance) const
             static_cast<int>(instance % _chunkCapacity),
             chunk.uploadedTints.empty() ? 0 : chunk.tints.texture(),
             index * _chunkCapacity,
-            index * _chunkCapacity + chunk.size,
-            chunk.evaluation};
-}
-
-std::size_t PosePalette::instanceCount() const
-{
-    std::size_t count = 0;
-    for (const std::unique_ptr<Chunk>& chunk : _chunks)
-        count += chunk->size;
-    return count;
+            index * _chunkCapacity + chunk.size};
 }
 
 void PosePalette::invalidate()

@@ -17,10 +17,9 @@ struct PalettePlace
     GLuint texture = 0; ///< 0: none, nothing can be drawn
     int stride = 0;
     int instance = 0;
-    GLuint tints = 0;             ///< RGBA8, one an instance; 0: all white
-    std::size_t chunkBegin = 0;   ///< the number in the batch of instance 0
-    std::size_t chunkEnd = 0;     ///< behind the last that is in this texture
-    std::uint64_t evaluation = 0; ///< never again another's
+    GLuint tints = 0;           ///< RGBA8, one an instance; 0: all white
+    std::size_t chunkBegin = 0; ///< the number in the batch of instance 0
+    std::size_t chunkEnd = 0;   ///< behind the last that is in this texture
 };
 
 /// The GPU's side of one PoseBatch in one graphics context: its input buffers and the palette they become. Large
@@ -46,9 +45,8 @@ public:
         BufferTexture samples;
         BufferTexture roots;
         BufferTexture tints;
-        bool isEvaluated = false;     ///< `palette` is what the inputs ask for
-        std::uint64_t evaluation = 0; ///< that made it so
-        BufferTexture palette;        ///< RGBA32F: paletteSize * width matrices, entry-major
+        bool isEvaluated = false; ///< `palette` is what the inputs ask for
+        BufferTexture palette;    ///< RGBA32F: paletteSize * width matrices, entry-major
     };
 
     /// Places of so many instances: filled up to what the feedback pass draws the fastest way. Those beyond are
@@ -65,7 +63,6 @@ public:
 
     /// No texture where the instance's chunk has not been evaluated.
     PalettePlace place(std::size_t instance) const;
-    std::size_t instanceCount() const; ///< of the batch last uploaded
     /// No chunk counts as evaluated any more.
     void invalidate();
     const std::vector<std::unique_ptr<Chunk>>& chunks() const { return _chunks; }

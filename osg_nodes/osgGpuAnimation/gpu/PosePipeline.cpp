@@ -147,7 +147,6 @@ bool PosePipeline::evaluate(osg::State& state, const PoseBatch& batch, std::size
         chunk->isEvaluated = _form == Form::Fused ? evaluateFused(batch, *resources.buffers, *chunk)
                                                   : evaluateSeparate(batch, *resources.buffers, *chunk);
         if (!chunk->isEvaluated) return false;
-        chunk->evaluation = ++_evaluations;
         _counters.instancesEvaluated += chunk->size;
     }
     return true;
@@ -296,13 +295,6 @@ PalettePlace PosePipeline::place(const AnimationSet& set, std::size_t slot, std:
     const auto known = _sets.find(&set);
     if (known == _sets.end() || slot >= known->second.palettes.size()) return {};
     return known->second.palettes[slot]->place(instance);
-}
-
-std::size_t PosePipeline::instanceCount(const AnimationSet& set, std::size_t slot) const
-{
-    const auto known = _sets.find(&set);
-    if (known == _sets.end() || slot >= known->second.palettes.size()) return 0;
-    return known->second.palettes[slot]->instanceCount();
 }
 
 std::vector<AffineMatrix> PosePipeline::readPalette(osg::State& state, const AnimationSet& set, std::size_t slot,

@@ -58,9 +58,6 @@ public:
     /// Where an instance of the batch last evaluated for set and slot is. No texture where there is none.
     PalettePlace place(const AnimationSet& set, std::size_t slot, std::size_t instance) const;
 
-    /// Instances of that batch.
-    std::size_t instanceCount(const AnimationSet& set, std::size_t slot) const;
-
     /// For tools and tests, never in a frame: waits for the GPU. set.paletteSize() entries of the instance.
     std::vector<AffineMatrix> readPalette(osg::State& state, const AnimationSet& set, std::size_t slot,
                                           std::size_t instance) const;
@@ -118,7 +115,6 @@ private:
     bool _isSupported = false;
     Form _form = Form::Fused;
     Counters _counters;
-    std::uint64_t _evaluations = 0; ///< of chunks
     FeedbackVertexArrays _vertexArrays;
     Passes _posePasses;
     Passes _mixPasses;

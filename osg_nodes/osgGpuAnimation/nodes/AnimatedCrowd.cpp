@@ -12,7 +12,6 @@
 #include <osgGpuAnimation/nodes/FlattenedPlace.h>
 #include <osgGpuAnimation/nodes/MeshesOfGroup.h>
 #include <osgGpuAnimation/nodes/OsgMatrix.h>
-#include <osgGpuAnimation/nodes/PlacedDraw.h>
 #include <osgGpuAnimation/nodes/PosedInstances.h>
 #include <osgGpuAnimation/nodes/PoseStage.h>
 
@@ -54,14 +53,6 @@ std::uint32_t toRgba(const osg::Vec4& color)
     return rgba;
 }
 
-/// What cannot be drawn at placements of its own has to be up to date.
-bool areAllPlaceable(const osg::Group& meshes)
-{
-    bool areAll = true;
-    forEachMesh(meshes, [&](const SkinnedGeometry& mesh) { areAll = areAll && !PlacedDraw::isRefusedBy(mesh); });
-    return areAll;
-}
-
 Error noSuchInstance()
 {
     return Error{"the crowd has no such instance (any more)"};
@@ -73,7 +64,7 @@ AnimatedCrowd::AnimatedCrowd() : AnimatedCrowd(emptySet(), {}) {}
 
 AnimatedCrowd::AnimatedCrowd(std::shared_ptr<const AnimationSet> set,
                              const std::vector<osg::ref_ptr<SkinnedGeometry>>& meshes)
-    : _instances(std::move(set)), _posed(std::make_unique<PosedInstances>()), _batches(std::make_unique<CrowdBatches>())
+    : _instances(std::move(set)), _posed(std::make_unique<PosedInstances>())
 {
     // Not static: the Optimizer must not flatten the transforms above into the bind pose.
     setDataVariance(osg::Object::DYNAMIC);
@@ -85,7 +76,7 @@ AnimatedCrowd::AnimatedCrowd(std::shared_ptr<const AnimationSet> set,
 
 AnimatedCrowd::AnimatedCrowd(const AnimatedCharacter& character)
     : _instances(character.controller().sharedSet()), _posed(std::make_unique<PosedInstances>()),
-      _batches(std::make_unique<CrowdBatches>()), _pixelError(character.pixelError())
+      _pixelError(character.pixelError())
 {
     setDataVariance(osg::Object::DYNAMIC);
     setUpdateCallback(new AnimationUpdateCallback);
@@ -101,8 +92,8 @@ AnimatedCrowd::AnimatedCrowd(const AnimatedCharacter& character)
 
 AnimatedCrowd::AnimatedCrowd(const AnimatedCrowd& other, const osg::CopyOp& copyop)
     : osg::Transform(other, copyop), _instances(other._instances), _posed(std::make_unique<PosedInstances>()),
-      _batches(std::make_unique<CrowdBatches>()), _origin(other._origin), _hasOrigin(other._hasOrigin),
-      _updateTime(other._updateTime), _updateRate(other._updateRate), _pixelError(other._pixelError)
+      _origin(other._origin), _hasOrigin(other._hasOrigin), _updateTime(other._updateTime),
+      _pixelError(other._pixelError)
 {
 }
 
@@ -252,39 +243,25 @@ void AnimatedCrowd::cull(osgUtil::CullVisitor& visitor)
     CrowdView view(visitor);
     static thread_local std::vector<std::uint32_t> seen; // keeps its storage from cull to cull
     _instances.findSeen(isCullingActive() ? view.planes() : std::vector<glm::vec4>(), seen);
-    std::vector<CrowdBatches::Draw> draws;
+    std::vector<DrawState> draws;
     if (!seen.empty() && set().paletteSize() > 0)
     {
         view.look(_instances, seen);
-        const UpdateRate rate = _updateRate.every > 1 && areAllPlaceable(*this) ? _updateRate : UpdateRate();
         const DetailScale scale(visitor, PoseStage::detailView(visitor), _pixelError,
                                 _pixelError > 0.0f ? DetailRange(*this, set()) : DetailRange());
-        const CrowdDetail detail(_instances, scale);
-        draws = _batches->enlist(PoseStage::frame(visitor), _instances, visitor, rate, detail, seen);
+        draws = enlistSeen(PoseStage::frame(visitor), _instances, CrowdDetail(_instances, scale), seen);
     }
     for (const osg::ref_ptr<osg::Node>& child : _children)
     {
         if (!dynamic_cast<const SkinnedGeometry*>(child.get())) child->accept(visitor);
     }
-    const osg::ref_ptr<osg::RefMatrix> eye = new osg::RefMatrix;
-    for (const CrowdBatches::Draw& draw : draws)
+    for (const DrawState& draw : draws)
     {
         visitor.pushStateSet(draw.stateSet);
-        osg::RefMatrix* toEye = draw.isPlaced ? eye.get() : visitor.getModelViewMatrix();
-        forEachMesh(*this, [&](const SkinnedGeometry& mesh) { view.draw(const_cast<SkinnedGeometry&>(mesh), toEye); });
+        forEachMesh(*this,
+                    [&](const SkinnedGeometry& mesh) { view.draw(const_cast<SkinnedGeometry&>(mesh), *draw.binding); });
         visitor.popStateSet();
     }
-}
-
-Result<bool> AnimatedCrowd::setUpdateRate(const UpdateRate& rate)
-{
-    if (rate.every < 1 || rate.every > UpdateRate::maxEvery)
-        return Error{"poses every " + std::to_string(rate.every) + " updates: it must be 1 to " +
-                     std::to_string(UpdateRate::maxEvery)};
-    if (!(rate.pixels >= 0.0f)) return Error{"an update rate for less than " + std::to_string(rate.pixels) + " pixels"};
-    if (rate.every != _updateRate.every) _instances.setGroupCount(rate.every);
-    _updateRate = rate;
-    return true;
 }
 
 Result<bool> AnimatedCrowd::setPixelError(float pixels)

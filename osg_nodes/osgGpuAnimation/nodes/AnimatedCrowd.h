@@ -4,7 +4,6 @@
 #include <osgGpuAnimation/animation/Result.h>
 #include <osgGpuAnimation/nodes/CrowdInstances.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
-#include <osgGpuAnimation/nodes/UpdateRate.h>
 
 #include <osg/PrimitiveSet>
 #include <osg/Transform>
@@ -16,7 +15,6 @@ namespace osgGpuAnimation
 {
 
 class AnimatedCharacter;
-class CrowdBatches;
 class PosedInstances;
 
 /// Thousands of instances of one character in one node: each with its own placement, controller and tint, all drawn by
@@ -86,12 +84,6 @@ public:
     void setOrigin(const osg::Vec3d& origin);
     const osg::Vec3d& origin() const { return _origin; }
 
-    /// Saves evaluations of what is small on screen; without it every instance has its pose in each frame. Several
-    /// cameras see their own: what is large in one is up to date there. Instances with controllers always are.
-    /// Error: every is not in [1, UpdateRate::maxEvery], or pixels is negative or no number.
-    Result<bool> setUpdateRate(const UpdateRate& rate);
-    const UpdateRate& updateRate() const { return _updateRate; }
-
     /// How far the surface that is drawn may be off on screen, in pixels: where that hides it, instances are drawn with
     /// fewer triangles, each level of detail in use by one instanced draw a mesh primitive. 0 (the default): all
     /// triangles. For meshes that are drawn whole, the time it takes and errors see AnimatedCharacter::setPixelError().
@@ -125,12 +117,10 @@ private:
 
     CrowdInstances _instances;
     std::unique_ptr<PosedInstances> _posed; ///< its own: no copy shares it
-    std::unique_ptr<CrowdBatches> _batches; ///< likewise
     osg::Vec3d _origin;
     bool _hasOrigin = false;
     std::optional<double> _updateTime; ///< seconds of simulation time
-    UpdateRate _updateRate;
-    float _pixelError = 0.0f; ///< pixels
+    float _pixelError = 0.0f;          ///< pixels
 };
 
 } // namespace osgGpuAnimation

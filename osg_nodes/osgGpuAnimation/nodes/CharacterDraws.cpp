@@ -6,7 +6,6 @@
 #include <osgGpuAnimation/nodes/MeshesOfGroup.h>
 #include <osgGpuAnimation/nodes/OsgMatrix.h>
 #include <osgGpuAnimation/nodes/PlacedDraw.h>
-#include <osgGpuAnimation/nodes/SkinningScope.h>
 
 #include <algorithm>
 
@@ -150,12 +149,15 @@ bool CharacterDraws::drawTogether(osgUtil::CullVisitor& visitor, AnimatedCharact
 
 void CharacterDraws::open(osgUtil::CullVisitor& visitor, Group& group, PoseFrame& frame, float depth)
 {
-    PlacedState placed = frame.placedState(*group.set, group.slot, group.level);
+    const DrawState placed = frame.placedState(*group.set, group.slot, group.level);
     group.together = placed.binding;
     const osg::ref_ptr<osg::RefMatrix> eye = new osg::RefMatrix;
     visitor.pushStateSet(placed.stateSet);
     for (SkinnedGeometry* mesh : group.meshes)
-        addMeshAndDepth(visitor, *mesh, eye.get(), depth);
+    {
+        if (_counted) _counted->add(*mesh, *placed.binding);
+        mesh->addTo(visitor, eye.get(), depth);
+    }
     visitor.popStateSet();
 }
 

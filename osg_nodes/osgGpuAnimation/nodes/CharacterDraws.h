@@ -3,6 +3,7 @@
 
 #include <osgGpuAnimation/nodes/DetailRange.h>
 #include <osgGpuAnimation/nodes/DetailView.h>
+#include <osgGpuAnimation/nodes/DrawnInstances.h>
 #include <osgGpuAnimation/nodes/PoseFrame.h>
 
 #include <osgUtil/CullVisitor>
@@ -12,8 +13,6 @@
 
 namespace osgGpuAnimation
 {
-
-class SkinnedGeometry;
 
 /// What one cull visitor draws of the characters it sees in a frame. The first of several that OSG would draw alike
 /// (the same meshes below the same state, in a bin whose order is the state's) is drawn as it is; all after it
@@ -26,11 +25,12 @@ class SkinnedGeometry;
 class CharacterDraws
 {
 public:
-    /// At the beginning of a cull traversal.
-    void clear()
+    /// At the beginning of a cull traversal. counted: the statistics' record of draws; null where nobody collects them.
+    void begin(DrawnInstances* counted)
     {
         _groups.clear();
         _details.clear();
+        _counted = counted;
     }
 
     /// Hands what is below the character on to be drawn. pose: what the frame has enlisted it as. view: the visitor's.
@@ -72,6 +72,7 @@ private:
     std::unordered_map<const osgUtil::StateGraph*, std::vector<Group>> _groups;
     std::unordered_map<const AnimationSet*, Detail> _details; ///< of each set's last character
     Group _asked;                                             ///< kept for its memory
+    DrawnInstances* _counted = nullptr;                       ///< the PoseStage's
 };
 
 } // namespace osgGpuAnimation

@@ -25,11 +25,12 @@ public:
     CrowdDetail(const CrowdInstances& instances, const DetailScale& scale) : _instances(instances), _scale(scale) {}
 
     bool isOn() const { return _scale.isOn(); }
-    int levelOf(std::uint32_t index) const;
     /// Puts those of one level together, the finest first; otherwise they stay in their order.
     void sort(std::vector<std::uint32_t>& indices, std::vector<Run>& outRuns) const;
 
 private:
+    int levelOf(std::uint32_t index) const;
+
     const CrowdInstances& _instances;
     const DetailScale& _scale;
 };

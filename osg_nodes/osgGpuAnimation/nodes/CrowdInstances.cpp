@@ -34,11 +34,10 @@ void takeOut(std::vector<Element>& elements, std::size_t index)
 } // namespace
 
 CrowdInstances::CrowdInstances(const CrowdInstances& other)
-    : _set(other._set), _clock(other._clock), _groups(other._groups), _nextGroup(other._nextGroup),
-      _clipBounds(other._clipBounds), _allBounds(other._allBounds), _rootMatrices(other._rootMatrices),
-      _spheres(other._spheres), _tints(other._tints), _playbacks(other._playbacks), _handles(other._handles),
-      _indexOfPlace(other._indexOfPlace), _usesOfPlace(other._usesOfPlace), _freePlaces(other._freePlaces),
-      _tinted(other._tinted)
+    : _set(other._set), _clock(other._clock), _clipBounds(other._clipBounds), _allBounds(other._allBounds),
+      _rootMatrices(other._rootMatrices), _spheres(other._spheres), _tints(other._tints), _playbacks(other._playbacks),
+      _handles(other._handles), _indexOfPlace(other._indexOfPlace), _usesOfPlace(other._usesOfPlace),
+      _freePlaces(other._freePlaces), _tinted(other._tinted)
 {
     for (const std::unique_ptr<AnimationController>& controller : other._controllers)
         _controllers.push_back(controller ? std::make_unique<AnimationController>(*controller) : nullptr);
@@ -160,8 +159,6 @@ std::size_t CrowdInstances::controllerCount() const
 bool CrowdInstances::advance(double seconds)
 {
     if (std::isfinite(seconds)) _clock += seconds;
-    _groups[_nextGroup] = {_clock, _groups[_nextGroup].turns + 1};
-    _nextGroup = (_nextGroup + 1) % _groups.size();
     bool haveSpheresChanged = false;
     for (std::size_t index = 0; index < _controllers.size(); ++index)
     {
@@ -175,23 +172,6 @@ bool CrowdInstances::advance(double seconds)
         haveSpheresChanged = true;
     }
     return haveSpheresChanged;
-}
-
-void CrowdInstances::setGroupCount(std::size_t groups)
-{
-    _groups.assign(groups, Group{_clock, 0});
-    _nextGroup = 0;
-}
-
-// By the handle, which stays when others are removed.
-std::size_t CrowdInstances::groupOf(std::size_t index) const
-{
-    return _controllers[index] ? groupCount() : placeOf(_handles[index]) % groupCount();
-}
-
-BlendSample CrowdInstances::groupSample(std::size_t index) const
-{
-    return _playbacks[index].sample(*_set, _groups[groupOf(index)].clock);
 }
 
 void CrowdInstances::findSeen(const std::vector<glm::vec4>& planes, std::vector<std::uint32_t>& outIndices) const

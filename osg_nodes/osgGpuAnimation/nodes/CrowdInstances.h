@@ -31,9 +31,6 @@ public:
     static constexpr std::size_t none = ~std::size_t(0);
     std::size_t indexOf(Handle handle) const; ///< none where the handle names no instance (any more)
     Handle handleOf(std::size_t index) const { return _handles[index]; }
-    /// A number below placeCount(), which no other instance has at the same time.
-    static std::size_t placeOf(Handle handle) { return handle & 0xFFFFFFFFu; }
-    std::size_t placeCount() const { return _indexOfPlace.size(); }
 
     /// The box that holds every vertex of an instance while it plays the clip: at clip + 1, the rest pose's first.
     void setClipBounds(const std::vector<Box>& clipBounds);
@@ -57,35 +54,18 @@ public:
     /// Moves all times on. True where spheres have changed.
     bool advance(double seconds);
 
-    /// Deals the instances out to groups by turns, of which each advance() brings one up to date. groups: 1 and more.
-    void setGroupCount(std::size_t groups);
-    std::size_t groupCount() const { return _groups.size(); }
-    /// Those of instances that play one clip in a loop; others have none (groupCount()), since each advance moves them.
-    std::size_t groupOf(std::size_t index) const;
-    /// How often the group was brought up to date.
-    std::uint32_t groupTurn(std::size_t group) const { return _groups[group].turns; }
-    /// What the instance shows as of its group's clock; only for one that has a group.
-    BlendSample groupSample(std::size_t index) const;
-
     /// Indices of the instances that have something on the inner side of all planes: n · p + d >= 0.
     void findSeen(const std::vector<glm::vec4>& planes, std::vector<std::uint32_t>& outIndices) const;
     /// Adds them, in that order.
     void addTo(PoseBatch& batch, const std::vector<std::uint32_t>& indices) const;
 
 private:
-    struct Group
-    {
-        double clock = 0.0;      ///< what it was when the group was last up to date
-        std::uint32_t turns = 0; ///< see groupTurn()
-    };
-
+    static std::size_t placeOf(Handle handle) { return handle & 0xFFFFFFFFu; } ///< in the table of indices
     glm::vec4 placedSphere(std::size_t index) const;
     Handle newHandle(std::size_t index);
 
     std::shared_ptr<const AnimationSet> _set;
     double _clock = 0.0; ///< seconds
-    std::vector<Group> _groups{Group()};
-    std::size_t _nextGroup = 0;
     std::vector<Box> _clipBounds;
     Box _allBounds;
     std::vector<AffineMatrix> _rootMatrices;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/CrowdView.h>
 
-#include <osgGpuAnimation/nodes/SkinningScope.h>
+#include <osgGpuAnimation/nodes/PoseStage.h>
 
 #include <glm/geometric.hpp>
 
@@ -35,15 +35,12 @@ std::vector<glm::vec4> CrowdView::planes() const
         }
     }
     if (mask & osg::CullingSet::SMALL_FEATURE_CULLING)
-        planes.push_back(sizePlane(culling.getSmallFeatureCullingPixelSize()));
+    {
+        // OSG's measure of what is too small, p · v · pixels > radius, has the form of a plane.
+        const osg::Vec4 plane = culling.getPixelSizeVector() * -culling.getSmallFeatureCullingPixelSize();
+        planes.emplace_back(plane.x(), plane.y(), plane.z(), plane.w());
+    }
     return planes;
-}
-
-// OSG's measure of what is too small, p · v · pixels > radius, has the form of a plane.
-glm::vec4 CrowdView::sizePlane(float pixels) const
-{
-    const osg::Vec4 pixel = _visitor.getCurrentCullingSet().getPixelSizeVector() * -pixels;
-    return {pixel.x(), pixel.y(), pixel.z(), pixel.w()};
 }
 
 void CrowdView::look(const CrowdInstances& instances, const std::vector<std::uint32_t>& indices)
@@ -70,9 +67,11 @@ void CrowdView::look(const CrowdInstances& instances, const std::vector<std::uin
     _visitor.updateCalculatedNearFar(toEye, boxAround(farthestSphere));
 }
 
-void CrowdView::draw(SkinnedGeometry& mesh, osg::RefMatrix* toEye)
+void CrowdView::draw(SkinnedGeometry& mesh, const PaletteBinding& binding)
 {
-    if (_visitor.validNodeMask(mesh)) addMeshAndDepth(_visitor, mesh, toEye, _depth);
+    if (!_visitor.validNodeMask(mesh)) return;
+    PoseStage::count(_visitor, mesh, binding);
+    mesh.addTo(_visitor, _visitor.getModelViewMatrix(), _depth);
 }
 
 } // namespace osgGpuAnimation

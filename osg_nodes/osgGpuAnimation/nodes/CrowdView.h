@@ -2,6 +2,7 @@
 #pragma once
 
 #include <osgGpuAnimation/nodes/CrowdInstances.h>
+#include <osgGpuAnimation/nodes/PaletteBinding.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
 #include <osgUtil/CullVisitor>
@@ -21,12 +22,10 @@ public:
 
     /// What an instance must reach the inner side of: n · p + d >= 0. The view's, and one for what is too small.
     std::vector<glm::vec4> planes() const;
-    /// Likewise, for what is at least that many pixels large.
-    glm::vec4 sizePlane(float pixels) const;
     /// Tells the camera's near and far planes of them. indices: those that are seen, at least one.
     void look(const CrowdInstances& instances, const std::vector<std::uint32_t>& indices);
-    /// Hands the mesh on to be drawn, at the depth of those looked at. toEye: from where its instances are placed.
-    void draw(SkinnedGeometry& mesh, osg::RefMatrix* toEye);
+    /// Adds the mesh to the visitor's render bin, at the depth of those looked at, where the visitor's mask allows it.
+    void draw(SkinnedGeometry& mesh, const PaletteBinding& binding);
 
 private:
     osgUtil::CullVisitor& _visitor;

@@ -19,8 +19,8 @@ namespace osgGpuAnimation
 
 struct PosedSurface;
 
-/// A mesh drawn with fewer triangles over the same vertices, so that palettes, influences, morph targets and what is
-/// skinned once stay as they are. A **level** is the error that it may have, as a power of two in the character's own
+/// A mesh drawn with fewer triangles over the same vertices, so that palettes, influences and morph targets
+/// stay as they are. A **level** is the error that it may have, as a power of two in the character's own
 /// units, whatever space the mesh's arrays are in: at level -3 no vertex of the mesh is farther than 1/8 from the
 /// surface that is drawn. So one level says the same of all meshes of a character.
 ///

@@ -42,8 +42,6 @@ public:
     std::size_t slot() const { return _slot; }
     std::size_t instance() const { return _instance; }           ///< the first to be drawn
     std::size_t instanceCount() const { return _instanceCount; } ///< that are to be drawn, one after another
-    /// Whether a draw may show more than one instance.
-    bool isOfMany() const { return _serial != 0 || _instanceCount > 1; }
     /// Instances that a draw shows, whichever way.
     std::size_t drawnCount() const { return _serial != 0 ? _placements.size() : _instanceCount; }
 

@@ -49,20 +49,15 @@ PlacedDraw::~PlacedDraw()
     _state.applyModelViewAndProjectionUniformsIfRequired();
 }
 
-PlacedDraw::Run PlacedDraw::run(const PosePipeline& pipeline, SkinnedRead& skinned, std::size_t first) const
+PlacedDraw::Run PlacedDraw::run(const PosePipeline& pipeline, std::size_t first) const
 {
     const std::vector<Placement>& placements = _binding.placements();
-    const std::size_t pose = poseOf(placements[first]);
-    Run run{pipeline.place(*_binding.animationSet(), _binding.slot(), pose), 1};
-    if (!skinned.find(pose)) run.place.texture = 0;
+    Run run{pipeline.place(*_binding.animationSet(), _binding.slot(), poseOf(placements[first])), 1};
     if (!_placements || run.place.texture == 0) return run;
-    const std::size_t chunkBegin = run.place.chunkBegin;
-    const std::size_t begin = std::max(chunkBegin, skinned.begin());
-    const std::size_t end = std::min(run.place.chunkEnd, skinned.end());
-    const auto isAlike = [&](std::size_t other) { return other >= begin && other < end; };
-    while (first + run.count < placements.size() && isAlike(poseOf(placements[first + run.count])))
+    const auto isInChunk = [&](std::size_t pose) { return pose >= run.place.chunkBegin && pose < run.place.chunkEnd; };
+    while (first + run.count < placements.size() && isInChunk(poseOf(placements[first + run.count])))
         ++run.count;
-    run.place.instance = -static_cast<int>(chunkBegin);
+    run.place.instance = -static_cast<int>(run.place.chunkBegin);
     return run;
 }
 

@@ -3,7 +3,6 @@
 
 #include <osgGpuAnimation/gpu/PosePipeline.h>
 #include <osgGpuAnimation/nodes/PaletteBinding.h>
-#include <osgGpuAnimation/nodes/SkinnedRead.h>
 
 #include <osg/Geometry>
 #include <osg/State>
@@ -30,8 +29,8 @@ public:
     PlacedDraw(const PlacedDraw&) = delete;
     PlacedDraw& operator=(const PlacedDraw&) = delete;
 
-    /// From the placement of that number on; `skinned` goes there.
-    Run run(const PosePipeline& pipeline, SkinnedRead& skinned, std::size_t first) const;
+    /// The run that begins with the placement of that number.
+    Run run(const PosePipeline& pipeline, std::size_t first) const;
     /// To be called before the run that begins there is drawn, with the mesh's vertex arrays set up.
     void use(std::size_t first) const;
 

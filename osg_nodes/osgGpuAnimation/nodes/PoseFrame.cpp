@@ -3,7 +3,6 @@
 
 #include <osgGpuAnimation/gpu/FeedbackTimer.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
-#include <osgGpuAnimation/nodes/MeshReads.h>
 #include <osgGpuAnimation/nodes/PoseStatistics.h>
 
 #include <algorithm>
@@ -39,7 +38,6 @@ osg::ref_ptr<PoseFrame> PoseFrame::forContext(unsigned int contextId, const osg:
     const unsigned int frameNumber = stamp ? stamp->getFrameNumber() : 0;
     const double referenceTime = stamp ? stamp->getReferenceTime() : 0.0;
     static std::mutex mutex;
-    static std::uint64_t lastSerial = 0;
     static std::unordered_map<unsigned int, std::vector<osg::ref_ptr<PoseFrame>>> framesOfContext; // the latest last
     const std::lock_guard<std::mutex> lock(mutex);
     std::vector<osg::ref_ptr<PoseFrame>>& frames = framesOfContext[contextId];
@@ -57,7 +55,6 @@ osg::ref_ptr<PoseFrame> PoseFrame::forContext(unsigned int contextId, const osg:
         if (frame->referenceCount() == 1) frame->reset();
     next->reset();
     next->_frameNumber = frameNumber;
-    next->_serial = ++lastSerial;
     next->_referenceTime = referenceTime;
     next->_stamp = stamp;
     return next;
@@ -76,9 +73,8 @@ void PoseFrame::reset()
     _batchesOfSet.clear();
     _enlisted.clear();
     _samples.clear();
-    for (auto& states : _states)
-        for (StatePool& pool : states)
-            pool.reset();
+    for (StatePool* pool : {&_plainStates, &_tintedStates, &_placedStates})
+        pool->reset();
 }
 
 EnlistedPose PoseFrame::enlist(const AnimatedCharacter& character)
@@ -113,9 +109,9 @@ osg::StateSet* PoseFrame::stateOf(const AnimatedCharacter& character, EnlistedPo
     Enlisted& enlisted = _enlisted[&character];
     // A camera that culls at the same time may have enlisted it with another instruction meanwhile.
     const bool isOther = enlisted.batch->slot != pose.slot || enlisted.instance != pose.instance;
-    if (isOther) return stateOf(*_batchesOfSet[&character.set()][pose.slot], pose.instance, 1, level);
-    if (level != DetailLevels::allTriangles) return stateOf(*enlisted.batch, enlisted.instance, 1, level);
-    if (!enlisted.stateSet) enlisted.stateSet = stateOf(*enlisted.batch, enlisted.instance, 1, level);
+    if (isOther) return stateOf(*_batchesOfSet[&character.set()][pose.slot], pose.instance, 1, level).stateSet;
+    if (level != DetailLevels::allTriangles) return stateOf(*enlisted.batch, enlisted.instance, 1, level).stateSet;
+    if (!enlisted.stateSet) enlisted.stateSet = stateOf(*enlisted.batch, enlisted.instance, 1, level).stateSet;
     return enlisted.stateSet;
 }
 
@@ -156,58 +152,50 @@ EnlistedBatch PoseFrame::enlist(std::unique_ptr<PoseBatch> content)
 {
     const std::lock_guard<std::mutex> lock(_mutex);
     for (const Batch* batch : _batchesOfSet[&content->set()])
-        if (batch->stateOfAll && batch->content->isSame(*content))
+        if (batch->all.stateSet && batch->content->isSame(*content))
         {
             _spareBatches.push_back(std::move(content));
-            return {batch->slot, batch->stateOfAll};
+            return {batch->slot, batch->all};
         }
     Batch& batch = addBatch(std::move(content));
-    batch.stateOfAll = stateOf(batch, 0, batch.content->size(), DetailLevels::allTriangles);
-    return {batch.slot, batch.stateOfAll};
+    batch.all = stateOf(batch, 0, batch.content->size(), DetailLevels::allTriangles);
+    return {batch.slot, batch.all};
 }
 
-osg::StateSet* PoseFrame::stateOf(const Batch& batch, std::size_t instance, std::size_t instanceCount, int level)
+DrawState PoseFrame::stateOf(const Batch& batch, std::size_t instance, std::size_t instanceCount, int level)
 {
-    osg::StateSet& stateSet = nextState(batch, false);
-    bindingOf(stateSet).set(batch.content->sharedSet(), batch.slot, instance, instanceCount);
-    bindingOf(stateSet).setLevel(level);
-    return &stateSet;
+    const DrawState state = (batch.content->tints().empty() ? _plainStates : _tintedStates).next();
+    state.binding->set(batch.content->sharedSet(), batch.slot, instance, instanceCount);
+    state.binding->setLevel(level);
+    return state;
 }
 
-osg::StateSet* PoseFrame::partState(const AnimationSet& set, std::size_t slot, std::size_t first, std::size_t count,
-                                    int level)
+DrawState PoseFrame::partState(const AnimationSet& set, std::size_t slot, std::size_t first, std::size_t count,
+                               int level)
 {
     const std::lock_guard<std::mutex> lock(_mutex);
     return stateOf(*_batchesOfSet[&set][slot], first, count, level);
 }
 
-PlacedState PoseFrame::placedState(const AnimationSet& set, std::size_t slot, int level)
+DrawState PoseFrame::placedState(const AnimationSet& set, std::size_t slot, int level)
 {
     const std::lock_guard<std::mutex> lock(_mutex);
-    const Batch& batch = *_batchesOfSet[&set][slot];
-    osg::StateSet& stateSet = nextState(batch, true);
-    PaletteBinding& binding = bindingOf(stateSet);
-    binding.setPlaced(batch.content->sharedSet(), slot);
-    binding.setLevel(level);
-    return {&stateSet, &binding};
+    const DrawState state = _placedStates.next();
+    state.binding->setPlaced(_batchesOfSet[&set][slot]->content->sharedSet(), slot);
+    state.binding->setLevel(level);
+    return state;
 }
 
-osg::StateSet& PoseFrame::nextState(const Batch& batch, bool isPlaced)
-{
-    const bool isTinted = !batch.content->tints().empty();
-    return _states[isPlaced][isTinted].next(isPlaced, isTinted);
-}
-
-osg::StateSet& PoseFrame::StatePool::next(bool isPlaced, bool isTinted)
+DrawState PoseFrame::StatePool::next()
 {
     if (used == states.size())
     {
         states.push_back(new osg::StateSet);
         states.back()->setAttribute(new PaletteBinding);
-        if (isPlaced) states.back()->setDefine("POSE_PLACED");
-        if (isTinted) states.back()->setDefine("POSE_TINTED");
+        if (define) states.back()->setDefine(define);
     }
-    return *states[used++];
+    osg::StateSet& state = *states[used++];
+    return {&state, &bindingOf(state)};
 }
 
 void PoseFrame::StatePool::reset()
@@ -219,22 +207,15 @@ void PoseFrame::StatePool::reset()
     used = 0;
 }
 
-void PoseFrame::evaluate(osg::RenderInfo& renderInfo, MeshReads& reads, osg::Stats* stats)
+void PoseFrame::evaluate(osg::State& state, osg::Stats* stats)
 {
     const std::lock_guard<std::mutex> lock(_mutex);
-    osg::State& state = *renderInfo.getState();
     PosePipeline* pipeline = PosePipeline::of(state);
-    if (!stats || !pipeline)
-    {
-        evaluateBatches(state, pipeline);
-        reads.skin(renderInfo, _serial);
-        return;
-    }
+    if (!stats || !pipeline) return evaluateBatches(state, pipeline);
     FeedbackTimer& timer = FeedbackTimer::of(state);
     const std::uint64_t evaluatedBefore = pipeline->counters().instancesEvaluated;
     timer.begin();
     evaluateBatches(state, pipeline);
-    reads.skin(renderInfo, _serial);
     timer.end(_frameNumber);
     record(*stats, pipeline->counters().instancesEvaluated - evaluatedBefore);
     for (const FeedbackTimer::Measured& measured : timer.takeFinished())

@@ -8,7 +8,7 @@
 #include <osg/FrameStamp>
 #include <osg/observer_ptr>
 #include <osg/Referenced>
-#include <osg/RenderInfo>
+#include <osg/State>
 #include <osg/StateSet>
 #include <osg/Stats>
 
@@ -21,7 +21,6 @@ namespace osgGpuAnimation
 {
 
 class AnimatedCharacter;
-class MeshReads;
 
 /// Where a frame has a character's pose: an instance of the batch of that slot.
 struct EnlistedPose
@@ -30,18 +29,18 @@ struct EnlistedPose
     std::size_t instance = 0;
 };
 
+/// The frame's state for drawing instances of a batch, and its binding.
+struct DrawState
+{
+    osg::StateSet* stateSet;
+    PaletteBinding* binding;
+};
+
 /// Where a frame has a batch that was enlisted whole.
 struct EnlistedBatch
 {
     std::size_t slot;
-    osg::StateSet* stateSet; ///< for drawing all its instances
-};
-
-/// The state for drawing characters together, and its binding, to be given their placements.
-struct PlacedState
-{
-    osg::StateSet* stateSet;
-    PaletteBinding* binding;
+    DrawState all; ///< for drawing all its instances
 };
 
 /// All characters that are seen in one frame in one graphics context, each once, however many cameras see it: the
@@ -59,11 +58,10 @@ public:
     /// The state for drawing the enlisted character as it is, at a level of detail: it holds its PaletteBinding and
     /// stays unchanged while this frame is in use.
     osg::StateSet* stateOf(const AnimatedCharacter& character, EnlistedPose pose, int level);
-    /// A new state for drawing instances of that batch together.
-    PlacedState placedState(const AnimationSet& set, std::size_t slot, int level);
+    /// A new state for drawing instances of that batch together; the caller gives the binding their placements.
+    DrawState placedState(const AnimationSet& set, std::size_t slot, int level);
     /// A new state for drawing so many instances of that batch, from the first on.
-    osg::StateSet* partState(const AnimationSet& set, std::size_t slot, std::size_t first, std::size_t count,
-                             int level);
+    DrawState partState(const AnimationSet& set, std::size_t slot, std::size_t first, std::size_t count, int level);
 
     /// An empty batch, to be filled by the caller alone and enlisted; its storage is that of earlier frames.
     std::unique_ptr<PoseBatch> makeBatch(std::shared_ptr<const AnimationSet> set);
@@ -71,11 +69,10 @@ public:
     EnlistedBatch enlist(std::unique_ptr<PoseBatch> batch);
 
     /// Evaluates what was enlisted and not evaluated yet. stats: where to record what there was to do, see
-    /// PoseStatistics; null: nowhere. reads: what will be drawn next, to be skinned if it is to be skinned once.
-    void evaluate(osg::RenderInfo& renderInfo, MeshReads& reads, osg::Stats* stats = nullptr);
+    /// PoseStatistics; null: nowhere.
+    void evaluate(osg::State& state, osg::Stats* stats);
 
     unsigned int frameNumber() const { return _frameNumber; }
-    std::uint64_t serial() const { return _serial; } ///< no other frame has it, another viewer's neither
 
 protected:
     ~PoseFrame() override = default;
@@ -85,10 +82,10 @@ private:
     {
         std::unique_ptr<PoseBatch> content;
         std::size_t slot;
-        osg::StateSet* stateOfAll = nullptr; ///< null: a batch of characters, which have states of their own
+        DrawState all{}; ///< null: a batch of characters, which have states of their own
         bool isEvaluated = false;
 
-        bool isOpen() const { return !stateOfAll && !isEvaluated; }
+        bool isOpen() const { return !all.stateSet && !isEvaluated; }
     };
     struct Enlisted
     {
@@ -101,10 +98,11 @@ private:
     /// States that are used again from frame to frame.
     struct StatePool
     {
+        const char* define; ///< for the program; null: none
         std::vector<osg::ref_ptr<osg::StateSet>> states;
         std::size_t used = 0;
 
-        osg::StateSet& next(bool isPlaced, bool isTinted);
+        DrawState next();
         void reset();
     };
 
@@ -115,12 +113,10 @@ private:
     Batch& openBatch(const AnimatedCharacter& character);
     Batch& addBatch(std::unique_ptr<PoseBatch> content);
     std::unique_ptr<PoseBatch> spareBatch(std::shared_ptr<const AnimationSet> set);
-    osg::StateSet* stateOf(const Batch& batch, std::size_t instance, std::size_t instanceCount, int level);
-    osg::StateSet& nextState(const Batch& batch, bool isPlaced);
+    DrawState stateOf(const Batch& batch, std::size_t instance, std::size_t instanceCount, int level);
 
     std::mutex _mutex;
     unsigned int _frameNumber = 0;
-    std::uint64_t _serial = 0;
     double _referenceTime = 0.0;                     ///< seconds
     osg::observer_ptr<const osg::FrameStamp> _stamp; ///< gone with its viewer; first frames' times are often equal
     std::vector<std::unique_ptr<Batch>> _batches;
@@ -128,7 +124,9 @@ private:
     std::vector<std::unique_ptr<PoseBatch>> _spareBatches;
     std::unordered_map<const AnimatedCharacter*, Enlisted> _enlisted;
     std::vector<BlendSample> _samples; ///< of those enlisted
-    StatePool _states[2][2];           ///< by whether instances are placed by the draw, and whether they have tints
+    StatePool _plainStates{nullptr, {}, 0};
+    StatePool _tintedStates{"POSE_TINTED", {}, 0};
+    StatePool _placedStates{"POSE_PLACED", {}, 0}; ///< characters have no tints
 };
 
 } // namespace osgGpuAnimation

@@ -32,7 +32,7 @@ public:
     void operator()(osg::RenderInfo& renderInfo) const override
     {
         DeletionLists::make(*renderInfo.getState());
-        _stage._frame->evaluate(renderInfo, _stage._reads, PoseStatistics::wanted(renderInfo));
+        _stage._frame->evaluate(*renderInfo.getState(), PoseStatistics::wanted(renderInfo));
     }
 
 private:
@@ -80,11 +80,6 @@ DetailView& PoseStage::detailView(osgUtil::CullVisitor& visitor)
     return current(visitor)._detailView;
 }
 
-MeshReads& PoseStage::reads(osgUtil::CullVisitor& visitor)
-{
-    return current(visitor)._reads;
-}
-
 void PoseStage::count(osgUtil::CullVisitor& visitor, const SkinnedGeometry& mesh, const PaletteBinding& binding)
 {
     PoseStage& stage = current(visitor);
@@ -126,10 +121,9 @@ void PoseStage::countDraws(osgUtil::CullVisitor& visitor)
 // Attached to the visitor's main stage, wherever the traversal is now: a shadow camera's stage may come later.
 void PoseStage::attach(osgUtil::CullVisitor& visitor)
 {
-    _draws.clear();
     _detailView.clear();
     countDraws(visitor);
-    _reads.begin(visitor.getRenderInfo().getContextID());
+    _draws.begin(_counted);
     _frame = nullptr; // so that its storage can be used again
     _frame = PoseFrame::forContext(visitor.getRenderInfo().getContextID(), visitor.getFrameStamp());
     osgUtil::RenderBin* current = visitor.getCurrentRenderBin();

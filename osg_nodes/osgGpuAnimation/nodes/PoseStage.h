@@ -4,7 +4,6 @@
 #include <osgGpuAnimation/nodes/CharacterDraws.h>
 #include <osgGpuAnimation/nodes/DetailView.h>
 #include <osgGpuAnimation/nodes/DrawnInstances.h>
-#include <osgGpuAnimation/nodes/MeshReads.h>
 #include <osgGpuAnimation/nodes/PoseFrame.h>
 
 #include <osg/Camera>
@@ -26,8 +25,6 @@ public:
     static PoseFrame& frame(osgUtil::CullVisitor& visitor);
     /// What levels of detail go by where the visitor is.
     static DetailView& detailView(osgUtil::CullVisitor& visitor);
-    /// What the visitor hands on to be drawn in that frame.
-    static MeshReads& reads(osgUtil::CullVisitor& visitor);
     /// Has the statistics of the visitor's camera, where there are any, count what a draw of the mesh for many shows.
     static void count(osgUtil::CullVisitor& visitor, const SkinnedGeometry& mesh, const PaletteBinding& binding);
 
@@ -48,7 +45,6 @@ private:
     osg::ref_ptr<PoseFrame> _frame;
     CharacterDraws _draws;
     DetailView _detailView;
-    MeshReads _reads;
     osg::ref_ptr<DrawnInstances> _counted; ///< null: no statistics of the camera are collected
 };
 

@@ -6,11 +6,9 @@
 #include <osgGpuAnimation/nodes/BoxNearFar.h>
 #include <osgGpuAnimation/nodes/InstancedDraw.h>
 #include <osgGpuAnimation/nodes/MeshVertexArrays.h>
-#include <osgGpuAnimation/nodes/OwnSkinning.h>
 #include <osgGpuAnimation/nodes/PaletteBinding.h>
 #include <osgGpuAnimation/nodes/PaletteUniforms.h>
 #include <osgGpuAnimation/nodes/PlacedDraw.h>
-#include <osgGpuAnimation/nodes/SkinningScope.h>
 
 #include <layout.glsl>
 
@@ -48,10 +46,19 @@ int influencesUsed(const osg::Vec4Array& weights)
     return used;
 }
 
-std::uint64_t newNumber()
+osg::ref_ptr<osg::StateSet> makeColoredState(const char* colors)
 {
-    static std::atomic<std::uint64_t> last{0};
-    return ++last;
+    osg::ref_ptr<osg::StateSet> state = new osg::StateSet;
+    state->setDefine("POSE_COLORED", colors);
+    return state;
+}
+
+/// What tells the program of the colours; null where there are none.
+osg::StateSet* coloredState(SkinnedGeometry::Colors colors)
+{
+    static const osg::ref_ptr<osg::StateSet> ofArray = makeColoredState("1"), ofTargets = makeColoredState("2");
+    if (colors == SkinnedGeometry::Colors::White) return nullptr;
+    return colors == SkinnedGeometry::Colors::Array ? ofArray.get() : ofTargets.get();
 }
 
 /// The character that the visitor has come through last; null where there is none.
@@ -65,7 +72,7 @@ const AnimatedCharacter* characterAbove(const osg::NodeVisitor& visitor)
 
 } // namespace
 
-SkinnedGeometry::SkinnedGeometry() : _number(newNumber())
+SkinnedGeometry::SkinnedGeometry()
 {
     setUseDisplayList(false);
     setUseVertexBufferObjects(true);
@@ -77,7 +84,7 @@ SkinnedGeometry::SkinnedGeometry() : _number(newNumber())
 SkinnedGeometry::SkinnedGeometry(const SkinnedGeometry& other, const osg::CopyOp& copyop)
     : osg::Geometry(other, copyop), _influences(other._influences), _rigidEntry(other._rigidEntry),
       _morphTargets(other._morphTargets), _morphDeltas(other._morphDeltas), _morph(other._morph),
-      _morphEntry(other._morphEntry), _skinning(other.skinning()), _detail(other._detail), _number(newNumber())
+      _morphEntry(other._morphEntry), _detail(other._detail)
 {
 }
 
@@ -90,15 +97,25 @@ void SkinnedGeometry::accept(osg::NodeVisitor& visitor)
         if (character) return character->posedMesh(*this)->accept(visitor);
     }
     std::optional<BoxNearFar> boxes;
-    std::optional<SkinningScope> skinning;
-    if (osgUtil::CullVisitor* cullVisitor = visitor.asCullVisitor())
-    {
-        boxes.emplace(*cullVisitor);
-        skinning.emplace(*cullVisitor, *this);
-    }
+    osgUtil::CullVisitor* cullVisitor = visitor.asCullVisitor();
+    osg::StateSet* colored = cullVisitor ? coloredState(colors()) : nullptr;
+    if (cullVisitor) boxes.emplace(*cullVisitor);
+    if (colored) cullVisitor->pushStateSet(colored);
     visitor.pushOntoNodePath(this);
     visitor.apply(static_cast<osg::Drawable&>(*this));
     visitor.popFromNodePath();
+    if (colored) cullVisitor->popStateSet();
+}
+
+void SkinnedGeometry::addTo(osgUtil::CullVisitor& visitor, osg::RefMatrix* toEye, float depth)
+{
+    osg::StateSet* colored = coloredState(colors());
+    osg::StateSet* own = getStateSet();
+    for (osg::StateSet* state : {colored, own})
+        if (state) visitor.pushStateSet(state);
+    visitor.addDrawableAndDepth(this, toEye, depth);
+    for (osg::StateSet* state : {colored, own})
+        if (state) visitor.popStateSet();
 }
 
 void SkinnedGeometry::setInfluences(unsigned int influenceSet, osg::Vec4usArray* entries, osg::Vec4Array* weights)
@@ -227,23 +244,14 @@ void SkinnedGeometry::drawImplementation(osg::RenderInfo& renderInfo) const
     const PosePipeline* pipeline = PosePipeline::of(state);
     if (!pipeline) return;
     const MeshVertexArrays arrays(state);
-    std::optional<OwnSkinning> own;
-    std::optional<SkinnedRead> read(std::in_place, state, *this, *binding);
-    if (read->isMissing())
-    {
-        own.emplace(state, *this);
-        read.emplace(state, *this, *binding);
-    }
-    SkinnedRead& skinned = *read;
     if (binding->serial() != 0)
-        drawPlaced(renderInfo, *binding, *pipeline, skinned);
+        drawPlaced(renderInfo, *binding, *pipeline);
     else if (binding->instanceCount() > 1 || binding->level() != DetailLevels::allTriangles)
-        drawInstances(renderInfo, *binding, *pipeline, skinned);
+        drawInstances(renderInfo, *binding, *pipeline);
     else if (const PalettePlace place = pipeline->place(*binding->animationSet(), binding->slot(), binding->instance());
-             place.texture != 0 && skinned.find(binding->instance()))
+             place.texture != 0)
     {
         bindPalette(state, place);
-        skinned.bind(place);
         osg::Geometry::drawImplementation(renderInfo);
     }
 }
@@ -262,19 +270,18 @@ void SkinnedGeometry::compileGLObjects(osg::RenderInfo& renderInfo) const
 }
 
 void SkinnedGeometry::drawInstances(osg::RenderInfo& renderInfo, const PaletteBinding& binding,
-                                    const PosePipeline& pipeline, SkinnedRead& skinned) const
+                                    const PosePipeline& pipeline) const
 {
     const auto draw = [&](osg::State& state)
     {
         const std::size_t end = binding.instance() + binding.instanceCount();
         for (std::size_t first = binding.instance(); first < end;)
         {
-            // What is in one chunk of the palette, and was skinned into one buffer, is drawn at once.
+            // One draw shows the instances of one chunk of the palette.
             const PalettePlace place = pipeline.place(*binding.animationSet(), binding.slot(), first);
-            if (place.texture == 0 || place.chunkEnd <= first || !skinned.find(first)) break;
-            const std::size_t count = std::min({end, place.chunkEnd, skinned.end()}) - first;
+            if (place.texture == 0 || place.chunkEnd <= first) break;
+            const std::size_t count = std::min(end, place.chunkEnd) - first;
             bindPalette(state, place);
-            skinned.bind(place);
             drawPrimitives(state, static_cast<int>(count), binding.level());
             first += count;
         }
@@ -283,18 +290,17 @@ void SkinnedGeometry::drawInstances(osg::RenderInfo& renderInfo, const PaletteBi
 }
 
 void SkinnedGeometry::drawPlaced(osg::RenderInfo& renderInfo, const PaletteBinding& binding,
-                                 const PosePipeline& pipeline, SkinnedRead& skinned) const
+                                 const PosePipeline& pipeline) const
 {
     const PlacedDraw placed(*renderInfo.getState(), binding);
     const auto draw = [&](osg::State& state)
     {
         for (std::size_t first = 0; first < binding.placements().size();)
         {
-            const PlacedDraw::Run run = placed.run(pipeline, skinned, first);
+            const PlacedDraw::Run run = placed.run(pipeline, first);
             if (run.place.texture == 0) break;
             placed.use(first);
             bindPalette(state, run.place);
-            skinned.bind(run.place);
             drawPrimitives(state, static_cast<int>(run.count), binding.level());
             first += run.count;
         }
@@ -322,42 +328,6 @@ void SkinnedGeometry::withVertexArrays(osg::RenderInfo& renderInfo, Draw draw) c
     }
 }
 
-void SkinnedGeometry::captureVertices(osg::RenderInfo& renderInfo, const PalettePlace& first, int count,
-                                      GLuint buffer) const
-{
-    osg::State& state = *renderInfo.getState(); // as osg::Drawable::draw
-    osg::VertexArrayState* arrays = state.getCurrentVertexArrayState();
-    const bool usesArrayObject = state.useVertexArrayObject(_useVertexArrayObject);
-    if (usesArrayObject)
-    {
-        osg::ref_ptr<osg::VertexArrayState>& own = _vertexArrayStateList[state.getContextID()];
-        if (!own) own = createVertexArrayState(renderInfo);
-        arrays = own;
-    }
-    const osg::State::SetCurrentVertexArrayStateProxy current(state, arrays);
-    state.bindVertexArrayObject(arrays);
-    const auto capture = [&](osg::State&)
-    {
-        const osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
-        bindPalette(state, first);
-        gl.glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, buffer);
-        gl.glBeginTransformFeedback(GL_POINTS);
-        gl.glDrawArraysInstanced(GL_POINTS, 0, static_cast<GLsizei>(vertexCount()), count);
-        gl.glEndTransformFeedback();
-        gl.glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, 0);
-    };
-    {
-        const MeshVertexArrays meshArrays(state);
-        withVertexArrays(renderInfo, capture);
-    }
-    if (usesArrayObject) arrays->setRequiresSetArrays(getDataVariance() == osg::Object::DYNAMIC);
-}
-
-SkinOncePass::Variant SkinnedGeometry::onceVariant() const
-{
-    return {_influences, _morph >= 0, getNormalArray() || _morphDeltas.channels[1] >= 0};
-}
-
 void SkinnedGeometry::drawPrimitives(osg::State& state, int count, int level) const
 {
     const bool usesBuffers = state.useVertexBufferObject(_supportsVertexBufferObjects && _useVertexBufferObjects);
@@ -382,9 +352,6 @@ void SkinnedGeometry::releaseGLObjects(osg::State* state) const
     osg::Geometry::releaseGLObjects(state);
     if (_morphDeltas.texture) _morphDeltas.texture->releaseGLObjects(state);
     _detail.releaseGLObjects(state);
-    _oncePass->releaseGLObjects(state);
-    // What is there under a number that is nobody's any more, each context's draw side frees by itself.
-    _number = newNumber();
 }
 
 void SkinnedGeometry::resizeGLObjectBuffers(unsigned int maxSize)
@@ -392,7 +359,6 @@ void SkinnedGeometry::resizeGLObjectBuffers(unsigned int maxSize)
     osg::Geometry::resizeGLObjectBuffers(maxSize);
     if (_morphDeltas.texture) _morphDeltas.texture->resizeGLObjectBuffers(maxSize);
     _detail.resizeGLObjectBuffers(maxSize);
-    _oncePass->resizeGLObjectBuffers(maxSize);
 }
 
 } // namespace osgGpuAnimation

@@ -4,11 +4,8 @@
 #include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/nodes/MeshDetail.h>
 #include <osgGpuAnimation/nodes/MorphDeltas.h>
-#include <osgGpuAnimation/nodes/Skinning.h>
-#include <osgGpuAnimation/nodes/SkinOncePass.h>
 
 #include <osg/Geometry>
-#include <osg/Program>
 
 #include <array>
 #include <atomic>
@@ -20,7 +17,6 @@ namespace osgGpuAnimation
 
 class PaletteBinding;
 class PosePipeline;
-class SkinnedRead;
 struct PalettePlace;
 
 /// A mesh drawn from the palette: ordinary vertex arrays in bind pose and, for each vertex, the palette entries that
@@ -45,6 +41,9 @@ public:
         /// (the Optimizer) would part them from their palette entries and morph targets. Intersection visitors that
         /// come through an AnimatedCharacter meet its PosedMesh instead.
         void accept(osg::NodeVisitor& visitor) override;
+    /// Adds the mesh, which is known to be in view, to the visitor's render bin. toEye: the matrix that its instances'
+    /// placements refer to. depth: their distance before the eye.
+    void addTo(osgUtil::CullVisitor& visitor, osg::RefMatrix* toEye, float depth);
     osg::Geometry* asGeometry() override { return nullptr; }
     const osg::Geometry* asGeometry() const override { return nullptr; }
 
@@ -76,18 +75,6 @@ public:
     int morph() const { return _morph; }           ///< -1: none
     int morphEntry() const { return _morphEntry; } ///< the first palette entry of the weights; -1: none
 
-    /// When vertices are skinned. Once: vertices and normals lie on the GPU for all instances seen, 32 bytes a vertex
-    /// (16 without normals), from the third frame on; what does not fit is skinned by every draw, see SkinningPlan.
-    /// Programs of one's own that link skin.glsl need not know, unless they change the vertex before they call it:
-    /// those want EveryDraw.
-    void setSkinning(Skinning skinning) { _skinning = skinning; }
-    Skinning skinning() const { return _skinning; } ///< default: Auto
-    /// Whether it depends on what is drawn how the mesh is skinned.
-    bool mayBeSkinnedOnce() const
-    {
-        return _skinning == Skinning::Once || (_skinning == Skinning::Auto && !_morphTargets.empty());
-    }
-
     /// Where the vertices' colours come from.
     enum class Colors
     {
@@ -101,15 +88,7 @@ public:
     std::shared_ptr<const DetailLevels> detailLevels(const AnimationSet& set) const;
     void forgetDetailLevels() { _detail.forget(); }
 
-    /// What the passes that skin once go by. A number that no other mesh has:
-    std::uint64_t number() const { return _number; }
     std::size_t vertexCount() const { return getVertexArray() ? getVertexArray()->getNumElements() : 0; }
-    int skinnedTexels() const { return onceVariant().hasNormals ? 2 : 1; } ///< of a vertex
-    /// Of an instance.
-    std::size_t skinnedTexelCount() const { return vertexCount() * static_cast<std::size_t>(skinnedTexels()); }
-    SkinOncePass::Variant onceVariant() const;
-    /// Runs the pass that is applied over all vertices, for so many instances from the first on.
-    void captureVertices(osg::RenderInfo& renderInfo, const PalettePlace& first, int count, GLuint buffer) const;
 
     /// function(std::size_t entry, float weight), for each palette entry that moves the vertex.
     template <typename Function>
@@ -133,10 +112,8 @@ protected:
     ~SkinnedGeometry() override = default;
 
 private:
-    void drawInstances(osg::RenderInfo& renderInfo, const PaletteBinding& binding, const PosePipeline& pipeline,
-                       SkinnedRead& skinned) const;
-    void drawPlaced(osg::RenderInfo& renderInfo, const PaletteBinding& binding, const PosePipeline& pipeline,
-                    SkinnedRead& skinned) const;
+    void drawInstances(osg::RenderInfo& renderInfo, const PaletteBinding& binding, const PosePipeline& pipeline) const;
+    void drawPlaced(osg::RenderInfo& renderInfo, const PaletteBinding& binding, const PosePipeline& pipeline) const;
     template <typename Draw>
     void withVertexArrays(osg::RenderInfo& renderInfo, Draw draw) const;
     void drawPrimitives(osg::State& state, int count, int level) const;
@@ -149,11 +126,8 @@ private:
     MorphDeltas _morphDeltas;
     mutable std::atomic<bool> _isMorphLimitReported{false};
     int _morph = -1;
-    int _morphEntry = -1;                            ///< the first palette entry of the weights
-    std::atomic<Skinning> _skinning{Skinning::Auto}; ///< draw threads may be looking while it is set
+    int _morphEntry = -1; ///< the first palette entry of the weights
     MeshDetail _detail;
-    mutable std::atomic<std::uint64_t> _number;
-    osg::ref_ptr<SkinOncePass> _oncePass = SkinOncePass::shared(); ///< kept alive, and released, by its meshes
 };
 
 template <typename Function>

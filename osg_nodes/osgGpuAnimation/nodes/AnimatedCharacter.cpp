@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 
+#include <osgGpuAnimation/animation/MixBounds.h>
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/nodes/AnimationUpdateCallback.h>
 #include <osgGpuAnimation/nodes/DepthPass.h>
@@ -166,7 +167,7 @@ void AnimatedCharacter::traverse(osg::NodeVisitor& visitor)
         return;
     }
     const DepthPass pass(*cullVisitor);
-    PoseStage::draw(*cullVisitor, *this);
+    PoseStage::draw(*cullVisitor, {*this, *_controller, _pixelError, _isDrawnTogether});
 }
 
 Box AnimatedCharacter::boundsOf(const std::vector<PlayedClip>& played) const

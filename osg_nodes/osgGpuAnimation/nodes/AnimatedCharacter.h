@@ -2,7 +2,10 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/AnimationController.h>
-#include <osgGpuAnimation/animation/MixBounds.h>
+#include <osgGpuAnimation/animation/Bounds.h>
+
+#include <osgGpuAnimation/nodes/AnimationUpdateCallback.h>
+#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
 #include <osg/Geometry>
 #include <osg/MatrixTransform>
@@ -16,8 +19,9 @@
 namespace osgGpuAnimation
 {
 
+class MixBounds;
 class PosedMeshes;
-class SkinnedGeometry;
+struct PlayedClip;
 
 /// One animated character: owns a controller, shares an AnimationSet, and has its SkinnedGeometry drawables as
 /// children. Its matrix places the character in its parent, like any MatrixTransform's.
@@ -30,7 +34,7 @@ class SkinnedGeometry;
 /// An AnimationUpdateCallback (installed by the constructor) advances the controller by the frame stamp's simulation
 /// time. When culled and seen, the character enlists with the PoseStage of the graphics context, which evaluates its
 /// pose on the GPU before anything draws from it; unseen it costs nothing there.
-class AnimatedCharacter : public osg::MatrixTransform
+class AnimatedCharacter : public osg::MatrixTransform, public Updatable, public PosedMeshSource
 {
 public:
     AnimatedCharacter();
@@ -61,7 +65,7 @@ public:
     /// Advances the controller by the time since the last update; the first only takes the time down. A jump of the
     /// time, backwards too, moves the clip by as much, so the same times show the same poses.
     /// simulationTime: seconds.
-    void update(double simulationTime);
+    void update(double simulationTime) override;
 
     /// Works out the bounds of every clip from the SkinnedGeometry below and gives those their bounding boxes. To be
     /// called once when all meshes are in; copies of this node share the result.
@@ -90,7 +94,7 @@ public:
 
     /// A mesh below this node as the character shows it now, in the character's own space: computed by the CPU twin,
     /// and kept until the pose is another. Intersectors meet it in the mesh's place.
-    osg::ref_ptr<osg::Geometry> posedMesh(const SkinnedGeometry& mesh) const;
+    osg::ref_ptr<osg::Geometry> posedMesh(const SkinnedGeometry& mesh) const override;
     /// Gives the functor the primitives of all meshes below in their present pose. (A mesh by itself gives those of its
     /// bind pose: it belongs to no character.)
     void acceptPosed(osg::PrimitiveFunctor& functor);

@@ -4,7 +4,7 @@
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimationUpdateCallback.h>
 #include <osgGpuAnimation/nodes/CrowdBatches.h>
-#include <osgGpuAnimation/nodes/CrowdInstanceNode.h>
+#include <osgGpuAnimation/nodes/CrowdInstances.h>
 #include <osgGpuAnimation/nodes/CrowdView.h>
 #include <osgGpuAnimation/nodes/DepthPass.h>
 #include <osgGpuAnimation/nodes/DetailRange.h>
@@ -58,58 +58,7 @@ Error noSuchInstance()
     return Error{"the crowd has no such instance (any more)"};
 }
 
-} // namespace
-
-AnimatedCrowd::AnimatedCrowd() : AnimatedCrowd(emptySet(), {}) {}
-
-AnimatedCrowd::AnimatedCrowd(std::shared_ptr<const AnimationSet> set,
-                             const std::vector<osg::ref_ptr<SkinnedGeometry>>& meshes)
-    : _instances(std::move(set)), _posed(std::make_unique<PosedInstances>())
-{
-    // Not static: the Optimizer must not flatten the transforms above into the bind pose.
-    setDataVariance(osg::Object::DYNAMIC);
-    setUpdateCallback(new AnimationUpdateCallback);
-    for (const osg::ref_ptr<SkinnedGeometry>& mesh : meshes)
-        addChild(mesh);
-    _instances.setClipBounds(clipBoundsOf(*_instances.set(), *this));
-}
-
-AnimatedCrowd::AnimatedCrowd(const AnimatedCharacter& character)
-    : _instances(character.controller().sharedSet()), _posed(std::make_unique<PosedInstances>()),
-      _pixelError(character.pixelError())
-{
-    setDataVariance(osg::Object::DYNAMIC);
-    setUpdateCallback(new AnimationUpdateCallback);
-    setName(character.getName());
-    if (character.getStateSet()) setStateSet(const_cast<osg::StateSet*>(character.getStateSet()));
-    forEachMesh(character, [&](const SkinnedGeometry& mesh) { addChild(const_cast<SkinnedGeometry*>(&mesh)); });
-    std::vector<Box> bounds;
-    for (int clip = -1; clip < static_cast<int>(set().clips().size()); ++clip)
-        bounds.push_back(character.clipBounds(clip));
-    const bool areKnown = std::any_of(bounds.begin(), bounds.end(), [](const Box& box) { return !box.empty(); });
-    _instances.setClipBounds(areKnown ? bounds : clipBoundsOf(set(), *this));
-}
-
-AnimatedCrowd::AnimatedCrowd(const AnimatedCrowd& other, const osg::CopyOp& copyop)
-    : osg::Transform(other, copyop), _instances(other._instances), _posed(std::make_unique<PosedInstances>()),
-      _origin(other._origin), _hasOrigin(other._hasOrigin), _updateTime(other._updateTime),
-      _pixelError(other._pixelError)
-{
-}
-
-AnimatedCrowd::~AnimatedCrowd() = default;
-
-Result<bool> AnimatedCrowd::setAnimationSet(std::shared_ptr<const AnimationSet> newSet)
-{
-    if (size() > 0 || set().paletteSize() > 0) return Error{"a crowd that has a set keeps it"};
-    if (!newSet) return Error{"a crowd needs a set"};
-    _instances.setSet(std::move(newSet));
-    _instances.setClipBounds(clipBoundsOf(set(), *this));
-    dirtyBound();
-    return setPixelError(_pixelError);
-}
-
-Result<AffineMatrix> AnimatedCrowd::toRootMatrix(const osg::Matrixd& placement, const osg::Vec3d& origin) const
+Result<AffineMatrix> toRootMatrix(const osg::Matrixd& placement, const osg::Vec3d& origin)
 {
     osg::Matrixd fromOrigin = placement;
     fromOrigin.setTrans(placement.getTrans() - origin);
@@ -125,6 +74,108 @@ Result<AffineMatrix> AnimatedCrowd::toRootMatrix(const osg::Matrixd& placement, 
     return root;
 }
 
+/// An instance as intersectors meet it: posed only where its sphere is hit. It lives as long as the crowd's traversal.
+class IntersectedInstance : public osg::Node
+{
+public:
+    IntersectedInstance(const AnimatedCrowd& crowd, std::size_t index) : _crowd(crowd), _index(index) {}
+
+    void traverse(osg::NodeVisitor& visitor) override
+    {
+        const AnimatedCrowd::Instance instance = _crowd.instances().handleOf(_index);
+        forEachMesh(_crowd,
+                    [&](const SkinnedGeometry& mesh)
+                    {
+                        if (!visitor.validNodeMask(mesh)) return;
+                        const osg::ref_ptr<osg::Geometry> posed = _crowd.posedMesh(instance, mesh);
+                        // The hit's node path leads through this node, and only the drawable is kept.
+                        posed->setUserData(this);
+                        posed->accept(visitor);
+                    });
+    }
+
+    osg::BoundingSphere computeBound() const override
+    {
+        const glm::vec4& sphere = _crowd.instances().sphere(_index);
+        return {osg::Vec3(sphere.x, sphere.y, sphere.z), sphere.w};
+    }
+
+private:
+    const AnimatedCrowd& _crowd;
+    std::size_t _index;
+};
+
+} // namespace
+
+AnimatedCrowd::AnimatedCrowd() : AnimatedCrowd(emptySet(), {}) {}
+
+AnimatedCrowd::AnimatedCrowd(std::shared_ptr<const AnimationSet> set,
+                             const std::vector<osg::ref_ptr<SkinnedGeometry>>& meshes)
+    : _instances(std::make_unique<CrowdInstances>(std::move(set))), _posed(std::make_unique<PosedInstances>())
+{
+    // Not static: the Optimizer must not flatten the transforms above into the bind pose.
+    setDataVariance(osg::Object::DYNAMIC);
+    setUpdateCallback(new AnimationUpdateCallback);
+    for (const osg::ref_ptr<SkinnedGeometry>& mesh : meshes)
+        addChild(mesh);
+    _instances->setClipBounds(clipBoundsOf(*_instances->set(), *this));
+}
+
+AnimatedCrowd::AnimatedCrowd(const AnimatedCharacter& character)
+    : _instances(std::make_unique<CrowdInstances>(character.controller().sharedSet())),
+      _posed(std::make_unique<PosedInstances>()), _pixelError(character.pixelError())
+{
+    setDataVariance(osg::Object::DYNAMIC);
+    setUpdateCallback(new AnimationUpdateCallback);
+    setName(character.getName());
+    if (character.getStateSet()) setStateSet(const_cast<osg::StateSet*>(character.getStateSet()));
+    forEachMesh(character, [&](const SkinnedGeometry& mesh) { addChild(const_cast<SkinnedGeometry*>(&mesh)); });
+    std::vector<Box> bounds;
+    for (int clip = -1; clip < static_cast<int>(set().clips().size()); ++clip)
+        bounds.push_back(character.clipBounds(clip));
+    const bool areKnown = std::any_of(bounds.begin(), bounds.end(), [](const Box& box) { return !box.empty(); });
+    _instances->setClipBounds(areKnown ? bounds : clipBoundsOf(set(), *this));
+}
+
+AnimatedCrowd::AnimatedCrowd(const AnimatedCrowd& other, const osg::CopyOp& copyop)
+    : osg::Transform(other, copyop), _instances(std::make_unique<CrowdInstances>(*other._instances)),
+      _posed(std::make_unique<PosedInstances>()), _origin(other._origin), _hasOrigin(other._hasOrigin),
+      _updateTime(other._updateTime), _pixelError(other._pixelError)
+{
+}
+
+AnimatedCrowd::~AnimatedCrowd() = default;
+
+const AnimationSet& AnimatedCrowd::set() const
+{
+    return *_instances->set();
+}
+
+const std::shared_ptr<const AnimationSet>& AnimatedCrowd::sharedSet() const
+{
+    return _instances->set();
+}
+
+bool AnimatedCrowd::contains(Instance instance) const
+{
+    return _instances->indexOf(instance) != CrowdInstances::none;
+}
+
+std::size_t AnimatedCrowd::size() const
+{
+    return _instances->size();
+}
+
+Result<bool> AnimatedCrowd::setAnimationSet(std::shared_ptr<const AnimationSet> newSet)
+{
+    if (size() > 0 || set().paletteSize() > 0) return Error{"a crowd that has a set keeps it"};
+    if (!newSet) return Error{"a crowd needs a set"};
+    _instances->setSet(std::move(newSet));
+    _instances->setClipBounds(clipBoundsOf(set(), *this));
+    dirtyBound();
+    return setPixelError(_pixelError);
+}
+
 Result<AnimatedCrowd::Instance> AnimatedCrowd::add(const osg::Matrixd& placement, const AnimationController& controller,
                                                    const osg::Vec4& tint)
 {
@@ -137,47 +188,47 @@ Result<AnimatedCrowd::Instance> AnimatedCrowd::add(const osg::Matrixd& placement
     _origin = origin;
     _hasOrigin = true;
     dirtyBound();
-    return _instances.add(root.value(), controller, toRgba(tint));
+    return _instances->add(root.value(), controller, toRgba(tint));
 }
 
 bool AnimatedCrowd::remove(Instance instance)
 {
     if (!contains(instance)) return false;
-    _instances.remove(_instances.indexOf(instance));
+    _instances->remove(_instances->indexOf(instance));
     dirtyBound();
     return true;
 }
 
 Result<bool> AnimatedCrowd::move(Instance instance, const osg::Matrixd& placement)
 {
-    const std::size_t index = _instances.indexOf(instance);
+    const std::size_t index = _instances->indexOf(instance);
     if (index == CrowdInstances::none) return noSuchInstance();
     const Result<AffineMatrix> root = toRootMatrix(placement, _origin);
     if (!root) return root.error();
-    _instances.move(index, root.value());
+    _instances->move(index, root.value());
     dirtyBound();
     return true;
 }
 
 Result<bool> AnimatedCrowd::setTint(Instance instance, const osg::Vec4& tint)
 {
-    const std::size_t index = _instances.indexOf(instance);
+    const std::size_t index = _instances->indexOf(instance);
     if (index == CrowdInstances::none) return noSuchInstance();
-    _instances.setTint(index, toRgba(tint));
+    _instances->setTint(index, toRgba(tint));
     return true;
 }
 
 AnimationController* AnimatedCrowd::controller(Instance instance)
 {
-    const std::size_t index = _instances.indexOf(instance);
+    const std::size_t index = _instances->indexOf(instance);
     if (index == CrowdInstances::none) return nullptr;
     dirtyBound();
-    return &_instances.controller(index);
+    return &_instances->controller(index);
 }
 
 osg::Matrixd AnimatedCrowd::placement(Instance instance) const
 {
-    return toOsg(_instances.rootMatrix(_instances.indexOf(instance)), _origin);
+    return toOsg(_instances->rootMatrix(_instances->indexOf(instance)), _origin);
 }
 
 void AnimatedCrowd::setOrigin(const osg::Vec3d& origin)
@@ -185,11 +236,11 @@ void AnimatedCrowd::setOrigin(const osg::Vec3d& origin)
     const osg::Vec3d shift = _origin - origin;
     for (std::size_t index = 0; index < size(); ++index)
     {
-        AffineMatrix root = _instances.rootMatrix(index);
+        AffineMatrix root = _instances->rootMatrix(index);
         for (int row = 0; row < 3; ++row)
             root.rows[static_cast<std::size_t>(row)].w =
                 static_cast<float>(static_cast<double>(root.rows[static_cast<std::size_t>(row)].w) + shift[row]);
-        _instances.move(index, root);
+        _instances->move(index, root);
     }
     _origin = origin;
     _hasOrigin = true;
@@ -200,7 +251,7 @@ void AnimatedCrowd::update(double simulationTime)
 {
     const double step = _updateTime ? simulationTime - *_updateTime : 0.0;
     _updateTime = simulationTime;
-    if (_instances.advance(step)) dirtyBound();
+    if (_instances->advance(step)) dirtyBound();
 }
 
 std::optional<AnimatedCrowd::Instance> AnimatedCrowd::instanceOf(const osg::Drawable* hit)
@@ -211,18 +262,18 @@ std::optional<AnimatedCrowd::Instance> AnimatedCrowd::instanceOf(const osg::Draw
 
 osg::ref_ptr<osg::Geometry> AnimatedCrowd::posedMesh(Instance instance, const SkinnedGeometry& mesh) const
 {
-    const std::size_t index = _instances.indexOf(instance);
+    const std::size_t index = _instances->indexOf(instance);
     if (index == CrowdInstances::none) return new PosedMesh(mesh, new osg::Vec3Array, instance);
     const osg::ref_ptr<PosedMesh> kept =
-        _posed->of(instance)->of(mesh, sharedSet(), _instances.instruction(index), _instances.rootMatrix(index));
+        _posed->of(instance)->of(mesh, sharedSet(), _instances->instruction(index), _instances->rootMatrix(index));
     return new PosedMesh(mesh, dynamic_cast<osg::Vec3Array*>(kept->getVertexArray()), instance);
 }
 
 void AnimatedCrowd::acceptInstances(osg::PrimitiveFunctor& functor) const
 {
     for (std::size_t index = 0; index < size(); ++index)
-        forEachMesh(*this,
-                    [&](const SkinnedGeometry& mesh) { posedMesh(_instances.handleOf(index), mesh)->accept(functor); });
+        forEachMesh(*this, [&](const SkinnedGeometry& mesh)
+                    { posedMesh(_instances->handleOf(index), mesh)->accept(functor); });
 }
 
 void AnimatedCrowd::traverse(osg::NodeVisitor& visitor)
@@ -242,14 +293,14 @@ void AnimatedCrowd::cull(osgUtil::CullVisitor& visitor)
     const DepthPass pass(visitor);
     CrowdView view(visitor);
     static thread_local std::vector<std::uint32_t> seen; // keeps its storage from cull to cull
-    _instances.findSeen(isCullingActive() ? view.planes() : std::vector<glm::vec4>(), seen);
+    _instances->findSeen(isCullingActive() ? view.planes() : std::vector<glm::vec4>(), seen);
     std::vector<DrawState> draws;
     if (!seen.empty() && set().paletteSize() > 0)
     {
-        view.look(_instances, seen);
+        view.look(*_instances, seen);
         const DetailScale scale(visitor, PoseStage::detailView(visitor), _pixelError,
                                 _pixelError > 0.0f ? DetailRange(*this, set()) : DetailRange());
-        draws = enlistSeen(PoseStage::frame(visitor), _instances, CrowdDetail(_instances, scale), seen);
+        draws = enlistSeen(PoseStage::frame(visitor), *_instances, CrowdDetail(*_instances, scale), seen);
     }
     for (const osg::ref_ptr<osg::Node>& child : _children)
     {
@@ -275,7 +326,7 @@ void AnimatedCrowd::intersect(osg::NodeVisitor& visitor)
 {
     for (std::size_t index = 0; index < size(); ++index)
     {
-        const osg::ref_ptr<CrowdInstanceNode> instance = new CrowdInstanceNode(*this, index);
+        const osg::ref_ptr<IntersectedInstance> instance = new IntersectedInstance(*this, index);
         instance->accept(visitor);
     }
     for (const osg::ref_ptr<osg::Node>& child : _children)
@@ -298,7 +349,7 @@ osg::BoundingSphere AnimatedCrowd::computeBound() const
     osg::BoundingBox box;
     for (std::size_t index = 0; index < size(); ++index)
     {
-        const glm::vec4& sphere = _instances.sphere(index);
+        const glm::vec4& sphere = _instances->sphere(index);
         if (sphere.w < 0.0f) continue;
         box.expandBy(sphere.x - sphere.w, sphere.y - sphere.w, sphere.z - sphere.w);
         box.expandBy(sphere.x + sphere.w, sphere.y + sphere.w, sphere.z + sphere.w);

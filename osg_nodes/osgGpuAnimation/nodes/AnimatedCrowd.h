@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <osgGpuAnimation/animation/Result.h>
-#include <osgGpuAnimation/nodes/CrowdInstances.h>
+#include <osgGpuAnimation/animation/AnimationController.h>
+#include <osgGpuAnimation/nodes/AnimationUpdateCallback.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
 #include <osg/PrimitiveSet>
@@ -15,6 +15,7 @@ namespace osgGpuAnimation
 {
 
 class AnimatedCharacter;
+class CrowdInstances;
 class PosedInstances;
 
 /// Thousands of instances of one character in one node: each with its own placement, controller and tint, all drawn by
@@ -34,11 +35,11 @@ class PosedInstances;
 ///
 /// Meshes are the crowd's children, as they are in an AnimatedCharacter's; other children are drawn once. Within one
 /// mesh, transparent instances are not sorted by depth.
-class AnimatedCrowd : public osg::Transform
+class AnimatedCrowd : public osg::Transform, public Updatable
 {
 public:
     /// Names an instance as long as it is there, and no other afterwards.
-    using Instance = CrowdInstances::Handle;
+    using Instance = std::uint64_t;
     static constexpr std::size_t maxInstances = 1000000;
 
     AnimatedCrowd();
@@ -51,11 +52,8 @@ public:
     AnimatedCrowd(const AnimatedCrowd& other, const osg::CopyOp& copyop = osg::CopyOp::SHALLOW_COPY);
     META_Node(osgGpuAnimation, AnimatedCrowd)
 
-        const AnimationSet& set() const
-    {
-        return *_instances.set();
-    }
-    const std::shared_ptr<const AnimationSet>& sharedSet() const { return _instances.set(); }
+        const AnimationSet& set() const;
+    const std::shared_ptr<const AnimationSet>& sharedSet() const;
 
     /// For a crowd that was made without a set: works out the bounds from the meshes that are there. Error: it has
     /// instances, or a set already.
@@ -70,14 +68,14 @@ public:
     bool remove(Instance instance);                                      ///< false: there is none
     Result<bool> move(Instance instance, const osg::Matrixd& placement); ///< errors: as add()'s; no such instance
     Result<bool> setTint(Instance instance, const osg::Vec4& tint);      ///< error: no such instance
-    bool contains(Instance instance) const { return _instances.indexOf(instance) != CrowdInstances::none; }
-    std::size_t size() const { return _instances.size(); }
+    bool contains(Instance instance) const;
+    std::size_t size() const;
 
     /// To ask for crossfades, layers and so on; null where there is no such instance. Holds until the next update().
     AnimationController* controller(Instance instance);
     /// instance: one there is.
     osg::Matrixd placement(Instance instance) const;
-    const CrowdInstances& instances() const { return _instances; }
+    const CrowdInstances& instances() const { return *_instances; }
 
     /// Placements are kept as floats relative to the origin: the first instance's, unless it is set before.
     /// Where instances are already there, they stay where they are, as exactly as floats can say.
@@ -91,7 +89,7 @@ public:
     float pixelError() const { return _pixelError; }
 
     /// Advances by the time since the last update; the first only takes the time down. simulationTime: seconds.
-    void update(double simulationTime);
+    void update(double simulationTime) override;
 
     /// The instance that an intersector has hit: of the Intersection's drawable. Nothing where it is no crowd's.
     static std::optional<Instance> instanceOf(const osg::Drawable* hit);
@@ -110,13 +108,12 @@ protected:
     ~AnimatedCrowd() override;
 
 private:
-    Result<AffineMatrix> toRootMatrix(const osg::Matrixd& placement, const osg::Vec3d& origin) const;
     void cull(osgUtil::CullVisitor& visitor);
     void intersect(osg::NodeVisitor& visitor);
     void count(osg::NodeVisitor& visitor);
 
-    CrowdInstances _instances;
-    std::unique_ptr<PosedInstances> _posed; ///< its own: no copy shares it
+    std::unique_ptr<CrowdInstances> _instances; ///< never null
+    std::unique_ptr<PosedInstances> _posed;     ///< its own: no copy shares it
     osg::Vec3d _origin;
     bool _hasOrigin = false;
     std::optional<double> _updateTime; ///< seconds of simulation time

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/AnimationUpdateCallback.h>
 
-#include <osgGpuAnimation/nodes/AnimatedCharacter.h>
-#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
-
 #include <osg/NodeVisitor>
 
 namespace osgGpuAnimation
@@ -17,10 +14,7 @@ AnimationUpdateCallback::AnimationUpdateCallback(const AnimationUpdateCallback& 
 void AnimationUpdateCallback::operator()(osg::Node* node, osg::NodeVisitor* visitor)
 {
     if (const osg::FrameStamp* stamp = visitor->getFrameStamp())
-    {
-        if (auto* character = dynamic_cast<AnimatedCharacter*>(node)) character->update(stamp->getSimulationTime());
-        if (auto* crowd = dynamic_cast<AnimatedCrowd*>(node)) crowd->update(stamp->getSimulationTime());
-    }
+        if (auto* updatable = dynamic_cast<Updatable*>(node)) updatable->update(stamp->getSimulationTime());
     traverse(node, visitor);
 }
 

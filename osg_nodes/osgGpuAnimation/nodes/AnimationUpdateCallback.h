@@ -2,12 +2,24 @@
 #pragma once
 
 #include <osg/Callback>
+#include <osg/Node>
 
 namespace osgGpuAnimation
 {
 
-/// Updates the AnimatedCharacter or AnimatedCrowd it is on with the frame stamp's simulation time. It has no state of
-/// its own, so copies of a character may share it.
+/// A node with animation that follows the simulation time.
+class Updatable
+{
+public:
+    /// simulationTime: seconds, of the frame stamp.
+    virtual void update(double simulationTime) = 0;
+
+protected:
+    ~Updatable() = default;
+};
+
+/// Updates the Updatable node it is on (AnimatedCharacter, AnimatedCrowd) with the frame stamp's simulation time. It
+/// has no state, so copies of a node may share it.
 class AnimationUpdateCallback : public osg::NodeCallback
 {
 public:

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/CharacterDraws.h>
 
-#include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/DetailScale.h>
 #include <osgGpuAnimation/nodes/MeshesOfGroup.h>
 #include <osgGpuAnimation/nodes/OsgMatrix.h>
@@ -56,70 +55,71 @@ bool CharacterDraws::Group::holds(const Group& other) const
            set == other.set && slot == other.slot && level == other.level && meshes == other.meshes;
 }
 
-bool CharacterDraws::Detail::isOf(const AnimatedCharacter& character) const
+bool CharacterDraws::Detail::isOf(const osg::Group& node) const
 {
-    if (children.size() != character.getNumChildren()) return false;
-    for (unsigned int i = 0; i < character.getNumChildren(); ++i)
-        if (children[i] != character.getChild(i)) return false;
+    if (children.size() != node.getNumChildren()) return false;
+    for (unsigned int i = 0; i < node.getNumChildren(); ++i)
+        if (children[i] != node.getChild(i)) return false;
     return true;
 }
 
-void CharacterDraws::draw(osgUtil::CullVisitor& visitor, DetailView& view, AnimatedCharacter& character,
+void CharacterDraws::draw(osgUtil::CullVisitor& visitor, DetailView& view, const DrawnCharacter& character,
                           PoseFrame& frame, EnlistedPose pose)
 {
     const int level = levelOf(visitor, view, character);
     std::vector<osg::Node*> others; // not kept for its memory: there may be characters below them
-    const bool isTogether = character.isDrawnTogether() && canDrawTogether(visitor) &&
+    const bool isTogether = character.isDrawnTogether && canDrawTogether(visitor) &&
                             drawTogether(visitor, character, frame, pose, level, others);
     osg::StateSet* state = nullptr;
-    const auto count = isTogether ? static_cast<unsigned int>(others.size()) : character.getNumChildren();
+    const auto count = isTogether ? static_cast<unsigned int>(others.size()) : character.node.getNumChildren();
     for (unsigned int i = 0; i < count; ++i)
     {
-        osg::Node* child = isTogether ? others[i] : character.getChild(i);
-        if (!state) visitor.pushStateSet(state = frame.stateOf(character, pose, level));
+        osg::Node* child = isTogether ? others[i] : character.node.getChild(i);
+        if (!state)
+            visitor.pushStateSet(state = frame.stateOf(character.node, character.controller.set(), pose, level));
         child->accept(visitor);
     }
     if (state) visitor.popStateSet();
 }
 
-int CharacterDraws::levelOf(osgUtil::CullVisitor& visitor, DetailView& view, const AnimatedCharacter& character)
+int CharacterDraws::levelOf(osgUtil::CullVisitor& visitor, DetailView& view, const DrawnCharacter& character)
 {
-    if (!(character.pixelError() > 0.0f)) return DetailLevels::allTriangles;
+    if (!(character.pixelError > 0.0f)) return DetailLevels::allTriangles;
     const Detail& detail = detailOf(character);
     if (!detail.box.valid()) return DetailLevels::allTriangles;
     const osg::Vec3 centre = detail.box.center();
-    return DetailScale(visitor, view, character.pixelError(), detail.range)
+    return DetailScale(visitor, view, character.pixelError, detail.range)
         .level(glm::vec3(centre.x(), centre.y(), centre.z()), detail.box.radius(), 1.0f);
 }
 
 // Characters of one set share their meshes as a rule; where they do not, each one's have levels.
-const CharacterDraws::Detail& CharacterDraws::detailOf(const AnimatedCharacter& character)
+const CharacterDraws::Detail& CharacterDraws::detailOf(const DrawnCharacter& character)
 {
-    Detail& detail = _details[&character.set()];
-    if (detail.isOf(character)) return detail;
-    detail = {{}, DetailRange(character, character.set()), {}};
-    for (unsigned int i = 0; i < character.getNumChildren(); ++i)
-        detail.children.push_back(character.getChild(i));
-    forEachMesh(character, [&](const SkinnedGeometry& mesh) { detail.box.expandBy(mesh.getBoundingBox()); });
+    Detail& detail = _details[&character.controller.set()];
+    if (detail.isOf(character.node)) return detail;
+    detail = {{}, DetailRange(character.node, character.controller.set()), {}};
+    for (unsigned int i = 0; i < character.node.getNumChildren(); ++i)
+        detail.children.push_back(character.node.getChild(i));
+    forEachMesh(character.node, [&](const SkinnedGeometry& mesh) { detail.box.expandBy(mesh.getBoundingBox()); });
     return detail;
 }
 
 // True where the meshes that can be shared are dealt with; false where all is to be drawn as it is.
-bool CharacterDraws::drawTogether(osgUtil::CullVisitor& visitor, AnimatedCharacter& character, PoseFrame& frame,
+bool CharacterDraws::drawTogether(osgUtil::CullVisitor& visitor, const DrawnCharacter& character, PoseFrame& frame,
                                   EnlistedPose pose, int level, std::vector<osg::Node*>& outOthers)
 {
     _asked.bin = visitor.getCurrentRenderBin();
     _asked.projection = visitor.getProjectionMatrix();
     _asked.traversalMask = visitor.getTraversalMask();
-    _asked.set = &character.set();
+    _asked.set = &character.controller.set();
     _asked.slot = pose.slot;
     _asked.level = level;
     _asked.meshes.clear();
-    for (unsigned int i = 0; i < character.getNumChildren(); ++i)
+    for (unsigned int i = 0; i < character.node.getNumChildren(); ++i)
     {
-        SkinnedGeometry* mesh = asShared(character.getChild(i));
+        SkinnedGeometry* mesh = asShared(character.node.getChild(i));
         if (!mesh)
-            outOthers.push_back(character.getChild(i));
+            outOthers.push_back(character.node.getChild(i));
         else if (visitor.validNodeMask(*mesh))
             _asked.meshes.push_back(mesh);
     }
@@ -137,7 +137,7 @@ bool CharacterDraws::drawTogether(osgUtil::CullVisitor& visitor, AnimatedCharact
 
     // As CullVisitor goes about a drawable.
     const osg::RefMatrix& toEye = *visitor.getModelViewMatrix();
-    if (character.isCullingActive() && visitor.isCulled(group->box)) return true;
+    if (character.node.isCullingActive() && visitor.isCulled(group->box)) return true;
     const bool hasNearFar = visitor.getComputeNearFarMode() != osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR;
     if (hasNearFar && !visitor.updateCalculatedNearFar(toEye, group->box)) return true;
     const AffineMatrix placement = toAffine(toEye);

@@ -14,6 +14,15 @@
 namespace osgGpuAnimation
 {
 
+/// A character as the draws see it.
+struct DrawnCharacter
+{
+    osg::Group& node; ///< whose children are drawn
+    const AnimationController& controller;
+    float pixelError;     ///< pixels, see DetailRange
+    bool isDrawnTogether; ///< whether it may share instanced draws with others
+};
+
 /// What one cull visitor draws of the characters it sees in a frame. The first of several that OSG would draw alike
 /// (the same meshes below the same state, in a bin whose order is the state's) is drawn as it is; all after it
 /// together, by one instanced draw a mesh primitive.
@@ -34,7 +43,7 @@ public:
     }
 
     /// Hands what is below the character on to be drawn. pose: what the frame has enlisted it as. view: the visitor's.
-    void draw(osgUtil::CullVisitor& visitor, DetailView& view, AnimatedCharacter& character, PoseFrame& frame,
+    void draw(osgUtil::CullVisitor& visitor, DetailView& view, const DrawnCharacter& character, PoseFrame& frame,
               EnlistedPose pose);
 
 private:
@@ -60,13 +69,13 @@ private:
         DetailRange range;
         osg::BoundingBox box; ///< of the meshes
 
-        bool isOf(const AnimatedCharacter& character) const;
+        bool isOf(const osg::Group& node) const;
     };
 
-    bool drawTogether(osgUtil::CullVisitor& visitor, AnimatedCharacter& character, PoseFrame& frame, EnlistedPose pose,
-                      int level, std::vector<osg::Node*>& outOthers);
-    int levelOf(osgUtil::CullVisitor& visitor, DetailView& view, const AnimatedCharacter& character);
-    const Detail& detailOf(const AnimatedCharacter& character);
+    bool drawTogether(osgUtil::CullVisitor& visitor, const DrawnCharacter& character, PoseFrame& frame,
+                      EnlistedPose pose, int level, std::vector<osg::Node*>& outOthers);
+    int levelOf(osgUtil::CullVisitor& visitor, DetailView& view, const DrawnCharacter& character);
+    const Detail& detailOf(const DrawnCharacter& character);
     void open(osgUtil::CullVisitor& visitor, Group& group, PoseFrame& frame, float depth);
 
     std::unordered_map<const osgUtil::StateGraph*, std::vector<Group>> _groups;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/PaletteUniforms.h>
 
-#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
-
 #include <layout.glsl>
 
 #include <osg/Program>
@@ -11,10 +9,10 @@
 namespace osgGpuAnimation
 {
 
-bool bindPalette(osg::State& state, const SkinnedGeometry& mesh, const PalettePlace& place)
+void bindPalette(osg::State& state, const PalettePlace& place, int influences, int rigidEntry)
 {
     const osg::Program::PerContextProgram* program = state.getLastAppliedProgramObject();
-    if (!program) return true;
+    if (!program) return;
     static const unsigned int paletteName = osg::Uniform::getNameID("posePalette");
     static const unsigned int strideName = osg::Uniform::getNameID("poseStride");
     static const unsigned int instanceName = osg::Uniform::getNameID("poseInstance");
@@ -27,10 +25,10 @@ bool bindPalette(osg::State& state, const SkinnedGeometry& mesh, const PalettePl
     gl->glUniform1i(program->getUniformLocation(paletteName), POSE_PALETTE_UNIT);
     gl->glUniform1i(program->getUniformLocation(strideName), place.stride);
     gl->glUniform1i(program->getUniformLocation(instanceName), place.instance);
-    gl->glUniform1i(program->getUniformLocation(influencesName), mesh.influenceCount());
-    if (mesh.rigidEntry() >= 0)
+    gl->glUniform1i(program->getUniformLocation(influencesName), influences);
+    if (rigidEntry >= 0)
     {
-        gl->glVertexAttrib4f(POSE_ENTRIES_0_LOCATION, static_cast<GLfloat>(mesh.rigidEntry()), 0, 0, 0);
+        gl->glVertexAttrib4f(POSE_ENTRIES_0_LOCATION, static_cast<GLfloat>(rigidEntry), 0, 0, 0);
         gl->glVertexAttrib4f(POSE_WEIGHTS_0_LOCATION, 1, 0, 0, 0);
     }
     gl->glUniform1i(program->getUniformLocation(tintsName), POSE_TINT_UNIT);
@@ -40,7 +38,6 @@ bool bindPalette(osg::State& state, const SkinnedGeometry& mesh, const PalettePl
         state.setActiveTextureUnit(POSE_TINT_UNIT);
         glBindTexture(GL_TEXTURE_BUFFER, place.tints);
     }
-    return bindMorphTargets(state, mesh.packedMorphTargets(), mesh.morphTargets().size(), mesh.morphEntry());
 }
 
 } // namespace osgGpuAnimation

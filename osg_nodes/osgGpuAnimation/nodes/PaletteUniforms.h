@@ -8,10 +8,8 @@
 namespace osgGpuAnimation
 {
 
-class SkinnedGeometry;
-
-/// Tells the program that is applied where skin.glsl finds the palette, the tints and the mesh's morph targets. False
-/// where the targets are more than the context's buffer textures take: the mesh is drawn unmorphed.
-bool bindPalette(osg::State& state, const SkinnedGeometry& mesh, const PalettePlace& place);
+/// Sets the uniforms by which skin.glsl finds the palette and the tints in the program that is applied.
+/// influences: of a vertex, at most. rigidEntry: the entry that moves all vertices; -1: influences are per vertex.
+void bindPalette(osg::State& state, const PalettePlace& place, int influences, int rigidEntry);
 
 } // namespace osgGpuAnimation

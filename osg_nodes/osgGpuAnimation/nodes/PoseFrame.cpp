@@ -2,7 +2,6 @@
 #include <osgGpuAnimation/nodes/PoseFrame.h>
 
 #include <osgGpuAnimation/gpu/FeedbackTimer.h>
-#include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/PoseStatistics.h>
 
 #include <algorithm>
@@ -77,14 +76,14 @@ void PoseFrame::reset()
         pool->reset();
 }
 
-EnlistedPose PoseFrame::enlist(const AnimatedCharacter& character)
+EnlistedPose PoseFrame::enlist(const osg::Node& node, const AnimationController& controller)
 {
     const std::lock_guard<std::mutex> lock(_mutex);
-    Enlisted& enlisted = _enlisted[&character];
-    if (!isStill(enlisted, character))
+    Enlisted& enlisted = _enlisted[&node];
+    if (!isStill(enlisted, controller))
     {
-        const PoseInstruction& instruction = character.controller().instruction();
-        Batch& batch = openBatch(character);
+        const PoseInstruction& instruction = controller.instruction();
+        Batch& batch = openBatch(controller);
         enlisted = {&batch, batch.content->add(instruction), _samples.size(), instruction.sampleCount, nullptr};
         _samples.insert(_samples.end(), instruction.samples.begin(),
                         instruction.samples.begin() + static_cast<std::ptrdiff_t>(instruction.sampleCount));
@@ -92,37 +91,37 @@ EnlistedPose PoseFrame::enlist(const AnimatedCharacter& character)
     return {enlisted.batch->slot, enlisted.instance};
 }
 
-// The address may be that of another character by now, in a viewer whose frames have the same numbers.
-bool PoseFrame::isStill(const Enlisted& known, const AnimatedCharacter& character) const
+// The address may be that of another node by now, in a viewer whose frames have the same numbers.
+bool PoseFrame::isStill(const Enlisted& known, const AnimationController& controller) const
 {
-    const PoseInstruction& instruction = character.controller().instruction();
-    return known.batch && &known.batch->content->set() == &character.set() &&
+    const PoseInstruction& instruction = controller.instruction();
+    return known.batch && &known.batch->content->set() == &controller.set() &&
            known.sampleCount == instruction.sampleCount &&
            std::equal(instruction.samples.begin(),
                       instruction.samples.begin() + static_cast<std::ptrdiff_t>(instruction.sampleCount),
                       _samples.begin() + static_cast<std::ptrdiff_t>(known.firstSample), isSame);
 }
 
-osg::StateSet* PoseFrame::stateOf(const AnimatedCharacter& character, EnlistedPose pose, int level)
+osg::StateSet* PoseFrame::stateOf(const osg::Node& node, const AnimationSet& set, EnlistedPose pose, int level)
 {
     const std::lock_guard<std::mutex> lock(_mutex);
-    Enlisted& enlisted = _enlisted[&character];
+    Enlisted& enlisted = _enlisted[&node];
     // A camera that culls at the same time may have enlisted it with another instruction meanwhile.
     const bool isOther = enlisted.batch->slot != pose.slot || enlisted.instance != pose.instance;
-    if (isOther) return stateOf(*_batchesOfSet[&character.set()][pose.slot], pose.instance, 1, level).stateSet;
+    if (isOther) return stateOf(*_batchesOfSet[&set][pose.slot], pose.instance, 1, level).stateSet;
     if (level != DetailLevels::allTriangles) return stateOf(*enlisted.batch, enlisted.instance, 1, level).stateSet;
     if (!enlisted.stateSet) enlisted.stateSet = stateOf(*enlisted.batch, enlisted.instance, 1, level).stateSet;
     return enlisted.stateSet;
 }
 
-PoseFrame::Batch& PoseFrame::openBatch(const AnimatedCharacter& character)
+PoseFrame::Batch& PoseFrame::openBatch(const AnimationController& controller)
 {
-    std::vector<Batch*>& batches = _batchesOfSet[&character.set()];
-    const PoseInstruction& instruction = character.controller().instruction();
+    std::vector<Batch*>& batches = _batchesOfSet[&controller.set()];
+    const PoseInstruction& instruction = controller.instruction();
     const auto open =
         std::find_if(batches.begin(), batches.end(),
                      [&](const Batch* batch) { return batch->isOpen() && batch->content->suits(instruction); });
-    return open != batches.end() ? **open : addBatch(spareBatch(character.controller().sharedSet()));
+    return open != batches.end() ? **open : addBatch(spareBatch(controller.sharedSet()));
 }
 
 PoseFrame::Batch& PoseFrame::addBatch(std::unique_ptr<PoseBatch> content)

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <osgGpuAnimation/animation/AnimationController.h>
 #include <osgGpuAnimation/gpu/PoseBatch.h>
 #include <osgGpuAnimation/gpu/PosePipeline.h>
 #include <osgGpuAnimation/nodes/PaletteBinding.h>
 
 #include <osg/FrameStamp>
+#include <osg/Node>
 #include <osg/observer_ptr>
 #include <osg/Referenced>
 #include <osg/State>
@@ -19,8 +21,6 @@
 
 namespace osgGpuAnimation
 {
-
-class AnimatedCharacter;
 
 /// Where a frame has a character's pose: an instance of the batch of that slot.
 struct EnlistedPose
@@ -53,11 +53,11 @@ public:
     /// frame it is, since another viewer's may have the same number; null: frame 0.
     static osg::ref_ptr<PoseFrame> forContext(unsigned int contextId, const osg::FrameStamp* stamp);
 
-    /// Takes the character up, unless it is already in with the same instruction.
-    EnlistedPose enlist(const AnimatedCharacter& character);
-    /// The state for drawing the enlisted character as it is, at a level of detail: it holds its PaletteBinding and
+    /// Adds the pose of a node's controller, unless the node is already in with the same instruction.
+    EnlistedPose enlist(const osg::Node& node, const AnimationController& controller);
+    /// The state for drawing the enlisted node as it is, at a level of detail: it holds its PaletteBinding and
     /// stays unchanged while this frame is in use.
-    osg::StateSet* stateOf(const AnimatedCharacter& character, EnlistedPose pose, int level);
+    osg::StateSet* stateOf(const osg::Node& node, const AnimationSet& set, EnlistedPose pose, int level);
     /// A new state for drawing instances of that batch together; the caller gives the binding their placements.
     DrawState placedState(const AnimationSet& set, std::size_t slot, int level);
     /// A new state for drawing so many instances of that batch, from the first on.
@@ -109,8 +109,8 @@ private:
     void reset();
     void evaluateBatches(osg::State& state, PosePipeline* pipeline);
     void record(osg::Stats& stats, std::uint64_t evaluated) const;
-    bool isStill(const Enlisted& known, const AnimatedCharacter& character) const;
-    Batch& openBatch(const AnimatedCharacter& character);
+    bool isStill(const Enlisted& known, const AnimationController& controller) const;
+    Batch& openBatch(const AnimationController& controller);
     Batch& addBatch(std::unique_ptr<PoseBatch> content);
     std::unique_ptr<PoseBatch> spareBatch(std::shared_ptr<const AnimationSet> set);
     DrawState stateOf(const Batch& batch, std::size_t instance, std::size_t instanceCount, int level);
@@ -122,7 +122,7 @@ private:
     std::vector<std::unique_ptr<Batch>> _batches;
     std::unordered_map<const AnimationSet*, std::vector<Batch*>> _batchesOfSet; ///< open ones: of several loads
     std::vector<std::unique_ptr<PoseBatch>> _spareBatches;
-    std::unordered_map<const AnimatedCharacter*, Enlisted> _enlisted;
+    std::unordered_map<const osg::Node*, Enlisted> _enlisted;
     std::vector<BlendSample> _samples; ///< of those enlisted
     StatePool _plainStates{nullptr, {}, 0};
     StatePool _tintedStates{"POSE_TINTED", {}, 0};

@@ -62,12 +62,13 @@ PoseStage& PoseStage::of(osgUtil::CullVisitor& visitor)
     return *stage;
 }
 
-void PoseStage::draw(osgUtil::CullVisitor& visitor, AnimatedCharacter& character)
+void PoseStage::draw(osgUtil::CullVisitor& visitor, const DrawnCharacter& character)
 {
     // Nowhere: the camera's far plane would go there too, and nothing be seen any more.
     if (!isFinite(*visitor.getModelViewMatrix())) return;
     PoseStage& stage = current(visitor);
-    stage._draws.draw(visitor, stage._detailView, character, *stage._frame, stage._frame->enlist(character));
+    stage._draws.draw(visitor, stage._detailView, character, *stage._frame,
+                      stage._frame->enlist(character.node, character.controller));
 }
 
 PoseFrame& PoseStage::frame(osgUtil::CullVisitor& visitor)

@@ -20,7 +20,7 @@ class PoseStage : public osg::Camera
 {
 public:
     /// To be called by a character while it is culled and seen: has its pose evaluated and its children drawn.
-    static void draw(osgUtil::CullVisitor& visitor, AnimatedCharacter& character);
+    static void draw(osgUtil::CullVisitor& visitor, const DrawnCharacter& character);
     /// The frame that the visitor's cull is part of, for those that enlist otherwise.
     static PoseFrame& frame(osgUtil::CullVisitor& visitor);
     /// What levels of detail go by where the visitor is.

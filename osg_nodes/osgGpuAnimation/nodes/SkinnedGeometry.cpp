@@ -2,10 +2,11 @@
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
 #include <osgGpuAnimation/gpu/PosePipeline.h>
-#include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/BoxNearFar.h>
 #include <osgGpuAnimation/nodes/InstancedDraw.h>
+#include <osgGpuAnimation/nodes/MeshDetail.h>
 #include <osgGpuAnimation/nodes/MeshVertexArrays.h>
+#include <osgGpuAnimation/nodes/MorphDeltas.h>
 #include <osgGpuAnimation/nodes/PaletteBinding.h>
 #include <osgGpuAnimation/nodes/PaletteUniforms.h>
 #include <osgGpuAnimation/nodes/PlacedDraw.h>
@@ -61,18 +62,19 @@ osg::StateSet* coloredState(SkinnedGeometry::Colors colors)
     return colors == SkinnedGeometry::Colors::Array ? ofArray.get() : ofTargets.get();
 }
 
-/// The character that the visitor has come through last; null where there is none.
-const AnimatedCharacter* characterAbove(const osg::NodeVisitor& visitor)
+/// The nearest source of posed meshes on the visitor's path; null where there is none.
+const PosedMeshSource* posedMeshSource(const osg::NodeVisitor& visitor)
 {
     const osg::NodePath& path = visitor.getNodePath();
     for (auto node = path.rbegin(); node != path.rend(); ++node)
-        if (const auto* character = dynamic_cast<const AnimatedCharacter*>(*node)) return character;
+        if (const auto* source = dynamic_cast<const PosedMeshSource*>(*node)) return source;
     return nullptr;
 }
 
 } // namespace
 
 SkinnedGeometry::SkinnedGeometry()
+    : _morphDeltas(std::make_unique<MorphDeltas>()), _detail(std::make_unique<MeshDetail>())
 {
     setUseDisplayList(false);
     setUseVertexBufferObjects(true);
@@ -83,9 +85,16 @@ SkinnedGeometry::SkinnedGeometry()
 
 SkinnedGeometry::SkinnedGeometry(const SkinnedGeometry& other, const osg::CopyOp& copyop)
     : osg::Geometry(other, copyop), _influences(other._influences), _rigidEntry(other._rigidEntry),
-      _morphTargets(other._morphTargets), _morphDeltas(other._morphDeltas), _morph(other._morph),
-      _morphEntry(other._morphEntry), _detail(other._detail)
+      _morphTargets(other._morphTargets), _morphDeltas(std::make_unique<MorphDeltas>(*other._morphDeltas)),
+      _morph(other._morph), _morphEntry(other._morphEntry), _detail(std::make_unique<MeshDetail>(*other._detail))
 {
+}
+
+SkinnedGeometry::~SkinnedGeometry() = default;
+
+const osg::TextureBuffer* SkinnedGeometry::morphDeltas() const
+{
+    return _morphDeltas->texture.get();
 }
 
 void SkinnedGeometry::accept(osg::NodeVisitor& visitor)
@@ -93,8 +102,7 @@ void SkinnedGeometry::accept(osg::NodeVisitor& visitor)
     if (!visitor.validNodeMask(*this)) return;
     if (visitor.getVisitorType() == osg::NodeVisitor::INTERSECTION_VISITOR)
     {
-        const AnimatedCharacter* character = characterAbove(visitor);
-        if (character) return character->posedMesh(*this)->accept(visitor);
+        if (const PosedMeshSource* source = posedMeshSource(visitor)) return source->posedMesh(*this)->accept(visitor);
     }
     std::optional<BoxNearFar> boxes;
     osgUtil::CullVisitor* cullVisitor = visitor.asCullVisitor();
@@ -169,9 +177,9 @@ void SkinnedGeometry::setMorphTargets(int morph, int entry, std::vector<MorphTar
     _morphTargets = std::move(targets);
     _morph = _morphTargets.empty() ? -1 : morph;
     _morphEntry = _morphTargets.empty() ? -1 : entry;
-    _morphDeltas.texture = nullptr; // packed anew where nobody else has them: the arrays may have changed
-    _morphDeltas = packMorphTargets(_morphTargets, vertexCount);
-    if (_morph < 0) _morphDeltas.texture = nullptr;
+    _morphDeltas->texture = nullptr; // packed anew where nobody else has them: the arrays may have changed
+    *_morphDeltas = packMorphTargets(_morphTargets, vertexCount);
+    if (_morph < 0) _morphDeltas->texture = nullptr;
     forgetDetailLevels();
     dirtyBound();
 }
@@ -218,7 +226,7 @@ glm::dvec3 SkinnedGeometry::morphed(const osg::Vec3& position, std::size_t verte
 
 SkinnedGeometry::Colors SkinnedGeometry::colors() const
 {
-    const bool areMorphed = _morphDeltas.channels[2] >= 0;
+    const bool areMorphed = _morphDeltas->channels[2] >= 0;
     const osg::Array* array = getColorArray();
     const int binding = array ? array->getBinding() : osg::Array::BIND_UNDEFINED;
     if (binding == osg::Array::BIND_UNDEFINED || binding == osg::Array::BIND_OFF)
@@ -230,9 +238,14 @@ SkinnedGeometry::Colors SkinnedGeometry::colors() const
 
 std::shared_ptr<const DetailLevels> SkinnedGeometry::detailLevels(const AnimationSet& set) const
 {
-    return _detail.of(*this, set,
-                      [this](const std::vector<AffineMatrix>& palette, std::vector<glm::dvec3>& out)
-                      { computePositions(palette, out); });
+    return _detail->of(*this, set,
+                       [this](const std::vector<AffineMatrix>& palette, std::vector<glm::dvec3>& out)
+                       { computePositions(palette, out); });
+}
+
+void SkinnedGeometry::forgetDetailLevels()
+{
+    _detail->forget();
 }
 
 void SkinnedGeometry::drawImplementation(osg::RenderInfo& renderInfo) const
@@ -332,7 +345,7 @@ void SkinnedGeometry::drawPrimitives(osg::State& state, int count, int level) co
 {
     const bool usesBuffers = state.useVertexBufferObject(_supportsVertexBufferObjects && _useVertexBufferObjects);
     std::shared_ptr<const DetailLevels> levels;
-    if (level != DetailLevels::allTriangles) levels = _detail.known(*this);
+    if (level != DetailLevels::allTriangles) levels = _detail->known(*this);
     for (std::size_t i = 0; i < _primitives.size(); ++i)
     {
         const osg::PrimitiveSet* fewer = levels ? levels->elements(i, level) : nullptr;
@@ -342,7 +355,9 @@ void SkinnedGeometry::drawPrimitives(osg::State& state, int count, int level) co
 
 void SkinnedGeometry::bindPalette(osg::State& state, const PalettePlace& place) const
 {
-    if (osgGpuAnimation::bindPalette(state, *this, place) || _isMorphLimitReported.exchange(true)) return;
+    osgGpuAnimation::bindPalette(state, place, _influences, _rigidEntry);
+    if (bindMorphTargets(state, *_morphDeltas, _morphTargets.size(), _morphEntry)) return;
+    if (_isMorphLimitReported.exchange(true)) return;
     OSG_WARN << "osgGpuAnimation: the morph targets of mesh \"" << getName() << "\" need a buffer of "
              << morphDeltas()->getImage()->s() << " texels, more than this context takes; it is drawn unmorphed\n";
 }
@@ -350,15 +365,15 @@ void SkinnedGeometry::bindPalette(osg::State& state, const PalettePlace& place) 
 void SkinnedGeometry::releaseGLObjects(osg::State* state) const
 {
     osg::Geometry::releaseGLObjects(state);
-    if (_morphDeltas.texture) _morphDeltas.texture->releaseGLObjects(state);
-    _detail.releaseGLObjects(state);
+    if (_morphDeltas->texture) _morphDeltas->texture->releaseGLObjects(state);
+    _detail->releaseGLObjects(state);
 }
 
 void SkinnedGeometry::resizeGLObjectBuffers(unsigned int maxSize)
 {
     osg::Geometry::resizeGLObjectBuffers(maxSize);
-    if (_morphDeltas.texture) _morphDeltas.texture->resizeGLObjectBuffers(maxSize);
-    _detail.resizeGLObjectBuffers(maxSize);
+    if (_morphDeltas->texture) _morphDeltas->texture->resizeGLObjectBuffers(maxSize);
+    _detail->resizeGLObjectBuffers(maxSize);
 }
 
 } // namespace osgGpuAnimation

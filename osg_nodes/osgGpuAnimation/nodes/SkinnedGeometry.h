@@ -2,10 +2,11 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
-#include <osgGpuAnimation/nodes/MeshDetail.h>
-#include <osgGpuAnimation/nodes/MorphDeltas.h>
+#include <osgGpuAnimation/nodes/MorphTarget.h>
 
 #include <osg/Geometry>
+#include <osg/TextureBuffer>
+#include <osgUtil/CullVisitor>
 
 #include <array>
 #include <atomic>
@@ -15,9 +16,25 @@
 namespace osgGpuAnimation
 {
 
+class DetailLevels;
+class MeshDetail;
 class PaletteBinding;
 class PosePipeline;
+class SkinnedGeometry;
+struct MorphDeltas;
 struct PalettePlace;
+
+/// A node above SkinnedGeometry that knows its present pose. Intersection visitors that pass the node meet its posed
+/// meshes in place of the meshes below it.
+class PosedMeshSource
+{
+public:
+    /// The mesh in the present pose, in the node's own space.
+    virtual osg::ref_ptr<osg::Geometry> posedMesh(const SkinnedGeometry& mesh) const = 0;
+
+protected:
+    ~PosedMeshSource() = default;
+};
 
 /// A mesh drawn from the palette: ordinary vertex arrays in bind pose and, for each vertex, the palette entries that
 /// move it with their weights. It belongs to no character: one mesh serves all instances of a set, and the
@@ -39,7 +56,7 @@ public:
     META_Object(osgGpuAnimation, SkinnedGeometry)
         /// To visitors it is a Drawable, not a Geometry: what merges geometries, reorders or transforms their vertices
         /// (the Optimizer) would part them from their palette entries and morph targets. Intersection visitors that
-        /// come through an AnimatedCharacter meet its PosedMesh instead.
+        /// come through a PosedMeshSource meet its posed mesh instead.
         void accept(osg::NodeVisitor& visitor) override;
     /// Adds the mesh, which is known to be in view, to the visitor's render bin. toEye: the matrix that its instances'
     /// placements refer to. depth: their distance before the eye.
@@ -70,8 +87,7 @@ public:
     void setMorphTargets(int morph, int entry, std::vector<MorphTarget> targets);
     const std::vector<MorphTarget>& morphTargets() const { return _morphTargets; }
     /// What they are drawn from; meshes whose targets are the same arrays share it. Null: there are none.
-    const osg::TextureBuffer* morphDeltas() const { return _morphDeltas.texture.get(); }
-    const MorphDeltas& packedMorphTargets() const { return _morphDeltas; }
+    const osg::TextureBuffer* morphDeltas() const;
     int morph() const { return _morph; }           ///< -1: none
     int morphEntry() const { return _morphEntry; } ///< the first palette entry of the weights; -1: none
 
@@ -86,7 +102,7 @@ public:
 
     /// Its levels of detail, see AnimatedCharacter::setPixelError(); made when first asked, by the poses of the set.
     std::shared_ptr<const DetailLevels> detailLevels(const AnimationSet& set) const;
-    void forgetDetailLevels() { _detail.forget(); }
+    void forgetDetailLevels();
 
     std::size_t vertexCount() const { return getVertexArray() ? getVertexArray()->getNumElements() : 0; }
 
@@ -109,7 +125,7 @@ public:
     using osg::Geometry::accept;
 
 protected:
-    ~SkinnedGeometry() override = default;
+    ~SkinnedGeometry() override;
 
 private:
     void drawInstances(osg::RenderInfo& renderInfo, const PaletteBinding& binding, const PosePipeline& pipeline) const;
@@ -123,11 +139,11 @@ private:
     int _influences = 1;  ///< of a vertex, at most
     int _rigidEntry = -1; ///< the entry that moves all vertices wholly; -1: influences are per vertex
     std::vector<MorphTarget> _morphTargets;
-    MorphDeltas _morphDeltas;
+    std::unique_ptr<MorphDeltas> _morphDeltas; ///< never null
     mutable std::atomic<bool> _isMorphLimitReported{false};
     int _morph = -1;
-    int _morphEntry = -1; ///< the first palette entry of the weights
-    MeshDetail _detail;
+    int _morphEntry = -1;                ///< the first palette entry of the weights
+    std::unique_ptr<MeshDetail> _detail; ///< never null
 };
 
 template <typename Function>

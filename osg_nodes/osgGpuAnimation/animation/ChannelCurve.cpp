@@ -16,9 +16,9 @@ namespace
 
 using Interpolation = Channel::Interpolation;
 
-glm::dvec4 unitQuaternion(const double* q)
+glm::dvec4 rotationAt(const double* q)
 {
-    return Rotation::unit(glm::dvec4(q[0], q[1], q[2], q[3]));
+    return glm::dvec4(q[0], q[1], q[2], q[3]);
 }
 
 void store(const glm::dvec4& q, double* out)
@@ -27,23 +27,12 @@ void store(const glm::dvec4& q, double* out)
         out[c] = q[c];
 }
 
-/// Far from isAmbiguous() in any case, said without making them unit.
-bool isClear(const double* a, const double* b)
-{
-    double product = 0.0, squareOfA = 0.0, squareOfB = 0.0;
-    for (int c = 0; c < 4; ++c)
-    {
-        product += a[c] * b[c];
-        squareOfA += a[c] * a[c];
-        squareOfB += b[c] * b[c];
-    }
-    return product * product > 1e-6 * squareOfA * squareOfB; // false for what is beyond double
-}
-
-/// Whether single precision could find the other way shorter. A dot product whose every term is 0 is 0 everywhere.
+/// True if single precision could find the other way shorter: |cos| < 1e-6. If every term of the dot product is 0, it
+/// is 0 in any precision. a, b: of float range, so that their squares neither overflow nor vanish.
 bool isAmbiguous(const glm::dvec4& a, const glm::dvec4& b)
 {
-    return a * b != glm::dvec4(0.0) && std::abs(glm::dot(a, b)) < 1e-6;
+    const double product = glm::dot(a, b);
+    return product * product < 1e-12 * glm::dot(a, a) * glm::dot(b, b) && a * b != glm::dvec4(0.0);
 }
 
 } // namespace
@@ -90,7 +79,7 @@ void ChannelCurve::value(const Moment& at, double* out)
     if (_channel.interpolation == Interpolation::Step || isHeldAt(key, at.time) || at.time == _channel.times[key])
     {
         std::copy_n(first, _componentCount, out);
-        if (isRotation && !isSplineRotation()) store(unitQuaternion(first), out);
+        if (isRotation && !isSplineRotation()) store(Rotation::unit(rotationAt(first)), out);
         return;
     }
 
@@ -99,7 +88,7 @@ void ChannelCurve::value(const Moment& at, double* out)
     if (_channel.interpolation == Interpolation::CubicSpline)
         hermite(key, alpha, out);
     else if (isRotation)
-        store(Rotation::slerp(unitQuaternion(first), unitQuaternion(second), alpha), out);
+        store(Rotation::slerp(rotationAt(first), rotationAt(second), alpha), out);
     else
         for (std::size_t c = 0; c < _componentCount; ++c)
             out[c] = first[c] * (1.0 - alpha) + second[c] * alpha;
@@ -173,8 +162,7 @@ void ChannelCurve::appendMiddlesOfHalfTurns(const std::vector<double>& times, st
     if (_channel.path != Channel::Path::Rotation || _channel.interpolation != Interpolation::Linear) return;
     for (std::size_t key = 0; key + 1 < _channel.times.size(); ++key)
     {
-        if (isClear(valueOfKey(key), valueOfKey(key + 1))) continue;
-        if (!isAmbiguous(unitQuaternion(valueOfKey(key)), unitQuaternion(valueOfKey(key + 1)))) continue;
+        if (!isAmbiguous(rotationAt(valueOfKey(key)), rotationAt(valueOfKey(key + 1)))) continue;
         const double from = _channel.times[key];
         const double to = _channel.times[key + 1];
         const auto next = std::upper_bound(times.begin(), times.end(), from);

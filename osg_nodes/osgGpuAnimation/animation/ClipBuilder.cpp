@@ -19,13 +19,6 @@ using Path = Channel::Path;
 constexpr std::size_t componentsPerTrack = 12;
 constexpr JointTransform zeroTransform{glm::vec4(0.0f), glm::vec4(0.0f), glm::vec4(0.0f)};
 
-float& component(JointTransform& transform, std::size_t index)
-{
-    const auto place = static_cast<glm::vec4::length_type>(index % 4);
-    if (index < 4) return transform.translation[place];
-    return index < 8 ? transform.rotation[place] : transform.scale[place];
-}
-
 float rounded(double value)
 {
     constexpr double largest = std::numeric_limits<float>::max();
@@ -170,7 +163,7 @@ public:
             const std::size_t at = _firstComponent + i;
             const std::size_t track = at / componentsPerTrack;
             JointTransform& transform = _data[keyframe * _stride + _place + track * _perTrack + part];
-            component(transform, at % componentsPerTrack) = rounded(numbers[i]);
+            transform.number(at % componentsPerTrack) = rounded(numbers[i]);
         }
     }
 
@@ -334,7 +327,7 @@ std::vector<JointTransform> restPose(const Skeleton& skeleton, const std::vector
         const std::size_t first = tracks.size();
         tracks.resize(first + morph.blockCount(), zeroTransform);
         for (std::size_t i = 0; i < morph.defaults.size(); ++i)
-            component(tracks[first + i / componentsPerTrack], i % componentsPerTrack) = morph.defaults[i];
+            tracks[first + i / componentsPerTrack].number(i % componentsPerTrack) = morph.defaults[i];
     }
     return tracks;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "ClipCompactor.h"
 
+#include "TrackMix.h"
 #include <osgGpuAnimation/animation/CompactClips.h>
 #include <osgGpuAnimation/animation/CompactTracks.h>
 #include <osgGpuAnimation/animation/Rotation.h>
@@ -8,6 +9,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace osgGpuAnimation
 {
@@ -81,7 +83,11 @@ void ClipCompactor::holdStill(const Clip& clip, std::vector<JointTransform>& dat
         { return static_cast<double>(glm::length(glm::vec3(a.*part) - glm::vec3(b.*part))); };
     };
     const auto turned = [](const JointTransform& a, const JointTransform& b)
-    { return Rotation::angleBetween(Rotation::unit(glm::dvec4(a.rotation)), Rotation::unit(glm::dvec4(b.rotation))); };
+    {
+        const glm::dvec4 from = Rotation::unit(glm::dvec4(a.rotation)), to = Rotation::unit(glm::dvec4(b.rotation));
+        const double chord = std::min(glm::length(to - from), glm::length(to + from)); // of the turn the short way
+        return 4.0 * std::asin(0.5 * chord);
+    };
     const std::size_t stride = clip.keyframeStride();
     for (std::size_t joint = 0; joint < _set.skeleton().jointCount(); ++joint)
     {
@@ -172,12 +178,11 @@ double ClipCompactor::worstWithin(const Clip& clip, std::size_t from, std::size_
 void ClipCompactor::mix(const JointTransform* a, const JointTransform* b, double alpha,
                         std::vector<JointTransform>& out) const
 {
-    const auto share = static_cast<float>(alpha);
     for (std::size_t track = 0; track < out.size(); ++track)
     {
-        out[track] = interpolate(a[track], b[track], share);
-        if (track >= _set.skeleton().jointCount())
-            out[track].rotation = a[track].rotation * (1.0f - share) + b[track].rotation * share;
+        const bool isWeights = track >= _set.skeleton().jointCount();
+        const MixedTrack mixed = MixedTrack::between({a, b, alpha, false}, track, isWeights);
+        out[track] = {glm::vec4(mixed.translation), glm::vec4(mixed.rotation), glm::vec4(mixed.scale)};
     }
 }
 

@@ -14,16 +14,11 @@ glm::dvec4 lerp(const glm::vec4& a, const glm::vec4& b, double alpha)
     return glm::dvec4(a) * (1.0 - alpha) + glm::dvec4(b) * alpha;
 }
 
-glm::dvec4 slerp(const glm::vec4& a, const glm::vec4& b, double alpha)
-{
-    const glm::dvec4 from = Rotation::unit(glm::dvec4(a));
-    return alpha == 0.0 ? from : Rotation::slerp(from, Rotation::unit(glm::dvec4(b)), alpha);
-}
-
 MixedTrack mixLinear(const JointTransform& a, const JointTransform& b, double alpha, bool isWeights)
 {
     return {lerp(a.translation, b.translation, alpha),
-            isWeights ? lerp(a.rotation, b.rotation, alpha) : slerp(a.rotation, b.rotation, alpha),
+            isWeights ? lerp(a.rotation, b.rotation, alpha)
+                      : Rotation::slerp(glm::dvec4(a.rotation), glm::dvec4(b.rotation), alpha),
             lerp(a.scale, b.scale, alpha)};
 }
 
@@ -43,8 +38,8 @@ MixedTrack mixSpline(const JointTransform* a, const JointTransform* b, double al
     if (isWeights)
         mixed.rotation = hermite(&JointTransform::rotation);
     else
-        mixed.rotation =
-            isSlerped ? slerp(a[0].rotation, b[0].rotation, alpha) : Rotation::unit(hermite(&JointTransform::rotation));
+        mixed.rotation = isSlerped ? Rotation::slerp(glm::dvec4(a[0].rotation), glm::dvec4(b[0].rotation), alpha)
+                                   : Rotation::unit(hermite(&JointTransform::rotation));
     return mixed;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/ChannelCurve.h>
 
+#include <osgGpuAnimation/animation/Hermite.h>
 #include <osgGpuAnimation/animation/Rotation.h>
 
 #include <glm/geometric.hpp>
@@ -86,7 +87,7 @@ void ChannelCurve::value(const Moment& at, double* out)
     const double* second = valueOfKey(key + 1);
     const double alpha = (at.time - _channel.times[key]) / (_channel.times[key + 1] - _channel.times[key]);
     if (_channel.interpolation == Interpolation::CubicSpline)
-        hermite(key, alpha, out);
+        spline(key, alpha, out);
     else if (isRotation)
         store(Rotation::slerp(rotationAt(first), rotationAt(second), alpha), out);
     else
@@ -94,23 +95,16 @@ void ChannelCurve::value(const Moment& at, double* out)
             out[c] = first[c] * (1.0 - alpha) + second[c] * alpha;
 }
 
-void ChannelCurve::hermite(std::size_t key, double alpha, double* out) const
+void ChannelCurve::spline(std::size_t key, double alpha, double* out) const
 {
     const double length = _channel.times[key + 1] - _channel.times[key];
-    const double square = alpha * alpha;
-    const double cube = square * alpha;
     const double* v0 = valueOfKey(key);
     const double* v1 = valueOfKey(key + 1);
-    for (std::size_t c = 0; c < _componentCount; ++c)
-    {
-        const double m0 = length * v0[_componentCount + c];   // the out-tangent follows the value
-        const double m1 = length * (v1 - _componentCount)[c]; // the in-tangent precedes it
-        out[c] = (2.0 * cube - 3.0 * square + 1.0) * v0[c] + (cube - 2.0 * square + alpha) * m0 +
-                 (3.0 * square - 2.0 * cube) * v1[c] + (cube - square) * m1;
-    }
+    for (std::size_t c = 0; c < _componentCount; ++c) // the out-tangent follows the value, the in-tangent precedes it
+        out[c] = hermite(v0[c], length * v0[_componentCount + c], v1[c], length * (v1 - _componentCount)[c], alpha);
 }
 
-void ChannelCurve::hermiteSlope(std::size_t key, double alpha, double factor, double* out) const
+void ChannelCurve::splineSlope(std::size_t key, double alpha, double factor, double* out) const
 {
     const double length = _channel.times[key + 1] - _channel.times[key];
     const double square = alpha * alpha;
@@ -131,16 +125,15 @@ void ChannelCurve::tangents(const Moment& from, const Moment& to, double* outFir
     std::fill_n(outFirst, _componentCount, 0.0);
     std::fill_n(outLast, _componentCount, 0.0);
     const std::size_t key = keyAt(from);
-    const bool held = to.time <= _channel.times.front() || key + 1 == _channel.times.size();
-    if (held || from.time == to.time || _channel.interpolation == Interpolation::Step) return;
+    if (isHeldAt(key, to.time) || from.time == to.time || _channel.interpolation == Interpolation::Step) return;
 
     const double length = _channel.times[key + 1] - _channel.times[key];
     const double share = (to.time - from.time) / length;
     const double alpha = (from.time - _channel.times[key]) / length;
     if (_channel.interpolation == Interpolation::CubicSpline)
     {
-        hermiteSlope(key, alpha, share, outFirst);
-        hermiteSlope(key, (to.time - _channel.times[key]) / length, share, outLast);
+        splineSlope(key, alpha, share, outFirst);
+        splineSlope(key, (to.time - _channel.times[key]) / length, share, outLast);
     }
     else if (_channel.path != Channel::Path::Rotation)
     {

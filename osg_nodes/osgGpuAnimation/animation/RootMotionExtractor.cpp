@@ -39,7 +39,7 @@ bool isSame(const JointTransform& a, const JointTransform& b)
            difference(a.scale, b.scale) <= 1e-6 * size;
 }
 
-/// Whether it turns and scales alike in all directions, without mirroring.
+/// True for a rotation with a uniform scale, without a mirror.
 bool isSimilarity(const glm::dmat3& m)
 {
     const double size = glm::length(m[0]);
@@ -141,7 +141,7 @@ void RootMotionExtractor::takeOutTranslation(Clip& clip, RootMotionCurve& curve)
         }
 }
 
-/// Of a turn in the model's space: the part about up (its twist), in [-pi, pi].
+/// The part of a rotation in model space that turns about up (its twist), in [-pi, pi].
 double RootMotionExtractor::yawOf(const glm::dquat& rotation) const
 {
     const double along = glm::dot(glm::dvec3(rotation.x, rotation.y, rotation.z), _axes.up);
@@ -171,7 +171,7 @@ void RootMotionExtractor::takeOutYaw(Clip& clip, RootMotionCurve& curve) const
         const bool isSpline = perTrack == 3 && key->translation.w == 0.0f;
         for (std::size_t part = 1; isSpline && part < 3; ++part)
         {
-            // Beside the tangent itself, the yaw that runs on in that piece.
+            // Product rule: the tangent itself, and the yaw that changes within that piece.
             const std::size_t from = part == 1 ? (k == 0 ? 0 : k - 1) : k;
             const std::size_t to = std::min(from + 1, curve.keys.size() - 1);
             const double slope = part == 1 && k == 0 ? 0.0 : curve.keys[to].yaw - curve.keys[from].yaw;

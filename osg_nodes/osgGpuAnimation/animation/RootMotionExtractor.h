@@ -9,7 +9,7 @@
 namespace osgGpuAnimation
 {
 
-/// Takes the motion of one joint out of clips.
+/// Removes the motion of one joint from clips, see withRootMotion().
 class RootMotionExtractor
 {
 public:
@@ -27,7 +27,7 @@ private:
     const Skeleton& _skeleton;
     std::size_t _joint;
     RootMotionAxes _axes; ///< up is unit
-    // From the space of the joint's parent to the model.
+    // From the space of the joint's parent to model space.
     glm::dmat4 _parentToModel{1.0};
     glm::dquat _parentRotation = glm::identity<glm::dquat>();
 };

@@ -28,7 +28,7 @@ void addScaled(MixedTrack& sum, const MixedTrack& track, double factor)
     sum.scale += track.scale * factor;
 }
 
-/// sample / reference, 1 where the reference is 0.
+/// sample / reference; 1 if the reference is 0.
 double ratio(double sample, double reference)
 {
     return std::abs(reference) > static_cast<double>(POSE_SMALLEST_SCALE) ? sample / reference : 1.0;
@@ -85,7 +85,7 @@ MixedTrack TrackBlend::result()
         addScaled(_total, _difference, 1.0);
         return _total;
     }
-    // Nothing below can leave a sum of length 0: see PoseInstruction.
+    // The sum cannot have length 0: see PoseInstruction.
     _total.rotation = Rotation::unit(_total.rotation);
     if (const double turned = glm::length(_turn); turned > 0.0)
         _total.rotation = Rotation::numbers(Rotation::quaternion(_total.rotation) *

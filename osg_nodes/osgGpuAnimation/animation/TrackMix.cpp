@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "TrackMix.h"
 
+#include <osgGpuAnimation/animation/Hermite.h>
 #include <osgGpuAnimation/animation/Rotation.h>
 
 namespace osgGpuAnimation
@@ -25,21 +26,18 @@ MixedTrack mixLinear(const JointTransform& a, const JointTransform& b, double al
 /// a and b each point to value, in-tangent, out-tangent.
 MixedTrack mixSpline(const JointTransform* a, const JointTransform* b, double alpha, bool isWeights)
 {
-    const double square = alpha * alpha;
-    const double cube = square * alpha;
-    const auto hermite = [&](glm::vec4 JointTransform::*part)
+    const auto partAt = [&](glm::vec4 JointTransform::*part)
     {
-        return (2.0 * cube - 3.0 * square + 1.0) * glm::dvec4(a[0].*part) +
-               (cube - 2.0 * square + alpha) * glm::dvec4(a[2].*part) +
-               (3.0 * square - 2.0 * cube) * glm::dvec4(b[0].*part) + (cube - square) * glm::dvec4(b[1].*part);
+        return hermite(glm::dvec4(a[0].*part), glm::dvec4(a[2].*part), glm::dvec4(b[0].*part), glm::dvec4(b[1].*part),
+                       alpha);
     };
-    MixedTrack mixed{hermite(&JointTransform::translation), {}, hermite(&JointTransform::scale)};
+    MixedTrack mixed{partAt(&JointTransform::translation), {}, partAt(&JointTransform::scale)};
     const bool isSlerped = a[0].translation.w == 1.0f; // see Clip
     if (isWeights)
-        mixed.rotation = hermite(&JointTransform::rotation);
+        mixed.rotation = partAt(&JointTransform::rotation);
     else
         mixed.rotation = isSlerped ? Rotation::slerp(glm::dvec4(a[0].rotation), glm::dvec4(b[0].rotation), alpha)
-                                   : Rotation::unit(hermite(&JointTransform::rotation));
+                                   : Rotation::unit(partAt(&JointTransform::rotation));
     return mixed;
 }
 

@@ -4,6 +4,8 @@
 #include "support/GaitSet.h"
 #include "support/RandomSet.h"
 
+#include <osgGpuAnimation/animation/AnimationController.h>
+#include <osgGpuAnimation/animation/Bounds.h>
 #include <osgGpuAnimation/animation/JointMask.h>
 #include <osgGpuAnimation/animation/Pose.h>
 

@@ -3,6 +3,7 @@
 
 #include "support/RandomCharacter.h"
 #include <osgGpuAnimation/animation/AnimationController.h>
+#include <osgGpuAnimation/animation/TrackMix.h>
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -246,10 +247,11 @@ TEST(PoseTest, OneSampleOfFullWeightIsInterpolate)
     Pose::mix(*set, instruction, tracks);
     for (std::size_t j = 0; j < set->skeleton().jointCount(); ++j)
     {
-        const JointTransform expected = interpolate(clip.data()[j], clip.data()[clip.keyframeStride() + j], 0.3f);
-        EXPECT_EQ(tracks[j].translation, expected.translation);
-        EXPECT_EQ(tracks[j].rotation, expected.rotation);
-        EXPECT_EQ(tracks[j].scale, expected.scale);
+        const MixedTrack expected =
+            MixedTrack::between({clip.at(0, 0), clip.at(1, 0), static_cast<double>(0.3f), false}, j, false);
+        EXPECT_EQ(tracks[j].translation, glm::vec4(expected.translation));
+        EXPECT_EQ(tracks[j].rotation, glm::vec4(expected.rotation));
+        EXPECT_EQ(tracks[j].scale, glm::vec4(expected.scale));
     }
 }
 

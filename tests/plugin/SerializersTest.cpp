@@ -158,7 +158,7 @@ TEST_F(SerializersTest, everythingBelowACharacterComesBack)
         EXPECT_EQ(clip.markers()[0].time, 0.25);
         ASSERT_TRUE(clip.rootMotion());
         EXPECT_EQ(clip.rootMotion()->keys.size(), clip.keyframeCount());
-        EXPECT_EQ(clip.rootMotion()->at(clip, 0.5).translation, clips[0].rootMotion()->at(clips[0], 0.5).translation);
+        EXPECT_EQ(clip.rootMotionAt(0.5).translation, clips[0].rootMotionAt(0.5).translation);
         EXPECT_EQ(back.currentBounds().max, character().currentBounds().max);
     }
     EXPECT_EQ(log->text, "");

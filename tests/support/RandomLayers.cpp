@@ -4,6 +4,7 @@
 #include "support/RandomSet.h"
 
 #include <osgGpuAnimation/animation/JointMask.h>
+#include <osgGpuAnimation/animation/MaskTable.h>
 
 #include <layout.glsl>
 
@@ -39,13 +40,13 @@ void addRandomMasks(const AnimationSet& set, std::mt19937& random)
     {
         const auto joint = static_cast<std::size_t>(whole(random, 0, joints - 1));
         const Result<JointMask> tree = JointMask::subtree(set, set.skeleton().joint(joint).name, whole(random, 0, 3));
-        if (tree) (void)set.addMask(tree.value());
+        if (tree) (void)set.addMask(tree.value().weights());
         JointMask mask(set);
         for (std::size_t j = 0; j < set.skeleton().jointCount(); ++j)
             mask.setJoint(j, static_cast<float>(number(random, -0.3, 1.3)));
         for (std::size_t m = 0; m < set.morphs().size(); ++m)
             mask.setMorph(m, static_cast<float>(number(random, 0.0, 1.0)));
-        (void)set.addMask(mask);
+        (void)set.addMask(mask.weights());
     }
 }
 

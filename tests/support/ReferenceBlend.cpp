@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "support/ReferenceBlend.h"
 
+#include <osgGpuAnimation/animation/MaskTable.h>
+
 #include <layout.glsl>
 
 namespace osgGpuAnimation::reference

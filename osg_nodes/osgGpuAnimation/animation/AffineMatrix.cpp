@@ -2,6 +2,7 @@
 #include <osgGpuAnimation/animation/AffineMatrix.h>
 
 #include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 
 #include <cmath>
 
@@ -20,20 +21,13 @@ glm::dvec4 row(const AffineMatrix& matrix, std::size_t index)
 
 AffineMatrix AffineMatrix::fromColumns(const glm::dmat4& columns)
 {
-    AffineMatrix result;
-    for (int r = 0; r < 3; ++r)
-        result.rows[static_cast<std::size_t>(r)] =
-            glm::vec4(glm::dvec4(columns[0][r], columns[1][r], columns[2][r], columns[3][r]));
-    return result;
+    const glm::dmat4 rows = glm::transpose(columns);
+    return {{glm::vec4(rows[0]), glm::vec4(rows[1]), glm::vec4(rows[2])}};
 }
 
 glm::dmat4 AffineMatrix::toColumns() const
 {
-    glm::dmat4 columns(1.0);
-    for (int r = 0; r < 3; ++r)
-        for (int c = 0; c < 4; ++c)
-            columns[c][r] = static_cast<double>(rows[static_cast<std::size_t>(r)][c]);
-    return columns;
+    return glm::transpose(glm::dmat4(row(*this, 0), row(*this, 1), row(*this, 2), glm::dvec4(0.0, 0.0, 0.0, 1.0)));
 }
 
 glm::vec3 AffineMatrix::transformPoint(const glm::vec3& point) const

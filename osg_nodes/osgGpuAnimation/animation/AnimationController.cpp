@@ -2,6 +2,7 @@
 #include <osgGpuAnimation/animation/AnimationController.h>
 
 #include "MotionBlend.h"
+#include "SampleStack.h"
 #include "StepEvents.h"
 #include <osgGpuAnimation/animation/LayerSnapshot.h>
 
@@ -12,8 +13,49 @@
 namespace osgGpuAnimation
 {
 
+namespace
+{
+
+void addAtMost(std::ptrdiff_t times, const PlayedClip& clip, std::vector<PlayedClip>& out)
+{
+    if (std::count(out.begin(), out.end(), clip) < times) out.push_back(clip);
+}
+
+/// True if the layer hides everything below it.
+bool coversAll(const AnimationLayer& layer)
+{
+    if (layer.mode() != AnimationLayer::Mode::Override || layer.mask() != 0 || layer.weight() < 1.0f) return false;
+    double shares = 0.0;
+    for (std::size_t v = 0; v < layer.mixer().voiceCount(); ++v)
+        shares += layer.mixer().voice(v).share;
+    return shares > 1.0 - 1e-6;
+}
+
+/// The number of blend samples of the layer's clips, see SampleStack.
+std::size_t samplesOf(const AnimationLayer& layer)
+{
+    return layer.mixer().voiceCount() * (layer.mode() == AnimationLayer::Mode::Additive ? 2 : 1);
+}
+
+// A clip that fades into itself occurs twice: a mix of two of its times can be a pose that the clip never shows.
+void addVoices(const AnimationLayer& layer, std::vector<PlayedClip>& out)
+{
+    for (std::size_t v = 0; v < layer.mixer().voiceCount(); ++v)
+    {
+        const int clip = layer.mixer().voice(v).playback.clip();
+        if (layer.mode() == AnimationLayer::Mode::Override)
+            addAtMost(2, {clip, PlayedClip::Part::Mixed}, out);
+        else if (layer.reference() == AnimationLayer::Reference::RestPose)
+            out.push_back({clip, PlayedClip::Part::AddedToRest});
+        else
+            out.push_back({clip, PlayedClip::Part::AddedToItsFirst});
+    }
+}
+
+} // namespace
+
 AnimationController::AnimationController(std::shared_ptr<const AnimationSet> set)
-    : _set(std::move(set)), _base(*this, 0)
+    : LayerOwner(std::move(set)), _base(*this, 0)
 {
     assert(_set && "a controller plays the clips of a set");
     const auto moving = std::find_if(_set->clips().begin(), _set->clips().end(),
@@ -35,7 +77,7 @@ AnimationController::AnimationController(std::shared_ptr<const AnimationSet> set
 }
 
 AnimationController::AnimationController(const AnimationController& other)
-    : _set(other._set), _rootMotionCurve(other._rootMotionCurve), _base(*this, other._base),
+    : LayerOwner(other), _rootMotionCurve(other._rootMotionCurve), _base(*this, other._base),
       _instruction(other._instruction), _rootMotion(other._rootMotion)
 {
     copyUpperLayers(other);
@@ -95,7 +137,7 @@ const PoseInstruction& AnimationController::advance(double seconds)
     forEachLayer([step](AnimationLayer& layer) { layer.advance(step); });
     show();
     if (_rootMotionCurve) goOn();
-    if (_eventCallback && hasEvents()) tellEvents();
+    if (_eventCallback) tellEvents();
     return _instruction;
 }
 
@@ -109,7 +151,7 @@ void AnimationController::show()
 void AnimationController::goOn()
 {
     MotionBlend blend;
-    forEachLayer([&blend](const AnimationLayer& layer) { layer.collectMotion(blend); });
+    forEachLayer([&](const AnimationLayer& layer) { layer.collectMotion(blend, *_rootMotionCurve); });
     const RootMotion step = blend.result();
     if (!step.isNone()) _rootMotion = (_rootMotion.isNone() ? RootMotion{{}, 0.0, step.up} : _rootMotion) * step;
 }
@@ -126,23 +168,37 @@ void AnimationController::setEventCallback(EventCallback callback)
     _eventCallback = callback ? std::make_shared<const EventCallback>(std::move(callback)) : nullptr;
 }
 
-bool AnimationController::hasEvents() const
-{
-    return StepEvents::hasEvents(_base, *_set) ||
-           std::any_of(_upper.begin(), _upper.end(),
-                       [this](const auto& layer) { return StepEvents::hasEvents(*layer, *_set); });
-}
-
 void AnimationController::tellEvents()
 {
-    // The callback may replace itself, or this controller's set.
+    bool hasEvents = false; // most steps have none, and StepEvents is large
+    forEachLayer([&](const AnimationLayer& layer)
+                 { hasEvents = hasEvents || layer.lastStep().mayHaveEvents(_set->clips()); });
+    if (!hasEvents) return;
+    // Copies: the callback may replace itself or the set of this controller.
     const std::shared_ptr<const EventCallback> callback = _eventCallback;
     const std::shared_ptr<const AnimationSet> set = _set;
     StepEvents events;
-    forEachLayer([&](const AnimationLayer& layer) { events.add(layer, *set); });
+    forEachLayer([&](const AnimationLayer& layer) { events.add(layer.lastStep(), set->clips()); });
     AnimationEvent event;
     while (events.next(event))
         (*callback)(event);
+}
+
+void findPlayedClips(const AnimationController& controller, std::vector<PlayedClip>& out)
+{
+    out.clear();
+    bool isRestHidden = false;
+    std::size_t samples = 0;
+    for (std::size_t i = 0; i < controller.layerCount(); ++i)
+    {
+        const AnimationLayer& layer = controller.layer(i);
+        if (layer.state() == PlayState::Stopped || !(layer.weight() > 0.0f)) continue;
+        isRestHidden = isRestHidden || coversAll(layer);
+        samples += samplesOf(layer);
+        addVoices(layer, out);
+    }
+    // If samples are dropped, the weights of the others may not sum to 1.
+    if (!isRestHidden || samples > PoseInstruction::maxSamples) addAtMost(1, {-1, PlayedClip::Part::Mixed}, out);
 }
 
 } // namespace osgGpuAnimation

@@ -17,18 +17,18 @@ namespace osgGpuAnimation
 
 struct RootMotionCurve;
 
-/// One instance's mutable state: which clips, at what time, how fast, on which layers. Copying one gives an independent
-/// instance of the same set.
+/// The mutable state of one instance: its clips, times, speeds and layers. A copy is an independent instance of the
+/// same set.
 ///
 ///     AnimationController controller(set);
 ///     controller.play("Walk");
 ///     controller.crossfade("Run", 0.25, {FadeCurve::Linear, Sync::Phase, {}});
 ///     const PoseInstruction& instruction = controller.advance(1.0 / 60.0);
 ///
-/// What a controller has of play(), seek(), time() and so on speaks of its base layer, layer(0).
+/// play(), seek(), time() and so on refer to the base layer, layer(0).
 ///
 /// Not thread-safe: it belongs to the update thread.
-class AnimationController
+class AnimationController final : private LayerOwner
 {
 public:
     using State = PlayState;
@@ -36,26 +36,26 @@ public:
     using EventCallback = std::function<void(const AnimationEvent&)>;
 
     explicit AnimationController(std::shared_ptr<const AnimationSet> set);
-    /// Goes on as another does, with another set (one with markers, say): its layers with the clips of the same
-    /// numbers, and the root motion that was not taken yet. A layer that plays clips which this set has not, or whose
-    /// mask does not fit it, stands Stopped with its speed and loop mode. The event callback is not taken over.
+    /// Continues another controller with another set, for example one with markers: its layers with the clips of the
+    /// same numbers, and its root motion. A layer with clips or a mask that do not fit the set becomes Stopped and
+    /// keeps speed and loop mode. The event callback is not copied.
     AnimationController(std::shared_ptr<const AnimationSet> set, const AnimationController& other);
-    /// All but the event callback, which mostly knows whose events it is told.
+    /// Copies everything except the event callback, which often belongs to one character.
     AnimationController(const AnimationController& other);
-    /// References to layers are not valid any more.
+    /// As the copy constructor, but keeps the event callback. Invalidates references to layers.
     AnimationController& operator=(const AnimationController& other);
     ~AnimationController();
 
     const AnimationSet& set() const { return *_set; }
     const std::shared_ptr<const AnimationSet>& sharedSet() const { return _set; }
 
-    /// The layer of that number, made at the first call with all before it. index: below maxLayers (8); beyond that the
-    /// last one is meant. Layers stay where they are until the controller is assigned to or gone.
+    /// The layer with that index; the first call creates it and all layers before it. index: below maxLayers (8);
+    /// larger ones give the last layer. References stay valid until the controller is assigned to or destroyed.
     AnimationLayer& layer(std::size_t index);
     const AnimationLayer& layer(std::size_t index) const;        ///< index: below layerCount()
     std::size_t layerCount() const { return 1 + _upper.size(); } ///< at least 1
 
-    // The base layer's; see AnimationLayer.
+    // Of the base layer; see AnimationLayer.
     Result<bool> play(std::size_t clip) { return _base.play(clip); }
     Result<bool> play(const std::string& name) { return _base.play(name); }
     Result<bool> crossfade(std::size_t clip, double seconds, const CrossfadeOptions& options = {})
@@ -75,7 +75,7 @@ public:
 
     State state() const { return _base.state(); }
     bool isPlaying() const { return _base.isPlaying(); }
-    int clip() const { return _base.clip(); } ///< -1 where none was played
+    int clip() const { return _base.clip(); } ///< -1 if none was played
     double time() const { return _base.time(); }
     double duration() const { return _base.duration(); }
     double normalizedTime() const { return _base.normalizedTime(); }
@@ -83,48 +83,52 @@ public:
     double speed() const { return _base.speed(); }
     LoopMode loopMode() const { return _base.loopMode(); }
 
-    /// Whether clip, time, speed and state say all there is of it: one plain layer (AnimationLayer::isPlainLoop),
-    /// nobody to tell events to, a set without root motion.
+    /// True if clip, time, speed and state describe the controller completely: one layer (see
+    /// AnimationLayer::isPlainLoop), no event callback, a set without root motion.
     bool isPlainLoop() const;
 
-    /// Moves each layer by seconds · its speed (where it plays) and says what to show; then tells the events of that
-    /// step, in the order of time, to the callback. Does not allocate. Seconds that are not finite count as 0. The
-    /// reference holds until the next call.
+    /// Moves every playing layer by seconds times its speed and returns the new instruction; then passes the events of
+    /// the step to the callback, in the order of time. Does not allocate. Seconds that are not finite count as 0. The
+    /// reference stays valid until the next call.
     const PoseInstruction& advance(double seconds);
-    /// The instruction for the current times, as advance(0) would give.
+    /// The instruction for the current times, as advance(0) would return it.
     const PoseInstruction& instruction() const { return _instruction; }
 
-    /// The motion of the clips that was taken out of them (see withRootMotion), gone through by all advance() since it
-    /// was last taken: to be put before the character's own placement. Layers and crossfades blend it as they blend the
-    /// pose of the joint it came from, by their mean shares during each advance(); clips without any stand still, and
-    /// additive layers play no part. Seeking, playing and stopping move nothing.
+    /// The motion that withRootMotion() removed from the clips, summed over all advance() calls since the last take,
+    /// and resets the sum. Multiply the character's placement by it from the right. Layers and crossfades blend it like
+    /// the pose of its joint, by their mean shares during each advance(); clips without root motion stand still, and
+    /// additive layers play no part. Seeking, playing and stopping add nothing.
     RootMotion takeRootMotion();
-    const RootMotion& rootMotion() const { return _rootMotion; } ///< the same, left where it is
+    const RootMotion& rootMotion() const { return _rootMotion; } ///< the same without the reset
 
-    /// Told from within advance(), in the thread that calls it, when all layers have moved. It may do anything with
-    /// the controller (play, crossfade, set another callback …) but destroy it; events of the step that are still to
-    /// come are those of the step as it was. An empty function: none.
+    /// advance() calls the callback, in its thread, after all layers have moved. The callback may do anything with the
+    /// controller (play, crossfade, set another callback) except destroy it; the remaining events of the step do not
+    /// change. An empty function removes the callback.
     void setEventCallback(EventCallback callback);
 
 private:
     friend class AnimationLayer;
 
     template <typename Function>
-    void forEachLayer(Function function); ///< of a layer; from the base up
+    void forEachLayer(Function function); ///< function(layer), from the base up
     void copyUpperLayers(const AnimationController& other);
-    void show();
-    bool hasEvents() const;
+    void show() override;
     void tellEvents();
     void goOn();
 
-    // What every advance() needs comes first and in one piece: with thousands of controllers each comes from memory.
-    std::shared_ptr<const AnimationSet> _set;
-    const RootMotionCurve* _rootMotionCurve = nullptr; ///< the first that a clip of the set has
+    // Members that every advance() needs come first and together: with thousands of controllers they are not in the
+    // cache.
+    const RootMotionCurve* _rootMotionCurve = nullptr; ///< of the first clip that has one; null if none has
     std::shared_ptr<const EventCallback> _eventCallback;
     std::vector<std::unique_ptr<AnimationLayer>> _upper; ///< layers 1, 2 ...
     AnimationLayer _base;
     PoseInstruction _instruction;
     RootMotion _rootMotion;
 };
+
+/// Finds all clips whose samples can contribute to the pose now, for any weights and masks of the layers, and the rest
+/// pose if it can be visible. Mixed clips occur once (twice if voices mix two times of a clip), added ones once per
+/// layer and voice. out: its old content is replaced.
+void findPlayedClips(const AnimationController& controller, std::vector<PlayedClip>& out);
 
 } // namespace osgGpuAnimation

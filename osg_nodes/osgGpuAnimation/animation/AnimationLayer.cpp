@@ -2,9 +2,11 @@
 #include <osgGpuAnimation/animation/AnimationLayer.h>
 
 #include "MotionBlend.h"
-#include <osgGpuAnimation/animation/AnimationController.h>
+#include "StepEvents.h"
 #include <osgGpuAnimation/animation/JointMask.h>
+#include <osgGpuAnimation/animation/MaskTable.h>
 #include <osgGpuAnimation/animation/RootMotionCurve.h>
+#include <osgGpuAnimation/animation/SampleStack.h>
 
 #include <layout.glsl>
 
@@ -14,7 +16,7 @@
 namespace osgGpuAnimation
 {
 
-AnimationLayer::AnimationLayer(AnimationController& owner, const AnimationLayer& other) : AnimationLayer(other)
+AnimationLayer::AnimationLayer(LayerOwner& owner, const AnimationLayer& other) : AnimationLayer(other)
 {
     _owner = &owner;
     _crossfadeMoment = _weightFadeMoment = -1.0;
@@ -23,12 +25,12 @@ AnimationLayer::AnimationLayer(AnimationController& owner, const AnimationLayer&
 
 ClipPlayback AnimationLayer::playbackOf(std::size_t clip, LoopMode loopMode) const
 {
-    return ClipPlayback(static_cast<int>(clip), _owner->set().clips()[clip].duration(), _speed, loopMode);
+    return ClipPlayback(static_cast<int>(clip), set().clips()[clip].duration(), _speed, loopMode);
 }
 
 Result<bool> AnimationLayer::play(std::size_t clip)
 {
-    const Result<std::size_t> known = _owner->set().clipAt(clip);
+    const Result<std::size_t> known = set().clipAt(clip);
     if (!known) return known.error();
     _mixer.start(playbackOf(clip, _loopMode));
     _state = PlayState::Playing;
@@ -38,20 +40,20 @@ Result<bool> AnimationLayer::play(std::size_t clip)
 
 Result<bool> AnimationLayer::play(const std::string& name)
 {
-    const Result<std::size_t> clip = _owner->set().clipNamed(name);
+    const Result<std::size_t> clip = set().clipNamed(name);
     if (!clip) return clip.error();
     return play(clip.value());
 }
 
 Result<bool> AnimationLayer::crossfade(std::size_t clip, double seconds, const CrossfadeOptions& options)
 {
-    const Result<std::size_t> known = _owner->set().clipAt(clip);
+    const Result<std::size_t> known = set().clipAt(clip);
     if (!known) return known.error();
     if (!std::isfinite(seconds) || seconds < 0.0)
-        return Error{"a crossfade to clip \"" + _owner->set().clips()[clip].name() + "\" of " +
-                     std::to_string(seconds) + " seconds: expected a finite number, at least 0"};
+        return Error{"a crossfade to clip \"" + set().clips()[clip].name() + "\" of " + std::to_string(seconds) +
+                     " seconds: expected a finite number, at least 0"};
     if (options.speed && !std::isfinite(*options.speed))
-        return Error{"a crossfade to clip \"" + _owner->set().clips()[clip].name() + "\" at a speed of " +
+        return Error{"a crossfade to clip \"" + set().clips()[clip].name() + "\" at a speed of " +
                      std::to_string(*options.speed) + ": expected a finite number"};
     if (options.speed) _speed = *options.speed;
     if (options.loopMode) _loopMode = *options.loopMode;
@@ -70,7 +72,7 @@ Result<bool> AnimationLayer::crossfade(std::size_t clip, double seconds, const C
 
 Result<bool> AnimationLayer::crossfade(const std::string& name, double seconds, const CrossfadeOptions& options)
 {
-    const Result<std::size_t> clip = _owner->set().clipNamed(name);
+    const Result<std::size_t> clip = set().clipNamed(name);
     if (!clip) return clip.error();
     return crossfade(clip.value(), seconds, options);
 }
@@ -136,7 +138,7 @@ bool AnimationLayer::fadeWeight(float weight, double seconds, FadeCurve curve)
 
 Result<bool> AnimationLayer::setMask(const JointMask& mask)
 {
-    const Result<std::uint32_t> number = _owner->set().addMask(mask);
+    const Result<std::uint32_t> number = set().addMask(mask.weights());
     if (!number) return number.error();
     _mask = number.value();
     show();
@@ -182,7 +184,7 @@ void AnimationLayer::advance(double seconds)
 
 BlendSample AnimationLayer::sampleOf(const ClipPlayback& playback, double time, double share) const
 {
-    BlendSample sample = _owner->set().sampleAt(playback.clip(), time);
+    BlendSample sample = set().sampleAt(playback.clip(), time);
     sample.weight = static_cast<float>(share * _weight.value());
     sample.control |= _mask << POSE_SAMPLE_MASK_SHIFT;
     return sample;
@@ -216,24 +218,27 @@ bool AnimationLayer::isPlainLoop() const
            current.speed() == _speed;
 }
 
-void AnimationLayer::collectMotion(MotionBlend& out) const
+/// usual: the curve of any clip of the set. A clip without root motion stands still, and hides other motions at its
+/// joint.
+void AnimationLayer::collectMotion(MotionBlend& out, const RootMotionCurve& usual) const
 {
-    const RootMotionCurve* const usual = _owner->_rootMotionCurve;
-    if (_state == PlayState::Stopped || _mode == Mode::Additive || !usual) return;
-    const AnimationSet& set = _owner->set();
-    const float* mask = set.masks().weights(_mask);
+    if (_state == PlayState::Stopped || _mode == Mode::Additive) return;
+    const float* mask = set().masks().weights(_mask);
     for (std::size_t v = 0; v < _mixer.voiceCount(); ++v)
     {
         const ClipMixer::Voice& voice = _mixer.voice(v);
-        const Clip& clip = set.clips()[static_cast<std::size_t>(voice.playback.clip())];
-        // A clip of which nothing was taken out stands still, and holds what it hides.
-        const RootMotionCurve* const curve = clip.rootMotion() ? clip.rootMotion() : usual;
-        const double weight = voice.meanShare * _weight.mean() * (mask ? static_cast<double>(mask[curve->joint]) : 1.0);
-        const bool isStill = clip.rootMotion() == nullptr;
-        out.add(isStill ? RootMotion{glm::dvec3(0.0), 0.0, curve->up}
-                        : curve->during(clip, voice.move, voice.playback.loopMode()),
+        const Clip& clip = set().clips()[static_cast<std::size_t>(voice.playback.clip())];
+        const RootMotionCurve& curve = clip.rootMotion() ? *clip.rootMotion() : usual;
+        const double weight = voice.meanShare * _weight.mean() * (mask ? static_cast<double>(mask[curve.joint]) : 1.0);
+        out.add(clip.rootMotion() ? rootMotionOf(clip, voice.move, voice.playback.loopMode())
+                                  : RootMotion{glm::dvec3(0.0), 0.0, curve.up},
                 weight, _standing);
     }
+}
+
+LayerStep AnimationLayer::lastStep() const
+{
+    return {_index, _mixer, _crossfadeMoment, _weightFadeMoment};
 }
 
 void AnimationLayer::show()

@@ -2,8 +2,7 @@
 #include <osgGpuAnimation/animation/AnimationSet.h>
 
 #include "PaletteBuilder.h"
-#include <osgGpuAnimation/animation/ClipBuilder.h>
-#include <osgGpuAnimation/animation/JointMask.h>
+#include <osgGpuAnimation/animation/MaskTable.h>
 #include <osgGpuAnimation/animation/QuotedNames.h>
 
 #include <layout.glsl>
@@ -63,7 +62,7 @@ std::optional<Error> findFault(const AnimationParts& parts, std::size_t trackCou
     return std::nullopt;
 }
 
-/// Places on the GPU have 31 bits and count half texels, six a transform (see PackedKeyframes).
+/// Addresses on the GPU have 31 bits and count half texels, six per transform (see PackedKeyframes).
 std::optional<Error> findFaultInSize(const std::vector<Clip>& clips)
 {
     constexpr std::size_t most = (std::size_t(1) << 31) / 16;
@@ -82,30 +81,20 @@ std::string namesOf(const std::vector<Clip>& clips)
 
 } // namespace
 
-AnimationSet::AnimationSet(AnimationParts parts, const MaskTable& masks) : _parts(std::move(parts)), _masks(masks)
+AnimationSet::AnimationSet(AnimationParts parts, const MaskTable& masks)
+    : _parts(std::move(parts)), _masks(std::make_unique<MaskTable>(masks))
 {
     _restPose = osgGpuAnimation::restPose(_parts.skeleton, _parts.morphs);
-    std::size_t track = _parts.skeleton.jointCount();
-    for (const MorphWeights& morph : _parts.morphs)
-    {
-        _firstTrackOfMorph.push_back(track);
-        track += morph.blockCount();
-    }
-
-    PaletteBuilder builder(_parts);
-    _palette = std::move(builder.palette);
-    _levels = std::move(builder.levels);
-    _entryOfSkin = std::move(builder.entryOfSkin);
-    _entryOfRigidJoint = std::move(builder.entryOfRigidJoint);
-    _mainEntry = std::move(builder.mainEntry);
-    _entryOfMorph = std::move(builder.entryOfMorph);
-
+    _firstTracksOfMorphs = firstTracksOfMorphs(_parts.skeleton, _parts.morphs);
+    _layout = layOutPalette(_parts.skeleton, _parts.skins, _parts.rigidJoints, _parts.morphs);
     for (const Clip& clip : _parts.clips)
     {
         _firstKeyframes.push_back(_keyframeCount);
         _keyframeCount += clip.keyframeCount();
     }
 }
+
+AnimationSet::~AnimationSet() = default;
 
 Result<std::shared_ptr<const AnimationSet>> AnimationSet::create(AnimationParts parts)
 {
@@ -116,24 +105,21 @@ Result<std::shared_ptr<const AnimationSet>> AnimationSet::withClips(std::vector<
 {
     AnimationParts parts = _parts;
     parts.clips = std::move(clips);
-    return make(std::move(parts), _masks);
+    return make(std::move(parts), *_masks);
 }
 
 Result<std::shared_ptr<const AnimationSet>> AnimationSet::make(AnimationParts parts, const MaskTable& masks)
 {
-    std::size_t trackCount = parts.skeleton.jointCount();
-    for (const MorphWeights& morph : parts.morphs)
-        trackCount += morph.blockCount();
+    const std::size_t trackCount = firstTracksOfMorphs(parts.skeleton, parts.morphs).back();
     if (auto fault = findFault(parts, trackCount)) return *fault;
-
     if (auto fault = findFaultInSize(parts.clips)) return *fault;
     return std::shared_ptr<const AnimationSet>(new AnimationSet(std::move(parts), masks));
 }
 
 int AnimationSet::entryOfRigidJoint(int joint) const
 {
-    if (joint < 0 || static_cast<std::size_t>(joint) >= _entryOfRigidJoint.size()) return -1;
-    return _entryOfRigidJoint[static_cast<std::size_t>(joint)];
+    if (joint < 0 || static_cast<std::size_t>(joint) >= _layout.entryOfRigidJoint.size()) return -1;
+    return _layout.entryOfRigidJoint[static_cast<std::size_t>(joint)];
 }
 
 int AnimationSet::findClip(const std::string& name) const
@@ -167,12 +153,12 @@ BlendSample AnimationSet::sampleAt(int clip, double time) const
             played.form() == Clip::Form::Spline ? POSE_SAMPLE_SPLINE : 0u};
 }
 
-Result<std::uint32_t> AnimationSet::addMask(const JointMask& mask) const
+Result<std::uint32_t> AnimationSet::addMask(const std::vector<float>& weights) const
 {
-    if (mask.weights().size() != trackCount())
-        return Error{"a mask of " + std::to_string(mask.weights().size()) + " tracks for a set of " +
+    if (weights.size() != trackCount())
+        return Error{"a mask of " + std::to_string(weights.size()) + " tracks for a set of " +
                      std::to_string(trackCount())};
-    const std::uint32_t number = _masks.add(mask.weights());
+    const std::uint32_t number = _masks->add(weights);
     if (number == 0) return Error{"the set has " + std::to_string(MaskTable::maxMasks) + " masks already"};
     return number;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/ChannelCurve.h>
 
+#include <osgGpuAnimation/animation/Hermite.h>
 #include <osgGpuAnimation/animation/Rotation.h>
 
 #include <glm/geometric.hpp>
@@ -16,9 +17,9 @@ namespace
 
 using Interpolation = Channel::Interpolation;
 
-glm::dvec4 unitQuaternion(const double* q)
+glm::dvec4 rotationAt(const double* q)
 {
-    return Rotation::unit(glm::dvec4(q[0], q[1], q[2], q[3]));
+    return glm::dvec4(q[0], q[1], q[2], q[3]);
 }
 
 void store(const glm::dvec4& q, double* out)
@@ -27,23 +28,12 @@ void store(const glm::dvec4& q, double* out)
         out[c] = q[c];
 }
 
-/// Far from isAmbiguous() in any case, said without making them unit.
-bool isClear(const double* a, const double* b)
-{
-    double product = 0.0, squareOfA = 0.0, squareOfB = 0.0;
-    for (int c = 0; c < 4; ++c)
-    {
-        product += a[c] * b[c];
-        squareOfA += a[c] * a[c];
-        squareOfB += b[c] * b[c];
-    }
-    return product * product > 1e-6 * squareOfA * squareOfB; // false for what is beyond double
-}
-
-/// Whether single precision could find the other way shorter. A dot product whose every term is 0 is 0 everywhere.
+/// True if single precision could find the other way shorter: |cos| < 1e-6. If every term of the dot product is 0, it
+/// is 0 in any precision. a, b: of float range, so that their squares neither overflow nor vanish.
 bool isAmbiguous(const glm::dvec4& a, const glm::dvec4& b)
 {
-    return a * b != glm::dvec4(0.0) && std::abs(glm::dot(a, b)) < 1e-6;
+    const double product = glm::dot(a, b);
+    return product * product < 1e-12 * glm::dot(a, a) * glm::dot(b, b) && a * b != glm::dvec4(0.0);
 }
 
 } // namespace
@@ -90,38 +80,31 @@ void ChannelCurve::value(const Moment& at, double* out)
     if (_channel.interpolation == Interpolation::Step || isHeldAt(key, at.time) || at.time == _channel.times[key])
     {
         std::copy_n(first, _componentCount, out);
-        if (isRotation && !isSplineRotation()) store(unitQuaternion(first), out);
+        if (isRotation && !isSplineRotation()) store(Rotation::unit(rotationAt(first)), out);
         return;
     }
 
     const double* second = valueOfKey(key + 1);
     const double alpha = (at.time - _channel.times[key]) / (_channel.times[key + 1] - _channel.times[key]);
     if (_channel.interpolation == Interpolation::CubicSpline)
-        hermite(key, alpha, out);
+        spline(key, alpha, out);
     else if (isRotation)
-        store(Rotation::slerp(unitQuaternion(first), unitQuaternion(second), alpha), out);
+        store(Rotation::slerp(rotationAt(first), rotationAt(second), alpha), out);
     else
         for (std::size_t c = 0; c < _componentCount; ++c)
             out[c] = first[c] * (1.0 - alpha) + second[c] * alpha;
 }
 
-void ChannelCurve::hermite(std::size_t key, double alpha, double* out) const
+void ChannelCurve::spline(std::size_t key, double alpha, double* out) const
 {
     const double length = _channel.times[key + 1] - _channel.times[key];
-    const double square = alpha * alpha;
-    const double cube = square * alpha;
     const double* v0 = valueOfKey(key);
     const double* v1 = valueOfKey(key + 1);
-    for (std::size_t c = 0; c < _componentCount; ++c)
-    {
-        const double m0 = length * v0[_componentCount + c];   // the out-tangent follows the value
-        const double m1 = length * (v1 - _componentCount)[c]; // the in-tangent precedes it
-        out[c] = (2.0 * cube - 3.0 * square + 1.0) * v0[c] + (cube - 2.0 * square + alpha) * m0 +
-                 (3.0 * square - 2.0 * cube) * v1[c] + (cube - square) * m1;
-    }
+    for (std::size_t c = 0; c < _componentCount; ++c) // the out-tangent follows the value, the in-tangent precedes it
+        out[c] = hermite(v0[c], length * v0[_componentCount + c], v1[c], length * (v1 - _componentCount)[c], alpha);
 }
 
-void ChannelCurve::hermiteSlope(std::size_t key, double alpha, double factor, double* out) const
+void ChannelCurve::splineSlope(std::size_t key, double alpha, double factor, double* out) const
 {
     const double length = _channel.times[key + 1] - _channel.times[key];
     const double square = alpha * alpha;
@@ -142,16 +125,15 @@ void ChannelCurve::tangents(const Moment& from, const Moment& to, double* outFir
     std::fill_n(outFirst, _componentCount, 0.0);
     std::fill_n(outLast, _componentCount, 0.0);
     const std::size_t key = keyAt(from);
-    const bool held = to.time <= _channel.times.front() || key + 1 == _channel.times.size();
-    if (held || from.time == to.time || _channel.interpolation == Interpolation::Step) return;
+    if (isHeldAt(key, to.time) || from.time == to.time || _channel.interpolation == Interpolation::Step) return;
 
     const double length = _channel.times[key + 1] - _channel.times[key];
     const double share = (to.time - from.time) / length;
     const double alpha = (from.time - _channel.times[key]) / length;
     if (_channel.interpolation == Interpolation::CubicSpline)
     {
-        hermiteSlope(key, alpha, share, outFirst);
-        hermiteSlope(key, (to.time - _channel.times[key]) / length, share, outLast);
+        splineSlope(key, alpha, share, outFirst);
+        splineSlope(key, (to.time - _channel.times[key]) / length, share, outLast);
     }
     else if (_channel.path != Channel::Path::Rotation)
     {
@@ -173,8 +155,7 @@ void ChannelCurve::appendMiddlesOfHalfTurns(const std::vector<double>& times, st
     if (_channel.path != Channel::Path::Rotation || _channel.interpolation != Interpolation::Linear) return;
     for (std::size_t key = 0; key + 1 < _channel.times.size(); ++key)
     {
-        if (isClear(valueOfKey(key), valueOfKey(key + 1))) continue;
-        if (!isAmbiguous(unitQuaternion(valueOfKey(key)), unitQuaternion(valueOfKey(key + 1)))) continue;
+        if (!isAmbiguous(rotationAt(valueOfKey(key)), rotationAt(valueOfKey(key + 1)))) continue;
         const double from = _channel.times[key];
         const double to = _channel.times[key + 1];
         const auto next = std::upper_bound(times.begin(), times.end(), from);

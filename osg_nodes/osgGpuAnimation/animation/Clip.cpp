@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/Clip.h>
 
+#include <osgGpuAnimation/animation/RootMotionCurve.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -9,7 +11,7 @@ namespace osgGpuAnimation
 
 Clip::Span Clip::locate(double time) const
 {
-    // Written so that a time that is not a number gives the first keyframe.
+    // The negation makes NaN give the first keyframe.
     if (_times.empty() || !(time > static_cast<double>(_times.front()))) return {};
     if (time >= static_cast<double>(_times.back())) return {_times.size() - 1, 0.0f};
 
@@ -21,6 +23,12 @@ Clip::Span Clip::locate(double time) const
     return {static_cast<std::size_t>(next - _times.begin()) - 1, std::min(alpha, justBelowOne)};
 }
 
+RootMotion Clip::rootMotionAt(double time) const
+{
+    const Span span = locate(time);
+    return _rootMotion->at(span.keyframe, static_cast<double>(span.alpha), _form == Form::Spline);
+}
+
 Result<Clip> Clip::withMarkers(std::vector<ClipMarker> markers) const
 {
     Clip clip = *this;
@@ -28,7 +36,7 @@ Result<Clip> Clip::withMarkers(std::vector<ClipMarker> markers) const
     {
         if (!std::isfinite(marker.time) || marker.time < 0.0)
             return Error{"marker \"" + marker.name + "\" of clip \"" + _name + "\": its time " +
-                         std::to_string(marker.time) + " is not one of a clip"};
+                         std::to_string(marker.time) + " is negative or not finite"};
         marker.time = std::min(marker.time, duration());
         clip._markers.push_back(std::move(marker));
     }

@@ -4,6 +4,7 @@
 #include <osgGpuAnimation/animation/ClipMarker.h>
 #include <osgGpuAnimation/animation/JointTransform.h>
 #include <osgGpuAnimation/animation/Result.h>
+#include <osgGpuAnimation/animation/RootMotion.h>
 
 #include <cstddef>
 #include <memory>
@@ -17,38 +18,38 @@ struct ClipParts;
 struct CompactTracks;
 struct RootMotionCurve;
 
-/// A clip: keyframes in time order; each keyframe is a snapshot of **all tracks** (all joints, then all weight blocks).
+/// A clip: keyframes in time order. Each keyframe has one transform of **every track**: joints, then weight blocks.
 ///
-/// Between two keyframes a track is mixed: Linear clips mix translations, scales and weights componentwise and slerp
-/// rotations the short way; Spline clips hold for each track a value and two tangents and take the Hermite form
-/// (glTF 2.0, appendix C.5), tangents being scaled by the length of their interval already. Two keyframes at the same
-/// time are a jump (STEP): at that time the later one holds.
+/// Between two keyframes a Linear clip mixes translations, scales and weights componentwise and slerps rotations the
+/// short way. A Spline clip stores a value and two tangents per track and uses the Hermite form (glTF 2.0, appendix
+/// C.5); the tangents are already multiplied by the length of their interval. Two keyframes at the same time are a jump
+/// (STEP): at that time the later one is valid.
 ///
-/// In a Spline clip a joint track whose rotation is to be slerped has translation.w == 1 in its value, else 0, and
-/// rotation values are not unit (the spline's own numbers; made unit after mixing).
+/// In a Spline clip, translation.w of a joint's value says how its rotation is mixed: 1 means slerp, 0 means spline.
+/// The rotations of a spline are not unit; they are normalized after the mix.
 ///
-/// Made by ClipBuilder; immutable. Copies share the keyframes.
+/// ClipBuilder creates clips. A clip is immutable; copies share the keyframes.
 class Clip
 {
 public:
     enum class Form
     {
-        Linear, ///< one JointTransform a track a keyframe: the value
-        Spline, ///< three a track a keyframe: value, in-tangent, out-tangent
+        Linear, ///< one JointTransform per track and keyframe: the value
+        Spline, ///< three per track and keyframe: value, in-tangent, out-tangent
     };
 
-    /// Where a time falls: mix keyframe and keyframe + 1 by alpha. alpha is 0 on the last keyframe.
+    /// The keyframes of a time: a mix of keyframe and keyframe + 1 by alpha. At the last keyframe alpha is 0.
     struct Span
     {
         std::size_t keyframe = 0;
         float alpha = 0.0f; ///< [0, 1)
     };
 
-    /// A clip of these keyframes, as another said them of itself: to keep clips elsewhere than in a glTF file. For
-    /// what has channels there is ClipBuilder.
-    /// Errors: no keyframes; times that are not finite, negative, descending or more than twice the same; numbers that
-    /// are not finite; a wrong number of them; in a Linear clip a joint's rotation of length 0; a marker's time or a
-    /// root motion that is none of such a clip.
+    /// Creates a clip from data that another clip exported, for example to restore a stored clip. ClipBuilder creates
+    /// clips from channels.
+    /// Errors: no keyframes; times that are not finite, negative, descending or the same more than twice; numbers that
+    /// are not finite; a wrong number of transforms; in a Linear clip a joint's rotation of length 0; a marker with an
+    /// invalid time; compact tracks or a root motion that do not fit the clip.
     static Result<Clip> create(ClipParts parts);
 
     const std::string& name() const { return _name; }
@@ -56,33 +57,40 @@ public:
     double duration() const { return _times.empty() ? 0.0 : _times.back(); } ///< seconds; the last keyframe's time
     std::size_t trackCount() const { return _trackCount; }
     std::size_t keyframeCount() const { return _times.size(); }
-    const std::vector<float>& times() const { return _times; } ///< keyframeCount() seconds, ascending, twice at a jump
+    const std::vector<float>& times() const
+    {
+        return _times;
+    } ///< keyframeCount() times in seconds, ascending, the same twice at a jump
 
     std::size_t transformsPerTrack() const { return transformsPerTrack(_form); } ///< in a keyframe
     static constexpr std::size_t transformsPerTrack(Form form) { return form == Form::Spline ? 3 : 1; }
-    /// JointTransforms from one keyframe to the next in data().
+    /// JointTransforms per keyframe in data().
     std::size_t keyframeStride() const { return _trackCount * transformsPerTrack(); }
-    /// keyframeCount() * keyframeStride() transforms: by keyframe, then track, then (Spline) value, in, out.
+    /// keyframeCount() * keyframeStride() transforms: by keyframe, then by track, then (Spline) value, in- and
+    /// out-tangent.
     const std::vector<JointTransform>& data() const { return *_data; }
-    /// The track's transformsPerTrack() transforms in a keyframe.
+    /// The transformsPerTrack() transforms of a track in a keyframe.
     const JointTransform* at(std::size_t keyframe, std::size_t track) const
     {
         return data().data() + keyframe * keyframeStride() + track * transformsPerTrack();
     }
 
-    /// By time; those of one time in the order in which they were added.
+    /// The markers by time; markers of the same time keep the order in which they were added.
     const std::vector<ClipMarker>& markers() const { return _markers; }
-    /// The same clip with further markers. What lies beyond the duration counts as at the duration.
+    /// A copy of the clip with further markers. A marker after the end of the clip moves to the end.
     /// Error: a time that is negative or not finite.
     Result<Clip> withMarkers(std::vector<ClipMarker> markers) const;
 
-    /// The motion that was taken out of this clip, see withRootMotion(); null where none was.
+    /// The motion that withRootMotion() removed from the clip; null if it removed none.
     const RootMotionCurve* rootMotion() const { return _rootMotion.get(); }
+    /// That motion from the first keyframe to a time in seconds. There must be a rootMotion().
+    RootMotion rootMotionAt(double time) const;
 
-    /// How a compact clip goes to the GPU, see compactClips(); data() then holds what that decodes to. Null: exactly.
+    /// The keyframes of a compact clip as the GPU stores them, see compactClips(); data() has the decoded values. Null
+    /// for an exact clip.
     const CompactTracks* compactTracks() const { return _compactTracks.get(); }
 
-    /// By binary search; times before the first keyframe give the first, after the last the last.
+    /// Finds the keyframes of a time by binary search. Times outside the clip give its first or last keyframe.
     Span locate(double time) const;
 
 private:

@@ -16,15 +16,8 @@ namespace
 
 using Path = Channel::Path;
 
-constexpr std::size_t componentsPerTrack = 12;
+constexpr std::size_t componentsPerTrack = MorphWeights::weightsPerBlock;
 constexpr JointTransform zeroTransform{glm::vec4(0.0f), glm::vec4(0.0f), glm::vec4(0.0f)};
-
-float& component(JointTransform& transform, std::size_t index)
-{
-    const auto place = static_cast<glm::vec4::length_type>(index % 4);
-    if (index < 4) return transform.translation[place];
-    return index < 8 ? transform.rotation[place] : transform.scale[place];
-}
 
 float rounded(double value)
 {
@@ -32,7 +25,7 @@ float rounded(double value)
     return static_cast<float>(std::clamp(value, -largest, largest));
 }
 
-/// The place of a path's first number among a track's twelve.
+/// The index of a path's first number among the twelve numbers of a track.
 std::size_t firstComponent(Path path)
 {
     return path == Path::Rotation ? 4 : path == Path::Scale ? 8 : 0;
@@ -59,7 +52,7 @@ std::size_t valuesPerKey(const Channel& channel)
     return channel.interpolation == Channel::Interpolation::CubicSpline ? 3 : 1;
 }
 
-/// Rounds the times to floats on the way.
+/// Checks the times and rounds them to floats.
 std::optional<std::string> findFaultInTimes(std::vector<double>& times)
 {
     if (times.empty()) return "has no times";
@@ -105,7 +98,7 @@ void sortUnique(std::vector<double>& times)
     times.erase(std::unique(times.begin(), times.end()), times.end());
 }
 
-/// Both ascend.
+/// all, some: ascending.
 bool areAmong(const std::vector<double>& all, const std::vector<double>& some)
 {
     return all == some || (some.size() < all.size() &&
@@ -113,7 +106,7 @@ bool areAmong(const std::vector<double>& all, const std::vector<double>& some)
                                        [&](double time) { return std::binary_search(all.begin(), all.end(), time); }));
 }
 
-/// The keyframes of the clip of these curves: the union of all key times, twice where one of them jumps.
+/// The keyframes of a clip with these curves: the union of all key times, twice at a jump.
 std::vector<Moment> findMoments(const std::vector<ChannelCurve>& curves)
 {
     std::vector<double> times;
@@ -122,7 +115,7 @@ std::vector<Moment> findMoments(const std::vector<ChannelCurve>& curves)
     const std::vector<double>* most = &none;
     for (const ChannelCurve& curve : curves)
     {
-        // Channels mostly have the times of one before, or some of them, and sorting takes long.
+        // Most channels share the times of an earlier channel, and sorting is slow.
         const std::vector<double>& own = curve.channel().times;
         if (!areAmong(*most, own)) times.insert(times.end(), own.begin(), own.end());
         if (own.size() > most->size()) most = &own;
@@ -152,7 +145,7 @@ std::vector<Moment> findMoments(const std::vector<ChannelCurve>& curves)
     return moments;
 }
 
-/// Writes numbers into a place that recurs in every keyframe: the same part of the same track.
+/// Writes numbers into one part of one track, keyframe by keyframe.
 class TrackWriter
 {
 public:
@@ -170,7 +163,7 @@ public:
             const std::size_t at = _firstComponent + i;
             const std::size_t track = at / componentsPerTrack;
             JointTransform& transform = _data[keyframe * _stride + _place + track * _perTrack + part];
-            component(transform, at % componentsPerTrack) = rounded(numbers[i]);
+            transform.number(at % componentsPerTrack) = rounded(numbers[i]);
         }
     }
 
@@ -204,7 +197,7 @@ void writeCurve(ChannelCurve curve, const std::vector<Moment>& moments, bool spl
     }
 }
 
-/// Every keyframe the rest pose, with tangents of zero in a spline clip.
+/// Fills every keyframe with the rest pose; tangents are 0.
 void fillWithRest(const std::vector<JointTransform>& rest, std::size_t jointCount, bool spline,
                   std::size_t keyframeCount, std::vector<JointTransform>& out)
 {
@@ -223,15 +216,10 @@ void fillWithRest(const std::vector<JointTransform>& rest, std::size_t jointCoun
 
 ClipBuilder::ClipBuilder(const Skeleton& skeleton, const std::vector<MorphWeights>& morphs)
     : _rest(restPose(skeleton, morphs)), _jointCount(skeleton.jointCount()),
-      _driven(skeleton.jointCount() * 3 + morphs.size())
+      _firstTrackOfMorph(firstTracksOfMorphs(skeleton, morphs)), _driven(skeleton.jointCount() * 3 + morphs.size())
 {
-    std::size_t track = _jointCount;
     for (const MorphWeights& morph : morphs)
-    {
-        _firstTrackOfMorph.push_back(static_cast<int>(track));
         _weightCounts.push_back(morph.defaults.size());
-        track += morph.blockCount();
-    }
 }
 
 std::size_t ClipBuilder::componentCount(const Channel& channel) const
@@ -266,14 +254,6 @@ Result<bool> ClipBuilder::add(Channel channel)
 
     _driven[keyOf(channel)] = true;
     _channels.push_back(std::move(channel));
-    return true;
-}
-
-Result<bool> ClipBuilder::addMarker(double time, std::string name)
-{
-    if (!std::isfinite(time) || time < 0.0)
-        return Error{"marker \"" + name + "\": its time " + std::to_string(time) + " is not one of a clip"};
-    _markers.push_back({time, std::move(name)});
     return true;
 }
 
@@ -313,30 +293,12 @@ Clip ClipBuilder::build(std::string name)
     for (const ChannelCurve& curve : curves)
     {
         const auto target = static_cast<std::size_t>(curve.channel().target);
-        const bool isWeights = curve.channel().path == Path::Weights;
-        const std::size_t track = isWeights ? static_cast<std::size_t>(_firstTrackOfMorph[target]) : target;
+        const std::size_t track = curve.channel().path == Path::Weights ? _firstTrackOfMorph[target] : target;
         writeCurve(curve, moments, spline, TrackWriter(*clip._data, clip, track, firstComponent(curve.channel().path)));
     }
-    clip = clip.withMarkers(std::move(_markers)).value();
-    _markers.clear();
     _channels.clear();
     _driven.assign(_driven.size(), false);
     return clip;
-}
-
-std::vector<JointTransform> restPose(const Skeleton& skeleton, const std::vector<MorphWeights>& morphs)
-{
-    std::vector<JointTransform> tracks;
-    for (const Joint& joint : skeleton.joints())
-        tracks.push_back(joint.rest);
-    for (const MorphWeights& morph : morphs)
-    {
-        const std::size_t first = tracks.size();
-        tracks.resize(first + morph.blockCount(), zeroTransform);
-        for (std::size_t i = 0; i < morph.defaults.size(); ++i)
-            component(tracks[first + i / componentsPerTrack], i % componentsPerTrack) = morph.defaults[i];
-    }
-    return tracks;
 }
 
 } // namespace osgGpuAnimation

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <osgGpuAnimation/animation/Channel.h>
 #include <osgGpuAnimation/animation/Clip.h>
-#include <osgGpuAnimation/animation/MorphWeights.h>
-#include <osgGpuAnimation/animation/Result.h>
 #include <osgGpuAnimation/animation/Skeleton.h>
 
 #include <string>
@@ -12,58 +11,33 @@
 namespace osgGpuAnimation
 {
 
-/// One property over time, as a file has it (glTF 2.0, section 3.11).
-struct Channel
-{
-    enum class Path
-    {
-        Translation, ///< 3 numbers a value
-        Rotation,    ///< 4 numbers a value: quaternion x, y, z, w
-        Scale,       ///< 3 numbers a value
-        Weights,     ///< as many numbers a value as the MorphWeights has defaults
-    };
-    enum class Interpolation
-    {
-        Step,
-        Linear,
-        CubicSpline, ///< each key has three values: in-tangent, value, out-tangent
-    };
-
-    Path path = Path::Translation;
-    Interpolation interpolation = Interpolation::Linear;
-    int target = -1;           ///< a joint of the skeleton; for Weights, an index into the morph weights
-    std::vector<double> times; ///< seconds, strictly ascending
-    std::vector<double> values;
-};
-
-/// Turns channels, each with its own times, into a Clip: snapshots of all tracks at the union of all key times.
+/// Converts channels, each with its own times, into a Clip: keyframes of all tracks at the union of all key times.
 ///
-/// LINEAR keeps exact (a slerp cut in two is the same slerp); STEP keeps its jump by two keyframes at one time; a clip
-/// with a CUBICSPLINE channel becomes a Spline clip, in which every piece of the cut-up Hermite curve is the curve
-/// itself. What no channel drives takes the rest transform. Before its first key a channel holds its first value,
-/// after its last key the last one.
+/// - LINEAR is exact: a slerp cut in two gives the same slerp.
+/// - STEP becomes two keyframes at one time.
+/// - A clip with a CUBICSPLINE channel becomes a Spline clip; each piece of a cut Hermite curve is the same curve.
+/// - Tracks without a channel take the rest transform.
+/// - Before its first key a channel has its first value, after its last key its last value.
 ///
-/// Key times are 32-bit floats (as in a file) and stay exactly what they are. A turn of 180 degrees, whose way hangs on
-/// the last bit of its ends, gets a keyframe in its middle. Computed in double precision and rounded once; what a float
-/// cannot hold becomes the largest float.
+/// Key times are 32-bit floats, as in a file, and stay exact. A turn of 180 degrees gets a keyframe in its middle,
+/// since its direction would depend on the rounding of its ends. The builder computes in double precision and rounds
+/// once; values beyond the range of a float become the largest float.
 class ClipBuilder
 {
 public:
     ClipBuilder(const Skeleton& skeleton, const std::vector<MorphWeights>& morphs);
 
-    /// Errors name the channel: no times, times not finite, negative or not ascending as floats, a wrong number of
-    /// values, values not finite, a target out of range, a rotation of length 0 at a key, two channels with one target
-    /// and path. The builder may go on after an error; the faulty channel is not taken up.
+    /// Adds a channel. Errors name the channel: no times; times that are negative, not finite or not ascending as
+    /// floats; a wrong number of values; values that are not finite; a target out of range; a rotation of length 0; a
+    /// second channel with the same target and path. After an error the builder ignores that channel and remains
+    /// usable.
     Result<bool> add(Channel channel);
 
-    /// Error: a time that is negative or not finite. What lies beyond the clip's end counts as at its end.
-    Result<bool> addMarker(double time, std::string name);
-
-    /// The clip of all channels and markers added since the last build. No channels: one keyframe at time 0, the rest
-    /// pose.
+    /// Creates the clip of all channels that were added since the last build(). Without channels the clip
+    /// has one keyframe, the rest pose at time 0.
     Clip build(std::string name);
 
-    /// Bytes of the clip that build() would make now: to refuse before allocating.
+    /// Bytes of the clip that build() would create now, so that a caller can refuse it before the allocation.
     std::size_t byteSize() const;
 
 private:
@@ -73,14 +47,10 @@ private:
 
     std::vector<JointTransform> _rest;
     std::size_t _jointCount;
-    std::vector<int> _firstTrackOfMorph;
-    std::vector<std::size_t> _weightCounts;
+    std::vector<std::size_t> _firstTrackOfMorph; ///< and at the end the number of tracks
+    std::vector<std::size_t> _weightCounts;      ///< by morph
     std::vector<Channel> _channels;
-    std::vector<ClipMarker> _markers;
-    std::vector<bool> _driven; ///< by keyOf(): three paths a joint, then one a morph
+    std::vector<bool> _driven; ///< by keyOf(): three paths per joint, then one per morph
 };
-
-/// One JointTransform a track: the joints' rest transforms, then the default weights packed into blocks.
-std::vector<JointTransform> restPose(const Skeleton& skeleton, const std::vector<MorphWeights>& morphs);
 
 } // namespace osgGpuAnimation

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "ClipCompactor.h"
 
-#include <osgGpuAnimation/animation/CompactClips.h>
+#include "TrackMix.h"
 #include <osgGpuAnimation/animation/CompactTracks.h>
 #include <osgGpuAnimation/animation/Rotation.h>
 
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace osgGpuAnimation
 {
@@ -15,13 +16,13 @@ namespace osgGpuAnimation
 namespace
 {
 
-// Parts of the tolerance, by experience with characters: what a single part of one joint held still may take, and what
-// dropped keyframes may. What is left is for rounding, and for stills that add up.
+// Shares of the tolerance, chosen by measuring characters: for one part of a joint that becomes constant, and for
+// dropped keyframes. The remainder covers rounding and constants that add up.
 constexpr double heldShare = 0.03;
 constexpr double droppedShare = 0.9;
 constexpr int attempts = 4;
 
-/// Whether all values are that near to the one given; `distance` of two values.
+/// True if all values of a track are within `most` of a value.
 template <typename Distance>
 bool isNear(const std::vector<JointTransform>& data, std::size_t track, std::size_t stride, const JointTransform& value,
             double most, Distance distance)
@@ -33,9 +34,9 @@ bool isNear(const std::vector<JointTransform>& data, std::size_t track, std::siz
 
 } // namespace
 
-ClipCompactor::ClipCompactor(const AnimationSet& set, const EntryBoxes& entryBoxes, double tolerance)
-    : _set(set), _tolerance(tolerance), _size(longestSide(set, entryBoxes)), _distance(set, entryBoxes),
-      _exactPose(set.trackCount()), _madePose(set.trackCount())
+ClipCompactor::ClipCompactor(const AnimationSet& set, const EntryBoxes& entryBoxes, double size, double tolerance)
+    : _set(set), _tolerance(tolerance), _size(size), _distance(set, entryBoxes), _exactPose(set.trackCount()),
+      _madePose(set.trackCount())
 {
 }
 
@@ -72,7 +73,7 @@ Clip ClipCompactor::attempt(const Clip& clip, double share)
     return made;
 }
 
-/// Gives parts that hardly move one value in all keyframes: that of the rest pose where it is as near.
+/// Makes parts constant that hardly move: at the value of the rest pose if that is near enough.
 void ClipCompactor::holdStill(const Clip& clip, std::vector<JointTransform>& data, double most) const
 {
     const auto apart = [](glm::vec4 JointTransform::*part)
@@ -81,7 +82,11 @@ void ClipCompactor::holdStill(const Clip& clip, std::vector<JointTransform>& dat
         { return static_cast<double>(glm::length(glm::vec3(a.*part) - glm::vec3(b.*part))); };
     };
     const auto turned = [](const JointTransform& a, const JointTransform& b)
-    { return Rotation::angleBetween(Rotation::unit(glm::dvec4(a.rotation)), Rotation::unit(glm::dvec4(b.rotation))); };
+    {
+        const glm::dvec4 from = Rotation::unit(glm::dvec4(a.rotation)), to = Rotation::unit(glm::dvec4(b.rotation));
+        const double chord = std::min(glm::length(to - from), glm::length(to + from)); // of the turn the short way
+        return 4.0 * std::asin(0.5 * chord);
+    };
     const std::size_t stride = clip.keyframeStride();
     for (std::size_t joint = 0; joint < _set.skeleton().jointCount(); ++joint)
     {
@@ -107,13 +112,13 @@ std::vector<std::size_t> ClipCompactor::keptKeyframes(const Clip& clip, const st
     std::vector<std::size_t> kept{0};
     const std::size_t last = clip.keyframeCount() - 1;
     while (kept.back() < last)
-        // The motion that was taken out has a key a keyframe.
+        // A root motion curve has one key per keyframe, so none is dropped.
         kept.push_back(clip.rootMotion() ? kept.back() + 1 : farthest(clip, data, kept.back(), most));
     return kept;
 }
 
-/// The last keyframe that may follow `from` with all between them dropped: found by doubling the distance, then by
-/// halving it, so that long stills do not take quadratic time.
+/// The last keyframe that may follow `from` if all keyframes between them are dropped. It doubles the distance, then
+/// halves it, so that long constant stretches do not take quadratic time.
 std::size_t ClipCompactor::farthest(const Clip& clip, const std::vector<JointTransform>& data, std::size_t from,
                                     double most)
 {
@@ -146,8 +151,8 @@ std::size_t ClipCompactor::farthest(const Clip& clip, const std::vector<JointTra
     return good;
 }
 
-/// How far a, then b are off from the clip's keyframes [from, to], and halfway between those; ends where it is more
-/// than `enough`.
+/// The largest error of a mix of a and b against the clip's keyframes [from, to] and the points halfway between them.
+/// Stops at an error above `enough`.
 double ClipCompactor::worstWithin(const Clip& clip, std::size_t from, std::size_t to, const JointTransform* a,
                                   const JointTransform* b, double enough)
 {
@@ -172,12 +177,11 @@ double ClipCompactor::worstWithin(const Clip& clip, std::size_t from, std::size_
 void ClipCompactor::mix(const JointTransform* a, const JointTransform* b, double alpha,
                         std::vector<JointTransform>& out) const
 {
-    const auto share = static_cast<float>(alpha);
     for (std::size_t track = 0; track < out.size(); ++track)
     {
-        out[track] = interpolate(a[track], b[track], share);
-        if (track >= _set.skeleton().jointCount())
-            out[track].rotation = a[track].rotation * (1.0f - share) + b[track].rotation * share;
+        const bool isWeights = track >= _set.skeleton().jointCount();
+        const MixedTrack mixed = MixedTrack::between({a, b, alpha, false}, track, isWeights);
+        out[track] = {glm::vec4(mixed.translation), glm::vec4(mixed.rotation), glm::vec4(mixed.scale)};
     }
 }
 

@@ -8,16 +8,16 @@
 namespace osgGpuAnimation
 {
 
-/// Makes compact clips of a set's clips, see compactClips().
+/// Creates compact clips of the clips of a set, see compactClips().
 class ClipCompactor
 {
 public:
-    /// tolerance: in the model's units, above 0.
-    ClipCompactor(const AnimationSet& set, const EntryBoxes& entryBoxes, double tolerance);
+    /// size, tolerance: in the model's units, above 0. The set must outlive this object.
+    ClipCompactor(const AnimationSet& set, const EntryBoxes& entryBoxes, double size, double tolerance);
 
-    /// The compact clip, or the same where it cannot be had within the tolerance.
+    /// The compact clip, or the clip itself if the tolerance cannot be met.
     Clip compact(const Clip& clip);
-    double error() const { return _error; } ///< of the clip compact() gave last, in the model's units
+    double error() const { return _error; } ///< of the last result of compact(), in the model's units
 
 private:
     Clip attempt(const Clip& clip, double share);

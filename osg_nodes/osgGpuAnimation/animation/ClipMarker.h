@@ -6,7 +6,7 @@
 namespace osgGpuAnimation
 {
 
-/// A named moment of a clip, such as a foot that touches the ground.
+/// A named time of a clip, for example when a foot touches the ground.
 struct ClipMarker
 {
     double time = 0.0; ///< seconds on the clip's time line, in [0, duration]

@@ -10,7 +10,7 @@ namespace osgGpuAnimation
 namespace
 {
 
-/// A share that nobody sees go.
+/// A share below this is invisible.
 constexpr double negligible = 1.0 / 4096.0;
 
 double finiteProduct(double a, double b)
@@ -132,7 +132,7 @@ double ClipMixer::clipSeconds(const Voice& voice, double seconds) const
         members += 1.0;
         share += other.meanShare;
         round += other.meanShare * other.playback.roundSeconds();
-        speed = other.playback.speed(); // in the end the newest one's
+        speed = other.playback.speed(); // the newest member decides
     }
     if (members > 1.0 && round > 0.0)
         speed *= voice.playback.roundSeconds() * share / round;

@@ -10,11 +10,11 @@
 namespace osgGpuAnimation
 {
 
-/// The clips that one layer plays at a time: one, and while it crossfades those that are on their way out, which go on
-/// playing. A crossfade may begin at any moment: what is seen then, however many clips make it up, fades as a whole
-/// while the new clip fades in, so the pose never jumps. (A frozen pose in place of the fading clips would cost 48
-/// bytes of upload a joint, and feet that stop in mid air.) Where all voices are in use, the one with the smallest
-/// share gives way. Memory is taken where more clips fade out at once than ever before, and kept.
+/// The clips that one layer plays at a time: the current clip and, during crossfades, the clips that fade out and play
+/// on. A crossfade may begin at any time: the whole visible mix fades out while the new clip fades in, so the pose
+/// never jumps. (A frozen pose in place of the fading clips would upload 48 bytes per joint, and feet would stop in mid
+/// air.) If all voices are in use, the one with the smallest share is dropped. Memory grows only when more clips fade
+/// out at once than ever before.
 class ClipMixer
 {
 public:
@@ -23,11 +23,12 @@ public:
     struct Voice
     {
         ClipPlayback playback;
-        ClipMove move;            ///< of the last advance()
-        double share = 1.0;       ///< of the layer, now
-        double meanShare = 1.0;   ///< over the last advance(): its way counts by this, whatever the frame rate
-        double shareBefore = 0.0; ///< when the last crossfade began
-        int phaseGroup = 0;       ///< voices of one group run at one phase
+        ClipMove move;      ///< the step of the last advance()
+        double share = 1.0; ///< of the layer, in [0, 1]
+        double meanShare =
+            1.0; ///< mean during the last advance(): it weights root motion, so that the frame rate plays no part
+        double shareBefore = 0.0; ///< share at the start of the last crossfade
+        int phaseGroup = 0;       ///< voices of one group share one phase
     };
 
     std::size_t voiceCount() const { return isEmpty() ? 0 : _leaving.size() + 1; }
@@ -36,25 +37,25 @@ public:
         return index < _leaving.size() ? _leaving[index] : _current;
     }
     bool isEmpty() const { return _current.playback.clip() < 0; }
-    /// The newest voice; there is one.
+    /// The newest voice. The mixer must not be empty.
     ClipPlayback& current() { return _current.playback; }
     const ClipPlayback& current() const { return _current.playback; }
     bool isFading() const { return !_fade.isFinished(); }
 
-    const Fade& fade() const { return _fade; } ///< from 0 to 1, the current voice's
+    const Fade& fade() const { return _fade; } ///< share of the current voice, from 0 to 1
 
     void clear();
-    /// As it was when it said so of itself. voices: oldest first, at most maxVoices are taken.
+    /// Restores stored voices. voices: oldest first; only the first maxVoices are used.
     void restore(const std::vector<Voice>& voices, const Fade& fade);
-    /// Alone and at once.
+    /// Plays a clip at once and removes all others.
     void start(const ClipPlayback& playback);
-    /// Over these seconds (above 0).
+    /// Starts a crossfade. seconds: above 0. sharesPhase: true if both clips run at one phase, see Sync::Phase.
     void fadeTo(const ClipPlayback& playback, double seconds, FadeCurve curve, bool sharesPhase);
 
-    /// Moves all voices, the current one only if it is playing, and the fade. Returns when in the step the fade ended,
-    /// in [0, 1]; -1 where it did not.
+    /// Moves the fade and all voices; the current voice moves only if isCurrentPlaying. Returns the share of the step
+    /// after which the fade ended, in [0, 1]; -1 if it did not end.
     double advance(double seconds, bool isCurrentPlaying);
-    /// There was no step: no voice has moved.
+    /// Clears the steps of all voices.
     void stand();
 
 private:
@@ -64,8 +65,8 @@ private:
     void makeRoom();
     double clipSeconds(const Voice& voice, double seconds) const;
 
-    Voice _current; ///< in place: of thousands of characters nearly all play one clip, and every frame reads it
-    std::vector<Voice> _leaving; ///< below maxVoices
+    Voice _current;              ///< a member, since most characters play one clip and every frame reads it
+    std::vector<Voice> _leaving; ///< fewer than maxVoices
     Fade _fade{1.0};
     int _lastPhaseGroup = 0;
 };

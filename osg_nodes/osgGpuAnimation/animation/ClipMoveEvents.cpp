@@ -27,7 +27,7 @@ ClipMoveEvents::ClipMoveEvents(const Clip& clip, const ClipMove& move, LoopMode 
 {
     if (_crossingsLeft > maxCrossings)
     {
-        // An even number is left out, so that PingPong's way stays right.
+        // Skips an even number of crossings, so that the direction of PingPong stays correct.
         const double leftOut = 2.0 * std::floor((_crossingsLeft - maxCrossings) / 2.0);
         _gone = leftOut * clip.duration();
         _crossingsLeft = maxCrossings + 1.0;
@@ -88,7 +88,7 @@ bool ClipMoveEvents::next()
         _gone += std::abs(_stretchTo - _stretchFrom);
         const bool isTurn = _loopMode == LoopMode::PingPong;
         if (isTurn) _isAscending = !_isAscending;
-        // After a jump the other end is met anew; after a turn this end has been met already.
+        // A jump includes the other end; a turn does not include its end a second time.
         enterStretch(isTurn ? _stretchTo : (_isAscending ? 0.0 : _clip.duration()), !isTurn);
         return true;
     }

@@ -29,11 +29,11 @@ std::optional<std::string> findFaultInTimes(const std::vector<float>& times)
     {
         const char* fault = nullptr;
         if (!std::isfinite(times[k]) || times[k] < 0.0f)
-            fault = "is not one of a clip";
+            fault = "is negative or not finite";
         else if (k > 0 && times[k] < times[k - 1])
             fault = "is before the one before it";
         else if (k > 1 && times[k] == times[k - 2])
-            fault = "is there more than twice";
+            fault = "occurs more than twice";
         if (fault) return "time " + std::to_string(k) + " (" + std::to_string(times[k]) + ") " + fault;
     }
     return std::nullopt;
@@ -66,7 +66,7 @@ std::optional<std::string> findFaultInMotion(const ClipParts& parts)
 {
     if (!parts.rootMotion) return std::nullopt;
     const RootMotionCurve& curve = *parts.rootMotion;
-    if (curve.joint >= parts.jointCount) return "its root motion is that of no joint";
+    if (curve.joint >= parts.jointCount) return "the joint of its root motion does not exist";
     if (curve.keys.size() != parts.times.size())
         return "its root motion has " + std::to_string(curve.keys.size()) + " keys for " +
                std::to_string(parts.times.size()) + " keyframes";
@@ -77,14 +77,14 @@ std::optional<std::string> findFaultInMotion(const ClipParts& parts)
     return isSound ? std::nullopt : std::optional<std::string>("a number of its root motion is not finite");
 }
 
-/// Before the data: they are part of it.
+/// Compact tracks are checked before the data, since they decode into it.
 std::optional<std::string> findFaultInCompactTracks(const ClipParts& parts)
 {
     if (!parts.compactTracks) return std::nullopt;
     const bool isSound =
         parts.form == Clip::Form::Linear && parts.data.size() == parts.times.size() * parts.trackCount &&
         parts.jointCount <= parts.trackCount && parts.compactTracks->isFor(parts.jointCount, parts.times.size());
-    return isSound ? std::nullopt : std::optional<std::string>("its compact keyframes are not those of such a clip");
+    return isSound ? std::nullopt : std::optional<std::string>("its compact keyframes do not fit the clip");
 }
 
 } // namespace

@@ -13,18 +13,19 @@ namespace osgGpuAnimation
 struct CompactTracks;
 struct RootMotionCurve;
 
-/// What Clip::create takes: all that a clip says of itself.
+/// The input of Clip::create(): everything that a clip exports.
 struct ClipParts
 {
     std::string name;
     Clip::Form form = Clip::Form::Linear;
-    std::size_t jointCount = 0;       ///< the first tracks, whose transforms are joints'
+    std::size_t jointCount = 0;       ///< the first tracks; their transforms belong to joints
     std::size_t trackCount = 0;       ///< joints, then weight blocks
     std::vector<float> times;         ///< as Clip::times()
     std::vector<JointTransform> data; ///< as Clip::data()
     std::vector<ClipMarker> markers;
-    std::shared_ptr<const RootMotionCurve> rootMotion;  ///< null: none
-    std::shared_ptr<const CompactTracks> compactTracks; ///< null: exact; else what moves in data is what they decode to
+    std::shared_ptr<const RootMotionCurve> rootMotion; ///< null: none
+    std::shared_ptr<const CompactTracks>
+        compactTracks; ///< null: exact; else create() writes their decoded values to data
 };
 
 } // namespace osgGpuAnimation

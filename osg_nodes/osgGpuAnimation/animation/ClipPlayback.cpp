@@ -15,7 +15,7 @@ double wrapped(double value, double period)
 {
     const double rest = std::fmod(value, period);
     if (rest >= 0.0) return rest;
-    // A rest next to nothing below 0 would round up to the period itself.
+    // A tiny negative remainder would round up to the period itself.
     return std::min(rest + period, std::nextafter(period, 0.0));
 }
 
@@ -87,7 +87,7 @@ ClipMove ClipPlayback::move(double seconds)
     }
     else
     {
-        // There and back again is one period: its first half runs forwards, its second backwards.
+        // One period goes forwards in its first half and backwards in its second.
         const double half = _direction > 0.0 ? 0.0 : 1.0;
         const double unrolled = (_direction > 0.0 ? _time : 2.0 * _duration - _time) + seconds;
         const double phase = wrapped(unrolled, 2.0 * _duration);

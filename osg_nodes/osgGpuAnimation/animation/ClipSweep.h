@@ -4,33 +4,35 @@
 #include "MotionBound.h"
 #include "SweptBox.h"
 
+#include <osgGpuAnimation/animation/AnimationSet.h>
+
 #include <vector>
 
 namespace osgGpuAnimation
 {
 
-/// Moves the boxes of the palette entries through a clip and gathers where they have been.
+/// Moves the boxes of the palette entries through a clip and collects the space that they cover.
 ///
-/// Each piece between two keyframes is looked at in as many steps as it takes for the entries' straying from straight
-/// lines (see ChainMotion) to add no more than a hundredth to the box: one for most, since most straying happens well
-/// inside the box that the clip fills anyway.
+/// Each piece between two keyframes is sampled so often that the deviation from straight lines (see ChainMotion) adds
+/// at most a hundredth to the box. Most pieces need one step, since most deviations lie well inside the box of the
+/// clip.
 class ClipSweep
 {
 public:
-    /// The set must outlive the sweep. entryBoxes as for boundsOfClip.
+    /// The set must outlive this object. entryBoxes: one box per palette entry.
     ClipSweep(const AnimationSet& set, const EntryBoxes& entryBoxes);
 
     Box restPose();
     Box clip(const Clip& clip);
 
 private:
-    /// A palette entry's box as seen from its joint: a parallelepiped.
+    /// A palette entry's box in joint space: a parallelepiped.
     struct Part
     {
         std::size_t joint = 0;
         glm::dvec3 centre{0.0};
         glm::dmat3 halfEdges{0.0};
-        double radius = 0.0; ///< of the farthest corner from the joint's origin
+        double radius = 0.0; ///< distance of the farthest corner from the joint's origin
     };
     struct Placement
     {
@@ -47,13 +49,13 @@ private:
 
     const AnimationSet& _set;
     std::vector<Part> _parts;
-    std::vector<bool> _isNeeded;        ///< by joint: whether a part hangs on it or below it
+    std::vector<bool> _isNeeded;        ///< by joint: true if it or a descendant has a part
     std::vector<Placement> _placements; ///< by joint
     std::vector<ChainMotion> _motions;  ///< by joint
-    std::vector<SweptBox> _boxes;       ///< by part: where it was at the last look
-    std::vector<SweptBox> _boxesBefore; ///< by part: at the keyframe before
-    SweptBox _seen;                     ///< all that was looked at
-    SweptBox _swept;                    ///< all that, and what may lie between
+    std::vector<SweptBox> _boxes;       ///< by part, at the last sample
+    std::vector<SweptBox> _boxesBefore; ///< by part, at the previous keyframe
+    SweptBox _seen;                     ///< all samples
+    SweptBox _swept;                    ///< all samples and the space between them
 };
 
 } // namespace osgGpuAnimation

@@ -2,6 +2,7 @@
 #include <osgGpuAnimation/animation/CompactClips.h>
 
 #include "ClipCompactor.h"
+#include <osgGpuAnimation/animation/Bounds.h>
 #include <osgGpuAnimation/animation/Pose.h>
 
 #include <algorithm>
@@ -13,13 +14,14 @@ namespace osgGpuAnimation
 Result<CompactedSet> compactClips(const AnimationSet& set, const EntryBoxes& entryBoxes, const CompactOptions& options)
 {
     if (!(options.tolerance > 0.0) || !std::isfinite(options.tolerance))
-        return Error{"a tolerance of " + std::to_string(options.tolerance) + " for compact clips: it must be above 0"};
+        return Error{"a tolerance of " + std::to_string(options.tolerance) +
+                     " for compact clips: expected a finite number above 0"};
     if (entryBoxes.size() != set.paletteSize())
         return Error{std::to_string(entryBoxes.size()) + " boxes for " + std::to_string(set.paletteSize()) +
                      " palette entries"};
     CompactedSet result;
     std::vector<Clip> clips;
-    ClipCompactor compactor(set, entryBoxes, options.tolerance);
+    ClipCompactor compactor(set, entryBoxes, longestSide(set, entryBoxes), options.tolerance);
     for (const Clip& clip : set.clips())
     {
         clips.push_back(compactor.compact(clip));

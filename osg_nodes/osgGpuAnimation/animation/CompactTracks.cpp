@@ -15,7 +15,7 @@ namespace
 
 using Part = glm::vec4 JointTransform::*;
 
-/// One joint's keyframes, by turns with the other tracks'.
+/// The keyframes of one joint within interleaved tracks.
 struct TrackKeys
 {
     JointTransform* first;
@@ -58,7 +58,7 @@ PackedTriple CompactTracks::Range::pack(const glm::vec3& value) const
         if (!(step[axis] > 0.0f)) continue;
         const double number = std::round((static_cast<double>(value[axis]) - static_cast<double>(base[axis])) /
                                          static_cast<double>(step[axis]));
-        // Written so that what is no number gives 0.
+        // The comparison makes NaN give 0.
         if (number > 0.0)
             numbers[axis] = static_cast<std::uint32_t>(std::min(number, static_cast<double>(PackedTriple::largest)));
     }

@@ -10,22 +10,23 @@
 namespace osgGpuAnimation
 {
 
-/// The keyframes of a compact clip as they go to the GPU: 8 bytes for what moves, nothing for what does not. Made for
-/// compactClips(); the clip's own data() holds what these decode to. Weight blocks are no part of it: they are stored
-/// exactly.
+/// The keyframes of a compact clip as the GPU stores them: 8 bytes for each part (translation, rotation or scale) that
+/// moves, nothing for a constant part. compactClips() creates them; Clip::data() contains the decoded values. Weight
+/// blocks are not part of it: they are stored exactly.
 struct CompactTracks
 {
-    /// A translation or scale is base + step * number, axis by axis.
+    /// Quantization of a translation or a scale: value = base + step * number, axis by axis.
     struct Range
     {
         glm::vec3 base{0.0f};
         glm::vec3 step{0.0f};
 
-        PackedTriple pack(const glm::vec3& value) const; ///< the nearest
+        PackedTriple pack(const glm::vec3& value) const; ///< the nearest value
         glm::vec3 unpack(const PackedTriple& packed) const;
     };
 
-    /// Which column of a keyframe holds a joint's translation, rotation, scale; -1: it does not move, data() has it.
+    /// Columns of a keyframe that contain a joint's translation, rotation and scale. -1: the part is constant and
+    /// data() has its value.
     struct Track
     {
         int translation = -1;
@@ -35,15 +36,16 @@ struct CompactTracks
         Range scaleRange;
     };
 
-    std::vector<Track> tracks; ///< one a joint
+    std::vector<Track> tracks; ///< one per joint
     std::size_t columnCount = 0;
-    std::vector<PackedTriple> keyframes; ///< columnCount a keyframe of the clip
+    std::vector<PackedTriple> keyframes; ///< columnCount per keyframe of the clip
 
-    /// data: snapshots of trackCount transforms, the joints' first; what moves becomes what it decodes to.
+    /// Packs keyframes and replaces moving parts in data by their decoded values.
+    /// data: trackCount transforms per keyframe; the first jointCount of them are joints.
     static CompactTracks pack(std::vector<JointTransform>& data, std::size_t trackCount, std::size_t jointCount);
-    /// Whether these can be the keyframes of a clip of so many joints and keyframes.
+    /// True if the sizes match a clip with these numbers of joints and keyframes and all numbers are valid.
     bool isFor(std::size_t jointCount, std::size_t keyframeCount) const;
-    /// What moves, in snapshots of trackCount transforms, becomes what it decodes to.
+    /// Writes the decoded values of the moving parts into data. data: trackCount transforms per keyframe.
     void unpack(std::vector<JointTransform>& data, std::size_t trackCount) const;
 
 private:

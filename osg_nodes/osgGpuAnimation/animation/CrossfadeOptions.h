@@ -9,20 +9,20 @@
 namespace osgGpuAnimation
 {
 
-/// Where a clip begins that is faded to, and how it runs while both are seen.
+/// The time at which the new clip of a crossfade starts, and the speed of both clips during the crossfade.
 enum class Sync
 {
-    Start, ///< at its beginning (at its end where the speed is negative), each clip at its own pace
-    Phase, ///< at the share of its duration at which the other is; until the fade is over both run at one pace, the
-           ///< mean of their durations by weight, so that the feet of walk and run stay together
+    Start, ///< at its beginning (at its end if the speed is negative); each clip keeps its own speed
+    Phase, ///< at the phase of the current clip; until the fade ends both run at one pace, the mean of their durations
+           ///< by weight, so that the feet of a walk and a run stay together
 };
 
 struct CrossfadeOptions
 {
     FadeCurve curve = FadeCurve::Linear;
     Sync sync = Sync::Start;
-    std::optional<LoopMode> loopMode = std::nullopt; ///< from the new clip on; nothing: the layer's
-    std::optional<double> speed = std::nullopt;      ///< from the new clip on, finite; nothing: the layer's
+    std::optional<LoopMode> loopMode = std::nullopt; ///< new loop mode of the layer; none: unchanged
+    std::optional<double> speed = std::nullopt;      ///< new speed of the layer, finite; none: unchanged
 };
 
 } // namespace osgGpuAnimation

@@ -14,7 +14,7 @@ double progress(FadeCurve curve, double x)
     return curve == FadeCurve::Smooth ? x * x * (3.0 - 2.0 * x) : x;
 }
 
-/// The mean of progress between two places of [0, 1].
+/// The mean of progress() between two values of x in [0, 1].
 double meanProgress(FadeCurve curve, double from, double to)
 {
     const double sum = from + to, squares = from * from + to * to;

@@ -4,31 +4,31 @@
 namespace osgGpuAnimation
 {
 
-/// How a weight goes from one value to another.
+/// The progress of a fade over its time x in [0, 1].
 enum class FadeCurve
 {
-    Linear, ///< the same change at every moment: the least possible step a frame
-    Smooth, ///< begins and ends gently (3x² - 2x³); in its middle half as fast again as Linear
+    Linear, ///< constant speed
+    Smooth, ///< 3x² - 2x³: slow at both ends, up to 1.5 times the speed of Linear in the middle
 };
 
-/// A value on its way to another.
+/// A value that moves from one number to another over some seconds.
 class Fade
 {
 public:
     explicit Fade(double value) : _from(value), _to(value) {}
-    /// seconds: finite; 0 or less is there at once.
+    /// seconds: finite; at 0 or less the value is the target at once.
     Fade(double from, double to, double seconds, FadeCurve curve);
 
     double value() const { return _value; }
-    double mean() const { return _mean; } ///< over the seconds of the last advance()
+    double mean() const { return _mean; } ///< mean value during the last advance()
     double origin() const { return _from; }
     double target() const { return _to; }
     double seconds() const { return _seconds; }
-    double elapsed() const { return _elapsed; } ///< seconds; beyond seconds() where it has arrived
+    double elapsed() const { return _elapsed; } ///< seconds; at least seconds() once the fade has finished
     FadeCurve curve() const { return _curve; }
     bool isFinished() const { return _elapsed >= _seconds; }
-    /// Moves on (seconds below 0 count as 0). Returns which share of the seconds it took to arrive, in [0, 1]; -1 where
-    /// it did not arrive or had before.
+    /// Moves the value on; seconds below 0 count as 0. Returns the share of the seconds after which the fade finished,
+    /// in [0, 1]; -1 if it did not finish in this step.
     double advance(double seconds);
 
 private:

@@ -17,11 +17,9 @@ float clampedWeight(float weight)
 } // namespace
 
 JointMask::JointMask(const AnimationSet& set, float weight)
-    : _jointCount(set.skeleton().jointCount()), _weights(set.trackCount(), clampedWeight(weight))
+    : _jointCount(set.skeleton().jointCount()), _firstTracks(firstTracksOfMorphs(set.skeleton(), set.morphs())),
+      _weights(set.trackCount(), clampedWeight(weight))
 {
-    for (std::size_t morph = 0; morph < set.morphs().size(); ++morph)
-        _firstTracks.push_back(set.firstTrackOfMorph(morph));
-    _firstTracks.push_back(set.trackCount());
 }
 
 Result<JointMask> JointMask::subtree(const AnimationSet& set, const std::string& joint, int feather)

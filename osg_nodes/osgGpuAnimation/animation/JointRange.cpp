@@ -18,10 +18,10 @@ namespace osgGpuAnimation
 namespace
 {
 
-/// Wider caps are no longer sure to have all their rotations on one hemisphere.
+/// The rotations of a wider cap may lie on two hemispheres.
 constexpr double widestCap = 0.785; // 45 degrees
 
-/// Radians between the lines on which two vectors lie.
+/// The angle between two quaternions up to sign, in radians.
 double lineAngle(const glm::dvec4& a, const glm::dvec4& b)
 {
     const double lengths = glm::length(a) * glm::length(b);
@@ -33,8 +33,8 @@ double limitedTurn(double turn)
     return turn < widestCap ? turn : JointRange::anyTurn;
 }
 
-/// All values of one joint in a clip: each keyframe, and in a spline the inner points of its Bezier form, in whose hull
-/// it stays.
+/// All values of one joint in a clip: every keyframe and, for a spline, the inner points of its Bézier form, whose hull
+/// contains the curve.
 template <typename Function>
 void forEachPoint(const Clip& clip, std::size_t joint, Function function)
 {
@@ -115,7 +115,7 @@ void JointRange::add(const JointRange& other)
 void JointRange::addDifference(const JointRange& added, const JointTransform& reference)
 {
     shift += glm::length(added.translation - glm::dvec3(reference.translation)) + added.shift;
-    // Not limited: nothing is mixed with it any more.
+    // No limit: additive samples come last, so the result is not mixed again.
     turn += lineAngle(added.rotation, glm::dvec4(reference.rotation)) + added.turn;
     double growth = 0.0;
     for (int axis = 0; axis < 3; ++axis)

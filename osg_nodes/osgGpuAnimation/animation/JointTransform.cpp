@@ -8,24 +8,6 @@
 namespace osgGpuAnimation
 {
 
-namespace
-{
-
-glm::vec4 lerp(const glm::vec4& a, const glm::vec4& b, double alpha)
-{
-    return glm::vec4(glm::dvec4(a) * (1.0 - alpha) + glm::dvec4(b) * alpha);
-}
-
-} // namespace
-
-bool JointTransform::isFinite() const
-{
-    for (const glm::vec4& part : {translation, rotation, scale})
-        for (int i = 0; i < 4; ++i)
-            if (!std::isfinite(part[i])) return false;
-    return true;
-}
-
 AffineMatrix JointTransform::toMatrix() const
 {
     const glm::dmat3 turn = Rotation::matrix(Rotation::unit(glm::dvec4(rotation)));
@@ -35,19 +17,19 @@ AffineMatrix JointTransform::toMatrix() const
                                                 glm::dvec4(glm::dvec3(translation), 1.0)));
 }
 
-glm::vec4 slerpShortest(const glm::vec4& a, const glm::vec4& b, float alpha)
+bool JointTransform::isFinite() const
 {
-    const glm::dvec4 from = Rotation::unit(glm::dvec4(a));
-    // Whatever b is (beyond what can be squared, say), nothing of it is wanted.
-    if (alpha == 0.0f) return glm::vec4(from);
-    return glm::vec4(Rotation::slerp(from, Rotation::unit(glm::dvec4(b)), static_cast<double>(alpha)));
+    for (const glm::vec4& part : {translation, rotation, scale})
+        for (int i = 0; i < 4; ++i)
+            if (!std::isfinite(part[i])) return false;
+    return true;
 }
 
-JointTransform interpolate(const JointTransform& a, const JointTransform& b, float alpha)
+float& JointTransform::number(std::size_t index)
 {
-    const double share = static_cast<double>(alpha);
-    return {lerp(a.translation, b.translation, share), slerpShortest(a.rotation, b.rotation, alpha),
-            lerp(a.scale, b.scale, share)};
+    const auto place = static_cast<glm::vec4::length_type>(index % 4);
+    if (index < 4) return translation[place];
+    return index < 8 ? rotation[place] : scale[place];
 }
 
 } // namespace osgGpuAnimation

@@ -3,29 +3,28 @@
 
 #include <osgGpuAnimation/animation/AffineMatrix.h>
 
+#include <cstddef>
+
 namespace osgGpuAnimation
 {
 
 /// Translation, rotation and scale of one joint relative to its parent joint: 48 bytes, as on the GPU.
-/// The same 48 bytes carry up to twelve morph weights where a track is a weight block (see Skeleton's MorphWeights).
+/// A track that is a weight block uses the same 48 bytes for up to twelve morph weights, see MorphWeights.
 struct JointTransform
 {
-    glm::vec4 translation{0, 0, 0, 0}; ///< xyz in the parent's units; w is 0 (in splines: see Clip)
+    glm::vec4 translation{0, 0, 0, 0}; ///< xyz in the units of the parent; w is 0 (in splines: see Clip)
     glm::vec4 rotation{0, 0, 0, 1};    ///< unit quaternion x, y, z, w
     glm::vec4 scale{1, 1, 1, 0};       ///< xyz; w is 0
 
-    /// L = T · R · S for column vectors (glTF 2.0, section 3.5.3). The rotation is made unit first.
+    /// L = T · R · S for column vectors (glTF 2.0, section 3.5.3). Normalizes the rotation first.
     AffineMatrix toMatrix() const;
-    bool isFinite() const; ///< all twelve numbers
+    bool isFinite() const; ///< true if all twelve numbers are finite
+
+    /// The number at an index in [0, 12): translation, then rotation, then scale.
+    float& number(std::size_t index);
+    float number(std::size_t index) const { return const_cast<JointTransform*>(this)->number(index); }
 };
 
 static_assert(sizeof(JointTransform) == 48, "a joint transform is 48 bytes on the GPU");
-
-/// Spherical linear interpolation by the shorter way (glTF 2.0, appendix C.4); a and b need not be unit, the result is.
-/// alpha in [0, 1].
-glm::vec4 slerpShortest(const glm::vec4& a, const glm::vec4& b, float alpha);
-
-/// Componentwise for translation and scale, slerpShortest for the rotation.
-JointTransform interpolate(const JointTransform& a, const JointTransform& b, float alpha);
 
 } // namespace osgGpuAnimation

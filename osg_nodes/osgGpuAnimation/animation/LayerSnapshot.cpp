@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/LayerSnapshot.h>
 
-#include <osgGpuAnimation/animation/AnimationController.h>
-#include <osgGpuAnimation/animation/JointMask.h>
+#include <osgGpuAnimation/animation/MaskTable.h>
 
 #include <algorithm>
 #include <cmath>
@@ -68,16 +67,6 @@ int phaseGroupOf(const ClipMixer& mixer, std::size_t voice)
     return static_cast<int>(first);
 }
 
-JointMask maskOf(const std::vector<float>& weights, const AnimationSet& set)
-{
-    JointMask mask(set);
-    for (std::size_t joint = 0; joint < set.skeleton().jointCount(); ++joint)
-        mask.setJoint(joint, weights[joint]);
-    for (std::size_t morph = 0; morph < set.morphs().size(); ++morph)
-        if (set.morphs()[morph].blockCount() > 0) mask.setMorph(morph, weights[set.firstTrackOfMorph(morph)]);
-    return mask;
-}
-
 } // namespace
 
 LayerSnapshot AnimationLayer::snapshot() const
@@ -96,8 +85,8 @@ LayerSnapshot AnimationLayer::snapshot() const
     }
     snapshot.crossfade = stateOf(_mixer.fade());
     snapshot.weight = stateOf(_weight);
-    if (const float* weights = _owner->set().masks().weights(_mask))
-        snapshot.mask.assign(weights, weights + _owner->set().trackCount());
+    if (const float* weights = set().masks().weights(_mask))
+        snapshot.mask.assign(weights, weights + set().trackCount());
     snapshot.mode = _mode;
     snapshot.reference = _reference;
     snapshot.standing = _standing;
@@ -106,12 +95,12 @@ LayerSnapshot AnimationLayer::snapshot() const
 
 Result<bool> AnimationLayer::restore(const LayerSnapshot& snapshot)
 {
-    const AnimationSet& set = _owner->set();
+    const AnimationSet& set = this->set();
     if (const std::optional<std::string> fault = findFault(snapshot, set)) return Error{"a layer with " + *fault};
     std::uint32_t mask = 0;
     if (!snapshot.mask.empty())
     {
-        const Result<std::uint32_t> number = set.addMask(maskOf(snapshot.mask, set));
+        const Result<std::uint32_t> number = set.addMask(snapshot.mask);
         if (!number) return number.error();
         mask = number.value();
     }

@@ -8,8 +8,7 @@
 namespace osgGpuAnimation
 {
 
-/// All there is of an AnimationLayer, as plain numbers: what it plays, from the middle of a crossfade too, its weight,
-/// mask and place among the layers.
+/// The complete state of an AnimationLayer as plain numbers, also in the middle of a crossfade.
 ///
 ///     LayerSnapshot kept = controller.layer(1).snapshot();
 ///     Result<bool> restored = other.layer(1).restore(kept);
@@ -22,27 +21,27 @@ struct LayerSnapshot
         double elapsed = 0.0; ///< seconds
         FadeCurve curve = FadeCurve::Linear;
     };
-    /// One clip that is heard, see ClipMixer::Voice.
+    /// One clip that contributes, see ClipMixer::Voice.
     struct Voice
     {
         int clip = -1;
-        double time = 0.0; ///< seconds on the clip's time line
+        double time = 0.0; ///< seconds on the time line of the clip
         double speed = 1.0;
         LoopMode loopMode = LoopMode::Loop;
         bool isReturning = false;
         bool isFresh = true;
-        double share = 1.0;       ///< of the layer, [0, 1]
-        double shareBefore = 0.0; ///< [0, 1]
-        int phaseGroup = 0;       ///< the place of the first voice that runs at one phase with it
+        double share = 1.0;       ///< of the layer, in [0, 1]
+        double shareBefore = 0.0; ///< in [0, 1]
+        int phaseGroup = 0;       ///< index of the first voice that shares its phase
     };
 
     PlayState state = PlayState::Stopped;
     LoopMode loopMode = LoopMode::Loop;
     double speed = 1.0;
-    std::vector<Voice> voices; ///< oldest first; none where nothing was ever played
+    std::vector<Voice> voices; ///< oldest first; empty if nothing was ever played
     FadeState crossfade;
     FadeState weight;
-    std::vector<float> mask; ///< one a track; empty: none
+    std::vector<float> mask; ///< one weight per track; empty: no mask
     AnimationLayer::Mode mode = AnimationLayer::Mode::Override;
     AnimationLayer::Reference reference = AnimationLayer::Reference::RestPose;
     int standing = 0;

@@ -4,12 +4,12 @@
 namespace osgGpuAnimation
 {
 
-/// What a clip does at its ends.
+/// The behaviour of a clip at its ends.
 enum class LoopMode
 {
-    Once,     ///< time stops at duration (backwards: at 0) and the state becomes Ended
-    Loop,     ///< time == duration shows the first frame (backwards: below 0 goes on from duration)
-    PingPong, ///< turns round at duration and at 0, both shown exactly
+    Once,     ///< time stops at duration (backwards: at 0) and the layer becomes PlayState::Ended
+    Loop,     ///< time == duration shows the first keyframe (backwards: time continues from duration)
+    PingPong, ///< time reverses at duration and at 0; both ends are shown
 };
 
 } // namespace osgGpuAnimation

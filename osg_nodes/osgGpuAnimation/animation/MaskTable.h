@@ -10,8 +10,8 @@
 namespace osgGpuAnimation
 {
 
-/// The masks of one AnimationSet. It only grows: a mask that is in stays, unchanged and at its place, so that what one
-/// thread adds another may read later. Safe to use from several threads.
+/// The masks of one AnimationSet. Masks are never removed or changed, so the weights of a mask stay valid while other
+/// threads add masks. Safe to use from several threads.
 class MaskTable
 {
 public:
@@ -21,11 +21,11 @@ public:
     MaskTable(const MaskTable& other);
     MaskTable& operator=(const MaskTable&) = delete;
 
-    /// The number of the mask with these weights, from 1 on; it is added if there is none yet. 0: the table is full.
+    /// The number of the mask with these weights, from 1 on. Adds it if it is new. 0: the table is full.
     std::uint32_t add(const std::vector<float>& weights);
 
     std::size_t count() const;
-    /// The weights of a mask, one a track; null for 0 (no mask) and for numbers that were never given.
+    /// The weights of a mask, one per track; null for 0 (no mask) and for unknown numbers.
     const float* weights(std::uint32_t number) const;
 
 private:

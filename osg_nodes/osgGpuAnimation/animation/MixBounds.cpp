@@ -18,13 +18,14 @@ namespace osgGpuAnimation
 namespace
 {
 
-/// A joint's way to the model's space, v -> A v + p: where p may be, and how A may differ from its middle.
+/// Bounds of a joint's transform to model space, v -> A v + p: a ball that contains p, and the distance of A from a
+/// centre.
 struct Reach
 {
     glm::dmat3 linear{1.0};
-    double norm = 1.0;      ///< of the middle of A, at most
-    double deviation = 0.0; ///< |A - its middle|
-    double largest = 1.0;   ///< |A|
+    double norm = 1.0;      ///< bound of |centre of A|
+    double deviation = 0.0; ///< bound of |A - centre|
+    double largest = 1.0;   ///< bound of |A|
     glm::dvec3 place{0.0};
     double radius = 0.0;
 
@@ -63,7 +64,7 @@ Reach Reach::child(const JointRange& range) const
     return result;
 }
 
-/// A palette entry's box, moved by its joint.
+/// The box of a palette entry after its joint's transform.
 SweptBox moved(const PaletteEntry& entry, const Box& box, const Reach& reach)
 {
     const glm::dvec3 min(box.min), max(box.max);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <osgGpuAnimation/animation/Bounds.h>
-#include <osgGpuAnimation/animation/PlayedClips.h>
+#include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/animation/Box.h>
+#include <osgGpuAnimation/animation/ClipPlayback.h>
 
 #include <map>
 #include <memory>
@@ -14,22 +15,23 @@ namespace osgGpuAnimation
 
 struct JointRange;
 
-/// The boxes that hold a character while clips are mixed: crossfades, layers, masks, additive layers. Two poses mixed
-/// joint by joint can leave both poses' boxes (an arm that hangs and an arm behind the back mix to one at the side), so
-/// here joint by joint what the mixed transforms can be (JointRange) goes from root to leaf as a ball and a matrix with
-/// a radius; where that gets wider than a joint's reach, its reach holds. Conservative for any times, weights and
-/// masks; for joints that turn little it is nearly the clips' own boxes, for those that turn far it is their reach.
+/// Boxes that contain a character while clips are mixed: crossfades, layers, masks, additive layers. A mix can leave
+/// the boxes of all its clips: an arm that hangs and an arm behind the back mix to an arm at the side. So MixBounds
+/// computes for each joint, from root to leaf, which transforms the mix can take (JointRange), as a ball of origins and
+/// a matrix with a radius; where these bounds exceed the joint's distance from the root, that distance is the bound.
+/// The boxes are conservative for any times, weights and masks. They are close to the clips' own boxes if the joints
+/// rotate little.
 ///
-/// Safe to use from several threads. What it learns of a clip it keeps.
+/// Safe to use from several threads. It caches the ranges of each clip.
 class MixBounds
 {
 public:
-    /// The set must outlive it. entryBoxes as for boundsOfClip(); withAdded: the same with morph weights that maxLayers
-    /// additive layers have changed.
+    /// The set must outlive this object. entryBoxes: one box per palette entry. withAdded: the same boxes for morph
+    /// weights that maxLayers additive layers have changed.
     MixBounds(const AnimationSet& set, EntryBoxes entryBoxes, EntryBoxes withAdded);
     ~MixBounds();
 
-    /// In the model's space. Clips that are not in the set count as the rest pose.
+    /// The box in model space. Unknown clips count as the rest pose.
     Box box(const std::vector<PlayedClip>& played) const;
 
 private:

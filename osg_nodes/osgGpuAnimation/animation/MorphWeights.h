@@ -8,16 +8,16 @@
 namespace osgGpuAnimation
 {
 
-/// The morph weights of one mesh instance (one node of the file with a morphing mesh). They travel through the same
-/// pipeline as the joints: packed twelve to a **weight block**, which takes the 48 bytes of a joint transform in a
-/// keyframe and the 48 bytes of a palette entry on the way out.
+/// The morph weights of one mesh instance: one node of the file with a mesh that has morph targets. The GPU treats them
+/// like joints: twelve weights form a **weight block**, which takes the 48 bytes of a joint transform in a keyframe and
+/// the 48 bytes of a palette entry in the output.
 struct MorphWeights
 {
     static constexpr std::size_t weightsPerBlock = 12;
 
     std::string name;
-    int sourceNode = -1;         ///< the file's own node number
-    std::vector<float> defaults; ///< one a target: the node's weights, else the mesh's, else 0
+    int sourceNode = -1;         ///< number of the node in the file
+    std::vector<float> defaults; ///< one per target: the weights of the node, else of the mesh, else 0
 
     std::size_t blockCount() const { return (defaults.size() + weightsPerBlock - 1) / weightsPerBlock; }
 };

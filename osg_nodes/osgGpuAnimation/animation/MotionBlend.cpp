@@ -1,10 +1,20 @@
 // SPDX-License-Identifier: MIT
 #include "MotionBlend.h"
 
+#include <osgGpuAnimation/animation/RootMotionCurve.h>
+
 #include <algorithm>
 
 namespace osgGpuAnimation
 {
+
+RootMotion rootMotionOf(const Clip& clip, const ClipMove& move, LoopMode loopMode)
+{
+    if (move.distance == 0.0) return {glm::dvec3(0.0), 0.0, clip.rootMotion()->up};
+    const RootMotion before = clip.rootMotionAt(move.from).inverse();
+    if (loopMode != LoopMode::Loop || move.crossings == 0.0) return before * clip.rootMotionAt(move.to);
+    return before * clip.rootMotionAt(clip.duration()).power(move.crossings) * clip.rootMotionAt(move.to);
+}
 
 void MotionBlend::add(const RootMotion& motion, double weight, int standing)
 {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <osgGpuAnimation/animation/AnimationLayer.h>
-#include <osgGpuAnimation/animation/RootMotion.h>
+#include <osgGpuAnimation/animation/Clip.h>
+#include <osgGpuAnimation/animation/ClipPlayback.h>
+#include <osgGpuAnimation/animation/PlayState.h>
 
 #include <array>
 #include <cstddef>
@@ -10,8 +11,11 @@
 namespace osgGpuAnimation
 {
 
-/// The root motion of all clips that play, in one step, as one: blended by standings and weights as poses are (see
-/// PoseInstruction), where the rest pose stands still.
+/// The root motion of a step through a clip, however often it loops. The clip must have a rootMotion().
+RootMotion rootMotionOf(const Clip& clip, const ClipMove& move, LoopMode loopMode);
+
+/// Blends the root motions of all clips that play in one step. Standings and weights work as in PoseInstruction; the
+/// rest pose does not move.
 class MotionBlend
 {
 public:

@@ -37,7 +37,8 @@ double lengthOf3(const glm::dvec4& v)
     return glm::length(glm::dvec3(v));
 }
 
-/// A Hermite piece as a Bézier curve, which lies in the convex hull of its points, as its derivatives do.
+/// A Hermite piece as a Bézier curve. The convex hull of its points contains the curve; the same is true of its
+/// derivatives.
 struct Cubic
 {
     std::array<glm::dvec4, 4> points;

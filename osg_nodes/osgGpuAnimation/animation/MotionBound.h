@@ -6,19 +6,19 @@
 namespace osgGpuAnimation
 {
 
-/// How far a joint's translation, rotation and scale can go and how fast they can change between two keyframes: upper
-/// bounds of the norms of the values and their first two derivatives, the interval being [0, 1].
+/// Upper bounds for a joint between two keyframes: the norms of its translation, scale and rotation matrix and of their
+/// first two derivatives over the interval [0, 1].
 struct TrackMotion
 {
     double shift = 0.0, shift1 = 0.0, shift2 = 0.0; ///< translation
     double size = 0.0, size1 = 0.0, size2 = 0.0;    ///< scale: of the largest component
-    double turn1 = 0.0, turn2 = 0.0;                ///< rotation matrix; infinite where a spline may pass through 0
+    double turn1 = 0.0, turn2 = 0.0;                ///< rotation matrix; infinite if a spline may pass through 0
 
-    /// alpha of the keyframes plays no part.
+    /// Ignores the alpha of the keyframes.
     static TrackMotion between(const KeyframePair& keyframes, std::size_t track);
 };
 
-/// The same for a joint's whole way to the model's space: v -> A v + c. Found from root to leaf by the product rule.
+/// Upper bounds for a joint's transform to model space, v -> A v + c, from root to leaf by the product rule.
 struct ChainMotion
 {
     double linear = 1.0, linear1 = 0.0, linear2 = 0.0; ///< A's operator norm and those of its derivatives
@@ -26,9 +26,9 @@ struct ChainMotion
 
     ChainMotion child(const TrackMotion& motion) const;
 
-    /// How far from the root a point within this distance of the joint's origin can be.
+    /// The largest distance from the root of a point within radius of the joint's origin.
     double reach(double radius) const { return origin + linear * radius; }
-    /// How far such a point can stray from the straight line between its two ends: |p''| / 8.
+    /// The largest deviation of such a point from the straight line between its two ends: |p''| / 8.
     double strayed(double radius) const { return (origin2 + linear2 * radius) / 8.0; }
 };
 

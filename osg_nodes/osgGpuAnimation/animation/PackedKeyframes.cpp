@@ -77,7 +77,7 @@ void PackedKeyframes::addClip(const Clip& clip, std::size_t firstKeyframe)
     const bool hasExactColumns = !_columns.empty();
     for (std::size_t track = 0; track < compactTracks; ++track)
         placeCompactTrack(clip, track);
-    // Exact numbers begin at whole texels, in every record.
+    // Exact values must begin at whole texels in every record.
     if (hasExactColumns) _recordSize += _recordSize % 2;
 
     const auto table = static_cast<std::uint32_t>(_texels.size());
@@ -181,7 +181,7 @@ std::uint32_t PackedKeyframes::held(const glm::vec4& value)
     return known->second | POSE_PLACE_HELD;
 }
 
-/// Never 0: that says that the track has none, being exact.
+/// Never 0: in a table 0 marks an exact track.
 std::uint32_t PackedKeyframes::ranges(const CompactTracks::Track& track)
 {
     const CompactTracks::Range& t = track.translationRange;

@@ -15,16 +15,19 @@
 namespace osgGpuAnimation
 {
 
-/// All keyframes of a set as the GPU reads them: only what moves is stored by keyframe.
+/// All keyframes of a set in the layout of the GPU: only the parts of a track that move are stored per keyframe.
 ///
-/// Texels of four 32-bit words, one part after the other:
-/// - a directory: a texel a keyframe of the set, in the order of AnimationSet::firstKeyframe(): where its record is,
-///   where the next keyframe's is (its own at a clip's end), where the clip's table is;
-/// - the rest pose: three texels a track;
-/// - a table a clip: a texel a track says where its translation, rotation and scale are: in the record, or held: the
-///   same in all of the clip, stored once for the whole set; and where a compact track has its ranges;
-/// - the records. A number of an exact clip takes a texel (a spline's three: value, in- and out-tangent), one of a
-///   compact clip half of one. Places are counted in half texels.
+/// Texels of four 32-bit words, one section after the other:
+/// - a directory: one texel per keyframe of the set, in the order of AnimationSet::firstKeyframe(): the address of its
+///   record, the address of the next keyframe's record (its own at the end of a clip), the address of the clip's table;
+/// - the rest pose: three texels per track;
+/// - one table per clip: one texel per track has the addresses of its translation, rotation and scale, either within
+/// the
+///   record or of a value that is constant in the clip and stored once for the set; and the address of the ranges of a
+///   compact track;
+/// - the records. A value of an exact clip takes one texel (three for splines: value, in- and out-tangent), a value of
+/// a
+///   compact clip half a texel. Addresses count half texels.
 class PackedKeyframes
 {
 public:
@@ -32,22 +35,22 @@ public:
 
     const std::vector<glm::uvec4>& texels() const { return _texels; }
     std::size_t byteSize() const { return _texels.size() * sizeof(glm::uvec4); }
-    std::size_t restTexel() const { return _restTexel; } ///< of the first track's translation
+    std::size_t restTexel() const { return _restTexel; } ///< texel of the first track's translation
 
-    /// Of a track, taken over all clips.
+    /// The parts of a track over all clips.
     struct Track
     {
         PartMotion translation = PartMotion::Fixed;
         PartMotion scale = PartMotion::Fixed;
-        bool hasExactKeys = false;   ///< some clip moves it, in full precision
-        bool hasCompactKeys = false; ///< some compact clip moves it
+        bool hasExactKeys = false;   ///< true if an exact clip moves the track
+        bool hasCompactKeys = false; ///< true if a compact clip moves the track
     };
-    const std::vector<Track>& tracks() const { return _tracks; } ///< one a track of the set
+    const std::vector<Track>& tracks() const { return _tracks; } ///< one per track of the set
 
 private:
     using Part = glm::vec4 JointTransform::*;
 
-    /// A moving part of the clip in hand.
+    /// A moving part of the current clip.
     struct Column
     {
         std::size_t track;
@@ -70,7 +73,7 @@ private:
     std::map<std::array<std::uint32_t, 4>, std::uint32_t> _heldPlaces;
     std::map<std::array<float, 12>, std::uint32_t> _rangeTexels;
 
-    // Of the clip in hand.
+    // For the current clip.
     std::vector<glm::uvec4> _table;
     std::vector<Column> _columns;
     std::uint32_t _recordSize = 0; ///< half texels

@@ -4,12 +4,12 @@
 namespace osgGpuAnimation
 {
 
-/// How much a translation or a scale of a track moves in the clips of a set: what the mix stage has to fetch for it.
+/// How a translation or a scale of a track changes in the clips of a set; it decides what the mix stage fetches.
 enum class PartMotion
 {
-    Fixed,  ///< as at rest in every clip: an attribute, nothing is fetched
-    Held,   ///< one value a clip
-    Moving, ///< one value a keyframe
+    Fixed,  ///< equal to the rest pose in every clip: an attribute, nothing is fetched
+    Held,   ///< constant in every clip: one value per clip
+    Moving, ///< one value per keyframe
 };
 
 } // namespace osgGpuAnimation

@@ -1,16 +1,21 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
+
 namespace osgGpuAnimation
 {
 
-/// What a layer does.
+/// The maximum number of layers of an AnimationController.
+constexpr std::size_t maxLayers = 8;
+
+/// The state of an AnimationLayer.
 enum class PlayState
 {
-    Stopped, ///< it shows nothing: what lies below it is seen, in the end the rest pose
+    Stopped, ///< the layer shows nothing: the layers below it are visible, and the rest pose below all
     Playing, ///< advance() moves the time
-    Paused,  ///< the pose of the current time is held, and fades stand still
-    Ended,   ///< Once came to its end: that end's pose is held
+    Paused,  ///< time and fades stand still; the layer shows the pose of its time
+    Ended,   ///< a Once clip reached its end; the layer shows the pose of that end
 };
 
 } // namespace osgGpuAnimation

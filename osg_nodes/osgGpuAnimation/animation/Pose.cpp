@@ -2,6 +2,7 @@
 #include <osgGpuAnimation/animation/Pose.h>
 
 #include "TrackBlend.h"
+#include <osgGpuAnimation/animation/MaskTable.h>
 
 #include <layout.glsl>
 
@@ -16,12 +17,12 @@ namespace osgGpuAnimation::Pose
 namespace
 {
 
-/// A blend sample with its two keyframes found.
+/// A blend sample with pointers to its two keyframes.
 struct Source
 {
     KeyframePair keyframes;
     double weight = 0.0;
-    const float* mask = nullptr; ///< one a track; null: none
+    const float* mask = nullptr; ///< one weight per track; null: none
     std::uint32_t control = 0;
 };
 
@@ -39,7 +40,7 @@ KeyframePair findKeyframes(const AnimationSet& set, const BlendSample& sample)
         else
             clip = middle;
     }
-    if (clip == 0) return pair; // before the first clip lies the rest pose
+    if (clip == 0) return pair; // the rest pose comes before the first clip
 
     const Clip& data = set.clips()[clip - 1];
     const std::size_t place = keyframe - set.firstKeyframe(clip - 1);
@@ -48,12 +49,12 @@ KeyframePair findKeyframes(const AnimationSet& set, const BlendSample& sample)
     pair.first = pair.second = data.data().data() + place * data.keyframeStride();
     pair.alpha = static_cast<double>(sample.alpha);
     pair.spline = (sample.control & POSE_SAMPLE_SPLINE) != 0;
-    // The last keyframe is never mixed with what follows it.
+    // The last keyframe of a clip has no next keyframe.
     if (place + 1 < data.keyframeCount()) pair.second += data.keyframeStride();
     return pair;
 }
 
-/// The samples of an instruction, ready to be blended track by track.
+/// The samples of an instruction; blends them track by track.
 class Sources
 {
 public:
@@ -158,7 +159,7 @@ void palette(const AnimationSet& set, const std::vector<JointTransform>& tracks,
 void evaluate(const AnimationSet& set, const PoseInstruction& instruction, const AffineMatrix& rootToModel,
               std::vector<AffineMatrix>& outPalette)
 {
-    // Picking asks again and again: the room in between is kept, once a thread.
+    // Picking calls this often: each thread keeps the memory.
     thread_local std::vector<JointTransform> tracks;
     thread_local std::vector<AffineMatrix> joints;
     mix(set, instruction, tracks);

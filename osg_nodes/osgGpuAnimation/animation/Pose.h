@@ -9,27 +9,28 @@
 namespace osgGpuAnimation
 {
 
-/// The CPU twin of the GPU's stages, for tools, picking and tests. It computes jointToModel parents first and
-/// entry = jointToModel · inverseBind: the plain way, against which the shaders' shorter way is checked.
+/// The CPU twin of the GPU stages, for tools, picking and tests. It computes jointToModel parents first and
+/// entry = jointToModel · inverseBind: the direct form, which tests compare with the shaders' shorter one.
 namespace Pose
 {
 
-/// Mix: outTracks gets set.trackCount() transforms.
+/// The mix stage. outTracks: set.trackCount() transforms.
 void mix(const AnimationSet& set, const PoseInstruction& instruction, std::vector<JointTransform>& outTracks);
 
-/// Local and world: outJointToModel gets set.skeleton().jointCount() matrices, roots multiplied by rootToModel.
+/// The local and world stages. tracks: as from mix(). outJointToModel: one matrix per joint; roots are multiplied by
+/// rootToModel.
 void jointToModel(const AnimationSet& set, const std::vector<JointTransform>& tracks, const AffineMatrix& rootToModel,
                   std::vector<AffineMatrix>& outJointToModel);
 
-/// One joint's matrix, computed from its own chain of parents alone; does not allocate. joint: below the skeleton's
-/// jointCount().
+/// The matrix of one joint, computed from its chain of parents only. Does not allocate.
+/// joint: below set.skeleton().jointCount().
 AffineMatrix jointToModel(const AnimationSet& set, const PoseInstruction& instruction, std::size_t joint);
 
-/// outPalette gets set.paletteSize() entries: matrices, and weight blocks as they are.
+/// outPalette: set.paletteSize() entries, row-major 3x4 matrices; weight blocks are copied.
 void palette(const AnimationSet& set, const std::vector<JointTransform>& tracks,
              const std::vector<AffineMatrix>& jointToModel, std::vector<AffineMatrix>& outPalette);
 
-/// All of it.
+/// All stages. outPalette: set.paletteSize() entries.
 void evaluate(const AnimationSet& set, const PoseInstruction& instruction, const AffineMatrix& rootToModel,
               std::vector<AffineMatrix>& outPalette);
 

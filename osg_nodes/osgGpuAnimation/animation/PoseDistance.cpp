@@ -29,12 +29,11 @@ PoseDistance::PoseDistance(const AnimationSet& set, const EntryBoxes& entryBoxes
 bool PoseDistance::hasOtherWeights(const std::vector<JointTransform>& a, const std::vector<JointTransform>& b) const
 {
     for (std::size_t track = _set.skeleton().jointCount(); track < a.size(); ++track)
-        for (const auto part : {&JointTransform::translation, &JointTransform::rotation, &JointTransform::scale})
-            for (int i = 0; i < 4; ++i)
-            {
-                const float weight = (a[track].*part)[i];
-                if (!(std::abs(weight - (b[track].*part)[i]) <= 1e-6f * std::max(1.0f, std::abs(weight)))) return true;
-            }
+        for (std::size_t i = 0; i < MorphWeights::weightsPerBlock; ++i)
+        {
+            const float weight = a[track].number(i);
+            if (!(std::abs(weight - b[track].number(i)) <= 1e-6f * std::max(1.0f, std::abs(weight)))) return true;
+        }
     return false;
 }
 

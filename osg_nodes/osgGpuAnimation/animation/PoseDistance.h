@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <osgGpuAnimation/animation/Bounds.h>
+#include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/animation/Box.h>
 
 #include <vector>
 
 namespace osgGpuAnimation
 {
 
-/// How far apart two poses of a set are, in the model's units: see compactClips().
+/// The distance between two poses of a set in the model's units, see compactClips().
 class PoseDistance
 {
 public:
-    /// entryBoxes: one a palette entry.
+    /// entryBoxes: one box per palette entry. The set must outlive this object.
     PoseDistance(const AnimationSet& set, const EntryBoxes& entryBoxes);
 
-    /// a, b: a transform a track. Infinite where morph weights differ by more than rounding, or a number is none.
+    /// a, b: one transform per track. Infinite if morph weights differ by more than rounding or a number is not finite.
     double between(const std::vector<JointTransform>& a, const std::vector<JointTransform>& b);
 
 private:

@@ -8,34 +8,35 @@
 namespace osgGpuAnimation
 {
 
-/// Two neighbouring keyframes and how to mix them: the 16 bytes that go to the GPU for one clip of one character.
-/// Additive layers take two: their reference, then themselves.
+/// Two neighbouring keyframes and how to mix them: the 16 bytes that the GPU gets for one clip of one character.
+/// Additive layers take two samples: their reference, then the sample itself.
 struct BlendSample
 {
-    std::uint32_t keyframe = 0; ///< the first of the two, see AnimationSet::firstKeyframe(); 0: the rest pose
-    float alpha = 0.0f;         ///< [0, 1): 0 is the first keyframe
-    float weight = 1.0f;        ///< [0, 1]; negative and not a number count as 0
-    std::uint32_t control = 0;  ///< bits of layout.glsl: POSE_SAMPLE_SPLINE …, and the mask's number << 16
+    std::uint32_t keyframe = 0; ///< the first keyframe, see AnimationSet::firstKeyframe(); 0: the rest pose
+    float alpha = 0.0f;         ///< share of the second keyframe, in [0, 1)
+    float weight = 1.0f;        ///< in [0, 1]; negative values and NaN count as 0
+    std::uint32_t control = 0;  ///< bits of layout.glsl: POSE_SAMPLE_SPLINE …, and the number of the mask << 16
 };
 
 static_assert(sizeof(BlendSample) == 16, "a blend sample is 16 bytes on the GPU");
 
-/// What a controller says to the GPU this frame: the samples whose mix is the character's pose.
-/// Default: the rest pose.
+/// The blend samples of one character in one frame: the GPU mixes them to the character's pose. Default: the rest pose.
 ///
-/// How samples make a pose, joint by joint (shaders/mix.glsl and its twin Pose):
-/// - A sample's weight at a joint is its own times its mask's there.
-/// - Samples come in **standings**, from the bottom up; POSE_SAMPLE_ABOVE begins the next. Those of one standing share
-///   the joint by their weights: a sum above 1 is scaled to 1, what a sum below 1 leaves goes to the standings below,
-///   and in the end to the rest pose.
+/// The mix, joint by joint (shaders/mix.glsl and its CPU twin Pose):
+/// - The weight of a sample at a joint is its own weight times the weight of its mask.
+/// - Samples are grouped into **standings**, from the bottom up; POSE_SAMPLE_ABOVE begins the next standing. Samples of
+/// one
+///   standing share the joint by their weights: a sum above 1 is scaled to 1. If the weights sum to less than 1, the
+///   standings below fill the remainder; the rest pose comes last.
 /// - Translations, scales and morph weights are summed. Rotations are summed as unit quaternions on one hemisphere and
-///   made unit: within a standing the hemisphere of its first sample that counts at the joint, and the standing's sum
-///   as a whole on that of what lies below. Controllers put the heaviest sample first, so that the result does not
-///   depend on the order of layers, no two samples can cancel out, and what fades in never turns round what is shown.
-///   (The rest pose's hemisphere would be simpler, but two nearly equal poses half a turn away from rest would cancel.)
-/// - Additive samples come last and add up, in any order alike: with d = R_reference⁻¹ · R, rotations are multiplied
-///   by exp(Σ weight · log d), the sum being held within a full turn; translations get Σ weight · (T − T_reference);
-///   scales are multiplied by Π (1 + weight · (S / S_reference − 1)), axes with a reference of 0 staying as they are.
+///   normalized: within a standing the hemisphere of its first sample with a weight at the joint; the sum of a standing
+///   takes the hemisphere of the standings below. Controllers put the heaviest sample first, so the order of layers
+///   plays no part, no two samples cancel out, and a sample that fades in never reverses the visible one. (The
+///   hemisphere of the rest pose would be simpler, but two nearly equal poses half a turn away from rest would cancel
+///   out.)
+/// - Additive samples come last; their order plays no part. With d = R_reference⁻¹ · R, rotations are multiplied by
+///   exp(Σ weight · log d), with the sum limited to a full turn; translations get Σ weight · (T − T_reference); scales
+///   are multiplied by Π (1 + weight · (S / S_reference − 1)), except on axes with a reference of 0.
 struct PoseInstruction
 {
     static constexpr std::size_t maxSamples = 16;

@@ -9,8 +9,8 @@
 namespace osgGpuAnimation
 {
 
-/// The names there are, for a message that says that one is not among them: "Walk", "Run"; of many the first 50 and how
-/// many there are; or: none. nameOf: of a T, its name.
+/// Lists names for an error message: "Walk", "Run". Of more than 50 names it lists the first 50 and the total; without
+/// names it is: none. nameOf: returns the name of a T.
 template <typename T, typename NameOf>
 std::string quotedNames(const std::vector<T>& named, NameOf nameOf)
 {

@@ -9,13 +9,13 @@
 namespace osgGpuAnimation
 {
 
-/// What went wrong: the element, what was expected and what was found, in one sentence.
+/// A message that names the element, what was expected and what was found.
 struct Error
 {
     std::string message;
 };
 
-/// A value, or the sentence that says why there is none. It must be looked at.
+/// A value or an error. The caller must check it.
 ///
 ///     Result<Skeleton> skeleton = Skeleton::create(joints);
 ///     if (!skeleton) return skeleton.error();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/RootMotion.h>
 
-#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -13,12 +13,9 @@ namespace osgGpuAnimation
 namespace
 {
 
-/// v turned about a unit axis (Rodrigues).
 glm::dvec3 turned(const glm::dvec3& v, const glm::dvec3& axis, double angle)
 {
-    if (angle == 0.0) return v;
-    const double cosine = std::cos(angle);
-    return v * cosine + glm::cross(axis, v) * std::sin(angle) + axis * (glm::dot(axis, v) * (1.0 - cosine));
+    return angle == 0.0 ? v : glm::angleAxis(angle, axis) * v;
 }
 
 } // namespace
@@ -55,8 +52,9 @@ RootMotion RootMotion::power(double times) const
 
 glm::dmat4 RootMotion::matrix() const
 {
-    return glm::dmat4(glm::dvec4(turned({1, 0, 0}, up, yaw), 0.0), glm::dvec4(turned({0, 1, 0}, up, yaw), 0.0),
-                      glm::dvec4(turned({0, 0, 1}, up, yaw), 0.0), glm::dvec4(translation, 1.0));
+    glm::dmat4 matrix = glm::mat4_cast(glm::angleAxis(yaw, up));
+    matrix[3] = glm::dvec4(translation, 1.0);
+    return matrix;
 }
 
 } // namespace osgGpuAnimation

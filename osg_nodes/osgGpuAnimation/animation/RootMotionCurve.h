@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <osgGpuAnimation/animation/ClipPlayback.h>
 #include <osgGpuAnimation/animation/RootMotion.h>
 
 #include <cstddef>
@@ -10,31 +9,29 @@
 namespace osgGpuAnimation
 {
 
-/// The motion that was taken out of a clip: the whole model's way from the clip's first keyframe on. What the clip
-/// still shows, moved along this way, is what it showed before.
+/// The motion that withRootMotion() removed from a clip: the movement of the whole model since the clip's first
+/// keyframe. The remaining clip, moved by this motion, shows the original clip.
 struct RootMotionCurve
 {
-    /// A point on its way, with the tangents of the pieces before and after (Hermite form, scaled by their lengths; as
-    /// a Linear clip has none, straight on).
+    /// A point of a curve, with the tangents of the pieces before and after it: in Hermite form, multiplied by the
+    /// lengths of the pieces. Linear clips have no tangents.
     struct Point
     {
         glm::dvec3 value{0.0}, in{0.0}, out{0.0};
     };
     struct Key
     {
-        Point displacement; ///< of the joint, as far as it was taken out
-        Point pivot;        ///< where the joint is left: yaw turns about it
+        Point displacement; ///< the removed part of the joint's movement, in model space
+        Point pivot;        ///< the remaining position of the joint: yaw turns about it
         double yaw = 0.0;   ///< radians since the first key
     };
 
-    std::size_t joint = 0; ///< whose motion it was
+    std::size_t joint = 0; ///< the joint that moved
     glm::dvec3 up{0.0, 1.0, 0.0};
-    std::vector<Key> keys; ///< one a keyframe of the clip
+    std::vector<Key> keys; ///< one per keyframe of the clip
 
-    /// From the first keyframe to a time of the clip (the one the curve is of).
-    RootMotion at(const Clip& clip, double time) const;
-    /// What a move of a playback of the clip goes through, however often it loops.
-    RootMotion during(const Clip& clip, const ClipMove& move, LoopMode loopMode) const;
+    /// The motion from the first keyframe to a mix of keyframe and keyframe + 1 by alpha, in [0, 1).
+    RootMotion at(std::size_t keyframe, double alpha, bool isSpline) const;
 };
 
 } // namespace osgGpuAnimation

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "RootMotionExtractor.h"
 
-#include <osgGpuAnimation/animation/Rotation.h>
-
 #include <glm/geometric.hpp>
+#include <glm/gtc/constants.hpp>
 #include <glm/matrix.hpp>
 
 #include <algorithm>
@@ -15,17 +14,16 @@ namespace osgGpuAnimation
 namespace
 {
 
-constexpr double pi = 3.14159265358979323846;
+constexpr double pi = glm::pi<double>();
 
-glm::dvec4 product(const glm::dvec4& a, const glm::dvec4& b)
+glm::dquat unitRotation(const JointTransform& transform)
 {
-    const glm::dvec3 u(a), v(b);
-    return glm::dvec4(a.w * v + b.w * u + glm::cross(u, v), a.w * b.w - glm::dot(u, v));
+    return Rotation::quaternion(Rotation::unit(glm::dvec4(transform.rotation)));
 }
 
-glm::dvec4 conjugate(const glm::dvec4& q)
+glm::vec4 rounded(const glm::dquat& q)
 {
-    return glm::dvec4(-glm::dvec3(q), q.w);
+    return glm::vec4(Rotation::numbers(q));
 }
 
 double difference(const glm::vec4& a, const glm::vec4& b)
@@ -41,7 +39,7 @@ bool isSame(const JointTransform& a, const JointTransform& b)
            difference(a.scale, b.scale) <= 1e-6 * size;
 }
 
-/// Whether it turns and scales alike in all directions, without mirroring.
+/// True for a rotation with a uniform scale, without a mirror.
 bool isSimilarity(const glm::dmat3& m)
 {
     const double size = glm::length(m[0]);
@@ -77,7 +75,7 @@ bool RootMotionExtractor::isStill(const Clip& clip, std::size_t joint) const
 Result<bool> RootMotionExtractor::findParent(const Clip& clip)
 {
     _parentToModel = glm::dmat4(1.0);
-    _parentRotation = glm::dvec4(0.0, 0.0, 0.0, 1.0);
+    _parentRotation = glm::identity<glm::dquat>();
     for (int j = _skeleton.joint(_joint).parent; j >= 0; j = _skeleton.joint(static_cast<std::size_t>(j)).parent)
     {
         const auto joint = static_cast<std::size_t>(j);
@@ -86,7 +84,7 @@ Result<bool> RootMotionExtractor::findParent(const Clip& clip)
                          _skeleton.joint(_joint).name + "\", whose motion is to be taken out"};
         const JointTransform& local = clip.data()[joint * clip.transformsPerTrack()];
         _parentToModel = local.toMatrix().toColumns() * _parentToModel;
-        _parentRotation = product(Rotation::unit(glm::dvec4(local.rotation)), _parentRotation);
+        _parentRotation = unitRotation(local) * _parentRotation;
     }
     if (!isSimilarity(glm::dmat3(_parentToModel)))
         return Error{"joint \"" + _skeleton.joint(_joint).name +
@@ -143,10 +141,10 @@ void RootMotionExtractor::takeOutTranslation(Clip& clip, RootMotionCurve& curve)
         }
 }
 
-/// Of a turn in the model's space: the part about up (its twist), in [-pi, pi].
-double RootMotionExtractor::yawOf(const glm::dvec4& rotation) const
+/// The part of a rotation in model space that turns about up (its twist), in [-pi, pi].
+double RootMotionExtractor::yawOf(const glm::dquat& rotation) const
 {
-    const double along = glm::dot(glm::dvec3(rotation), _axes.up);
+    const double along = glm::dot(glm::dvec3(rotation.x, rotation.y, rotation.z), _axes.up);
     if (along == 0.0 && rotation.w == 0.0) return 0.0;
     const double angle = 2.0 * std::atan2(along, rotation.w);
     return angle > pi ? angle - 2.0 * pi : angle < -pi ? angle + 2.0 * pi : angle;
@@ -156,33 +154,31 @@ void RootMotionExtractor::takeOutYaw(Clip& clip, RootMotionCurve& curve) const
 {
     const std::size_t perTrack = clip.transformsPerTrack(), stride = clip.keyframeStride();
     JointTransform* keys = &(*clip._data)[_joint * perTrack];
-    const glm::dvec4 first = product(_parentRotation, Rotation::unit(glm::dvec4(keys->rotation)));
+    const glm::dquat first = _parentRotation * unitRotation(*keys);
     for (std::size_t k = 0; k < curve.keys.size(); ++k)
     {
-        const glm::dvec4 now = product(_parentRotation, Rotation::unit(glm::dvec4(keys[k * stride].rotation)));
-        const double yaw = yawOf(product(now, conjugate(first)));
+        const double yaw = yawOf(_parentRotation * unitRotation(keys[k * stride]) * glm::conjugate(first));
         const double before = k == 0 ? 0.0 : curve.keys[k - 1].yaw;
         curve.keys[k].yaw = yaw + 2.0 * pi * std::round((before - yaw) / (2.0 * pi));
     }
-    const glm::dvec4 axis(
-        glm::dvec3(product(product(conjugate(_parentRotation), glm::dvec4(_axes.up, 0.0)), _parentRotation)), 0.0);
+    const glm::dvec3 axis = glm::conjugate(_parentRotation) * _axes.up;
     for (std::size_t k = 0; k < curve.keys.size(); ++k)
     {
         JointTransform* key = keys + k * stride;
         const double yaw = curve.keys[k].yaw;
-        const glm::dvec4 back(glm::dvec3(axis) * -std::sin(yaw / 2.0), std::cos(yaw / 2.0));
-        const glm::dvec4 value = product(back, glm::dvec4(key->rotation));
+        const glm::dquat back = glm::angleAxis(-yaw, axis);
+        const glm::dquat value = back * Rotation::quaternion(glm::dvec4(key->rotation));
         const bool isSpline = perTrack == 3 && key->translation.w == 0.0f;
         for (std::size_t part = 1; isSpline && part < 3; ++part)
         {
-            // Beside the tangent itself, the yaw that runs on in that piece.
+            // Product rule: the tangent itself, and the yaw that changes within that piece.
             const std::size_t from = part == 1 ? (k == 0 ? 0 : k - 1) : k;
             const std::size_t to = std::min(from + 1, curve.keys.size() - 1);
             const double slope = part == 1 && k == 0 ? 0.0 : curve.keys[to].yaw - curve.keys[from].yaw;
-            key[part].rotation =
-                glm::vec4(product(back, glm::dvec4(key[part].rotation)) - product(axis, value) * (0.5 * slope));
+            key[part].rotation = rounded(back * Rotation::quaternion(glm::dvec4(key[part].rotation)) -
+                                         glm::dquat(0.0, axis) * value * (0.5 * slope));
         }
-        key->rotation = glm::vec4(value);
+        key->rotation = rounded(value);
     }
 }
 

@@ -4,12 +4,12 @@
 #include <osgGpuAnimation/animation/RootMotionCurve.h>
 #include <osgGpuAnimation/animation/RootMotionExtraction.h>
 
-#include <glm/mat3x3.hpp>
+#include <osgGpuAnimation/animation/Rotation.h>
 
 namespace osgGpuAnimation
 {
 
-/// Takes the motion of one joint out of clips.
+/// Removes the motion of one joint from clips, see withRootMotion().
 class RootMotionExtractor
 {
 public:
@@ -20,16 +20,16 @@ public:
 private:
     bool isStill(const Clip& clip, std::size_t joint) const;
     Result<bool> findParent(const Clip& clip);
-    double yawOf(const glm::dvec4& rotation) const;
+    double yawOf(const glm::dquat& rotation) const;
     void takeOutTranslation(Clip& clip, RootMotionCurve& curve) const;
     void takeOutYaw(Clip& clip, RootMotionCurve& curve) const;
 
     const Skeleton& _skeleton;
     std::size_t _joint;
     RootMotionAxes _axes; ///< up is unit
-    // From the space of the joint's parent to the model.
+    // From the space of the joint's parent to model space.
     glm::dmat4 _parentToModel{1.0};
-    glm::dvec4 _parentRotation{0.0, 0.0, 0.0, 1.0};
+    glm::dquat _parentRotation = glm::identity<glm::dquat>();
 };
 
 } // namespace osgGpuAnimation

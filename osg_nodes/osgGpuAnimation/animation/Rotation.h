@@ -1,29 +1,43 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <glm/mat3x3.hpp>
+#include <glm/ext/quaternion_double.hpp>
+#include <glm/gtc/quaternion.hpp>
 #include <glm/vec4.hpp>
 
 namespace osgGpuAnimation
 {
 
-/// Rotations as quaternions (x, y, z, w) in double precision: what the CPU side computes with before it rounds once.
+/// Rotations as quaternions in double precision. Tracks store a quaternion as four numbers x, y, z, w, as the GPU does;
+/// GLM's quaternion functions do the work.
 namespace Rotation
 {
 
-/// q / |q|; the identity where q has no direction (length 0, not finite), so that no NaN leaves here.
+/// The GLM quaternion of x, y, z, w.
+inline glm::dquat quaternion(const glm::dvec4& q)
+{
+    return glm::dquat(q.w, q.x, q.y, q.z);
+}
+
+/// x, y, z, w of a GLM quaternion.
+inline glm::dvec4 numbers(const glm::dquat& q)
+{
+    return {q.x, q.y, q.z, q.w};
+}
+
+/// The rotation matrix of a unit quaternion, for column vectors.
+inline glm::dmat3 matrix(const glm::dvec4& q)
+{
+    return glm::mat3_cast(quaternion(q));
+}
+
+/// q / |q|; the identity if q has no direction (its length is 0 or not finite), so that no NaN results.
 glm::dvec4 unit(const glm::dvec4& q);
 
-/// Spherical linear interpolation of two unit quaternions by the shorter way; where both ways are of one length (dot
-/// product 0, a turn of 180 degrees) from a to b as their signs are. alpha in [0, 1]; the result is unit.
-/// glTF 2.0, appendix C.4.
+/// Spherical linear interpolation the short way (glTF 2.0, appendix C.4). If both ways have equal length (dot product
+/// 0: a turn of 180 degrees), the result goes from a to b as their signs are.
+/// a, b: need not be unit. alpha: in [0, 1]. The result is unit.
 glm::dvec4 slerp(const glm::dvec4& a, const glm::dvec4& b, double alpha);
-
-/// The angle of the turn from a to b (both unit) by the shorter way: radians, in [0, pi].
-double angleBetween(const glm::dvec4& a, const glm::dvec4& b);
-
-/// The matrix of a unit quaternion, for column vectors.
-glm::dmat3 matrix(const glm::dvec4& q);
 
 } // namespace Rotation
 } // namespace osgGpuAnimation

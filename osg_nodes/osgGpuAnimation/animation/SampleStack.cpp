@@ -45,7 +45,7 @@ void SampleStack::insert(const Item& item)
     _sampleCount += item.isDifference ? 2 : 1;
 }
 
-/// Whether a sample is the first, and so the heaviest, of its standing.
+/// True for the first, and so the heaviest, sample of a standing.
 bool SampleStack::isAbove(std::size_t index) const
 {
     const Item& item = _places[index].item;
@@ -54,7 +54,7 @@ bool SampleStack::isAbove(std::size_t index) const
 
 void SampleStack::removeLightest()
 {
-    // There is one: standings are no more than half of what an instruction holds.
+    // A sample that may be dropped exists: there are at most half as many standings as samples in an instruction.
     std::size_t lightest = _count;
     for (std::size_t i = 0; i < _count; ++i)
         if (!isAbove(i) &&
@@ -71,7 +71,7 @@ void SampleStack::removeLightest()
     if (!removed.isDifference) fillStanding(removed.standing, removed.sample.weight);
 }
 
-/// A standing's sum counts up to 1, see PoseInstruction: it is kept as far as that.
+/// Restores the sum of a standing up to 1; PoseInstruction scales larger sums to 1.
 void SampleStack::fillStanding(int standing, float removed)
 {
     float left = 0.0f;

@@ -9,22 +9,22 @@
 namespace osgGpuAnimation
 {
 
-/// Puts the samples of all layers into the order that PoseInstruction asks for: standings from the bottom up, in each
-/// the heaviest sample first (equal weights by keyframe), so that the order in which they come plays no part; additive
+/// Sorts the samples of all layers as PoseInstruction requires: standings from the bottom up; within a standing the
+/// heaviest sample first, and samples of equal weight by keyframe, so that the order of add() plays no part; additive
 /// samples last.
 ///
-/// Where there are more than an instruction holds, the lightest of all gives way, again and again; a difference, which
-/// takes two places, as well as a sample. The heaviest of each standing always stays. What gives way in a standing
-/// leaves its weight to the others there, so nothing from below, such as the rest pose, comes through.
+/// If there are more samples than an instruction holds, the sample with the lowest weight is dropped, repeatedly; a
+/// difference counts as two samples. The heaviest sample of each standing always stays. The other samples of the
+/// standing take over the dropped weight, so that nothing below them, such as the rest pose, becomes visible.
 class SampleStack
 {
 public:
-    static constexpr std::size_t maxItems = 64; ///< samples and differences that all layers may come to
+    static constexpr std::size_t maxItems = 64; ///< the most samples and differences that all layers can have
 
-    /// Samples of weight 0 are left out. At most maxItems may be added in all.
+    /// Samples of weight 0 are ignored. At most maxItems samples and differences may be added.
     void add(const BlendSample& sample, int standing);
     void addDifference(const BlendSample& reference, const BlendSample& sample);
-    /// The rest pose where nothing was added. To be called once.
+    /// Writes the instruction; the rest pose if nothing was added. Call it once.
     void write(PoseInstruction& out);
 
 private:
@@ -34,7 +34,7 @@ private:
         int standing;                  ///< of a sample
         bool isDifference;
     };
-    /// Memory that is not set before it is used: to clear it all would take longer than the rest of it.
+    /// Deliberately uninitialized: zeroing dominated the cost.
     union Place
     {
         Place() {}
@@ -49,7 +49,7 @@ private:
 
     std::array<Place, maxItems> _places;
     std::size_t _count = 0;
-    std::size_t _sampleCount = 0; ///< places that the items take in an instruction
+    std::size_t _sampleCount = 0; ///< samples of the items in an instruction
 };
 
 } // namespace osgGpuAnimation

@@ -33,7 +33,7 @@ std::optional<Error> findFault(const std::vector<Joint>& joints)
     return std::nullopt;
 }
 
-/// Depths by walking down from the roots, level by level and without recursion; -1 for joints on or under a cycle.
+/// Computes depths from the roots down, level by level and without recursion; -1 for joints on or below a cycle.
 std::vector<int> findDepths(const std::vector<Joint>& joints)
 {
     std::vector<std::size_t> firstChild(joints.size() + 1, 0);
@@ -95,7 +95,7 @@ Result<Skeleton> Skeleton::create(std::vector<Joint> joints)
     for (std::size_t i = 0; i < order.size(); ++i)
     {
         Joint& joint = joints[order[i]];
-        // A parent is of an earlier level, so its own place is known.
+        // A parent is at an earlier level, so its new index is known.
         if (joint.parent >= 0) joint.parent = skeleton._jointOfInput[static_cast<std::size_t>(joint.parent)];
         joint.rest = cleaned(joint.rest);
         skeleton._depths.push_back(depths[order[i]]);
@@ -130,6 +130,30 @@ Result<std::size_t> Skeleton::jointNamed(const std::string& name) const
         return Error{"there is no joint \"" + name + "\"; the joints are " +
                      quotedNames(_joints, [](const Joint& known) { return known.name; })};
     return static_cast<std::size_t>(joint);
+}
+
+std::vector<std::size_t> firstTracksOfMorphs(const Skeleton& skeleton, const std::vector<MorphWeights>& morphs)
+{
+    std::vector<std::size_t> tracks{skeleton.jointCount()};
+    for (const MorphWeights& morph : morphs)
+        tracks.push_back(tracks.back() + morph.blockCount());
+    return tracks;
+}
+
+std::vector<JointTransform> restPose(const Skeleton& skeleton, const std::vector<MorphWeights>& morphs)
+{
+    std::vector<JointTransform> tracks;
+    for (const Joint& joint : skeleton.joints())
+        tracks.push_back(joint.rest);
+    for (const MorphWeights& morph : morphs)
+    {
+        const std::size_t first = tracks.size();
+        tracks.resize(first + morph.blockCount(), {glm::vec4(0.0f), glm::vec4(0.0f), glm::vec4(0.0f)});
+        for (std::size_t i = 0; i < morph.defaults.size(); ++i)
+            tracks[first + i / MorphWeights::weightsPerBlock].number(i % MorphWeights::weightsPerBlock) =
+                morph.defaults[i];
+    }
+    return tracks;
 }
 
 } // namespace osgGpuAnimation

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/JointTransform.h>
+#include <osgGpuAnimation/animation/MorphWeights.h>
 #include <osgGpuAnimation/animation/Result.h>
 
 #include <cstddef>
@@ -12,40 +13,39 @@
 namespace osgGpuAnimation
 {
 
-/// A node that moves or carries what moves.
+/// A node of the file that moves, or that carries a node or mesh that moves.
 struct Joint
 {
     std::string name;
     int parent = -1;     ///< index of the parent joint, -1 for a root
-    JointTransform rest; ///< what it takes where no clip says otherwise
-    int sourceNode = -1; ///< the file's own node number, -1 where there is none
+    JointTransform rest; ///< used if no clip animates the joint
+    int sourceNode = -1; ///< number of the node in the file, -1 if it has none
 };
 
-/// The joints of an AnimationSet in **level order**: all roots, then all their children, and so on; so parents come
-/// before children, and each level is one contiguous range (one flat draw on the GPU).
+/// The joints of an AnimationSet in **level order**: all roots, then all their children, and so on. Parents come before
+/// children, and each level is one contiguous range (one flat draw on the GPU).
 class Skeleton
 {
 public:
-    /// Takes joints in any order and sorts them by depth, stable within a level.
-    /// Rest rotations are made unit (a quaternion of length 0 counts as the identity).
-    /// Errors: a parent out of range, a cycle, a rest transform that is not finite.
+    /// Sorts the joints by depth; the order within a level stays. Normalizes rest rotations (a quaternion of length 0
+    /// becomes the identity). Errors: a parent out of range, a cycle, a rest transform that is not finite.
     static Result<Skeleton> create(std::vector<Joint> joints);
 
     std::size_t jointCount() const { return _joints.size(); }
     const std::vector<Joint>& joints() const { return _joints; }
     const Joint& joint(std::size_t index) const { return _joints[index]; }
 
-    /// jointCount() numbers: 0 for a root.
+    /// jointCount() depths; the depth of a root is 0.
     const std::vector<int>& depths() const { return _depths; }
     std::size_t levelCount() const;
 
-    /// The joint that came at this place in create()'s input.
+    /// The joint that was at this index in the input of create().
     int jointOfInput(std::size_t inputIndex) const { return _jointOfInput[inputIndex]; }
-    /// The first joint that stands for that node; -1 where none does.
+    /// The first joint of that node of the file; -1 if there is none.
     int jointOfSourceNode(int node) const;
-    /// The first joint of that name, -1 where there is none.
+    /// The first joint of that name; -1 if there is none.
     int findJoint(const std::string& name) const;
-    /// The same. Error: there is none; it lists the names there are.
+    /// The first joint of that name. Error: no joint has the name; the message lists the existing names.
     Result<std::size_t> jointNamed(const std::string& name) const;
 
 private:
@@ -56,5 +56,12 @@ private:
     std::vector<int> _jointOfInput;
     std::unordered_map<int, int> _jointOfSourceNode;
 };
+
+/// The first track of each morph's weight blocks, and at the end the number of all tracks. Joints have the first
+/// tracks.
+std::vector<std::size_t> firstTracksOfMorphs(const Skeleton& skeleton, const std::vector<MorphWeights>& morphs);
+
+/// One JointTransform per track: the rest transforms of the joints, then the default weights as weight blocks.
+std::vector<JointTransform> restPose(const Skeleton& skeleton, const std::vector<MorphWeights>& morphs);
 
 } // namespace osgGpuAnimation

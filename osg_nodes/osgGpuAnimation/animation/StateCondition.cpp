@@ -17,7 +17,7 @@ namespace
 
 using Test = StateCondition::Test;
 
-constexpr char signs[] = "<>=!"; // of comparisons: in no name
+constexpr char signs[] = "<>=!"; // of comparisons; names do not contain them
 
 std::optional<double> toNumber(const std::string& word)
 {
@@ -37,7 +37,7 @@ std::vector<std::string> toWords(const std::string& text)
     return words;
 }
 
-/// Whether it is a word of the language, in whatever case: no name for a trigger.
+/// True for the reserved words, in upper or lower case: a trigger cannot have such a name.
 bool isReserved(std::string word)
 {
     for (char& letter : word)
@@ -55,7 +55,7 @@ std::optional<Test> toComparison(const std::string& word)
     return std::nullopt;
 }
 
-/// PARAMETER > NUMBER, with or without spaces; sign: where the first character of the comparison is.
+/// Parses PARAMETER > NUMBER, with or without spaces. sign: index of the first character of the comparison.
 std::optional<StateCondition> parseComparison(const std::string& text, std::size_t sign)
 {
     const std::size_t end = std::min(text.find_first_not_of(signs, sign), text.size());

@@ -8,12 +8,12 @@
 namespace osgGpuAnimation
 {
 
-/// When a transition of a StateGraph may be taken, read from a few words:
+/// A condition of a StateGraph transition, parsed from text:
 ///
-///     "speed > 0.5"   a parameter compared with a number: > >= < <= == !=; spaces may be left out
-///     "jump"          a trigger has been fired
-///     "finished"      the state's clip has come to its end (it plays once)
-///     "after 2.5"     the state has lasted so many seconds
+///     "speed > 0.5"   a parameter compared with a number: > >= < <= == !=; spaces are optional
+///     "jump"          a trigger was fired
+///     "finished"      the state's clip reached its end (LoopMode::Once)
+///     "after 2.5"     the state has lasted at least 2.5 seconds
 struct StateCondition
 {
     enum class Test
@@ -30,11 +30,11 @@ struct StateCondition
     };
 
     Test test = Test::Fired;
-    std::string parameter; ///< or trigger; empty for Finished and After
+    std::string parameter; ///< the name of a parameter or trigger; empty for Finished and After
     double value = 0.0;
 
-    /// Names are single words without any of < > = !; a trigger's is no number, nor "finished" or "after" in any case.
-    /// Error: words that are none of these, a number that is not finite; it quotes the text.
+    /// Names are single words without < > = !. The name of a trigger is not a number and not "finished" or "after" in
+    /// upper or lower case. Errors quote the text: no valid condition, a number that is not finite.
     static Result<StateCondition> parse(const std::string& text);
 };
 

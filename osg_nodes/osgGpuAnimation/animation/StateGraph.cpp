@@ -12,7 +12,8 @@ namespace osgGpuAnimation
 namespace
 {
 
-std::size_t placeOf(const std::string& name, std::vector<std::string>& names)
+/// The index of a name; appends the name if it is new.
+std::size_t placeAdding(const std::string& name, std::vector<std::string>& names)
 {
     const auto known = std::find(names.begin(), names.end(), name);
     const auto place = static_cast<std::size_t>(known - names.begin());
@@ -93,7 +94,7 @@ Result<bool> StateGraph::addTransition(const TransitionDescription& description)
         if (!added) return added.error();
     }
     if (waitsForAnEnd(transition) && !hasAnEnd(transition))
-        return Error{"\"finished\" never comes: no state that it leads on from plays once"};
+        return Error{"\"finished\" is never true: no source state plays once"};
     _transitions.push_back(std::move(transition));
     return true;
 }
@@ -104,7 +105,7 @@ bool StateGraph::waitsForAnEnd(const Transition& transition)
                        [](const Condition& condition) { return condition.test == StateCondition::Test::Finished; });
 }
 
-/// Whether a state that it leads on from plays once.
+/// True if a source state of the transition plays once.
 bool StateGraph::hasAnEnd(const Transition& transition) const
 {
     for (std::size_t s = 0; s < _states.size(); ++s)
@@ -122,9 +123,9 @@ Result<bool> StateGraph::addCondition(Transition& transition, const std::string&
     const StateCondition& parsed = condition.value();
     Condition compiled{parsed.test, 0, parsed.value};
     if (parsed.test == StateCondition::Test::Fired)
-        compiled.parameter = placeOf(parsed.parameter, _triggers);
+        compiled.parameter = placeAdding(parsed.parameter, _triggers);
     else if (!parsed.parameter.empty())
-        compiled.parameter = placeOf(parsed.parameter, _parameters);
+        compiled.parameter = placeAdding(parsed.parameter, _parameters);
     transition.conditions.push_back(compiled);
     return true;
 }

@@ -12,7 +12,7 @@
 namespace osgGpuAnimation
 {
 
-/// A state as one writes it down: a clip under a name.
+/// The description of a state: a clip under a name.
 struct StateDescription
 {
     std::string name;
@@ -21,13 +21,13 @@ struct StateDescription
     double speed = 1.0;
 };
 
-/// A way from one state to another.
+/// The description of a transition from one state to another.
 struct TransitionDescription
 {
-    std::string from; ///< empty: from every state but `to`
+    std::string from; ///< empty: from every state except `to`
     std::string to;
-    std::vector<std::string> when; ///< all of them must hold; see StateCondition
-    double seconds = 0.25;         ///< of the crossfade
+    std::vector<std::string> when; ///< conditions that must all be true, see StateCondition
+    double seconds = 0.25;         ///< length of the crossfade, at least 0
     FadeCurve curve = FadeCurve::Linear;
     Sync sync = Sync::Start;
 };
@@ -39,8 +39,7 @@ struct StateGraphDescription
     std::string start; ///< empty: the first state
 };
 
-/// States and transitions that were checked against a set: immutable, shared by the StateMachines of any number of
-/// characters.
+/// States and transitions, checked against a set. It is immutable; the StateMachines of all characters share it.
 ///
 ///     auto graph = StateGraph::create(fox->set(), {{{"stand", "Survey"}, {"walk", "Walk"}},
 ///                                                  {{"stand", "walk", {"speed > 0.1"}}, {"walk", "stand", {"speed <=
@@ -58,12 +57,12 @@ public:
     struct Condition
     {
         StateCondition::Test test;
-        std::size_t parameter; ///< or trigger; 0 where the test asks for none
+        std::size_t parameter; ///< index of the parameter or trigger; 0 if the test needs none
         double value;
     };
     struct Transition
     {
-        int from; ///< -1: every state but `to`
+        int from; ///< -1: every state except `to`
         std::size_t to;
         std::vector<Condition> conditions;
         double seconds;
@@ -72,10 +71,10 @@ public:
 
     static constexpr std::size_t maxStates = 1024, maxTransitions = 8192;
 
-    /// Errors, by the name of the state or the number of the transition: no states, more states or transitions than
-    /// these, two of one name or one without, a clip or state that is not there, a transition without conditions, a
-    /// faulty condition, "finished" where no state that it leads on from plays once, seconds that are negative or not
-    /// finite, a speed that is not finite, one name for a parameter and a trigger.
+    /// Errors contain the name of the state or the number of the transition: no states; more than maxStates or
+    /// maxTransitions; a state without a name or with a name that another one has; an unknown clip or state; a
+    /// transition without conditions; an invalid condition; "finished" if no source state plays once; seconds that are
+    /// negative or not finite; a speed that is not finite; a parameter and a trigger of the same name.
     static Result<std::shared_ptr<const StateGraph>> create(const AnimationSet& set,
                                                             const StateGraphDescription& description);
 
@@ -85,7 +84,7 @@ public:
     const std::vector<std::string>& triggers() const { return _triggers; }
     std::size_t start() const { return _start; }
 
-    int findState(const std::string& name) const; ///< -1 where there is none
+    int findState(const std::string& name) const; ///< -1 if there is none
 
 private:
     StateGraph() = default;

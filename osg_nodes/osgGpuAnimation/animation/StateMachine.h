@@ -11,8 +11,8 @@
 namespace osgGpuAnimation
 {
 
-/// Drives one layer of a controller through the states of a StateGraph. It stands beside the controller, which knows
-/// nothing of it: call update() once a frame, before or after the controller advances.
+/// Drives one layer of a controller through the states of a StateGraph. The controller does not know the state machine:
+/// call update() once per frame, before or after AnimationController::advance().
 ///
 ///     StateMachine machine(graph.value());
 ///     machine.set("speed", 1.2);
@@ -21,25 +21,24 @@ namespace osgGpuAnimation
 class StateMachine
 {
 public:
-    /// layer: of the controllers that will be driven.
+    /// layer: index of the layer that update() drives, below maxLayers.
     explicit StateMachine(std::shared_ptr<const StateGraph> graph, std::size_t layer = 0);
 
     const StateGraph& graph() const { return *_graph; }
     const std::string& state() const { return _graph->states()[_state].name; }
     double secondsInState() const { return _seconds; }
-    double value(const std::string& parameter) const; ///< 0 at first, and where there is none of that name
+    double value(const std::string& parameter) const; ///< initially 0; 0 if there is no such parameter
 
-    /// False, and nothing changes, where no condition asks for such a parameter or the value is not a number.
+    /// Sets a parameter. False, without a change, if no condition uses the parameter or the value is NaN.
     bool set(const std::string& parameter, double value);
-    /// A trigger stays fired until a transition that asks for it is taken. False where no condition asks for it.
+    /// Fires a trigger: it stays fired until a transition that uses it is taken. False if no condition uses it.
     bool fire(const std::string& trigger);
 
-    /// Plays the start state at the first call. Then takes the first transition, in the graph's order, that leads on
-    /// from the present state and whose conditions all hold; at most one a call. Allocates
-    /// only where more clips fade on the layer than ever did before.
-    /// The controller plays the set that the graph was made for; one whose set has no clip of the next state's number
-    /// stays as it is, and so does the state. seconds: since the last call; below 0 and not finite count as 0. True
-    /// where the state changed.
+    /// The first call plays the start state. Later calls take the first transition, in the order of the graph, that
+    /// starts at the current state and whose conditions are all true; at most one per call. True if the state changed.
+    /// The controller must play the set that the graph was created for; if its set lacks the clip of the next state,
+    /// nothing changes. seconds: since the last call; negative and not finite values count as 0. Allocates only if more
+    /// clips fade on the layer than ever before.
     bool update(AnimationController& controller, double seconds);
 
 private:

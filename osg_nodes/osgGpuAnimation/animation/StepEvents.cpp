@@ -7,41 +7,40 @@ namespace osgGpuAnimation
 namespace
 {
 
-bool mayHaveEvents(const ClipMove& move, const Clip& clip)
+bool moveMayHaveEvents(const ClipMove& move, const Clip& clip)
 {
     return move.crossings != 0.0 || move.hasFinished || (move.distance != 0.0 && !clip.markers().empty());
 }
 
 } // namespace
 
-bool StepEvents::hasEvents(const AnimationLayer& layer, const AnimationSet& set)
+bool LayerStep::mayHaveEvents(const std::vector<Clip>& clips) const
 {
-    if (layer.crossfadeMoment() >= 0.0 || layer.weightFadeMoment() >= 0.0) return true;
-    const ClipMixer& mixer = layer.mixer();
+    if (crossfadeMoment >= 0.0 || weightFadeMoment >= 0.0) return true;
     for (std::size_t v = 0; v < mixer.voiceCount(); ++v)
     {
         const ClipMixer::Voice& voice = mixer.voice(v);
-        if (mayHaveEvents(voice.move, set.clips()[static_cast<std::size_t>(voice.playback.clip())])) return true;
+        if (moveMayHaveEvents(voice.move, clips[static_cast<std::size_t>(voice.playback.clip())])) return true;
     }
     return false;
 }
 
-void StepEvents::add(const AnimationLayer& layer, const AnimationSet& set)
+void StepEvents::add(const LayerStep& step, const std::vector<Clip>& clips)
 {
     AnimationEvent event;
-    event.layer = layer.index();
-    const ClipMixer& mixer = layer.mixer();
-    for (std::size_t v = 0; v < mixer.voiceCount(); ++v)
+    event.layer = step.layer;
+    const std::size_t count = step.mixer.voiceCount();
+    for (std::size_t v = 0; v < count; ++v)
     {
-        const ClipMixer::Voice& voice = mixer.voice(v);
+        const ClipMixer::Voice& voice = step.mixer.voice(v);
         event.clip = voice.playback.clip();
         event.weight = static_cast<float>(voice.share);
-        const Clip& clip = set.clips()[static_cast<std::size_t>(event.clip)];
-        if (mayHaveEvents(voice.move, clip))
-            addSource(event, ClipMoveEvents(clip, voice.move, voice.playback.loopMode()), v + 1 < mixer.voiceCount());
+        const Clip& clip = clips[static_cast<std::size_t>(event.clip)];
+        if (moveMayHaveEvents(voice.move, clip))
+            addSource(event, ClipMoveEvents(clip, voice.move, voice.playback.loopMode()), v + 1 < count);
     }
     event.type = AnimationEvent::Type::FadeFinished;
-    for (const double moment : {layer.crossfadeMoment(), layer.weightFadeMoment()})
+    for (const double moment : {step.crossfadeMoment, step.weightFadeMoment})
     {
         event.moment = moment;
         if (moment >= 0.0) addSource(event, std::nullopt, false);
@@ -55,7 +54,7 @@ void StepEvents::addSource(const AnimationEvent& event, std::optional<ClipMoveEv
     _sources[_count++].emplace(std::move(source));
 }
 
-/// Of clips that fade out, only markers are told: it is the current one that loops and finishes.
+/// Clips that fade out report only markers: Looped and Finished belong to the current clip.
 bool StepEvents::goOn(Source& source)
 {
     if (!source.events) return false;

@@ -2,28 +2,39 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/AnimationEvent.h>
-#include <osgGpuAnimation/animation/AnimationLayer.h>
+#include <osgGpuAnimation/animation/ClipMixer.h>
 #include <osgGpuAnimation/animation/ClipMoveEvents.h>
+#include <osgGpuAnimation/animation/PlayState.h>
 
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <vector>
 
 namespace osgGpuAnimation
 {
 
-/// All events of one step of all layers in the order in which they happened. It holds numbers of its own and looks at
-/// the set's clips alone: the layers may change while it is told. Does not allocate.
+/// The last step of one layer.
+struct LayerStep
+{
+    std::size_t layer = 0;
+    const ClipMixer& mixer;
+    double crossfadeMoment = -1.0; ///< share of the step after which the crossfade ended, in [0, 1]; -1: it did not end
+    double weightFadeMoment = -1.0; ///< the same for the fade of the layer's weight
+
+    /// False if the step has no events: a cheap test, since most steps have none. clips: of the layer's set.
+    bool mayHaveEvents(const std::vector<Clip>& clips) const;
+};
+
+/// All events of one step of all layers in the order in which they happened. It copies what it needs of the layers, so
+/// callbacks may modify them. Does not allocate.
 class StepEvents
 {
 public:
-    /// Whether there is anything to tell of the layer's last advance(): mostly not, and then this is the cheaper way.
-    static bool hasEvents(const AnimationLayer& layer, const AnimationSet& set);
+    /// Adds the events of a layer. clips: of the layer's set; they must outlive this object.
+    void add(const LayerStep& step, const std::vector<Clip>& clips);
 
-    /// What the layer did in its last advance(). The set must outlive this.
-    void add(const AnimationLayer& layer, const AnimationSet& set);
-
-    /// Goes to the next event; false where there is none any more.
+    /// Goes to the next event; false after the last one.
     bool next(AnimationEvent& out);
 
 private:

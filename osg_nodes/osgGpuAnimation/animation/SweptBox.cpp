@@ -12,7 +12,7 @@ namespace osgGpuAnimation
 namespace
 {
 
-/// NaN gives `otherwise`.
+/// Clamps to the limit; NaN gives `otherwise`.
 double limited(double value, double otherwise)
 {
     if (value >= -SweptBox::limit && value <= SweptBox::limit) return value;
@@ -51,7 +51,7 @@ SweptBox SweptBox::grownWithin(double margin, double radius) const
     SweptBox grown;
     for (int axis = 0; axis < 3; ++axis)
     {
-        // The box itself stays in whatever the ball's bound loses to rounding.
+        // Keeps the original box even if rounding makes the ball too small.
         grown.min[axis] = std::min(min[axis], std::max(min[axis] - by, -within));
         grown.max[axis] = std::max(max[axis], std::min(max[axis] + by, within));
     }

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <osgGpuAnimation/animation/Bounds.h>
+#include <osgGpuAnimation/animation/Box.h>
 
 namespace osgGpuAnimation
 {
 
-/// A box in double precision that never holds anything but numbers: what is not finite or lies beyond `limit` counts as
-/// lying there, so that a renderer can still square the box's size in single precision.
+/// An axis-aligned box in double precision that contains only finite numbers. Coordinates are clamped to
+/// [-limit, limit], so that a renderer can square the size of the box in single precision. Default: empty (min > max).
 struct SweptBox
 {
     static constexpr double limit = 1e18;
@@ -15,17 +15,18 @@ struct SweptBox
     glm::dvec3 min{limit};
     glm::dvec3 max{-limit};
 
-    /// The box of these half sizes about a centre; not a number: everything.
+    /// The box around a centre. half: half of each side. A NaN gives the largest box on that axis.
     static SweptBox about(const glm::dvec3& centre, const glm::dvec3& half);
 
     bool empty() const { return min.x > max.x; }
-    double diagonal() const;
+    double diagonal() const; ///< 0 if empty
     void add(const SweptBox& box);
-    /// Grown on every side, but not beyond the ball of that radius about the origin.
+    /// This box with every face moved outwards by margin, but not beyond the ball of that radius around the origin.
     SweptBox grownWithin(double margin, double radius) const;
-    /// The least distance from a face of `inner` to the same face of this box that holds it.
+    /// The smallest distance between a face of `inner` and the same face of this box. inner: inside this box.
     double slackAround(const SweptBox& inner) const;
-    /// Rounded outwards, with room for the rounding of those who compute in single precision.
+    /// Rounds outwards and adds 1e-5 of the largest coordinate, so that vertices computed in single precision stay
+    /// inside.
     Box toBox() const;
 };
 

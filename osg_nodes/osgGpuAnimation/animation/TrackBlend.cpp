@@ -6,7 +6,9 @@
 #include <layout.glsl>
 
 #include <glm/common.hpp>
+#include <glm/ext/quaternion_exponential.hpp>
 #include <glm/geometric.hpp>
+#include <glm/gtc/constants.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +19,7 @@ namespace osgGpuAnimation
 namespace
 {
 
-constexpr double pi = 3.14159265358979323846;
+constexpr double pi = glm::pi<double>();
 
 void addScaled(MixedTrack& sum, const MixedTrack& track, double factor)
 {
@@ -26,27 +28,7 @@ void addScaled(MixedTrack& sum, const MixedTrack& track, double factor)
     sum.scale += track.scale * factor;
 }
 
-glm::dvec4 product(const glm::dvec4& a, const glm::dvec4& b)
-{
-    const glm::dvec3 u(a), v(b);
-    return glm::dvec4(a.w * v + b.w * u + glm::cross(u, v), a.w * b.w - glm::dot(u, v));
-}
-
-/// Axis times half the angle of a unit quaternion's turn by the shorter way.
-glm::dvec3 logarithm(const glm::dvec4& q)
-{
-    const glm::dvec4 d = q.w < 0.0 ? -q : q;
-    const double sine = glm::length(glm::dvec3(d));
-    return glm::dvec3(d) * (sine < 1e-12 ? 1.0 : std::atan2(sine, d.w) / sine);
-}
-
-glm::dvec4 exponential(const glm::dvec3& v)
-{
-    const double angle = glm::length(v);
-    return glm::dvec4(v * (angle < 1e-12 ? 1.0 : std::sin(angle) / angle), std::cos(angle));
-}
-
-/// sample / reference, 1 where the reference is 0.
+/// sample / reference; 1 if the reference is 0.
 double ratio(double sample, double reference)
 {
     return std::abs(reference) > static_cast<double>(POSE_SMALLEST_SCALE) ? sample / reference : 1.0;
@@ -87,8 +69,10 @@ void TrackBlend::addDifference(const MixedTrack& reference, const MixedTrack& sa
     addScaled(_difference, sample, weight);
     addScaled(_difference, reference, -weight);
     if (_isWeights) return;
-    const glm::dvec4 inverse(-glm::dvec3(reference.rotation), reference.rotation.w);
-    _turn += weight * logarithm(product(inverse, sample.rotation));
+    const glm::dquat turn =
+        glm::conjugate(Rotation::quaternion(reference.rotation)) * Rotation::quaternion(sample.rotation);
+    const glm::dquat logarithm = glm::log(turn.w < 0.0 ? -turn : turn); // of the turn the short way
+    _turn += weight * glm::dvec3(logarithm.x, logarithm.y, logarithm.z);
     for (int axis = 0; axis < 3; ++axis)
         _growth[axis] *= 1.0 + weight * (ratio(sample.scale[axis], reference.scale[axis]) - 1.0);
 }
@@ -101,11 +85,11 @@ MixedTrack TrackBlend::result()
         addScaled(_total, _difference, 1.0);
         return _total;
     }
-    // Nothing below can leave a sum of length 0: see PoseInstruction.
+    // The sum cannot have length 0: see PoseInstruction.
     _total.rotation = Rotation::unit(_total.rotation);
-    const double turned = glm::length(_turn);
-    if (turned > 0.0)
-        _total.rotation = product(_total.rotation, exponential(turned > pi ? _turn * (pi / turned) : _turn));
+    if (const double turned = glm::length(_turn); turned > 0.0)
+        _total.rotation = Rotation::numbers(Rotation::quaternion(_total.rotation) *
+                                            glm::exp(glm::dquat(0.0, _turn * std::min(1.0, pi / turned))));
     _total.translation += _difference.translation;
     _total.scale *= _growth;
     _total.translation.w = 0.0; // in a spline clip it held a flag

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "TrackMix.h"
 
+#include <osgGpuAnimation/animation/Hermite.h>
 #include <osgGpuAnimation/animation/Rotation.h>
 
 namespace osgGpuAnimation
@@ -14,37 +15,29 @@ glm::dvec4 lerp(const glm::vec4& a, const glm::vec4& b, double alpha)
     return glm::dvec4(a) * (1.0 - alpha) + glm::dvec4(b) * alpha;
 }
 
-glm::dvec4 slerp(const glm::vec4& a, const glm::vec4& b, double alpha)
-{
-    const glm::dvec4 from = Rotation::unit(glm::dvec4(a));
-    return alpha == 0.0 ? from : Rotation::slerp(from, Rotation::unit(glm::dvec4(b)), alpha);
-}
-
 MixedTrack mixLinear(const JointTransform& a, const JointTransform& b, double alpha, bool isWeights)
 {
     return {lerp(a.translation, b.translation, alpha),
-            isWeights ? lerp(a.rotation, b.rotation, alpha) : slerp(a.rotation, b.rotation, alpha),
+            isWeights ? lerp(a.rotation, b.rotation, alpha)
+                      : Rotation::slerp(glm::dvec4(a.rotation), glm::dvec4(b.rotation), alpha),
             lerp(a.scale, b.scale, alpha)};
 }
 
 /// a and b each point to value, in-tangent, out-tangent.
 MixedTrack mixSpline(const JointTransform* a, const JointTransform* b, double alpha, bool isWeights)
 {
-    const double square = alpha * alpha;
-    const double cube = square * alpha;
-    const auto hermite = [&](glm::vec4 JointTransform::*part)
+    const auto partAt = [&](glm::vec4 JointTransform::*part)
     {
-        return (2.0 * cube - 3.0 * square + 1.0) * glm::dvec4(a[0].*part) +
-               (cube - 2.0 * square + alpha) * glm::dvec4(a[2].*part) +
-               (3.0 * square - 2.0 * cube) * glm::dvec4(b[0].*part) + (cube - square) * glm::dvec4(b[1].*part);
+        return hermite(glm::dvec4(a[0].*part), glm::dvec4(a[2].*part), glm::dvec4(b[0].*part), glm::dvec4(b[1].*part),
+                       alpha);
     };
-    MixedTrack mixed{hermite(&JointTransform::translation), {}, hermite(&JointTransform::scale)};
+    MixedTrack mixed{partAt(&JointTransform::translation), {}, partAt(&JointTransform::scale)};
     const bool isSlerped = a[0].translation.w == 1.0f; // see Clip
     if (isWeights)
-        mixed.rotation = hermite(&JointTransform::rotation);
+        mixed.rotation = partAt(&JointTransform::rotation);
     else
-        mixed.rotation =
-            isSlerped ? slerp(a[0].rotation, b[0].rotation, alpha) : Rotation::unit(hermite(&JointTransform::rotation));
+        mixed.rotation = isSlerped ? Rotation::slerp(glm::dvec4(a[0].rotation), glm::dvec4(b[0].rotation), alpha)
+                                   : Rotation::unit(partAt(&JointTransform::rotation));
     return mixed;
 }
 

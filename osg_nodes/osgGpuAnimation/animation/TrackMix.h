@@ -8,17 +8,17 @@
 namespace osgGpuAnimation
 {
 
-/// Two neighbouring keyframes of one clip and the share of the second.
+/// Two neighbouring keyframes of one clip. alpha is the share of the second.
 struct KeyframePair
 {
     const JointTransform* first = nullptr;
     const JointTransform* second = nullptr;
     double alpha = 0.0;  ///< [0, 1]
-    bool spline = false; ///< Clip::Form::Spline: three transforms a track
+    bool spline = false; ///< Clip::Form::Spline: three transforms per track
 };
 
-/// A track between two keyframes, before it is rounded: the double-precision twin of shaders/mix.glsl.
-/// For joints translation.w and scale.w mean nothing; weight blocks use all twelve numbers.
+/// A track between two keyframes, before rounding: the double-precision twin of shaders/mix.glsl.
+/// Joints do not use translation.w and scale.w; weight blocks use all twelve numbers.
 struct MixedTrack
 {
     glm::dvec4 translation{0.0};

@@ -9,14 +9,6 @@ namespace osgGpuAnimation
 namespace
 {
 
-/// Weight number `weight` of a weight block, as the twelve numbers lie in a joint transform.
-float weightIn(const JointTransform& block, std::size_t weight)
-{
-    const int component = static_cast<int>(weight % 4);
-    if (weight < 4) return block.translation[component];
-    return weight < 8 ? block.rotation[component] : block.scale[component];
-}
-
 void include(WeightRange& range, float value)
 {
     range.min = std::min(range.min, value);
@@ -29,11 +21,11 @@ void includeClip(WeightRange& range, const Clip& clip, std::size_t track, std::s
     for (std::size_t keyframe = 0; keyframe < clip.keyframeCount(); ++keyframe)
     {
         const JointTransform* transform = clip.at(keyframe, track);
-        const float value = weightIn(transform[0], place);
+        const float value = transform[0].number(place);
         include(range, value);
         if (!isSpline) continue;
-        include(range, value - weightIn(transform[1], place) / 3.0f);
-        include(range, value + weightIn(transform[2], place) / 3.0f);
+        include(range, value - transform[1].number(place) / 3.0f);
+        include(range, value + transform[2].number(place) / 3.0f);
     }
 }
 

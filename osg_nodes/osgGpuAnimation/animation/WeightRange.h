@@ -9,15 +9,15 @@
 namespace osgGpuAnimation
 {
 
-/// The values a morph weight takes.
+/// The smallest and the largest value of a morph weight.
 struct WeightRange
 {
     float min = 0.0f;
     float max = 0.0f;
 };
 
-/// For each weight of a morph, what it takes at rest and at any time of any clip of the set: between keyframes too (a
-/// spline stays within the hull of its Bezier points, which the tangents give).
+/// The range of each weight of a morph over the rest pose and all times of all clips of the set, between keyframes too
+/// (a spline stays within the hull of its Bézier points, which the tangents give).
 std::vector<WeightRange> weightRanges(const AnimationSet& set, std::size_t morph);
 
 } // namespace osgGpuAnimation

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/gpu/AnimationBuffers.h>
 
+#include <osgGpuAnimation/animation/MaskTable.h>
+
 #include <layout.glsl>
 
 #include <algorithm>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/gpu/PosePipeline.h>
 
+#include <osgGpuAnimation/animation/MaskTable.h>
 #include <osgGpuAnimation/gpu/FeedbackScope.h>
 
 #include <layout.glsl>

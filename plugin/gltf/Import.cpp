@@ -2,12 +2,11 @@
 #include "gltf/Import.h"
 
 #include "gltf/Clips.h"
-#include "gltf/ElementName.h"
-#include "gltf/ParsedNumber.h"
-#include "gltf/Reach.h"
+#include "gltf/document/LoadDocument.h"
+#include "gltf/file/Report.h"
+#include "gltf/scene/TransformBound.h"
 #include "gltf/SceneGraph.h"
 #include "gltf/Skins.h"
-#include "gltf/TinyGltf.h"
 
 #include <osgGpuAnimation/nodes/CharacterKeys.h>
 
@@ -65,7 +64,7 @@ private:
     const ImportOptions& _options;
     ImportedModel& _result;
     Report _report;
-    DecodedBytes _budget;
+    MemoryBudget _budget;
     Textures _textures; ///< begins to decode at once
 };
 
@@ -80,7 +79,7 @@ Result<bool> Importer::makeSet(const NodeTree& tree, const Joints& joints, const
     if (!set) return set.error();
     for (std::size_t skin = 0; skin < set.value()->skins().size(); ++skin)
         for (const AffineMatrix& matrix : set.value()->skins()[skin].inverseBinds)
-            if (!Reach::of(matrix.toColumns()).fits())
+            if (!TransformBound::of(matrix.toColumns()).fits())
                 return Error{elementName("skins", skin) + ".inverseBindMatrices: one takes its joint " +
                              beyondFarthest()};
     if (set.value()->paletteSize() > mostPaletteEntries)

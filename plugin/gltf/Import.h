@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "gltf/file/Report.h"
 #include "gltf/ImportOptions.h"
-#include "gltf/Messages.h"
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/nodes/CompactCharacter.h>

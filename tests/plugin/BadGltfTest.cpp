@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/document/LoadDocument.h"
-#include "gltf/file/ModelFolder.h"
+#include "gltf/file/ModelBytes.h"
 #include "gltf/Import.h"
 #include "plugin/SharedAssets.h"
 #include "support/PeakMemory.h"

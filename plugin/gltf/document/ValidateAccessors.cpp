@@ -72,7 +72,7 @@ const unsigned char* dataOf(const Model& model, const Run& run)
     return model.buffers[std::size_t(view.buffer)].data.data() + view.byteOffset + run.byteOffset;
 }
 
-/// True where one of the floats is NaN or infinite: all bits of the exponent are set.
+/// True if one of the floats is NaN or infinite: all bits of the exponent are set.
 bool hasNonFinite(const unsigned char* data, std::size_t count)
 {
     std::uint32_t found = 0;
@@ -158,7 +158,7 @@ std::optional<Error> validateBase(const Model& model, const tinygltf::Accessor& 
     return error;
 }
 
-/// What accessors without data may stand for: some, and for a document with data as much as 64 morph targets need.
+/// The limit for accessors without data: 64 MiB, and for a document with data as much as 64 morph targets need.
 std::size_t mostImpliedBytes(const Model& model)
 {
     std::size_t bytes = std::size_t(64) << 20;

@@ -3,7 +3,6 @@
 
 #include "gltf/Accessor.h"
 #include "gltf/AttributeFormat.h"
-#include "gltf/document/AddedData.h"
 #include "gltf/file/Report.h"
 #include "gltf/MaterialCoordinates.h"
 
@@ -31,7 +30,7 @@ bool isQuantized(const Model& model)
            model.extensionsUsed.end();
 }
 
-/// Checks primitives one after another and remembers what it learned of shared accessors and materials.
+/// Checks one primitive after another and remembers its findings about shared accessors and materials.
 class MeshValidation
 {
 public:
@@ -44,7 +43,7 @@ public:
     std::optional<Error> validate(const tinygltf::Primitive& primitive, const std::string& name)
     {
         const auto position = primitive.attributes.find("POSITION");
-        if (position == primitive.attributes.end()) return std::nullopt; // not drawn: PrimitiveRules has said so
+        if (position == primitive.attributes.end()) return std::nullopt; // not drawn, checkDocumentRules() has warned
         const std::size_t vertices = accessorOf(position->second).count;
         std::optional<Error> error =
             validateAttributes(primitive.attributes, {false, _quantized}, vertices, name + ".attributes");
@@ -176,33 +175,44 @@ std::optional<Error> validateNodeWeights(const Model& model)
 
 using Model = tinygltf::Model;
 
-// What rounding four weights to bytes can cost; weights within it are used as the file has them.
+// Rounding four weights to bytes costs at most this much; weights within it are used as the file has them.
 const float sumTolerance = 0.02f;
-const std::size_t unlimited = std::numeric_limits<std::size_t>::max();
 
-/// The joints and weights of a primitive, all sets of a vertex after one another.
+/// The joints and weights of a primitive: an array for each set, 4 numbers a vertex.
 struct Influences
 {
-    std::size_t sets = 0;
-    std::size_t vertices = 0;
-    std::vector<std::uint32_t> joints; ///< 4 a set and vertex
-    std::vector<float> weights;        ///< likewise
+    std::vector<std::vector<std::uint32_t>> joints;
+    std::vector<std::vector<float>> weights;
 };
 
-/// What one mesh asks of the skins that it is used with.
+/// The joints that the vertices of one mesh refer to.
 struct JointDemand
 {
     bool allPrimitives = true; ///< have joints
     bool anyPrimitive = false;
     std::size_t jointsWithWeight = 0; ///< one more than the largest joint number
     std::size_t jointsInAll = 0;
-    std::size_t smallestSkin = unlimited; ///< joints of the smallest skin that it is used with
+    std::size_t smallestSkin = std::numeric_limits<std::size_t>::max(); ///< joints of the smallest skin of the mesh
+
+    void add(const Influences& influences)
+    {
+        allPrimitives = allPrimitives && !influences.joints.empty();
+        anyPrimitive = anyPrimitive || !influences.joints.empty();
+        for (std::size_t set = 0; set < influences.joints.size(); ++set)
+            for (std::size_t i = 0; i < influences.joints[set].size(); ++i)
+            {
+                const std::size_t joints = std::size_t(influences.joints[set][i]) + 1;
+                jointsInAll = std::max(jointsInAll, joints);
+                if (influences.weights[set][i] > 0.0f) jointsWithWeight = std::max(jointsWithWeight, joints);
+            }
+    }
 };
 
 std::string jointsName(std::size_t set)
 {
     return "JOINTS_" + std::to_string(set);
 }
+
 std::string weightsName(std::size_t set)
 {
     return "WEIGHTS_" + std::to_string(set);
@@ -211,97 +221,51 @@ std::string weightsName(std::size_t set)
 Influences readInfluences(const Model& model, const tinygltf::Primitive& primitive)
 {
     Influences influences;
-    while (primitive.attributes.count(jointsName(influences.sets)) != 0)
-        ++influences.sets;
-    if (influences.sets == 0) return influences;
-    influences.vertices = model.accessors[std::size_t(primitive.attributes.at("POSITION"))].count;
-    const std::size_t stride = influences.sets * 4;
-    influences.joints.resize(influences.vertices * stride);
-    influences.weights.resize(influences.vertices * stride);
-    for (std::size_t set = 0; set < influences.sets; ++set)
+    for (std::size_t set = 0; primitive.attributes.count(jointsName(set)) != 0; ++set)
     {
-        const std::vector<std::uint32_t> joints = readIntegers(model, primitive.attributes.at(jointsName(set)));
-        const std::vector<float> weights = readFloats(model, primitive.attributes.at(weightsName(set)));
-        for (std::size_t v = 0; v < influences.vertices; ++v)
-        {
-            std::copy_n(&joints[v * 4], 4, &influences.joints[v * stride + set * 4]);
-            std::copy_n(&weights[v * 4], 4, &influences.weights[v * stride + set * 4]);
-        }
+        influences.joints.push_back(readIntegers(model, primitive.attributes.at(jointsName(set))));
+        influences.weights.push_back(readFloats(model, primitive.attributes.at(weightsName(set))));
     }
     return influences;
 }
 
-/// Makes the weights of one vertex non-negative with a sum of 1; returns what was wrong, null if nothing was.
-const char* mendWeights(float* weights, std::size_t count)
+/// Makes the weights of each vertex non-negative with a sum of 1; returns what was wrong with the first one.
+std::optional<std::string> mendWeights(std::vector<std::vector<float>>& sets)
 {
-    const bool negative = std::any_of(weights, weights + count, [](float weight) { return weight < 0.0f; });
-    double sum = 0.0;
-    for (std::size_t i = 0; i < count; ++i)
-        sum += std::max(weights[i], 0.0f);
-    if (!negative && std::abs(sum - 1.0) <= sumTolerance) return nullptr;
-    for (std::size_t i = 0; i < count; ++i)
-        weights[i] = sum > 0.0 ? float(std::max(weights[i], 0.0f) / sum) : (i == 0 ? 1.0f : 0.0f);
-    return negative ? "a negative weight" : sum > 0.0 ? "weights that do not sum to 1" : "no weight at all";
-}
-
-template <typename Number, typename From>
-std::vector<Number> takeSet(const std::vector<From>& numbers, std::size_t sets, std::size_t set)
-{
-    std::vector<Number> taken;
-    taken.reserve(numbers.size() / sets);
-    for (std::size_t at = set * 4; at < numbers.size(); at += sets * 4)
-        for (std::size_t i = 0; i < 4; ++i)
-            taken.push_back(Number(numbers[at + i]));
-    return taken;
-}
-
-/// Mends what can be mended; returns which vertex was the first, and what was wrong with it.
-std::optional<std::string> mendAllWeights(Influences& influences)
-{
-    const std::size_t stride = influences.sets * 4;
     std::optional<std::string> first;
-    for (std::size_t v = 0; v < influences.vertices; ++v)
+    const std::size_t vertices = sets.empty() ? 0 : sets[0].size() / 4;
+    for (std::size_t v = 0; v < vertices; ++v)
     {
-        const char* const what = mendWeights(&influences.weights[v * stride], stride);
-        if (what && !first) first = "vertex " + std::to_string(v) + " has " + what;
+        bool negative = false;
+        double sum = 0.0;
+        for (const std::vector<float>& weights : sets)
+            for (std::size_t i = 4 * v; i < 4 * v + 4; ++i)
+            {
+                negative = negative || weights[i] < 0.0f;
+                sum += std::max(weights[i], 0.0f);
+            }
+        if (!negative && std::abs(sum - 1.0) <= sumTolerance) continue;
+        for (std::vector<float>& weights : sets)
+            for (std::size_t i = 4 * v; i < 4 * v + 4; ++i)
+                weights[i] = sum > 0.0 ? float(std::max(weights[i], 0.0f) / sum) : 0.0f;
+        if (sum == 0.0) sets[0][4 * v] = 1.0f;
+        if (!first)
+            first = "vertex " + std::to_string(v) + " has " +
+                    (negative    ? "a negative weight"
+                     : sum > 0.0 ? "weights that do not sum to 1"
+                                 : "no weight at all");
     }
     return first;
 }
 
-bool mendJoints(Influences& influences, std::size_t skinJoints)
-{
-    bool mended = false;
-    for (std::uint32_t& joint : influences.joints)
-        if (joint >= skinJoints)
-        {
-            joint = 0;
-            mended = true;
-        }
-    return mended;
-}
-
-void addDemand(const Influences& influences, JointDemand& demand)
-{
-    demand.allPrimitives = demand.allPrimitives && influences.sets > 0;
-    demand.anyPrimitive = demand.anyPrimitive || influences.sets > 0;
-    for (std::size_t i = 0; i < influences.joints.size(); ++i)
-    {
-        const std::size_t joints = std::size_t(influences.joints[i]) + 1;
-        demand.jointsInAll = std::max(demand.jointsInAll, joints);
-        if (influences.weights[i] > 0.0f) demand.jointsWithWeight = std::max(demand.jointsWithWeight, joints);
-    }
-}
-
-/// The first primitive of the mesh with a weighted joint that the skin has not.
+/// The first primitive of the mesh with a weighted joint that the skin does not have.
 Error jointsFault(const Model& model, std::size_t mesh, std::size_t skin)
 {
     const std::size_t count = model.skins[skin].joints.size();
     for (std::size_t p = 0; p < model.meshes[mesh].primitives.size(); ++p)
     {
-        const tinygltf::Primitive& primitive = model.meshes[mesh].primitives[p];
-        if (primitive.attributes.empty()) continue;
         JointDemand demand;
-        addDemand(readInfluences(model, primitive), demand);
+        demand.add(readInfluences(model, model.meshes[mesh].primitives[p]));
         if (demand.jointsWithWeight > count)
             return fault(elementName("meshes", mesh, "primitives", p) + ".attributes.JOINTS_0",
                          "joints below " + std::to_string(count) + " of " + elementName("skins", skin),
@@ -310,7 +274,7 @@ Error jointsFault(const Model& model, std::size_t mesh, std::size_t skin)
     return fault(elementName("meshes", mesh), "joints of " + elementName("skins", skin), "others");
 }
 
-/// Holds meshes and skins against each other, the meshes first.
+/// Compares meshes with their skins, the meshes first.
 class SkinningValidation
 {
 public:
@@ -347,16 +311,17 @@ private:
     std::optional<Error> checkWeights(std::size_t mesh, tinygltf::Primitive& primitive, const std::string& name)
     {
         Influences influences = readInfluences(_model, primitive);
-        const std::optional<std::string> mended = mendAllWeights(influences);
-        addDemand(influences, _demands[mesh]);
+        const std::optional<std::string> mended = mendWeights(influences.weights);
+        _demands[mesh].add(influences);
         if (!mended) return std::nullopt;
         const std::string element = name + ".attributes.WEIGHTS_0";
         _report.warn(element + ": " + *mended + "; made to sum to 1, there and where else it is so");
-        if (!_budget.take(influences.weights.size() * sizeof(float)))
-            return fault(element, _budget.limitText(), "more");
-        for (std::size_t set = 0; set < influences.sets; ++set)
-            primitive.attributes[weightsName(set)] =
-                addAccessor(_model, takeSet<float>(influences.weights, influences.sets, set), TINYGLTF_TYPE_VEC4);
+        for (std::size_t set = 0; set < influences.weights.size(); ++set)
+        {
+            if (!_budget.take(influences.weights[set].size() * sizeof(float)))
+                return fault(element, _budget.limitText(), "more");
+            primitive.attributes[weightsName(set)] = addAccessor(_model, influences.weights[set], TINYGLTF_TYPE_VEC4);
+        }
         return std::nullopt;
     }
 
@@ -388,16 +353,24 @@ private:
     {
         const JointDemand& demand = _demands[mesh];
         if (demand.jointsInAll <= demand.smallestSkin) return std::nullopt;
-        Influences influences = readInfluences(_model, primitive);
-        if (!mendJoints(influences, demand.smallestSkin)) return std::nullopt;
+        const Influences influences = readInfluences(_model, primitive);
         const std::string element = name + ".attributes.JOINTS_0";
-        _report.warn(element + ": expected joints below " + std::to_string(demand.smallestSkin) +
-                     ", found larger ones without weight; taken as 0");
-        if (!_budget.take(influences.joints.size() * sizeof(std::uint16_t)))
-            return fault(element, _budget.limitText(), "more");
-        for (std::size_t set = 0; set < influences.sets; ++set)
-            primitive.attributes[jointsName(set)] = addAccessor(
-                _model, takeSet<std::uint16_t>(influences.joints, influences.sets, set), TINYGLTF_TYPE_VEC4);
+        bool mended = false;
+        for (std::size_t set = 0; set < influences.joints.size(); ++set)
+        {
+            std::vector<std::uint16_t> joints;
+            joints.reserve(influences.joints[set].size());
+            for (const std::uint32_t joint : influences.joints[set])
+                joints.push_back(joint < demand.smallestSkin ? std::uint16_t(joint) : std::uint16_t(0));
+            if (std::equal(joints.begin(), joints.end(), influences.joints[set].begin())) continue;
+            mended = true;
+            if (!_budget.take(joints.size() * sizeof(std::uint16_t)))
+                return fault(element, _budget.limitText(), "more");
+            primitive.attributes[jointsName(set)] = addAccessor(_model, joints, TINYGLTF_TYPE_VEC4);
+        }
+        if (mended)
+            _report.warn(element + ": expected joints below " + std::to_string(demand.smallestSkin) +
+                         ", found larger ones without weight; taken as 0");
         return std::nullopt;
     }
 
@@ -409,19 +382,16 @@ private:
 
 } // namespace
 
-std::optional<Error> validateMeshes(const Model& model, MemoryBudget budget, Report& report)
+std::optional<Error> validateMeshes(Model& model, MemoryBudget& budget, Report& report)
 {
-    MeshValidation validation(model, budget, report);
+    MemoryBudget primitives(budget.limit());
+    MeshValidation validation(model, primitives, report);
     for (std::size_t m = 0; m < model.meshes.size(); ++m)
         for (std::size_t p = 0; p < model.meshes[m].primitives.size(); ++p)
             if (std::optional<Error> error =
                     validation.validate(model.meshes[m].primitives[p], elementName("meshes", m, "primitives", p)))
                 return error;
-    return validateNodeWeights(model);
-}
-
-std::optional<Error> validateSkinning(Model& model, MemoryBudget& budget, Report& report)
-{
+    if (std::optional<Error> error = validateNodeWeights(model)) return error;
     return SkinningValidation(model, budget, report).run();
 }
 

@@ -20,4 +20,10 @@ namespace osgGpuAnimation::gltf
 /// Returns the first fault, for which the document must be refused.
 std::optional<Error> validateNodes(const tinygltf::Model& model, std::size_t mostDepth, Report& report);
 
+/// Animations (glTF 2.0, section 3.11): key times are floats that do not decrease, outputs have the type of their path
+/// and as many values as the times, the interpolation and the morph targets need. Rotations of length 0 are mended
+/// in data of our own. Warns of equal times, negative times and nodes that have a matrix. Returns the first fault, for
+/// which the document must be refused.
+std::optional<Error> validateAnimations(tinygltf::Model& model, Report& report);
+
 } // namespace osgGpuAnimation::gltf

@@ -13,12 +13,12 @@
 namespace osgGpuAnimation::gltf
 {
 
-/// What an import has to say besides its result: warnings (something of the file was left out or mended) and notes.
+/// The messages of an import: warnings (an element of the file was left out or mended) and notes.
 /// Each names its element: `animations[2].channels[4]: 10 times but 9 values; channel skipped`.
 struct Messages
 {
     std::vector<std::string> warnings;
-    std::vector<std::string> notes; ///< not a fault of the file: an unknown extension in extensionsUsed, say
+    std::vector<std::string> notes; ///< no fault of the file, for example an unknown extension in extensionsUsed
 };
 
 /// Collects the messages of one load. A file may hold a million faults: after the first hundred of a kind one line
@@ -58,7 +58,7 @@ std::string elementName(std::string_view collection, std::size_t index, std::str
     return name;
 }
 
-/// Text of the file made fit for a message: in quotation marks, clipped, nothing but printable ASCII.
+/// Text of the file for a message: in quotation marks, clipped, printable ASCII only.
 std::string quoted(std::string_view text);
 inline std::string quoted(const std::string& text)
 {
@@ -66,7 +66,7 @@ inline std::string quoted(const std::string& text)
 } // not std::quoted
 /// The same without the quotation marks.
 std::string printable(std::string_view text, std::size_t most = 80);
-/// 8, 0.5, 1e+30: as short as it can be.
+/// The shortest text that reads back as the number: 8, 0.5, 1e+30.
 std::string numberText(double number);
 
 /// `element: expected …, found …`
@@ -78,8 +78,8 @@ inline std::string namedElement(std::string_view collection, std::size_t index, 
     return elementName(collection, index) + (name.empty() ? "" : ' ' + quoted(name));
 }
 
-/// The number that the text is from its first character to its last, whatever the locale; nothing where it is none or
-/// beyond what Number holds.
+/// The number that the whole text represents, in any locale; none if it is no number or does not fit Number:
+/// parsedNumber<int>("1x") is none.
 template <typename Number>
 std::optional<Number> parsedNumber(std::string_view text)
 {

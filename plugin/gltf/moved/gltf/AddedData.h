@@ -2,4 +2,4 @@
 // Old include path until data/ and scene/ have moved.
 #pragma once
 
-#include "gltf/document/AddedData.h"
+#include "gltf/Accessor.h"

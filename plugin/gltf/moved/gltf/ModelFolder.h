@@ -2,4 +2,4 @@
 // Old include path until data/ and scene/ have moved.
 #pragma once
 
-#include "gltf/file/ModelFolder.h"
+#include "gltf/file/Uri.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
+#include "gltf/file/ModelBytes.h"
 #include "gltf/Import.h"
-#include "gltf/ModelBytes.h"
-#include "gltf/OptionString.h"
+#include "gltf/ImportOptions.h"
 
 #include "cache/SeparateLoads.h"
 

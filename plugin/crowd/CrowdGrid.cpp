@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "crowd/CrowdGrid.h"
 
-#include "gltf/ParsedNumber.h"
+#include "gltf/file/Report.h"
 
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/PoseStatistics.h>

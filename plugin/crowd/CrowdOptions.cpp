@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "crowd/CrowdOptions.h"
 
-#include "gltf/ElementName.h"
-#include "gltf/OptionString.h"
-#include "gltf/OptionWord.h"
-#include "gltf/ParsedNumber.h"
+#include "gltf/file/Report.h"
+#include "gltf/ImportOptions.h"
 
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/DetailRange.h>

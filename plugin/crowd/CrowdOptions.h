@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "gltf/OptionSpelling.h"
+#include "gltf/ImportOptions.h"
 
 #include <osgGpuAnimation/animation/Result.h>
 

@@ -168,6 +168,20 @@ std::vector<Out> read(const tinygltf::Model& model, int index)
     return numbers;
 }
 
+template <typename Number>
+int addNumbers(tinygltf::Model& model, const std::vector<Number>& numbers, int type, int componentType)
+{
+    std::vector<unsigned char> bytes(numbers.size() * sizeof(Number));
+    if (!bytes.empty()) std::memcpy(bytes.data(), numbers.data(), bytes.size());
+    tinygltf::Accessor accessor;
+    accessor.type = type;
+    accessor.componentType = componentType;
+    accessor.count = numbers.size() / componentCount(accessor);
+    accessor.bufferView = addBufferView(model, std::move(bytes), 0);
+    model.accessors.push_back(std::move(accessor));
+    return int(model.accessors.size() - 1);
+}
+
 } // namespace
 
 std::size_t componentCount(const tinygltf::Accessor& accessor)
@@ -213,6 +227,27 @@ std::vector<float> readFloats(const tinygltf::Model& model, int accessor)
 std::vector<std::uint32_t> readIntegers(const tinygltf::Model& model, int accessor)
 {
     return read<std::uint32_t>(model, accessor);
+}
+
+int addBufferView(tinygltf::Model& model, std::vector<unsigned char> bytes, std::size_t stride)
+{
+    tinygltf::BufferView view;
+    view.buffer = int(model.buffers.size());
+    view.byteLength = bytes.size();
+    view.byteStride = stride;
+    model.buffers.emplace_back().data = std::move(bytes);
+    model.bufferViews.push_back(std::move(view));
+    return int(model.bufferViews.size() - 1);
+}
+
+int addAccessor(tinygltf::Model& model, const std::vector<float>& numbers, int type)
+{
+    return addNumbers(model, numbers, type, TINYGLTF_COMPONENT_TYPE_FLOAT);
+}
+
+int addAccessor(tinygltf::Model& model, const std::vector<std::uint16_t>& numbers, int type)
+{
+    return addNumbers(model, numbers, type, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT);
 }
 
 } // namespace osgGpuAnimation::gltf

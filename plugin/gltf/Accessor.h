@@ -27,4 +27,14 @@ std::vector<float> readFloats(const tinygltf::Model& model, int accessor);
 /// For indices and joints: the integers as they are.
 std::vector<std::uint32_t> readIntegers(const tinygltf::Model& model, int accessor);
 
+// Data of our own in a model: decompressed or mended. The file's buffers and accessors stay as they are, because other
+// elements may refer to them.
+
+/// Returns the number of a new buffer view with a buffer of its own. stride 0: tightly packed.
+int addBufferView(tinygltf::Model& model, std::vector<unsigned char> bytes, std::size_t stride);
+
+/// Returns the number of a new accessor of `type` (TINYGLTF_TYPE_…) over all the numbers.
+int addAccessor(tinygltf::Model& model, const std::vector<float>& numbers, int type);
+int addAccessor(tinygltf::Model& model, const std::vector<std::uint16_t>& numbers, int type);
+
 } // namespace osgGpuAnimation::gltf

@@ -2,12 +2,11 @@
 #include "gltf/Import.h"
 
 #include "gltf/Clips.h"
-#include "gltf/ElementName.h"
-#include "gltf/ParsedNumber.h"
-#include "gltf/Reach.h"
+#include "gltf/document/LoadDocument.h"
+#include "gltf/file/Report.h"
+#include "gltf/scene/TransformBound.h"
 #include "gltf/SceneGraph.h"
 #include "gltf/Skins.h"
-#include "gltf/TinyGltf.h"
 
 #include <osgGpuAnimation/nodes/CharacterKeys.h>
 
@@ -29,7 +28,7 @@ std::string clipNames(const ImportedModel& imported)
     return names.empty() ? "none" : names;
 }
 
-/// The place in the set of the clip to play at first: by name, else by the file's animation number.
+/// The index in the set of the clip to play first: by name, else by the file's animation number.
 Result<int> chooseClip(const ImportedModel& imported, const ImportOptions& options)
 {
     if (!options.clip) return imported.set && !imported.set->clips().empty() ? 0 : -1;
@@ -41,7 +40,7 @@ Result<int> chooseClip(const ImportedModel& imported, const ImportOptions& optio
     return Error{"clip " + quoted(*options.clip) + " was asked for; the file's clips are: " + clipNames(imported)};
 }
 
-/// The whole way of one file: the steps share what they read and what they have to say.
+/// The steps of one import, with the data and messages that they share.
 class Importer
 {
 public:
@@ -65,8 +64,8 @@ private:
     const ImportOptions& _options;
     ImportedModel& _result;
     Report _report;
-    DecodedBytes _budget;
-    Textures _textures; ///< begins to decode at once
+    MemoryBudget _budget;
+    Textures _textures; ///< starts decoding in its constructor
 };
 
 Result<bool> Importer::makeSet(const NodeTree& tree, const Joints& joints, const Morphs& morphs)
@@ -80,7 +79,7 @@ Result<bool> Importer::makeSet(const NodeTree& tree, const Joints& joints, const
     if (!set) return set.error();
     for (std::size_t skin = 0; skin < set.value()->skins().size(); ++skin)
         for (const AffineMatrix& matrix : set.value()->skins()[skin].inverseBinds)
-            if (!Reach::of(matrix.toColumns()).fits())
+            if (!TransformBound::of(matrix.toColumns()).fits())
                 return Error{elementName("skins", skin) + ".inverseBindMatrices: one takes its joint " +
                              beyondFarthest()};
     if (set.value()->paletteSize() > mostPaletteEntries)
@@ -92,7 +91,7 @@ Result<bool> Importer::makeSet(const NodeTree& tree, const Joints& joints, const
 
 void Importer::makeGraph(const NodeTree& tree, const Joints& joints, const Morphs& morphs)
 {
-    // glTF is +Y up, OSG is +Z up: the one place where that is turned.
+    // glTF is +Y up, OSG is +Z up: the only place that converts.
     const osg::Matrixd upright = osg::Matrixd::rotate(osg::PI_2, osg::Vec3d(1, 0, 0));
     _result.root = new osg::MatrixTransform(_options.noRotation ? osg::Matrixd::identity() : upright);
     if (tree.scene >= 0) _result.root->setName(_model.scenes[static_cast<std::size_t>(tree.scene)].name);
@@ -108,7 +107,7 @@ void Importer::makeGraph(const NodeTree& tree, const Joints& joints, const Morph
     buildSceneGraph(parts, *_result.root, _result.character, _result.primitives);
 }
 
-/// Once the meshes are in, which say how far an error of a joint reaches, and which are drawn at levels of detail.
+/// Needs the meshes: they bound the effect of a joint's error, and some have levels of detail.
 Result<bool> Importer::finishClips()
 {
     if (!_result.character) return true;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "gltf/file/Report.h"
 #include "gltf/ImportOptions.h"
-#include "gltf/Messages.h"
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/nodes/CompactCharacter.h>
@@ -19,7 +19,7 @@
 namespace osgGpuAnimation::gltf
 {
 
-/// One primitive of one mesh node of the scene, as it came into the graph.
+/// One primitive of one mesh node of the scene, and its drawable in the graph.
 struct ImportedPrimitive
 {
     int node = -1; ///< the file's numbers
@@ -31,24 +31,24 @@ struct ImportedPrimitive
     std::size_t vertexCount = 0;          ///< of the file's POSITION accessor
     std::size_t influences = 0;           ///< joints a vertex can name: 4 a JOINTS_n set
     osg::ref_ptr<osg::Geometry> geometry; ///< a SkinnedGeometry where it is drawn from the palette
-    /// vertexCount numbers: a vertex of `geometry` that stands for the file's vertex; null where they are the same.
+    /// vertexCount numbers: the vertex of `geometry` for each vertex of the file; null if they are the same.
     std::shared_ptr<const std::vector<std::uint32_t>> geometryVertex;
     osg::Matrixd
         toModel; ///< of a plain geometry: its place at rest, in the file's axes; identity for a SkinnedGeometry
 };
 
-/// What a file became.
+/// The result of an import.
 struct ImportedModel
 {
     osg::ref_ptr<osg::MatrixTransform> root;   ///< turns +Y up to +Z up (identity with noRotation)
     osg::ref_ptr<AnimatedCharacter> character; ///< below root; null where nothing in the file can move
-    std::shared_ptr<const AnimationSet> set;   ///< the character's; null likewise
+    std::shared_ptr<const AnimationSet> set;   ///< the character's; null if there is none
     std::vector<ImportedPrimitive> primitives; ///< by node, then primitive
 
-    int scene = 0;                               ///< the scene that was taken, -1: the file has none
+    int scene = 0;                               ///< the imported scene, -1: the file has none
     std::vector<std::string> nodeNames;          ///< one a node of the file; empty where it has none
     std::vector<int> nodeParents;                ///< -1 for roots
-    std::optional<CompactedCharacter> compacted; ///< where compact clips were asked for
+    std::optional<CompactedCharacter> compacted; ///< only if the options ask for compact clips
     std::vector<int> animationOfClip;            ///< the file's animation number of each clip of the set
     std::vector<std::string> materialNames;
     std::vector<std::string> extensionsUsed;

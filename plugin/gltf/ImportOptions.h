@@ -2,15 +2,18 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/LoopMode.h>
+#include <osgGpuAnimation/animation/Result.h>
 
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace osgGpuAnimation::gltf
 {
 
-/// What a caller may ask of an import, and the limits that keep a file from any origin harmless.
+/// The caller's choices for an import, and the limits that keep a file from any origin harmless.
 struct ImportOptions
 {
     std::optional<std::string> clip; ///< name, or index where no clip has that name; default: the first
@@ -29,8 +32,40 @@ struct ImportOptions
     std::size_t maxJsonDepth = 256;
     std::size_t maxNodeDepth = 4096;                       ///< nodes from a root to a leaf
     std::size_t maxElements = 1u << 24;                    ///< of any one array of the document
-    std::size_t maxDocumentBytes = std::size_t(448) << 20; ///< what the JSON becomes, without the data it points to
+    std::size_t maxDocumentBytes = std::size_t(448) << 20; ///< memory for the JSON, without the data it points to
     std::size_t maxDecodedBytes = std::size_t(2) << 30;    ///< buffers, accessors and images, all together
 };
+
+/// An option for supportsOption(), like `clip=NAME`, and a line on what it does.
+using OptionHelp = std::pair<const char*, const char*>;
+
+/// All options that parseOptions() knows.
+const std::vector<OptionHelp>& optionHelp();
+/// The option's name: `clip` of `clip=NAME`.
+std::string optionName(const OptionHelp& help);
+
+/// Reads osgDB's option string, see splitOptions(). Words with other names belong to other readers and are ignored.
+/// Errors: a value that is missing, or no number where a number is needed.
+Result<ImportOptions> parseOptions(const std::string& text);
+
+/// One option of osgDB's option string.
+struct OptionWord
+{
+    std::string name;
+    std::optional<std::string> value; ///< the text after the first `=`
+};
+
+/// The options of a string: words separated by spaces, `name` or `name=value`, a value with spaces in quotation marks
+/// (`clip="Walk fast"`).
+std::vector<OptionWord> splitOptions(const std::string& text);
+
+/// A string that splitOptions() splits into the same words.
+std::string joinOptions(const std::vector<OptionWord>& words);
+
+/// A hint for each word that differs from a known option by its case or by one letter that is wrong, missing, extra or
+/// swapped with the next: `"cliq" is unknown; is "clip" meant?`. osgDB passes all options to all readers, so other
+/// words, and those of `others`, are ignored.
+std::vector<std::string> misspeltOptions(const std::string& text, const std::vector<OptionHelp>& known,
+                                         const std::vector<OptionHelp>& others = {});
 
 } // namespace osgGpuAnimation::gltf

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "ModelFile.h"
 
-#include "gltf/ModelBytes.h"
+#include "gltf/file/ModelBytes.h"
 
 #include <osgDB/FileNameUtils>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "Measurements.h"
 
-#include "gltf/RegularFile.h"
+#include "gltf/file/ModelBytes.h"
 
 #include <tiny_gltf.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "fuzz/Seed.h"
 
-#include "gltf/Uri.h"
+#include "gltf/file/Uri.h"
 #include "plugin/LoadedDocument.h"
 
 #include <utility>

@@ -2,7 +2,7 @@
 // libFuzzer target: the bytes of a .glb, of which three changes in four leave the frame whole.
 #include "fuzz/DocumentMutator.h"
 #include "fuzz/ImportOnce.h"
-#include "gltf/GlbContainer.h"
+#include "gltf/file/ModelBytes.h"
 #include "plugin/GlbText.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
+#include "gltf/document/LoadDocument.h"
+#include "gltf/file/ModelBytes.h"
 #include "gltf/Import.h"
-#include "gltf/RegularFile.h"
-#include "gltf/TinyGltf.h"
 #include "plugin/SharedAssets.h"
 #include "support/PeakMemory.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/Import.h"
-#include "gltf/OptionString.h"
+#include "gltf/ImportOptions.h"
 #include "plugin/SharedAssets.h"
 #include "support/PoseErrors.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "gltf/GlbContainer.h"
+#include "gltf/file/ModelBytes.h"
 
 #include "plugin/GlbText.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "gltf/JsonReader.h"
-#include "gltf/JsonWriter.h"
+#include "gltf/document/JsonReader.h"
+#include "plugin/WrittenJson.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "gltf/JsonText.h"
-#include "gltf/JsonReader.h"
+#include "gltf/document/JsonReader.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "gltf/ModelBytes.h"
+#include "gltf/file/ModelBytes.h"
 #include "gltf/Import.h"
 #include "plugin/GlbText.h"
 #include "support/PeakMemory.h"

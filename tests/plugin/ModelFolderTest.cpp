@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "gltf/ModelFolder.h"
+#include "gltf/file/Uri.h"
 
 #include "support/ScratchFolder.h"
 

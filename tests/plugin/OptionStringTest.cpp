@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "gltf/OptionString.h"
+#include "gltf/ImportOptions.h"
 
 #include <gtest/gtest.h>
 

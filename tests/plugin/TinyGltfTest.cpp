@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "gltf/TinyGltf.h"
+#include "gltf/document/LoadDocument.h"
 
 #include "gltf/Accessor.h"
 #include "gltf/Import.h"

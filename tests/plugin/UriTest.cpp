@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "gltf/Uri.h"
+#include "gltf/file/Uri.h"
 
 #include <gtest/gtest.h>
 

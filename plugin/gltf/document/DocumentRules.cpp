@@ -1,0 +1,368 @@
+// SPDX-License-Identifier: MIT
+#include "gltf/document/DocumentRules.h"
+
+#include "gltf/AttributeSemantic.h"
+#include "gltf/file/Report.h"
+
+#include <algorithm>
+#include <array>
+#include <bitset>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <unordered_set>
+#include <utility>
+
+namespace osgGpuAnimation::gltf
+{
+
+namespace
+{
+
+using Kind = AttributeSemantic::Kind;
+
+const std::size_t mostDracoAttributes = 256; // Draco's own limit
+
+bool isMorphable(Kind kind)
+{
+    return kind == Kind::Position || kind == Kind::Normal || kind == Kind::Tangent || kind == Kind::TexCoord ||
+           kind == Kind::Color;
+}
+
+/// Nothing happens if the object has no such member.
+void leaveOut(const JsonValue& object, const JsonValue& member, const std::string& name, const char* why,
+              Report& report)
+{
+    if (!member) return;
+    report.warn(name + '.' + printable(member.key()) + ": " + why + "; left out");
+    member.dropFrom(object);
+}
+
+void leaveOutUnknown(const JsonValue& attributes, const std::string& name, bool morph, Report& report)
+{
+    for (const JsonValue& attribute : attributes)
+    {
+        const std::optional<AttributeSemantic> semantic = AttributeSemantic::parse(attribute.key());
+        if (!semantic || (morph && !isMorphable(semantic->kind)))
+            leaveOut(attributes, attribute, name, "no attribute that glTF knows", report);
+    }
+}
+
+void leaveOutGaps(const JsonValue& attributes, const std::string& name, Report& report)
+{
+    std::array<std::bitset<AttributeSemantic::mostSets>, std::size_t(Kind::Custom) + 1> sets;
+    for (const JsonValue& attribute : attributes)
+    {
+        const AttributeSemantic semantic = *AttributeSemantic::parse(attribute.key());
+        sets[std::size_t(semantic.kind)].set(std::size_t(semantic.set));
+    }
+    for (const JsonValue& attribute : attributes)
+    {
+        const AttributeSemantic semantic = *AttributeSemantic::parse(attribute.key());
+        if (semantic.kind == Kind::TexCoord) continue; // textures name their set
+        for (int before = 0; before < semantic.set; ++before)
+            if (!sets[std::size_t(semantic.kind)].test(std::size_t(before)))
+            {
+                leaveOut(attributes, attribute, name, "the sets before it are missing", report);
+                break;
+            }
+    }
+}
+
+void dropAll(const JsonValue& members)
+{
+    for (const JsonValue& member : members)
+        member.dropFrom(members);
+}
+
+/// Makes a primitive undrawable: no attributes, no indices, the same number of targets, all empty.
+void empty(const JsonValue& primitive)
+{
+    dropAll(primitive["attributes"]);
+    for (const JsonValue& target : primitive["targets"])
+        dropAll(target);
+    for (const char* member : {"indices", "extensions"})
+        if (const JsonValue value = primitive[member]) value.dropFrom(primitive);
+}
+
+void checkPrimitive(const JsonValue& primitive, const std::string& name, Report& report)
+{
+    const JsonValue attributes = primitive["attributes"];
+    leaveOutUnknown(attributes, name + ".attributes", false, report);
+    leaveOutGaps(attributes, name + ".attributes", report);
+    std::size_t target = 0;
+    for (const JsonValue& targetAttributes : primitive["targets"])
+        leaveOutUnknown(targetAttributes, name + '.' + elementName("targets", target++), true, report);
+    if (attributes["POSITION"]) return;
+    report.warn(name + ".attributes: expected POSITION, found none; the primitive is not drawn");
+    empty(primitive);
+}
+
+std::optional<Error> checkDraco(const JsonValue& primitive, const std::string& name)
+{
+    const JsonValue attributes = primitive["extensions"]["KHR_draco_mesh_compression"]["attributes"];
+    if (!attributes) return std::nullopt;
+    const std::string place = name + ".extensions.KHR_draco_mesh_compression.attributes";
+    if (!attributes.is(JsonTree::Type::Object)) return fault(place, "an object", attributes.description());
+    if (attributes.size() > mostDracoAttributes)
+        return fault(place, "at most " + std::to_string(mostDracoAttributes) + " attributes",
+                     std::to_string(attributes.size()));
+    for (const JsonValue& attribute : attributes)
+    {
+        if (!attribute.isInteger() || attribute.number() < 0.0 || attribute.number() > 4294967295.0)
+            return fault(place + '.' + printable(attribute.key()), "an attribute's number", attribute.description());
+        if (!primitive["attributes"][attribute.key()])
+            return fault(place + '.' + printable(attribute.key()), "an attribute of the primitive", "another");
+    }
+    return std::nullopt;
+}
+
+/// Primitives (glTF 2.0, section 3.7.2): attributes that glTF does not know, and sets that do not follow set 0, are
+/// left out; a primitive without POSITION loses all its attributes and keeps its place; all primitives of a mesh have
+/// the same number of morph targets.
+std::optional<Error> checkPrimitiveRules(const JsonValue& meshes, Report& report)
+{
+    std::size_t m = 0;
+    for (const JsonValue& mesh : meshes)
+    {
+        std::size_t p = 0;
+        std::size_t targets = 0;
+        for (const JsonValue& primitive : mesh["primitives"])
+        {
+            const std::string name = elementName("meshes", m, "primitives", p);
+            const JsonValue list = primitive["targets"];
+            const std::size_t count = list ? list.size() : 0;
+            if (p == 0) targets = count;
+            if (count != targets)
+                return fault(name + ".targets", std::to_string(targets) + " as in the primitives before",
+                             std::to_string(count));
+            if (std::optional<Error> error = checkDraco(primitive, name)) return error;
+            checkPrimitive(primitive, name, report);
+            ++p;
+        }
+        const JsonValue weights = mesh["weights"];
+        if (weights && weights.size() != targets)
+            return fault(elementName("meshes", m) + ".weights", std::to_string(targets) + " (one a morph target)",
+                         std::to_string(weights.size()));
+        ++m;
+    }
+    return std::nullopt;
+}
+
+const std::string_view paths[] = {"translation", "rotation", "scale", "weights"};
+
+/// One number for each property of each node.
+using Properties = std::unordered_set<std::uint64_t>;
+
+void checkTarget(const JsonValue& channel, std::size_t animation, std::size_t index, Properties& animated,
+                 Report& report)
+{
+    const JsonValue target = channel["target"];
+    if (!target) return;
+    const JsonValue node = target["node"], path = target["path"];
+    if (!node || !path) return target.dropFrom(channel); // allowed: an extension may define the target
+    const auto known = std::find(std::begin(paths), std::end(paths), path.text());
+    const auto name = [&] { return elementName("animations", animation, "channels", index) + ".target"; };
+    if (known == std::end(paths))
+    {
+        report.warn(name() + ".path: expected translation, rotation, scale or weights, found " + path.description() +
+                    "; channel ignored");
+        return target.dropFrom(channel);
+    }
+    const std::uint64_t property = std::uint64_t(node.number()) * std::size(paths) + std::uint64_t(known - paths);
+    if (animated.insert(property).second) return;
+    report.warn(name() + ": another channel animates " + std::string(path.text()) + " of the node; channel ignored");
+    target.dropFrom(channel);
+}
+
+/// Channels (glTF 2.0, section 3.11): the sampler is one of the animation's, the path is known, no property of a node
+/// is animated twice. A channel that animates nothing loses its target and keeps its place.
+std::optional<Error> checkAnimationRules(const JsonValue& animations, Report& report)
+{
+    std::size_t i = 0;
+    for (const JsonValue& animation : animations)
+    {
+        const std::size_t samplers = animation["samplers"].size();
+        Properties animated;
+        std::size_t c = 0;
+        for (const JsonValue& channel : animation["channels"])
+        {
+            const JsonValue sampler = channel["sampler"];
+            if (sampler.number() >= double(samplers))
+                return fault(elementName("animations", i, "channels", c) + ".sampler",
+                             "an index below " + std::to_string(samplers) + " of the animation's samplers",
+                             sampler.description());
+            checkTarget(channel, i, c, animated, report);
+            ++c;
+        }
+        ++i;
+    }
+    return std::nullopt;
+}
+
+// More than the rounding to a few digits; the Khronos validator has the same limit.
+const double unitTolerance = 0.00769;
+
+void checkMatrix(const JsonValue& matrix, const std::string& name, Report& report)
+{
+    static const double lastRow[] = {0.0, 0.0, 0.0, 1.0};
+    bool mended = false;
+    std::size_t i = 0;
+    for (const JsonValue& element : matrix)
+    {
+        if (i % 4 == 3 && element.number() != lastRow[i / 4])
+        {
+            element.setNumber(lastRow[i / 4]);
+            mended = true;
+        }
+        ++i;
+    }
+    if (mended) report.warn(name + ".matrix: its last row is not 0 0 0 1; taken as such");
+}
+
+void checkRotation(const JsonValue& node, const std::string& name, Report& report)
+{
+    const JsonValue rotation = node["rotation"];
+    double squares = 0.0;
+    for (const JsonValue& element : rotation)
+        squares += element.number() * element.number();
+    const double length = std::sqrt(squares);
+    if (std::abs(length - 1.0) <= unitTolerance) return;
+    if (length < 1e-12 || !std::isfinite(length))
+        return leaveOut(node, rotation, name, "expected a unit quaternion, found one without direction", report);
+    for (const JsonValue& element : rotation)
+        element.setNumber(element.number() / length);
+    report.warn(name + ".rotation: expected a unit quaternion, found one of length " + numberText(length) +
+                "; made unit");
+}
+
+/// Mends nodes with a warning each (glTF 2.0, sections 3.5.2, 3.5.3): a matrix beside translation, rotation or scale
+/// (the matrix counts), rotations that are no unit quaternions, skins and weights without a mesh.
+void checkNodeRules(const JsonValue& nodes, Report& report)
+{
+    std::size_t i = 0;
+    for (const JsonValue& node : nodes)
+    {
+        const std::string name = elementName("nodes", i++);
+        if (const JsonValue matrix = node["matrix"])
+        {
+            for (const std::string_view member : {"translation", "rotation", "scale"})
+                leaveOut(node, node[member], name, "the node has a matrix, which counts", report);
+            checkMatrix(matrix, name, report);
+        }
+        if (node["rotation"]) checkRotation(node, name, report);
+        if (!node["mesh"])
+            for (const std::string_view member : {"skin", "weights"})
+                leaveOut(node, node[member], name, "the node has no mesh", report);
+    }
+}
+
+const std::string_view supportedExtensions[] = {"KHR_mesh_quantization",   "KHR_texture_transform",
+                                                "KHR_materials_unlit",     "KHR_materials_emissive_strength",
+                                                "EXT_meshopt_compression", "KHR_draco_mesh_compression",
+                                                "EXT_mesh_gpu_instancing"};
+
+bool isSupported(std::string_view extension)
+{
+    return std::find(std::begin(supportedExtensions), std::end(supportedExtensions), extension) !=
+           std::end(supportedExtensions);
+}
+
+/// "2.1" is 2 and 1; nothing if the text is no version.
+std::optional<std::pair<int, int>> parseVersion(std::string_view text)
+{
+    int major = 0, minor = 0;
+    const char* const end = text.data() + text.size();
+    const std::from_chars_result first = std::from_chars(text.data(), end, major);
+    if (first.ec != std::errc() || first.ptr == end || *first.ptr != '.') return std::nullopt;
+    const std::from_chars_result second = std::from_chars(first.ptr + 1, end, minor);
+    if (second.ec != std::errc() || second.ptr != end || major < 0 || minor < 0) return std::nullopt;
+    return std::pair(major, minor);
+}
+
+std::optional<Error> checkVersion(const JsonValue& asset)
+{
+    const JsonValue version = asset["version"];
+    const auto parsed = parseVersion(version.text());
+    if (!parsed || parsed->first != 2) return fault("asset.version", "glTF 2.x", version.description());
+    const JsonValue least = asset["minVersion"];
+    if (!least) return std::nullopt;
+    const auto parsedLeast = parseVersion(least.text());
+    if (!parsedLeast || *parsedLeast > std::pair(2, 0))
+        return fault("asset.minVersion", "a version that glTF 2.0 satisfies", least.description());
+    return std::nullopt;
+}
+
+std::optional<Error> checkExtensions(const JsonValue& document, Report& report)
+{
+    std::size_t i = 0;
+    for (const JsonValue& extension : document["extensionsRequired"])
+    {
+        if (!isSupported(extension.text()))
+            return fault(elementName("extensionsRequired", i), "an extension that is supported",
+                         extension.description());
+        ++i;
+    }
+    i = 0;
+    for (const JsonValue& extension : document["extensionsUsed"])
+    {
+        if (!isSupported(extension.text()))
+            report.note(elementName("extensionsUsed", i) + ": " + extension.description() +
+                        " is not supported and ignored");
+        ++i;
+    }
+    return std::nullopt;
+}
+
+std::optional<Error> checkImages(const JsonValue& images)
+{
+    std::size_t i = 0;
+    for (const JsonValue& image : images)
+    {
+        const bool uri(image["uri"]), bufferView(image["bufferView"]);
+        if (uri == bufferView)
+            return fault(elementName("images", i), "either uri or bufferView", uri ? "both" : "neither");
+        ++i;
+    }
+    return std::nullopt;
+}
+
+std::optional<Error> checkCameras(const JsonValue& cameras)
+{
+    std::size_t i = 0;
+    for (const JsonValue& camera : cameras)
+    {
+        const std::string_view type = camera["type"].text();
+        if (!camera[type]) return fault(elementName("cameras", i) + '.' + std::string(type), "an object", "nothing");
+        ++i;
+    }
+    return std::nullopt;
+}
+
+void noteScenes(const JsonValue& document, Report& report)
+{
+    if (!document["scenes"])
+        report.note("scenes: the document has none: it is a library of parts");
+    else if (!document["scene"])
+        report.note("scene: the document names none to show");
+}
+
+} // namespace
+
+std::optional<Error> checkDocumentRules(const JsonValue& document, Report& report)
+{
+    std::optional<Error> error = checkVersion(document["asset"]);
+    if (!error) error = checkExtensions(document, report);
+    if (!error) error = checkImages(document["images"]);
+    if (!error) error = checkCameras(document["cameras"]);
+    if (!error) error = checkPrimitiveRules(document["meshes"], report);
+    if (!error) error = checkAnimationRules(document["animations"], report);
+    if (error) return error;
+    checkNodeRules(document["nodes"], report);
+    noteScenes(document, report);
+    return std::nullopt;
+}
+
+} // namespace osgGpuAnimation::gltf

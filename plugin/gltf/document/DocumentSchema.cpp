@@ -1,0 +1,588 @@
+// SPDX-License-Identifier: MIT
+#include "gltf/document/DocumentSchema.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <iterator>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace osgGpuAnimation::gltf
+{
+
+namespace
+{
+
+// ----------------------------------------------------------------------------------------------------------- the rules
+
+constexpr double largestInteger = 9007199254740991.0; // 2^53 - 1: exact in every JSON reader (section 2.7)
+constexpr double largestInt = 2147483647.0;
+constexpr double largestFloat = 3.4028234663852886e38;
+constexpr std::size_t anyCount = std::size_t(-1);
+
+/// The consequence for a member that breaks its rule.
+enum class OnFault : std::uint8_t
+{
+    Refuse,   ///< the document is refused
+    LeaveOut, ///< a warning, and the member is as if it were absent
+    Clamp     ///< a warning, and the number becomes the nearest allowed one; numbers out of range only
+};
+
+enum class Kind : std::uint8_t
+{
+    Any,
+    Boolean,
+    String,
+    Number,
+    Integer,
+    Index,    ///< an integer from 0 to the size of a collection, less one
+    Choice,   ///< one of some texts
+    Code,     ///< one of some integers
+    Object,   ///< with the members of a table; others are left out
+    IndexMap, ///< an object whose members are indices: the attributes of a primitive
+};
+
+/// The type and range of one member of a JSON object. Rules are built in tables:
+///
+///     index("mesh", "meshes"), number("matrix").list(16, 16), integer("count").from(1).required()
+struct SchemaRule
+{
+    std::string_view name;
+    Kind kind = Kind::Any;
+    bool isList = false; ///< an array of that kind
+    bool isRequired = false;
+    OnFault onFault = OnFault::Refuse;         ///< wrong type, wrong number of elements, missing, bad index
+    OnFault onRange = OnFault::LeaveOut;       ///< a number of the right type that is out of range
+    double least = 0.0, most = 0.0;            ///< of numbers, both inclusive
+    double step = 1.0;                         ///< integers are multiples of it
+    std::size_t leastCount = 0, mostCount = 0; ///< of the elements of a list
+    std::string_view collection;               ///< of indices: the array of the document that they refer to
+    std::string_view choices;                  ///< separated by spaces
+    const SchemaRule* members = nullptr;       ///< of objects
+    std::size_t memberCount = 0;
+
+    template <typename Member>
+    constexpr SchemaRule with(Member SchemaRule::*member, Member value) const
+    {
+        SchemaRule rule = *this;
+        rule.*member = value;
+        return rule;
+    }
+    constexpr SchemaRule required() const { return with(&SchemaRule::isRequired, true); }
+    constexpr SchemaRule withRangeFault(OnFault fault) const { return with(&SchemaRule::onRange, fault); }
+    /// Any fault costs this member only.
+    constexpr SchemaRule orLeaveOut() const
+    {
+        return with(&SchemaRule::onFault, OnFault::LeaveOut).withRangeFault(OnFault::LeaveOut);
+    }
+    constexpr SchemaRule from(double first) const { return with(&SchemaRule::least, first); }
+    constexpr SchemaRule upTo(double last) const { return with(&SchemaRule::most, last); }
+    constexpr SchemaRule clamped(double first, double last) const
+    {
+        return from(first).upTo(last).withRangeFault(OnFault::Clamp);
+    }
+    constexpr SchemaRule inStepsOf(double multiple) const { return with(&SchemaRule::step, multiple); }
+    constexpr SchemaRule list(std::size_t atLeast = 1, std::size_t atMost = anyCount) const
+    {
+        return with(&SchemaRule::isList, true)
+            .with(&SchemaRule::leastCount, atLeast)
+            .with(&SchemaRule::mostCount, atMost);
+    }
+};
+
+constexpr SchemaRule rule(std::string_view name, Kind kind)
+{
+    return SchemaRule().with(&SchemaRule::name, name).with(&SchemaRule::kind, kind);
+}
+
+constexpr SchemaRule text(std::string_view name)
+{
+    return rule(name, Kind::String);
+}
+
+constexpr SchemaRule integer(std::string_view name)
+{
+    return rule(name, Kind::Integer).upTo(largestInteger).withRangeFault(OnFault::Refuse);
+}
+
+constexpr SchemaRule number(std::string_view name)
+{
+    return rule(name, Kind::Number).from(-largestFloat).upTo(largestFloat);
+}
+
+constexpr SchemaRule index(std::string_view name, std::string_view collection)
+{
+    return rule(name, Kind::Index).with(&SchemaRule::collection, collection);
+}
+
+constexpr SchemaRule indexMap(std::string_view name, std::string_view collection)
+{
+    return rule(name, Kind::IndexMap).with(&SchemaRule::collection, collection);
+}
+
+constexpr SchemaRule choice(std::string_view name, std::string_view texts)
+{
+    return rule(name, Kind::Choice).with(&SchemaRule::choices, texts);
+}
+
+constexpr SchemaRule code(std::string_view name, std::string_view integers)
+{
+    return rule(name, Kind::Code).with(&SchemaRule::choices, integers);
+}
+
+template <std::size_t size>
+constexpr SchemaRule object(std::string_view name, const SchemaRule (&members)[size])
+{
+    SchemaRule made = rule(name, Kind::Object).with(&SchemaRule::memberCount, size);
+    made.members = members;
+    return made;
+}
+
+constexpr SchemaRule name = text("name").orLeaveOut();
+constexpr SchemaRule extras = rule("extras", Kind::Any); // of elements whose extras may be read: they can be large
+
+// ------------------------------------------------------------------------------------------- buffers and accessors
+
+constexpr SchemaRule sparseIndices[] = {index("bufferView", "bufferViews").required(),
+                                        integer("byteOffset").upTo(largestInt),
+                                        code("componentType", "5121 5123 5125").required()};
+
+constexpr SchemaRule sparseValues[] = {index("bufferView", "bufferViews").required(),
+                                       integer("byteOffset").upTo(largestInt)};
+
+constexpr SchemaRule sparse[] = {integer("count").from(1).upTo(largestInt).required(),
+                                 object("indices", sparseIndices).required(),
+                                 object("values", sparseValues).required()};
+
+constexpr SchemaRule accessor[] = {index("bufferView", "bufferViews"),
+                                   integer("byteOffset"),
+                                   code("componentType", "5120 5121 5122 5123 5125 5126").required(),
+                                   rule("normalized", Kind::Boolean),
+                                   integer("count").from(1).required(),
+                                   choice("type", "SCALAR VEC2 VEC3 VEC4 MAT2 MAT3 MAT4").required(),
+                                   number("min").list(1, 16).orLeaveOut(),
+                                   number("max").list(1, 16).orLeaveOut(),
+                                   object("sparse", sparse),
+                                   name};
+
+constexpr SchemaRule fallback[] = {rule("fallback", Kind::Boolean)};
+constexpr SchemaRule bufferExtensions[] = {object("EXT_meshopt_compression", fallback)};
+
+constexpr SchemaRule buffer[] = {text("uri"), integer("byteLength").from(1).required(), name,
+                                 object("extensions", bufferExtensions)};
+
+constexpr SchemaRule meshopt[] = {index("buffer", "buffers").required(),
+                                  integer("byteOffset"),
+                                  integer("byteLength").from(1).required(),
+                                  integer("byteStride").from(1).upTo(256).required(),
+                                  integer("count").from(1).required(),
+                                  choice("mode", "ATTRIBUTES TRIANGLES INDICES").required(),
+                                  choice("filter", "NONE OCTAHEDRAL QUATERNION EXPONENTIAL")};
+constexpr SchemaRule bufferViewExtensions[] = {object("EXT_meshopt_compression", meshopt)};
+
+constexpr SchemaRule bufferView[] = {
+    index("buffer", "buffers").required(),      integer("byteOffset"),
+    integer("byteLength").from(1).required(),   integer("byteStride").from(4).upTo(252).inStepsOf(4),
+    code("target", "34962 34963").orLeaveOut(), name,
+    object("extensions", bufferViewExtensions)};
+
+// ------------------------------------------------------------------------------------------------------- animations
+
+constexpr SchemaRule target[] = {index("node", "nodes"), text("path").required().orLeaveOut()};
+
+// checkDocumentRules() compares the index with the samplers of the animation.
+constexpr SchemaRule channel[] = {integer("sampler").upTo(largestInt).required(),
+                                  object("target", target).required().orLeaveOut()};
+
+constexpr SchemaRule animationSampler[] = {index("input", "accessors").required(),
+                                           choice("interpolation", "LINEAR STEP CUBICSPLINE").orLeaveOut(),
+                                           index("output", "accessors").required()};
+
+constexpr SchemaRule animation[] = {object("channels", channel).list().required().orLeaveOut(),
+                                    object("samplers", animationSampler).list().required(), name, extras};
+
+// ---------------------------------------------------------------------------------------------- images and materials
+
+constexpr SchemaRule image[] = {text("uri"), text("mimeType").orLeaveOut(), index("bufferView", "bufferViews"), name};
+
+constexpr SchemaRule sampler[] = {
+    code("magFilter", "9728 9729").orLeaveOut(), code("minFilter", "9728 9729 9984 9985 9986 9987").orLeaveOut(),
+    code("wrapS", "33071 33648 10497").orLeaveOut(), code("wrapT", "33071 33648 10497").orLeaveOut(), name};
+
+constexpr SchemaRule texture[] = {index("sampler", "samplers"), index("source", "images"), name};
+
+// More sets than any file has; a set is an array slot of OSG's geometries.
+constexpr SchemaRule texCoord = integer("texCoord").upTo(31).orLeaveOut();
+
+constexpr SchemaRule textureTransform[] = {number("offset").list(2, 2).orLeaveOut(), number("rotation").orLeaveOut(),
+                                           number("scale").list(2, 2).orLeaveOut(), texCoord};
+constexpr SchemaRule textureExtensions[] = {object("KHR_texture_transform", textureTransform).orLeaveOut()};
+
+constexpr SchemaRule textureIndex = index("index", "textures").required();
+constexpr SchemaRule textureInfoExtensions = object("extensions", textureExtensions).orLeaveOut();
+
+constexpr SchemaRule textureInfo[] = {textureIndex, texCoord, textureInfoExtensions};
+constexpr SchemaRule normalTexture[] = {textureIndex, texCoord, number("scale"), textureInfoExtensions};
+constexpr SchemaRule occlusionTexture[] = {textureIndex, texCoord, number("strength").clamped(0, 1),
+                                           textureInfoExtensions};
+
+constexpr SchemaRule metallicRoughness[] = {
+    number("baseColorFactor").list(4, 4).clamped(0, 1), object("baseColorTexture", textureInfo),
+    number("metallicFactor").clamped(0, 1), number("roughnessFactor").clamped(0, 1),
+    object("metallicRoughnessTexture", textureInfo)};
+
+constexpr SchemaRule emissiveStrength[] = {number("emissiveStrength").from(0).orLeaveOut()};
+constexpr SchemaRule materialExtensions[] = {rule("KHR_materials_unlit", Kind::Object).orLeaveOut(),
+                                             object("KHR_materials_emissive_strength", emissiveStrength).orLeaveOut()};
+
+constexpr SchemaRule material[] = {object("pbrMetallicRoughness", metallicRoughness),
+                                   object("normalTexture", normalTexture),
+                                   object("occlusionTexture", occlusionTexture),
+                                   object("emissiveTexture", textureInfo),
+                                   number("emissiveFactor").list(3, 3).clamped(0, 1),
+                                   choice("alphaMode", "OPAQUE MASK BLEND").orLeaveOut(),
+                                   number("alphaCutoff").clamped(0, largestFloat),
+                                   rule("doubleSided", Kind::Boolean),
+                                   name,
+                                   object("extensions", materialExtensions).orLeaveOut(),
+                                   extras};
+
+// --------------------------------------------------------------------------------------------------- meshes and nodes
+
+constexpr SchemaRule draco[] = {index("bufferView", "bufferViews").required(),
+                                rule("attributes", Kind::Any).required()};
+constexpr SchemaRule primitiveExtensions[] = {object("KHR_draco_mesh_compression", draco)};
+
+constexpr SchemaRule primitive[] = {indexMap("attributes", "accessors").required(),
+                                    index("indices", "accessors"),
+                                    index("material", "materials"),
+                                    integer("mode").upTo(6),
+                                    indexMap("targets", "accessors").list(),
+                                    object("extensions", primitiveExtensions)};
+
+constexpr SchemaRule mesh[] = {object("primitives", primitive).list().required(), number("weights").list(), name,
+                               extras};
+
+constexpr SchemaRule instancing[] = {indexMap("attributes", "accessors").required()};
+constexpr SchemaRule nodeExtensions[] = {object("EXT_mesh_gpu_instancing", instancing)};
+
+constexpr SchemaRule node[] = {index("camera", "cameras"),
+                               index("children", "nodes").list(),
+                               index("skin", "skins"),
+                               number("matrix").list(16, 16),
+                               index("mesh", "meshes"),
+                               number("rotation").list(4, 4),
+                               number("scale").list(3, 3),
+                               number("translation").list(3, 3),
+                               number("weights").list(),
+                               name,
+                               object("extensions", nodeExtensions),
+                               extras};
+
+constexpr SchemaRule scene[] = {index("nodes", "nodes").list(), name, extras};
+
+constexpr SchemaRule skin[] = {index("inverseBindMatrices", "accessors"), index("skeleton", "nodes"),
+                               index("joints", "nodes").list().required(), name};
+
+constexpr SchemaRule perspective[] = {number("aspectRatio").from(0), number("yfov").from(0).required(),
+                                      number("zfar").from(0), number("znear").from(0).required()};
+constexpr SchemaRule orthographic[] = {number("xmag").required(), number("ymag").required(),
+                                       number("zfar").from(0).required(), number("znear").from(0).required()};
+constexpr SchemaRule camera[] = {choice("type", "perspective orthographic").required(),
+                                 object("perspective", perspective), object("orthographic", orthographic), name};
+
+// ------------------------------------------------------------------------------------------------------ the document
+
+constexpr SchemaRule asset[] = {text("version").required(), text("minVersion"), text("generator").orLeaveOut(),
+                                text("copyright").orLeaveOut()};
+
+constexpr SchemaRule documentMembers[] = {object("asset", asset).required(),
+                                          text("extensionsUsed").list(),
+                                          text("extensionsRequired").list(),
+                                          object("accessors", accessor).list(),
+                                          object("animations", animation).list(),
+                                          object("buffers", buffer).list(),
+                                          object("bufferViews", bufferView).list(),
+                                          object("cameras", camera).list(),
+                                          object("images", image).list(),
+                                          object("materials", material).list(),
+                                          object("meshes", mesh).list(),
+                                          object("nodes", node).list(),
+                                          object("samplers", sampler).list(),
+                                          index("scene", "scenes"),
+                                          object("scenes", scene).list(),
+                                          object("skins", skin).list(),
+                                          object("textures", texture).list()};
+
+// ----------------------------------------------------------------------------------------------------------- the check
+
+using Type = JsonTree::Type;
+
+std::string rangeText(const SchemaRule& rule)
+{
+    std::string text = rule.kind == Kind::Integer ? "an integer" : "a number";
+    text += " from " + numberText(rule.least) + " to " + numberText(rule.most);
+    if (rule.step != 1.0) text += " in steps of " + numberText(rule.step);
+    return text;
+}
+
+std::string elementsText(const SchemaRule& rule)
+{
+    const std::string what = rule.kind == Kind::Number   ? " numbers"
+                             : rule.kind == Kind::Index  ? " indices"
+                             : rule.kind == Kind::String ? " texts"
+                                                         : " objects";
+    return (rule.leastCount == rule.mostCount ? "" : "at least ") + std::to_string(rule.leastCount) + what;
+}
+
+/// Calls visit(choice) for each choice until it returns true; returns if one did.
+template <typename Visit>
+bool anyChoice(const SchemaRule& rule, const Visit& visit)
+{
+    for (std::string_view left = rule.choices; !left.empty();)
+    {
+        const std::size_t end = std::min(left.find(' '), left.size());
+        if (visit(left.substr(0, end))) return true;
+        left.remove_prefix(std::min(end + 1, left.size()));
+    }
+    return false;
+}
+
+std::string choicesText(const SchemaRule& rule)
+{
+    std::string list;
+    anyChoice(rule,
+              [&](std::string_view choice)
+              {
+                  list += list.empty() ? "one of " : ", ";
+                  list += rule.kind == Kind::Choice ? quoted(choice) : std::string(choice);
+                  return false;
+              });
+    return list;
+}
+
+class SchemaCheck
+{
+public:
+    SchemaCheck(const JsonValue& document, Report& report) : _document(document), _report(report)
+    {
+        for (const JsonValue& member : document)
+            if (member.is(Type::Array)) _sizes.emplace_back(member.key(), member.size());
+    }
+
+    /// The first fault that the document must be refused for.
+    std::optional<Error> run()
+    {
+        checkObject(_document, documentMembers, std::size(documentMembers));
+        return _error;
+    }
+
+private:
+    /// One step of the path to the current value.
+    struct Step
+    {
+        std::string_view member;
+        std::size_t index = isMember;
+        static constexpr std::size_t isMember = std::size_t(-1);
+    };
+    enum class Outcome
+    {
+        Good,
+        LeaveOut,
+        Refuse
+    };
+
+    bool checkObject(const JsonValue& object, const SchemaRule* rules, std::size_t count)
+    {
+        std::uint64_t seen = 0;
+        for (const JsonValue& member : object)
+        {
+            const SchemaRule* const rule =
+                std::find_if(rules, rules + count,
+                             [key = member.key()](const SchemaRule& candidate) { return candidate.name == key; });
+            if (rule == rules + count)
+            {
+                member.dropFrom(object);
+                continue;
+            }
+            seen |= std::uint64_t(1) << (rule - rules);
+            if (!checkMember(object, member, *rule)) return false;
+        }
+        for (std::size_t i = 0; i < count; ++i)
+            if (rules[i].isRequired && (seen >> i & 1) == 0 && !checkMissing(rules[i])) return false;
+        return true;
+    }
+
+    bool checkMember(const JsonValue& object, const JsonValue& member, const SchemaRule& rule)
+    {
+        _path.push_back({rule.name});
+        const Outcome outcome = rule.isList ? checkList(member, rule) : checkElement(member, rule);
+        _path.pop_back();
+        if (outcome == Outcome::Good) return true;
+        member.dropFrom(object);
+        const bool refuse = outcome == Outcome::Refuse || (rule.isRequired && rule.onFault == OnFault::Refuse);
+        if (refuse && !_error) _error = _finding;
+        if (!refuse) _report.warn(_finding.message + "; left out");
+        return !refuse;
+    }
+
+    bool checkMissing(const SchemaRule& rule)
+    {
+        _path.push_back({rule.name});
+        const char* const expected = rule.isList ? "an array" : rule.kind == Kind::Object ? "an object" : "a value";
+        const Outcome outcome = find(rule.onFault, expected, "nothing");
+        _path.pop_back();
+        if (outcome == Outcome::Refuse)
+            _error = _finding;
+        else
+            _report.warn(_finding.message);
+        return outcome != Outcome::Refuse;
+    }
+
+    Outcome checkList(const JsonValue& value, const SchemaRule& rule)
+    {
+        if (!value.is(Type::Array)) return wrong(rule, "an array of " + elementsText(rule), value);
+        if (value.size() == 0 && !rule.isRequired && rule.leastCount <= 1)
+            return find(OnFault::LeaveOut, elementsText(rule), "none");
+        if (value.size() < rule.leastCount || value.size() > rule.mostCount)
+            return wrong(rule, elementsText(rule), value);
+        _path.push_back({{}, 0});
+        Outcome outcome = Outcome::Good;
+        for (const JsonValue& element : value)
+        {
+            outcome = checkElement(element, rule);
+            if (outcome != Outcome::Good) break;
+            ++_path.back().index;
+        }
+        _path.pop_back();
+        return outcome;
+    }
+
+    Outcome checkElement(const JsonValue& value, const SchemaRule& rule)
+    {
+        switch (rule.kind)
+        {
+        case Kind::Any:
+            return Outcome::Good;
+        case Kind::Boolean:
+            return value.is(Type::Boolean) ? Outcome::Good : wrong(rule, "true or false", value);
+        case Kind::String:
+            return value.is(Type::String) ? Outcome::Good : wrong(rule, "a text", value);
+        case Kind::Number:
+            return checkNumber(value, rule);
+        case Kind::Integer:
+            return checkInteger(value, rule);
+        case Kind::Index:
+            return checkIndex(value, rule);
+        case Kind::Choice:
+        case Kind::Code:
+            return checkChoice(value, rule);
+        case Kind::IndexMap:
+            return checkMap(value, rule);
+        case Kind::Object:
+            break;
+        }
+        if (!value.is(Type::Object)) return wrong(rule, "an object", value);
+        return checkObject(value, rule.members, rule.memberCount) ? Outcome::Good : Outcome::Refuse;
+    }
+
+    Outcome checkNumber(const JsonValue& value, const SchemaRule& rule)
+    {
+        if (!value.is(Type::Number)) return wrong(rule, "a number", value);
+        const double number = value.number();
+        if (number >= rule.least && number <= rule.most) return Outcome::Good;
+        if (rule.onRange != OnFault::Clamp) return find(rule.onRange, rangeText(rule), value.description());
+        const double nearest = std::clamp(number, rule.least, rule.most);
+        value.setNumber(nearest);
+        // Exporters write 1.0000001: rounding, not a fault.
+        if (std::abs(nearest - number) > 1e-5)
+            _report.warn(fault(pathText(), rangeText(rule), numberText(number)).message + "; " + numberText(nearest) +
+                         " is taken");
+        return Outcome::Good;
+    }
+
+    Outcome checkInteger(const JsonValue& value, const SchemaRule& rule)
+    {
+        if (!value.isInteger()) return wrong(rule, "an integer", value);
+        const double number = value.number();
+        if (number < rule.least || number > rule.most || (rule.step != 1.0 && std::fmod(number, rule.step) != 0.0))
+            return find(rule.onRange, rangeText(rule), value.description());
+        return Outcome::Good;
+    }
+
+    Outcome checkIndex(const JsonValue& value, const SchemaRule& rule)
+    {
+        const auto found = std::find_if(_sizes.begin(), _sizes.end(),
+                                        [&](const auto& entry) { return entry.first == rule.collection; });
+        const std::size_t size = found == _sizes.end() ? 0 : found->second;
+        if (value.isInteger() && value.number() >= 0.0 && value.number() < double(size)) return Outcome::Good;
+        return wrong(rule, "an index below " + std::to_string(size) + " of " + std::string(rule.collection), value);
+    }
+
+    Outcome checkChoice(const JsonValue& value, const SchemaRule& rule)
+    {
+        const bool isText = rule.kind == Kind::Choice;
+        if (value.is(isText ? Type::String : Type::Number))
+        {
+            const std::string given = isText ? std::string(value.text()) : numberText(value.number());
+            if (anyChoice(rule, [&](std::string_view choice) { return choice == given; })) return Outcome::Good;
+        }
+        return wrong(rule, choicesText(rule), value);
+    }
+
+    Outcome checkMap(const JsonValue& value, const SchemaRule& rule)
+    {
+        if (!value.is(Type::Object)) return wrong(rule, "an object of indices", value);
+        for (const JsonValue& member : value)
+        {
+            _path.push_back({member.key()});
+            const Outcome outcome = checkIndex(member, rule);
+            _path.pop_back();
+            if (outcome != Outcome::Good) return outcome;
+        }
+        return Outcome::Good;
+    }
+
+    Outcome wrong(const SchemaRule& rule, const std::string& expected, const JsonValue& found)
+    {
+        return find(rule.onFault, expected, found.description());
+    }
+
+    Outcome find(OnFault policy, const std::string& expected, const std::string& found)
+    {
+        _finding = fault(pathText(), expected, found);
+        return policy == OnFault::Refuse ? Outcome::Refuse : Outcome::LeaveOut;
+    }
+
+    std::string pathText() const
+    {
+        std::string text;
+        for (const Step& step : _path)
+        {
+            if (step.index != Step::isMember)
+                text = elementName(text, step.index);
+            else
+                text += (text.empty() ? "" : ".") + printable(step.member);
+        }
+        return text;
+    }
+
+    JsonValue _document;
+    Report& _report;
+    std::vector<std::pair<std::string_view, std::size_t>> _sizes; ///< of the arrays of the document
+    std::vector<Step> _path;
+    Error _finding; ///< the last fault, recorded while its path is known
+    std::optional<Error> _error;
+};
+
+} // namespace
+
+std::optional<Error> checkSchema(const JsonValue& document, Report& report)
+{
+    return SchemaCheck(document, report).run();
+}
+
+} // namespace osgGpuAnimation::gltf

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "gltf/document/JsonTree.h"
+#include "gltf/file/Report.h"
+
+#include <osgGpuAnimation/animation/Result.h>
+
+#include <optional>
+
+namespace osgGpuAnimation::gltf
+{
+
+/// Checks a document, member by member, against the schema of glTF 2.0 (chapter 5 of the specification, and the
+/// extensions that are imported): types, required members, numbers in range, indices within their collections.
+/// Members that the schema does not name, and faulty ones that are dispensable, are left out of the tree, the latter
+/// with a warning. checkDocumentRules() checks the rules that bind several members together.
+/// Returns the first fault that the document must be refused for.
+std::optional<Error> checkSchema(const JsonValue& document, Report& report);
+
+} // namespace osgGpuAnimation::gltf

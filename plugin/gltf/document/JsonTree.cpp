@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+#include "gltf/document/JsonTree.h"
+
+#include "gltf/file/Report.h"
+
+#include <cmath>
+
+namespace osgGpuAnimation::gltf
+{
+
+JsonValue JsonTree::root()
+{
+    return JsonValue(*this, 0);
+}
+
+void JsonTree::reserve(std::size_t values, std::size_t textBytes)
+{
+    _nodes.reserve(values);
+    _text.reserve(textBytes);
+}
+
+std::uint32_t JsonTree::add(Type type, std::string_view key)
+{
+    Node node;
+    node.type = type;
+    node.key = std::uint32_t(_text.size());
+    node.keyLength = std::uint32_t(key.size());
+    node.end = std::uint32_t(_nodes.size() + 1);
+    _text += key;
+    _nodes.push_back(node);
+    return node.end - 1;
+}
+
+void JsonTree::setNumber(std::uint32_t value, double number)
+{
+    _nodes[value].number = number;
+}
+
+void JsonTree::setText(std::uint32_t value, std::string_view text)
+{
+    _nodes[value].text = std::uint32_t(_text.size());
+    _nodes[value].textLength = std::uint32_t(text.size());
+    _text += text;
+}
+
+void JsonTree::setOutsideText(std::uint32_t value, std::string_view text)
+{
+    _nodes[value].text = std::uint32_t(_outside.size());
+    _nodes[value].isTextOutside = true;
+    _outside.push_back(text);
+}
+
+void JsonTree::end(std::uint32_t container, std::uint32_t size)
+{
+    _nodes[container].end = std::uint32_t(_nodes.size());
+    _nodes[container].size = size;
+}
+
+void JsonTree::drop(std::uint32_t value)
+{
+    _nodes[value].dropped = true;
+}
+
+bool JsonValue::isInteger() const
+{
+    return is(JsonTree::Type::Number) && std::trunc(node().number) == node().number;
+}
+
+std::string_view JsonValue::text() const
+{
+    if (node().isTextOutside) return _tree->_outside[node().text];
+    return std::string_view(_tree->_text).substr(node().text, node().textLength);
+}
+
+JsonValue JsonValue::operator[](std::string_view member) const
+{
+    if (!is(JsonTree::Type::Object)) return JsonValue();
+    for (const JsonValue& value : *this)
+        if (value.key() == member) return value;
+    return JsonValue();
+}
+
+void JsonValue::dropFrom(const JsonValue& object) const
+{
+    _tree->_nodes[_value].dropped = true;
+    --_tree->_nodes[object._value].size;
+}
+
+std::string JsonValue::description() const
+{
+    if (!_tree) return "nothing";
+    switch (type())
+    {
+    case JsonTree::Type::Null:
+        return "null";
+    case JsonTree::Type::Boolean:
+        return boolean() ? "true" : "false";
+    case JsonTree::Type::Number:
+        return numberText(number());
+    case JsonTree::Type::String:
+        return quoted(text());
+    case JsonTree::Type::Array:
+        return "an array of " + std::to_string(size());
+    default:
+        return "an object";
+    }
+}
+
+} // namespace osgGpuAnimation::gltf

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+#include "gltf/document/MemoryBudget.h"
+
+#include "gltf/file/Report.h"
+
+#include <tiny_gltf.h>
+
+#include <string>
+#include <string_view>
+
+namespace osgGpuAnimation::gltf
+{
+
+namespace
+{
+
+// The import keeps lists beside the nodes: parent, root, world matrix and name of each.
+constexpr std::size_t bytesBesideANode = 192;
+
+struct List
+{
+    std::string_view name;
+    std::size_t bytesAnElement;
+    std::string_view inner[2]; ///< lists of each element; empty: none
+    std::size_t bytesAnInnerElement[2];
+};
+
+const List lists[] = {
+    {"nodes", sizeof(tinygltf::Node) + bytesBesideANode, {}, {}},
+    {"materials", sizeof(tinygltf::Material), {}, {}},
+    {"meshes", sizeof(tinygltf::Mesh), {"primitives"}, {sizeof(tinygltf::Primitive)}},
+    {"accessors", sizeof(tinygltf::Accessor), {}, {}},
+    {"buffers", sizeof(tinygltf::Buffer), {}, {}},
+    {"bufferViews", sizeof(tinygltf::BufferView), {}, {}},
+    {"animations",
+     sizeof(tinygltf::Animation),
+     {"channels", "samplers"},
+     {sizeof(tinygltf::AnimationChannel), sizeof(tinygltf::AnimationSampler)}},
+    {"skins", sizeof(tinygltf::Skin), {}, {}},
+    {"scenes", sizeof(tinygltf::Scene), {}, {}},
+    {"textures", sizeof(tinygltf::Texture), {}, {}},
+    {"samplers", sizeof(tinygltf::Sampler), {}, {}},
+    {"images", sizeof(tinygltf::Image), {}, {}},
+    {"cameras", sizeof(tinygltf::Camera), {}, {}},
+};
+
+/// Extras become tinygltf::Values, which are more than twice as large as a value of the tree.
+std::size_t bytesOfExtras(const JsonValue& element)
+{
+    const JsonValue extras = element["extras"];
+    return extras ? (extras.valuesBelow() + 1) * sizeof(tinygltf::Value) : 0;
+}
+
+std::size_t bytesOf(const JsonValue& json, const List& list)
+{
+    std::size_t bytes = 0;
+    for (const JsonValue& element : json)
+    {
+        bytes += list.bytesAnElement + bytesOfExtras(element);
+        for (std::size_t i = 0; i < 2; ++i)
+            if (const JsonValue inner = list.inner[i].empty() ? JsonValue() : element[list.inner[i]])
+                bytes += inner.size() * list.bytesAnInnerElement[i];
+    }
+    return bytes;
+}
+
+} // namespace
+
+std::optional<Error> checkDocumentBytes(JsonTree& json, std::size_t limit)
+{
+    std::size_t bytes = json.size() * bytesOfJsonValue;
+    for (const List& list : lists)
+    {
+        const JsonValue elements = json.root()[list.name];
+        if (!elements || !elements.is(JsonTree::Type::Array)) continue;
+        bytes += bytesOf(elements, list);
+        if (bytes > limit)
+            return fault(std::string(list.name),
+                         "a document of at most " + std::to_string(limit) + " bytes in memory (limit maxDocumentBytes)",
+                         std::to_string(elements.size()) + ", which take it to " + std::to_string(bytes));
+    }
+    return std::nullopt;
+}
+
+} // namespace osgGpuAnimation::gltf

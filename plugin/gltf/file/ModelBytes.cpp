@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: MIT
+#include "gltf/file/ModelBytes.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdint>
+#include <cstring>
+#include <fcntl.h>
+#include <istream>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <utility>
+
+namespace osgGpuAnimation::gltf
+{
+
+namespace
+{
+
+const std::size_t mostPathText = 200;
+
+// A GLB says its length in 32 bits. A file with holes can claim far more than its disk holds.
+const std::uint64_t mostBytesOfAFile = std::uint64_t(1) << 32;
+
+Error about(const std::string& path, const std::string& what)
+{
+    return Error{subjectOfFile(path) + what};
+}
+
+std::string kindText(mode_t mode)
+{
+    if (S_ISDIR(mode)) return "expected a regular file, found a folder";
+    if (S_ISFIFO(mode)) return "expected a regular file, found a pipe";
+    return "expected a regular file, found a device or socket";
+}
+
+std::string systemText(int code)
+{
+    if (code == ENOENT || code == ENOTDIR) return "the file does not exist";
+    return std::string("the file cannot be opened: ") + std::strerror(code);
+}
+
+const std::string_view magic = "glTF";
+const std::size_t headerBytes = 12;
+const std::size_t chunkHeaderBytes = 8;
+const std::uint32_t jsonType = 0x4E4F534A;
+const std::uint32_t binaryType = 0x004E4942;
+
+struct Chunk
+{
+    std::uint32_t type = 0;
+    std::string_view data;
+};
+
+std::uint32_t littleEndian(std::string_view bytes, std::size_t at)
+{
+    std::uint32_t value = 0;
+    for (std::size_t i = 4; i-- > 0;)
+        value = value << 8 | static_cast<unsigned char>(bytes[at + i]);
+    return value;
+}
+
+std::string bytesText(std::size_t count)
+{
+    return std::to_string(count) + (count == 1 ? " byte" : " bytes");
+}
+
+/// The part of the file that the GLB header claims.
+Result<std::string_view> checkHeader(std::string_view bytes, Report& report)
+{
+    if (bytes.size() < headerBytes)
+        return fault("GLB header", bytesText(headerBytes), bytesText(bytes.size()) + ": the file is truncated");
+    const std::uint32_t version = littleEndian(bytes, 4);
+    if (version != 2) return fault("GLB header", "container version 2", std::to_string(version));
+    const std::uint32_t length = littleEndian(bytes, 8);
+    if (length > bytes.size())
+        return fault("GLB header", "a file of " + bytesText(length),
+                     bytesText(bytes.size()) + ": the file is truncated");
+    if (length < headerBytes + chunkHeaderBytes)
+        return fault("GLB header", "a length that holds a JSON chunk", bytesText(length));
+    if (length < bytes.size())
+        report.warn("GLB: " + bytesText(bytes.size() - length) + " after the length in the header; ignored");
+    return bytes.substr(0, length);
+}
+
+Result<Chunk> readChunk(std::string_view glb, std::size_t at, std::size_t number)
+{
+    const std::string name = "GLB chunk " + std::to_string(number);
+    const std::size_t left = glb.size() - at;
+    if (left < chunkHeaderBytes) return fault(name, "a header of 8 bytes", bytesText(left));
+    const std::uint32_t length = littleEndian(glb, at);
+    if (length > left - chunkHeaderBytes)
+        return fault(name, "a length of at most " + bytesText(left - chunkHeaderBytes), std::to_string(length));
+    return Chunk{littleEndian(glb, at + 4), glb.substr(at + chunkHeaderBytes, length)};
+}
+
+void takeChunk(const Chunk& chunk, std::size_t number, GlbContainer& container, Report& report)
+{
+    if (chunk.type == binaryType && number == 1)
+        container.binary = chunk.data;
+    else if (chunk.type == binaryType || chunk.type == jsonType)
+        report.warn("GLB chunk " + std::to_string(number) + ": a second JSON or a late BIN chunk; ignored");
+    if (chunk.data.size() % 4 != 0)
+        report.warn("GLB chunk " + std::to_string(number) + ": its length is no multiple of 4");
+}
+
+std::optional<Error> checkBeginning(const RegularFile& file, std::size_t maxJsonBytes)
+{
+    std::string beginning(std::min(file.size(), bytesBeforeJson), '\0');
+    const Result<std::size_t> read = file.read(beginning.data(), beginning.size());
+    if (!read) return read.error();
+    return checkJsonBytes(claimedJsonBytes(beginning, file.size()), maxJsonBytes);
+}
+
+/// RegularFile's messages begin with the path.
+Error withoutPath(const Error& error, const std::string& path)
+{
+    const std::string subject = subjectOfFile(path);
+    return error.message.rfind(subject, 0) == 0 ? Error{error.message.substr(subject.size())} : error;
+}
+
+} // namespace
+
+std::string subjectOfFile(const std::string& path)
+{
+    return printable(path, mostPathText) + ": ";
+}
+
+Result<RegularFile> RegularFile::open(const std::string& path)
+{
+    struct stat status;
+    // Checked before opening, because opening a device can have an effect.
+    if (::stat(path.c_str(), &status) != 0) return about(path, systemText(errno));
+    if (!S_ISREG(status.st_mode)) return about(path, kindText(status.st_mode));
+    const int descriptor = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+    if (descriptor < 0) return about(path, systemText(errno));
+    RegularFile file(descriptor, 0, path);
+    if (::fstat(descriptor, &status) != 0 || !S_ISREG(status.st_mode)) return about(path, kindText(status.st_mode));
+    file._size = std::size_t(status.st_size);
+    return file;
+}
+
+RegularFile::RegularFile(int descriptor, std::size_t size, std::string path)
+    : _descriptor(descriptor), _size(size), _path(std::move(path))
+{
+}
+
+RegularFile::RegularFile(RegularFile&& other) noexcept
+    : _descriptor(std::exchange(other._descriptor, -1)), _size(other._size), _path(std::move(other._path))
+{
+}
+
+RegularFile::~RegularFile()
+{
+    if (_descriptor >= 0) ::close(_descriptor);
+}
+
+bool RegularFile::isSameAs(const std::string& path) const
+{
+    struct stat mine, other;
+    return ::fstat(_descriptor, &mine) == 0 && ::stat(path.c_str(), &other) == 0 && mine.st_dev == other.st_dev &&
+           mine.st_ino == other.st_ino;
+}
+
+Result<std::size_t> RegularFile::read(void* to, std::size_t bytes) const
+{
+    std::size_t done = 0;
+    while (done < bytes)
+    {
+        const ssize_t count = ::pread(_descriptor, static_cast<char*>(to) + done, bytes - done, off_t(done));
+        if (count < 0 && errno == EINTR) continue;
+        if (count < 0) return about(_path, std::string("the file cannot be read: ") + std::strerror(errno));
+        if (count == 0)
+            return about(_path, "expected " + std::to_string(bytes) + " bytes, found " + std::to_string(done));
+        done += std::size_t(count);
+    }
+    return done;
+}
+
+Result<std::string> RegularFile::readWhole() const
+{
+    if (_size == 0) return about(_path, "the file is empty");
+    std::string content;
+    if (_size > mostBytesOfAFile || _size > content.max_size())
+        return about(_path, "expected a file of at most " + std::to_string(mostBytesOfAFile) + " bytes, found " +
+                                std::to_string(_size));
+    content.resize(_size);
+    const Result<std::size_t> done = read(content.data(), content.size());
+    if (!done) return done.error();
+    return content;
+}
+
+Result<std::string> readWholeFile(const std::string& path)
+{
+    const Result<RegularFile> file = RegularFile::open(path);
+    return file ? file.value().readWhole() : file.error();
+}
+
+Result<GlbContainer> splitContainer(std::string_view bytes, Report& report)
+{
+    if (bytes.empty()) return Error{"the file is empty: neither JSON nor a binary glTF header"};
+    if (bytes.substr(0, magic.size()) != magic) return GlbContainer{bytes, std::nullopt};
+
+    const Result<std::string_view> glb = checkHeader(bytes, report);
+    if (!glb) return glb.error();
+    GlbContainer container;
+    std::size_t number = 0;
+    for (std::size_t at = headerBytes; at < glb.value().size(); ++number)
+    {
+        const Result<Chunk> chunk = readChunk(glb.value(), at, number);
+        if (!chunk) return chunk.error();
+        if (number == 0 && chunk.value().type != jsonType)
+            return fault("GLB chunk 0", "the JSON chunk",
+                         chunk.value().type == binaryType ? "the BIN chunk"
+                                                          : "type " + std::to_string(chunk.value().type));
+        if (number == 0)
+            container.json = chunk.value().data;
+        else
+            takeChunk(chunk.value(), number, container, report);
+        at += chunkHeaderBytes + chunk.value().data.size();
+    }
+    return container;
+}
+
+std::size_t claimedJsonBytes(std::string_view beginning, std::size_t fileBytes)
+{
+    if (beginning.substr(0, magic.size()) != magic) return fileBytes;
+    if (beginning.size() < bytesBeforeJson) return 0;
+    return std::min<std::size_t>(littleEndian(beginning, headerBytes), fileBytes - bytesBeforeJson);
+}
+
+std::optional<Error> checkJsonBytes(std::size_t bytes, std::size_t limit)
+{
+    if (bytes <= limit) return std::nullopt;
+    return fault("JSON", "a text of at most " + bytesText(limit) + " (limit maxJsonBytes)", std::to_string(bytes));
+}
+
+Result<std::string> readModelFile(const std::string& path, const ImportOptions& options)
+{
+    const Result<RegularFile> file = RegularFile::open(path);
+    if (!file) return withoutPath(file.error(), path);
+    if (const std::optional<Error> error = checkBeginning(file.value(), options.maxJsonBytes))
+        return withoutPath(*error, path);
+    Result<std::string> bytes = file.value().readWhole();
+    return bytes ? std::move(bytes) : withoutPath(bytes.error(), path);
+}
+
+Result<std::string> readModelStream(std::istream& stream, const ImportOptions& options, std::size_t mostBytes)
+{
+    std::string bytes;
+    char block[65536];
+    std::optional<std::size_t> json; // its length by the beginning
+    while (stream.read(block, sizeof(block)) || stream.gcount() > 0)
+    {
+        bytes.append(block, static_cast<std::size_t>(stream.gcount()));
+        if (bytes.size() < bytesBeforeJson) continue;
+        if (!json) json = claimedJsonBytes(bytes, mostBytes);
+        // A GLB may claim more than it has: splitContainer() reports that.
+        if (*json > options.maxJsonBytes && bytes.size() - bytesBeforeJson > options.maxJsonBytes)
+            return *checkJsonBytes(bytes.size() - bytesBeforeJson, options.maxJsonBytes);
+        if (bytes.size() > mostBytes)
+            return Error{"the stream holds more than " + std::to_string(mostBytes) + " bytes, or does not end"};
+    }
+    if (stream.bad()) return Error{"the stream cannot be read"};
+    return bytes;
+}
+
+} // namespace osgGpuAnimation::gltf

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "gltf/file/Report.h"
+#include "gltf/ImportOptions.h"
+
+#include <osgGpuAnimation/animation/Result.h>
+
+#include <cstddef>
+#include <iosfwd>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace osgGpuAnimation::gltf
+{
+
+/// A regular file opened for reading. Folders, pipes and devices are refused: they may block or never end.
+/// Errors are sentences about the path: `base.bin: does not exist`.
+class RegularFile
+{
+public:
+    static Result<RegularFile> open(const std::string& path);
+
+    RegularFile(RegularFile&& other) noexcept;
+    RegularFile& operator=(RegularFile&&) = delete;
+    ~RegularFile();
+
+    std::size_t size() const { return _size; } ///< bytes, when it was opened
+    bool isSameAs(const std::string& path) const;
+
+    /// The first `bytes` bytes into `to`. Errors: the file cannot be read or has fewer.
+    Result<std::size_t> read(void* to, std::size_t bytes) const;
+    /// All of it. Errors: it is empty, of more than 4 GiB or cannot be read.
+    Result<std::string> readWhole() const;
+
+private:
+    RegularFile(int descriptor, std::size_t size, std::string path);
+
+    int _descriptor;
+    std::size_t _size;
+    std::string _path;
+};
+
+/// The beginning of errors about a file: its path, clipped if it is long, and a colon.
+std::string subjectOfFile(const std::string& path);
+
+/// The content of a file that the user named. Errors: it does not exist, is a folder, no regular file, empty, of more
+/// than 4 GiB or cannot be read.
+Result<std::string> readWholeFile(const std::string& path);
+
+/// The parts of a file, as views into its bytes.
+struct GlbContainer
+{
+    std::string_view json;
+    std::optional<std::string_view> binary; ///< the BIN chunk, padding included; none in a .gltf
+};
+
+/// Splits a file: a GLB (recognized by its magic, not by its name) into its chunks; anything else is JSON text as a
+/// whole. Chunks of unknown type are skipped (glTF 2.0, section 4.4).
+/// Errors: an empty or truncated file, a container version other than 2, lengths that do not fit, no JSON chunk.
+Result<GlbContainer> splitContainer(std::string_view bytes, Report& report);
+
+constexpr std::size_t bytesBeforeJson = 20; ///< in a GLB: its header and that of the first chunk
+
+/// The length of the JSON text that the first bytesBeforeJson bytes of a file claim: the file's length if it is no
+/// GLB, and at most the bytes that follow.
+std::size_t claimedJsonBytes(std::string_view beginning, std::size_t fileBytes);
+
+/// Error: more than the limit ImportOptions::maxJsonBytes.
+std::optional<Error> checkJsonBytes(std::size_t bytes, std::size_t limit);
+
+// The input of importModel(). Files and streams beyond the limits are refused before they are read.
+
+/// All of a file. Errors (without the file's name): those of readWholeFile(), more JSON than options.maxJsonBytes.
+Result<std::string> readModelFile(const std::string& path, const ImportOptions& options);
+
+/// The rest of a stream, at most mostBytes. Errors: it fails, holds more, or has more JSON than options.maxJsonBytes.
+Result<std::string> readModelStream(std::istream& stream, const ImportOptions& options,
+                                    std::size_t mostBytes = std::size_t(2) << 30);
+
+} // namespace osgGpuAnimation::gltf

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+#include "gltf/file/Report.h"
+
+#include <charconv>
+#include <utility>
+#include <vector>
+
+namespace osgGpuAnimation::gltf
+{
+
+namespace
+{
+
+const std::size_t mostOfAKind = 100;
+
+void add(std::vector<std::string>& list, std::size_t& count, std::string message)
+{
+    if (count < mostOfAKind) list.push_back(std::move(message));
+    if (count == mostOfAKind) list.push_back("more of the kind follow and are not listed");
+    ++count;
+}
+
+} // namespace
+
+Report::Report(Messages& messages) : _messages(messages) {}
+
+void Report::warn(std::string message)
+{
+    add(_messages.warnings, _warnings, std::move(message));
+}
+
+void Report::note(std::string message)
+{
+    add(_messages.notes, _notes, std::move(message));
+}
+
+std::string printable(std::string_view text, std::size_t most)
+{
+    static const char digits[] = "0123456789abcdef";
+    std::string out;
+    for (char c : text.substr(0, most))
+    {
+        const unsigned char byte = static_cast<unsigned char>(c);
+        if (byte >= 0x20 && byte < 0x7f)
+            out += c;
+        else
+            out += std::string("\\x") + digits[byte >> 4] + digits[byte & 15];
+    }
+    if (text.size() > most) out += "...";
+    return out;
+}
+
+std::string quoted(std::string_view text)
+{
+    return '"' + printable(text) + '"';
+}
+
+std::string numberText(double number)
+{
+    char text[32];
+    return std::string(text, std::to_chars(text, text + sizeof(text), number).ptr);
+}
+
+Error fault(std::string_view element, std::string_view expected, std::string_view found)
+{
+    return Error{std::string(element) + ": expected " + std::string(expected) + ", found " + std::string(found)};
+}
+
+} // namespace osgGpuAnimation::gltf

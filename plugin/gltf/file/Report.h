@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osgGpuAnimation/animation/Result.h>
+
+#include <charconv>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace osgGpuAnimation::gltf
+{
+
+/// The messages of an import: warnings (an element of the file was left out or mended) and notes.
+/// Each names its element: `animations[2].channels[4]: 10 times but 9 values; channel skipped`.
+struct Messages
+{
+    std::vector<std::string> warnings;
+    std::vector<std::string> notes; ///< no fault of the file, for example an unknown extension in extensionsUsed
+};
+
+/// Collects the messages of one load. A file may hold a million faults: after the first hundred of a kind one line
+/// says that there are more.
+///
+///     report.warn("nodes[3].skin: the mesh has no JOINTS_0; the skin is ignored");
+class Report
+{
+public:
+    explicit Report(Messages& messages);
+
+    void warn(std::string message);
+    void note(std::string message);
+
+private:
+    Messages& _messages;
+    std::size_t _warnings = 0;
+    std::size_t _notes = 0;
+};
+
+// How messages name the parts of a document: accessors[3].byteOffset, animations[2].channels[4].target.path.
+
+inline std::string elementName(std::string_view collection, std::size_t index)
+{
+    return std::string(collection) + '[' + std::to_string(index) + ']';
+}
+
+/// elementName("animations", 2, "channels", 4) is animations[2].channels[4].
+template <typename... Rest>
+std::string elementName(std::string_view collection, std::size_t index, std::string_view inner, const Rest&... rest)
+{
+    std::string name = elementName(collection, index) + '.';
+    if constexpr (sizeof...(Rest) == 0)
+        name += inner;
+    else
+        name += elementName(inner, rest...);
+    return name;
+}
+
+/// Text of the file for a message: in quotation marks, clipped, printable ASCII only.
+std::string quoted(std::string_view text);
+inline std::string quoted(const std::string& text)
+{
+    return quoted(std::string_view(text));
+} // not std::quoted
+/// The same without the quotation marks.
+std::string printable(std::string_view text, std::size_t most = 80);
+/// The shortest text that reads back as the number: 8, 0.5, 1e+30.
+std::string numberText(double number);
+
+/// `element: expected …, found …`
+Error fault(std::string_view element, std::string_view expected, std::string_view found);
+
+/// An element with the name that the file gives it, for messages to people: `animations[2] "Run"`.
+inline std::string namedElement(std::string_view collection, std::size_t index, std::string_view name)
+{
+    return elementName(collection, index) + (name.empty() ? "" : ' ' + quoted(name));
+}
+
+/// The number that the whole text represents, in any locale; none if it is no number or does not fit Number:
+/// parsedNumber<int>("1x") is none.
+template <typename Number>
+std::optional<Number> parsedNumber(std::string_view text)
+{
+    Number number = 0;
+    const char* const end = text.data() + text.size();
+    const std::from_chars_result read = std::from_chars(text.data(), end, number);
+    return read.ec == std::errc() && read.ptr == end ? std::optional<Number>(number) : std::nullopt;
+}
+
+} // namespace osgGpuAnimation::gltf

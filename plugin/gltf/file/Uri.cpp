@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: MIT
+#include "gltf/file/Uri.h"
+
+#include "gltf/file/Report.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstdint>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+namespace osgGpuAnimation::gltf
+{
+
+namespace
+{
+
+using Bytes = std::vector<unsigned char>;
+
+/// data:KIND,PAYLOAD
+struct DataUriParts
+{
+    std::string_view kind;
+    std::string_view payload; ///< base64 without padding, or percent-encoded
+    bool isBase64 = false;
+
+    /// The decoded size of a payload without faults.
+    std::size_t bytes() const
+    {
+        if (isBase64) return payload.size() / 4 * 3 + payload.size() % 4 * 3 / 4;
+        const auto encoded = std::size_t(std::count(payload.begin(), payload.end(), '%'));
+        return payload.size() - 2 * std::min(encoded, payload.size() / 3);
+    }
+};
+
+Error unexpected(const std::string& expected, const std::string& found)
+{
+    return Error{"expected " + expected + ", found " + found};
+}
+
+int hexDigit(char c)
+{
+    if (c >= '0' && c <= '9') return c - '0';
+    if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+    if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+    return -1;
+}
+
+/// Out: a string or bytes, of which no more than `most` are kept.
+template <typename Out>
+Result<Out> decodePercent(std::string_view text, std::size_t most)
+{
+    Out out;
+    out.reserve(most);
+    for (std::size_t i = 0; i < text.size(); ++i)
+    {
+        if (text[i] != '%')
+        {
+            if (out.size() < most) out.push_back(static_cast<typename Out::value_type>(text[i]));
+            continue;
+        }
+        const int high = i + 1 < text.size() ? hexDigit(text[i + 1]) : -1;
+        const int low = i + 2 < text.size() ? hexDigit(text[i + 2]) : -1;
+        if (high < 0 || low < 0) return unexpected("two hexadecimal digits after %", quoted(text.substr(i, 3)));
+        if (out.size() < most) out.push_back(static_cast<typename Out::value_type>(high * 16 + low));
+        i += 2;
+    }
+    return out;
+}
+
+/// The value of each base64 digit, 255 for other characters.
+constexpr std::array<std::uint8_t, 256> base64Values()
+{
+    std::array<std::uint8_t, 256> values{};
+    for (std::size_t i = 0; i < values.size(); ++i)
+        values[i] = 255;
+    const std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    for (std::size_t i = 0; i < digits.size(); ++i)
+        values[std::size_t(digits[i])] = std::uint8_t(i);
+    return values;
+}
+
+std::string_view withoutPadding(std::string_view base64)
+{
+    for (int padding = 0; padding < 2 && !base64.empty() && base64.back() == '='; ++padding)
+        base64.remove_suffix(1);
+    return base64;
+}
+
+Result<Bytes> decodeBase64(std::string_view text, std::size_t most)
+{
+    static constexpr std::array<std::uint8_t, 256> values = base64Values();
+    Bytes out;
+    out.reserve(most);
+    std::uint32_t bits = 0;
+    int count = 0;
+    for (std::size_t i = 0; i < text.size(); ++i)
+    {
+        const std::uint8_t value = values[static_cast<unsigned char>(text[i])];
+        if (value == 255)
+            return unexpected("base64",
+                              quoted(text.substr(i, 1)) + " at character " + std::to_string(i) + " of the data");
+        bits = bits << 6 | value;
+        count += 6;
+        if (count < 8) continue;
+        count -= 8;
+        if (out.size() < most) out.push_back(static_cast<unsigned char>(bits >> count));
+    }
+    if (count == 6) return unexpected("base64", "data that ends in the middle of a byte");
+    return out;
+}
+
+bool equalsIgnoringCase(std::string_view text, std::string_view lower)
+{
+    return std::equal(text.begin(), text.end(), lower.begin(), lower.end(),
+                      [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; });
+}
+
+Result<DataUriParts> splitDataUri(std::string_view uri)
+{
+    const std::size_t comma = uri.find(',');
+    if (comma == std::string_view::npos) return unexpected("a comma and data after data:", quoted(uri));
+    DataUriParts parts{uri.substr(5, comma - 5), uri.substr(comma + 1), false};
+    const std::string_view marker = ";base64";
+    parts.isBase64 = parts.kind.size() >= marker.size() &&
+                     equalsIgnoringCase(parts.kind.substr(parts.kind.size() - marker.size()), marker);
+    if (parts.isBase64) parts.payload = withoutPadding(parts.payload);
+    return parts;
+}
+
+/// http: or C: at the beginning (RFC 3986, section 3.1).
+bool hasScheme(std::string_view uri)
+{
+    if (uri.empty() || !std::isalpha(static_cast<unsigned char>(uri[0]))) return false;
+    const std::size_t end =
+        std::find_if(uri.begin(), uri.end(),
+                     [](char c)
+                     { return !std::isalnum(static_cast<unsigned char>(c)) && c != '+' && c != '-' && c != '.'; }) -
+        uri.begin();
+    return end < uri.size() && uri[end] == ':';
+}
+
+namespace fs = std::filesystem;
+
+Error outside(const std::string& path)
+{
+    return Error{"expected a file in the model's folder or below it, found " + quoted(path) +
+                 " (the option allowOutsideFiles lets it be read)"};
+}
+
+bool leavesFolder(const fs::path& relative)
+{
+    const fs::path normal = relative.lexically_normal();
+    return relative.is_absolute() || (normal.begin() != normal.end() && *normal.begin() == "..");
+}
+
+bool isBelow(const fs::path& file, const fs::path& folder)
+{
+    return std::mismatch(folder.begin(), folder.end(), file.begin(), file.end()).first == folder.end();
+}
+
+} // namespace
+
+bool isDataUri(std::string_view uri)
+{
+    return equalsIgnoringCase(uri.substr(0, 5), "data:");
+}
+
+Result<std::size_t> bytesOfDataUri(std::string_view uri)
+{
+    const Result<DataUriParts> parts = splitDataUri(uri);
+    if (!parts) return parts.error();
+    return parts.value().bytes();
+}
+
+Result<DataUri> decodeDataUri(std::string_view uri, std::size_t most)
+{
+    const Result<DataUriParts> parts = splitDataUri(uri);
+    if (!parts) return parts.error();
+    const auto& [kind, payload, isBase64] = parts.value();
+    const std::size_t kept = std::min(most, parts.value().bytes());
+    Result<Bytes> bytes = isBase64 ? decodeBase64(payload, kept) : decodePercent<Bytes>(payload, kept);
+    if (!bytes) return bytes.error();
+    return DataUri{std::string(kind.substr(0, kind.find(';'))), std::move(bytes).value()};
+}
+
+Result<std::string> decodePath(std::string_view uri)
+{
+    if (uri.empty()) return unexpected("a relative path or a data URI", "an empty text");
+    if (hasScheme(uri)) return unexpected("a relative path or a data URI", quoted(uri));
+    Result<std::string> path = decodePercent<std::string>(uri, uri.size());
+    if (!path) return path;
+    if (path.value().find('\0') != std::string::npos) return unexpected("a path without NUL", quoted(uri));
+    if (path.value().find('\\') != std::string::npos)
+        return unexpected("a path with slashes, not backslashes", quoted(uri));
+    return path;
+}
+
+ModelFolder::ModelFolder(std::string modelFile, bool allowOutsideFiles)
+    : _modelFile(std::move(modelFile)), _allowOutsideFiles(allowOutsideFiles)
+{
+}
+
+Result<RegularFile> ModelFolder::open(std::string_view uri) const
+{
+    const Result<std::string> path = decodePath(uri);
+    if (!path) return path.error();
+    if (_modelFile.empty())
+        return Error{"expected data in the model itself, which came without a file name, found " + quoted(uri)};
+    const Result<std::string> resolved = resolve(path.value());
+    if (!resolved) return resolved.error();
+    Result<RegularFile> file = RegularFile::open(resolved.value());
+    if (file && file.value().isSameAs(_modelFile))
+        return Error{"expected a file of its own, found the model file itself"};
+    return file;
+}
+
+Result<std::string> ModelFolder::resolve(const std::string& path) const
+{
+    // The text decides first: files outside are not even looked up.
+    if (!_allowOutsideFiles && leavesFolder(path)) return outside(path);
+    fs::path folder = fs::path(_modelFile).parent_path();
+    if (folder.empty()) folder = ".";
+    std::error_code error;
+    const fs::path file = fs::canonical(folder / path, error);
+    if (error == std::errc::no_such_file_or_directory || error == std::errc::not_a_directory)
+        return Error{"expected a file, found that " + quoted(path) + " does not exist"};
+    if (error) return Error{"expected a file, found " + quoted(path) + ": " + error.message()};
+    if (_allowOutsideFiles) return file.string();
+    const fs::path home = fs::canonical(folder, error);
+    if (error) return Error{"the model's folder cannot be found: " + error.message()};
+    if (!isBelow(file, home)) return outside(path);
+    return file.string();
+}
+
+} // namespace osgGpuAnimation::gltf

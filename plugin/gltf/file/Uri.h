@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "gltf/file/ModelBytes.h"
+
+#include <osgGpuAnimation/animation/Result.h>
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace osgGpuAnimation::gltf
+{
+
+// The URIs of buffers and images (glTF 2.0, section 2.8). Errors here are "expected …, found …" without the element.
+
+/// The content of a data URI.
+struct DataUri
+{
+    std::string mimeType; ///< as the URI has it; may be empty
+    std::vector<unsigned char> bytes;
+};
+
+bool isDataUri(std::string_view uri);
+
+/// The number of bytes that a data URI decodes to, computed from its length before any allocation.
+/// Error: no comma.
+Result<std::size_t> bytesOfDataUri(std::string_view uri);
+
+/// Decodes data:[MIME type][;base64],… of any MIME type. Longer data is cut after `most` bytes; the rest is
+/// only checked for faults.
+/// Errors: no comma, a character that is no base64.
+Result<DataUri> decodeDataUri(std::string_view uri, std::size_t most);
+
+/// The path of a relative URI: percent-encoding is decoded, a plus sign stays a plus sign.
+/// Errors: empty, a scheme or drive letter, an incomplete percent-encoding, an encoded NUL, a backslash.
+Result<std::string> decodePath(std::string_view uri);
+
+/// The folder that external files of a model must lie in or below, after symbolic links are resolved, unless the caller
+/// allows more. A model from a stream has no folder and no external files.
+class ModelFolder
+{
+public:
+    /// modelFile: may be empty (a stream).
+    ModelFolder(std::string modelFile, bool allowOutsideFiles);
+
+    /// Opens the file of a URI that is no data URI. Errors are `expected …, found …` or name the file.
+    Result<RegularFile> open(std::string_view uri) const;
+
+private:
+    Result<std::string> resolve(const std::string& path) const;
+
+    std::string _modelFile;
+    bool _allowOutsideFiles;
+};
+
+} // namespace osgGpuAnimation::gltf

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: MIT
+#include "gltf/scene/TransformBound.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace osgGpuAnimation::gltf
+{
+
+namespace
+{
+
+/// Of a value, or of a value and its tangents: a spline stays within their sum.
+struct Largest
+{
+    double translation = 0.0;
+    double scale = 0.0;
+
+    void add(const JointTransform* transforms, std::size_t count)
+    {
+        double far = 0.0, large = 0.0;
+        for (std::size_t i = 0; i < count; ++i)
+        {
+            far += glm::length(glm::dvec3(transforms[i].translation));
+            const glm::dvec3 sizes = glm::abs(glm::dvec3(transforms[i].scale));
+            large += std::max({sizes.x, sizes.y, sizes.z});
+        }
+        // NaN stays: it compares false and fits nowhere.
+        if (!(far <= translation)) translation = far;
+        if (!(large <= scale)) scale = large;
+    }
+};
+
+std::vector<TransformBound> chained(const Skeleton& skeleton, const std::vector<Largest>& locals)
+{
+    std::vector<TransformBound> bounds;
+    bounds.reserve(locals.size());
+    for (std::size_t joint = 0; joint < locals.size(); ++joint)
+    {
+        const TransformBound local{locals[joint].scale, locals[joint].translation};
+        const int parent = skeleton.joint(joint).parent;
+        bounds.push_back(parent < 0 ? local : bounds[static_cast<std::size_t>(parent)] * local);
+    }
+    return bounds;
+}
+
+bool isSmall(const glm::vec4& numbers)
+{
+    for (int i = 0; i < 4; ++i)
+        if (!(std::abs(double(numbers[i])) <= TransformBound::farthest)) return false;
+    return true;
+}
+
+} // namespace
+
+TransformBound TransformBound::of(const glm::dmat4& matrix)
+{
+    const double squares = glm::dot(matrix[0], matrix[0]) + glm::dot(matrix[1], matrix[1]) +
+                           glm::dot(matrix[2], matrix[2]); // no less than the longest squared
+    return {std::sqrt(squares), glm::length(glm::dvec3(matrix[3]))};
+}
+
+TransformBound TransformBound::operator*(const TransformBound& inner) const
+{
+    return {stretch * inner.stretch, of(inner.distance)};
+}
+
+void TransformBound::add(const TransformBound& other)
+{
+    stretch = std::max(stretch, other.stretch);
+    distance = std::max(distance, other.distance);
+}
+
+std::vector<TransformBound> boundsAtRest(const Skeleton& skeleton)
+{
+    std::vector<Largest> locals(skeleton.jointCount());
+    for (std::size_t joint = 0; joint < locals.size(); ++joint)
+        locals[joint].add(&skeleton.joint(joint).rest, 1);
+    return chained(skeleton, locals);
+}
+
+std::vector<TransformBound> boundsOfClip(const Skeleton& skeleton, const Clip& clip)
+{
+    std::vector<Largest> locals(skeleton.jointCount());
+    for (std::size_t keyframe = 0; keyframe < clip.keyframeCount(); ++keyframe)
+        for (std::size_t joint = 0; joint < locals.size(); ++joint)
+            locals[joint].add(clip.at(keyframe, joint), clip.transformsPerTrack());
+    return chained(skeleton, locals);
+}
+
+bool fits(const Skeleton& skeleton, const Clip& clip)
+{
+    const std::vector<TransformBound> bounds = boundsOfClip(skeleton, clip);
+    return std::all_of(bounds.begin(), bounds.end(), [](const TransformBound& bound) { return bound.fits(); }) &&
+           std::all_of(clip.data().begin(), clip.data().end(),
+                       [](const JointTransform& transform) {
+                           return isSmall(transform.translation) && isSmall(transform.rotation) &&
+                                  isSmall(transform.scale);
+                       });
+}
+
+std::string beyondFarthest()
+{
+    return "farther out than 1e18, more than float numbers bear";
+}
+
+double radiusOf(const osg::Vec3Array& points)
+{
+    double farthest = 0.0;
+    for (const osg::Vec3& point : points)
+    {
+        const double squared =
+            glm::dot(glm::dvec3(point.x(), point.y(), point.z()), glm::dvec3(point.x(), point.y(), point.z()));
+        if (!(squared <= farthest)) farthest = std::isnan(squared) ? std::numeric_limits<double>::infinity() : squared;
+    }
+    return std::sqrt(farthest);
+}
+
+std::vector<TransformBound> boundsOfEntries(const AnimationSet& set)
+{
+    std::vector<TransformBound> joints = boundsAtRest(set.skeleton());
+    for (const Clip& clip : set.clips())
+    {
+        const std::vector<TransformBound> moved = boundsOfClip(set.skeleton(), clip);
+        for (std::size_t joint = 0; joint < joints.size(); ++joint)
+            joints[joint].add(moved[joint]);
+    }
+    std::vector<TransformBound> entries;
+    for (const PaletteEntry& entry : set.palette())
+        entries.push_back(entry.joint < 0 ? TransformBound{0.0, 0.0}
+                                          : joints[static_cast<std::size_t>(entry.joint)] *
+                                                TransformBound::of(entry.inverseBind.toColumns()));
+    return entries;
+}
+
+} // namespace osgGpuAnimation::gltf

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/AddedData.h"
 
-#include "gltf/Accessor.h"
+#include "gltf/data/Accessor.h"
 
 #include <cstring>
 #include <utility>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/Import.h"
 
-#include "gltf/Clips.h"
 #include "gltf/ElementName.h"
 #include "gltf/ParsedNumber.h"
 #include "gltf/Reach.h"
-#include "gltf/SceneGraph.h"
-#include "gltf/Skins.h"
+#include "gltf/scene/Clips.h"
+#include "gltf/scene/Drawables.h"
+#include "gltf/scene/Joints.h"
 #include "gltf/TinyGltf.h"
 
 #include <osgGpuAnimation/nodes/CharacterKeys.h>
@@ -47,7 +47,7 @@ class Importer
 public:
     Importer(const tinygltf::Model& model, const ImportOptions& options, ImportedModel& result)
         : _model(model), _options(options), _result(result), _report(result.messages), _budget(options.maxDecodedBytes),
-          _textures(model, _budget, _report)
+          _textures(model, _report)
     {
     }
 
@@ -137,7 +137,7 @@ void Importer::describeFile(const NodeTree& tree)
 
 Result<bool> Importer::run()
 {
-    const Result<NodeTree> tree = buildNodeTree(_model, _options, _report);
+    const Result<NodeTree> tree = buildNodeTree(_model, _options);
     if (!tree) return tree.error();
     const Result<Joints> joints = buildJoints(_model, tree.value());
     if (!joints) return joints.error();

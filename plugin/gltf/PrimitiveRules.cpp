@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/PrimitiveRules.h"
 
-#include "gltf/AttributeSemantic.h"
+#include "gltf/data/AttributeSemantic.h"
 #include "gltf/ElementName.h"
 
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/ValidateAccessors.h"
 
-#include "gltf/Accessor.h"
+#include "gltf/data/Accessor.h"
 #include "gltf/ElementName.h"
 
 #include <cstdint>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/ValidateAnimations.h"
 
-#include "gltf/Accessor.h"
 #include "gltf/AddedData.h"
-#include "gltf/AttributeFormat.h"
+#include "gltf/data/Accessor.h"
+#include "gltf/data/AttributeSemantic.h"
 #include "gltf/ElementName.h"
 
 #include <algorithm>

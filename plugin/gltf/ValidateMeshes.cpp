@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/ValidateMeshes.h"
 
-#include "gltf/Accessor.h"
-#include "gltf/AttributeFormat.h"
+#include "gltf/data/Accessor.h"
+#include "gltf/data/AttributeSemantic.h"
+#include "gltf/data/TextureCoordinates.h"
 #include "gltf/ElementName.h"
-#include "gltf/MaterialCoordinates.h"
 
 #include <algorithm>
 #include <cstdint>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/ValidateSkinning.h"
 
-#include "gltf/Accessor.h"
 #include "gltf/AddedData.h"
+#include "gltf/data/Accessor.h"
 #include "gltf/ElementName.h"
 
 #include <algorithm>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/Import.h"
 
-#include "gltf/Clips.h"
 #include "gltf/document/LoadDocument.h"
 #include "gltf/file/Report.h"
+#include "gltf/scene/Clips.h"
+#include "gltf/scene/Drawables.h"
+#include "gltf/scene/Joints.h"
 #include "gltf/scene/TransformBound.h"
-#include "gltf/SceneGraph.h"
-#include "gltf/Skins.h"
 
 #include <osgGpuAnimation/nodes/CharacterKeys.h>
 
@@ -46,7 +46,7 @@ class Importer
 public:
     Importer(const tinygltf::Model& model, const ImportOptions& options, ImportedModel& result)
         : _model(model), _options(options), _result(result), _report(result.messages), _budget(options.maxDecodedBytes),
-          _textures(model, _budget, _report)
+          _textures(model, _report)
     {
     }
 
@@ -136,7 +136,7 @@ void Importer::describeFile(const NodeTree& tree)
 
 Result<bool> Importer::run()
 {
-    const Result<NodeTree> tree = buildNodeTree(_model, _options, _report);
+    const Result<NodeTree> tree = buildNodeTree(_model, _options);
     if (!tree) return tree.error();
     const Result<Joints> joints = buildJoints(_model, tree.value());
     if (!joints) return joints.error();

@@ -3,14 +3,13 @@
 
 #include "gltf/file/Report.h"
 #include "gltf/ImportOptions.h"
+#include "gltf/scene/SceneGraph.h"
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/nodes/CompactCharacter.h>
 
-#include <osg/Geometry>
 #include <osg/MatrixTransform>
 
-#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -18,24 +17,6 @@
 
 namespace osgGpuAnimation::gltf
 {
-
-/// One primitive of one mesh node of the scene, and its drawable in the graph.
-struct ImportedPrimitive
-{
-    int node = -1; ///< the file's numbers
-    int mesh = -1;
-    int primitive = -1;                   ///< within the mesh
-    int skin = -1;                        ///< -1: none
-    int morph = -1;                       ///< index into the set's morphs, -1: none
-    std::size_t targets = 0;              ///< morph targets
-    std::size_t vertexCount = 0;          ///< of the file's POSITION accessor
-    std::size_t influences = 0;           ///< joints a vertex can name: 4 a JOINTS_n set
-    osg::ref_ptr<osg::Geometry> geometry; ///< a SkinnedGeometry where it is drawn from the palette
-    /// vertexCount numbers: the vertex of `geometry` for each vertex of the file; null if they are the same.
-    std::shared_ptr<const std::vector<std::uint32_t>> geometryVertex;
-    osg::Matrixd
-        toModel; ///< of a plain geometry: its place at rest, in the file's axes; identity for a SkinnedGeometry
-};
 
 /// The result of an import.
 struct ImportedModel

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "gltf/Accessor.h"
+#include "gltf/data/Accessor.h"
 
 #include "plugin/ModelBuilder.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "gltf/DracoDecompression.h"
+#include "gltf/data/Decompression.h"
 
-#include "gltf/Accessor.h"
+#include "gltf/data/Accessor.h"
 #include "plugin/draco/DracoEncoder.h"
 #include "plugin/PackedDocument.h"
 

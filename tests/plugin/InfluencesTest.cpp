@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "gltf/Influences.h"
+#include "gltf/scene/Influences.h"
 #include "plugin/ModelBuilder.h"
 
 #include <gtest/gtest.h>
@@ -103,23 +103,6 @@ TEST_F(InfluencesTest, twelvePlacesWithEightWeightsLoseNothing)
     EXPECT_TRUE(messages.warnings.empty());
     EXPECT_EQ((*sets[0].weights)[0][0], 0.2f);
     EXPECT_EQ((*sets[0].entries)[0][0], entry(8));
-}
-
-TEST_F(InfluencesTest, whatNothingMovesFollowsItsFirstJoint)
-{
-    const auto sets = read({{7, 1, 2, 3}}, {{0, 0, 0, 0}});
-    EXPECT_EQ((*sets[0].entries)[0][0], entry(7));
-    EXPECT_EQ((*sets[0].weights)[0], osg::Vec4(1, 0, 0, 0));
-    ASSERT_EQ(messages.warnings.size(), 1u);
-    EXPECT_NE(messages.warnings[0].find("no weight at all"), std::string::npos);
-}
-
-TEST_F(InfluencesTest, unknownJointsLoseTheirWeight)
-{
-    const auto sets = read({{0, 200, 65535, 3}}, {{0.5f, 0.5f, 0, 0}});
-    EXPECT_EQ((*sets[0].weights)[0], osg::Vec4(0.5f, 0, 0, 0));
-    ASSERT_EQ(messages.warnings.size(), 1u);
-    EXPECT_NE(messages.warnings[0].find("a joint that the skin does not have"), std::string::npos);
 }
 
 } // namespace osgGpuAnimation::gltf

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "gltf/Meshes.h"
-#include "gltf/FlatNormals.h"
+#include "gltf/scene/Meshes.h"
+#include "gltf/scene/TriangleMesh.h"
 #include "plugin/ModelBuilder.h"
 
 #include <functional>
@@ -277,15 +277,13 @@ TEST(MeshesTest, textureCoordinatesAreTheMaterials)
     EXPECT_NEAR(turned.y(), 1.25f, 1e-6f);
 }
 
-TEST(MeshesTest, whatCannotBeDrawnIsLeftOutByName)
+TEST(MeshesTest, whatCannotBeDrawnIsLeftOut)
 {
     ModelBuilder nothing;
     nothing.mesh({{"NORMAL", fiveNormals(nothing)}});
     const ReadMesh noPositions(nothing);
     EXPECT_FALSE(noPositions.primitive);
-    ASSERT_EQ(noPositions.messages.warnings.size(), 1u);
-    EXPECT_NE(noPositions.messages.warnings[0].find("meshes[0] \"mesh0\".primitives[0]: no POSITION"),
-              std::string::npos);
+    EXPECT_TRUE(noPositions.messages.warnings.empty()); // the validation has warned: see DocumentChangesTest
 
     ModelBuilder few;
     few.mesh({{"POSITION", few.floats(TINYGLTF_TYPE_VEC3, {0, 0, 0, 1, 0, 0})}});

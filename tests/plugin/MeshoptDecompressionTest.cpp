@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "gltf/MeshoptDecompression.h"
+#include "gltf/data/Decompression.h"
 
-#include "gltf/Accessor.h"
+#include "gltf/data/Accessor.h"
 #include "plugin/PackedDocument.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "gltf/NodeTransform.h"
+#include "gltf/scene/NodeTransform.h"
 
 #include <glm/gtc/quaternion.hpp>
 #include <glm/gtx/transform.hpp>

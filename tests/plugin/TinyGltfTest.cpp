@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/document/LoadDocument.h"
 
-#include "gltf/Accessor.h"
+#include "gltf/data/Accessor.h"
 #include "gltf/Import.h"
 #include "plugin/GlbText.h"
 #include "plugin/LoadedDocument.h"

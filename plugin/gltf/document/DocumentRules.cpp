@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/document/DocumentRules.h"
 
-#include "gltf/AttributeSemantic.h"
+#include "gltf/data/AttributeSemantic.h"
 #include "gltf/file/Report.h"
 
 #include <algorithm>

@@ -8,11 +8,10 @@
 #include "gltf/document/ValidateAccessors.h"
 #include "gltf/document/ValidateMeshes.h"
 #include "gltf/document/ValidateNodes.h"
-#include "gltf/DracoDecompression.h"
+#include "gltf/data/Decompression.h"
 #include "gltf/file/ModelBytes.h"
 #include "gltf/file/Uri.h"
-#include "gltf/LoadImages.h"
-#include "gltf/MeshoptDecompression.h"
+#include "gltf/data/LoadImages.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/document/ValidateAccessors.h"
 
-#include "gltf/Accessor.h"
+#include "gltf/data/Accessor.h"
 #include "gltf/file/Report.h"
 
 #include <cstdint>

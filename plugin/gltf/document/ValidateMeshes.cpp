@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/document/ValidateMeshes.h"
 
-#include "gltf/Accessor.h"
-#include "gltf/AttributeFormat.h"
+#include "gltf/data/Accessor.h"
+#include "gltf/data/AttributeSemantic.h"
 #include "gltf/file/Report.h"
-#include "gltf/MaterialCoordinates.h"
+#include "gltf/data/TextureCoordinates.h"
 
 #include <algorithm>
 #include <cmath>

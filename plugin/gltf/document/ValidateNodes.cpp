@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/document/ValidateNodes.h"
 
-#include "gltf/Accessor.h"
-#include "gltf/AttributeFormat.h"
+#include "gltf/data/Accessor.h"
+#include "gltf/data/AttributeSemantic.h"
 
 #include <algorithm>
 #include <cmath>

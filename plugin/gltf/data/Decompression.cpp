@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: MIT
+#include "gltf/data/Decompression.h"
+
+#include "gltf/data/Accessor.h"
+#include "gltf/data/DracoMesh.h"
+#include "gltf/file/Report.h"
+
+#include <meshoptimizer.h>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace osgGpuAnimation::gltf
+{
+
+namespace
+{
+
+using Bytes = std::vector<unsigned char>;
+using Model = tinygltf::Model;
+
+bool isRequired(const Model& model, const char* extension)
+{
+    const std::vector<std::string>& required = model.extensionsRequired;
+    return std::find(required.begin(), required.end(), extension) != required.end();
+}
+
+// The codecs' headers alone need more than a 256th of the decoded size: less data is cut off, and no memory is
+// allocated for it.
+const std::size_t bestRatio = 256;
+
+/// One compressed view, its numbers in the ranges that the schema allows.
+struct Compressed
+{
+    std::size_t buffer = 0;
+    std::size_t byteOffset = 0;
+    std::size_t byteLength = 0;
+    std::size_t stride = 0;
+    std::size_t count = 0;
+    std::string_view mode;
+    std::string_view filter;
+
+    explicit Compressed(const JsonValue& json)
+        : buffer(std::size_t(json["buffer"].number())), byteLength(std::size_t(json["byteLength"].number())),
+          stride(std::size_t(json["byteStride"].number())), count(std::size_t(json["count"].number())),
+          mode(json["mode"].text())
+    {
+        if (const JsonValue offset = json["byteOffset"]) byteOffset = std::size_t(offset.number());
+        if (const JsonValue given = json["filter"]) filter = given.text();
+        if (filter == "NONE") filter = {};
+    }
+};
+
+/// What the codec and the filter require of stride and count, which the library only asserts; empty where it holds.
+std::string wrongShape(const Compressed& view)
+{
+    if (view.mode != "ATTRIBUTES")
+    {
+        if (view.stride != 2 && view.stride != 4) return "a byteStride of 2 or 4";
+        if (view.mode == "TRIANGLES" && view.count % 3 != 0) return "a count that is a multiple of 3";
+        return view.filter.empty() ? "" : "no filter";
+    }
+    if (view.stride % 4 != 0) return "a byteStride that is a multiple of 4";
+    if (view.filter == "OCTAHEDRAL" && view.stride != 4 && view.stride != 8) return "a byteStride of 4 or 8";
+    if (view.filter == "QUATERNION" && view.stride != 8) return "a byteStride of 8";
+    return "";
+}
+
+std::optional<Error> check(const Compressed& view, const tinygltf::BufferView& parent, const Bytes& source,
+                           const std::string& name)
+{
+    const std::string wrong = wrongShape(view);
+    if (!wrong.empty())
+        return fault(name, wrong,
+                     "byteStride " + std::to_string(view.stride) + ", count " + std::to_string(view.count));
+    if (view.byteOffset > source.size() || view.byteLength > source.size() - view.byteOffset)
+        return fault(name + ".byteLength",
+                     "data within the " + std::to_string(source.size()) + " bytes of " +
+                         elementName("buffers", view.buffer),
+                     std::to_string(view.byteLength) + " from byte " + std::to_string(view.byteOffset) + " on");
+    // No product here wraps: strides are at most 256, counts below 2^53.
+    if (view.count * view.stride != parent.byteLength)
+        return fault(name + ".count",
+                     "count times byteStride to be the " + std::to_string(parent.byteLength) + " bytes of the view",
+                     std::to_string(view.count * view.stride));
+    if (view.count * view.stride / bestRatio > view.byteLength)
+        return fault(name + ".byteLength", "enough data for " + std::to_string(view.count * view.stride) + " bytes",
+                     std::to_string(view.byteLength));
+    if (parent.byteStride != 0 && parent.byteStride != view.stride)
+        return fault(name + ".byteStride", "that of the view, " + std::to_string(parent.byteStride),
+                     std::to_string(view.stride));
+    return std::nullopt;
+}
+
+bool decode(const Compressed& view, const Bytes& source, Bytes& out)
+{
+    const unsigned char* const from = source.data() + view.byteOffset;
+    if (view.mode == "TRIANGLES")
+        return meshopt_decodeIndexBuffer(out.data(), view.count, view.stride, from, view.byteLength) == 0;
+    if (view.mode == "INDICES")
+        return meshopt_decodeIndexSequence(out.data(), view.count, view.stride, from, view.byteLength) == 0;
+    if (meshopt_decodeVertexBuffer(out.data(), view.count, view.stride, from, view.byteLength) != 0) return false;
+    if (view.filter == "OCTAHEDRAL") meshopt_decodeFilterOct(out.data(), view.count, view.stride);
+    if (view.filter == "QUATERNION") meshopt_decodeFilterQuat(out.data(), view.count, view.stride);
+    if (view.filter == "EXPONENTIAL") meshopt_decodeFilterExp(out.data(), view.count, view.stride);
+    return true;
+}
+
+std::optional<Error> decompress(const Compressed& view, std::size_t index, DecodedBytes& budget, Model& model)
+{
+    const std::string name = elementName("bufferViews", index) + ".extensions.EXT_meshopt_compression";
+    tinygltf::BufferView& parent = model.bufferViews[index];
+    const Bytes& source = model.buffers[view.buffer].data;
+    if (std::optional<Error> error = check(view, parent, source, name)) return error;
+    if (!budget.take(parent.byteLength)) return fault(name, budget.limitText(), std::to_string(parent.byteLength));
+    Bytes out(parent.byteLength);
+    if (!decode(view, source, out)) return fault(name, "data that meshoptimizer can decode", "other data");
+    parent.buffer = int(model.buffers.size());
+    parent.byteOffset = 0;
+    model.buffers.emplace_back().data = std::move(out);
+    return std::nullopt;
+}
+
+bool hasPlainData(const Model& model, const tinygltf::Primitive& primitive)
+{
+    return std::all_of(primitive.attributes.begin(), primitive.attributes.end(),
+                       [&](const auto& attribute)
+                       { return model.accessors[std::size_t(attribute.second)].bufferView >= 0; });
+}
+
+/// Decodes one primitive from its bit stream into accessors.
+class DracoPrimitive
+{
+public:
+    DracoPrimitive(Model& model, tinygltf::Primitive& primitive, const JsonValue& extension, std::string name)
+        : _model(model), _primitive(primitive), _extension(extension),
+          _name(std::move(name) + ".extensions.KHR_draco_mesh_compression")
+    {
+    }
+
+    std::optional<Error> decompress(DecodedBytes& budget)
+    {
+        if (_primitive.mode != TINYGLTF_MODE_TRIANGLES || _primitive.indices < 0)
+            return fault(_name, "a primitive of indexed triangles", "mode " + std::to_string(_primitive.mode));
+        const std::size_t count = _model.accessors[std::size_t(_primitive.indices)].count;
+        const tinygltf::BufferView& view = _model.bufferViews[std::size_t(_extension["bufferView"].number())];
+        const unsigned char* const data = _model.buffers[std::size_t(view.buffer)].data.data() + view.byteOffset;
+        const Result<DracoMesh> mesh = DracoMesh::decode(data, view.byteLength, count / 3);
+        if (!mesh) return Error{_name + ": " + mesh.error().message};
+        if (!budget.take(bytesOf(mesh.value(), count))) return fault(_name, budget.limitText(), "more");
+        for (const JsonValue& attribute : _extension["attributes"])
+            if (std::optional<Error> error = replaceAttribute(mesh.value(), attribute)) return error;
+        tinygltf::Accessor indices = _model.accessors[std::size_t(_primitive.indices)];
+        indices.componentType = TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
+        _primitive.indices = addCopy(indices, bytesOf(mesh.value().indices()));
+        return std::nullopt;
+    }
+
+private:
+    static std::vector<unsigned char> bytesOf(const std::vector<std::uint32_t>& indices)
+    {
+        const unsigned char* const begin = reinterpret_cast<const unsigned char*>(indices.data());
+        return std::vector<unsigned char>(begin, begin + indices.size() * sizeof(std::uint32_t));
+    }
+
+    std::size_t bytesOf(const DracoMesh& mesh, std::size_t indices) const
+    {
+        std::size_t bytes = indices * sizeof(std::uint32_t);
+        for (const auto& attribute : _primitive.attributes)
+            bytes += mesh.vertices() * elementBytes(_model.accessors[std::size_t(attribute.second)]);
+        return bytes;
+    }
+
+    std::optional<Error> replaceAttribute(const DracoMesh& mesh, const JsonValue& attribute)
+    {
+        const std::string key(attribute.key());
+        const auto found = _primitive.attributes.find(key);
+        if (found == _primitive.attributes.end()) return std::nullopt; // the document rules have left it out
+        const tinygltf::Accessor accessor = _model.accessors[std::size_t(found->second)];
+        const std::string name = _name + ".attributes." + printable(key);
+        if (accessor.count != mesh.vertices())
+            return fault(name,
+                         std::to_string(accessor.count) + " vertices as in " +
+                             elementName("accessors", std::size_t(found->second)),
+                         std::to_string(mesh.vertices()));
+        Result<std::vector<unsigned char>> bytes =
+            mesh.attribute(std::uint32_t(attribute.number()), componentCount(accessor), accessor.componentType);
+        if (!bytes) return Error{name + ": " + bytes.error().message};
+        found->second = addCopy(accessor, std::move(bytes).value());
+        return std::nullopt;
+    }
+
+    /// Adds an accessor like the file's over the decoded data.
+    int addCopy(tinygltf::Accessor accessor, std::vector<unsigned char> bytes)
+    {
+        accessor.bufferView = addBufferView(_model, std::move(bytes), 0);
+        accessor.byteOffset = 0;
+        accessor.sparse.isSparse = false;
+        _model.accessors.push_back(std::move(accessor));
+        return int(_model.accessors.size() - 1);
+    }
+
+    Model& _model;
+    tinygltf::Primitive& _primitive;
+    JsonValue _extension;
+    std::string _name;
+};
+
+} // namespace
+
+std::optional<Error> decompressMeshopt(const JsonValue& bufferViews, DecodedBytes& budget, Model& model)
+{
+    const bool required = isRequired(model, "EXT_meshopt_compression");
+    std::size_t i = 0;
+    for (const JsonValue& bufferView : bufferViews)
+    {
+        const JsonValue compression = bufferView["extensions"]["EXT_meshopt_compression"];
+        const bool hasFallback = !model.buffers[std::size_t(model.bufferViews[i].buffer)].data.empty();
+        if (compression && (required || !hasFallback))
+            if (std::optional<Error> error = decompress(Compressed(compression), i, budget, model)) return error;
+        ++i;
+    }
+    return std::nullopt;
+}
+
+std::optional<Error> decompressDraco(const JsonValue& meshes, DecodedBytes& budget, Model& model)
+{
+    const bool required = isRequired(model, "KHR_draco_mesh_compression");
+    std::size_t m = 0;
+    for (const JsonValue& mesh : meshes)
+    {
+        std::size_t p = 0;
+        for (const JsonValue& json : mesh["primitives"])
+        {
+            const JsonValue extension = json["extensions"]["KHR_draco_mesh_compression"];
+            tinygltf::Primitive& primitive = model.meshes[m].primitives[p];
+            if (extension && (required || !hasPlainData(model, primitive)))
+                if (std::optional<Error> error =
+                        DracoPrimitive(model, primitive, extension, elementName("meshes", m, "primitives", p))
+                            .decompress(budget))
+                    return error;
+            ++p;
+        }
+        ++m;
+    }
+    return std::nullopt;
+}
+
+} // namespace osgGpuAnimation::gltf

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: MIT
+#include "gltf/data/DracoMesh.h"
+
+#include "gltf/file/Report.h"
+
+#include <draco/compression/decode.h>
+#include <draco/compression/point_cloud/point_cloud_decoder.h>
+#include <draco/core/varint_decoding.h>
+#include <draco/mesh/mesh.h>
+#include <draco/metadata/geometry_metadata.h>
+#include <draco/metadata/metadata_decoder.h>
+
+#include <cstring>
+#include <optional>
+#include <utility>
+
+namespace osgGpuAnimation::gltf
+{
+
+namespace
+{
+
+using Bytes = std::vector<unsigned char>;
+
+Error unexpected(const std::string& expected, const std::string& found)
+{
+    return Error{"expected " + expected + ", found " + found};
+}
+
+/// The number of triangles by the header; nothing where the stream has no header of version 2.2.
+std::optional<std::uint32_t> facesOfHeader(const char* data, std::size_t bytes)
+{
+    draco::DecoderBuffer buffer;
+    buffer.Init(data, bytes);
+    draco::DracoHeader header;
+    if (!draco::PointCloudDecoder::DecodeHeader(&buffer, &header).ok()) return std::nullopt;
+    if (header.version_major != 2 || header.version_minor != 2 || header.encoder_type != draco::TRIANGULAR_MESH)
+        return std::nullopt;
+    buffer.set_bitstream_version(draco::kDracoMeshBitstreamVersion);
+    if (header.flags & METADATA_FLAG_MASK)
+    {
+        draco::GeometryMetadata metadata;
+        if (!draco::MetadataDecoder().DecodeGeometryMetadata(&buffer, &metadata)) return std::nullopt;
+    }
+    std::uint32_t faces = 0, vertices = 0;
+    if (header.encoder_method == draco::MESH_EDGEBREAKER_ENCODING)
+    {
+        std::uint8_t traversal;
+        if (!buffer.Decode(&traversal) || !draco::DecodeVarint(&vertices, &buffer)) return std::nullopt;
+    }
+    if (!draco::DecodeVarint(&faces, &buffer)) return std::nullopt;
+    return faces;
+}
+
+template <typename Number>
+bool copyValues(const draco::Mesh& mesh, const draco::PointAttribute& attribute, Bytes& out)
+{
+    const std::size_t components = std::size_t(attribute.num_components());
+    Number values[4] = {};
+    unsigned char* to = out.data();
+    for (draco::PointIndex point(0); point < mesh.num_points(); ++point)
+    {
+        const draco::AttributeValueIndex value = attribute.mapped_index(point);
+        if (value.value() >= attribute.size()) return false;
+        if (!attribute.ConvertValue<Number>(value, std::int8_t(components), values)) return false;
+        std::memcpy(to, values, components * sizeof(Number));
+        to += components * sizeof(Number);
+    }
+    return true;
+}
+
+template <typename Number>
+bool readValues(const draco::Mesh& mesh, const draco::PointAttribute& attribute, Bytes& out)
+{
+    out.resize(std::size_t(mesh.num_points()) * std::size_t(attribute.num_components()) * sizeof(Number));
+    return copyValues<Number>(mesh, attribute, out);
+}
+
+bool readValues(const draco::Mesh& mesh, const draco::PointAttribute& attribute, int componentType, Bytes& out)
+{
+    switch (componentType)
+    {
+    case 5120:
+        return readValues<std::int8_t>(mesh, attribute, out);
+    case 5121:
+        return readValues<std::uint8_t>(mesh, attribute, out);
+    case 5122:
+        return readValues<std::int16_t>(mesh, attribute, out);
+    case 5123:
+        return readValues<std::uint16_t>(mesh, attribute, out);
+    case 5125:
+        return readValues<std::uint32_t>(mesh, attribute, out);
+    default:
+        return readValues<float>(mesh, attribute, out);
+    }
+}
+
+} // namespace
+
+Result<DracoMesh> DracoMesh::decode(const unsigned char* data, std::size_t bytes, std::size_t faces)
+{
+    const char* const stream = reinterpret_cast<const char*>(data);
+    const std::optional<std::uint32_t> found = facesOfHeader(stream, bytes);
+    if (!found) return unexpected("a Draco mesh of version 2.2", "other data");
+    if (*found != faces)
+        return unexpected("a Draco mesh of " + std::to_string(faces) + " triangles", std::to_string(*found));
+    draco::DecoderBuffer buffer;
+    buffer.Init(stream, bytes);
+    draco::Decoder decoder;
+    auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
+    if (!decoded.ok()) return unexpected("data that Draco can decode", printable(decoded.status().error_msg_string()));
+    std::unique_ptr<draco::Mesh> mesh = std::move(decoded).value();
+    if (!mesh || mesh->num_faces() != faces) return unexpected("data that Draco can decode", "other data");
+    return DracoMesh(std::move(mesh));
+}
+
+DracoMesh::DracoMesh(std::unique_ptr<draco::Mesh> mesh) : _mesh(std::move(mesh)) {}
+DracoMesh::DracoMesh(DracoMesh&&) noexcept = default;
+DracoMesh& DracoMesh::operator=(DracoMesh&&) noexcept = default;
+DracoMesh::~DracoMesh() = default;
+
+std::size_t DracoMesh::vertices() const
+{
+    return _mesh->num_points();
+}
+
+std::vector<std::uint32_t> DracoMesh::indices() const
+{
+    std::vector<std::uint32_t> indices;
+    indices.reserve(_mesh->num_faces() * std::size_t(3));
+    for (draco::FaceIndex face(0); face < _mesh->num_faces(); ++face)
+        for (const draco::PointIndex& point : _mesh->face(face))
+            indices.push_back(point.value());
+    return indices;
+}
+
+Result<Bytes> DracoMesh::attribute(std::uint32_t uniqueId, std::size_t components, int componentType) const
+{
+    const draco::PointAttribute* const attribute = _mesh->GetAttributeByUniqueId(uniqueId);
+    if (!attribute) return unexpected("an attribute of the Draco mesh", "number " + std::to_string(uniqueId));
+    if (components > 4 || std::size_t(attribute->num_components()) != components)
+        return unexpected(std::to_string(components) + " components in the Draco mesh",
+                          std::to_string(attribute->num_components()));
+    Bytes out;
+    if (!readValues(*_mesh, *attribute, componentType, out))
+        return unexpected("values of the accessor's component type in the Draco mesh", "others");
+    return out;
+}
+
+} // namespace osgGpuAnimation::gltf

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+#include "gltf/data/LoadImages.h"
+
+#include "gltf/data/Picture.h"
+#include "gltf/file/Report.h"
+#include "gltf/file/Uri.h"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace osgGpuAnimation::gltf
+{
+
+namespace
+{
+
+using Bytes = std::vector<unsigned char>;
+
+bool isKnownMimeType(std::string_view type)
+{
+    return type.empty() || type == "image/png" || type == "image/jpeg" || type == "application/octet-stream";
+}
+
+Error tooLarge(const DecodedBytes& budget, std::size_t bytes)
+{
+    return Error{"expected " + budget.limitText() + ", found a picture of " + std::to_string(bytes)};
+}
+
+// All bytes that are read count, whether or not they are a picture: many images may name the same data, and each reads
+// it.
+
+Result<Bytes> readDataUri(std::string_view uri, DecodedBytes& budget, const std::string& name, Report& report)
+{
+    const Result<std::size_t> size = bytesOfDataUri(uri);
+    if (!size) return size.error();
+    if (!budget.take(size.value())) return tooLarge(budget, size.value());
+    Result<DataUri> data = decodeDataUri(uri, size.value());
+    if (!data) return data.error();
+    if (!isKnownMimeType(data.value().mimeType))
+        report.warn(name + ".uri: expected image/png or image/jpeg, found " + quoted(data.value().mimeType) +
+                    "; the bytes decide");
+    return std::move(data).value().bytes;
+}
+
+Result<Bytes> readFile(std::string_view uri, const ModelFolder& folder, DecodedBytes& budget)
+{
+    const Result<RegularFile> file = folder.open(uri);
+    if (!file) return file.error();
+    if (!budget.take(file.value().size())) return tooLarge(budget, file.value().size());
+    Bytes bytes(file.value().size());
+    const Result<std::size_t> read = file.value().read(bytes.data(), bytes.size());
+    if (!read) return read.error();
+    return bytes;
+}
+
+Result<Bytes> readView(const tinygltf::Model& model, int index, DecodedBytes& budget)
+{
+    const tinygltf::BufferView& view = model.bufferViews[std::size_t(index)];
+    if (!budget.take(view.byteLength)) return tooLarge(budget, view.byteLength);
+    const Bytes& data = model.buffers[std::size_t(view.buffer)].data;
+    const auto begin = data.begin() + std::ptrdiff_t(view.byteOffset);
+    return Bytes(begin, begin + std::ptrdiff_t(view.byteLength));
+}
+
+/// The member that the bytes come from, for messages.
+std::string sourceName(const tinygltf::Image& image)
+{
+    return image.bufferView >= 0 ? ".bufferView: " : ".uri: ";
+}
+
+Result<PictureHeader> checkBytes(const Bytes& bytes, DecodedBytes& budget)
+{
+    Result<PictureHeader> header = readPictureHeader(bytes);
+    if (!header) return header;
+    if (!budget.take(header.value().decodedBytes)) return tooLarge(budget, header.value().decodedBytes);
+    return header;
+}
+
+} // namespace
+
+void loadImages(const JsonValue& images, const ModelFolder& folder, DecodedBytes& budget, Report& report,
+                tinygltf::Model& model)
+{
+    for (const JsonValue& json : images)
+    {
+        const std::string name = elementName("images", model.images.size());
+        tinygltf::Image& image = model.images.emplace_back();
+        image.as_is = true;
+        const JsonValue uri = json["uri"];
+        if (const JsonValue given = json["name"]) image.name = given.text();
+        if (const JsonValue view = json["bufferView"]) image.bufferView = int(view.number());
+        if (uri && !isDataUri(uri.text())) image.uri = uri.text();
+        Result<Bytes> bytes = !uri                    ? readView(model, image.bufferView, budget)
+                              : isDataUri(uri.text()) ? readDataUri(uri.text(), budget, name, report)
+                                                      : readFile(uri.text(), folder, budget);
+        const Result<PictureHeader> header = bytes ? checkBytes(bytes.value(), budget) : bytes.error();
+        if (!header)
+        {
+            report.warn(name + sourceName(image) + header.error().message + "; the picture is left out");
+            continue;
+        }
+        image.image = std::move(bytes).value();
+        image.mimeType = header.value().mimeType;
+        image.width = int(header.value().width);
+        image.height = int(header.value().height);
+    }
+}
+
+} // namespace osgGpuAnimation::gltf

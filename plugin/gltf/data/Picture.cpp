@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: MIT
+#include "gltf/data/Picture.h"
+
+#include <osg/Endian>
+#include <png.h>
+#include <turbojpeg.h>
+
+#include <algorithm>
+#include <csetjmp>
+#include <cstring>
+#include <memory>
+
+namespace osgGpuAnimation::gltf
+{
+
+namespace
+{
+
+using Bytes = std::vector<unsigned char>;
+
+const unsigned char pngSignature[8] = {0x89, 'P', 'N', 'G', 0x0d, 0x0a, 0x1a, 0x0a};
+
+bool isPng(const Bytes& bytes)
+{
+    return bytes.size() >= sizeof(pngSignature) && std::memcmp(bytes.data(), pngSignature, sizeof(pngSignature)) == 0;
+}
+
+bool isJpeg(const Bytes& bytes)
+{
+    return bytes.size() >= 3 && bytes[0] == 0xff && bytes[1] == 0xd8 && bytes[2] == 0xff;
+}
+
+Error unexpected(const std::string& expected, const std::string& found)
+{
+    return Error{"expected " + expected + ", found " + found};
+}
+
+std::string sizeText(std::uint32_t width, std::uint32_t height)
+{
+    return std::to_string(width) + " x " + std::to_string(height);
+}
+
+/// The header, if the size is one that a texture may have and the data can fill.
+Result<PictureHeader> checkSize(const char* mimeType, std::uint32_t width, std::uint32_t height,
+                                std::uint64_t mostPixels, std::size_t bytesOfPixel)
+{
+    const std::uint32_t most = PictureHeader::mostPixelsASide;
+    if (width < 1 || height < 1 || width > most || height > most)
+        return unexpected("a picture from 1 x 1 to " + sizeText(most, most) + " pixels", sizeText(width, height));
+    const std::uint64_t pixels = std::uint64_t(width) * height;
+    if (pixels > mostPixels) return unexpected("data for a picture of " + sizeText(width, height), "far too little");
+    return PictureHeader{mimeType, width, height, std::size_t(pixels) * bytesOfPixel};
+}
+
+osg::ref_ptr<osg::Image> newImage(std::size_t width, std::size_t height, GLenum format, GLenum type)
+{
+    osg::ref_ptr<osg::Image> image = new osg::Image;
+    image->allocateImage(static_cast<int>(width), static_cast<int>(height), 1, format, type);
+    image->setInternalTextureFormat(static_cast<GLint>(format));
+    return image;
+}
+
+// ---------------------------------------------------------------------------------------------------------------- PNG
+
+std::uint32_t bigEndian(const unsigned char* bytes)
+{
+    return std::uint32_t(bytes[0]) << 24 | std::uint32_t(bytes[1]) << 16 | std::uint32_t(bytes[2]) << 8 | bytes[3];
+}
+
+/// Bytes of all IDAT chunks; the chunks must lead up to IEND (PNG specification, section 5.3).
+Result<std::size_t> pngDataBytes(const Bytes& bytes)
+{
+    std::size_t data = 0;
+    for (std::size_t at = sizeof(pngSignature); bytes.size() - at >= 12;)
+    {
+        const std::size_t length = bigEndian(&bytes[at]);
+        if (length > bytes.size() - at - 12) break;
+        if (std::memcmp(&bytes[at + 4], "IDAT", 4) == 0) data += length;
+        if (std::memcmp(&bytes[at + 4], "IEND", 4) == 0) return data;
+        at += 12 + length;
+    }
+    return unexpected("a PNG up to its IEND", "one that is cut off");
+}
+
+/// libpng would read size and format too, but does not check whether the data can fill them.
+Result<PictureHeader> readPngHeader(const Bytes& bytes)
+{
+    const std::size_t headerEnd = 33;
+    if (bytes.size() < headerEnd || bigEndian(&bytes[8]) != 13 || std::memcmp(&bytes[12], "IHDR", 4) != 0)
+        return unexpected("a PNG with IHDR", "none");
+    const Result<std::size_t> data = pngDataBytes(bytes);
+    if (!data) return data.error();
+    const std::size_t depth = bytes[24];
+    const std::size_t channelsOfType[] = {1, 0, 3, 1, 2, 0, 4};
+    const std::size_t channels = bytes[25] < 7 ? channelsOfType[bytes[25]] : 0;
+    if (channels == 0 || depth < 1 || depth > 16) return unexpected("a PNG colour type and depth", "another");
+    // Deflate shrinks to a 1032nd at the very best.
+    const std::uint64_t mostPixels = std::uint64_t(data.value()) * 1032 * 8 / (channels * depth);
+    return checkSize("image/png", bigEndian(&bytes[16]), bigEndian(&bytes[20]), mostPixels, depth == 16 ? 8 : 4);
+}
+
+/// libpng reports errors by longjmp: the two functions that call setjmp hold no objects with destructors.
+class PngReader
+{
+public:
+    explicit PngReader(const Bytes& bytes) : _at(bytes.data()), _left(bytes.size())
+    {
+        _png = png_create_read_struct(PNG_LIBPNG_VER_STRING, nullptr, leaveByError, ignoreWarning);
+        if (_png) _info = png_create_info_struct(_png);
+    }
+    ~PngReader() { png_destroy_read_struct(&_png, &_info, nullptr); }
+    PngReader(const PngReader&) = delete;
+
+    bool readHeader();
+    bool readRows(png_bytepp rows);
+
+    std::size_t width() const { return png_get_image_width(_png, _info); }
+    std::size_t height() const { return png_get_image_height(_png, _info); }
+    std::size_t bytesARow() const { return png_get_rowbytes(_png, _info); }
+    bool isWide() const { return png_get_bit_depth(_png, _info) == 16; }
+    GLenum format() const;
+
+private:
+    static void leaveByError(png_structp png, png_const_charp) { png_longjmp(png, 1); }
+    static void ignoreWarning(png_structp, png_const_charp) {}
+    static void read(png_structp png, png_bytep to, png_size_t count);
+
+    const unsigned char* _at;
+    std::size_t _left;
+    png_structp _png = nullptr;
+    png_infop _info = nullptr;
+};
+
+void PngReader::read(png_structp png, png_bytep to, png_size_t count)
+{
+    auto& reader = *static_cast<PngReader*>(png_get_io_ptr(png));
+    if (count > reader._left) png_error(png, "cut off");
+    std::copy_n(reader._at, count, to);
+    reader._at += count;
+    reader._left -= count;
+}
+
+bool PngReader::readHeader()
+{
+    if (!_info || setjmp(png_jmpbuf(_png)) != 0) return false;
+    // Only the chunks that make the picture are read: compressed texts could unfold to any size.
+    png_set_keep_unknown_chunks(_png, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);
+    png_set_read_fn(_png, this, read);
+    png_read_info(_png, _info);
+    png_set_expand(_png);
+    if (isWide() && osg::getCpuByteOrder() == osg::LittleEndian) png_set_swap(_png);
+    png_set_interlace_handling(_png);
+    png_read_update_info(_png, _info);
+    return true;
+}
+
+bool PngReader::readRows(png_bytepp rows)
+{
+    if (setjmp(png_jmpbuf(_png)) != 0) return false;
+    png_read_image(_png, rows);
+    return true;
+}
+
+GLenum PngReader::format() const
+{
+    const GLenum formats[] = {GL_LUMINANCE, GL_LUMINANCE_ALPHA, GL_RGB, GL_RGBA};
+    return formats[png_get_channels(_png, _info) - 1];
+}
+
+osg::ref_ptr<osg::Image> decodePng(const Bytes& bytes)
+{
+    PngReader reader(bytes);
+    if (!reader.readHeader()) return nullptr;
+    const osg::ref_ptr<osg::Image> image = newImage(reader.width(), reader.height(), reader.format(),
+                                                    reader.isWide() ? GL_UNSIGNED_SHORT : GL_UNSIGNED_BYTE);
+    if (!image->data() || image->getRowSizeInBytes() != reader.bytesARow()) return nullptr;
+    std::vector<png_bytep> rows;
+    for (std::size_t y = reader.height(); y-- > 0;)
+        rows.push_back(image->data(0, static_cast<unsigned int>(y)));
+    return reader.readRows(rows.data()) ? image : nullptr;
+}
+
+// --------------------------------------------------------------------------------------------------------------- JPEG
+
+class JpegReader
+{
+public:
+    explicit JpegReader(const Bytes& bytes) : _bytes(bytes), _turbo(tjInitDecompress())
+    {
+        // The result is ignored: it is an error for sampling factors without a name in libturbojpeg, which decodes
+        // them all the same. The size stays 0 where the header is damaged.
+        int sampling = 0;
+        if (_turbo) tjDecompressHeader3(_turbo, _bytes.data(), _bytes.size(), &_width, &_height, &sampling, &_space);
+    }
+    ~JpegReader()
+    {
+        if (_turbo) tjDestroy(_turbo);
+    }
+    JpegReader(const JpegReader&) = delete;
+
+    bool hasHeader() const { return _width > 0 && _height > 0; }
+    std::size_t width() const { return std::size_t(_width); }
+    std::size_t height() const { return std::size_t(_height); }
+    bool isGrey() const { return _space == TJCS_GRAY; }
+
+    bool readRows(osg::Image& image)
+    {
+        const int result =
+            tjDecompress2(_turbo, _bytes.data(), _bytes.size(), image.data(), _width, int(image.getRowSizeInBytes()),
+                          _height, isGrey() ? TJPF_GRAY : TJPF_RGB, TJFLAG_BOTTOMUP | TJFLAG_LIMITSCANS);
+        return result == 0 || tjGetErrorCode(_turbo) == TJERR_WARNING; // cut off: the pixels that are there are decoded
+    }
+
+private:
+    const Bytes& _bytes;
+    tjhandle _turbo;
+    int _width = 0;
+    int _height = 0;
+    int _space = -1;
+};
+
+/// Start-of-scan markers: entropy-coded data contains none by chance, metadata may contain some.
+std::size_t scansOf(const Bytes& bytes)
+{
+    std::size_t scans = 0;
+    for (std::size_t at = 0; at + 1 < bytes.size(); ++at)
+        scans += bytes[at] == 0xff && bytes[at + 1] == 0xda ? 1 : 0;
+    return scans;
+}
+
+Result<PictureHeader> readJpegHeader(const Bytes& bytes)
+{
+    const JpegReader reader(bytes);
+    if (!reader.hasHeader()) return unexpected("a JPEG header", "one that is cut off or damaged");
+    // A block of 8 x 8 costs a bit at the very least.
+    const std::uint64_t mostPixels = std::uint64_t(bytes.size()) * 8 * 64;
+    Result<PictureHeader> header =
+        checkSize("image/jpeg", std::uint32_t(reader.width()), std::uint32_t(reader.height()), mostPixels, 4);
+    // Each scan visits all pixels and may cost a few bytes: libjpeg-turbo's limit of 500 scans would allow minutes for
+    // a large picture. Encoders write about ten.
+    constexpr std::uint64_t mostVisits = 16ull * PictureHeader::mostPixelsASide * PictureHeader::mostPixelsASide;
+    if (header && scansOf(bytes) * reader.width() * reader.height() > mostVisits)
+        return unexpected("a JPEG of few scans", std::to_string(scansOf(bytes)));
+    return header;
+}
+
+osg::ref_ptr<osg::Image> decodeJpeg(const Bytes& bytes)
+{
+    JpegReader reader(bytes);
+    if (!reader.hasHeader()) return nullptr;
+    const osg::ref_ptr<osg::Image> image =
+        newImage(reader.width(), reader.height(), reader.isGrey() ? GL_LUMINANCE : GL_RGB, GL_UNSIGNED_BYTE);
+    return image->data() && reader.readRows(*image) ? image : nullptr;
+}
+
+} // namespace
+
+Result<PictureHeader> readPictureHeader(const Bytes& bytes)
+{
+    if (isPng(bytes)) return readPngHeader(bytes);
+    if (isJpeg(bytes)) return readJpegHeader(bytes);
+    return unexpected("a PNG or JPEG", "other data");
+}
+
+Result<osg::ref_ptr<osg::Image>> decodePicture(const Bytes& bytes)
+{
+    const osg::ref_ptr<osg::Image> image = isPng(bytes) ? decodePng(bytes) : decodeJpeg(bytes);
+    if (!image) return Error{"the picture is damaged"};
+    return image;
+}
+
+} // namespace osgGpuAnimation::gltf

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osgGpuAnimation/animation/Result.h>
+
+#include <osg/Image>
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace osgGpuAnimation::gltf
+{
+
+// PNG and JPEG, decoded by libpng and libjpeg-turbo: OSG's own readers leak memory over damaged pictures.
+
+/// Format and size of a picture before it is decoded.
+struct PictureHeader
+{
+    static constexpr std::uint32_t mostPixelsASide = 16384;
+
+    std::string mimeType; ///< by the bytes: image/png or image/jpeg
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    std::size_t decodedBytes = 0; ///< with four channels of the depth that the file has
+};
+
+/// Reads the header of a PNG or JPEG, and makes sure that decoding it costs no more memory than the data can stand for:
+/// a few bytes cannot ask for gigabytes.
+/// Errors (`expected …, found …`): another format, a size of 0 or beyond mostPixelsASide, data that is cut off or far
+/// too short for its size, a large JPEG with so many scans that decoding would take minutes.
+Result<PictureHeader> readPictureHeader(const std::vector<unsigned char>& bytes);
+
+/// Decodes a picture whose header was read, the first row at the bottom; may be called on another thread. Colour
+/// profiles, gamma and orientation do not count in glTF (glTF 2.0, section 3.8.2.1).
+/// A PNG keeps its 8 or 16 bits a channel; a palette becomes RGB, transparent colours an alpha channel. A JPEG becomes
+/// grey or RGB; if its pixels are cut off, it keeps the pixels that are there.
+/// Error: the picture is damaged.
+Result<osg::ref_ptr<osg::Image>> decodePicture(const std::vector<unsigned char>& bytes);
+
+} // namespace osgGpuAnimation::gltf

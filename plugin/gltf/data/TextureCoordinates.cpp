@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+#include "gltf/data/TextureCoordinates.h"
+
+#include <osg/Vec2d>
+
+#include <cmath>
+
+namespace osgGpuAnimation::gltf
+{
+
+namespace
+{
+
+/// The texture's KHR_texture_transform, whose members the schema has checked; an empty value where it has none.
+template <typename TextureInfo>
+const tinygltf::Value& transformOf(const TextureInfo& texture)
+{
+    static const tinygltf::Value none;
+    const auto extension = texture.extensions.find("KHR_texture_transform");
+    return extension == texture.extensions.end() ? none : extension->second;
+}
+
+template <typename TextureInfo>
+int setOf(const TextureInfo& texture)
+{
+    const tinygltf::Value& transform = transformOf(texture);
+    return transform.Has("texCoord") ? transform.Get("texCoord").GetNumberAsInt() : texture.texCoord;
+}
+
+template <typename TextureInfo>
+std::uint32_t bitOf(const TextureInfo& texture)
+{
+    return texture.index < 0 ? 0 : std::uint32_t(1) << setOf(texture); // the schema allows sets below 32
+}
+
+osg::Vec2d pairOf(const tinygltf::Value& transform, const char* member, const osg::Vec2d& otherwise)
+{
+    if (!transform.Has(member)) return otherwise;
+    const tinygltf::Value& pair = transform.Get(member);
+    return osg::Vec2d(pair.Get(0).GetNumberAsDouble(), pair.Get(1).GetNumberAsDouble());
+}
+
+} // namespace
+
+TextureCoordinates::TextureCoordinates(const tinygltf::TextureInfo& texture) : _set(setOf(texture))
+{
+    const tinygltf::Value& transform = transformOf(texture);
+    // Counter-clockwise as the viewer sees the picture, whose v runs down.
+    const double angle = transform.Has("rotation") ? transform.Get("rotation").GetNumberAsDouble() : 0.0;
+    const osg::Vec2d scale = pairOf(transform, "scale", osg::Vec2d(1.0, 1.0));
+    const osg::Vec2d offset = pairOf(transform, "offset", osg::Vec2d(0.0, 0.0));
+    _u[0] = std::cos(angle) * scale.x();
+    _u[1] = std::sin(angle) * scale.y();
+    _u[2] = offset.x();
+    _v[0] = -std::sin(angle) * scale.x();
+    _v[1] = std::cos(angle) * scale.y();
+    _v[2] = offset.y();
+}
+
+osg::Vec2 TextureCoordinates::transformed(const osg::Vec2& coordinates) const
+{
+    const double u = coordinates.x();
+    const double v = coordinates.y();
+    return osg::Vec2(static_cast<float>(_u[0] * u + _u[1] * v + _u[2]),
+                     static_cast<float>(1.0 - (_v[0] * u + _v[1] * v + _v[2])));
+}
+
+std::vector<std::uint32_t> materialCoordinates(const tinygltf::Model& model)
+{
+    std::vector<std::uint32_t> sets;
+    for (const tinygltf::Material& material : model.materials)
+        sets.push_back(bitOf(material.pbrMetallicRoughness.baseColorTexture) |
+                       bitOf(material.pbrMetallicRoughness.metallicRoughnessTexture) | bitOf(material.normalTexture) |
+                       bitOf(material.occlusionTexture) | bitOf(material.emissiveTexture));
+    return sets;
+}
+
+} // namespace osgGpuAnimation::gltf

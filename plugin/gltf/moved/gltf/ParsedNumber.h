@@ -1,5 +1,0 @@
-// SPDX-License-Identifier: MIT
-// Old include path until data/ and scene/ have moved.
-#pragma once
-
-#include "gltf/file/Report.h"

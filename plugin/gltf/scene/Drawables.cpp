@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: MIT
+#include "gltf/scene/Drawables.h"
+
+#include "gltf/scene/Influences.h"
+
+#include <osgGpuAnimation/animation/WeightRange.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace osgGpuAnimation::gltf
+{
+
+namespace
+{
+
+constexpr std::size_t bytesADrawable = 1024;
+constexpr std::size_t bytesAnInfluencedVertex =
+    SkinnedGeometry::maxInfluenceSets * (sizeof(osg::Vec4us) + sizeof(osg::Vec4));
+// At most, for each target. Drawables share the packed targets, but each searches bounds vertex by vertex.
+constexpr std::size_t bytesAMorphedVertex = 4 * sizeof(osg::Vec4);
+
+osg::ref_ptr<osg::Vec4Array> overall(const osg::Vec4& color)
+{
+    osg::ref_ptr<osg::Vec4Array> colors = new osg::Vec4Array(osg::Array::BIND_OVERALL, 1);
+    colors->front() = color;
+    return colors;
+}
+
+} // namespace
+
+Drawables::Drawables(const tinygltf::Model& model, std::shared_ptr<const AnimationSet> set, Meshes& meshes,
+                     Materials& materials, DecodedBytes& budget, Report& report)
+    : _model(model), _set(std::move(set)), _meshes(meshes), _materials(materials), _budget(budget), _report(report)
+{
+    if (_set) _entries = reachOfEntries(*_set);
+    std::map<std::vector<int>, int> skins;
+    for (std::size_t skin = 0; _set && skin < _set->skins().size(); ++skin)
+        _firstAlike.push_back(skins.try_emplace(_set->entriesOfSkin(skin), static_cast<int>(skin)).first->second);
+}
+
+osg::Geometry* Drawables::drawable(const DrawablePlace& place)
+{
+    const auto [known, isNew] = _drawables.try_emplace(place);
+    if (isNew) known->second = make(place);
+    return known->second.get();
+}
+
+/// The character program multiplies vertex colour and material; the fixed pipeline takes one or the other, so there
+/// the vertices take the product.
+void Drawables::setColors(osg::Geometry& geometry, const MeshPrimitive& mesh, int material, bool palette)
+{
+    const osg::Vec4 base = palette ? osg::Vec4(1, 1, 1, 1) : _materials.baseColor(material);
+    if (!mesh.colors)
+    {
+        geometry.setColorArray(overall(base));
+        return;
+    }
+    osg::ref_ptr<osg::Vec4Array> colors = mesh.colors;
+    if (base != osg::Vec4(1, 1, 1, 1))
+    {
+        colors = new osg::Vec4Array(*mesh.colors);
+        for (osg::Vec4& color : *colors)
+            color = osg::componentMultiply(color, base);
+    }
+    geometry.setColorArray(colors, osg::Array::BIND_PER_VERTEX);
+}
+
+void Drawables::setInfluences(SkinnedGeometry& geometry, const MeshPrimitive& mesh, const DrawablePlace& place)
+{
+    if (place.skin < 0)
+    {
+        geometry.setRigidEntry(static_cast<unsigned short>(_set->entryOfRigidJoint(place.joint)));
+        return;
+    }
+    const tinygltf::Primitive& source =
+        _model.meshes[static_cast<std::size_t>(place.mesh)].primitives[static_cast<std::size_t>(place.primitive)];
+    const std::vector<InfluenceSet> sets =
+        readInfluences(_model, source, mesh, *_set, static_cast<std::size_t>(place.skin), _report);
+    for (unsigned int i = 0; i < sets.size(); ++i)
+        geometry.setInfluences(i, sets[i].entries, sets[i].weights);
+}
+
+/// An upper bound of a vertex's distance from the origin under joints and morph targets; without them, in the mesh's
+/// space.
+double Drawables::farthestOf(const DrawablePlace& place, const MeshPrimitive& mesh) const
+{
+    double radius = mesh.radius;
+    const std::vector<WeightRange> weights =
+        place.morph < 0 ? std::vector<WeightRange>() : weightRanges(*_set, static_cast<std::size_t>(place.morph));
+    for (std::size_t target = 0; target < std::min(weights.size(), mesh.targetRadii.size()); ++target)
+        radius += mesh.targetRadii[target] *
+                  std::max(std::abs(double(weights[target].min)), std::abs(double(weights[target].max)));
+    if (place.skin < 0 && place.joint < 0) return radius;
+    Reach reach{0.0, 0.0};
+    if (place.joint >= 0) reach = _entries[static_cast<std::size_t>(_set->entryOfRigidJoint(place.joint))];
+    if (place.skin >= 0)
+        for (const int entry : _set->entriesOfSkin(static_cast<std::size_t>(place.skin)))
+            reach.add(_entries[static_cast<std::size_t>(entry)]);
+    return reach.of(radius);
+}
+
+osg::ref_ptr<osg::Geometry> Drawables::make(const DrawablePlace& place)
+{
+    const MeshPrimitive* mesh = meshPrimitive(place);
+    if (!mesh) return nullptr;
+    if (!(farthestOf(place, *mesh) <= Reach::farthest))
+    {
+        _report.warn(mesh->label + ": its vertices come to lie " + beyondFarthest() + "; not drawn");
+        return nullptr;
+    }
+    const tinygltf::Mesh& sourceMesh = _model.meshes[static_cast<std::size_t>(place.mesh)];
+    const tinygltf::Primitive& source = sourceMesh.primitives[static_cast<std::size_t>(place.primitive)];
+    const bool palette = place.skin >= 0 || place.joint >= 0;
+    const std::size_t bytesAVertex = (place.skin >= 0 ? bytesAnInfluencedVertex : 0) +
+                                     (place.morph >= 0 ? mesh->targets.size() * bytesAMorphedVertex : 0);
+    const std::size_t bytes = mesh->positions->size() * bytesAVertex + bytesADrawable;
+    if (!_budget.take(bytes))
+    {
+        _report.warn(mesh->label + ": it would take " + std::to_string(bytes) + " bytes, " + _budget.limitText() +
+                     "; not drawn");
+        return nullptr;
+    }
+    osg::ref_ptr<SkinnedGeometry> skinned = palette ? new SkinnedGeometry : nullptr;
+    osg::ref_ptr<osg::Geometry> geometry = palette ? skinned.get() : new osg::Geometry;
+    geometry->setName(sourceMesh.name);
+    geometry->setUseDisplayList(false);
+    geometry->setUseVertexBufferObjects(true);
+    geometry->setUseVertexArrayObject(true);
+    geometry->setVertexArray(mesh->positions);
+    if (mesh->normals) geometry->setNormalArray(mesh->normals, osg::Array::BIND_PER_VERTEX);
+    if (mesh->texCoords) geometry->setTexCoordArray(0, mesh->texCoords, osg::Array::BIND_PER_VERTEX);
+    setColors(*geometry, *mesh, source.material, palette);
+    geometry->addPrimitiveSet(mesh->primitiveSet);
+    if (palette) setInfluences(*skinned, *mesh, place);
+    if (place.morph >= 0) skinned->setMorphTargets(*_set, static_cast<std::size_t>(place.morph), mesh->targets);
+
+    MaterialUse use;
+    use.material = source.material;
+    use.palette = palette;
+    use.mirrored = place.mirrored;
+    use.lit = mesh->normals.valid();
+    use.flat = palette && mesh->isFlat;
+    use.textured = mesh->texCoords.valid();
+    use.colored = mesh->colors.valid();
+    use.influences = palette ? skinned->influenceCount() : 0;
+    use.morphed = palette && place.morph >= 0;
+    if (_materials.wantsTexture(use.material) && !use.textured)
+        _report.warn(mesh->label + ": lacks the texture coordinates that its material asks for");
+    geometry->setStateSet(_materials.stateSet(use));
+    return geometry;
+}
+
+} // namespace osgGpuAnimation::gltf

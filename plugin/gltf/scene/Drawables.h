@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "gltf/scene/TransformBound.h"
+#include "gltf/scene/Materials.h"
+#include "gltf/scene/Meshes.h"
+
+#include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
+
+#include <osg/Geometry>
+
+#include <map>
+#include <memory>
+#include <tuple>
+
+namespace osgGpuAnimation::gltf
+{
+
+/// One use of a primitive. At most one of skin and joint is set; with neither it is a plain osg::Geometry, else a
+/// SkinnedGeometry.
+struct DrawablePlace
+{
+    int mesh = -1;
+    int primitive = -1;
+    int skin = -1;         ///< moves each vertex: the file's first skin with the same palette entries
+    int joint = -1;        ///< of the skeleton: carries the whole primitive
+    int morph = -1;        ///< index into the set's morphs
+    bool mirrored = false; ///< with a joint: see MaterialUse
+
+    auto key() const { return std::tie(mesh, primitive, skin, joint, morph); }
+    bool operator<(const DrawablePlace& other) const { return key() < other.key(); }
+};
+
+/// Makes the drawables of a file. Equal uses of a primitive share the object, different uses share the arrays.
+class Drawables
+{
+public:
+    /// set: null where nothing moves.
+    Drawables(const tinygltf::Model& model, std::shared_ptr<const AnimationSet> set, Meshes& meshes,
+              Materials& materials, DecodedBytes& budget, Report& report);
+
+    /// The first skin of the file with the same palette entries as this one.
+    int firstAlike(int skin) const { return _firstAlike[static_cast<std::size_t>(skin)]; }
+    /// Null where the primitive cannot be drawn.
+    osg::Geometry* drawable(const DrawablePlace& place);
+    /// Its arrays; null likewise.
+    const MeshPrimitive* meshPrimitive(const DrawablePlace& place)
+    {
+        return _meshes.primitive(place.mesh, place.primitive, place.skin >= 0);
+    }
+
+private:
+    osg::ref_ptr<osg::Geometry> make(const DrawablePlace& place);
+    double farthestOf(const DrawablePlace& place, const MeshPrimitive& mesh) const;
+    void setInfluences(SkinnedGeometry& geometry, const MeshPrimitive& mesh, const DrawablePlace& place);
+    void setColors(osg::Geometry& geometry, const MeshPrimitive& mesh, int material, bool palette);
+
+    const tinygltf::Model& _model;
+    std::shared_ptr<const AnimationSet> _set;
+    Meshes& _meshes;
+    Materials& _materials;
+    DecodedBytes& _budget;
+    Report& _report;
+    std::vector<int> _firstAlike; ///< by skin
+    std::vector<Reach> _entries;  ///< by palette entry
+    std::map<DrawablePlace, osg::ref_ptr<osg::Geometry>> _drawables;
+};
+
+} // namespace osgGpuAnimation::gltf

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "gltf/scene/NodeTree.h"
+
+#include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/animation/MorphWeights.h>
+#include <osgGpuAnimation/animation/Skeleton.h>
+
+#include <vector>
+
+namespace osgGpuAnimation::gltf
+{
+
+// What of a file can move: joints, skins and morph weights.
+
+/// Which nodes of the file are joints: every joint of a skin, every target of an animation, every node with a mesh
+/// under one of those (except skinned meshes, whose node has no effect), every node with a morphing mesh, and all their
+/// ancestors. A node whose matrix shears takes two joints, see NodeTransform.
+struct Joints
+{
+    Skeleton skeleton;
+    std::vector<int> ofNode;     ///< one a node: its joint, -1 where it is none
+    std::vector<bool> moves;     ///< one a node: a skin or a clip can move it or an ancestor
+    std::vector<bool> isSheared; ///< one a node: it has two joints, so clips cannot drive it
+};
+
+/// Error: as Skeleton::create() (a node whose transform is beyond what float holds).
+Result<Joints> buildJoints(const tinygltf::Model& model, const NodeTree& tree);
+
+/// Whether a primitive's vertices follow a skin: the node has one, and the primitive has JOINTS_0 (and WEIGHTS_0: the
+/// validation refuses one without the other).
+bool isSkinned(const tinygltf::Node& node, const tinygltf::Primitive& primitive);
+
+/// Whether the primitive follows its node through the palette: the node moves or morphs, and the primitive has no
+/// skin.
+bool isRigidOnJoint(const tinygltf::Model& model, const Joints& joints, std::size_t node,
+                    const tinygltf::Primitive& primitive);
+
+/// The joints that carry such a primitive of the drawn part, each once.
+std::vector<int> rigidJoints(const tinygltf::Model& model, const NodeTree& tree, const Joints& joints);
+
+/// All skins of the file, under the file's numbers (glTF 2.0, section 3.7.3). Without inverseBindMatrices they are
+/// identities.
+std::vector<Skin> readSkins(const tinygltf::Model& model, const Joints& joints);
+
+/// The morph weights of a file: one MorphWeights for each node whose mesh has morph targets.
+struct Morphs
+{
+    std::vector<MorphWeights> weights;
+    std::vector<int> ofNode; ///< one a node: index into `weights`, -1 where it has none
+};
+
+/// Defaults: the node's weights, else the mesh's, else 0 (glTF 2.0, section 3.7.2.2).
+Morphs readMorphs(const tinygltf::Model& model);
+
+} // namespace osgGpuAnimation::gltf

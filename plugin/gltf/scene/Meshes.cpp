@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: MIT
+#include "gltf/scene/Meshes.h"
+
+#include "gltf/data/Accessor.h"
+#include "gltf/data/VertexAttributes.h"
+#include "gltf/file/Report.h"
+#include "gltf/scene/TransformBound.h"
+#include "gltf/scene/TriangleMesh.h"
+
+#include <numeric>
+
+namespace osgGpuAnimation::gltf
+{
+
+namespace
+{
+
+constexpr int modeTriangles = 4;
+
+template <typename Array>
+void pick(osg::ref_ptr<Array>& array, const std::vector<std::uint32_t>& vertices)
+{
+    if (!array) return;
+    osg::ref_ptr<Array> picked = new Array(osg::Array::BIND_PER_VERTEX);
+    picked->reserve(vertices.size());
+    for (const std::uint32_t vertex : vertices)
+        picked->push_back((*array)[vertex]);
+    array = picked;
+}
+
+/// The number of vertices that form whole points, lines or triangles.
+std::size_t wholeCount(int mode, std::size_t count)
+{
+    switch (mode)
+    {
+    case 0:
+        return count;
+    case 1:
+        return count - count % 2;
+    case 2:
+    case 3:
+        return count < 2 ? 0 : count;
+    case modeTriangles:
+        return count - count % 3;
+    default:
+        return count < 3 ? 0 : count;
+    }
+}
+
+template <typename Elements>
+osg::ref_ptr<osg::PrimitiveSet> makeElements(GLenum mode, const std::vector<std::uint32_t>& indices)
+{
+    osg::ref_ptr<Elements> elements = new Elements(mode);
+    elements->reserve(indices.size());
+    for (const std::uint32_t index : indices)
+        elements->push_back(static_cast<typename Elements::value_type>(index));
+    return elements;
+}
+
+osg::ref_ptr<osg::PrimitiveSet> makePrimitiveSet(int mode, const std::vector<std::uint32_t>& indices,
+                                                 std::size_t vertexCount)
+{
+    const auto glMode = static_cast<GLenum>(mode); // the same numbers in both
+    if (indices.empty()) return new osg::DrawArrays(glMode, 0, static_cast<GLsizei>(wholeCount(mode, vertexCount)));
+    return vertexCount <= 65535 ? makeElements<osg::DrawElementsUShort>(glMode, indices)
+                                : makeElements<osg::DrawElementsUInt>(glMode, indices);
+}
+
+/// The indices of whole points, lines or triangles; empty where the primitive has none.
+std::vector<std::uint32_t> readIndices(const tinygltf::Model& model, const tinygltf::Primitive& primitive)
+{
+    std::vector<std::uint32_t> indices;
+    if (primitive.indices >= 0) indices = readIntegers(model, primitive.indices);
+    indices.resize(wholeCount(primitive.mode, indices.size()));
+    return indices;
+}
+
+bool isBlended(const tinygltf::Model& model, const tinygltf::Primitive& primitive)
+{
+    return primitive.material >= 0 &&
+           model.materials[static_cast<std::size_t>(primitive.material)].alphaMode == "BLEND";
+}
+
+/// The inverse of `sourceVertex`: the first vertex that stands for each of the file's. Vertices that no triangle uses
+/// are appended to `sourceVertex`, so that every vertex of the file exists, drawn or not.
+std::vector<std::uint32_t> invert(std::vector<std::uint32_t>& sourceVertex, std::size_t vertexCount)
+{
+    std::vector<std::uint32_t> geometryVertex(vertexCount, UINT32_MAX);
+    for (std::size_t i = sourceVertex.size(); i-- > 0;)
+        geometryVertex[sourceVertex[i]] = static_cast<std::uint32_t>(i);
+    for (std::size_t vertex = 0; vertex < vertexCount; ++vertex)
+    {
+        if (geometryVertex[vertex] != UINT32_MAX) continue;
+        geometryVertex[vertex] = static_cast<std::uint32_t>(sourceVertex.size());
+        sourceVertex.push_back(static_cast<std::uint32_t>(vertex));
+    }
+    return geometryVertex;
+}
+
+/// Calls visit(array) for each array of the file's vertices, null or not.
+template <typename Visitor>
+void visitArrays(MeshPrimitive& mesh, const Visitor& visit)
+{
+    visit(mesh.positions);
+    visit(mesh.texCoords);
+    visit(mesh.colors);
+    for (MorphTarget& target : mesh.targets)
+    {
+        visit(target.positions);
+        visit(target.normals);
+        visit(target.colors);
+        visit(target.textureCoordinates);
+    }
+}
+
+void pickVertices(MeshPrimitive& mesh)
+{
+    visitArrays(mesh, [&](auto& array) { pick(array, mesh.sourceVertex); });
+}
+
+/// Welds vertices that agree in all that the file says of them: what the mesh has read and the file's influences.
+WeldedVertices weld(const tinygltf::Model& model, const tinygltf::Primitive& primitive, MeshPrimitive& mesh)
+{
+    std::vector<VertexStream> streams;
+    visitArrays(mesh,
+                [&](const auto& array)
+                {
+                    if (array) streams.push_back({array->getDataPointer(), array->getElementSize()});
+                });
+    std::vector<std::vector<std::uint32_t>> joints;
+    std::vector<std::vector<float>> weights;
+    for (std::size_t set = 0; set < influenceSetCount(primitive); ++set)
+    {
+        joints.push_back(readIntegers(model, primitive.attributes.at("JOINTS_" + std::to_string(set))));
+        weights.push_back(readFloats(model, primitive.attributes.at("WEIGHTS_" + std::to_string(set))));
+        streams.push_back({joints.back().data(), 4 * sizeof(std::uint32_t)});
+        streams.push_back({weights.back().data(), 4 * sizeof(float)});
+    }
+    return weldVertices(streams, mesh.vertexCount);
+}
+
+/// indices: empty where the primitive has none.
+std::vector<std::uint32_t> cornersOf(const MeshPrimitive& mesh, int mode, std::vector<std::uint32_t> indices)
+{
+    if (indices.empty())
+    {
+        indices.resize(mesh.vertexCount);
+        std::iota(indices.begin(), indices.end(), 0u);
+    }
+    return triangleCorners(mode, indices);
+}
+
+/// Welds equal vertices, for a program that computes the normals of the faces.
+void makeSmooth(MeshPrimitive& mesh, const tinygltf::Model& model, const tinygltf::Primitive& primitive,
+                std::vector<std::uint32_t> indices)
+{
+    std::vector<std::uint32_t> corners = cornersOf(mesh, primitive.mode, std::move(indices));
+    WeldedVertices welded = weld(model, primitive, mesh);
+    for (std::uint32_t& corner : corners)
+        corner = welded.vertexOf[corner];
+    mesh.sourceVertex.resize(welded.count);
+    for (std::size_t vertex = mesh.vertexCount; vertex-- > 0;)
+        mesh.sourceVertex[welded.vertexOf[vertex]] = static_cast<std::uint32_t>(vertex);
+    mesh.geometryVertex = std::make_shared<std::vector<std::uint32_t>>(std::move(welded.vertexOf));
+    pickVertices(mesh);
+    if (!isBlended(model, primitive)) optimizeForVertexCache(corners, welded.count);
+    mesh.primitiveSet = makePrimitiveSet(modeTriangles, corners, welded.count);
+    mesh.normals = smoothNormals(*mesh.positions, corners);
+    mesh.isFlat = true;
+}
+
+/// Gives every triangle vertices of its own, with its own normal.
+void makeFlat(MeshPrimitive& mesh, int mode, std::vector<std::uint32_t> indices)
+{
+    std::vector<std::uint32_t> corners = cornersOf(mesh, mode, std::move(indices));
+    mesh.primitiveSet = new osg::DrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(corners.size()));
+    bool same = corners.size() == mesh.vertexCount;
+    for (std::size_t i = 0; i < corners.size() && same; ++i)
+        same = corners[i] == i;
+    if (!same)
+    {
+        mesh.sourceVertex = std::move(corners);
+        mesh.geometryVertex = std::make_shared<std::vector<std::uint32_t>>(invert(mesh.sourceVertex, mesh.vertexCount));
+        pickVertices(mesh);
+    }
+    mesh.normals = flatNormals(*mesh.positions);
+    mesh.isFlat = true;
+}
+
+bool isFlat(const tinygltf::Primitive& primitive)
+{
+    return primitive.mode >= modeTriangles && primitive.attributes.count("NORMAL") == 0;
+}
+
+/// An upper bound of the memory that reading needs, influences included.
+std::size_t byteSize(const tinygltf::Model& model, const tinygltf::Primitive& primitive, std::size_t vertexCount)
+{
+    constexpr std::size_t aVertex = sizeof(osg::Vec3) * 2 + sizeof(osg::Vec2) + sizeof(osg::Vec4) + 2 * 24 + 8;
+    const std::size_t aTarget = sizeof(osg::Vec3) * 2 + sizeof(osg::Vec4) + sizeof(osg::Vec2);
+    const std::size_t indices =
+        primitive.indices < 0 ? 0 : model.accessors[static_cast<std::size_t>(primitive.indices)].count;
+    const std::size_t corners =
+        !isFlat(primitive) ? 0 : (primitive.mode == modeTriangles ? 1 : 3) * (indices ? indices : vertexCount);
+    return (vertexCount + corners) * (aVertex + aTarget * primitive.targets.size()) + 3 * 4 * indices;
+}
+
+} // namespace
+
+Meshes::Meshes(const tinygltf::Model& model, DecodedBytes& budget, Report& report)
+    : _model(model), _budget(budget), _report(report)
+{
+}
+
+const MeshPrimitive* Meshes::primitive(int mesh, int primitive, bool skinned)
+{
+    const tinygltf::Primitive& source =
+        _model.meshes[static_cast<std::size_t>(mesh)].primitives[static_cast<std::size_t>(primitive)];
+    const bool welded = skinned && isFlat(source);
+    const auto [place, isNew] = _primitives.try_emplace({mesh, primitive, welded});
+    if (isNew) place->second = read(mesh, primitive, welded);
+    return place->second ? &*place->second : nullptr;
+}
+
+std::optional<MeshPrimitive> Meshes::read(int meshIndex, int primitiveIndex, bool welded)
+{
+    const tinygltf::Mesh& source = _model.meshes[static_cast<std::size_t>(meshIndex)];
+    const tinygltf::Primitive& primitive = source.primitives[static_cast<std::size_t>(primitiveIndex)];
+    MeshPrimitive mesh;
+    mesh.label = namedElement("meshes", static_cast<std::size_t>(meshIndex), source.name) + ".primitives[" +
+                 std::to_string(primitiveIndex) + "]";
+    const auto positions = primitive.attributes.find("POSITION");
+    if (positions == primitive.attributes.end()) return std::nullopt; // the validation has warned of it
+    mesh.vertexCount = _model.accessors[static_cast<std::size_t>(positions->second)].count;
+    const std::size_t bytes = byteSize(_model, primitive, mesh.vertexCount);
+    if (!_budget.take(bytes))
+    {
+        _report.warn(mesh.label + ": it would take " + std::to_string(bytes) + " bytes, " + _budget.limitText() +
+                     "; not drawn");
+        return std::nullopt;
+    }
+    std::vector<std::uint32_t> indices = readIndices(_model, primitive);
+    if (primitive.indices >= 0 ? indices.empty() : wholeCount(primitive.mode, mesh.vertexCount) == 0)
+        return std::nullopt; // too few vertices for one element: the validation has warned of it
+    mesh.positions = readVectors(_model, primitive.attributes, "POSITION");
+    mesh.normals = readVectors(_model, primitive.attributes, "NORMAL");
+    mesh.texCoords = readTextureCoordinates(_model, primitive);
+    mesh.colors = readColors(_model, primitive);
+    mesh.targets = readMorphTargets(_model, primitive);
+    mesh.radius = radiusOf(*mesh.positions);
+    for (const MorphTarget& target : mesh.targets)
+        mesh.targetRadii.push_back(target.positions ? radiusOf(*target.positions) : 0.0);
+    if (!mesh.normals && primitive.mode >= modeTriangles)
+    {
+        if (welded)
+            makeSmooth(mesh, _model, primitive, std::move(indices));
+        else
+            makeFlat(mesh, primitive.mode, std::move(indices));
+        return mesh;
+    }
+    if (primitive.mode == modeTriangles && !isBlended(_model, primitive))
+        optimizeForVertexCache(indices, mesh.vertexCount);
+    mesh.primitiveSet = makePrimitiveSet(primitive.mode, indices, mesh.vertexCount);
+    return mesh;
+}
+
+} // namespace osgGpuAnimation::gltf

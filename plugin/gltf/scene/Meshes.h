@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "gltf/document/MemoryBudget.h"
+#include "gltf/file/Report.h"
+
+#include <osg/Array>
+#include <osg/PrimitiveSet>
+#include <osgGpuAnimation/nodes/MorphTarget.h>
+#include <tiny_gltf.h>
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <vector>
+
+namespace osgGpuAnimation::gltf
+{
+
+/// A primitive's arrays as OSG draws them, in the mesh's own space.
+struct MeshPrimitive
+{
+    std::string label;           ///< `meshes[3] "Cape".primitives[0]`, for messages
+    std::size_t vertexCount = 0; ///< of the file's POSITION accessor
+    osg::ref_ptr<osg::Vec3Array> positions;
+    osg::ref_ptr<osg::Vec3Array> normals;   ///< null: points or lines without normals, which are drawn unlit
+    osg::ref_ptr<osg::Vec2Array> texCoords; ///< for the material's base colour texture, see TextureCoordinates; or null
+    osg::ref_ptr<osg::Vec4Array> colors;    ///< for display, see displayColor(); or null
+    osg::ref_ptr<osg::PrimitiveSet> primitiveSet;
+    std::vector<MorphTarget> targets;
+    double radius = 0.0;             ///< of the farthest vertex from the mesh's origin
+    std::vector<double> targetRadii; ///< by target: the longest displacement of a vertex
+    /// By vertex: the file's vertex. Empty where they are the same: where vertices were neither split for flat normals
+    /// nor welded. Vertices that no triangle uses come last and are not drawn.
+    std::vector<std::uint32_t> sourceVertex;
+    /// The inverse, see ImportedPrimitive::geometryVertex.
+    std::shared_ptr<const std::vector<std::uint32_t>> geometryVertex;
+    /// The file has no normals. Those here are the normals of the faces; in a skinned mesh, whose program computes the
+    /// normals of the faces, faces share a vertex and its normal is smooth.
+    bool isFlat = false;
+};
+
+/// Reads the primitives of a file's meshes, each once: all modes, with or without indices, flat normals where a
+/// triangle mesh has none (glTF 2.0, section 3.7.2.1). What cannot be drawn is left out; the validation has warned of
+/// it.
+class Meshes
+{
+public:
+    Meshes(const tinygltf::Model& model, DecodedBytes& budget, Report& report);
+
+    /// skinned: by a skin, which makes vertices expensive: they are welded rather than split. Null where there is
+    /// nothing to draw.
+    const MeshPrimitive* primitive(int mesh, int primitive, bool skinned = false);
+
+private:
+    std::optional<MeshPrimitive> read(int mesh, int primitive, bool welded);
+
+    const tinygltf::Model& _model;
+    DecodedBytes& _budget;
+    Report& _report;
+    std::map<std::tuple<int, int, bool>, std::optional<MeshPrimitive>> _primitives;
+};
+
+} // namespace osgGpuAnimation::gltf

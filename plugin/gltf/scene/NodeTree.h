@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "gltf/ImportOptions.h"
+
+#include <osgGpuAnimation/animation/Result.h>
+
+#include <glm/mat4x4.hpp>
+#include <tiny_gltf.h>
+
+#include <vector>
+
+namespace osgGpuAnimation::gltf
+{
+
+/// The nodes of a file as a forest, and the part of it that is drawn: the chosen scene's. All vectors but `roots` have
+/// one element a node of the file.
+struct NodeTree
+{
+    int scene = -1;                  ///< the chosen scene; -1: the file has none, and all its roots are drawn
+    std::vector<int> parents;        ///< -1 for roots
+    std::vector<int> order;          ///< all nodes, parents first
+    std::vector<int> roots;          ///< of the drawn part
+    std::vector<bool> drawn;         ///< at or below one of `roots`
+    std::vector<glm::dmat4> toWorld; ///< at rest
+
+    /// Whether the node at rest turns surfaces inside out.
+    bool isMirrored(int node) const;
+};
+
+/// Error: the options name a scene that the file does not have.
+Result<NodeTree> buildNodeTree(const tinygltf::Model& model, const ImportOptions& options);
+
+} // namespace osgGpuAnimation::gltf

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: MIT
+#include "gltf/scene/SceneGraph.h"
+
+#include "gltf/data/VertexAttributes.h"
+#include "gltf/file/Report.h"
+#include "gltf/scene/TransformBound.h"
+#include "gltf/scene/Drawables.h"
+#include "gltf/scene/Instancing.h"
+#include "gltf/scene/Joints.h"
+#include "gltf/scene/NodeTransform.h"
+
+#include <osgGpuAnimation/nodes/AnimatedCharacter.h>
+#include <osgGpuAnimation/nodes/OsgMatrix.h>
+
+#include <glm/gtc/type_ptr.hpp>
+#include <glm/matrix.hpp>
+#include <osg/FrontFace>
+#include <osg/MatrixTransform>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+namespace osgGpuAnimation::gltf
+{
+
+namespace
+{
+
+class SceneGraphBuilder
+{
+public:
+    SceneGraphBuilder(const SceneParts& parts, osg::MatrixTransform& root, AnimatedCharacter* character,
+                      std::vector<ImportedPrimitive>& primitives)
+        : _parts(parts), _root(root), _character(character), _primitives(primitives), _still(parts.model.nodes.size()),
+          _stillRadius(parts.model.nodes.size(), 0.0), _groups(parts.model.nodes.size())
+    {
+    }
+
+    void build()
+    {
+        for (std::size_t node = 0; node < _parts.model.nodes.size(); ++node)
+        {
+            if (_parts.tree.drawn[node]) addMesh(node);
+        }
+        buildStillNodes();
+    }
+
+private:
+    void addMesh(std::size_t node);
+    DrawablePlace placeOf(std::size_t node, int primitive) const;
+    void buildStillNodes();
+    void addStill(std::size_t node);
+    static void addShared(osg::Group& place, osg::ref_ptr<osg::Geometry>& geometry);
+
+    const SceneParts& _parts;
+    osg::MatrixTransform& _root;
+    AnimatedCharacter* _character;
+    std::vector<ImportedPrimitive>& _primitives;
+    std::vector<std::vector<osg::ref_ptr<osg::Geometry>>> _still; ///< by node: its plain geometries
+    std::vector<double> _stillRadius;                             ///< by node: of its farthest vertex
+    std::vector<osg::ref_ptr<osg::Group>> _groups;                ///< by node: null where nothing is drawn below
+    /// By geometry: the one over the same arrays that still has room for parents.
+    std::map<const osg::Geometry*, osg::ref_ptr<osg::Geometry>> _open;
+    std::set<const osg::Geometry*> _inCharacter;
+};
+
+double determinant(const osg::Matrixd& m)
+{
+    return m(0, 0) * (m(1, 1) * m(2, 2) - m(1, 2) * m(2, 1)) - m(0, 1) * (m(1, 0) * m(2, 2) - m(1, 2) * m(2, 0)) +
+           m(0, 2) * (m(1, 0) * m(2, 1) - m(1, 1) * m(2, 0));
+}
+
+/// Whether points at that distance from the origin can be drawn.
+bool reaches(const Reach& reach, double radius)
+{
+    return reach.fits() && reach.of(radius) <= Reach::farthest;
+}
+
+void setWinding(osg::Node& node, bool mirrored)
+{
+    node.getOrCreateStateSet()->setAttributeAndModes(
+        new osg::FrontFace(mirrored ? osg::FrontFace::CLOCKWISE : osg::FrontFace::COUNTER_CLOCKWISE));
+}
+
+DrawablePlace SceneGraphBuilder::placeOf(std::size_t node, int primitive) const
+{
+    const tinygltf::Node& source = _parts.model.nodes[node];
+    const auto& primitives = _parts.model.meshes[static_cast<std::size_t>(source.mesh)].primitives;
+    const tinygltf::Primitive& primitiveSource = primitives[static_cast<std::size_t>(primitive)];
+    DrawablePlace place;
+    place.mesh = source.mesh;
+    place.primitive = primitive;
+    if (isSkinned(source, primitiveSource))
+        place.skin = _parts.drawables.firstAlike(source.skin);
+    else if (isRigidOnJoint(_parts.model, _parts.joints, node, primitiveSource))
+    {
+        place.joint = _parts.joints.ofNode[node];
+        place.mirrored = _parts.tree.isMirrored(static_cast<int>(node));
+    }
+    if (place.skin >= 0 || place.joint >= 0) place.morph = _parts.morphs.ofNode[node];
+    return place;
+}
+
+void SceneGraphBuilder::addMesh(std::size_t node)
+{
+    const tinygltf::Node& source = _parts.model.nodes[node];
+    if (source.mesh < 0) return;
+    const auto& primitives = _parts.model.meshes[static_cast<std::size_t>(source.mesh)].primitives;
+    bool moves = false;
+    for (std::size_t index = 0; index < primitives.size(); ++index)
+    {
+        const DrawablePlace place = placeOf(node, static_cast<int>(index));
+        osg::Geometry* geometry = _parts.drawables.drawable(place);
+        if (!geometry) continue;
+        const MeshPrimitive& mesh = *_parts.drawables.meshPrimitive(place);
+        const bool isStill = place.skin < 0 && place.joint < 0;
+        if (isStill && !reaches(Reach::of(_parts.tree.toWorld[node]), mesh.radius))
+        {
+            _parts.report.warn(namedElement("nodes", node, source.name) + ": it takes vertices of " + mesh.label + ' ' +
+                               beyondFarthest() + "; not drawn");
+            continue;
+        }
+        ImportedPrimitive imported;
+        imported.node = static_cast<int>(node);
+        imported.mesh = place.mesh;
+        imported.primitive = place.primitive;
+        imported.skin = place.skin < 0 ? -1 : source.skin;
+        imported.morph = place.morph;
+        imported.targets = mesh.targets.size();
+        imported.vertexCount = mesh.vertexCount;
+        imported.influences = place.skin < 0 ? 0 : 4 * influenceSetCount(primitives[index]);
+        imported.geometry = geometry;
+        imported.geometryVertex = mesh.geometryVertex;
+        _primitives.push_back(std::move(imported));
+        if (isStill)
+        {
+            _primitives.back().toModel = toOsg(_parts.tree.toWorld[node]);
+            _still[node].push_back(geometry);
+            _stillRadius[node] = std::max(_stillRadius[node], mesh.radius);
+            continue;
+        }
+        moves = true;
+        if (_inCharacter.insert(geometry).second) _character->addChild(geometry);
+    }
+    if (moves && isInstanced(source))
+        _parts.report.warn(namedElement("nodes", node, source.name) +
+                           ": EXT_mesh_gpu_instancing of what moves is not supported; drawn once");
+}
+
+/// OSG removes parents by linear search, so a new Geometry over the same arrays starts after 4,096 parents.
+/// geometry: becomes that one.
+void SceneGraphBuilder::addShared(osg::Group& place, osg::ref_ptr<osg::Geometry>& geometry)
+{
+    constexpr unsigned int manyParents = 4096;
+    if (geometry->getNumParents() >= manyParents) geometry = new osg::Geometry(*geometry, osg::CopyOp::SHALLOW_COPY);
+    place.addChild(geometry);
+}
+
+void SceneGraphBuilder::addStill(std::size_t node)
+{
+    const tinygltf::Node& source = _parts.model.nodes[node];
+    const int parent = _parts.tree.parents[node];
+    osg::Group* const above = parent < 0 ? &_root : _groups[static_cast<std::size_t>(parent)].get();
+    const osg::Matrixd local = toOsg(localMatrix(source));
+    osg::ref_ptr<osg::MatrixTransform> transform = new osg::MatrixTransform(local);
+    transform->setName(source.name);
+    above->addChild(transform);
+    _groups[node] = transform;
+    if (determinant(local) < 0.0) setWinding(*transform, _parts.tree.isMirrored(static_cast<int>(node)));
+    if (_still[node].empty()) return;
+    std::vector<osg::ref_ptr<osg::Group>> places{transform};
+    if (isInstanced(source))
+    {
+        places.clear();
+        const Reach reach = Reach::of(_parts.tree.toWorld[node]);
+        const double radius = _stillRadius[node];
+        for (const osg::Matrixd& instance : readInstances(_parts.model, node, _parts.budget, _parts.report))
+        {
+            if (!reaches(reach * Reach::of(glm::make_mat4(instance.ptr())), radius))
+            {
+                _parts.report.warn(namedElement("nodes", node, source.name) +
+                                   ": EXT_mesh_gpu_instancing takes an instance " + beyondFarthest() + "; not drawn");
+                continue;
+            }
+            places.push_back(new osg::MatrixTransform(instance));
+            transform->addChild(places.back());
+            if (determinant(instance) < 0.0)
+                setWinding(*places.back(), !_parts.tree.isMirrored(static_cast<int>(node)));
+        }
+    }
+    for (const osg::ref_ptr<osg::Group>& place : places)
+    {
+        for (const osg::ref_ptr<osg::Geometry>& geometry : _still[node])
+            addShared(*place, _open.try_emplace(geometry.get(), geometry).first->second);
+    }
+}
+
+void SceneGraphBuilder::buildStillNodes()
+{
+    const NodeTree& tree = _parts.tree;
+    std::vector<bool> needed(tree.order.size(), false);
+    for (auto node = tree.order.rbegin(); node != tree.order.rend(); ++node)
+    {
+        const auto index = static_cast<std::size_t>(*node);
+        if (!_still[index].empty()) needed[index] = true;
+        const int parent = tree.parents[index];
+        if (needed[index] && parent >= 0) needed[static_cast<std::size_t>(parent)] = true;
+    }
+    for (const int node : tree.order)
+    {
+        if (needed[static_cast<std::size_t>(node)]) addStill(static_cast<std::size_t>(node));
+    }
+}
+
+} // namespace
+
+void buildSceneGraph(const SceneParts& parts, osg::MatrixTransform& root, AnimatedCharacter* character,
+                     std::vector<ImportedPrimitive>& primitives)
+{
+    SceneGraphBuilder(parts, root, character, primitives).build();
+}
+
+} // namespace osgGpuAnimation::gltf

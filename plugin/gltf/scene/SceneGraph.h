@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osg/Geometry>
+#include <osg/Matrixd>
+#include <tiny_gltf.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace osg
+{
+class MatrixTransform;
+}
+
+namespace osgGpuAnimation
+{
+class AnimatedCharacter;
+}
+
+namespace osgGpuAnimation::gltf
+{
+
+class DecodedBytes;
+class Drawables;
+class Report;
+struct Joints;
+struct Morphs;
+struct NodeTree;
+
+/// One primitive of one mesh node of the scene, as it is in the graph.
+struct ImportedPrimitive
+{
+    int node = -1; ///< the file's numbers
+    int mesh = -1;
+    int primitive = -1;                   ///< within the mesh
+    int skin = -1;                        ///< -1: none
+    int morph = -1;                       ///< index into the set's morphs, -1: none
+    std::size_t targets = 0;              ///< morph targets
+    std::size_t vertexCount = 0;          ///< of the file's POSITION accessor
+    std::size_t influences = 0;           ///< joints a vertex can name: 4 a JOINTS_n set
+    osg::ref_ptr<osg::Geometry> geometry; ///< a SkinnedGeometry where it is drawn from the palette
+    /// vertexCount numbers: the vertex of `geometry` for each of the file's vertices; null where they are the same.
+    std::shared_ptr<const std::vector<std::uint32_t>> geometryVertex;
+    /// Of a plain geometry: its place at rest, in the file's axes; identity for a SkinnedGeometry.
+    osg::Matrixd toModel;
+};
+
+/// What the graph is built from.
+struct SceneParts
+{
+    const tinygltf::Model& model;
+    const NodeTree& tree;
+    const Joints& joints;
+    const Morphs& morphs;
+    Drawables& drawables;
+    DecodedBytes& budget;
+    Report& report;
+};
+
+/// Fills the graph below `root`, and `primitives`. Everything drawn from the palette becomes a child of the character;
+/// the rest becomes MatrixTransforms, one a node of the file that carries a mesh or is above such a node, with
+/// geometries. Nodes that mirror set the winding in their state, so that front faces stay front faces.
+void buildSceneGraph(const SceneParts& parts, osg::MatrixTransform& root, AnimatedCharacter* character,
+                     std::vector<ImportedPrimitive>& primitives);
+
+} // namespace osgGpuAnimation::gltf

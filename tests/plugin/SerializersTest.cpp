@@ -14,8 +14,8 @@
 #include <osgGpuAnimation/nodes/CharacterKeys.h>
 #include <osgGpuAnimation/nodes/CharacterProgram.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
+#include <osgGpuAnimation/nodes/PoseStatistics.h>
 #include <osgGpuAnimation/nodes/RootMotionCallback.h>
-#include <osgGpuAnimation/nodes/TiltedHome.h>
 
 #include <gtest/gtest.h>
 #include <osg/Program>
@@ -194,19 +194,6 @@ TEST_F(SerializersTest, charactersOfOneSetShareItAfterwards)
     }
 }
 
-TEST_F(SerializersTest, aMeshIsSkinnedWhenItWas)
-{
-    for (const Skinning skinning : {Skinning::Auto, Skinning::EveryDraw, Skinning::Once})
-        for (const char* format : formats)
-        {
-            dynamic_cast<SkinnedGeometry&>(*character().getChild(0)).setSkinning(skinning);
-            const osg::ref_ptr<osg::Node> kept = files.throughFile(*scene, format);
-            ASSERT_TRUE(kept) << format;
-            const auto& mesh = dynamic_cast<SkinnedGeometry&>(*findCharacter(*kept)->getChild(0));
-            EXPECT_EQ(mesh.skinning(), skinning) << format;
-        }
-}
-
 TEST_F(SerializersTest, pixelErrorsComeBack)
 {
     const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(character());
@@ -230,26 +217,18 @@ TEST_F(SerializersTest, pixelErrorsComeBack)
     }
 }
 
-TEST_F(SerializersTest, updateRatesAndDrawnAloneComeBack)
+TEST_F(SerializersTest, drawnAloneComesBack)
 {
-    const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(character());
     for (const char* format : formats)
-        for (const unsigned int every : {1u, 4u, UpdateRate::maxEvery})
+        for (const bool isAlone : {true, false})
             for (const float pixels : {0.0f, 0.3f})
             {
-                const UpdateRate rate{every, every > 1 ? 20.25f : 0.0f};
-                character().setDrawnTogether(every == 1);
+                character().setDrawnTogether(!isAlone);
                 ASSERT_TRUE(character().setPixelError(pixels));
-                ASSERT_TRUE(crowd->setPixelError(pixels));
-                ASSERT_TRUE(crowd->setUpdateRate(rate));
                 const osg::ref_ptr<osg::Node> again = files.throughFile(*scene, format);
-                const osg::ref_ptr<osg::Node> crowdAgain = files.throughFile(*crowd, format);
-                ASSERT_TRUE(again && crowdAgain) << format;
-                EXPECT_EQ(findCharacter(*again)->isDrawnTogether(), every == 1) << format;
+                ASSERT_TRUE(again) << format;
+                EXPECT_EQ(findCharacter(*again)->isDrawnTogether(), !isAlone) << format;
                 EXPECT_EQ(findCharacter(*again)->pixelError(), pixels) << format;
-                EXPECT_EQ(dynamic_cast<AnimatedCrowd&>(*crowdAgain).updateRate().every, rate.every) << format;
-                EXPECT_EQ(dynamic_cast<AnimatedCrowd&>(*crowdAgain).updateRate().pixels, rate.pixels) << format;
-                EXPECT_EQ(dynamic_cast<AnimatedCrowd&>(*crowdAgain).pixelError(), pixels) << format;
             }
 }
 
@@ -260,8 +239,8 @@ TEST_F(SerializersTest, whatIsAsByDefaultIsReadableAsBefore)
     EXPECT_NE(textOf(*crowd).find("Instances 1 "), std::string::npos);
     EXPECT_NE(textOf(*scene).find("ClipBounds 1 \n"), std::string::npos);
     character().setDrawnTogether(false);
-    ASSERT_TRUE(crowd->setUpdateRate(UpdateRate{2, 8.0f}));
-    EXPECT_NE(textOf(*crowd).find("Instances 3 "), std::string::npos);
+    ASSERT_TRUE(crowd->setPixelError(0.5f));
+    EXPECT_NE(textOf(*crowd).find("Instances 2 "), std::string::npos);
     EXPECT_NE(textOf(*scene).find("ClipBounds 5 \n"), std::string::npos);
 }
 
@@ -269,7 +248,7 @@ TEST_F(SerializersTest, aCrowdKeepsItsInstances)
 {
     osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(character());
     crowd->setOrigin(osg::Vec3d(1e6, -2e6, 30));
-    crowd->addEventCallback(new TiltedHome);
+    crowd->addEventCallback(new PoseStatistics);
     AnimationController controller(crowd->sharedSet());
     ASSERT_TRUE(crowd->add(osg::Matrixd::translate(1e6, -2e6, 31), controller));
     ASSERT_TRUE(controller.play(1));
@@ -291,7 +270,7 @@ TEST_F(SerializersTest, aCrowdKeepsItsInstances)
         ASSERT_TRUE(back);
         ASSERT_EQ(back->size(), crowd->size());
         EXPECT_EQ(back->origin(), crowd->origin());
-        EXPECT_TRUE(dynamic_cast<TiltedHome*>(back->getEventCallback()));
+        EXPECT_TRUE(dynamic_cast<PoseStatistics*>(back->getEventCallback()));
         EXPECT_EQ(back->getNumChildren(), crowd->getNumChildren());
         EXPECT_NEAR((back->getBound().center() - crowd->getBound().center()).length(), 0.0, 1e-9);
         EXPECT_EQ(back->instances().controllerCount(), crowd->instances().controllerCount());

@@ -5,7 +5,6 @@
 
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/PoseStatistics.h>
-#include <osgGpuAnimation/nodes/TiltedHome.h>
 
 #include <random>
 
@@ -109,8 +108,6 @@ Result<osg::ref_ptr<AnimatedCrowd>> makeCrowd(osg::Node& model, const CrowdOptio
     if (options.pixelError)
         if (const Result<bool> taken = crowd->setPixelError(*options.pixelError); !taken) return taken.error();
     crowd->addEventCallback(new PoseStatistics);
-    // With +Y up the home view looks along that, and not along the ground.
-    if (options.tiltsHome && !options.isYUp) crowd->addEventCallback(new TiltedHome);
     return crowd;
 }
 

@@ -17,7 +17,7 @@ namespace osgGpuAnimation::crowd
 namespace
 {
 
-constexpr std::array<const char*, 4> ofCrowdsAlone{"clips", "spacing", "seed", "noTilt"};
+constexpr std::array<const char*, 3> ofCrowdsAlone{"clips", "spacing", "seed"};
 constexpr std::array<const char*, 5> ofSinglesAlone{"clip", "start", "speed", "loop", "fade"};
 
 template <typename Names>
@@ -76,7 +76,6 @@ bool apply(const gltf::OptionWord& word, CrowdOptions& out)
 {
     const std::string value = word.value.value_or("");
     if (word.name == "noRotation") out.isYUp = true;
-    if (word.name == "noTilt") out.tiltsHome = false;
     if (word.name == "seed") return readNumber(value, out.seed);
     if (word.name == "pixelError")
         return readNumber(value, out.pixelError.emplace()) && DetailRange::isPixelError(*out.pixelError);
@@ -98,7 +97,6 @@ const std::vector<gltf::OptionHelp>& optionHelp()
         {"spacing=UNITS", "from one to the next; default: by the bounds"},
         {"pixelError=PIXELS", "fewer triangles where that hides how far they are off; default: 0, all triangles"},
         {"seed=NUMBER", "another number, other clips and times; default: 1"},
-        {"noTilt", "leave viewers' home view level; default: from a little above"},
         {"noRotation", "keep glTF's +Y up; default: +Z up"},
     };
     return help;

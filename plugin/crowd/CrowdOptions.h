@@ -23,7 +23,6 @@ struct CrowdOptions
     std::optional<double> spacing;   ///< units of the scene, from one to the next
     std::optional<float> pixelError; ///< see AnimatedCrowd::setPixelError; none: the character's own
     std::uint32_t seed = 1;          ///< the same clips and times at each load
-    bool tiltsHome = true;           ///< viewers' home view sees it from above
     bool isYUp = false;              ///< the model keeps glTF's +Y up: the ground is XZ
 };
 

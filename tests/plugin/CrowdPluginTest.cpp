@@ -4,7 +4,6 @@
 #include "support/NotifyLog.h"
 
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
-#include <osgGpuAnimation/nodes/TiltedHome.h>
 
 #include <gtest/gtest.h>
 #include <osgDB/FileNameUtils>
@@ -165,19 +164,6 @@ TEST_F(CrowdPluginTest, takesOptions)
     for (const char* option : {"clips=NAME|INDEX,...", "spacing=UNITS", "seed=NUMBER", "pixelError=PIXELS"})
         EXPECT_EQ(reader->supportedOptions().count(option), 1u) << option;
     EXPECT_EQ(reader->readNode("fox.glb", nullptr).status(), Read::FILE_NOT_HANDLED);
-}
-
-TEST_F(CrowdPluginTest, tiltsTheHomeViewUnlessToldNotTo)
-{
-    const std::pair<const char*, bool> cases[] = {{"", true}, {"noTilt", false}, {"noRotation", false}};
-    for (const auto& [options, isTilted] : cases)
-    {
-        const osg::ref_ptr<AnimatedCrowd> crowd = readCrowd("arm.gltf.4x4.crowd", options);
-        bool hasTilt = false;
-        for (osg::Callback* callback = crowd->getEventCallback(); callback; callback = callback->getNestedCallback())
-            hasTilt = hasTilt || dynamic_cast<TiltedHome*>(callback);
-        EXPECT_EQ(hasTilt, isTilted) << options;
-    }
 }
 
 TEST_F(CrowdPluginTest, handsOtherWordsToTheModelsReaderAsTheyAre)

@@ -15,8 +15,8 @@
 #include <osgGpuAnimation/nodes/CharacterProgram.h>
 #include <osgGpuAnimation/nodes/SurfaceState.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
+#include <osgGpuAnimation/nodes/PoseStatistics.h>
 #include <osgGpuAnimation/nodes/RootMotionCallback.h>
-#include <osgGpuAnimation/nodes/TiltedHome.h>
 
 #include <gtest/gtest.h>
 #include <osg/Program>
@@ -249,7 +249,7 @@ TEST_F(SerializersTest, aCrowdKeepsItsInstances)
 {
     osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(character());
     crowd->setOrigin(osg::Vec3d(1e6, -2e6, 30));
-    crowd->addEventCallback(new TiltedHome);
+    crowd->addEventCallback(new PoseStatistics);
     AnimationController controller(crowd->sharedSet());
     ASSERT_TRUE(crowd->add(osg::Matrixd::translate(1e6, -2e6, 31), controller));
     ASSERT_TRUE(controller.play(1));
@@ -271,7 +271,7 @@ TEST_F(SerializersTest, aCrowdKeepsItsInstances)
         ASSERT_TRUE(back);
         ASSERT_EQ(back->size(), crowd->size());
         EXPECT_EQ(back->origin(), crowd->origin());
-        EXPECT_TRUE(dynamic_cast<TiltedHome*>(back->getEventCallback()));
+        EXPECT_TRUE(dynamic_cast<PoseStatistics*>(back->getEventCallback()));
         EXPECT_EQ(back->getNumChildren(), crowd->getNumChildren());
         EXPECT_NEAR((back->getBound().center() - crowd->getBound().center()).length(), 0.0, 1e-9);
         EXPECT_EQ(back->instances().controllerCount(), crowd->instances().controllerCount());

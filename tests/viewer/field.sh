@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Usage: field.sh CROWD LEAST MOST
-# The stock osgviewer, told nothing but the name (FILE.glb.9x9.crowd), shows a field and no line: of the 256 rows of its
+# The stock osgviewer shows the crowd of that name (FILE.glb.9x9.crowd) without further options: of the 256 rows of its
 # picture at least LEAST and at most MOST are not background alone. Exit status 77: Xvfb or osgviewer is not there.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/screen.sh"

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: MIT
+#include "serializers/StoredAnimation.h"
+
+#include <osgGpuAnimation/nodes/AnimatedCharacter.h>
+#include <osgGpuAnimation/nodes/AnimationUpdateCallback.h>
+#include <osgGpuAnimation/nodes/CharacterKeys.h>
+#include <osgGpuAnimation/nodes/JointAttachment.h>
+#include <osgGpuAnimation/nodes/PoseStatistics.h>
+#include <osgGpuAnimation/nodes/RootMotionCallback.h>
+
+#include <cmath>
+
+// A character, its attachments and callbacks in OSG's own formats.
+
+namespace osgGpuAnimation::serializers
+{
+
+namespace
+{
+
+/// The file has its own callbacks.
+osg::Object* createCharacter()
+{
+    auto* character = new AnimatedCharacter;
+    character->setUpdateCallback(nullptr);
+    return character;
+}
+
+void transferCharacterSet(ValueStream& stream, AnimatedCharacter& character)
+{
+    transferSet(stream, character, character.controller().sharedSet());
+}
+
+/// One bit for each setting that differs from the default. Earlier readers know the lower bits only.
+enum Extra : std::int32_t
+{
+    hasClipBounds = 1, ///< which reading computes again
+    hasPixelError = 2, ///< the pixel error follows
+    isDrawnAlone = 4,
+};
+
+std::int32_t extrasOf(const AnimatedCharacter& character)
+{
+    std::int32_t extras = character.clipBounds(-1).empty() ? 0 : hasClipBounds;
+    if (character.pixelError() > 0.0f) extras |= hasPixelError;
+    if (!character.isDrawnTogether()) extras |= isDrawnAlone;
+    return extras;
+}
+
+void transferExtras(ValueStream& stream, AnimatedCharacter& character)
+{
+    std::int32_t extras = extrasOf(character);
+    double pixelError = static_cast<double>(character.pixelError());
+    stream.limited("the settings of a character", extras, 0, hasClipBounds | hasPixelError | isDrawnAlone);
+    if (extras & hasPixelError) stream.value(pixelError);
+    stream.endLine();
+    if (!stream.hasRead()) return;
+    character.setDrawnTogether(!(extras & isDrawnAlone));
+    if (extras & hasClipBounds) character.computeClipBounds();
+    if (const Result<bool> taken = character.setPixelError(static_cast<float>(pixelError)); !taken)
+        stream.fail("a character: " + taken.error().message);
+}
+
+void transferState(ValueStream& stream, AnimatedCharacter& character)
+{
+    transferController(stream, character.controller());
+    if (stream.hasRead()) character.dirtyBound();
+}
+
+void addCharacterProperties(osgDB::ObjectWrapper* wrapper)
+{
+    addProperty(wrapper, "AnimationSet", &transferCharacterSet);
+    // The property keeps the name of its first setting.
+    addProperty<AnimatedCharacter>(wrapper, "ClipBounds", &transferExtras,
+                                   [](const AnimatedCharacter& character) { return extrasOf(character) != 0; });
+    addProperty(wrapper, "Controller", &transferState);
+}
+
+void transferJoint(ValueStream& stream, JointAttachment& attachment)
+{
+    int joint = attachment.joint();
+    std::string name = attachment.jointName();
+    stream.values(joint, name).endLine();
+    if (!stream.hasRead()) return;
+    if (name.empty())
+        attachment.setJoint(joint);
+    else
+        attachment.setJoint(name);
+}
+
+void transferFadeSeconds(ValueStream& stream, CharacterKeys& keys)
+{
+    double seconds = keys.fadeSeconds();
+    stream.value(seconds).endLine();
+    if (!stream.hasRead()) return;
+    if (!std::isfinite(seconds) || seconds < 0.0)
+        return stream.fail("keys whose crossfades take " + std::to_string(seconds) + " s");
+    keys.setFadeSeconds(seconds);
+}
+
+template <typename Class>
+osg::Object* create()
+{
+    return new Class;
+}
+
+void addNothing(osgDB::ObjectWrapper*) {}
+
+osgDB::RegisterWrapperProxy wrappers[] = {
+    {&createCharacter, "osgGpuAnimation::AnimatedCharacter",
+     "osgGpuAnimation::ExactNumbers osg::Object osg::Node osg::Group osg::Transform osg::MatrixTransform "
+     "osgGpuAnimation::AnimatedCharacter",
+     &addCharacterProperties},
+    {&create<JointAttachment>, "osgGpuAnimation::JointAttachment",
+     "osgGpuAnimation::ExactNumbers osg::Object osg::Node osg::Group osg::Transform osg::MatrixTransform "
+     "osgGpuAnimation::JointAttachment",
+     [](osgDB::ObjectWrapper* wrapper) { addProperty(wrapper, "Joint", &transferJoint); }},
+    {&create<AnimationUpdateCallback>, "osgGpuAnimation::AnimationUpdateCallback",
+     "osg::Object osg::Callback osg::NodeCallback osgGpuAnimation::AnimationUpdateCallback", &addNothing},
+    {&create<RootMotionCallback>, "osgGpuAnimation::RootMotionCallback",
+     "osg::Object osg::Callback osg::NodeCallback osgGpuAnimation::RootMotionCallback", &addNothing},
+    {&create<PoseStatistics>, "osgGpuAnimation::PoseStatistics",
+     "osg::Object osg::Callback osgGpuAnimation::PoseStatistics", &addNothing},
+    {&create<CharacterKeys>, "osgGpuAnimation::CharacterKeys",
+     "osg::Object osg::Callback osgGpuAnimation::CharacterKeys",
+     [](osgDB::ObjectWrapper* wrapper)
+     {
+         addProperty<CharacterKeys>(wrapper, "FadeSeconds", &transferFadeSeconds,
+                                    [](const CharacterKeys&) { return true; });
+     }},
+};
+
+} // namespace
+
+} // namespace osgGpuAnimation::serializers

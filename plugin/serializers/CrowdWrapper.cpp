@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: MIT
+#include "serializers/StoredAnimation.h"
+
+#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+#include <osgGpuAnimation/nodes/OsgMatrix.h>
+
+namespace osgGpuAnimation::serializers
+{
+
+namespace
+{
+
+/// Earlier crowds had an event callback that turned the viewer's home view. It is read as a callback without a
+/// function; crowds drop it.
+class FormerTiltedHome : public osg::Callback
+{
+};
+
+void dropTiltedHome(AnimatedCrowd& crowd)
+{
+    for (osg::ref_ptr<osg::Callback> callback = crowd.getEventCallback(), next; callback; callback = next)
+    {
+        next = callback->getNestedCallback();
+        if (dynamic_cast<FormerTiltedHome*>(callback.get())) crowd.removeEventCallback(callback);
+    }
+}
+
+/// The file has its own callbacks.
+osg::Object* createCrowd()
+{
+    auto* crowd = new AnimatedCrowd;
+    crowd->setUpdateCallback(nullptr);
+    return crowd;
+}
+
+void transferCrowdSet(ValueStream& stream, AnimatedCrowd& crowd)
+{
+    transferSet(stream, crowd, crowd.sharedSet());
+    if (stream.hasRead()) dropTiltedHome(crowd);
+}
+
+/// Crowds with default settings stay readable for earlier versions.
+enum Version : std::int32_t
+{
+    plain = 1,
+    withPixelError = 2,
+    withUpdateRate = 3, ///< no longer written
+};
+
+/// What follows an instance's placement.
+enum class Playback
+{
+    Nothing,
+    Plain,      ///< clip, time, speed, paused
+    Controller, ///< all layers
+};
+
+Playback playbackOf(const AnimationController& controller)
+{
+    if (!controller.isPlainLoop()) return Playback::Controller;
+    return controller.clip() < 0 ? Playback::Nothing : Playback::Plain;
+}
+
+void transferPlain(ValueStream& stream, AnimationController& controller)
+{
+    std::int32_t clip = controller.clip();
+    double time = controller.time(), speed = controller.speed();
+    bool isPaused = !controller.isPlaying();
+    stream.values(clip, time, speed, isPaused);
+    if (!stream.hasRead()) return;
+    controller.setSpeed(speed);
+    const Result<bool> playing = controller.play(clip < 0 ? ~std::size_t(0) : static_cast<std::size_t>(clip));
+    if (!playing) stream.fail("an instance of a crowd: " + playing.error().message);
+    controller.seek(time);
+    if (isPaused) controller.pause();
+}
+
+struct StoredInstance
+{
+    AffineMatrix root;
+    std::uint32_t tint = 0; ///< RGBA, 8 bits each, red lowest
+    AnimationController controller;
+};
+
+void transferInstance(ValueStream& stream, StoredInstance& instance)
+{
+    auto tint = static_cast<std::int32_t>(instance.tint);
+    Playback playback = playbackOf(instance.controller);
+    stream.property("Instance").values(instance.root, tint);
+    stream.limited("an instance's playback", playback, Playback::Controller);
+    if (playback == Playback::Plain) transferPlain(stream, instance.controller);
+    stream.endLine();
+    if (playback == Playback::Controller)
+    {
+        stream.property("Controller");
+        transferController(stream, instance.controller);
+    }
+    instance.tint = static_cast<std::uint32_t>(tint);
+}
+
+osg::Vec4 toColor(std::uint32_t rgba)
+{
+    osg::Vec4 color;
+    for (int channel = 0; channel < 4; ++channel)
+        color[channel] = static_cast<float>(rgba >> 8 * channel & 255u) / 255.0f;
+    return color;
+}
+
+void transferList(ValueStream& stream, AnimatedCrowd& crowd)
+{
+    const std::size_t count = stream.open("List", crowd.size());
+    for (std::size_t i = 0; i < count && stream.isGood(); ++i)
+    {
+        StoredInstance instance{{}, 0, AnimationController(crowd.sharedSet())};
+        if (!stream.isReading())
+            instance = {crowd.instances().rootMatrix(i), crowd.instances().tint(i),
+                        crowd.instances().controllerCopy(i)};
+        transferInstance(stream, instance);
+        if (!stream.hasRead()) continue;
+        const auto added = crowd.add(toOsg(instance.root, crowd.origin()), instance.controller, toColor(instance.tint));
+        if (!added) stream.fail("an instance of a crowd: " + added.error().message);
+    }
+    stream.close();
+}
+
+void transferInstances(ValueStream& stream, AnimatedCrowd& crowd)
+{
+    std::int32_t version = crowd.pixelError() > 0.0f ? withPixelError : plain;
+    osg::Vec3d origin = crowd.origin();
+    double pixelError = static_cast<double>(crowd.pixelError()), updatePixels = 0.0;
+    std::int32_t updatesEvery = 1;
+    stream.limited("the version of a crowd", version, plain, withUpdateRate);
+    stream.values(origin.x(), origin.y(), origin.z());
+    if (version >= withPixelError) stream.value(pixelError);
+    if (version >= withUpdateRate) stream.values(updatesEvery, updatePixels);
+    stream.endLine();
+    if (stream.hasRead())
+    {
+        crowd.setOrigin(origin);
+        if (const Result<bool> taken = crowd.setPixelError(static_cast<float>(pixelError)); !taken)
+            stream.fail("a crowd: " + taken.error().message);
+    }
+    transferList(stream, crowd);
+}
+
+void addCrowdProperties(osgDB::ObjectWrapper* wrapper)
+{
+    addProperty(wrapper, "AnimationSet", &transferCrowdSet);
+    addProperty<AnimatedCrowd>(wrapper, "Instances", &transferInstances,
+                               [](const AnimatedCrowd& crowd)
+                               { return crowd.size() > 0 || crowd.pixelError() > 0.0f; });
+}
+
+osgDB::RegisterWrapperProxy crowd(&createCrowd, "osgGpuAnimation::AnimatedCrowd",
+                                  "osgGpuAnimation::ExactNumbers osg::Object osg::Node osg::Group osg::Transform "
+                                  "osgGpuAnimation::AnimatedCrowd",
+                                  &addCrowdProperties);
+
+osgDB::RegisterWrapperProxy tiltedHome([]() -> osg::Object* { return new FormerTiltedHome; },
+                                       "osgGpuAnimation::TiltedHome",
+                                       "osg::Object osg::Callback osgGpuAnimation::TiltedHome",
+                                       [](osgDB::ObjectWrapper*) {});
+
+} // namespace
+
+} // namespace osgGpuAnimation::serializers

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: MIT
+#include "serializers/StoredAnimation.h"
+
+#include <osgGpuAnimation/nodes/CharacterProgram.h>
+#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
+#include <osgGpuAnimation/nodes/SurfaceProgram.h>
+
+#include <osg/NodeVisitor>
+#include <osg/Notify>
+
+#include <algorithm>
+#include <optional>
+
+namespace osgGpuAnimation::serializers
+{
+
+namespace
+{
+
+/// OSG's wrappers transfer the influences with the other vertex attributes; this property makes them influences.
+void transferInfluences(ValueStream& stream, SkinnedGeometry& mesh)
+{
+    std::int32_t rigidEntry = mesh.rigidEntry();
+    stream.limited("a rigid mesh's palette entry", rigidEntry, -1, 65535).endLine();
+    if (!stream.hasRead()) return;
+    if (rigidEntry >= 0) return mesh.setRigidEntry(static_cast<unsigned short>(rigidEntry));
+    for (unsigned int i = 0; i < SkinnedGeometry::maxInfluenceSets && mesh.entries(i) && mesh.weights(i); ++i)
+        mesh.setInfluences(i, const_cast<osg::Vec4usArray*>(mesh.entries(i)),
+                           const_cast<osg::Vec4Array*>(mesh.weights(i)));
+}
+
+template <typename Array>
+void transferArray(ValueStream& stream, const char* name, osg::ref_ptr<Array>& array)
+{
+    if (stream.open(name, array ? 1 : 0) > 0) stream.object(array);
+    stream.close();
+}
+
+void transferMorphTargets(ValueStream& stream, SkinnedGeometry& mesh)
+{
+    std::int32_t morph = mesh.morph(), entry = mesh.morphEntry();
+    std::vector<MorphTarget> targets;
+    if (!stream.isReading()) targets = mesh.morphTargets();
+    stream.values(morph, entry).endLine();
+    const auto transferTarget = [&](MorphTarget& target)
+    {
+        transferArray(stream, "Positions", target.positions);
+        transferArray(stream, "Normals", target.normals);
+        transferArray(stream, "Colors", target.colors);
+        transferArray(stream, "TextureCoordinates", target.textureCoordinates);
+    };
+    stream.list("Targets", targets, transferTarget);
+    if (stream.hasRead()) mesh.setMorphTargets(morph, entry, std::move(targets));
+}
+
+/// Earlier versions stored whether a mesh was skinned once a frame. It is read and dropped.
+void dropSkinning(ValueStream& stream, SkinnedGeometry&)
+{
+    std::int32_t skinning = 0;
+    stream.value(skinning);
+}
+
+void addMeshProperties(osgDB::ObjectWrapper* wrapper)
+{
+    addProperty(wrapper, "Influences", &transferInfluences);
+    addProperty<SkinnedGeometry>(wrapper, "MorphTargets", &transferMorphTargets,
+                                 [](const SkinnedGeometry& mesh) { return !mesh.morphTargets().empty(); });
+    addProperty<SkinnedGeometry>(wrapper, "Skinning", &dropSkinning, [](const SkinnedGeometry&) { return false; });
+}
+
+osgDB::RegisterWrapperProxy skinnedGeometry([]() -> osg::Object* { return new SkinnedGeometry; },
+                                            "osgGpuAnimation::SkinnedGeometry",
+                                            "osgGpuAnimation::ExactNumbers osg::Object osg::Node osg::Drawable "
+                                            "osg::Geometry osgGpuAnimation::SkinnedGeometry",
+                                            &addMeshProperties);
+
+// A file has no shaders: reading gives the program that all characters share.
+osgDB::RegisterWrapperProxy surfaceProgram([]() -> osg::Object* { return characterProgram().release(); },
+                                           "osgGpuAnimation::SurfaceProgram", "osgGpuAnimation::SurfaceProgram",
+                                           [](osgDB::ObjectWrapper*) {});
+
+using Fault = std::optional<std::string>;
+
+std::string counted(std::size_t found, const char* of, std::size_t wanted)
+{
+    return std::to_string(found) + " " + of + " of " + std::to_string(wanted);
+}
+
+Fault findFaultInArrays(const SkinnedGeometry& mesh, std::size_t vertices)
+{
+    osg::Geometry::ArrayList arrays;
+    mesh.getArrayList(arrays);
+    for (const osg::ref_ptr<osg::Array>& array : arrays)
+        if (array->getBinding() == osg::Array::BIND_PER_VERTEX && array->getNumElements() < vertices)
+            return counted(array->getNumElements(), "elements of an array", vertices);
+    return std::nullopt;
+}
+
+Fault findFaultInPrimitives(const SkinnedGeometry& mesh, std::size_t vertices)
+{
+    for (const osg::ref_ptr<osg::PrimitiveSet>& primitives : mesh.getPrimitiveSetList())
+    {
+        if (!primitives) return "a primitive set that is none";
+        if (const auto* range = dynamic_cast<const osg::DrawArrays*>(primitives.get()))
+            if (range->getFirst() < 0 || range->getCount() < 0) return "a range of vertices below 0";
+        const unsigned int count = primitives->getNumIndices();
+        const bool ascends = primitives->getType() == osg::PrimitiveSet::DrawArraysPrimitiveType;
+        for (unsigned int i = ascends && count > 0 ? count - 1 : 0; i < count; ++i)
+            if (primitives->index(i) >= vertices) return counted(primitives->index(i), "as a vertex", vertices);
+    }
+    return std::nullopt;
+}
+
+Fault findFaultInEntries(const SkinnedGeometry& mesh, std::size_t paletteSize)
+{
+    const auto rigidEntry = static_cast<std::size_t>(std::max(mesh.rigidEntry(), 0));
+    if (rigidEntry >= paletteSize) return counted(rigidEntry, "as an entry", paletteSize);
+    if (mesh.rigidEntry() >= 0) return std::nullopt;
+    if (!mesh.entries(0) || !mesh.weights(0)) return "no influences";
+    for (unsigned int i = 0; i < SkinnedGeometry::maxInfluenceSets && mesh.entries(i); ++i)
+        for (const osg::Vec4us& entries : *mesh.entries(i))
+            for (const unsigned short entry : {entries.x(), entries.y(), entries.z(), entries.w()})
+                if (entry >= paletteSize) return counted(entry, "as an entry", paletteSize);
+    return std::nullopt;
+}
+
+Fault findFaultInMorphs(const SkinnedGeometry& mesh, const AnimationSet& set)
+{
+    if (mesh.morphTargets().empty()) return std::nullopt;
+    const auto morph = static_cast<std::size_t>(mesh.morph()); // huge where there is none
+    if (morph >= set.morphs().size()) return "a morph that is not the set's";
+    const std::size_t weights = set.morphs()[morph].defaults.size();
+    if (mesh.morphTargets().size() > weights) return counted(mesh.morphTargets().size(), "morph targets", weights);
+    if (mesh.morphEntry() != set.entryOfMorph(morph)) return "a wrong morph entry";
+    return std::nullopt;
+}
+
+Fault findFault(const SkinnedGeometry& mesh, const AnimationSet& set)
+{
+    const osg::Array* positions = mesh.getVertexArray();
+    if (!positions) return "no vertices";
+    const std::size_t vertices = positions->getNumElements();
+    if (const Fault fault = findFaultInArrays(mesh, vertices)) return fault;
+    if (const Fault fault = findFaultInPrimitives(mesh, vertices)) return fault;
+    if (const Fault fault = findFaultInEntries(mesh, set.paletteSize())) return fault;
+    return findFaultInMorphs(mesh, set);
+}
+
+class UnfitMeshes : public osg::NodeVisitor
+{
+public:
+    explicit UnfitMeshes(const AnimationSet& set) : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN), _set(set) {}
+
+    void apply(osg::Drawable& drawable) override
+    {
+        const auto* mesh = dynamic_cast<const SkinnedGeometry*>(&drawable);
+        const Fault fault = mesh ? findFault(*mesh, _set) : Fault();
+        if (!fault) return;
+        OSG_WARN << "osgGpuAnimation: mesh \"" << drawable.getName() << "\" has " << *fault << "; it is not drawn"
+                 << std::endl;
+        found.push_back(&drawable);
+    }
+
+    std::vector<osg::ref_ptr<osg::Drawable>> found;
+
+private:
+    const AnimationSet& _set;
+};
+
+} // namespace
+
+void removeUnfitMeshes(osg::Group& group, const AnimationSet& set)
+{
+    UnfitMeshes unfit(set);
+    group.traverse(unfit);
+    for (const osg::ref_ptr<osg::Drawable>& mesh : unfit.found)
+        while (mesh->getNumParents() > 0)
+            mesh->getParent(0)->removeChild(mesh);
+}
+
+} // namespace osgGpuAnimation::serializers

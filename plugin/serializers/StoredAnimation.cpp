@@ -1,0 +1,397 @@
+// SPDX-License-Identifier: MIT
+#include "serializers/StoredAnimation.h"
+
+#include "cache/SeparateLoads.h"
+
+#include <osgGpuAnimation/animation/ClipParts.h>
+#include <osgGpuAnimation/animation/CompactTracks.h>
+#include <osgGpuAnimation/animation/LayerSnapshot.h>
+#include <osgGpuAnimation/animation/RootMotionCurve.h>
+
+#include <osg/Notify>
+
+#include <algorithm>
+#include <map>
+#include <mutex>
+
+namespace osgGpuAnimation::serializers
+{
+
+namespace
+{
+
+// Every file with objects of ours contains a set.
+SeparateLoads::Installation separateLoads;
+
+void transferJoints(ValueStream& stream, std::vector<Joint>& joints)
+{
+    stream.list("Joints", joints,
+                [&](Joint& joint)
+                {
+                    stream.property("Joint").values(joint.parent, joint.sourceNode, joint.name);
+                    stream.floats(&joint.rest.translation.x, 3).floats(&joint.rest.rotation.x, 4);
+                    stream.floats(&joint.rest.scale.x, 3).endLine();
+                });
+}
+
+void transferSkins(ValueStream& stream, std::vector<Skin>& skins)
+{
+    const auto transferSkin = [&](Skin& skin)
+    {
+        stream.property("Skin").value(skin.name).endLine();
+        const std::size_t count = stream.open("InverseBinds", skin.joints.size());
+        for (std::size_t place = 0; place < count && stream.isGood(); ++place)
+        {
+            if (stream.isReading()) skin.joints.emplace_back();
+            if (stream.isReading()) skin.inverseBinds.emplace_back();
+            stream.property("Joint").values(skin.joints[place], skin.inverseBinds[place]).endLine();
+        }
+        stream.close();
+    };
+    stream.list("Skins", skins, transferSkin);
+}
+
+void transferRigidJoints(ValueStream& stream, std::vector<int>& joints)
+{
+    std::size_t count = joints.size();
+    stream.property("RigidJoints").value(count);
+    stream.items(joints, count, [&](int& joint) { stream.value(joint); });
+    stream.endLine();
+}
+
+void transferMorphs(ValueStream& stream, std::vector<MorphWeights>& morphs)
+{
+    stream.list("Morphs", morphs,
+                [&](MorphWeights& morph)
+                {
+                    std::size_t weights = morph.defaults.size();
+                    stream.property("Morph").values(morph.sourceNode, morph.name, weights);
+                    stream.floats(morph.defaults, weights).endLine();
+                });
+}
+
+/// The version of a stored set; before it, all clips are exact.
+constexpr std::int32_t versionWithCompactClips = 2;
+constexpr std::size_t floatsATransform = sizeof(JointTransform) / sizeof(float);
+/// Of all compact clips of a set together; the default of the glTF reader's budget.
+constexpr std::size_t maxCompactBytes = std::size_t(2) << 30;
+constexpr float placeUnit = static_cast<float>(PackedTriple::largest) + 1.0f;
+
+std::vector<float> packedNumbers(const std::vector<PackedTriple>& keyframes)
+{
+    std::vector<float> floats;
+    floats.reserve(3 * keyframes.size());
+    for (const PackedTriple& triple : keyframes)
+    {
+        const glm::vec3 numbers(triple.numbers());
+        floats.insert(floats.end(), {numbers.x, numbers.y, numbers.z + placeUnit * static_cast<float>(triple.place())});
+    }
+    return floats;
+}
+
+std::vector<PackedTriple> toTriples(const std::vector<float>& floats)
+{
+    // The nearest whole number in [0, largest]; 0 for NaN.
+    const auto whole = [](float number, float largest)
+    { return static_cast<std::uint32_t>(std::min(std::max(0.0f, number), largest)); };
+    constexpr auto largest = static_cast<float>(PackedTriple::largest);
+    std::vector<PackedTriple> triples;
+    triples.reserve(floats.size() / 3);
+    for (std::size_t i = 0; i + 2 < floats.size(); i += 3)
+    {
+        const std::uint32_t last = whole(floats[i + 2], 4.0f * placeUnit - 1.0f);
+        const glm::uvec3 numbers(whole(floats[i], largest), whole(floats[i + 1], largest),
+                                 last & PackedTriple::largest);
+        triples.push_back(PackedTriple::of(numbers, last >> 20));
+    }
+    return triples;
+}
+
+void transferTrack(ValueStream& stream, CompactTracks::Track& track)
+{
+    stream.property("Track").values(track.translation, track.rotation, track.scale);
+    for (CompactTracks::Range* range : {&track.translationRange, &track.scaleRange})
+        stream.floats(&range->base.x, 3).floats(&range->step.x, 3);
+    stream.endLine();
+}
+
+/// The keyframes of a compact clip as the file has them.
+struct CompactParts
+{
+    CompactTracks tracks;
+    std::vector<JointTransform> held;    ///< one a joint: the values of joints at rest
+    std::vector<JointTransform> weights; ///< by keyframe: the weight blocks
+    std::vector<float> packed;           ///< three a PackedTriple
+};
+
+CompactParts toCompactParts(const ClipParts& clip)
+{
+    CompactParts compact{*clip.compactTracks, {}, {}, packedNumbers(clip.compactTracks->keyframes)};
+    const auto joints = static_cast<std::ptrdiff_t>(clip.jointCount);
+    const auto tracks = static_cast<std::ptrdiff_t>(clip.trackCount);
+    compact.held.assign(clip.data.begin(), clip.data.begin() + joints);
+    for (auto keyframe = clip.data.begin(); tracks > 0 && keyframe != clip.data.end(); keyframe += tracks)
+        compact.weights.insert(compact.weights.end(), keyframe + joints, keyframe + tracks);
+    return compact;
+}
+
+/// Fills data with the transforms at rest and the weights; Clip::create decodes what moves. bytesLeft is reduced by the
+/// bytes of the keyframes. Error: the parts do not fit each other or the bytes.
+Result<bool> toClipParts(CompactParts compact, ClipParts& clip, std::size_t& bytesLeft)
+{
+    const std::size_t keyframes = clip.times.size(), weightTracks = clip.trackCount - clip.jointCount;
+    if (compact.held.size() != clip.jointCount || compact.packed.size() % 3 != 0 ||
+        compact.weights.size() != keyframes * weightTracks)
+        return Error{"clip \"" + clip.name + "\": the numbers of its compact keyframes are not those of the clip"};
+    if (clip.trackCount > 0 && keyframes > bytesLeft / sizeof(JointTransform) / clip.trackCount)
+        return Error{"clip \"" + clip.name + "\": its keyframes would exceed the memory for compact clips"};
+    bytesLeft -= keyframes * clip.trackCount * sizeof(JointTransform);
+    clip.data.reserve(keyframes * clip.trackCount);
+    for (auto weights = compact.weights.begin(); clip.data.size() < keyframes * clip.trackCount;)
+    {
+        clip.data.insert(clip.data.end(), compact.held.begin(), compact.held.end());
+        clip.data.insert(clip.data.end(), weights, weights + static_cast<std::ptrdiff_t>(weightTracks));
+        weights += static_cast<std::ptrdiff_t>(weightTracks);
+    }
+    compact.tracks.keyframes = toTriples(compact.packed);
+    compact.tracks.columnCount = keyframes == 0 ? 0 : compact.tracks.keyframes.size() / keyframes;
+    clip.compactTracks = std::make_shared<const CompactTracks>(std::move(compact.tracks));
+    return true;
+}
+
+void transferCompactKeyframes(ValueStream& stream, ClipParts& clip, std::size_t& bytesLeft)
+{
+    CompactParts compact;
+    if (!stream.isReading()) compact = toCompactParts(clip);
+    stream.list("Compact", compact.tracks.tracks, [&](CompactTracks::Track& track) { transferTrack(stream, track); });
+    stream.block("Held", compact.held, floatsATransform);
+    stream.block("Weights", compact.weights, floatsATransform);
+    stream.block("Packed", compact.packed, 3 * std::max<std::size_t>(compact.tracks.columnCount, 1));
+    if (!stream.hasRead()) return;
+    if (const Result<bool> fits = toClipParts(std::move(compact), clip, bytesLeft); !fits)
+        stream.fail(fits.error().message);
+}
+
+void transferRootMotion(ValueStream& stream, std::shared_ptr<const RootMotionCurve>& motion)
+{
+    RootMotionCurve curve;
+    if (motion) curve = *motion;
+    const std::size_t count = stream.open("RootMotion", curve.keys.size());
+    if (count > 0) stream.property("Joint").values(curve.joint, curve.up).endLine();
+    const auto transferKey = [&](RootMotionCurve::Key& key)
+    {
+        stream.property("Key").value(key.yaw);
+        for (RootMotionCurve::Point* point : {&key.displacement, &key.pivot})
+            stream.values(point->value, point->in, point->out);
+        stream.endLine();
+    };
+    stream.items(curve.keys, count, transferKey);
+    stream.close();
+    if (count > 0) motion = std::make_shared<const RootMotionCurve>(std::move(curve));
+}
+
+ClipParts toParts(const Clip& clip, std::size_t jointCount)
+{
+    ClipParts parts;
+    parts.name = clip.name();
+    parts.form = clip.form();
+    parts.jointCount = jointCount;
+    parts.trackCount = clip.trackCount();
+    parts.times = clip.times();
+    parts.data = clip.data();
+    parts.markers = clip.markers();
+    if (clip.rootMotion()) parts.rootMotion = std::make_shared<const RootMotionCurve>(*clip.rootMotion());
+    if (clip.compactTracks()) parts.compactTracks = std::make_shared<const CompactTracks>(*clip.compactTracks());
+    return parts;
+}
+
+void transferClip(ValueStream& stream, std::int32_t version, ClipParts& clip, std::size_t& compactBytesLeft)
+{
+    bool isCompact = clip.compactTracks != nullptr;
+    stream.property("Clip").value(clip.name).limited("a clip's form", clip.form, Clip::Form::Spline);
+    if (version >= versionWithCompactClips) stream.value(isCompact);
+    stream.endLine();
+    stream.block("Times", clip.times, 8);
+    if (isCompact)
+        transferCompactKeyframes(stream, clip, compactBytesLeft);
+    else
+        stream.block("Keyframes", clip.data, floatsATransform);
+    stream.list("Markers", clip.markers,
+                [&](ClipMarker& marker) { stream.property("Marker").values(marker.time, marker.name).endLine(); });
+    transferRootMotion(stream, clip.rootMotion);
+}
+
+/// A clip that cannot be created makes the file unreadable; the message names it. Compact clips store the column of
+/// each joint's keyframes, the transforms at rest, the morph weights, and the packed numbers x, y and z + place * 2^20
+/// (see PackedTriple). Memory holds all their keyframes, so these are limited.
+void transferClips(ValueStream& stream, std::int32_t version, std::size_t jointCount,
+                   const std::vector<MorphWeights>& morphs, std::vector<Clip>& clips)
+{
+    std::size_t trackCount = jointCount, compactBytesLeft = maxCompactBytes;
+    for (const MorphWeights& morph : morphs)
+        trackCount += morph.blockCount();
+    const std::size_t count = stream.open("Clips", clips.size());
+    for (std::size_t c = 0; c < count && stream.isGood(); ++c)
+    {
+        ClipParts parts;
+        if (!stream.isReading()) parts = toParts(clips[c], jointCount);
+        parts.jointCount = jointCount;
+        parts.trackCount = trackCount;
+        transferClip(stream, version, parts, compactBytesLeft);
+        if (!stream.hasRead()) continue;
+        Result<Clip> clip = Clip::create(std::move(parts));
+        if (!clip) return stream.fail(clip.error().message);
+        clips.push_back(std::move(clip).value());
+    }
+    stream.close();
+}
+
+/// Keyframes and skins refer to joints by their order in the file, which must be that of the skeleton.
+Result<Skeleton> toSkeleton(const std::vector<Joint>& joints)
+{
+    Result<Skeleton> skeleton = Skeleton::create(joints);
+    for (std::size_t i = 0; skeleton && i < joints.size(); ++i)
+        if (skeleton.value().jointOfInput(i) != static_cast<int>(i))
+            return Error{"joint " + std::to_string(i) + " \"" + joints[i].name + "\" is not stored level by level"};
+    return skeleton;
+}
+
+/// An AnimationSet as an object of a file: OSG writes an object once, however many others refer to it.
+class StoredAnimationSet : public osg::Object
+{
+public:
+    StoredAnimationSet() = default;
+    StoredAnimationSet(const StoredAnimationSet& other, const osg::CopyOp& copyop)
+        : osg::Object(other, copyop), _read(other._read), _written(other._written)
+    {
+    }
+    META_Object(osgGpuAnimation, StoredAnimationSet)
+
+        /// Always the same object for a set, by which a stream recognizes it. It does not keep the set alive.
+        static osg::ref_ptr<StoredAnimationSet> of(const std::shared_ptr<const AnimationSet>& set)
+    {
+        static std::mutex mutex;
+        static std::map<const AnimationSet*, osg::ref_ptr<StoredAnimationSet>> known;
+        const std::lock_guard<std::mutex> lock(mutex);
+        for (auto entry = known.begin(); entry != known.end();)
+            entry = entry->second->_written.expired() ? known.erase(entry) : std::next(entry);
+        osg::ref_ptr<StoredAnimationSet>& stored = known[set.get()];
+        if (!stored) stored = new StoredAnimationSet;
+        stored->_written = set;
+        return stored;
+    }
+
+    /// Null if nothing was read, or the set is gone.
+    std::shared_ptr<const AnimationSet> set() const { return _read ? _read : _written.lock(); }
+
+    static void transferContents(ValueStream& stream, StoredAnimationSet& stored);
+
+protected:
+    ~StoredAnimationSet() override = default;
+
+private:
+    std::shared_ptr<const AnimationSet> _read;
+    std::weak_ptr<const AnimationSet> _written;
+};
+
+void StoredAnimationSet::transferContents(ValueStream& stream, StoredAnimationSet& stored)
+{
+    std::int32_t version = versionWithCompactClips;
+    std::vector<Joint> joints;
+    std::vector<Skin> skins;
+    std::vector<int> rigidJoints;
+    std::vector<MorphWeights> morphs;
+    std::vector<Clip> clips;
+    if (const auto set = stored.set())
+    {
+        joints = set->skeleton().joints();
+        skins = set->skins();
+        rigidJoints = set->rigidJoints();
+        morphs = set->morphs();
+        clips = set->clips();
+    }
+    stream.limited("the version of an animation set", version, 1, versionWithCompactClips).endLine();
+    transferJoints(stream, joints);
+    transferSkins(stream, skins);
+    transferRigidJoints(stream, rigidJoints);
+    transferMorphs(stream, morphs);
+    transferClips(stream, version, joints.size(), morphs, clips);
+    if (!stream.hasRead()) return;
+    Result<Skeleton> skeleton = toSkeleton(joints);
+    if (!skeleton) return stream.fail(skeleton.error().message);
+    Result<std::shared_ptr<const AnimationSet>> made = AnimationSet::create(
+        {std::move(skeleton).value(), std::move(skins), std::move(rigidJoints), std::move(morphs), std::move(clips)});
+    if (!made) return stream.fail(made.error().message);
+    stored._read = made.value();
+}
+
+void transferFade(ValueStream& stream, const char* name, LayerSnapshot::FadeState& fade)
+{
+    stream.property(name).values(fade.from, fade.to, fade.seconds, fade.elapsed);
+    stream.limited("a fade's curve", fade.curve, FadeCurve::Smooth).endLine();
+}
+
+void transferVoice(ValueStream& stream, LayerSnapshot::Voice& voice)
+{
+    stream.property("Voice").values(voice.clip, voice.time, voice.speed);
+    stream.limited("a loop mode", voice.loopMode, LoopMode::PingPong);
+    stream.values(voice.isReturning, voice.isFresh, voice.share, voice.shareBefore, voice.phaseGroup).endLine();
+}
+
+void transferLayer(ValueStream& stream, LayerSnapshot& layer)
+{
+    using Layer = AnimationLayer;
+    stream.property("Layer").limited("a layer's state", layer.state, PlayState::Ended);
+    stream.limited("a loop mode", layer.loopMode, LoopMode::PingPong).value(layer.speed);
+    stream.limited("a layer's mode", layer.mode, Layer::Mode::Additive);
+    stream.limited("a layer's reference", layer.reference, Layer::Reference::FirstFrame).value(layer.standing);
+    stream.endLine();
+    stream.list("Voices", layer.voices, [&](LayerSnapshot::Voice& voice) { transferVoice(stream, voice); });
+    transferFade(stream, "Crossfade", layer.crossfade);
+    transferFade(stream, "Weight", layer.weight);
+    stream.block("Mask", layer.mask, 8);
+}
+
+void addContents(osgDB::ObjectWrapper* wrapper)
+{
+    addProperty(wrapper, "Contents", &StoredAnimationSet::transferContents);
+}
+
+osgDB::RegisterWrapperProxy storedSet([]() -> osg::Object* { return new StoredAnimationSet; },
+                                      "osgGpuAnimation::StoredAnimationSet", "osgGpuAnimation::StoredAnimationSet",
+                                      &addContents);
+
+} // namespace
+
+void transferAnimationSet(ValueStream& stream, std::shared_ptr<const AnimationSet>& set)
+{
+    osg::ref_ptr<StoredAnimationSet> stored;
+    if (!stream.isReading()) stored = StoredAnimationSet::of(set);
+    stream.begin();
+    stream.object(stored);
+    stream.close();
+    if (!stream.isReading()) return;
+    set = stored ? stored->set() : nullptr;
+    if (!set) stream.fail("a character without an animation set");
+}
+
+void transferController(ValueStream& stream, AnimationController& controller)
+{
+    std::int32_t version = 1;
+    stream.limited("the version of a controller", version, 1, 1).endLine();
+    const std::size_t layers = stream.open("Layers", controller.layerCount());
+    if (layers > maxLayers) stream.fail(std::to_string(layers) + " layers, at most " + std::to_string(maxLayers));
+    for (std::size_t i = 0; i < layers && stream.isGood(); ++i)
+    {
+        LayerSnapshot layer;
+        if (!stream.isReading()) layer = controller.layer(i).snapshot();
+        transferLayer(stream, layer);
+        if (!stream.hasRead()) continue;
+        if (const Result<bool> restored = controller.layer(i).restore(layer); !restored)
+            OSG_WARN << "osgGpuAnimation: layer " << i << " of a character: " << restored.error().message
+                     << "; it does not play" << std::endl;
+    }
+    stream.close();
+}
+
+} // namespace osgGpuAnimation::serializers

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "serializers/ValueStream.h"
+
+#include <osgGpuAnimation/animation/AnimationController.h>
+#include <osgGpuAnimation/animation/AnimationSet.h>
+
+#include <osg/Group>
+
+#include <memory>
+
+namespace osgGpuAnimation::serializers
+{
+
+/// As a property of a node: the set, or a reference to it if the file contains it already, so characters that share a
+/// set share it after reading too. A set that cannot be read makes the file unreadable.
+void transferAnimationSet(ValueStream& stream, std::shared_ptr<const AnimationSet>& set);
+
+/// Removes, with a warning, every SkinnedGeometry below the group that refers to palette entries, morphs or vertices
+/// that do not exist: files are untrusted, and the GPU does not check indices.
+void removeUnfitMeshes(osg::Group& group, const AnimationSet& set);
+
+/// The set of a character or crowd, whose meshes are read before it. set: the owner's, for writing.
+template <typename Owner>
+void transferSet(ValueStream& stream, Owner& owner, std::shared_ptr<const AnimationSet> set)
+{
+    transferAnimationSet(stream, set);
+    if (!stream.hasRead()) return;
+    removeUnfitMeshes(owner, *set);
+    if (const Result<bool> taken = owner.setAnimationSet(set); !taken) stream.fail(taken.error().message);
+}
+
+/// The present state of all layers. Reading expects a controller of the same set; a layer whose state does not fit the
+/// set stays as it was, with a warning.
+void transferController(ValueStream& stream, AnimationController& controller);
+
+} // namespace osgGpuAnimation::serializers

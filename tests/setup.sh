@@ -16,7 +16,7 @@ packages=(
     libgtest-dev libbenchmark-dev python3 xvfb xauth dpkg-dev file
 )
 # What .ci/run needs besides.
-ci_packages=(git clang-format)
+ci_packages=(git clang-format doxygen)
 
 is_installed()
 {

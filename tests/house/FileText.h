@@ -3,11 +3,15 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace osgGpuAnimation
 {
 
-/// All that is in a file; empty where there is none.
+/// The content of a file; empty if the file does not exist.
 std::string fileText(const std::filesystem::path& path);
+
+/// README.md, the guides in osg_nodes/doc, and the .md files of scenes/ and tests/benchmark/.
+std::vector<std::filesystem::path> guides();
 
 } // namespace osgGpuAnimation

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-// What the README shows as C++ is compiled and run by the tests in the files named Readme*Test.cpp: statement for
-// statement, but for white space, comments and an EXPECT_TRUE around what returns a result.
+// The tests in the files named Readme*Test.cpp compile and run each C++ snippet of the README and the guides, statement
+// by statement. Only white space, comments, and an EXPECT_TRUE or (void) for the returned Result may differ.
 
 namespace osgGpuAnimation
 {
@@ -22,7 +22,7 @@ namespace
 
 namespace fs = std::filesystem;
 
-/// Without comments and white space. (A text with // in a string would lose its line's end: there is none.)
+/// The code without comments and white space. (No snippet has // in a string.)
 std::string bare(const std::string& code)
 {
     static const std::regex comment(R"(//[^\n]*)");
@@ -47,7 +47,7 @@ std::vector<std::string> statements(const std::string& code)
     return found;
 }
 
-/// The text between the fences ```cpp and ```.
+/// The texts between the fences ```cpp and ```.
 std::vector<std::string> snippets(const std::string& markdown)
 {
     std::vector<std::string> found;
@@ -68,7 +68,7 @@ std::vector<std::string> snippets(const std::string& markdown)
     return found;
 }
 
-/// All that the README's tests compile, without the EXPECT_TRUE( and (void) before some of it.
+/// The code of all Readme*Test.cpp, without EXPECT_TRUE( and (void).
 std::string compiledText()
 {
     std::string text;
@@ -92,15 +92,21 @@ std::vector<std::string> missing(const std::string& markdown, const std::string&
 
 } // namespace
 
-TEST(SnippetTest, everyStatementOfTheReadmeIsCompiledByATest)
+TEST(SnippetTest, everyStatementOfTheGuidesIsCompiledByATest)
 {
-    const std::string readme = fileText(fs::path(OSGGPUANIMATION_SOURCE_FOLDER) / "README.md");
-    ASSERT_GE(snippets(readme).size(), 8u);
-    for (const std::string& statement : missing(readme, compiledText()))
-        ADD_FAILURE() << "in no test: " << statement;
+    const std::string compiled = compiledText();
+    std::size_t count = 0;
+    for (const fs::path& guide : guides())
+    {
+        const std::string text = fileText(guide);
+        count += snippets(text).size();
+        for (const std::string& statement : missing(text, compiled))
+            ADD_FAILURE() << guide << ", in no test: " << statement;
+    }
+    EXPECT_GE(count, 16u);
 }
 
-TEST(SnippetTest, aStatementThatNobodyCompilesIsSeen)
+TEST(SnippetTest, aStatementInNoTestIsSeen)
 {
     const std::string readme = "```cpp\nfox->walk();   // on\nfox->fly(1, 2);\n```\n```sh\nls;\n```\n";
     EXPECT_EQ(missing(readme, bare("EXPECT_TRUE(fox->walk());")), std::vector<std::string>{"fox->fly(1,2)"});

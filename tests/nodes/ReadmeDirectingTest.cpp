@@ -15,8 +15,8 @@
 
 #include <gtest/gtest.h>
 
-// The snippets of the README's page "Directing a character", on a character that is made here. That they are the
-// README's, tests/house/SnippetTest.cpp sees to.
+// The snippets of the guide directing.md, with a character that this file creates. tests/house/SnippetTest.cpp compares
+// these statements with the guide.
 
 namespace osgGpuAnimation
 {

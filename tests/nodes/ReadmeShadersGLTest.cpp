@@ -17,7 +17,7 @@ namespace osgGpuAnimation
 namespace
 {
 
-// The README's "Shaders of one's own", word for word.
+// The program of the guide shading.md, "Your own shaders", verbatim.
 osg::ref_ptr<osg::Program> makeOwnProgram()
 {
     // clang-format off

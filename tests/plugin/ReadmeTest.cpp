@@ -20,8 +20,8 @@
 
 #include <iostream>
 
-// The README's snippets that read a file, on our own scene under the name they use. That they are the README's,
-// tests/house/SnippetTest.cpp sees to.
+// The snippets of the README and the guides that read a file. Our own scene has the name that they use.
+// tests/house/SnippetTest.cpp compares these statements with the guides.
 
 namespace osgGpuAnimation
 {
@@ -72,23 +72,25 @@ TEST_F(ReadmeTest, crowds)
 {
     osg::ref_ptr<osg::Node> model = osgDB::readRefNodeFile("fox.glb");
     ASSERT_TRUE(model.valid());
-    osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*findCharacter(*model));
+    AnimatedCharacter& prototype = *findCharacter(*model);
+    osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(prototype);
+    const osg::Matrixd upright = prototype.getWorldMatrices().front();
 
     AnimationController controller(crowd->sharedSet());
     EXPECT_TRUE(controller.play("Run"));
     controller.seek(0.4);
-    auto fox = crowd->add(osg::Matrix::translate(100, 20, 0), controller, osg::Vec4(1, 0.8, 0.8, 1));
+    auto fox = crowd->add(upright * osg::Matrix::translate(100, 20, 0), controller, osg::Vec4(1, 0.8, 0.8, 1));
     if (!fox) std::cerr << fox.error().message << std::endl;
     ASSERT_TRUE(fox);
 
-    EXPECT_TRUE(crowd->move(fox.value(), osg::Matrix::translate(101, 20, 0)));
+    EXPECT_TRUE(crowd->move(fox.value(), upright * osg::Matrix::translate(101, 20, 0)));
     EXPECT_TRUE(crowd->controller(fox.value())->crossfade("Walk", 0.3));
 
     if (auto pixels = crowd->setPixelError(0.5f); !pixels) std::cerr << pixels.error().message << std::endl;
     EXPECT_EQ(crowd->pixelError(), 0.5f);
 
     osg::ref_ptr<osgUtil::LineSegmentIntersector> ray =
-        new osgUtil::LineSegmentIntersector(osg::Vec3d(101, 21, 100), osg::Vec3d(101, 21, -100));
+        new osgUtil::LineSegmentIntersector(osg::Vec3d(101, 20, 100), osg::Vec3d(101, 20, -100));
     osgUtil::IntersectionVisitor visitor(ray);
     crowd->accept(visitor);
     ASSERT_TRUE(ray->containsIntersections());

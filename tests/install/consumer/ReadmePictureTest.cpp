@@ -6,7 +6,8 @@
 
 #include <iostream>
 
-// The README's program under "Without a display", statement for statement, run by the test `install.picture`.
+// The program of the guide application.md, "Rendering without a display", statement by statement. The test
+// `install.picture` runs it.
 
 int main(int argumentCount, char** arguments)
 {

@@ -88,7 +88,7 @@ const DamageCase damages[] = {
      },
      "damaged"},
     {"no width", [](Bytes& png) { png[18] = png[19] = 0; }, "found 0 x 2"},
-    {"16384 x 16384", [](Bytes& png) { png[18] = png[22] = 0x40; }, "far too little"},
+    {"15874 x 15874", [](Bytes& png) { png[18] = png[22] = 0x3e; }, "far too little"},
     {"2147483647 pixels", [](Bytes& png) { png[16] = 0x7f; }, "expected a picture from 1 x 1 to"},
     {"a JPEG that ends",
      [](Bytes& png) {

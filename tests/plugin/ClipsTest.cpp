@@ -19,7 +19,7 @@ struct ReadClips
         Report report(messages);
         const NodeTree tree = buildNodeTree(file.model, {}).value();
         const Joints joints = buildJoints(file.model, tree).value();
-        DecodedBytes budget(bytes);
+        MemoryBudget budget(bytes);
         clips = readClips(file.model, joints, readMorphs(file.model), budget, report);
     }
 

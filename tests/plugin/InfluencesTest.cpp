@@ -40,7 +40,7 @@ protected:
                 file.integers(TINYGLTF_TYPE_VEC4, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, joints[i]);
             file.primitive(0).attributes["WEIGHTS_" + std::to_string(i)] = file.floats(TINYGLTF_TYPE_VEC4, weights[i]);
         }
-        DecodedBytes budget(1 << 20);
+        MemoryBudget budget(1 << 20);
         Report report(messages);
         Meshes meshes(file.model, budget, report);
         return readInfluences(file.model, file.primitive(0), *meshes.primitive(0, 0), *set, 0, report);

@@ -21,7 +21,7 @@ struct ReadMesh
     }
 
     Messages messages;
-    DecodedBytes budget;
+    MemoryBudget budget;
     Report report;
     Meshes meshes;
     const MeshPrimitive* primitive;

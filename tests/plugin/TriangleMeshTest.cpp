@@ -124,7 +124,7 @@ std::vector<std::uint32_t> readGrid(const std::string& alphaMode)
     file.model.materials.emplace_back();
     file.model.materials.back().alphaMode = alphaMode;
     Messages messages;
-    DecodedBytes budget(std::size_t(1) << 30);
+    MemoryBudget budget(std::size_t(1) << 30);
     Report report(messages);
     Meshes meshes(file.model, budget, report);
     osg::DrawElements* elements = meshes.primitive(0, 0)->primitiveSet->getDrawElements();

@@ -108,7 +108,7 @@ bool decode(const Compressed& view, const Bytes& source, Bytes& out)
     return true;
 }
 
-std::optional<Error> decompress(const Compressed& view, std::size_t index, DecodedBytes& budget, Model& model)
+std::optional<Error> decompress(const Compressed& view, std::size_t index, MemoryBudget& budget, Model& model)
 {
     const std::string name = elementName("bufferViews", index) + ".extensions.EXT_meshopt_compression";
     tinygltf::BufferView& parent = model.bufferViews[index];
@@ -140,7 +140,7 @@ public:
     {
     }
 
-    std::optional<Error> decompress(DecodedBytes& budget)
+    std::optional<Error> decompress(MemoryBudget& budget)
     {
         if (_primitive.mode != TINYGLTF_MODE_TRIANGLES || _primitive.indices < 0)
             return fault(_name, "a primitive of indexed triangles", "mode " + std::to_string(_primitive.mode));
@@ -210,7 +210,7 @@ private:
 
 } // namespace
 
-std::optional<Error> decompressMeshopt(const JsonValue& bufferViews, DecodedBytes& budget, Model& model)
+std::optional<Error> decompressMeshopt(const JsonValue& bufferViews, MemoryBudget& budget, Model& model)
 {
     const bool required = isRequired(model, "EXT_meshopt_compression");
     std::size_t i = 0;
@@ -225,7 +225,7 @@ std::optional<Error> decompressMeshopt(const JsonValue& bufferViews, DecodedByte
     return std::nullopt;
 }
 
-std::optional<Error> decompressDraco(const JsonValue& meshes, DecodedBytes& budget, Model& model)
+std::optional<Error> decompressDraco(const JsonValue& meshes, MemoryBudget& budget, Model& model)
 {
     const bool required = isRequired(model, "KHR_draco_mesh_compression");
     std::size_t m = 0;

@@ -19,11 +19,11 @@ namespace osgGpuAnimation::gltf
 
 /// Decompresses the buffer views with EXT_meshopt_compression into new buffers, to which the views then refer.
 /// bufferViews: of the document; its buffers are loaded.
-std::optional<Error> decompressMeshopt(const JsonValue& bufferViews, DecodedBytes& budget, tinygltf::Model& model);
+std::optional<Error> decompressMeshopt(const JsonValue& bufferViews, MemoryBudget& budget, tinygltf::Model& model);
 
 /// Decompresses the primitives with KHR_draco_mesh_compression: their indices and attributes then refer to new
 /// accessors.
 /// meshes: of the document; the model's buffer views and accessors are valid (see ValidateAccessors.h).
-std::optional<Error> decompressDraco(const JsonValue& meshes, DecodedBytes& budget, tinygltf::Model& model);
+std::optional<Error> decompressDraco(const JsonValue& meshes, MemoryBudget& budget, tinygltf::Model& model);
 
 } // namespace osgGpuAnimation::gltf

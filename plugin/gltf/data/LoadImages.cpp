@@ -22,7 +22,7 @@ bool isKnownMimeType(std::string_view type)
     return type.empty() || type == "image/png" || type == "image/jpeg" || type == "application/octet-stream";
 }
 
-Error tooLarge(const DecodedBytes& budget, std::size_t bytes)
+Error tooLarge(const MemoryBudget& budget, std::size_t bytes)
 {
     return Error{"expected " + budget.limitText() + ", found a picture of " + std::to_string(bytes)};
 }
@@ -30,7 +30,7 @@ Error tooLarge(const DecodedBytes& budget, std::size_t bytes)
 // All bytes that are read count, whether or not they are a picture: many images may name the same data, and each reads
 // it.
 
-Result<Bytes> readDataUri(std::string_view uri, DecodedBytes& budget, const std::string& name, Report& report)
+Result<Bytes> readDataUri(std::string_view uri, MemoryBudget& budget, const std::string& name, Report& report)
 {
     const Result<std::size_t> size = bytesOfDataUri(uri);
     if (!size) return size.error();
@@ -43,7 +43,7 @@ Result<Bytes> readDataUri(std::string_view uri, DecodedBytes& budget, const std:
     return std::move(data).value().bytes;
 }
 
-Result<Bytes> readFile(std::string_view uri, const ModelFolder& folder, DecodedBytes& budget)
+Result<Bytes> readFile(std::string_view uri, const ModelFolder& folder, MemoryBudget& budget)
 {
     const Result<RegularFile> file = folder.open(uri);
     if (!file) return file.error();
@@ -54,7 +54,7 @@ Result<Bytes> readFile(std::string_view uri, const ModelFolder& folder, DecodedB
     return bytes;
 }
 
-Result<Bytes> readView(const tinygltf::Model& model, int index, DecodedBytes& budget)
+Result<Bytes> readView(const tinygltf::Model& model, int index, MemoryBudget& budget)
 {
     const tinygltf::BufferView& view = model.bufferViews[std::size_t(index)];
     if (!budget.take(view.byteLength)) return tooLarge(budget, view.byteLength);
@@ -69,7 +69,7 @@ std::string sourceName(const tinygltf::Image& image)
     return image.bufferView >= 0 ? ".bufferView: " : ".uri: ";
 }
 
-Result<PictureHeader> checkBytes(const Bytes& bytes, DecodedBytes& budget)
+Result<PictureHeader> checkBytes(const Bytes& bytes, MemoryBudget& budget)
 {
     Result<PictureHeader> header = readPictureHeader(bytes);
     if (!header) return header;
@@ -79,7 +79,7 @@ Result<PictureHeader> checkBytes(const Bytes& bytes, DecodedBytes& budget)
 
 } // namespace
 
-void loadImages(const JsonValue& images, const ModelFolder& folder, DecodedBytes& budget, Report& report,
+void loadImages(const JsonValue& images, const ModelFolder& folder, MemoryBudget& budget, Report& report,
                 tinygltf::Model& model)
 {
     for (const JsonValue& json : images)

@@ -74,7 +74,7 @@ std::size_t numbersIn(const tinygltf::Model& model, int input, int output)
 class ClipReader
 {
 public:
-    ClipReader(const tinygltf::Model& model, const Joints& joints, const Morphs& morphs, DecodedBytes& budget,
+    ClipReader(const tinygltf::Model& model, const Joints& joints, const Morphs& morphs, MemoryBudget& budget,
                Report& report)
         : _model(model), _joints(joints), _morphs(morphs), _budget(budget), _report(report),
           _builder(joints.skeleton, morphs.weights)
@@ -91,7 +91,7 @@ private:
     const tinygltf::Model& _model;
     const Joints& _joints;
     const Morphs& _morphs;
-    DecodedBytes& _budget;
+    MemoryBudget& _budget;
     Report& _report;
     ClipBuilder _builder;
     std::string _clip;             ///< the animation that is being read, for messages
@@ -161,7 +161,7 @@ std::optional<Clip> ClipReader::read(std::size_t index)
 
 } // namespace
 
-Clips readClips(const tinygltf::Model& model, const Joints& joints, const Morphs& morphs, DecodedBytes& budget,
+Clips readClips(const tinygltf::Model& model, const Joints& joints, const Morphs& morphs, MemoryBudget& budget,
                 Report& report)
 {
     Clips result;

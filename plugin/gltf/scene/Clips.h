@@ -29,7 +29,7 @@ struct Clips
 ///
 /// time: seconds on the clip's time line, 0 or more; beyond its end counts as its end. A faulty marker is skipped with
 /// a warning.
-Clips readClips(const tinygltf::Model& model, const Joints& joints, const Morphs& morphs, DecodedBytes& budget,
+Clips readClips(const tinygltf::Model& model, const Joints& joints, const Morphs& morphs, MemoryBudget& budget,
                 Report& report);
 
 } // namespace osgGpuAnimation::gltf

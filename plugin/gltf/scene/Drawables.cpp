@@ -30,10 +30,10 @@ osg::ref_ptr<osg::Vec4Array> overall(const osg::Vec4& color)
 } // namespace
 
 Drawables::Drawables(const tinygltf::Model& model, std::shared_ptr<const AnimationSet> set, Meshes& meshes,
-                     Materials& materials, DecodedBytes& budget, Report& report)
+                     Materials& materials, MemoryBudget& budget, Report& report)
     : _model(model), _set(std::move(set)), _meshes(meshes), _materials(materials), _budget(budget), _report(report)
 {
-    if (_set) _entries = reachOfEntries(*_set);
+    if (_set) _entries = boundsOfEntries(*_set);
     std::map<std::vector<int>, int> skins;
     for (std::size_t skin = 0; _set && skin < _set->skins().size(); ++skin)
         _firstAlike.push_back(skins.try_emplace(_set->entriesOfSkin(skin), static_cast<int>(skin)).first->second);
@@ -92,7 +92,7 @@ double Drawables::farthestOf(const DrawablePlace& place, const MeshPrimitive& me
         radius += mesh.targetRadii[target] *
                   std::max(std::abs(double(weights[target].min)), std::abs(double(weights[target].max)));
     if (place.skin < 0 && place.joint < 0) return radius;
-    Reach reach{0.0, 0.0};
+    TransformBound reach{0.0, 0.0};
     if (place.joint >= 0) reach = _entries[static_cast<std::size_t>(_set->entryOfRigidJoint(place.joint))];
     if (place.skin >= 0)
         for (const int entry : _set->entriesOfSkin(static_cast<std::size_t>(place.skin)))
@@ -104,7 +104,7 @@ osg::ref_ptr<osg::Geometry> Drawables::make(const DrawablePlace& place)
 {
     const MeshPrimitive* mesh = meshPrimitive(place);
     if (!mesh) return nullptr;
-    if (!(farthestOf(place, *mesh) <= Reach::farthest))
+    if (!(farthestOf(place, *mesh) <= TransformBound::farthest))
     {
         _report.warn(mesh->label + ": its vertices come to lie " + beyondFarthest() + "; not drawn");
         return nullptr;

@@ -38,7 +38,7 @@ class Drawables
 public:
     /// set: null where nothing moves.
     Drawables(const tinygltf::Model& model, std::shared_ptr<const AnimationSet> set, Meshes& meshes,
-              Materials& materials, DecodedBytes& budget, Report& report);
+              Materials& materials, MemoryBudget& budget, Report& report);
 
     /// The first skin of the file with the same palette entries as this one.
     int firstAlike(int skin) const { return _firstAlike[static_cast<std::size_t>(skin)]; }
@@ -60,10 +60,10 @@ private:
     std::shared_ptr<const AnimationSet> _set;
     Meshes& _meshes;
     Materials& _materials;
-    DecodedBytes& _budget;
+    MemoryBudget& _budget;
     Report& _report;
     std::vector<int> _firstAlike; ///< by skin
-    std::vector<Reach> _entries;  ///< by palette entry
+    std::vector<TransformBound> _entries;  ///< by palette entry
     std::map<DrawablePlace, osg::ref_ptr<osg::Geometry>> _drawables;
 };
 

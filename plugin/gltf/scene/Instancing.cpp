@@ -81,7 +81,7 @@ bool isInstanced(const tinygltf::Node& node)
     return node.extensions.count(extensionName) > 0;
 }
 
-std::vector<osg::Matrixd> readInstances(const tinygltf::Model& model, std::size_t node, DecodedBytes& budget,
+std::vector<osg::Matrixd> readInstances(const tinygltf::Model& model, std::size_t node, MemoryBudget& budget,
                                         Report& report)
 {
     constexpr std::size_t bytesAnInstance = 1024; // a MatrixTransform as a child

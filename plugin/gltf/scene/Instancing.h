@@ -16,7 +16,7 @@ namespace osgGpuAnimation::gltf
 bool isInstanced(const tinygltf::Node& node);
 
 /// From each instance to the node. A fault of the extension leaves one instance, at the node itself, with a warning.
-std::vector<osg::Matrixd> readInstances(const tinygltf::Model& model, std::size_t node, DecodedBytes& budget,
+std::vector<osg::Matrixd> readInstances(const tinygltf::Model& model, std::size_t node, MemoryBudget& budget,
                                         Report& report);
 
 } // namespace osgGpuAnimation::gltf

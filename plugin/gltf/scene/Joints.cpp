@@ -164,9 +164,9 @@ Result<Joints> buildJoints(const tinygltf::Model& model, const NodeTree& tree)
     }
     Result<Skeleton> skeleton = Skeleton::create(std::move(joints));
     if (!skeleton) return skeleton.error();
-    const std::vector<Reach> reaches = reachAtRest(skeleton.value());
-    for (std::size_t joint = 0; joint < reaches.size(); ++joint)
-        if (!reaches[joint].fits())
+    const std::vector<TransformBound> atRest = boundsAtRest(skeleton.value());
+    for (std::size_t joint = 0; joint < atRest.size(); ++joint)
+        if (!atRest[joint].fits())
         {
             const auto node = static_cast<std::size_t>(std::max(skeleton.value().joint(joint).sourceNode, 0));
             return Error{namedElement("nodes", node, model.nodes[node].name) +

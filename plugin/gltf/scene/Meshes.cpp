@@ -206,7 +206,7 @@ std::size_t byteSize(const tinygltf::Model& model, const tinygltf::Primitive& pr
 
 } // namespace
 
-Meshes::Meshes(const tinygltf::Model& model, DecodedBytes& budget, Report& report)
+Meshes::Meshes(const tinygltf::Model& model, MemoryBudget& budget, Report& report)
     : _model(model), _budget(budget), _report(report)
 {
 }

@@ -49,7 +49,7 @@ struct MeshPrimitive
 class Meshes
 {
 public:
-    Meshes(const tinygltf::Model& model, DecodedBytes& budget, Report& report);
+    Meshes(const tinygltf::Model& model, MemoryBudget& budget, Report& report);
 
     /// skinned: by a skin, which makes vertices expensive: they are welded rather than split. Null where there is
     /// nothing to draw.
@@ -59,7 +59,7 @@ private:
     std::optional<MeshPrimitive> read(int mesh, int primitive, bool welded);
 
     const tinygltf::Model& _model;
-    DecodedBytes& _budget;
+    MemoryBudget& _budget;
     Report& _report;
     std::map<std::tuple<int, int, bool>, std::optional<MeshPrimitive>> _primitives;
 };

@@ -72,9 +72,9 @@ double determinant(const osg::Matrixd& m)
 }
 
 /// Whether points at that distance from the origin can be drawn.
-bool reaches(const Reach& reach, double radius)
+bool reaches(const TransformBound& reach, double radius)
 {
-    return reach.fits() && reach.of(radius) <= Reach::farthest;
+    return reach.fits() && reach.of(radius) <= TransformBound::farthest;
 }
 
 void setWinding(osg::Node& node, bool mirrored)
@@ -115,7 +115,7 @@ void SceneGraphBuilder::addMesh(std::size_t node)
         if (!geometry) continue;
         const MeshPrimitive& mesh = *_parts.drawables.meshPrimitive(place);
         const bool isStill = place.skin < 0 && place.joint < 0;
-        if (isStill && !reaches(Reach::of(_parts.tree.toWorld[node]), mesh.radius))
+        if (isStill && !reaches(TransformBound::of(_parts.tree.toWorld[node]), mesh.radius))
         {
             _parts.report.warn(namedElement("nodes", node, source.name) + ": it takes vertices of " + mesh.label + ' ' +
                                beyondFarthest() + "; not drawn");
@@ -173,11 +173,11 @@ void SceneGraphBuilder::addStill(std::size_t node)
     if (isInstanced(source))
     {
         places.clear();
-        const Reach reach = Reach::of(_parts.tree.toWorld[node]);
+        const TransformBound reach = TransformBound::of(_parts.tree.toWorld[node]);
         const double radius = _stillRadius[node];
         for (const osg::Matrixd& instance : readInstances(_parts.model, node, _parts.budget, _parts.report))
         {
-            if (!reaches(reach * Reach::of(glm::make_mat4(instance.ptr())), radius))
+            if (!reaches(reach * TransformBound::of(glm::make_mat4(instance.ptr())), radius))
             {
                 _parts.report.warn(namedElement("nodes", node, source.name) +
                                    ": EXT_mesh_gpu_instancing takes an instance " + beyondFarthest() + "; not drawn");

@@ -23,7 +23,7 @@ class AnimatedCharacter;
 namespace osgGpuAnimation::gltf
 {
 
-class DecodedBytes;
+class MemoryBudget;
 class Drawables;
 class Report;
 struct Joints;
@@ -56,7 +56,7 @@ struct SceneParts
     const Joints& joints;
     const Morphs& morphs;
     Drawables& drawables;
-    DecodedBytes& budget;
+    MemoryBudget& budget;
     Report& report;
 };
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/AnimationController.h>
 
-#include "MotionBlend.h"
-#include "SampleStack.h"
-#include "StepEvents.h"
+#include <osgGpuAnimation/animation/MotionBlend.h>
+#include <osgGpuAnimation/animation/SampleStack.h>
+#include <osgGpuAnimation/animation/StepEvents.h>
 #include <osgGpuAnimation/animation/LayerSnapshot.h>
 
 #include <algorithm>

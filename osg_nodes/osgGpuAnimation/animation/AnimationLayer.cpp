@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/AnimationLayer.h>
 
-#include "MotionBlend.h"
-#include "StepEvents.h"
+#include <osgGpuAnimation/animation/MotionBlend.h>
+#include <osgGpuAnimation/animation/StepEvents.h>
 #include <osgGpuAnimation/animation/JointMask.h>
 #include <osgGpuAnimation/animation/MaskTable.h>
 #include <osgGpuAnimation/animation/RootMotionCurve.h>

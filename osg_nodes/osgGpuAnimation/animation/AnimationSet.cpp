@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/AnimationSet.h>
 
-#include "PaletteBuilder.h"
+#include <osgGpuAnimation/animation/PaletteBuilder.h>
 #include <osgGpuAnimation/animation/MaskTable.h>
 #include <osgGpuAnimation/animation/QuotedNames.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/Bounds.h>
 
-#include "ClipSweep.h"
+#include <osgGpuAnimation/animation/ClipSweep.h>
 
 #include <cassert>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "ClipCompactor.h"
+#include <osgGpuAnimation/animation/ClipCompactor.h>
 
-#include "TrackMix.h"
+#include <osgGpuAnimation/animation/TrackMix.h>
 #include <osgGpuAnimation/animation/CompactTracks.h>
 #include <osgGpuAnimation/animation/Rotation.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "PoseDistance.h"
+#include <osgGpuAnimation/animation/PoseDistance.h>
 
 #include <vector>
 

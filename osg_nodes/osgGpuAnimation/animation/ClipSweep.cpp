@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ClipSweep.h"
+#include <osgGpuAnimation/animation/ClipSweep.h>
 
 #include <osgGpuAnimation/animation/Rotation.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "MotionBound.h"
-#include "SweptBox.h"
+#include <osgGpuAnimation/animation/MotionBound.h>
+#include <osgGpuAnimation/animation/SweptBox.h>
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
 

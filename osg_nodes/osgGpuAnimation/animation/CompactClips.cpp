@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/CompactClips.h>
 
-#include "ClipCompactor.h"
+#include <osgGpuAnimation/animation/ClipCompactor.h>
 #include <osgGpuAnimation/animation/Bounds.h>
 #include <osgGpuAnimation/animation/Pose.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "JointRange.h"
+#include <osgGpuAnimation/animation/JointRange.h>
 
 #include <osgGpuAnimation/animation/Rotation.h>
 

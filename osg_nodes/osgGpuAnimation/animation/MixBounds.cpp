@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/MixBounds.h>
 
-#include "JointRange.h"
-#include "SweptBox.h"
+#include <osgGpuAnimation/animation/JointRange.h>
+#include <osgGpuAnimation/animation/SweptBox.h>
 
 #include <osgGpuAnimation/animation/Rotation.h>
 

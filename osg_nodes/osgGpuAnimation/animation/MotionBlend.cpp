@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "MotionBlend.h"
+#include <osgGpuAnimation/animation/MotionBlend.h>
 
 #include <osgGpuAnimation/animation/RootMotionCurve.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "MotionBound.h"
+#include <osgGpuAnimation/animation/MotionBound.h>
 
 #include <osgGpuAnimation/animation/Rotation.h>
 

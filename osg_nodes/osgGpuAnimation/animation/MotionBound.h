@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "TrackMix.h"
+#include <osgGpuAnimation/animation/TrackMix.h>
 
 namespace osgGpuAnimation
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "PaletteBuilder.h"
+#include <osgGpuAnimation/animation/PaletteBuilder.h>
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>

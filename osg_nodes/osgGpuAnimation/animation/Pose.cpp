@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/Pose.h>
 
-#include "TrackBlend.h"
+#include <osgGpuAnimation/animation/TrackBlend.h>
 #include <osgGpuAnimation/animation/MaskTable.h>
 
 #include <layout.glsl>

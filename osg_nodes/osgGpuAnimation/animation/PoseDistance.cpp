@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "PoseDistance.h"
+#include <osgGpuAnimation/animation/PoseDistance.h>
 
 #include <osgGpuAnimation/animation/Pose.h>
 

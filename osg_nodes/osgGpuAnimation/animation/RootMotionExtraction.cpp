@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/RootMotionExtraction.h>
 
-#include "RootMotionExtractor.h"
+#include <osgGpuAnimation/animation/RootMotionExtractor.h>
 
 #include <glm/geometric.hpp>
 

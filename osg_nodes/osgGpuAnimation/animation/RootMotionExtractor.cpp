@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "RootMotionExtractor.h"
+#include <osgGpuAnimation/animation/RootMotionExtractor.h>
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>

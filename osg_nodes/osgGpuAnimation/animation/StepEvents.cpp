@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "StepEvents.h"
+#include <osgGpuAnimation/animation/StepEvents.h>
 
 namespace osgGpuAnimation
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "SweptBox.h"
+#include <osgGpuAnimation/animation/SweptBox.h>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "TrackBlend.h"
+#include <osgGpuAnimation/animation/TrackBlend.h>
 
 #include <osgGpuAnimation/animation/Rotation.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "TrackMix.h"
+#include <osgGpuAnimation/animation/TrackMix.h>
 
 #include <osgGpuAnimation/animation/Hermite.h>
 #include <osgGpuAnimation/animation/Rotation.h>

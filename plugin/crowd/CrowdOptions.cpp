@@ -5,7 +5,7 @@
 #include "gltf/ImportOptions.h"
 
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
-#include <osgGpuAnimation/nodes/DetailRange.h>
+#include <osgGpuAnimation/nodes/lod/LodSelection.h>
 
 #include <algorithm>
 #include <array>

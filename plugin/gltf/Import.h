@@ -6,7 +6,7 @@
 #include "gltf/scene/SceneGraph.h"
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
-#include <osgGpuAnimation/nodes/CompactCharacter.h>
+#include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 
 #include <osg/MatrixTransform>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <osgGpuAnimation/animation/LoopMode.h>
+#include <osgGpuAnimation/animation/Playback.h>
 #include <osgGpuAnimation/animation/Result.h>
 
 #include <cstddef>

@@ -2,7 +2,7 @@
 #include "serializers/StoredAnimation.h"
 
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
-#include <osgGpuAnimation/nodes/CrowdInstances.h>
+#include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/nodes/OsgMatrix.h>
 
 namespace osgGpuAnimation::serializers

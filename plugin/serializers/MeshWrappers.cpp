@@ -3,7 +3,7 @@
 
 #include <osgGpuAnimation/nodes/CharacterProgram.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
-#include <osgGpuAnimation/nodes/SurfaceProgram.h>
+#include <osgGpuAnimation/nodes/shading/ShaderPermutations.h>
 
 #include <osg/NodeVisitor>
 #include <osg/Notify>

@@ -3,10 +3,10 @@
 
 #include "cache/SeparateLoads.h"
 
-#include <osgGpuAnimation/animation/ClipParts.h>
-#include <osgGpuAnimation/animation/CompactTracks.h>
-#include <osgGpuAnimation/animation/LayerSnapshot.h>
-#include <osgGpuAnimation/animation/RootMotionCurve.h>
+#include <osgGpuAnimation/animation/Clip.h>
+#include <osgGpuAnimation/animation/keyframes/CompactTracks.h>
+#include <osgGpuAnimation/animation/AnimationLayer.h>
+#include <osgGpuAnimation/animation/RootMotion.h>
 
 #include <osg/Notify>
 

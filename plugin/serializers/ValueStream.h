@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <osgGpuAnimation/animation/AffineMatrix.h>
+#include <osgGpuAnimation/animation/JointTransform.h>
 
 #include <glm/vec3.hpp>
 #include <osgDB/InputStream>

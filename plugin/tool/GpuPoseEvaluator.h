@@ -5,7 +5,7 @@
 
 #include <osgGpuAnimation/gpu/EglGraphicsContext.h>
 #include <osgGpuAnimation/gpu/PosePipeline.h>
-#include <osgGpuAnimation/nodes/PaletteBinding.h>
+#include <osgGpuAnimation/nodes/frame/PaletteBinding.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
 #include <osg/Program>

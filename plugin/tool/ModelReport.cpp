@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "ModelReport.h"
 
-#include <osgGpuAnimation/gpu/AnimationBuffers.h>
+#include <osgGpuAnimation/gpu/buffers/AnimationBuffers.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
 #include <osg/NodeVisitor>

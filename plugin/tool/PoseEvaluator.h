@@ -3,7 +3,7 @@
 
 #include "gltf/Import.h"
 
-#include <osgGpuAnimation/animation/PoseInstruction.h>
+#include <osgGpuAnimation/animation/AnimationSet.h>
 
 #include <glm/vec3.hpp>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <osgGpuAnimation/animation/AffineMatrix.h>
+#include <osgGpuAnimation/animation/JointTransform.h>
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,6 @@
 #include <osgGpuAnimation/animation/ClipBuilder.h>
 #include <osgGpuAnimation/animation/JointMask.h>
 #include <osgGpuAnimation/animation/Pose.h>
-#include <osgGpuAnimation/animation/RootMotionExtraction.h>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <osgGpuAnimation/animation/Bounds.h>
+#include <osgGpuAnimation/animation/bounds/ClipBounds.h>
 
 #include "support/RandomCharacter.h"
 

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include <osgGpuAnimation/animation/CompactClips.h>
+#include <osgGpuAnimation/animation/ClipBuilder.h>
 
 #include "support/GaitSet.h"
 #include "support/PoseErrors.h"
 #include "support/RandomSet.h"
-#include <osgGpuAnimation/animation/ClipBuilder.h>
-#include <osgGpuAnimation/animation/CompactTracks.h>
-#include <osgGpuAnimation/animation/PackedKeyframes.h>
-#include <osgGpuAnimation/animation/RootMotionCurve.h>
-#include <osgGpuAnimation/animation/RootMotionExtraction.h>
+#include <osgGpuAnimation/animation/keyframes/CompactTracks.h>
+#include <osgGpuAnimation/animation/keyframes/PackedKeyframes.h>
+#include <osgGpuAnimation/animation/RootMotion.h>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>

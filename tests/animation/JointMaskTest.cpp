@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/JointMask.h>
 
-#include <osgGpuAnimation/animation/MaskTable.h>
+#include <osgGpuAnimation/animation/AnimationSet.h>
 
 #include <gtest/gtest.h>
 

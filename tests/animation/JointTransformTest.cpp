@@ -3,8 +3,7 @@
 
 #include "support/ReferencePose.h"
 
-#include <osgGpuAnimation/animation/Rotation.h>
-#include <osgGpuAnimation/animation/TrackMix.h>
+#include <osgGpuAnimation/animation/keyframes/TrackBlend.h>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>

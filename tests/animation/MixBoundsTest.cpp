@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include <osgGpuAnimation/animation/MixBounds.h>
+#include <osgGpuAnimation/animation/bounds/MixBounds.h>
 
 #include "support/GaitSet.h"
 #include "support/RandomSet.h"
 
 #include <osgGpuAnimation/animation/AnimationController.h>
-#include <osgGpuAnimation/animation/Bounds.h>
+#include <osgGpuAnimation/animation/bounds/ClipBounds.h>
 #include <osgGpuAnimation/animation/JointMask.h>
 #include <osgGpuAnimation/animation/Pose.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include <osgGpuAnimation/animation/MotionBound.h>
+#include <osgGpuAnimation/animation/bounds/ClipBounds.h>
 
-#include <osgGpuAnimation/animation/Rotation.h>
+#include <osgGpuAnimation/animation/JointTransform.h>
 
 #include <glm/geometric.hpp>
 #include <glm/mat4x4.hpp>

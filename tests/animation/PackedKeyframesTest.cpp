@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include <osgGpuAnimation/animation/PackedKeyframes.h>
+#include <osgGpuAnimation/animation/keyframes/PackedKeyframes.h>
 
 #include "support/PoseErrors.h"
 #include "support/RandomSet.h"
 #include <osgGpuAnimation/animation/ClipBuilder.h>
-#include <osgGpuAnimation/animation/CompactClips.h>
 
 #include <layout.glsl>
 

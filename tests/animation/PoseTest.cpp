@@ -3,7 +3,7 @@
 
 #include "support/RandomCharacter.h"
 #include <osgGpuAnimation/animation/AnimationController.h>
-#include <osgGpuAnimation/animation/TrackMix.h>
+#include <osgGpuAnimation/animation/keyframes/TrackBlend.h>
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>

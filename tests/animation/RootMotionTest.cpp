@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include <osgGpuAnimation/animation/RootMotionExtraction.h>
+#include <osgGpuAnimation/animation/ClipBuilder.h>
 
 #include "AllocationCount.h"
 #include <osgGpuAnimation/animation/AnimationController.h>
-#include <osgGpuAnimation/animation/ClipBuilder.h>
 #include <osgGpuAnimation/animation/JointMask.h>
-#include <osgGpuAnimation/animation/MaskTable.h>
+#include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/animation/Pose.h>
-#include <osgGpuAnimation/animation/RootMotionCurve.h>
+#include <osgGpuAnimation/animation/RootMotion.h>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <osgGpuAnimation/animation/SampleStack.h>
+#include <osgGpuAnimation/animation/playback/BlendList.h>
 
 #include "support/GaitSet.h"
 

@@ -5,7 +5,7 @@
 #include "Subject.h"
 
 #include <osgGpuAnimation/animation/Pose.h>
-#include <osgGpuAnimation/gpu/FeedbackScope.h>
+#include <osgGpuAnimation/gpu/FeedbackPass.h>
 
 #include <cmath>
 

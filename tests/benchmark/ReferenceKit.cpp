@@ -3,7 +3,7 @@
 
 #include <osgGpuAnimation/nodes/OsgMatrix.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
-#include <osgGpuAnimation/nodes/SurfaceState.h>
+#include <osgGpuAnimation/nodes/shading/ShaderPermutations.h>
 
 #include <osgAnimation/Channel>
 #include <osgAnimation/RigTransformHardware>

@@ -4,7 +4,7 @@
 #include "support/RandomLayers.h"
 #include "support/RandomSet.h"
 
-#include <osgGpuAnimation/animation/CompactClips.h>
+#include <osgGpuAnimation/animation/ClipBuilder.h>
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/gpu/PosePipeline.h>
 

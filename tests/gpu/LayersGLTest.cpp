@@ -4,7 +4,7 @@
 #include "support/RandomSet.h"
 #include "support/ReferenceBlend.h"
 
-#include <osgGpuAnimation/animation/MaskTable.h>
+#include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/gpu/PosePipeline.h>
 

@@ -92,7 +92,7 @@ TEST(LayerCheckTest, seesPlantedIncludes)
         {"#include <osgGpuAnimation/gpu/PoseBatch.h>", 0, 1},
         {"#include <osgGpuAnimation/animation/Clip.h>", 0, 0},
         {"#include <glm/vec3.hpp>", 0, 0},
-        {"#include <osgGpuAnimation/nodes/PoseStage.h>", 1, 1},
+        {"#include <osgGpuAnimation/nodes/frame/PoseStage.h>", 1, 1},
         {"#include <osg/State>", 1, 0},
         {"#include <tiny_gltf.h>", 2, 1},
         {"#include \"gltf/Import.h\"", 2, 1},

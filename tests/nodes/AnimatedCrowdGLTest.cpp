@@ -3,7 +3,7 @@
 #include "support/TestCharacter.h"
 #include "support/ViewerGLTest.h"
 
-#include <osgGpuAnimation/animation/PackedKeyframes.h>
+#include <osgGpuAnimation/animation/keyframes/PackedKeyframes.h>
 #include <osgGpuAnimation/gpu/PosePipeline.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 

@@ -3,7 +3,6 @@
 #include "support/TestCharacter.h"
 
 #include <osgGpuAnimation/nodes/CharacterKeys.h>
-#include <osgGpuAnimation/nodes/JointLines.h>
 
 #include <gtest/gtest.h>
 #include <osgGA/EventVisitor>

@@ -4,7 +4,7 @@
 #include "support/ViewerGLTest.h"
 
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
-#include <osgGpuAnimation/nodes/DetailRange.h>
+#include <osgGpuAnimation/nodes/lod/LodSelection.h>
 
 // Which meshes are drawn with fewer triangles, by how many a frame draws.
 

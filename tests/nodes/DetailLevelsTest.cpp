@@ -2,8 +2,7 @@
 #include "nodes/Tube.h"
 #include "support/TestCharacter.h"
 
-#include <osgGpuAnimation/nodes/DetailLevels.h>
-#include <osgGpuAnimation/nodes/MeshDetail.h>
+#include <osgGpuAnimation/nodes/lod/LodLevels.h>
 
 #include <gtest/gtest.h>
 

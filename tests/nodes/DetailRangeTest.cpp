@@ -2,7 +2,7 @@
 #include "support/TestCharacter.h"
 
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
-#include <osgGpuAnimation/nodes/DetailRange.h>
+#include <osgGpuAnimation/nodes/lod/LodSelection.h>
 
 #include <gtest/gtest.h>
 

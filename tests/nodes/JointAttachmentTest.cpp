@@ -4,7 +4,7 @@
 #include "support/TestCharacter.h"
 
 #include <osgGpuAnimation/animation/JointMask.h>
-#include <osgGpuAnimation/animation/RootMotionExtraction.h>
+#include <osgGpuAnimation/animation/ClipBuilder.h>
 #include <osgGpuAnimation/nodes/RootMotionCallback.h>
 
 #include <osg/Geometry>

@@ -4,7 +4,6 @@
 
 #include <osgGpuAnimation/animation/ClipBuilder.h>
 #include <osgGpuAnimation/animation/JointMask.h>
-#include <osgGpuAnimation/animation/RootMotionExtraction.h>
 #include <osgGpuAnimation/animation/StateMachine.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>

@@ -2,7 +2,7 @@
 #include "nodes/Panel.h"
 #include "support/ViewerGLTest.h"
 
-#include <osgGpuAnimation/nodes/SurfaceState.h>
+#include <osgGpuAnimation/nodes/shading/ShaderPermutations.h>
 
 #include <osg/BlendFunc>
 #include <osg/ClipPlane>

@@ -4,9 +4,9 @@
 #include "plugin/SharedAssets.h"
 #include "support/PoseErrors.h"
 
-#include <osgGpuAnimation/animation/CompactTracks.h>
-#include <osgGpuAnimation/animation/PackedKeyframes.h>
-#include <osgGpuAnimation/nodes/EntryReach.h>
+#include <osgGpuAnimation/animation/keyframes/CompactTracks.h>
+#include <osgGpuAnimation/animation/keyframes/PackedKeyframes.h>
+#include <osgGpuAnimation/nodes/mesh/PaletteEntryBounds.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
 #include <gtest/gtest.h>

@@ -7,7 +7,7 @@
 
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
-#include <osgGpuAnimation/nodes/SkinnedGeometryVisitor.h>
+#include <osgGpuAnimation/nodes/mesh/PaletteEntryBounds.h>
 
 #include <osgDB/ReadFile>
 #include <osgUtil/Optimizer>

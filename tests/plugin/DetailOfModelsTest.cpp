@@ -4,9 +4,9 @@
 
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
-#include <osgGpuAnimation/nodes/DetailLevels.h>
-#include <osgGpuAnimation/nodes/SkinnedGeometryVisitor.h>
-#include <osgGpuAnimation/nodes/TriangleDistance.h>
+#include <osgGpuAnimation/nodes/lod/LodLevels.h>
+#include <osgGpuAnimation/nodes/mesh/PaletteEntryBounds.h>
+#include <osgGpuAnimation/nodes/lod/CollapsibleMesh.h>
 
 #include <gtest/gtest.h>
 

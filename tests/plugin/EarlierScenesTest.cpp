@@ -4,8 +4,8 @@
 #include "support/NotifyLog.h"
 
 #include <osgGpuAnimation/animation/JointMask.h>
-#include <osgGpuAnimation/animation/RootMotionCurve.h>
-#include <osgGpuAnimation/animation/RootMotionExtraction.h>
+#include <osgGpuAnimation/animation/RootMotion.h>
+#include <osgGpuAnimation/animation/ClipBuilder.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/AnimationUpdateCallback.h>
 #include <osgGpuAnimation/nodes/CharacterKeys.h>

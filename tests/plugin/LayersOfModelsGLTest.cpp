@@ -7,7 +7,7 @@
 
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/gpu/PosePipeline.h>
-#include <osgGpuAnimation/nodes/EntryReach.h>
+#include <osgGpuAnimation/nodes/mesh/PaletteEntryBounds.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
 #include <glm/geometric.hpp>

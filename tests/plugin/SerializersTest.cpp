@@ -4,16 +4,16 @@
 #include "plugin/StoredScene.h"
 #include "support/NotifyLog.h"
 
-#include <osgGpuAnimation/animation/CompactTracks.h>
+#include <osgGpuAnimation/animation/keyframes/CompactTracks.h>
 #include <osgGpuAnimation/animation/JointMask.h>
-#include <osgGpuAnimation/animation/PackedKeyframes.h>
-#include <osgGpuAnimation/animation/RootMotionCurve.h>
-#include <osgGpuAnimation/animation/RootMotionExtraction.h>
+#include <osgGpuAnimation/animation/keyframes/PackedKeyframes.h>
+#include <osgGpuAnimation/animation/RootMotion.h>
+#include <osgGpuAnimation/animation/ClipBuilder.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/AnimationUpdateCallback.h>
 #include <osgGpuAnimation/nodes/CharacterKeys.h>
 #include <osgGpuAnimation/nodes/CharacterProgram.h>
-#include <osgGpuAnimation/nodes/SurfaceState.h>
+#include <osgGpuAnimation/nodes/shading/ShaderPermutations.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
 #include <osgGpuAnimation/nodes/PoseStatistics.h>
 #include <osgGpuAnimation/nodes/RootMotionCallback.h>

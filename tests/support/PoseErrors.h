@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <osgGpuAnimation/animation/Bounds.h>
+#include <osgGpuAnimation/animation/bounds/ClipBounds.h>
 
 namespace osgGpuAnimation
 {

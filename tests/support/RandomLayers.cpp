@@ -4,7 +4,7 @@
 #include "support/RandomSet.h"
 
 #include <osgGpuAnimation/animation/JointMask.h>
-#include <osgGpuAnimation/animation/MaskTable.h>
+#include <osgGpuAnimation/animation/AnimationSet.h>
 
 #include <layout.glsl>
 

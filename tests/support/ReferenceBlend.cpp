@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "support/ReferenceBlend.h"
 
-#include <osgGpuAnimation/animation/MaskTable.h>
+#include <osgGpuAnimation/animation/AnimationSet.h>
 
 #include <layout.glsl>
 

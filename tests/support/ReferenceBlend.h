@@ -4,7 +4,6 @@
 #include "support/ReferencePose.h"
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
-#include <osgGpuAnimation/animation/PoseInstruction.h>
 
 #include <vector>
 

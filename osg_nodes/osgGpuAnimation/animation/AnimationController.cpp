@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/AnimationController.h>
 
-#include <osgGpuAnimation/animation/MotionBlend.h>
-#include <osgGpuAnimation/animation/SampleStack.h>
-#include <osgGpuAnimation/animation/StepEvents.h>
-#include <osgGpuAnimation/animation/LayerSnapshot.h>
+#include <osgGpuAnimation/animation/playback/BlendList.h>
+#include <osgGpuAnimation/animation/playback/FrameEvents.h>
+#include <osgGpuAnimation/animation/AnimationLayer.h>
 
 #include <algorithm>
 #include <cassert>

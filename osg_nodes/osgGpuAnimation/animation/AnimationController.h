@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <osgGpuAnimation/animation/AnimationEvent.h>
+#include <osgGpuAnimation/animation/Playback.h>
 #include <osgGpuAnimation/animation/AnimationLayer.h>
 #include <osgGpuAnimation/animation/AnimationSet.h>
-#include <osgGpuAnimation/animation/PoseInstruction.h>
 #include <osgGpuAnimation/animation/RootMotion.h>
 
 #include <functional>

@@ -2,18 +2,80 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/Clip.h>
-#include <osgGpuAnimation/animation/Palette.h>
-#include <osgGpuAnimation/animation/PoseInstruction.h>
-#include <osgGpuAnimation/animation/Result.h>
 #include <osgGpuAnimation/animation/Skeleton.h>
+#include <osgGpuAnimation/animation/Result.h>
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
+#include <deque>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
 namespace osgGpuAnimation
 {
+
+/// Two neighbouring keyframes and how to mix them: the 16 bytes that the GPU gets for one clip of one character.
+/// Additive layers take two samples: their reference, then the sample itself.
+struct BlendSample
+{
+    std::uint32_t keyframe = 0; ///< the first keyframe, see AnimationSet::firstKeyframe(); 0: the rest pose
+    float alpha = 0.0f;         ///< share of the second keyframe, in [0, 1)
+    float weight = 1.0f;        ///< in [0, 1]; negative values and NaN count as 0
+    std::uint32_t control = 0;  ///< bits of layout.glsl: POSE_SAMPLE_SPLINE …, and the number of the mask << 16
+};
+
+static_assert(sizeof(BlendSample) == 16, "a blend sample is 16 bytes on the GPU");
+
+/// The blend samples of one character in one frame: the GPU mixes them to the character's pose. Default: the rest pose.
+///
+/// The mix, joint by joint (shaders/mix.glsl and its CPU twin Pose):
+/// - The weight of a sample at a joint is its own weight times the weight of its mask.
+/// - Samples are grouped into **standings**, from the bottom up; POSE_SAMPLE_ABOVE begins the next standing. Samples of
+/// one
+///   standing share the joint by their weights: a sum above 1 is scaled to 1. If the weights sum to less than 1, the
+///   standings below fill the remainder; the rest pose comes last.
+/// - Translations, scales and morph weights are summed. Rotations are summed as unit quaternions on one hemisphere and
+///   normalized: within a standing the hemisphere of its first sample with a weight at the joint; the sum of a standing
+///   takes the hemisphere of the standings below. Controllers put the heaviest sample first, so the order of layers
+///   plays no part, no two samples cancel out, and a sample that fades in never reverses the visible one. (The
+///   hemisphere of the rest pose would be simpler, but two nearly equal poses half a turn away from rest would cancel
+///   out.)
+/// - Additive samples come last; their order plays no part. With d = R_reference⁻¹ · R, rotations are multiplied by
+///   exp(Σ weight · log d), with the sum limited to a full turn; translations get Σ weight · (T − T_reference); scales
+///   are multiplied by Π (1 + weight · (S / S_reference − 1)), except on axes with a reference of 0.
+struct PoseInstruction
+{
+    static constexpr std::size_t maxSamples = 16;
+
+    std::size_t sampleCount = 1; ///< [1, maxSamples]
+    std::array<BlendSample, maxSamples> samples;
+};
+
+/// The masks of one AnimationSet. Masks are never removed or changed, so the weights of a mask stay valid while other
+/// threads add masks. Safe to use from several threads.
+class MaskTable
+{
+public:
+    static constexpr std::size_t maxMasks = 1024;
+
+    MaskTable() = default;
+    MaskTable(const MaskTable& other);
+    MaskTable& operator=(const MaskTable&) = delete;
+
+    /// The number of the mask with these weights, from 1 on. Adds it if it is new. 0: the table is full.
+    std::uint32_t add(const std::vector<float>& weights);
+
+    std::size_t count() const;
+    /// The weights of a mask, one per track; null for 0 (no mask) and for unknown numbers.
+    const float* weights(std::uint32_t number) const;
+
+private:
+    mutable std::mutex _mutex;
+    std::deque<std::vector<float>> _masks;
+};
 
 class MaskTable;
 

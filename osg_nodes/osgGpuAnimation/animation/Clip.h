@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <osgGpuAnimation/animation/ClipMarker.h>
 #include <osgGpuAnimation/animation/JointTransform.h>
 #include <osgGpuAnimation/animation/Result.h>
 #include <osgGpuAnimation/animation/RootMotion.h>
@@ -13,6 +12,37 @@
 
 namespace osgGpuAnimation
 {
+
+/// A named time of a clip, for example when a foot touches the ground.
+struct ClipMarker
+{
+    double time = 0.0; ///< seconds on the clip's time line, in [0, duration]
+    std::string name;
+};
+
+/// One property over time, as a file stores it (glTF 2.0, section 3.11): the input of ClipBuilder.
+struct Channel
+{
+    enum class Path
+    {
+        Translation, ///< 3 numbers per value
+        Rotation,    ///< 4 numbers per value: quaternion x, y, z, w
+        Scale,       ///< 3 numbers per value
+        Weights,     ///< one number per morph target, as many as MorphWeights::defaults
+    };
+    enum class Interpolation
+    {
+        Step,
+        Linear,
+        CubicSpline, ///< each key has three values: in-tangent, value, out-tangent
+    };
+
+    Path path = Path::Translation;
+    Interpolation interpolation = Interpolation::Linear;
+    int target = -1;           ///< a joint of the skeleton; for Weights, an index into the morph weights
+    std::vector<double> times; ///< seconds, strictly ascending
+    std::vector<double> values;
+};
 
 struct ClipParts;
 struct CompactTracks;
@@ -107,6 +137,24 @@ private:
     std::vector<ClipMarker> _markers;
     std::shared_ptr<const RootMotionCurve> _rootMotion;
     std::shared_ptr<const CompactTracks> _compactTracks;
+};
+
+struct CompactTracks;
+struct RootMotionCurve;
+
+/// The input of Clip::create(): everything that a clip exports.
+struct ClipParts
+{
+    std::string name;
+    Clip::Form form = Clip::Form::Linear;
+    std::size_t jointCount = 0;       ///< the first tracks; their transforms belong to joints
+    std::size_t trackCount = 0;       ///< joints, then weight blocks
+    std::vector<float> times;         ///< as Clip::times()
+    std::vector<JointTransform> data; ///< as Clip::data()
+    std::vector<ClipMarker> markers;
+    std::shared_ptr<const RootMotionCurve> rootMotion; ///< null: none
+    std::shared_ptr<const CompactTracks>
+        compactTracks; ///< null: exact; else create() writes their decoded values to data
 };
 
 } // namespace osgGpuAnimation

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <osgGpuAnimation/animation/Channel.h>
+#include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/animation/math/Box.h>
 #include <osgGpuAnimation/animation/Clip.h>
+#include <osgGpuAnimation/animation/RootMotion.h>
+#include <osgGpuAnimation/animation/JointTransform.h>
 #include <osgGpuAnimation/animation/Skeleton.h>
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -51,6 +55,83 @@ private:
     std::vector<std::size_t> _weightCounts;      ///< by morph
     std::vector<Channel> _channels;
     std::vector<bool> _driven; ///< by keyOf(): three paths per joint, then one per morph
+};
+
+struct CompactOptions
+{
+    /// The largest error of a vertex or a joint's origin in the model's units, above 0: for example a fraction of
+    /// longestSide().
+    double tolerance = 0.0;
+};
+
+/// A set with compact clips, and their errors.
+struct CompactedSet
+{
+    std::shared_ptr<const AnimationSet> set;
+    std::vector<double> errors; ///< one per clip, in the model's units; 0 for an unchanged clip
+};
+
+/// Makes the clips of a set smaller, on the GPU and on the CPU: parts that hardly move become constant, keyframes that
+/// their neighbours predict are dropped, and values are rounded to 20 bits of their range (see CompactTracks).
+///
+///     const auto compact = compactClips(set, entryBoxes, {1e-4 * longestSide(set, entryBoxes)});
+///
+/// The error is measured at every keyframe of the exact clip and halfway between them, at the joints' origins and at
+/// the corners of the entries' boxes (a vertex is a convex combination of those). A clip that would exceed the
+/// tolerance stays exact, as do Spline clips and clips that are compact already. Morph weights, and the keyframes of
+/// clips with root motion, are kept exactly. A mix of clips has at most their errors; an additive layer adds the errors
+/// of the clip and of its reference.
+///
+/// entryBoxes: one box per palette entry. Errors: a tolerance that is not finite and above 0; a wrong number of boxes.
+Result<CompactedSet> compactClips(const AnimationSet& set, const EntryBoxes& entryBoxes, const CompactOptions& options);
+
+/// The longest side of the rest pose's box in the model's units; of its joints' origins if no entry moves vertices.
+double longestSide(const AnimationSet& set, const EntryBoxes& entryBoxes);
+
+/// The parts of a joint's motion that withRootMotion() removes from the clips, to move the whole character instead.
+struct RootMotionAxes
+{
+    bool horizontal = true;       ///< translation perpendicular to the up axis
+    bool vertical = false;        ///< translation along it
+    bool yaw = false;             ///< rotation about it
+    glm::dvec3 up{0.0, 1.0, 0.0}; ///< in model space, +Y in glTF; need not be unit
+};
+
+/// Removes a joint's motion from every clip of a set; AnimationController::takeRootMotion() returns the removed motion.
+/// The joint stays where it is in the first keyframe of each clip. The new set has copies of all keyframes.
+///
+///     auto set = withRootMotion(fox->set(), "hips", {true, false, true});
+///     if (set) fox->setAnimationSet(set.value());
+///
+/// Root motion and remaining clip together give the original pose, exactly at keyframes and, without yaw, between them.
+/// With yaw they differ between keyframes as an arc differs from its chord.
+/// Errors: no such joint; a clip whose root motion was removed before (start from the original set); an up axis of
+/// length 0 or not finite; a clip that moves an ancestor of the joint; a joint below a transform that is not a
+/// rotation, a translation and a uniform scale.
+Result<std::shared_ptr<const AnimationSet>> withRootMotion(const AnimationSet& set, const std::string& joint,
+                                                           const RootMotionAxes& axes = {});
+
+/// Removes the motion of one joint from clips, see withRootMotion().
+class RootMotionExtractor
+{
+public:
+    RootMotionExtractor(const Skeleton& skeleton, std::size_t joint, const RootMotionAxes& axes);
+
+    Result<Clip> extract(const Clip& clip);
+
+private:
+    bool isStill(const Clip& clip, std::size_t joint) const;
+    Result<bool> findParent(const Clip& clip);
+    double yawOf(const glm::dquat& rotation) const;
+    void takeOutTranslation(Clip& clip, RootMotionCurve& curve) const;
+    void takeOutYaw(Clip& clip, RootMotionCurve& curve) const;
+
+    const Skeleton& _skeleton;
+    std::size_t _joint;
+    RootMotionAxes _axes; ///< up is unit
+    // From the space of the joint's parent to model space.
+    glm::dmat4 _parentToModel{1.0};
+    glm::dquat _parentRotation = glm::identity<glm::dquat>();
 };
 
 } // namespace osgGpuAnimation

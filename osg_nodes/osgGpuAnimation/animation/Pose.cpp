@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/Pose.h>
 
-#include <osgGpuAnimation/animation/TrackBlend.h>
-#include <osgGpuAnimation/animation/MaskTable.h>
+#include <osgGpuAnimation/animation/keyframes/TrackBlend.h>
+#include <osgGpuAnimation/animation/AnimationSet.h>
 
 #include <layout.glsl>
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/JointTransform.h>
-#include <osgGpuAnimation/animation/MorphWeights.h>
 #include <osgGpuAnimation/animation/Result.h>
 
 #include <cstddef>
@@ -12,6 +11,20 @@
 
 namespace osgGpuAnimation
 {
+
+/// The morph weights of one mesh instance: one node of the file with a mesh that has morph targets. The GPU treats them
+/// like joints: twelve weights form a **weight block**, which takes the 48 bytes of a joint transform in a keyframe and
+/// the 48 bytes of a palette entry in the output.
+struct MorphWeights
+{
+    static constexpr std::size_t weightsPerBlock = 12;
+
+    std::string name;
+    int sourceNode = -1;         ///< number of the node in the file
+    std::vector<float> defaults; ///< one per target: the weights of the node, else of the mesh, else 0
+
+    std::size_t blockCount() const { return (defaults.size() + weightsPerBlock - 1) / weightsPerBlock; }
+};
 
 /// A node of the file that moves, or that carries a node or mesh that moves.
 struct Joint
@@ -63,5 +76,53 @@ std::vector<std::size_t> firstTracksOfMorphs(const Skeleton& skeleton, const std
 
 /// One JointTransform per track: the rest transforms of the joints, then the default weights as weight blocks.
 std::vector<JointTransform> restPose(const Skeleton& skeleton, const std::vector<MorphWeights>& morphs);
+
+/// Joints with their inverse bind matrices (glTF 2.0, section 3.7.3).
+struct Skin
+{
+    std::string name;
+    std::vector<int> joints;                ///< joints of the skeleton
+    std::vector<AffineMatrix> inverseBinds; ///< one per joint: from the mesh's space at bind time to joint space
+};
+
+/// One joint with one inverse bind matrix, or one block of morph weights. The GPU computes 48 bytes for each entry.
+///
+/// Entries are stored level by level. The GPU computes each entry from its parent's *entry*, so that it writes and
+/// reads a single 3x4 matrix per joint:
+///
+///     entry = parentEntry · parentBind · T·R·S · inverseBind        parentBind = (the parent entry's inverseBind)⁻¹
+///
+/// Every joint has one main entry. A joint has further entries if several skins bind it differently or if it is skinned
+/// and also carries a rigid mesh. Further entries are children of the main entry and have no track.
+///
+/// The main entry takes the inverse bind matrix of the first skin that contains the joint if that matrix can be
+/// inverted without loss (see PaletteBuilder.cpp), else the identity. Equal matrices of one joint share an entry.
+struct PaletteEntry
+{
+    enum class Kind
+    {
+        Joint,   ///< T·R·S comes from the track
+        Static,  ///< no track: T·R·S is the identity
+        Weights, ///< the track's twelve numbers unchanged; no parent, no matrices
+    };
+
+    Kind kind = Kind::Joint;
+    int joint = -1;           ///< the joint of the entry; -1 for weights
+    int parent = -1;          ///< an entry of an earlier level; -1: the instance's root matrix
+    int track = -1;           ///< index in a keyframe; -1 for Static
+    AffineMatrix parentBind;  ///< from the space of the parent entry's joint to the model at bind time
+    AffineMatrix inverseBind; ///< from the model at bind time to joint space
+};
+
+/// All palette entries of an AnimationSet and how to find them.
+struct PaletteLayout
+{
+    std::vector<PaletteEntry> entries;
+    std::vector<std::size_t> levels;           ///< level count + 1 entry indices: level l is [levels[l], levels[l + 1])
+    std::vector<std::vector<int>> entryOfSkin; ///< by skin, then by index in Skin::joints
+    std::vector<int> entryOfRigidJoint;        ///< by joint; -1 if no rigid mesh hangs on the joint
+    std::vector<int> mainEntry;                ///< by joint
+    std::vector<int> entryOfMorph;             ///< by morph: its first weight block; -1 if it has no weights
+};
 
 } // namespace osgGpuAnimation

@@ -1,12 +1,230 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/StateMachine.h>
 
+#include <osgGpuAnimation/animation/Result.h>
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <locale>
+#include <optional>
+#include <sstream>
+#include <utility>
+#include <vector>
 
 namespace osgGpuAnimation
 {
+
+namespace
+{
+
+using Test = StateCondition::Test;
+
+constexpr char signs[] = "<>=!"; // of comparisons; names do not contain them
+
+std::optional<double> toNumber(const std::string& word)
+{
+    std::istringstream stream(word);
+    stream.imbue(std::locale::classic());
+    double value = 0.0;
+    if (!(stream >> value) || !stream.eof() || !std::isfinite(value)) return std::nullopt;
+    return value;
+}
+
+std::vector<std::string> toWords(const std::string& text)
+{
+    std::istringstream stream(text);
+    std::vector<std::string> words;
+    for (std::string word; words.size() < 3 && stream >> word;)
+        words.push_back(word);
+    return words;
+}
+
+/// True for the reserved words, in upper or lower case: a trigger cannot have such a name.
+bool isReserved(std::string word)
+{
+    for (char& letter : word)
+        if (letter >= 'A' && letter <= 'Z') letter = static_cast<char>(letter - 'A' + 'a');
+    return word == "finished" || word == "after";
+}
+
+std::optional<Test> toComparison(const std::string& word)
+{
+    static const std::pair<const char*, Test> comparisons[] = {{">", Test::Greater}, {">=", Test::AtLeast},
+                                                               {"<", Test::Less},    {"<=", Test::AtMost},
+                                                               {"==", Test::Equal},  {"!=", Test::NotEqual}};
+    for (const auto& [name, test] : comparisons)
+        if (word == name) return test;
+    return std::nullopt;
+}
+
+/// Parses PARAMETER > NUMBER, with or without spaces. sign: index of the first character of the comparison.
+std::optional<StateCondition> parseComparison(const std::string& text, std::size_t sign)
+{
+    const std::size_t end = std::min(text.find_first_not_of(signs, sign), text.size());
+    const std::vector<std::string> names = toWords(text.substr(0, sign)), values = toWords(text.substr(end));
+    const auto test = toComparison(text.substr(sign, end - sign));
+    if (!test || names.size() != 1 || values.size() != 1) return std::nullopt;
+    const auto value = toNumber(values[0]);
+    if (!value) return std::nullopt;
+    return StateCondition{*test, names[0], *value};
+}
+
+} // namespace
+
+Result<StateCondition> StateCondition::parse(const std::string& text)
+{
+    const std::size_t sign = text.find_first_of(signs);
+    const std::vector<std::string> words = sign == std::string::npos ? toWords(text) : std::vector<std::string>();
+    if (sign != std::string::npos)
+        if (const auto comparison = parseComparison(text, sign)) return *comparison;
+    if (words.size() == 1 && words[0] == "finished") return StateCondition{Test::Finished, "", 0.0};
+    if (words.size() == 2 && words[0] == "after")
+        if (const auto seconds = toNumber(words[1]); seconds && *seconds >= 0.0)
+            return StateCondition{Test::After, "", *seconds};
+    if (words.size() == 1 && !toNumber(words[0]) && !isReserved(words[0]))
+        return StateCondition{Test::Fired, words[0], 0.0};
+    return Error{"\"" + text +
+                 "\" is not a condition: expected \"PARAMETER > NUMBER\" (or >= < <= == !=), "
+                 "\"TRIGGER\", \"finished\" or \"after SECONDS\""};
+}
+
+namespace
+{
+
+/// The index of a name; appends the name if it is new.
+std::size_t placeAdding(const std::string& name, std::vector<std::string>& names)
+{
+    const auto known = std::find(names.begin(), names.end(), name);
+    const auto place = static_cast<std::size_t>(known - names.begin());
+    if (known == names.end()) names.push_back(name);
+    return place;
+}
+
+Error tooMany(const char* what, std::size_t count, std::size_t most)
+{
+    return Error{"a state graph of " + std::to_string(count) + " " + what + ": at most " + std::to_string(most) +
+                 " are possible"};
+}
+
+} // namespace
+
+Result<std::shared_ptr<const StateGraph>> StateGraph::create(const AnimationSet& set,
+                                                             const StateGraphDescription& description)
+{
+    if (description.states.empty()) return Error{"a state graph without states"};
+    if (description.states.size() > maxStates) return tooMany("states", description.states.size(), maxStates);
+    if (description.transitions.size() > maxTransitions)
+        return tooMany("transitions", description.transitions.size(), maxTransitions);
+    std::shared_ptr<StateGraph> graph(new StateGraph);
+    for (const StateDescription& state : description.states)
+    {
+        const Result<bool> added = graph->addState(set, state);
+        if (!added) return Error{"state \"" + state.name + "\": " + added.error().message};
+    }
+    for (std::size_t t = 0; t < description.transitions.size(); ++t)
+    {
+        const Result<bool> added = graph->addTransition(description.transitions[t]);
+        if (!added) return Error{"transition " + std::to_string(t) + ": " + added.error().message};
+    }
+    for (const std::string& trigger : graph->_triggers)
+        if (std::count(graph->_parameters.begin(), graph->_parameters.end(), trigger) != 0)
+            return Error{"\"" + trigger + "\" is used as a trigger and as a parameter"};
+    if (!description.start.empty())
+    {
+        const Result<std::size_t> start = graph->stateNamed(description.start);
+        if (!start) return Error{"start: " + start.error().message};
+        graph->_start = start.value();
+    }
+    return std::shared_ptr<const StateGraph>(std::move(graph));
+}
+
+Result<bool> StateGraph::addState(const AnimationSet& set, const StateDescription& description)
+{
+    if (description.name.empty()) return Error{"it has no name"};
+    if (findState(description.name) >= 0) return Error{"another has this name already"};
+    const Result<std::size_t> clip = set.clipNamed(description.clip);
+    if (!clip) return clip.error();
+    if (!std::isfinite(description.speed)) return Error{"its speed is not finite"};
+    _states.push_back({description.name, clip.value(), description.loopMode, description.speed});
+    return true;
+}
+
+Result<bool> StateGraph::addTransition(const TransitionDescription& description)
+{
+    Transition transition{-1, 0, {}, description.seconds, {description.curve, description.sync}};
+    if (!description.from.empty())
+    {
+        const Result<std::size_t> from = stateNamed(description.from);
+        if (!from) return from.error();
+        transition.from = static_cast<int>(from.value());
+    }
+    const Result<std::size_t> to = stateNamed(description.to);
+    if (!to) return to.error();
+    transition.to = to.value();
+    transition.options.loopMode = _states[transition.to].loopMode;
+    transition.options.speed = _states[transition.to].speed;
+    if (!std::isfinite(description.seconds) || description.seconds < 0.0)
+        return Error{"a crossfade of " + std::to_string(description.seconds) +
+                     " seconds: expected a finite number, at least 0"};
+    if (description.when.empty()) return Error{"it has no conditions"};
+    for (const std::string& text : description.when)
+    {
+        const Result<bool> added = addCondition(transition, text);
+        if (!added) return added.error();
+    }
+    if (waitsForAnEnd(transition) && !hasAnEnd(transition))
+        return Error{"\"finished\" is never true: no source state plays once"};
+    _transitions.push_back(std::move(transition));
+    return true;
+}
+
+bool StateGraph::waitsForAnEnd(const Transition& transition)
+{
+    return std::any_of(transition.conditions.begin(), transition.conditions.end(),
+                       [](const Condition& condition) { return condition.test == StateCondition::Test::Finished; });
+}
+
+/// True if a source state of the transition plays once.
+bool StateGraph::hasAnEnd(const Transition& transition) const
+{
+    for (std::size_t s = 0; s < _states.size(); ++s)
+    {
+        const bool isFrom = transition.from < 0 ? s != transition.to : s == static_cast<std::size_t>(transition.from);
+        if (isFrom && _states[s].loopMode == LoopMode::Once) return true;
+    }
+    return false;
+}
+
+Result<bool> StateGraph::addCondition(Transition& transition, const std::string& text)
+{
+    const Result<StateCondition> condition = StateCondition::parse(text);
+    if (!condition) return condition.error();
+    const StateCondition& parsed = condition.value();
+    Condition compiled{parsed.test, 0, parsed.value};
+    if (parsed.test == StateCondition::Test::Fired)
+        compiled.parameter = placeAdding(parsed.parameter, _triggers);
+    else if (!parsed.parameter.empty())
+        compiled.parameter = placeAdding(parsed.parameter, _parameters);
+    transition.conditions.push_back(compiled);
+    return true;
+}
+
+Result<std::size_t> StateGraph::stateNamed(const std::string& name) const
+{
+    const int state = findState(name);
+    if (state < 0)
+        return Error{"there is no state \"" + name + "\"; the states are " +
+                     quotedNames(_states, [](const State& known) { return known.name; })};
+    return static_cast<std::size_t>(state);
+}
+
+int StateGraph::findState(const std::string& name) const
+{
+    for (std::size_t s = 0; s < _states.size(); ++s)
+        if (_states[s].name == name) return static_cast<int>(s);
+    return -1;
+}
 
 namespace
 {

@@ -1,12 +1,67 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/gpu/FeedbackPass.h>
 
+#include <osg/GLExtensions>
 #include <osg/Notify>
-
+#include <osg/StateAttribute>
+#include <osg/Texture>
 #include <ShaderSources.h>
+
+#include <algorithm>
+
+#ifndef GL_RASTERIZER_DISCARD
+#define GL_RASTERIZER_DISCARD 0x8C89
+#endif
 
 namespace osgGpuAnimation
 {
+
+FeedbackScope::FeedbackScope(osg::State& state, GLuint vertexArray, int units)
+    : _state(state), _units(units), _discard(state, GL_RASTERIZER_DISCARD, true)
+{
+    _state.bindVertexArrayObject(vertexArray);
+}
+
+FeedbackScope::~FeedbackScope()
+{
+    osg::GLExtensions* gl = _state.get<osg::GLExtensions>();
+    for (int unit = 0; unit < _units; ++unit)
+    {
+        gl->glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+        glBindTexture(GL_TEXTURE_BUFFER, 0);
+        _state.haveAppliedTextureAttribute(static_cast<unsigned int>(unit), osg::StateAttribute::TEXTURE);
+    }
+    gl->glActiveTexture(GL_TEXTURE0 + _state.getActiveTextureUnit());
+    gl->glUseProgram(0);
+    _state.setLastAppliedProgramObject(nullptr);
+    _state.haveAppliedAttribute(osg::StateAttribute::PROGRAM);
+    _state.unbindVertexArrayObject();
+}
+
+const FeedbackVertexArrays::Names& FeedbackVertexArrays::of(osg::State& state)
+{
+    const auto known =
+        std::find_if(_names.begin(), _names.end(), [&](const Names& names) { return names.state == &state; });
+    if (known != _names.end()) return *known;
+    _names.erase(std::remove_if(_names.begin(), _names.end(), [](const Names& names) { return !names.state.valid(); }),
+                 _names.end());
+    Names names;
+    names.state = &state;
+    _gl->glGenVertexArrays(1, &names.pose);
+    _gl->glGenVertexArrays(1, &names.empty);
+    _names.push_back(names);
+    return _names.back();
+}
+
+void FeedbackVertexArrays::release()
+{
+    if (_names.size() == 1)
+    {
+        _gl->glDeleteVertexArrays(1, &_names.front().pose);
+        _gl->glDeleteVertexArrays(1, &_names.front().empty);
+    }
+    discard();
+}
 
 namespace
 {

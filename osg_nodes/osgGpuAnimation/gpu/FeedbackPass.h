@@ -2,6 +2,8 @@
 #pragma once
 
 #include <osg/GLExtensions>
+#include <osg/State>
+#include <osg/observer_ptr>
 
 #include <initializer_list>
 #include <string>
@@ -10,6 +12,49 @@
 
 namespace osgGpuAnimation
 {
+
+/// Between its making and its end feedback passes may run: rasterizing is off and a vertex array object of our own is
+/// bound. At its end OSG's state is what OSG believes it to be.
+class FeedbackScope
+{
+public:
+    /// units: how many texture units, from 0 on, the passes bind buffer textures to.
+    FeedbackScope(osg::State& state, GLuint vertexArray, int units);
+    ~FeedbackScope();
+    FeedbackScope(const FeedbackScope&) = delete;
+    FeedbackScope& operator=(const FeedbackScope&) = delete;
+
+private:
+    osg::State& _state;
+    int _units;
+    osg::State::ApplyModeProxy _discard;
+};
+
+/// The vertex array objects of feedback passes. OpenGL contexts that share their objects (one OSG context number) share
+/// all but these, so each osg::State has its own.
+class FeedbackVertexArrays
+{
+public:
+    struct Names
+    {
+        osg::observer_ptr<osg::State> state;
+        GLuint pose = 0;  ///< with the attributes of the pose pass
+        GLuint empty = 0; ///< without any
+    };
+
+    explicit FeedbackVertexArrays(osg::GLExtensions& gl) : _gl(&gl) {}
+
+    /// The state's context is current.
+    const Names& of(osg::State& state);
+
+    /// Where several contexts have some, only the last one's end can free them: the others go with their contexts.
+    void release();
+    void discard() { _names.clear(); }
+
+private:
+    osg::GLExtensions* _gl;
+    std::vector<Names> _names; ///< hardly ever more than one
+};
 
 /// A vertex shader whose outputs are captured by transform feedback, nothing being rasterized: one pass of the
 /// pipeline, in one graphics context. Used between FeedbackScope's beginning and end.

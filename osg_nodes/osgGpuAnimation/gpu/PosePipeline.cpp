@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/gpu/PosePipeline.h>
 
-#include <osgGpuAnimation/animation/MaskTable.h>
-#include <osgGpuAnimation/gpu/FeedbackScope.h>
+#include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/gpu/FeedbackPass.h>
 
 #include <layout.glsl>
 #include <ShaderSources.h>

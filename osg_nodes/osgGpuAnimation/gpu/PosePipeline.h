@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <osgGpuAnimation/gpu/AnimationBuffers.h>
+#include <osgGpuAnimation/gpu/buffers/AnimationBuffers.h>
 #include <osgGpuAnimation/gpu/FeedbackPass.h>
-#include <osgGpuAnimation/gpu/FeedbackVertexArrays.h>
-#include <osgGpuAnimation/gpu/PosePalette.h>
-#include <osgGpuAnimation/gpu/PoseVariant.h>
+#include <osgGpuAnimation/gpu/buffers/PosePalette.h>
+#include <osgGpuAnimation/gpu/passes/PoseVariant.h>
 
 #include <osg/GLObjects>
 #include <osg/State>

@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 
-#include <osgGpuAnimation/animation/MixBounds.h>
+#include <osgGpuAnimation/animation/ClipBuilder.h>
+#include <osgGpuAnimation/animation/bounds/MixBounds.h>
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/nodes/AnimationUpdateCallback.h>
-#include <osgGpuAnimation/nodes/DepthPass.h>
-#include <osgGpuAnimation/nodes/DetailRange.h>
-#include <osgGpuAnimation/nodes/EntryReach.h>
-#include <osgGpuAnimation/nodes/FlattenedPlace.h>
+#include <osgGpuAnimation/nodes/frame/CullScopes.h>
+#include <osgGpuAnimation/nodes/lod/LodSelection.h>
+#include <osgGpuAnimation/nodes/mesh/PaletteEntryBounds.h>
 #include <osgGpuAnimation/nodes/OsgMatrix.h>
-#include <osgGpuAnimation/nodes/PosedMeshes.h>
-#include <osgGpuAnimation/nodes/PoseStage.h>
-#include <osgGpuAnimation/nodes/SkinnedGeometryVisitor.h>
+#include <osgGpuAnimation/nodes/frame/PoseStage.h>
+#include <osgGpuAnimation/nodes/picking/PosedMesh.h>
 
 #include <osg/NodeVisitor>
 #include <osgUtil/CullVisitor>
@@ -218,6 +217,33 @@ AnimatedCharacter* findCharacter(osg::Node& node)
     Finder finder;
     node.accept(finder);
     return finder.found;
+}
+
+namespace
+{
+
+EntryBoxes entryBoxesOf(AnimatedCharacter& character)
+{
+    EntryReach reach(character.set());
+    SkinnedGeometryVisitor collect([&](SkinnedGeometry& mesh) { reach.add(mesh); });
+    character.accept(collect);
+    return reach.boxes();
+}
+
+} // namespace
+
+Result<CompactedCharacter> compactClipsOf(AnimatedCharacter& character, double fraction)
+{
+    const EntryBoxes boxes = entryBoxesOf(character);
+    CompactedCharacter result;
+    result.longestSide = longestSide(character.set(), boxes);
+    result.tolerance = fraction * result.longestSide;
+    Result<CompactedSet> compacted = compactClips(character.set(), boxes, {result.tolerance});
+    if (!compacted) return compacted.error();
+    const Result<bool> taken = character.setAnimationSet(compacted.value().set);
+    if (!taken) return taken.error();
+    result.errors = compacted.value().errors;
+    return result;
 }
 
 } // namespace osgGpuAnimation

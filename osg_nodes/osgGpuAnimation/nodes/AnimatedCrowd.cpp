@@ -3,17 +3,13 @@
 
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimationUpdateCallback.h>
-#include <osgGpuAnimation/nodes/CrowdBatches.h>
-#include <osgGpuAnimation/nodes/CrowdInstances.h>
-#include <osgGpuAnimation/nodes/CrowdView.h>
-#include <osgGpuAnimation/nodes/DepthPass.h>
-#include <osgGpuAnimation/nodes/DetailRange.h>
-#include <osgGpuAnimation/nodes/EntryReach.h>
-#include <osgGpuAnimation/nodes/FlattenedPlace.h>
-#include <osgGpuAnimation/nodes/MeshesOfGroup.h>
+#include <osgGpuAnimation/nodes/crowd/CrowdBatches.h>
+#include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
+#include <osgGpuAnimation/nodes/frame/CullScopes.h>
+#include <osgGpuAnimation/nodes/lod/LodSelection.h>
+#include <osgGpuAnimation/nodes/mesh/PaletteEntryBounds.h>
 #include <osgGpuAnimation/nodes/OsgMatrix.h>
-#include <osgGpuAnimation/nodes/PosedInstances.h>
-#include <osgGpuAnimation/nodes/PoseStage.h>
+#include <osgGpuAnimation/nodes/frame/PoseStage.h>
 
 #include <osgUtil/CullVisitor>
 #include <osgUtil/IntersectionVisitor>

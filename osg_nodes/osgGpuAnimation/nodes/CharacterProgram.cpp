@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/CharacterProgram.h>
 
-#include <osgGpuAnimation/nodes/SurfaceProgram.h>
+#include <osgGpuAnimation/nodes/shading/ShaderPermutations.h>
 
 #include <layout.glsl>
 #include <ShaderSources.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <osgGpuAnimation/animation/AffineMatrix.h>
+#include <osgGpuAnimation/animation/JointTransform.h>
 
 #include <glm/gtc/type_ptr.hpp>
 #include <osg/Matrixd>

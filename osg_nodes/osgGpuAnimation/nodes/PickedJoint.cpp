@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/PickedJoint.h>
 
-#include <osgGpuAnimation/nodes/PosedMesh.h>
+#include <osgGpuAnimation/nodes/picking/PosedMesh.h>
 
 #include <algorithm>
 #include <map>

@@ -2,14 +2,11 @@
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
 #include <osgGpuAnimation/gpu/PosePipeline.h>
-#include <osgGpuAnimation/nodes/BoxNearFar.h>
-#include <osgGpuAnimation/nodes/InstancedDraw.h>
-#include <osgGpuAnimation/nodes/MeshDetail.h>
-#include <osgGpuAnimation/nodes/MeshVertexArrays.h>
-#include <osgGpuAnimation/nodes/MorphDeltas.h>
-#include <osgGpuAnimation/nodes/PaletteBinding.h>
-#include <osgGpuAnimation/nodes/PaletteUniforms.h>
-#include <osgGpuAnimation/nodes/PlacedDraw.h>
+#include <osgGpuAnimation/nodes/frame/CullScopes.h>
+#include <osgGpuAnimation/nodes/frame/InstancedDraw.h>
+#include <osgGpuAnimation/nodes/lod/LodLevels.h>
+#include <osgGpuAnimation/nodes/mesh/MorphDeltas.h>
+#include <osgGpuAnimation/nodes/frame/PaletteBinding.h>
 
 #include <layout.glsl>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <osgGpuAnimation/animation/StateGraph.h>
+#include <osgGpuAnimation/animation/StateMachine.h>
 
 #include <memory>
 #include <string>

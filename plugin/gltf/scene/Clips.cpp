@@ -6,7 +6,7 @@
 #include "gltf/scene/TransformBound.h"
 
 #include <osgGpuAnimation/animation/ClipBuilder.h>
-#include <osgGpuAnimation/animation/ClipMarker.h>
+#include <osgGpuAnimation/animation/Clip.h>
 
 #include <cmath>
 #include <optional>

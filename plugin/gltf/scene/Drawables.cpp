@@ -3,7 +3,7 @@
 
 #include "gltf/scene/Influences.h"
 
-#include <osgGpuAnimation/animation/WeightRange.h>
+#include <osgGpuAnimation/animation/bounds/JointRange.h>
 
 #include <algorithm>
 #include <cmath>

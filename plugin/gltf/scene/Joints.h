@@ -4,7 +4,6 @@
 #include "gltf/scene/NodeTree.h"
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
-#include <osgGpuAnimation/animation/MorphWeights.h>
 #include <osgGpuAnimation/animation/Skeleton.h>
 
 #include <vector>

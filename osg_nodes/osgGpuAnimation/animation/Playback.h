@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osgGpuAnimation/animation/Clip.h>
+
+#include <cstddef>
+#include <optional>
+
+namespace osgGpuAnimation
+{
+
+/// The behaviour of a clip at its ends.
+enum class LoopMode
+{
+    Once,     ///< time stops at duration (backwards: at 0) and the layer becomes PlayState::Ended
+    Loop,     ///< time == duration shows the first keyframe (backwards: time continues from duration)
+    PingPong, ///< time reverses at duration and at 0; both ends are shown
+};
+
+/// The maximum number of layers of an AnimationController.
+constexpr std::size_t maxLayers = 8;
+
+/// The state of an AnimationLayer.
+enum class PlayState
+{
+    Stopped, ///< the layer shows nothing: the layers below it are visible, and the rest pose below all
+    Playing, ///< advance() moves the time
+    Paused,  ///< time and fades stand still; the layer shows the pose of its time
+    Ended,   ///< a Once clip reached its end; the layer shows the pose of that end
+};
+
+/// The progress of a fade over its time x in [0, 1].
+enum class FadeCurve
+{
+    Linear, ///< constant speed
+    Smooth, ///< 3x² - 2x³: slow at both ends, up to 1.5 times the speed of Linear in the middle
+};
+
+/// A value that moves from one number to another over some seconds.
+class Fade
+{
+public:
+    explicit Fade(double value) : _from(value), _to(value) {}
+    /// seconds: finite; at 0 or less the value is the target at once.
+    Fade(double from, double to, double seconds, FadeCurve curve);
+
+    double value() const { return _value; }
+    double mean() const { return _mean; } ///< mean value during the last advance()
+    double origin() const { return _from; }
+    double target() const { return _to; }
+    double seconds() const { return _seconds; }
+    double elapsed() const { return _elapsed; } ///< seconds; at least seconds() once the fade has finished
+    FadeCurve curve() const { return _curve; }
+    bool isFinished() const { return _elapsed >= _seconds; }
+    /// Moves the value on; seconds below 0 count as 0. Returns the share of the seconds after which the fade finished,
+    /// in [0, 1]; -1 if it did not finish in this step.
+    double advance(double seconds);
+
+private:
+    double _from, _to;
+    double _value = _to;
+    double _mean = _value;
+    double _elapsed = 0.0;
+    double _seconds = 0.0;
+    FadeCurve _curve = FadeCurve::Linear;
+};
+
+/// The time at which the new clip of a crossfade starts, and the speed of both clips during the crossfade.
+enum class Sync
+{
+    Start, ///< at its beginning (at its end if the speed is negative); each clip keeps its own speed
+    Phase, ///< at the phase of the current clip; until the fade ends both run at one pace, the mean of their durations
+           ///< by weight, so that the feet of a walk and a run stay together
+};
+
+struct CrossfadeOptions
+{
+    FadeCurve curve = FadeCurve::Linear;
+    Sync sync = Sync::Start;
+    std::optional<LoopMode> loopMode = std::nullopt; ///< new loop mode of the layer; none: unchanged
+    std::optional<double> speed = std::nullopt;      ///< new speed of the layer, finite; none: unchanged
+};
+
+/// An event of one layer during AnimationController::advance().
+struct AnimationEvent
+{
+    enum class Type
+    {
+        Marker,       ///< the time passed a marker of a clip
+        Looped,       ///< the clip started again (PingPong: reversed)
+        Finished,     ///< a Once clip reached its end
+        FadeFinished, ///< a crossfade or a fade of the layer's weight ended
+    };
+
+    Type type = Type::Marker;
+    std::size_t layer = 0;
+    int clip = -1;                      ///< of the set; for FadeFinished the layer's current clip, -1 if none plays
+    const ClipMarker* marker = nullptr; ///< of the clip, for Marker; else null
+    double moment = 0.0;                ///< share of the step at which it happened, in [0, 1]
+    float weight = 1.0f;                ///< share of the clip in its layer after the step, in [0, 1]
+};
+
+} // namespace osgGpuAnimation

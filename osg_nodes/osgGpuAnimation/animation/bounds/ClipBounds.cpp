@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/animation/bounds/ClipBounds.h>
+
+#include <osgGpuAnimation/animation/JointTransform.h>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+double length(const glm::dvec4& v)
+{
+    return glm::length(v);
+}
+
+double largest(const glm::dvec3& v)
+{
+    return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+}
+
+double largestOf3(const glm::dvec4& v)
+{
+    return largest(glm::dvec3(v));
+}
+
+double lengthOf3(const glm::dvec4& v)
+{
+    return glm::length(glm::dvec3(v));
+}
+
+/// A Hermite piece as a Bézier curve. The convex hull of its points contains the curve; the same is true of its
+/// derivatives.
+struct Cubic
+{
+    std::array<glm::dvec4, 4> points;
+
+    Cubic(const JointTransform* a, const JointTransform* b, glm::vec4 JointTransform::*part)
+    {
+        const glm::dvec4 v0(a[0].*part);
+        const glm::dvec4 v1(b[0].*part);
+        points = {v0, v0 + glm::dvec4(a[2].*part) / 3.0, v1 - glm::dvec4(b[1].*part) / 3.0, v1};
+    }
+
+    template <typename Norm>
+    double value(Norm norm) const
+    {
+        return std::max({norm(points[0]), norm(points[1]), norm(points[2]), norm(points[3])});
+    }
+    template <typename Norm>
+    double first(Norm norm) const
+    {
+        return 3.0 * std::max({norm(points[1] - points[0]), norm(points[2] - points[1]), norm(points[3] - points[2])});
+    }
+    template <typename Norm>
+    double second(Norm norm) const
+    {
+        return 6.0 *
+               std::max(norm(points[2] - 2.0 * points[1] + points[0]), norm(points[3] - 2.0 * points[2] + points[1]));
+    }
+};
+
+void boundSlerp(const glm::vec4& a, const glm::vec4& b, TrackMotion& out)
+{
+    if (a == b) return;
+    const glm::dvec4 from = Rotation::unit(glm::dvec4(a));
+    const glm::dvec4 to = Rotation::unit(glm::dvec4(b));
+    // asin(x) <= x + 0.2215 x^3 up to x = sin 45 degrees: half the chord gives half the arc, a quarter of the turn.
+    const double halfChord = 0.5 * std::min(length(to - from), length(to + from));
+    out.turn1 = 4.0 * halfChord * (1.0 + 0.2215 * halfChord * halfChord);
+    out.turn2 = out.turn1 * out.turn1;
+}
+
+/// The rotation of q / |q|: |R'| <= 2 |q'| / |q| =: w, |R''| <= w^2 + 2 |q''| / |q| + w^2 / 2.
+void boundNormalized(const Cubic& q, TrackMotion& out)
+{
+    const glm::dvec4 middle = Rotation::unit(q.points[0] + q.points[1] + q.points[2] + q.points[3]);
+    double least = std::numeric_limits<double>::max();
+    for (const glm::dvec4& point : q.points)
+        least = std::min(least, glm::dot(middle, point));
+    if (!(least > 1e-3 * q.value(length)))
+    {
+        out.turn1 = out.turn2 = std::numeric_limits<double>::infinity();
+        return;
+    }
+    out.turn1 = 2.0 * q.first(length) / least;
+    out.turn2 = 1.5 * out.turn1 * out.turn1 + 2.0 * q.second(length) / least;
+}
+
+TrackMotion boundLinear(const JointTransform& a, const JointTransform& b)
+{
+    const glm::dvec3 t0(a.translation), t1(b.translation), s0(a.scale), s1(b.scale);
+    TrackMotion motion;
+    motion.shift = std::max(glm::length(t0), glm::length(t1));
+    motion.shift1 = glm::length(t1 - t0);
+    motion.size = std::max(largest(s0), largest(s1));
+    motion.size1 = largest(s1 - s0);
+    boundSlerp(a.rotation, b.rotation, motion);
+    return motion;
+}
+
+TrackMotion boundSpline(const JointTransform* a, const JointTransform* b)
+{
+    const Cubic translation(a, b, &JointTransform::translation);
+    const Cubic scale(a, b, &JointTransform::scale);
+    TrackMotion motion;
+    motion.shift = translation.value(lengthOf3);
+    motion.shift1 = translation.first(lengthOf3);
+    motion.shift2 = translation.second(lengthOf3);
+    motion.size = scale.value(largestOf3);
+    motion.size1 = scale.first(largestOf3);
+    motion.size2 = scale.second(largestOf3);
+    if (a[0].translation.w == 1.0f)
+        boundSlerp(a[0].rotation, b[0].rotation, motion);
+    else
+        boundNormalized(Cubic(a, b, &JointTransform::rotation), motion);
+    return motion;
+}
+
+} // namespace
+
+TrackMotion TrackMotion::between(const KeyframePair& keyframes, std::size_t track)
+{
+    if (keyframes.spline) return boundSpline(keyframes.first + 3 * track, keyframes.second + 3 * track);
+    return boundLinear(keyframes.first[track], keyframes.second[track]);
+}
+
+ChainMotion ChainMotion::child(const TrackMotion& motion) const
+{
+    const double turned = motion.size; // |R S| and its derivatives
+    const double turned1 = motion.turn1 * motion.size + motion.size1;
+    const double turned2 = motion.turn2 * motion.size + 2.0 * motion.turn1 * motion.size1 + motion.size2;
+    ChainMotion result;
+    result.linear = linear * turned;
+    result.linear1 = linear1 * turned + linear * turned1;
+    result.linear2 = linear2 * turned + 2.0 * linear1 * turned1 + linear * turned2;
+    result.origin = origin + linear * motion.shift;
+    result.origin2 = origin2 + linear2 * motion.shift + 2.0 * linear1 * motion.shift1 + linear * motion.shift2;
+    return result;
+}
+
+ClipSweep::ClipSweep(const AnimationSet& set, const EntryBoxes& entryBoxes)
+    : _set(set), _isNeeded(set.skeleton().jointCount(), false), _placements(set.skeleton().jointCount()),
+      _motions(set.skeleton().jointCount())
+{
+    const std::size_t count = std::min(entryBoxes.size(), set.paletteSize());
+    for (std::size_t e = 0; e < count; ++e)
+        if (set.palette()[e].joint >= 0 && !entryBoxes[e].empty())
+        {
+            _parts.push_back(partOf(set.palette()[e], entryBoxes[e]));
+            _isNeeded[_parts.back().joint] = true;
+        }
+    for (std::size_t j = _isNeeded.size(); j-- > 0;)
+        if (_isNeeded[j] && set.skeleton().joint(j).parent >= 0)
+            _isNeeded[static_cast<std::size_t>(set.skeleton().joint(j).parent)] = true;
+    _boxes.resize(_parts.size());
+}
+
+ClipSweep::Part ClipSweep::partOf(const PaletteEntry& entry, const Box& box)
+{
+    const glm::dvec3 min(box.min), max(box.max);
+    const glm::dvec3 half = (max - min) * 0.5;
+    const glm::dmat4 inverseBind = entry.inverseBind.toColumns();
+    Part part;
+    part.joint = static_cast<std::size_t>(entry.joint);
+    part.centre = glm::dvec3(inverseBind * glm::dvec4((min + max) * 0.5, 1.0));
+    for (int axis = 0; axis < 3; ++axis)
+        part.halfEdges[axis] = glm::dvec3(inverseBind[axis]) * half[axis];
+    for (int corner = 0; corner < 8; ++corner)
+    {
+        const glm::dvec3 signs((corner & 1) ? 1.0 : -1.0, (corner & 2) ? 1.0 : -1.0, (corner & 4) ? 1.0 : -1.0);
+        part.radius = std::max(part.radius, glm::length(part.centre + part.halfEdges * signs));
+    }
+    return part;
+}
+
+void ClipSweep::lookAt(const KeyframePair& keyframes)
+{
+    for (std::size_t j = 0; j < _placements.size(); ++j)
+    {
+        if (!_isNeeded[j]) continue;
+        const MixedTrack local = MixedTrack::between(keyframes, j, false);
+        glm::dmat3 linear = Rotation::matrix(local.rotation);
+        for (int axis = 0; axis < 3; ++axis)
+            linear[axis] *= local.scale[axis];
+        const int parent = _set.skeleton().joint(j).parent;
+        if (parent < 0)
+        {
+            _placements[j] = {linear, glm::dvec3(local.translation)};
+            continue;
+        }
+        const Placement& above = _placements[static_cast<std::size_t>(parent)];
+        _placements[j] = {above.linear * linear, above.linear * glm::dvec3(local.translation) + above.origin};
+    }
+    for (std::size_t p = 0; p < _parts.size(); ++p)
+    {
+        const Part& part = _parts[p];
+        const Placement& placement = _placements[part.joint];
+        const glm::dmat3 edges = placement.linear * part.halfEdges;
+        _boxes[p] = SweptBox::about(placement.linear * part.centre + placement.origin,
+                                    glm::abs(edges[0]) + glm::abs(edges[1]) + glm::abs(edges[2]));
+        _seen.add(_boxes[p]);
+    }
+}
+
+void ClipSweep::boundMotion(const KeyframePair& keyframes)
+{
+    for (std::size_t j = 0; j < _motions.size(); ++j)
+    {
+        if (!_isNeeded[j]) continue;
+        const int parent = _set.skeleton().joint(j).parent;
+        const ChainMotion above = parent < 0 ? ChainMotion() : _motions[static_cast<std::size_t>(parent)];
+        _motions[j] = above.child(TrackMotion::between(keyframes, j));
+    }
+}
+
+int ClipSweep::stepsNeeded() const
+{
+    constexpr double mostSteps = 16.0;
+    const double allowed = 0.01 * _seen.diagonal();
+    double steps = 1.0;
+    for (std::size_t p = 0; p < _parts.size(); ++p)
+    {
+        const double strayed = _motions[_parts[p].joint].strayed(_parts[p].radius);
+        if (!(strayed > allowed) || !std::isfinite(strayed)) continue;
+        SweptBox both = _boxes[p];
+        both.add(_boxesBefore[p]);
+        steps = std::max(steps, std::ceil(std::sqrt(strayed / (allowed + _seen.slackAround(both)))));
+    }
+    return static_cast<int>(std::min(steps, mostSteps));
+}
+
+void ClipSweep::gatherStrayed(const std::vector<SweptBox>& boxes, int steps)
+{
+    for (std::size_t p = 0; p < boxes.size(); ++p)
+    {
+        const ChainMotion& motion = _motions[_parts[p].joint];
+        const double strayed = motion.strayed(_parts[p].radius) / (static_cast<double>(steps) * steps);
+        _swept.add(boxes[p].grownWithin(strayed, motion.reach(_parts[p].radius)));
+    }
+}
+
+void ClipSweep::sweepPiece(KeyframePair keyframes)
+{
+    boundMotion(keyframes);
+    const int steps = stepsNeeded();
+    gatherStrayed(_boxesBefore, steps);
+    gatherStrayed(_boxes, steps);
+    if (steps == 1) return;
+
+    const std::vector<SweptBox> boxesAfter = _boxes;
+    for (int step = 1; step < steps; ++step)
+    {
+        keyframes.alpha = static_cast<double>(step) / steps;
+        lookAt(keyframes);
+        gatherStrayed(_boxes, steps);
+    }
+    _boxes = boxesAfter;
+}
+
+Box ClipSweep::restPose()
+{
+    _seen = SweptBox();
+    const JointTransform* rest = _set.restPose().data();
+    lookAt({rest, rest, 0.0, false});
+    return _seen.toBox();
+}
+
+Box ClipSweep::clip(const Clip& clip)
+{
+    _seen = _swept = SweptBox();
+    const bool spline = clip.form() == Clip::Form::Spline;
+    for (std::size_t k = 0; k < clip.keyframeCount(); ++k)
+    {
+        const JointTransform* keyframe = clip.data().data() + k * clip.keyframeStride();
+        _boxesBefore = _boxes;
+        lookAt({keyframe, keyframe, 0.0, spline});
+        if (k > 0 && clip.times()[k - 1] < clip.times()[k])
+            sweepPiece({keyframe - clip.keyframeStride(), keyframe, 0.0, spline});
+    }
+    _swept.add(_seen);
+    return _swept.toBox();
+}
+
+Box boundsOfClip(const AnimationSet& set, int clip, const EntryBoxes& entryBoxes)
+{
+    assert(entryBoxes.size() == set.paletteSize() && "a box a palette entry");
+    ClipSweep sweep(set, entryBoxes);
+    if (clip < 0 || static_cast<std::size_t>(clip) >= set.clips().size()) return sweep.restPose();
+    return sweep.clip(set.clips()[static_cast<std::size_t>(clip)]);
+}
+
+std::vector<Box> boundsOfClips(const AnimationSet& set, const EntryBoxes& entryBoxes)
+{
+    std::vector<Box> bounds;
+    for (int clip = -1; clip < static_cast<int>(set.clips().size()); ++clip)
+        bounds.push_back(boundsOfClip(set, clip, entryBoxes));
+    return bounds;
+}
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/animation/math/Box.h>
+#include <osgGpuAnimation/animation/ClipMixer.h>
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+namespace osgGpuAnimation
+{
+
+struct JointRange;
+
+/// Boxes that contain a character while clips are mixed: crossfades, layers, masks, additive layers. A mix can leave
+/// the boxes of all its clips: an arm that hangs and an arm behind the back mix to an arm at the side. So MixBounds
+/// computes for each joint, from root to leaf, which transforms the mix can take (JointRange), as a ball of origins and
+/// a matrix with a radius; where these bounds exceed the joint's distance from the root, that distance is the bound.
+/// The boxes are conservative for any times, weights and masks. They are close to the clips' own boxes if the joints
+/// rotate little.
+///
+/// Safe to use from several threads. It caches the ranges of each clip.
+class MixBounds
+{
+public:
+    /// The set must outlive this object. entryBoxes: one box per palette entry. withAdded: the same boxes for morph
+    /// weights that maxLayers additive layers have changed.
+    MixBounds(const AnimationSet& set, EntryBoxes entryBoxes, EntryBoxes withAdded);
+    ~MixBounds();
+
+    /// The box in model space. Unknown clips count as the rest pose.
+    Box box(const std::vector<PlayedClip>& played) const;
+
+private:
+    using Ranges = std::vector<JointRange>;
+
+    std::shared_ptr<const Ranges> rangesOf(int clip) const;
+    const JointTransform& firstOf(int clip, std::size_t joint) const;
+    Ranges rangesOf(const std::vector<PlayedClip>& played) const;
+
+    const AnimationSet& _set;
+    EntryBoxes _entryBoxes, _withAdded;
+    mutable std::mutex _mutex;
+    mutable std::map<int, std::shared_ptr<const Ranges>> _ranges; ///< by clip
+};
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/animation/keyframes/CompactTracks.h>
+
+#include <glm/vec4.hpp>
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <vector>
+
+namespace osgGpuAnimation
+{
+
+/// How a translation or a scale of a track changes in the clips of a set; it decides what the mix stage fetches.
+enum class PartMotion
+{
+    Fixed,  ///< equal to the rest pose in every clip: an attribute, nothing is fetched
+    Held,   ///< constant in every clip: one value per clip
+    Moving, ///< one value per keyframe
+};
+
+/// All keyframes of a set in the layout of the GPU: only the parts of a track that move are stored per keyframe.
+///
+/// Texels of four 32-bit words, one section after the other:
+/// - a directory: one texel per keyframe of the set, in the order of AnimationSet::firstKeyframe(): the address of its
+///   record, the address of the next keyframe's record (its own at the end of a clip), the address of the clip's table;
+/// - the rest pose: three texels per track;
+/// - one table per clip: one texel per track has the addresses of its translation, rotation and scale, either within
+/// the
+///   record or of a value that is constant in the clip and stored once for the set; and the address of the ranges of a
+///   compact track;
+/// - the records. A value of an exact clip takes one texel (three for splines: value, in- and out-tangent), a value of
+/// a
+///   compact clip half a texel. Addresses count half texels.
+class PackedKeyframes
+{
+public:
+    explicit PackedKeyframes(const AnimationSet& set);
+
+    const std::vector<glm::uvec4>& texels() const { return _texels; }
+    std::size_t byteSize() const { return _texels.size() * sizeof(glm::uvec4); }
+    std::size_t restTexel() const { return _restTexel; } ///< texel of the first track's translation
+
+    /// The parts of a track over all clips.
+    struct Track
+    {
+        PartMotion translation = PartMotion::Fixed;
+        PartMotion scale = PartMotion::Fixed;
+        bool hasExactKeys = false;   ///< true if an exact clip moves the track
+        bool hasCompactKeys = false; ///< true if a compact clip moves the track
+    };
+    const std::vector<Track>& tracks() const { return _tracks; } ///< one per track of the set
+
+private:
+    using Part = glm::vec4 JointTransform::*;
+
+    /// A moving part of the current clip.
+    struct Column
+    {
+        std::size_t track;
+        Part part;
+        int compact; ///< its column in the clip's CompactTracks, -1: exact
+    };
+
+    void addClip(const Clip& clip, std::size_t firstKeyframe);
+    void placeExactTrack(const Clip& clip, std::size_t track);
+    void placeCompactTrack(const Clip& clip, std::size_t track);
+    void note(const Clip& clip, std::size_t track, const glm::uvec4& places);
+    void writeRecord(const Clip& clip, std::size_t keyframe, std::vector<std::uint32_t>& words) const;
+    std::uint32_t held(const glm::vec4& value);
+    std::uint32_t ranges(const CompactTracks::Track& track);
+
+    const AnimationSet& _set;
+    std::vector<glm::uvec4> _texels;
+    std::size_t _restTexel = 0;
+    std::vector<Track> _tracks;
+    std::map<std::array<std::uint32_t, 4>, std::uint32_t> _heldPlaces;
+    std::map<std::array<float, 12>, std::uint32_t> _rangeTexels;
+
+    // For the current clip.
+    std::vector<glm::uvec4> _table;
+    std::vector<Column> _columns;
+    std::uint32_t _recordSize = 0; ///< half texels
+};
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/animation/keyframes/TrackBlend.h>
+
+#include <osgGpuAnimation/animation/JointTransform.h>
+
+#include <layout.glsl>
+
+#include <glm/common.hpp>
+#include <glm/ext/quaternion_exponential.hpp>
+#include <glm/geometric.hpp>
+#include <glm/gtc/constants.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+glm::dvec4 lerp(const glm::vec4& a, const glm::vec4& b, double alpha)
+{
+    return glm::dvec4(a) * (1.0 - alpha) + glm::dvec4(b) * alpha;
+}
+
+MixedTrack mixLinear(const JointTransform& a, const JointTransform& b, double alpha, bool isWeights)
+{
+    return {lerp(a.translation, b.translation, alpha),
+            isWeights ? lerp(a.rotation, b.rotation, alpha)
+                      : Rotation::slerp(glm::dvec4(a.rotation), glm::dvec4(b.rotation), alpha),
+            lerp(a.scale, b.scale, alpha)};
+}
+
+/// a and b each point to value, in-tangent, out-tangent.
+MixedTrack mixSpline(const JointTransform* a, const JointTransform* b, double alpha, bool isWeights)
+{
+    const auto partAt = [&](glm::vec4 JointTransform::*part)
+    {
+        return hermite(glm::dvec4(a[0].*part), glm::dvec4(a[2].*part), glm::dvec4(b[0].*part), glm::dvec4(b[1].*part),
+                       alpha);
+    };
+    MixedTrack mixed{partAt(&JointTransform::translation), {}, partAt(&JointTransform::scale)};
+    const bool isSlerped = a[0].translation.w == 1.0f; // see Clip
+    if (isWeights)
+        mixed.rotation = partAt(&JointTransform::rotation);
+    else
+        mixed.rotation = isSlerped ? Rotation::slerp(glm::dvec4(a[0].rotation), glm::dvec4(b[0].rotation), alpha)
+                                   : Rotation::unit(partAt(&JointTransform::rotation));
+    return mixed;
+}
+
+} // namespace
+
+MixedTrack MixedTrack::between(const KeyframePair& keyframes, std::size_t track, bool isWeights)
+{
+    if (keyframes.spline)
+        return mixSpline(keyframes.first + 3 * track, keyframes.second + 3 * track, keyframes.alpha, isWeights);
+    return mixLinear(keyframes.first[track], keyframes.second[track], keyframes.alpha, isWeights);
+}
+
+namespace
+{
+
+constexpr double pi = glm::pi<double>();
+
+void addScaled(MixedTrack& sum, const MixedTrack& track, double factor)
+{
+    sum.translation += track.translation * factor;
+    sum.rotation += track.rotation * factor;
+    sum.scale += track.scale * factor;
+}
+
+/// sample / reference; 1 if the reference is 0.
+double ratio(double sample, double reference)
+{
+    return std::abs(reference) > static_cast<double>(POSE_SMALLEST_SCALE) ? sample / reference : 1.0;
+}
+
+} // namespace
+
+TrackBlend::TrackBlend(const JointTransform& rest, bool isWeights) : _isWeights(isWeights)
+{
+    _total = {glm::dvec4(rest.translation), glm::dvec4(rest.rotation), glm::dvec4(rest.scale)};
+}
+
+void TrackBlend::beginStanding()
+{
+    const double left = 1.0 - std::min(_weight, 1.0);
+    const double share = 1.0 / std::max(_weight, 1.0);
+    const bool isTurned = !_isWeights && glm::dot(_total.rotation, _group.rotation) < 0.0;
+    if (isTurned) _total.rotation = -_total.rotation;
+    MixedTrack total;
+    addScaled(total, _total, left);
+    addScaled(total, _group, share);
+    _total = total;
+    _group = MixedTrack();
+    _weight = 0.0;
+}
+
+void TrackBlend::add(const MixedTrack& sample, double weight)
+{
+    if (_weight == 0.0) _hemisphere = sample.rotation;
+    _weight += weight;
+    MixedTrack turned = sample;
+    if (!_isWeights && glm::dot(_hemisphere, sample.rotation) < 0.0) turned.rotation = -turned.rotation;
+    addScaled(_group, turned, weight);
+}
+
+void TrackBlend::addDifference(const MixedTrack& reference, const MixedTrack& sample, double weight)
+{
+    addScaled(_difference, sample, weight);
+    addScaled(_difference, reference, -weight);
+    if (_isWeights) return;
+    const glm::dquat turn =
+        glm::conjugate(Rotation::quaternion(reference.rotation)) * Rotation::quaternion(sample.rotation);
+    const glm::dquat logarithm = glm::log(turn.w < 0.0 ? -turn : turn); // of the turn the short way
+    _turn += weight * glm::dvec3(logarithm.x, logarithm.y, logarithm.z);
+    for (int axis = 0; axis < 3; ++axis)
+        _growth[axis] *= 1.0 + weight * (ratio(sample.scale[axis], reference.scale[axis]) - 1.0);
+}
+
+MixedTrack TrackBlend::result()
+{
+    beginStanding();
+    if (_isWeights)
+    {
+        addScaled(_total, _difference, 1.0);
+        return _total;
+    }
+    // The sum cannot have length 0: see PoseInstruction.
+    _total.rotation = Rotation::unit(_total.rotation);
+    if (const double turned = glm::length(_turn); turned > 0.0)
+        _total.rotation = Rotation::numbers(Rotation::quaternion(_total.rotation) *
+                                            glm::exp(glm::dquat(0.0, _turn * std::min(1.0, pi / turned))));
+    _total.translation += _difference.translation;
+    _total.scale *= _growth;
+    _total.translation.w = 0.0; // in a spline clip it held a flag
+    _total.scale.w = 0.0;
+    return _total;
+}
+
+} // namespace osgGpuAnimation

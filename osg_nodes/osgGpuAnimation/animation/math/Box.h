@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <glm/vec3.hpp>
+
+#include <vector>
+
+namespace osgGpuAnimation
+{
+
+/// An axis-aligned box. Default: empty (min > max).
+struct Box
+{
+    glm::vec3 min{1e30f};
+    glm::vec3 max{-1e30f};
+
+    bool empty() const { return min.x > max.x; }
+    void add(const glm::vec3& point);
+    void add(const Box& box);
+    void grow(float margin);       ///< moves every face outwards by margin; an empty box stays empty
+    glm::vec3 corner(int i) const; ///< i: in [0, 8); bit 0 selects max.x, bit 1 max.y, bit 2 max.z
+};
+
+/// For each palette entry, the box of the vertices that it moves, in the mesh's space at bind time (before the entry).
+using EntryBoxes = std::vector<Box>;
+
+/// An axis-aligned box in double precision that contains only finite numbers. Coordinates are clamped to
+/// [-limit, limit], so that a renderer can square the size of the box in single precision. Default: empty (min > max).
+struct SweptBox
+{
+    static constexpr double limit = 1e18;
+
+    glm::dvec3 min{limit};
+    glm::dvec3 max{-limit};
+
+    /// The box around a centre. half: half of each side. A NaN gives the largest box on that axis.
+    static SweptBox about(const glm::dvec3& centre, const glm::dvec3& half);
+
+    bool empty() const { return min.x > max.x; }
+    double diagonal() const; ///< 0 if empty
+    void add(const SweptBox& box);
+    /// This box with every face moved outwards by margin, but not beyond the ball of that radius around the origin.
+    SweptBox grownWithin(double margin, double radius) const;
+    /// The smallest distance between a face of `inner` and the same face of this box. inner: inside this box.
+    double slackAround(const SweptBox& inner) const;
+    /// Rounds outwards and adds 1e-5 of the largest coordinate, so that vertices computed in single precision stay
+    /// inside.
+    Box toBox() const;
+};
+
+} // namespace osgGpuAnimation

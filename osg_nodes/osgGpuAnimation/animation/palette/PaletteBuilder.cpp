@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/animation/palette/PaletteBuilder.h>
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <map>
+#include <utility>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+double frobeniusNorm(const glm::dmat3& m)
+{
+    return std::sqrt(glm::dot(m[0], m[0]) + glm::dot(m[1], m[1]) + glm::dot(m[2], m[2]));
+}
+
+bool isModest(const glm::dvec4& translation)
+{
+    // Beyond this distance single precision resolves only a tenth of a unit.
+    constexpr double farthest = 1e6;
+    return glm::length(glm::dvec3(translation)) <= farthest;
+}
+
+/// True if a child can be computed through this matrix and its inverse in single precision with almost no loss. The
+/// condition number uses the Frobenius norm, scaled so that a rotation with uniform scale has 1. Each level multiplies
+/// the rounding error by it: above 16 a chain could become less exact than 1e-5.
+bool canBeUndone(const AffineMatrix& inverseBind)
+{
+    const glm::dmat4 matrix = inverseBind.toColumns();
+    const glm::dmat3 linear(matrix);
+    const double determinant = glm::determinant(linear);
+    if (!(std::abs(determinant) > 0.0) || !std::isfinite(determinant)) return false;
+    const glm::dmat4 bind = glm::inverse(matrix);
+    const double condition = frobeniusNorm(linear) * frobeniusNorm(glm::dmat3(bind)) / 3.0;
+    constexpr double worstCondition = 16.0;
+    return condition <= worstCondition && isModest(matrix[3]) && isModest(bind[3]) &&
+           AffineMatrix::fromColumns(bind).isFinite();
+}
+
+AffineMatrix inverse(const AffineMatrix& matrix)
+{
+    return matrix.isIdentity() ? AffineMatrix() : AffineMatrix::fromColumns(glm::inverse(matrix.toColumns()));
+}
+
+class PaletteBuilder
+{
+public:
+    PaletteBuilder(const Skeleton& skeleton, const std::vector<Skin>& skins, const std::vector<int>& rigidJoints,
+                   const std::vector<MorphWeights>& morphs)
+        : _skeleton(skeleton), _skins(skins), _rigidJoints(rigidJoints), _morphs(morphs)
+    {
+    }
+
+    PaletteLayout build()
+    {
+        chooseMainBinds();
+        collectFurtherBinds();
+        placeEntries();
+        nameEntries();
+        return std::move(_layout);
+    }
+
+private:
+    /// One joint with one inverse bind matrix, compared bit by bit.
+    using Key = std::pair<int, std::array<std::uint32_t, 12>>;
+
+    static Key keyOf(int joint, const AffineMatrix& inverseBind);
+    void chooseMainBinds();
+    void collectFurtherBinds();
+    void placeEntries();
+    void placeWeights();
+    void nameEntries();
+
+    const Skeleton& _skeleton;
+    const std::vector<Skin>& _skins;
+    const std::vector<int>& _rigidJoints;
+    const std::vector<MorphWeights>& _morphs;
+    PaletteLayout _layout;
+    std::vector<AffineMatrix> _mainBinds;                            ///< inverse bind of each joint's main entry
+    std::map<Key, int> _entryOfKey;                                  ///< -1 until placed
+    std::vector<std::vector<std::pair<int, AffineMatrix>>> _further; ///< by level: joint, inverse bind
+};
+
+PaletteBuilder::Key PaletteBuilder::keyOf(int joint, const AffineMatrix& inverseBind)
+{
+    Key key;
+    key.first = joint;
+    static_assert(sizeof(key.second) == sizeof(AffineMatrix), "twelve numbers of 32 bits");
+    std::memcpy(key.second.data(), &inverseBind, sizeof(AffineMatrix));
+    return key;
+}
+
+void PaletteBuilder::chooseMainBinds()
+{
+    _mainBinds.resize(_skeleton.jointCount());
+    std::vector<bool> chosen(_mainBinds.size(), false);
+    for (const Skin& skin : _skins)
+        for (std::size_t place = 0; place < skin.joints.size(); ++place)
+        {
+            const auto joint = static_cast<std::size_t>(skin.joints[place]);
+            if (chosen[joint]) continue;
+            chosen[joint] = true;
+            if (canBeUndone(skin.inverseBinds[place])) _mainBinds[joint] = skin.inverseBinds[place];
+        }
+    for (std::size_t joint = 0; joint < _mainBinds.size(); ++joint)
+        _entryOfKey.emplace(keyOf(static_cast<int>(joint), _mainBinds[joint]), -1);
+}
+
+void PaletteBuilder::collectFurtherBinds()
+{
+    const auto want = [this](int joint, const AffineMatrix& inverseBind)
+    {
+        if (!_entryOfKey.emplace(keyOf(joint, inverseBind), -1).second) return;
+        const auto level = static_cast<std::size_t>(_skeleton.depths()[static_cast<std::size_t>(joint)]) + 1;
+        if (_further.size() <= level) _further.resize(level + 1);
+        _further[level].emplace_back(joint, inverseBind);
+    };
+    for (const Skin& skin : _skins)
+        for (std::size_t place = 0; place < skin.joints.size(); ++place)
+            want(skin.joints[place], skin.inverseBinds[place]);
+    for (int joint : _rigidJoints)
+        want(joint, AffineMatrix());
+}
+
+void PaletteBuilder::placeEntries()
+{
+    const auto place = [this](int joint, const AffineMatrix& inverseBind, int parentJoint, int track)
+    {
+        PaletteEntry entry;
+        entry.kind = track < 0 ? PaletteEntry::Kind::Static : PaletteEntry::Kind::Joint;
+        entry.joint = joint;
+        entry.track = track;
+        entry.inverseBind = inverseBind;
+        if (parentJoint >= 0)
+        {
+            entry.parent = _layout.mainEntry[static_cast<std::size_t>(parentJoint)];
+            entry.parentBind = inverse(_mainBinds[static_cast<std::size_t>(parentJoint)]);
+        }
+        _entryOfKey[keyOf(joint, inverseBind)] = static_cast<int>(_layout.entries.size());
+        _layout.entries.push_back(entry);
+    };
+
+    _layout.levels.push_back(0);
+    std::size_t joint = 0;
+    for (std::size_t level = 0; joint < _skeleton.jointCount() || level < _further.size() || level == 0; ++level)
+    {
+        for (; joint < _skeleton.jointCount() && _skeleton.depths()[joint] == static_cast<int>(level); ++joint)
+        {
+            _layout.mainEntry.push_back(static_cast<int>(_layout.entries.size()));
+            place(static_cast<int>(joint), _mainBinds[joint], _skeleton.joint(joint).parent, static_cast<int>(joint));
+        }
+        if (level < _further.size())
+            for (const auto& [owner, inverseBind] : _further[level])
+                place(owner, inverseBind, owner, -1);
+        if (level == 0) placeWeights();
+        if (_layout.entries.size() > _layout.levels.back()) _layout.levels.push_back(_layout.entries.size());
+    }
+}
+
+void PaletteBuilder::placeWeights()
+{
+    int track = static_cast<int>(_skeleton.jointCount());
+    for (const MorphWeights& morph : _morphs)
+    {
+        _layout.entryOfMorph.push_back(morph.blockCount() == 0 ? -1 : static_cast<int>(_layout.entries.size()));
+        for (std::size_t block = 0; block < morph.blockCount(); ++block)
+        {
+            PaletteEntry entry;
+            entry.kind = PaletteEntry::Kind::Weights;
+            entry.track = track++;
+            _layout.entries.push_back(entry);
+        }
+    }
+}
+
+void PaletteBuilder::nameEntries()
+{
+    for (const Skin& skin : _skins)
+    {
+        std::vector<int> entries;
+        for (std::size_t place = 0; place < skin.joints.size(); ++place)
+            entries.push_back(_entryOfKey[keyOf(skin.joints[place], skin.inverseBinds[place])]);
+        _layout.entryOfSkin.push_back(std::move(entries));
+    }
+    _layout.entryOfRigidJoint.assign(_skeleton.jointCount(), -1);
+    for (int joint : _rigidJoints)
+        _layout.entryOfRigidJoint[static_cast<std::size_t>(joint)] = _entryOfKey[keyOf(joint, AffineMatrix())];
+}
+
+} // namespace
+
+PaletteLayout layOutPalette(const Skeleton& skeleton, const std::vector<Skin>& skins,
+                            const std::vector<int>& rigidJoints, const std::vector<MorphWeights>& morphs)
+{
+    return PaletteBuilder(skeleton, skins, rigidJoints, morphs).build();
+}
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osgGpuAnimation/animation/Skeleton.h>
+
+#include <vector>
+
+namespace osgGpuAnimation
+{
+
+/// Finds the inverse bind matrices that each joint needs, chooses the main entry of each joint and sorts all entries by
+/// level. All indices must be valid and all numbers finite: AnimationSet::create() checks them.
+PaletteLayout layOutPalette(const Skeleton& skeleton, const std::vector<Skin>& skins,
+                            const std::vector<int>& rigidJoints, const std::vector<MorphWeights>& morphs);
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/animation/playback/BlendList.h>
+
+#include <osgGpuAnimation/animation/RootMotion.h>
+
+#include <layout.glsl>
+
+#include <algorithm>
+#include <cassert>
+#include <tuple>
+
+namespace osgGpuAnimation
+{
+
+bool SampleStack::comesBefore(const Item& a, const Item& b)
+{
+    if (a.isDifference != b.isDifference) return b.isDifference;
+    if (a.standing != b.standing) return a.standing < b.standing;
+    if (a.sample.weight != b.sample.weight) return a.sample.weight > b.sample.weight;
+    const auto rest = [](const Item& item)
+    {
+        return std::tie(item.sample.keyframe, item.sample.alpha, item.sample.control, item.reference.keyframe,
+                        item.reference.alpha);
+    };
+    return rest(a) < rest(b);
+}
+
+void SampleStack::add(const BlendSample& sample, int standing)
+{
+    insert({sample, BlendSample(), standing, false});
+}
+
+void SampleStack::addDifference(const BlendSample& reference, const BlendSample& sample)
+{
+    insert({sample, reference, 0, true});
+}
+
+void SampleStack::insert(const Item& item)
+{
+    if (!(item.sample.weight > 0.0f)) return;
+    assert(_count < maxItems && "no more than all voices of all layers");
+    if (_count == maxItems) return;
+    std::size_t place = _count++;
+    for (; place > 0 && comesBefore(item, _places[place - 1].item); --place)
+        _places[place].item = _places[place - 1].item;
+    _places[place].item = item;
+    _sampleCount += item.isDifference ? 2 : 1;
+}
+
+/// True for the first, and so the heaviest, sample of a standing.
+bool SampleStack::isAbove(std::size_t index) const
+{
+    const Item& item = _places[index].item;
+    return !item.isDifference && (index == 0 || _places[index - 1].item.standing != item.standing);
+}
+
+void SampleStack::removeLightest()
+{
+    // A sample that may be dropped exists: there are at most half as many standings as samples in an instruction.
+    std::size_t lightest = _count;
+    for (std::size_t i = 0; i < _count; ++i)
+        if (!isAbove(i) &&
+            (lightest == _count || _places[i].item.sample.weight <= _places[lightest].item.sample.weight))
+            lightest = i;
+    assert(lightest < _count && "some standing has two samples, or there are differences");
+    if (lightest == _count) lightest = _count - 1;
+    const Item removed = _places[lightest].item;
+    std::move(_places.begin() + static_cast<std::ptrdiff_t>(lightest) + 1,
+              _places.begin() + static_cast<std::ptrdiff_t>(_count),
+              _places.begin() + static_cast<std::ptrdiff_t>(lightest));
+    --_count;
+    _sampleCount -= removed.isDifference ? 2 : 1;
+    if (!removed.isDifference) fillStanding(removed.standing, removed.sample.weight);
+}
+
+/// Restores the sum of a standing up to 1; PoseInstruction scales larger sums to 1.
+void SampleStack::fillStanding(int standing, float removed)
+{
+    float left = 0.0f;
+    for (std::size_t i = 0; i < _count; ++i)
+        if (!_places[i].item.isDifference && _places[i].item.standing == standing)
+            left += _places[i].item.sample.weight;
+    const float whole = std::min(left + removed, 1.0f);
+    if (!(left > 0.0f) || left >= whole) return;
+    for (std::size_t i = 0; i < _count; ++i)
+        if (!_places[i].item.isDifference && _places[i].item.standing == standing)
+            _places[i].item.sample.weight *= whole / left;
+}
+
+void SampleStack::write(PoseInstruction& out)
+{
+    while (_sampleCount > PoseInstruction::maxSamples)
+        removeLightest();
+    out.sampleCount = 0;
+    for (std::size_t i = 0; i < _count; ++i)
+    {
+        const Item& item = _places[i].item;
+        if (item.isDifference)
+        {
+            BlendSample& reference = out.samples[out.sampleCount++] = item.reference;
+            reference.weight = item.sample.weight;
+            reference.control |= POSE_SAMPLE_REFERENCE;
+        }
+        BlendSample& sample = out.samples[out.sampleCount++] = item.sample;
+        if (item.isDifference)
+            sample.control |= POSE_SAMPLE_ADDITIVE;
+        else if (i > 0 && isAbove(i))
+            sample.control |= POSE_SAMPLE_ABOVE;
+    }
+    if (out.sampleCount == 0) out.samples[out.sampleCount++] = BlendSample();
+}
+
+RootMotion rootMotionOf(const Clip& clip, const ClipMove& move, LoopMode loopMode)
+{
+    if (move.distance == 0.0) return {glm::dvec3(0.0), 0.0, clip.rootMotion()->up};
+    const RootMotion before = clip.rootMotionAt(move.from).inverse();
+    if (loopMode != LoopMode::Loop || move.crossings == 0.0) return before * clip.rootMotionAt(move.to);
+    return before * clip.rootMotionAt(clip.duration()).power(move.crossings) * clip.rootMotionAt(move.to);
+}
+
+void MotionBlend::add(const RootMotion& motion, double weight, int standing)
+{
+    std::size_t place = _count;
+    while (place > 0 && _standings[place - 1].number > standing)
+        --place;
+    if (place == 0 || _standings[place - 1].number != standing)
+    {
+        const auto begin = _standings.begin();
+        const auto end = begin + static_cast<std::ptrdiff_t>(_count++);
+        std::move_backward(begin + static_cast<std::ptrdiff_t>(place), end, end + 1);
+        _standings[place] = {standing, 0.0, {}};
+        ++place;
+    }
+    Standing& here = _standings[place - 1];
+    here.weight += weight;
+    here.sum.translation += motion.translation * weight;
+    here.sum.yaw += motion.yaw * weight;
+    here.sum.up = motion.up;
+}
+
+RootMotion MotionBlend::result() const
+{
+    RootMotion total;
+    for (std::size_t i = 0; i < _count; ++i)
+    {
+        const Standing& standing = _standings[i];
+        const double left = 1.0 - std::min(standing.weight, 1.0);
+        const double share = 1.0 / std::max(standing.weight, 1.0);
+        total.translation = total.translation * left + standing.sum.translation * share;
+        total.yaw = total.yaw * left + standing.sum.yaw * share;
+        total.up = standing.sum.up;
+    }
+    return total;
+}
+
+} // namespace osgGpuAnimation

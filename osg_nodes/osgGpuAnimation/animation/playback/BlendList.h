@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osgGpuAnimation/animation/Clip.h>
+#include <osgGpuAnimation/animation/ClipMixer.h>
+#include <osgGpuAnimation/animation/Playback.h>
+#include <osgGpuAnimation/animation/AnimationSet.h>
+
+#include <array>
+#include <cstddef>
+
+namespace osgGpuAnimation
+{
+
+/// Sorts the samples of all layers as PoseInstruction requires: standings from the bottom up; within a standing the
+/// heaviest sample first, and samples of equal weight by keyframe, so that the order of add() plays no part; additive
+/// samples last.
+///
+/// If there are more samples than an instruction holds, the sample with the lowest weight is dropped, repeatedly; a
+/// difference counts as two samples. The heaviest sample of each standing always stays. The other samples of the
+/// standing take over the dropped weight, so that nothing below them, such as the rest pose, becomes visible.
+class SampleStack
+{
+public:
+    static constexpr std::size_t maxItems = 64; ///< the most samples and differences that all layers can have
+
+    /// Samples of weight 0 are ignored. At most maxItems samples and differences may be added.
+    void add(const BlendSample& sample, int standing);
+    void addDifference(const BlendSample& reference, const BlendSample& sample);
+    /// Writes the instruction; the rest pose if nothing was added. Call it once.
+    void write(PoseInstruction& out);
+
+private:
+    struct Item
+    {
+        BlendSample sample, reference; ///< the reference of a difference
+        int standing;                  ///< of a sample
+        bool isDifference;
+    };
+    /// Deliberately uninitialized: zeroing dominated the cost.
+    union Place
+    {
+        Place() {}
+        Item item;
+    };
+
+    static bool comesBefore(const Item& a, const Item& b);
+    void insert(const Item& item);
+    bool isAbove(std::size_t index) const;
+    void removeLightest();
+    void fillStanding(int standing, float removed);
+
+    std::array<Place, maxItems> _places;
+    std::size_t _count = 0;
+    std::size_t _sampleCount = 0; ///< samples of the items in an instruction
+};
+
+/// The root motion of a step through a clip, however often it loops. The clip must have a rootMotion().
+RootMotion rootMotionOf(const Clip& clip, const ClipMove& move, LoopMode loopMode);
+
+/// Blends the root motions of all clips that play in one step. Standings and weights work as in PoseInstruction; the
+/// rest pose does not move.
+class MotionBlend
+{
+public:
+    void add(const RootMotion& motion, double weight, int standing);
+    RootMotion result() const;
+
+private:
+    struct Standing
+    {
+        int number = 0;
+        double weight = 0.0;
+        RootMotion sum;
+    };
+
+    std::array<Standing, maxLayers> _standings; ///< from the bottom up
+    std::size_t _count = 0;
+};
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/gpu/buffers/AnimationBuffers.h>
+
+#include <osgGpuAnimation/animation/AnimationSet.h>
+
+#include <layout.glsl>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+using PackedEntry = std::array<glm::vec4, POSE_TEXELS_PER_ENTRY>;
+
+PackedEntry packed(const PaletteEntry& entry, const std::vector<JointTransform>& restPose)
+{
+    PackedEntry out{};
+    out[0] = glm::vec4(entry.parent, entry.track, entry.kind == PaletteEntry::Kind::Weights, 0);
+    for (std::size_t row = 0; row < 3; ++row)
+    {
+        out[1 + row] = entry.parentBind.rows[row];
+        out[4 + row] = entry.inverseBind.rows[row];
+    }
+    if (entry.track < 0) return out;
+    const JointTransform& rest = restPose[static_cast<std::size_t>(entry.track)];
+    out[7] = rest.translation;
+    out[8] = rest.scale;
+    return out;
+}
+
+void widen(PackedKeyframes::Track& all, const PackedKeyframes::Track& one)
+{
+    all.translation = std::max(all.translation, one.translation);
+    all.scale = std::max(all.scale, one.scale);
+    all.hasExactKeys = all.hasExactKeys || one.hasExactKeys;
+    all.hasCompactKeys = all.hasCompactKeys || one.hasCompactKeys;
+}
+
+} // namespace
+
+AnimationBuffers::AnimationBuffers(osg::GLExtensions& gl, const AnimationSet& set, const PackedKeyframes& keyframes)
+    : _restTexel(keyframes.restTexel()), _levels(set.levelCount()), _keyframes(gl, GL_RGBA32UI_EXT),
+      _entries(gl, GL_RGBA32F_ARB), _masks(gl, GL_RGBA32F_ARB)
+{
+    _keyframes.upload(keyframes.texels().data(), keyframes.byteSize());
+    for (const PackedKeyframes::Track& track : keyframes.tracks())
+        widen(_anyTrack, track);
+    for (std::size_t level = 0; level < _levels.size(); ++level)
+        for (std::size_t entry = set.levels()[level]; entry < set.levels()[level + 1]; ++entry)
+            if (const int track = set.palette()[entry].track; track >= 0)
+                widen(_levels[std::min<std::size_t>(level, 1)], keyframes.tracks()[static_cast<std::size_t>(track)]);
+    for (std::size_t level = 2; level < _levels.size(); ++level)
+        _levels[level] = _levels[1];
+
+    std::vector<PackedEntry> entries;
+    entries.reserve(set.paletteSize());
+    for (const PaletteEntry& entry : set.palette())
+        entries.push_back(packed(entry, set.restPose()));
+    _entries.upload(entries.data(), entries.size() * sizeof(PackedEntry));
+}
+
+std::size_t AnimationBuffers::texelsPerMask(const AnimationSet& set)
+{
+    return (set.trackCount() + POSE_WEIGHTS_PER_MASK_TEXEL - 1) / POSE_WEIGHTS_PER_MASK_TEXEL;
+}
+
+void AnimationBuffers::updateMasks(const AnimationSet& set)
+{
+    const std::size_t count = set.masks().count();
+    if (count == _maskCount) return;
+    const std::size_t stride = texelsPerMask(set) * POSE_WEIGHTS_PER_MASK_TEXEL;
+    std::vector<float> weights((count + 1) * stride, 1.0f);
+    for (std::size_t mask = 1; mask <= count; ++mask)
+    {
+        const float* from = set.masks().weights(static_cast<std::uint32_t>(mask));
+        std::copy(from, from + set.trackCount(), weights.begin() + static_cast<std::ptrdiff_t>(mask * stride));
+    }
+    _masks.upload(weights.data(), weights.size() * sizeof(float));
+    _maskCount = count;
+}
+
+std::size_t AnimationBuffers::byteSize(const AnimationSet& set, const PackedKeyframes& keyframes)
+{
+    return keyframes.byteSize() + set.paletteSize() * sizeof(PackedEntry);
+}
+
+void AnimationBuffers::release()
+{
+    _keyframes.release();
+    _entries.release();
+    _masks.release();
+}
+
+void AnimationBuffers::discard()
+{
+    _keyframes.discard();
+    _entries.discard();
+    _masks.discard();
+}
+
+} // namespace osgGpuAnimation

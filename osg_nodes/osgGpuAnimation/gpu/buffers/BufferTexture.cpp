@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/gpu/buffers/BufferTexture.h>
+
+#include <osg/Texture>
+
+#include <algorithm>
+#include <cassert>
+
+namespace osgGpuAnimation
+{
+
+void BufferTexture::create()
+{
+    _gl->glGenBuffers(1, &_buffer);
+    glGenTextures(1, &_texture);
+}
+
+bool BufferTexture::reserve(std::size_t bytes)
+{
+    bytes = std::max(bytes, texelBytes);
+    if (bytes <= _capacity) return false;
+    if (_buffer == 0) create();
+    _capacity = std::max(bytes, _capacity + _capacity / 2);
+    _gl->glBindBuffer(GL_TEXTURE_BUFFER, _buffer);
+    _gl->glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(_capacity), nullptr, GL_DYNAMIC_COPY);
+    glBindTexture(GL_TEXTURE_BUFFER, _texture);
+    _gl->glTexBuffer(GL_TEXTURE_BUFFER, _format, _buffer);
+    glBindTexture(GL_TEXTURE_BUFFER, 0);
+    _gl->glBindBuffer(GL_TEXTURE_BUFFER, 0);
+    return true;
+}
+
+void BufferTexture::upload(const void* data, std::size_t bytes)
+{
+    const bool isNew = reserve(bytes);
+    _gl->glBindBuffer(GL_TEXTURE_BUFFER, _buffer);
+    if (!isNew) _gl->glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(_capacity), nullptr, GL_DYNAMIC_COPY);
+    _gl->glBufferSubData(GL_TEXTURE_BUFFER, 0, static_cast<GLsizeiptr>(bytes), data);
+    _gl->glBindBuffer(GL_TEXTURE_BUFFER, 0);
+}
+
+void BufferTexture::uploadPart(std::size_t offset, const void* data, std::size_t bytes)
+{
+    assert(offset + bytes <= _capacity && "a part lies within what was uploaded");
+    _gl->glBindBuffer(GL_TEXTURE_BUFFER, _buffer);
+    _gl->glBufferSubData(GL_TEXTURE_BUFFER, static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(bytes), data);
+    _gl->glBindBuffer(GL_TEXTURE_BUFFER, 0);
+}
+
+void BufferTexture::bindAttributes(unsigned int location, unsigned int count, std::size_t stride,
+                                   std::size_t byteOffset, unsigned int divisor) const
+{
+    _gl->glBindBuffer(GL_ARRAY_BUFFER, _buffer);
+    for (unsigned int i = 0; i < count; ++i)
+    {
+        const auto* offset = reinterpret_cast<const GLvoid*>(byteOffset + i * texelBytes);
+        if (_format == GL_RGBA32UI_EXT)
+            _gl->glVertexAttribIPointer(location + i, 4, GL_UNSIGNED_INT, static_cast<GLsizei>(stride), offset);
+        else
+            _gl->glVertexAttribPointer(location + i, 4, GL_FLOAT, GL_FALSE, static_cast<GLsizei>(stride), offset);
+        _gl->glVertexAttribDivisor(location + i, divisor);
+        _gl->glEnableVertexAttribArray(location + i);
+    }
+    _gl->glBindBuffer(GL_ARRAY_BUFFER, 0);
+}
+
+void BufferTexture::release()
+{
+    if (_buffer == 0) return;
+    glDeleteTextures(1, &_texture);
+    _gl->glDeleteBuffers(1, &_buffer);
+    discard();
+}
+
+void BufferTexture::discard()
+{
+    _buffer = 0;
+    _texture = 0;
+    _capacity = 0;
+}
+
+} // namespace osgGpuAnimation

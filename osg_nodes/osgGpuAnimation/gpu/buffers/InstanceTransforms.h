@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osgGpuAnimation/animation/JointTransform.h>
+#include <osgGpuAnimation/gpu/buffers/BufferTexture.h>
+
+#include <osg/GLObjects>
+#include <osg/State>
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace osgGpuAnimation
+{
+
+/// Where one instance of an instanced draw stands, as skin.glsl reads it: four vertex attributes.
+struct Placement
+{
+    AffineMatrix toEye; ///< from the character's own space to the eye's
+    float pose = 0.0f;  ///< its number in the PoseBatch, a whole one
+    std::array<float, 3> unused{};
+};
+
+static_assert(sizeof(Placement) == 4 * BufferTexture::texelBytes, "a placement is four attributes");
+
+/// One graphics context's buffers of placements: the last few lists that were drawn, since all meshes of the
+/// same characters follow one another. Only to be called on the draw side, with the context current.
+class PlacementBuffers : public osg::GraphicsObjectManager
+{
+public:
+    explicit PlacementBuffers(unsigned int contextId);
+
+    static PlacementBuffers& of(osg::State& state);
+
+    /// The buffer of the list, uploaded unless it is there. serial: the list's, never again another's.
+    const BufferTexture& buffer(std::uint64_t serial, const std::vector<Placement>& placements);
+
+    void flushDeletedGLObjects(double, double&) override {}
+    void flushAllDeletedGLObjects() override {}
+    void deleteAllGLObjects() override;
+    void discardAllGLObjects() override;
+
+protected:
+    ~PlacementBuffers() override = default;
+
+private:
+    struct List
+    {
+        std::uint64_t serial = 0; ///< 0: none yet
+        std::unique_ptr<BufferTexture> buffer;
+    };
+
+    std::array<List, 2> _lists;
+    std::size_t _oldest = 0;
+};
+
+} // namespace osgGpuAnimation

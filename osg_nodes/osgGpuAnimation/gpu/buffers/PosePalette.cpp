@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/gpu/buffers/PosePalette.h>
+
+#include <osgGpuAnimation/gpu/FeedbackPass.h>
+
+#include <layout.glsl>
+
+#include <algorithm>
+#include <cstring>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+/// Brings the buffer, with room for so many, and its record up to [first, first + count) of the source. True if it was
+/// not the same already. Where only a part is another, as with one of many that moved, that part is sent.
+template <typename Element>
+bool uploadChanged(const std::vector<Element>& source, std::size_t first, std::size_t count, std::size_t room,
+                   std::vector<Element>& uploaded, BufferTexture& buffer, std::size_t& bytesUploaded)
+{
+    const std::size_t bytes = count * sizeof(Element);
+    const Element* begin = source.data() + first;
+    if (count > 0 && buffer.reserve(room * sizeof(Element))) uploaded.clear(); // nothing is in it any more
+    if (uploaded.size() == count && (count == 0 || std::memcmp(uploaded.data(), begin, bytes) == 0)) return false;
+    if (uploaded.size() == count)
+    {
+        const auto isSame = [&](std::size_t i) { return std::memcmp(&uploaded[i], begin + i, sizeof(Element)) == 0; };
+        std::size_t from = 0, to = count;
+        while (isSame(from))
+            ++from;
+        while (isSame(to - 1))
+            --to;
+        if (2 * (to - from) <= count)
+        {
+            std::copy(begin + from, begin + to, uploaded.begin() + static_cast<std::ptrdiff_t>(from));
+            buffer.uploadPart(from * sizeof(Element), begin + from, (to - from) * sizeof(Element));
+            bytesUploaded += (to - from) * sizeof(Element);
+            return true;
+        }
+    }
+    uploaded.assign(begin, begin + count);
+    if (count == 0) return true;
+    buffer.upload(begin, bytes);
+    bytesUploaded += bytes;
+    return true;
+}
+
+} // namespace
+
+std::size_t PosePalette::widthOf(std::size_t size)
+{
+    constexpr std::size_t step = FeedbackPass::verticesOfFastest;
+    return size < step ? size : (size + step - 1) / step * step;
+}
+
+PosePalette::Chunk::Chunk(osg::GLExtensions& gl)
+    : samples(gl, GL_RGBA32UI_EXT), roots(gl, GL_RGBA32F_ARB), tints(gl, GL_RGBA8), palette(gl, GL_RGBA32F_ARB)
+{
+}
+
+bool PosePalette::Chunk::hasSamplesAsAttributes() const
+{
+    return sampleStride <= POSE_SAMPLES_AS_ATTRIBUTES;
+}
+
+void PosePalette::Chunk::bindInstances(osg::GLExtensions& gl) const
+{
+    // Compatibility profiles want attribute 0 enabled, so one sample is bound even where all are fetched.
+    const unsigned int sampleCount = hasSamplesAsAttributes() ? static_cast<unsigned int>(sampleStride) : 1u;
+    samples.bindAttributes(POSE_SAMPLE_LOCATION, sampleCount, sampleStride * sizeof(BlendSample), 0, 0);
+    for (unsigned int unused = sampleCount; unused < POSE_SAMPLES_AS_ATTRIBUTES; ++unused)
+        gl.glDisableVertexAttribArray(POSE_SAMPLE_LOCATION + unused);
+    if (!uploadedRootMatrices.empty())
+        roots.bindAttributes(POSE_ROOT_LOCATION, POSE_TEXELS_PER_MATRIX, sizeof(AffineMatrix), 0, 0);
+    else
+        for (unsigned int row = 0; row < POSE_TEXELS_PER_MATRIX; ++row)
+            gl.glDisableVertexAttribArray(POSE_ROOT_LOCATION + row);
+}
+
+std::vector<PosePalette::Chunk*> PosePalette::upload(const PoseBatch& batch, std::size_t chunkCapacity,
+                                                     std::size_t& bytesUploaded)
+{
+    std::vector<Chunk*> changed;
+    _chunkCapacity = chunkCapacity;
+    const std::size_t stride = batch.sampleStride();
+    const bool hasRoots = !batch.rootMatrices().empty();
+    std::size_t index = 0;
+    for (std::size_t first = 0; first < batch.size(); first += chunkCapacity, ++index)
+    {
+        if (index == _chunks.size()) _chunks.push_back(std::make_unique<Chunk>(*_gl));
+        Chunk& chunk = *_chunks[index];
+        const std::size_t size = std::min(chunkCapacity, batch.size() - first);
+        bool isChanged = chunk.size != size || chunk.sampleStride != stride;
+        chunk.size = size;
+        chunk.width = widthOf(size);
+        chunk.sampleStride = stride;
+        isChanged |= uploadChanged(batch.samples(), first * stride, size * stride, chunk.width * stride,
+                                   chunk.uploadedSamples, chunk.samples, bytesUploaded);
+        isChanged |= uploadChanged(batch.rootMatrices(), hasRoots ? first : 0, hasRoots ? size : 0,
+                                   hasRoots ? chunk.width : 0, chunk.uploadedRootMatrices, chunk.roots, bytesUploaded);
+        const bool hasTints = !batch.tints().empty();
+        // Tints are for the draw alone: the palette stays as it is.
+        uploadChanged(batch.tints(), hasTints ? first : 0, hasTints ? size : 0, hasTints ? size : 0,
+                      chunk.uploadedTints, chunk.tints, bytesUploaded);
+        chunk.isEvaluated = chunk.isEvaluated && !isChanged;
+        if (!chunk.isEvaluated) changed.push_back(&chunk);
+    }
+    for (; index < _chunks.size(); ++index)
+        _chunks[index]->size = 0;
+    return changed;
+}
+
+PalettePlace PosePalette::place(std::size_t instance) const
+{
+    const std::size_t index = instance / _chunkCapacity;
+    if (index >= _chunks.size()) return {};
+    const Chunk& chunk = *_chunks[index];
+    if (!chunk.isEvaluated) return {};
+    return {chunk.palette.texture(),
+            static_cast<int>(chunk.width),
+            static_cast<int>(instance % _chunkCapacity),
+            chunk.uploadedTints.empty() ? 0 : chunk.tints.texture(),
+            index * _chunkCapacity,
+            index * _chunkCapacity + chunk.size};
+}
+
+void PosePalette::invalidate()
+{
+    for (const std::unique_ptr<Chunk>& chunk : _chunks)
+        chunk->isEvaluated = false;
+}
+
+void PosePalette::release()
+{
+    for (const std::unique_ptr<Chunk>& chunk : _chunks)
+        for (BufferTexture* buffer : {&chunk->samples, &chunk->roots, &chunk->tints, &chunk->palette})
+            buffer->release();
+    _chunks.clear();
+}
+
+void PosePalette::discard()
+{
+    _chunks.clear();
+}
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/gpu/passes/PoseVariant.h>
+
+#include <osgGpuAnimation/gpu/PoseBatch.h>
+
+#include <layout.glsl>
+
+#include <algorithm>
+#include <initializer_list>
+
+namespace osgGpuAnimation
+{
+
+PoseVariant PoseVariant::of(const PoseBatch& batch)
+{
+    const std::vector<Clip>& clips = batch.set().clips();
+    PoseVariant variant;
+    variant.hasSplines =
+        std::any_of(clips.begin(), clips.end(), [](const Clip& clip) { return clip.form() == Clip::Form::Spline; });
+    variant.hasWeights = !batch.set().morphs().empty();
+    variant.hasSeveralSamples = batch.needs().mixing;
+    variant.hasLayers = batch.needs().layers;
+    variant.hasMasks = batch.needs().masks;
+    variant.hasAdditive = batch.needs().additive;
+    return variant;
+}
+
+void PoseVariant::setMotion(const PackedKeyframes::Track& motion)
+{
+    translationMotion = motion.translation;
+    scaleMotion = motion.scale;
+    hasExactKeys = motion.hasExactKeys;
+    hasCompactKeys = motion.hasCompactKeys;
+}
+
+std::string PoseVariant::constants() const
+{
+    const auto line = [](const char* name, bool value)
+    { return std::string("const bool ") + name + (value ? " = true;\n" : " = false;\n"); };
+    const auto number = [](const char* name, int value)
+    { return std::string("const int ") + name + " = " + std::to_string(value) + ";\n"; };
+    return line("hasSplines", hasSplines) + line("hasSeveralSamples", hasSeveralSamples) +
+           line("hasWeights", hasWeights) + line("isRootLevel", isRootLevel) + line("hasRoots", hasRoots) +
+           line("hasLayers", hasLayers) + line("hasMasks", hasMasks) + line("hasAdditive", hasAdditive) +
+           line("hasExactKeys", hasExactKeys) + line("hasCompactKeys", hasCompactKeys) +
+           number("sampleCount", sampleCount) + number("translationMotion", static_cast<int>(translationMotion)) +
+           number("scaleMotion", static_cast<int>(scaleMotion));
+}
+
+unsigned int PoseVariant::key() const
+{
+    unsigned int key = 0;
+    for (const bool has : {hasSplines, hasSeveralSamples, hasWeights, isRootLevel, hasRoots, hasLayers, hasMasks,
+                           hasAdditive, hasExactKeys, hasCompactKeys})
+        key = 2 * key + (has ? 1 : 0);
+    key = key * (POSE_SAMPLES_AS_ATTRIBUTES + 1) + static_cast<unsigned int>(sampleCount);
+    return (4 * key + static_cast<unsigned int>(translationMotion)) * 4 + static_cast<unsigned int>(scaleMotion);
+}
+
+} // namespace osgGpuAnimation

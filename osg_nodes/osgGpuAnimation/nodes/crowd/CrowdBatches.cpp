@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/nodes/crowd/CrowdBatches.h>
+
+#include <osgGpuAnimation/nodes/frame/PoseStage.h>
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace osgGpuAnimation
+{
+
+std::shared_ptr<PosedMeshes> PosedInstances::of(CrowdInstances::Handle instance)
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    const auto kept = _kept.find(instance);
+    if (kept != _kept.end()) return kept->second;
+    if (_kept.size() >= maxKept) _kept.clear();
+    return _kept[instance] = std::make_shared<PosedMeshes>();
+}
+
+namespace
+{
+
+osg::BoundingBox boxAround(const glm::vec4& sphere)
+{
+    return {sphere.x - sphere.w, sphere.y - sphere.w, sphere.z - sphere.w,
+            sphere.x + sphere.w, sphere.y + sphere.w, sphere.z + sphere.w};
+}
+
+} // namespace
+
+std::vector<glm::vec4> CrowdView::planes() const
+{
+    std::vector<glm::vec4> planes;
+    osg::CullingSet& culling = _visitor.getCurrentCullingSet();
+    const auto mask = culling.getCullingMask();
+    if (mask & osg::CullingSet::VIEW_FRUSTUM_CULLING)
+    {
+        osg::Polytope& frustum = culling.getFrustum();
+        osg::Polytope::ClippingMask bit = 1;
+        for (const osg::Plane& plane : frustum.getPlaneList())
+        {
+            if (frustum.getCurrentMask() & bit) planes.emplace_back(plane[0], plane[1], plane[2], plane[3]);
+            bit <<= 1;
+        }
+    }
+    if (mask & osg::CullingSet::SMALL_FEATURE_CULLING)
+    {
+        // OSG's measure of what is too small, p · v · pixels > radius, has the form of a plane.
+        const osg::Vec4 plane = culling.getPixelSizeVector() * -culling.getSmallFeatureCullingPixelSize();
+        planes.emplace_back(plane.x(), plane.y(), plane.z(), plane.w());
+    }
+    return planes;
+}
+
+void CrowdView::look(const CrowdInstances& instances, const std::vector<std::uint32_t>& indices)
+{
+    const osg::Matrix& toEye = *_visitor.getModelViewMatrix();
+    const glm::vec4 depthOf(-toEye(0, 2), -toEye(1, 2), -toEye(2, 2), -toEye(3, 2));
+    const float scale = glm::length(glm::vec3(depthOf));
+    float nearest = 1e30f, farthest = -1e30f;
+    glm::vec4 nearestSphere(0.0f, 0.0f, 0.0f, -1.0f), farthestSphere = nearestSphere;
+    for (const std::uint32_t index : indices)
+    {
+        const glm::vec4& sphere = instances.sphere(index);
+        const float depth = glm::dot(depthOf, glm::vec4(glm::vec3(sphere), 1.0f));
+        const float reach = sphere.w * scale;
+        // What lies behind the eye has no say in the near plane.
+        if (depth + reach < 0.0f) continue;
+        if (depth - reach < nearest) nearest = depth - reach, nearestSphere = sphere;
+        if (depth + reach > farthest) farthest = depth + reach, farthestSphere = sphere;
+    }
+    if (nearestSphere.w < 0.0f) return;
+    _depth = 0.5f * (nearest + farthest);
+    if (_visitor.getComputeNearFarMode() == osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR) return;
+    _visitor.updateCalculatedNearFar(toEye, boxAround(nearestSphere));
+    _visitor.updateCalculatedNearFar(toEye, boxAround(farthestSphere));
+}
+
+void CrowdView::draw(SkinnedGeometry& mesh, const PaletteBinding& binding)
+{
+    if (!_visitor.validNodeMask(mesh)) return;
+    PoseStage::count(_visitor, mesh, binding);
+    mesh.addTo(_visitor, _visitor.getModelViewMatrix(), _depth);
+}
+
+namespace
+{
+
+struct LevelIndices
+{
+    int level;
+    std::vector<std::uint32_t> indices;
+};
+
+/// The longest that a unit of the character's own space becomes.
+float largestScale(const AffineMatrix& matrix)
+{
+    float largest = 0.0f;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        const float x = matrix.rows[0][axis], y = matrix.rows[1][axis], z = matrix.rows[2][axis];
+        largest = std::max(largest, x * x + y * y + z * z);
+    }
+    return std::sqrt(largest);
+}
+
+} // namespace
+
+int CrowdDetail::levelOf(std::uint32_t index) const
+{
+    const glm::vec4& sphere = _instances.sphere(index);
+    return _scale.level(glm::vec3(sphere), sphere.w, largestScale(_instances.rootMatrix(index)));
+}
+
+void CrowdDetail::sort(std::vector<std::uint32_t>& indices, std::vector<Run>& outRuns) const
+{
+    static thread_local std::vector<LevelIndices> levels; // keeps its storage from cull to cull
+    for (LevelIndices& level : levels)
+        level.indices.clear();
+    std::size_t last = 0;
+    for (const std::uint32_t index : indices)
+    {
+        const int level = levelOf(index);
+        for (std::size_t i = 0; i < levels.size() && (last >= levels.size() || levels[last].level != level); ++i)
+            last = i;
+        if (last >= levels.size() || levels[last].level != level)
+        {
+            last = levels.size();
+            levels.push_back({level, {}});
+        }
+        levels[last].indices.push_back(index);
+    }
+    std::sort(levels.begin(), levels.end(),
+              [](const LevelIndices& a, const LevelIndices& b) { return a.level < b.level; });
+    indices.clear();
+    outRuns.clear();
+    for (const LevelIndices& level : levels)
+    {
+        if (level.indices.empty()) continue;
+        indices.insert(indices.end(), level.indices.begin(), level.indices.end());
+        outRuns.push_back({level.level, level.indices.size()});
+    }
+}
+
+namespace
+{
+
+using Indices = std::vector<std::uint32_t>;
+
+/// By what their poses cost to mix; those that are too few for a batch join the next dearer.
+void sortByLoad(const CrowdInstances& instances, const Indices& seen, std::array<Indices, PoseBatch::loadCount>& loads)
+{
+    for (Indices& load : loads)
+        load.clear();
+    for (const std::uint32_t index : seen)
+        loads[static_cast<std::size_t>(instances.load(index))].push_back(index);
+    std::size_t dearer = loads.size() - 1;
+    for (std::size_t load = dearer; load-- > 0;)
+        if (!loads[load].empty() && loads[load].size() < PoseBatch::worthABatch && !loads[dearer].empty())
+        {
+            loads[dearer].insert(loads[dearer].end(), loads[load].begin(), loads[load].end());
+            loads[load].clear();
+        }
+        else if (!loads[load].empty())
+            dearer = load;
+}
+
+} // namespace
+
+std::vector<DrawState> enlistSeen(PoseFrame& frame, const CrowdInstances& instances, const CrowdDetail& detail,
+                                  const std::vector<std::uint32_t>& seen)
+{
+    static thread_local std::array<Indices, PoseBatch::loadCount> loads;
+    sortByLoad(instances, seen, loads);
+    std::vector<DrawState> draws;
+    std::vector<CrowdDetail::Run> runs;
+    for (Indices& load : loads)
+    {
+        if (load.empty()) continue;
+        if (detail.isOn()) detail.sort(load, runs);
+        std::unique_ptr<PoseBatch> batch = frame.makeBatch(instances.set());
+        instances.addTo(*batch, load);
+        const EnlistedBatch enlisted = frame.enlist(std::move(batch));
+        if (!detail.isOn()) draws.push_back(enlisted.all);
+        std::size_t first = 0;
+        for (const CrowdDetail::Run& run : runs)
+        {
+            draws.push_back(frame.partState(*instances.set(), enlisted.slot, first, run.count, run.level));
+            first += run.count;
+        }
+    }
+    return draws;
+}
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace osgGpuAnimation
+{
+
+CrowdPlayback::CrowdPlayback(const AnimationController& controller, double clock)
+    : _offset(controller.time()), _speed(controller.speed()), _clip(controller.clip()),
+      _isPaused(controller.state() != PlayState::Playing)
+{
+    if (!_isPaused) _offset -= _speed * clock;
+}
+
+double CrowdPlayback::time(const AnimationSet& set, double clock) const
+{
+    if (_clip < 0) return 0.0;
+    const double duration = set.clips()[static_cast<std::size_t>(_clip)].duration();
+    if (!(duration > 0.0)) return 0.0;
+    const double unrolled = _isPaused ? _offset : _offset + _speed * clock;
+    const double time = unrolled - std::floor(unrolled / duration) * duration;
+    // The quotient may have been rounded to the wrong side of a whole number.
+    return time >= 0.0 && time < duration ? time : 0.0;
+}
+
+AnimationController CrowdPlayback::controller(const std::shared_ptr<const AnimationSet>& set, double clock) const
+{
+    AnimationController controller(set);
+    controller.setSpeed(_speed);
+    if (_clip < 0) return controller;
+    const Result<bool> playing = controller.play(static_cast<std::size_t>(_clip));
+    assert(playing && "the clip came from a controller of the same set");
+    if (!playing) return controller;
+    controller.seek(time(*set, clock));
+    if (_isPaused) controller.pause();
+    return controller;
+}
+
+namespace
+{
+
+/// A sphere round the box as the matrix places it.
+glm::vec4 sphereAround(const Box& box, const AffineMatrix& matrix)
+{
+    if (box.empty()) return {matrix.rows[0].w, matrix.rows[1].w, matrix.rows[2].w, -1.0f};
+    const glm::vec3 half = (box.max - box.min) * 0.5f;
+    float radius = 0.0f; // the diagonals' largest; opposite corners are equally far
+    for (const glm::vec3 side : {glm::vec3(1, 1, 1), glm::vec3(-1, 1, 1), glm::vec3(1, -1, 1), glm::vec3(1, 1, -1)})
+        radius = std::max(radius, glm::length(matrix.transformVector(half * side)));
+    return glm::vec4(matrix.transformPoint((box.min + box.max) * 0.5f), radius);
+}
+
+/// The last element takes the place of the one at index.
+template <typename Element>
+void takeOut(std::vector<Element>& elements, std::size_t index)
+{
+    if (index + 1 != elements.size()) elements[index] = std::move(elements.back());
+    elements.pop_back();
+}
+
+} // namespace
+
+CrowdInstances::CrowdInstances(const CrowdInstances& other)
+    : _set(other._set), _clock(other._clock), _clipBounds(other._clipBounds), _allBounds(other._allBounds),
+      _rootMatrices(other._rootMatrices), _spheres(other._spheres), _tints(other._tints), _playbacks(other._playbacks),
+      _handles(other._handles), _indexOfPlace(other._indexOfPlace), _usesOfPlace(other._usesOfPlace),
+      _freePlaces(other._freePlaces), _tinted(other._tinted)
+{
+    for (const std::unique_ptr<AnimationController>& controller : other._controllers)
+        _controllers.push_back(controller ? std::make_unique<AnimationController>(*controller) : nullptr);
+}
+
+std::size_t CrowdInstances::indexOf(Handle handle) const
+{
+    const std::size_t place = placeOf(handle);
+    if (place >= _indexOfPlace.size() || _usesOfPlace[place] != handle >> 32) return none;
+    const std::size_t index = _indexOfPlace[place];
+    return index < size() && _handles[index] == handle ? index : none;
+}
+
+CrowdInstances::Handle CrowdInstances::newHandle(std::size_t index)
+{
+    if (_freePlaces.empty())
+    {
+        _freePlaces.push_back(static_cast<std::uint32_t>(_indexOfPlace.size()));
+        _indexOfPlace.push_back(0);
+        _usesOfPlace.push_back(0);
+    }
+    const std::uint32_t place = _freePlaces.back();
+    _freePlaces.pop_back();
+    _indexOfPlace[place] = static_cast<std::uint32_t>(index);
+    return Handle(_usesOfPlace[place]) << 32 | place;
+}
+
+void CrowdInstances::setClipBounds(const std::vector<Box>& clipBounds)
+{
+    _clipBounds = clipBounds;
+    _allBounds = Box();
+    for (const Box& box : clipBounds)
+        _allBounds.add(box);
+    for (std::size_t index = 0; index < size(); ++index)
+        _spheres[index] = placedSphere(index);
+}
+
+// A controller of its own may mix any clips.
+glm::vec4 CrowdInstances::placedSphere(std::size_t index) const
+{
+    const auto bounds = static_cast<std::size_t>(_playbacks[index].clip() + 1);
+    const bool isPlain = !_controllers[index] && bounds < _clipBounds.size();
+    return sphereAround(isPlain ? _clipBounds[bounds] : _allBounds, _rootMatrices[index]);
+}
+
+CrowdInstances::Handle CrowdInstances::add(const AffineMatrix& rootMatrix, const AnimationController& controller,
+                                           std::uint32_t tint)
+{
+    const std::size_t index = size();
+    const bool isPlain = controller.isPlainLoop();
+    _rootMatrices.push_back(rootMatrix);
+    _spheres.emplace_back();
+    _tints.push_back(tint);
+    _tinted += tint != PoseBatch::white;
+    _playbacks.push_back(isPlain ? CrowdPlayback(controller, _clock) : CrowdPlayback());
+    _controllers.push_back(isPlain ? nullptr : std::make_unique<AnimationController>(controller));
+    _handles.push_back(newHandle(index));
+    _spheres[index] = placedSphere(index);
+    return _handles[index];
+}
+
+void CrowdInstances::remove(std::size_t index)
+{
+    const std::size_t place = placeOf(_handles[index]);
+    ++_usesOfPlace[place];
+    _freePlaces.push_back(static_cast<std::uint32_t>(place));
+    _tinted -= _tints[index] != PoseBatch::white;
+    takeOut(_rootMatrices, index);
+    takeOut(_spheres, index);
+    takeOut(_tints, index);
+    takeOut(_playbacks, index);
+    takeOut(_controllers, index);
+    takeOut(_handles, index);
+    if (index < size()) _indexOfPlace[placeOf(_handles[index])] = static_cast<std::uint32_t>(index);
+}
+
+void CrowdInstances::move(std::size_t index, const AffineMatrix& rootMatrix)
+{
+    _rootMatrices[index] = rootMatrix;
+    _spheres[index] = placedSphere(index);
+}
+
+void CrowdInstances::setTint(std::size_t index, std::uint32_t tint)
+{
+    _tinted -= _tints[index] != PoseBatch::white;
+    _tints[index] = tint;
+    _tinted += tint != PoseBatch::white;
+}
+
+PoseInstruction CrowdInstances::instruction(std::size_t index) const
+{
+    if (_controllers[index]) return _controllers[index]->instruction();
+    PoseInstruction instruction;
+    instruction.samples[0] = _playbacks[index].sample(*_set, _clock);
+    return instruction;
+}
+
+AnimationController& CrowdInstances::controller(std::size_t index)
+{
+    if (!_controllers[index])
+    {
+        _controllers[index] = std::make_unique<AnimationController>(_playbacks[index].controller(_set, _clock));
+        _spheres[index] = placedSphere(index);
+    }
+    return *_controllers[index];
+}
+
+AnimationController CrowdInstances::controllerCopy(std::size_t index) const
+{
+    return _controllers[index] ? *_controllers[index] : _playbacks[index].controller(_set, _clock);
+}
+
+std::size_t CrowdInstances::controllerCount() const
+{
+    return static_cast<std::size_t>(std::count_if(_controllers.begin(), _controllers.end(),
+                                                  [](const auto& controller) { return controller != nullptr; }));
+}
+
+bool CrowdInstances::advance(double seconds)
+{
+    if (std::isfinite(seconds)) _clock += seconds;
+    bool haveSpheresChanged = false;
+    for (std::size_t index = 0; index < _controllers.size(); ++index)
+    {
+        std::unique_ptr<AnimationController>& controller = _controllers[index];
+        if (!controller) continue;
+        controller->advance(seconds);
+        if (!controller->isPlainLoop()) continue;
+        _playbacks[index] = CrowdPlayback(*controller, _clock);
+        controller.reset();
+        _spheres[index] = placedSphere(index);
+        haveSpheresChanged = true;
+    }
+    return haveSpheresChanged;
+}
+
+void CrowdInstances::findSeen(const std::vector<glm::vec4>& planes, std::vector<std::uint32_t>& outIndices) const
+{
+    outIndices.clear();
+    for (std::size_t index = 0; index < _spheres.size(); ++index)
+    {
+        const glm::vec4& sphere = _spheres[index];
+        bool isSeen = sphere.w >= 0.0f;
+        for (const glm::vec4& plane : planes)
+            isSeen = isSeen && plane.x * sphere.x + plane.y * sphere.y + plane.z * sphere.z + plane.w >= -sphere.w;
+        if (isSeen) outIndices.push_back(static_cast<std::uint32_t>(index));
+    }
+}
+
+PoseBatch::Load CrowdInstances::load(std::size_t index) const
+{
+    return _controllers[index] ? PoseBatch::loadOf(_controllers[index]->instruction()) : PoseBatch::Load::Plain;
+}
+
+void CrowdInstances::addTo(PoseBatch& batch, const std::vector<std::uint32_t>& indices) const
+{
+    for (const std::uint32_t index : indices)
+    {
+        if (_controllers[index])
+            batch.add(_controllers[index]->instruction(), _rootMatrices[index]);
+        else
+            batch.addSample(_playbacks[index].sample(*_set, _clock), _rootMatrices[index]);
+    }
+    if (_tinted == 0) return;
+    for (std::size_t place = 0; place < indices.size(); ++place)
+        batch.setTint(place, _tints[indices[place]]);
+}
+
+} // namespace osgGpuAnimation

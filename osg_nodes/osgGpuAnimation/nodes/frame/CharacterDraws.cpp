@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/nodes/frame/CharacterDraws.h>
+
+#include <osgGpuAnimation/nodes/lod/LodSelection.h>
+#include <osgGpuAnimation/nodes/mesh/PaletteEntryBounds.h>
+#include <osgGpuAnimation/nodes/OsgMatrix.h>
+#include <osgGpuAnimation/nodes/frame/InstancedDraw.h>
+
+#include <osgUtil/Statistics>
+
+#include <algorithm>
+
+namespace osgGpuAnimation
+{
+
+DrawnInstances::DrawnInstances()
+{
+    setName("osgGpuAnimation DrawnInstances");
+    setUseDisplayList(false);
+    setCullingActive(false); // it has no place
+}
+
+void DrawnInstances::accept(osg::PrimitiveFunctor& functor) const
+{
+    if (auto* statistics = dynamic_cast<osgUtil::Statistics*>(&functor)) --statistics->numDrawables;
+    for (const Draw& draw : _draws)
+        for (std::size_t instance = 1; instance < draw.binding->drawnCount(); ++instance)
+            draw.mesh->accept(functor);
+}
+
+namespace
+{
+
+bool isOrderedByState(osgUtil::RenderBin::SortMode mode)
+{
+    return mode == osgUtil::RenderBin::SORT_BY_STATE || mode == osgUtil::RenderBin::SORT_BY_STATE_THEN_FRONT_TO_BACK;
+}
+
+bool isOrderedByState(const osg::StateSet* stateSet)
+{
+    if (!stateSet) return true;
+    if (!stateSet->getBinName().empty() && stateSet->getBinName() != "RenderBin") return false;
+    return !stateSet->useRenderBinDetails() || isOrderedByState(osgUtil::RenderBin::getDefaultRenderBinSortMode());
+}
+
+bool canBeDrawnTogether(const SkinnedGeometry& mesh)
+{
+    return !mesh.getCullCallback() && !mesh.getDrawCallback() && mesh.getBoundingBox().valid() &&
+           isOrderedByState(mesh.getStateSet()) && !PlacedDraw::isRefusedBy(mesh);
+}
+
+bool canDrawTogether(osgUtil::CullVisitor& visitor)
+{
+    const osg::CullSettings::ComputeNearFarMode mode = visitor.getComputeNearFarMode();
+    return isOrderedByState(visitor.getCurrentRenderBin()->getSortMode()) &&
+           (mode == osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR ||
+            mode == osg::CullSettings::COMPUTE_NEAR_FAR_USING_BOUNDING_VOLUMES) &&
+           visitor.getCurrentCullingSet().getStateFrustumList().empty();
+}
+
+SkinnedGeometry* asShared(osg::Node* child)
+{
+    auto* mesh = dynamic_cast<SkinnedGeometry*>(child);
+    return mesh && canBeDrawnTogether(*mesh) ? mesh : nullptr;
+}
+
+} // namespace
+
+bool CharacterDraws::Group::holds(const Group& other) const
+{
+    return bin == other.bin && projection == other.projection && traversalMask == other.traversalMask &&
+           set == other.set && slot == other.slot && level == other.level && meshes == other.meshes;
+}
+
+bool CharacterDraws::Detail::isOf(const osg::Group& node) const
+{
+    if (children.size() != node.getNumChildren()) return false;
+    for (unsigned int i = 0; i < node.getNumChildren(); ++i)
+        if (children[i] != node.getChild(i)) return false;
+    return true;
+}
+
+void CharacterDraws::draw(osgUtil::CullVisitor& visitor, DetailView& view, const DrawnCharacter& character,
+                          PoseFrame& frame, EnlistedPose pose)
+{
+    const int level = levelOf(visitor, view, character);
+    std::vector<osg::Node*> others; // not kept for its memory: there may be characters below them
+    const bool isTogether = character.isDrawnTogether && canDrawTogether(visitor) &&
+                            drawTogether(visitor, character, frame, pose, level, others);
+    osg::StateSet* state = nullptr;
+    const auto count = isTogether ? static_cast<unsigned int>(others.size()) : character.node.getNumChildren();
+    for (unsigned int i = 0; i < count; ++i)
+    {
+        osg::Node* child = isTogether ? others[i] : character.node.getChild(i);
+        if (!state)
+            visitor.pushStateSet(state = frame.stateOf(character.node, character.controller.set(), pose, level));
+        child->accept(visitor);
+    }
+    if (state) visitor.popStateSet();
+}
+
+int CharacterDraws::levelOf(osgUtil::CullVisitor& visitor, DetailView& view, const DrawnCharacter& character)
+{
+    if (!(character.pixelError > 0.0f)) return DetailLevels::allTriangles;
+    const Detail& detail = detailOf(character);
+    if (!detail.box.valid()) return DetailLevels::allTriangles;
+    const osg::Vec3 centre = detail.box.center();
+    return DetailScale(visitor, view, character.pixelError, detail.range)
+        .level(glm::vec3(centre.x(), centre.y(), centre.z()), detail.box.radius(), 1.0f);
+}
+
+// Characters of one set share their meshes as a rule; where they do not, each one's have levels.
+const CharacterDraws::Detail& CharacterDraws::detailOf(const DrawnCharacter& character)
+{
+    Detail& detail = _details[&character.controller.set()];
+    if (detail.isOf(character.node)) return detail;
+    detail = {{}, DetailRange(character.node, character.controller.set()), {}};
+    for (unsigned int i = 0; i < character.node.getNumChildren(); ++i)
+        detail.children.push_back(character.node.getChild(i));
+    forEachMesh(character.node, [&](const SkinnedGeometry& mesh) { detail.box.expandBy(mesh.getBoundingBox()); });
+    return detail;
+}
+
+// True where the meshes that can be shared are dealt with; false where all is to be drawn as it is.
+bool CharacterDraws::drawTogether(osgUtil::CullVisitor& visitor, const DrawnCharacter& character, PoseFrame& frame,
+                                  EnlistedPose pose, int level, std::vector<osg::Node*>& outOthers)
+{
+    _asked.bin = visitor.getCurrentRenderBin();
+    _asked.projection = visitor.getProjectionMatrix();
+    _asked.traversalMask = visitor.getTraversalMask();
+    _asked.set = &character.controller.set();
+    _asked.slot = pose.slot;
+    _asked.level = level;
+    _asked.meshes.clear();
+    for (unsigned int i = 0; i < character.node.getNumChildren(); ++i)
+    {
+        SkinnedGeometry* mesh = asShared(character.node.getChild(i));
+        if (!mesh)
+            outOthers.push_back(character.node.getChild(i));
+        else if (visitor.validNodeMask(*mesh))
+            _asked.meshes.push_back(mesh);
+    }
+    if (_asked.meshes.empty()) return false;
+    std::vector<Group>& groups = _groups[visitor.getCurrentStateGraph()];
+    const auto group =
+        std::find_if(groups.begin(), groups.end(), [&](const Group& known) { return known.holds(_asked); });
+    if (group == groups.end())
+    {
+        groups.push_back(_asked);
+        for (const SkinnedGeometry* mesh : _asked.meshes)
+            groups.back().box.expandBy(mesh->getBoundingBox());
+        return false;
+    }
+
+    // As CullVisitor goes about a drawable.
+    const osg::RefMatrix& toEye = *visitor.getModelViewMatrix();
+    if (character.node.isCullingActive() && visitor.isCulled(group->box)) return true;
+    const bool hasNearFar = visitor.getComputeNearFarMode() != osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR;
+    if (hasNearFar && !visitor.updateCalculatedNearFar(toEye, group->box)) return true;
+    const AffineMatrix placement = toAffine(toEye);
+    if (!placement.isFinite()) return true;
+    if (!group->together) open(visitor, *group, frame, visitor.getDistanceFromEyePoint(group->box.center(), false));
+    group->together->add({placement, static_cast<float>(pose.instance)});
+    return true;
+}
+
+void CharacterDraws::open(osgUtil::CullVisitor& visitor, Group& group, PoseFrame& frame, float depth)
+{
+    const DrawState placed = frame.placedState(*group.set, group.slot, group.level);
+    group.together = placed.binding;
+    const osg::ref_ptr<osg::RefMatrix> eye = new osg::RefMatrix;
+    visitor.pushStateSet(placed.stateSet);
+    for (SkinnedGeometry* mesh : group.meshes)
+    {
+        if (_counted) _counted->add(*mesh, *placed.binding);
+        mesh->addTo(visitor, eye.get(), depth);
+    }
+    visitor.popStateSet();
+}
+
+} // namespace osgGpuAnimation

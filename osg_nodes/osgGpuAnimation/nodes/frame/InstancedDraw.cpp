@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/nodes/frame/InstancedDraw.h>
+
+#include <osgGpuAnimation/nodes/OsgMatrix.h>
+
+#include <layout.glsl>
+
+#include <osg/ContextData>
+#include <osg/GLExtensions>
+#include <osg/Program>
+#include <osg/Texture>
+
+#include <algorithm>
+#include <iterator>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+bool isOf(const osg::VertexArrayState& arrays, const osg::State& state)
+{
+    return arrays.getVertexArrayObject() != 0 && arrays._state == &state;
+}
+
+/// OSG takes an array at the address of a deleted one for the same.
+void forgetArrays(osg::VertexArrayState& arrays)
+{
+    for (osg::VertexArrayState::ArrayDispatch* array : arrays._activeDispatchers)
+    {
+        array->array = nullptr;
+        array->modifiedCount = ~0u;
+    }
+}
+
+} // namespace
+
+MeshVertexArrays::MeshVertexArrays(osg::State& state)
+    : _state(state), _isContextsOwn(!isOf(*state.getCurrentVertexArrayState(), state))
+{
+    if (!_isContextsOwn) return;
+    // A context that came to the number later has found the first one's.
+    state.getCurrentVertexArrayState()->_vertexArrayObject = 0;
+    _state.unbindVertexArrayObject();
+    _state.setCurrentToGlobalVertexArrayState();
+    forgetArrays(*_state.getCurrentVertexArrayState());
+}
+
+MeshVertexArrays::~MeshVertexArrays()
+{
+    if (_isContextsOwn)
+    {
+        _state.getCurrentVertexArrayState()->unbindVertexBufferObject();
+        _state.getCurrentVertexArrayState()->unbindElementBufferObject();
+    }
+    // Whatever OSG compiles between frames would take the element buffer away from a vertex array left bound.
+    _state.unbindVertexArrayObject();
+}
+
+bool MeshVertexArrays::isNumberShared(const osg::State& state)
+{
+    const osg::ContextData* data = osg::getContextData(state.getContextID());
+    return data && data->getNumContexts() > 1;
+}
+
+void MeshVertexArrays::removeObject(osg::VertexArrayState& arrays)
+{
+    arrays.deleteVertexArrayObject();
+    arrays._vertexArrayObject = 0; // which OSG leaves as it was
+}
+
+void bindPalette(osg::State& state, const PalettePlace& place, int influences, int rigidEntry)
+{
+    const osg::Program::PerContextProgram* program = state.getLastAppliedProgramObject();
+    if (!program) return;
+    static const unsigned int paletteName = osg::Uniform::getNameID("posePalette");
+    static const unsigned int strideName = osg::Uniform::getNameID("poseStride");
+    static const unsigned int instanceName = osg::Uniform::getNameID("poseInstance");
+    static const unsigned int influencesName = osg::Uniform::getNameID("poseInfluences");
+    static const unsigned int tintsName = osg::Uniform::getNameID("poseTints");
+    static const unsigned int tintedName = osg::Uniform::getNameID("poseTinted");
+    const osg::GLExtensions* gl = state.get<osg::GLExtensions>();
+    state.setActiveTextureUnit(POSE_PALETTE_UNIT);
+    glBindTexture(GL_TEXTURE_BUFFER, place.texture);
+    gl->glUniform1i(program->getUniformLocation(paletteName), POSE_PALETTE_UNIT);
+    gl->glUniform1i(program->getUniformLocation(strideName), place.stride);
+    gl->glUniform1i(program->getUniformLocation(instanceName), place.instance);
+    gl->glUniform1i(program->getUniformLocation(influencesName), influences);
+    if (rigidEntry >= 0)
+    {
+        gl->glVertexAttrib4f(POSE_ENTRIES_0_LOCATION, static_cast<GLfloat>(rigidEntry), 0, 0, 0);
+        gl->glVertexAttrib4f(POSE_WEIGHTS_0_LOCATION, 1, 0, 0, 0);
+    }
+    gl->glUniform1i(program->getUniformLocation(tintsName), POSE_TINT_UNIT);
+    gl->glUniform1i(program->getUniformLocation(tintedName), place.tints != 0 ? 1 : 0);
+    if (place.tints != 0)
+    {
+        state.setActiveTextureUnit(POSE_TINT_UNIT);
+        glBindTexture(GL_TEXTURE_BUFFER, place.tints);
+    }
+}
+
+namespace
+{
+
+constexpr unsigned int attributeLocations[] = {POSE_PLACEMENT_ROW_0_LOCATION, POSE_PLACEMENT_ROW_1_LOCATION,
+                                               POSE_PLACEMENT_ROW_2_LOCATION, POSE_PLACED_POSE_LOCATION};
+
+std::size_t poseOf(const Placement& placement)
+{
+    return static_cast<std::size_t>(placement.pose);
+}
+
+} // namespace
+
+PlacedDraw::PlacedDraw(osg::State& state, const PaletteBinding& binding) : _state(state), _binding(binding)
+{
+    const osg::Program::PerContextProgram* program = state.getLastAppliedProgramObject();
+    if (!program || program->getAttribLocation("posePlacedPose") != POSE_PLACED_POSE_LOCATION) return;
+    _placements = &PlacementBuffers::of(state).buffer(binding.serial(), binding.placements());
+}
+
+PlacedDraw::~PlacedDraw()
+{
+    if (_placements)
+    {
+        const osg::GLExtensions& gl = *_state.get<osg::GLExtensions>();
+        for (const unsigned int location : attributeLocations)
+        {
+            gl.glDisableVertexAttribArray(location);
+            gl.glVertexAttribDivisor(location, 0);
+        }
+        return;
+    }
+    _state.applyModelViewMatrix(new osg::RefMatrix);
+    _state.applyModelViewAndProjectionUniformsIfRequired();
+}
+
+PlacedDraw::Run PlacedDraw::run(const PosePipeline& pipeline, std::size_t first) const
+{
+    const std::vector<Placement>& placements = _binding.placements();
+    Run run{pipeline.place(*_binding.animationSet(), _binding.slot(), poseOf(placements[first])), 1};
+    if (!_placements || run.place.texture == 0) return run;
+    const auto isInChunk = [&](std::size_t pose) { return pose >= run.place.chunkBegin && pose < run.place.chunkEnd; };
+    while (first + run.count < placements.size() && isInChunk(poseOf(placements[first + run.count])))
+        ++run.count;
+    run.place.instance = -static_cast<int>(run.place.chunkBegin);
+    return run;
+}
+
+void PlacedDraw::use(std::size_t first) const
+{
+    if (_placements)
+    {
+        // What is bound below is not what OSG knows to be bound.
+        _state.getCurrentVertexArrayState()->unbindVertexBufferObject();
+        std::size_t offset = first * sizeof(Placement);
+        for (const unsigned int location : attributeLocations)
+        {
+            _placements->bindAttributes(location, 1, sizeof(Placement), offset, 1);
+            offset += BufferTexture::texelBytes;
+        }
+        return;
+    }
+    _state.applyModelViewMatrix(new osg::RefMatrix(toOsg(_binding.placements()[first].toEye)));
+    _state.applyModelViewAndProjectionUniformsIfRequired();
+}
+
+bool PlacedDraw::isRefusedBy(const osg::Geometry& mesh)
+{
+    // Contexts may alias numbered attributes with texture coordinates and secondary colours.
+    return mesh.getNumTexCoordArrays() > 1 || mesh.getSecondaryColorArray() ||
+           std::any_of(std::begin(attributeLocations), std::end(attributeLocations),
+                       [&](unsigned int location) { return mesh.getVertexAttribArray(location) != nullptr; });
+}
+
+namespace
+{
+
+/// GL_NONE: an indirect kind.
+GLenum indexType(const osg::DrawElements& elements)
+{
+    switch (elements.getType())
+    {
+    case osg::PrimitiveSet::DrawElementsUBytePrimitiveType:
+        return GL_UNSIGNED_BYTE;
+    case osg::PrimitiveSet::DrawElementsUShortPrimitiveType:
+        return GL_UNSIGNED_SHORT;
+    case osg::PrimitiveSet::DrawElementsUIntPrimitiveType:
+        return GL_UNSIGNED_INT;
+    default:
+        return GL_NONE;
+    }
+}
+
+void drawElements(osg::State& state, const osg::DrawElements& elements, int count, bool usesBuffers)
+{
+    const GLvoid* indices = elements.getDataPointer();
+    osg::GLBufferObject* buffer = usesBuffers ? elements.getOrCreateGLBufferObject(state.getContextID()) : nullptr;
+    if (buffer)
+    {
+        state.getCurrentVertexArrayState()->bindElementBufferObject(buffer);
+        indices = reinterpret_cast<const GLvoid*>(buffer->getOffset(elements.getBufferIndex()));
+    }
+    else
+        state.getCurrentVertexArrayState()->unbindElementBufferObject();
+    state.get<osg::GLExtensions>()->glDrawElementsInstanced(
+        elements.getMode(), static_cast<GLsizei>(elements.getNumIndices()), indexType(elements), indices, count);
+}
+
+} // namespace
+
+void drawInstanced(osg::State& state, const osg::PrimitiveSet& primitives, int count, bool usesBuffers)
+{
+    const osg::GLExtensions* gl = state.get<osg::GLExtensions>();
+    const GLenum mode = primitives.getMode();
+    const osg::DrawElements* elements = primitives.getDrawElements();
+    if (elements && indexType(*elements) != GL_NONE)
+        drawElements(state, *elements, count, usesBuffers);
+    else if (const auto* arrays = dynamic_cast<const osg::DrawArrays*>(&primitives))
+        gl->glDrawArraysInstanced(mode, arrays->getFirst(), arrays->getCount(), count);
+    else if (const auto* lengths = dynamic_cast<const osg::DrawArrayLengths*>(&primitives))
+    {
+        GLint first = lengths->getFirst();
+        for (const GLsizei length : *lengths)
+        {
+            gl->glDrawArraysInstanced(mode, first, length, count);
+            first += length;
+        }
+    }
+    else if (const auto* several = dynamic_cast<const osg::MultiDrawArrays*>(&primitives))
+    {
+        const std::size_t parts = std::min(several->getFirsts().size(), several->getCounts().size());
+        for (std::size_t part = 0; part < parts; ++part)
+            gl->glDrawArraysInstanced(mode, several->getFirsts()[part], several->getCounts()[part], count);
+    }
+    else
+        primitives.draw(state, usesBuffers);
+}
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/nodes/frame/PaletteBinding.h>
+
+#include <atomic>
+#include <tuple>
+
+namespace osgGpuAnimation
+{
+
+PaletteBinding::PaletteBinding(const PaletteBinding& other, const osg::CopyOp& copyop)
+    : osg::StateAttribute(other, copyop), _set(other._set), _slot(other._slot), _instance(other._instance),
+      _instanceCount(other._instanceCount), _placements(other._placements), _serial(other._serial), _level(other._level)
+{
+}
+
+void PaletteBinding::set(std::shared_ptr<const AnimationSet> set, std::size_t slot, std::size_t instance,
+                         std::size_t instanceCount)
+{
+    _set = std::move(set);
+    _slot = slot;
+    _instance = instance;
+    _instanceCount = instanceCount;
+    _placements.clear();
+    _serial = 0;
+    _level = DetailLevels::allTriangles;
+}
+
+void PaletteBinding::setPlaced(std::shared_ptr<const AnimationSet> set, std::size_t slot)
+{
+    static std::atomic<std::uint64_t> last{0};
+    this->set(std::move(set), slot, 0, 0);
+    _serial = ++last;
+}
+
+int PaletteBinding::compare(const osg::StateAttribute& other) const
+{
+    COMPARE_StateAttribute_Types(PaletteBinding, other);
+    const auto left = std::make_tuple(_set.get(), _slot, _instance, _instanceCount, _serial, _level);
+    const auto right =
+        std::make_tuple(rhs._set.get(), rhs._slot, rhs._instance, rhs._instanceCount, rhs._serial, rhs._level);
+    return left < right ? -1 : (right < left ? 1 : 0);
+}
+
+} // namespace osgGpuAnimation

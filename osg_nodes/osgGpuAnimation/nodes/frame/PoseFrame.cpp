@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/nodes/frame/PoseFrame.h>
+
+#include <osgGpuAnimation/gpu/passes/FeedbackTimer.h>
+#include <osgGpuAnimation/nodes/PoseStatistics.h>
+
+#include <algorithm>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+bool isSame(const BlendSample& a, const BlendSample& b)
+{
+    return a.keyframe == b.keyframe && a.alpha == b.alpha && a.weight == b.weight && a.control == b.control;
+}
+
+/// Several cameras may have poses evaluated in one frame.
+void addTo(osg::Stats& stats, unsigned int frameNumber, const char* attribute, double amount)
+{
+    double before = 0.0;
+    stats.getAttribute(frameNumber, attribute, before);
+    stats.setAttribute(frameNumber, attribute, before + amount);
+}
+
+PaletteBinding& bindingOf(osg::StateSet& stateSet)
+{
+    return static_cast<PaletteBinding&>(*stateSet.getAttribute(PaletteBinding::bindingType));
+}
+
+} // namespace
+
+osg::ref_ptr<PoseFrame> PoseFrame::forContext(unsigned int contextId, const osg::FrameStamp* stamp)
+{
+    const unsigned int frameNumber = stamp ? stamp->getFrameNumber() : 0;
+    const double referenceTime = stamp ? stamp->getReferenceTime() : 0.0;
+    static std::mutex mutex;
+    static std::unordered_map<unsigned int, std::vector<osg::ref_ptr<PoseFrame>>> framesOfContext; // the latest last
+    const std::lock_guard<std::mutex> lock(mutex);
+    std::vector<osg::ref_ptr<PoseFrame>>& frames = framesOfContext[contextId];
+    // Of frames before the latest, the palettes have been written over.
+    if (!frames.empty() && frames.back()->_frameNumber == frameNumber &&
+        frames.back()->_referenceTime == referenceTime && (!stamp || frames.back()->_stamp.valid()))
+        return frames.back();
+    const auto unused = std::find_if(frames.begin(), frames.end(),
+                                     [](const osg::ref_ptr<PoseFrame>& frame) { return frame->referenceCount() == 1; });
+    osg::ref_ptr<PoseFrame> next = unused == frames.end() ? new PoseFrame : unused->get();
+    if (unused != frames.end()) frames.erase(unused);
+    frames.push_back(next);
+    // Frames that are over keep no sets alive.
+    for (const osg::ref_ptr<PoseFrame>& frame : frames)
+        if (frame->referenceCount() == 1) frame->reset();
+    next->reset();
+    next->_frameNumber = frameNumber;
+    next->_referenceTime = referenceTime;
+    next->_stamp = stamp;
+    return next;
+}
+
+void PoseFrame::reset()
+{
+    for (const std::unique_ptr<Batch>& batch : _batches)
+    {
+        batch->content->reset(nullptr);
+        _spareBatches.push_back(std::move(batch->content));
+    }
+    // As many again as were in use, and no more, wait for the next frame.
+    _spareBatches.resize(std::min(_spareBatches.size(), 2 * _batches.size()));
+    _batches.clear();
+    _batchesOfSet.clear();
+    _enlisted.clear();
+    _samples.clear();
+    for (StatePool* pool : {&_plainStates, &_tintedStates, &_placedStates})
+        pool->reset();
+}
+
+EnlistedPose PoseFrame::enlist(const osg::Node& node, const AnimationController& controller)
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    Enlisted& enlisted = _enlisted[&node];
+    if (!isStill(enlisted, controller))
+    {
+        const PoseInstruction& instruction = controller.instruction();
+        Batch& batch = openBatch(controller);
+        enlisted = {&batch, batch.content->add(instruction), _samples.size(), instruction.sampleCount, nullptr};
+        _samples.insert(_samples.end(), instruction.samples.begin(),
+                        instruction.samples.begin() + static_cast<std::ptrdiff_t>(instruction.sampleCount));
+    }
+    return {enlisted.batch->slot, enlisted.instance};
+}
+
+// The address may be that of another node by now, in a viewer whose frames have the same numbers.
+bool PoseFrame::isStill(const Enlisted& known, const AnimationController& controller) const
+{
+    const PoseInstruction& instruction = controller.instruction();
+    return known.batch && &known.batch->content->set() == &controller.set() &&
+           known.sampleCount == instruction.sampleCount &&
+           std::equal(instruction.samples.begin(),
+                      instruction.samples.begin() + static_cast<std::ptrdiff_t>(instruction.sampleCount),
+                      _samples.begin() + static_cast<std::ptrdiff_t>(known.firstSample), isSame);
+}
+
+osg::StateSet* PoseFrame::stateOf(const osg::Node& node, const AnimationSet& set, EnlistedPose pose, int level)
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    Enlisted& enlisted = _enlisted[&node];
+    // A camera that culls at the same time may have enlisted it with another instruction meanwhile.
+    const bool isOther = enlisted.batch->slot != pose.slot || enlisted.instance != pose.instance;
+    if (isOther) return stateOf(*_batchesOfSet[&set][pose.slot], pose.instance, 1, level).stateSet;
+    if (level != DetailLevels::allTriangles) return stateOf(*enlisted.batch, enlisted.instance, 1, level).stateSet;
+    if (!enlisted.stateSet) enlisted.stateSet = stateOf(*enlisted.batch, enlisted.instance, 1, level).stateSet;
+    return enlisted.stateSet;
+}
+
+PoseFrame::Batch& PoseFrame::openBatch(const AnimationController& controller)
+{
+    std::vector<Batch*>& batches = _batchesOfSet[&controller.set()];
+    const PoseInstruction& instruction = controller.instruction();
+    const auto open =
+        std::find_if(batches.begin(), batches.end(),
+                     [&](const Batch* batch) { return batch->isOpen() && batch->content->suits(instruction); });
+    return open != batches.end() ? **open : addBatch(spareBatch(controller.sharedSet()));
+}
+
+PoseFrame::Batch& PoseFrame::addBatch(std::unique_ptr<PoseBatch> content)
+{
+    std::vector<Batch*>& batches = _batchesOfSet[&content->set()];
+    _batches.push_back(std::make_unique<Batch>(Batch{std::move(content), batches.size()}));
+    batches.push_back(_batches.back().get());
+    return *batches.back();
+}
+
+std::unique_ptr<PoseBatch> PoseFrame::spareBatch(std::shared_ptr<const AnimationSet> set)
+{
+    if (_spareBatches.empty()) return std::make_unique<PoseBatch>(std::move(set));
+    std::unique_ptr<PoseBatch> batch = std::move(_spareBatches.back());
+    _spareBatches.pop_back();
+    batch->reset(std::move(set));
+    return batch;
+}
+
+std::unique_ptr<PoseBatch> PoseFrame::makeBatch(std::shared_ptr<const AnimationSet> set)
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    return spareBatch(std::move(set));
+}
+
+EnlistedBatch PoseFrame::enlist(std::unique_ptr<PoseBatch> content)
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    for (const Batch* batch : _batchesOfSet[&content->set()])
+        if (batch->all.stateSet && batch->content->isSame(*content))
+        {
+            _spareBatches.push_back(std::move(content));
+            return {batch->slot, batch->all};
+        }
+    Batch& batch = addBatch(std::move(content));
+    batch.all = stateOf(batch, 0, batch.content->size(), DetailLevels::allTriangles);
+    return {batch.slot, batch.all};
+}
+
+DrawState PoseFrame::stateOf(const Batch& batch, std::size_t instance, std::size_t instanceCount, int level)
+{
+    const DrawState state = (batch.content->tints().empty() ? _plainStates : _tintedStates).next();
+    state.binding->set(batch.content->sharedSet(), batch.slot, instance, instanceCount);
+    state.binding->setLevel(level);
+    return state;
+}
+
+DrawState PoseFrame::partState(const AnimationSet& set, std::size_t slot, std::size_t first, std::size_t count,
+                               int level)
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    return stateOf(*_batchesOfSet[&set][slot], first, count, level);
+}
+
+DrawState PoseFrame::placedState(const AnimationSet& set, std::size_t slot, int level)
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    const DrawState state = _placedStates.next();
+    state.binding->setPlaced(_batchesOfSet[&set][slot]->content->sharedSet(), slot);
+    state.binding->setLevel(level);
+    return state;
+}
+
+DrawState PoseFrame::StatePool::next()
+{
+    if (used == states.size())
+    {
+        states.push_back(new osg::StateSet);
+        states.back()->setAttribute(new PaletteBinding);
+        if (define) states.back()->setDefine(define);
+    }
+    osg::StateSet& state = *states[used++];
+    return {&state, &bindingOf(state)};
+}
+
+void PoseFrame::StatePool::reset()
+{
+    // What the last frame did not need is not kept for ever.
+    states.resize(std::min(states.size(), 2 * used));
+    for (const osg::ref_ptr<osg::StateSet>& state : states)
+        bindingOf(*state).set(nullptr, 0, 0, 0);
+    used = 0;
+}
+
+void PoseFrame::evaluate(osg::State& state, osg::Stats* stats)
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    PosePipeline* pipeline = PosePipeline::of(state);
+    if (!stats || !pipeline) return evaluateBatches(state, pipeline);
+    FeedbackTimer& timer = FeedbackTimer::of(state);
+    const std::uint64_t evaluatedBefore = pipeline->counters().instancesEvaluated;
+    timer.begin();
+    evaluateBatches(state, pipeline);
+    timer.end(_frameNumber);
+    record(*stats, pipeline->counters().instancesEvaluated - evaluatedBefore);
+    for (const FeedbackTimer::Measured& measured : timer.takeFinished())
+        addTo(*stats, measured.frameNumber, PoseStatistics::timeTaken, measured.seconds);
+}
+
+void PoseFrame::evaluateBatches(osg::State& state, PosePipeline* pipeline)
+{
+    for (const std::unique_ptr<Batch>& batch : _batches)
+    {
+        // A context made anew under an old one's number has none of its palettes.
+        if (batch->isEvaluated && pipeline && pipeline->place(batch->content->set(), batch->slot, 0).texture != 0)
+            continue;
+        batch->isEvaluated = true;
+        if (pipeline) pipeline->evaluate(state, *batch->content, batch->slot);
+    }
+}
+
+void PoseFrame::record(osg::Stats& stats, std::uint64_t evaluated) const
+{
+    std::size_t seen = 0, joints = 0;
+    for (const std::unique_ptr<Batch>& batch : _batches)
+    {
+        seen += batch->content->size();
+        joints += batch->content->size() * batch->content->set().skeleton().jointCount();
+    }
+    stats.setAttribute(_frameNumber, PoseStatistics::charactersSeen, static_cast<double>(seen));
+    stats.setAttribute(_frameNumber, PoseStatistics::jointsSeen, static_cast<double>(joints));
+    addTo(stats, _frameNumber, PoseStatistics::charactersEvaluated, static_cast<double>(evaluated));
+}
+
+} // namespace osgGpuAnimation

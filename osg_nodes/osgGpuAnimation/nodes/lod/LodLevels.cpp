@@ -1,0 +1,325 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/nodes/lod/LodLevels.h>
+
+#include <osgGpuAnimation/animation/bounds/ClipBounds.h>
+#include <osgGpuAnimation/animation/Pose.h>
+#include <osgGpuAnimation/nodes/lod/MeshSimplifier.h>
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+constexpr std::size_t poolSize = 64;
+
+using Joints = std::vector<glm::vec3>;
+
+Joints jointsOf(const AnimationSet& set, const PoseInstruction& instruction)
+{
+    std::vector<JointTransform> tracks;
+    std::vector<AffineMatrix> jointToModel;
+    Pose::mix(set, instruction, tracks);
+    Pose::jointToModel(set, tracks, AffineMatrix(), jointToModel);
+    Joints joints;
+    glm::vec3 mean(0.0f);
+    for (const AffineMatrix& joint : jointToModel)
+    {
+        joints.push_back(joint.transformPoint(glm::vec3(0.0f)));
+        mean += joints.back() / static_cast<float>(jointToModel.size());
+    }
+    for (glm::vec3& joint : joints)
+        joint -= mean;
+    // What turns or morphs without moving a joint counts a little.
+    for (const JointTransform& track : tracks)
+        joints.push_back(1e-3f * (glm::vec3(track.rotation) + glm::vec3(track.scale)));
+    return joints;
+}
+
+float distanceOf(const Joints& a, const Joints& b)
+{
+    float distance = 0.0f;
+    for (std::size_t joint = 0; joint < a.size(); ++joint)
+        distance += glm::distance(a[joint], b[joint]);
+    return distance;
+}
+
+std::vector<PoseInstruction> poolOf(const AnimationSet& set)
+{
+    std::vector<PoseInstruction> pool;
+    const std::size_t clips = set.clips().size();
+    const std::size_t perClip = clips == 0 ? 0 : std::clamp<std::size_t>(poolSize / clips, 1, 16);
+    const std::size_t stride = std::max<std::size_t>(clips / poolSize, 1);
+    for (std::size_t clip = 0; clip < clips; clip += stride)
+        for (std::size_t time = 0; time < perClip; ++time)
+        {
+            const double share = (static_cast<double>(time) + 0.5) / static_cast<double>(perClip);
+            PoseInstruction instruction;
+            instruction.samples[0] = set.sampleAt(static_cast<int>(clip), share * set.clips()[clip].duration());
+            pool.push_back(instruction);
+        }
+    return pool;
+}
+
+} // namespace
+
+std::vector<PoseInstruction> keyPoses(const AnimationSet& set, std::size_t count)
+{
+    std::vector<PoseInstruction> chosen{PoseInstruction()};
+    const std::vector<PoseInstruction> pool = poolOf(set);
+    std::vector<Joints> joints;
+    std::vector<float> distances;
+    Joints last = jointsOf(set, chosen.front());
+    for (const PoseInstruction& instruction : pool)
+    {
+        joints.push_back(jointsOf(set, instruction));
+        distances.push_back(distanceOf(joints.back(), last));
+    }
+    while (chosen.size() < count && !pool.empty())
+    {
+        const auto farthest = std::max_element(distances.begin(), distances.end());
+        if (!(*farthest > 0.0f)) break;
+        const auto index = static_cast<std::size_t>(farthest - distances.begin());
+        chosen.push_back(pool[index]);
+        for (std::size_t other = 0; other < pool.size(); ++other)
+            distances[other] = std::min(distances[other], distanceOf(joints[other], joints[index]));
+    }
+    return chosen;
+}
+
+namespace
+{
+
+constexpr std::size_t poseCount = 12;
+// The finest level is the mesh's size through 2 to that power, and the coarsest, which alone lets texture seams go, is
+// the character's: coarser ones save little more, and what is cut off hulls would make small characters thin.
+constexpr int finestFraction = 8;
+constexpr int coarsestFraction = 5;
+constexpr int mostBeyondSize =
+    10; ///< powers of two: what is so much smaller than its character is one triangle by then
+constexpr double worthwhile = 0.85;      ///< of the triangles of the level before
+constexpr std::size_t fewTriangles = 16; ///< for which no level is worth its trouble
+constexpr std::size_t entriesATriangle = 8;
+
+template <typename OsgArray, typename Vector>
+void copyTo(const osg::Array* array, std::size_t count, std::vector<Vector>& out)
+{
+    const auto* values = dynamic_cast<const OsgArray*>(array);
+    if (!values || values->size() != count) return;
+    for (const auto& value : *values)
+    {
+        Vector copied;
+        for (int i = 0; i < Vector::length(); ++i)
+            copied[i] = std::isfinite(value[i]) ? value[i] : 0.0f;
+        out.push_back(copied);
+    }
+}
+
+bool isFinite(const glm::vec3& position)
+{
+    // Squares of what is beyond are not.
+    constexpr float farthest = 1e18f;
+    return std::abs(position.x) < farthest && std::abs(position.y) < farthest && std::abs(position.z) < farthest;
+}
+
+/// Without poses where the mesh is nowhere in one.
+PosedSurface surfaceOf(const osg::Geometry& mesh, const AnimationSet& set, const DetailLevels::Skinning& skin)
+{
+    PosedSurface surface;
+    std::vector<AffineMatrix> palette;
+    std::vector<glm::dvec3> positions;
+    for (const PoseInstruction& pose : keyPoses(set, poseCount))
+    {
+        Pose::evaluate(set, pose, AffineMatrix(), palette);
+        skin(palette, positions);
+        surface.poses.emplace_back(positions.begin(), positions.end());
+        const std::vector<glm::vec3>& posed = surface.poses.back();
+        if (!posed.empty() && std::all_of(posed.begin(), posed.end(), isFinite)) continue;
+        surface.poses.clear();
+        return surface;
+    }
+    const std::size_t count = positions.size();
+    copyTo<osg::Vec3Array>(mesh.getNormalArray(), count, surface.normals);
+    if (mesh.getNumTexCoordArrays() > 0) copyTo<osg::Vec2Array>(mesh.getTexCoordArray(0), count, surface.texCoords);
+    return surface;
+}
+
+Box boxAround(const std::vector<glm::vec3>& positions)
+{
+    Box box;
+    for (const glm::vec3& position : positions)
+        box.add(position);
+    return box;
+}
+
+/// Of all joints in the rest pose.
+Box boxAroundJoints(const AnimationSet& set)
+{
+    std::vector<AffineMatrix> joints;
+    Pose::jointToModel(set, set.restPose(), AffineMatrix(), joints);
+    Box box;
+    for (const AffineMatrix& joint : joints)
+        if (const glm::vec3 place = joint.transformPoint(glm::vec3(0.0f)); isFinite(place)) box.add(place);
+    return box;
+}
+
+double sizeOf(const Box& box)
+{
+    return box.empty() ? 0.0 : glm::distance(glm::dvec3(box.min), glm::dvec3(box.max));
+}
+
+/// Whole triangles; none where it is anything else.
+std::vector<std::uint32_t> trianglesOf(const osg::PrimitiveSet& primitives, std::size_t vertexCount)
+{
+    std::vector<std::uint32_t> indices;
+    const osg::DrawElements* elements = primitives.getDrawElements();
+    if (!elements || primitives.getMode() != GL_TRIANGLES || !elements->getDataPointer()) return indices;
+    for (unsigned int i = 0; i + 2 < elements->getNumIndices(); i += 3)
+        for (unsigned int corner = i; corner < i + 3; ++corner)
+        {
+            if (elements->index(corner) >= vertexCount) return {};
+            indices.push_back(elements->index(corner));
+        }
+    return indices;
+}
+
+/// Whether posing the whole palette takes no more than working on the triangles does: of many small parts that move for
+/// themselves no levels are made.
+bool isWorthPoses(const osg::Geometry& mesh, const AnimationSet& set)
+{
+    std::size_t most = 0;
+    for (const osg::ref_ptr<osg::PrimitiveSet>& primitives : mesh.getPrimitiveSetList())
+        most = std::max<std::size_t>(most, primitives->getNumIndices() / 3);
+    return most >= std::max(fewTriangles, set.paletteSize() / entriesATriangle);
+}
+
+template <typename Elements>
+osg::ref_ptr<osg::DrawElements> makeElements(const std::vector<std::uint32_t>& indices)
+{
+    osg::ref_ptr<Elements> elements = new Elements(GL_TRIANGLES);
+    elements->assign(indices.begin(), indices.end());
+    return elements;
+}
+
+} // namespace
+
+int DetailLevels::levelOf(double error)
+{
+    return error > 0.0 && std::isfinite(error) ? std::ilogb(error) : allTriangles;
+}
+
+DetailLevels::DetailLevels(const osg::Geometry& mesh, const AnimationSet& set, const Skinning& skin)
+    : _vertices(mesh.getVertexArray()), _modifiedCount(_vertices ? _vertices->getModifiedCount() : 0)
+{
+    for (const osg::ref_ptr<osg::PrimitiveSet>& primitives : mesh.getPrimitiveSetList())
+        _primitives.push_back({primitives, primitives->getModifiedCount(), {}});
+    const std::size_t vertexCount = _vertices ? _vertices->getNumElements() : 0;
+    if (vertexCount > mostVertices || !isWorthPoses(mesh, set)) return;
+    const PosedSurface surface = surfaceOf(mesh, set, skin);
+    if (surface.poses.empty()) return;
+    const double size = sizeOf(boxAround(surface.poses.front()));
+    if (!(size > 0.0)) return;
+    const int coarsest = std::min(std::ilogb(std::max(size, sizeOf(boxAroundJoints(set)))) - coarsestFraction,
+                                  std::ilogb(size) + mostBeyondSize);
+    for (Primitives& primitives : _primitives)
+        addSteps(surface, std::ilogb(size) - finestFraction, coarsest, primitives);
+}
+
+void DetailLevels::addSteps(const PosedSurface& surface, int finest, int coarsest, Primitives& primitives)
+{
+    const std::vector<std::uint32_t> original = trianglesOf(*primitives.original, surface.vertexCount());
+    if (original.size() < 3 * fewTriangles) return;
+    SurfaceReduction reduction(surface, original);
+    std::size_t kept = original.size() / 3;
+    for (int level = finest; level <= coarsest; ++level)
+    {
+        if (reduction.triangleCount() <= 1) break;
+        const double limit = std::ldexp(1.0, level);
+        reduction.reduce(limit, level < coarsest);
+        const bool isWorthwhile =
+            static_cast<double>(reduction.triangleCount()) < worthwhile * static_cast<double>(kept);
+        if (!isWorthwhile || reduction.error() > limit) continue;
+        const std::vector<std::uint32_t> indices = reduction.indices();
+        kept = indices.size() / 3;
+        osg::ref_ptr<osg::DrawElements> elements = surface.vertexCount() <= 65535
+                                                       ? makeElements<osg::DrawElementsUShort>(indices)
+                                                       : makeElements<osg::DrawElementsUInt>(indices);
+        elements->setElementBufferObject(_buffer);
+        primitives.steps.push_back({level, elements});
+    }
+    if (primitives.steps.empty()) return;
+    const int first = primitives.steps.front().level;
+    _finest = _finest == allTriangles ? first : std::min(_finest, first);
+    _coarsest = std::max(_coarsest, primitives.steps.back().level);
+}
+
+bool DetailLevels::isOf(const osg::Geometry& mesh) const
+{
+    if (mesh.getVertexArray() != _vertices || mesh.getNumPrimitiveSets() != _primitives.size()) return false;
+    if (_vertices && _vertices->getModifiedCount() != _modifiedCount) return false;
+    for (unsigned int i = 0; i < _primitives.size(); ++i)
+    {
+        const osg::PrimitiveSet* now = mesh.getPrimitiveSet(i);
+        if (now != _primitives[i].original || now->getModifiedCount() != _primitives[i].modifiedCount) return false;
+    }
+    return true;
+}
+
+const osg::DrawElements* DetailLevels::elements(std::size_t primitiveSet, int level) const
+{
+    const osg::DrawElements* found = nullptr;
+    if (primitiveSet >= _primitives.size()) return found;
+    for (const Step& step : _primitives[primitiveSet].steps)
+        if (step.level <= level) found = step.elements;
+    return found;
+}
+
+void DetailLevels::releaseGLObjects(osg::State* state) const
+{
+    _buffer->releaseGLObjects(state);
+}
+
+void DetailLevels::resizeGLObjectBuffers(unsigned int maxSize) const
+{
+    _buffer->resizeGLObjectBuffers(maxSize);
+}
+
+std::shared_ptr<const DetailLevels> MeshDetail::known(const osg::Geometry& mesh) const
+{
+    std::shared_ptr<const DetailLevels> levels = std::atomic_load(&_levels);
+    return levels && levels->isOf(mesh) ? levels : nullptr;
+}
+
+std::shared_ptr<const DetailLevels> MeshDetail::of(const osg::Geometry& mesh, const AnimationSet& set,
+                                                   const DetailLevels::Skinning& skin) const
+{
+    if (std::shared_ptr<const DetailLevels> levels = known(mesh)) return levels;
+    const std::lock_guard<std::mutex> lock(_mutex);
+    if (std::shared_ptr<const DetailLevels> levels = known(mesh)) return levels;
+    auto made = std::make_shared<const DetailLevels>(mesh, set, skin);
+    std::atomic_store(&_levels, std::shared_ptr<const DetailLevels>(made));
+    return made;
+}
+
+void MeshDetail::forget()
+{
+    std::atomic_store(&_levels, std::shared_ptr<const DetailLevels>());
+}
+
+void MeshDetail::releaseGLObjects(osg::State* state) const
+{
+    if (const std::shared_ptr<const DetailLevels> levels = std::atomic_load(&_levels)) levels->releaseGLObjects(state);
+}
+
+void MeshDetail::resizeGLObjectBuffers(unsigned int maxSize) const
+{
+    if (const std::shared_ptr<const DetailLevels> levels = std::atomic_load(&_levels))
+        levels->resizeGLObjectBuffers(maxSize);
+}
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/nodes/lod/LodSelection.h>
+
+#include <osgGpuAnimation/nodes/frame/CullScopes.h>
+#include <osgGpuAnimation/nodes/mesh/PaletteEntryBounds.h>
+
+#include <osg/Transform>
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+
+namespace osgGpuAnimation
+{
+
+std::string DetailRange::pixelErrorsTaken()
+{
+    return "a number of pixels from 0 to " + std::to_string(largestPixelError);
+}
+
+Result<bool> DetailRange::prepare(float pixels, const osg::Group& meshes, const AnimationSet& set)
+{
+    if (!isPixelError(pixels))
+        return Error{"a pixel error of " + std::to_string(pixels) + ": it must be " + pixelErrorsTaken()};
+    if (pixels > 0.0f && set.paletteSize() > 0) static_cast<void>(DetailRange(meshes, set));
+    return true;
+}
+
+DetailRange::DetailRange(const osg::Group& meshes, const AnimationSet& set)
+{
+    std::size_t vertices = 0;
+    forEachMesh(meshes,
+                [&](const SkinnedGeometry& mesh)
+                {
+                    vertices += mesh.vertexCount();
+                    if (vertices > mostVertices) return;
+                    const std::shared_ptr<const DetailLevels> levels = mesh.detailLevels(set);
+                    if (levels->finest() == DetailLevels::allTriangles) return;
+                    _finest = std::min(_finest, levels->finest());
+                    _coarsest = std::max(_coarsest, levels->coarsest());
+                });
+}
+
+namespace
+{
+
+bool isAbsolute(const osg::Node* node)
+{
+    const auto* camera = dynamic_cast<const osg::Camera*>(node);
+    return camera && camera->getReferenceFrame() != osg::Transform::RELATIVE_RF;
+}
+
+} // namespace
+
+osg::Vec4 DetailView::pixelSizeVector(osgUtil::CullVisitor& visitor)
+{
+    if (visitor.getProjectionMatrix() != _projection || visitor.getCurrentCamera() != _culled) find(visitor);
+    if (!_eye) return visitor.getCurrentCullingSet().getPixelSizeVector();
+    return osg::CullingSet::computePixelSizeVector(*_viewport, _eye->getProjectionMatrix(),
+                                                   *visitor.getModelViewMatrix() * _toEye);
+}
+
+void DetailView::find(osgUtil::CullVisitor& visitor)
+{
+    _projection = visitor.getProjectionMatrix();
+    _culled = visitor.getCurrentCamera();
+    _eye = nullptr;
+    if (!_culled || !DepthPass::isOf(*_culled) || !isAbsolute(_culled)) return;
+    const osg::NodePath& path = visitor.getNodePath();
+    const auto place = std::find(path.rbegin(), path.rend(), _culled);
+    if (place == path.rend()) return;
+    // What the shadow map's camera was met below, and so what space its own world is, and who sees that.
+    const osg::NodePath above(path.begin(), std::prev(place.base()));
+    const auto nested = std::find_if(above.rbegin(), above.rend(), isAbsolute);
+    const osg::Camera* root = visitor.getRenderStage()->getCamera();
+    const osg::Camera* eye = nested == above.rend() ? root : (*nested)->asCamera();
+    _viewport = eye && eye->getViewport() ? eye->getViewport() : visitor.getRenderStage()->getViewport();
+    if (!root || !_viewport) return;
+    _eye = eye;
+    _toEye = _culled->getInverseViewMatrix() * osg::computeLocalToEye(root->getViewMatrix(), above, false);
+}
+
+DetailScale::Measure::Measure(const osg::Vec4& halfPixel, float pixelError)
+    : errorAt(2.0f * pixelError * glm::vec4(halfPixel.x(), halfPixel.y(), halfPixel.z(), halfPixel.w())),
+      slope(glm::length(glm::vec3(errorAt)))
+{
+}
+
+DetailScale::DetailScale(osgUtil::CullVisitor& visitor, DetailView& view, float pixelError, const DetailRange& range)
+    : _range(range)
+{
+    if (!(pixelError > 0.0f)) return;
+    _seen = Measure(view.pixelSizeVector(visitor), pixelError);
+    _own = Measure(visitor.getCurrentCullingSet().getPixelSizeVector(), pixelError);
+}
+
+int DetailScale::level(const glm::vec3& centre, float radius, float scale) const
+{
+    const Measure& measure = _seen.farthest(centre, radius) < 0.0f ? _own : _seen;
+    return _range.held(DetailLevels::levelOf(measure.nearest(centre, radius) / scale));
+}
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/nodes/lod/MeshSimplifier.h>
+
+#include <osgGpuAnimation/nodes/lod/CollapsibleMesh.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+constexpr double borderWeight = 4.0;       ///< of planes that hold open borders in place, beside the triangles' own
+constexpr double lengthCost = 1e-4;        ///< of an edge's squared length: of equals, the shorter goes first
+constexpr double sharpestTurn = 0.05;      ///< cosine between a triangle and what becomes of it
+constexpr std::size_t mostTriangles = 100; ///< at an edge or beside it: fans would take time by their square
+constexpr int mostPasses = 3;              ///< over all edges that are left, for one limit
+constexpr double texCoordsCount = 100.0;   ///< beside normals, where a vertex is chosen
+
+using Edge = std::pair<std::uint32_t, std::uint32_t>;
+
+glm::dvec3 normalOf(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c)
+{
+    return glm::cross(b - a, c - a); // twice the area long
+}
+
+Edge edgeOf(const CollapsibleMesh& mesh, const CollapsibleMesh::Corners& corners, std::size_t i)
+{
+    return std::minmax({mesh.pointOf(corners[i]), mesh.pointOf(corners[(i + 1) % 3])});
+}
+
+/// In order, each as often as triangles have it.
+std::vector<Edge> edgesOf(const CollapsibleMesh& mesh)
+{
+    std::vector<Edge> edges;
+    for (std::uint32_t triangle = 0; triangle < mesh.triangleCount(); ++triangle)
+        for (std::size_t i = 0; i < 3; ++i)
+            edges.push_back(edgeOf(mesh, mesh.corners(triangle), i));
+    std::sort(edges.begin(), edges.end());
+    return edges;
+}
+
+} // namespace
+
+SurfaceReduction::SurfaceReduction(const PosedSurface& surface, const std::vector<std::uint32_t>& indices)
+    : _surface(surface), _mesh(surface, indices), _quadrics(_mesh.pointCount() * _mesh.poseCount())
+{
+    addPlanes();
+}
+
+/// Of all triangles, and across them at open borders.
+void SurfaceReduction::addPlanes()
+{
+    const std::size_t poseCount = _mesh.poseCount();
+    const std::vector<Edge> edges = edgesOf(_mesh);
+    for (std::uint32_t triangle = 0; triangle < _mesh.triangleCount(); ++triangle)
+    {
+        const Corners& corners = _mesh.corners(triangle);
+        for (std::size_t i = 0; i < 3; ++i)
+        {
+            const std::uint32_t from = _mesh.pointOf(corners[i]), to = _mesh.pointOf(corners[(i + 1) % 3]);
+            const auto [first, last] = std::equal_range(edges.begin(), edges.end(), edgeOf(_mesh, corners, i));
+            const bool isBorder = last - first == 1;
+            for (std::size_t pose = 0; pose < poseCount; ++pose)
+            {
+                const glm::dvec3 normal =
+                    normalOf(_mesh.at(pose, corners, 0), _mesh.at(pose, corners, 1), _mesh.at(pose, corners, 2));
+                const double area = glm::length(normal);
+                if (!(area > 0.0)) continue;
+                const glm::dvec3 place = _mesh.at(pose, from);
+                _quadrics[from * poseCount + pose].add(normal / area, place, area);
+                const glm::dvec3 outwards = glm::cross(_mesh.at(pose, to) - place, normal / area);
+                const double length = glm::length(outwards);
+                if (!isBorder || !(length > 0.0)) continue;
+                for (const std::uint32_t end : {from, to})
+                    _quadrics[end * poseCount + pose].add(outwards / length, place, borderWeight * length * length);
+            }
+        }
+    }
+}
+
+void SurfaceReduction::consider(std::uint32_t from, std::uint32_t to)
+{
+    const std::size_t poseCount = _mesh.poseCount();
+    double cost = 0.0;
+    for (std::size_t pose = 0; pose < poseCount && cost <= _squaredLimit; ++pose)
+    {
+        PlaneQuadric quadric = _quadrics[from * poseCount + pose];
+        quadric += _quadrics[to * poseCount + pose];
+        const glm::dvec3 place = _mesh.at(pose, to), way = place - _mesh.at(pose, from);
+        cost = std::max(cost, quadric.at(place) + lengthCost * glm::dot(way, way));
+    }
+    if (cost <= _squaredLimit) _next.push({cost, from, to, _mesh.turnOf(from), _mesh.turnOf(to)});
+}
+
+void SurfaceReduction::considerAll()
+{
+    _next = {};
+    for (std::uint32_t point = 0; point < _mesh.pointCount(); ++point)
+        for (const std::uint32_t neighbour : _mesh.neighboursOf(point))
+            consider(point, neighbour);
+}
+
+void SurfaceReduction::reduce(double limit, bool keepSeams)
+{
+    _squaredLimit = limit * limit;
+    _keepsSeams = keepSeams;
+    // What could not be collapsed may be when others have been.
+    bool hasCollapsed = true;
+    for (int pass = 0; pass < mostPasses && hasCollapsed; ++pass)
+    {
+        considerAll();
+        hasCollapsed = collapseWhatIsConsidered();
+    }
+}
+
+bool SurfaceReduction::collapseWhatIsConsidered()
+{
+    bool hasCollapsed = false;
+    const std::size_t poseCount = _mesh.poseCount();
+    std::vector<Corners> moved;
+    while (!_next.empty())
+    {
+        const Collapse next = _next.top();
+        _next.pop();
+        if (next.fromTurn != _mesh.turnOf(next.from) || next.toTurn != _mesh.turnOf(next.to)) continue;
+        if (!findCorners(next.from, next.to, moved) || !isNear(next.from, next.to, moved)) continue;
+        _mesh.collapse(next.from, next.to, moved);
+        for (std::size_t pose = 0; pose < poseCount; ++pose)
+            _quadrics[next.to * poseCount + pose] += _quadrics[next.from * poseCount + pose];
+        for (const std::uint32_t neighbour : _mesh.neighboursOf(next.to))
+        {
+            consider(next.to, neighbour);
+            consider(neighbour, next.to);
+        }
+        hasCollapsed = true;
+    }
+    return hasCollapsed;
+}
+
+/// The triangles that would be moved, as they would be then. False where the collapse is not allowed.
+bool SurfaceReduction::findCorners(std::uint32_t from, std::uint32_t to, std::vector<Corners>& outMoved) const
+{
+    const std::vector<std::uint32_t>&here = _mesh.trianglesAt(from), &there = _mesh.trianglesAt(to);
+    outMoved.clear();
+    if (here.size() + there.size() > mostTriangles) return false;
+    for (const std::uint32_t triangle : here)
+    {
+        Corners corners = _mesh.corners(triangle);
+        if (_mesh.has(triangle, to)) continue;
+        if (turnsOver(corners, from, to)) return false;
+        for (std::uint32_t& vertex : corners)
+            if (_mesh.pointOf(vertex) == from && !findVertex(vertex, from, to, vertex)) return false;
+        outMoved.push_back(corners);
+    }
+    return !outMoved.empty() ||
+           std::any_of(there.begin(), there.end(), [&](std::uint32_t triangle) { return !_mesh.has(triangle, from); });
+}
+
+bool SurfaceReduction::turnsOver(const Corners& corners, std::uint32_t from, std::uint32_t to) const
+{
+    for (std::size_t pose = 0; pose < _mesh.poseCount(); ++pose)
+    {
+        const auto placeOf = [&](std::uint32_t vertex)
+        {
+            const std::uint32_t point = _mesh.pointOf(vertex);
+            return _mesh.at(pose, point == from ? to : point);
+        };
+        const glm::dvec3 before =
+            normalOf(_mesh.at(pose, corners, 0), _mesh.at(pose, corners, 1), _mesh.at(pose, corners, 2));
+        const glm::dvec3 after = normalOf(placeOf(corners[0]), placeOf(corners[1]), placeOf(corners[2]));
+        if (glm::dot(before, after) < sharpestTurn * glm::length(before) * glm::length(after)) return true;
+    }
+    return false;
+}
+
+/// On one side of a texture's seam.
+bool SurfaceReduction::isAlike(std::uint32_t vertex, std::uint32_t other) const
+{
+    return vertex == other || _surface.texCoords.empty() || _surface.texCoords[vertex] == _surface.texCoords[other];
+}
+
+/// Which of the vertices at `to` takes the place of the given one at `from`: one that lies on the same side of a seam,
+/// with the nearest normal. False where there is none and seams are to be kept.
+bool SurfaceReduction::findVertex(std::uint32_t given, std::uint32_t from, std::uint32_t to,
+                                  std::uint32_t& outVertex) const
+{
+    constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+    std::uint32_t beside = none; // at the other end of an edge on its side
+    for (const std::uint32_t triangle : _mesh.trianglesAt(from))
+    {
+        std::uint32_t here = none, there = none;
+        for (const std::uint32_t vertex : _mesh.corners(triangle))
+        {
+            if (_mesh.pointOf(vertex) == from) here = vertex;
+            if (_mesh.pointOf(vertex) == to) there = vertex;
+        }
+        if (there != none && isAlike(here, given)) beside = there;
+    }
+    if (beside == none && _keepsSeams) return false;
+    double least = std::numeric_limits<double>::infinity();
+    for (const std::uint32_t other : _mesh.verticesOf(to))
+    {
+        if (beside != none && !isAlike(other, beside)) continue;
+        double unlike = 0.0;
+        if (!_surface.normals.empty()) unlike -= glm::dot(_surface.normals[other], _surface.normals[given]);
+        if (!_surface.texCoords.empty())
+            unlike += texCoordsCount * glm::distance(_surface.texCoords[other], _surface.texCoords[given]);
+        if (!(unlike < least)) continue;
+        least = unlike;
+        outVertex = other;
+    }
+    return std::isfinite(least);
+}
+
+/// Whether all that goes by triangles which would change stays within the limit of those there then: what went to
+/// either point, and to their neighbours.
+bool SurfaceReduction::isNear(std::uint32_t from, std::uint32_t to, const std::vector<Corners>& moved) const
+{
+    for (const std::uint32_t neighbour : _mesh.neighboursOf(to))
+        if (_mesh.trianglesAt(neighbour).size() > mostTriangles) return false;
+    const std::vector<Corners> atTo = cornersAfter(to, from, moved);
+    if (!areNear(from, atTo) || !areNear(to, atTo)) return false;
+    for (const std::uint32_t neighbour : _mesh.neighboursOf(from))
+    {
+        if (neighbour == to) continue;
+        if (_mesh.trianglesAt(neighbour).size() > mostTriangles) return false;
+        // Only by triangles at the neighbour itself: what happens to others would not be seen there.
+        const std::vector<Corners> there = cornersAfter(neighbour, from, moved);
+        if (!areNear(neighbour, there.empty() ? atTo : there)) return false;
+    }
+    return true;
+}
+
+/// The triangles at a point when those at `from` have moved.
+std::vector<CollapsibleMesh::Corners> SurfaceReduction::cornersAfter(std::uint32_t point, std::uint32_t from,
+                                                                     const std::vector<Corners>& moved) const
+{
+    std::vector<Corners> there;
+    for (const Corners& corners : moved)
+        if (_mesh.pointOf(corners[0]) == point || _mesh.pointOf(corners[1]) == point ||
+            _mesh.pointOf(corners[2]) == point)
+            there.push_back(corners);
+    for (const std::uint32_t triangle : _mesh.trianglesAt(point))
+        if (!_mesh.has(triangle, from)) there.push_back(_mesh.corners(triangle));
+    return there;
+}
+
+bool SurfaceReduction::areNear(std::uint32_t cameTo, const std::vector<Corners>& triangles) const
+{
+    for (std::size_t pose = 0; pose < _mesh.poseCount(); ++pose)
+        for (const std::uint32_t point : _mesh.cameTo(cameTo))
+            if (squaredDistance(pose, point, triangles, _squaredLimit) > _squaredLimit) return false;
+    return true;
+}
+
+/// To the nearest of them, or to one that is near enough.
+double SurfaceReduction::squaredDistance(std::size_t pose, std::uint32_t point, const std::vector<Corners>& triangles,
+                                         double enough) const
+{
+    const glm::dvec3 place = _mesh.at(pose, point);
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < triangles.size() && nearest > enough; ++i)
+        nearest = std::min(nearest,
+                           squaredDistanceToTriangle(place, _mesh.at(pose, triangles[i], 0),
+                                                     _mesh.at(pose, triangles[i], 1), _mesh.at(pose, triangles[i], 2)));
+    return nearest;
+}
+
+double SurfaceReduction::error() const
+{
+    double largest = 0.0;
+    for (std::uint32_t now = 0; now < _mesh.pointCount(); ++now)
+    {
+        if (_mesh.cameTo(now).size() < 2 || _mesh.trianglesAt(now).empty()) continue;
+        const std::vector<Corners> there = _mesh.cornersAround(now);
+        for (std::size_t pose = 0; pose < _mesh.poseCount(); ++pose)
+            for (const std::uint32_t point : _mesh.cameTo(now))
+                if (point != now) largest = std::max(largest, squaredDistance(pose, point, there, largest));
+    }
+    return std::sqrt(largest);
+}
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/nodes/mesh/PaletteEntryBounds.h>
+
+#include <osgGpuAnimation/animation/bounds/JointRange.h>
+#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
+
+#include <algorithm>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+glm::vec3 toGlm(const osg::Vec3& vector)
+{
+    return {vector.x(), vector.y(), vector.z()};
+}
+
+/// What a morph's weights can be where so many additive layers change them.
+std::vector<WeightRange> rangesWithAdded(const AnimationSet& set, std::size_t morph, std::size_t additiveLayers)
+{
+    std::vector<WeightRange> ranges = weightRanges(set, morph);
+    for (WeightRange& range : ranges)
+    {
+        const float added = (range.max - range.min) * static_cast<float>(additiveLayers);
+        range = {range.min - added, range.max + added};
+    }
+    return ranges;
+}
+
+/// Where the weights take one vertex: the box of all its morphed positions.
+Box reachOfVertex(const osg::Vec3& position, std::size_t vertex, const std::vector<MorphTarget>& targets,
+                  const std::vector<WeightRange>& ranges)
+{
+    Box reach;
+    reach.add(toGlm(position));
+    for (std::size_t target = 0; target < std::min(targets.size(), ranges.size()); ++target)
+    {
+        const osg::Vec3Array* deltas = targets[target].positions.get();
+        if (!deltas || vertex >= deltas->size()) continue;
+        const glm::vec3 delta = toGlm((*deltas)[vertex]);
+        reach.min += glm::min(delta * ranges[target].min, delta * ranges[target].max);
+        reach.max += glm::max(delta * ranges[target].min, delta * ranges[target].max);
+    }
+    return reach;
+}
+
+} // namespace
+
+EntryReach::EntryReach(const AnimationSet& set, std::size_t additiveLayers)
+    : _set(&set), _additiveLayers(additiveLayers), _boxes(set.paletteSize())
+{
+}
+
+EntryReach::EntryReach(const EntryReach& other, std::size_t additiveLayers) : EntryReach(other)
+{
+    _additiveLayers = additiveLayers;
+}
+
+void EntryReach::add(const SkinnedGeometry& mesh)
+{
+    const auto* vertices = dynamic_cast<const osg::Vec3Array*>(mesh.getVertexArray());
+    if (!vertices) return;
+    if (mesh.rigidEntry() >= 0 && mesh.morph() < 0)
+    {
+        addRigid(*vertices, static_cast<std::size_t>(mesh.rigidEntry()));
+        return;
+    }
+    std::vector<WeightRange> ranges;
+    if (mesh.morph() >= 0) ranges = rangesWithAdded(*_set, static_cast<std::size_t>(mesh.morph()), _additiveLayers);
+    for (std::size_t vertex = 0; vertex < vertices->size(); ++vertex)
+    {
+        const Box reach = reachOfVertex((*vertices)[vertex], vertex, mesh.morphTargets(), ranges);
+        mesh.forEachInfluence(vertex,
+                              [&](std::size_t entry, float)
+                              {
+                                  if (entry < _boxes.size()) _boxes[entry].add(reach);
+                              });
+    }
+}
+
+void EntryReach::addRigid(const osg::Vec3Array& vertices, std::size_t entry)
+{
+    const auto [known, isNew] = _bindBoxes.try_emplace(&vertices);
+    for (std::size_t vertex = 0; isNew && vertex < vertices.size(); ++vertex)
+        known->second.add(toGlm(vertices[vertex]));
+    if (entry < _boxes.size()) _boxes[entry].add(known->second);
+}
+
+} // namespace osgGpuAnimation

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Base colour, lit per fragment by OSG's lights as the fixed pipeline does, in the shadow maps of osgShadow's techniques,
-// with fog. In a core profile, which has no lights: a headlight. DRAW_... are those of nodes/SurfaceState.h. Of what the
+// with fog. In a core profile, which has no lights: a headlight. DRAW_... are those of nodes/ShaderKey.h. Of what the
 // vertex shader puts out, the linker leaves out what is not read here: that is why nothing is read that may be done
 // without. POSE_COLORED: the mesh has colours, its own or those of morph targets; POSE_TINTED: the instances drawn have
 // tints.

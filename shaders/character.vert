@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Draws a SkinnedGeometry: skins, then what the fixed pipeline does. DRAW_... are those of nodes/SurfaceState.h.
+// Draws a SkinnedGeometry: skins, then what the fixed pipeline does. DRAW_... are those of nodes/ShaderKey.h.
 // POSE_COLORED: 1: the mesh has colours; 2: its morph targets alone give it some.
 #pragma import_defines(POSE_COLORED, POSE_PLACED)
 

@@ -19,7 +19,7 @@
 #define POSE_SAMPLE_SPLINE 1u    // the clip's tracks are value, in-tangent, out-tangent
 #define POSE_SAMPLE_ADDITIVE 2u  // adds its difference from the REFERENCE right before it
 #define POSE_SAMPLE_REFERENCE 4u // no share in the pose; its weight is that of the sample after it
-#define POSE_SAMPLE_ABOVE 8u     // the first of a standing above that of the samples before it
+#define POSE_SAMPLE_ABOVE 8u     // the first of a blend priority above that of the samples before it
 #define POSE_SAMPLE_MASK_SHIFT 16
 
 // Additive layers leave axes of a smaller reference scale as they are.

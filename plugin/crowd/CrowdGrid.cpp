@@ -47,7 +47,7 @@ double widthOf(const AnimatedCharacter& character, const osg::Matrixd& placement
     osg::BoundingBoxd placed;
     const auto add = [&](int clip)
     {
-        const Box& box = character.clipBounds(clip);
+        const Box& box = character.getClipBounds(clip);
         for (int i = 0; i < 8 && !box.empty(); ++i)
         {
             const glm::vec3 corner = box.corner(i);
@@ -72,7 +72,7 @@ double share(std::mt19937& random)
 AnimationController randomController(const AnimatedCrowd& crowd, const std::vector<std::size_t>& clips,
                                      std::mt19937& random)
 {
-    AnimationController controller(crowd.sharedSet());
+    AnimationController controller(crowd.getSharedAnimationSet());
     if (clips.empty()) return controller;
     const auto choice = static_cast<std::size_t>(share(random) * static_cast<double>(clips.size()));
     if (controller.play(clips[choice])) controller.seek(share(random) * controller.duration());
@@ -85,7 +85,7 @@ Result<osg::ref_ptr<AnimatedCrowd>> makeCrowd(osg::Node& model, const CrowdOptio
 {
     const AnimatedCharacter* character = findCharacter(model);
     if (!character) return Error{"there is no animated character in it"};
-    const Result<std::vector<std::size_t>> clips = findClips(character->set(), options.clips);
+    const Result<std::vector<std::size_t>> clips = findClips(character->getAnimationSet(), options.clips);
     if (!clips) return clips.error();
 
     osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*character);

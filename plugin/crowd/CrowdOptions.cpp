@@ -67,7 +67,7 @@ std::string wanted(const std::string& name)
 {
     if (name == "seed") return "a whole number from 0 to 4294967295";
     if (name == "spacing") return "a number of units above 0";
-    if (name == "pixelError") return DetailRange::pixelErrorsTaken();
+    if (name == "pixelError") return LodRange::pixelErrorsTaken();
     return "names or numbers of clips apart by commas";
 }
 
@@ -78,7 +78,7 @@ bool apply(const gltf::OptionWord& word, CrowdOptions& out)
     if (word.name == "noRotation") out.isYUp = true;
     if (word.name == "seed") return readNumber(value, out.seed);
     if (word.name == "pixelError")
-        return readNumber(value, out.pixelError.emplace()) && DetailRange::isPixelError(*out.pixelError);
+        return readNumber(value, out.pixelError.emplace()) && LodRange::isPixelError(*out.pixelError);
     if (word.name == "spacing")
         return readNumber(value, out.spacing.emplace()) && std::isfinite(*out.spacing) && *out.spacing > 0.0;
     if (word.name != "clips") return true;

@@ -116,7 +116,7 @@ Result<bool> Importer::finishClips()
         Result<CompactedCharacter> compacted = compactClipsOf(*_result.character, *_options.compact);
         if (!compacted) return compacted.error();
         _result.compacted = std::move(compacted).value();
-        _result.set = _result.character->controller().sharedSet();
+        _result.set = _result.character->getController().sharedSet();
     }
     _result.character->computeClipBounds();
     return _result.character->setPixelError(static_cast<float>(_options.pixelError));
@@ -156,7 +156,7 @@ Result<bool> Importer::play(int clip)
 {
     if (!_result.character) return true;
     if (!_options.noKeys) _result.character->addEventCallback(new CharacterKeys(_options.fadeSeconds));
-    AnimationController& controller = _result.character->controller();
+    AnimationController& controller = _result.character->getController();
     controller.setSpeed(_options.speed);
     controller.setLoopMode(_options.loopMode);
     if (clip < 0) return true;

@@ -90,9 +90,9 @@ const std::vector<Option>& allOptions()
          [](const std::string& value, ImportOptions& options)
          { return read(value, options.compact.emplace()) && *options.compact > 0.0 && *options.compact <= 1.0; }},
         {{"pixelError=PIXELS", "fewer triangles where that hides how far they are off; default: 0, all triangles"},
-         DetailRange::pixelErrorsTaken(),
+         LodRange::pixelErrorsTaken(),
          [](const std::string& value, ImportOptions& options)
-         { return read(value, options.pixelError) && DetailRange::isPixelError(options.pixelError); }},
+         { return read(value, options.pixelError) && LodRange::isPixelError(options.pixelError); }},
         {{"noKeys", "no keys for viewers on the character; default: n N k . , - + r j"},
          "",
          setFlag<&ImportOptions::noKeys>},

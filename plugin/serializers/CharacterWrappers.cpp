@@ -28,7 +28,7 @@ osg::Object* createCharacter()
 
 void transferCharacterSet(ValueStream& stream, AnimatedCharacter& character)
 {
-    transferSet(stream, character, character.controller().sharedSet());
+    transferSet(stream, character, character.getController().sharedSet());
 }
 
 /// One bit for each setting that differs from the default. Earlier readers know the lower bits only.
@@ -41,8 +41,8 @@ enum Extra : std::int32_t
 
 std::int32_t extrasOf(const AnimatedCharacter& character)
 {
-    std::int32_t extras = character.clipBounds(-1).empty() ? 0 : hasClipBounds;
-    if (character.pixelError() > 0.0f) extras |= hasPixelError;
+    std::int32_t extras = character.getClipBounds(-1).empty() ? 0 : hasClipBounds;
+    if (character.getPixelError() > 0.0f) extras |= hasPixelError;
     if (!character.isDrawnTogether()) extras |= isDrawnAlone;
     return extras;
 }
@@ -50,7 +50,7 @@ std::int32_t extrasOf(const AnimatedCharacter& character)
 void transferExtras(ValueStream& stream, AnimatedCharacter& character)
 {
     std::int32_t extras = extrasOf(character);
-    double pixelError = static_cast<double>(character.pixelError());
+    double pixelError = static_cast<double>(character.getPixelError());
     stream.limited("the settings of a character", extras, 0, hasClipBounds | hasPixelError | isDrawnAlone);
     if (extras & hasPixelError) stream.value(pixelError);
     stream.endLine();
@@ -63,7 +63,7 @@ void transferExtras(ValueStream& stream, AnimatedCharacter& character)
 
 void transferState(ValueStream& stream, AnimatedCharacter& character)
 {
-    transferController(stream, character.controller());
+    transferController(stream, character.getController());
     if (stream.hasRead()) character.dirtyBound();
 }
 
@@ -78,8 +78,8 @@ void addCharacterProperties(osgDB::ObjectWrapper* wrapper)
 
 void transferJoint(ValueStream& stream, JointAttachment& attachment)
 {
-    int joint = attachment.joint();
-    std::string name = attachment.jointName();
+    int joint = attachment.getJoint();
+    std::string name = attachment.getJointName();
     stream.values(joint, name).endLine();
     if (!stream.hasRead()) return;
     if (name.empty())
@@ -90,7 +90,7 @@ void transferJoint(ValueStream& stream, JointAttachment& attachment)
 
 void transferFadeSeconds(ValueStream& stream, CharacterKeys& keys)
 {
-    double seconds = keys.fadeSeconds();
+    double seconds = keys.getFadeSeconds();
     stream.value(seconds).endLine();
     if (!stream.hasRead()) return;
     if (!std::isfinite(seconds) || seconds < 0.0)

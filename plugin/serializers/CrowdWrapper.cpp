@@ -36,7 +36,7 @@ osg::Object* createCrowd()
 
 void transferCrowdSet(ValueStream& stream, AnimatedCrowd& crowd)
 {
-    transferSet(stream, crowd, crowd.sharedSet());
+    transferSet(stream, crowd, crowd.getSharedAnimationSet());
     if (stream.hasRead()) dropTiltedHome(crowd);
 }
 
@@ -109,16 +109,17 @@ osg::Vec4 toColor(std::uint32_t rgba)
 
 void transferList(ValueStream& stream, AnimatedCrowd& crowd)
 {
-    const std::size_t count = stream.open("List", crowd.size());
+    const std::size_t count = stream.open("List", crowd.getNumInstances());
     for (std::size_t i = 0; i < count && stream.isGood(); ++i)
     {
-        StoredInstance instance{{}, 0, AnimationController(crowd.sharedSet())};
+        StoredInstance instance{{}, 0, AnimationController(crowd.getSharedAnimationSet())};
         if (!stream.isReading())
-            instance = {crowd.instances().rootMatrix(i), crowd.instances().tint(i),
-                        crowd.instances().controllerCopy(i)};
+            instance = {crowd.getInstances().rootMatrix(i), crowd.getInstances().tint(i),
+                        crowd.getInstances().controllerCopy(i)};
         transferInstance(stream, instance);
         if (!stream.hasRead()) continue;
-        const auto added = crowd.add(toOsg(instance.root, crowd.origin()), instance.controller, toColor(instance.tint));
+        const auto added =
+            crowd.add(toOsg(instance.root, crowd.getOrigin()), instance.controller, toColor(instance.tint));
         if (!added) stream.fail("an instance of a crowd: " + added.error().message);
     }
     stream.close();
@@ -126,9 +127,9 @@ void transferList(ValueStream& stream, AnimatedCrowd& crowd)
 
 void transferInstances(ValueStream& stream, AnimatedCrowd& crowd)
 {
-    std::int32_t version = crowd.pixelError() > 0.0f ? withPixelError : plain;
-    osg::Vec3d origin = crowd.origin();
-    double pixelError = static_cast<double>(crowd.pixelError()), updatePixels = 0.0;
+    std::int32_t version = crowd.getPixelError() > 0.0f ? withPixelError : plain;
+    osg::Vec3d origin = crowd.getOrigin();
+    double pixelError = static_cast<double>(crowd.getPixelError()), updatePixels = 0.0;
     std::int32_t updatesEvery = 1;
     stream.limited("the version of a crowd", version, plain, withUpdateRate);
     stream.values(origin.x(), origin.y(), origin.z());
@@ -149,7 +150,7 @@ void addCrowdProperties(osgDB::ObjectWrapper* wrapper)
     addProperty(wrapper, "AnimationSet", &transferCrowdSet);
     addProperty<AnimatedCrowd>(wrapper, "Instances", &transferInstances,
                                [](const AnimatedCrowd& crowd)
-                               { return crowd.size() > 0 || crowd.pixelError() > 0.0f; });
+                               { return crowd.getNumInstances() > 0 || crowd.getPixelError() > 0.0f; });
 }
 
 osgDB::RegisterWrapperProxy crowd(&createCrowd, "osgGpuAnimation::AnimatedCrowd",

@@ -2,8 +2,8 @@
 #include "serializers/StoredAnimation.h"
 
 #include <osgGpuAnimation/nodes/CharacterProgram.h>
-#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 #include <osgGpuAnimation/nodes/shading/ShaderPermutations.h>
+#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
 #include <osg/NodeVisitor>
 #include <osg/Notify>
@@ -20,13 +20,13 @@ namespace
 /// OSG's wrappers transfer the influences with the other vertex attributes; this property makes them influences.
 void transferInfluences(ValueStream& stream, SkinnedGeometry& mesh)
 {
-    std::int32_t rigidEntry = mesh.rigidEntry();
+    std::int32_t rigidEntry = mesh.getRigidEntry();
     stream.limited("a rigid mesh's palette entry", rigidEntry, -1, 65535).endLine();
     if (!stream.hasRead()) return;
     if (rigidEntry >= 0) return mesh.setRigidEntry(static_cast<unsigned short>(rigidEntry));
-    for (unsigned int i = 0; i < SkinnedGeometry::maxInfluenceSets && mesh.entries(i) && mesh.weights(i); ++i)
-        mesh.setInfluences(i, const_cast<osg::Vec4usArray*>(mesh.entries(i)),
-                           const_cast<osg::Vec4Array*>(mesh.weights(i)));
+    for (unsigned int i = 0; i < SkinnedGeometry::maxInfluenceSets && mesh.getEntries(i) && mesh.getWeights(i); ++i)
+        mesh.setInfluences(i, const_cast<osg::Vec4usArray*>(mesh.getEntries(i)),
+                           const_cast<osg::Vec4Array*>(mesh.getWeights(i)));
 }
 
 template <typename Array>
@@ -38,9 +38,9 @@ void transferArray(ValueStream& stream, const char* name, osg::ref_ptr<Array>& a
 
 void transferMorphTargets(ValueStream& stream, SkinnedGeometry& mesh)
 {
-    std::int32_t morph = mesh.morph(), entry = mesh.morphEntry();
+    std::int32_t morph = mesh.getMorph(), entry = mesh.getMorphEntry();
     std::vector<MorphTarget> targets;
-    if (!stream.isReading()) targets = mesh.morphTargets();
+    if (!stream.isReading()) targets = mesh.getMorphTargets();
     stream.values(morph, entry).endLine();
     const auto transferTarget = [&](MorphTarget& target)
     {
@@ -64,7 +64,7 @@ void addMeshProperties(osgDB::ObjectWrapper* wrapper)
 {
     addProperty(wrapper, "Influences", &transferInfluences);
     addProperty<SkinnedGeometry>(wrapper, "MorphTargets", &transferMorphTargets,
-                                 [](const SkinnedGeometry& mesh) { return !mesh.morphTargets().empty(); });
+                                 [](const SkinnedGeometry& mesh) { return !mesh.getMorphTargets().empty(); });
     addProperty<SkinnedGeometry>(wrapper, "Skinning", &dropSkinning, [](const SkinnedGeometry&) { return false; });
 }
 
@@ -113,12 +113,12 @@ Fault findFaultInPrimitives(const SkinnedGeometry& mesh, std::size_t vertices)
 
 Fault findFaultInEntries(const SkinnedGeometry& mesh, std::size_t paletteSize)
 {
-    const auto rigidEntry = static_cast<std::size_t>(std::max(mesh.rigidEntry(), 0));
+    const auto rigidEntry = static_cast<std::size_t>(std::max(mesh.getRigidEntry(), 0));
     if (rigidEntry >= paletteSize) return counted(rigidEntry, "as an entry", paletteSize);
-    if (mesh.rigidEntry() >= 0) return std::nullopt;
-    if (!mesh.entries(0) || !mesh.weights(0)) return "no influences";
-    for (unsigned int i = 0; i < SkinnedGeometry::maxInfluenceSets && mesh.entries(i); ++i)
-        for (const osg::Vec4us& entries : *mesh.entries(i))
+    if (mesh.getRigidEntry() >= 0) return std::nullopt;
+    if (!mesh.getEntries(0) || !mesh.getWeights(0)) return "no influences";
+    for (unsigned int i = 0; i < SkinnedGeometry::maxInfluenceSets && mesh.getEntries(i); ++i)
+        for (const osg::Vec4us& entries : *mesh.getEntries(i))
             for (const unsigned short entry : {entries.x(), entries.y(), entries.z(), entries.w()})
                 if (entry >= paletteSize) return counted(entry, "as an entry", paletteSize);
     return std::nullopt;
@@ -126,12 +126,13 @@ Fault findFaultInEntries(const SkinnedGeometry& mesh, std::size_t paletteSize)
 
 Fault findFaultInMorphs(const SkinnedGeometry& mesh, const AnimationSet& set)
 {
-    if (mesh.morphTargets().empty()) return std::nullopt;
-    const auto morph = static_cast<std::size_t>(mesh.morph()); // huge where there is none
+    if (mesh.getMorphTargets().empty()) return std::nullopt;
+    const auto morph = static_cast<std::size_t>(mesh.getMorph()); // huge where there is none
     if (morph >= set.morphs().size()) return "a morph that is not the set's";
     const std::size_t weights = set.morphs()[morph].defaults.size();
-    if (mesh.morphTargets().size() > weights) return counted(mesh.morphTargets().size(), "morph targets", weights);
-    if (mesh.morphEntry() != set.entryOfMorph(morph)) return "a wrong morph entry";
+    if (mesh.getMorphTargets().size() > weights)
+        return counted(mesh.getMorphTargets().size(), "morph targets", weights);
+    if (mesh.getMorphEntry() != set.entryOfMorph(morph)) return "a wrong morph entry";
     return std::nullopt;
 }
 

@@ -3,9 +3,9 @@
 
 #include "cache/SeparateLoads.h"
 
+#include <osgGpuAnimation/animation/AnimationLayer.h>
 #include <osgGpuAnimation/animation/Clip.h>
 #include <osgGpuAnimation/animation/keyframes/CompactTracks.h>
-#include <osgGpuAnimation/animation/AnimationLayer.h>
 #include <osgGpuAnimation/animation/RootMotion.h>
 
 #include <osg/Notify>
@@ -75,13 +75,13 @@ constexpr std::int32_t versionWithCompactClips = 2;
 constexpr std::size_t floatsATransform = sizeof(JointTransform) / sizeof(float);
 /// Of all compact clips of a set together; the default of the glTF reader's budget.
 constexpr std::size_t maxCompactBytes = std::size_t(2) << 30;
-constexpr float placeUnit = static_cast<float>(PackedTriple::largest) + 1.0f;
+constexpr float placeUnit = static_cast<float>(QuantizedVec3::largest) + 1.0f;
 
-std::vector<float> packedNumbers(const std::vector<PackedTriple>& keyframes)
+std::vector<float> packedNumbers(const std::vector<QuantizedVec3>& keyframes)
 {
     std::vector<float> floats;
     floats.reserve(3 * keyframes.size());
-    for (const PackedTriple& triple : keyframes)
+    for (const QuantizedVec3& triple : keyframes)
     {
         const glm::vec3 numbers(triple.numbers());
         floats.insert(floats.end(), {numbers.x, numbers.y, numbers.z + placeUnit * static_cast<float>(triple.place())});
@@ -89,20 +89,20 @@ std::vector<float> packedNumbers(const std::vector<PackedTriple>& keyframes)
     return floats;
 }
 
-std::vector<PackedTriple> toTriples(const std::vector<float>& floats)
+std::vector<QuantizedVec3> toTriples(const std::vector<float>& floats)
 {
     // The nearest whole number in [0, largest]; 0 for NaN.
     const auto whole = [](float number, float largest)
     { return static_cast<std::uint32_t>(std::min(std::max(0.0f, number), largest)); };
-    constexpr auto largest = static_cast<float>(PackedTriple::largest);
-    std::vector<PackedTriple> triples;
+    constexpr auto largest = static_cast<float>(QuantizedVec3::largest);
+    std::vector<QuantizedVec3> triples;
     triples.reserve(floats.size() / 3);
     for (std::size_t i = 0; i + 2 < floats.size(); i += 3)
     {
         const std::uint32_t last = whole(floats[i + 2], 4.0f * placeUnit - 1.0f);
         const glm::uvec3 numbers(whole(floats[i], largest), whole(floats[i + 1], largest),
-                                 last & PackedTriple::largest);
-        triples.push_back(PackedTriple::of(numbers, last >> 20));
+                                 last & QuantizedVec3::largest);
+        triples.push_back(QuantizedVec3::of(numbers, last >> 20));
     }
     return triples;
 }
@@ -121,7 +121,7 @@ struct CompactParts
     CompactTracks tracks;
     std::vector<JointTransform> held;    ///< one a joint: the values of joints at rest
     std::vector<JointTransform> weights; ///< by keyframe: the weight blocks
-    std::vector<float> packed;           ///< three a PackedTriple
+    std::vector<float> packed;           ///< three a QuantizedVec3
 };
 
 CompactParts toCompactParts(const ClipParts& clip)
@@ -223,7 +223,7 @@ void transferClip(ValueStream& stream, std::int32_t version, ClipParts& clip, st
 
 /// A clip that cannot be created makes the file unreadable; the message names it. Compact clips store the column of
 /// each joint's keyframes, the transforms at rest, the morph weights, and the packed numbers x, y and z + place * 2^20
-/// (see PackedTriple). Memory holds all their keyframes, so these are limited.
+/// (see QuantizedVec3). Memory holds all their keyframes, so these are limited.
 void transferClips(ValueStream& stream, std::int32_t version, std::size_t jointCount,
                    const std::vector<MorphWeights>& morphs, std::vector<Clip>& clips)
 {
@@ -267,8 +267,8 @@ public:
     }
     META_Object(osgGpuAnimation, StoredAnimationSet)
 
-        /// Always the same object for a set, by which a stream recognizes it. It does not keep the set alive.
-        static osg::ref_ptr<StoredAnimationSet> of(const std::shared_ptr<const AnimationSet>& set)
+    /// Always the same object for a set, by which a stream recognizes it. It does not keep the set alive.
+    static osg::ref_ptr<StoredAnimationSet> of(const std::shared_ptr<const AnimationSet>& set)
     {
         static std::mutex mutex;
         static std::map<const AnimationSet*, osg::ref_ptr<StoredAnimationSet>> known;
@@ -331,11 +331,14 @@ void transferFade(ValueStream& stream, const char* name, LayerSnapshot::FadeStat
     stream.limited("a fade's curve", fade.curve, FadeCurve::Smooth).endLine();
 }
 
-void transferVoice(ValueStream& stream, LayerSnapshot::Voice& voice)
+void transferVoice(ValueStream& stream, LayerSnapshot::ActiveClip& activeClip)
 {
-    stream.property("Voice").values(voice.clip, voice.time, voice.speed);
-    stream.limited("a loop mode", voice.loopMode, LoopMode::PingPong);
-    stream.values(voice.isReturning, voice.isFresh, voice.share, voice.shareBefore, voice.phaseGroup).endLine();
+    stream.property("Voice").values(activeClip.clip, activeClip.time, activeClip.speed);
+    stream.limited("a loop mode", activeClip.loopMode, LoopMode::PingPong);
+    stream
+        .values(activeClip.isReturning, activeClip.isFresh, activeClip.share, activeClip.shareBefore,
+                activeClip.phaseGroup)
+        .endLine();
 }
 
 void transferLayer(ValueStream& stream, LayerSnapshot& layer)
@@ -344,9 +347,10 @@ void transferLayer(ValueStream& stream, LayerSnapshot& layer)
     stream.property("Layer").limited("a layer's state", layer.state, PlayState::Ended);
     stream.limited("a loop mode", layer.loopMode, LoopMode::PingPong).value(layer.speed);
     stream.limited("a layer's mode", layer.mode, Layer::Mode::Additive);
-    stream.limited("a layer's reference", layer.reference, Layer::Reference::FirstFrame).value(layer.standing);
+    stream.limited("a layer's reference", layer.reference, Layer::Reference::FirstFrame).value(layer.blendPriority);
     stream.endLine();
-    stream.list("Voices", layer.voices, [&](LayerSnapshot::Voice& voice) { transferVoice(stream, voice); });
+    stream.list("Voices", layer.activeClips,
+                [&](LayerSnapshot::ActiveClip& activeClip) { transferVoice(stream, activeClip); });
     transferFade(stream, "Crossfade", layer.crossfade);
     transferFade(stream, "Weight", layer.weight);
     stream.block("Mask", layer.mask, 8);

@@ -53,7 +53,7 @@ units and numbers; matrices are column-major. Times beyond the clip hold its end
 
 const char* const renderHelp =
     R"(FILE is drawn through EGL (by Mesa's software renderer where there is no GPU) from three quarters in front, the
-camera standing where everything fits all the pictures.
+camera blendPriority where everything fits all the pictures.
 
   osggpuanim render fox.glb -o fox.png
   osggpuanim render fox.glb --clip Walk --time 0.3 --size 1920x1080 -o walk.png

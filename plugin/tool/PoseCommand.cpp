@@ -31,7 +31,7 @@ Result<int> findClip(const gltf::ImportedModel& model, const PoseRequest& reques
         return static_cast<int>(found - numbers.begin());
     }
     // The import has looked the name up (and refused the file where there is none) and plays that clip.
-    return request.bind || !model.character ? -1 : model.character->controller().clip();
+    return request.bind || !model.character ? -1 : model.character->getController().clip();
 }
 
 /// glTF's clips hold at their ends; they do not loop.

@@ -48,7 +48,7 @@ void addStill(const gltf::ImportedModel& model, std::vector<osg::Vec3d>& points)
 void addMoving(const gltf::ImportedModel& model, CpuPoseEvaluator& evaluator, std::vector<osg::Vec3d>& points)
 {
     const osg::MatrixList places = model.character->getWorldMatrices();
-    const Result<EvaluatedPose> pose = evaluator.evaluate(model.character->controller().instruction(), {});
+    const Result<EvaluatedPose> pose = evaluator.evaluate(model.character->getController().instruction(), {});
     if (!pose || places.empty()) return;
     for (const std::vector<glm::dvec3>& positions : pose.value().positions)
         for (const glm::dvec3& position : positions)
@@ -65,7 +65,7 @@ std::vector<osg::Vec3d> pointsOf(const gltf::ImportedModel& model, const std::ve
     const std::size_t looks = std::min<std::size_t>(times.size(), 64);
     for (std::size_t look = 0; look < looks; ++look)
     {
-        showTime(model.character->controller(), times[look * times.size() / looks]);
+        showTime(model.character->getController(), times[look * times.size() / looks]);
         addMoving(model, evaluator, points);
     }
     return points;
@@ -97,7 +97,7 @@ Result<bool> RenderCommand::run() const
 
     for (std::size_t frame = 0; frame < times.size(); ++frame)
     {
-        if (model.value().character) showTime(model.value().character->controller(), times[frame]);
+        if (model.value().character) showTime(model.value().character->getController(), times[frame]);
         const osg::ref_ptr<osg::Image> image = viewer.value()->draw(times[frame] - time);
         if (!image) return Error{file + ": OpenGL reports an error while drawing"};
         const std::string name = frames ? numbered(output, frame + 1) : output;

@@ -9,8 +9,8 @@
 namespace osgGpuAnimation::tool
 {
 
-/// `osggpuanim render`: draws pictures of a file without a display, from three quarters in front, the camera standing
-/// where everything fits all the pictures.
+/// `osggpuanim render`: draws pictures of a file without a display, from three quarters in front, the camera blend
+/// priority where everything fits all the pictures.
 struct RenderCommand
 {
     static constexpr int maxSize = 8192; ///< pixels, each way

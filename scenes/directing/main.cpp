@@ -45,7 +45,7 @@ bool succeeds(const Result<T>& result)
 /// From Walk to Run in half a second: an eighth of it from each to the next. In phase the feet stay together.
 void crossfade(AnimatedCharacter& wanderer, int i)
 {
-    AnimationController& controller = wanderer.controller();
+    AnimationController& controller = wanderer.getController();
     CrossfadeOptions options;
     options.sync = Sync::Phase;
     if (!succeeds(controller.play("Walk"))) return;
@@ -56,7 +56,7 @@ void crossfade(AnimatedCharacter& wanderer, int i)
 /// All walk alike; the right arm of the others waves as well, from the shoulder on.
 void maskedWave(AnimatedCharacter& wanderer, int i)
 {
-    AnimationController& controller = wanderer.controller();
+    AnimationController& controller = wanderer.getController();
     if (!succeeds(controller.play("Walk"))) return;
     controller.seek(0.3);
     if (i == 0) return;
@@ -66,10 +66,10 @@ void maskedWave(AnimatedCharacter& wanderer, int i)
     if (succeeds(gesture.setMask(arm.value())) && succeeds(gesture.play("Wave"))) gesture.seek(0.5 + 0.35 * i);
 }
 
-/// Standing, with more and more of what Wave's pose is besides its first frame added.
+/// BlendPriority, with more and more of what Wave's pose is besides its first frame added.
 void additiveWave(AnimatedCharacter& wanderer, int i)
 {
-    AnimationController& controller = wanderer.controller();
+    AnimationController& controller = wanderer.getController();
     if (!succeeds(controller.play("Idle"))) return;
     AnimationLayer& added = controller.layer(1);
     added.setMode(AnimationLayer::Mode::Additive, AnimationLayer::Reference::FirstFrame);
@@ -91,7 +91,7 @@ osg::ref_ptr<osg::Node> makeStaff()
 /// Walking with a staff in the right hand.
 void holdStaff(AnimatedCharacter& wanderer, int i)
 {
-    AnimationController& controller = wanderer.controller();
+    AnimationController& controller = wanderer.getController();
     if (!succeeds(controller.play("Walk"))) return;
     controller.seek(0.96 * i / inARow);
     osg::ref_ptr<JointAttachment> hand = new JointAttachment("Hand_R");
@@ -127,7 +127,7 @@ osg::ref_ptr<AnimatedCrowd> makeCrowd(AnimatedCharacter& wanderer)
     for (int i = 0; i < columns * rows; ++i)
     {
         const char* clips[] = {"Walk", "Walk", "Walk", "Wave", "Idle", "Run"};
-        AnimationController controller(crowd->sharedSet());
+        AnimationController controller(crowd->getSharedAnimationSet());
         if (!succeeds(controller.play(clips[random() % 6]))) return crowd;
         controller.seek(between(0.0, 3.0));
         const osg::Vec3d place(1.3 * (i % columns - 0.5 * columns) + between(-0.4, 0.4),

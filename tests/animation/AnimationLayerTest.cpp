@@ -61,7 +61,7 @@ TEST(AnimationLayerTest, AMaskedLayerGoesOverItsJointsAlone)
     }
 }
 
-TEST(AnimationLayerTest, TheOrderOfLayersOfEqualStandingPlaysNoPart)
+TEST(AnimationLayerTest, TheOrderOfLayersOfEqualBlendPriorityDoesNotMatter)
 {
     const auto set = makeGaitSet();
     const char* clips[] = {"Walk", "Run", "Turn"};
@@ -76,7 +76,7 @@ TEST(AnimationLayerTest, TheOrderOfLayersOfEqualStandingPlaysNoPart)
         for (std::size_t place = 0; place < 3; ++place)
         {
             AnimationLayer& layer = controller.layer(place);
-            layer.setStanding(0);
+            layer.setBlendPriority(0);
             ASSERT_TRUE(layer.play(clips[order[place]]));
             ASSERT_TRUE(layer.setWeight(weights[order[place]]));
             ASSERT_TRUE(layer.setMask(masks[order[place]]));
@@ -102,7 +102,7 @@ TEST(AnimationLayerTest, NorDoesItWhereRotationsLieOnNoOneHemisphere)
         for (std::size_t place = 0; place < 3; ++place)
         {
             AnimationLayer& layer = controller.layer(place);
-            layer.setStanding(0);
+            layer.setBlendPriority(0);
             ASSERT_TRUE(layer.play("Turn"));
             ASSERT_TRUE(layer.setWeight(weights[order[place]]));
             ASSERT_TRUE(layer.seek(times[order[place]]));
@@ -216,7 +216,7 @@ TEST(AnimationLayerTest, WhateverIsAskedTheInstructionStaysInOrder)
                           static_cast<AnimationLayer::Reference>(random() % 2));
             break;
         case 8:
-            layer.setStanding(static_cast<int>(random() % 3));
+            layer.setBlendPriority(static_cast<int>(random() % 3));
             break;
         case 9:
             random() % 2 ? layer.pause() : layer.resume();

@@ -105,7 +105,7 @@ TEST(AwkwardUseTest, CopiesMadeInTheMiddleOfFadesStandAlone)
     copy.reset();
     for (int i = 0; i < 40; ++i)
         assigned.advance(0.05);
-    EXPECT_EQ(assigned.layer(0).mixer().voiceCount(), 1u);
+    EXPECT_EQ(assigned.layer(0).mixer().activeClipCount(), 1u);
     EXPECT_TRUE(isSound(assigned));
 }
 

@@ -172,21 +172,21 @@ TEST(CompactClipsTest, aSetOfNothingAndOfStillsIsCompactAsWell)
     EXPECT_TRUE(compactClips(*still, EntryBoxes(still->paletteSize()), {1e-3}));
 }
 
-TEST(PackedTripleTest, numbersAndRotationsComeBack)
+TEST(QuantizedVec3Test, numbersAndRotationsComeBack)
 {
     std::mt19937 random(11);
-    std::uniform_int_distribution<std::uint32_t> number(0, PackedTriple::largest);
+    std::uniform_int_distribution<std::uint32_t> number(0, QuantizedVec3::largest);
     std::uniform_real_distribution<float> component(-1.0f, 1.0f);
     for (int i = 0; i < 10000; ++i)
     {
         const glm::uvec3 numbers(number(random), number(random), number(random));
-        const PackedTriple packed = PackedTriple::of(numbers, static_cast<std::uint32_t>(i % 4));
+        const QuantizedVec3 packed = QuantizedVec3::of(numbers, static_cast<std::uint32_t>(i % 4));
         EXPECT_EQ(packed.numbers(), numbers);
         EXPECT_EQ(packed.place(), static_cast<std::uint32_t>(i % 4));
 
         const glm::vec4 q = glm::normalize(
             glm::vec4(component(random), component(random), component(random), component(random) + 0.01f));
-        const glm::vec4 back = PackedTriple::ofRotation(q).rotation();
+        const glm::vec4 back = QuantizedVec3::ofRotation(q).rotation();
         // Half a step in three components, and what that does to the fourth.
         EXPECT_LE(glm::length(glm::dot(q, back) < 0.0f ? q + back : q - back), 3e-6f);
     }

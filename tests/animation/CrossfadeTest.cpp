@@ -58,8 +58,8 @@ TEST(CrossfadeTest, InterruptedByCrossfadesAtRandomNothingJumps)
             controller.advance(frameSeconds);
             double allowed = 0.0;
             const ClipMixer& mixer = controller.layer(0).mixer();
-            for (std::size_t v = 0; v < mixer.voiceCount(); ++v)
-                allowed = std::max(allowed, steps[static_cast<std::size_t>(mixer.voice(v).playback.clip())]);
+            for (std::size_t v = 0; v < mixer.activeClipCount(); ++v)
+                allowed = std::max(allowed, steps[static_cast<std::size_t>(mixer.activeClip(v).playback.clip())]);
             worst = std::max(worst, largestStep(before, jointPlaces(controller)) / allowed);
         }
         RecordProperty(c.name, std::to_string(worst));
@@ -106,8 +106,8 @@ TEST(CrossfadeTest, InPhaseBothRunAtOnePaceUntilItIsOver)
     {
         controller.advance(frameSeconds);
         const ClipMixer& mixer = controller.layer(0).mixer();
-        ASSERT_EQ(mixer.voiceCount(), 2u);
-        EXPECT_NEAR(mixer.voice(0).playback.phase(), mixer.voice(1).playback.phase(), 1e-6);
+        ASSERT_EQ(mixer.activeClipCount(), 2u);
+        EXPECT_NEAR(mixer.activeClip(0).playback.phase(), mixer.activeClip(1).playback.phase(), 1e-6);
     }
     controller.advance(frameSeconds);
     const double time = controller.time();
@@ -130,8 +130,8 @@ TEST(CrossfadeTest, InPhaseAThereAndBackKeepsPaceWithALoop)
         {
             controller.advance(frameSeconds);
             const ClipMixer& mixer = controller.layer(0).mixer();
-            ASSERT_EQ(mixer.voiceCount(), 2u);
-            EXPECT_NEAR(mixer.voice(0).playback.phase(), mixer.voice(1).playback.phase(), 1e-6);
+            ASSERT_EQ(mixer.activeClipCount(), 2u);
+            EXPECT_NEAR(mixer.activeClip(0).playback.phase(), mixer.activeClip(1).playback.phase(), 1e-6);
         }
     }
 }

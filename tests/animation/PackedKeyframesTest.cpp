@@ -50,8 +50,8 @@ private:
         const glm::uvec4 words = at(place / 2);
         if (!isHeld && range != 0)
         {
-            const PackedTriple packed =
-                place % 2 == 0 ? PackedTriple{words.x, words.y} : PackedTriple{words.z, words.w};
+            const QuantizedVec3 packed =
+                place % 2 == 0 ? QuantizedVec3{words.x, words.y} : QuantizedVec3{words.z, words.w};
             if (range == rotation) return packed.rotation();
             return glm::vec4(CompactTracks::Range{numbers(range), numbers(range + 1)}.unpack(packed), 0.0f);
         }

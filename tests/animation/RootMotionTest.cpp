@@ -3,8 +3,8 @@
 
 #include "AllocationCount.h"
 #include <osgGpuAnimation/animation/AnimationController.h>
-#include <osgGpuAnimation/animation/JointMask.h>
 #include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/animation/JointMask.h>
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/animation/RootMotion.h>
 

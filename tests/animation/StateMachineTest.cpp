@@ -53,7 +53,7 @@ TEST(StateMachineTest, TakesTransitionsWhoseConditionsHold)
     EXPECT_EQ(controller.clip(), 1);
     EXPECT_EQ(controller.speed(), 1.5);
     EXPECT_TRUE(controller.layer(0).isCrossfading());
-    EXPECT_EQ(controller.layer(0).mixer().voice(0).playback.speed(), 1.0) << "what fades out keeps its own";
+    EXPECT_EQ(controller.layer(0).mixer().activeClip(0).playback.speed(), 1.0) << "what fades out keeps its own";
 
     EXPECT_TRUE(machine.set("speed", 0.0));
     EXPECT_FALSE(step(0.5)) << "it has to last";

@@ -30,7 +30,7 @@ void main()
 PoseCrowd::PoseCrowd(std::shared_ptr<const AnimationSet> set, std::size_t clip, std::size_t count,
                      osg::GraphicsContext& context)
     : _set(std::move(set)), _controllers(count, AnimationController(_set)),
-      _batches(PoseBatch::loadCount, PoseBatch(_set)), _places(count), _context(&context)
+      _batches(PoseBatch::blendCostCount, PoseBatch(_set)), _places(count), _context(&context)
 {
     static std::size_t slots = 0;
     _firstSlot = slots;
@@ -57,7 +57,7 @@ void PoseCrowd::crossfade(std::size_t clip, std::size_t every)
 PoseCrowd::Place PoseCrowd::add(const PoseInstruction& instruction)
 {
     std::size_t batch = 0;
-    while (_isDealtOut && !_batches[batch].suits(instruction))
+    while (_isDealtOut && !_batches[batch].accepts(instruction))
         ++batch;
     return {batch, _batches[batch].add(instruction)};
 }

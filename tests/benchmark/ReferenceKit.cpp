@@ -2,8 +2,8 @@
 #include "ReferenceKit.h"
 
 #include <osgGpuAnimation/nodes/OsgMatrix.h>
-#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 #include <osgGpuAnimation/nodes/shading/ShaderPermutations.h>
+#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
 #include <osgAnimation/Channel>
 #include <osgAnimation/RigTransformHardware>
@@ -79,7 +79,7 @@ void main()
 /// The variant of the kit's shaders that its own program takes for the mesh in these scenes: one light far away.
 std::string surfacePrologue(const osg::Geometry& mesh)
 {
-    SurfaceState surface;
+    ShaderKey surface;
     const osg::Uniform* flatNormals = mesh.getStateSet() ? mesh.getStateSet()->getUniform("flatNormals") : nullptr;
     if (flatNormals) flatNormals->get(surface.hasFlatNormals);
     return "#version 140\n" + surface.defines();
@@ -327,7 +327,7 @@ osg::ref_ptr<osg::Geometry> unskinned(const SkinnedGeometry& geometry, Shading s
     const osg::Vec4 white(1, 1, 1, 1);
     state->addUniform(
         new osg::Uniform("materialDiffuse", material ? material->getDiffuse(osg::Material::FRONT) : white));
-    if (geometry.colors() != SkinnedGeometry::Colors::White) state->setDefine("POSE_COLORED", "1");
+    if (geometry.getColors() != SkinnedGeometry::Colors::White) state->setDefine("POSE_COLORED", "1");
     state->setAttributeAndModes(shading == Shading::Least ? leastProgram() : unskinnedProgram(geometry));
     plain->setStateSet(state);
     return plain;

@@ -41,8 +41,8 @@ CharacterScene::CharacterScene(const Subject& subject, std::size_t count)
         osg::ref_ptr<AnimatedCharacter> character =
             osg::clone(subject.model.character.get(), osg::CopyOp::DEEP_COPY_NODES);
         character->setMatrix(placement(subject, i, count));
-        static_cast<void>(character->controller().play(subject.clip));
-        character->controller().seek(phaseOf(i, durationOf(subject)));
+        static_cast<void>(character->getController().play(subject.clip));
+        character->getController().seek(phaseOf(i, durationOf(subject)));
         root->addChild(character);
         characters.push_back(character);
     }
@@ -51,7 +51,7 @@ CharacterScene::CharacterScene(const Subject& subject, std::size_t count)
 void CharacterScene::pause()
 {
     for (const osg::ref_ptr<AnimatedCharacter>& character : characters)
-        character->controller().pause();
+        character->getController().pause();
 }
 
 void CharacterScene::setPixelError(float pixels)
@@ -67,7 +67,7 @@ std::string CharacterScene::check(osg::State& state) const
     for (const std::size_t i : {std::size_t(0), characters.size() / 2, characters.size() - 1})
     {
         // Everybody is in sight, so numbers within the frame's batch are those of the nodes.
-        const AnimationController& controller = characters[i]->controller();
+        const AnimationController& controller = characters[i]->getController();
         const std::string wrong = difference(controller.set(), controller.instruction(),
                                              pipeline->readPalette(state, controller.set(), 0, i));
         if (!wrong.empty()) return "character " + std::to_string(i) + ": " + wrong;

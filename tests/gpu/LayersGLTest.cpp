@@ -131,12 +131,12 @@ TEST_F(SampleCostGLTest, takesSixteenBytesASampleAndNothingWhenNothingChanged)
     PoseBatch batch(set);
     for (int i = 0; i < 10; ++i)
         batch.add(randomLayers(*set, random));
-    const auto before = pipeline->counters();
+    const auto before = pipeline->getCounters();
     pipeline->evaluate(state(), batch, 0);
-    EXPECT_EQ(pipeline->counters().bytesUploaded - before.bytesUploaded, 16 * 10 * batch.sampleStride());
-    const auto after = pipeline->counters();
+    EXPECT_EQ(pipeline->getCounters().bytesUploaded - before.bytesUploaded, 16 * 10 * batch.sampleStride());
+    const auto after = pipeline->getCounters();
     pipeline->evaluate(state(), batch, 0);
-    EXPECT_EQ(pipeline->counters().bytesUploaded, after.bytesUploaded);
+    EXPECT_EQ(pipeline->getCounters().bytesUploaded, after.bytesUploaded);
 }
 
 TEST_F(SampleCostGLTest, aMaskAddedLaterIsThere)

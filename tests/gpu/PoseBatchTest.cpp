@@ -13,7 +13,7 @@ namespace osgGpuAnimation
 namespace
 {
 
-using Load = PoseBatch::Load;
+using BlendCost = PoseBatch::BlendCost;
 
 struct LoadData
 {
@@ -21,18 +21,18 @@ struct LoadData
     std::size_t count;
     float weight;
     std::uint32_t control;
-    Load load;
+    BlendCost load;
 };
 
 const LoadData loadData[] = {
-    {"one clip", 1, 1.0f, POSE_SAMPLE_SPLINE, Load::Plain},
-    {"one that fades in", 1, 0.5f, 0, Load::Few},
-    {"one with a mask", 1, 1.0f, 1u << POSE_SAMPLE_MASK_SHIFT, Load::Few},
-    {"one that is added", 1, 1.0f, POSE_SAMPLE_ADDITIVE, Load::Few},
-    {"a crossfade", 2, 0.5f, 0, Load::Few},
-    {"four", 4, 0.25f, 0, Load::Few},
-    {"five", 5, 0.2f, 0, Load::Many},
-    {"as many as there may be", PoseInstruction::maxSamples, 0.1f, 0, Load::Many},
+    {"one clip", 1, 1.0f, POSE_SAMPLE_SPLINE, BlendCost::Plain},
+    {"one that fades in", 1, 0.5f, 0, BlendCost::Few},
+    {"one with a mask", 1, 1.0f, 1u << POSE_SAMPLE_MASK_SHIFT, BlendCost::Few},
+    {"one that is added", 1, 1.0f, POSE_SAMPLE_ADDITIVE, BlendCost::Few},
+    {"a crossfade", 2, 0.5f, 0, BlendCost::Few},
+    {"four", 4, 0.25f, 0, BlendCost::Few},
+    {"five", 5, 0.2f, 0, BlendCost::Many},
+    {"as many as there may be", PoseInstruction::maxSamples, 0.1f, 0, BlendCost::Many},
 };
 
 PoseInstruction instructionOf(const LoadData& data)
@@ -55,15 +55,15 @@ TEST(PoseBatchTest, aFullBatchSuitsThoseOfItsLoadAlone)
     for (const LoadData& inside : loadData)
     {
         PoseBatch batch(makeRandomSet({}));
-        for (std::size_t i = 0; i < PoseBatch::worthABatch; ++i)
+        for (std::size_t i = 0; i < PoseBatch::minBatchSize; ++i)
         {
             for (const LoadData& other : loadData)
-                EXPECT_TRUE(batch.suits(instructionOf(other)))
+                EXPECT_TRUE(batch.accepts(instructionOf(other)))
                     << other.name << " beside " << i << " of " << inside.name;
             batch.add(instructionOf(inside));
         }
         for (const LoadData& other : loadData)
-            EXPECT_EQ(batch.suits(instructionOf(other)), other.load == inside.load)
+            EXPECT_EQ(batch.accepts(instructionOf(other)), other.load == inside.load)
                 << other.name << " beside " << inside.name;
     }
 }

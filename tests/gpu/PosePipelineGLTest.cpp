@@ -126,10 +126,10 @@ TEST_F(PosePipelineCostGLTest, drawsDependOnTheSetAloneNotOnTheNumberOfCharacter
         PoseBatch batch(set);
         for (const Instance& instance : randomInstances(*set, count, 1))
             batch.add(instance.instruction);
-        const PosePipeline::Counters before = pipeline->counters();
+        const PosePipeline::Counters before = pipeline->getCounters();
         pipeline->evaluate(state(), batch, 0);
-        EXPECT_EQ(pipeline->counters().feedbackDraws - before.feedbackDraws, set->levelCount());
-        EXPECT_EQ(pipeline->counters().bytesUploaded - before.bytesUploaded, 16 * count);
+        EXPECT_EQ(pipeline->getCounters().feedbackDraws - before.feedbackDraws, set->levelCount());
+        EXPECT_EQ(pipeline->getCounters().bytesUploaded - before.bytesUploaded, 16 * count);
     }
 }
 
@@ -140,10 +140,10 @@ TEST_F(PosePipelineCostGLTest, unchangedBatchCostsNothing)
     PoseBatch batch(set);
     batch.add(instructionAt(*set, 0, 0.4), AffineMatrix());
     pipeline->evaluate(state(), batch, 0);
-    const PosePipeline::Counters before = pipeline->counters();
+    const PosePipeline::Counters before = pipeline->getCounters();
     pipeline->evaluate(state(), batch, 0);
-    EXPECT_EQ(pipeline->counters().feedbackDraws, before.feedbackDraws);
-    EXPECT_EQ(pipeline->counters().bytesUploaded, before.bytesUploaded);
+    EXPECT_EQ(pipeline->getCounters().feedbackDraws, before.feedbackDraws);
+    EXPECT_EQ(pipeline->getCounters().bytesUploaded, before.bytesUploaded);
 }
 
 TEST_F(PosePipelineCostGLTest, sendsTheRootsThatMovedAlone)
@@ -158,10 +158,10 @@ TEST_F(PosePipelineCostGLTest, sendsTheRootsThatMovedAlone)
         PoseBatch batch(set);
         for (const Instance& instance : instances)
             batch.add(instance.instruction, instance.root);
-        const PosePipeline::Counters before = pipeline->counters();
+        const PosePipeline::Counters before = pipeline->getCounters();
         ASSERT_TRUE(pipeline->evaluate(state(), batch, 0));
         const std::size_t sent = moved.empty() ? 100 * (16 + 48) : (moved.back() - moved.front() + 1) * 48;
-        EXPECT_EQ(pipeline->counters().bytesUploaded - before.bytesUploaded, sent);
+        EXPECT_EQ(pipeline->getCounters().bytesUploaded - before.bytesUploaded, sent);
         for (const std::size_t i : {0, 40, 57, 99})
         {
             std::vector<AffineMatrix> expected;

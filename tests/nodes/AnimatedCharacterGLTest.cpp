@@ -94,8 +94,8 @@ TEST_F(AnimatedCharacterGLTest, aCloneIsIndependent)
     osg::ref_ptr<AnimatedCharacter> one = makeTestCharacter();
     osg::ref_ptr<AnimatedCharacter> other = osg::clone(one.get(), osg::CopyOp::DEEP_COPY_NODES);
     other->setMatrix(osg::Matrix::translate(0, 0, -2));
-    other->controller().setSpeed(-1.0);
-    ASSERT_TRUE(other->controller().play("shift"));
+    other->getController().setSpeed(-1.0);
+    ASSERT_TRUE(other->getController().play("shift"));
     EXPECT_EQ(&one->set(), &other->set());
     osg::ref_ptr<osg::Group> root = new osg::Group;
     root->addChild(one);
@@ -103,8 +103,8 @@ TEST_F(AnimatedCharacterGLTest, aCloneIsIndependent)
     viewer().setSceneData(root);
     drawAt(0);
     drawAt(0.5);
-    EXPECT_DOUBLE_EQ(one->controller().time(), 0.5);
-    EXPECT_DOUBLE_EQ(other->controller().time(), 1.5);
+    EXPECT_DOUBLE_EQ(one->getController().time(), 0.5);
+    EXPECT_DOUBLE_EQ(other->getController().time(), 1.5);
     EXPECT_EQ(picture().pixelsDrawn(), 2 * pixelsPerUnit * pixelsPerUnit);
 }
 

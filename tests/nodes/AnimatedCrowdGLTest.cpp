@@ -54,7 +54,7 @@ protected:
         for (int index = 0; index < count; ++index)
         {
             osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
-            character->controller() = controllerOf(index);
+            character->getController() = controllerOf(index);
             character->setMatrix(placeOf(index));
             group->addChild(character);
         }
@@ -155,7 +155,7 @@ TEST_F(AnimatedCrowdGLTest, instancesComeGoAndMoveBetweenFrames)
     drawAt(1);
     EXPECT_EQ(picture().pixelsDrawn(), 3 * 64);
     EXPECT_TRUE(crowd->remove(one));
-    EXPECT_TRUE(crowd->move(two, osg::Matrix::translate(2, 0, 2)));
+    EXPECT_TRUE(crowd->setPlacement(two, osg::Matrix::translate(2, 0, 2)));
     drawAt(2);
     EXPECT_EQ(picture().pixelsDrawn(), 2 * 64);
     EXPECT_NE(picture().image().getColor(32 + 16 + 4, 32 + 16 + 4), picture().image().getColor(0, 63));
@@ -234,8 +234,8 @@ TEST_F(AnimatedCrowdGLTest, whenSomeAreRemovedTheOthersKeepWhatIsTheirs)
     const auto change = [](AnimatedCrowd& crowd, const Names& names)
     {
         EXPECT_TRUE(crowd.setTint(names.at(14), {0.5f, 0.25f, 1, 1}));
-        EXPECT_TRUE(crowd.move(names.at(13), osg::Matrix::translate(-4, 0, 2.5)));
-        EXPECT_TRUE(crowd.move(names.at(5), osg::Matrix::translate(0.5, 0, -3.5)));
+        EXPECT_TRUE(crowd.setPlacement(names.at(13), osg::Matrix::translate(-4, 0, 2.5)));
+        EXPECT_TRUE(crowd.setPlacement(names.at(5), osg::Matrix::translate(0.5, 0, -3.5)));
     };
     const osg::ref_ptr<AnimatedCrowd> fewer = new AnimatedCrowd(*makeTestCharacter());
     fewer->setOrigin(osg::Vec3d());

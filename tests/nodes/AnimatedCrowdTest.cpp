@@ -66,9 +66,9 @@ TEST(AnimatedCrowdTest, refusesBadPlacementsAndStaysAsItIs)
         const Result<AnimatedCrowd::Instance> added = crowd->add(bad.placement, playing("shift"));
         ASSERT_FALSE(added);
         EXPECT_NE(added.error().message.find(bad.message), std::string::npos) << added.error().message;
-        EXPECT_FALSE(crowd->move(good, bad.placement));
-        EXPECT_EQ(crowd->size(), 1u);
-        EXPECT_EQ(crowd->placement(good), osg::Matrixd::translate(1, 2, 3));
+        EXPECT_FALSE(crowd->setPlacement(good, bad.placement));
+        EXPECT_EQ(crowd->getNumInstances(), 1u);
+        EXPECT_EQ(crowd->getPlacement(good), osg::Matrixd::translate(1, 2, 3));
     }
     // A first placement that is bad must not become the origin.
     const osg::ref_ptr<AnimatedCrowd> fresh = emptyCrowd();
@@ -94,12 +94,12 @@ TEST(AnimatedCrowdTest, namesStayWithTheirInstances)
     const AnimatedCrowd::Instance late = crowd->add(osg::Matrixd::translate(9, 0, 0), playing("turn")).value();
     EXPECT_NE(late, names[1]);
     EXPECT_FALSE(crowd->contains(names[1]));
-    EXPECT_FALSE(crowd->move(names[1], osg::Matrixd()));
+    EXPECT_FALSE(crowd->setPlacement(names[1], osg::Matrixd()));
     EXPECT_FALSE(crowd->setTint(names[1], {1, 0, 0, 1}));
-    EXPECT_EQ(crowd->controller(names[1]), nullptr);
+    EXPECT_EQ(crowd->getController(names[1]), nullptr);
     for (const int i : {0, 2, 3, 4})
-        EXPECT_EQ(crowd->placement(names[static_cast<std::size_t>(i)]).getTrans(), osg::Vec3d(i, 0, 0));
-    EXPECT_EQ(crowd->placement(late).getTrans(), osg::Vec3d(9, 0, 0));
+        EXPECT_EQ(crowd->getPlacement(names[static_cast<std::size_t>(i)]).getTrans(), osg::Vec3d(i, 0, 0));
+    EXPECT_EQ(crowd->getPlacement(late).getTrans(), osg::Vec3d(9, 0, 0));
     EXPECT_FALSE(crowd->contains(~AnimatedCrowd::Instance(0)));
 }
 
@@ -120,15 +120,15 @@ TEST(AnimatedCrowdTest, compactPlaybackKeepsTheControllersTime)
             {
                 crowd->update(100.0 + 0.0713 * frame);
                 controller.advance(0.0713);
-                const BlendSample shown = crowd->instances().instruction(0).samples[0];
+                const BlendSample shown = crowd->getInstances().instruction(0).samples[0];
                 const BlendSample expected = controller.instruction().samples[0];
                 ASSERT_EQ(shown.keyframe, expected.keyframe) << frame;
                 ASSERT_NEAR(shown.alpha, expected.alpha, 1e-6) << frame;
             }
-            EXPECT_EQ(crowd->instances().controllerCount(), 0u);
-            EXPECT_NEAR(crowd->controller(instance)->time(), controller.time(), 1e-9);
-            EXPECT_EQ(crowd->controller(instance)->state(), controller.state());
-            EXPECT_EQ(crowd->controller(instance)->speed(), controller.speed());
+            EXPECT_EQ(crowd->getInstances().controllerCount(), 0u);
+            EXPECT_NEAR(crowd->getController(instance)->time(), controller.time(), 1e-9);
+            EXPECT_EQ(crowd->getController(instance)->state(), controller.state());
+            EXPECT_EQ(crowd->getController(instance)->speed(), controller.speed());
         }
 }
 
@@ -137,18 +137,18 @@ TEST(AnimatedCrowdTest, controllersAreThereOnlyAsLongAsNeeded)
     const osg::ref_ptr<AnimatedCrowd> crowd = emptyCrowd();
     const AnimatedCrowd::Instance instance = crowd->add(osg::Matrixd(), playing("shift")).value();
     crowd->update(0.0);
-    EXPECT_EQ(crowd->instances().controllerCount(), 0u);
-    ASSERT_TRUE(crowd->controller(instance)->crossfade("turn", 0.5));
+    EXPECT_EQ(crowd->getInstances().controllerCount(), 0u);
+    ASSERT_TRUE(crowd->getController(instance)->crossfade("turn", 0.5));
     crowd->update(0.25);
-    EXPECT_EQ(crowd->instances().controllerCount(), 1u);
-    EXPECT_EQ(crowd->instances().instruction(0).sampleCount, 2u);
+    EXPECT_EQ(crowd->getInstances().controllerCount(), 1u);
+    EXPECT_EQ(crowd->getInstances().instruction(0).sampleCount, 2u);
     crowd->update(0.75);
-    EXPECT_EQ(crowd->instances().controllerCount(), 0u);
-    EXPECT_EQ(crowd->controller(instance)->clip(), 1);
-    EXPECT_NEAR(crowd->controller(instance)->time(), 0.75, 1e-12);
-    crowd->controller(instance)->layer(1);
+    EXPECT_EQ(crowd->getInstances().controllerCount(), 0u);
+    EXPECT_EQ(crowd->getController(instance)->clip(), 1);
+    EXPECT_NEAR(crowd->getController(instance)->time(), 0.75, 1e-12);
+    crowd->getController(instance)->layer(1);
     crowd->update(1.0);
-    EXPECT_EQ(crowd->instances().controllerCount(), 1u);
+    EXPECT_EQ(crowd->getInstances().controllerCount(), 1u);
 }
 
 TEST(AnimatedCrowdTest, boundsHoldEveryInstance)
@@ -159,7 +159,7 @@ TEST(AnimatedCrowdTest, boundsHoldEveryInstance)
     const AnimatedCrowd::Instance moved = crowd->add(osg::Matrixd::translate(20, 5, 0), playing("turn")).value();
     for (const osg::Vec3d corner : {osg::Vec3d(10, 0, 0), osg::Vec3d(13, 0, 1), osg::Vec3d(20, 5, -1)})
         EXPECT_LE((osg::Vec3d(crowd->getBound().center()) - corner).length(), crowd->getBound().radius() + 1e-6);
-    ASSERT_TRUE(crowd->move(moved, osg::Matrixd::translate(-200, 0, 0)));
+    ASSERT_TRUE(crowd->setPlacement(moved, osg::Matrixd::translate(-200, 0, 0)));
     EXPECT_GT(crowd->getBound().radius(), 100);
 }
 
@@ -206,8 +206,8 @@ TEST(AnimatedCrowdTest, aCloneHasInstancesOfItsOwn)
     const AnimatedCrowd::Instance instance = crowd->add(osg::Matrixd::translate(1, 0, 0), playing("shift")).value();
     const osg::ref_ptr<AnimatedCrowd> other = osg::clone(crowd.get(), osg::CopyOp::DEEP_COPY_NODES);
     ASSERT_TRUE(other->move(instance, osg::Matrixd::translate(5, 0, 0)));
-    EXPECT_EQ(crowd->placement(instance).getTrans(), osg::Vec3d(1, 0, 0));
-    EXPECT_EQ(&crowd->set(), &other->set());
+    EXPECT_EQ(crowd->getPlacement(instance).getTrans(), osg::Vec3d(1, 0, 0));
+    EXPECT_EQ(&crowd->getAnimationSet(), &other->set());
 }
 
 TEST(AnimatedCrowdTest, movingTheOriginLeavesInstancesWhereTheyAre)
@@ -215,7 +215,7 @@ TEST(AnimatedCrowdTest, movingTheOriginLeavesInstancesWhereTheyAre)
     const osg::ref_ptr<AnimatedCrowd> crowd = emptyCrowd();
     const AnimatedCrowd::Instance instance = crowd->add(osg::Matrixd::translate(1, 2, 3), playing("shift")).value();
     crowd->setOrigin({-100, 50, 0});
-    EXPECT_EQ(crowd->placement(instance).getTrans(), osg::Vec3d(1, 2, 3));
+    EXPECT_EQ(crowd->getPlacement(instance).getTrans(), osg::Vec3d(1, 2, 3));
 }
 
 } // namespace osgGpuAnimation

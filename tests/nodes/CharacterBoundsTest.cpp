@@ -12,16 +12,16 @@ namespace
 TEST(CharacterBoundsTest, FollowWhatLayersAndCrossfadesPlay)
 {
     osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
-    AnimationController& controller = character->controller();
+    AnimationController& controller = character->getController();
     const auto* square = dynamic_cast<const SkinnedGeometry*>(character->getChild(0));
     character->update(0.0);
-    EXPECT_NEAR(character->currentBounds().max.x, 3.0f, 1e-3) << "shift alone: its own box";
-    EXPECT_NEAR(character->currentBounds().min.z, 0.0f, 1e-3);
+    EXPECT_NEAR(character->getCurrentBounds().max.x, 3.0f, 1e-3) << "shift alone: its own box";
+    EXPECT_NEAR(character->getCurrentBounds().min.z, 0.0f, 1e-3);
 
     ASSERT_TRUE(controller.crossfade("turn", 1.0));
     character->update(0.5);
     // The base goes up to 2 along x and may be turned as far as the clips do.
-    const Box mixed = character->currentBounds();
+    const Box mixed = character->getCurrentBounds();
     EXPECT_LE(mixed.min.z, -1.0f);
     EXPECT_GE(mixed.max.x, 3.0f);
     EXPECT_GE(character->getBound().radius(), 0.5f * (mixed.max.x - mixed.min.x));
@@ -29,26 +29,26 @@ TEST(CharacterBoundsTest, FollowWhatLayersAndCrossfadesPlay)
 
     character->update(3.0);
     character->update(3.1);
-    EXPECT_EQ(character->currentBounds().max.x, character->clipBounds(1).max.x) << "turn alone";
+    EXPECT_EQ(character->getCurrentBounds().max.x, character->getClipBounds(1).max.x) << "turn alone";
 
     AnimationLayer& added = controller.layer(1);
     added.setMode(AnimationLayer::Mode::Additive);
     ASSERT_TRUE(added.play("shift"));
     character->update(3.2);
-    EXPECT_GE(character->currentBounds().max.x, 3.0f) << "shift is added to the turned square";
+    EXPECT_GE(character->getCurrentBounds().max.x, 3.0f) << "shift is added to the turned square";
     EXPECT_GE(character->getBound().center().x() + character->getBound().radius(), 3.0f);
-    EXPECT_GE(square->getBoundingBox().xMax(), character->currentBounds().max.x);
+    EXPECT_GE(square->getBoundingBox().xMax(), character->getCurrentBounds().max.x);
 }
 
 TEST(CharacterBoundsTest, ACloneHasItsOwn)
 {
     osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
     osg::ref_ptr<AnimatedCharacter> clone = osg::clone(character.get(), osg::CopyOp::DEEP_COPY_NODES);
-    ASSERT_TRUE(clone->controller().crossfade("turn", 1.0));
+    ASSERT_TRUE(clone->getController().crossfade("turn", 1.0));
     clone->update(0.0);
     character->update(0.0);
-    EXPECT_LE(clone->currentBounds().min.z, -1.0f);
-    EXPECT_NEAR(character->currentBounds().min.z, 0.0f, 1e-3);
+    EXPECT_LE(clone->getCurrentBounds().min.z, -1.0f);
+    EXPECT_NEAR(character->getCurrentBounds().min.z, 0.0f, 1e-3);
 }
 
 } // namespace

@@ -41,8 +41,8 @@ osg::ref_ptr<osg::Group> makeCharacters(int count)
     for (int index = 0; index < count; ++index)
     {
         osg::ref_ptr<AnimatedCharacter> character = osg::clone(first.get(), osg::CopyOp::DEEP_COPY_NODES);
-        EXPECT_TRUE(character->controller().play(index % 3 ? "shift" : "turn"));
-        character->controller().seek(0.07 * index);
+        EXPECT_TRUE(character->getController().play(index % 3 ? "shift" : "turn"));
+        character->getController().seek(0.07 * index);
         character->setMatrix(placeOf(index));
         group->addChild(character);
     }
@@ -184,8 +184,8 @@ TEST_F(CharacterDrawsGLTest, chunksOfPalettesAreDrawnOneAfterAnother)
     const osg::ref_ptr<osg::Image> whole = pictureOf(*scene, true);
     const std::size_t texels = PosePipeline::of(state())->maxTexels();
     PosePipeline::of(state())->setMaxTexels(6 * 3 * testCharacterSet()->paletteSize()); // six to a chunk
-    characterOf(*scene, 0).controller().seek(0.01);
-    characterOf(*scene, 0).controller().seek(0.0);
+    characterOf(*scene, 0).getController().seek(0.01);
+    characterOf(*scene, 0).getController().seek(0.0);
     for (int index = 0; index < everybody; ++index)
         characterOf(*scene, index).setDrawnTogether(true);
     drawAt(0.0);

@@ -51,7 +51,7 @@ protected:
     void press(int key) { send(osgGA::GUIEventAdapter::KEYDOWN, key); }
 
     osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
-    AnimationController& controller = character->controller();
+    AnimationController& controller = character->getController();
     osg::ref_ptr<osg::Group> scene = new osg::Group;
     osg::ref_ptr<NotifyLog> log = new NotifyLog(osg::DEBUG_FP);
     Actions actions;
@@ -156,7 +156,7 @@ TEST_F(CharacterKeysTest, jointsComeAndGo)
     ASSERT_TRUE(hasJointLines(*character));
     const auto* lines = dynamic_cast<const SkinnedGeometry*>(character->getChild(character->getNumChildren() - 1));
     ASSERT_TRUE(lines);
-    EXPECT_EQ(lines->getVertexArray()->getNumElements(), 2 * (character->set().skeleton().jointCount() - 1))
+    EXPECT_EQ(lines->getVertexArray()->getNumElements(), 2 * (character->getAnimationSet().skeleton().jointCount() - 1))
         << "all but the root have a parent";
     press('j');
     EXPECT_FALSE(hasJointLines(*character));
@@ -177,7 +177,7 @@ TEST_F(CharacterKeysTest, clonesThatShareTheKeysAllFollow)
     scene->addChild(clone);
     press('n');
     EXPECT_EQ(controller.clip(), 1);
-    EXPECT_EQ(clone->controller().clip(), 1);
+    EXPECT_EQ(clone->getController().clip(), 1);
 }
 
 TEST_F(CharacterKeysTest, otherKeysAndKeysThatOthersTookAreLeftAlone)

@@ -178,9 +178,9 @@ TEST_F(CrowdEdgesGLTest, tintsAreTheInstancesOwnAtEveryLevelOfDetail)
         const osg::Matrixd place =
             osg::Matrixd::translate((i < 3 ? -0.2 : 0.03) * away, away - 10.0, (i % 3 - 1) * 0.16 * away);
         const osg::Vec4 tint(0.3f * static_cast<float>(i % 3), i < 3 ? 0.3f : 0.6f, 1, 1);
-        ASSERT_TRUE(all->add(place, tube->controller(), tint));
+        ASSERT_TRUE(all->add(place, tube->getController(), tint));
         const osg::ref_ptr<AnimatedCrowd> one = makeCrowd();
-        ASSERT_TRUE(one->add(place, tube->controller(), tint));
+        ASSERT_TRUE(one->add(place, tube->getController(), tint));
         alone->addChild(one);
         pictureOf(one, {0.0});
         EXPECT_NE(count->primitives(), primitivesAlone) << "a level of its own, " << i;

@@ -33,7 +33,7 @@ protected:
 TEST_F(DirectingGLTest, aCharacterThatPausesUploadsNothingNew)
 {
     osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
-    AnimationController& controller = character->controller();
+    AnimationController& controller = character->getController();
     ASSERT_TRUE(controller.crossfade("turn", 10.0));
     viewer().setSceneData(character);
     drawAt(0);
@@ -53,7 +53,7 @@ TEST_F(DirectingGLTest, aCharacterThatPausesUploadsNothingNew)
 TEST_F(DirectingGLTest, aLayerGoesOverItsJointsInThePicture)
 {
     osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
-    AnimationController& controller = character->controller();
+    AnimationController& controller = character->getController();
     ASSERT_TRUE(controller.seek(0.5));
     AnimationLayer& over = controller.layer(1);
     ASSERT_TRUE(over.play("shift"));
@@ -61,7 +61,7 @@ TEST_F(DirectingGLTest, aLayerGoesOverItsJointsInThePicture)
     viewer().setSceneData(character);
     drawAt(0);
     EXPECT_DOUBLE_EQ(left(), 1.5);
-    ASSERT_TRUE(over.setMask(JointMask::subtree(character->set(), "tip").value()));
+    ASSERT_TRUE(over.setMask(JointMask::subtree(character->getAnimationSet(), "tip").value()));
     drawAt(0);
     EXPECT_DOUBLE_EQ(left(), 0.5) << "the base is not the layer's any more";
     over.clearMask();
@@ -79,7 +79,7 @@ TEST_F(DirectingGLTest, whatIsAttachedIsDrawnWhereTheJointIs)
     osg::ref_ptr<JointAttachment> attachment = new JointAttachment("tip");
     attachment->addChild(osg::createTexturedQuadGeometry({}, {1, 0, 0}, {0, 0, 1}));
     character->addChild(attachment);
-    ASSERT_TRUE(character->controller().play("shift"));
+    ASSERT_TRUE(character->getController().play("shift"));
     viewer().setSceneData(character);
     drawAt(0);
     EXPECT_DOUBLE_EQ(left(), 0.0);

@@ -3,8 +3,8 @@
 
 #include "support/TestCharacter.h"
 
-#include <osgGpuAnimation/animation/JointMask.h>
 #include <osgGpuAnimation/animation/ClipBuilder.h>
+#include <osgGpuAnimation/animation/JointMask.h>
 #include <osgGpuAnimation/nodes/RootMotionCallback.h>
 
 #include <osg/Geometry>
@@ -95,8 +95,8 @@ TEST_F(JointAttachmentTest, FollowsAJointByNameOrNumber)
         updateAt(*character, 1.5);
         EXPECT_TRUE(isNear(placesOf(*character, "sword")[0], {0.5, 0, 5}));
         EXPECT_TRUE(isNear(attachment->getMatrix().getTrans(), {0.5, 0, 0})) << "for bounds, which know no path";
-        character->controller().seek(2.0);
-        character->controller().setLoopMode(LoopMode::Once);
+        character->getController().seek(2.0);
+        character->getController().setLoopMode(LoopMode::Once);
         EXPECT_TRUE(isNear(placesOf(*character, "sword")[0], {2, 0, 5})) << "at once, as the palette is drawn";
     }
 }
@@ -104,9 +104,9 @@ TEST_F(JointAttachmentTest, FollowsAJointByNameOrNumber)
 TEST_F(JointAttachmentTest, TurnsWithItsJoint)
 {
     osg::ref_ptr<AnimatedCharacter> character = characterWith(new JointAttachment("tip"));
-    ASSERT_TRUE(character->controller().play("turn"));
-    character->controller().setLoopMode(LoopMode::Once);
-    character->controller().seek(1.0);
+    ASSERT_TRUE(character->getController().play("turn"));
+    character->getController().setLoopMode(LoopMode::Once);
+    character->getController().seek(1.0);
     const Result<osg::Matrixd> matrix = character->jointToModel("tip");
     ASSERT_TRUE(matrix);
     EXPECT_TRUE(isNear(osg::Vec3d(1, 0, 0) * matrix.value(), {0, 0, -1})) << "a quarter about +Y";
@@ -125,8 +125,8 @@ TEST_F(JointAttachmentTest, ClonesCarryTheirOwn)
     for (const auto how : {osg::CopyOp::DEEP_COPY_NODES, osg::CopyOp::SHALLOW_COPY})
     {
         osg::ref_ptr<AnimatedCharacter> other = osg::clone(one.get(), how);
-        one->controller().seek(0.25);
-        other->controller().seek(1.75);
+        one->getController().seek(0.25);
+        other->getController().seek(1.75);
         osg::ref_ptr<osg::Group> scene = new osg::Group;
         scene->addChild(one);
         scene->addChild(other);
@@ -144,7 +144,7 @@ TEST_F(JointAttachmentTest, SurvivesTheOptimizer)
     osg::ref_ptr<AnimatedCharacter> character = characterWith(new JointAttachment("tip"));
     scene->addChild(character);
     osgUtil::Optimizer().optimize(scene, osgUtil::Optimizer::DEFAULT_OPTIMIZATIONS);
-    character->controller().seek(1.25);
+    character->getController().seek(1.25);
     updateAt(*scene, 0.0);
     ASSERT_EQ(character->getNumChildren(), 2u);
     EXPECT_TRUE(
@@ -154,7 +154,7 @@ TEST_F(JointAttachmentTest, SurvivesTheOptimizer)
 TEST_F(JointAttachmentTest, WithoutItsJointOrACharacterItStaysAtTheOrigin)
 {
     osg::ref_ptr<AnimatedCharacter> character = characterWith(new JointAttachment("wing"));
-    character->controller().seek(1.0);
+    character->getController().seek(1.0);
     updateAt(*character, 0.0);
     EXPECT_TRUE(isNear(placesOf(*character, "sword")[0], {0, 0, 0}));
     osg::ref_ptr<JointAttachment> alone = new JointAttachment(7);
@@ -197,11 +197,11 @@ TEST_F(JointAttachmentTest, SharedByCharactersOfDifferentSetsItWarnsOnce)
 TEST_F(JointAttachmentTest, ANewSetChangesNothingElse)
 {
     osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
-    const auto moving = withRootMotion(character->set(), "base").value();
+    const auto moving = withRootMotion(character->getAnimationSet(), "base").value();
     ASSERT_TRUE(character->setAnimationSet(moving));
-    AnimationController& controller = character->controller();
+    AnimationController& controller = character->getController();
     controller.layer(0).setWeight(0.5f);
-    controller.layer(0).setStanding(3);
+    controller.layer(0).setBlendPriority(3);
     ASSERT_TRUE(controller.layer(0).setMask(JointMask::subtree(*moving, "base").value()));
     ASSERT_TRUE(controller.layer(1).play("turn"));
     controller.layer(1).setLoopMode(LoopMode::Once);
@@ -212,7 +212,7 @@ TEST_F(JointAttachmentTest, ANewSetChangesNothingElse)
 
     ASSERT_TRUE(character->setAnimationSet(moving->withClips(moving->clips()).value()));
     EXPECT_EQ(controller.layer(0).weight(), 0.5f);
-    EXPECT_EQ(controller.layer(0).standing(), 3);
+    EXPECT_EQ(controller.layer(0).blendPriority(), 3);
     EXPECT_NE(controller.layer(0).mask(), 0u);
     ASSERT_EQ(controller.layerCount(), 2u);
     EXPECT_EQ(controller.layer(1).state(), PlayState::Ended);
@@ -234,10 +234,10 @@ TEST_F(JointAttachmentTest, ANewSetChangesNothingElse)
 TEST_F(JointAttachmentTest, ACharacterGoesByItsRootMotion)
 {
     osg::ref_ptr<AnimatedCharacter> character = characterWith(new JointAttachment("tip"));
-    const auto set = withRootMotion(character->set(), "base");
+    const auto set = withRootMotion(character->getAnimationSet(), "base");
     ASSERT_TRUE(set);
     ASSERT_TRUE(character->setAnimationSet(set.value()));
-    EXPECT_EQ(character->controller().clip(), 0) << "plays on";
+    EXPECT_EQ(character->getController().clip(), 0) << "plays on";
     character->addUpdateCallback(new RootMotionCallback);
     character->setMatrix(osg::Matrix::rotate(osg::PI_2, osg::Vec3d(0, 0, 1)) * osg::Matrix::translate(0, 0, 3));
     for (int i = 0; i <= 75; ++i)
@@ -255,7 +255,7 @@ TEST_F(JointAttachmentTest, ASetOfAnotherPaletteIsRefused)
     const auto other = AnimationSet::create({Skeleton::create({}).value(), {}, {}, {}, {}}).value();
     EXPECT_FALSE(character->setAnimationSet(other));
     EXPECT_FALSE(character->setAnimationSet(nullptr));
-    EXPECT_EQ(character->controller().clip(), 0);
+    EXPECT_EQ(character->getController().clip(), 0);
 }
 
 } // namespace

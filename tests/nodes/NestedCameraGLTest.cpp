@@ -26,12 +26,12 @@ osg::ref_ptr<osg::Group> makeScene()
     for (int i = 0; i < 2; ++i)
     {
         osg::ref_ptr<AnimatedCharacter> character = osg::clone(first.get(), osg::CopyOp::DEEP_COPY_NODES);
-        character->controller().setSpeed(0.5 + i);
+        character->getController().setSpeed(0.5 + i);
         character->setMatrix(osg::Matrix::translate(-3.5, 0, 0.5 + 1.5 * i));
         group->addChild(character);
     }
     osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*first);
-    AnimationController controller(crowd->sharedSet());
+    AnimationController controller(crowd->getSharedAnimationSet());
     EXPECT_TRUE(controller.play("turn"));
     EXPECT_TRUE(crowd->add(osg::Matrix::translate(2, 0, 2), controller));
     group->addChild(crowd);

@@ -111,7 +111,7 @@ osg::ref_ptr<AnimatedCharacter> makePanelCharacter()
 osg::ref_ptr<osg::Node> makeBaked(const AnimatedCharacter& character)
 {
     std::vector<AffineMatrix> palette;
-    Pose::evaluate(character.set(), character.controller().instruction(), AffineMatrix(), palette);
+    Pose::evaluate(character.getAnimationSet(), character.getController().instruction(), AffineMatrix(), palette);
     osg::ref_ptr<osg::MatrixTransform> result = new osg::MatrixTransform(character.getMatrix());
     for (unsigned int i = 0; i < character.getNumChildren(); ++i)
         if (const auto* mesh = dynamic_cast<const SkinnedGeometry*>(character.getChild(i)))

@@ -90,7 +90,7 @@ TEST_F(PoseLoadsGLTest, ofACrowdThoseWhoFadeAreMixedApart)
     for (std::size_t number = 0; number < everybody; ++number)
     {
         const std::size_t slot = isFading(number) ? 1 : 0;
-        expectPose(crowd->instances().controllerCopy(number), crowd->instances().rootMatrix(number), slot,
+        expectPose(crowd->getInstances().controllerCopy(number), crowd->getInstances().rootMatrix(number), slot,
                    found[slot]++);
     }
 }
@@ -102,7 +102,7 @@ TEST_F(PoseLoadsGLTest, ofSeparateCharactersThoseWhoFadeAreMixedApart)
     for (std::size_t number = 0; number < everybody; ++number)
     {
         osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
-        start(character->controller(), number);
+        start(character->getController(), number);
         character->setMatrix(placeOf(number));
         root->addChild(character);
         characters.push_back(character);
@@ -115,15 +115,15 @@ TEST_F(PoseLoadsGLTest, ofSeparateCharactersThoseWhoFadeAreMixedApart)
     std::size_t found[2] = {};
     for (std::size_t number = 0; number < everybody; ++number)
     {
-        const std::size_t slot = found[0] < PoseBatch::worthABatch || isFading(number) ? 0 : 1;
-        expectPose(characters[number]->controller(), AffineMatrix(), slot, found[slot]++);
+        const std::size_t slot = found[0] < PoseBatch::minBatchSize || isFading(number) ? 0 : 1;
+        expectPose(characters[number]->getController(), AffineMatrix(), slot, found[slot]++);
     }
 }
 
 TEST_F(PoseLoadsGLTest, fewStayInOneBatch)
 {
     osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*makeTestCharacter());
-    for (std::size_t number = 0; number < PoseBatch::worthABatch; ++number)
+    for (std::size_t number = 0; number < PoseBatch::minBatchSize; ++number)
     {
         AnimationController controller(testCharacterSet());
         start(controller, number);
@@ -134,7 +134,7 @@ TEST_F(PoseLoadsGLTest, fewStayInOneBatch)
     const PosePipeline::Counters before = pipeline().counters();
     drawAt(0.25);
     EXPECT_EQ(pipeline().counters().feedbackDraws - before.feedbackDraws, testCharacterSet()->levelCount());
-    EXPECT_EQ(pipeline().counters().instancesEvaluated - before.instancesEvaluated, PoseBatch::worthABatch);
+    EXPECT_EQ(pipeline().counters().instancesEvaluated - before.instancesEvaluated, PoseBatch::minBatchSize);
 }
 
 } // namespace

@@ -110,7 +110,7 @@ TEST_F(PoseStatisticsGLTest, aCamerasStatisticsCountWhatItsDrawsShow)
     for (int i = 0; i < 7; ++i)
     {
         const osg::Matrixd place = osg::Matrixd::translate(i < 5 ? -3.5 + 1.2 * i : 100, 0, 0); // two are out of view
-        ASSERT_TRUE(crowd->add(place, first->controller()));
+        ASSERT_TRUE(crowd->add(place, first->getController()));
         const osg::ref_ptr<AnimatedCharacter> together = osg::clone(first.get(), osg::CopyOp::DEEP_COPY_NODES);
         together->setMatrix(place);
         group->addChild(together);

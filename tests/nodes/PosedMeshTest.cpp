@@ -30,7 +30,7 @@ osg::ref_ptr<osgUtil::LineSegmentIntersector> hitAt(osg::Node& node, double x)
 osg::ref_ptr<AnimatedCharacter> shiftedCharacter()
 {
     const osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
-    character->controller().seek(1.5);
+    character->getController().seek(1.5);
     return character;
 }
 
@@ -64,15 +64,15 @@ TEST(PosedMeshTest, aPoseIsComputedOnce)
 {
     const osg::ref_ptr<AnimatedCharacter> character = shiftedCharacter();
     auto& mesh = dynamic_cast<SkinnedGeometry&>(*character->getChild(0));
-    const osg::ref_ptr<osg::Geometry> first = character->posedMesh(mesh);
-    EXPECT_EQ(first, character->posedMesh(mesh));
-    character->controller().seek(0.5);
-    EXPECT_NE(first, character->posedMesh(mesh)) << "another pose";
-    const osg::ref_ptr<osg::Geometry> second = character->posedMesh(mesh);
+    const osg::ref_ptr<osg::Geometry> first = character->getPosedMesh(mesh);
+    EXPECT_EQ(first, character->getPosedMesh(mesh));
+    character->getController().seek(0.5);
+    EXPECT_NE(first, character->getPosedMesh(mesh)) << "another pose";
+    const osg::ref_ptr<osg::Geometry> second = character->getPosedMesh(mesh);
     mesh.getVertexArray()->dirty();
-    EXPECT_NE(second, character->posedMesh(mesh)) << "other vertices";
+    EXPECT_NE(second, character->getPosedMesh(mesh)) << "other vertices";
     const osg::ref_ptr<AnimatedCharacter> clone = osg::clone(character.get(), osg::CopyOp::DEEP_COPY_NODES);
-    EXPECT_NE(clone->posedMesh(mesh), character->posedMesh(mesh));
+    EXPECT_NE(clone->getPosedMesh(mesh), character->getPosedMesh(mesh));
 }
 
 TEST(PosedMeshTest, kdTreesAreNotMadeOfBindPoses)

@@ -50,7 +50,7 @@ osg::ref_ptr<osg::Group> makeScene()
     character->setMatrix(osg::Matrix::translate(-2.75, 0, -2.75));
     group->addChild(character);
     osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*character);
-    AnimationController controller(crowd->sharedSet());
+    AnimationController controller(crowd->getSharedAnimationSet());
     EXPECT_TRUE(controller.play("shift"));
     EXPECT_TRUE(crowd->add(osg::Matrix::translate(-0.25, 0, 0), controller));
     EXPECT_TRUE(crowd->add(osg::Matrix::translate(-2.75, 0, 2.75), controller, osg::Vec4(1, 0.5f, 0, 1)));
@@ -209,7 +209,8 @@ TEST_F(ProfileGLTest, colorsAreEncodedByAnSrgbFramebuffer)
     osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*makePanelCharacter());
     setUnlit(*crowd->getChild(0));
     crowd->getOrCreateStateSet()->setTextureMode(0, GL_TEXTURE_2D, osg::StateAttribute::OVERRIDE);
-    ASSERT_TRUE(crowd->add(osg::Matrix(), AnimationController(crowd->sharedSet()), osg::Vec4(0.5f, 0.5f, 0.5f, 1)));
+    ASSERT_TRUE(
+        crowd->add(osg::Matrix(), AnimationController(crowd->getSharedAnimationSet()), osg::Vec4(0.5f, 0.5f, 0.5f, 1)));
     osg::ref_ptr<osg::Image> encoded = new osg::Image;
     encoded->allocateImage(64, 64, 1, GL_RGBA, GL_UNSIGNED_BYTE);
     encoded->setInternalTextureFormat(GL_SRGB8_ALPHA8);

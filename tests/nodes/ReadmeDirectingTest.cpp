@@ -50,7 +50,7 @@ protected:
         _node = makeFox();
         fox = findCharacter(*_node);
         fox->setUpdateCallback(nullptr);
-        ASSERT_TRUE(fox->controller().play("Walk"));
+        ASSERT_TRUE(fox->getController().play("Walk"));
     }
 
     AnimatedCharacter* fox = nullptr;
@@ -61,7 +61,7 @@ private:
 
 TEST_F(ReadmeDirectingTest, PlayingAndCrossfading)
 {
-    AnimationController& controller = fox->controller();
+    AnimationController& controller = fox->getController();
     EXPECT_TRUE(controller.play("Walk"));
     controller.setSpeed(1.2);
     EXPECT_TRUE(controller.crossfade("Run", 0.3));
@@ -76,9 +76,9 @@ TEST_F(ReadmeDirectingTest, PlayingAndCrossfading)
 
 TEST_F(ReadmeDirectingTest, LayersAndMasks)
 {
-    AnimationController& controller = fox->controller();
+    AnimationController& controller = fox->getController();
     AnimationLayer& gesture = controller.layer(1);
-    Result<JointMask> arm = JointMask::subtree(fox->set(), "Shoulder.R", 1);
+    Result<JointMask> arm = JointMask::subtree(fox->getAnimationSet(), "Shoulder.R", 1);
     ASSERT_TRUE(arm) << arm.error().message;
     if (arm) (void)gesture.setMask(arm.value());
     gesture.setLoopMode(LoopMode::Once);
@@ -96,37 +96,37 @@ TEST_F(ReadmeDirectingTest, Events)
 {
     std::string heard;
     const auto playSound = [&](const std::string& name, float) { heard += name + ";"; };
-    EXPECT_TRUE(fox->controller().play("Survey"));
-    Result<Clip> marked = fox->set().clips()[0].withMarkers({{0.20, "left foot"}, {0.55, "right foot"}});
+    EXPECT_TRUE(fox->getController().play("Survey"));
+    Result<Clip> marked = fox->getAnimationSet().clips()[0].withMarkers({{0.20, "left foot"}, {0.55, "right foot"}});
     if (marked)
     {
-        std::vector<Clip> clips = fox->set().clips();
+        std::vector<Clip> clips = fox->getAnimationSet().clips();
         clips[0] = marked.value();
-        EXPECT_TRUE(fox->setAnimationSet(fox->set().withClips(clips).value()));
+        EXPECT_TRUE(fox->setAnimationSet(fox->getAnimationSet().withClips(clips).value()));
     }
-    fox->controller().setEventCallback(
+    fox->getController().setEventCallback(
         [&](const AnimationEvent& event)
         {
             if (event.type == AnimationEvent::Type::Marker) playSound(event.marker->name, event.weight);
-            if (event.type == AnimationEvent::Type::Finished) (void)fox->controller().crossfade("Walk", 0.3);
+            if (event.type == AnimationEvent::Type::Finished) (void)fox->getController().crossfade("Walk", 0.3);
         });
-    fox->controller().advance(0.6);
+    fox->getController().advance(0.6);
     EXPECT_EQ(heard, "left foot;right foot;");
 }
 
 TEST_F(ReadmeDirectingTest, RootMotionOfTheCharacterOrOfSomethingElse)
 {
-    auto set = withRootMotion(fox->set(), "hips", {true, false, true});
+    auto set = withRootMotion(fox->getAnimationSet(), "hips", {true, false, true});
     if (set) (void)fox->setAnimationSet(set.value());
-    fox->controller().advance(0.5);
+    fox->getController().advance(0.5);
 
     glm::dmat4 placement(1.0);
-    RootMotion step = fox->controller().takeRootMotion();
+    RootMotion step = fox->getController().takeRootMotion();
     placement = placement * step.matrix();
     EXPECT_NEAR(placement[3].z, 1.0, 1e-6);
 
     fox->addUpdateCallback(new RootMotionCallback);
-    fox->controller().advance(0.25);
+    fox->getController().advance(0.25);
     osg::NodeVisitor visitor(osg::NodeVisitor::UPDATE_VISITOR, osg::NodeVisitor::TRAVERSE_ALL_CHILDREN);
     fox->getUpdateCallback()->run(fox, &visitor);
     EXPECT_NEAR(fox->getMatrix().getTrans().z(), 0.5, 1e-6);
@@ -134,7 +134,7 @@ TEST_F(ReadmeDirectingTest, RootMotionOfTheCharacterOrOfSomethingElse)
 
 TEST_F(ReadmeDirectingTest, AttachmentsAndQuestions)
 {
-    AnimationController& controller = fox->controller();
+    AnimationController& controller = fox->getController();
     osg::ref_ptr<osg::Group> sword = new osg::Group;
     osg::ref_ptr<JointAttachment> hand = new JointAttachment("Hand.R");
     hand->addChild(sword);
@@ -145,7 +145,7 @@ TEST_F(ReadmeDirectingTest, AttachmentsAndQuestions)
     EXPECT_NEAR(head.value().getTrans().y(), 1.0, 1e-6);
     int clip = controller.clip();
     double share = controller.normalizedTime();
-    bool walks = clip == fox->set().findClip("Walk") && controller.isPlaying();
+    bool walks = clip == fox->getAnimationSet().findClip("Walk") && controller.isPlaying();
     EXPECT_EQ(share, 0.0);
     EXPECT_TRUE(walks);
 }
@@ -169,18 +169,18 @@ TEST_F(ReadmeDirectingTest, States)
 })");
     const double seconds = 1.0 / 60.0;
     const WorkingFolder here(folder.file(""));
-    auto graph = readStateGraphFile(fox->set(), "fox.states.json");
+    auto graph = readStateGraphFile(fox->getAnimationSet(), "fox.states.json");
     ASSERT_TRUE(graph) << graph.error().message;
     if (graph)
     {
         StateMachine machine(graph.value());
         machine.set("speed", 1.0);
         machine.fire("jump");
-        machine.update(fox->controller(), seconds);
+        machine.update(fox->getController(), seconds);
         EXPECT_EQ(machine.state(), "stand");
-        machine.update(fox->controller(), seconds);
+        machine.update(fox->getController(), seconds);
         EXPECT_EQ(machine.state(), "walk");
-        machine.update(fox->controller(), seconds);
+        machine.update(fox->getController(), seconds);
         EXPECT_EQ(machine.state(), "jump");
     }
 }

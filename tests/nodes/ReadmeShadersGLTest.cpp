@@ -78,7 +78,7 @@ TEST_F(ReadmeShadersGLTest, skinsWithOneCallOnAMeshAndFromAbove)
     osg::ref_ptr<AnimatedCharacter> fromAbove = makePanelCharacter();
     overrideBy(*fromAbove, *makeOwnProgram());
     osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*makePanelCharacter());
-    AnimationController controller(crowd->sharedSet());
+    AnimationController controller(crowd->getSharedAnimationSet());
     ASSERT_TRUE(controller.play("shift"));
     ASSERT_TRUE(crowd->add(osg::Matrix(), controller));
     overrideBy(*crowd, *makeOwnProgram());

@@ -68,7 +68,7 @@ protected:
     static osg::ref_ptr<osg::Node> bakedAt(double time)
     {
         osg::ref_ptr<AnimatedCharacter> character = makePanelCharacter();
-        character->controller().seek(time);
+        character->getController().seek(time);
         return makeBaked(*character);
     }
 
@@ -101,7 +101,7 @@ TEST_P(ShadowGLTest, aCharacterCastsAndReceivesLikePlainGeometryInItsPose)
 TEST_P(ShadowGLTest, aCrowdCastsAndReceivesToo)
 {
     osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*makePanelCharacter());
-    AnimationController controller(crowd->sharedSet());
+    AnimationController controller(crowd->getSharedAnimationSet());
     ASSERT_TRUE(controller.play("shift"));
     ASSERT_TRUE(crowd->add(osg::Matrix(), controller));
     ASSERT_TRUE(crowd->add(osg::Matrix::translate(-3, 0, -2), controller));

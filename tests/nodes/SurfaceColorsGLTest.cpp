@@ -51,7 +51,7 @@ TEST_F(SurfaceColorsGLTest, tintsAreAsOneColorFarAway)
     for (int i = 0; i < 1000; ++i)
         ASSERT_TRUE(crowd->add(osg::Matrix::rotate(0.37 * i, 0.3, 0.5, 1) *
                                    osg::Matrix::translate(10.0 * (i % 25 - 12), 10.0 * (i / 25), 0.0),
-                               tube->controller(), osg::Vec4(1, 0, 0, 1)));
+                               tube->getController(), osg::Vec4(1, 0, 0, 1)));
     viewer().getCamera()->setProjectionMatrixAsPerspective(40, 1, 0.1, 6000);
     for (int view = 0; view < 6; ++view)
     {
@@ -94,8 +94,9 @@ TEST_F(SurfaceColorsGLTest, morphTargetsColorWhite)
     const std::shared_ptr<const AnimationSet> set = armSet(true);
     const osg::ref_ptr<AnimatedCharacter> tube = makeTubeCharacter(set);
     auto& mesh = static_cast<SkinnedGeometry&>(meshOf(*tube));
-    std::vector<MorphTarget> targets = mesh.morphTargets();
-    targets[0].colors = new osg::Vec4Array(osg::Array::BIND_PER_VERTEX, static_cast<unsigned int>(mesh.vertexCount()));
+    std::vector<MorphTarget> targets = mesh.getMorphTargets();
+    targets[0].colors =
+        new osg::Vec4Array(osg::Array::BIND_PER_VERTEX, static_cast<unsigned int>(mesh.getVertexCount()));
     mesh.setMorphTargets(*set, 0, targets);
     osg::ref_ptr<osg::Material> material = new osg::Material;
     material->setDiffuse(osg::Material::FRONT_AND_BACK, osg::Vec4(0.8f, 0.4f, 0.2f, 1));

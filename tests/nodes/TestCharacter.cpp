@@ -71,7 +71,7 @@ osg::ref_ptr<AnimatedCharacter> makeTestCharacter()
     osg::ref_ptr<AnimatedCharacter> character = new AnimatedCharacter(testCharacterSet());
     character->addChild(makeTestSquare(1));
     character->computeClipBounds();
-    const Result<bool> playing = character->controller().play("shift");
+    const Result<bool> playing = character->getController().play("shift");
     assert(playing && "the clip is there");
     (void)playing;
     return character;

@@ -29,10 +29,10 @@ protected:
         {
             // Of one mesh, so that they are drawn together.
             osg::ref_ptr<AnimatedCharacter> character = osg::clone(first.get(), osg::CopyOp::DEEP_COPY_NODES);
-            character->controller().setSpeed(0.2 * i);
+            character->getController().setSpeed(0.2 * i);
             character->setMatrix(osg::Matrix::translate(-3.5, 0, -3.5 + 1.4 * i));
             group->addChild(character);
-            EXPECT_TRUE(crowd->add(osg::Matrix::translate(0.5, 0, -3.5 + 1.4 * i), character->controller()));
+            EXPECT_TRUE(crowd->add(osg::Matrix::translate(0.5, 0, -3.5 + 1.4 * i), character->getController()));
         }
         return group;
     }

@@ -80,9 +80,9 @@ osg::ref_ptr<SkinnedGeometry> makeShownTube(const AnimationSet& set)
 osg::ref_ptr<AnimatedCharacter> makeTubeCharacter(std::shared_ptr<const AnimationSet> set)
 {
     osg::ref_ptr<AnimatedCharacter> character = new AnimatedCharacter(std::move(set));
-    character->addChild(makeShownTube(character->set()));
+    character->addChild(makeShownTube(character->getAnimationSet()));
     character->computeClipBounds();
-    EXPECT_TRUE(character->controller().play("bend"));
+    EXPECT_TRUE(character->getController().play("bend"));
     return character;
 }
 

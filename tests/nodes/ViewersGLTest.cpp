@@ -25,12 +25,12 @@ osg::ref_ptr<osg::Group> makeScene()
     for (int i = 0; i < 4; ++i)
     {
         osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
-        character->controller().setSpeed(0.3 * i);
+        character->getController().setSpeed(0.3 * i);
         character->setMatrix(osg::Matrix::translate(-3.5, 0, -3.5 + 1.5 * i));
         group->addChild(character);
     }
     osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*makeTestCharacter());
-    AnimationController controller(crowd->sharedSet());
+    AnimationController controller(crowd->getSharedAnimationSet());
     EXPECT_TRUE(controller.play("turn"));
     EXPECT_TRUE(crowd->add(osg::Matrix::translate(1.5, 0, 2), controller));
     EXPECT_TRUE(crowd->add(osg::Matrix::translate(1.5, 0, -2), controller));

@@ -39,7 +39,7 @@ protected:
     /// The box of all vertices as the character is now.
     Box posedBox() const
     {
-        const AnimationController& controller = character->controller();
+        const AnimationController& controller = character->getController();
         std::vector<AffineMatrix> palette;
         Pose::evaluate(controller.set(), controller.instruction(), AffineMatrix(), palette);
         std::vector<glm::dvec3> positions;
@@ -70,12 +70,12 @@ protected:
 
 TEST_P(BoundsOfModelsTest, clipsAreHeldTightly)
 {
-    AnimationController& controller = character->controller();
+    AnimationController& controller = character->getController();
     controller.setLoopMode(LoopMode::Once);
     double worst = 0.0;
-    for (std::size_t clip = 0; clip < character->set().clips().size(); ++clip)
+    for (std::size_t clip = 0; clip < character->getAnimationSet().clips().size(); ++clip)
     {
-        SCOPED_TRACE(character->set().clips()[clip].name());
+        SCOPED_TRACE(character->getAnimationSet().clips()[clip].name());
         ASSERT_TRUE(controller.play(clip));
         controller.pause();
         Box swept;
@@ -84,7 +84,7 @@ TEST_P(BoundsOfModelsTest, clipsAreHeldTightly)
             controller.seek(controller.duration() * i / timesAClip);
             swept.add(posedBox());
         }
-        const Box& box = character->clipBounds(static_cast<int>(clip));
+        const Box& box = character->getClipBounds(static_cast<int>(clip));
         EXPECT_LE(excess(box, swept), 1e-5) << "of the size: rounding to float";
         const double ratio = diagonal(box) / diagonal(swept);
         EXPECT_LE(ratio, 1.5);
@@ -95,14 +95,14 @@ TEST_P(BoundsOfModelsTest, clipsAreHeldTightly)
 
 TEST_P(BoundsOfModelsTest, crossfadesAreHeld)
 {
-    AnimationController& controller = character->controller();
-    const std::size_t clips = character->set().clips().size();
+    AnimationController& controller = character->getController();
+    const std::size_t clips = character->getAnimationSet().clips().size();
     double time = 0.0;
     for (std::size_t from = 0; from < clips; ++from)
     {
         const std::size_t to = (from * 7 + 3) % clips;
-        SCOPED_TRACE(testing::Message() << character->set().clips()[from].name() << " to "
-                                        << character->set().clips()[to].name());
+        SCOPED_TRACE(testing::Message() << character->getAnimationSet().clips()[from].name() << " to "
+                                        << character->getAnimationSet().clips()[to].name());
         ASSERT_TRUE(controller.play(from));
         controller.seek(0.37 * controller.duration());
         ASSERT_TRUE(controller.crossfade(to, 0.5));
@@ -110,7 +110,7 @@ TEST_P(BoundsOfModelsTest, crossfadesAreHeld)
         {
             character->update(time += 1.0 / 60.0);
             const Box posed = posedBox();
-            EXPECT_LE(excess(character->currentBounds(), posed), 1e-5) << i;
+            EXPECT_LE(excess(character->getCurrentBounds(), posed), 1e-5) << i;
             const osg::BoundingSphere& sphere = character->getBound();
             const glm::vec3 middle = 0.5f * (posed.min + posed.max);
             const osg::Vec3 centre = osg::Vec3(middle.x, middle.y, middle.z) * character->getMatrix();

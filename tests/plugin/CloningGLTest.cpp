@@ -56,7 +56,7 @@ protected:
     osg::ref_ptr<osg::Image> expectedAt(const std::string& clip, const std::vector<double>& times)
     {
         const osg::ref_ptr<osg::Node> scene = load();
-        EXPECT_TRUE(findCharacter(*scene)->controller().play(clip));
+        EXPECT_TRUE(findCharacter(*scene)->getController().play(clip));
         osg::ref_ptr<osg::Image> last;
         for (const double time : times)
             last = pictureOf(*scene, time);
@@ -104,17 +104,17 @@ protected:
         EXPECT_EQ(&first.set(), &copy.set());
         const std::string last = clipName(first.set().clips().size() - 1, first.set());
         const osg::ref_ptr<osg::Image> before = pictureOf(original, 1.0);
-        ASSERT_TRUE(copy.controller().play(last));
-        copy.controller().setSpeed(0.5);
+        ASSERT_TRUE(copy.getController().play(last));
+        copy.getController().setSpeed(0.5);
         EXPECT_EQ(Picture::pixelsDifferent(*before, *pictureOf(original, 1.0)), 0);
-        EXPECT_NE(first.controller().clip(), copy.controller().clip());
+        EXPECT_NE(first.getController().clip(), copy.getController().clip());
         // The loaded root turns +Y to +Z, and so it is for the copy.
         osg::ref_ptr<osg::MatrixTransform> place =
             new osg::MatrixTransform(osg::Matrix::rotate(osg::PI_2, osg::Vec3d(1, 0, 0)));
         place->addChild(&copy);
         pictureOf(*place, 1.0);
-        copy.controller().seek(0.0);
-        copy.controller().setSpeed(1.0);
+        copy.getController().seek(0.0);
+        copy.getController().setSpeed(1.0);
         const osg::ref_ptr<osg::Image> shown = pictureOf(*place, 1.5);
         EXPECT_EQ(Picture::pixelsDifferent(*shown, *expectedAt(last, {1.0, 1.5})), 0);
         EXPECT_EQ(Picture::pixelsDifferent(*before, *pictureOf(original, 1.0)), 0);
@@ -134,7 +134,7 @@ TEST_P(CopiesGLTest, madeAfterFrames)
     pictureOf(*scene, 0.0);
     pictureOf(*scene, 0.4);
     const osg::ref_ptr<AnimatedCharacter> copy = copyOf(*scene);
-    EXPECT_EQ(copy->controller().time(), findCharacter(*scene)->controller().time());
+    EXPECT_EQ(copy->getController().time(), findCharacter(*scene)->getController().time());
     expectIndependent(*scene, *copy);
 }
 
@@ -165,7 +165,7 @@ TEST_F(CloningGLTest, underSeveralParentsItIsOneCharacterDrawnTwice)
     }
     pictureOf(*scene, 0.0);
     const osg::ref_ptr<osg::Image> shown = pictureOf(*scene, 0.5);
-    EXPECT_NEAR(findCharacter(*character)->controller().time(), 0.5, 1e-9) << "advanced once a frame";
+    EXPECT_NEAR(findCharacter(*character)->getController().time(), 0.5, 1e-9) << "advanced once a frame";
     int different = 0;
     for (int y = 0; y < 64; ++y)
         for (int x = 0; x < 32; ++x)
@@ -220,8 +220,9 @@ TEST_F(CloningGLTest, theObjectCacheHandsOutCharactersOfTheirOwn)
             const osg::ref_ptr<osg::Node> other = osgDB::readRefNodeFile(file, options);
             ASSERT_TRUE(other && findCharacter(*other));
             EXPECT_NE(findCharacter(*one), findCharacter(*other));
-            EXPECT_EQ(&findCharacter(*one)->set(), &findCharacter(*other)->set()) << "it is cached";
-            EXPECT_EQ(findCharacter(*other)->controller().time(), 0.0);
+            EXPECT_EQ(&findCharacter(*one)->getAnimationSet(), &findCharacter(*other)->getAnimationSet())
+                << "it is cached";
+            EXPECT_EQ(findCharacter(*other)->getController().time(), 0.0);
             osgDB::Registry::instance()->clearObjectCache();
         }
     osg::ref_ptr<osgDB::Options> options = new osgDB::Options;

@@ -35,7 +35,7 @@ void PrintTo(const ModelCase& model, std::ostream* out)
 /// What each palette entry moves.
 EntryBoxes boxesOf(const ImportedModel& model)
 {
-    EntryReach reach(*model.set);
+    PaletteEntryBounds reach(*model.set);
     for (const ImportedPrimitive& primitive : model.primitives)
         if (auto* mesh = dynamic_cast<SkinnedGeometry*>(primitive.geometry.get())) reach.add(*mesh);
     return reach.boxes();
@@ -61,7 +61,7 @@ TEST_P(CompactModelsTest, areSmallAndWithinTheErrorAskedFor)
     const std::size_t bytes = PackedKeyframes(*compact.value().set).byteSize();
     RecordProperty("bytes", std::to_string(bytes));
     EXPECT_LE(bytes, GetParam().mostBytes);
-    EXPECT_EQ(&compact.value().character->set(), compact.value().set.get());
+    EXPECT_EQ(&compact.value().character->getAnimationSet(), compact.value().set.get());
     const EntryBoxes boxes = boxesOf(exact.value());
     const double tolerance = GetParam().compact * compact.value().compacted->longestSide;
     ASSERT_EQ(compact.value().set->clips().size(), exact.value().set->clips().size());

@@ -66,8 +66,8 @@ protected:
             const std::size_t index = file % files.size();
             osg::ref_ptr<osg::Node> scene = osgDB::readRefNodeFile(files[index], options.get());
             if (!isAnimated(scene)) return {};
-            const AnimationController& wanted = findCharacter(*expected[index])->controller();
-            if (paletteDifference(findCharacter(*scene)->controller(), wanted) != 0.0f) return {};
+            const AnimationController& wanted = findCharacter(*expected[index])->getController();
+            if (paletteDifference(findCharacter(*scene)->getController(), wanted) != 0.0f) return {};
             scenes.push_back(scene);
         }
         return scenes;

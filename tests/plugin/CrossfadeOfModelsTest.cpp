@@ -70,7 +70,7 @@ protected:
             controller.advance(frameSeconds);
             double fastest = 0.0;
             const ClipMixer& mixer = controller.layer(0).mixer();
-            for (std::size_t v = 0; v < mixer.voiceCount(); ++v)
+            for (std::size_t v = 0; v < mixer.activeClipCount(); ++v)
                 fastest = std::max(fastest, steps.at(mixer.voice(v).playback.clip()));
             worst = std::max(worst, largestStep(before, jointPlaces(controller)) / fastest);
         }

@@ -66,15 +66,15 @@ protected:
 
     static osg::Vec3d placeOf(const AnimatedCrowd& crowd, std::size_t index)
     {
-        return crowd.placement(crowd.instances().handleOf(index)).getTrans();
+        return crowd.getPlacement(crowd.getInstances().handleOf(index)).getTrans();
     }
 
     static std::vector<std::pair<int, double>> playedBy(const AnimatedCrowd& crowd)
     {
         std::vector<std::pair<int, double>> played;
-        for (std::size_t index = 0; index < crowd.size(); ++index)
+        for (std::size_t index = 0; index < crowd.getNumInstances(); ++index)
         {
-            const AnimationController controller = crowd.instances().controllerCopy(index);
+            const AnimationController controller = crowd.getInstances().controllerCopy(index);
             played.emplace_back(controller.clip(), controller.time());
         }
         return played;
@@ -118,16 +118,17 @@ TEST_F(CrowdPluginTest, readsColumnsAndRowsByTheBounds)
 {
     const osg::ref_ptr<AnimatedCrowd> crowd = readCrowd("arm.gltf.4x3.crowd");
     ASSERT_TRUE(crowd);
-    ASSERT_EQ(crowd->size(), 12u);
+    ASSERT_EQ(crowd->getNumInstances(), 12u);
     const double spacing = placeOf(*crowd, 1).x() - placeOf(*crowd, 0).x();
     EXPECT_GT(spacing, 0.0);
     EXPECT_NEAR(placeOf(*crowd, 4).y() - placeOf(*crowd, 0).y(), spacing, 1e-4 * spacing);
     EXPECT_NEAR(placeOf(*crowd, 0).x() + placeOf(*crowd, 11).x(), 0.0, 1e-4 * spacing);
     EXPECT_EQ(placeOf(*crowd, 0).z(), placeOf(*crowd, 11).z());
-    EXPECT_NEAR((osg::Matrixd::transform3x3(osg::Vec3d(0, 1, 0), crowd->placement(crowd->instances().handleOf(0))) -
-                 osg::Vec3d(0, 0, 1))
-                    .length(),
-                0.0, 1e-6)
+    EXPECT_NEAR(
+        (osg::Matrixd::transform3x3(osg::Vec3d(0, 1, 0), crowd->getPlacement(crowd->getInstances().handleOf(0))) -
+         osg::Vec3d(0, 0, 1))
+            .length(),
+        0.0, 1e-6)
         << "+Z is up, as for the model itself";
 }
 
@@ -152,8 +153,8 @@ TEST_F(CrowdPluginTest, takesOptions)
     for (const char* clips : {"clips=Slide", "clips=1", "clips=\"Slide,1\""})
         for (const auto& [clip, time] : playedBy(*readCrowd("arm.gltf.3x3.crowd", clips)))
             EXPECT_EQ(clip, 1) << clips;
-    EXPECT_EQ(readCrowd("arm.gltf.2x2.crowd", "")->pixelError(), 0.0f);
-    EXPECT_EQ(readCrowd("arm.gltf.2x2.crowd", "pixelError=0.5")->pixelError(), 0.5f);
+    EXPECT_EQ(readCrowd("arm.gltf.2x2.crowd", "")->getPixelError(), 0.0f);
+    EXPECT_EQ(readCrowd("arm.gltf.2x2.crowd", "pixelError=0.5")->getPixelError(), 0.5f);
     const osg::ref_ptr<AnimatedCrowd> wide = readCrowd("arm.gltf.2x2.crowd", "spacing=7.5");
     EXPECT_NEAR(placeOf(*wide, 1).x() - placeOf(*wide, 0).x(), 7.5, 1e-6);
     EXPECT_NEAR(placeOf(*wide, 2).y() - placeOf(*wide, 0).y(), 7.5, 1e-6);

@@ -3,9 +3,9 @@
 #include "plugin/StoredScene.h"
 #include "support/NotifyLog.h"
 
+#include <osgGpuAnimation/animation/ClipBuilder.h>
 #include <osgGpuAnimation/animation/JointMask.h>
 #include <osgGpuAnimation/animation/RootMotion.h>
-#include <osgGpuAnimation/animation/ClipBuilder.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/AnimationUpdateCallback.h>
 #include <osgGpuAnimation/nodes/CharacterKeys.h>
@@ -71,7 +71,7 @@ void setUpLayers(AnimationController& controller)
     AnimationLayer& added = controller.layer(2);
     added.setMode(AnimationLayer::Mode::Additive, AnimationLayer::Reference::FirstFrame);
     added.play(3).value();
-    added.setStanding(7);
+    added.setBlendPriority(7);
     AnimationLayer& face = controller.layer(3);
     face.play(4).value();
     face.crossfade(0, 3.0).value();
@@ -81,7 +81,7 @@ void setUpLayers(AnimationController& controller)
 /// Has markers and root motion, attachments and all callbacks.
 void setUpCharacter(AnimatedCharacter& character)
 {
-    auto moving = withRootMotion(character.set(), "arm \"1\" <&{ä", {true, false, false}).value();
+    auto moving = withRootMotion(character.getAnimationSet(), "arm \"1\" <&{ä", {true, false, false}).value();
     std::vector<Clip> clips = moving->clips();
     clips[0] = clips[0].withMarkers({{0.25, "left foot"}, {0.5, ""}}).value();
     character.setAnimationSet(moving->withClips(clips).value()).value();
@@ -95,7 +95,7 @@ void setUpCharacter(AnimatedCharacter& character)
     character.setPixelError(0.3f).value();
     character.setDrawnTogether(false);
     character.setMatrix(osg::Matrix::translate(1.0 / 3.0, 0, 100));
-    setUpLayers(character.controller());
+    setUpLayers(character.getController());
 }
 
 osg::ref_ptr<AnimatedCrowd> makeCrowd(const AnimatedCharacter& character)
@@ -103,7 +103,7 @@ osg::ref_ptr<AnimatedCrowd> makeCrowd(const AnimatedCharacter& character)
     osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(character);
     crowd->setOrigin(osg::Vec3d(1e6, -2e6, 30));
     crowd->setPixelError(0.5f).value();
-    AnimationController controller(crowd->sharedSet());
+    AnimationController controller(crowd->getSharedAnimationSet());
     crowd->add(osg::Matrixd::translate(1e6, -2e6, 31), controller).value();
     controller.play(1).value();
     controller.seek(0.3);
@@ -129,7 +129,7 @@ osg::ref_ptr<osg::Group> makeScene(const ScratchFolder& folder)
     scene->addChild(makeCrowd(*findCharacter(*first)));
     setUpCharacter(*findCharacter(*first));
     scene->addChild(osg::clone(first.get(), osg::CopyOp::DEEP_COPY_NODES));
-    findCharacter(*scene->getChild(2))->controller().setSpeed(3.0);
+    findCharacter(*scene->getChild(2))->getController().setSpeed(3.0);
     scene->addChild(osgDB::readRefNodeFile(file, new osgDB::Options("compact=0.0001")));
     return scene;
 }
@@ -142,7 +142,7 @@ void expectSamePlayback(AnimationController first, AnimationController second)
     {
         EXPECT_EQ(second.layer(i).clip(), first.layer(i).clip()) << "layer " << i;
         EXPECT_EQ(second.layer(i).state(), first.layer(i).state()) << "layer " << i;
-        EXPECT_EQ(second.layer(i).standing(), first.layer(i).standing()) << "layer " << i;
+        EXPECT_EQ(second.layer(i).blendPriority(), first.layer(i).blendPriority()) << "layer " << i;
     }
     for (int step = 0; step < 30; ++step)
     {
@@ -183,17 +183,17 @@ void expectSameMeshes(osg::Group& first, osg::Group& second)
         const auto* found = dynamic_cast<const SkinnedGeometry*>(second.getChild(child));
         ASSERT_EQ(found == nullptr, expected == nullptr);
         if (!expected) continue;
-        EXPECT_EQ(found->rigidEntry(), expected->rigidEntry());
-        EXPECT_EQ(found->influenceCount(), expected->influenceCount());
-        EXPECT_EQ(found->morphEntry(), expected->morphEntry());
+        EXPECT_EQ(found->getRigidEntry(), expected->getRigidEntry());
+        EXPECT_EQ(found->getInfluenceCount(), expected->getInfluenceCount());
+        EXPECT_EQ(found->getMorphEntry(), expected->getMorphEntry());
         expectSameArrays(expected->getVertexArray(), found->getVertexArray());
         expectSameArrays(expected->entries(0), found->entries(0));
         expectSameArrays(expected->weights(0), found->weights(0));
-        ASSERT_EQ(found->morphTargets().size(), expected->morphTargets().size());
-        for (std::size_t target = 0; target < expected->morphTargets().size(); ++target)
+        ASSERT_EQ(found->getMorphTargets().size(), expected->getMorphTargets().size());
+        for (std::size_t target = 0; target < expected->getMorphTargets().size(); ++target)
         {
-            expectSameArrays(expected->morphTargets()[target].positions, found->morphTargets()[target].positions);
-            expectSameArrays(expected->morphTargets()[target].normals, found->morphTargets()[target].normals);
+            expectSameArrays(expected->getMorphTargets()[target].positions, found->getMorphTargets()[target].positions);
+            expectSameArrays(expected->getMorphTargets()[target].normals, found->getMorphTargets()[target].normals);
         }
     }
 }
@@ -202,15 +202,15 @@ void expectSameCharacter(AnimatedCharacter& first, AnimatedCharacter& second)
 {
     // The text formats have nine digits of it.
     EXPECT_LE((second.getMatrix().getTrans() - first.getMatrix().getTrans()).length(), 1e-8);
-    EXPECT_EQ(second.pixelError(), first.pixelError());
+    EXPECT_EQ(second.getPixelError(), first.getPixelError());
     EXPECT_EQ(second.isDrawnTogether(), first.isDrawnTogether());
     EXPECT_TRUE(haveSameKeyframes(first.set(), second.set()));
-    EXPECT_EQ(second.currentBounds().max, first.currentBounds().max);
+    EXPECT_EQ(second.getCurrentBounds().max, first.getCurrentBounds().max);
     EXPECT_EQ(lengthOf(second.getUpdateCallback()), lengthOf(first.getUpdateCallback()));
     EXPECT_EQ(countOf<AnimationUpdateCallback>(second.getUpdateCallback()), 1);
     EXPECT_EQ(lengthOf(second.getEventCallback()), lengthOf(first.getEventCallback()));
     expectSameMeshes(first, second);
-    expectSamePlayback(first.controller(), second.controller());
+    expectSamePlayback(first.getController(), second.getController());
 }
 
 class EarlierScenesTest : public ::testing::TestWithParam<const char*>
@@ -261,15 +261,15 @@ TEST_P(EarlierScenesTest, attachmentsCallbacksAndMarkersAreThere)
     const auto* byName = dynamic_cast<JointAttachment*>(character.getChild(children - 2));
     const auto* byNumber = dynamic_cast<JointAttachment*>(character.getChild(children - 1));
     ASSERT_TRUE(byName && byNumber);
-    EXPECT_EQ(byName->jointName(), "hand");
+    EXPECT_EQ(byName->getJointName(), "hand");
     EXPECT_EQ(byName->getNumChildren(), 1u);
     EXPECT_EQ(byNumber->joint(), 2);
     EXPECT_EQ(countOf<RootMotionCallback>(character.getUpdateCallback()), 1);
     EXPECT_EQ(countOf<PoseStatistics>(character.getEventCallback()), 1);
     const auto* keys = dynamic_cast<CharacterKeys*>(character.getEventCallback());
     ASSERT_TRUE(keys);
-    EXPECT_EQ(keys->fadeSeconds(), 0.7);
-    const Clip& clip = character.set().clips()[0];
+    EXPECT_EQ(keys->getFadeSeconds(), 0.7);
+    const Clip& clip = character.getAnimationSet().clips()[0];
     const Clip& before = characterIn(*expected, 0).set().clips()[0];
     ASSERT_EQ(clip.markers().size(), 2u);
     EXPECT_EQ(clip.markers()[0].name, "left foot");
@@ -284,7 +284,7 @@ TEST_P(EarlierScenesTest, crowdsKeepTheirInstancesAndLeaveTheHomeViewAlone)
     auto* second = dynamic_cast<AnimatedCrowd*>(found->getChild(1));
     ASSERT_TRUE(first && second);
     EXPECT_EQ(second->origin(), first->origin());
-    EXPECT_EQ(second->pixelError(), 0.5f);
+    EXPECT_EQ(second->getPixelError(), 0.5f);
     EXPECT_EQ(lengthOf(second->getEventCallback()), 1) << "TiltedHome";
     EXPECT_EQ(countOf<PoseStatistics>(second->getEventCallback()), 1);
     EXPECT_EQ(countOf<AnimationUpdateCallback>(second->getUpdateCallback()), 1);

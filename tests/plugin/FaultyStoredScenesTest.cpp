@@ -174,7 +174,7 @@ protected:
         AnimatedCharacter* character = result.validNode() ? findCharacter(*result.getNode()) : nullptr;
         if (!character) return;
         EXPECT_EQ(character->getNumChildren(), fault.answer == Answer::NoMesh ? meshes - 1 : meshes) << said;
-        EXPECT_EQ(character->controller().clip(), fault.answer == Answer::NoPlaying ? -1 : 0) << said;
+        EXPECT_EQ(character->getController().clip(), fault.answer == Answer::NoPlaying ? -1 : 0) << said;
     }
 
     StoredScene files;

@@ -114,7 +114,7 @@ TEST(ImportTest, turnsYUpToZUpInOnePlace)
 TEST(ImportTest, theFirstClipPlaysInALoopAtOnce)
 {
     const ImportedModel model = imported(ArmAndStone());
-    const AnimationController& controller = model.character->controller();
+    const AnimationController& controller = model.character->getController();
     EXPECT_EQ(controller.state(), AnimationController::State::Playing);
     EXPECT_EQ(controller.loopMode(), AnimationController::LoopMode::Loop);
     EXPECT_EQ(controller.clip(), 0);
@@ -128,7 +128,7 @@ TEST(ImportTest, aClipIsAskedForByNameOrNumber)
     {
         ImportOptions options;
         options.clip = wish;
-        EXPECT_EQ(imported(file, options).character->controller().clip(), clip) << wish;
+        EXPECT_EQ(imported(file, options).character->getController().clip(), clip) << wish;
     }
     for (const char* wish : {"Swing", "2", "-1", "1x", ""})
     {
@@ -273,8 +273,8 @@ TEST(ImportTest, morphTargetsComeWithTheirPrimitive)
     EXPECT_EQ(primitive.targets, 1u);
     ASSERT_EQ(primitive.morph, 0);
     const auto& geometry = dynamic_cast<const SkinnedGeometry&>(*primitive.geometry);
-    ASSERT_EQ(geometry.morphTargets().size(), 1u);
-    EXPECT_EQ((*geometry.morphTargets()[0].positions)[2], osg::Vec3(0, 0, 3));
+    ASSERT_EQ(geometry.getMorphTargets().size(), 1u);
+    EXPECT_EQ((*geometry.getMorphTargets()[0].positions)[2], osg::Vec3(0, 0, 3));
     EXPECT_EQ(model.set->morphs()[0].defaults, std::vector<float>{0.5f});
 }
 

@@ -55,7 +55,7 @@ protected:
         const Result<ImportedModel> model = importModel(readBytes(file), file, {});
         ASSERT_TRUE(model) << model.error().message;
         set = model.value().set;
-        EntryReach reach(*set);
+        PaletteEntryBounds reach(*set);
         for (const ImportedPrimitive& primitive : model.value().primitives)
             if (const auto* skinned = dynamic_cast<const SkinnedGeometry*>(primitive.geometry.get()))
                 reach.add(*skinned);

@@ -58,7 +58,7 @@ glm::dvec3 ModelVertices::morphed(const ImportedPrimitive& primitive, std::size_
     glm::dvec3 position = toGlm(base[vertex]);
     if (primitive.morph < 0) return position;
     const std::vector<double> amounts = weights(primitive.morph);
-    const auto& targets = dynamic_cast<const SkinnedGeometry&>(*primitive.geometry).morphTargets();
+    const auto& targets = dynamic_cast<const SkinnedGeometry&>(*primitive.geometry).getMorphTargets();
     for (std::size_t target = 0; target < targets.size(); ++target)
     {
         if (targets[target].positions) position += amounts[target] * toGlm((*targets[target].positions)[vertex]);
@@ -75,8 +75,8 @@ glm::dvec3 ModelVertices::placed(const ImportedPrimitive& primitive, std::size_t
         const osg::Vec3d result = osg::Vec3d(position.x, position.y, position.z) * primitive.toModel;
         return glm::dvec3(result.x(), result.y(), result.z());
     }
-    if (skinned->rigidEntry() >= 0)
-        return glm::dvec3(_palette[static_cast<std::size_t>(skinned->rigidEntry())].toColumns() *
+    if (skinned->getRigidEntry() >= 0)
+        return glm::dvec3(_palette[static_cast<std::size_t>(skinned->getRigidEntry())].toColumns() *
                           glm::dvec4(position, 1.0));
     glm::dvec3 sum(0.0);
     for (unsigned int set = 0; set < SkinnedGeometry::maxInfluenceSets && skinned->entries(set); ++set)

@@ -39,10 +39,10 @@ void expectShared(osg::Node* scene)
     ASSERT_TRUE(scene);
     const std::vector<SkinnedGeometry*> meshes = meshesOf(*scene);
     ASSERT_EQ(meshes.size(), 2u);
-    EXPECT_NE(meshes[0]->morphEntry(), meshes[1]->morphEntry());
-    ASSERT_TRUE(meshes[0]->morphDeltas());
-    EXPECT_EQ(meshes[0]->morphDeltas(), meshes[1]->morphDeltas());
-    const auto* texel = reinterpret_cast<const osg::Vec4f*>(meshes[0]->morphDeltas()->getImage()->data());
+    EXPECT_NE(meshes[0]->getMorphEntry(), meshes[1]->getMorphEntry());
+    ASSERT_TRUE(meshes[0]->getMorphDeltas());
+    EXPECT_EQ(meshes[0]->getMorphDeltas(), meshes[1]->getMorphDeltas());
+    const auto* texel = reinterpret_cast<const osg::Vec4f*>(meshes[0]->getMorphDeltas()->getImage()->data());
     EXPECT_EQ(*texel, osg::Vec4f(0, 0, 3, 0));
 }
 
@@ -67,17 +67,17 @@ TEST(MorphDeltasTest, changedArraysArePackedAnew)
     const osg::ref_ptr<osg::Node> scene = twoFaces();
     const std::vector<SkinnedGeometry*> meshes = meshesOf(*scene);
     ASSERT_EQ(meshes.size(), 2u);
-    const std::vector<MorphTarget> targets = meshes[0]->morphTargets();
+    const std::vector<MorphTarget> targets = meshes[0]->getMorphTargets();
     targets[0].positions->front() = osg::Vec3(7, 0, 0);
     targets[0].positions->dirty();
-    meshes[0]->setMorphTargets(meshes[0]->morph(), meshes[0]->morphEntry(), targets);
-    EXPECT_NE(meshes[0]->morphDeltas(), meshes[1]->morphDeltas());
-    EXPECT_EQ(*reinterpret_cast<const osg::Vec4f*>(meshes[0]->morphDeltas()->getImage()->data()),
+    meshes[0]->setMorphTargets(meshes[0]->morph(), meshes[0]->getMorphEntry(), targets);
+    EXPECT_NE(meshes[0]->getMorphDeltas(), meshes[1]->getMorphDeltas());
+    EXPECT_EQ(*reinterpret_cast<const osg::Vec4f*>(meshes[0]->getMorphDeltas()->getImage()->data()),
               osg::Vec4f(7, 0, 0, 0));
-    meshes[1]->setMorphTargets(meshes[1]->morph(), meshes[1]->morphEntry(), targets);
-    EXPECT_EQ(meshes[0]->morphDeltas(), meshes[1]->morphDeltas());
+    meshes[1]->setMorphTargets(meshes[1]->morph(), meshes[1]->getMorphEntry(), targets);
+    EXPECT_EQ(meshes[0]->getMorphDeltas(), meshes[1]->getMorphDeltas());
     meshes[0]->setMorphTargets(-1, -1, {});
-    EXPECT_FALSE(meshes[0]->morphDeltas());
+    EXPECT_FALSE(meshes[0]->getMorphDeltas());
 }
 
 } // namespace osgGpuAnimation::gltf

@@ -188,8 +188,8 @@ TEST(OddModelsTest, morphTargetsBringNormalsColorsAndTextureCoordinates)
     const int face = file.node("face", -1, mesh);
     const ImportedModel model = unrotated(file);
     const auto& geometry = dynamic_cast<const SkinnedGeometry&>(*primitiveOf(model, face).geometry);
-    ASSERT_EQ(geometry.morphTargets().size(), 1u);
-    const MorphTarget& target = geometry.morphTargets()[0];
+    ASSERT_EQ(geometry.getMorphTargets().size(), 1u);
+    const MorphTarget& target = geometry.getMorphTargets()[0];
     EXPECT_FALSE(target.positions);
     ASSERT_TRUE(target.normals && target.colors && target.textureCoordinates);
     EXPECT_EQ((*target.normals)[0], osg::Vec3(1, 0, 0));

@@ -108,7 +108,7 @@ protected:
         const osg::Matrix turned = osg::Matrix::rotate(1.0, 0, 0, 1) * osg::Matrix::translate(2, 0, 0);
         scene->addChild(placed(placed(model, osg::Matrix::scale(1.3, 1.3, 1.3)), turned));
         osg::ref_ptr<osg::Node> other = osg::clone(model.get(), osg::CopyOp::DEEP_COPY_NODES);
-        findCharacter(*other)->controller().seek(0.3);
+        findCharacter(*other)->getController().seek(0.3);
         scene->addChild(placed(other, osg::Matrix::translate(0, 0, 2)));
         return scene;
     }

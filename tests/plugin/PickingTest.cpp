@@ -99,7 +99,7 @@ protected:
     {
         PosedTriangles triangles;
         const osg::Matrixd toWorld = osg::computeLocalToWorld(character->getParentalNodePaths().front());
-        forEachMesh([&](const SkinnedGeometry& mesh) { triangles.add(mesh, character->controller(), toWorld); });
+        forEachMesh([&](const SkinnedGeometry& mesh) { triangles.add(mesh, character->getController(), toWorld); });
         return triangles;
     }
 
@@ -156,7 +156,7 @@ TEST_P(PickingTest, raysMeetACharacterAsItIsPosed)
     ASSERT_NO_FATAL_FAILURE(load());
     for (int pose = 0; pose < poses; ++pose)
     {
-        playAnything(character->controller());
+        playAnything(character->getController());
         character->update(0.0);
         const PosedTriangles triangles = trianglesOfCharacter();
         for (int i = 0; i < raysAPose; ++i)
@@ -178,7 +178,7 @@ TEST_P(PickingTest, raysMeetACrowdsInstancesAsTheyArePosed)
     const double apart = 1.2 * static_cast<double>(character->getBound().radius());
     for (int i = 0; i < 12; ++i)
     {
-        AnimationController controller(crowd->sharedSet());
+        AnimationController controller(crowd->getSharedAnimationSet());
         playAnything(controller);
         const osg::Matrixd placement = osg::Matrixd::scale(osg::Vec3d(1, 1, 1) * number(0.5, 1.5)) *
                                        osg::Matrixd::rotate(number(0.0, 6.0), direction()) *
@@ -203,7 +203,7 @@ TEST_P(PickingTest, polytopesMeetACharacterAsItIsPosed)
     ASSERT_NO_FATAL_FAILURE(load());
     for (int pose = 0; pose < poses; ++pose)
     {
-        playAnything(character->controller());
+        playAnything(character->getController());
         character->update(0.0);
         const PosedTriangles triangles = trianglesOfCharacter();
         const double half = 1e-3 * triangles.size();
@@ -224,7 +224,7 @@ TEST_P(PickingTest, polytopesMeetACharacterAsItIsPosed)
             const std::optional<PickedJoint> picked = jointOf(intersector->getFirstIntersection());
             ASSERT_TRUE(picked);
             EXPECT_EQ(picked->character, character);
-            EXPECT_LT(picked->joint, character->set().skeleton().jointCount());
+            EXPECT_LT(picked->joint, character->getAnimationSet().skeleton().jointCount());
         }
     }
 }

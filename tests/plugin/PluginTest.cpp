@@ -104,7 +104,7 @@ TEST_F(PluginTest, readsAnAnimatedNodeWithoutAWord)
         ASSERT_TRUE(node) << name << ": " << log->text;
         AnimatedCharacter* character = findCharacter(*node);
         ASSERT_TRUE(character);
-        EXPECT_EQ(character->set().clips().size(), 2u);
+        EXPECT_EQ(character->getAnimationSet().clips().size(), 2u);
     }
     EXPECT_EQ(log->text, "");
 }
@@ -118,7 +118,7 @@ TEST_F(PluginTest, readsGlbUnderAnyCase)
         write(name, fox);
         const osg::ref_ptr<osg::Node> node = osgDB::readRefNodeFile((folder / name).string());
         ASSERT_TRUE(node) << name << ": " << log->text;
-        EXPECT_EQ(findCharacter(*node)->set().clips().size(), 3u);
+        EXPECT_EQ(findCharacter(*node)->getAnimationSet().clips().size(), 3u);
     }
     EXPECT_EQ(log->text, "");
 }
@@ -148,9 +148,9 @@ TEST_F(PluginTest, takesOptions)
 {
     const osg::ref_ptr<osg::Node> node = read("arm.gltf", "noRotation clip=Slide").getNode();
     ASSERT_TRUE(node);
-    EXPECT_EQ(findCharacter(*node)->controller().clip(), 1);
+    EXPECT_EQ(findCharacter(*node)->getController().clip(), 1);
     EXPECT_TRUE(node->asTransform()->asMatrixTransform()->getMatrix().isIdentity());
-    EXPECT_EQ(findCharacter(*read("arm.gltf", "clip=\"Slow slide\"").getNode())->controller().clip(), 0);
+    EXPECT_EQ(findCharacter(*read("arm.gltf", "clip=\"Slow slide\"").getNode())->getController().clip(), 0);
 }
 
 TEST_F(PluginTest, playsAsTheOptionsSay)
@@ -158,14 +158,15 @@ TEST_F(PluginTest, playsAsTheOptionsSay)
     const osg::ref_ptr<osg::Node> node = read("arm.gltf", "clip=Slide speed=-2 start=0.25 loop=once fade=1").getNode();
     ASSERT_TRUE(node);
     AnimatedCharacter* character = findCharacter(*node);
-    EXPECT_EQ(character->controller().speed(), -2.0);
-    EXPECT_EQ(character->controller().time(), 0.25);
-    EXPECT_EQ(character->controller().loopMode(), LoopMode::Once);
+    EXPECT_EQ(character->getController().speed(), -2.0);
+    EXPECT_EQ(character->getController().time(), 0.25);
+    EXPECT_EQ(character->getController().loopMode(), LoopMode::Once);
     const auto* keys = dynamic_cast<const CharacterKeys*>(character->getEventCallback());
     ASSERT_TRUE(keys);
-    EXPECT_EQ(keys->fadeSeconds(), 1.0);
-    EXPECT_EQ(findCharacter(*read("arm.gltf", "start=100").getNode())->controller().time(), 1.0) << "held to its end";
-    EXPECT_EQ(findCharacter(*read("arm.gltf", "speed=-1").getNode())->controller().time(), 1.0) << "from its end";
+    EXPECT_EQ(keys->getFadeSeconds(), 1.0);
+    EXPECT_EQ(findCharacter(*read("arm.gltf", "start=100").getNode())->getController().time(), 1.0)
+        << "held to its end";
+    EXPECT_EQ(findCharacter(*read("arm.gltf", "speed=-1").getNode())->getController().time(), 1.0) << "from its end";
     EXPECT_FALSE(findCharacter(*read("arm.gltf", "noKeys").getNode())->getEventCallback());
     EXPECT_EQ(log->text, "");
 }

@@ -92,12 +92,12 @@ std::set<int> PosedTriangles::heaviest(const Triangle& triangle, const double sh
             sum += shares[corner] * weight;
             most = std::max(most, sum);
         };
-        if (triangle.mesh->rigidEntry() >= 0) add(static_cast<std::size_t>(triangle.mesh->rigidEntry()), 1.0);
-        for (unsigned int i = 0; i < SkinnedGeometry::maxInfluenceSets && triangle.mesh->entries(i); ++i)
+        if (triangle.mesh->getRigidEntry() >= 0) add(static_cast<std::size_t>(triangle.mesh->getRigidEntry()), 1.0);
+        for (unsigned int i = 0; i < SkinnedGeometry::maxInfluenceSets && triangle.mesh->getEntries(i); ++i)
             for (int k = 0; k < 4; ++k)
             {
-                const double weight = static_cast<double>((*triangle.mesh->weights(i))[vertex][k]);
-                if (weight != 0.0) add((*triangle.mesh->entries(i))[vertex][k], weight);
+                const double weight = static_cast<double>((*triangle.mesh->getWeights(i))[vertex][k]);
+                if (weight != 0.0) add((*triangle.mesh->getEntries(i))[vertex][k], weight);
             }
     }
     std::set<int> joints;

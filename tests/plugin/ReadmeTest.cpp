@@ -52,20 +52,21 @@ TEST_F(ReadmeTest, tenLines)
     ASSERT_TRUE(node.valid());
     AnimatedCharacter* fox = findCharacter(*node);
     ASSERT_NE(fox, nullptr);
-    if (auto faded = fox->controller().crossfade("Run", 0.25); !faded) std::cerr << faded.error().message << std::endl;
-    EXPECT_EQ(fox->controller().clip(), fox->set().findClip("Run"));
+    if (auto faded = fox->getController().crossfade("Run", 0.25); !faded)
+        std::cerr << faded.error().message << std::endl;
+    EXPECT_EQ(fox->getController().clip(), fox->getAnimationSet().findClip("Run"));
 
     osg::ref_ptr<osg::Node> other = osg::clone(node.get(), osg::CopyOp::DEEP_COPY_NODES);
-    findCharacter(*other)->controller().setSpeed(0.5);
+    findCharacter(*other)->getController().setSpeed(0.5);
 
     osg::ref_ptr<osg::MatrixTransform> beside = new osg::MatrixTransform(osg::Matrix::translate(100.0, 0.0, 0.0));
     beside->addChild(other);
     scene->addChild(node);
     scene->addChild(beside);
 
-    EXPECT_EQ(fox->controller().speed(), 1.0);
-    EXPECT_EQ(&fox->set(), &findCharacter(*other)->set());
-    EXPECT_NE(&fox->controller(), &findCharacter(*other)->controller());
+    EXPECT_EQ(fox->getController().speed(), 1.0);
+    EXPECT_EQ(&fox->getAnimationSet(), &findCharacter(*other)->getAnimationSet());
+    EXPECT_NE(&fox->getController(), &findCharacter(*other)->getController());
 }
 
 TEST_F(ReadmeTest, crowds)
@@ -76,18 +77,18 @@ TEST_F(ReadmeTest, crowds)
     osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(prototype);
     const osg::Matrixd upright = prototype.getWorldMatrices().front();
 
-    AnimationController controller(crowd->sharedSet());
+    AnimationController controller(crowd->getSharedAnimationSet());
     EXPECT_TRUE(controller.play("Run"));
     controller.seek(0.4);
     auto fox = crowd->add(upright * osg::Matrix::translate(100, 20, 0), controller, osg::Vec4(1, 0.8, 0.8, 1));
     if (!fox) std::cerr << fox.error().message << std::endl;
     ASSERT_TRUE(fox);
 
-    EXPECT_TRUE(crowd->move(fox.value(), upright * osg::Matrix::translate(101, 20, 0)));
-    EXPECT_TRUE(crowd->controller(fox.value())->crossfade("Walk", 0.3));
+    EXPECT_TRUE(crowd->setPlacement(fox.value(), upright * osg::Matrix::translate(101, 20, 0)));
+    EXPECT_TRUE(crowd->getController(fox.value())->crossfade("Walk", 0.3));
 
     if (auto pixels = crowd->setPixelError(0.5f); !pixels) std::cerr << pixels.error().message << std::endl;
-    EXPECT_EQ(crowd->pixelError(), 0.5f);
+    EXPECT_EQ(crowd->getPixelError(), 0.5f);
 
     osg::ref_ptr<osgUtil::LineSegmentIntersector> ray =
         new osgUtil::LineSegmentIntersector(osg::Vec3d(101, 20, 100), osg::Vec3d(101, 20, -100));
@@ -99,7 +100,7 @@ TEST_F(ReadmeTest, crowds)
     EXPECT_EQ(instance, fox.value());
 
     crowd->remove(fox.value());
-    EXPECT_EQ(crowd->size(), 0u);
+    EXPECT_EQ(crowd->getNumInstances(), 0u);
 }
 
 TEST_F(ReadmeTest, picking)
@@ -124,7 +125,7 @@ TEST_F(ReadmeTest, loadingWithOptions)
     osg::ref_ptr<osg::Node> node = osgDB::readRefNodeFile("fox.glb", options);
     ASSERT_TRUE(node.valid());
     const AnimatedCharacter& walker = *findCharacter(*node);
-    EXPECT_EQ(walker.set().clips()[static_cast<std::size_t>(walker.controller().clip())].name(), "Walk");
+    EXPECT_EQ(walker.getAnimationSet().clips()[static_cast<std::size_t>(walker.getController().clip())].name(), "Walk");
     EXPECT_EQ(walker.getEventCallback(), nullptr);
 }
 

@@ -79,7 +79,7 @@ TEST_P(SerializersGLTest, filesShowTheSamePosesAndPictures)
         SCOPED_TRACE(format);
         const osg::ref_ptr<osg::Node> original = osgDB::readRefNodeFile(file());
         ASSERT_TRUE(original);
-        AnimationController& first = findCharacter(*original)->controller();
+        AnimationController& first = findCharacter(*original)->getController();
         first.setSpeed(0.8);
         first.advance(0.4);
         const std::size_t last = first.set().clips().size() - 1;
@@ -90,7 +90,7 @@ TEST_P(SerializersGLTest, filesShowTheSamePosesAndPictures)
         ASSERT_TRUE(read);
         ASSERT_TRUE(findCharacter(*read));
         EXPECT_EQ(findCharacter(*read)->getNumChildren(), findCharacter(*original)->getNumChildren());
-        AnimationController second = findCharacter(*read)->controller();
+        AnimationController second = findCharacter(*read)->getController();
         EXPECT_TRUE(haveSameKeyframes(first.set(), second.set()));
         EXPECT_LE(paletteDifference(first, second), 1e-6f);
 
@@ -99,7 +99,8 @@ TEST_P(SerializersGLTest, filesShowTheSamePosesAndPictures)
         EXPECT_GT(Picture::pixelsDifferent(*expected[0], *expected[2]), 5) << "nothing moves";
         for (std::size_t i = 0; i < expected.size(); ++i)
             EXPECT_EQ(Picture::pixelsDifferent(*expected[i], *found[i], 0.0f), 0) << "picture " << i;
-        EXPECT_LE(paletteDifference(findCharacter(*original)->controller(), findCharacter(*read)->controller()), 1e-6f);
+        EXPECT_LE(paletteDifference(findCharacter(*original)->getController(), findCharacter(*read)->getController()),
+                  1e-6f);
     }
 }
 

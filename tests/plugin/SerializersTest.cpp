@@ -4,19 +4,19 @@
 #include "plugin/StoredScene.h"
 #include "support/NotifyLog.h"
 
-#include <osgGpuAnimation/animation/keyframes/CompactTracks.h>
+#include <osgGpuAnimation/animation/ClipBuilder.h>
 #include <osgGpuAnimation/animation/JointMask.h>
+#include <osgGpuAnimation/animation/keyframes/CompactTracks.h>
 #include <osgGpuAnimation/animation/keyframes/PackedKeyframes.h>
 #include <osgGpuAnimation/animation/RootMotion.h>
-#include <osgGpuAnimation/animation/ClipBuilder.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/AnimationUpdateCallback.h>
 #include <osgGpuAnimation/nodes/CharacterKeys.h>
 #include <osgGpuAnimation/nodes/CharacterProgram.h>
-#include <osgGpuAnimation/nodes/shading/ShaderPermutations.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
 #include <osgGpuAnimation/nodes/PoseStatistics.h>
 #include <osgGpuAnimation/nodes/RootMotionCallback.h>
+#include <osgGpuAnimation/nodes/shading/ShaderPermutations.h>
 
 #include <gtest/gtest.h>
 #include <osg/Program>
@@ -92,7 +92,7 @@ void setUpLayers(AnimationController& controller)
     AnimationLayer& added = controller.layer(2);
     added.setMode(AnimationLayer::Mode::Additive, AnimationLayer::Reference::FirstFrame);
     ASSERT_TRUE(added.play(0));
-    added.setStanding(7);
+    added.setBlendPriority(7);
     controller.advance(0.25);
 }
 
@@ -100,17 +100,17 @@ void setUpLayers(AnimationController& controller)
 
 TEST_F(SerializersTest, layersGoOnWhereTheyWere)
 {
-    setUpLayers(character().controller());
+    setUpLayers(character().getController());
     for (const char* format : formats)
     {
         SCOPED_TRACE(format);
         const osg::ref_ptr<osg::Node> read = files.throughFile(*scene, format);
         ASSERT_TRUE(read && findCharacter(*read));
-        AnimationController first = character().controller();
-        AnimationController& second = findCharacter(*read)->controller();
+        AnimationController first = character().getController();
+        AnimationController& second = findCharacter(*read)->getController();
         ASSERT_EQ(second.layerCount(), 3u);
         ASSERT_EQ(second.set().clips().size(), 2u);
-        EXPECT_EQ(second.layer(2).standing(), 7);
+        EXPECT_EQ(second.layer(2).blendPriority(), 7);
         EXPECT_EQ(second.loopMode(), LoopMode::PingPong);
         EXPECT_EQ(second.set().clips()[1].name(), first.set().clips()[1].name());
         EXPECT_EQ(second.set().skeleton().joint(0).name, first.set().skeleton().joint(0).name);
@@ -130,7 +130,7 @@ TEST_F(SerializersTest, everythingBelowACharacterComesBack)
     hand->addChild(new osg::Group);
     character().addChild(hand);
     character().addChild(new JointAttachment(2));
-    auto moving = withRootMotion(character().set(), "arm \"1\" <&{ä", {true, false, false});
+    auto moving = withRootMotion(character().getAnimationSet(), "arm \"1\" <&{ä", {true, false, false});
     ASSERT_TRUE(moving) << moving.error().message;
     std::vector<Clip> clips = moving.value()->clips();
     clips[0] = clips[0].withMarkers({{0.25, "left foot"}, {0.5, ""}}).value();
@@ -146,7 +146,7 @@ TEST_F(SerializersTest, everythingBelowACharacterComesBack)
         const auto* byName = dynamic_cast<JointAttachment*>(back.getChild(back.getNumChildren() - 2));
         const auto* byNumber = dynamic_cast<JointAttachment*>(back.getChild(back.getNumChildren() - 1));
         ASSERT_TRUE(byName && byNumber);
-        EXPECT_EQ(byName->jointName(), "hand");
+        EXPECT_EQ(byName->getJointName(), "hand");
         EXPECT_EQ(byName->getNumChildren(), 1u);
         EXPECT_EQ(byNumber->joint(), 2);
         EXPECT_TRUE(dynamic_cast<AnimationUpdateCallback*>(back.getUpdateCallback()));
@@ -159,7 +159,7 @@ TEST_F(SerializersTest, everythingBelowACharacterComesBack)
         ASSERT_TRUE(clip.rootMotion());
         EXPECT_EQ(clip.rootMotion()->keys.size(), clip.keyframeCount());
         EXPECT_EQ(clip.rootMotionAt(0.5).translation, clips[0].rootMotionAt(0.5).translation);
-        EXPECT_EQ(back.currentBounds().max, character().currentBounds().max);
+        EXPECT_EQ(back.getCurrentBounds().max, character().getCurrentBounds().max);
     }
     EXPECT_EQ(log->text, "");
 }
@@ -179,7 +179,7 @@ TEST_F(SerializersTest, charactersOfOneSetShareItAfterwards)
     osg::ref_ptr<osg::Group> both = new osg::Group;
     both->addChild(scene);
     const osg::ref_ptr<osg::Node> clone = osg::clone(scene.get(), osg::CopyOp::DEEP_COPY_NODES);
-    findCharacter(*clone)->controller().setSpeed(3.0);
+    findCharacter(*clone)->getController().setSpeed(3.0);
     both->addChild(clone);
     for (const char* format : formats)
     {
@@ -189,8 +189,8 @@ TEST_F(SerializersTest, charactersOfOneSetShareItAfterwards)
         AnimatedCharacter* second = findCharacter(*read->asGroup()->getChild(1));
         ASSERT_TRUE(first && second && first != second);
         EXPECT_EQ(&first->set(), &second->set());
-        EXPECT_EQ(first->controller().speed(), 1.0);
-        EXPECT_EQ(second->controller().speed(), 3.0);
+        EXPECT_EQ(first->getController().speed(), 1.0);
+        EXPECT_EQ(second->getController().speed(), 3.0);
         EXPECT_EQ(first->getChild(0), second->getChild(0)) << "the meshes";
     }
 }
@@ -206,15 +206,15 @@ TEST_F(SerializersTest, pixelErrorsComeBack)
             const osg::ref_ptr<osg::Node> again = files.throughFile(*scene, format);
             const osg::ref_ptr<osg::Node> crowdAgain = files.throughFile(*crowd, format);
             ASSERT_TRUE(again && crowdAgain) << format;
-            EXPECT_EQ(findCharacter(*again)->pixelError(), pixels) << format;
-            EXPECT_EQ(findCharacter(*again)->clipBounds(0).max, character().clipBounds(0).max) << format;
-            EXPECT_EQ(dynamic_cast<AnimatedCrowd&>(*crowdAgain).pixelError(), pixels) << format;
+            EXPECT_EQ(findCharacter(*again)->getPixelError(), pixels) << format;
+            EXPECT_EQ(findCharacter(*again)->getClipBounds(0).max, character().getClipBounds(0).max) << format;
+            EXPECT_EQ(dynamic_cast<AnimatedCrowd&>(*crowdAgain).getPixelError(), pixels) << format;
         }
     for (const float wrong : {-0.5f, std::nanf(""), std::numeric_limits<float>::infinity()})
     {
         EXPECT_FALSE(character().setPixelError(wrong));
         EXPECT_FALSE(crowd->setPixelError(wrong));
-        EXPECT_EQ(crowd->pixelError(), 0.3f);
+        EXPECT_EQ(crowd->getPixelError(), 0.3f);
     }
 }
 
@@ -229,14 +229,14 @@ TEST_F(SerializersTest, drawnAloneComesBack)
                 const osg::ref_ptr<osg::Node> again = files.throughFile(*scene, format);
                 ASSERT_TRUE(again) << format;
                 EXPECT_EQ(findCharacter(*again)->isDrawnTogether(), isTogether) << format;
-                EXPECT_EQ(findCharacter(*again)->pixelError(), pixels) << format;
+                EXPECT_EQ(findCharacter(*again)->getPixelError(), pixels) << format;
             }
 }
 
 TEST_F(SerializersTest, whatIsAsByDefaultIsReadableAsBefore)
 {
     const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(character());
-    ASSERT_TRUE(crowd->add(osg::Matrixd(), AnimationController(crowd->sharedSet())));
+    ASSERT_TRUE(crowd->add(osg::Matrixd(), AnimationController(crowd->getSharedAnimationSet())));
     EXPECT_NE(textOf(*crowd).find("Instances 1 "), std::string::npos);
     EXPECT_NE(textOf(*scene).find("ClipBounds 1 \n"), std::string::npos);
     character().setDrawnTogether(false);
@@ -250,7 +250,7 @@ TEST_F(SerializersTest, aCrowdKeepsItsInstances)
     osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(character());
     crowd->setOrigin(osg::Vec3d(1e6, -2e6, 30));
     crowd->addEventCallback(new PoseStatistics);
-    AnimationController controller(crowd->sharedSet());
+    AnimationController controller(crowd->getSharedAnimationSet());
     ASSERT_TRUE(crowd->add(osg::Matrixd::translate(1e6, -2e6, 31), controller));
     ASSERT_TRUE(controller.play(1));
     controller.seek(0.3);
@@ -269,18 +269,18 @@ TEST_F(SerializersTest, aCrowdKeepsItsInstances)
         const osg::ref_ptr<osg::Node> read = files.throughFile(*crowd, format);
         auto* back = dynamic_cast<AnimatedCrowd*>(read.get());
         ASSERT_TRUE(back);
-        ASSERT_EQ(back->size(), crowd->size());
-        EXPECT_EQ(back->origin(), crowd->origin());
+        ASSERT_EQ(back->size(), crowd->getNumInstances());
+        EXPECT_EQ(back->origin(), crowd->getOrigin());
         EXPECT_TRUE(dynamic_cast<PoseStatistics*>(back->getEventCallback()));
         EXPECT_EQ(back->getNumChildren(), crowd->getNumChildren());
         EXPECT_NEAR((back->getBound().center() - crowd->getBound().center()).length(), 0.0, 1e-9);
-        EXPECT_EQ(back->instances().controllerCount(), crowd->instances().controllerCount());
-        for (std::size_t i = 0; i < crowd->size(); ++i)
+        EXPECT_EQ(back->instances().controllerCount(), crowd->getInstances().controllerCount());
+        for (std::size_t i = 0; i < crowd->getNumInstances(); ++i)
         {
-            AnimationController first = crowd->instances().controllerCopy(i);
+            AnimationController first = crowd->getInstances().controllerCopy(i);
             AnimationController second = back->instances().controllerCopy(i);
-            EXPECT_EQ(back->instances().rootMatrix(i).rows, crowd->instances().rootMatrix(i).rows);
-            EXPECT_EQ(back->instances().tint(i), crowd->instances().tint(i));
+            EXPECT_EQ(back->instances().rootMatrix(i).rows, crowd->getInstances().rootMatrix(i).rows);
+            EXPECT_EQ(back->instances().tint(i), crowd->getInstances().tint(i));
             EXPECT_EQ(second.state(), first.state());
             EXPECT_LE(paletteDifference(first, second), 1e-6f);
             EXPECT_LE(paletteDifference((first.advance(0.6), first), (second.advance(0.6), second)), 1e-6f);
@@ -327,7 +327,7 @@ TEST_F(SerializersTest, compactClipsStayCompact)
     const osg::ref_ptr<osg::Node> exact = osgDB::readRefNodeFile(file);
     const osg::ref_ptr<osg::Node> compact = osgDB::readRefNodeFile(file, new osgDB::Options("compact=1e-4"));
     ASSERT_TRUE(exact && compact);
-    const AnimationSet& set = findCharacter(*compact)->set();
+    const AnimationSet& set = findCharacter(*compact)->getAnimationSet();
     ASSERT_TRUE(set.clips().front().compactTracks());
     ASSERT_TRUE(files.throughFile(*exact, "osgb"));
     const auto exactBytes = std::filesystem::file_size(files.folder.file("scene.osgb"));
@@ -336,7 +336,7 @@ TEST_F(SerializersTest, compactClipsStayCompact)
         SCOPED_TRACE(format);
         const osg::ref_ptr<osg::Node> read = files.throughFile(*compact, format);
         ASSERT_TRUE(read && findCharacter(*read));
-        const AnimationSet& found = findCharacter(*read)->set();
+        const AnimationSet& found = findCharacter(*read)->getAnimationSet();
         EXPECT_TRUE(haveSameKeyframes(set, found));
         EXPECT_EQ(PackedKeyframes(found).texels(), PackedKeyframes(set).texels()) << "what goes to the GPU";
         if (std::string(format) == "osgb")
@@ -356,7 +356,7 @@ TEST_F(SerializersTest, setsOfTheFirstVersionAreRead)
     ASSERT_NE(text, second);
     const osg::ref_ptr<osg::Node> read = osgDB::readRefNodeFile(files.folder.write("first.osgt", text));
     ASSERT_TRUE(read && findCharacter(*read)) << log->text;
-    EXPECT_TRUE(haveSameKeyframes(character().set(), findCharacter(*read)->set()));
+    EXPECT_TRUE(haveSameKeyframes(character().getAnimationSet(), findCharacter(*read)->getAnimationSet()));
 }
 
 } // namespace osgGpuAnimation

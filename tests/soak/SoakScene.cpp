@@ -68,7 +68,7 @@ void SoakScene::changeCrowd(std::mt19937& random)
         _instances.pop_back();
         return;
     }
-    AnimationController controller(_crowd->sharedSet());
+    AnimationController controller(_crowd->getSharedAnimationSet());
     changeClip(controller, random);
     if (const auto added = _crowd->add(randomPlace(random), controller)) _instances.push_back(added.value());
 }
@@ -92,10 +92,10 @@ void SoakScene::change(std::mt19937& random)
     if (_clones->getNumChildren() > 0)
     {
         osg::Node& node = *_clones->getChild(static_cast<unsigned int>(below(_clones->getNumChildren(), random)));
-        changeClip(findCharacter(node)->controller(), random);
+        changeClip(findCharacter(node)->getController(), random);
     }
     if (!_instances.empty())
-        if (AnimationController* controller = _crowd->controller(_instances[below(_instances.size(), random)]))
+        if (AnimationController* controller = _crowd->getController(_instances[below(_instances.size(), random)]))
             changeClip(*controller, random);
 }
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/AnimationController.h>
 
+#include <osgGpuAnimation/animation/AnimationLayer.h>
 #include <osgGpuAnimation/animation/playback/BlendList.h>
 #include <osgGpuAnimation/animation/playback/FrameEvents.h>
-#include <osgGpuAnimation/animation/AnimationLayer.h>
 
 #include <algorithm>
 #include <cassert>
@@ -25,23 +25,23 @@ bool coversAll(const AnimationLayer& layer)
 {
     if (layer.mode() != AnimationLayer::Mode::Override || layer.mask() != 0 || layer.weight() < 1.0f) return false;
     double shares = 0.0;
-    for (std::size_t v = 0; v < layer.mixer().voiceCount(); ++v)
-        shares += layer.mixer().voice(v).share;
+    for (std::size_t v = 0; v < layer.mixer().activeClipCount(); ++v)
+        shares += layer.mixer().activeClip(v).share;
     return shares > 1.0 - 1e-6;
 }
 
-/// The number of blend samples of the layer's clips, see SampleStack.
+/// The number of blend samples of the layer's clips, see BlendList.
 std::size_t samplesOf(const AnimationLayer& layer)
 {
-    return layer.mixer().voiceCount() * (layer.mode() == AnimationLayer::Mode::Additive ? 2 : 1);
+    return layer.mixer().activeClipCount() * (layer.mode() == AnimationLayer::Mode::Additive ? 2 : 1);
 }
 
 // A clip that fades into itself occurs twice: a mix of two of its times can be a pose that the clip never shows.
-void addVoices(const AnimationLayer& layer, std::vector<PlayedClip>& out)
+void addActiveClips(const AnimationLayer& layer, std::vector<PlayedClip>& out)
 {
-    for (std::size_t v = 0; v < layer.mixer().voiceCount(); ++v)
+    for (std::size_t v = 0; v < layer.mixer().activeClipCount(); ++v)
     {
-        const int clip = layer.mixer().voice(v).playback.clip();
+        const int clip = layer.mixer().activeClip(v).playback.clip();
         if (layer.mode() == AnimationLayer::Mode::Override)
             addAtMost(2, {clip, PlayedClip::Part::Mixed}, out);
         else if (layer.reference() == AnimationLayer::Reference::RestPose)
@@ -134,20 +134,20 @@ const PoseInstruction& AnimationController::advance(double seconds)
 {
     const double step = std::isfinite(seconds) ? seconds : 0.0;
     forEachLayer([step](AnimationLayer& layer) { layer.advance(step); });
-    show();
-    if (_rootMotionCurve) goOn();
+    rebuildInstruction();
+    if (_rootMotionCurve) accumulateRootMotion();
     if (_eventCallback) tellEvents();
     return _instruction;
 }
 
-void AnimationController::show()
+void AnimationController::rebuildInstruction()
 {
-    SampleStack stack;
+    BlendList stack;
     forEachLayer([&stack](const AnimationLayer& layer) { layer.collect(stack); });
     stack.write(_instruction);
 }
 
-void AnimationController::goOn()
+void AnimationController::accumulateRootMotion()
 {
     MotionBlend blend;
     forEachLayer([&](const AnimationLayer& layer) { layer.collectMotion(blend, *_rootMotionCurve); });
@@ -169,14 +169,14 @@ void AnimationController::setEventCallback(EventCallback callback)
 
 void AnimationController::tellEvents()
 {
-    bool hasEvents = false; // most steps have none, and StepEvents is large
+    bool hasEvents = false; // most steps have none, and FrameEvents is large
     forEachLayer([&](const AnimationLayer& layer)
                  { hasEvents = hasEvents || layer.lastStep().mayHaveEvents(_set->clips()); });
     if (!hasEvents) return;
     // Copies: the callback may replace itself or the set of this controller.
     const std::shared_ptr<const EventCallback> callback = _eventCallback;
     const std::shared_ptr<const AnimationSet> set = _set;
-    StepEvents events;
+    FrameEvents events;
     forEachLayer([&](const AnimationLayer& layer) { events.add(layer.lastStep(), set->clips()); });
     AnimationEvent event;
     while (events.next(event))
@@ -194,7 +194,7 @@ void findPlayedClips(const AnimationController& controller, std::vector<PlayedCl
         if (layer.state() == PlayState::Stopped || !(layer.weight() > 0.0f)) continue;
         isRestHidden = isRestHidden || coversAll(layer);
         samples += samplesOf(layer);
-        addVoices(layer, out);
+        addActiveClips(layer, out);
     }
     // If samples are dropped, the weights of the others may not sum to 1.
     if (!isRestHidden || samples > PoseInstruction::maxSamples) addAtMost(1, {-1, PlayedClip::Part::Mixed}, out);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <osgGpuAnimation/animation/Playback.h>
 #include <osgGpuAnimation/animation/AnimationLayer.h>
 #include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/animation/Playback.h>
 #include <osgGpuAnimation/animation/RootMotion.h>
 
 #include <functional>
@@ -111,9 +111,9 @@ private:
     template <typename Function>
     void forEachLayer(Function function); ///< function(layer), from the base up
     void copyUpperLayers(const AnimationController& other);
-    void show() override;
+    void rebuildInstruction() override;
     void tellEvents();
-    void goOn();
+    void accumulateRootMotion();
 
     // Members that every advance() needs come first and together: with thousands of controllers they are not in the
     // cache.
@@ -126,8 +126,8 @@ private:
 };
 
 /// Finds all clips whose samples can contribute to the pose now, for any weights and masks of the layers, and the rest
-/// pose if it can be visible. Mixed clips occur once (twice if voices mix two times of a clip), added ones once per
-/// layer and voice. out: its old content is replaced.
+/// pose if it can be visible. Mixed clips occur once (twice if active clips mix two times of a clip), added ones once
+/// per layer and active clip. out: its old content is replaced.
 void findPlayedClips(const AnimationController& controller, std::vector<PlayedClip>& out);
 
 } // namespace osgGpuAnimation

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/AnimationLayer.h>
 
-#include <osgGpuAnimation/animation/JointMask.h>
 #include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/animation/JointMask.h>
 #include <osgGpuAnimation/animation/playback/BlendList.h>
-#include <osgGpuAnimation/animation/RootMotion.h>
 #include <osgGpuAnimation/animation/playback/FrameEvents.h>
+#include <osgGpuAnimation/animation/RootMotion.h>
 
 #include <layout.glsl>
 
@@ -20,7 +20,7 @@ AnimationLayer::AnimationLayer(LayerOwner& owner, const AnimationLayer& other) :
 {
     _owner = &owner;
     _crossfadeMoment = _weightFadeMoment = -1.0;
-    _mixer.stand();
+    _mixer.clearSteps();
 }
 
 ClipPlayback AnimationLayer::playbackOf(std::size_t clip, LoopMode loopMode) const
@@ -34,7 +34,7 @@ Result<bool> AnimationLayer::play(std::size_t clip)
     if (!known) return known.error();
     _mixer.start(playbackOf(clip, _loopMode));
     _state = PlayState::Playing;
-    show();
+    rebuildInstruction();
     return true;
 }
 
@@ -66,7 +66,7 @@ Result<bool> AnimationLayer::crossfade(std::size_t clip, double seconds, const C
     else
         _mixer.start(playback);
     _state = PlayState::Playing;
-    show();
+    rebuildInstruction();
     return true;
 }
 
@@ -95,7 +95,7 @@ void AnimationLayer::stop()
         _mixer.start(playbackOf(static_cast<std::size_t>(clip()), _loopMode));
         _mixer.current().seek(0.0);
     }
-    show();
+    rebuildInstruction();
 }
 
 bool AnimationLayer::seek(double seconds)
@@ -104,7 +104,7 @@ bool AnimationLayer::seek(double seconds)
     if (_mixer.isEmpty()) return true;
     _mixer.current().seek(seconds);
     if (_state == PlayState::Ended && !_mixer.current().isAtEnd()) _state = PlayState::Playing;
-    show();
+    rebuildInstruction();
     return true;
 }
 
@@ -120,7 +120,7 @@ void AnimationLayer::setLoopMode(LoopMode mode)
 {
     _loopMode = mode;
     if (!_mixer.isEmpty()) _mixer.current().setLoopMode(mode);
-    show();
+    rebuildInstruction();
 }
 
 bool AnimationLayer::setWeight(float weight)
@@ -132,7 +132,7 @@ bool AnimationLayer::fadeWeight(float weight, double seconds, FadeCurve curve)
 {
     if (std::isnan(weight) || !std::isfinite(seconds) || seconds < 0.0) return false;
     _weight = Fade(_weight.value(), std::clamp(static_cast<double>(weight), 0.0, 1.0), seconds, curve);
-    show();
+    rebuildInstruction();
     return true;
 }
 
@@ -141,27 +141,27 @@ Result<bool> AnimationLayer::setMask(const JointMask& mask)
     const Result<std::uint32_t> number = set().addMask(mask.weights());
     if (!number) return number.error();
     _mask = number.value();
-    show();
+    rebuildInstruction();
     return true;
 }
 
 void AnimationLayer::clearMask()
 {
     _mask = 0;
-    show();
+    rebuildInstruction();
 }
 
 void AnimationLayer::setMode(Mode mode, Reference reference)
 {
     _mode = mode;
     _reference = reference;
-    show();
+    rebuildInstruction();
 }
 
-void AnimationLayer::setStanding(int standing)
+void AnimationLayer::setBlendPriority(int blendPriority)
 {
-    _standing = standing;
-    show();
+    _blendPriority = blendPriority;
+    rebuildInstruction();
 }
 
 void AnimationLayer::advance(double seconds)
@@ -169,17 +169,17 @@ void AnimationLayer::advance(double seconds)
     _crossfadeMoment = _weightFadeMoment = -1.0;
     if (_state == PlayState::Paused)
     {
-        _mixer.stand();
+        _mixer.clearSteps();
         return;
     }
     _weightFadeMoment = _weight.advance(seconds);
     if (_state == PlayState::Stopped)
     {
-        _mixer.stand();
+        _mixer.clearSteps();
         return;
     }
     _crossfadeMoment = _mixer.advance(seconds, _state == PlayState::Playing);
-    if (_mixer.voice(_mixer.voiceCount() - 1).move.hasFinished) _state = PlayState::Ended;
+    if (_mixer.activeClip(_mixer.activeClipCount() - 1).move.hasFinished) _state = PlayState::Ended;
 }
 
 BlendSample AnimationLayer::sampleOf(const ClipPlayback& playback, double time, double share) const
@@ -190,18 +190,18 @@ BlendSample AnimationLayer::sampleOf(const ClipPlayback& playback, double time, 
     return sample;
 }
 
-void AnimationLayer::collect(SampleStack& out) const
+void AnimationLayer::collect(BlendList& out) const
 {
     if (_state == PlayState::Stopped) return;
-    for (std::size_t v = 0; v < _mixer.voiceCount(); ++v)
+    for (std::size_t v = 0; v < _mixer.activeClipCount(); ++v)
     {
-        const ClipMixer::Voice& voice = _mixer.voice(v);
-        if (!(voice.share > 0.0)) continue;
-        const BlendSample sample = sampleOf(voice.playback, voice.playback.shownTime(), voice.share);
+        const ClipMixer::ActiveClip& activeClip = _mixer.activeClip(v);
+        if (!(activeClip.share > 0.0)) continue;
+        const BlendSample sample = sampleOf(activeClip.playback, activeClip.playback.shownTime(), activeClip.share);
         if (_mode == Mode::Override)
-            out.add(sample, _standing);
+            out.add(sample, _blendPriority);
         else if (_reference == Reference::FirstFrame)
-            out.addDifference(sampleOf(voice.playback, 0.0, voice.share), sample);
+            out.addDifference(sampleOf(activeClip.playback, 0.0, activeClip.share), sample);
         else
             out.addDifference(BlendSample{0, 0.0f, sample.weight, _mask << POSE_SAMPLE_MASK_SHIFT}, sample);
     }
@@ -210,7 +210,7 @@ void AnimationLayer::collect(SampleStack& out) const
 bool AnimationLayer::isPlainLoop() const
 {
     const bool isDefault = _mode == Mode::Override && _reference == Reference::RestPose && _mask == 0 &&
-                           _standing == static_cast<int>(_index) && _weight.isFinished() && _weight.value() == 1.0;
+                           _blendPriority == static_cast<int>(_index) && _weight.isFinished() && _weight.value() == 1.0;
     if (!isDefault || _loopMode != LoopMode::Loop || _state == PlayState::Ended) return false;
     if (_mixer.isEmpty()) return _state == PlayState::Stopped;
     const ClipPlayback& current = _mixer.current();
@@ -224,15 +224,16 @@ void AnimationLayer::collectMotion(MotionBlend& out, const RootMotionCurve& usua
 {
     if (_state == PlayState::Stopped || _mode == Mode::Additive) return;
     const float* mask = set().masks().weights(_mask);
-    for (std::size_t v = 0; v < _mixer.voiceCount(); ++v)
+    for (std::size_t v = 0; v < _mixer.activeClipCount(); ++v)
     {
-        const ClipMixer::Voice& voice = _mixer.voice(v);
-        const Clip& clip = set().clips()[static_cast<std::size_t>(voice.playback.clip())];
+        const ClipMixer::ActiveClip& activeClip = _mixer.activeClip(v);
+        const Clip& clip = set().clips()[static_cast<std::size_t>(activeClip.playback.clip())];
         const RootMotionCurve& curve = clip.rootMotion() ? *clip.rootMotion() : usual;
-        const double weight = voice.meanShare * _weight.mean() * (mask ? static_cast<double>(mask[curve.joint]) : 1.0);
-        out.add(clip.rootMotion() ? rootMotionOf(clip, voice.move, voice.playback.loopMode())
+        const double weight =
+            activeClip.meanShare * _weight.mean() * (mask ? static_cast<double>(mask[curve.joint]) : 1.0);
+        out.add(clip.rootMotion() ? rootMotionOf(clip, activeClip.move, activeClip.playback.loopMode())
                                   : RootMotion{glm::dvec3(0.0), 0.0, curve.up},
-                weight, _standing);
+                weight, _blendPriority);
     }
 }
 
@@ -241,9 +242,9 @@ LayerStep AnimationLayer::lastStep() const
     return {_index, _mixer, _crossfadeMoment, _weightFadeMoment};
 }
 
-void AnimationLayer::show()
+void AnimationLayer::rebuildInstruction()
 {
-    _owner->show();
+    _owner->rebuildInstruction();
 }
 
 namespace
@@ -276,18 +277,19 @@ std::optional<std::string> findFault(const LayerSnapshot& snapshot, const Animat
 {
     if (!std::isfinite(snapshot.speed)) return "a speed that is not finite";
     if (!isSound(snapshot.weight) || !isSound(snapshot.crossfade)) return "a fade that cannot be";
-    if (snapshot.voices.size() > ClipMixer::maxVoices)
-        return std::to_string(snapshot.voices.size()) + " clips at a time, at most " +
-               std::to_string(ClipMixer::maxVoices) + " are possible";
-    if (snapshot.voices.empty() && snapshot.state != PlayState::Stopped) return "a state of playing, but no clip";
-    for (const LayerSnapshot::Voice& voice : snapshot.voices)
+    if (snapshot.activeClips.size() > ClipMixer::maxActiveClips)
+        return std::to_string(snapshot.activeClips.size()) + " clips at a time, at most " +
+               std::to_string(ClipMixer::maxActiveClips) + " are possible";
+    if (snapshot.activeClips.empty() && snapshot.state != PlayState::Stopped) return "a state of playing, but no clip";
+    for (const LayerSnapshot::ActiveClip& activeClip : snapshot.activeClips)
     {
-        if (voice.clip < 0 || static_cast<std::size_t>(voice.clip) >= set.clips().size())
-            return "clip " + std::to_string(voice.clip) + " of " + std::to_string(set.clips().size());
-        if (!std::isfinite(voice.time) || !std::isfinite(voice.speed)) return "a time or speed that is not finite";
-        if (voice.phaseGroup < 0 || static_cast<std::size_t>(voice.phaseGroup) >= snapshot.voices.size())
+        if (activeClip.clip < 0 || static_cast<std::size_t>(activeClip.clip) >= set.clips().size())
+            return "clip " + std::to_string(activeClip.clip) + " of " + std::to_string(set.clips().size());
+        if (!std::isfinite(activeClip.time) || !std::isfinite(activeClip.speed))
+            return "a time or speed that is not finite";
+        if (activeClip.phaseGroup < 0 || static_cast<std::size_t>(activeClip.phaseGroup) >= snapshot.activeClips.size())
             return "a clip in step with one that is not there";
-        if (!isShare(voice.share) || !isShare(voice.shareBefore)) return "a share that is not in [0, 1]";
+        if (!isShare(activeClip.share) || !isShare(activeClip.shareBefore)) return "a share that is not in [0, 1]";
     }
     const bool isFinite = std::all_of(snapshot.mask.begin(), snapshot.mask.end(), [](float w) { return isShare(w); });
     if (!snapshot.mask.empty() && (snapshot.mask.size() != set.trackCount() || !isFinite))
@@ -295,10 +297,10 @@ std::optional<std::string> findFault(const LayerSnapshot& snapshot, const Animat
     return std::nullopt;
 }
 
-int phaseGroupOf(const ClipMixer& mixer, std::size_t voice)
+int phaseGroupOf(const ClipMixer& mixer, std::size_t activeClip)
 {
     std::size_t first = 0;
-    while (mixer.voice(first).phaseGroup != mixer.voice(voice).phaseGroup)
+    while (mixer.activeClip(first).phaseGroup != mixer.activeClip(activeClip).phaseGroup)
         ++first;
     return static_cast<int>(first);
 }
@@ -311,13 +313,13 @@ LayerSnapshot AnimationLayer::snapshot() const
     snapshot.state = _state;
     snapshot.loopMode = _loopMode;
     snapshot.speed = _speed;
-    for (std::size_t v = 0; v < _mixer.voiceCount(); ++v)
+    for (std::size_t v = 0; v < _mixer.activeClipCount(); ++v)
     {
-        const ClipMixer::Voice& voice = _mixer.voice(v);
-        const ClipPlayback& playback = voice.playback;
-        snapshot.voices.push_back({playback.clip(), playback.time(), playback.speed(), playback.loopMode(),
-                                   playback.isReturning(), playback.isFresh(), voice.share, voice.shareBefore,
-                                   phaseGroupOf(_mixer, v)});
+        const ClipMixer::ActiveClip& activeClip = _mixer.activeClip(v);
+        const ClipPlayback& playback = activeClip.playback;
+        snapshot.activeClips.push_back({playback.clip(), playback.time(), playback.speed(), playback.loopMode(),
+                                        playback.isReturning(), playback.isFresh(), activeClip.share,
+                                        activeClip.shareBefore, phaseGroupOf(_mixer, v)});
     }
     snapshot.crossfade = stateOf(_mixer.fade());
     snapshot.weight = stateOf(_weight);
@@ -325,7 +327,7 @@ LayerSnapshot AnimationLayer::snapshot() const
         snapshot.mask.assign(weights, weights + set().trackCount());
     snapshot.mode = _mode;
     snapshot.reference = _reference;
-    snapshot.standing = _standing;
+    snapshot.blendPriority = _blendPriority;
     return snapshot;
 }
 
@@ -340,19 +342,19 @@ Result<bool> AnimationLayer::restore(const LayerSnapshot& snapshot)
         if (!number) return number.error();
         mask = number.value();
     }
-    std::vector<ClipMixer::Voice> voices;
-    for (const LayerSnapshot::Voice& kept : snapshot.voices)
+    std::vector<ClipMixer::ActiveClip> activeClips;
+    for (const LayerSnapshot::ActiveClip& kept : snapshot.activeClips)
     {
-        ClipMixer::Voice voice;
-        voice.playback = ClipPlayback(kept.clip, set.clips()[static_cast<std::size_t>(kept.clip)].duration(),
-                                      kept.speed, kept.loopMode);
-        voice.playback.restore(kept.time, kept.isReturning, kept.isFresh);
-        voice.share = kept.share;
-        voice.shareBefore = kept.shareBefore;
-        voice.phaseGroup = kept.phaseGroup;
-        voices.push_back(voice);
+        ClipMixer::ActiveClip activeClip;
+        activeClip.playback = ClipPlayback(kept.clip, set.clips()[static_cast<std::size_t>(kept.clip)].duration(),
+                                           kept.speed, kept.loopMode);
+        activeClip.playback.restore(kept.time, kept.isReturning, kept.isFresh);
+        activeClip.share = kept.share;
+        activeClip.shareBefore = kept.shareBefore;
+        activeClip.phaseGroup = kept.phaseGroup;
+        activeClips.push_back(activeClip);
     }
-    _mixer.restore(voices, restored(snapshot.crossfade));
+    _mixer.restore(activeClips, restored(snapshot.crossfade));
     _state = snapshot.state;
     _loopMode = snapshot.loopMode;
     _speed = snapshot.speed;
@@ -360,8 +362,8 @@ Result<bool> AnimationLayer::restore(const LayerSnapshot& snapshot)
     _mask = mask;
     _mode = snapshot.mode;
     _reference = snapshot.reference;
-    _standing = snapshot.standing;
-    show();
+    _blendPriority = snapshot.blendPriority;
+    rebuildInstruction();
     return true;
 }
 

@@ -16,7 +16,7 @@ namespace osgGpuAnimation
 
 class JointMask;
 class MotionBlend;
-class SampleStack;
+class BlendList;
 struct LayerSnapshot;
 struct LayerStep;
 struct RootMotionCurve;
@@ -31,7 +31,7 @@ protected:
     LayerOwner& operator=(const LayerOwner&) = default;
     ~LayerOwner() = default;
 
-    virtual void show() = 0; ///< rebuilds the pose instruction from all layers
+    virtual void rebuildInstruction() = 0; ///< rebuilds the pose instruction from all layers
 
     std::shared_ptr<const AnimationSet> _set;
 };
@@ -39,8 +39,8 @@ protected:
 /// One layer of an AnimationController. It plays its own clips at their own times over the layers below it, with a
 /// weight and a mask.
 ///
-///     AnimationLayer& gesture = fox->controller().layer(1);
-///     gesture.setMask(JointMask::subtree(fox->set(), "Shoulder.R", 1).value());
+///     AnimationLayer& gesture = fox->getController().layer(1);
+///     gesture.setMask(JointMask::subtree(fox->getAnimationSet(), "Shoulder.R", 1).value());
 ///     gesture.setLoopMode(LoopMode::Once);
 ///     gesture.play("Wave");
 ///     gesture.fadeWeight(0.0f, 0.5, FadeCurve::Smooth); // later: releases the arm
@@ -121,10 +121,10 @@ public:
     Mode mode() const { return _mode; }
     Reference reference() const { return _reference; }
 
-    /// Override layers of a higher standing replace those of a lower one; layers of equal standing share the joints by
-    /// their weights. The default is the layer's index: each layer replaces those before it.
-    void setStanding(int standing);
-    int standing() const { return _standing; }
+    /// Override layers of a higher blend priority replace those of a lower one; layers of equal blend priority share
+    /// the joints by their weights. The default is the layer's index: each layer replaces those before it.
+    void setBlendPriority(int blendPriority);
+    int blendPriority() const { return _blendPriority; }
 
     /// True if clip, time, speed and state describe the layer completely: it plays or pauses one clip in a loop, or
     /// nothing, and everything else has its default.
@@ -136,7 +136,7 @@ private:
     friend class AnimationController;
 
     AnimationLayer(LayerOwner& owner, std::size_t index)
-        : _owner(&owner), _index(index), _standing(static_cast<int>(index))
+        : _owner(&owner), _index(index), _blendPriority(static_cast<int>(index))
     {
     }
     AnimationLayer(LayerOwner& owner, const AnimationLayer& other);
@@ -146,11 +146,11 @@ private:
     const AnimationSet& set() const { return *_owner->_set; }
     ClipPlayback playbackOf(std::size_t clip, LoopMode loopMode) const;
     void advance(double seconds);
-    void collect(SampleStack& out) const;
+    void collect(BlendList& out) const;
     void collectMotion(MotionBlend& out, const RootMotionCurve& usual) const;
     LayerStep lastStep() const;
     BlendSample sampleOf(const ClipPlayback& playback, double time, double share) const;
-    void show();
+    void rebuildInstruction();
 
     LayerOwner* _owner;
     std::size_t _index;
@@ -162,7 +162,7 @@ private:
     std::uint32_t _mask = 0;
     Mode _mode = Mode::Override;
     Reference _reference = Reference::RestPose;
-    int _standing = 0;
+    int _blendPriority = 0;
     double _crossfadeMoment = -1.0; ///< see LayerStep
     double _weightFadeMoment = -1.0;
 };
@@ -180,8 +180,8 @@ struct LayerSnapshot
         double elapsed = 0.0; ///< seconds
         FadeCurve curve = FadeCurve::Linear;
     };
-    /// One clip that contributes, see ClipMixer::Voice.
-    struct Voice
+    /// One clip that contributes, see ClipMixer::ActiveClip.
+    struct ActiveClip
     {
         int clip = -1;
         double time = 0.0; ///< seconds on the time line of the clip
@@ -191,19 +191,19 @@ struct LayerSnapshot
         bool isFresh = true;
         double share = 1.0;       ///< of the layer, in [0, 1]
         double shareBefore = 0.0; ///< in [0, 1]
-        int phaseGroup = 0;       ///< index of the first voice that shares its phase
+        int phaseGroup = 0;       ///< index of the first active clip that shares its phase
     };
 
     PlayState state = PlayState::Stopped;
     LoopMode loopMode = LoopMode::Loop;
     double speed = 1.0;
-    std::vector<Voice> voices; ///< oldest first; empty if nothing was ever played
+    std::vector<ActiveClip> activeClips; ///< oldest first; empty if nothing was ever played
     FadeState crossfade;
     FadeState weight;
     std::vector<float> mask; ///< one weight per track; empty: no mask
     AnimationLayer::Mode mode = AnimationLayer::Mode::Override;
     AnimationLayer::Reference reference = AnimationLayer::Reference::RestPose;
-    int standing = 0;
+    int blendPriority = 0;
 };
 
 } // namespace osgGpuAnimation

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/Clip.h>
-#include <osgGpuAnimation/animation/Skeleton.h>
 #include <osgGpuAnimation/animation/Result.h>
+#include <osgGpuAnimation/animation/Skeleton.h>
 
 #include <array>
 #include <cstddef>
@@ -33,16 +33,16 @@ static_assert(sizeof(BlendSample) == 16, "a blend sample is 16 bytes on the GPU"
 ///
 /// The mix, joint by joint (shaders/mix.glsl and its CPU twin Pose):
 /// - The weight of a sample at a joint is its own weight times the weight of its mask.
-/// - Samples are grouped into **standings**, from the bottom up; POSE_SAMPLE_ABOVE begins the next standing. Samples of
-/// one
-///   standing share the joint by their weights: a sum above 1 is scaled to 1. If the weights sum to less than 1, the
-///   standings below fill the remainder; the rest pose comes last.
+/// - Samples are grouped into **blend priorities**, from the bottom up; POSE_SAMPLE_ABOVE begins the next blend
+/// priority. Samples of one
+///   blend priority share the joint by their weights: a sum above 1 is scaled to 1. If the weights sum to less than 1,
+///   the blend priorities below fill the remainder; the rest pose comes last.
 /// - Translations, scales and morph weights are summed. Rotations are summed as unit quaternions on one hemisphere and
-///   normalized: within a standing the hemisphere of its first sample with a weight at the joint; the sum of a standing
-///   takes the hemisphere of the standings below. Controllers put the heaviest sample first, so the order of layers
-///   plays no part, no two samples cancel out, and a sample that fades in never reverses the visible one. (The
-///   hemisphere of the rest pose would be simpler, but two nearly equal poses half a turn away from rest would cancel
-///   out.)
+///   normalized: within a blend priority the hemisphere of its first sample with a weight at the joint; the sum of a
+///   blend priority takes the hemisphere of the blend priorities below. Controllers put the heaviest sample first, so
+///   the order of layers plays no part, no two samples cancel out, and a sample that fades in never reverses the
+///   visible one. (The hemisphere of the rest pose would be simpler, but two nearly equal poses half a turn away from
+///   rest would cancel out.)
 /// - Additive samples come last; their order plays no part. With d = R_reference⁻¹ · R, rotations are multiplied by
 ///   exp(Σ weight · log d), with the sum limited to a full turn; translations get Σ weight · (T − T_reference); scales
 ///   are multiplied by Π (1 + weight · (S / S_reference − 1)), except on axes with a reference of 0.

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
-#include <osgGpuAnimation/animation/math/Box.h>
 #include <osgGpuAnimation/animation/Clip.h>
-#include <osgGpuAnimation/animation/RootMotion.h>
 #include <osgGpuAnimation/animation/JointTransform.h>
+#include <osgGpuAnimation/animation/math/Box.h>
+#include <osgGpuAnimation/animation/RootMotion.h>
 #include <osgGpuAnimation/animation/Skeleton.h>
 
 #include <memory>
@@ -100,7 +100,7 @@ struct RootMotionAxes
 /// Removes a joint's motion from every clip of a set; AnimationController::takeRootMotion() returns the removed motion.
 /// The joint stays where it is in the first keyframe of each clip. The new set has copies of all keyframes.
 ///
-///     auto set = withRootMotion(fox->set(), "hips", {true, false, true});
+///     auto set = withRootMotion(fox->getAnimationSet(), "hips", {true, false, true});
 ///     if (set) fox->setAnimationSet(set.value());
 ///
 /// Root motion and remaining clip together give the original pose, exactly at keyframes and, without yaw, between them.

@@ -65,9 +65,9 @@ void ClipPlayback::setPhase(double phase)
     seek(2.0 * _duration * (phase <= 0.5 ? phase : 1.0 - phase));
 }
 
-ClipMove ClipPlayback::move(double seconds)
+PlaybackStep ClipPlayback::move(double seconds)
 {
-    ClipMove move;
+    PlaybackStep move;
     move.from = move.to = _time;
     move.includesStart = _isFresh;
     if (_loopMode == LoopMode::Once) return moveOnce(seconds);
@@ -101,9 +101,9 @@ ClipMove ClipPlayback::move(double seconds)
     return move;
 }
 
-ClipMove ClipPlayback::moveOnce(double seconds)
+PlaybackStep ClipPlayback::moveOnce(double seconds)
 {
-    ClipMove move;
+    PlaybackStep move;
     move.from = _time;
     move.includesStart = _isFresh;
     const double time = _time + seconds;
@@ -133,7 +133,7 @@ double finiteProduct(double a, double b)
 void ClipMixer::clear()
 {
     _leaving.clear();
-    _current = Voice();
+    _current = ActiveClip();
 }
 
 void ClipMixer::start(const ClipPlayback& playback)
@@ -144,18 +144,19 @@ void ClipMixer::start(const ClipPlayback& playback)
     _fade = Fade(1.0);
 }
 
-void ClipMixer::restore(const std::vector<Voice>& voices, const Fade& fade)
+void ClipMixer::restore(const std::vector<ActiveClip>& activeClips, const Fade& fade)
 {
     clear();
     _fade = fade;
     _lastPhaseGroup = 0;
-    if (voices.empty()) return;
-    const auto last = voices.begin() + static_cast<std::ptrdiff_t>(std::min(voices.size(), maxVoices)) - 1;
-    _leaving.assign(voices.begin(), last);
+    if (activeClips.empty()) return;
+    const auto last =
+        activeClips.begin() + static_cast<std::ptrdiff_t>(std::min(activeClips.size(), maxActiveClips)) - 1;
+    _leaving.assign(activeClips.begin(), last);
     _current = *last;
-    stand();
-    for (std::size_t i = 0; i < voiceCount(); ++i)
-        _lastPhaseGroup = std::max(_lastPhaseGroup, voice(i).phaseGroup);
+    clearSteps();
+    for (std::size_t i = 0; i < activeClipCount(); ++i)
+        _lastPhaseGroup = std::max(_lastPhaseGroup, activeClip(i).phaseGroup);
 }
 
 void ClipMixer::fadeTo(const ClipPlayback& playback, double seconds, FadeCurve curve, bool sharesPhase)
@@ -164,9 +165,9 @@ void ClipMixer::fadeTo(const ClipPlayback& playback, double seconds, FadeCurve c
     makeRoom();
     const int group = sharesPhase && !isEmpty() ? _current.phaseGroup : ++_lastPhaseGroup;
     if (!isEmpty()) _leaving.push_back(_current);
-    for (Voice& before : _leaving)
+    for (ActiveClip& before : _leaving)
         before.shareBefore = before.share;
-    _current = Voice();
+    _current = ActiveClip();
     _current.playback = playback;
     _current.share = 0.0;
     _current.phaseGroup = group;
@@ -187,17 +188,17 @@ void ClipMixer::removeFaded()
 
 void ClipMixer::makeRoom()
 {
-    if (voiceCount() < maxVoices) return;
+    if (activeClipCount() < maxActiveClips) return;
     std::size_t least = 0;
     double whole = 0.0;
-    for (std::size_t i = 0; i < maxVoices; ++i)
+    for (std::size_t i = 0; i < maxActiveClips; ++i)
     {
         whole += at(i).share;
         if (at(i).share < at(least).share) least = i;
     }
     const double grown = whole / (whole - at(least).share);
     remove(least);
-    for (std::size_t i = 0; i < voiceCount(); ++i)
+    for (std::size_t i = 0; i < activeClipCount(); ++i)
         at(i).share *= grown;
 }
 
@@ -207,46 +208,46 @@ double ClipMixer::advance(double seconds, bool isCurrentPlaying)
     const double moment = _fade.advance(seconds);
     if (moment >= 0.0 || isFading())
     {
-        for (Voice& voice : _leaving)
+        for (ActiveClip& activeClip : _leaving)
         {
-            voice.share = voice.shareBefore * (1.0 - _fade.value());
-            voice.meanShare = voice.shareBefore * (1.0 - _fade.mean());
+            activeClip.share = activeClip.shareBefore * (1.0 - _fade.value());
+            activeClip.meanShare = activeClip.shareBefore * (1.0 - _fade.mean());
         }
         _current.share = _fade.value();
         _current.meanShare = _fade.mean();
     }
     else
-        for (std::size_t i = 0; i < voiceCount(); ++i)
+        for (std::size_t i = 0; i < activeClipCount(); ++i)
             at(i).meanShare = at(i).share;
-    for (Voice& voice : _leaving)
-        voice.move = voice.playback.move(clipSeconds(voice, seconds));
-    _current.move = isCurrentPlaying ? _current.playback.move(clipSeconds(_current, seconds)) : ClipMove();
+    for (ActiveClip& activeClip : _leaving)
+        activeClip.move = activeClip.playback.move(clipSeconds(activeClip, seconds));
+    _current.move = isCurrentPlaying ? _current.playback.move(clipSeconds(_current, seconds)) : PlaybackStep();
     return moment;
 }
 
-void ClipMixer::stand()
+void ClipMixer::clearSteps()
 {
-    for (std::size_t i = 0; i < voiceCount(); ++i)
-        at(i).move = ClipMove();
+    for (std::size_t i = 0; i < activeClipCount(); ++i)
+        at(i).move = PlaybackStep();
 }
 
-double ClipMixer::clipSeconds(const Voice& voice, double seconds) const
+double ClipMixer::clipSeconds(const ActiveClip& activeClip, double seconds) const
 {
-    double speed = voice.playback.speed();
+    double speed = activeClip.playback.speed();
     double members = 0.0, share = 0.0, round = 0.0;
-    for (std::size_t i = 0; !_leaving.empty() && i < voiceCount(); ++i)
+    for (std::size_t i = 0; !_leaving.empty() && i < activeClipCount(); ++i)
     {
-        const Voice& other = this->voice(i);
-        if (other.phaseGroup != voice.phaseGroup) continue;
+        const ActiveClip& other = this->activeClip(i);
+        if (other.phaseGroup != activeClip.phaseGroup) continue;
         members += 1.0;
         share += other.meanShare;
         round += other.meanShare * other.playback.roundSeconds();
         speed = other.playback.speed(); // the newest member decides
     }
     if (members > 1.0 && round > 0.0)
-        speed *= voice.playback.roundSeconds() * share / round;
+        speed *= activeClip.playback.roundSeconds() * share / round;
     else if (members > 1.0)
-        speed = voice.playback.speed();
+        speed = activeClip.playback.speed();
     return finiteProduct(seconds, speed);
 }
 

@@ -10,7 +10,7 @@ namespace osgGpuAnimation
 {
 
 /// One step of a clip's time: where it began, where it ended, and how often it crossed the ends of the clip.
-struct ClipMove
+struct PlaybackStep
 {
     double from = 0.0, to = 0.0; ///< seconds on the time line of the clip
     double distance = 0.0;       ///< seconds of the clip that the step covers; negative: backwards
@@ -54,10 +54,10 @@ public:
     void seek(double seconds);   ///< clamped to [0, duration]
     void setPhase(double phase); ///< in [0, 1]
     /// Moves the time. seconds: of the clip, so without the speed; finite, any sign.
-    ClipMove move(double seconds);
+    PlaybackStep move(double seconds);
 
 private:
-    ClipMove moveOnce(double seconds);
+    PlaybackStep moveOnce(double seconds);
 
     int _clip = -1;
     double _duration = 0.0;
@@ -87,60 +87,60 @@ struct PlayedClip
 /// The clips that one layer plays at a time: the current clip and, during crossfades, the clips that fade out and play
 /// on. A crossfade may begin at any time: the whole visible mix fades out while the new clip fades in, so the pose
 /// never jumps. (A frozen pose in place of the fading clips would upload 48 bytes per joint, and feet would stop in mid
-/// air.) If all voices are in use, the one with the smallest share is dropped. Memory grows only when more clips fade
-/// out at once than ever before.
+/// air.) If all active clips are in use, the one with the smallest share is dropped. Memory grows only when more clips
+/// fade out at once than ever before.
 class ClipMixer
 {
 public:
-    static constexpr std::size_t maxVoices = 8;
+    static constexpr std::size_t maxActiveClips = 8;
 
-    struct Voice
+    struct ActiveClip
     {
         ClipPlayback playback;
-        ClipMove move;      ///< the step of the last advance()
+        PlaybackStep move;  ///< the step of the last advance()
         double share = 1.0; ///< of the layer, in [0, 1]
         double meanShare =
             1.0; ///< mean during the last advance(): it weights root motion, so that the frame rate plays no part
         double shareBefore = 0.0; ///< share at the start of the last crossfade
-        int phaseGroup = 0;       ///< voices of one group share one phase
+        int phaseGroup = 0;       ///< active clips of one group share one phase
     };
 
-    std::size_t voiceCount() const { return isEmpty() ? 0 : _leaving.size() + 1; }
-    const Voice& voice(std::size_t index) const ///< oldest first
+    std::size_t activeClipCount() const { return isEmpty() ? 0 : _leaving.size() + 1; }
+    const ActiveClip& activeClip(std::size_t index) const ///< oldest first
     {
         return index < _leaving.size() ? _leaving[index] : _current;
     }
     bool isEmpty() const { return _current.playback.clip() < 0; }
-    /// The newest voice. The mixer must not be empty.
+    /// The newest active clip. The mixer must not be empty.
     ClipPlayback& current() { return _current.playback; }
     const ClipPlayback& current() const { return _current.playback; }
     bool isFading() const { return !_fade.isFinished(); }
 
-    const Fade& fade() const { return _fade; } ///< share of the current voice, from 0 to 1
+    const Fade& fade() const { return _fade; } ///< share of the current active clip, from 0 to 1
 
     void clear();
-    /// Restores stored voices. voices: oldest first; only the first maxVoices are used.
-    void restore(const std::vector<Voice>& voices, const Fade& fade);
+    /// Restores stored active clips. active clips: oldest first; only the first maxActiveClips are used.
+    void restore(const std::vector<ActiveClip>& activeClips, const Fade& fade);
     /// Plays a clip at once and removes all others.
     void start(const ClipPlayback& playback);
     /// Starts a crossfade. seconds: above 0. sharesPhase: true if both clips run at one phase, see Sync::Phase.
     void fadeTo(const ClipPlayback& playback, double seconds, FadeCurve curve, bool sharesPhase);
 
-    /// Moves the fade and all voices; the current voice moves only if isCurrentPlaying. Returns the share of the step
-    /// after which the fade ended, in [0, 1]; -1 if it did not end.
+    /// Moves the fade and all active clips; the current active clip moves only if isCurrentPlaying. Returns the share
+    /// of the step after which the fade ended, in [0, 1]; -1 if it did not end.
     double advance(double seconds, bool isCurrentPlaying);
-    /// Clears the steps of all voices.
-    void stand();
+    /// Clears the steps of all active clips.
+    void clearSteps();
 
 private:
-    Voice& at(std::size_t index) { return index < _leaving.size() ? _leaving[index] : _current; }
+    ActiveClip& at(std::size_t index) { return index < _leaving.size() ? _leaving[index] : _current; }
     void remove(std::size_t index);
     void removeFaded();
     void makeRoom();
-    double clipSeconds(const Voice& voice, double seconds) const;
+    double clipSeconds(const ActiveClip& activeClip, double seconds) const;
 
-    Voice _current;              ///< a member, since most characters play one clip and every frame reads it
-    std::vector<Voice> _leaving; ///< fewer than maxVoices
+    ActiveClip _current;              ///< a member, since most characters play one clip and every frame reads it
+    std::vector<ActiveClip> _leaving; ///< fewer than maxActiveClips
     Fade _fade{1.0};
     int _lastPhaseGroup = 0;
 };

@@ -13,8 +13,8 @@ namespace osgGpuAnimation
 /// How much of a layer each joint takes, from 0 (nothing) to 1 (everything): one weight for every track of a set, so
 /// for every joint and every morph.
 ///
-///     Result<JointMask> arm = JointMask::subtree(fox->set(), "Shoulder.R", 1);
-///     if (arm) fox->controller().layer(1).setMask(arm.value());
+///     Result<JointMask> arm = JointMask::subtree(fox->getAnimationSet(), "Shoulder.R", 1);
+///     if (arm) fox->getController().layer(1).setMask(arm.value());
 ///
 /// The set stores equal masks once, for all layers of all characters.
 class JointMask

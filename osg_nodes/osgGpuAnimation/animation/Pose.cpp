@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/Pose.h>
 
-#include <osgGpuAnimation/animation/keyframes/TrackBlend.h>
 #include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/animation/keyframes/TrackBlend.h>
 
 #include <layout.glsl>
 
@@ -81,7 +81,7 @@ public:
         for (std::size_t i = 0; i < _count; ++i)
         {
             const Source& source = _sources[i];
-            if ((source.control & POSE_SAMPLE_ABOVE) != 0) blend.beginStanding();
+            if ((source.control & POSE_SAMPLE_ABOVE) != 0) blend.beginBlendPriority();
             const double weight = source.weight * (source.mask ? static_cast<double>(source.mask[track]) : 1.0);
             if (!(weight > 0.0)) continue;
             const MixedTrack sample = MixedTrack::between(source.keyframes, track, isWeights);

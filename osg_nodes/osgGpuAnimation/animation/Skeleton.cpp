@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/Skeleton.h>
 
-#include <osgGpuAnimation/animation/Result.h>
 #include <osgGpuAnimation/animation/JointTransform.h>
+#include <osgGpuAnimation/animation/Result.h>
 
 #include <algorithm>
 #include <cstdint>

@@ -72,7 +72,7 @@ struct StateGraphDescription
 
 /// States and transitions, checked against a set. It is immutable; the StateMachines of all characters share it.
 ///
-///     auto graph = StateGraph::create(fox->set(), {{{"stand", "Survey"}, {"walk", "Walk"}},
+///     auto graph = StateGraph::create(fox->getAnimationSet(), {{{"stand", "Survey"}, {"walk", "Walk"}},
 ///                                                  {{"stand", "walk", {"speed > 0.1"}}, {"walk", "stand", {"speed <=
 ///                                                  0.1"}}}, "stand"});
 class StateGraph
@@ -140,7 +140,7 @@ private:
 ///     StateMachine machine(graph.value());
 ///     machine.set("speed", 1.2);
 ///     machine.fire("jump");
-///     machine.update(fox->controller(), seconds);
+///     machine.update(fox->getController(), seconds);
 class StateMachine
 {
 public:

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <osg/GLExtensions>
-#include <osg/State>
 #include <osg/observer_ptr>
+#include <osg/State>
 
 #include <initializer_list>
 #include <string>

@@ -24,27 +24,27 @@ bool isPlain(const BlendSample& sample)
            sample.control >> POSE_SAMPLE_MASK_SHIFT == 0;
 }
 
-PoseBatch::Load loadOfSamples(std::size_t count)
+PoseBatch::BlendCost loadOfSamples(std::size_t count)
 {
-    return count <= 4 ? PoseBatch::Load::Few : PoseBatch::Load::Many;
+    return count <= 4 ? PoseBatch::BlendCost::Few : PoseBatch::BlendCost::Many;
 }
 
 } // namespace
 
-PoseBatch::Load PoseBatch::loadOf(const PoseInstruction& instruction)
+PoseBatch::BlendCost PoseBatch::loadOf(const PoseInstruction& instruction)
 {
     const bool isAlone = instruction.sampleCount == 1 && isPlain(instruction.samples[0]);
-    return isAlone ? Load::Plain : loadOfSamples(instruction.sampleCount);
+    return isAlone ? BlendCost::Plain : loadOfSamples(instruction.sampleCount);
 }
 
-PoseBatch::Load PoseBatch::load() const
+PoseBatch::BlendCost PoseBatch::load() const
 {
-    return _needs.mixing ? loadOfSamples(_sampleStride) : Load::Plain;
+    return _needs.mixing ? loadOfSamples(_sampleStride) : BlendCost::Plain;
 }
 
-bool PoseBatch::suits(const PoseInstruction& instruction) const
+bool PoseBatch::accepts(const PoseInstruction& instruction) const
 {
-    return _size < worthABatch || loadOf(instruction) == load();
+    return _size < minBatchSize || loadOf(instruction) == load();
 }
 
 std::size_t PoseBatch::add(const PoseInstruction& instruction)

@@ -34,18 +34,18 @@ public:
     std::size_t addSample(const BlendSample& sample, const AffineMatrix& rootMatrix);
 
     /// What a pose costs to mix.
-    enum class Load
+    enum class BlendCost
     {
         Plain, ///< one sample, as it is: nothing to mix
         Few,   ///< a crossfade or two: up to four samples
         Many,
     };
-    static constexpr std::size_t loadCount = 3;
-    static Load loadOf(const PoseInstruction& instruction);
+    static constexpr std::size_t blendCostCount = 3;
+    static BlendCost loadOf(const PoseInstruction& instruction);
     /// Instances whose mixing costs as much as another batch: with fewer, one of another load may join them.
-    static constexpr std::size_t worthABatch = 128;
+    static constexpr std::size_t minBatchSize = 128;
     /// Whether the instruction may come in without making many dearer, or being dear itself for the sake of others.
-    bool suits(const PoseInstruction& instruction) const;
+    bool accepts(const PoseInstruction& instruction) const;
 
     /// What the instance's colour is multiplied by. rgba: 8 bits each, red lowest. Others stay white.
     void setTint(std::size_t instance, std::uint32_t rgba);
@@ -80,7 +80,7 @@ public:
 private:
     void widen(std::size_t sampleStride);
     void note(const BlendSample& sample);
-    Load load() const;
+    BlendCost load() const;
 
     std::shared_ptr<const AnimationSet> _set;
     std::size_t _size = 0;

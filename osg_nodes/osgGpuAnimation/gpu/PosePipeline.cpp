@@ -268,8 +268,8 @@ bool PosePipeline::evaluateSeparate(const PoseBatch& batch, const AnimationBuffe
     makeSeparatePasses();
     PoseVariant variant = PoseVariant::of(batch);
     variant.setMotion(buffers.anyTrack());
-    variant.translationMotion = std::max(variant.translationMotion, PartMotion::Held);
-    variant.scaleMotion = std::max(variant.scaleMotion, PartMotion::Held);
+    variant.translationMotion = std::max(variant.translationMotion, PartMotion::Constant);
+    variant.scaleMotion = std::max(variant.scaleMotion, PartMotion::Constant);
     FeedbackPass& mixing = mixPass(variant);
     if (!mixing.valid() || !_localPass->valid() || !_worldPass->valid()) return false;
     useMixInput(mixing, set, buffers, chunk);

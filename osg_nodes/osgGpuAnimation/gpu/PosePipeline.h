@@ -2,8 +2,8 @@
 #pragma once
 
 #include <osgGpuAnimation/gpu/buffers/AnimationBuffers.h>
-#include <osgGpuAnimation/gpu/FeedbackPass.h>
 #include <osgGpuAnimation/gpu/buffers/PosePalette.h>
+#include <osgGpuAnimation/gpu/FeedbackPass.h>
 #include <osgGpuAnimation/gpu/passes/PoseVariant.h>
 
 #include <osg/GLObjects>
@@ -62,15 +62,15 @@ public:
                                           std::size_t instance) const;
 
     void setForm(Form form) { _form = form; }
-    Form form() const { return _form; }
+    Form getForm() const { return _form; }
     /// Texels a buffer texture may have; GL_MAX_TEXTURE_BUFFER_SIZE unless set smaller (tests).
     void setMaxTexels(std::size_t texels) { _maxTexels = texels; }
-    std::size_t maxTexels() const { return _maxTexels; }
+    std::size_t getMaxTexels() const { return _maxTexels; }
     /// Instances that are evaluated at a time, at most; fewer where a buffer texture takes no more. Above 0. The usual
     /// size is the fastest one measured, by little (tests/benchmark/RESULTS.md), and bounds the scratch buffer.
     static constexpr std::size_t usualChunkSize = 4096;
     void setChunkSize(std::size_t instances) { _chunkSize = instances; }
-    const Counters& counters() const { return _counters; }
+    const Counters& getCounters() const { return _counters; }
 
     void flushDeletedGLObjects(double currentTime, double& availableTime) override;
     void flushAllDeletedGLObjects() override;

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 
-#include <osgGpuAnimation/animation/ClipBuilder.h>
 #include <osgGpuAnimation/animation/bounds/MixBounds.h>
+#include <osgGpuAnimation/animation/ClipBuilder.h>
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/nodes/AnimationUpdateCallback.h>
 #include <osgGpuAnimation/nodes/frame/CullScopes.h>
+#include <osgGpuAnimation/nodes/frame/PoseStage.h>
 #include <osgGpuAnimation/nodes/lod/LodSelection.h>
 #include <osgGpuAnimation/nodes/mesh/PaletteEntryBounds.h>
 #include <osgGpuAnimation/nodes/OsgMatrix.h>
-#include <osgGpuAnimation/nodes/frame/PoseStage.h>
 #include <osgGpuAnimation/nodes/picking/PosedMesh.h>
 
 #include <osg/NodeVisitor>
@@ -59,35 +59,35 @@ AnimatedCharacter::~AnimatedCharacter() = default;
 
 Result<bool> AnimatedCharacter::setAnimationSet(std::shared_ptr<const AnimationSet> newSet)
 {
-    const bool isFirst = set().paletteSize() == 0;
-    if (!newSet || (!isFirst && newSet->paletteSize() != set().paletteSize()))
+    const bool isFirst = getAnimationSet().paletteSize() == 0;
+    if (!newSet || (!isFirst && newSet->paletteSize() != getAnimationSet().paletteSize()))
         return Error{"a set of " + std::to_string(newSet ? newSet->paletteSize() : 0) +
-                     " palette entries for the meshes of one of " + std::to_string(set().paletteSize())};
+                     " palette entries for the meshes of one of " + std::to_string(getAnimationSet().paletteSize())};
     *_controller = AnimationController(std::move(newSet), *_controller);
     if (_clipBounds) computeClipBounds();
     // The clips that levels of detail are made by are others.
-    SkinnedGeometryVisitor forget([](SkinnedGeometry& geometry) { geometry.forgetDetailLevels(); });
+    SkinnedGeometryVisitor forget([](SkinnedGeometry& geometry) { geometry.forgetLodLevels(); });
     accept(forget);
     return setPixelError(_pixelError);
 }
 
 Result<bool> AnimatedCharacter::setPixelError(float pixels)
 {
-    const Result<bool> prepared = DetailRange::prepare(pixels, *this, set());
+    const Result<bool> prepared = LodRange::prepare(pixels, *this, getAnimationSet());
     if (prepared) _pixelError = pixels;
     return prepared;
 }
 
 Result<osg::Matrixd> AnimatedCharacter::jointToModel(std::size_t joint) const
 {
-    const std::size_t count = set().skeleton().jointCount();
+    const std::size_t count = getAnimationSet().skeleton().jointCount();
     if (joint >= count) return Error{"there is no joint " + std::to_string(joint) + " among " + std::to_string(count)};
-    return toOsg(Pose::jointToModel(set(), _controller->instruction(), joint));
+    return toOsg(Pose::jointToModel(getAnimationSet(), _controller->instruction(), joint));
 }
 
 Result<osg::Matrixd> AnimatedCharacter::jointToModel(const std::string& joint) const
 {
-    const Result<std::size_t> index = set().skeleton().jointNamed(joint);
+    const Result<std::size_t> index = getAnimationSet().skeleton().jointNamed(joint);
     if (!index) return index.error();
     return jointToModel(index.value());
 }
@@ -119,33 +119,33 @@ void AnimatedCharacter::growMeshes(const Box& box)
 
 void AnimatedCharacter::computeClipBounds()
 {
-    EntryReach reach(set());
+    PaletteEntryBounds reach(getAnimationSet());
     SkinnedGeometryVisitor collect([&](SkinnedGeometry& geometry) { reach.add(geometry); });
     accept(collect);
-    EntryReach withAdded(reach, maxLayers);
+    PaletteEntryBounds withAdded(reach, maxLayers);
     SkinnedGeometryVisitor collectAdded([&](SkinnedGeometry& geometry) { withAdded.add(geometry); });
-    if (!set().morphs().empty()) accept(collectAdded);
+    if (!getAnimationSet().morphs().empty()) accept(collectAdded);
 
-    auto bounds = std::make_shared<std::vector<Box>>(boundsOfClips(set(), reach.boxes()));
+    auto bounds = std::make_shared<std::vector<Box>>(boundsOfClips(getAnimationSet(), reach.boxes()));
     Box all;
     for (const Box& box : *bounds)
         all.add(box);
     SkinnedGeometryVisitor setBox([&](SkinnedGeometry& geometry) { geometry.setInitialBound(toOsg(all)); });
     accept(setBox);
     _clipBounds = std::move(bounds);
-    _mixBounds = std::make_shared<const MixBounds>(set(), reach.boxes(), withAdded.boxes());
+    _mixBounds = std::make_shared<const MixBounds>(getAnimationSet(), reach.boxes(), withAdded.boxes());
     _played.clear();
     dirtyBound();
 }
 
-const Box& AnimatedCharacter::clipBounds(int clip) const
+const Box& AnimatedCharacter::getClipBounds(int clip) const
 {
     static const Box none;
     const std::size_t index = static_cast<std::size_t>(clip + 1);
     return _clipBounds && index < _clipBounds->size() ? (*_clipBounds)[index] : none;
 }
 
-osg::ref_ptr<osg::Geometry> AnimatedCharacter::posedMesh(const SkinnedGeometry& mesh) const
+osg::ref_ptr<osg::Geometry> AnimatedCharacter::getPosedMesh(const SkinnedGeometry& mesh) const
 {
     std::call_once(_posedMeshesMade, [this] { _posedMeshes = std::make_unique<PosedMeshes>(); });
     return _posedMeshes->of(mesh, _controller->sharedSet(), _controller->instruction(), AffineMatrix());
@@ -153,14 +153,14 @@ osg::ref_ptr<osg::Geometry> AnimatedCharacter::posedMesh(const SkinnedGeometry& 
 
 void AnimatedCharacter::acceptPosed(osg::PrimitiveFunctor& functor)
 {
-    SkinnedGeometryVisitor accepting([&](SkinnedGeometry& geometry) { posedMesh(geometry)->accept(functor); });
+    SkinnedGeometryVisitor accepting([&](SkinnedGeometry& geometry) { getPosedMesh(geometry)->accept(functor); });
     accept(accepting);
 }
 
 void AnimatedCharacter::traverse(osg::NodeVisitor& visitor)
 {
     osgUtil::CullVisitor* cullVisitor = visitor.asCullVisitor();
-    if (!cullVisitor || getNumChildren() == 0 || set().paletteSize() == 0)
+    if (!cullVisitor || getNumChildren() == 0 || getAnimationSet().paletteSize() == 0)
     {
         if (!keepFlattenedPlace(*this, visitor)) osg::MatrixTransform::traverse(visitor);
         return;
@@ -172,11 +172,11 @@ void AnimatedCharacter::traverse(osg::NodeVisitor& visitor)
 Box AnimatedCharacter::boundsOf(const std::vector<PlayedClip>& played) const
 {
     const bool isAlone = played.size() == 1 && played.front().part == PlayedClip::Part::Mixed;
-    if (isAlone || !_mixBounds) return clipBounds(isAlone ? played.front().clip : _controller->clip());
+    if (isAlone || !_mixBounds) return getClipBounds(isAlone ? played.front().clip : _controller->clip());
     return _mixBounds->box(played);
 }
 
-Box AnimatedCharacter::currentBounds() const
+Box AnimatedCharacter::getCurrentBounds() const
 {
     std::vector<PlayedClip> played;
     findPlayedClips(*_controller, played);
@@ -185,7 +185,7 @@ Box AnimatedCharacter::currentBounds() const
 
 osg::BoundingSphere AnimatedCharacter::computeBound() const
 {
-    osg::BoundingBox box = toOsg(currentBounds());
+    osg::BoundingBox box = toOsg(getCurrentBounds());
     if (!box.valid()) return osg::MatrixTransform::computeBound();
     osg::BoundingSphere others;
     for (const osg::ref_ptr<osg::Node>& child : _children)
@@ -224,7 +224,7 @@ namespace
 
 EntryBoxes entryBoxesOf(AnimatedCharacter& character)
 {
-    EntryReach reach(character.set());
+    PaletteEntryBounds reach(character.getAnimationSet());
     SkinnedGeometryVisitor collect([&](SkinnedGeometry& mesh) { reach.add(mesh); });
     character.accept(collect);
     return reach.boxes();
@@ -236,9 +236,9 @@ Result<CompactedCharacter> compactClipsOf(AnimatedCharacter& character, double f
 {
     const EntryBoxes boxes = entryBoxesOf(character);
     CompactedCharacter result;
-    result.longestSide = longestSide(character.set(), boxes);
+    result.longestSide = longestSide(character.getAnimationSet(), boxes);
     result.tolerance = fraction * result.longestSide;
-    Result<CompactedSet> compacted = compactClips(character.set(), boxes, {result.tolerance});
+    Result<CompactedSet> compacted = compactClips(character.getAnimationSet(), boxes, {result.tolerance});
     if (!compacted) return compacted.error();
     const Result<bool> taken = character.setAnimationSet(compacted.value().set);
     if (!taken) return taken.error();

@@ -27,11 +27,11 @@ struct PlayedClip;
 ///
 ///     osg::ref_ptr<osg::Node> node = osgDB::readRefNodeFile("fox.glb");
 ///     AnimatedCharacter* fox = findCharacter(*node);
-///     fox->controller().play("Run");
+///     fox->getController().play("Run");
 ///     osg::ref_ptr<osg::Node> another = osg::clone(node.get(), osg::CopyOp::DEEP_COPY_NODES); // its own controller
 ///
 /// An AnimationUpdateCallback (installed by the constructor) advances the controller by the frame stamp's simulation
-/// time. When culled and seen, the character enlists with the PoseStage of the graphics context, which evaluates its
+/// time. When culled and seen, the character submits with the PoseStage of the graphics context, which evaluates its
 /// pose on the GPU before anything draws from it; unseen it costs nothing there.
 class AnimatedCharacter : public osg::MatrixTransform, public Updatable, public PosedMeshSource
 {
@@ -42,12 +42,9 @@ public:
     AnimatedCharacter(const AnimatedCharacter& other, const osg::CopyOp& copyop = osg::CopyOp::SHALLOW_COPY);
     META_Node(osgGpuAnimation, AnimatedCharacter)
 
-        const AnimationSet& set() const
-    {
-        return _controller->set();
-    }
-    AnimationController& controller() { return *_controller; }
-    const AnimationController& controller() const { return *_controller; }
+    const AnimationSet& getAnimationSet() const { return _controller->set(); }
+    AnimationController& getController() { return *_controller; }
+    const AnimationController& getController() const { return *_controller; }
 
     /// The same character with another set, such as one with markers or root motion (AnimationSet::withClips,
     /// withRootMotion): its controller goes on with the clips of the same numbers (see AnimationController), bounds are
@@ -70,11 +67,11 @@ public:
     /// called once when all meshes are in; copies of this node share the result.
     void computeClipBounds();
     /// The box of the clip in the character's own space (all its vertices at all its times); -1: the rest pose.
-    const Box& clipBounds(int clip) const;
+    const Box& getClipBounds(int clip) const;
 
     /// The box of all that plays now, in the character's own space: the clip's where one plays alone, else that of any
     /// mix of the clips that the layers play, see MixBounds. Empty before computeClipBounds().
-    Box currentBounds() const;
+    Box getCurrentBounds() const;
 
     /// Whether characters that OSG would draw alike, one after another, may be drawn by one instanced draw a mesh
     /// primitive, see CharacterDraws. Programs that have no part in it (they do not link skin.glsl) are drawn one by
@@ -83,23 +80,23 @@ public:
     bool isDrawnTogether() const { return _isDrawnTogether; } ///< default: true
 
     /// How far the surface that is drawn may be off on screen, in pixels: where that hides it, meshes are drawn with
-    /// fewer triangles, see DetailLevels. 0 (the default): with all. Each camera sees what its distance allows, by
+    /// fewer triangles, see LodLevels. 0 (the default): with all. Each camera sees what its distance allows, by
     /// small feature culling's measure; what is near has all triangles. Makes the levels of its meshes at once, which
-    /// takes its time, see SurfaceReduction; of those that are added or changed later, the next cull does. Drawn whole
-    /// are meshes that are not its own children, and what comes after DetailRange::mostVertices. Error: pixels is below
-    /// 0, above DetailRange::largestPixelError or no number.
+    /// takes its time, see MeshSimplifier; of those that are added or changed later, the next cull does. Drawn whole
+    /// are meshes that are not its own children, and what comes after LodRange::mostVertices. Error: pixels is below
+    /// 0, above LodRange::largestPixelError or no number.
     Result<bool> setPixelError(float pixels);
-    float pixelError() const { return _pixelError; }
+    float getPixelError() const { return _pixelError; }
 
     /// A mesh below this node as the character shows it now, in the character's own space: computed by the CPU twin,
     /// and kept until the pose is another. Intersectors meet it in the mesh's place.
-    osg::ref_ptr<osg::Geometry> posedMesh(const SkinnedGeometry& mesh) const override;
+    osg::ref_ptr<osg::Geometry> getPosedMesh(const SkinnedGeometry& mesh) const override;
     /// Gives the functor the primitives of all meshes below in their present pose. (A mesh by itself gives those of its
     /// bind pose: it belongs to no character.)
     void acceptPosed(osg::PrimitiveFunctor& functor);
 
     void traverse(osg::NodeVisitor& visitor) override;
-    /// Of currentBounds(); update() sees to it that it is asked for again when other clips play.
+    /// Of getCurrentBounds(); update() sees to it that it is asked for again when other clips play.
     osg::BoundingSphere computeBound() const override;
 
 protected:

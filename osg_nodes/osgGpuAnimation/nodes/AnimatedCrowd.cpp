@@ -6,10 +6,10 @@
 #include <osgGpuAnimation/nodes/crowd/CrowdBatches.h>
 #include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/nodes/frame/CullScopes.h>
+#include <osgGpuAnimation/nodes/frame/PoseStage.h>
 #include <osgGpuAnimation/nodes/lod/LodSelection.h>
 #include <osgGpuAnimation/nodes/mesh/PaletteEntryBounds.h>
 #include <osgGpuAnimation/nodes/OsgMatrix.h>
-#include <osgGpuAnimation/nodes/frame/PoseStage.h>
 
 #include <osgUtil/CullVisitor>
 #include <osgUtil/IntersectionVisitor>
@@ -26,7 +26,7 @@ namespace
 
 std::vector<Box> clipBoundsOf(const AnimationSet& set, const osg::Group& meshes)
 {
-    EntryReach reach(set);
+    PaletteEntryBounds reach(set);
     forEachMesh(meshes, [&](const SkinnedGeometry& mesh) { reach.add(mesh); });
     return boundsOfClips(set, reach.boxes());
 }
@@ -34,7 +34,7 @@ std::vector<Box> clipBoundsOf(const AnimationSet& set, const osg::Group& meshes)
 std::shared_ptr<const AnimationSet> emptySet()
 {
     const osg::ref_ptr<AnimatedCharacter> nobody = new AnimatedCharacter;
-    return nobody->controller().sharedSet();
+    return nobody->getController().sharedSet();
 }
 
 std::uint32_t toRgba(const osg::Vec4& color)
@@ -78,12 +78,12 @@ public:
 
     void traverse(osg::NodeVisitor& visitor) override
     {
-        const AnimatedCrowd::Instance instance = _crowd.instances().handleOf(_index);
+        const AnimatedCrowd::Instance instance = _crowd.getInstances().handleOf(_index);
         forEachMesh(_crowd,
                     [&](const SkinnedGeometry& mesh)
                     {
                         if (!visitor.validNodeMask(mesh)) return;
-                        const osg::ref_ptr<osg::Geometry> posed = _crowd.posedMesh(instance, mesh);
+                        const osg::ref_ptr<osg::Geometry> posed = _crowd.getPosedMesh(instance, mesh);
                         // The hit's node path leads through this node, and only the drawable is kept.
                         posed->setUserData(this);
                         posed->accept(visitor);
@@ -92,7 +92,7 @@ public:
 
     osg::BoundingSphere computeBound() const override
     {
-        const glm::vec4& sphere = _crowd.instances().sphere(_index);
+        const glm::vec4& sphere = _crowd.getInstances().sphere(_index);
         return {osg::Vec3(sphere.x, sphere.y, sphere.z), sphere.w};
     }
 
@@ -118,8 +118,8 @@ AnimatedCrowd::AnimatedCrowd(std::shared_ptr<const AnimationSet> set,
 }
 
 AnimatedCrowd::AnimatedCrowd(const AnimatedCharacter& character)
-    : _instances(std::make_unique<CrowdInstances>(character.controller().sharedSet())),
-      _posed(std::make_unique<PosedInstances>()), _pixelError(character.pixelError())
+    : _instances(std::make_unique<CrowdInstances>(character.getController().sharedSet())),
+      _posed(std::make_unique<PosedInstances>()), _pixelError(character.getPixelError())
 {
     setDataVariance(osg::Object::DYNAMIC);
     setUpdateCallback(new AnimationUpdateCallback);
@@ -127,10 +127,10 @@ AnimatedCrowd::AnimatedCrowd(const AnimatedCharacter& character)
     if (character.getStateSet()) setStateSet(const_cast<osg::StateSet*>(character.getStateSet()));
     forEachMesh(character, [&](const SkinnedGeometry& mesh) { addChild(const_cast<SkinnedGeometry*>(&mesh)); });
     std::vector<Box> bounds;
-    for (int clip = -1; clip < static_cast<int>(set().clips().size()); ++clip)
-        bounds.push_back(character.clipBounds(clip));
+    for (int clip = -1; clip < static_cast<int>(getAnimationSet().clips().size()); ++clip)
+        bounds.push_back(character.getClipBounds(clip));
     const bool areKnown = std::any_of(bounds.begin(), bounds.end(), [](const Box& box) { return !box.empty(); });
-    _instances->setClipBounds(areKnown ? bounds : clipBoundsOf(set(), *this));
+    _instances->setClipBounds(areKnown ? bounds : clipBoundsOf(getAnimationSet(), *this));
 }
 
 AnimatedCrowd::AnimatedCrowd(const AnimatedCrowd& other, const osg::CopyOp& copyop)
@@ -142,12 +142,12 @@ AnimatedCrowd::AnimatedCrowd(const AnimatedCrowd& other, const osg::CopyOp& copy
 
 AnimatedCrowd::~AnimatedCrowd() = default;
 
-const AnimationSet& AnimatedCrowd::set() const
+const AnimationSet& AnimatedCrowd::getAnimationSet() const
 {
     return *_instances->set();
 }
 
-const std::shared_ptr<const AnimationSet>& AnimatedCrowd::sharedSet() const
+const std::shared_ptr<const AnimationSet>& AnimatedCrowd::getSharedAnimationSet() const
 {
     return _instances->set();
 }
@@ -157,17 +157,17 @@ bool AnimatedCrowd::contains(Instance instance) const
     return _instances->indexOf(instance) != CrowdInstances::none;
 }
 
-std::size_t AnimatedCrowd::size() const
+std::size_t AnimatedCrowd::getNumInstances() const
 {
     return _instances->size();
 }
 
 Result<bool> AnimatedCrowd::setAnimationSet(std::shared_ptr<const AnimationSet> newSet)
 {
-    if (size() > 0 || set().paletteSize() > 0) return Error{"a crowd that has a set keeps it"};
+    if (getNumInstances() > 0 || getAnimationSet().paletteSize() > 0) return Error{"a crowd that has a set keeps it"};
     if (!newSet) return Error{"a crowd needs a set"};
     _instances->setSet(std::move(newSet));
-    _instances->setClipBounds(clipBoundsOf(set(), *this));
+    _instances->setClipBounds(clipBoundsOf(getAnimationSet(), *this));
     dirtyBound();
     return setPixelError(_pixelError);
 }
@@ -175,9 +175,9 @@ Result<bool> AnimatedCrowd::setAnimationSet(std::shared_ptr<const AnimationSet> 
 Result<AnimatedCrowd::Instance> AnimatedCrowd::add(const osg::Matrixd& placement, const AnimationController& controller,
                                                    const osg::Vec4& tint)
 {
-    if (size() >= maxInstances)
-        return Error{"the crowd has " + std::to_string(size()) + " instances, the most that one can have"};
-    if (&controller.set() != &set()) return Error{"the controller is for another set than the crowd's"};
+    if (getNumInstances() >= maxInstances)
+        return Error{"the crowd has " + std::to_string(getNumInstances()) + " instances, the most that one can have"};
+    if (&controller.set() != &getAnimationSet()) return Error{"the controller is for another set than the crowd's"};
     const osg::Vec3d origin = _hasOrigin ? _origin : placement.getTrans();
     const Result<AffineMatrix> root = toRootMatrix(placement, origin);
     if (!root) return root.error();
@@ -195,7 +195,7 @@ bool AnimatedCrowd::remove(Instance instance)
     return true;
 }
 
-Result<bool> AnimatedCrowd::move(Instance instance, const osg::Matrixd& placement)
+Result<bool> AnimatedCrowd::setPlacement(Instance instance, const osg::Matrixd& placement)
 {
     const std::size_t index = _instances->indexOf(instance);
     if (index == CrowdInstances::none) return noSuchInstance();
@@ -214,7 +214,7 @@ Result<bool> AnimatedCrowd::setTint(Instance instance, const osg::Vec4& tint)
     return true;
 }
 
-AnimationController* AnimatedCrowd::controller(Instance instance)
+AnimationController* AnimatedCrowd::getController(Instance instance)
 {
     const std::size_t index = _instances->indexOf(instance);
     if (index == CrowdInstances::none) return nullptr;
@@ -222,7 +222,7 @@ AnimationController* AnimatedCrowd::controller(Instance instance)
     return &_instances->controller(index);
 }
 
-osg::Matrixd AnimatedCrowd::placement(Instance instance) const
+osg::Matrixd AnimatedCrowd::getPlacement(Instance instance) const
 {
     return toOsg(_instances->rootMatrix(_instances->indexOf(instance)), _origin);
 }
@@ -230,7 +230,7 @@ osg::Matrixd AnimatedCrowd::placement(Instance instance) const
 void AnimatedCrowd::setOrigin(const osg::Vec3d& origin)
 {
     const osg::Vec3d shift = _origin - origin;
-    for (std::size_t index = 0; index < size(); ++index)
+    for (std::size_t index = 0; index < getNumInstances(); ++index)
     {
         AffineMatrix root = _instances->rootMatrix(index);
         for (int row = 0; row < 3; ++row)
@@ -256,20 +256,20 @@ std::optional<AnimatedCrowd::Instance> AnimatedCrowd::instanceOf(const osg::Draw
     return posed ? posed->instance() : std::nullopt;
 }
 
-osg::ref_ptr<osg::Geometry> AnimatedCrowd::posedMesh(Instance instance, const SkinnedGeometry& mesh) const
+osg::ref_ptr<osg::Geometry> AnimatedCrowd::getPosedMesh(Instance instance, const SkinnedGeometry& mesh) const
 {
     const std::size_t index = _instances->indexOf(instance);
     if (index == CrowdInstances::none) return new PosedMesh(mesh, new osg::Vec3Array, instance);
-    const osg::ref_ptr<PosedMesh> kept =
-        _posed->of(instance)->of(mesh, sharedSet(), _instances->instruction(index), _instances->rootMatrix(index));
+    const osg::ref_ptr<PosedMesh> kept = _posed->of(instance)->of(
+        mesh, getSharedAnimationSet(), _instances->instruction(index), _instances->rootMatrix(index));
     return new PosedMesh(mesh, dynamic_cast<osg::Vec3Array*>(kept->getVertexArray()), instance);
 }
 
 void AnimatedCrowd::acceptInstances(osg::PrimitiveFunctor& functor) const
 {
-    for (std::size_t index = 0; index < size(); ++index)
+    for (std::size_t index = 0; index < getNumInstances(); ++index)
         forEachMesh(*this, [&](const SkinnedGeometry& mesh)
-                    { posedMesh(_instances->handleOf(index), mesh)->accept(functor); });
+                    { getPosedMesh(_instances->handleOf(index), mesh)->accept(functor); });
 }
 
 void AnimatedCrowd::traverse(osg::NodeVisitor& visitor)
@@ -291,12 +291,12 @@ void AnimatedCrowd::cull(osgUtil::CullVisitor& visitor)
     static thread_local std::vector<std::uint32_t> seen; // keeps its storage from cull to cull
     _instances->findSeen(isCullingActive() ? view.planes() : std::vector<glm::vec4>(), seen);
     std::vector<DrawState> draws;
-    if (!seen.empty() && set().paletteSize() > 0)
+    if (!seen.empty() && getAnimationSet().paletteSize() > 0)
     {
         view.look(*_instances, seen);
-        const DetailScale scale(visitor, PoseStage::detailView(visitor), _pixelError,
-                                _pixelError > 0.0f ? DetailRange(*this, set()) : DetailRange());
-        draws = enlistSeen(PoseStage::frame(visitor), *_instances, CrowdDetail(*_instances, scale), seen);
+        const LodScale scale(visitor, PoseStage::lodView(visitor), _pixelError,
+                             _pixelError > 0.0f ? LodRange(*this, getAnimationSet()) : LodRange());
+        draws = submitSeen(PoseStage::frame(visitor), *_instances, CrowdLod(*_instances, scale), seen);
     }
     for (const osg::ref_ptr<osg::Node>& child : _children)
     {
@@ -313,14 +313,14 @@ void AnimatedCrowd::cull(osgUtil::CullVisitor& visitor)
 
 Result<bool> AnimatedCrowd::setPixelError(float pixels)
 {
-    const Result<bool> prepared = DetailRange::prepare(pixels, *this, set());
+    const Result<bool> prepared = LodRange::prepare(pixels, *this, getAnimationSet());
     if (prepared) _pixelError = pixels;
     return prepared;
 }
 
 void AnimatedCrowd::intersect(osg::NodeVisitor& visitor)
 {
-    for (std::size_t index = 0; index < size(); ++index)
+    for (std::size_t index = 0; index < getNumInstances(); ++index)
     {
         const osg::ref_ptr<IntersectedInstance> instance = new IntersectedInstance(*this, index);
         instance->accept(visitor);
@@ -334,7 +334,7 @@ void AnimatedCrowd::count(osg::NodeVisitor& visitor)
 {
     for (const osg::ref_ptr<osg::Node>& child : _children)
     {
-        const std::size_t times = dynamic_cast<SkinnedGeometry*>(child.get()) ? size() : 1;
+        const std::size_t times = dynamic_cast<SkinnedGeometry*>(child.get()) ? getNumInstances() : 1;
         for (std::size_t time = 0; time < times; ++time)
             child->accept(visitor);
     }
@@ -343,7 +343,7 @@ void AnimatedCrowd::count(osg::NodeVisitor& visitor)
 osg::BoundingSphere AnimatedCrowd::computeBound() const
 {
     osg::BoundingBox box;
-    for (std::size_t index = 0; index < size(); ++index)
+    for (std::size_t index = 0; index < getNumInstances(); ++index)
     {
         const glm::vec4& sphere = _instances->sphere(index);
         if (sphere.w < 0.0f) continue;

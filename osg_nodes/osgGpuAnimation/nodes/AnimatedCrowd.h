@@ -22,12 +22,12 @@ class PosedInstances;
 /// one instanced draw a mesh primitive.
 ///
 ///     osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*findCharacter(*osgDB::readRefNodeFile("fox.glb")));
-///     AnimationController controller(crowd->sharedSet());
+///     AnimationController controller(crowd->getSharedAnimationSet());
 ///     controller.play("Run");
 ///     controller.seek(0.4);
 ///     AnimatedCrowd::Instance fox = crowd->add(osg::Matrix::translate(100, 20, 0), controller).value();
-///     crowd->move(fox, osg::Matrix::translate(101, 20, 0));      // at any time but while the crowd is culled
-///     crowd->controller(fox)->crossfade("Walk", 0.3);
+///     crowd->setPlacement(fox, osg::Matrix::translate(101, 20, 0));      // at any time but while the crowd is culled
+///     crowd->getController(fox)->crossfade("Walk", 0.3);
 ///
 /// An update callback (installed by the constructor) advances all instances by the frame stamp's simulation time. At
 /// cull each instance is tested by itself, with the bounds of the clip it plays; those that are seen go to the GPU.
@@ -52,8 +52,8 @@ public:
     AnimatedCrowd(const AnimatedCrowd& other, const osg::CopyOp& copyop = osg::CopyOp::SHALLOW_COPY);
     META_Node(osgGpuAnimation, AnimatedCrowd)
 
-        const AnimationSet& set() const;
-    const std::shared_ptr<const AnimationSet>& sharedSet() const;
+    const AnimationSet& getAnimationSet() const;
+    const std::shared_ptr<const AnimationSet>& getSharedAnimationSet() const;
 
     /// For a crowd that was made without a set: works out the bounds from the meshes that are there. Error: it has
     /// instances, or a set already.
@@ -65,28 +65,29 @@ public:
     /// another set; more than maxInstances. The crowd is unchanged then.
     Result<Instance> add(const osg::Matrixd& placement, const AnimationController& controller,
                          const osg::Vec4& tint = osg::Vec4(1, 1, 1, 1));
-    bool remove(Instance instance);                                      ///< false: there is none
-    Result<bool> move(Instance instance, const osg::Matrixd& placement); ///< errors: as add()'s; no such instance
-    Result<bool> setTint(Instance instance, const osg::Vec4& tint);      ///< error: no such instance
+    bool remove(Instance instance); ///< false: there is none
+    Result<bool> setPlacement(Instance instance,
+                              const osg::Matrixd& placement);       ///< errors: as add()'s; no such instance
+    Result<bool> setTint(Instance instance, const osg::Vec4& tint); ///< error: no such instance
     bool contains(Instance instance) const;
-    std::size_t size() const;
+    std::size_t getNumInstances() const;
 
     /// To ask for crossfades, layers and so on; null where there is no such instance. Holds until the next update().
-    AnimationController* controller(Instance instance);
+    AnimationController* getController(Instance instance);
     /// instance: one there is.
-    osg::Matrixd placement(Instance instance) const;
-    const CrowdInstances& instances() const { return *_instances; }
+    osg::Matrixd getPlacement(Instance instance) const;
+    const CrowdInstances& getInstances() const { return *_instances; }
 
     /// Placements are kept as floats relative to the origin: the first instance's, unless it is set before.
     /// Where instances are already there, they stay where they are, as exactly as floats can say.
     void setOrigin(const osg::Vec3d& origin);
-    const osg::Vec3d& origin() const { return _origin; }
+    const osg::Vec3d& getOrigin() const { return _origin; }
 
     /// How far the surface that is drawn may be off on screen, in pixels: where that hides it, instances are drawn with
     /// fewer triangles, each level of detail in use by one instanced draw a mesh primitive. 0 (the default): all
     /// triangles. For meshes that are drawn whole, the time it takes and errors see AnimatedCharacter::setPixelError().
     Result<bool> setPixelError(float pixels);
-    float pixelError() const { return _pixelError; }
+    float getPixelError() const { return _pixelError; }
 
     /// Advances by the time since the last update; the first only takes the time down. simulationTime: seconds.
     void update(double simulationTime) override;
@@ -95,7 +96,7 @@ public:
     static std::optional<Instance> instanceOf(const osg::Drawable* hit);
     /// The mesh as the instance shows it now, computed by the CPU twin, in the crowd's own space; its instanceOf() is
     /// the instance. No positions where there is no such instance. See jointOf() for a hit's joint.
-    osg::ref_ptr<osg::Geometry> posedMesh(Instance instance, const SkinnedGeometry& mesh) const;
+    osg::ref_ptr<osg::Geometry> getPosedMesh(Instance instance, const SkinnedGeometry& mesh) const;
     /// Gives the functor the primitives of all instances in their present pose: slow, computed by the CPU twin.
     void acceptInstances(osg::PrimitiveFunctor& functor) const;
 

@@ -27,8 +27,7 @@ public:
     AnimationUpdateCallback(const AnimationUpdateCallback& other, const osg::CopyOp& copyop);
     META_Object(osgGpuAnimation, AnimationUpdateCallback)
 
-        void
-        operator()(osg::Node* node, osg::NodeVisitor* visitor) override;
+    void operator()(osg::Node* node, osg::NodeVisitor* visitor) override;
 
 protected:
     ~AnimationUpdateCallback() override = default;

@@ -97,8 +97,8 @@ void showJointLines(AnimatedCharacter& character, bool isShown)
     const int lines = findJointLines(character);
     if (lines >= 0 && !isShown) character.removeChild(static_cast<unsigned int>(lines));
     if (lines >= 0 || !isShown) return;
-    osg::ref_ptr<SkinnedGeometry> added = makeJointLines(character.set());
-    const Box box = character.currentBounds();
+    osg::ref_ptr<SkinnedGeometry> added = makeJointLines(character.getAnimationSet());
+    const Box box = character.getCurrentBounds();
     if (!box.empty())
         added->setInitialBound(osg::BoundingBox(box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z));
     character.addChild(added);
@@ -241,7 +241,7 @@ void CharacterKeys::changeClip(AnimationController& controller, int step) const
 
 bool CharacterKeys::press(int key, AnimatedCharacter& character) const
 {
-    AnimationController& controller = character.controller();
+    AnimationController& controller = character.getController();
     switch (key)
     {
     case 'n':

@@ -47,10 +47,7 @@ public:
     CharacterKeys(const CharacterKeys& other, const osg::CopyOp& copyop);
     META_Object(osgGpuAnimation, CharacterKeys)
 
-        double fadeSeconds() const
-    {
-        return _fadeSeconds;
-    }
+    double getFadeSeconds() const { return _fadeSeconds; }
 
     void setFadeSeconds(double seconds) { _fadeSeconds = seconds; } ///< at least 0
 

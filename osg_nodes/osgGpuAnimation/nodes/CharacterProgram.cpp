@@ -25,7 +25,7 @@ osg::Shader* makeShader(osg::Shader::Type type, std::initializer_list<const char
 
 osg::ref_ptr<osg::Program> makeProgram()
 {
-    osg::ref_ptr<osg::Program> program = new SurfaceProgram;
+    osg::ref_ptr<osg::Program> program = new ShaderPermutations;
     program->setName("osgGpuAnimation character");
     program->addShader(skinShader());
     bindSkinAttributes(*program);

@@ -7,8 +7,8 @@
 namespace osgGpuAnimation
 {
 
-/// The program that draws SkinnedGeometry: skin.glsl, character.vert and character.frag, in variants (SurfaceProgram)
-/// by the modes of the state. All users share one object.
+/// The program that draws SkinnedGeometry: skin.glsl, character.vert and character.frag, in variants
+/// (ShaderPermutations) by the modes of the state. All users share one object.
 ///
 /// It does what the fixed pipeline would: OSG's lights that are on, with attenuation and spots, osg::LightModel's
 /// ambient, osg::Material (diffuse times vertex colour is the base colour, lit or not), fog, clip planes, the texture
@@ -31,7 +31,7 @@ void bindSkinAttributes(osg::Program& program);
 
 /// Tells skin.glsl, by shader defines of the state its meshes are drawn with, what it can leave out: a third of the
 /// cost of a draw in llvmpipe. influences: what a vertex of these meshes has at most
-/// (SkinnedGeometry::influenceCount()), 1 to 8. hasMorphs: some of them has morph targets.
+/// (SkinnedGeometry::getInfluenceCount()), 1 to 8. hasMorphs: some of them has morph targets.
 void applySkinDefines(osg::StateSet& stateSet, int influences, bool hasMorphs);
 
 } // namespace osgGpuAnimation

@@ -73,20 +73,21 @@ int JointAttachment::jointIn(const AnimationSet& set) const
 
 void JointAttachment::resolve(const AnimatedCharacter& character)
 {
-    if (&character.set() == _resolvedSet.get()) return;
-    _resolvedJoint = jointIn(character.set());
-    _resolvedSet = character.controller().sharedSet();
+    if (&character.getAnimationSet() == _resolvedSet.get()) return;
+    _resolvedJoint = jointIn(character.getAnimationSet());
+    _resolvedSet = character.getController().sharedSet();
     if (_resolvedJoint >= 0 || _hasWarned) return;
     _hasWarned = true;
     OSG_WARN << "osgGpuAnimation: an attachment follows joint "
              << (_jointName.empty() ? std::to_string(_joint) : "\"" + _jointName + "\"") << ", but \""
-             << character.getName() << "\" has none such among its " << character.set().skeleton().jointCount()
-             << "; it stays at the character's origin" << std::endl;
+             << character.getName() << "\" has none such among its "
+             << character.getAnimationSet().skeleton().jointCount() << "; it stays at the character's origin"
+             << std::endl;
 }
 
 osg::Matrixd JointAttachment::matrixIn(const AnimatedCharacter& character) const
 {
-    const int joint = jointIn(character.set());
+    const int joint = jointIn(character.getAnimationSet());
     const Result<osg::Matrixd> matrix = character.jointToModel(static_cast<std::size_t>(joint));
     return matrix ? matrix.value() : osg::Matrixd();
 }

@@ -31,11 +31,11 @@ public:
     JointAttachment(const JointAttachment& other, const osg::CopyOp& copyop = osg::CopyOp::SHALLOW_COPY);
     META_Node(osgGpuAnimation, JointAttachment)
 
-        /// By name (the first joint that has it), or by its number in the set's skeleton.
-        void setJoint(const std::string& name);
+    /// By name (the first joint that has it), or by its number in the set's skeleton.
+    void setJoint(const std::string& name);
     void setJoint(int joint);
-    const std::string& jointName() const { return _jointName; } ///< empty where it was given by number
-    int joint() const { return _joint; }                        ///< -1 where it was given by name
+    const std::string& getJointName() const { return _jointName; } ///< empty where it was given by number
+    int getJoint() const { return _joint; }                        ///< -1 where it was given by name
 
     void traverse(osg::NodeVisitor& visitor) override;
     bool computeLocalToWorldMatrix(osg::Matrix& matrix, osg::NodeVisitor* visitor) const override;

@@ -51,7 +51,7 @@ std::optional<PickedJoint> pick(const osg::NodePath& path, const osg::Drawable* 
     }
     if (picked.crowd) picked.instance = *posed->instance();
     if (!picked.crowd && !picked.character) return std::nullopt;
-    picked.set = picked.crowd ? &picked.crowd->set() : &picked.character->set();
+    picked.set = picked.crowd ? &picked.crowd->getAnimationSet() : &picked.character->getAnimationSet();
     const std::optional<std::size_t> joint = heaviestJoint(*picked.set, *picked.mesh, corners);
     if (!joint) return std::nullopt;
     picked.joint = *joint;

@@ -30,7 +30,7 @@ public:
     PoseStatistics(const PoseStatistics& other, const osg::CopyOp& copyop);
     META_Object(osgGpuAnimation, PoseStatistics)
 
-        using osgGA::GUIEventHandler::handle;
+    using osgGA::GUIEventHandler::handle;
     bool handle(const osgGA::GUIEventAdapter& event, osgGA::GUIActionAdapter& action, osg::Object* object,
                 osg::NodeVisitor* visitor) override;
 

@@ -18,7 +18,7 @@ void RootMotionCallback::operator()(osg::Node* node, osg::NodeVisitor* visitor)
 {
     if (auto* character = dynamic_cast<AnimatedCharacter*>(node))
     {
-        const RootMotion motion = character->controller().takeRootMotion();
+        const RootMotion motion = character->getController().takeRootMotion();
         if (!motion.isNone()) character->preMult(toOsg(motion.matrix()));
     }
     traverse(node, visitor);

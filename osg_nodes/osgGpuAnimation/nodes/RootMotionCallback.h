@@ -19,8 +19,7 @@ public:
     RootMotionCallback(const RootMotionCallback& other, const osg::CopyOp& copyop);
     META_Object(osgGpuAnimation, RootMotionCallback)
 
-        void
-        operator()(osg::Node* node, osg::NodeVisitor* visitor) override;
+    void operator()(osg::Node* node, osg::NodeVisitor* visitor) override;
 
 protected:
     ~RootMotionCallback() override = default;

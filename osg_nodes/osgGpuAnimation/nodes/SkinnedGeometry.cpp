@@ -4,9 +4,9 @@
 #include <osgGpuAnimation/gpu/PosePipeline.h>
 #include <osgGpuAnimation/nodes/frame/CullScopes.h>
 #include <osgGpuAnimation/nodes/frame/InstancedDraw.h>
+#include <osgGpuAnimation/nodes/frame/PaletteBinding.h>
 #include <osgGpuAnimation/nodes/lod/LodLevels.h>
 #include <osgGpuAnimation/nodes/mesh/MorphDeltas.h>
-#include <osgGpuAnimation/nodes/frame/PaletteBinding.h>
 
 #include <layout.glsl>
 
@@ -70,8 +70,7 @@ const PosedMeshSource* posedMeshSource(const osg::NodeVisitor& visitor)
 
 } // namespace
 
-SkinnedGeometry::SkinnedGeometry()
-    : _morphDeltas(std::make_unique<MorphDeltas>()), _detail(std::make_unique<MeshDetail>())
+SkinnedGeometry::SkinnedGeometry() : _morphDeltas(std::make_unique<MorphDeltas>()), _detail(std::make_unique<MeshLod>())
 {
     setUseDisplayList(false);
     setUseVertexBufferObjects(true);
@@ -83,13 +82,13 @@ SkinnedGeometry::SkinnedGeometry()
 SkinnedGeometry::SkinnedGeometry(const SkinnedGeometry& other, const osg::CopyOp& copyop)
     : osg::Geometry(other, copyop), _influences(other._influences), _rigidEntry(other._rigidEntry),
       _morphTargets(other._morphTargets), _morphDeltas(std::make_unique<MorphDeltas>(*other._morphDeltas)),
-      _morph(other._morph), _morphEntry(other._morphEntry), _detail(std::make_unique<MeshDetail>(*other._detail))
+      _morph(other._morph), _morphEntry(other._morphEntry), _detail(std::make_unique<MeshLod>(*other._detail))
 {
 }
 
 SkinnedGeometry::~SkinnedGeometry() = default;
 
-const osg::TextureBuffer* SkinnedGeometry::morphDeltas() const
+const osg::TextureBuffer* SkinnedGeometry::getMorphDeltas() const
 {
     return _morphDeltas->texture.get();
 }
@@ -99,11 +98,12 @@ void SkinnedGeometry::accept(osg::NodeVisitor& visitor)
     if (!visitor.validNodeMask(*this)) return;
     if (visitor.getVisitorType() == osg::NodeVisitor::INTERSECTION_VISITOR)
     {
-        if (const PosedMeshSource* source = posedMeshSource(visitor)) return source->posedMesh(*this)->accept(visitor);
+        if (const PosedMeshSource* source = posedMeshSource(visitor))
+            return source->getPosedMesh(*this)->accept(visitor);
     }
     std::optional<BoxNearFar> boxes;
     osgUtil::CullVisitor* cullVisitor = visitor.asCullVisitor();
-    osg::StateSet* colored = cullVisitor ? coloredState(colors()) : nullptr;
+    osg::StateSet* colored = cullVisitor ? coloredState(getColors()) : nullptr;
     if (cullVisitor) boxes.emplace(*cullVisitor);
     if (colored) cullVisitor->pushStateSet(colored);
     visitor.pushOntoNodePath(this);
@@ -114,7 +114,7 @@ void SkinnedGeometry::accept(osg::NodeVisitor& visitor)
 
 void SkinnedGeometry::addTo(osgUtil::CullVisitor& visitor, osg::RefMatrix* toEye, float depth)
 {
-    osg::StateSet* colored = coloredState(colors());
+    osg::StateSet* colored = coloredState(getColors());
     osg::StateSet* own = getStateSet();
     for (osg::StateSet* state : {colored, own})
         if (state) visitor.pushStateSet(state);
@@ -132,19 +132,19 @@ void SkinnedGeometry::setInfluences(unsigned int influenceSet, osg::Vec4usArray*
     _rigidEntry = -1;
     for (unsigned int i = 0; i < maxInfluenceSets; ++i)
     {
-        const int used = this->weights(i) ? influencesUsed(*this->weights(i)) : 0;
+        const int used = getWeights(i) ? influencesUsed(*getWeights(i)) : 0;
         if (used > 0) _influences = std::max(_influences, static_cast<int>(4 * i) + used);
     }
-    forgetDetailLevels();
+    forgetLodLevels();
     dirtyBound();
 }
 
-const osg::Vec4usArray* SkinnedGeometry::entries(unsigned int influenceSet) const
+const osg::Vec4usArray* SkinnedGeometry::getEntries(unsigned int influenceSet) const
 {
     return dynamic_cast<const osg::Vec4usArray*>(getVertexAttribArray(entriesLocation(influenceSet)));
 }
 
-const osg::Vec4Array* SkinnedGeometry::weights(unsigned int influenceSet) const
+const osg::Vec4Array* SkinnedGeometry::getWeights(unsigned int influenceSet) const
 {
     return dynamic_cast<const osg::Vec4Array*>(getVertexAttribArray(weightsLocation(influenceSet)));
 }
@@ -158,7 +158,7 @@ void SkinnedGeometry::setRigidEntry(unsigned short entry)
     }
     _rigidEntry = entry;
     _influences = 1;
-    forgetDetailLevels();
+    forgetLodLevels();
     dirtyBound();
 }
 
@@ -177,7 +177,7 @@ void SkinnedGeometry::setMorphTargets(int morph, int entry, std::vector<MorphTar
     _morphDeltas->texture = nullptr; // packed anew where nobody else has them: the arrays may have changed
     *_morphDeltas = packMorphTargets(_morphTargets, vertexCount);
     if (_morph < 0) _morphDeltas->texture = nullptr;
-    forgetDetailLevels();
+    forgetLodLevels();
     dirtyBound();
 }
 
@@ -221,7 +221,7 @@ glm::dvec3 SkinnedGeometry::morphed(const osg::Vec3& position, std::size_t verte
     return sum;
 }
 
-SkinnedGeometry::Colors SkinnedGeometry::colors() const
+SkinnedGeometry::Colors SkinnedGeometry::getColors() const
 {
     const bool areMorphed = _morphDeltas->channels[2] >= 0;
     const osg::Array* array = getColorArray();
@@ -233,14 +233,14 @@ SkinnedGeometry::Colors SkinnedGeometry::colors() const
     return isWhite && !areMorphed ? Colors::White : Colors::Array;
 }
 
-std::shared_ptr<const DetailLevels> SkinnedGeometry::detailLevels(const AnimationSet& set) const
+std::shared_ptr<const LodLevels> SkinnedGeometry::getLodLevels(const AnimationSet& set) const
 {
     return _detail->of(*this, set,
                        [this](const std::vector<AffineMatrix>& palette, std::vector<glm::dvec3>& out)
                        { computePositions(palette, out); });
 }
 
-void SkinnedGeometry::forgetDetailLevels()
+void SkinnedGeometry::forgetLodLevels()
 {
     _detail->forget();
 }
@@ -250,15 +250,16 @@ void SkinnedGeometry::drawImplementation(osg::RenderInfo& renderInfo) const
     osg::State& state = *renderInfo.getState();
     const auto* binding =
         static_cast<const PaletteBinding*>(state.getLastAppliedAttribute(PaletteBinding::bindingType));
-    if (!binding || !binding->animationSet()) return;
+    if (!binding || !binding->getAnimationSet()) return;
     const PosePipeline* pipeline = PosePipeline::of(state);
     if (!pipeline) return;
     const MeshVertexArrays arrays(state);
-    if (binding->serial() != 0)
+    if (binding->getSerial() != 0)
         drawPlaced(renderInfo, *binding, *pipeline);
-    else if (binding->instanceCount() > 1 || binding->level() != DetailLevels::allTriangles)
+    else if (binding->getInstanceCount() > 1 || binding->getLevel() != LodLevels::allTriangles)
         drawInstances(renderInfo, *binding, *pipeline);
-    else if (const PalettePlace place = pipeline->place(*binding->animationSet(), binding->slot(), binding->instance());
+    else if (const PalettePlace place =
+                 pipeline->place(*binding->getAnimationSet(), binding->getSlot(), binding->getInstance());
              place.texture != 0)
     {
         bindPalette(state, place);
@@ -284,15 +285,15 @@ void SkinnedGeometry::drawInstances(osg::RenderInfo& renderInfo, const PaletteBi
 {
     const auto draw = [&](osg::State& state)
     {
-        const std::size_t end = binding.instance() + binding.instanceCount();
-        for (std::size_t first = binding.instance(); first < end;)
+        const std::size_t end = binding.getInstance() + binding.getInstanceCount();
+        for (std::size_t first = binding.getInstance(); first < end;)
         {
             // One draw shows the instances of one chunk of the palette.
-            const PalettePlace place = pipeline.place(*binding.animationSet(), binding.slot(), first);
+            const PalettePlace place = pipeline.place(*binding.getAnimationSet(), binding.getSlot(), first);
             if (place.texture == 0 || place.chunkEnd <= first) break;
             const std::size_t count = std::min(end, place.chunkEnd) - first;
             bindPalette(state, place);
-            drawPrimitives(state, static_cast<int>(count), binding.level());
+            drawPrimitives(state, static_cast<int>(count), binding.getLevel());
             first += count;
         }
     };
@@ -302,16 +303,16 @@ void SkinnedGeometry::drawInstances(osg::RenderInfo& renderInfo, const PaletteBi
 void SkinnedGeometry::drawPlaced(osg::RenderInfo& renderInfo, const PaletteBinding& binding,
                                  const PosePipeline& pipeline) const
 {
-    const PlacedDraw placed(*renderInfo.getState(), binding);
+    const InstancedDraw placed(*renderInfo.getState(), binding);
     const auto draw = [&](osg::State& state)
     {
-        for (std::size_t first = 0; first < binding.placements().size();)
+        for (std::size_t first = 0; first < binding.getInstanceTransforms().size();)
         {
-            const PlacedDraw::Run run = placed.run(pipeline, first);
+            const InstancedDraw::Run run = placed.run(pipeline, first);
             if (run.place.texture == 0) break;
             placed.use(first);
             bindPalette(state, run.place);
-            drawPrimitives(state, static_cast<int>(run.count), binding.level());
+            drawPrimitives(state, static_cast<int>(run.count), binding.getLevel());
             first += run.count;
         }
     };
@@ -341,8 +342,8 @@ void SkinnedGeometry::withVertexArrays(osg::RenderInfo& renderInfo, Draw draw) c
 void SkinnedGeometry::drawPrimitives(osg::State& state, int count, int level) const
 {
     const bool usesBuffers = state.useVertexBufferObject(_supportsVertexBufferObjects && _useVertexBufferObjects);
-    std::shared_ptr<const DetailLevels> levels;
-    if (level != DetailLevels::allTriangles) levels = _detail->known(*this);
+    std::shared_ptr<const LodLevels> levels;
+    if (level != LodLevels::allTriangles) levels = _detail->known(*this);
     for (std::size_t i = 0; i < _primitives.size(); ++i)
     {
         const osg::PrimitiveSet* fewer = levels ? levels->elements(i, level) : nullptr;
@@ -356,7 +357,7 @@ void SkinnedGeometry::bindPalette(osg::State& state, const PalettePlace& place) 
     if (bindMorphTargets(state, *_morphDeltas, _morphTargets.size(), _morphEntry)) return;
     if (_isMorphLimitReported.exchange(true)) return;
     OSG_WARN << "osgGpuAnimation: the morph targets of mesh \"" << getName() << "\" need a buffer of "
-             << morphDeltas()->getImage()->s() << " texels, more than this context takes; it is drawn unmorphed\n";
+             << getMorphDeltas()->getImage()->s() << " texels, more than this context takes; it is drawn unmorphed\n";
 }
 
 void SkinnedGeometry::releaseGLObjects(osg::State* state) const

@@ -16,8 +16,8 @@
 namespace osgGpuAnimation
 {
 
-class DetailLevels;
-class MeshDetail;
+class LodLevels;
+class MeshLod;
 class PaletteBinding;
 class PosePipeline;
 class SkinnedGeometry;
@@ -30,7 +30,7 @@ class PosedMeshSource
 {
 public:
     /// The mesh in the present pose, in the node's own space.
-    virtual osg::ref_ptr<osg::Geometry> posedMesh(const SkinnedGeometry& mesh) const = 0;
+    virtual osg::ref_ptr<osg::Geometry> getPosedMesh(const SkinnedGeometry& mesh) const = 0;
 
 protected:
     ~PosedMeshSource() = default;
@@ -54,10 +54,10 @@ public:
     SkinnedGeometry();
     SkinnedGeometry(const SkinnedGeometry& other, const osg::CopyOp& copyop = osg::CopyOp::SHALLOW_COPY);
     META_Object(osgGpuAnimation, SkinnedGeometry)
-        /// To visitors it is a Drawable, not a Geometry: what merges geometries, reorders or transforms their vertices
-        /// (the Optimizer) would part them from their palette entries and morph targets. Intersection visitors that
-        /// come through a PosedMeshSource meet its posed mesh instead.
-        void accept(osg::NodeVisitor& visitor) override;
+    /// To visitors it is a Drawable, not a Geometry: what merges geometries, reorders or transforms their vertices
+    /// (the Optimizer) would part them from their palette entries and morph targets. Intersection visitors that
+    /// come through a PosedMeshSource meet its posed mesh instead.
+    void accept(osg::NodeVisitor& visitor) override;
     /// Adds the mesh, which is known to be in view, to the visitor's render bin. toEye: the matrix that its instances'
     /// placements refer to. depth: their distance before the eye.
     void addTo(osgUtil::CullVisitor& visitor, osg::RefMatrix* toEye, float depth);
@@ -70,26 +70,26 @@ public:
     /// entries: palette entries (AnimationSet::entryOfSkin, entryOfRigidJoint), each below the set's palette size.
     /// weights: as the file has them; entries of weight 0 are not looked at.
     void setInfluences(unsigned int influenceSet, osg::Vec4usArray* entries, osg::Vec4Array* weights);
-    const osg::Vec4usArray* entries(unsigned int influenceSet) const;
-    const osg::Vec4Array* weights(unsigned int influenceSet) const;
+    const osg::Vec4usArray* getEntries(unsigned int influenceSet) const;
+    const osg::Vec4Array* getWeights(unsigned int influenceSet) const;
 
     /// Influences a vertex has, at most: 1 to 8.
-    int influenceCount() const { return _influences; }
+    int getInfluenceCount() const { return _influences; }
 
     /// Every vertex moves with one entry wholly: what a rigid mesh on a joint needs.
     void setRigidEntry(unsigned short entry);
-    int rigidEntry() const { return _rigidEntry; } ///< -1: influences are per vertex
+    int getRigidEntry() const { return _rigidEntry; } ///< -1: influences are per vertex
 
     /// Morph targets, in the order of their weights. morph: which of the set's morph weights moves them. To be called
     /// when the vertices are in; targets' arrays are as long as theirs. No targets: none any more.
     void setMorphTargets(const AnimationSet& set, std::size_t morph, std::vector<MorphTarget> targets);
     /// The same where the set is not known yet. entry: the set's entryOfMorph(morph).
     void setMorphTargets(int morph, int entry, std::vector<MorphTarget> targets);
-    const std::vector<MorphTarget>& morphTargets() const { return _morphTargets; }
+    const std::vector<MorphTarget>& getMorphTargets() const { return _morphTargets; }
     /// What they are drawn from; meshes whose targets are the same arrays share it. Null: there are none.
-    const osg::TextureBuffer* morphDeltas() const;
-    int morph() const { return _morph; }           ///< -1: none
-    int morphEntry() const { return _morphEntry; } ///< the first palette entry of the weights; -1: none
+    const osg::TextureBuffer* getMorphDeltas() const;
+    int getMorph() const { return _morph; }           ///< -1: none
+    int getMorphEntry() const { return _morphEntry; } ///< the first palette entry of the weights; -1: none
 
     /// Where the vertices' colours come from.
     enum class Colors
@@ -98,13 +98,13 @@ public:
         Array,   ///< to which morph targets may add
         Targets, ///< morph targets add to white
     };
-    Colors colors() const;
+    Colors getColors() const;
 
     /// Its levels of detail, see AnimatedCharacter::setPixelError(); made when first asked, by the poses of the set.
-    std::shared_ptr<const DetailLevels> detailLevels(const AnimationSet& set) const;
-    void forgetDetailLevels();
+    std::shared_ptr<const LodLevels> getLodLevels(const AnimationSet& set) const;
+    void forgetLodLevels();
 
-    std::size_t vertexCount() const { return getVertexArray() ? getVertexArray()->getNumElements() : 0; }
+    std::size_t getVertexCount() const { return getVertexArray() ? getVertexArray()->getNumElements() : 0; }
 
     /// function(std::size_t entry, float weight), for each palette entry that moves the vertex.
     template <typename Function>
@@ -142,8 +142,8 @@ private:
     std::unique_ptr<MorphDeltas> _morphDeltas; ///< never null
     mutable std::atomic<bool> _isMorphLimitReported{false};
     int _morph = -1;
-    int _morphEntry = -1;                ///< the first palette entry of the weights
-    std::unique_ptr<MeshDetail> _detail; ///< never null
+    int _morphEntry = -1;             ///< the first palette entry of the weights
+    std::unique_ptr<MeshLod> _detail; ///< never null
 };
 
 template <typename Function>
@@ -152,8 +152,8 @@ void SkinnedGeometry::forEachInfluence(std::size_t vertex, Function function) co
     if (_rigidEntry >= 0) function(static_cast<std::size_t>(_rigidEntry), 1.0f);
     for (unsigned int influenceSet = 0; influenceSet < maxInfluenceSets; ++influenceSet)
     {
-        const osg::Vec4usArray* vertexEntries = entries(influenceSet);
-        const osg::Vec4Array* vertexWeights = weights(influenceSet);
+        const osg::Vec4usArray* vertexEntries = getEntries(influenceSet);
+        const osg::Vec4Array* vertexWeights = getWeights(influenceSet);
         if (!vertexEntries || !vertexWeights) continue;
         if (vertex >= vertexEntries->size() || vertex >= vertexWeights->size()) continue;
         for (int i = 0; i < 4; ++i)

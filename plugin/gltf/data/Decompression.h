@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "gltf/document/MemoryBudget.h"
 #include "gltf/document/JsonTree.h"
+#include "gltf/document/MemoryBudget.h"
 
 #include <osgGpuAnimation/animation/Result.h>
 

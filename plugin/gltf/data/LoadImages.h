@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "gltf/document/MemoryBudget.h"
 #include "gltf/document/JsonTree.h"
-#include "gltf/file/Uri.h"
+#include "gltf/document/MemoryBudget.h"
 #include "gltf/file/Report.h"
+#include "gltf/file/Uri.h"
 
 #include <tiny_gltf.h>
 

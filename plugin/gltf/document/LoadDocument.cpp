@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/document/LoadDocument.h"
 
+#include "gltf/data/Decompression.h"
+#include "gltf/data/LoadImages.h"
 #include "gltf/document/DocumentRules.h"
 #include "gltf/document/DocumentSchema.h"
 #include "gltf/document/JsonReader.h"
@@ -8,10 +10,8 @@
 #include "gltf/document/ValidateAccessors.h"
 #include "gltf/document/ValidateMeshes.h"
 #include "gltf/document/ValidateNodes.h"
-#include "gltf/data/Decompression.h"
 #include "gltf/file/ModelBytes.h"
 #include "gltf/file/Uri.h"
-#include "gltf/data/LoadImages.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,8 +3,8 @@
 
 #include "gltf/data/Accessor.h"
 #include "gltf/data/AttributeSemantic.h"
-#include "gltf/file/Report.h"
 #include "gltf/data/TextureCoordinates.h"
+#include "gltf/file/Report.h"
 
 #include <algorithm>
 #include <cmath>

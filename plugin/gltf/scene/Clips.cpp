@@ -5,8 +5,8 @@
 #include "gltf/file/Report.h"
 #include "gltf/scene/TransformBound.h"
 
-#include <osgGpuAnimation/animation/ClipBuilder.h>
 #include <osgGpuAnimation/animation/Clip.h>
+#include <osgGpuAnimation/animation/ClipBuilder.h>
 
 #include <cmath>
 #include <optional>

@@ -143,7 +143,7 @@ osg::ref_ptr<osg::Geometry> Drawables::make(const DrawablePlace& place)
     use.flat = palette && mesh->isFlat;
     use.textured = mesh->texCoords.valid();
     use.colored = mesh->colors.valid();
-    use.influences = palette ? skinned->influenceCount() : 0;
+    use.influences = palette ? skinned->getInfluenceCount() : 0;
     use.morphed = palette && place.morph >= 0;
     if (_materials.wantsTexture(use.material) && !use.textured)
         _report.warn(mesh->label + ": lacks the texture coordinates that its material asks for");

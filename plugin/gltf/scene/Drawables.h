@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "gltf/scene/TransformBound.h"
 #include "gltf/scene/Materials.h"
 #include "gltf/scene/Meshes.h"
+#include "gltf/scene/TransformBound.h"
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
@@ -62,8 +62,8 @@ private:
     Materials& _materials;
     MemoryBudget& _budget;
     Report& _report;
-    std::vector<int> _firstAlike; ///< by skin
-    std::vector<TransformBound> _entries;  ///< by palette entry
+    std::vector<int> _firstAlike;         ///< by skin
+    std::vector<TransformBound> _entries; ///< by palette entry
     std::map<DrawablePlace, osg::ref_ptr<osg::Geometry>> _drawables;
 };
 

@@ -3,8 +3,8 @@
 
 #include "gltf/data/Accessor.h"
 #include "gltf/file/Report.h"
-#include "gltf/scene/TransformBound.h"
 #include "gltf/scene/NodeTransform.h"
+#include "gltf/scene/TransformBound.h"
 
 #include <algorithm>
 

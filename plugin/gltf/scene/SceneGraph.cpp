@@ -3,11 +3,11 @@
 
 #include "gltf/data/VertexAttributes.h"
 #include "gltf/file/Report.h"
-#include "gltf/scene/TransformBound.h"
 #include "gltf/scene/Drawables.h"
 #include "gltf/scene/Instancing.h"
 #include "gltf/scene/Joints.h"
 #include "gltf/scene/NodeTransform.h"
+#include "gltf/scene/TransformBound.h"
 
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/OsgMatrix.h>

@@ -19,7 +19,7 @@ double sine(double phase, int times = 1)
     return std::sin(glm::two_pi<double>() * times * phase);
 }
 
-/// Standing: weight on one leg, breathing `breaths` times a cycle, `shift` in [-1, 1] to the left.
+/// BlendPriority: weight on one leg, breathing `breaths` times a cycle, `shift` in [-1, 1] to the left.
 void stand(RigPose& pose, double phase, int breaths, double shift)
 {
     const double breath = sine(phase, breaths);

@@ -18,20 +18,21 @@ int main(int argumentCount, char** arguments)
     osg::ref_ptr<osg::Node> node = osgDB::readRefNodeFile(arguments[1]);
     AnimatedCharacter* fox = node ? findCharacter(*node) : nullptr;
     if (!fox) return 1;
-    if (auto faded = fox->controller().crossfade(arguments[2], 0.25); !faded)
+    if (auto faded = fox->getController().crossfade(arguments[2], 0.25); !faded)
     {
         std::cerr << faded.error().message << std::endl;
         return 1;
     }
 
     osg::ref_ptr<osg::Node> other = osg::clone(node.get(), osg::CopyOp::DEEP_COPY_NODES);
-    findCharacter(*other)->controller().setSpeed(0.5);
+    findCharacter(*other)->getController().setSpeed(0.5);
 
     osg::ref_ptr<osg::MatrixTransform> beside = new osg::MatrixTransform(osg::Matrix::translate(100.0, 0.0, 0.0));
     beside->addChild(other);
     scene->addChild(node);
     scene->addChild(beside);
 
-    std::cout << fox->set().clips()[fox->controller().clip()].name() << ", " << scene->getBound().radius() << std::endl;
+    std::cout << fox->getAnimationSet().clips()[fox->getController().clip()].name() << ", "
+              << scene->getBound().radius() << std::endl;
     return scene->getBound().radius() > 50.0 ? 0 : 1;
 }

@@ -198,16 +198,16 @@ void ClipSweep::lookAt(const KeyframePair& keyframes)
             _placements[j] = {linear, glm::dvec3(local.translation)};
             continue;
         }
-        const Placement& above = _placements[static_cast<std::size_t>(parent)];
+        const InstanceTransform& above = _placements[static_cast<std::size_t>(parent)];
         _placements[j] = {above.linear * linear, above.linear * glm::dvec3(local.translation) + above.origin};
     }
     for (std::size_t p = 0; p < _parts.size(); ++p)
     {
         const Part& part = _parts[p];
-        const Placement& placement = _placements[part.joint];
+        const InstanceTransform& placement = _placements[part.joint];
         const glm::dmat3 edges = placement.linear * part.halfEdges;
-        _boxes[p] = SweptBox::about(placement.linear * part.centre + placement.origin,
-                                    glm::abs(edges[0]) + glm::abs(edges[1]) + glm::abs(edges[2]));
+        _boxes[p] = Aabb3d::about(placement.linear * part.centre + placement.origin,
+                                  glm::abs(edges[0]) + glm::abs(edges[1]) + glm::abs(edges[2]));
         _seen.add(_boxes[p]);
     }
 }
@@ -232,14 +232,14 @@ int ClipSweep::stepsNeeded() const
     {
         const double strayed = _motions[_parts[p].joint].strayed(_parts[p].radius);
         if (!(strayed > allowed) || !std::isfinite(strayed)) continue;
-        SweptBox both = _boxes[p];
+        Aabb3d both = _boxes[p];
         both.add(_boxesBefore[p]);
         steps = std::max(steps, std::ceil(std::sqrt(strayed / (allowed + _seen.slackAround(both)))));
     }
     return static_cast<int>(std::min(steps, mostSteps));
 }
 
-void ClipSweep::gatherStrayed(const std::vector<SweptBox>& boxes, int steps)
+void ClipSweep::gatherStrayed(const std::vector<Aabb3d>& boxes, int steps)
 {
     for (std::size_t p = 0; p < boxes.size(); ++p)
     {
@@ -257,7 +257,7 @@ void ClipSweep::sweepPiece(KeyframePair keyframes)
     gatherStrayed(_boxes, steps);
     if (steps == 1) return;
 
-    const std::vector<SweptBox> boxesAfter = _boxes;
+    const std::vector<Aabb3d> boxesAfter = _boxes;
     for (int step = 1; step < steps; ++step)
     {
         keyframes.alpha = static_cast<double>(step) / steps;
@@ -269,7 +269,7 @@ void ClipSweep::sweepPiece(KeyframePair keyframes)
 
 Box ClipSweep::restPose()
 {
-    _seen = SweptBox();
+    _seen = Aabb3d();
     const JointTransform* rest = _set.restPose().data();
     lookAt({rest, rest, 0.0, false});
     return _seen.toBox();
@@ -277,7 +277,7 @@ Box ClipSweep::restPose()
 
 Box ClipSweep::clip(const Clip& clip)
 {
-    _seen = _swept = SweptBox();
+    _seen = _swept = Aabb3d();
     const bool spline = clip.form() == Clip::Form::Spline;
     for (std::size_t k = 0; k < clip.keyframeCount(); ++k)
     {

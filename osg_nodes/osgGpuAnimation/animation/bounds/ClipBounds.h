@@ -2,8 +2,8 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
-#include <osgGpuAnimation/animation/math/Box.h>
 #include <osgGpuAnimation/animation/keyframes/TrackBlend.h>
+#include <osgGpuAnimation/animation/math/Box.h>
 
 #include <vector>
 
@@ -59,7 +59,7 @@ private:
         glm::dmat3 halfEdges{0.0};
         double radius = 0.0; ///< distance of the farthest corner from the joint's origin
     };
-    struct Placement
+    struct InstanceTransform
     {
         glm::dmat3 linear{1.0};
         glm::dvec3 origin{0.0};
@@ -69,18 +69,18 @@ private:
     void lookAt(const KeyframePair& keyframes);
     void boundMotion(const KeyframePair& keyframes);
     int stepsNeeded() const;
-    void gatherStrayed(const std::vector<SweptBox>& boxes, int steps);
+    void gatherStrayed(const std::vector<Aabb3d>& boxes, int steps);
     void sweepPiece(KeyframePair keyframes);
 
     const AnimationSet& _set;
     std::vector<Part> _parts;
-    std::vector<bool> _isNeeded;        ///< by joint: true if it or a descendant has a part
-    std::vector<Placement> _placements; ///< by joint
-    std::vector<ChainMotion> _motions;  ///< by joint
-    std::vector<SweptBox> _boxes;       ///< by part, at the last sample
-    std::vector<SweptBox> _boxesBefore; ///< by part, at the previous keyframe
-    SweptBox _seen;                     ///< all samples
-    SweptBox _swept;                    ///< all samples and the space between them
+    std::vector<bool> _isNeeded;                ///< by joint: true if it or a descendant has a part
+    std::vector<InstanceTransform> _placements; ///< by joint
+    std::vector<ChainMotion> _motions;          ///< by joint
+    std::vector<Aabb3d> _boxes;                 ///< by part, at the last sample
+    std::vector<Aabb3d> _boxesBefore;           ///< by part, at the previous keyframe
+    Aabb3d _seen;                               ///< all samples
+    Aabb3d _swept;                              ///< all samples and the space between them
 };
 
 /// A box, in model space, that contains every vertex at every time of the clip. The box is conservative: a vertex is a

@@ -65,7 +65,7 @@ Reach Reach::child(const JointRange& range) const
 }
 
 /// The box of a palette entry after its joint's transform.
-SweptBox moved(const PaletteEntry& entry, const Box& box, const Reach& reach)
+Aabb3d moved(const PaletteEntry& entry, const Box& box, const Reach& reach)
 {
     const glm::dvec3 min(box.min), max(box.max);
     const glm::dmat4 inverseBind = entry.inverseBind.toColumns();
@@ -79,8 +79,8 @@ SweptBox moved(const PaletteEntry& entry, const Box& box, const Reach& reach)
     }
     const glm::dmat3 placed = reach.linear * edges;
     const double margin = reach.radius + reach.deviation * (glm::length(centre) + span);
-    return SweptBox::about(reach.place + reach.linear * centre,
-                           glm::abs(placed[0]) + glm::abs(placed[1]) + glm::abs(placed[2]) + margin);
+    return Aabb3d::about(reach.place + reach.linear * centre,
+                         glm::abs(placed[0]) + glm::abs(placed[1]) + glm::abs(placed[2]) + margin);
 }
 
 } // namespace
@@ -153,7 +153,7 @@ Box MixBounds::box(const std::vector<PlayedClip>& played) const
     const bool isAdded = std::any_of(played.begin(), played.end(),
                                      [](const PlayedClip& clip) { return clip.part != PlayedClip::Part::Mixed; });
     const EntryBoxes& boxes = isAdded ? _withAdded : _entryBoxes;
-    SweptBox all;
+    Aabb3d all;
     for (std::size_t e = 0; e < std::min(boxes.size(), _set.paletteSize()); ++e)
     {
         const PaletteEntry& entry = _set.palette()[e];

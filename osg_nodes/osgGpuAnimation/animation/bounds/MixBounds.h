@@ -2,8 +2,8 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
-#include <osgGpuAnimation/animation/math/Box.h>
 #include <osgGpuAnimation/animation/ClipMixer.h>
+#include <osgGpuAnimation/animation/math/Box.h>
 
 #include <map>
 #include <memory>

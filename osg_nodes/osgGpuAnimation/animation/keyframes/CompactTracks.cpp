@@ -15,19 +15,19 @@
 namespace osgGpuAnimation
 {
 
-PackedTriple PackedTriple::of(const glm::uvec3& numbers, std::uint32_t place)
+QuantizedVec3 QuantizedVec3::of(const glm::uvec3& numbers, std::uint32_t place)
 {
     assert(numbers.x <= largest && numbers.y <= largest && numbers.z <= largest && place < 4 &&
            "20 bits a number, 2 for the place");
     return {numbers.x | numbers.y << 20, numbers.y >> 12 | numbers.z << 8 | place << 28};
 }
 
-glm::uvec3 PackedTriple::numbers() const
+glm::uvec3 QuantizedVec3::numbers() const
 {
     return {low & largest, low >> 20 | (high & 0xFFu) << 12, high >> 8 & largest};
 }
 
-PackedTriple PackedTriple::ofRotation(const glm::vec4& q)
+QuantizedVec3 QuantizedVec3::ofRotation(const glm::vec4& q)
 {
     const glm::dvec4 unit = Rotation::unit(glm::dvec4(q));
     int place = 0;
@@ -46,7 +46,7 @@ PackedTriple PackedTriple::ofRotation(const glm::vec4& q)
     return of(numbers, static_cast<std::uint32_t>(place));
 }
 
-glm::vec4 PackedTriple::rotation() const
+glm::vec4 QuantizedVec3::rotation() const
 {
     const glm::vec3 v = (glm::vec3(numbers()) - POSE_ROTATION_ZERO) * POSE_ROTATION_STEP;
     const float rest = std::sqrt(std::max(1.0f - (v.x * v.x + v.y * v.y + v.z * v.z), 0.0f));
@@ -92,7 +92,7 @@ CompactTracks::Range rangeOf(const TrackKeys& keys, Part part)
         least = glm::min(least, glm::vec3(keys[k].*part));
         most = glm::max(most, glm::vec3(keys[k].*part));
     }
-    return {least, (most - least) / static_cast<float>(PackedTriple::largest)};
+    return {least, (most - least) / static_cast<float>(QuantizedVec3::largest)};
 }
 
 bool isFinite(const CompactTracks::Range& range)
@@ -103,7 +103,7 @@ bool isFinite(const CompactTracks::Range& range)
 
 } // namespace
 
-PackedTriple CompactTracks::Range::pack(const glm::vec3& value) const
+QuantizedVec3 CompactTracks::Range::pack(const glm::vec3& value) const
 {
     glm::uvec3 numbers(0);
     for (int axis = 0; axis < 3; ++axis)
@@ -113,12 +113,12 @@ PackedTriple CompactTracks::Range::pack(const glm::vec3& value) const
                                          static_cast<double>(step[axis]));
         // The comparison makes NaN give 0.
         if (number > 0.0)
-            numbers[axis] = static_cast<std::uint32_t>(std::min(number, static_cast<double>(PackedTriple::largest)));
+            numbers[axis] = static_cast<std::uint32_t>(std::min(number, static_cast<double>(QuantizedVec3::largest)));
     }
-    return PackedTriple::of(numbers, 0);
+    return QuantizedVec3::of(numbers, 0);
 }
 
-glm::vec3 CompactTracks::Range::unpack(const PackedTriple& packed) const
+glm::vec3 CompactTracks::Range::unpack(const QuantizedVec3& packed) const
 {
     return base + step * glm::vec3(packed.numbers());
 }
@@ -180,10 +180,10 @@ void CompactTracks::unpackTransform(std::size_t keyframe, const Track& track, Jo
 
 void CompactTracks::packTransform(std::size_t keyframe, const Track& track, JointTransform& transform)
 {
-    const auto at = [&](int column) -> PackedTriple&
+    const auto at = [&](int column) -> QuantizedVec3&
     { return keyframes[keyframe * columnCount + static_cast<std::size_t>(column)]; };
     if (track.translation >= 0) at(track.translation) = track.translationRange.pack(glm::vec3(transform.translation));
-    if (track.rotation >= 0) at(track.rotation) = PackedTriple::ofRotation(transform.rotation);
+    if (track.rotation >= 0) at(track.rotation) = QuantizedVec3::ofRotation(transform.rotation);
     if (track.scale >= 0) at(track.scale) = track.scaleRange.pack(glm::vec3(transform.scale));
     unpackTransform(keyframe, track, transform);
 }

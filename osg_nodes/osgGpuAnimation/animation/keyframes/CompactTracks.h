@@ -15,7 +15,7 @@ namespace osgGpuAnimation
 
 /// Three integers of 20 bits and an index of 2 bits in 8 bytes: a rotation, translation or scale of a compact clip. The
 /// GPU uses the same layout (layout.glsl, mix.glsl).
-struct PackedTriple
+struct QuantizedVec3
 {
     std::uint32_t low = 0;
     std::uint32_t high = 0;
@@ -23,13 +23,13 @@ struct PackedTriple
     static constexpr std::uint32_t largest = (1u << 20) - 1;
 
     /// numbers: each in [0, largest]. place: in [0, 3].
-    static PackedTriple of(const glm::uvec3& numbers, std::uint32_t place);
+    static QuantizedVec3 of(const glm::uvec3& numbers, std::uint32_t place);
     glm::uvec3 numbers() const;
     std::uint32_t place() const { return high >> 28; }
 
     /// Stores the three smallest components of a rotation; place is the index of the largest one. The error is at most
     /// 7e-7 per component. q: of a length above 0.
-    static PackedTriple ofRotation(const glm::vec4& q);
+    static QuantizedVec3 ofRotation(const glm::vec4& q);
     glm::vec4 rotation() const; ///< unit
 };
 
@@ -44,8 +44,8 @@ struct CompactTracks
         glm::vec3 base{0.0f};
         glm::vec3 step{0.0f};
 
-        PackedTriple pack(const glm::vec3& value) const; ///< the nearest value
-        glm::vec3 unpack(const PackedTriple& packed) const;
+        QuantizedVec3 pack(const glm::vec3& value) const; ///< the nearest value
+        glm::vec3 unpack(const QuantizedVec3& packed) const;
     };
 
     /// Columns of a keyframe that contain a joint's translation, rotation and scale. -1: the part is constant and
@@ -61,7 +61,7 @@ struct CompactTracks
 
     std::vector<Track> tracks; ///< one per joint
     std::size_t columnCount = 0;
-    std::vector<PackedTriple> keyframes; ///< columnCount per keyframe of the clip
+    std::vector<QuantizedVec3> keyframes; ///< columnCount per keyframe of the clip
 
     /// Packs keyframes and replaces moving parts in data by their decoded values.
     /// data: trackCount transforms per keyframe; the first jointCount of them are joints.

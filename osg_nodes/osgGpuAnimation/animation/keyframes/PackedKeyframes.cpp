@@ -147,7 +147,7 @@ void PackedKeyframes::note(const Clip& clip, std::size_t track, const glm::uvec4
     const auto widen = [&](PartMotion& motion, std::uint32_t place, Part part)
     {
         if ((place & POSE_PLACE_HELD) == 0u) motion = PartMotion::Moving;
-        if (motion == PartMotion::Fixed && bits(value.*part) != bits(rest.*part)) motion = PartMotion::Held;
+        if (motion == PartMotion::Fixed && bits(value.*part) != bits(rest.*part)) motion = PartMotion::Constant;
     };
     widen(_tracks[track].translation, places.x, &JointTransform::translation);
     widen(_tracks[track].scale, places.z, &JointTransform::scale);

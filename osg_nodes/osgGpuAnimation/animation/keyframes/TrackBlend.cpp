@@ -84,7 +84,7 @@ TrackBlend::TrackBlend(const JointTransform& rest, bool isWeights) : _isWeights(
     _total = {glm::dvec4(rest.translation), glm::dvec4(rest.rotation), glm::dvec4(rest.scale)};
 }
 
-void TrackBlend::beginStanding()
+void TrackBlend::beginBlendPriority()
 {
     const double left = 1.0 - std::min(_weight, 1.0);
     const double share = 1.0 / std::max(_weight, 1.0);
@@ -122,7 +122,7 @@ void TrackBlend::addDifference(const MixedTrack& reference, const MixedTrack& sa
 
 MixedTrack TrackBlend::result()
 {
-    beginStanding();
+    beginBlendPriority();
     if (_isWeights)
     {
         addScaled(_total, _difference, 1.0);

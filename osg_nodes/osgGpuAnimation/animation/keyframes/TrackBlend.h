@@ -36,17 +36,17 @@ public:
     /// rest: fills the weight that the samples leave. isWeights: true for a weight block.
     TrackBlend(const JointTransform& rest, bool isWeights);
 
-    /// Ends the current standing and begins the next one above it.
-    void beginStanding();
+    /// Ends the current blend priority and begins the next one above it.
+    void beginBlendPriority();
     void add(const MixedTrack& sample, double weight);
     void addDifference(const MixedTrack& reference, const MixedTrack& sample, double weight);
-    /// Ends the last standing. For joints the rotation is unit and the w of translation and scale is 0.
+    /// Ends the last blend priority. For joints the rotation is unit and the w of translation and scale is 0.
     MixedTrack result();
 
 private:
     bool _isWeights;
-    MixedTrack _total; ///< the finished standings; the rotation is not unit
-    MixedTrack _group; ///< the current standing
+    MixedTrack _total; ///< the finished blend priorities; the rotation is not unit
+    MixedTrack _group; ///< the current blend priority
     double _weight = 0.0;
     glm::dvec4 _hemisphere{0.0};
     MixedTrack _difference;  ///< the translation; for weight blocks everything

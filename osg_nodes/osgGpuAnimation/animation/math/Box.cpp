@@ -43,16 +43,16 @@ namespace
 /// Clamps to the limit; NaN gives `otherwise`.
 double limited(double value, double otherwise)
 {
-    if (value >= -SweptBox::limit && value <= SweptBox::limit) return value;
-    if (value > SweptBox::limit) return SweptBox::limit;
-    return value < -SweptBox::limit ? -SweptBox::limit : otherwise;
+    if (value >= -Aabb3d::limit && value <= Aabb3d::limit) return value;
+    if (value > Aabb3d::limit) return Aabb3d::limit;
+    return value < -Aabb3d::limit ? -Aabb3d::limit : otherwise;
 }
 
 } // namespace
 
-SweptBox SweptBox::about(const glm::dvec3& centre, const glm::dvec3& half)
+Aabb3d Aabb3d::about(const glm::dvec3& centre, const glm::dvec3& half)
 {
-    SweptBox box;
+    Aabb3d box;
     for (int axis = 0; axis < 3; ++axis)
     {
         box.min[axis] = limited(centre[axis] - half[axis], -limit);
@@ -61,22 +61,22 @@ SweptBox SweptBox::about(const glm::dvec3& centre, const glm::dvec3& half)
     return box;
 }
 
-double SweptBox::diagonal() const
+double Aabb3d::diagonal() const
 {
     return empty() ? 0.0 : glm::length(max - min);
 }
 
-void SweptBox::add(const SweptBox& box)
+void Aabb3d::add(const Aabb3d& box)
 {
     min = glm::min(min, box.min);
     max = glm::max(max, box.max);
 }
 
-SweptBox SweptBox::grownWithin(double margin, double radius) const
+Aabb3d Aabb3d::grownWithin(double margin, double radius) const
 {
     const double by = limited(margin, limit);
     const double within = limited(radius, limit);
-    SweptBox grown;
+    Aabb3d grown;
     for (int axis = 0; axis < 3; ++axis)
     {
         // Keeps the original box even if rounding makes the ball too small.
@@ -86,13 +86,13 @@ SweptBox SweptBox::grownWithin(double margin, double radius) const
     return grown;
 }
 
-double SweptBox::slackAround(const SweptBox& inner) const
+double Aabb3d::slackAround(const Aabb3d& inner) const
 {
     const glm::dvec3 least = glm::min(inner.min - min, max - inner.max);
     return std::min({least.x, least.y, least.z});
 }
 
-Box SweptBox::toBox() const
+Box Aabb3d::toBox() const
 {
     if (empty()) return Box();
     const glm::dvec3 farthest = glm::max(glm::abs(min), glm::abs(max));

@@ -26,7 +26,7 @@ using EntryBoxes = std::vector<Box>;
 
 /// An axis-aligned box in double precision that contains only finite numbers. Coordinates are clamped to
 /// [-limit, limit], so that a renderer can square the size of the box in single precision. Default: empty (min > max).
-struct SweptBox
+struct Aabb3d
 {
     static constexpr double limit = 1e18;
 
@@ -34,15 +34,15 @@ struct SweptBox
     glm::dvec3 max{-limit};
 
     /// The box around a centre. half: half of each side. A NaN gives the largest box on that axis.
-    static SweptBox about(const glm::dvec3& centre, const glm::dvec3& half);
+    static Aabb3d about(const glm::dvec3& centre, const glm::dvec3& half);
 
     bool empty() const { return min.x > max.x; }
     double diagonal() const; ///< 0 if empty
-    void add(const SweptBox& box);
+    void add(const Aabb3d& box);
     /// This box with every face moved outwards by margin, but not beyond the ball of that radius around the origin.
-    SweptBox grownWithin(double margin, double radius) const;
+    Aabb3d grownWithin(double margin, double radius) const;
     /// The smallest distance between a face of `inner` and the same face of this box. inner: inside this box.
-    double slackAround(const SweptBox& inner) const;
+    double slackAround(const Aabb3d& inner) const;
     /// Rounds outwards and adds 1e-5 of the largest coordinate, so that vertices computed in single precision stay
     /// inside.
     Box toBox() const;

@@ -12,10 +12,10 @@
 namespace osgGpuAnimation
 {
 
-bool SampleStack::comesBefore(const Item& a, const Item& b)
+bool BlendList::comesBefore(const Item& a, const Item& b)
 {
     if (a.isDifference != b.isDifference) return b.isDifference;
-    if (a.standing != b.standing) return a.standing < b.standing;
+    if (a.blendPriority != b.blendPriority) return a.blendPriority < b.blendPriority;
     if (a.sample.weight != b.sample.weight) return a.sample.weight > b.sample.weight;
     const auto rest = [](const Item& item)
     {
@@ -25,17 +25,17 @@ bool SampleStack::comesBefore(const Item& a, const Item& b)
     return rest(a) < rest(b);
 }
 
-void SampleStack::add(const BlendSample& sample, int standing)
+void BlendList::add(const BlendSample& sample, int blendPriority)
 {
-    insert({sample, BlendSample(), standing, false});
+    insert({sample, BlendSample(), blendPriority, false});
 }
 
-void SampleStack::addDifference(const BlendSample& reference, const BlendSample& sample)
+void BlendList::addDifference(const BlendSample& reference, const BlendSample& sample)
 {
     insert({sample, reference, 0, true});
 }
 
-void SampleStack::insert(const Item& item)
+void BlendList::insert(const Item& item)
 {
     if (!(item.sample.weight > 0.0f)) return;
     assert(_count < maxItems && "no more than all voices of all layers");
@@ -47,16 +47,17 @@ void SampleStack::insert(const Item& item)
     _sampleCount += item.isDifference ? 2 : 1;
 }
 
-/// True for the first, and so the heaviest, sample of a standing.
-bool SampleStack::isAbove(std::size_t index) const
+/// True for the first, and so the heaviest, sample of a blend priority.
+bool BlendList::isAbove(std::size_t index) const
 {
     const Item& item = _places[index].item;
-    return !item.isDifference && (index == 0 || _places[index - 1].item.standing != item.standing);
+    return !item.isDifference && (index == 0 || _places[index - 1].item.blendPriority != item.blendPriority);
 }
 
-void SampleStack::removeLightest()
+void BlendList::removeLightest()
 {
-    // A sample that may be dropped exists: there are at most half as many standings as samples in an instruction.
+    // A sample that may be dropped exists: there are at most half as many blend priorities as samples in an
+    // instruction.
     std::size_t lightest = _count;
     for (std::size_t i = 0; i < _count; ++i)
         if (!isAbove(i) &&
@@ -70,24 +71,24 @@ void SampleStack::removeLightest()
               _places.begin() + static_cast<std::ptrdiff_t>(lightest));
     --_count;
     _sampleCount -= removed.isDifference ? 2 : 1;
-    if (!removed.isDifference) fillStanding(removed.standing, removed.sample.weight);
+    if (!removed.isDifference) fillBlendPriority(removed.blendPriority, removed.sample.weight);
 }
 
-/// Restores the sum of a standing up to 1; PoseInstruction scales larger sums to 1.
-void SampleStack::fillStanding(int standing, float removed)
+/// Restores the sum of a blend priority up to 1; PoseInstruction scales larger sums to 1.
+void BlendList::fillBlendPriority(int blendPriority, float removed)
 {
     float left = 0.0f;
     for (std::size_t i = 0; i < _count; ++i)
-        if (!_places[i].item.isDifference && _places[i].item.standing == standing)
+        if (!_places[i].item.isDifference && _places[i].item.blendPriority == blendPriority)
             left += _places[i].item.sample.weight;
     const float whole = std::min(left + removed, 1.0f);
     if (!(left > 0.0f) || left >= whole) return;
     for (std::size_t i = 0; i < _count; ++i)
-        if (!_places[i].item.isDifference && _places[i].item.standing == standing)
+        if (!_places[i].item.isDifference && _places[i].item.blendPriority == blendPriority)
             _places[i].item.sample.weight *= whole / left;
 }
 
-void SampleStack::write(PoseInstruction& out)
+void BlendList::write(PoseInstruction& out)
 {
     while (_sampleCount > PoseInstruction::maxSamples)
         removeLightest();
@@ -110,7 +111,7 @@ void SampleStack::write(PoseInstruction& out)
     if (out.sampleCount == 0) out.samples[out.sampleCount++] = BlendSample();
 }
 
-RootMotion rootMotionOf(const Clip& clip, const ClipMove& move, LoopMode loopMode)
+RootMotion rootMotionOf(const Clip& clip, const PlaybackStep& move, LoopMode loopMode)
 {
     if (move.distance == 0.0) return {glm::dvec3(0.0), 0.0, clip.rootMotion()->up};
     const RootMotion before = clip.rootMotionAt(move.from).inverse();
@@ -118,20 +119,20 @@ RootMotion rootMotionOf(const Clip& clip, const ClipMove& move, LoopMode loopMod
     return before * clip.rootMotionAt(clip.duration()).power(move.crossings) * clip.rootMotionAt(move.to);
 }
 
-void MotionBlend::add(const RootMotion& motion, double weight, int standing)
+void MotionBlend::add(const RootMotion& motion, double weight, int blendPriority)
 {
     std::size_t place = _count;
-    while (place > 0 && _standings[place - 1].number > standing)
+    while (place > 0 && _blendPriorities[place - 1].number > blendPriority)
         --place;
-    if (place == 0 || _standings[place - 1].number != standing)
+    if (place == 0 || _blendPriorities[place - 1].number != blendPriority)
     {
-        const auto begin = _standings.begin();
+        const auto begin = _blendPriorities.begin();
         const auto end = begin + static_cast<std::ptrdiff_t>(_count++);
         std::move_backward(begin + static_cast<std::ptrdiff_t>(place), end, end + 1);
-        _standings[place] = {standing, 0.0, {}};
+        _blendPriorities[place] = {blendPriority, 0.0, {}};
         ++place;
     }
-    Standing& here = _standings[place - 1];
+    BlendPriority& here = _blendPriorities[place - 1];
     here.weight += weight;
     here.sum.translation += motion.translation * weight;
     here.sum.yaw += motion.yaw * weight;
@@ -143,12 +144,12 @@ RootMotion MotionBlend::result() const
     RootMotion total;
     for (std::size_t i = 0; i < _count; ++i)
     {
-        const Standing& standing = _standings[i];
-        const double left = 1.0 - std::min(standing.weight, 1.0);
-        const double share = 1.0 / std::max(standing.weight, 1.0);
-        total.translation = total.translation * left + standing.sum.translation * share;
-        total.yaw = total.yaw * left + standing.sum.yaw * share;
-        total.up = standing.sum.up;
+        const BlendPriority& blendPriority = _blendPriorities[i];
+        const double left = 1.0 - std::min(blendPriority.weight, 1.0);
+        const double share = 1.0 / std::max(blendPriority.weight, 1.0);
+        total.translation = total.translation * left + blendPriority.sum.translation * share;
+        total.yaw = total.yaw * left + blendPriority.sum.yaw * share;
+        total.up = blendPriority.sum.up;
     }
     return total;
 }

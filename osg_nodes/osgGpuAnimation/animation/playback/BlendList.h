@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/animation/Clip.h>
 #include <osgGpuAnimation/animation/ClipMixer.h>
 #include <osgGpuAnimation/animation/Playback.h>
-#include <osgGpuAnimation/animation/AnimationSet.h>
 
 #include <array>
 #include <cstddef>
@@ -12,20 +12,20 @@
 namespace osgGpuAnimation
 {
 
-/// Sorts the samples of all layers as PoseInstruction requires: standings from the bottom up; within a standing the
-/// heaviest sample first, and samples of equal weight by keyframe, so that the order of add() plays no part; additive
-/// samples last.
+/// Sorts the samples of all layers as PoseInstruction requires: blend priorities from the bottom up; within a blend
+/// priority the heaviest sample first, and samples of equal weight by keyframe, so that the order of add() plays no
+/// part; additive samples last.
 ///
 /// If there are more samples than an instruction holds, the sample with the lowest weight is dropped, repeatedly; a
-/// difference counts as two samples. The heaviest sample of each standing always stays. The other samples of the
-/// standing take over the dropped weight, so that nothing below them, such as the rest pose, becomes visible.
-class SampleStack
+/// difference counts as two samples. The heaviest sample of each blend priority always stays. The other samples of the
+/// blend priority take over the dropped weight, so that nothing below them, such as the rest pose, becomes visible.
+class BlendList
 {
 public:
     static constexpr std::size_t maxItems = 64; ///< the most samples and differences that all layers can have
 
     /// Samples of weight 0 are ignored. At most maxItems samples and differences may be added.
-    void add(const BlendSample& sample, int standing);
+    void add(const BlendSample& sample, int blendPriority);
     void addDifference(const BlendSample& reference, const BlendSample& sample);
     /// Writes the instruction; the rest pose if nothing was added. Call it once.
     void write(PoseInstruction& out);
@@ -34,7 +34,7 @@ private:
     struct Item
     {
         BlendSample sample, reference; ///< the reference of a difference
-        int standing;                  ///< of a sample
+        int blendPriority;             ///< of a sample
         bool isDifference;
     };
     /// Deliberately uninitialized: zeroing dominated the cost.
@@ -48,7 +48,7 @@ private:
     void insert(const Item& item);
     bool isAbove(std::size_t index) const;
     void removeLightest();
-    void fillStanding(int standing, float removed);
+    void fillBlendPriority(int blendPriority, float removed);
 
     std::array<Place, maxItems> _places;
     std::size_t _count = 0;
@@ -56,25 +56,25 @@ private:
 };
 
 /// The root motion of a step through a clip, however often it loops. The clip must have a rootMotion().
-RootMotion rootMotionOf(const Clip& clip, const ClipMove& move, LoopMode loopMode);
+RootMotion rootMotionOf(const Clip& clip, const PlaybackStep& move, LoopMode loopMode);
 
 /// Blends the root motions of all clips that play in one step. Standings and weights work as in PoseInstruction; the
 /// rest pose does not move.
 class MotionBlend
 {
 public:
-    void add(const RootMotion& motion, double weight, int standing);
+    void add(const RootMotion& motion, double weight, int blendPriority);
     RootMotion result() const;
 
 private:
-    struct Standing
+    struct BlendPriority
     {
         int number = 0;
         double weight = 0.0;
         RootMotion sum;
     };
 
-    std::array<Standing, maxLayers> _standings; ///< from the bottom up
+    std::array<BlendPriority, maxLayers> _blendPriorities; ///< from the bottom up
     std::size_t _count = 0;
 };
 

@@ -21,7 +21,7 @@ std::size_t markersBefore(const std::vector<ClipMarker>& markers, double time, b
 
 } // namespace
 
-ClipMoveEvents::ClipMoveEvents(const Clip& clip, const ClipMove& move, LoopMode loopMode)
+ClipMoveEvents::ClipMoveEvents(const Clip& clip, const PlaybackStep& move, LoopMode loopMode)
     : _clip(clip), _move(move), _loopMode(loopMode), _crossingsLeft(std::abs(move.crossings)),
       _isAscending(move.isAscending)
 {
@@ -101,7 +101,7 @@ bool ClipMoveEvents::next()
 namespace
 {
 
-bool moveMayHaveEvents(const ClipMove& move, const Clip& clip)
+bool moveMayHaveEvents(const PlaybackStep& move, const Clip& clip)
 {
     return move.crossings != 0.0 || move.hasFinished || (move.distance != 0.0 && !clip.markers().empty());
 }
@@ -111,27 +111,28 @@ bool moveMayHaveEvents(const ClipMove& move, const Clip& clip)
 bool LayerStep::mayHaveEvents(const std::vector<Clip>& clips) const
 {
     if (crossfadeMoment >= 0.0 || weightFadeMoment >= 0.0) return true;
-    for (std::size_t v = 0; v < mixer.voiceCount(); ++v)
+    for (std::size_t v = 0; v < mixer.activeClipCount(); ++v)
     {
-        const ClipMixer::Voice& voice = mixer.voice(v);
-        if (moveMayHaveEvents(voice.move, clips[static_cast<std::size_t>(voice.playback.clip())])) return true;
+        const ClipMixer::ActiveClip& activeClip = mixer.activeClip(v);
+        if (moveMayHaveEvents(activeClip.move, clips[static_cast<std::size_t>(activeClip.playback.clip())]))
+            return true;
     }
     return false;
 }
 
-void StepEvents::add(const LayerStep& step, const std::vector<Clip>& clips)
+void FrameEvents::add(const LayerStep& step, const std::vector<Clip>& clips)
 {
     AnimationEvent event;
     event.layer = step.layer;
-    const std::size_t count = step.mixer.voiceCount();
+    const std::size_t count = step.mixer.activeClipCount();
     for (std::size_t v = 0; v < count; ++v)
     {
-        const ClipMixer::Voice& voice = step.mixer.voice(v);
-        event.clip = voice.playback.clip();
-        event.weight = static_cast<float>(voice.share);
+        const ClipMixer::ActiveClip& activeClip = step.mixer.activeClip(v);
+        event.clip = activeClip.playback.clip();
+        event.weight = static_cast<float>(activeClip.share);
         const Clip& clip = clips[static_cast<std::size_t>(event.clip)];
-        if (moveMayHaveEvents(voice.move, clip))
-            addSource(event, ClipMoveEvents(clip, voice.move, voice.playback.loopMode()), v + 1 < count);
+        if (moveMayHaveEvents(activeClip.move, clip))
+            addSource(event, ClipMoveEvents(clip, activeClip.move, activeClip.playback.loopMode()), v + 1 < count);
     }
     event.type = AnimationEvent::Type::FadeFinished;
     for (const double moment : {step.crossfadeMoment, step.weightFadeMoment})
@@ -141,15 +142,15 @@ void StepEvents::add(const LayerStep& step, const std::vector<Clip>& clips)
     }
 }
 
-void StepEvents::addSource(const AnimationEvent& event, std::optional<ClipMoveEvents> events, bool isFadingOut)
+void FrameEvents::addSource(const AnimationEvent& event, std::optional<ClipMoveEvents> events, bool isFadingOut)
 {
     Source source{event, std::move(events), isFadingOut};
-    if (source.events && !goOn(source)) return;
+    if (source.events && !accumulateRootMotion(source)) return;
     _sources[_count++].emplace(std::move(source));
 }
 
 /// Clips that fade out report only markers: Looped and Finished belong to the current clip.
-bool StepEvents::goOn(Source& source)
+bool FrameEvents::accumulateRootMotion(Source& source)
 {
     if (!source.events) return false;
     do
@@ -162,14 +163,14 @@ bool StepEvents::goOn(Source& source)
     return true;
 }
 
-bool StepEvents::next(AnimationEvent& out)
+bool FrameEvents::next(AnimationEvent& out)
 {
     std::size_t first = _count;
     for (std::size_t s = 0; s < _count; ++s)
         if (_sources[s] && (first == _count || _sources[s]->event.moment < _sources[first]->event.moment)) first = s;
     if (first == _count) return false;
     out = _sources[first]->event;
-    if (!goOn(*_sources[first])) _sources[first].reset();
+    if (!accumulateRootMotion(*_sources[first])) _sources[first].reset();
     return true;
 }
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <osgGpuAnimation/animation/Playback.h>
 #include <osgGpuAnimation/animation/Clip.h>
 #include <osgGpuAnimation/animation/ClipMixer.h>
+#include <osgGpuAnimation/animation/Playback.h>
 
 #include <array>
 #include <cstddef>
@@ -30,7 +30,7 @@ public:
     static constexpr double maxCrossings = 100000.0;
 
     /// The clip must outlive this.
-    ClipMoveEvents(const Clip& clip, const ClipMove& move, LoopMode loopMode);
+    ClipMoveEvents(const Clip& clip, const PlaybackStep& move, LoopMode loopMode);
 
     /// Goes to the next event; false after the last one.
     bool next();
@@ -45,7 +45,7 @@ private:
     void tell(AnimationEvent::Type type, double time);
 
     const Clip& _clip;
-    ClipMove _move;
+    PlaybackStep _move;
     LoopMode _loopMode;
     double _crossingsLeft;
     bool _isAscending;
@@ -73,7 +73,7 @@ struct LayerStep
 
 /// All events of one step of all layers in the order in which they happened. It copies what it needs of the layers, so
 /// callbacks may modify them. Does not allocate.
-class StepEvents
+class FrameEvents
 {
 public:
     /// Adds the events of a layer. clips: of the layer's set; they must outlive this object.
@@ -91,9 +91,9 @@ private:
     };
 
     void addSource(const AnimationEvent& event, std::optional<ClipMoveEvents> events, bool isFadingOut);
-    static bool goOn(Source& source);
+    static bool accumulateRootMotion(Source& source);
 
-    std::array<std::optional<Source>, maxLayers*(ClipMixer::maxVoices + 2)> _sources;
+    std::array<std::optional<Source>, maxLayers*(ClipMixer::maxActiveClips + 2)> _sources;
     std::size_t _count = 0;
 };
 

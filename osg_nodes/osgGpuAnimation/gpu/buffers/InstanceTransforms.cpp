@@ -6,36 +6,38 @@
 namespace osgGpuAnimation
 {
 
-PlacementBuffers::PlacementBuffers(unsigned int contextId) : osg::GraphicsObjectManager("PlacementBuffers", contextId)
+InstanceTransformBuffers::InstanceTransformBuffers(unsigned int contextId)
+    : osg::GraphicsObjectManager("PlacementBuffers", contextId)
 {
     for (List& list : _lists)
         list.buffer = std::make_unique<BufferTexture>(*osg::GLExtensions::Get(contextId, true), GL_RGBA32F_ARB);
 }
 
-PlacementBuffers& PlacementBuffers::of(osg::State& state)
+InstanceTransformBuffers& InstanceTransformBuffers::of(osg::State& state)
 {
-    return *osg::get<PlacementBuffers>(state.getContextID());
+    return *osg::get<InstanceTransformBuffers>(state.getContextID());
 }
 
-const BufferTexture& PlacementBuffers::buffer(std::uint64_t serial, const std::vector<Placement>& placements)
+const BufferTexture& InstanceTransformBuffers::buffer(std::uint64_t serial,
+                                                      const std::vector<InstanceTransform>& placements)
 {
     for (const List& list : _lists)
         if (list.serial == serial) return *list.buffer;
     List& list = _lists[_oldest];
     _oldest = (_oldest + 1) % _lists.size();
     list.serial = serial;
-    list.buffer->upload(placements.data(), placements.size() * sizeof(Placement));
+    list.buffer->upload(placements.data(), placements.size() * sizeof(InstanceTransform));
     return *list.buffer;
 }
 
-void PlacementBuffers::deleteAllGLObjects()
+void InstanceTransformBuffers::deleteAllGLObjects()
 {
     for (List& list : _lists)
         list.buffer->release();
     discardAllGLObjects();
 }
 
-void PlacementBuffers::discardAllGLObjects()
+void InstanceTransformBuffers::discardAllGLObjects()
 {
     for (List& list : _lists)
     {

@@ -16,26 +16,26 @@ namespace osgGpuAnimation
 {
 
 /// Where one instance of an instanced draw stands, as skin.glsl reads it: four vertex attributes.
-struct Placement
+struct InstanceTransform
 {
     AffineMatrix toEye; ///< from the character's own space to the eye's
     float pose = 0.0f;  ///< its number in the PoseBatch, a whole one
     std::array<float, 3> unused{};
 };
 
-static_assert(sizeof(Placement) == 4 * BufferTexture::texelBytes, "a placement is four attributes");
+static_assert(sizeof(InstanceTransform) == 4 * BufferTexture::texelBytes, "a placement is four attributes");
 
 /// One graphics context's buffers of placements: the last few lists that were drawn, since all meshes of the
 /// same characters follow one another. Only to be called on the draw side, with the context current.
-class PlacementBuffers : public osg::GraphicsObjectManager
+class InstanceTransformBuffers : public osg::GraphicsObjectManager
 {
 public:
-    explicit PlacementBuffers(unsigned int contextId);
+    explicit InstanceTransformBuffers(unsigned int contextId);
 
-    static PlacementBuffers& of(osg::State& state);
+    static InstanceTransformBuffers& of(osg::State& state);
 
     /// The buffer of the list, uploaded unless it is there. serial: the list's, never again another's.
-    const BufferTexture& buffer(std::uint64_t serial, const std::vector<Placement>& placements);
+    const BufferTexture& buffer(std::uint64_t serial, const std::vector<InstanceTransform>& placements);
 
     void flushDeletedGLObjects(double, double&) override {}
     void flushAllDeletedGLObjects() override {}
@@ -43,7 +43,7 @@ public:
     void discardAllGLObjects() override;
 
 protected:
-    ~PlacementBuffers() override = default;
+    ~InstanceTransformBuffers() override = default;
 
 private:
     struct List

@@ -19,14 +19,14 @@ struct PoseVariant
     bool hasWeights = false;        ///< some of the entries are weight blocks
     bool isRootLevel = false;       ///< entries have no parents
     bool hasRoots = false;          ///< instances have root matrices
-    bool hasLayers = false;         ///< some instance has samples of several standings
+    bool hasLayers = false;         ///< some instance has samples of several blend priorities
     bool hasMasks = false;          ///< some sample has a mask
     bool hasAdditive = false;       ///< some sample is additive
     bool hasExactKeys = false;      ///< some clip moves some of the tracks, in full precision
     bool hasCompactKeys = false;    ///< some compact clip moves some of the tracks
     int sampleCount = 0; ///< blend samples of an instance, where they are attributes; 0: there are more, to be fetched
-    PartMotion translationMotion = PartMotion::Held; ///< of the tracks, the most that any does in any clip
-    PartMotion scaleMotion = PartMotion::Held;
+    PartMotion translationMotion = PartMotion::Constant; ///< of the tracks, the most that any does in any clip
+    PartMotion scaleMotion = PartMotion::Constant;
 
     /// What the batch asks of the mix stage; of tracks that stay as they are.
     static PoseVariant of(const PoseBatch& batch);

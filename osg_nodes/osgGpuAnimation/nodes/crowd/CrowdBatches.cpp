@@ -110,13 +110,13 @@ float largestScale(const AffineMatrix& matrix)
 
 } // namespace
 
-int CrowdDetail::levelOf(std::uint32_t index) const
+int CrowdLod::levelOf(std::uint32_t index) const
 {
     const glm::vec4& sphere = _instances.sphere(index);
     return _scale.level(glm::vec3(sphere), sphere.w, largestScale(_instances.rootMatrix(index)));
 }
 
-void CrowdDetail::sort(std::vector<std::uint32_t>& indices, std::vector<Run>& outRuns) const
+void CrowdLod::sort(std::vector<std::uint32_t>& indices, std::vector<Run>& outRuns) const
 {
     static thread_local std::vector<LevelIndices> levels; // keeps its storage from cull to cull
     for (LevelIndices& level : levels)
@@ -152,7 +152,8 @@ namespace
 using Indices = std::vector<std::uint32_t>;
 
 /// By what their poses cost to mix; those that are too few for a batch join the next dearer.
-void sortByLoad(const CrowdInstances& instances, const Indices& seen, std::array<Indices, PoseBatch::loadCount>& loads)
+void sortByBlendCost(const CrowdInstances& instances, const Indices& seen,
+                     std::array<Indices, PoseBatch::blendCostCount>& loads)
 {
     for (Indices& load : loads)
         load.clear();
@@ -160,7 +161,7 @@ void sortByLoad(const CrowdInstances& instances, const Indices& seen, std::array
         loads[static_cast<std::size_t>(instances.load(index))].push_back(index);
     std::size_t dearer = loads.size() - 1;
     for (std::size_t load = dearer; load-- > 0;)
-        if (!loads[load].empty() && loads[load].size() < PoseBatch::worthABatch && !loads[dearer].empty())
+        if (!loads[load].empty() && loads[load].size() < PoseBatch::minBatchSize && !loads[dearer].empty())
         {
             loads[dearer].insert(loads[dearer].end(), loads[load].begin(), loads[load].end());
             loads[load].clear();
@@ -171,25 +172,25 @@ void sortByLoad(const CrowdInstances& instances, const Indices& seen, std::array
 
 } // namespace
 
-std::vector<DrawState> enlistSeen(PoseFrame& frame, const CrowdInstances& instances, const CrowdDetail& detail,
+std::vector<DrawState> submitSeen(PoseFrame& frame, const CrowdInstances& instances, const CrowdLod& detail,
                                   const std::vector<std::uint32_t>& seen)
 {
-    static thread_local std::array<Indices, PoseBatch::loadCount> loads;
-    sortByLoad(instances, seen, loads);
+    static thread_local std::array<Indices, PoseBatch::blendCostCount> loads;
+    sortByBlendCost(instances, seen, loads);
     std::vector<DrawState> draws;
-    std::vector<CrowdDetail::Run> runs;
+    std::vector<CrowdLod::Run> runs;
     for (Indices& load : loads)
     {
         if (load.empty()) continue;
         if (detail.isOn()) detail.sort(load, runs);
         std::unique_ptr<PoseBatch> batch = frame.makeBatch(instances.set());
         instances.addTo(*batch, load);
-        const EnlistedBatch enlisted = frame.enlist(std::move(batch));
-        if (!detail.isOn()) draws.push_back(enlisted.all);
+        const SubmittedBatch submitted = frame.submit(std::move(batch));
+        if (!detail.isOn()) draws.push_back(submitted.all);
         std::size_t first = 0;
-        for (const CrowdDetail::Run& run : runs)
+        for (const CrowdLod::Run& run : runs)
         {
-            draws.push_back(frame.partState(*instances.set(), enlisted.slot, first, run.count, run.level));
+            draws.push_back(frame.partState(*instances.set(), submitted.slot, first, run.count, run.level));
             first += run.count;
         }
     }

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
-#include <osgGpuAnimation/nodes/lod/LodSelection.h>
 #include <osgGpuAnimation/nodes/frame/PaletteBinding.h>
 #include <osgGpuAnimation/nodes/frame/PoseFrame.h>
+#include <osgGpuAnimation/nodes/lod/LodSelection.h>
 #include <osgGpuAnimation/nodes/picking/PosedMesh.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
@@ -55,7 +55,7 @@ private:
 };
 
 /// Levels of detail of a crowd's instances as one camera sees them.
-class CrowdDetail
+class CrowdLod
 {
 public:
     /// Instances of one level, one after another.
@@ -65,7 +65,7 @@ public:
         std::size_t count;
     };
 
-    CrowdDetail(const CrowdInstances& instances, const DetailScale& scale) : _instances(instances), _scale(scale) {}
+    CrowdLod(const CrowdInstances& instances, const LodScale& scale) : _instances(instances), _scale(scale) {}
 
     bool isOn() const { return _scale.isOn(); }
     /// Puts those of one level together, the finest first; otherwise they stay in their order.
@@ -75,14 +75,14 @@ private:
     int levelOf(std::uint32_t index) const;
 
     const CrowdInstances& _instances;
-    const DetailScale& _scale;
+    const LodScale& _scale;
 };
 
 /// Has the frame evaluate the poses of the instances that a camera sees of a crowd, and returns the states to draw the
 /// crowd's meshes with, one a draw. Instances that show one clip form one batch, those that mix clips others, where
 /// there are many (PoseBatch::Load). Each level of detail in use has a draw of its own. seen: indices. Several cameras
 /// may cull at once.
-std::vector<DrawState> enlistSeen(PoseFrame& frame, const CrowdInstances& instances, const CrowdDetail& detail,
+std::vector<DrawState> submitSeen(PoseFrame& frame, const CrowdInstances& instances, const CrowdLod& detail,
                                   const std::vector<std::uint32_t>& seen);
 
 } // namespace osgGpuAnimation

@@ -219,9 +219,9 @@ void CrowdInstances::findSeen(const std::vector<glm::vec4>& planes, std::vector<
     }
 }
 
-PoseBatch::Load CrowdInstances::load(std::size_t index) const
+PoseBatch::BlendCost CrowdInstances::load(std::size_t index) const
 {
-    return _controllers[index] ? PoseBatch::loadOf(_controllers[index]->instruction()) : PoseBatch::Load::Plain;
+    return _controllers[index] ? PoseBatch::loadOf(_controllers[index]->instruction()) : PoseBatch::BlendCost::Plain;
 }
 
 void CrowdInstances::addTo(PoseBatch& batch, const std::vector<std::uint32_t>& indices) const

@@ -68,7 +68,7 @@ public:
     const glm::vec4& sphere(std::size_t index) const { return _spheres[index]; } ///< centre, radius; negative: nothing
     std::uint32_t tint(std::size_t index) const { return _tints[index]; }
     PoseInstruction instruction(std::size_t index) const;
-    PoseBatch::Load load(std::size_t index) const; ///< of its instruction
+    PoseBatch::BlendCost load(std::size_t index) const; ///< of its instruction
     /// Holds until the next advance(), which takes it back where a CrowdPlayback will do.
     AnimationController& controller(std::size_t index);
     AnimationController controllerCopy(std::size_t index) const;

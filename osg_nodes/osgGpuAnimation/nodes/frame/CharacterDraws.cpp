@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/frame/CharacterDraws.h>
 
+#include <osgGpuAnimation/nodes/frame/InstancedDraw.h>
 #include <osgGpuAnimation/nodes/lod/LodSelection.h>
 #include <osgGpuAnimation/nodes/mesh/PaletteEntryBounds.h>
 #include <osgGpuAnimation/nodes/OsgMatrix.h>
-#include <osgGpuAnimation/nodes/frame/InstancedDraw.h>
 
 #include <osgUtil/Statistics>
 
@@ -24,7 +24,7 @@ void DrawnInstances::accept(osg::PrimitiveFunctor& functor) const
 {
     if (auto* statistics = dynamic_cast<osgUtil::Statistics*>(&functor)) --statistics->numDrawables;
     for (const Draw& draw : _draws)
-        for (std::size_t instance = 1; instance < draw.binding->drawnCount(); ++instance)
+        for (std::size_t instance = 1; instance < draw.binding->getDrawnCount(); ++instance)
             draw.mesh->accept(functor);
 }
 
@@ -46,7 +46,7 @@ bool isOrderedByState(const osg::StateSet* stateSet)
 bool canBeDrawnTogether(const SkinnedGeometry& mesh)
 {
     return !mesh.getCullCallback() && !mesh.getDrawCallback() && mesh.getBoundingBox().valid() &&
-           isOrderedByState(mesh.getStateSet()) && !PlacedDraw::isRefusedBy(mesh);
+           isOrderedByState(mesh.getStateSet()) && !InstancedDraw::isRefusedBy(mesh);
 }
 
 bool canDrawTogether(osgUtil::CullVisitor& visitor)
@@ -80,8 +80,8 @@ bool CharacterDraws::Detail::isOf(const osg::Group& node) const
     return true;
 }
 
-void CharacterDraws::draw(osgUtil::CullVisitor& visitor, DetailView& view, const DrawnCharacter& character,
-                          PoseFrame& frame, EnlistedPose pose)
+void CharacterDraws::draw(osgUtil::CullVisitor& visitor, LodView& view, const DrawnCharacter& character,
+                          PoseFrame& frame, SubmittedPose pose)
 {
     const int level = levelOf(visitor, view, character);
     std::vector<osg::Node*> others; // not kept for its memory: there may be characters below them
@@ -99,22 +99,22 @@ void CharacterDraws::draw(osgUtil::CullVisitor& visitor, DetailView& view, const
     if (state) visitor.popStateSet();
 }
 
-int CharacterDraws::levelOf(osgUtil::CullVisitor& visitor, DetailView& view, const DrawnCharacter& character)
+int CharacterDraws::levelOf(osgUtil::CullVisitor& visitor, LodView& view, const DrawnCharacter& character)
 {
-    if (!(character.pixelError > 0.0f)) return DetailLevels::allTriangles;
-    const Detail& detail = detailOf(character);
-    if (!detail.box.valid()) return DetailLevels::allTriangles;
+    if (!(character.pixelError > 0.0f)) return LodLevels::allTriangles;
+    const Detail& detail = lodOf(character);
+    if (!detail.box.valid()) return LodLevels::allTriangles;
     const osg::Vec3 centre = detail.box.center();
-    return DetailScale(visitor, view, character.pixelError, detail.range)
+    return LodScale(visitor, view, character.pixelError, detail.range)
         .level(glm::vec3(centre.x(), centre.y(), centre.z()), detail.box.radius(), 1.0f);
 }
 
 // Characters of one set share their meshes as a rule; where they do not, each one's have levels.
-const CharacterDraws::Detail& CharacterDraws::detailOf(const DrawnCharacter& character)
+const CharacterDraws::Detail& CharacterDraws::lodOf(const DrawnCharacter& character)
 {
-    Detail& detail = _details[&character.controller.set()];
+    Detail& detail = _lods[&character.controller.set()];
     if (detail.isOf(character.node)) return detail;
-    detail = {{}, DetailRange(character.node, character.controller.set()), {}};
+    detail = {{}, LodRange(character.node, character.controller.set()), {}};
     for (unsigned int i = 0; i < character.node.getNumChildren(); ++i)
         detail.children.push_back(character.node.getChild(i));
     forEachMesh(character.node, [&](const SkinnedGeometry& mesh) { detail.box.expandBy(mesh.getBoundingBox()); });
@@ -123,7 +123,7 @@ const CharacterDraws::Detail& CharacterDraws::detailOf(const DrawnCharacter& cha
 
 // True where the meshes that can be shared are dealt with; false where all is to be drawn as it is.
 bool CharacterDraws::drawTogether(osgUtil::CullVisitor& visitor, const DrawnCharacter& character, PoseFrame& frame,
-                                  EnlistedPose pose, int level, std::vector<osg::Node*>& outOthers)
+                                  SubmittedPose pose, int level, std::vector<osg::Node*>& outOthers)
 {
     _asked.bin = visitor.getCurrentRenderBin();
     _asked.projection = visitor.getProjectionMatrix();

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <osgGpuAnimation/nodes/lod/LodSelection.h>
 #include <osgGpuAnimation/nodes/frame/PaletteBinding.h>
 #include <osgGpuAnimation/nodes/frame/PoseFrame.h>
+#include <osgGpuAnimation/nodes/lod/LodSelection.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
 #include <osg/Drawable>
@@ -51,7 +51,7 @@ struct DrawnCharacter
 {
     osg::Group& node; ///< whose children are drawn
     const AnimationController& controller;
-    float pixelError;     ///< pixels, see DetailRange
+    float pixelError;     ///< pixels, see LodRange
     bool isDrawnTogether; ///< whether it may share instanced draws with others
 };
 
@@ -59,10 +59,9 @@ struct DrawnCharacter
 /// (the same meshes below the same state, in a bin whose order is the state's) is drawn as it is; all after it
 /// together, by one instanced draw a mesh primitive.
 ///
-/// Drawn as they are: meshes with callbacks or arrays where placements go (PlacedDraw::isRefusedBy), in bins sorted by
-/// depth or traversal, and deeper than the character's own
-/// children; everything where near and far planes come from primitives, or where a StateSet of its own sets a
-/// character apart.
+/// Drawn as they are: meshes with callbacks or arrays where placements go (InstancedDraw::isRefusedBy), in bins sorted
+/// by depth or traversal, and deeper than the character's own children; everything where near and far planes come from
+/// primitives, or where a StateSet of its own sets a character apart.
 class CharacterDraws
 {
 public:
@@ -70,13 +69,13 @@ public:
     void begin(DrawnInstances* counted)
     {
         _groups.clear();
-        _details.clear();
+        _lods.clear();
         _counted = counted;
     }
 
-    /// Hands what is below the character on to be drawn. pose: what the frame has enlisted it as. view: the visitor's.
-    void draw(osgUtil::CullVisitor& visitor, DetailView& view, const DrawnCharacter& character, PoseFrame& frame,
-              EnlistedPose pose);
+    /// Hands what is below the character on to be drawn. pose: what the frame has submitted it as. view: the visitor's.
+    void draw(osgUtil::CullVisitor& visitor, LodView& view, const DrawnCharacter& character, PoseFrame& frame,
+              SubmittedPose pose);
 
 private:
     /// Characters that differ in nothing but their poses and placements.
@@ -98,22 +97,22 @@ private:
     struct Detail
     {
         std::vector<const osg::Node*> children;
-        DetailRange range;
+        LodRange range;
         osg::BoundingBox box; ///< of the meshes
 
         bool isOf(const osg::Group& node) const;
     };
 
     bool drawTogether(osgUtil::CullVisitor& visitor, const DrawnCharacter& character, PoseFrame& frame,
-                      EnlistedPose pose, int level, std::vector<osg::Node*>& outOthers);
-    int levelOf(osgUtil::CullVisitor& visitor, DetailView& view, const DrawnCharacter& character);
-    const Detail& detailOf(const DrawnCharacter& character);
+                      SubmittedPose pose, int level, std::vector<osg::Node*>& outOthers);
+    int levelOf(osgUtil::CullVisitor& visitor, LodView& view, const DrawnCharacter& character);
+    const Detail& lodOf(const DrawnCharacter& character);
     void open(osgUtil::CullVisitor& visitor, Group& group, PoseFrame& frame, float depth);
 
     std::unordered_map<const osgUtil::StateGraph*, std::vector<Group>> _groups;
-    std::unordered_map<const AnimationSet*, Detail> _details; ///< of each set's last character
-    Group _asked;                                             ///< kept for its memory
-    DrawnInstances* _counted = nullptr;                       ///< the PoseStage's
+    std::unordered_map<const AnimationSet*, Detail> _lods; ///< of each set's last character
+    Group _asked;                                          ///< kept for its memory
+    DrawnInstances* _counted = nullptr;                    ///< the PoseStage's
 };
 
 } // namespace osgGpuAnimation

@@ -30,7 +30,7 @@ private:
 /// While it lives: where the camera that is culled for has a depth buffer and no colour buffer attached, as osgShadow's
 /// have, the state of all that is culled has the shader define POSE_DEPTH_ONLY. Programs may leave out what makes
 /// colours then; the kit's own does. Levels of detail take such a camera, where it is absolute, for that of a shadow
-/// map, though it may draw a height map or depths to pick by: see DetailView.
+/// map, though it may draw a height map or depths to pick by: see LodView.
 class DepthPass
 {
 public:

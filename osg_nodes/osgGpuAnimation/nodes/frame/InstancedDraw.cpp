@@ -107,21 +107,21 @@ namespace
 constexpr unsigned int attributeLocations[] = {POSE_PLACEMENT_ROW_0_LOCATION, POSE_PLACEMENT_ROW_1_LOCATION,
                                                POSE_PLACEMENT_ROW_2_LOCATION, POSE_PLACED_POSE_LOCATION};
 
-std::size_t poseOf(const Placement& placement)
+std::size_t poseOf(const InstanceTransform& placement)
 {
     return static_cast<std::size_t>(placement.pose);
 }
 
 } // namespace
 
-PlacedDraw::PlacedDraw(osg::State& state, const PaletteBinding& binding) : _state(state), _binding(binding)
+InstancedDraw::InstancedDraw(osg::State& state, const PaletteBinding& binding) : _state(state), _binding(binding)
 {
     const osg::Program::PerContextProgram* program = state.getLastAppliedProgramObject();
     if (!program || program->getAttribLocation("posePlacedPose") != POSE_PLACED_POSE_LOCATION) return;
-    _placements = &PlacementBuffers::of(state).buffer(binding.serial(), binding.placements());
+    _placements = &InstanceTransformBuffers::of(state).buffer(binding.getSerial(), binding.getInstanceTransforms());
 }
 
-PlacedDraw::~PlacedDraw()
+InstancedDraw::~InstancedDraw()
 {
     if (_placements)
     {
@@ -137,10 +137,10 @@ PlacedDraw::~PlacedDraw()
     _state.applyModelViewAndProjectionUniformsIfRequired();
 }
 
-PlacedDraw::Run PlacedDraw::run(const PosePipeline& pipeline, std::size_t first) const
+InstancedDraw::Run InstancedDraw::run(const PosePipeline& pipeline, std::size_t first) const
 {
-    const std::vector<Placement>& placements = _binding.placements();
-    Run run{pipeline.place(*_binding.animationSet(), _binding.slot(), poseOf(placements[first])), 1};
+    const std::vector<InstanceTransform>& placements = _binding.getInstanceTransforms();
+    Run run{pipeline.place(*_binding.getAnimationSet(), _binding.getSlot(), poseOf(placements[first])), 1};
     if (!_placements || run.place.texture == 0) return run;
     const auto isInChunk = [&](std::size_t pose) { return pose >= run.place.chunkBegin && pose < run.place.chunkEnd; };
     while (first + run.count < placements.size() && isInChunk(poseOf(placements[first + run.count])))
@@ -149,25 +149,25 @@ PlacedDraw::Run PlacedDraw::run(const PosePipeline& pipeline, std::size_t first)
     return run;
 }
 
-void PlacedDraw::use(std::size_t first) const
+void InstancedDraw::use(std::size_t first) const
 {
     if (_placements)
     {
         // What is bound below is not what OSG knows to be bound.
         _state.getCurrentVertexArrayState()->unbindVertexBufferObject();
-        std::size_t offset = first * sizeof(Placement);
+        std::size_t offset = first * sizeof(InstanceTransform);
         for (const unsigned int location : attributeLocations)
         {
-            _placements->bindAttributes(location, 1, sizeof(Placement), offset, 1);
+            _placements->bindAttributes(location, 1, sizeof(InstanceTransform), offset, 1);
             offset += BufferTexture::texelBytes;
         }
         return;
     }
-    _state.applyModelViewMatrix(new osg::RefMatrix(toOsg(_binding.placements()[first].toEye)));
+    _state.applyModelViewMatrix(new osg::RefMatrix(toOsg(_binding.getInstanceTransforms()[first].toEye)));
     _state.applyModelViewAndProjectionUniformsIfRequired();
 }
 
-bool PlacedDraw::isRefusedBy(const osg::Geometry& mesh)
+bool InstancedDraw::isRefusedBy(const osg::Geometry& mesh)
 {
     // Contexts may alias numbered attributes with texture coordinates and secondary colours.
     return mesh.getNumTexCoordArrays() > 1 || mesh.getSecondaryColorArray() ||

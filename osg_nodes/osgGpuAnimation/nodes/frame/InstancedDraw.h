@@ -42,7 +42,7 @@ void bindPalette(osg::State& state, const PalettePlace& place, int influences, i
 
 /// While a mesh of several placed characters is drawn: tells the program where they stand. A program that cannot be
 /// told (it does not link skin.glsl) is given one after another, by the model-view matrix.
-class PlacedDraw
+class InstancedDraw
 {
 public:
     /// Placements that one draw can take, and where their palettes are.
@@ -52,10 +52,10 @@ public:
         std::size_t count = 0;
     };
 
-    PlacedDraw(osg::State& state, const PaletteBinding& binding);
-    ~PlacedDraw();
-    PlacedDraw(const PlacedDraw&) = delete;
-    PlacedDraw& operator=(const PlacedDraw&) = delete;
+    InstancedDraw(osg::State& state, const PaletteBinding& binding);
+    ~InstancedDraw();
+    InstancedDraw(const InstancedDraw&) = delete;
+    InstancedDraw& operator=(const InstancedDraw&) = delete;
 
     /// The run that begins with the placement of that number.
     Run run(const PosePipeline& pipeline, std::size_t first) const;

@@ -22,7 +22,7 @@ void PaletteBinding::set(std::shared_ptr<const AnimationSet> set, std::size_t sl
     _instanceCount = instanceCount;
     _placements.clear();
     _serial = 0;
-    _level = DetailLevels::allTriangles;
+    _level = LodLevels::allTriangles;
 }
 
 void PaletteBinding::setPlaced(std::shared_ptr<const AnimationSet> set, std::size_t slot)

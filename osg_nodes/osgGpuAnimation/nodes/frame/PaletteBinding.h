@@ -24,26 +24,26 @@ public:
     PaletteBinding(const PaletteBinding& other, const osg::CopyOp& copyop = osg::CopyOp::SHALLOW_COPY);
     META_StateAttribute(osgGpuAnimation, PaletteBinding, bindingType)
 
-        void set(std::shared_ptr<const AnimationSet> set, std::size_t slot, std::size_t instance,
-                 std::size_t instanceCount = 1);
+    void set(std::shared_ptr<const AnimationSet> set, std::size_t slot, std::size_t instance,
+             std::size_t instanceCount = 1);
     /// At which level of detail the instances are drawn; set() and setPlaced() make it all triangles.
     void setLevel(int level) { _level = level; }
-    int level() const { return _level; }
+    int getLevel() const { return _level; }
     /// For instances that are drawn together, each at a placement of its own; there are none at first.
     void setPlaced(std::shared_ptr<const AnimationSet> set, std::size_t slot);
-    void add(const Placement& placement) { _placements.push_back(placement); }
-    const std::vector<Placement>& placements() const { return _placements; }
-    std::uint64_t serial() const
+    void add(const InstanceTransform& placement) { _placements.push_back(placement); }
+    const std::vector<InstanceTransform>& getInstanceTransforms() const { return _placements; }
+    std::uint64_t getSerial() const
     {
         return _serial;
     } ///< of the list of placements; 0: instances stand where the draw does
 
-    const AnimationSet* animationSet() const { return _set.get(); }
-    std::size_t slot() const { return _slot; }
-    std::size_t instance() const { return _instance; }           ///< the first to be drawn
-    std::size_t instanceCount() const { return _instanceCount; } ///< that are to be drawn, one after another
+    const AnimationSet* getAnimationSet() const { return _set.get(); }
+    std::size_t getSlot() const { return _slot; }
+    std::size_t getInstance() const { return _instance; }           ///< the first to be drawn
+    std::size_t getInstanceCount() const { return _instanceCount; } ///< that are to be drawn, one after another
     /// Instances that a draw shows, whichever way.
-    std::size_t drawnCount() const { return _serial != 0 ? _placements.size() : _instanceCount; }
+    std::size_t getDrawnCount() const { return _serial != 0 ? _placements.size() : _instanceCount; }
 
     int compare(const osg::StateAttribute& other) const override;
     void apply(osg::State&) const override {}
@@ -56,9 +56,9 @@ private:
     std::size_t _slot = 0;
     std::size_t _instance = 0;
     std::size_t _instanceCount = 1;
-    std::vector<Placement> _placements;
+    std::vector<InstanceTransform> _placements;
     std::uint64_t _serial = 0;
-    int _level = DetailLevels::allTriangles;
+    int _level = LodLevels::allTriangles;
 };
 
 } // namespace osgGpuAnimation

@@ -70,29 +70,29 @@ void PoseFrame::reset()
     _spareBatches.resize(std::min(_spareBatches.size(), 2 * _batches.size()));
     _batches.clear();
     _batchesOfSet.clear();
-    _enlisted.clear();
+    _submitted.clear();
     _samples.clear();
     for (StatePool* pool : {&_plainStates, &_tintedStates, &_placedStates})
         pool->reset();
 }
 
-EnlistedPose PoseFrame::enlist(const osg::Node& node, const AnimationController& controller)
+SubmittedPose PoseFrame::submit(const osg::Node& node, const AnimationController& controller)
 {
     const std::lock_guard<std::mutex> lock(_mutex);
-    Enlisted& enlisted = _enlisted[&node];
-    if (!isStill(enlisted, controller))
+    Submitted& submitted = _submitted[&node];
+    if (!isStill(submitted, controller))
     {
         const PoseInstruction& instruction = controller.instruction();
         Batch& batch = openBatch(controller);
-        enlisted = {&batch, batch.content->add(instruction), _samples.size(), instruction.sampleCount, nullptr};
+        submitted = {&batch, batch.content->add(instruction), _samples.size(), instruction.sampleCount, nullptr};
         _samples.insert(_samples.end(), instruction.samples.begin(),
                         instruction.samples.begin() + static_cast<std::ptrdiff_t>(instruction.sampleCount));
     }
-    return {enlisted.batch->slot, enlisted.instance};
+    return {submitted.batch->slot, submitted.instance};
 }
 
 // The address may be that of another node by now, in a viewer whose frames have the same numbers.
-bool PoseFrame::isStill(const Enlisted& known, const AnimationController& controller) const
+bool PoseFrame::isStill(const Submitted& known, const AnimationController& controller) const
 {
     const PoseInstruction& instruction = controller.instruction();
     return known.batch && &known.batch->content->set() == &controller.set() &&
@@ -102,16 +102,16 @@ bool PoseFrame::isStill(const Enlisted& known, const AnimationController& contro
                       _samples.begin() + static_cast<std::ptrdiff_t>(known.firstSample), isSame);
 }
 
-osg::StateSet* PoseFrame::stateOf(const osg::Node& node, const AnimationSet& set, EnlistedPose pose, int level)
+osg::StateSet* PoseFrame::stateOf(const osg::Node& node, const AnimationSet& set, SubmittedPose pose, int level)
 {
     const std::lock_guard<std::mutex> lock(_mutex);
-    Enlisted& enlisted = _enlisted[&node];
-    // A camera that culls at the same time may have enlisted it with another instruction meanwhile.
-    const bool isOther = enlisted.batch->slot != pose.slot || enlisted.instance != pose.instance;
+    Submitted& submitted = _submitted[&node];
+    // A camera that culls at the same time may have submitted it with another instruction meanwhile.
+    const bool isOther = submitted.batch->slot != pose.slot || submitted.instance != pose.instance;
     if (isOther) return stateOf(*_batchesOfSet[&set][pose.slot], pose.instance, 1, level).stateSet;
-    if (level != DetailLevels::allTriangles) return stateOf(*enlisted.batch, enlisted.instance, 1, level).stateSet;
-    if (!enlisted.stateSet) enlisted.stateSet = stateOf(*enlisted.batch, enlisted.instance, 1, level).stateSet;
-    return enlisted.stateSet;
+    if (level != LodLevels::allTriangles) return stateOf(*submitted.batch, submitted.instance, 1, level).stateSet;
+    if (!submitted.stateSet) submitted.stateSet = stateOf(*submitted.batch, submitted.instance, 1, level).stateSet;
+    return submitted.stateSet;
 }
 
 PoseFrame::Batch& PoseFrame::openBatch(const AnimationController& controller)
@@ -120,7 +120,7 @@ PoseFrame::Batch& PoseFrame::openBatch(const AnimationController& controller)
     const PoseInstruction& instruction = controller.instruction();
     const auto open =
         std::find_if(batches.begin(), batches.end(),
-                     [&](const Batch* batch) { return batch->isOpen() && batch->content->suits(instruction); });
+                     [&](const Batch* batch) { return batch->isOpen() && batch->content->accepts(instruction); });
     return open != batches.end() ? **open : addBatch(spareBatch(controller.sharedSet()));
 }
 
@@ -147,7 +147,7 @@ std::unique_ptr<PoseBatch> PoseFrame::makeBatch(std::shared_ptr<const AnimationS
     return spareBatch(std::move(set));
 }
 
-EnlistedBatch PoseFrame::enlist(std::unique_ptr<PoseBatch> content)
+SubmittedBatch PoseFrame::submit(std::unique_ptr<PoseBatch> content)
 {
     const std::lock_guard<std::mutex> lock(_mutex);
     for (const Batch* batch : _batchesOfSet[&content->set()])
@@ -157,7 +157,7 @@ EnlistedBatch PoseFrame::enlist(std::unique_ptr<PoseBatch> content)
             return {batch->slot, batch->all};
         }
     Batch& batch = addBatch(std::move(content));
-    batch.all = stateOf(batch, 0, batch.content->size(), DetailLevels::allTriangles);
+    batch.all = stateOf(batch, 0, batch.content->size(), LodLevels::allTriangles);
     return {batch.slot, batch.all};
 }
 
@@ -212,11 +212,11 @@ void PoseFrame::evaluate(osg::State& state, osg::Stats* stats)
     PosePipeline* pipeline = PosePipeline::of(state);
     if (!stats || !pipeline) return evaluateBatches(state, pipeline);
     FeedbackTimer& timer = FeedbackTimer::of(state);
-    const std::uint64_t evaluatedBefore = pipeline->counters().instancesEvaluated;
+    const std::uint64_t evaluatedBefore = pipeline->getCounters().instancesEvaluated;
     timer.begin();
     evaluateBatches(state, pipeline);
     timer.end(_frameNumber);
-    record(*stats, pipeline->counters().instancesEvaluated - evaluatedBefore);
+    record(*stats, pipeline->getCounters().instancesEvaluated - evaluatedBefore);
     for (const FeedbackTimer::Measured& measured : timer.takeFinished())
         addTo(*stats, measured.frameNumber, PoseStatistics::timeTaken, measured.seconds);
 }

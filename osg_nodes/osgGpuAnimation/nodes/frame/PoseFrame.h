@@ -23,7 +23,7 @@ namespace osgGpuAnimation
 {
 
 /// Where a frame has a character's pose: an instance of the batch of that slot.
-struct EnlistedPose
+struct SubmittedPose
 {
     std::size_t slot = 0;
     std::size_t instance = 0;
@@ -36,8 +36,8 @@ struct DrawState
     PaletteBinding* binding;
 };
 
-/// Where a frame has a batch that was enlisted whole.
-struct EnlistedBatch
+/// Where a frame has a batch that was submitted whole.
+struct SubmittedBatch
 {
     std::size_t slot;
     DrawState all; ///< for drawing all its instances
@@ -54,21 +54,21 @@ public:
     static osg::ref_ptr<PoseFrame> forContext(unsigned int contextId, const osg::FrameStamp* stamp);
 
     /// Adds the pose of a node's controller, unless the node is already in with the same instruction.
-    EnlistedPose enlist(const osg::Node& node, const AnimationController& controller);
-    /// The state for drawing the enlisted node as it is, at a level of detail: it holds its PaletteBinding and
+    SubmittedPose submit(const osg::Node& node, const AnimationController& controller);
+    /// The state for drawing the submitted node as it is, at a level of detail: it holds its PaletteBinding and
     /// stays unchanged while this frame is in use.
-    osg::StateSet* stateOf(const osg::Node& node, const AnimationSet& set, EnlistedPose pose, int level);
+    osg::StateSet* stateOf(const osg::Node& node, const AnimationSet& set, SubmittedPose pose, int level);
     /// A new state for drawing instances of that batch together; the caller gives the binding their placements.
     DrawState placedState(const AnimationSet& set, std::size_t slot, int level);
     /// A new state for drawing so many instances of that batch, from the first on.
     DrawState partState(const AnimationSet& set, std::size_t slot, std::size_t first, std::size_t count, int level);
 
-    /// An empty batch, to be filled by the caller alone and enlisted; its storage is that of earlier frames.
+    /// An empty batch, to be filled by the caller alone and submitted; its storage is that of earlier frames.
     std::unique_ptr<PoseBatch> makeBatch(std::shared_ptr<const AnimationSet> set);
     /// Takes a whole batch up, unless the same is in already (several cameras may see the same). batch: not empty.
-    EnlistedBatch enlist(std::unique_ptr<PoseBatch> batch);
+    SubmittedBatch submit(std::unique_ptr<PoseBatch> batch);
 
-    /// Evaluates what was enlisted and not evaluated yet. stats: where to record what there was to do, see
+    /// Evaluates what was submitted and not evaluated yet. stats: where to record what there was to do, see
     /// PoseStatistics; null: nowhere.
     void evaluate(osg::State& state, osg::Stats* stats);
 
@@ -87,7 +87,7 @@ private:
 
         bool isOpen() const { return !all.stateSet && !isEvaluated; }
     };
-    struct Enlisted
+    struct Submitted
     {
         const Batch* batch;
         std::size_t instance;
@@ -109,7 +109,7 @@ private:
     void reset();
     void evaluateBatches(osg::State& state, PosePipeline* pipeline);
     void record(osg::Stats& stats, std::uint64_t evaluated) const;
-    bool isStill(const Enlisted& known, const AnimationController& controller) const;
+    bool isStill(const Submitted& known, const AnimationController& controller) const;
     Batch& openBatch(const AnimationController& controller);
     Batch& addBatch(std::unique_ptr<PoseBatch> content);
     std::unique_ptr<PoseBatch> spareBatch(std::shared_ptr<const AnimationSet> set);
@@ -122,8 +122,8 @@ private:
     std::vector<std::unique_ptr<Batch>> _batches;
     std::unordered_map<const AnimationSet*, std::vector<Batch*>> _batchesOfSet; ///< open ones: of several loads
     std::vector<std::unique_ptr<PoseBatch>> _spareBatches;
-    std::unordered_map<const osg::Node*, Enlisted> _enlisted;
-    std::vector<BlendSample> _samples; ///< of those enlisted
+    std::unordered_map<const osg::Node*, Submitted> _submitted;
+    std::vector<BlendSample> _samples; ///< of those submitted
     StatePool _plainStates{nullptr, {}, 0};
     StatePool _tintedStates{"POSE_TINTED", {}, 0};
     StatePool _placedStates{"POSE_PLACED", {}, 0}; ///< characters have no tints

@@ -67,8 +67,8 @@ void PoseStage::draw(osgUtil::CullVisitor& visitor, const DrawnCharacter& charac
     // Nowhere: the camera's far plane would go there too, and nothing be seen any more.
     if (!isFinite(*visitor.getModelViewMatrix())) return;
     PoseStage& stage = current(visitor);
-    stage._draws.draw(visitor, stage._detailView, character, *stage._frame,
-                      stage._frame->enlist(character.node, character.controller));
+    stage._draws.draw(visitor, stage._lodView, character, *stage._frame,
+                      stage._frame->submit(character.node, character.controller));
 }
 
 PoseFrame& PoseStage::frame(osgUtil::CullVisitor& visitor)
@@ -76,9 +76,9 @@ PoseFrame& PoseStage::frame(osgUtil::CullVisitor& visitor)
     return *current(visitor)._frame;
 }
 
-DetailView& PoseStage::detailView(osgUtil::CullVisitor& visitor)
+LodView& PoseStage::lodView(osgUtil::CullVisitor& visitor)
 {
-    return current(visitor)._detailView;
+    return current(visitor)._lodView;
 }
 
 void PoseStage::count(osgUtil::CullVisitor& visitor, const SkinnedGeometry& mesh, const PaletteBinding& binding)
@@ -122,7 +122,7 @@ void PoseStage::countDraws(osgUtil::CullVisitor& visitor)
 // Attached to the visitor's main stage, wherever the traversal is now: a shadow camera's stage may come later.
 void PoseStage::attach(osgUtil::CullVisitor& visitor)
 {
-    _detailView.clear();
+    _lodView.clear();
     countDraws(visitor);
     _draws.begin(_counted);
     _frame = nullptr; // so that its storage can be used again

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <osgGpuAnimation/nodes/frame/CharacterDraws.h>
-#include <osgGpuAnimation/nodes/lod/LodSelection.h>
 #include <osgGpuAnimation/nodes/frame/PoseFrame.h>
+#include <osgGpuAnimation/nodes/lod/LodSelection.h>
 
 #include <osg/Camera>
 #include <osgUtil/CullVisitor>
@@ -20,10 +20,10 @@ class PoseStage : public osg::Camera
 public:
     /// To be called by a character while it is culled and seen: has its pose evaluated and its children drawn.
     static void draw(osgUtil::CullVisitor& visitor, const DrawnCharacter& character);
-    /// The frame that the visitor's cull is part of, for those that enlist otherwise.
+    /// The frame that the visitor's cull is part of, for those that submit otherwise.
     static PoseFrame& frame(osgUtil::CullVisitor& visitor);
     /// What levels of detail go by where the visitor is.
-    static DetailView& detailView(osgUtil::CullVisitor& visitor);
+    static LodView& lodView(osgUtil::CullVisitor& visitor);
     /// Has the statistics of the visitor's camera, where there are any, count what a draw of the mesh for many shows.
     static void count(osgUtil::CullVisitor& visitor, const SkinnedGeometry& mesh, const PaletteBinding& binding);
 
@@ -43,7 +43,7 @@ private:
     const osgUtil::CullVisitor* _visitor; ///< whose stage this is: cull visitors get cloned with their user data
     osg::ref_ptr<PoseFrame> _frame;
     CharacterDraws _draws;
-    DetailView _detailView;
+    LodView _lodView;
     osg::ref_ptr<DrawnInstances> _counted; ///< null: no statistics of the camera are collected
 };
 

@@ -12,7 +12,7 @@
 namespace osgGpuAnimation
 {
 
-/// The vertices of a mesh as several poses have them: what SurfaceReduction goes by.
+/// The vertices of a mesh as several poses have them: what MeshSimplifier goes by.
 struct PosedSurface
 {
     std::vector<std::vector<glm::vec3>> poses; ///< one pose and more: positions, one a vertex

@@ -128,7 +128,7 @@ bool isFinite(const glm::vec3& position)
 }
 
 /// Without poses where the mesh is nowhere in one.
-PosedSurface surfaceOf(const osg::Geometry& mesh, const AnimationSet& set, const DetailLevels::Skinning& skin)
+PosedSurface surfaceOf(const osg::Geometry& mesh, const AnimationSet& set, const LodLevels::Skinning& skin)
 {
     PosedSurface surface;
     std::vector<AffineMatrix> palette;
@@ -208,12 +208,12 @@ osg::ref_ptr<osg::DrawElements> makeElements(const std::vector<std::uint32_t>& i
 
 } // namespace
 
-int DetailLevels::levelOf(double error)
+int LodLevels::levelOf(double error)
 {
     return error > 0.0 && std::isfinite(error) ? std::ilogb(error) : allTriangles;
 }
 
-DetailLevels::DetailLevels(const osg::Geometry& mesh, const AnimationSet& set, const Skinning& skin)
+LodLevels::LodLevels(const osg::Geometry& mesh, const AnimationSet& set, const Skinning& skin)
     : _vertices(mesh.getVertexArray()), _modifiedCount(_vertices ? _vertices->getModifiedCount() : 0)
 {
     for (const osg::ref_ptr<osg::PrimitiveSet>& primitives : mesh.getPrimitiveSetList())
@@ -230,11 +230,11 @@ DetailLevels::DetailLevels(const osg::Geometry& mesh, const AnimationSet& set, c
         addSteps(surface, std::ilogb(size) - finestFraction, coarsest, primitives);
 }
 
-void DetailLevels::addSteps(const PosedSurface& surface, int finest, int coarsest, Primitives& primitives)
+void LodLevels::addSteps(const PosedSurface& surface, int finest, int coarsest, Primitives& primitives)
 {
     const std::vector<std::uint32_t> original = trianglesOf(*primitives.original, surface.vertexCount());
     if (original.size() < 3 * fewTriangles) return;
-    SurfaceReduction reduction(surface, original);
+    MeshSimplifier reduction(surface, original);
     std::size_t kept = original.size() / 3;
     for (int level = finest; level <= coarsest; ++level)
     {
@@ -258,7 +258,7 @@ void DetailLevels::addSteps(const PosedSurface& surface, int finest, int coarses
     _coarsest = std::max(_coarsest, primitives.steps.back().level);
 }
 
-bool DetailLevels::isOf(const osg::Geometry& mesh) const
+bool LodLevels::isOf(const osg::Geometry& mesh) const
 {
     if (mesh.getVertexArray() != _vertices || mesh.getNumPrimitiveSets() != _primitives.size()) return false;
     if (_vertices && _vertices->getModifiedCount() != _modifiedCount) return false;
@@ -270,7 +270,7 @@ bool DetailLevels::isOf(const osg::Geometry& mesh) const
     return true;
 }
 
-const osg::DrawElements* DetailLevels::elements(std::size_t primitiveSet, int level) const
+const osg::DrawElements* LodLevels::elements(std::size_t primitiveSet, int level) const
 {
     const osg::DrawElements* found = nullptr;
     if (primitiveSet >= _primitives.size()) return found;
@@ -279,46 +279,46 @@ const osg::DrawElements* DetailLevels::elements(std::size_t primitiveSet, int le
     return found;
 }
 
-void DetailLevels::releaseGLObjects(osg::State* state) const
+void LodLevels::releaseGLObjects(osg::State* state) const
 {
     _buffer->releaseGLObjects(state);
 }
 
-void DetailLevels::resizeGLObjectBuffers(unsigned int maxSize) const
+void LodLevels::resizeGLObjectBuffers(unsigned int maxSize) const
 {
     _buffer->resizeGLObjectBuffers(maxSize);
 }
 
-std::shared_ptr<const DetailLevels> MeshDetail::known(const osg::Geometry& mesh) const
+std::shared_ptr<const LodLevels> MeshLod::known(const osg::Geometry& mesh) const
 {
-    std::shared_ptr<const DetailLevels> levels = std::atomic_load(&_levels);
+    std::shared_ptr<const LodLevels> levels = std::atomic_load(&_levels);
     return levels && levels->isOf(mesh) ? levels : nullptr;
 }
 
-std::shared_ptr<const DetailLevels> MeshDetail::of(const osg::Geometry& mesh, const AnimationSet& set,
-                                                   const DetailLevels::Skinning& skin) const
+std::shared_ptr<const LodLevels> MeshLod::of(const osg::Geometry& mesh, const AnimationSet& set,
+                                             const LodLevels::Skinning& skin) const
 {
-    if (std::shared_ptr<const DetailLevels> levels = known(mesh)) return levels;
+    if (std::shared_ptr<const LodLevels> levels = known(mesh)) return levels;
     const std::lock_guard<std::mutex> lock(_mutex);
-    if (std::shared_ptr<const DetailLevels> levels = known(mesh)) return levels;
-    auto made = std::make_shared<const DetailLevels>(mesh, set, skin);
-    std::atomic_store(&_levels, std::shared_ptr<const DetailLevels>(made));
+    if (std::shared_ptr<const LodLevels> levels = known(mesh)) return levels;
+    auto made = std::make_shared<const LodLevels>(mesh, set, skin);
+    std::atomic_store(&_levels, std::shared_ptr<const LodLevels>(made));
     return made;
 }
 
-void MeshDetail::forget()
+void MeshLod::forget()
 {
-    std::atomic_store(&_levels, std::shared_ptr<const DetailLevels>());
+    std::atomic_store(&_levels, std::shared_ptr<const LodLevels>());
 }
 
-void MeshDetail::releaseGLObjects(osg::State* state) const
+void MeshLod::releaseGLObjects(osg::State* state) const
 {
-    if (const std::shared_ptr<const DetailLevels> levels = std::atomic_load(&_levels)) levels->releaseGLObjects(state);
+    if (const std::shared_ptr<const LodLevels> levels = std::atomic_load(&_levels)) levels->releaseGLObjects(state);
 }
 
-void MeshDetail::resizeGLObjectBuffers(unsigned int maxSize) const
+void MeshLod::resizeGLObjectBuffers(unsigned int maxSize) const
 {
-    if (const std::shared_ptr<const DetailLevels> levels = std::atomic_load(&_levels))
+    if (const std::shared_ptr<const LodLevels> levels = std::atomic_load(&_levels))
         levels->resizeGLObjectBuffers(maxSize);
 }
 

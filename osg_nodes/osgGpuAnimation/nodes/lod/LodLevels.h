@@ -31,7 +31,7 @@ struct PosedSurface;
 /// units, whatever space the mesh's arrays are in: at level -3 no vertex of the mesh is farther than 1/8 from the
 /// surface that is drawn. So one level says the same of all meshes of a character.
 ///
-/// Made by SurfaceReduction in twelve poses at once (keyPoses() of the set), in each of which the level's error is
+/// Made by MeshSimplifier in twelve poses at once (keyPoses() of the set), in each of which the level's error is
 /// kept; in other poses it may be more: no more than half as much in tests at random times of real characters' clips.
 /// Primitive sets other than indexed triangles are drawn whole at all levels, as are meshes with positions that are not
 /// finite or with more than mostVertices. Of each piece of a mesh at least a triangle is left.
@@ -40,7 +40,7 @@ struct PosedSurface;
 /// not keep texture coordinates on their side of a seam.
 ///
 /// Immutable but for its GL objects, which OSG keeps by context; shared by the threads that cull and draw.
-class DetailLevels
+class LodLevels
 {
 public:
     static constexpr int allTriangles = std::numeric_limits<int>::min(); ///< the level without an error
@@ -53,8 +53,8 @@ public:
     using Skinning =
         std::function<void(const std::vector<AffineMatrix>& palette, std::vector<glm::dvec3>& outPositions)>;
 
-    /// The cost grows with the mesh's points times poses: see SurfaceReduction.
-    DetailLevels(const osg::Geometry& mesh, const AnimationSet& set, const Skinning& skin);
+    /// The cost grows with the mesh's points times poses: see MeshSimplifier.
+    LodLevels(const osg::Geometry& mesh, const AnimationSet& set, const Skinning& skin);
 
     /// Whether it was made for what the mesh's arrays and primitives are now.
     bool isOf(const osg::Geometry& mesh) const;
@@ -91,20 +91,20 @@ private:
     int _coarsest = allTriangles;
 };
 
-/// What a mesh keeps of its DetailLevels: made when they are first needed, once for all threads, and anew when the
+/// What a mesh keeps of its LodLevels: made when they are first needed, once for all threads, and anew when the
 /// mesh's vertices or primitives are others. Copies have the same ones.
-class MeshDetail
+class MeshLod
 {
 public:
-    MeshDetail() = default;
-    MeshDetail(const MeshDetail& other) : _levels(std::atomic_load(&other._levels)) {}
-    MeshDetail& operator=(const MeshDetail&) = delete;
+    MeshLod() = default;
+    MeshLod(const MeshLod& other) : _levels(std::atomic_load(&other._levels)) {}
+    MeshLod& operator=(const MeshLod&) = delete;
 
     /// Several threads that ask wait for the one that makes them.
-    std::shared_ptr<const DetailLevels> of(const osg::Geometry& mesh, const AnimationSet& set,
-                                           const DetailLevels::Skinning& skin) const;
+    std::shared_ptr<const LodLevels> of(const osg::Geometry& mesh, const AnimationSet& set,
+                                        const LodLevels::Skinning& skin) const;
     /// Null: they were not made, or are of what the mesh was before.
-    std::shared_ptr<const DetailLevels> known(const osg::Geometry& mesh) const;
+    std::shared_ptr<const LodLevels> known(const osg::Geometry& mesh) const;
     /// When what the vertices go by has changed.
     void forget();
 
@@ -113,7 +113,7 @@ public:
 
 private:
     mutable std::mutex _mutex;
-    mutable std::shared_ptr<const DetailLevels> _levels; ///< read and written as a whole
+    mutable std::shared_ptr<const LodLevels> _levels; ///< read and written as a whole
 };
 
 } // namespace osgGpuAnimation

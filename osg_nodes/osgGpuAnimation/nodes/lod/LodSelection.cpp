@@ -13,29 +13,29 @@
 namespace osgGpuAnimation
 {
 
-std::string DetailRange::pixelErrorsTaken()
+std::string LodRange::pixelErrorsTaken()
 {
     return "a number of pixels from 0 to " + std::to_string(largestPixelError);
 }
 
-Result<bool> DetailRange::prepare(float pixels, const osg::Group& meshes, const AnimationSet& set)
+Result<bool> LodRange::prepare(float pixels, const osg::Group& meshes, const AnimationSet& set)
 {
     if (!isPixelError(pixels))
         return Error{"a pixel error of " + std::to_string(pixels) + ": it must be " + pixelErrorsTaken()};
-    if (pixels > 0.0f && set.paletteSize() > 0) static_cast<void>(DetailRange(meshes, set));
+    if (pixels > 0.0f && set.paletteSize() > 0) static_cast<void>(LodRange(meshes, set));
     return true;
 }
 
-DetailRange::DetailRange(const osg::Group& meshes, const AnimationSet& set)
+LodRange::LodRange(const osg::Group& meshes, const AnimationSet& set)
 {
     std::size_t vertices = 0;
     forEachMesh(meshes,
                 [&](const SkinnedGeometry& mesh)
                 {
-                    vertices += mesh.vertexCount();
+                    vertices += mesh.getVertexCount();
                     if (vertices > mostVertices) return;
-                    const std::shared_ptr<const DetailLevels> levels = mesh.detailLevels(set);
-                    if (levels->finest() == DetailLevels::allTriangles) return;
+                    const std::shared_ptr<const LodLevels> levels = mesh.getLodLevels(set);
+                    if (levels->finest() == LodLevels::allTriangles) return;
                     _finest = std::min(_finest, levels->finest());
                     _coarsest = std::max(_coarsest, levels->coarsest());
                 });
@@ -52,7 +52,7 @@ bool isAbsolute(const osg::Node* node)
 
 } // namespace
 
-osg::Vec4 DetailView::pixelSizeVector(osgUtil::CullVisitor& visitor)
+osg::Vec4 LodView::pixelSizeVector(osgUtil::CullVisitor& visitor)
 {
     if (visitor.getProjectionMatrix() != _projection || visitor.getCurrentCamera() != _culled) find(visitor);
     if (!_eye) return visitor.getCurrentCullingSet().getPixelSizeVector();
@@ -60,7 +60,7 @@ osg::Vec4 DetailView::pixelSizeVector(osgUtil::CullVisitor& visitor)
                                                    *visitor.getModelViewMatrix() * _toEye);
 }
 
-void DetailView::find(osgUtil::CullVisitor& visitor)
+void LodView::find(osgUtil::CullVisitor& visitor)
 {
     _projection = visitor.getProjectionMatrix();
     _culled = visitor.getCurrentCamera();
@@ -80,13 +80,13 @@ void DetailView::find(osgUtil::CullVisitor& visitor)
     _toEye = _culled->getInverseViewMatrix() * osg::computeLocalToEye(root->getViewMatrix(), above, false);
 }
 
-DetailScale::Measure::Measure(const osg::Vec4& halfPixel, float pixelError)
+LodScale::Measure::Measure(const osg::Vec4& halfPixel, float pixelError)
     : errorAt(2.0f * pixelError * glm::vec4(halfPixel.x(), halfPixel.y(), halfPixel.z(), halfPixel.w())),
       slope(glm::length(glm::vec3(errorAt)))
 {
 }
 
-DetailScale::DetailScale(osgUtil::CullVisitor& visitor, DetailView& view, float pixelError, const DetailRange& range)
+LodScale::LodScale(osgUtil::CullVisitor& visitor, LodView& view, float pixelError, const LodRange& range)
     : _range(range)
 {
     if (!(pixelError > 0.0f)) return;
@@ -94,10 +94,10 @@ DetailScale::DetailScale(osgUtil::CullVisitor& visitor, DetailView& view, float 
     _own = Measure(visitor.getCurrentCullingSet().getPixelSizeVector(), pixelError);
 }
 
-int DetailScale::level(const glm::vec3& centre, float radius, float scale) const
+int LodScale::level(const glm::vec3& centre, float radius, float scale) const
 {
     const Measure& measure = _seen.farthest(centre, radius) < 0.0f ? _own : _seen;
-    return _range.held(DetailLevels::levelOf(measure.nearest(centre, radius) / scale));
+    return _range.held(LodLevels::levelOf(measure.nearest(centre, radius) / scale));
 }
 
 } // namespace osgGpuAnimation

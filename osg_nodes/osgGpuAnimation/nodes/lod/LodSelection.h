@@ -21,12 +21,12 @@ namespace osgGpuAnimation
 
 /// The levels of detail that some meshes have triangles for, from the finest to the coarsest of all: what is drawn at
 /// levels beyond is the same, so those need not be told apart.
-class DetailRange
+class LodRange
 {
 public:
     /// Vertices of a group's meshes together that levels are made of: meshes that come later are drawn whole, unless
     /// another group shows them too.
-    static constexpr std::size_t mostVertices = 10 * DetailLevels::mostVertices;
+    static constexpr std::size_t mostVertices = 10 * LodLevels::mostVertices;
     static constexpr int largestPixelError = 1'000'000;
 
     /// What setPixelError() of characters and crowds takes.
@@ -37,26 +37,26 @@ public:
     /// where it is 0, or the set has nothing to draw. Error: it is no pixel error.
     static Result<bool> prepare(float pixels, const osg::Group& meshes, const AnimationSet& set);
 
-    DetailRange() = default;
+    LodRange() = default;
     /// Of the SkinnedGeometry among a group's children; makes levels where there are none yet. Nothing else does:
     /// what else is drawn at a level is drawn whole.
-    DetailRange(const osg::Group& meshes, const AnimationSet& set);
+    LodRange(const osg::Group& meshes, const AnimationSet& set);
 
     int held(int level) const
     {
-        return level < _finest ? DetailLevels::allTriangles : level > _coarsest ? _coarsest : level;
+        return level < _finest ? LodLevels::allTriangles : level > _coarsest ? _coarsest : level;
     }
 
 private:
     int _finest = std::numeric_limits<int>::max();
-    int _coarsest = DetailLevels::allTriangles;
+    int _coarsest = LodLevels::allTriangles;
 };
 
 /// How large things are in the picture that levels of detail go by: what is being culled for; or, while that is an
 /// absolute camera for depths alone (see DepthPass), the picture of the camera above it, for which it is taken to be a
 /// shadow map. Which that is, and where from, is the same for all that a camera sees: it is kept until another one's
 /// turn. Of one cull visitor.
-class DetailView
+class LodView
 {
 public:
     /// At the beginning of a cull traversal: cameras may have moved.
@@ -76,16 +76,16 @@ private:
     osg::Matrix _toEye;                             ///< from the space of the camera that is culled for
 };
 
-/// Which of the DetailLevels a camera needs of what it sees: those whose error is at most so many pixels there, in
-/// small feature culling's measure. Shadow maps (see DetailView) show the levels of the camera that they are for: were
+/// Which of the LodLevels a camera needs of what it sees: those whose error is at most so many pixels there, in
+/// small feature culling's measure. Shadow maps (see LodView) show the levels of the camera that they are for: were
 /// the surface that casts a shadow finer than the one that is lit, this would lie in it here and there. What lies
 /// behind that camera's eye is not lit in its picture, and has the levels of the shadow map's own camera. Lives as long
 /// as the traversal is in that space.
-class DetailScale
+class LodScale
 {
 public:
     /// pixelError: pixels; 0: all triangles. range: of what is drawn.
-    DetailScale(osgUtil::CullVisitor& visitor, DetailView& view, float pixelError, const DetailRange& range);
+    LodScale(osgUtil::CullVisitor& visitor, LodView& view, float pixelError, const LodRange& range);
 
     /// centre, radius: of what is drawn, in the visitor's space. scale: units of that space to one of the
     /// character's own. The nearest point decides; what reaches behind the eye has all triangles.
@@ -108,7 +108,7 @@ private:
         float farthest(const glm::vec3& centre, float radius) const { return at(centre) + slope * radius; }
     };
 
-    DetailRange _range;
+    LodRange _range;
     Measure _seen; ///< of the picture that levels go by
     Measure _own;  ///< of the camera that is culled for
 };

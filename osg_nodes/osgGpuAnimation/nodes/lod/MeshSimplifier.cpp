@@ -46,14 +46,14 @@ std::vector<Edge> edgesOf(const CollapsibleMesh& mesh)
 
 } // namespace
 
-SurfaceReduction::SurfaceReduction(const PosedSurface& surface, const std::vector<std::uint32_t>& indices)
+MeshSimplifier::MeshSimplifier(const PosedSurface& surface, const std::vector<std::uint32_t>& indices)
     : _surface(surface), _mesh(surface, indices), _quadrics(_mesh.pointCount() * _mesh.poseCount())
 {
     addPlanes();
 }
 
 /// Of all triangles, and across them at open borders.
-void SurfaceReduction::addPlanes()
+void MeshSimplifier::addPlanes()
 {
     const std::size_t poseCount = _mesh.poseCount();
     const std::vector<Edge> edges = edgesOf(_mesh);
@@ -83,7 +83,7 @@ void SurfaceReduction::addPlanes()
     }
 }
 
-void SurfaceReduction::consider(std::uint32_t from, std::uint32_t to)
+void MeshSimplifier::consider(std::uint32_t from, std::uint32_t to)
 {
     const std::size_t poseCount = _mesh.poseCount();
     double cost = 0.0;
@@ -97,7 +97,7 @@ void SurfaceReduction::consider(std::uint32_t from, std::uint32_t to)
     if (cost <= _squaredLimit) _next.push({cost, from, to, _mesh.turnOf(from), _mesh.turnOf(to)});
 }
 
-void SurfaceReduction::considerAll()
+void MeshSimplifier::considerAll()
 {
     _next = {};
     for (std::uint32_t point = 0; point < _mesh.pointCount(); ++point)
@@ -105,7 +105,7 @@ void SurfaceReduction::considerAll()
             consider(point, neighbour);
 }
 
-void SurfaceReduction::reduce(double limit, bool keepSeams)
+void MeshSimplifier::reduce(double limit, bool keepSeams)
 {
     _squaredLimit = limit * limit;
     _keepsSeams = keepSeams;
@@ -118,7 +118,7 @@ void SurfaceReduction::reduce(double limit, bool keepSeams)
     }
 }
 
-bool SurfaceReduction::collapseWhatIsConsidered()
+bool MeshSimplifier::collapseWhatIsConsidered()
 {
     bool hasCollapsed = false;
     const std::size_t poseCount = _mesh.poseCount();
@@ -143,7 +143,7 @@ bool SurfaceReduction::collapseWhatIsConsidered()
 }
 
 /// The triangles that would be moved, as they would be then. False where the collapse is not allowed.
-bool SurfaceReduction::findCorners(std::uint32_t from, std::uint32_t to, std::vector<Corners>& outMoved) const
+bool MeshSimplifier::findCorners(std::uint32_t from, std::uint32_t to, std::vector<Corners>& outMoved) const
 {
     const std::vector<std::uint32_t>&here = _mesh.trianglesAt(from), &there = _mesh.trianglesAt(to);
     outMoved.clear();
@@ -161,7 +161,7 @@ bool SurfaceReduction::findCorners(std::uint32_t from, std::uint32_t to, std::ve
            std::any_of(there.begin(), there.end(), [&](std::uint32_t triangle) { return !_mesh.has(triangle, from); });
 }
 
-bool SurfaceReduction::turnsOver(const Corners& corners, std::uint32_t from, std::uint32_t to) const
+bool MeshSimplifier::turnsOver(const Corners& corners, std::uint32_t from, std::uint32_t to) const
 {
     for (std::size_t pose = 0; pose < _mesh.poseCount(); ++pose)
     {
@@ -179,15 +179,15 @@ bool SurfaceReduction::turnsOver(const Corners& corners, std::uint32_t from, std
 }
 
 /// On one side of a texture's seam.
-bool SurfaceReduction::isAlike(std::uint32_t vertex, std::uint32_t other) const
+bool MeshSimplifier::isAlike(std::uint32_t vertex, std::uint32_t other) const
 {
     return vertex == other || _surface.texCoords.empty() || _surface.texCoords[vertex] == _surface.texCoords[other];
 }
 
 /// Which of the vertices at `to` takes the place of the given one at `from`: one that lies on the same side of a seam,
 /// with the nearest normal. False where there is none and seams are to be kept.
-bool SurfaceReduction::findVertex(std::uint32_t given, std::uint32_t from, std::uint32_t to,
-                                  std::uint32_t& outVertex) const
+bool MeshSimplifier::findVertex(std::uint32_t given, std::uint32_t from, std::uint32_t to,
+                                std::uint32_t& outVertex) const
 {
     constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
     std::uint32_t beside = none; // at the other end of an edge on its side
@@ -219,7 +219,7 @@ bool SurfaceReduction::findVertex(std::uint32_t given, std::uint32_t from, std::
 
 /// Whether all that goes by triangles which would change stays within the limit of those there then: what went to
 /// either point, and to their neighbours.
-bool SurfaceReduction::isNear(std::uint32_t from, std::uint32_t to, const std::vector<Corners>& moved) const
+bool MeshSimplifier::isNear(std::uint32_t from, std::uint32_t to, const std::vector<Corners>& moved) const
 {
     for (const std::uint32_t neighbour : _mesh.neighboursOf(to))
         if (_mesh.trianglesAt(neighbour).size() > mostTriangles) return false;
@@ -237,8 +237,8 @@ bool SurfaceReduction::isNear(std::uint32_t from, std::uint32_t to, const std::v
 }
 
 /// The triangles at a point when those at `from` have moved.
-std::vector<CollapsibleMesh::Corners> SurfaceReduction::cornersAfter(std::uint32_t point, std::uint32_t from,
-                                                                     const std::vector<Corners>& moved) const
+std::vector<CollapsibleMesh::Corners> MeshSimplifier::cornersAfter(std::uint32_t point, std::uint32_t from,
+                                                                   const std::vector<Corners>& moved) const
 {
     std::vector<Corners> there;
     for (const Corners& corners : moved)
@@ -250,7 +250,7 @@ std::vector<CollapsibleMesh::Corners> SurfaceReduction::cornersAfter(std::uint32
     return there;
 }
 
-bool SurfaceReduction::areNear(std::uint32_t cameTo, const std::vector<Corners>& triangles) const
+bool MeshSimplifier::areNear(std::uint32_t cameTo, const std::vector<Corners>& triangles) const
 {
     for (std::size_t pose = 0; pose < _mesh.poseCount(); ++pose)
         for (const std::uint32_t point : _mesh.cameTo(cameTo))
@@ -259,8 +259,8 @@ bool SurfaceReduction::areNear(std::uint32_t cameTo, const std::vector<Corners>&
 }
 
 /// To the nearest of them, or to one that is near enough.
-double SurfaceReduction::squaredDistance(std::size_t pose, std::uint32_t point, const std::vector<Corners>& triangles,
-                                         double enough) const
+double MeshSimplifier::squaredDistance(std::size_t pose, std::uint32_t point, const std::vector<Corners>& triangles,
+                                       double enough) const
 {
     const glm::dvec3 place = _mesh.at(pose, point);
     double nearest = std::numeric_limits<double>::infinity();
@@ -271,7 +271,7 @@ double SurfaceReduction::squaredDistance(std::size_t pose, std::uint32_t point, 
     return nearest;
 }
 
-double SurfaceReduction::error() const
+double MeshSimplifier::error() const
 {
     double largest = 0.0;
     for (std::uint32_t now = 0; now < _mesh.pointCount(); ++now)

@@ -60,7 +60,7 @@ private:
 /// Fewer and fewer triangles over the same vertices for the surface that others show, in all poses at once: what is
 /// straight in the rest pose, but bends at an elbow, keeps its vertices there.
 ///
-///     SurfaceReduction reduction(surface, indices);
+///     MeshSimplifier reduction(surface, indices);
 ///     reduction.reduce(0.01, true);
 ///     draw(reduction.indices());                     // reduction.error() off
 ///
@@ -70,12 +70,12 @@ private:
 /// that hangs together at least a triangle is left.
 ///
 /// Time goes by points times poses: some 0.1 s for the 2,300 points of 3,300 vertices in 12 poses, all limits together.
-class SurfaceReduction
+class MeshSimplifier
 {
 public:
     /// indices: whole triangles of the surface's vertices, each below vertexCount(). Positions are finite. The surface
     /// has to live as long.
-    SurfaceReduction(const PosedSurface& surface, const std::vector<std::uint32_t>& indices);
+    MeshSimplifier(const PosedSurface& surface, const std::vector<std::uint32_t>& indices);
 
     /// Collapses what can be without the surface going off by more than about that: see error(). To be called with
     /// rising limits. keepSeams: texture coordinates stay on their side of a seam.

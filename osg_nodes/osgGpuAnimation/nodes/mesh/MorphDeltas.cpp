@@ -149,7 +149,7 @@ bool bindMorphTargets(osg::State& state, const MorphDeltas& deltas, std::size_t 
     gl->glUniform1i(program.getUniformLocation(deltasName), POSE_MORPH_UNIT);
     const PosePipeline* pipeline = PosePipeline::of(state);
     const bool fits = deltas.texture && pipeline &&
-                      static_cast<std::size_t>(deltas.texture->getImage()->s()) <= pipeline->maxTexels();
+                      static_cast<std::size_t>(deltas.texture->getImage()->s()) <= pipeline->getMaxTexels();
     const GLint targets = fits ? static_cast<GLint>(targetCount) : 0;
     gl->glUniform2i(program.getUniformLocation(morphName), targets, entry);
     if (!fits) return !deltas.texture;

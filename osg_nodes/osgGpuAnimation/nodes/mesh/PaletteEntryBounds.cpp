@@ -48,30 +48,32 @@ Box reachOfVertex(const osg::Vec3& position, std::size_t vertex, const std::vect
 
 } // namespace
 
-EntryReach::EntryReach(const AnimationSet& set, std::size_t additiveLayers)
+PaletteEntryBounds::PaletteEntryBounds(const AnimationSet& set, std::size_t additiveLayers)
     : _set(&set), _additiveLayers(additiveLayers), _boxes(set.paletteSize())
 {
 }
 
-EntryReach::EntryReach(const EntryReach& other, std::size_t additiveLayers) : EntryReach(other)
+PaletteEntryBounds::PaletteEntryBounds(const PaletteEntryBounds& other, std::size_t additiveLayers)
+    : PaletteEntryBounds(other)
 {
     _additiveLayers = additiveLayers;
 }
 
-void EntryReach::add(const SkinnedGeometry& mesh)
+void PaletteEntryBounds::add(const SkinnedGeometry& mesh)
 {
     const auto* vertices = dynamic_cast<const osg::Vec3Array*>(mesh.getVertexArray());
     if (!vertices) return;
-    if (mesh.rigidEntry() >= 0 && mesh.morph() < 0)
+    if (mesh.getRigidEntry() >= 0 && mesh.getMorph() < 0)
     {
-        addRigid(*vertices, static_cast<std::size_t>(mesh.rigidEntry()));
+        addRigid(*vertices, static_cast<std::size_t>(mesh.getRigidEntry()));
         return;
     }
     std::vector<WeightRange> ranges;
-    if (mesh.morph() >= 0) ranges = rangesWithAdded(*_set, static_cast<std::size_t>(mesh.morph()), _additiveLayers);
+    if (mesh.getMorph() >= 0)
+        ranges = rangesWithAdded(*_set, static_cast<std::size_t>(mesh.getMorph()), _additiveLayers);
     for (std::size_t vertex = 0; vertex < vertices->size(); ++vertex)
     {
-        const Box reach = reachOfVertex((*vertices)[vertex], vertex, mesh.morphTargets(), ranges);
+        const Box reach = reachOfVertex((*vertices)[vertex], vertex, mesh.getMorphTargets(), ranges);
         mesh.forEachInfluence(vertex,
                               [&](std::size_t entry, float)
                               {
@@ -80,7 +82,7 @@ void EntryReach::add(const SkinnedGeometry& mesh)
     }
 }
 
-void EntryReach::addRigid(const osg::Vec3Array& vertices, std::size_t entry)
+void PaletteEntryBounds::addRigid(const osg::Vec3Array& vertices, std::size_t entry)
 {
     const auto [known, isNew] = _bindBoxes.try_emplace(&vertices);
     for (std::size_t vertex = 0; isNew && vertex < vertices.size(); ++vertex)

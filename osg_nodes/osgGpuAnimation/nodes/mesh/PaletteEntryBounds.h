@@ -50,19 +50,19 @@ class SkinnedGeometry;
 /// What each palette entry moves, of all meshes that are added: for each entry the box of its vertices in bind pose,
 /// wherever the clips' weights morph them. What bounds are worked out from.
 ///
-///     EntryReach reach(set);
+///     PaletteEntryBounds reach(set);
 ///     for (const osg::ref_ptr<SkinnedGeometry>& mesh : meshes)
 ///         reach.add(*mesh);
 ///     const std::vector<Box> bounds = boundsOfClips(set, reach.boxes());
 ///
 /// Made and gone while bounds are worked out: the set and the meshes added must outlive it.
-class EntryReach
+class PaletteEntryBounds
 {
 public:
     /// additiveLayers: so many change the morph weights, besides the clip that is played.
-    explicit EntryReach(const AnimationSet& set, std::size_t additiveLayers = 0);
+    explicit PaletteEntryBounds(const AnimationSet& set, std::size_t additiveLayers = 0);
     /// Begins with what another has, and has what is added from then on morphed by so many additive layers.
-    EntryReach(const EntryReach& other, std::size_t additiveLayers);
+    PaletteEntryBounds(const PaletteEntryBounds& other, std::size_t additiveLayers);
 
     /// Entries that the set has not are passed over.
     void add(const SkinnedGeometry& mesh);

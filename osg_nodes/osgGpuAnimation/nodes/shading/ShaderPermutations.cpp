@@ -134,22 +134,22 @@ bool hasUniform(const osg::State& state, const char* name)
     return known != state.getUniformMap().end() && !known->second.uniformVec.empty();
 }
 
-SurfaceState::Fog fogOf(const osg::State& state)
+ShaderKey::Fog fogOf(const osg::State& state)
 {
     const auto* fog = applied<osg::Fog>(state, osg::StateAttribute::FOG);
-    if (!fog || !state.getLastAppliedMode(GL_FOG)) return SurfaceState::Fog::None;
+    if (!fog || !state.getLastAppliedMode(GL_FOG)) return ShaderKey::Fog::None;
     switch (fog->getMode())
     {
     case osg::Fog::LINEAR:
-        return SurfaceState::Fog::Linear;
+        return ShaderKey::Fog::Linear;
     case osg::Fog::EXP:
-        return SurfaceState::Fog::Exp;
+        return ShaderKey::Fog::Exp;
     default:
-        return SurfaceState::Fog::Exp2;
+        return ShaderKey::Fog::Exp2;
     }
 }
 
-void readLights(const osg::State& state, SurfaceState& surface)
+void readLights(const osg::State& state, ShaderKey& surface)
 {
     surface.lights = 0;
     for (unsigned int index = 0; index < lightCount; ++index)
@@ -166,9 +166,9 @@ void readLights(const osg::State& state, SurfaceState& surface)
 
 } // namespace
 
-SurfaceState SurfaceState::of(osg::State& state)
+ShaderKey ShaderKey::of(osg::State& state)
 {
-    SurfaceState surface;
+    ShaderKey surface;
     surface.lights = 0;
     surface.isDepthOnly = isDepthPass(state) || isColorMasked(state);
     surface.isAlphaNeeded = surface.isDepthOnly && leavesPartsOut(state);
@@ -185,7 +185,7 @@ SurfaceState SurfaceState::of(osg::State& state)
     return surface;
 }
 
-std::string SurfaceState::defines() const
+std::string ShaderKey::defines() const
 {
     const auto line = [](const char* name, unsigned int value)
     { return std::string("#define ") + name + " " + std::to_string(value) + "\n"; };
@@ -206,7 +206,7 @@ bool isWhiteTexture(const osg::StateAttribute* texture)
 namespace
 {
 
-osg::Shader* makeShader(osg::Shader::Type type, const SurfaceState& surface, const char* source)
+osg::Shader* makeShader(osg::Shader::Type type, const ShaderKey& surface, const char* source)
 {
     return new osg::Shader(type, "#version 140\n" + surface.defines() + source);
 }
@@ -265,9 +265,12 @@ osg::ref_ptr<osg::Texture2D> whiteTexture()
     return shared.get(makeWhiteTexture);
 }
 
-SurfaceProgram::SurfaceProgram(const SurfaceProgram& other, const osg::CopyOp& copyop) : osg::Program(other, copyop) {}
+ShaderPermutations::ShaderPermutations(const ShaderPermutations& other, const osg::CopyOp& copyop)
+    : osg::Program(other, copyop)
+{
+}
 
-osg::ref_ptr<osg::Program> SurfaceProgram::variant(const SurfaceState& surface) const
+osg::ref_ptr<osg::Program> ShaderPermutations::variant(const ShaderKey& surface) const
 {
     const std::lock_guard<std::mutex> lock(_mutex);
     osg::ref_ptr<osg::Program>& program = _variants[surface];
@@ -283,7 +286,7 @@ osg::ref_ptr<osg::Program> SurfaceProgram::variant(const SurfaceState& surface) 
     return program;
 }
 
-bool SurfaceProgram::sharesSkin(const osg::Program& other) const
+bool ShaderPermutations::sharesSkin(const osg::Program& other) const
 {
     for (unsigned int i = 0; i < other.getNumShaders(); ++i)
         if (other.getShader(i) == getShader(0)) return true;
@@ -291,7 +294,7 @@ bool SurfaceProgram::sharesSkin(const osg::Program& other) const
 }
 
 /// The outermost program above that overrides and can skin; null: there is none.
-const osg::Program* SurfaceProgram::overriding(osg::State& state) const
+const osg::Program* ShaderPermutations::overriding(osg::State& state) const
 {
     for (const auto& [attribute, value] : state.getAttributeVec(this))
     {
@@ -301,13 +304,13 @@ const osg::Program* SurfaceProgram::overriding(osg::State& state) const
     return nullptr;
 }
 
-void SurfaceProgram::apply(osg::State& state) const
+void ShaderPermutations::apply(osg::State& state) const
 {
     if (const osg::Program* other = overriding(state))
         other->apply(state);
     else
     {
-        const SurfaceState surface = SurfaceState::of(state);
+        const ShaderKey surface = ShaderKey::of(state);
         variant(surface)->apply(state);
         if (surface.shadowMaps != 0) setShadowUnits(state);
         setMaterial(state);
@@ -316,12 +319,12 @@ void SurfaceProgram::apply(osg::State& state) const
     state.haveAppliedAttribute(osg::StateAttribute::PROGRAM);
 }
 
-void SurfaceProgram::compileGLObjects(osg::State& state) const
+void ShaderPermutations::compileGLObjects(osg::State& state) const
 {
-    variant(SurfaceState())->compileGLObjects(state);
+    variant(ShaderKey())->compileGLObjects(state);
 }
 
-void SurfaceProgram::setThreadSafeRefUnref(bool threadSafe)
+void ShaderPermutations::setThreadSafeRefUnref(bool threadSafe)
 {
     osg::Program::setThreadSafeRefUnref(threadSafe);
     const std::lock_guard<std::mutex> lock(_mutex);
@@ -329,7 +332,7 @@ void SurfaceProgram::setThreadSafeRefUnref(bool threadSafe)
         program->setThreadSafeRefUnref(threadSafe);
 }
 
-void SurfaceProgram::resizeGLObjectBuffers(unsigned int maxSize)
+void ShaderPermutations::resizeGLObjectBuffers(unsigned int maxSize)
 {
     osg::Program::resizeGLObjectBuffers(maxSize);
     const std::lock_guard<std::mutex> lock(_mutex);
@@ -337,7 +340,7 @@ void SurfaceProgram::resizeGLObjectBuffers(unsigned int maxSize)
         program->resizeGLObjectBuffers(maxSize);
 }
 
-void SurfaceProgram::releaseGLObjects(osg::State* state) const
+void ShaderPermutations::releaseGLObjects(osg::State* state) const
 {
     osg::Program::releaseGLObjects(state);
     const std::lock_guard<std::mutex> lock(_mutex);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <osg/observer_ptr>
 #include <osg/Program>
 #include <osg/State>
 #include <osg/Texture2D>
-#include <osg/observer_ptr>
 
 #include <cstdint>
 #include <map>
@@ -18,7 +18,7 @@ namespace osgGpuAnimation
 /// What the character's shaders are compiled for: of OSG's modes and attributes above and at a mesh, those that the
 /// fixed pipeline would act on and a shader has to act on itself. Each combination is a program of its own, since some
 /// drivers (llvmpipe) run both sides of every branch.
-struct SurfaceState
+struct ShaderKey
 {
     enum class Fog
     {
@@ -44,12 +44,12 @@ struct SurfaceState
     Fog fog = Fog::None;           ///< GL_FOG, and the osg::Fog's mode
 
     /// As the state is now; to be asked while its attributes are applied, the modes already being so.
-    static SurfaceState of(osg::State& state);
+    static ShaderKey of(osg::State& state);
 
     /// GLSL: DRAW_COLOR, DRAW_ALPHA, DRAW_LIGHTING … with a number each, as the shaders take them.
     std::string defines() const;
 
-    bool operator<(const SurfaceState& other) const { return key() < other.key(); }
+    bool operator<(const ShaderKey& other) const { return key() < other.key(); }
 
 private:
     std::tuple<bool, bool, bool, bool, bool, bool, bool, bool, bool, bool, unsigned, unsigned, unsigned, Fog>
@@ -88,25 +88,25 @@ private:
     osg::observer_ptr<Object> _object;
 };
 
-/// The attribute behind characterProgram(): a program for each SurfaceState there is, made when it is first met. It
+/// The attribute behind characterProgram(): a program for each ShaderKey there is, made when it is first met. It
 /// reads the state each time that a StateSet with it is applied. Every permutation links the shaders, and binds the
 /// attributes, of this program; the first shader is skin.glsl.
 ///
 /// It is meant to be set PROTECTED, so that programs that override from above (osgShadow's casting cameras, osgFX)
 /// do not draw the bind pose. One that overrides and links skin.glsl itself is given way to.
-class SurfaceProgram : public osg::Program
+class ShaderPermutations : public osg::Program
 {
 public:
-    SurfaceProgram() = default;
+    ShaderPermutations() = default;
     /// Shares the shaders; programs are made anew.
-    SurfaceProgram(const SurfaceProgram& other, const osg::CopyOp& copyop = osg::CopyOp::SHALLOW_COPY);
+    ShaderPermutations(const ShaderPermutations& other, const osg::CopyOp& copyop = osg::CopyOp::SHALLOW_COPY);
 
     /// osg::State's default for the type of attribute: no program.
     osg::Object* cloneType() const override { return new osg::Program; }
-    osg::Object* clone(const osg::CopyOp& copyop) const override { return new SurfaceProgram(*this, copyop); }
+    osg::Object* clone(const osg::CopyOp& copyop) const override { return new ShaderPermutations(*this, copyop); }
     bool isSameKindAs(const osg::Object* object) const override
     {
-        return dynamic_cast<const SurfaceProgram*>(object) != nullptr;
+        return dynamic_cast<const ShaderPermutations*>(object) != nullptr;
     }
     const char* libraryName() const override { return "osgGpuAnimation"; }
     const char* className() const override { return "SurfaceProgram"; }
@@ -118,17 +118,17 @@ public:
     void releaseGLObjects(osg::State* state = nullptr) const override;
 
     /// The program for such a state.
-    osg::ref_ptr<osg::Program> variant(const SurfaceState& surface) const;
+    osg::ref_ptr<osg::Program> variant(const ShaderKey& surface) const;
 
 protected:
-    ~SurfaceProgram() override = default;
+    ~ShaderPermutations() override = default;
 
 private:
     bool sharesSkin(const osg::Program& other) const;
     const osg::Program* overriding(osg::State& state) const;
 
     mutable std::mutex _mutex; ///< draw threads of several contexts make variants
-    mutable std::map<SurfaceState, osg::ref_ptr<osg::Program>> _variants;
+    mutable std::map<ShaderKey, osg::ref_ptr<osg::Program>> _variants;
 };
 
 /// One white texel, shared by all: for meshes without a texture where another program samples unit 0.

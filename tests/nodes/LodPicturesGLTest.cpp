@@ -79,7 +79,7 @@ osgShadow::ShadowTechnique* make()
     return new Technique;
 }
 
-class DetailSceneGLTest : public ViewerGLTest
+class LodSceneGLTest : public ViewerGLTest
 {
 protected:
     static constexpr int side = 256; ///< pixels
@@ -100,10 +100,10 @@ protected:
         for (int i = 0; i < across * across; ++i)
         {
             const osg::ref_ptr<AnimatedCharacter> copy = osg::clone(tube.get(), osg::CopyOp::DEEP_COPY_NODES);
-            copy->controller().seek(0.1 * i);
+            copy->getController().seek(0.1 * i);
             copy->setMatrix(osg::Matrix::translate(10.0 * (i % across), 10.0 * (i / across), 0.0));
             if (isCrowd)
-                EXPECT_TRUE(crowd->add(copy->getMatrix(), copy->controller()));
+                EXPECT_TRUE(crowd->add(copy->getMatrix(), copy->getController()));
             else
                 scene->addChild(copy);
         }
@@ -148,12 +148,12 @@ private:
     std::vector<osg::ref_ptr<osgShadow::ShadowTechnique>> _techniques;
 };
 
-class DetailPicturesGLTest : public DetailSceneGLTest, public ::testing::WithParamInterface<PictureCase>
+class LodPicturesGLTest : public LodSceneGLTest, public ::testing::WithParamInterface<PictureCase>
 {
 protected:
     osg::ref_ptr<osg::Group> makeScene(bool isCrowd, float pixelError)
     {
-        return DetailSceneGLTest::makeScene(GetParam(), isCrowd, pixelError);
+        return LodSceneGLTest::makeScene(GetParam(), isCrowd, pixelError);
     }
 
     osg::ref_ptr<osg::Image> pictureAt(osg::Group& scene, double pixels, double shift = 0.0)
@@ -163,7 +163,7 @@ protected:
     }
 };
 
-TEST_P(DetailPicturesGLTest, lookAsWithAllTriangles)
+TEST_P(LodPicturesGLTest, lookAsWithAllTriangles)
 {
     constexpr float visible = 0.1f; ///< of a colour
     for (const bool isCrowd : {false, true})
@@ -182,7 +182,7 @@ TEST_P(DetailPicturesGLTest, lookAsWithAllTriangles)
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    Cases, DetailPicturesGLTest,
+    Cases, LodPicturesGLTest,
     ::testing::Values(PictureCase{"Plain", Surface::Plain}, PictureCase{"Transparent", Surface::Transparent},
                       PictureCase{"Morphed", Surface::Morphed},
                       PictureCase{"ShadowMap", Surface::Morphed, make<osgShadow::ShadowMap>},
@@ -195,7 +195,7 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& info) { return std::string(info.param.name); });
 
 // Primitives of shadow maps are counted where they are drawn for a camera below the viewer's own.
-class DetailShadowsGLTest : public DetailSceneGLTest
+class LodShadowsGLTest : public LodSceneGLTest
 {
 protected:
     using Look = void (*)(osg::Camera& camera, const osg::Vec3d& centre);
@@ -217,7 +217,7 @@ protected:
         camera->setViewport(0, 0, side, side);
         camera->addChild(moved);
         look(*camera, centre * moved->getMatrix());
-        DetailSceneGLTest::look(*viewer().getCamera(), centre * moved->getMatrix(), 2500.0, 0.0);
+        LodSceneGLTest::look(*viewer().getCamera(), centre * moved->getMatrix(), 2500.0, 0.0);
         viewer().getCamera()->setProjectionMatrixAsOrtho(-1, 1, -1, 1, 1, 1000);
         const osg::ref_ptr<osg::Group> scene = new osg::Group;
         scene->addChild(makeLight()); // osgShadow looks for lights in what the viewer's own camera sees
@@ -228,12 +228,12 @@ protected:
 };
 
 // What casts a shadow and what is lit have to be one surface.
-TEST_F(DetailShadowsGLTest, shadowMapsHaveTheLevelsOfTheCameraThatTheyAreFor)
+TEST_F(LodShadowsGLTest, shadowMapsHaveTheLevelsOfTheCameraThatTheyAreFor)
 {
     for (const bool isCrowd : {false, true})
     {
         const auto primitivesOf = [&](const PictureCase& what, float pixelError)
-        { return DetailShadowsGLTest::primitivesOf(*makeScene(what, isCrowd, pixelError), fromFarOff); };
+        { return LodShadowsGLTest::primitivesOf(*makeScene(what, isCrowd, pixelError), fromFarOff); };
         const GLuint ofAll = primitivesOf(plain, 0.0f), ofFewer = primitivesOf(plain, 0.5f);
         EXPECT_LT(4 * ofFewer, ofAll);
         EXPECT_EQ(primitivesOf(shadows, 0.0f), 2 * ofAll);
@@ -242,7 +242,7 @@ TEST_F(DetailShadowsGLTest, shadowMapsHaveTheLevelsOfTheCameraThatTheyAreFor)
 }
 
 // That camera's own measure has no answer there, and what it does not show cannot shade itself in its picture.
-TEST_F(DetailShadowsGLTest, castersBehindTheEyeHaveTheLevelsOfTheShadowMap)
+TEST_F(LodShadowsGLTest, castersBehindTheEyeHaveTheLevelsOfTheShadowMap)
 {
     const Look awayFromAfar = [](osg::Camera& camera, const osg::Vec3d& at)
     {
@@ -257,7 +257,7 @@ TEST_F(DetailShadowsGLTest, castersBehindTheEyeHaveTheLevelsOfTheShadowMap)
             const osg::ref_ptr<osg::Geode> before = new osg::Geode; // or nothing at all would be drawn
             before->addDrawable(new osg::ShapeDrawable(new osg::Box(centre + osg::Vec3d(0, 0, 250), 10.0f)));
             scene->addChild(before);
-            return DetailShadowsGLTest::primitivesOf(*scene, awayFromAfar);
+            return LodShadowsGLTest::primitivesOf(*scene, awayFromAfar);
         };
         const GLuint ofAll = primitivesOf(0.0f);
         EXPECT_GE(ofAll, across * across * tubeTriangles);
@@ -266,7 +266,7 @@ TEST_F(DetailShadowsGLTest, castersBehindTheEyeHaveTheLevelsOfTheShadowMap)
 }
 
 // Where a camera from near by makes depths alone, it is taken for a shadow map's.
-TEST_F(DetailShadowsGLTest, camerasWithAColourBufferHaveLevelsOfTheirOwn)
+TEST_F(LodShadowsGLTest, camerasWithAColourBufferHaveLevelsOfTheirOwn)
 {
     const GLuint ofFewer = primitivesOf(*makeScene(plain, false, 0.5f), fromFarOff);
     for (const bool hasColour : {false, true})

@@ -35,13 +35,13 @@ void expectTakesPixelErrors(Animated& animated)
         ASSERT_TRUE(animated.setPixelError(2.0f));
         const Result<bool> taken = animated.setPixelError(pixels);
         EXPECT_EQ(static_cast<bool>(taken), isTaken) << pixels;
-        EXPECT_EQ(animated.pixelError(), isTaken ? pixels : 2.0f);
+        EXPECT_EQ(animated.getPixelError(), isTaken ? pixels : 2.0f);
         if (taken) continue;
         EXPECT_NE(taken.error().message.find("it must be a number of pixels from 0 to 1000000"), std::string::npos);
     }
 }
 
-TEST(DetailRangeTest, charactersAndCrowdsTakeTheSamePixelErrors)
+TEST(LodRangeTest, charactersAndCrowdsTakeTheSamePixelErrors)
 {
     const osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter(), nobody = new AnimatedCharacter;
     expectTakesPixelErrors(*character);

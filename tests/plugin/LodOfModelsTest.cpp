@@ -4,9 +4,9 @@
 
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
+#include <osgGpuAnimation/nodes/lod/CollapsibleMesh.h>
 #include <osgGpuAnimation/nodes/lod/LodLevels.h>
 #include <osgGpuAnimation/nodes/mesh/PaletteEntryBounds.h>
-#include <osgGpuAnimation/nodes/lod/CollapsibleMesh.h>
 
 #include <gtest/gtest.h>
 
@@ -34,7 +34,7 @@ void PrintTo(const ModelCase& model, std::ostream* out)
     *out << model.file;
 }
 
-std::vector<unsigned int> indicesAt(const SkinnedGeometry& mesh, const DetailLevels& levels, int level)
+std::vector<unsigned int> indicesAt(const SkinnedGeometry& mesh, const LodLevels& levels, int level)
 {
     const osg::DrawElements* drawn = levels.elements(0, level);
     if (!drawn) drawn = mesh.getPrimitiveSet(0)->getDrawElements();
@@ -60,7 +60,7 @@ double largestDistance(const std::vector<glm::dvec3>& positions, const std::vect
     return std::sqrt(largest);
 }
 
-class DetailOfModelsTest : public ::testing::TestWithParam<ModelCase>
+class LodOfModelsTest : public ::testing::TestWithParam<ModelCase>
 {
 protected:
     void SetUp() override
@@ -70,13 +70,13 @@ protected:
         const Result<ImportedModel> imported = importModel(readBytes(file), file, {});
         ASSERT_TRUE(imported) << imported.error().message;
         model = imported.value();
-        const Box& box = model.character->clipBounds(-1);
+        const Box& box = model.character->getClipBounds(-1);
         size = static_cast<double>(glm::length(box.max - box.min));
         SkinnedGeometryVisitor collect([&](SkinnedGeometry& mesh) { meshes.push_back(&mesh); });
         model.character->accept(collect);
         ASSERT_FALSE(meshes.empty());
         for (const SkinnedGeometry* mesh : meshes)
-            levels.push_back(std::make_unique<DetailLevels>(*mesh, *model.set));
+            levels.push_back(std::make_unique<LodLevels>(*mesh, *model.set));
     }
 
     std::size_t trianglesAt(int level) const
@@ -99,10 +99,10 @@ protected:
     ImportedModel model;
     double size = 0.0;
     std::vector<osg::ref_ptr<SkinnedGeometry>> meshes;
-    std::vector<std::unique_ptr<DetailLevels>> levels;
+    std::vector<std::unique_ptr<LodLevels>> levels;
 };
 
-TEST_P(DetailOfModelsTest, areOffByNoMoreThanTheirLevelSays)
+TEST_P(LodOfModelsTest, areOffByNoMoreThanTheirLevelSays)
 {
     std::mt19937 random(7);
     std::vector<std::vector<AffineMatrix>> palettes{paletteAt(-1, 0.0)};
@@ -125,20 +125,20 @@ TEST_P(DetailOfModelsTest, areOffByNoMoreThanTheirLevelSays)
             }
 }
 
-TEST_P(DetailOfModelsTest, haveFewerTrianglesTheFartherOffTheyMayBe)
+TEST_P(LodOfModelsTest, haveFewerTrianglesTheFartherOffTheyMayBe)
 {
-    std::size_t before = trianglesAt(DetailLevels::allTriangles);
+    std::size_t before = trianglesAt(LodLevels::allTriangles);
     for (int level = -40; level < 20; ++level)
     {
         const std::size_t now = trianglesAt(level);
         EXPECT_LE(now, before) << "level " << level;
         before = now;
     }
-    EXPECT_LE(trianglesAt(DetailLevels::levelOf(size / 16.0)), GetParam().trianglesFar);
-    EXPECT_LE(trianglesAt(DetailLevels::levelOf(size / 256.0)), GetParam().trianglesNear);
+    EXPECT_LE(trianglesAt(LodLevels::levelOf(size / 16.0)), GetParam().trianglesFar);
+    EXPECT_LE(trianglesAt(LodLevels::levelOf(size / 256.0)), GetParam().trianglesNear);
 }
 
-TEST_P(DetailOfModelsTest, nameVerticesThereAreAndNoTriangleTwice)
+TEST_P(LodOfModelsTest, nameVerticesThereAreAndNoTriangleTwice)
 {
     for (std::size_t i = 0; i < meshes.size(); ++i)
         for (int level = levels[i]->finest(); level <= levels[i]->coarsest(); ++level)
@@ -156,7 +156,7 @@ TEST_P(DetailOfModelsTest, nameVerticesThereAreAndNoTriangleTwice)
         }
 }
 
-INSTANTIATE_TEST_SUITE_P(Models, DetailOfModelsTest,
+INSTANTIATE_TEST_SUITE_P(Models, LodOfModelsTest,
                          ::testing::Values(ModelCase{"Wanderer.glb", 330, 3600}, ModelCase{"Serpent.glb", 130, 1050},
                                            ModelCase{"assets/Fox/Fox.glb", 140, 576},
                                            ModelCase{"assets/CesiumMan/CesiumMan.glb", 160, 1150},

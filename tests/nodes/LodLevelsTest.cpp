@@ -18,41 +18,41 @@ namespace
 {
 
 /// Indices that are drawn of the first primitive set.
-std::size_t drawn(const SkinnedGeometry& mesh, const DetailLevels& levels, int level)
+std::size_t drawn(const SkinnedGeometry& mesh, const LodLevels& levels, int level)
 {
     const osg::DrawElements* elements = levels.elements(0, level);
     return (elements ? *elements : *mesh.getPrimitiveSet(0)).getNumIndices();
 }
 
-bool has(const DetailLevels& levels)
+bool has(const LodLevels& levels)
 {
-    return levels.finest() != DetailLevels::allTriangles;
+    return levels.finest() != LodLevels::allTriangles;
 }
 
-TEST(DetailLevelsTest, areCalledAfterPowersOfTwo)
+TEST(LodLevelsTest, areCalledAfterPowersOfTwo)
 {
-    EXPECT_EQ(DetailLevels::levelOf(1.0), 0);
-    EXPECT_EQ(DetailLevels::levelOf(1.99), 0);
-    EXPECT_EQ(DetailLevels::levelOf(0.25), -2);
-    EXPECT_EQ(DetailLevels::levelOf(0.24), -3);
+    EXPECT_EQ(LodLevels::levelOf(1.0), 0);
+    EXPECT_EQ(LodLevels::levelOf(1.99), 0);
+    EXPECT_EQ(LodLevels::levelOf(0.25), -2);
+    EXPECT_EQ(LodLevels::levelOf(0.24), -3);
     for (const double nothing : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()})
-        EXPECT_EQ(DetailLevels::levelOf(nothing), DetailLevels::allTriangles);
+        EXPECT_EQ(LodLevels::levelOf(nothing), LodLevels::allTriangles);
 }
 
-TEST(DetailLevelsTest, keepAnElbowThatBendsInAClip)
+TEST(LodLevelsTest, keepAnElbowThatBendsInAClip)
 {
     const std::shared_ptr<const AnimationSet> bending = armSet();
     const auto still = bending->withClips({}).value();
     const osg::ref_ptr<SkinnedGeometry> tube = makeTube(*bending);
-    const DetailLevels ofBending(*tube, *bending), ofStill(*tube, *still);
+    const LodLevels ofBending(*tube, *bending), ofStill(*tube, *still);
     const int level = -5; // 1/32 of a tube that is 1 thick
     EXPECT_LT(drawn(*tube, ofStill, level), 300u) << "straight, it needs but its ends";
     EXPECT_GT(drawn(*tube, ofBending, level), 2 * drawn(*tube, ofStill, level));
     EXPECT_LT(drawn(*tube, ofBending, level), tube->getPrimitiveSet(0)->getNumIndices() / 4);
-    EXPECT_EQ(drawn(*tube, ofBending, DetailLevels::allTriangles), tube->getPrimitiveSet(0)->getNumIndices());
+    EXPECT_EQ(drawn(*tube, ofBending, LodLevels::allTriangles), tube->getPrimitiveSet(0)->getNumIndices());
 }
 
-TEST(DetailLevelsTest, speakOfTheCharactersUnitsWhateverTheMeshs)
+TEST(LodLevelsTest, speakOfTheCharactersUnitsWhateverTheMeshs)
 {
     // The same tube a hundred times as large in its own space, and made smaller by its palette.
     AffineMatrix small;
@@ -65,13 +65,13 @@ TEST(DetailLevelsTest, speakOfTheCharactersUnitsWhateverTheMeshs)
     for (osg::Vec3& position : static_cast<osg::Vec3Array&>(*large->getVertexArray()))
         position *= 100.0f;
     large->setRigidEntry(static_cast<unsigned short>(set->entryOfSkin(0, 0)));
-    const DetailLevels levels(*tube, *armed->withClips({}).value()), ofLarge(*large, *set);
+    const LodLevels levels(*tube, *armed->withClips({}).value()), ofLarge(*large, *set);
     ASSERT_TRUE(has(levels));
     EXPECT_EQ(ofLarge.finest(), levels.finest());
     EXPECT_EQ(ofLarge.coarsest(), levels.coarsest());
 }
 
-TEST(DetailLevelsTest, keepTextureCoordinatesOnTheirSideOfASeam)
+TEST(LodLevelsTest, keepTextureCoordinatesOnTheirSideOfASeam)
 {
     // A flat strip of two halves that meet in vertices of two texture coordinates each.
     const auto set = testCharacterSet();
@@ -94,7 +94,7 @@ TEST(DetailLevelsTest, keepTextureCoordinatesOnTheirSideOfASeam)
     strip->setTexCoordArray(0, texCoords);
     strip->setRigidEntry(static_cast<unsigned short>(set->entryOfRigidJoint(1)));
     strip->addPrimitiveSet(triangles);
-    const DetailLevels levels(*strip, *set->withClips({}).value());
+    const LodLevels levels(*strip, *set->withClips({}).value());
     const osg::DrawElements* few = levels.elements(0, levels.finest());
     ASSERT_NE(few, nullptr);
     EXPECT_LE(few->getNumIndices(), 3u * 40u) << "it is flat";
@@ -103,14 +103,14 @@ TEST(DetailLevelsTest, keepTextureCoordinatesOnTheirSideOfASeam)
             EXPECT_EQ(few->index(i) < 441, few->index(i + corner) < 441) << "triangle " << i / 3;
 }
 
-TEST(DetailLevelsTest, areNotMadeWhereThereIsNothingToGain)
+TEST(LodLevelsTest, areNotMadeWhereThereIsNothingToGain)
 {
     const auto set = armSet();
     const auto none = [&](const char* what, const auto& change)
     {
         const osg::ref_ptr<SkinnedGeometry> tube = makeTube(*set);
         change(*tube);
-        EXPECT_FALSE(has(DetailLevels(*tube, *set))) << what;
+        EXPECT_FALSE(has(LodLevels(*tube, *set))) << what;
     };
     const auto positionsOf = [](SkinnedGeometry& mesh) -> osg::Vec3Array&
     { return static_cast<osg::Vec3Array&>(*mesh.getVertexArray()); };
@@ -133,7 +133,7 @@ TEST(DetailLevelsTest, areNotMadeWhereThereIsNothingToGain)
          [](SkinnedGeometry& mesh) { mesh.setPrimitiveSet(0, new osg::DrawArrays(GL_TRIANGLES, 0, 3 * tubeColumns)); });
 }
 
-TEST(DetailLevelsTest, endOnFansOfThousands)
+TEST(LodLevelsTest, endOnFansOfThousands)
 {
     // All triangles meet in one vertex, and all vertices but it lie at two places.
     const auto set = armSet();
@@ -143,12 +143,12 @@ TEST(DetailLevelsTest, endOnFansOfThousands)
     for (GLushort vertex = 1; vertex + 1 < static_cast<GLushort>(tube->vertexCount()); ++vertex)
         for (const int corner : {0, int(vertex), vertex + 1})
             triangles.push_back(static_cast<GLushort>(corner));
-    const DetailLevels fan(*tube, *set);
+    const LodLevels fan(*tube, *set);
     EXPECT_LE(drawn(*tube, fan, 10), triangles.size());
     auto& positions = static_cast<osg::Vec3Array&>(*tube->getVertexArray());
     for (std::size_t vertex = 1; vertex < positions.size(); ++vertex)
         positions[vertex].set(vertex % 2, 1, 0);
-    const DetailLevels doubles(*tube, *set);
+    const LodLevels doubles(*tube, *set);
     EXPECT_GE(drawn(*tube, doubles, 10), 3u);
 }
 
@@ -176,36 +176,36 @@ osg::ref_ptr<SkinnedGeometry> makeDisc(unsigned int points, unsigned int rings)
     return disc;
 }
 
-TEST(DetailLevelsTest, takeNoTimeByTheSquareOfTheTrianglesAtAPoint)
+TEST(LodLevelsTest, takeNoTimeByTheSquareOfTheTrianglesAtAPoint)
 {
     const osg::ref_ptr<SkinnedGeometry> disc = makeDisc(30000, 3);
     const auto begin = std::chrono::steady_clock::now();
-    const DetailLevels levels(*disc, *armSet());
+    const LodLevels levels(*disc, *armSet());
     EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(60)); // by the square: many minutes
     EXPECT_LT(drawn(*disc, levels, 10), disc->getPrimitiveSet(0)->getNumIndices());
 }
 
-TEST(DetailLevelsTest, areNotMadeOfVeryLargeMeshes)
+TEST(LodLevelsTest, areNotMadeOfVeryLargeMeshes)
 {
-    const osg::ref_ptr<SkinnedGeometry> disc = makeDisc(DetailLevels::mostVertices / 2, 2);
-    const DetailLevels levels(*disc, *armSet());
-    EXPECT_EQ(levels.finest(), DetailLevels::allTriangles);
+    const osg::ref_ptr<SkinnedGeometry> disc = makeDisc(LodLevels::mostVertices / 2, 2);
+    const LodLevels levels(*disc, *armSet());
+    EXPECT_EQ(levels.finest(), LodLevels::allTriangles);
     EXPECT_EQ(drawn(*disc, levels, 10), disc->getPrimitiveSet(0)->getNumIndices());
 }
 
-TEST(DetailLevelsTest, areMadeOncePerMeshAndAnewWhenItChanges)
+TEST(LodLevelsTest, areMadeOncePerMeshAndAnewWhenItChanges)
 {
     const auto set = armSet();
     const osg::ref_ptr<SkinnedGeometry> tube = makeTube(*set);
-    const MeshDetail detail;
+    const MeshLod detail;
     EXPECT_EQ(detail.known(*tube), nullptr);
-    std::vector<std::shared_ptr<const DetailLevels>> seen(4);
+    std::vector<std::shared_ptr<const LodLevels>> seen(4);
     std::vector<std::thread> threads;
-    for (std::shared_ptr<const DetailLevels>& levels : seen)
+    for (std::shared_ptr<const LodLevels>& levels : seen)
         threads.emplace_back([&] { levels = detail.of(*tube, *set); });
     for (std::thread& thread : threads)
         thread.join();
-    for (const std::shared_ptr<const DetailLevels>& levels : seen)
+    for (const std::shared_ptr<const LodLevels>& levels : seen)
         EXPECT_EQ(levels, seen.front());
     EXPECT_EQ(detail.known(*tube), seen.front());
     tube->getVertexArray()->dirty();

@@ -47,7 +47,7 @@ osg::Vec4 meanColor(const osg::Image& image)
     return sum / std::max(count, 1.0f);
 }
 
-class DetailGLTest : public ViewerGLTest
+class LodGLTest : public ViewerGLTest
 {
 protected:
     static constexpr int side = 256; ///< pixels
@@ -69,18 +69,18 @@ protected:
         EXPECT_TRUE(character->setPixelError(pixelError));
         const osg::Matrixd upright = character->getWorldMatrices().front();
         const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*character);
-        EXPECT_EQ(crowd->pixelError(), pixelError);
+        EXPECT_EQ(crowd->getPixelError(), pixelError);
         osg::ref_ptr<osg::Group> scene = new osg::Group;
         if (isCrowd) scene->addChild(crowd);
         for (int i = 0; i < across * across; ++i)
         {
             const osg::ref_ptr<AnimatedCharacter> copy = osg::clone(character.get(), osg::CopyOp::DEEP_COPY_NODES);
-            EXPECT_EQ(copy->pixelError(), pixelError);
-            copy->controller().seek(0.17 * i);
+            EXPECT_EQ(copy->getPixelError(), pixelError);
+            copy->getController().seek(0.17 * i);
             const double gap = 2.0 * character->getBound().radius();
             copy->setMatrix(upright * osg::Matrix::translate(gap * (i % across - across / 2), gap * (i / across), 0.0));
             if (isCrowd)
-                EXPECT_TRUE(crowd->add(copy->getMatrix(), copy->controller()));
+                EXPECT_TRUE(crowd->add(copy->getMatrix(), copy->getController()));
             else
                 scene->addChild(copy);
         }
@@ -127,11 +127,11 @@ void PrintTo(const ModelCase& model, std::ostream* out)
     *out << model.file << (model.isCrowd ? ", a crowd" : ", nodes");
 }
 
-class DetailModelsGLTest : public DetailGLTest, public ::testing::WithParamInterface<ModelCase>
+class LodModelsGLTest : public LodGLTest, public ::testing::WithParamInterface<ModelCase>
 {
 };
 
-TEST_P(DetailModelsGLTest, lookAsWithAllTriangles)
+TEST_P(LodModelsGLTest, lookAsWithAllTriangles)
 {
     const std::string file = modelFile(GetParam().file);
     if (file.empty()) GTEST_SKIP() << "there is no " << GetParam().file;
@@ -160,14 +160,14 @@ TEST_P(DetailModelsGLTest, lookAsWithAllTriangles)
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Models, DetailModelsGLTest,
+INSTANTIATE_TEST_SUITE_P(Models, LodModelsGLTest,
                          ::testing::Values(ModelCase{"Wanderer.glb", true}, ModelCase{"Wanderer.glb", false},
                                            ModelCase{"Serpent.glb", true}, ModelCase{"assets/Fox/Fox.glb", false},
                                            ModelCase{"assets/CesiumMan/CesiumMan.glb", true},
                                            ModelCase{"assets/Knight/Knight.glb", true},
                                            ModelCase{"assets/Knight/Knight.glb", false}));
 
-TEST_F(DetailGLTest, whatIsNearHasAllTrianglesWhateverAnotherCameraSees)
+TEST_F(LodGLTest, whatIsNearHasAllTrianglesWhateverAnotherCameraSees)
 {
     for (const bool isCrowd : {true, false})
     {
@@ -206,7 +206,7 @@ TEST_F(DetailGLTest, whatIsNearHasAllTrianglesWhateverAnotherCameraSees)
     }
 }
 
-TEST_F(DetailGLTest, surviveTheOptimizer)
+TEST_F(LodGLTest, surviveTheOptimizer)
 {
     const osg::ref_ptr<osg::Group> scene = makeScene(ownScene("Wanderer.glb"), false, 0.5f);
     const osg::ref_ptr<osg::Image> expected = pictureOf(*scene, 200.0);
@@ -218,7 +218,7 @@ TEST_F(DetailGLTest, surviveTheOptimizer)
     EXPECT_LE(primitives(), ofFirst);
 }
 
-TEST_F(DetailGLTest, comeBackWhenGLObjectsWereReleased)
+TEST_F(LodGLTest, comeBackWhenGLObjectsWereReleased)
 {
     const osg::ref_ptr<osg::Group> scene = makeScene(ownScene("Wanderer.glb"), true, 0.5f);
     const osg::ref_ptr<osg::Image> before = pictureOf(*scene, 200.0);
@@ -227,8 +227,7 @@ TEST_F(DetailGLTest, comeBackWhenGLObjectsWereReleased)
     EXPECT_EQ(Picture::pixelsDifferent(*before, *drawn(*scene)), 0);
 }
 
-class DetailThreadingGLTest : public DetailGLTest,
-                              public ::testing::WithParamInterface<osgViewer::ViewerBase::ThreadingModel>
+class LodThreadingGLTest : public LodGLTest, public ::testing::WithParamInterface<osgViewer::ViewerBase::ThreadingModel>
 {
 protected:
     osg::ref_ptr<osg::Image> drawn(osgViewer::ViewerBase::ThreadingModel model)
@@ -236,7 +235,7 @@ protected:
         osg::ref_ptr<osg::Group> scene = makeScene(ownScene("Wanderer.glb"), true, 0.5f);
         scene->addChild(makeScene(ownScene("Wanderer.glb"), false, 0.5f));
         // The cull traversal has to make levels.
-        SkinnedGeometryVisitor forget([](SkinnedGeometry& mesh) { mesh.forgetDetailLevels(); });
+        SkinnedGeometryVisitor forget([](SkinnedGeometry& mesh) { mesh.forgetLodLevels(); });
         scene->accept(forget);
         context().releaseContext();
         viewer().setThreadingModel(model);
@@ -251,14 +250,14 @@ protected:
     }
 };
 
-TEST_P(DetailThreadingGLTest, drawsTheSame)
+TEST_P(LodThreadingGLTest, drawsTheSame)
 {
     const osg::ref_ptr<osg::Image> expected = drawn(osgViewer::ViewerBase::SingleThreaded);
     EXPECT_GT(picture().pixelsDrawn(), 500);
     EXPECT_EQ(Picture::pixelsDifferent(*expected, *drawn(GetParam())), 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Models, DetailThreadingGLTest, ::testing::ValuesIn(threadingModels));
+INSTANTIATE_TEST_SUITE_P(Models, LodThreadingGLTest, ::testing::ValuesIn(threadingModels));
 
 } // namespace
 

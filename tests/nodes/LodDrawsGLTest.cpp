@@ -16,7 +16,7 @@ namespace
 
 constexpr float pixelError = 100.0f; ///< whatever has levels is drawn at its coarsest
 
-class DetailDrawsGLTest : public ViewerGLTest
+class LodDrawsGLTest : public ViewerGLTest
 {
 protected:
     /// In the scene's second frame.
@@ -31,7 +31,7 @@ protected:
     static osg::ref_ptr<AnimatedCrowd> crowdOf(const AnimatedCharacter& character)
     {
         const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(character);
-        EXPECT_TRUE(crowd->add(osg::Matrix(), character.controller()));
+        EXPECT_TRUE(crowd->add(osg::Matrix(), character.getController()));
         return crowd;
     }
 
@@ -50,17 +50,17 @@ osg::ref_ptr<SkinnedGeometry> makeBlank(std::size_t vertices)
 
 void fillUp(AnimatedCharacter& character)
 {
-    for (std::size_t vertices = 0; vertices < DetailRange::mostVertices; vertices += DetailLevels::mostVertices)
-        character.addChild(makeBlank(DetailLevels::mostVertices));
+    for (std::size_t vertices = 0; vertices < LodRange::mostVertices; vertices += LodLevels::mostVertices)
+        character.addChild(makeBlank(LodLevels::mostVertices));
 }
 
-TEST_F(DetailDrawsGLTest, whatComesAfterTheMostVerticesIsDrawnWhole)
+TEST_F(LodDrawsGLTest, whatComesAfterTheMostVerticesIsDrawnWhole)
 {
     const osg::ref_ptr<AnimatedCharacter> character = makeTubeCharacter(armSet());
     ASSERT_TRUE(character->setPixelError(pixelError));
     EXPECT_LT(trianglesOf(*character), tubeTriangles / 4);
     fillUp(*character);
-    character->addChild(makeShownTube(character->set()));
+    character->addChild(makeShownTube(character->getAnimationSet()));
     ASSERT_TRUE(character->setPixelError(pixelError));
     for (const osg::ref_ptr<osg::Node>& scene : std::vector<osg::ref_ptr<osg::Node>>{character, crowdOf(*character)})
     {
@@ -70,19 +70,19 @@ TEST_F(DetailDrawsGLTest, whatComesAfterTheMostVerticesIsDrawnWhole)
     }
 }
 
-TEST_F(DetailDrawsGLTest, whatIsNotTheCharactersOwnChildIsDrawnWhole)
+TEST_F(LodDrawsGLTest, whatIsNotTheCharactersOwnChildIsDrawnWhole)
 {
     const osg::ref_ptr<AnimatedCharacter> character = makeTubeCharacter(armSet());
     ASSERT_TRUE(character->setPixelError(pixelError));
     const osg::ref_ptr<osg::Group> group = new osg::Group;
-    group->addChild(makeShownTube(character->set()));
+    group->addChild(makeShownTube(character->getAnimationSet()));
     character->addChild(group);
     const GLuint triangles = trianglesOf(*character);
     EXPECT_GE(triangles, tubeTriangles);
     EXPECT_LT(triangles, tubeTriangles + tubeTriangles / 4);
 }
 
-TEST_F(DetailDrawsGLTest, charactersOfASetHaveLevelsOfTheirOwnMeshes)
+TEST_F(LodDrawsGLTest, charactersOfASetHaveLevelsOfTheirOwnMeshes)
 {
     const auto set = armSet();
     const osg::ref_ptr<osg::Group> scene = new osg::Group;

@@ -155,7 +155,7 @@ const char* const beyond = "farther out than 1e18";
 
 } // namespace
 
-TEST(ReachTest, nothingBeyondFloatNumbersComesThrough)
+TEST(TransformBoundTest, nothingBeyondFloatNumbersComesThrough)
 {
     const ReachCase cases[] = {
         {"modest", stillAt({0, 0, 0, 1, 0, 0, 0, 1, 0}, 1e17), "", false, 0, 1},

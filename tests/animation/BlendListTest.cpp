@@ -19,8 +19,8 @@ namespace osgGpuAnimation
 namespace
 {
 
-/// Of the samples of one standing, 0 being the lowest; additive ones and their references are none.
-double weightOf(const PoseInstruction& instruction, int standing)
+/// Of the samples of one blend priority, 0 being the lowest; additive ones and their references are none.
+double weightOf(const PoseInstruction& instruction, int blendPriority)
 {
     double sum = 0.0;
     int here = 0;
@@ -29,7 +29,7 @@ double weightOf(const PoseInstruction& instruction, int standing)
         const BlendSample& sample = instruction.samples[i];
         if (sample.control & (POSE_SAMPLE_ADDITIVE | POSE_SAMPLE_REFERENCE)) continue;
         if (sample.control & POSE_SAMPLE_ABOVE) ++here;
-        if (here == standing) sum += static_cast<double>(sample.weight);
+        if (here == blendPriority) sum += static_cast<double>(sample.weight);
     }
     return sum;
 }
@@ -49,7 +49,7 @@ void addLayer(AnimationController& controller, std::size_t index, float weight)
     layer.setWeight(weight);
 }
 
-TEST(SampleStackTest, AdditiveLayersDoNotPushOutTheBase)
+TEST(BlendListTest, AdditiveLayersDoNotPushOutTheBase)
 {
     for (std::size_t layers : {4u, 7u})
         for (float weight : {0.05f, 1.0f})
@@ -73,7 +73,7 @@ TEST(SampleStackTest, AdditiveLayersDoNotPushOutTheBase)
         }
 }
 
-TEST(SampleStackTest, WhatGivesWayLeavesItsWeightToItsStanding)
+TEST(BlendListTest, DroppedSamplesLeaveTheirWeightToTheirBlendPriority)
 {
     AnimationController controller(makeGaitSet());
     for (int i = 0; i < 8; ++i)
@@ -88,27 +88,27 @@ TEST(SampleStackTest, WhatGivesWayLeavesItsWeightToItsStanding)
         controller.advance(0.02);
     }
     double whole = 0.0;
-    for (std::size_t v = 0; v < controller.layer(0).mixer().voiceCount(); ++v)
-        whole += controller.layer(0).mixer().voice(v).share;
+    for (std::size_t v = 0; v < controller.layer(0).mixer().activeClipCount(); ++v)
+        whole += controller.layer(0).mixer().activeClip(v).share;
     const std::size_t shown = controller.instruction().sampleCount - 2 * additiveCount(controller.instruction());
-    ASSERT_EQ(controller.layer(0).mixer().voiceCount(), 8u);
+    ASSERT_EQ(controller.layer(0).mixer().activeClipCount(), 8u);
     ASSERT_LT(shown, 8u) << "some had to go";
     EXPECT_NEAR(weightOf(controller.instruction(), 0), whole, 1e-5);
 }
 
-TEST(SampleStackTest, TheHeaviestOfEachStandingStays)
+TEST(BlendListTest, TheHeaviestOfEachBlendPriorityStays)
 {
-    SampleStack stack;
+    BlendList stack;
     for (std::uint32_t i = 0; i < 8; ++i)
-        for (std::uint32_t voice = 0; voice < 8; ++voice)
-            stack.add({10 * i + voice, 0.0f, voice == 3 ? 0.02f : 0.01f, 0u}, static_cast<int>(i));
+        for (std::uint32_t activeClip = 0; activeClip < 8; ++activeClip)
+            stack.add({10 * i + activeClip, 0.0f, activeClip == 3 ? 0.02f : 0.01f, 0u}, static_cast<int>(i));
     PoseInstruction out;
     stack.write(out);
     ASSERT_EQ(out.sampleCount, PoseInstruction::maxSamples);
-    for (int standing = 0; standing < 8; ++standing)
-        EXPECT_NEAR(weightOf(out, standing), 0.09, 1e-6) << standing;
+    for (int blendPriority = 0; blendPriority < 8; ++blendPriority)
+        EXPECT_NEAR(weightOf(out, blendPriority), 0.09, 1e-6) << blendPriority;
 
-    SampleStack low;
+    BlendList low;
     low.add({1, 0.0f, 0.001f, 0u}, 0);
     for (std::uint32_t i = 0; i < 9; ++i)
         low.addDifference({0, 0.0f, 1.0f, 0u}, {10 + i, 0.0f, 1.0f, 0u});
@@ -117,12 +117,12 @@ TEST(SampleStackTest, TheHeaviestOfEachStandingStays)
     EXPECT_EQ(additiveCount(out), 7u);
 }
 
-TEST(SampleStackTest, TheOrderInWhichTheyComePlaysNoPart)
+TEST(BlendListTest, TheOrderInWhichTheyComePlaysNoPart)
 {
     struct Item
     {
         BlendSample sample;
-        int standing;
+        int blendPriority;
         bool isDifference;
     };
     std::mt19937 random(7);
@@ -138,12 +138,12 @@ TEST(SampleStackTest, TheOrderInWhichTheyComePlaysNoPart)
         PoseInstruction first;
         for (int order = 0; order < 4; ++order)
         {
-            SampleStack stack;
+            BlendList stack;
             for (const Item& item : items)
                 if (item.isDifference)
                     stack.addDifference({0, 0.0f, 1.0f, item.sample.control}, item.sample);
                 else
-                    stack.add(item.sample, item.standing);
+                    stack.add(item.sample, item.blendPriority);
             PoseInstruction out;
             stack.write(out);
             if (order == 0) first = out;

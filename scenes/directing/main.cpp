@@ -60,7 +60,7 @@ void maskedWave(AnimatedCharacter& wanderer, int i)
     if (!succeeds(controller.play("Walk"))) return;
     controller.seek(0.3);
     if (i == 0) return;
-    const Result<JointMask> arm = JointMask::subtree(wanderer.set(), "Shoulder_R", 1);
+    const Result<JointMask> arm = JointMask::subtree(wanderer.getAnimationSet(), "Shoulder_R", 1);
     if (!succeeds(arm)) return;
     AnimationLayer& gesture = controller.layer(1);
     if (succeeds(gesture.setMask(arm.value())) && succeeds(gesture.play("Wave"))) gesture.seek(0.5 + 0.35 * i);

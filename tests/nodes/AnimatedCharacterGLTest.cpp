@@ -33,7 +33,7 @@ protected:
                << picture().pixelsDrawn() << " pixels drawn, inside " << inside << ", outside " << outside;
     }
 
-    PosePipeline::Counters counters() { return PosePipeline::of(state())->counters(); }
+    PosePipeline::Counters counters() { return PosePipeline::of(state())->getCounters(); }
 };
 
 TEST_F(AnimatedCharacterGLTest, isDrawnInThePoseOfItsTime)
@@ -96,7 +96,7 @@ TEST_F(AnimatedCharacterGLTest, aCloneIsIndependent)
     other->setMatrix(osg::Matrix::translate(0, 0, -2));
     other->getController().setSpeed(-1.0);
     ASSERT_TRUE(other->getController().play("shift"));
-    EXPECT_EQ(&one->set(), &other->set());
+    EXPECT_EQ(&one->getAnimationSet(), &other->getAnimationSet());
     osg::ref_ptr<osg::Group> root = new osg::Group;
     root->addChild(one);
     root->addChild(other);

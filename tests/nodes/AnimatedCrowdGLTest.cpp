@@ -111,13 +111,13 @@ TEST_F(AnimatedCrowdGLTest, drawsAndFeedbackDoNotGrowWithTheInstances)
         viewer().setSceneData(crowd);
         drawAt(0);
         drawAt(0.25);
-        const PosePipeline::Counters before = pipeline().counters();
+        const PosePipeline::Counters before = pipeline().getCounters();
         const GlCallTrace trace(state());
         drawAt(0.5);
-        EXPECT_EQ(pipeline().counters().feedbackDraws - before.feedbackDraws, testCharacterSet()->levelCount());
-        EXPECT_EQ(pipeline().counters().instancesEvaluated - before.instancesEvaluated, unsigned(count));
+        EXPECT_EQ(pipeline().getCounters().feedbackDraws - before.feedbackDraws, testCharacterSet()->levelCount());
+        EXPECT_EQ(pipeline().getCounters().instancesEvaluated - before.instancesEvaluated, unsigned(count));
         // Nobody has moved: 16 bytes each, no root matrices.
-        EXPECT_EQ(pipeline().counters().bytesUploaded - before.bytesUploaded, 16u * unsigned(count));
+        EXPECT_EQ(pipeline().getCounters().bytesUploaded - before.bytesUploaded, 16u * unsigned(count));
         if (count == 10)
             ofTen = trace.calls();
         else
@@ -132,14 +132,14 @@ TEST_F(AnimatedCrowdGLTest, thoseOutsideTheViewCostNothing)
         ASSERT_TRUE(crowd->add(osg::Matrix::translate(20 + index, 0, 0), controllerOf(0)));
     viewer().setSceneData(crowd);
     drawAt(0);
-    const PosePipeline::Counters before = pipeline().counters();
+    const PosePipeline::Counters before = pipeline().getCounters();
     drawAt(0.5);
-    EXPECT_EQ(pipeline().counters().instancesEvaluated - before.instancesEvaluated, 4u);
+    EXPECT_EQ(pipeline().getCounters().instancesEvaluated - before.instancesEvaluated, 4u);
     viewer().getCamera()->setViewMatrixAsLookAt({0, -10, 500}, {0, 0, 500}, {0, 0, 1});
-    const PosePipeline::Counters unseen = pipeline().counters();
+    const PosePipeline::Counters unseen = pipeline().getCounters();
     drawAt(1.0);
-    EXPECT_EQ(pipeline().counters().bytesUploaded, unseen.bytesUploaded);
-    EXPECT_EQ(pipeline().counters().feedbackDraws, unseen.feedbackDraws);
+    EXPECT_EQ(pipeline().getCounters().bytesUploaded, unseen.bytesUploaded);
+    EXPECT_EQ(pipeline().getCounters().feedbackDraws, unseen.feedbackDraws);
 }
 
 TEST_F(AnimatedCrowdGLTest, instancesComeGoAndMoveBetweenFrames)
@@ -171,9 +171,9 @@ TEST_F(AnimatedCrowdGLTest, chunksOfASmallBufferTextureShowTheSame)
     // Room for the set itself and a few instances' palettes.
     const std::size_t perInstance = 3 * testCharacterSet()->paletteSize();
     pipeline().setMaxTexels(std::max(PackedKeyframes(*testCharacterSet()).texels().size(), perInstance * 5));
-    const PosePipeline::Counters before = pipeline().counters();
+    const PosePipeline::Counters before = pipeline().getCounters();
     const osg::ref_ptr<osg::Image> cut = pictureOf(makeCrowd(12), {0.0, 0.5});
-    EXPECT_GT(pipeline().counters().feedbackDraws - before.feedbackDraws, 2 * testCharacterSet()->levelCount());
+    EXPECT_GT(pipeline().getCounters().feedbackDraws - before.feedbackDraws, 2 * testCharacterSet()->levelCount());
     EXPECT_EQ(Picture::pixelsDifferent(*whole, *cut), 0);
 }
 
@@ -275,9 +275,9 @@ TEST_F(AnimatedCrowdGLTest, seenAlikeByTwoCamerasItIsEvaluatedOnce)
     root->addChild(second);
     viewer().setSceneData(root);
     drawAt(0);
-    const PosePipeline::Counters before = pipeline().counters();
+    const PosePipeline::Counters before = pipeline().getCounters();
     drawAt(0.5);
-    EXPECT_EQ(pipeline().counters().instancesEvaluated - before.instancesEvaluated, 8u);
+    EXPECT_EQ(pipeline().getCounters().instancesEvaluated - before.instancesEvaluated, 8u);
 }
 
 TEST_F(AnimatedCrowdGLTest, aCrowdAndCharactersOfItsSetStandSideBySide)

@@ -3,6 +3,7 @@
 #include "support/TestCharacter.h"
 
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+#include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
 
 #include <gtest/gtest.h>
 #include <osg/TriangleFunctor>
@@ -74,7 +75,7 @@ TEST(AnimatedCrowdTest, refusesBadPlacementsAndStaysAsItIs)
     const osg::ref_ptr<AnimatedCrowd> fresh = emptyCrowd();
     EXPECT_FALSE(fresh->add(badPlacements[1].placement, playing("shift")));
     ASSERT_TRUE(fresh->add(osg::Matrixd::translate(7, 0, 0), playing("shift")));
-    EXPECT_EQ(fresh->origin(), osg::Vec3d(7, 0, 0));
+    EXPECT_EQ(fresh->getOrigin(), osg::Vec3d(7, 0, 0));
 }
 
 TEST(AnimatedCrowdTest, refusesControllersOfOtherSets)
@@ -205,9 +206,9 @@ TEST(AnimatedCrowdTest, aCloneHasInstancesOfItsOwn)
     const osg::ref_ptr<AnimatedCrowd> crowd = emptyCrowd();
     const AnimatedCrowd::Instance instance = crowd->add(osg::Matrixd::translate(1, 0, 0), playing("shift")).value();
     const osg::ref_ptr<AnimatedCrowd> other = osg::clone(crowd.get(), osg::CopyOp::DEEP_COPY_NODES);
-    ASSERT_TRUE(other->move(instance, osg::Matrixd::translate(5, 0, 0)));
+    ASSERT_TRUE(other->setPlacement(instance, osg::Matrixd::translate(5, 0, 0)));
     EXPECT_EQ(crowd->getPlacement(instance).getTrans(), osg::Vec3d(1, 0, 0));
-    EXPECT_EQ(&crowd->getAnimationSet(), &other->set());
+    EXPECT_EQ(&crowd->getAnimationSet(), &other->getAnimationSet());
 }
 
 TEST(AnimatedCrowdTest, movingTheOriginLeavesInstancesWhereTheyAre)

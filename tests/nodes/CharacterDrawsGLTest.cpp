@@ -182,7 +182,7 @@ TEST_F(CharacterDrawsGLTest, chunksOfPalettesAreDrawnOneAfterAnother)
 {
     const osg::ref_ptr<osg::Group> scene = makeCharacters(everybody);
     const osg::ref_ptr<osg::Image> whole = pictureOf(*scene, true);
-    const std::size_t texels = PosePipeline::of(state())->maxTexels();
+    const std::size_t texels = PosePipeline::of(state())->getMaxTexels();
     PosePipeline::of(state())->setMaxTexels(6 * 3 * testCharacterSet()->paletteSize()); // six to a chunk
     characterOf(*scene, 0).getController().seek(0.01);
     characterOf(*scene, 0).getController().seek(0.0);

@@ -67,7 +67,7 @@ TEST_F(CrowdEdgesGLTest, aMillionInstancesOfWhichAFewAreSeen)
     viewer().setSceneData(crowd);
     drawAt(0);
     EXPECT_EQ(picture().pixelsDrawn(), 6 * 64);
-    EXPECT_EQ(PosePipeline::of(state())->counters().instancesEvaluated, 6u);
+    EXPECT_EQ(PosePipeline::of(state())->getCounters().instancesEvaluated, 6u);
     for (const AnimatedCrowd::Instance instance : instances)
         ASSERT_TRUE(crowd->remove(instance));
     drawAt(1);

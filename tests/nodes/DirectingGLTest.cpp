@@ -17,7 +17,7 @@ namespace
 class DirectingGLTest : public ViewerGLTest
 {
 protected:
-    PosePipeline::Counters counters() { return PosePipeline::of(state())->counters(); }
+    PosePipeline::Counters counters() { return PosePipeline::of(state())->getCounters(); }
 
     /// The first column of the picture in which anything is drawn, in units of the scene (see AnimatedCharacterGLTest).
     double left()

@@ -180,7 +180,7 @@ TEST_F(JointAttachmentTest, SharedByCharactersOfDifferentSetsItWarnsOnce)
     osg::ref_ptr<osg::Group> scene = new osg::Group;
     scene->addChild(characterWith(attachment));
     osg::ref_ptr<AnimatedCharacter> other = makeTestCharacter();
-    ASSERT_TRUE(other->setAnimationSet(other->set().withClips(other->set().clips()).value()));
+    ASSERT_TRUE(other->setAnimationSet(other->getAnimationSet().withClips(other->getAnimationSet().clips()).value()));
     other->addChild(attachment);
     scene->addChild(other);
     osg::ref_ptr<Warnings> warnings = new Warnings;

@@ -29,6 +29,12 @@ bool has(const LodLevels& levels)
     return levels.finest() != LodLevels::allTriangles;
 }
 
+LodLevels::Skinning skinningOf(const SkinnedGeometry& mesh)
+{
+    return [&mesh](const std::vector<AffineMatrix>& palette, std::vector<glm::dvec3>& outPositions)
+    { mesh.computePositions(palette, outPositions); };
+}
+
 TEST(LodLevelsTest, areCalledAfterPowersOfTwo)
 {
     EXPECT_EQ(LodLevels::levelOf(1.0), 0);
@@ -44,7 +50,7 @@ TEST(LodLevelsTest, keepAnElbowThatBendsInAClip)
     const std::shared_ptr<const AnimationSet> bending = armSet();
     const auto still = bending->withClips({}).value();
     const osg::ref_ptr<SkinnedGeometry> tube = makeTube(*bending);
-    const LodLevels ofBending(*tube, *bending), ofStill(*tube, *still);
+    const LodLevels ofBending(*tube, *bending, skinningOf(*tube)), ofStill(*tube, *still, skinningOf(*tube));
     const int level = -5; // 1/32 of a tube that is 1 thick
     EXPECT_LT(drawn(*tube, ofStill, level), 300u) << "straight, it needs but its ends";
     EXPECT_GT(drawn(*tube, ofBending, level), 2 * drawn(*tube, ofStill, level));
@@ -65,7 +71,8 @@ TEST(LodLevelsTest, speakOfTheCharactersUnitsWhateverTheMeshs)
     for (osg::Vec3& position : static_cast<osg::Vec3Array&>(*large->getVertexArray()))
         position *= 100.0f;
     large->setRigidEntry(static_cast<unsigned short>(set->entryOfSkin(0, 0)));
-    const LodLevels levels(*tube, *armed->withClips({}).value()), ofLarge(*large, *set);
+    const LodLevels levels(*tube, *armed->withClips({}).value(), skinningOf(*tube)),
+        ofLarge(*large, *set, skinningOf(*large));
     ASSERT_TRUE(has(levels));
     EXPECT_EQ(ofLarge.finest(), levels.finest());
     EXPECT_EQ(ofLarge.coarsest(), levels.coarsest());
@@ -94,7 +101,7 @@ TEST(LodLevelsTest, keepTextureCoordinatesOnTheirSideOfASeam)
     strip->setTexCoordArray(0, texCoords);
     strip->setRigidEntry(static_cast<unsigned short>(set->entryOfRigidJoint(1)));
     strip->addPrimitiveSet(triangles);
-    const LodLevels levels(*strip, *set->withClips({}).value());
+    const LodLevels levels(*strip, *set->withClips({}).value(), skinningOf(*strip));
     const osg::DrawElements* few = levels.elements(0, levels.finest());
     ASSERT_NE(few, nullptr);
     EXPECT_LE(few->getNumIndices(), 3u * 40u) << "it is flat";
@@ -110,7 +117,7 @@ TEST(LodLevelsTest, areNotMadeWhereThereIsNothingToGain)
     {
         const osg::ref_ptr<SkinnedGeometry> tube = makeTube(*set);
         change(*tube);
-        EXPECT_FALSE(has(LodLevels(*tube, *set))) << what;
+        EXPECT_FALSE(has(LodLevels(*tube, *set, skinningOf(*tube)))) << what;
     };
     const auto positionsOf = [](SkinnedGeometry& mesh) -> osg::Vec3Array&
     { return static_cast<osg::Vec3Array&>(*mesh.getVertexArray()); };
@@ -140,15 +147,15 @@ TEST(LodLevelsTest, endOnFansOfThousands)
     const osg::ref_ptr<SkinnedGeometry> tube = makeTube(*set);
     auto& triangles = static_cast<osg::DrawElementsUShort&>(*tube->getPrimitiveSet(0));
     triangles.clear();
-    for (GLushort vertex = 1; vertex + 1 < static_cast<GLushort>(tube->vertexCount()); ++vertex)
+    for (GLushort vertex = 1; vertex + 1 < static_cast<GLushort>(tube->getVertexCount()); ++vertex)
         for (const int corner : {0, int(vertex), vertex + 1})
             triangles.push_back(static_cast<GLushort>(corner));
-    const LodLevels fan(*tube, *set);
+    const LodLevels fan(*tube, *set, skinningOf(*tube));
     EXPECT_LE(drawn(*tube, fan, 10), triangles.size());
     auto& positions = static_cast<osg::Vec3Array&>(*tube->getVertexArray());
     for (std::size_t vertex = 1; vertex < positions.size(); ++vertex)
         positions[vertex].set(vertex % 2, 1, 0);
-    const LodLevels doubles(*tube, *set);
+    const LodLevels doubles(*tube, *set, skinningOf(*tube));
     EXPECT_GE(drawn(*tube, doubles, 10), 3u);
 }
 
@@ -180,7 +187,7 @@ TEST(LodLevelsTest, takeNoTimeByTheSquareOfTheTrianglesAtAPoint)
 {
     const osg::ref_ptr<SkinnedGeometry> disc = makeDisc(30000, 3);
     const auto begin = std::chrono::steady_clock::now();
-    const LodLevels levels(*disc, *armSet());
+    const LodLevels levels(*disc, *armSet(), skinningOf(*disc));
     EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(60)); // by the square: many minutes
     EXPECT_LT(drawn(*disc, levels, 10), disc->getPrimitiveSet(0)->getNumIndices());
 }
@@ -188,7 +195,7 @@ TEST(LodLevelsTest, takeNoTimeByTheSquareOfTheTrianglesAtAPoint)
 TEST(LodLevelsTest, areNotMadeOfVeryLargeMeshes)
 {
     const osg::ref_ptr<SkinnedGeometry> disc = makeDisc(LodLevels::mostVertices / 2, 2);
-    const LodLevels levels(*disc, *armSet());
+    const LodLevels levels(*disc, *armSet(), skinningOf(*disc));
     EXPECT_EQ(levels.finest(), LodLevels::allTriangles);
     EXPECT_EQ(drawn(*disc, levels, 10), disc->getPrimitiveSet(0)->getNumIndices());
 }
@@ -202,7 +209,7 @@ TEST(LodLevelsTest, areMadeOncePerMeshAndAnewWhenItChanges)
     std::vector<std::shared_ptr<const LodLevels>> seen(4);
     std::vector<std::thread> threads;
     for (std::shared_ptr<const LodLevels>& levels : seen)
-        threads.emplace_back([&] { levels = detail.of(*tube, *set); });
+        threads.emplace_back([&] { levels = detail.of(*tube, *set, skinningOf(*tube)); });
     for (std::thread& thread : threads)
         thread.join();
     for (const std::shared_ptr<const LodLevels>& levels : seen)
@@ -210,7 +217,7 @@ TEST(LodLevelsTest, areMadeOncePerMeshAndAnewWhenItChanges)
     EXPECT_EQ(detail.known(*tube), seen.front());
     tube->getVertexArray()->dirty();
     EXPECT_EQ(detail.known(*tube), nullptr);
-    EXPECT_NE(detail.of(*tube, *set), seen.front());
+    EXPECT_NE(detail.of(*tube, *set, skinningOf(*tube)), seen.front());
     tube->getPrimitiveSet(0)->dirty();
     EXPECT_EQ(detail.known(*tube), nullptr);
 }

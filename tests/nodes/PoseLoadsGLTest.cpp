@@ -5,6 +5,7 @@
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/gpu/PosePipeline.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+#include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
 
 #include <osg/Group>
 
@@ -67,9 +68,9 @@ protected:
 
     std::uint64_t bytesUploadedAt(double time)
     {
-        const std::uint64_t before = pipeline().counters().bytesUploaded;
+        const std::uint64_t before = pipeline().getCounters().bytesUploaded;
         drawAt(time);
-        return pipeline().counters().bytesUploaded - before;
+        return pipeline().getCounters().bytesUploaded - before;
     }
 };
 
@@ -131,10 +132,10 @@ TEST_F(PoseLoadsGLTest, fewStayInOneBatch)
     }
     viewer().setSceneData(crowd);
     drawAt(0.0);
-    const PosePipeline::Counters before = pipeline().counters();
+    const PosePipeline::Counters before = pipeline().getCounters();
     drawAt(0.25);
-    EXPECT_EQ(pipeline().counters().feedbackDraws - before.feedbackDraws, testCharacterSet()->levelCount());
-    EXPECT_EQ(pipeline().counters().instancesEvaluated - before.instancesEvaluated, PoseBatch::minBatchSize);
+    EXPECT_EQ(pipeline().getCounters().feedbackDraws - before.feedbackDraws, testCharacterSet()->levelCount());
+    EXPECT_EQ(pipeline().getCounters().instancesEvaluated - before.instancesEvaluated, PoseBatch::minBatchSize);
 }
 
 } // namespace

@@ -274,7 +274,7 @@ TEST_F(ViewersGLTest, anotherViewersFrameOfTheSameNumberHasItsOwnCharactersAlone
         other.realize();
         other.frame(0);
         contextIds[round] = window->getState()->getContextID();
-        evaluated[round] = PosePipeline::of(*window->getState())->counters().instancesEvaluated;
+        evaluated[round] = PosePipeline::of(*window->getState())->getCounters().instancesEvaluated;
         window->close();
     }
     ASSERT_EQ(contextIds[0], contextIds[1]);

@@ -101,8 +101,8 @@ protected:
     {
         AnimatedCharacter& first = *findCharacter(original);
         ASSERT_NE(&first, &copy);
-        EXPECT_EQ(&first.set(), &copy.set());
-        const std::string last = clipName(first.set().clips().size() - 1, first.set());
+        EXPECT_EQ(&first.getAnimationSet(), &copy.getAnimationSet());
+        const std::string last = clipName(first.getAnimationSet().clips().size() - 1, first.getAnimationSet());
         const osg::ref_ptr<osg::Image> before = pictureOf(original, 1.0);
         ASSERT_TRUE(copy.getController().play(last));
         copy.getController().setSpeed(0.5);

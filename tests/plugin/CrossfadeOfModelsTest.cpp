@@ -71,7 +71,7 @@ protected:
             double fastest = 0.0;
             const ClipMixer& mixer = controller.layer(0).mixer();
             for (std::size_t v = 0; v < mixer.activeClipCount(); ++v)
-                fastest = std::max(fastest, steps.at(mixer.voice(v).playback.clip()));
+                fastest = std::max(fastest, steps.at(mixer.activeClip(v).playback.clip()));
             worst = std::max(worst, largestStep(before, jointPlaces(controller)) / fastest);
         }
         return worst;

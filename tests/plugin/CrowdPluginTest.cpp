@@ -4,6 +4,7 @@
 #include "support/NotifyLog.h"
 
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+#include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
 
 #include <gtest/gtest.h>
 #include <osgDB/FileNameUtils>

@@ -12,6 +12,7 @@
 #include <osgGpuAnimation/nodes/JointAttachment.h>
 #include <osgGpuAnimation/nodes/PoseStatistics.h>
 #include <osgGpuAnimation/nodes/RootMotionCallback.h>
+#include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
 
 #include <gtest/gtest.h>
 
@@ -187,8 +188,8 @@ void expectSameMeshes(osg::Group& first, osg::Group& second)
         EXPECT_EQ(found->getInfluenceCount(), expected->getInfluenceCount());
         EXPECT_EQ(found->getMorphEntry(), expected->getMorphEntry());
         expectSameArrays(expected->getVertexArray(), found->getVertexArray());
-        expectSameArrays(expected->entries(0), found->entries(0));
-        expectSameArrays(expected->weights(0), found->weights(0));
+        expectSameArrays(expected->getEntries(0), found->getEntries(0));
+        expectSameArrays(expected->getWeights(0), found->getWeights(0));
         ASSERT_EQ(found->getMorphTargets().size(), expected->getMorphTargets().size());
         for (std::size_t target = 0; target < expected->getMorphTargets().size(); ++target)
         {
@@ -204,7 +205,7 @@ void expectSameCharacter(AnimatedCharacter& first, AnimatedCharacter& second)
     EXPECT_LE((second.getMatrix().getTrans() - first.getMatrix().getTrans()).length(), 1e-8);
     EXPECT_EQ(second.getPixelError(), first.getPixelError());
     EXPECT_EQ(second.isDrawnTogether(), first.isDrawnTogether());
-    EXPECT_TRUE(haveSameKeyframes(first.set(), second.set()));
+    EXPECT_TRUE(haveSameKeyframes(first.getAnimationSet(), second.getAnimationSet()));
     EXPECT_EQ(second.getCurrentBounds().max, first.getCurrentBounds().max);
     EXPECT_EQ(lengthOf(second.getUpdateCallback()), lengthOf(first.getUpdateCallback()));
     EXPECT_EQ(countOf<AnimationUpdateCallback>(second.getUpdateCallback()), 1);
@@ -250,8 +251,8 @@ TEST_P(EarlierScenesTest, charactersAreAsTheyWere)
         ASSERT_TRUE(findCharacter(*found->getChild(child)));
         expectSameCharacter(characterIn(*expected, child), characterIn(*found, child));
     }
-    EXPECT_EQ(&characterIn(*found, 0).set(), &characterIn(*found, 2).set()) << "one set for both";
-    EXPECT_TRUE(characterIn(*found, 3).set().clips().front().compactTracks());
+    EXPECT_EQ(&characterIn(*found, 0).getAnimationSet(), &characterIn(*found, 2).getAnimationSet()) << "one set for both";
+    EXPECT_TRUE(characterIn(*found, 3).getAnimationSet().clips().front().compactTracks());
 }
 
 TEST_P(EarlierScenesTest, attachmentsCallbacksAndMarkersAreThere)
@@ -263,19 +264,19 @@ TEST_P(EarlierScenesTest, attachmentsCallbacksAndMarkersAreThere)
     ASSERT_TRUE(byName && byNumber);
     EXPECT_EQ(byName->getJointName(), "hand");
     EXPECT_EQ(byName->getNumChildren(), 1u);
-    EXPECT_EQ(byNumber->joint(), 2);
+    EXPECT_EQ(byNumber->getJoint(), 2);
     EXPECT_EQ(countOf<RootMotionCallback>(character.getUpdateCallback()), 1);
     EXPECT_EQ(countOf<PoseStatistics>(character.getEventCallback()), 1);
     const auto* keys = dynamic_cast<CharacterKeys*>(character.getEventCallback());
     ASSERT_TRUE(keys);
     EXPECT_EQ(keys->getFadeSeconds(), 0.7);
     const Clip& clip = character.getAnimationSet().clips()[0];
-    const Clip& before = characterIn(*expected, 0).set().clips()[0];
+    const Clip& before = characterIn(*expected, 0).getAnimationSet().clips()[0];
     ASSERT_EQ(clip.markers().size(), 2u);
     EXPECT_EQ(clip.markers()[0].name, "left foot");
     EXPECT_EQ(clip.markers()[0].time, 0.25);
     ASSERT_TRUE(clip.rootMotion());
-    EXPECT_EQ(clip.rootMotion()->at(clip, 0.5).translation, before.rootMotion()->at(before, 0.5).translation);
+    EXPECT_EQ(clip.rootMotionAt(0.5).translation, before.rootMotionAt(0.5).translation);
 }
 
 TEST_P(EarlierScenesTest, crowdsKeepTheirInstancesAndLeaveTheHomeViewAlone)
@@ -283,19 +284,19 @@ TEST_P(EarlierScenesTest, crowdsKeepTheirInstancesAndLeaveTheHomeViewAlone)
     auto* first = dynamic_cast<AnimatedCrowd*>(expected->getChild(1));
     auto* second = dynamic_cast<AnimatedCrowd*>(found->getChild(1));
     ASSERT_TRUE(first && second);
-    EXPECT_EQ(second->origin(), first->origin());
+    EXPECT_EQ(second->getOrigin(), first->getOrigin());
     EXPECT_EQ(second->getPixelError(), 0.5f);
     EXPECT_EQ(lengthOf(second->getEventCallback()), 1) << "TiltedHome";
     EXPECT_EQ(countOf<PoseStatistics>(second->getEventCallback()), 1);
     EXPECT_EQ(countOf<AnimationUpdateCallback>(second->getUpdateCallback()), 1);
     expectSameMeshes(*first, *second);
-    ASSERT_EQ(second->size(), first->size());
-    for (std::size_t i = 0; i < first->size(); ++i)
+    ASSERT_EQ(second->getNumInstances(), first->getNumInstances());
+    for (std::size_t i = 0; i < first->getNumInstances(); ++i)
     {
         SCOPED_TRACE(i);
-        EXPECT_EQ(second->instances().rootMatrix(i).rows, first->instances().rootMatrix(i).rows);
-        EXPECT_EQ(second->instances().tint(i), first->instances().tint(i));
-        expectSamePlayback(first->instances().controllerCopy(i), second->instances().controllerCopy(i));
+        EXPECT_EQ(second->getInstances().rootMatrix(i).rows, first->getInstances().rootMatrix(i).rows);
+        EXPECT_EQ(second->getInstances().tint(i), first->getInstances().tint(i));
+        expectSamePlayback(first->getInstances().controllerCopy(i), second->getInstances().controllerCopy(i));
     }
 }
 

@@ -79,13 +79,13 @@ glm::dvec3 ModelVertices::placed(const ImportedPrimitive& primitive, std::size_t
         return glm::dvec3(_palette[static_cast<std::size_t>(skinned->getRigidEntry())].toColumns() *
                           glm::dvec4(position, 1.0));
     glm::dvec3 sum(0.0);
-    for (unsigned int set = 0; set < SkinnedGeometry::maxInfluenceSets && skinned->entries(set); ++set)
+    for (unsigned int set = 0; set < SkinnedGeometry::maxInfluenceSets && skinned->getEntries(set); ++set)
     {
         for (unsigned int i = 0; i < 4; ++i)
         {
-            const double weight = (*skinned->weights(set))[vertex][i];
+            const double weight = (*skinned->getWeights(set))[vertex][i];
             if (weight == 0.0) continue;
-            const glm::dmat4 entry = _palette[(*skinned->entries(set))[vertex][i]].toColumns();
+            const glm::dmat4 entry = _palette[(*skinned->getEntries(set))[vertex][i]].toColumns();
             sum += weight * glm::dvec3(entry * glm::dvec4(position, 1.0));
         }
     }

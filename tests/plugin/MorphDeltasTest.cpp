@@ -70,11 +70,11 @@ TEST(MorphDeltasTest, changedArraysArePackedAnew)
     const std::vector<MorphTarget> targets = meshes[0]->getMorphTargets();
     targets[0].positions->front() = osg::Vec3(7, 0, 0);
     targets[0].positions->dirty();
-    meshes[0]->setMorphTargets(meshes[0]->morph(), meshes[0]->getMorphEntry(), targets);
+    meshes[0]->setMorphTargets(meshes[0]->getMorph(), meshes[0]->getMorphEntry(), targets);
     EXPECT_NE(meshes[0]->getMorphDeltas(), meshes[1]->getMorphDeltas());
     EXPECT_EQ(*reinterpret_cast<const osg::Vec4f*>(meshes[0]->getMorphDeltas()->getImage()->data()),
               osg::Vec4f(7, 0, 0, 0));
-    meshes[1]->setMorphTargets(meshes[1]->morph(), meshes[1]->getMorphEntry(), targets);
+    meshes[1]->setMorphTargets(meshes[1]->getMorph(), meshes[1]->getMorphEntry(), targets);
     EXPECT_EQ(meshes[0]->getMorphDeltas(), meshes[1]->getMorphDeltas());
     meshes[0]->setMorphTargets(-1, -1, {});
     EXPECT_FALSE(meshes[0]->getMorphDeltas());

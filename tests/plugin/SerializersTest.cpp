@@ -17,6 +17,7 @@
 #include <osgGpuAnimation/nodes/PoseStatistics.h>
 #include <osgGpuAnimation/nodes/RootMotionCallback.h>
 #include <osgGpuAnimation/nodes/shading/ShaderPermutations.h>
+#include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
 
 #include <gtest/gtest.h>
 #include <osg/Program>
@@ -148,11 +149,11 @@ TEST_F(SerializersTest, everythingBelowACharacterComesBack)
         ASSERT_TRUE(byName && byNumber);
         EXPECT_EQ(byName->getJointName(), "hand");
         EXPECT_EQ(byName->getNumChildren(), 1u);
-        EXPECT_EQ(byNumber->joint(), 2);
+        EXPECT_EQ(byNumber->getJoint(), 2);
         EXPECT_TRUE(dynamic_cast<AnimationUpdateCallback*>(back.getUpdateCallback()));
         EXPECT_TRUE(dynamic_cast<RootMotionCallback*>(back.getUpdateCallback()->getNestedCallback()));
         EXPECT_TRUE(dynamic_cast<CharacterKeys*>(back.getEventCallback()));
-        const Clip& clip = back.set().clips()[0];
+        const Clip& clip = back.getAnimationSet().clips()[0];
         ASSERT_EQ(clip.markers().size(), 2u);
         EXPECT_EQ(clip.markers()[0].name, "left foot");
         EXPECT_EQ(clip.markers()[0].time, 0.25);
@@ -188,7 +189,7 @@ TEST_F(SerializersTest, charactersOfOneSetShareItAfterwards)
         AnimatedCharacter* first = findCharacter(*read->asGroup()->getChild(0));
         AnimatedCharacter* second = findCharacter(*read->asGroup()->getChild(1));
         ASSERT_TRUE(first && second && first != second);
-        EXPECT_EQ(&first->set(), &second->set());
+        EXPECT_EQ(&first->getAnimationSet(), &second->getAnimationSet());
         EXPECT_EQ(first->getController().speed(), 1.0);
         EXPECT_EQ(second->getController().speed(), 3.0);
         EXPECT_EQ(first->getChild(0), second->getChild(0)) << "the meshes";
@@ -269,18 +270,18 @@ TEST_F(SerializersTest, aCrowdKeepsItsInstances)
         const osg::ref_ptr<osg::Node> read = files.throughFile(*crowd, format);
         auto* back = dynamic_cast<AnimatedCrowd*>(read.get());
         ASSERT_TRUE(back);
-        ASSERT_EQ(back->size(), crowd->getNumInstances());
-        EXPECT_EQ(back->origin(), crowd->getOrigin());
+        ASSERT_EQ(back->getNumInstances(), crowd->getNumInstances());
+        EXPECT_EQ(back->getOrigin(), crowd->getOrigin());
         EXPECT_TRUE(dynamic_cast<PoseStatistics*>(back->getEventCallback()));
         EXPECT_EQ(back->getNumChildren(), crowd->getNumChildren());
         EXPECT_NEAR((back->getBound().center() - crowd->getBound().center()).length(), 0.0, 1e-9);
-        EXPECT_EQ(back->instances().controllerCount(), crowd->getInstances().controllerCount());
+        EXPECT_EQ(back->getInstances().controllerCount(), crowd->getInstances().controllerCount());
         for (std::size_t i = 0; i < crowd->getNumInstances(); ++i)
         {
             AnimationController first = crowd->getInstances().controllerCopy(i);
-            AnimationController second = back->instances().controllerCopy(i);
-            EXPECT_EQ(back->instances().rootMatrix(i).rows, crowd->getInstances().rootMatrix(i).rows);
-            EXPECT_EQ(back->instances().tint(i), crowd->getInstances().tint(i));
+            AnimationController second = back->getInstances().controllerCopy(i);
+            EXPECT_EQ(back->getInstances().rootMatrix(i).rows, crowd->getInstances().rootMatrix(i).rows);
+            EXPECT_EQ(back->getInstances().tint(i), crowd->getInstances().tint(i));
             EXPECT_EQ(second.state(), first.state());
             EXPECT_LE(paletteDifference(first, second), 1e-6f);
             EXPECT_LE(paletteDifference((first.advance(0.6), first), (second.advance(0.6), second)), 1e-6f);

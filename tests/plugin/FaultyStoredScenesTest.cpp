@@ -67,7 +67,7 @@ const FaultCase faults[] = {
     {"a motion of no joint", "RootMotion 0 \\{",
      "RootMotion 1 {\nJoint 9 0 1 0 Key 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 "
      "0\n",
-     Answer::Error, "no joint"},
+     Answer::Error, "root motion does not exist"},
     {"a newer controller", "Controller 1", "Controller 2", Answer::Error, "version of a controller"},
     {"nine layers", "Layers 1 ", "Layers 9 ", Answer::Error, "9 layers"},
     {"a state that there is not", "Layer 1 1 1", "Layer 4 1 1", Answer::Error, "state is 4"},
@@ -98,16 +98,16 @@ const FaultCase faults[] = {
 };
 
 const FaultCase compactFaults[] = {
-    {"a column that is not there", "Track 0 ", "Track 99 ", Answer::Error, "compact keyframes are not"},
-    {"a column below none", "Track 0 ", "Track -7 ", Answer::Error, "compact keyframes are not"},
-    {"a range that is not finite", "Track 0 -1 -1 0", "Track 0 -1 -1 inf", Answer::Error, "compact keyframes are not"},
+    {"a column that is not there", "Track 0 ", "Track 99 ", Answer::Error, "compact keyframes do not fit"},
+    {"a column below none", "Track 0 ", "Track -7 ", Answer::Error, "compact keyframes do not fit"},
+    {"a range that is not finite", "Track 0 -1 -1 0", "Track 0 -1 -1 inf", Answer::Error, "compact keyframes do not fit"},
     {"fewer joints", "Compact 3 ", "Compact 2 ", Answer::Error, ""},
     {"more joints", "Compact 3 ", "Compact 4000000000 ", Answer::Error, "Track"},
     {"less that is held", "Held 36 ", "Held 24 ", Answer::Error, ""},
     {"half a number", "Packed 6 (.*)\n *[0-9]+ ", "Packed 5 $1\n", Answer::Error, "the numbers of its compact"},
     {"a number that cannot be", "(Packed 6 .*\n *)[0-9]+ ", "$1 nan ", Answer::NoFault, ""},
     {"weights of nobody", "Weights 0 \\{", "Weights 12 {\n0 0 0 0 0 0 0 0 0 0 0 0\n", Answer::Error, "the numbers"},
-    {"a Spline that is compact", "Clip Slide 0 1", "Clip Slide 1 1", Answer::Error, "compact keyframes are not"},
+    {"a Spline that is compact", "Clip Slide 0 1", "Clip Slide 1 1", Answer::Error, "compact keyframes do not fit"},
     {"exact keyframes", "Clip Slide 0 1", "Clip Slide 0 0", Answer::Error, "Keyframes"},
 };
 

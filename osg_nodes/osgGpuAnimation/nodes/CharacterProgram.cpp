@@ -25,9 +25,8 @@ osg::Shader* makeShader(osg::Shader::Type type, std::initializer_list<const char
 
 osg::ref_ptr<osg::Program> makeProgram()
 {
-    osg::ref_ptr<osg::Program> program = new ShaderPermutations;
+    osg::ref_ptr<osg::Program> program = new ShaderPermutations(skinShader());
     program->setName("osgGpuAnimation character");
-    program->addShader(skinShader());
     bindSkinAttributes(*program);
     return program;
 }

@@ -130,7 +130,8 @@ MixedTrack TrackBlend::result()
     }
     // The sum cannot have length 0: see PoseInstruction.
     _total.rotation = Rotation::unit(_total.rotation);
-    if (const double turned = glm::length(_turn); turned > 0.0)
+    // glm::exp returns an uninitialized quaternion below the machine epsilon; so small a turn changes no digit.
+    if (const double turned = glm::length(_turn); turned > 1e-15)
         _total.rotation = Rotation::numbers(Rotation::quaternion(_total.rotation) *
                                             glm::exp(glm::dquat(0.0, _turn * std::min(1.0, pi / turned))));
     _total.translation += _difference.translation;

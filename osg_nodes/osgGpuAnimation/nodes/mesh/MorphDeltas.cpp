@@ -144,17 +144,18 @@ bool bindMorphTargets(osg::State& state, const MorphDeltas& deltas, std::size_t 
     static const unsigned int deltasName = osg::Uniform::getNameID("poseMorphDeltas");
     static const unsigned int morphName = osg::Uniform::getNameID("poseMorph");
     static const unsigned int channelsName = osg::Uniform::getNameID("poseMorphChannels");
-    const osg::Program::PerContextProgram& program = *state.getLastAppliedProgramObject();
+    const osg::Program::PerContextProgram* program = state.getLastAppliedProgramObject();
+    if (!program) return true;
     const osg::GLExtensions* gl = state.get<osg::GLExtensions>();
-    gl->glUniform1i(program.getUniformLocation(deltasName), POSE_MORPH_UNIT);
+    gl->glUniform1i(program->getUniformLocation(deltasName), POSE_MORPH_UNIT);
     const PosePipeline* pipeline = PosePipeline::of(state);
     const bool fits = deltas.texture && pipeline &&
                       static_cast<std::size_t>(deltas.texture->getImage()->s()) <= pipeline->getMaxTexels();
     const GLint targets = fits ? static_cast<GLint>(targetCount) : 0;
-    gl->glUniform2i(program.getUniformLocation(morphName), targets, entry);
+    gl->glUniform2i(program->getUniformLocation(morphName), targets, entry);
     if (!fits) return !deltas.texture;
     state.applyTextureAttribute(POSE_MORPH_UNIT, deltas.texture.get());
-    gl->glUniform4i(program.getUniformLocation(channelsName), deltas.channels[0], deltas.channels[1],
+    gl->glUniform4i(program->getUniformLocation(channelsName), deltas.channels[0], deltas.channels[1],
                     deltas.channels[2], deltas.channels[3]);
     return true;
 }

@@ -266,7 +266,7 @@ osg::ref_ptr<osg::Texture2D> whiteTexture()
 }
 
 ShaderPermutations::ShaderPermutations(const ShaderPermutations& other, const osg::CopyOp& copyop)
-    : osg::Program(other, copyop)
+    : osg::Program(other, copyop), _skin(other._skin)
 {
 }
 
@@ -277,8 +277,7 @@ osg::ref_ptr<osg::Program> ShaderPermutations::variant(const ShaderKey& surface)
     if (program) return program;
     program = new osg::Program;
     program->setName("osgGpuAnimation character");
-    for (unsigned int i = 0; i < getNumShaders(); ++i)
-        program->addShader(const_cast<osg::Shader*>(getShader(i)));
+    if (_skin) program->addShader(_skin);
     for (const auto& [name, location] : getAttribBindingList())
         program->addBindAttribLocation(name, location);
     program->addShader(makeShader(osg::Shader::VERTEX, surface, shaders::character_vert));
@@ -289,7 +288,7 @@ osg::ref_ptr<osg::Program> ShaderPermutations::variant(const ShaderKey& surface)
 bool ShaderPermutations::sharesSkin(const osg::Program& other) const
 {
     for (unsigned int i = 0; i < other.getNumShaders(); ++i)
-        if (other.getShader(i) == getShader(0)) return true;
+        if (other.getShader(i) == _skin) return true;
     return false;
 }
 

@@ -89,16 +89,17 @@ private:
 };
 
 /// The attribute behind characterProgram(): a program for each ShaderKey there is, made when it is first met. It
-/// reads the state each time that a StateSet with it is applied. Every permutation links the shaders, and binds the
-/// attributes, of this program; the first shader is skin.glsl.
+/// reads the state each time that a StateSet with it is applied. Every permutation links the skinning shader and has the
+/// attribute locations of this program.
 ///
 /// It is meant to be set PROTECTED, so that programs that override from above (osgShadow's casting cameras, osgFX)
 /// do not draw the bind pose. One that overrides and links skin.glsl itself is given way to.
 class ShaderPermutations : public osg::Program
 {
 public:
-    ShaderPermutations() = default;
-    /// Shares the shaders; programs are made anew.
+    /// skin: skin.glsl. It is no shader of this program itself: OSG would compile a program that has shaders.
+    explicit ShaderPermutations(osg::Shader* skin = nullptr) : _skin(skin) {}
+    /// Shares the shader; programs are made anew.
     ShaderPermutations(const ShaderPermutations& other, const osg::CopyOp& copyop = osg::CopyOp::SHALLOW_COPY);
 
     /// osg::State's default for the type of attribute: no program.
@@ -127,6 +128,7 @@ private:
     bool sharesSkin(const osg::Program& other) const;
     const osg::Program* overriding(osg::State& state) const;
 
+    osg::ref_ptr<osg::Shader> _skin;
     mutable std::mutex _mutex; ///< draw threads of several contexts make variants
     mutable std::map<ShaderKey, osg::ref_ptr<osg::Program>> _variants;
 };

@@ -63,7 +63,7 @@ void BlendList::removeLightest()
         if (!isAbove(i) &&
             (lightest == _count || _places[i].item.sample.weight <= _places[lightest].item.sample.weight))
             lightest = i;
-    assert(lightest < _count && "some standing has two samples, or there are differences");
+    assert(lightest < _count && "some blend priority has two samples, or there are differences");
     if (lightest == _count) lightest = _count - 1;
     const Item removed = _places[lightest].item;
     std::move(_places.begin() + static_cast<std::ptrdiff_t>(lightest) + 1,

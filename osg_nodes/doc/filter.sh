@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: MIT
 # Usage: filter.sh FILE
 # Doxygen's input filter. Guides: removes the anchors from links, since Doxygen 1.9.4 does not know the anchors that GitHub
-# gives to headings; of a link within a page, only the text remains. Headers: documents overrides and OSG's copy constructors, whose meaning OSG defines.
+# gives to headings; of a link within a page, only the text remains. Headers: documents overrides and OSG's copy
+# constructors, whose meaning OSG defines.
 case "$1" in
 *.md) sed -E 's/\[([^]]*)\]\(#[^)]*\)/\1/g
               s/\]\(([^)#]*)#[^)]*\)/](\1)/g' "$1" ;;

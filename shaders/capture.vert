@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// For tools and tests: the vertices of a SkinnedGeometry as skin.glsl moves them, to be captured by transform feedback.
+// For tools and tests: skins the vertices of a SkinnedGeometry for capture by transform feedback.
 
 void osgGpuAnimationSkin(inout vec4 vertex, inout vec3 normal);
 
 out vec3 capturedPosition; // in the character's own space
-out vec3 capturedNormal;   // not made unit
+out vec3 capturedNormal;   // not normalized
 
 void main()
 {

@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: MIT
-// Base colour, lit per fragment by OSG's lights as the fixed pipeline does, in the shadow maps of osgShadow's techniques,
-// with fog. In a core profile, which has no lights: a headlight. DRAW_... are those of nodes/ShaderKey.h. Of what the
-// vertex shader puts out, the linker leaves out what is not read here: that is why nothing is read that may be done
-// without. POSE_COLORED: the mesh has colours, its own or those of morph targets; POSE_TINTED: the instances drawn have
-// tints.
+// Lights the base colour per fragment with OSG's lights like the fixed pipeline, then applies the shadow maps of
+// osgShadow's techniques and fog. In a core profile, which has no lights: a headlight. DRAW_...: see ShaderKey in
+// nodes/shading/ShaderPermutations.h. This shader reads inputs only if it needs them, because the linker removes unread
+// outputs of the vertex shader. POSE_COLORED: the mesh or its morph targets have colours; POSE_TINTED: the drawn
+// instances have tints.
 #pragma import_defines(POSE_COLORED, POSE_TINTED)
 
 uniform sampler2D baseColorTexture;
 uniform float alphaCutoff;
 
-uniform vec4 materialDiffuse; // gl_FrontMaterial's follows other meshes' colours where colours take the material's place
+uniform vec4 materialDiffuse; // gl_FrontMaterial.diffuse keeps other meshes' colours under colour material modes
 #ifndef GL_ARB_compatibility
 uniform vec4 materialEmission;
 #endif
 
 uniform sampler2DShadow shadowMaps[7];  // of texture units 1 to 7
-uniform vec2 osgShadow_ambientBias;     // osgShadow::ShadowMap's: what is left in its shadow, and the rest
-uniform vec2 ambientBias;               // osgShadow::ParallelSplitShadowMap's: what all gains, and its shadow loses
+uniform vec2 osgShadow_ambientBias;     // osgShadow::ShadowMap: the share of light in shadow, and the remainder
+uniform vec2 ambientBias;               // osgShadow::ParallelSplitShadowMap: the gain everywhere, and the loss in shadow
 
 in vec3 viewPosition;
 in vec3 viewNormal;
@@ -85,14 +85,14 @@ void addLight(int index, vec3 normal, inout Light sum)
 #endif
 }
 
-// The technique has set the unit's texture coordinates to be generated from the view position.
+// The technique generates the unit's texture coordinates from the view position.
 float unshadowed(sampler2DShadow map, int unit)
 {
     vec4 position = vec4(viewPosition, 1.0);
     vec4 place = vec4(dot(gl_EyePlaneS[unit], position), dot(gl_EyePlaneT[unit], position),
                       dot(gl_EyePlaneR[unit], position), dot(gl_EyePlaneQ[unit], position));
 #if DRAW_SHADOW_SPLITS
-    place.z -= 0.001954 * place.w; // by which its own shader keeps surfaces out of their own shadow: 1/512
+    place.z -= 0.001954 * place.w; // the bias of its own shader against self-shadowing: 1/512
 #endif
     return textureProj(map, place);
 }
@@ -124,7 +124,7 @@ float unshadowedByAll()
     return share;
 }
 
-// As the techniques' own shaders do it to what they draw.
+// The same darkening as in the techniques' own shaders.
 vec3 shadowedColor(vec3 color, vec3 colorWithoutLights)
 {
     float share = unshadowedByAll();

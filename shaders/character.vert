@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Draws a SkinnedGeometry: skins, then what the fixed pipeline does. DRAW_... are those of nodes/ShaderKey.h.
-// POSE_COLORED: 1: the mesh has colours; 2: its morph targets alone give it some.
+// Draws a SkinnedGeometry: skins, then reproduces the fixed pipeline. DRAW_...: see ShaderKey in
+// nodes/shading/ShaderPermutations.h. POSE_COLORED: 1: the mesh has colours; 2: only its morph targets have colours.
 #pragma import_defines(POSE_COLORED, POSE_PLACED)
 
 void osgGpuAnimationSkin(inout vec4 vertex, inout vec3 normal);
@@ -20,7 +20,7 @@ void passSurface()
 #if POSE_COLORED == 1
     vec4 color = gl_Color;
 #else
-    vec4 color = vec4(1.0); // without an array OSG's materials leave theirs in gl_Color
+    vec4 color = vec4(1.0); // without a colour array gl_Color contains a material's colour
 #endif
     osgGpuAnimationMorphColor(color);
     vertexColor *= color;
@@ -38,7 +38,7 @@ void main()
     vec3 normal = gl_Normal;
     osgGpuAnimationSkin(vertex, normal);
 #ifdef POSE_PLACED
-    viewPosition = vertex.xyz; // it comes back in the eye's space
+    viewPosition = vertex.xyz; // already in eye space
     viewNormal = normal;
 #else
     viewPosition = (gl_ModelViewMatrix * vertex).xyz;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Stage 2, local: a joint transform as an affine matrix, L = T R S for column vectors (glTF 2.0, section 3.5.3).
-// A 3x4 matrix is a mat3x4 whose three columns are the matrix's rows, as in memory.
+// A mat3x4 stores a 3x4 matrix: its three columns are the matrix's rows, as in memory.
 
 mat3x4 localMatrix(vec4 translation, vec4 q, vec4 scale)
 {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// The local stage as a pass of its own: gl_VertexID = track * instanceCount + instance, also in the result.
+// The local stage as a separate pass. gl_VertexID = track * instanceCount + instance, which also orders the result.
 
-uniform samplerBuffer mixedTracks; // what mix.vert wrote
+uniform samplerBuffer mixedTracks; // written by mix.vert
 uniform int instanceCount;
-uniform int jointCount; // tracks from here on are weight blocks: passed on as they are
+uniform int jointCount; // tracks from this index on are weight blocks, which are copied
 
 out vec4 row0;
 out vec4 row1;

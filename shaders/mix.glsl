@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-// Stage 1, mix: a track's joint transform from the two keyframes of each blend sample of its instance.
+// Stage 1, mix: computes a track's joint transform from the two keyframes of each blend sample of its instance.
 
-// The program's variant says by constants what a batch needs, since some drivers run both sides of every branch:
+// Constants of the program variant select the features of a batch, since some drivers run both sides of every branch:
 // const bool hasSplines, hasSeveralSamples, hasWeights, hasLayers, hasMasks, hasAdditive; hasExactKeys, hasCompactKeys:
-// the forms of what moves in the tracks that are mixed; const int translationMotion, scaleMotion: POSE_PART_FIXED ...;
-// const int sampleCount: blend samples an instance, where there are few; 0: sampleStride says.
+// the formats of the moving parts; const int translationMotion, scaleMotion: POSE_PART_FIXED ...;
+// const int sampleCount: blend samples per instance, if few; 0: use sampleStride.
 
-uniform usamplerBuffer keyframes; // of all clips of the set, see animation/PackedKeyframes.h
-uniform int restTexel;            // in it: the rest pose, POSE_TEXELS_PER_TRANSFORM a track
-uniform usamplerBuffer samples;   // sampleStride blend samples an instance
+uniform usamplerBuffer keyframes; // of all clips of the set, see animation/keyframes/PackedKeyframes.h
+uniform int restTexel;            // of the rest pose in keyframes, POSE_TEXELS_PER_TRANSFORM per track
+uniform usamplerBuffer samples;   // sampleStride blend samples per instance
 uniform int sampleStride;
-uniform samplerBuffer masks;      // maskStride texels a mask
+uniform samplerBuffer masks;      // maskStride texels per mask
 uniform int maskStride;
 
 struct JointTransform
@@ -20,7 +20,7 @@ struct JointTransform
     vec4 scale;
 };
 
-// The translation and scale of a track at rest, given where their motion is POSE_PART_FIXED.
+// The translation and scale of a track at rest, used if their motion is POSE_PART_FIXED.
 struct RestParts
 {
     vec4 translation;
@@ -35,7 +35,7 @@ JointTransform fetchRest(int track)
                           uintBitsToFloat(texelFetch(keyframes, texel + 2)));
 }
 
-// Where the numbers of a track between two keyframes are.
+// The places of a track's values in two keyframes.
 struct TrackPlace
 {
     uvec4 parts; // places of translation, rotation, scale; w: texel of the ranges of a compact track, 0: exact
@@ -78,7 +78,7 @@ vec4 packedRotation(uvec2 words)
                 place == 2u ? rest : (place == 3u ? v.z : v.y), place == 3u ? rest : v.z);
 }
 
-// The half of a texel that begins at that place.
+// The half texel at a place.
 uvec2 halfTexel(uvec4 texel, uint place)
 {
     return (place & 1u) == 0u ? texel.xy : texel.zw;
@@ -92,7 +92,7 @@ vec4 rotationIn(uint record, TrackPlace track)
     return isCompact(track, track.parts.y) ? packedRotation(halfTexel(texel, place)) : exact;
 }
 
-// A translation or scale; the texel of its range is only read where it is compact.
+// A translation or scale; rangeTexel is read for compact tracks only.
 vec4 mixedPart(TrackPlace track, uint part, int rangeTexel, float alpha, int motion)
 {
     uint place = placeIn(track.first, part);
@@ -115,15 +115,15 @@ float sinc(float xx)
     return 0.999999996 + xx * (-0.16666658 + xx * (0.00833305062 + xx * (-0.000198090464 + xx * 2.60516628e-06)));
 }
 
-// With u = |a - b|^2 / |a + b|^2 of unit vectors, which is tan^2(angle / 2), angle^2 / 4 is a smooth function of u,
-// fitted on [0, 1]: exact to 1.4e-7 in any driver, while built-in acos and sin are coarse in some.
+// For unit vectors u = |a - b|^2 / |a + b|^2 is tan^2(angle / 2), and angle^2 / 4 is a smooth function of u. This fit on
+// [0, 1] has an error of 1.4e-7 in every driver, while built-in acos and sin are inaccurate in some.
 float quarterSquared(float u)
 {
     return u * (0.99999963 + u * (-0.666617055 + u * (0.509996058 + u * (-0.40925846 +
            u * (0.313398578 + u * (-0.196748293 + u * (0.0821934253 - u * 0.0161138961)))))));
 }
 
-// Slerp the short way (glTF 2.0, appendix C.4). Sines are divided by the angle, so that nothing breaks where it is 0.
+// Slerp along the shorter arc (glTF 2.0, appendix C.4). Sines are divided by the angle, so that an angle of 0 is valid.
 vec4 slerpShortest(vec4 a, vec4 b, float alpha)
 {
     if (dot(a, b) < 0.0) b = -b;
@@ -147,7 +147,7 @@ JointTransform interpolate(TrackPlace track, RestParts rest, float alpha, bool i
         scaleMotion == POSE_PART_FIXED ? rest.scale : mixedPart(track, track.parts.z, ranges + 2, alpha, scaleMotion));
 }
 
-// A part of a spline keyframe: its value, in-tangent (1) or out-tangent (2). What is held has tangents of 0.
+// A part of a spline keyframe: its value (0), in-tangent (1) or out-tangent (2). Constant parts have tangents of 0.
 vec4 splinePart(uint record, uint part, uint tangent)
 {
     vec4 number = uintBitsToFloat(texelFetch(keyframes, int(placeIn(record, part) >> 1) + (isHeld(part) ? 0 : int(tangent))));
@@ -160,7 +160,7 @@ vec4 hermite(TrackPlace track, uint part, vec4 h)
            h.z * splinePart(track.second, part, 1u) + h.w * splinePart(track.second, part, 0u);
 }
 
-// Hermite form (glTF 2.0, appendix C.5); tangents are scaled by the interval already.
+// Hermite form (glTF 2.0, appendix C.5); the tangents are already scaled by the interval.
 JointTransform interpolateSpline(TrackPlace track, RestParts rest, float alpha, bool isWeights)
 {
     float alpha2 = alpha * alpha;
@@ -169,7 +169,7 @@ JointTransform interpolateSpline(TrackPlace track, RestParts rest, float alpha, 
                   3.0 * alpha2 - 2.0 * alpha3);
     vec4 translation = rest.translation;
     if (translationMotion != POSE_PART_FIXED) translation = hermite(track, track.parts.x, h);
-    // A mark, not a number: 1 where the rotation is slerped.
+    // A flag: 1 if the rotation is slerped.
     float mark = translationMotion == POSE_PART_FIXED ? rest.translation.w : splinePart(track.first, track.parts.x, 0u).w;
     vec4 rotation = hermite(track, track.parts.y, h);
     vec4 slerped = slerpShortest(splinePart(track.first, track.parts.y, 0u), splinePart(track.second, track.parts.y, 0u),
@@ -200,7 +200,7 @@ void addScaled(inout JointTransform sum, JointTransform t, float factor)
     sum.scale += factor * t.scale;
 }
 
-// A blend priority's sum over what lies below it.
+// The weighted sum of one blend priority over the result of the lower ones.
 JointTransform covered(JointTransform below, JointTransform blendPriority, float weight, bool isWeights)
 {
     float left = 1.0 - min(weight, 1.0);
@@ -215,7 +215,7 @@ vec4 quaternionProduct(vec4 a, vec4 b)
     return vec4(a.w * b.xyz + b.w * a.xyz + cross(a.xyz, b.xyz), a.w * b.w - dot(a.xyz, b.xyz));
 }
 
-// Axis times half the angle of a unit quaternion's turn by the shorter way.
+// The logarithm of a unit quaternion: axis times half the angle, along the shorter arc.
 vec3 quaternionLogarithm(vec4 q)
 {
     if (q.w < 0.0) q = -q;
@@ -223,7 +223,7 @@ vec3 quaternionLogarithm(vec4 q)
     return q.xyz / sinc(4.0 * quarterSquared((vv + (1.0 - q.w) * (1.0 - q.w)) / (vv + (1.0 + q.w) * (1.0 + q.w))));
 }
 
-// The logarithm's inverse, for |v| <= pi: the turn of a quarter, twice doubled, so that cosines stay far from 0.
+// The inverse of the logarithm for |v| <= pi: the rotation by a quarter, doubled twice, so that cosines stay above 0.
 vec4 quaternionExponential(vec3 v)
 {
     v *= 0.25;
@@ -234,7 +234,7 @@ vec4 quaternionExponential(vec3 v)
     return q;
 }
 
-// Differences of additive samples, summed: translation (and all of a weight block), logarithms, factors of the scale.
+// The sum of additive differences: translations (and whole weight blocks), logarithms of rotations, scale factors.
 struct Difference
 {
     JointTransform sum;
@@ -268,9 +268,9 @@ JointTransform changed(JointTransform t, Difference difference, bool isWeights)
                           t.scale * vec4(difference.growth, 0.0));
 }
 
-uvec4 sampleOf(int instance, int number); // the pass says where they come from
+uvec4 sampleOf(int instance, int number); // defined by the pass
 
-// The samples of an instance to one track, as animation/PoseInstruction.h says.
+// Mixes the blend samples of an instance for one track, see PoseInstruction.
 JointTransform mixSamples(int instance, int track, RestParts rest, bool isWeights)
 {
     const JointTransform nothing = JointTransform(vec4(0.0), vec4(0.0), vec4(0.0));
@@ -280,7 +280,7 @@ JointTransform mixSamples(int instance, int track, RestParts rest, bool isWeight
     Difference difference = Difference(nothing, vec3(0.0), vec3(1.0));
     vec4 hemisphere = vec4(0.0);
     float sum = 0.0;
-    int count = sampleCount > 0 ? sampleCount : sampleStride; // a constant count is unrolled: a third less time in llvmpipe
+    int count = sampleCount > 0 ? sampleCount : sampleStride; // a constant count is unrolled, which saves a third in llvmpipe
     for (int i = 0; i < count; ++i)
     {
         uvec4 blendSample = sampleOf(instance, i);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The mix stage as a pass of its own: gl_VertexID = track * instanceCount + instance, also in the result.
+// The mix stage as a separate pass. gl_VertexID = track * instanceCount + instance, which also orders the result.
 
 uniform int instanceCount;
-uniform int jointCount; // tracks from here on are weight blocks
+uniform int jointCount; // tracks from this index on are weight blocks
 
 out vec4 translation;
 out vec4 rotation;

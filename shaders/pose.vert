@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The default pipeline: mix, local and world in one pass, a draw a level of the hierarchy. The vertices of a draw are the
-// batch's instances, its GL instances the level's palette entries: what belongs to one or the other comes as an
-// attribute, so that only keyframes and parents have to be fetched. The result's place in the palette is
+// The default pipeline: mix, local and world in one pass, with one draw per level of the hierarchy. The vertices of a draw
+// are the batch's instances, and its GL instances are the level's palette entries. Data of an instance or an entry are
+// attributes, so that the shader fetches keyframes and parents only. The result's place in the palette is
 // entry * instanceCount + instance. Constants of the variant: those of mix.glsl; bool isRootLevel, hasRoots.
 
 layout(location = POSE_SAMPLE_LOCATION) in uvec4 blendSamples[sampleCount > 0 ? sampleCount : 1];
@@ -11,8 +11,8 @@ layout(location = POSE_PARENT_BIND_LOCATION) in mat3x4 parentBind;
 layout(location = POSE_INVERSE_BIND_LOCATION) in mat3x4 inverseBind;
 layout(location = POSE_REST_LOCATION) in vec4 restParts[2]; // translation, scale
 
-uniform samplerBuffer parentLevels; // levels of the palette, this one's parents among them
-uniform int firstParent;            // where it begins: parents' numbers are counted from there
+uniform samplerBuffer parentLevels; // levels of the palette that include this level's parents
+uniform int firstParent;            // the first entry in parentLevels
 uniform int instanceCount;
 
 out vec4 row0;

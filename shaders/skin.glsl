@@ -1,23 +1,24 @@
 // SPDX-License-Identifier: MIT
-// Morphing (glTF 2.0, section 3.7.2.2), then skinning by the palette (section 3.7.3.3). Link this shader into a program of one's own, declare
+// Morphing (glTF 2.0, section 3.7.2.2), then skinning by the palette (section 3.7.3.3). To use it in another program, link
+// this shader, declare
 //     void osgGpuAnimationSkin(inout vec4 vertex, inout vec3 normal);
-// and call it on the vertex and normal of the bind pose; they come back in the space that gl_ModelViewMatrix leads from:
-// the character's own, or the eye's where several characters are drawn together.
-// In instanced draws each GL instance is an instance of its own, see AnimatedCrowd; vec4 osgGpuAnimationTint() is its
+// and call it with the vertex and normal of the bind pose. It returns them in the space that gl_ModelViewMatrix transforms
+// from: the character's own space, or eye space in an instanced draw of several characters.
+// In instanced draws each GL instance is one instance of the batch, see AnimatedCrowd; vec4 osgGpuAnimationTint() is its
 // colour. Attributes are bound to the locations of layout.glsl; SkinnedGeometry sets the uniforms when it draws.
 //
-// What a mesh does not need may be left out by OSG's shader defines (StateSet::setDefine, see applySkinDefines): some
-// drivers (llvmpipe) run both sides of every branch. Without them the uniforms decide.
+// OSG's shader defines (StateSet::setDefine, see applySkinDefines) remove parts that a mesh does not need, since some
+// drivers (llvmpipe) run both sides of every branch. Without the defines the uniforms decide.
 #pragma import_defines(POSE_INFLUENCES, POSE_NO_MORPHS, POSE_PLACED)
 
 uniform samplerBuffer posePalette; // entry e of instance i: rows at texel (e * poseStride + i) * 3
 uniform int poseStride;
-uniform int poseInstance; // that of the draw's first GL instance; POSE_PLACED: of the batch's, as the palette counts
-uniform int poseInfluences; // of a vertex, at most: 1 to 8
+uniform int poseInstance; // of the draw's first GL instance; POSE_PLACED: of the batch's first instance
+uniform int poseInfluences; // the largest number per vertex: 1 to 8
 
-uniform samplerBuffer poseMorphDeltas; // targets' channels by vertex, target, channel
+uniform samplerBuffer poseMorphDeltas; // by vertex, target, channel
 uniform ivec2 poseMorph;               // number of targets (0: none), the first palette entry of their weights
-uniform ivec4 poseMorphChannels;       // channels a target has; the place of normal, colour, texture coordinate, or -1
+uniform ivec4 poseMorphChannels;       // channels per target; the index of normal, colour, texture coordinate, or -1
 
 uniform samplerBuffer poseTints; // by instance
 uniform bool poseTinted;
@@ -37,10 +38,10 @@ in vec4 poseEntries1;
 in vec4 poseWeights1;
 
 #ifdef POSE_PLACED
-in vec4 posePlacementRow0; // where the GL instance stands
+in vec4 posePlacementRow0; // the matrix of the GL instance to eye space
 in vec4 posePlacementRow1;
 in vec4 posePlacementRow2;
-in vec4 posePlacedPose; // x: its number in the batch
+in vec4 posePlacedPose; // x: its index in the batch
 
 int osgGpuAnimationInstance()
 {
@@ -111,7 +112,7 @@ void osgGpuAnimationMove(mat3x4 rows, inout vec4 vertex, inout vec3 normal)
 {
     vertex = vec4(vertex * rows, vertex.w);
 
-    // Normals go by the inverse transpose, which is the cofactor matrix but for the determinant.
+    // Normals use the inverse transpose, which is the cofactor matrix divided by the determinant.
     vec3 cofactor0 = cross(rows[1].xyz, rows[2].xyz);
     vec3 cofactor1 = cross(rows[2].xyz, rows[0].xyz);
     vec3 cofactor2 = cross(rows[0].xyz, rows[1].xyz);

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Stage 3, world: a palette entry from its parent's, parents first:
+// Stage 3, world: computes a palette entry from its parent's, parents first:
 //     entry = parentEntry * parentBind * local * inverseBind        (a root's parentEntry: the instance's root matrix)
-// parentBind undoes the parent's inverse bind, so that the entries alone carry the hierarchy.
+// parentBind cancels the parent's inverse bind, so that the entries alone represent the hierarchy.
 
 mat3x4 fetchMatrix(samplerBuffer source, int texel)
 {
     return mat3x4(texelFetch(source, texel), texelFetch(source, texel + 1), texelFetch(source, texel + 2));
 }
 
-// a * b of affine matrices held by rows.
+// a * b of affine matrices stored by rows.
 mat3x4 multiplied(mat3x4 a, mat3x4 b)
 {
     mat3x4 product = b * mat3(a);

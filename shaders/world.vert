@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The world stage as a pass of its own, in one draw: each entry walks up its ancestors, so it costs O(depth).
-// gl_VertexID = entry * instanceCount + instance, also in the result.
+// The world stage as a separate pass, in one draw: each entry multiplies its ancestors, so it costs O(depth).
+// gl_VertexID = entry * instanceCount + instance, which also orders the result.
 
-uniform samplerBuffer entries; // the static part of the palette entries, POSE_TEXELS_PER_ENTRY each
-uniform samplerBuffer roots;   // a 3x4 matrix an instance
+uniform samplerBuffer entries; // the static part of the palette entries, POSE_TEXELS_PER_ENTRY texels per entry
+uniform samplerBuffer roots;   // a 3x4 matrix per instance
 uniform bool hasRoots;
-uniform samplerBuffer localMatrices; // what local.vert wrote: matrix track * instanceCount + instance
+uniform samplerBuffer localMatrices; // written by local.vert: matrix track * instanceCount + instance
 uniform int instanceCount;
 
 out vec4 row0;

@@ -47,12 +47,9 @@ double widthOf(const AnimatedCharacter& character, const osg::Matrixd& placement
     osg::BoundingBoxd placed;
     const auto add = [&](int clip)
     {
-        const Box& box = character.getClipBounds(clip);
-        for (int i = 0; i < 8 && !box.empty(); ++i)
-        {
-            const glm::vec3 corner = box.corner(i);
-            placed.expandBy(osg::Vec3d(corner.x, corner.y, corner.z) * placement);
-        }
+        const osg::BoundingBox box = character.getClipBounds(clip);
+        for (unsigned int i = 0; i < 8 && box.valid(); ++i)
+            placed.expandBy(osg::Vec3d(box.corner(i)) * placement);
     };
     if (clips.empty()) add(-1);
     for (const std::size_t clip : clips)

@@ -41,7 +41,7 @@ enum Extra : std::int32_t
 
 std::int32_t extrasOf(const AnimatedCharacter& character)
 {
-    std::int32_t extras = character.getClipBounds(-1).empty() ? 0 : hasClipBounds;
+    std::int32_t extras = character.getClipBounds(-1).valid() ? hasClipBounds : 0;
     if (character.getPixelError() > 0.0f) extras |= hasPixelError;
     if (!character.isDrawnTogether()) extras |= isDrawnAlone;
     return extras;

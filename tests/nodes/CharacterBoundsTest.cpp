@@ -15,29 +15,29 @@ TEST(CharacterBoundsTest, FollowWhatLayersAndCrossfadesPlay)
     AnimationController& controller = character->getController();
     const auto* square = dynamic_cast<const SkinnedGeometry*>(character->getChild(0));
     character->update(0.0);
-    EXPECT_NEAR(character->getCurrentBounds().max.x, 3.0f, 1e-3) << "shift alone: its own box";
-    EXPECT_NEAR(character->getCurrentBounds().min.z, 0.0f, 1e-3);
+    EXPECT_NEAR(character->getCurrentBounds().xMax(), 3.0f, 1e-3) << "shift alone: its own box";
+    EXPECT_NEAR(character->getCurrentBounds().zMin(), 0.0f, 1e-3);
 
     ASSERT_TRUE(controller.crossfade("turn", 1.0));
     character->update(0.5);
     // The base goes up to 2 along x and may be turned as far as the clips do.
-    const Box mixed = character->getCurrentBounds();
-    EXPECT_LE(mixed.min.z, -1.0f);
-    EXPECT_GE(mixed.max.x, 3.0f);
-    EXPECT_GE(character->getBound().radius(), 0.5f * (mixed.max.x - mixed.min.x));
-    EXPECT_LE(square->getBoundingBox().zMin(), mixed.min.z) << "the mesh would be culled by itself";
+    const osg::BoundingBox mixed = character->getCurrentBounds();
+    EXPECT_LE(mixed.zMin(), -1.0f);
+    EXPECT_GE(mixed.xMax(), 3.0f);
+    EXPECT_GE(character->getBound().radius(), 0.5f * (mixed.xMax() - mixed.xMin()));
+    EXPECT_LE(square->getBoundingBox().zMin(), mixed.zMin()) << "the mesh would be culled by itself";
 
     character->update(3.0);
     character->update(3.1);
-    EXPECT_EQ(character->getCurrentBounds().max.x, character->getClipBounds(1).max.x) << "turn alone";
+    EXPECT_EQ(character->getCurrentBounds().xMax(), character->getClipBounds(1).xMax()) << "turn alone";
 
     AnimationLayer& added = controller.layer(1);
     added.setMode(AnimationLayer::Mode::Additive);
     ASSERT_TRUE(added.play("shift"));
     character->update(3.2);
-    EXPECT_GE(character->getCurrentBounds().max.x, 3.0f) << "shift is added to the turned square";
+    EXPECT_GE(character->getCurrentBounds().xMax(), 3.0f) << "shift is added to the turned square";
     EXPECT_GE(character->getBound().center().x() + character->getBound().radius(), 3.0f);
-    EXPECT_GE(square->getBoundingBox().xMax(), character->getCurrentBounds().max.x);
+    EXPECT_GE(square->getBoundingBox().xMax(), character->getCurrentBounds().xMax());
 }
 
 TEST(CharacterBoundsTest, ACloneHasItsOwn)
@@ -47,8 +47,8 @@ TEST(CharacterBoundsTest, ACloneHasItsOwn)
     ASSERT_TRUE(clone->getController().crossfade("turn", 1.0));
     clone->update(0.0);
     character->update(0.0);
-    EXPECT_LE(clone->getCurrentBounds().min.z, -1.0f);
-    EXPECT_NEAR(character->getCurrentBounds().min.z, 0.0f, 1e-3);
+    EXPECT_LE(clone->getCurrentBounds().zMin(), -1.0f);
+    EXPECT_NEAR(character->getCurrentBounds().zMin(), 0.0f, 1e-3);
 }
 
 } // namespace

@@ -9,10 +9,10 @@
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/AnimationUpdateCallback.h>
 #include <osgGpuAnimation/nodes/CharacterKeys.h>
+#include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
 #include <osgGpuAnimation/nodes/PoseStatistics.h>
 #include <osgGpuAnimation/nodes/RootMotionCallback.h>
-#include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
 
 #include <gtest/gtest.h>
 
@@ -206,7 +206,7 @@ void expectSameCharacter(AnimatedCharacter& first, AnimatedCharacter& second)
     EXPECT_EQ(second.getPixelError(), first.getPixelError());
     EXPECT_EQ(second.isDrawnTogether(), first.isDrawnTogether());
     EXPECT_TRUE(haveSameKeyframes(first.getAnimationSet(), second.getAnimationSet()));
-    EXPECT_EQ(second.getCurrentBounds().max, first.getCurrentBounds().max);
+    EXPECT_EQ(second.getCurrentBounds()._max, first.getCurrentBounds()._max);
     EXPECT_EQ(lengthOf(second.getUpdateCallback()), lengthOf(first.getUpdateCallback()));
     EXPECT_EQ(countOf<AnimationUpdateCallback>(second.getUpdateCallback()), 1);
     EXPECT_EQ(lengthOf(second.getEventCallback()), lengthOf(first.getEventCallback()));
@@ -251,7 +251,8 @@ TEST_P(EarlierScenesTest, charactersAreAsTheyWere)
         ASSERT_TRUE(findCharacter(*found->getChild(child)));
         expectSameCharacter(characterIn(*expected, child), characterIn(*found, child));
     }
-    EXPECT_EQ(&characterIn(*found, 0).getAnimationSet(), &characterIn(*found, 2).getAnimationSet()) << "one set for both";
+    EXPECT_EQ(&characterIn(*found, 0).getAnimationSet(), &characterIn(*found, 2).getAnimationSet())
+        << "one set for both";
     EXPECT_TRUE(characterIn(*found, 3).getAnimationSet().clips().front().compactTracks());
 }
 

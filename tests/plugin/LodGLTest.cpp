@@ -235,8 +235,7 @@ protected:
         osg::ref_ptr<osg::Group> scene = makeScene(ownScene("Wanderer.glb"), true, 0.5f);
         scene->addChild(makeScene(ownScene("Wanderer.glb"), false, 0.5f));
         // The cull traversal has to make levels.
-        SkinnedGeometryVisitor forget([](SkinnedGeometry& mesh) { mesh.forgetLodLevels(); });
-        scene->accept(forget);
+        forEachMeshBelow(*scene, [](SkinnedGeometry& mesh) { mesh.forgetLodLevels(); });
         context().releaseContext();
         viewer().setThreadingModel(model);
         viewer().setSceneData(scene);

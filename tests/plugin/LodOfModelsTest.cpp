@@ -70,10 +70,9 @@ protected:
         const Result<ImportedModel> imported = importModel(readBytes(file), file, {});
         ASSERT_TRUE(imported) << imported.error().message;
         model = imported.value();
-        const Box& box = model.character->getClipBounds(-1);
-        size = static_cast<double>(glm::length(box.max - box.min));
-        SkinnedGeometryVisitor collect([&](SkinnedGeometry& mesh) { meshes.push_back(&mesh); });
-        model.character->accept(collect);
+        const osg::BoundingBox box = model.character->getClipBounds(-1);
+        size = static_cast<double>((box._max - box._min).length());
+        forEachMeshBelow(*model.character, [&](SkinnedGeometry& mesh) { meshes.push_back(&mesh); });
         ASSERT_FALSE(meshes.empty());
         for (const SkinnedGeometry* mesh : meshes)
             levels.push_back(std::make_unique<LodLevels>(*mesh, *model.set,

@@ -16,8 +16,7 @@ namespace
 std::vector<SkinnedGeometry*> meshesOf(osg::Node& node)
 {
     std::vector<SkinnedGeometry*> meshes;
-    SkinnedGeometryVisitor visitor([&](SkinnedGeometry& mesh) { meshes.push_back(&mesh); });
-    node.accept(visitor);
+    forEachMeshBelow(node, [&](SkinnedGeometry& mesh) { meshes.push_back(&mesh); });
     return meshes;
 }
 

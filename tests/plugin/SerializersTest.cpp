@@ -13,11 +13,11 @@
 #include <osgGpuAnimation/nodes/AnimationUpdateCallback.h>
 #include <osgGpuAnimation/nodes/CharacterKeys.h>
 #include <osgGpuAnimation/nodes/CharacterProgram.h>
+#include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
 #include <osgGpuAnimation/nodes/PoseStatistics.h>
 #include <osgGpuAnimation/nodes/RootMotionCallback.h>
 #include <osgGpuAnimation/nodes/shading/ShaderPermutations.h>
-#include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
 
 #include <gtest/gtest.h>
 #include <osg/Program>
@@ -160,7 +160,7 @@ TEST_F(SerializersTest, everythingBelowACharacterComesBack)
         ASSERT_TRUE(clip.rootMotion());
         EXPECT_EQ(clip.rootMotion()->keys.size(), clip.keyframeCount());
         EXPECT_EQ(clip.rootMotionAt(0.5).translation, clips[0].rootMotionAt(0.5).translation);
-        EXPECT_EQ(back.getCurrentBounds().max, character().getCurrentBounds().max);
+        EXPECT_EQ(back.getCurrentBounds()._max, character().getCurrentBounds()._max);
     }
     EXPECT_EQ(log->text, "");
 }
@@ -208,7 +208,7 @@ TEST_F(SerializersTest, pixelErrorsComeBack)
             const osg::ref_ptr<osg::Node> crowdAgain = files.throughFile(*crowd, format);
             ASSERT_TRUE(again && crowdAgain) << format;
             EXPECT_EQ(findCharacter(*again)->getPixelError(), pixels) << format;
-            EXPECT_EQ(findCharacter(*again)->getClipBounds(0).max, character().getClipBounds(0).max) << format;
+            EXPECT_EQ(findCharacter(*again)->getClipBounds(0)._max, character().getClipBounds(0)._max) << format;
             EXPECT_EQ(dynamic_cast<AnimatedCrowd&>(*crowdAgain).getPixelError(), pixels) << format;
         }
     for (const float wrong : {-0.5f, std::nanf(""), std::numeric_limits<float>::infinity()})

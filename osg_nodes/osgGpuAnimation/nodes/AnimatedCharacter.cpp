@@ -28,10 +28,10 @@ std::shared_ptr<const AnimationSet> emptySet()
     return set;
 }
 
-osg::BoundingBox toOsg(const Box& box)
+EntryBoxes entryBoxesOf(osg::Node& node, PaletteEntryBounds bounds)
 {
-    if (box.empty()) return {};
-    return {box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z};
+    forEachMeshBelow(node, [&](const SkinnedGeometry& mesh) { bounds.add(mesh); });
+    return bounds.boxes();
 }
 
 } // namespace
@@ -41,7 +41,7 @@ AnimatedCharacter::AnimatedCharacter() : AnimatedCharacter(emptySet()) {}
 AnimatedCharacter::AnimatedCharacter(std::shared_ptr<const AnimationSet> set)
     : _controller(std::make_unique<AnimationController>(std::move(set)))
 {
-    // Not static: the Optimizer must flatten neither this transform nor those above into the bind pose.
+    // Not STATIC: the Optimizer must not flatten this transform or those above into the bind pose.
     setDataVariance(osg::Object::DYNAMIC);
     setUpdateCallback(new AnimationUpdateCallback);
 }
@@ -51,7 +51,7 @@ AnimatedCharacter::AnimatedCharacter(const AnimatedCharacter& other, const osg::
       _clipBounds(other._clipBounds), _mixBounds(other._mixBounds), _updateTime(other._updateTime),
       _isDrawnTogether(other._isDrawnTogether), _pixelError(other._pixelError)
 {
-    // osg::Node copies its other callbacks, but not these.
+    // osg::Node copies its other callbacks, but not the event callbacks.
     setEventCallback(copyop(other.getEventCallback()));
 }
 
@@ -65,9 +65,8 @@ Result<bool> AnimatedCharacter::setAnimationSet(std::shared_ptr<const AnimationS
                      " palette entries for the meshes of one of " + std::to_string(getAnimationSet().paletteSize())};
     *_controller = AnimationController(std::move(newSet), *_controller);
     if (_clipBounds) computeClipBounds();
-    // The clips that levels of detail are made by are others.
-    SkinnedGeometryVisitor forget([](SkinnedGeometry& geometry) { geometry.forgetLodLevels(); });
-    accept(forget);
+    // The levels of detail depend on the poses of the clips.
+    forEachMeshBelow(*this, [](SkinnedGeometry& mesh) { mesh.forgetLodLevels(); });
     return setPixelError(_pixelError);
 }
 
@@ -103,46 +102,43 @@ void AnimatedCharacter::update(double simulationTime)
     if (_mixBounds) growMeshes(boundsOf(_played));
 }
 
-// The meshes' own boxes hold each clip. Clones share the meshes, so what a mix needs besides is added for all.
-void AnimatedCharacter::growMeshes(const Box& box)
+// The boxes of the meshes already contain each single clip. Clones share the meshes, so a larger box serves them all.
+void AnimatedCharacter::growMeshes(const osg::BoundingBox& box)
 {
-    if (box.empty()) return;
-    SkinnedGeometryVisitor grow(
-        [&](SkinnedGeometry& geometry)
-        {
-            osg::BoundingBox grown = geometry.getInitialBound();
-            grown.expandBy(toOsg(box));
-            if (grown != geometry.getInitialBound()) geometry.setInitialBound(grown);
-        });
-    accept(grow);
+    forEachMeshBelow(*this,
+                     [&](SkinnedGeometry& mesh)
+                     {
+                         osg::BoundingBox grown = mesh.getInitialBound();
+                         grown.expandBy(box);
+                         if (grown != mesh.getInitialBound()) mesh.setInitialBound(grown);
+                     });
 }
 
 void AnimatedCharacter::computeClipBounds()
 {
-    PaletteEntryBounds reach(getAnimationSet());
-    SkinnedGeometryVisitor collect([&](SkinnedGeometry& geometry) { reach.add(geometry); });
-    accept(collect);
-    PaletteEntryBounds withAdded(reach, maxLayers);
-    SkinnedGeometryVisitor collectAdded([&](SkinnedGeometry& geometry) { withAdded.add(geometry); });
-    if (!getAnimationSet().morphs().empty()) accept(collectAdded);
+    const AnimationSet& set = getAnimationSet();
+    const EntryBoxes boxes = entryBoxesOf(*this, PaletteEntryBounds(set));
+    EntryBoxes boxesWithAdded = boxes;
+    if (!set.morphs().empty()) boxesWithAdded = entryBoxesOf(*this, PaletteEntryBounds(set, maxLayers));
 
-    auto bounds = std::make_shared<std::vector<Box>>(boundsOfClips(getAnimationSet(), reach.boxes()));
-    Box all;
-    for (const Box& box : *bounds)
-        all.add(box);
-    SkinnedGeometryVisitor setBox([&](SkinnedGeometry& geometry) { geometry.setInitialBound(toOsg(all)); });
-    accept(setBox);
-    _clipBounds = std::move(bounds);
-    _mixBounds = std::make_shared<const MixBounds>(getAnimationSet(), reach.boxes(), withAdded.boxes());
+    std::vector<osg::BoundingBox> bounds;
+    osg::BoundingBox all;
+    for (const Box& box : boundsOfClips(set, boxes))
+    {
+        bounds.push_back(toOsg(box));
+        all.expandBy(bounds.back());
+    }
+    forEachMeshBelow(*this, [&](SkinnedGeometry& mesh) { mesh.setInitialBound(all); });
+    _clipBounds = std::make_shared<const std::vector<osg::BoundingBox>>(std::move(bounds));
+    _mixBounds = std::make_shared<const MixBounds>(set, boxes, boxesWithAdded);
     _played.clear();
     dirtyBound();
 }
 
-const Box& AnimatedCharacter::getClipBounds(int clip) const
+osg::BoundingBox AnimatedCharacter::getClipBounds(int clip) const
 {
-    static const Box none;
     const std::size_t index = static_cast<std::size_t>(clip + 1);
-    return _clipBounds && index < _clipBounds->size() ? (*_clipBounds)[index] : none;
+    return _clipBounds && index < _clipBounds->size() ? (*_clipBounds)[index] : osg::BoundingBox();
 }
 
 osg::ref_ptr<osg::Geometry> AnimatedCharacter::getPosedMesh(const SkinnedGeometry& mesh) const
@@ -153,8 +149,7 @@ osg::ref_ptr<osg::Geometry> AnimatedCharacter::getPosedMesh(const SkinnedGeometr
 
 void AnimatedCharacter::acceptPosed(osg::PrimitiveFunctor& functor)
 {
-    SkinnedGeometryVisitor accepting([&](SkinnedGeometry& geometry) { getPosedMesh(geometry)->accept(functor); });
-    accept(accepting);
+    forEachMeshBelow(*this, [&](const SkinnedGeometry& mesh) { getPosedMesh(mesh)->accept(functor); });
 }
 
 void AnimatedCharacter::traverse(osg::NodeVisitor& visitor)
@@ -169,14 +164,14 @@ void AnimatedCharacter::traverse(osg::NodeVisitor& visitor)
     PoseStage::draw(*cullVisitor, {*this, *_controller, _pixelError, _isDrawnTogether});
 }
 
-Box AnimatedCharacter::boundsOf(const std::vector<PlayedClip>& played) const
+osg::BoundingBox AnimatedCharacter::boundsOf(const std::vector<PlayedClip>& played) const
 {
     const bool isAlone = played.size() == 1 && played.front().part == PlayedClip::Part::Mixed;
     if (isAlone || !_mixBounds) return getClipBounds(isAlone ? played.front().clip : _controller->clip());
-    return _mixBounds->box(played);
+    return toOsg(_mixBounds->box(played));
 }
 
-Box AnimatedCharacter::getCurrentBounds() const
+osg::BoundingBox AnimatedCharacter::getCurrentBounds() const
 {
     std::vector<PlayedClip> played;
     findPlayedClips(*_controller, played);
@@ -185,7 +180,7 @@ Box AnimatedCharacter::getCurrentBounds() const
 
 osg::BoundingSphere AnimatedCharacter::computeBound() const
 {
-    osg::BoundingBox box = toOsg(getCurrentBounds());
+    osg::BoundingBox box = getCurrentBounds();
     if (!box.valid()) return osg::MatrixTransform::computeBound();
     osg::BoundingSphere others;
     for (const osg::ref_ptr<osg::Node>& child : _children)
@@ -219,22 +214,9 @@ AnimatedCharacter* findCharacter(osg::Node& node)
     return finder.found;
 }
 
-namespace
-{
-
-EntryBoxes entryBoxesOf(AnimatedCharacter& character)
-{
-    PaletteEntryBounds reach(character.getAnimationSet());
-    SkinnedGeometryVisitor collect([&](SkinnedGeometry& mesh) { reach.add(mesh); });
-    character.accept(collect);
-    return reach.boxes();
-}
-
-} // namespace
-
 Result<CompactedCharacter> compactClipsOf(AnimatedCharacter& character, double fraction)
 {
-    const EntryBoxes boxes = entryBoxesOf(character);
+    const EntryBoxes boxes = entryBoxesOf(character, PaletteEntryBounds(character.getAnimationSet()));
     CompactedCharacter result;
     result.longestSide = longestSide(character.getAnimationSet(), boxes);
     result.tolerance = fraction * result.longestSide;

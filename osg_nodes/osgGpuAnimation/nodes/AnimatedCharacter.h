@@ -2,10 +2,10 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/AnimationController.h>
-#include <osgGpuAnimation/animation/bounds/ClipBounds.h>
 #include <osgGpuAnimation/nodes/AnimationUpdateCallback.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
+#include <osg/BoundingBox>
 #include <osg/Geometry>
 #include <osg/MatrixTransform>
 #include <osg/PrimitiveSet>
@@ -30,108 +30,116 @@ struct PlayedClip;
 ///     fox->getController().play("Run");
 ///     osg::ref_ptr<osg::Node> another = osg::clone(node.get(), osg::CopyOp::DEEP_COPY_NODES); // its own controller
 ///
-/// An AnimationUpdateCallback (installed by the constructor) advances the controller by the frame stamp's simulation
-/// time. When culled and seen, the character submits with the PoseStage of the graphics context, which evaluates its
-/// pose on the GPU before anything draws from it; unseen it costs nothing there.
+/// The constructor installs an AnimationUpdateCallback, which advances the controller by the frame stamp's simulation
+/// time. A visible character submits its pose to the PoseStage of the graphics context during cull, and the GPU
+/// evaluates it before any camera draws it. An invisible character costs nothing on the GPU.
 class AnimatedCharacter : public osg::MatrixTransform, public Updatable, public PosedMeshSource
 {
 public:
+    /// A character with an empty set; setAnimationSet() gives it another.
     AnimatedCharacter();
+    /// set: not null.
     explicit AnimatedCharacter(std::shared_ptr<const AnimationSet> set);
-    /// Shares the set, copies the controller: time, clip and speed are those of the other, independent from now on.
+    /// Shares the set and copies the controller: the copy starts with the same times, clips and speeds and is then
+    /// independent.
     AnimatedCharacter(const AnimatedCharacter& other, const osg::CopyOp& copyop = osg::CopyOp::SHALLOW_COPY);
     META_Node(osgGpuAnimation, AnimatedCharacter)
 
+    /// The skeleton, palette layout and clips, shared with the copies of this character.
     const AnimationSet& getAnimationSet() const { return _controller->set(); }
+    /// The controller of this character alone.
     AnimationController& getController() { return *_controller; }
-    const AnimationController& getController() const { return *_controller; }
+    const AnimationController& getController() const { return *_controller; } ///< the same, read only
 
-    /// The same character with another set, such as one with markers or root motion (AnimationSet::withClips,
-    /// withRootMotion): its controller goes on with the clips of the same numbers (see AnimationController), bounds are
-    /// worked out anew. Do it before cloning, so that clones share the set. A character that was made without a set
-    /// takes any. Error: the set's palette is another than this one's, so the meshes would not fit.
+    /// Replaces the set, for example by one with markers or root motion (AnimationSet::withClips, withRootMotion). The
+    /// controller continues with the clips of the same indices (see AnimationController), and the bounds are computed
+    /// again. Call it before cloning, so that the clones share the set. A character without a set accepts any set.
+    /// Error: the palette size of the set differs from that of the present set.
     Result<bool> setAnimationSet(std::shared_ptr<const AnimationSet> set);
 
-    /// Where a joint is now, in the character's own space: computed from its own chain of parents by the CPU twin,
-    /// cheap enough for every frame. joint: below the skeleton's jointCount(). Error: it is not.
+    /// The present transform of a joint, from joint space to the character's own space. The CPU twin computes it from
+    /// the joint's chain of parents, cheaply enough for every frame.
+    /// joint: in [0, skeleton().jointCount()). Error: joint is out of range.
     Result<osg::Matrixd> jointToModel(std::size_t joint) const;
-    /// Error: there is no joint of that name; it lists the names there are.
+    /// The same for the first joint of that name. Error: no joint has the name; the message lists the names.
     Result<osg::Matrixd> jointToModel(const std::string& joint) const;
 
-    /// Advances the controller by the time since the last update; the first only takes the time down. A jump of the
-    /// time, backwards too, moves the clip by as much, so the same times show the same poses.
+    /// Advances the controller by the time since the last update; the first call only stores the time. A jump of the
+    /// time in either direction moves the clips by the same amount, so equal times show equal poses.
     /// simulationTime: seconds.
     void update(double simulationTime) override;
 
-    /// Works out the bounds of every clip from the SkinnedGeometry below and gives those their bounding boxes. To be
-    /// called once when all meshes are in; copies of this node share the result.
+    /// Computes the bounds of every clip from the SkinnedGeometry below and sets the meshes' bounding boxes. Call it
+    /// once after all meshes are added; copies of this node share the result.
     void computeClipBounds();
-    /// The box of the clip in the character's own space (all its vertices at all its times); -1: the rest pose.
-    const Box& getClipBounds(int clip) const;
+    /// The box of all vertices at all times of the clip, in the character's own space. clip: an index of
+    /// getAnimationSet().clips(); -1: the rest pose. Invalid before computeClipBounds() and for other indices.
+    osg::BoundingBox getClipBounds(int clip) const;
 
-    /// The box of all that plays now, in the character's own space: the clip's where one plays alone, else that of any
-    /// mix of the clips that the layers play, see MixBounds. Empty before computeClipBounds().
-    Box getCurrentBounds() const;
+    /// The box of the present animation, in the character's own space: the clip's box if one clip plays alone,
+    /// otherwise the box of every possible mix of the playing clips (see MixBounds). Invalid before
+    /// computeClipBounds().
+    osg::BoundingBox getCurrentBounds() const;
 
-    /// Whether characters that OSG would draw alike, one after another, may be drawn by one instanced draw a mesh
-    /// primitive, see CharacterDraws. Programs that have no part in it (they do not link skin.glsl) are drawn one by
-    /// one.
+    /// Allows one instanced draw per mesh primitive for consecutive characters with the same meshes and state, see
+    /// CharacterDraws. Meshes with programs that do not link skin.glsl are drawn one by one. Default: true.
     void setDrawnTogether(bool together) { _isDrawnTogether = together; }
     bool isDrawnTogether() const { return _isDrawnTogether; } ///< default: true
 
-    /// How far the surface that is drawn may be off on screen, in pixels: where that hides it, meshes are drawn with
-    /// fewer triangles, see LodLevels. 0 (the default): with all. Each camera sees what its distance allows, by
-    /// small feature culling's measure; what is near has all triangles. Makes the levels of its meshes at once, which
-    /// takes its time, see MeshSimplifier; of those that are added or changed later, the next cull does. Drawn whole
-    /// are meshes that are not its own children, and what comes after LodRange::mostVertices. Error: pixels is below
-    /// 0, above LodRange::largestPixelError or no number.
+    /// The largest error of the drawn surface on screen, in pixels: meshes are drawn with fewer triangles while the
+    /// error stays below it, see LodLevels. 0 (the default): all triangles. Each camera selects the level by distance,
+    /// with the measure of small feature culling. The call creates the levels of the present meshes, which takes time
+    /// (see MeshSimplifier); the next cull creates those of later changes. No levels are built for meshes that are not
+    /// direct children or for vertices beyond LodRange::mostVertices.
+    /// pixels: in [0, LodRange::largestPixelError]. Error: pixels is out of range or NaN.
     Result<bool> setPixelError(float pixels);
-    float getPixelError() const { return _pixelError; }
+    float getPixelError() const { return _pixelError; } ///< pixels, at least 0
 
-    /// A mesh below this node as the character shows it now, in the character's own space: computed by the CPU twin,
-    /// and kept until the pose is another. Intersectors meet it in the mesh's place.
+    /// A mesh below this node in the present pose, in the character's own space. The CPU twin computes it, and the
+    /// result is kept until the pose changes. Intersectors test it in place of the mesh.
     osg::ref_ptr<osg::Geometry> getPosedMesh(const SkinnedGeometry& mesh) const override;
-    /// Gives the functor the primitives of all meshes below in their present pose. (A mesh by itself gives those of its
-    /// bind pose: it belongs to no character.)
+    /// Passes the primitives of all meshes below in their present pose to the functor. (A mesh alone passes its bind
+    /// pose, because it belongs to no character.)
     void acceptPosed(osg::PrimitiveFunctor& functor);
 
+    /// During cull: submits the pose and draws the children from the palette. Other visitors traverse the children.
     void traverse(osg::NodeVisitor& visitor) override;
-    /// Of getCurrentBounds(); update() sees to it that it is asked for again when other clips play.
+    /// The sphere around getCurrentBounds(); update() marks it dirty when other clips play.
     osg::BoundingSphere computeBound() const override;
 
 protected:
     ~AnimatedCharacter() override;
 
 private:
-    Box boundsOf(const std::vector<PlayedClip>& played) const;
-    void growMeshes(const Box& box);
+    osg::BoundingBox boundsOf(const std::vector<PlayedClip>& played) const;
+    void growMeshes(const osg::BoundingBox& box);
 
     std::unique_ptr<AnimationController> _controller;
-    std::shared_ptr<const std::vector<Box>> _clipBounds; ///< the rest pose's, then one a clip
-    std::shared_ptr<const MixBounds> _mixBounds;         ///< there with _clipBounds
-    std::optional<double> _updateTime;                   ///< seconds of simulation time
-    std::vector<PlayedClip> _played;                     ///< what the bound was last dirtied for
-    std::vector<PlayedClip> _playedNow;                  ///< kept for its memory
-    mutable std::unique_ptr<PosedMeshes> _posedMeshes;   ///< its own: no copy shares it; made when first asked
+    std::shared_ptr<const std::vector<osg::BoundingBox>> _clipBounds; ///< rest pose, then one per clip
+    std::shared_ptr<const MixBounds> _mixBounds;                      ///< null if _clipBounds is null
+    std::optional<double> _updateTime;                                ///< seconds of simulation time
+    std::vector<PlayedClip> _played;                                  ///< the clips at the last dirtyBound()
+    std::vector<PlayedClip> _playedNow;                               ///< kept for its memory
+    mutable std::unique_ptr<PosedMeshes> _posedMeshes;                ///< created on demand; copies do not share it
     mutable std::once_flag _posedMeshesMade;
     bool _isDrawnTogether = true;
     float _pixelError = 0.0f;
 };
 
-/// The first AnimatedCharacter at or below the node, depth first; null where there is none.
+/// The first AnimatedCharacter at or below the node, depth first; null if none exists.
 AnimatedCharacter* findCharacter(osg::Node& node);
 
-/// How far the clips of a character are off since they are compact, in its own units.
+/// The errors of a character's compact clips.
 struct CompactedCharacter
 {
-    double longestSide = 0.0; ///< see animation/CompactClips.h
-    double tolerance = 0.0;
-    std::vector<double> errors; ///< one a clip; 0 where it is exact
+    double longestSide = 0.0;   ///< of the model, in its own units
+    double tolerance = 0.0;     ///< the largest allowed error, in the model's units
+    std::vector<double> errors; ///< one per clip, in the model's units; 0: the clip stays exact
 };
 
-/// Gives the character a set with compact clips, see animation/CompactClips.h: no vertex is farther from where the
-/// exact clips have it than that fraction of the model's longest side. To be called when all meshes are in, and before
-/// cloning. Errors: those of compactClips() and AnimatedCharacter::setAnimationSet(); a model without size.
+/// Replaces the character's clips by compact ones (see compactClips): no vertex moves by more than the fraction of the
+/// model's longest side. Call it after all meshes are added and before cloning.
+/// fraction: above 0. Errors: those of compactClips() and AnimatedCharacter::setAnimationSet(); the model has no size.
 Result<CompactedCharacter> compactClipsOf(AnimatedCharacter& character, double fraction);
 
 } // namespace osgGpuAnimation

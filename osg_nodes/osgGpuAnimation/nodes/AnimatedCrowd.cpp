@@ -31,18 +31,12 @@ std::vector<Box> clipBoundsOf(const AnimationSet& set, const osg::Group& meshes)
     return boundsOfClips(set, reach.boxes());
 }
 
-std::shared_ptr<const AnimationSet> emptySet()
-{
-    const osg::ref_ptr<AnimatedCharacter> nobody = new AnimatedCharacter;
-    return nobody->getController().sharedSet();
-}
-
 std::uint32_t toRgba(const osg::Vec4& color)
 {
     std::uint32_t rgba = 0;
     for (int channel = 0; channel < 4; ++channel)
     {
-        // Written so that what is not a number counts as 0.
+        // The comparison is written so that NaN counts as 0.
         const float value = color[channel] > 0.0f ? std::min(color[channel], 1.0f) : 0.0f;
         rgba |= static_cast<std::uint32_t>(std::lround(value * 255.0f)) << 8 * channel;
     }
@@ -70,7 +64,7 @@ Result<AffineMatrix> toRootMatrix(const osg::Matrixd& placement, const osg::Vec3
     return root;
 }
 
-/// An instance as intersectors meet it: posed only where its sphere is hit. It lives as long as the crowd's traversal.
+/// An instance for intersectors, posed only if its sphere is hit. It exists during the crowd's traversal only.
 class IntersectedInstance : public osg::Node
 {
 public:
@@ -84,7 +78,7 @@ public:
                     {
                         if (!visitor.validNodeMask(mesh)) return;
                         const osg::ref_ptr<osg::Geometry> posed = _crowd.getPosedMesh(instance, mesh);
-                        // The hit's node path leads through this node, and only the drawable is kept.
+                        // The hit keeps the drawable only, but its node path needs this node.
                         posed->setUserData(this);
                         posed->accept(visitor);
                     });
@@ -103,13 +97,16 @@ private:
 
 } // namespace
 
-AnimatedCrowd::AnimatedCrowd() : AnimatedCrowd(emptySet(), {}) {}
+AnimatedCrowd::AnimatedCrowd()
+    : AnimatedCrowd(osg::ref_ptr<AnimatedCharacter>(new AnimatedCharacter)->getController().sharedSet(), {})
+{
+}
 
 AnimatedCrowd::AnimatedCrowd(std::shared_ptr<const AnimationSet> set,
                              const std::vector<osg::ref_ptr<SkinnedGeometry>>& meshes)
     : _instances(std::make_unique<CrowdInstances>(std::move(set))), _posed(std::make_unique<PosedInstances>())
 {
-    // Not static: the Optimizer must not flatten the transforms above into the bind pose.
+    // Not STATIC: the Optimizer must not flatten the transforms above into the bind pose.
     setDataVariance(osg::Object::DYNAMIC);
     setUpdateCallback(new AnimationUpdateCallback);
     for (const osg::ref_ptr<SkinnedGeometry>& mesh : meshes)
@@ -128,7 +125,7 @@ AnimatedCrowd::AnimatedCrowd(const AnimatedCharacter& character)
     forEachMesh(character, [&](const SkinnedGeometry& mesh) { addChild(const_cast<SkinnedGeometry*>(&mesh)); });
     std::vector<Box> bounds;
     for (int clip = -1; clip < static_cast<int>(getAnimationSet().clips().size()); ++clip)
-        bounds.push_back(character.getClipBounds(clip));
+        bounds.push_back(toBox(character.getClipBounds(clip)));
     const bool areKnown = std::any_of(bounds.begin(), bounds.end(), [](const Box& box) { return !box.empty(); });
     _instances->setClipBounds(areKnown ? bounds : clipBoundsOf(getAnimationSet(), *this));
 }
@@ -253,7 +250,7 @@ void AnimatedCrowd::update(double simulationTime)
 std::optional<AnimatedCrowd::Instance> AnimatedCrowd::instanceOf(const osg::Drawable* hit)
 {
     const auto* posed = dynamic_cast<const PosedMesh*>(hit);
-    return posed ? posed->instance() : std::nullopt;
+    return posed ? posed->getInstance() : std::nullopt;
 }
 
 osg::ref_ptr<osg::Geometry> AnimatedCrowd::getPosedMesh(Instance instance, const SkinnedGeometry& mesh) const
@@ -329,7 +326,7 @@ void AnimatedCrowd::intersect(osg::NodeVisitor& visitor)
         if (!dynamic_cast<SkinnedGeometry*>(child.get())) child->accept(visitor);
 }
 
-// Statistics tell the instances of what is in the graph: a mesh is there as often as the crowd shows it.
+// Statistics count a mesh once per instance.
 void AnimatedCrowd::count(osg::NodeVisitor& visitor)
 {
     for (const osg::ref_ptr<osg::Node>& child : _children)
@@ -346,21 +343,19 @@ osg::BoundingSphere AnimatedCrowd::computeBound() const
     for (std::size_t index = 0; index < getNumInstances(); ++index)
     {
         const glm::vec4& sphere = _instances->sphere(index);
-        if (sphere.w < 0.0f) continue;
-        box.expandBy(sphere.x - sphere.w, sphere.y - sphere.w, sphere.z - sphere.w);
-        box.expandBy(sphere.x + sphere.w, sphere.y + sphere.w, sphere.z + sphere.w);
+        box.expandBy(osg::BoundingSphere(osg::Vec3(sphere.x, sphere.y, sphere.z), sphere.w));
     }
     osg::BoundingSphere bound;
     if (box.valid()) bound = osg::BoundingSphere(box);
     for (const osg::ref_ptr<osg::Node>& child : _children)
     {
-        // Meshes are asked for theirs, too: cameras that cull at once must find all bounds computed.
+        // Also compute the bounds of the meshes: cameras that cull concurrently must find them ready.
         const osg::BoundingSphere& ofChild = child->getBound();
         if (!dynamic_cast<const SkinnedGeometry*>(child.get())) bound.expandBy(ofChild);
     }
     if (!bound.valid()) return bound;
     const osg::Vec3d center = osg::Vec3d(bound.center()) + _origin;
-    // A bound's numbers may be floats: far out their rounding must not cut the crowd off.
+    // A bound may store floats: the margin covers their rounding far from the origin.
     return {osg::BoundingSphere::vec_type(center),
             static_cast<osg::BoundingSphere::value_type>(bound.radius() + 1e-6 * center.length())};
 }

@@ -18,91 +18,98 @@ class AnimatedCharacter;
 class CrowdInstances;
 class PosedInstances;
 
-/// Thousands of instances of one character in one node: each with its own placement, controller and tint, all drawn by
-/// one instanced draw a mesh primitive.
+/// Thousands of instances of one character in one node, each with its own placement, controller and tint. One instanced
+/// draw per mesh primitive shows them all.
 ///
 ///     osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*findCharacter(*osgDB::readRefNodeFile("fox.glb")));
 ///     AnimationController controller(crowd->getSharedAnimationSet());
 ///     controller.play("Run");
 ///     controller.seek(0.4);
 ///     AnimatedCrowd::Instance fox = crowd->add(osg::Matrix::translate(100, 20, 0), controller).value();
-///     crowd->setPlacement(fox, osg::Matrix::translate(101, 20, 0));      // at any time but while the crowd is culled
+///     crowd->setPlacement(fox, osg::Matrix::translate(101, 20, 0));      // not while the crowd is culled
 ///     crowd->getController(fox)->crossfade("Walk", 0.3);
 ///
-/// An update callback (installed by the constructor) advances all instances by the frame stamp's simulation time. At
-/// cull each instance is tested by itself, with the bounds of the clip it plays; those that are seen go to the GPU.
-/// An instance that plays one clip in a loop costs least; any other (crossfades, layers, events …) has a controller.
+/// The constructor installs an update callback, which advances all instances by the frame stamp's simulation time. Cull
+/// tests each instance with the bounds of the clip that it plays and submits the visible ones to the GPU. An instance
+/// that plays one clip in a loop costs least; every other instance (crossfades, layers, events) keeps a controller.
 ///
-/// Meshes are the crowd's children, as they are in an AnimatedCharacter's; other children are drawn once. Within one
-/// mesh, transparent instances are not sorted by depth.
+/// The meshes are the crowd's children; other children are drawn once. Transparent instances of one mesh are not sorted
+/// by depth.
 class AnimatedCrowd : public osg::Transform, public Updatable
 {
 public:
-    /// Names an instance as long as it is there, and no other afterwards.
+    /// A handle of an instance. It stays valid until the instance is removed and is never reused.
     using Instance = std::uint64_t;
-    static constexpr std::size_t maxInstances = 1000000;
+    static constexpr std::size_t maxInstances = 1000000; ///< in one crowd
 
+    /// A crowd with an empty set; setAnimationSet() gives it another.
     AnimatedCrowd();
-    /// meshes: made for the set's palette.
+    /// set: not null. meshes: built for the set's palette.
     AnimatedCrowd(std::shared_ptr<const AnimationSet> set, const std::vector<osg::ref_ptr<SkinnedGeometry>>& meshes);
-    /// Shares the character's set, meshes and state, and copies its bounds and pixel error; its own placement plays no
-    /// part.
+    /// Shares the character's set, meshes and state, and copies its bounds and pixel error. Ignores its matrix.
     explicit AnimatedCrowd(const AnimatedCharacter& character);
-    /// The instances are copied, under the same names.
+    /// Copies the instances with their handles.
     AnimatedCrowd(const AnimatedCrowd& other, const osg::CopyOp& copyop = osg::CopyOp::SHALLOW_COPY);
     META_Node(osgGpuAnimation, AnimatedCrowd)
 
+    /// The skeleton, palette layout and clips of all instances.
     const AnimationSet& getAnimationSet() const;
+    /// The same set with shared ownership, for new controllers.
     const std::shared_ptr<const AnimationSet>& getSharedAnimationSet() const;
 
-    /// For a crowd that was made without a set: works out the bounds from the meshes that are there. Error: it has
-    /// instances, or a set already.
+    /// Gives a set to a crowd without one and computes the bounds from the present meshes. Errors: set is null; the
+    /// crowd has instances or a set.
     Result<bool> setAnimationSet(std::shared_ptr<const AnimationSet> set);
 
-    /// placement: affine, from the character's own space to the space this node is in. controller: one of the crowd's
-    /// set; it is copied. tint: what the colour is multiplied by, [0, 1] each.
-    /// Errors: a placement that is not finite, not affine, or mirrors (its determinant is below 0); a controller of
-    /// another set; more than maxInstances. The crowd is unchanged then.
+    /// Adds an instance. placement: affine, from the character's space to the space of this node. controller: built for
+    /// the crowd's set; it is copied. tint: multiplies the colour, each component in [0, 1].
+    /// Errors, which leave the crowd unchanged: the placement is not finite, not affine or mirrors (its determinant is
+    /// below 0); the controller has another set; the crowd has maxInstances.
     Result<Instance> add(const osg::Matrixd& placement, const AnimationController& controller,
                          const osg::Vec4& tint = osg::Vec4(1, 1, 1, 1));
-    bool remove(Instance instance); ///< false: there is none
-    Result<bool> setPlacement(Instance instance,
-                              const osg::Matrixd& placement);       ///< errors: as add()'s; no such instance
+    bool remove(Instance instance); ///< false: no such instance
+    /// Errors: those of add(); no such instance.
+    Result<bool> setPlacement(Instance instance, const osg::Matrixd& placement);
     Result<bool> setTint(Instance instance, const osg::Vec4& tint); ///< error: no such instance
-    bool contains(Instance instance) const;
-    std::size_t getNumInstances() const;
+    bool contains(Instance instance) const;                         ///< true until the instance is removed
+    std::size_t getNumInstances() const;                            ///< in [0, maxInstances]
 
-    /// To ask for crossfades, layers and so on; null where there is no such instance. Holds until the next update().
+    /// The controller of an instance, for crossfades and layers; valid until the next update(). Null: no such instance.
     AnimationController* getController(Instance instance);
-    /// instance: one there is.
+    /// The placement of an instance. instance: contained in the crowd.
     osg::Matrixd getPlacement(Instance instance) const;
+    /// The arrays of all instances, for the kit's own plugins and tests.
     const CrowdInstances& getInstances() const { return *_instances; }
 
-    /// Placements are kept as floats relative to the origin: the first instance's, unless it is set before.
-    /// Where instances are already there, they stay where they are, as exactly as floats can say.
+    /// Sets the point that placements are stored relative to, as floats; the default is the first instance's position.
+    /// Existing instances keep their positions to float precision.
     void setOrigin(const osg::Vec3d& origin);
-    const osg::Vec3d& getOrigin() const { return _origin; }
+    const osg::Vec3d& getOrigin() const { return _origin; } ///< in the space of this node
 
-    /// How far the surface that is drawn may be off on screen, in pixels: where that hides it, instances are drawn with
-    /// fewer triangles, each level of detail in use by one instanced draw a mesh primitive. 0 (the default): all
-    /// triangles. For meshes that are drawn whole, the time it takes and errors see AnimatedCharacter::setPixelError().
+    /// The largest error of the drawn surface on screen, in pixels: instances are drawn with fewer triangles while the
+    /// error stays below it, with one instanced draw per mesh primitive and level. 0 (the default): all triangles.
+    /// Range, cost, limits and errors: see AnimatedCharacter::setPixelError().
     Result<bool> setPixelError(float pixels);
-    float getPixelError() const { return _pixelError; }
+    float getPixelError() const { return _pixelError; } ///< pixels, at least 0
 
-    /// Advances by the time since the last update; the first only takes the time down. simulationTime: seconds.
+    /// Advances all instances by the time since the last update; the first call only stores the time.
+    /// simulationTime: seconds.
     void update(double simulationTime) override;
 
-    /// The instance that an intersector has hit: of the Intersection's drawable. Nothing where it is no crowd's.
+    /// The instance of an Intersection's drawable. Empty: the drawable belongs to no crowd.
     static std::optional<Instance> instanceOf(const osg::Drawable* hit);
-    /// The mesh as the instance shows it now, computed by the CPU twin, in the crowd's own space; its instanceOf() is
-    /// the instance. No positions where there is no such instance. See jointOf() for a hit's joint.
+    /// The mesh in the present pose of the instance, in the crowd's space. The CPU twin computes it, and instanceOf()
+    /// returns its instance. It has no vertices if no such instance exists. See jointOf() for the joint of a hit.
     osg::ref_ptr<osg::Geometry> getPosedMesh(Instance instance, const SkinnedGeometry& mesh) const;
-    /// Gives the functor the primitives of all instances in their present pose: slow, computed by the CPU twin.
+    /// Passes the primitives of all instances in their present poses to the functor. Slow: the CPU twin computes them.
     void acceptInstances(osg::PrimitiveFunctor& functor) const;
 
+    /// Cull submits and draws the visible instances; intersectors meet posed meshes; statistics count every instance.
     void traverse(osg::NodeVisitor& visitor) override;
-    osg::BoundingSphere computeBound() const override;
+    osg::BoundingSphere computeBound() const override; ///< around all instances and the other children
+    /// Applies the origin to the matrix.
     bool computeLocalToWorldMatrix(osg::Matrix& matrix, osg::NodeVisitor* visitor) const override;
+    /// Removes the origin from the matrix.
     bool computeWorldToLocalMatrix(osg::Matrix& matrix, osg::NodeVisitor* visitor) const override;
 
 protected:
@@ -114,7 +121,7 @@ private:
     void count(osg::NodeVisitor& visitor);
 
     std::unique_ptr<CrowdInstances> _instances; ///< never null
-    std::unique_ptr<PosedInstances> _posed;     ///< its own: no copy shares it
+    std::unique_ptr<PosedInstances> _posed;     ///< copies do not share it
     osg::Vec3d _origin;
     bool _hasOrigin = false;
     std::optional<double> _updateTime; ///< seconds of simulation time

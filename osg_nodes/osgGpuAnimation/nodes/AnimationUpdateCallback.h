@@ -7,26 +7,28 @@
 namespace osgGpuAnimation
 {
 
-/// A node with animation that follows the simulation time.
+/// A node whose animation follows the simulation time.
 class Updatable
 {
 public:
-    /// simulationTime: seconds, of the frame stamp.
+    /// Advances the animation. simulationTime: seconds, from the frame stamp.
     virtual void update(double simulationTime) = 0;
 
 protected:
     ~Updatable() = default;
 };
 
-/// Updates the Updatable node it is on (AnimatedCharacter, AnimatedCrowd) with the frame stamp's simulation time. It
-/// has no state, so copies of a node may share it.
+/// Updates its node (AnimatedCharacter, AnimatedCrowd) with the frame stamp's simulation time. It has no state, so
+/// copies of a node may share it.
 class AnimationUpdateCallback : public osg::NodeCallback
 {
 public:
     AnimationUpdateCallback() = default;
+    /// A copy; the callback has no state.
     AnimationUpdateCallback(const AnimationUpdateCallback& other, const osg::CopyOp& copyop);
     META_Object(osgGpuAnimation, AnimationUpdateCallback)
 
+    /// Updates the node, then continues the traversal.
     void operator()(osg::Node* node, osg::NodeVisitor* visitor) override;
 
 protected:

@@ -26,7 +26,7 @@ namespace
 
 constexpr const char* linesName = "osgGpuAnimation joint lines";
 
-/// Where the entry's matrix takes to the joint's origin: the origin as it was at bind time.
+/// The joint's origin at bind time, which the entry's matrix moves to the present origin.
 osg::Vec3 bindOrigin(const PaletteEntry& entry)
 {
     const glm::dvec4 origin = glm::inverse(entry.inverseBind.toColumns()) * glm::dvec4(0.0, 0.0, 0.0, 1.0);
@@ -41,7 +41,7 @@ void setLineState(osg::StateSet& state)
     white->setDiffuse(osg::Material::FRONT_AND_BACK, osg::Vec4(1, 1, 1, 1));
     state.setAttribute(white);
     state.setAttribute(new osg::LineWidth(2.0f));
-    // Over the mesh, and itself no obstacle to what is drawn later.
+    // Drawn over the mesh, without an effect on later depth tests.
     state.setAttributeAndModes(new osg::Depth(osg::Depth::ALWAYS, 0.0, 1.0, false));
     state.setRenderBinDetails(1000, "RenderBin");
 }
@@ -51,6 +51,86 @@ int findJointLines(const AnimatedCharacter& character)
     for (unsigned int i = 0; i < character.getNumChildren(); ++i)
         if (character.getChild(i)->getName() == linesName) return static_cast<int>(i);
     return -1;
+}
+
+struct KeyHelp
+{
+    const char* keys;
+    const char* does;
+};
+
+constexpr KeyHelp keyHelp[] = {
+    {"n", "next clip"},  {"N", "previous clip"},     {"k", "pause, resume"},
+    {".", "a frame on"}, {",", "a frame back"},      {"-", "slower"},
+    {"+", "faster"},     {"r", "run the other way"}, {"j", "joints on, off"},
+};
+
+constexpr double frameSeconds = 1.0 / 30.0;
+constexpr double speedFactor = 1.25;
+constexpr double slowest = 1.0 / 64.0, fastest = 64.0;
+
+template <typename Function>
+void forEachLayer(AnimationController& controller, Function function)
+{
+    for (std::size_t i = 0; i < controller.layerCount(); ++i)
+        function(controller.layer(i));
+}
+
+bool isAnyPlaying(AnimationController& controller)
+{
+    bool isPlaying = false;
+    forEachLayer(controller, [&](AnimationLayer& layer) { isPlaying = isPlaying || layer.isPlaying(); });
+    return isPlaying;
+}
+
+void setPaused(AnimationController& controller, bool isPaused)
+{
+    forEachLayer(controller, [&](AnimationLayer& layer) { isPaused ? layer.pause() : layer.resume(); });
+}
+
+/// Steps all layers and pauses them. Fades do not run backward.
+void step(AnimationController& controller, double seconds)
+{
+    setPaused(controller, false);
+    std::array<bool, maxLayers> hasEnded{};
+    forEachLayer(controller,
+                 [&](AnimationLayer& layer) { hasEnded[layer.index()] = layer.state() == PlayState::Ended; });
+    controller.advance(seconds);
+    // An ended layer does not advance, but it can step backward.
+    forEachLayer(controller,
+                 [&](AnimationLayer& layer)
+                 {
+                     if (hasEnded[layer.index()] && seconds < 0.0) layer.seek(layer.time() + seconds * layer.speed());
+                 });
+    setPaused(controller, true);
+    OSG_NOTICE << "at " << controller.time() << " s of " << controller.duration() << std::endl;
+}
+
+void multiplySpeed(AnimationController& controller, double factor)
+{
+    forEachLayer(controller,
+                 [&](AnimationLayer& layer)
+                 {
+                     const double speed = std::clamp(std::abs(layer.speed() * factor), slowest, fastest);
+                     layer.setSpeed(std::copysign(speed, layer.speed() * factor));
+                     // An ended layer resumes after a change of direction.
+                     if (factor < 0.0 && layer.state() == PlayState::Ended) layer.seek(layer.time());
+                 });
+    OSG_NOTICE << "speed " << controller.speed() << std::endl;
+}
+
+void tellKeysOnce()
+{
+    static std::once_flag told;
+    std::call_once(told,
+                   []
+                   {
+                       std::string text;
+                       for (const KeyHelp& key : keyHelp)
+                           text += (text.empty() ? "" : "; ") + std::string(key.keys) + " " + key.does;
+                       if (osg::isNotifyEnabled(osg::NOTICE))
+                           std::cout << "Keys of animated characters: " << text << std::endl;
+                   });
 }
 
 } // namespace
@@ -98,96 +178,9 @@ void showJointLines(AnimatedCharacter& character, bool isShown)
     if (lines >= 0 && !isShown) character.removeChild(static_cast<unsigned int>(lines));
     if (lines >= 0 || !isShown) return;
     osg::ref_ptr<SkinnedGeometry> added = makeJointLines(character.getAnimationSet());
-    const Box box = character.getCurrentBounds();
-    if (!box.empty())
-        added->setInitialBound(osg::BoundingBox(box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z));
+    added->setInitialBound(character.getCurrentBounds());
     character.addChild(added);
 }
-
-namespace
-{
-
-struct KeyHelp
-{
-    const char* keys;
-    const char* does;
-};
-
-constexpr KeyHelp keyHelp[] = {
-    {"n", "next clip"},  {"N", "previous clip"},     {"k", "pause, resume"},
-    {".", "a frame on"}, {",", "a frame back"},      {"-", "slower"},
-    {"+", "faster"},     {"r", "run the other way"}, {"j", "joints on, off"},
-};
-
-constexpr double frameSeconds = 1.0 / 30.0;
-constexpr double speedFactor = 1.25;
-constexpr double slowest = 1.0 / 64.0, fastest = 64.0;
-
-template <typename Function>
-void forEachLayer(AnimationController& controller, Function function)
-{
-    for (std::size_t i = 0; i < controller.layerCount(); ++i)
-        function(controller.layer(i));
-}
-
-bool isAnyPlaying(AnimationController& controller)
-{
-    bool isPlaying = false;
-    forEachLayer(controller, [&](AnimationLayer& layer) { isPlaying = isPlaying || layer.isPlaying(); });
-    return isPlaying;
-}
-
-void setPaused(AnimationController& controller, bool isPaused)
-{
-    forEachLayer(controller, [&](AnimationLayer& layer) { isPaused ? layer.pause() : layer.resume(); });
-}
-
-/// Fades do not go back: they stand while clips do.
-void step(AnimationController& controller, double seconds)
-{
-    setPaused(controller, false);
-    std::array<bool, maxLayers> hasEnded{};
-    forEachLayer(controller,
-                 [&](AnimationLayer& layer) { hasEnded[layer.index()] = layer.state() == PlayState::Ended; });
-    controller.advance(seconds);
-    // What had come to its end does not advance, but can still go back.
-    forEachLayer(controller,
-                 [&](AnimationLayer& layer)
-                 {
-                     if (hasEnded[layer.index()] && seconds < 0.0) layer.seek(layer.time() + seconds * layer.speed());
-                 });
-    setPaused(controller, true);
-    OSG_NOTICE << "at " << controller.time() << " s of " << controller.duration() << std::endl;
-}
-
-void multiplySpeed(AnimationController& controller, double factor)
-{
-    forEachLayer(controller,
-                 [&](AnimationLayer& layer)
-                 {
-                     const double speed = std::clamp(std::abs(layer.speed() * factor), slowest, fastest);
-                     layer.setSpeed(std::copysign(speed, layer.speed() * factor));
-                     // At the end that the old way led to there is a way back now.
-                     if (factor < 0.0 && layer.state() == PlayState::Ended) layer.seek(layer.time());
-                 });
-    OSG_NOTICE << "speed " << controller.speed() << std::endl;
-}
-
-void tellKeysOnce()
-{
-    static std::once_flag told;
-    std::call_once(told,
-                   []
-                   {
-                       std::string text;
-                       for (const KeyHelp& key : keyHelp)
-                           text += (text.empty() ? "" : "; ") + std::string(key.keys) + " " + key.does;
-                       if (osg::isNotifyEnabled(osg::NOTICE))
-                           std::cout << "Keys of animated characters: " << text << std::endl;
-                   });
-}
-
-} // namespace
 
 CharacterKeys::CharacterKeys(const CharacterKeys& other, const osg::CopyOp& copyop)
     : osg::Object(other, copyop), osg::Callback(other, copyop), osgGA::GUIEventHandler(other, copyop),
@@ -207,7 +200,7 @@ bool CharacterKeys::handle(const osgGA::GUIEventAdapter& event, osgGA::GUIAction
     return false;
 }
 
-// A character with several parents meets each event once a parent.
+// A character with several parents receives each event once per parent.
 bool CharacterKeys::isFirstTime(const osgGA::GUIEventAdapter& event, const osg::Object& character)
 {
     if (_event != &event) _told.clear();
@@ -229,7 +222,7 @@ void CharacterKeys::changeClip(AnimationController& controller, int step) const
     const int count = static_cast<int>(clips.size());
     if (count == 0) return;
     const int clip = controller.clip() < 0 ? 0 : (controller.clip() + step + count) % count;
-    // A fade stands while all is paused: what is paused shows the next clip at once, and stays so.
+    // Fades do not advance while paused: show the next clip immediately and stay paused.
     const bool isPaused = controller.state() == PlayState::Paused;
     const bool isShown =
         static_cast<bool>(controller.crossfade(static_cast<std::size_t>(clip), isPaused ? 0.0 : _fadeSeconds));

@@ -11,52 +11,54 @@
 namespace osgGpuAnimation
 {
 
-/// Lines from each joint to its parent, drawn over everything: to be a child of an AnimatedCharacter of this set. They
-/// are skinned as meshes are, from the GPU's palette, so they move with the character at no cost to the CPU.
+/// Lines from each joint to its parent, drawn over everything: a child for an AnimatedCharacter of this set. The lines
+/// are skinned from the palette like any mesh, so they cost the CPU nothing.
 osg::ref_ptr<SkinnedGeometry> makeJointLines(const AnimationSet& set);
 
-/// Adds the lines to the character, or takes them away again.
+/// Adds the joint lines to the character or removes them.
 void showJointLines(AnimatedCharacter& character, bool isShown);
+/// True if showJointLines() has added lines.
 bool hasJointLines(const AnimatedCharacter& character);
 
-/// Keys for someone who looks at an AnimatedCharacter in a viewer: an event callback on the character. None of them is
-/// a key of osgviewer's, and none is kept from other handlers, so all characters of a scene follow.
+/// Viewer keys for an AnimatedCharacter: an event callback on the character. None of the keys is used by osgviewer, and
+/// no key is marked as handled, so all characters of a scene respond.
 ///
 ///     character->addEventCallback(new CharacterKeys);
 ///
 /// | key | does |
 /// | --- | --- |
-/// | n N | next, previous clip, with a crossfade; at once, and still paused, where all is paused |
+/// | n N | next, previous clip, with a crossfade; immediately and still paused if all layers are paused |
 /// | k | pauses and resumes all layers |
-/// | . , | a thirtieth of a second on, back; pauses |
+/// | . , | a thirtieth of a second forward, backward; pauses |
 /// | - + | slower, faster (= is + without shift) |
-/// | r | the other way |
-/// | j | joints as lines over the mesh |
+/// | r | reverses the playback |
+/// | j | shows the joints as lines over the mesh |
 ///
-/// At the first frame of the first viewer that reaches one, the keys are told on standard output, once a process: they
-/// are help for who looks on, no notice about the file. Who sets OSG's notify level below NOTICE is not told. What a
-/// key did is told at osg::NOTICE. An application that never has a viewer never hears of it.
+/// The first frame of the first viewer prints the list of keys to standard output, once per process, unless OSG's
+/// notify level is below NOTICE. The effect of a key is reported at osg::NOTICE.
 ///
-/// Characters may share one: it keeps nothing of theirs.
+/// Several characters may share one object: it keeps no data of theirs.
 class CharacterKeys : public osgGA::GUIEventHandler
 {
 public:
     CharacterKeys() = default;
-    /// fadeSeconds: of the crossfades, at least 0.
+    /// fadeSeconds: duration of the crossfades, at least 0.
     explicit CharacterKeys(double fadeSeconds) : _fadeSeconds(fadeSeconds) {}
+    /// Copies the duration of the crossfades.
     CharacterKeys(const CharacterKeys& other, const osg::CopyOp& copyop);
     META_Object(osgGpuAnimation, CharacterKeys)
 
-    double getFadeSeconds() const { return _fadeSeconds; }
-
+    double getFadeSeconds() const { return _fadeSeconds; }          ///< duration of the crossfades
     void setFadeSeconds(double seconds) { _fadeSeconds = seconds; } ///< at least 0
 
     using osgGA::GUIEventHandler::handle;
+    /// Handles key presses and always returns false.
     bool handle(const osgGA::GUIEventAdapter& event, osgGA::GUIActionAdapter& action, osg::Object* object,
                 osg::NodeVisitor* visitor) override;
+    /// Adds the keys to a viewer's help.
     void getUsage(osg::ApplicationUsage& usage) const override;
 
-    /// False where the key is none of these.
+    /// Does what the key does; false: the key has no meaning here.
     bool press(int key, AnimatedCharacter& character) const;
 
 protected:
@@ -67,8 +69,8 @@ private:
     void changeClip(AnimationController& controller, int step) const;
 
     double _fadeSeconds = 0.3;
-    osg::ref_ptr<const osgGA::GUIEventAdapter> _event; ///< the last one
-    std::vector<const osg::Object*> _told;             ///< who has had it
+    osg::ref_ptr<const osgGA::GUIEventAdapter> _event; ///< the last event
+    std::vector<const osg::Object*> _told;             ///< the characters that have handled _event
 };
 
 } // namespace osgGpuAnimation

@@ -14,7 +14,7 @@ namespace osgGpuAnimation
 namespace
 {
 
-/// GLSL 1.40 has all that skinning needs, and in a compatibility context still the fixed pipeline's names.
+/// GLSL 1.40 is enough for skinning and, in a compatibility context, keeps the names of the fixed pipeline.
 osg::Shader* makeShader(osg::Shader::Type type, std::initializer_list<const char*> parts)
 {
     std::string source = "#version 140\n";
@@ -63,7 +63,7 @@ osg::ref_ptr<osg::Program> characterProgram()
 
 void applyCharacterProgram(osg::StateSet& stateSet)
 {
-    // Casting cameras of osgShadow override programs with none, which would draw the bind pose.
+    // osgShadow's casting cameras override the program with none, which would draw the bind pose.
     stateSet.setAttributeAndModes(characterProgram(), osg::StateAttribute::ON | osg::StateAttribute::PROTECTED);
     stateSet.getOrCreateUniform("baseColorTexture", osg::Uniform::SAMPLER_2D)->set(0);
     if (!stateSet.getUniform("alphaCutoff")) stateSet.addUniform(new osg::Uniform("alphaCutoff", 0.0f));

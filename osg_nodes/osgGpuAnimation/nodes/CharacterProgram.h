@@ -7,31 +7,31 @@
 namespace osgGpuAnimation
 {
 
-/// The program that draws SkinnedGeometry: skin.glsl, character.vert and character.frag, in variants
-/// (ShaderPermutations) by the modes of the state. All users share one object.
+/// The program that draws SkinnedGeometry: skin.glsl, character.vert and character.frag, in permutations by the modes
+/// of the state (ShaderPermutations). All users share one object.
 ///
-/// It does what the fixed pipeline would: OSG's lights that are on, with attenuation and spots, osg::LightModel's
-/// ambient, osg::Material (diffuse times vertex colour is the base colour, lit or not), fog, clip planes, the texture
-/// of unit 0 with its matrix where GL_TEXTURE_2D is on, and the shadow maps of osgShadow's techniques. In a pass that
-/// writes depth alone it does nothing but skin. Uniforms: `float alphaCutoff` (fragments of less alpha are dropped;
-/// default 0), `bool unlit` (default false), `bool flatNormals` (lit, each face by its own normal, of the pose; default
-/// false).
+/// It reproduces the fixed pipeline: OSG's enabled lights with attenuation and spots, osg::LightModel's ambient colour,
+/// osg::Material (diffuse times vertex colour is the base colour, lit or not), fog, clip planes, the texture of unit 0
+/// with its matrix if GL_TEXTURE_2D is on, and the shadow maps of osgShadow's techniques. In a depth-only pass it only
+/// skins. Uniforms: `float alphaCutoff` (fragments with less alpha are discarded; default 0), `bool unlit` (default
+/// false), `bool flatNormals` (lights each face by its own posed normal; default false).
 osg::ref_ptr<osg::Program> characterProgram();
 
-/// Puts the program, its uniforms' defaults and a white texture on unit 0 (where there is none) into the state.
+/// Sets the program, its uniforms' defaults and, if unit 0 has no texture, a white texture in the state.
 void applyCharacterProgram(osg::StateSet& stateSet);
 
-/// skin.glsl as a shader object, to be added to a program of one's own, whose vertex shader declares and calls
+/// skin.glsl as a shader object for another program, whose vertex shader declares and calls
 ///
 ///     void osgGpuAnimationSkin(inout vec4 vertex, inout vec3 normal);
 ///
-/// Such a program needs bindSkinAttributes() too.
+/// Such a program also needs bindSkinAttributes().
 osg::ref_ptr<osg::Shader> skinShader();
+/// Binds the attributes of skin.glsl to the locations of layout.glsl.
 void bindSkinAttributes(osg::Program& program);
 
-/// Tells skin.glsl, by shader defines of the state its meshes are drawn with, what it can leave out: a third of the
-/// cost of a draw in llvmpipe. influences: what a vertex of these meshes has at most
-/// (SkinnedGeometry::getInfluenceCount()), 1 to 8. hasMorphs: some of them has morph targets.
+/// Sets shader defines that remove unused parts of skin.glsl for the meshes of this state, which saves a third of a
+/// draw's cost in llvmpipe. influences: the largest SkinnedGeometry::getInfluenceCount() of these meshes, in [1, 8].
+/// hasMorphs: true if one of them has morph targets.
 void applySkinDefines(osg::StateSet& stateSet, int influences, bool hasMorphs);
 
 } // namespace osgGpuAnimation

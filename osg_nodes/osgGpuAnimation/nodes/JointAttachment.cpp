@@ -24,7 +24,7 @@ const AnimatedCharacter* characterAbove(const osg::NodePath& path)
 
 JointAttachment::JointAttachment()
 {
-    // Not static: the Optimizer must not flatten it. The update traversal is to come here without a callback.
+    // Not STATIC: the Optimizer must not flatten it. The update traversal must reach it without a callback.
     setDataVariance(osg::Object::DYNAMIC);
     setNumChildrenRequiringUpdateTraversal(getNumChildrenRequiringUpdateTraversal() + 1);
 }
@@ -58,10 +58,8 @@ void JointAttachment::setJoint(const std::string& name)
 
 void JointAttachment::setJoint(int joint)
 {
-    _jointName.clear();
+    setJoint(std::string());
     _joint = joint;
-    _resolvedSet.reset();
-    _hasWarned = false;
 }
 
 int JointAttachment::jointIn(const AnimationSet& set) const

@@ -12,33 +12,39 @@ namespace osgGpuAnimation
 class AnimatedCharacter;
 class AnimationSet;
 
-/// A group that follows a joint of the AnimatedCharacter above it: what is put below it is carried.
+/// A group that follows a joint of the AnimatedCharacter above it and carries its children.
 ///
 ///     osg::ref_ptr<JointAttachment> hand = new JointAttachment("Hand.R");
 ///     hand->addChild(sword);
 ///     fox->addChild(hand);
 ///
-/// It takes the joint's matrix from the CPU twin of that joint's chain of parents, nothing is read back. The character
-/// is found anew on the way from the root each time, so clones of a character carry what theirs hold, and one
-/// attachment may be shared by several. Set its place in the hand by a transform below it. Where there is no such joint
-/// it stays at the character's origin, with one warning, however many share it.
+/// The CPU twin computes the joint's matrix from the chain of parents; nothing is read back from the GPU. The character
+/// is looked up on the node path each time, so a clone of a character carries its own attachments and several
+/// characters may share one. Place the children relative to the joint by a transform below the attachment. Without such
+/// a joint the attachment stays at the character's origin and warns once.
 class JointAttachment : public osg::MatrixTransform
 {
 public:
+    /// An attachment without a joint; setJoint() gives it one.
     JointAttachment();
-    explicit JointAttachment(const std::string& joint);
-    explicit JointAttachment(int joint);
+    explicit JointAttachment(const std::string& joint); ///< joint: its name, see setJoint()
+    explicit JointAttachment(int joint);                ///< joint: its index, see setJoint()
+    /// Copies the joint; the children as copyop says.
     JointAttachment(const JointAttachment& other, const osg::CopyOp& copyop = osg::CopyOp::SHALLOW_COPY);
     META_Node(osgGpuAnimation, JointAttachment)
 
-    /// By name (the first joint that has it), or by its number in the set's skeleton.
+    /// Selects the first joint of that name.
     void setJoint(const std::string& name);
+    /// Selects a joint by its index in the set's skeleton.
     void setJoint(int joint);
-    const std::string& getJointName() const { return _jointName; } ///< empty where it was given by number
-    int getJoint() const { return _joint; }                        ///< -1 where it was given by name
+    const std::string& getJointName() const { return _jointName; } ///< empty: selected by index
+    int getJoint() const { return _joint; }                        ///< -1: selected by name
 
+    /// During update: sets the matrix to the joint's transform.
     void traverse(osg::NodeVisitor& visitor) override;
+    /// Applies the joint's present transform in the character of the visitor's node path.
     bool computeLocalToWorldMatrix(osg::Matrix& matrix, osg::NodeVisitor* visitor) const override;
+    /// Removes the joint's present transform in the character of the visitor's node path.
     bool computeWorldToLocalMatrix(osg::Matrix& matrix, osg::NodeVisitor* visitor) const override;
 
 protected:
@@ -51,7 +57,7 @@ private:
 
     std::string _jointName;
     int _joint = -1;
-    std::shared_ptr<const AnimationSet> _resolvedSet; ///< the last set the name was looked up in
+    std::shared_ptr<const AnimationSet> _resolvedSet; ///< the set of the last look-up
     int _resolvedJoint = -1;
     bool _hasWarned = false;
 };

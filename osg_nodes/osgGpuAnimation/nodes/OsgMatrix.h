@@ -9,20 +9,21 @@
 namespace osgGpuAnimation
 {
 
-// The kit's matrices are for column vectors, OSG's for row vectors: one is the other's transpose.
+// animation/ multiplies matrices with column vectors, OSG with row vectors: each is the transpose of the other.
 
-/// By columns in memory, which OSG reads by rows.
+/// A matrix in OSG's convention: the columns in memory become OSG's rows.
 inline osg::Matrixd toOsg(const glm::dmat4& matrix)
 {
     return osg::Matrixd(glm::value_ptr(matrix));
 }
 
+/// The same for a 3x4 matrix.
 inline osg::Matrixd toOsg(const AffineMatrix& matrix)
 {
     return toOsg(matrix.toColumns());
 }
 
-/// The same in the space in which what it is relative to, the origin, lies.
+/// The same for a matrix whose translation is relative to the origin.
 inline osg::Matrixd toOsg(const AffineMatrix& matrix, const osg::Vec3d& origin)
 {
     osg::Matrixd placed = toOsg(matrix);
@@ -30,7 +31,7 @@ inline osg::Matrixd toOsg(const AffineMatrix& matrix, const osg::Vec3d& origin)
     return placed;
 }
 
-/// What is affine of it, rounded to float.
+/// The affine part of an OSG matrix, rounded to float.
 inline AffineMatrix toAffine(const osg::Matrixd& matrix)
 {
     return AffineMatrix::fromColumns(glm::make_mat4(matrix.ptr()));

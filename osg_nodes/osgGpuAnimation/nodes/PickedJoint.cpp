@@ -12,7 +12,7 @@ namespace osgGpuAnimation
 namespace
 {
 
-/// A vertex and its share in the point that was hit.
+/// A vertex and its share in the hit point.
 struct Corner
 {
     std::size_t vertex;
@@ -41,15 +41,15 @@ std::optional<PickedJoint> pick(const osg::NodePath& path, const osg::Drawable* 
     const auto* posed = dynamic_cast<const PosedMesh*>(hit);
     if (!posed) return std::nullopt;
     PickedJoint picked;
-    picked.mesh = &posed->mesh();
+    picked.mesh = &posed->getMesh();
     for (const osg::Node* node : path)
     {
-        const auto* crowd = posed->instance() ? dynamic_cast<const AnimatedCrowd*>(node) : nullptr;
-        const auto* character = posed->instance() ? nullptr : dynamic_cast<const AnimatedCharacter*>(node);
+        const auto* crowd = posed->getInstance() ? dynamic_cast<const AnimatedCrowd*>(node) : nullptr;
+        const auto* character = posed->getInstance() ? nullptr : dynamic_cast<const AnimatedCharacter*>(node);
         if (crowd) picked.crowd = crowd;
         if (character) picked.character = character;
     }
-    if (picked.crowd) picked.instance = *posed->instance();
+    if (picked.crowd) picked.instance = *posed->getInstance();
     if (!picked.crowd && !picked.character) return std::nullopt;
     picked.set = picked.crowd ? &picked.crowd->getAnimationSet() : &picked.character->getAnimationSet();
     const std::optional<std::size_t> joint = heaviestJoint(*picked.set, *picked.mesh, corners);

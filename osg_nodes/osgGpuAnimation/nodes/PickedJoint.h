@@ -12,26 +12,26 @@
 namespace osgGpuAnimation
 {
 
-/// Whose mesh an intersector has hit, and the joint that moves what is there most.
+/// The mesh that an intersector has hit, with the joint that moves the hit point most.
 ///
 ///     if (auto picked = jointOf(ray->getFirstIntersection()))
 ///         std::cout << picked->set->skeleton().joint(picked->joint).name << std::endl;
 ///
-/// The pointers are borrowed: they hold as long as the nodes do.
+/// The pointers are borrowed from the nodes and valid as long as those exist.
 struct PickedJoint
 {
-    const AnimatedCharacter* character = nullptr; ///< null: it is a crowd's
-    const AnimatedCrowd* crowd = nullptr;         ///< null: it is a character's
-    AnimatedCrowd::Instance instance = 0;         ///< of the crowd
+    const AnimatedCharacter* character = nullptr; ///< null: the hit is in a crowd
+    const AnimatedCrowd* crowd = nullptr;         ///< null: the hit is in a character
+    AnimatedCrowd::Instance instance = 0;         ///< of the crowd, if any
     const SkinnedGeometry* mesh = nullptr;        ///< never null
-    const AnimationSet* set = nullptr;            ///< the character's or the crowd's, never null
-    std::size_t joint = 0;                        ///< of the set's skeleton
+    const AnimationSet* set = nullptr;            ///< of the character or crowd, never null
+    std::size_t joint = 0;                        ///< index in the skeleton of the set
 };
 
-/// The joint whose weights at the hit triangle's corners, each counted by its share in the point, come to the most.
-/// Nothing where the hit is neither a character's nor a crowd's, or no joint moves the vertices.
+/// The joint with the largest sum of weights at the corners of the hit triangle, each multiplied by the corner's share
+/// in the hit point. Empty: the hit is in no character or crowd, or no joint moves the vertices.
 std::optional<PickedJoint> jointOf(const osgUtil::LineSegmentIntersector::Intersection& hit);
-/// A polytope does not tell the triangle's corners: the vertex nearest to localIntersectionPoint has the say.
+/// The same by the vertex nearest to localIntersectionPoint, because polytope hits name no corners.
 std::optional<PickedJoint> jointOf(const osgUtil::PolytopeIntersector::Intersection& hit);
 
 } // namespace osgGpuAnimation

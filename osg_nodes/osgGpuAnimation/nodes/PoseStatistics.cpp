@@ -17,8 +17,8 @@ struct Line
 {
     const char* label;
     const char* attribute;
-    float multiplier; ///< of the attribute, for the number shown
-    float most;       ///< of the number, in the graph
+    float multiplier; ///< from the attribute to the displayed number
+    float most;       ///< the largest number in the graph
 };
 
 constexpr Line lines[] = {
@@ -28,7 +28,7 @@ constexpr Line lines[] = {
     {"Feedback, microseconds", PoseStatistics::timeTaken, 1e6f, 0.016f},
 };
 
-/// A handler that is given a line starts anew, and what it shows now would stay without numbers.
+/// A new line resets the handler, and a page that is visible at that time would lose its numbers.
 bool isShown(osgViewer::StatsHandler& handler)
 {
     return handler.getCamera()->getGraphicsContext() && handler.getCamera()->getNodeMask() != 0;

@@ -34,7 +34,7 @@ constexpr unsigned int weightsLocation(unsigned int influenceSet)
     return influenceSet == 0 ? POSE_WEIGHTS_0_LOCATION : POSE_WEIGHTS_1_LOCATION;
 }
 
-/// Influences a vertex needs to be looked at: one behind the last weight that is not 0.
+/// The number of influences per vertex up to the last weight that is not 0.
 int influencesUsed(const osg::Vec4Array& weights)
 {
     int used = 0;
@@ -51,7 +51,7 @@ osg::ref_ptr<osg::StateSet> makeColoredState(const char* colors)
     return state;
 }
 
-/// What tells the program of the colours; null where there are none.
+/// The shader define for the colours; null without colours.
 osg::StateSet* coloredState(SkinnedGeometry::Colors colors)
 {
     static const osg::ref_ptr<osg::StateSet> ofArray = makeColoredState("1"), ofTargets = makeColoredState("2");
@@ -59,7 +59,7 @@ osg::StateSet* coloredState(SkinnedGeometry::Colors colors)
     return colors == SkinnedGeometry::Colors::Array ? ofArray.get() : ofTargets.get();
 }
 
-/// The nearest source of posed meshes on the visitor's path; null where there is none.
+/// The nearest source of posed meshes on the visitor's path, or null.
 const PosedMeshSource* posedMeshSource(const osg::NodeVisitor& visitor)
 {
     const osg::NodePath& path = visitor.getNodePath();
@@ -74,8 +74,8 @@ SkinnedGeometry::SkinnedGeometry() : _morphDeltas(std::make_unique<MorphDeltas>(
 {
     setUseDisplayList(false);
     setUseVertexBufferObjects(true);
-    // Besides being fast: without an object of its own a geometry shares OSG's record of what each attribute points to,
-    // which goes by the addresses of arrays and misses it when one is deleted and another takes its place.
+    // Not only for speed: without its own vertex array object a geometry shares OSG's record of bound arrays, which
+    // compares addresses and misses a new array at the address of a deleted one.
     setUseVertexArrayObject(true);
 }
 
@@ -174,7 +174,7 @@ void SkinnedGeometry::setMorphTargets(int morph, int entry, std::vector<MorphTar
     _morphTargets = std::move(targets);
     _morph = _morphTargets.empty() ? -1 : morph;
     _morphEntry = _morphTargets.empty() ? -1 : entry;
-    _morphDeltas->texture = nullptr; // packed anew where nobody else has them: the arrays may have changed
+    _morphDeltas->texture = nullptr; // packed again unless another mesh uses them: the arrays may have changed
     *_morphDeltas = packMorphTargets(_morphTargets, vertexCount);
     if (_morph < 0) _morphDeltas->texture = nullptr;
     forgetLodLevels();
@@ -227,7 +227,7 @@ SkinnedGeometry::Colors SkinnedGeometry::getColors() const
     const osg::Array* array = getColorArray();
     const int binding = array ? array->getBinding() : osg::Array::BIND_UNDEFINED;
     if (binding == osg::Array::BIND_UNDEFINED || binding == osg::Array::BIND_OFF)
-        return areMorphed ? Colors::Targets : Colors::White; // OSG does not hand on what is bound so
+        return areMorphed ? Colors::Targets : Colors::White; // OSG ignores arrays with these bindings
     const auto* overall = binding == osg::Array::BIND_OVERALL ? dynamic_cast<const osg::Vec4Array*>(array) : nullptr;
     const bool isWhite = overall && !overall->empty() && overall->front() == osg::Vec4(1, 1, 1, 1);
     return isWhite && !areMorphed ? Colors::White : Colors::Array;
@@ -276,7 +276,7 @@ osg::VertexArrayState* SkinnedGeometry::createVertexArrayStateImplementation(osg
 
 void SkinnedGeometry::compileGLObjects(osg::RenderInfo& renderInfo) const
 {
-    // Where there is no vertex array object to be prepared, the first draw makes the buffers.
+    // Without a vertex array object to prepare, the first draw creates the buffers.
     if (!MeshVertexArrays::isNumberShared(*renderInfo.getState())) osg::Geometry::compileGLObjects(renderInfo);
 }
 
@@ -288,7 +288,7 @@ void SkinnedGeometry::drawInstances(osg::RenderInfo& renderInfo, const PaletteBi
         const std::size_t end = binding.getInstance() + binding.getInstanceCount();
         for (std::size_t first = binding.getInstance(); first < end;)
         {
-            // One draw shows the instances of one chunk of the palette.
+            // One draw covers the instances of one palette chunk.
             const PalettePlace place = pipeline.place(*binding.getAnimationSet(), binding.getSlot(), first);
             if (place.texture == 0 || place.chunkEnd <= first) break;
             const std::size_t count = std::min(end, place.chunkEnd) - first;
@@ -319,8 +319,8 @@ void SkinnedGeometry::drawPlaced(osg::RenderInfo& renderInfo, const PaletteBindi
     withVertexArrays(renderInfo, draw);
 }
 
-// As osg::Geometry::drawImplementation, but for the primitives: those draw themselves with a number of instances that
-// is their own, while here it is the frame's.
+// As osg::Geometry::drawImplementation except for the primitives, which would draw their own number of instances
+// instead of the frame's.
 template <typename Draw>
 void SkinnedGeometry::withVertexArrays(osg::RenderInfo& renderInfo, Draw draw) const
 {

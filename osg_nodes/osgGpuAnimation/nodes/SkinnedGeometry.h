@@ -24,7 +24,7 @@ class SkinnedGeometry;
 struct MorphDeltas;
 struct PalettePlace;
 
-/// A node above SkinnedGeometry that knows its present pose. Intersection visitors that pass the node meet its posed
+/// A node above SkinnedGeometry that has a present pose. Intersection visitors that traverse the node test its posed
 /// meshes in place of the meshes below it.
 class PosedMeshSource
 {
@@ -36,91 +36,98 @@ protected:
     ~PosedMeshSource() = default;
 };
 
-/// A mesh drawn from the palette: ordinary vertex arrays in bind pose and, for each vertex, the palette entries that
-/// move it with their weights. It belongs to no character: one mesh serves all instances of a set, and the
-/// AnimatedCharacter above it says, while it is culled, whose palette is meant.
+/// A mesh drawn from the palette: vertex arrays in bind pose and, per vertex, the palette entries that move it with
+/// their weights. A mesh belongs to no character: it serves all instances of a set, and the AnimatedCharacter above it
+/// selects the palette during cull.
 ///
 ///     osg::ref_ptr<SkinnedGeometry> mesh = new SkinnedGeometry;
 ///     mesh->setVertexArray(positions);
-///     mesh->setInfluences(0, entries, weights);   // osg::Vec4usArray, osg::Vec4Array: one a vertex
-///     mesh->setStateSet(material);                // with characterProgram() or one's own program on skin.glsl
+///     mesh->setInfluences(0, entries, weights);   // osg::Vec4usArray, osg::Vec4Array: one element per vertex
+///     mesh->setStateSet(material);                // with characterProgram() or another program with skin.glsl
 ///     character->addChild(mesh);
 ///
-/// Drawn with vertex buffers, never with display lists. The bounding box is the union over all clips of the set, see
+/// Meshes use vertex buffers, never display lists. The bounding box covers all clips of the set, see
 /// AnimatedCharacter::computeClipBounds().
 class SkinnedGeometry : public osg::Geometry
 {
 public:
+    /// An empty mesh with vertex buffers and a vertex array object.
     SkinnedGeometry();
+    /// Shares the arrays, morph targets and levels of detail.
     SkinnedGeometry(const SkinnedGeometry& other, const osg::CopyOp& copyop = osg::CopyOp::SHALLOW_COPY);
     META_Object(osgGpuAnimation, SkinnedGeometry)
-    /// To visitors it is a Drawable, not a Geometry: what merges geometries, reorders or transforms their vertices
-    /// (the Optimizer) would part them from their palette entries and morph targets. Intersection visitors that
-    /// come through a PosedMeshSource meet its posed mesh instead.
+    /// Visits the mesh as a Drawable, not as a Geometry: visitors that merge geometries or reorder and transform
+    /// vertices (the Optimizer) would separate vertices from palette entries and morph targets. Below a
+    /// PosedMeshSource, intersection visitors visit the posed mesh instead.
     void accept(osg::NodeVisitor& visitor) override;
-    /// Adds the mesh, which is known to be in view, to the visitor's render bin. toEye: the matrix that its instances'
-    /// placements refer to. depth: their distance before the eye.
+    /// Adds the visible mesh to the visitor's render bin. toEye: from the space of the instances' placements to the
+    /// eye. depth: distance from the eye, for sorting.
     void addTo(osgUtil::CullVisitor& visitor, osg::RefMatrix* toEye, float depth);
+    /// Null: hides the vertex arrays from OSG's tools, see accept().
     osg::Geometry* asGeometry() override { return nullptr; }
     const osg::Geometry* asGeometry() const override { return nullptr; }
 
-    static constexpr unsigned int maxInfluenceSets = 2;
+    static constexpr unsigned int maxInfluenceSets = 2; ///< of four influences each
 
-    /// Influences of all vertices, four to a set: set 0 is needed, set 1 optional.
+    /// Sets four influences per vertex: set 0 is required, set 1 optional.
     /// entries: palette entries (AnimationSet::entryOfSkin, entryOfRigidJoint), each below the set's palette size.
-    /// weights: as the file has them; entries of weight 0 are not looked at.
+    /// weights: as in the file; entries with weight 0 are ignored. Both: one element per vertex.
     void setInfluences(unsigned int influenceSet, osg::Vec4usArray* entries, osg::Vec4Array* weights);
-    const osg::Vec4usArray* getEntries(unsigned int influenceSet) const;
-    const osg::Vec4Array* getWeights(unsigned int influenceSet) const;
+    const osg::Vec4usArray* getEntries(unsigned int influenceSet) const; ///< null: the set is not used
+    const osg::Vec4Array* getWeights(unsigned int influenceSet) const;   ///< null: the set is not used
 
-    /// Influences a vertex has, at most: 1 to 8.
+    /// The largest number of influences of a vertex, in [1, 8].
     int getInfluenceCount() const { return _influences; }
 
-    /// Every vertex moves with one entry wholly: what a rigid mesh on a joint needs.
+    /// Moves all vertices with one palette entry, for a rigid mesh on a joint. Replaces the influences.
     void setRigidEntry(unsigned short entry);
     int getRigidEntry() const { return _rigidEntry; } ///< -1: influences are per vertex
 
-    /// Morph targets, in the order of their weights. morph: which of the set's morph weights moves them. To be called
-    /// when the vertices are in; targets' arrays are as long as theirs. No targets: none any more.
+    /// Sets the morph targets in the order of their weights. Call it after the vertices are set.
+    /// morph: index of the set's morph weights. targets: arrays with one element per vertex; empty: removes all
+    /// targets.
     void setMorphTargets(const AnimationSet& set, std::size_t morph, std::vector<MorphTarget> targets);
-    /// The same where the set is not known yet. entry: the set's entryOfMorph(morph).
+    /// The same before the set is known. entry: the set's entryOfMorph(morph).
     void setMorphTargets(int morph, int entry, std::vector<MorphTarget> targets);
+    /// The targets as set, in the order of their weights.
     const std::vector<MorphTarget>& getMorphTargets() const { return _morphTargets; }
-    /// What they are drawn from; meshes whose targets are the same arrays share it. Null: there are none.
+    /// The packed targets for the shader. Meshes with the same target arrays share it. Null: no targets.
     const osg::TextureBuffer* getMorphDeltas() const;
-    int getMorph() const { return _morph; }           ///< -1: none
+    int getMorph() const { return _morph; }           ///< index of the set's morph weights; -1: none
     int getMorphEntry() const { return _morphEntry; } ///< the first palette entry of the weights; -1: none
 
-    /// Where the vertices' colours come from.
+    /// The source of vertex colours.
     enum class Colors
     {
-        White,   ///< they have none
-        Array,   ///< to which morph targets may add
-        Targets, ///< morph targets add to white
+        White,   ///< no colours
+        Array,   ///< the colour array, to which morph targets may add
+        Targets, ///< white plus morph targets
     };
-    Colors getColors() const;
+    Colors getColors() const; ///< from the colour array and the morph targets
 
-    /// Its levels of detail, see AnimatedCharacter::setPixelError(); made when first asked, by the poses of the set.
+    /// The levels of detail, see AnimatedCharacter::setPixelError(). The first call creates them from poses of the set.
     std::shared_ptr<const LodLevels> getLodLevels(const AnimationSet& set) const;
+    /// Discards the levels of detail, for example after a change of the clips; getLodLevels() creates new ones.
     void forgetLodLevels();
 
+    /// The number of elements of the vertex array; 0 without one.
     std::size_t getVertexCount() const { return getVertexArray() ? getVertexArray()->getNumElements() : 0; }
 
     /// function(std::size_t entry, float weight), for each palette entry that moves the vertex.
     template <typename Function>
     void forEachInfluence(std::size_t vertex, Function function) const;
 
-    /// The CPU twin of skin.glsl: where the palette (of one instance: the set's paletteSize() entries) takes each
-    /// vertex, in the character's own space; computed in double. outPositions: one a vertex.
+    /// The CPU twin of skin.glsl, in double precision: computes the vertex positions in the character's own space.
+    /// palette: the set's paletteSize() entries of one instance. outPositions: one per vertex.
     void computePositions(const std::vector<AffineMatrix>& palette, std::vector<glm::dvec3>& outPositions) const;
 
-    /// Writes the palette's place into the program that is applied, then draws; all instances of a crowd at once.
+    /// Sets the palette's uniforms in the applied program and draws all instances of the PaletteBinding.
     void drawImplementation(osg::RenderInfo& renderInfo) const override;
     osg::VertexArrayState* createVertexArrayStateImplementation(osg::RenderInfo& renderInfo) const override;
     void compileGLObjects(osg::RenderInfo& renderInfo) const override;
     void releaseGLObjects(osg::State* state = nullptr) const override;
     void resizeGLObjectBuffers(unsigned int maxSize) override;
-    /// Transforms of the vertices by others (the Optimizer's) would break the bind pose: refused.
+    /// Does nothing: a transform of the vertices, such as the Optimizer's, would break the bind pose.
     void accept(osg::Drawable::AttributeFunctor&) override {}
     using osg::Geometry::accept;
 
@@ -136,8 +143,8 @@ private:
     void bindPalette(osg::State& state, const PalettePlace& place) const;
     glm::dvec3 morphed(const osg::Vec3& position, std::size_t vertex, const std::vector<AffineMatrix>& palette) const;
 
-    int _influences = 1;  ///< of a vertex, at most
-    int _rigidEntry = -1; ///< the entry that moves all vertices wholly; -1: influences are per vertex
+    int _influences = 1;  ///< the largest number per vertex
+    int _rigidEntry = -1; ///< the entry that moves all vertices; -1: influences are per vertex
     std::vector<MorphTarget> _morphTargets;
     std::unique_ptr<MorphDeltas> _morphDeltas; ///< never null
     mutable std::atomic<bool> _isMorphLimitReported{false};

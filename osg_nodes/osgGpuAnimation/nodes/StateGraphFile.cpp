@@ -19,19 +19,19 @@ namespace osgGpuAnimation
 namespace
 {
 
-// Kept in the order in which they are written: without "start" the first state is meant.
+// Keeps the order of the members: without "start" the first state is the start.
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t largestText = 1 << 16;
 constexpr int deepest = 256;
 
-/// What is at fault with a member; caught where the text is read.
+/// An error in a member; parseStateGraph() catches it.
 struct Fault
 {
     std::string message;
 };
 
-/// Watches the parser, which by itself takes any depth and of members of one name the last.
+/// Rejects deep nesting and duplicate members, which the parser alone accepts.
 class ParserWatch
 {
 public:
@@ -54,7 +54,7 @@ public:
     }
 
 private:
-    std::vector<std::set<std::string>> _members; ///< of each object around the present place
+    std::vector<std::set<std::string>> _members; ///< of each enclosing object
 };
 
 Error tooLong(std::uintmax_t size)

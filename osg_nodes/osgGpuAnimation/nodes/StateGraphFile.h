@@ -9,7 +9,7 @@
 namespace osgGpuAnimation
 {
 
-/// A StateGraph from a short JSON text, mostly a file beside the model (fox.states.json):
+/// Reads a StateGraph from a short JSON text, usually a file beside the model (fox.states.json):
 ///
 ///     {
 ///       "start": "stand",
@@ -25,15 +25,15 @@ namespace osgGpuAnimation
 ///       ]
 ///     }
 ///
-/// loop: "loop", "once" or "pingpong"; curve: "linear" or "smooth"; sync: "start" or "phase"; "when" may be one text
-/// instead of an array. What is left out is as in StateDescription and TransitionDescription; a transition without
-/// "from" leads on from every state.
+/// loop: "loop", "once" or "pingpong"; curve: "linear" or "smooth"; sync: "start" or "phase"; "when" may be one string
+/// instead of an array. Missing members have the defaults of StateDescription and TransitionDescription; a transition
+/// without "from" starts from every state.
 ///
-/// Errors name the member: JSON that is none, of more than 64 KiB or nested more than 256 deep; members of a wrong type
-/// or an unknown name, that come twice or are missing; and those of StateGraph::create.
+/// Errors name the member: invalid JSON; a text of more than 64 KiB or with more than 256 nested levels; a member of a
+/// wrong type or an unknown name; a duplicate or missing member; the errors of StateGraph::create.
 Result<std::shared_ptr<const StateGraph>> parseStateGraph(const AnimationSet& set, const std::string& json);
 
-/// The same from a file of at most 64 KiB. Errors begin with its name.
+/// The same from a file of at most 64 KiB. Errors start with the name of the file.
 Result<std::shared_ptr<const StateGraph>> readStateGraphFile(const AnimationSet& set, const std::string& file);
 
 } // namespace osgGpuAnimation

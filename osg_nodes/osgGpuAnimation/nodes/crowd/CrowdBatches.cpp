@@ -12,15 +12,6 @@
 namespace osgGpuAnimation
 {
 
-std::shared_ptr<PosedMeshes> PosedInstances::of(CrowdInstances::Handle instance)
-{
-    const std::lock_guard<std::mutex> lock(_mutex);
-    const auto kept = _kept.find(instance);
-    if (kept != _kept.end()) return kept->second;
-    if (_kept.size() >= maxKept) _kept.clear();
-    return _kept[instance] = std::make_shared<PosedMeshes>();
-}
-
 namespace
 {
 
@@ -30,73 +21,7 @@ osg::BoundingBox boxAround(const glm::vec4& sphere)
             sphere.x + sphere.w, sphere.y + sphere.w, sphere.z + sphere.w};
 }
 
-} // namespace
-
-std::vector<glm::vec4> CrowdView::planes() const
-{
-    std::vector<glm::vec4> planes;
-    osg::CullingSet& culling = _visitor.getCurrentCullingSet();
-    const auto mask = culling.getCullingMask();
-    if (mask & osg::CullingSet::VIEW_FRUSTUM_CULLING)
-    {
-        osg::Polytope& frustum = culling.getFrustum();
-        osg::Polytope::ClippingMask bit = 1;
-        for (const osg::Plane& plane : frustum.getPlaneList())
-        {
-            if (frustum.getCurrentMask() & bit) planes.emplace_back(plane[0], plane[1], plane[2], plane[3]);
-            bit <<= 1;
-        }
-    }
-    if (mask & osg::CullingSet::SMALL_FEATURE_CULLING)
-    {
-        // OSG's measure of what is too small, p · v · pixels > radius, has the form of a plane.
-        const osg::Vec4 plane = culling.getPixelSizeVector() * -culling.getSmallFeatureCullingPixelSize();
-        planes.emplace_back(plane.x(), plane.y(), plane.z(), plane.w());
-    }
-    return planes;
-}
-
-void CrowdView::look(const CrowdInstances& instances, const std::vector<std::uint32_t>& indices)
-{
-    const osg::Matrix& toEye = *_visitor.getModelViewMatrix();
-    const glm::vec4 depthOf(-toEye(0, 2), -toEye(1, 2), -toEye(2, 2), -toEye(3, 2));
-    const float scale = glm::length(glm::vec3(depthOf));
-    float nearest = 1e30f, farthest = -1e30f;
-    glm::vec4 nearestSphere(0.0f, 0.0f, 0.0f, -1.0f), farthestSphere = nearestSphere;
-    for (const std::uint32_t index : indices)
-    {
-        const glm::vec4& sphere = instances.sphere(index);
-        const float depth = glm::dot(depthOf, glm::vec4(glm::vec3(sphere), 1.0f));
-        const float reach = sphere.w * scale;
-        // What lies behind the eye has no say in the near plane.
-        if (depth + reach < 0.0f) continue;
-        if (depth - reach < nearest) nearest = depth - reach, nearestSphere = sphere;
-        if (depth + reach > farthest) farthest = depth + reach, farthestSphere = sphere;
-    }
-    if (nearestSphere.w < 0.0f) return;
-    _depth = 0.5f * (nearest + farthest);
-    if (_visitor.getComputeNearFarMode() == osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR) return;
-    _visitor.updateCalculatedNearFar(toEye, boxAround(nearestSphere));
-    _visitor.updateCalculatedNearFar(toEye, boxAround(farthestSphere));
-}
-
-void CrowdView::draw(SkinnedGeometry& mesh, const PaletteBinding& binding)
-{
-    if (!_visitor.validNodeMask(mesh)) return;
-    PoseStage::count(_visitor, mesh, binding);
-    mesh.addTo(_visitor, _visitor.getModelViewMatrix(), _depth);
-}
-
-namespace
-{
-
-struct LevelIndices
-{
-    int level;
-    std::vector<std::uint32_t> indices;
-};
-
-/// The longest that a unit of the character's own space becomes.
+/// The largest length of a transformed unit axis.
 float largestScale(const AffineMatrix& matrix)
 {
     float largest = 0.0f;
@@ -108,50 +33,9 @@ float largestScale(const AffineMatrix& matrix)
     return std::sqrt(largest);
 }
 
-} // namespace
-
-int CrowdLod::levelOf(std::uint32_t index) const
-{
-    const glm::vec4& sphere = _instances.sphere(index);
-    return _scale.level(glm::vec3(sphere), sphere.w, largestScale(_instances.rootMatrix(index)));
-}
-
-void CrowdLod::sort(std::vector<std::uint32_t>& indices, std::vector<Run>& outRuns) const
-{
-    static thread_local std::vector<LevelIndices> levels; // keeps its storage from cull to cull
-    for (LevelIndices& level : levels)
-        level.indices.clear();
-    std::size_t last = 0;
-    for (const std::uint32_t index : indices)
-    {
-        const int level = levelOf(index);
-        for (std::size_t i = 0; i < levels.size() && (last >= levels.size() || levels[last].level != level); ++i)
-            last = i;
-        if (last >= levels.size() || levels[last].level != level)
-        {
-            last = levels.size();
-            levels.push_back({level, {}});
-        }
-        levels[last].indices.push_back(index);
-    }
-    std::sort(levels.begin(), levels.end(),
-              [](const LevelIndices& a, const LevelIndices& b) { return a.level < b.level; });
-    indices.clear();
-    outRuns.clear();
-    for (const LevelIndices& level : levels)
-    {
-        if (level.indices.empty()) continue;
-        indices.insert(indices.end(), level.indices.begin(), level.indices.end());
-        outRuns.push_back({level.level, level.indices.size()});
-    }
-}
-
-namespace
-{
-
 using Indices = std::vector<std::uint32_t>;
 
-/// By what their poses cost to mix; those that are too few for a batch join the next dearer.
+/// Sorts the instances by blend cost; groups too small for a batch join the next higher cost.
 void sortByBlendCost(const CrowdInstances& instances, const Indices& seen,
                      std::array<Indices, PoseBatch::blendCostCount>& loads)
 {
@@ -171,6 +55,100 @@ void sortByBlendCost(const CrowdInstances& instances, const Indices& seen,
 }
 
 } // namespace
+
+std::shared_ptr<PosedMeshes> PosedInstances::of(CrowdInstances::Handle instance)
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    const auto kept = _kept.find(instance);
+    if (kept != _kept.end()) return kept->second;
+    if (_kept.size() >= maxKept) _kept.clear();
+    return _kept[instance] = std::make_shared<PosedMeshes>();
+}
+
+std::vector<glm::vec4> CrowdView::planes() const
+{
+    std::vector<glm::vec4> planes;
+    osg::CullingSet& culling = _visitor.getCurrentCullingSet();
+    const auto mask = culling.getCullingMask();
+    if (mask & osg::CullingSet::VIEW_FRUSTUM_CULLING)
+    {
+        osg::Polytope& frustum = culling.getFrustum();
+        osg::Polytope::ClippingMask bit = 1;
+        for (const osg::Plane& plane : frustum.getPlaneList())
+        {
+            if (frustum.getCurrentMask() & bit) planes.emplace_back(plane[0], plane[1], plane[2], plane[3]);
+            bit <<= 1;
+        }
+    }
+    if (mask & osg::CullingSet::SMALL_FEATURE_CULLING)
+    {
+        // OSG's test for small features, p · v · pixels > radius, has the form of a plane.
+        const osg::Vec4 plane = culling.getPixelSizeVector() * -culling.getSmallFeatureCullingPixelSize();
+        planes.emplace_back(plane.x(), plane.y(), plane.z(), plane.w());
+    }
+    return planes;
+}
+
+void CrowdView::look(const CrowdInstances& instances, const std::vector<std::uint32_t>& indices)
+{
+    const osg::Matrix& toEye = *_visitor.getModelViewMatrix();
+    const glm::vec4 depthOf(-toEye(0, 2), -toEye(1, 2), -toEye(2, 2), -toEye(3, 2));
+    const float scale = glm::length(glm::vec3(depthOf));
+    float nearest = 1e30f, farthest = -1e30f;
+    glm::vec4 nearestSphere(0.0f, 0.0f, 0.0f, -1.0f), farthestSphere = nearestSphere;
+    for (const std::uint32_t index : indices)
+    {
+        const glm::vec4& sphere = instances.sphere(index);
+        const float depth = glm::dot(depthOf, glm::vec4(glm::vec3(sphere), 1.0f));
+        const float reach = sphere.w * scale;
+        // Instances behind the eye do not affect the near plane.
+        if (depth + reach < 0.0f) continue;
+        if (depth - reach < nearest) nearest = depth - reach, nearestSphere = sphere;
+        if (depth + reach > farthest) farthest = depth + reach, farthestSphere = sphere;
+    }
+    if (nearestSphere.w < 0.0f) return;
+    _depth = 0.5f * (nearest + farthest);
+    if (_visitor.getComputeNearFarMode() == osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR) return;
+    _visitor.updateCalculatedNearFar(toEye, boxAround(nearestSphere));
+    _visitor.updateCalculatedNearFar(toEye, boxAround(farthestSphere));
+}
+
+void CrowdView::draw(SkinnedGeometry& mesh, const PaletteBinding& binding)
+{
+    if (!_visitor.validNodeMask(mesh)) return;
+    PoseStage::count(_visitor, mesh, binding);
+    mesh.addTo(_visitor, _visitor.getModelViewMatrix(), _depth);
+}
+
+int CrowdLod::levelOf(std::uint32_t index) const
+{
+    const glm::vec4& sphere = _instances.sphere(index);
+    return _scale.level(glm::vec3(sphere), sphere.w, largestScale(_instances.rootMatrix(index)));
+}
+
+void CrowdLod::sort(std::vector<std::uint32_t>& indices, std::vector<Run>& outRuns) const
+{
+    static thread_local std::map<int, Indices> levels; // keeps its storage between culls
+    for (auto& [level, ofLevel] : levels)
+        ofLevel.clear();
+    int lastLevel = 0;
+    Indices* last = nullptr;
+    for (const std::uint32_t index : indices)
+    {
+        const int level = levelOf(index);
+        if (!last || level != lastLevel) last = &levels[level];
+        lastLevel = level;
+        last->push_back(index);
+    }
+    indices.clear();
+    outRuns.clear();
+    for (const auto& [level, ofLevel] : levels)
+    {
+        if (ofLevel.empty()) continue;
+        indices.insert(indices.end(), ofLevel.begin(), ofLevel.end());
+        outRuns.push_back({level, ofLevel.size()});
+    }
+}
 
 std::vector<DrawState> submitSeen(PoseFrame& frame, const CrowdInstances& instances, const CrowdLod& detail,
                                   const std::vector<std::uint32_t>& seen)

@@ -20,12 +20,11 @@
 namespace osgGpuAnimation
 {
 
-/// The posed meshes of those instances of a crowd that were asked for of late: rays hit few of many. Any thread may
-/// ask.
+/// A cache of posed meshes for the crowd instances that were requested last: rays hit few instances. Thread-safe.
 class PosedInstances
 {
 public:
-    /// Instances kept; with one more all go. Enough for what lies along a ray, and small beside the crowd's meshes.
+    /// The capacity; one more instance clears the cache. Enough for the hits of one ray, small beside the meshes.
     static constexpr std::size_t maxKept = 64;
 
     std::shared_ptr<PosedMeshes> of(CrowdInstances::Handle instance);
@@ -35,30 +34,30 @@ private:
     std::map<CrowdInstances::Handle, std::shared_ptr<PosedMeshes>> _kept;
 };
 
-/// A crowd as one camera sees it while it is culled: what is in view, how far away, and how meshes are handed on to be
-/// drawn. Lives as long as the crowd's own traversal, in its space.
+/// One camera's view of a crowd during cull, in the crowd's space: the planes of the view, depths and draws. A
+/// temporary object of the crowd's traversal.
 class CrowdView
 {
 public:
     explicit CrowdView(osgUtil::CullVisitor& visitor) : _visitor(visitor) {}
 
-    /// What an instance must reach the inner side of: n · p + d >= 0. The view's, and one for what is too small.
+    /// The planes of the view volume and of small feature culling; an instance is visible if it reaches n · p + d >= 0.
     std::vector<glm::vec4> planes() const;
-    /// Tells the camera's near and far planes of them. indices: those that are seen, at least one.
+    /// Updates the camera's near and far planes. indices: the visible instances, at least one.
     void look(const CrowdInstances& instances, const std::vector<std::uint32_t>& indices);
-    /// Adds the mesh to the visitor's render bin, at the depth of those looked at, where the visitor's mask allows it.
+    /// Adds the mesh to the visitor's render bin at the mean depth of look() if its node mask allows it.
     void draw(SkinnedGeometry& mesh, const PaletteBinding& binding);
 
 private:
     osgUtil::CullVisitor& _visitor;
-    float _depth = 0.0f; ///< before the eye
+    float _depth = 0.0f; ///< distance from the eye
 };
 
-/// Levels of detail of a crowd's instances as one camera sees them.
+/// The levels of detail of a crowd's instances for one camera.
 class CrowdLod
 {
 public:
-    /// Instances of one level, one after another.
+    /// Consecutive instances of one level.
     struct Run
     {
         int level;
@@ -68,7 +67,7 @@ public:
     CrowdLod(const CrowdInstances& instances, const LodScale& scale) : _instances(instances), _scale(scale) {}
 
     bool isOn() const { return _scale.isOn(); }
-    /// Puts those of one level together, the finest first; otherwise they stay in their order.
+    /// Sorts the indices by level, the finest first; stable within a level.
     void sort(std::vector<std::uint32_t>& indices, std::vector<Run>& outRuns) const;
 
 private:
@@ -78,10 +77,10 @@ private:
     const LodScale& _scale;
 };
 
-/// Has the frame evaluate the poses of the instances that a camera sees of a crowd, and returns the states to draw the
-/// crowd's meshes with, one a draw. Instances that show one clip form one batch, those that mix clips others, where
-/// there are many (PoseBatch::Load). Each level of detail in use has a draw of its own. seen: indices. Several cameras
-/// may cull at once.
+/// Submits the visible instances of a crowd to the frame and returns one state per draw of the crowd's meshes.
+/// Instances with one clip form one batch, and instances that mix clips form others if there are enough
+/// (PoseBatch::BlendCost). Each level of detail in use has its own draw. seen: indices of the visible instances.
+/// Cameras may cull concurrently.
 std::vector<DrawState> submitSeen(PoseFrame& frame, const CrowdInstances& instances, const CrowdLod& detail,
                                   const std::vector<std::uint32_t>& seen);
 

@@ -24,7 +24,7 @@ double CrowdPlayback::time(const AnimationSet& set, double clock) const
     if (!(duration > 0.0)) return 0.0;
     const double unrolled = _isPaused ? _offset : _offset + _speed * clock;
     const double time = unrolled - std::floor(unrolled / duration) * duration;
-    // The quotient may have been rounded to the wrong side of a whole number.
+    // Rounding of the quotient may cross an integer.
     return time >= 0.0 && time < duration ? time : 0.0;
 }
 
@@ -44,18 +44,18 @@ AnimationController CrowdPlayback::controller(const std::shared_ptr<const Animat
 namespace
 {
 
-/// A sphere round the box as the matrix places it.
+/// The sphere around the transformed box.
 glm::vec4 sphereAround(const Box& box, const AffineMatrix& matrix)
 {
     if (box.empty()) return {matrix.rows[0].w, matrix.rows[1].w, matrix.rows[2].w, -1.0f};
     const glm::vec3 half = (box.max - box.min) * 0.5f;
-    float radius = 0.0f; // the diagonals' largest; opposite corners are equally far
+    float radius = 0.0f; // the longest half diagonal; opposite corners have equal distances
     for (const glm::vec3 side : {glm::vec3(1, 1, 1), glm::vec3(-1, 1, 1), glm::vec3(1, -1, 1), glm::vec3(1, 1, -1)})
         radius = std::max(radius, glm::length(matrix.transformVector(half * side)));
     return glm::vec4(matrix.transformPoint((box.min + box.max) * 0.5f), radius);
 }
 
-/// The last element takes the place of the one at index.
+/// Removes an element by moving the last one to its place.
 template <typename Element>
 void takeOut(std::vector<Element>& elements, std::size_t index)
 {
@@ -107,7 +107,7 @@ void CrowdInstances::setClipBounds(const std::vector<Box>& clipBounds)
         _spheres[index] = placedSphere(index);
 }
 
-// A controller of its own may mix any clips.
+// A controller may mix any clips.
 glm::vec4 CrowdInstances::placedSphere(std::size_t index) const
 {
     const auto bounds = static_cast<std::size_t>(_playbacks[index].clip() + 1);

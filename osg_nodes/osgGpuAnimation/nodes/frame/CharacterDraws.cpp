@@ -17,7 +17,7 @@ DrawnInstances::DrawnInstances()
 {
     setName("osgGpuAnimation DrawnInstances");
     setUseDisplayList(false);
-    setCullingActive(false); // it has no place
+    setCullingActive(false); // it has no bounds
 }
 
 void DrawnInstances::accept(osg::PrimitiveFunctor& functor) const
@@ -84,7 +84,7 @@ void CharacterDraws::draw(osgUtil::CullVisitor& visitor, LodView& view, const Dr
                           PoseFrame& frame, SubmittedPose pose)
 {
     const int level = levelOf(visitor, view, character);
-    std::vector<osg::Node*> others; // not kept for its memory: there may be characters below them
+    std::vector<osg::Node*> others; // not a member: other characters may be below these nodes
     const bool isTogether = character.isDrawnTogether && canDrawTogether(visitor) &&
                             drawTogether(visitor, character, frame, pose, level, others);
     osg::StateSet* state = nullptr;
@@ -109,7 +109,7 @@ int CharacterDraws::levelOf(osgUtil::CullVisitor& visitor, LodView& view, const 
         .level(glm::vec3(centre.x(), centre.y(), centre.z()), detail.box.radius(), 1.0f);
 }
 
-// Characters of one set share their meshes as a rule; where they do not, each one's have levels.
+// Characters of one set usually share their meshes; otherwise the range is computed again for each character.
 const CharacterDraws::Detail& CharacterDraws::lodOf(const DrawnCharacter& character)
 {
     Detail& detail = _lods[&character.controller.set()];
@@ -121,7 +121,7 @@ const CharacterDraws::Detail& CharacterDraws::lodOf(const DrawnCharacter& charac
     return detail;
 }
 
-// True where the meshes that can be shared are dealt with; false where all is to be drawn as it is.
+// True: the meshes are part of a group's instanced draw. False: the caller draws all children normally.
 bool CharacterDraws::drawTogether(osgUtil::CullVisitor& visitor, const DrawnCharacter& character, PoseFrame& frame,
                                   SubmittedPose pose, int level, std::vector<osg::Node*>& outOthers)
 {
@@ -152,7 +152,7 @@ bool CharacterDraws::drawTogether(osgUtil::CullVisitor& visitor, const DrawnChar
         return false;
     }
 
-    // As CullVisitor goes about a drawable.
+    // The same tests as CullVisitor::apply(Drawable&).
     const osg::RefMatrix& toEye = *visitor.getModelViewMatrix();
     if (character.node.isCullingActive() && visitor.isCulled(group->box)) return true;
     const bool hasNearFar = visitor.getComputeNearFarMode() != osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR;

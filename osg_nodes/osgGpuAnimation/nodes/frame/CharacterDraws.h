@@ -15,17 +15,17 @@
 namespace osgGpuAnimation
 {
 
-/// Stands in a cull's result for the instances that draws of many show beyond their first: a camera's statistics
-/// (osgViewer's StatsHandler) ask each drawable that was handed on for its primitives, and a mesh tells them once. It
-/// draws nothing, and is no drawable more in statistics. The PoseStage has it while such statistics are collected.
+/// Counts instances for a camera's statistics (osgViewer's StatsHandler): those ask each drawable of a cull for its
+/// primitives, and a mesh of an instanced draw reports them once. This drawable reports the primitives of the other
+/// instances. It draws nothing and does not count as a drawable. The PoseStage adds it while statistics are collected.
 class DrawnInstances : public osg::Drawable
 {
 public:
     DrawnInstances();
 
-    /// At the beginning of a cull traversal.
+    /// Called at the start of a cull traversal.
     void clear() { _draws.clear(); }
-    /// The mesh is drawn for the instances of the binding, which may come later.
+    /// Adds a draw of the mesh for the instances of the binding; more instances may follow.
     void add(const SkinnedGeometry& mesh, const PaletteBinding& binding) { _draws.push_back({&mesh, &binding}); }
 
     using osg::Drawable::accept;
@@ -46,26 +46,25 @@ private:
     std::vector<Draw> _draws;
 };
 
-/// A character as the draws see it.
+/// The parts of a character that CharacterDraws needs.
 struct DrawnCharacter
 {
-    osg::Group& node; ///< whose children are drawn
+    osg::Group& node; ///< the parent of the meshes
     const AnimationController& controller;
     float pixelError;     ///< pixels, see LodRange
-    bool isDrawnTogether; ///< whether it may share instanced draws with others
+    bool isDrawnTogether; ///< true: may share instanced draws with other characters
 };
 
-/// What one cull visitor draws of the characters it sees in a frame. The first of several that OSG would draw alike
-/// (the same meshes below the same state, in a bin whose order is the state's) is drawn as it is; all after it
-/// together, by one instanced draw a mesh primitive.
+/// The draws of one cull visitor's characters in a frame. Characters with the same meshes and state, in a bin sorted by
+/// state, form a group: the first is drawn normally, all others by one instanced draw per mesh primitive.
 ///
-/// Drawn as they are: meshes with callbacks or arrays where placements go (InstancedDraw::isRefusedBy), in bins sorted
-/// by depth or traversal, and deeper than the character's own children; everything where near and far planes come from
-/// primitives, or where a StateSet of its own sets a character apart.
+/// Always drawn normally: meshes with callbacks, with vertex arrays at the locations of placements
+/// (InstancedDraw::isRefusedBy), in bins sorted by depth or traversal, or below other nodes; all meshes if near and far
+/// planes come from primitives; characters with their own StateSet.
 class CharacterDraws
 {
 public:
-    /// At the beginning of a cull traversal. counted: the statistics' record of draws; null where nobody collects them.
+    /// Called at the start of a cull traversal. counted: records draws for statistics; null: nobody collects them.
     void begin(DrawnInstances* counted)
     {
         _groups.clear();
@@ -73,12 +72,12 @@ public:
         _counted = counted;
     }
 
-    /// Hands what is below the character on to be drawn. pose: what the frame has submitted it as. view: the visitor's.
+    /// Draws the character's children. pose: its place in the frame. view: the visitor's.
     void draw(osgUtil::CullVisitor& visitor, LodView& view, const DrawnCharacter& character, PoseFrame& frame,
               SubmittedPose pose);
 
 private:
-    /// Characters that differ in nothing but their poses and placements.
+    /// Characters that differ in poses and placements only.
     struct Group
     {
         const osgUtil::RenderBin* bin;
@@ -89,11 +88,11 @@ private:
         int level; ///< of detail
         std::vector<SkinnedGeometry*> meshes;
         osg::BoundingBox box;               ///< of the meshes
-        PaletteBinding* together = nullptr; ///< null: nobody but the first was seen
+        PaletteBinding* together = nullptr; ///< null: the group has one character
 
         bool holds(const Group& other) const;
     };
-    /// What levels of detail go by.
+    /// The input of level selection.
     struct Detail
     {
         std::vector<const osg::Node*> children;
@@ -110,7 +109,7 @@ private:
     void open(osgUtil::CullVisitor& visitor, Group& group, PoseFrame& frame, float depth);
 
     std::unordered_map<const osgUtil::StateGraph*, std::vector<Group>> _groups;
-    std::unordered_map<const AnimationSet*, Detail> _lods; ///< of each set's last character
+    std::unordered_map<const AnimationSet*, Detail> _lods; ///< by set, for its last character
     Group _asked;                                          ///< kept for its memory
     DrawnInstances* _counted = nullptr;                    ///< the PoseStage's
 };

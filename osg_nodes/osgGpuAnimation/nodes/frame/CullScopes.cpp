@@ -11,21 +11,6 @@
 namespace osgGpuAnimation
 {
 
-BoxNearFar::BoxNearFar(osgUtil::CullVisitor& visitor)
-    : _visitor(visitor), _mode(visitor.getComputeNearFarMode()), _inheritance(visitor.getInheritanceMask())
-{
-    if (_mode == osg::CullSettings::COMPUTE_NEAR_FAR_USING_PRIMITIVES ||
-        _mode == osg::CullSettings::COMPUTE_NEAR_USING_PRIMITIVES)
-        _visitor.setComputeNearFarMode(osg::CullSettings::COMPUTE_NEAR_FAR_USING_BOUNDING_VOLUMES);
-}
-
-BoxNearFar::~BoxNearFar()
-{
-    if (_visitor.getComputeNearFarMode() == _mode) return;
-    _visitor.setComputeNearFarMode(_mode);
-    _visitor.setInheritanceMask(_inheritance);
-}
-
 namespace
 {
 
@@ -46,7 +31,60 @@ osg::StateSet* depthOnlyState()
     return state.get();
 }
 
+/// Reads the matrices of the removed transforms above the visited node.
+class Flattening : public osgUtil::Optimizer::FlattenStaticTransformsDuplicatingSharedSubgraphsVisitor
+{
+public:
+    using Base = osgUtil::Optimizer::FlattenStaticTransformsDuplicatingSharedSubgraphsVisitor;
+
+    static const std::vector<osg::Matrix>& matrices(const Base& visitor)
+    {
+        return visitor.*(&Flattening::_matrixStack);
+    }
+};
+
+bool isFlattened(const osg::Node& node)
+{
+    return node.getDataVariance() == osg::Object::STATIC && std::strcmp(node.className(), "Group") == 0;
+}
+
+/// The transform from the space below the path's last node to the space above its first. gone: matrices of removed
+/// transforms, which are applied at the groups that replaced them.
+osg::Matrix pathToWorld(const osg::NodePath& path, const std::vector<osg::Matrix>& gone)
+{
+    osg::Matrix toWorld;
+    std::size_t used = 0;
+    for (const osg::Node* node : path)
+    {
+        if (const osg::Transform* transform = node->asTransform())
+            transform->computeLocalToWorldMatrix(toWorld, nullptr);
+        else if (isFlattened(*node) && used < gone.size())
+        {
+            // Each matrix on the stack includes the ones before it.
+            const osg::Matrix before = used > 0 ? osg::Matrix::inverse(gone[used - 1]) : osg::Matrix();
+            toWorld.preMult(gone[used] * before);
+            ++used;
+        }
+    }
+    return toWorld;
+}
+
 } // namespace
+
+BoxNearFar::BoxNearFar(osgUtil::CullVisitor& visitor)
+    : _visitor(visitor), _mode(visitor.getComputeNearFarMode()), _inheritance(visitor.getInheritanceMask())
+{
+    if (_mode == osg::CullSettings::COMPUTE_NEAR_FAR_USING_PRIMITIVES ||
+        _mode == osg::CullSettings::COMPUTE_NEAR_USING_PRIMITIVES)
+        _visitor.setComputeNearFarMode(osg::CullSettings::COMPUTE_NEAR_FAR_USING_BOUNDING_VOLUMES);
+}
+
+BoxNearFar::~BoxNearFar()
+{
+    if (_visitor.getComputeNearFarMode() == _mode) return;
+    _visitor.setComputeNearFarMode(_mode);
+    _visitor.setInheritanceMask(_inheritance);
+}
 
 DepthPass::DepthPass(osgUtil::CullVisitor& visitor) : _visitor(nullptr)
 {
@@ -77,49 +115,6 @@ bool isDepthPass(osg::State& state)
            (known->second.defineVec.back().second & osg::StateAttribute::ON);
 }
 
-namespace
-{
-
-/// Tells what the transforms gone above the visited node amount to.
-class Flattening : public osgUtil::Optimizer::FlattenStaticTransformsDuplicatingSharedSubgraphsVisitor
-{
-public:
-    using Base = osgUtil::Optimizer::FlattenStaticTransformsDuplicatingSharedSubgraphsVisitor;
-
-    static const std::vector<osg::Matrix>& matrices(const Base& visitor)
-    {
-        return visitor.*(&Flattening::_matrixStack);
-    }
-};
-
-bool isFlattened(const osg::Node& node)
-{
-    return node.getDataVariance() == osg::Object::STATIC && std::strcmp(node.className(), "Group") == 0;
-}
-
-/// From the space below the last node of the path to that above the first: as it is now, or with the gone transforms,
-/// from the first on, where they were.
-osg::Matrix pathToWorld(const osg::NodePath& path, const std::vector<osg::Matrix>& gone)
-{
-    osg::Matrix toWorld;
-    std::size_t used = 0;
-    for (const osg::Node* node : path)
-    {
-        if (const osg::Transform* transform = node->asTransform())
-            transform->computeLocalToWorldMatrix(toWorld, nullptr);
-        else if (isFlattened(*node) && used < gone.size())
-        {
-            // Each of the stack holds those before it.
-            const osg::Matrix before = used > 0 ? osg::Matrix::inverse(gone[used - 1]) : osg::Matrix();
-            toWorld.preMult(gone[used] * before);
-            ++used;
-        }
-    }
-    return toWorld;
-}
-
-} // namespace
-
 bool keepFlattenedPlace(osg::Node& node, osg::NodeVisitor& visitor)
 {
     if (visitor.getVisitorType() != osg::NodeVisitor::NODE_VISITOR) return false;
@@ -132,7 +127,7 @@ bool keepFlattenedPlace(osg::Node& node, osg::NodeVisitor& visitor)
     const osg::Matrix left = pathToWorld(path, {});
     const osg::Matrix wanted = pathToWorld(path, Flattening::matrices(*flattening));
     osg::ref_ptr<osg::MatrixTransform> place = new osg::MatrixTransform(wanted * osg::Matrix::inverse(left));
-    // Not static: it stays, if the Optimizer comes again.
+    // Not STATIC: a second run of the Optimizer must keep it.
     place->setDataVariance(osg::Object::DYNAMIC);
     place->addChild(&node);
     parent->replaceChild(&node, place);

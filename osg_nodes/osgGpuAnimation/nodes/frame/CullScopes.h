@@ -11,8 +11,8 @@
 namespace osgGpuAnimation
 {
 
-/// While it lives, near and far planes come from bounding boxes where the visitor would look at primitives: those of a
-/// SkinnedGeometry are its bind pose's, and a limb that reaches beyond it would be clipped. Boxes hold every pose.
+/// RAII: near and far planes come from bounding boxes, not from primitives. The primitives of a SkinnedGeometry are in
+/// bind pose, so a limb that reaches farther would be clipped; the boxes contain every pose.
 class BoxNearFar
 {
 public:
@@ -23,14 +23,13 @@ public:
 
 private:
     osgUtil::CullVisitor& _visitor;
-    osg::CullSettings::ComputeNearFarMode _mode;     ///< as it was
-    osg::CullSettings::InheritanceMask _inheritance; ///< as it was: setting the mode changes it
+    osg::CullSettings::ComputeNearFarMode _mode;     ///< before
+    osg::CullSettings::InheritanceMask _inheritance; ///< before: setComputeNearFarMode() changes it
 };
 
-/// While it lives: where the camera that is culled for has a depth buffer and no colour buffer attached, as osgShadow's
-/// have, the state of all that is culled has the shader define POSE_DEPTH_ONLY. Programs may leave out what makes
-/// colours then; the kit's own does. Levels of detail take such a camera, where it is absolute, for that of a shadow
-/// map, though it may draw a height map or depths to pick by: see LodView.
+/// RAII: sets the shader define POSE_DEPTH_ONLY for everything culled by a camera with a depth buffer but no colour
+/// buffer, such as osgShadow's. Programs may then skip colours; the kit's own does. LodView takes an absolute camera of
+/// this kind for a shadow map, although it may draw a height map or depths for picking.
 class DepthPass
 {
 public:
@@ -39,20 +38,20 @@ public:
     DepthPass(const DepthPass&) = delete;
     DepthPass& operator=(const DepthPass&) = delete;
 
-    /// Whether it is such a camera.
+    /// True if the camera has a depth buffer but no colour buffer.
     static bool isOf(const osg::Camera& camera);
 
 private:
-    osgUtil::CullVisitor* _visitor; ///< null: it is no such camera
+    osgUtil::CullVisitor* _visitor; ///< null: not a depth pass
 };
 
-/// Whether the define is on in the state as it is.
+/// True if POSE_DEPTH_ONLY is on in the present state.
 bool isDepthPass(osg::State& state);
 
-/// For nodes whose vertices nobody may transform, from their traverse(): where the visitor is the Optimizer's that
-/// flattens static transforms and duplicates what is shared, the transforms above are groups by now and what they did
-/// is to be done to the vertices below. Instead the node gets a transform of its own in its parent. True: the visitor
-/// is not to go on below the node.
+/// For the traverse() of nodes whose vertices must not be transformed. The Optimizer's visitor that flattens static
+/// transforms and duplicates shared subgraphs replaces the transforms above by groups and applies their matrices to the
+/// vertices below. This function instead inserts a transform above the node. True: the visitor must not continue below
+/// the node.
 bool keepFlattenedPlace(osg::Node& node, osg::NodeVisitor& visitor);
 
 } // namespace osgGpuAnimation

@@ -24,7 +24,7 @@ bool isOf(const osg::VertexArrayState& arrays, const osg::State& state)
     return arrays.getVertexArrayObject() != 0 && arrays._state == &state;
 }
 
-/// OSG takes an array at the address of a deleted one for the same.
+/// OSG confuses a new array with a deleted one at the same address.
 void forgetArrays(osg::VertexArrayState& arrays)
 {
     for (osg::VertexArrayState::ArrayDispatch* array : arrays._activeDispatchers)
@@ -34,13 +34,52 @@ void forgetArrays(osg::VertexArrayState& arrays)
     }
 }
 
+constexpr unsigned int attributeLocations[] = {POSE_PLACEMENT_ROW_0_LOCATION, POSE_PLACEMENT_ROW_1_LOCATION,
+                                               POSE_PLACEMENT_ROW_2_LOCATION, POSE_PLACED_POSE_LOCATION};
+
+std::size_t poseOf(const InstanceTransform& placement)
+{
+    return static_cast<std::size_t>(placement.pose);
+}
+
+/// GL_NONE: an indirect kind.
+GLenum indexType(const osg::DrawElements& elements)
+{
+    switch (elements.getType())
+    {
+    case osg::PrimitiveSet::DrawElementsUBytePrimitiveType:
+        return GL_UNSIGNED_BYTE;
+    case osg::PrimitiveSet::DrawElementsUShortPrimitiveType:
+        return GL_UNSIGNED_SHORT;
+    case osg::PrimitiveSet::DrawElementsUIntPrimitiveType:
+        return GL_UNSIGNED_INT;
+    default:
+        return GL_NONE;
+    }
+}
+
+void drawElements(osg::State& state, const osg::DrawElements& elements, int count, bool usesBuffers)
+{
+    const GLvoid* indices = elements.getDataPointer();
+    osg::GLBufferObject* buffer = usesBuffers ? elements.getOrCreateGLBufferObject(state.getContextID()) : nullptr;
+    if (buffer)
+    {
+        state.getCurrentVertexArrayState()->bindElementBufferObject(buffer);
+        indices = reinterpret_cast<const GLvoid*>(buffer->getOffset(elements.getBufferIndex()));
+    }
+    else
+        state.getCurrentVertexArrayState()->unbindElementBufferObject();
+    state.get<osg::GLExtensions>()->glDrawElementsInstanced(
+        elements.getMode(), static_cast<GLsizei>(elements.getNumIndices()), indexType(elements), indices, count);
+}
+
 } // namespace
 
 MeshVertexArrays::MeshVertexArrays(osg::State& state)
     : _state(state), _isContextsOwn(!isOf(*state.getCurrentVertexArrayState(), state))
 {
     if (!_isContextsOwn) return;
-    // A context that came to the number later has found the first one's.
+    // A later context with the same number finds the object of the first.
     state.getCurrentVertexArrayState()->_vertexArrayObject = 0;
     _state.unbindVertexArrayObject();
     _state.setCurrentToGlobalVertexArrayState();
@@ -54,7 +93,7 @@ MeshVertexArrays::~MeshVertexArrays()
         _state.getCurrentVertexArrayState()->unbindVertexBufferObject();
         _state.getCurrentVertexArrayState()->unbindElementBufferObject();
     }
-    // Whatever OSG compiles between frames would take the element buffer away from a vertex array left bound.
+    // A vertex array that stays bound would lose its element buffer when OSG compiles objects between frames.
     _state.unbindVertexArrayObject();
 }
 
@@ -67,7 +106,7 @@ bool MeshVertexArrays::isNumberShared(const osg::State& state)
 void MeshVertexArrays::removeObject(osg::VertexArrayState& arrays)
 {
     arrays.deleteVertexArrayObject();
-    arrays._vertexArrayObject = 0; // which OSG leaves as it was
+    arrays._vertexArrayObject = 0; // OSG does not reset it
 }
 
 void bindPalette(osg::State& state, const PalettePlace& place, int influences, int rigidEntry)
@@ -100,19 +139,6 @@ void bindPalette(osg::State& state, const PalettePlace& place, int influences, i
         glBindTexture(GL_TEXTURE_BUFFER, place.tints);
     }
 }
-
-namespace
-{
-
-constexpr unsigned int attributeLocations[] = {POSE_PLACEMENT_ROW_0_LOCATION, POSE_PLACEMENT_ROW_1_LOCATION,
-                                               POSE_PLACEMENT_ROW_2_LOCATION, POSE_PLACED_POSE_LOCATION};
-
-std::size_t poseOf(const InstanceTransform& placement)
-{
-    return static_cast<std::size_t>(placement.pose);
-}
-
-} // namespace
 
 InstancedDraw::InstancedDraw(osg::State& state, const PaletteBinding& binding) : _state(state), _binding(binding)
 {
@@ -153,7 +179,7 @@ void InstancedDraw::use(std::size_t first) const
 {
     if (_placements)
     {
-        // What is bound below is not what OSG knows to be bound.
+        // The buffer that is bound below is unknown to OSG.
         _state.getCurrentVertexArrayState()->unbindVertexBufferObject();
         std::size_t offset = first * sizeof(InstanceTransform);
         for (const unsigned int location : attributeLocations)
@@ -174,42 +200,6 @@ bool InstancedDraw::isRefusedBy(const osg::Geometry& mesh)
            std::any_of(std::begin(attributeLocations), std::end(attributeLocations),
                        [&](unsigned int location) { return mesh.getVertexAttribArray(location) != nullptr; });
 }
-
-namespace
-{
-
-/// GL_NONE: an indirect kind.
-GLenum indexType(const osg::DrawElements& elements)
-{
-    switch (elements.getType())
-    {
-    case osg::PrimitiveSet::DrawElementsUBytePrimitiveType:
-        return GL_UNSIGNED_BYTE;
-    case osg::PrimitiveSet::DrawElementsUShortPrimitiveType:
-        return GL_UNSIGNED_SHORT;
-    case osg::PrimitiveSet::DrawElementsUIntPrimitiveType:
-        return GL_UNSIGNED_INT;
-    default:
-        return GL_NONE;
-    }
-}
-
-void drawElements(osg::State& state, const osg::DrawElements& elements, int count, bool usesBuffers)
-{
-    const GLvoid* indices = elements.getDataPointer();
-    osg::GLBufferObject* buffer = usesBuffers ? elements.getOrCreateGLBufferObject(state.getContextID()) : nullptr;
-    if (buffer)
-    {
-        state.getCurrentVertexArrayState()->bindElementBufferObject(buffer);
-        indices = reinterpret_cast<const GLvoid*>(buffer->getOffset(elements.getBufferIndex()));
-    }
-    else
-        state.getCurrentVertexArrayState()->unbindElementBufferObject();
-    state.get<osg::GLExtensions>()->glDrawElementsInstanced(
-        elements.getMode(), static_cast<GLsizei>(elements.getNumIndices()), indexType(elements), indices, count);
-}
-
-} // namespace
 
 void drawInstanced(osg::State& state, const osg::PrimitiveSet& primitives, int count, bool usesBuffers)
 {

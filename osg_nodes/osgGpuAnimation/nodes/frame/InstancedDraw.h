@@ -15,9 +15,9 @@
 namespace osgGpuAnimation
 {
 
-/// While a mesh is drawn: the record of vertex arrays it may use. A mesh has a vertex array object for each OSG context
-/// number, but contexts that share GL objects, and with them the number, do not share those. There the mesh is drawn
-/// with the context's own record, as geometries without such objects are.
+/// RAII: selects the vertex array record for a mesh's draw. OSG stores one vertex array object per context number, but
+/// contexts that share GL objects, and therefore the number, cannot share vertex array objects. In such contexts the
+/// mesh uses the context's global record, like geometries without vertex array objects.
 class MeshVertexArrays
 {
 public:
@@ -26,9 +26,9 @@ public:
     MeshVertexArrays(const MeshVertexArrays&) = delete;
     MeshVertexArrays& operator=(const MeshVertexArrays&) = delete;
 
-    /// Several contexts have the state's number.
+    /// True if several contexts have the state's number.
     static bool isNumberShared(const osg::State& state);
-    /// Makes it a record without a vertex array object. The context it was made in is current.
+    /// Deletes the record's vertex array object. Its context must be current.
     static void removeObject(osg::VertexArrayState& arrays);
 
 private:
@@ -36,19 +36,19 @@ private:
     bool _isContextsOwn;
 };
 
-/// Sets the uniforms by which skin.glsl finds the palette and the tints in the program that is applied.
-/// influences: of a vertex, at most. rigidEntry: the entry that moves all vertices; -1: influences are per vertex.
+/// Binds the palette and the tints and sets the uniforms of skin.glsl in the applied program.
+/// influences: the largest number per vertex. rigidEntry: moves all vertices; -1: influences are per vertex.
 void bindPalette(osg::State& state, const PalettePlace& place, int influences, int rigidEntry);
 
-/// While a mesh of several placed characters is drawn: tells the program where they stand. A program that cannot be
-/// told (it does not link skin.glsl) is given one after another, by the model-view matrix.
+/// RAII: passes the placements of several characters to the program for the draws of one mesh. Programs that do not
+/// link skin.glsl get one draw per character, with its placement in the model-view matrix.
 class InstancedDraw
 {
 public:
-    /// Placements that one draw can take, and where their palettes are.
+    /// The placements of one draw and their palette.
     struct Run
     {
-        PalettePlace place; ///< texture 0: nowhere
+        PalettePlace place; ///< texture 0: no palette
         std::size_t count = 0;
     };
 
@@ -57,24 +57,23 @@ public:
     InstancedDraw(const InstancedDraw&) = delete;
     InstancedDraw& operator=(const InstancedDraw&) = delete;
 
-    /// The run that begins with the placement of that number.
+    /// The longest run that starts with that placement.
     Run run(const PosePipeline& pipeline, std::size_t first) const;
-    /// To be called before the run that begins there is drawn, with the mesh's vertex arrays set up.
+    /// Binds the placements before the draw of the run that starts there. The mesh's vertex arrays must be set up.
     void use(std::size_t first) const;
 
-    /// Whether the mesh has vertex arrays where placements go.
+    /// True if the mesh has vertex arrays at the locations of placements.
     static bool isRefusedBy(const osg::Geometry& mesh);
 
 private:
     osg::State& _state;
     const PaletteBinding& _binding;
-    const BufferTexture* _placements = nullptr; ///< null: one after another
+    const BufferTexture* _placements = nullptr; ///< null: one draw per character
 };
 
-/// Draws the primitives so many times, with gl_InstanceID from 0 to count - 1, whatever number of instances they name
-/// themselves. To be called where a drawable draws its primitives, its vertex arrays being set up. Primitive sets of
-/// the indirect kinds, whose counts lie on the GPU, are drawn once, as they are.
-/// usesBuffers: whether indices lie in buffer objects.
+/// Draws `count` instances of the primitives (gl_InstanceID in [0, count)) and ignores their own number of instances.
+/// The vertex arrays must be set up. Indirect primitive sets, whose counts are on the GPU, are drawn once, unchanged.
+/// usesBuffers: true if indices are in buffer objects.
 void drawInstanced(osg::State& state, const osg::PrimitiveSet& primitives, int count, bool usesBuffers);
 
 } // namespace osgGpuAnimation

@@ -13,8 +13,8 @@
 namespace osgGpuAnimation
 {
 
-/// Says, along the state graph of one frame, whose palettes the SkinnedGeometry below is drawn from: places in a
-/// PoseBatch of that frame. Made by PoseFrame; applying it does nothing by itself.
+/// Selects the palettes for the SkinnedGeometry below it in the state graph of one frame: instances in a PoseBatch of
+/// that frame. PoseFrame creates it; SkinnedGeometry reads it when it draws.
 class PaletteBinding : public osg::StateAttribute
 {
 public:
@@ -24,25 +24,24 @@ public:
     PaletteBinding(const PaletteBinding& other, const osg::CopyOp& copyop = osg::CopyOp::SHALLOW_COPY);
     META_StateAttribute(osgGpuAnimation, PaletteBinding, bindingType)
 
+    /// Selects instanceCount consecutive instances at the draw's own model-view matrix, with all triangles.
     void set(std::shared_ptr<const AnimationSet> set, std::size_t slot, std::size_t instance,
              std::size_t instanceCount = 1);
-    /// At which level of detail the instances are drawn; set() and setPlaced() make it all triangles.
+    /// The level of detail; set() and setPlaced() reset it to all triangles.
     void setLevel(int level) { _level = level; }
     int getLevel() const { return _level; }
-    /// For instances that are drawn together, each at a placement of its own; there are none at first.
+    /// Selects instances with a placement each, for an instanced draw; add() adds them.
     void setPlaced(std::shared_ptr<const AnimationSet> set, std::size_t slot);
     void add(const InstanceTransform& placement) { _placements.push_back(placement); }
     const std::vector<InstanceTransform>& getInstanceTransforms() const { return _placements; }
-    std::uint64_t getSerial() const
-    {
-        return _serial;
-    } ///< of the list of placements; 0: instances stand where the draw does
+    /// Identifies the list of placements; 0: the instances use the draw's model-view matrix.
+    std::uint64_t getSerial() const { return _serial; }
 
     const AnimationSet* getAnimationSet() const { return _set.get(); }
     std::size_t getSlot() const { return _slot; }
-    std::size_t getInstance() const { return _instance; }           ///< the first to be drawn
-    std::size_t getInstanceCount() const { return _instanceCount; } ///< that are to be drawn, one after another
-    /// Instances that a draw shows, whichever way.
+    std::size_t getInstance() const { return _instance; }           ///< the first
+    std::size_t getInstanceCount() const { return _instanceCount; } ///< consecutive
+    /// The number of drawn instances, with placements or without.
     std::size_t getDrawnCount() const { return _serial != 0 ? _placements.size() : _instanceCount; }
 
     int compare(const osg::StateAttribute& other) const override;

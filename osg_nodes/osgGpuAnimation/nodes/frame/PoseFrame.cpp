@@ -17,7 +17,7 @@ bool isSame(const BlendSample& a, const BlendSample& b)
     return a.keyframe == b.keyframe && a.alpha == b.alpha && a.weight == b.weight && a.control == b.control;
 }
 
-/// Several cameras may have poses evaluated in one frame.
+/// Adds, because several cameras may evaluate poses in one frame.
 void addTo(osg::Stats& stats, unsigned int frameNumber, const char* attribute, double amount)
 {
     double before = 0.0;
@@ -40,7 +40,7 @@ osg::ref_ptr<PoseFrame> PoseFrame::forContext(unsigned int contextId, const osg:
     static std::unordered_map<unsigned int, std::vector<osg::ref_ptr<PoseFrame>>> framesOfContext; // the latest last
     const std::lock_guard<std::mutex> lock(mutex);
     std::vector<osg::ref_ptr<PoseFrame>>& frames = framesOfContext[contextId];
-    // Of frames before the latest, the palettes have been written over.
+    // The palettes of frames before the latest are overwritten.
     if (!frames.empty() && frames.back()->_frameNumber == frameNumber &&
         frames.back()->_referenceTime == referenceTime && (!stamp || frames.back()->_stamp.valid()))
         return frames.back();
@@ -49,7 +49,7 @@ osg::ref_ptr<PoseFrame> PoseFrame::forContext(unsigned int contextId, const osg:
     osg::ref_ptr<PoseFrame> next = unused == frames.end() ? new PoseFrame : unused->get();
     if (unused != frames.end()) frames.erase(unused);
     frames.push_back(next);
-    // Frames that are over keep no sets alive.
+    // Finished frames must not keep sets alive.
     for (const osg::ref_ptr<PoseFrame>& frame : frames)
         if (frame->referenceCount() == 1) frame->reset();
     next->reset();
@@ -66,7 +66,7 @@ void PoseFrame::reset()
         batch->content->reset(nullptr);
         _spareBatches.push_back(std::move(batch->content));
     }
-    // As many again as were in use, and no more, wait for the next frame.
+    // Keep at most twice the batches of the last frame.
     _spareBatches.resize(std::min(_spareBatches.size(), 2 * _batches.size()));
     _batches.clear();
     _batchesOfSet.clear();
@@ -91,7 +91,7 @@ SubmittedPose PoseFrame::submit(const osg::Node& node, const AnimationController
     return {submitted.batch->slot, submitted.instance};
 }
 
-// The address may be that of another node by now, in a viewer whose frames have the same numbers.
+// Another viewer's frame with the same number may have a different node at the same address.
 bool PoseFrame::isStill(const Submitted& known, const AnimationController& controller) const
 {
     const PoseInstruction& instruction = controller.instruction();
@@ -106,7 +106,7 @@ osg::StateSet* PoseFrame::stateOf(const osg::Node& node, const AnimationSet& set
 {
     const std::lock_guard<std::mutex> lock(_mutex);
     Submitted& submitted = _submitted[&node];
-    // A camera that culls at the same time may have submitted it with another instruction meanwhile.
+    // A concurrent camera may have submitted the node with another instruction.
     const bool isOther = submitted.batch->slot != pose.slot || submitted.instance != pose.instance;
     if (isOther) return stateOf(*_batchesOfSet[&set][pose.slot], pose.instance, 1, level).stateSet;
     if (level != LodLevels::allTriangles) return stateOf(*submitted.batch, submitted.instance, 1, level).stateSet;
@@ -199,7 +199,7 @@ DrawState PoseFrame::StatePool::next()
 
 void PoseFrame::StatePool::reset()
 {
-    // What the last frame did not need is not kept for ever.
+    // Keep at most twice the states of the last frame.
     states.resize(std::min(states.size(), 2 * used));
     for (const osg::ref_ptr<osg::StateSet>& state : states)
         bindingOf(*state).set(nullptr, 0, 0, 0);
@@ -225,7 +225,7 @@ void PoseFrame::evaluateBatches(osg::State& state, PosePipeline* pipeline)
 {
     for (const std::unique_ptr<Batch>& batch : _batches)
     {
-        // A context made anew under an old one's number has none of its palettes.
+        // A new context that reuses the number of an old one has no palettes.
         if (batch->isEvaluated && pipeline && pipeline->place(batch->content->set(), batch->slot, 0).texture != 0)
             continue;
         batch->isEvaluated = true;

@@ -22,7 +22,7 @@
 namespace osgGpuAnimation
 {
 
-/// Where a frame has a character's pose: an instance of the batch of that slot.
+/// The place of a character's pose in a frame: an instance of the batch in that slot.
 struct SubmittedPose
 {
     std::size_t slot = 0;
@@ -36,43 +36,43 @@ struct DrawState
     PaletteBinding* binding;
 };
 
-/// Where a frame has a batch that was submitted whole.
+/// The place of a batch that was submitted as a whole.
 struct SubmittedBatch
 {
     std::size_t slot;
     DrawState all; ///< for drawing all its instances
 };
 
-/// All characters that are seen in one frame in one graphics context, each once, however many cameras see it: the
-/// batches they make up, and the state each is to be drawn with. Filled while cameras cull, maybe several at once;
-/// evaluated on the draw side. It is a snapshot: the next frame's update may change the controllers meanwhile.
+/// The visible characters of one frame in one graphics context, each once for all cameras: their batches and the states
+/// to draw them with. Cameras fill it during cull, possibly several concurrently; the draw side evaluates it. It is a
+/// snapshot: the update of the next frame may change the controllers at the same time.
 class PoseFrame : public osg::Referenced
 {
 public:
-    /// The frame to fill now; frames still in use elsewhere are left alone. stamp: number and reference time say which
-    /// frame it is, since another viewer's may have the same number; null: frame 0.
+    /// The frame to fill; frames that are still in use stay unchanged. stamp: its number and reference time identify
+    /// the frame, because two viewers may use the same number; null: frame 0.
     static osg::ref_ptr<PoseFrame> forContext(unsigned int contextId, const osg::FrameStamp* stamp);
 
-    /// Adds the pose of a node's controller, unless the node is already in with the same instruction.
+    /// Adds the pose of a node's controller unless the frame already has the node with the same instruction.
     SubmittedPose submit(const osg::Node& node, const AnimationController& controller);
-    /// The state for drawing the submitted node as it is, at a level of detail: it holds its PaletteBinding and
-    /// stays unchanged while this frame is in use.
+    /// The state with the PaletteBinding for one submitted node at a level of detail. It stays unchanged while this
+    /// frame is in use.
     osg::StateSet* stateOf(const osg::Node& node, const AnimationSet& set, SubmittedPose pose, int level);
-    /// A new state for drawing instances of that batch together; the caller gives the binding their placements.
+    /// A new state for an instanced draw of several characters; the caller adds their placements to the binding.
     DrawState placedState(const AnimationSet& set, std::size_t slot, int level);
-    /// A new state for drawing so many instances of that batch, from the first on.
+    /// A new state for `count` instances of the batch, starting at `first`.
     DrawState partState(const AnimationSet& set, std::size_t slot, std::size_t first, std::size_t count, int level);
 
-    /// An empty batch, to be filled by the caller alone and submitted; its storage is that of earlier frames.
+    /// An empty batch for the caller to fill and submit. It reuses the storage of earlier frames.
     std::unique_ptr<PoseBatch> makeBatch(std::shared_ptr<const AnimationSet> set);
-    /// Takes a whole batch up, unless the same is in already (several cameras may see the same). batch: not empty.
+    /// Adds a whole batch unless an equal one was submitted (by another camera). batch: not empty.
     SubmittedBatch submit(std::unique_ptr<PoseBatch> batch);
 
-    /// Evaluates what was submitted and not evaluated yet. stats: where to record what there was to do, see
-    /// PoseStatistics; null: nowhere.
+    /// Evaluates the submitted batches that were not evaluated before. stats: receives the attributes of
+    /// PoseStatistics; null: records nothing.
     void evaluate(osg::State& state, osg::Stats* stats);
 
-    unsigned int frameNumber() const { return _frameNumber; }
+    unsigned int getFrameNumber() const { return _frameNumber; }
 
 protected:
     ~PoseFrame() override = default;
@@ -82,7 +82,7 @@ private:
     {
         std::unique_ptr<PoseBatch> content;
         std::size_t slot;
-        DrawState all{}; ///< null: a batch of characters, which have states of their own
+        DrawState all{}; ///< null: a batch of characters, each with its own state
         bool isEvaluated = false;
 
         bool isOpen() const { return !all.stateSet && !isEvaluated; }
@@ -91,11 +91,11 @@ private:
     {
         const Batch* batch;
         std::size_t instance;
-        std::size_t firstSample; ///< of its instruction's, in _samples
+        std::size_t firstSample; ///< of its instruction, in _samples
         std::size_t sampleCount;
-        osg::StateSet* stateSet; ///< null: not asked for yet
+        osg::StateSet* stateSet; ///< null: not created yet
     };
-    /// States that are used again from frame to frame.
+    /// States that frames reuse.
     struct StatePool
     {
         const char* define; ///< for the program; null: none
@@ -118,12 +118,13 @@ private:
     std::mutex _mutex;
     unsigned int _frameNumber = 0;
     double _referenceTime = 0.0;                     ///< seconds
-    osg::observer_ptr<const osg::FrameStamp> _stamp; ///< gone with its viewer; first frames' times are often equal
+    osg::observer_ptr<const osg::FrameStamp> _stamp; ///< tells viewers apart whose first frames have equal times
     std::vector<std::unique_ptr<Batch>> _batches;
-    std::unordered_map<const AnimationSet*, std::vector<Batch*>> _batchesOfSet; ///< open ones: of several loads
+    std::unordered_map<const AnimationSet*, std::vector<Batch*>>
+        _batchesOfSet; ///< several may be open, with different blend costs
     std::vector<std::unique_ptr<PoseBatch>> _spareBatches;
     std::unordered_map<const osg::Node*, Submitted> _submitted;
-    std::vector<BlendSample> _samples; ///< of those submitted
+    std::vector<BlendSample> _samples; ///< of the submitted instructions
     StatePool _plainStates{nullptr, {}, 0};
     StatePool _tintedStates{"POSE_TINTED", {}, 0};
     StatePool _placedStates{"POSE_PLACED", {}, 0}; ///< characters have no tints

@@ -64,7 +64,7 @@ PoseStage& PoseStage::of(osgUtil::CullVisitor& visitor)
 
 void PoseStage::draw(osgUtil::CullVisitor& visitor, const DrawnCharacter& character)
 {
-    // Nowhere: the camera's far plane would go there too, and nothing be seen any more.
+    // A position that is not finite would move the camera's far plane there, and nothing would be visible.
     if (!isFinite(*visitor.getModelViewMatrix())) return;
     PoseStage& stage = current(visitor);
     stage._draws.draw(visitor, stage._lodView, character, *stage._frame,
@@ -87,7 +87,7 @@ void PoseStage::count(osgUtil::CullVisitor& visitor, const SkinnedGeometry& mesh
     if (stage._counted) stage._counted->add(mesh, binding);
 }
 
-// Each cull traversal begins with an empty stage: whether this one is in it tells traversals apart.
+// Each cull traversal starts with an empty render stage, so an attached PoseStage belongs to the present traversal.
 bool PoseStage::isAttached(osgUtil::CullVisitor& visitor) const
 {
     for (const auto& [order, stage] : visitor.getRenderStage()->getPreRenderList())
@@ -99,7 +99,7 @@ PoseStage& PoseStage::current(osgUtil::CullVisitor& visitor)
 {
     PoseStage& stage = of(visitor);
     const unsigned int frameNumber = visitor.getFrameStamp() ? visitor.getFrameStamp()->getFrameNumber() : 0;
-    if (!stage._frame || !stage.isAttached(visitor) || stage._frame->frameNumber() != frameNumber)
+    if (!stage._frame || !stage.isAttached(visitor) || stage._frame->getFrameNumber() != frameNumber)
         stage.attach(visitor);
     return stage;
 }
@@ -119,13 +119,13 @@ void PoseStage::countDraws(osgUtil::CullVisitor& visitor)
     if (_counted) addChild(_counted);
 }
 
-// Attached to the visitor's main stage, wherever the traversal is now: a shadow camera's stage may come later.
+// Attaches to the visitor's main stage from any place in the traversal: a shadow camera's stage may run later.
 void PoseStage::attach(osgUtil::CullVisitor& visitor)
 {
     _lodView.clear();
     countDraws(visitor);
     _draws.begin(_counted);
-    _frame = nullptr; // so that its storage can be used again
+    _frame = nullptr; // allows the frame's storage to be reused
     _frame = PoseFrame::forContext(visitor.getRenderInfo().getContextID(), visitor.getFrameStamp());
     osgUtil::RenderBin* current = visitor.getCurrentRenderBin();
     visitor.setCurrentRenderBin(visitor.getRenderStage());

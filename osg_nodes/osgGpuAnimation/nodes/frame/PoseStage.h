@@ -11,20 +11,20 @@
 namespace osgGpuAnimation
 {
 
-/// The stage of a frame in which poses are evaluated: a nested camera that draws nothing, put before everything else
-/// that its cull visitor's main stage draws, whose pre-draw callback runs the PosePipeline. There is one a cull
-/// visitor, made and attached by the first character seen; those of one graphics context share a PoseFrame, so a
-/// character that several cameras see is evaluated once.
+/// The stage of a frame that evaluates poses: a nested camera that draws nothing and runs before every other draw of
+/// its cull visitor's main stage. Its pre-draw callback runs the PosePipeline. Each cull visitor has one, which the
+/// first visible character creates and attaches. The stages of one graphics context share a PoseFrame, so each
+/// character is evaluated once for all cameras.
 class PoseStage : public osg::Camera
 {
 public:
-    /// To be called by a character while it is culled and seen: has its pose evaluated and its children drawn.
+    /// Called by a visible character during cull: submits its pose and draws its children.
     static void draw(osgUtil::CullVisitor& visitor, const DrawnCharacter& character);
-    /// The frame that the visitor's cull is part of, for those that submit otherwise.
+    /// The frame of the visitor's cull, for crowds, which submit whole batches.
     static PoseFrame& frame(osgUtil::CullVisitor& visitor);
-    /// What levels of detail go by where the visitor is.
+    /// The view that selects levels of detail at the visitor's present place.
     static LodView& lodView(osgUtil::CullVisitor& visitor);
-    /// Has the statistics of the visitor's camera, where there are any, count what a draw of the mesh for many shows.
+    /// Counts the instances of an instanced draw in the statistics of the visitor's camera, if it collects any.
     static void count(osgUtil::CullVisitor& visitor, const SkinnedGeometry& mesh, const PaletteBinding& binding);
 
 protected:
@@ -40,11 +40,11 @@ private:
     void attach(osgUtil::CullVisitor& visitor);
     void countDraws(osgUtil::CullVisitor& visitor);
 
-    const osgUtil::CullVisitor* _visitor; ///< whose stage this is: cull visitors get cloned with their user data
+    const osgUtil::CullVisitor* _visitor; ///< the owner: clones of a cull visitor share its user data
     osg::ref_ptr<PoseFrame> _frame;
     CharacterDraws _draws;
     LodView _lodView;
-    osg::ref_ptr<DrawnInstances> _counted; ///< null: no statistics of the camera are collected
+    osg::ref_ptr<DrawnInstances> _counted; ///< null: the camera collects no statistics
 };
 
 } // namespace osgGpuAnimation

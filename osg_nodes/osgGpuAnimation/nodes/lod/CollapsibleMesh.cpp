@@ -26,6 +26,12 @@ double squaredDistanceToSegment(const glm::dvec3& point, const glm::dvec3& a, co
     return squaredLength(point - a - share * along);
 }
 
+void sortOnce(std::vector<std::uint32_t>& numbers)
+{
+    std::sort(numbers.begin(), numbers.end());
+    numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+}
+
 } // namespace
 
 double squaredDistanceToTriangle(const glm::dvec3& point, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c)
@@ -44,17 +50,6 @@ double squaredDistanceToTriangle(const glm::dvec3& point, const glm::dvec3& a, c
                      squaredDistanceToSegment(point, c, a)});
 }
 
-namespace
-{
-
-void sortOnce(std::vector<std::uint32_t>& numbers)
-{
-    std::sort(numbers.begin(), numbers.end());
-    numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
-}
-
-} // namespace
-
 CollapsibleMesh::CollapsibleMesh(const PosedSurface& surface, const std::vector<std::uint32_t>& indices)
     : _surface(surface)
 {
@@ -64,7 +59,7 @@ CollapsibleMesh::CollapsibleMesh(const PosedSurface& surface, const std::vector<
     {
         const Corners corners{indices[i], indices[i + 1], indices[i + 2]};
         const std::uint32_t a = _pointOf[corners[0]], b = _pointOf[corners[1]], c = _pointOf[corners[2]];
-        if (a == b || b == c || c == a) continue; // shows nothing
+        if (a == b || b == c || c == a) continue; // degenerate
         for (const std::uint32_t vertex : corners)
         {
             _trianglesAt[_pointOf[vertex]].push_back(static_cast<std::uint32_t>(_triangles.size()));
@@ -185,13 +180,13 @@ void CollapsibleMesh::drop(std::uint32_t triangle, std::uint32_t into)
         const std::uint32_t point = _pointOf[vertex];
         std::vector<std::uint32_t>& there = _trianglesAt[point];
         const auto found = std::find(there.begin(), there.end(), triangle);
-        if (found == there.end()) continue; // it has gone
+        if (found == there.end()) continue; // already removed
         there.erase(found);
         if (there.empty() && point != into) go(point, into);
     }
 }
 
-/// From the least on, with their turn.
+/// Rotated to start with the lowest point; keeps the orientation.
 CollapsibleMesh::Corners CollapsibleMesh::pointsOf(std::uint32_t triangle) const
 {
     Corners points = _triangles[triangle];
@@ -201,7 +196,7 @@ CollapsibleMesh::Corners CollapsibleMesh::pointsOf(std::uint32_t triangle) const
     return points;
 }
 
-/// Whether a later one at that point shows the same side of the same points.
+/// True if a later triangle at the point has the same points and orientation.
 bool CollapsibleMesh::isDouble(std::uint32_t triangle, std::uint32_t point) const
 {
     const Corners points = pointsOf(triangle);

@@ -35,7 +35,7 @@ Joints jointsOf(const AnimationSet& set, const PoseInstruction& instruction)
     }
     for (glm::vec3& joint : joints)
         joint -= mean;
-    // What turns or morphs without moving a joint counts a little.
+    // Rotations and morphs that move no joint count a little.
     for (const JointTransform& track : tracks)
         joints.push_back(1e-3f * (glm::vec3(track.rotation) + glm::vec3(track.scale)));
     return joints;
@@ -66,44 +66,14 @@ std::vector<PoseInstruction> poolOf(const AnimationSet& set)
     return pool;
 }
 
-} // namespace
-
-std::vector<PoseInstruction> keyPoses(const AnimationSet& set, std::size_t count)
-{
-    std::vector<PoseInstruction> chosen{PoseInstruction()};
-    const std::vector<PoseInstruction> pool = poolOf(set);
-    std::vector<Joints> joints;
-    std::vector<float> distances;
-    Joints last = jointsOf(set, chosen.front());
-    for (const PoseInstruction& instruction : pool)
-    {
-        joints.push_back(jointsOf(set, instruction));
-        distances.push_back(distanceOf(joints.back(), last));
-    }
-    while (chosen.size() < count && !pool.empty())
-    {
-        const auto farthest = std::max_element(distances.begin(), distances.end());
-        if (!(*farthest > 0.0f)) break;
-        const auto index = static_cast<std::size_t>(farthest - distances.begin());
-        chosen.push_back(pool[index]);
-        for (std::size_t other = 0; other < pool.size(); ++other)
-            distances[other] = std::min(distances[other], distanceOf(joints[other], joints[index]));
-    }
-    return chosen;
-}
-
-namespace
-{
-
 constexpr std::size_t poseCount = 12;
-// The finest level is the mesh's size through 2 to that power, and the coarsest, which alone lets texture seams go, is
-// the character's: coarser ones save little more, and what is cut off hulls would make small characters thin.
+// The finest level is the mesh's size divided by 2 to that power; the coarsest, which alone may cross texture seams, is
+// the character's size divided so: coarser levels save little more and make small characters thin.
 constexpr int finestFraction = 8;
 constexpr int coarsestFraction = 5;
-constexpr int mostBeyondSize =
-    10; ///< powers of two: what is so much smaller than its character is one triangle by then
-constexpr double worthwhile = 0.85;      ///< of the triangles of the level before
-constexpr std::size_t fewTriangles = 16; ///< for which no level is worth its trouble
+constexpr int mostBeyondSize = 10;       ///< powers of two above the mesh's size; it is one triangle there
+constexpr double worthwhile = 0.85;      ///< a level has at most this share of the previous level's triangles
+constexpr std::size_t fewTriangles = 16; ///< meshes with fewer get no levels
 constexpr std::size_t entriesATriangle = 8;
 
 template <typename OsgArray, typename Vector>
@@ -122,12 +92,12 @@ void copyTo(const osg::Array* array, std::size_t count, std::vector<Vector>& out
 
 bool isFinite(const glm::vec3& position)
 {
-    // Squares of what is beyond are not.
+    // Squares of larger coordinates are not finite.
     constexpr float farthest = 1e18f;
     return std::abs(position.x) < farthest && std::abs(position.y) < farthest && std::abs(position.z) < farthest;
 }
 
-/// Without poses where the mesh is nowhere in one.
+/// Without poses if a position is not finite in one of them.
 PosedSurface surfaceOf(const osg::Geometry& mesh, const AnimationSet& set, const LodLevels::Skinning& skin)
 {
     PosedSurface surface;
@@ -157,7 +127,7 @@ Box boxAround(const std::vector<glm::vec3>& positions)
     return box;
 }
 
-/// Of all joints in the rest pose.
+/// The box of all joints in the rest pose.
 Box boxAroundJoints(const AnimationSet& set)
 {
     std::vector<AffineMatrix> joints;
@@ -173,7 +143,7 @@ double sizeOf(const Box& box)
     return box.empty() ? 0.0 : glm::distance(glm::dvec3(box.min), glm::dvec3(box.max));
 }
 
-/// Whole triangles; none where it is anything else.
+/// Whole triangles; empty for other primitives.
 std::vector<std::uint32_t> trianglesOf(const osg::PrimitiveSet& primitives, std::size_t vertexCount)
 {
     std::vector<std::uint32_t> indices;
@@ -188,8 +158,8 @@ std::vector<std::uint32_t> trianglesOf(const osg::PrimitiveSet& primitives, std:
     return indices;
 }
 
-/// Whether posing the whole palette takes no more than working on the triangles does: of many small parts that move for
-/// themselves no levels are made.
+/// True if posing the palette costs no more than reducing the triangles. Meshes of many small, separately animated
+/// parts get no levels.
 bool isWorthPoses(const osg::Geometry& mesh, const AnimationSet& set)
 {
     std::size_t most = 0;
@@ -207,6 +177,30 @@ osg::ref_ptr<osg::DrawElements> makeElements(const std::vector<std::uint32_t>& i
 }
 
 } // namespace
+
+std::vector<PoseInstruction> keyPoses(const AnimationSet& set, std::size_t count)
+{
+    std::vector<PoseInstruction> chosen{PoseInstruction()};
+    const std::vector<PoseInstruction> pool = poolOf(set);
+    std::vector<Joints> joints;
+    std::vector<float> distances;
+    Joints last = jointsOf(set, chosen.front());
+    for (const PoseInstruction& instruction : pool)
+    {
+        joints.push_back(jointsOf(set, instruction));
+        distances.push_back(distanceOf(joints.back(), last));
+    }
+    while (chosen.size() < count && !pool.empty())
+    {
+        const auto farthest = std::max_element(distances.begin(), distances.end());
+        if (!(*farthest > 0.0f)) break;
+        const auto index = static_cast<std::size_t>(farthest - distances.begin());
+        chosen.push_back(pool[index]);
+        for (std::size_t other = 0; other < pool.size(); ++other)
+            distances[other] = std::min(distances[other], distanceOf(joints[other], joints[index]));
+    }
+    return chosen;
+}
 
 int LodLevels::levelOf(double error)
 {

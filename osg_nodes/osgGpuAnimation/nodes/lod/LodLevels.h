@@ -18,51 +18,50 @@
 namespace osgGpuAnimation
 {
 
-/// Poses of a set that differ as much as they can: the rest pose first, then one after another of the clips' poses,
-/// each the one whose joints are farthest from where all before have them (from the joints' mean, so that walking does
-/// not count). Of up to some 64 times spread over the clips.
-/// count: 1 and more; fewer where the clips have no more that differ.
+/// The most different poses of a set: the rest pose, then repeatedly the clip pose whose joints are farthest from those
+/// of the poses before it (relative to the joints' mean, so that walking does not count). The candidates are about 64
+/// times spread over the clips. count: at least 1; the result is shorter if the clips have fewer different poses.
 std::vector<PoseInstruction> keyPoses(const AnimationSet& set, std::size_t count);
 
 struct PosedSurface;
 
-/// A mesh drawn with fewer triangles over the same vertices, so that palettes, influences and morph targets
-/// stay as they are. A **level** is the error that it may have, as a power of two in the character's own
-/// units, whatever space the mesh's arrays are in: at level -3 no vertex of the mesh is farther than 1/8 from the
-/// surface that is drawn. So one level says the same of all meshes of a character.
+/// Reduced triangles for a mesh over the same vertices, so that palettes, influences and morph targets do not change. A
+/// **level** is the exponent of the largest error as a power of two, in the character's own units for any mesh space:
+/// at level -3 no vertex of the mesh is farther than 1/8 from the drawn surface. One level therefore means the same for
+/// all meshes of a character.
 ///
-/// Made by MeshSimplifier in twelve poses at once (keyPoses() of the set), in each of which the level's error is
-/// kept; in other poses it may be more: no more than half as much in tests at random times of real characters' clips.
-/// Primitive sets other than indexed triangles are drawn whole at all levels, as are meshes with positions that are not
-/// finite or with more than mostVertices. Of each piece of a mesh at least a triangle is left.
+/// MeshSimplifier keeps the error in twelve poses at once (keyPoses() of the set). In other poses it may be larger: by
+/// at most half in tests at random times of real characters' clips. No levels are built for primitive sets other than
+/// indexed triangles, for meshes with positions that are not finite or for more than mostVertices. Each piece of a mesh
+/// keeps at least one triangle.
 ///
-/// No level is coarser than a 32nd of the character's size, or small characters would get thin; the coarsest alone does
-/// not keep texture coordinates on their side of a seam.
+/// The coarsest level is a 32nd of the character's size, since coarser ones make small characters thin. Only the
+/// coarsest level may cross texture seams.
 ///
-/// Immutable but for its GL objects, which OSG keeps by context; shared by the threads that cull and draw.
+/// Immutable except for its GL objects, which OSG stores per context; shared by cull and draw threads.
 class LodLevels
 {
 public:
-    static constexpr int allTriangles = std::numeric_limits<int>::min(); ///< the level without an error
-    static constexpr std::size_t mostVertices = 100'000; ///< of a mesh that levels are made of; they take seconds then
+    static constexpr int allTriangles = std::numeric_limits<int>::min(); ///< the level without error
+    static constexpr std::size_t mostVertices = 100'000; ///< of a mesh with levels; such a mesh takes seconds
 
-    /// The level of at most that error; allTriangles where it is not above 0.
+    /// The coarsest level within the error, in the character's units; allTriangles if the error is not above 0.
     static int levelOf(double error);
 
-    /// The positions of the mesh in the pose of a palette (the set's paletteSize() entries): one a vertex.
+    /// Computes one position per vertex in the pose of a palette (the set's paletteSize() entries).
     using Skinning =
         std::function<void(const std::vector<AffineMatrix>& palette, std::vector<glm::dvec3>& outPositions)>;
 
-    /// The cost grows with the mesh's points times poses: see MeshSimplifier.
+    /// The cost is proportional to the mesh's points times poses, see MeshSimplifier.
     LodLevels(const osg::Geometry& mesh, const AnimationSet& set, const Skinning& skin);
 
-    /// Whether it was made for what the mesh's arrays and primitives are now.
+    /// True if the levels match the mesh's present arrays and primitives.
     bool isOf(const osg::Geometry& mesh) const;
 
-    /// The finest and the coarsest level that has triangles of its own; allTriangles: there is none.
+    /// The finest and the coarsest level with reduced triangles; allTriangles: no such level.
     int finest() const { return _finest; }
     int coarsest() const { return _coarsest; }
-    /// What is drawn in the place of the mesh's primitive set of that number; null: itself.
+    /// The reduced triangles of the mesh's primitive set at a level; null: draw the primitive set itself.
     const osg::DrawElements* elements(std::size_t primitiveSet, int level) const;
 
     void releaseGLObjects(osg::State* state) const;
@@ -71,14 +70,14 @@ public:
 private:
     struct Step
     {
-        int level; ///< from that on
+        int level; ///< and coarser ones
         osg::ref_ptr<osg::DrawElements> elements;
     };
     struct Primitives
     {
         osg::ref_ptr<const osg::PrimitiveSet> original;
         unsigned int modifiedCount; ///< of the original
-        std::vector<Step> steps;    ///< by rising levels
+        std::vector<Step> steps;    ///< by ascending levels
     };
 
     void addSteps(const PosedSurface& surface, int finest, int coarsest, Primitives& primitives);
@@ -91,8 +90,8 @@ private:
     int _coarsest = allTriangles;
 };
 
-/// What a mesh keeps of its LodLevels: made when they are first needed, once for all threads, and anew when the
-/// mesh's vertices or primitives are others. Copies have the same ones.
+/// The cached LodLevels of a mesh, created on demand, once for all threads, and again after a change of the mesh's
+/// vertices or primitives. Copies share them.
 class MeshLod
 {
 public:
@@ -100,12 +99,12 @@ public:
     MeshLod(const MeshLod& other) : _levels(std::atomic_load(&other._levels)) {}
     MeshLod& operator=(const MeshLod&) = delete;
 
-    /// Several threads that ask wait for the one that makes them.
+    /// Concurrent calls wait for the thread that creates the levels.
     std::shared_ptr<const LodLevels> of(const osg::Geometry& mesh, const AnimationSet& set,
                                         const LodLevels::Skinning& skin) const;
-    /// Null: they were not made, or are of what the mesh was before.
+    /// Null: not created, or the mesh has changed.
     std::shared_ptr<const LodLevels> known(const osg::Geometry& mesh) const;
-    /// When what the vertices go by has changed.
+    /// Discards the levels after a change of influences, morph targets or clips.
     void forget();
 
     void releaseGLObjects(osg::State* state) const;
@@ -113,7 +112,7 @@ public:
 
 private:
     mutable std::mutex _mutex;
-    mutable std::shared_ptr<const LodLevels> _levels; ///< read and written as a whole
+    mutable std::shared_ptr<const LodLevels> _levels; ///< accessed atomically
 };
 
 } // namespace osgGpuAnimation

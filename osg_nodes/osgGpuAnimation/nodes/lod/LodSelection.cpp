@@ -69,7 +69,7 @@ void LodView::find(osgUtil::CullVisitor& visitor)
     const osg::NodePath& path = visitor.getNodePath();
     const auto place = std::find(path.rbegin(), path.rend(), _culled);
     if (place == path.rend()) return;
-    // What the shadow map's camera was met below, and so what space its own world is, and who sees that.
+    // The nodes above the shadow map's camera define its world space and contain the camera that shows it.
     const osg::NodePath above(path.begin(), std::prev(place.base()));
     const auto nested = std::find_if(above.rbegin(), above.rend(), isAbsolute);
     const osg::Camera* root = visitor.getRenderStage()->getCamera();

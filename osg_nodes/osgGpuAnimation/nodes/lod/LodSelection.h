@@ -19,29 +19,28 @@
 namespace osgGpuAnimation
 {
 
-/// The levels of detail that some meshes have triangles for, from the finest to the coarsest of all: what is drawn at
-/// levels beyond is the same, so those need not be told apart.
+/// The range from the finest to the coarsest level of detail of several meshes. All levels beyond it look alike.
 class LodRange
 {
 public:
-    /// Vertices of a group's meshes together that levels are made of: meshes that come later are drawn whole, unless
-    /// another group shows them too.
+    /// The largest sum of vertices in a group. Meshes beyond it get no levels, unless another group contains them.
     static constexpr std::size_t mostVertices = 10 * LodLevels::mostVertices;
-    static constexpr int largestPixelError = 1'000'000;
+    static constexpr int largestPixelError = 1'000'000; ///< pixels
 
-    /// What setPixelError() of characters and crowds takes.
+    /// True if setPixelError() of characters and crowds accepts the value.
     static bool isPixelError(double pixels) { return pixels >= 0.0 && pixels <= largestPixelError; }
-    /// In words: what it must be.
+    /// The accepted range, for messages.
     static std::string pixelErrorsTaken();
-    /// Makes the levels of the SkinnedGeometry among a group's children that are drawn with that pixel error: none
-    /// where it is 0, or the set has nothing to draw. Error: it is no pixel error.
+    /// Creates the levels of the SkinnedGeometry among a group's children, unless the pixel error is 0 or the set is
+    /// empty. Error: pixels is out of range.
     static Result<bool> prepare(float pixels, const osg::Group& meshes, const AnimationSet& set);
 
     LodRange() = default;
-    /// Of the SkinnedGeometry among a group's children; makes levels where there are none yet. Nothing else does:
-    /// what else is drawn at a level is drawn whole.
+    /// The range of the SkinnedGeometry among a group's children. Only this constructor creates missing levels; meshes
+    /// without levels are drawn with all triangles.
     LodRange(const osg::Group& meshes, const AnimationSet& set);
 
+    /// The level clamped to the range; allTriangles if it is finer.
     int held(int level) const
     {
         return level < _finest ? LodLevels::allTriangles : level > _coarsest ? _coarsest : level;
@@ -52,54 +51,51 @@ private:
     int _coarsest = LodLevels::allTriangles;
 };
 
-/// How large things are in the picture that levels of detail go by: what is being culled for; or, while that is an
-/// absolute camera for depths alone (see DepthPass), the picture of the camera above it, for which it is taken to be a
-/// shadow map. Which that is, and where from, is the same for all that a camera sees: it is kept until another one's
-/// turn. Of one cull visitor.
+/// The view that selects levels of detail: the camera that culls or, for an absolute depth-only camera (see DepthPass),
+/// which is taken for a shadow map, the camera above it. The result is cached until another camera culls. One object
+/// per cull visitor.
 class LodView
 {
 public:
-    /// At the beginning of a cull traversal: cameras may have moved.
+    /// Called at the start of a cull traversal, since cameras may have moved.
     void clear() { _projection = nullptr; }
 
-    /// As osg::CullingSet::getPixelSizeVector(), for where the visitor is now. OSG divides a radius by the vector's
-    /// product with the place and has a diameter in pixels.
+    /// As osg::CullingSet::getPixelSizeVector(), at the visitor's present place. OSG divides a radius by the dot
+    /// product of this vector and the position, which gives a diameter in pixels.
     osg::Vec4 pixelSizeVector(osgUtil::CullVisitor& visitor);
 
 private:
     void find(osgUtil::CullVisitor& visitor);
 
-    osg::ref_ptr<const osg::RefMatrix> _projection; ///< what it was found for: each camera culled for has one anew
-    const osg::Camera* _culled = nullptr;           ///< likewise
-    const osg::Camera* _eye = nullptr;              ///< null: the picture is that of what is culled for
+    osg::ref_ptr<const osg::RefMatrix> _projection; ///< the key of the cache: each cull of a camera has a new one
+    const osg::Camera* _culled = nullptr;           ///< the key of the cache
+    const osg::Camera* _eye = nullptr;              ///< null: the culling camera itself
     const osg::Viewport* _viewport = nullptr;       ///< the eye's
-    osg::Matrix _toEye;                             ///< from the space of the camera that is culled for
+    osg::Matrix _toEye;                             ///< from the space of the culling camera
 };
 
-/// Which of the LodLevels a camera needs of what it sees: those whose error is at most so many pixels there, in
-/// small feature culling's measure. Shadow maps (see LodView) show the levels of the camera that they are for: were
-/// the surface that casts a shadow finer than the one that is lit, this would lie in it here and there. What lies
-/// behind that camera's eye is not lit in its picture, and has the levels of the shadow map's own camera. Lives as long
-/// as the traversal is in that space.
+/// Selects the LodLevels for a camera: the coarsest with an error of at most pixelError pixels, in the measure of small
+/// feature culling. Shadow passes (see LodView) use the main camera's level, so that no surface shadows itself; for
+/// objects behind the main camera they use their own camera's level. A temporary object of a traversal in one space.
 class LodScale
 {
 public:
-    /// pixelError: pixels; 0: all triangles. range: of what is drawn.
+    /// pixelError: pixels; 0: all triangles. range: of the drawn meshes.
     LodScale(osgUtil::CullVisitor& visitor, LodView& view, float pixelError, const LodRange& range);
 
-    /// centre, radius: of what is drawn, in the visitor's space. scale: units of that space to one of the
-    /// character's own. The nearest point decides; what reaches behind the eye has all triangles.
+    /// The level for a sphere. centre, radius: in the visitor's space. scale: units of that space per unit of the
+    /// character's own space. The nearest point decides; a sphere that reaches behind the eye gets all triangles.
     int level(const glm::vec3& centre, float radius, float scale) const;
 
-    /// Whether there is more than one.
+    /// False: all triangles everywhere.
     bool isOn() const { return _seen.errorAt != glm::vec4(0.0f); }
 
 private:
-    /// How far off what a camera sees may be drawn, by where it is in the visitor's space.
+    /// The allowed error as a linear function of the position in the visitor's space.
     struct Measure
     {
         glm::vec4 errorAt{0.0f}; ///< · (x, y, z, 1); below 0 behind the eye
-        float slope = 0.0f;      ///< what that changes by for a step of 1, at most
+        float slope = 0.0f;      ///< the largest change per unit of distance
 
         Measure() = default;
         Measure(const osg::Vec4& halfPixel, float pixelError);
@@ -109,8 +105,8 @@ private:
     };
 
     LodRange _range;
-    Measure _seen; ///< of the picture that levels go by
-    Measure _own;  ///< of the camera that is culled for
+    Measure _seen; ///< of the LodView
+    Measure _own;  ///< of the culling camera
 };
 
 } // namespace osgGpuAnimation

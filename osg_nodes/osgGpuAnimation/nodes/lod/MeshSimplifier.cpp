@@ -14,18 +14,18 @@ namespace osgGpuAnimation
 namespace
 {
 
-constexpr double borderWeight = 4.0;       ///< of planes that hold open borders in place, beside the triangles' own
-constexpr double lengthCost = 1e-4;        ///< of an edge's squared length: of equals, the shorter goes first
-constexpr double sharpestTurn = 0.05;      ///< cosine between a triangle and what becomes of it
-constexpr std::size_t mostTriangles = 100; ///< at an edge or beside it: fans would take time by their square
-constexpr int mostPasses = 3;              ///< over all edges that are left, for one limit
-constexpr double texCoordsCount = 100.0;   ///< beside normals, where a vertex is chosen
+constexpr double borderWeight = 4.0;       ///< of the planes that hold open borders, relative to triangles
+constexpr double lengthCost = 1e-4;        ///< of an edge's squared length: of equal costs the shorter edge is first
+constexpr double sharpestTurn = 0.05;      ///< the smallest cosine between the normals before and after
+constexpr std::size_t mostTriangles = 100; ///< at an edge or a neighbour: the cost of fans is quadratic
+constexpr int mostPasses = 3;              ///< over all remaining edges, for one limit
+constexpr double texCoordsCount = 100.0;   ///< weight relative to normals when a vertex is selected
 
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
 glm::dvec3 normalOf(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c)
 {
-    return glm::cross(b - a, c - a); // twice the area long
+    return glm::cross(b - a, c - a); // its length is twice the area
 }
 
 Edge edgeOf(const CollapsibleMesh& mesh, const CollapsibleMesh::Corners& corners, std::size_t i)
@@ -33,7 +33,7 @@ Edge edgeOf(const CollapsibleMesh& mesh, const CollapsibleMesh::Corners& corners
     return std::minmax({mesh.pointOf(corners[i]), mesh.pointOf(corners[(i + 1) % 3])});
 }
 
-/// In order, each as often as triangles have it.
+/// Sorted; each edge once per triangle.
 std::vector<Edge> edgesOf(const CollapsibleMesh& mesh)
 {
     std::vector<Edge> edges;
@@ -52,7 +52,7 @@ MeshSimplifier::MeshSimplifier(const PosedSurface& surface, const std::vector<st
     addPlanes();
 }
 
-/// Of all triangles, and across them at open borders.
+/// Adds the planes of all triangles and, at open borders, the planes across them.
 void MeshSimplifier::addPlanes()
 {
     const std::size_t poseCount = _mesh.poseCount();
@@ -109,7 +109,7 @@ void MeshSimplifier::reduce(double limit, bool keepSeams)
 {
     _squaredLimit = limit * limit;
     _keepsSeams = keepSeams;
-    // What could not be collapsed may be when others have been.
+    // A collapse may become possible after others.
     bool hasCollapsed = true;
     for (int pass = 0; pass < mostPasses && hasCollapsed; ++pass)
     {
@@ -142,7 +142,7 @@ bool MeshSimplifier::collapseWhatIsConsidered()
     return hasCollapsed;
 }
 
-/// The triangles that would be moved, as they would be then. False where the collapse is not allowed.
+/// outMoved: the new corners of the moved triangles. False: the collapse is not allowed.
 bool MeshSimplifier::findCorners(std::uint32_t from, std::uint32_t to, std::vector<Corners>& outMoved) const
 {
     const std::vector<std::uint32_t>&here = _mesh.trianglesAt(from), &there = _mesh.trianglesAt(to);
@@ -178,19 +178,19 @@ bool MeshSimplifier::turnsOver(const Corners& corners, std::uint32_t from, std::
     return false;
 }
 
-/// On one side of a texture's seam.
+/// True if both vertices are on the same side of a texture seam.
 bool MeshSimplifier::isAlike(std::uint32_t vertex, std::uint32_t other) const
 {
     return vertex == other || _surface.texCoords.empty() || _surface.texCoords[vertex] == _surface.texCoords[other];
 }
 
-/// Which of the vertices at `to` takes the place of the given one at `from`: one that lies on the same side of a seam,
-/// with the nearest normal. False where there is none and seams are to be kept.
+/// outVertex: the vertex at `to` that replaces the given one at `from`: on the same side of a seam, with the nearest
+/// normal. False: no vertex is on that side and seams are kept.
 bool MeshSimplifier::findVertex(std::uint32_t given, std::uint32_t from, std::uint32_t to,
                                 std::uint32_t& outVertex) const
 {
     constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
-    std::uint32_t beside = none; // at the other end of an edge on its side
+    std::uint32_t beside = none; // the other end of an edge on the same side
     for (const std::uint32_t triangle : _mesh.trianglesAt(from))
     {
         std::uint32_t here = none, there = none;
@@ -217,8 +217,7 @@ bool MeshSimplifier::findVertex(std::uint32_t given, std::uint32_t from, std::ui
     return std::isfinite(least);
 }
 
-/// Whether all that goes by triangles which would change stays within the limit of those there then: what went to
-/// either point, and to their neighbours.
+/// True if every point collapsed into `from`, `to` or a neighbour stays within the limit of the new triangles there.
 bool MeshSimplifier::isNear(std::uint32_t from, std::uint32_t to, const std::vector<Corners>& moved) const
 {
     for (const std::uint32_t neighbour : _mesh.neighboursOf(to))
@@ -229,14 +228,14 @@ bool MeshSimplifier::isNear(std::uint32_t from, std::uint32_t to, const std::vec
     {
         if (neighbour == to) continue;
         if (_mesh.trianglesAt(neighbour).size() > mostTriangles) return false;
-        // Only by triangles at the neighbour itself: what happens to others would not be seen there.
+        // Compare with the triangles at the neighbour only, since error() measures there.
         const std::vector<Corners> there = cornersAfter(neighbour, from, moved);
         if (!areNear(neighbour, there.empty() ? atTo : there)) return false;
     }
     return true;
 }
 
-/// The triangles at a point when those at `from` have moved.
+/// The triangles at a point after the collapse of `from`.
 std::vector<CollapsibleMesh::Corners> MeshSimplifier::cornersAfter(std::uint32_t point, std::uint32_t from,
                                                                    const std::vector<Corners>& moved) const
 {
@@ -258,7 +257,7 @@ bool MeshSimplifier::areNear(std::uint32_t cameTo, const std::vector<Corners>& t
     return true;
 }
 
-/// To the nearest of them, or to one that is near enough.
+/// To the nearest triangle, or to the first one within `enough`.
 double MeshSimplifier::squaredDistance(std::size_t pose, std::uint32_t point, const std::vector<Corners>& triangles,
                                        double enough) const
 {

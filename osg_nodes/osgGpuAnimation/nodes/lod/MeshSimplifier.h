@@ -14,13 +14,13 @@
 namespace osgGpuAnimation
 {
 
-/// How far a point is from some planes: the weighted mean of the squares of its distances. (Garland and Heckbert,
-/// Surface Simplification Using Quadric Error Metrics, 1997.)
+/// The weighted mean of a point's squared distances to a set of planes (Garland and Heckbert, Surface Simplification
+/// Using Quadric Error Metrics, 1997).
 struct PlaneQuadric
 {
-    double weight = 0.0; ///< of all planes together
+    double weight = 0.0; ///< the sum over all planes
 
-    /// normal: of length 1.
+    /// Adds a plane. normal: of length 1.
     void add(const glm::dvec3& normal, const glm::dvec3& point, double planeWeight)
     {
         const double distance = -glm::dot(normal, point);
@@ -57,42 +57,43 @@ private:
     double _constant = 0.0;
 };
 
-/// Fewer and fewer triangles over the same vertices for the surface that others show, in all poses at once: what is
-/// straight in the rest pose, but bends at an elbow, keeps its vertices there.
+/// Reduces the triangles of a surface over the same vertices, in all poses at once: a sleeve that is straight in the
+/// rest pose but bends at the elbow keeps its vertices there.
 ///
 ///     MeshSimplifier reduction(surface, indices);
 ///     reduction.reduce(0.01, true);
-///     draw(reduction.indices());                     // reduction.error() off
+///     draw(reduction.indices());                     // with an error of reduction.error()
 ///
-/// Edges are collapsed, one point into its neighbour, in the order of the quadrics' error (see PlaneQuadric) in the
-/// pose that shows it most, as in Mohr and Gleicher, Deformation Sensitive Decimation, 2003; each only where all points
-/// that went to its ends stay near the triangles there. Triangles never turn over, in any of the poses. Of each piece
-/// that hangs together at least a triangle is left.
+/// It collapses edges, one point into its neighbour, in the order of the largest quadric error over all poses (see
+/// PlaneQuadric; Mohr and Gleicher, Deformation Sensitive Decimation, 2003). A collapse is allowed only if all points
+/// that were collapsed into its ends stay near the new triangles. No triangle flips in any pose. Each connected piece
+/// keeps at least one triangle.
 ///
-/// Time goes by points times poses: some 0.1 s for the 2,300 points of 3,300 vertices in 12 poses, all limits together.
+/// Time is proportional to points times poses: about 0.1 s for the 2,300 points of 3,300 vertices in 12 poses, for all
+/// limits together.
 class MeshSimplifier
 {
 public:
     /// indices: whole triangles of the surface's vertices, each below vertexCount(). Positions are finite. The surface
-    /// has to live as long.
+    /// must outlive this object.
     MeshSimplifier(const PosedSurface& surface, const std::vector<std::uint32_t>& indices);
 
-    /// Collapses what can be without the surface going off by more than about that: see error(). To be called with
-    /// rising limits. keepSeams: texture coordinates stay on their side of a seam.
+    /// Collapses edges while the error stays below about `limit`, in the poses' units; see error(). Call it with
+    /// ascending limits. keepSeams: texture coordinates stay on their side of a seam.
     void reduce(double limit, bool keepSeams);
     std::size_t triangleCount() const { return _mesh.triangleCount(); }
-    std::vector<std::uint32_t> indices() const { return _mesh.indices(); } ///< in the order and with the turn they had
+    std::vector<std::uint32_t> indices() const { return _mesh.indices(); } ///< in the original order and orientation
 
-    /// How far a point of the original triangles is from the surface that is left, at most, in whichever pose: measured
-    /// to the triangles around where it went, so it may be less. In the poses' units.
+    /// An upper bound, over all poses, for the distance from an original point to the reduced surface, in the poses'
+    /// units. It is measured to the triangles around the point that the original was collapsed into.
     double error() const;
 
 private:
     struct Collapse
     {
         double cost;
-        std::uint32_t from, to;                                                   ///< points
-        std::uint32_t fromTurn, toTurn;                                           ///< theirs when it was considered
+        std::uint32_t from, to;         ///< points
+        std::uint32_t fromTurn, toTurn; ///< turnOf() when the collapse was considered
         bool operator<(const Collapse& other) const { return cost > other.cost; } ///< the cheapest comes first
     };
     using Corners = CollapsibleMesh::Corners;

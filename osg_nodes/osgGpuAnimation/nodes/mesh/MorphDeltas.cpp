@@ -19,7 +19,7 @@ namespace osgGpuAnimation
 namespace
 {
 
-/// Puts one channel of one target where the shader looks for it.
+/// Writes one channel of one target to its texels.
 template <typename Array>
 void pack(const Array* array, std::size_t vertexCount, std::size_t stride, osg::Vec4f* out)
 {
@@ -35,7 +35,7 @@ bool anyHas(const std::vector<MorphTarget>& targets, osg::ref_ptr<Array> MorphTa
     return std::any_of(targets.begin(), targets.end(), [=](const MorphTarget& target) { return target.*channel; });
 }
 
-/// What a texture was packed from: it keeps its arrays, so that no other array can have their addresses.
+/// The source of a texture: it keeps the arrays alive, so that no other array can have their addresses.
 class PackedTargets : public osg::Referenced
 {
 public:
@@ -45,7 +45,7 @@ private:
     std::vector<MorphTarget> _targets;
 };
 
-/// The textures in use, by the arrays (with the number of their changes) and vertices that they were packed from.
+/// The textures in use, by their source arrays (with modified counts) and number of vertices.
 class PackedDeltas
 {
 public:
@@ -95,7 +95,7 @@ private:
 
     std::mutex _mutex;
     std::map<Source, osg::observer_ptr<osg::TextureBuffer>> _textures;
-    std::size_t _used = 16; ///< when those that are not were dropped last
+    std::size_t _used = 16; ///< at the last dropUnused()
 };
 
 osg::ref_ptr<osg::TextureBuffer> packTexture(const std::vector<MorphTarget>& targets, std::size_t vertexCount,

@@ -12,21 +12,21 @@
 namespace osgGpuAnimation
 {
 
-/// Morph targets as the buffer texture that skin.glsl reads.
+/// Morph targets packed into the buffer texture of skin.glsl.
 struct MorphDeltas
 {
     osg::ref_ptr<osg::TextureBuffer> texture; ///< RGBA32F: by vertex, target, channel
-    /// Channels a target has, then the places of normal, colour and texture coordinate among them (-1: it has none);
-    /// position is always the first.
+    /// The number of channels per target, then the indices of normal, colour and texture coordinate (-1: none).
+    /// Position is always channel 0.
     std::array<int, 4> channels{1, -1, -1, -1};
 };
 
-/// Targets of the same arrays as others that are still in use share their texture with them, so that one mesh under
-/// many nodes is packed once. Arrays that change are to be dirty()ed, as everywhere in OSG. Any thread may call it.
+/// Packs the targets. Targets with the same arrays share one texture while it is in use, so that one mesh under many
+/// nodes is packed once. After a change to an array call its dirty(), as usual in OSG. Thread-safe.
 MorphDeltas packMorphTargets(const std::vector<MorphTarget>& targets, std::size_t vertexCount);
 
-/// Binds them for the program that is applied. entry: the first palette entry of the weights. False where they are more
-/// than the context's buffer textures take: the program is told that there are none.
+/// Binds the texture and sets the uniforms of the applied program. entry: the first palette entry of the weights.
+/// False: the texture exceeds the context's limit, and the program draws without targets.
 bool bindMorphTargets(osg::State& state, const MorphDeltas& deltas, std::size_t targetCount, int entry);
 
 } // namespace osgGpuAnimation

@@ -17,7 +17,7 @@ glm::vec3 toGlm(const osg::Vec3& vector)
     return {vector.x(), vector.y(), vector.z()};
 }
 
-/// What a morph's weights can be where so many additive layers change them.
+/// The ranges of a morph's weights if additive layers change them.
 std::vector<WeightRange> rangesWithAdded(const AnimationSet& set, std::size_t morph, std::size_t additiveLayers)
 {
     std::vector<WeightRange> ranges = weightRanges(set, morph);
@@ -29,21 +29,21 @@ std::vector<WeightRange> rangesWithAdded(const AnimationSet& set, std::size_t mo
     return ranges;
 }
 
-/// Where the weights take one vertex: the box of all its morphed positions.
-Box reachOfVertex(const osg::Vec3& position, std::size_t vertex, const std::vector<MorphTarget>& targets,
-                  const std::vector<WeightRange>& ranges)
+/// The box of all morphed positions of one vertex.
+Box boundsOfVertex(const osg::Vec3& position, std::size_t vertex, const std::vector<MorphTarget>& targets,
+                   const std::vector<WeightRange>& ranges)
 {
-    Box reach;
-    reach.add(toGlm(position));
+    Box bounds;
+    bounds.add(toGlm(position));
     for (std::size_t target = 0; target < std::min(targets.size(), ranges.size()); ++target)
     {
         const osg::Vec3Array* deltas = targets[target].positions.get();
         if (!deltas || vertex >= deltas->size()) continue;
         const glm::vec3 delta = toGlm((*deltas)[vertex]);
-        reach.min += glm::min(delta * ranges[target].min, delta * ranges[target].max);
-        reach.max += glm::max(delta * ranges[target].min, delta * ranges[target].max);
+        bounds.min += glm::min(delta * ranges[target].min, delta * ranges[target].max);
+        bounds.max += glm::max(delta * ranges[target].min, delta * ranges[target].max);
     }
-    return reach;
+    return bounds;
 }
 
 } // namespace
@@ -51,12 +51,6 @@ Box reachOfVertex(const osg::Vec3& position, std::size_t vertex, const std::vect
 PaletteEntryBounds::PaletteEntryBounds(const AnimationSet& set, std::size_t additiveLayers)
     : _set(&set), _additiveLayers(additiveLayers), _boxes(set.paletteSize())
 {
-}
-
-PaletteEntryBounds::PaletteEntryBounds(const PaletteEntryBounds& other, std::size_t additiveLayers)
-    : PaletteEntryBounds(other)
-{
-    _additiveLayers = additiveLayers;
 }
 
 void PaletteEntryBounds::add(const SkinnedGeometry& mesh)
@@ -73,11 +67,11 @@ void PaletteEntryBounds::add(const SkinnedGeometry& mesh)
         ranges = rangesWithAdded(*_set, static_cast<std::size_t>(mesh.getMorph()), _additiveLayers);
     for (std::size_t vertex = 0; vertex < vertices->size(); ++vertex)
     {
-        const Box reach = reachOfVertex((*vertices)[vertex], vertex, mesh.getMorphTargets(), ranges);
+        const Box bounds = boundsOfVertex((*vertices)[vertex], vertex, mesh.getMorphTargets(), ranges);
         mesh.forEachInfluence(vertex,
                               [&](std::size_t entry, float)
                               {
-                                  if (entry < _boxes.size()) _boxes[entry].add(reach);
+                                  if (entry < _boxes.size()) _boxes[entry].add(bounds);
                               });
     }
 }

@@ -5,6 +5,7 @@
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
 #include <osg/Array>
+#include <osg/BoundingBox>
 #include <osg/Group>
 #include <osg/NodeVisitor>
 
@@ -13,28 +14,44 @@
 namespace osgGpuAnimation
 {
 
-/// Calls a function for every SkinnedGeometry below a node.
-///
-///     SkinnedGeometryVisitor visitor([&](SkinnedGeometry& mesh) { … });
-///     node->accept(visitor);
-template <typename Function>
-class SkinnedGeometryVisitor : public osg::NodeVisitor
+/// The box in OSG's type; empty: invalid.
+inline osg::BoundingBox toOsg(const Box& box)
 {
-public:
-    explicit SkinnedGeometryVisitor(Function function)
-        : osg::NodeVisitor(osg::NodeVisitor::TRAVERSE_ALL_CHILDREN), _function(function)
-    {
-    }
-    void apply(osg::Drawable& drawable) override
-    {
-        if (auto* skinned = dynamic_cast<SkinnedGeometry*>(&drawable)) _function(*skinned);
-    }
+    if (box.empty()) return {};
+    return {box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z};
+}
 
-private:
-    Function _function;
-};
+/// The box in the type of animation/; invalid: empty.
+inline Box toBox(const osg::BoundingBox& box)
+{
+    Box result;
+    if (!box.valid()) return result;
+    result.add({box.xMin(), box.yMin(), box.zMin()});
+    result.add({box.xMax(), box.yMax(), box.zMax()});
+    return result;
+}
 
-/// Calls a function for every SkinnedGeometry among a group's children.
+/// function(SkinnedGeometry&), for every mesh at or below the node.
+template <typename Function>
+void forEachMeshBelow(osg::Node& node, Function function)
+{
+    class Visitor : public osg::NodeVisitor
+    {
+    public:
+        explicit Visitor(Function& function) : NodeVisitor(TRAVERSE_ALL_CHILDREN), _function(function) {}
+        void apply(osg::Drawable& drawable) override
+        {
+            if (auto* mesh = dynamic_cast<SkinnedGeometry*>(&drawable)) _function(*mesh);
+        }
+
+    private:
+        Function& _function;
+    };
+    Visitor visitor(function);
+    node.accept(visitor);
+}
+
+/// function(const SkinnedGeometry&), for every mesh among the children of the group.
 template <typename Function>
 void forEachMesh(const osg::Group& group, Function function)
 {
@@ -45,29 +62,25 @@ void forEachMesh(const osg::Group& group, Function function)
     }
 }
 
-class SkinnedGeometry;
-
-/// What each palette entry moves, of all meshes that are added: for each entry the box of its vertices in bind pose,
-/// wherever the clips' weights morph them. What bounds are worked out from.
+/// For each palette entry, the box of the vertices that it moves, in bind pose and over all morph weights of the clips.
+/// The bounds of clips are computed from it.
 ///
-///     PaletteEntryBounds reach(set);
+///     PaletteEntryBounds entryBounds(set);
 ///     for (const osg::ref_ptr<SkinnedGeometry>& mesh : meshes)
-///         reach.add(*mesh);
-///     const std::vector<Box> bounds = boundsOfClips(set, reach.boxes());
+///         entryBounds.add(*mesh);
+///     const std::vector<Box> bounds = boundsOfClips(set, entryBounds.boxes());
 ///
-/// Made and gone while bounds are worked out: the set and the meshes added must outlive it.
+/// A temporary object: the set and the added meshes must outlive it.
 class PaletteEntryBounds
 {
 public:
-    /// additiveLayers: so many change the morph weights, besides the clip that is played.
+    /// additiveLayers: the number of additive layers that may change the morph weights of the playing clip.
     explicit PaletteEntryBounds(const AnimationSet& set, std::size_t additiveLayers = 0);
-    /// Begins with what another has, and has what is added from then on morphed by so many additive layers.
-    PaletteEntryBounds(const PaletteEntryBounds& other, std::size_t additiveLayers);
 
-    /// Entries that the set has not are passed over.
+    /// Adds the vertices of a mesh; ignores palette entries beyond the set's palette size.
     void add(const SkinnedGeometry& mesh);
 
-    const EntryBoxes& boxes() const { return _boxes; } ///< the set's paletteSize()
+    const EntryBoxes& boxes() const { return _boxes; } ///< one per palette entry of the set
 
 private:
     void addRigid(const osg::Vec3Array& vertices, std::size_t entry);
@@ -75,7 +88,7 @@ private:
     const AnimationSet* _set;
     std::size_t _additiveLayers;
     EntryBoxes _boxes;
-    std::map<const osg::Array*, Box> _bindBoxes; ///< of arrays of rigid meshes: what many share is looked through once
+    std::map<const osg::Array*, Box> _bindBoxes; ///< by vertex array of a rigid mesh: shared arrays are scanned once
 };
 
 } // namespace osgGpuAnimation

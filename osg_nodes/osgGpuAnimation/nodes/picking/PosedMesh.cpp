@@ -17,7 +17,7 @@ PosedMesh::PosedMesh(const SkinnedGeometry& mesh, osg::Vec3Array* positions, std
     setVertexArray(positions);
     setTexCoordArrayList(mesh.getTexCoordArrayList());
     setPrimitiveSetList(mesh.getPrimitiveSetList());
-    // The state is looked at for textures; it is the mesh's own and stays as it is.
+    // Intersectors look up textures in the state and do not change it.
     setStateSet(const_cast<osg::StateSet*>(mesh.getStateSet()));
 }
 
@@ -43,7 +43,7 @@ osg::ref_ptr<PosedMesh> PosedMeshes::of(const SkinnedGeometry& mesh, const std::
 bool PosedMeshes::holds(const std::shared_ptr<const AnimationSet>& set, const PoseInstruction& instruction,
                         const AffineMatrix& rootToModel) const
 {
-    // Bit by bit: a sample that is not a number is equal to itself, too.
+    // Compares bits, so that NaN equals itself.
     return _set == set && _instruction.sampleCount == instruction.sampleCount &&
            std::memcmp(_instruction.samples.data(), instruction.samples.data(),
                        instruction.sampleCount * sizeof(BlendSample)) == 0 &&

@@ -14,17 +14,17 @@
 namespace osgGpuAnimation
 {
 
-/// A mesh as a character, or one instance of a crowd, shows it at one moment: what intersectors hit. Never drawn.
-/// It lends the mesh's primitives, texture coordinates and state, so that what is asked of a hit's drawable is there.
+/// A mesh in one pose of a character or of a crowd's instance, for intersectors; never drawn. It shares the mesh's
+/// primitives, texture coordinates and state, so that users of a hit find them at its drawable.
 class PosedMesh : public osg::Geometry
 {
 public:
-    /// positions: one a vertex of the mesh. instance: where it is a crowd's.
+    /// positions: one per vertex of the mesh. instance: the crowd's; empty for a character.
     PosedMesh(const SkinnedGeometry& mesh, osg::Vec3Array* positions,
               std::optional<std::uint64_t> instance = std::nullopt);
 
-    const SkinnedGeometry& mesh() const { return *_mesh; }
-    std::optional<std::uint64_t> instance() const { return _instance; }
+    const SkinnedGeometry& getMesh() const { return *_mesh; }
+    std::optional<std::uint64_t> getInstance() const { return _instance; }
 
 protected:
     ~PosedMesh() override = default;
@@ -34,17 +34,17 @@ private:
     std::optional<std::uint64_t> _instance;
 };
 
-/// The meshes of one character, or of one instance of a crowd, in the pose that was last asked for: computed by the CPU
-/// twin when first asked, and kept until another pose is, so that many rays into one frame cost one pose.
+/// The meshes of one character or of a crowd's instance in the last requested pose. The CPU twin computes the pose once
+/// and keeps it until another is requested, so that many rays in one frame cost one pose.
 ///
 ///     posed.of(mesh, set, controller.instruction(), AffineMatrix())->accept(intersectionVisitor);
 ///
-/// Any thread may ask; several at once wait for one another.
+/// Thread-safe: concurrent calls wait for each other.
 class PosedMeshes
 {
 public:
-    /// set, instruction: the pose; rootToModel: what its roots are multiplied by. A mesh whose vertex array was
-    /// replaced or dirtied since is posed anew.
+    /// set, instruction: the pose. rootToModel: multiplies the root joints. A mesh whose vertex array was replaced or
+    /// dirtied is posed again.
     osg::ref_ptr<PosedMesh> of(const SkinnedGeometry& mesh, const std::shared_ptr<const AnimationSet>& set,
                                const PoseInstruction& instruction, const AffineMatrix& rootToModel);
 
@@ -52,8 +52,8 @@ private:
     struct Posed
     {
         osg::ref_ptr<PosedMesh> mesh;
-        osg::ref_ptr<const osg::Array> bind; ///< the vertices it was made from
-        unsigned int modifiedCount = 0;      ///< of theirs
+        osg::ref_ptr<const osg::Array> bind; ///< the vertices in bind pose
+        unsigned int modifiedCount = 0;      ///< of bind
     };
 
     bool holds(const std::shared_ptr<const AnimationSet>& set, const PoseInstruction& instruction,
@@ -65,7 +65,7 @@ private:
     PoseInstruction _instruction;
     AffineMatrix _rootToModel;
     std::vector<AffineMatrix> _palette;
-    std::map<const SkinnedGeometry*, Posed> _meshes; ///< each holds its key
+    std::map<const SkinnedGeometry*, Posed> _meshes; ///< each value keeps its key alive
 };
 
 } // namespace osgGpuAnimation

@@ -22,7 +22,7 @@ namespace
 {
 
 constexpr unsigned int lightCount = 8;
-constexpr unsigned int generatedUnits = 8; ///< texture units whose coordinates OpenGL 2 can generate
+constexpr unsigned int generatedUnits = 8; ///< texture units with coordinate generation in OpenGL 2
 
 template <typename Attribute>
 const Attribute* applied(const osg::State& state, osg::StateAttribute::Type type, unsigned int member = 0)
@@ -30,8 +30,8 @@ const Attribute* applied(const osg::State& state, osg::StateAttribute::Type type
     return static_cast<const Attribute*>(state.getLastAppliedAttribute(type, member));
 }
 
-/// A mode by the state sets of the way down to the mesh: in the core profile OSG switches no modes of the fixed
-/// pipeline, but users still set them.
+/// The value of a mode in the stack of state sets. In the core profile OSG does not switch the fixed pipeline's modes,
+/// but users still set them.
 template <typename ModeOf>
 bool isSetOn(osg::State& state, ModeOf modeOf)
 {
@@ -66,7 +66,7 @@ bool isColorMasked(const osg::State& state)
     return mask && !mask->getRedMask() && !mask->getGreenMask() && !mask->getBlueMask() && !mask->getAlphaMask();
 }
 
-/// The material is where its program is: in the state sets of the way down to the mesh, which OSG keeps at hand.
+/// True if blending or an alpha cutoff is set near the program in the stack of state sets.
 bool leavesPartsOut(osg::State& state)
 {
     const osg::State::StateSetStack& way = state.getStateSetStack();
@@ -81,8 +81,7 @@ bool leavesPartsOut(osg::State& state)
     return false;
 }
 
-/// The uniform that the program will see: of the state set that is being applied, or of those above. Null: there is
-/// none.
+/// The uniform that the program will use, from the state set being applied or those above; null: none.
 const osg::Uniform* uniformOf(osg::State& state, const std::string& name)
 {
     const auto known = state.getUniformMap().find(name);
@@ -107,7 +106,7 @@ bool isOn(osg::State& state, const std::string& name)
 bool isShiny(const osg::State& state)
 {
     const auto* material = applied<osg::Material>(state, osg::StateAttribute::MATERIAL);
-    if (!material) return false; // OpenGL's own is black
+    if (!material) return false; // OpenGL's default specular colour is black
     const osg::Vec4& specular = material->getSpecular(osg::Material::FRONT);
     return material->getColorMode() == osg::Material::SPECULAR || specular.x() != 0.0f || specular.y() != 0.0f ||
            specular.z() != 0.0f;
@@ -164,6 +163,57 @@ void readLights(const osg::State& state, ShaderKey& surface)
     surface.hasShadowSplits = surface.shadowMaps != 0 && hasUniform(state, "zShadow0");
 }
 
+osg::Shader* makeShader(osg::Shader::Type type, const ShaderKey& surface, const char* source)
+{
+    return new osg::Shader(type, "#version 140\n" + surface.defines() + source);
+}
+
+void setShadowUnits(osg::State& state)
+{
+    static const unsigned int mapsName = osg::Uniform::getNameID("shadowMaps");
+    static constexpr std::array<GLint, 7> units{1, 2, 3, 4, 5, 6, 7};
+    const osg::Program::PerContextProgram* applied = state.getLastAppliedProgramObject();
+    if (!applied) return;
+    state.get<osg::GLExtensions>()->glUniform1iv(applied->getUniformLocation(mapsName),
+                                                 static_cast<GLsizei>(units.size()), units.data());
+}
+
+bool givesWayToColors(const osg::Material& material)
+{
+    return material.getColorMode() == osg::Material::DIFFUSE ||
+           material.getColorMode() == osg::Material::AMBIENT_AND_DIFFUSE;
+}
+
+/// gl_FrontMaterial is unreliable in the compatibility profile and missing in the core profile.
+void setMaterial(osg::State& state)
+{
+    static const unsigned int diffuseName = osg::Uniform::getNameID("materialDiffuse");
+    static const unsigned int emissionName = osg::Uniform::getNameID("materialEmission");
+    const osg::Program::PerContextProgram* applied = state.getLastAppliedProgramObject();
+    if (!applied) return;
+    const auto* material =
+        dynamic_cast<const osg::Material*>(state.getLastAppliedAttribute(osg::StateAttribute::MATERIAL));
+    const bool isOwn = material && !givesWayToColors(*material);
+    const osg::Vec4 diffuse = isOwn ? material->getDiffuse(osg::Material::FRONT) : osg::Vec4(1, 1, 1, 1);
+    const osg::Vec4 emission = material ? material->getEmission(osg::Material::FRONT) : osg::Vec4(0, 0, 0, 1);
+    const osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
+    gl.glUniform4fv(applied->getUniformLocation(diffuseName), 1, diffuse.ptr());
+    gl.glUniform4fv(applied->getUniformLocation(emissionName), 1, emission.ptr());
+}
+
+osg::ref_ptr<osg::Texture2D> makeWhiteTexture()
+{
+    osg::ref_ptr<osg::Image> image = new osg::Image;
+    image->allocateImage(1, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE);
+    image->setColor(osg::Vec4(1, 1, 1, 1), 0, 0);
+    osg::ref_ptr<osg::Texture2D> white = new osg::Texture2D(image);
+    white->setName(whiteTextureName);
+    // OSG's default, GL_CLAMP, blends with the black border.
+    white->setWrap(osg::Texture::WRAP_S, osg::Texture::REPEAT);
+    white->setWrap(osg::Texture::WRAP_T, osg::Texture::REPEAT);
+    return white;
+}
+
 } // namespace
 
 ShaderKey ShaderKey::of(osg::State& state)
@@ -203,62 +253,6 @@ bool isWhiteTexture(const osg::StateAttribute* texture)
     return texture && texture->getName() == whiteTextureName;
 }
 
-namespace
-{
-
-osg::Shader* makeShader(osg::Shader::Type type, const ShaderKey& surface, const char* source)
-{
-    return new osg::Shader(type, "#version 140\n" + surface.defines() + source);
-}
-
-void setShadowUnits(osg::State& state)
-{
-    static const unsigned int mapsName = osg::Uniform::getNameID("shadowMaps");
-    static constexpr std::array<GLint, 7> units{1, 2, 3, 4, 5, 6, 7};
-    const osg::Program::PerContextProgram* applied = state.getLastAppliedProgramObject();
-    if (!applied) return;
-    state.get<osg::GLExtensions>()->glUniform1iv(applied->getUniformLocation(mapsName),
-                                                 static_cast<GLsizei>(units.size()), units.data());
-}
-
-bool givesWayToColors(const osg::Material& material)
-{
-    return material.getColorMode() == osg::Material::DIFFUSE ||
-           material.getColorMode() == osg::Material::AMBIENT_AND_DIFFUSE;
-}
-
-/// What shaders of the compatibility profile cannot rely on, and those of the core profile do not have.
-void setMaterial(osg::State& state)
-{
-    static const unsigned int diffuseName = osg::Uniform::getNameID("materialDiffuse");
-    static const unsigned int emissionName = osg::Uniform::getNameID("materialEmission");
-    const osg::Program::PerContextProgram* applied = state.getLastAppliedProgramObject();
-    if (!applied) return;
-    const auto* material =
-        dynamic_cast<const osg::Material*>(state.getLastAppliedAttribute(osg::StateAttribute::MATERIAL));
-    const bool isOwn = material && !givesWayToColors(*material);
-    const osg::Vec4 diffuse = isOwn ? material->getDiffuse(osg::Material::FRONT) : osg::Vec4(1, 1, 1, 1);
-    const osg::Vec4 emission = material ? material->getEmission(osg::Material::FRONT) : osg::Vec4(0, 0, 0, 1);
-    const osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
-    gl.glUniform4fv(applied->getUniformLocation(diffuseName), 1, diffuse.ptr());
-    gl.glUniform4fv(applied->getUniformLocation(emissionName), 1, emission.ptr());
-}
-
-osg::ref_ptr<osg::Texture2D> makeWhiteTexture()
-{
-    osg::ref_ptr<osg::Image> image = new osg::Image;
-    image->allocateImage(1, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE);
-    image->setColor(osg::Vec4(1, 1, 1, 1), 0, 0);
-    osg::ref_ptr<osg::Texture2D> white = new osg::Texture2D(image);
-    white->setName(whiteTextureName);
-    // OSG's default, GL_CLAMP, mixes in the black border.
-    white->setWrap(osg::Texture::WRAP_S, osg::Texture::REPEAT);
-    white->setWrap(osg::Texture::WRAP_T, osg::Texture::REPEAT);
-    return white;
-}
-
-} // namespace
-
 osg::ref_ptr<osg::Texture2D> whiteTexture()
 {
     static SharedObject<osg::Texture2D> shared;
@@ -292,7 +286,7 @@ bool ShaderPermutations::sharesSkin(const osg::Program& other) const
     return false;
 }
 
-/// The outermost program above that overrides and can skin; null: there is none.
+/// The outermost overriding program that links skin.glsl, or null.
 const osg::Program* ShaderPermutations::overriding(osg::State& state) const
 {
     for (const auto& [attribute, value] : state.getAttributeVec(this))
@@ -314,7 +308,7 @@ void ShaderPermutations::apply(osg::State& state) const
         if (surface.shadowMaps != 0) setShadowUnits(state);
         setMaterial(state);
     }
-    // The next StateSet may have other modes and the same program, which OSG would take for applied.
+    // The next StateSet may have other modes with the same program, which OSG would consider applied.
     state.haveAppliedAttribute(osg::StateAttribute::PROGRAM);
 }
 

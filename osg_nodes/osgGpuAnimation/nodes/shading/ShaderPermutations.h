@@ -15,9 +15,9 @@
 namespace osgGpuAnimation
 {
 
-/// What the character's shaders are compiled for: of OSG's modes and attributes above and at a mesh, those that the
-/// fixed pipeline would act on and a shader has to act on itself. Each combination is a program of its own, since some
-/// drivers (llvmpipe) run both sides of every branch.
+/// The key of a shader permutation: the modes and attributes of OSG's state that the fixed pipeline would apply and a
+/// shader must apply itself. Each combination is a separate program, because some drivers (llvmpipe) run both sides of
+/// every branch.
 struct ShaderKey
 {
     enum class Fog
@@ -28,25 +28,25 @@ struct ShaderKey
         Exp2
     };
 
-    bool isDepthOnly = false;    ///< no colour is written: by ColorMask, or POSE_DEPTH_ONLY (see DepthPass)
-    bool isAlphaNeeded = false;  ///< alphaCutoff or blending leave parts of the surface out
+    bool isDepthOnly = false;    ///< no colour is written: ColorMask or POSE_DEPTH_ONLY (see DepthPass)
+    bool isAlphaNeeded = false;  ///< alphaCutoff or blending hides parts of the surface
     bool isLit = true;           ///< GL_LIGHTING, and no uniform `unlit`
-    bool hasFlatNormals = false; ///< lit, by the uniform `flatNormals`: each face by its own normal, of the pose
+    bool hasFlatNormals = false; ///< lit, and the uniform `flatNormals` is set
     bool hasSpecular = false;    ///< lit, and the osg::Material's specular is not black
     bool isTextured = true;      ///< GL_TEXTURE_2D on unit 0, and not just the white texture of applyCharacterProgram()
     bool hasTextureMatrix = false; ///< an osg::TexMat on unit 0
     bool hasClipPlanes = false;    ///< any GL_CLIP_PLANEi
-    std::uint8_t lights = 1;       ///< a bit for each GL_LIGHTi that is on
-    std::uint8_t pointLights = 0;  ///< of those, the ones that have a place: with attenuation, maybe spots
+    std::uint8_t lights = 1;       ///< a bit for each enabled GL_LIGHTi
+    std::uint8_t pointLights = 0;  ///< the lights with a position: attenuated, possibly spots
     std::uint8_t shadowMaps = 0;   ///< a bit for each texture unit, 1 to 7, with a depth map on generated coordinates
-    bool hasShadowBias = false;    ///< osgShadow::ShadowMap's way of darkening: by its uniform osgShadow_ambientBias
-    bool hasShadowSplits = false;  ///< osgShadow::ParallelSplitShadowMap's: by its uniform zShadow0
+    bool hasShadowBias = false;    ///< osgShadow::ShadowMap: its uniform osgShadow_ambientBias exists
+    bool hasShadowSplits = false;  ///< osgShadow::ParallelSplitShadowMap: its uniform zShadow0 exists
     Fog fog = Fog::None;           ///< GL_FOG, and the osg::Fog's mode
 
-    /// As the state is now; to be asked while its attributes are applied, the modes already being so.
+    /// The key of the present state. Call it while attributes are applied, after the modes.
     static ShaderKey of(osg::State& state);
 
-    /// GLSL: DRAW_COLOR, DRAW_ALPHA, DRAW_LIGHTING … with a number each, as the shaders take them.
+    /// GLSL definitions of DRAW_COLOR, DRAW_ALPHA, DRAW_LIGHTING and so on, as numbers.
     std::string defines() const;
 
     bool operator<(const ShaderKey& other) const { return key() < other.key(); }
@@ -61,13 +61,13 @@ private:
     }
 };
 
-/// Whether it is whiteTexture() or, by its name, a copy of it, from a file too: shaders leave the texture out.
+/// True for whiteTexture() and, by the name, for copies of it, also from files: shaders skip such a texture.
 bool isWhiteTexture(const osg::StateAttribute* texture);
-/// The name of whiteTexture(): copies and files keep it, and draw threads need no lock to compare it.
+/// The name of whiteTexture(). Copies and files keep it, and draw threads compare it without a lock.
 constexpr const char* whiteTextureName = "osgGpuAnimation white";
 
-/// An object that all users share, made by the first. It lives as long as some scene has it: OSG releases the GL
-/// objects of what is in scenes when a context is closed, and an object that outlives them would keep stale ones.
+/// An object that all users share. The first user creates it, and it exists as long as a scene refers to it: when a
+/// context closes, OSG releases the GL objects in scenes, and an object outside them would keep stale ones.
 template <typename Object>
 class SharedObject
 {
@@ -88,21 +88,21 @@ private:
     osg::observer_ptr<Object> _object;
 };
 
-/// The attribute behind characterProgram(): a program for each ShaderKey there is, made when it is first met. It
-/// reads the state each time that a StateSet with it is applied. Every permutation links the skinning shader and has the
-/// attribute locations of this program.
+/// The attribute behind characterProgram(): one program per ShaderKey, created on demand. It reads the state whenever a
+/// StateSet with it is applied. Every permutation links the skinning shader and has the attribute locations of this
+/// program.
 ///
-/// It is meant to be set PROTECTED, so that programs that override from above (osgShadow's casting cameras, osgFX)
-/// do not draw the bind pose. One that overrides and links skin.glsl itself is given way to.
+/// Set it PROTECTED, so that overriding programs from above (osgShadow's casting cameras, osgFX) do not draw the bind
+/// pose. An overriding program that links skin.glsl itself is applied instead.
 class ShaderPermutations : public osg::Program
 {
 public:
-    /// skin: skin.glsl. It is no shader of this program itself: OSG would compile a program that has shaders.
+    /// skin: skin.glsl. It is not in this program's own list of shaders: OSG compiles a program that has shaders.
     explicit ShaderPermutations(osg::Shader* skin = nullptr) : _skin(skin) {}
-    /// Shares the shader; programs are made anew.
+    /// Shares the shader; the copy creates its own programs.
     ShaderPermutations(const ShaderPermutations& other, const osg::CopyOp& copyop = osg::CopyOp::SHALLOW_COPY);
 
-    /// osg::State's default for the type of attribute: no program.
+    /// The default that osg::State uses for this attribute type: no program.
     osg::Object* cloneType() const override { return new osg::Program; }
     osg::Object* clone(const osg::CopyOp& copyop) const override { return new ShaderPermutations(*this, copyop); }
     bool isSameKindAs(const osg::Object* object) const override
@@ -118,7 +118,7 @@ public:
     void resizeGLObjectBuffers(unsigned int maxSize) override;
     void releaseGLObjects(osg::State* state = nullptr) const override;
 
-    /// The program for such a state.
+    /// The program for a key.
     osg::ref_ptr<osg::Program> variant(const ShaderKey& surface) const;
 
 protected:
@@ -129,11 +129,11 @@ private:
     const osg::Program* overriding(osg::State& state) const;
 
     osg::ref_ptr<osg::Shader> _skin;
-    mutable std::mutex _mutex; ///< draw threads of several contexts make variants
+    mutable std::mutex _mutex; ///< draw threads of several contexts create variants
     mutable std::map<ShaderKey, osg::ref_ptr<osg::Program>> _variants;
 };
 
-/// One white texel, shared by all: for meshes without a texture where another program samples unit 0.
+/// One shared white texel, for meshes without a texture in programs that sample unit 0.
 osg::ref_ptr<osg::Texture2D> whiteTexture();
 
 } // namespace osgGpuAnimation

@@ -4,6 +4,7 @@
 #include <osgGpuAnimation/animation/bounds/ClipBounds.h>
 #include <osgGpuAnimation/animation/keyframes/ChannelCurve.h>
 #include <osgGpuAnimation/animation/keyframes/ClipCompactor.h>
+#include <osgGpuAnimation/animation/math/Box.h>
 #include <osgGpuAnimation/animation/Pose.h>
 
 #include <glm/geometric.hpp>
@@ -219,6 +220,41 @@ void fillWithRest(const std::vector<JointTransform>& rest, std::size_t jointCoun
         }
 }
 
+constexpr double pi = glm::pi<double>();
+
+glm::dquat unitRotation(const JointTransform& transform)
+{
+    return Rotation::quaternion(Rotation::unit(glm::dvec4(transform.rotation)));
+}
+
+glm::vec4 rounded(const glm::dquat& q)
+{
+    return glm::vec4(Rotation::numbers(q));
+}
+
+double difference(const glm::vec4& a, const glm::vec4& b)
+{
+    return static_cast<double>(std::max(std::max(std::abs(a.x - b.x), std::abs(a.y - b.y)),
+                                        std::max(std::abs(a.z - b.z), std::abs(a.w - b.w))));
+}
+
+bool isSame(const JointTransform& a, const JointTransform& b)
+{
+    const double size = 1.0 + static_cast<double>(glm::length(a.translation) + glm::length(a.scale));
+    return difference(a.translation, b.translation) <= 1e-6 * size && difference(a.rotation, b.rotation) <= 1e-6 &&
+           difference(a.scale, b.scale) <= 1e-6 * size;
+}
+
+/// True for a rotation with a uniform scale, without a mirror.
+bool isSimilarity(const glm::dmat3& m)
+{
+    const double size = glm::length(m[0]);
+    constexpr double tolerance = 1e-4;
+    return size > 0.0 && std::isfinite(size) && std::abs(glm::length(m[1]) / size - 1.0) <= tolerance &&
+           std::abs(glm::length(m[2]) / size - 1.0) <= tolerance &&
+           glm::length(glm::cross(m[0], m[1]) / (size * size) - m[2] / size) <= tolerance;
+}
+
 } // namespace
 
 ClipBuilder::ClipBuilder(const Skeleton& skeleton, const std::vector<MorphWeights>& morphs)
@@ -345,63 +381,28 @@ double longestSide(const AnimationSet& set, const EntryBoxes& entryBoxes)
     return static_cast<double>(std::max({sides.x, sides.y, sides.z}));
 }
 
-Result<std::shared_ptr<const AnimationSet>> withRootMotion(const AnimationSet& set, const std::string& joint,
-                                                           const RootMotionAxes& axes)
+/// Removes the motion of one joint from clips, see withRootMotion().
+class RootMotionExtractor
 {
-    const Result<std::size_t> index = set.skeleton().jointNamed(joint);
-    if (!index) return index.error();
-    const double length = glm::length(axes.up);
-    if (!(length > 0.0) || !std::isfinite(length)) return Error{"an up axis that has no direction"};
+public:
+    RootMotionExtractor(const Skeleton& skeleton, std::size_t joint, const RootMotionAxes& axes);
 
-    std::vector<Clip> clips;
-    for (const Clip& clip : set.clips())
-    {
-        Result<Clip> stripped = RootMotionExtractor(set.skeleton(), index.value(), axes).extract(clip);
-        if (!stripped) return stripped.error();
-        clips.push_back(std::move(stripped).value());
-    }
-    return set.withClips(std::move(clips));
-}
+    Result<Clip> extract(const Clip& clip);
 
-namespace
-{
+private:
+    bool isStill(const Clip& clip, std::size_t joint) const;
+    Result<bool> findParent(const Clip& clip);
+    double yawOf(const glm::dquat& rotation) const;
+    void takeOutTranslation(Clip& clip, RootMotionCurve& curve) const;
+    void takeOutYaw(Clip& clip, RootMotionCurve& curve) const;
 
-constexpr double pi = glm::pi<double>();
-
-glm::dquat unitRotation(const JointTransform& transform)
-{
-    return Rotation::quaternion(Rotation::unit(glm::dvec4(transform.rotation)));
-}
-
-glm::vec4 rounded(const glm::dquat& q)
-{
-    return glm::vec4(Rotation::numbers(q));
-}
-
-double difference(const glm::vec4& a, const glm::vec4& b)
-{
-    return static_cast<double>(std::max(std::max(std::abs(a.x - b.x), std::abs(a.y - b.y)),
-                                        std::max(std::abs(a.z - b.z), std::abs(a.w - b.w))));
-}
-
-bool isSame(const JointTransform& a, const JointTransform& b)
-{
-    const double size = 1.0 + static_cast<double>(glm::length(a.translation) + glm::length(a.scale));
-    return difference(a.translation, b.translation) <= 1e-6 * size && difference(a.rotation, b.rotation) <= 1e-6 &&
-           difference(a.scale, b.scale) <= 1e-6 * size;
-}
-
-/// True for a rotation with a uniform scale, without a mirror.
-bool isSimilarity(const glm::dmat3& m)
-{
-    const double size = glm::length(m[0]);
-    constexpr double tolerance = 1e-4;
-    return size > 0.0 && std::isfinite(size) && std::abs(glm::length(m[1]) / size - 1.0) <= tolerance &&
-           std::abs(glm::length(m[2]) / size - 1.0) <= tolerance &&
-           glm::length(glm::cross(m[0], m[1]) / (size * size) - m[2] / size) <= tolerance;
-}
-
-} // namespace
+    const Skeleton& _skeleton;
+    std::size_t _joint;
+    RootMotionAxes _axes; ///< up is unit
+    // From the space of the joint's parent to model space.
+    glm::dmat4 _parentToModel{1.0};
+    glm::dquat _parentRotation = glm::identity<glm::dquat>();
+};
 
 RootMotionExtractor::RootMotionExtractor(const Skeleton& skeleton, std::size_t joint, const RootMotionAxes& axes)
     : _skeleton(skeleton), _joint(joint), _axes(axes)
@@ -532,6 +533,24 @@ void RootMotionExtractor::takeOutYaw(Clip& clip, RootMotionCurve& curve) const
         }
         key->rotation = rounded(value);
     }
+}
+
+Result<std::shared_ptr<const AnimationSet>> withRootMotion(const AnimationSet& set, const std::string& joint,
+                                                           const RootMotionAxes& axes)
+{
+    const Result<std::size_t> index = set.skeleton().jointNamed(joint);
+    if (!index) return index.error();
+    const double length = glm::length(axes.up);
+    if (!(length > 0.0) || !std::isfinite(length)) return Error{"an up axis that has no direction"};
+
+    std::vector<Clip> clips;
+    for (const Clip& clip : set.clips())
+    {
+        Result<Clip> stripped = RootMotionExtractor(set.skeleton(), index.value(), axes).extract(clip);
+        if (!stripped) return stripped.error();
+        clips.push_back(std::move(stripped).value());
+    }
+    return set.withClips(std::move(clips));
 }
 
 } // namespace osgGpuAnimation

@@ -4,7 +4,6 @@
 #include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/animation/Clip.h>
 #include <osgGpuAnimation/animation/JointTransform.h>
-#include <osgGpuAnimation/animation/math/Box.h>
 #include <osgGpuAnimation/animation/RootMotion.h>
 #include <osgGpuAnimation/animation/Skeleton.h>
 
@@ -14,6 +13,10 @@
 
 namespace osgGpuAnimation
 {
+
+struct Box;
+/// For each palette entry, the box of the vertices that it moves, in the mesh's space at bind time.
+using EntryBoxes = std::vector<Box>;
 
 /// Converts channels, each with its own times, into a Clip: keyframes of all tracks at the union of all key times.
 ///
@@ -110,28 +113,5 @@ struct RootMotionAxes
 /// rotation, a translation and a uniform scale.
 Result<std::shared_ptr<const AnimationSet>> withRootMotion(const AnimationSet& set, const std::string& joint,
                                                            const RootMotionAxes& axes = {});
-
-/// Removes the motion of one joint from clips, see withRootMotion().
-class RootMotionExtractor
-{
-public:
-    RootMotionExtractor(const Skeleton& skeleton, std::size_t joint, const RootMotionAxes& axes);
-
-    Result<Clip> extract(const Clip& clip);
-
-private:
-    bool isStill(const Clip& clip, std::size_t joint) const;
-    Result<bool> findParent(const Clip& clip);
-    double yawOf(const glm::dquat& rotation) const;
-    void takeOutTranslation(Clip& clip, RootMotionCurve& curve) const;
-    void takeOutYaw(Clip& clip, RootMotionCurve& curve) const;
-
-    const Skeleton& _skeleton;
-    std::size_t _joint;
-    RootMotionAxes _axes; ///< up is unit
-    // From the space of the joint's parent to model space.
-    glm::dmat4 _parentToModel{1.0};
-    glm::dquat _parentRotation = glm::identity<glm::dquat>();
-};
 
 } // namespace osgGpuAnimation

@@ -3,6 +3,8 @@
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
 
+#include <osg/GL>
+
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -10,6 +12,17 @@
 
 namespace osgGpuAnimation
 {
+
+/// An instance's palette on the GPU: entry e is matrix e * stride + instance of the texture.
+struct PalettePlace
+{
+    GLuint texture = 0;         ///< buffer texture, RGBA32F; 0: the instance has no palette and is not drawn
+    int stride = 0;             ///< matrices per entry
+    int instance = 0;           ///< in [0, stride)
+    GLuint tints = 0;           ///< buffer texture, RGBA8, one colour per instance; 0: all colours are white
+    std::size_t chunkBegin = 0; ///< first instance of the batch in this texture
+    std::size_t chunkEnd = 0;   ///< one past the last instance of the batch in this texture
+};
 
 /// What all instances of one set are to show in one frame: a snapshot, independent of the controllers it came from.
 /// Filled on the cull side, read on the draw side.

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/gpu/PosePipeline.h>
 
-#include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/gpu/buffers/AnimationBuffers.h>
+#include <osgGpuAnimation/gpu/buffers/PosePalette.h>
 #include <osgGpuAnimation/gpu/FeedbackPass.h>
+#include <osgGpuAnimation/gpu/passes/PoseVariant.h>
 
 #include <layout.glsl>
 #include <ShaderSources.h>
@@ -11,6 +13,7 @@
 #include <osg/Notify>
 
 #include <algorithm>
+#include <map>
 
 #ifndef GL_MAX_TEXTURE_BUFFER_SIZE
 #define GL_MAX_TEXTURE_BUFFER_SIZE 0x8C2B
@@ -41,21 +44,75 @@ std::size_t oddEntries(const AnimationSet& set)
     return count;
 }
 
+/// The shared buffers of a set and its palettes by slot.
+struct SetResources
+{
+    void release()
+    {
+        for (const std::unique_ptr<PosePalette>& palette : palettes)
+            palette->release();
+        if (buffers) buffers->release();
+    }
+
+    std::weak_ptr<const AnimationSet> set;
+    std::unique_ptr<AnimationBuffers> buffers;          ///< null: too large, reported
+    std::vector<std::unique_ptr<PosePalette>> palettes; ///< by slot
+    bool isMaskLimitReported = false;
+};
+
+using Passes = std::map<PoseVariant, std::unique_ptr<FeedbackPass>>;
+
 } // namespace
 
-PosePipeline::PosePipeline(unsigned int contextId)
-    : osg::GraphicsObjectManager("PosePipeline", contextId), _gl(osg::GLExtensions::Get(contextId, true)),
-      _vertexArrays(*_gl), _scratch(*_gl, GL_RGBA32F_ARB), _mixedTracks(*_gl, GL_RGBA32F_ARB)
+struct PosePipeline::Parts
 {
-    osg::setGLExtensionFuncPtr(_copyBufferSubData, "glCopyBufferSubData");
+    Parts(PosePipeline& pipeline, osg::GLExtensions& gl)
+        : pipeline(pipeline), gl(&gl), vertexArrays(gl), scratch(gl, GL_RGBA32F_ARB), mixedTracks(gl, GL_RGBA32F_ARB)
+    {
+        osg::setGLExtensionFuncPtr(copyBufferSubData, "glCopyBufferSubData");
+    }
+
+    FeedbackPass& posePass(const PoseVariant& variant);
+    FeedbackPass& mixPass(const PoseVariant& variant);
+    void makeSeparatePasses();
+    void forgetUnusedSets();
+    std::size_t chunkCapacity(const PoseBatch& batch) const;
+    bool hasRoomForMasks(SetResources& resources, const AnimationSet& set) const;
+    SetResources& resourcesOf(const PoseBatch& batch);
+    bool evaluateFused(const PoseBatch& batch, const AnimationBuffers& buffers, PosePalette::Chunk& chunk);
+    bool evaluateSeparate(const PoseBatch& batch, const AnimationBuffers& buffers, PosePalette::Chunk& chunk);
+    void useMixInput(FeedbackPass& pass, const AnimationSet& set, const AnimationBuffers& buffers,
+                     const PosePalette::Chunk& chunk);
+    void gatherOddLevels(const AnimationSet& set, const PosePalette::Chunk& chunk);
+    void runSeparate(FeedbackPass& pass, std::size_t count, const BufferTexture& out);
+
+    PosePipeline& pipeline;
+    osg::GLExtensions* gl;
+    void(GL_APIENTRY* copyBufferSubData)(GLenum, GLenum, GLintptr, GLintptr, GLsizeiptr) = nullptr;
+    FeedbackVertexArrays vertexArrays;
+    Passes posePasses;
+    Passes mixPasses;
+    std::unique_ptr<FeedbackPass> localPass;
+    std::unique_ptr<FeedbackPass> worldPass;
+    BufferTexture scratch;     ///< fused: the odd levels, one after the other; separate: local matrices
+    BufferTexture mixedTracks; ///< separate: the result of the mix stage
+    std::map<const AnimationSet*, SetResources> sets;
+};
+
+PosePipeline::PosePipeline(unsigned int contextId) : osg::GraphicsObjectManager("PosePipeline", contextId)
+{
+    osg::GLExtensions& gl = *osg::GLExtensions::Get(contextId, true);
+    _parts = std::make_unique<Parts>(*this, gl);
     GLint maxTexels = 0;
     glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &maxTexels);
     _maxTexels = static_cast<std::size_t>(std::max(maxTexels, 0));
-    _isSupported = _gl->glVersion >= 3.3f && _gl->glBeginTransformFeedback && _gl->glTexBuffer && _copyBufferSubData;
+    _isSupported = gl.glVersion >= 3.3f && gl.glBeginTransformFeedback && gl.glTexBuffer && _parts->copyBufferSubData;
     if (!_isSupported)
-        OSG_WARN << "osgGpuAnimation: this context has OpenGL " << _gl->glVersion
+        OSG_WARN << "osgGpuAnimation: this context has OpenGL " << gl.glVersion
                  << "; animated characters need 3.3 with transform feedback and are not drawn" << std::endl;
 }
+
+PosePipeline::~PosePipeline() = default;
 
 PosePipeline* PosePipeline::of(osg::State& state)
 {
@@ -63,73 +120,71 @@ PosePipeline* PosePipeline::of(osg::State& state)
     return pipeline->_isSupported ? pipeline : nullptr;
 }
 
-FeedbackPass& PosePipeline::posePass(const PoseVariant& variant)
+FeedbackPass& PosePipeline::Parts::posePass(const PoseVariant& variant)
 {
-    std::unique_ptr<FeedbackPass>& pass = _posePasses[variant];
+    std::unique_ptr<FeedbackPass>& pass = posePasses[variant];
     using namespace shaders;
     if (!pass)
-        pass = std::make_unique<FeedbackPass>(*_gl, "pose",
+        pass = std::make_unique<FeedbackPass>(*gl, "pose",
                                               std::initializer_list<const char*>{variant.constants().c_str(), mix_glsl,
                                                                                  local_glsl, world_glsl, pose_vert},
                                               rowOutputs);
     return *pass;
 }
 
-FeedbackPass& PosePipeline::mixPass(const PoseVariant& variant)
+FeedbackPass& PosePipeline::Parts::mixPass(const PoseVariant& variant)
 {
-    std::unique_ptr<FeedbackPass>& pass = _mixPasses[variant];
+    std::unique_ptr<FeedbackPass>& pass = mixPasses[variant];
     using namespace shaders;
     if (!pass)
         pass = std::make_unique<FeedbackPass>(
-            *_gl, "mix", std::initializer_list<const char*>{variant.constants().c_str(), mix_glsl, mix_vert},
+            *gl, "mix", std::initializer_list<const char*>{variant.constants().c_str(), mix_glsl, mix_vert},
             std::initializer_list<const char*>{"translation", "rotation", "scale"});
     return *pass;
 }
 
-void PosePipeline::makeSeparatePasses()
+void PosePipeline::Parts::makeSeparatePasses()
 {
-    if (_localPass) return;
+    if (localPass) return;
     using namespace shaders;
-    _localPass = std::make_unique<FeedbackPass>(*_gl, "local",
-                                                std::initializer_list<const char*>{local_glsl, local_vert}, rowOutputs);
-    _worldPass = std::make_unique<FeedbackPass>(*_gl, "world",
-                                                std::initializer_list<const char*>{world_glsl, world_vert}, rowOutputs);
+    localPass = std::make_unique<FeedbackPass>(*gl, "local", std::initializer_list<const char*>{local_glsl, local_vert},
+                                               rowOutputs);
+    worldPass = std::make_unique<FeedbackPass>(*gl, "world", std::initializer_list<const char*>{world_glsl, world_vert},
+                                               rowOutputs);
 }
 
-PosePipeline::SetResources& PosePipeline::resourcesOf(const PoseBatch& batch)
+SetResources& PosePipeline::Parts::resourcesOf(const PoseBatch& batch)
 {
     const AnimationSet& set = batch.set();
-    SetResources& resources = _sets[&set];
+    SetResources& resources = sets[&set];
     if (!resources.set.expired()) return resources;
 
-    for (const std::unique_ptr<PosePalette>& palette : resources.palettes)
-        palette->release();
-    if (resources.buffers) resources.buffers->release();
+    resources.release();
     resources = SetResources{batch.sharedSet(), nullptr, {}, false};
     const PackedKeyframes keyframes(set);
     const std::size_t keyframeTexels = keyframes.texels().size();
     const std::size_t entryTexels = set.paletteSize() * POSE_TEXELS_PER_ENTRY;
-    if (std::max(keyframeTexels, entryTexels) <= _maxTexels)
-        resources.buffers = std::make_unique<AnimationBuffers>(*_gl, set, keyframes);
+    if (std::max(keyframeTexels, entryTexels) <= pipeline._maxTexels)
+        resources.buffers = std::make_unique<AnimationBuffers>(*gl, set, keyframes);
     else
         OSG_WARN << "osgGpuAnimation: an animation set needs buffers of " << keyframeTexels
                  << " texels (keyframes) and " << entryTexels << " (palette entries), this context takes at most "
-                 << _maxTexels << "; its characters are not drawn" << std::endl;
+                 << pipeline._maxTexels << "; its characters are not drawn" << std::endl;
     return resources;
 }
 
 bool PosePipeline::evaluate(osg::State& state, const PoseBatch& batch, std::size_t slot)
 {
-    forgetUnusedSets();
-    SetResources& resources = resourcesOf(batch);
+    _parts->forgetUnusedSets();
+    SetResources& resources = _parts->resourcesOf(batch);
     if (!resources.buffers) return false;
     while (resources.palettes.size() <= slot)
-        resources.palettes.push_back(std::make_unique<PosePalette>(*_gl));
+        resources.palettes.push_back(std::make_unique<PosePalette>(*_parts->gl));
 
     const AnimationSet& set = batch.set();
     if (batch.needs().masks)
     {
-        if (!hasRoomForMasks(resources, set))
+        if (!_parts->hasRoomForMasks(resources, set))
         {
             resources.palettes[slot]->invalidate();
             return false;
@@ -137,48 +192,48 @@ bool PosePipeline::evaluate(osg::State& state, const PoseBatch& batch, std::size
         resources.buffers->updateMasks(set);
     }
     const std::vector<PosePalette::Chunk*> changed =
-        resources.palettes[slot]->upload(batch, chunkCapacity(batch), _counters.bytesUploaded);
+        resources.palettes[slot]->upload(batch, _parts->chunkCapacity(batch), _counters.bytesUploaded);
     if (changed.empty()) return true;
 
-    const FeedbackVertexArrays::Names& vertexArrays = _vertexArrays.of(state);
+    const FeedbackVertexArrays::Names& vertexArrays = _parts->vertexArrays.of(state);
     const FeedbackScope scope(state, _form == Form::Fused ? vertexArrays.pose : vertexArrays.empty, unitCount);
     for (PosePalette::Chunk* chunk : changed)
     {
         chunk->palette.reserve(set.paletteSize() * chunk->width * matrixBytes);
-        chunk->isEvaluated = _form == Form::Fused ? evaluateFused(batch, *resources.buffers, *chunk)
-                                                  : evaluateSeparate(batch, *resources.buffers, *chunk);
+        chunk->isEvaluated = _form == Form::Fused ? _parts->evaluateFused(batch, *resources.buffers, *chunk)
+                                                  : _parts->evaluateSeparate(batch, *resources.buffers, *chunk);
         if (!chunk->isEvaluated) return false;
         _counters.instancesEvaluated += chunk->size;
     }
     return true;
 }
 
-std::size_t PosePipeline::chunkCapacity(const PoseBatch& batch) const
+std::size_t PosePipeline::Parts::chunkCapacity(const PoseBatch& batch) const
 {
     const AnimationSet& set = batch.set();
-    const std::size_t widest = std::max(set.paletteSize(), _form == Form::Separate ? set.trackCount() : 0);
-    const std::size_t byPalette = _maxTexels / (POSE_TEXELS_PER_MATRIX * std::max<std::size_t>(widest, 1));
-    std::size_t capacity =
-        std::max<std::size_t>(std::min({byPalette, _maxTexels / batch.sampleStride(), _chunkSize}), 1);
+    const std::size_t widest = std::max(set.paletteSize(), pipeline._form == Form::Separate ? set.trackCount() : 0);
+    const std::size_t byPalette = pipeline._maxTexels / (POSE_TEXELS_PER_MATRIX * std::max<std::size_t>(widest, 1));
+    std::size_t capacity = std::max<std::size_t>(
+        std::min({byPalette, pipeline._maxTexels / batch.sampleStride(), pipeline._chunkSize}), 1);
     while (PosePalette::widthOf(capacity) > capacity)
         --capacity;
     return capacity;
 }
 
-bool PosePipeline::hasRoomForMasks(SetResources& resources, const AnimationSet& set) const
+bool PosePipeline::Parts::hasRoomForMasks(SetResources& resources, const AnimationSet& set) const
 {
     const std::size_t texels = AnimationBuffers::texelsPerMask(set) * (set.masks().count() + 1);
-    if (texels <= _maxTexels) return true;
+    if (texels <= pipeline._maxTexels) return true;
     if (!resources.isMaskLimitReported)
         OSG_WARN << "osgGpuAnimation: the masks of an animation set need a buffer of " << texels
-                 << " texels, this context takes at most " << _maxTexels << "; its characters are not drawn"
+                 << " texels, this context takes at most " << pipeline._maxTexels << "; its characters are not drawn"
                  << std::endl;
     resources.isMaskLimitReported = true;
     return false;
 }
 
-void PosePipeline::useMixInput(FeedbackPass& pass, const AnimationSet& set, const AnimationBuffers& buffers,
-                               const PosePalette::Chunk& chunk)
+void PosePipeline::Parts::useMixInput(FeedbackPass& pass, const AnimationSet& set, const AnimationBuffers& buffers,
+                                      const PosePalette::Chunk& chunk)
 {
     pass.use();
     pass.setTexture("keyframes", unitKeyframes, buffers.keyframes().texture());
@@ -194,11 +249,12 @@ void PosePipeline::useMixInput(FeedbackPass& pass, const AnimationSet& set, cons
 // A buffer must not be read while feedback writes to it, so levels go to the palette and to the scratch buffer by
 // turns. The scratch buffer has the odd levels one behind the other; at the end they are copied to their places in the
 // palette.
-bool PosePipeline::evaluateFused(const PoseBatch& batch, const AnimationBuffers& buffers, PosePalette::Chunk& chunk)
+bool PosePipeline::Parts::evaluateFused(const PoseBatch& batch, const AnimationBuffers& buffers,
+                                        PosePalette::Chunk& chunk)
 {
     const AnimationSet& set = batch.set();
-    if (set.levelCount() > 1) _scratch.reserve(oddEntries(set) * chunk.width * matrixBytes);
-    chunk.bindInstances(*_gl);
+    if (set.levelCount() > 1) scratch.reserve(oddEntries(set) * chunk.width * matrixBytes);
+    chunk.bindInstances(*gl);
     PoseVariant variant = PoseVariant::of(batch);
     if (chunk.hasSamplesAsAttributes()) variant.sampleCount = static_cast<int>(chunk.sampleStride);
     variant.isRootLevel = true;
@@ -218,13 +274,13 @@ bool PosePipeline::evaluateFused(const PoseBatch& batch, const AnimationBuffers&
         if (!pass.valid()) return false;
         if (&pass != current) useMixInput(pass, set, buffers, chunk);
         current = &pass;
-        pass.setTexture("parentLevels", unitPrevious, (isOdd ? chunk.palette : _scratch).texture());
+        pass.setTexture("parentLevels", unitPrevious, (isOdd ? chunk.palette : scratch).texture());
         pass.setInt("firstParent", static_cast<int>(isOdd ? 0 : firstParent));
         buffers.entries().bindAttributes(POSE_HEAD_LOCATION, POSE_TEXELS_PER_ENTRY, entryBytes,
                                          levels[level] * entryBytes, 1);
-        pass.runInstanced(chunk.width, count, (isOdd ? _scratch : chunk.palette).buffer(),
+        pass.runInstanced(chunk.width, count, (isOdd ? scratch : chunk.palette).buffer(),
                           (isOdd ? oddEntry : levels[level]) * chunk.width * matrixBytes);
-        ++_counters.feedbackDraws;
+        ++pipeline._counters.feedbackDraws;
         if (!isOdd) continue;
         firstParent = levels[level] - oddEntry;
         oddEntry += count;
@@ -233,37 +289,38 @@ bool PosePipeline::evaluateFused(const PoseBatch& batch, const AnimationBuffers&
     return true;
 }
 
-void PosePipeline::gatherOddLevels(const AnimationSet& set, const PosePalette::Chunk& chunk)
+void PosePipeline::Parts::gatherOddLevels(const AnimationSet& set, const PosePalette::Chunk& chunk)
 {
     if (set.levelCount() < 2) return;
-    _gl->glBindBuffer(GL_COPY_READ_BUFFER, _scratch.buffer());
-    _gl->glBindBuffer(GL_COPY_WRITE_BUFFER, chunk.palette.buffer());
+    gl->glBindBuffer(GL_COPY_READ_BUFFER, scratch.buffer());
+    gl->glBindBuffer(GL_COPY_WRITE_BUFFER, chunk.palette.buffer());
     const std::vector<std::size_t>& levels = set.levels();
     const std::size_t entryBytes = chunk.width * matrixBytes;
     std::size_t from = 0;
     for (std::size_t level = 1; level < set.levelCount(); level += 2)
     {
         const std::size_t bytes = (levels[level + 1] - levels[level]) * entryBytes;
-        _copyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, static_cast<GLintptr>(from),
-                           static_cast<GLintptr>(levels[level] * entryBytes), static_cast<GLsizeiptr>(bytes));
+        copyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, static_cast<GLintptr>(from),
+                          static_cast<GLintptr>(levels[level] * entryBytes), static_cast<GLsizeiptr>(bytes));
         from += bytes;
     }
-    _gl->glBindBuffer(GL_COPY_READ_BUFFER, 0);
-    _gl->glBindBuffer(GL_COPY_WRITE_BUFFER, 0);
+    gl->glBindBuffer(GL_COPY_READ_BUFFER, 0);
+    gl->glBindBuffer(GL_COPY_WRITE_BUFFER, 0);
 }
 
-void PosePipeline::runSeparate(FeedbackPass& pass, std::size_t count, const BufferTexture& out)
+void PosePipeline::Parts::runSeparate(FeedbackPass& pass, std::size_t count, const BufferTexture& out)
 {
     pass.run(0, count, out.buffer(), 0);
-    ++_counters.feedbackDraws;
+    ++pipeline._counters.feedbackDraws;
 }
 
-bool PosePipeline::evaluateSeparate(const PoseBatch& batch, const AnimationBuffers& buffers, PosePalette::Chunk& chunk)
+bool PosePipeline::Parts::evaluateSeparate(const PoseBatch& batch, const AnimationBuffers& buffers,
+                                           PosePalette::Chunk& chunk)
 {
     const AnimationSet& set = batch.set();
     const std::size_t trackVertices = set.trackCount() * chunk.width;
-    _mixedTracks.reserve(trackVertices * sizeof(JointTransform));
-    _scratch.reserve(trackVertices * matrixBytes);
+    mixedTracks.reserve(trackVertices * sizeof(JointTransform));
+    scratch.reserve(trackVertices * matrixBytes);
 
     makeSeparatePasses();
     PoseVariant variant = PoseVariant::of(batch);
@@ -271,30 +328,30 @@ bool PosePipeline::evaluateSeparate(const PoseBatch& batch, const AnimationBuffe
     variant.translationMotion = std::max(variant.translationMotion, PartMotion::Constant);
     variant.scaleMotion = std::max(variant.scaleMotion, PartMotion::Constant);
     FeedbackPass& mixing = mixPass(variant);
-    if (!mixing.valid() || !_localPass->valid() || !_worldPass->valid()) return false;
+    if (!mixing.valid() || !localPass->valid() || !worldPass->valid()) return false;
     useMixInput(mixing, set, buffers, chunk);
-    runSeparate(mixing, trackVertices, _mixedTracks);
+    runSeparate(mixing, trackVertices, mixedTracks);
 
-    _localPass->use();
-    _localPass->setTexture("mixedTracks", unitPrevious, _mixedTracks.texture());
-    _localPass->setInt("instanceCount", static_cast<int>(chunk.width));
-    _localPass->setInt("jointCount", static_cast<int>(set.skeleton().jointCount()));
-    runSeparate(*_localPass, trackVertices, _scratch);
+    localPass->use();
+    localPass->setTexture("mixedTracks", unitPrevious, mixedTracks.texture());
+    localPass->setInt("instanceCount", static_cast<int>(chunk.width));
+    localPass->setInt("jointCount", static_cast<int>(set.skeleton().jointCount()));
+    runSeparate(*localPass, trackVertices, scratch);
 
-    _worldPass->use();
-    _worldPass->setInt("instanceCount", static_cast<int>(chunk.width));
-    _worldPass->setTexture("entries", unitEntries, buffers.entries().texture());
-    _worldPass->setTexture("roots", unitRoots, chunk.roots.texture());
-    _worldPass->setInt("hasRoots", chunk.uploadedRootMatrices.empty() ? 0 : 1);
-    _worldPass->setTexture("localMatrices", unitPrevious, _scratch.texture());
-    runSeparate(*_worldPass, set.paletteSize() * chunk.width, chunk.palette);
+    worldPass->use();
+    worldPass->setInt("instanceCount", static_cast<int>(chunk.width));
+    worldPass->setTexture("entries", unitEntries, buffers.entries().texture());
+    worldPass->setTexture("roots", unitRoots, chunk.roots.texture());
+    worldPass->setInt("hasRoots", chunk.uploadedRootMatrices.empty() ? 0 : 1);
+    worldPass->setTexture("localMatrices", unitPrevious, scratch.texture());
+    runSeparate(*worldPass, set.paletteSize() * chunk.width, chunk.palette);
     return true;
 }
 
 PalettePlace PosePipeline::place(const AnimationSet& set, std::size_t slot, std::size_t instance) const
 {
-    const auto known = _sets.find(&set);
-    if (known == _sets.end() || slot >= known->second.palettes.size()) return {};
+    const auto known = _parts->sets.find(&set);
+    if (known == _parts->sets.end() || slot >= known->second.palettes.size()) return {};
     return known->second.palettes[slot]->place(instance);
 }
 
@@ -304,84 +361,73 @@ std::vector<AffineMatrix> PosePipeline::readPalette(osg::State& state, const Ani
     const PalettePlace where = place(set, slot, instance);
     std::vector<AffineMatrix> entries(where.texture == 0 ? 0 : set.paletteSize());
     if (entries.empty()) return entries;
-    const auto& palette = *_sets.at(&set).palettes[slot];
+    const auto& palette = *_parts->sets.at(&set).palettes[slot];
     for (const std::unique_ptr<PosePalette::Chunk>& chunk : palette.chunks())
-        if (chunk->palette.texture() == where.texture) _gl->glBindBuffer(GL_TEXTURE_BUFFER, chunk->palette.buffer());
+        if (chunk->palette.texture() == where.texture)
+            _parts->gl->glBindBuffer(GL_TEXTURE_BUFFER, chunk->palette.buffer());
     for (std::size_t entry = 0; entry < entries.size(); ++entry)
-        _gl->glGetBufferSubData(GL_TEXTURE_BUFFER,
-                                static_cast<GLintptr>((entry * static_cast<std::size_t>(where.stride) +
-                                                       static_cast<std::size_t>(where.instance)) *
-                                                      matrixBytes),
-                                matrixBytes, &entries[entry]);
-    _gl->glBindBuffer(GL_TEXTURE_BUFFER, 0);
+        _parts->gl->glGetBufferSubData(GL_TEXTURE_BUFFER,
+                                       static_cast<GLintptr>((entry * static_cast<std::size_t>(where.stride) +
+                                                              static_cast<std::size_t>(where.instance)) *
+                                                             matrixBytes),
+                                       matrixBytes, &entries[entry]);
+    _parts->gl->glBindBuffer(GL_TEXTURE_BUFFER, 0);
     state.checkGLErrors("PosePipeline::readPalette");
     return entries;
 }
 
-void PosePipeline::forgetUnusedSets()
+void PosePipeline::Parts::forgetUnusedSets()
 {
-    for (auto resources = _sets.begin(); resources != _sets.end();)
+    for (auto resources = sets.begin(); resources != sets.end();)
     {
         if (!resources->second.set.expired())
         {
             ++resources;
             continue;
         }
-        for (const std::unique_ptr<PosePalette>& palette : resources->second.palettes)
-            palette->release();
-        if (resources->second.buffers) resources->second.buffers->release();
-        resources = _sets.erase(resources);
+        resources->second.release();
+        resources = sets.erase(resources);
     }
 }
 
 void PosePipeline::flushDeletedGLObjects(double, double&)
 {
-    forgetUnusedSets();
+    _parts->forgetUnusedSets();
 }
 
 void PosePipeline::flushAllDeletedGLObjects()
 {
-    forgetUnusedSets();
-}
-
-template <typename Function>
-void PosePipeline::forEachPass(Function function)
-{
-    for (Passes* passes : {&_posePasses, &_mixPasses})
-        for (auto& [variant, pass] : *passes)
-            function(*pass);
-    for (FeedbackPass* pass : {_localPass.get(), _worldPass.get()})
-        if (pass) function(*pass);
+    _parts->forgetUnusedSets();
 }
 
 void PosePipeline::deleteAllGLObjects()
 {
-    for (auto& [set, resources] : _sets)
-    {
-        for (const std::unique_ptr<PosePalette>& palette : resources.palettes)
-            palette->release();
-        if (resources.buffers) resources.buffers->release();
-    }
-    forEachPass([](FeedbackPass& pass) { pass.release(); });
-    _scratch.release();
-    _mixedTracks.release();
-    _vertexArrays.release();
+    for (auto& [set, resources] : _parts->sets)
+        resources.release();
+    for (Passes* passes : {&_parts->posePasses, &_parts->mixPasses})
+        for (auto& [variant, pass] : *passes)
+            pass->release();
+    for (FeedbackPass* pass : {_parts->localPass.get(), _parts->worldPass.get()})
+        if (pass) pass->release();
+    _parts->scratch.release();
+    _parts->mixedTracks.release();
+    _parts->vertexArrays.release();
     discardAllGLObjects();
 }
 
 void PosePipeline::discardAllGLObjects()
 {
-    for (auto& [set, resources] : _sets)
+    for (auto& [set, resources] : _parts->sets)
         for (const std::unique_ptr<PosePalette>& palette : resources.palettes)
             palette->discard();
-    _sets.clear();
-    _posePasses.clear();
-    _mixPasses.clear();
-    _localPass.reset();
-    _worldPass.reset();
-    _scratch.discard();
-    _mixedTracks.discard();
-    _vertexArrays.discard();
+    _parts->sets.clear();
+    _parts->posePasses.clear();
+    _parts->mixPasses.clear();
+    _parts->localPass.reset();
+    _parts->worldPass.reset();
+    _parts->scratch.discard();
+    _parts->mixedTracks.discard();
+    _parts->vertexArrays.discard();
 }
 
 } // namespace osgGpuAnimation

@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <osgGpuAnimation/gpu/buffers/AnimationBuffers.h>
-#include <osgGpuAnimation/gpu/buffers/PosePalette.h>
-#include <osgGpuAnimation/gpu/FeedbackPass.h>
-#include <osgGpuAnimation/gpu/passes/PoseVariant.h>
+#include <osgGpuAnimation/gpu/PoseBatch.h>
 
 #include <osg/GLObjects>
 #include <osg/State>
 
+#include <cstddef>
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <vector>
 
@@ -78,50 +75,17 @@ public:
     void discardAllGLObjects() override;
 
 protected:
-    ~PosePipeline() override = default;
+    ~PosePipeline() override;
 
 private:
-    struct SetResources
-    {
-        std::weak_ptr<const AnimationSet> set;
-        std::unique_ptr<AnimationBuffers> buffers;          ///< null: too large, reported
-        std::vector<std::unique_ptr<PosePalette>> palettes; ///< by slot
-        bool isMaskLimitReported = false;
-    };
+    struct Parts;
 
-    using Passes = std::map<PoseVariant, std::unique_ptr<FeedbackPass>>;
-
-    FeedbackPass& posePass(const PoseVariant& variant);
-    FeedbackPass& mixPass(const PoseVariant& variant);
-    void makeSeparatePasses();
-    void forgetUnusedSets();
-    std::size_t chunkCapacity(const PoseBatch& batch) const;
-    bool hasRoomForMasks(SetResources& resources, const AnimationSet& set) const;
-    SetResources& resourcesOf(const PoseBatch& batch);
-    template <typename Function>
-    void forEachPass(Function function);
-    bool evaluateFused(const PoseBatch& batch, const AnimationBuffers& buffers, PosePalette::Chunk& chunk);
-    bool evaluateSeparate(const PoseBatch& batch, const AnimationBuffers& buffers, PosePalette::Chunk& chunk);
-    void useMixInput(FeedbackPass& pass, const AnimationSet& set, const AnimationBuffers& buffers,
-                     const PosePalette::Chunk& chunk);
-    void gatherOddLevels(const AnimationSet& set, const PosePalette::Chunk& chunk);
-    void runSeparate(FeedbackPass& pass, std::size_t count, const BufferTexture& out);
-
-    osg::GLExtensions* _gl;
-    void(GL_APIENTRY* _copyBufferSubData)(GLenum, GLenum, GLintptr, GLintptr, GLsizeiptr) = nullptr;
+    Form _form = Form::Fused;
     std::size_t _maxTexels = 0;
     std::size_t _chunkSize = usualChunkSize;
     bool _isSupported = false;
-    Form _form = Form::Fused;
     Counters _counters;
-    FeedbackVertexArrays _vertexArrays;
-    Passes _posePasses;
-    Passes _mixPasses;
-    std::unique_ptr<FeedbackPass> _localPass;
-    std::unique_ptr<FeedbackPass> _worldPass;
-    BufferTexture _scratch;     ///< fused: the odd levels, compactly; separate: local matrices
-    BufferTexture _mixedTracks; ///< separate: the mix stage's result
-    std::map<const AnimationSet*, SetResources> _sets;
+    std::unique_ptr<Parts> _parts; ///< the passes and buffers of this context
 };
 
 } // namespace osgGpuAnimation

@@ -11,17 +11,6 @@
 namespace osgGpuAnimation
 {
 
-/// Where the draw side finds an instance's palette: entry e is matrix e * stride + instance of the texture.
-struct PalettePlace
-{
-    GLuint texture = 0; ///< 0: none, nothing can be drawn
-    int stride = 0;
-    int instance = 0;
-    GLuint tints = 0;           ///< RGBA8, one an instance; 0: all white
-    std::size_t chunkBegin = 0; ///< the number in the batch of instance 0
-    std::size_t chunkEnd = 0;   ///< behind the last that is in this texture
-};
-
 /// The GPU's side of one PoseBatch in one graphics context: its input buffers and the palette they become. Large
 /// batches are cut into chunks, each small enough for a buffer texture.
 class PosePalette

@@ -4,7 +4,9 @@
 #include "Stopwatch.h"
 
 #include <osgGpuAnimation/animation/AnimationController.h>
+#include <osgGpuAnimation/gpu/buffers/BufferTexture.h>
 #include <osgGpuAnimation/gpu/EglGraphicsContext.h>
+#include <osgGpuAnimation/gpu/FeedbackPass.h>
 #include <osgGpuAnimation/gpu/PosePipeline.h>
 
 #include <memory>

@@ -20,6 +20,15 @@ double wrapped(double value, double period)
     return std::min(rest + period, std::nextafter(period, 0.0));
 }
 
+/// A share below this is invisible.
+constexpr double negligible = 1.0 / 4096.0;
+
+double finiteProduct(double a, double b)
+{
+    constexpr double largest = std::numeric_limits<double>::max();
+    return std::clamp(a * b, -largest, largest);
+}
+
 } // namespace
 
 ClipPlayback::ClipPlayback(int clip, double duration, double speed, LoopMode loopMode)
@@ -115,20 +124,6 @@ PlaybackStep ClipPlayback::moveOnce(double seconds)
     move.isAscending = seconds >= 0.0;
     return move;
 }
-
-namespace
-{
-
-/// A share below this is invisible.
-constexpr double negligible = 1.0 / 4096.0;
-
-double finiteProduct(double a, double b)
-{
-    constexpr double largest = std::numeric_limits<double>::max();
-    return std::clamp(a * b, -largest, largest);
-}
-
-} // namespace
 
 void ClipMixer::clear()
 {

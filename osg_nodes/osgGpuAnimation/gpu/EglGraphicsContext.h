@@ -17,23 +17,24 @@ namespace osgGpuAnimation
 ///     viewer.getCamera()->setViewport(0, 0, 800, 600);
 ///
 /// or by hand: `context->realize(); context->makeCurrent(); …; context->releaseContext();`.
-/// Pictures are read with glReadPixels, in a camera's final draw callback for instance; there is nothing to swap.
+/// Read the pixels with glReadPixels, for example in a camera's final draw callback. Swapping has no effect.
 ///
-/// Mesa's surfaceless platform is tried first (a software renderer gives the same pictures everywhere), then EGL's
-/// devices, then EGL's default display; the environment variable OSGGPUANIMATION_EGL_PLATFORM (surfaceless, device or
-/// default) asks for one of them. The process keeps the display it opened first.
+/// It tries Mesa's surfaceless platform first (a software renderer gives the same pixels everywhere), then EGL's
+/// devices, then EGL's default display. The environment variable OSGGPUANIMATION_EGL_PLATFORM (surfaceless, device or
+/// default) selects one of them. The process keeps the display that it opened first.
 class EglGraphicsContext : public osg::GraphicsContext
 {
 public:
-    /// Of the traits count: width, height; red, green, blue, alpha, depth, stencil (bits, at least); samples (where the
-    /// platform has no such multisampling, the context has none, and getTraits() says so); sharedContext (an
-    /// EglGraphicsContext); glContextProfileMask (1 core, 2 compatibility, 0: compatibility) and glContextVersion
-    /// ("major.minor"; below 3.2 it is not looked at; core is 3.3 at least).
-    /// Errors: no EGL display, no such configuration, profile or size; the message has EGL's error code.
+    /// Uses these traits: width, height; red, green, blue, alpha, depth, stencil (least numbers of bits); samples (if
+    /// the platform does not support that number, the context has no multisampling and getTraits() has 0 samples);
+    /// sharedContext (an EglGraphicsContext); glContextProfileMask (1 core, 2 compatibility, 0: compatibility);
+    /// glContextVersion ("major.minor"; ignored below 3.2; core is at least 3.3).
+    /// Errors: no EGL display, no such configuration, profile or size; the message contains EGL's error code.
     static Result<osg::ref_ptr<EglGraphicsContext>> create(osg::GraphicsContext::Traits* traits);
-    /// 24 bits of depth, 8 of stencil, no multisampling, compatibility profile.
+    /// Creates a context with 24 depth bits, 8 stencil bits, no multisampling and the compatibility profile.
     static Result<osg::ref_ptr<EglGraphicsContext>> create(int width, int height);
 
+    /// True for a core profile, false for a compatibility profile.
     bool isCoreProfile() const { return _core; }
 
     bool isSameKindAs(const osg::Object* object) const override
@@ -44,7 +45,7 @@ public:
     const char* className() const override { return "EglGraphicsContext"; }
 
     bool valid() const override { return _context != nullptr; }
-    /// Afterwards osg::State knows the GL's extensions, and no GL error is left over from asking for them.
+    /// Initializes the GL extensions of osg::State and clears the GL errors of that query.
     bool realizeImplementation() override;
     bool isRealizedImplementation() const override { return _realized; }
     void closeImplementation() override;
@@ -52,7 +53,7 @@ public:
     /// Draws here and reads from the other, which must be an EglGraphicsContext.
     bool makeContextCurrentImplementation(osg::GraphicsContext* readContext) override;
     bool releaseContextImplementation() override;
-    /// Not offered (warns): render to a texture with a frame buffer object.
+    /// Not supported (warns): render to a texture with a frame buffer object.
     void bindPBufferToTextureImplementation(GLenum buffer) override;
     void swapBuffersImplementation() override;
 
@@ -64,7 +65,7 @@ private:
     Result<bool> open();
     void setUpState();
 
-    // EGL's handles (all pointers to void), so that this header needs no EGL.
+    // EGL's handles are pointers to void, so this header does not need EGL's.
     void* _display = nullptr;
     void* _context = nullptr;
     void* _surface = nullptr;

@@ -13,12 +13,12 @@
 namespace osgGpuAnimation
 {
 
-/// Between its making and its end feedback passes may run: rasterizing is off and a vertex array object of our own is
-/// bound. At its end OSG's state is what OSG believes it to be.
+/// RAII: disables rasterization and binds a vertex array object for feedback passes. The destructor restores the GL
+/// state that OSG expects.
 class FeedbackScope
 {
 public:
-    /// units: how many texture units, from 0 on, the passes bind buffer textures to.
+    /// units: the passes bind buffer textures to the texture units [0, units).
     FeedbackScope(osg::State& state, GLuint vertexArray, int units);
     ~FeedbackScope();
     FeedbackScope(const FeedbackScope&) = delete;
@@ -30,34 +30,37 @@ private:
     osg::State::ApplyModeProxy _discard;
 };
 
-/// The vertex array objects of feedback passes. OpenGL contexts that share their objects (one OSG context number) share
-/// all but these, so each osg::State has its own.
+/// The vertex array objects of feedback passes, one pair per osg::State: GL contexts that share objects (one OSG
+/// context ID) do not share vertex array objects.
 class FeedbackVertexArrays
 {
 public:
+    /// The GL names for one state.
     struct Names
     {
-        osg::observer_ptr<osg::State> state;
-        GLuint pose = 0;  ///< with the attributes of the pose pass
-        GLuint empty = 0; ///< without any
+        osg::observer_ptr<osg::State> state; ///< null after the state's end
+        GLuint pose = 0;                     ///< with the attributes of the pose pass
+        GLuint empty = 0;                    ///< without attributes
     };
 
+    /// Creates no GL objects yet.
     explicit FeedbackVertexArrays(osg::GLExtensions& gl) : _gl(&gl) {}
 
-    /// The state's context is current.
+    /// The names for a state, created at the first call. The state's context must be current.
     const Names& of(osg::State& state);
 
-    /// Where several contexts have some, only the last one's end can free them: the others go with their contexts.
+    /// Deletes the GL objects if only one state has some. With several states, each context deletes its own at its end.
     void release();
+    /// Forgets the GL names without deleting them.
     void discard() { _names.clear(); }
 
 private:
     osg::GLExtensions* _gl;
-    std::vector<Names> _names; ///< hardly ever more than one
+    std::vector<Names> _names; ///< almost always one
 };
 
-/// A vertex shader whose outputs are captured by transform feedback, nothing being rasterized: one pass of the
-/// pipeline, in one graphics context. Used between FeedbackScope's beginning and end.
+/// One pass of the pipeline in one graphics context: a vertex shader whose outputs transform feedback captures. Use it
+/// within the lifetime of a FeedbackScope.
 ///
 ///     pass.use();
 ///     pass.setTexture("keyframes", 0, buffers.keyframes().texture());
@@ -65,29 +68,34 @@ private:
 class FeedbackPass
 {
 public:
-    /// Multiples of so many vertices an instance are drawn the fastest way.
+    /// Draws are fastest if the vertices per instance are a multiple of this number.
     static constexpr std::size_t verticesOfFastest = 3;
 
-    /// source: parts of the shader, put together behind a #version line and layout.glsl. outputs: the vec4 outputs
-    /// to capture, interleaved in that order. Failure to compile or link is reported once and leaves valid() false.
+    /// source: parts of the shader, which follow a #version line and layout.glsl. outputs: the vec4 outputs to capture,
+    /// interleaved in this order. If the shader does not compile or link, the pass warns once and valid() is false.
     FeedbackPass(osg::GLExtensions& gl, const char* name, std::initializer_list<const char*> source,
                  std::initializer_list<const char*> outputs);
     FeedbackPass(const FeedbackPass&) = delete;
     FeedbackPass& operator=(const FeedbackPass&) = delete;
 
+    /// True if the program can run.
     bool valid() const { return _program != 0; }
 
+    /// Makes the program current. Call it before the functions below.
     void use();
+    /// Sets an int uniform.
     void setInt(const char* uniform, int value);
     /// Binds a buffer texture to a unit and points the sampler there.
     void setTexture(const char* uniform, int unit, GLuint texture);
-    /// Draws points [firstVertex, firstVertex + count) and writes 16 bytes an output for each into the buffer.
+    /// Draws the points [firstVertex, firstVertex + count) and writes 16 bytes per output and point into the buffer.
     void run(std::size_t firstVertex, std::size_t count, GLuint buffer, std::size_t byteOffset);
-    /// The same for vertices [0, vertexCount) of each of so many GL instances, one instance after another; as triangles
-    /// where they are threes, since llvmpipe has less to do for each primitive than for its vertices.
+    /// Does the same for the vertices [0, vertexCount) of each GL instance, instance by instance. It draws triangles if
+    /// vertexCount is a multiple of 3, since llvmpipe has a fixed cost per primitive.
     void runInstanced(std::size_t vertexCount, std::size_t instanceCount, GLuint buffer, std::size_t byteOffset);
 
+    /// Deletes the program. The context must be current.
     void release();
+    /// Forgets the program without deleting it.
     void discard() { _program = 0; }
 
 private:

@@ -47,13 +47,12 @@ bool PoseBatch::accepts(const PoseInstruction& instruction) const
     return _size < minBatchSize || loadOf(instruction) == load();
 }
 
-std::size_t PoseBatch::add(const PoseInstruction& instruction)
+std::size_t PoseBatch::append(const BlendSample* samples, std::size_t count)
 {
-    const std::size_t count = std::min(instruction.sampleCount, PoseInstruction::maxSamples);
     if (count > _sampleStride) widen(count);
     for (std::size_t i = 0; i < _sampleStride; ++i)
     {
-        BlendSample sample = i < count ? instruction.samples[i] : BlendSample{0, 0.0f, 0.0f, 0};
+        BlendSample sample = i < count ? samples[i] : BlendSample{0, 0.0f, 0.0f, 0};
         sample.alpha = clampedToUnit(sample.alpha);
         sample.weight = clampedToUnit(sample.weight);
         if (i < count) note(sample);
@@ -75,6 +74,11 @@ void PoseBatch::note(const BlendSample& sample)
     _needs.mixing = _needs.mixing || !isPlain(sample);
 }
 
+std::size_t PoseBatch::add(const PoseInstruction& instruction)
+{
+    return append(instruction.samples.data(), std::min(instruction.sampleCount, PoseInstruction::maxSamples));
+}
+
 std::size_t PoseBatch::add(const PoseInstruction& instruction, const AffineMatrix& rootMatrix)
 {
     const std::size_t instance = add(instruction);
@@ -85,20 +89,10 @@ std::size_t PoseBatch::add(const PoseInstruction& instruction, const AffineMatri
 
 std::size_t PoseBatch::addSample(const BlendSample& sample, const AffineMatrix& rootMatrix)
 {
-    if (_sampleStride != 1)
-    {
-        PoseInstruction instruction;
-        instruction.samples[0] = sample;
-        return add(instruction, rootMatrix);
-    }
-    _samples.push_back(sample);
-    _samples.back().alpha = clampedToUnit(sample.alpha);
-    _samples.back().weight = clampedToUnit(sample.weight);
-    note(_samples.back());
+    const std::size_t instance = append(&sample, 1);
     _rootMatrices.resize(_size);
-    _rootMatrices.push_back(rootMatrix);
-    if (!_tints.empty()) _tints.push_back(white);
-    return _size++;
+    _rootMatrices[instance] = rootMatrix;
+    return instance;
 }
 
 void PoseBatch::setTint(std::size_t instance, std::uint32_t rgba)

@@ -24,75 +24,84 @@ struct PalettePlace
     std::size_t chunkEnd = 0;   ///< one past the last instance of the batch in this texture
 };
 
-/// What all instances of one set are to show in one frame: a snapshot, independent of the controllers it came from.
-/// Filled on the cull side, read on the draw side.
+/// The poses of all instances of one set in one frame: a snapshot that does not depend on the controllers. The cull
+/// side fills it, the draw side reads it.
 ///
-/// Each instance costs as many blend samples as the one that has most, so instances of another load are better put into
-/// a batch of their own where there are many: see suits().
+/// Every instance costs as many blend samples as the instance with the most samples. Many instances of another blend
+/// cost therefore belong in a batch of their own, see accepts().
 class PoseBatch
 {
 public:
+    /// Starts without instances. set: may be null until reset().
     explicit PoseBatch(std::shared_ptr<const AnimationSet> set) : _set(std::move(set)) {}
 
+    /// The set of all instances; it must not be null.
     const AnimationSet& set() const { return *_set; }
+    /// The set of all instances; null if the batch has none.
     const std::shared_ptr<const AnimationSet>& sharedSet() const { return _set; }
 
-    /// Takes an instance up and returns its number: 0, 1, 2 … Weights and alphas that are no numbers or outside [0, 1]
-    /// count as the nearest.
+    /// Adds an instance and returns its index: 0, 1, 2 … Clamps weights and alphas to [0, 1]; a NaN counts as 0.
     std::size_t add(const PoseInstruction& instruction);
-    /// The same with a root matrix, which the instance's root joints are multiplied by. Instances without one get the
-    /// identity as soon as any has one.
+    /// Adds an instance whose root joints are multiplied by a root matrix. Other instances have the identity.
     std::size_t add(const PoseInstruction& instruction, const AffineMatrix& rootMatrix);
-    /// The same for an instance that shows one sample.
+    /// Adds an instance of one sample with a root matrix.
     std::size_t addSample(const BlendSample& sample, const AffineMatrix& rootMatrix);
 
-    /// What a pose costs to mix.
+    /// The cost of mixing a pose.
     enum class BlendCost
     {
-        Plain, ///< one sample, as it is: nothing to mix
-        Few,   ///< a crossfade or two: up to four samples
-        Many,
+        Plain, ///< one sample of full weight without a mask: no mixing
+        Few,   ///< at most four samples: one or two crossfades
+        Many,  ///< more than four samples
     };
+    /// Number of BlendCost values.
     static constexpr std::size_t blendCostCount = 3;
+    /// The cost of one instruction.
     static BlendCost loadOf(const PoseInstruction& instruction);
-    /// Instances whose mixing costs as much as another batch: with fewer, one of another load may join them.
+    /// Below this number of instances a second batch costs more than the extra samples of mixed blend costs.
     static constexpr std::size_t minBatchSize = 128;
-    /// Whether the instruction may come in without making many dearer, or being dear itself for the sake of others.
+    /// True if adding the instance would not raise the cost of the batch too far: it has the batch's blend cost, or the
+    /// batch has fewer than minBatchSize instances.
     bool accepts(const PoseInstruction& instruction) const;
 
-    /// What the instance's colour is multiplied by. rgba: 8 bits each, red lowest. Others stay white.
+    /// Sets the colour that multiplies the instance's colour. rgba: 8 bits per channel, red in the lowest bits.
     void setTint(std::size_t instance, std::uint32_t rgba);
+    /// Removes all instances and keeps the storage.
     void clear();
-    /// Empty again, for instances of another set, or of none until the next reset; the storage is kept.
+    /// Clears the batch and gives it another set, which may be null until the next reset().
     void reset(std::shared_ptr<const AnimationSet> set);
 
+    /// The tint that changes nothing.
     static constexpr std::uint32_t white = 0xFFFFFFFFu;
 
-    /// What the samples ask of the mix stage, taken together.
+    /// The features of the mix stage that at least one sample needs.
     struct Needs
     {
-        bool mixing = false; ///< several samples, or one of less than full weight
-        bool layers = false;
-        bool masks = false;
-        bool additive = false;
+        bool mixing = false;   ///< several samples, or one of less than full weight
+        bool layers = false;   ///< samples of several blend priorities
+        bool masks = false;    ///< samples with masks
+        bool additive = false; ///< additive samples
     };
+    /// The needs of all instances together.
     const Needs& needs() const { return _needs; }
 
+    /// Number of instances.
     std::size_t size() const { return _size; }
-    /// Blend samples an instance takes in samples(): the largest number any instance has.
+    /// Blend samples per instance in samples(): the largest number of any instance.
     std::size_t sampleStride() const { return _sampleStride; }
-    /// size() * sampleStride(); what an instance does not need has weight 0.
+    /// size() * sampleStride() samples; unused samples have weight 0.
     const std::vector<BlendSample>& samples() const { return _samples; }
-    /// size() matrices, or none where no instance has one.
+    /// size() matrices; empty if no instance has one.
     const std::vector<AffineMatrix>& rootMatrices() const { return _rootMatrices; }
-    /// size() colours, or none where all are white.
+    /// size() colours; empty if all are white.
     const std::vector<std::uint32_t>& tints() const { return _tints; }
-    /// Whether both say the same of the same set, instance by instance.
+    /// True if both have the same set and the same instances, byte by byte.
     bool isSame(const PoseBatch& other) const;
 
 private:
     void widen(std::size_t sampleStride);
     void note(const BlendSample& sample);
+    std::size_t append(const BlendSample* samples, std::size_t count);
     BlendCost load() const;
 
     std::shared_ptr<const AnimationSet> _set;

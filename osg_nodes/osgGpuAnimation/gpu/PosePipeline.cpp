@@ -35,7 +35,7 @@ constexpr int unitCount = 6;
 
 constexpr std::initializer_list<const char*> rowOutputs{"row0", "row1", "row2"};
 
-/// In the levels below a palette's first, third ... one.
+/// The number of palette entries in the levels 1, 3, 5 …
 std::size_t oddEntries(const AnimationSet& set)
 {
     std::size_t count = 0;
@@ -247,7 +247,7 @@ void PosePipeline::Parts::useMixInput(FeedbackPass& pass, const AnimationSet& se
 }
 
 // A buffer must not be read while feedback writes to it, so levels go to the palette and to the scratch buffer by
-// turns. The scratch buffer has the odd levels one behind the other; at the end they are copied to their places in the
+// turns. The scratch buffer holds the odd levels one after the other; at the end they are copied to their places in the
 // palette.
 bool PosePipeline::Parts::evaluateFused(const PoseBatch& batch, const AnimationBuffers& buffers,
                                         PosePalette::Chunk& chunk)
@@ -262,7 +262,7 @@ bool PosePipeline::Parts::evaluateFused(const PoseBatch& batch, const AnimationB
     const std::size_t entryBytes = POSE_TEXELS_PER_ENTRY * BufferTexture::texelBytes;
     const std::vector<std::size_t>& levels = set.levels();
     const FeedbackPass* current = nullptr;
-    std::size_t firstParent = 0; // entry of the palette that the buffer read from begins with
+    std::size_t firstParent = 0; // first palette entry in the buffer that this level reads
     std::size_t oddEntry = 0;    // entries in the scratch buffer so far
     for (std::size_t level = 0; level < set.levelCount(); ++level)
     {

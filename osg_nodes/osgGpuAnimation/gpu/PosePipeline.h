@@ -14,59 +14,68 @@
 namespace osgGpuAnimation
 {
 
-/// Turns pose batches into palettes on the GPU, by transform feedback: one object a graphics context, made at first
-/// use and living with the context. Only to be called on the draw side, with the context current.
+/// Computes the palettes of pose batches on the GPU with transform feedback. Each graphics context has one pipeline,
+/// from the first of() to the end of the context. Call it on the draw side only, with the context current.
 ///
 ///     PosePipeline* pipeline = PosePipeline::of(state);
 ///     pipeline->evaluate(state, batch, 0);
 ///     PalettePlace place = pipeline->place(batch.set(), 0, instance);
 ///
-/// The default form computes mix, local and world in one pass, a draw a level of the hierarchy for all instances (see
-/// tests/benchmark/RESULTS.md); the separate form has a pass for each stage.
+/// The fused form, the default, computes mix, local and world in one pass, with one draw per level of the hierarchy for
+/// all instances (see tests/benchmark/RESULTS.md). The separate form has one pass per stage.
 class PosePipeline : public osg::GraphicsObjectManager
 {
 public:
+    /// The division of the stages into passes.
     enum class Form
     {
-        Fused,    ///< one pass, a draw a level
-        Separate, ///< mix, local, world: three draws, the world stage walking up the ancestors
+        Fused,    ///< one pass, one draw per level
+        Separate, ///< mix, local, world: three draws; the world stage multiplies along the ancestors
     };
 
-    /// Counted since the pipeline was made.
+    /// Counts since the pipeline was created.
     struct Counters
     {
-        std::uint64_t feedbackDraws = 0;
-        std::uint64_t instancesEvaluated = 0;
-        std::uint64_t bytesUploaded = 0; ///< a frame's instructions and root matrices, not the sets
+        std::uint64_t feedbackDraws = 0;      ///< draws of all passes
+        std::uint64_t instancesEvaluated = 0; ///< palettes computed
+        std::uint64_t bytesUploaded = 0;      ///< samples, root matrices and tints, without the sets
     };
 
+    /// Called by OSG; use of() instead.
     explicit PosePipeline(unsigned int contextId);
 
-    /// The context's own; null, with one warning, where the context lacks OpenGL 3.3's transform feedback.
+    /// The pipeline of the state's context; null, with one warning, if the context lacks OpenGL 3.3 with transform
+    /// feedback.
     static PosePipeline* of(osg::State& state);
 
-    /// Uploads the batch and computes its palette, unless nothing changed since the last batch of the same set and
-    /// slot. Slots tell batches of one set apart: 0, 1, 2 …; a slot's palette lasts until its next evaluate.
-    /// False, with one warning, where the set is too large for the context's buffer textures or a pass does not
+    /// Uploads the batch and computes its palette, unless it equals the last batch of the same set and slot. The slots
+    /// 0, 1, 2 … distinguish batches of one set; the palette of a slot is valid until the next evaluate() of that slot.
+    /// Returns false, with one warning, if the set is too large for the context's buffer textures or a pass does not
     /// compile: the batch then has no palette, and its characters are not drawn.
     bool evaluate(osg::State& state, const PoseBatch& batch, std::size_t slot);
 
-    /// Where an instance of the batch last evaluated for set and slot is. No texture where there is none.
+    /// The palette of an instance of the last batch of this set and slot; its texture is 0 if there is none.
     PalettePlace place(const AnimationSet& set, std::size_t slot, std::size_t instance) const;
 
-    /// For tools and tests, never in a frame: waits for the GPU. set.paletteSize() entries of the instance.
+    /// Reads the palette of an instance: set.paletteSize() entries, or none without a palette. It waits for the GPU:
+    /// for tools and tests, not for frames.
     std::vector<AffineMatrix> readPalette(osg::State& state, const AnimationSet& set, std::size_t slot,
                                           std::size_t instance) const;
 
+    /// Selects the form of the next evaluate().
     void setForm(Form form) { _form = form; }
+    /// The form in use.
     Form getForm() const { return _form; }
-    /// Texels a buffer texture may have; GL_MAX_TEXTURE_BUFFER_SIZE unless set smaller (tests).
+    /// Limits the texels of a buffer texture below GL_MAX_TEXTURE_BUFFER_SIZE, the default (tests).
     void setMaxTexels(std::size_t texels) { _maxTexels = texels; }
+    /// The largest number of texels of a buffer texture.
     std::size_t getMaxTexels() const { return _maxTexels; }
-    /// Instances that are evaluated at a time, at most; fewer where a buffer texture takes no more. Above 0. The usual
-    /// size is the fastest one measured, by little (tests/benchmark/RESULTS.md), and bounds the scratch buffer.
+    /// The default of setChunkSize(): the fastest measured size, by a small margin (tests/benchmark/RESULTS.md).
     static constexpr std::size_t usualChunkSize = 4096;
+    /// Limits the instances per draw and so the scratch buffer. instances: above 0. A chunk has fewer instances if a
+    /// buffer texture cannot hold them.
     void setChunkSize(std::size_t instances) { _chunkSize = instances; }
+    /// The counts so far.
     const Counters& getCounters() const { return _counters; }
 
     void flushDeletedGLObjects(double currentTime, double& availableTime) override;

@@ -81,6 +81,26 @@ JointRange rangeOf(const Clip& clip, std::size_t joint)
     return range;
 }
 
+void include(WeightRange& range, float value)
+{
+    range.min = std::min(range.min, value);
+    range.max = std::max(range.max, value);
+}
+
+void includeClip(WeightRange& range, const Clip& clip, std::size_t track, std::size_t place)
+{
+    const bool isSpline = clip.form() == Clip::Form::Spline;
+    for (std::size_t keyframe = 0; keyframe < clip.keyframeCount(); ++keyframe)
+    {
+        const JointTransform* transform = clip.at(keyframe, track);
+        const float value = transform[0].number(place);
+        include(range, value);
+        if (!isSpline) continue;
+        include(range, value - transform[1].number(place) / 3.0f);
+        include(range, value + transform[2].number(place) / 3.0f);
+    }
+}
+
 } // namespace
 
 JointRange JointRange::of(const JointTransform& transform)
@@ -135,31 +155,6 @@ std::vector<JointRange> rangesOfClip(const AnimationSet& set, const Clip& clip)
         ranges.push_back(clip.keyframeCount() > 0 ? rangeOf(clip, joint) : JointRange::of(set.restPose()[joint]));
     return ranges;
 }
-
-namespace
-{
-
-void include(WeightRange& range, float value)
-{
-    range.min = std::min(range.min, value);
-    range.max = std::max(range.max, value);
-}
-
-void includeClip(WeightRange& range, const Clip& clip, std::size_t track, std::size_t place)
-{
-    const bool isSpline = clip.form() == Clip::Form::Spline;
-    for (std::size_t keyframe = 0; keyframe < clip.keyframeCount(); ++keyframe)
-    {
-        const JointTransform* transform = clip.at(keyframe, track);
-        const float value = transform[0].number(place);
-        include(range, value);
-        if (!isSpline) continue;
-        include(range, value - transform[1].number(place) / 3.0f);
-        include(range, value + transform[2].number(place) / 3.0f);
-    }
-}
-
-} // namespace
 
 std::vector<WeightRange> weightRanges(const AnimationSet& set, std::size_t morph)
 {

@@ -21,7 +21,7 @@ struct Box
     glm::vec3 corner(int i) const; ///< i: in [0, 8); bit 0 selects max.x, bit 1 max.y, bit 2 max.z
 };
 
-/// For each palette entry, the box of the vertices that it moves, in the mesh's space at bind time (before the entry).
+/// See ClipBuilder.h, which declares the type for applications.
 using EntryBoxes = std::vector<Box>;
 
 /// An axis-aligned box in double precision that contains only finite numbers. Coordinates are clamped to

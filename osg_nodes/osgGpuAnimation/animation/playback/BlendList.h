@@ -58,8 +58,8 @@ private:
 /// The root motion of a step through a clip, however often it loops. The clip must have a rootMotion().
 RootMotion rootMotionOf(const Clip& clip, const PlaybackStep& move, LoopMode loopMode);
 
-/// Blends the root motions of all clips that play in one step. Standings and weights work as in PoseInstruction; the
-/// rest pose does not move.
+/// Blends the root motions of all clips that play in one step. Blend priorities and weights work as in PoseInstruction;
+/// the rest pose does not move.
 class MotionBlend
 {
 public:

@@ -19,6 +19,11 @@ std::size_t markersBefore(const std::vector<ClipMarker>& markers, double time, b
     return static_cast<std::size_t>(found - markers.begin());
 }
 
+bool moveMayHaveEvents(const PlaybackStep& move, const Clip& clip)
+{
+    return move.crossings != 0.0 || move.hasFinished || (move.distance != 0.0 && !clip.markers().empty());
+}
+
 } // namespace
 
 ClipMoveEvents::ClipMoveEvents(const Clip& clip, const PlaybackStep& move, LoopMode loopMode)
@@ -97,16 +102,6 @@ bool ClipMoveEvents::next()
     tell(AnimationEvent::Type::Finished, _move.to);
     return true;
 }
-
-namespace
-{
-
-bool moveMayHaveEvents(const PlaybackStep& move, const Clip& clip)
-{
-    return move.crossings != 0.0 || move.hasFinished || (move.distance != 0.0 && !clip.markers().empty());
-}
-
-} // namespace
 
 bool LayerStep::mayHaveEvents(const std::vector<Clip>& clips) const
 {

@@ -7,7 +7,7 @@
 namespace osgGpuAnimation
 {
 
-/// What all instances of a set share on the GPU, in one graphics context: uploaded once.
+/// The GPU data that all instances of a set share, in one graphics context. The constructor uploads it.
 class AnimationBuffers
 {
 public:
@@ -16,20 +16,20 @@ public:
     /// RGBA32UI: the texels of a PackedKeyframes.
     const BufferTexture& keyframes() const { return _keyframes; }
     std::size_t restTexel() const { return _restTexel; } ///< see PackedKeyframes
-    /// What moves in a level of the palette: one a level of the set.
+    /// The moving parts of each level of the palette.
     const std::vector<PackedKeyframes::Track>& levels() const { return _levels; }
-    /// What moves in any track.
+    /// The moving parts of all tracks together.
     const PackedKeyframes::Track& anyTrack() const { return _anyTrack; }
     /// RGBA32F: set.paletteSize() entries of POSE_TEXELS_PER_ENTRY texels.
     const BufferTexture& entries() const { return _entries; }
 
-    /// RGBA32F: masks().count() + 1 masks of texelsPerMask texels each, mask 0 being all 1. See updateMasks().
+    /// RGBA32F: masks().count() + 1 masks of texelsPerMask texels each; mask 0 is all 1. See updateMasks().
     const BufferTexture& masks() const { return _masks; }
     static std::size_t texelsPerMask(const AnimationSet& set);
-    /// Uploads the set's masks if it has more than last time.
+    /// Uploads the set's masks if it has more than at the last call.
     void updateMasks(const AnimationSet& set);
 
-    /// Without masks.
+    /// Bytes of the buffers without masks.
     static std::size_t byteSize(const AnimationSet& set, const PackedKeyframes& keyframes);
 
     void release();

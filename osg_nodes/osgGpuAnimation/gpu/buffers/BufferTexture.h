@@ -8,8 +8,8 @@
 namespace osgGpuAnimation
 {
 
-/// A GL buffer object that shaders read as a buffer texture, in one graphics context. GL names are made at first use
-/// and must be given back by release() with the context current (or dropped with it by discard()).
+/// A GL buffer object that shaders read as a buffer texture, in one graphics context. It creates GL names at first
+/// use. Call release() with the context current, or discard() after the end of the context.
 class BufferTexture
 {
 public:
@@ -21,17 +21,16 @@ public:
 
     static constexpr std::size_t texelBytes = 16;
 
-    /// Room for that many bytes: grows by half at least, never shrinks. The content is undefined after growth.
-    /// True if the storage is new.
+    /// Reserves storage: it grows by at least half and never shrinks. True if the storage is new; its content is then
+    /// undefined.
     bool reserve(std::size_t bytes);
-    /// New content from the buffer's start; reserves first. Storage in use by earlier draws is not waited for.
+    /// Reserves and replaces the content from the start. It does not wait for earlier draws that use the storage.
     void upload(const void* data, std::size_t bytes);
-    /// Replaces a part of what was uploaded.
+    /// Replaces a part of the uploaded content.
     void uploadPart(std::size_t offset, const void* data, std::size_t bytes);
 
-    /// Lets vertex attributes [location, location + count) read 16 bytes each, one behind the other, from byteOffset
-    /// on, and from one element to the next stride bytes on. divisor: 0 for an element a vertex, 1 for one a GL
-    /// instance.
+    /// Binds the vertex attributes [location, location + count), 16 consecutive bytes each. byteOffset: of the first
+    /// element. stride: bytes between elements. divisor: 0 for one element per vertex, 1 for one per GL instance.
     void bindAttributes(unsigned int location, unsigned int count, std::size_t stride, std::size_t byteOffset,
                         unsigned int divisor) const;
 

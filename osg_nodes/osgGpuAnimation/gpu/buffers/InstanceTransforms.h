@@ -15,18 +15,18 @@
 namespace osgGpuAnimation
 {
 
-/// Where one instance of an instanced draw stands, as skin.glsl reads it: four vertex attributes.
+/// The transform of one instance of an instanced draw, as skin.glsl reads it: four vertex attributes.
 struct InstanceTransform
 {
     AffineMatrix toEye; ///< from the character's own space to the eye's
-    float pose = 0.0f;  ///< its number in the PoseBatch, a whole one
+    float pose = 0.0f;  ///< the instance's index in the PoseBatch, an integer
     std::array<float, 3> unused{};
 };
 
 static_assert(sizeof(InstanceTransform) == 4 * BufferTexture::texelBytes, "a placement is four attributes");
 
-/// One graphics context's buffers of placements: the last few lists that were drawn, since all meshes of the
-/// same characters follow one another. Only to be called on the draw side, with the context current.
+/// The buffers of instance transforms of one graphics context. It keeps the last lists that were drawn, since all
+/// meshes of the same characters are drawn in sequence. Call it on the draw side only, with the context current.
 class InstanceTransformBuffers : public osg::GraphicsObjectManager
 {
 public:
@@ -34,7 +34,7 @@ public:
 
     static InstanceTransformBuffers& of(osg::State& state);
 
-    /// The buffer of the list, uploaded unless it is there. serial: the list's, never again another's.
+    /// The buffer of a list, uploaded at the first call. serial: identifies the list, never reused.
     const BufferTexture& buffer(std::uint64_t serial, const std::vector<InstanceTransform>& placements);
 
     void flushDeletedGLObjects(double, double&) override {}

@@ -14,15 +14,16 @@ namespace osgGpuAnimation
 namespace
 {
 
-/// Brings the buffer, with room for so many, and its record up to [first, first + count) of the source. True if it was
-/// not the same already. Where only a part is another, as with one of many that moved, that part is sent.
+/// Uploads [first, first + count) of the source to a buffer with room for `room` elements; `uploaded` records its
+/// content. True if the content changed. If at most half changed, as with one moving instance of many, only that part
+/// is uploaded.
 template <typename Element>
 bool uploadChanged(const std::vector<Element>& source, std::size_t first, std::size_t count, std::size_t room,
                    std::vector<Element>& uploaded, BufferTexture& buffer, std::size_t& bytesUploaded)
 {
     const std::size_t bytes = count * sizeof(Element);
     const Element* begin = source.data() + first;
-    if (count > 0 && buffer.reserve(room * sizeof(Element))) uploaded.clear(); // nothing is in it any more
+    if (count > 0 && buffer.reserve(room * sizeof(Element))) uploaded.clear(); // new storage is empty
     if (uploaded.size() == count && (count == 0 || std::memcmp(uploaded.data(), begin, bytes) == 0)) return false;
     if (uploaded.size() == count)
     {
@@ -101,7 +102,7 @@ std::vector<PosePalette::Chunk*> PosePalette::upload(const PoseBatch& batch, std
         isChanged |= uploadChanged(batch.rootMatrices(), hasRoots ? first : 0, hasRoots ? size : 0,
                                    hasRoots ? chunk.width : 0, chunk.uploadedRootMatrices, chunk.roots, bytesUploaded);
         const bool hasTints = !batch.tints().empty();
-        // Tints are for the draw alone: the palette stays as it is.
+        // Only the draw reads tints: the palette does not change.
         uploadChanged(batch.tints(), hasTints ? first : 0, hasTints ? size : 0, hasTints ? size : 0,
                       chunk.uploadedTints, chunk.tints, bytesUploaded);
         chunk.isEvaluated = chunk.isEvaluated && !isChanged;

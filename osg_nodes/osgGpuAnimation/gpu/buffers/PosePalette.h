@@ -20,39 +20,37 @@ public:
     {
         explicit Chunk(osg::GLExtensions& gl);
 
-        /// Whether the pose pass gets all samples as attributes; otherwise it fetches them.
+        /// True if the pose pass gets all samples as attributes; otherwise it fetches them.
         bool hasSamplesAsAttributes() const;
-        /// Makes the instances the vertices of the pose pass.
+        /// Binds the instances as the vertices of the pose pass.
         void bindInstances(osg::GLExtensions& gl) const;
 
         std::size_t size = 0;  ///< instances
         std::size_t width = 0; ///< widthOf(size): the palette's stride
         std::size_t sampleStride = 1;
-        std::vector<BlendSample> uploadedSamples;       ///< what `samples` holds
-        std::vector<AffineMatrix> uploadedRootMatrices; ///< what `roots` holds
-        std::vector<std::uint32_t> uploadedTints;       ///< what `tints` holds
+        std::vector<BlendSample> uploadedSamples;       ///< content of `samples`
+        std::vector<AffineMatrix> uploadedRootMatrices; ///< content of `roots`
+        std::vector<std::uint32_t> uploadedTints;       ///< content of `tints`
         BufferTexture samples;
         BufferTexture roots;
         BufferTexture tints;
-        bool isEvaluated = false; ///< `palette` is what the inputs ask for
+        bool isEvaluated = false; ///< true if `palette` belongs to the inputs
         BufferTexture palette;    ///< RGBA32F: paletteSize * width matrices, entry-major
     };
 
-    /// Places of so many instances: filled up to what the feedback pass draws the fastest way. Those beyond are
-    /// computed from whatever lies in the buffers, whose numbers a fetch out of range at most makes other numbers, and
-    /// never read.
+    /// The number of instances rounded up to the multiple that the feedback pass draws fastest. Padding instances
+    /// contain undefined values and are never read.
     static std::size_t widthOf(std::size_t size);
 
     explicit PosePalette(osg::GLExtensions& gl) : _gl(&gl) {}
 
-    /// Cuts the batch's instances into chunks of at most that many and uploads what is new of each.
-    /// Returns the chunks that are to be evaluated: those whose content changed, and those that have not been yet.
-    /// bytesUploaded is added to.
+    /// Splits the batch into chunks of at most chunkCapacity instances and uploads the changes of each chunk. Returns
+    /// the chunks to evaluate: those with changes and those never evaluated. Adds to bytesUploaded.
     std::vector<Chunk*> upload(const PoseBatch& batch, std::size_t chunkCapacity, std::size_t& bytesUploaded);
 
-    /// No texture where the instance's chunk has not been evaluated.
+    /// The texture is 0 if the instance's chunk has not been evaluated.
     PalettePlace place(std::size_t instance) const;
-    /// No chunk counts as evaluated any more.
+    /// Marks all chunks as not evaluated.
     void invalidate();
     const std::vector<std::unique_ptr<Chunk>>& chunks() const { return _chunks; }
 

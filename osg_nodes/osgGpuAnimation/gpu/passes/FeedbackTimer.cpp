@@ -18,7 +18,7 @@ void DeletionLists::make(osg::State& state)
     DeletionLists& lists = *osg::get<DeletionLists>(contextId);
     if (lists._areMade) return;
     lists._areMade = true;
-    // There is no other way to a list than to drop something.
+    // Only a deletion creates a list.
     const osg::ref_ptr<osg::Shader> shader = new osg::Shader(osg::Shader::VERTEX);
     const osg::ref_ptr<osg::Program> program = new osg::Program;
     const osg::ref_ptr<osg::Referenced> ofShader = new osg::Shader::PerContextShader(shader, contextId);
@@ -79,7 +79,7 @@ std::vector<FeedbackTimer::Measured> FeedbackTimer::takeFinished()
         GLuint64 begin = 0, end = 0; // nanoseconds
         _gl->glGetQueryObjectui64v(stamps.begin, GL_QUERY_RESULT, &begin);
         _gl->glGetQueryObjectui64v(stamps.end, GL_QUERY_RESULT, &end);
-        // The clock may have turned over: that one is left out.
+        // Skips a measurement during which the clock wrapped.
         if (end >= begin) measured.push_back({stamps.frameNumber, 1e-9 * static_cast<double>(end - begin)});
         _inFlight.pop_front();
         _spare.push_back(stamps);

@@ -12,15 +12,15 @@
 namespace osgGpuAnimation
 {
 
-/// OSG's lists of a context's programs, shaders and vertex array objects to be deleted. OSG makes each when the first
-/// object is dropped, by whatever thread drops it and without a lock, while the draw thread may be looking through its
-/// lists: a DatabasePager whose last character goes would do so. Made beforehand, they only have to be found.
+/// OSG's lists of the programs, shaders and vertex array objects to delete in a context. OSG creates each list when the
+/// first object is deleted, in any thread (a DatabasePager that deletes its last character) and without a lock, while
+/// the draw thread may read the lists. Lists that exist beforehand avoid this race.
 class DeletionLists : public osg::Referenced
 {
 public:
     explicit DeletionLists(unsigned int) {}
 
-    /// Makes the lists of the state's context unless they are made. The context is current.
+    /// Creates the lists of the state's context at the first call. The context must be current.
     static void make(osg::State& state);
 
 protected:
@@ -30,9 +30,9 @@ private:
     bool _areMade = false;
 };
 
-/// How long the GPU takes for what is drawn between begin() and end(), told some frames later and never waited for: one
-/// object a graphics context, made at first use. Time stamps (GL_ARB_timer_query), which may be taken within others'
-/// queries. Only to be called on the draw side, with the context current.
+/// Measures the GPU time between begin() and end(). Results arrive some frames later; it never waits. Each graphics
+/// context has one timer. It uses time stamps (GL_ARB_timer_query), which work within the queries of other code. Call
+/// it on the draw side only, with the context current.
 class FeedbackTimer : public osg::GraphicsObjectManager
 {
 public:
@@ -46,9 +46,9 @@ public:
     static FeedbackTimer& of(osg::State& state);
 
     void begin();
-    /// Nothing is measured where the context has no time stamps or the GPU is too many measurements behind.
+    /// Does nothing if the context has no time stamps or too many measurements are unfinished.
     void end(unsigned int frameNumber);
-    /// What the GPU has finished since the last call.
+    /// The measurements that the GPU has finished since the last call.
     std::vector<Measured> takeFinished();
 
     void flushDeletedGLObjects(double, double&) override {}

@@ -10,8 +10,8 @@ namespace osgGpuAnimation
 
 class PoseBatch;
 
-/// What the programs of the mix stage are made for: each variant leaves out what its batch does not need, since some
-/// drivers (llvmpipe) run both sides of every branch.
+/// A permutation of the mix stage's programs. It omits the features that its batch does not need, since some drivers
+/// (llvmpipe) execute both sides of every branch.
 struct PoseVariant
 {
     bool hasSplines = false;        ///< some clip of the set is a Spline clip
@@ -24,22 +24,22 @@ struct PoseVariant
     bool hasAdditive = false;       ///< some sample is additive
     bool hasExactKeys = false;      ///< some clip moves some of the tracks, in full precision
     bool hasCompactKeys = false;    ///< some compact clip moves some of the tracks
-    int sampleCount = 0; ///< blend samples of an instance, where they are attributes; 0: there are more, to be fetched
-    PartMotion translationMotion = PartMotion::Constant; ///< of the tracks, the most that any does in any clip
+    int sampleCount = 0; ///< blend samples of an instance, if they are attributes; 0: the shader fetches them
+    PartMotion translationMotion = PartMotion::Constant; ///< the largest of any track in any clip
     PartMotion scaleMotion = PartMotion::Constant;
 
-    /// What the batch asks of the mix stage; of tracks that stay as they are.
+    /// The features that the batch needs, for constant tracks.
     static PoseVariant of(const PoseBatch& batch);
-    /// The most that any of the tracks does.
+    /// Sets the motion of the tracks.
     void setMotion(const PackedKeyframes::Track& motion);
 
     bool operator<(const PoseVariant& other) const { return key() < other.key(); }
 
-    /// GLSL: a constant for each member, of its name.
+    /// GLSL declarations: one constant per member, with the member's name.
     std::string constants() const;
 
 private:
-    /// A number of its own for each variant.
+    /// A unique number per variant.
     unsigned int key() const;
 };
 

@@ -11,8 +11,8 @@
 namespace osgGpuAnimation
 {
 
-/// The pseudo-loader for crowds: `fox.glb.40x40.crowd` reads `fox.glb`, by whatever plugin, and shows its animated
-/// character 1600 times in 40 columns and 40 rows, each with a clip and a time of its own.
+/// The pseudo-loader for crowds: `fox.glb.40x40.crowd` reads `fox.glb` with the plugin of its extension and shows its
+/// animated character 1600 times in 40 columns and 40 rows, each with a clip and a time of its own.
 class ReaderWriterCrowd : public osgDB::ReaderWriter
 {
 public:

@@ -79,7 +79,7 @@ osgDB::ReaderWriter::ReadResult ReaderWriterGltf::readNode(std::istream& stream,
         if (!importOptions) return ReadResult(importOptions.error().message);
         const Result<std::string> bytes = gltf::readModelStream(stream, importOptions.value());
         if (!bytes) return ReadResult(bytes.error().message);
-        // A stream has no folder of its own; external files are found in the folder that the options put first.
+        // A stream has no folder; the first database path of the options is the folder of its external files.
         const bool hasFolder = options && !options->getDatabasePathList().empty();
         return import(bytes.value(),
                       hasFolder ? osgDB::concatPaths(options->getDatabasePathList().front(), "stream") : "", options,

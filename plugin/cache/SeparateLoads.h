@@ -7,13 +7,13 @@
 namespace osgGpuAnimation
 {
 
-/// Sees to it that two loads of one file never give the same character: what osgDB's object cache is to keep
-/// (Options::CACHE_NODES, CACHE_OBJECTS) stays there as it was read, and each load gets a copy of the nodes. Meshes,
-/// textures and animation sets are shared; files without our nodes are handed out as ever.
+/// Makes two loads of one file return two characters: osgDB's object cache (Options::CACHE_NODES, CACHE_OBJECTS) keeps
+/// the nodes that were read, and each load returns a copy of them. The copies share meshes, textures and animation
+/// sets. Files without nodes of this kit are not copied.
 ///
-///     static SeparateLoads::Installation separateLoads; // in a plugin: from when it is loaded until it is closed
+///     static SeparateLoads::Installation separateLoads; // in a plugin: installed while the plugin is loaded
 ///
-/// It is osgDB's read file callback, and only where there is none: an application that sets its own goes without.
+/// It installs itself as osgDB's read file callback unless the application has set one.
 class SeparateLoads : public osgDB::ReadFileCallback
 {
 public:

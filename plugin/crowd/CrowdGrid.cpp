@@ -14,7 +14,7 @@ namespace osgGpuAnimation::crowd
 namespace
 {
 
-/// How much room there is between one and the next, as a part of the larger side.
+/// The gap between neighbours, as a fraction of the larger side.
 constexpr double gap = 0.2;
 
 Result<std::size_t> findClip(const AnimationSet& set, const std::string& nameOrNumber)
@@ -40,7 +40,7 @@ Result<std::vector<std::size_t>> findClips(const AnimationSet& set, const std::v
     return clips;
 }
 
-/// The larger side of the clips' boxes on the ground, as the character stands in the model. 1 where there is nothing.
+/// The larger horizontal side of the clips' boxes under the character's placement; 1 if the boxes are empty.
 double widthOf(const AnimatedCharacter& character, const osg::Matrixd& placement, const std::vector<std::size_t>& clips,
                bool isYUp)
 {
@@ -60,7 +60,7 @@ double widthOf(const AnimatedCharacter& character, const osg::Matrixd& placement
     return width > 0.0 ? width : 1.0;
 }
 
-/// A share of 1 that is the same with every standard library.
+/// Random in [0, 1), the same with every standard library (std::uniform_real_distribution is not).
 double share(std::mt19937& random)
 {
     return static_cast<double>(random()) / 4294967296.0;
@@ -81,7 +81,7 @@ AnimationController randomController(const AnimatedCrowd& crowd, const std::vect
 Result<osg::ref_ptr<AnimatedCrowd>> makeCrowd(osg::Node& model, const CrowdOptions& options)
 {
     const AnimatedCharacter* character = findCharacter(model);
-    if (!character) return Error{"there is no animated character in it"};
+    if (!character) return Error{"the model has no animated character"};
     const Result<std::vector<std::size_t>> clips = findClips(character->getAnimationSet(), options.clips);
     if (!clips) return clips.error();
 

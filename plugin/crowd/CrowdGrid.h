@@ -8,9 +8,9 @@
 namespace osgGpuAnimation::crowd
 {
 
-/// The crowd of a model that was read: its first AnimatedCharacter in columns and rows round the model's own place,
-/// each as it stands there, with a clip and a time of its own. What else the model has is not in the crowd.
-/// Errors: no animated character in the model; no such clip; a placement that a crowd refuses.
+/// Makes a crowd of the model's first AnimatedCharacter: columns and rows around its place in the model, each instance
+/// with the model's orientation and scale, and with a random clip and time. Other nodes of the model are left out.
+/// Errors: the model has no animated character; no such clip; a placement that a crowd refuses.
 Result<osg::ref_ptr<AnimatedCrowd>> makeCrowd(osg::Node& model, const CrowdOptions& options);
 
 } // namespace osgGpuAnimation::crowd

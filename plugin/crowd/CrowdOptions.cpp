@@ -26,7 +26,7 @@ bool isAmong(const Names& names, const std::string& name)
     return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// False where the text is not a number, wholly.
+/// False if the whole text is not a number.
 template <typename Number>
 bool readNumber(const std::string& text, Number& out)
 {
@@ -41,10 +41,10 @@ Result<bool> readSize(const std::string& size, CrowdOptions& out)
     if (cross == std::string::npos || !readNumber(size.substr(0, cross), out.columns) ||
         !readNumber(size.substr(cross + 1), out.rows))
         return Error{gltf::quoted(size) + " is not a size like 40x40 (columns x rows)"};
-    if (out.columns == 0 || out.rows == 0) return Error{"a crowd of " + size + " has nobody in it"};
+    if (out.columns == 0 || out.rows == 0) return Error{"a crowd of " + size + " is empty"};
     if (out.rows > AnimatedCrowd::maxInstances / out.columns)
-        return Error{"a crowd of " + size + " is more than the " + std::to_string(AnimatedCrowd::maxInstances) +
-                     " that one can have"};
+        return Error{"a crowd of " + size + " exceeds the limit of " + std::to_string(AnimatedCrowd::maxInstances) +
+                     " instances"};
     return true;
 }
 
@@ -62,16 +62,16 @@ std::vector<std::string> splitAtCommas(const std::string& text)
     return parts;
 }
 
-/// What a value of the option must be.
+/// The values that the option accepts, for messages.
 std::string wanted(const std::string& name)
 {
     if (name == "seed") return "a whole number from 0 to 4294967295";
     if (name == "spacing") return "a number of units above 0";
     if (name == "pixelError") return LodRange::pixelErrorsTaken();
-    return "names or numbers of clips apart by commas";
+    return "names or numbers of clips separated by commas";
 }
 
-/// False where the value does not fit the option.
+/// False if the option does not accept the value.
 bool apply(const gltf::OptionWord& word, CrowdOptions& out)
 {
     const std::string value = word.value.value_or("");
@@ -94,9 +94,10 @@ const std::vector<gltf::OptionHelp>& optionHelp()
 {
     static const std::vector<gltf::OptionHelp> help = {
         {"clips=NAME|INDEX,...", "the clips to choose from; default: all"},
-        {"spacing=UNITS", "from one to the next; default: by the bounds"},
-        {"pixelError=PIXELS", "fewer triangles where that hides how far they are off; default: 0, all triangles"},
-        {"seed=NUMBER", "another number, other clips and times; default: 1"},
+        {"spacing=UNITS", "distance between neighbours; default: by the bounds"},
+        {"pixelError=PIXELS",
+         "fewer triangles while the error stays below that size on screen; default: 0, all triangles"},
+        {"seed=NUMBER", "seed of the random clips and times; default: 1"},
         {"noRotation", "keep glTF's +Y up; default: +Z up"},
     };
     return help;
@@ -113,7 +114,7 @@ std::string modelOptions(const std::string& options)
 
 std::vector<std::string> optionHints(const std::string& options)
 {
-    // Those that the model's reader knows too are for it to tell.
+    // The model's reader gives the hints for the options that it shares.
     std::vector<gltf::OptionHelp> own = optionHelp();
     own.erase(std::remove_if(own.begin(), own.end(),
                              [](const gltf::OptionHelp& help)
@@ -122,7 +123,8 @@ std::vector<std::string> optionHints(const std::string& options)
     std::vector<std::string> hints = gltf::misspeltOptions(options, own, gltf::optionHelp());
     for (const gltf::OptionWord& word : gltf::splitOptions(options))
         if (isAmong(ofSinglesAlone, word.name))
-            hints.push_back(gltf::quoted(word.name) + " is for single characters and does nothing to a crowd");
+            hints.push_back(gltf::quoted(word.name) +
+                            " applies to single characters only and has no effect on a crowd");
     return hints;
 }
 

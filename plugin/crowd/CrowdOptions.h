@@ -14,32 +14,30 @@
 namespace osgGpuAnimation::crowd
 {
 
-/// What a crowd is to be made of: `fox.glb.40x40.crowd` is 40 columns and 40 rows of what `fox.glb` holds.
+/// The description of a crowd: `fox.glb.40x40.crowd` is 40 columns and 40 rows of the character in `fox.glb`.
 struct CrowdOptions
 {
     std::string modelFile;
     std::size_t columns = 1, rows = 1;
-    std::vector<std::string> clips;  ///< names or numbers to choose from; none: all
-    std::optional<double> spacing;   ///< units of the scene, from one to the next
+    std::vector<std::string> clips;  ///< names or numbers to choose from; empty: all
+    std::optional<double> spacing;   ///< distance between neighbours in units of the scene; none: by the clips' bounds
     std::optional<float> pixelError; ///< see AnimatedCrowd::setPixelError; none: the character's own
-    std::uint32_t seed = 1;          ///< the same clips and times at each load
+    std::uint32_t seed = 1;          ///< of the random clips and times
     bool isYUp = false;              ///< the model keeps glTF's +Y up: the ground is XZ
 };
 
-/// The options of a crowd, with a line on what each does.
+/// The options of a crowd, each with a line of help.
 const std::vector<gltf::OptionHelp>& optionHelp();
 
-/// The option string without what is the crowd's alone and what is for single characters: what its model is to be
-/// read with.
+/// The option string for the crowd's model: without the options of crowds alone and those of single characters.
 std::string modelOptions(const std::string& options);
 
-/// A sentence about each word that is nearly one of a crowd's options, and about each that is one of a model's but does
-/// nothing to a crowd.
+/// A hint for each misspelt option of a crowd, and for each option of a model that has no effect on a crowd.
 std::vector<std::string> optionHints(const std::string& options);
 
-/// name: without the `.crowd`. options: osgDB's option string; other readers' words are passed over.
-/// Errors: no file name before the size, a size that is not COLUMNSxROWS, of nothing, or of more than a crowd can hold;
-/// a value that does not fit its option.
+/// name: without the `.crowd`. options: osgDB's option string; words of other readers are ignored.
+/// Errors: no file name before the size; a size that is not COLUMNSxROWS, is 0 or exceeds AnimatedCrowd::maxInstances;
+/// a value that its option does not accept.
 Result<CrowdOptions> parseCrowd(const std::string& name, const std::string& options);
 
 } // namespace osgGpuAnimation::crowd

@@ -91,7 +91,7 @@ Result<bool> Importer::makeSet(const NodeTree& tree, const Joints& joints, const
 
 void Importer::makeGraph(const NodeTree& tree, const Joints& joints, const Morphs& morphs)
 {
-    // glTF is +Y up, OSG is +Z up: the only place that converts.
+    // glTF is +Y up, OSG is +Z up. No other code of the import converts between them.
     const osg::Matrixd upright = osg::Matrixd::rotate(osg::PI_2, osg::Vec3d(1, 0, 0));
     _result.root = new osg::MatrixTransform(_options.noRotation ? osg::Matrixd::identity() : upright);
     if (tree.scene >= 0) _result.root->setName(_model.scenes[static_cast<std::size_t>(tree.scene)].name);

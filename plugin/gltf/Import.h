@@ -23,7 +23,7 @@ struct ImportedModel
 {
     osg::ref_ptr<osg::MatrixTransform> root;   ///< turns +Y up to +Z up (identity with noRotation)
     osg::ref_ptr<AnimatedCharacter> character; ///< below root; null where nothing in the file can move
-    std::shared_ptr<const AnimationSet> set;   ///< the character's; null if there is none
+    std::shared_ptr<const AnimationSet> set;   ///< the character's; null without a character
     std::vector<ImportedPrimitive> primitives; ///< by node, then primitive
 
     int scene = 0;                               ///< the imported scene, -1: the file has none
@@ -38,7 +38,7 @@ struct ImportedModel
 };
 
 /// Imports a file's content; see loadDocument() for bytes and fileName.
-/// Errors: as loadDocument(); an unknown clip or scene asked for in the options.
+/// Errors: those of loadDocument(); the options name a clip or scene that the file does not have.
 Result<ImportedModel> importModel(const std::string& bytes, const std::string& fileName, const ImportOptions& options);
 
 } // namespace osgGpuAnimation::gltf

@@ -15,7 +15,7 @@ namespace osgGpuAnimation::gltf
 namespace
 {
 
-/// False if the text is no whole number from 0 to the largest Number.
+/// False if the text is not a whole number from 0 to the largest Number.
 template <typename Number>
 bool read(const std::string& text, Number& out)
 {
@@ -24,7 +24,7 @@ bool read(const std::string& text, Number& out)
     return number && *number >= 0;
 }
 
-/// False if the text is no finite number.
+/// False if the text is not a finite number.
 template <>
 bool read(const std::string& text, double& out)
 {
@@ -49,7 +49,7 @@ struct Option
     bool (*set)(const std::string& value, ImportOptions& options);
 };
 
-/// Sets a member that is a flag: any value will do.
+/// Sets a flag, whatever the value.
 template <bool ImportOptions::*flag>
 bool setFlag(const std::string&, ImportOptions& options)
 {
@@ -70,26 +70,27 @@ const std::vector<Option>& allOptions()
         {{"clip=NAME|INDEX", "the clip that plays at first, by name or by number; default: the first"},
          "a name or a number",
          [](const std::string& value, ImportOptions& options) { return !options.clip.emplace(value).empty(); }},
-        {{"start=SECONDS", "where in that clip to begin; beyond its end: at its end"},
+        {{"start=SECONDS", "start time in that clip; beyond its end: its end"},
          seconds,
          [](const std::string& value, ImportOptions& options)
          { return read(value, options.start.emplace()) && *options.start >= 0.0; }},
-        {{"speed=NUMBER", "how fast it plays; negative: backwards; default: 1"},
+        {{"speed=NUMBER", "playback speed; negative: backwards; default: 1"},
          "a number",
          [](const std::string& value, ImportOptions& options) { return read(value, options.speed); }},
-        {{"loop=once|loop|pingpong", "what it does at its end; default: loop"},
+        {{"loop=once|loop|pingpong", "behaviour at the clip's end; default: loop"},
          "once, loop or pingpong",
          [](const std::string& value, ImportOptions& options) { return readLoopMode(value, options.loopMode); }},
-        {{"fade=SECONDS", "how long the keys' crossfades take; default: 0.3"},
+        {{"fade=SECONDS", "duration of the keys' crossfades; default: 0.3"},
          seconds,
          [](const std::string& value, ImportOptions& options)
          { return read(value, options.fadeSeconds) && options.fadeSeconds >= 0.0; }},
         {{"compact=FRACTION",
-          "smaller clips, off by at most that fraction of the model's longest side; default: exact"},
+          "compact clips with an error of at most that fraction of the model's longest side; default: exact"},
          "a number above 0, at most 1",
          [](const std::string& value, ImportOptions& options)
          { return read(value, options.compact.emplace()) && *options.compact > 0.0 && *options.compact <= 1.0; }},
-        {{"pixelError=PIXELS", "fewer triangles where that hides how far they are off; default: 0, all triangles"},
+        {{"pixelError=PIXELS",
+          "fewer triangles while the error stays below that size on screen; default: 0, all triangles"},
          LodRange::pixelErrorsTaken(),
          [](const std::string& value, ImportOptions& options)
          { return read(value, options.pixelError) && LodRange::isPixelError(options.pixelError); }},
@@ -103,10 +104,10 @@ const std::vector<Option>& allOptions()
         {{"allowOutsideFiles", "let a model read files outside its own folder"},
          "",
          setFlag<&ImportOptions::allowOutsideFiles>},
-        {{"maxJsonBytes=N", "bytes of the JSON text, data URIs and all; default: 512 MiB"},
+        {{"maxJsonBytes=N", "bytes of the JSON text, data URIs included; default: 512 MiB"},
          number,
          setLimit<&ImportOptions::maxJsonBytes>},
-        {{"maxJsonDepth=N", "how deep JSON may nest; default: 256"}, number, setLimit<&ImportOptions::maxJsonDepth>},
+        {{"maxJsonDepth=N", "nesting depth of the JSON; default: 256"}, number, setLimit<&ImportOptions::maxJsonDepth>},
         {{"maxNodeDepth=N", "nodes from a root to a leaf; default: 4096"},
          number,
          setLimit<&ImportOptions::maxNodeDepth>},

@@ -17,26 +17,26 @@ namespace osgGpuAnimation::gltf
 struct ImportOptions
 {
     std::optional<std::string> clip; ///< name, or index where no clip has that name; default: the first
-    std::optional<double> start;     ///< seconds into that clip, held to its duration; default: where its speed begins
+    std::optional<double> start;     ///< seconds, clamped to that clip's duration; default: 0, or its end if speed < 0
     double speed = 1.0;              ///< of that clip, see AnimationLayer::setSpeed
     LoopMode loopMode = LoopMode::Loop;
     double fadeSeconds = 0.3;       ///< of the keys' crossfades, see CharacterKeys
-    std::optional<double> compact;  ///< compact clips, see CompactedCharacter: off by at most that fraction; above 0
+    std::optional<double> compact;  ///< largest error of compact clips, see CompactedCharacter; above 0; none: exact
     double pixelError = 0.0;        ///< see AnimatedCharacter::setPixelError; 0 or more
-    bool noKeys = false;            ///< no keys for viewers on the character
+    bool noKeys = false;            ///< no CharacterKeys on the character
     std::optional<int> scene;       ///< default: the file's own, else 0
     bool noRotation = false;        ///< keep glTF's +Y up; default: turn to OSG's +Z up at the root
-    bool allowOutsideFiles = false; ///< let URIs leave the model's folder
+    bool allowOutsideFiles = false; ///< URIs may name files outside the model's folder
 
-    std::size_t maxJsonBytes = std::size_t(512) << 20; ///< of the JSON text, data URIs and all
+    std::size_t maxJsonBytes = std::size_t(512) << 20; ///< of the JSON text, data URIs included
     std::size_t maxJsonDepth = 256;
     std::size_t maxNodeDepth = 4096;                       ///< nodes from a root to a leaf
     std::size_t maxElements = 1u << 24;                    ///< of any one array of the document
     std::size_t maxDocumentBytes = std::size_t(448) << 20; ///< memory for the JSON, without the data it points to
-    std::size_t maxDecodedBytes = std::size_t(2) << 30;    ///< buffers, accessors and images, all together
+    std::size_t maxDecodedBytes = std::size_t(2) << 30;    ///< see MemoryBudget
 };
 
-/// An option for supportsOption(), like `clip=NAME`, and a line on what it does.
+/// An option for supportsOption(), like `clip=NAME`, and a line of help.
 using OptionHelp = std::pair<const char*, const char*>;
 
 /// All options that parseOptions() knows.
@@ -45,7 +45,7 @@ const std::vector<OptionHelp>& optionHelp();
 std::string optionName(const OptionHelp& help);
 
 /// Reads osgDB's option string, see splitOptions(). Words with other names belong to other readers and are ignored.
-/// Errors: a value that is missing, or no number where a number is needed.
+/// Errors: an option without its value, or with a value that it does not accept.
 Result<ImportOptions> parseOptions(const std::string& text);
 
 /// One option of osgDB's option string.
@@ -63,8 +63,8 @@ std::vector<OptionWord> splitOptions(const std::string& text);
 std::string joinOptions(const std::vector<OptionWord>& words);
 
 /// A hint for each word that differs from a known option by its case or by one letter that is wrong, missing, extra or
-/// swapped with the next: `"cliq" is unknown; is "clip" meant?`. osgDB passes all options to all readers, so other
-/// words, and those of `others`, are ignored.
+/// swapped with the next: `"cliq" is unknown; is "clip" meant?`. osgDB passes all options to all readers, so all other
+/// words, and the options in `others`, are ignored.
 std::vector<std::string> misspeltOptions(const std::string& text, const std::vector<OptionHelp>& known,
                                          const std::vector<OptionHelp>& others = {});
 

@@ -18,14 +18,6 @@ namespace osgGpuAnimation::serializers
 namespace
 {
 
-/// The file has its own callbacks.
-osg::Object* createCharacter()
-{
-    auto* character = new AnimatedCharacter;
-    character->setUpdateCallback(nullptr);
-    return character;
-}
-
 void transferCharacterSet(ValueStream& stream, AnimatedCharacter& character)
 {
     transferSet(stream, character, character.getController().sharedSet());
@@ -34,7 +26,7 @@ void transferCharacterSet(ValueStream& stream, AnimatedCharacter& character)
 /// One bit for each setting that differs from the default. Earlier readers know the lower bits only.
 enum Extra : std::int32_t
 {
-    hasClipBounds = 1, ///< which reading computes again
+    hasClipBounds = 1, ///< reading computes the bounds again
     hasPixelError = 2, ///< the pixel error follows
     isDrawnAlone = 4,
 };
@@ -107,7 +99,7 @@ osg::Object* create()
 void addNothing(osgDB::ObjectWrapper*) {}
 
 osgDB::RegisterWrapperProxy wrappers[] = {
-    {&createCharacter, "osgGpuAnimation::AnimatedCharacter",
+    {&createWithoutCallback<AnimatedCharacter>, "osgGpuAnimation::AnimatedCharacter",
      "osgGpuAnimation::ExactNumbers osg::Object osg::Node osg::Group osg::Transform osg::MatrixTransform "
      "osgGpuAnimation::AnimatedCharacter",
      &addCharacterProperties},

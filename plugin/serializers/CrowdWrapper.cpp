@@ -11,8 +11,7 @@ namespace osgGpuAnimation::serializers
 namespace
 {
 
-/// Earlier crowds had an event callback that turned the viewer's home view. It is read as a callback without a
-/// function; crowds drop it.
+/// Earlier crowds had an event callback that turned the viewer's home view. The file contains it; reading drops it.
 class FormerTiltedHome : public osg::Callback
 {
 };
@@ -24,14 +23,6 @@ void dropTiltedHome(AnimatedCrowd& crowd)
         next = callback->getNestedCallback();
         if (dynamic_cast<FormerTiltedHome*>(callback.get())) crowd.removeEventCallback(callback);
     }
-}
-
-/// The file has its own callbacks.
-osg::Object* createCrowd()
-{
-    auto* crowd = new AnimatedCrowd;
-    crowd->setUpdateCallback(nullptr);
-    return crowd;
 }
 
 void transferCrowdSet(ValueStream& stream, AnimatedCrowd& crowd)
@@ -48,7 +39,7 @@ enum Version : std::int32_t
     withUpdateRate = 3, ///< no longer written
 };
 
-/// What follows an instance's placement.
+/// The playback data after an instance's placement.
 enum class Playback
 {
     Nothing,
@@ -153,7 +144,7 @@ void addCrowdProperties(osgDB::ObjectWrapper* wrapper)
                                { return crowd.getNumInstances() > 0 || crowd.getPixelError() > 0.0f; });
 }
 
-osgDB::RegisterWrapperProxy crowd(&createCrowd, "osgGpuAnimation::AnimatedCrowd",
+osgDB::RegisterWrapperProxy crowd(&createWithoutCallback<AnimatedCrowd>, "osgGpuAnimation::AnimatedCrowd",
                                   "osgGpuAnimation::ExactNumbers osg::Object osg::Node osg::Group osg::Transform "
                                   "osgGpuAnimation::AnimatedCrowd",
                                   &addCrowdProperties);

@@ -17,7 +17,7 @@ namespace osgGpuAnimation::serializers
 namespace
 {
 
-/// OSG's wrappers transfer the influences with the other vertex attributes; this property makes them influences.
+/// OSG's wrappers transfer the influences as vertex attributes; this property tells the mesh to use them.
 void transferInfluences(ValueStream& stream, SkinnedGeometry& mesh)
 {
     std::int32_t rigidEntry = mesh.getRigidEntry();
@@ -74,7 +74,7 @@ osgDB::RegisterWrapperProxy skinnedGeometry([]() -> osg::Object* { return new Sk
                                             "osg::Geometry osgGpuAnimation::SkinnedGeometry",
                                             &addMeshProperties);
 
-// A file has no shaders: reading gives the program that all characters share.
+// A file has no shaders: reading returns the program that all characters share.
 osgDB::RegisterWrapperProxy surfaceProgram([]() -> osg::Object* { return characterProgram().release(); },
                                            "osgGpuAnimation::SurfaceProgram", "osgGpuAnimation::SurfaceProgram",
                                            [](osgDB::ObjectWrapper*) {});
@@ -100,7 +100,7 @@ Fault findFaultInPrimitives(const SkinnedGeometry& mesh, std::size_t vertices)
 {
     for (const osg::ref_ptr<osg::PrimitiveSet>& primitives : mesh.getPrimitiveSetList())
     {
-        if (!primitives) return "a primitive set that is none";
+        if (!primitives) return "a missing primitive set";
         if (const auto* range = dynamic_cast<const osg::DrawArrays*>(primitives.get()))
             if (range->getFirst() < 0 || range->getCount() < 0) return "a range of vertices below 0";
         const unsigned int count = primitives->getNumIndices();
@@ -127,8 +127,8 @@ Fault findFaultInEntries(const SkinnedGeometry& mesh, std::size_t paletteSize)
 Fault findFaultInMorphs(const SkinnedGeometry& mesh, const AnimationSet& set)
 {
     if (mesh.getMorphTargets().empty()) return std::nullopt;
-    const auto morph = static_cast<std::size_t>(mesh.getMorph()); // huge where there is none
-    if (morph >= set.morphs().size()) return "a morph that is not the set's";
+    const auto morph = static_cast<std::size_t>(mesh.getMorph()); // -1 becomes huge
+    if (morph >= set.morphs().size()) return "a morph that the set does not have";
     const std::size_t weights = set.morphs()[morph].defaults.size();
     if (mesh.getMorphTargets().size() > weights)
         return counted(mesh.getMorphTargets().size(), "morph targets", weights);

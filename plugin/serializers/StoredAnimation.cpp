@@ -135,8 +135,8 @@ CompactParts toCompactParts(const ClipParts& clip)
     return compact;
 }
 
-/// Fills data with the transforms at rest and the weights; Clip::create decodes what moves. bytesLeft is reduced by the
-/// bytes of the keyframes. Error: the parts do not fit each other or the bytes.
+/// Fills data with the transforms at rest and the weights; Clip::create decodes what moves. Subtracts the
+/// bytes of the keyframes from bytesLeft. Error: the parts do not fit each other or exceed bytesLeft.
 Result<bool> toClipParts(CompactParts compact, ClipParts& clip, std::size_t& bytesLeft)
 {
     const std::size_t keyframes = clip.times.size(), weightTracks = clip.trackCount - clip.jointCount;

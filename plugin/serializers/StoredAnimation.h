@@ -13,13 +13,22 @@
 namespace osgGpuAnimation::serializers
 {
 
-/// As a property of a node: the set, or a reference to it if the file contains it already, so characters that share a
-/// set share it after reading too. A set that cannot be read makes the file unreadable.
+/// A property of a node: the set, or a reference to it if the file contains it already, so that characters that share a
+/// set still share it after reading. A set that cannot be read makes the file unreadable.
 void transferAnimationSet(ValueStream& stream, std::shared_ptr<const AnimationSet>& set);
 
 /// Removes, with a warning, every SkinnedGeometry below the group that refers to palette entries, morphs or vertices
 /// that do not exist: files are untrusted, and the GPU does not check indices.
 void removeUnfitMeshes(osg::Group& group, const AnimationSet& set);
+
+/// A new node without its own update callback: the file contains the callbacks.
+template <typename Class>
+osg::Object* createWithoutCallback()
+{
+    auto* node = new Class;
+    node->setUpdateCallback(nullptr);
+    return node;
+}
 
 /// The set of a character or crowd, whose meshes are read before it. set: the owner's, for writing.
 template <typename Owner>
@@ -32,7 +41,7 @@ void transferSet(ValueStream& stream, Owner& owner, std::shared_ptr<const Animat
 }
 
 /// The present state of all layers. Reading expects a controller of the same set; a layer whose state does not fit the
-/// set stays as it was, with a warning.
+/// set does not change, with a warning.
 void transferController(ValueStream& stream, AnimationController& controller);
 
 } // namespace osgGpuAnimation::serializers

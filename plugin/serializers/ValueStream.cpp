@@ -13,7 +13,7 @@ namespace
 constexpr std::size_t longestName = 1 << 20;
 
 /// A name as one word of plain characters, percent-encoded like a URI ("Hand R" is Hand%20R, the empty name is %): OSG
-/// 3.6 reads on beyond the end of a file that is cut off inside a quoted string.
+/// 3.6 reads beyond the end of a file that is cut off inside a quoted string.
 std::string toToken(const std::string& name)
 {
     constexpr char digits[] = "0123456789ABCDEF";
@@ -29,7 +29,7 @@ std::string toToken(const std::string& name)
     return token.empty() ? "%" : token;
 }
 
-/// Decodes a token; a wrong percent code stays as it is.
+/// Decodes a token; keeps a faulty percent code unchanged.
 std::string fromToken(const std::string& token)
 {
     std::string name;
@@ -86,8 +86,7 @@ ValueStream& ValueStream::number(Number& value)
     {
         const std::string read = word();
         const auto [end, fault] = std::from_chars(read.data(), read.data() + read.size(), value);
-        if (fault != std::errc() || end != read.data() + read.size())
-            fail("\"" + read + "\" is there instead of a number");
+        if (fault != std::errc() || end != read.data() + read.size()) fail("expected a number, found \"" + read + "\"");
     }
     if (!isGood()) value = 0;
     return *this;
@@ -102,7 +101,7 @@ ValueStream& ValueStream::property(const char* name)
     if (_out) *_out << _out->PROPERTY(name);
     if (!hasRead() || isBinary()) return *this;
     const std::string read = word();
-    if (read != name) fail("\"" + read + "\" is there instead of \"" + name + "\"");
+    if (read != name) fail("expected \"" + std::string(name) + "\", found \"" + read + "\"");
     return *this;
 }
 

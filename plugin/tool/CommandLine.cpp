@@ -42,7 +42,7 @@ character), clips, meshes, materials, extensions, bytes on the GPU, warnings.
   osggpuanim inspect knight.glb --json | jq '.clips[].name')";
 
 const char* const poseHelp =
-    R"(What is written: JSON of the schema gltf-pose/1, with the world matrices of the nodes that are joints (null for
+    R"(Writes JSON of the schema gltf-pose/1, with the world matrices of the nodes that are joints (null for
 others), joint matrices by skin, morph weights, bounding boxes and vertex positions, in the file's own axes (+Y up),
 units and numbers; matrices are column-major. Times beyond the clip hold its ends: nothing loops.
 
@@ -52,12 +52,12 @@ units and numbers; matrices are column-major. Times beyond the clip hold its end
   osggpuanim pose fox.glb --clip 0 --time 1 --evaluator cpu  without a GPU)";
 
 const char* const renderHelp =
-    R"(FILE is drawn through EGL (by Mesa's software renderer where there is no GPU) from three quarters in front, the
-camera blendPriority where everything fits all the pictures.
+    R"(Draws FILE through EGL (by Mesa's software renderer on a machine without a GPU). One camera, in front and to the
+side, shows everything in all pictures.
 
   osggpuanim render fox.glb -o fox.png
   osggpuanim render fox.glb --clip Walk --time 0.3 --size 1920x1080 -o walk.png
-  osggpuanim render fox.glb --frames 60 --fps 30 -o fox.png  fox.0001.png ... fox.0060.png, time going on from --time)";
+  osggpuanim render fox.glb --frames 60 --fps 30 -o fox.png  fox.0001.png ... fox.0060.png, the first at --time)";
 
 std::string checkFinite(const std::string& text)
 {
@@ -82,7 +82,7 @@ std::string checkPng(const std::string& name)
     return extension == ".png" ? "" : "'" + name + "' does not end in .png";
 }
 
-/// "800x600" to two numbers; throws what CLI11 reports as wrong usage.
+/// "800x600" to two numbers; throws CLI11's validation error.
 void readSize(const std::string& text, RenderCommand& command)
 {
     int width = 0;
@@ -114,8 +114,9 @@ void CommandLine::addInspect()
     _inspectApp->add_option("FILE", _inspect.file, "A .gltf or .glb")->required();
     _inspectApp->add_flag("--json", _inspect.json, "JSON, for programs");
     _inspectApp
-        ->add_option("--compact", _inspect.compact,
-                     "With compact clips, off by at most that fraction of the model's longest side (1e-4, say)")
+        ->add_option(
+            "--compact", _inspect.compact,
+            "Compact clips with an error of at most that fraction of the model's longest side, for example 1e-4")
         ->check(checkFraction)
         ->option_text("FRACTION");
 }

@@ -12,13 +12,13 @@
 namespace osgGpuAnimation::tool
 {
 
-/// The words of osggpuanim's command line: what may be written, what it means, and the help that teaches it.
+/// The command line of osggpuanim: its commands, their options and their help.
 class CommandLine
 {
 public:
     CommandLine();
 
-    /// Runs what the arguments ask for. Exit status: 0 done, 1 a file is at fault, 2 wrong usage.
+    /// Runs the command of the arguments. Exit status: 0 success, 1 a file is at fault, 2 wrong usage.
     int run(int argc, char** argv);
 
 private:

@@ -6,7 +6,8 @@
 namespace osgGpuAnimation::tool
 {
 
-/// Poses by the CPU twins of the shaders: Pose for the palette, SkinnedGeometry::computePositions for the vertices.
+/// Computes poses with the CPU twins of the shaders: Pose for the palette, SkinnedGeometry::computePositions for the
+/// vertices.
 class CpuPoseEvaluator : public PoseEvaluator
 {
 public:

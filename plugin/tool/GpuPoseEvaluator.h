@@ -17,13 +17,13 @@
 namespace osgGpuAnimation::tool
 {
 
-/// Poses by the GPU's pipeline, in a context of its own: matrices are read back from the palette buffer, positions are
-/// captured by transform feedback from the function of skin.glsl that draws characters.
+/// Computes poses with the GPU's pipeline, in a context of its own: reads matrices back from the palette buffer and
+/// captures positions, by transform feedback, from the function of skin.glsl that draws characters.
 class GpuPoseEvaluator : public PoseEvaluator
 {
 public:
     /// The model must outlive the evaluator; it has a character.
-    /// Error: there is no graphics context, or it lacks what the pipeline needs.
+    /// Error: no graphics context can be created, or it lacks a feature that the pipeline needs.
     static Result<std::unique_ptr<PoseEvaluator>> create(const gltf::ImportedModel& model);
     ~GpuPoseEvaluator() override;
 
@@ -41,8 +41,8 @@ private:
     const gltf::ImportedModel& _model;
     osg::ref_ptr<EglGraphicsContext> _context;
     PosePipeline& _pipeline;
-    osg::ref_ptr<osg::StateSet> _stateSet; ///< the capturing program, and whose palette it reads
-    /// One a primitive, null where it is not drawn from the palette: its vertices in order, drawn as points.
+    osg::ref_ptr<osg::StateSet> _stateSet; ///< the capturing program and the character's palette
+    /// One a primitive: its vertices in order, as points. Null if it is not drawn from the palette.
     std::vector<osg::ref_ptr<SkinnedGeometry>> _points;
 };
 

@@ -16,7 +16,7 @@ Result<bool> InspectCommand::run() const
     const Result<gltf::ImportedModel> model = readModel(file, options);
     if (!model) return Error{file + ": " + model.error().message};
     const nlohmann::ordered_json report = reportModel(model.value(), file);
-    // Names in a file may be anything; what is no UTF-8 is replaced.
+    // Names in a file may hold any bytes; those that are not UTF-8 are replaced.
     const auto replace = nlohmann::ordered_json::error_handler_t::replace;
     std::cout << (json ? report.dump(2, ' ', false, replace) + "\n" : reportText(report)) << std::flush;
     if (!std::cout) return Error{"standard output: cannot be written"};

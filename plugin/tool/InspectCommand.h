@@ -8,12 +8,12 @@
 namespace osgGpuAnimation::tool
 {
 
-/// `osggpuanim inspect`: what is in a file and what it costs, on standard output.
+/// `osggpuanim inspect`: prints the content of a file and its memory on standard output.
 struct InspectCommand
 {
     std::string file;
     double compact = 0.0; ///< see gltf::ImportOptions; 0: exact
-    bool json = false;    ///< for programs, instead of for people
+    bool json = false;    ///< prints JSON instead of text
 
     /// Error messages begin with the name of the file at fault.
     Result<bool> run() const;

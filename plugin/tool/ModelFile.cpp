@@ -27,14 +27,13 @@ Result<gltf::ImportedModel> readModel(const std::string& fileName, const gltf::I
     const std::filesystem::file_status status = std::filesystem::status(fileName, failure);
     if (!std::filesystem::exists(status)) return Error{"there is no such file"};
     if (std::filesystem::is_directory(status)) return Error{"is a folder, not a .gltf or .glb file"};
-    // A pipe or a device could block for ever, or never end.
+    // Reading a pipe or a device could block or never end.
     if (!std::filesystem::is_regular_file(status)) return Error{"is not a regular file"};
 
     const Result<std::string> bytes = gltf::readModelFile(fileName, options);
     if (!bytes) return bytes.error();
     Result<gltf::ImportedModel> model = gltf::importModel(bytes.value(), fileName, options);
-    if (!model && !isCalledGltf(fileName))
-        return Error{"only .gltf and .glb files can be read here, and this is none: " + model.error().message};
+    if (!model && !isCalledGltf(fileName)) return Error{"the file is neither .gltf nor .glb: " + model.error().message};
     return model;
 }
 

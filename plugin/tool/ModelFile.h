@@ -9,7 +9,7 @@ namespace osgGpuAnimation::tool
 {
 
 /// Reads and imports a .gltf or .glb, in the file's own axes if options.noRotation says so.
-/// Errors: there is no such file, it is a folder or cannot be read, it is empty, or the import refuses it.
+/// Errors: the file does not exist, is a folder, is empty, cannot be read, or the import refuses it.
 Result<gltf::ImportedModel> readModel(const std::string& fileName, const gltf::ImportOptions& options);
 
 } // namespace osgGpuAnimation::tool

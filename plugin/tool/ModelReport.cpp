@@ -99,7 +99,7 @@ ordered_json reportClips(const gltf::ImportedModel& model)
     return clips;
 }
 
-/// bytes: on the GPU. snapshotBytes: what snapshots of all joints, 48 bytes each, would take.
+/// bytes: on the GPU. snapshotBytes: the size of uncompressed keyframes, 48 bytes a joint.
 ordered_json reportKeyframes(const gltf::ImportedModel& model)
 {
     ordered_json keyframes = {{"count", 0}, {"bytes", 0}, {"snapshotBytes", 0}};
@@ -160,7 +160,7 @@ std::string rounded(const ordered_json& value)
     return out.str();
 }
 
-/// How far compact clips are off.
+/// The errors of compact clips.
 std::string errorOf(const ordered_json& keyframes)
 {
     if (!keyframes.contains("error")) return ", exact";

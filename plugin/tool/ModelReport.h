@@ -10,7 +10,7 @@
 namespace osgGpuAnimation::tool
 {
 
-/// What is in an imported file and what it costs: as JSON, or as lines for people made from the same JSON.
+/// The content of an imported file and its memory, as JSON or as text made from that JSON.
 ///
 ///     file, generator, scene
 ///     joints       count, depth (levels of the hierarchy), roots (names)
@@ -19,7 +19,7 @@ namespace osgGpuAnimation::tool
 ///     clips        index (the file's), name, seconds, keyframes, form (linear or spline)
 ///     meshes       count, primitives, vertices, skinned, rigid, still (primitives each), morphTargets
 ///     materials, extensions                             names
-///     gpuBytes     animation, meshes, textures, total   as they lie in GPU buffers, without what the driver adds
+///     gpuBytes     animation, meshes, textures, total   in GPU buffers, without the driver's own memory
 ///     warnings, notes
 nlohmann::ordered_json reportModel(const gltf::ImportedModel& model, const std::string& fileName);
 std::string reportText(const nlohmann::ordered_json& report);

@@ -16,8 +16,8 @@ namespace osgGpuAnimation::tool
 namespace
 {
 
-constexpr double fieldOfView = 30.0; ///< degrees, upright
-constexpr double margin = 1.08;      ///< of the picture, around what is shown
+constexpr double fieldOfView = 30.0; ///< degrees, vertical
+constexpr double margin = 1.08;      ///< size of the picture relative to the points in it
 
 /// A quad behind everything, light at the top and a little darker at the bottom.
 osg::ref_ptr<osg::Camera> makeBackground()
@@ -63,7 +63,7 @@ void setUpLight(osgViewer::Viewer& viewer)
     light->setSpecular(osg::Vec4(0.2f, 0.2f, 0.2f, 1.0f));
 }
 
-/// Where an eye and what it looks at are.
+/// The position of the camera and its target.
 struct Standpoint
 {
     osg::Vec3d eye;
@@ -71,7 +71,7 @@ struct Standpoint
     double radius = 1.0; ///< of the points around the middle
 };
 
-/// The distance along `back` from the middle at which all points are in the picture.
+/// The distance from the middle along `back` at which the picture holds all points.
 double fittingDistance(const std::vector<osg::Vec3d>& points, const Standpoint& place, const osg::Vec3d (&axes)[3],
                        double aspect)
 {
@@ -86,7 +86,7 @@ double fittingDistance(const std::vector<osg::Vec3d>& points, const Standpoint& 
     return distance;
 }
 
-/// Somewhere along `back`, with all points in the picture, as large as can be.
+/// The view along `back` in which all points are visible and as large as possible.
 Standpoint standpoint(const std::vector<osg::Vec3d>& points, const osg::Vec3d& back, double aspect)
 {
     osg::Vec3d right = osg::Vec3d(0, 0, 1) ^ back;
@@ -101,7 +101,7 @@ Standpoint standpoint(const std::vector<osg::Vec3d>& points, const osg::Vec3d& b
     place.middle = axes[0] * box.center().x() + axes[1] * box.center().y() + axes[2] * box.center().z();
     place.radius = std::max(box.radius(), 1e-6);
     double distance = fittingDistance(points, place, axes, aspect);
-    // What is near looks larger, so the middle of the points is not that of the picture: a few steps bring it there.
+    // Near points look larger, so the middle of the points is not the middle of the picture: a few steps centre it.
     for (int step = 0; step < 4; ++step)
     {
         osg::BoundingBoxd seen;
@@ -174,7 +174,7 @@ void PictureViewer::show(osg::Node* scene, const std::vector<osg::Vec3d>& points
     const double aspect = camera->getViewport()->aspectRatio();
     const Standpoint place = standpoint(points, back, aspect);
     camera->setViewMatrixAsLookAt(place.eye, place.middle, osg::Vec3d(0, 0, 1));
-    // Near and far planes are set by what is culled.
+    // The cull traversal computes the near and far planes.
     camera->setProjectionMatrixAsPerspective(fieldOfView, aspect, place.radius / 100.0, place.radius * 100.0);
     _viewer.realize();
 }

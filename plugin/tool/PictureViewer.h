@@ -14,7 +14,7 @@ namespace osgGpuAnimation::tool
 {
 
 /// A viewer without a display whose frames become images: soft background, light from above the camera, 4x
-/// multisampling where there is.
+/// multisampling if the driver supports it.
 ///
 ///     Result<std::unique_ptr<PictureViewer>> viewer = PictureViewer::create(800, 600);
 ///     viewer.value()->show(scene, points);
@@ -22,13 +22,13 @@ namespace osgGpuAnimation::tool
 class PictureViewer
 {
 public:
-    /// Error: there is no graphics context, or none of that size.
+    /// Error: no graphics context, or none of that size, can be created.
     static Result<std::unique_ptr<PictureViewer>> create(int width, int height);
     ~PictureViewer();
 
-    /// Puts the camera where it sees these points from three quarters in front: from -Y, a little from +X and above.
+    /// Places the camera so that it sees all these points from -Y, a little from +X and from above.
     void show(osg::Node* scene, const std::vector<osg::Vec3d>& points);
-    /// A frame at that simulation time, RGB, 8 bits each. Null where GL reported an error.
+    /// Draws a frame at that simulation time (seconds): RGB, 8 bits each. Null if GL reports an error.
     osg::ref_ptr<osg::Image> draw(double simulationTime);
 
 private:

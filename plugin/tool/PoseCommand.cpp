@@ -30,7 +30,7 @@ Result<int> findClip(const gltf::ImportedModel& model, const PoseRequest& reques
             return Error{"animations[" + std::to_string(*request.animation) + "]: there is no such clip"};
         return static_cast<int>(found - numbers.begin());
     }
-    // The import has looked the name up (and refused the file where there is none) and plays that clip.
+    // The import has found the clip by its name, or refused the file, and plays it.
     return request.bind || !model.character ? -1 : model.character->getController().clip();
 }
 
@@ -44,7 +44,7 @@ PoseInstruction instructionAt(const gltf::ImportedModel& model, int clip, double
     return controller.instruction();
 }
 
-/// The palette entries of the weights that are set by hand.
+/// The palette entries of the weights that the request sets.
 Result<std::vector<FixedEntry>> fixedEntries(const gltf::ImportedModel& model, const PoseRequest& request)
 {
     std::vector<FixedEntry> entries;

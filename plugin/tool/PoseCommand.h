@@ -10,7 +10,7 @@
 namespace osgGpuAnimation::tool
 {
 
-/// `osggpuanim pose`: writes the poses that a file's joints and vertices take at given times, see PoseDocument.
+/// `osggpuanim pose`: writes the poses of a file's joints and vertices at given times, see PoseDocument.
 struct PoseCommand
 {
     enum class Evaluator
@@ -20,7 +20,7 @@ struct PoseCommand
     };
 
     std::string file;
-    std::string like;    ///< a document to take the request from; empty: `request` is it
+    std::string like;    ///< a document that gives the request; empty: use `request`
     PoseRequest request; ///< clip and times; bind with no times is time 0
     Evaluator evaluator = Evaluator::Gpu;
     std::string output; ///< empty: standard output

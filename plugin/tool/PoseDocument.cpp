@@ -49,7 +49,8 @@ ordered_json sixteenNumbers(const glm::dmat4& matrix)
     return numbers;
 }
 
-/// Without a request: all vertices up to 64, else 64 spread evenly; none where nothing deforms the primitive.
+/// Without a request: all vertices if there are at most 64, else 64 spread evenly; none if nothing deforms the
+/// primitive.
 std::vector<std::uint32_t> spreadVertices(const gltf::ImportedPrimitive& primitive)
 {
     if (primitive.skin < 0 && primitive.targets == 0) return {};
@@ -182,7 +183,7 @@ ordered_json PoseDocument::nodeMatrices(const EvaluatedPose& pose) const
         const int joint = _model.set ? _model.set->skeleton().jointOfSourceNode(static_cast<int>(node)) : -1;
         matrices.push_back(nullptr);
         if (joint < 0) continue;
-        // What the palette holds is joint to model, times the inverse bind.
+        // A palette entry is jointToModel · inverseBind.
         const auto entry = static_cast<std::size_t>(_model.set->mainEntry(joint));
         const glm::dmat4 inverseBind = _model.set->palette()[entry].inverseBind.toColumns();
         if (glm::determinant(inverseBind) == 0.0) continue;

@@ -13,10 +13,10 @@ namespace osgGpuAnimation::tool
 {
 
 /// Poses in the schema gltf-pose/1: JSON, in the file's own axes, units and numbers; matrices are 16 numbers,
-/// column-major for column vectors. Given are: the world matrix of every node that is a joint (null for others), the
-/// joint matrices by skin, the morph weights, and of each primitive its bounding box and the wanted vertices.
-/// `modelSize`, by which lengths are compared, is the diagonal of the first pose's box (of compact clips it is the
-/// longest side at rest that counts).
+/// column-major for column vectors. A pose holds the world matrix of every node that is a joint (null for others), the
+/// joint matrices by skin, the morph weights, and of each primitive its bounding box and the requested vertices.
+/// `modelSize` is the diagonal of the first pose's box; comparisons divide lengths by it (errors of compact clips refer
+/// to the longest side at rest instead).
 class PoseDocument
 {
 public:
@@ -28,7 +28,7 @@ public:
     /// pose: as an evaluator made it; empty for a model without a character.
     void add(double time, const EvaluatedPose& pose);
 
-    /// With a line break at its end.
+    /// The document as text, with a line break at its end.
     std::string text() const;
 
 private:

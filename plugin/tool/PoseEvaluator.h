@@ -13,14 +13,14 @@
 namespace osgGpuAnimation::tool
 {
 
-/// A palette entry that is given by hand instead of being worked out: a block of morph weights.
+/// A palette entry that overrides the computed one: a block of morph weights.
 struct FixedEntry
 {
     std::size_t entry = 0;
     AffineMatrix value;
 };
 
-/// A pose of a model's character, worked out.
+/// A computed pose of a model's character.
 struct EvaluatedPose
 {
     std::vector<AffineMatrix> palette; ///< AnimationSet::paletteSize() entries
@@ -29,14 +29,14 @@ struct EvaluatedPose
     std::vector<std::vector<glm::dvec3>> positions;
 };
 
-/// A way to work out poses: on the CPU or on the GPU.
+/// Computes poses, on the CPU or on the GPU.
 class PoseEvaluator
 {
 public:
     virtual ~PoseEvaluator() = default;
 
     virtual std::string name() const = 0;
-    /// The instruction is one for the model's set; fixed entries are below its palette size.
+    /// instruction: for the model's set. Fixed entries have indices below its palette size.
     virtual Result<EvaluatedPose> evaluate(const PoseInstruction& instruction,
                                            const std::vector<FixedEntry>& fixedEntries) = 0;
 };

@@ -22,7 +22,7 @@ namespace osgGpuAnimation::tool
 namespace
 {
 
-/// Holds the clip there; time goes round as in the viewer.
+/// Pauses the clip at the time, which loops as in the viewer.
 void showTime(AnimationController& controller, double time)
 {
     const double duration = controller.duration();
@@ -31,7 +31,7 @@ void showTime(AnimationController& controller, double time)
     controller.seek(rest < 0.0 ? rest + duration : rest);
 }
 
-/// The vertices of all that stands still.
+/// The vertices of all plain geometry.
 void addStill(const gltf::ImportedModel& model, std::vector<osg::Vec3d>& points)
 {
     for (const gltf::ImportedPrimitive& primitive : model.primitives)
@@ -44,7 +44,7 @@ void addStill(const gltf::ImportedModel& model, std::vector<osg::Vec3d>& points)
     }
 }
 
-/// The vertices of the character as it stands now.
+/// The vertices of the character in its current pose.
 void addMoving(const gltf::ImportedModel& model, CpuPoseEvaluator& evaluator, std::vector<osg::Vec3d>& points)
 {
     const osg::MatrixList places = model.character->getWorldMatrices();
@@ -55,7 +55,8 @@ void addMoving(const gltf::ImportedModel& model, CpuPoseEvaluator& evaluator, st
             points.push_back(osg::Vec3d(position.x, position.y, position.z) * places.front());
 }
 
-/// What the pictures have to show: every vertex, at every time (of very many, 64 spread evenly).
+/// The points that the pictures must show: every vertex at every time, or at 64 times, spread evenly, if there are
+/// more.
 std::vector<osg::Vec3d> pointsOf(const gltf::ImportedModel& model, const std::vector<double>& times)
 {
     std::vector<osg::Vec3d> points;
@@ -85,7 +86,7 @@ Result<bool> RenderCommand::run() const
 {
     gltf::ImportOptions options;
     options.clip = clip;
-    options.noKeys = true; // nobody is there to press them
+    options.noKeys = true; // no window, no keyboard
     const Result<gltf::ImportedModel> model = readModel(file, options);
     if (!model) return Error{file + ": " + model.error().message};
     Result<std::unique_ptr<PictureViewer>> viewer = PictureViewer::create(width, height);
@@ -99,9 +100,9 @@ Result<bool> RenderCommand::run() const
     {
         if (model.value().character) showTime(model.value().character->getController(), times[frame]);
         const osg::ref_ptr<osg::Image> image = viewer.value()->draw(times[frame] - time);
-        if (!image) return Error{file + ": OpenGL reports an error while drawing"};
+        if (!image) return Error{file + ": OpenGL reported an error while drawing"};
         const std::string name = frames ? numbered(output, frame + 1) : output;
-        // Not by writeImageFile(), which says on its own that it failed.
+        // writeImageFile() would print an error of its own.
         if (!osgDB::Registry::instance()->writeImage(*image, name, nullptr).success())
             return Error{name + ": cannot be written"};
     }

@@ -9,8 +9,8 @@
 namespace osgGpuAnimation::tool
 {
 
-/// `osggpuanim render`: draws pictures of a file without a display, from three quarters in front, the camera blend
-/// priority where everything fits all the pictures.
+/// `osggpuanim render`: draws pictures of a file without a display. One camera, in front and to the side, shows
+/// everything in all pictures.
 struct RenderCommand
 {
     static constexpr int maxSize = 8192; ///< pixels, each way
@@ -20,9 +20,9 @@ struct RenderCommand
     double time = 0.0;               ///< seconds; clips loop
     int width = 800;                 ///< pixels, [1, maxSize]
     int height = 600;
-    std::optional<int> frames; ///< none: one picture, named `output`; else numbered ones
+    std::optional<int> frames; ///< the number of numbered pictures; none: one picture, named `output`
     double framesPerSecond = 30.0;
-    std::string output; ///< a .png; with `frames` OUT.png stands for OUT.0001.png, OUT.0002.png …
+    std::string output; ///< a .png; with `frames` OUT.png becomes OUT.0001.png, OUT.0002.png …
 
     /// Error messages begin with the name of the file at fault.
     Result<bool> run() const;

@@ -12,7 +12,7 @@ int main(int argc, char** argv)
     }
     catch (const std::exception& fault)
     {
-        // Out of memory, say.
+        // For example, out of memory.
         std::cerr << "osggpuanim: " << fault.what() << std::endl;
         return 1;
     }

@@ -68,7 +68,7 @@ protected:
     StoredScene plugins;
 };
 
-/// Copies what is below while the update traversal is there.
+/// Copies its children during the update traversal.
 class CopyWhileUpdating : public osg::NodeCallback
 {
 public:

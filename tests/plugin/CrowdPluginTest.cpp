@@ -92,8 +92,8 @@ struct FaultCase
 };
 
 const FaultCase faults[] = {
-    {"arm.gltf.0x0.crowd", "", "nobody"},
-    {"arm.gltf.3x0.crowd", "", "nobody"},
+    {"arm.gltf.0x0.crowd", "", "is empty"},
+    {"arm.gltf.3x0.crowd", "", "is empty"},
     {"arm.gltf.1001x1000.crowd", "", "1000000"},
     {"arm.gltf.99999999999999999999x2.crowd", "", "size"},
     {"arm.gltf.4294967296x4294967296.crowd", "", "1000000"},
@@ -105,7 +105,8 @@ const FaultCase faults[] = {
     {"absent.gltf.2x2.crowd", "", "absent.gltf"},
     {"still.gltf.2x2.crowd", "", "no animated character"},
     {"arm.gltf.2x2.crowd", "clips=Jump", "\"Slide\""},
-    {"arm.gltf.2x2.crowd", "clips=Slide,", "option clips: \"Slide,\" is not names or numbers of clips apart by commas"},
+    {"arm.gltf.2x2.crowd", "clips=Slide,",
+     "option clips: \"Slide,\" is not names or numbers of clips separated by commas"},
     {"arm.gltf.2x2.crowd", "spacing=0", "option spacing: \"0\" is not a number of units above 0"},
     {"arm.gltf.2x2.crowd", "spacing=nan", "option spacing"},
     {"arm.gltf.2x2.crowd", "spacing=1e300", "placement"},
@@ -170,7 +171,7 @@ TEST_F(CrowdPluginTest, takesOptions)
 
 TEST_F(CrowdPluginTest, handsOtherWordsToTheModelsReaderAsTheyAre)
 {
-    /// Takes what it is given down; arms are its only models.
+    /// Records the options that it receives; arms are its only models.
     class Listener : public osgDB::ReaderWriter
     {
     public:

@@ -10,7 +10,7 @@
 
 #include <regex>
 
-// Kept scenes are not trusted either: what is wrong has a message, and what is left can be updated.
+// Stored scenes are untrusted: every fault gives a message, and the rest of the scene can be updated.
 
 namespace osgGpuAnimation
 {
@@ -24,8 +24,8 @@ enum class Answer
 {
     Error,     ///< nothing is read; the message says why
     NoMesh,    ///< a warning, and one mesh less
-    NoPlaying, ///< a warning, and the layer stands
-    NoFault    ///< taken for the nearest that can be
+    NoPlaying, ///< a warning, and the layer does not play
+    NoFault    ///< replaced by the nearest valid value
 };
 
 struct FaultCase
@@ -196,7 +196,7 @@ TEST_F(FaultyStoredScenesTest, faultsOfCompactClipsHaveAMessage)
         expectAnswer(content("compact.osgt"), fault);
 }
 
-// Not in the midst of a quoted word of OSG's own: it would look for the closing quote for ever.
+// Not inside one of OSG's quoted words: OSG would search for the closing quote forever.
 TEST_F(FaultyStoredScenesTest, textThatIsCutOffIsAnError)
 {
     // OSG's XML takes a file without its end for one that ends there: what is whole by then counts.

@@ -104,12 +104,12 @@ TEST(JointsTest, aShearedNodeTakesTwoJoints)
     const Skeleton& skeleton = built.joints.skeleton;
     ASSERT_EQ(skeleton.jointCount(), 3u);
     EXPECT_TRUE(built.joints.isSheared[static_cast<std::size_t>(sheared)]);
-    const int blendPriority = built.joints.ofNode[static_cast<std::size_t>(sheared)];
-    EXPECT_EQ(blendPriority, skeleton.jointOfSourceNode(sheared));
-    const int above = skeleton.joint(static_cast<std::size_t>(blendPriority)).parent;
-    ASSERT_GE(above, 0);
-    EXPECT_EQ(skeleton.joint(static_cast<std::size_t>(above)).sourceNode, -1);
-    EXPECT_EQ(skeleton.joint(static_cast<std::size_t>(built.joints.ofNode[1])).parent, blendPriority);
+    const int inner = built.joints.ofNode[static_cast<std::size_t>(sheared)];
+    EXPECT_EQ(inner, skeleton.jointOfSourceNode(sheared));
+    const int outer = skeleton.joint(static_cast<std::size_t>(inner)).parent;
+    ASSERT_GE(outer, 0);
+    EXPECT_EQ(skeleton.joint(static_cast<std::size_t>(outer)).sourceNode, -1);
+    EXPECT_EQ(skeleton.joint(static_cast<std::size_t>(built.joints.ofNode[1])).parent, inner);
 }
 
 TEST(JointsTest, transformsBeyondFloatAreRefusedByName)

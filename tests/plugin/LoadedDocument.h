@@ -11,7 +11,7 @@
 namespace osgGpuAnimation::gltf
 {
 
-// A small valid document that tests change, and what loadDocument() says to it.
+// A small valid document that tests change, and the result of loadDocument().
 
 /// The accessors of the base document.
 enum BaseAccessor
@@ -41,7 +41,7 @@ ModelBuilder baseModel();
 /// The same as JSON, with a material, a texture, a sampler and a picture.
 nlohmann::json baseDocument();
 
-/// What became of a document.
+/// The result of loading a document.
 struct LoadedDocument
 {
     Result<tinygltf::Model> model;

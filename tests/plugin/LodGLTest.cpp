@@ -14,8 +14,8 @@
 
 #include <array>
 
-// Characters drawn at levels of detail look as with all triangles, but for what half a pixel may hide: pictures differ
-// by less than those of all triangles do when the camera turns by half a pixel.
+// Characters drawn at levels of detail look like those with all triangles: their pictures differ by less than two
+// pictures of all triangles when the camera turns by half a pixel.
 
 namespace osgGpuAnimation
 {
@@ -87,7 +87,7 @@ protected:
         return scene;
     }
 
-    /// The camera from where the scene is so many pixels wide.
+    /// Places the camera so that the scene is that many pixels wide.
     static void look(osg::Camera& camera, const osg::Node& scene, double pixels)
     {
         const osg::BoundingSphere bound = scene.getBound();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Small files that ask for much.
+// Small files that require much memory or time.
 #include "gltf/Import.h"
 #include "plugin/ModelBuilder.h"
 #include "support/PeakMemory.h"

@@ -23,7 +23,7 @@ class PagerGLTest : public ViewerGLTest
 protected:
     void TearDown() override
     {
-        // A thread that drops a texture while OSG discards its context's would drop it twice.
+        // A thread that releases a texture while OSG discards the context's textures would release it twice.
         if (viewer().getDatabasePager()) viewer().getDatabasePager()->cancel();
         ViewerGLTest::TearDown();
     }
@@ -57,7 +57,7 @@ protected:
         return count;
     }
 
-    /// Draws until so many are there, for a minute at most.
+    /// Draws until that many tiles are loaded, for a minute at most.
     bool drawUntilLoaded(const osg::Group& scene, int wanted)
     {
         for (int tries = 0; tries < 6000 && loaded(scene) != wanted; ++tries)

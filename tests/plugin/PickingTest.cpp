@@ -112,7 +112,7 @@ protected:
         return new osgUtil::LineSegmentIntersector(target - way, target + way);
     }
 
-    /// What the ray meets first is what the triangles say. crowd: null: the character is picked.
+    /// Compares the ray's first hit with the triangles. crowd: null if the character is picked.
     void check(osgUtil::LineSegmentIntersector& ray, const PosedTriangles& triangles, const AnimatedCrowd* crowd)
     {
         osgUtil::IntersectionVisitor visitor(&ray);

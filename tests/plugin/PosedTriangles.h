@@ -13,8 +13,8 @@
 namespace osgGpuAnimation
 {
 
-/// The triangles of characters in the world, posed by the CPU twin and never rounded to float, with an intersection of
-/// their own: what picking is held against.
+/// The triangles of characters in the world, posed by the CPU twin and never rounded to float, with their own
+/// intersection test: the reference for picking.
 class PosedTriangles
 {
 public:

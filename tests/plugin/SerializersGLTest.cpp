@@ -7,7 +7,7 @@
 
 #include <osgUtil/Optimizer>
 
-// What is kept in .osgb, .osgt and .osgx shows the same poses and pictures at the same times.
+// A scene from an .osgb, .osgt or .osgx file shows the same poses and pictures at the same times.
 
 namespace osgGpuAnimation
 {

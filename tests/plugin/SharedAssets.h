@@ -10,8 +10,8 @@
 namespace osgGpuAnimation
 {
 
-/// A file of the folder with real characters and their poses (OSGGPUANIMATION_SHARED_ASSETS); empty where it is not
-/// there.
+/// A file of the folder with real characters and their poses (OSGGPUANIMATION_SHARED_ASSETS); empty if it does not
+/// exist.
 inline std::string sharedFile(const std::string& name)
 {
     const std::string path = std::string(OSGGPUANIMATION_SHARED_ASSETS) + "/" + name;

@@ -3,7 +3,7 @@
 #include "plugin/StoredScene.h"
 #include "support/ViewerGLTest.h"
 
-// The same simulation times show the same pictures, however one came there.
+// The same simulation times show the same pictures, whatever the times before.
 
 namespace osgGpuAnimation
 {

@@ -22,15 +22,15 @@ namespace osgGpuAnimation
 ///     using PosePipelineGLTest = GLTest;
 ///     TEST_F(PosePipelineGLTest, writesOneEntryAJoint) { … context().getState() … EXPECT_NO_GL_ERROR(); }
 ///
-/// Where no context can be had the test is skipped with EGL's reason; with OSGGPUANIMATION_REQUIRE_GL in the
-/// environment, as in CI, it fails.
+/// Without a context the test is skipped with EGL's reason; with OSGGPUANIMATION_REQUIRE_GL in the environment, as in
+/// CI, it fails.
 class GLTest : public ::testing::Test
 {
 protected:
     /// Pixels across and down.
     virtual int pictureSide() const { return 64; }
 
-    /// What the context is made with; a fixture of its own asks for more samples, the core profile and so on.
+    /// The options of the context; a derived fixture sets more samples, the core profile and so on.
     virtual osg::ref_ptr<osg::GraphicsContext::Traits> traits() const
     {
         osg::ref_ptr<osg::GraphicsContext::Traits> wanted = new osg::GraphicsContext::Traits;
@@ -65,7 +65,7 @@ protected:
     EglGraphicsContext& context() { return *_context; }
     osg::State& state() { return *_context->getState(); }
 
-    /// The errors GL has kept, as "0x0502 …"; empty where there are none. They are gone from GL afterwards.
+    /// Takes the pending errors from GL, as "0x0502 …"; empty if there are none.
     static std::string takeGLErrors()
     {
         std::ostringstream errors;
@@ -84,5 +84,5 @@ private:
 
 } // namespace osgGpuAnimation
 
-/// Where GL has kept an error: the test fails here and says which.
+/// Fails the test, with the error code, if GL has a pending error.
 #define EXPECT_NO_GL_ERROR() EXPECT_EQ(::osgGpuAnimation::GLTest::takeGLErrors(), "")

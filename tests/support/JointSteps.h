@@ -12,10 +12,10 @@ namespace osgGpuAnimation
 /// Seconds of the frames that the tests of crossfades go by.
 constexpr double frameSeconds = 1.0 / 60.0;
 
-/// Where the joints are now, in the model's space: one place a joint.
+/// The current positions of the joints in the model's space.
 std::vector<glm::vec3> jointPlaces(const AnimationController& controller);
 
-/// The longest way of a joint from one to the other.
+/// The largest distance of a joint between the two.
 double largestStep(const std::vector<glm::vec3>& before, const std::vector<glm::vec3>& after);
 
 /// The largest step of a joint from one frame to the next while the clip plays alone for that many frames.

@@ -8,7 +8,7 @@
 namespace osgGpuAnimation
 {
 
-/// Keeps what OSG says, from a severity on; says nothing itself.
+/// Keeps OSG's messages from a severity on and prints nothing.
 ///
 ///     osg::ref_ptr<NotifyLog> log = new NotifyLog(osg::WARN);
 ///     osg::setNotifyHandler(log); // and in the end osg::setNotifyHandler(new osg::StandardNotifyHandler)

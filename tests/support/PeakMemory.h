@@ -8,7 +8,7 @@
 namespace osgGpuAnimation
 {
 
-// What the project's bars for faulty files speak of; the time is the processor's.
+// Peak memory and processor time, which the project limits for faulty files.
 constexpr long mostMebibytes = 512;
 constexpr double mostSeconds = 5.0 * slowdown;
 

@@ -8,7 +8,7 @@
 namespace osgGpuAnimation
 {
 
-/// Keeps what a camera has drawn last, for tests to look at.
+/// Keeps the last picture of a camera.
 class Picture : public osg::Camera::DrawCallback
 {
 public:

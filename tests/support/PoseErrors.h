@@ -6,7 +6,7 @@
 namespace osgGpuAnimation
 {
 
-/// How far the corners of the boxes are apart, at that time of the clip, in two sets of one skeleton: in the model's
+/// The largest distance between the boxes' corners in two sets of one skeleton at that time of the clip: in the model's
 /// units, from palettes of the CPU twin.
 double distanceAt(const AnimationSet& a, const AnimationSet& b, int clip, double time, const EntryBoxes& boxes);
 

@@ -8,7 +8,7 @@
 namespace osgGpuAnimation
 {
 
-/// Counts what a camera draws in a frame, but for what is drawn before it (poses, shadow maps and so on).
+/// Counts the primitives that a camera draws in a frame, without those of earlier cameras (poses, shadow maps).
 ///
 ///     const osg::ref_ptr<PrimitiveCount> count = new PrimitiveCount;
 ///     count->attach(*viewer().getCamera(), picture()); // in the place of its initial and final draw callbacks

@@ -13,8 +13,8 @@
 namespace osgGpuAnimation
 {
 
-/// A made-up character from a seed: a hierarchy, morphs, and one clip of channels of every kind, each with its own
-/// times. The channels are kept, so that ReferencePose can say what the clip ought to show.
+/// A random character from a seed: a hierarchy, morphs, and one clip of channels of every kind, each with its own
+/// times. Keeps the channels, so that ReferencePose can compute the expected pose.
 struct RandomCharacter
 {
     struct Options
@@ -23,7 +23,7 @@ struct RandomCharacter
         bool splines = true;
         bool steps = true;
         bool chain = false; ///< each joint the child of the one before
-        double swing = 1.0; ///< how far a rotation strays from one key to the next, as a share of a half turn
+        double swing = 1.0; ///< largest rotation from one key to the next, as a fraction of a half turn
         double reach = 1.0; ///< size of the translations
     };
 
@@ -69,7 +69,7 @@ struct RandomCharacter
         return builder.build("random");
     }
 
-    /// What a joint or morph ought to show.
+    /// The expected value of a joint or morph.
     reference::Numbers expected(Channel::Path path, int target, double time) const
     {
         for (const Channel& channel : channels)
@@ -83,7 +83,7 @@ struct RandomCharacter
         return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
     }
 
-    /// Where every joint ought to be, by input index.
+    /// The expected transform of every joint, by input index.
     std::vector<glm::dmat4> expectedJointToModel(double time) const
     {
         std::vector<glm::dmat4> result;

@@ -11,8 +11,8 @@ namespace osgGpuAnimation
 /// Adds some masks to the set: subtrees, single joints and random weights.
 void addRandomMasks(const AnimationSet& set, std::mt19937& random);
 
-/// A stack of layers as controllers may ask for, and beyond: up to three blend priorities of up to four samples each
-/// with weights whose sum may be below or above 1, masks, and up to two additive samples.
+/// Random blend samples, also of kinds that no controller makes: up to three blend priorities of up to four samples
+/// each with weights whose sum may be below or above 1, masks, and up to two additive samples.
 PoseInstruction randomLayers(const AnimationSet& set, std::mt19937& random);
 
 } // namespace osgGpuAnimation

@@ -9,7 +9,7 @@
 namespace osgGpuAnimation
 {
 
-/// What a made-up character has. The same numbers and seed give the same set.
+/// The size of a random character. The same numbers and seed give the same set.
 struct RandomSetShape
 {
     unsigned int seed = 1;

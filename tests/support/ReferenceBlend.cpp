@@ -155,7 +155,7 @@ private:
         for (std::size_t i = first; i < end; ++i)
             whole += weight(i);
         if (whole == 0.0) return below;
-        Track blendPriority{Numbers(4), Numbers(4), Numbers(4)};
+        Track mixed{Numbers(4), Numbers(4), Numbers(4)};
         Numbers side;
         for (std::size_t i = first; i < end; ++i)
         {
@@ -163,12 +163,12 @@ private:
             Track track = sampled(i);
             if (side.empty()) side = track.rotation;
             track.rotation = onSide(side, track.rotation);
-            add(blendPriority, track, weight(i) / std::max(whole, 1.0));
+            add(mixed, track, weight(i) / std::max(whole, 1.0));
         }
-        if (whole >= 1.0) return blendPriority;
-        blendPriority.rotation = onSide(below.rotation, blendPriority.rotation);
-        add(blendPriority, below, 1.0 - whole);
-        return blendPriority;
+        if (whole >= 1.0) return mixed;
+        mixed.rotation = onSide(below.rotation, mixed.rotation);
+        add(mixed, below, 1.0 - whole);
+        return mixed;
     }
 
     void addDifferences(Track& total, std::size_t first)

@@ -7,7 +7,7 @@
 
 #include <vector>
 
-/// What PoseInstruction says of a pose, in doubles and straight from the set's keyframes: the measure for the mix stage
+/// Evaluates a PoseInstruction in double precision, directly from the set's keyframes: the reference for the mix stage
 /// and its CPU twin. It shares no code with them.
 namespace osgGpuAnimation::reference
 {
@@ -21,11 +21,11 @@ struct Track
 struct BlendedPose
 {
     std::vector<Track> tracks;
-    /// The least distance of any decision (which of two ways round is the shorter) from its turning point: below some
-    /// 1e-5 single precision may well decide otherwise.
+    /// The smallest margin of any choice of the shorter rotation: below about 1e-5 single precision may choose the
+    /// other one.
     double closestDecision = 1.0;
 
-    /// The palette entries that stand for joints; those of weight blocks hold their numbers.
+    /// The palette entries of joints; those of weight blocks hold the weights.
     std::vector<glm::dmat4> palette(const AnimationSet& set) const;
 };
 

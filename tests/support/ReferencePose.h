@@ -10,8 +10,8 @@
 #include <cstddef>
 #include <vector>
 
-/// What glTF 2.0 (section 3.11, appendix C) says of a channel at a time, in doubles and straight from its keys: the
-/// measure for everything that goes through clips. It shares no code with them; only the Channel struct, its input.
+/// Evaluates a channel by glTF 2.0 (section 3.11, appendix C), in double precision and directly from its keys: the
+/// reference for clips. It shares no code with them; only the Channel struct, its input.
 namespace osgGpuAnimation::reference
 {
 
@@ -35,7 +35,7 @@ inline Numbers normalized(Numbers q)
     return q;
 }
 
-/// Appendix C.4, written with acos as it stands there.
+/// Appendix C.4, with its acos.
 inline Numbers slerp(const Numbers& from, const Numbers& to, double t)
 {
     double dot = 0.0;

@@ -6,7 +6,7 @@
 namespace osgGpuAnimation
 {
 
-/// Where relative paths begin, for as long as this lives.
+/// Sets the working folder while this object exists.
 class WorkingFolder
 {
 public:

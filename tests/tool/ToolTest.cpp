@@ -124,7 +124,7 @@ TEST_F(ToolTest, aFaultyFileEndsWithStatus1AndOneLine)
         {{"pose", missing, "--time", "0"}, missing, "no such file"},
         {{"render", missing, "-o", folder.file("x.png")}, missing, "no such file"},
         {{"pose", "FLAG", "--clip", "Fly", "--time", "0"}, flag, "Fly"},
-        {{"render", scene, "-o", folder.file("x.png")}, scene, "only .gltf and .glb files can be read here"},
+        {{"render", scene, "-o", folder.file("x.png")}, scene, "the file is neither .gltf nor .glb"},
         {{"render", "FLAG", "--clip", "Fly", "-o", folder.file("x.png")}, flag, "Fly"},
         {{"pose", "FLAG", "--like", missing}, missing, "cannot be read"},
         {{"pose", "FLAG", "--like", folder.file("")}, folder.file(""), ""},

@@ -59,7 +59,7 @@ Out convert(Stored value, bool normalized)
 {
     if constexpr (std::is_integral_v<Out>)
     {
-        // A float is never an index in a validated document: it reads as 0 rather than as an undefined conversion.
+        // A validated document has no float indices; 0 avoids the undefined conversion.
         if constexpr (std::is_floating_point_v<Stored>)
             return 0;
         else

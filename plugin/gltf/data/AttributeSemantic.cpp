@@ -71,7 +71,7 @@ Format baseFormat(Kind kind)
         return {Vec2, Float | unsignedNormalized, smallIntegers | signedNormalized};
     case Kind::Color:
         return {Vec3 | Vec4, Float | unsignedNormalized, 0};
-    // Joints are integers even where the file calls them normalized.
+    // Joints are integers even if the file marks them as normalized.
     case Kind::Joints:
         return {Vec4, UByte | UShort | unsignedNormalized, 0};
     case Kind::Weights:

@@ -11,7 +11,7 @@
 namespace osgGpuAnimation::gltf
 {
 
-/// The name of a vertex attribute, taken apart (glTF 2.0, section 3.7.2.1): TEXCOORD_1 is set 1 of TexCoord.
+/// The parsed name of a vertex attribute (glTF 2.0, section 3.7.2.1): TEXCOORD_1 is set 1 of TexCoord.
 struct AttributeSemantic
 {
     enum class Kind : std::uint8_t
@@ -30,7 +30,7 @@ struct AttributeSemantic
     Kind kind = Kind::Custom;
     int set = 0;
 
-    /// None where glTF knows no such name: TEXCOORD_x, COLOR_01, JOINTS_2000000000.
+    /// None if glTF defines no such name: TEXCOORD_x, COLOR_01, JOINTS_2000000000.
     static std::optional<AttributeSemantic> parse(std::string_view name);
 };
 
@@ -41,12 +41,12 @@ struct AttributePlace
     bool isQuantized = false;
 };
 
-/// Empty where the accessor's type and components are those of the attribute (glTF 2.0, section 3.7.2.1 and 3.7.2.2;
-/// KHR_mesh_quantization), else what is expected: `VEC3 of float`.
+/// Empty if the attribute may have the accessor's type and components (glTF 2.0, section 3.7.2.1 and 3.7.2.2;
+/// KHR_mesh_quantization), else the expected ones: `VEC3 of float`.
 std::string wrongAttributeFormat(const tinygltf::Accessor& accessor, AttributeSemantic::Kind kind,
                                  AttributePlace place);
 
-/// What an accessor holds: `VEC2 of normalized unsigned short`.
+/// The type and components of an accessor: `VEC2 of normalized unsigned short`.
 std::string formatText(const tinygltf::Accessor& accessor);
 
 } // namespace osgGpuAnimation::gltf

@@ -53,7 +53,7 @@ struct Compressed
     }
 };
 
-/// What the codec and the filter require of stride and count, which the library only asserts; empty where it holds.
+/// The codec's or filter's requirement that stride or count breaks; empty if none. The library only asserts them.
 std::string wrongShape(const Compressed& view)
 {
     if (view.mode != "ATTRIBUTES")

@@ -27,7 +27,7 @@ Error unexpected(const std::string& expected, const std::string& found)
     return Error{"expected " + expected + ", found " + found};
 }
 
-/// The number of triangles by the header; nothing where the stream has no header of version 2.2.
+/// The number of triangles in the header; none if the stream has no header of version 2.2.
 std::optional<std::uint32_t> facesOfHeader(const char* data, std::size_t bytes)
 {
     draco::DecoderBuffer buffer;

@@ -17,8 +17,8 @@ class Mesh;
 namespace osgGpuAnimation::gltf
 {
 
-/// A mesh decoded from Draco's bit stream (KHR_draco_mesh_compression requires version 2.2). The only class of a
-/// library that hides Draco.
+/// A mesh decoded from Draco's bit stream (KHR_draco_mesh_compression requires version 2.2). The only exported class of
+/// the library that links Draco, see plugin/CMakeLists.txt.
 class [[gnu::visibility("default")]] DracoMesh
 {
 public:

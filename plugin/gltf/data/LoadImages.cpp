@@ -27,8 +27,8 @@ Error tooLarge(const MemoryBudget& budget, std::size_t bytes)
     return Error{"expected " + budget.limitText() + ", found a picture of " + std::to_string(bytes)};
 }
 
-// All bytes that are read count, whether or not they are a picture: many images may name the same data, and each reads
-// it.
+// These functions take all bytes that they read from the budget, even if they are not a picture: many images may name
+// the same data, and each reads it.
 
 Result<Bytes> readDataUri(std::string_view uri, MemoryBudget& budget, const std::string& name, Report& report)
 {
@@ -63,7 +63,7 @@ Result<Bytes> readView(const tinygltf::Model& model, int index, MemoryBudget& bu
     return Bytes(begin, begin + std::ptrdiff_t(view.byteLength));
 }
 
-/// The member that the bytes come from, for messages.
+/// The member that holds the bytes, for messages.
 std::string sourceName(const tinygltf::Image& image)
 {
     return image.bufferView >= 0 ? ".bufferView: " : ".uri: ";

@@ -11,9 +11,9 @@
 namespace osgGpuAnimation::gltf
 {
 
-/// Fills model.images with encoded bytes (as_is) from buffer view, data URI or file, with the MIME type and size that
-/// the picture's header gives. The budget pays for reading and decoding; nothing later counts pictures again. A picture
-/// that cannot be read, or that would exceed the budget, stays empty with a warning: the model is shown without it.
+/// Fills model.images with encoded bytes (as_is) from buffer view, data URI or file, and with the MIME type and size
+/// from the picture's header. Takes both the encoded and the decoded bytes from the budget. A picture that cannot be
+/// read, or that exceeds the budget, stays empty with a warning: the model is shown without it.
 void loadImages(const JsonValue& images, const ModelFolder& folder, MemoryBudget& budget, Report& report,
                 tinygltf::Model& model);
 

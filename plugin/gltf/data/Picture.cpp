@@ -40,7 +40,7 @@ std::string sizeText(std::uint32_t width, std::uint32_t height)
     return std::to_string(width) + " x " + std::to_string(height);
 }
 
-/// The header, if the size is one that a texture may have and the data can fill.
+/// The header, if a texture may have its size and the data is long enough for it.
 Result<PictureHeader> checkSize(const char* mimeType, std::uint32_t width, std::uint32_t height,
                                 std::uint64_t mostPixels, std::size_t bytesOfPixel)
 {
@@ -82,7 +82,7 @@ Result<std::size_t> pngDataBytes(const Bytes& bytes)
     return unexpected("a PNG up to its IEND", "one that is cut off");
 }
 
-/// libpng would read size and format too, but does not check whether the data can fill them.
+/// libpng also reads size and format, but does not check whether the data is long enough for them.
 Result<PictureHeader> readPngHeader(const Bytes& bytes)
 {
     const std::size_t headerEnd = 33;
@@ -94,7 +94,7 @@ Result<PictureHeader> readPngHeader(const Bytes& bytes)
     const std::size_t channelsOfType[] = {1, 0, 3, 1, 2, 0, 4};
     const std::size_t channels = bytes[25] < 7 ? channelsOfType[bytes[25]] : 0;
     if (channels == 0 || depth < 1 || depth > 16) return unexpected("a PNG colour type and depth", "another");
-    // Deflate shrinks to a 1032nd at the very best.
+    // Deflate compresses to a 1032nd at best.
     const std::uint64_t mostPixels = std::uint64_t(data.value()) * 1032 * 8 / (channels * depth);
     return checkSize("image/png", bigEndian(&bytes[16]), bigEndian(&bytes[20]), mostPixels, depth == 16 ? 8 : 4);
 }
@@ -143,7 +143,7 @@ void PngReader::read(png_structp png, png_bytep to, png_size_t count)
 bool PngReader::readHeader()
 {
     if (!_info || setjmp(png_jmpbuf(_png)) != 0) return false;
-    // Only the chunks that make the picture are read: compressed texts could unfold to any size.
+    // Read the chunks of the pixels only: compressed texts can expand to any size.
     png_set_keep_unknown_chunks(_png, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);
     png_set_read_fn(_png, this, read);
     png_read_info(_png, _info);
@@ -208,7 +208,8 @@ public:
         const int result =
             tjDecompress2(_turbo, _bytes.data(), _bytes.size(), image.data(), _width, int(image.getRowSizeInBytes()),
                           _height, isGrey() ? TJPF_GRAY : TJPF_RGB, TJFLAG_BOTTOMUP | TJFLAG_LIMITSCANS);
-        return result == 0 || tjGetErrorCode(_turbo) == TJERR_WARNING; // cut off: the pixels that are there are decoded
+        return result == 0 ||
+               tjGetErrorCode(_turbo) == TJERR_WARNING; // a cut-off file: decodes the pixels before the cut
     }
 
 private:
@@ -232,7 +233,7 @@ Result<PictureHeader> readJpegHeader(const Bytes& bytes)
 {
     const JpegReader reader(bytes);
     if (!reader.hasHeader()) return unexpected("a JPEG header", "one that is cut off or damaged");
-    // A block of 8 x 8 costs a bit at the very least.
+    // A block of 8 x 8 takes one bit at least.
     const std::uint64_t mostPixels = std::uint64_t(bytes.size()) * 8 * 64;
     Result<PictureHeader> header =
         checkSize("image/jpeg", std::uint32_t(reader.width()), std::uint32_t(reader.height()), mostPixels, 4);

@@ -26,16 +26,16 @@ struct PictureHeader
     std::size_t decodedBytes = 0; ///< with four channels of the depth that the file has
 };
 
-/// Reads the header of a PNG or JPEG, and makes sure that decoding it costs no more memory than the data can stand for:
-/// a few bytes cannot ask for gigabytes.
+/// Reads the header of a PNG or JPEG and checks its size against the length of the data, so that a few bytes cannot
+/// make the decoder allocate gigabytes.
 /// Errors (`expected …, found …`): another format, a size of 0 or beyond mostPixelsASide, data that is cut off or far
 /// too short for its size, a large JPEG with so many scans that decoding would take minutes.
 Result<PictureHeader> readPictureHeader(const std::vector<unsigned char>& bytes);
 
-/// Decodes a picture whose header was read, the first row at the bottom; may be called on another thread. Colour
-/// profiles, gamma and orientation do not count in glTF (glTF 2.0, section 3.8.2.1).
+/// Decodes a picture whose header was read, the first row at the bottom; callable on any thread. Ignores colour
+/// profiles, gamma and orientation (glTF 2.0, section 3.8.2.1).
 /// A PNG keeps its 8 or 16 bits a channel; a palette becomes RGB, transparent colours an alpha channel. A JPEG becomes
-/// grey or RGB; if its pixels are cut off, it keeps the pixels that are there.
+/// grey or RGB; if its data is cut off, it keeps the pixels before the cut.
 /// Error: the picture is damaged.
 Result<osg::ref_ptr<osg::Image>> decodePicture(const std::vector<unsigned char>& bytes);
 

@@ -10,8 +10,8 @@
 namespace osgGpuAnimation::gltf
 {
 
-/// How a texture is looked up: which TEXCOORD_n it reads and how KHR_texture_transform changes the coordinates. The
-/// import applies the transform to the vertices once.
+/// The texture coordinates of a texture: the TEXCOORD_n that it reads and its KHR_texture_transform. The import applies
+/// the transform to the vertices once.
 ///
 /// glTF counts v from the top of the picture, OSG from the bottom: transformed() turns it.
 class TextureCoordinates

@@ -16,7 +16,7 @@ namespace
 
 using Attributes = std::map<std::string, int>;
 
-/// Not a number counts as 0.
+/// NaN becomes 0.
 double toUnit(double value)
 {
     return value > 0.0 ? std::fmin(value, 1.0) : 0.0;
@@ -35,8 +35,8 @@ int findAccessor(const Attributes& attributes, const std::string& name)
     return found == attributes.end() ? -1 : found->second;
 }
 
-/// Linear red, green, blue, alpha for each vertex; empty where there are none. otherwise: the alpha of colours without
-/// one.
+/// Linear red, green, blue, alpha for each vertex; empty if the primitive has no colours. otherwise: the alpha of
+/// colours without one.
 std::vector<osg::Vec4> readLinearColors(const tinygltf::Model& model, const Attributes& attributes, float otherwise)
 {
     std::vector<osg::Vec4> colors;
@@ -67,7 +67,7 @@ osg::ref_ptr<osg::Vec4Array> readColorChanges(const tinygltf::Model& model, cons
     return changes;
 }
 
-/// How the material's base colour texture is looked up; nothing where it has none.
+/// The coordinates of the material's base colour texture; none if it has no texture.
 std::optional<TextureCoordinates> baseColorCoordinates(const tinygltf::Model& model,
                                                        const tinygltf::Primitive& primitive)
 {
@@ -91,7 +91,7 @@ osg::ref_ptr<osg::Vec2Array> readTransformed(const tinygltf::Model& model, const
     return out;
 }
 
-/// The transform is affine: a change becomes the difference of its image to the image of zero.
+/// Transforms an offset; the transform is affine, so this is the image of the offset minus the image of zero.
 osg::ref_ptr<osg::Vec2Array> readCoordinateChanges(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
                                                    const Attributes& target)
 {

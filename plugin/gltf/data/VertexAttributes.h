@@ -32,11 +32,11 @@ osg::ref_ptr<osg::Vec4Array> readColors(const tinygltf::Model& model, const tiny
 /// For the material's base colour texture, see TextureCoordinates.
 osg::ref_ptr<osg::Vec2Array> readTextureCoordinates(const tinygltf::Model& model, const tinygltf::Primitive& primitive);
 
-/// One a target of the primitive. Colours and texture coordinates are changes of those that the two functions above
-/// return; since displayColor() is not linear, changes of colours are exact at weight 1.
+/// One a target of the primitive. Colours and texture coordinates are offsets to the results of the two functions
+/// above; since displayColor() is not linear, colours are exact at weight 1 only.
 std::vector<MorphTarget> readMorphTargets(const tinygltf::Model& model, const tinygltf::Primitive& primitive);
 
-/// How many JOINTS_n with WEIGHTS_n the primitive has, counted from 0.
+/// The number of consecutive JOINTS_n with WEIGHTS_n of the primitive, from n = 0.
 std::size_t influenceSetCount(const tinygltf::Primitive& primitive);
 
 } // namespace osgGpuAnimation::gltf

@@ -31,7 +31,7 @@ bool isMorphable(Kind kind)
            kind == Kind::Color;
 }
 
-/// Nothing happens if the object has no such member.
+/// Does nothing if the object has no such member.
 void leaveOut(const JsonValue& object, const JsonValue& member, const std::string& name, const char* why,
               Report& report)
 {
@@ -239,7 +239,7 @@ void checkRotation(const JsonValue& node, const std::string& name, Report& repor
 }
 
 /// Mends nodes with a warning each (glTF 2.0, sections 3.5.2, 3.5.3): a matrix beside translation, rotation or scale
-/// (the matrix counts), rotations that are no unit quaternions, skins and weights without a mesh.
+/// (the matrix is used), rotations that are not unit quaternions, skins and weights without a mesh.
 void checkNodeRules(const JsonValue& nodes, Report& report)
 {
     std::size_t i = 0;
@@ -270,7 +270,7 @@ bool isSupported(std::string_view extension)
            std::end(supportedExtensions);
 }
 
-/// "2.1" is 2 and 1; nothing if the text is no version.
+/// "2.1" is 2 and 1; nothing if the text is not a version.
 std::optional<std::pair<int, int>> parseVersion(std::string_view text)
 {
     int major = 0, minor = 0;

@@ -27,8 +27,8 @@ constexpr std::size_t anyCount = std::size_t(-1);
 enum class OnFault : std::uint8_t
 {
     Refuse,   ///< the document is refused
-    LeaveOut, ///< a warning, and the member is as if it were absent
-    Clamp     ///< a warning, and the number becomes the nearest allowed one; numbers out of range only
+    LeaveOut, ///< a warning; the member counts as absent
+    Clamp     ///< a warning; the number becomes the nearest allowed one (numbers out of range only)
 };
 
 enum class Kind : std::uint8_t
@@ -73,7 +73,7 @@ struct SchemaRule
     }
     constexpr SchemaRule required() const { return with(&SchemaRule::isRequired, true); }
     constexpr SchemaRule withRangeFault(OnFault fault) const { return with(&SchemaRule::onRange, fault); }
-    /// Any fault costs this member only.
+    /// Any fault removes this member only.
     constexpr SchemaRule orLeaveOut() const
     {
         return with(&SchemaRule::onFault, OnFault::LeaveOut).withRangeFault(OnFault::LeaveOut);
@@ -338,7 +338,7 @@ std::string elementsText(const SchemaRule& rule)
     return (rule.leastCount == rule.mostCount ? "" : "at least ") + std::to_string(rule.leastCount) + what;
 }
 
-/// Calls visit(choice) for each choice until it returns true; returns if one did.
+/// Calls visit(choice) for each choice until it returns true; returns whether a call did.
 template <typename Visit>
 bool anyChoice(const SchemaRule& rule, const Visit& visit)
 {

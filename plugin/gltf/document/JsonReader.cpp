@@ -235,7 +235,7 @@ JsonText::JsonText(std::string_view text) : _whole(text)
         if (at < text.size())
             readString(begin, at, isPlain);
         else
-            _otherBytes += text.size() - begin; // the parser keeps it until it misses the end
+            _otherBytes += text.size() - begin; // the parser stores the unterminated string
     }
     shorten();
 }

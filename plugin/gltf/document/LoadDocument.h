@@ -15,7 +15,7 @@ namespace osgGpuAnimation::gltf
 
 /// Reads a .gltf or .glb into tinygltf's model without tinygltf's parser, which trusts its input. Each byte of JSON is
 /// parsed once: the tree is checked against the schema and the rules, mended (members without a rule are dropped, 8.0
-/// counts as 8), and then copied into the model. Buffers and pictures come from the model's folder only, from regular
+/// becomes 8), and then copied into the model. Buffers and pictures come from the model's folder only, from regular
 /// files only and within the limits. The data is validated afterwards, so every index, offset, count and type in the
 /// returned model can be trusted.
 ///
@@ -29,7 +29,7 @@ namespace osgGpuAnimation::gltf
 ///   are computed from the data;
 /// - cameras are checked and not read.
 ///
-/// bytes: the file's content (GLB or JSON, told apart by the content). fileName: for its folder and for messages; empty
+/// bytes: the file's content, GLB or JSON. fileName: gives the folder of external files and appears in messages; empty
 /// for a stream, which then has no external files.
 /// Errors: the file as a whole is at fault; the message names the element, what was expected and what was found.
 /// Faults that cost one clip, mesh, skin or image only are warnings.

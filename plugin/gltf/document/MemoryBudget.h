@@ -12,8 +12,9 @@
 namespace osgGpuAnimation::gltf
 {
 
-/// The bytes that one document may still decode into memory: buffers, accessors and images together
-/// (ImportOptions::maxDecodedBytes). Callers take before they allocate.
+/// The bytes that one stage of an import may still decode into memory. Callers take before they allocate.
+/// ImportOptions::maxDecodedBytes limits each of three stages separately: the loaded document (buffers, accessors,
+/// images), the reads of validateMeshes() (a limit of time, not of memory), and the scene (clips, meshes, instances).
 class MemoryBudget
 {
 public:
@@ -22,7 +23,7 @@ public:
     std::size_t limit() const { return _limit; }
     std::size_t left() const { return _left; }
 
-    /// False, and nothing taken, if fewer bytes are left.
+    /// False if fewer bytes are left; then the budget does not change.
     [[nodiscard]] bool take(std::size_t bytes)
     {
         if (bytes > _left) return false;
@@ -30,7 +31,7 @@ public:
         return true;
     }
 
-    /// For messages: the limit, and the option that raises it.
+    /// The limit and the option that raises it, for messages.
     std::string limitText() const
     {
         return "at most " + std::to_string(_limit) + " bytes in all (limit maxDecodedBytes)";

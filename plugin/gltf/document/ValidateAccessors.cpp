@@ -158,7 +158,8 @@ std::optional<Error> validateBase(const Model& model, const tinygltf::Accessor& 
     return error;
 }
 
-/// The limit for accessors without data: 64 MiB, and for a document with data as much as 64 morph targets need.
+/// The limit for accessors without data, so that a tiny file does not decode into gigabytes of zeros: 64 MiB, plus the
+/// size of 64 morph targets over the document's data. Separate from the budget, which limits all accessors.
 std::size_t mostImpliedBytes(const Model& model)
 {
     std::size_t bytes = std::size_t(64) << 20;

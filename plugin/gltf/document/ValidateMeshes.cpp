@@ -229,7 +229,7 @@ Influences readInfluences(const Model& model, const tinygltf::Primitive& primiti
     return influences;
 }
 
-/// Makes the weights of each vertex non-negative with a sum of 1; returns what was wrong with the first one.
+/// Makes the weights of each vertex non-negative with a sum of 1; returns the first fault.
 std::optional<std::string> mendWeights(std::vector<std::vector<float>>& sets)
 {
     std::optional<std::string> first;

@@ -76,7 +76,7 @@ std::optional<Error> findRoots(const Model& model, const std::vector<int>& paren
 std::optional<Error> validateScenes(const Model& model, const NodeForest& forest)
 {
     const std::size_t none = std::size_t(-1);
-    std::vector<std::size_t> sceneOfNode(model.nodes.size(), none); // the last one that named it
+    std::vector<std::size_t> sceneOfNode(model.nodes.size(), none); // the last scene that names the node
     for (std::size_t s = 0; s < model.scenes.size(); ++s)
         for (std::size_t i = 0; i < model.scenes[s].nodes.size(); ++i)
         {
@@ -187,7 +187,7 @@ bool isFloat(const tinygltf::Accessor& accessor)
     return accessor.componentType == TINYGLTF_COMPONENT_TYPE_FLOAT;
 }
 
-/// Floats, or the normalized small integers that rotations and weights may be of.
+/// True for floats and for the normalized small integers that rotations and weights may have.
 bool isFloatOrNormalized(const tinygltf::Accessor& accessor)
 {
     return isFloat(accessor) || (accessor.normalized && componentBytes(accessor.componentType) <= 2);
@@ -269,7 +269,7 @@ private:
         return std::nullopt;
     }
 
-    /// Removes the channels of an animation whose times make no clip.
+    /// Removes the channels of an animation whose times are not valid for a clip.
     void emptyIfFaulty(std::size_t a)
     {
         tinygltf::Animation& animation = _model.animations[a];
@@ -338,7 +338,7 @@ private:
                          " has a matrix, which no animation should change");
     }
 
-    /// A quaternion of length 0 is no rotation: the one before it is held.
+    /// Replaces a quaternion of length 0, which is not a rotation, by the one before it.
     template <typename Name>
     void mendRotations(tinygltf::AnimationSampler& sampler, const Name& name)
     {

@@ -19,7 +19,7 @@ namespace
 
 const std::size_t mostPathText = 200;
 
-// A GLB says its length in 32 bits. A file with holes can claim far more than its disk holds.
+// A GLB stores its length in 32 bits. A sparse file can be far larger than its disk.
 const std::uint64_t mostBytesOfAFile = std::uint64_t(1) << 32;
 
 Error about(const std::string& path, const std::string& what)
@@ -249,7 +249,7 @@ Result<std::string> readModelStream(std::istream& stream, const ImportOptions& o
 {
     std::string bytes;
     char block[65536];
-    std::optional<std::size_t> json; // its length by the beginning
+    std::optional<std::size_t> json; // the length that the first bytes claim
     while (stream.read(block, sizeof(block)) || stream.gcount() > 0)
     {
         bytes.append(block, static_cast<std::size_t>(stream.gcount()));

@@ -15,7 +15,7 @@
 namespace osgGpuAnimation::gltf
 {
 
-/// A regular file opened for reading. Folders, pipes and devices are refused: they may block or never end.
+/// A regular file opened for reading. Folders, pipes and devices are refused: reading them may block or never end.
 /// Errors are sentences about the path: `base.bin: does not exist`.
 class RegularFile
 {
@@ -29,9 +29,9 @@ public:
     std::size_t size() const { return _size; } ///< bytes, when it was opened
     bool isSameAs(const std::string& path) const;
 
-    /// The first `bytes` bytes into `to`. Errors: the file cannot be read or has fewer.
+    /// Reads the first `bytes` bytes into `to`. Errors: the file cannot be read or is shorter.
     Result<std::size_t> read(void* to, std::size_t bytes) const;
-    /// All of it. Errors: it is empty, of more than 4 GiB or cannot be read.
+    /// Reads the whole file. Errors: it is empty, larger than 4 GiB or cannot be read.
     Result<std::string> readWhole() const;
 
 private:
@@ -42,10 +42,10 @@ private:
     std::string _path;
 };
 
-/// The beginning of errors about a file: its path, clipped if it is long, and a colon.
+/// The prefix of errors about a file: its path, clipped if it is long, and a colon.
 std::string subjectOfFile(const std::string& path);
 
-/// The content of a file that the user named. Errors: it does not exist, is a folder, no regular file, empty, of more
+/// The content of a file that the user named. Errors: it does not exist, is not a regular file, is empty, is larger
 /// than 4 GiB or cannot be read.
 Result<std::string> readWholeFile(const std::string& path);
 
@@ -63,8 +63,8 @@ Result<GlbContainer> splitContainer(std::string_view bytes, Report& report);
 
 constexpr std::size_t bytesBeforeJson = 20; ///< in a GLB: its header and that of the first chunk
 
-/// The length of the JSON text that the first bytesBeforeJson bytes of a file claim: the file's length if it is no
-/// GLB, and at most the bytes that follow.
+/// The length of the JSON text by the first bytesBeforeJson bytes of a file: the file's length if it is not a GLB, and
+/// at most the bytes that follow.
 std::size_t claimedJsonBytes(std::string_view beginning, std::size_t fileBytes);
 
 /// Error: more than the limit ImportOptions::maxJsonBytes.

@@ -18,11 +18,11 @@ namespace osgGpuAnimation::gltf
 struct Messages
 {
     std::vector<std::string> warnings;
-    std::vector<std::string> notes; ///< no fault of the file, for example an unknown extension in extensionsUsed
+    std::vector<std::string> notes; ///< not faults, for example an unknown extension in extensionsUsed
 };
 
-/// Collects the messages of one load. A file may hold a million faults: after the first hundred of a kind one line
-/// says that there are more.
+/// Collects the messages of one load. A file may hold a million faults: after the first hundred of a kind, one line
+/// replaces the others.
 ///
 ///     report.warn("nodes[3].skin: the mesh has no JOINTS_0; the skin is ignored");
 class Report
@@ -72,13 +72,13 @@ std::string numberText(double number);
 /// `element: expected …, found …`
 Error fault(std::string_view element, std::string_view expected, std::string_view found);
 
-/// An element with the name that the file gives it, for messages to people: `animations[2] "Run"`.
+/// An element with its name in the file, for messages: `animations[2] "Run"`.
 inline std::string namedElement(std::string_view collection, std::size_t index, std::string_view name)
 {
     return elementName(collection, index) + (name.empty() ? "" : ' ' + quoted(name));
 }
 
-/// The number that the whole text represents, in any locale; none if it is no number or does not fit Number:
+/// The number that the whole text represents, in any locale; none if it is not a number or does not fit Number:
 /// parsedNumber<int>("1x") is none.
 template <typename Number>
 std::optional<Number> parsedNumber(std::string_view text)

@@ -130,7 +130,7 @@ Result<DataUriParts> splitDataUri(std::string_view uri)
     return parts;
 }
 
-/// http: or C: at the beginning (RFC 3986, section 3.1).
+/// True if the text begins with a scheme or drive letter: http: or C: (RFC 3986, section 3.1).
 bool hasScheme(std::string_view uri)
 {
     if (uri.empty() || !std::isalpha(static_cast<unsigned char>(uri[0]))) return false;
@@ -219,7 +219,7 @@ Result<RegularFile> ModelFolder::open(std::string_view uri) const
 
 Result<std::string> ModelFolder::resolve(const std::string& path) const
 {
-    // The text decides first: files outside are not even looked up.
+    // Check the text first: files outside the folder are never looked up.
     if (!_allowOutsideFiles && leavesFolder(path)) return outside(path);
     fs::path folder = fs::path(_modelFile).parent_path();
     if (folder.empty()) folder = ".";

@@ -28,9 +28,8 @@ bool isDataUri(std::string_view uri);
 /// Error: no comma.
 Result<std::size_t> bytesOfDataUri(std::string_view uri);
 
-/// Decodes data:[MIME type][;base64],… of any MIME type. Longer data is cut after `most` bytes; the rest is
-/// only checked for faults.
-/// Errors: no comma, a character that is no base64.
+/// Decodes data:[MIME type][;base64],… of any MIME type. Keeps the first `most` bytes; checks the rest for faults.
+/// Errors: no comma, a character that is not base64.
 Result<DataUri> decodeDataUri(std::string_view uri, std::size_t most);
 
 /// The path of a relative URI: percent-encoding is decoded, a plus sign stays a plus sign.
@@ -45,7 +44,7 @@ public:
     /// modelFile: may be empty (a stream).
     ModelFolder(std::string modelFile, bool allowOutsideFiles);
 
-    /// Opens the file of a URI that is no data URI. Errors are `expected …, found …` or name the file.
+    /// Opens the file of a URI that is not a data URI. Errors are `expected …, found …` or name the file.
     Result<RegularFile> open(std::string_view uri) const;
 
 private:

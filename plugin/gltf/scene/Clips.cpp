@@ -34,7 +34,7 @@ Channel::Interpolation interpolationOf(std::string_view name)
     return Channel::Interpolation::Linear;
 }
 
-/// What is wrong with a marker; empty: nothing.
+/// The fault of a marker; empty if it has none.
 const char* faultOf(const tinygltf::Value& marker)
 {
     if (!marker.IsObject()) return "no object";
@@ -84,7 +84,7 @@ public:
     std::optional<Clip> read(std::size_t index);
 
 private:
-    /// False: the clip is at fault, and a warning says so.
+    /// False, with a warning, if the clip is at fault.
     bool addChannel(const tinygltf::Animation& animation, std::size_t index);
     bool fail(const std::string& why);
 
@@ -94,9 +94,10 @@ private:
     MemoryBudget& _budget;
     Report& _report;
     ClipBuilder _builder;
-    std::string _clip;             ///< the animation that is being read, for messages
-    std::string _channel;          ///< its channel
-    std::size_t _channelBytes = 0; ///< of the keys read for this clip so far; freed when it is built
+    std::string _clip;    ///< the animation that is being read, for messages
+    std::string _channel; ///< its channel
+    std::size_t _channelBytes =
+        0; ///< of the keys read for this clip; freed with the channels, so only compared with the budget
 };
 
 bool ClipReader::fail(const std::string& why)

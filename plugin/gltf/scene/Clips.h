@@ -19,16 +19,15 @@ struct Clips
     std::vector<int> animationOfClip; ///< one a clip: the file's animation number
 };
 
-/// A clip that ClipBuilder refuses, or that would take more memory than the budget has, is left out with a warning.
-/// Channels without a node are skipped, as the specification says. A clip without a name is called by its number,
-/// `clip 3`.
+/// A clip that ClipBuilder refuses, or that exceeds the budget, is left out with a warning. Channels without a node are
+/// skipped, as the specification requires. A clip without a name is named after its number, `clip 3`.
 ///
 /// Markers come from the animation's extras (glTF 2.0 leaves extras to applications):
 ///
 ///     "extras": { "markers": [ { "time": 0.2, "name": "left foot" }, { "time": 0.7, "name": "right foot" } ] }
 ///
-/// time: seconds on the clip's time line, 0 or more; beyond its end counts as its end. A faulty marker is skipped with
-/// a warning.
+/// time: seconds from the clip's beginning, 0 or more, clamped to its duration. A faulty marker is skipped with a
+/// warning.
 Clips readClips(const tinygltf::Model& model, const Joints& joints, const Morphs& morphs, MemoryBudget& budget,
                 Report& report);
 

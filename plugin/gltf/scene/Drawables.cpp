@@ -17,7 +17,7 @@ namespace
 constexpr std::size_t bytesADrawable = 1024;
 constexpr std::size_t bytesAnInfluencedVertex =
     SkinnedGeometry::maxInfluenceSets * (sizeof(osg::Vec4us) + sizeof(osg::Vec4));
-// At most, for each target. Drawables share the packed targets, but each searches bounds vertex by vertex.
+// A limit for each target. Drawables share the packed targets, but each computes its bounds vertex by vertex.
 constexpr std::size_t bytesAMorphedVertex = 4 * sizeof(osg::Vec4);
 
 osg::ref_ptr<osg::Vec4Array> overall(const osg::Vec4& color)
@@ -46,8 +46,8 @@ osg::Geometry* Drawables::drawable(const DrawablePlace& place)
     return known->second.get();
 }
 
-/// The character program multiplies vertex colour and material; the fixed pipeline takes one or the other, so there
-/// the vertices take the product.
+/// The character program multiplies vertex colour and material. The fixed pipeline uses one of them, so vertices of
+/// plain geometry store the product.
 void Drawables::setColors(osg::Geometry& geometry, const MeshPrimitive& mesh, int material, bool palette)
 {
     const osg::Vec4 base = palette ? osg::Vec4(1, 1, 1, 1) : _materials.baseColor(material);
@@ -106,7 +106,7 @@ osg::ref_ptr<osg::Geometry> Drawables::make(const DrawablePlace& place)
     if (!mesh) return nullptr;
     if (!(farthestOf(place, *mesh) <= TransformBound::farthest))
     {
-        _report.warn(mesh->label + ": its vertices come to lie " + beyondFarthest() + "; not drawn");
+        _report.warn(mesh->label + ": its vertices lie " + beyondFarthest() + "; not drawn");
         return nullptr;
     }
     const tinygltf::Mesh& sourceMesh = _model.meshes[static_cast<std::size_t>(place.mesh)];
@@ -146,7 +146,7 @@ osg::ref_ptr<osg::Geometry> Drawables::make(const DrawablePlace& place)
     use.influences = palette ? skinned->getInfluenceCount() : 0;
     use.morphed = palette && place.morph >= 0;
     if (_materials.wantsTexture(use.material) && !use.textured)
-        _report.warn(mesh->label + ": lacks the texture coordinates that its material asks for");
+        _report.warn(mesh->label + ": lacks the texture coordinates that its material needs");
     geometry->setStateSet(_materials.stateSet(use));
     return geometry;
 }

@@ -42,9 +42,9 @@ public:
 
     /// The first skin of the file with the same palette entries as this one.
     int firstAlike(int skin) const { return _firstAlike[static_cast<std::size_t>(skin)]; }
-    /// Null where the primitive cannot be drawn.
+    /// Null if the primitive cannot be drawn.
     osg::Geometry* drawable(const DrawablePlace& place);
-    /// Its arrays; null likewise.
+    /// The arrays of the primitive; null if it cannot be drawn.
     const MeshPrimitive* meshPrimitive(const DrawablePlace& place)
     {
         return _meshes.primitive(place.mesh, place.primitive, place.skin >= 0);

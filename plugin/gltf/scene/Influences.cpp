@@ -47,7 +47,7 @@ FileInfluences readAll(const tinygltf::Model& model, const tinygltf::Primitive& 
     return result;
 }
 
-/// Keeps the largest influences in front, scaled so that their sum stays. False where there was nothing to drop.
+/// Moves the largest influences to the front and scales them to the same sum. False if none was dropped.
 bool reduce(Influence* influences, std::size_t count)
 {
     const auto end = influences + count;
@@ -76,7 +76,7 @@ std::size_t reduceAll(FileInfluences& file, std::size_t vertexCount)
     return reduced;
 }
 
-/// Sets up to the last one with a weight.
+/// The number of sets up to the last one with a weight.
 std::size_t usedSets(FileInfluences& file, std::size_t vertexCount)
 {
     std::size_t used = 1;

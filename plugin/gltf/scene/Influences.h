@@ -20,8 +20,8 @@ struct InfluenceSet
 };
 
 /// JOINTS_n and WEIGHTS_n of a primitive for one skin (glTF 2.0, section 3.7.3.3). The validation has mended weights
-/// and joints (see ValidateSkinning.h). Of more than eight influences of a vertex the eight largest are kept, with a
-/// warning, and scaled to the sum of all.
+/// and joints (see ValidateMeshes.h). A vertex keeps its eight largest influences, scaled to the sum of all; dropping
+/// others gives a warning.
 std::vector<InfluenceSet> readInfluences(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
                                          const MeshPrimitive& mesh, const AnimationSet& set, std::size_t skin,
                                          Report& report);

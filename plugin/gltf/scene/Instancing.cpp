@@ -15,7 +15,7 @@ namespace
 
 const char* const extensionName = "EXT_mesh_gpu_instancing";
 
-/// One attribute's numbers; empty where it is absent.
+/// One attribute's numbers; empty if it is absent.
 struct Attribute
 {
     std::vector<double> numbers;
@@ -42,7 +42,7 @@ Attribute readAttribute(const tinygltf::Model& model, const tinygltf::Value& att
     return result;
 }
 
-/// The fault of the three together; empty where there is none.
+/// The fault of the three together; empty if there is none.
 std::string faultOf(const Attribute& translation, const Attribute& rotation, const Attribute& scale)
 {
     std::size_t count = 0;

@@ -20,7 +20,7 @@ const tinygltf::Mesh* meshOf(const tinygltf::Model& model, const tinygltf::Node&
     return node.mesh < 0 ? nullptr : &model.meshes[static_cast<std::size_t>(node.mesh)];
 }
 
-/// Morph targets of the mesh: those of its first primitive (all have as many; section 3.7.2.2).
+/// The number of morph targets of the mesh: that of its first primitive (all have the same; section 3.7.2.2).
 std::size_t morphTargetCount(const tinygltf::Mesh& mesh)
 {
     return mesh.primitives.front().targets.size();

@@ -11,7 +11,7 @@
 namespace osgGpuAnimation::gltf
 {
 
-// What of a file can move: joints, skins and morph weights.
+// The moving parts of a file: joints, skins and morph weights.
 
 /// Which nodes of the file are joints: every joint of a skin, every target of an animation, every node with a mesh
 /// under one of those (except skinned meshes, whose node has no effect), every node with a morphing mesh, and all their
@@ -19,12 +19,12 @@ namespace osgGpuAnimation::gltf
 struct Joints
 {
     Skeleton skeleton;
-    std::vector<int> ofNode;     ///< one a node: its joint, -1 where it is none
+    std::vector<int> ofNode;     ///< one a node: its joint, -1 if it is not a joint
     std::vector<bool> moves;     ///< one a node: a skin or a clip can move it or an ancestor
     std::vector<bool> isSheared; ///< one a node: it has two joints, so clips cannot drive it
 };
 
-/// Error: as Skeleton::create() (a node whose transform is beyond what float holds).
+/// Error: that of Skeleton::create() (a node whose transform exceeds the range of float).
 Result<Joints> buildJoints(const tinygltf::Model& model, const NodeTree& tree);
 
 /// Whether a primitive's vertices follow a skin: the node has one, and the primitive has JOINTS_0 (and WEIGHTS_0: the
@@ -39,15 +39,14 @@ bool isRigidOnJoint(const tinygltf::Model& model, const Joints& joints, std::siz
 /// The joints that carry such a primitive of the drawn part, each once.
 std::vector<int> rigidJoints(const tinygltf::Model& model, const NodeTree& tree, const Joints& joints);
 
-/// All skins of the file, under the file's numbers (glTF 2.0, section 3.7.3). Without inverseBindMatrices they are
-/// identities.
+/// All skins of the file, in its order (glTF 2.0, section 3.7.3). Absent inverseBindMatrices are identities.
 std::vector<Skin> readSkins(const tinygltf::Model& model, const Joints& joints);
 
 /// The morph weights of a file: one MorphWeights for each node whose mesh has morph targets.
 struct Morphs
 {
     std::vector<MorphWeights> weights;
-    std::vector<int> ofNode; ///< one a node: index into `weights`, -1 where it has none
+    std::vector<int> ofNode; ///< one a node: index into `weights`, -1 if it has none
 };
 
 /// Defaults: the node's weights, else the mesh's, else 0 (glTF 2.0, section 3.7.2.2).

@@ -13,7 +13,7 @@
 namespace osgGpuAnimation::gltf
 {
 
-/// A material with everything else that a drawable's state depends on.
+/// A material and all other inputs of a drawable's state.
 struct MaterialUse
 {
     int material = -1;     ///< -1: the specification's default material
@@ -23,7 +23,7 @@ struct MaterialUse
     bool flat = false;     ///< drawn from the palette, without normals in the file: faces compute theirs from the pose
     bool textured = false; ///< has coordinates for the base colour texture
     bool colored = false;  ///< has colours of its own for each vertex
-    int influences = 0;    ///< drawn from the palette: what a vertex has at most
+    int influences = 0;    ///< drawn from the palette: the most influences of a vertex
     bool morphed = false;  ///< drawn from the palette: has morph targets
 
     auto key() const
@@ -46,7 +46,7 @@ public:
     osg::StateSet* stateSet(const MaterialUse& use);
     /// The base colour factor for display; white for the default material.
     osg::Vec4 baseColor(int material) const;
-    /// Whether the material asks for a base colour texture.
+    /// Whether the material has a base colour texture.
     bool wantsTexture(int material) const;
 
 private:

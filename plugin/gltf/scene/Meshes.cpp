@@ -81,8 +81,8 @@ bool isBlended(const tinygltf::Model& model, const tinygltf::Primitive& primitiv
            model.materials[static_cast<std::size_t>(primitive.material)].alphaMode == "BLEND";
 }
 
-/// The inverse of `sourceVertex`: the first vertex that stands for each of the file's. Vertices that no triangle uses
-/// are appended to `sourceVertex`, so that every vertex of the file exists, drawn or not.
+/// The inverse of `sourceVertex`: the first vertex made from each of the file's. Appends the vertices that no triangle
+/// uses to `sourceVertex`, so that every vertex of the file exists, drawn or not.
 std::vector<std::uint32_t> invert(std::vector<std::uint32_t>& sourceVertex, std::size_t vertexCount)
 {
     std::vector<std::uint32_t> geometryVertex(vertexCount, UINT32_MAX);
@@ -118,7 +118,7 @@ void pickVertices(MeshPrimitive& mesh)
     visitArrays(mesh, [&](auto& array) { pick(array, mesh.sourceVertex); });
 }
 
-/// Welds vertices that agree in all that the file says of them: what the mesh has read and the file's influences.
+/// Welds vertices whose attributes are all equal: those that the mesh has read and the file's influences.
 WeldedVertices weld(const tinygltf::Model& model, const tinygltf::Primitive& primitive, MeshPrimitive& mesh)
 {
     std::vector<VertexStream> streams;

@@ -33,7 +33,7 @@ struct MeshPrimitive
     std::vector<MorphTarget> targets;
     double radius = 0.0;             ///< of the farthest vertex from the mesh's origin
     std::vector<double> targetRadii; ///< by target: the longest displacement of a vertex
-    /// By vertex: the file's vertex. Empty where they are the same: where vertices were neither split for flat normals
+    /// By vertex: the file's vertex. Empty if they are the same, because vertices were neither split for flat normals
     /// nor welded. Vertices that no triangle uses come last and are not drawn.
     std::vector<std::uint32_t> sourceVertex;
     /// The inverse, see ImportedPrimitive::geometryVertex.
@@ -44,14 +44,14 @@ struct MeshPrimitive
 };
 
 /// Reads the primitives of a file's meshes, each once: all modes, with or without indices, flat normals where a
-/// triangle mesh has none (glTF 2.0, section 3.7.2.1). What cannot be drawn is left out; the validation has warned of
-/// it.
+/// triangle mesh has none (glTF 2.0, section 3.7.2.1). Primitives that cannot be drawn are left out; the validation has
+/// warned of them.
 class Meshes
 {
 public:
     Meshes(const tinygltf::Model& model, MemoryBudget& budget, Report& report);
 
-    /// skinned: by a skin, which makes vertices expensive: they are welded rather than split. Null where there is
+    /// skinned: by a skin, which makes vertices expensive: they are welded instead of split. Null if the primitive has
     /// nothing to draw.
     const MeshPrimitive* primitive(int mesh, int primitive, bool skinned = false);
 

@@ -38,7 +38,7 @@ glm::dquat rotationOf(const tinygltf::Node& node)
 }
 
 /// Turns columns i and j of `columns` (and of `turns`) by one angle so that they become orthogonal (one-sided
-/// Jacobi rotation; Hestenes 1958). False where they are already.
+/// Jacobi rotation; Hestenes 1958). False if they were orthogonal already.
 bool straighten(glm::dmat3& columns, glm::dmat3& turns, int i, int j)
 {
     const double a = glm::dot(columns[i], columns[i]);

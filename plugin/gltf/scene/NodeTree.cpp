@@ -31,7 +31,7 @@ void orderNodes(const tinygltf::Model& model, NodeTree& tree)
     }
 }
 
-/// The scene to draw; -1 where the file has none.
+/// The scene to draw; -1 if the file has none.
 Result<int> chooseScene(const tinygltf::Model& model, const ImportOptions& options)
 {
     const int count = static_cast<int>(model.scenes.size());

@@ -24,7 +24,7 @@ struct NodeTree
     std::vector<bool> drawn;         ///< at or below one of `roots`
     std::vector<glm::dmat4> toWorld; ///< at rest
 
-    /// Whether the node at rest turns surfaces inside out.
+    /// Whether the node at rest mirrors, so that front faces become back faces.
     bool isMirrored(int node) const;
 };
 

@@ -60,7 +60,7 @@ private:
     std::vector<std::vector<osg::ref_ptr<osg::Geometry>>> _still; ///< by node: its plain geometries
     std::vector<double> _stillRadius;                             ///< by node: of its farthest vertex
     std::vector<osg::ref_ptr<osg::Group>> _groups;                ///< by node: null where nothing is drawn below
-    /// By geometry: the one over the same arrays that still has room for parents.
+    /// By geometry: the current one over the same arrays, with fewer than 4,096 parents.
     std::map<const osg::Geometry*, osg::ref_ptr<osg::Geometry>> _open;
     std::set<const osg::Geometry*> _inCharacter;
 };
@@ -145,11 +145,11 @@ void SceneGraphBuilder::addMesh(std::size_t node)
     }
     if (moves && isInstanced(source))
         _parts.report.warn(namedElement("nodes", node, source.name) +
-                           ": EXT_mesh_gpu_instancing of what moves is not supported; drawn once");
+                           ": EXT_mesh_gpu_instancing of a moving mesh is not supported; drawn once");
 }
 
-/// OSG removes parents by linear search, so a new Geometry over the same arrays starts after 4,096 parents.
-/// geometry: becomes that one.
+/// OSG removes parents by linear search, so a new Geometry over the same arrays starts after 4,096 parents and replaces
+/// `geometry`.
 void SceneGraphBuilder::addShared(osg::Group& place, osg::ref_ptr<osg::Geometry>& geometry)
 {
     constexpr unsigned int manyParents = 4096;
@@ -180,7 +180,7 @@ void SceneGraphBuilder::addStill(std::size_t node)
             if (!reaches(reach * TransformBound::of(glm::make_mat4(instance.ptr())), radius))
             {
                 _parts.report.warn(namedElement("nodes", node, source.name) +
-                                   ": EXT_mesh_gpu_instancing takes an instance " + beyondFarthest() + "; not drawn");
+                                   ": EXT_mesh_gpu_instancing places an instance " + beyondFarthest() + "; not drawn");
                 continue;
             }
             places.push_back(new osg::MatrixTransform(instance));

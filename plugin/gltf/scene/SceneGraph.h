@@ -41,14 +41,14 @@ struct ImportedPrimitive
     std::size_t targets = 0;              ///< morph targets
     std::size_t vertexCount = 0;          ///< of the file's POSITION accessor
     std::size_t influences = 0;           ///< joints a vertex can name: 4 a JOINTS_n set
-    osg::ref_ptr<osg::Geometry> geometry; ///< a SkinnedGeometry where it is drawn from the palette
-    /// vertexCount numbers: the vertex of `geometry` for each of the file's vertices; null where they are the same.
+    osg::ref_ptr<osg::Geometry> geometry; ///< a SkinnedGeometry if it is drawn from the palette
+    /// vertexCount numbers: the vertex of `geometry` for each of the file's vertices; null if they are the same.
     std::shared_ptr<const std::vector<std::uint32_t>> geometryVertex;
-    /// Of a plain geometry: its place at rest, in the file's axes; identity for a SkinnedGeometry.
+    /// Of a plain geometry: its mesh-to-world transform at rest, in the file's axes; identity for a SkinnedGeometry.
     osg::Matrixd toModel;
 };
 
-/// What the graph is built from.
+/// The input of buildSceneGraph().
 struct SceneParts
 {
     const tinygltf::Model& model;

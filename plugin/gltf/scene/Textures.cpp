@@ -18,7 +18,7 @@ namespace osgGpuAnimation::gltf
 namespace
 {
 
-/// The base colour pictures of all materials. The validation has warned of those without bytes.
+/// The base colour pictures of all materials. LoadImages has warned of pictures without bytes.
 std::set<int> wantedImages(const tinygltf::Model& model)
 {
     std::set<int> wanted;
@@ -33,7 +33,7 @@ std::set<int> wantedImages(const tinygltf::Model& model)
 
 } // namespace
 
-/// The thread that decodes, and what it has decoded.
+/// The decoding thread and its results.
 class Textures::Decoding
 {
 public:
@@ -53,7 +53,7 @@ public:
         }
         catch (const std::system_error&)
         {
-            run(); // no thread can be started: decodes at once
+            run(); // no thread can be started: decode at once
         }
     }
     ~Decoding()
@@ -63,7 +63,7 @@ public:
     }
 
     bool has(int index) const { return _decoded.count(index) > 0; }
-    /// Waits for one of the pictures; to be called once for each.
+    /// Waits for one of the pictures. Call it once for each.
     Decoded take(int index) { return _decoded.at(index).get(); }
 
 private:

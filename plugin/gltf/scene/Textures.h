@@ -16,8 +16,8 @@ namespace osgGpuAnimation::gltf
 /// One osg::Texture2D for each texture of the file, with its sampler's filters and wrapping (glTF 2.0, section 3.8);
 /// textures of one picture share the osg::Image.
 ///
-/// A thread decodes the base colour pictures of all materials, one after the other, while the import reads clips and
-/// meshes: decoding is a good part of the time that a load takes. Other pictures are never decoded.
+/// A thread decodes the base colour pictures of all materials while the import reads clips and meshes, because decoding
+/// takes a large part of the load. Other pictures are never decoded.
 class Textures
 {
 public:
@@ -25,7 +25,7 @@ public:
     /// Does not wait for pictures that the thread has not begun.
     ~Textures();
 
-    /// Null for -1, and, with a warning, where the picture is missing or damaged: it then counts as white.
+    /// Null for -1, and, with a warning, if the picture is missing or damaged: it is then drawn white.
     osg::Texture2D* texture(int index);
 
 private:
@@ -38,7 +38,7 @@ private:
     Report& _report;
     std::unique_ptr<Decoding> _decoding;
     std::map<int, osg::ref_ptr<osg::Texture2D>> _textures;
-    std::map<int, osg::ref_ptr<osg::Image>> _images; ///< those asked for; null where damaged
+    std::map<int, osg::ref_ptr<osg::Image>> _images; ///< the requested ones; null if damaged
 };
 
 } // namespace osgGpuAnimation::gltf

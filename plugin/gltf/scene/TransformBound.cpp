@@ -28,7 +28,7 @@ struct Largest
             const glm::dvec3 sizes = glm::abs(glm::dvec3(transforms[i].scale));
             large += std::max({sizes.x, sizes.y, sizes.z});
         }
-        // NaN stays: it compares false and fits nowhere.
+        // Keep NaN: it compares false, so fits() is false.
         if (!(far <= translation)) translation = far;
         if (!(large <= scale)) scale = large;
     }
@@ -104,7 +104,7 @@ bool fits(const Skeleton& skeleton, const Clip& clip)
 
 std::string beyondFarthest()
 {
-    return "farther out than 1e18, more than float numbers bear";
+    return "farther out than 1e18, the limit for float numbers";
 }
 
 double radiusOf(const osg::Vec3Array& points)

@@ -13,21 +13,21 @@
 namespace osgGpuAnimation::gltf
 {
 
-/// An upper bound of what an affine matrix, or any matrix of a set, does to lengths. Each factor of a product may be
-/// finite in float and the product infinite: the bounds multiply in double, where no overflow stays unnoticed.
+/// An upper bound for the lengths that an affine matrix, or any matrix of a set, produces. A product of factors that
+/// are finite in float may be infinite: the bounds multiply in double, which detects every overflow.
 struct TransformBound
 {
-    /// Nothing farther out is drawn or played: the square of a length must fit a float (OSG's bounding spheres).
+    /// The limit for drawing and playing: the square of a length must fit a float (OSG's bounding spheres).
     static constexpr double farthest = 1e18;
 
-    double stretch = 1.0;  ///< the largest length that a vector of length 1 gets
-    double distance = 0.0; ///< the largest distance that the origin moves
+    double stretch = 1.0;  ///< the largest length of a transformed vector of length 1
+    double distance = 0.0; ///< the largest distance of the transformed origin
 
     static TransformBound of(const glm::dmat4& matrix);
     /// Applies the inner bound first.
     TransformBound operator*(const TransformBound& inner) const;
     void add(const TransformBound& other);
-    /// The largest distance of a transformed point whose own distance is at most the radius.
+    /// The largest distance from the origin of a transformed point that was within the radius.
     double of(double radius) const { return stretch * radius + distance; }
     bool fits() const { return stretch <= farthest && distance <= farthest; } ///< false for NaN
 };
@@ -36,7 +36,7 @@ struct TransformBound
 std::vector<TransformBound> boundsAtRest(const Skeleton& skeleton);
 std::vector<TransformBound> boundsOfClip(const Skeleton& skeleton, const Clip& clip);
 
-/// True if all joints stay near enough at all times of the clip, and all its numbers are small enough.
+/// True if all joints at all times of the clip, and all its numbers, are within `farthest`.
 bool fits(const Skeleton& skeleton, const Clip& clip);
 
 /// The end of messages about transforms that are too large.

@@ -24,8 +24,8 @@ const unsigned char* at(const VertexStream& stream, std::size_t vertex)
     return static_cast<const unsigned char*>(stream.data) + vertex * stream.bytesAVertex;
 }
 
-/// The sum of each vertex's words, each word times a random factor of its place: who does not know the factors cannot
-/// make vertices of one sum.
+/// A hash of each vertex: the sum of its words, each times a random factor of its place. Without the factors nobody can
+/// construct vertices with equal sums.
 std::vector<std::uint64_t> hashes(const std::vector<VertexStream>& streams, std::size_t vertexCount)
 {
     std::random_device device;
@@ -78,8 +78,8 @@ std::vector<std::uint32_t> firstEqual(const std::vector<VertexStream>& streams, 
     return first;
 }
 
-/// meshoptimizer searches all triangles of a vertex each time that it emits one of them: a file whose triangles all
-/// meet in one vertex must not keep it busy for hours.
+/// meshoptimizer searches all triangles of a vertex each time that it emits one of them, which takes hours for a file
+/// whose triangles all share one vertex.
 bool isQuick(const std::vector<std::uint32_t>& indices, std::size_t vertexCount)
 {
     constexpr std::uint64_t mostStepsAnIndex = 100;

@@ -16,8 +16,8 @@ namespace osgGpuAnimation::gltf
 /// vertices; every other triangle of a strip is turned so that all keep one winding (glTF 2.0, section 3.7.2.1).
 std::vector<std::uint32_t> triangleCorners(int mode, const std::vector<std::uint32_t>& vertices);
 
-/// For vertices that belong to one triangle each, three after three: the triangle's normal, as a mesh without normals
-/// must be shaded. A triangle without area takes +Z.
+/// The triangle's normal for each vertex, three vertices a triangle: the flat shading that a mesh without normals
+/// needs. +Z for a triangle without area.
 osg::ref_ptr<osg::Vec3Array> flatNormals(const osg::Vec3Array& positions);
 
 /// For vertices that triangles share: the mean of the triangles' normals, weighted by area; +Z where it is zero.
@@ -41,11 +41,10 @@ struct WeldedVertices
 /// attacks: with meshoptimizer's fixed hash a file can make the time grow by the square of the vertices.
 WeldedVertices weldVertices(const std::vector<VertexStream>& streams, std::size_t vertexCount);
 
-/// Orders triangles so that neighbours share vertices soon after one another and drawing shades each vertex about once
-/// (a skinned vertex is expensive). Triangles keep their winding, vertices their place. Not for blended meshes, whose
-/// order is part of the picture.
-/// indices: whole triangles, each index below vertexCount. They keep their order where vertices belong to so many
-/// triangles (hundreds on average) that the search would take time by the square of them.
+/// Orders triangles for the GPU's vertex cache, so that drawing shades each vertex about once (a skinned vertex is
+/// expensive). Triangles keep their winding, vertices their numbers. Not for blended meshes, whose order is visible.
+/// indices: whole triangles, each index below vertexCount. They keep their order if vertices belong to hundreds of
+/// triangles on average: the search would then take quadratic time.
 void optimizeForVertexCache(std::vector<std::uint32_t>& indices, std::size_t vertexCount);
 
 } // namespace osgGpuAnimation::gltf

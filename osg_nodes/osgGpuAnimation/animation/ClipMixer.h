@@ -32,9 +32,9 @@ public:
     double duration() const { return _duration; } ///< seconds
     /// Seconds of one round: PingPong goes forwards and back, so its round lasts twice the duration.
     double roundSeconds() const { return _loopMode == LoopMode::PingPong ? 2.0 * _duration : _duration; }
-    double time() const { return _time; } ///< seconds, in [0, duration]
-    double speed() const { return _speed; }
-    LoopMode loopMode() const { return _loopMode; }
+    double time() const { return _time; }           ///< seconds, in [0, duration]
+    double speed() const { return _speed; }         ///< 1: the speed of the file; negative: backwards
+    LoopMode loopMode() const { return _loopMode; } ///< the behaviour at the ends
     /// Time divided by duration, in [0, 1].
     double normalizedTime() const { return _duration > 0.0 ? _time / _duration : 0.0; }
     /// Share of a round, in [0, 1).
@@ -49,10 +49,10 @@ public:
 
     /// Restores stored values. time: clamped to [0, duration].
     void restore(double time, bool isReturning, bool isFresh);
-    void setSpeed(double speed) { _speed = speed; }
-    void setLoopMode(LoopMode mode);
-    void seek(double seconds);   ///< clamped to [0, duration]
-    void setPhase(double phase); ///< in [0, 1]
+    void setSpeed(double speed) { _speed = speed; } ///< finite
+    void setLoopMode(LoopMode mode);                ///< Sets the loop mode. The time stays.
+    void seek(double seconds);                      ///< clamped to [0, duration]
+    void setPhase(double phase);                    ///< in [0, 1]
     /// Moves the time. seconds: of the clip, so without the speed; finite, any sign.
     PlaybackStep move(double seconds);
 
@@ -71,6 +71,7 @@ private:
 /// A clip that contributes to a character's pose.
 struct PlayedClip
 {
+    /// The contribution of a clip to the pose.
     enum class Part
     {
         Mixed,           ///< in an Override layer
@@ -78,9 +79,10 @@ struct PlayedClip
         AddedToItsFirst, ///< its difference from its own first keyframe
     };
 
-    int clip = -1; ///< -1: the rest pose
-    Part part = Part::Mixed;
+    int clip = -1;           ///< -1: the rest pose
+    Part part = Part::Mixed; ///< the contribution
 
+    /// True if clip and part are equal.
     bool operator==(const PlayedClip& other) const { return clip == other.clip && part == other.part; }
 };
 
@@ -92,33 +94,34 @@ struct PlayedClip
 class ClipMixer
 {
 public:
-    static constexpr std::size_t maxActiveClips = 8;
+    static constexpr std::size_t maxActiveClips = 8; ///< the maximum of clips in one mix
 
+    /// A clip with its time and its share of the layer.
     struct ActiveClip
     {
-        ClipPlayback playback;
-        PlaybackStep move;  ///< the step of the last advance()
-        double share = 1.0; ///< of the layer, in [0, 1]
+        ClipPlayback playback; ///< clip and time
+        PlaybackStep move;     ///< the step of the last advance()
+        double share = 1.0;    ///< of the layer, in [0, 1]
         double meanShare =
             1.0; ///< mean during the last advance(): it weights root motion, so that the frame rate plays no part
         double shareBefore = 0.0; ///< share at the start of the last crossfade
         int phaseGroup = 0;       ///< active clips of one group share one phase
     };
 
-    std::size_t activeClipCount() const { return isEmpty() ? 0 : _leaving.size() + 1; }
-    const ActiveClip& activeClip(std::size_t index) const ///< oldest first
+    std::size_t activeClipCount() const { return isEmpty() ? 0 : _leaving.size() + 1; } ///< in [0, maxActiveClips]
+    const ActiveClip& activeClip(std::size_t index) const                               ///< oldest first
     {
         return index < _leaving.size() ? _leaving[index] : _current;
     }
-    bool isEmpty() const { return _current.playback.clip() < 0; }
+    bool isEmpty() const { return _current.playback.clip() < 0; } ///< true if no clip is active
     /// The newest active clip. The mixer must not be empty.
     ClipPlayback& current() { return _current.playback; }
-    const ClipPlayback& current() const { return _current.playback; }
-    bool isFading() const { return !_fade.isFinished(); }
+    const ClipPlayback& current() const { return _current.playback; } ///< The newest active clip.
+    bool isFading() const { return !_fade.isFinished(); }             ///< true during a crossfade
 
     const Fade& fade() const { return _fade; } ///< share of the current active clip, from 0 to 1
 
-    void clear();
+    void clear(); ///< removes all active clips
     /// Restores stored active clips. active clips: oldest first; only the first maxActiveClips are used.
     void restore(const std::vector<ActiveClip>& activeClips, const Fade& fade);
     /// Plays a clip at once and removes all others.

@@ -34,8 +34,9 @@ public:
     /// 24 bits of depth, 8 of stencil, no multisampling, compatibility profile.
     static Result<osg::ref_ptr<EglGraphicsContext>> create(int width, int height);
 
-    bool isCoreProfile() const { return _core; }
+    bool isCoreProfile() const { return _core; } ///< true for a core profile context
 
+    /// True if the object is an EglGraphicsContext.
     bool isSameKindAs(const osg::Object* object) const override
     {
         return dynamic_cast<const EglGraphicsContext*>(object) != nullptr;

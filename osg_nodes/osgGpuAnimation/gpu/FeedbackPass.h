@@ -35,21 +35,22 @@ private:
 class FeedbackVertexArrays
 {
 public:
+    /// The vertex array objects of one osg::State.
     struct Names
     {
-        osg::observer_ptr<osg::State> state;
-        GLuint pose = 0;  ///< with the attributes of the pose pass
-        GLuint empty = 0; ///< without any
+        osg::observer_ptr<osg::State> state; ///< the state that they belong to
+        GLuint pose = 0;                     ///< with the attributes of the pose pass
+        GLuint empty = 0;                    ///< without any
     };
 
-    explicit FeedbackVertexArrays(osg::GLExtensions& gl) : _gl(&gl) {}
+    explicit FeedbackVertexArrays(osg::GLExtensions& gl) : _gl(&gl) {} ///< gl: outlives this object.
 
     /// The state's context is current.
     const Names& of(osg::State& state);
 
     /// Where several contexts have some, only the last one's end can free them: the others go with their contexts.
     void release();
-    void discard() { _names.clear(); }
+    void discard() { _names.clear(); } ///< forgets the names without OpenGL calls
 
 private:
     osg::GLExtensions* _gl;
@@ -68,17 +69,17 @@ public:
     /// Multiples of so many vertices an instance are drawn the fastest way.
     static constexpr std::size_t verticesOfFastest = 3;
 
-    /// source: parts of the shader, put together behind a #version line and layout.glsl. outputs: the vec4 outputs
+    /// source: parts of the shader, put together behind a \#version line and layout.glsl. outputs: the vec4 outputs
     /// to capture, interleaved in that order. Failure to compile or link is reported once and leaves valid() false.
     FeedbackPass(osg::GLExtensions& gl, const char* name, std::initializer_list<const char*> source,
                  std::initializer_list<const char*> outputs);
     FeedbackPass(const FeedbackPass&) = delete;
     FeedbackPass& operator=(const FeedbackPass&) = delete;
 
-    bool valid() const { return _program != 0; }
+    bool valid() const { return _program != 0; } ///< true if compiled and linked
 
-    void use();
-    void setInt(const char* uniform, int value);
+    void use();                                  ///< makes the program current
+    void setInt(const char* uniform, int value); ///< Sets an integer uniform. The program must be current.
     /// Binds a buffer texture to a unit and points the sampler there.
     void setTexture(const char* uniform, int unit, GLuint texture);
     /// Draws points [firstVertex, firstVertex + count) and writes 16 bytes an output for each into the buffer.
@@ -87,8 +88,8 @@ public:
     /// where they are threes, since llvmpipe has less to do for each primitive than for its vertices.
     void runInstanced(std::size_t vertexCount, std::size_t instanceCount, GLuint buffer, std::size_t byteOffset);
 
-    void release();
-    void discard() { _program = 0; }
+    void release();                  ///< Deletes the program. The context must be current.
+    void discard() { _program = 0; } ///< forgets the program without OpenGL calls
 
 private:
     void begin(GLenum mode, std::size_t count, GLuint buffer, std::size_t byteOffset);

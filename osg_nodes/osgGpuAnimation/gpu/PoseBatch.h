@@ -19,10 +19,11 @@ namespace osgGpuAnimation
 class PoseBatch
 {
 public:
+    /// An empty batch. set: the set of all its instances.
     explicit PoseBatch(std::shared_ptr<const AnimationSet> set) : _set(std::move(set)) {}
 
-    const AnimationSet& set() const { return *_set; }
-    const std::shared_ptr<const AnimationSet>& sharedSet() const { return _set; }
+    const AnimationSet& set() const { return *_set; }                             ///< The set must not be null.
+    const std::shared_ptr<const AnimationSet>& sharedSet() const { return _set; } ///< null after reset(nullptr)
 
     /// Takes an instance up and returns its number: 0, 1, 2 … Weights and alphas that are no numbers or outside [0, 1]
     /// count as the nearest.
@@ -38,10 +39,10 @@ public:
     {
         Plain, ///< one sample, as it is: nothing to mix
         Few,   ///< a crossfade or two: up to four samples
-        Many,
+        Many,  ///< more than four samples, or masks or additive layers
     };
-    static constexpr std::size_t blendCostCount = 3;
-    static BlendCost loadOf(const PoseInstruction& instruction);
+    static constexpr std::size_t blendCostCount = 3;             ///< number of BlendCost values
+    static BlendCost loadOf(const PoseInstruction& instruction); ///< cost of an instruction
     /// Instances whose mixing costs as much as another batch: with fewer, one of another load may join them.
     static constexpr std::size_t minBatchSize = 128;
     /// Whether the instruction may come in without making many dearer, or being dear itself for the sake of others.
@@ -49,23 +50,23 @@ public:
 
     /// What the instance's colour is multiplied by. rgba: 8 bits each, red lowest. Others stay white.
     void setTint(std::size_t instance, std::uint32_t rgba);
-    void clear();
+    void clear(); ///< removes all instances
     /// Empty again, for instances of another set, or of none until the next reset; the storage is kept.
     void reset(std::shared_ptr<const AnimationSet> set);
 
-    static constexpr std::uint32_t white = 0xFFFFFFFFu;
+    static constexpr std::uint32_t white = 0xFFFFFFFFu; ///< the neutral tint
 
     /// What the samples ask of the mix stage, taken together.
     struct Needs
     {
-        bool mixing = false; ///< several samples, or one of less than full weight
-        bool layers = false;
-        bool masks = false;
-        bool additive = false;
+        bool mixing = false;   ///< several samples, or one of less than full weight
+        bool layers = false;   ///< more than one blend priority
+        bool masks = false;    ///< samples with a mask
+        bool additive = false; ///< additive samples
     };
-    const Needs& needs() const { return _needs; }
+    const Needs& needs() const { return _needs; } ///< of all instances together
 
-    std::size_t size() const { return _size; }
+    std::size_t size() const { return _size; } ///< number of instances
     /// Blend samples an instance takes in samples(): the largest number any instance has.
     std::size_t sampleStride() const { return _sampleStride; }
     /// size() * sampleStride(); what an instance does not need has weight 0.

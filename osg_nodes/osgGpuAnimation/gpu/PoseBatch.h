@@ -39,7 +39,7 @@ public:
     {
         Plain, ///< one sample, as it is: nothing to mix
         Few,   ///< a crossfade or two: up to four samples
-        Many,  ///< more than four samples, or masks or additive layers
+        Many,  ///< more than four samples
     };
     static constexpr std::size_t blendCostCount = 3;             ///< number of BlendCost values
     static BlendCost loadOf(const PoseInstruction& instruction); ///< cost of an instruction

@@ -24,9 +24,9 @@ struct RootMotionCurve;
 /// The part of an AnimationController that its layers use.
 class LayerOwner
 {
-    /// All members are for AnimationLayer and derived classes only.
 protected:
     friend class AnimationLayer;
+    /// set: not null.
     explicit LayerOwner(std::shared_ptr<const AnimationSet> set) : _set(std::move(set)) {}
     LayerOwner(const LayerOwner&) = default;            ///< Shares the set.
     LayerOwner& operator=(const LayerOwner&) = default; ///< Shares the set.
@@ -182,7 +182,8 @@ struct LayerSnapshot
     /// The state of a Fade.
     struct FadeState
     {
-        double from = 1.0, to = 1.0;         ///< values at the start and at the end
+        double from = 1.0,                   ///< value at the start
+            to = 1.0;                        ///< value at the end
         double seconds = 0.0;                ///< duration
         double elapsed = 0.0;                ///< seconds
         FadeCurve curve = FadeCurve::Linear; ///< progress over time

@@ -12,12 +12,13 @@ namespace osgGpuAnimation
 /// One step of a clip's time: where it began, where it ended, and how often it crossed the ends of the clip.
 struct PlaybackStep
 {
-    double from = 0.0, to = 0.0; ///< seconds on the time line of the clip
-    double distance = 0.0;       ///< seconds of the clip that the step covers; negative: backwards
-    double crossings = 0.0;      ///< jumps (Loop) or turns (PingPong) at the ends, an integer; negative: backwards
-    bool isAscending = true;     ///< true if time increased at the beginning of the step
-    bool includesStart = false;  ///< true if no earlier step has included `from`, so that its markers count
-    bool hasFinished = false;    ///< true if a Once clip reached its end
+    double from = 0.0,          ///< start, in seconds on the time line of the clip
+        to = 0.0;               ///< end, in seconds on the time line of the clip
+    double distance = 0.0;      ///< seconds of the clip that the step covers; negative: backwards
+    double crossings = 0.0;     ///< jumps (Loop) or turns (PingPong) at the ends, an integer; negative: backwards
+    bool isAscending = true;    ///< true if time increased at the beginning of the step
+    bool includesStart = false; ///< true if no earlier step has included `from`, so that its markers count
+    bool hasFinished = false;   ///< true if a Once clip reached its end
 };
 
 /// The time of one clip that plays. It is a plain value and cheap to copy; it knows only the duration of the clip.
@@ -50,9 +51,9 @@ public:
     /// Restores stored values. time: clamped to [0, duration].
     void restore(double time, bool isReturning, bool isFresh);
     void setSpeed(double speed) { _speed = speed; } ///< finite
-    void setLoopMode(LoopMode mode);                ///< Sets the loop mode. The time stays.
-    void seek(double seconds);                      ///< clamped to [0, duration]
-    void setPhase(double phase);                    ///< in [0, 1]
+    void setLoopMode(LoopMode mode); ///< The time stays. A new mode resets the PingPong direction to forwards.
+    void seek(double seconds);       ///< clamped to [0, duration]
+    void setPhase(double phase);     ///< in [0, 1]
     /// Moves the time. seconds: of the clip, so without the speed; finite, any sign.
     PlaybackStep move(double seconds);
 

@@ -38,8 +38,9 @@ struct RootMotionCurve
     /// lengths of the pieces. Linear clips have no tangents.
     struct Point
     {
-        /// The value, and the tangents of the pieces before (in) and after (out).
-        glm::dvec3 value{0.0}, in{0.0}, out{0.0};
+        glm::dvec3 value{0.0}, ///< in the units of the curve
+            in{0.0},           ///< tangent of the piece before
+            out{0.0};          ///< tangent of the piece after
     };
     /// The removed motion at one keyframe.
     struct Key
@@ -49,9 +50,9 @@ struct RootMotionCurve
         double yaw = 0.0;   ///< radians since the first key
     };
 
-    std::size_t joint = 0; ///< the joint that moved
-    glm::dvec3 up{0.0, 1.0, 0.0};
-    std::vector<Key> keys; ///< one per keyframe of the clip
+    std::size_t joint = 0;        ///< the joint that moved
+    glm::dvec3 up{0.0, 1.0, 0.0}; ///< unit
+    std::vector<Key> keys;        ///< one per keyframe of the clip
 
     /// The motion from the first keyframe to a mix of keyframe and keyframe + 1 by alpha, in [0, 1).
     RootMotion at(std::size_t keyframe, double alpha, bool isSpline) const;

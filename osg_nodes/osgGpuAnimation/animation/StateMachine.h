@@ -102,10 +102,11 @@ public:
         std::size_t to;                    ///< index of the target state
         std::vector<Condition> conditions; ///< all must be true
         double seconds;                    ///< length of the crossfade, at least 0
-        CrossfadeOptions options;          ///< loop mode and speed of the target state
+        CrossfadeOptions options;          ///< settings of the crossfade
     };
 
-    static constexpr std::size_t maxStates = 1024, maxTransitions = 8192; ///< limits of create()
+    static constexpr std::size_t maxStates = 1024, ///< the maximum number of states
+        maxTransitions = 8192;                     ///< the maximum number of transitions
 
     /// Errors contain the name of the state or the number of the transition: no states; more than maxStates or
     /// maxTransitions; a state without a name or with a name that another one has; an unknown clip or state; a

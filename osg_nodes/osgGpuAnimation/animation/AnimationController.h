@@ -30,10 +30,11 @@ struct RootMotionCurve;
 class AnimationController final : private LayerOwner
 {
 public:
-    using State = PlayState;
-    using LoopMode = osgGpuAnimation::LoopMode;
-    using EventCallback = std::function<void(const AnimationEvent&)>;
+    using State = PlayState;                                          ///< See PlayState.
+    using LoopMode = osgGpuAnimation::LoopMode;                       ///< See osgGpuAnimation::LoopMode.
+    using EventCallback = std::function<void(const AnimationEvent&)>; ///< Receives one event of advance().
 
+    /// Starts with one Stopped layer. set: not null.
     explicit AnimationController(std::shared_ptr<const AnimationSet> set);
     /// Continues another controller with another set, for example one with markers: its layers with the clips of the
     /// same numbers, and its root motion. A layer with clips or a mask that do not fit the set becomes Stopped and
@@ -45,7 +46,8 @@ public:
     AnimationController& operator=(const AnimationController& other);
     ~AnimationController();
 
-    const AnimationSet& set() const { return *_set; }
+    const AnimationSet& set() const { return *_set; } ///< The shared set.
+    /// The shared set with its ownership.
     const std::shared_ptr<const AnimationSet>& sharedSet() const { return _set; }
 
     /// The layer with that index; the first call creates it and all layers before it. index: below maxLayers (8);
@@ -55,32 +57,34 @@ public:
     std::size_t layerCount() const { return 1 + _upper.size(); } ///< at least 1
 
     // Of the base layer; see AnimationLayer.
-    Result<bool> play(std::size_t clip) { return _base.play(clip); }
-    Result<bool> play(const std::string& name) { return _base.play(name); }
+    Result<bool> play(std::size_t clip) { return _base.play(clip); }        ///< See AnimationLayer::play().
+    Result<bool> play(const std::string& name) { return _base.play(name); } ///< See AnimationLayer::play().
+    /// See AnimationLayer::crossfade(). seconds: finite, at least 0.
     Result<bool> crossfade(std::size_t clip, double seconds, const CrossfadeOptions& options = {})
     {
         return _base.crossfade(clip, seconds, options);
     }
+    /// See AnimationLayer::crossfade(). seconds: finite, at least 0.
     Result<bool> crossfade(const std::string& name, double seconds, const CrossfadeOptions& options = {})
     {
         return _base.crossfade(name, seconds, options);
     }
-    void pause() { _base.pause(); }
-    void resume() { _base.resume(); }
-    void stop() { _base.stop(); }
-    bool seek(double seconds) { return _base.seek(seconds); }
-    bool setSpeed(double speed) { return _base.setSpeed(speed); }
-    void setLoopMode(LoopMode mode) { _base.setLoopMode(mode); }
+    void pause() { _base.pause(); }                               ///< Playing → Paused
+    void resume() { _base.resume(); }                             ///< Paused → Playing
+    void stop() { _base.stop(); }                                 ///< → Stopped
+    bool seek(double seconds) { return _base.seek(seconds); }     ///< See AnimationLayer::seek().
+    bool setSpeed(double speed) { return _base.setSpeed(speed); } ///< See AnimationLayer::setSpeed().
+    void setLoopMode(LoopMode mode) { _base.setLoopMode(mode); }  ///< See AnimationLayer::setLoopMode().
 
-    State state() const { return _base.state(); }
-    bool isPlaying() const { return _base.isPlaying(); }
-    int clip() const { return _base.clip(); } ///< -1 if none was played
-    double time() const { return _base.time(); }
-    double duration() const { return _base.duration(); }
-    double normalizedTime() const { return _base.normalizedTime(); }
-    double phase() const { return _base.phase(); }
-    double speed() const { return _base.speed(); }
-    LoopMode loopMode() const { return _base.loopMode(); }
+    State state() const { return _base.state(); }                    ///< of the base layer
+    bool isPlaying() const { return _base.isPlaying(); }             ///< true in state Playing
+    int clip() const { return _base.clip(); }                        ///< -1 if none was played
+    double time() const { return _base.time(); }                     ///< seconds, in [0, duration()]
+    double duration() const { return _base.duration(); }             ///< seconds
+    double normalizedTime() const { return _base.normalizedTime(); } ///< time / duration, in [0, 1]
+    double phase() const { return _base.phase(); }                   ///< share of a round, in [0, 1)
+    double speed() const { return _base.speed(); }                   ///< 1: the speed of the file
+    LoopMode loopMode() const { return _base.loopMode(); }           ///< of the base layer
 
     /// True if clip, time, speed and state describe the controller completely: one layer (see
     /// AnimationLayer::isPlainLoop), no event callback, a set without root motion.

@@ -26,14 +26,15 @@ class LayerOwner
 {
 protected:
     friend class AnimationLayer;
+    /// set: not null.
     explicit LayerOwner(std::shared_ptr<const AnimationSet> set) : _set(std::move(set)) {}
-    LayerOwner(const LayerOwner&) = default;
-    LayerOwner& operator=(const LayerOwner&) = default;
+    LayerOwner(const LayerOwner&) = default;            ///< Shares the set.
+    LayerOwner& operator=(const LayerOwner&) = default; ///< Shares the set.
     ~LayerOwner() = default;
 
     virtual void rebuildInstruction() = 0; ///< rebuilds the pose instruction from all layers
 
-    std::shared_ptr<const AnimationSet> _set;
+    std::shared_ptr<const AnimationSet> _set; ///< never null
 };
 
 /// One layer of an AnimationController. It plays its own clips at their own times over the layers below it, with a
@@ -49,29 +50,32 @@ protected:
 class AnimationLayer
 {
 public:
+    /// The effect of the layer on the pose of the layers below.
     enum class Mode
     {
         Override, ///< replaces the pose of the layers below, by weight and mask
         Additive, ///< adds its difference from a reference to the final pose; the order of additive layers plays no
                   ///< part
     };
+    /// The pose that an additive layer subtracts from its clip.
     enum class Reference
     {
         RestPose,   ///< an additive layer adds the difference between clip and rest pose
         FirstFrame, ///< it adds the difference between the clip and its own first keyframe
     };
 
-    std::size_t index() const { return _index; }
+    std::size_t index() const { return _index; } ///< below maxLayers
 
     /// Plays a clip from its beginning (from its end if the speed is negative) without a crossfade. The loop mode
     /// stays. Error: no such clip; the message lists the existing names. The layer is then unchanged.
     Result<bool> play(std::size_t clip);
-    Result<bool> play(const std::string& name);
+    Result<bool> play(const std::string& name); ///< The same by name.
 
     /// Fades to a clip in the given seconds, from whatever is visible: another clip, a crossfade, nothing. The clips
     /// that fade out play on. 0 seconds: as play(). Errors: no such clip; seconds that are negative or not finite; a
     /// speed that is not finite. The layer is then unchanged.
     Result<bool> crossfade(std::size_t clip, double seconds, const CrossfadeOptions& options = {});
+    /// The same by name.
     Result<bool> crossfade(const std::string& name, double seconds, const CrossfadeOptions& options = {});
 
     void pause();  ///< Playing → Paused; no effect in other states
@@ -92,39 +96,41 @@ public:
     /// it and then continues exactly. restore() fails on a snapshot that is not valid for the set and then changes
     /// nothing.
     LayerSnapshot snapshot() const;
+    /// Error: the snapshot is not valid for the set; the layer is then unchanged.
     Result<bool> restore(const LayerSnapshot& snapshot);
 
-    PlayState state() const { return _state; }
-    bool isPlaying() const { return _state == PlayState::Playing; }
+    PlayState state() const { return _state; }                                       ///< see PlayState
+    bool isPlaying() const { return _state == PlayState::Playing; }                  ///< true in state Playing
     int clip() const { return _mixer.isEmpty() ? -1 : _mixer.current().clip(); }     ///< -1 if none was played
     double time() const { return _mixer.isEmpty() ? 0.0 : _mixer.current().time(); } ///< seconds, in [0, duration]
     double duration() const { return _mixer.isEmpty() ? 0.0 : _mixer.current().duration(); } ///< of the current clip
     double normalizedTime() const { return _mixer.isEmpty() ? 0.0 : _mixer.current().normalizedTime(); } ///< [0, 1]
     double phase() const { return _mixer.isEmpty() ? 0.0 : _mixer.current().phase(); } ///< see ClipPlayback::phase
-    double speed() const { return _speed; }
-    LoopMode loopMode() const { return _loopMode; }
-    bool isCrossfading() const { return !_mixer.isEmpty() && _mixer.isFading(); }
+    double speed() const { return _speed; }         ///< 1: the speed of the file; negative: backwards
+    LoopMode loopMode() const { return _loopMode; } ///< the behaviour of the clip at its ends
+    bool isCrossfading() const { return !_mixer.isEmpty() && _mixer.isFading(); } ///< true until a crossfade ends
 
     /// Sets the layer's weight and ends a fade. weight: clamped to [0, 1]; NaN is refused (false).
     bool setWeight(float weight);
     /// Fades from the current weight to another one, clamped to [0, 1]. Refused (false): a weight that is NaN; seconds
     /// that are negative or not finite.
     bool fadeWeight(float weight, double seconds, FadeCurve curve = FadeCurve::Linear);
-    float weight() const { return static_cast<float>(_weight.value()); }
+    float weight() const { return static_cast<float>(_weight.value()); } ///< the current weight, in [0, 1]
 
     /// Errors: the mask does not fit the joints and morphs of this set; the set has MaskTable::maxMasks masks.
     Result<bool> setMask(const JointMask& mask);
-    void clearMask();
+    void clearMask();                            ///< The layer affects all tracks.
     std::uint32_t mask() const { return _mask; } ///< number of the mask in the set, 0: none
 
+    /// Sets the mode. reference: used in mode Additive only.
     void setMode(Mode mode, Reference reference = Reference::RestPose);
-    Mode mode() const { return _mode; }
-    Reference reference() const { return _reference; }
+    Mode mode() const { return _mode; }                ///< default: Override
+    Reference reference() const { return _reference; } ///< default: RestPose
 
     /// Override layers of a higher blend priority replace those of a lower one; layers of equal blend priority share
     /// the joints by their weights. The default is the layer's index: each layer replaces those before it.
     void setBlendPriority(int blendPriority);
-    int blendPriority() const { return _blendPriority; }
+    int blendPriority() const { return _blendPriority; } ///< see setBlendPriority()
 
     /// True if clip, time, speed and state describe the layer completely: it plays or pauses one clip in a loop, or
     /// nothing, and everything else has its default.
@@ -173,37 +179,39 @@ private:
 ///     Result<bool> restored = other.layer(1).restore(kept);
 struct LayerSnapshot
 {
+    /// The state of a Fade.
     struct FadeState
     {
-        double from = 1.0, to = 1.0;
-        double seconds = 0.0;
-        double elapsed = 0.0; ///< seconds
-        FadeCurve curve = FadeCurve::Linear;
+        double from = 1.0,                   ///< value at the start
+            to = 1.0;                        ///< value at the end
+        double seconds = 0.0;                ///< duration
+        double elapsed = 0.0;                ///< seconds
+        FadeCurve curve = FadeCurve::Linear; ///< progress over time
     };
     /// One clip that contributes, see ClipMixer::ActiveClip.
     struct ActiveClip
     {
-        int clip = -1;
-        double time = 0.0; ///< seconds on the time line of the clip
-        double speed = 1.0;
-        LoopMode loopMode = LoopMode::Loop;
-        bool isReturning = false;
-        bool isFresh = true;
-        double share = 1.0;       ///< of the layer, in [0, 1]
-        double shareBefore = 0.0; ///< in [0, 1]
-        int phaseGroup = 0;       ///< index of the first active clip that shares its phase
+        int clip = -1;                      ///< index in the set, -1: none
+        double time = 0.0;                  ///< seconds on the time line of the clip
+        double speed = 1.0;                 ///< finite; negative: backwards
+        LoopMode loopMode = LoopMode::Loop; ///< behaviour at the ends
+        bool isReturning = false;           ///< see ClipPlayback::isReturning()
+        bool isFresh = true;                ///< see ClipPlayback::isFresh()
+        double share = 1.0;                 ///< of the layer, in [0, 1]
+        double shareBefore = 0.0;           ///< in [0, 1]
+        int phaseGroup = 0;                 ///< index of the first active clip that shares its phase
     };
 
-    PlayState state = PlayState::Stopped;
-    LoopMode loopMode = LoopMode::Loop;
-    double speed = 1.0;
-    std::vector<ActiveClip> activeClips; ///< oldest first; empty if nothing was ever played
-    FadeState crossfade;
-    FadeState weight;
-    std::vector<float> mask; ///< one weight per track; empty: no mask
-    AnimationLayer::Mode mode = AnimationLayer::Mode::Override;
-    AnimationLayer::Reference reference = AnimationLayer::Reference::RestPose;
-    int blendPriority = 0;
+    PlayState state = PlayState::Stopped;                       ///< state of the layer
+    LoopMode loopMode = LoopMode::Loop;                         ///< loop mode of the layer
+    double speed = 1.0;                                         ///< finite; speed of the layer
+    std::vector<ActiveClip> activeClips;                        ///< oldest first; empty if nothing was ever played
+    FadeState crossfade;                                        ///< the share of the newest clip
+    FadeState weight;                                           ///< weight of the layer, in [0, 1]
+    std::vector<float> mask;                                    ///< one weight per track; empty: no mask
+    AnimationLayer::Mode mode = AnimationLayer::Mode::Override; ///< mode of the layer
+    AnimationLayer::Reference reference = AnimationLayer::Reference::RestPose; ///< used in mode Additive
+    int blendPriority = 0; ///< see AnimationLayer::setBlendPriority()
 };
 
 } // namespace osgGpuAnimation

@@ -48,10 +48,10 @@ static_assert(sizeof(BlendSample) == 16, "a blend sample is 16 bytes on the GPU"
 ///   are multiplied by Π (1 + weight · (S / S_reference − 1)), except on axes with a reference of 0.
 struct PoseInstruction
 {
-    static constexpr std::size_t maxSamples = 16;
+    static constexpr std::size_t maxSamples = 16; ///< the maximum number of samples of one pose
 
-    std::size_t sampleCount = 1; ///< [1, maxSamples]
-    std::array<BlendSample, maxSamples> samples;
+    std::size_t sampleCount = 1;                 ///< [1, maxSamples]
+    std::array<BlendSample, maxSamples> samples; ///< only the first sampleCount are used
 };
 
 /// The masks of one AnimationSet. Masks are never removed or changed, so the weights of a mask stay valid while other
@@ -59,16 +59,16 @@ struct PoseInstruction
 class MaskTable
 {
 public:
-    static constexpr std::size_t maxMasks = 1024;
+    static constexpr std::size_t maxMasks = 1024; ///< the maximum number of masks of a set
 
     MaskTable() = default;
-    MaskTable(const MaskTable& other);
+    MaskTable(const MaskTable& other); ///< Copies the masks; their numbers stay the same.
     MaskTable& operator=(const MaskTable&) = delete;
 
     /// The number of the mask with these weights, from 1 on. Adds it if it is new. 0: the table is full.
     std::uint32_t add(const std::vector<float>& weights);
 
-    std::size_t count() const;
+    std::size_t count() const; ///< number of masks
     /// The weights of a mask, one per track; null for 0 (no mask) and for unknown numbers.
     const float* weights(std::uint32_t number) const;
 
@@ -82,11 +82,11 @@ class MaskTable;
 /// The input of AnimationSet::create().
 struct AnimationParts
 {
-    Skeleton skeleton;
-    std::vector<Skin> skins;
-    std::vector<int> rigidJoints; ///< joints that carry a mesh without a skin
-    std::vector<MorphWeights> morphs;
-    std::vector<Clip> clips; ///< created for the same skeleton and morphs
+    Skeleton skeleton;                ///< the joints
+    std::vector<Skin> skins;          ///< skins of the meshes
+    std::vector<int> rigidJoints;     ///< joints that carry a mesh without a skin
+    std::vector<MorphWeights> morphs; ///< meshes with morph weights
+    std::vector<Clip> clips;          ///< created for the same skeleton and morphs
 };
 
 /// Skeleton, palette and clips of one kind of character. It is immutable; all instances of the character share it on
@@ -105,21 +105,22 @@ public:
     /// Clip::withMarkers). Its palette is the same, so the meshes of this set fit it. Errors: those of create().
     Result<std::shared_ptr<const AnimationSet>> withClips(std::vector<Clip> clips) const;
 
-    const Skeleton& skeleton() const { return _parts.skeleton; }
-    const std::vector<Skin>& skins() const { return _parts.skins; }
+    const Skeleton& skeleton() const { return _parts.skeleton; }               ///< the joints
+    const std::vector<Skin>& skins() const { return _parts.skins; }            ///< as passed to create()
     const std::vector<int>& rigidJoints() const { return _parts.rigidJoints; } ///< as passed to create()
-    const std::vector<MorphWeights>& morphs() const { return _parts.morphs; }
-    const std::vector<Clip>& clips() const { return _parts.clips; }
+    const std::vector<MorphWeights>& morphs() const { return _parts.morphs; }  ///< as passed to create()
+    const std::vector<Clip>& clips() const { return _parts.clips; }            ///< as passed to create()
 
-    std::size_t trackCount() const { return _restPose.size(); }
+    std::size_t trackCount() const { return _restPose.size(); }               ///< joints, then weight blocks
     const std::vector<JointTransform>& restPose() const { return _restPose; } ///< trackCount() transforms
+    /// The track of the morph's first weight block. morph: below morphs().size().
     std::size_t firstTrackOfMorph(std::size_t morph) const { return _firstTracksOfMorphs[morph]; }
 
-    const std::vector<PaletteEntry>& palette() const { return _layout.entries; }
-    std::size_t paletteSize() const { return _layout.entries.size(); }
+    const std::vector<PaletteEntry>& palette() const { return _layout.entries; } ///< in the order of the levels
+    std::size_t paletteSize() const { return _layout.entries.size(); }           ///< number of entries
     /// levelCount() + 1 entry indices: level l is [levels()[l], levels()[l + 1]).
     const std::vector<std::size_t>& levels() const { return _layout.levels; }
-    std::size_t levelCount() const { return _layout.levels.size() - 1; }
+    std::size_t levelCount() const { return _layout.levels.size() - 1; } ///< number of levels of the palette
 
     /// The palette entry of the joint at an index of Skin::joints.
     int entryOfSkin(std::size_t skin, std::size_t place) const { return _layout.entryOfSkin[skin][place]; }
@@ -136,7 +137,7 @@ public:
     int findClip(const std::string& name) const;
     /// The clip of that name or number. Error: there is no such clip; the message lists the existing names.
     Result<std::size_t> clipNamed(const std::string& name) const;
-    Result<std::size_t> clipAt(std::size_t clip) const;
+    Result<std::size_t> clipAt(std::size_t clip) const; ///< The same by number.
 
     /// The number of a clip's first keyframe. Number 0 is the rest pose, then come the keyframes of all clips in turn
     /// (see BlendSample::keyframe).
@@ -150,7 +151,7 @@ public:
     /// weights: one per track, in [0, 1], see JointMask::weights().
     /// Errors: a wrong number of weights; the set has MaskTable::maxMasks masks.
     Result<std::uint32_t> addMask(const std::vector<float>& weights) const;
-    const MaskTable& masks() const { return *_masks; }
+    const MaskTable& masks() const { return *_masks; } ///< the masks of this set
 
 private:
     AnimationSet(AnimationParts parts, const MaskTable& masks);

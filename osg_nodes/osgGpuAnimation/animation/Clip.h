@@ -17,12 +17,13 @@ namespace osgGpuAnimation
 struct ClipMarker
 {
     double time = 0.0; ///< seconds on the clip's time line, in [0, duration]
-    std::string name;
+    std::string name;  ///< not necessarily unique
 };
 
 /// One property over time, as a file stores it (glTF 2.0, section 3.11): the input of ClipBuilder.
 struct Channel
 {
+    /// The property that a channel animates.
     enum class Path
     {
         Translation, ///< 3 numbers per value
@@ -30,18 +31,19 @@ struct Channel
         Scale,       ///< 3 numbers per value
         Weights,     ///< one number per morph target, as many as MorphWeights::defaults
     };
+    /// The interpolation between two keys (glTF 2.0, appendix C).
     enum class Interpolation
     {
-        Step,
-        Linear,
+        Step,        ///< keeps the value until the next key
+        Linear,      ///< linear; slerp for rotations
         CubicSpline, ///< each key has three values: in-tangent, value, out-tangent
     };
 
-    Path path = Path::Translation;
-    Interpolation interpolation = Interpolation::Linear;
-    int target = -1;           ///< a joint of the skeleton; for Weights, an index into the morph weights
-    std::vector<double> times; ///< seconds, strictly ascending
-    std::vector<double> values;
+    Path path = Path::Translation;                       ///< the animated property
+    Interpolation interpolation = Interpolation::Linear; ///< between two keys
+    int target = -1;            ///< a joint of the skeleton; for Weights, an index into the morph weights
+    std::vector<double> times;  ///< seconds, strictly ascending
+    std::vector<double> values; ///< all numbers of all keys, in the order of the keys
 };
 
 struct ClipParts;
@@ -62,6 +64,7 @@ struct RootMotionCurve;
 class Clip
 {
 public:
+    /// The storage of the keyframes.
     enum class Form
     {
         Linear, ///< one JointTransform per track and keyframe: the value
@@ -71,8 +74,8 @@ public:
     /// The keyframes of a time: a mix of keyframe and keyframe + 1 by alpha. At the last keyframe alpha is 0.
     struct Span
     {
-        std::size_t keyframe = 0;
-        float alpha = 0.0f; ///< [0, 1)
+        std::size_t keyframe = 0; ///< below Clip::keyframeCount()
+        float alpha = 0.0f;       ///< [0, 1)
     };
 
     /// Creates a clip from data that another clip exported, for example to restore a stored clip. ClipBuilder creates
@@ -82,17 +85,18 @@ public:
     /// invalid time; compact tracks or a root motion that do not fit the clip.
     static Result<Clip> create(ClipParts parts);
 
-    const std::string& name() const { return _name; }
-    Form form() const { return _form; }
+    const std::string& name() const { return _name; }                        ///< not necessarily unique
+    Form form() const { return _form; }                                      ///< storage of the keyframes
     double duration() const { return _times.empty() ? 0.0 : _times.back(); } ///< seconds; the last keyframe's time
-    std::size_t trackCount() const { return _trackCount; }
-    std::size_t keyframeCount() const { return _times.size(); }
+    std::size_t trackCount() const { return _trackCount; }                   ///< joints, then weight blocks
+    std::size_t keyframeCount() const { return _times.size(); }              ///< number of keyframes
     const std::vector<float>& times() const
     {
         return _times;
     } ///< keyframeCount() times in seconds, ascending, the same twice at a jump
 
     std::size_t transformsPerTrack() const { return transformsPerTrack(_form); } ///< in a keyframe
+    /// Transforms per track and keyframe: 1 for Linear, 3 for Spline.
     static constexpr std::size_t transformsPerTrack(Form form) { return form == Form::Spline ? 3 : 1; }
     /// JointTransforms per keyframe in data().
     std::size_t keyframeStride() const { return _trackCount * transformsPerTrack(); }
@@ -145,13 +149,13 @@ struct RootMotionCurve;
 /// The input of Clip::create(): everything that a clip exports.
 struct ClipParts
 {
-    std::string name;
-    Clip::Form form = Clip::Form::Linear;
-    std::size_t jointCount = 0;       ///< the first tracks; their transforms belong to joints
-    std::size_t trackCount = 0;       ///< joints, then weight blocks
-    std::vector<float> times;         ///< as Clip::times()
-    std::vector<JointTransform> data; ///< as Clip::data()
-    std::vector<ClipMarker> markers;
+    std::string name;                                  ///< not necessarily unique
+    Clip::Form form = Clip::Form::Linear;              ///< as Clip::form()
+    std::size_t jointCount = 0;                        ///< the first tracks; their transforms belong to joints
+    std::size_t trackCount = 0;                        ///< joints, then weight blocks
+    std::vector<float> times;                          ///< as Clip::times()
+    std::vector<JointTransform> data;                  ///< as Clip::data()
+    std::vector<ClipMarker> markers;                   ///< times in [0, duration]
     std::shared_ptr<const RootMotionCurve> rootMotion; ///< null: none
     std::shared_ptr<const CompactTracks>
         compactTracks; ///< null: exact; else create() writes their decoded values to data

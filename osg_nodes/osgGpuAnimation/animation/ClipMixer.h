@@ -12,12 +12,13 @@ namespace osgGpuAnimation
 /// One step of a clip's time: where it began, where it ended, and how often it crossed the ends of the clip.
 struct PlaybackStep
 {
-    double from = 0.0, to = 0.0; ///< seconds on the time line of the clip
-    double distance = 0.0;       ///< seconds of the clip that the step covers; negative: backwards
-    double crossings = 0.0;      ///< jumps (Loop) or turns (PingPong) at the ends, an integer; negative: backwards
-    bool isAscending = true;     ///< true if time increased at the beginning of the step
-    bool includesStart = false;  ///< true if no earlier step has included `from`, so that its markers count
-    bool hasFinished = false;    ///< true if a Once clip reached its end
+    double from = 0.0,          ///< start, in seconds on the time line of the clip
+        to = 0.0;               ///< end, in seconds on the time line of the clip
+    double distance = 0.0;      ///< seconds of the clip that the step covers; negative: backwards
+    double crossings = 0.0;     ///< jumps (Loop) or turns (PingPong) at the ends, an integer; negative: backwards
+    bool isAscending = true;    ///< true if time increased at the beginning of the step
+    bool includesStart = false; ///< true if no earlier step has included `from`, so that its markers count
+    bool hasFinished = false;   ///< true if a Once clip reached its end
 };
 
 /// The time of one clip that plays. It is a plain value and cheap to copy; it knows only the duration of the clip.
@@ -32,9 +33,9 @@ public:
     double duration() const { return _duration; } ///< seconds
     /// Seconds of one round: PingPong goes forwards and back, so its round lasts twice the duration.
     double roundSeconds() const { return _loopMode == LoopMode::PingPong ? 2.0 * _duration : _duration; }
-    double time() const { return _time; } ///< seconds, in [0, duration]
-    double speed() const { return _speed; }
-    LoopMode loopMode() const { return _loopMode; }
+    double time() const { return _time; }           ///< seconds, in [0, duration]
+    double speed() const { return _speed; }         ///< 1: the speed of the file; negative: backwards
+    LoopMode loopMode() const { return _loopMode; } ///< the behaviour at the ends
     /// Time divided by duration, in [0, 1].
     double normalizedTime() const { return _duration > 0.0 ? _time / _duration : 0.0; }
     /// Share of a round, in [0, 1).
@@ -49,10 +50,10 @@ public:
 
     /// Restores stored values. time: clamped to [0, duration].
     void restore(double time, bool isReturning, bool isFresh);
-    void setSpeed(double speed) { _speed = speed; }
-    void setLoopMode(LoopMode mode);
-    void seek(double seconds);   ///< clamped to [0, duration]
-    void setPhase(double phase); ///< in [0, 1]
+    void setSpeed(double speed) { _speed = speed; } ///< finite
+    void setLoopMode(LoopMode mode); ///< The time stays. A new mode resets the PingPong direction to forwards.
+    void seek(double seconds);       ///< clamped to [0, duration]
+    void setPhase(double phase);     ///< in [0, 1]
     /// Moves the time. seconds: of the clip, so without the speed; finite, any sign.
     PlaybackStep move(double seconds);
 
@@ -71,6 +72,7 @@ private:
 /// A clip that contributes to a character's pose.
 struct PlayedClip
 {
+    /// The contribution of a clip to the pose.
     enum class Part
     {
         Mixed,           ///< in an Override layer
@@ -78,9 +80,10 @@ struct PlayedClip
         AddedToItsFirst, ///< its difference from its own first keyframe
     };
 
-    int clip = -1; ///< -1: the rest pose
-    Part part = Part::Mixed;
+    int clip = -1;           ///< -1: the rest pose
+    Part part = Part::Mixed; ///< the contribution
 
+    /// True if clip and part are equal.
     bool operator==(const PlayedClip& other) const { return clip == other.clip && part == other.part; }
 };
 
@@ -92,33 +95,34 @@ struct PlayedClip
 class ClipMixer
 {
 public:
-    static constexpr std::size_t maxActiveClips = 8;
+    static constexpr std::size_t maxActiveClips = 8; ///< the maximum of clips in one mix
 
+    /// A clip with its time and its share of the layer.
     struct ActiveClip
     {
-        ClipPlayback playback;
-        PlaybackStep move;  ///< the step of the last advance()
-        double share = 1.0; ///< of the layer, in [0, 1]
+        ClipPlayback playback; ///< clip and time
+        PlaybackStep move;     ///< the step of the last advance()
+        double share = 1.0;    ///< of the layer, in [0, 1]
         double meanShare =
             1.0; ///< mean during the last advance(): it weights root motion, so that the frame rate plays no part
         double shareBefore = 0.0; ///< share at the start of the last crossfade
         int phaseGroup = 0;       ///< active clips of one group share one phase
     };
 
-    std::size_t activeClipCount() const { return isEmpty() ? 0 : _leaving.size() + 1; }
-    const ActiveClip& activeClip(std::size_t index) const ///< oldest first
+    std::size_t activeClipCount() const { return isEmpty() ? 0 : _leaving.size() + 1; } ///< in [0, maxActiveClips]
+    const ActiveClip& activeClip(std::size_t index) const                               ///< oldest first
     {
         return index < _leaving.size() ? _leaving[index] : _current;
     }
-    bool isEmpty() const { return _current.playback.clip() < 0; }
+    bool isEmpty() const { return _current.playback.clip() < 0; } ///< true if no clip is active
     /// The newest active clip. The mixer must not be empty.
     ClipPlayback& current() { return _current.playback; }
-    const ClipPlayback& current() const { return _current.playback; }
-    bool isFading() const { return !_fade.isFinished(); }
+    const ClipPlayback& current() const { return _current.playback; } ///< The newest active clip.
+    bool isFading() const { return !_fade.isFinished(); }             ///< true during a crossfade
 
     const Fade& fade() const { return _fade; } ///< share of the current active clip, from 0 to 1
 
-    void clear();
+    void clear(); ///< removes all active clips
     /// Restores stored active clips. active clips: oldest first; only the first maxActiveClips are used.
     void restore(const std::vector<ActiveClip>& activeClips, const Fade& fade);
     /// Plays a clip at once and removes all others.

@@ -33,7 +33,7 @@ public:
 
     /// weight: clamped to [0, 1]; NaN counts as 0. False if there is no such joint or morph.
     bool setJoint(std::size_t joint, float weight);
-    bool setMorph(std::size_t morph, float weight);
+    bool setMorph(std::size_t morph, float weight);                  ///< The same for all weights of a morph.
     float joint(std::size_t joint) const { return _weights[joint]; } ///< joint: below the set's jointCount()
 
     /// The mask with 1 - weight everywhere.

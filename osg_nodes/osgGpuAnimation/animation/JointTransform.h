@@ -17,6 +17,7 @@ namespace osgGpuAnimation
 /// the layout of a palette entry on the GPU. The fourth row is always (0, 0, 0, 1). Default: the identity.
 struct AffineMatrix
 {
+    /// the first three rows of the matrix
     std::array<glm::vec4, 3> rows{glm::vec4(1, 0, 0, 0), glm::vec4(0, 1, 0, 0), glm::vec4(0, 0, 1, 0)};
 
     /// Converts a column-major GLM matrix; its fourth row is ignored.
@@ -94,6 +95,7 @@ struct JointTransform
 
     /// The number at an index in [0, 12): translation, then rotation, then scale.
     float& number(std::size_t index);
+    /// index: in [0, 12)
     float number(std::size_t index) const { return const_cast<JointTransform*>(this)->number(index); }
 };
 

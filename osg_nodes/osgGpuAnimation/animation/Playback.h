@@ -40,18 +40,18 @@ enum class FadeCurve
 class Fade
 {
 public:
-    explicit Fade(double value) : _from(value), _to(value) {}
+    explicit Fade(double value) : _from(value), _to(value) {} ///< A finished fade at a constant value.
     /// seconds: finite; at 0 or less the value is the target at once.
     Fade(double from, double to, double seconds, FadeCurve curve);
 
-    double value() const { return _value; }
-    double mean() const { return _mean; } ///< mean value during the last advance()
-    double origin() const { return _from; }
-    double target() const { return _to; }
-    double seconds() const { return _seconds; }
-    double elapsed() const { return _elapsed; } ///< seconds; at least seconds() once the fade has finished
-    FadeCurve curve() const { return _curve; }
-    bool isFinished() const { return _elapsed >= _seconds; }
+    double value() const { return _value; }                  ///< the current value
+    double mean() const { return _mean; }                    ///< mean value during the last advance()
+    double origin() const { return _from; }                  ///< value at the start
+    double target() const { return _to; }                    ///< value at the end
+    double seconds() const { return _seconds; }              ///< duration of the fade
+    double elapsed() const { return _elapsed; }              ///< seconds; at least seconds() once the fade has finished
+    FadeCurve curve() const { return _curve; }               ///< progress over time
+    bool isFinished() const { return _elapsed >= _seconds; } ///< true if the target is reached
     /// Moves the value on; seconds below 0 count as 0. Returns the share of the seconds after which the fade finished,
     /// in [0, 1]; -1 if it did not finish in this step.
     double advance(double seconds);
@@ -73,10 +73,11 @@ enum class Sync
            ///< by weight, so that the feet of a walk and a run stay together
 };
 
+/// Optional settings of AnimationLayer::crossfade().
 struct CrossfadeOptions
 {
-    FadeCurve curve = FadeCurve::Linear;
-    Sync sync = Sync::Start;
+    FadeCurve curve = FadeCurve::Linear;             ///< progress of the shares
+    Sync sync = Sync::Start;                         ///< start time of the new clip
     std::optional<LoopMode> loopMode = std::nullopt; ///< new loop mode of the layer; none: unchanged
     std::optional<double> speed = std::nullopt;      ///< new speed of the layer, finite; none: unchanged
 };
@@ -84,6 +85,7 @@ struct CrossfadeOptions
 /// An event of one layer during AnimationController::advance().
 struct AnimationEvent
 {
+    /// The cause of an event.
     enum class Type
     {
         Marker,       ///< the time passed a marker of a clip
@@ -92,8 +94,8 @@ struct AnimationEvent
         FadeFinished, ///< a crossfade or a fade of the layer's weight ended
     };
 
-    Type type = Type::Marker;
-    std::size_t layer = 0;
+    Type type = Type::Marker;           ///< the cause
+    std::size_t layer = 0;              ///< index, below maxLayers
     int clip = -1;                      ///< of the set; for FadeFinished the layer's current clip, -1 if none plays
     const ClipMarker* marker = nullptr; ///< of the clip, for Marker; else null
     double moment = 0.0;                ///< share of the step at which it happened, in [0, 1]

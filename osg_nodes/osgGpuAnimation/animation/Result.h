@@ -28,7 +28,7 @@ std::string quotedNames(const std::vector<T>& named, NameOf nameOf)
 /// A message that names the element, what was expected and what was found.
 struct Error
 {
-    std::string message;
+    std::string message; ///< one or more sentences for the developer
 };
 
 /// A value or an error. The caller must check it.
@@ -40,21 +40,24 @@ template <typename T>
 class [[nodiscard]] Result
 {
 public:
-    Result(T value) : _content(std::move(value)) {}
-    Result(Error error) : _content(std::move(error)) {}
+    Result(T value) : _content(std::move(value)) {}     ///< Holds a value.
+    Result(Error error) : _content(std::move(error)) {} ///< Holds an error.
 
-    explicit operator bool() const { return std::holds_alternative<T>(_content); }
+    explicit operator bool() const { return std::holds_alternative<T>(_content); } ///< True if it holds a value.
 
+    /// The value. The Result must hold one.
     const T& value() const&
     {
         assert(*this && "value() of a Result that holds an error");
         return std::get<T>(_content);
     }
+    /// The value, to move from. The Result must hold one.
     T&& value() &&
     {
         assert(*this && "value() of a Result that holds an error");
         return std::get<T>(std::move(_content));
     }
+    /// The error. The Result must hold one.
     const Error& error() const
     {
         assert(!*this && "error() of a Result that holds a value");

@@ -17,19 +17,20 @@ namespace osgGpuAnimation
 /// the 48 bytes of a palette entry in the output.
 struct MorphWeights
 {
-    static constexpr std::size_t weightsPerBlock = 12;
+    static constexpr std::size_t weightsPerBlock = 12; ///< the numbers of one JointTransform
 
-    std::string name;
+    std::string name;            ///< not necessarily unique
     int sourceNode = -1;         ///< number of the node in the file
     std::vector<float> defaults; ///< one per target: the weights of the node, else of the mesh, else 0
 
+    /// blocks that hold all weights; the last may be partly used
     std::size_t blockCount() const { return (defaults.size() + weightsPerBlock - 1) / weightsPerBlock; }
 };
 
 /// A node of the file that moves, or that carries a node or mesh that moves.
 struct Joint
 {
-    std::string name;
+    std::string name;    ///< not necessarily unique
     int parent = -1;     ///< index of the parent joint, -1 for a root
     JointTransform rest; ///< used if no clip animates the joint
     int sourceNode = -1; ///< number of the node in the file, -1 if it has none
@@ -44,13 +45,13 @@ public:
     /// becomes the identity). Errors: a parent out of range, a cycle, a rest transform that is not finite.
     static Result<Skeleton> create(std::vector<Joint> joints);
 
-    std::size_t jointCount() const { return _joints.size(); }
-    const std::vector<Joint>& joints() const { return _joints; }
-    const Joint& joint(std::size_t index) const { return _joints[index]; }
+    std::size_t jointCount() const { return _joints.size(); }              ///< number of joints
+    const std::vector<Joint>& joints() const { return _joints; }           ///< in level order
+    const Joint& joint(std::size_t index) const { return _joints[index]; } ///< index: below jointCount()
 
     /// jointCount() depths; the depth of a root is 0.
     const std::vector<int>& depths() const { return _depths; }
-    std::size_t levelCount() const;
+    std::size_t levelCount() const; ///< number of different depths
 
     /// The joint that was at this index in the input of create().
     int jointOfInput(std::size_t inputIndex) const { return _jointOfInput[inputIndex]; }
@@ -80,7 +81,7 @@ std::vector<JointTransform> restPose(const Skeleton& skeleton, const std::vector
 /// Joints with their inverse bind matrices (glTF 2.0, section 3.7.3).
 struct Skin
 {
-    std::string name;
+    std::string name;                       ///< not necessarily unique
     std::vector<int> joints;                ///< joints of the skeleton
     std::vector<AffineMatrix> inverseBinds; ///< one per joint: from the mesh's space at bind time to joint space
 };
@@ -99,6 +100,7 @@ struct Skin
 /// inverted without loss (see PaletteBuilder.cpp), else the identity. Equal matrices of one joint share an entry.
 struct PaletteEntry
 {
+    /// The source of an entry's values.
     enum class Kind
     {
         Joint,   ///< T·R·S comes from the track
@@ -106,7 +108,7 @@ struct PaletteEntry
         Weights, ///< the track's twelve numbers unchanged; no parent, no matrices
     };
 
-    Kind kind = Kind::Joint;
+    Kind kind = Kind::Joint;  ///< the source of the values
     int joint = -1;           ///< the joint of the entry; -1 for weights
     int parent = -1;          ///< an entry of an earlier level; -1: the instance's root matrix
     int track = -1;           ///< index in a keyframe; -1 for Static
@@ -117,7 +119,7 @@ struct PaletteEntry
 /// All palette entries of an AnimationSet and how to find them.
 struct PaletteLayout
 {
-    std::vector<PaletteEntry> entries;
+    std::vector<PaletteEntry> entries;         ///< level by level
     std::vector<std::size_t> levels;           ///< level count + 1 entry indices: level l is [levels[l], levels[l + 1])
     std::vector<std::vector<int>> entryOfSkin; ///< by skin, then by index in Skin::joints
     std::vector<int> entryOfRigidJoint;        ///< by joint; -1 if no rigid mesh hangs on the joint

@@ -21,22 +21,23 @@ namespace osgGpuAnimation
 ///     "after 2.5"     the state has lasted at least 2.5 seconds
 struct StateCondition
 {
+    /// The kind of a condition.
     enum class Test
     {
-        Greater,
-        AtLeast,
-        Less,
-        AtMost,
-        Equal,
-        NotEqual,
-        Fired,
-        Finished,
-        After,
+        Greater,  ///< parameter > value
+        AtLeast,  ///< parameter >= value
+        Less,     ///< parameter < value
+        AtMost,   ///< parameter <= value
+        Equal,    ///< parameter == value
+        NotEqual, ///< parameter != value
+        Fired,    ///< the trigger was fired
+        Finished, ///< the Once clip of the state reached its end
+        After,    ///< the state has lasted at least value seconds
     };
 
-    Test test = Test::Fired;
-    std::string parameter; ///< the name of a parameter or trigger; empty for Finished and After
-    double value = 0.0;
+    Test test = Test::Fired; ///< the kind of the condition
+    std::string parameter;   ///< the name of a parameter or trigger; empty for Finished and After
+    double value = 0.0;      ///< the number to compare with; for After: seconds
 
     /// Names are single words without < > = !. The name of a trigger is not a number and not "finished" or "after" in
     /// upper or lower case. Errors quote the text: no valid condition, a number that is not finite.
@@ -46,28 +47,29 @@ struct StateCondition
 /// The description of a state: a clip under a name.
 struct StateDescription
 {
-    std::string name;
-    std::string clip;
-    LoopMode loopMode = LoopMode::Loop;
-    double speed = 1.0;
+    std::string name;                   ///< unique and not empty
+    std::string clip;                   ///< name of a clip of the set
+    LoopMode loopMode = LoopMode::Loop; ///< loop mode of the clip
+    double speed = 1.0;                 ///< finite; negative: backwards
 };
 
 /// The description of a transition from one state to another.
 struct TransitionDescription
 {
-    std::string from; ///< empty: from every state except `to`
-    std::string to;
-    std::vector<std::string> when; ///< conditions that must all be true, see StateCondition
-    double seconds = 0.25;         ///< length of the crossfade, at least 0
-    FadeCurve curve = FadeCurve::Linear;
-    Sync sync = Sync::Start;
+    std::string from;                    ///< empty: from every state except `to`
+    std::string to;                      ///< name of the target state
+    std::vector<std::string> when;       ///< conditions that must all be true, see StateCondition
+    double seconds = 0.25;               ///< length of the crossfade, at least 0
+    FadeCurve curve = FadeCurve::Linear; ///< progress of the crossfade
+    Sync sync = Sync::Start;             ///< start time of the new clip
 };
 
+/// The input of StateGraph::create().
 struct StateGraphDescription
 {
-    std::vector<StateDescription> states;
-    std::vector<TransitionDescription> transitions;
-    std::string start; ///< empty: the first state
+    std::vector<StateDescription> states;           ///< at most StateGraph::maxStates
+    std::vector<TransitionDescription> transitions; ///< in the order of evaluation
+    std::string start;                              ///< empty: the first state
 };
 
 /// States and transitions, checked against a set. It is immutable; the StateMachines of all characters share it.
@@ -78,29 +80,33 @@ struct StateGraphDescription
 class StateGraph
 {
 public:
+    /// A state with its clip resolved.
     struct State
     {
-        std::string name;
-        std::size_t clip;
-        LoopMode loopMode;
-        double speed;
+        std::string name;  ///< unique
+        std::size_t clip;  ///< index in the set
+        LoopMode loopMode; ///< loop mode of the clip
+        double speed;      ///< finite
     };
+    /// A condition with its name resolved.
     struct Condition
     {
-        StateCondition::Test test;
-        std::size_t parameter; ///< index of the parameter or trigger; 0 if the test needs none
-        double value;
+        StateCondition::Test test; ///< the kind of the condition
+        std::size_t parameter;     ///< index of the parameter or trigger; 0 if the test needs none
+        double value;              ///< see StateCondition::value
     };
+    /// A transition with its states resolved.
     struct Transition
     {
-        int from; ///< -1: every state except `to`
-        std::size_t to;
-        std::vector<Condition> conditions;
-        double seconds;
-        CrossfadeOptions options;
+        int from;                          ///< -1: every state except `to`
+        std::size_t to;                    ///< index of the target state
+        std::vector<Condition> conditions; ///< all must be true
+        double seconds;                    ///< length of the crossfade, at least 0
+        CrossfadeOptions options;          ///< settings of the crossfade
     };
 
-    static constexpr std::size_t maxStates = 1024, maxTransitions = 8192;
+    static constexpr std::size_t maxStates = 1024, ///< the maximum number of states
+        maxTransitions = 8192;                     ///< the maximum number of transitions
 
     /// Errors contain the name of the state or the number of the transition: no states; more than maxStates or
     /// maxTransitions; a state without a name or with a name that another one has; an unknown clip or state; a
@@ -109,11 +115,11 @@ public:
     static Result<std::shared_ptr<const StateGraph>> create(const AnimationSet& set,
                                                             const StateGraphDescription& description);
 
-    const std::vector<State>& states() const { return _states; }
-    const std::vector<Transition>& transitions() const { return _transitions; }
-    const std::vector<std::string>& parameters() const { return _parameters; }
-    const std::vector<std::string>& triggers() const { return _triggers; }
-    std::size_t start() const { return _start; }
+    const std::vector<State>& states() const { return _states; }                ///< in the order of the description
+    const std::vector<Transition>& transitions() const { return _transitions; } ///< in the order of the description
+    const std::vector<std::string>& parameters() const { return _parameters; }  ///< names in the conditions
+    const std::vector<std::string>& triggers() const { return _triggers; }      ///< names in the conditions
+    std::size_t start() const { return _start; }                                ///< index of the start state
 
     int findState(const std::string& name) const; ///< -1 if there is none
 
@@ -147,9 +153,9 @@ public:
     /// layer: index of the layer that update() drives, below maxLayers.
     explicit StateMachine(std::shared_ptr<const StateGraph> graph, std::size_t layer = 0);
 
-    const StateGraph& graph() const { return *_graph; }
-    const std::string& state() const { return _graph->states()[_state].name; }
-    double secondsInState() const { return _seconds; }
+    const StateGraph& graph() const { return *_graph; }                        ///< the shared graph
+    const std::string& state() const { return _graph->states()[_state].name; } ///< name of the current state
+    double secondsInState() const { return _seconds; }                         ///< seconds since the state was entered
     double value(const std::string& parameter) const; ///< initially 0; 0 if there is no such parameter
 
     /// Sets a parameter. False, without a change, if no condition uses the parameter or the value is NaN.

@@ -37,6 +37,7 @@ public:
     /// True for a core profile, false for a compatibility profile.
     bool isCoreProfile() const { return _core; }
 
+    /// True if the object is an EglGraphicsContext.
     bool isSameKindAs(const osg::Object* object) const override
     {
         return dynamic_cast<const EglGraphicsContext*>(object) != nullptr;

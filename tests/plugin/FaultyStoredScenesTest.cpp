@@ -100,7 +100,8 @@ const FaultCase faults[] = {
 const FaultCase compactFaults[] = {
     {"a column that is not there", "Track 0 ", "Track 99 ", Answer::Error, "compact keyframes do not fit"},
     {"a column below none", "Track 0 ", "Track -7 ", Answer::Error, "compact keyframes do not fit"},
-    {"a range that is not finite", "Track 0 -1 -1 0", "Track 0 -1 -1 inf", Answer::Error, "compact keyframes do not fit"},
+    {"a range that is not finite", "Track 0 -1 -1 0", "Track 0 -1 -1 inf", Answer::Error,
+     "compact keyframes do not fit"},
     {"fewer joints", "Compact 3 ", "Compact 2 ", Answer::Error, ""},
     {"more joints", "Compact 3 ", "Compact 4000000000 ", Answer::Error, "Track"},
     {"less that is held", "Held 36 ", "Held 24 ", Answer::Error, ""},

@@ -201,12 +201,12 @@ void addScaled(inout JointTransform sum, JointTransform t, float factor)
 }
 
 // The weighted sum of one blend priority over the result of the lower ones.
-JointTransform covered(JointTransform below, JointTransform blendPriority, float weight, bool isWeights)
+JointTransform covered(JointTransform below, JointTransform group, float weight, bool isWeights)
 {
     float left = 1.0 - min(weight, 1.0);
-    if (!isWeights && dot(below.rotation, blendPriority.rotation) < 0.0) below.rotation = -below.rotation;
+    if (!isWeights && dot(below.rotation, group.rotation) < 0.0) below.rotation = -below.rotation;
     JointTransform sum = JointTransform(left * below.translation, left * below.rotation, left * below.scale);
-    addScaled(sum, blendPriority, 1.0 / max(weight, 1.0));
+    addScaled(sum, group, 1.0 / max(weight, 1.0));
     return sum;
 }
 
@@ -275,7 +275,7 @@ JointTransform mixSamples(int instance, int track, RestParts rest, bool isWeight
 {
     const JointTransform nothing = JointTransform(vec4(0.0), vec4(0.0), vec4(0.0));
     JointTransform total = fetchRest(track);
-    JointTransform blendPriority = nothing;
+    JointTransform group = nothing;
     JointTransform reference = nothing;
     Difference difference = Difference(nothing, vec3(0.0), vec3(1.0));
     vec4 hemisphere = vec4(0.0);
@@ -288,8 +288,8 @@ JointTransform mixSamples(int instance, int track, RestParts rest, bool isWeight
         if (hasMasks) weight *= maskWeight(blendSample.w, track);
         if (hasLayers && (blendSample.w & POSE_SAMPLE_ABOVE) != 0u)
         {
-            total = covered(total, blendPriority, sum, isWeights);
-            blendPriority = nothing;
+            total = covered(total, group, sum, isWeights);
+            group = nothing;
             sum = 0.0;
         }
         if (!(weight > 0.0)) continue;
@@ -302,10 +302,10 @@ JointTransform mixSamples(int instance, int track, RestParts rest, bool isWeight
         }
         if (sum == 0.0) hemisphere = t.rotation;
         if (!isWeights && dot(hemisphere, t.rotation) < 0.0) t.rotation = -t.rotation;
-        addScaled(blendPriority, t, weight);
+        addScaled(group, t, weight);
         sum += weight;
     }
-    total = covered(total, blendPriority, sum, isWeights);
+    total = covered(total, group, sum, isWeights);
     if (!isWeights) total.rotation = normalize(total.rotation);
     return hasAdditive ? changed(total, difference, isWeights) : total;
 }

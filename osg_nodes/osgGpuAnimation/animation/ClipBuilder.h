@@ -32,6 +32,7 @@ using EntryBoxes = std::vector<Box>;
 class ClipBuilder
 {
 public:
+    /// For clips of the skeleton's joints and these morphs; copies what it needs of both.
     ClipBuilder(const Skeleton& skeleton, const std::vector<MorphWeights>& morphs);
 
     /// Adds a channel. Errors name the channel: no times; times that are negative, not finite or not ascending as
@@ -60,6 +61,7 @@ private:
     std::vector<bool> _driven; ///< by keyOf(): three paths per joint, then one per morph
 };
 
+/// Options of compactClips().
 struct CompactOptions
 {
     /// The largest error of a vertex or a joint's origin in the model's units, above 0: for example a fraction of
@@ -70,8 +72,8 @@ struct CompactOptions
 /// A set with compact clips, and their errors.
 struct CompactedSet
 {
-    std::shared_ptr<const AnimationSet> set;
-    std::vector<double> errors; ///< one per clip, in the model's units; 0 for an unchanged clip
+    std::shared_ptr<const AnimationSet> set; ///< never null
+    std::vector<double> errors;              ///< one per clip, in the model's units; 0 for an unchanged clip
 };
 
 /// Makes the clips of a set smaller, on the GPU and on the CPU: parts that hardly move become constant, keyframes that

@@ -71,8 +71,9 @@ public:
     /// Draws are fastest if the vertices per instance are a multiple of this number.
     static constexpr std::size_t verticesOfFastest = 3;
 
-    /// source: parts of the shader, which follow a #version line and layout.glsl. outputs: the vec4 outputs to capture,
-    /// interleaved in this order. If the shader does not compile or link, the pass warns once and valid() is false.
+    /// source: parts of the shader, which follow a \#version line and layout.glsl. outputs: the vec4 outputs to
+    /// capture, interleaved in this order. If the shader does not compile or link, the pass warns once and valid() is
+    /// false.
     FeedbackPass(osg::GLExtensions& gl, const char* name, std::initializer_list<const char*> source,
                  std::initializer_list<const char*> outputs);
     FeedbackPass(const FeedbackPass&) = delete;

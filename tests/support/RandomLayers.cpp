@@ -59,13 +59,13 @@ PoseInstruction randomLayers(const AnimationSet& set, std::mt19937& random)
         const int mask = whole(random, 0, 1) == 0 ? 0 : whole(random, 0, static_cast<int>(set.masks().count()));
         return static_cast<std::uint32_t>(mask) << POSE_SAMPLE_MASK_SHIFT;
     };
-    const int blendPriorities = whole(random, 0, 3);
-    for (int blendPriority = 0; blendPriority < blendPriorities; ++blendPriority)
+    const int priorityCount = whole(random, 0, 3);
+    for (int priority = 0; priority < priorityCount; ++priority)
         for (int count = whole(random, 1, 4), i = 0; i < count; ++i)
         {
             BlendSample& sample = out.samples[out.sampleCount++] = randomSample(set, random);
             sample.weight = whole(random, 0, 3) == 0 ? 1.0f : static_cast<float>(number(random, 0.0, 0.8));
-            sample.control |= randomMask() | (i == 0 && blendPriority > 0 ? POSE_SAMPLE_ABOVE : 0u);
+            sample.control |= randomMask() | (i == 0 && priority > 0 ? POSE_SAMPLE_ABOVE : 0u);
         }
     for (int count = whole(random, 0, 2); count > 0; --count)
     {

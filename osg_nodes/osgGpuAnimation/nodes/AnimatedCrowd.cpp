@@ -111,15 +111,13 @@ AnimatedCrowd::AnimatedCrowd(std::shared_ptr<const AnimationSet> set,
     setUpdateCallback(new AnimationUpdateCallback);
     for (const osg::ref_ptr<SkinnedGeometry>& mesh : meshes)
         addChild(mesh);
-    _instances->setClipBounds(clipBoundsOf(*_instances->set(), *this));
+    if (!meshes.empty()) _instances->setClipBounds(clipBoundsOf(getAnimationSet(), *this));
 }
 
 AnimatedCrowd::AnimatedCrowd(const AnimatedCharacter& character)
-    : _instances(std::make_unique<CrowdInstances>(character.getController().sharedSet())),
-      _posed(std::make_unique<PosedInstances>()), _pixelError(character.getPixelError())
+    : AnimatedCrowd(character.getController().sharedSet(), {})
 {
-    setDataVariance(osg::Object::DYNAMIC);
-    setUpdateCallback(new AnimationUpdateCallback);
+    _pixelError = character.getPixelError();
     setName(character.getName());
     if (character.getStateSet()) setStateSet(const_cast<osg::StateSet*>(character.getStateSet()));
     forEachMesh(character, [&](const SkinnedGeometry& mesh) { addChild(const_cast<SkinnedGeometry*>(&mesh)); });

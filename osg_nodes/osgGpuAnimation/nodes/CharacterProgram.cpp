@@ -15,12 +15,10 @@ namespace
 {
 
 /// GLSL 1.40 is enough for skinning and, in a compatibility context, keeps the names of the fixed pipeline.
-osg::Shader* makeShader(osg::Shader::Type type, std::initializer_list<const char*> parts)
+osg::ref_ptr<osg::Shader> makeSkinShader()
 {
-    std::string source = "#version 140\n";
-    for (const char* part : parts)
-        source += part;
-    return new osg::Shader(type, source);
+    return new osg::Shader(osg::Shader::VERTEX,
+                           std::string("#version 140\n") + shaders::layout_glsl + shaders::skin_glsl);
 }
 
 osg::ref_ptr<osg::Program> makeProgram()
@@ -36,11 +34,7 @@ osg::ref_ptr<osg::Program> makeProgram()
 osg::ref_ptr<osg::Shader> skinShader()
 {
     static SharedObject<osg::Shader> shared;
-    return shared.get(
-        [] {
-            return osg::ref_ptr<osg::Shader>(
-                makeShader(osg::Shader::VERTEX, {shaders::layout_glsl, shaders::skin_glsl}));
-        });
+    return shared.get(makeSkinShader);
 }
 
 void bindSkinAttributes(osg::Program& program)

@@ -364,14 +364,14 @@ void SkinnedGeometry::releaseGLObjects(osg::State* state) const
 {
     osg::Geometry::releaseGLObjects(state);
     if (_morphDeltas->texture) _morphDeltas->texture->releaseGLObjects(state);
-    _detail->releaseGLObjects(state);
+    if (const auto levels = _detail->known(*this)) levels->releaseGLObjects(state);
 }
 
 void SkinnedGeometry::resizeGLObjectBuffers(unsigned int maxSize)
 {
     osg::Geometry::resizeGLObjectBuffers(maxSize);
     if (_morphDeltas->texture) _morphDeltas->texture->resizeGLObjectBuffers(maxSize);
-    _detail->resizeGLObjectBuffers(maxSize);
+    if (const auto levels = _detail->known(*this)) levels->resizeGLObjectBuffers(maxSize);
 }
 
 } // namespace osgGpuAnimation

@@ -65,23 +65,24 @@ Error tooLong(std::uintmax_t size)
 template <typename T>
 using Words = std::initializer_list<std::pair<const char*, T>>;
 
+void expect(bool isExpected, const std::string& where, const char* expected, const Json& found)
+{
+    if (!isExpected) throw Fault{where + ": expected " + expected + ", found " + found.type_name()};
+}
+
 void checkObject(const Json& value, const std::string& where, std::initializer_list<const char*> known)
 {
-    if (!value.is_object()) throw Fault{where + ": expected an object, found " + value.type_name()};
+    expect(value.is_object(), where, "an object", value);
     for (const auto& member : value.items())
-    {
-        bool isKnown = false;
-        for (const char* name : known)
-            isKnown = isKnown || member.key() == name;
-        if (!isKnown) throw Fault{where + ": unknown member \"" + member.key() + "\""};
-    }
+        if (std::find(known.begin(), known.end(), member.key()) == known.end())
+            throw Fault{where + ": unknown member \"" + member.key() + "\""};
 }
 
 void readText(const Json& object, const char* name, const std::string& where, std::string& out)
 {
     const auto found = object.find(name);
     if (found == object.end()) return;
-    if (!found->is_string()) throw Fault{where + "." + name + ": expected a string, found " + found->type_name()};
+    expect(found->is_string(), where + "." + name, "a string", *found);
     out = found->get<std::string>();
 }
 
@@ -94,7 +95,7 @@ void readNumber(const Json& object, const char* name, const std::string& where, 
 {
     const auto found = object.find(name);
     if (found == object.end()) return;
-    if (!found->is_number()) throw Fault{where + "." + name + ": expected a number, found " + found->type_name()};
+    expect(found->is_number(), where + "." + name, "a number", *found);
     out = found->get<double>();
 }
 
@@ -135,7 +136,7 @@ std::vector<std::string> toConditions(const Json& json, const std::string& where
     std::vector<std::string> conditions;
     const auto add = [&](const Json& condition)
     {
-        if (!condition.is_string()) throw Fault{where + ": expected a string, found " + condition.type_name()};
+        expect(condition.is_string(), where, "a string", condition);
         conditions.push_back(condition.get<std::string>());
     };
     if (json.is_array())
@@ -167,14 +168,13 @@ StateGraphDescription toDescription(const Json& json)
     readText(json, "start", "the file", description.start);
     if (const auto states = json.find("states"); states != json.end())
     {
-        if (!states->is_object()) throw Fault{std::string("states: expected an object, found ") + states->type_name()};
+        expect(states->is_object(), "states", "an object", *states);
         for (const auto& state : states->items())
             description.states.push_back(toState(state.key(), state.value()));
     }
     if (const auto transitions = json.find("transitions"); transitions != json.end())
     {
-        if (!transitions->is_array())
-            throw Fault{std::string("transitions: expected an array, found ") + transitions->type_name()};
+        expect(transitions->is_array(), "transitions", "an array", *transitions);
         for (const Json& transition : *transitions)
             description.transitions.push_back(
                 toTransition(transition, "transitions[" + std::to_string(description.transitions.size()) + "]"));

@@ -84,12 +84,7 @@ void CollapsibleMesh::joinPoints()
                 if (positions[a][axis] != positions[b][axis]) return positions[a][axis] < positions[b][axis] ? -1 : 1;
         return 0;
     };
-    std::sort(order.begin(), order.end(),
-              [&](std::uint32_t a, std::uint32_t b)
-              {
-                  const int comparison = compare(a, b);
-                  return comparison != 0 ? comparison < 0 : a < b;
-              });
+    std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return compare(a, b) < 0; });
     _pointOf.resize(order.size());
     for (std::size_t i = 0; i < order.size(); ++i)
     {
@@ -133,14 +128,11 @@ std::vector<CollapsibleMesh::Corners> CollapsibleMesh::cornersAround(std::uint32
 {
     std::vector<std::uint32_t> around;
     for (const std::uint32_t neighbour : neighboursOf(point))
-        for (const std::uint32_t triangle : _trianglesAt[neighbour])
-            if (!has(triangle, point)) around.push_back(triangle);
+        around.insert(around.end(), _trianglesAt[neighbour].begin(), _trianglesAt[neighbour].end());
     sortOnce(around);
     std::vector<Corners> corners;
-    for (const std::vector<std::uint32_t>* triangles :
-         {&_trianglesAt[point], static_cast<const decltype(around)*>(&around)})
-        for (const std::uint32_t triangle : *triangles)
-            corners.push_back(_triangles[triangle]);
+    for (const std::uint32_t triangle : around)
+        corners.push_back(_triangles[triangle]);
     return corners;
 }
 

@@ -305,15 +305,4 @@ void MeshLod::forget()
     std::atomic_store(&_levels, std::shared_ptr<const LodLevels>());
 }
 
-void MeshLod::releaseGLObjects(osg::State* state) const
-{
-    if (const std::shared_ptr<const LodLevels> levels = std::atomic_load(&_levels)) levels->releaseGLObjects(state);
-}
-
-void MeshLod::resizeGLObjectBuffers(unsigned int maxSize) const
-{
-    if (const std::shared_ptr<const LodLevels> levels = std::atomic_load(&_levels))
-        levels->resizeGLObjectBuffers(maxSize);
-}
-
 } // namespace osgGpuAnimation

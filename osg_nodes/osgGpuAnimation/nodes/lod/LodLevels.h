@@ -107,9 +107,6 @@ public:
     /// Discards the levels after a change of influences, morph targets or clips.
     void forget();
 
-    void releaseGLObjects(osg::State* state) const;
-    void resizeGLObjectBuffers(unsigned int maxSize) const;
-
 private:
     mutable std::mutex _mutex;
     mutable std::shared_ptr<const LodLevels> _levels; ///< accessed atomically

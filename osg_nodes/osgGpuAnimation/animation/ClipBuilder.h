@@ -14,10 +14,6 @@
 namespace osgGpuAnimation
 {
 
-struct Box;
-/// For each palette entry, the box of the vertices that it moves, in the mesh's space at bind time.
-using EntryBoxes = std::vector<Box>;
-
 /// Converts channels, each with its own times, into a Clip: keyframes of all tracks at the union of all key times.
 ///
 /// - LINEAR is exact: a slerp cut in two gives the same slerp.

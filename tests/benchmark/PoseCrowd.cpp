@@ -67,8 +67,8 @@ Spent PoseCrowd::step(double seconds, PosePipeline::Form form)
     osg::State& state = *_context->getState();
     PosePipeline* pipeline = PosePipeline::of(state);
     if (!pipeline) return {};
-    pipeline->setForm(form);
-    pipeline->setChunkSize(_chunkSize);
+    pipeline->options().form = form;
+    pipeline->options().chunkSize = _chunkSize;
     glFinish();
     const Stopwatch stopwatch;
     for (PoseBatch& batch : _batches)

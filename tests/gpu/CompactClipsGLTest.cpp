@@ -40,7 +40,7 @@ TEST_P(CompactClipsGLTest, showTheTwinsPoseSinglyAndInLayers)
 {
     PosePipeline* pipeline = PosePipeline::of(state());
     ASSERT_NE(pipeline, nullptr);
-    pipeline->setForm(GetParam());
+    pipeline->options().form = GetParam();
     std::mt19937 random(31);
     std::uniform_real_distribution<double> time(-0.2, 4.0);
     for (unsigned int seed = 1; seed <= 6; ++seed)

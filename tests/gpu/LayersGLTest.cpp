@@ -49,7 +49,7 @@ TEST_P(LayersGLTest, aThousandRandomStacksAreTheTwinsAndTheReferencesPose)
     std::mt19937 random(seed);
     PosePipeline* pipeline = PosePipeline::of(state());
     ASSERT_NE(pipeline, nullptr);
-    pipeline->setForm(GetParam());
+    pipeline->options().form = GetParam();
     std::size_t compared = 0;
     double worstTwin = 0.0, worstReference = 0.0;
     for (unsigned int character = 0; character < 10; ++character)
@@ -89,7 +89,7 @@ TEST_P(LayersGLTest, batchesOfAnyNumberOfSamplesAfterAnyOther)
     const auto set = makeRandomSet({});
     PosePipeline* pipeline = PosePipeline::of(state());
     ASSERT_NE(pipeline, nullptr);
-    pipeline->setForm(GetParam());
+    pipeline->options().form = GetParam();
     std::uniform_real_distribution<float> unit(0.0f, 1.0f);
     for (const std::size_t count : {4, 1, 16, 2, 5, 3, 4, 6, 1})
     {

@@ -47,7 +47,7 @@ PoseInstruction instructionOf(const LoadData& data)
 TEST(PoseBatchTest, loadsAreToldApart)
 {
     for (const LoadData& data : loadData)
-        EXPECT_EQ(PoseBatch::loadOf(instructionOf(data)), data.load) << data.name;
+        EXPECT_EQ(PoseBatch::blendCostOf(instructionOf(data)), data.load) << data.name;
 }
 
 TEST(PoseBatchTest, aFullBatchSuitsThoseOfItsLoadAlone)

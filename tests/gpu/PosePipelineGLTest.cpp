@@ -95,8 +95,8 @@ TEST_P(PosePipelineGLTest, agreesWithTheCpuTwin)
 
     PosePipeline* pipeline = PosePipeline::of(state());
     ASSERT_NE(pipeline, nullptr);
-    if (data.maxTexels != 0) pipeline->setMaxTexels(data.maxTexels);
-    pipeline->setForm(std::get<1>(GetParam()));
+    if (data.maxTexels != 0) pipeline->options().maxTexels = data.maxTexels;
+    pipeline->options().form = std::get<1>(GetParam());
     ASSERT_TRUE(pipeline->evaluate(state(), batch, 0));
 
     // Rounding in float32 once a level, the twin computes in double.
@@ -188,7 +188,7 @@ TEST_F(PosePipelineCostGLTest, aPassThatDoesNotCompileLeavesNoPalette)
     for (const PosePipeline::Form form : {PosePipeline::Form::Fused, PosePipeline::Form::Separate})
     {
         pipeline->deleteAllGLObjects();
-        pipeline->setForm(form);
+        pipeline->options().form = form;
         PoseBatch single(set), layered(set);
         single.add(instructionAt(*set, 0, 0.5));
         PoseInstruction two = instructionAt(*set, 0, 0.5);
@@ -225,7 +225,7 @@ TEST_F(PosePipelineCostGLTest, masksBeyondTheBufferTextureLimitLeaveNoPalette)
     addRandomMasks(*set, random);
     instruction.samples[0].control |= 1u << 16;
     masked.add(instruction);
-    pipeline->setMaxTexels(1);
+    pipeline->options().maxTexels = 1;
     EXPECT_FALSE(pipeline->evaluate(state(), masked, 0));
     EXPECT_EQ(pipeline->place(*set, 0, 0).texture, 0u);
 }
@@ -234,7 +234,7 @@ TEST_F(PosePipelineCostGLTest, refusesASetBeyondTheBufferTextureLimit)
 {
     const auto set = makeRandomSet({});
     PosePipeline* pipeline = PosePipeline::of(state());
-    pipeline->setMaxTexels(64);
+    pipeline->options().maxTexels = 64;
     PoseBatch batch(set);
     batch.add({});
     EXPECT_FALSE(pipeline->evaluate(state(), batch, 0));

@@ -170,7 +170,7 @@ TEST_F(AnimatedCrowdGLTest, chunksOfASmallBufferTextureShowTheSame)
     const osg::ref_ptr<osg::Image> whole = pictureOf(makeCrowd(12), {0.0, 0.5});
     // Room for the set itself and a few instances' palettes.
     const std::size_t perInstance = 3 * testCharacterSet()->paletteSize();
-    pipeline().setMaxTexels(std::max(PackedKeyframes(*testCharacterSet()).texels().size(), perInstance * 5));
+    pipeline().options().maxTexels = std::max(PackedKeyframes(*testCharacterSet()).texels().size(), perInstance * 5);
     const PosePipeline::Counters before = pipeline().getCounters();
     const osg::ref_ptr<osg::Image> cut = pictureOf(makeCrowd(12), {0.0, 0.5});
     EXPECT_GT(pipeline().getCounters().feedbackDraws - before.feedbackDraws, 2 * testCharacterSet()->levelCount());
@@ -183,7 +183,7 @@ TEST_F(AnimatedCrowdGLTest, separateCharactersInChunksOfASmallBufferTextureShowT
     const std::size_t needed = PackedKeyframes(*testCharacterSet()).texels().size();
     for (const std::size_t limit : {std::size_t(65536), std::max(needed, 3 * testCharacterSet()->paletteSize() * 5)})
     {
-        pipeline().setMaxTexels(limit);
+        pipeline().options().maxTexels = limit;
         EXPECT_EQ(Picture::pixelsDifferent(*whole, *pictureOf(makeCharacters(12), {0.0, 0.5})), 0) << limit;
         EXPECT_LE(Picture::pixelsDifferent(*whole, *pictureOf(makeCrowd(12), {0.0, 0.5})), edgePixels) << limit;
     }

@@ -182,8 +182,8 @@ TEST_F(CharacterDrawsGLTest, chunksOfPalettesAreDrawnOneAfterAnother)
 {
     const osg::ref_ptr<osg::Group> scene = makeCharacters(everybody);
     const osg::ref_ptr<osg::Image> whole = pictureOf(*scene, true);
-    const std::size_t texels = PosePipeline::of(state())->getMaxTexels();
-    PosePipeline::of(state())->setMaxTexels(6 * 3 * testCharacterSet()->paletteSize()); // six to a chunk
+    const std::size_t texels = PosePipeline::of(state())->options().maxTexels;
+    PosePipeline::of(state())->options().maxTexels = 6 * 3 * testCharacterSet()->paletteSize(); // six to a chunk
     characterOf(*scene, 0).getController().seek(0.01);
     characterOf(*scene, 0).getController().seek(0.0);
     for (int index = 0; index < everybody; ++index)
@@ -191,7 +191,7 @@ TEST_F(CharacterDrawsGLTest, chunksOfPalettesAreDrawnOneAfterAnother)
     drawAt(0.0);
     EXPECT_LE(Picture::pixelsDifferent(*whole, picture().image()), 0);
     EXPECT_EQ(drawsOf(*scene), 2 + 2 * 4);
-    PosePipeline::of(state())->setMaxTexels(texels);
+    PosePipeline::of(state())->options().maxTexels = texels;
 }
 
 TEST_F(CharacterDrawsGLTest, everyCameraSeesItsOwn)

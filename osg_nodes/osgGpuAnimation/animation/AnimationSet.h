@@ -54,6 +54,10 @@ struct PoseInstruction
     std::array<BlendSample, maxSamples> samples; ///< only the first sampleCount are used
 };
 
+struct Box;
+/// For each palette entry, the box of the vertices that it moves, in the mesh's space at bind time.
+using EntryBoxes = std::vector<Box>;
+
 /// The masks of one AnimationSet. Masks are never removed or changed, so the weights of a mask stay valid while other
 /// threads add masks. Safe to use from several threads.
 class MaskTable
@@ -76,8 +80,6 @@ private:
     mutable std::mutex _mutex;
     std::deque<std::vector<float>> _masks;
 };
-
-class MaskTable;
 
 /// The input of AnimationSet::create().
 struct AnimationParts

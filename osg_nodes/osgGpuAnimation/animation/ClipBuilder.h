@@ -2,10 +2,6 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
-#include <osgGpuAnimation/animation/Clip.h>
-#include <osgGpuAnimation/animation/JointTransform.h>
-#include <osgGpuAnimation/animation/RootMotion.h>
-#include <osgGpuAnimation/animation/Skeleton.h>
 
 #include <memory>
 #include <string>
@@ -14,9 +10,7 @@
 namespace osgGpuAnimation
 {
 
-struct Box;
-/// For each palette entry, the box of the vertices that it moves, in the mesh's space at bind time.
-using EntryBoxes = std::vector<Box>;
+class ChannelCurve;
 
 /// Converts channels, each with its own times, into a Clip: keyframes of all tracks at the union of all key times.
 ///
@@ -49,6 +43,8 @@ public:
     std::size_t byteSize() const;
 
 private:
+    std::vector<ChannelCurve> curves() const;
+    Clip::Form form() const;
     std::size_t componentCount(const Channel& channel) const;
     std::string describe(const Channel& channel) const;
     std::size_t keyOf(const Channel& channel) const;

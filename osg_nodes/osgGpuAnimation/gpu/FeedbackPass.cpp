@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/gpu/FeedbackPass.h>
 
-#include <osg/GLExtensions>
 #include <osg/Notify>
 #include <osg/StateAttribute>
 #include <osg/Texture>
@@ -63,21 +62,6 @@ void FeedbackVertexArrays::release()
     discard();
 }
 
-namespace
-{
-
-template <typename GetLength, typename GetLog>
-std::string infoLog(GetLength getLength, GetLog getLog)
-{
-    GLint length = 0;
-    getLength(&length);
-    std::string log(static_cast<std::size_t>(length) + 1, '\0');
-    getLog(static_cast<GLsizei>(log.size()), log.data());
-    return log.c_str();
-}
-
-} // namespace
-
 FeedbackPass::FeedbackPass(osg::GLExtensions& gl, const char* name, std::initializer_list<const char*> source,
                            std::initializer_list<const char*> outputs)
     : _gl(&gl), _bytesPerVertex(outputs.size() * 4 * sizeof(float))
@@ -97,12 +81,11 @@ bool FeedbackPass::link(const char* name, const std::string& source, const std::
     _gl->glCompileShader(shader);
     GLint ok = GL_FALSE;
     _gl->glGetShaderiv(shader, GL_COMPILE_STATUS, &ok);
+    std::string log;
     if (!ok)
     {
-        OSG_WARN << "osgGpuAnimation: pass " << name << " does not compile: "
-                 << infoLog([&](GLint* length) { _gl->glGetShaderiv(shader, GL_INFO_LOG_LENGTH, length); },
-                            [&](GLsizei size, char* log) { _gl->glGetShaderInfoLog(shader, size, nullptr, log); })
-                 << std::endl;
+        _gl->getShaderInfoLog(shader, log);
+        OSG_WARN << "osgGpuAnimation: pass " << name << " does not compile: " << log << std::endl;
         _gl->glDeleteShader(shader);
         return false;
     }
@@ -113,12 +96,10 @@ bool FeedbackPass::link(const char* name, const std::string& source, const std::
                                      GL_INTERLEAVED_ATTRIBS);
     _gl->glLinkProgram(_program);
     _gl->glGetProgramiv(_program, GL_LINK_STATUS, &ok);
-    if (!ok)
-        OSG_WARN << "osgGpuAnimation: pass " << name << " does not link: "
-                 << infoLog([&](GLint* length) { _gl->glGetProgramiv(_program, GL_INFO_LOG_LENGTH, length); },
-                            [&](GLsizei size, char* log) { _gl->glGetProgramInfoLog(_program, size, nullptr, log); })
-                 << std::endl;
-    return ok == GL_TRUE;
+    if (ok) return true;
+    _gl->getProgramInfoLog(_program, log);
+    OSG_WARN << "osgGpuAnimation: pass " << name << " does not link: " << log << std::endl;
+    return false;
 }
 
 GLint FeedbackPass::location(const char* uniform)

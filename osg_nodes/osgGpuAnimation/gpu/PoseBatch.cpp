@@ -12,7 +12,7 @@ namespace osgGpuAnimation
 namespace
 {
 
-/// Not a number counts as 0.
+/// NaN counts as 0.
 float clampedToUnit(float value)
 {
     return value > 0.0f ? std::min(value, 1.0f) : 0.0f;
@@ -24,27 +24,23 @@ bool isPlain(const BlendSample& sample)
            sample.control >> POSE_SAMPLE_MASK_SHIFT == 0;
 }
 
-PoseBatch::BlendCost loadOfSamples(std::size_t count)
+PoseBatch::BlendCost blendCost(bool isMixed, std::size_t sampleCount)
 {
-    return count <= 4 ? PoseBatch::BlendCost::Few : PoseBatch::BlendCost::Many;
+    if (!isMixed) return PoseBatch::BlendCost::Plain;
+    return sampleCount <= 4 ? PoseBatch::BlendCost::Few : PoseBatch::BlendCost::Many;
 }
 
 } // namespace
 
-PoseBatch::BlendCost PoseBatch::loadOf(const PoseInstruction& instruction)
+PoseBatch::BlendCost PoseBatch::blendCostOf(const PoseInstruction& instruction)
 {
-    const bool isAlone = instruction.sampleCount == 1 && isPlain(instruction.samples[0]);
-    return isAlone ? BlendCost::Plain : loadOfSamples(instruction.sampleCount);
-}
-
-PoseBatch::BlendCost PoseBatch::load() const
-{
-    return _needs.mixing ? loadOfSamples(_sampleStride) : BlendCost::Plain;
+    const bool isMixed = instruction.sampleCount != 1 || !isPlain(instruction.samples[0]);
+    return blendCost(isMixed, instruction.sampleCount);
 }
 
 bool PoseBatch::accepts(const PoseInstruction& instruction) const
 {
-    return _size < minBatchSize || loadOf(instruction) == load();
+    return _size < minBatchSize || blendCostOf(instruction) == blendCost(_needs.mixing, _sampleStride);
 }
 
 std::size_t PoseBatch::append(const BlendSample* samples, std::size_t count)
@@ -55,7 +51,7 @@ std::size_t PoseBatch::append(const BlendSample* samples, std::size_t count)
         BlendSample sample = i < count ? samples[i] : BlendSample{0, 0.0f, 0.0f, 0};
         sample.alpha = clampedToUnit(sample.alpha);
         sample.weight = clampedToUnit(sample.weight);
-        if (i < count) note(sample);
+        if (i < count) addNeeds(sample);
         _samples.push_back(sample);
     }
     _needs.mixing = _needs.mixing || _sampleStride > 1;
@@ -64,13 +60,11 @@ std::size_t PoseBatch::append(const BlendSample* samples, std::size_t count)
     return _size++;
 }
 
-void PoseBatch::note(const BlendSample& sample)
+void PoseBatch::addNeeds(const BlendSample& sample)
 {
-    const bool isAdditive = (sample.control & POSE_SAMPLE_ADDITIVE) != 0;
-    const bool isMasked = sample.control >> POSE_SAMPLE_MASK_SHIFT != 0;
     _needs.layers = _needs.layers || (sample.control & POSE_SAMPLE_ABOVE) != 0;
-    _needs.additive = _needs.additive || isAdditive;
-    _needs.masks = _needs.masks || isMasked;
+    _needs.additive = _needs.additive || (sample.control & POSE_SAMPLE_ADDITIVE) != 0;
+    _needs.masks = _needs.masks || sample.control >> POSE_SAMPLE_MASK_SHIFT != 0;
     _needs.mixing = _needs.mixing || !isPlain(sample);
 }
 
@@ -83,7 +77,7 @@ std::size_t PoseBatch::add(const PoseInstruction& instruction, const AffineMatri
 {
     const std::size_t instance = add(instruction);
     _rootMatrices.resize(_size);
-    _rootMatrices[instance] = rootMatrix;
+    _rootMatrices.back() = rootMatrix;
     return instance;
 }
 
@@ -91,7 +85,7 @@ std::size_t PoseBatch::addSample(const BlendSample& sample, const AffineMatrix& 
 {
     const std::size_t instance = append(&sample, 1);
     _rootMatrices.resize(_size);
-    _rootMatrices[instance] = rootMatrix;
+    _rootMatrices.back() = rootMatrix;
     return instance;
 }
 

@@ -57,7 +57,7 @@ public:
     /// Number of BlendCost values.
     static constexpr std::size_t blendCostCount = 3;
     /// The cost of one instruction.
-    static BlendCost loadOf(const PoseInstruction& instruction);
+    static BlendCost blendCostOf(const PoseInstruction& instruction);
     /// Below this number of instances a second batch costs more than the extra samples of mixed blend costs.
     static constexpr std::size_t minBatchSize = 128;
     /// True if adding the instance would not raise the cost of the batch too far: it has the batch's blend cost, or the
@@ -100,9 +100,8 @@ public:
 
 private:
     void widen(std::size_t sampleStride);
-    void note(const BlendSample& sample);
+    void addNeeds(const BlendSample& sample);
     std::size_t append(const BlendSample* samples, std::size_t count);
-    BlendCost load() const;
 
     std::shared_ptr<const AnimationSet> _set;
     std::size_t _size = 0;

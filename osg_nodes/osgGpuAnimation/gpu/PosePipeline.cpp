@@ -105,7 +105,7 @@ PosePipeline::PosePipeline(unsigned int contextId) : osg::GraphicsObjectManager(
     _parts = std::make_unique<Parts>(*this, gl);
     GLint maxTexels = 0;
     glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &maxTexels);
-    _maxTexels = static_cast<std::size_t>(std::max(maxTexels, 0));
+    _options.maxTexels = static_cast<std::size_t>(std::max(maxTexels, 0));
     _isSupported = gl.glVersion >= 3.3f && gl.glBeginTransformFeedback && gl.glTexBuffer && _parts->copyBufferSubData;
     if (!_isSupported)
         OSG_WARN << "osgGpuAnimation: this context has OpenGL " << gl.glVersion
@@ -123,23 +123,22 @@ PosePipeline* PosePipeline::of(osg::State& state)
 FeedbackPass& PosePipeline::Parts::posePass(const PoseVariant& variant)
 {
     std::unique_ptr<FeedbackPass>& pass = posePasses[variant];
+    if (pass) return *pass;
     using namespace shaders;
-    if (!pass)
-        pass = std::make_unique<FeedbackPass>(*gl, "pose",
-                                              std::initializer_list<const char*>{variant.constants().c_str(), mix_glsl,
-                                                                                 local_glsl, world_glsl, pose_vert},
-                                              rowOutputs);
+    const std::string constants = variant.constants();
+    pass.reset(
+        new FeedbackPass(*gl, "pose", {constants.c_str(), mix_glsl, local_glsl, world_glsl, pose_vert}, rowOutputs));
     return *pass;
 }
 
 FeedbackPass& PosePipeline::Parts::mixPass(const PoseVariant& variant)
 {
     std::unique_ptr<FeedbackPass>& pass = mixPasses[variant];
+    if (pass) return *pass;
     using namespace shaders;
-    if (!pass)
-        pass = std::make_unique<FeedbackPass>(
-            *gl, "mix", std::initializer_list<const char*>{variant.constants().c_str(), mix_glsl, mix_vert},
-            std::initializer_list<const char*>{"translation", "rotation", "scale"});
+    const std::string constants = variant.constants();
+    pass.reset(
+        new FeedbackPass(*gl, "mix", {constants.c_str(), mix_glsl, mix_vert}, {"translation", "rotation", "scale"}));
     return *pass;
 }
 
@@ -147,10 +146,8 @@ void PosePipeline::Parts::makeSeparatePasses()
 {
     if (localPass) return;
     using namespace shaders;
-    localPass = std::make_unique<FeedbackPass>(*gl, "local", std::initializer_list<const char*>{local_glsl, local_vert},
-                                               rowOutputs);
-    worldPass = std::make_unique<FeedbackPass>(*gl, "world", std::initializer_list<const char*>{world_glsl, world_vert},
-                                               rowOutputs);
+    localPass.reset(new FeedbackPass(*gl, "local", {local_glsl, local_vert}, rowOutputs));
+    worldPass.reset(new FeedbackPass(*gl, "world", {world_glsl, world_vert}, rowOutputs));
 }
 
 SetResources& PosePipeline::Parts::resourcesOf(const PoseBatch& batch)
@@ -164,12 +161,12 @@ SetResources& PosePipeline::Parts::resourcesOf(const PoseBatch& batch)
     const PackedKeyframes keyframes(set);
     const std::size_t keyframeTexels = keyframes.texels().size();
     const std::size_t entryTexels = set.paletteSize() * POSE_TEXELS_PER_ENTRY;
-    if (std::max(keyframeTexels, entryTexels) <= pipeline._maxTexels)
+    if (std::max(keyframeTexels, entryTexels) <= pipeline._options.maxTexels)
         resources.buffers = std::make_unique<AnimationBuffers>(*gl, set, keyframes);
     else
         OSG_WARN << "osgGpuAnimation: an animation set needs buffers of " << keyframeTexels
                  << " texels (keyframes) and " << entryTexels << " (palette entries), this context takes at most "
-                 << pipeline._maxTexels << "; its characters are not drawn" << std::endl;
+                 << pipeline._options.maxTexels << "; its characters are not drawn" << std::endl;
     return resources;
 }
 
@@ -196,12 +193,12 @@ bool PosePipeline::evaluate(osg::State& state, const PoseBatch& batch, std::size
     if (changed.empty()) return true;
 
     const FeedbackVertexArrays::Names& vertexArrays = _parts->vertexArrays.of(state);
-    const FeedbackScope scope(state, _form == Form::Fused ? vertexArrays.pose : vertexArrays.empty, unitCount);
+    const FeedbackScope scope(state, _options.form == Form::Fused ? vertexArrays.pose : vertexArrays.empty, unitCount);
     for (PosePalette::Chunk* chunk : changed)
     {
         chunk->palette.reserve(set.paletteSize() * chunk->width * matrixBytes);
-        chunk->isEvaluated = _form == Form::Fused ? _parts->evaluateFused(batch, *resources.buffers, *chunk)
-                                                  : _parts->evaluateSeparate(batch, *resources.buffers, *chunk);
+        chunk->isEvaluated = _options.form == Form::Fused ? _parts->evaluateFused(batch, *resources.buffers, *chunk)
+                                                          : _parts->evaluateSeparate(batch, *resources.buffers, *chunk);
         if (!chunk->isEvaluated) return false;
         _counters.instancesEvaluated += chunk->size;
     }
@@ -211,10 +208,12 @@ bool PosePipeline::evaluate(osg::State& state, const PoseBatch& batch, std::size
 std::size_t PosePipeline::Parts::chunkCapacity(const PoseBatch& batch) const
 {
     const AnimationSet& set = batch.set();
-    const std::size_t widest = std::max(set.paletteSize(), pipeline._form == Form::Separate ? set.trackCount() : 0);
-    const std::size_t byPalette = pipeline._maxTexels / (POSE_TEXELS_PER_MATRIX * std::max<std::size_t>(widest, 1));
+    const std::size_t widest =
+        std::max(set.paletteSize(), pipeline._options.form == Form::Separate ? set.trackCount() : 0);
+    const std::size_t byPalette =
+        pipeline._options.maxTexels / (POSE_TEXELS_PER_MATRIX * std::max<std::size_t>(widest, 1));
     std::size_t capacity = std::max<std::size_t>(
-        std::min({byPalette, pipeline._maxTexels / batch.sampleStride(), pipeline._chunkSize}), 1);
+        std::min({byPalette, pipeline._options.maxTexels / batch.sampleStride(), pipeline._options.chunkSize}), 1);
     while (PosePalette::widthOf(capacity) > capacity)
         --capacity;
     return capacity;
@@ -223,11 +222,11 @@ std::size_t PosePipeline::Parts::chunkCapacity(const PoseBatch& batch) const
 bool PosePipeline::Parts::hasRoomForMasks(SetResources& resources, const AnimationSet& set) const
 {
     const std::size_t texels = AnimationBuffers::texelsPerMask(set) * (set.masks().count() + 1);
-    if (texels <= pipeline._maxTexels) return true;
+    if (texels <= pipeline._options.maxTexels) return true;
     if (!resources.isMaskLimitReported)
         OSG_WARN << "osgGpuAnimation: the masks of an animation set need a buffer of " << texels
-                 << " texels, this context takes at most " << pipeline._maxTexels << "; its characters are not drawn"
-                 << std::endl;
+                 << " texels, this context takes at most " << pipeline._options.maxTexels
+                 << "; its characters are not drawn" << std::endl;
     resources.isMaskLimitReported = true;
     return false;
 }
@@ -417,9 +416,6 @@ void PosePipeline::deleteAllGLObjects()
 
 void PosePipeline::discardAllGLObjects()
 {
-    for (auto& [set, resources] : _parts->sets)
-        for (const std::unique_ptr<PosePalette>& palette : resources.palettes)
-            palette->discard();
     _parts->sets.clear();
     _parts->posePasses.clear();
     _parts->mixPasses.clear();

@@ -33,6 +33,20 @@ public:
         Separate, ///< mix, local, world: three draws; the world stage multiplies along the ancestors
     };
 
+    /// The fastest measured chunk size, by a small margin (tests/benchmark/RESULTS.md).
+    static constexpr std::size_t usualChunkSize = 4096;
+
+    /// The settings of a pipeline, for tests and benchmarks.
+    struct Options
+    {
+        Form form = Form::Fused; ///< the division of the stages into passes
+        std::size_t maxTexels =
+            0; ///< of a buffer texture; initially GL_MAX_TEXTURE_BUFFER_SIZE, which it may not exceed
+        /// The largest number of instances per draw, above 0; it limits the scratch buffer. A chunk has fewer
+        /// instances if a buffer texture cannot hold them.
+        std::size_t chunkSize = usualChunkSize;
+    };
+
     /// Counts since the pipeline was created.
     struct Counters
     {
@@ -62,19 +76,10 @@ public:
     std::vector<AffineMatrix> readPalette(osg::State& state, const AnimationSet& set, std::size_t slot,
                                           std::size_t instance) const;
 
-    /// Selects the form of the next evaluate().
-    void setForm(Form form) { _form = form; }
-    /// The form in use.
-    Form getForm() const { return _form; }
-    /// Limits the texels of a buffer texture below GL_MAX_TEXTURE_BUFFER_SIZE, the default (tests).
-    void setMaxTexels(std::size_t texels) { _maxTexels = texels; }
-    /// The largest number of texels of a buffer texture.
-    std::size_t getMaxTexels() const { return _maxTexels; }
-    /// The default of setChunkSize(): the fastest measured size, by a small margin (tests/benchmark/RESULTS.md).
-    static constexpr std::size_t usualChunkSize = 4096;
-    /// Limits the instances per draw and so the scratch buffer. instances: above 0. A chunk has fewer instances if a
-    /// buffer texture cannot hold them.
-    void setChunkSize(std::size_t instances) { _chunkSize = instances; }
+    /// The settings of the next evaluate().
+    Options& options() { return _options; }
+    /// Options::maxTexels: the largest number of texels of a buffer texture.
+    std::size_t getMaxTexels() const { return _options.maxTexels; }
     /// The counts so far.
     const Counters& getCounters() const { return _counters; }
 
@@ -89,9 +94,7 @@ protected:
 private:
     struct Parts;
 
-    Form _form = Form::Fused;
-    std::size_t _maxTexels = 0;
-    std::size_t _chunkSize = usualChunkSize;
+    Options _options;
     bool _isSupported = false;
     Counters _counters;
     std::unique_ptr<Parts> _parts; ///< the passes and buffers of this context

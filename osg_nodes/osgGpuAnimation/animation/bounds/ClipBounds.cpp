@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/bounds/ClipBounds.h>
 
-#include <osgGpuAnimation/animation/JointTransform.h>
-
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
@@ -23,14 +21,9 @@ double length(const glm::dvec4& v)
     return glm::length(v);
 }
 
-double largest(const glm::dvec3& v)
-{
-    return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-}
-
 double largestOf3(const glm::dvec4& v)
 {
-    return largest(glm::dvec3(v));
+    return largestComponent(glm::dvec3(v));
 }
 
 double lengthOf3(const glm::dvec4& v)
@@ -102,8 +95,8 @@ TrackMotion boundLinear(const JointTransform& a, const JointTransform& b)
     TrackMotion motion;
     motion.shift = std::max(glm::length(t0), glm::length(t1));
     motion.shift1 = glm::length(t1 - t0);
-    motion.size = std::max(largest(s0), largest(s1));
-    motion.size1 = largest(s1 - s0);
+    motion.size = std::max(largestComponent(s0), largestComponent(s1));
+    motion.size1 = largestComponent(s1 - s0);
     boundSlerp(a.rotation, b.rotation, motion);
     return motion;
 }
@@ -124,6 +117,18 @@ TrackMotion boundSpline(const JointTransform* a, const JointTransform* b)
     else
         boundNormalized(Cubic(a, b, &JointTransform::rotation), motion);
     return motion;
+}
+
+/// The distance of the farthest corner from the origin.
+double radiusOf(const TransformedBox& box)
+{
+    double radius = 0.0;
+    for (int corner = 0; corner < 8; ++corner)
+    {
+        const glm::dvec3 signs((corner & 1) ? 1.0 : -1.0, (corner & 2) ? 1.0 : -1.0, (corner & 4) ? 1.0 : -1.0);
+        radius = std::max(radius, glm::length(box.centre + box.halfEdges * signs));
+    }
+    return radius;
 }
 
 } // namespace
@@ -149,43 +154,28 @@ ChainMotion ChainMotion::child(const TrackMotion& motion) const
 }
 
 ClipSweep::ClipSweep(const AnimationSet& set, const EntryBoxes& entryBoxes)
-    : _set(set), _isNeeded(set.skeleton().jointCount(), false), _placements(set.skeleton().jointCount()),
+    : _set(set), _isNeeded(set.skeleton().jointCount(), false), _jointsToModel(set.skeleton().jointCount()),
       _motions(set.skeleton().jointCount())
 {
     const std::size_t count = std::min(entryBoxes.size(), set.paletteSize());
     for (std::size_t e = 0; e < count; ++e)
-        if (set.palette()[e].joint >= 0 && !entryBoxes[e].empty())
-        {
-            _parts.push_back(partOf(set.palette()[e], entryBoxes[e]));
-            _isNeeded[_parts.back().joint] = true;
-        }
+    {
+        const PaletteEntry& entry = set.palette()[e];
+        if (entry.joint < 0 || entryBoxes[e].empty()) continue;
+        const TransformedBox box(entry.inverseBind, entryBoxes[e]);
+        _parts.push_back({static_cast<std::size_t>(entry.joint), box, radiusOf(box)});
+        _isNeeded[_parts.back().joint] = true;
+    }
     for (std::size_t j = _isNeeded.size(); j-- > 0;)
         if (_isNeeded[j] && set.skeleton().joint(j).parent >= 0)
             _isNeeded[static_cast<std::size_t>(set.skeleton().joint(j).parent)] = true;
     _boxes.resize(_parts.size());
 }
 
-ClipSweep::Part ClipSweep::partOf(const PaletteEntry& entry, const Box& box)
+void ClipSweep::sample(const KeyframePair& keyframes)
 {
-    const glm::dvec3 min(box.min), max(box.max);
-    const glm::dvec3 half = (max - min) * 0.5;
-    const glm::dmat4 inverseBind = entry.inverseBind.toColumns();
-    Part part;
-    part.joint = static_cast<std::size_t>(entry.joint);
-    part.centre = glm::dvec3(inverseBind * glm::dvec4((min + max) * 0.5, 1.0));
-    for (int axis = 0; axis < 3; ++axis)
-        part.halfEdges[axis] = glm::dvec3(inverseBind[axis]) * half[axis];
-    for (int corner = 0; corner < 8; ++corner)
-    {
-        const glm::dvec3 signs((corner & 1) ? 1.0 : -1.0, (corner & 2) ? 1.0 : -1.0, (corner & 4) ? 1.0 : -1.0);
-        part.radius = std::max(part.radius, glm::length(part.centre + part.halfEdges * signs));
-    }
-    return part;
-}
-
-void ClipSweep::lookAt(const KeyframePair& keyframes)
-{
-    for (std::size_t j = 0; j < _placements.size(); ++j)
+    const JointToModel model;
+    for (std::size_t j = 0; j < _jointsToModel.size(); ++j)
     {
         if (!_isNeeded[j]) continue;
         const MixedTrack local = MixedTrack::between(keyframes, j, false);
@@ -193,21 +183,13 @@ void ClipSweep::lookAt(const KeyframePair& keyframes)
         for (int axis = 0; axis < 3; ++axis)
             linear[axis] *= local.scale[axis];
         const int parent = _set.skeleton().joint(j).parent;
-        if (parent < 0)
-        {
-            _placements[j] = {linear, glm::dvec3(local.translation)};
-            continue;
-        }
-        const InstanceTransform& above = _placements[static_cast<std::size_t>(parent)];
-        _placements[j] = {above.linear * linear, above.linear * glm::dvec3(local.translation) + above.origin};
+        const JointToModel& above = parent < 0 ? model : _jointsToModel[static_cast<std::size_t>(parent)];
+        _jointsToModel[j] = {above.linear * linear, above.linear * glm::dvec3(local.translation) + above.origin};
     }
     for (std::size_t p = 0; p < _parts.size(); ++p)
     {
-        const Part& part = _parts[p];
-        const InstanceTransform& placement = _placements[part.joint];
-        const glm::dmat3 edges = placement.linear * part.halfEdges;
-        _boxes[p] = Aabb3d::about(placement.linear * part.centre + placement.origin,
-                                  glm::abs(edges[0]) + glm::abs(edges[1]) + glm::abs(edges[2]));
+        const JointToModel& jointToModel = _jointsToModel[_parts[p].joint];
+        _boxes[p] = _parts[p].box.bounds(jointToModel.linear, jointToModel.origin);
         _seen.add(_boxes[p]);
     }
 }
@@ -261,7 +243,7 @@ void ClipSweep::sweepPiece(KeyframePair keyframes)
     for (int step = 1; step < steps; ++step)
     {
         keyframes.alpha = static_cast<double>(step) / steps;
-        lookAt(keyframes);
+        sample(keyframes);
         gatherStrayed(_boxes, steps);
     }
     _boxes = boxesAfter;
@@ -271,7 +253,7 @@ Box ClipSweep::restPose()
 {
     _seen = Aabb3d();
     const JointTransform* rest = _set.restPose().data();
-    lookAt({rest, rest, 0.0, false});
+    sample({rest, rest, 0.0, false});
     return _seen.toBox();
 }
 
@@ -283,7 +265,7 @@ Box ClipSweep::clip(const Clip& clip)
     {
         const JointTransform* keyframe = clip.data().data() + k * clip.keyframeStride();
         _boxesBefore = _boxes;
-        lookAt({keyframe, keyframe, 0.0, spline});
+        sample({keyframe, keyframe, 0.0, spline});
         if (k > 0 && clip.times()[k - 1] < clip.times()[k])
             sweepPiece({keyframe - clip.keyframeStride(), keyframe, 0.0, spline});
     }

@@ -51,22 +51,20 @@ public:
     Box clip(const Clip& clip);
 
 private:
-    /// A palette entry's box in joint space: a parallelepiped.
     struct Part
     {
-        std::size_t joint = 0;
-        glm::dvec3 centre{0.0};
-        glm::dmat3 halfEdges{0.0};
-        double radius = 0.0; ///< distance of the farthest corner from the joint's origin
+        std::size_t joint;
+        TransformedBox box; ///< of a palette entry, in joint space
+        double radius;      ///< distance of the farthest corner from the joint's origin
     };
-    struct InstanceTransform
+    /// v -> linear · v + origin
+    struct JointToModel
     {
         glm::dmat3 linear{1.0};
         glm::dvec3 origin{0.0};
     };
 
-    static Part partOf(const PaletteEntry& entry, const Box& box);
-    void lookAt(const KeyframePair& keyframes);
+    void sample(const KeyframePair& keyframes);
     void boundMotion(const KeyframePair& keyframes);
     int stepsNeeded() const;
     void gatherStrayed(const std::vector<Aabb3d>& boxes, int steps);
@@ -74,13 +72,13 @@ private:
 
     const AnimationSet& _set;
     std::vector<Part> _parts;
-    std::vector<bool> _isNeeded;                ///< by joint: true if it or a descendant has a part
-    std::vector<InstanceTransform> _placements; ///< by joint
-    std::vector<ChainMotion> _motions;          ///< by joint
-    std::vector<Aabb3d> _boxes;                 ///< by part, at the last sample
-    std::vector<Aabb3d> _boxesBefore;           ///< by part, at the previous keyframe
-    Aabb3d _seen;                               ///< all samples
-    Aabb3d _swept;                              ///< all samples and the space between them
+    std::vector<bool> _isNeeded;              ///< by joint: true if it or a descendant has a part
+    std::vector<JointToModel> _jointsToModel; ///< by joint, at the last sample
+    std::vector<ChainMotion> _motions;        ///< by joint
+    std::vector<Aabb3d> _boxes;               ///< by part, at the last sample
+    std::vector<Aabb3d> _boxesBefore;         ///< by part, at the previous keyframe
+    Aabb3d _seen;                             ///< all samples
+    Aabb3d _swept;                            ///< all samples and the space between them
 };
 
 /// A box, in model space, that contains every vertex at every time of the clip. The box is conservative: a vertex is a

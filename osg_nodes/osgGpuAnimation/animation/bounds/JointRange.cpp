@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/bounds/JointRange.h>
 
-#include <osgGpuAnimation/animation/JointTransform.h>
+#include <osgGpuAnimation/animation/math/Box.h>
 
 #include <layout.glsl>
 
@@ -9,7 +9,6 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace osgGpuAnimation
@@ -33,25 +32,26 @@ double limitedTurn(double turn)
     return turn < widestCap ? turn : JointRange::anyTurn;
 }
 
-/// All values of one joint in a clip: every keyframe and, for a spline, the inner points of its Bézier form, whose hull
-/// contains the curve.
+/// Calls function(value, tangent, sign) for each keyframe of a track and, in a spline, for the inner points of its
+/// Bézier form, whose hull contains the curve: a point is value + sign · tangent / 3. sign: 0, -1 or 1.
 template <typename Function>
-void forEachPoint(const Clip& clip, std::size_t joint, Function function)
+void forEachPoint(const Clip& clip, std::size_t track, Function function)
 {
-    const bool isSpline = clip.form() == Clip::Form::Spline;
     for (std::size_t k = 0; k < clip.keyframeCount(); ++k)
     {
-        const JointTransform* value = clip.at(k, joint);
-        const glm::dvec3 translation(value->translation), scale(value->scale);
-        const glm::dvec4 rotation(value->rotation);
-        function(translation, rotation, scale);
-        if (!isSpline) continue;
-        const bool isSlerped = value->translation.w == 1.0f;
-        for (const auto& [tangent, third] : {std::pair(value + 1, -1.0 / 3.0), std::pair(value + 2, 1.0 / 3.0)})
-            function(translation + glm::dvec3(tangent->translation) * third,
-                     isSlerped ? rotation : rotation + glm::dvec4(tangent->rotation) * third,
-                     scale + glm::dvec3(tangent->scale) * third);
+        const JointTransform* value = clip.at(k, track);
+        function(value[0], JointTransform(), 0.0);
+        if (clip.form() != Clip::Form::Spline) continue;
+        function(value[0], value[1], -1.0);
+        function(value[0], value[2], 1.0);
     }
+}
+
+glm::dvec4 rotationAt(const JointTransform& value, const JointTransform& tangent, double sign)
+{
+    const bool isSpline = sign != 0.0 && value.translation.w != 1.0f; // see Clip
+    return isSpline ? glm::dvec4(value.rotation) + glm::dvec4(tangent.rotation) * (sign / 3.0)
+                    : glm::dvec4(value.rotation);
 }
 
 JointRange rangeOf(const Clip& clip, std::size_t joint)
@@ -59,8 +59,12 @@ JointRange rangeOf(const Clip& clip, std::size_t joint)
     glm::dvec3 low(HUGE_VAL), high(-HUGE_VAL), smallest(HUGE_VAL), largest(-HUGE_VAL);
     glm::dvec4 sum(0.0);
     forEachPoint(clip, joint,
-                 [&](const glm::dvec3& translation, const glm::dvec4& rotation, const glm::dvec3& scale)
+                 [&](const JointTransform& value, const JointTransform& tangent, double sign)
                  {
+                     const glm::dvec3 translation =
+                         glm::dvec3(value.translation) + glm::dvec3(tangent.translation) * (sign / 3.0);
+                     const glm::dvec3 scale = glm::dvec3(value.scale) + glm::dvec3(tangent.scale) * (sign / 3.0);
+                     const glm::dvec4 rotation = rotationAt(value, tangent, sign);
                      low = glm::min(low, translation);
                      high = glm::max(high, translation);
                      smallest = glm::min(smallest, scale);
@@ -71,34 +75,13 @@ JointRange rangeOf(const Clip& clip, std::size_t joint)
     range.translation = 0.5 * (low + high);
     range.shift = 0.5 * glm::length(high - low);
     range.scale = 0.5 * (smallest + largest);
-    const glm::dvec3 stretch = 0.5 * (largest - smallest);
-    range.stretch = std::max({stretch.x, stretch.y, stretch.z});
+    range.stretch = 0.5 * largestComponent(largest - smallest);
     range.rotation = Rotation::unit(sum);
     forEachPoint(clip, joint,
-                 [&](const glm::dvec3&, const glm::dvec4& rotation, const glm::dvec3&)
-                 { range.turn = std::max(range.turn, lineAngle(range.rotation, rotation)); });
+                 [&](const auto&... point)
+                 { range.turn = std::max(range.turn, lineAngle(range.rotation, rotationAt(point...))); });
     range.turn = limitedTurn(range.turn);
     return range;
-}
-
-void include(WeightRange& range, float value)
-{
-    range.min = std::min(range.min, value);
-    range.max = std::max(range.max, value);
-}
-
-void includeClip(WeightRange& range, const Clip& clip, std::size_t track, std::size_t place)
-{
-    const bool isSpline = clip.form() == Clip::Form::Spline;
-    for (std::size_t keyframe = 0; keyframe < clip.keyframeCount(); ++keyframe)
-    {
-        const JointTransform* transform = clip.at(keyframe, track);
-        const float value = transform[0].number(place);
-        include(range, value);
-        if (!isSpline) continue;
-        include(range, value - transform[1].number(place) / 3.0f);
-        include(range, value + transform[2].number(place) / 3.0f);
-    }
 }
 
 } // namespace
@@ -123,8 +106,7 @@ void JointRange::add(const JointRange& other)
     const glm::dvec3 smallest = glm::min(scale - stretch, other.scale - other.stretch);
     const glm::dvec3 largest = glm::max(scale + stretch, other.scale + other.stretch);
     scale = 0.5 * (smallest + largest);
-    const glm::dvec3 half = 0.5 * (largest - smallest);
-    stretch = std::max({half.x, half.y, half.z});
+    stretch = 0.5 * largestComponent(largest - smallest);
 
     const glm::dvec4 both =
         Rotation::unit(rotation + (glm::dot(rotation, other.rotation) < 0.0 ? -other.rotation : other.rotation));
@@ -144,15 +126,14 @@ void JointRange::addDifference(const JointRange& added, const JointTransform& re
         const double change = std::abs(added.scale[axis] - static_cast<double>(reference.scale[axis])) + added.stretch;
         if (size > static_cast<double>(POSE_SMALLEST_SCALE)) growth = std::max(growth, change / size);
     }
-    const glm::dvec3 most = glm::abs(scale) + stretch;
-    stretch += std::max({most.x, most.y, most.z}) * growth;
+    stretch += largestComponent(glm::abs(scale) + stretch) * growth;
 }
 
-std::vector<JointRange> rangesOfClip(const AnimationSet& set, const Clip& clip)
+std::vector<JointRange> rangesOfClip(const AnimationSet& set, const Clip* clip)
 {
     std::vector<JointRange> ranges;
     for (std::size_t joint = 0; joint < set.skeleton().jointCount(); ++joint)
-        ranges.push_back(clip.keyframeCount() > 0 ? rangeOf(clip, joint) : JointRange::of(set.restPose()[joint]));
+        ranges.push_back(clip ? rangeOf(*clip, joint) : JointRange::of(set.restPose()[joint]));
     return ranges;
 }
 
@@ -163,9 +144,16 @@ std::vector<WeightRange> weightRanges(const AnimationSet& set, std::size_t morph
     for (std::size_t weight = 0; weight < defaults.size(); ++weight)
     {
         const std::size_t track = set.firstTrackOfMorph(morph) + weight / MorphWeights::weightsPerBlock;
+        const std::size_t place = weight % MorphWeights::weightsPerBlock;
         WeightRange range{defaults[weight], defaults[weight]};
+        const auto include = [&](const JointTransform& value, const JointTransform& tangent, double sign)
+        {
+            const float point = value.number(place) + static_cast<float>(sign) * tangent.number(place) / 3.0f;
+            range.min = std::min(range.min, point);
+            range.max = std::max(range.max, point);
+        };
         for (const Clip& clip : set.clips())
-            includeClip(range, clip, track, weight % MorphWeights::weightsPerBlock);
+            forEachPoint(clip, track, include);
         ranges.push_back(range);
     }
     return ranges;

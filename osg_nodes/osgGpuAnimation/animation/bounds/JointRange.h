@@ -14,13 +14,12 @@ namespace osgGpuAnimation
 /// less than a right angle), so a mix of transforms within a range stays within the range.
 struct JointRange
 {
-    static constexpr double anyTurn = 10.0;
+    static constexpr double anyTurn = 10.0; ///< a turn that allows every rotation
 
     glm::dvec3 translation{0.0};
     double shift = 0.0;                      ///< radius of the ball
     glm::dvec4 rotation{0.0, 0.0, 0.0, 1.0}; ///< unit
-    double turn =
-        0.0; ///< radius of the cap, in radians between quaternions (half the joint's angle); anyTurn: any rotation
+    double turn = 0.0; ///< radius of the cap in radians between quaternions (half the joint's angle), or anyTurn
     glm::dvec3 scale{1.0};
     double stretch = 0.0; ///< half the cube's edge
 
@@ -31,8 +30,8 @@ struct JointRange
     void addDifference(const JointRange& added, const JointTransform& reference);
 };
 
-/// The ranges of all joints over all times of a clip, between keyframes too.
-std::vector<JointRange> rangesOfClip(const AnimationSet& set, const Clip& clip);
+/// The ranges of all joints over all times of a clip, between keyframes too. clip: null for the rest pose.
+std::vector<JointRange> rangesOfClip(const AnimationSet& set, const Clip* clip);
 
 /// The smallest and the largest value of a morph weight.
 struct WeightRange
@@ -41,8 +40,7 @@ struct WeightRange
     float max = 0.0f;
 };
 
-/// The range of each weight of a morph over the rest pose and all times of all clips of the set, between keyframes too
-/// (a spline stays within the hull of its Bézier points, which the tangents give).
+/// The range of each weight of a morph over the rest pose and all times of all clips of the set, between keyframes too.
 std::vector<WeightRange> weightRanges(const AnimationSet& set, std::size_t morph);
 
 } // namespace osgGpuAnimation

@@ -2,9 +2,6 @@
 #include <osgGpuAnimation/animation/bounds/MixBounds.h>
 
 #include <osgGpuAnimation/animation/bounds/JointRange.h>
-#include <osgGpuAnimation/animation/math/Box.h>
-
-#include <osgGpuAnimation/animation/JointTransform.h>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -20,37 +17,32 @@ namespace
 
 /// Bounds of a joint's transform to model space, v -> A v + p: a ball that contains p, and the distance of A from a
 /// centre.
-struct Reach
+struct JointToModelBound
 {
-    glm::dmat3 linear{1.0};
-    double norm = 1.0;      ///< bound of |centre of A|
+    glm::dmat3 linear{1.0}; ///< the centre
+    double norm = 1.0;      ///< bound of |centre|
     double deviation = 0.0; ///< bound of |A - centre|
     double largest = 1.0;   ///< bound of |A|
-    glm::dvec3 place{0.0};
-    double radius = 0.0;
+    glm::dvec3 origin{0.0}; ///< centre of the ball
+    double radius = 0.0;    ///< of the ball
 
-    Reach child(const JointRange& range) const;
+    JointToModelBound child(const JointRange& range) const;
 };
 
-double largestOf(const glm::dvec3& v)
+JointToModelBound JointToModelBound::child(const JointRange& range) const
 {
-    return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-}
-
-Reach Reach::child(const JointRange& range) const
-{
-    Reach result;
+    JointToModelBound result;
     const double distance = glm::length(range.translation) + range.shift;
     const double directed = norm * range.shift + deviation * distance;
     const double undirected = largest * distance;
-    result.place = directed <= undirected ? place + linear * range.translation : place;
+    result.origin = directed <= undirected ? origin + linear * range.translation : origin;
     result.radius = radius + std::min(directed, undirected);
 
     // |R S - R0 S0| <= |R - R0| |S| + |S - S0|, and a turn by an angle moves a unit vector by 2 sin of its half.
-    const double size = largestOf(glm::abs(range.scale) + range.stretch);
+    const double size = largestComponent(glm::abs(range.scale) + range.stretch);
     const double turned = range.turn < 1.5 ? 2.0 * std::sin(range.turn) : 2.0;
     const double own = turned * size + range.stretch;
-    const double ownNorm = largestOf(range.scale);
+    const double ownNorm = largestComponent(range.scale);
     result.largest = largest * size;
     result.linear = linear * Rotation::matrix(range.rotation);
     for (int axis = 0; axis < 3; ++axis)
@@ -65,22 +57,13 @@ Reach Reach::child(const JointRange& range) const
 }
 
 /// The box of a palette entry after its joint's transform.
-Aabb3d moved(const PaletteEntry& entry, const Box& box, const Reach& reach)
+Aabb3d transformed(const PaletteEntry& entry, const Box& entryBox, const JointToModelBound& bound)
 {
-    const glm::dvec3 min(box.min), max(box.max);
-    const glm::dmat4 inverseBind = entry.inverseBind.toColumns();
-    const glm::dvec3 centre(inverseBind * glm::dvec4((min + max) * 0.5, 1.0));
-    glm::dmat3 edges;
-    double span = 0.0;
+    const TransformedBox box(entry.inverseBind, entryBox);
+    double radius = glm::length(box.centre); // no point of the box is farther from the joint's origin
     for (int axis = 0; axis < 3; ++axis)
-    {
-        edges[axis] = glm::dvec3(inverseBind[axis]) * (max - min)[axis] * 0.5;
-        span += glm::length(edges[axis]);
-    }
-    const glm::dmat3 placed = reach.linear * edges;
-    const double margin = reach.radius + reach.deviation * (glm::length(centre) + span);
-    return Aabb3d::about(reach.place + reach.linear * centre,
-                         glm::abs(placed[0]) + glm::abs(placed[1]) + glm::abs(placed[2]) + margin);
+        radius += glm::length(box.halfEdges[axis]);
+    return box.bounds(bound.linear, bound.origin, bound.radius + bound.deviation * radius);
 }
 
 } // namespace
@@ -92,27 +75,18 @@ MixBounds::MixBounds(const AnimationSet& set, EntryBoxes entryBoxes, EntryBoxes 
 
 MixBounds::~MixBounds() = default;
 
+const Clip* MixBounds::findClip(int clip) const
+{
+    const bool isKnown = clip >= 0 && static_cast<std::size_t>(clip) < _set.clips().size();
+    return isKnown ? &_set.clips()[static_cast<std::size_t>(clip)] : nullptr;
+}
+
 std::shared_ptr<const MixBounds::Ranges> MixBounds::rangesOf(int clip) const
 {
     const std::lock_guard<std::mutex> lock(_mutex);
     std::shared_ptr<const Ranges>& known = _ranges[clip];
-    if (known) return known;
-    Ranges ranges;
-    if (clip >= 0 && static_cast<std::size_t>(clip) < _set.clips().size())
-        ranges = rangesOfClip(_set, _set.clips()[static_cast<std::size_t>(clip)]);
-    else
-        for (std::size_t joint = 0; joint < _set.skeleton().jointCount(); ++joint)
-            ranges.push_back(JointRange::of(_set.restPose()[joint]));
-    known = std::make_shared<const Ranges>(std::move(ranges));
+    if (!known) known = std::make_shared<const Ranges>(rangesOfClip(_set, findClip(clip)));
     return known;
-}
-
-const JointTransform& MixBounds::firstOf(int clip, std::size_t joint) const
-{
-    if (clip < 0 || static_cast<std::size_t>(clip) >= _set.clips().size()) return _set.restPose()[joint];
-    const Clip& source = _set.clips()[static_cast<std::size_t>(clip)];
-    if (source.keyframeCount() == 0) return _set.restPose()[joint];
-    return *source.at(source.locate(0.0).keyframe, joint);
 }
 
 MixBounds::Ranges MixBounds::rangesOf(const std::vector<PlayedClip>& played) const
@@ -132,10 +106,11 @@ MixBounds::Ranges MixBounds::rangesOf(const std::vector<PlayedClip>& played) con
     for (const PlayedClip& clip : played)
     {
         if (clip.part == PlayedClip::Part::Mixed) continue;
-        const bool isToRest = clip.part == PlayedClip::Part::AddedToRest;
+        const Clip* reference = clip.part == PlayedClip::Part::AddedToItsFirst ? findClip(clip.clip) : nullptr;
         const std::shared_ptr<const Ranges> ranges = rangesOf(clip.clip);
         for (std::size_t joint = 0; joint < result.size(); ++joint)
-            result[joint].addDifference((*ranges)[joint], firstOf(isToRest ? -1 : clip.clip, joint));
+            result[joint].addDifference((*ranges)[joint],
+                                        reference ? *reference->at(0, joint) : _set.restPose()[joint]);
     }
     return result;
 }
@@ -143,12 +118,12 @@ MixBounds::Ranges MixBounds::rangesOf(const std::vector<PlayedClip>& played) con
 Box MixBounds::box(const std::vector<PlayedClip>& played) const
 {
     const Ranges ranges = rangesOf(played);
-    std::vector<Reach> reaches;
+    std::vector<JointToModelBound> bounds;
     for (std::size_t joint = 0; joint < ranges.size(); ++joint)
     {
         const int parent = _set.skeleton().joint(joint).parent;
-        const Reach above = parent < 0 ? Reach() : reaches[static_cast<std::size_t>(parent)];
-        reaches.push_back(above.child(ranges[joint]));
+        const JointToModelBound above = parent < 0 ? JointToModelBound() : bounds[static_cast<std::size_t>(parent)];
+        bounds.push_back(above.child(ranges[joint]));
     }
     const bool isAdded = std::any_of(played.begin(), played.end(),
                                      [](const PlayedClip& clip) { return clip.part != PlayedClip::Part::Mixed; });
@@ -158,7 +133,7 @@ Box MixBounds::box(const std::vector<PlayedClip>& played) const
     {
         const PaletteEntry& entry = _set.palette()[e];
         if (entry.joint < 0 || boxes[e].empty()) continue;
-        all.add(moved(entry, boxes[e], reaches[static_cast<std::size_t>(entry.joint)]));
+        all.add(transformed(entry, boxes[e], bounds[static_cast<std::size_t>(entry.joint)]));
     }
     return all.toBox();
 }

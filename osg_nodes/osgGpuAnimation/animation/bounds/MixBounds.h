@@ -37,8 +37,8 @@ public:
 private:
     using Ranges = std::vector<JointRange>;
 
+    const Clip* findClip(int clip) const; ///< null for the rest pose
     std::shared_ptr<const Ranges> rangesOf(int clip) const;
-    const JointTransform& firstOf(int clip, std::size_t joint) const;
     Ranges rangesOf(const std::vector<PlayedClip>& played) const;
 
     const AnimationSet& _set;

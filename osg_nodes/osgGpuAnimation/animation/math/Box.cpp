@@ -5,17 +5,15 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace osgGpuAnimation
 {
 
 void Box::add(const glm::vec3& point)
 {
-    for (int axis = 0; axis < 3; ++axis)
-    {
-        min[axis] = std::min(min[axis], point[axis]);
-        max[axis] = std::max(max[axis], point[axis]);
-    }
+    min = glm::min(min, point);
+    max = glm::max(max, point);
 }
 
 void Box::add(const Box& box)
@@ -43,12 +41,15 @@ namespace
 /// Clamps to the limit; NaN gives `otherwise`.
 double limited(double value, double otherwise)
 {
-    if (value >= -Aabb3d::limit && value <= Aabb3d::limit) return value;
-    if (value > Aabb3d::limit) return Aabb3d::limit;
-    return value < -Aabb3d::limit ? -Aabb3d::limit : otherwise;
+    return std::isnan(value) ? otherwise : std::clamp(value, -Aabb3d::limit, Aabb3d::limit);
 }
 
 } // namespace
+
+double largestComponent(const glm::dvec3& v)
+{
+    return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+}
 
 Aabb3d Aabb3d::about(const glm::dvec3& centre, const glm::dvec3& half)
 {
@@ -76,14 +77,8 @@ Aabb3d Aabb3d::grownWithin(double margin, double radius) const
 {
     const double by = limited(margin, limit);
     const double within = limited(radius, limit);
-    Aabb3d grown;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-        // Keeps the original box even if rounding makes the ball too small.
-        grown.min[axis] = std::min(min[axis], std::max(min[axis] - by, -within));
-        grown.max[axis] = std::max(max[axis], std::min(max[axis] + by, within));
-    }
-    return grown;
+    // Keeps the original box even if rounding makes the ball too small.
+    return {glm::min(min, glm::max(min - by, -within)), glm::max(max, glm::min(max + by, within))};
 }
 
 double Aabb3d::slackAround(const Aabb3d& inner) const
@@ -95,10 +90,25 @@ double Aabb3d::slackAround(const Aabb3d& inner) const
 Box Aabb3d::toBox() const
 {
     if (empty()) return Box();
-    const glm::dvec3 farthest = glm::max(glm::abs(min), glm::abs(max));
     constexpr double rounding = 1e-5;
-    const double margin = rounding * std::max({farthest.x, farthest.y, farthest.z});
+    const double margin = rounding * largestComponent(glm::max(glm::abs(min), glm::abs(max)));
     return {glm::vec3(min - margin), glm::vec3(max + margin)};
+}
+
+TransformedBox::TransformedBox(const AffineMatrix& transform, const Box& box)
+{
+    const glm::dvec3 min(box.min), max(box.max);
+    const glm::dmat4 matrix = transform.toColumns();
+    centre = glm::dvec3(matrix * glm::dvec4((min + max) * 0.5, 1.0));
+    for (int axis = 0; axis < 3; ++axis)
+        halfEdges[axis] = glm::dvec3(matrix[axis]) * (max - min)[axis] * 0.5;
+}
+
+Aabb3d TransformedBox::bounds(const glm::dmat3& linear, const glm::dvec3& offset, double margin) const
+{
+    const glm::dmat3 edges = linear * halfEdges;
+    return Aabb3d::about(linear * centre + offset,
+                         glm::abs(edges[0]) + glm::abs(edges[1]) + glm::abs(edges[2]) + margin);
 }
 
 } // namespace osgGpuAnimation

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <glm/vec3.hpp>
+#include <osgGpuAnimation/animation/JointTransform.h>
 
-#include <vector>
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
 
 namespace osgGpuAnimation
 {
@@ -21,8 +22,8 @@ struct Box
     glm::vec3 corner(int i) const; ///< i: in [0, 8); bit 0 selects max.x, bit 1 max.y, bit 2 max.z
 };
 
-/// See ClipBuilder.h, which declares the type for applications.
-using EntryBoxes = std::vector<Box>;
+/// The largest absolute component.
+double largestComponent(const glm::dvec3& v);
 
 /// An axis-aligned box in double precision that contains only finite numbers. Coordinates are clamped to
 /// [-limit, limit], so that a renderer can square the size of the box in single precision. Default: empty (min > max).
@@ -46,6 +47,18 @@ struct Aabb3d
     /// Rounds outwards and adds 1e-5 of the largest coordinate, so that vertices computed in single precision stay
     /// inside.
     Box toBox() const;
+};
+
+/// A box after an affine transform: a parallelepiped.
+struct TransformedBox
+{
+    glm::dvec3 centre{0.0};
+    glm::dmat3 halfEdges{0.0}; ///< one column per axis of the original box
+
+    /// box: not empty.
+    TransformedBox(const AffineMatrix& transform, const Box& box);
+    /// The smallest axis-aligned box around linear · this + offset, with every face moved outwards by margin.
+    Aabb3d bounds(const glm::dmat3& linear, const glm::dvec3& offset, double margin = 0.0) const;
 };
 
 } // namespace osgGpuAnimation

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/gpu/buffers/AnimationBuffers.h>
 
-#include <osgGpuAnimation/animation/AnimationSet.h>
-
 #include <layout.glsl>
 
 #include <algorithm>
@@ -95,13 +93,6 @@ void AnimationBuffers::release()
     _keyframes.release();
     _entries.release();
     _masks.release();
-}
-
-void AnimationBuffers::discard()
-{
-    _keyframes.discard();
-    _entries.discard();
-    _masks.discard();
 }
 
 } // namespace osgGpuAnimation

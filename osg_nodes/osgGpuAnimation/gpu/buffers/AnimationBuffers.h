@@ -33,7 +33,6 @@ public:
     static std::size_t byteSize(const AnimationSet& set, const PackedKeyframes& keyframes);
 
     void release();
-    void discard();
 
 private:
     std::size_t _restTexel;

@@ -7,7 +7,7 @@ namespace osgGpuAnimation
 {
 
 InstanceTransformBuffers::InstanceTransformBuffers(unsigned int contextId)
-    : osg::GraphicsObjectManager("PlacementBuffers", contextId)
+    : osg::GraphicsObjectManager("InstanceTransformBuffers", contextId)
 {
     for (List& list : _lists)
         list.buffer = std::make_unique<BufferTexture>(*osg::GLExtensions::Get(contextId, true), GL_RGBA32F_ARB);
@@ -19,14 +19,14 @@ InstanceTransformBuffers& InstanceTransformBuffers::of(osg::State& state)
 }
 
 const BufferTexture& InstanceTransformBuffers::buffer(std::uint64_t serial,
-                                                      const std::vector<InstanceTransform>& placements)
+                                                      const std::vector<InstanceTransform>& transforms)
 {
     for (const List& list : _lists)
         if (list.serial == serial) return *list.buffer;
     List& list = _lists[_oldest];
     _oldest = (_oldest + 1) % _lists.size();
     list.serial = serial;
-    list.buffer->upload(placements.data(), placements.size() * sizeof(InstanceTransform));
+    list.buffer->upload(transforms.data(), transforms.size() * sizeof(InstanceTransform));
     return *list.buffer;
 }
 

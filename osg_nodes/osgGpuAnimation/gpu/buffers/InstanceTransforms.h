@@ -18,12 +18,12 @@ namespace osgGpuAnimation
 /// The transform of one instance of an instanced draw, as skin.glsl reads it: four vertex attributes.
 struct InstanceTransform
 {
-    AffineMatrix toEye; ///< from the character's own space to the eye's
+    AffineMatrix toEye; ///< from the character's space to eye space
     float pose = 0.0f;  ///< the instance's index in the PoseBatch, an integer
     std::array<float, 3> unused{};
 };
 
-static_assert(sizeof(InstanceTransform) == 4 * BufferTexture::texelBytes, "a placement is four attributes");
+static_assert(sizeof(InstanceTransform) == 4 * BufferTexture::texelBytes, "an instance transform is four attributes");
 
 /// The buffers of instance transforms of one graphics context. It keeps the last lists that were drawn, since all
 /// meshes of the same characters are drawn in sequence. Call it on the draw side only, with the context current.
@@ -35,7 +35,7 @@ public:
     static InstanceTransformBuffers& of(osg::State& state);
 
     /// The buffer of a list, uploaded at the first call. serial: identifies the list, never reused.
-    const BufferTexture& buffer(std::uint64_t serial, const std::vector<InstanceTransform>& placements);
+    const BufferTexture& buffer(std::uint64_t serial, const std::vector<InstanceTransform>& transforms);
 
     void flushDeletedGLObjects(double, double&) override {}
     void flushAllDeletedGLObjects() override {}

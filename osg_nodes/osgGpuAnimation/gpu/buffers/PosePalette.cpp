@@ -87,6 +87,7 @@ std::vector<PosePalette::Chunk*> PosePalette::upload(const PoseBatch& batch, std
     _chunkCapacity = chunkCapacity;
     const std::size_t stride = batch.sampleStride();
     const bool hasRoots = !batch.rootMatrices().empty();
+    const bool hasTints = !batch.tints().empty();
     std::size_t index = 0;
     for (std::size_t first = 0; first < batch.size(); first += chunkCapacity, ++index)
     {
@@ -101,7 +102,6 @@ std::vector<PosePalette::Chunk*> PosePalette::upload(const PoseBatch& batch, std
                                    chunk.uploadedSamples, chunk.samples, bytesUploaded);
         isChanged |= uploadChanged(batch.rootMatrices(), hasRoots ? first : 0, hasRoots ? size : 0,
                                    hasRoots ? chunk.width : 0, chunk.uploadedRootMatrices, chunk.roots, bytesUploaded);
-        const bool hasTints = !batch.tints().empty();
         // Only the draw reads tints: the palette does not change.
         uploadChanged(batch.tints(), hasTints ? first : 0, hasTints ? size : 0, hasTints ? size : 0,
                       chunk.uploadedTints, chunk.tints, bytesUploaded);
@@ -138,11 +138,6 @@ void PosePalette::release()
     for (const std::unique_ptr<Chunk>& chunk : _chunks)
         for (BufferTexture* buffer : {&chunk->samples, &chunk->roots, &chunk->tints, &chunk->palette})
             buffer->release();
-    _chunks.clear();
-}
-
-void PosePalette::discard()
-{
     _chunks.clear();
 }
 

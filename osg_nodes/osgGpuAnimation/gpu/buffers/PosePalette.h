@@ -55,7 +55,6 @@ public:
     const std::vector<std::unique_ptr<Chunk>>& chunks() const { return _chunks; }
 
     void release();
-    void discard();
 
 private:
     osg::GLExtensions* _gl;

@@ -221,7 +221,8 @@ void CrowdInstances::findSeen(const std::vector<glm::vec4>& planes, std::vector<
 
 PoseBatch::BlendCost CrowdInstances::load(std::size_t index) const
 {
-    return _controllers[index] ? PoseBatch::loadOf(_controllers[index]->instruction()) : PoseBatch::BlendCost::Plain;
+    return _controllers[index] ? PoseBatch::blendCostOf(_controllers[index]->instruction())
+                               : PoseBatch::BlendCost::Plain;
 }
 
 void CrowdInstances::addTo(PoseBatch& batch, const std::vector<std::uint32_t>& indices) const

@@ -205,8 +205,8 @@ void ReferenceKit::shareMesh(const gltf::ImportedPrimitive& primitive)
     mesh.influences = new osgAnimation::VertexInfluenceMap;
     for (unsigned int influenceSet = 0; influenceSet < SkinnedGeometry::maxInfluenceSets; ++influenceSet)
     {
-        const osg::Vec4usArray* entries = skinned->entries(influenceSet);
-        const osg::Vec4Array* weights = skinned->weights(influenceSet);
+        const osg::Vec4usArray* entries = skinned->getEntries(influenceSet);
+        const osg::Vec4Array* weights = skinned->getWeights(influenceSet);
         for (unsigned int vertex = 0; entries && weights && vertex < entries->size(); ++vertex)
             for (int i = 0; i < 4; ++i)
             {

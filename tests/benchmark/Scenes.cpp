@@ -79,7 +79,7 @@ CrowdScene::CrowdScene(const Subject& subject, std::size_t count) : root(new Ani
 {
     for (std::size_t i = 0; i < count; ++i)
     {
-        AnimationController controller(root->sharedSet());
+        AnimationController controller(root->getSharedAnimationSet());
         static_cast<void>(controller.play(subject.clip));
         controller.seek(phaseOf(i, durationOf(subject)));
         static_cast<void>(root->add(placement(subject, i, count), controller));

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/AnimationController.h>
 
-#include <osgGpuAnimation/animation/AnimationLayer.h>
 #include <osgGpuAnimation/animation/playback/BlendList.h>
 #include <osgGpuAnimation/animation/playback/FrameEvents.h>
 
@@ -15,6 +14,7 @@ namespace osgGpuAnimation
 namespace
 {
 
+/// Adds a clip unless `times` equal ones are in the list already.
 void addAtMost(std::ptrdiff_t times, const PlayedClip& clip, std::vector<PlayedClip>& out)
 {
     if (std::count(out.begin(), out.end(), clip) < times) out.push_back(clip);
@@ -142,14 +142,14 @@ const PoseInstruction& AnimationController::advance(double seconds)
 
 void AnimationController::rebuildInstruction()
 {
-    BlendList stack;
-    forEachLayer([&stack](const AnimationLayer& layer) { layer.collect(stack); });
-    stack.write(_instruction);
+    BlendList samples;
+    forEachLayer([&](const AnimationLayer& layer) { layer.collect(samples); });
+    samples.write(_instruction);
 }
 
 void AnimationController::accumulateRootMotion()
 {
-    MotionBlend blend;
+    RootMotionBlend blend;
     forEachLayer([&](const AnimationLayer& layer) { layer.collectMotion(blend, *_rootMotionCurve); });
     const RootMotion step = blend.result();
     if (!step.isNone()) _rootMotion = (_rootMotion.isNone() ? RootMotion{{}, 0.0, step.up} : _rootMotion) * step;

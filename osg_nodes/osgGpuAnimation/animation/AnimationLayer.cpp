@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/AnimationLayer.h>
 
-#include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/animation/JointMask.h>
 #include <osgGpuAnimation/animation/playback/BlendList.h>
 #include <osgGpuAnimation/animation/playback/FrameEvents.h>
-#include <osgGpuAnimation/animation/RootMotion.h>
 
 #include <layout.glsl>
 
@@ -131,7 +129,8 @@ bool AnimationLayer::setWeight(float weight)
 bool AnimationLayer::fadeWeight(float weight, double seconds, FadeCurve curve)
 {
     if (std::isnan(weight) || !std::isfinite(seconds) || seconds < 0.0) return false;
-    _weight = Fade(_weight.value(), std::clamp(static_cast<double>(weight), 0.0, 1.0), seconds, curve);
+    const double target = std::clamp(static_cast<double>(weight), 0.0, 1.0);
+    _weight = Fade({_weight.value(), target, seconds, 0.0, curve});
     rebuildInstruction();
     return true;
 }
@@ -166,18 +165,10 @@ void AnimationLayer::setBlendPriority(int blendPriority)
 
 void AnimationLayer::advance(double seconds)
 {
-    _crossfadeMoment = _weightFadeMoment = -1.0;
-    if (_state == PlayState::Paused)
-    {
-        _mixer.clearSteps();
-        return;
-    }
-    _weightFadeMoment = _weight.advance(seconds);
-    if (_state == PlayState::Stopped)
-    {
-        _mixer.clearSteps();
-        return;
-    }
+    const bool isMoving = _state == PlayState::Playing || _state == PlayState::Ended;
+    _crossfadeMoment = -1.0;
+    _weightFadeMoment = _state == PlayState::Paused ? -1.0 : _weight.advance(seconds);
+    if (!isMoving) return _mixer.clearSteps();
     _crossfadeMoment = _mixer.advance(seconds, _state == PlayState::Playing);
     if (_mixer.activeClip(_mixer.activeClipCount() - 1).move.hasFinished) _state = PlayState::Ended;
 }
@@ -220,7 +211,7 @@ bool AnimationLayer::isPlainLoop() const
 
 /// usual: the curve of any clip of the set. A clip without root motion stands still, and hides other motions at its
 /// joint.
-void AnimationLayer::collectMotion(MotionBlend& out, const RootMotionCurve& usual) const
+void AnimationLayer::collectMotion(RootMotionBlend& out, const RootMotionCurve& usual) const
 {
     if (_state == PlayState::Stopped || _mode == Mode::Additive) return;
     const float* mask = set().masks().weights(_mask);
@@ -250,24 +241,12 @@ void AnimationLayer::rebuildInstruction()
 namespace
 {
 
-LayerSnapshot::FadeState stateOf(const Fade& fade)
-{
-    return {fade.origin(), fade.target(), fade.seconds(), fade.elapsed(), fade.curve()};
-}
-
-Fade restored(const LayerSnapshot::FadeState& state)
-{
-    Fade fade(state.from, state.to, state.seconds, state.curve);
-    fade.advance(state.elapsed);
-    return fade;
-}
-
 bool isShare(double value)
 {
     return value >= 0.0 && value <= 1.0;
 }
 
-bool isSound(const LayerSnapshot::FadeState& state)
+bool isSound(const Fade::State& state)
 {
     return isShare(state.from) && isShare(state.to) && std::isfinite(state.seconds) && state.seconds >= 0.0 &&
            std::isfinite(state.elapsed) && state.elapsed >= 0.0;
@@ -321,8 +300,8 @@ LayerSnapshot AnimationLayer::snapshot() const
                                         playback.isReturning(), playback.isFresh(), activeClip.share,
                                         activeClip.shareBefore, phaseGroupOf(_mixer, v)});
     }
-    snapshot.crossfade = stateOf(_mixer.fade());
-    snapshot.weight = stateOf(_weight);
+    snapshot.crossfade = _mixer.fade().state();
+    snapshot.weight = _weight.state();
     if (const float* weights = set().masks().weights(_mask))
         snapshot.mask.assign(weights, weights + set().trackCount());
     snapshot.mode = _mode;
@@ -354,11 +333,11 @@ Result<bool> AnimationLayer::restore(const LayerSnapshot& snapshot)
         activeClip.phaseGroup = kept.phaseGroup;
         activeClips.push_back(activeClip);
     }
-    _mixer.restore(activeClips, restored(snapshot.crossfade));
+    _mixer.restore(activeClips, Fade(snapshot.crossfade));
     _state = snapshot.state;
     _loopMode = snapshot.loopMode;
     _speed = snapshot.speed;
-    _weight = restored(snapshot.weight);
+    _weight = Fade(snapshot.weight);
     _mask = mask;
     _mode = snapshot.mode;
     _reference = snapshot.reference;

@@ -15,8 +15,8 @@ namespace osgGpuAnimation
 {
 
 class JointMask;
-class MotionBlend;
 class BlendList;
+class RootMotionBlend;
 struct LayerSnapshot;
 struct LayerStep;
 struct RootMotionCurve;
@@ -99,13 +99,13 @@ public:
     /// Error: the snapshot is not valid for the set; the layer is then unchanged.
     Result<bool> restore(const LayerSnapshot& snapshot);
 
-    PlayState state() const { return _state; }                                       ///< see PlayState
-    bool isPlaying() const { return _state == PlayState::Playing; }                  ///< true in state Playing
-    int clip() const { return _mixer.isEmpty() ? -1 : _mixer.current().clip(); }     ///< -1 if none was played
-    double time() const { return _mixer.isEmpty() ? 0.0 : _mixer.current().time(); } ///< seconds, in [0, duration]
-    double duration() const { return _mixer.isEmpty() ? 0.0 : _mixer.current().duration(); } ///< of the current clip
-    double normalizedTime() const { return _mixer.isEmpty() ? 0.0 : _mixer.current().normalizedTime(); } ///< [0, 1]
-    double phase() const { return _mixer.isEmpty() ? 0.0 : _mixer.current().phase(); } ///< see ClipPlayback::phase
+    PlayState state() const { return _state; }                                  ///< see PlayState
+    bool isPlaying() const { return _state == PlayState::Playing; }             ///< true in state Playing
+    int clip() const { return _mixer.current().clip(); }                        ///< -1 if none was played
+    double time() const { return _mixer.current().time(); }                     ///< seconds, in [0, duration]
+    double duration() const { return _mixer.current().duration(); }             ///< of the current clip
+    double normalizedTime() const { return _mixer.current().normalizedTime(); } ///< [0, 1]
+    double phase() const { return _mixer.current().phase(); }                   ///< see ClipPlayback::phase
     double speed() const { return _speed; }         ///< 1: the speed of the file; negative: backwards
     LoopMode loopMode() const { return _loopMode; } ///< the behaviour of the clip at its ends
     bool isCrossfading() const { return !_mixer.isEmpty() && _mixer.isFading(); } ///< true until a crossfade ends
@@ -153,7 +153,7 @@ private:
     ClipPlayback playbackOf(std::size_t clip, LoopMode loopMode) const;
     void advance(double seconds);
     void collect(BlendList& out) const;
-    void collectMotion(MotionBlend& out, const RootMotionCurve& usual) const;
+    void collectMotion(RootMotionBlend& out, const RootMotionCurve& usual) const;
     LayerStep lastStep() const;
     BlendSample sampleOf(const ClipPlayback& playback, double time, double share) const;
     void rebuildInstruction();
@@ -179,15 +179,7 @@ private:
 ///     Result<bool> restored = other.layer(1).restore(kept);
 struct LayerSnapshot
 {
-    /// The state of a Fade.
-    struct FadeState
-    {
-        double from = 1.0,                   ///< value at the start
-            to = 1.0;                        ///< value at the end
-        double seconds = 0.0;                ///< duration
-        double elapsed = 0.0;                ///< seconds
-        FadeCurve curve = FadeCurve::Linear; ///< progress over time
-    };
+    using FadeState = Fade::State; ///< The state of a fade.
     /// One clip that contributes, see ClipMixer::ActiveClip.
     struct ActiveClip
     {

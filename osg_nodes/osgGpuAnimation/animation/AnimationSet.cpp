@@ -2,7 +2,6 @@
 #include <osgGpuAnimation/animation/AnimationSet.h>
 
 #include <osgGpuAnimation/animation/palette/PaletteBuilder.h>
-#include <osgGpuAnimation/animation/Result.h>
 
 #include <layout.glsl>
 

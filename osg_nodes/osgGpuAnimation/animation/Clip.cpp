@@ -2,7 +2,6 @@
 #include <osgGpuAnimation/animation/Clip.h>
 
 #include <osgGpuAnimation/animation/keyframes/CompactTracks.h>
-#include <osgGpuAnimation/animation/RootMotion.h>
 
 #include <glm/geometric.hpp>
 

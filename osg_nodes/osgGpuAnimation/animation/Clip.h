@@ -48,7 +48,6 @@ struct Channel
 
 struct ClipParts;
 struct CompactTracks;
-struct RootMotionCurve;
 
 /// A clip: keyframes in time order. Each keyframe has one transform of **every track**: joints, then weight blocks.
 ///
@@ -90,10 +89,8 @@ public:
     double duration() const { return _times.empty() ? 0.0 : _times.back(); } ///< seconds; the last keyframe's time
     std::size_t trackCount() const { return _trackCount; }                   ///< joints, then weight blocks
     std::size_t keyframeCount() const { return _times.size(); }              ///< number of keyframes
-    const std::vector<float>& times() const
-    {
-        return _times;
-    } ///< keyframeCount() times in seconds, ascending, the same twice at a jump
+    /// keyframeCount() times in seconds, ascending, the same twice at a jump.
+    const std::vector<float>& times() const { return _times; }
 
     std::size_t transformsPerTrack() const { return transformsPerTrack(_form); } ///< in a keyframe
     /// Transforms per track and keyframe: 1 for Linear, 3 for Spline.
@@ -143,9 +140,6 @@ private:
     std::shared_ptr<const CompactTracks> _compactTracks;
 };
 
-struct CompactTracks;
-struct RootMotionCurve;
-
 /// The input of Clip::create(): everything that a clip exports.
 struct ClipParts
 {
@@ -157,8 +151,8 @@ struct ClipParts
     std::vector<JointTransform> data;                  ///< as Clip::data()
     std::vector<ClipMarker> markers;                   ///< times in [0, duration]
     std::shared_ptr<const RootMotionCurve> rootMotion; ///< null: none
-    std::shared_ptr<const CompactTracks>
-        compactTracks; ///< null: exact; else create() writes their decoded values to data
+    /// null: exact; else create() writes their decoded values to data
+    std::shared_ptr<const CompactTracks> compactTracks;
 };
 
 } // namespace osgGpuAnimation

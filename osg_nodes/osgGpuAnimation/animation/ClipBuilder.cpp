@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
 #include <glm/matrix.hpp>
+#include <glm/vector_relational.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -232,17 +233,16 @@ glm::vec4 rounded(const glm::dquat& q)
     return glm::vec4(Rotation::numbers(q));
 }
 
-double difference(const glm::vec4& a, const glm::vec4& b)
+bool isNear(const glm::vec4& a, const glm::vec4& b, double most)
 {
-    return static_cast<double>(std::max(std::max(std::abs(a.x - b.x), std::abs(a.y - b.y)),
-                                        std::max(std::abs(a.z - b.z), std::abs(a.w - b.w))));
+    return glm::all(glm::lessThanEqual(glm::dvec4(glm::abs(a - b)), glm::dvec4(most)));
 }
 
-bool isSame(const JointTransform& a, const JointTransform& b)
+bool isNear(const JointTransform& a, const JointTransform& b)
 {
     const double size = 1.0 + static_cast<double>(glm::length(a.translation) + glm::length(a.scale));
-    return difference(a.translation, b.translation) <= 1e-6 * size && difference(a.rotation, b.rotation) <= 1e-6 &&
-           difference(a.scale, b.scale) <= 1e-6 * size;
+    return isNear(a.translation, b.translation, 1e-6 * size) && isNear(a.rotation, b.rotation, 1e-6) &&
+           isNear(a.scale, b.scale, 1e-6 * size);
 }
 
 /// True for a rotation with a uniform scale, without a mirror.
@@ -300,18 +300,25 @@ Result<bool> ClipBuilder::add(Channel channel)
     return true;
 }
 
-std::size_t ClipBuilder::byteSize() const
+std::vector<ChannelCurve> ClipBuilder::curves() const
 {
     std::vector<ChannelCurve> curves;
-    bool spline = false;
     for (const Channel& channel : _channels)
-    {
         curves.emplace_back(channel, componentCount(channel));
-        spline = spline || channel.interpolation == Channel::Interpolation::CubicSpline;
-    }
+    return curves;
+}
+
+Clip::Form ClipBuilder::form() const
+{
+    const auto isSpline = [](const Channel& channel) { return valuesPerKey(channel) == 3; };
+    return std::any_of(_channels.begin(), _channels.end(), isSpline) ? Clip::Form::Spline : Clip::Form::Linear;
+}
+
+std::size_t ClipBuilder::byteSize() const
+{
     const double bytesPerKeyframe =
-        static_cast<double>(sizeof(float) + _rest.size() * (spline ? 3 : 1) * sizeof(JointTransform));
-    const double bytes = bytesPerKeyframe * static_cast<double>(findMoments(curves).size());
+        static_cast<double>(sizeof(float) + _rest.size() * Clip::transformsPerTrack(form()) * sizeof(JointTransform));
+    const double bytes = bytesPerKeyframe * static_cast<double>(findMoments(curves()).size());
     constexpr auto most = std::numeric_limits<std::size_t>::max();
     return bytes < static_cast<double>(most) ? static_cast<std::size_t>(bytes) : most;
 }
@@ -321,14 +328,9 @@ Clip ClipBuilder::build(std::string name)
     Clip clip;
     clip._name = std::move(name);
     clip._trackCount = _rest.size();
-    std::vector<ChannelCurve> curves;
-    for (const Channel& channel : _channels)
-    {
-        curves.emplace_back(channel, componentCount(channel));
-        if (channel.interpolation == Channel::Interpolation::CubicSpline) clip._form = Clip::Form::Spline;
-    }
-
+    clip._form = form();
     const bool spline = clip._form == Clip::Form::Spline;
+    const std::vector<ChannelCurve> curves = this->curves();
     const std::vector<Moment> moments = findMoments(curves);
     for (const Moment& moment : moments)
         clip._times.push_back(static_cast<float>(moment.time));
@@ -377,8 +379,7 @@ double longestSide(const AnimationSet& set, const EntryBoxes& entryBoxes)
             box.add(joint.transformPoint(glm::vec3(0.0f)));
     }
     if (box.empty()) return 0.0;
-    const glm::vec3 sides = box.max - box.min;
-    return static_cast<double>(std::max({sides.x, sides.y, sides.z}));
+    return largestComponent(glm::dvec3(box.max - box.min));
 }
 
 /// Removes the motion of one joint from clips, see withRootMotion().
@@ -412,15 +413,12 @@ RootMotionExtractor::RootMotionExtractor(const Skeleton& skeleton, std::size_t j
 
 bool RootMotionExtractor::isStill(const Clip& clip, std::size_t joint) const
 {
-    const std::size_t perTrack = clip.transformsPerTrack();
-    const JointTransform* first = clip.at(0, joint);
-    JointTransform none{glm::vec4(0.0f), glm::vec4(0.0f), glm::vec4(0.0f)};
     for (std::size_t k = 0; k < clip.keyframeCount(); ++k)
     {
-        const JointTransform* here = first + k * clip.keyframeStride();
-        if (!isSame(*first, *here)) return false;
-        for (std::size_t tangent = 1; tangent < perTrack; ++tangent)
-            if (!isSame(none, here[tangent])) return false;
+        const JointTransform* here = clip.at(k, joint);
+        if (!isNear(*clip.at(0, joint), *here)) return false;
+        for (std::size_t tangent = 1; tangent < clip.transformsPerTrack(); ++tangent)
+            if (!isNear(zeroTransform, here[tangent])) return false;
     }
     return true;
 }
@@ -435,7 +433,7 @@ Result<bool> RootMotionExtractor::findParent(const Clip& clip)
         if (!isStill(clip, joint))
             return Error{"clip \"" + clip.name() + "\" moves joint \"" + _skeleton.joint(joint).name + "\" above \"" +
                          _skeleton.joint(_joint).name + "\", whose motion is to be taken out"};
-        const JointTransform& local = clip.data()[joint * clip.transformsPerTrack()];
+        const JointTransform& local = *clip.at(0, joint);
         _parentToModel = local.toMatrix().toColumns() * _parentToModel;
         _parentRotation = unitRotation(local) * _parentRotation;
     }

@@ -2,10 +2,6 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
-#include <osgGpuAnimation/animation/Clip.h>
-#include <osgGpuAnimation/animation/JointTransform.h>
-#include <osgGpuAnimation/animation/RootMotion.h>
-#include <osgGpuAnimation/animation/Skeleton.h>
 
 #include <memory>
 #include <string>
@@ -13,6 +9,8 @@
 
 namespace osgGpuAnimation
 {
+
+class ChannelCurve;
 
 /// Converts channels, each with its own times, into a Clip: keyframes of all tracks at the union of all key times.
 ///
@@ -45,6 +43,8 @@ public:
     std::size_t byteSize() const;
 
 private:
+    std::vector<ChannelCurve> curves() const;
+    Clip::Form form() const;
     std::size_t componentCount(const Channel& channel) const;
     std::string describe(const Channel& channel) const;
     std::size_t keyOf(const Channel& channel) const;

@@ -166,7 +166,7 @@ void ClipMixer::fadeTo(const ClipPlayback& playback, double seconds, FadeCurve c
     _current.playback = playback;
     _current.share = 0.0;
     _current.phaseGroup = group;
-    _fade = Fade(0.0, 1.0, seconds, curve);
+    _fade = Fade({0.0, 1.0, seconds, 0.0, curve});
 }
 
 void ClipMixer::remove(std::size_t index)

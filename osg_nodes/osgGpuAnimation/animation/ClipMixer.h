@@ -103,8 +103,8 @@ public:
         ClipPlayback playback; ///< clip and time
         PlaybackStep move;     ///< the step of the last advance()
         double share = 1.0;    ///< of the layer, in [0, 1]
-        double meanShare =
-            1.0; ///< mean during the last advance(): it weights root motion, so that the frame rate plays no part
+        /// Mean share during the last advance(): it weights root motion, which so does not depend on the frame rate.
+        double meanShare = 1.0;
         double shareBefore = 0.0; ///< share at the start of the last crossfade
         int phaseGroup = 0;       ///< active clips of one group share one phase
     };
@@ -115,15 +115,15 @@ public:
         return index < _leaving.size() ? _leaving[index] : _current;
     }
     bool isEmpty() const { return _current.playback.clip() < 0; } ///< true if no clip is active
-    /// The newest active clip. The mixer must not be empty.
+    /// The newest active clip; a default ClipPlayback if the mixer is empty.
     ClipPlayback& current() { return _current.playback; }
-    const ClipPlayback& current() const { return _current.playback; } ///< The newest active clip.
+    const ClipPlayback& current() const { return _current.playback; } ///< The same.
     bool isFading() const { return !_fade.isFinished(); }             ///< true during a crossfade
 
     const Fade& fade() const { return _fade; } ///< share of the current active clip, from 0 to 1
 
     void clear(); ///< removes all active clips
-    /// Restores stored active clips. active clips: oldest first; only the first maxActiveClips are used.
+    /// Restores stored clips. activeClips: oldest first; only the first maxActiveClips are used.
     void restore(const std::vector<ActiveClip>& activeClips, const Fade& fade);
     /// Plays a clip at once and removes all others.
     void start(const ClipPlayback& playback);

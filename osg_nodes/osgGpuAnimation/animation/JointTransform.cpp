@@ -17,6 +17,16 @@ glm::dvec4 row(const AffineMatrix& matrix, std::size_t index)
     return glm::dvec4(matrix.rows[index]);
 }
 
+glm::vec3 product(const AffineMatrix& matrix, const glm::dvec4& v)
+{
+    return glm::vec3(glm::dvec3(glm::dot(row(matrix, 0), v), glm::dot(row(matrix, 1), v), glm::dot(row(matrix, 2), v)));
+}
+
+bool areFinite(const glm::vec4& v)
+{
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z) && std::isfinite(v.w);
+}
+
 } // namespace
 
 AffineMatrix AffineMatrix::fromColumns(const glm::dmat4& columns)
@@ -32,14 +42,12 @@ glm::dmat4 AffineMatrix::toColumns() const
 
 glm::vec3 AffineMatrix::transformPoint(const glm::vec3& point) const
 {
-    const glm::dvec4 p(glm::dvec3(point), 1.0);
-    return glm::vec3(glm::dvec3(glm::dot(row(*this, 0), p), glm::dot(row(*this, 1), p), glm::dot(row(*this, 2), p)));
+    return product(*this, glm::dvec4(glm::dvec3(point), 1.0));
 }
 
 glm::vec3 AffineMatrix::transformVector(const glm::vec3& vector) const
 {
-    const glm::dvec4 v(glm::dvec3(vector), 0.0);
-    return glm::vec3(glm::dvec3(glm::dot(row(*this, 0), v), glm::dot(row(*this, 1), v), glm::dot(row(*this, 2), v)));
+    return product(*this, glm::dvec4(glm::dvec3(vector), 0.0));
 }
 
 bool AffineMatrix::isIdentity() const
@@ -49,10 +57,7 @@ bool AffineMatrix::isIdentity() const
 
 bool AffineMatrix::isFinite() const
 {
-    for (const glm::vec4& r : rows)
-        for (int c = 0; c < 4; ++c)
-            if (!std::isfinite(r[c])) return false;
-    return true;
+    return areFinite(rows[0]) && areFinite(rows[1]) && areFinite(rows[2]);
 }
 
 AffineMatrix operator*(const AffineMatrix& a, const AffineMatrix& b)
@@ -99,10 +104,7 @@ AffineMatrix JointTransform::toMatrix() const
 
 bool JointTransform::isFinite() const
 {
-    for (const glm::vec4& part : {translation, rotation, scale})
-        for (int i = 0; i < 4; ++i)
-            if (!std::isfinite(part[i])) return false;
-    return true;
+    return areFinite(translation) && areFinite(rotation) && areFinite(scale);
 }
 
 float& JointTransform::number(std::size_t index)

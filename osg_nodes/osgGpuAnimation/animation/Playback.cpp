@@ -24,28 +24,31 @@ double meanProgress(FadeCurve curve, double from, double to)
 
 } // namespace
 
-Fade::Fade(double from, double to, double seconds, FadeCurve curve)
-    : _from(from), _to(to), _value(seconds > 0.0 ? from : to), _seconds(std::max(seconds, 0.0)), _curve(curve)
+Fade::Fade(const State& state)
+    : _state{state.from, state.to, std::max(state.seconds, 0.0), 0.0, state.curve},
+      _value(state.seconds > 0.0 ? state.from : state.to), _mean(_value)
 {
+    advance(state.elapsed);
 }
 
 double Fade::advance(double seconds)
 {
     _mean = _value;
     if (isFinished() || !(seconds > 0.0)) return -1.0;
-    const double missing = _seconds - _elapsed;
-    const double before = _elapsed / _seconds;
-    _elapsed += seconds;
-    if (_elapsed >= _seconds)
+    const auto& [from, to, duration, elapsed, curve] = _state;
+    const double missing = duration - elapsed;
+    const double before = elapsed / duration;
+    _state.elapsed += seconds;
+    if (isFinished())
     {
         const double moment = std::clamp(missing / seconds, 0.0, 1.0);
-        _value = _to;
-        _mean = _from + (_to - _from) * (1.0 - moment + moment * meanProgress(_curve, before, 1.0));
+        _value = to;
+        _mean = from + (to - from) * (1.0 - moment + moment * meanProgress(curve, before, 1.0));
         return moment;
     }
-    const double now = _elapsed / _seconds;
-    _value = _from + (_to - _from) * progress(_curve, now);
-    _mean = _from + (_to - _from) * meanProgress(_curve, before, now);
+    const double now = elapsed / duration;
+    _value = from + (to - from) * progress(curve, now);
+    _mean = from + (to - from) * meanProgress(curve, before, now);
     return -1.0;
 }
 

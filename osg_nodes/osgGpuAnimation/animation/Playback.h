@@ -40,29 +40,30 @@ enum class FadeCurve
 class Fade
 {
 public:
-    explicit Fade(double value) : _from(value), _to(value) {} ///< A finished fade at a constant value.
-    /// seconds: finite; at 0 or less the value is the target at once.
-    Fade(double from, double to, double seconds, FadeCurve curve);
+    /// Everything that a fade needs to continue.
+    struct State
+    {
+        double from = 1.0,                   ///< value at the start
+            to = 1.0;                        ///< value at the end
+        double seconds = 0.0;                ///< duration of the fade; at 0 or less the value is the target at once
+        double elapsed = 0.0;                ///< seconds; at least the duration once the fade has finished
+        FadeCurve curve = FadeCurve::Linear; ///< progress over time
+    };
 
-    double value() const { return _value; }                  ///< the current value
-    double mean() const { return _mean; }                    ///< mean value during the last advance()
-    double origin() const { return _from; }                  ///< value at the start
-    double target() const { return _to; }                    ///< value at the end
-    double seconds() const { return _seconds; }              ///< duration of the fade
-    double elapsed() const { return _elapsed; }              ///< seconds; at least seconds() once the fade has finished
-    FadeCurve curve() const { return _curve; }               ///< progress over time
-    bool isFinished() const { return _elapsed >= _seconds; } ///< true if the target is reached
+    explicit Fade(double value) : Fade(State{value, value}) {} ///< A finished fade at a constant value.
+    explicit Fade(const State& state);                         ///< state: finite numbers
+
+    double value() const { return _value; }                              ///< the current value
+    double mean() const { return _mean; }                                ///< mean value during the last advance()
+    const State& state() const { return _state; }                        ///< to store the fade
+    bool isFinished() const { return _state.elapsed >= _state.seconds; } ///< true if the target is reached
     /// Moves the value on; seconds below 0 count as 0. Returns the share of the seconds after which the fade finished,
     /// in [0, 1]; -1 if it did not finish in this step.
     double advance(double seconds);
 
 private:
-    double _from, _to;
-    double _value = _to;
-    double _mean = _value;
-    double _elapsed = 0.0;
-    double _seconds = 0.0;
-    FadeCurve _curve = FadeCurve::Linear;
+    State _state;
+    double _value, _mean;
 };
 
 /// The time at which the new clip of a crossfade starts, and the speed of both clips during the crossfade.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/Pose.h>
 
-#include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/animation/keyframes/TrackBlend.h>
 
 #include <layout.glsl>
@@ -31,19 +30,15 @@ KeyframePair findKeyframes(const AnimationSet& set, const BlendSample& sample)
     KeyframePair pair;
     pair.first = pair.second = set.restPose().data();
     const std::size_t keyframe = sample.keyframe;
-    std::size_t clip = set.clips().size();
-    for (std::size_t low = 0; low < clip;)
-    {
-        const std::size_t middle = low + (clip - low) / 2;
-        if (set.firstKeyframe(middle) <= keyframe)
-            low = middle + 1;
-        else
-            clip = middle;
-    }
-    if (clip == 0) return pair; // the rest pose comes before the first clip
+    const std::vector<Clip>& clips = set.clips();
+    const auto firstKeyframe = [&](const Clip& clip)
+    { return set.firstKeyframe(static_cast<std::size_t>(&clip - clips.data())); };
+    const auto next = std::partition_point(clips.begin(), clips.end(),
+                                           [&](const Clip& clip) { return firstKeyframe(clip) <= keyframe; });
+    if (next == clips.begin()) return pair; // the rest pose comes before the first clip
 
-    const Clip& data = set.clips()[clip - 1];
-    const std::size_t place = keyframe - set.firstKeyframe(clip - 1);
+    const Clip& data = *(next - 1);
+    const std::size_t place = keyframe - firstKeyframe(data);
     assert(place < data.keyframeCount() && "a blend sample names a keyframe of a clip");
     if (place >= data.keyframeCount()) return pair;
     pair.first = pair.second = data.data().data() + place * data.keyframeStride();

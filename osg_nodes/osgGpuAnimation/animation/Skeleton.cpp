@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/Skeleton.h>
 
-#include <osgGpuAnimation/animation/JointTransform.h>
-#include <osgGpuAnimation/animation/Result.h>
-
 #include <algorithm>
 #include <cstdint>
+#include <numeric>
 #include <optional>
 
 namespace osgGpuAnimation
@@ -33,36 +31,24 @@ std::optional<Error> findFault(const std::vector<Joint>& joints)
     return std::nullopt;
 }
 
-/// Computes depths from the roots down, level by level and without recursion; -1 for joints on or below a cycle.
+/// The depth of each joint; ends at the first joint on or below a cycle and leaves it and the following ones at -1.
 std::vector<int> findDepths(const std::vector<Joint>& joints)
 {
-    std::vector<std::size_t> firstChild(joints.size() + 1, 0);
-    for (const Joint& joint : joints)
-        if (joint.parent >= 0) ++firstChild[static_cast<std::size_t>(joint.parent) + 1];
-    for (std::size_t i = 0; i < joints.size(); ++i)
-        firstChild[i + 1] += firstChild[i];
-
-    std::vector<std::size_t> children(firstChild.back());
-    std::vector<std::size_t> place(firstChild.begin(), firstChild.end() - 1);
-    std::vector<std::size_t> queue;
-    queue.reserve(joints.size());
     std::vector<int> depths(joints.size(), -1);
+    std::vector<std::size_t> chain; // from a joint up to the first ancestor of known depth
     for (std::size_t i = 0; i < joints.size(); ++i)
     {
-        if (joints[i].parent >= 0)
+        chain.clear();
+        int above = static_cast<int>(i);
+        for (; above >= 0 && depths[static_cast<std::size_t>(above)] < 0; above = joints[chain.back()].parent)
         {
-            children[place[static_cast<std::size_t>(joints[i].parent)]++] = i;
-            continue;
+            if (chain.size() == joints.size()) return depths;
+            chain.push_back(static_cast<std::size_t>(above));
         }
-        depths[i] = 0;
-        queue.push_back(i);
+        int depth = above < 0 ? -1 : depths[static_cast<std::size_t>(above)];
+        for (; !chain.empty(); chain.pop_back())
+            depths[chain.back()] = ++depth;
     }
-    for (std::size_t head = 0; head < queue.size(); ++head)
-        for (std::size_t c = firstChild[queue[head]]; c < firstChild[queue[head] + 1]; ++c)
-        {
-            depths[children[c]] = depths[queue[head]] + 1;
-            queue.push_back(children[c]);
-        }
     return depths;
 }
 
@@ -84,8 +70,7 @@ Result<Skeleton> Skeleton::create(std::vector<Joint> joints)
                      ": its chain of parents runs in a circle"};
 
     std::vector<std::size_t> order(joints.size());
-    for (std::size_t i = 0; i < order.size(); ++i)
-        order[i] = i;
+    std::iota(order.begin(), order.end(), std::size_t(0));
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return depths[a] < depths[b]; });
 
     Skeleton skeleton;

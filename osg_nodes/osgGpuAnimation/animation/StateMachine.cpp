@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/StateMachine.h>
 
-#include <osgGpuAnimation/animation/Result.h>
-
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -10,7 +8,6 @@
 #include <optional>
 #include <sstream>
 #include <utility>
-#include <vector>
 
 namespace osgGpuAnimation
 {
@@ -70,14 +67,36 @@ std::optional<StateCondition> parseComparison(const std::string& text, std::size
     return StateCondition{*test, names[0], *value};
 }
 
+/// The index of a name; names.size() if it is unknown.
+std::size_t indexOf(const std::string& name, const std::vector<std::string>& names)
+{
+    return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
+/// The index of a name; appends the name if it is new.
+std::size_t indexAdding(const std::string& name, std::vector<std::string>& names)
+{
+    const std::size_t index = indexOf(name, names);
+    if (index == names.size()) names.push_back(name);
+    return index;
+}
+
+Error tooMany(const char* what, std::size_t count, std::size_t most)
+{
+    return Error{"a state graph of " + std::to_string(count) + " " + what + ": at most " + std::to_string(most) +
+                 " are possible"};
+}
+
 } // namespace
 
 Result<StateCondition> StateCondition::parse(const std::string& text)
 {
     const std::size_t sign = text.find_first_of(signs);
-    const std::vector<std::string> words = sign == std::string::npos ? toWords(text) : std::vector<std::string>();
-    if (sign != std::string::npos)
-        if (const auto comparison = parseComparison(text, sign)) return *comparison;
+    std::vector<std::string> words;
+    if (sign == std::string::npos)
+        words = toWords(text);
+    else if (const auto comparison = parseComparison(text, sign))
+        return *comparison;
     if (words.size() == 1 && words[0] == "finished") return StateCondition{Test::Finished, "", 0.0};
     if (words.size() == 2 && words[0] == "after")
         if (const auto seconds = toNumber(words[1]); seconds && *seconds >= 0.0)
@@ -88,26 +107,6 @@ Result<StateCondition> StateCondition::parse(const std::string& text)
                  "\" is not a condition: expected \"PARAMETER > NUMBER\" (or >= < <= == !=), "
                  "\"TRIGGER\", \"finished\" or \"after SECONDS\""};
 }
-
-namespace
-{
-
-/// The index of a name; appends the name if it is new.
-std::size_t placeAdding(const std::string& name, std::vector<std::string>& names)
-{
-    const auto known = std::find(names.begin(), names.end(), name);
-    const auto place = static_cast<std::size_t>(known - names.begin());
-    if (known == names.end()) names.push_back(name);
-    return place;
-}
-
-Error tooMany(const char* what, std::size_t count, std::size_t most)
-{
-    return Error{"a state graph of " + std::to_string(count) + " " + what + ": at most " + std::to_string(most) +
-                 " are possible"};
-}
-
-} // namespace
 
 Result<std::shared_ptr<const StateGraph>> StateGraph::create(const AnimationSet& set,
                                                              const StateGraphDescription& description)
@@ -128,7 +127,7 @@ Result<std::shared_ptr<const StateGraph>> StateGraph::create(const AnimationSet&
         if (!added) return Error{"transition " + std::to_string(t) + ": " + added.error().message};
     }
     for (const std::string& trigger : graph->_triggers)
-        if (std::count(graph->_parameters.begin(), graph->_parameters.end(), trigger) != 0)
+        if (indexOf(trigger, graph->_parameters) < graph->_parameters.size())
             return Error{"\"" + trigger + "\" is used as a trigger and as a parameter"};
     if (!description.start.empty())
     {
@@ -182,7 +181,7 @@ Result<bool> StateGraph::addTransition(const TransitionDescription& description)
 bool StateGraph::waitsForAnEnd(const Transition& transition)
 {
     return std::any_of(transition.conditions.begin(), transition.conditions.end(),
-                       [](const Condition& condition) { return condition.test == StateCondition::Test::Finished; });
+                       [](const Condition& condition) { return condition.test == Test::Finished; });
 }
 
 /// True if a source state of the transition plays once.
@@ -202,10 +201,10 @@ Result<bool> StateGraph::addCondition(Transition& transition, const std::string&
     if (!condition) return condition.error();
     const StateCondition& parsed = condition.value();
     Condition compiled{parsed.test, 0, parsed.value};
-    if (parsed.test == StateCondition::Test::Fired)
-        compiled.parameter = placeAdding(parsed.parameter, _triggers);
+    if (parsed.test == Test::Fired)
+        compiled.parameter = indexAdding(parsed.parameter, _triggers);
     else if (!parsed.parameter.empty())
-        compiled.parameter = placeAdding(parsed.parameter, _parameters);
+        compiled.parameter = indexAdding(parsed.parameter, _parameters);
     transition.conditions.push_back(compiled);
     return true;
 }
@@ -226,16 +225,6 @@ int StateGraph::findState(const std::string& name) const
     return -1;
 }
 
-namespace
-{
-
-std::size_t placeOf(const std::string& name, const std::vector<std::string>& names)
-{
-    return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
-}
-
-} // namespace
-
 StateMachine::StateMachine(std::shared_ptr<const StateGraph> graph, std::size_t layer)
     : _graph(std::move(graph)), _layer(layer)
 {
@@ -247,23 +236,23 @@ StateMachine::StateMachine(std::shared_ptr<const StateGraph> graph, std::size_t 
 
 double StateMachine::value(const std::string& parameter) const
 {
-    const std::size_t place = placeOf(parameter, _graph->parameters());
-    return place < _values.size() ? _values[place] : 0.0;
+    const std::size_t index = indexOf(parameter, _graph->parameters());
+    return index < _values.size() ? _values[index] : 0.0;
 }
 
 bool StateMachine::set(const std::string& parameter, double value)
 {
-    const std::size_t place = placeOf(parameter, _graph->parameters());
-    if (place == _values.size() || std::isnan(value)) return false;
-    _values[place] = value;
+    const std::size_t index = indexOf(parameter, _graph->parameters());
+    if (index == _values.size() || std::isnan(value)) return false;
+    _values[index] = value;
     return true;
 }
 
 bool StateMachine::fire(const std::string& trigger)
 {
-    const std::size_t place = placeOf(trigger, _graph->triggers());
-    if (place == _isFired.size()) return false;
-    _isFired[place] = true;
+    const std::size_t index = indexOf(trigger, _graph->triggers());
+    if (index == _isFired.size()) return false;
+    _isFired[index] = true;
     return true;
 }
 
@@ -291,7 +280,6 @@ bool StateMachine::update(AnimationController& controller, double seconds)
 
 bool StateMachine::holds(const StateGraph::Condition& condition, const AnimationLayer& layer) const
 {
-    using Test = StateCondition::Test;
     switch (condition.test)
     {
     case Test::Greater:
@@ -321,7 +309,7 @@ bool StateMachine::enter(const StateGraph::Transition& transition, AnimationLaye
     const std::size_t clip = _graph->states()[transition.to].clip;
     if (!layer.crossfade(clip, transition.seconds, transition.options)) return false;
     for (const StateGraph::Condition& condition : transition.conditions)
-        if (condition.test == StateCondition::Test::Fired) _isFired[condition.parameter] = false;
+        if (condition.test == Test::Fired) _isFired[condition.parameter] = false;
     _state = transition.to;
     _seconds = 0.0;
     return true;

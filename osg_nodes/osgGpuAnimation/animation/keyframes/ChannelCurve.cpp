@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/keyframes/ChannelCurve.h>
 
-#include <osgGpuAnimation/animation/JointTransform.h>
-
 #include <glm/geometric.hpp>
 
 #include <algorithm>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/keyframes/ClipCompactor.h>
 
-#include <osgGpuAnimation/animation/JointTransform.h>
 #include <osgGpuAnimation/animation/keyframes/CompactTracks.h>
 #include <osgGpuAnimation/animation/keyframes/TrackBlend.h>
 #include <osgGpuAnimation/animation/Pose.h>

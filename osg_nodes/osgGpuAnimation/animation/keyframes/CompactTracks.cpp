@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/keyframes/CompactTracks.h>
 
-#include <osgGpuAnimation/animation/JointTransform.h>
-
 #include <layout.glsl>
 
 #include <glm/common.hpp>

@@ -46,7 +46,6 @@ bool moves(const Clip& clip, std::size_t track, Part part)
 
 PackedKeyframes::PackedKeyframes(const AnimationSet& set) : _set(set), _tracks(set.trackCount())
 {
-    const std::size_t trackCount = set.trackCount();
     _texels.resize(set.keyframeCount());
     _restTexel = _texels.size();
     for (const JointTransform& rest : set.restPose())
@@ -56,11 +55,8 @@ PackedKeyframes::PackedKeyframes(const AnimationSet& set) : _set(set), _tracks(s
             _texels.push_back(texel(rest.*part));
         }
     const auto table = static_cast<std::uint32_t>(_texels.size());
-    for (std::size_t track = 0; track < trackCount; ++track)
-    {
-        const JointTransform& rest = set.restPose()[track];
+    for (const JointTransform& rest : set.restPose())
         _texels.emplace_back(held(rest.translation), held(rest.rotation), held(rest.scale), 0u);
-    }
     if (!_texels.empty()) _texels.front() = {0u, 0u, table, 0u};
     for (std::size_t clip = 0; clip < set.clips().size(); ++clip)
         addClip(set.clips()[clip], set.firstKeyframe(clip));
@@ -71,12 +67,12 @@ void PackedKeyframes::addClip(const Clip& clip, std::size_t firstKeyframe)
     _table.assign(_set.trackCount(), glm::uvec4(0));
     _columns.clear();
     _recordSize = 0;
-    const std::size_t compactTracks = clip.compactTracks() ? clip.compactTracks()->tracks.size() : 0;
-    for (std::size_t track = compactTracks; track < _table.size(); ++track)
-        placeExactTrack(clip, track);
+    const std::size_t compactCount = clip.compactTracks() ? clip.compactTracks()->tracks.size() : 0;
+    for (std::size_t track = compactCount; track < _table.size(); ++track)
+        placeTrack(clip, track, nullptr);
     const bool hasExactColumns = !_columns.empty();
-    for (std::size_t track = 0; track < compactTracks; ++track)
-        placeCompactTrack(clip, track);
+    for (std::size_t track = 0; track < compactCount; ++track)
+        placeTrack(clip, track, &clip.compactTracks()->tracks[track]);
     // Exact values must begin at whole texels in every record.
     if (hasExactColumns) _recordSize += _recordSize % 2;
 
@@ -99,50 +95,33 @@ void PackedKeyframes::addClip(const Clip& clip, std::size_t firstKeyframe)
         _texels.emplace_back(words[word], words[word + 1], words[word + 2], words[word + 3]);
 }
 
-void PackedKeyframes::placeExactTrack(const Clip& clip, std::size_t track)
+/// Gives each part of the track its address: in the record if the part moves, else of a constant. compact: null for an
+/// exact track.
+void PackedKeyframes::placeTrack(const Clip& clip, std::size_t track, const CompactTracks::Track* compact)
 {
-    const std::size_t perTrack = clip.transformsPerTrack();
     glm::uvec4& entry = _table[track];
+    std::array<int, 3> columns{-1, -1, -1};
+    if (compact) columns = {compact->translation, compact->rotation, compact->scale};
     for (std::size_t part = 0; part < parts.size(); ++part)
     {
         auto& place = entry[static_cast<glm::uvec4::length_type>(part)];
-        if (!moves(clip, track, parts[part]))
+        if (compact ? columns[part] < 0 : !moves(clip, track, parts[part]))
         {
             place = held(clip.at(0, track)->*parts[part]);
             continue;
         }
         place = _recordSize;
-        _columns.push_back({track, parts[part], -1});
-        _recordSize += static_cast<std::uint32_t>(2 * perTrack);
-        _tracks[track].hasExactKeys = true;
-    }
-    note(clip, track, entry);
-}
-
-void PackedKeyframes::placeCompactTrack(const Clip& clip, std::size_t track)
-{
-    const CompactTracks::Track& compact = clip.compactTracks()->tracks[track];
-    const std::array<int, 3> columns{compact.translation, compact.rotation, compact.scale};
-    glm::uvec4& entry = _table[track];
-    for (std::size_t part = 0; part < parts.size(); ++part)
-    {
-        auto& place = entry[static_cast<glm::uvec4::length_type>(part)];
-        if (columns[part] < 0)
-        {
-            place = held(clip.data()[track].*parts[part]);
-            continue;
-        }
-        place = _recordSize++;
         _columns.push_back({track, parts[part], columns[part]});
-        _tracks[track].hasCompactKeys = true;
+        _recordSize += compact ? 1u : static_cast<std::uint32_t>(2 * clip.transformsPerTrack());
+        (compact ? _tracks[track].hasCompactKeys : _tracks[track].hasExactKeys) = true;
     }
-    entry.w = ranges(compact);
-    note(clip, track, entry);
+    if (compact) entry.w = ranges(*compact);
+    widenMotion(clip, track, entry);
 }
 
-void PackedKeyframes::note(const Clip& clip, std::size_t track, const glm::uvec4& places)
+void PackedKeyframes::widenMotion(const Clip& clip, std::size_t track, const glm::uvec4& places)
 {
-    const JointTransform& value = clip.data()[track * clip.transformsPerTrack()];
+    const JointTransform& value = *clip.at(0, track);
     const JointTransform& rest = _set.restPose()[track];
     const auto widen = [&](PartMotion& motion, std::uint32_t place, Part part)
     {

@@ -28,13 +28,11 @@ enum class PartMotion
 /// - a directory: one texel per keyframe of the set, in the order of AnimationSet::firstKeyframe(): the address of its
 ///   record, the address of the next keyframe's record (its own at the end of a clip), the address of the clip's table;
 /// - the rest pose: three texels per track;
-/// - one table per clip: one texel per track has the addresses of its translation, rotation and scale, either within
-/// the
-///   record or of a value that is constant in the clip and stored once for the set; and the address of the ranges of a
-///   compact track;
-/// - the records. A value of an exact clip takes one texel (three for splines: value, in- and out-tangent), a value of
-/// a
-///   compact clip half a texel. Addresses count half texels.
+/// - one table per clip: one texel per track has the addresses of its translation, rotation and scale, and the address
+///   of the ranges of a compact track. An address points into the record, or to a value that is constant in the clip;
+///   equal constants of a set are stored once;
+/// - the records. A value of an exact clip takes one texel (three for splines: value, in- and out-tangent). A value of
+///   a compact clip takes half a texel. Addresses count half texels.
 class PackedKeyframes
 {
 public:
@@ -66,9 +64,8 @@ private:
     };
 
     void addClip(const Clip& clip, std::size_t firstKeyframe);
-    void placeExactTrack(const Clip& clip, std::size_t track);
-    void placeCompactTrack(const Clip& clip, std::size_t track);
-    void note(const Clip& clip, std::size_t track, const glm::uvec4& places);
+    void placeTrack(const Clip& clip, std::size_t track, const CompactTracks::Track* compact);
+    void widenMotion(const Clip& clip, std::size_t track, const glm::uvec4& places);
     void writeRecord(const Clip& clip, std::size_t keyframe, std::vector<std::uint32_t>& words) const;
     std::uint32_t held(const glm::vec4& value);
     std::uint32_t ranges(const CompactTracks::Track& track);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/keyframes/TrackBlend.h>
 
-#include <osgGpuAnimation/animation/JointTransform.h>
-
 #include <layout.glsl>
 
 #include <glm/common.hpp>
@@ -50,20 +48,6 @@ MixedTrack mixSpline(const JointTransform* a, const JointTransform* b, double al
     return mixed;
 }
 
-} // namespace
-
-MixedTrack MixedTrack::between(const KeyframePair& keyframes, std::size_t track, bool isWeights)
-{
-    if (keyframes.spline)
-        return mixSpline(keyframes.first + 3 * track, keyframes.second + 3 * track, keyframes.alpha, isWeights);
-    return mixLinear(keyframes.first[track], keyframes.second[track], keyframes.alpha, isWeights);
-}
-
-namespace
-{
-
-constexpr double pi = glm::pi<double>();
-
 void addScaled(MixedTrack& sum, const MixedTrack& track, double factor)
 {
     sum.translation += track.translation * factor;
@@ -78,6 +62,13 @@ double ratio(double sample, double reference)
 }
 
 } // namespace
+
+MixedTrack MixedTrack::between(const KeyframePair& keyframes, std::size_t track, bool isWeights)
+{
+    if (keyframes.spline)
+        return mixSpline(keyframes.first + 3 * track, keyframes.second + 3 * track, keyframes.alpha, isWeights);
+    return mixLinear(keyframes.first[track], keyframes.second[track], keyframes.alpha, isWeights);
+}
 
 TrackBlend::TrackBlend(const JointTransform& rest, bool isWeights) : _isWeights(isWeights)
 {
@@ -132,8 +123,9 @@ MixedTrack TrackBlend::result()
     _total.rotation = Rotation::unit(_total.rotation);
     // glm::exp returns an uninitialized quaternion below the machine epsilon; so small a turn changes no digit.
     if (const double turned = glm::length(_turn); turned > 1e-15)
-        _total.rotation = Rotation::numbers(Rotation::quaternion(_total.rotation) *
-                                            glm::exp(glm::dquat(0.0, _turn * std::min(1.0, pi / turned))));
+        _total.rotation =
+            Rotation::numbers(Rotation::quaternion(_total.rotation) *
+                              glm::exp(glm::dquat(0.0, _turn * std::min(1.0, glm::pi<double>() / turned))));
     _total.translation += _difference.translation;
     _total.scale *= _growth;
     _total.translation.w = 0.0; // in a spline clip it held a flag

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/playback/BlendList.h>
 
-#include <osgGpuAnimation/animation/RootMotion.h>
-
 #include <layout.glsl>
 
 #include <algorithm>
@@ -38,7 +36,7 @@ void BlendList::addDifference(const BlendSample& reference, const BlendSample& s
 void BlendList::insert(const Item& item)
 {
     if (!(item.sample.weight > 0.0f)) return;
-    assert(_count < maxItems && "no more than all voices of all layers");
+    assert(_count < maxItems && "at most all active clips of all layers");
     if (_count == maxItems) return;
     std::size_t place = _count++;
     for (; place > 0 && comesBefore(item, _places[place - 1].item); --place)
@@ -111,35 +109,32 @@ void BlendList::write(PoseInstruction& out)
     if (out.sampleCount == 0) out.samples[out.sampleCount++] = BlendSample();
 }
 
-RootMotion rootMotionOf(const Clip& clip, const PlaybackStep& move, LoopMode loopMode)
+RootMotion rootMotionOf(const Clip& clip, const PlaybackStep& step, LoopMode loopMode)
 {
-    if (move.distance == 0.0) return {glm::dvec3(0.0), 0.0, clip.rootMotion()->up};
-    const RootMotion before = clip.rootMotionAt(move.from).inverse();
-    if (loopMode != LoopMode::Loop || move.crossings == 0.0) return before * clip.rootMotionAt(move.to);
-    return before * clip.rootMotionAt(clip.duration()).power(move.crossings) * clip.rootMotionAt(move.to);
+    if (step.distance == 0.0) return {glm::dvec3(0.0), 0.0, clip.rootMotion()->up};
+    const RootMotion before = clip.rootMotionAt(step.from).inverse();
+    if (loopMode != LoopMode::Loop || step.crossings == 0.0) return before * clip.rootMotionAt(step.to);
+    return before * clip.rootMotionAt(clip.duration()).power(step.crossings) * clip.rootMotionAt(step.to);
 }
 
-void MotionBlend::add(const RootMotion& motion, double weight, int blendPriority)
+void RootMotionBlend::add(const RootMotion& motion, double weight, int blendPriority)
 {
-    std::size_t place = _count;
-    while (place > 0 && _blendPriorities[place - 1].number > blendPriority)
-        --place;
-    if (place == 0 || _blendPriorities[place - 1].number != blendPriority)
+    const auto end = _blendPriorities.begin() + static_cast<std::ptrdiff_t>(_count);
+    const auto here = std::find_if(_blendPriorities.begin(), end,
+                                   [&](const BlendPriority& one) { return one.number >= blendPriority; });
+    if (here == end || here->number != blendPriority)
     {
-        const auto begin = _blendPriorities.begin();
-        const auto end = begin + static_cast<std::ptrdiff_t>(_count++);
-        std::move_backward(begin + static_cast<std::ptrdiff_t>(place), end, end + 1);
-        _blendPriorities[place] = {blendPriority, 0.0, {}};
-        ++place;
+        std::move_backward(here, end, end + 1);
+        *here = {blendPriority, 0.0, {}};
+        ++_count;
     }
-    BlendPriority& here = _blendPriorities[place - 1];
-    here.weight += weight;
-    here.sum.translation += motion.translation * weight;
-    here.sum.yaw += motion.yaw * weight;
-    here.sum.up = motion.up;
+    here->weight += weight;
+    here->sum.translation += motion.translation * weight;
+    here->sum.yaw += motion.yaw * weight;
+    here->sum.up = motion.up;
 }
 
-RootMotion MotionBlend::result() const
+RootMotion RootMotionBlend::result() const
 {
     RootMotion total;
     for (std::size_t i = 0; i < _count; ++i)

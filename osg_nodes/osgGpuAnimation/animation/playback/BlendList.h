@@ -2,9 +2,7 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
-#include <osgGpuAnimation/animation/Clip.h>
 #include <osgGpuAnimation/animation/ClipMixer.h>
-#include <osgGpuAnimation/animation/Playback.h>
 
 #include <array>
 #include <cstddef>
@@ -56,11 +54,11 @@ private:
 };
 
 /// The root motion of a step through a clip, however often it loops. The clip must have a rootMotion().
-RootMotion rootMotionOf(const Clip& clip, const PlaybackStep& move, LoopMode loopMode);
+RootMotion rootMotionOf(const Clip& clip, const PlaybackStep& step, LoopMode loopMode);
 
 /// Blends the root motions of all clips that play in one step. Blend priorities and weights work as in PoseInstruction;
 /// the rest pose does not move.
-class MotionBlend
+class RootMotionBlend
 {
 public:
     void add(const RootMotion& motion, double weight, int blendPriority);

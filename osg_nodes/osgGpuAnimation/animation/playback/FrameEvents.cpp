@@ -19,36 +19,36 @@ std::size_t markersBefore(const std::vector<ClipMarker>& markers, double time, b
     return static_cast<std::size_t>(found - markers.begin());
 }
 
-bool moveMayHaveEvents(const PlaybackStep& move, const Clip& clip)
+bool stepMayHaveEvents(const PlaybackStep& step, const Clip& clip)
 {
-    return move.crossings != 0.0 || move.hasFinished || (move.distance != 0.0 && !clip.markers().empty());
+    return step.crossings != 0.0 || step.hasFinished || (step.distance != 0.0 && !clip.markers().empty());
 }
 
 } // namespace
 
-ClipMoveEvents::ClipMoveEvents(const Clip& clip, const PlaybackStep& move, LoopMode loopMode)
-    : _clip(clip), _move(move), _loopMode(loopMode), _crossingsLeft(std::abs(move.crossings)),
-      _isAscending(move.isAscending)
+PlaybackStepEvents::PlaybackStepEvents(const Clip& clip, const PlaybackStep& step, LoopMode loopMode)
+    : _clip(clip), _step(step), _loopMode(loopMode), _crossingsLeft(std::abs(step.crossings)),
+      _isAscending(step.isAscending)
 {
     if (_crossingsLeft > maxCrossings)
     {
         // Skips an even number of crossings, so that the direction of PingPong stays correct.
-        const double leftOut = 2.0 * std::floor((_crossingsLeft - maxCrossings) / 2.0);
-        _gone = leftOut * clip.duration();
+        const double skipped = 2.0 * std::floor((_crossingsLeft - maxCrossings) / 2.0);
+        _secondsBefore = skipped * clip.duration();
         _crossingsLeft = maxCrossings + 1.0;
     }
-    const bool hasMoved = move.distance != 0.0 || move.hasFinished;
-    _isFinishTold = !move.hasFinished;
+    const bool hasMoved = step.distance != 0.0 || step.hasFinished;
+    _isFinishListed = !step.hasFinished;
     if (hasMoved)
-        enterStretch(move.from, move.includesStart);
+        enterStretch(step.from, step.includesStart);
     else
         _crossingsLeft = 0.0;
 }
 
-void ClipMoveEvents::enterStretch(double from, bool includesFrom)
+void PlaybackStepEvents::enterStretch(double from, bool includesFrom)
 {
     _stretchFrom = from;
-    _stretchTo = _crossingsLeft > 0.0 ? (_isAscending ? _clip.duration() : 0.0) : _move.to;
+    _stretchTo = _crossingsLeft > 0.0 ? (_isAscending ? _clip.duration() : 0.0) : _step.to;
     const std::vector<ClipMarker>& markers = _clip.markers();
     std::size_t first, last; // the markers of this stretch: [first, last)
     if (_isAscending)
@@ -66,40 +66,40 @@ void ClipMoveEvents::enterStretch(double from, bool includesFrom)
     _markersLeft = last > first ? last - first : 0;
 }
 
-void ClipMoveEvents::tell(AnimationEvent::Type type, double time)
+void PlaybackStepEvents::setEvent(AnimationEvent::Type type, double time)
 {
     _type = type;
-    const double whole = std::abs(_move.distance);
-    _moment = whole > 0.0 ? std::min((_gone + std::abs(time - _stretchFrom)) / whole, 1.0) : 1.0;
+    const double whole = std::abs(_step.distance);
+    _moment = whole > 0.0 ? std::min((_secondsBefore + std::abs(time - _stretchFrom)) / whole, 1.0) : 1.0;
 }
 
-bool ClipMoveEvents::nextMarker()
+bool PlaybackStepEvents::nextMarker()
 {
     if (_markersLeft == 0) return false;
     --_markersLeft;
     _marker = &_clip.markers()[_isAscending ? _markerIndex++ : --_markerIndex];
-    tell(AnimationEvent::Type::Marker, _marker->time);
+    setEvent(AnimationEvent::Type::Marker, _marker->time);
     return true;
 }
 
-bool ClipMoveEvents::next()
+bool PlaybackStepEvents::next()
 {
     if (nextMarker()) return true;
     _marker = nullptr;
     if (_crossingsLeft > 0.0)
     {
         _crossingsLeft -= 1.0;
-        tell(AnimationEvent::Type::Looped, _stretchTo);
-        _gone += std::abs(_stretchTo - _stretchFrom);
+        setEvent(AnimationEvent::Type::Looped, _stretchTo);
+        _secondsBefore += std::abs(_stretchTo - _stretchFrom);
         const bool isTurn = _loopMode == LoopMode::PingPong;
         if (isTurn) _isAscending = !_isAscending;
         // A jump includes the other end; a turn does not include its end a second time.
         enterStretch(isTurn ? _stretchTo : (_isAscending ? 0.0 : _clip.duration()), !isTurn);
         return true;
     }
-    if (_isFinishTold) return false;
-    _isFinishTold = true;
-    tell(AnimationEvent::Type::Finished, _move.to);
+    if (_isFinishListed) return false;
+    _isFinishListed = true;
+    setEvent(AnimationEvent::Type::Finished, _step.to);
     return true;
 }
 
@@ -109,7 +109,7 @@ bool LayerStep::mayHaveEvents(const std::vector<Clip>& clips) const
     for (std::size_t v = 0; v < mixer.activeClipCount(); ++v)
     {
         const ClipMixer::ActiveClip& activeClip = mixer.activeClip(v);
-        if (moveMayHaveEvents(activeClip.move, clips[static_cast<std::size_t>(activeClip.playback.clip())]))
+        if (stepMayHaveEvents(activeClip.move, clips[static_cast<std::size_t>(activeClip.playback.clip())]))
             return true;
     }
     return false;
@@ -126,8 +126,8 @@ void FrameEvents::add(const LayerStep& step, const std::vector<Clip>& clips)
         event.clip = activeClip.playback.clip();
         event.weight = static_cast<float>(activeClip.share);
         const Clip& clip = clips[static_cast<std::size_t>(event.clip)];
-        if (moveMayHaveEvents(activeClip.move, clip))
-            addSource(event, ClipMoveEvents(clip, activeClip.move, activeClip.playback.loopMode()), v + 1 < count);
+        if (stepMayHaveEvents(activeClip.move, clip))
+            addSource(event, PlaybackStepEvents(clip, activeClip.move, activeClip.playback.loopMode()), v + 1 < count);
     }
     event.type = AnimationEvent::Type::FadeFinished;
     for (const double moment : {step.crossfadeMoment, step.weightFadeMoment})
@@ -137,15 +137,15 @@ void FrameEvents::add(const LayerStep& step, const std::vector<Clip>& clips)
     }
 }
 
-void FrameEvents::addSource(const AnimationEvent& event, std::optional<ClipMoveEvents> events, bool isFadingOut)
+void FrameEvents::addSource(const AnimationEvent& event, std::optional<PlaybackStepEvents> events, bool isFadingOut)
 {
     Source source{event, std::move(events), isFadingOut};
-    if (source.events && !accumulateRootMotion(source)) return;
+    if (source.events && !goToNext(source)) return;
     _sources[_count++].emplace(std::move(source));
 }
 
 /// Clips that fade out report only markers: Looped and Finished belong to the current clip.
-bool FrameEvents::accumulateRootMotion(Source& source)
+bool FrameEvents::goToNext(Source& source)
 {
     if (!source.events) return false;
     do
@@ -165,7 +165,7 @@ bool FrameEvents::next(AnimationEvent& out)
         if (_sources[s] && (first == _count || _sources[s]->event.moment < _sources[first]->event.moment)) first = s;
     if (first == _count) return false;
     out = _sources[first]->event;
-    if (!accumulateRootMotion(*_sources[first])) _sources[first].reset();
+    if (!goToNext(*_sources[first])) _sources[first].reset();
     return true;
 }
 

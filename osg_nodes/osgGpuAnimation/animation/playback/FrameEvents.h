@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <osgGpuAnimation/animation/Clip.h>
 #include <osgGpuAnimation/animation/ClipMixer.h>
-#include <osgGpuAnimation/animation/Playback.h>
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -17,20 +14,20 @@ namespace osgGpuAnimation
 /// Lists the events of one step through a clip in the order in which they happened: passed markers, jumps and turns at
 /// the ends, and the finish. Does not allocate.
 ///
-///     for (ClipMoveEvents events(clip, move, LoopMode::Loop); events.next();)
+///     for (PlaybackStepEvents events(clip, step, LoopMode::Loop); events.next();)
 ///         use(events.type(), events.marker(), events.moment());
 ///
 /// A step includes its last moment but not its first one (unless no earlier step included that), so consecutive steps
 /// list each marker once. A Loop jump lists the markers at the one end, Looped, then the markers at the other end. A
 /// PingPong turn lists the markers at that end once.
-class ClipMoveEvents
+class PlaybackStepEvents
 {
 public:
     /// A step with more crossings (hours in a clip of milliseconds) lists only the last ones.
     static constexpr double maxCrossings = 100000.0;
 
     /// The clip must outlive this.
-    ClipMoveEvents(const Clip& clip, const PlaybackStep& move, LoopMode loopMode);
+    PlaybackStepEvents(const Clip& clip, const PlaybackStep& step, LoopMode loopMode);
 
     /// Goes to the next event; false after the last one.
     bool next();
@@ -42,18 +39,18 @@ public:
 private:
     void enterStretch(double from, bool includesFrom);
     bool nextMarker();
-    void tell(AnimationEvent::Type type, double time);
+    void setEvent(AnimationEvent::Type type, double time);
 
     const Clip& _clip;
-    PlaybackStep _move;
+    PlaybackStep _step;
     LoopMode _loopMode;
     double _crossingsLeft;
     bool _isAscending;
     double _stretchFrom = 0.0, _stretchTo = 0.0;
-    double _gone = 0.0; ///< seconds of the stretches before this one
+    double _secondsBefore = 0.0; ///< seconds of the stretches before this one
     std::size_t _markersLeft = 0;
     std::size_t _markerIndex = 0;
-    bool _isFinishTold = false;
+    bool _isFinishListed = false;
     AnimationEvent::Type _type = AnimationEvent::Type::Marker;
     const ClipMarker* _marker = nullptr;
     double _moment = 0.0;
@@ -86,12 +83,12 @@ private:
     struct Source
     {
         AnimationEvent event; ///< the next one
-        std::optional<ClipMoveEvents> events;
+        std::optional<PlaybackStepEvents> events;
         bool isFadingOut = false;
     };
 
-    void addSource(const AnimationEvent& event, std::optional<ClipMoveEvents> events, bool isFadingOut);
-    static bool accumulateRootMotion(Source& source);
+    void addSource(const AnimationEvent& event, std::optional<PlaybackStepEvents> events, bool isFadingOut);
+    static bool goToNext(Source& source);
 
     std::array<std::optional<Source>, maxLayers*(ClipMixer::maxActiveClips + 2)> _sources;
     std::size_t _count = 0;

@@ -41,7 +41,7 @@ public:
     double normalizedTime() const { return _duration > 0.0 ? _time / _duration : 0.0; }
     /// Share of a round, in [0, 1).
     double phase() const;
-    /// The time to sample the keyframes at: the end of a Loop is its beginning.
+    /// The time at which to sample the keyframes: at the end of a Loop, time 0.
     double shownTime() const { return _loopMode == LoopMode::Loop && _time >= _duration ? 0.0 : _time; }
     /// True if a Once clip cannot continue at this speed.
     bool isAtEnd() const { return _time == (_speed < 0.0 ? 0.0 : _duration); }
@@ -104,7 +104,7 @@ public:
         ClipPlayback playback; ///< clip and time
         PlaybackStep move;     ///< the step of the last advance()
         double share = 1.0;    ///< of the layer, in [0, 1]
-        /// Mean share during the last advance(): it weights root motion, which so does not depend on the frame rate.
+        /// Mean share during the last advance(): it weights root motion, so that the frame rate has no effect.
         double meanShare = 1.0;
         double shareBefore = 0.0; ///< share at the start of the last crossfade
         int phaseGroup = 0;       ///< active clips of one group share one phase

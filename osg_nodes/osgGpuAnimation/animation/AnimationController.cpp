@@ -136,7 +136,7 @@ const PoseInstruction& AnimationController::advance(double seconds)
     forEachLayer([step](AnimationLayer& layer) { layer.advance(step); });
     rebuildInstruction();
     if (_rootMotionCurve) accumulateRootMotion();
-    if (_eventCallback) tellEvents();
+    if (_eventCallback) reportEvents();
     return _instruction;
 }
 
@@ -167,7 +167,7 @@ void AnimationController::setEventCallback(EventCallback callback)
     _eventCallback = callback ? std::make_shared<const EventCallback>(std::move(callback)) : nullptr;
 }
 
-void AnimationController::tellEvents()
+void AnimationController::reportEvents()
 {
     bool hasEvents = false; // most steps have none, and FrameEvents is large
     forEachLayer([&](const AnimationLayer& layer)

@@ -34,15 +34,16 @@ public:
     using LoopMode = osgGpuAnimation::LoopMode;                       ///< See osgGpuAnimation::LoopMode.
     using EventCallback = std::function<void(const AnimationEvent&)>; ///< Receives one event of advance().
 
-    /// Starts with one Stopped layer. set: not null.
+    /// Starts with one Stopped layer. set: must not be null (asserted).
     explicit AnimationController(std::shared_ptr<const AnimationSet> set);
-    /// Continues another controller with another set, for example one with markers: its layers with the clips of the
-    /// same numbers, and its root motion. A layer with clips or a mask that do not fit the set becomes Stopped and
-    /// keeps speed and loop mode. The event callback is not copied.
+    /// Copies another controller's layers, which then play the clips of the same numbers in this set, and its root
+    /// motion, for example after Clip::withMarkers(). A layer whose clips or mask do not fit the set becomes Stopped
+    /// and keeps only its speed and loop mode. The event callback is not copied.
     AnimationController(std::shared_ptr<const AnimationSet> set, const AnimationController& other);
     /// Copies everything except the event callback, which often belongs to one character.
     AnimationController(const AnimationController& other);
-    /// As the copy constructor, but keeps the event callback. Invalidates references to layers.
+    /// Copies everything except the event callback: this controller keeps its own. Invalidates references to layers
+    /// above the base.
     AnimationController& operator=(const AnimationController& other);
     ~AnimationController();
 
@@ -50,21 +51,21 @@ public:
     /// The shared set with its ownership.
     const std::shared_ptr<const AnimationSet>& sharedSet() const { return _set; }
 
-    /// The layer with that index; the first call creates it and all layers before it. index: below maxLayers (8);
-    /// larger ones give the last layer. References stay valid until the controller is assigned to or destroyed.
+    /// The layer with that index; the first call creates it and all layers before it. index: clamped to
+    /// maxLayers - 1. References stay valid until the controller is assigned to or destroyed.
     AnimationLayer& layer(std::size_t index);
-    const AnimationLayer& layer(std::size_t index) const;        ///< index: below layerCount()
+    const AnimationLayer& layer(std::size_t index) const;        ///< index: below layerCount() (asserted)
     std::size_t layerCount() const { return 1 + _upper.size(); } ///< at least 1
 
     // Of the base layer; see AnimationLayer.
     Result<bool> play(std::size_t clip) { return _base.play(clip); }        ///< See AnimationLayer::play().
     Result<bool> play(const std::string& name) { return _base.play(name); } ///< See AnimationLayer::play().
-    /// See AnimationLayer::crossfade(). seconds: finite, at least 0.
+    /// See AnimationLayer::crossfade().
     Result<bool> crossfade(std::size_t clip, double seconds, const CrossfadeOptions& options = {})
     {
         return _base.crossfade(clip, seconds, options);
     }
-    /// See AnimationLayer::crossfade(). seconds: finite, at least 0.
+    /// See AnimationLayer::crossfade().
     Result<bool> crossfade(const std::string& name, double seconds, const CrossfadeOptions& options = {})
     {
         return _base.crossfade(name, seconds, options);
@@ -90,17 +91,18 @@ public:
     /// AnimationLayer::isPlainLoop), no event callback, a set without root motion.
     bool isPlainLoop() const;
 
-    /// Moves every playing layer by seconds times its speed and returns the new instruction; then passes the events of
-    /// the step to the callback, in the order of time. Does not allocate. Seconds that are not finite count as 0. The
-    /// reference stays valid until the next call.
+    /// Moves every playing layer by seconds times its speed, passes the events of the step to the callback in the order
+    /// of time, and returns the new instruction. seconds: negative moves clips backwards, but no fades; not finite
+    /// counts as 0. Does not allocate. The reference stays valid as long as the controller; the next call changes its
+    /// content.
     const PoseInstruction& advance(double seconds);
     /// The instruction for the current times, as advance(0) would return it.
     const PoseInstruction& instruction() const { return _instruction; }
 
-    /// The motion that withRootMotion() removed from the clips, summed over all advance() calls since the last take,
-    /// and resets the sum. Multiply the character's placement by it from the right. Layers and crossfades blend it like
-    /// the pose of its joint, by their mean shares during each advance(); clips without root motion stand still, and
-    /// additive layers play no part. Seeking, playing and stopping add nothing.
+    /// Returns the motion that withRootMotion() removed from the clips, summed over all advance() calls since the last
+    /// call, and resets the sum. Multiply the character's transform by it from the right. Layers and crossfades blend
+    /// it like the pose of its joint, by their mean shares during each advance(). Clips without root motion contribute
+    /// no motion, and additive layers are ignored. seek(), play() and stop() add nothing.
     RootMotion takeRootMotion();
     const RootMotion& rootMotion() const { return _rootMotion; } ///< the same without the reset
 
@@ -116,7 +118,7 @@ private:
     void forEachLayer(Function function); ///< function(layer), from the base up
     void copyUpperLayers(const AnimationController& other);
     void rebuildInstruction() override;
-    void tellEvents();
+    void reportEvents();
     void accumulateRootMotion();
 
     // Members that every advance() needs come first and together: with thousands of controllers they are not in the

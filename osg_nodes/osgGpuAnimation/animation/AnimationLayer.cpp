@@ -209,8 +209,8 @@ bool AnimationLayer::isPlainLoop() const
            current.speed() == _speed;
 }
 
-/// usual: the curve of any clip of the set. A clip without root motion stands still, and hides other motions at its
-/// joint.
+/// usual: the curve of any clip of the set. A clip without root motion contributes a motion of 0 at the joint of this
+/// curve, with its weight.
 void AnimationLayer::collectMotion(RootMotionBlend& out, const RootMotionCurve& usual) const
 {
     if (_state == PlayState::Stopped || _mode == Mode::Additive) return;

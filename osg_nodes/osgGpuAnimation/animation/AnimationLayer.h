@@ -26,7 +26,7 @@ class LayerOwner
 {
 protected:
     friend class AnimationLayer;
-    /// set: not null.
+    /// set: must not be null; AnimationController asserts it.
     explicit LayerOwner(std::shared_ptr<const AnimationSet> set) : _set(std::move(set)) {}
     LayerOwner(const LayerOwner&) = default;            ///< Shares the set.
     LayerOwner& operator=(const LayerOwner&) = default; ///< Shares the set.
@@ -54,26 +54,27 @@ public:
     enum class Mode
     {
         Override, ///< replaces the pose of the layers below, by weight and mask
-        Additive, ///< adds its difference from a reference to the final pose; the order of additive layers plays no
-                  ///< part
+        Additive, ///< adds its difference from a reference to the final pose; the order of additive layers does not
+                  ///< matter
     };
     /// The pose that an additive layer subtracts from its clip.
     enum class Reference
     {
-        RestPose,   ///< an additive layer adds the difference between clip and rest pose
-        FirstFrame, ///< it adds the difference between the clip and its own first keyframe
+        RestPose,   ///< the rest pose of the set
+        FirstFrame, ///< the first keyframe of the clip itself
     };
 
     std::size_t index() const { return _index; } ///< below maxLayers
 
-    /// Plays a clip from its beginning (from its end if the speed is negative) without a crossfade. The loop mode
-    /// stays. Error: no such clip; the message lists the existing names. The layer is then unchanged.
+    /// Plays a clip from its beginning (from its end if the speed is negative) without a crossfade, at the layer's
+    /// speed and in its loop mode. Error: no such clip; the message lists the existing names, and the layer is
+    /// unchanged.
     Result<bool> play(std::size_t clip);
     Result<bool> play(const std::string& name); ///< The same by name.
 
-    /// Fades to a clip in the given seconds, from whatever is visible: another clip, a crossfade, nothing. The clips
-    /// that fade out play on. 0 seconds: as play(). Errors: no such clip; seconds that are negative or not finite; a
-    /// speed that is not finite. The layer is then unchanged.
+    /// Fades from the visible mix (a clip, a running crossfade or nothing) to a clip. Clips that fade out play on.
+    /// seconds: the length of the fade; 0 replaces the mix at once. Errors, with the layer unchanged: no such clip;
+    /// seconds that are negative or not finite; a speed in the options that is not finite.
     Result<bool> crossfade(std::size_t clip, double seconds, const CrossfadeOptions& options = {});
     /// The same by name.
     Result<bool> crossfade(const std::string& name, double seconds, const CrossfadeOptions& options = {});
@@ -82,20 +83,21 @@ public:
     void resume(); ///< Paused → Playing; no effect in other states
     void stop();   ///< → Stopped: time 0, the layer shows nothing
 
-    /// Sets the time of the clip. seconds: on the time line of the clip, clamped to [0, duration]; NaN is refused
-    /// (false). Takes effect at once unless the layer is Stopped. Ended becomes Playing unless the new time is the end
-    /// in the direction of the speed. PingPong keeps its direction. Causes no events.
+    /// Sets the time of the current clip. seconds: on the time line of the clip, clamped to [0, duration]. Returns
+    /// false, without a change, for NaN. Without a clip it has no effect. Ended becomes Playing unless the new time is
+    /// the end in the direction of the speed. PingPong keeps its direction. Causes no events.
     bool seek(double seconds);
-    /// Sets the speed of this clip and of later ones: 1 is the speed of the file, negative runs backwards, 0 stands
-    /// still. Clips that fade out keep their speed. A speed that is not finite is refused (false).
+    /// Sets the speed of the current clip and of later ones: 1 is the speed of the file, negative plays backwards, 0
+    /// stops the time. Clips that fade out keep their speed. Returns false, without a change, if the speed is not
+    /// finite.
     bool setSpeed(double speed);
-    /// Sets the loop mode from the current time on. A clip that has Ended stays so until play() or seek().
+    /// Sets the loop mode of the current clip and of later ones; the time stays. A layer in state Ended remains in it
+    /// until play(), crossfade() or seek().
     void setLoopMode(LoopMode mode);
 
-    /// The complete state of the layer. A layer of the same set, or of a set with equal tracks and clips, can restore
-    /// it and then continues exactly. restore() fails on a snapshot that is not valid for the set and then changes
-    /// nothing.
+    /// The complete state of the layer.
     LayerSnapshot snapshot() const;
+    /// Restores a snapshot of a layer of the same set, or of a set with equal tracks and clips, and continues exactly.
     /// Error: the snapshot is not valid for the set; the layer is then unchanged.
     Result<bool> restore(const LayerSnapshot& snapshot);
 
@@ -110,10 +112,11 @@ public:
     LoopMode loopMode() const { return _loopMode; } ///< the behaviour of the clip at its ends
     bool isCrossfading() const { return !_mixer.isEmpty() && _mixer.isFading(); } ///< true until a crossfade ends
 
-    /// Sets the layer's weight and ends a fade. weight: clamped to [0, 1]; NaN is refused (false).
+    /// Sets the layer's weight and ends a fade of the weight. weight: clamped to [0, 1]. Returns false, without a
+    /// change, for NaN.
     bool setWeight(float weight);
-    /// Fades from the current weight to another one, clamped to [0, 1]. Refused (false): a weight that is NaN; seconds
-    /// that are negative or not finite.
+    /// Fades from the current weight to another one, clamped to [0, 1]. Returns false, without a change, if the weight
+    /// is NaN or the seconds are negative or not finite.
     bool fadeWeight(float weight, double seconds, FadeCurve curve = FadeCurve::Linear);
     float weight() const { return static_cast<float>(_weight.value()); } ///< the current weight, in [0, 1]
 

@@ -101,7 +101,7 @@ std::optional<Error> findFaultInSize(const std::vector<Clip>& clips)
         transforms += clip.data().size() + clip.trackCount() + clip.keyframeCount();
     if (transforms <= most) return std::nullopt;
     return Error{"its clips take " + std::to_string(transforms) + " joint transforms, more than the " +
-                 std::to_string(most) + " that places on the GPU reach"};
+                 std::to_string(most) + " that addresses on the GPU reach"};
 }
 
 std::string namesOf(const std::vector<Clip>& clips)

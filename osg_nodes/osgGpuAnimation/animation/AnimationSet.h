@@ -34,16 +34,15 @@ static_assert(sizeof(BlendSample) == 16, "a blend sample is 16 bytes on the GPU"
 /// The mix, joint by joint (shaders/mix.glsl and its CPU twin Pose):
 /// - The weight of a sample at a joint is its own weight times the weight of its mask.
 /// - Samples are grouped into **blend priorities**, from the bottom up; POSE_SAMPLE_ABOVE begins the next blend
-/// priority. Samples of one
-///   blend priority share the joint by their weights: a sum above 1 is scaled to 1. If the weights sum to less than 1,
-///   the blend priorities below fill the remainder; the rest pose comes last.
+///   priority. Samples of one blend priority share the joint by their weights: a sum above 1 is scaled to 1. If the
+///   weights sum to less than 1, the blend priorities below fill the remainder; the rest pose comes last.
 /// - Translations, scales and morph weights are summed. Rotations are summed as unit quaternions on one hemisphere and
 ///   normalized: within a blend priority the hemisphere of its first sample with a weight at the joint; the sum of a
 ///   blend priority takes the hemisphere of the blend priorities below. Controllers put the heaviest sample first, so
-///   the order of layers plays no part, no two samples cancel out, and a sample that fades in never reverses the
+///   the order of layers does not matter, no two samples cancel out, and a sample that fades in never reverses the
 ///   visible one. (The hemisphere of the rest pose would be simpler, but two nearly equal poses half a turn away from
 ///   rest would cancel out.)
-/// - Additive samples come last; their order plays no part. With d = R_reference⁻¹ · R, rotations are multiplied by
+/// - Additive samples come last; their order does not matter. With d = R_reference⁻¹ · R, rotations are multiplied by
 ///   exp(Σ weight · log d), with the sum limited to a full turn; translations get Σ weight · (T − T_reference); scales
 ///   are multiplied by Π (1 + weight · (S / S_reference − 1)), except on axes with a reference of 0.
 struct PoseInstruction
@@ -137,20 +136,21 @@ public:
 
     /// The first clip of that name; -1 if there is none.
     int findClip(const std::string& name) const;
-    /// The clip of that name or number. Error: there is no such clip; the message lists the existing names.
+    /// The index of the first clip of that name. Error: there is no such clip; the message lists the existing names.
     Result<std::size_t> clipNamed(const std::string& name) const;
-    Result<std::size_t> clipAt(std::size_t clip) const; ///< The same by number.
+    Result<std::size_t> clipAt(std::size_t clip) const; ///< The index itself, if it is below clips().size().
 
     /// The number of a clip's first keyframe. Number 0 is the rest pose, then come the keyframes of all clips in turn
     /// (see BlendSample::keyframe).
     std::size_t firstKeyframe(std::size_t clip) const { return _firstKeyframes[clip]; }
     std::size_t keyframeCount() const { return _keyframeCount; } ///< of the rest pose and all clips
-    /// A blend sample of weight 1. clip: -1 gives the rest pose. time: seconds on the time line of the clip.
+    /// A blend sample of weight 1. clip: below clips().size(); negative for the rest pose. time: seconds on the time
+    /// line of the clip.
     BlendSample sampleAt(int clip, double time) const;
 
     /// Adds a mask that layers can use and returns its number, from 1 on (see BlendSample::control). Masks are never
     /// removed, so adding one to a set in use is safe; equal masks share a number. Safe to call from several threads.
-    /// weights: one per track, in [0, 1], see JointMask::weights().
+    /// weights: one per track, in [0, 1] (not checked), see JointMask::weights().
     /// Errors: a wrong number of weights; the set has MaskTable::maxMasks masks.
     Result<std::uint32_t> addMask(const std::vector<float>& weights) const;
     const MaskTable& masks() const { return *_masks; } ///< the masks of this set

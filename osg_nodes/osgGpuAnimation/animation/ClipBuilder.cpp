@@ -394,8 +394,8 @@ private:
     bool isStill(const Clip& clip, std::size_t joint) const;
     Result<bool> findParent(const Clip& clip);
     double yawOf(const glm::dquat& rotation) const;
-    void takeOutTranslation(Clip& clip, RootMotionCurve& curve) const;
-    void takeOutYaw(Clip& clip, RootMotionCurve& curve) const;
+    void removeTranslation(Clip& clip, RootMotionCurve& curve) const;
+    void removeYaw(Clip& clip, RootMotionCurve& curve) const;
 
     const Skeleton& _skeleton;
     std::size_t _joint;
@@ -457,13 +457,13 @@ Result<Clip> RootMotionExtractor::extract(const Clip& clip)
     curve->joint = _joint;
     curve->up = _axes.up;
     curve->keys.resize(clip.keyframeCount());
-    takeOutTranslation(stripped, *curve);
-    if (_axes.yaw) takeOutYaw(stripped, *curve);
+    removeTranslation(stripped, *curve);
+    if (_axes.yaw) removeYaw(stripped, *curve);
     stripped._rootMotion = std::move(curve);
     return stripped;
 }
 
-void RootMotionExtractor::takeOutTranslation(Clip& clip, RootMotionCurve& curve) const
+void RootMotionExtractor::removeTranslation(Clip& clip, RootMotionCurve& curve) const
 {
     const glm::dmat3 toModel(_parentToModel);
     const glm::dmat3 toParent = glm::inverse(toModel);
@@ -501,7 +501,7 @@ double RootMotionExtractor::yawOf(const glm::dquat& rotation) const
     return angle > pi ? angle - 2.0 * pi : angle < -pi ? angle + 2.0 * pi : angle;
 }
 
-void RootMotionExtractor::takeOutYaw(Clip& clip, RootMotionCurve& curve) const
+void RootMotionExtractor::removeYaw(Clip& clip, RootMotionCurve& curve) const
 {
     const std::size_t perTrack = clip.transformsPerTrack(), stride = clip.keyframeStride();
     JointTransform* keys = &(*clip._data)[_joint * perTrack];

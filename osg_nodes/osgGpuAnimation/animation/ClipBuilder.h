@@ -35,8 +35,8 @@ public:
     /// usable.
     Result<bool> add(Channel channel);
 
-    /// Creates the clip of all channels that were added since the last build(). Without channels the clip
-    /// has one keyframe, the rest pose at time 0.
+    /// Creates the clip of all channels that were added since the last build(). Without channels the clip has one
+    /// keyframe, the rest pose at time 0.
     Clip build(std::string name);
 
     /// Bytes of the clip that build() would create now, so that a caller can refuse it before the allocation.

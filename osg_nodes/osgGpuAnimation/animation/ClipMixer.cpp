@@ -97,7 +97,7 @@ PlaybackStep ClipPlayback::move(double seconds)
     }
     else
     {
-        // One period goes forwards in its first half and backwards in its second.
+        // A period plays the clip forwards in its first half and backwards in its second.
         const double half = _direction > 0.0 ? 0.0 : 1.0;
         const double unrolled = (_direction > 0.0 ? _time : 2.0 * _duration - _time) + seconds;
         const double phase = wrapped(unrolled, 2.0 * _duration);

@@ -26,12 +26,13 @@ class ClipPlayback
 {
 public:
     ClipPlayback() = default;
-    /// Starts at time 0, or at the end if the speed is negative. duration: seconds, at least 0.
+    /// Starts at time 0, or at the end if the speed is negative. duration: seconds, at least 0. speed: finite. Neither
+    /// is checked.
     ClipPlayback(int clip, double duration, double speed, LoopMode loopMode);
 
     int clip() const { return _clip; }            ///< -1: none
     double duration() const { return _duration; } ///< seconds
-    /// Seconds of one round: PingPong goes forwards and back, so its round lasts twice the duration.
+    /// Seconds of one round: a round of PingPong plays the clip forwards and backwards and lasts twice the duration.
     double roundSeconds() const { return _loopMode == LoopMode::PingPong ? 2.0 * _duration : _duration; }
     double time() const { return _time; }           ///< seconds, in [0, duration]
     double speed() const { return _speed; }         ///< 1: the speed of the file; negative: backwards
@@ -40,7 +41,7 @@ public:
     double normalizedTime() const { return _duration > 0.0 ? _time / _duration : 0.0; }
     /// Share of a round, in [0, 1).
     double phase() const;
-    /// The time to sample the keyframes at: the end of a Loop is its beginning.
+    /// The time at which to sample the keyframes: at the end of a Loop, time 0.
     double shownTime() const { return _loopMode == LoopMode::Loop && _time >= _duration ? 0.0 : _time; }
     /// True if a Once clip cannot continue at this speed.
     bool isAtEnd() const { return _time == (_speed < 0.0 ? 0.0 : _duration); }
@@ -50,11 +51,11 @@ public:
 
     /// Restores stored values. time: clamped to [0, duration].
     void restore(double time, bool isReturning, bool isFresh);
-    void setSpeed(double speed) { _speed = speed; } ///< finite
+    void setSpeed(double speed) { _speed = speed; } ///< speed: finite, not checked
     void setLoopMode(LoopMode mode); ///< The time stays. A new mode resets the PingPong direction to forwards.
     void seek(double seconds);       ///< clamped to [0, duration]
     void setPhase(double phase);     ///< in [0, 1]
-    /// Moves the time. seconds: of the clip, so without the speed; finite, any sign.
+    /// Moves the time. seconds: on the time line of the clip (elapsed seconds times speed); finite, any sign.
     PlaybackStep move(double seconds);
 
 private:
@@ -103,7 +104,7 @@ public:
         ClipPlayback playback; ///< clip and time
         PlaybackStep move;     ///< the step of the last advance()
         double share = 1.0;    ///< of the layer, in [0, 1]
-        /// Mean share during the last advance(): it weights root motion, which so does not depend on the frame rate.
+        /// Mean share during the last advance(): it weights root motion, so that the frame rate has no effect.
         double meanShare = 1.0;
         double shareBefore = 0.0; ///< share at the start of the last crossfade
         int phaseGroup = 0;       ///< active clips of one group share one phase

@@ -10,8 +10,7 @@
 namespace osgGpuAnimation
 {
 
-/// How much of a layer each joint takes, from 0 (nothing) to 1 (everything): one weight for every track of a set, so
-/// for every joint and every morph.
+/// The influence of a layer on each joint and morph of a set: one weight per track, from 0 (none) to 1 (full).
 ///
 ///     Result<JointMask> arm = JointMask::subtree(fox->getAnimationSet(), "Shoulder.R", 1);
 ///     if (arm) fox->getController().layer(1).setMask(arm.value());
@@ -20,8 +19,8 @@ namespace osgGpuAnimation
 class JointMask
 {
 public:
-    /// Gives all joints and morphs this weight, in [0, 1]. The mask fits this set and sets with equal joints and
-    /// morphs.
+    /// Gives all joints and morphs the same weight, clamped to [0, 1]; NaN counts as 0. The mask fits this set and sets
+    /// with equal joints and morphs.
     explicit JointMask(const AnimationSet& set, float weight = 0.0f);
 
     /// 1 for the joint of that name and its descendants, 0 for all others. feather: the number of levels over which the
@@ -31,7 +30,8 @@ public:
     /// 1 for the joints of these names, 0 for all others. Error: a name that no joint has.
     static Result<JointMask> joints(const AnimationSet& set, const std::vector<std::string>& names);
 
-    /// weight: clamped to [0, 1]; NaN counts as 0. False if there is no such joint or morph.
+    /// Sets the weight of a joint, clamped to [0, 1]; NaN counts as 0. Returns false if there is no such joint or
+    /// morph.
     bool setJoint(std::size_t joint, float weight);
     bool setMorph(std::size_t morph, float weight);                  ///< The same for all weights of a morph.
     float joint(std::size_t joint) const { return _weights[joint]; } ///< joint: below the set's jointCount()

@@ -75,7 +75,7 @@ inline glm::dmat3 matrix(const glm::dvec4& q)
 glm::dvec4 unit(const glm::dvec4& q);
 
 /// Spherical linear interpolation the short way (glTF 2.0, appendix C.4). If both ways have equal length (dot product
-/// 0: a turn of 180 degrees), the result goes from a to b as their signs are.
+/// 0: a turn of 180 degrees), the signs of a and b decide the direction.
 /// a, b: need not be unit. alpha: in [0, 1]. The result is unit.
 glm::dvec4 slerp(const glm::dvec4& a, const glm::dvec4& b, double alpha);
 

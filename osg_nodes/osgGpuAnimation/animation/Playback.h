@@ -25,7 +25,7 @@ enum class PlayState
 {
     Stopped, ///< the layer shows nothing: the layers below it are visible, and the rest pose below all
     Playing, ///< advance() moves the time
-    Paused,  ///< time and fades stand still; the layer shows the pose of its time
+    Paused,  ///< advance() moves neither time nor fades; the layer shows the pose of its time
     Ended,   ///< a Once clip reached its end; the layer shows the pose of that end
 };
 
@@ -57,8 +57,8 @@ public:
     double mean() const { return _mean; }                                ///< mean value during the last advance()
     const State& state() const { return _state; }                        ///< to store the fade
     bool isFinished() const { return _state.elapsed >= _state.seconds; } ///< true if the target is reached
-    /// Moves the value on; seconds below 0 count as 0. Returns the share of the seconds after which the fade finished,
-    /// in [0, 1]; -1 if it did not finish in this step.
+    /// Advances the time of the fade; seconds below 0 and NaN count as 0. Returns the share of the seconds after which
+    /// the fade finished, in [0, 1]; -1 if it did not finish in this step.
     double advance(double seconds);
 
 private:
@@ -70,8 +70,8 @@ private:
 enum class Sync
 {
     Start, ///< at its beginning (at its end if the speed is negative); each clip keeps its own speed
-    Phase, ///< at the phase of the current clip; until the fade ends both run at one pace, the mean of their durations
-           ///< by weight, so that the feet of a walk and a run stay together
+    Phase, ///< at the phase of the current clip; until the fade ends both clips take the same time for a round, the
+           ///< mean of their durations by weight, so that the feet of a walk and a run stay in step
 };
 
 /// Optional settings of AnimationLayer::crossfade().
@@ -80,7 +80,7 @@ struct CrossfadeOptions
     FadeCurve curve = FadeCurve::Linear;             ///< progress of the shares
     Sync sync = Sync::Start;                         ///< start time of the new clip
     std::optional<LoopMode> loopMode = std::nullopt; ///< new loop mode of the layer; none: unchanged
-    std::optional<double> speed = std::nullopt;      ///< new speed of the layer, finite; none: unchanged
+    std::optional<double> speed = std::nullopt;      ///< new speed of the layer; none: unchanged; not finite: error
 };
 
 /// An event of one layer during AnimationController::advance().

@@ -26,8 +26,8 @@ struct RootMotion
     glm::dmat4 matrix() const;
 };
 
-/// a · b: first a, then b in the frame that results from a. A character at placement P that moves by b is then at P ·
-/// b.
+/// a · b: first a, then b in the frame that results from a. A character with the transform P that moves by b then has
+/// the transform P · b.
 RootMotion operator*(const RootMotion& a, const RootMotion& b);
 
 /// The motion that withRootMotion() removed from a clip: the movement of the whole model since the clip's first

@@ -74,9 +74,10 @@ struct StateGraphDescription
 
 /// States and transitions, checked against a set. It is immutable; the StateMachines of all characters share it.
 ///
-///     auto graph = StateGraph::create(fox->getAnimationSet(), {{{"stand", "Survey"}, {"walk", "Walk"}},
-///                                                  {{"stand", "walk", {"speed > 0.1"}}, {"walk", "stand", {"speed <=
-///                                                  0.1"}}}, "stand"});
+///     auto graph = StateGraph::create(
+///         fox->getAnimationSet(),
+///         {{{"stand", "Survey"}, {"walk", "Walk"}},
+///          {{"stand", "walk", {"speed > 0.1"}}, {"walk", "stand", {"speed <= 0.1"}}}, "stand"});
 class StateGraph
 {
 public:
@@ -150,7 +151,8 @@ private:
 class StateMachine
 {
 public:
-    /// layer: index of the layer that update() drives, below maxLayers.
+    /// graph: must not be null (asserted). layer: index of the layer that update() drives, see
+    /// AnimationController::layer().
     explicit StateMachine(std::shared_ptr<const StateGraph> graph, std::size_t layer = 0);
 
     const StateGraph& graph() const { return *_graph; }                        ///< the shared graph
@@ -163,8 +165,8 @@ public:
     /// Fires a trigger: it stays fired until a transition that uses it is taken. False if no condition uses it.
     bool fire(const std::string& trigger);
 
-    /// The first call plays the start state. Later calls take the first transition, in the order of the graph, that
-    /// starts at the current state and whose conditions are all true; at most one per call. True if the state changed.
+    /// The first call plays the start state. Each later call takes at most one transition: the first in the order of
+    /// the graph that starts at the current state and whose conditions are all true. Returns true if the state changed.
     /// The controller must play the set that the graph was created for; if its set lacks the clip of the next state,
     /// nothing changes. seconds: since the last call; negative and not finite values count as 0. Allocates only if more
     /// clips fade on the layer than ever before.

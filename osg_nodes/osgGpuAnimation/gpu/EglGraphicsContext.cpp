@@ -33,7 +33,7 @@ bool hasClientExtension(const std::string& name)
     return extensions && (" " + std::string(extensions) + " ").find(" " + name + " ") != std::string::npos;
 }
 
-/// The display, where it starts and can do desktop GL; else EGL_NO_DISPLAY.
+/// Initializes the display; EGL_NO_DISPLAY if that fails or the display does not support desktop GL.
 EGLDisplay started(EGLDisplay display)
 {
     if (display == EGL_NO_DISPLAY || !eglInitialize(display, nullptr, nullptr)) return EGL_NO_DISPLAY;
@@ -90,14 +90,14 @@ EGLDisplay openAny()
     return EGL_NO_DISPLAY;
 }
 
-/// Opened once for the process and never terminated: EGL hands the same display to every caller.
+/// Opened once per process and never terminated: EGL returns the same display to every caller.
 EGLDisplay processDisplay()
 {
     static const EGLDisplay display = openAny();
     return display;
 }
 
-/// EGL lists deeper colours first; a picture is wanted with the bits that were asked for.
+/// Prefers the configuration with exactly the requested colour bits: EGL lists deeper colours first.
 EGLConfig pickConfig(EGLDisplay display, const std::vector<EGLConfig>& configs,
                      const osg::GraphicsContext::Traits& traits)
 {
@@ -112,23 +112,23 @@ EGLConfig pickConfig(EGLDisplay display, const std::vector<EGLConfig>& configs,
     return configs.front();
 }
 
-/// Null where there is none.
+/// Null if no configuration has the traits.
 EGLConfig chooseConfig(EGLDisplay display, const osg::GraphicsContext::Traits& traits)
 {
     std::vector<EGLint> wanted;
-    const auto ask = [&wanted](EGLint attribute, unsigned int value) {
+    const auto require = [&wanted](EGLint attribute, unsigned int value) {
         wanted.insert(wanted.end(), {attribute, static_cast<EGLint>(value)});
     };
-    ask(EGL_SURFACE_TYPE, EGL_PBUFFER_BIT);
-    ask(EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT);
-    ask(EGL_RED_SIZE, traits.red);
-    ask(EGL_GREEN_SIZE, traits.green);
-    ask(EGL_BLUE_SIZE, traits.blue);
-    ask(EGL_ALPHA_SIZE, traits.alpha);
-    ask(EGL_DEPTH_SIZE, traits.depth);
-    ask(EGL_STENCIL_SIZE, traits.stencil);
-    ask(EGL_SAMPLE_BUFFERS, traits.samples ? 1 : 0);
-    ask(EGL_SAMPLES, traits.samples);
+    require(EGL_SURFACE_TYPE, EGL_PBUFFER_BIT);
+    require(EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT);
+    require(EGL_RED_SIZE, traits.red);
+    require(EGL_GREEN_SIZE, traits.green);
+    require(EGL_BLUE_SIZE, traits.blue);
+    require(EGL_ALPHA_SIZE, traits.alpha);
+    require(EGL_DEPTH_SIZE, traits.depth);
+    require(EGL_STENCIL_SIZE, traits.stencil);
+    require(EGL_SAMPLE_BUFFERS, traits.samples ? 1 : 0);
+    require(EGL_SAMPLES, traits.samples);
     wanted.push_back(EGL_NONE);
     EGLint count = 0;
     if (!eglChooseConfig(display, wanted.data(), nullptr, 0, &count) || count < 1) return nullptr;
@@ -150,7 +150,7 @@ EGLContext createContext(EGLDisplay display, EGLConfig config, const osg::Graphi
     unsigned int minor = 0;
     if (!traits.getContextVersion(major, minor)) major = minor = 0;
     const bool core = wantsCore(traits);
-    // Profiles begin with GL 3.2; OSG's default version, "1.0", stands for whatever the driver likes best.
+    // Profiles exist since GL 3.2. OSG's default version, "1.0", leaves the version to the driver.
     const bool profiles = major > 3 || (major == 3 && minor >= 2);
     std::vector<EGLint> attributes;
     if (core || profiles)
@@ -166,8 +166,8 @@ EGLContext createContext(EGLDisplay display, EGLConfig config, const osg::Graphi
     return eglCreateContext(display, config, shared, attributes.data());
 }
 
-/// An OSG that knows the fixed pipeline goes on switching its modes, which are errors in the core profile. Here it
-/// takes them for unknown.
+/// An osg::State without the modes of the fixed pipeline: an OSG that was built with them sets them in every context,
+/// and in the core profile that is a GL error.
 class CoreState : public osg::State
 {
 public:
@@ -187,7 +187,7 @@ public:
     }
 };
 
-/// Whatever EGL context the thread has now, given back at the end.
+/// RAII: the destructor makes the EGL context current again that was current at construction.
 class CurrentContextKeeper
 {
 public:
@@ -239,7 +239,7 @@ Result<bool> EglGraphicsContext::open()
     _traits->doubleBuffer = false;
     _display = processDisplay();
     if (_display == EGL_NO_DISPLAY) return eglFailure("no display without a window system; is Mesa's EGL installed?");
-    // The interface is a thread's own setting, and OpenGL ES is what a thread starts with.
+    // Each thread has its own current API; the initial one is OpenGL ES.
     if (!eglBindAPI(EGL_OPENGL_API)) return eglFailure("no desktop OpenGL");
 
     EGLConfig config = chooseConfig(_display, *_traits);
@@ -306,7 +306,7 @@ bool EglGraphicsContext::realizeImplementation()
         return false;
     }
     getState()->initializeExtensionProcs();
-    // OSG's questions include ones that the core profile answers with an error; GL keeps a few at most.
+    // OSG's queries include some that cause errors in the core profile. GL stores a few errors at most.
     for (int kept = 0; kept < 32 && glGetError() != GL_NO_ERROR; ++kept)
     {
     }
@@ -355,7 +355,7 @@ void EglGraphicsContext::bindPBufferToTextureImplementation(GLenum)
 
 void EglGraphicsContext::swapBuffersImplementation()
 {
-    // A pbuffer has one buffer; handing the commands on keeps frames from piling up.
+    // A pbuffer has one buffer. The flush submits the commands, so that frames do not accumulate.
     glFlush();
 }
 

@@ -35,7 +35,7 @@ public:
     /// Starts without instances. set: may be null until reset().
     explicit PoseBatch(std::shared_ptr<const AnimationSet> set) : _set(std::move(set)) {}
 
-    /// The set of all instances; it must not be null.
+    /// The set of all instances; there must be one.
     const AnimationSet& set() const { return *_set; }
     /// The set of all instances; null if the batch has none.
     const std::shared_ptr<const AnimationSet>& sharedSet() const { return _set; }
@@ -44,7 +44,7 @@ public:
     std::size_t add(const PoseInstruction& instruction);
     /// Adds an instance whose root joints are multiplied by a root matrix. Other instances have the identity.
     std::size_t add(const PoseInstruction& instruction, const AffineMatrix& rootMatrix);
-    /// Adds an instance of one sample with a root matrix.
+    /// Does the same for a pose of one sample.
     std::size_t addSample(const BlendSample& sample, const AffineMatrix& rootMatrix);
 
     /// The cost of mixing a pose.

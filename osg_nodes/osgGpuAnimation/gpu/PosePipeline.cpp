@@ -55,7 +55,7 @@ struct SetResources
     }
 
     std::weak_ptr<const AnimationSet> set;
-    std::unique_ptr<AnimationBuffers> buffers;          ///< null: too large, reported
+    std::unique_ptr<AnimationBuffers> buffers;          ///< null: too large for the context
     std::vector<std::unique_ptr<PosePalette>> palettes; ///< by slot
     bool isMaskLimitReported = false;
 };
@@ -245,9 +245,8 @@ void PosePipeline::Parts::useMixInput(FeedbackPass& pass, const AnimationSet& se
     pass.setInt("jointCount", static_cast<int>(set.skeleton().jointCount()));
 }
 
-// A buffer must not be read while feedback writes to it, so levels go to the palette and to the scratch buffer by
-// turns. The scratch buffer holds the odd levels one after the other; at the end they are copied to their places in the
-// palette.
+// A buffer must not be read while feedback writes to it, so even levels are written to the palette and odd levels, one
+// after the other, to the scratch buffer. At the end the odd levels are copied to their places in the palette.
 bool PosePipeline::Parts::evaluateFused(const PoseBatch& batch, const AnimationBuffers& buffers,
                                         PosePalette::Chunk& chunk)
 {

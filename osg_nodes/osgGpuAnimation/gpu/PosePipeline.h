@@ -40,8 +40,8 @@ public:
     struct Options
     {
         Form form = Form::Fused; ///< the division of the stages into passes
-        std::size_t maxTexels =
-            0; ///< of a buffer texture; initially GL_MAX_TEXTURE_BUFFER_SIZE, which it may not exceed
+        /// The largest number of texels of a buffer texture: at most GL_MAX_TEXTURE_BUFFER_SIZE, the initial value.
+        std::size_t maxTexels = 0;
         /// The largest number of instances per draw, above 0; it limits the scratch buffer. A chunk has fewer
         /// instances if a buffer texture cannot hold them.
         std::size_t chunkSize = usualChunkSize;

@@ -38,9 +38,9 @@ struct ChainMotion
 
 /// Moves the boxes of the palette entries through a clip and collects the space that they cover.
 ///
-/// Each piece between two keyframes is sampled so often that the deviation from straight lines (see ChainMotion) adds
-/// at most a hundredth to the box. Most pieces need one step, since most deviations lie well inside the box of the
-/// clip.
+/// The sampling rate of each piece between two keyframes is chosen so that the deviation from straight lines (see
+/// ChainMotion) adds at most a hundredth to the box, with at most 16 steps. Most pieces need one step, since most
+/// deviations are well inside the box of the clip.
 class ClipSweep
 {
 public:

@@ -17,8 +17,9 @@ struct JointRange;
 
 /// Boxes that contain a character while clips are mixed: crossfades, layers, masks, additive layers. A mix can leave
 /// the boxes of all its clips: an arm that hangs and an arm behind the back mix to an arm at the side. So MixBounds
-/// computes for each joint, from root to leaf, which transforms the mix can take (JointRange), as a ball of origins and
-/// a matrix with a radius; where these bounds exceed the joint's distance from the root, that distance is the bound.
+/// bounds the joint-to-model transforms of the mix from root to leaf: a ball contains the origin of the joint, and a
+/// matrix with a radius contains the linear part. Where these bounds exceed the joint's distance from the root, that
+/// distance is the bound.
 /// The boxes are conservative for any times, weights and masks. They are close to the clips' own boxes if the joints
 /// rotate little.
 ///

@@ -128,7 +128,7 @@ MixedTrack TrackBlend::result()
                               glm::exp(glm::dquat(0.0, _turn * std::min(1.0, glm::pi<double>() / turned))));
     _total.translation += _difference.translation;
     _total.scale *= _growth;
-    _total.translation.w = 0.0; // in a spline clip it held a flag
+    _total.translation.w = 0.0; // spline clips store a flag there
     _total.scale.w = 0.0;
     return _total;
 }

@@ -38,7 +38,7 @@ public:
 
     /// Ends the current blend priority and begins the next one above it.
     void beginBlendPriority();
-    void add(const MixedTrack& sample, double weight);
+    void add(const MixedTrack& sample, double weight); ///< weight: above 0
     void addDifference(const MixedTrack& reference, const MixedTrack& sample, double weight);
     /// Ends the last blend priority. For joints the rotation is unit and the w of translation and scale is 0.
     MixedTrack result();

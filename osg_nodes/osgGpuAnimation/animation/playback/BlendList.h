@@ -11,12 +11,12 @@ namespace osgGpuAnimation
 {
 
 /// Sorts the samples of all layers as PoseInstruction requires: blend priorities from the bottom up; within a blend
-/// priority the heaviest sample first, and samples of equal weight by keyframe, so that the order of add() plays no
-/// part; additive samples last.
+/// priority the heaviest sample first, and samples of equal weight by keyframe, so that the order of add() does not
+/// matter; additive samples last.
 ///
-/// If there are more samples than an instruction holds, the sample with the lowest weight is dropped, repeatedly; a
-/// difference counts as two samples. The heaviest sample of each blend priority always stays. The other samples of the
-/// blend priority take over the dropped weight, so that nothing below them, such as the rest pose, becomes visible.
+/// Beyond PoseInstruction::maxSamples, where a difference counts as two samples, the samples with the lowest weights
+/// are dropped. The heaviest sample of each blend priority always stays. The other samples of the blend priority take
+/// over the dropped weight, so that nothing below them, such as the rest pose, becomes visible.
 class BlendList
 {
 public:

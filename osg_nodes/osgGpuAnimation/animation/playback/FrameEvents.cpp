@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace osgGpuAnimation
 {
@@ -33,9 +34,9 @@ PlaybackStepEvents::PlaybackStepEvents(const Clip& clip, const PlaybackStep& ste
     if (_crossingsLeft > maxCrossings)
     {
         // Skips an even number of crossings, so that the direction of PingPong stays correct.
-        const double skipped = 2.0 * std::floor((_crossingsLeft - maxCrossings) / 2.0);
-        _secondsBefore = skipped * clip.duration();
-        _crossingsLeft = maxCrossings + 1.0;
+        const double finite = std::min(_crossingsLeft, std::numeric_limits<double>::max());
+        _crossingsLeft = maxCrossings + std::fmod(finite, 2.0);
+        _secondsBefore = (finite - _crossingsLeft) * clip.duration();
     }
     const bool hasMoved = step.distance != 0.0 || step.hasFinished;
     _isFinishListed = !step.hasFinished;

@@ -23,7 +23,7 @@ namespace osgGpuAnimation
 class PlaybackStepEvents
 {
 public:
-    /// A step with more crossings (hours in a clip of milliseconds) lists only the last ones.
+    /// A step with more crossings (hours in a clip of milliseconds) lists only the last ones. Even.
     static constexpr double maxCrossings = 100000.0;
 
     /// The clip must outlive this.

@@ -41,7 +41,7 @@ void BufferTexture::upload(const void* data, std::size_t bytes)
 
 void BufferTexture::uploadPart(std::size_t offset, const void* data, std::size_t bytes)
 {
-    assert(offset + bytes <= _capacity && "a part lies within what was uploaded");
+    assert(offset + bytes <= _capacity && "a part is within the reserved storage");
     _gl->glBindBuffer(GL_TEXTURE_BUFFER, _buffer);
     _gl->glBufferSubData(GL_TEXTURE_BUFFER, static_cast<GLintptr>(offset), static_cast<GLsizeiptr>(bytes), data);
     _gl->glBindBuffer(GL_TEXTURE_BUFFER, 0);

@@ -68,7 +68,7 @@ bool PosePalette::Chunk::hasSamplesAsAttributes() const
 
 void PosePalette::Chunk::bindInstances(osg::GLExtensions& gl) const
 {
-    // Compatibility profiles want attribute 0 enabled, so one sample is bound even where all are fetched.
+    // Compatibility profiles require attribute 0, so one sample is bound even if the shader fetches all samples.
     const unsigned int sampleCount = hasSamplesAsAttributes() ? static_cast<unsigned int>(sampleStride) : 1u;
     samples.bindAttributes(POSE_SAMPLE_LOCATION, sampleCount, sampleStride * sizeof(BlendSample), 0, 0);
     for (unsigned int unused = sampleCount; unused < POSE_SAMPLES_AS_ATTRIBUTES; ++unused)

@@ -71,7 +71,7 @@ private:
     Stamps nextStamps();
 
     osg::GLExtensions* _gl;
-    std::deque<Stamps> _inFlight; ///< the oldest first; the last has no end yet where _isMeasuring
+    std::deque<Stamps> _inFlight; ///< the oldest first; the last has no end time stamp while _isMeasuring
     std::vector<Stamps> _spare;
     bool _isMeasuring = false;
 };

@@ -22,7 +22,7 @@ struct PoseVariant
     bool hasLayers = false;         ///< some instance has samples of several blend priorities
     bool hasMasks = false;          ///< some sample has a mask
     bool hasAdditive = false;       ///< some sample is additive
-    bool hasExactKeys = false;      ///< some clip moves some of the tracks, in full precision
+    bool hasExactKeys = false;      ///< some exact clip moves some of the tracks
     bool hasCompactKeys = false;    ///< some compact clip moves some of the tracks
     int sampleCount = 0; ///< blend samples of an instance, if they are attributes; 0: the shader fetches them
     PartMotion translationMotion = PartMotion::Constant; ///< the largest of any track in any clip

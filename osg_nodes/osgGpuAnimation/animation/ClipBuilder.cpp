@@ -5,7 +5,6 @@
 #include <osgGpuAnimation/animation/keyframes/ChannelCurve.h>
 #include <osgGpuAnimation/animation/keyframes/ClipCompactor.h>
 #include <osgGpuAnimation/animation/math/Box.h>
-#include <osgGpuAnimation/animation/Pose.h>
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
@@ -42,18 +41,8 @@ std::size_t firstComponent(Path path)
 
 const char* nameOf(Path path)
 {
-    switch (path)
-    {
-    case Path::Translation:
-        return "translation";
-    case Path::Rotation:
-        return "rotation";
-    case Path::Scale:
-        return "scale";
-    case Path::Weights:
-        return "weights";
-    }
-    return "unknown";
+    static constexpr const char* names[]{"translation", "rotation", "scale", "weights"};
+    return names[static_cast<std::size_t>(path)];
 }
 
 std::size_t valuesPerKey(const Channel& channel)
@@ -107,14 +96,6 @@ void sortUnique(std::vector<double>& times)
     times.erase(std::unique(times.begin(), times.end()), times.end());
 }
 
-/// all, some: ascending.
-bool areAmong(const std::vector<double>& all, const std::vector<double>& some)
-{
-    return all == some || (some.size() < all.size() &&
-                           std::all_of(some.begin(), some.end(),
-                                       [&](double time) { return std::binary_search(all.begin(), all.end(), time); }));
-}
-
 /// The keyframes of a clip with these curves: the union of all key times, twice at a jump.
 std::vector<Moment> findMoments(const std::vector<ChannelCurve>& curves)
 {
@@ -126,7 +107,8 @@ std::vector<Moment> findMoments(const std::vector<ChannelCurve>& curves)
     {
         // Most channels share the times of an earlier channel, and sorting is slow.
         const std::vector<double>& own = curve.channel().times;
-        if (!areAmong(*most, own)) times.insert(times.end(), own.begin(), own.end());
+        if (!std::includes(most->begin(), most->end(), own.begin(), own.end()))
+            times.insert(times.end(), own.begin(), own.end());
         if (own.size() > most->size()) most = &own;
         curve.appendJumps(jumps);
     }
@@ -141,14 +123,9 @@ std::vector<Moment> findMoments(const std::vector<ChannelCurve>& curves)
 
     std::vector<Moment> moments;
     moments.reserve(times.size() + jumps.size());
-    auto jump = jumps.begin();
-    for (double time : times)
+    for (const double time : times)
     {
-        if (jump != jumps.end() && *jump == time)
-        {
-            moments.push_back({time, true});
-            ++jump;
-        }
+        if (std::binary_search(jumps.begin(), jumps.end(), time)) moments.push_back({time, true});
         moments.push_back({time, false});
     }
     return moments;
@@ -371,13 +348,7 @@ Result<CompactedSet> compactClips(const AnimationSet& set, const EntryBoxes& ent
 double longestSide(const AnimationSet& set, const EntryBoxes& entryBoxes)
 {
     Box box = boundsOfClip(set, -1, entryBoxes);
-    if (box.empty())
-    {
-        std::vector<AffineMatrix> joints;
-        Pose::jointToModel(set, set.restPose(), AffineMatrix(), joints);
-        for (const AffineMatrix& joint : joints)
-            box.add(joint.transformPoint(glm::vec3(0.0f)));
-    }
+    if (box.empty()) box = boundsOfJoints(set);
     if (box.empty()) return 0.0;
     return largestComponent(glm::dvec3(box.max - box.min));
 }
@@ -386,7 +357,11 @@ double longestSide(const AnimationSet& set, const EntryBoxes& entryBoxes)
 class RootMotionExtractor
 {
 public:
-    RootMotionExtractor(const Skeleton& skeleton, std::size_t joint, const RootMotionAxes& axes);
+    RootMotionExtractor(const Skeleton& skeleton, std::size_t joint, const RootMotionAxes& axes)
+        : _skeleton(skeleton), _joint(joint), _axes(axes)
+    {
+        _axes.up = glm::normalize(_axes.up);
+    }
 
     Result<Clip> extract(const Clip& clip);
 
@@ -404,12 +379,6 @@ private:
     glm::dmat4 _parentToModel{1.0};
     glm::dquat _parentRotation = glm::identity<glm::dquat>();
 };
-
-RootMotionExtractor::RootMotionExtractor(const Skeleton& skeleton, std::size_t joint, const RootMotionAxes& axes)
-    : _skeleton(skeleton), _joint(joint), _axes(axes)
-{
-    _axes.up = glm::normalize(_axes.up);
-}
 
 bool RootMotionExtractor::isStill(const Clip& clip, std::size_t joint) const
 {

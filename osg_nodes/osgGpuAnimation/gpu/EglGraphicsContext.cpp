@@ -12,6 +12,7 @@
 #include <cstdlib>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace osgGpuAnimation
@@ -71,20 +72,15 @@ EGLDisplay openDefault()
 
 EGLDisplay openAny()
 {
-    struct Platform
-    {
-        const char* name;
-        EGLDisplay (*open)();
-    };
-    static constexpr std::array<Platform, 3> platforms{
-        {{"surfaceless", openSurfaceless}, {"device", openDevice}, {"default", openDefault}}};
+    static constexpr std::pair<const char*, EGLDisplay (*)()> platforms[]{
+        {"surfaceless", openSurfaceless}, {"device", openDevice}, {"default", openDefault}};
     const char* wanted = std::getenv("OSGGPUANIMATION_EGL_PLATFORM");
-    for (const Platform& platform : platforms)
+    for (const auto& [name, open] : platforms)
     {
-        if (wanted && *wanted && wanted != std::string(platform.name)) continue;
-        EGLDisplay display = platform.open();
+        if (wanted && *wanted && wanted != std::string(name)) continue;
+        EGLDisplay display = open();
         if (display == EGL_NO_DISPLAY) continue;
-        OSG_INFO << "EglGraphicsContext: platform " << platform.name << std::endl;
+        OSG_INFO << "EglGraphicsContext: platform " << name << std::endl;
         return display;
     }
     return EGL_NO_DISPLAY;

@@ -17,6 +17,7 @@
 #include <cmath>
 #include <iostream>
 #include <mutex>
+#include <utility>
 
 namespace osgGpuAnimation
 {
@@ -53,13 +54,7 @@ int findJointLines(const AnimatedCharacter& character)
     return -1;
 }
 
-struct KeyHelp
-{
-    const char* keys;
-    const char* does;
-};
-
-constexpr KeyHelp keyHelp[] = {
+constexpr std::pair<const char*, const char*> keyHelp[] = {
     {"n", "next clip"},  {"N", "previous clip"},     {"k", "pause, resume"},
     {".", "a frame on"}, {",", "a frame back"},      {"-", "slower"},
     {"+", "faster"},     {"r", "run the other way"}, {"j", "joints on, off"},
@@ -126,8 +121,8 @@ void tellKeysOnce()
                    []
                    {
                        std::string text;
-                       for (const KeyHelp& key : keyHelp)
-                           text += (text.empty() ? "" : "; ") + std::string(key.keys) + " " + key.does;
+                       for (const auto& [key, effect] : keyHelp)
+                           text += (text.empty() ? "" : "; ") + std::string(key) + " " + effect;
                        if (osg::isNotifyEnabled(osg::NOTICE))
                            std::cout << "Keys of animated characters: " << text << std::endl;
                    });
@@ -212,8 +207,8 @@ bool CharacterKeys::isFirstTime(const osgGA::GUIEventAdapter& event, const osg::
 
 void CharacterKeys::getUsage(osg::ApplicationUsage& usage) const
 {
-    for (const KeyHelp& key : keyHelp)
-        usage.addKeyboardMouseBinding(key.keys, std::string("Animated characters: ") + key.does);
+    for (const auto& [key, effect] : keyHelp)
+        usage.addKeyboardMouseBinding(key, std::string("Animated characters: ") + effect);
 }
 
 void CharacterKeys::changeClip(AnimationController& controller, int step) const

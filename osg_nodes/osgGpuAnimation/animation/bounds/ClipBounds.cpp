@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/bounds/ClipBounds.h>
 
+#include <osgGpuAnimation/animation/Pose.h>
+
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
 
 #include <algorithm>
 #include <array>
@@ -287,6 +290,19 @@ std::vector<Box> boundsOfClips(const AnimationSet& set, const EntryBoxes& entryB
     for (int clip = -1; clip < static_cast<int>(set.clips().size()); ++clip)
         bounds.push_back(boundsOfClip(set, clip, entryBoxes));
     return bounds;
+}
+
+Box boundsOfJoints(const AnimationSet& set)
+{
+    std::vector<AffineMatrix> joints;
+    Pose::jointToModel(set, set.restPose(), AffineMatrix(), joints);
+    Box box;
+    for (const AffineMatrix& joint : joints)
+    {
+        const glm::vec3 origin = joint.transformPoint(glm::vec3(0.0f));
+        if (glm::all(glm::lessThan(glm::dvec3(glm::abs(origin)), glm::dvec3(Aabb3d::limit)))) box.add(origin);
+    }
+    return box;
 }
 
 } // namespace osgGpuAnimation

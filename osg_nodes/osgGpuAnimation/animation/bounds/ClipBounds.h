@@ -90,4 +90,7 @@ Box boundsOfClip(const AnimationSet& set, int clip, const EntryBoxes& entryBoxes
 /// The box of the rest pose, then the boxes of all clips: the box of clip c is at index c + 1.
 std::vector<Box> boundsOfClips(const AnimationSet& set, const EntryBoxes& entryBoxes);
 
+/// The box of the origins of all joints in the rest pose. Ignores origins beyond Aabb3d::limit.
+Box boundsOfJoints(const AnimationSet& set);
+
 } // namespace osgGpuAnimation

@@ -127,17 +127,6 @@ Box boxAround(const std::vector<glm::vec3>& positions)
     return box;
 }
 
-/// The box of all joints in the rest pose.
-Box boxAroundJoints(const AnimationSet& set)
-{
-    std::vector<AffineMatrix> joints;
-    Pose::jointToModel(set, set.restPose(), AffineMatrix(), joints);
-    Box box;
-    for (const AffineMatrix& joint : joints)
-        if (const glm::vec3 place = joint.transformPoint(glm::vec3(0.0f)); isFinite(place)) box.add(place);
-    return box;
-}
-
 double sizeOf(const Box& box)
 {
     return box.empty() ? 0.0 : glm::distance(glm::dvec3(box.min), glm::dvec3(box.max));
@@ -218,7 +207,7 @@ LodLevels::LodLevels(const osg::Geometry& mesh, const AnimationSet& set, const S
     if (surface.poses.empty()) return;
     const double size = sizeOf(boxAround(surface.poses.front()));
     if (!(size > 0.0)) return;
-    const int coarsest = std::min(std::ilogb(std::max(size, sizeOf(boxAroundJoints(set)))) - coarsestFraction,
+    const int coarsest = std::min(std::ilogb(std::max(size, sizeOf(boundsOfJoints(set)))) - coarsestFraction,
                                   std::ilogb(size) + mostBeyondSize);
     for (Primitives& primitives : _primitives)
         addSteps(surface, std::ilogb(size) - finestFraction, coarsest, primitives);

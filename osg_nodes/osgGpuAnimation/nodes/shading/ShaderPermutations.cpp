@@ -172,9 +172,9 @@ void setShadowUnits(osg::State& state)
 {
     static const unsigned int mapsName = osg::Uniform::getNameID("shadowMaps");
     static constexpr std::array<GLint, 7> units{1, 2, 3, 4, 5, 6, 7};
-    const osg::Program::PerContextProgram* applied = state.getLastAppliedProgramObject();
-    if (!applied) return;
-    state.get<osg::GLExtensions>()->glUniform1iv(applied->getUniformLocation(mapsName),
+    const osg::Program::PerContextProgram* program = state.getLastAppliedProgramObject();
+    if (!program) return;
+    state.get<osg::GLExtensions>()->glUniform1iv(program->getUniformLocation(mapsName),
                                                  static_cast<GLsizei>(units.size()), units.data());
 }
 
@@ -189,16 +189,15 @@ void setMaterial(osg::State& state)
 {
     static const unsigned int diffuseName = osg::Uniform::getNameID("materialDiffuse");
     static const unsigned int emissionName = osg::Uniform::getNameID("materialEmission");
-    const osg::Program::PerContextProgram* applied = state.getLastAppliedProgramObject();
-    if (!applied) return;
-    const auto* material =
-        dynamic_cast<const osg::Material*>(state.getLastAppliedAttribute(osg::StateAttribute::MATERIAL));
+    const osg::Program::PerContextProgram* program = state.getLastAppliedProgramObject();
+    if (!program) return;
+    const auto* material = applied<osg::Material>(state, osg::StateAttribute::MATERIAL);
     const bool isOwn = material && !givesWayToColors(*material);
     const osg::Vec4 diffuse = isOwn ? material->getDiffuse(osg::Material::FRONT) : osg::Vec4(1, 1, 1, 1);
     const osg::Vec4 emission = material ? material->getEmission(osg::Material::FRONT) : osg::Vec4(0, 0, 0, 1);
     const osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
-    gl.glUniform4fv(applied->getUniformLocation(diffuseName), 1, diffuse.ptr());
-    gl.glUniform4fv(applied->getUniformLocation(emissionName), 1, emission.ptr());
+    gl.glUniform4fv(program->getUniformLocation(diffuseName), 1, diffuse.ptr());
+    gl.glUniform4fv(program->getUniformLocation(emissionName), 1, emission.ptr());
 }
 
 osg::ref_ptr<osg::Texture2D> makeWhiteTexture()

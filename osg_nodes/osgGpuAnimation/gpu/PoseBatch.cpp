@@ -46,14 +46,14 @@ bool PoseBatch::accepts(const PoseInstruction& instruction) const
 std::size_t PoseBatch::append(const BlendSample* samples, std::size_t count)
 {
     if (count > _sampleStride) widen(count);
-    for (std::size_t i = 0; i < _sampleStride; ++i)
+    for (const BlendSample* sample = samples; sample != samples + count; ++sample)
     {
-        BlendSample sample = i < count ? samples[i] : BlendSample{0, 0.0f, 0.0f, 0};
-        sample.alpha = clampedToUnit(sample.alpha);
-        sample.weight = clampedToUnit(sample.weight);
-        if (i < count) addNeeds(sample);
-        _samples.push_back(sample);
+        _samples.push_back(*sample);
+        _samples.back().alpha = clampedToUnit(sample->alpha);
+        _samples.back().weight = clampedToUnit(sample->weight);
+        addNeeds(_samples.back());
     }
+    _samples.resize((_size + 1) * _sampleStride, BlendSample{0, 0.0f, 0.0f, 0});
     _needs.mixing = _needs.mixing || _sampleStride > 1;
     if (!_rootMatrices.empty()) _rootMatrices.emplace_back();
     if (!_tints.empty()) _tints.push_back(white);

@@ -46,9 +46,9 @@ const Layer layers[] = {
     {"plugin/gltf/", R"(^osgViewer/)"},
 };
 
-std::vector<std::string> includesOf(const std::string& text)
+std::vector<std::string> includesOf(const std::string& text, const char* delimiters = "[<\"]")
 {
-    static const std::regex include(R"(^\s*#\s*include\s*[<"]([^>"]+)[>"])");
+    const std::regex include(std::string(R"(^\s*#\s*include\s*)") + delimiters + R"(([^>"]+)[>"])");
     std::vector<std::string> found;
     std::istringstream lines(text);
     std::smatch match;
@@ -80,7 +80,8 @@ std::map<std::string, std::size_t> orderOf(const std::string& list)
     return order;
 }
 
-/// Includes against the order, rooms that the list does not have, entries of the list without a room.
+/// Includes against the order, quoted includes that name no room by its path, rooms that the list does not have,
+/// entries of the list without a room.
 std::vector<std::string> faultsOfOrder(const Texts& texts, const std::map<std::string, std::size_t>& order)
 {
     std::vector<std::string> faults;
@@ -100,6 +101,8 @@ std::vector<std::string> faultsOfOrder(const Texts& texts, const std::map<std::s
             if (!other.empty() && order.at(other) > own->second)
                 faults.push_back(path + " includes " + other + ", which lies above it");
         }
+        for (const std::string& include : includesOf(text, "\""))
+            if (roomOfInclude(include, order).empty()) faults.push_back(path + " includes " + include + ", no room");
     }
     for (const auto& [room, place] : order)
         if (seen.count(room) == 0) faults.push_back(room + " is on the list, but not in the tree");
@@ -267,6 +270,7 @@ INSTANTIATE_TEST_SUITE_P(
                               "  #  include <osgGpuAnimation/nodes/AnimatedCharacter.h>\n", "lies above it"},
                       Planted{"osg_nodes/osgGpuAnimation/nodes/AnimatedCharacter.cpp", "#include \"gltf/Import.h\"\n",
                               "lies above it"},
+                      Planted{"plugin/gltf/Import.cpp", "#include \"Other.h\"\n", "no room"},
                       Planted{"osg_nodes/osgGpuAnimation/animation/New.cpp", "", "is no room of the list"},
                       Planted{"osg_nodes/osgGpuAnimation/animation/Clip.h",
                               "#include <osgGpuAnimation/animation/math/Aabb3d.h>\n", "Clip.h includes"},

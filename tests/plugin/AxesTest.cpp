@@ -189,8 +189,8 @@ TEST_F(AxesTest, transformsThatDrawNothingRightAreErrors)
     const osg::Matrixd before = character->getFileToNode();
     osg::Matrixd projection;
     projection(2, 3) = 0.5;
-    for (const osg::Matrixd& wrong :
-         {osg::Matrixd::scale(-1, 1, 1), osg::Matrixd::translate(std::nan(""), 0, 0), projection})
+    for (const osg::Matrixd& wrong : {osg::Matrixd::scale(-1, 1, 1), osg::Matrixd::scale(1, 0, 1),
+                                      osg::Matrixd::translate(std::nan(""), 0, 0), projection})
     {
         EXPECT_FALSE(character->setFileToNode(wrong));
         EXPECT_FALSE(crowd->setFileToNode(wrong));

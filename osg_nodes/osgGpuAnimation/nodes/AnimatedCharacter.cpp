@@ -80,7 +80,7 @@ Result<bool> AnimatedCharacter::setPixelError(float pixels)
 
 Result<bool> AnimatedCharacter::setFileToNode(const osg::Matrixd& fileToNode)
 {
-    const Result<AffineMatrix> root = toRootMatrix(fileToNode, "the transform from the file's axes");
+    const Result<AffineMatrix> root = toRootMatrix(fileToNode, "the transform from the file's axes", true);
     if (!root) return root.error();
     _fileToNode = fileToNode;
     _rootMatrix = root.value();

@@ -62,9 +62,9 @@ public:
 
     /// Sets the transform from the axes of the set's file to the character's own space: the plugin for glTF turns +Y up
     /// to +Z up with it. Default: the identity. Call it before cloning and before a crowd is made of the character.
-    /// Errors: the matrix is not finite, not affine or mirrors (its determinant is below 0).
+    /// Errors: the matrix is not finite, not affine, or its determinant is not above 0.
     Result<bool> setFileToNode(const osg::Matrixd& fileToNode);
-    const osg::Matrixd& getFileToNode() const { return _fileToNode; } ///< affine, does not mirror
+    const osg::Matrixd& getFileToNode() const { return _fileToNode; } ///< affine, with an inverse
 
     /// The present transform of a joint, from joint space to the character's own space. The CPU twin computes it from
     /// the joint's chain of parents, cheaply enough for every frame.

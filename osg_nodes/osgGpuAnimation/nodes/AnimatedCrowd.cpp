@@ -53,7 +53,7 @@ Result<AffineMatrix> placedRoot(const osg::Matrixd& fileToNode, const osg::Matri
 {
     osg::Matrixd fromOrigin = placement;
     fromOrigin.setTrans(placement.getTrans() - origin);
-    return toRootMatrix(fileToNode * fromOrigin, "the placement");
+    return toRootMatrix(fileToNode * fromOrigin, "the placement", false);
 }
 
 /// An instance for intersectors, posed only if its sphere is hit. It exists during the crowd's traversal only.
@@ -177,7 +177,7 @@ Result<AnimatedCrowd::Instance> AnimatedCrowd::add(const osg::Matrixd& placement
 
 Result<bool> AnimatedCrowd::setFileToNode(const osg::Matrixd& fileToNode)
 {
-    if (const Result<AffineMatrix> root = toRootMatrix(fileToNode, "the transform from the file's axes"); !root)
+    if (const Result<AffineMatrix> root = toRootMatrix(fileToNode, "the transform from the file's axes", true); !root)
         return root.error();
     const osg::Matrixd toPlacement = osg::Matrixd::inverse(_fileToNode);
     for (std::size_t index = 0; index < getNumInstances(); ++index)

@@ -66,7 +66,7 @@ public:
     /// The transform from the axes of the set's file to the space that placements start from, see
     /// AnimatedCharacter::setFileToNode(). Instances keep their placements.
     Result<bool> setFileToNode(const osg::Matrixd& fileToNode);
-    const osg::Matrixd& getFileToNode() const { return _fileToNode; } ///< affine, does not mirror
+    const osg::Matrixd& getFileToNode() const { return _fileToNode; } ///< affine, with an inverse
 
     /// Adds an instance. placement: affine, from the character's space to the space of this node. controller: built for
     /// the crowd's set; it is copied. tint: multiplies the colour, each component in [0, 1].

@@ -44,15 +44,16 @@ inline AffineMatrix toAffine(const osg::Matrixd& matrix)
 }
 
 /// The same for a matrix that draws vertices. name: the matrix, for messages. Errors: the matrix is not finite, not
-/// affine or mirrors.
-inline Result<AffineMatrix> toRootMatrix(const osg::Matrixd& matrix, const std::string& name)
+/// affine or mirrors; isInvertible: it flattens.
+inline Result<AffineMatrix> toRootMatrix(const osg::Matrixd& matrix, const std::string& name, bool isInvertible)
 {
     const AffineMatrix root = toAffine(matrix);
     if (!root.isFinite()) return Error{name + " is not finite"};
     if (matrix(0, 3) != 0.0 || matrix(1, 3) != 0.0 || matrix(2, 3) != 0.0 || matrix(3, 3) != 1.0)
         return Error{name + " is not affine: its last column is not 0, 0, 0, 1"};
-    if (glm::determinant(glm::dmat3(glm::make_mat4(matrix.ptr()))) < 0.0)
-        return Error{name + " mirrors: its determinant is below 0, faces would be seen from inside"};
+    const double determinant = glm::determinant(glm::dmat3(glm::make_mat4(matrix.ptr())));
+    if (determinant < 0.0) return Error{name + " mirrors: its determinant is below 0, faces would be seen from inside"};
+    if (isInvertible && determinant == 0.0) return Error{name + " flattens: its determinant is 0"};
     return root;
 }
 

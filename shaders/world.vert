@@ -3,8 +3,8 @@
 // gl_VertexID = entry * instanceCount + instance, which also orders the result.
 
 uniform samplerBuffer entries; // the static part of the palette entries, POSE_TEXELS_PER_ENTRY texels per entry
-uniform samplerBuffer roots;   // a 3x4 matrix per instance
-uniform bool hasRoots;
+uniform samplerBuffer roots;   // a 3x4 matrix per instance, or one for all
+uniform int rootCount;         // 0: none
 uniform samplerBuffer localMatrices; // written by local.vert: matrix track * instanceCount + instance
 uniform int instanceCount;
 
@@ -31,7 +31,8 @@ void main()
             head = texelFetch(entries, parent * POSE_TEXELS_PER_ENTRY);
             if (head.y >= 0.0) matrix = multiplied(localOf(int(head.y), instance), matrix);
         }
-        if (hasRoots) matrix = multiplied(fetchMatrix(roots, instance * POSE_TEXELS_PER_MATRIX), matrix);
+        if (rootCount > 0)
+            matrix = multiplied(fetchMatrix(roots, min(instance, rootCount - 1) * POSE_TEXELS_PER_MATRIX), matrix);
     }
     row0 = matrix[0];
     row1 = matrix[1];

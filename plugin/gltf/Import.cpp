@@ -91,20 +91,25 @@ Result<bool> Importer::makeSet(const NodeTree& tree, const Joints& joints, const
 
 void Importer::makeGraph(const NodeTree& tree, const Joints& joints, const Morphs& morphs)
 {
-    // glTF is +Y up, OSG is +Z up. No other code of the import converts between them.
-    const osg::Matrixd upright = osg::Matrixd::rotate(osg::PI_2, osg::Vec3d(1, 0, 0));
-    _result.root = new osg::MatrixTransform(_options.noRotation ? osg::Matrixd::identity() : upright);
-    if (tree.scene >= 0) _result.root->setName(_model.scenes[static_cast<std::size_t>(tree.scene)].name);
+    // glTF is +Y up, OSG is +Z up. No other code of the import converts between them. The numbers are exact: the sine
+    // and cosine of a rotation by pi / 2 are not.
+    if (!_options.noRotation) _result.fileToNode.set(1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1);
+    osg::ref_ptr<osg::MatrixTransform> still = new osg::MatrixTransform(_result.fileToNode);
+    _result.root = still;
     if (_result.set)
     {
         _result.character = new AnimatedCharacter(_result.set);
+        static_cast<void>(_result.character->setFileToNode(_result.fileToNode));
+        _result.root = new osg::Group;
         _result.root->addChild(_result.character);
     }
+    if (tree.scene >= 0) _result.root->setName(_model.scenes[static_cast<std::size_t>(tree.scene)].name);
     Materials materials(_model, _textures);
     Meshes meshes(_model, _budget, _report);
     Drawables drawables(_model, _result.set, meshes, materials, _budget, _report);
     const SceneParts parts{_model, tree, joints, morphs, drawables, _budget, _report};
-    buildSceneGraph(parts, *_result.root, _result.character, _result.primitives);
+    buildSceneGraph(parts, *still, _result.character, _result.primitives);
+    if (_result.character && still->getNumChildren() > 0) _result.root->addChild(still);
 }
 
 /// Needs the meshes: they bound the effect of a joint's error, and some have levels of detail.

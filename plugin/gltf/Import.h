@@ -21,7 +21,8 @@ namespace osgGpuAnimation::gltf
 /// The result of an import.
 struct ImportedModel
 {
-    osg::ref_ptr<osg::MatrixTransform> root;   ///< turns +Y up to +Z up (identity with noRotation)
+    osg::Matrixd fileToNode;                   ///< from +Y up to +Z up (identity with noRotation)
+    osg::ref_ptr<osg::Group> root;             ///< in OSG's axes
     osg::ref_ptr<AnimatedCharacter> character; ///< below root; null where nothing in the file can move
     std::shared_ptr<const AnimationSet> set;   ///< the character's; null without a character
     std::vector<ImportedPrimitive> primitives; ///< by node, then primitive

@@ -29,6 +29,7 @@ enum Extra : std::int32_t
     hasClipBounds = 1, ///< reading computes the bounds again
     hasPixelError = 2, ///< the pixel error follows
     isDrawnAlone = 4,
+    hasFileToNode = 8, ///< the transform follows
 };
 
 std::int32_t extrasOf(const AnimatedCharacter& character)
@@ -36,6 +37,7 @@ std::int32_t extrasOf(const AnimatedCharacter& character)
     std::int32_t extras = character.getClipBounds(-1).valid() ? hasClipBounds : 0;
     if (character.getPixelError() > 0.0f) extras |= hasPixelError;
     if (!character.isDrawnTogether()) extras |= isDrawnAlone;
+    if (!character.getFileToNode().isIdentity()) extras |= hasFileToNode;
     return extras;
 }
 
@@ -43,14 +45,15 @@ void transferExtras(ValueStream& stream, AnimatedCharacter& character)
 {
     std::int32_t extras = extrasOf(character);
     double pixelError = static_cast<double>(character.getPixelError());
-    stream.limited("the settings of a character", extras, 0, hasClipBounds | hasPixelError | isDrawnAlone);
+    stream.limited("the settings of a character", extras, 0,
+                   hasClipBounds | hasPixelError | isDrawnAlone | hasFileToNode);
     if (extras & hasPixelError) stream.value(pixelError);
+    if (extras & hasFileToNode) transferFileToNode(stream, character);
     stream.endLine();
     if (!stream.hasRead()) return;
     character.setDrawnTogether(!(extras & isDrawnAlone));
     if (extras & hasClipBounds) character.computeClipBounds();
-    if (const Result<bool> taken = character.setPixelError(static_cast<float>(pixelError)); !taken)
-        stream.fail("a character: " + taken.error().message);
+    stream.require("a character: ", character.setPixelError(static_cast<float>(pixelError)));
 }
 
 void transferState(ValueStream& stream, AnimatedCharacter& character)

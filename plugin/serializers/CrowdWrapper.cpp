@@ -37,6 +37,7 @@ enum Version : std::int32_t
     plain = 1,
     withPixelError = 2,
     withUpdateRate = 3, ///< no longer written
+    withFileToNode = 4, ///< and pixel error
 };
 
 /// The playback data after an instance's placement.
@@ -61,8 +62,8 @@ void transferPlain(ValueStream& stream, AnimationController& controller)
     stream.values(clip, time, speed, isPaused);
     if (!stream.hasRead()) return;
     controller.setSpeed(speed);
-    const Result<bool> playing = controller.play(clip < 0 ? ~std::size_t(0) : static_cast<std::size_t>(clip));
-    if (!playing) stream.fail("an instance of a crowd: " + playing.error().message);
+    stream.require("an instance of a crowd: ",
+                   controller.play(clip < 0 ? ~std::size_t(0) : static_cast<std::size_t>(clip)));
     controller.seek(time);
     if (isPaused) controller.pause();
 }
@@ -100,6 +101,7 @@ osg::Vec4 toColor(std::uint32_t rgba)
 
 void transferList(ValueStream& stream, AnimatedCrowd& crowd)
 {
+    const osg::Matrixd toPlacement = osg::Matrixd::inverse(crowd.getFileToNode());
     const std::size_t count = stream.open("List", crowd.getNumInstances());
     for (std::size_t i = 0; i < count && stream.isGood(); ++i)
     {
@@ -109,9 +111,8 @@ void transferList(ValueStream& stream, AnimatedCrowd& crowd)
                         crowd.getInstances().controllerCopy(i)};
         transferInstance(stream, instance);
         if (!stream.hasRead()) continue;
-        const auto added =
-            crowd.add(toOsg(instance.root, crowd.getOrigin()), instance.controller, toColor(instance.tint));
-        if (!added) stream.fail("an instance of a crowd: " + added.error().message);
+        stream.require("an instance of a crowd: ", crowd.add(toPlacement * toOsg(instance.root, crowd.getOrigin()),
+                                                             instance.controller, toColor(instance.tint)));
     }
     stream.close();
 }
@@ -119,19 +120,20 @@ void transferList(ValueStream& stream, AnimatedCrowd& crowd)
 void transferInstances(ValueStream& stream, AnimatedCrowd& crowd)
 {
     std::int32_t version = crowd.getPixelError() > 0.0f ? withPixelError : plain;
+    if (!crowd.getFileToNode().isIdentity()) version = withFileToNode;
     osg::Vec3d origin = crowd.getOrigin();
     double pixelError = static_cast<double>(crowd.getPixelError()), updatePixels = 0.0;
     std::int32_t updatesEvery = 1;
-    stream.limited("the version of a crowd", version, plain, withUpdateRate);
+    stream.limited("the version of a crowd", version, plain, withFileToNode);
     stream.values(origin.x(), origin.y(), origin.z());
     if (version >= withPixelError) stream.value(pixelError);
-    if (version >= withUpdateRate) stream.values(updatesEvery, updatePixels);
+    if (version == withUpdateRate) stream.values(updatesEvery, updatePixels);
+    if (version == withFileToNode) transferFileToNode(stream, crowd);
     stream.endLine();
     if (stream.hasRead())
     {
         crowd.setOrigin(origin);
-        if (const Result<bool> taken = crowd.setPixelError(static_cast<float>(pixelError)); !taken)
-            stream.fail("a crowd: " + taken.error().message);
+        stream.require("a crowd: ", crowd.setPixelError(static_cast<float>(pixelError)));
     }
     transferList(stream, crowd);
 }
@@ -140,8 +142,10 @@ void addCrowdProperties(osgDB::ObjectWrapper* wrapper)
 {
     addProperty(wrapper, "AnimationSet", &transferCrowdSet);
     addProperty<AnimatedCrowd>(wrapper, "Instances", &transferInstances,
-                               [](const AnimatedCrowd& crowd)
-                               { return crowd.getNumInstances() > 0 || crowd.getPixelError() > 0.0f; });
+                               [](const AnimatedCrowd& crowd) {
+                                   return crowd.getNumInstances() > 0 || crowd.getPixelError() > 0.0f ||
+                                          !crowd.getFileToNode().isIdentity();
+                               });
 }
 
 osgDB::RegisterWrapperProxy crowd(&createWithoutCallback<AnimatedCrowd>, "osgGpuAnimation::AnimatedCrowd",

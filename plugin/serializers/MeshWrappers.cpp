@@ -2,10 +2,10 @@
 #include "serializers/StoredAnimation.h"
 
 #include <osgGpuAnimation/nodes/CharacterProgram.h>
+#include <osgGpuAnimation/nodes/mesh/PaletteEntryBounds.h>
 #include <osgGpuAnimation/nodes/shading/ShaderPermutations.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
-#include <osg/NodeVisitor>
 #include <osg/Notify>
 
 #include <algorithm>
@@ -147,34 +147,21 @@ Fault findFault(const SkinnedGeometry& mesh, const AnimationSet& set)
     return findFaultInMorphs(mesh, set);
 }
 
-class UnfitMeshes : public osg::NodeVisitor
-{
-public:
-    explicit UnfitMeshes(const AnimationSet& set) : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN), _set(set) {}
-
-    void apply(osg::Drawable& drawable) override
-    {
-        const auto* mesh = dynamic_cast<const SkinnedGeometry*>(&drawable);
-        const Fault fault = mesh ? findFault(*mesh, _set) : Fault();
-        if (!fault) return;
-        OSG_WARN << "osgGpuAnimation: mesh \"" << drawable.getName() << "\" has " << *fault << "; it is not drawn"
-                 << std::endl;
-        found.push_back(&drawable);
-    }
-
-    std::vector<osg::ref_ptr<osg::Drawable>> found;
-
-private:
-    const AnimationSet& _set;
-};
-
 } // namespace
 
 void removeUnfitMeshes(osg::Group& group, const AnimationSet& set)
 {
-    UnfitMeshes unfit(set);
-    group.traverse(unfit);
-    for (const osg::ref_ptr<osg::Drawable>& mesh : unfit.found)
+    std::vector<osg::ref_ptr<osg::Drawable>> unfit;
+    const auto find = [&](SkinnedGeometry& mesh)
+    {
+        const Fault fault = findFault(mesh, set);
+        if (!fault) return;
+        OSG_WARN << "osgGpuAnimation: mesh \"" << mesh.getName() << "\" has " << *fault << "; it is not drawn"
+                 << std::endl;
+        unfit.push_back(&mesh);
+    };
+    forEachMeshBelow(group, find);
+    for (const osg::ref_ptr<osg::Drawable>& mesh : unfit)
         while (mesh->getNumParents() > 0)
             mesh->getParent(0)->removeChild(mesh);
 }

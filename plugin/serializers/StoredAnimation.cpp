@@ -168,8 +168,7 @@ void transferCompactKeyframes(ValueStream& stream, ClipParts& clip, std::size_t&
     stream.block("Weights", compact.weights, floatsATransform);
     stream.block("Packed", compact.packed, 3 * std::max<std::size_t>(compact.tracks.columnCount, 1));
     if (!stream.hasRead()) return;
-    if (const Result<bool> fits = toClipParts(std::move(compact), clip, bytesLeft); !fits)
-        stream.fail(fits.error().message);
+    stream.require("", toClipParts(std::move(compact), clip, bytesLeft));
 }
 
 void transferRootMotion(ValueStream& stream, std::shared_ptr<const RootMotionCurve>& motion)
@@ -335,10 +334,8 @@ void transferVoice(ValueStream& stream, LayerSnapshot::ActiveClip& activeClip)
 {
     stream.property("Voice").values(activeClip.clip, activeClip.time, activeClip.speed);
     stream.limited("a loop mode", activeClip.loopMode, LoopMode::PingPong);
-    stream
-        .values(activeClip.isReturning, activeClip.isFresh, activeClip.share, activeClip.shareBefore,
-                activeClip.phaseGroup)
-        .endLine();
+    stream.values(activeClip.isReturning, activeClip.isFresh, activeClip.share);
+    stream.values(activeClip.shareBefore, activeClip.phaseGroup).endLine();
 }
 
 void transferLayer(ValueStream& stream, LayerSnapshot& layer)
@@ -356,14 +353,10 @@ void transferLayer(ValueStream& stream, LayerSnapshot& layer)
     stream.block("Mask", layer.mask, 8);
 }
 
-void addContents(osgDB::ObjectWrapper* wrapper)
-{
-    addProperty(wrapper, "Contents", &StoredAnimationSet::transferContents);
-}
-
 osgDB::RegisterWrapperProxy storedSet([]() -> osg::Object* { return new StoredAnimationSet; },
                                       "osgGpuAnimation::StoredAnimationSet", "osgGpuAnimation::StoredAnimationSet",
-                                      &addContents);
+                                      [](osgDB::ObjectWrapper* wrapper)
+                                      { addProperty(wrapper, "Contents", &StoredAnimationSet::transferContents); });
 
 } // namespace
 

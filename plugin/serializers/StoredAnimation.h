@@ -37,11 +37,21 @@ void transferSet(ValueStream& stream, Owner& owner, std::shared_ptr<const Animat
     transferAnimationSet(stream, set);
     if (!stream.hasRead()) return;
     removeUnfitMeshes(owner, *set);
-    if (const Result<bool> taken = owner.setAnimationSet(set); !taken) stream.fail(taken.error().message);
+    stream.require("", owner.setAnimationSet(set));
 }
 
 /// The present state of all layers. Reading expects a controller of the same set; a layer whose state does not fit the
 /// set does not change, with a warning.
 void transferController(ValueStream& stream, AnimationController& controller);
+
+/// The sixteen numbers of a node's getFileToNode().
+template <typename Node>
+void transferFileToNode(ValueStream& stream, Node& node)
+{
+    osg::Matrixd matrix = node.getFileToNode();
+    for (int number = 0; number < 16; ++number)
+        stream.value(matrix.ptr()[number]);
+    if (stream.hasRead()) stream.require("a node: ", node.setFileToNode(matrix));
+}
 
 } // namespace osgGpuAnimation::serializers

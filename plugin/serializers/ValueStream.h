@@ -2,6 +2,7 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/JointTransform.h>
+#include <osgGpuAnimation/animation/Result.h>
 
 #include <glm/vec3.hpp>
 #include <osgDB/InputStream>
@@ -42,6 +43,12 @@ public:
     bool hasRead() const { return isReading() && isGood(); }
     /// Makes the file unreadable; the first message stays.
     void fail(const std::string& message);
+    /// The same if the subject has refused a value.
+    template <typename Type>
+    void require(const char* subject, const Result<Type>& taken)
+    {
+        if (!taken) fail(subject + taken.error().message);
+    }
 
     ValueStream& property(const char* name);
     ValueStream& value(std::int32_t& integer) { return number(integer); }

@@ -38,7 +38,7 @@ void addStill(const gltf::ImportedModel& model, std::vector<osg::Vec3d>& points)
     {
         const auto* positions = dynamic_cast<const osg::Vec3Array*>(primitive.geometry->getVertexArray());
         if (!positions || dynamic_cast<const SkinnedGeometry*>(primitive.geometry.get())) continue;
-        const osg::Matrixd toWorld = primitive.toModel * model.root->getMatrix();
+        const osg::Matrixd toWorld = primitive.toModel * model.fileToNode;
         for (const osg::Vec3& position : *positions)
             points.push_back(osg::Vec3d(position) * toWorld);
     }
@@ -52,7 +52,7 @@ void addMoving(const gltf::ImportedModel& model, CpuPoseEvaluator& evaluator, st
     if (!pose || places.empty()) return;
     for (const std::vector<glm::dvec3>& positions : pose.value().positions)
         for (const glm::dvec3& position : positions)
-            points.push_back(osg::Vec3d(position.x, position.y, position.z) * places.front());
+            points.push_back(osg::Vec3d(position.x, position.y, position.z) * model.fileToNode * places.front());
 }
 
 /// The points that the pictures must show: every vertex at every time, or at 64 times, spread evenly, if there are

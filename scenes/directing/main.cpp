@@ -119,7 +119,6 @@ osg::ref_ptr<osg::Group> makeRow(const osg::Node& model, const Direction& direct
 osg::ref_ptr<AnimatedCrowd> makeCrowd(AnimatedCharacter& wanderer)
 {
     osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(wanderer);
-    const osg::Matrixd upright = osg::computeLocalToWorld(wanderer.getParentalNodePaths().front());
     std::mt19937 random(7);
     const auto between = [&](double low, double high)
     { return low + (high - low) * static_cast<double>(random()) / static_cast<double>(std::mt19937::max()); };
@@ -134,7 +133,7 @@ osg::ref_ptr<AnimatedCrowd> makeCrowd(AnimatedCharacter& wanderer)
                                1.3 * (i / columns) + between(-0.4, 0.4), 0.0);
         const double shade = between(0.7, 1.0);
         const osg::Vec4 tint(shade, shade * between(0.8, 1.0), shade * between(0.7, 1.0), 1.0);
-        if (!succeeds(crowd->add(upright * osg::Matrixd::rotate(between(0.1, 0.7), osg::Vec3d(0, 0, 1)) *
+        if (!succeeds(crowd->add(osg::Matrixd::rotate(between(0.1, 0.7), osg::Vec3d(0, 0, 1)) *
                                      osg::Matrixd::translate(place),
                                  controller, tint)))
             return crowd;

@@ -131,10 +131,10 @@ Spent FeedbackFloor::step()
 }
 
 std::string difference(const AnimationSet& set, const PoseInstruction& instruction,
-                       const std::vector<AffineMatrix>& palette)
+                       const std::vector<AffineMatrix>& palette, const AffineMatrix& rootMatrix)
 {
     std::vector<AffineMatrix> expected;
-    Pose::evaluate(set, instruction, AffineMatrix(), expected);
+    Pose::evaluate(set, instruction, rootMatrix, expected);
     if (palette.size() != expected.size()) return "there is no palette";
     float size = 1.0f;
     float largest = 0.0f;

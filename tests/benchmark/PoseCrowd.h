@@ -85,6 +85,6 @@ private:
 
 /// Is the palette what the CPU twin makes of the instruction? Empty: yes, to 1e-4 of its largest number.
 std::string difference(const AnimationSet& set, const PoseInstruction& instruction,
-                       const std::vector<AffineMatrix>& palette);
+                       const std::vector<AffineMatrix>& palette, const AffineMatrix& rootMatrix = {});
 
 } // namespace osgGpuAnimation::benchmark

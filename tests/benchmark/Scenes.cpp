@@ -4,6 +4,7 @@
 #include "PoseCrowd.h"
 
 #include <osgGpuAnimation/animation/Pose.h>
+#include <osgGpuAnimation/nodes/OsgMatrix.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
 #include <osg/Notify>
@@ -22,9 +23,8 @@ osg::Matrixd placement(const Subject& subject, std::size_t number, std::size_t c
 {
     const auto columns = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(count))));
     const double spacing = 1.5 * subject.model.root->getBound().radius();
-    return subject.model.root->getMatrix() * osg::Matrixd::translate(spacing * static_cast<double>(number % columns),
-                                                                     spacing * static_cast<double>(number / columns),
-                                                                     0.0);
+    return osg::Matrixd::translate(spacing * static_cast<double>(number % columns),
+                                   spacing * static_cast<double>(number / columns), 0.0);
 }
 
 double durationOf(const Subject& subject)
@@ -68,8 +68,9 @@ std::string CharacterScene::check(osg::State& state) const
     {
         // Everybody is in sight, so numbers within the frame's batch are those of the nodes.
         const AnimationController& controller = characters[i]->getController();
-        const std::string wrong = difference(controller.set(), controller.instruction(),
-                                             pipeline->readPalette(state, controller.set(), 0, i));
+        const std::string wrong =
+            difference(controller.set(), controller.instruction(), pipeline->readPalette(state, controller.set(), 0, i),
+                       toAffine(characters[i]->getFileToNode()));
         if (!wrong.empty()) return "character " + std::to_string(i) + ": " + wrong;
     }
     return "";
@@ -91,7 +92,7 @@ ReferenceScene::ReferenceScene(const Subject& subject, ReferenceKit& kit, Refere
     for (std::size_t i = 0; i < count; ++i)
     {
         characters.push_back(kit.make(mode, phaseOf(i, durationOf(subject))));
-        characters.back().skeleton->setMatrix(placement(subject, i, count));
+        characters.back().skeleton->setMatrix(subject.model.fileToNode * placement(subject, i, count));
         root->addChild(characters.back().skeleton);
     }
     // The first update links and sets up; hardware mode warns of each character that shares its program with another.
@@ -139,7 +140,8 @@ osg::ref_ptr<osg::Group> makeUnskinnedScene(const Subject& subject, std::size_t 
     osg::ref_ptr<osg::Group> root = new osg::Group;
     for (std::size_t i = 0; i < count; ++i)
     {
-        osg::ref_ptr<osg::MatrixTransform> place = new osg::MatrixTransform(placement(subject, i, count));
+        osg::ref_ptr<osg::MatrixTransform> place =
+            new osg::MatrixTransform(subject.model.fileToNode * placement(subject, i, count));
         for (unsigned int mesh = 0; mesh < meshes->getNumChildren(); ++mesh)
             place->addChild(meshes->getChild(mesh));
         root->addChild(place);

@@ -55,12 +55,20 @@ std::vector<Instance> randomInstances(const AnimationSet& set, std::size_t count
     return instances;
 }
 
+/// The root matrices of a batch.
+enum class Roots
+{
+    None,
+    Own, ///< one per instance
+    One, ///< the first instance's for all
+};
+
 struct PipelineData
 {
     const char* name;
     RandomSetShape shape;
     std::size_t instances;
-    bool hasRoots;
+    Roots roots;
     std::size_t maxTexels; ///< 0: the context's own
 };
 
@@ -70,13 +78,16 @@ void PrintTo(const PipelineData& data, std::ostream* out)
 }
 
 const PipelineData pipelineData[] = {
-    {"one character", {1, 30, 8, 5, false, false, false}, 1, false, 0},
-    {"many, each at its own time", {2, 30, 8, 5, false, true, true}, 100, false, 0},
-    {"with root matrices", {3, 30, 8, 5, false, true, true}, 37, true, 0},
-    {"splines", {4, 30, 8, 5, true, true, true}, 20, true, 0},
-    {"one joint", {5, 1, 1, 3, false, false, false}, 3, false, 0},
-    {"a chain of 64", {6, 64, 64, 3, false, false, false}, 10, false, 0},
-    {"in chunks, as with 65,536 texels", {7, 20, 6, 2, false, false, true}, 2500, true, 65536},
+    {"one character", {1, 30, 8, 5, false, false, false}, 1, Roots::None, 0},
+    {"many, each at its own time", {2, 30, 8, 5, false, true, true}, 100, Roots::None, 0},
+    {"with root matrices", {3, 30, 8, 5, false, true, true}, 37, Roots::Own, 0},
+    {"splines", {4, 30, 8, 5, true, true, true}, 20, Roots::Own, 0},
+    {"one joint", {5, 1, 1, 3, false, false, false}, 3, Roots::None, 0},
+    {"a chain of 64", {6, 64, 64, 3, false, false, false}, 10, Roots::None, 0},
+    {"in chunks, as with 65,536 texels", {7, 20, 6, 2, false, false, true}, 2500, Roots::Own, 65536},
+    {"with one root matrix for all", {8, 30, 8, 5, false, true, true}, 37, Roots::One, 0},
+    {"one character with a root matrix", {9, 30, 8, 5, false, false, true}, 1, Roots::One, 0},
+    {"one root matrix, in chunks", {7, 20, 6, 2, false, false, true}, 2500, Roots::One, 65536},
 };
 
 class PosePipelineGLTest : public GLTest,
@@ -90,8 +101,9 @@ TEST_P(PosePipelineGLTest, agreesWithTheCpuTwin)
     const auto set = makeRandomSet(data.shape);
     const std::vector<Instance> instances = randomInstances(*set, data.instances, data.shape.seed + 100);
     PoseBatch batch(set);
+    if (data.roots == Roots::One) batch.setRootMatrix(instances.front().root);
     for (const Instance& instance : instances)
-        data.hasRoots ? batch.add(instance.instruction, instance.root) : batch.add(instance.instruction);
+        data.roots == Roots::Own ? batch.add(instance.instruction, instance.root) : batch.add(instance.instruction);
 
     PosePipeline* pipeline = PosePipeline::of(state());
     ASSERT_NE(pipeline, nullptr);
@@ -105,7 +117,9 @@ TEST_P(PosePipelineGLTest, agreesWithTheCpuTwin)
     for (std::size_t i = 0; i < instances.size(); i += step)
     {
         std::vector<AffineMatrix> expected;
-        Pose::evaluate(*set, instances[i].instruction, data.hasRoots ? instances[i].root : AffineMatrix(), expected);
+        AffineMatrix root;
+        if (data.roots != Roots::None) root = instances[data.roots == Roots::Own ? i : 0].root;
+        Pose::evaluate(*set, instances[i].instruction, root, expected);
         EXPECT_LT(difference(pipeline->readPalette(state(), *set, 0, i), expected), tolerance) << "instance " << i;
     }
 }
@@ -130,6 +144,25 @@ TEST_F(PosePipelineCostGLTest, drawsDependOnTheSetAloneNotOnTheNumberOfCharacter
         pipeline->evaluate(state(), batch, 0);
         EXPECT_EQ(pipeline->getCounters().feedbackDraws - before.feedbackDraws, set->levelCount());
         EXPECT_EQ(pipeline->getCounters().bytesUploaded - before.bytesUploaded, 16 * count);
+    }
+}
+
+TEST_F(PosePipelineCostGLTest, oneRootMatrixForAllIsUploadedOnce)
+{
+    const auto set = makeRandomSet({});
+    PosePipeline* pipeline = PosePipeline::of(state());
+    const std::vector<Instance> instances = randomInstances(*set, 100, 1);
+    for (const std::size_t expected : {100u * 16u + 48u, 100u * 16u})
+    {
+        PoseBatch batch(set);
+        batch.setRootMatrix(instances[0].root);
+        EXPECT_TRUE(batch.hasRootMatrix(instances[0].root));
+        EXPECT_FALSE(batch.hasRootMatrix(instances[1].root));
+        for (const Instance& instance : randomInstances(*set, 100, expected))
+            batch.add(instance.instruction);
+        const PosePipeline::Counters before = pipeline->getCounters();
+        ASSERT_TRUE(pipeline->evaluate(state(), batch, 0));
+        EXPECT_EQ(pipeline->getCounters().bytesUploaded - before.bytesUploaded, expected);
     }
 }
 

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "support/TestCharacter.h"
 
+#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+
+#include <osg/ComputeBoundsVisitor>
+#include <osg/CullStack>
+
 #include <gtest/gtest.h>
 
 namespace osgGpuAnimation
@@ -49,6 +54,131 @@ TEST(CharacterBoundsTest, ACloneHasItsOwn)
     character->update(0.0);
     EXPECT_LE(clone->getCurrentBounds().zMin(), -1.0f);
     EXPECT_NEAR(character->getCurrentBounds().zMin(), 0.0f, 1e-3);
+}
+
+/// As osgShadow::ViewDependentShadowMap computes the bounds of what casts shadows, without a light.
+class ShadowBounds : public osg::NodeVisitor, public osg::CullStack
+{
+public:
+    ShadowBounds() : osg::NodeVisitor(TRAVERSE_ACTIVE_CHILDREN)
+    {
+        setCullingMode(osg::CullSettings::NO_CULLING);
+        pushViewport(new osg::Viewport(0, 0, 1, 1));
+        pushProjectionMatrix(new osg::RefMatrix);
+        pushModelViewMatrix(new osg::RefMatrix, osg::Transform::ABSOLUTE_RF);
+    }
+    ~ShadowBounds() override
+    {
+        popModelViewMatrix();
+        popProjectionMatrix();
+        popViewport();
+    }
+    void apply(osg::Transform& transform) override
+    {
+        osg::ref_ptr<osg::RefMatrix> matrix = new osg::RefMatrix(*getModelViewMatrix());
+        transform.computeLocalToWorldMatrix(*matrix, this);
+        pushModelViewMatrix(matrix, transform.getReferenceFrame());
+        traverse(transform);
+        popModelViewMatrix();
+    }
+    void apply(osg::Drawable& drawable) override
+    {
+        for (unsigned int corner = 0; corner < 8; ++corner)
+            box.expandBy(drawable.getBoundingBox().corner(corner) * *getModelViewMatrix());
+    }
+
+    osg::BoundingBox box;
+};
+
+osg::BoundingBox boundsOf(osg::Node& node)
+{
+    osg::ComputeBoundsVisitor visitor;
+    node.accept(visitor);
+    return visitor.getBoundingBox();
+}
+
+osg::BoundingBox shadowBoundsOf(osg::Node& node)
+{
+    ShadowBounds visitor;
+    node.accept(visitor);
+    return visitor.box;
+}
+
+void expectBox(const osg::BoundingBox& box, const osg::Vec3& min, const osg::Vec3& max)
+{
+    EXPECT_LT((box._min - min).length(), 1e-3f) << box._min.x() << ' ' << box._min.y() << ' ' << box._min.z();
+    EXPECT_LT((box._max - max).length(), 1e-3f) << box._max.x() << ' ' << box._max.y() << ' ' << box._max.z();
+}
+
+/// Two clones side by side: the one shifts, the other turns.
+osg::ref_ptr<osg::Group> makeTwo()
+{
+    osg::ref_ptr<osg::Group> both = new osg::Group;
+    both->addChild(makeTestCharacter());
+    osg::ref_ptr<AnimatedCharacter> clone =
+        osg::clone(dynamic_cast<AnimatedCharacter*>(both->getChild(0)), osg::CopyOp::DEEP_COPY_NODES);
+    clone->setMatrix(osg::Matrix::translate(100, 0, 0));
+    both->addChild(clone);
+    EXPECT_TRUE(clone->getController().play("turn"));
+    return both;
+}
+
+TEST(BoundsVisitorsTest, getWhatACharacterPlaysNow)
+{
+    for (const auto& boundsOf : {&boundsOf, &shadowBoundsOf})
+    {
+        const osg::ref_ptr<osg::Group> both = makeTwo();
+        auto& shifting = dynamic_cast<AnimatedCharacter&>(*both->getChild(0));
+        // The square is 1 unit wide and shifts by 2.
+        expectBox(boundsOf(shifting), {0, 0, 0}, {3, 0, 1});
+        const osg::BoundingBox turning = dynamic_cast<AnimatedCharacter&>(*both->getChild(1)).getCurrentBounds();
+        expectBox(boundsOf(*both->getChild(1)), turning._min + osg::Vec3(100, 0, 0),
+                  turning._max + osg::Vec3(100, 0, 0));
+        EXPECT_LT(turning.zMin(), -0.9f);
+        ASSERT_TRUE(shifting.getController().crossfade("turn", 1.0));
+        expectBox(boundsOf(shifting), shifting.getCurrentBounds()._min, shifting.getCurrentBounds()._max);
+        EXPECT_LT(boundsOf(shifting).zMin(), -0.9f);
+    }
+}
+
+TEST(BoundsVisitorsTest, getOtherChildrenAndRespectMasks)
+{
+    const osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
+    osg::ref_ptr<osg::MatrixTransform> beside = new osg::MatrixTransform(osg::Matrix::translate(-10, 0, 0));
+    osg::ref_ptr<osg::Drawable> thing = new osg::Drawable;
+    thing->setInitialBound(osg::BoundingBox(0, 0, 0, 1, 1, 1));
+    beside->addChild(thing);
+    character->addChild(beside);
+    for (const auto& boundsOf : {&boundsOf, &shadowBoundsOf})
+    {
+        EXPECT_NEAR(boundsOf(*character).xMin(), -10.0f, 1e-3f);
+        EXPECT_NEAR(boundsOf(*character).xMax(), 3.0f, 1e-3f);
+    }
+    for (unsigned int i = 0; i < character->getNumChildren(); ++i)
+        if (character->getChild(i) != beside) character->getChild(i)->setNodeMask(0);
+    expectBox(boundsOf(*character), {-10, 0, 0}, {-9, 1, 1});
+}
+
+TEST(BoundsVisitorsTest, getWhatACrowdsInstancesPlayNow)
+{
+    const osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
+    for (const auto& boundsOf : {&boundsOf, &shadowBoundsOf})
+    {
+        const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*character);
+        const AnimatedCrowd::Instance first =
+            crowd->add(osg::Matrixd::translate(10, 20, 30), character->getController()).value();
+        expectBox(boundsOf(*crowd), {10, 20, 30}, {13, 20, 31});
+        crowd->add(osg::Matrixd::scale(2, 2, 2) * osg::Matrixd::translate(50, 0, 0), character->getController())
+            .value();
+        expectBox(boundsOf(*crowd), {10, 0, 0}, {56, 20, 31});
+        // A clip that plays once keeps a controller.
+        crowd->getController(first)->setLoopMode(LoopMode::Once);
+        expectBox(boundsOf(*crowd), {10, 0, 0}, {56, 20, 31});
+        ASSERT_TRUE(crowd->getController(first)->crossfade("turn", 1.0));
+        crowd->update(0.0);
+        EXPECT_LT(boundsOf(*crowd).zMax(), 40.0f);
+        EXPECT_LE(boundsOf(*crowd).xMin(), 10.0f);
+    }
 }
 
 } // namespace

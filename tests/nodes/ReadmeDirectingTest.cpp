@@ -120,10 +120,10 @@ TEST_F(ReadmeDirectingTest, RootMotionOfTheCharacterOrOfSomethingElse)
     if (set) (void)fox->setAnimationSet(set.value());
     fox->getController().advance(0.5);
 
-    glm::dmat4 placement(1.0);
-    RootMotion step = fox->getController().takeRootMotion();
-    placement = placement * step.matrix();
-    EXPECT_NEAR(placement[3].z, 1.0, 1e-6);
+    osg::Matrixd placement;
+    osg::Matrixd step = fox->takeRootMotion();
+    placement = step * placement;
+    EXPECT_NEAR(placement.getTrans().z(), 1.0, 1e-6);
 
     fox->addUpdateCallback(new RootMotionCallback);
     fox->getController().advance(0.25);

@@ -5,6 +5,7 @@
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/mesh/PaletteEntryBounds.h>
+#include <osgGpuAnimation/nodes/OsgMatrix.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
 #include <gtest/gtest.h>
@@ -42,7 +43,7 @@ protected:
     {
         const AnimationController& controller = character->getController();
         std::vector<AffineMatrix> palette;
-        Pose::evaluate(controller.set(), controller.instruction(), AffineMatrix(), palette);
+        Pose::evaluate(controller.set(), controller.instruction(), toAffine(character->getFileToNode()), palette);
         std::vector<glm::dvec3> positions;
         Box box;
         for (unsigned int i = 0; i < character->getNumChildren(); ++i)

@@ -108,9 +108,7 @@ protected:
         copy.getController().setSpeed(0.5);
         EXPECT_EQ(Picture::pixelsDifferent(*before, *pictureOf(original, 1.0)), 0);
         EXPECT_NE(first.getController().clip(), copy.getController().clip());
-        // The loaded root turns +Y to +Z, and so it is for the copy.
-        osg::ref_ptr<osg::MatrixTransform> place =
-            new osg::MatrixTransform(osg::Matrix::rotate(osg::PI_2, osg::Vec3d(1, 0, 0)));
+        osg::ref_ptr<osg::Group> place = new osg::Group;
         place->addChild(&copy);
         pictureOf(*place, 1.0);
         copy.getController().seek(0.0);

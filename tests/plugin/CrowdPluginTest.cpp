@@ -126,12 +126,10 @@ TEST_F(CrowdPluginTest, readsColumnsAndRowsByTheBounds)
     EXPECT_NEAR(placeOf(*crowd, 4).y() - placeOf(*crowd, 0).y(), spacing, 1e-4 * spacing);
     EXPECT_NEAR(placeOf(*crowd, 0).x() + placeOf(*crowd, 11).x(), 0.0, 1e-4 * spacing);
     EXPECT_EQ(placeOf(*crowd, 0).z(), placeOf(*crowd, 11).z());
-    EXPECT_NEAR(
-        (osg::Matrixd::transform3x3(osg::Vec3d(0, 1, 0), crowd->getPlacement(crowd->getInstances().handleOf(0))) -
-         osg::Vec3d(0, 0, 1))
-            .length(),
-        0.0, 1e-6)
+    const osg::Matrixd placement = crowd->getPlacement(crowd->getInstances().handleOf(0));
+    EXPECT_EQ(osg::Matrixd::transform3x3(osg::Vec3d(0, 1, 0), crowd->getFileToNode() * placement), osg::Vec3d(0, 0, 1))
         << "+Z is up, as for the model itself";
+    EXPECT_EQ(osg::Matrixd::transform3x3(osg::Vec3d(0, 0, 1), placement), osg::Vec3d(0, 0, 1));
 }
 
 TEST_F(CrowdPluginTest, theSeedFixesClipsAndTimes)

@@ -120,18 +120,27 @@ osg::ref_ptr<AnimatedCrowd> makeCrowd(const AnimatedCharacter& character)
     return crowd;
 }
 
+/// Earlier readers turned +Y up to +Z up by a transform above the character.
+osg::ref_ptr<osg::MatrixTransform> readTurned(const std::string& file, const std::string& options)
+{
+    osg::ref_ptr<osg::MatrixTransform> turn =
+        new osg::MatrixTransform(osg::Matrixd::rotate(osg::PI_2, osg::Vec3d(1, 0, 0)));
+    turn->addChild(osgDB::readRefNodeFile(file, new osgDB::Options("noRotation " + options)));
+    return turn;
+}
+
 /// The scene that the fixtures hold: a character, another one of its set, a crowd, and a character of compact clips.
 osg::ref_ptr<osg::Group> makeScene(const ScratchFolder& folder)
 {
     const std::string file = folder.write("arm.gltf", armModel());
     osg::ref_ptr<osg::Group> scene = new osg::Group;
-    scene->addChild(osgDB::readRefNodeFile(file));
+    scene->addChild(readTurned(file, ""));
     const osg::ref_ptr<osg::Node> first = scene->getChild(0);
     scene->addChild(makeCrowd(*findCharacter(*first)));
     setUpCharacter(*findCharacter(*first));
     scene->addChild(osg::clone(first.get(), osg::CopyOp::DEEP_COPY_NODES));
     findCharacter(*scene->getChild(2))->getController().setSpeed(3.0);
-    scene->addChild(osgDB::readRefNodeFile(file, new osgDB::Options("compact=0.0001")));
+    scene->addChild(readTurned(file, "compact=0.0001"));
     return scene;
 }
 
@@ -250,6 +259,13 @@ TEST_P(EarlierScenesTest, charactersAreAsTheyWere)
         SCOPED_TRACE(child);
         ASSERT_TRUE(findCharacter(*found->getChild(child)));
         expectSameCharacter(characterIn(*expected, child), characterIn(*found, child));
+        const osg::Matrixd up = characterIn(*found, child).jointToModel(std::size_t(0)).value() *
+                                characterIn(*found, child).getWorldMatrices().front();
+        const osg::Matrixd upBefore = characterIn(*expected, child).jointToModel(std::size_t(0)).value() *
+                                      characterIn(*expected, child).getWorldMatrices().front();
+        EXPECT_LE((up.getTrans() - upBefore.getTrans()).length(), 1e-6);
+        EXPECT_LE((osg::Vec3d(0, 1, 0) * up - osg::Vec3d(0, 1, 0) * upBefore).length(), 1e-6);
+        EXPECT_TRUE(characterIn(*found, child).getFileToNode().isIdentity());
     }
     EXPECT_EQ(&characterIn(*found, 0).getAnimationSet(), &characterIn(*found, 2).getAnimationSet())
         << "one set for both";

@@ -103,12 +103,17 @@ TEST(ImportTest, withoutSkinOrClipThereIsNoCharacter)
 TEST(ImportTest, turnsYUpToZUpInOnePlace)
 {
     const ArmAndStone file;
-    const osg::Vec3d up = osg::Vec3d(0, 1, 0) * imported(file).root->getMatrix();
-    EXPECT_NEAR((up - osg::Vec3d(0, 0, 1)).length(), 0.0, 1e-12);
+    const ImportedModel model = imported(file);
+    EXPECT_EQ(osg::Vec3d(0, 1, 0) * model.character->getFileToNode(), osg::Vec3d(0, 0, 1));
+    EXPECT_TRUE(model.character->getMatrix().isIdentity());
+    ASSERT_EQ(model.root->getNumChildren(), 2u) << "the character, and the stone below a transform";
+    EXPECT_EQ(osg::Vec3d(0, 1, 0) * primitiveOf(model, file.stone).geometry->getWorldMatrices().front(),
+              osg::Vec3d(0, 0, 1));
     ImportOptions options;
     options.noRotation = true;
-    EXPECT_TRUE(imported(file, options).root->getMatrix().isIdentity());
-    EXPECT_TRUE(imported(file).character->getMatrix().isIdentity());
+    const ImportedModel unrotated = imported(file, options);
+    EXPECT_TRUE(unrotated.character->getFileToNode().isIdentity());
+    EXPECT_TRUE(primitiveOf(unrotated, file.stone).geometry->getWorldMatrices().front().isIdentity());
 }
 
 TEST(ImportTest, theFirstClipPlaysInALoopAtOnce)

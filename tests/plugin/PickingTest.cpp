@@ -98,7 +98,8 @@ protected:
     PosedTriangles trianglesOfCharacter() const
     {
         PosedTriangles triangles;
-        const osg::Matrixd toWorld = osg::computeLocalToWorld(character->getParentalNodePaths().front());
+        const osg::Matrixd toWorld =
+            character->getFileToNode() * osg::computeLocalToWorld(character->getParentalNodePaths().front());
         forEachMesh([&](const SkinnedGeometry& mesh) { triangles.add(mesh, character->getController(), toWorld); });
         return triangles;
     }
@@ -184,7 +185,7 @@ TEST_P(PickingTest, raysMeetACrowdsInstancesAsTheyArePosed)
                                        osg::Matrixd::rotate(number(0.0, 6.0), direction()) *
                                        osg::Matrixd::translate(apart * (i % 4), apart * (i / 4), number(-1, 1));
         const AnimatedCrowd::Instance instance = crowd->add(placement, controller).value();
-        const osg::Matrixd toWorld = placement * scene->getMatrix();
+        const osg::Matrixd toWorld = crowd->getFileToNode() * placement * scene->getMatrix();
         forEachMesh([&](const SkinnedGeometry& mesh) { triangles.add(mesh, controller, toWorld, instance); });
     }
     crowd->update(0.0);

@@ -257,7 +257,7 @@ TEST_F(PluginTest, theOptimizerLeavesTheCharacterWhole)
     AnimatedCharacter* character = findCharacter(*node);
     ASSERT_TRUE(character);
     EXPECT_EQ(character->getNumChildren(), 1u);
-    const osg::Vec3d up = osg::Vec3d(0, 1, 0) * character->getWorldMatrices().front();
+    const osg::Vec3d up = osg::Vec3d(0, 1, 0) * character->getFileToNode() * character->getWorldMatrices().front();
     EXPECT_NEAR((up - osg::Vec3d(0, 0, 1)).length(), 0.0, 1e-12);
 }
 

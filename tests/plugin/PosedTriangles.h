@@ -26,7 +26,7 @@ public:
         std::set<int> joints; ///< the heaviest one at the point, and any that weighs nearly as much
     };
 
-    /// mesh: as the controller poses it, then taken by the matrix to the world.
+    /// mesh: as the controller poses it. toWorld: from the file's axes.
     void add(const SkinnedGeometry& mesh, const AnimationController& controller, const osg::Matrixd& toWorld,
              std::uint64_t owner = 0);
 

@@ -236,6 +236,7 @@ TEST_F(SerializersTest, drawnAloneComesBack)
 
 TEST_F(SerializersTest, whatIsAsByDefaultIsReadableAsBefore)
 {
+    ASSERT_TRUE(character().setFileToNode({}));
     const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(character());
     ASSERT_TRUE(crowd->add(osg::Matrixd(), AnimationController(crowd->getSharedAnimationSet())));
     EXPECT_NE(textOf(*crowd).find("Instances 1 "), std::string::npos);

@@ -4,6 +4,7 @@
 #include <layout.glsl>
 
 #include <algorithm>
+#include <cassert>
 #include <cstring>
 
 namespace osgGpuAnimation
@@ -55,7 +56,7 @@ std::size_t PoseBatch::append(const BlendSample* samples, std::size_t count)
     }
     _samples.resize((_size + 1) * _sampleStride, BlendSample{0, 0.0f, 0.0f, 0});
     _needs.mixing = _needs.mixing || _sampleStride > 1;
-    if (!_rootMatrices.empty()) _rootMatrices.emplace_back();
+    if (!_rootMatrices.empty() && !_isRootCommon) _rootMatrices.emplace_back();
     if (!_tints.empty()) _tints.push_back(white);
     return _size++;
 }
@@ -73,8 +74,22 @@ std::size_t PoseBatch::add(const PoseInstruction& instruction)
     return append(instruction.samples.data(), std::min(instruction.sampleCount, PoseInstruction::maxSamples));
 }
 
+void PoseBatch::setRootMatrix(const AffineMatrix& rootMatrix)
+{
+    assert(_size == 0 && "the root matrix is set before the first instance");
+    _isRootCommon = !rootMatrix.isIdentity();
+    _rootMatrices.assign(_isRootCommon ? 1 : 0, rootMatrix);
+}
+
+bool PoseBatch::hasRootMatrix(const AffineMatrix& rootMatrix) const
+{
+    return _isRootCommon ? _rootMatrices.front().rows == rootMatrix.rows
+                         : _rootMatrices.empty() && rootMatrix.isIdentity();
+}
+
 std::size_t PoseBatch::add(const PoseInstruction& instruction, const AffineMatrix& rootMatrix)
 {
+    assert(!_isRootCommon && "the batch has one root matrix for all");
     const std::size_t instance = add(instruction);
     _rootMatrices.resize(_size);
     _rootMatrices.back() = rootMatrix;
@@ -83,6 +98,7 @@ std::size_t PoseBatch::add(const PoseInstruction& instruction, const AffineMatri
 
 std::size_t PoseBatch::addSample(const BlendSample& sample, const AffineMatrix& rootMatrix)
 {
+    assert(!_isRootCommon && "the batch has one root matrix for all");
     const std::size_t instance = append(&sample, 1);
     _rootMatrices.resize(_size);
     _rootMatrices.back() = rootMatrix;
@@ -124,6 +140,7 @@ void PoseBatch::clear()
     _needs = Needs();
     _samples.clear();
     _rootMatrices.clear();
+    _isRootCommon = false;
     _tints.clear();
 }
 

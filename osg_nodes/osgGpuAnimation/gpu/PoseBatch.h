@@ -42,6 +42,10 @@ public:
 
     /// Adds an instance and returns its index: 0, 1, 2 … Clamps weights and alphas to [0, 1]; a NaN counts as 0.
     std::size_t add(const PoseInstruction& instruction);
+    /// Sets one root matrix for all instances, which then have none of their own. Call it before the first add().
+    void setRootMatrix(const AffineMatrix& rootMatrix);
+    /// True if the batch has this root matrix for all instances; without one it has the identity.
+    bool hasRootMatrix(const AffineMatrix& rootMatrix) const;
     /// Adds an instance whose root joints are multiplied by a root matrix. Other instances have the identity.
     std::size_t add(const PoseInstruction& instruction, const AffineMatrix& rootMatrix);
     /// Does the same for a pose of one sample.
@@ -91,7 +95,7 @@ public:
     std::size_t sampleStride() const { return _sampleStride; }
     /// size() * sampleStride() samples; unused samples have weight 0.
     const std::vector<BlendSample>& samples() const { return _samples; }
-    /// size() matrices; empty if no instance has one.
+    /// size() matrices; a single one: for all instances; empty: the identity for all.
     const std::vector<AffineMatrix>& rootMatrices() const { return _rootMatrices; }
     /// size() colours; empty if all are white.
     const std::vector<std::uint32_t>& tints() const { return _tints; }
@@ -109,6 +113,7 @@ private:
     Needs _needs;
     std::vector<BlendSample> _samples;
     std::vector<AffineMatrix> _rootMatrices;
+    bool _isRootCommon = false; ///< true: _rootMatrices has one matrix for all instances
     std::vector<std::uint32_t> _tints;
 };
 

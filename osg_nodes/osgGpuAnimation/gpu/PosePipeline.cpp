@@ -340,7 +340,7 @@ bool PosePipeline::Parts::evaluateSeparate(const PoseBatch& batch, const Animati
     worldPass->setInt("instanceCount", static_cast<int>(chunk.width));
     worldPass->setTexture("entries", unitEntries, buffers.entries().texture());
     worldPass->setTexture("roots", unitRoots, chunk.roots.texture());
-    worldPass->setInt("hasRoots", chunk.uploadedRootMatrices.empty() ? 0 : 1);
+    worldPass->setInt("rootCount", static_cast<int>(chunk.uploadedRootMatrices.size()));
     worldPass->setTexture("localMatrices", unitPrevious, scratch.texture());
     runSeparate(*worldPass, set.paletteSize() * chunk.width, chunk.palette);
     return true;

@@ -48,8 +48,9 @@ AnimatedCharacter::AnimatedCharacter(std::shared_ptr<const AnimationSet> set)
 
 AnimatedCharacter::AnimatedCharacter(const AnimatedCharacter& other, const osg::CopyOp& copyop)
     : osg::MatrixTransform(other, copyop), _controller(std::make_unique<AnimationController>(*other._controller)),
-      _clipBounds(other._clipBounds), _mixBounds(other._mixBounds), _updateTime(other._updateTime),
-      _isDrawnTogether(other._isDrawnTogether), _pixelError(other._pixelError)
+      _fileToNode(other._fileToNode), _rootMatrix(other._rootMatrix), _clipBounds(other._clipBounds),
+      _mixBounds(other._mixBounds), _updateTime(other._updateTime), _isDrawnTogether(other._isDrawnTogether),
+      _pixelError(other._pixelError)
 {
     // osg::Node copies its other callbacks, but not the event callbacks.
     setEventCallback(copyop(other.getEventCallback()));
@@ -77,11 +78,21 @@ Result<bool> AnimatedCharacter::setPixelError(float pixels)
     return prepared;
 }
 
+Result<bool> AnimatedCharacter::setFileToNode(const osg::Matrixd& fileToNode)
+{
+    const Result<AffineMatrix> root = toRootMatrix(fileToNode, "the transform from the file's axes", true);
+    if (!root) return root.error();
+    _fileToNode = fileToNode;
+    _rootMatrix = root.value();
+    if (_clipBounds) setMeshBounds();
+    return true;
+}
+
 Result<osg::Matrixd> AnimatedCharacter::jointToModel(std::size_t joint) const
 {
     const std::size_t count = getAnimationSet().skeleton().jointCount();
     if (joint >= count) return Error{"there is no joint " + std::to_string(joint) + " among " + std::to_string(count)};
-    return toOsg(Pose::jointToModel(getAnimationSet(), _controller->instruction(), joint));
+    return toOsg(Pose::jointToModel(getAnimationSet(), _controller->instruction(), joint)) * _fileToNode;
 }
 
 Result<osg::Matrixd> AnimatedCharacter::jointToModel(const std::string& joint) const
@@ -89,6 +100,11 @@ Result<osg::Matrixd> AnimatedCharacter::jointToModel(const std::string& joint) c
     const Result<std::size_t> index = getAnimationSet().skeleton().jointNamed(joint);
     if (!index) return index.error();
     return jointToModel(index.value());
+}
+
+osg::Matrixd AnimatedCharacter::takeRootMotion()
+{
+    return toOsg(_controller->takeRootMotion(), _fileToNode);
 }
 
 void AnimatedCharacter::update(double simulationTime)
@@ -122,20 +138,29 @@ void AnimatedCharacter::computeClipBounds()
     if (!set.morphs().empty()) boxesWithAdded = entryBoxesOf(*this, PaletteEntryBounds(set, maxLayers));
 
     std::vector<osg::BoundingBox> bounds;
-    osg::BoundingBox all;
     for (const Box& box : boundsOfClips(set, boxes))
-    {
         bounds.push_back(toOsg(box));
-        all.expandBy(bounds.back());
-    }
-    forEachMeshBelow(*this, [&](SkinnedGeometry& mesh) { mesh.setInitialBound(all); });
     _clipBounds = std::make_shared<const std::vector<osg::BoundingBox>>(std::move(bounds));
     _mixBounds = std::make_shared<const MixBounds>(set, boxes, boxesWithAdded);
+    setMeshBounds();
+}
+
+void AnimatedCharacter::setMeshBounds()
+{
+    osg::BoundingBox all;
+    for (const osg::BoundingBox& box : *_clipBounds)
+        all.expandBy(transformed(box, _fileToNode));
+    forEachMeshBelow(*this, [&](SkinnedGeometry& mesh) { mesh.setInitialBound(all); });
     _played.clear();
     dirtyBound();
 }
 
 osg::BoundingBox AnimatedCharacter::getClipBounds(int clip) const
+{
+    return transformed(clipBoundsInFile(clip), _fileToNode);
+}
+
+osg::BoundingBox AnimatedCharacter::clipBoundsInFile(int clip) const
 {
     const std::size_t index = static_cast<std::size_t>(clip + 1);
     return _clipBounds && index < _clipBounds->size() ? (*_clipBounds)[index] : osg::BoundingBox();
@@ -144,7 +169,7 @@ osg::BoundingBox AnimatedCharacter::getClipBounds(int clip) const
 osg::ref_ptr<osg::Geometry> AnimatedCharacter::getPosedMesh(const SkinnedGeometry& mesh) const
 {
     std::call_once(_posedMeshesMade, [this] { _posedMeshes = std::make_unique<PosedMeshes>(); });
-    return _posedMeshes->of(mesh, _controller->sharedSet(), _controller->instruction(), AffineMatrix());
+    return _posedMeshes->of(mesh, _controller->sharedSet(), _controller->instruction(), _rootMatrix);
 }
 
 void AnimatedCharacter::acceptPosed(osg::PrimitiveFunctor& functor)
@@ -157,18 +182,22 @@ void AnimatedCharacter::traverse(osg::NodeVisitor& visitor)
     osgUtil::CullVisitor* cullVisitor = visitor.asCullVisitor();
     if (!cullVisitor || getNumChildren() == 0 || getAnimationSet().paletteSize() == 0)
     {
-        if (!keepFlattenedPlace(*this, visitor)) osg::MatrixTransform::traverse(visitor);
+        const osg::BoundingBox now = computesBounds(visitor) ? getCurrentBounds() : osg::BoundingBox();
+        if (now.valid())
+            traverseWithBounds(*this, now, visitor);
+        else if (!keepFlattenedPlace(*this, visitor))
+            osg::MatrixTransform::traverse(visitor);
         return;
     }
     const DepthPass pass(*cullVisitor);
-    PoseStage::draw(*cullVisitor, {*this, *_controller, _pixelError, _isDrawnTogether});
+    PoseStage::draw(*cullVisitor, {*this, *_controller, _rootMatrix, _pixelError, _isDrawnTogether});
 }
 
 osg::BoundingBox AnimatedCharacter::boundsOf(const std::vector<PlayedClip>& played) const
 {
     const bool isAlone = played.size() == 1 && played.front().part == PlayedClip::Part::Mixed;
     if (isAlone || !_mixBounds) return getClipBounds(isAlone ? played.front().clip : _controller->clip());
-    return toOsg(_mixBounds->box(played));
+    return transformed(toOsg(_mixBounds->box(played)), _fileToNode);
 }
 
 osg::BoundingBox AnimatedCharacter::getCurrentBounds() const
@@ -190,10 +219,7 @@ osg::BoundingSphere AnimatedCharacter::computeBound() const
         if (!dynamic_cast<const SkinnedGeometry*>(child.get())) others.expandBy(bound);
     }
     if (others.valid()) box.expandBy(others);
-    osg::BoundingBox placed;
-    for (unsigned int corner = 0; corner < 8; ++corner)
-        placed.expandBy(box.corner(corner) * getMatrix());
-    return osg::BoundingSphere(placed);
+    return osg::BoundingSphere(transformed(box, getMatrix()));
 }
 
 AnimatedCharacter* findCharacter(osg::Node& node)

@@ -33,6 +33,9 @@ struct PlayedClip;
 /// The constructor installs an AnimationUpdateCallback, which advances the controller by the frame stamp's simulation
 /// time. A visible character submits its pose to the PoseStage of the graphics context during cull, and the GPU
 /// evaluates it before any camera draws it. An invisible character costs nothing on the GPU.
+///
+/// The set has the axes of its file (glTF: +Y up). The character draws it in its own space (OSG: +Z up) by
+/// getFileToNode(), and all matrices, boxes and meshes of this class are in the character's own space.
 class AnimatedCharacter : public osg::MatrixTransform, public Updatable, public PosedMeshSource
 {
 public:
@@ -57,12 +60,22 @@ public:
     /// Error: the palette size of the set differs from that of the present set.
     Result<bool> setAnimationSet(std::shared_ptr<const AnimationSet> set);
 
+    /// Sets the transform from the axes of the set's file to the character's own space: the plugin for glTF turns +Y up
+    /// to +Z up with it. Default: the identity. Call it before cloning and before a crowd is made of the character.
+    /// Errors: the matrix is not finite, not affine, or its determinant is not above 0.
+    Result<bool> setFileToNode(const osg::Matrixd& fileToNode);
+    const osg::Matrixd& getFileToNode() const { return _fileToNode; } ///< affine, with an inverse
+
     /// The present transform of a joint, from joint space to the character's own space. The CPU twin computes it from
     /// the joint's chain of parents, cheaply enough for every frame.
     /// joint: in [0, skeleton().jointCount()). Error: joint is out of range.
     Result<osg::Matrixd> jointToModel(std::size_t joint) const;
     /// The same for the first joint of that name. Error: no joint has the name; the message lists the names.
     Result<osg::Matrixd> jointToModel(const std::string& joint) const;
+
+    /// The root motion since the last call, in the character's own space: preMult() it to the matrix that places the
+    /// character. The identity without root motion (see withRootMotion).
+    osg::Matrixd takeRootMotion();
 
     /// Advances the controller by the time since the last update; the first call only stores the time. A jump of the
     /// time in either direction moves the clips by the same amount, so equal times show equal poses.
@@ -102,7 +115,9 @@ public:
     /// pose, because it belongs to no character.)
     void acceptPosed(osg::PrimitiveFunctor& functor);
 
-    /// During cull: submits the pose and draws the children from the palette. Other visitors traverse the children.
+    /// During cull: submits the pose and draws the children from the palette. Visitors that compute bounds
+    /// (osg::ComputeBoundsVisitor and osgShadow's) get getCurrentBounds() in place of the boxes of the meshes, which
+    /// clones share. Other visitors traverse the children.
     void traverse(osg::NodeVisitor& visitor) override;
     /// The sphere around getCurrentBounds(); update() marks it dirty when other clips play.
     osg::BoundingSphere computeBound() const override;
@@ -111,16 +126,23 @@ protected:
     ~AnimatedCharacter() override;
 
 private:
+    friend class AnimatedCrowd;
+
+    osg::BoundingBox clipBoundsInFile(int clip) const;
+    void setMeshBounds();
     osg::BoundingBox boundsOf(const std::vector<PlayedClip>& played) const;
     void growMeshes(const osg::BoundingBox& box);
 
     std::unique_ptr<AnimationController> _controller;
-    std::shared_ptr<const std::vector<osg::BoundingBox>> _clipBounds; ///< rest pose, then one per clip
-    std::shared_ptr<const MixBounds> _mixBounds;                      ///< null if _clipBounds is null
-    std::optional<double> _updateTime;                                ///< seconds of simulation time
-    std::vector<PlayedClip> _played;                                  ///< the clips at the last dirtyBound()
-    std::vector<PlayedClip> _playedNow;                               ///< kept for its memory
-    mutable std::unique_ptr<PosedMeshes> _posedMeshes;                ///< created on demand; copies do not share it
+    osg::Matrixd _fileToNode;
+    AffineMatrix _rootMatrix; ///< the same as floats
+    /// rest pose, then one per clip, in the file's axes
+    std::shared_ptr<const std::vector<osg::BoundingBox>> _clipBounds;
+    std::shared_ptr<const MixBounds> _mixBounds;       ///< null if _clipBounds is null
+    std::optional<double> _updateTime;                 ///< seconds of simulation time
+    std::vector<PlayedClip> _played;                   ///< the clips at the last dirtyBound()
+    std::vector<PlayedClip> _playedNow;                ///< kept for its memory
+    mutable std::unique_ptr<PosedMeshes> _posedMeshes; ///< created on demand; copies do not share it
     mutable std::once_flag _posedMeshesMade;
     bool _isDrawnTogether = true;
     float _pixelError = 0.0f;

@@ -48,20 +48,12 @@ Error noSuchInstance()
     return Error{"the crowd has no such instance (any more)"};
 }
 
-Result<AffineMatrix> toRootMatrix(const osg::Matrixd& placement, const osg::Vec3d& origin)
+/// fileToNode, then the placement as seen from the origin.
+Result<AffineMatrix> placedRoot(const osg::Matrixd& fileToNode, const osg::Matrixd& placement, const osg::Vec3d& origin)
 {
     osg::Matrixd fromOrigin = placement;
     fromOrigin.setTrans(placement.getTrans() - origin);
-    const AffineMatrix root = toAffine(fromOrigin);
-    if (!root.isFinite()) return Error{"the placement is not finite, seen from the crowd's origin"};
-    if (placement(0, 3) != 0.0 || placement(1, 3) != 0.0 || placement(2, 3) != 0.0 || placement(3, 3) != 1.0)
-        return Error{"the placement is not affine: its last column is not 0, 0, 0, 1"};
-    const glm::dvec3 x(placement(0, 0), placement(0, 1), placement(0, 2));
-    const glm::dvec3 y(placement(1, 0), placement(1, 1), placement(1, 2));
-    const glm::dvec3 z(placement(2, 0), placement(2, 1), placement(2, 2));
-    if (glm::dot(glm::cross(x, y), z) < 0.0)
-        return Error{"the placement mirrors: its determinant is below 0, faces would be seen from inside"};
-    return root;
+    return toRootMatrix(fileToNode * fromOrigin, "the placement", false);
 }
 
 /// An instance for intersectors, posed only if its sphere is hit. It exists during the crowd's traversal only.
@@ -117,21 +109,22 @@ AnimatedCrowd::AnimatedCrowd(std::shared_ptr<const AnimationSet> set,
 AnimatedCrowd::AnimatedCrowd(const AnimatedCharacter& character)
     : AnimatedCrowd(character.getController().sharedSet(), {})
 {
+    _fileToNode = character.getFileToNode();
     _pixelError = character.getPixelError();
     setName(character.getName());
     if (character.getStateSet()) setStateSet(const_cast<osg::StateSet*>(character.getStateSet()));
     forEachMesh(character, [&](const SkinnedGeometry& mesh) { addChild(const_cast<SkinnedGeometry*>(&mesh)); });
     std::vector<Box> bounds;
     for (int clip = -1; clip < static_cast<int>(getAnimationSet().clips().size()); ++clip)
-        bounds.push_back(toBox(character.getClipBounds(clip)));
+        bounds.push_back(toBox(character.clipBoundsInFile(clip)));
     const bool areKnown = std::any_of(bounds.begin(), bounds.end(), [](const Box& box) { return !box.empty(); });
     _instances->setClipBounds(areKnown ? bounds : clipBoundsOf(getAnimationSet(), *this));
 }
 
 AnimatedCrowd::AnimatedCrowd(const AnimatedCrowd& other, const osg::CopyOp& copyop)
     : osg::Transform(other, copyop), _instances(std::make_unique<CrowdInstances>(*other._instances)),
-      _posed(std::make_unique<PosedInstances>()), _origin(other._origin), _hasOrigin(other._hasOrigin),
-      _updateTime(other._updateTime), _pixelError(other._pixelError)
+      _posed(std::make_unique<PosedInstances>()), _fileToNode(other._fileToNode), _origin(other._origin),
+      _hasOrigin(other._hasOrigin), _updateTime(other._updateTime), _pixelError(other._pixelError)
 {
 }
 
@@ -174,12 +167,24 @@ Result<AnimatedCrowd::Instance> AnimatedCrowd::add(const osg::Matrixd& placement
         return Error{"the crowd has " + std::to_string(getNumInstances()) + " instances, the most that one can have"};
     if (&controller.set() != &getAnimationSet()) return Error{"the controller is for another set than the crowd's"};
     const osg::Vec3d origin = _hasOrigin ? _origin : placement.getTrans();
-    const Result<AffineMatrix> root = toRootMatrix(placement, origin);
+    const Result<AffineMatrix> root = placedRoot(_fileToNode, placement, origin);
     if (!root) return root.error();
     _origin = origin;
     _hasOrigin = true;
     dirtyBound();
     return _instances->add(root.value(), controller, toRgba(tint));
+}
+
+Result<bool> AnimatedCrowd::setFileToNode(const osg::Matrixd& fileToNode)
+{
+    if (const Result<AffineMatrix> root = toRootMatrix(fileToNode, "the transform from the file's axes", true); !root)
+        return root.error();
+    const osg::Matrixd toPlacement = osg::Matrixd::inverse(_fileToNode);
+    for (std::size_t index = 0; index < getNumInstances(); ++index)
+        _instances->move(index, toAffine(fileToNode * toPlacement * toOsg(_instances->rootMatrix(index))));
+    _fileToNode = fileToNode;
+    dirtyBound();
+    return true;
 }
 
 bool AnimatedCrowd::remove(Instance instance)
@@ -194,7 +199,7 @@ Result<bool> AnimatedCrowd::setPlacement(Instance instance, const osg::Matrixd& 
 {
     const std::size_t index = _instances->indexOf(instance);
     if (index == CrowdInstances::none) return noSuchInstance();
-    const Result<AffineMatrix> root = toRootMatrix(placement, _origin);
+    const Result<AffineMatrix> root = placedRoot(_fileToNode, placement, _origin);
     if (!root) return root.error();
     _instances->move(index, root.value());
     dirtyBound();
@@ -219,7 +224,13 @@ AnimationController* AnimatedCrowd::getController(Instance instance)
 
 osg::Matrixd AnimatedCrowd::getPlacement(Instance instance) const
 {
-    return toOsg(_instances->rootMatrix(_instances->indexOf(instance)), _origin);
+    return osg::Matrixd::inverse(_fileToNode) * toOsg(_instances->rootMatrix(_instances->indexOf(instance)), _origin);
+}
+
+osg::Matrixd AnimatedCrowd::takeRootMotion(Instance instance)
+{
+    const std::size_t index = _instances->indexOf(instance);
+    return index == CrowdInstances::none ? osg::Matrixd() : toOsg(_instances->takeRootMotion(index), _fileToNode);
 }
 
 void AnimatedCrowd::setOrigin(const osg::Vec3d& origin)
@@ -275,6 +286,8 @@ void AnimatedCrowd::traverse(osg::NodeVisitor& visitor)
         intersect(visitor);
     else if (dynamic_cast<osgUtil::StatsVisitor*>(&visitor))
         count(visitor);
+    else if (const Box now = computesBounds(visitor) ? _instances->bounds() : Box(); !now.empty())
+        traverseWithBounds(*this, toOsg(now), visitor);
     else if (!keepFlattenedPlace(*this, visitor))
         osg::Transform::traverse(visitor);
 }

@@ -34,7 +34,8 @@ class PosedInstances;
 /// that plays one clip in a loop costs least; every other instance (crossfades, layers, events) keeps a controller.
 ///
 /// The meshes are the crowd's children; other children are drawn once. Transparent instances of one mesh are not sorted
-/// by depth.
+/// by depth. As with AnimatedCharacter, getFileToNode() leads from the axes of the set's file to the space that the
+/// placements start from (OSG: +Z up), so that a translation alone places an upright character.
 class AnimatedCrowd : public osg::Transform, public Updatable
 {
 public:
@@ -46,7 +47,8 @@ public:
     AnimatedCrowd();
     /// set: not null. meshes: built for the set's palette.
     AnimatedCrowd(std::shared_ptr<const AnimationSet> set, const std::vector<osg::ref_ptr<SkinnedGeometry>>& meshes);
-    /// Shares the character's set, meshes and state, and copies its bounds and pixel error. Ignores its matrix.
+    /// Shares the character's set, meshes and state, and copies its bounds, pixel error and getFileToNode(). Ignores
+    /// its matrix.
     explicit AnimatedCrowd(const AnimatedCharacter& character);
     /// Copies the instances with their handles.
     AnimatedCrowd(const AnimatedCrowd& other, const osg::CopyOp& copyop = osg::CopyOp::SHALLOW_COPY);
@@ -60,6 +62,11 @@ public:
     /// Gives a set to a crowd without one and computes the bounds from the present meshes. Errors: set is null; the
     /// crowd has instances or a set.
     Result<bool> setAnimationSet(std::shared_ptr<const AnimationSet> set);
+
+    /// The transform from the axes of the set's file to the space that placements start from, see
+    /// AnimatedCharacter::setFileToNode(). Instances keep their placements.
+    Result<bool> setFileToNode(const osg::Matrixd& fileToNode);
+    const osg::Matrixd& getFileToNode() const { return _fileToNode; } ///< affine, with an inverse
 
     /// Adds an instance. placement: affine, from the character's space to the space of this node. controller: built for
     /// the crowd's set; it is copied. tint: multiplies the colour, each component in [0, 1].
@@ -78,6 +85,9 @@ public:
     AnimationController* getController(Instance instance);
     /// The placement of an instance. instance: contained in the crowd.
     osg::Matrixd getPlacement(Instance instance) const;
+    /// The root motion of an instance since the last call, in the space that placements start from: the new placement
+    /// is the motion times the old one. The identity without root motion or without such an instance.
+    osg::Matrixd takeRootMotion(Instance instance);
     /// The arrays of all instances, for the kit's own plugins and tests.
     const CrowdInstances& getInstances() const { return *_instances; }
 
@@ -104,7 +114,8 @@ public:
     /// Passes the primitives of all instances in their present poses to the functor. Slow: the CPU twin computes them.
     void acceptInstances(osg::PrimitiveFunctor& functor) const;
 
-    /// Cull submits and draws the visible instances; intersectors meet posed meshes; statistics count every instance.
+    /// Cull submits and draws the visible instances; intersectors meet posed meshes; statistics count every instance;
+    /// visitors that compute bounds get the box around all instances as they play now.
     void traverse(osg::NodeVisitor& visitor) override;
     osg::BoundingSphere computeBound() const override; ///< around all instances and the other children
     /// Applies the origin to the matrix.
@@ -122,6 +133,7 @@ private:
 
     std::unique_ptr<CrowdInstances> _instances; ///< never null
     std::unique_ptr<PosedInstances> _posed;     ///< copies do not share it
+    osg::Matrixd _fileToNode;
     osg::Vec3d _origin;
     bool _hasOrigin = false;
     std::optional<double> _updateTime; ///< seconds of simulation time

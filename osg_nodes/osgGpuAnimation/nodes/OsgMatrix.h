@@ -2,9 +2,15 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/JointTransform.h>
+#include <osgGpuAnimation/animation/Result.h>
+#include <osgGpuAnimation/animation/RootMotion.h>
 
 #include <glm/gtc/type_ptr.hpp>
+#include <glm/matrix.hpp>
+#include <osg/BoundingBox>
 #include <osg/Matrixd>
+
+#include <string>
 
 namespace osgGpuAnimation
 {
@@ -35,6 +41,36 @@ inline osg::Matrixd toOsg(const AffineMatrix& matrix, const osg::Vec3d& origin)
 inline AffineMatrix toAffine(const osg::Matrixd& matrix)
 {
     return AffineMatrix::fromColumns(glm::make_mat4(matrix.ptr()));
+}
+
+/// The same for a matrix that draws vertices. name: the matrix, for messages. Errors: the matrix is not finite, not
+/// affine or mirrors; isInvertible: it flattens.
+inline Result<AffineMatrix> toRootMatrix(const osg::Matrixd& matrix, const std::string& name, bool isInvertible)
+{
+    const AffineMatrix root = toAffine(matrix);
+    if (!root.isFinite()) return Error{name + " is not finite"};
+    if (matrix(0, 3) != 0.0 || matrix(1, 3) != 0.0 || matrix(2, 3) != 0.0 || matrix(3, 3) != 1.0)
+        return Error{name + " is not affine: its last column is not 0, 0, 0, 1"};
+    const double determinant = glm::determinant(glm::dmat3(glm::make_mat4(matrix.ptr())));
+    if (determinant < 0.0) return Error{name + " mirrors: its determinant is below 0, faces would be seen from inside"};
+    if (isInvertible && determinant == 0.0) return Error{name + " flattens: its determinant is 0"};
+    return root;
+}
+
+/// The root motion in a node's space. fileToNode: from the space of the motion to the node's.
+inline osg::Matrixd toOsg(const RootMotion& motion, const osg::Matrixd& fileToNode)
+{
+    if (motion.isNone()) return {};
+    return osg::Matrixd::inverse(fileToNode) * toOsg(motion.matrix()) * fileToNode;
+}
+
+/// The smallest box around the eight corners of the transformed box; exact for quarter turns.
+inline osg::BoundingBox transformed(const osg::BoundingBox& box, const osg::Matrixd& matrix)
+{
+    osg::BoundingBox result;
+    for (unsigned int corner = 0; corner < 8 && box.valid(); ++corner)
+        result.expandBy(box.corner(corner) * matrix);
+    return result;
 }
 
 } // namespace osgGpuAnimation

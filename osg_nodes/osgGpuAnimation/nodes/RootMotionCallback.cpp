@@ -2,7 +2,6 @@
 #include <osgGpuAnimation/nodes/RootMotionCallback.h>
 
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
-#include <osgGpuAnimation/nodes/OsgMatrix.h>
 
 #include <osg/NodeVisitor>
 
@@ -18,8 +17,8 @@ void RootMotionCallback::operator()(osg::Node* node, osg::NodeVisitor* visitor)
 {
     if (auto* character = dynamic_cast<AnimatedCharacter*>(node))
     {
-        const RootMotion motion = character->getController().takeRootMotion();
-        if (!motion.isNone()) character->preMult(toOsg(motion.matrix()));
+        const osg::Matrixd motion = character->takeRootMotion();
+        if (!motion.isIdentity()) character->preMult(motion);
     }
     traverse(node, visitor);
 }

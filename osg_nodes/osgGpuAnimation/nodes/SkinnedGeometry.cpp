@@ -112,6 +112,11 @@ void SkinnedGeometry::accept(osg::NodeVisitor& visitor)
     if (colored) cullVisitor->popStateSet();
 }
 
+osg::BoundingBox SkinnedGeometry::computeBoundingBox() const
+{
+    return getInitialBound().valid() ? getInitialBound() : osg::Geometry::computeBoundingBox();
+}
+
 void SkinnedGeometry::addTo(osgUtil::CullVisitor& visitor, osg::RefMatrix* toEye, float depth)
 {
     osg::StateSet* colored = coloredState(getColors());

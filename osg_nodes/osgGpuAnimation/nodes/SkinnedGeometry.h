@@ -63,6 +63,8 @@ public:
     /// Adds the visible mesh to the visitor's render bin. toEye: from the space of the instances' placements to the
     /// eye. depth: distance from the eye, for sorting.
     void addTo(osgUtil::CullVisitor& visitor, osg::RefMatrix* toEye, float depth);
+    /// The initial bound: the vertices are in bind pose and in the file's axes. Without one, the box of the vertices.
+    osg::BoundingBox computeBoundingBox() const override;
     /// Null: hides the vertex arrays from OSG's tools, see accept().
     osg::Geometry* asGeometry() override { return nullptr; }
     const osg::Geometry* asGeometry() const override { return nullptr; }

@@ -30,9 +30,9 @@ namespace
 class SceneGraphBuilder
 {
 public:
-    SceneGraphBuilder(const SceneParts& parts, osg::MatrixTransform& root, AnimatedCharacter* character,
+    SceneGraphBuilder(const SceneParts& parts, osg::Group& still, AnimatedCharacter* character,
                       std::vector<ImportedPrimitive>& primitives)
-        : _parts(parts), _root(root), _character(character), _primitives(primitives), _still(parts.model.nodes.size()),
+        : _parts(parts), _root(still), _character(character), _primitives(primitives), _still(parts.model.nodes.size()),
           _stillRadius(parts.model.nodes.size(), 0.0), _groups(parts.model.nodes.size())
     {
     }
@@ -54,7 +54,7 @@ private:
     static void addShared(osg::Group& place, osg::ref_ptr<osg::Geometry>& geometry);
 
     const SceneParts& _parts;
-    osg::MatrixTransform& _root;
+    osg::Group& _root; ///< of what stays still
     AnimatedCharacter* _character;
     std::vector<ImportedPrimitive>& _primitives;
     std::vector<std::vector<osg::ref_ptr<osg::Geometry>>> _still; ///< by node: its plain geometries
@@ -215,10 +215,10 @@ void SceneGraphBuilder::buildStillNodes()
 
 } // namespace
 
-void buildSceneGraph(const SceneParts& parts, osg::MatrixTransform& root, AnimatedCharacter* character,
+void buildSceneGraph(const SceneParts& parts, osg::Group& still, AnimatedCharacter* character,
                      std::vector<ImportedPrimitive>& primitives)
 {
-    SceneGraphBuilder(parts, root, character, primitives).build();
+    SceneGraphBuilder(parts, still, character, primitives).build();
 }
 
 } // namespace osgGpuAnimation::gltf

@@ -12,7 +12,7 @@
 
 namespace osg
 {
-class MatrixTransform;
+class Group;
 }
 
 namespace osgGpuAnimation
@@ -60,10 +60,10 @@ struct SceneParts
     Report& report;
 };
 
-/// Fills the graph below `root`, and `primitives`. Everything drawn from the palette becomes a child of the character;
-/// the rest becomes MatrixTransforms, one a node of the file that carries a mesh or is above such a node, with
-/// geometries. Nodes that mirror set the winding in their state, so that front faces stay front faces.
-void buildSceneGraph(const SceneParts& parts, osg::MatrixTransform& root, AnimatedCharacter* character,
+/// Fills `still`, the character and `primitives`. Everything drawn from the palette becomes a child of the character;
+/// the rest becomes MatrixTransforms below `still`, one a node of the file that carries a mesh or is above such a node,
+/// with geometries. Nodes that mirror set the winding in their state, so that front faces stay front faces.
+void buildSceneGraph(const SceneParts& parts, osg::Group& still, AnimatedCharacter* character,
                      std::vector<ImportedPrimitive>& primitives);
 
 } // namespace osgGpuAnimation::gltf

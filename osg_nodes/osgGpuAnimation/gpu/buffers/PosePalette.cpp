@@ -73,8 +73,11 @@ void PosePalette::Chunk::bindInstances(osg::GLExtensions& gl) const
     samples.bindAttributes(POSE_SAMPLE_LOCATION, sampleCount, sampleStride * sizeof(BlendSample), 0, 0);
     for (unsigned int unused = sampleCount; unused < POSE_SAMPLES_AS_ATTRIBUTES; ++unused)
         gl.glDisableVertexAttribArray(POSE_SAMPLE_LOCATION + unused);
+    // One matrix for all instances is the first element for every GL instance, which is a palette entry.
+    constexpr unsigned int never = 1u << 30;
     if (!uploadedRootMatrices.empty())
-        roots.bindAttributes(POSE_ROOT_LOCATION, POSE_TEXELS_PER_MATRIX, sizeof(AffineMatrix), 0, 0);
+        roots.bindAttributes(POSE_ROOT_LOCATION, POSE_TEXELS_PER_MATRIX, sizeof(AffineMatrix), 0,
+                             uploadedRootMatrices.size() == 1 ? never : 0);
     else
         for (unsigned int row = 0; row < POSE_TEXELS_PER_MATRIX; ++row)
             gl.glDisableVertexAttribArray(POSE_ROOT_LOCATION + row);
@@ -86,7 +89,8 @@ std::vector<PosePalette::Chunk*> PosePalette::upload(const PoseBatch& batch, std
     std::vector<Chunk*> changed;
     _chunkCapacity = chunkCapacity;
     const std::size_t stride = batch.sampleStride();
-    const bool hasRoots = !batch.rootMatrices().empty();
+    const std::vector<AffineMatrix>& roots = batch.rootMatrices();
+    const bool hasOwnRoots = roots.size() > 1;
     const bool hasTints = !batch.tints().empty();
     std::size_t index = 0;
     for (std::size_t first = 0; first < batch.size(); first += chunkCapacity, ++index)
@@ -100,8 +104,9 @@ std::vector<PosePalette::Chunk*> PosePalette::upload(const PoseBatch& batch, std
         chunk.sampleStride = stride;
         isChanged |= uploadChanged(batch.samples(), first * stride, size * stride, chunk.width * stride,
                                    chunk.uploadedSamples, chunk.samples, bytesUploaded);
-        isChanged |= uploadChanged(batch.rootMatrices(), hasRoots ? first : 0, hasRoots ? size : 0,
-                                   hasRoots ? chunk.width : 0, chunk.uploadedRootMatrices, chunk.roots, bytesUploaded);
+        isChanged |= uploadChanged(roots, hasOwnRoots ? first : 0, hasOwnRoots ? size : roots.size(),
+                                   hasOwnRoots ? chunk.width : roots.size(), chunk.uploadedRootMatrices, chunk.roots,
+                                   bytesUploaded);
         // Only the draw reads tints: the palette does not change.
         uploadChanged(batch.tints(), hasTints ? first : 0, hasTints ? size : 0, hasTints ? size : 0,
                       chunk.uploadedTints, chunk.tints, bytesUploaded);

@@ -29,7 +29,7 @@ public:
         std::size_t width = 0; ///< widthOf(size): the palette's stride
         std::size_t sampleStride = 1;
         std::vector<BlendSample> uploadedSamples;       ///< content of `samples`
-        std::vector<AffineMatrix> uploadedRootMatrices; ///< content of `roots`
+        std::vector<AffineMatrix> uploadedRootMatrices; ///< content of `roots`; a single one: for all instances
         std::vector<std::uint32_t> uploadedTints;       ///< content of `tints`
         BufferTexture samples;
         BufferTexture roots;

@@ -21,18 +21,6 @@ osg::BoundingBox boxAround(const glm::vec4& sphere)
             sphere.x + sphere.w, sphere.y + sphere.w, sphere.z + sphere.w};
 }
 
-/// The largest length of a transformed unit axis.
-float largestScale(const AffineMatrix& matrix)
-{
-    float largest = 0.0f;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-        const float x = matrix.rows[0][axis], y = matrix.rows[1][axis], z = matrix.rows[2][axis];
-        largest = std::max(largest, x * x + y * y + z * z);
-    }
-    return std::sqrt(largest);
-}
-
 using Indices = std::vector<std::uint32_t>;
 
 /// Sorts the instances by blend cost; groups too small for a batch join the next higher cost.
@@ -123,7 +111,7 @@ void CrowdView::draw(SkinnedGeometry& mesh, const PaletteBinding& binding)
 int CrowdLod::levelOf(std::uint32_t index) const
 {
     const glm::vec4& sphere = _instances.sphere(index);
-    return _scale.level(glm::vec3(sphere), sphere.w, largestScale(_instances.rootMatrix(index)));
+    return _scale.level(glm::vec3(sphere), sphere.w, _instances.rootMatrix(index));
 }
 
 void CrowdLod::sort(std::vector<std::uint32_t>& indices, std::vector<Run>& outRuns) const

@@ -115,6 +115,27 @@ glm::vec4 CrowdInstances::placedSphere(std::size_t index) const
     return sphereAround(isPlain ? _clipBounds[bounds] : _allBounds, _rootMatrices[index]);
 }
 
+Box CrowdInstances::bounds() const
+{
+    Aabb3d all;
+    std::vector<PlayedClip> played;
+    for (std::size_t index = 0; index < size(); ++index)
+    {
+        int clip = _playbacks[index].clip();
+        bool isAlone = true;
+        if (_controllers[index])
+        {
+            findPlayedClips(*_controllers[index], played);
+            isAlone = played.size() == 1 && played.front().part == PlayedClip::Part::Mixed;
+            if (isAlone) clip = played.front().clip;
+        }
+        const auto place = static_cast<std::size_t>(clip + 1);
+        const Box& box = isAlone && place < _clipBounds.size() ? _clipBounds[place] : _allBounds;
+        if (!box.empty()) all.add(TransformedBox(_rootMatrices[index], box).bounds(glm::dmat3(1.0), glm::dvec3(0.0)));
+    }
+    return all.empty() ? Box() : Box{glm::vec3(all.min), glm::vec3(all.max)};
+}
+
 CrowdInstances::Handle CrowdInstances::add(const AffineMatrix& rootMatrix, const AnimationController& controller,
                                            std::uint32_t tint)
 {

@@ -74,6 +74,13 @@ public:
     /// Valid until the next advance(), which may replace it by a CrowdPlayback.
     AnimationController& controller(std::size_t index);
     AnimationController controllerCopy(std::size_t index) const;
+    /// The box around the boxes of all instances, each of the clip that it plays; of all clips if it mixes several.
+    Box bounds() const;
+    /// Without a controller there is none.
+    RootMotion takeRootMotion(std::size_t index)
+    {
+        return _controllers[index] ? _controllers[index]->takeRootMotion() : RootMotion();
+    }
     /// The number of instances with a controller.
     std::size_t controllerCount() const;
 

@@ -106,7 +106,7 @@ int CharacterDraws::levelOf(osgUtil::CullVisitor& visitor, LodView& view, const 
     if (!detail.box.valid()) return LodLevels::allTriangles;
     const osg::Vec3 centre = detail.box.center();
     return LodScale(visitor, view, character.pixelError, detail.range)
-        .level(glm::vec3(centre.x(), centre.y(), centre.z()), detail.box.radius(), 1.0f);
+        .level(glm::vec3(centre.x(), centre.y(), centre.z()), detail.box.radius(), character.rootMatrix);
 }
 
 // Characters of one set usually share their meshes; otherwise the range is computed again for each character.

@@ -51,6 +51,7 @@ struct DrawnCharacter
 {
     osg::Group& node; ///< the parent of the meshes
     const AnimationController& controller;
+    const AffineMatrix& rootMatrix;
     float pixelError;     ///< pixels, see LodRange
     bool isDrawnTogether; ///< true: may share instanced draws with other characters
 };

@@ -76,14 +76,15 @@ void PoseFrame::reset()
         pool->reset();
 }
 
-SubmittedPose PoseFrame::submit(const osg::Node& node, const AnimationController& controller)
+SubmittedPose PoseFrame::submit(const osg::Node& node, const AnimationController& controller,
+                                const AffineMatrix& rootMatrix)
 {
     const std::lock_guard<std::mutex> lock(_mutex);
     Submitted& submitted = _submitted[&node];
-    if (!isStill(submitted, controller))
+    if (!isStill(submitted, controller, rootMatrix))
     {
         const PoseInstruction& instruction = controller.instruction();
-        Batch& batch = openBatch(controller);
+        Batch& batch = openBatch(controller, rootMatrix);
         submitted = {&batch, batch.content->add(instruction), _samples.size(), instruction.sampleCount, nullptr};
         _samples.insert(_samples.end(), instruction.samples.begin(),
                         instruction.samples.begin() + static_cast<std::ptrdiff_t>(instruction.sampleCount));
@@ -92,11 +93,12 @@ SubmittedPose PoseFrame::submit(const osg::Node& node, const AnimationController
 }
 
 // Another viewer's frame with the same number may have a different node at the same address.
-bool PoseFrame::isStill(const Submitted& known, const AnimationController& controller) const
+bool PoseFrame::isStill(const Submitted& known, const AnimationController& controller,
+                        const AffineMatrix& rootMatrix) const
 {
     const PoseInstruction& instruction = controller.instruction();
     return known.batch && &known.batch->content->set() == &controller.set() &&
-           known.sampleCount == instruction.sampleCount &&
+           known.batch->content->hasRootMatrix(rootMatrix) && known.sampleCount == instruction.sampleCount &&
            std::equal(instruction.samples.begin(),
                       instruction.samples.begin() + static_cast<std::ptrdiff_t>(instruction.sampleCount),
                       _samples.begin() + static_cast<std::ptrdiff_t>(known.firstSample), isSame);
@@ -114,14 +116,19 @@ osg::StateSet* PoseFrame::stateOf(const osg::Node& node, const AnimationSet& set
     return submitted.stateSet;
 }
 
-PoseFrame::Batch& PoseFrame::openBatch(const AnimationController& controller)
+PoseFrame::Batch& PoseFrame::openBatch(const AnimationController& controller, const AffineMatrix& rootMatrix)
 {
     std::vector<Batch*>& batches = _batchesOfSet[&controller.set()];
     const PoseInstruction& instruction = controller.instruction();
-    const auto open =
-        std::find_if(batches.begin(), batches.end(),
-                     [&](const Batch* batch) { return batch->isOpen() && batch->content->accepts(instruction); });
-    return open != batches.end() ? **open : addBatch(spareBatch(controller.sharedSet()));
+    const auto open = std::find_if(batches.begin(), batches.end(),
+                                   [&](const Batch* batch) {
+                                       return batch->isOpen() && batch->content->hasRootMatrix(rootMatrix) &&
+                                              batch->content->accepts(instruction);
+                                   });
+    if (open != batches.end()) return **open;
+    std::unique_ptr<PoseBatch> content = spareBatch(controller.sharedSet());
+    content->setRootMatrix(rootMatrix);
+    return addBatch(std::move(content));
 }
 
 PoseFrame::Batch& PoseFrame::addBatch(std::unique_ptr<PoseBatch> content)

@@ -53,8 +53,9 @@ public:
     /// the frame, because two viewers may use the same number; null: frame 0.
     static osg::ref_ptr<PoseFrame> forContext(unsigned int contextId, const osg::FrameStamp* stamp);
 
-    /// Adds the pose of a node's controller unless the frame already has the node with the same instruction.
-    SubmittedPose submit(const osg::Node& node, const AnimationController& controller);
+    /// Adds the pose of a node's controller unless the frame already has the node with the same instruction and root
+    /// matrix.
+    SubmittedPose submit(const osg::Node& node, const AnimationController& controller, const AffineMatrix& rootMatrix);
     /// The state with the PaletteBinding for one submitted node at a level of detail. It stays unchanged while this
     /// frame is in use.
     osg::StateSet* stateOf(const osg::Node& node, const AnimationSet& set, SubmittedPose pose, int level);
@@ -109,8 +110,8 @@ private:
     void reset();
     void evaluateBatches(osg::State& state, PosePipeline* pipeline);
     void record(osg::Stats& stats, std::uint64_t evaluated) const;
-    bool isStill(const Submitted& known, const AnimationController& controller) const;
-    Batch& openBatch(const AnimationController& controller);
+    bool isStill(const Submitted& known, const AnimationController& controller, const AffineMatrix& rootMatrix) const;
+    Batch& openBatch(const AnimationController& controller, const AffineMatrix& rootMatrix);
     Batch& addBatch(std::unique_ptr<PoseBatch> content);
     std::unique_ptr<PoseBatch> spareBatch(std::shared_ptr<const AnimationSet> set);
     DrawState stateOf(const Batch& batch, std::size_t instance, std::size_t instanceCount, int level);

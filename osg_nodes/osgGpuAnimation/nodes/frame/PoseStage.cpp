@@ -68,7 +68,7 @@ void PoseStage::draw(osgUtil::CullVisitor& visitor, const DrawnCharacter& charac
     if (!isFinite(*visitor.getModelViewMatrix())) return;
     PoseStage& stage = current(visitor);
     stage._draws.draw(visitor, stage._lodView, character, *stage._frame,
-                      stage._frame->submit(character.node, character.controller));
+                      stage._frame->submit(character.node, character.controller, character.rootMatrix));
 }
 
 PoseFrame& PoseStage::frame(osgUtil::CullVisitor& visitor)

@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace osgGpuAnimation
 {
@@ -94,10 +95,27 @@ LodScale::LodScale(osgUtil::CullVisitor& visitor, LodView& view, float pixelErro
     _own = Measure(visitor.getCurrentCullingSet().getPixelSizeVector(), pixelError);
 }
 
-int LodScale::level(const glm::vec3& centre, float radius, float scale) const
+namespace
+{
+
+/// The largest length of a transformed unit axis.
+float largestScale(const AffineMatrix& matrix)
+{
+    float largest = 0.0f;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        const float x = matrix.rows[0][axis], y = matrix.rows[1][axis], z = matrix.rows[2][axis];
+        largest = std::max(largest, x * x + y * y + z * z);
+    }
+    return std::sqrt(largest);
+}
+
+} // namespace
+
+int LodScale::level(const glm::vec3& centre, float radius, const AffineMatrix& rootMatrix) const
 {
     const Measure& measure = _seen.farthest(centre, radius) < 0.0f ? _own : _seen;
-    return _range.held(LodLevels::levelOf(measure.nearest(centre, radius) / scale));
+    return _range.held(LodLevels::levelOf(measure.nearest(centre, radius) / largestScale(rootMatrix)));
 }
 
 } // namespace osgGpuAnimation

@@ -83,9 +83,9 @@ public:
     /// pixelError: pixels; 0: all triangles. range: of the drawn meshes.
     LodScale(osgUtil::CullVisitor& visitor, LodView& view, float pixelError, const LodRange& range);
 
-    /// The level for a sphere. centre, radius: in the visitor's space. scale: units of that space per unit of the
-    /// character's own space. The nearest point decides; a sphere that reaches behind the eye gets all triangles.
-    int level(const glm::vec3& centre, float radius, float scale) const;
+    /// The level for a sphere. centre, radius: in the visitor's space. rootMatrix: from the set's space to that space.
+    /// The nearest point decides; a sphere that reaches behind the eye gets all triangles.
+    int level(const glm::vec3& centre, float radius, const AffineMatrix& rootMatrix) const;
 
     /// False: all triangles everywhere.
     bool isOn() const { return _seen.errorAt != glm::vec4(0.0f); }

@@ -4,6 +4,9 @@
 #include <osgGpuAnimation/animation/bounds/JointRange.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
+#include <osg/ComputeBoundsVisitor>
+#include <osg/CullStack>
+
 #include <algorithm>
 
 namespace osgGpuAnimation
@@ -47,6 +50,31 @@ Box boundsOfVertex(const osg::Vec3& position, std::size_t vertex, const std::vec
 }
 
 } // namespace
+
+bool computesBounds(osg::NodeVisitor& visitor)
+{
+    if (visitor.asCullVisitor()) return false;
+    return dynamic_cast<osg::ComputeBoundsVisitor*>(&visitor) || dynamic_cast<osg::CullStack*>(&visitor);
+}
+
+void traverseWithBounds(osg::Group& group, const osg::BoundingBox& box, osg::NodeVisitor& visitor)
+{
+    bool isVisited = false;
+    for (unsigned int i = 0; i < group.getNumChildren(); ++i)
+    {
+        osg::Node& child = *group.getChild(i);
+        if (!dynamic_cast<const SkinnedGeometry*>(&child))
+        {
+            child.accept(visitor);
+            continue;
+        }
+        if (isVisited || !visitor.validNodeMask(child)) continue;
+        isVisited = true;
+        const osg::ref_ptr<osg::Drawable> now = new osg::Drawable;
+        now->setInitialBound(box);
+        now->accept(visitor);
+    }
+}
 
 PaletteEntryBounds::PaletteEntryBounds(const AnimationSet& set, std::size_t additiveLayers)
     : _set(&set), _additiveLayers(additiveLayers), _boxes(set.paletteSize())

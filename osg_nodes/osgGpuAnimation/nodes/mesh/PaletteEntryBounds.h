@@ -62,6 +62,14 @@ void forEachMesh(const osg::Group& group, Function function)
     }
 }
 
+/// True for visitors that compute the bounds of a scene: osg::ComputeBoundsVisitor, and those of osgShadow, which are
+/// CullStacks but no CullVisitors.
+bool computesBounds(osg::NodeVisitor& visitor);
+
+/// Visits the children of the group, but one drawable with that box in place of all its meshes: the boxes of meshes
+/// serve all clones and clips. box: valid.
+void traverseWithBounds(osg::Group& group, const osg::BoundingBox& box, osg::NodeVisitor& visitor);
+
 /// For each palette entry, the box of the vertices that it moves, in bind pose and over all morph weights of the clips.
 /// The bounds of clips are computed from it.
 ///

@@ -129,7 +129,7 @@ void transferInstances(ValueStream& stream, AnimatedCrowd& crowd)
     stream.endLine();
     if (stream.hasRead())
     {
-        crowd.setOrigin(origin);
+        if (!crowd.setOrigin(origin)) stream.fail("a crowd: its origin is not finite");
         if (const Result<bool> taken = crowd.setPixelError(static_cast<float>(pixelError)); !taken)
             stream.fail("a crowd: " + taken.error().message);
     }

@@ -52,12 +52,23 @@ std::size_t PoseBatch::append(const BlendSample* samples, std::size_t count)
         sample.alpha = clampedToUnit(sample.alpha);
         sample.weight = clampedToUnit(sample.weight);
         if (i < count) addNeeds(sample);
+        // A mask that nobody holds any more is no mask.
+        if (!holdMask(sample.control >> POSE_SAMPLE_MASK_SHIFT)) sample.control &= (1u << POSE_SAMPLE_MASK_SHIFT) - 1u;
         _samples.push_back(sample);
     }
     _needs.mixing = _needs.mixing || _sampleStride > 1;
     if (!_rootMatrices.empty()) _rootMatrices.emplace_back();
     if (!_tints.empty()) _tints.push_back(white);
     return _size++;
+}
+
+/// False if there is no such mask.
+bool PoseBatch::holdMask(std::uint32_t number)
+{
+    if (number == 0) return true;
+    if (number >= _masks.size()) _masks.resize(number + 1);
+    if (!_masks[number]) _masks[number] = set().masks().find(number);
+    return _masks[number] != nullptr;
 }
 
 void PoseBatch::addNeeds(const BlendSample& sample)
@@ -125,6 +136,7 @@ void PoseBatch::clear()
     _samples.clear();
     _rootMatrices.clear();
     _tints.clear();
+    _masks.clear();
 }
 
 void PoseBatch::reset(std::shared_ptr<const AnimationSet> set)

@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace osgGpuAnimation
 {
@@ -46,6 +47,11 @@ std::uint32_t toRgba(const osg::Vec4& color)
 Error noSuchInstance()
 {
     return Error{"the crowd has no such instance (any more)"};
+}
+
+glm::dvec3 positionOf(const osg::Matrixd& placement)
+{
+    return {placement(3, 0), placement(3, 1), placement(3, 2)};
 }
 
 Result<AffineMatrix> toRootMatrix(const osg::Matrixd& placement, const osg::Vec3d& origin)
@@ -97,10 +103,7 @@ private:
 
 } // namespace
 
-AnimatedCrowd::AnimatedCrowd()
-    : AnimatedCrowd(osg::ref_ptr<AnimatedCharacter>(new AnimatedCharacter)->getController().sharedSet(), {})
-{
-}
+AnimatedCrowd::AnimatedCrowd() : AnimatedCrowd(nullptr, {}) {}
 
 AnimatedCrowd::AnimatedCrowd(std::shared_ptr<const AnimationSet> set,
                              const std::vector<osg::ref_ptr<SkinnedGeometry>>& meshes)
@@ -179,7 +182,7 @@ Result<AnimatedCrowd::Instance> AnimatedCrowd::add(const osg::Matrixd& placement
     _origin = origin;
     _hasOrigin = true;
     dirtyBound();
-    return _instances->add(root.value(), controller, toRgba(tint));
+    return _instances->add(root.value(), positionOf(placement), controller, toRgba(tint));
 }
 
 bool AnimatedCrowd::remove(Instance instance)
@@ -196,7 +199,7 @@ Result<bool> AnimatedCrowd::setPlacement(Instance instance, const osg::Matrixd& 
     if (index == CrowdInstances::none) return noSuchInstance();
     const Result<AffineMatrix> root = toRootMatrix(placement, _origin);
     if (!root) return root.error();
-    _instances->move(index, root.value());
+    _instances->move(index, root.value(), positionOf(placement));
     dirtyBound();
     return true;
 }
@@ -219,30 +222,42 @@ AnimationController* AnimatedCrowd::getController(Instance instance)
 
 osg::Matrixd AnimatedCrowd::getPlacement(Instance instance) const
 {
-    return toOsg(_instances->rootMatrix(_instances->indexOf(instance)), _origin);
+    const std::size_t index = _instances->indexOf(instance);
+    if (index == CrowdInstances::none) return osg::Matrixd();
+    osg::Matrixd placement = toOsg(_instances->rootMatrix(index));
+    const glm::dvec3& position = _instances->position(index);
+    placement.setTrans(position.x, position.y, position.z);
+    return placement;
 }
 
-void AnimatedCrowd::setOrigin(const osg::Vec3d& origin)
+bool AnimatedCrowd::setOrigin(const osg::Vec3d& origin)
 {
-    const osg::Vec3d shift = _origin - origin;
+    if (!std::isfinite(origin.length())) return false;
+    const glm::dvec3 center(origin.x(), origin.y(), origin.z());
+    constexpr double farthest = std::numeric_limits<float>::max();
+    for (std::size_t index = 0; index < getNumInstances(); ++index)
+        if (!(glm::length(_instances->position(index) - center) < farthest)) return false;
     for (std::size_t index = 0; index < getNumInstances(); ++index)
     {
         AffineMatrix root = _instances->rootMatrix(index);
+        const glm::dvec3 position = _instances->position(index);
         for (int row = 0; row < 3; ++row)
-            root.rows[static_cast<std::size_t>(row)].w =
-                static_cast<float>(static_cast<double>(root.rows[static_cast<std::size_t>(row)].w) + shift[row]);
-        _instances->move(index, root);
+            root.rows[static_cast<std::size_t>(row)].w = static_cast<float>(position[row] - center[row]);
+        _instances->move(index, root, position);
     }
     _origin = origin;
     _hasOrigin = true;
     dirtyBound();
+    return true;
 }
 
 void AnimatedCrowd::update(double simulationTime)
 {
     const double step = _updateTime ? simulationTime - *_updateTime : 0.0;
     _updateTime = simulationTime;
-    if (_instances->advance(step)) dirtyBound();
+    PendingEvents events;
+    if (_instances->advance(step, events)) dirtyBound();
+    if (!events.isEmpty()) runAfterUpdate(*this, [events] { events.deliver(); });
 }
 
 std::optional<AnimatedCrowd::Instance> AnimatedCrowd::instanceOf(const osg::Drawable* hit)

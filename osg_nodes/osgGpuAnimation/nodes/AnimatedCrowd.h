@@ -44,7 +44,7 @@ public:
 
     /// A crowd with an empty set; setAnimationSet() gives it another.
     AnimatedCrowd();
-    /// set: not null. meshes: built for the set's palette.
+    /// set: null counts as an empty one. meshes: built for the set's palette.
     AnimatedCrowd(std::shared_ptr<const AnimationSet> set, const std::vector<osg::ref_ptr<SkinnedGeometry>>& meshes);
     /// Shares the character's set, meshes and state, and copies its bounds and pixel error. Ignores its matrix.
     explicit AnimatedCrowd(const AnimatedCharacter& character);
@@ -76,14 +76,15 @@ public:
 
     /// The controller of an instance, for crossfades and layers; valid until the next update(). Null: no such instance.
     AnimationController* getController(Instance instance);
-    /// The placement of an instance. instance: contained in the crowd.
+    /// The placement of an instance; the identity if no such instance exists (see contains()).
     osg::Matrixd getPlacement(Instance instance) const;
     /// The arrays of all instances, for the kit's own plugins and tests.
     const CrowdInstances& getInstances() const { return *_instances; }
 
     /// Sets the point that placements are stored relative to, as floats; the default is the first instance's position.
-    /// Existing instances keep their positions to float precision.
-    void setOrigin(const osg::Vec3d& origin);
+    /// Existing instances keep their placements; a later origin does not depend on the ones before.
+    /// False, without a change: the origin is not finite, or an instance is too far from it for a float.
+    bool setOrigin(const osg::Vec3d& origin);
     const osg::Vec3d& getOrigin() const { return _origin; } ///< in the space of this node
 
     /// The largest error of the drawn surface on screen, in pixels: instances are drawn with fewer triangles while the

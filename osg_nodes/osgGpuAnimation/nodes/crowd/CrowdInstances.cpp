@@ -67,9 +67,9 @@ void takeOut(std::vector<Element>& elements, std::size_t index)
 
 CrowdInstances::CrowdInstances(const CrowdInstances& other)
     : _set(other._set), _clock(other._clock), _clipBounds(other._clipBounds), _allBounds(other._allBounds),
-      _rootMatrices(other._rootMatrices), _spheres(other._spheres), _tints(other._tints), _playbacks(other._playbacks),
-      _handles(other._handles), _indexOfPlace(other._indexOfPlace), _usesOfPlace(other._usesOfPlace),
-      _freePlaces(other._freePlaces), _tinted(other._tinted)
+      _rootMatrices(other._rootMatrices), _positions(other._positions), _spheres(other._spheres), _tints(other._tints),
+      _playbacks(other._playbacks), _handles(other._handles), _indexOfPlace(other._indexOfPlace),
+      _usesOfPlace(other._usesOfPlace), _freePlaces(other._freePlaces), _tinted(other._tinted)
 {
     for (const std::unique_ptr<AnimationController>& controller : other._controllers)
         _controllers.push_back(controller ? std::make_unique<AnimationController>(*controller) : nullptr);
@@ -115,12 +115,13 @@ glm::vec4 CrowdInstances::placedSphere(std::size_t index) const
     return sphereAround(isPlain ? _clipBounds[bounds] : _allBounds, _rootMatrices[index]);
 }
 
-CrowdInstances::Handle CrowdInstances::add(const AffineMatrix& rootMatrix, const AnimationController& controller,
-                                           std::uint32_t tint)
+CrowdInstances::Handle CrowdInstances::add(const AffineMatrix& rootMatrix, const glm::dvec3& position,
+                                           const AnimationController& controller, std::uint32_t tint)
 {
     const std::size_t index = size();
     const bool isPlain = controller.isPlainLoop();
     _rootMatrices.push_back(rootMatrix);
+    _positions.push_back(position);
     _spheres.emplace_back();
     _tints.push_back(tint);
     _tinted += tint != PoseBatch::white;
@@ -138,6 +139,7 @@ void CrowdInstances::remove(std::size_t index)
     _freePlaces.push_back(static_cast<std::uint32_t>(place));
     _tinted -= _tints[index] != PoseBatch::white;
     takeOut(_rootMatrices, index);
+    takeOut(_positions, index);
     takeOut(_spheres, index);
     takeOut(_tints, index);
     takeOut(_playbacks, index);
@@ -146,9 +148,10 @@ void CrowdInstances::remove(std::size_t index)
     if (index < size()) _indexOfPlace[placeOf(_handles[index])] = static_cast<std::uint32_t>(index);
 }
 
-void CrowdInstances::move(std::size_t index, const AffineMatrix& rootMatrix)
+void CrowdInstances::move(std::size_t index, const AffineMatrix& rootMatrix, const glm::dvec3& position)
 {
     _rootMatrices[index] = rootMatrix;
+    _positions[index] = position;
     _spheres[index] = placedSphere(index);
 }
 
@@ -188,7 +191,7 @@ std::size_t CrowdInstances::controllerCount() const
                                                   [](const auto& controller) { return controller != nullptr; }));
 }
 
-bool CrowdInstances::advance(double seconds)
+bool CrowdInstances::advance(double seconds, PendingEvents& outEvents)
 {
     if (std::isfinite(seconds)) _clock += seconds;
     bool haveSpheresChanged = false;
@@ -196,7 +199,7 @@ bool CrowdInstances::advance(double seconds)
     {
         std::unique_ptr<AnimationController>& controller = _controllers[index];
         if (!controller) continue;
-        controller->advance(seconds);
+        controller->advance(seconds, outEvents);
         if (!controller->isPlainLoop()) continue;
         _playbacks[index] = CrowdPlayback(*controller, _clock);
         controller.reset();

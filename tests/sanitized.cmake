@@ -5,7 +5,7 @@ set(sanitized_sources nodes/TestCharacter.cpp nodes/NestedCameraGLTest.cpp nodes
     nodes/ViewersGLTest.cpp plugin/PagerGLTest.cpp plugin/ConcurrentLoadsTest.cpp plugin/ModelBuilder.cpp)
 if(OSGGPUANIMATION_SANITIZER STREQUAL address)
     list(APPEND sanitized_sources nodes/AnimatedCharacterGLTest.cpp nodes/AnimatedCrowdGLTest.cpp
-         nodes/CharacterDrawsGLTest.cpp nodes/GlCallTrace.cpp nodes/GlObjectsGLTest.cpp
+         nodes/CharacterDrawsGLTest.cpp nodes/EventChangesTest.cpp nodes/GlCallTrace.cpp nodes/GlObjectsGLTest.cpp
          plugin/CloningGLTest.cpp plugin/SerializersGLTest.cpp)
 endif()
 add_executable(sanitized_tests EXCLUDE_FROM_ALL ${sanitized_sources} ${support_sources})

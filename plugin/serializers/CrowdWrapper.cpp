@@ -132,7 +132,7 @@ void transferInstances(ValueStream& stream, AnimatedCrowd& crowd)
     stream.endLine();
     if (stream.hasRead())
     {
-        crowd.setOrigin(origin);
+        if (!crowd.setOrigin(origin)) stream.fail("a crowd: its origin is not finite");
         stream.require("a crowd: ", crowd.setPixelError(static_cast<float>(pixelError)));
     }
     transferList(stream, crowd);

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: MIT
+#include "support/GaitSet.h"
+
+#include <osgGpuAnimation/animation/AnimationController.h>
 #include <osgGpuAnimation/animation/JointMask.h>
+#include <osgGpuAnimation/animation/Pose.h>
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
 
@@ -99,7 +103,73 @@ TEST(JointMaskTest, TheSetRefusesMasksOfOthersAndTooMany)
     mask.setJoint(1, 1.0f);
     const Result<std::uint32_t> tooMany = set->addMask(mask.weights());
     ASSERT_FALSE(tooMany);
-    EXPECT_EQ(tooMany.error().message, "the set has 1024 masks already");
+    EXPECT_EQ(tooMany.error().message, "the set has " + std::to_string(MaskTable::maxMasks) + " masks already");
+}
+
+// A soft edge that moves in every frame.
+TEST(JointMaskTest, AMaskMayChangeInEveryFrame)
+{
+    const auto set = makeGaitSet();
+    const std::size_t spine = static_cast<std::size_t>(set->skeleton().findJoint("spine1"));
+    AnimationController controller(set);
+    AnimationLayer& layer = controller.layer(1);
+    ASSERT_TRUE(layer.play("Run"));
+    layer.seek(0.2);
+    std::vector<JointTransform> run, found;
+    Pose::mix(*set, PoseInstruction{1, {set->sampleAt(set->findClip("Run"), 0.2)}}, run);
+    JointMask mask(*set);
+    PoseInstruction kept; // of a frame that is still drawn: its mask lives on
+    std::shared_ptr<const SetMask> keptMask;
+    for (int change = 0; change < 100000; ++change)
+    {
+        const float weight = static_cast<float>(change % 997) / 997.0f;
+        mask.setJoint(spine, weight);
+        ASSERT_TRUE(layer.setMask(mask)) << "change " << change;
+        if (change == 500)
+        {
+            kept = controller.instruction();
+            keptMask = set->masks().find(layer.mask());
+        }
+        if (change % 100 != 0) continue;
+        ASSERT_LE(set->masks().count(), 3u);
+        Pose::mix(*set, controller.instruction(), found);
+        const glm::vec4 rest = set->restPose()[spine].rotation, full = run[spine].rotation;
+        const glm::vec4 wanted =
+            glm::normalize(rest * (1.0f - weight) + full * (glm::dot(rest, full) < 0 ? -weight : weight));
+        for (int part = 0; part < 4; ++part)
+            ASSERT_NEAR(found[spine].rotation[part], wanted[part], 1e-5f) << "change " << change;
+    }
+    Pose::mix(*set, kept, found);
+    EXPECT_EQ(keptMask->weights[spine], 500.0f / 997.0f);
+    const std::vector<JointTransform> before = found;
+    keptMask = nullptr;
+    EXPECT_LE(set->masks().count(), 2u);
+    controller = AnimationController(set);
+    EXPECT_EQ(set->masks().count(), 0u) << "nobody uses one any more";
+}
+
+// As the test above, with all layers of many characters, their copies and their snapshots.
+TEST(JointMaskTest, MasksLiveAsLongAsTheirUsers)
+{
+    const auto set = makeGaitSet();
+    std::vector<AnimationController> controllers(100, AnimationController(set));
+    JointMask mask(*set);
+    for (std::size_t c = 0; c < controllers.size(); ++c)
+        for (std::size_t layer = 0; layer < maxLayers; ++layer)
+        {
+            mask.setJoint(0, static_cast<float>(c * maxLayers + layer) / 1000.0f);
+            ASSERT_TRUE(controllers[c].layer(layer).setMask(mask));
+        }
+    EXPECT_EQ(set->masks().count(), 100 * maxLayers);
+    const AnimationController copy = controllers[7];
+    const LayerSnapshot snapshot = controllers[8].layer(3).snapshot();
+    controllers.clear();
+    EXPECT_EQ(set->masks().count(), maxLayers);
+    for (std::size_t layer = 0; layer < maxLayers; ++layer)
+        EXPECT_EQ(set->masks().weights(copy.layer(layer).mask())[0], static_cast<float>(56 + layer) / 1000.0f);
+    AnimationController restored(set->withClips(set->clips()).value());
+    ASSERT_TRUE(restored.layer(3).restore(snapshot));
+    EXPECT_EQ(restored.layer(3).snapshot().mask[0], 67.0f / 1000.0f);
 }
 
 } // namespace

@@ -219,4 +219,87 @@ TEST(AnimatedCrowdTest, movingTheOriginLeavesInstancesWhereTheyAre)
     EXPECT_EQ(crowd->getPlacement(instance).getTrans(), osg::Vec3d(1, 2, 3));
 }
 
+TEST(AnimatedCrowdTest, aRemovedInstanceAnswers)
+{
+    const osg::ref_ptr<AnimatedCrowd> crowd = emptyCrowd();
+    const AnimatedCrowd::Instance gone = crowd->add(osg::Matrixd::translate(1, 2, 3), playing("shift")).value();
+    ASSERT_TRUE(crowd->remove(gone));
+    for (const AnimatedCrowd::Instance none : {gone, AnimatedCrowd::Instance(12345), ~AnimatedCrowd::Instance(0)})
+    {
+        EXPECT_EQ(crowd->getPlacement(none), osg::Matrixd());
+        EXPECT_EQ(crowd->getController(none), nullptr);
+        EXPECT_FALSE(crowd->setPlacement(none, osg::Matrixd()));
+        EXPECT_FALSE(crowd->setTint(none, osg::Vec4()));
+        EXPECT_FALSE(crowd->remove(none));
+        EXPECT_EQ(crowd->getPosedMesh(none, *makeTestSquare(1))->getVertexArray()->getNumElements(), 0u);
+    }
+}
+
+// A null set counts as one without joints and clips, as before setAnimationSet().
+TEST(AnimatedCrowdTest, crowdsAndCharactersWithoutASetAnswer)
+{
+    const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(nullptr, {makeTestSquare(1), nullptr});
+    EXPECT_EQ(crowd->getAnimationSet().paletteSize(), 0u);
+    ASSERT_TRUE(crowd->add(osg::Matrixd(), AnimationController(nullptr)));
+    EXPECT_FALSE(crowd->add(osg::Matrixd(), playing("shift")));
+    crowd->update(0.0);
+    crowd->update(1.0);
+    crowd->getBound();
+
+    const osg::ref_ptr<AnimatedCharacter> character = new AnimatedCharacter(nullptr);
+    character->addChild(makeTestSquare(1));
+    EXPECT_FALSE(character->jointToModel("hand"));
+    EXPECT_FALSE(character->jointToModel(0));
+    character->computeClipBounds();
+    character->update(0.0);
+    character->update(1.0);
+    character->getBound();
+    EXPECT_TRUE(character->setAnimationSet(testCharacterSet()));
+}
+
+TEST(AnimatedCrowdTest, aBadOriginIsRefused)
+{
+    const double inf = std::numeric_limits<double>::infinity();
+    const osg::ref_ptr<AnimatedCrowd> crowd = emptyCrowd();
+    const auto instance = crowd->add(osg::Matrixd::translate(1, 2, 3), playing("shift")).value();
+    for (const osg::Vec3d& bad : {osg::Vec3d(std::nan(""), 0, 0), osg::Vec3d(0, -inf, 0), osg::Vec3d(0, 0, 1e39)})
+    {
+        EXPECT_FALSE(crowd->setOrigin(bad));
+        EXPECT_EQ(crowd->getOrigin(), osg::Vec3d(1, 2, 3));
+        EXPECT_EQ(crowd->getPlacement(instance), osg::Matrixd::translate(1, 2, 3));
+    }
+}
+
+TEST(AnimatedCrowdTest, anOriginIsReversible)
+{
+    const osg::ref_ptr<AnimatedCrowd> crowd = emptyCrowd();
+    std::vector<AnimatedCrowd::Instance> instances;
+    const auto placementOf = [](int i) {
+        return osg::Matrixd::rotate(0.1 * i, 0, 0, 1) * osg::Matrixd::translate(0.1 * i, 6378137.0 + 0.3 * i, -0.7 * i);
+    };
+    for (int i = 0; i < 10; ++i)
+        instances.push_back(crowd->add(placementOf(i), playing("shift")).value());
+    const osg::Vec3d first = crowd->getOrigin();
+    ASSERT_TRUE(crowd->remove(instances[4]));
+    ASSERT_TRUE(crowd->setPlacement(instances[5], placementOf(50)));
+    const osg::ref_ptr<AnimatedCrowd> copy = osg::clone(crowd.get());
+    for (const osg::Vec3d& far : {osg::Vec3d(1e15, -1e15, 1e15), osg::Vec3d(1e30, 0, 0), osg::Vec3d(), first})
+    {
+        EXPECT_TRUE(crowd->setOrigin(far));
+        EXPECT_EQ(crowd->getOrigin(), far);
+    }
+    for (int i = 0; i < 10; ++i)
+    {
+        if (i == 4) continue;
+        const AnimatedCrowd::Instance instance = instances[static_cast<std::size_t>(i)];
+        const osg::Matrixd wanted = placementOf(i == 5 ? 50 : i);
+        EXPECT_EQ(crowd->getPlacement(instance).getTrans(), wanted.getTrans());
+        for (int cell = 0; cell < 12; ++cell)
+            EXPECT_NEAR(crowd->getPlacement(instance).ptr()[cell], wanted.ptr()[cell], 1e-6);
+        // What is drawn is the same as before, too.
+        const std::size_t index = crowd->getInstances().indexOf(instance);
+        EXPECT_EQ(crowd->getInstances().rootMatrix(index).rows, copy->getInstances().rootMatrix(index).rows);
+    }
+}
+
 } // namespace osgGpuAnimation

@@ -101,6 +101,45 @@ TEST_F(PoseStatisticsGLTest, countsAndTimeAreRecordedWhileStatsAreOn)
     EXPECT_LT(seconds, 1.0);
 }
 
+// Cameras that see different instances evaluate batches of their own, and so do levels and blend costs.
+TEST_F(PoseStatisticsGLTest, eachCharacterCountsOnceForAllCamerasAndBatches)
+{
+    const osg::ref_ptr<AnimatedCharacter> first = makeTestCharacter();
+    const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*first);
+    const osg::ref_ptr<osg::Group> group = new osg::Group;
+    for (int i = 0; i < 6; ++i)
+    {
+        AnimationController controller = first->getController();
+        if (i % 2 == 1)
+        {
+            ASSERT_TRUE(controller.crossfade("turn", 1e6));
+        }
+        ASSERT_TRUE(crowd->add(osg::Matrixd::translate(-3.5 + 1.2 * i, 0, 0), controller));
+    }
+    group->addChild(crowd);
+    group->addChild(first);
+    for (const double right : {-1.0, 1.0, 4.0})
+    {
+        const osg::ref_ptr<osg::Camera> camera = new osg::Camera;
+        camera->setReferenceFrame(osg::Transform::ABSOLUTE_RF);
+        camera->setRenderOrder(osg::Camera::POST_RENDER);
+        camera->setProjectionMatrixAsOrtho(-4, right, -4, 4, 1, 20);
+        camera->setViewMatrixAsLookAt({0, -10, 0}, {0, 0, 0}, {0, 0, 1});
+        camera->addChild(crowd);
+        camera->addChild(first);
+        group->addChild(camera);
+    }
+    viewer().getCamera()->setFinalDrawCallback(nullptr);
+    viewer().setSceneData(group);
+    collect(true);
+    for (const double time : {0.0, 0.1, 0.2})
+    {
+        drawAt(time);
+        EXPECT_EQ(recorded(PoseStatistics::charactersSeen), 7.0) << time;
+        EXPECT_EQ(recorded(PoseStatistics::jointsSeen), 7.0 * testCharacterSet()->skeleton().jointCount()) << time;
+    }
+}
+
 TEST_F(PoseStatisticsGLTest, aCamerasStatisticsCountWhatItsDrawsShow)
 {
     const osg::ref_ptr<AnimatedCharacter> first = makeTestCharacter();

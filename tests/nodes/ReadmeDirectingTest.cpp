@@ -14,6 +14,8 @@
 
 #include <gtest/gtest.h>
 
+#include <iostream>
+
 // The snippets of the guide directing.md, with a character that this file creates. tests/house/SnippetTest.cpp compares
 // these statements with the guide.
 
@@ -22,6 +24,13 @@ namespace osgGpuAnimation
 
 namespace
 {
+
+template <typename T>
+bool succeeded(const Result<T>& result)
+{
+    if (!result) std::cerr << result.error().message << std::endl;
+    return static_cast<bool>(result);
+}
 
 /// A character with the joints and clips that the snippets name.
 osg::ref_ptr<AnimatedCharacter> makeFox()
@@ -62,15 +71,15 @@ private:
 TEST_F(ReadmeDirectingTest, PlayingAndCrossfading)
 {
     AnimationController& controller = fox->getController();
-    EXPECT_TRUE(controller.play("Walk"));
+    succeeded(controller.play("Walk"));
     controller.setSpeed(1.2);
-    EXPECT_TRUE(controller.crossfade("Run", 0.3));
+    succeeded(controller.crossfade("Run", 0.3));
 
     CrossfadeOptions options;
     options.sync = Sync::Phase;
     options.curve = FadeCurve::Smooth;
     options.loopMode = LoopMode::Loop;
-    EXPECT_TRUE(controller.crossfade("Walk", 0.3, options));
+    succeeded(controller.crossfade("Walk", 0.3, options));
     EXPECT_EQ(controller.advance(0.1).sampleCount, 2u) << "the first crossfade had not begun to show";
 }
 
@@ -80,14 +89,14 @@ TEST_F(ReadmeDirectingTest, LayersAndMasks)
     AnimationLayer& gesture = controller.layer(1);
     Result<JointMask> arm = JointMask::subtree(fox->getAnimationSet(), "Shoulder.R", 1);
     ASSERT_TRUE(arm) << arm.error().message;
-    if (arm) (void)gesture.setMask(arm.value());
+    if (succeeded(arm)) succeeded(gesture.setMask(arm.value()));
     gesture.setLoopMode(LoopMode::Once);
-    EXPECT_TRUE(gesture.crossfade("Wave", 0.2));
+    succeeded(gesture.crossfade("Wave", 0.2));
     gesture.fadeWeight(0.0f, 0.4);
 
     AnimationLayer& breath = controller.layer(2);
     breath.setMode(AnimationLayer::Mode::Additive, AnimationLayer::Reference::FirstFrame);
-    EXPECT_TRUE(breath.play("Breathe"));
+    succeeded(breath.play("Breathe"));
     breath.setWeight(0.7f);
     EXPECT_EQ(controller.advance(0.1).sampleCount, 4u) << "base, gesture, and two for what is added";
 }
@@ -98,17 +107,18 @@ TEST_F(ReadmeDirectingTest, Events)
     const auto playSound = [&](const std::string& name, float) { heard += name + ";"; };
     EXPECT_TRUE(fox->getController().play("Survey"));
     Result<Clip> marked = fox->getAnimationSet().clips()[0].withMarkers({{0.20, "left foot"}, {0.55, "right foot"}});
-    if (marked)
+    if (succeeded(marked))
     {
         std::vector<Clip> clips = fox->getAnimationSet().clips();
         clips[0] = marked.value();
-        EXPECT_TRUE(fox->setAnimationSet(fox->getAnimationSet().withClips(clips).value()));
+        auto set = fox->getAnimationSet().withClips(clips);
+        if (succeeded(set)) succeeded(fox->setAnimationSet(set.value()));
     }
     fox->getController().setEventCallback(
         [&](const AnimationEvent& event)
         {
             if (event.type == AnimationEvent::Type::Marker) playSound(event.marker->name, event.weight);
-            if (event.type == AnimationEvent::Type::Finished) (void)fox->getController().crossfade("Walk", 0.3);
+            if (event.type == AnimationEvent::Type::Finished) succeeded(fox->getController().crossfade("Walk", 0.3));
         });
     fox->getController().advance(0.6);
     EXPECT_EQ(heard, "left foot;right foot;");
@@ -117,7 +127,7 @@ TEST_F(ReadmeDirectingTest, Events)
 TEST_F(ReadmeDirectingTest, RootMotionOfTheCharacterOrOfSomethingElse)
 {
     auto set = withRootMotion(fox->getAnimationSet(), "hips", {true, false, true});
-    if (set) (void)fox->setAnimationSet(set.value());
+    if (succeeded(set)) succeeded(fox->setAnimationSet(set.value()));
     fox->getController().advance(0.5);
 
     osg::Matrixd placement;
@@ -171,7 +181,7 @@ TEST_F(ReadmeDirectingTest, States)
     const WorkingFolder here(folder.file(""));
     auto graph = readStateGraphFile(fox->getAnimationSet(), "fox.states.json");
     ASSERT_TRUE(graph) << graph.error().message;
-    if (graph)
+    if (succeeded(graph))
     {
         StateMachine machine(graph.value());
         machine.set("speed", 1.0);

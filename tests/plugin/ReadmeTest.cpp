@@ -29,6 +29,13 @@ namespace osgGpuAnimation
 namespace
 {
 
+template <typename T>
+bool succeeded(const Result<T>& result)
+{
+    if (!result) std::cerr << result.error().message << std::endl;
+    return static_cast<bool>(result);
+}
+
 class ReadmeTest : public ::testing::Test
 {
 protected:
@@ -77,14 +84,16 @@ TEST_F(ReadmeTest, crowds)
     osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(prototype);
 
     AnimationController controller(crowd->getSharedAnimationSet());
-    EXPECT_TRUE(controller.play("Run"));
+    succeeded(controller.play("Run"));
     controller.seek(0.4);
     auto fox = crowd->add(osg::Matrix::translate(100, 20, 0), controller, osg::Vec4(1, 0.8, 0.8, 1));
-    if (!fox) std::cerr << fox.error().message << std::endl;
     ASSERT_TRUE(fox);
-
-    EXPECT_TRUE(crowd->setPlacement(fox.value(), osg::Matrix::translate(101, 20, 0)));
-    EXPECT_TRUE(crowd->getController(fox.value())->crossfade("Walk", 0.3));
+    if (succeeded(fox))
+    {
+        succeeded(crowd->setPlacement(fox.value(), osg::Matrix::translate(101, 20, 0)));
+        succeeded(crowd->getController(fox.value())->crossfade("Walk", 0.3));
+    }
+    EXPECT_EQ(crowd->getController(fox.value())->clip(), crowd->getAnimationSet().findClip("Walk"));
 
     if (auto pixels = crowd->setPixelError(0.5f); !pixels) std::cerr << pixels.error().message << std::endl;
     EXPECT_EQ(crowd->getPixelError(), 0.5f);
@@ -98,7 +107,8 @@ TEST_F(ReadmeTest, crowds)
     auto instance = AnimatedCrowd::instanceOf(hit.drawable);
     EXPECT_EQ(instance, fox.value());
 
-    crowd->remove(fox.value());
+    const AnimatedCrowd::Instance leaver = fox.value();
+    crowd->remove(leaver);
     EXPECT_EQ(crowd->getNumInstances(), 0u);
 }
 

@@ -56,7 +56,6 @@ void addActiveClips(const AnimationLayer& layer, std::vector<PlayedClip>& out)
 AnimationController::AnimationController(std::shared_ptr<const AnimationSet> set)
     : LayerOwner(std::move(set)), _base(*this, 0)
 {
-    assert(_set && "a controller plays the clips of a set");
     const auto moving = std::find_if(_set->clips().begin(), _set->clips().end(),
                                      [](const Clip& clip) { return clip.rootMotion() != nullptr; });
     if (moving != _set->clips().end()) _rootMotionCurve = moving->rootMotion();
@@ -130,13 +129,31 @@ void AnimationController::forEachLayer(Function function)
         function(*layer);
 }
 
-const PoseInstruction& AnimationController::advance(double seconds)
+void AnimationController::step(double seconds)
 {
     const double step = std::isfinite(seconds) ? seconds : 0.0;
     forEachLayer([step](AnimationLayer& layer) { layer.advance(step); });
     rebuildInstruction();
     if (_rootMotionCurve) accumulateRootMotion();
-    if (_eventCallback) reportEvents();
+}
+
+const PoseInstruction& AnimationController::advance(double seconds)
+{
+    step(seconds);
+    const PoseInstruction& instruction = _instruction; // a callback may destroy this controller
+    const std::weak_ptr<const EventCallback> listener = _eventCallback;
+    forEachEvent(
+        [&listener](const AnimationEvent& event)
+        {
+            if (const std::shared_ptr<const EventCallback> callback = listener.lock()) (*callback)(event);
+        });
+    return instruction;
+}
+
+const PoseInstruction& AnimationController::advance(double seconds, PendingEvents& outEvents)
+{
+    step(seconds);
+    forEachEvent([&](const AnimationEvent& event) { outEvents._events.push_back({_eventCallback, _set, event}); });
     return _instruction;
 }
 
@@ -167,20 +184,27 @@ void AnimationController::setEventCallback(EventCallback callback)
     _eventCallback = callback ? std::make_shared<const EventCallback>(std::move(callback)) : nullptr;
 }
 
-void AnimationController::reportEvents()
+template <typename Function>
+void AnimationController::forEachEvent(Function function) const
 {
     bool hasEvents = false; // most steps have none, and FrameEvents is large
-    forEachLayer([&](const AnimationLayer& layer)
-                 { hasEvents = hasEvents || layer.lastStep().mayHaveEvents(_set->clips()); });
+    for (std::size_t i = 0; i < layerCount() && _eventCallback && !hasEvents; ++i)
+        hasEvents = layer(i).lastStep().mayHaveEvents(_set->clips());
     if (!hasEvents) return;
-    // Copies: the callback may replace itself or the set of this controller.
-    const std::shared_ptr<const EventCallback> callback = _eventCallback;
-    const std::shared_ptr<const AnimationSet> set = _set;
+    const std::shared_ptr<const AnimationSet> set = _set; // the function may destroy this controller
     FrameEvents events;
-    forEachLayer([&](const AnimationLayer& layer) { events.add(layer.lastStep(), set->clips()); });
+    for (std::size_t i = 0; i < layerCount(); ++i)
+        events.add(layer(i).lastStep(), set->clips());
     AnimationEvent event;
     while (events.next(event))
-        (*callback)(event);
+        function(event);
+}
+
+void PendingEvents::deliver() const
+{
+    for (const Event& pending : _events)
+        if (const std::shared_ptr<const AnimationController::EventCallback> callback = pending.callback.lock())
+            (*callback)(pending.event);
 }
 
 void findPlayedClips(const AnimationController& controller, std::vector<PlayedClip>& out)

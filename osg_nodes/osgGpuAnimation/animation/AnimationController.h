@@ -15,6 +15,7 @@ namespace osgGpuAnimation
 {
 
 struct RootMotionCurve;
+class PendingEvents;
 
 /// The mutable state of one instance: its clips, times, speeds and layers. A copy is an independent instance of the
 /// same set.
@@ -34,7 +35,7 @@ public:
     using LoopMode = osgGpuAnimation::LoopMode;                       ///< See osgGpuAnimation::LoopMode.
     using EventCallback = std::function<void(const AnimationEvent&)>; ///< Receives one event of advance().
 
-    /// Starts with one Stopped layer. set: must not be null (asserted).
+    /// Starts with one Stopped layer. set: null counts as an empty one.
     explicit AnimationController(std::shared_ptr<const AnimationSet> set);
     /// Copies another controller's layers, which then play the clips of the same numbers in this set, and its root
     /// motion, for example after Clip::withMarkers(). A layer whose clips or mask do not fit the set becomes Stopped
@@ -106,9 +107,12 @@ public:
     RootMotion takeRootMotion();
     const RootMotion& rootMotion() const { return _rootMotion; } ///< the same without the reset
 
+    /// The same without calls of the event callback: appends the events of the step to outEvents.
+    const PoseInstruction& advance(double seconds, PendingEvents& outEvents);
+
     /// advance() calls the callback, in its thread, after all layers have moved. The callback may do anything with the
-    /// controller (play, crossfade, set another callback) except destroy it; the remaining events of the step do not
-    /// change. An empty function removes the callback.
+    /// controller, also destroy it (the reference from advance() is then invalid). The remaining events of the step do
+    /// not change, but a callback that was removed or replaced receives no more. An empty function removes it.
     void setEventCallback(EventCallback callback);
 
 private:
@@ -118,7 +122,9 @@ private:
     void forEachLayer(Function function); ///< function(layer), from the base up
     void copyUpperLayers(const AnimationController& other);
     void rebuildInstruction() override;
-    void reportEvents();
+    void step(double seconds);
+    template <typename Function>
+    void forEachEvent(Function function) const; ///< function(event), in the order of time, for the last step
     void accumulateRootMotion();
 
     // Members that every advance() needs come first and together: with thousands of controllers they are not in the
@@ -129,6 +135,27 @@ private:
     AnimationLayer _base;
     PoseInstruction _instruction;
     RootMotion _rootMotion;
+};
+
+/// Events of one or more controllers, for their callbacks. An owner of controllers delivers them after all have moved.
+class PendingEvents
+{
+public:
+    bool isEmpty() const { return _events.empty(); } ///< true if nobody waits for an event
+    /// Calls the callbacks in the order of advance(). Skips callbacks that were removed or replaced and those of
+    /// destroyed controllers.
+    void deliver() const;
+
+private:
+    friend class AnimationController;
+    struct Event
+    {
+        std::weak_ptr<const AnimationController::EventCallback> callback;
+        std::shared_ptr<const AnimationSet> set; ///< owns the marker
+        AnimationEvent event;
+    };
+
+    std::vector<Event> _events;
 };
 
 /// Finds all clips whose samples can contribute to the pose now, for any weights and masks of the layers, and the rest

@@ -137,16 +137,16 @@ bool AnimationLayer::fadeWeight(float weight, double seconds, FadeCurve curve)
 
 Result<bool> AnimationLayer::setMask(const JointMask& mask)
 {
-    const Result<std::uint32_t> number = set().addMask(mask.weights());
-    if (!number) return number.error();
-    _mask = number.value();
+    const Result<std::shared_ptr<const SetMask>> used = set().useMask(mask.weights());
+    if (!used) return used.error();
+    _mask = used.value();
     rebuildInstruction();
     return true;
 }
 
 void AnimationLayer::clearMask()
 {
-    _mask = 0;
+    _mask = nullptr;
     rebuildInstruction();
 }
 
@@ -177,7 +177,7 @@ BlendSample AnimationLayer::sampleOf(const ClipPlayback& playback, double time, 
 {
     BlendSample sample = set().sampleAt(playback.clip(), time);
     sample.weight = static_cast<float>(share * _weight.value());
-    sample.control |= _mask << POSE_SAMPLE_MASK_SHIFT;
+    sample.control |= mask() << POSE_SAMPLE_MASK_SHIFT;
     return sample;
 }
 
@@ -194,13 +194,13 @@ void AnimationLayer::collect(BlendList& out) const
         else if (_reference == Reference::FirstFrame)
             out.addDifference(sampleOf(activeClip.playback, 0.0, activeClip.share), sample);
         else
-            out.addDifference(BlendSample{0, 0.0f, sample.weight, _mask << POSE_SAMPLE_MASK_SHIFT}, sample);
+            out.addDifference(BlendSample{0, 0.0f, sample.weight, mask() << POSE_SAMPLE_MASK_SHIFT}, sample);
     }
 }
 
 bool AnimationLayer::isPlainLoop() const
 {
-    const bool isDefault = _mode == Mode::Override && _reference == Reference::RestPose && _mask == 0 &&
+    const bool isDefault = _mode == Mode::Override && _reference == Reference::RestPose && !_mask &&
                            _blendPriority == static_cast<int>(_index) && _weight.isFinished() && _weight.value() == 1.0;
     if (!isDefault || _loopMode != LoopMode::Loop || _state == PlayState::Ended) return false;
     if (_mixer.isEmpty()) return _state == PlayState::Stopped;
@@ -214,14 +214,13 @@ bool AnimationLayer::isPlainLoop() const
 void AnimationLayer::collectMotion(RootMotionBlend& out, const RootMotionCurve& usual) const
 {
     if (_state == PlayState::Stopped || _mode == Mode::Additive) return;
-    const float* mask = set().masks().weights(_mask);
     for (std::size_t v = 0; v < _mixer.activeClipCount(); ++v)
     {
         const ClipMixer::ActiveClip& activeClip = _mixer.activeClip(v);
         const Clip& clip = set().clips()[static_cast<std::size_t>(activeClip.playback.clip())];
         const RootMotionCurve& curve = clip.rootMotion() ? *clip.rootMotion() : usual;
         const double weight =
-            activeClip.meanShare * _weight.mean() * (mask ? static_cast<double>(mask[curve.joint]) : 1.0);
+            activeClip.meanShare * _weight.mean() * (_mask ? static_cast<double>(_mask->weights[curve.joint]) : 1.0);
         out.add(clip.rootMotion() ? rootMotionOf(clip, activeClip.move, activeClip.playback.loopMode())
                                   : RootMotion{glm::dvec3(0.0), 0.0, curve.up},
                 weight, _blendPriority);
@@ -302,8 +301,7 @@ LayerSnapshot AnimationLayer::snapshot() const
     }
     snapshot.crossfade = _mixer.fade().state();
     snapshot.weight = _weight.state();
-    if (const float* weights = set().masks().weights(_mask))
-        snapshot.mask.assign(weights, weights + set().trackCount());
+    if (_mask) snapshot.mask = _mask->weights;
     snapshot.mode = _mode;
     snapshot.reference = _reference;
     snapshot.blendPriority = _blendPriority;
@@ -314,12 +312,12 @@ Result<bool> AnimationLayer::restore(const LayerSnapshot& snapshot)
 {
     const AnimationSet& set = this->set();
     if (const std::optional<std::string> fault = findFault(snapshot, set)) return Error{"a layer with " + *fault};
-    std::uint32_t mask = 0;
+    std::shared_ptr<const SetMask> mask;
     if (!snapshot.mask.empty())
     {
-        const Result<std::uint32_t> number = set.addMask(snapshot.mask);
-        if (!number) return number.error();
-        mask = number.value();
+        const Result<std::shared_ptr<const SetMask>> used = set.useMask(snapshot.mask);
+        if (!used) return used.error();
+        mask = used.value();
     }
     std::vector<ClipMixer::ActiveClip> activeClips;
     for (const LayerSnapshot::ActiveClip& kept : snapshot.activeClips)

@@ -26,8 +26,8 @@ class LayerOwner
 {
 protected:
     friend class AnimationLayer;
-    /// set: must not be null; AnimationController asserts it.
-    explicit LayerOwner(std::shared_ptr<const AnimationSet> set) : _set(std::move(set)) {}
+    /// set: null counts as an empty one.
+    explicit LayerOwner(std::shared_ptr<const AnimationSet> set) : _set(AnimationSet::orEmpty(std::move(set))) {}
     LayerOwner(const LayerOwner&) = default;            ///< Shares the set.
     LayerOwner& operator=(const LayerOwner&) = default; ///< Shares the set.
     ~LayerOwner() = default;
@@ -120,10 +120,11 @@ public:
     bool fadeWeight(float weight, double seconds, FadeCurve curve = FadeCurve::Linear);
     float weight() const { return static_cast<float>(_weight.value()); } ///< the current weight, in [0, 1]
 
-    /// Errors: the mask does not fit the joints and morphs of this set; the set has MaskTable::maxMasks masks.
+    /// Copies the weights. A mask that changes may be set again in every frame: one that nobody uses any more is freed.
+    /// Errors: the mask does not fit the joints and morphs of this set; MaskTable::maxMasks different masks are in use.
     Result<bool> setMask(const JointMask& mask);
-    void clearMask();                            ///< The layer affects all tracks.
-    std::uint32_t mask() const { return _mask; } ///< number of the mask in the set, 0: none
+    void clearMask();                                                ///< The layer affects all tracks.
+    std::uint32_t mask() const { return _mask ? _mask->number : 0; } ///< number of the mask in the set, 0: none
 
     /// Sets the mode. reference: used in mode Additive only.
     void setMode(Mode mode, Reference reference = Reference::RestPose);
@@ -168,7 +169,7 @@ private:
     LoopMode _loopMode = LoopMode::Loop;
     double _speed = 1.0;
     Fade _weight{1.0};
-    std::uint32_t _mask = 0;
+    std::shared_ptr<const SetMask> _mask; ///< null: none
     Mode _mode = Mode::Override;
     Reference _reference = Reference::RestPose;
     int _blendPriority = 0;

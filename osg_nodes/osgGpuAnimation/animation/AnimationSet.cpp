@@ -14,36 +14,50 @@
 namespace osgGpuAnimation
 {
 
-MaskTable::MaskTable(const MaskTable& other)
+std::shared_ptr<const SetMask> MaskTable::use(const std::vector<float>& weights)
 {
-    const std::lock_guard<std::mutex> lock(other._mutex);
-    _masks = other._masks;
+    const std::lock_guard<std::mutex> lock(_mutex);
+    std::size_t place = _masks.size();
+    for (std::size_t m = _masks.size(); m-- > 0;)
+    {
+        const std::shared_ptr<const SetMask> mask = _masks[m].lock();
+        if (mask && mask->weights == weights) return mask;
+        if (!mask) place = m;
+    }
+    if (place >= maxMasks) return nullptr;
+    const auto made = std::make_shared<const SetMask>(SetMask{static_cast<std::uint32_t>(place + 1), weights});
+    _masks.resize(std::max(_masks.size(), place + 1));
+    _masks[place] = made;
+    return made;
 }
 
 std::uint32_t MaskTable::add(const std::vector<float>& weights)
 {
+    const std::shared_ptr<const SetMask> mask = use(weights);
+    if (!mask) return 0;
     const std::lock_guard<std::mutex> lock(_mutex);
-    const auto known = std::find(_masks.begin(), _masks.end(), weights);
-    if (known == _masks.end())
-    {
-        if (_masks.size() >= maxMasks) return 0;
-        _masks.push_back(weights);
-        return static_cast<std::uint32_t>(_masks.size());
-    }
-    return static_cast<std::uint32_t>(known - _masks.begin()) + 1;
+    if (std::find(_added.begin(), _added.end(), mask) == _added.end()) _added.push_back(mask);
+    return mask->number;
 }
 
 std::size_t MaskTable::count() const
 {
     const std::lock_guard<std::mutex> lock(_mutex);
-    return _masks.size();
+    return static_cast<std::size_t>(
+        std::count_if(_masks.begin(), _masks.end(), [](const auto& mask) { return !mask.expired(); }));
+}
+
+std::shared_ptr<const SetMask> MaskTable::find(std::uint32_t number) const
+{
+    if (number == 0) return nullptr;
+    const std::lock_guard<std::mutex> lock(_mutex);
+    return number <= _masks.size() ? _masks[number - 1].lock() : nullptr;
 }
 
 const float* MaskTable::weights(std::uint32_t number) const
 {
-    if (number == 0) return nullptr;
-    const std::lock_guard<std::mutex> lock(_mutex);
-    return number <= _masks.size() ? _masks[number - 1].data() : nullptr;
+    const std::shared_ptr<const SetMask> mask = find(number);
+    return mask ? mask->weights.data() : nullptr;
 }
 
 namespace
@@ -111,8 +125,8 @@ std::string namesOf(const std::vector<Clip>& clips)
 
 } // namespace
 
-AnimationSet::AnimationSet(AnimationParts parts, const MaskTable& masks)
-    : _parts(std::move(parts)), _masks(std::make_unique<MaskTable>(masks))
+AnimationSet::AnimationSet(AnimationParts parts, std::shared_ptr<MaskTable> masks)
+    : _parts(std::move(parts)), _masks(std::move(masks))
 {
     _restPose = osgGpuAnimation::restPose(_parts.skeleton, _parts.morphs);
     _firstTracksOfMorphs = firstTracksOfMorphs(_parts.skeleton, _parts.morphs);
@@ -128,22 +142,29 @@ AnimationSet::~AnimationSet() = default;
 
 Result<std::shared_ptr<const AnimationSet>> AnimationSet::create(AnimationParts parts)
 {
-    return make(std::move(parts), MaskTable());
+    return make(std::move(parts), std::make_shared<MaskTable>());
+}
+
+std::shared_ptr<const AnimationSet> AnimationSet::orEmpty(std::shared_ptr<const AnimationSet> set)
+{
+    static const std::shared_ptr<const AnimationSet> empty =
+        create({Skeleton::create({}).value(), {}, {}, {}, {}}).value();
+    return set ? std::move(set) : empty;
 }
 
 Result<std::shared_ptr<const AnimationSet>> AnimationSet::withClips(std::vector<Clip> clips) const
 {
     AnimationParts parts = _parts;
     parts.clips = std::move(clips);
-    return make(std::move(parts), *_masks);
+    return make(std::move(parts), _masks);
 }
 
-Result<std::shared_ptr<const AnimationSet>> AnimationSet::make(AnimationParts parts, const MaskTable& masks)
+Result<std::shared_ptr<const AnimationSet>> AnimationSet::make(AnimationParts parts, std::shared_ptr<MaskTable> masks)
 {
     const std::size_t trackCount = firstTracksOfMorphs(parts.skeleton, parts.morphs).back();
     if (auto fault = findFault(parts, trackCount)) return *fault;
     if (auto fault = findFaultInSize(parts.clips)) return *fault;
-    return std::shared_ptr<const AnimationSet>(new AnimationSet(std::move(parts), masks));
+    return std::shared_ptr<const AnimationSet>(new AnimationSet(std::move(parts), std::move(masks)));
 }
 
 int AnimationSet::entryOfRigidJoint(int joint) const
@@ -183,14 +204,21 @@ BlendSample AnimationSet::sampleAt(int clip, double time) const
             played.form() == Clip::Form::Spline ? POSE_SAMPLE_SPLINE : 0u};
 }
 
-Result<std::uint32_t> AnimationSet::addMask(const std::vector<float>& weights) const
+Result<std::shared_ptr<const SetMask>> AnimationSet::useMask(const std::vector<float>& weights) const
 {
     if (weights.size() != trackCount())
         return Error{"a mask of " + std::to_string(weights.size()) + " tracks for a set of " +
                      std::to_string(trackCount())};
-    const std::uint32_t number = _masks->add(weights);
-    if (number == 0) return Error{"the set has " + std::to_string(MaskTable::maxMasks) + " masks already"};
-    return number;
+    std::shared_ptr<const SetMask> mask = _masks->use(weights);
+    if (!mask) return Error{"the set has " + std::to_string(MaskTable::maxMasks) + " masks already"};
+    return mask;
+}
+
+Result<std::uint32_t> AnimationSet::addMask(const std::vector<float>& weights) const
+{
+    const Result<std::shared_ptr<const SetMask>> mask = useMask(weights);
+    if (!mask) return mask.error();
+    return _masks->add(weights);
 }
 
 } // namespace osgGpuAnimation

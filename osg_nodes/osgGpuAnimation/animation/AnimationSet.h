@@ -8,7 +8,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -57,27 +56,35 @@ struct Box;
 /// For each palette entry, the box of the vertices that it moves, in the mesh's space at bind time.
 using EntryBoxes = std::vector<Box>;
 
-/// The masks of one AnimationSet. Masks are never removed or changed, so the weights of a mask stay valid while other
-/// threads add masks. Safe to use from several threads.
+/// The weights of a mask, see JointMask. It exists as long as somebody holds it: the layers with this mask, and frames
+/// until they are drawn.
+struct SetMask
+{
+    std::uint32_t number;       ///< from 1 on, see BlendSample::control; unique among the masks that exist
+    std::vector<float> weights; ///< one per track, in [0, 1]
+};
+
+/// The masks of one AnimationSet by number. Safe to use from several threads.
 class MaskTable
 {
 public:
-    static constexpr std::size_t maxMasks = 1024; ///< the maximum number of masks of a set
+    static constexpr std::size_t maxMasks = 4096; ///< the maximum number of masks that exist at one time
 
-    MaskTable() = default;
-    MaskTable(const MaskTable& other); ///< Copies the masks; their numbers stay the same.
-    MaskTable& operator=(const MaskTable&) = delete;
-
-    /// The number of the mask with these weights, from 1 on. Adds it if it is new. 0: the table is full.
+    /// The mask with these weights. Creates it if it is new. Null: maxMasks masks exist.
+    std::shared_ptr<const SetMask> use(const std::vector<float>& weights);
+    /// As use(), and the table holds the mask as long as it exists itself. Returns the number; 0: maxMasks masks exist.
     std::uint32_t add(const std::vector<float>& weights);
 
-    std::size_t count() const; ///< number of masks
-    /// The weights of a mask, one per track; null for 0 (no mask) and for unknown numbers.
+    std::size_t count() const; ///< number of masks that exist
+    /// Null for 0 (no mask) and for numbers without a mask.
+    std::shared_ptr<const SetMask> find(std::uint32_t number) const;
+    /// The weights of a mask, one per track, valid while the mask exists. Null as for find().
     const float* weights(std::uint32_t number) const;
 
 private:
     mutable std::mutex _mutex;
-    std::deque<std::vector<float>> _masks;
+    std::vector<std::weak_ptr<const SetMask>> _masks; ///< by number - 1; expired: the number is free
+    std::vector<std::shared_ptr<const SetMask>> _added;
 };
 
 /// The input of AnimationSet::create().
@@ -101,6 +108,9 @@ public:
     static Result<std::shared_ptr<const AnimationSet>> create(AnimationParts parts);
 
     ~AnimationSet();
+
+    /// The set; if it is null, a set without joints and clips, which characters and crowds have before they get one.
+    static std::shared_ptr<const AnimationSet> orEmpty(std::shared_ptr<const AnimationSet> set);
 
     /// A set with the same skeleton, skins, morphs and masks but other clips, for example with markers (see
     /// Clip::withMarkers). Its palette is the same, so the meshes of this set fit it. Errors: those of create().
@@ -148,16 +158,17 @@ public:
     /// line of the clip.
     BlendSample sampleAt(int clip, double time) const;
 
-    /// Adds a mask that layers can use and returns its number, from 1 on (see BlendSample::control). Masks are never
-    /// removed, so adding one to a set in use is safe; equal masks share a number. Safe to call from several threads.
-    /// weights: one per track, in [0, 1] (not checked), see JointMask::weights().
-    /// Errors: a wrong number of weights; the set has MaskTable::maxMasks masks.
+    /// The mask with these weights, for as long as the caller holds it; equal masks are one. Safe to call from several
+    /// threads. weights: one per track, in [0, 1], see JointMask::weights().
+    /// Errors: a wrong number of weights; MaskTable::maxMasks masks exist.
+    Result<std::shared_ptr<const SetMask>> useMask(const std::vector<float>& weights) const;
+    /// The same for a mask that exists as long as the set. Returns its number, from 1 on (see BlendSample::control).
     Result<std::uint32_t> addMask(const std::vector<float>& weights) const;
     const MaskTable& masks() const { return *_masks; } ///< the masks of this set
 
 private:
-    AnimationSet(AnimationParts parts, const MaskTable& masks);
-    static Result<std::shared_ptr<const AnimationSet>> make(AnimationParts parts, const MaskTable& masks);
+    AnimationSet(AnimationParts parts, std::shared_ptr<MaskTable> masks);
+    static Result<std::shared_ptr<const AnimationSet>> make(AnimationParts parts, std::shared_ptr<MaskTable> masks);
 
     AnimationParts _parts;
     std::vector<JointTransform> _restPose;
@@ -165,7 +176,7 @@ private:
     PaletteLayout _layout;
     std::vector<std::size_t> _firstKeyframes;
     std::size_t _keyframeCount = 1;
-    std::unique_ptr<MaskTable> _masks;
+    std::shared_ptr<MaskTable> _masks; ///< shared by sets with equal tracks
 };
 
 } // namespace osgGpuAnimation

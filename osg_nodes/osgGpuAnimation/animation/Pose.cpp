@@ -21,7 +21,7 @@ struct Source
 {
     KeyframePair keyframes;
     double weight = 0.0;
-    const float* mask = nullptr; ///< one weight per track; null: none
+    std::shared_ptr<const SetMask> mask; ///< null: none
     std::uint32_t control = 0;
 };
 
@@ -64,7 +64,7 @@ public:
             if (!(sample.weight > 0.0f)) continue;
             source.keyframes = findKeyframes(set, sample);
             source.weight = static_cast<double>(sample.weight);
-            source.mask = set.masks().weights(sample.control >> POSE_SAMPLE_MASK_SHIFT);
+            source.mask = set.masks().find(sample.control >> POSE_SAMPLE_MASK_SHIFT);
         }
     }
 
@@ -77,7 +77,8 @@ public:
         {
             const Source& source = _sources[i];
             if ((source.control & POSE_SAMPLE_ABOVE) != 0) blend.beginBlendPriority();
-            const double weight = source.weight * (source.mask ? static_cast<double>(source.mask[track]) : 1.0);
+            const double weight =
+                source.weight * (source.mask ? static_cast<double>(source.mask->weights[track]) : 1.0);
             if (!(weight > 0.0)) continue;
             const MixedTrack sample = MixedTrack::between(source.keyframes, track, isWeights);
             if ((source.control & POSE_SAMPLE_REFERENCE) != 0)

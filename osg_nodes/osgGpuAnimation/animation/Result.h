@@ -2,8 +2,9 @@
 #pragma once
 
 #include <algorithm>
-#include <cassert>
 #include <cstddef>
+#include <cstdio>
+#include <cstdlib>
 #include <string>
 #include <utility>
 #include <variant>
@@ -31,7 +32,9 @@ struct Error
     std::string message; ///< one or more sentences for the developer
 };
 
-/// A value or an error. The caller must check it.
+/// A value or an error. The caller must check it. A call of value() without a value, or of error() without an error, is
+/// a mistake of the caller: it prints a message, with the error's own, and ends the program by std::abort(), in every
+/// kind of build.
 ///
 ///     Result<Skeleton> skeleton = Skeleton::create(joints);
 ///     if (!skeleton) return skeleton.error();
@@ -48,23 +51,25 @@ public:
     /// The value. The Result must hold one.
     const T& value() const&
     {
-        assert(*this && "value() of a Result that holds an error");
-        return std::get<T>(_content);
+        if (!*this) endProgram("value() of a Result that holds the error: ", error().message);
+        return *std::get_if<T>(&_content);
     }
     /// The value, to move from. The Result must hold one.
-    T&& value() &&
-    {
-        assert(*this && "value() of a Result that holds an error");
-        return std::get<T>(std::move(_content));
-    }
+    T&& value() && { return const_cast<T&&>(std::move(std::as_const(*this).value())); }
     /// The error. The Result must hold one.
     const Error& error() const
     {
-        assert(!*this && "error() of a Result that holds a value");
-        return std::get<Error>(_content);
+        if (*this) endProgram("error() of a Result that holds a value", "");
+        return *std::get_if<Error>(&_content);
     }
 
 private:
+    [[noreturn]] static void endProgram(const char* mistake, const std::string& message)
+    {
+        std::fprintf(stderr, "osgGpuAnimation: %s%s\n", mistake, message.c_str());
+        std::abort();
+    }
+
     std::variant<T, Error> _content;
 };
 

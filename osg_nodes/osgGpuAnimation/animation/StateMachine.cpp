@@ -228,7 +228,12 @@ int StateGraph::findState(const std::string& name) const
 StateMachine::StateMachine(std::shared_ptr<const StateGraph> graph, std::size_t layer)
     : _graph(std::move(graph)), _layer(layer)
 {
-    assert(_graph && "a state machine follows a graph");
+    if (!_graph)
+    {
+        const std::shared_ptr<StateGraph> stub(new StateGraph);
+        stub->_states.push_back({"", ~std::size_t(0), LoopMode::Loop, 1.0});
+        _graph = stub;
+    }
     _state = _graph->start();
     _values.resize(_graph->parameters().size(), 0.0);
     _isFired.resize(_graph->triggers().size(), false);

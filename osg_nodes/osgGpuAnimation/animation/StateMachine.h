@@ -125,6 +125,7 @@ public:
     int findState(const std::string& name) const; ///< -1 if there is none
 
 private:
+    friend class StateMachine;
     StateGraph() = default;
 
     Result<bool> addState(const AnimationSet& set, const StateDescription& description);
@@ -151,8 +152,7 @@ private:
 class StateMachine
 {
 public:
-    /// graph: must not be null (asserted). layer: index of the layer that update() drives, see
-    /// AnimationController::layer().
+    /// graph: null counts as one state without a clip. layer: index of the layer that update() drives, below maxLayers.
     explicit StateMachine(std::shared_ptr<const StateGraph> graph, std::size_t layer = 0);
 
     const StateGraph& graph() const { return *_graph; }                        ///< the shared graph

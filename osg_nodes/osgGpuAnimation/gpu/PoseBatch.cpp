@@ -50,15 +50,27 @@ std::size_t PoseBatch::append(const BlendSample* samples, std::size_t count)
     for (const BlendSample* sample = samples; sample != samples + count; ++sample)
     {
         _samples.push_back(*sample);
-        _samples.back().alpha = clampedToUnit(sample->alpha);
-        _samples.back().weight = clampedToUnit(sample->weight);
-        addNeeds(_samples.back());
+        BlendSample& added = _samples.back();
+        added.alpha = clampedToUnit(sample->alpha);
+        added.weight = clampedToUnit(sample->weight);
+        addNeeds(added);
+        // A mask that nobody holds any more is no mask.
+        if (!holdMask(added.control >> POSE_SAMPLE_MASK_SHIFT)) added.control &= (1u << POSE_SAMPLE_MASK_SHIFT) - 1u;
     }
     _samples.resize((_size + 1) * _sampleStride, BlendSample{0, 0.0f, 0.0f, 0});
     _needs.mixing = _needs.mixing || _sampleStride > 1;
     if (!_rootMatrices.empty() && !_isRootCommon) _rootMatrices.emplace_back();
     if (!_tints.empty()) _tints.push_back(white);
     return _size++;
+}
+
+/// False if there is no such mask.
+bool PoseBatch::holdMask(std::uint32_t number)
+{
+    if (number == 0) return true;
+    if (number >= _masks.size()) _masks.resize(number + 1);
+    if (!_masks[number]) _masks[number] = set().masks().find(number);
+    return _masks[number] != nullptr;
 }
 
 void PoseBatch::addNeeds(const BlendSample& sample)
@@ -142,6 +154,7 @@ void PoseBatch::clear()
     _rootMatrices.clear();
     _isRootCommon = false;
     _tints.clear();
+    _masks.clear();
 }
 
 void PoseBatch::reset(std::shared_ptr<const AnimationSet> set)

@@ -32,11 +32,11 @@ struct PalettePlace
 class PoseBatch
 {
 public:
-    /// Starts without instances. set: may be null until reset().
+    /// Starts without instances. set: null counts as an empty one.
     explicit PoseBatch(std::shared_ptr<const AnimationSet> set) : _set(std::move(set)) {}
 
-    /// The set of all instances; there must be one.
-    const AnimationSet& set() const { return *_set; }
+    /// The set of all instances; an empty one if the batch has none.
+    const AnimationSet& set() const { return _set ? *_set : *AnimationSet::orEmpty(nullptr); }
     /// The set of all instances; null if the batch has none.
     const std::shared_ptr<const AnimationSet>& sharedSet() const { return _set; }
 
@@ -99,12 +99,15 @@ public:
     const std::vector<AffineMatrix>& rootMatrices() const { return _rootMatrices; }
     /// size() colours; empty if all are white.
     const std::vector<std::uint32_t>& tints() const { return _tints; }
+    /// The masks of the samples by number; null: not used here. The batch holds them until it is cleared.
+    const std::vector<std::shared_ptr<const SetMask>>& masks() const { return _masks; }
     /// True if both have the same set and the same instances, byte by byte.
     bool isSame(const PoseBatch& other) const;
 
 private:
     void widen(std::size_t sampleStride);
     void addNeeds(const BlendSample& sample);
+    bool holdMask(std::uint32_t number);
     std::size_t append(const BlendSample* samples, std::size_t count);
 
     std::shared_ptr<const AnimationSet> _set;
@@ -115,6 +118,7 @@ private:
     std::vector<AffineMatrix> _rootMatrices;
     bool _isRootCommon = false; ///< true: _rootMatrices has one matrix for all instances
     std::vector<std::uint32_t> _tints;
+    std::vector<std::shared_ptr<const SetMask>> _masks;
 };
 
 } // namespace osgGpuAnimation

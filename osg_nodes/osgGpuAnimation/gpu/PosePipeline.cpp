@@ -77,7 +77,7 @@ struct PosePipeline::Parts
     void makeSeparatePasses();
     void forgetUnusedSets();
     std::size_t chunkCapacity(const PoseBatch& batch) const;
-    bool hasRoomForMasks(SetResources& resources, const AnimationSet& set) const;
+    bool hasRoomForMasks(SetResources& resources, const PoseBatch& batch) const;
     SetResources& resourcesOf(const PoseBatch& batch);
     bool evaluateFused(const PoseBatch& batch, const AnimationBuffers& buffers, PosePalette::Chunk& chunk);
     bool evaluateSeparate(const PoseBatch& batch, const AnimationBuffers& buffers, PosePalette::Chunk& chunk);
@@ -173,6 +173,7 @@ SetResources& PosePipeline::Parts::resourcesOf(const PoseBatch& batch)
 bool PosePipeline::evaluate(osg::State& state, const PoseBatch& batch, std::size_t slot)
 {
     _parts->forgetUnusedSets();
+    if (!batch.sharedSet()) return false;
     SetResources& resources = _parts->resourcesOf(batch);
     if (!resources.buffers) return false;
     while (resources.palettes.size() <= slot)
@@ -181,12 +182,12 @@ bool PosePipeline::evaluate(osg::State& state, const PoseBatch& batch, std::size
     const AnimationSet& set = batch.set();
     if (batch.needs().masks)
     {
-        if (!_parts->hasRoomForMasks(resources, set))
+        if (!_parts->hasRoomForMasks(resources, batch))
         {
             resources.palettes[slot]->invalidate();
             return false;
         }
-        resources.buffers->updateMasks(set);
+        resources.buffers->updateMasks(set, batch.masks());
     }
     const std::vector<PosePalette::Chunk*> changed =
         resources.palettes[slot]->upload(batch, _parts->chunkCapacity(batch), _counters.bytesUploaded);
@@ -219,9 +220,9 @@ std::size_t PosePipeline::Parts::chunkCapacity(const PoseBatch& batch) const
     return capacity;
 }
 
-bool PosePipeline::Parts::hasRoomForMasks(SetResources& resources, const AnimationSet& set) const
+bool PosePipeline::Parts::hasRoomForMasks(SetResources& resources, const PoseBatch& batch) const
 {
-    const std::size_t texels = AnimationBuffers::texelsPerMask(set) * (set.masks().count() + 1);
+    const std::size_t texels = AnimationBuffers::texelsPerMask(batch.set()) * batch.masks().size();
     if (texels <= pipeline._options.maxTexels) return true;
     if (!resources.isMaskLimitReported)
         OSG_WARN << "osgGpuAnimation: the masks of an animation set need a buffer of " << texels

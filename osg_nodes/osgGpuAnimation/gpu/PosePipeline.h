@@ -64,8 +64,9 @@ public:
 
     /// Uploads the batch and computes its palette, unless it equals the last batch of the same set and slot. The slots
     /// 0, 1, 2 … distinguish batches of one set; the palette of a slot is valid until the next evaluate() of that slot.
-    /// Returns false, with one warning, if the set is too large for the context's buffer textures or a pass does not
-    /// compile: the batch then has no palette, and its characters are not drawn.
+    /// Returns false for a batch without a set. Returns false, with one warning, if the set is too large for the
+    /// context's buffer textures or a pass does not compile: the batch then has no palette, and its characters are not
+    /// drawn.
     bool evaluate(osg::State& state, const PoseBatch& batch, std::size_t slot);
 
     /// The palette of an instance of the last batch of this set and slot; its texture is 0 if there is none.

@@ -13,6 +13,7 @@
 #include <osgGpuAnimation/nodes/picking/PosedMesh.h>
 
 #include <osg/NodeVisitor>
+#include <osg/observer_ptr>
 #include <osgUtil/CullVisitor>
 
 namespace osgGpuAnimation
@@ -20,13 +21,6 @@ namespace osgGpuAnimation
 
 namespace
 {
-
-std::shared_ptr<const AnimationSet> emptySet()
-{
-    static const std::shared_ptr<const AnimationSet> set =
-        AnimationSet::create({Skeleton::create({}).value(), {}, {}, {}, {}}).value();
-    return set;
-}
 
 EntryBoxes entryBoxesOf(osg::Node& node, PaletteEntryBounds bounds)
 {
@@ -36,7 +30,7 @@ EntryBoxes entryBoxesOf(osg::Node& node, PaletteEntryBounds bounds)
 
 } // namespace
 
-AnimatedCharacter::AnimatedCharacter() : AnimatedCharacter(emptySet()) {}
+AnimatedCharacter::AnimatedCharacter() : AnimatedCharacter(nullptr) {}
 
 AnimatedCharacter::AnimatedCharacter(std::shared_ptr<const AnimationSet> set)
     : _controller(std::make_unique<AnimationController>(std::move(set)))
@@ -109,8 +103,22 @@ osg::Matrixd AnimatedCharacter::takeRootMotion()
 
 void AnimatedCharacter::update(double simulationTime)
 {
-    if (_updateTime && simulationTime != *_updateTime) _controller->advance(simulationTime - *_updateTime);
+    PendingEvents events;
+    if (_updateTime && simulationTime != *_updateTime) _controller->advance(simulationTime - *_updateTime, events);
     _updateTime = simulationTime;
+    updateBounds();
+    if (events.isEmpty()) return;
+    runAfterUpdate(*this,
+                   [events, character = osg::observer_ptr<AnimatedCharacter>(this)]
+                   {
+                       events.deliver();
+                       osg::ref_ptr<AnimatedCharacter> present;
+                       if (character.lock(present)) present->updateBounds();
+                   });
+}
+
+void AnimatedCharacter::updateBounds()
+{
     findPlayedClips(*_controller, _playedNow);
     if (_playedNow == _played) return;
     std::swap(_played, _playedNow);

@@ -41,7 +41,7 @@ class AnimatedCharacter : public osg::MatrixTransform, public Updatable, public 
 public:
     /// A character with an empty set; setAnimationSet() gives it another.
     AnimatedCharacter();
-    /// set: not null.
+    /// set: null counts as an empty one.
     explicit AnimatedCharacter(std::shared_ptr<const AnimationSet> set);
     /// Shares the set and copies the controller: the copy starts with the same times, clips and speeds and is then
     /// independent.
@@ -130,6 +130,7 @@ private:
 
     osg::BoundingBox clipBoundsInFile(int clip) const;
     void setMeshBounds();
+    void updateBounds();
     osg::BoundingBox boundsOf(const std::vector<PlayedClip>& played) const;
     void growMeshes(const osg::BoundingBox& box);
 

@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace osgGpuAnimation
 {
@@ -46,6 +47,11 @@ std::uint32_t toRgba(const osg::Vec4& color)
 Error noSuchInstance()
 {
     return Error{"the crowd has no such instance (any more)"};
+}
+
+osg::Vec3d positionOf(const osg::Matrixd& fileToNode, const osg::Matrixd& placement)
+{
+    return (fileToNode * placement).getTrans();
 }
 
 /// fileToNode, then the placement as seen from the origin.
@@ -89,10 +95,7 @@ private:
 
 } // namespace
 
-AnimatedCrowd::AnimatedCrowd()
-    : AnimatedCrowd(osg::ref_ptr<AnimatedCharacter>(new AnimatedCharacter)->getController().sharedSet(), {})
-{
-}
+AnimatedCrowd::AnimatedCrowd() : AnimatedCrowd(nullptr, {}) {}
 
 AnimatedCrowd::AnimatedCrowd(std::shared_ptr<const AnimationSet> set,
                              const std::vector<osg::ref_ptr<SkinnedGeometry>>& meshes)
@@ -172,16 +175,20 @@ Result<AnimatedCrowd::Instance> AnimatedCrowd::add(const osg::Matrixd& placement
     _origin = origin;
     _hasOrigin = true;
     dirtyBound();
-    return _instances->add(root.value(), controller, toRgba(tint));
+    return _instances->add(root.value(), positionOf(_fileToNode, placement), controller, toRgba(tint));
 }
 
 Result<bool> AnimatedCrowd::setFileToNode(const osg::Matrixd& fileToNode)
 {
     if (const Result<AffineMatrix> root = toRootMatrix(fileToNode, "the transform from the file's axes", true); !root)
         return root.error();
-    const osg::Matrixd toPlacement = osg::Matrixd::inverse(_fileToNode);
     for (std::size_t index = 0; index < getNumInstances(); ++index)
-        _instances->move(index, toAffine(fileToNode * toPlacement * toOsg(_instances->rootMatrix(index))));
+    {
+        const osg::Matrixd placement = getPlacement(_instances->handleOf(index));
+        osg::Matrixd fromOrigin = fileToNode * placement;
+        fromOrigin.setTrans(fromOrigin.getTrans() - _origin);
+        _instances->move(index, toAffine(fromOrigin), positionOf(fileToNode, placement));
+    }
     _fileToNode = fileToNode;
     dirtyBound();
     return true;
@@ -201,7 +208,7 @@ Result<bool> AnimatedCrowd::setPlacement(Instance instance, const osg::Matrixd& 
     if (index == CrowdInstances::none) return noSuchInstance();
     const Result<AffineMatrix> root = placedRoot(_fileToNode, placement, _origin);
     if (!root) return root.error();
-    _instances->move(index, root.value());
+    _instances->move(index, root.value(), positionOf(_fileToNode, placement));
     dirtyBound();
     return true;
 }
@@ -224,7 +231,11 @@ AnimationController* AnimatedCrowd::getController(Instance instance)
 
 osg::Matrixd AnimatedCrowd::getPlacement(Instance instance) const
 {
-    return osg::Matrixd::inverse(_fileToNode) * toOsg(_instances->rootMatrix(_instances->indexOf(instance)), _origin);
+    const std::size_t index = _instances->indexOf(instance);
+    if (index == CrowdInstances::none) return osg::Matrixd();
+    osg::Matrixd root = toOsg(_instances->rootMatrix(index));
+    root.setTrans(_instances->position(index));
+    return osg::Matrixd::inverse(_fileToNode) * root;
 }
 
 osg::Matrixd AnimatedCrowd::takeRootMotion(Instance instance)
@@ -233,27 +244,33 @@ osg::Matrixd AnimatedCrowd::takeRootMotion(Instance instance)
     return index == CrowdInstances::none ? osg::Matrixd() : toOsg(_instances->takeRootMotion(index), _fileToNode);
 }
 
-void AnimatedCrowd::setOrigin(const osg::Vec3d& origin)
+bool AnimatedCrowd::setOrigin(const osg::Vec3d& origin)
 {
-    const osg::Vec3d shift = _origin - origin;
+    if (!std::isfinite(origin.length())) return false;
+    constexpr double farthest = std::numeric_limits<float>::max();
+    for (std::size_t index = 0; index < getNumInstances(); ++index)
+        if (!((_instances->position(index) - origin).length() < farthest)) return false;
     for (std::size_t index = 0; index < getNumInstances(); ++index)
     {
         AffineMatrix root = _instances->rootMatrix(index);
+        const osg::Vec3d position = _instances->position(index);
         for (int row = 0; row < 3; ++row)
-            root.rows[static_cast<std::size_t>(row)].w =
-                static_cast<float>(static_cast<double>(root.rows[static_cast<std::size_t>(row)].w) + shift[row]);
-        _instances->move(index, root);
+            root.rows[static_cast<std::size_t>(row)].w = static_cast<float>(position[row] - origin[row]);
+        _instances->move(index, root, position);
     }
     _origin = origin;
     _hasOrigin = true;
     dirtyBound();
+    return true;
 }
 
 void AnimatedCrowd::update(double simulationTime)
 {
     const double step = _updateTime ? simulationTime - *_updateTime : 0.0;
     _updateTime = simulationTime;
-    if (_instances->advance(step)) dirtyBound();
+    PendingEvents events;
+    if (_instances->advance(step, events)) dirtyBound();
+    if (!events.isEmpty()) runAfterUpdate(*this, [events] { events.deliver(); });
 }
 
 std::optional<AnimatedCrowd::Instance> AnimatedCrowd::instanceOf(const osg::Drawable* hit)

@@ -45,7 +45,7 @@ public:
 
     /// A crowd with an empty set; setAnimationSet() gives it another.
     AnimatedCrowd();
-    /// set: not null. meshes: built for the set's palette.
+    /// set: null counts as an empty one. meshes: built for the set's palette.
     AnimatedCrowd(std::shared_ptr<const AnimationSet> set, const std::vector<osg::ref_ptr<SkinnedGeometry>>& meshes);
     /// Shares the character's set, meshes and state, and copies its bounds, pixel error and getFileToNode(). Ignores
     /// its matrix.
@@ -83,7 +83,7 @@ public:
 
     /// The controller of an instance, for crossfades and layers; valid until the next update(). Null: no such instance.
     AnimationController* getController(Instance instance);
-    /// The placement of an instance. instance: contained in the crowd.
+    /// The placement of an instance; the identity if no such instance exists (see contains()).
     osg::Matrixd getPlacement(Instance instance) const;
     /// The root motion of an instance since the last call, in the space that placements start from: the new placement
     /// is the motion times the old one. The identity without root motion or without such an instance.
@@ -92,8 +92,9 @@ public:
     const CrowdInstances& getInstances() const { return *_instances; }
 
     /// Sets the point that placements are stored relative to, as floats; the default is the first instance's position.
-    /// Existing instances keep their positions to float precision.
-    void setOrigin(const osg::Vec3d& origin);
+    /// Existing instances keep their placements; a later origin does not depend on the ones before.
+    /// False, without a change: the origin is not finite, or an instance is too far from it for a float.
+    bool setOrigin(const osg::Vec3d& origin);
     const osg::Vec3d& getOrigin() const { return _origin; } ///< in the space of this node
 
     /// The largest error of the drawn surface on screen, in pixels: instances are drawn with fewer triangles while the

@@ -25,7 +25,7 @@ constexpr Line lines[] = {
     {"Characters seen", PoseStatistics::charactersSeen, 1.0f, 10000.0f},
     {"Characters evaluated", PoseStatistics::charactersEvaluated, 1.0f, 10000.0f},
     {"Joints seen", PoseStatistics::jointsSeen, 1.0f, 1000000.0f},
-    {"Feedback, microseconds", PoseStatistics::timeTaken, 1e6f, 0.016f},
+    {"Feedback on the GPU, microseconds", PoseStatistics::timeTaken, 1e6f, 0.016f},
 };
 
 /// A new line resets the handler, and a page that is visible at that time would lose its numbers.

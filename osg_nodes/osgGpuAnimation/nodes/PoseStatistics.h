@@ -21,13 +21,14 @@ namespace osgGpuAnimation
 class PoseStatistics : public osgGA::GUIEventHandler
 {
 public:
-    /// Attribute: the number of visible characters.
+    /// Attribute: the number of visible characters, each once for all cameras.
     static constexpr const char* charactersSeen = "Animated characters seen";
     /// Attribute: the number of visible characters whose pose has changed.
     static constexpr const char* charactersEvaluated = "Animated characters evaluated";
     /// Attribute: the number of joints of the visible characters.
     static constexpr const char* jointsSeen = "Animated joints seen";
-    /// Attribute: seconds of GPU time, from time stamps.
+    /// Attribute: seconds of GPU time, from time stamps. It means nothing for a driver without a GPU, such as llvmpipe,
+    /// which computes poses while it accepts the draw and takes the stamps later.
     static constexpr const char* timeTaken = "Animation feedback time taken";
 
     PoseStatistics() = default;

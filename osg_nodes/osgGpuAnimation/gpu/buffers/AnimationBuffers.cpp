@@ -68,19 +68,21 @@ std::size_t AnimationBuffers::texelsPerMask(const AnimationSet& set)
     return (set.trackCount() + POSE_WEIGHTS_PER_MASK_TEXEL - 1) / POSE_WEIGHTS_PER_MASK_TEXEL;
 }
 
-void AnimationBuffers::updateMasks(const AnimationSet& set)
+void AnimationBuffers::updateMasks(const AnimationSet& set, const std::vector<std::shared_ptr<const SetMask>>& masks)
 {
-    const std::size_t count = set.masks().count();
-    if (count == _maskCount) return;
     const std::size_t stride = texelsPerMask(set) * POSE_WEIGHTS_PER_MASK_TEXEL;
-    std::vector<float> weights((count + 1) * stride, 1.0f);
-    for (std::size_t mask = 1; mask <= count; ++mask)
+    bool isChanged = masks.size() > _uploadedMasks.size();
+    if (isChanged) _uploadedMasks.resize(masks.size());
+    _maskWeights.resize(_uploadedMasks.size() * stride, 1.0f);
+    for (std::size_t number = 1; number < masks.size(); ++number)
     {
-        const float* from = set.masks().weights(static_cast<std::uint32_t>(mask));
-        std::copy(from, from + set.trackCount(), weights.begin() + static_cast<std::ptrdiff_t>(mask * stride));
+        if (!masks[number] || _uploadedMasks[number].lock() == masks[number]) continue;
+        _uploadedMasks[number] = masks[number];
+        std::copy(masks[number]->weights.begin(), masks[number]->weights.end(),
+                  _maskWeights.begin() + static_cast<std::ptrdiff_t>(number * stride));
+        isChanged = true;
     }
-    _masks.upload(weights.data(), weights.size() * sizeof(float));
-    _maskCount = count;
+    if (isChanged) _masks.upload(_maskWeights.data(), _maskWeights.size() * sizeof(float));
 }
 
 std::size_t AnimationBuffers::byteSize(const AnimationSet& set, const PackedKeyframes& keyframes)

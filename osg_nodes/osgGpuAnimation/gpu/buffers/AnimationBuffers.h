@@ -23,11 +23,11 @@ public:
     /// RGBA32F: set.paletteSize() entries of POSE_TEXELS_PER_ENTRY texels.
     const BufferTexture& entries() const { return _entries; }
 
-    /// RGBA32F: masks().count() + 1 masks of texelsPerMask texels each; mask 0 is all 1. See updateMasks().
+    /// RGBA32F: masks of texelsPerMask texels each, by number; mask 0 is all 1. See updateMasks().
     const BufferTexture& masks() const { return _masks; }
     static std::size_t texelsPerMask(const AnimationSet& set);
-    /// Uploads the set's masks if it has more than at the last call.
-    void updateMasks(const AnimationSet& set);
+    /// Uploads the masks if one of them is new. masks: by number, see PoseBatch::masks().
+    void updateMasks(const AnimationSet& set, const std::vector<std::shared_ptr<const SetMask>>& masks);
 
     /// Bytes of the buffers without masks.
     static std::size_t byteSize(const AnimationSet& set, const PackedKeyframes& keyframes);
@@ -41,7 +41,8 @@ private:
     BufferTexture _keyframes;
     BufferTexture _entries;
     BufferTexture _masks;
-    std::size_t _maskCount = 0; ///< of the set's masks, in _masks
+    std::vector<float> _maskWeights;                          ///< content of _masks
+    std::vector<std::weak_ptr<const SetMask>> _uploadedMasks; ///< by number
 };
 
 } // namespace osgGpuAnimation

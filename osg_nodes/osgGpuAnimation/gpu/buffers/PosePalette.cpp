@@ -88,6 +88,11 @@ std::vector<PosePalette::Chunk*> PosePalette::upload(const PoseBatch& batch, std
 {
     std::vector<Chunk*> changed;
     _chunkCapacity = chunkCapacity;
+    // Equal samples may have another mask: numbers of freed masks are used again.
+    const auto isKnown = [&](const std::shared_ptr<const SetMask>& mask)
+    { return !mask || (mask->number < _masks.size() && _masks[mask->number].lock() == mask); };
+    if (!std::all_of(batch.masks().begin(), batch.masks().end(), isKnown)) invalidate();
+    _masks.assign(batch.masks().begin(), batch.masks().end());
     const std::size_t stride = batch.sampleStride();
     const std::vector<AffineMatrix>& roots = batch.rootMatrices();
     const bool hasOwnRoots = roots.size() > 1;

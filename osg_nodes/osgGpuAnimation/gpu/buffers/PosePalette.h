@@ -60,6 +60,7 @@ private:
     osg::GLExtensions* _gl;
     std::size_t _chunkCapacity = 1;
     std::vector<std::unique_ptr<Chunk>> _chunks;
+    std::vector<std::weak_ptr<const SetMask>> _masks; ///< of the last batch, by number
 };
 
 } // namespace osgGpuAnimation

@@ -151,7 +151,7 @@ std::vector<DrawState> submitSeen(PoseFrame& frame, const CrowdInstances& instan
         if (detail.isOn()) detail.sort(load, runs);
         std::unique_ptr<PoseBatch> batch = frame.makeBatch(instances.set());
         instances.addTo(*batch, load);
-        const SubmittedBatch submitted = frame.submit(std::move(batch));
+        const SubmittedBatch submitted = frame.submit(std::move(batch), &instances, load);
         if (!detail.isOn()) draws.push_back(submitted.all);
         std::size_t first = 0;
         for (const CrowdLod::Run& run : runs)

@@ -67,9 +67,9 @@ void takeOut(std::vector<Element>& elements, std::size_t index)
 
 CrowdInstances::CrowdInstances(const CrowdInstances& other)
     : _set(other._set), _clock(other._clock), _clipBounds(other._clipBounds), _allBounds(other._allBounds),
-      _rootMatrices(other._rootMatrices), _spheres(other._spheres), _tints(other._tints), _playbacks(other._playbacks),
-      _handles(other._handles), _indexOfPlace(other._indexOfPlace), _usesOfPlace(other._usesOfPlace),
-      _freePlaces(other._freePlaces), _tinted(other._tinted)
+      _rootMatrices(other._rootMatrices), _positions(other._positions), _spheres(other._spheres), _tints(other._tints),
+      _playbacks(other._playbacks), _handles(other._handles), _indexOfPlace(other._indexOfPlace),
+      _usesOfPlace(other._usesOfPlace), _freePlaces(other._freePlaces), _tinted(other._tinted)
 {
     for (const std::unique_ptr<AnimationController>& controller : other._controllers)
         _controllers.push_back(controller ? std::make_unique<AnimationController>(*controller) : nullptr);
@@ -136,12 +136,13 @@ Box CrowdInstances::bounds() const
     return all.empty() ? Box() : Box{glm::vec3(all.min), glm::vec3(all.max)};
 }
 
-CrowdInstances::Handle CrowdInstances::add(const AffineMatrix& rootMatrix, const AnimationController& controller,
-                                           std::uint32_t tint)
+CrowdInstances::Handle CrowdInstances::add(const AffineMatrix& rootMatrix, const osg::Vec3d& position,
+                                           const AnimationController& controller, std::uint32_t tint)
 {
     const std::size_t index = size();
     const bool isPlain = controller.isPlainLoop();
     _rootMatrices.push_back(rootMatrix);
+    _positions.push_back(position);
     _spheres.emplace_back();
     _tints.push_back(tint);
     _tinted += tint != PoseBatch::white;
@@ -159,6 +160,7 @@ void CrowdInstances::remove(std::size_t index)
     _freePlaces.push_back(static_cast<std::uint32_t>(place));
     _tinted -= _tints[index] != PoseBatch::white;
     takeOut(_rootMatrices, index);
+    takeOut(_positions, index);
     takeOut(_spheres, index);
     takeOut(_tints, index);
     takeOut(_playbacks, index);
@@ -167,9 +169,10 @@ void CrowdInstances::remove(std::size_t index)
     if (index < size()) _indexOfPlace[placeOf(_handles[index])] = static_cast<std::uint32_t>(index);
 }
 
-void CrowdInstances::move(std::size_t index, const AffineMatrix& rootMatrix)
+void CrowdInstances::move(std::size_t index, const AffineMatrix& rootMatrix, const osg::Vec3d& position)
 {
     _rootMatrices[index] = rootMatrix;
+    _positions[index] = position;
     _spheres[index] = placedSphere(index);
 }
 
@@ -209,7 +212,7 @@ std::size_t CrowdInstances::controllerCount() const
                                                   [](const auto& controller) { return controller != nullptr; }));
 }
 
-bool CrowdInstances::advance(double seconds)
+bool CrowdInstances::advance(double seconds, PendingEvents& outEvents)
 {
     if (std::isfinite(seconds)) _clock += seconds;
     bool haveSpheresChanged = false;
@@ -217,7 +220,7 @@ bool CrowdInstances::advance(double seconds)
     {
         std::unique_ptr<AnimationController>& controller = _controllers[index];
         if (!controller) continue;
-        controller->advance(seconds);
+        controller->advance(seconds, outEvents);
         if (!controller->isPlainLoop()) continue;
         _playbacks[index] = CrowdPlayback(*controller, _clock);
         controller.reset();

@@ -5,6 +5,8 @@
 #include <osgGpuAnimation/animation/bounds/ClipBounds.h>
 #include <osgGpuAnimation/gpu/PoseBatch.h>
 
+#include <osg/Vec3d>
+
 #include <glm/vec4.hpp>
 
 #include <cstdint>
@@ -44,7 +46,8 @@ class CrowdInstances
 public:
     using Handle = std::uint64_t; ///< lower half: place in the index table; upper half: its number of earlier uses
 
-    explicit CrowdInstances(std::shared_ptr<const AnimationSet> set) : _set(std::move(set)) {}
+    /// set: null counts as an empty one.
+    explicit CrowdInstances(std::shared_ptr<const AnimationSet> set) : _set(AnimationSet::orEmpty(std::move(set))) {}
     CrowdInstances(const CrowdInstances& other);
     CrowdInstances& operator=(const CrowdInstances&) = delete;
 
@@ -58,12 +61,15 @@ public:
     /// clipBounds: the box of an instance in the rest pose, then one per clip, in the character's space.
     void setClipBounds(const std::vector<Box>& clipBounds);
 
-    Handle add(const AffineMatrix& rootMatrix, const AnimationController& controller, std::uint32_t tint);
+    /// rootMatrix: relative to the crowd's origin. position: the exact translation, in the crowd's space.
+    Handle add(const AffineMatrix& rootMatrix, const osg::Vec3d& position, const AnimationController& controller,
+               std::uint32_t tint);
     void remove(std::size_t index);
-    void move(std::size_t index, const AffineMatrix& rootMatrix);
+    void move(std::size_t index, const AffineMatrix& rootMatrix, const osg::Vec3d& position);
     void setTint(std::size_t index, std::uint32_t tint);
 
     const AffineMatrix& rootMatrix(std::size_t index) const { return _rootMatrices[index]; }
+    const osg::Vec3d& position(std::size_t index) const { return _positions[index]; }
     const glm::vec4& sphere(std::size_t index) const
     {
         return _spheres[index];
@@ -84,8 +90,8 @@ public:
     /// The number of instances with a controller.
     std::size_t controllerCount() const;
 
-    /// Advances all instances. True if spheres have changed.
-    bool advance(double seconds);
+    /// Advances all instances and appends their events. True if spheres have changed.
+    bool advance(double seconds, PendingEvents& outEvents);
 
     /// The indices of the instances whose sphere reaches n · p + d >= 0 of every plane.
     void findSeen(const std::vector<glm::vec4>& planes, std::vector<std::uint32_t>& outIndices) const;
@@ -102,6 +108,7 @@ private:
     std::vector<Box> _clipBounds;
     Box _allBounds;
     std::vector<AffineMatrix> _rootMatrices;
+    std::vector<osg::Vec3d> _positions;
     std::vector<glm::vec4> _spheres;
     std::vector<std::uint32_t> _tints;
     std::vector<CrowdPlayback> _playbacks;

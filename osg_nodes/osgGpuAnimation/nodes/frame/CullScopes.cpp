@@ -3,10 +3,13 @@
 
 #include <osg/MatrixTransform>
 #include <osgUtil/Optimizer>
+#include <osgViewer/View>
 
 #include <algorithm>
 #include <cstring>
+#include <deque>
 #include <string>
+#include <utility>
 
 namespace osgGpuAnimation
 {
@@ -68,6 +71,65 @@ osg::Matrix pathToWorld(const osg::NodePath& path, const std::vector<osg::Matrix
     }
     return toWorld;
 }
+
+/// The camera of the osgViewer::View that shows the node; null if there is none.
+osg::Camera* viewCameraAbove(osg::Node& node)
+{
+    const auto* camera = dynamic_cast<const osg::Camera*>(&node);
+    if (camera && dynamic_cast<const osgViewer::View*>(camera->getView()))
+        return const_cast<osg::Camera*>(camera->getView()->getCamera());
+    for (osg::Group* parent : node.getParents())
+        if (osg::Camera* found = viewCameraAbove(*parent)) return found;
+    return nullptr;
+}
+
+/// The actions of runAfterUpdate() in one frame. A viewer runs the update callbacks of its cameras after those of its
+/// scenes.
+class AfterUpdate : public osg::NodeCallback
+{
+public:
+    /// The object at the camera; attaches a new one if there is none.
+    static AfterUpdate& of(osg::Camera& camera)
+    {
+        for (osg::Callback* callback = camera.getUpdateCallback(); callback; callback = callback->getNestedCallback())
+            if (auto* present = dynamic_cast<AfterUpdate*>(callback)) return *present;
+        const osg::ref_ptr<AfterUpdate> attached = new AfterUpdate;
+        attached->setNestedCallback(camera.getUpdateCallback());
+        camera.setUpdateCallback(attached);
+        return *attached;
+    }
+
+    void add(std::function<void()> action, unsigned int frameNumber)
+    {
+        const osg::ref_ptr<AfterUpdate> self = this;
+        // An application that does not call the callbacks of its cameras gets its events one frame later.
+        if (frameNumber != _frameNumber) runAll();
+        _frameNumber = frameNumber;
+        _actions.push_back(std::move(action));
+    }
+
+    void operator()(osg::Node* camera, osg::NodeVisitor* visitor) override
+    {
+        const osg::ref_ptr<AfterUpdate> self = this;
+        traverse(camera, visitor);
+        runAll();
+        camera->removeUpdateCallback(this);
+    }
+
+private:
+    void runAll()
+    {
+        while (!_actions.empty()) // actions may add more
+        {
+            const std::function<void()> action = std::move(_actions.front());
+            _actions.pop_front();
+            action();
+        }
+    }
+
+    std::deque<std::function<void()>> _actions;
+    unsigned int _frameNumber = 0;
+};
 
 } // namespace
 
@@ -132,6 +194,14 @@ bool keepFlattenedPlace(osg::Node& node, osg::NodeVisitor& visitor)
     place->addChild(&node);
     parent->replaceChild(&node, place);
     return true;
+}
+
+void runAfterUpdate(osg::Node& node, std::function<void()> action)
+{
+    osg::Camera* camera = viewCameraAbove(node);
+    if (!camera) return action();
+    const osg::FrameStamp* stamp = camera->getView()->getFrameStamp();
+    AfterUpdate::of(*camera).add(std::move(action), stamp ? stamp->getFrameNumber() : 0);
 }
 
 } // namespace osgGpuAnimation

@@ -8,6 +8,8 @@
 #include <osg/StateSet>
 #include <osgUtil/CullVisitor>
 
+#include <functional>
+
 namespace osgGpuAnimation
 {
 
@@ -53,5 +55,9 @@ bool isDepthPass(osg::State& state);
 /// vertices below. This function instead inserts a transform above the node. True: the visitor must not continue below
 /// the node.
 bool keepFlattenedPlace(osg::Node& node, osg::NodeVisitor& visitor);
+
+/// Runs the action after the update traversal, when no group iterates over its children: below a view of osgViewer, a
+/// temporary callback of the view's camera runs all actions of the frame in order. Without a viewer it runs at once.
+void runAfterUpdate(osg::Node& node, std::function<void()> action);
 
 } // namespace osgGpuAnimation

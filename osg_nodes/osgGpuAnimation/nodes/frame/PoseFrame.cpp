@@ -5,6 +5,7 @@
 #include <osgGpuAnimation/nodes/PoseStatistics.h>
 
 #include <algorithm>
+#include <unordered_set>
 
 namespace osgGpuAnimation
 {
@@ -154,7 +155,8 @@ std::unique_ptr<PoseBatch> PoseFrame::makeBatch(std::shared_ptr<const AnimationS
     return spareBatch(std::move(set));
 }
 
-SubmittedBatch PoseFrame::submit(std::unique_ptr<PoseBatch> content)
+SubmittedBatch PoseFrame::submit(std::unique_ptr<PoseBatch> content, const void* crowd,
+                                 const std::vector<std::uint32_t>& instances)
 {
     const std::lock_guard<std::mutex> lock(_mutex);
     for (const Batch* batch : _batchesOfSet[&content->set()])
@@ -164,6 +166,8 @@ SubmittedBatch PoseFrame::submit(std::unique_ptr<PoseBatch> content)
             return {batch->slot, batch->all};
         }
     Batch& batch = addBatch(std::move(content));
+    batch.crowd = crowd;
+    batch.instances = instances;
     batch.all = stateOf(batch, 0, batch.content->size(), LodLevels::allTriangles);
     return {batch.slot, batch.all};
 }
@@ -242,12 +246,18 @@ void PoseFrame::evaluateBatches(osg::State& state, PosePipeline* pipeline)
 
 void PoseFrame::record(osg::Stats& stats, std::uint64_t evaluated) const
 {
-    std::size_t seen = 0, joints = 0;
+    // Several cameras and batches may have the same characters.
+    std::size_t seen = _submitted.size(), joints = 0;
+    for (const auto& [node, submitted] : _submitted)
+        joints += submitted.batch->content->set().skeleton().jointCount();
+    std::unordered_map<const void*, std::unordered_set<std::uint32_t>> seenOfCrowds;
     for (const std::unique_ptr<Batch>& batch : _batches)
-    {
-        seen += batch->content->size();
-        joints += batch->content->size() * batch->content->set().skeleton().jointCount();
-    }
+        for (const std::uint32_t instance : batch->instances)
+        {
+            if (!seenOfCrowds[batch->crowd].insert(instance).second) continue;
+            ++seen;
+            joints += batch->content->set().skeleton().jointCount();
+        }
     stats.setAttribute(_frameNumber, PoseStatistics::charactersSeen, static_cast<double>(seen));
     stats.setAttribute(_frameNumber, PoseStatistics::jointsSeen, static_cast<double>(joints));
     addTo(stats, _frameNumber, PoseStatistics::charactersEvaluated, static_cast<double>(evaluated));

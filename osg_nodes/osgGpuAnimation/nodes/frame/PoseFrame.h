@@ -66,8 +66,10 @@ public:
 
     /// An empty batch for the caller to fill and submit. It reuses the storage of earlier frames.
     std::unique_ptr<PoseBatch> makeBatch(std::shared_ptr<const AnimationSet> set);
-    /// Adds a whole batch unless an equal one was submitted (by another camera). batch: not empty.
-    SubmittedBatch submit(std::unique_ptr<PoseBatch> batch);
+    /// Adds a whole batch unless an equal one was submitted (by another camera). batch: not empty. instances: their
+    /// numbers in the crowd, for the statistics.
+    SubmittedBatch submit(std::unique_ptr<PoseBatch> batch, const void* crowd,
+                          const std::vector<std::uint32_t>& instances);
 
     /// Evaluates the submitted batches that were not evaluated before. stats: receives the attributes of
     /// PoseStatistics; null: records nothing.
@@ -84,6 +86,8 @@ private:
         std::unique_ptr<PoseBatch> content;
         std::size_t slot;
         DrawState all{}; ///< null: a batch of characters, each with its own state
+        const void* crowd = nullptr;
+        std::vector<std::uint32_t> instances{}; ///< of the crowd
         bool isEvaluated = false;
 
         bool isOpen() const { return !all.stateSet && !isEvaluated; }

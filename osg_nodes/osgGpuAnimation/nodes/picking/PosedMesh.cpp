@@ -3,6 +3,9 @@
 
 #include <osgGpuAnimation/animation/Pose.h>
 
+#include <layout.glsl>
+
+#include <algorithm>
 #include <cstring>
 
 namespace osgGpuAnimation
@@ -31,6 +34,10 @@ osg::ref_ptr<PosedMesh> PosedMeshes::of(const SkinnedGeometry& mesh, const std::
         _set = set;
         _instruction = instruction;
         _rootToModel = rootToModel;
+        _masks.clear();
+        for (std::size_t i = 0; i < instruction.sampleCount; ++i)
+            if (auto mask = set->masks().find(instruction.samples[i].control >> POSE_SAMPLE_MASK_SHIFT))
+                _masks.push_back(mask);
         Pose::evaluate(*set, instruction, rootToModel, _palette);
     }
     Posed& posed = _meshes[&mesh];
@@ -44,7 +51,9 @@ bool PosedMeshes::holds(const std::shared_ptr<const AnimationSet>& set, const Po
                         const AffineMatrix& rootToModel) const
 {
     // Compares bits, so that NaN equals itself.
-    return _set == set && _instruction.sampleCount == instruction.sampleCount &&
+    const auto isGone = [](const std::weak_ptr<const SetMask>& mask) { return mask.expired(); };
+    return _set == set && std::none_of(_masks.begin(), _masks.end(), isGone) &&
+           _instruction.sampleCount == instruction.sampleCount &&
            std::memcmp(_instruction.samples.data(), instruction.samples.data(),
                        instruction.sampleCount * sizeof(BlendSample)) == 0 &&
            std::memcmp(&_rootToModel, &rootToModel, sizeof(AffineMatrix)) == 0;

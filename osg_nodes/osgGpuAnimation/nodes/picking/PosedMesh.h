@@ -63,6 +63,7 @@ private:
     std::mutex _mutex;
     std::shared_ptr<const AnimationSet> _set;
     PoseInstruction _instruction;
+    std::vector<std::weak_ptr<const SetMask>> _masks; ///< of the instruction
     AffineMatrix _rootToModel;
     std::vector<AffineMatrix> _palette;
     std::map<const SkinnedGeometry*, Posed> _meshes; ///< each value keeps its key alive

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/AnimationController.h>
-#include <osgGpuAnimation/nodes/AnimationUpdateCallback.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
 #include <osg/BoundingBox>
@@ -30,10 +29,10 @@ struct PlayedClip;
 ///     fox->getController().play("Run");
 ///     osg::ref_ptr<osg::Node> another = osg::clone(node.get(), osg::CopyOp::DEEP_COPY_NODES); // its own controller
 ///
-/// The constructor installs an AnimationUpdateCallback, which advances the controller by the frame stamp's simulation
-/// time. A visible character submits its pose to the PoseStage of the graphics context during cull, and the GPU
-/// evaluates it before any camera draws it. An invisible character costs nothing on the GPU.
-class AnimatedCharacter : public osg::MatrixTransform, public Updatable, public PosedMeshSource
+/// The update traversal advances the controller by the frame stamp's simulation time, before it runs the character's
+/// own update callbacks. A visible character submits its pose to the PoseStage of the graphics context during cull, and
+/// the GPU evaluates it before any camera draws it. An invisible character costs nothing on the GPU.
+class AnimatedCharacter : public osg::MatrixTransform, public PosedMeshSource
 {
 public:
     /// A character with an empty set; setAnimationSet() gives it another.
@@ -43,7 +42,9 @@ public:
     /// Shares the set and copies the controller: the copy starts with the same times, clips and speeds and is then
     /// independent.
     AnimatedCharacter(const AnimatedCharacter& other, const osg::CopyOp& copyop = osg::CopyOp::SHALLOW_COPY);
-    META_Node(osgGpuAnimation, AnimatedCharacter)
+    META_Object(osgGpuAnimation, AnimatedCharacter)
+    /// During update: calls update() with the frame stamp's simulation time, then the update callbacks.
+    void accept(osg::NodeVisitor& visitor) override;
 
     /// The skeleton, palette layout and clips, shared with the copies of this character.
     const AnimationSet& getAnimationSet() const { return _controller->set(); }
@@ -67,7 +68,7 @@ public:
     /// Advances the controller by the time since the last update; the first call only stores the time. A jump of the
     /// time in either direction moves the clips by the same amount, so equal times show equal poses.
     /// simulationTime: seconds.
-    void update(double simulationTime) override;
+    void update(double simulationTime);
 
     /// Computes the bounds of every clip from the SkinnedGeometry below and sets the meshes' bounding boxes. Call it
     /// once after all meshes are added; copies of this node share the result.
@@ -103,6 +104,8 @@ public:
     void acceptPosed(osg::PrimitiveFunctor& functor);
 
     /// During cull: submits the pose and draws the children from the palette. Other visitors traverse the children.
+    /// During update: calls update() unless accept() did, for derived classes with an accept() of their own
+    /// (META_Node).
     void traverse(osg::NodeVisitor& visitor) override;
     /// The sphere around getCurrentBounds(); update() marks it dirty when other clips play.
     osg::BoundingSphere computeBound() const override;

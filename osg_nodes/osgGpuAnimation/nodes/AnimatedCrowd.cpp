@@ -2,7 +2,6 @@
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
-#include <osgGpuAnimation/nodes/AnimationUpdateCallback.h>
 #include <osgGpuAnimation/nodes/crowd/CrowdBatches.h>
 #include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/nodes/frame/CullScopes.h>
@@ -108,7 +107,8 @@ AnimatedCrowd::AnimatedCrowd(std::shared_ptr<const AnimationSet> set,
 {
     // Not STATIC: the Optimizer must not flatten the transforms above into the bind pose.
     setDataVariance(osg::Object::DYNAMIC);
-    setUpdateCallback(new AnimationUpdateCallback);
+    // The update traversal must reach this node without a callback.
+    setNumChildrenRequiringUpdateTraversal(getNumChildrenRequiringUpdateTraversal() + 1);
     for (const osg::ref_ptr<SkinnedGeometry>& mesh : meshes)
         addChild(mesh);
     if (!meshes.empty()) _instances->setClipBounds(clipBoundsOf(getAnimationSet(), *this));
@@ -133,6 +133,8 @@ AnimatedCrowd::AnimatedCrowd(const AnimatedCrowd& other, const osg::CopyOp& copy
       _posed(std::make_unique<PosedInstances>()), _origin(other._origin), _hasOrigin(other._hasOrigin),
       _updateTime(other._updateTime), _pixelError(other._pixelError)
 {
+    // The update traversal must reach this node without a callback.
+    setNumChildrenRequiringUpdateTraversal(getNumChildrenRequiringUpdateTraversal() + 1);
 }
 
 AnimatedCrowd::~AnimatedCrowd() = default;
@@ -267,8 +269,18 @@ void AnimatedCrowd::acceptInstances(osg::PrimitiveFunctor& functor) const
                     { getPosedMesh(_instances->handleOf(index), mesh)->accept(functor); });
 }
 
+void AnimatedCrowd::accept(osg::NodeVisitor& visitor)
+{
+    if (!visitor.validNodeMask(*this)) return;
+    if (const std::optional<double> time = updateTimeOf(visitor)) update(*time);
+    visitor.pushOntoNodePath(this);
+    visitor.apply(*this);
+    visitor.popFromNodePath();
+}
+
 void AnimatedCrowd::traverse(osg::NodeVisitor& visitor)
 {
+    if (const std::optional<double> time = updateTimeOf(visitor); time && time != _updateTime) update(*time);
     if (osgUtil::CullVisitor* cullVisitor = visitor.asCullVisitor())
         cull(*cullVisitor);
     else if (dynamic_cast<osgUtil::IntersectionVisitor*>(&visitor))

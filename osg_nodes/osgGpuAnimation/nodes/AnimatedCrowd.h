@@ -2,7 +2,6 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/AnimationController.h>
-#include <osgGpuAnimation/nodes/AnimationUpdateCallback.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
 #include <osg/PrimitiveSet>
@@ -29,13 +28,14 @@ class PosedInstances;
 ///     crowd->setPlacement(fox, osg::Matrix::translate(101, 20, 0));      // not while the crowd is culled
 ///     crowd->getController(fox)->crossfade("Walk", 0.3);
 ///
-/// The constructor installs an update callback, which advances all instances by the frame stamp's simulation time. Cull
-/// tests each instance with the bounds of the clip that it plays and submits the visible ones to the GPU. An instance
-/// that plays one clip in a loop costs least; every other instance (crossfades, layers, events) keeps a controller.
+/// The update traversal advances all instances by the frame stamp's simulation time, before it runs the crowd's own
+/// update callbacks. Cull tests each instance with the bounds of the clip that it plays and submits the visible ones to
+/// the GPU. An instance that plays one clip in a loop costs least; every other instance (crossfades, layers, events)
+/// keeps a controller.
 ///
 /// The meshes are the crowd's children; other children are drawn once. Transparent instances of one mesh are not sorted
 /// by depth.
-class AnimatedCrowd : public osg::Transform, public Updatable
+class AnimatedCrowd : public osg::Transform
 {
 public:
     /// A handle of an instance. It stays valid until the instance is removed and is never reused.
@@ -50,7 +50,9 @@ public:
     explicit AnimatedCrowd(const AnimatedCharacter& character);
     /// Copies the instances with their handles.
     AnimatedCrowd(const AnimatedCrowd& other, const osg::CopyOp& copyop = osg::CopyOp::SHALLOW_COPY);
-    META_Node(osgGpuAnimation, AnimatedCrowd)
+    META_Object(osgGpuAnimation, AnimatedCrowd)
+    /// During update: calls update() with the frame stamp's simulation time, then the update callbacks.
+    void accept(osg::NodeVisitor& visitor) override;
 
     /// The skeleton, palette layout and clips of all instances.
     const AnimationSet& getAnimationSet() const;
@@ -94,7 +96,7 @@ public:
 
     /// Advances all instances by the time since the last update; the first call only stores the time.
     /// simulationTime: seconds.
-    void update(double simulationTime) override;
+    void update(double simulationTime);
 
     /// The instance of an Intersection's drawable. Empty: the drawable belongs to no crowd.
     static std::optional<Instance> instanceOf(const osg::Drawable* hit);

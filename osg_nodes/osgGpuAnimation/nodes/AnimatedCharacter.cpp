@@ -143,10 +143,10 @@ osg::BoundingBox AnimatedCharacter::getClipBounds(int clip) const
     return _clipBounds && index < _clipBounds->size() ? (*_clipBounds)[index] : osg::BoundingBox();
 }
 
-osg::ref_ptr<osg::Geometry> AnimatedCharacter::getPosedMesh(const SkinnedGeometry& mesh) const
+osg::ref_ptr<osg::Geometry> AnimatedCharacter::getPosedMesh(const SkinnedGeometry& mesh, bool withNormals) const
 {
     std::call_once(_posedMeshesMade, [this] { _posedMeshes = std::make_unique<PosedMeshes>(); });
-    return _posedMeshes->of(mesh, _controller->sharedSet(), _controller->instruction(), AffineMatrix());
+    return _posedMeshes->of(mesh, _controller->sharedSet(), _controller->instruction(), AffineMatrix(), withNormals);
 }
 
 void AnimatedCharacter::acceptPosed(osg::PrimitiveFunctor& functor)

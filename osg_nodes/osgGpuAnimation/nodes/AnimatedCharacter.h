@@ -97,8 +97,9 @@ public:
     float getPixelError() const { return _pixelError; } ///< pixels, at least 0
 
     /// A mesh below this node in the present pose, in the character's own space. The CPU twin computes it, and the
-    /// result is kept until the pose changes. Intersectors test it in place of the mesh.
-    osg::ref_ptr<osg::Geometry> getPosedMesh(const SkinnedGeometry& mesh) const override;
+    /// result is kept until the pose changes. Intersectors test it in place of the mesh. withNormals: with normals and
+    /// colours, if the mesh has them.
+    osg::ref_ptr<osg::Geometry> getPosedMesh(const SkinnedGeometry& mesh, bool withNormals = false) const override;
     /// Passes the primitives of all meshes below in their present pose to the functor. (A mesh alone passes its bind
     /// pose, because it belongs to no character.)
     void acceptPosed(osg::PrimitiveFunctor& functor);

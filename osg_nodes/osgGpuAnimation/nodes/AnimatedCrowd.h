@@ -35,7 +35,7 @@ class PosedInstances;
 ///
 /// The meshes are the crowd's children; other children are drawn once. Transparent instances of one mesh are not sorted
 /// by depth.
-class AnimatedCrowd : public osg::Transform
+class AnimatedCrowd : public osg::Transform, public PosedMeshSource
 {
 public:
     /// A handle of an instance. It stays valid until the instance is removed and is never reused.
@@ -98,15 +98,21 @@ public:
     /// simulationTime: seconds.
     void update(double simulationTime);
 
-    /// The instance of an Intersection's drawable. Empty: the drawable belongs to no crowd.
-    static std::optional<Instance> instanceOf(const osg::Drawable* hit);
-    /// The mesh in the present pose of the instance, in the crowd's space. The CPU twin computes it, and instanceOf()
-    /// returns its instance. It has no vertices if no such instance exists. See jointOf() for the joint of a hit.
+    /// The instance of a hit: an Intersection of any of OSG's intersectors. Empty: the hit is in no crowd. See
+    /// jointOf() for the joint.
+    template <typename Intersection>
+    static std::optional<Instance> instanceOf(const Intersection& hit)
+    {
+        return instanceOfMatrix(hit.matrix.get());
+    }
+    /// The mesh in the present pose of the instance, in the crowd's space. The CPU twin computes it. It has no vertices
+    /// if no such instance exists.
     osg::ref_ptr<osg::Geometry> getPosedMesh(Instance instance, const SkinnedGeometry& mesh) const;
     /// Passes the primitives of all instances in their present poses to the functor. Slow: the CPU twin computes them.
     void acceptInstances(osg::PrimitiveFunctor& functor) const;
 
-    /// Cull submits and draws the visible instances; intersectors meet posed meshes; statistics count every instance.
+    /// Cull submits and draws the visible instances; intersectors and writers of other file formats meet posed meshes;
+    /// statistics count every instance.
     void traverse(osg::NodeVisitor& visitor) override;
     osg::BoundingSphere computeBound() const override; ///< around all instances and the other children
     /// Applies the origin to the matrix.
@@ -118,8 +124,14 @@ protected:
     ~AnimatedCrowd() override;
 
 private:
+    class InstanceScope;
+    class IntersectedInstance;
+
+    static std::optional<Instance> instanceOfMatrix(const osg::RefMatrix* matrix);
+    osg::ref_ptr<osg::Geometry> getPosedMesh(const SkinnedGeometry& mesh, bool withNormals) const override;
+    osg::ref_ptr<osg::Geometry> posedMesh(std::size_t index, const SkinnedGeometry& mesh, bool withNormals) const;
     void cull(osgUtil::CullVisitor& visitor);
-    void intersect(osg::NodeVisitor& visitor);
+    void visitInstances(osg::NodeVisitor& visitor);
     void count(osg::NodeVisitor& visitor);
 
     std::unique_ptr<CrowdInstances> _instances; ///< never null

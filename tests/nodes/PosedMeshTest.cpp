@@ -108,12 +108,14 @@ TEST(PosedMeshTest, allIntersectorsNameTheDrawnMesh)
         scene->accept(visitor);
         const auto expectNamed = [&](const auto& hits)
         {
-            ASSERT_EQ(hits.size(), 1u);
-            const auto& hit = *hits.begin();
-            EXPECT_EQ(hit.drawable, character->getChild(0)) << "the crowd shares it";
-            EXPECT_EQ(hit.nodePath.back(), character->getChild(0));
-            EXPECT_EQ(hit.nodePath.size(), 3u);
-            EXPECT_EQ(AnimatedCrowd::instanceOf(hit), isCrowd ? std::optional(instance) : std::nullopt);
+            EXPECT_GE(hits.size(), 1u);
+            for (const auto& hit : hits)
+            {
+                EXPECT_EQ(hit.drawable, character->getChild(0)) << "the crowd shares it";
+                EXPECT_EQ(hit.nodePath.back(), character->getChild(0));
+                EXPECT_EQ(hit.nodePath.size(), 3u);
+                EXPECT_EQ(AnimatedCrowd::instanceOf(hit), isCrowd ? std::optional(instance) : std::nullopt);
+            }
         };
         expectNamed(ray->getIntersections());
         expectNamed(polytope->getIntersections());

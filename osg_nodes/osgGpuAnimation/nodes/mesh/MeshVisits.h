@@ -12,8 +12,8 @@ namespace osgGpuAnimation
 class PosedMeshSource;
 class SkinnedGeometry;
 
-/// True if a plugin of OSG (a library osgdb_*) visits the scene to write it in another format. The kit's own plugins
-/// and OSG's serializers do not count: they store the animation.
+/// True if a plugin of OSG (a library osgdb_*) visits the scene to write it in another format. The kit's own plugins,
+/// OSG's serializers, and plugins that show graphs or normals do not count.
 bool isFileWriter(const osg::NodeVisitor& visitor);
 
 /// The visitor meets the posed geometry in place of the mesh.

@@ -5,6 +5,9 @@
 #include <osgDB/FileNameUtils>
 #include <osgDB/Registry>
 
+#include <algorithm>
+#include <iterator>
+
 namespace osgGpuAnimation
 {
 
@@ -36,6 +39,15 @@ public:
 };
 
 const osgDB::RegisterReaderWriterProxy<TypedWriters> typedWriters;
+
+/// A .osgb is read by the plugin that writes .osg, so that one is registered already. osgDB holds the lock of this list
+/// while it loads a library.
+[[maybe_unused]] const bool isAskedFirst = []
+{
+    osgDB::Registry::ReaderWriterList& list = osgDB::Registry::instance()->getReaderWriterList();
+    std::rotate(list.begin(), std::prev(list.end()), list.end());
+    return true;
+}();
 
 } // namespace
 

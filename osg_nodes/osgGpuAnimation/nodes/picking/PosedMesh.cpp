@@ -20,6 +20,16 @@ osg::Vec3Array* toArray(const std::vector<glm::dvec3>& vectors)
     return array;
 }
 
+/// OSG's writer of .ac crashes on a texture without coordinates.
+osg::StateSet* withoutTextures(const osg::StateSet& state)
+{
+    auto* result = new osg::StateSet;
+    for (const auto& [type, attribute] : state.getAttributeList())
+        result->setAttribute(attribute.first, attribute.second);
+    result->getModeList() = state.getModeList();
+    return result;
+}
+
 } // namespace
 
 osg::ref_ptr<osg::Geometry> PosedMeshes::of(const SkinnedGeometry& mesh, const std::shared_ptr<const AnimationSet>& set,
@@ -72,6 +82,8 @@ osg::ref_ptr<osg::Geometry> PosedMeshes::pose(const SkinnedGeometry& mesh, bool 
     posed->setPrimitiveSetList(mesh.getPrimitiveSetList());
     // Visitors look up textures in the state and do not change it.
     posed->setStateSet(const_cast<osg::StateSet*>(mesh.getStateSet()));
+    if (withNormals && posed->getStateSet() && !posed->getTexCoordArray(0))
+        posed->setStateSet(withoutTextures(*posed->getStateSet()));
     return posed;
 }
 

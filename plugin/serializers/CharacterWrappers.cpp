@@ -2,7 +2,6 @@
 #include "serializers/StoredAnimation.h"
 
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
-#include <osgGpuAnimation/nodes/AnimationUpdateCallback.h>
 #include <osgGpuAnimation/nodes/CharacterKeys.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
 #include <osgGpuAnimation/nodes/PoseStatistics.h>
@@ -102,7 +101,7 @@ osg::Object* create()
 void addNothing(osgDB::ObjectWrapper*) {}
 
 osgDB::RegisterWrapperProxy wrappers[] = {
-    {&createWithoutCallback<AnimatedCharacter>, "osgGpuAnimation::AnimatedCharacter",
+    {&create<AnimatedCharacter>, "osgGpuAnimation::AnimatedCharacter",
      "osgGpuAnimation::ExactNumbers osg::Object osg::Node osg::Group osg::Transform osg::MatrixTransform "
      "osgGpuAnimation::AnimatedCharacter",
      &addCharacterProperties},
@@ -110,7 +109,8 @@ osgDB::RegisterWrapperProxy wrappers[] = {
      "osgGpuAnimation::ExactNumbers osg::Object osg::Node osg::Group osg::Transform osg::MatrixTransform "
      "osgGpuAnimation::JointAttachment",
      [](osgDB::ObjectWrapper* wrapper) { addProperty(wrapper, "Joint", &transferJoint); }},
-    {&create<AnimationUpdateCallback>, "osgGpuAnimation::AnimationUpdateCallback",
+    // Earlier characters and crowds had a callback that advanced them.
+    {&create<FormerCallback>, "osgGpuAnimation::AnimationUpdateCallback",
      "osg::Object osg::Callback osg::NodeCallback osgGpuAnimation::AnimationUpdateCallback", &addNothing},
     {&create<RootMotionCallback>, "osgGpuAnimation::RootMotionCallback",
      "osg::Object osg::Callback osg::NodeCallback osgGpuAnimation::RootMotionCallback", &addNothing},

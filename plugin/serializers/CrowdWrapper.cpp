@@ -11,24 +11,9 @@ namespace osgGpuAnimation::serializers
 namespace
 {
 
-/// Earlier crowds had an event callback that turned the viewer's home view. The file contains it; reading drops it.
-class FormerTiltedHome : public osg::Callback
-{
-};
-
-void dropTiltedHome(AnimatedCrowd& crowd)
-{
-    for (osg::ref_ptr<osg::Callback> callback = crowd.getEventCallback(), next; callback; callback = next)
-    {
-        next = callback->getNestedCallback();
-        if (dynamic_cast<FormerTiltedHome*>(callback.get())) crowd.removeEventCallback(callback);
-    }
-}
-
 void transferCrowdSet(ValueStream& stream, AnimatedCrowd& crowd)
 {
     transferSet(stream, crowd, crowd.getSharedAnimationSet());
-    if (stream.hasRead()) dropTiltedHome(crowd);
 }
 
 /// Crowds with default settings stay readable for earlier versions.
@@ -148,12 +133,13 @@ void addCrowdProperties(osgDB::ObjectWrapper* wrapper)
                                });
 }
 
-osgDB::RegisterWrapperProxy crowd(&createWithoutCallback<AnimatedCrowd>, "osgGpuAnimation::AnimatedCrowd",
+osgDB::RegisterWrapperProxy crowd([]() -> osg::Object* { return new AnimatedCrowd; }, "osgGpuAnimation::AnimatedCrowd",
                                   "osgGpuAnimation::ExactNumbers osg::Object osg::Node osg::Group osg::Transform "
                                   "osgGpuAnimation::AnimatedCrowd",
                                   &addCrowdProperties);
 
-osgDB::RegisterWrapperProxy tiltedHome([]() -> osg::Object* { return new FormerTiltedHome; },
+// Earlier crowds had an event callback that turned the viewer's home view.
+osgDB::RegisterWrapperProxy tiltedHome([]() -> osg::Object* { return new FormerCallback; },
                                        "osgGpuAnimation::TiltedHome",
                                        "osg::Object osg::Callback osgGpuAnimation::TiltedHome",
                                        [](osgDB::ObjectWrapper*) {});

@@ -391,4 +391,30 @@ void transferController(ValueStream& stream, AnimationController& controller)
     stream.close();
 }
 
+namespace
+{
+
+/// The chain without FormerCallbacks. They keep their own links, because other nodes may start with them.
+osg::Callback* withoutFormer(osg::Callback* first)
+{
+    const auto skip = [](osg::Callback* callback)
+    {
+        while (dynamic_cast<FormerCallback*>(callback))
+            callback = callback->getNestedCallback();
+        return callback;
+    };
+    first = skip(first);
+    for (osg::Callback* callback = first; callback; callback = callback->getNestedCallback())
+        callback->setNestedCallback(skip(callback->getNestedCallback()));
+    return first;
+}
+
+} // namespace
+
+void dropFormerCallbacks(osg::Node& node)
+{
+    node.setUpdateCallback(withoutFormer(node.getUpdateCallback()));
+    node.setEventCallback(withoutFormer(node.getEventCallback()));
+}
+
 } // namespace osgGpuAnimation::serializers

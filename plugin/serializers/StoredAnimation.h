@@ -21,14 +21,14 @@ void transferAnimationSet(ValueStream& stream, std::shared_ptr<const AnimationSe
 /// that do not exist: files are untrusted, and the GPU does not check indices.
 void removeUnfitMeshes(osg::Group& group, const AnimationSet& set);
 
-/// A new node without its own update callback: the file contains the callbacks.
-template <typename Class>
-osg::Object* createWithoutCallback()
+/// A callback that earlier versions had. Files contain it; reading drops it from characters and crowds, and elsewhere
+/// it only continues the traversal.
+class FormerCallback : public osg::NodeCallback
 {
-    auto* node = new Class;
-    node->setUpdateCallback(nullptr);
-    return node;
-}
+};
+
+/// Removes every FormerCallback from the node's update and event callbacks. Nodes may share their callbacks.
+void dropFormerCallbacks(osg::Node& node);
 
 /// The set of a character or crowd, whose meshes are read before it. set: the owner's, for writing.
 template <typename Owner>
@@ -36,6 +36,7 @@ void transferSet(ValueStream& stream, Owner& owner, std::shared_ptr<const Animat
 {
     transferAnimationSet(stream, set);
     if (!stream.hasRead()) return;
+    dropFormerCallbacks(owner);
     removeUnfitMeshes(owner, *set);
     stream.require("", owner.setAnimationSet(set));
 }

@@ -182,11 +182,11 @@ TEST(AnimatedCrowdTest, pickingTellsTheInstanceAsItIsPosed)
     const auto line = hitAt(72.0);
     ASSERT_EQ(line->getIntersections().size(), 1u);
     const osgUtil::LineSegmentIntersector::Intersection& hit = *line->getIntersections().begin();
-    EXPECT_EQ(AnimatedCrowd::instanceOf(hit.drawable), names[7]);
+    EXPECT_EQ(AnimatedCrowd::instanceOf(hit), names[7]);
     EXPECT_NEAR((hit.getWorldIntersectPoint() - osg::Vec3d(72, 0, 0.4)).length(), 0.0, 1e-5);
     EXPECT_TRUE(hitAt(70.5)->getIntersections().empty()) << "there it is in the bind pose alone";
     EXPECT_TRUE(hitAt(2.0)->getIntersections().empty()) << "removed";
-    EXPECT_FALSE(AnimatedCrowd::instanceOf(nullptr));
+    EXPECT_FALSE(AnimatedCrowd::instanceOf(osgUtil::LineSegmentIntersector::Intersection()));
 }
 
 TEST(AnimatedCrowdTest, primitiveFunctorsGetAllInstancesInTheirPose)

@@ -6,8 +6,11 @@
 
 #include <gtest/gtest.h>
 #include <osg/KdTree>
+#include <osg/Texture2D>
 #include <osg/TriangleFunctor>
 #include <osgUtil/IntersectionVisitor>
+#include <osgUtil/PlaneIntersector>
+#include <osgUtil/RayIntersector>
 #include <osgUtil/Statistics>
 
 // What OSG's visitors meet of characters and crowds: the present pose, and as many primitives as are drawn.
@@ -34,6 +37,16 @@ osg::ref_ptr<AnimatedCharacter> shiftedCharacter()
     return character;
 }
 
+/// What osgkeyboardmouse does: a node above the last one of the path.
+osg::ref_ptr<osg::Group> insertAbove(const osg::NodePath& path)
+{
+    const osg::ref_ptr<osg::Node> hit = path.back();
+    const osg::ref_ptr<osg::Group> inserted = new osg::Group;
+    inserted->addChild(hit);
+    EXPECT_TRUE(path[path.size() - 2]->asGroup()->replaceChild(hit, inserted));
+    return inserted;
+}
+
 } // namespace
 
 TEST(PosedMeshTest, aCharacterIsPickedAsItIsPosed)
@@ -48,6 +61,137 @@ TEST(PosedMeshTest, aCharacterIsPickedAsItIsPosed)
     EXPECT_EQ(picked->crowd, nullptr);
     EXPECT_EQ(picked->mesh, character->getChild(0));
     EXPECT_EQ(picked->set->skeleton().joint(picked->joint).name, "tip");
+}
+
+TEST(PosedMeshTest, hitsNameTheDrawnMesh)
+{
+    const osg::ref_ptr<osg::MatrixTransform> scene = new osg::MatrixTransform(osg::Matrix::translate(10, 0, 0));
+    const osg::ref_ptr<AnimatedCharacter> character = shiftedCharacter();
+    scene->addChild(character);
+    osg::Node* mesh = character->getChild(0);
+    const auto line = hitAt(*scene, 12.0);
+    ASSERT_EQ(line->getIntersections().size(), 1u);
+    const osgUtil::LineSegmentIntersector::Intersection hit = line->getFirstIntersection();
+    EXPECT_EQ(hit.drawable, mesh);
+    EXPECT_EQ(hit.nodePath, osg::NodePath({scene, character, mesh}));
+    insertAbove(hit.nodePath);
+    const auto again = hitAt(*scene, 12.0)->getFirstIntersection();
+    EXPECT_EQ(again.drawable, mesh);
+    ASSERT_TRUE(jointOf(again));
+    EXPECT_EQ(jointOf(again)->character, character);
+}
+
+TEST(PosedMeshTest, allIntersectorsNameTheDrawnMesh)
+{
+    const osg::ref_ptr<AnimatedCharacter> character = shiftedCharacter();
+    const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*character);
+    crowd->add(osg::Matrix::translate(20, 0, 0), character->getController()).value();
+    const AnimatedCrowd::Instance instance =
+        crowd->add(osg::Matrix::translate(10, 0, 0), character->getController()).value();
+    const osg::ref_ptr<osg::Group> scene = new osg::Group;
+    scene->addChild(character);
+    scene->addChild(crowd);
+    for (const bool isCrowd : {false, true})
+    {
+        const double x = isCrowd ? 12.0 : 2.0;
+        const osg::ref_ptr<osgUtil::RayIntersector> ray =
+            new osgUtil::RayIntersector(osg::Vec3d(x, -5, 0.4), osg::Vec3d(0, 1, 0));
+        osg::Polytope box;
+        box.setToBoundingBox(osg::BoundingBox(x - 0.1f, -1, 0.3f, x + 0.1f, 1, 0.5f));
+        const osg::ref_ptr<osgUtil::PolytopeIntersector> polytope = new osgUtil::PolytopeIntersector(box);
+        const osg::ref_ptr<osgUtil::PlaneIntersector> plane =
+            new osgUtil::PlaneIntersector(osg::Plane(1, 0, 0, -x), box);
+        const osg::ref_ptr<osgUtil::IntersectorGroup> group = new osgUtil::IntersectorGroup;
+        for (osgUtil::Intersector* member : std::initializer_list<osgUtil::Intersector*>{ray, polytope, plane})
+            group->addIntersector(member);
+        osgUtil::IntersectionVisitor visitor(group);
+        scene->accept(visitor);
+        const auto expectNamed = [&](const auto& hits)
+        {
+            EXPECT_GE(hits.size(), 1u);
+            for (const auto& hit : hits)
+            {
+                EXPECT_EQ(hit.drawable, character->getChild(0)) << "the crowd shares it";
+                EXPECT_EQ(hit.nodePath.back(), character->getChild(0));
+                EXPECT_EQ(hit.nodePath.size(), 3u);
+                EXPECT_EQ(AnimatedCrowd::instanceOf(hit), isCrowd ? std::optional(instance) : std::nullopt);
+            }
+        };
+        expectNamed(ray->getIntersections());
+        expectNamed(polytope->getIntersections());
+        expectNamed(plane->getIntersections());
+        const std::optional<PickedJoint> picked = jointOf(polytope->getFirstIntersection());
+        ASSERT_TRUE(picked);
+        EXPECT_EQ(picked->crowd, isCrowd ? crowd.get() : nullptr);
+        EXPECT_EQ(picked->set->skeleton().joint(picked->joint).name, "tip");
+    }
+}
+
+TEST(PosedMeshTest, crowdsArePickedBelowInsertedGroups)
+{
+    const osg::ref_ptr<AnimatedCharacter> character = shiftedCharacter();
+    const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*character);
+    std::vector<AnimatedCrowd::Instance> instances;
+    for (int i = 0; i < 100; ++i)
+        instances.push_back(crowd->add(osg::Matrix::translate(0, 10 * i, 0), character->getController()).value());
+    const osg::ref_ptr<osg::Geometry> ground = osg::createTexturedQuadGeometry({0, -3, 0}, {9, 0, 0}, {0, 0, 9});
+    crowd->addChild(ground);
+    for (const bool isInserted : {false, true})
+    {
+        const osg::ref_ptr<osgUtil::LineSegmentIntersector> line =
+            new osgUtil::LineSegmentIntersector(osg::Vec3d(2, -5, 0.4), osg::Vec3d(2, 2000, 0.4));
+        osgUtil::IntersectionVisitor visitor(line);
+        crowd->accept(visitor);
+        ASSERT_EQ(line->getIntersections().size(), 101u) << "all instances, and the ground once";
+        auto hit = line->getIntersections().begin();
+        EXPECT_EQ(hit->drawable, ground);
+        EXPECT_FALSE(AnimatedCrowd::instanceOf(*hit));
+        for (const AnimatedCrowd::Instance instance : instances)
+        {
+            ++hit;
+            ASSERT_EQ(AnimatedCrowd::instanceOf(*hit), instance);
+            EXPECT_EQ(hit->drawable, character->getChild(0));
+            ASSERT_TRUE(jointOf(*hit));
+            EXPECT_EQ(jointOf(*hit)->instance, instance);
+        }
+        if (!isInserted) insertAbove(hit->nodePath);
+    }
+}
+
+TEST(PosedMeshTest, aPosedMeshLooksUpTheTexture)
+{
+    const osg::ref_ptr<AnimatedCharacter> character = shiftedCharacter();
+    auto& mesh = dynamic_cast<SkinnedGeometry&>(*character->getChild(0));
+    const osg::ref_ptr<osg::Vec2Array> coordinates = new osg::Vec2Array(osg::Array::BIND_PER_VERTEX);
+    for (const osg::Vec2 corner : {osg::Vec2(0, 0), osg::Vec2(1, 0), osg::Vec2(1, 1), osg::Vec2(0, 1)})
+        coordinates->push_back(corner);
+    mesh.setTexCoordArray(0, coordinates);
+    const osg::ref_ptr<osg::Texture2D> texture = new osg::Texture2D;
+    mesh.getOrCreateStateSet()->setTextureAttributeAndModes(0, texture);
+    osgUtil::LineSegmentIntersector::Intersection hit = hitAt(*character, 2.0)->getFirstIntersection();
+    hit.drawable = character->getPosedMesh(mesh);
+    osg::Vec3 coordinate;
+    EXPECT_EQ(hit.getTextureLookUp(coordinate), texture);
+    EXPECT_NEAR(coordinate.x(), 0.5, 1e-5);
+    EXPECT_NEAR(coordinate.y(), 0.4, 1e-5);
+}
+
+TEST(PosedMeshTest, normalsTurnWithTheirVertices)
+{
+    const osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
+    auto& mesh = dynamic_cast<SkinnedGeometry&>(*character->getChild(0));
+    auto* bind = dynamic_cast<osg::Vec3Array*>(mesh.getNormalArray());
+    std::fill(bind->begin(), bind->end(), osg::Vec3(1, 0, 0));
+    character->getController().play("turn").value();
+    character->getController().setLoopMode(LoopMode::Once);
+    character->getController().seek(1.0);
+    EXPECT_FALSE(character->getPosedMesh(mesh)->getNormalArray()) << "not requested";
+    const osg::ref_ptr<osg::Geometry> posed = character->getPosedMesh(mesh, true);
+    const auto* normals = dynamic_cast<const osg::Vec3Array*>(posed->getNormalArray());
+    ASSERT_TRUE(normals);
+    ASSERT_EQ(normals->size(), 4u);
+    for (const osg::Vec3& normal : *normals)
+        EXPECT_LE((normal - osg::Vec3(0, 0, -1)).length(), 1e-6f) << "a quarter about +Y";
 }
 
 TEST(PosedMeshTest, meshesBelowGroupsAreToo)

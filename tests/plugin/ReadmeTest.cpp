@@ -104,7 +104,7 @@ TEST_F(ReadmeTest, crowds)
     crowd->accept(visitor);
     ASSERT_TRUE(ray->containsIntersections());
     osgUtil::LineSegmentIntersector::Intersection hit = ray->getFirstIntersection();
-    auto instance = AnimatedCrowd::instanceOf(hit.drawable);
+    auto instance = AnimatedCrowd::instanceOf(hit);
     EXPECT_EQ(instance, fox.value());
 
     const AnimatedCrowd::Instance leaver = fox.value();

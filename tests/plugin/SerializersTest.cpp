@@ -10,7 +10,6 @@
 #include <osgGpuAnimation/animation/keyframes/PackedKeyframes.h>
 #include <osgGpuAnimation/animation/RootMotion.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
-#include <osgGpuAnimation/nodes/AnimationUpdateCallback.h>
 #include <osgGpuAnimation/nodes/CharacterKeys.h>
 #include <osgGpuAnimation/nodes/CharacterProgram.h>
 #include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
@@ -150,8 +149,7 @@ TEST_F(SerializersTest, everythingBelowACharacterComesBack)
         EXPECT_EQ(byName->getJointName(), "hand");
         EXPECT_EQ(byName->getNumChildren(), 1u);
         EXPECT_EQ(byNumber->getJoint(), 2);
-        EXPECT_TRUE(dynamic_cast<AnimationUpdateCallback*>(back.getUpdateCallback()));
-        EXPECT_TRUE(dynamic_cast<RootMotionCallback*>(back.getUpdateCallback()->getNestedCallback()));
+        EXPECT_TRUE(dynamic_cast<RootMotionCallback*>(back.getUpdateCallback()));
         EXPECT_TRUE(dynamic_cast<CharacterKeys*>(back.getEventCallback()));
         const Clip& clip = back.getAnimationSet().clips()[0];
         ASSERT_EQ(clip.markers().size(), 2u);

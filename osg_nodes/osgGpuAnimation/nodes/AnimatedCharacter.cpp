@@ -4,7 +4,6 @@
 #include <osgGpuAnimation/animation/bounds/MixBounds.h>
 #include <osgGpuAnimation/animation/ClipBuilder.h>
 #include <osgGpuAnimation/animation/Pose.h>
-#include <osgGpuAnimation/nodes/AnimationUpdateCallback.h>
 #include <osgGpuAnimation/nodes/frame/CullScopes.h>
 #include <osgGpuAnimation/nodes/frame/PoseStage.h>
 #include <osgGpuAnimation/nodes/lod/LodSelection.h>
@@ -37,7 +36,8 @@ AnimatedCharacter::AnimatedCharacter(std::shared_ptr<const AnimationSet> set)
 {
     // Not STATIC: the Optimizer must not flatten this transform or those above into the bind pose.
     setDataVariance(osg::Object::DYNAMIC);
-    setUpdateCallback(new AnimationUpdateCallback);
+    // The update traversal must reach this node without a callback.
+    setNumChildrenRequiringUpdateTraversal(getNumChildrenRequiringUpdateTraversal() + 1);
 }
 
 AnimatedCharacter::AnimatedCharacter(const AnimatedCharacter& other, const osg::CopyOp& copyop)
@@ -48,6 +48,8 @@ AnimatedCharacter::AnimatedCharacter(const AnimatedCharacter& other, const osg::
 {
     // osg::Node copies its other callbacks, but not the event callbacks.
     setEventCallback(copyop(other.getEventCallback()));
+    // The update traversal must reach this node without a callback.
+    setNumChildrenRequiringUpdateTraversal(getNumChildrenRequiringUpdateTraversal() + 1);
 }
 
 AnimatedCharacter::~AnimatedCharacter() = default;
@@ -174,10 +176,10 @@ osg::BoundingBox AnimatedCharacter::clipBoundsInFile(int clip) const
     return _clipBounds && index < _clipBounds->size() ? (*_clipBounds)[index] : osg::BoundingBox();
 }
 
-osg::ref_ptr<osg::Geometry> AnimatedCharacter::getPosedMesh(const SkinnedGeometry& mesh) const
+osg::ref_ptr<osg::Geometry> AnimatedCharacter::getPosedMesh(const SkinnedGeometry& mesh, bool withNormals) const
 {
     std::call_once(_posedMeshesMade, [this] { _posedMeshes = std::make_unique<PosedMeshes>(); });
-    return _posedMeshes->of(mesh, _controller->sharedSet(), _controller->instruction(), _rootMatrix);
+    return _posedMeshes->of(mesh, _controller->sharedSet(), _controller->instruction(), _rootMatrix, withNormals);
 }
 
 void AnimatedCharacter::acceptPosed(osg::PrimitiveFunctor& functor)
@@ -185,8 +187,18 @@ void AnimatedCharacter::acceptPosed(osg::PrimitiveFunctor& functor)
     forEachMeshBelow(*this, [&](const SkinnedGeometry& mesh) { getPosedMesh(mesh)->accept(functor); });
 }
 
+void AnimatedCharacter::accept(osg::NodeVisitor& visitor)
+{
+    if (!visitor.validNodeMask(*this)) return;
+    if (const std::optional<double> time = updateTimeOf(visitor)) update(*time);
+    visitor.pushOntoNodePath(this);
+    visitor.apply(*this);
+    visitor.popFromNodePath();
+}
+
 void AnimatedCharacter::traverse(osg::NodeVisitor& visitor)
 {
+    if (const std::optional<double> time = updateTimeOf(visitor); time && time != _updateTime) update(*time);
     osgUtil::CullVisitor* cullVisitor = visitor.asCullVisitor();
     if (!cullVisitor || getNumChildren() == 0 || getAnimationSet().paletteSize() == 0)
     {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/AnimationController.h>
-#include <osgGpuAnimation/nodes/AnimationUpdateCallback.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
 #include <osg/BoundingBox>
@@ -30,13 +29,13 @@ struct PlayedClip;
 ///     fox->getController().play("Run");
 ///     osg::ref_ptr<osg::Node> another = osg::clone(node.get(), osg::CopyOp::DEEP_COPY_NODES); // its own controller
 ///
-/// The constructor installs an AnimationUpdateCallback, which advances the controller by the frame stamp's simulation
-/// time. A visible character submits its pose to the PoseStage of the graphics context during cull, and the GPU
-/// evaluates it before any camera draws it. An invisible character costs nothing on the GPU.
+/// The update traversal advances the controller by the frame stamp's simulation time, before it runs the character's
+/// own update callbacks. A visible character submits its pose to the PoseStage of the graphics context during cull, and
+/// the GPU evaluates it before any camera draws it. An invisible character costs nothing on the GPU.
 ///
 /// The set has the axes of its file (glTF: +Y up). The character draws it in its own space (OSG: +Z up) by
 /// getFileToNode(), and all matrices, boxes and meshes of this class are in the character's own space.
-class AnimatedCharacter : public osg::MatrixTransform, public Updatable, public PosedMeshSource
+class AnimatedCharacter : public osg::MatrixTransform, public PosedMeshSource
 {
 public:
     /// A character with an empty set; setAnimationSet() gives it another.
@@ -46,7 +45,9 @@ public:
     /// Shares the set and copies the controller: the copy starts with the same times, clips and speeds and is then
     /// independent.
     AnimatedCharacter(const AnimatedCharacter& other, const osg::CopyOp& copyop = osg::CopyOp::SHALLOW_COPY);
-    META_Node(osgGpuAnimation, AnimatedCharacter)
+    META_Object(osgGpuAnimation, AnimatedCharacter)
+    /// During update: calls update() with the frame stamp's simulation time, then the update callbacks.
+    void accept(osg::NodeVisitor& visitor) override;
 
     /// The skeleton, palette layout and clips, shared with the copies of this character.
     const AnimationSet& getAnimationSet() const { return _controller->set(); }
@@ -80,7 +81,7 @@ public:
     /// Advances the controller by the time since the last update; the first call only stores the time. A jump of the
     /// time in either direction moves the clips by the same amount, so equal times show equal poses.
     /// simulationTime: seconds.
-    void update(double simulationTime) override;
+    void update(double simulationTime);
 
     /// Computes the bounds of every clip from the SkinnedGeometry below and sets the meshes' bounding boxes. Call it
     /// once after all meshes are added; copies of this node share the result.
@@ -109,15 +110,17 @@ public:
     float getPixelError() const { return _pixelError; } ///< pixels, at least 0
 
     /// A mesh below this node in the present pose, in the character's own space. The CPU twin computes it, and the
-    /// result is kept until the pose changes. Intersectors test it in place of the mesh.
-    osg::ref_ptr<osg::Geometry> getPosedMesh(const SkinnedGeometry& mesh) const override;
+    /// result is kept until the pose changes. Intersectors test it in place of the mesh. withNormals: with normals and
+    /// colours, if the mesh has them.
+    osg::ref_ptr<osg::Geometry> getPosedMesh(const SkinnedGeometry& mesh, bool withNormals = false) const override;
     /// Passes the primitives of all meshes below in their present pose to the functor. (A mesh alone passes its bind
     /// pose, because it belongs to no character.)
     void acceptPosed(osg::PrimitiveFunctor& functor);
 
     /// During cull: submits the pose and draws the children from the palette. Visitors that compute bounds
     /// (osg::ComputeBoundsVisitor and osgShadow's) get getCurrentBounds() in place of the boxes of the meshes, which
-    /// clones share. Other visitors traverse the children.
+    /// clones share. During update: calls update() unless accept() did, for derived classes with an accept() of their
+    /// own (META_Node). Other visitors traverse the children.
     void traverse(osg::NodeVisitor& visitor) override;
     /// The sphere around getCurrentBounds(); update() marks it dirty when other clips play.
     osg::BoundingSphere computeBound() const override;

@@ -2,12 +2,12 @@
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
-#include <osgGpuAnimation/nodes/AnimationUpdateCallback.h>
 #include <osgGpuAnimation/nodes/crowd/CrowdBatches.h>
 #include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/nodes/frame/CullScopes.h>
 #include <osgGpuAnimation/nodes/frame/PoseStage.h>
 #include <osgGpuAnimation/nodes/lod/LodSelection.h>
+#include <osgGpuAnimation/nodes/mesh/MeshVisits.h>
 #include <osgGpuAnimation/nodes/mesh/PaletteEntryBounds.h>
 #include <osgGpuAnimation/nodes/OsgMatrix.h>
 
@@ -62,24 +62,69 @@ Result<AffineMatrix> placedRoot(const osg::Matrixd& fileToNode, const osg::Matri
     return toRootMatrix(fileToNode * fromOrigin, "the placement", false);
 }
 
-/// An instance for intersectors, posed only if its sphere is hit. It exists during the crowd's traversal only.
-class IntersectedInstance : public osg::Node
+bool hasMeshAtOrBelow(osg::Node& node)
+{
+    bool has = false;
+    forEachMeshBelow(node, [&](const SkinnedGeometry&) { has = true; });
+    return has;
+}
+
+/// RAII: while this thread draws the children of a crowd that are no meshes, the visitor culls none: the bounds of
+/// groups that an application has inserted above a mesh do not contain the instances.
+class UnculledScope
 {
 public:
-    IntersectedInstance(const AnimatedCrowd& crowd, std::size_t index) : _crowd(crowd), _index(index) {}
+    explicit UnculledScope(osgUtil::CullVisitor& visitor)
+        : _visitor(visitor), _mask(visitor.getCurrentCullingSet().getCullingMask())
+    {
+        _visitor.getCurrentCullingSet().setCullingMask(osg::CullingSet::NO_CULLING);
+    }
+    ~UnculledScope() { _visitor.getCurrentCullingSet().setCullingMask(_mask); }
+
+private:
+    osgUtil::CullVisitor& _visitor;
+    osg::CullingSet::Mask _mask;
+};
+
+} // namespace
+
+/// RAII: the instance whose meshes this thread visits.
+class AnimatedCrowd::InstanceScope
+{
+public:
+    explicit InstanceScope(std::size_t index) : _outer(current) { current = index; }
+    ~InstanceScope() { current = _outer; }
+
+    static inline thread_local std::size_t current = CrowdInstances::none;
+
+private:
+    std::size_t _outer;
+};
+
+/// An instance for intersectors, posed only if its sphere is hit. It is no part of the hits' node paths.
+class AnimatedCrowd::IntersectedInstance : public osg::Node
+{
+public:
+    IntersectedInstance(AnimatedCrowd& crowd, const std::vector<osg::Node*>& children)
+        : _crowd(crowd), _children(children)
+    {
+    }
+
+    void setIndex(std::size_t index)
+    {
+        _index = index;
+        dirtyBound();
+    }
 
     void traverse(osg::NodeVisitor& visitor) override
     {
-        const AnimatedCrowd::Instance instance = _crowd.getInstances().handleOf(_index);
-        forEachMesh(_crowd,
-                    [&](const SkinnedGeometry& mesh)
-                    {
-                        if (!visitor.validNodeMask(mesh)) return;
-                        const osg::ref_ptr<osg::Geometry> posed = _crowd.getPosedMesh(instance, mesh);
-                        // The hit keeps the drawable only, but its node path needs this node.
-                        posed->setUserData(this);
-                        posed->accept(visitor);
-                    });
+        const InstanceScope scope(_index);
+        auto& intersection = static_cast<osgUtil::IntersectionVisitor&>(visitor);
+        intersection.pushModelMatrix(
+            new InstanceMatrix(*intersection.getModelMatrix(), _crowd.getInstances().handleOf(_index)));
+        for (osg::Node* child : _children)
+            child->accept(visitor);
+        intersection.popModelMatrix();
     }
 
     osg::BoundingSphere computeBound() const override
@@ -89,11 +134,10 @@ public:
     }
 
 private:
-    const AnimatedCrowd& _crowd;
-    std::size_t _index;
+    AnimatedCrowd& _crowd;
+    const std::vector<osg::Node*>& _children;
+    std::size_t _index = 0;
 };
-
-} // namespace
 
 AnimatedCrowd::AnimatedCrowd() : AnimatedCrowd(nullptr, {}) {}
 
@@ -103,7 +147,8 @@ AnimatedCrowd::AnimatedCrowd(std::shared_ptr<const AnimationSet> set,
 {
     // Not STATIC: the Optimizer must not flatten the transforms above into the bind pose.
     setDataVariance(osg::Object::DYNAMIC);
-    setUpdateCallback(new AnimationUpdateCallback);
+    // The update traversal must reach this node without a callback.
+    setNumChildrenRequiringUpdateTraversal(getNumChildrenRequiringUpdateTraversal() + 1);
     for (const osg::ref_ptr<SkinnedGeometry>& mesh : meshes)
         addChild(mesh);
     if (!meshes.empty()) _instances->setClipBounds(clipBoundsOf(getAnimationSet(), *this));
@@ -129,6 +174,8 @@ AnimatedCrowd::AnimatedCrowd(const AnimatedCrowd& other, const osg::CopyOp& copy
       _posed(std::make_unique<PosedInstances>()), _fileToNode(other._fileToNode), _origin(other._origin),
       _hasOrigin(other._hasOrigin), _updateTime(other._updateTime), _pixelError(other._pixelError)
 {
+    // The update traversal must reach this node without a callback.
+    setNumChildrenRequiringUpdateTraversal(getNumChildrenRequiringUpdateTraversal() + 1);
 }
 
 AnimatedCrowd::~AnimatedCrowd() = default;
@@ -273,19 +320,28 @@ void AnimatedCrowd::update(double simulationTime)
     if (!events.isEmpty()) runAfterUpdate(*this, [events] { events.deliver(); });
 }
 
-std::optional<AnimatedCrowd::Instance> AnimatedCrowd::instanceOf(const osg::Drawable* hit)
+std::optional<AnimatedCrowd::Instance> AnimatedCrowd::instanceOfMatrix(const osg::RefMatrix* matrix)
 {
-    const auto* posed = dynamic_cast<const PosedMesh*>(hit);
-    return posed ? posed->getInstance() : std::nullopt;
+    const auto* ofInstance = dynamic_cast<const InstanceMatrix*>(matrix);
+    return ofInstance ? std::optional(ofInstance->getInstance()) : std::nullopt;
 }
 
 osg::ref_ptr<osg::Geometry> AnimatedCrowd::getPosedMesh(Instance instance, const SkinnedGeometry& mesh) const
 {
-    const std::size_t index = _instances->indexOf(instance);
-    if (index == CrowdInstances::none) return new PosedMesh(mesh, new osg::Vec3Array, instance);
-    const osg::ref_ptr<PosedMesh> kept = _posed->of(instance)->of(
-        mesh, getSharedAnimationSet(), _instances->instruction(index), _instances->rootMatrix(index));
-    return new PosedMesh(mesh, dynamic_cast<osg::Vec3Array*>(kept->getVertexArray()), instance);
+    return posedMesh(_instances->indexOf(instance), mesh, false);
+}
+
+osg::ref_ptr<osg::Geometry> AnimatedCrowd::getPosedMesh(const SkinnedGeometry& mesh, bool withNormals) const
+{
+    return posedMesh(InstanceScope::current, mesh, withNormals);
+}
+
+osg::ref_ptr<osg::Geometry> AnimatedCrowd::posedMesh(std::size_t index, const SkinnedGeometry& mesh,
+                                                     bool withNormals) const
+{
+    if (index >= getNumInstances()) return new osg::Geometry;
+    return _posed->of(_instances->handleOf(index))
+        ->of(mesh, getSharedAnimationSet(), _instances->instruction(index), _instances->rootMatrix(index), withNormals);
 }
 
 void AnimatedCrowd::acceptInstances(osg::PrimitiveFunctor& functor) const
@@ -295,12 +351,22 @@ void AnimatedCrowd::acceptInstances(osg::PrimitiveFunctor& functor) const
                     { getPosedMesh(_instances->handleOf(index), mesh)->accept(functor); });
 }
 
+void AnimatedCrowd::accept(osg::NodeVisitor& visitor)
+{
+    if (!visitor.validNodeMask(*this)) return;
+    if (const std::optional<double> time = updateTimeOf(visitor)) update(*time);
+    visitor.pushOntoNodePath(this);
+    visitor.apply(*this);
+    visitor.popFromNodePath();
+}
+
 void AnimatedCrowd::traverse(osg::NodeVisitor& visitor)
 {
+    if (const std::optional<double> time = updateTimeOf(visitor); time && time != _updateTime) update(*time);
     if (osgUtil::CullVisitor* cullVisitor = visitor.asCullVisitor())
         cull(*cullVisitor);
-    else if (dynamic_cast<osgUtil::IntersectionVisitor*>(&visitor))
-        intersect(visitor);
+    else if (dynamic_cast<osgUtil::IntersectionVisitor*>(&visitor) || isFileWriter(visitor))
+        visitInstances(visitor);
     else if (dynamic_cast<osgUtil::StatsVisitor*>(&visitor))
         count(visitor);
     else if (const Box now = computesBounds(visitor) ? _instances->bounds() : Box(); !now.empty())
@@ -323,16 +389,27 @@ void AnimatedCrowd::cull(osgUtil::CullVisitor& visitor)
                              _pixelError > 0.0f ? LodRange(*this, getAnimationSet()) : LodRange());
         draws = submitSeen(PoseStage::frame(visitor), *_instances, CrowdLod(*_instances, scale), seen);
     }
-    for (const osg::ref_ptr<osg::Node>& child : _children)
-    {
-        if (!dynamic_cast<const SkinnedGeometry*>(child.get())) child->accept(visitor);
-    }
     for (const DrawState& draw : draws)
     {
         visitor.pushStateSet(draw.stateSet);
         forEachMesh(*this,
                     [&](const SkinnedGeometry& mesh) { view.draw(const_cast<SkinnedGeometry&>(mesh), *draw.binding); });
         visitor.popStateSet();
+    }
+    const UnculledScope unculled(visitor);
+    const MeshDrawScope scope(*this,
+                              [&](SkinnedGeometry& mesh)
+                              {
+                                  for (const DrawState& draw : draws)
+                                  {
+                                      visitor.pushStateSet(draw.stateSet);
+                                      view.draw(mesh, *draw.binding);
+                                      visitor.popStateSet();
+                                  }
+                              });
+    for (const osg::ref_ptr<osg::Node>& child : _children)
+    {
+        if (!dynamic_cast<const SkinnedGeometry*>(child.get())) child->accept(visitor);
     }
 }
 
@@ -343,15 +420,26 @@ Result<bool> AnimatedCrowd::setPixelError(float pixels)
     return prepared;
 }
 
-void AnimatedCrowd::intersect(osg::NodeVisitor& visitor)
+void AnimatedCrowd::visitInstances(osg::NodeVisitor& visitor)
 {
+    std::vector<osg::Node*> ofInstances;
+    for (const osg::ref_ptr<osg::Node>& child : _children)
+        if (hasMeshAtOrBelow(*child))
+            ofInstances.push_back(child);
+        else
+            child->accept(visitor);
+    const bool isIntersection = dynamic_cast<osgUtil::IntersectionVisitor*>(&visitor);
+    const osg::ref_ptr<IntersectedInstance> intersected = new IntersectedInstance(*this, ofInstances);
     for (std::size_t index = 0; index < getNumInstances(); ++index)
     {
-        const osg::ref_ptr<IntersectedInstance> instance = new IntersectedInstance(*this, index);
-        instance->accept(visitor);
+        const InstanceScope scope(index);
+        intersected->setIndex(index);
+        if (isIntersection)
+            visitor.apply(*intersected);
+        else
+            for (osg::Node* child : ofInstances)
+                child->accept(visitor);
     }
-    for (const osg::ref_ptr<osg::Node>& child : _children)
-        if (!dynamic_cast<SkinnedGeometry*>(child.get())) child->accept(visitor);
 }
 
 // Statistics count a mesh once per instance.

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/AnimationController.h>
-#include <osgGpuAnimation/nodes/AnimationUpdateCallback.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
 #include <osg/PrimitiveSet>
@@ -29,14 +28,15 @@ class PosedInstances;
 ///     crowd->setPlacement(fox, osg::Matrix::translate(101, 20, 0));      // not while the crowd is culled
 ///     crowd->getController(fox)->crossfade("Walk", 0.3);
 ///
-/// The constructor installs an update callback, which advances all instances by the frame stamp's simulation time. Cull
-/// tests each instance with the bounds of the clip that it plays and submits the visible ones to the GPU. An instance
-/// that plays one clip in a loop costs least; every other instance (crossfades, layers, events) keeps a controller.
+/// The update traversal advances all instances by the frame stamp's simulation time, before it runs the crowd's own
+/// update callbacks. Cull tests each instance with the bounds of the clip that it plays and submits the visible ones to
+/// the GPU. An instance that plays one clip in a loop costs least; every other instance (crossfades, layers, events)
+/// keeps a controller.
 ///
 /// The meshes are the crowd's children; other children are drawn once. Transparent instances of one mesh are not sorted
 /// by depth. As with AnimatedCharacter, getFileToNode() leads from the axes of the set's file to the space that the
 /// placements start from (OSG: +Z up), so that a translation alone places an upright character.
-class AnimatedCrowd : public osg::Transform, public Updatable
+class AnimatedCrowd : public osg::Transform, public PosedMeshSource
 {
 public:
     /// A handle of an instance. It stays valid until the instance is removed and is never reused.
@@ -52,7 +52,9 @@ public:
     explicit AnimatedCrowd(const AnimatedCharacter& character);
     /// Copies the instances with their handles.
     AnimatedCrowd(const AnimatedCrowd& other, const osg::CopyOp& copyop = osg::CopyOp::SHALLOW_COPY);
-    META_Node(osgGpuAnimation, AnimatedCrowd)
+    META_Object(osgGpuAnimation, AnimatedCrowd)
+    /// During update: calls update() with the frame stamp's simulation time, then the update callbacks.
+    void accept(osg::NodeVisitor& visitor) override;
 
     /// The skeleton, palette layout and clips of all instances.
     const AnimationSet& getAnimationSet() const;
@@ -105,18 +107,23 @@ public:
 
     /// Advances all instances by the time since the last update; the first call only stores the time.
     /// simulationTime: seconds.
-    void update(double simulationTime) override;
+    void update(double simulationTime);
 
-    /// The instance of an Intersection's drawable. Empty: the drawable belongs to no crowd.
-    static std::optional<Instance> instanceOf(const osg::Drawable* hit);
-    /// The mesh in the present pose of the instance, in the crowd's space. The CPU twin computes it, and instanceOf()
-    /// returns its instance. It has no vertices if no such instance exists. See jointOf() for the joint of a hit.
+    /// The instance of a hit: an Intersection of any of OSG's intersectors. Empty: the hit is in no crowd. See
+    /// jointOf() for the joint.
+    template <typename Intersection>
+    static std::optional<Instance> instanceOf(const Intersection& hit)
+    {
+        return instanceOfMatrix(hit.matrix.get());
+    }
+    /// The mesh in the present pose of the instance, in the crowd's space. The CPU twin computes it. It has no vertices
+    /// if no such instance exists.
     osg::ref_ptr<osg::Geometry> getPosedMesh(Instance instance, const SkinnedGeometry& mesh) const;
     /// Passes the primitives of all instances in their present poses to the functor. Slow: the CPU twin computes them.
     void acceptInstances(osg::PrimitiveFunctor& functor) const;
 
-    /// Cull submits and draws the visible instances; intersectors meet posed meshes; statistics count every instance;
-    /// visitors that compute bounds get the box around all instances as they play now.
+    /// Cull submits and draws the visible instances; intersectors and writers of other file formats meet posed meshes;
+    /// statistics count every instance; visitors that compute bounds get the box around all instances as they play now.
     void traverse(osg::NodeVisitor& visitor) override;
     osg::BoundingSphere computeBound() const override; ///< around all instances and the other children
     /// Applies the origin to the matrix.
@@ -128,8 +135,14 @@ protected:
     ~AnimatedCrowd() override;
 
 private:
+    class InstanceScope;
+    class IntersectedInstance;
+
+    static std::optional<Instance> instanceOfMatrix(const osg::RefMatrix* matrix);
+    osg::ref_ptr<osg::Geometry> getPosedMesh(const SkinnedGeometry& mesh, bool withNormals) const override;
+    osg::ref_ptr<osg::Geometry> posedMesh(std::size_t index, const SkinnedGeometry& mesh, bool withNormals) const;
     void cull(osgUtil::CullVisitor& visitor);
-    void intersect(osg::NodeVisitor& visitor);
+    void visitInstances(osg::NodeVisitor& visitor);
     void count(osg::NodeVisitor& visitor);
 
     std::unique_ptr<CrowdInstances> _instances; ///< never null

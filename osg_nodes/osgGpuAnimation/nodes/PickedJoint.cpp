@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/PickedJoint.h>
 
-#include <osgGpuAnimation/nodes/picking/PosedMesh.h>
-
 #include <algorithm>
 #include <map>
 
@@ -36,22 +34,29 @@ std::optional<std::size_t> heaviestJoint(const AnimationSet& set, const SkinnedG
     return static_cast<std::size_t>(heaviest->first);
 }
 
-std::optional<PickedJoint> pick(const osg::NodePath& path, const osg::Drawable* hit, const std::vector<Corner>& corners)
+/// What the hit names, without the joint.
+template <typename Intersection>
+std::optional<PickedJoint> pick(const Intersection& hit)
 {
-    const auto* posed = dynamic_cast<const PosedMesh*>(hit);
-    if (!posed) return std::nullopt;
     PickedJoint picked;
-    picked.mesh = &posed->getMesh();
-    for (const osg::Node* node : path)
+    picked.mesh = dynamic_cast<const SkinnedGeometry*>(hit.drawable.get());
+    if (!picked.mesh) return std::nullopt;
+    const std::optional<AnimatedCrowd::Instance> instance = AnimatedCrowd::instanceOf(hit);
+    for (const osg::Node* node : hit.nodePath)
     {
-        const auto* crowd = posed->getInstance() ? dynamic_cast<const AnimatedCrowd*>(node) : nullptr;
-        const auto* character = posed->getInstance() ? nullptr : dynamic_cast<const AnimatedCharacter*>(node);
+        const auto* crowd = instance ? dynamic_cast<const AnimatedCrowd*>(node) : nullptr;
+        const auto* character = instance ? nullptr : dynamic_cast<const AnimatedCharacter*>(node);
         if (crowd) picked.crowd = crowd;
         if (character) picked.character = character;
     }
-    if (picked.crowd) picked.instance = *posed->getInstance();
     if (!picked.crowd && !picked.character) return std::nullopt;
+    if (picked.crowd) picked.instance = *instance;
     picked.set = picked.crowd ? &picked.crowd->getAnimationSet() : &picked.character->getAnimationSet();
+    return picked;
+}
+
+std::optional<PickedJoint> withJoint(PickedJoint picked, const std::vector<Corner>& corners)
+{
     const std::optional<std::size_t> joint = heaviestJoint(*picked.set, *picked.mesh, corners);
     if (!joint) return std::nullopt;
     picked.joint = *joint;
@@ -62,22 +67,28 @@ std::optional<PickedJoint> pick(const osg::NodePath& path, const osg::Drawable* 
 
 std::optional<PickedJoint> jointOf(const osgUtil::LineSegmentIntersector::Intersection& hit)
 {
+    const std::optional<PickedJoint> picked = pick(hit);
+    if (!picked) return std::nullopt;
     std::vector<Corner> corners;
     for (std::size_t i = 0; i < std::min(hit.indexList.size(), hit.ratioList.size()); ++i)
         corners.push_back({hit.indexList[i], hit.ratioList[i]});
-    return pick(hit.nodePath, hit.drawable.get(), corners);
+    return withJoint(*picked, corners);
 }
 
 std::optional<PickedJoint> jointOf(const osgUtil::PolytopeIntersector::Intersection& hit)
 {
-    const auto* posed = dynamic_cast<const PosedMesh*>(hit.drawable.get());
-    const auto* positions = posed ? dynamic_cast<const osg::Vec3Array*>(posed->getVertexArray()) : nullptr;
+    const std::optional<PickedJoint> picked = pick(hit);
+    if (!picked) return std::nullopt;
+    const osg::ref_ptr<osg::Geometry> posed = picked->crowd
+                                                  ? picked->crowd->getPosedMesh(picked->instance, *picked->mesh)
+                                                  : picked->character->getPosedMesh(*picked->mesh);
+    const auto* positions = dynamic_cast<const osg::Vec3Array*>(posed->getVertexArray());
     if (!positions || positions->empty()) return std::nullopt;
     const osg::Vec3 point(hit.localIntersectionPoint);
     const auto nearest = std::min_element(positions->begin(), positions->end(),
                                           [&](const osg::Vec3& a, const osg::Vec3& b)
                                           { return (a - point).length2() < (b - point).length2(); });
-    return pick(hit.nodePath, posed, {{static_cast<std::size_t>(nearest - positions->begin()), 1.0}});
+    return withJoint(*picked, {{static_cast<std::size_t>(nearest - positions->begin()), 1.0}});
 }
 
 } // namespace osgGpuAnimation

@@ -31,7 +31,8 @@ struct PickedJoint
 /// The joint with the largest sum of weights at the corners of the hit triangle, each multiplied by the corner's share
 /// in the hit point. Empty: the hit is in no character or crowd, or no joint moves the vertices.
 std::optional<PickedJoint> jointOf(const osgUtil::LineSegmentIntersector::Intersection& hit);
-/// The same by the vertex nearest to localIntersectionPoint, because polytope hits name no corners.
+/// The same by the vertex nearest to localIntersectionPoint, because polytope hits name no corners. Call it before the
+/// pose changes.
 std::optional<PickedJoint> jointOf(const osgUtil::PolytopeIntersector::Intersection& hit);
 
 } // namespace osgGpuAnimation

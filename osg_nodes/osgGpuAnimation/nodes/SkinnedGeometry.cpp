@@ -6,9 +6,12 @@
 #include <osgGpuAnimation/nodes/frame/InstancedDraw.h>
 #include <osgGpuAnimation/nodes/frame/PaletteBinding.h>
 #include <osgGpuAnimation/nodes/lod/LodLevels.h>
+#include <osgGpuAnimation/nodes/mesh/MeshVisits.h>
 #include <osgGpuAnimation/nodes/mesh/MorphDeltas.h>
 
 #include <layout.glsl>
+
+#include <glm/geometric.hpp>
 
 #include <osg/NodeVisitor>
 #include <osg/Notify>
@@ -96,13 +99,16 @@ const osg::TextureBuffer* SkinnedGeometry::getMorphDeltas() const
 void SkinnedGeometry::accept(osg::NodeVisitor& visitor)
 {
     if (!visitor.validNodeMask(*this)) return;
-    if (visitor.getVisitorType() == osg::NodeVisitor::INTERSECTION_VISITOR)
+    const bool isIntersection = visitor.getVisitorType() == osg::NodeVisitor::INTERSECTION_VISITOR;
+    if (const bool isWriter = isFileWriter(visitor); isWriter || isIntersection)
     {
         if (const PosedMeshSource* source = posedMeshSource(visitor))
-            return source->getPosedMesh(*this)->accept(visitor);
+            return visitPosed(visitor, *this, *source->getPosedMesh(*this, isWriter));
     }
-    std::optional<BoxNearFar> boxes;
     osgUtil::CullVisitor* cullVisitor = visitor.asCullVisitor();
+    const MeshDrawScope* scope = cullVisitor ? MeshDrawScope::current() : nullptr;
+    if (scope && posedMeshSource(visitor) == &scope->source()) return scope->draw(*this);
+    std::optional<BoxNearFar> boxes;
     osg::StateSet* colored = cullVisitor ? coloredState(getColors()) : nullptr;
     if (cullVisitor) boxes.emplace(*cullVisitor);
     if (colored) cullVisitor->pushStateSet(colored);
@@ -195,7 +201,7 @@ void SkinnedGeometry::computePositions(const std::vector<AffineMatrix>& palette,
     outPositions.reserve(vertices->size());
     for (std::size_t vertex = 0; vertex < vertices->size(); ++vertex)
     {
-        const glm::dvec4 position(morphed((*vertices)[vertex], vertex, palette), 1.0);
+        const glm::dvec4 position(morphed((*vertices)[vertex], &MorphTarget::positions, vertex, palette), 1.0);
         glm::dvec3 sum(0.0);
         forEachInfluence(vertex,
                          [&](std::size_t entry, float weight)
@@ -209,13 +215,38 @@ void SkinnedGeometry::computePositions(const std::vector<AffineMatrix>& palette,
     }
 }
 
-glm::dvec3 SkinnedGeometry::morphed(const osg::Vec3& position, std::size_t vertex,
-                                    const std::vector<AffineMatrix>& palette) const
+void SkinnedGeometry::computeNormals(const std::vector<AffineMatrix>& palette,
+                                     std::vector<glm::dvec3>& outNormals) const
 {
-    glm::dvec3 sum(position.x(), position.y(), position.z());
+    outNormals.clear();
+    const auto* normals = dynamic_cast<const osg::Vec3Array*>(getNormalArray());
+    if (!normals || normals->size() < getVertexCount()) return;
+    outNormals.reserve(normals->size());
+    for (std::size_t vertex = 0; vertex < getVertexCount(); ++vertex)
+    {
+        glm::dvec3 rows[3] = {};
+        forEachInfluence(vertex,
+                         [&](std::size_t entry, float weight)
+                         {
+                             for (int row = 0; row < 3 && entry < palette.size(); ++row)
+                                 rows[row] += double(weight) * glm::dvec3(palette[entry].rows[std::size_t(row)]);
+                         });
+        const glm::dvec3 normal = morphed((*normals)[vertex], &MorphTarget::normals, vertex, palette);
+        const glm::dvec3 cofactor = glm::cross(rows[1], rows[2]);
+        const glm::dvec3 turned(glm::dot(cofactor, normal), glm::dot(glm::cross(rows[2], rows[0]), normal),
+                                glm::dot(glm::cross(rows[0], rows[1]), normal));
+        const double length = glm::dot(rows[0], cofactor) < 0.0 ? -glm::length(turned) : glm::length(turned);
+        outNormals.push_back(length != 0.0 ? turned / length : normal);
+    }
+}
+
+glm::dvec3 SkinnedGeometry::morphed(const osg::Vec3& bind, osg::ref_ptr<osg::Vec3Array> MorphTarget::*deltasOf,
+                                    std::size_t vertex, const std::vector<AffineMatrix>& palette) const
+{
+    glm::dvec3 sum(bind.x(), bind.y(), bind.z());
     for (std::size_t target = 0; target < _morphTargets.size(); ++target)
     {
-        const osg::Vec3Array* deltas = _morphTargets[target].positions.get();
+        const osg::Vec3Array* deltas = (_morphTargets[target].*deltasOf).get();
         const std::size_t entry = static_cast<std::size_t>(_morphEntry) + target / MorphWeights::weightsPerBlock;
         if (!deltas || vertex >= deltas->size() || entry >= palette.size()) continue;
         const std::size_t place = target % MorphWeights::weightsPerBlock;

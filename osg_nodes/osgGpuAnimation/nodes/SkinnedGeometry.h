@@ -24,13 +24,14 @@ class SkinnedGeometry;
 struct MorphDeltas;
 struct PalettePlace;
 
-/// A node above SkinnedGeometry that has a present pose. Intersection visitors that traverse the node test its posed
+/// A node above SkinnedGeometry that has a present pose. Intersectors and writers of other file formats meet its posed
 /// meshes in place of the meshes below it.
 class PosedMeshSource
 {
 public:
-    /// The mesh in the present pose, in the node's own space.
-    virtual osg::ref_ptr<osg::Geometry> getPosedMesh(const SkinnedGeometry& mesh) const = 0;
+    /// The mesh in the present pose, in the node's own space. withNormals: with normals and colours, if the mesh has
+    /// them.
+    virtual osg::ref_ptr<osg::Geometry> getPosedMesh(const SkinnedGeometry& mesh, bool withNormals) const = 0;
 
 protected:
     ~PosedMeshSource() = default;
@@ -58,7 +59,8 @@ public:
     META_Object(osgGpuAnimation, SkinnedGeometry)
     /// Visits the mesh as a Drawable, not as a Geometry: visitors that merge geometries or reorder and transform
     /// vertices (the Optimizer) would separate vertices from palette entries and morph targets. Below a
-    /// PosedMeshSource, intersection visitors visit the posed mesh instead.
+    /// PosedMeshSource, intersectors test the posed mesh, but their hits name this drawable. Writers of other file
+    /// formats visit the posed mesh instead.
     void accept(osg::NodeVisitor& visitor) override;
     /// Adds the visible mesh to the visitor's render bin. toEye: from the space of the instances' placements to the
     /// eye. depth: distance from the eye, for sorting.
@@ -122,6 +124,8 @@ public:
     /// The CPU twin of skin.glsl, in double precision: computes the vertex positions in the character's own space.
     /// palette: the set's paletteSize() entries of one instance. outPositions: one per vertex.
     void computePositions(const std::vector<AffineMatrix>& palette, std::vector<glm::dvec3>& outPositions) const;
+    /// The same for unit normals; empty if the mesh has no normal per vertex.
+    void computeNormals(const std::vector<AffineMatrix>& palette, std::vector<glm::dvec3>& outNormals) const;
 
     /// Sets the palette's uniforms in the applied program and draws all instances of the PaletteBinding.
     void drawImplementation(osg::RenderInfo& renderInfo) const override;
@@ -143,7 +147,8 @@ private:
     void withVertexArrays(osg::RenderInfo& renderInfo, Draw draw) const;
     void drawPrimitives(osg::State& state, int count, int level) const;
     void bindPalette(osg::State& state, const PalettePlace& place) const;
-    glm::dvec3 morphed(const osg::Vec3& position, std::size_t vertex, const std::vector<AffineMatrix>& palette) const;
+    glm::dvec3 morphed(const osg::Vec3& bind, osg::ref_ptr<osg::Vec3Array> MorphTarget::*deltasOf, std::size_t vertex,
+                       const std::vector<AffineMatrix>& palette) const;
 
     int _influences = 1;  ///< the largest number per vertex
     int _rigidEntry = -1; ///< the entry that moves all vertices; -1: influences are per vertex

@@ -9,6 +9,7 @@
 #include <osgUtil/CullVisitor>
 
 #include <functional>
+#include <optional>
 
 namespace osgGpuAnimation
 {
@@ -49,6 +50,13 @@ private:
 
 /// True if POSE_DEPTH_ONLY is on in the present state.
 bool isDepthPass(osg::State& state);
+
+/// The simulation time, if an update traversal visits.
+inline std::optional<double> updateTimeOf(const osg::NodeVisitor& visitor)
+{
+    const bool isUpdate = visitor.getVisitorType() == osg::NodeVisitor::UPDATE_VISITOR && visitor.getFrameStamp();
+    return isUpdate ? std::optional(visitor.getFrameStamp()->getSimulationTime()) : std::nullopt;
+}
 
 /// For the traverse() of nodes whose vertices must not be transformed. The Optimizer's visitor that flattens static
 /// transforms and duplicates shared subgraphs replaces the transforms above by groups and applies their matrices to the

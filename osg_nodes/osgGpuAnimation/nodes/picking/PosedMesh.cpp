@@ -11,21 +11,33 @@
 namespace osgGpuAnimation
 {
 
-PosedMesh::PosedMesh(const SkinnedGeometry& mesh, osg::Vec3Array* positions, std::optional<std::uint64_t> instance)
-    : _mesh(&mesh), _instance(instance)
+namespace
 {
-    setUseDisplayList(false);
-    setUseVertexBufferObjects(false);
-    setName(mesh.getName());
-    setVertexArray(positions);
-    setTexCoordArrayList(mesh.getTexCoordArrayList());
-    setPrimitiveSetList(mesh.getPrimitiveSetList());
-    // Intersectors look up textures in the state and do not change it.
-    setStateSet(const_cast<osg::StateSet*>(mesh.getStateSet()));
+
+osg::Vec3Array* toArray(const std::vector<glm::dvec3>& vectors)
+{
+    auto* array = new osg::Vec3Array;
+    array->reserve(static_cast<unsigned int>(vectors.size()));
+    for (const glm::dvec3& vector : vectors)
+        array->push_back(osg::Vec3(vector.x, vector.y, vector.z));
+    return array;
 }
 
-osg::ref_ptr<PosedMesh> PosedMeshes::of(const SkinnedGeometry& mesh, const std::shared_ptr<const AnimationSet>& set,
-                                        const PoseInstruction& instruction, const AffineMatrix& rootToModel)
+/// OSG's writer of .ac crashes on a texture without coordinates.
+osg::StateSet* withoutTextures(const osg::StateSet& state)
+{
+    auto* result = new osg::StateSet;
+    for (const auto& [type, attribute] : state.getAttributeList())
+        result->setAttribute(attribute.first, attribute.second);
+    result->getModeList() = state.getModeList();
+    return result;
+}
+
+} // namespace
+
+osg::ref_ptr<osg::Geometry> PosedMeshes::of(const SkinnedGeometry& mesh, const std::shared_ptr<const AnimationSet>& set,
+                                            const PoseInstruction& instruction, const AffineMatrix& rootToModel,
+                                            bool withNormals)
 {
     const std::lock_guard<std::mutex> lock(_mutex);
     if (!holds(set, instruction, rootToModel))
@@ -42,8 +54,9 @@ osg::ref_ptr<PosedMesh> PosedMeshes::of(const SkinnedGeometry& mesh, const std::
     }
     Posed& posed = _meshes[&mesh];
     const osg::Array* bind = mesh.getVertexArray();
-    if (!posed.mesh || posed.bind != bind || (bind && posed.modifiedCount != bind->getModifiedCount()))
-        pose(mesh, posed);
+    const unsigned int modifiedCount = bind ? bind->getModifiedCount() : 0;
+    if (!posed.mesh || posed.bind != bind || posed.modifiedCount != modifiedCount || (withNormals && !posed.hasNormals))
+        posed = {&mesh, pose(mesh, withNormals), bind, modifiedCount, withNormals};
     return posed.mesh;
 }
 
@@ -59,17 +72,28 @@ bool PosedMeshes::holds(const std::shared_ptr<const AnimationSet>& set, const Po
            std::memcmp(&_rootToModel, &rootToModel, sizeof(AffineMatrix)) == 0;
 }
 
-void PosedMeshes::pose(const SkinnedGeometry& mesh, Posed& posed) const
+osg::ref_ptr<osg::Geometry> PosedMeshes::pose(const SkinnedGeometry& mesh, bool withNormals) const
 {
+    const osg::ref_ptr<osg::Geometry> posed = new osg::Geometry;
+    posed->setUseDisplayList(false);
+    posed->setUseVertexBufferObjects(false);
+    posed->setName(mesh.getName());
     std::vector<glm::dvec3> computed;
     mesh.computePositions(_palette, computed);
-    osg::ref_ptr<osg::Vec3Array> positions = new osg::Vec3Array;
-    positions->reserve(computed.size());
-    for (const glm::dvec3& position : computed)
-        positions->push_back(osg::Vec3(position.x, position.y, position.z));
-    posed.mesh = new PosedMesh(mesh, positions);
-    posed.bind = mesh.getVertexArray();
-    posed.modifiedCount = posed.bind ? posed.bind->getModifiedCount() : 0;
+    posed->setVertexArray(toArray(computed));
+    if (withNormals)
+    {
+        mesh.computeNormals(_palette, computed);
+        if (!computed.empty()) posed->setNormalArray(toArray(computed), osg::Array::BIND_PER_VERTEX);
+        posed->setColorArray(const_cast<osg::Array*>(mesh.getColorArray()));
+    }
+    posed->setTexCoordArrayList(mesh.getTexCoordArrayList());
+    posed->setPrimitiveSetList(mesh.getPrimitiveSetList());
+    // Visitors look up textures in the state and do not change it.
+    posed->setStateSet(const_cast<osg::StateSet*>(mesh.getStateSet()));
+    if (withNormals && posed->getStateSet() && !posed->getTexCoordArray(0))
+        posed->setStateSet(withoutTextures(*posed->getStateSet()));
+    return posed;
 }
 
 } // namespace osgGpuAnimation

@@ -10,6 +10,8 @@
 
 #include <osgGpuAnimation/nodes/CharacterKeys.h>
 
+#include <osgDB/FileNameUtils>
+
 #include <algorithm>
 
 namespace osgGpuAnimation::gltf
@@ -44,9 +46,10 @@ Result<int> chooseClip(const ImportedModel& imported, const ImportOptions& optio
 class Importer
 {
 public:
-    Importer(const tinygltf::Model& model, const ImportOptions& options, ImportedModel& result)
-        : _model(model), _options(options), _result(result), _report(result.messages), _budget(options.maxDecodedBytes),
-          _textures(model, _report)
+    Importer(const tinygltf::Model& model, const std::string& fileName, const ImportOptions& options,
+             ImportedModel& result)
+        : _model(model), _fileName(osgDB::getStrippedName(fileName)), _options(options), _result(result),
+          _report(result.messages), _budget(options.maxDecodedBytes), _textures(model, _report)
     {
     }
 
@@ -61,6 +64,7 @@ private:
     Result<bool> play(int clip);
 
     const tinygltf::Model& _model;
+    const std::string _fileName; ///< without folder and extension
     const ImportOptions& _options;
     ImportedModel& _result;
     Report _report;
@@ -98,6 +102,7 @@ void Importer::makeGraph(const NodeTree& tree, const Joints& joints, const Morph
     if (_result.set)
     {
         _result.character = new AnimatedCharacter(_result.set);
+        _result.character->setName(_fileName.empty() ? _result.root->getName() : _fileName);
         _result.root->addChild(_result.character);
     }
     Materials materials(_model, _textures);
@@ -172,7 +177,7 @@ Result<ImportedModel> importModel(const std::string& bytes, const std::string& f
     ImportedModel result;
     const Result<tinygltf::Model> model = loadDocument(bytes, fileName, options, result.messages);
     if (!model) return model.error();
-    const Result<bool> imported = Importer(model.value(), options, result).run();
+    const Result<bool> imported = Importer(model.value(), fileName, options, result).run();
     if (!imported) return imported.error();
     return result;
 }

@@ -81,9 +81,8 @@ osgDB::ReaderWriter::ReadResult ReaderWriterGltf::readNode(std::istream& stream,
         if (!bytes) return ReadResult(bytes.error().message);
         // A stream has no folder; the first database path of the options is the folder of its external files.
         const bool hasFolder = options && !options->getDatabasePathList().empty();
-        return import(bytes.value(),
-                      hasFolder ? osgDB::concatPaths(options->getDatabasePathList().front(), "stream") : "", options,
-                      importOptions.value());
+        return import(bytes.value(), hasFolder ? osgDB::concatPaths(options->getDatabasePathList().front(), "") : "",
+                      options, importOptions.value());
     }
     catch (const std::bad_alloc&)
     {

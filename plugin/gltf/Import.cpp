@@ -10,6 +10,8 @@
 
 #include <osgGpuAnimation/nodes/CharacterKeys.h>
 
+#include <osgDB/FileNameUtils>
+
 #include <algorithm>
 
 namespace osgGpuAnimation::gltf
@@ -44,9 +46,10 @@ Result<int> chooseClip(const ImportedModel& imported, const ImportOptions& optio
 class Importer
 {
 public:
-    Importer(const tinygltf::Model& model, const ImportOptions& options, ImportedModel& result)
-        : _model(model), _options(options), _result(result), _report(result.messages), _budget(options.maxDecodedBytes),
-          _textures(model, _report)
+    Importer(const tinygltf::Model& model, const std::string& fileName, const ImportOptions& options,
+             ImportedModel& result)
+        : _model(model), _fileName(osgDB::getStrippedName(fileName)), _options(options), _result(result),
+          _report(result.messages), _budget(options.maxDecodedBytes), _textures(model, _report)
     {
     }
 
@@ -61,6 +64,7 @@ private:
     Result<bool> play(int clip);
 
     const tinygltf::Model& _model;
+    const std::string _fileName; ///< without folder and extension
     const ImportOptions& _options;
     ImportedModel& _result;
     Report _report;
@@ -93,6 +97,8 @@ void Importer::makeGraph(const NodeTree& tree, const Joints& joints, const Morph
 {
     // glTF is +Y up, OSG is +Z up. No other code of the import converts between them. The numbers are exact: the sine
     // and cosine of a rotation by pi / 2 are not.
+    const std::string sceneName =
+        tree.scene >= 0 ? _model.scenes[static_cast<std::size_t>(tree.scene)].name : std::string();
     if (!_options.noRotation) _result.fileToNode.set(1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1);
     osg::ref_ptr<osg::MatrixTransform> still = new osg::MatrixTransform(_result.fileToNode);
     _result.root = still;
@@ -100,10 +106,11 @@ void Importer::makeGraph(const NodeTree& tree, const Joints& joints, const Morph
     {
         _result.character = new AnimatedCharacter(_result.set);
         static_cast<void>(_result.character->setFileToNode(_result.fileToNode));
+        _result.character->setName(_fileName.empty() ? sceneName : _fileName);
         _result.root = new osg::Group;
         _result.root->addChild(_result.character);
     }
-    if (tree.scene >= 0) _result.root->setName(_model.scenes[static_cast<std::size_t>(tree.scene)].name);
+    _result.root->setName(sceneName);
     Materials materials(_model, _textures);
     Meshes meshes(_model, _budget, _report);
     Drawables drawables(_model, _result.set, meshes, materials, _budget, _report);
@@ -177,7 +184,7 @@ Result<ImportedModel> importModel(const std::string& bytes, const std::string& f
     ImportedModel result;
     const Result<tinygltf::Model> model = loadDocument(bytes, fileName, options, result.messages);
     if (!model) return model.error();
-    const Result<bool> imported = Importer(model.value(), options, result).run();
+    const Result<bool> imported = Importer(model.value(), fileName, options, result).run();
     if (!imported) return imported.error();
     return result;
 }

@@ -21,9 +21,11 @@ namespace osgGpuAnimation::gltf
 /// The result of an import.
 struct ImportedModel
 {
-    osg::Matrixd fileToNode;                   ///< from +Y up to +Z up (identity with noRotation)
-    osg::ref_ptr<osg::Group> root;             ///< in OSG's axes
-    osg::ref_ptr<AnimatedCharacter> character; ///< below root; null where nothing in the file can move
+    osg::Matrixd fileToNode;       ///< from +Y up to +Z up (identity with noRotation)
+    osg::ref_ptr<osg::Group> root; ///< in OSG's axes
+    /// Below root; null where nothing in the file can move. Its name is the file's without folder and extension, or
+    /// the scene's for streams.
+    osg::ref_ptr<AnimatedCharacter> character;
     std::shared_ptr<const AnimationSet> set;   ///< the character's; null without a character
     std::vector<ImportedPrimitive> primitives; ///< by node, then primitive
 

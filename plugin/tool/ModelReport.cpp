@@ -8,6 +8,7 @@
 #include <osg/Texture>
 
 #include <algorithm>
+#include <cmath>
 #include <iomanip>
 #include <set>
 #include <sstream>
@@ -65,14 +66,40 @@ private:
     std::set<const osg::Object*> _seen;
 };
 
+/// [[x, y, z], [x, y, z]], or null for an invalid box.
+ordered_json reportBox(const osg::BoundingBox& box)
+{
+    if (!box.valid()) return nullptr;
+    return {{box.xMin(), box.yMin(), box.zMin()}, {box.xMax(), box.yMax(), box.zMax()}};
+}
+
+/// The rest pose of the character and all that stands still, in the axes of the file.
+osg::BoundingBox restBounds(const gltf::ImportedModel& model)
+{
+    osg::BoundingBox bounds;
+    if (model.character) bounds = model.character->getClipBounds(-1);
+    for (const gltf::ImportedPrimitive& primitive : model.primitives)
+    {
+        if (dynamic_cast<const SkinnedGeometry*>(primitive.geometry.get())) continue;
+        const osg::BoundingBox& box = primitive.geometry->getBoundingBox();
+        for (unsigned int corner = 0; box.valid() && corner < 8; ++corner)
+            bounds.expandBy(box.corner(corner) * primitive.toModel);
+    }
+    return bounds;
+}
+
 ordered_json reportJoints(const AnimationSet* set)
 {
-    ordered_json joints = {{"count", 0}, {"depth", 0}, {"roots", ordered_json::array()}};
+    ordered_json joints = {
+        {"count", 0}, {"depth", 0}, {"roots", ordered_json::array()}, {"list", ordered_json::array()}};
     if (!set) return joints;
     joints["count"] = set->skeleton().jointCount();
     joints["depth"] = set->skeleton().jointCount() > 0 ? set->skeleton().levelCount() : 0;
     for (const Joint& joint : set->skeleton().joints())
+    {
         if (joint.parent < 0) joints["roots"].push_back(joint.name);
+        joints["list"].push_back({{"name", joint.name}, {"parent", joint.parent}});
+    }
     return joints;
 }
 
@@ -94,7 +121,8 @@ ordered_json reportClips(const gltf::ImportedModel& model)
                          {"name", clip.name()},
                          {"seconds", clip.duration()},
                          {"keyframes", clip.keyframeCount()},
-                         {"form", clip.form() == Clip::Form::Spline ? "spline" : "linear"}});
+                         {"form", clip.form() == Clip::Form::Spline ? "spline" : "linear"},
+                         {"bounds", reportBox(model.character->getClipBounds(static_cast<int>(c)))}});
     }
     return clips;
 }
@@ -183,6 +211,50 @@ std::string listed(const ordered_json& names)
     return text.empty() ? "none" : text;
 }
 
+/// One line a joint, indented below its parent. Joints are stored parents first.
+std::string jointLines(const ordered_json& joints)
+{
+    std::vector<std::vector<std::size_t>> children(joints.size() + 1); // by parent + 1
+    for (std::size_t joint = 0; joint < joints.size(); ++joint)
+        children[static_cast<std::size_t>(joints[joint]["parent"].get<int>() + 1)].push_back(joint);
+    std::string text;
+    std::vector<std::pair<std::size_t, std::size_t>> open; // joint and depth, the next one last
+    const auto add = [&](std::size_t parent, std::size_t depth)
+    {
+        for (auto child = children[parent].rbegin(); child != children[parent].rend(); ++child)
+            open.emplace_back(*child, depth);
+    };
+    add(0, 1);
+    while (!open.empty())
+    {
+        const auto [joint, depth] = open.back();
+        open.pop_back();
+        text += std::string(2 * depth, ' ') + nameOr(joints[joint]["name"]) + "\n";
+        add(joint + 1, depth + 1);
+    }
+    return text;
+}
+
+/// Coordinates below a thousandth of the greatest one are 0 for people.
+std::string boundsText(const ordered_json& bounds)
+{
+    if (bounds.is_null()) return "none";
+    double greatest = 0.0;
+    for (const ordered_json& corner : bounds)
+        for (const double coordinate : corner)
+            greatest = std::max(greatest, std::abs(coordinate));
+    std::string text;
+    for (const ordered_json& corner : bounds)
+    {
+        std::string coordinates;
+        for (const double coordinate : corner)
+            coordinates +=
+                (coordinates.empty() ? "" : ", ") + rounded(std::abs(coordinate) < 1e-3 * greatest ? 0.0 : coordinate);
+        text += (text.empty() ? "(" : " to (") + coordinates + ")";
+    }
+    return text;
+}
+
 std::string clipLines(const ordered_json& clips)
 {
     std::ostringstream out;
@@ -191,7 +263,8 @@ std::string clipLines(const ordered_json& clips)
         out << "  " << std::right << std::setw(3) << clip["index"].get<int>() << "  " << std::left << std::setw(32)
             << clip["name"].get<std::string>() << std::right << std::fixed << std::setprecision(3) << std::setw(9)
             << clip["seconds"].get<double>() << " s" << std::setw(7) << clip["keyframes"].get<std::size_t>()
-            << " keyframes" << (clip["form"] == "spline" ? ", spline" : "") << "\n";
+            << " keyframes" << (clip["form"] == "spline" ? ", spline" : "") << ", bounds " << boundsText(clip["bounds"])
+            << "\n";
     }
     return out.str();
 }
@@ -210,6 +283,7 @@ ordered_json reportModel(const gltf::ImportedModel& model, const std::string& fi
             {"joints", reportJoints(model.set.get())},
             {"skins", reportSkins(model.set.get())},
             {"paletteEntries", model.set ? model.set->paletteSize() : 0},
+            {"bounds", reportBox(restBounds(model))},
             {"clips", reportClips(model)},
             {"keyframes", reportKeyframes(model)},
             {"meshes", reportMeshes(model)},
@@ -235,10 +309,12 @@ std::string reportText(const ordered_json& report)
 
     std::string text = line("file", report["file"].get<std::string>());
     text += line("generator", report["generator"].get<std::string>());
-    text += line("joints",
-                 number(joints["count"]) + ", " + number(joints["depth"]) + " deep; roots: " + listed(joints["roots"]));
+    text += line("joints", number(joints["count"]) + ", " + number(joints["depth"]) +
+                               " deep; roots: " + listed(joints["roots"])) +
+            jointLines(joints["list"]);
     text += line("skins", number(report["skins"].size()) + (skins.empty() ? "" : ": " + skins));
     text += line("palette entries", number(report["paletteEntries"]));
+    text += line("bounds", boundsText(report["bounds"]) + " in the rest pose");
     text += line("clips", number(report["clips"].size())) + clipLines(report["clips"]);
     const ordered_json& keyframes = report["keyframes"];
     text += line("keyframes", number(keyframes["count"]) + ", " + number(keyframes["bytes"]) +

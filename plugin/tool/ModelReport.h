@@ -13,10 +13,11 @@ namespace osgGpuAnimation::tool
 /// The content of an imported file and its memory, as JSON or as text made from that JSON.
 ///
 ///     file, generator, scene
-///     joints       count, depth (levels of the hierarchy), roots (names)
+///     joints       count, depth (levels of the hierarchy), roots (names), list (name, parent: an index or -1)
 ///     skins        name, joints                         a skin
 ///     paletteEntries
-///     clips        index (the file's), name, seconds, keyframes, form (linear or spline)
+///     bounds       of the rest pose in the file's axes: [least corner, greatest corner], null if nothing is drawn
+///     clips        index (the file's), name, seconds, keyframes, form (linear or spline), bounds (of what moves)
 ///     meshes       count, primitives, vertices, skinned, rigid, still (primitives each), morphTargets
 ///     materials, extensions                             names
 ///     gpuBytes     animation, meshes, textures, total   in GPU buffers, without the driver's own memory

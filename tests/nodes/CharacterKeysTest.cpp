@@ -5,7 +5,9 @@
 #include <osgGpuAnimation/nodes/CharacterKeys.h>
 
 #include <gtest/gtest.h>
+#include <osg/ApplicationUsage>
 #include <osgGA/EventVisitor>
+#include <osgViewer/Viewer>
 
 #include <iostream>
 #include <sstream>
@@ -38,13 +40,13 @@ protected:
     }
     void TearDown() override { osg::setNotifyHandler(new osg::StandardNotifyHandler); }
 
-    void send(osgGA::GUIEventAdapter::EventType type, int key = 0)
+    void send(osgGA::GUIEventAdapter::EventType type, int key = 0, osgGA::GUIActionAdapter* viewer = nullptr)
     {
         osg::ref_ptr<osgGA::GUIEventAdapter> event = new osgGA::GUIEventAdapter;
         event->setEventType(type);
         event->setKey(key);
         osg::ref_ptr<osgGA::EventVisitor> visitor = new osgGA::EventVisitor;
-        visitor->setActionAdapter(&actions);
+        visitor->setActionAdapter(viewer ? viewer : &actions);
         visitor->addEvent(event);
         scene->accept(*visitor);
     }
@@ -69,6 +71,32 @@ TEST_F(CharacterKeysTest, theKeysAreToldAtTheFirstFrameAndOnlyThenAndAreNoNotice
     EXPECT_EQ(told.str(), "");
     EXPECT_EQ(log->text, "");
     std::cout.rdbuf(output);
+}
+
+TEST_F(CharacterKeysTest, theViewersHelpListsTheKeysOnce)
+{
+    osg::ref_ptr<AnimatedCharacter> second = makeTestCharacter();
+    second->addEventCallback(new CharacterKeys);
+    scene->addChild(second);
+    osgViewer::Viewer viewer;
+    const auto countOf = [&viewer](const std::string& key)
+    {
+        osg::ref_ptr<osg::ApplicationUsage> usage = new osg::ApplicationUsage;
+        viewer.getUsage(*usage);
+        return usage->getKeyboardMouseBindings().count(key);
+    };
+    EXPECT_EQ(countOf("j"), 0u);
+    for (int frame = 0; frame < 3; ++frame)
+        send(osgGA::GUIEventAdapter::FRAME, 0, &viewer);
+    EXPECT_EQ(countOf("j"), 1u);
+    EXPECT_EQ(viewer.getEventHandlers().size(), 1u) << "one for all characters";
+    // The handler of the viewer has no character: a key is heard once, through the scene.
+    osg::ref_ptr<osgGA::GUIEventAdapter> event = new osgGA::GUIEventAdapter;
+    event->setEventType(osgGA::GUIEventAdapter::KEYDOWN);
+    event->setKey('n');
+    auto& keys = dynamic_cast<CharacterKeys&>(*viewer.getEventHandlers().front());
+    EXPECT_FALSE(keys.handle(*event, viewer, nullptr, nullptr));
+    EXPECT_EQ(controller.clip(), 0);
 }
 
 TEST_F(CharacterKeysTest, nextAndPreviousClipFade)

@@ -54,8 +54,9 @@ TEST(StateGraphFileTest, FaultsAreNamed)
         const char* message;
     };
     const Case cases[] = {
-        {"", "parse error"},
-        {"{", "parse error"},
+        {"", "JSON syntax: parse error at line 1, column 1"},
+        {"{", "JSON syntax: parse error at line 1, column 2"},
+        {R"({"states": {"a": {"clip": "Walk", "speed": 1e999}}})", "JSON syntax: "},
         {"[]", "the file: expected an object, found array"},
         {"{}", "a state graph without states"},
         {R"({"states": []})", "states: expected an object, found array"},
@@ -85,6 +86,7 @@ TEST(StateGraphFileTest, FaultsAreNamed)
         const auto graph = parseStateGraph(*set, c.json);
         ASSERT_FALSE(graph) << c.json;
         EXPECT_NE(graph.error().message.find(c.message), std::string::npos) << graph.error().message;
+        EXPECT_EQ(graph.error().message.find("json.exception"), std::string::npos) << graph.error().message;
     }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/data/Accessor.h"
 
+#include "gltf/document/ValidateAccessors.h"
 #include "plugin/ModelBuilder.h"
 
 #include <gtest/gtest.h>
@@ -121,6 +122,52 @@ TEST(AccessorTest, ColumnsOfSmallMatricesArePadded)
     OneAccessor floats(TINYGLTF_TYPE_MAT3, TINYGLTF_COMPONENT_TYPE_FLOAT, 1, bytesOf({1, 2, 3, 4, 5, 6, 7, 8, 9}));
     EXPECT_EQ(elementBytes(floats.accessor()), 36u);
     EXPECT_EQ(readFloats(floats.model, 0), (std::vector<float>{1, 2, 3, 4, 5, 6, 7, 8, 9}));
+}
+
+TEST(AccessorTest, TheLastColumnOfAMatrixNeedsNoPadding)
+{
+    struct Case
+    {
+        const char* what;
+        int type;
+        int componentType;
+        std::size_t bytes[2]; ///< the fewest for one element and for two
+    };
+    const Case cases[] = {
+        {"MAT2 of bytes", TINYGLTF_TYPE_MAT2, TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE, {6, 14}},
+        {"MAT3 of bytes", TINYGLTF_TYPE_MAT3, TINYGLTF_COMPONENT_TYPE_BYTE, {11, 23}},
+        {"MAT4 of bytes", TINYGLTF_TYPE_MAT4, TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE, {16, 32}},
+        {"MAT2 of shorts", TINYGLTF_TYPE_MAT2, TINYGLTF_COMPONENT_TYPE_SHORT, {8, 16}},
+        {"MAT3 of shorts", TINYGLTF_TYPE_MAT3, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, {22, 46}},
+        {"MAT3 of floats", TINYGLTF_TYPE_MAT3, TINYGLTF_COMPONENT_TYPE_FLOAT, {36, 72}},
+    };
+    for (const Case& c : cases)
+        for (std::size_t count : {1u, 2u})
+        {
+            SCOPED_TRACE(c.what + std::string(", ") + std::to_string(count));
+            const auto refused = [&](std::size_t bytes, bool isSparse)
+            {
+                OneAccessor one(c.type, c.componentType, count, Bytes(isSparse ? 1000 : bytes));
+                if (isSparse)
+                {
+                    auto& sparse = one.accessor().sparse;
+                    sparse.isSparse = true;
+                    sparse.count = int(count);
+                    sparse.indices = {0, one.view({0, 1}), TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE};
+                    sparse.values = {one.view(Bytes(bytes)), 0};
+                }
+                MemoryBudget budget(1000);
+                return validateAccessors(one.model, 0, budget).has_value();
+            };
+            for (bool isSparse : {false, true})
+            {
+                EXPECT_FALSE(refused(c.bytes[count - 1], isSparse)) << isSparse;
+                EXPECT_TRUE(refused(c.bytes[count - 1] - 1, isSparse)) << isSparse;
+            }
+        }
+    OneAccessor two(TINYGLTF_TYPE_MAT2, TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE, 2,
+                    {1, 2, 0, 0, 3, 4, 0, 0, 5, 6, 0, 0, 7, 8});
+    EXPECT_EQ(readIntegers(two.model, 0), (std::vector<std::uint32_t>{1, 2, 3, 4, 5, 6, 7, 8}));
 }
 
 TEST(AccessorTest, WithoutBufferViewIsZero)

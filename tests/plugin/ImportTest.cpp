@@ -90,6 +90,20 @@ TEST(ImportTest, whatMovesIsTheCharactersAndTheRestIsPlain)
     EXPECT_EQ(model.nodeParents, (std::vector<int>{-1, 0, 1, 0}));
 }
 
+TEST(ImportTest, aCharacterIsNamedAfterItsFileAndWithoutOneAfterTheScene)
+{
+    ArmAndStone file;
+    file.model.scenes[0].name = "stage";
+    for (const auto& [fileName, name] : {std::pair("/models/old.Fox.glb", "old.Fox"), std::pair("Fox.glb", "Fox"),
+                                         std::pair("", "stage"), std::pair("/models/", "stage")})
+    {
+        const Result<ImportedModel> model = importModel(file.text(), fileName, {});
+        ASSERT_TRUE(model) << model.error().message;
+        EXPECT_EQ(model.value().character->getName(), name) << fileName;
+        EXPECT_EQ(model.value().root->getName(), "stage");
+    }
+}
+
 TEST(ImportTest, withoutSkinOrClipThereIsNoCharacter)
 {
     ModelBuilder file;

@@ -6,7 +6,12 @@
 
 #include <gtest/gtest.h>
 
+#include <osg/NodeVisitor>
+#include <osg/StateSet>
+
+#include <algorithm>
 #include <ctime>
+#include <set>
 #include <string>
 
 namespace osgGpuAnimation::gltf
@@ -148,6 +153,54 @@ TEST(ManyElementsTest, staySmallAndQuick)
             EXPECT_LT(peakMemory() - before, mostMebibytes);
         }
     }
+}
+
+// OSG removes a parent by linear search, so objects with many parents take quadratic time at their release.
+TEST(ManyElementsTest, noObjectHasManyParents)
+{
+    struct MostParents : osg::NodeVisitor
+    {
+        MostParents() : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN) {}
+        void apply(osg::Node& node) override
+        {
+            most = std::max(most, node.getNumParents());
+            if (const osg::StateSet* state = node.getStateSet())
+            {
+                stateSets.insert(state);
+                most = std::max(most, state->getNumParents());
+                for (const auto& attribute : state->getAttributeList())
+                    most = std::max(most, attribute.second.first->getNumParents());
+            }
+            traverse(node);
+        }
+        unsigned int most = 0;
+        std::set<const osg::StateSet*> stateSets;
+    };
+    for (bool isMoving : {false, true})
+        for (bool isOneMesh : {false, true})
+        {
+            SCOPED_TRACE(std::to_string(isMoving) + std::to_string(isOneMesh));
+            ModelBuilder file;
+            const int mesh = file.triangle();
+            const int node = file.node("many", -1, mesh);
+            if (isMoving)
+            {
+                file.animation("slide");
+                file.slide(node);
+            }
+            if (isOneMesh)
+                file.model.meshes[0].primitives.resize(10000, file.primitive(mesh));
+            else
+                for (int i = 0; i < 10000; ++i)
+                    file.node("", node, mesh);
+            const Result<ImportedModel> model = importModel(file.text(), "", {});
+            ASSERT_TRUE(model) << model.error().message;
+            EXPECT_GE(model.value().primitives.size(), 10000u);
+            MostParents visitor;
+            model.value().root->accept(visitor);
+            EXPECT_LE(visitor.most, 4096u);
+            EXPECT_LE(visitor.stateSets.size(), 3u) << "still shared: OSG sorts by them";
+        }
 }
 
 TEST(ManyElementsTest, dataUrisCountBeforeTheyAreDecoded)

@@ -47,6 +47,8 @@ TEST(MarkersTest, AFaultCostsTheMarkerWithAWarning)
         {R"({"markers":[{"time":0.5},{"time":0.5,"name":"good"}]})", "no text as its name"},
         {R"({"markers":[{"time":0.5,"name":7},{"time":0.5,"name":"good"}]})", "no text as its name"},
         {R"({"markers":[3,{"time":0.5,"name":"good"}]})", "markers[0]: no object"},
+        {R"({"markers":[null,{"time":0.5,"name":"good"}]})", "markers[0]: no object"},
+        {R"({"markers":[{"time":null,"name":"a"},{"time":0.5,"name":"good"}]})", "no number as its time"},
     };
     for (const auto& [extras, message] : faults)
     {

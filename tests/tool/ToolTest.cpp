@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <regex>
 #include <string>
@@ -34,6 +35,14 @@ protected:
     ScratchFolder folder;
     std::string flag = folder.write("flag.gltf", swingingFlag());
 };
+
+/// Bounds may be a little larger than the vertices need.
+void expectBounds(const json& found, const std::array<double, 6>& expected)
+{
+    ASSERT_EQ(found.size(), 2u) << found;
+    for (std::size_t i = 0; i < 6; ++i)
+        EXPECT_NEAR(found[i / 3][i % 3].get<double>(), expected[i], 1e-3) << found;
+}
 
 std::string joined(const Arguments& arguments)
 {
@@ -156,6 +165,9 @@ TEST_F(ToolTest, inspectSaysWhatIsInTheFile)
     EXPECT_EQ(report["joints"]["count"], 2);
     EXPECT_EQ(report["joints"]["depth"], 2);
     EXPECT_EQ(report["joints"]["roots"], json({"hinge"}));
+    EXPECT_EQ(report["joints"]["list"], json::parse(R"([{"name":"hinge","parent":-1},{"name":"flag","parent":0}])"));
+    expectBounds(report["bounds"], {-1, 0, 0, 1, 2, 0});
+    expectBounds(report["clips"][1]["bounds"], {-1, 0, 0, 1, 3, 0}); // Rise: 1 up
     EXPECT_EQ(report["skins"], json::array());
     EXPECT_EQ(report["paletteEntries"], 2);
     ASSERT_EQ(report["clips"].size(), 2u);
@@ -177,7 +189,9 @@ TEST_F(ToolTest, inspectSaysWhatIsInTheFile)
 
     const Process text = run({"inspect", "FLAG"});
     EXPECT_EQ(text.status, 0);
-    for (const char* word : {"hinge", "Swing", "2.000 s", "palette entries", "red", "bytes on the GPU"})
+    for (const char* word : {"\n  hinge\n    flag\n", "bounds           (-1, 0, 0) to (1, 2, 0) in the rest pose",
+                             "2 keyframes, bounds (-1, 0, 0) to (1, 3, 0)", "hinge", "Swing", "2.000 s",
+                             "palette entries", "red", "bytes on the GPU"})
         EXPECT_NE(text.out.find(word), std::string::npos) << word << " in\n" << text.out;
 }
 

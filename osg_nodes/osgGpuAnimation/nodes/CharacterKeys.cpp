@@ -9,6 +9,7 @@
 #include <osg/LineWidth>
 #include <osg/Material>
 #include <osg/Notify>
+#include <osgViewer/View>
 
 #include <glm/mat4x4.hpp>
 
@@ -188,11 +189,29 @@ bool CharacterKeys::handle(const osgGA::GUIEventAdapter& event, osgGA::GUIAction
 {
     auto* character = dynamic_cast<AnimatedCharacter*>(object);
     if (!character || event.getHandled()) return false;
-    if (event.getEventType() == osgGA::GUIEventAdapter::FRAME) tellKeysOnce();
+    if (event.getEventType() == osgGA::GUIEventAdapter::FRAME)
+    {
+        tellKeysOnce();
+        addToHelp(action);
+    }
     if (event.getEventType() != osgGA::GUIEventAdapter::KEYDOWN) return false;
     PoseStatistics::addLines(action);
     if (isFirstTime(event, *object) && press(event.getKey(), *character)) action.requestRedraw();
     return false;
+}
+
+// A viewer's help asks only the handlers in the viewer's own list. There, this object has no character and ignores
+// events.
+void CharacterKeys::addToHelp(osgGA::GUIActionAdapter& action)
+{
+    if (!action.asView() || _helped == action.asView()) return;
+    _helped = action.asView();
+    auto* view = dynamic_cast<osgViewer::View*>(_helped.get());
+    if (!view) return;
+    const auto& handlers = view->getEventHandlers();
+    const auto isKeys = [](const auto& handler)
+    { return dynamic_cast<const CharacterKeys*>(handler.get()) != nullptr; };
+    if (std::none_of(handlers.begin(), handlers.end(), isKeys)) view->addEventHandler(this);
 }
 
 // A character with several parents receives each event once per parent.

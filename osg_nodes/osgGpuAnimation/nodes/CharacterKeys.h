@@ -4,6 +4,8 @@
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
+#include <osg/observer_ptr>
+#include <osg/View>
 #include <osgGA/GUIEventHandler>
 
 #include <vector>
@@ -35,7 +37,8 @@ bool hasJointLines(const AnimatedCharacter& character);
 /// | j | shows the joints as lines over the mesh |
 ///
 /// The first frame of the first viewer prints the list of keys to standard output, once per process, unless OSG's
-/// notify level is below NOTICE. The effect of a key is reported at osg::NOTICE.
+/// notify level is below NOTICE. It also adds this object to the viewer's event handlers, so that the viewer's help
+/// (`h` in osgviewer) lists the keys. The effect of a key is reported at osg::NOTICE.
 ///
 /// Several characters may share one object: it keeps no data of theirs.
 class CharacterKeys : public osgGA::GUIEventHandler
@@ -65,10 +68,12 @@ protected:
     ~CharacterKeys() override = default;
 
 private:
+    void addToHelp(osgGA::GUIActionAdapter& action);
     bool isFirstTime(const osgGA::GUIEventAdapter& event, const osg::Object& character);
     void changeClip(AnimationController& controller, int step) const;
 
     double _fadeSeconds = 0.3;
+    osg::observer_ptr<osg::View> _helped;              ///< the last view that addToHelp() has seen
     osg::ref_ptr<const osgGA::GUIEventAdapter> _event; ///< the last event
     std::vector<const osg::Object*> _told;             ///< the characters that have handled _event
 };

@@ -198,7 +198,8 @@ Result<std::shared_ptr<const StateGraph>> parseStateGraph(const AnimationSet& se
     }
     catch (const nlohmann::json::exception& exception)
     {
-        return Error{exception.what()};
+        const std::string what = exception.what(); // [json.exception…] parse error …
+        return Error{"JSON syntax: " + what.substr(what.find("] ") + 2)};
     }
 }
 

@@ -214,6 +214,12 @@ std::size_t elementBytes(const tinygltf::Accessor& accessor)
     return layout.columns * layout.columnBytes;
 }
 
+std::size_t lastElementBytes(const tinygltf::Accessor& accessor)
+{
+    const Layout layout = layoutOf(accessor);
+    return elementBytes(accessor) - layout.columnBytes + layout.rows * componentBytes(accessor.componentType);
+}
+
 std::vector<double> readDoubles(const tinygltf::Model& model, int accessor)
 {
     return read<double>(model, accessor);

@@ -19,6 +19,8 @@ std::size_t componentCount(const tinygltf::Accessor& accessor);
 std::size_t componentBytes(int componentType);
 /// Bytes an element without stride; the columns of small matrices are padded to 4 bytes (section 3.6.2.4).
 std::size_t elementBytes(const tinygltf::Accessor& accessor);
+/// The same without the padding behind the last column, which the last element does not need.
+std::size_t lastElementBytes(const tinygltf::Accessor& accessor);
 
 /// accessor.count * componentCount() numbers, element after element, matrices column-major. Normalized integers become
 /// [0, 1] or [-1, 1] (section 3.6.2.2, computed in double); others their plain value.

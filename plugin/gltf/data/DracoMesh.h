@@ -39,7 +39,7 @@ public:
         const;
 
 private:
-    explicit DracoMesh(std::unique_ptr<draco::Mesh> mesh);
+    [[gnu::visibility("hidden")]] explicit DracoMesh(std::unique_ptr<draco::Mesh> mesh);
 
     std::unique_ptr<draco::Mesh> _mesh;
 };

@@ -22,7 +22,7 @@ struct Run
     int bufferView = -1;
     std::size_t byteOffset = 0;
     std::size_t count = 0;
-    std::size_t elementBytes = 0;
+    std::size_t elementBytes = 0; ///< without padding behind the element
     std::size_t stride = 0;
     std::size_t alignment = 1;
 };
@@ -126,15 +126,11 @@ std::optional<Error> validateSparse(const Model& model, const tinygltf::Accessor
     if (count > accessor.count)
         return fault(name + ".count", "at most " + std::to_string(accessor.count), std::to_string(count));
     const std::size_t indexBytes = componentBytes(sparse.indices.componentType);
-    const std::size_t bytes = elementBytes(accessor);
     const Run indices = {
         sparse.indices.bufferView, std::size_t(sparse.indices.byteOffset), count, indexBytes, indexBytes, indexBytes};
-    const Run values = {sparse.values.bufferView,
-                        std::size_t(sparse.values.byteOffset),
-                        count,
-                        bytes,
-                        bytes,
-                        componentBytes(accessor.componentType)};
+    const Run values = {
+        sparse.values.bufferView, std::size_t(sparse.values.byteOffset), count, lastElementBytes(accessor),
+        elementBytes(accessor),   componentBytes(accessor.componentType)};
     std::optional<Error> error = validateRun(model, indices, name + ".indices");
     if (!error) error = validateRun(model, values, name + ".values");
     if (!error) error = validateSparseIndices(model, indices, accessor.count, name + ".indices");
@@ -145,13 +141,12 @@ std::optional<Error> validateSparse(const Model& model, const tinygltf::Accessor
 
 std::optional<Error> validateBase(const Model& model, const tinygltf::Accessor& accessor, const std::string& name)
 {
-    const std::size_t bytes = elementBytes(accessor);
     const std::size_t byteStride = model.bufferViews[std::size_t(accessor.bufferView)].byteStride;
     const Run run = {accessor.bufferView,
                      accessor.byteOffset,
                      accessor.count,
-                     bytes,
-                     byteStride != 0 ? byteStride : bytes,
+                     lastElementBytes(accessor),
+                     byteStride != 0 ? byteStride : elementBytes(accessor),
                      componentBytes(accessor.componentType)};
     std::optional<Error> error = validateRun(model, run, name);
     if (!error && accessor.componentType == TINYGLTF_COMPONENT_TYPE_FLOAT) error = validateFloats(model, run, name);

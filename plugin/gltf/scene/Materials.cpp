@@ -85,9 +85,12 @@ Materials::Materials(const tinygltf::Model& model, Textures& textures) : _model(
 
 osg::StateSet* Materials::stateSet(const MaterialUse& use)
 {
-    const auto [place, isNew] = _stateSets.try_emplace(use);
-    if (isNew) place->second = make(use);
-    return place->second.get();
+    osg::ref_ptr<osg::StateSet>& state = _stateSets[use];
+    if (!state)
+        state = make(use);
+    else if (state->getNumParents() >= mostParents)
+        state = new osg::StateSet(*state, osg::CopyOp::SHALLOW_COPY);
+    return state;
 }
 
 osg::Vec4 Materials::baseColor(int material) const

@@ -33,7 +33,10 @@ struct MaterialUse
     bool operator<(const MaterialUse& other) const { return key() < other.key(); }
 };
 
-/// One osg::StateSet for each material and use of it, so that OSG can sort by it.
+/// OSG removes a parent by linear search. An object with this many parents is replaced by a shallow copy.
+constexpr unsigned int mostParents = 4096;
+
+/// One osg::StateSet for each material and use of it, so that OSG can sort by it; another one after mostParents.
 ///
 /// From glTF's material (2.0, section 3.9) come the base colour (factor and texture), emission, alpha mode, double
 /// sidedness, KHR_materials_unlit and KHR_materials_emissive_strength; metalness, roughness, normal, occlusion and

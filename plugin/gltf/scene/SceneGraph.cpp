@@ -60,7 +60,7 @@ private:
     std::vector<std::vector<osg::ref_ptr<osg::Geometry>>> _still; ///< by node: its plain geometries
     std::vector<double> _stillRadius;                             ///< by node: of its farthest vertex
     std::vector<osg::ref_ptr<osg::Group>> _groups;                ///< by node: null where nothing is drawn below
-    /// By geometry: the current one over the same arrays, with fewer than 4,096 parents.
+    /// By geometry: the current one over the same arrays, with fewer than mostParents.
     std::map<const osg::Geometry*, osg::ref_ptr<osg::Geometry>> _open;
     std::set<const osg::Geometry*> _inCharacter;
 };
@@ -148,12 +148,10 @@ void SceneGraphBuilder::addMesh(std::size_t node)
                            ": EXT_mesh_gpu_instancing of a moving mesh is not supported; drawn once");
 }
 
-/// OSG removes parents by linear search, so a new Geometry over the same arrays starts after 4,096 parents and replaces
-/// `geometry`.
+/// After mostParents, a new Geometry over the same arrays replaces `geometry`.
 void SceneGraphBuilder::addShared(osg::Group& place, osg::ref_ptr<osg::Geometry>& geometry)
 {
-    constexpr unsigned int manyParents = 4096;
-    if (geometry->getNumParents() >= manyParents) geometry = new osg::Geometry(*geometry, osg::CopyOp::SHALLOW_COPY);
+    if (geometry->getNumParents() >= mostParents) geometry = new osg::Geometry(*geometry, osg::CopyOp::SHALLOW_COPY);
     place.addChild(geometry);
 }
 

@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: MIT
+# Checks which symbols leave the programs and libraries below FOLDER, as NM lists them. The loader binds equal names of
+# two libraries to one of them, so another build of a third party's code in the process must not meet ours: no file
+# exports it, and only functions of the kit mention its types in their parameters (GLM's). A plugin exports osgdb_NAME.
+set(third_parties "8tinygltf|8nlohmann|3CLI|5draco|3glm|stbi|stb_")
+set(ours "^_ZN[KVRO]*15osgGpuAnimation")
+
+# Sets `result` to the symbols; brackets and semicolons would split a list.
+function(exported result file)
+    execute_process(COMMAND ${NM} --dynamic --defined-only --format=just-symbols ${ARGN} ${file}
+                    OUTPUT_VARIABLE symbols COMMAND_ERROR_IS_FATAL ANY)
+    string(STRIP "${symbols}" symbols)
+    string(REGEX REPLACE "[][;]" "|" symbols "${symbols}")
+    string(REPLACE "\n" ";" symbols "${symbols}")
+    set(${result} "${symbols}" PARENT_SCOPE)
+endfunction()
+
+file(GLOB_RECURSE files ${FOLDER}/*.so ${FOLDER}/*.so.*.* ${FOLDER}/bin/*)
+list(LENGTH files count)
+if(count LESS 8)
+    message(FATAL_ERROR "${count} programs and libraries in ${FOLDER}, where there should be 8 at least")
+endif()
+foreach(file IN LISTS files)
+    get_filename_component(name ${file} NAME)
+    exported(symbols ${file})
+    exported(readable_symbols ${file} --demangle)
+    set(faults "")
+    foreach(symbol readable IN ZIP_LISTS symbols readable_symbols)
+        string(REPLACE "3glm" "" without_glm "${symbol}")
+        if((name MATCHES "^osgdb_" AND NOT symbol MATCHES "^osgdb_[a-z]+$")
+           OR (symbol MATCHES "${third_parties}" AND NOT symbol MATCHES "${ours}")
+           OR without_glm MATCHES "${third_parties}")
+            string(APPEND faults "\n  ${readable}")
+        endif()
+    endforeach()
+    list(LENGTH symbols count)
+    message(STATUS "${name}: ${count} symbols")
+    if(faults)
+        message(SEND_ERROR "${name} exports:${faults}")
+    endif()
+endforeach()

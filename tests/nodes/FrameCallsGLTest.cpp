@@ -1,10 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "nodes/GlCallTrace.h"
+#include "support/RandomSet.h"
 #include "support/TestCharacter.h"
 #include "support/ViewerGLTest.h"
 
+#include <osgGpuAnimation/gpu/PosePipeline.h>
+#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+
 #include <osg/Geometry>
 #include <osg/Group>
+#include <osg/Texture>
+
+#include <algorithm>
 
 namespace osgGpuAnimation
 {
@@ -27,6 +34,36 @@ protected:
         return trace.calls();
     }
 
+    /// A character of eight levels.
+    static osg::ref_ptr<AnimatedCharacter> deepCharacter()
+    {
+        static const std::shared_ptr<const AnimationSet> set = makeRandomSet({});
+        osg::ref_ptr<AnimatedCharacter> character = new AnimatedCharacter(set);
+        osg::ref_ptr<SkinnedGeometry> square = makeTestSquare(1);
+        square->setRigidEntry(0);
+        character->addChild(square);
+        character->setCullingActive(false);
+        EXPECT_TRUE(character->getController().play(0));
+        return character;
+    }
+
+    /// Characters whose clips play, so that each frame evaluates them, and a crowd of the same set beside them.
+    static osg::ref_ptr<osg::Group> movingScene(bool hasCrowd)
+    {
+        osg::ref_ptr<osg::Group> group = characters(9);
+        for (unsigned int i = 0; i < group->getNumChildren(); ++i)
+            static_cast<AnimatedCharacter*>(group->getChild(i))->getController().setSpeed(0.1 * (i + 1));
+        group->addChild(deepCharacter());
+        if (!hasCrowd) return group;
+        osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*makeTestCharacter());
+        AnimationController controller(crowd->getSharedAnimationSet());
+        EXPECT_TRUE(controller.play("turn"));
+        for (int i = 0; i < 9; ++i)
+            EXPECT_TRUE(crowd->add(osg::Matrix::translate(0.2 * i, 0, 1), controller, {1, 0, 0, 1}));
+        group->addChild(crowd);
+        return group;
+    }
+
     static osg::ref_ptr<osg::Group> characters(int count)
     {
         osg::ref_ptr<osg::Group> group = new osg::Group;
@@ -39,8 +76,8 @@ protected:
 TEST_F(FrameCallsGLTest, nothingIsAskedOfTheGpuAndNothingReadBack)
 {
     std::map<std::string, int> calls = callsOfAFrame(characters(10));
-    const char* const allowed[] = {"glDrawArrays", "glDrawArraysInstanced", "glBeginTransformFeedback", "glBufferData",
-                                   "glBufferSubData"};
+    const char* const allowed[] = {"glDrawArrays",           "glDrawArraysInstanced", "glBeginTransformFeedback",
+                                   "glEndTransformFeedback", "glBufferData",          "glBufferSubData"};
     for (const char* name : allowed)
         calls.erase(name);
     for (const auto& [name, count] : calls)
@@ -58,6 +95,61 @@ TEST_F(FrameCallsGLTest, feedbackAndUploadsDoNotGrowWithTheCharacters)
         EXPECT_EQ(many["glBufferData"], one["glBufferData"]) << count;
         EXPECT_EQ(many["glBufferSubData"], one["glBufferSubData"]) << count;
     }
+}
+
+struct FeedbackCase
+{
+    const char* name;
+    PosePipeline::Form form;
+    std::size_t chunkSize;
+    bool hasCrowd; ///< with tints
+};
+
+const FeedbackCase feedbackCases[] = {
+    {"fused", PosePipeline::Form::Fused, PosePipeline::usualChunkSize, false},
+    {"fused, a crowd", PosePipeline::Form::Fused, PosePipeline::usualChunkSize, true},
+    {"fused, three chunks, a crowd", PosePipeline::Form::Fused, 4, true},
+    {"separate", PosePipeline::Form::Separate, PosePipeline::usualChunkSize, false},
+    {"separate, three chunks, a crowd", PosePipeline::Form::Separate, 4, true},
+};
+
+TEST_F(FrameCallsGLTest, noBufferThatFeedbackWritesHasAnotherBinding)
+{
+    PosePipeline::Options& options = PosePipeline::of(state())->options();
+    for (const FeedbackCase& each : feedbackCases)
+    {
+        SCOPED_TRACE(each.name);
+        options.form = each.form;
+        options.chunkSize = each.chunkSize;
+        viewer().getCamera()->setFinalDrawCallback(nullptr);
+        viewer().setSceneData(movingScene(each.hasCrowd));
+        drawAt(0.0);
+        const GlCallTrace trace(state());
+        for (const double time : {0.1, 0.2, 0.3})
+            drawAt(time);
+        EXPECT_GE(trace.feedbackDraws(), 9);
+        for (const std::string& conflict : trace.feedbackConflicts())
+            ADD_FAILURE() << conflict;
+    }
+}
+
+TEST_F(FrameCallsGLTest, theTraceSeesWhereAWrittenBufferIsBound)
+{
+    viewer().setSceneData(movingScene(false));
+    drawAt(0.0);
+    const GlCallTrace trace(state());
+    const PalettePlace place = PosePipeline::of(state())->place(*testCharacterSet(), 0, 0);
+    osg::GLExtensions& gl = *state().get<osg::GLExtensions>();
+    gl.glActiveTexture(GL_TEXTURE0 + 20);
+    glBindTexture(GL_TEXTURE_BUFFER, place.texture);
+    drawAt(0.1);
+    const std::vector<std::string>& found = trace.feedbackConflicts();
+    EXPECT_TRUE(std::any_of(found.begin(), found.end(),
+                            [](const std::string& conflict)
+                            { return conflict.find(": texture unit 20") != std::string::npos; }));
+    gl.glActiveTexture(GL_TEXTURE0 + 20);
+    glBindTexture(GL_TEXTURE_BUFFER, 0);
+    gl.glActiveTexture(GL_TEXTURE0 + state().getActiveTextureUnit());
 }
 
 TEST_F(FrameCallsGLTest, theTraceSeesWhatItLooksFor)

@@ -27,6 +27,100 @@ Function* next(const char* name)
     return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));
 }
 
+osg::GLExtensions* extensions = nullptr;
+bool isFeedbackActive = false;
+int feedbackDrawsChecked = 0;
+std::vector<std::string> conflicts;
+
+GLint integer(GLenum name)
+{
+    GLint value = 0;
+    next<decltype(glGetIntegerv)>("glGetIntegerv")(name, &value);
+    return value;
+}
+
+/// A binding point of buffers and the query of what it holds.
+struct BindingPoint
+{
+    const char* name;
+    GLenum query;
+    GLenum maxIndices; ///< the query of the number of indexed points behind the general one; 0: none
+    float since;       ///< OpenGL's version
+};
+
+constexpr BindingPoint bindingPoints[] = {
+    {"array", GL_ARRAY_BUFFER_BINDING_ARB, 0, 1.5f},
+    {"element array", GL_ELEMENT_ARRAY_BUFFER_BINDING_ARB, 0, 1.5f},
+    {"pixel pack", 0x88ED, 0, 2.1f},
+    {"pixel unpack", 0x88EF, 0, 2.1f},
+    {"texture buffer", 0x8C2A, 0, 3.1f},
+    {"copy read", 0x8F36, 0, 3.1f},
+    {"copy write", 0x8F37, 0, 3.1f},
+    {"uniform", 0x8A28, 0x8A2F, 3.1f},
+    {"draw indirect", 0x8F43, 0, 4.0f},
+    {"atomic counter", 0x92C1, 0x92DC, 4.2f},
+    {"shader storage", 0x90D3, 0x90DD, 4.3f},
+    {"dispatch indirect", 0x90EF, 0, 4.3f},
+    {"query", 0x9193, 0, 4.4f},
+};
+
+/// Every binding point that holds a buffer, but for those of feedback.
+std::vector<std::pair<std::string, GLint>> boundBuffers()
+{
+    using GetIndexed = void(GL_APIENTRY*)(GLenum, GLuint, GLint*);
+    using GetAttribute = void(GL_APIENTRY*)(GLuint, GLenum, GLint*);
+    static const auto getIndexed = reinterpret_cast<GetIndexed>(osg::getGLExtensionFuncPtr("glGetIntegeri_v"));
+    static const auto getAttribute = reinterpret_cast<GetAttribute>(osg::getGLExtensionFuncPtr("glGetVertexAttribiv"));
+    std::vector<std::pair<std::string, GLint>> found;
+    const auto add = [&](const std::string& where, GLint buffer)
+    {
+        if (buffer != 0) found.emplace_back(where, buffer);
+    };
+    for (const BindingPoint& point : bindingPoints)
+    {
+        if (extensions->glVersion < point.since) continue;
+        add(point.name, integer(point.query));
+        for (GLint i = 0, end = point.maxIndices ? integer(point.maxIndices) : 0; i < end; ++i)
+        {
+            GLint buffer = 0;
+            getIndexed(point.query, static_cast<GLuint>(i), &buffer);
+            add(point.name + (" " + std::to_string(i)), buffer);
+        }
+    }
+    for (GLint i = 0, end = integer(0x8869); i < end; ++i) // GL_MAX_VERTEX_ATTRIBS
+    {
+        GLint buffer = 0;
+        getAttribute(static_cast<GLuint>(i), 0x889F, &buffer); // GL_VERTEX_ATTRIB_ARRAY_BUFFER_BINDING
+        add("vertex attribute " + std::to_string(i), buffer);
+    }
+    const GLint active = integer(GL_ACTIVE_TEXTURE);
+    for (GLint i = 0, end = integer(0x8B4D); i < end; ++i) // GL_MAX_COMBINED_TEXTURE_IMAGE_UNITS
+    {
+        extensions->glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(i));
+        if (integer(0x8C2C) == 0) continue; // GL_TEXTURE_BINDING_BUFFER
+        GLint buffer = 0;
+        glGetTexLevelParameteriv(0x8C2A, 0, 0x8C2D, &buffer); // GL_TEXTURE_BUFFER_DATA_STORE_BINDING
+        add("texture unit " + std::to_string(i), buffer);
+    }
+    extensions->glActiveTexture(static_cast<GLenum>(active));
+    return found;
+}
+
+void checkFeedbackDraw()
+{
+    if (!isTracing || !isFeedbackActive) return;
+    const GLint written = integer(0x8C8F); // GL_TRANSFORM_FEEDBACK_BUFFER_BINDING
+    ++feedbackDrawsChecked;
+    const std::string draw = "feedback draw " + std::to_string(feedbackDrawsChecked) + ": ";
+    if (written == 0) conflicts.push_back(draw + "no buffer to write");
+    for (const auto& [where, buffer] : boundBuffers())
+        if (buffer == written) conflicts.push_back(draw + where);
+}
+
+constexpr const char* beginName = "glBeginTransformFeedback";
+constexpr const char* endName = "glEndTransformFeedback";
+constexpr const char* instancedName = "glDrawArraysInstanced";
+
 /// One wrapped pointer of GLExtensions: Tag tells pointers of one type apart.
 template <typename Tag, typename Return, typename... Arguments>
 struct Wrapped
@@ -36,6 +130,9 @@ struct Wrapped
     static Return GL_APIENTRY call(Arguments... arguments)
     {
         note(name);
+        if (name == beginName) isFeedbackActive = true;
+        if (name == endName) isFeedbackActive = false;
+        if (name == instancedName) checkFeedbackDraw();
         return real(arguments...);
     }
 };
@@ -66,6 +163,7 @@ struct QueryResult64Tag;
 struct TimeStampTag;
 struct WaitTag;
 struct BeginFeedbackTag;
+struct EndFeedbackTag;
 struct UploadTag;
 struct UploadPartTag;
 struct GetUniformLocationTag;
@@ -82,10 +180,11 @@ void forEachPointer(osg::GLExtensions& gl, Function function)
     function(static_cast<QueryResult64Tag*>(nullptr), gl.glGetQueryObjectui64v, "glGetQueryObjectui64v");
     function(static_cast<TimeStampTag*>(nullptr), gl.glQueryCounter, "glQueryCounter");
     function(static_cast<WaitTag*>(nullptr), gl.glClientWaitSync, "glClientWaitSync");
-    function(static_cast<BeginFeedbackTag*>(nullptr), gl.glBeginTransformFeedback, "glBeginTransformFeedback");
+    function(static_cast<BeginFeedbackTag*>(nullptr), gl.glBeginTransformFeedback, beginName);
+    function(static_cast<EndFeedbackTag*>(nullptr), gl.glEndTransformFeedback, endName);
     function(static_cast<UploadTag*>(nullptr), gl.glBufferData, "glBufferData");
     function(static_cast<UploadPartTag*>(nullptr), gl.glBufferSubData, "glBufferSubData");
-    function(static_cast<DrawInstancedTag*>(nullptr), gl.glDrawArraysInstanced, "glDrawArraysInstanced");
+    function(static_cast<DrawInstancedTag*>(nullptr), gl.glDrawArraysInstanced, instancedName);
     function(static_cast<GetUniformLocationTag*>(nullptr), gl.glGetUniformLocation, "glGetUniformLocation");
 }
 
@@ -113,6 +212,9 @@ GlCallTrace::GlCallTrace(osg::State& state) : _gl(state.get<osg::GLExtensions>()
 {
     forEachPointer(*_gl, Wrapper());
     callsMade.clear();
+    conflicts.clear();
+    feedbackDrawsChecked = 0;
+    extensions = _gl;
     isTracing = true;
 }
 
@@ -125,6 +227,16 @@ GlCallTrace::~GlCallTrace()
 std::map<std::string, int> GlCallTrace::calls() const
 {
     return callsMade;
+}
+
+int GlCallTrace::feedbackDraws() const
+{
+    return feedbackDrawsChecked;
+}
+
+const std::vector<std::string>& GlCallTrace::feedbackConflicts() const
+{
+    return conflicts;
 }
 
 int GlCallTrace::count(const std::string& name) const
@@ -179,6 +291,7 @@ extern "C"
     void GLAPIENTRY glDrawArrays(GLenum mode, GLint first, GLsizei count)
     {
         osgGpuAnimation::note("glDrawArrays");
+        osgGpuAnimation::checkFeedbackDraw();
         osgGpuAnimation::next<decltype(glDrawArrays)>("glDrawArrays")(mode, first, count);
     }
 

@@ -5,6 +5,7 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 namespace osgGpuAnimation
 {
@@ -12,6 +13,7 @@ namespace osgGpuAnimation
 /// Counts GL calls that stall or that cost by the call, while it lives: queries of state (glGet*), glFinish, glFlush,
 /// read-backs, maps, GL queries, waits; and draws, feedback and buffer uploads. The functions that the libraries link
 /// to are replaced by this program's own of the same name, those that OSG fetches by pointer in its GLExtensions.
+/// At each feedback draw it asks GL for every binding point, since a buffer that feedback writes may have no other.
 class GlCallTrace
 {
 public:
@@ -23,6 +25,10 @@ public:
     /// Calls by name, those not called left out.
     std::map<std::string, int> calls() const;
     int count(const std::string& name) const;
+    /// The feedback draws whose bindings were checked.
+    int feedbackDraws() const;
+    /// Each other binding that a written buffer had at such a draw, "feedback draw 3: texture unit 11".
+    const std::vector<std::string>& feedbackConflicts() const;
 
 private:
     osg::GLExtensions* _gl;

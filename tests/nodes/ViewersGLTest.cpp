@@ -7,7 +7,10 @@
 #include <osgGpuAnimation/gpu/PosePipeline.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 
+#include <layout.glsl>
+
 #include <osg/Group>
+#include <osg/Texture>
 #include <osgViewer/CompositeViewer>
 
 namespace osgGpuAnimation
@@ -193,8 +196,9 @@ TEST_F(ViewersGLTest, contextsThatShareEvaluateTheirOwnCharactersWithoutErrors)
     {
         osgViewer::CompositeViewer composite;
         composite.setThreadingModel(osgViewer::ViewerBase::SingleThreaded);
-        osg::ref_ptr<EglGraphicsContext> first = makeContext();
-        for (const osg::ref_ptr<EglGraphicsContext>& context : {first, makeContext(first)})
+        const osg::ref_ptr<EglGraphicsContext> first = makeContext();
+        const osg::ref_ptr<EglGraphicsContext> contexts[] = {first, makeContext(first)};
+        for (const osg::ref_ptr<EglGraphicsContext>& context : contexts)
         {
             osg::ref_ptr<osgViewer::View> view = new osgViewer::View;
             setCamera(*view->getCamera(), context, new Picture);
@@ -206,6 +210,13 @@ TEST_F(ViewersGLTest, contextsThatShareEvaluateTheirOwnCharactersWithoutErrors)
             composite.frame(time);
         for (unsigned int i = 0; i < 2; ++i)
         {
+            // The next frame of either context writes the palettes that this one's meshes have read.
+            ASSERT_TRUE(contexts[i]->makeCurrent());
+            contexts[i]->getState()->get<osg::GLExtensions>()->glActiveTexture(GL_TEXTURE0 + POSE_PALETTE_UNIT);
+            GLint palette = -1;
+            glGetIntegerv(GL_TEXTURE_BINDING_BUFFER_ARB, &palette);
+            EXPECT_EQ(palette, 0) << i;
+            contexts[i]->releaseContext();
             const osg::Camera::DrawCallback* drawn = composite.getView(i)->getCamera()->getFinalDrawCallback();
             EXPECT_EQ(Picture::pixelsDifferent(*expected, static_cast<const Picture*>(drawn)->image()), 0) << i;
         }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/gpu/FeedbackPass.h>
 
+#include <layout.glsl>
+
 #include <osg/Notify>
 #include <osg/StateAttribute>
 #include <osg/Texture>
@@ -15,21 +17,32 @@
 namespace osgGpuAnimation
 {
 
+namespace
+{
+
+/// The active unit is OSG's again only after osg::State::getActiveTextureUnit() is made active.
+void unbindBufferTexture(osg::State& state, int unit)
+{
+    state.get<osg::GLExtensions>()->glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+    glBindTexture(GL_TEXTURE_BUFFER, 0);
+    state.haveAppliedTextureAttribute(static_cast<unsigned int>(unit), osg::StateAttribute::TEXTURE);
+}
+
+} // namespace
+
 FeedbackScope::FeedbackScope(osg::State& state, GLuint vertexArray, int units)
     : _state(state), _units(units), _discard(state, GL_RASTERIZER_DISCARD, true)
 {
     _state.bindVertexArrayObject(vertexArray);
+    // The last draw of a mesh left its palette there, which the passes may write.
+    unbindBufferTexture(state, POSE_PALETTE_UNIT);
 }
 
 FeedbackScope::~FeedbackScope()
 {
     osg::GLExtensions* gl = _state.get<osg::GLExtensions>();
     for (int unit = 0; unit < _units; ++unit)
-    {
-        gl->glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
-        glBindTexture(GL_TEXTURE_BUFFER, 0);
-        _state.haveAppliedTextureAttribute(static_cast<unsigned int>(unit), osg::StateAttribute::TEXTURE);
-    }
+        unbindBufferTexture(_state, unit);
     gl->glActiveTexture(GL_TEXTURE0 + _state.getActiveTextureUnit());
     gl->glUseProgram(0);
     _state.setLastAppliedProgramObject(nullptr);

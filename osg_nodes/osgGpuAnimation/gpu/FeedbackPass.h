@@ -13,8 +13,9 @@
 namespace osgGpuAnimation
 {
 
-/// RAII: disables rasterization and binds a vertex array object for feedback passes. The destructor restores the GL
-/// state that OSG expects.
+/// RAII: disables rasterization, binds a vertex array object for feedback passes and unbinds the palette of the last
+/// draw: a buffer that feedback writes may have no other binding. The destructor restores the GL state that OSG
+/// expects.
 class FeedbackScope
 {
 public:

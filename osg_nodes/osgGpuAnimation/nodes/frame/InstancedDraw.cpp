@@ -93,6 +93,12 @@ MeshVertexArrays::~MeshVertexArrays()
         _state.getCurrentVertexArrayState()->unbindVertexBufferObject();
         _state.getCurrentVertexArrayState()->unbindElementBufferObject();
     }
+    if (isNumberShared(_state))
+    {
+        // Another context may write the palette next; FeedbackScope unbinds it in its own context alone.
+        _state.setActiveTextureUnit(POSE_PALETTE_UNIT);
+        glBindTexture(GL_TEXTURE_BUFFER, 0);
+    }
     // A vertex array that stays bound would lose its element buffer when OSG compiles objects between frames.
     _state.unbindVertexArrayObject();
 }

@@ -33,9 +33,9 @@ ClipMoveEvents::ClipMoveEvents(const Clip& clip, const PlaybackStep& move, LoopM
     if (_crossingsLeft > maxCrossings)
     {
         // Skips an even number of crossings, so that the direction of PingPong stays correct.
-        const double leftOut = 2.0 * std::floor((_crossingsLeft - maxCrossings) / 2.0);
-        _gone = leftOut * clip.duration();
-        _crossingsLeft = maxCrossings + 1.0;
+        const double listed = maxCrossings + std::fmod(_crossingsLeft, 2.0);
+        _gone = (_crossingsLeft - listed) * clip.duration();
+        _crossingsLeft = listed;
     }
     const bool hasMoved = move.distance != 0.0 || move.hasFinished;
     _isFinishTold = !move.hasFinished;
@@ -140,12 +140,12 @@ void FrameEvents::add(const LayerStep& step, const std::vector<Clip>& clips)
 void FrameEvents::addSource(const AnimationEvent& event, std::optional<ClipMoveEvents> events, bool isFadingOut)
 {
     Source source{event, std::move(events), isFadingOut};
-    if (source.events && !accumulateRootMotion(source)) return;
+    if (source.events && !advance(source)) return;
     _sources[_count++].emplace(std::move(source));
 }
 
 /// Clips that fade out report only markers: Looped and Finished belong to the current clip.
-bool FrameEvents::accumulateRootMotion(Source& source)
+bool FrameEvents::advance(Source& source)
 {
     if (!source.events) return false;
     do
@@ -165,7 +165,7 @@ bool FrameEvents::next(AnimationEvent& out)
         if (_sources[s] && (first == _count || _sources[s]->event.moment < _sources[first]->event.moment)) first = s;
     if (first == _count) return false;
     out = _sources[first]->event;
-    if (!accumulateRootMotion(*_sources[first])) _sources[first].reset();
+    if (!advance(*_sources[first])) _sources[first].reset();
     return true;
 }
 

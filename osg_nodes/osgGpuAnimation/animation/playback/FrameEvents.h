@@ -91,7 +91,7 @@ private:
     };
 
     void addSource(const AnimationEvent& event, std::optional<ClipMoveEvents> events, bool isFadingOut);
-    static bool accumulateRootMotion(Source& source);
+    static bool advance(Source& source);
 
     std::array<std::optional<Source>, maxLayers*(ClipMixer::maxActiveClips + 2)> _sources;
     std::size_t _count = 0;

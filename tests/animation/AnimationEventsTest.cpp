@@ -327,6 +327,38 @@ TEST(AnimationEventsTest, AnEndlessStepEnds)
     }
 }
 
+// A step of more than 100,000 crossings tells the last of them: those that lead to where the clip is now.
+TEST(AnimationEventsTest, TheLastCrossingsOfALongStepAreTold)
+{
+    constexpr double duration = 1.0 / 1024.0;
+    const auto set = makeSet(duration, {0.25 * duration, 0.75 * duration});
+    for (const LoopMode mode : {LoopMode::Loop, LoopMode::PingPong})
+        for (const double speed : {1.0, -1.0})
+            for (const int crossings : {99999, 100000, 100001, 100002, 100003, 300004})
+            {
+                SCOPED_TRACE(testing::Message() << (mode == LoopMode::Loop ? "loop, " : "ping-pong, ") << crossings
+                                                << " crossings, speed " << speed);
+                AnimationController controller(set);
+                std::string told;
+                double lastTurn = 0.0;
+                controller.setEventCallback(
+                    [&](const AnimationEvent& event)
+                    {
+                        told += letterOf(event);
+                        if (event.type == Type::Looped) lastTurn = event.moment;
+                    });
+                controller.setLoopMode(mode);
+                ASSERT_TRUE(controller.setSpeed(speed));
+                ASSERT_TRUE(controller.play("A"));
+                controller.advance((crossings + 0.5) * duration);
+                const bool isReturning = mode == LoopMode::PingPong && crossings % 2 != 0;
+                const bool isAscending = (speed > 0.0) != isReturning;
+                ASSERT_GE(told.size(), 3u * 99999u);
+                EXPECT_EQ(told.substr(told.size() - 2), isAscending ? "|a" : "|b");
+                EXPECT_NEAR(lastTurn, crossings / (crossings + 0.5), 1e-9);
+            }
+}
+
 TEST(AnimationEventsTest, NothingIsToldOfSeekingPausingAndStopping)
 {
     AnimationController controller(makeSet(2.0, {0.5, 1.0}));

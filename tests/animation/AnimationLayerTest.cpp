@@ -246,6 +246,46 @@ TEST(AnimationLayerTest, WhateverIsAskedTheInstructionStaysInOrder)
     }
 }
 
+TEST(AnimationLayerTest, ARestoredLayerFadesOnAsTheFirstWould)
+{
+    const auto set = makeGaitSet();
+    for (const Sync sync : {Sync::Start, Sync::Phase})
+    {
+        AnimationController first(set), second(set);
+        ASSERT_TRUE(first.play("Idle"));
+        ASSERT_TRUE(first.crossfade("Walk", 2.0, {FadeCurve::Smooth, sync}));
+        first.advance(0.3);
+        ASSERT_TRUE(second.layer(0).restore(first.layer(0).snapshot()));
+        for (AnimationController* controller : {&first, &second})
+            ASSERT_TRUE(controller->crossfade("Run", 1.0)); // at its own pace
+        for (int step = 0; step < 12; ++step)
+        {
+            first.advance(0.07);
+            second.advance(0.07);
+            const ClipMixer &expected = first.layer(0).mixer(), &found = second.layer(0).mixer();
+            ASSERT_EQ(found.activeClipCount(), 3u);
+            for (std::size_t i = 0; i < 3; ++i)
+                EXPECT_NEAR(found.activeClip(i).playback.time(), expected.activeClip(i).playback.time(), 1e-12)
+                    << "step " << step << ", clip " << i;
+        }
+    }
+}
+
+TEST(AnimationLayerTest, StoppedItIsAtTimeZeroInBothDirections)
+{
+    for (const double speed : {1.0, -1.0})
+    {
+        AnimationController controller(makeGaitSet());
+        ASSERT_TRUE(controller.setSpeed(speed));
+        ASSERT_TRUE(controller.play("Walk"));
+        controller.advance(0.25);
+        controller.stop();
+        EXPECT_EQ(controller.time(), 0.0) << speed;
+        ASSERT_TRUE(controller.play("Walk"));
+        EXPECT_EQ(controller.time(), speed > 0.0 ? 0.0 : 1.0) << "the next play begins where it should";
+    }
+}
+
 TEST(AnimationLayerTest, CopiesHaveLayersOfTheirOwn)
 {
     AnimationController first(makeGaitSet());

@@ -6,6 +6,7 @@
 
 #include <osgGpuAnimation/animation/AnimationController.h>
 #include <osgGpuAnimation/animation/bounds/ClipBounds.h>
+#include <osgGpuAnimation/animation/ClipBuilder.h>
 #include <osgGpuAnimation/animation/JointMask.h>
 #include <osgGpuAnimation/animation/Pose.h>
 
@@ -13,6 +14,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 
 namespace osgGpuAnimation
@@ -101,6 +103,47 @@ TEST(MixBoundsTest, HoldWhateverLayersAndCrossfadesShow)
                 ASSERT_LE(outside(bounds.box(played), controller, boxes, seen), 0.0)
                     << "seed " << seed << ", character " << character << ", stack " << stack << ", frame " << frame;
             }
+        }
+    }
+}
+
+/// A joint at rest at the origin, and a clip of one second that begins elsewhere.
+std::shared_ptr<const AnimationSet> startingElsewhere(Channel::Path path, const std::vector<double>& firstAndLast)
+{
+    const Skeleton skeleton = Skeleton::create({Joint()}).value();
+    ClipBuilder builder(skeleton, {});
+    EXPECT_TRUE(builder.add({path, Channel::Interpolation::Linear, 0, {0, 1}, firstAndLast}));
+    return AnimationSet::create({skeleton, {}, {}, {}, {builder.build("away")}}).value();
+}
+
+TEST(MixBoundsTest, AnAdditiveLayerIsMeasuredFromTheFirstFrame)
+{
+    struct Case
+    {
+        const char* name;
+        Channel::Path path;
+        std::vector<double> firstAndLast;
+    };
+    const double half = std::sqrt(0.5);
+    const Case cases[] = {{"across the rest place", Channel::Path::Translation, {-3, 0, 0, 3, 0, 0}},
+                          {"growing from small", Channel::Path::Scale, {0.25, 0.25, 0.25, 2, 2, 2}},
+                          {"across the rest turn", Channel::Path::Rotation, {0, 0, -half, half, 0, 0, half, half}}};
+    for (const Case& c : cases)
+    {
+        const auto set = startingElsewhere(c.path, c.firstAndLast);
+        const EntryBoxes boxes = someBoxes(*set);
+        const MixBounds bounds(*set, boxes, boxes);
+        AnimationController controller(set);
+        AnimationLayer& added = controller.layer(1);
+        added.setMode(AnimationLayer::Mode::Additive, AnimationLayer::Reference::FirstFrame);
+        added.setLoopMode(LoopMode::Once);
+        ASSERT_TRUE(added.play(0));
+        std::vector<PlayedClip> played;
+        for (int frame = 0; frame <= 10; ++frame, controller.advance(0.1))
+        {
+            findPlayedClips(controller, played);
+            Box seen;
+            EXPECT_LE(outside(bounds.box(played), controller, boxes, seen), 0.0) << c.name << ", frame " << frame;
         }
     }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/Pose.h>
 
+#include "support/AdditiveExtremes.h"
 #include "support/RandomCharacter.h"
 #include <osgGpuAnimation/animation/AnimationController.h>
 #include <osgGpuAnimation/animation/keyframes/TrackBlend.h>
@@ -233,6 +234,24 @@ TEST_F(PoseBlendTest, AnInstructionByDefaultIsTheRestPose)
     std::vector<JointTransform> tracks;
     Pose::mix(*_set, PoseInstruction(), tracks);
     EXPECT_EQ(std::memcmp(tracks.data(), _set->restPose().data(), tracks.size() * sizeof(JointTransform)), 0);
+}
+
+TEST(PoseTest, DifferencesMultiplyScalesAndAddTurnsUpToAWholeOne)
+{
+    const auto set = makeAdditiveExtremes();
+    const double pi = std::acos(-1.0);
+    for (std::size_t times = 0; times <= 7; ++times)
+    {
+        std::vector<JointTransform> tracks;
+        Pose::mix(*set, addedTimes(*set, times), tracks);
+        const double factor = std::pow(2.0, static_cast<double>(times));
+        EXPECT_FLOAT_EQ(tracks[0].scale.x, static_cast<float>(-factor)) << times;
+        EXPECT_EQ(tracks[0].scale.y, 0.0f) << "a reference of 0 has no ratio, " << times;
+        EXPECT_FLOAT_EQ(tracks[0].scale.z, static_cast<float>(2.0 / factor)) << times;
+        const double half = std::min(static_cast<double>(times) * 85.0 / 180.0 * pi, pi);
+        const glm::vec4 turn(0.0, 0.0, std::sin(half), std::cos(half));
+        EXPECT_LE(glm::length(tracks[0].rotation - turn), 1e-6f) << times;
+    }
 }
 
 TEST(PoseTest, OneSampleOfFullWeightIsInterpolate)

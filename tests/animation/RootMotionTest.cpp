@@ -223,6 +223,29 @@ TEST(RootMotionTest, CrossfadesAndLayersBlendIt)
     EXPECT_TRUE(controller.takeRootMotion().isNone());
 }
 
+TEST(RootMotionTest, WeightsAboveOneInAllMoveByTheMean)
+{
+    const auto set =
+        stripped(*makeSet({{"Left", 1.0, 1.0, 0.4, false}, {"Right", 1.0, 3.0, -0.8, false}}), {true, false, true});
+    struct Case
+    {
+        float left, right;
+        double yaw; ///< in half a second, in radians
+    };
+    for (const Case& c :
+         {Case{1.0f, 1.0f, -0.1}, Case{1.0f, 0.75f, -0.1 / 1.75}, Case{0.25f, 0.5f, -0.15}, Case{0.0f, 1.0f, -0.4}})
+    {
+        AnimationController controller(set);
+        ASSERT_TRUE(controller.play("Left"));
+        ASSERT_TRUE(controller.layer(1).play("Right"));
+        controller.layer(1).setBlendPriority(0);
+        ASSERT_TRUE(controller.layer(0).setWeight(c.left));
+        ASSERT_TRUE(controller.layer(1).setWeight(c.right));
+        controller.advance(0.5);
+        EXPECT_NEAR(controller.takeRootMotion().yaw, c.yaw, 1e-6) << c.left << " and " << c.right;
+    }
+}
+
 TEST(RootMotionTest, CrossfadesGoTheSameWayAtAnyFrameRate)
 {
     const auto set = stripped(*makeSet({{"Stand", 1.0, 0.0, 0.0, false}, {"Run", 0.5, 2.0, 0.0, false}}), {});
@@ -294,6 +317,10 @@ TEST(RootMotionTest, WhatCannotBeTakenOutIsAClearError)
         AnimationSet::create({skeleton, {}, {}, {}, {ClipBuilder(skeleton, {}).build("Still")}}).value();
     EXPECT_FALSE(withRootMotion(*skewed, "below"));
     EXPECT_TRUE(withRootMotion(*skewed, "above"));
+    above.rest.scale = glm::vec4(-2, 2, 2, 0);
+    const Skeleton mirror = Skeleton::create({above, {"below", 0, {}, 1}}).value();
+    const auto mirrored = AnimationSet::create({mirror, {}, {}, {}, {ClipBuilder(mirror, {}).build("Still")}}).value();
+    EXPECT_FALSE(withRootMotion(*mirrored, "below")) << "a mirror turns the other way round";
 }
 
 TEST(RootMotionTest, ADerivedSetKeepsMasksMarkersAndPalette)
@@ -306,6 +333,24 @@ TEST(RootMotionTest, ADerivedSetKeepsMasksMarkersAndPalette)
     EXPECT_EQ(derived->clips()[0].markers().size(), 1u);
     EXPECT_EQ(derived->paletteSize(), set->paletteSize());
     EXPECT_EQ(set->clips()[0].rootMotion(), nullptr);
+}
+
+TEST(RootMotionTest, AssignedControllersMoveAsThoseTheyAreCopiesOf)
+{
+    const auto still = makeSet({{"Walk", 1.0, 1.0, 0.0, false}});
+    const auto moving = stripped(*still, {});
+    AnimationController controller(still), walker(moving), sitter(still);
+    ASSERT_TRUE(walker.play("Walk"));
+    ASSERT_TRUE(sitter.play("Walk"));
+    for (int round = 0; round < 2; ++round)
+    {
+        controller = walker;
+        controller.advance(0.5);
+        EXPECT_NEAR(controller.takeRootMotion().translation.z, -0.5, 1e-6) << round;
+        controller = sitter;
+        controller.advance(0.5);
+        EXPECT_TRUE(controller.takeRootMotion().isNone()) << round;
+    }
 }
 
 TEST(RootMotionTest, AdvancingDoesNotAllocate)

@@ -69,6 +69,79 @@ TEST(StateMachineTest, TakesTransitionsWhoseConditionsHold)
     EXPECT_EQ(controller.loopMode(), LoopMode::Loop);
 }
 
+TEST(StateMachineTest, ATransitionUsesUpItsOwnTriggersAlone)
+{
+    const auto set = makeGaitSet();
+    const auto graph = StateGraph::create(*set, {{{"stand", "Idle"}, {"go", "Walk"}, {"run", "Run"}},
+                                                 {{"stand", "go", {"start", "now"}},
+                                                  {"go", "run", {"hurry"}},
+                                                  {"run", "stand", {"start"}},
+                                                  {"go", "stand", {"now"}}},
+                                                 "stand"});
+    ASSERT_TRUE(graph) << graph.error().message;
+    AnimationController controller(set);
+    StateMachine machine(graph.value());
+    EXPECT_TRUE(machine.update(controller, 0.1));
+    EXPECT_TRUE(machine.fire("start"));
+    EXPECT_TRUE(machine.fire("hurry"));
+    EXPECT_FALSE(machine.update(controller, 0.1)) << "one of its two triggers";
+    EXPECT_TRUE(machine.fire("now"));
+    EXPECT_TRUE(machine.update(controller, 0.1));
+    EXPECT_EQ(machine.state(), "go");
+    EXPECT_TRUE(machine.update(controller, 0.1)) << "what was fired earlier is still fired";
+    EXPECT_EQ(machine.state(), "run");
+    EXPECT_FALSE(machine.update(controller, 0.1)) << "both triggers of the first transition are used up";
+    EXPECT_TRUE(machine.fire("start"));
+    EXPECT_TRUE(machine.update(controller, 0.1));
+    EXPECT_FALSE(machine.update(controller, 0.1)) << "also on the second visit";
+    EXPECT_EQ(machine.state(), "stand");
+}
+
+TEST(StateMachineTest, FromEveryStateButItsOwn)
+{
+    const auto set = makeGaitSet();
+    const auto graph = StateGraph::create(*set, {{{"stand", "Idle"}, {"go", "Walk"}, {"run", "Run"}},
+                                                 {{"", "run", {"speed > 2"}}, {"", "go", {"speed > 1"}}},
+                                                 "stand"});
+    ASSERT_TRUE(graph) << graph.error().message;
+    AnimationController controller(set);
+    StateMachine machine(graph.value());
+    EXPECT_TRUE(machine.update(controller, 0.1));
+    EXPECT_TRUE(machine.set("speed", 1.5));
+    EXPECT_TRUE(machine.update(controller, 0.1));
+    controller.advance(0.1);
+    EXPECT_FALSE(machine.update(controller, 0.1)) << "it does not enter the state again";
+    EXPECT_NEAR(machine.secondsInState(), 0.1, 1e-12);
+    EXPECT_TRUE(machine.set("speed", 2.5));
+    EXPECT_TRUE(machine.update(controller, 0.1));
+    EXPECT_EQ(machine.state(), "run") << "the first of two transitions";
+    EXPECT_TRUE(machine.update(controller, 0.1));
+    EXPECT_EQ(machine.state(), "go") << "its own transition does not count, the other does";
+}
+
+TEST(StateMachineTest, TheClockOfAStateStartsAtEachVisit)
+{
+    const auto set = makeGaitSet();
+    const auto graph = StateGraph::create(*set, {{{"stand", "Idle"}, {"go", "Walk"}},
+                                                 {{"stand", "go", {"after 1"}}, {"go", "stand", {"after 0.75"}}},
+                                                 "stand"});
+    ASSERT_TRUE(graph) << graph.error().message;
+    AnimationController controller(set);
+    StateMachine machine(graph.value());
+    EXPECT_TRUE(machine.update(controller, 5.0)) << "the start state begins here";
+    for (int visit = 0; visit < 3; ++visit)
+    {
+        EXPECT_EQ(machine.secondsInState(), 0.0);
+        EXPECT_FALSE(machine.update(controller, 0.75)) << visit;
+        EXPECT_TRUE(machine.update(controller, 0.25)) << "after 1 second, not later, " << visit;
+        EXPECT_EQ(machine.state(), "go");
+        EXPECT_EQ(machine.secondsInState(), 0.0);
+        EXPECT_FALSE(machine.update(controller, 0.5)) << visit;
+        EXPECT_TRUE(machine.update(controller, 0.25)) << visit;
+        EXPECT_EQ(machine.state(), "stand");
+    }
+}
+
 TEST(StateMachineTest, RefusesWhatItDoesNotKnow)
 {
     const auto set = makeGaitSet();

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "support/AdditiveExtremes.h"
 #include "support/GLTest.h"
 #include "support/RandomLayers.h"
 #include "support/RandomSet.h"
@@ -114,6 +115,24 @@ TEST_P(LayersGLTest, batchesOfAnyNumberOfSamplesAfterAnyOther)
             Pose::evaluate(*set, stacks[i], AffineMatrix(), twin);
             EXPECT_LE(difference(pipeline->readPalette(state(), *set, 0, i), twin), 1e-5);
         }
+    }
+}
+
+TEST_P(LayersGLTest, differencesFromMirroredAndFlatScalesAndBeyondAWholeTurn)
+{
+    const auto set = makeAdditiveExtremes();
+    PosePipeline* pipeline = PosePipeline::of(state());
+    ASSERT_NE(pipeline, nullptr);
+    pipeline->setForm(GetParam());
+    PoseBatch batch(set);
+    for (std::size_t times = 0; times <= 7; ++times)
+        batch.add(addedTimes(*set, times));
+    ASSERT_TRUE(pipeline->evaluate(state(), batch, 0));
+    for (std::size_t times = 0; times <= 7; ++times)
+    {
+        std::vector<AffineMatrix> twin;
+        Pose::evaluate(*set, addedTimes(*set, times), AffineMatrix(), twin);
+        EXPECT_LE(difference(pipeline->readPalette(state(), *set, 0, times), twin), 1e-5) << times;
     }
 }
 

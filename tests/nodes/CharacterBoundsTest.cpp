@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "support/TestCharacter.h"
 
+#include <osgGpuAnimation/animation/ClipBuilder.h>
+#include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 
 #include <osg/ComputeBoundsVisitor>
@@ -43,6 +45,69 @@ TEST(CharacterBoundsTest, FollowWhatLayersAndCrossfadesPlay)
     EXPECT_GE(character->getCurrentBounds().xMax(), 3.0f) << "shift is added to the turned square";
     EXPECT_GE(character->getBound().center().x() + character->getBound().radius(), 3.0f);
     EXPECT_GE(square->getBoundingBox().xMax(), character->getCurrentBounds().xMax());
+}
+
+/// A square whose only morph target, of weight 0.25 at rest, lifts it by one unit. "rise" takes the weight from 0 to 1
+/// in a second, "fall" back.
+osg::ref_ptr<AnimatedCharacter> makeMorphedCharacter()
+{
+    AnimationParts parts{Skeleton::create({Joint()}).value(), {}, {0}, {{"lift", -1, {0.25f}}}, {}};
+    for (const double first : {0.0, 1.0})
+    {
+        ClipBuilder builder(parts.skeleton, parts.morphs);
+        EXPECT_TRUE(
+            builder.add({Channel::Path::Weights, Channel::Interpolation::Linear, 0, {0, 1}, {first, 1.0 - first}}));
+        parts.clips.push_back(builder.build(first == 0.0 ? "rise" : "fall"));
+    }
+    const auto set = AnimationSet::create(std::move(parts)).value();
+    osg::ref_ptr<SkinnedGeometry> square = makeTestSquare(1);
+    square->setRigidEntry(static_cast<unsigned short>(set->entryOfRigidJoint(0)));
+    osg::ref_ptr<osg::Vec3Array> lifted = new osg::Vec3Array(4);
+    std::fill(lifted->begin(), lifted->end(), osg::Vec3(0, 0, 1));
+    square->setMorphTargets(*set, 0, {{lifted, nullptr, nullptr, nullptr}});
+    osg::ref_ptr<AnimatedCharacter> character = new AnimatedCharacter(set);
+    character->addChild(square);
+    character->computeClipBounds();
+    return character;
+}
+
+TEST(CharacterBoundsTest, HoldMorphWeightsThatAdditiveLayersRaiseAndLower)
+{
+    struct Case
+    {
+        const char *clip, *added;
+        AnimationLayer::Reference reference;
+        double weight; ///< at the end
+    };
+    using Reference = AnimationLayer::Reference;
+    const Case cases[] = {{"fall", "fall", Reference::FirstFrame, -1.0},
+                          {"fall", "fall", Reference::RestPose, -0.25},
+                          {"rise", "rise", Reference::FirstFrame, 2.0},
+                          {"rise", "rise", Reference::RestPose, 1.75}};
+    for (const Case& c : cases)
+    {
+        SCOPED_TRACE(testing::Message() << c.clip << " and " << c.added << " to " << c.weight);
+        const osg::ref_ptr<AnimatedCharacter> character = makeMorphedCharacter();
+        AnimationController& controller = character->getController();
+        controller.setLoopMode(LoopMode::Once);
+        ASSERT_TRUE(controller.play(c.clip));
+        AnimationLayer& added = controller.layer(1);
+        added.setMode(AnimationLayer::Mode::Additive, c.reference);
+        added.setLoopMode(LoopMode::Once);
+        ASSERT_TRUE(added.play(c.added));
+        character->update(0.0);
+        character->update(1.0);
+        std::vector<AffineMatrix> palette;
+        Pose::evaluate(character->getAnimationSet(), controller.instruction(), AffineMatrix(), palette);
+        std::vector<glm::dvec3> positions;
+        const auto& square = dynamic_cast<const SkinnedGeometry&>(*character->getChild(0));
+        square.computePositions(palette, positions);
+        ASSERT_EQ(positions.size(), 4u);
+        EXPECT_NEAR(positions[0].z, c.weight, 1e-6);
+        for (const glm::dvec3& position : positions)
+            for (const osg::BoundingBox& box : {character->getCurrentBounds(), square.getBoundingBox()})
+                EXPECT_TRUE(box.contains(osg::Vec3(position.x, position.y, position.z))) << position.z;
+    }
 }
 
 TEST(CharacterBoundsTest, ACloneHasItsOwn)

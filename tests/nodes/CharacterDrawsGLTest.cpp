@@ -4,6 +4,9 @@
 #include "support/ViewerGLTest.h"
 
 #include <osgGpuAnimation/gpu/PosePipeline.h>
+#include <osgGpuAnimation/nodes/CharacterProgram.h>
+
+#include <layout.glsl>
 
 #include <osg/Group>
 #include <osg/Material>
@@ -164,6 +167,58 @@ TEST_F(CharacterDrawsGLTest, drawnTogetherTheyLookAsOneByOne)
         // Placements are floats on the one way and doubles on the other: pixels on edges may differ.
         EXPECT_LE(Picture::pixelsDifferent(*apart, *together), 8);
         EXPECT_EQ(drawsOf(*scene), change.draws);
+    }
+}
+
+osg::ref_ptr<osg::Program> programWithOwnColors(unsigned int location)
+{
+    osg::ref_ptr<osg::Program> program = new osg::Program;
+    program->addShader(skinShader());
+    program->addShader(new osg::Shader(osg::Shader::VERTEX, R"(#version 140
+        void osgGpuAnimationSkin(inout vec4 vertex, inout vec3 normal);
+        in vec4 ownColor;
+        out vec4 color;
+        void main()
+        {
+            vec4 vertex = gl_Vertex;
+            vec3 normal = gl_Normal;
+            osgGpuAnimationSkin(vertex, normal);
+            color = ownColor;
+            gl_Position = gl_ModelViewProjectionMatrix * vertex;
+        })"));
+    program->addShader(new osg::Shader(osg::Shader::FRAGMENT, R"(#version 140
+        in vec4 color;
+        out vec4 fragment;
+        void main() { fragment = color; })"));
+    bindSkinAttributes(*program);
+    program->addBindAttribLocation("ownColor", location);
+    return program;
+}
+
+// Instanced draws use attributes once an instance. A mesh that later has its own array there uses it once a vertex.
+TEST_F(CharacterDrawsGLTest, theirAttributesAreTheMeshsOwnAgainAfterwards)
+{
+    const osg::Vec4 colors[] = {{1, 0, 0, 1}, {0, 1, 0, 1}, {0, 0, 1, 1}, {1, 1, 0, 1}};
+    for (const unsigned int location : {POSE_PLACEMENT_ROW_0_LOCATION, POSE_PLACEMENT_ROW_1_LOCATION,
+                                        POSE_PLACEMENT_ROW_2_LOCATION, POSE_PLACED_POSE_LOCATION})
+    {
+        SCOPED_TRACE(location);
+        const auto colored = [&](osg::Group& scene)
+        {
+            for (unsigned int mesh = 0; mesh < 2; ++mesh)
+            {
+                auto& square = dynamic_cast<SkinnedGeometry&>(*characterOf(scene, 0).getChild(mesh));
+                square.setVertexAttribArray(location, new osg::Vec4Array(4, const_cast<osg::Vec4*>(colors)),
+                                            osg::Array::BIND_PER_VERTEX);
+                square.getStateSet()->setAttributeAndModes(programWithOwnColors(location));
+            }
+            return pictureOf(scene, true);
+        };
+        const osg::ref_ptr<osg::Image> expected = colored(*makeCharacters(everybody));
+        EXPECT_GT(picture().pixelsDrawn(), 300);
+        const osg::ref_ptr<osg::Group> scene = makeCharacters(everybody);
+        pictureOf(*scene, true);
+        EXPECT_EQ(Picture::pixelsDifferent(*expected, *colored(*scene)), 0);
     }
 }
 

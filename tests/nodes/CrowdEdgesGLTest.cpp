@@ -191,6 +191,24 @@ TEST_F(CrowdEdgesGLTest, tintsAreTheInstancesOwnAtEveryLevelOfDetail)
     EXPECT_EQ(Picture::pixelsDifferent(*expected, *pictureOf(all, {0.0})), 0);
 }
 
+TEST_F(CrowdEdgesGLTest, tintsAreTheInstancesOwnInEveryChunk)
+{
+    constexpr std::size_t count = 8, inChunk = 3;
+    const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*makeTestCharacter());
+    for (std::size_t i = 0; i < count; ++i)
+        ASSERT_TRUE(crowd->add(osg::Matrixd::translate(static_cast<double>(i) - 4.0, 0.0, 0.0), still(),
+                               osg::Vec4(0.125f * static_cast<float>(i), i % 2 ? 1.0f : 0.25f, 1, 1)));
+    const osg::ref_ptr<osg::Image> whole = pictureOf(crowd, {0.0});
+    EXPECT_EQ(picture().pixelsDrawn(), 8 * 64);
+    PosePipeline* pipeline = PosePipeline::of(state());
+    const std::size_t texels = pipeline->getMaxTexels();
+    pipeline->setMaxTexels(inChunk * 3 * testCharacterSet()->paletteSize());
+    const osg::ref_ptr<osg::Image> inChunks = pictureOf(crowd, {0.1});
+    EXPECT_EQ(pipeline->place(*testCharacterSet(), 0, count - 1).chunkBegin, 2 * inChunk);
+    pipeline->setMaxTexels(texels);
+    EXPECT_EQ(Picture::pixelsDifferent(*whole, *inChunks), 0);
+}
+
 } // namespace
 
 } // namespace osgGpuAnimation

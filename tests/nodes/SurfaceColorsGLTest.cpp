@@ -9,6 +9,8 @@
 
 #include <osg/BlendFunc>
 #include <osg/Material>
+#include <osg/TexMat>
+#include <osg/Texture2D>
 
 namespace osgGpuAnimation
 {
@@ -108,6 +110,43 @@ TEST_F(SurfaceColorsGLTest, morphTargetsColorWhite)
     mesh.setColorArray(nullptr);
     EXPECT_EQ(Picture::pixelsDifferent(*expected, *pictureOf(tube)), 0);
     EXPECT_GT(picture().pixelsDrawn(), 200);
+}
+
+TEST_F(SurfaceColorsGLTest, theTextureMatrixComesAfterTheMorph)
+{
+    osg::ref_ptr<osg::Image> stripes = new osg::Image;
+    stripes->allocateImage(2, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE);
+    stripes->setColor(osg::Vec4(1, 0, 0, 1), 0, 0);
+    stripes->setColor(osg::Vec4(0, 1, 0, 1), 1, 0);
+    osg::ref_ptr<osg::Texture2D> texture = new osg::Texture2D(stripes);
+    texture->setWrap(osg::Texture::WRAP_S, osg::Texture::REPEAT);
+    for (const osg::Texture::FilterParameter filter : {osg::Texture::MIN_FILTER, osg::Texture::MAG_FILTER})
+        texture->setFilter(filter, osg::Texture::NEAREST);
+    const std::shared_ptr<const AnimationSet> set = armSet(true);
+    const auto pictureWith = [&](float offset, float morphed)
+    {
+        const osg::ref_ptr<AnimatedCharacter> tube = makeTubeCharacter(set);
+        auto& mesh = static_cast<SkinnedGeometry&>(meshOf(*tube));
+        const auto count = static_cast<unsigned int>(mesh.getVertexCount());
+        osg::ref_ptr<osg::Vec2Array> coordinates = new osg::Vec2Array(osg::Array::BIND_PER_VERTEX);
+        for (const osg::Vec3& position : static_cast<const osg::Vec3Array&>(*mesh.getVertexArray()))
+            coordinates->push_back(osg::Vec2(position.x() / 8.0f + offset, 0.5f));
+        mesh.setTexCoordArray(0, coordinates);
+        std::vector<MorphTarget> targets = mesh.getMorphTargets();
+        targets[0].textureCoordinates = new osg::Vec2Array(osg::Array::BIND_PER_VERTEX, count);
+        std::fill(targets[0].textureCoordinates->begin(), targets[0].textureCoordinates->end(), osg::Vec2(morphed, 0));
+        mesh.setMorphTargets(*set, 0, targets);
+        mesh.getStateSet()->setTextureAttributeAndModes(0, texture);
+        mesh.getStateSet()->setTextureAttributeAndModes(0, new osg::TexMat(osg::Matrix::scale(3, 1, 1)));
+        setUniform(mesh, "unlit");
+        tube->setMatrix(osg::Matrix::translate(-3, 0, 0));
+        tube->getController().pause();
+        tube->getController().seek(0.5); // half the target
+        return pictureOf(tube);
+    };
+    const osg::ref_ptr<osg::Image> expected = pictureWith(0.1f, 0.0f);
+    EXPECT_LE(Picture::pixelsDifferent(*expected, *pictureWith(0.0f, 0.2f)), 8) << "edges of stripes";
+    EXPECT_GT(Picture::pixelsDifferent(*expected, *pictureWith(0.0f, 0.0f)), 100);
 }
 
 // Crowds of one mesh, one with tints and one without, and a character beside them.

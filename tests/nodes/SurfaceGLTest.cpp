@@ -183,6 +183,21 @@ INSTANTIATE_TEST_SUITE_P(
         StateCase{"NoLightAtAll", [](osg::StateSet& state) { state.setMode(GL_LIGHT0, off); }},
         StateCase{"APointLight", [](osg::StateSet& state) { addPointLight(state, 180.0f); }},
         StateCase{"ASpot", [](osg::StateSet& state) { addPointLight(state, 40.0f); }},
+        StateCase{"AGlossyLightBehind",
+                  [](osg::StateSet& state)
+                  {
+                      osg::ref_ptr<osg::Material> material = new osg::Material;
+                      for (auto set : {&osg::Material::setAmbient, &osg::Material::setDiffuse})
+                          (material.get()->*set)(osg::Material::FRONT_AND_BACK, osg::Vec4(0.8f, 0.8f, 0.8f, 1));
+                      material->setSpecular(osg::Material::FRONT_AND_BACK, osg::Vec4(1, 1, 1, 1));
+                      material->setShininess(osg::Material::FRONT_AND_BACK, 2);
+                      state.setAttributeAndModes(material, on | override);
+                      osg::ref_ptr<osg::Light> behind = light(3, osg::Vec4(0.3f, 0.5f, 0.2f, 0));
+                      behind->setAmbient(osg::Vec4(0, 0, 0, 1));
+                      behind->setSpecular(osg::Vec4(1, 1, 1, 1));
+                      state.setAttributeAndModes(behind);
+                  },
+                  false},
         StateCase{"LinearFog", [](osg::StateSet& state) { addFog(state, osg::Fog::LINEAR); }},
         StateCase{"ExponentialFog", [](osg::StateSet& state) { addFog(state, osg::Fog::EXP); }},
         StateCase{"SquaredFog", [](osg::StateSet& state) { addFog(state, osg::Fog::EXP2); }},

@@ -250,6 +250,19 @@ TEST(ImportTest, instancesAreTransformsOverOneGeometry)
     EXPECT_TRUE(model.messages.warnings.empty());
 }
 
+TEST(ImportTest, mirroredInstancesTurnTheWinding)
+{
+    for (const bool isNodeMirrored : {false, true})
+    {
+        ThreeStones file;
+        if (isNodeMirrored) file.at(file.stone).scale = {1, 1, -1};
+        const ImportedModel model = imported(file);
+        const ImportedPrimitive& stones = primitiveOf(model, file.stone);
+        for (std::size_t instance = 0; instance < 3; ++instance)
+            EXPECT_EQ(isClockwise(stones, instance), (instance == 1) != isNodeMirrored) << instance;
+    }
+}
+
 TEST(ImportTest, instancesAreLimited)
 {
     const ThreeStones file;

@@ -124,6 +124,36 @@ TEST_F(SerializersTest, layersGoOnWhereTheyWere)
     EXPECT_EQ(log->text, "");
 }
 
+// A marker at the present time is told once: before the scene is stored, or after it is read.
+TEST_F(SerializersTest, markersAreToldOnceBeforeOrAfter)
+{
+    const auto set = character().getAnimationSet().withClips(
+        {character().getAnimationSet().clips()[0].withMarkers({{0.0, "a"}, {0.5, "b"}}).value()});
+    ASSERT_TRUE(set) << set.error().message;
+    ASSERT_TRUE(character().setAnimationSet(set.value()));
+    struct Case
+    {
+        double seek, advance;
+        const char* told; ///< of the first 0.25 s after reading
+    };
+    for (const Case& c : {Case{0.0, 0.0, "a"}, Case{0.0, 0.5, ""}, Case{0.5, 0.0, "b"}, Case{0.25, 0.25, ""}})
+        for (const char* format : formats)
+        {
+            AnimationController& before = character().getController();
+            ASSERT_TRUE(before.play(0));
+            before.seek(c.seek);
+            before.advance(c.advance);
+            const osg::ref_ptr<osg::Node> read = files.throughFile(*scene, format);
+            ASSERT_TRUE(read && findCharacter(*read));
+            AnimationController& after = findCharacter(*read)->getController();
+            std::string told;
+            after.setEventCallback([&](const AnimationEvent& event)
+                                   { told += event.marker ? event.marker->name : "|"; });
+            after.advance(0.25);
+            EXPECT_EQ(told, c.told) << format << ", from " << c.seek << " by " << c.advance;
+        }
+}
+
 TEST_F(SerializersTest, everythingBelowACharacterComesBack)
 {
     osg::ref_ptr<JointAttachment> hand = new JointAttachment("hand");

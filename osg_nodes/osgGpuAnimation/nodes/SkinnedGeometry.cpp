@@ -195,63 +195,57 @@ void SkinnedGeometry::setMorphTargets(int morph, int entry, std::vector<MorphTar
 void SkinnedGeometry::computePositions(const std::vector<AffineMatrix>& palette,
                                        std::vector<glm::dvec3>& outPositions) const
 {
-    outPositions.clear();
-    const auto* vertices = dynamic_cast<const osg::Vec3Array*>(getVertexArray());
-    if (!vertices) return;
-    outPositions.reserve(vertices->size());
-    for (std::size_t vertex = 0; vertex < vertices->size(); ++vertex)
-    {
-        const glm::dvec4 position(morphed((*vertices)[vertex], &MorphTarget::positions, vertex, palette), 1.0);
-        glm::dvec3 sum(0.0);
-        forEachInfluence(vertex,
-                         [&](std::size_t entry, float weight)
-                         {
-                             if (entry >= palette.size()) return;
-                             for (int row = 0; row < 3; ++row)
-                                 sum[row] += double(weight) *
-                                             glm::dot(glm::dvec4(palette[entry].rows[std::size_t(row)]), position);
-                         });
-        outPositions.push_back(sum);
-    }
+    pose(getVertexArray(), &MorphTarget::positions, palette, outPositions,
+         [](const glm::dmat4& bindToPose, const glm::dvec3& position)
+         { return glm::dvec3(bindToPose * glm::dvec4(position, 1.0)); });
 }
 
 void SkinnedGeometry::computeNormals(const std::vector<AffineMatrix>& palette,
                                      std::vector<glm::dvec3>& outNormals) const
 {
-    outNormals.clear();
-    const auto* normals = dynamic_cast<const osg::Vec3Array*>(getNormalArray());
-    if (!normals || normals->size() < getVertexCount()) return;
-    outNormals.reserve(normals->size());
-    for (std::size_t vertex = 0; vertex < getVertexCount(); ++vertex)
+    const auto turned = [](const glm::dmat4& bindToPose, const glm::dvec3& normal)
     {
-        glm::dvec3 rows[3] = {};
+        const glm::dmat3 linear(bindToPose);
+        const glm::dmat3 cofactors(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
+                                   glm::cross(linear[0], linear[1]));
+        return (glm::dot(linear[0], cofactors[0]) < 0.0 ? -1.0 : 1.0) * (cofactors * normal);
+    };
+    pose(getNormalArray(), &MorphTarget::normals, palette, outNormals, turned);
+}
+
+template <typename Move>
+void SkinnedGeometry::pose(const osg::Array* bind, osg::ref_ptr<osg::Vec3Array> MorphTarget::*deltas,
+                           const std::vector<AffineMatrix>& palette, std::vector<glm::dvec3>& out, Move move) const
+{
+    out.clear();
+    const auto* vectors = dynamic_cast<const osg::Vec3Array*>(bind);
+    if (!vectors || vectors->size() != getVertexCount()) return;
+    out.reserve(vectors->size());
+    for (std::size_t vertex = 0; vertex < vectors->size(); ++vertex)
+    {
+        glm::dmat4 bindToPose(0.0);
         forEachInfluence(vertex,
                          [&](std::size_t entry, float weight)
                          {
-                             for (int row = 0; row < 3 && entry < palette.size(); ++row)
-                                 rows[row] += double(weight) * glm::dvec3(palette[entry].rows[std::size_t(row)]);
+                             if (entry < palette.size()) bindToPose += double(weight) * palette[entry].toColumns();
                          });
-        const glm::dvec3 normal = morphed((*normals)[vertex], &MorphTarget::normals, vertex, palette);
-        const glm::dvec3 cofactor = glm::cross(rows[1], rows[2]);
-        const glm::dvec3 turned(glm::dot(cofactor, normal), glm::dot(glm::cross(rows[2], rows[0]), normal),
-                                glm::dot(glm::cross(rows[0], rows[1]), normal));
-        const double length = glm::dot(rows[0], cofactor) < 0.0 ? -glm::length(turned) : glm::length(turned);
-        outNormals.push_back(length != 0.0 ? turned / length : normal);
+        out.push_back(move(bindToPose, morphed((*vectors)[vertex], vertex, deltas, palette)));
     }
 }
 
-glm::dvec3 SkinnedGeometry::morphed(const osg::Vec3& bind, osg::ref_ptr<osg::Vec3Array> MorphTarget::*deltasOf,
-                                    std::size_t vertex, const std::vector<AffineMatrix>& palette) const
+glm::dvec3 SkinnedGeometry::morphed(const osg::Vec3& bind, std::size_t vertex,
+                                    osg::ref_ptr<osg::Vec3Array> MorphTarget::*deltas,
+                                    const std::vector<AffineMatrix>& palette) const
 {
     glm::dvec3 sum(bind.x(), bind.y(), bind.z());
     for (std::size_t target = 0; target < _morphTargets.size(); ++target)
     {
-        const osg::Vec3Array* deltas = (_morphTargets[target].*deltasOf).get();
+        const osg::Vec3Array* ofTarget = (_morphTargets[target].*deltas).get();
         const std::size_t entry = static_cast<std::size_t>(_morphEntry) + target / MorphWeights::weightsPerBlock;
-        if (!deltas || vertex >= deltas->size() || entry >= palette.size()) continue;
+        if (!ofTarget || vertex >= ofTarget->size() || entry >= palette.size()) continue;
         const std::size_t place = target % MorphWeights::weightsPerBlock;
         const double weight = palette[entry].rows[place / 4][static_cast<int>(place % 4)];
-        const osg::Vec3& delta = (*deltas)[vertex];
+        const osg::Vec3& delta = (*ofTarget)[vertex];
         sum += weight * glm::dvec3(delta.x(), delta.y(), delta.z());
     }
     return sum;

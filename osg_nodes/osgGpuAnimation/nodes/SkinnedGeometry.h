@@ -124,7 +124,7 @@ public:
     /// The CPU twin of skin.glsl, in double precision: computes the vertex positions in the character's own space.
     /// palette: the set's paletteSize() entries of one instance. outPositions: one per vertex.
     void computePositions(const std::vector<AffineMatrix>& palette, std::vector<glm::dvec3>& outPositions) const;
-    /// The same for unit normals; empty if the mesh has no normal per vertex.
+    /// The same for the normals: one per vertex, not normalized. Empty without an osg::Vec3Array of as many normals.
     void computeNormals(const std::vector<AffineMatrix>& palette, std::vector<glm::dvec3>& outNormals) const;
 
     /// Sets the palette's uniforms in the applied program and draws all instances of the PaletteBinding.
@@ -147,7 +147,10 @@ private:
     void withVertexArrays(osg::RenderInfo& renderInfo, Draw draw) const;
     void drawPrimitives(osg::State& state, int count, int level) const;
     void bindPalette(osg::State& state, const PalettePlace& place) const;
-    glm::dvec3 morphed(const osg::Vec3& bind, osg::ref_ptr<osg::Vec3Array> MorphTarget::*deltasOf, std::size_t vertex,
+    template <typename Move>
+    void pose(const osg::Array* bind, osg::ref_ptr<osg::Vec3Array> MorphTarget::*deltas,
+              const std::vector<AffineMatrix>& palette, std::vector<glm::dvec3>& out, Move move) const;
+    glm::dvec3 morphed(const osg::Vec3& bind, std::size_t vertex, osg::ref_ptr<osg::Vec3Array> MorphTarget::*deltas,
                        const std::vector<AffineMatrix>& palette) const;
 
     int _influences = 1;  ///< the largest number per vertex

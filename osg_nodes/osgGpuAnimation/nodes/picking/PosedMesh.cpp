@@ -6,6 +6,8 @@
 #include <layout.glsl>
 
 #include <algorithm>
+#include <glm/geometric.hpp>
+
 #include <cstring>
 
 namespace osgGpuAnimation
@@ -84,6 +86,8 @@ osg::ref_ptr<osg::Geometry> PosedMeshes::pose(const SkinnedGeometry& mesh, bool 
     if (withNormals)
     {
         mesh.computeNormals(_palette, computed);
+        for (glm::dvec3& normal : computed)
+            if (const double length = glm::length(normal); length > 0.0) normal /= length;
         if (!computed.empty()) posed->setNormalArray(toArray(computed), osg::Array::BIND_PER_VERTEX);
         posed->setColorArray(const_cast<osg::Array*>(mesh.getColorArray()));
     }

@@ -5,11 +5,13 @@
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
 
+#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 #include <osg/TriangleFunctor>
 #include <osgUtil/IntersectionVisitor>
 #include <osgUtil/LineSegmentIntersector>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -164,6 +166,58 @@ TEST(AnimatedCrowdTest, boundsHoldEveryInstance)
     EXPECT_GT(crowd->getBound().radius(), 100);
 }
 
+TEST(AnimatedCrowdTest, boundsHoldWhateverAControllerMayPlay)
+{
+    const osg::ref_ptr<AnimatedCrowd> crowd = emptyCrowd();
+    const AnimatedCrowd::Instance instance = crowd->add(osg::Matrixd(), playing("turn")).value();
+    const auto holds = [&](const osg::Vec3d& corner)
+    {
+        const glm::vec4& sphere = crowd->getInstances().sphere(0);
+        return (osg::Vec3d(sphere.x, sphere.y, sphere.z) - corner).length() <= sphere.w + 1e-6;
+    };
+    const osg::Vec3d shifted(3, 0, 1);
+    EXPECT_FALSE(holds(shifted));
+    ASSERT_TRUE(crowd->getController(instance)->crossfade("shift", 0.5));
+    EXPECT_TRUE(holds(shifted)) << "at once, before an update";
+    crowd->update(0.0);
+    crowd->update(0.25);
+    EXPECT_TRUE(holds(shifted));
+    crowd->update(1.0);
+    ASSERT_EQ(crowd->getInstances().controllerCount(), 0u);
+    EXPECT_TRUE(holds(shifted));
+    EXPECT_FALSE(holds({0, 0, -1})) << "the former clip's";
+}
+
+// Shear stretches one diagonal of the instance's box; any of the four may be the longest.
+TEST(AnimatedCrowdTest, spheresHoldShearedInstancesAndAreNoLargerThanNeeded)
+{
+    Box box;
+    box.add({-1.0f, -3.0f, 0.0f});
+    box.add({3.0f, -1.0f, 1.0f});
+    for (const glm::vec3 along :
+         {glm::vec3(2, 1, 0.5f), glm::vec3(-2, 1, 0.5f), glm::vec3(2, -1, 0.5f), glm::vec3(2, 1, -0.5f)})
+    {
+        SCOPED_TRACE(testing::Message() << along.x << ", " << along.y << ", " << along.z);
+        AffineMatrix root;
+        for (int row = 0; row < 3; ++row)
+            for (int column = 0; column < 3; ++column)
+                root.rows[static_cast<std::size_t>(row)][column] =
+                    (row == column ? 0.5f : 0.0f) + along[row] * along[column];
+        CrowdInstances instances(testCharacterSet());
+        instances.setClipBounds({box, box, box});
+        instances.add(root, playing("shift"), PoseBatch::white);
+        const glm::vec4 sphere = instances.sphere(0);
+        float farthest = 0.0f;
+        for (int corner = 0; corner < 8; ++corner)
+        {
+            const glm::vec3 place(corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
+                                  corner & 4 ? box.max.z : box.min.z);
+            farthest = std::max(farthest, glm::distance(root.transformPoint(place), glm::vec3(sphere)));
+        }
+        EXPECT_NEAR(sphere.w, farthest, 1e-5f * farthest);
+    }
+}
+
 TEST(AnimatedCrowdTest, pickingTellsTheInstanceAsItIsPosed)
 {
     const osg::ref_ptr<AnimatedCrowd> crowd = emptyCrowd();
@@ -186,6 +240,9 @@ TEST(AnimatedCrowdTest, pickingTellsTheInstanceAsItIsPosed)
     EXPECT_NEAR((hit.getWorldIntersectPoint() - osg::Vec3d(72, 0, 0.4)).length(), 0.0, 1e-5);
     EXPECT_TRUE(hitAt(70.5)->getIntersections().empty()) << "there it is in the bind pose alone";
     EXPECT_TRUE(hitAt(2.0)->getIntersections().empty()) << "removed";
+    ASSERT_TRUE(crowd->setPlacement(names[7], osg::Matrixd::translate(75.0, 0, 0)));
+    EXPECT_TRUE(hitAt(72.0)->getIntersections().empty()) << "moved after it was posed";
+    EXPECT_EQ(hitAt(77.0)->getIntersections().size(), 1u);
     EXPECT_FALSE(AnimatedCrowd::instanceOf(osgUtil::LineSegmentIntersector::Intersection()));
 }
 
@@ -209,6 +266,49 @@ TEST(AnimatedCrowdTest, aCloneHasInstancesOfItsOwn)
     ASSERT_TRUE(other->setPlacement(instance, osg::Matrixd::translate(5, 0, 0)));
     EXPECT_EQ(crowd->getPlacement(instance).getTrans(), osg::Vec3d(1, 0, 0));
     EXPECT_EQ(&crowd->getAnimationSet(), &other->getAnimationSet());
+}
+
+TEST(AnimatedCrowdTest, theFirstInstanceLeavesAnOriginThatWasSet)
+{
+    const osg::ref_ptr<AnimatedCrowd> crowd = emptyCrowd();
+    crowd->setOrigin({-100, 50, 0});
+    const AnimatedCrowd::Instance instance = crowd->add(osg::Matrixd::translate(1, 2, 3), playing("shift")).value();
+    EXPECT_EQ(crowd->getOrigin(), osg::Vec3d(-100, 50, 0));
+    EXPECT_EQ(crowd->getPlacement(instance).getTrans(), osg::Vec3d(1, 2, 3));
+}
+
+TEST(AnimatedCrowdTest, matricesOfBothWaysAreInverseInEveryReferenceFrame)
+{
+    const osg::ref_ptr<AnimatedCrowd> crowd = emptyCrowd();
+    crowd->setOrigin({10, 20, 30});
+    const osg::Matrixd above = osg::Matrixd::rotate(0.5, 0, 0, 1) * osg::Matrixd::translate(1, 2, 3);
+    const osg::Vec3d point(7, -5, 4);
+    for (const auto frame : {osg::Transform::RELATIVE_RF, osg::Transform::ABSOLUTE_RF})
+    {
+        crowd->setReferenceFrame(frame);
+        osg::Matrix toWorld(above), toLocal(osg::Matrixd::inverse(above));
+        ASSERT_TRUE(crowd->computeLocalToWorldMatrix(toWorld, nullptr));
+        ASSERT_TRUE(crowd->computeWorldToLocalMatrix(toLocal, nullptr));
+        const osg::Vec3d wanted =
+            frame == osg::Transform::RELATIVE_RF ? (point + crowd->getOrigin()) * above : point + crowd->getOrigin();
+        EXPECT_LT((point * toWorld - wanted).length(), 1e-9) << frame;
+        EXPECT_LT((wanted * toLocal - point).length(), 1e-9) << frame;
+    }
+}
+
+// Bounds store floats, which are half a unit apart there.
+TEST(AnimatedCrowdTest, boundsHoldSmallInstancesFarFromTheOrigin)
+{
+    for (const double fraction : {0.0, 0.1, 0.25, 0.4, 0.75})
+    {
+        const osg::ref_ptr<AnimatedCrowd> crowd = emptyCrowd();
+        const osg::Vec3d place(6378137.0 + fraction, 6378137.0 - fraction, 0.0);
+        const osg::Matrixd small = osg::Matrixd::scale(0.01, 0.01, 0.01) * osg::Matrixd::translate(place);
+        ASSERT_TRUE(crowd->add(small, playing("shift")));
+        for (const osg::Vec3d corner : {place, place + osg::Vec3d(0.03, 0, 0.01)})
+            EXPECT_LE((osg::Vec3d(crowd->getBound().center()) - corner).length(), crowd->getBound().radius())
+                << fraction;
+    }
 }
 
 TEST(AnimatedCrowdTest, movingTheOriginLeavesInstancesWhereTheyAre)

@@ -142,6 +142,20 @@ TEST_F(CharacterKeysTest, aFrameOnAndBack)
     EXPECT_NEAR(controller.time(), controller.duration() - 2.0 / 30.0, 1e-9);
 }
 
+TEST_F(CharacterKeysTest, aFrameBackFromAnEndGoesByTheSpeed)
+{
+    controller.setLoopMode(LoopMode::Once);
+    for (const double speed : {2.0, 0.5, -1.0})
+    {
+        controller.setSpeed(speed);
+        controller.resume();
+        controller.advance(100.0);
+        ASSERT_EQ(controller.state(), PlayState::Ended) << speed;
+        press(',');
+        EXPECT_NEAR(controller.time(), (speed > 0.0 ? controller.duration() : 0.0) - speed / 30.0, 1e-9) << speed;
+    }
+}
+
 TEST_F(CharacterKeysTest, aPausedCharacterShowsTheNextClipAndStaysPaused)
 {
     press('k');

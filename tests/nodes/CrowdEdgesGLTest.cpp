@@ -135,6 +135,28 @@ TEST_F(CrowdEdgesGLTest, placesThatAreNoNumbersLeaveTheOthersAsTheyAre)
     }
 }
 
+// The instance that reaches farthest (or nearest) is not the one with the farthest (or nearest) centre.
+TEST_F(CrowdEdgesGLTest, nearAndFarPlanesHoldLargeInstancesBesideSmallOnes)
+{
+    for (const double way : {1.0, -1.0}) // away from the eye and towards it
+    {
+        const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*makeTestCharacter());
+        const osg::Matrixd large = osg::Matrixd::scale(5, 5, 5) *
+                                   osg::Matrixd::rotate(way * osg::DegreesToRadians(80.0), 0, 0, 1) *
+                                   osg::Matrixd::translate(0, 0, -2.5);
+        ASSERT_TRUE(crowd->add(large, still()));
+        for (const double depth : {2.6 * way, -2.0 * way})
+            ASSERT_TRUE(
+                crowd->add(osg::Matrixd::scale(0.4, 0.4, 0.4) * osg::Matrixd::translate(-2, depth, 0), still()));
+        viewer().getCamera()->setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
+        const osg::ref_ptr<osg::Image> expected = pictureOf(crowd, {0.0});
+        EXPECT_GT(picture().pixelsDrawn(), 200);
+        viewer().getCamera()->setComputeNearFarMode(osg::CullSettings::COMPUTE_NEAR_FAR_USING_BOUNDING_VOLUMES);
+        EXPECT_EQ(Picture::pixelsDifferent(*expected, *pictureOf(crowd, {0.0})), 0) << way;
+        viewer().getCamera()->setProjectionMatrixAsOrtho(-4, 4, -4, 4, 1, 20); // the cull changed its planes
+    }
+}
+
 TEST_F(CrowdEdgesGLTest, aSceneViewWithoutAFrameStampDrawsItToo)
 {
     osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*makeTestCharacter());

@@ -101,6 +101,21 @@ TEST_F(JointAttachmentTest, FollowsAJointByNameOrNumber)
     }
 }
 
+TEST_F(JointAttachmentTest, FollowsANewJointAtOnce)
+{
+    const osg::ref_ptr<JointAttachment> attachment = new JointAttachment("tip");
+    const osg::ref_ptr<AnimatedCharacter> character = characterWith(attachment);
+    updateAt(*character, 1.0);
+    EXPECT_TRUE(isNear(placesOf(*character, "sword")[0], {0, 0, 0}));
+    attachment->setJoint("side");
+    EXPECT_TRUE(isNear(placesOf(*character, "sword")[0], {2, 0, 0}));
+    updateAt(*character, 1.0);
+    EXPECT_TRUE(isNear(attachment->getMatrix().getTrans(), {2, 0, 0}));
+    attachment->setJoint(0);
+    updateAt(*character, 1.0);
+    EXPECT_TRUE(isNear(attachment->getMatrix().getTrans(), {0, 0, 0}));
+}
+
 TEST_F(JointAttachmentTest, TurnsWithItsJoint)
 {
     osg::ref_ptr<AnimatedCharacter> character = characterWith(new JointAttachment("tip"));

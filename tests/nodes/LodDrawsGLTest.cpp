@@ -23,6 +23,12 @@ protected:
     GLuint trianglesOf(osg::Node& scene)
     {
         viewer().getCamera()->setProjectionMatrixAsOrtho(-20, 20, -20, 20, 1, 20);
+        return trianglesDrawn(scene);
+    }
+
+    /// The same with the camera as it is.
+    GLuint trianglesDrawn(osg::Node& scene)
+    {
         _count->attach(*viewer().getCamera(), picture());
         pictureOf(&scene, {0.0, 0.1});
         return _count->primitives();
@@ -67,6 +73,27 @@ TEST_F(LodDrawsGLTest, whatComesAfterTheMostVerticesIsDrawnWhole)
         const GLuint triangles = trianglesOf(*scene);
         EXPECT_GE(triangles, tubeTriangles) << scene->className();
         EXPECT_LT(triangles, tubeTriangles + tubeTriangles / 4) << scene->className();
+    }
+}
+
+// The nearest point of the sphere selects the level, not its centre.
+TEST_F(LodDrawsGLTest, whatReachesBehindTheEyeIsDrawnWhole)
+{
+    const osg::ref_ptr<AnimatedCharacter> character = makeTubeCharacter(armSet());
+    ASSERT_TRUE(character->setPixelError(pixelError));
+    const osg::BoundingSphere bound = character->getBound(); // the crowd's instance has the same
+    for (const auto& animated : std::vector<osg::ref_ptr<osg::Node>>{character, crowdOf(*character)})
+    {
+        const auto trianglesAt = [&](double radii)
+        {
+            osg::Camera& camera = *viewer().getCamera();
+            camera.setProjectionMatrixAsPerspective(60, 1, 0.01, 1000);
+            const osg::Vec3d centre = bound.center();
+            camera.setViewMatrixAsLookAt(centre - osg::Vec3d(0, radii * bound.radius(), 0), centre, {0, 0, 1});
+            return trianglesDrawn(*animated);
+        };
+        EXPECT_EQ(trianglesAt(0.9), tubeTriangles) << animated->className();
+        EXPECT_LT(trianglesAt(1.3), tubeTriangles / 4) << animated->className();
     }
 }
 

@@ -58,6 +58,22 @@ TEST(LodLevelsTest, keepAnElbowThatBendsInAClip)
     EXPECT_EQ(drawn(*tube, ofBending, LodLevels::allTriangles), tube->getPrimitiveSet(0)->getNumIndices());
 }
 
+TEST(LodLevelsTest, aNewSetMakesTheLevelsOfItsPoses)
+{
+    const std::shared_ptr<const AnimationSet> bending = armSet();
+    const auto still = bending->withClips({}).value();
+    const osg::ref_ptr<AnimatedCharacter> character = new AnimatedCharacter(still);
+    const osg::ref_ptr<SkinnedGeometry> tube = makeTube(*still);
+    character->addChild(tube);
+    ASSERT_TRUE(character->setPixelError(1.0f));
+    const int level = -5;
+    const std::size_t straight = drawn(*tube, *tube->getLodLevels(*still), level);
+    ASSERT_TRUE(character->setAnimationSet(bending));
+    EXPECT_GT(drawn(*tube, *tube->getLodLevels(*bending), level), 2 * straight);
+    ASSERT_TRUE(character->setAnimationSet(still));
+    EXPECT_EQ(drawn(*tube, *tube->getLodLevels(*still), level), straight);
+}
+
 TEST(LodLevelsTest, speakOfTheCharactersUnitsWhateverTheMeshs)
 {
     // The same tube a hundred times as large in its own space, and made smaller by its palette.

@@ -140,6 +140,27 @@ TEST_F(PoseStatisticsGLTest, eachCharacterCountsOnceForAllCamerasAndBatches)
     }
 }
 
+TEST_F(PoseStatisticsGLTest, camerasOfAFrameAddWhatTheyEvaluate)
+{
+    showCharacters(3, 2);
+    // The first slave shows the two others, the second what the viewer's own camera shows.
+    for (const double aside : {-100.0, 0.0})
+    {
+        const osg::ref_ptr<osg::Camera> slave = new osg::Camera;
+        slave->setGraphicsContext(&context());
+        slave->setViewport(0, 0, 64, 64);
+        slave->setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
+        viewer().addSlave(slave, osg::Matrixd(), osg::Matrixd::translate(aside, 0, 0));
+    }
+    collect(true);
+    for (const double time : {0.0, 0.1, 0.2})
+    {
+        drawAt(time);
+        EXPECT_EQ(recorded(PoseStatistics::charactersEvaluated), 5.0) << time;
+        EXPECT_EQ(recorded(PoseStatistics::charactersSeen), 5.0) << time;
+    }
+}
+
 TEST_F(PoseStatisticsGLTest, aCamerasStatisticsCountWhatItsDrawsShow)
 {
     const osg::ref_ptr<AnimatedCharacter> first = makeTestCharacter();

@@ -7,6 +7,7 @@
 
 #include <osg/GLExtensions>
 #include <osg/Image>
+#include <osg/Material>
 #include <osg/Notify>
 
 #ifndef GL_FRAMEBUFFER_SRGB
@@ -203,6 +204,95 @@ TEST_F(ProfileGLTest, withoutFeedbackAndInstancingAllElseIsDrawnAndOneMessageSay
     EXPECT_NE(warnings->texts[0].find("OpenGL 2.1; animated characters need 3.3"), std::string::npos)
         << warnings->texts[0];
     EXPECT_NO_GL_ERROR();
+}
+
+constexpr auto on = osg::StateAttribute::ON, off = osg::StateAttribute::OFF, inherit = osg::StateAttribute::INHERIT;
+constexpr auto override = osg::StateAttribute::OVERRIDE, protect = osg::StateAttribute::PROTECTED;
+
+/// A mode's values in the state sets from the root to the mesh.
+struct ModeCase
+{
+    osg::StateAttribute::GLModeValue root, above, own;
+    bool isOn;
+};
+
+const ModeCase modeCases[] = {
+    {on, inherit, off, false},
+    {off, inherit, on, true},
+    {on, inherit, inherit, true},
+    {on | override, inherit, off, true},
+    {off | override, inherit, on, false},
+    {on | override, inherit, off | protect, false},
+    {off | override, inherit, on | protect, true},
+    {on | override, off | override, on, true},
+    {off | override, on | override | protect, off, true},
+    {on | override, off | protect, on, true},
+};
+
+// In the core profile OSG does not apply these modes, so the program's variant goes by the stack of state sets.
+TEST_F(ProfileGLTest, overriddenAndProtectedModesCountInEveryProfile)
+{
+    using SetMode = void (*)(osg::StateSet&, osg::StateAttribute::GLModeValue);
+    const SetMode modes[] = {[](osg::StateSet& state, osg::StateAttribute::GLModeValue value)
+                             { state.setMode(GL_LIGHTING, value); },
+                             [](osg::StateSet& state, osg::StateAttribute::GLModeValue value)
+                             { state.setTextureMode(0, GL_TEXTURE_2D, value); }};
+    for (const ProfileCase& profile : {stock, ProfileCase{"Core33", 1, "3.3", 0}})
+    {
+        changeTo(profile);
+        osg::setNotifyHandler(new Warnings); // of the fixed pipeline in the core profile, see above
+        const osg::ref_ptr<osg::Group> root = new osg::Group, above = new osg::Group;
+        const osg::ref_ptr<AnimatedCharacter> character = makePanelCharacter();
+        character->setMatrix(osg::Matrix::rotate(0.9, 0, 0, 1)); // a headlight shades it
+        above->addChild(character);
+        root->addChild(above);
+        osg::StateSet& own = *character->getChild(0)->getStateSet();
+        pictureOf(root);
+        for (const SetMode set : modes)
+        {
+            const auto pictureWith = [&](const ModeCase& values)
+            {
+                set(*root->getOrCreateStateSet(), values.root);
+                set(*above->getOrCreateStateSet(), values.above);
+                set(own, values.own);
+                drawAt(0.0);
+                return picture().copy();
+            };
+            const osg::ref_ptr<osg::Image> pictures[] = {pictureWith({inherit, inherit, off, false}),
+                                                         pictureWith({inherit, inherit, on, true})};
+            EXPECT_GT(Picture::pixelsDifferent(*pictures[0], *pictures[1]), 100);
+            for (const ModeCase& values : modeCases)
+                EXPECT_EQ(Picture::pixelsDifferent(*pictures[values.isOn], *pictureWith(values)), 0)
+                    << profile.name << ", mode " << (set == modes[0] ? "lighting" : "texture") << ", case "
+                    << &values - modeCases;
+            pictureWith({inherit, inherit, on, true});
+        }
+        osg::setNotifyHandler(new osg::StandardNotifyHandler);
+        if (context().isCoreProfile()) takeGLErrors();
+    }
+}
+
+TEST_F(ProfileGLTest, emissionIsAddedInEveryProfile)
+{
+    for (const ProfileCase& profile : {stock, ProfileCase{"Core33", 1, "3.3", 0}})
+    {
+        changeTo(profile);
+        osg::setNotifyHandler(new Warnings); // of the fixed pipeline in the core profile, see above
+        const osg::ref_ptr<AnimatedCharacter> character = makePanelCharacter();
+        osg::StateSet& state = *character->getChild(0)->getStateSet();
+        state.setMode(GL_LIGHTING, on);
+        state.setTextureMode(0, GL_TEXTURE_2D, off);
+        osg::ref_ptr<osg::Material> material = new osg::Material;
+        material->setDiffuse(osg::Material::FRONT_AND_BACK, osg::Vec4(0.25f, 0.25f, 0.25f, 1));
+        state.setAttribute(material);
+        const osg::Vec4 plain = pictureOf(character)->getColor(32u, 32u);
+        material->setEmission(osg::Material::FRONT_AND_BACK, osg::Vec4(0.5f, 0, 0.25f, 1));
+        const osg::Vec4 glowing = pictureOf(character)->getColor(32u, 32u);
+        for (const auto& [channel, added] : {std::pair(0, 0.5f), std::pair(1, 0.0f), std::pair(2, 0.25f)})
+            EXPECT_NEAR(glowing[channel] - plain[channel], added, 0.01f) << profile.name << ", channel " << channel;
+        osg::setNotifyHandler(new osg::StandardNotifyHandler);
+        if (context().isCoreProfile()) takeGLErrors();
+    }
 }
 
 TEST_F(ProfileGLTest, colorsAreEncodedByAnSrgbFramebuffer)

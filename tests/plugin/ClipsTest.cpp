@@ -141,6 +141,16 @@ TEST(ClipsTest, keyframesAreLimited)
     EXPECT_TRUE(mentions(keysToo.warning(0), "its keys take too many bytes")) << keysToo.warning(0);
 }
 
+// The keys are freed with their clip: its 64 bytes count once, its keyframes (about 100 bytes) stay.
+TEST(ClipsTest, keysOfEarlierClipsDoNotCount)
+{
+    ModelBuilder file = slidingArm();
+    for (int i = 0; i < 2; ++i)
+        file.model.animations.push_back(file.model.animations[0]);
+    const ReadClips read(file, 340);
+    EXPECT_EQ(read.clips.clips.size(), 3u) << read.warning(0);
+}
+
 TEST(ClipsTest, weightsDriveTheMorphOfTheirNode)
 {
     ModelBuilder file;

@@ -224,6 +224,13 @@ TEST_F(CloningGLTest, theObjectCacheHandsOutCharactersOfTheirOwn)
             osgDB::Registry::instance()->clearObjectCache();
         }
     osg::ref_ptr<osgDB::Options> options = new osgDB::Options;
+    options->setObjectCacheHint(osgDB::Options::CACHE_OBJECTS); // of readObject, which returns nodes as well
+    const auto readObject = [&] { return osgDB::readRefObjectFile(wanderer(), options); };
+    const osg::ref_ptr<osg::Object> one = readObject(), other = readObject();
+    ASSERT_TRUE(one && one->asNode() && other && other->asNode());
+    EXPECT_NE(findCharacter(*one->asNode()), findCharacter(*other->asNode()));
+    EXPECT_EQ(&findCharacter(*one->asNode())->getAnimationSet(), &findCharacter(*other->asNode())->getAnimationSet());
+    osgDB::Registry::instance()->clearObjectCache();
     options->setObjectCacheHint(osgDB::Options::CACHE_ALL);
     const std::string still = plugins.folder.file("still.osgb");
     ASSERT_TRUE(osgDB::writeNodeFile(*osg::ref_ptr<osg::Group>(new osg::Group), still));

@@ -103,6 +103,9 @@ const FaultCase faults[] = {
     {"arm.gltf.crowd", "", "size"},
     {"arm.crowd", "", "size"},
     {"absent.gltf.2x2.crowd", "", "absent.gltf"},
+    {"absent.gltf.1000x1000.crowd", "", "absent.gltf"}, // the largest size is no fault
+    {"absent.gltf.1x1000000.crowd", "", "absent.gltf"},
+    {"absent.gltf.1x1000001.crowd", "", "1000000"},
     {"still.gltf.2x2.crowd", "", "no animated character"},
     {"arm.gltf.2x2.crowd", "clips=Jump", "\"Slide\""},
     {"arm.gltf.2x2.crowd", "clips=Slide,",
@@ -125,6 +128,7 @@ TEST_F(CrowdPluginTest, readsColumnsAndRowsByTheBounds)
     EXPECT_GT(spacing, 0.0);
     EXPECT_NEAR(placeOf(*crowd, 4).y() - placeOf(*crowd, 0).y(), spacing, 1e-4 * spacing);
     EXPECT_NEAR(placeOf(*crowd, 0).x() + placeOf(*crowd, 11).x(), 0.0, 1e-4 * spacing);
+    EXPECT_NEAR(placeOf(*crowd, 0).y() + placeOf(*crowd, 11).y(), 0.0, 1e-4 * spacing);
     EXPECT_EQ(placeOf(*crowd, 0).z(), placeOf(*crowd, 11).z());
     const osg::Matrixd placement = crowd->getPlacement(crowd->getInstances().handleOf(0));
     EXPECT_EQ(osg::Matrixd::transform3x3(osg::Vec3d(0, 1, 0), crowd->getFileToNode() * placement), osg::Vec3d(0, 0, 1))

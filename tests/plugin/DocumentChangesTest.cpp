@@ -70,6 +70,10 @@ const Change changes[] = {
     {"/bufferViews/0/byteStride", "13", Expect::Refuse, "bufferViews[0].byteStride"},
     {"/bufferViews/0/byteStride", "8", Expect::Refuse, "accessors[0]"},
     {"/bufferViews/0/target", "1", Expect::Warn, "bufferViews[0].target"},
+    // The last of three positions, 16 bytes apart, ends with the view: no padding follows it.
+    {"/bufferViews/0", R"({"buffer":0,"byteLength":44,"byteStride":16})", Expect::Valid, ""},
+    {"/bufferViews/0", R"({"buffer":0,"byteLength":43,"byteStride":16})", Expect::Refuse,
+     "accessors[0]: expected data within the 43 bytes of bufferViews[0]"},
     // accessors
     {"/accessors/0/count", "1e15", Expect::Refuse, "accessors[0]"},
     {"/accessors/0/count", "0", Expect::Refuse, "accessors[0].count"},
@@ -91,6 +95,9 @@ const Change changes[] = {
      Expect::Valid, ""},
     {"/accessors/0/sparse", R"({"count":3,"indices":{"bufferView":2,"componentType":5121},"values":{"bufferView":0}})",
      Expect::Refuse, "accessors[0].sparse.indices: expected indices that increase"},
+    {"/accessors/0/sparse",
+     R"({"count":2,"indices":{"bufferView":2,"byteOffset":2,"componentType":5121},"values":{"bufferView":0}})",
+     Expect::Refuse, "accessors[0].sparse.indices: expected indices that increase, found 0 after 0"},
     {"/accessors/0/sparse",
      R"({"count":1,"indices":{"bufferView":0,"byteOffset":15,"componentType":5121},"values":{"bufferView":0}})",
      Expect::Refuse, "accessors[0].sparse.indices: expected indices below 3"},

@@ -96,6 +96,23 @@ TEST_F(InfluencesTest, ofTwelveTheEightLargestAreKept)
     EXPECT_NE(messages.warnings[0].find("more than 8 influences"), std::string::npos);
 }
 
+// A vertex whose weights do not sum to 1 keeps its sum.
+TEST_F(InfluencesTest, theKeptInfluencesHaveTheSumOfAll)
+{
+    for (const float sum : {0.75f, 1.5f})
+    {
+        const float small = 0.01f * sum, large = 0.12f * sum;
+        const auto sets =
+            read({{0, 1, 2, 3}, {4, 5, 6, 7}, {8, 9, 10, 11}},
+                 {{large, large, large, large}, {small, small, small, small}, {large, large, large, large}});
+        ASSERT_EQ(sets.size(), 2u);
+        for (const InfluenceSet& influences : sets)
+            for (unsigned int i = 0; i < 4; ++i)
+                EXPECT_NEAR((*influences.weights)[0][i], 0.125f * sum, 1e-6f);
+        EXPECT_EQ((*sets[1].entries)[0][0], entry(8));
+    }
+}
+
 TEST_F(InfluencesTest, twelvePlacesWithEightWeightsLoseNothing)
 {
     const auto sets = read({{0, 1, 2, 3}, {4, 5, 6, 7}, {8, 9, 10, 11}},

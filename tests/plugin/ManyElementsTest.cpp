@@ -224,4 +224,22 @@ TEST(ManyElementsTest, theDocumentsLimitIsTheCallers)
         << refused.error().message;
 }
 
+// A value of extras takes more than twice the 48 bytes of a value in the tree.
+TEST(ManyElementsTest, everyValueOfExtrasCounts)
+{
+    const auto withExtras = [](int values)
+    {
+        std::string text = R"({"asset":{"version":"2.0"},"nodes":[{"extras":{"all":[0)";
+        for (int i = 1; i < values; ++i)
+            text += ",0";
+        return text + "]}}]}";
+    };
+    ImportOptions options;
+    options.maxDocumentBytes = 100000;
+    EXPECT_TRUE(importModel(withExtras(250), "", options));
+    const Result<ImportedModel> refused = importModel(withExtras(1000), "", options);
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().message.find("limit maxDocumentBytes"), std::string::npos) << refused.error().message;
+}
+
 } // namespace osgGpuAnimation::gltf

@@ -126,6 +126,7 @@ TEST_F(MaterialsTest, alphaModes)
     const auto mirrored = [](MaterialUse& use) { use.mirrored = true; }; // other uses, so that they are made anew
     const auto* function = get<osg::AlphaFunc>(state(false, mirrored), osg::StateAttribute::ALPHAFUNC);
     ASSERT_TRUE(function);
+    EXPECT_EQ(function->getFunction(), osg::AlphaFunc::GEQUAL);
     EXPECT_EQ(function->getReferenceValue(), 0.25f);
     EXPECT_EQ(uniform(state(true, mirrored), "alphaCutoff"), 0.25f);
     material().alphaMode = "BLEND";

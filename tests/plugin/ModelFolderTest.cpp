@@ -24,7 +24,9 @@ protected:
     void SetUp() override
     {
         fs::create_directories(scratch.file("model/deep"));
+        fs::create_directories(scratch.file("models")); // its name begins with the model's folder's
         scratch.write("outside.bin", "outside");
+        scratch.write("models/beside.bin", "outside");
         scratch.write("model/model.gltf", "{}");
         scratch.write("model/in.bin", "inside");
         scratch.write("model/a b+c.bin", "spaced");
@@ -34,6 +36,7 @@ protected:
         scratch.write("model/deep/below.bin", "below");
         ASSERT_EQ(mkfifo(scratch.file("model/pipe").c_str(), 0600), 0);
         fs::create_symlink("../outside.bin", scratch.file("model/link-out.bin"));
+        fs::create_symlink("../models/beside.bin", scratch.file("model/link-beside.bin"));
         fs::create_symlink("in.bin", scratch.file("model/link-in.bin"));
         fs::create_symlink("..", scratch.file("model/link-up"));
         fs::create_symlink("/dev/zero", scratch.file("model/link-zero"));
@@ -77,7 +80,8 @@ TEST_F(ModelFolderTest, StaysInsideUnlessAllowed)
     const std::string absolute = scratch.file("outside.bin");
     for (const std::string& uri :
          {std::string("../outside.bin"), std::string("deep/../../outside.bin"), std::string("%2e%2e/outside.bin"),
-          std::string("link-out.bin"), std::string("link-up/outside.bin"), absolute})
+          std::string("link-out.bin"), std::string("link-up/outside.bin"), std::string("link-beside.bin"),
+          std::string("../models/beside.bin"), absolute})
     {
         SCOPED_TRACE(uri);
         EXPECT_NE(read(uri).find("allowOutsideFiles"), std::string::npos) << read(uri);

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 #include <limits>
 #include <string>
@@ -101,6 +102,28 @@ TEST(TinyGltfTest, RotationsOfLengthZeroHoldTheOneBefore)
     const tinygltf::Model& model = answer.model.value();
     EXPECT_EQ(readFloats(model, model.animations[1].samplers[0].output),
               (std::vector<float>{0, 0, 0, 1, 1, 0, 0, 0, 1, 0, 0, 0}));
+}
+
+// A key of a CUBICSPLINE has an in-tangent, a value and an out-tangent; tangents may be zero.
+TEST(TinyGltfTest, TangentsOfRotationsAreNoRotations)
+{
+    const std::tuple<std::vector<float>, std::vector<float>, Expect> cases[] = {
+        {{1, 0, 0, 0}, {0, 1, 0, 0}, Expect::Valid},
+        {{0, 0, 0, 0}, {0, 0, 0, 1}, Expect::Warn},
+    };
+    for (const auto& [value, next, expect] : cases)
+    {
+        std::vector<float> keys(24, 0.0f);
+        std::copy(value.begin(), value.end(), keys.begin() + 4);
+        std::copy(next.begin(), next.end(), keys.begin() + 16);
+        ModelBuilder file = baseModel();
+        file.animation("second");
+        file.channel(hip, "rotation", {0, 1}, TINYGLTF_TYPE_VEC4, keys, "CUBICSPLINE");
+        const LoadedDocument answer = load(file.text());
+        expectAnswer(answer, expect, "");
+        if (expect == Expect::Warn) keys[7] = 1.0f; // the identity
+        EXPECT_EQ(readFloats(answer.model.value(), answer.model.value().animations[1].samplers[0].output), keys);
+    }
 }
 
 TEST(TinyGltfTest, WeightsAreMadeToSumToOne)

@@ -101,13 +101,15 @@ std::string clip(const char* path, const std::vector<float>& values, const char*
     return file.text();
 }
 
-std::string restBelowScales(double scale)
+/// An arm with a scale and a place, below a node with the same scale.
+std::string restBelowScales(double scale, double place = 0.0)
 {
     Sliding file;
     const int above = file.node("above");
     file.at(above).scale = {scale, scale, scale};
     file.at(above).children = {file.arm};
     file.at(file.arm).scale = {scale, scale, scale};
+    file.at(file.arm).translation = {place, 0.0, 0.0};
     file.model.scenes[0].nodes = {above};
     return file.text();
 }
@@ -174,6 +176,8 @@ TEST(TransformBoundTest, nothingBeyondFloatNumbersComesThrough)
               "CUBICSPLINE"),
          "animations[1]", false, 1, 1},
         {"product of scales", restBelowScales(1e30), "nodes[", true, 0, 0},
+        {"place below a scale", restBelowScales(1e8, 1e11), "nodes[", true, 0, 0},
+        {"nearer place below a scale", restBelowScales(1e8, 1e9), "", false, 1, 1},
         {"inverse bind", skinned(1e30f), "skins[0].inverseBindMatrices", true, 0, 0},
         {"tiny inverse bind", skinned(1e-30f), "", false, 0, 1},
         {"morph weight", morphed(1e30f), beyond, false, 0, 0},

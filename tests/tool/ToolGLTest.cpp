@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <string>
+#include <vector>
 
 namespace osgGpuAnimation
 {
@@ -37,6 +38,11 @@ int drawnPixels(const osg::Image& image)
         for (int x = 0; x < image.s(); ++x)
             if ((image.getColor(x, y) - image.getColor(0, y)).length() > 0.05f) ++count;
     return count;
+}
+
+std::string bytesOf(const osg::Image& image)
+{
+    return {reinterpret_cast<const char*>(image.data()), image.getTotalSizeInBytes()};
 }
 
 double largestDifference(const json& a, const json& b)
@@ -99,10 +105,25 @@ TEST_F(ToolGLTest, rendersNumberedPicturesThatMove)
         ASSERT_TRUE(pictures[i]) << i;
         EXPECT_GT(drawnPixels(*pictures[i]), 100);
     }
-    EXPECT_NE(std::string(reinterpret_cast<const char*>(pictures[0]->data()), pictures[0]->getTotalSizeInBytes()),
-              std::string(reinterpret_cast<const char*>(pictures[1]->data()), pictures[1]->getTotalSizeInBytes()));
+    EXPECT_NE(bytesOf(*pictures[0]), bytesOf(*pictures[1]));
     EXPECT_FALSE(std::filesystem::exists(folder.file("swing.png")));
     EXPECT_FALSE(std::filesystem::exists(folder.file("swing.0004.png")));
+}
+
+TEST_F(ToolGLTest, timesOutsideTheClipLoopInPictures)
+{
+    std::vector<osg::ref_ptr<osg::Image>> pictures;
+    for (const char* time : {"0.5", "-1.5", "4.5"}) // of a clip of 2 seconds
+    {
+        const std::string picture = folder.file("flag.png");
+        const Process done = Process::run(
+            OSGGPUANIM, {"render", flag, "--clip", "Swing", "--size", "64x64", "--time", time, "-o", picture});
+        ASSERT_EQ(done.status, 0) << done.err;
+        pictures.push_back(osgDB::readRefImageFile(picture));
+        ASSERT_TRUE(pictures.back());
+        EXPECT_GT(drawnPixels(*pictures.back()), 100);
+        EXPECT_EQ(bytesOf(*pictures.back()), bytesOf(*pictures.front())) << time;
+    }
 }
 
 TEST_F(ToolGLTest, aPictureThatCannotBeWrittenIsStatus1)

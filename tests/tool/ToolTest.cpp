@@ -243,6 +243,34 @@ TEST_F(ToolTest, poseHoldsTheClipsEndsAndTakesNamesAndNumbers)
     EXPECT_EQ(json::parse(bind.out)["clip"], nullptr);
 }
 
+// The palette holds twelve weights an entry.
+TEST_F(ToolTest, fixedWeightsMayTakeSeveralEntries)
+{
+    json model = {{"asset", {{"version", "2.0"}}}, {"scenes", {{{"nodes", {0}}}}}, {"nodes", {{{"mesh", 0}}}}};
+    model["buffers"] = {{{"byteLength", 36}, {"uri", "data:application/octet-stream;base64," + std::string(48, 'A')}}};
+    model["bufferViews"] = {{{"buffer", 0}, {"byteLength", 36}}};
+    model["accessors"] = {{{"bufferView", 0},
+                           {"componentType", 5126},
+                           {"count", 3},
+                           {"type", "VEC3"},
+                           {"min", {0, 0, 0}},
+                           {"max", {0, 0, 0}}}};
+    json primitive = {{"attributes", {{"POSITION", 0}}}, {"targets", json::array()}};
+    json like = {{"schema", "gltf-pose/1"}, {"clip", nullptr}, {"frames", {{{"time", 0}}}}};
+    json weights = json::array();
+    for (int target = 0; target < 27; ++target)
+    {
+        primitive["targets"].push_back({{"POSITION", 0}});
+        weights.push_back(0.25 * (target + 1));
+    }
+    model["meshes"] = {{{"primitives", {primitive}}}};
+    like["fixedWeights"] = {{{"node", 0}, {"weights", weights}}};
+    const std::string file = folder.write("face.gltf", model.dump()), wanted = folder.write("like.json", like.dump());
+    const Process done = run({"pose", file, "--like", wanted, "--evaluator", "cpu"});
+    ASSERT_EQ(done.status, 0) << done.err;
+    EXPECT_EQ(json::parse(done.out)["frames"][0]["weights"][0]["weights"], weights);
+}
+
 TEST_F(ToolTest, poseLikeAnswersItsOwnDocument)
 {
     const std::string first = folder.file("first.json");

@@ -61,8 +61,8 @@ struct SceneParts
 };
 
 /// Fills the graph below `root`, and `primitives`. Everything drawn from the palette becomes a child of the character;
-/// the rest becomes MatrixTransforms, one a node of the file that carries a mesh or is above such a node, with
-/// geometries. Nodes that mirror set the winding in their state, so that front faces stay front faces.
+/// the rest becomes MatrixTransforms with geometries, one per node of the file that carries a mesh or is above such a
+/// node. Nodes that mirror set the winding in their state, so that front faces stay front faces.
 void buildSceneGraph(const SceneParts& parts, osg::MatrixTransform& root, AnimatedCharacter* character,
                      std::vector<ImportedPrimitive>& primitives);
 

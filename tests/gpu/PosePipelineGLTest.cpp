@@ -61,7 +61,7 @@ struct PipelineData
     RandomSetShape shape;
     std::size_t instances;
     bool hasRoots;
-    std::size_t maxTexels; ///< 0: the context's own
+    std::size_t maxTexels; ///< 0: the context's limit
 };
 
 void PrintTo(const PipelineData& data, std::ostream* out)
@@ -99,7 +99,7 @@ TEST_P(PosePipelineGLTest, agreesWithTheCpuTwin)
     pipeline->options().form = std::get<1>(GetParam());
     ASSERT_TRUE(pipeline->evaluate(state(), batch, 0));
 
-    // Rounding in float32 once a level, the twin computes in double.
+    // float32 rounds once per level; the twin computes in double.
     const double tolerance = 1e-7 * (10 + data.shape.depth);
     const std::size_t step = instances.size() / 50 + 1;
     for (std::size_t i = 0; i < instances.size(); i += step)
@@ -198,7 +198,7 @@ TEST_F(PosePipelineCostGLTest, aPassThatDoesNotCompileLeavesNoPalette)
         ASSERT_TRUE(pipeline->evaluate(state(), single, 0));
         EXPECT_NE(pipeline->place(*set, 0, 0).texture, 0u);
 
-        // The variant of two samples is not there yet.
+        // The program for two samples does not exist yet.
         realShaderSource = gl->glShaderSource;
         gl->glShaderSource = faultyShaderSource;
         for (int frame = 0; frame < 3; ++frame)

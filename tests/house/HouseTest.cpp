@@ -32,7 +32,7 @@ constexpr std::size_t minSourceLines = 30; ///< shorter sources belong to a neig
 constexpr std::size_t maxShortSources = 10;
 constexpr std::size_t maxReadmeLines = 150;
 
-/// Headers of other people that a folder must not include.
+/// Third-party headers that a folder must not include.
 struct Layer
 {
     const char* folder;
@@ -63,7 +63,7 @@ std::string roomOf(const std::string& path)
     return path.substr(0, path.rfind('.'));
 }
 
-/// The room that an include names, whichever of the include paths it is below; empty: none of ours.
+/// The room that an include names, below any include path; empty if it is none of ours.
 std::string roomOfInclude(const std::string& include, const std::map<std::string, std::size_t>& order)
 {
     for (const char* below : {"osg_nodes/", "plugin/"})
@@ -80,7 +80,7 @@ std::map<std::string, std::size_t> orderOf(const std::string& list)
     return order;
 }
 
-/// Includes against the order, rooms that the list does not have, entries of the list without a room.
+/// Includes that violate the order, rooms missing in the list, and entries of the list without a room.
 std::vector<std::string> faultsOfOrder(const Texts& texts, const std::map<std::string, std::size_t>& order)
 {
     std::vector<std::string> faults;
@@ -112,7 +112,7 @@ bool isFace(const std::string& room)
     return std::regex_match(room, face);
 }
 
-/// Headers of faces that include rooms which are not installed.
+/// Public headers that include rooms which are not installed.
 std::vector<std::string> faultsOfFaces(const Texts& texts, const std::map<std::string, std::size_t>& order)
 {
     std::vector<std::string> faults;
@@ -224,7 +224,7 @@ TEST_F(HouseTest, readmeIsALandingPage)
     EXPECT_LE(lineCount(fileText(fs::path(OSGGPUANIMATION_SOURCE_FOLDER) / "README.md")), maxReadmeLines);
 }
 
-// Each check is seen to fail on a planted fault.
+// Each check must fail on a planted fault.
 
 const char plantedOrder[] = "# lowest first\n"
                             "osg_nodes/osgGpuAnimation/animation/math/Aabb3d\n"

@@ -20,14 +20,14 @@ void note(const char* name)
     if (isTracing) ++callsMade[name];
 }
 
-/// The function of that name in the libraries behind this program.
+/// The function of that name in the libraries after this program in link order.
 template <typename Function>
 Function* next(const char* name)
 {
     return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));
 }
 
-/// One wrapped pointer of GLExtensions: Tag tells pointers of one type apart.
+/// One wrapped pointer of GLExtensions; Tag distinguishes pointers of one type.
 template <typename Tag, typename Return, typename... Arguments>
 struct Wrapped
 {
@@ -135,7 +135,8 @@ int GlCallTrace::count(const std::string& name) const
 
 } // namespace osgGpuAnimation
 
-// The program's own functions stand before the libraries': calls from OSG and from the kit come here first.
+// The dynamic linker finds the program's own functions before the libraries': calls from OSG and from the kit arrive
+// here first.
 extern "C"
 {
 

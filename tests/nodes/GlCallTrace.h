@@ -9,9 +9,9 @@
 namespace osgGpuAnimation
 {
 
-/// Counts GL calls that stall or that cost by the call, while it lives: queries of state (glGet*), glFinish, glFlush,
-/// read-backs, maps, GL queries, waits; and draws, feedback and buffer uploads. The functions that the libraries link
-/// to are replaced by this program's own of the same name, those that OSG fetches by pointer in its GLExtensions.
+/// Counts GL calls during its lifetime: calls that stall (glGet*, glFinish, glFlush, read-backs, maps, GL queries,
+/// waits), draws, feedback and buffer uploads. This program's functions of the same names replace those that the
+/// libraries link to; wrappers replace those that OSG stores as pointers in its GLExtensions.
 class GlCallTrace
 {
 public:
@@ -20,7 +20,7 @@ public:
     GlCallTrace(const GlCallTrace&) = delete;
     GlCallTrace& operator=(const GlCallTrace&) = delete;
 
-    /// Calls by name, those not called left out.
+    /// The number of calls by name; functions without a call are left out.
     std::map<std::string, int> calls() const;
     int count(const std::string& name) const;
 

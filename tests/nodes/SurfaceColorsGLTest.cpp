@@ -16,7 +16,7 @@ namespace osgGpuAnimation
 namespace
 {
 
-/// Colours of meshes and tints of instances.
+/// Mesh colours and instance tints.
 using SurfaceColorsGLTest = LitSurfaceGLTest;
 
 osg::ref_ptr<AnimatedCrowd> makeCrowd(AnimatedCharacter& character, const osg::Vec4& tint, double x)
@@ -41,7 +41,7 @@ TEST_F(SurfaceColorsGLTest, tintsAreAsOneColor)
     EXPECT_GT(Picture::pixelsDifferent(*pictureOf(makeCrowd(*plain, white, 0)), *pictureOf(found)), 200);
 }
 
-// Where triangles are thin what is interpolated is less exact.
+// Interpolation is less exact in thin triangles.
 TEST_F(SurfaceColorsGLTest, tintsAreAsOneColorFarAway)
 {
     const osg::ref_ptr<AnimatedCharacter> tube = makeTubeCharacter(armSet());
@@ -73,7 +73,7 @@ TEST_F(SurfaceColorsGLTest, tintsAreAsOneColorFarAway)
     }
 }
 
-/// Colours of a mesh without an array that counts are white, whatever the material leaves to gl_Color.
+/// A mesh without a valid colour array is white, whatever the material leaves in gl_Color.
 TEST_F(SurfaceColorsGLTest, withoutColorsItIsWhite)
 {
     const osg::ref_ptr<AnimatedCharacter> character = makePanelCharacter();
@@ -110,7 +110,7 @@ TEST_F(SurfaceColorsGLTest, morphTargetsColorWhite)
     EXPECT_GT(picture().pixelsDrawn(), 200);
 }
 
-// Crowds of one mesh, one with tints and one without, and a character beside them.
+// Two crowds of one mesh, one with tints and one without, and a character beside them.
 TEST_F(SurfaceColorsGLTest, tintsAreTheirOwnersAlone)
 {
     const osg::ref_ptr<AnimatedCharacter> character = makePanelCharacter();

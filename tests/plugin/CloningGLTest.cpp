@@ -11,7 +11,7 @@
 #include <cstdio>
 #include <ctime>
 
-// Copies and shared nodes, made as applications make them: each shows what its own controller says.
+// Copies and shared nodes, made as applications make them: each shows the pose of its own controller.
 
 namespace osgGpuAnimation
 {
@@ -52,7 +52,7 @@ protected:
         return ViewerGLTest::pictureOf(&scene, {time});
     }
 
-    /// Of a scene of its own, taken at these times one after another: the last one.
+    /// The last picture of a separate scene that is drawn at these times in order.
     osg::ref_ptr<osg::Image> expectedAt(const std::string& clip, const std::vector<double>& times)
     {
         const osg::ref_ptr<osg::Node> scene = load();
@@ -91,7 +91,7 @@ private:
 class CopiesGLTest : public CloningGLTest, public ::testing::WithParamInterface<CopyCase>
 {
 protected:
-    /// The character alone: a shallow copy of a node above it would have the same one below.
+    /// Copies the character alone: a shallow copy of a node above it would share the character.
     static osg::ref_ptr<AnimatedCharacter> copyOf(osg::Node& scene)
     {
         return osg::clone(findCharacter(scene), osg::CopyOp(GetParam().flags));
@@ -108,7 +108,7 @@ protected:
         copy.getController().setSpeed(0.5);
         EXPECT_EQ(Picture::pixelsDifferent(*before, *pictureOf(original, 1.0)), 0);
         EXPECT_NE(first.getController().clip(), copy.getController().clip());
-        // The loaded root turns +Y to +Z, and so it is for the copy.
+        // The loaded root turns +Y to +Z; the copy needs the same rotation.
         osg::ref_ptr<osg::MatrixTransform> place =
             new osg::MatrixTransform(osg::Matrix::rotate(osg::PI_2, osg::Vec3d(1, 0, 0)));
         place->addChild(&copy);
@@ -261,7 +261,7 @@ TEST_F(CloningGLTest, aThousandCopiesAreMadeWithoutAPause)
 TEST_F(CloningGLTest, theFirstFrameOfAThousandCopiesIsAsTheNext)
 {
     const osg::ref_ptr<osg::Node> scene = load();
-    pictureOf(*scene, 0.0); // programs and buffers are there
+    pictureOf(*scene, 0.0); // creates programs and buffers
     osg::ref_ptr<osg::Group> all = new osg::Group;
     for (int i = 0; i < 1000; ++i)
         all->addChild(osg::clone(scene.get(), osg::CopyOp::DEEP_COPY_NODES));

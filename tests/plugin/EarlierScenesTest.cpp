@@ -79,7 +79,7 @@ void setUpLayers(AnimationController& controller)
     controller.advance(0.25);
 }
 
-/// Has markers and root motion, attachments and all callbacks.
+/// Sets markers and root motion, attachments and all callbacks.
 void setUpCharacter(AnimatedCharacter& character)
 {
     auto moving = withRootMotion(character.getAnimationSet(), "arm \"1\" <&{ä", {true, false, false}).value();
@@ -120,7 +120,7 @@ osg::ref_ptr<AnimatedCrowd> makeCrowd(const AnimatedCharacter& character)
     return crowd;
 }
 
-/// The scene that the fixtures hold: a character, another one of its set, a crowd, and a character of compact clips.
+/// The scene that the fixtures hold: a character, another one of its set, a crowd, and a character with compact clips.
 osg::ref_ptr<osg::Group> makeScene(const ScratchFolder& folder)
 {
     const std::string file = folder.write("arm.gltf", armModel());
@@ -135,7 +135,7 @@ osg::ref_ptr<osg::Group> makeScene(const ScratchFolder& folder)
     return scene;
 }
 
-/// The same states, poses and bounds, now and later.
+/// Expects the same states, poses and bounds, now and later.
 void expectSamePlayback(AnimationController first, AnimationController second)
 {
     ASSERT_EQ(second.layerCount(), first.layerCount());
@@ -201,7 +201,7 @@ void expectSameMeshes(osg::Group& first, osg::Group& second)
 
 void expectSameCharacter(AnimatedCharacter& first, AnimatedCharacter& second)
 {
-    // The text formats have nine digits of it.
+    // The text formats store nine digits.
     EXPECT_LE((second.getMatrix().getTrans() - first.getMatrix().getTrans()).length(), 1e-8);
     EXPECT_EQ(second.getPixelError(), first.getPixelError());
     EXPECT_EQ(second.isDrawnTogether(), first.isDrawnTogether());

@@ -21,20 +21,20 @@ public:
     struct Hit
     {
         double distance;
-        bool isSure;          ///< further from the triangle's edges than rounding reaches
+        bool isSure;          ///< farther from the triangle's edges than the rounding error
         std::uint64_t owner;  ///< as given to add()
-        std::set<int> joints; ///< the heaviest one at the point, and any that weighs nearly as much
+        std::set<int> joints; ///< the heaviest joint at the point, and joints of nearly that weight
     };
 
-    /// mesh: as the controller poses it, then taken by the matrix to the world.
+    /// Adds the mesh in the controller's pose, transformed by toWorld.
     void add(const SkinnedGeometry& mesh, const AnimationController& controller, const osg::Matrixd& toWorld,
              std::uint64_t owner = 0);
 
-    /// All that the segment meets, in no order; also what it misses by no more than rounding.
+    /// All hits of the segment, unordered; includes misses within the rounding error.
     std::vector<Hit> hits(const osg::Vec3d& start, const osg::Vec3d& end) const;
 
-    const std::vector<osg::Vec3d>& points() const { return _points; } ///< three a triangle
-    double size() const;                                              ///< the diagonal of the box around all
+    const std::vector<osg::Vec3d>& points() const { return _points; } ///< three per triangle
+    double size() const;                                              ///< the diagonal of the bounding box
 
 private:
     struct Triangle

@@ -30,7 +30,7 @@ struct ImportedModel
     std::vector<ImportedPrimitive> primitives; ///< by node, then primitive
 
     int scene = 0;                               ///< the imported scene, -1: the file has none
-    std::vector<std::string> nodeNames;          ///< one a node of the file; empty where it has none
+    std::vector<std::string> nodeNames;          ///< one per node of the file; empty if it has none
     std::vector<int> nodeParents;                ///< -1 for roots
     std::optional<CompactedCharacter> compacted; ///< only if the options ask for compact clips
     std::vector<int> animationOfClip;            ///< the file's animation number of each clip of the set

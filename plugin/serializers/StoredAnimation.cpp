@@ -119,9 +119,9 @@ void transferTrack(ValueStream& stream, CompactTracks::Track& track)
 struct CompactParts
 {
     CompactTracks tracks;
-    std::vector<JointTransform> held;    ///< one a joint: the values of joints at rest
+    std::vector<JointTransform> held;    ///< one per joint: the values of joints at rest
     std::vector<JointTransform> weights; ///< by keyframe: the weight blocks
-    std::vector<float> packed;           ///< three a QuantizedVec3
+    std::vector<float> packed;           ///< three per QuantizedVec3
 };
 
 CompactParts toCompactParts(const ClipParts& clip)
@@ -280,7 +280,7 @@ public:
         return stored;
     }
 
-    /// Null if nothing was read, or the set is gone.
+    /// Null if nothing was read, or the set no longer exists.
     std::shared_ptr<const AnimationSet> set() const { return _read ? _read : _written.lock(); }
 
     static void transferContents(ValueStream& stream, StoredAnimationSet& stored);

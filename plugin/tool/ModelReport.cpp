@@ -127,7 +127,7 @@ ordered_json reportClips(const gltf::ImportedModel& model)
     return clips;
 }
 
-/// bytes: on the GPU. snapshotBytes: the size of uncompressed keyframes, 48 bytes a joint.
+/// bytes: on the GPU. snapshotBytes: the size of uncompressed keyframes, 48 bytes per joint.
 ordered_json reportKeyframes(const gltf::ImportedModel& model)
 {
     ordered_json keyframes = {{"count", 0}, {"bytes", 0}, {"snapshotBytes", 0}};

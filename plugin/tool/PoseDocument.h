@@ -44,7 +44,7 @@ private:
 
     const gltf::ImportedModel& _model;
     nlohmann::ordered_json _document;
-    std::vector<std::vector<std::uint32_t>> _sampled; ///< one list a primitive
+    std::vector<std::vector<std::uint32_t>> _sampled; ///< one list per primitive
 };
 
 } // namespace osgGpuAnimation::tool

@@ -24,7 +24,7 @@ struct FixedEntry
 struct EvaluatedPose
 {
     std::vector<AffineMatrix> palette; ///< AnimationSet::paletteSize() entries
-    /// One list a primitive of the model, one position a vertex of its geometry, in the character's own space.
+    /// One list per primitive of the model, one position per vertex of its geometry, in the character's own space.
     /// Empty for primitives that are not drawn from the palette.
     std::vector<std::vector<glm::dvec3>> positions;
 };

@@ -6,7 +6,7 @@
 namespace osgGpuAnimation
 {
 
-/// How often this test program has called operator new so far.
+/// The number of calls of operator new in this test program so far.
 std::size_t allocationCount();
 
 } // namespace osgGpuAnimation

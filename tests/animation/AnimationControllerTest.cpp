@@ -32,7 +32,7 @@ std::shared_ptr<const AnimationSet> makeSet()
     return AnimationSet::create({skeleton, {}, {}, {}, clips}).value();
 }
 
-/// Which keyframe of the walk is shown, with alpha after the point: 1.25 lies between the second and the third.
+/// The displayed keyframe of the walk plus alpha: 1.25 is between the second and the third keyframe.
 double shown(const AnimationController& controller)
 {
     const BlendSample& sample = controller.instruction().samples[0];
@@ -48,8 +48,8 @@ TEST(AnimationControllerTest, LoopModesAtTheirEnds)
         LoopMode mode;
         double speed;
         std::vector<double> steps;
-        double time;  ///< afterwards
-        double shown; ///< keyframe and alpha
+        double time;  ///< after the steps
+        double shown; ///< keyframe plus alpha
         State state;
     };
     const Case cases[] = {

@@ -67,7 +67,7 @@ TEST(AnimationEventsTest, MarkersAtTheEndsOfEachLoopMode)
         LoopMode mode;
         double speed;
         std::vector<double> steps;
-        const char* told; ///< steps apart by spaces
+        const char* told; ///< the expected events; a space ends each step
     };
     // Two seconds; a at 0, b and c at 0.5, d at 2.
     const Case cases[] = {
@@ -103,8 +103,8 @@ TEST(AnimationEventsTest, MarkersAtTheEndsOfEachLoopMode)
     }
 }
 
-/// What a walk ought to tell, by a model of its own: the position on the unrolled time line, where every marker and end
-/// has a place of its own, found one by one.
+/// The expected events of a walk, from an independent model: the position moves on the unrolled time line, on which
+/// every marker and end has its own position and is tested separately.
 class UnrolledWalk
 {
 public:
@@ -153,12 +153,12 @@ private:
         const double time = _markers[m];
         const double place = cell * _duration + (isForwardsIn(cell) ? time : _duration - time);
         const bool isAtEnd = time == 0.0 || time == _duration;
-        // At a turn the two cells share the place: it is met in the even one.
+        // At a turn the two cells share the position; the even cell reports the marker.
         if (_mode == LoopMode::PingPong && isAtEnd && cell % 2 != 0) return;
         const bool forwards = to > from;
         bool isMet = forwards ? from < place && place <= to : to <= place && place < from;
         const bool isCellEnd = _mode == LoopMode::Loop && time == _duration;
-        // Where Loop rests at the jump it is on the far side of it, past the marker at the end.
+        // A position exactly at Loop's jump is after the jump, past the marker at the end.
         if (isCellEnd && !forwards) isMet = to < place && place <= from && !(isFirst && place == from);
         const double startTime = _isBackwards ? _duration : 0.0;
         if (isFirst && place == from && time == startTime) isMet = true;
@@ -171,7 +171,8 @@ private:
         met.push_back({std::abs(place - from), rank, static_cast<char>('a' + m)});
     }
 
-    /// Told on arrival: time ascends into the later end and descends into the earlier one.
+    /// The rank of a marker at a turn, reported on arrival: time ascends into the later end and descends into the
+    /// earlier one.
     int atTurn(std::size_t m, double time) const
     {
         return static_cast<int>(time == _duration ? m : _markers.size() - m);
@@ -207,7 +208,7 @@ TEST(AnimationEventsTest, TenThousandWalksMeetEachMarkerOnceAndInOrder)
     std::size_t met = 0;
     for (int walk = 0; walk < 10000; ++walk)
     {
-        // In every other walk all numbers are sixteenths, so that steps often end exactly at markers and ends.
+        // In every other walk all numbers are multiples of 1/16, so that steps often end exactly at markers and ends.
         const bool isExact = walk % 2 == 0;
         const auto number = [&](int low, int high) {
             return isExact ? whole(low, high) / 16.0 : std::uniform_real_distribution<double>(low, high)(random) / 16.0;
@@ -416,7 +417,7 @@ TEST(AnimationEventsTest, TellingDoesNotAllocate)
     controller.setEventCallback([&](const AnimationEvent&) { ++count; });
     ASSERT_TRUE(controller.play("A"));
     ASSERT_TRUE(controller.layer(1).play("B"));
-    // Storage grows with the number of clips that fade at once, and stays.
+    // Storage grows with the number of clips that fade at the same time and is then reused.
     std::size_t before = 0;
     for (int i = 0; i < 100; ++i)
     {

@@ -63,7 +63,7 @@ TEST(AnimationSetTest, FurtherBindsAreStaticChildrenOfTheMainEntry)
 {
     const auto set = make({threeJoints(),
                            {{"a", {0, 1}, {moved(1), moved(2)}},
-                            {"b", {0, 1, 0}, {moved(5), moved(2), moved(5)}}, // arm as before, root another, twice
+                            {"b", {0, 1, 0}, {moved(5), moved(2), moved(5)}}, // the same arm, another root, twice
                             {"c", {2}, {AffineMatrix()}}},
                            {0, 2},
                            {},

@@ -33,7 +33,7 @@ bool isSound(const AnimationController& controller)
     return true;
 }
 
-/// Two clips of no length beside Walk, all with markers.
+/// Two clips of duration 0 and Walk, all with markers.
 std::shared_ptr<const AnimationSet> makeShortSet()
 {
     const auto gaits = makeGaitSet();
@@ -168,7 +168,7 @@ TEST(AwkwardUseTest, MasksOfOtherSetsAreRefusedAndTheOldOneStays)
     EXPECT_EQ(refused.error().message.rfind("a mask of 1 tracks for a set of ", 0), 0u) << refused.error().message;
     EXPECT_EQ(layer.mask(), mask);
 
-    // A controller that goes on with a set of other joints plays what it can there.
+    // A controller that continues with a set of other joints plays what that set has.
     ASSERT_TRUE(layer.play("Walk"));
     ASSERT_TRUE(controller.play("Run"));
     AnimationController moved(other, controller);

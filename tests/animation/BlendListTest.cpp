@@ -19,7 +19,8 @@ namespace osgGpuAnimation
 namespace
 {
 
-/// Of the samples of one blend priority, 0 being the lowest; additive ones and their references are none.
+/// The sum of the weights of one blend priority, 0 being the lowest; additive samples and their references do not
+/// count.
 double weightOf(const PoseInstruction& instruction, int blendPriority)
 {
     double sum = 0.0;

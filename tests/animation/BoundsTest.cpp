@@ -36,8 +36,7 @@ double outside(const Box& outer, const Box& inner)
     return worst;
 }
 
-/// Where the corners of the joints' boxes are at that time, evaluated from the keys. All inverse binds are the
-/// identity.
+/// Adds the corners of the joints' boxes at that time, evaluated from the keys. All inverse binds are the identity.
 void addTrue(const RandomCharacter& character, const std::vector<Box>& boxOfInput, double time, Box& out)
 {
     const std::vector<glm::dmat4> joints = character.expectedJointToModel(time);
@@ -83,7 +82,7 @@ TEST(BoundsTest, HoldEveryVertexAtEveryTimeAndNotMuchMore)
     {
         const char* name;
         RandomCharacter::Options options;
-        double looseness; ///< the mean of bounds' diagonal over the truth's, at most
+        double looseness; ///< the largest mean ratio of the bounds' diagonal to the true one
     };
     const Case cases[] = {
         {"linear", {8, false, false, false, 1.0, 1.0}, 1.1},
@@ -110,7 +109,7 @@ TEST(BoundsTest, HoldEveryVertexAtEveryTimeAndNotMuchMore)
 
 TEST(BoundsTest, ABladeThatSwingsRoundIsBoundByItsArc)
 {
-    // Keys 170 degrees apart: at the keys themselves the tip is never near y = 1.
+    // The keys are 170 degrees apart; at the keys themselves the tip is not near y = 1.
     Joint joint;
     const Skeleton skeleton = Skeleton::create({joint}).value();
     ClipBuilder builder(skeleton, {});
@@ -130,7 +129,7 @@ TEST(BoundsTest, ABladeThatSwingsRoundIsBoundByItsArc)
 
 TEST(BoundsTest, WhereASplineMayTurnAnywhereTheReachIsTheBound)
 {
-    // Its quaternion passes through 0: no bound on its speed.
+    // The quaternion passes through 0, so its speed has no bound.
     const Skeleton skeleton = Skeleton::create({Joint()}).value();
     ClipBuilder builder(skeleton, {});
     std::vector<double> keys(24, 0.0);
@@ -152,7 +151,7 @@ TEST(BoundsTest, TheRestPoseUsesTheInverseBinds)
     const auto set =
         AnimationSet::create({Skeleton::create({joint}).value(), {{"s", {0}, {inverseBind}}}, {}, {{"m", -1, {1}}}, {}})
             .value();
-    EntryBoxes boxes(set->paletteSize(), box({2, 0, 0}, {3, 1, 1})); // the weights' box is not looked at
+    EntryBoxes boxes(set->paletteSize(), box({2, 0, 0}, {3, 1, 1})); // the weights' box is ignored
     const Box bounds = boundsOfClip(*set, -1, boxes);
     EXPECT_LE(outside(bounds, box({10, 0, 0}, {11, 1, 1})), 0.0);
     EXPECT_LE(diagonal(bounds), 1.001 * std::sqrt(3.0));

@@ -49,7 +49,7 @@ Clip build(std::vector<Channel> channels)
     return builder.build("clip");
 }
 
-/// The mix of a clip at a time, as the CPU twin sees it.
+/// The mix of a clip at a time, computed by the CPU twin.
 std::vector<JointTransform> mixAt(const AnimationSet& set, double time)
 {
     const Clip& clip = set.clips()[0];
@@ -132,7 +132,7 @@ TEST(ClipBuilderTest, RandomClipsShowWhatTheirKeysSay)
                 if (error > worst) when = time;
                 worst = std::max(worst, error);
             }
-            // Values are about 1: some roundings of 6e-8, and the spline's tangents add theirs.
+            // Values are about 1: some roundings of 6e-8, and those of the spline's tangents.
             EXPECT_LE(worst, 2e-6) << "at " << when;
         }
 }
@@ -170,7 +170,7 @@ TEST(ClipBuilderTest, HoldsTheFirstValueBeforeTheFirstKeyAndAddsNoKeyframeAtZero
 
 TEST(ClipBuilderTest, AHalfTurnCutInPiecesStaysOnItsWay)
 {
-    // Dot products of the ends: exactly 0; 0 but for rounding, on either side.
+    // The dot products of the ends are exactly 0, or 0 except for rounding, with either sign.
     const double r = std::sqrt(0.5);
     const std::vector<double> ends[] = {{0, 0, 0, 1, 0, 1, 0, 0},
                                         {r, 0, r, 0, r, 0, -r, 0},

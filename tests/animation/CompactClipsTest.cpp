@@ -35,7 +35,7 @@ Skeleton twoJoints()
     return Skeleton::create(joints).value();
 }
 
-/// The root goes from 0 to `end` in that many even steps.
+/// The root moves from 0 to `end` in `steps` equal steps.
 Channel straightWay(int steps, double end)
 {
     Channel channel{Channel::Path::Translation, Channel::Interpolation::Linear, 0, {}, {}};
@@ -61,7 +61,7 @@ TEST(CompactClipsTest, randomSetsStayWithinTheTolerance)
             {
                 const double error = compact.value().errors[static_cast<std::size_t>(clip)];
                 EXPECT_LE(error, tolerance);
-                // What is told is what is found; the twin rounds once more, at numbers up to 30.
+                // The reported error equals the measured one; the twin rounds once more, at numbers up to 30.
                 EXPECT_LE(largestDistance(*exact, *compact.value().set, clip, boxes, 0), error + 1e-5);
             }
             EXPECT_LE(PackedKeyframes(*compact.value().set).byteSize(), PackedKeyframes(*exact).byteSize());
@@ -187,7 +187,7 @@ TEST(QuantizedVec3Test, numbersAndRotationsComeBack)
         const glm::vec4 q = glm::normalize(
             glm::vec4(component(random), component(random), component(random), component(random) + 0.01f));
         const glm::vec4 back = QuantizedVec3::ofRotation(q).rotation();
-        // Half a step in three components, and what that does to the fourth.
+        // Half a quantization step in three components, and its effect on the fourth.
         EXPECT_LE(glm::length(glm::dot(q, back) < 0.0f ? q + back : q - back), 3e-6f);
     }
 }

@@ -195,7 +195,7 @@ TEST(CrossfadeTest, AdvancingDoesNotAllocate)
     AnimationController controller(makeGaitSet());
     ASSERT_TRUE(controller.play("Walk"));
     ASSERT_TRUE(controller.layer(1).play("Turn"));
-    // Storage grows with the number of clips that fade at once, and stays.
+    // Storage grows with the number of clips that fade at the same time and is then reused.
     std::size_t before = 0;
     for (std::size_t i = 0; i < 1000; ++i)
     {

@@ -17,7 +17,7 @@ namespace osgGpuAnimation
 namespace
 {
 
-/// hips > spine > (arm > hand, head), hips > leg; the face hangs on the head's node, the hat on none.
+/// hips > spine > (arm > hand, head), hips > leg; the weights "face" belong to the head's node, "hat" to no joint's.
 std::shared_ptr<const AnimationSet> makeSet()
 {
     const Skeleton skeleton = Skeleton::create({{"hips", -1, {}, 0},

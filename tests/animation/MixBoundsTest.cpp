@@ -36,7 +36,8 @@ EntryBoxes someBoxes(const AnimationSet& set)
     return EntryBoxes(set.paletteSize(), box);
 }
 
-/// How far a corner of an entry's box is outside, at the controller's pose; and where all corners are.
+/// The largest distance of a corner of the entries' boxes outside the bounds in the controller's pose. Adds all corners
+/// to `seen`.
 double outside(const Box& bounds, const AnimationController& controller, const EntryBoxes& boxes, Box& seen)
 {
     std::vector<AffineMatrix> palette;
@@ -157,7 +158,7 @@ TEST(MixBoundsTest, OfGaitsTheyAreNotMuchWiderThanTheGaits)
     for (const char* name : {"Walk", "Run"})
         gaits.add(boundsOfClip(*set, set->findClip(name), boxes));
     const Box mixed = bounds.box({{set->findClip("Walk")}, {set->findClip("Run")}});
-    // A joint's sway is taken as a ball, so what swings in one plane is given room to its sides as well.
+    // A ball bounds a joint's sway, so a swing in one plane also widens the bounds to its sides.
     EXPECT_LE(glm::length(mixed.max - mixed.min), 2.5f * glm::length(gaits.max - gaits.min));
 }
 

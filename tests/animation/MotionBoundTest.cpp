@@ -47,7 +47,7 @@ struct Piece
     }
 };
 
-/// shift, turn, stretch: how much each property changes; 0 leaves it alone.
+/// shift, turn, stretch: the change of each property; 0 leaves it constant.
 Piece makePiece(std::mt19937& random, std::size_t joints, bool spline, double shift, double turn, double stretch)
 {
     const auto some = [&random](double size)
@@ -102,7 +102,7 @@ TEST(MotionBoundTest, NoPointStraysOrReachesFartherThanTheBound)
     for (const Case& c : cases)
     {
         std::mt19937 random(11);
-        double closest = 0.0; // the largest share of its bound that a point used
+        double closest = 0.0; // the largest ratio of a point's value to its bound
         for (int i = 0; i < 200; ++i)
         {
             const Piece piece = makePiece(random, i % 4 < 2 ? 1 : 3, c.spline, c.shift, c.turn, c.stretch);
@@ -118,7 +118,7 @@ TEST(MotionBoundTest, NoPointStraysOrReachesFartherThanTheBound)
                 EXPECT_LE(glm::length(here), motion.reach(radius) * (1 + 1e-9)) << c.name;
                 const double second = glm::length(after - 2.0 * here + before) / (h * h);
                 const double bound = 8.0 * motion.strayed(radius);
-                // Second differences lose six digits of the points' sixteen.
+                // Second differences lose six of the points' sixteen digits.
                 EXPECT_LE(second, bound + 1e-8) << c.name << ", piece " << i;
                 if (bound > 1e-8) closest = std::max(closest, second / bound);
             }

@@ -33,7 +33,7 @@ public:
     }
 
 private:
-    static constexpr std::uint32_t rotation = 0xFFFFFFFFu; ///< in place of a range
+    static constexpr std::uint32_t rotation = 0xFFFFFFFFu; ///< replaces a range
 
     glm::uvec4 at(std::size_t texel) const { return _packed.texels().at(texel); }
     glm::vec3 numbers(std::size_t texel) const
@@ -112,7 +112,7 @@ TEST(PackedKeyframesTest, whatDoesNotMoveIsStoredOnce)
     ASSERT_TRUE(builder.add(turning));
     const auto set = AnimationSet::create({skeleton, {}, {}, {}, {builder.build("turn")}}).value();
     const PackedKeyframes packed(*set);
-    // The directory, the rest pose, two tables; then one rotation a keyframe. Snapshots would be 15,000 texels.
+    // The directory, the rest pose, two tables; then one rotation per keyframe. Snapshots would be 15,000 texels.
     EXPECT_EQ(packed.texels().size(), 101u + 150u + 50u + 50u + 100u);
     EXPECT_TRUE(packed.tracks()[7].hasExactKeys);
     EXPECT_FALSE(packed.tracks()[8].hasExactKeys);

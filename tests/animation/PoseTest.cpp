@@ -55,7 +55,7 @@ AffineMatrix someRoot()
     return JointTransform{{1, 2, -1, 0}, {0.3f, 0.2f, -0.4f, 1.0f}, {1.5, 1.5, 1.5, 0}}.toMatrix();
 }
 
-/// The entries by the shaders' chain, as PaletteEntry's documentation has it.
+/// The palette by the shaders' chain of matrices, as documented for PaletteEntry.
 std::vector<AffineMatrix> paletteByChain(const AnimationSet& set, const std::vector<JointTransform>& tracks,
                                          const AffineMatrix& root)
 {
@@ -105,7 +105,7 @@ TEST(PoseTest, MatricesAreWhatTheKeysSay)
             {
                 const auto joint = static_cast<std::size_t>(set->skeleton().jointOfInput(j));
                 const glm::dmat4 wanted = someRoot().toColumns() * expected[j];
-                // Up to eight levels of roundings, scales of up to 1.5 * 1.4^8.
+                // Rounding on up to eight levels, scales of up to 1.5 * 1.4^8.
                 EXPECT_LE(difference(joints[joint].toColumns(), wanted),
                           5e-5 * (1 + difference(wanted, glm::dmat4(0))));
                 for (std::size_t s = 0; s < 2; ++s)
@@ -155,8 +155,8 @@ protected:
         return glm::vec4(0.0, 0.0, std::sin(radians / 2), std::cos(radians / 2));
     }
 
-    /// Two clips of one keyframe: x = 2 turned by 0.4, x = 6 turned by 0.8 with the opposite sign; rest x = 10, turned
-    /// 0.
+    /// Two clips of one keyframe: x = 2 turned by 0.4, and x = 6 turned by 0.8 with the opposite sign. Rest pose: x =
+    /// 10, turned by 0.
     PoseBlendTest()
     {
         Joint joint;
@@ -206,7 +206,7 @@ TEST_F(PoseBlendTest, WeightsShareThePoseAndTheRestPoseFillsWhatTheyLack)
         std::vector<float> weights;
         float x;
         double turn;
-        float weight; ///< the fifth morph weight: its slot is a rotation's in a joint
+        float weight; ///< the fifth morph weight: joints have a rotation in its slot
     };
     const Case cases[] = {
         {"one", {1.0f}, 2.0f, 0.4, 2.0f},

@@ -23,7 +23,7 @@ namespace
 
 const double pi = std::acos(-1.0);
 
-/// An armature as files have it (lying on its back, in centimetres) with hips and one joint more.
+/// An armature as in many files (lying on its back, in centimetres) with hips and one more joint.
 Skeleton makeSkeleton()
 {
     Joint armature{"armature", -1, {}, 0};
@@ -40,12 +40,12 @@ struct Gait
 {
     const char* name;
     double duration;
-    double length; ///< metres along -Z in a round
-    double yaw;    ///< radians in a round
+    double length; ///< metres along -Z per round
+    double yaw;    ///< radians per round
     bool spline;
 };
 
-/// Hips that go, bob, sway and turn. In the armature's space up is +Z and the model's -Z is +Y.
+/// Hips that walk, bob, sway and turn. In the armature's space up is +Z and the model's -Z is +Y.
 Clip makeClip(const Skeleton& skeleton, const Gait& gait)
 {
     constexpr int keys = 32;
@@ -136,7 +136,7 @@ TEST(RootMotionTest, MotionAndWhatIsLeftMakeTheOldPose)
             gone = gone * after.takeRootMotion();
             EXPECT_LE(difference(gone.matrix() * headAt(after), headAt(before)), c.tolerance) << c.name << " " << i;
         }
-        // What was taken out does not show any more: the hips stay over one spot.
+        // The clip no longer contains the extracted motion: the hips stay over one spot.
         const glm::dmat4 hips = Pose::jointToModel(*left, after.instruction(), 1).toColumns();
         EXPECT_TRUE(!c.axes.horizontal || glm::length(glm::dvec2(hips[3].x, hips[3].z)) <= 1e-5) << c.name;
         EXPECT_TRUE(!c.axes.vertical || std::abs(hips[3].y - 1.0) <= 1e-5) << c.name;
@@ -207,7 +207,7 @@ TEST(RootMotionTest, CrossfadesAndLayersBlendIt)
     {
         controller.advance(1.0 / 60.0);
         const double speed = -controller.takeRootMotion().translation.z * 60.0;
-        // From one metre a second to four, as the weight goes.
+        // The speed rises with the weight, from one metre per second to four.
         EXPECT_NEAR(speed, 1.0 + 3.0 * (i - 0.5) / 60.0, 1e-3);
         EXPECT_GE(speed, last);
         last = speed;
@@ -259,7 +259,7 @@ TEST(RootMotionTest, CrossfadesGoTheSameWayAtAnyFrameRate)
             controller.layer(1).setWeight(0.0f);
             for (int i = 0; i < static_cast<int>(rate); ++i)
                 controller.advance(1.0 / rate);
-            // Four metres a second, of which the fade takes half of 0.3 s.
+            // Four metres per second; the fade removes half of 0.3 s.
             EXPECT_NEAR(controller.takeRootMotion().translation.z, -4.0 * 0.85, 1e-4) << rate;
             controller.layer(1).fadeWeight(1.0f, 0.3, curve);
             for (int i = 0; i < static_cast<int>(rate); ++i)

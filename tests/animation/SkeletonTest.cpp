@@ -18,7 +18,7 @@ Joint joint(const char* name, int parent, int sourceNode = -1)
 
 TEST(SkeletonTest, SortsByDepthAndKeepsTheOrderWithinALevel)
 {
-    // The children of "b" come before those of "a" in the input, and so they stay.
+    // The children of "b" precede those of "a" in the input; this order is kept.
     const Result<Skeleton> made = Skeleton::create(
         {joint("b1", 1, 10), joint("b", 4, 11), joint("a1", 3, 12), joint("a", 4, 13), joint("root", -1, 14)});
     ASSERT_TRUE(made) << made.error().message;

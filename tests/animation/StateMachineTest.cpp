@@ -200,7 +200,7 @@ TEST(StateMachineTest, UpdatingDoesNotAllocate)
     StateMachine machine(makeGraph(*set));
     machine.update(controller, 0.0);
     const std::string speed = "speed";
-    // Storage grows with the number of clips that fade at once, and stays.
+    // Storage grows with the number of clips that fade at the same time and is then reused.
     std::size_t before = 0;
     for (int i = 0; i < 300; ++i)
     {

@@ -8,7 +8,7 @@
 namespace osgGpuAnimation::benchmark
 {
 
-/// A set of so many chains of joints, each of that depth, all turning in one clip of some keyframes.
+/// A set of `chains` joint chains with `depth` joints each; one clip of a few keyframes turns all joints.
 std::shared_ptr<const AnimationSet> makeChains(std::size_t chains, std::size_t depth);
 
 } // namespace osgGpuAnimation::benchmark

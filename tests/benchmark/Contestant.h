@@ -12,7 +12,7 @@
 namespace osgGpuAnimation::benchmark
 {
 
-/// A scene in a viewer of its own, and what its frames took.
+/// A scene in its own viewer, and the cost of its frames.
 struct Contestant
 {
     std::shared_ptr<StagedViewer> viewer;
@@ -20,19 +20,20 @@ struct Contestant
     Series whole, updateAndCull, draw;
 
     FrameCost frame();
-    void measure(); ///< a frame
+    void measure(); ///< draws one frame and records its cost
 };
 
-/// Errors: there is no GL.
+/// Error: no GL is available.
 Result<Contestant> contestant(osg::Node* scene, const osg::BoundingSphere& sight);
 
-/// Frames until programs are made, buffers are there and osgAnimation has set itself up; then rounds by turns.
+/// Draws frames until all programs and buffers exist and osgAnimation is set up; then measures the contestants in
+/// turns.
 void race(std::vector<Contestant>& contestants, int rounds);
 
-/// What is wrong with the frames drawn; empty: nothing.
+/// The faults of the drawn frames; empty if there are none.
 std::string check(std::vector<Contestant>& contestants);
 
-/// The row, with what it is about.
+/// The row with its labels.
 Row named(Row row, const Subject& subject, std::size_t count, const std::string& what, const char* unit,
           const char* other);
 

@@ -16,7 +16,7 @@ namespace
 
 constexpr float pixelError = 0.5f;
 
-/// One a subject.
+/// One plot per subject.
 std::string framePlot(const Subject& subject)
 {
     return "frame-over-n-" + subject.name + ".svg";
@@ -69,7 +69,7 @@ void addFrameRows(const Subject& subject, std::size_t count, const std::vector<C
     report.add(row);
 }
 
-/// Levels of detail cover about as many pixels as all triangles: a fifth of so small ones may fall on others.
+/// Compares the number of covered pixels. The characters are so small that up to a fifth of the pixels may differ.
 std::string checkAlike(Contestant& all, Contestant& fewer)
 {
     const int expected = all.viewer->pixelsDrawn(), found = fewer.viewer->pixelsDrawn();
@@ -77,18 +77,18 @@ std::string checkAlike(Contestant& all, Contestant& fewer)
     return "levels of detail show " + std::to_string(found) + " pixels, all triangles " + std::to_string(expected);
 }
 
-/// Bytes taken from the heap; with a GL in software that is the GPU's memory too.
+/// Bytes allocated on the heap; they include the GPU's memory if GL is a software renderer.
 double bytesInUse()
 {
     const struct mallinfo2 info = mallinfo2();
     return static_cast<double>(info.uordblks + info.hblkhd);
 }
 
-/// How long the first frame of a scene takes.
+/// The cost of the first frame of a scene.
 struct Start
 {
     Spent spent;
-    int pixels = 0; ///< that show something
+    int pixels = 0; ///< that differ from the background
 };
 
 template <typename MakeScene>
@@ -110,7 +110,7 @@ Result<Start> start(MakeScene makeScene, const osg::BoundingSphere& sight)
     return start;
 }
 
-/// Bytes that a scene takes, CPU and GPU, when it has been drawn three times.
+/// The memory of a scene on the CPU and the GPU after three frames, in bytes.
 template <typename MakeScene>
 Result<double> footprint(MakeScene makeScene, const osg::BoundingSphere& sight)
 {
@@ -217,7 +217,7 @@ Result<bool> measureCrowd(const Subject& subject, const Effort& effort, Report& 
 Result<bool> measureStart(const Subject& subject, const Effort& effort, Report& report)
 {
     std::cerr << subject.name << ": first frame and memory" << std::endl;
-    constexpr std::size_t count = 1000, few = 10; // few have all that is there once: programs, the set
+    constexpr std::size_t count = 1000, few = 10; // few: the one-time cost of programs and of the set
     const osg::BoundingSphere sight = CharacterScene(subject, count).root->getBound();
     CharacterScene(subject, 1).setPixelError(pixelError); // levels of detail are made while a file is loaded
     std::vector<double> seconds, secondsOfFewer, elapsed, bytes;

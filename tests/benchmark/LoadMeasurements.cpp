@@ -15,7 +15,7 @@ namespace
 
 constexpr double milliseconds = 1e3;
 
-/// From the file's name to the OSG graph, ready to be drawn.
+/// From the file name to the OSG graph that is ready to be drawn.
 std::optional<Error> loadOurs(const std::string& fileName, Spent& spent)
 {
     const Stopwatch stopwatch;
@@ -26,7 +26,7 @@ std::optional<Error> loadOurs(const std::string& fileName, Spent& spent)
     return model ? std::nullopt : std::optional<Error>(model.error());
 }
 
-/// Parse and image decode alone, as tinygltf does them by default.
+/// Parsing and image decoding alone, with tinygltf's defaults.
 std::optional<Error> loadByTinyGltf(const std::string& fileName, Spent& spent)
 {
     const Stopwatch stopwatch;

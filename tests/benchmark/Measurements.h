@@ -12,35 +12,37 @@
 namespace osgGpuAnimation::benchmark
 {
 
-// Each puts its rows and points into the report. Errors: GL reported one, or a result was wrong: nothing of it counts.
+// Each function adds its rows and points to the report. Error: GL reported an error or a result was wrong, which makes
+// the measurement invalid.
 
-/// From advance() to the finished palette, against osgAnimation's update traversal and against the floor.
-/// The context is current.
+/// The work from advance() to the finished palette, compared with osgAnimation's update traversal and with the
+/// FeedbackFloor. Requires a current context.
 Result<bool> measurePose(const Subject& subject, const Effort& effort, osg::GraphicsContext& context, Report& report);
 
-/// Four blend samples a character against one, as layers and crossfades ask for. The context is current.
+/// Four blend samples per character compared with one; layers and crossfades add samples. Requires a current context.
 Result<bool> measureSamples(const Subject& subject, const Effort& effort, osg::GraphicsContext& context,
                             Report& report);
 
-/// The same characters in chunks of so many instances each. The context is current.
+/// The same characters in chunks of different sizes. Requires a current context.
 Result<bool> measureChunks(const Subject& subject, const Effort& effort, osg::GraphicsContext& context, Report& report);
 
-/// A joint's cost in chains of 8 to 64. The context is current.
+/// The cost per joint in chains of 8 to 64 joints. Requires a current context.
 Result<bool> measureDepth(const Effort& effort, osg::GraphicsContext& context, Report& report);
 
-/// Whole frames, their stages, memory and the first frame, in viewers of their own.
+/// Whole frames, their stages, memory and the first frame; each scene has its own viewer.
 Result<bool> measureFrames(const Subject& subject, const Effort& effort, Report& report);
 
-/// Skinned draws against the same meshes and shader without skinning, and against the least that draws the triangles.
+/// Skinned draws compared with unskinned draws of the same meshes and shader, and with the cheapest draw of the
+/// triangles.
 Result<bool> measureDraws(const Subject& subject, const Effort& effort, Report& report);
 
-/// One crowd node against as many separate nodes: whole frames, and what the CPU does of them.
+/// One crowd node compared with the same number of separate nodes: whole frames and their CPU time.
 Result<bool> measureCrowd(const Subject& subject, const Effort& effort, Report& report);
 
-/// Bytes and the first frame of many characters.
+/// The memory and the first frame of many characters.
 Result<bool> measureStart(const Subject& subject, const Effort& effort, Report& report);
 
-/// Loading its file, against what tinygltf takes to parse it and decode its pictures.
+/// Loading the subject's file, compared with tinygltf's parsing and image decoding.
 Result<bool> measureLoad(const Subject& subject, const Effort& effort, Report& report);
 
 } // namespace osgGpuAnimation::benchmark

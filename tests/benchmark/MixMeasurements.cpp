@@ -16,7 +16,7 @@ Result<bool> measureSamples(const Subject& subject, const Effort& effort, osg::G
     PoseCrowd four(subject.model.set, subject.clip, effort.barCount, context);
     for (std::size_t i = 1; i < samples; ++i)
         four.crossfade(subject.clip);
-    // Some fade, as in a crowd that lives.
+    // Some characters crossfade, as in a typical crowd.
     PoseCrowd someDealtOut(subject.model.set, subject.clip, effort.barCount, context);
     PoseCrowd someInOne(subject.model.set, subject.clip, effort.barCount, context);
     for (PoseCrowd* some : {&someDealtOut, &someInOne})

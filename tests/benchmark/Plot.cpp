@@ -39,7 +39,7 @@ void writeRule(std::ostream& out, double x0, double y0, double x1, double y1)
 
 } // namespace
 
-/// The decades (or halves of them) that hold all points.
+/// The ranges of both axes: they contain all points, and y covers whole decades.
 struct Plot::Frame
 {
     double minX = 1e300, maxX = 1e-300, minY = 1e300, maxY = 1e-300;

@@ -9,13 +9,13 @@
 namespace osgGpuAnimation::benchmark
 {
 
-/// Lines over two logarithmic axes, as an SVG picture.
+/// A line plot over two logarithmic axes, written as SVG.
 class Plot
 {
 public:
     void describe(const std::string& title, const std::string& xTitle, const std::string& yTitle);
-    /// Points of a line in the order in which they are joined; both above 0, others are left out. Lines that are called
-    /// the same up to a comma have one colour, and those that are called the same behind it are dashed alike.
+    /// Appends a point to the line; x and y must be above 0, other points are ignored. Lines whose names agree before
+    /// the comma share a colour; lines whose names agree from the comma on share a dash pattern.
     void addPoint(const std::string& line, double x, double y);
 
     void write(std::ostream& out) const;
@@ -31,7 +31,8 @@ private:
     Frame frame() const;
     void writeAxes(std::ostream& out, const Frame& frame) const;
     void writeLine(std::ostream& out, const Frame& frame, std::size_t number) const;
-    /// Which of the different parts of the lines' names, before the comma or from it on, the line's is.
+    /// The index of this part of the line's name among the different parts of all lines, in the order of their first
+    /// use.
     std::size_t placeAmong(std::string (*part)(const std::string& name), std::size_t number) const;
 
     std::string _title, _xTitle, _yTitle;

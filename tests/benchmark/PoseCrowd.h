@@ -16,8 +16,8 @@
 namespace osgGpuAnimation::benchmark
 {
 
-/// So many controllers of one set and their palettes, without a scene: all from advance() to the finished palette.
-/// Needs its graphics context current.
+/// The controllers and palettes of many instances of one set, without a scene: the work from advance() to the finished
+/// palette. Requires its graphics context to be current.
 class PoseCrowd
 {
 public:
@@ -25,18 +25,18 @@ public:
               osg::GraphicsContext& context);
     ~PoseCrowd();
 
-    /// Every so-manieth begins a crossfade that goes on for hours: one more blend sample each.
+    /// Every n-th instance starts a crossfade that never ends; it adds one blend sample.
     void crossfade(std::size_t clip, std::size_t every = 1);
-    /// Whether those of another load get batches of their own, as PoseFrame does it; otherwise all go into one.
+    /// True: one batch per blend cost, as in PoseFrame. False: one batch for all.
     void setDealtOut(bool isDealtOut) { _isDealtOut = isDealtOut; }
 
-    /// Instances that step() has the pipeline evaluate at a time.
+    /// The number of instances that step() passes to the pipeline at a time.
     void setChunkSize(std::size_t instances) { _chunkSize = instances; }
 
-    /// Moves everybody on and computes all palettes, until the GPU has finished.
+    /// Advances all controllers and computes all palettes; returns when the GPU has finished.
     Spent step(double seconds, PosePipeline::Form form = PosePipeline::Form::Fused);
 
-    /// Reads some palettes back and compares them with the CPU twin's. Empty: all is well.
+    /// Compares some palettes with the CPU twin's. Empty if they agree.
     std::string check();
 
     std::size_t count() const { return _controllers.size(); }
@@ -51,15 +51,15 @@ private:
     Place add(const PoseInstruction& instruction);
 
     std::vector<PoseBatch> _batches;
-    std::vector<Place> _places; ///< of the last step, a character each
+    std::vector<Place> _places; ///< of the last step, one per character
     bool _isDealtOut = true;
     osg::ref_ptr<osg::GraphicsContext> _context;
     std::size_t _firstSlot;
     std::size_t _chunkSize = PosePipeline::usualChunkSize;
 };
 
-/// A feedback pass that writes as many bytes as a palette, and nothing else: the floor. In points as the design has it,
-/// or in triangles, up to two matrices more, which is the least that llvmpipe can do.
+/// A feedback pass that only writes as many bytes as a palette: the lower bound of the cost. It writes points as the
+/// pipeline does, or triangles with up to two matrices more, the cheapest primitive in llvmpipe.
 class FeedbackFloor
 {
 public:
@@ -83,7 +83,7 @@ private:
     GLuint _vertexArray = 0;
 };
 
-/// Is the palette what the CPU twin makes of the instruction? Empty: yes, to 1e-4 of its largest number.
+/// Compares the palette with the CPU twin's for the instruction. Empty if they agree to 1e-4 of its largest number.
 std::string difference(const AnimationSet& set, const PoseInstruction& instruction,
                        const std::vector<AffineMatrix>& palette, const AffineMatrix& rootMatrix = {});
 

@@ -18,7 +18,7 @@ constexpr const char* posePlot = "pose-over-n.svg";
 constexpr const char* depthPlot = "pose-over-depth.svg";
 constexpr double frameTime = 1.0 / 60.0;
 
-/// Times of one count of one subject's characters.
+/// The times for one number of a subject's characters.
 struct PoseSeries
 {
     Series ours, floor, triangleFloor, bones, hardware;
@@ -41,7 +41,7 @@ Result<PoseSeries> poseSeries(const Subject& subject, ReferenceKit& kit, std::si
         scene.update(time += frameTime);
         return stopwatch.elapsed();
     };
-    // The pose and each floor come after an update of osgAnimation's, which leaves the caches cold to all.
+    // The pose and each floor run after an update of osgAnimation, so that all start with cold caches.
     const bool hasReference = count <= effort.largestReference;
     if (hasReference)
     {
@@ -114,7 +114,7 @@ void addGrowth(const Subject& subject, const std::map<std::size_t, Figure>& perC
     row.other = few->second;
     const double ratio = row.ours.median / row.other.median;
     row.ratio = {ratio, row.ours.low / row.other.high, row.ours.high / row.other.low};
-    row.wallRatio = row.ratio; // both of CPU time: there are no rounds by turns to take walls from
+    row.wallRatio = row.ratio; // both are CPU time: these series have no common rounds with wall times
     row.bar = "≤ 1.15";
     row.isMet = ratio <= 1.15;
     report.add(row);

@@ -28,7 +28,8 @@ namespace osgGpuAnimation::benchmark
 namespace
 {
 
-/// What osgAnimation's hardware mode wants: its own names, and MAX_MATRIX in place of the palette's size.
+/// The vertex shader for osgAnimation's hardware mode, with its attribute names; the number of bones replaces
+/// MAX_MATRIX.
 constexpr const char* hardwareVertexShader = R"(#version 140
 uniform mat4 matrixPalette[MAX_MATRIX];
 uniform uint nbBonesPerVertex;
@@ -53,7 +54,7 @@ void main()
 }
 )";
 
-/// In the place of skin.glsl: the vertex as it is.
+/// Replaces skin.glsl: leaves the vertex unchanged.
 constexpr const char* noSkin = R"(
 void osgGpuAnimationSkin(inout vec4 vertex, inout vec3 normal) {}
 vec4 osgGpuAnimationTint() { return vec4(1.0); }
@@ -76,7 +77,7 @@ void main()
 }
 )";
 
-/// The variant of the kit's shaders that its own program takes for the mesh in these scenes: one light far away.
+/// The prologue of the permutation that the kit's program selects for the mesh in these scenes: one distant light.
 std::string surfacePrologue(const osg::Geometry& mesh)
 {
     ShaderKey surface;
@@ -93,7 +94,7 @@ osg::ref_ptr<osg::Program> makeProgram(const osg::Geometry& mesh, const std::str
     return program;
 }
 
-/// Shared by all meshes of the same variant.
+/// One program per permutation, shared by all its meshes.
 osg::Program* unskinnedProgram(const osg::Geometry& mesh)
 {
     static std::map<std::string, osg::ref_ptr<osg::Program>> programs;
@@ -105,7 +106,7 @@ osg::Program* unskinnedProgram(const osg::Geometry& mesh)
     return program.get();
 }
 
-/// What no way to draw the triangles can do without.
+/// The cheapest program that draws the triangles: the position and one colour.
 osg::Program* leastProgram()
 {
     static const osg::ref_ptr<osg::Program> program = []
@@ -133,7 +134,8 @@ osg::Quat toQuat(const glm::vec4& q)
     return {q.x, q.y, q.z, q.w};
 }
 
-/// The clip at each of its keyframes; a first keyframe after 0 also at 0, since osgAnimation counts from the first.
+/// The clip at each of its keyframes. If the first one is after time 0, a copy at 0 precedes it, because osgAnimation
+/// plays from the first keyframe on.
 template <typename Container, typename Convert>
 osg::ref_ptr<Container> keyframesOf(const Clip& clip, std::size_t joint, Convert convert)
 {
@@ -211,7 +213,7 @@ void ReferenceKit::shareMesh(const gltf::ImportedPrimitive& primitive)
             for (int i = 0; i < 4; ++i)
             {
                 const std::size_t entry = (*entries)[vertex][i];
-                if (!((*weights)[vertex][i] > 1e-4f)) continue; // osgAnimation leaves smaller ones out, and warns
+                if (!((*weights)[vertex][i] > 1e-4f)) continue; // osgAnimation ignores smaller ones with a warning
                 _isNeeded[entry] = true;
                 osgAnimation::VertexInfluence& influence = (*mesh.influences)[boneName(entry)];
                 influence.setName(boneName(entry));
@@ -219,7 +221,7 @@ void ReferenceKit::shareMesh(const gltf::ImportedPrimitive& primitive)
             }
     }
     std::string source = hardwareVertexShader;
-    // Filled in here: osgAnimation would do it once for each character, and warn from the second on.
+    // Replaced here: osgAnimation would replace it for each character and warn from the second one on.
     source.replace(source.find("MAX_MATRIX"), 10, std::to_string(mesh.influences->size()) + "/*MAX_MATRIX*/");
     mesh.hardwareProgram = makeProgram(*mesh.source, source);
     _meshes.push_back(mesh);
@@ -281,7 +283,7 @@ ReferenceCharacter ReferenceKit::make(ReferenceMode mode, double phase)
     manager->registerAnimation(animation);
     manager->playAnimation(animation);
     animation->setStartTime(-phase);
-    // The manager first, then what the skeleton itself does, then the bones below.
+    // Order of the update callbacks: the manager, the skeleton's own callback, the bones below.
     manager->addNestedCallback(character.skeleton->getUpdateCallback());
     character.skeleton->setUpdateCallback(manager);
     return character;
@@ -302,7 +304,7 @@ osg::ref_ptr<osg::Geometry> ReferenceKit::makeRig(const SharedMesh& mesh, Refere
     rig->setInfluenceMap(mesh.influences);
     rig->setSourceGeometry(mesh.source);
     if (mode == ReferenceMode::Software) return rig;
-    // The rig takes its source's state and puts its own palette into it: each needs a state of its own.
+    // The rig takes its source's state set and adds its own palette to it, so each rig needs its own state set.
     osg::ref_ptr<osg::Geometry> source = new osg::Geometry(*mesh.source, osg::CopyOp::SHALLOW_COPY);
     source->setStateSet(new osg::StateSet(*mesh.source->getStateSet(), osg::CopyOp::SHALLOW_COPY));
     osg::ref_ptr<osg::Program> program = mesh.hardwareProgram;

@@ -20,28 +20,28 @@ class SkinnedGeometry;
 namespace osgGpuAnimation::benchmark
 {
 
-/// How osgAnimation's characters are skinned.
+/// How osgAnimation skins its characters.
 enum class ReferenceMode
 {
-    Bones,         ///< not at all: no meshes
+    Bones,         ///< no skinning and no meshes
     Software,      ///< RigTransformSoftware
-    Hardware,      ///< RigTransformHardware, one program a mesh for all characters
-    HardwareApart, ///< RigTransformHardware, a program for each character's mesh, as OSG's own examples have it
+    Hardware,      ///< RigTransformHardware, one program per mesh for all characters
+    HardwareApart, ///< RigTransformHardware, one program per mesh and character, as in OSG's examples
 };
 
-/// One character as osgAnimation has it.
+/// One character animated by osgAnimation.
 struct ReferenceCharacter
 {
-    osg::ref_ptr<osgAnimation::Skeleton> skeleton;             ///< its matrix places it
-    std::vector<osg::ref_ptr<osgAnimation::Bone>> boneOfEntry; ///< one a palette entry; null where none is needed
+    osg::ref_ptr<osgAnimation::Skeleton> skeleton;             ///< its matrix is the placement
+    std::vector<osg::ref_ptr<osgAnimation::Bone>> boneOfEntry; ///< one per palette entry; null if it is not needed
 };
 
-/// Builds a subject's characters with osgAnimation, from the same joints, keyframes and meshes. What osgAnimation lets
-/// characters share is shared: keyframes, influence maps, source geometries (software), vertex arrays and one program a
-/// mesh (hardware). Only the clip that is played is there, only channels that move something, and only the stacked
-/// transforms that are not the identity; rigid meshes hang below their bones as plain geometry.
+/// Builds a subject's characters with osgAnimation from the same joints, keyframes and meshes. The characters share
+/// everything that osgAnimation can share: keyframes, influence maps, source geometries (software), vertex arrays and
+/// one program per mesh (hardware). They have only the played clip, only channels that change a value, and only stacked
+/// transforms that are not the identity. Rigid meshes are plain geometry below their bones.
 ///
-/// A bone stands for a palette entry, so that its matrices can be compared with the palette.
+/// Each bone corresponds to a palette entry, so that its matrices can be compared with the palette.
 class ReferenceKit
 {
 public:
@@ -62,7 +62,7 @@ private:
         osg::ref_ptr<osg::Geometry> source; ///< in bind pose, drawn without skinning
         osg::ref_ptr<osgAnimation::VertexInfluenceMap> influences;
         osg::ref_ptr<osg::Program> hardwareProgram;
-        int rigidEntry = -1; ///< where it hangs on one bone
+        int rigidEntry = -1; ///< the bone of a rigid mesh; -1: the mesh is skinned
     };
 
     void shareChannels(std::size_t joint);
@@ -73,23 +73,23 @@ private:
     osg::ref_ptr<osg::Geometry> makeRig(const SharedMesh& mesh, ReferenceMode mode) const;
 
     const Subject& _subject;
-    std::vector<bool> _isNeeded; ///< of the entries: is there a bone?
+    std::vector<bool> _isNeeded; ///< by palette entry: true if it needs a bone
     std::vector<SharedChannel> _channels;
     std::vector<SharedMesh> _meshes;
 };
 
-/// How a mesh is drawn that is not skinned.
+/// The shading of a mesh without skinning.
 enum class Shading
 {
     AsCharacters, ///< as the kit's own program draws it
-    Least,        ///< the position and one colour: what no way to draw its triangles can do without
+    Least,        ///< the position and one colour: the cheapest way to draw the triangles
 };
 
-/// The mesh in bind pose with the same state, its program drawing it as it is: what skinning is measured against.
+/// The mesh in bind pose with the same state and without skinning: the baseline of the skinning cost.
 osg::ref_ptr<osg::Geometry> unskinned(const SkinnedGeometry& geometry, Shading shading);
 
-/// The largest distance between the character's bones and the palette entries they stand for, by the size of what the
-/// entries move.
+/// The largest difference between the matrices of the character's bones and their palette entries, relative to the
+/// largest element of the entries.
 double largestDifference(const ReferenceCharacter& character, const std::vector<AffineMatrix>& palette);
 
 } // namespace osgGpuAnimation::benchmark

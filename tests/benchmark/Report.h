@@ -12,23 +12,23 @@
 namespace osgGpuAnimation::benchmark
 {
 
-/// A line of the table: two contestants, or one and a limit.
+/// A row of the table: our figure against another contestant's or against a limit.
 struct Row
 {
     std::string subject;
     std::size_t count = 0; ///< characters
     std::string what;
-    std::string unit;      ///< of ours and other: a joint, a character …
+    std::string unit;      ///< of ours and other, such as `µs a joint`
     Figure ours;           ///< CPU time, unless the unit says otherwise
-    std::string otherName; ///< empty: there is no other
+    std::string otherName; ///< empty if there is none
     Figure other;
-    Figure ratio; ///< CPU time; what the bar speaks of
+    Figure ratio; ///< CPU time; the bar limits it
     Figure wallRatio;
     std::string bar;   ///< empty: none
-    bool isMet = true; ///< is the ratio (or ours) within the bar?
+    bool isMet = true; ///< true if the ratio (or ours) is within the bar
 };
 
-/// What has been measured, and how it is told.
+/// Collects the results and writes them as a table, JSON and plots.
 class Report
 {
 public:
@@ -38,7 +38,7 @@ public:
                       const std::string& yTitle);
 
     void printTable(std::ostream& out) const; ///< Markdown
-    /// environment: names and values to write down with the figures. Error: a file cannot be written.
+    /// environment: names and values that are written with the figures. False: a file cannot be written.
     bool write(const std::string& folder, const std::map<std::string, std::string>& environment) const;
 
 private:
@@ -46,8 +46,8 @@ private:
     std::map<std::string, Plot> _plots; ///< by file name
 };
 
-/// A row of two contestants. scale: what CPU seconds are multiplied by to come to the unit.
-/// The ratio is other by ours where isSpeedup, else ours by other.
+/// A row of two contestants. scale: the factor from CPU seconds to the unit. The ratio is other / ours if isSpeedup,
+/// else ours / other.
 Row compared(const Series& ours, const Series& other, double scale, bool isSpeedup);
 
 } // namespace osgGpuAnimation::benchmark

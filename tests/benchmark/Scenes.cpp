@@ -18,7 +18,7 @@ namespace osgGpuAnimation::benchmark
 namespace
 {
 
-/// In the order of numbers, along the rows of a square.
+/// The placement of a character in a square grid, row by row.
 osg::Matrixd placement(const Subject& subject, std::size_t number, std::size_t count)
 {
     const auto columns = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(count))));
@@ -66,7 +66,7 @@ std::string CharacterScene::check(osg::State& state) const
     if (!pipeline) return "there is no pose pipeline";
     for (const std::size_t i : {std::size_t(0), characters.size() / 2, characters.size() - 1})
     {
-        // Everybody is in sight, so numbers within the frame's batch are those of the nodes.
+        // All characters are visible, so their indices in the frame's batch are those of the nodes.
         const AnimationController& controller = characters[i]->getController();
         const std::string wrong =
             difference(controller.set(), controller.instruction(), pipeline->readPalette(state, controller.set(), 0, i),
@@ -95,7 +95,7 @@ ReferenceScene::ReferenceScene(const Subject& subject, ReferenceKit& kit, Refere
         characters.back().skeleton->setMatrix(subject.model.fileToNode * placement(subject, i, count));
         root->addChild(characters.back().skeleton);
     }
-    // The first update links and sets up; hardware mode warns of each character that shares its program with another.
+    // The first update links and sets up; hardware mode warns about each character that shares its program.
     const osg::NotifySeverity level = osg::getNotifyLevel();
     osg::setNotifyLevel(osg::FATAL);
     update(0.0);
@@ -123,7 +123,7 @@ std::string ReferenceScene::check(const Subject& subject, double time)
         controller.advance(0.0);
         std::vector<AffineMatrix> palette;
         Pose::evaluate(subject.set(), controller.instruction(), AffineMatrix(), palette);
-        // Times are floats here and there, and quaternions get other roundings.
+        // osgAnimation computes some times in float, and its quaternions round differently.
         if (const double largest = largestDifference(characters[i], palette); !(largest < 1e-3))
             return "osgAnimation's character " + std::to_string(i) + " differs by " + std::to_string(largest) +
                    " of its size";

@@ -14,15 +14,15 @@
 namespace osgGpuAnimation::benchmark
 {
 
-/// So many characters of one subject in a square, as AnimatedCharacter nodes.
+/// Many characters of one subject in a square, as AnimatedCharacter nodes.
 struct CharacterScene
 {
     CharacterScene(const Subject& subject, std::size_t count);
 
-    /// Holds everybody where they are.
+    /// Pauses all characters.
     void pause();
-    void setPixelError(float pixels); ///< everybody's
-    /// After a frame, with its state: reads some palettes back. Empty: all is well.
+    void setPixelError(float pixels); ///< of all characters
+    /// Compares some palettes with the CPU twin's after a frame, with its GL state. Empty if they agree.
     std::string check(osg::State& state) const;
 
     osg::ref_ptr<osg::Group> root = new osg::Group;
@@ -37,21 +37,21 @@ struct CrowdScene
     osg::ref_ptr<AnimatedCrowd> root;
 };
 
-/// The same with osgAnimation.
+/// The same characters with osgAnimation.
 struct ReferenceScene
 {
     ReferenceScene(const Subject& subject, ReferenceKit& kit, ReferenceMode mode, std::size_t count);
 
-    /// An update traversal alone, at that simulation time in seconds.
+    /// Runs only the update traversal, at that simulation time in seconds.
     void update(double time);
-    /// Is everybody where the CPU twin has them at that time? Empty: yes.
+    /// Compares some characters with the CPU twin's at that time. Empty if they agree.
     std::string check(const Subject& subject, double time);
 
     osg::ref_ptr<osg::Group> root = new osg::Group;
     std::vector<ReferenceCharacter> characters;
 };
 
-/// The meshes as they are in bind pose.
+/// The meshes in bind pose, without skinning.
 osg::ref_ptr<osg::Group> makeUnskinnedScene(const Subject& subject, std::size_t count, Shading shading);
 
 } // namespace osgGpuAnimation::benchmark

@@ -9,7 +9,7 @@
 namespace osgGpuAnimation::benchmark
 {
 
-/// The median of several rounds, and the quartiles around it.
+/// The median of several rounds and its quartiles.
 struct Figure
 {
     double median = 0.0;
@@ -19,16 +19,16 @@ struct Figure
 
 Figure figureOf(std::vector<double> values);
 
-/// What one contestant took, round by round.
+/// The cost of one contestant per round.
 using Series = std::vector<Spent>;
 
 Figure cpuOf(const Series& series);
 Figure wallOf(const Series& series);
-/// Each round of one by the same round of the other: what slows both down at a time cancels out.
+/// The quotient of the two series, round by round: slowdowns that affect both contestants cancel out.
 Figure cpuRatio(const Series& dividend, const Series& divisor);
 Figure wallRatio(const Series& dividend, const Series& divisor);
 
-/// Runs the contestants by turns, once unmeasured and then so many rounds; one series a contestant.
+/// Runs the contestants in turns, once unmeasured and then `rounds` times; returns one series per contestant.
 std::vector<Series> interleaved(int rounds, const std::vector<std::function<Spent()>>& contestants);
 
 } // namespace osgGpuAnimation::benchmark

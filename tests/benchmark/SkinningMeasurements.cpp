@@ -15,7 +15,7 @@ Result<bool> measureDraws(const Subject& subject, const Effort& effort, Report& 
     CharacterScene ours(subject, count);
     CharacterScene apart(subject, count);
     for (CharacterScene* scene : {&ours, &apart})
-        scene->pause(); // palettes stay, so that nothing but the draws is left
+        scene->pause(); // palettes stay valid, so that only the draws are measured
     for (const osg::ref_ptr<AnimatedCharacter>& character : apart.characters)
         character->setDrawnTogether(false);
     const osg::ref_ptr<osg::Group> plain = makeUnskinnedScene(subject, count, Shading::AsCharacters);

@@ -13,7 +13,7 @@
 namespace osgGpuAnimation::benchmark
 {
 
-/// What the stages of a frame took; draw: until the GPU has finished.
+/// The cost of each stage of a frame; draw lasts until the GPU has finished.
 struct FrameCost
 {
     Spent update;
@@ -24,25 +24,25 @@ struct FrameCost
     Spent updateAndCull() const { return {update.cpu + cull.cpu, update.wall + cull.wall}; }
 };
 
-/// An osgViewer without a display, 64x64 pixels, whose frames are gone through stage by stage. Everything in its scene
-/// is in sight and drawn, however small.
+/// An osgViewer without a display, 64x64 pixels, that runs each frame stage by stage. It shows the whole scene and
+/// culls no small features.
 class StagedViewer
 {
 public:
-    /// sight: what is to be in the picture. Errors: there is no GL.
+    /// sight: the bounds that the picture shows. Error: no GL is available.
     static Result<std::shared_ptr<StagedViewer>> create(osg::Node* scene, const osg::BoundingSphere& sight);
     ~StagedViewer();
 
-    /// The frame of that simulation time, in seconds. The first is an ordinary viewer.frame(), timed as draw.
+    /// Draws a frame at that simulation time (seconds). The first one is an ordinary viewer.frame(), timed as draw.
     FrameCost frame(double time);
 
-    /// From the next frame on all is culled and drawn as before, with no triangle of it in the picture: llvmpipe keeps
-    /// the triangles of past pictures, up to 36 MiB a picture, which are nobody's memory in particular.
+    /// From the next frame on the scene is culled and drawn as before, but outside the picture: llvmpipe keeps up to 36
+    /// MiB of triangles per picture, which would distort the memory of the scene.
     void lookAside();
 
-    /// The rest needs a frame before it. What GL reports and has not been asked for; empty: nothing.
+    /// The functions below require an earlier frame. Returns the pending GL errors; empty if there are none.
     std::string takeErrors();
-    /// Pixels of the last frame that are not the background's.
+    /// The number of pixels of the last frame that differ from the background.
     int pixelsDrawn();
     osg::State& state() { return *_context->getState(); }
     void makeCurrent() { _context->makeCurrent(); }
@@ -57,7 +57,7 @@ private:
     bool _hasDrawn = false;
 };
 
-/// What GL reports in the current context; empty: nothing.
+/// Returns the pending errors of the current GL context; empty if there are none.
 std::string takeGlErrors();
 
 } // namespace osgGpuAnimation::benchmark

@@ -4,14 +4,14 @@
 namespace osgGpuAnimation::benchmark
 {
 
-/// Seconds spent on something: by the whole process on all processors, and by the clock on the wall.
+/// Elapsed seconds: CPU time of the whole process on all processors, and wall-clock time.
 struct Spent
 {
     double cpu = 0.0;
     double wall = 0.0;
 };
 
-/// Measures from its making on.
+/// Measures from its construction on.
 class Stopwatch
 {
 public:

@@ -61,7 +61,7 @@ bool isDriven(const AnimationSet& set, const Clip& clip, std::size_t joint, glm:
 
 double phaseOf(std::size_t character, double duration)
 {
-    // Multiples of the golden ratio lie evenly, whatever their number.
+    // Multiples of the golden ratio are evenly distributed for any count.
     return duration * std::fmod(0.618033988749895 * static_cast<double>(character + 1), 1.0);
 }
 

@@ -8,14 +8,14 @@
 namespace osgGpuAnimation::benchmark
 {
 
-/// Takes what OSG says: figures are worth nothing where a program did not link (a notice) or OSG met a GL error, which
-/// it then takes away from glGetError. Passes everything on to standard error.
+/// Records OSG's messages and passes them on to standard error. Figures are invalid if a program did not link (OSG
+/// prints a notice) or a GL error occurred (OSG prints it and clears glGetError).
 class WarningWatch : public osg::NotifyHandler
 {
 public:
     void notify(osg::NotifySeverity severity, const char* message) override;
 
-    /// All notices and what is graver, so far; empty if there were none.
+    /// All messages of severity NOTICE or higher so far; empty if there were none.
     const std::string& warnings() const { return _warnings; }
 
 private:

@@ -144,8 +144,9 @@ Result<bool> measureAll(const Request& request, osg::GraphicsContext& context, R
     return true;
 }
 
-/// What llvmpipe takes for a draw and frees again is kept. By itself glibc gives it back to the kernel and has it anew,
-/// page by page, or does not: chance decides for each run, and a fifth of a frame hangs on it, osgAnimation's too.
+/// Keeps freed memory in the process. By default glibc may return the memory of llvmpipe's draws to the kernel and
+/// fault it in again page by page. This varies from run to run and changes frame times by up to a fifth, osgAnimation's
+/// too.
 void keepFreedMemory()
 {
     mallopt(M_MMAP_THRESHOLD, 1 << 30);

@@ -24,7 +24,7 @@ const Json numbers[] = {-1,   0,      1,     2,      3,     4,         5,       
 const Json others[] = {nullptr,   true,          false,         "", "POSITION", "LINEAR", "CUBICSPLINE", "STEP",
                        "weights", Json::array(), Json::object()};
 
-/// The document is written recursively: no deeper than a seed, nearly.
+/// True if the document is too deep for the recursive writer.
 bool isDeep(const std::string& text)
 {
     int depth = 0, deepest = 0;

@@ -8,8 +8,8 @@
 namespace osgGpuAnimation::gltf
 {
 
-/// Changes one value of a JSON document and keeps it JSON, which random bytes hardly ever do: a number becomes another
-/// one, a member disappears, is doubled or takes the place of another. Nothing where the text is no JSON to begin with.
+/// Changes one value of a JSON document and keeps it valid JSON, which random bytes rarely do: replaces a number,
+/// removes or duplicates a member, or replaces one member by another. Nothing if the text is not JSON.
 std::optional<std::string> mutateDocument(const std::string& text, std::minstd_rand& random);
 
 } // namespace osgGpuAnimation::gltf

@@ -14,7 +14,7 @@ namespace
 
 using Json = nlohmann::json;
 
-/// The data of the first buffer are taken out of its data URI.
+/// Moves the data of the first buffer out of its data URI.
 Seed seed(const std::string& name, Json document)
 {
     Seed result{name, std::move(document), ""};

@@ -9,18 +9,18 @@
 namespace osgGpuAnimation::gltf
 {
 
-/// One file of the corpus that the fuzzers begin with: a document whose first buffer's data lie beside it.
+/// One file of the fuzzers' initial corpus: a document and the data of its first buffer.
 struct Seed
 {
     std::string name;
     nlohmann::json json;
-    std::string binary; ///< of buffers[0]; empty where that has a URI of its own, or where there is none
+    std::string binary; ///< of buffers[0]; empty if the buffer has its own URI or does not exist
 
     std::string glb() const;
-    std::string gltf() const; ///< the data in a data URI
+    std::string gltf() const; ///< with the data in a data URI
 };
 
-/// Small models of our own, one for each part of glTF that is supported.
+/// Small models, one for each supported part of glTF.
 std::vector<Seed> modelSeeds();
 /// Models compressed by EXT_meshopt_compression and KHR_draco_mesh_compression.
 std::vector<Seed> compressedSeeds();

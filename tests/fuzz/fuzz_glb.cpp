@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// libFuzzer target: the bytes of a .glb, of which three changes in four leave the frame whole.
+// libFuzzer target: the bytes of a .glb. Three of four mutations keep its container valid.
 #include "fuzz/DocumentMutator.h"
 #include "fuzz/ImportOnce.h"
 #include "gltf/file/ModelBytes.h"
@@ -25,7 +25,7 @@ void mutateBytes(std::string& bytes, std::size_t most)
     bytes.resize(LLVMFuzzerMutate(reinterpret_cast<std::uint8_t*>(bytes.data()), size, most));
 }
 
-/// The file with another document or other data in an intact frame; empty where its own frame is not.
+/// The file with a changed document or changed data in a valid container; empty if its own container is invalid.
 std::string mutateWithin(const std::string& bytes, std::size_t most, std::minstd_rand& random)
 {
     Messages messages;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// libFuzzer target: the text of a .gltf in a folder with a data.bin and a picture.png of its own.
+// libFuzzer target: the text of a .gltf in its own folder with a data.bin and a picture.png.
 #include "fuzz/DocumentMutator.h"
 #include "fuzz/ImportOnce.h"
 
@@ -18,7 +18,7 @@ extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, st
 namespace
 {
 
-/// The folder lies empty but for its two files until the end.
+/// The model's folder; it contains only these two files.
 class Folder
 {
 public:

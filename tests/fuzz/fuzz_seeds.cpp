@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// fuzz_seeds FOLDER: writes the corpus that fuzz_glb and fuzz_gltf begin with into FOLDER/glb and FOLDER/gltf.
-// Fails where a seed is not a file that the import takes.
+// fuzz_seeds FOLDER: writes the initial corpus of fuzz_glb and fuzz_gltf into FOLDER/glb and FOLDER/gltf. Fails if the
+// import refuses a seed.
 #include "fuzz/Seed.h"
 #include "gltf/Import.h"
 

@@ -35,7 +35,7 @@ class CompactClipsGLTest : public GLTest, public ::testing::WithParamInterface<P
 {
 };
 
-// Spline clips stay exact, and weights: such sets have both forms side by side.
+// Spline clips and weights stay exact: such sets contain both forms.
 TEST_P(CompactClipsGLTest, showTheTwinsPoseSinglyAndInLayers)
 {
     PosePipeline* pipeline = PosePipeline::of(state());
@@ -67,7 +67,7 @@ TEST_P(CompactClipsGLTest, showTheTwinsPoseSinglyAndInLayers)
                 Pose::evaluate(*set, shown[i], AffineMatrix(), twin);
                 if (difference(pipeline->readPalette(state(), *set, 0, i), twin) > 1e-5) ++wrong;
             }
-            // Of random layers some hang on the last bits, see LayersGLTest.
+            // Rounding may change the pose of a few random layers, see LayersGLTest.
             EXPECT_LE(wrong, isLayered ? 1u : 0u) << (isLayered ? "layers" : "single clips");
         }
     }

@@ -32,7 +32,7 @@ Colour clearAndRead(float red, float green, float blue)
     return readPixel(5, 5);
 }
 
-/// 1: core, 2: compatibility.
+/// Returns 1 for the core profile, 2 for the compatibility profile.
 GLint profileMask()
 {
     constexpr GLenum contextProfileMask = 0x9126; // GL_CONTEXT_PROFILE_MASK, which older GL headers do not have
@@ -61,7 +61,7 @@ protected:
     }
 };
 
-/// Keeps the picture of the last frame that was drawn.
+/// Keeps the picture of the last drawn frame.
 class PictureCallback : public osg::Camera::DrawCallback
 {
 public:
@@ -82,7 +82,7 @@ public:
     mutable GLenum error = GL_NO_ERROR;
 };
 
-/// A square in the plane y = 0 that a camera on -y sees in the middle half of its picture.
+/// A square in the plane y = 0; it covers the middle half of the picture of a camera on -y.
 osg::ref_ptr<osg::Geometry> orangeSquare()
 {
     osg::ref_ptr<osg::Geometry> square = osg::createTexturedQuadGeometry(

@@ -18,7 +18,7 @@ namespace osgGpuAnimation
 namespace
 {
 
-/// The largest difference of two palettes as a share of the larger of 1 and the expected one's largest number.
+/// The largest difference of two palettes, relative to the larger of 1 and the largest expected number.
 template <typename Entry>
 double difference(const std::vector<AffineMatrix>& palette, const std::vector<Entry>& expected)
 {

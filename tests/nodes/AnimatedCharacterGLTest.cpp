@@ -13,13 +13,13 @@ namespace osgGpuAnimation
 namespace
 {
 
-/// The test's picture is 64 pixels for 8 units: the square of one unit covers 8 x 8.
+/// The picture is 64 pixels for 8 units: the square of one unit covers 8 x 8 pixels.
 constexpr int pixelsPerUnit = 8;
 
 class AnimatedCharacterGLTest : public ViewerGLTest
 {
 protected:
-    /// True where the picture shows the character's square: its lower left corner at (x, z) in the scene.
+    /// True if the picture shows the character's square with its lower left corner at (x, z) in the scene.
     ::testing::AssertionResult showsSquareAt(double x, double z)
     {
         const int left = static_cast<int>(32 + x * pixelsPerUnit);

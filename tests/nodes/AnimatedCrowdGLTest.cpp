@@ -19,14 +19,14 @@ namespace osgGpuAnimation
 namespace
 {
 
-/// Places for squares of one unit, on whole pixels (8 a unit), that neither touch each other nor leave the picture
-/// while they move by up to two units.
+/// Places for squares of one unit, aligned to pixels (8 per unit). The squares neither touch each other nor leave the
+/// picture while they move by up to two units.
 osg::Matrixd placeOf(int index)
 {
     return osg::Matrixd::translate(index % 2 ? 0.5 : -4.0, 0.0, -3.5 + 1.25 * (index / 2));
 }
 
-/// What instance of that number plays: clips by turns, each from a time of its own.
+/// The playback of the instance with that index: start times, speeds and crossfades differ.
 AnimationController controllerOf(int index)
 {
     AnimationController controller(testCharacterSet());
@@ -61,7 +61,7 @@ protected:
         return group;
     }
 
-    /// "red green blue", of 255 each.
+    /// "red green blue" of a pixel, each 0 to 255.
     std::string colorAt(unsigned int x, unsigned int y)
     {
         const unsigned char* pixel = picture().image().data(x, y);
@@ -71,8 +71,8 @@ protected:
     PosePipeline& pipeline() { return *PosePipeline::of(state()); }
 };
 
-// Positions on the way to the GPU differ in their last bits at most (a crowd's are root times palette in one
-// matrix): edges that fall between two pixels may go to either side, 8 pixels an edge.
+// A crowd multiplies its root matrices into the palette, so positions differ in their last bits. An edge between two
+// pixels may cover either one: 8 pixels per edge.
 constexpr int edgePixels = 16;
 
 TEST_F(AnimatedCrowdGLTest, looksLikeSeparateCharactersAtTheSameTimes)
@@ -116,7 +116,7 @@ TEST_F(AnimatedCrowdGLTest, drawsAndFeedbackDoNotGrowWithTheInstances)
         drawAt(0.5);
         EXPECT_EQ(pipeline().getCounters().feedbackDraws - before.feedbackDraws, testCharacterSet()->levelCount());
         EXPECT_EQ(pipeline().getCounters().instancesEvaluated - before.instancesEvaluated, unsigned(count));
-        // Nobody has moved: 16 bytes each, no root matrices.
+        // No instance has moved: 16 bytes each, no root matrices.
         EXPECT_EQ(pipeline().getCounters().bytesUploaded - before.bytesUploaded, 16u * unsigned(count));
         if (count == 10)
             ofTen = trace.calls();
@@ -168,7 +168,7 @@ TEST_F(AnimatedCrowdGLTest, instancesComeGoAndMoveBetweenFrames)
 TEST_F(AnimatedCrowdGLTest, chunksOfASmallBufferTextureShowTheSame)
 {
     const osg::ref_ptr<osg::Image> whole = pictureOf(makeCrowd(12), {0.0, 0.5});
-    // Room for the set itself and a few instances' palettes.
+    // Room for the set and the palettes of a few instances.
     const std::size_t perInstance = 3 * testCharacterSet()->paletteSize();
     pipeline().options().maxTexels = std::max(PackedKeyframes(*testCharacterSet()).texels().size(), perInstance * 5);
     const PosePipeline::Counters before = pipeline().getCounters();
@@ -189,7 +189,6 @@ TEST_F(AnimatedCrowdGLTest, separateCharactersInChunksOfASmallBufferTextureShowT
     }
 }
 
-// What is white is 204 of 255: GL's own material has a diffuse part of 0.8.
 TEST_F(AnimatedCrowdGLTest, tintsMultiplyTheColour)
 {
     osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*makeTestCharacter());
@@ -215,7 +214,7 @@ TEST_F(AnimatedCrowdGLTest, tintsMultiplyTheColour)
     EXPECT_EQ(colorAt(52, 36), "255 255 255");
 }
 
-// The last instance takes the index of a removed one: place, bounds, tint and clip go with it, and so does its name.
+// The last instance moves to the index of a removed one and keeps its placement, bounds, tint, clip and name.
 TEST_F(AnimatedCrowdGLTest, whenSomeAreRemovedTheOthersKeepWhatIsTheirs)
 {
     using Names = std::map<int, AnimatedCrowd::Instance>;
@@ -224,7 +223,7 @@ TEST_F(AnimatedCrowdGLTest, whenSomeAreRemovedTheOthersKeepWhatIsTheirs)
         Names names;
         for (const int number : numbers)
         {
-            // The first three lie outside the view.
+            // The first three are outside the view.
             const osg::Matrixd place = number < 3 ? osg::Matrix::translate(20 + number, 0, 0) : placeOf(number - 3);
             const osg::Vec4 tint(number % 2, number / 2 % 2, number / 4 % 2, 1);
             names[number] = crowd.add(place, controllerOf(number), tint).value();

@@ -73,7 +73,7 @@ TEST(AnimatedCrowdTest, refusesBadPlacementsAndStaysAsItIs)
         EXPECT_EQ(crowd->getNumInstances(), 1u);
         EXPECT_EQ(crowd->getPlacement(good), osg::Matrixd::translate(1, 2, 3));
     }
-    // A first placement that is bad must not become the origin.
+    // An invalid first placement must not become the origin.
     const osg::ref_ptr<AnimatedCrowd> fresh = emptyCrowd();
     EXPECT_FALSE(fresh->add(badPlacements[1].placement, playing("shift")));
     ASSERT_TRUE(fresh->add(osg::Matrixd::translate(7, 0, 0), playing("shift")));
@@ -106,7 +106,7 @@ TEST(AnimatedCrowdTest, namesStayWithTheirInstances)
     EXPECT_FALSE(crowd->contains(~AnimatedCrowd::Instance(0)));
 }
 
-// What a crowd keeps of a plain controller must say the same as the controller itself, at any time.
+// The compact playback that a crowd stores must give the same time as the controller at any time.
 TEST(AnimatedCrowdTest, compactPlaybackKeepsTheControllersTime)
 {
     for (const double speed : {1.0, 0.3, -2.0, 0.0})

@@ -6,7 +6,7 @@
 
 #include <osg/MatrixTransform>
 
-// What an animation takes far out of the bind pose is neither clipped by planes fitted to it nor culled.
+// Poses far out of the bind pose are neither culled nor clipped by computed near and far planes.
 
 namespace osgGpuAnimation
 {
@@ -29,8 +29,8 @@ const NearFarMode nearFarModes[] = {
 class AnimatedReachGLTest : public ViewerGLTest
 {
 protected:
-    /// The square, which "shift" takes along +X, goes nearly straight towards the camera, or away from it, by 4 units:
-    /// OSG adds one to the planes that it fits.
+    /// Turns the node so that "shift", which moves the square along +X, moves it by 4 units towards the camera or away
+    /// from it. OSG adds a margin of one unit to the planes that it computes.
     static osg::ref_ptr<osg::MatrixTransform> turned(osg::Node* node, double degrees)
     {
         const osg::ref_ptr<osg::MatrixTransform> transform = new osg::MatrixTransform(
@@ -80,11 +80,11 @@ TEST_F(AnimatedReachGLTest, nearAndFarPlanesHoldThePose)
                 node = crowdOfOne();
             else
                 node = makeTestCharacter();
-            // OSG looks at primitives of what crosses the frustum, where something else is wholly inside.
+            // OSG tests the primitives of a drawable across the frustum's border only if another one is wholly inside.
             const osg::ref_ptr<osg::Group> scene = turned(node, degrees);
             scene->addChild(plainTriangle());
             viewer().getCamera()->setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
-            // Planes that were fitted before are the camera's own by now.
+            // Planes that OSG computed before are now the camera's own; this resets them.
             viewer().getCamera()->setProjectionMatrixAsOrtho(0.1, 8.1, -4, 4, 1, 20);
             const int wanted = pixelsOf(scene);
             EXPECT_GE(wanted, 16);
@@ -113,7 +113,7 @@ TEST_F(AnimatedReachGLTest, onlyWhatIsSmallIsCulledAsSmall)
             scene = crowdOfOne();
         else
             scene = makeTestCharacter();
-        viewer().getCamera()->setSmallFeatureCullingPixelSize(12.0f); // the square has 8, the box of the clip 24
+        viewer().getCamera()->setSmallFeatureCullingPixelSize(12.0f); // the square covers 8 pixels, the clip's box 24
         EXPECT_GE(pixelsOf(scene), 36);
         viewer().getCamera()->setSmallFeatureCullingPixelSize(48.0f);
         EXPECT_EQ(pixelsOf(scene), 0);

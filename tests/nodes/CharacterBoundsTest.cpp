@@ -27,7 +27,7 @@ TEST(CharacterBoundsTest, FollowWhatLayersAndCrossfadesPlay)
 
     ASSERT_TRUE(controller.crossfade("turn", 1.0));
     character->update(0.5);
-    // The base goes up to 2 along x and may be turned as far as the clips do.
+    // The base moves up to 2 along x and may rotate as far as in either clip.
     const osg::BoundingBox mixed = character->getCurrentBounds();
     EXPECT_LE(mixed.zMin(), -1.0f);
     EXPECT_GE(mixed.xMax(), 3.0f);

@@ -22,7 +22,7 @@ namespace
 
 constexpr int everybody = 24;
 
-/// Tilted, scaled and mirrored by turns, so that placements and normals show.
+/// Rotated, scaled and partly mirrored, so that wrong placements and normals are visible.
 osg::Matrixd placeOf(int index)
 {
     const double size = 0.5 + 0.05 * (index % 5);
@@ -31,7 +31,7 @@ osg::Matrixd placeOf(int index)
            osg::Matrixd::translate(-3.5 + 1.1 * (index % 6), 0.1 * index, -3.5 + 1.6 * (index / 6));
 }
 
-/// Characters of one mesh, lit, each in a pose of its own.
+/// Lit characters of one mesh, each in its own pose.
 osg::ref_ptr<osg::Group> makeCharacters(int count)
 {
     osg::ref_ptr<AnimatedCharacter> first = makeTestCharacter();
@@ -70,7 +70,7 @@ protected:
         return picture().copy();
     }
 
-    /// Draws of primitives in a frame; the poses are there already.
+    /// The number of draw calls in a frame; the poses are already computed.
     int drawsOf(osg::Group& scene)
     {
         viewer().setSceneData(&scene);
@@ -86,7 +86,7 @@ struct Change
 {
     const char* name;
     std::function<void(osg::Group&)> make;
-    int draws; ///< of 24 characters with two meshes
+    int draws; ///< for 24 characters with two meshes
 };
 
 osg::StateSet* meshState(osg::Group& group, unsigned int mesh)
@@ -164,7 +164,7 @@ TEST_F(CharacterDrawsGLTest, drawnTogetherTheyLookAsOneByOne)
         const osg::ref_ptr<osg::Image> apart = pictureOf(*scene, false);
         EXPECT_GT(picture().pixelsDrawn(), 300);
         const osg::ref_ptr<osg::Image> together = pictureOf(*scene, true);
-        // Placements are floats on the one way and doubles on the other: pixels on edges may differ.
+        // Placements are floats in shared draws and doubles in single ones: edge pixels may differ.
         EXPECT_LE(Picture::pixelsDifferent(*apart, *together), 8);
         EXPECT_EQ(drawsOf(*scene), change.draws);
     }
@@ -238,7 +238,7 @@ TEST_F(CharacterDrawsGLTest, chunksOfPalettesAreDrawnOneAfterAnother)
     const osg::ref_ptr<osg::Group> scene = makeCharacters(everybody);
     const osg::ref_ptr<osg::Image> whole = pictureOf(*scene, true);
     const std::size_t texels = PosePipeline::of(state())->options().maxTexels;
-    PosePipeline::of(state())->options().maxTexels = 6 * 3 * testCharacterSet()->paletteSize(); // six to a chunk
+    PosePipeline::of(state())->options().maxTexels = 6 * 3 * testCharacterSet()->paletteSize(); // six per chunk
     characterOf(*scene, 0).getController().seek(0.01);
     characterOf(*scene, 0).getController().seek(0.0);
     for (int index = 0; index < everybody; ++index)

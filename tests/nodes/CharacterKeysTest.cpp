@@ -28,7 +28,7 @@ public:
     int redraws = 0;
 };
 
-/// A character with the keys on it, and a scene that gets events as in a viewer.
+/// A character with CharacterKeys, in a scene that receives events as in a viewer.
 class CharacterKeysTest : public ::testing::Test
 {
 protected:

@@ -21,7 +21,7 @@ namespace osgGpuAnimation
 namespace
 {
 
-/// What is unusual to do with characters and crowds: very many, in the midst of a frame, at places that are none.
+/// Unusual use: very many instances, changes within a frame, invalid placements.
 class CrowdEdgesGLTest : public ViewerGLTest
 {
 protected:
@@ -32,7 +32,7 @@ protected:
         return *static_cast<osgViewer::Renderer*>(viewer().getCamera()->getRenderer())->getSceneView(0);
     }
 
-    /// A frame whose scene is changed between its cull and its draw.
+    /// Draws a frame whose scene changes between its cull and its draw.
     template <typename Change>
     void drawWithChange(Change change)
     {
@@ -53,7 +53,7 @@ TEST_F(CrowdEdgesGLTest, aMillionInstancesOfWhichAFewAreSeen)
     instances.reserve(AnimatedCrowd::maxInstances);
     for (std::size_t index = 0; index < AnimatedCrowd::maxInstances; ++index)
     {
-        // The first six stand in the picture, all others in a square kilometre beside it.
+        // The first six are in the picture, all others in a square kilometre beside it.
         const auto number = static_cast<double>(index);
         const osg::Matrixd place =
             index < 6 ? osg::Matrixd::translate(-3.0, 0.0, -3.5 + 1.25 * number)
@@ -177,7 +177,7 @@ TEST_F(CrowdEdgesGLTest, aSceneViewWithoutAFrameStampDrawsItToo)
     EXPECT_EQ(drawn.pixelsDrawn(), 2 * 64);
 }
 
-// Instances of one level of detail are drawn together: the draws of the others begin in the midst of the batch.
+// Instances of one level of detail share a draw: the draws of later levels start within the batch.
 TEST_F(CrowdEdgesGLTest, tintsAreTheInstancesOwnAtEveryLevelOfDetail)
 {
     const osg::ref_ptr<AnimatedCharacter> tube = makeTubeCharacter(armSet());

@@ -19,7 +19,7 @@ class DirectingGLTest : public ViewerGLTest
 protected:
     PosePipeline::Counters counters() { return PosePipeline::of(state())->getCounters(); }
 
-    /// The first column of the picture in which anything is drawn, in units of the scene (see AnimatedCharacterGLTest).
+    /// The first picture column with drawn pixels, in units of the scene (see AnimatedCharacterGLTest).
     double left()
     {
         for (int column = 0; column < 64; ++column)

@@ -19,7 +19,7 @@ namespace osgGpuAnimation
 namespace
 {
 
-/// What GL is asked to do in one ordinary frame, seen by a trace of its calls.
+/// The GL calls of one ordinary frame, counted by a trace.
 class FrameCallsGLTest : public ViewerGLTest
 {
 protected:

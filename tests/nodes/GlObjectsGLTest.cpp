@@ -11,7 +11,7 @@ namespace osgGpuAnimation
 namespace
 {
 
-/// GL objects come and go with contexts, scenes and sets.
+/// GL objects are created and deleted with contexts, scenes and sets.
 class GlObjectsGLTest : public ViewerGLTest
 {
 protected:
@@ -22,7 +22,7 @@ protected:
         int programs = 0;
     };
 
-    /// GL objects there are, by asking for every name that can have been given out so far.
+    /// Counts the existing GL objects by testing every name that may be in use.
     Count count()
     {
         constexpr GLuint namesToTry = 5000;
@@ -81,7 +81,7 @@ TEST_F(GlObjectsGLTest, addingAndRemovingCharactersLeavesNothingBehind)
         root->removeChild(character);
         character = nullptr;
         drawAt(0.1 * number + 0.05);
-        // What was deleted is handed back when a frame has time for it.
+        // OSG deletes objects when a frame has time left; this deletes them now.
         osg::flushAllDeletedGLObjects(state().getContextID());
     };
     for (int number = 0; number < 5; ++number)
@@ -95,7 +95,7 @@ TEST_F(GlObjectsGLTest, addingAndRemovingCharactersLeavesNothingBehind)
     EXPECT_EQ(after.programs, before.programs);
 }
 
-// As the DatabasePager does, and osgviewer when it first shows its help or statistics.
+// The DatabasePager compiles between frames, and so does osgviewer when it first shows its help or statistics.
 TEST_F(GlObjectsGLTest, whatIsCompiledBetweenFramesTakesNothingFromThem)
 {
     osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();

@@ -32,7 +32,7 @@ protected:
         scene.accept(visitor);
     }
 
-    /// Where a node is in the scene, by every path to it, as any visitor of OSG finds it.
+    /// The world positions of a node along every path to it, as OSG's visitors compute them.
     static std::vector<osg::Vec3d> placesOf(osg::Node& scene, const std::string& name)
     {
         class Finder : public osg::NodeVisitor
@@ -257,7 +257,7 @@ TEST_F(JointAttachmentTest, ACharacterGoesByItsRootMotion)
     character->setMatrix(osg::Matrix::rotate(osg::PI_2, osg::Vec3d(0, 0, 1)) * osg::Matrix::translate(0, 0, 3));
     for (int i = 0; i <= 75; ++i)
         updateAt(*character, 0.1 * i);
-    // A metre a second along its own x, which is the world's y, through several loops of two seconds.
+    // One metre per second along its own x, which is the world's y, through several loops of two seconds.
     EXPECT_TRUE(isNear(character->getMatrix().getTrans(), {0, 7.5, 3}));
     EXPECT_TRUE(isNear(placesOf(*character, "sword")[0], {0, 7.5, 3})) << "the clip itself stays where it is";
     updateAt(*character, 7.5);

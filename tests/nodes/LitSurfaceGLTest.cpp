@@ -27,9 +27,9 @@ osg::ref_ptr<osg::Group> LitSurfaceGLTest::lit(osg::Node* subject)
     light->setDiffuse(osg::Vec4(0.6f, 0.5f, 0.7f, 1));
     light->setSpecular(osg::Vec4(1, 1, 1, 1));
     osg::ref_ptr<osg::LightModel> model = new osg::LightModel;
-    model->setLocalViewer(true); // shine as ours is: by where the eye is, and not on the texture but over it
+    model->setLocalViewer(true); // as in the kit: eye-dependent highlights, added after texturing
     model->setColorControl(osg::LightModel::SEPARATE_SPECULAR_COLOR);
-    root->setLight(light); // which sets its mode, too
+    root->setLight(light); // also sets the light's mode
     osg::StateSet& state = *root->getOrCreateStateSet();
     state.setMode(GL_LIGHTING, osg::StateAttribute::ON);
     state.setAttributeAndModes(model);

@@ -10,12 +10,12 @@
 namespace osgGpuAnimation
 {
 
-/// Switches a uniform of the character's program on.
+/// Sets a uniform of the character's program to true.
 void setUniform(osg::Geometry& mesh, const char* name);
 
 osg::ref_ptr<osg::Vec4Array> one(const osg::Vec4& color);
 
-/// Characters in the light of one lamp, as the fixed pipeline shades them.
+/// Characters under one light, as the fixed pipeline shades them.
 class LitSurfaceGLTest : public ViewerGLTest
 {
 protected:

@@ -6,7 +6,7 @@
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/lod/LodSelection.h>
 
-// Which meshes are drawn with fewer triangles, by how many a frame draws.
+// Tests which meshes are drawn with fewer triangles, by the number of triangles in a frame.
 
 namespace osgGpuAnimation
 {
@@ -14,12 +14,12 @@ namespace osgGpuAnimation
 namespace
 {
 
-constexpr float pixelError = 100.0f; ///< whatever has levels is drawn at its coarsest
+constexpr float pixelError = 100.0f; ///< selects the coarsest level of every mesh that has levels
 
 class LodDrawsGLTest : public ViewerGLTest
 {
 protected:
-    /// In the scene's second frame.
+    /// The number of triangles in the scene's second frame.
     GLuint trianglesOf(osg::Node& scene)
     {
         viewer().getCamera()->setProjectionMatrixAsOrtho(-20, 20, -20, 20, 1, 20);
@@ -45,7 +45,7 @@ private:
     osg::ref_ptr<PrimitiveCount> _count = new PrimitiveCount;
 };
 
-/// Has so many vertices and no levels; it takes no time to find that out.
+/// A mesh of that many vertices without triangles: it has no levels, and building them takes no time.
 osg::ref_ptr<SkinnedGeometry> makeBlank(std::size_t vertices)
 {
     const osg::ref_ptr<SkinnedGeometry> blank = new SkinnedGeometry;
@@ -117,7 +117,7 @@ TEST_F(LodDrawsGLTest, charactersOfASetHaveLevelsOfTheirOwnMeshes)
     {
         const osg::ref_ptr<AnimatedCharacter> character = makeTubeCharacter(set);
         ASSERT_TRUE(character->setPixelError(pixelError));
-        // Later than that: the cull has to make them.
+        // The mesh is set after setPixelError(), so the cull traversal has to build its levels.
         character->setChild(0, makeShownTube(*set));
         if (i % 2 == 1) character->insertChild(0, makeBlank(1));
         scene->addChild(character);

@@ -17,7 +17,7 @@ namespace osgGpuAnimation
 namespace
 {
 
-/// Indices that are drawn of the first primitive set.
+/// The number of drawn indices of the first primitive set.
 std::size_t drawn(const SkinnedGeometry& mesh, const LodLevels& levels, int level)
 {
     const osg::DrawElements* elements = levels.elements(0, level);
@@ -51,7 +51,7 @@ TEST(LodLevelsTest, keepAnElbowThatBendsInAClip)
     const auto still = bending->withClips({}).value();
     const osg::ref_ptr<SkinnedGeometry> tube = makeTube(*bending);
     const LodLevels ofBending(*tube, *bending, skinningOf(*tube)), ofStill(*tube, *still, skinningOf(*tube));
-    const int level = -5; // 1/32 of a tube that is 1 thick
+    const int level = -5; // 1/32; the tube is 1 thick
     EXPECT_LT(drawn(*tube, ofStill, level), 300u) << "straight, it needs but its ends";
     EXPECT_GT(drawn(*tube, ofBending, level), 2 * drawn(*tube, ofStill, level));
     EXPECT_LT(drawn(*tube, ofBending, level), tube->getPrimitiveSet(0)->getNumIndices() / 4);
@@ -76,7 +76,7 @@ TEST(LodLevelsTest, aNewSetMakesTheLevelsOfItsPoses)
 
 TEST(LodLevelsTest, speakOfTheCharactersUnitsWhateverTheMeshs)
 {
-    // The same tube a hundred times as large in its own space, and made smaller by its palette.
+    // The same tube, a hundred times as large in its own space and scaled down by its palette.
     AffineMatrix small;
     for (int row = 0; row < 3; ++row)
         small.rows[static_cast<std::size_t>(row)][row] = 0.01f;
@@ -96,7 +96,7 @@ TEST(LodLevelsTest, speakOfTheCharactersUnitsWhateverTheMeshs)
 
 TEST(LodLevelsTest, keepTextureCoordinatesOnTheirSideOfASeam)
 {
-    // A flat strip of two halves that meet in vertices of two texture coordinates each.
+    // A flat strip of two halves; the seam has two vertices per position, with different texture coordinates.
     const auto set = testCharacterSet();
     osg::ref_ptr<SkinnedGeometry> strip = new SkinnedGeometry;
     osg::ref_ptr<osg::Vec3Array> positions = new osg::Vec3Array;
@@ -158,7 +158,7 @@ TEST(LodLevelsTest, areNotMadeWhereThereIsNothingToGain)
 
 TEST(LodLevelsTest, endOnFansOfThousands)
 {
-    // All triangles meet in one vertex, and all vertices but it lie at two places.
+    // All triangles share one vertex; in the second mesh all other vertices are at two positions.
     const auto set = armSet();
     const osg::ref_ptr<SkinnedGeometry> tube = makeTube(*set);
     auto& triangles = static_cast<osg::DrawElementsUShort&>(*tube->getPrimitiveSet(0));
@@ -175,7 +175,7 @@ TEST(LodLevelsTest, endOnFansOfThousands)
     EXPECT_GE(drawn(*tube, doubles, 10), 3u);
 }
 
-/// A flat disc of rings of so many points around one that all triangles of the first ring meet in.
+/// A flat disc: rings of `points` vertices around a centre vertex that all triangles of the first ring share.
 osg::ref_ptr<SkinnedGeometry> makeDisc(unsigned int points, unsigned int rings)
 {
     osg::ref_ptr<SkinnedGeometry> disc = new SkinnedGeometry;
@@ -204,7 +204,7 @@ TEST(LodLevelsTest, takeNoTimeByTheSquareOfTheTrianglesAtAPoint)
     const osg::ref_ptr<SkinnedGeometry> disc = makeDisc(30000, 3);
     const auto begin = std::chrono::steady_clock::now();
     const LodLevels levels(*disc, *armSet(), skinningOf(*disc));
-    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(60)); // by the square: many minutes
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(60)); // quadratic: many minutes
     EXPECT_LT(drawn(*disc, levels, 10), disc->getPrimitiveSet(0)->getNumIndices());
 }
 

@@ -18,8 +18,8 @@
 #include <osgShadow/StandardShadowMap>
 #include <osgShadow/ViewDependentShadowMap>
 
-// Whatever a mesh or its scene has besides, it does not show that it is drawn at a level of detail: pictures differ by
-// less than those of all triangles do when the camera turns by half a pixel.
+// Levels of detail are not visible, whatever the material, the morphs and the shadows: pictures differ by less than two
+// pictures of all triangles when the camera turns by half a pixel.
 
 namespace osgGpuAnimation
 {
@@ -30,7 +30,7 @@ namespace
 enum class Surface
 {
     Plain,
-    Transparent, ///< as a glTF material with alphaMode BLEND has it
+    Transparent, ///< like a glTF material with alphaMode BLEND
     Morphed,
 };
 
@@ -69,7 +69,7 @@ osg::ref_ptr<osg::LightSource> makeLight()
 {
     osg::ref_ptr<osg::LightSource> light = new osg::LightSource;
     light->getLight()->setPosition(osg::Vec4(-0.4f, 0.3f, 1.0f, 0.0f));
-    light->getLight()->setDirection(osg::Vec3(0.4f, -0.3f, -1.0f)); // what ParallelSplitShadowMap goes by
+    light->getLight()->setDirection(osg::Vec3(0.4f, -0.3f, -1.0f)); // ParallelSplitShadowMap uses the direction
     return light;
 }
 
@@ -83,12 +83,12 @@ class LodSceneGLTest : public ViewerGLTest
 {
 protected:
     static constexpr int side = 256; ///< pixels
-    static constexpr int across = 3; ///< tubes, and as many deep
+    static constexpr int across = 3; ///< tubes per row and per column
     const osg::Vec3d centre{14, 14, 0};
 
     int pictureSide() const override { return side; }
 
-    /// Tubes at times of their own, above a floor.
+    /// Tubes at different times above a floor.
     osg::ref_ptr<osg::Group> makeScene(const PictureCase& look, bool isCrowd, float pixelError)
     {
         const osg::ref_ptr<AnimatedCharacter> tube = makeCharacter(look.surface);
@@ -123,7 +123,7 @@ protected:
         return scene;
     }
 
-    /// Has the camera see it from where a tube is so many pixels long. shift: of the picture, pixels.
+    /// Places the camera so that a tube is that many pixels long. shift: of the picture, in pixels.
     static void look(osg::Camera& camera, const osg::Vec3d& at, double pixels, double shift)
     {
         const double half = osg::DegreesToRadians(15.0);
@@ -144,7 +144,7 @@ protected:
 
 private:
     osg::ref_ptr<PrimitiveCount> _count = new PrimitiveCount;
-    // OSG 3.6.5 never returns from the end of a viewer whose StandardShadowMap is gone (osg::Identifier).
+    // With OSG 3.6.5 the end of a viewer never returns if its StandardShadowMap was deleted before (osg::Identifier).
     std::vector<osg::ref_ptr<osgShadow::ShadowTechnique>> _techniques;
 };
 
@@ -165,7 +165,7 @@ protected:
 
 TEST_P(LodPicturesGLTest, lookAsWithAllTriangles)
 {
-    constexpr float visible = 0.1f; ///< of a colour
+    constexpr float visible = 0.1f; ///< the smallest visible difference of a colour
     for (const bool isCrowd : {false, true})
         for (const double pixels : {60.0, 25.0})
         {
@@ -194,7 +194,7 @@ INSTANTIATE_TEST_SUITE_P(
                       PictureCase{"SoftShadowMap", Surface::Morphed, make<osgShadow::SoftShadowMap>}),
     [](const auto& info) { return std::string(info.param.name); });
 
-// Primitives of shadow maps are counted where they are drawn for a camera below the viewer's own.
+// Primitives of shadow maps are counted for a camera below the viewer's own.
 class LodShadowsGLTest : public LodSceneGLTest
 {
 protected:
@@ -204,7 +204,8 @@ protected:
 
     static void fromFarOff(osg::Camera& camera, const osg::Vec3d& at) { look(camera, at, 25.0, 0.0); }
 
-    /// For a camera that looks so at the scene's centre. The viewer's own, which sees all from near by, has no say.
+    /// The primitives of a camera that looks at the scene's centre in that way. The viewer's own camera is near by and
+    /// must not select the levels.
     GLuint primitivesOf(osg::Group& shown, Look look)
     {
         const osg::ref_ptr<osg::MatrixTransform> moved = new osg::MatrixTransform;
@@ -220,14 +221,14 @@ protected:
         LodSceneGLTest::look(*viewer().getCamera(), centre * moved->getMatrix(), 2500.0, 0.0);
         viewer().getCamera()->setProjectionMatrixAsOrtho(-1, 1, -1, 1, 1, 1000);
         const osg::ref_ptr<osg::Group> scene = new osg::Group;
-        scene->addChild(makeLight()); // osgShadow looks for lights in what the viewer's own camera sees
+        scene->addChild(makeLight()); // osgShadow searches for lights in the view of the viewer's own camera
         scene->addChild(camera);
         drawn(*scene);
         return primitives();
     }
 };
 
-// What casts a shadow and what is lit have to be one surface.
+// Shadow passes use the main camera's level, so that no surface shadows itself.
 TEST_F(LodShadowsGLTest, shadowMapsHaveTheLevelsOfTheCameraThatTheyAreFor)
 {
     for (const bool isCrowd : {false, true})
@@ -241,7 +242,8 @@ TEST_F(LodShadowsGLTest, shadowMapsHaveTheLevelsOfTheCameraThatTheyAreFor)
     }
 }
 
-// That camera's own measure has no answer there, and what it does not show cannot shade itself in its picture.
+// The main camera selects no level for casters behind it, and casters outside its picture cannot shadow themselves
+// there.
 TEST_F(LodShadowsGLTest, castersBehindTheEyeHaveTheLevelsOfTheShadowMap)
 {
     const Look awayFromAfar = [](osg::Camera& camera, const osg::Vec3d& at)
@@ -254,7 +256,7 @@ TEST_F(LodShadowsGLTest, castersBehindTheEyeHaveTheLevelsOfTheShadowMap)
         const auto primitivesOf = [&](float pixelError)
         {
             const osg::ref_ptr<osg::Group> scene = makeScene(shadows, isCrowd, pixelError);
-            const osg::ref_ptr<osg::Geode> before = new osg::Geode; // or nothing at all would be drawn
+            const osg::ref_ptr<osg::Geode> before = new osg::Geode; // without it nothing would be drawn
             before->addDrawable(new osg::ShapeDrawable(new osg::Box(centre + osg::Vec3d(0, 0, 250), 10.0f)));
             scene->addChild(before);
             return LodShadowsGLTest::primitivesOf(*scene, awayFromAfar);
@@ -265,7 +267,7 @@ TEST_F(LodShadowsGLTest, castersBehindTheEyeHaveTheLevelsOfTheShadowMap)
     }
 }
 
-// Where a camera from near by makes depths alone, it is taken for a shadow map's.
+// A near camera that draws only depth is treated as the camera of a shadow map.
 TEST_F(LodShadowsGLTest, camerasWithAColourBufferHaveLevelsOfTheirOwn)
 {
     const GLuint ofFewer = primitivesOf(*makeScene(plain, false, 0.5f), fromFarOff);

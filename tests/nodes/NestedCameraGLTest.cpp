@@ -38,7 +38,7 @@ osg::ref_ptr<osg::Group> makeScene()
     return group;
 }
 
-/// The same view as the viewer's, into a texture of 32 x 32.
+/// Renders the viewer's view into a texture of 32 x 32.
 osg::ref_ptr<osg::Camera> makeCamera(osg::Texture2D& texture, osg::Node& scene)
 {
     osg::ref_ptr<osg::Camera> camera = new osg::Camera;
@@ -54,7 +54,7 @@ osg::ref_ptr<osg::Camera> makeCamera(osg::Texture2D& texture, osg::Node& scene)
     return camera;
 }
 
-/// Fills the lower right quarter of the viewer's picture: a pixel a texel.
+/// Covers the lower right quarter of the viewer's picture, one pixel per texel.
 osg::ref_ptr<osg::Geometry> makeScreen(osg::Texture2D& texture)
 {
     osg::ref_ptr<osg::Geometry> screen = osg::createTexturedQuadGeometry({0, 0, -4}, {4, 0, 0}, {0, 0, 4});
@@ -73,11 +73,11 @@ osg::ref_ptr<osg::Texture2D> makeTexture()
     return texture;
 }
 
-/// Characters seen by a camera that renders to a texture, and the texture seen by the viewer.
+/// One camera renders characters to a texture, which the viewer shows.
 class NestedCameraGLTest : public ViewerGLTest, public ::testing::WithParamInterface<Threading>
 {
 protected:
-    /// The scene drawn straight into that part of the picture.
+    /// The scene drawn directly, with a viewport of that size.
     osg::ref_ptr<osg::Image> direct(int size, const osg::Vec4& background)
     {
         osg::Camera& camera = *viewer().getCamera();

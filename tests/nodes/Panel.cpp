@@ -39,7 +39,7 @@ void setSurface(osg::StateSet& state)
     state.setTextureAttributeAndModes(0, makeTexture());
 }
 
-/// One side: its corners, and what joins them.
+/// Adds one side of the panel: its vertices and triangles.
 void addSide(bool isBack, osg::Vec3Array& positions, osg::Vec3Array& normals, osg::Vec2Array& coordinates,
              osg::DrawElementsUShort& indices)
 {

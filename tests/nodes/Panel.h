@@ -10,8 +10,8 @@ namespace osgGpuAnimation
 /// 16 x 16 quads (the fixed pipeline lights vertices), and a back 0.2 units behind; textured, grey material, no shine.
 osg::ref_ptr<AnimatedCharacter> makePanelCharacter();
 
-/// What the character shows now, as the CPU twin computes it, in plain osg::Geometry for the fixed pipeline. Normals
-/// are those of the bind pose.
+/// The character's current pose, computed by the CPU twin, as plain osg::Geometry for the fixed pipeline. Normals are
+/// those of the bind pose.
 osg::ref_ptr<osg::Node> makeBaked(const AnimatedCharacter& character);
 
 } // namespace osgGpuAnimation

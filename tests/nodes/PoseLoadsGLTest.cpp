@@ -51,7 +51,7 @@ double largestDifference(const std::vector<AffineMatrix>& left, const std::vecto
     return largest;
 }
 
-/// Many that show one clip and some that fade.
+/// Many instances that play one clip, and some that crossfade.
 class PoseLoadsGLTest : public ViewerGLTest
 {
 protected:
@@ -112,7 +112,7 @@ TEST_F(PoseLoadsGLTest, ofSeparateCharactersThoseWhoFadeAreMixedApart)
     drawAt(0.0);
     drawAt(0.25);
     drawAt(0.5);
-    // The first come to one batch whatever they ask for; those who fade stay with them.
+    // The first minBatchSize characters share one batch at any blend cost; later ones join the batch of their cost.
     std::size_t found[2] = {};
     for (std::size_t number = 0; number < everybody; ++number)
     {

@@ -17,7 +17,7 @@ namespace osgGpuAnimation
 namespace
 {
 
-/// Shows what StatsHandler keeps to itself.
+/// Gives access to StatsHandler's protected members.
 class OpenStatsHandler : public osgViewer::StatsHandler
 {
 public:
@@ -43,7 +43,7 @@ protected:
 
     void collect(bool isWanted) { viewer().getCamera()->getStats()->collectStats("gpu", isWanted); }
 
-    /// Of the frame drawn last; -1: none is recorded.
+    /// The value for the last drawn frame; -1 if none is recorded.
     double recorded(const char* attribute)
     {
         double value = -1.0;
@@ -194,9 +194,9 @@ TEST_F(PoseStatisticsGLTest, aCamerasStatisticsCountWhatItsDrawsShow)
         for (const double time : {0.1, 0.2, 0.3})
         {
             drawAt(time);
-            // 5 of the crowd, 5 drawn together, one by itself.
+            // 5 of the crowd, 5 in a shared draw, 1 drawn alone.
             EXPECT_EQ(visible("Visible vertex count"), isCollected ? 11.0 * once._vertexCount : -1.0) << time;
-            // The crowd's draw, the first of those together, the others of them, and the last.
+            // The crowd's draw, the first character of the shared draw, its other characters, and the single one.
             EXPECT_EQ(visible("Visible number of drawables"), isCollected ? 4.0 : -1.0) << time;
         }
     }

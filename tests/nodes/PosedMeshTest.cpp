@@ -13,7 +13,7 @@
 #include <osgUtil/RayIntersector>
 #include <osgUtil/Statistics>
 
-// What OSG's visitors meet of characters and crowds: the present pose, and as many primitives as are drawn.
+// OSG's visitors see characters and crowds in their current pose, with the number of primitives that are drawn.
 
 namespace osgGpuAnimation
 {

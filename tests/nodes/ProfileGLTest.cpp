@@ -23,11 +23,11 @@ namespace osgGpuAnimation
 namespace
 {
 
-/// A kind of context to draw in.
+/// A kind of GL context.
 struct ProfileCase
 {
     const char* name;
-    unsigned int profileMask; ///< as GraphicsContext::Traits'
+    unsigned int profileMask; ///< as in GraphicsContext::Traits
     const char* version;
     unsigned int samples;
 };
@@ -42,7 +42,7 @@ void setUnlit(osg::Node& mesh)
     mesh.getStateSet()->getOrCreateUniform("unlit", osg::Uniform::BOOL)->set(true);
 }
 
-/// Characters and a crowd: textured panels in grey, without light.
+/// Characters and a crowd: unlit, textured panels in grey.
 osg::ref_ptr<osg::Group> makeScene()
 {
     osg::ref_ptr<osg::Group> group = new osg::Group;
@@ -82,7 +82,7 @@ protected:
 
     osg::ref_ptr<osg::Image> pictureOf(osg::Node* scene)
     {
-        // An OSG with the fixed pipeline puts a Material here, which is an error in the core profile.
+        // With the fixed pipeline OSG sets a Material here, which is an error in the core profile.
         viewer().getCamera()->getOrCreateStateSet()->clear();
         viewer().setLightingMode(osg::View::NO_LIGHT);
         return ViewerGLTest::pictureOf(scene, {0, 0.25, 0.5});
@@ -96,7 +96,7 @@ class ProfilesGLTest : public ProfileGLTest, public ::testing::WithParamInterfac
 {
 };
 
-/// Keeps what OSG warns of.
+/// Records OSG's warnings.
 class Warnings : public osg::NotifyHandler
 {
 public:
@@ -114,15 +114,15 @@ TEST_P(ProfilesGLTest, charactersAndCrowdsLookTheSame)
     changeTo(GetParam());
     if (HasFatalFailure() || IsSkipped()) return;
     ASSERT_EQ(context().isCoreProfile(), GetParam().profileMask == 1);
-    osg::setNotifyHandler(new Warnings); // of the fixed pipeline in the core profile, see below
+    osg::setNotifyHandler(new Warnings); // about the fixed pipeline in the core profile, see below
     const osg::ref_ptr<osg::Image> found = pictureOf(makeScene());
-    // Multisampling softens edges: four panels' worth of 16 pixels each, twice.
+    // Multisampling softens edges: four panels with four edges of 16 pixels each, two pixels wide.
     EXPECT_LE(Picture::pixelsDifferent(*expected, *found), GetParam().samples > 0 ? 4 * 4 * 16 * 2 : 0);
     osg::setNotifyHandler(new osg::StandardNotifyHandler);
     if (context().isCoreProfile()) takeGLErrors();
 }
 
-/// Notes whether drawing a mesh leaves an error in GL.
+/// Counts the draws of a mesh, and those that leave a GL error.
 class ErrorNotes : public osg::Drawable::DrawCallback
 {
 public:
@@ -139,8 +139,8 @@ public:
     mutable int errors = 0;
 };
 
-// An OSG with the fixed pipeline, as Debian's, makes errors of its own in the core profile (matrices, materials, mipmap
-// modes) and warns of them; what it does otherwise is looked at around each mesh.
+// In the core profile an OSG with the fixed pipeline, such as Debian's, causes GL errors (matrices, materials, mipmap
+// modes) and warns about them. The test therefore checks for errors around each mesh.
 TEST_P(ProfilesGLTest, leavesNoGlErrors)
 {
     changeTo(GetParam());
@@ -159,8 +159,8 @@ TEST_P(ProfilesGLTest, leavesNoGlErrors)
         EXPECT_TRUE(warnings->texts.empty()) << warnings->texts.front();
 }
 
-/// While it lives, the context's functions are those of OpenGL 2.1. (OSG keeps them for the next context of its
-/// number.)
+/// Replaces the context's functions by those of OpenGL 2.1 during its lifetime. (OSG keeps them for the next context
+/// with the same ID.)
 class OldDriver
 {
 public:
@@ -314,7 +314,7 @@ TEST_F(ProfileGLTest, colorsAreEncodedByAnSrgbFramebuffer)
     camera->addChild(crowd);
     pictureOf(camera);
     EXPECT_NO_GL_ERROR();
-    // 0.5 of the tint times the material's 0.8, linear, is 0.665 in sRGB.
+    // The tint of 0.5 times the material's 0.8, linear, is 0.665 in sRGB.
     EXPECT_NEAR(encoded->getColor(32u, 32u).r(), 0.665f, 0.01f);
 }
 

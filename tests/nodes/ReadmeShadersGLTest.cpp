@@ -57,7 +57,7 @@ protected:
         return ViewerGLTest::pictureOf(subject, {0, 1.5});
     }
 
-    /// Pixels drawn in one picture and not in the other.
+    /// The number of pixels that are drawn in only one of the pictures.
     static int outlineDifference(const osg::Image& a, const osg::Image& b)
     {
         int count = 0;
@@ -91,7 +91,7 @@ TEST_F(ReadmeShadersGLTest, skinsWithOneCallOnAMeshAndFromAbove)
     }
 }
 
-// One that cannot skin would draw the bind pose.
+// A program that cannot skin would draw the bind pose.
 TEST_F(ReadmeShadersGLTest, aProgramFromAboveThatDoesNotSkinIsNotTaken)
 {
     const osg::ref_ptr<osg::Image> plain = pictureOf(makePanelCharacter());
@@ -113,7 +113,7 @@ TEST_F(ReadmeShadersGLTest, aProgramFromAboveThatDoesNotSkinIsNotTaken)
 TEST_F(ReadmeShadersGLTest, effectsOfOsgFxShowTheAnimatedPose)
 {
     const osg::ref_ptr<osg::Image> plain = pictureOf(makePanelCharacter());
-    // Lines round the panel, 16 pixels an edge, are up to two wide.
+    // Lines around the panel, 16 pixels per edge, are up to two pixels wide.
     constexpr int linePixels = 4 * 18 * 2;
     const std::initializer_list<osg::ref_ptr<osgFX::Effect>> effects = {
         new osgFX::Scribe, new osgFX::Cartoon, new osgFX::Outline, new osgFX::SpecularHighlights,

@@ -33,7 +33,7 @@ void PrintTo(const TechniqueCase& technique, std::ostream* out)
     *out << technique.name;
 }
 
-/// A panel between a wall and a light from the left above; before the panel a bar, whose shadow falls on it.
+/// A panel between a wall and a light from the upper left; a bar in front of the panel casts a shadow on it.
 class ShadowGLTest : public ViewerGLTest, public ::testing::WithParamInterface<TechniqueCase>
 {
 protected:
@@ -47,7 +47,7 @@ protected:
         around->addDrawable(new osg::ShapeDrawable(new osg::Box(osg::Vec3(-1, -2, 1), 0.3f, 0.1f, 4)));
         osg::ref_ptr<osg::LightSource> light = new osg::LightSource;
         light->getLight()->setPosition(osg::Vec4(-0.5f, -1.0f, 0.7f, 0.0f));
-        light->getLight()->setDirection(osg::Vec3(0.5f, 1.0f, -0.7f)); // what ParallelSplitShadowMap goes by
+        light->getLight()->setDirection(osg::Vec3(0.5f, 1.0f, -0.7f)); // ParallelSplitShadowMap uses the direction
         osg::ref_ptr<osgShadow::ShadowedScene> scene = new osgShadow::ShadowedScene;
         for (osg::Node* child : std::initializer_list<osg::Node*>{subject, around, light})
             scene->addChild(child);
@@ -55,7 +55,7 @@ protected:
         viewer().setLightingMode(osg::View::NO_LIGHT);
         scene->getOrCreateStateSet()->setMode(GL_LIGHTING, osg::StateAttribute::ON);
         scene->getOrCreateStateSet()->setMode(GL_LIGHT0, osg::StateAttribute::ON);
-        // The same square of 4 units on each side, where the panel is.
+        // Shows the same square of 4 units on each side at the panel's distance.
         if (GetParam().needsPerspective)
             viewer().getCamera()->setProjectionMatrixAsFrustum(-0.4, 0.4, -0.4, 0.4, 1, 20);
         return ViewerGLTest::pictureOf(scene, {0, time});
@@ -73,15 +73,15 @@ protected:
     }
 
 private:
-    // OSG 3.6.5 never returns from the end of a viewer whose StandardShadowMap is gone (osg::Identifier).
+    // With OSG 3.6.5 the end of a viewer never returns if its StandardShadowMap was deleted before (osg::Identifier).
     std::vector<osg::ref_ptr<osgShadow::ShadowTechnique>> _techniques;
 };
 
-// A shadow's edges lie between the depth map's texels, and the bounds to which techniques fit that map are the clip's
-// for the one and the moment's for the other: an upright edge's 64 pixels, twice.
+// Shadow edges lie between the depth map's texels. Techniques fit that map to the clip's bounds for a character and to
+// the current bounds for plain geometry: two vertical edges of 64 pixels.
 constexpr int edgePixels = 128;
-// What ViewDependentShadowMap leaves in the shadow of plain geometry is black here, but for the fixed pipeline's
-// ambient.
+// ViewDependentShadowMap leaves the fixed pipeline's ambient light in the shadows on plain geometry; here they are
+// black.
 constexpr float ambient = 0.1f;
 
 TEST_P(ShadowGLTest, aCharacterCastsAndReceivesLikePlainGeometryInItsPose)
@@ -113,7 +113,7 @@ TEST_P(ShadowGLTest, aCrowdCastsAndReceivesToo)
     EXPECT_LE(Picture::pixelsDifferent(*pictureOf(expected, 1.5), *pictureOf(crowd, 1.5), ambient), 2 * edgePixels);
 }
 
-/// Notes what the programs are made for that a mesh is drawn with.
+/// Counts the mesh's draws with programs for depth only and with programs for colour.
 class ProgramNotes : public osg::Drawable::DrawCallback
 {
 public:
@@ -134,7 +134,7 @@ TEST_P(ShadowGLTest, theDepthPassHasTheLeanProgram)
     osg::ref_ptr<ProgramNotes> notes = new ProgramNotes;
     static_cast<osg::Drawable&>(*character->getChild(0)).setDrawCallback(notes);
     pictureOf(character, 1);
-    EXPECT_EQ(notes->depthDraws, 2 * GetParam().mapsOfPanel); // frames
+    EXPECT_EQ(notes->depthDraws, 2 * GetParam().mapsOfPanel); // two frames
     EXPECT_EQ(notes->colorDraws, 2);
 }
 

@@ -25,12 +25,12 @@ constexpr auto on = osg::StateAttribute::ON;
 constexpr auto off = osg::StateAttribute::OFF;
 constexpr auto override = osg::StateAttribute::OVERRIDE;
 
-/// A state above the character, as a user sets it.
+/// A state set above the character, as a user sets it.
 struct StateCase
 {
     const char* name;
     void (*set)(osg::StateSet& state);
-    bool hasEffect = true; ///< it looks otherwise than without
+    bool hasEffect = true; ///< true if it changes the picture
 };
 
 void PrintTo(const StateCase& state, std::ostream* out)
@@ -70,7 +70,7 @@ void addPointLight(osg::StateSet& state, float spotCutoff)
     state.setAttributeAndModes(near);
 }
 
-/// Under each state, a character looks as the same mesh does in the fixed pipeline.
+/// Under each state a character looks like the same mesh in the fixed pipeline.
 class SurfaceGLTest : public ViewerGLTest, public ::testing::WithParamInterface<StateCase>
 {
 protected:
@@ -89,7 +89,7 @@ protected:
     }
 };
 
-// Edges, and what is lit vertex by vertex there and pixel by pixel here.
+// Edge pixels, and the lighting: per vertex in the fixed pipeline, per pixel here.
 constexpr int edgePixels = 40;
 constexpr float tolerance = 0.03f;
 
@@ -103,7 +103,7 @@ TEST_P(SurfaceGLTest, looksAsInTheFixedPipeline)
     EXPECT_EQ(Picture::pixelsDifferent(*without, *found, tolerance) > 2 * edgePixels, GetParam().hasEffect);
 }
 
-// One program serves meshes under different modes, right after each other.
+// One program draws meshes under different modes in direct succession.
 TEST_F(SurfaceGLTest, modesChangeFromMeshToMesh)
 {
     const auto nothing = [](osg::StateSet&) {};

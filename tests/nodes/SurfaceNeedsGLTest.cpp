@@ -21,12 +21,13 @@ constexpr auto override = osg::StateAttribute::OVERRIDE;
 constexpr auto overall = osg::Array::BIND_OVERALL;
 constexpr auto perVertex = osg::Array::BIND_PER_VERTEX;
 
-/// What a mesh asks of its draw: of position, normal, colour and texture coordinate each needs others in the fragments.
+/// The attributes that a mesh needs: in each case the fragment shader reads others of position, normal, colour and
+/// texture coordinate.
 struct NeedCase
 {
     const char* name;
-    void (*setFixed)(osg::Geometry& mesh); ///< for the fixed pipeline
-    void (*setOurs)(osg::Geometry& mesh);  ///< for the same picture
+    void (*setFixed)(osg::Geometry& mesh); ///< changes the mesh in the fixed pipeline
+    void (*setOurs)(osg::Geometry& mesh);  ///< changes ours for the same picture
 };
 
 void PrintTo(const NeedCase& need, std::ostream* out)
@@ -42,7 +43,7 @@ osg::Material& materialOf(osg::Geometry& mesh)
 void setUnlit(osg::Geometry& mesh)
 {
     mesh.getStateSet()->setMode(GL_LIGHTING, off);
-    mesh.getStateSet()->setAttribute(new osg::Material); // in the fixed pipeline only colours count without light
+    mesh.getStateSet()->setAttribute(new osg::Material); // without light the fixed pipeline uses only colours
 }
 
 void setWhite(osg::Geometry& mesh)
@@ -50,7 +51,7 @@ void setWhite(osg::Geometry& mesh)
     materialOf(mesh).setDiffuse(osg::Material::FRONT_AND_BACK, osg::Vec4(1, 1, 1, 1));
 }
 
-/// Red to blue, from the left to the right.
+/// Red to blue, from left to right.
 osg::ref_ptr<osg::Vec4Array> colorsOf(const osg::Geometry& mesh, float scale)
 {
     osg::ref_ptr<osg::Vec4Array> colors = new osg::Vec4Array;
@@ -59,7 +60,7 @@ osg::ref_ptr<osg::Vec4Array> colorsOf(const osg::Geometry& mesh, float scale)
     return colors;
 }
 
-/// OpenGL's colours take the material's place, while ours are multiplied: the panel's material is a grey of 0.8.
+/// OpenGL's colours replace the material's, while ours are multiplied: the panel's material is a grey of 0.8.
 void setMaterialsColors(osg::Geometry& mesh, osg::Vec4Array* colors, osg::Array::Binding binding)
 {
     mesh.setColorArray(colors, binding);
@@ -72,7 +73,7 @@ void shine(osg::Geometry& mesh)
     materialOf(mesh).setShininess(osg::Material::FRONT_AND_BACK, 6);
 }
 
-/// Away from where the faces look.
+/// Sets normals that do not match the faces.
 void falsifyNormals(osg::Geometry& mesh)
 {
     auto& normals = static_cast<osg::Vec3Array&>(*mesh.getNormalArray());
@@ -80,7 +81,7 @@ void falsifyNormals(osg::Geometry& mesh)
     setUniform(mesh, "flatNormals");
 }
 
-/// Whatever its mesh needs, a character looks as it does in the fixed pipeline.
+/// Whatever attributes its mesh needs, a character looks as in the fixed pipeline.
 class SurfaceNeedsGLTest : public LitSurfaceGLTest
 {
 protected:
@@ -92,7 +93,7 @@ protected:
     }
 };
 
-// Edges, and what is lit vertex by vertex there and pixel by pixel here.
+// Edge pixels, and the lighting: per vertex in the fixed pipeline, per pixel here.
 constexpr int edgePixels = 40;
 constexpr float tolerance = 0.03f;
 
@@ -165,7 +166,7 @@ INSTANTIATE_TEST_SUITE_P(
                  [](osg::Geometry& mesh)
                  {
                      mesh.getStateSet()->removeTextureAttribute(0, osg::StateAttribute::TEXTURE);
-                     applyCharacterProgram(*mesh.getStateSet()); // puts its white one there
+                     applyCharacterProgram(*mesh.getStateSet()); // adds its white texture
                  }}),
     [](const auto& info) { return std::string(info.param.name); });
 
@@ -180,7 +181,7 @@ TEST_F(SurfaceNeedsGLTest, theseLookDifferent)
               2 * edgePixels);
 }
 
-// From frame to frame another of the program's variants serves.
+// Each frame uses another permutation of the program.
 TEST_F(SurfaceNeedsGLTest, needsChangeWhileItIsShown)
 {
     using Set = void (*)(osg::Geometry & mesh);
@@ -210,7 +211,7 @@ TEST_F(SurfaceNeedsGLTest, needsChangeWhileItIsShown)
     }
 }
 
-// A state set above has the last word, but where it must not.
+// A uniform from above applies if the mesh has none of its own, or with OVERRIDE unless the mesh's is PROTECTED.
 TEST_F(SurfaceNeedsGLTest, uniformsFromAboveCount)
 {
     const osg::ref_ptr<AnimatedCharacter> character = makePanelCharacter();

@@ -27,7 +27,7 @@ protected:
         group->addChild(crowd);
         for (int i = 0; i < 5; ++i)
         {
-            // Of one mesh, so that they are drawn together.
+            // All have one mesh, so that they share a draw.
             osg::ref_ptr<AnimatedCharacter> character = osg::clone(first.get(), osg::CopyOp::DEEP_COPY_NODES);
             character->getController().setSpeed(0.2 * i);
             character->setMatrix(osg::Matrix::translate(-3.5, 0, -3.5 + 1.4 * i));

@@ -8,7 +8,7 @@
 namespace osgGpuAnimation
 {
 
-/// For osg::TriangleFunctor: how many triangles there are, and the box of their corners.
+/// For osg::TriangleFunctor: the number of triangles and the bounding box of their corners.
 struct TriangleBox
 {
     void operator()(const osg::Vec3& a, const osg::Vec3& b, const osg::Vec3& c, bool = false)

@@ -10,18 +10,18 @@ namespace osgGpuAnimation
 constexpr unsigned int tubeColumns = 64, tubeRows = 16;
 constexpr unsigned int tubeTriangles = 2 * tubeColumns * tubeRows;
 
-/// Two joints, of which the second, 4 units along x, bends by a quarter about z within the clip's second.
-/// hasMorph: of a weight that goes from 0 to 1 in the meantime.
+/// Two joints; the second, 4 units along x, rotates by 90 degrees about z during the clip's second. hasMorph: adds a
+/// weight that rises from 0 to 1 during the clip.
 std::shared_ptr<const AnimationSet> armSet(bool hasMorph = false);
 
-/// A tube along x from 0 to 8, open at its ends, that the two joints bend in the middle: positions and influences
-/// alone, 1,024 quads.
+/// A tube of 1,024 quads along x from 0 to 8, with open ends, that the two joints bend in the middle; it has only
+/// positions and influences.
 osg::ref_ptr<SkinnedGeometry> makeTube(const AnimationSet& set);
 
-/// The same to look at: with normals, lit and white; where the set has a morph, the tube's first half grows thick.
+/// The same tube with normals, lit and white; if the set has a morph, it thickens the tube's first half.
 osg::ref_ptr<SkinnedGeometry> makeShownTube(const AnimationSet& set);
 
-/// One of such a tube, which plays the clip.
+/// A character with such a tube that plays the clip.
 osg::ref_ptr<AnimatedCharacter> makeTubeCharacter(std::shared_ptr<const AnimationSet> set);
 
 } // namespace osgGpuAnimation

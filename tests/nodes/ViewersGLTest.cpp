@@ -63,7 +63,7 @@ void setCamera(osg::Camera& camera, osg::GraphicsContext* context, Picture* pict
 class ViewersGLTest : public ViewerGLTest
 {
 protected:
-    /// What the time looks like in one context and one thread.
+    /// The expected picture at that time, drawn in one context and one thread.
     osg::ref_ptr<osg::Image> expectedAt(double time)
     {
         viewer().setSceneData(makeScene());
@@ -80,7 +80,7 @@ protected:
 struct TwoContextsCase
 {
     const char* name;
-    bool areShared; ///< one context number for both, GL objects too
+    bool areShared; ///< both contexts share one ID and their GL objects
 };
 
 void PrintTo(const TwoContextsCase& contexts, std::ostream* out)
@@ -110,18 +110,18 @@ TEST_P(TwoContextsGLTest, aSlaveCameraOnAContextOfItsOwnShowsTheSameUnderEveryTh
     osg::ref_ptr<osg::Group> scene = new osg::Group;
     both.setSceneData(scene);
     both.realize();
-    // Comes when the contexts are there, and something else has come and gone before.
+    // Adds the scene after the contexts exist and after another scene was added and removed.
     scene->addChild(makeScene()->getChild(0));
     both.frame(0);
     scene->removeChildren(0, 1);
     scene->addChild(makeScene());
-    both.frame(0); // clips begin here
+    both.frame(0); // clips start here
     int frame = 0;
-    // Switched while it runs; each model draws a few frames and ends with one at the time looked at.
+    // Changes the threading model at run time; each model draws a few frames and ends with the compared time.
     for (int round = 0; round < 2; ++round)
         for (const Threading threading : threadingModels)
         {
-            // What OSG keeps by the context's number is no more made for two threads than ours.
+            // OSG's data per context ID is not thread-safe, and neither is the kit's.
             if (GetParam().areShared && threading != osgViewer::ViewerBase::SingleThreaded) continue;
             both.setThreadingModel(threading);
             for (int i = 0; i < 3; ++i)
@@ -187,12 +187,12 @@ TEST_F(ViewersGLTest, aContextThatSharesComesWhenTheFirstHasDrawn)
     }
 }
 
-// With a vertex array object's name that is another context's the picture may be right all the same, but not the call.
+// With the name of another context's vertex array object the picture may be right, but the call is an error.
 TEST_F(ViewersGLTest, contextsThatShareEvaluateTheirOwnCharactersWithoutErrors)
 {
     const osg::ref_ptr<osg::Image> expected = expectedAt(2.3);
     const osg::ref_ptr<NotifyLog> log = new NotifyLog(osg::NOTICE);
-    osg::setNotifyHandler(log); // OSG says there which errors GL has
+    osg::setNotifyHandler(log); // OSG reports GL errors there
     {
         osgViewer::CompositeViewer composite;
         composite.setThreadingModel(osgViewer::ViewerBase::SingleThreaded);

@@ -16,7 +16,7 @@ namespace
 
 using Bytes = std::vector<unsigned char>;
 
-/// A model with one accessor over these bytes, and more if a test adds them.
+/// A model with one accessor over these bytes; a test may add more.
 struct OneAccessor
 {
     tinygltf::Model model;

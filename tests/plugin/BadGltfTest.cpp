@@ -22,7 +22,7 @@ namespace
 
 using Json = nlohmann::json;
 
-/// What a reader made of a file.
+/// The result of a reader for a file.
 struct Answer
 {
     bool isRefused = false;
@@ -93,7 +93,7 @@ void expectAnswers(Reader reader)
     {
         SCOPED_TRACE(name);
         const long memory = peakMemory();
-        const std::clock_t start = std::clock(); // of the processor: other programs may run
+        const std::clock_t start = std::clock(); // CPU time: other programs may run
         expectAnswer(readFile(list.substr(0, list.rfind('/') + 1) + name, reader), entry);
         EXPECT_LT(double(std::clock() - start) / CLOCKS_PER_SEC, mostSeconds);
         if (memoryIsMeasurable)

@@ -14,8 +14,8 @@
 #include <algorithm>
 #include <cstdio>
 
-// The boxes of real characters hold every vertex at every time of every clip and crossfade, and those of the clips are
-// not much larger than what the vertices sweep.
+// The boxes of real characters contain every vertex at every time of every clip and crossfade. The boxes of clips are
+// not much larger than the space that the vertices sweep.
 
 namespace osgGpuAnimation
 {
@@ -26,7 +26,7 @@ namespace
 class BoundsOfModelsTest : public ::testing::TestWithParam<std::string>
 {
 protected:
-    static constexpr int timesAClip = 200; ///< finer than the keyframes' own times, in every file there is
+    static constexpr int timesAClip = 200; ///< a finer spacing than the keyframes of every file
 
     void SetUp() override
     {
@@ -38,7 +38,7 @@ protected:
         ASSERT_NE(character, nullptr);
     }
 
-    /// The box of all vertices as the character is now.
+    /// The bounding box of all vertices in the current pose.
     Box posedBox() const
     {
         const AnimationController& controller = character->getController();
@@ -59,7 +59,7 @@ protected:
 
     static double diagonal(const Box& box) { return static_cast<double>(glm::length(box.max - box.min)); }
 
-    /// How far the inner box leaves the outer one, as a share of the inner one's diagonal.
+    /// The largest distance of the inner box beyond the outer one, relative to the inner one's diagonal.
     static double excess(const Box& outer, const Box& inner)
     {
         const glm::vec3 beyond = glm::max(outer.min - inner.min, inner.max - outer.max);

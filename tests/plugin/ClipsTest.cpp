@@ -50,9 +50,9 @@ bool mentions(const std::string& text, const std::string& part)
 struct FaultCase
 {
     const char* name;
-    void (*spoil)(ModelBuilder&); ///< adds to, or spoils, the animation "bad"
+    void (*spoil)(ModelBuilder&); ///< adds the animation "bad", or a fault in it
     bool clipStays;
-    const char* warning; ///< a part of the one warning; nothing: none is given
+    const char* warning; ///< part of the only warning; empty: no warning
 };
 
 const FaultCase faults[] = {
@@ -92,7 +92,7 @@ TEST(ClipsTest, oneFaultCostsAtMostOneClip)
         EXPECT_EQ(read.clips.animationOfClip.back(), 2);
         EXPECT_EQ(read.clips.clips.back().name(), "last");
         EXPECT_DOUBLE_EQ(read.clips.clips.back().duration(), 1.0);
-        EXPECT_EQ(read.clips.clips.back().keyframeCount(), 2u); // nothing of the bad clip is left over
+        EXPECT_EQ(read.clips.clips.back().keyframeCount(), 2u); // nothing of the bad clip remains
         ASSERT_EQ(read.messages.warnings.size(), *fault.warning ? 1u : 0u) << read.warning(0);
         EXPECT_TRUE(mentions(read.warning(0), fault.warning)) << read.warning(0);
     }
@@ -133,7 +133,7 @@ TEST(ClipsTest, aShearedNodeIsNotDriven)
 
 TEST(ClipsTest, keyframesAreLimited)
 {
-    const ReadClips read(slidingArm(), 80); // fewer than two keyframes of 48 bytes, more than the keys
+    const ReadClips read(slidingArm(), 80); // less than two keyframes of 48 bytes, more than the keys
     EXPECT_TRUE(read.clips.clips.empty());
     EXPECT_TRUE(mentions(read.warning(0), "animations[0] \"good\": its keyframes would take")) << read.warning(0);
     const ReadClips keysToo(slidingArm(), 60);

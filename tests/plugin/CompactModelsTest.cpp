@@ -23,7 +23,7 @@ struct ModelCase
 {
     const char* name;
     std::string file;
-    double compact;        ///< of the model's longest side
+    double compact;        ///< tolerance, relative to the model's longest side
     std::size_t mostBytes; ///< of keyframes on the GPU
 };
 
@@ -32,7 +32,7 @@ void PrintTo(const ModelCase& model, std::ostream* out)
     *out << model.name;
 }
 
-/// What each palette entry moves.
+/// The bounds of the vertices that each palette entry moves.
 EntryBoxes boxesOf(const ImportedModel& model)
 {
     PaletteEntryBounds reach(*model.set);
@@ -66,7 +66,7 @@ TEST_P(CompactModelsTest, areSmallAndWithinTheErrorAskedFor)
     const double tolerance = GetParam().compact * compact.value().compacted->longestSide;
     ASSERT_EQ(compact.value().set->clips().size(), exact.value().set->clips().size());
     for (int clip = 0; clip < static_cast<int>(exact.value().set->clips().size()); ++clip)
-        // Between the times that were looked at it may be a little more.
+        // Between the tested times the error may be slightly larger.
         EXPECT_LE(largestDistance(*exact.value().set, *compact.value().set, clip, boxes, 20), 1.05 * tolerance)
             << exact.value().set->clips()[static_cast<std::size_t>(clip)].name();
 }

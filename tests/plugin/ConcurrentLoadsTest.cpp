@@ -9,10 +9,9 @@
 #include <set>
 #include <thread>
 
-// Files read by several threads at once through osgDB, as DatabasePagers and loading screens do. What is asserted is
-// that loads are right and, where osgDB's cache hands one scene out, copies (plugin/cache/SeparateLoads.h). That what
-// loads share in the process (meshes' numbers, programs, morph textures) is made for several threads, ThreadSanitizer
-// sees.
+// Several threads read files at once through osgDB, as DatabasePagers and loading screens do. The test checks that
+// loads are right and that osgDB's cache returns copies of a scene (plugin/cache/SeparateLoads.h). ThreadSanitizer
+// checks the data that loads share in the process: mesh numbers, programs and morph textures.
 
 namespace osgGpuAnimation
 {
@@ -24,7 +23,7 @@ using CacheHint = osgDB::Options::CacheHintOptions;
 
 constexpr int rounds = 6;
 
-/// Two glTF files and a scene in OSG's format, and what each looks like when one thread alone reads it.
+/// Two glTF files and a scene in OSG's format, and the result of each when a single thread reads it.
 class ConcurrentLoadsTest : public ::testing::TestWithParam<CacheHint>
 {
 protected:
@@ -57,7 +56,7 @@ protected:
         return true;
     }
 
-    /// Reads all files, beginning with the one given, and plays each for a while; nothing where one is not right.
+    /// Reads all files, starting with that index, and plays each for a while; empty if one is wrong.
     std::vector<osg::ref_ptr<osg::Node>> load(std::size_t first) const
     {
         std::vector<osg::ref_ptr<osg::Node>> scenes;
@@ -85,7 +84,7 @@ TEST_P(ConcurrentLoadsTest, everyLoadIsRightAndACharacterOfItsOwn)
 {
     std::array<std::vector<osg::ref_ptr<osg::Node>>, 4> loads;
     std::vector<std::thread> threads;
-    for (std::size_t thread = 0; thread < loads.size(); ++thread) // the same file and others at the same time
+    for (std::size_t thread = 0; thread < loads.size(); ++thread) // two threads start with the same file
         threads.emplace_back([this, &loads, thread] { loads[thread] = load(thread / 2); });
     for (std::thread& thread : threads)
         thread.join();

@@ -51,7 +51,7 @@ protected:
         }
     }
 
-    /// The largest step, as a share of that of the fastest clip in it.
+    /// The largest step, relative to that of the fastest clip in the mix.
     double worstStep(double seconds, unsigned int every) const
     {
         std::mt19937 random(seed);

@@ -22,7 +22,7 @@ namespace
 
 using Read = osgDB::ReaderWriter::ReadResult;
 
-/// A folder with `arm.gltf`, which has two clips, and `still.gltf`, which has nothing that moves.
+/// A folder with `arm.gltf`, which has two clips, and `still.gltf`, which has no animation.
 class CrowdPluginTest : public ::testing::Test
 {
 protected:
@@ -173,7 +173,7 @@ TEST_F(CrowdPluginTest, takesOptions)
 
 TEST_F(CrowdPluginTest, handsOtherWordsToTheModelsReaderAsTheyAre)
 {
-    /// Records the options that it receives; arms are its only models.
+    /// Records the options that it receives; it finds no file.
     class Listener : public osgDB::ReaderWriter
     {
     public:
@@ -196,7 +196,7 @@ TEST_F(CrowdPluginTest, handsOtherWordsToTheModelsReaderAsTheyAre)
 TEST_F(CrowdPluginTest, saysWhichOptionsItTakesForMisspelt)
 {
     const std::pair<const char*, const char*> cases[] = {
-        {"clips=Slide spacing=3 seed=7 noRotation noKeys maxNodeDepth=9", ""}, // nothing of it from the model's reader
+        {"clips=Slide spacing=3 seed=7 noRotation noKeys maxNodeDepth=9", ""}, // the model reader's options
         {"sped=7", "\"seed\""},
         {"spaceing=3", "\"spacing\""},
         {"clip=Slide", "single characters"},

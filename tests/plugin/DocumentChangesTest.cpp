@@ -13,7 +13,7 @@ namespace
 
 using Json = nlohmann::json;
 
-/// The base document with one value set (an empty one: removed), and what the loader says.
+/// The base document with one value replaced (removed if empty), and the loader's answer.
 struct Change
 {
     const char* path;
@@ -83,7 +83,7 @@ const Change changes[] = {
     {"/accessors/0/byteOffset", "2", Expect::Refuse, "accessors[0].byteOffset"},
     {"/accessors/0/byteOffset", "4", Expect::Refuse, "accessors[0]"},
     {"/accessors/0/normalized", "1", Expect::Refuse, "accessors[0].normalized"},
-    {"/accessors/0/min", "[0]", Expect::Valid, ""}, // nobody reads it
+    {"/accessors/0/min", "[0]", Expect::Valid, ""}, // not read
     {"/accessors/0/min", "[\"x\"]", Expect::Warn, "accessors[0].min[0]"},
     {"/accessors/0/bufferView", "", Expect::Valid, ""}, // zeros
     {"/accessors/0/sparse", "{}", Expect::Refuse, "accessors[0].sparse.count"},

@@ -35,7 +35,7 @@ std::string encodedSheet(DracoMethod method)
     return encodeDraco(sheetPositions(squares), vertexJoints(), sheetIndices(squares), method);
 }
 
-/// A document with one compressed primitive, its accessors without data.
+/// A document with one compressed primitive, whose accessors have no data.
 PackedDocument compressed(const std::string& stream)
 {
     PackedDocument document;
@@ -44,7 +44,7 @@ PackedDocument compressed(const std::string& stream)
         {{"buffer", 0}, {"byteOffset", document.add(stream.data(), stream.size())}, {"byteLength", stream.size()}}};
     document.accessor("VEC3", 5126, vertices, -1);
     document.accessor("VEC4", 5121, vertices, -1);
-    document.accessor("VEC4", 5126, vertices, -1); // weights: all zero, mended
+    document.accessor("VEC4", 5126, vertices, -1); // weights: all zero, repaired
     document.accessor("SCALAR", 5123, sheetIndices(squares).size(), -1);
     document.json["meshes"] = {{{"primitives",
                                  {{{"attributes", {{"POSITION", 0}, {"JOINTS_0", 1}, {"WEIGHTS_0", 2}}},
@@ -60,7 +60,7 @@ std::string messageOf(const Result<tinygltf::Model>& model)
     return model ? "loaded" : model.error().message;
 }
 
-/// The triangles of a model's only primitive by their corners' positions, in an order that does not depend on the
+/// The triangles of a model's only primitive as the positions of their corners, in an order that does not depend on the
 /// codec.
 std::vector<std::array<float, 9>> triangles(const std::vector<float>& positions,
                                             const std::vector<std::uint32_t>& indices)
@@ -97,7 +97,7 @@ TEST(DracoDecompressionTest, MeshesAreAsBefore)
         const std::vector<float> positions = readFloats(model, primitive.attributes.at("POSITION"));
         EXPECT_EQ(triangles(positions, readIntegers(model, primitive.indices)),
                   triangles(sheetPositions(squares), sheetIndices(squares)));
-        // A vertex's joint is its number in the sheet.
+        // A vertex's joint is its index in the sheet.
         const std::vector<std::uint32_t> joints = readIntegers(model, primitive.attributes.at("JOINTS_0"));
         for (std::size_t v = 0; v < vertices; ++v)
             EXPECT_EQ(joints[v * 4], std::uint32_t(positions[v * 3] + positions[v * 3 + 1] * (squares + 1)));

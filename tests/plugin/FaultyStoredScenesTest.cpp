@@ -150,7 +150,7 @@ protected:
     {
         log->text.clear();
         Read result = osgDB::Registry::instance()->readNode(files.folder.write(name, text), nullptr);
-        // What came through is used.
+        // The scene that was read must be usable.
         if (result.validNode())
             if (AnimatedCharacter* character = findCharacter(*result.getNode()))
                 for (int frame = 0; frame < 3; ++frame)
@@ -200,7 +200,7 @@ TEST_F(FaultyStoredScenesTest, faultsOfCompactClipsHaveAMessage)
 // Not inside one of OSG's quoted words: OSG would search for the closing quote forever.
 TEST_F(FaultyStoredScenesTest, textThatIsCutOffIsAnError)
 {
-    // OSG's XML takes a file without its end for one that ends there: what is whole by then counts.
+    // OSG's XML reader accepts a file without its end and keeps the complete elements.
     for (const char* name : {"arm.osgt", "arm.osgx"})
     {
         const std::string sound = content(name);

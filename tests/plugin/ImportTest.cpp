@@ -24,7 +24,7 @@ bool isSkinned(const ImportedPrimitive& primitive)
     return dynamic_cast<const SkinnedGeometry*>(primitive.geometry.get());
 }
 
-/// The winding that holds for the drawable on one of its ways from the root.
+/// True if the drawable's front faces are clockwise along one of its paths from the root.
 bool isClockwise(const ImportedPrimitive& primitive, std::size_t way = 0)
 {
     bool clockwise = false;
@@ -234,7 +234,7 @@ TEST(ImportTest, mirroredPlacesTurnTheWinding)
     file.at(back).scale = {1, -1, 1};
     const ImportedModel model = imported(file);
     EXPECT_TRUE(isClockwise(primitiveOf(model, file.stone)));
-    EXPECT_FALSE(isClockwise(primitiveOf(model, back), 1)); // the same geometry in its second place
+    EXPECT_FALSE(isClockwise(primitiveOf(model, back), 1)); // the same geometry along its second path
     EXPECT_TRUE(isClockwise(primitiveOf(model, file.sword)));
 }
 
@@ -276,7 +276,7 @@ TEST(ImportTest, instancesAreLimited)
 
 TEST(ImportTest, aFaultyInstancingDrawsOnceWithAWarning)
 {
-    for (const int index : {-1, 99, 0}) // 0: a VEC3 where a VEC4 is due
+    for (const int index : {-1, 99, 0}) // 0: a VEC3 instead of a VEC4
     {
         ModelBuilder file;
         const int stone = file.node("stone", -1, file.triangle());
@@ -286,7 +286,7 @@ TEST(ImportTest, aFaultyInstancingDrawsOnceWithAWarning)
         file.at(stone).extensions["EXT_mesh_gpu_instancing"] = tinygltf::Value(extension);
         file.model.extensionsUsed = {"EXT_mesh_gpu_instancing"};
         const Result<ImportedModel> model = import(file);
-        if (!model) continue; // refused by the validation
+        if (!model) continue; // the validation refused it
         EXPECT_EQ(model.value().primitives[0].geometry->getNumParents(), 1u);
         EXPECT_EQ(model.value().messages.warnings.size(), 1u);
     }

@@ -9,7 +9,7 @@
 namespace osgGpuAnimation::gltf
 {
 
-/// The model in the file's text. A failure of the test, and an empty model, where it is refused.
+/// The model of the file's text. If the import refuses it, the test fails and the model is empty.
 inline ImportedModel imported(const ModelBuilder& file, const ImportOptions& options = {})
 {
     const Result<ImportedModel> model = importModel(file.text(), "", options);
@@ -17,7 +17,7 @@ inline ImportedModel imported(const ModelBuilder& file, const ImportOptions& opt
     return model ? model.value() : ImportedModel{};
 }
 
-/// The first primitive of the file's node. A failure of the test where none is in the graph.
+/// The first primitive of the file's node. The test fails if the graph has none.
 inline const ImportedPrimitive& primitiveOf(const ImportedModel& model, int node)
 {
     for (const ImportedPrimitive& primitive : model.primitives)

@@ -10,7 +10,7 @@ namespace osgGpuAnimation::gltf
 namespace
 {
 
-/// A point with `sets` times four influences of a skin with twelve joints, each joint's weight as given.
+/// A point with `sets` times four influences of a skin with twelve joints, and the given weight of each joint.
 class InfluencesTest : public ::testing::Test
 {
 protected:
@@ -21,7 +21,7 @@ protected:
         Skin skin;
         for (int joint = 11; joint >= 0; --joint)
         {
-            skin.joints.push_back(joint); // another order than the palette's
+            skin.joints.push_back(joint); // not in the palette's order
             AffineMatrix bind;
             bind.rows[0].w = static_cast<float>(joint);
             skin.inverseBinds.push_back(bind);

@@ -47,10 +47,10 @@ TEST(JointsTest, skinJointsAndTheirAncestors)
 {
     ModelBuilder file;
     const int root = file.node("root");
-    file.node("beside", root, file.triangle()); // below an ancestor only: stays still
+    file.node("beside", root, file.triangle()); // its only joint is an ancestor: stays still
     const int between = file.node("between", root);
     const int hip = file.node("hip", between);
-    file.node("socket", hip); // nothing hangs on it
+    file.node("socket", hip); // nothing depends on it
     file.at(file.node("body", hip, file.skinnedTriangle())).skin = file.skin({hip});
     EXPECT_EQ(jointNames(file), (Names{"root", "between", "hip"}));
 }

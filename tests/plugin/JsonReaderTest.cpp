@@ -68,7 +68,7 @@ TEST(JsonReaderTest, RefusesWhatIsNoJson)
 TEST(JsonReaderTest, NulIsNoEndOfTheText)
 {
     Messages messages;
-    EXPECT_TRUE(read(std::string("{}\0\0", 4), messages)); // what some writers fill a GLB's chunk with
+    EXPECT_TRUE(read(std::string("{}\0\0", 4), messages)); // some writers pad a GLB's chunk like this
     ASSERT_EQ(messages.warnings.size(), 1u);
     EXPECT_EQ(messages.warnings[0], "JSON: expected the end of the text at byte 2, found 2 bytes of NUL; ignored");
     EXPECT_NE(rewritten(std::string("{}\0{}", 5)).find("after the NUL at byte 2, found more at byte 3"),
@@ -87,13 +87,13 @@ TEST(JsonReaderTest, KeepsToItsLimits)
 {
     Messages messages;
     ImportOptions options;
-    options.maxJsonDepth = 5; // the root is one
+    options.maxJsonDepth = 5; // the root is level 1
     EXPECT_TRUE(read(nested(4, '[', ']'), messages, options));
     const Result<JsonTree> deep = read(nested(5, '[', ']'), messages, options);
     ASSERT_FALSE(deep);
     EXPECT_NE(deep.error().message.find("maxJsonDepth"), std::string::npos);
 
-    options.maxJsonDepth = 1000000; // more than any stack bears is not to be had
+    options.maxJsonDepth = 1000000; // a larger limit than any stack allows has no effect
     EXPECT_FALSE(read(nested(100000, '[', ']'), messages, options));
 
     options.maxElements = 3;

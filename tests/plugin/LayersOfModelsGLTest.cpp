@@ -17,8 +17,8 @@
 #include <cstdio>
 #include <random>
 
-// Random stacks of layers over real characters: the GPU against its CPU twin and against the tests' own evaluation in
-// double precision.
+// Random stacks of layers over real characters: the GPU is compared with its CPU twin and with the tests' own
+// evaluation in double precision.
 
 namespace osgGpuAnimation::gltf
 {
@@ -64,8 +64,8 @@ protected:
         size = static_cast<double>(glm::length(rest.max - rest.min));
     }
 
-    /// The largest distance between where two palettes take a corner of the vertices that an entry moves: a vertex,
-    /// being a mean of such, is no farther off. As a share of the model's size.
+    /// The largest distance between the corners of the entries' boxes under two palettes, relative to the model's size.
+    /// A vertex is a weighted mean of such points, so its distance is not larger.
     template <typename Entry>
     double difference(const std::vector<AffineMatrix>& palette, const std::vector<Entry>& expected) const
     {
@@ -101,7 +101,7 @@ TEST_P(LayersOfModelsGLTest, randomStacksAreTheTwinsAndTheReferencesPose)
     std::size_t drawn = 0;
     for (PoseInstruction& stack : stacks)
     {
-        // Nearly opposite rotations: which of two ways is the shorter hangs on the last bits. Another stack, then.
+        // For nearly opposite rotations rounding decides which way is shorter. Such a stack is replaced.
         do
         {
             stack = randomLayers(*set, random);

@@ -60,7 +60,7 @@ enum class Expect
     Refuse
 };
 
-/// Adds failures to the running test where the answer is another one or its text lacks the message.
+/// Adds failures to the running test if the answer is another one or its text lacks the message.
 void expectAnswer(const LoadedDocument& answer, Expect expect, const std::string& message);
 
 } // namespace osgGpuAnimation::gltf

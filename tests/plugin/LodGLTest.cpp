@@ -32,7 +32,7 @@ int pixelsDrawn(const osg::Image& image)
     return count;
 }
 
-/// The mean colour of what is drawn, over the background.
+/// The mean colour of the pixels that differ from the background.
 osg::Vec4 meanColor(const osg::Image& image)
 {
     osg::Vec4 sum;
@@ -51,7 +51,7 @@ class LodGLTest : public ViewerGLTest
 {
 protected:
     static constexpr int side = 256; ///< pixels
-    static constexpr int across = 5; ///< characters, and as many deep
+    static constexpr int across = 5; ///< characters per row and per column
 
     int pictureSide() const override { return side; }
 
@@ -61,7 +61,7 @@ protected:
         ViewerGLTest::SetUp();
     }
 
-    /// 25 characters of a model, in a crowd or each by itself, at times of their own.
+    /// 25 characters of a model at different times, in a crowd or as separate nodes.
     static osg::ref_ptr<osg::Group> makeScene(const std::string& file, bool isCrowd, float pixelError)
     {
         const osg::ref_ptr<osg::Node> model = osgDB::readRefNodeFile(file);
@@ -137,7 +137,7 @@ TEST_P(LodModelsGLTest, lookAsWithAllTriangles)
     if (file.empty()) GTEST_SKIP() << "there is no " << GetParam().file;
     const osg::ref_ptr<osg::Group> all = makeScene(file, GetParam().isCrowd, 0.0f);
     const osg::ref_ptr<osg::Group> fewer = makeScene(file, GetParam().isCrowd, 0.5f);
-    // A camera that sees them 1,000, 200 and 40 pixels wide, and so each about 150, 30 and 6.
+    // The widths of the scene in pixels; a character is about 150, 30 and 6 pixels wide.
     for (const double pixels : {1000.0, 200.0, 40.0})
     {
         const osg::ref_ptr<osg::Image> expected = pictureOf(*all, pixels);
@@ -145,7 +145,7 @@ TEST_P(LodModelsGLTest, lookAsWithAllTriangles)
         const osg::ref_ptr<osg::Image> found = pictureOf(*fewer, pixels);
         const GLuint ofFewer = primitives();
         const int expectedPixels = pixelsDrawn(*expected), foundPixels = pixelsDrawn(*found);
-        // What half a pixel does to all triangles.
+        // The effect of half a pixel with all triangles.
         look(*viewer().getCamera(), *all, pixels);
         viewer().getCamera()->setProjectionMatrix(viewer().getCamera()->getProjectionMatrix() *
                                                   osg::Matrix::translate(1.0 / side, 0.0, 0.0));
@@ -155,7 +155,7 @@ TEST_P(LodModelsGLTest, lookAsWithAllTriangles)
         EXPECT_LT(difference, moved) << "at " << pixels << " pixels";
         EXPECT_LT(tone, 0.12f) << "at " << pixels << " pixels";
         EXPECT_NEAR(foundPixels, expectedPixels, 0.2 * expectedPixels + 10.0) << "at " << pixels << " pixels";
-        const GLuint least = pixels > 200.0 ? 1 : pixels > 40.0 ? 2 : 4; // times fewer
+        const GLuint least = pixels > 200.0 ? 1 : pixels > 40.0 ? 2 : 4; // the least reduction factor
         EXPECT_LE(least * ofFewer, ofAll) << "at " << pixels << " pixels";
     }
 }
@@ -213,7 +213,7 @@ TEST_F(LodGLTest, surviveTheOptimizer)
     const GLuint ofFirst = primitives();
     osgUtil::Optimizer optimizer;
     optimizer.optimize(scene, osgUtil::Optimizer::ALL_OPTIMIZATIONS);
-    // Flattened matrices are rounded otherwise.
+    // Flattened matrices round differently.
     EXPECT_LT(Picture::pixelsDifferent(*expected, *drawn(*scene)), 5);
     EXPECT_LE(primitives(), ofFirst);
 }
@@ -234,7 +234,7 @@ protected:
     {
         osg::ref_ptr<osg::Group> scene = makeScene(ownScene("Wanderer.glb"), true, 0.5f);
         scene->addChild(makeScene(ownScene("Wanderer.glb"), false, 0.5f));
-        // The cull traversal has to make levels.
+        // The cull traversal has to build the levels.
         forEachMeshBelow(*scene, [](SkinnedGeometry& mesh) { mesh.forgetLodLevels(); });
         context().releaseContext();
         viewer().setThreadingModel(model);

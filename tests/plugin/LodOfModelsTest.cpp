@@ -14,7 +14,7 @@
 #include <cmath>
 #include <random>
 
-// Levels of detail of real characters, against all triangles of the level, in poses of their own.
+// The error of levels of detail of real characters, compared with all triangles in several poses.
 
 namespace osgGpuAnimation::gltf
 {
@@ -25,8 +25,8 @@ namespace
 struct ModelCase
 {
     const char* file;
-    std::size_t trianglesFar;  ///< of all meshes, at most, where a sixteenth of the size may be off
-    std::size_t trianglesNear; ///< likewise, a 256th
+    std::size_t trianglesFar;  ///< the most triangles of all meshes for an error of 1/16 of the size
+    std::size_t trianglesNear; ///< the same for an error of 1/256
 };
 
 void PrintTo(const ModelCase& model, std::ostream* out)
@@ -44,7 +44,7 @@ std::vector<unsigned int> indicesAt(const SkinnedGeometry& mesh, const LodLevels
     return indices;
 }
 
-/// How far every seventh vertex is from the triangles at most.
+/// The largest distance of every seventh vertex from the triangles.
 double largestDistance(const std::vector<glm::dvec3>& positions, const std::vector<unsigned int>& indices)
 {
     double largest = 0.0;
@@ -119,7 +119,7 @@ TEST_P(LodOfModelsTest, areOffByNoMoreThanTheirLevelSays)
             {
                 std::vector<glm::dvec3> positions;
                 meshes[i]->computePositions(palettes[pose], positions);
-                // The rest pose is one of those that were looked at; others may be a little farther off.
+                // The levels are built for poses that include the rest pose; others may have a slightly larger error.
                 EXPECT_LE(largestDistance(positions, indicesAt(*meshes[i], *levels[i], level)),
                           (pose == 0 ? 1.0001 : 1.5) * std::ldexp(1.0, level))
                     << meshes[i]->getName() << " at level " << level << " in pose " << pose;

@@ -61,7 +61,7 @@ std::string nodesOnAnAnimatedJoint()
     return file.text();
 }
 
-/// A skin for each node, all of one joint.
+/// One skin per node, all with the same joint.
 std::string skinnedNodes()
 {
     LargeMesh file;
@@ -76,7 +76,7 @@ std::string skinnedNodes()
     return file.text();
 }
 
-/// Each with weights of its own.
+/// Nodes with their own morph weights.
 std::string morphingNodes()
 {
     LargeMesh file;
@@ -87,7 +87,7 @@ std::string morphingNodes()
     return file.text();
 }
 
-/// Ten buffers of so many bytes each in data URIs.
+/// Ten buffers of that many bytes each in data URIs.
 std::string dataUris(std::size_t bytes)
 {
     const std::string buffer = R"({"byteLength":)" + std::to_string(bytes) + R"(,"uri":"data:;base64,)" +
@@ -98,13 +98,13 @@ std::string dataUris(std::size_t bytes)
     return text + "]}";
 }
 
-/// One long string that is no data.
+/// One long string that is not a data URI.
 std::string longName(std::size_t letters)
 {
     return R"({"asset":{"version":"2.0","generator":")" + std::string(letters, 'x') + R"("}})";
 }
 
-/// A document of a list of so many empty objects.
+/// A document with a list of `count` empty objects.
 std::string emptyObjects(const std::string& list, std::size_t count)
 {
     std::string text = R"({"asset":{"version":"2.0"},")" + list + "\":[{}";
@@ -117,7 +117,7 @@ struct ManyCase
 {
     const char* name;
     std::string text;
-    const char* message; ///< of the error; empty: it is drawn
+    const char* message; ///< part of the error; empty: the model is drawn
 };
 
 } // namespace
@@ -140,7 +140,7 @@ TEST(ManyElementsTest, staySmallAndQuick)
     {
         const long before = peakMemory();
         SCOPED_TRACE(many.name);
-        const std::clock_t start = std::clock(); // of the processor: other programs may run
+        const std::clock_t start = std::clock(); // CPU time: other programs may run
         const Result<ImportedModel> model = importModel(many.text, "", {});
         EXPECT_EQ(bool(model), *many.message == '\0');
         if (!model)

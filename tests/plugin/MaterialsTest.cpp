@@ -27,7 +27,7 @@ protected:
     {
     }
 
-    /// Material 0 to play with; textures 0 and 1 of a good picture, 2 of a damaged one, each wanted by a material.
+    /// Tests may change material 0. Textures 0 and 1 have a valid picture, texture 2 a damaged one; materials use them.
     static ModelBuilder withPictures()
     {
         ModelBuilder file;
@@ -123,7 +123,7 @@ TEST_F(MaterialsTest, alphaModes)
     EXPECT_EQ(uniform(state(true), "alphaCutoff"), 0.0f);
     material().alphaMode = "MASK";
     material().alphaCutoff = 0.25;
-    const auto mirrored = [](MaterialUse& use) { use.mirrored = true; }; // other uses, so that they are made anew
+    const auto mirrored = [](MaterialUse& use) { use.mirrored = true; }; // different uses, so that new states are made
     const auto* function = get<osg::AlphaFunc>(state(false, mirrored), osg::StateAttribute::ALPHAFUNC);
     ASSERT_TRUE(function);
     EXPECT_EQ(function->getFunction(), osg::AlphaFunc::GEQUAL);

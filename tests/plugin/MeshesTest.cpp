@@ -41,7 +41,7 @@ int fiveNormals(ModelBuilder& file)
 struct ModeCase
 {
     int mode;
-    std::size_t whole; ///< of five vertices
+    std::size_t whole; ///< indices of complete primitives among five vertices
 };
 
 const ModeCase modes[] = {{0, 5}, {1, 4}, {2, 5}, {3, 5}, {4, 3}, {5, 5}, {6, 5}};
@@ -81,7 +81,7 @@ TEST(MeshesTest, allIndexTypesInAllModes)
             ASSERT_TRUE(read.primitive);
             const osg::PrimitiveSet& set = *read.primitive->primitiveSet;
             ASSERT_TRUE(set.getDrawElements());
-            ASSERT_EQ(set.getNumIndices(), mode.whole); // a part of a triangle must not be read past the end
+            ASSERT_EQ(set.getNumIndices(), mode.whole); // an incomplete triangle must not be read past the end
             EXPECT_EQ(set.index(0), 4u);
             EXPECT_EQ(set.index(2), 2u);
         }
@@ -116,7 +116,7 @@ TEST(MeshesTest, trianglesWithoutNormalsAreFlat)
     ASSERT_TRUE(read.primitive);
     const MeshPrimitive& mesh = *read.primitive;
     EXPECT_EQ(mesh.primitiveSet->getNumIndices(), 6u);
-    ASSERT_EQ(mesh.positions->size(), 7u); // two triangles, and the vertex that none uses
+    ASSERT_EQ(mesh.positions->size(), 7u); // two triangles and the unused vertex
     EXPECT_EQ(mesh.sourceVertex, (std::vector<std::uint32_t>{0, 1, 2, 0, 2, 3, 4}));
     ASSERT_NE(mesh.geometryVertex, nullptr);
     EXPECT_EQ(*mesh.geometryVertex, (std::vector<std::uint32_t>{0, 1, 2, 5, 6}));
@@ -127,8 +127,8 @@ TEST(MeshesTest, trianglesWithoutNormalsAreFlat)
         EXPECT_EQ(normal, osg::Vec3(0, 0, 1));
 }
 
-/// Two triangles of a square, each with corners of its own, and a vertex that none uses: vertices 1 and 3, 2 and 5 are
-/// at the same places.
+/// Two triangles of a square with separate corners, and an unused vertex: vertices 1 and 3, 2 and 5 have equal
+/// positions.
 void addSquare(ModelBuilder& file)
 {
     file.mesh({{"POSITION",
@@ -189,7 +189,7 @@ TEST(MeshesTest, verticesAlikeAreJoinedForThePalette)
         EXPECT_EQ(mesh->primitiveSet->getNumIndices(), 6u);
         for (unsigned int corner = 0; corner < 6; ++corner)
             EXPECT_EQ((*mesh->normals)[mesh->primitiveSet->index(corner)], osg::Vec3(0, 0, 1));
-        // Without a palette each triangle keeps vertices of its own.
+        // Without a palette each triangle keeps its own vertices.
         EXPECT_NE(read.meshes.primitive(0, 0), mesh);
         EXPECT_EQ(read.primitive->positions->size(), 7u);
     }

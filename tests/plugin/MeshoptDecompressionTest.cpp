@@ -95,7 +95,7 @@ TEST(MeshoptDecompressionTest, MeshesAreAsBefore)
     const Result<tinygltf::Model> model = sheet().load();
     ASSERT_TRUE(model) << messageOf(model);
     EXPECT_EQ(readFloats(model.value(), 0), sheetPositions(squares));
-    // The codec may turn a triangle's corners round, not its winding.
+    // The codec may rotate a triangle's corners, but keeps its winding.
     std::vector<std::uint32_t> indices = readIntegers(model.value(), 1), expected = sheetIndices(squares);
     ASSERT_EQ(indices.size(), expected.size());
     for (std::vector<std::uint32_t>* list : {&indices, &expected})
@@ -132,7 +132,7 @@ TEST(MeshoptDecompressionTest, FiltersAreUndone)
     {
         const char* name;
         int accessor;
-        double tolerance; ///< what its bits leave
+        double tolerance; ///< the precision of its bits
     };
     const Filter filters[] = {
         {"OCTAHEDRAL",
@@ -159,7 +159,7 @@ TEST(MeshoptDecompressionTest, FiltersAreUndone)
         for (std::size_t i = 0; i < read.size(); ++i)
         {
             const double expected = vectors[i / components * 4 + i % components];
-            // A quaternion and its negative are one rotation.
+            // A quaternion and its negative are the same rotation.
             const double found = components == 4 ? std::copysign(read[i], expected) : read[i];
             EXPECT_NEAR(found, expected, filter.tolerance) << filter.name << " " << i;
         }

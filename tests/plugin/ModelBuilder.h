@@ -31,18 +31,18 @@ public:
     int mesh(const std::map<std::string, int>& attributes, int mode = TINYGLTF_MODE_TRIANGLES, int indices = -1);
     /// A mesh of one triangle, (0,0,0) (1,0,0) (0,1,0), with normals.
     int triangle();
-    /// The same with JOINTS_0 (first and second place) and WEIGHTS_0 (a half each).
+    /// The same triangle with JOINTS_0 (first and second joint) and WEIGHTS_0 (0.5 each).
     int skinnedTriangle();
     tinygltf::Primitive& primitive(int mesh) { return model.meshes[static_cast<std::size_t>(mesh)].primitives[0]; }
 
     /// A node below the parent; -1: a root of the scene.
     int node(const std::string& name, int parent = -1, int mesh = -1);
     tinygltf::Node& at(int node) { return model.nodes[static_cast<std::size_t>(node)]; }
-    /// Without inverse binds.
+    /// A skin without inverse binds.
     int skin(const std::vector<int>& joints);
     /// An animation without channels.
     int animation(const std::string& name);
-    /// A channel of the last animation; its sampler is its own.
+    /// Adds a channel with its own sampler to the last animation.
     void channel(int node, const std::string& path, const std::vector<float>& times, int type,
                  const std::vector<float>& values, const std::string& interpolation = "LINEAR");
     /// A translation from 0 to (1, 0, 0) in one second.

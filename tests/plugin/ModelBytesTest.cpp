@@ -20,14 +20,14 @@ namespace
 
 constexpr std::size_t limit = 1000;
 
-/// JSON of so many bytes.
+/// A JSON document of that many bytes.
 std::string json(std::size_t bytes)
 {
     const std::string text = R"({"asset":{"version":"2.0"}})";
     return text + std::string(bytes - text.size(), ' ');
 }
 
-/// A beginning, and spaces for ever after.
+/// A stream that starts with the text and continues with spaces forever.
 class EndlessStream : public std::streambuf
 {
 public:
@@ -55,7 +55,7 @@ private:
 
 struct ModelBytesTest : ::testing::Test
 {
-    /// Of reading and importing: the error's message, empty where there is none.
+    /// Reads and imports the content: the error's message, empty if there is none.
     std::string readFile(const std::string& content)
     {
         const std::string path = scratch.write("model", content);
@@ -134,7 +134,7 @@ TEST_F(ModelBytesTest, aStreamMayHaveNoEnd)
         const Result<std::string> bytes = readModelStream(stream, options, mostBytes);
         ASSERT_FALSE(bytes);
         EXPECT_EQ(bytes.error().message.substr(0, expected.size()), expected);
-        EXPECT_LT(endless.given(), 1200000u); // not much more is asked for than is let through
+        EXPECT_LT(endless.given(), 1200000u); // little more is read than the limit allows
     }
 }
 
@@ -152,7 +152,7 @@ TEST_F(ModelBytesTest, aStreamOfTheMostBytesIsRead)
 TEST_F(ModelBytesTest, tooMuchJsonIsRefusedBeforeItIsRead)
 {
     const std::string path = scratch.write("model.gltf", "{");
-    std::filesystem::resize_file(path, std::uintmax_t(3) << 30); // takes no room on the disk
+    std::filesystem::resize_file(path, std::uintmax_t(3) << 30); // a sparse file
     const long before = peakMemory();
     const Result<std::string> bytes = readModelFile(path, options);
     ASSERT_FALSE(bytes);

@@ -17,7 +17,7 @@ namespace
 
 namespace fs = std::filesystem;
 
-/// outside.bin, and a folder `model` with model.gltf, in.bin, deep/below.bin, a pipe and links to all sorts of things.
+/// outside.bin, and a folder `model` with model.gltf, in.bin, deep/below.bin, a pipe and several kinds of links.
 class ModelFolderTest : public ::testing::Test
 {
 protected:
@@ -123,7 +123,7 @@ TEST_F(ModelFolderTest, AStreamHasNoFiles)
 TEST_F(ModelFolderTest, WholeFilesSayWhatIsWrong)
 {
     scratch.write("empty.glb", "");
-    fs::resize_file(scratch.write("holes.glb", "glTF"), (std::uintmax_t(1) << 32) + 1); // takes no room on the disk
+    fs::resize_file(scratch.write("holes.glb", "glTF"), (std::uintmax_t(1) << 32) + 1); // a sparse file
     EXPECT_EQ(readWholeFile(scratch.file("outside.bin")).value(), "outside");
     const std::pair<const char*, const char*> faults[] = {{"none.glb", "does not exist"},
                                                           {"model", "a folder"},

@@ -11,12 +11,12 @@
 namespace osgGpuAnimation::gltf
 {
 
-/// A pose of an imported model, worked out on the CPU in double precision from what the import made: the palette for
-/// SkinnedGeometry, the transforms above for plain geometry. In the file's own axes.
+/// A pose of an imported model, computed on the CPU in double precision from the import's output: the palette for
+/// SkinnedGeometry, the transforms above for plain geometry. Coordinates are in the file's own axes.
 class ModelVertices
 {
 public:
-    /// clip: place in the set, -1: the rest pose. fixedWeights: by the file's node, in place of the clip's.
+    /// clip: index in the set, -1: the rest pose. fixedWeights: by the file's node, replace the clip's weights.
     ModelVertices(const ImportedModel& model, int clip, double time,
                   const std::map<int, std::vector<double>>& fixedWeights = {});
 

@@ -21,7 +21,7 @@ ImportedModel unrotated(const ModelBuilder& file)
     return imported(file, options);
 }
 
-/// Where a vertex of the node's mesh is at rest.
+/// The position of a vertex of the node's mesh at rest.
 glm::dvec3 place(const ImportedModel& model, int node, std::size_t vertex)
 {
     return ModelVertices(model, -1, 0.0).positions(primitiveOf(model, node)).at(vertex);
@@ -32,13 +32,14 @@ void expectAt(const glm::dvec3& found, const glm::dvec3& expected)
     EXPECT_NEAR(glm::length(found - expected), 0.0, 1e-6) << found.x << ' ' << found.y << ' ' << found.z;
 }
 
-/// What the accessor holds is divided by the largest number of its type.
+/// Marks the accessor as normalized: its values are divided by the largest number of their type.
 void normalize(ModelBuilder& file, int accessor)
 {
     file.model.accessors[static_cast<std::size_t>(accessor)].normalized = true;
 }
 
-/// Three points of integers, the second one `far` along x, the others in the origin; each padded to four bytes.
+/// Three points of integers, the second at `far` along x, the others at the origin; each is padded to a multiple of
+/// four bytes.
 int quantizedPoints(ModelBuilder& file, int componentType, unsigned int far)
 {
     const bool small =
@@ -79,7 +80,7 @@ TEST(OddModelsTest, quantizedPositionsAndTargetsAreTheNumbersTheyStandFor)
         if (type.normalized) normalize(file, points);
         file.model.extensionsUsed = file.model.extensionsRequired = {"KHR_mesh_quantization"};
         const int mesh = file.mesh({{"POSITION", points}});
-        const bool isSigned = type.expected < 0.0; // targets are
+        const bool isSigned = type.expected < 0.0; // as morph targets are
         if (isSigned) file.primitive(mesh).targets = {{{"POSITION", points}}};
         const int node = file.node("stone", -1, mesh);
         if (isSigned) file.at(node).weights = {0.5};
@@ -98,7 +99,7 @@ TEST(OddModelsTest, integerWeightsAreShares)
         file.at(there).translation = {0, 0, 10};
         const int mesh = file.skinnedTriangle();
         const unsigned int one = componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ? 255 : 65535;
-        const unsigned int part = one / 5; // exactly: 51 and 13107
+        const unsigned int part = one / 5; // exact: 51 and 13107
         const int weights = file.integers(TINYGLTF_TYPE_VEC4, componentType,
                                           {one - part, part, 0, 0, one - part, part, 0, 0, 0, one, 0, 0});
         normalize(file, weights);
@@ -121,7 +122,7 @@ TEST(OddModelsTest, aSkinnedMeshLeavesItsNodesPlaceAsideAndAnUnskinnedOneDoesNot
     const int body = file.node("body", -1, mesh);
     file.at(body).skin = file.skin({hip, knee});
     file.at(body).translation = {100, 0, 0};
-    const int statue = file.node("statue", -1, mesh); // the same mesh, joints and all, without a skin
+    const int statue = file.node("statue", -1, mesh); // the same mesh with its joints, but without a skin
     file.at(statue).translation = {100, 0, 0};
     const ImportedModel model = unrotated(file);
     expectAt(place(model, body, 1), {1, 0, 4});

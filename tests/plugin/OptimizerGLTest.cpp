@@ -9,7 +9,7 @@
 #include <osg/ShapeDrawable>
 #include <osgUtil/Optimizer>
 
-// Every flag of osgUtil::Optimizer, one by one and all at once: the same pictures as without it.
+// Every flag of osgUtil::Optimizer, one by one and all at once: the pictures stay the same.
 
 namespace osgGpuAnimation
 {
@@ -65,7 +65,7 @@ protected:
         return place;
     }
 
-    /// The scene in the picture from aside, whatever its bounds are said to be.
+    /// Pictures of the scene from a fixed camera, which does not depend on the scene's bounds.
     std::vector<osg::ref_ptr<osg::Image>> pictures(osg::Node& scene)
     {
         viewer().setSceneData(&scene);
@@ -86,13 +86,13 @@ protected:
         const auto expected = pictures(*plain);
         EXPECT_GT(Picture::pixelsDifferent(*expected[0], *expected[1]), 20) << "nothing moves";
         const osg::ref_ptr<osg::Node> optimized = make();
-        // Twice, as a scene that osgconv kept is optimized by osgviewer again.
+        // Twice, because osgviewer optimizes a scene again that osgconv has optimized.
         osgUtil::Optimizer().optimize(optimized, GetParam().flags);
         osgUtil::Optimizer().optimize(optimized, GetParam().flags);
         const auto found = pictures(*optimized);
         for (std::size_t i = 0; i < expected.size(); ++i)
         {
-            // Rounding of flattened matrices moves edges.
+            // Flattened matrices round differently, which moves edges.
             EXPECT_LE(Picture::pixelsDifferent(*expected[i], *found[i]), 12) << "picture " << i;
         }
     }

@@ -8,8 +8,8 @@
 #include <algorithm>
 #include <cmath>
 
-// Every real character, in every pose that is known of it, against an evaluation straight from the specification in
-// double precision (schema gltf-pose/1).
+// Compares every real character in every known pose with an evaluation of the specification in double precision (schema
+// gltf-pose/1).
 
 namespace osgGpuAnimation::gltf
 {
@@ -154,7 +154,7 @@ protected:
 
     json poses;
     double modelSize = 1.0;
-    double tolerance = 1e-5; // float32 all the way; the bar of the poses' own comparison program
+    double tolerance = 1e-5; // float32 throughout; the tolerance of the poses' own comparison program
 };
 
 } // namespace

@@ -14,7 +14,7 @@
 namespace osgGpuAnimation::gltf
 {
 
-/// A .glb put together from JSON and blocks of data in its BIN chunk, for data that no writer writes.
+/// A .glb made of JSON and blocks of data in its BIN chunk, for data that no writer produces.
 class PackedDocument
 {
 public:

@@ -17,7 +17,7 @@ namespace osgGpuAnimation
 namespace
 {
 
-/// PagedLODs over our own Wanderer, read by the DatabasePager's threads while frames are drawn.
+/// PagedLODs of our own Wanderer, which the DatabasePager's threads read while frames are drawn.
 class PagerGLTest : public ViewerGLTest
 {
 protected:
@@ -57,7 +57,7 @@ protected:
         return count;
     }
 
-    /// Draws until that many tiles are loaded, for a minute at most.
+    /// Draws frames until that many tiles are loaded, for at most a minute.
     bool drawUntilLoaded(const osg::Group& scene, int wanted)
     {
         for (int tries = 0; tries < 6000 && loaded(scene) != wanted; ++tries)

@@ -13,8 +13,8 @@
 #include <cmath>
 #include <random>
 
-// 300 random rays a model against its triangles as the CPU twin poses them, at random times, in crossfades and with
-// layers, below transforms that turn and scale, single and in a crowd: all agree.
+// Compares 300 random rays per model with the triangles in the CPU twin's pose, at random times, in crossfades and with
+// layers, below transforms that rotate and scale, for a single character and for a crowd.
 
 namespace osgGpuAnimation
 {
@@ -25,7 +25,7 @@ namespace
 struct PickedModel
 {
     const char* name;
-    const char* shared; ///< below the shared folder; null: a scene of our own
+    const char* shared; ///< in the shared folder; null: our own scene
     const char* scene;
 };
 
@@ -70,7 +70,7 @@ protected:
         return drawn;
     }
 
-    /// A clip somewhere in it, halfway into a crossfade to another, another one added or laid over it.
+    /// Plays a random clip at a random time, possibly crossfades to another, and adds or overrides with a third one.
     void playAnything(AnimationController& controller)
     {
         const std::size_t clips = controller.set().clips().size();
@@ -104,7 +104,7 @@ protected:
         return triangles;
     }
 
-    /// A ray that comes from somewhere outside and goes by a point of the mesh, more or less.
+    /// A ray that starts outside the model and passes near a random point of the mesh.
     osg::ref_ptr<osgUtil::LineSegmentIntersector> ray(const PosedTriangles& triangles)
     {
         const osg::Vec3d target = triangles.points()[random() % triangles.points().size()] +
@@ -197,7 +197,7 @@ TEST_P(PickingTest, raysMeetACrowdsInstancesAsTheyArePosed)
     EXPECT_GE(hits, poses * raysAPose / 4) << "rays that hit nothing say little";
 }
 
-/// A box around a point of the mesh holds it, so it hits the character; the joint is that of the nearest vertex.
+/// A box around a point of the mesh contains it, so it hits the character; the joint is that of the nearest vertex.
 TEST_P(PickingTest, polytopesMeetACharacterAsItIsPosed)
 {
     if (file().empty()) GTEST_SKIP() << "there is no " << GetParam().shared;

@@ -212,7 +212,7 @@ TEST_F(PluginTest, faultyFilesAnswerAsExpected)
         log->text.clear();
         const std::string path = (list.parent_path() / name).string();
         const long memory = peakMemory();
-        const std::clock_t start = std::clock(); // of the processor: other programs may run
+        const std::clock_t start = std::clock(); // CPU time: other programs may run
         Read result = osgDB::Registry::instance()->readNode(path, options);
         EXPECT_LT(double(std::clock() - start) / CLOCKS_PER_SEC, mostSeconds);
         if (memoryIsMeasurable)

@@ -15,8 +15,8 @@ namespace osgGpuAnimation
 namespace
 {
 
-// Of a triangle's side: OSG rounds a cross product of its intersection to float, 6e-8 of the box's size, and triangles
-// are down to 1/2000 of that.
+// Relative to a triangle's side: OSG rounds a cross product of its intersection to float, 6e-8 of the box's size, and
+// the smallest triangles have 1/2000 of that size.
 constexpr double rounding = 2e-4;
 
 struct Corners

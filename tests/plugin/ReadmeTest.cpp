@@ -147,7 +147,7 @@ TEST_F(ReadmeTest, ourPluginIsChosenByAnAlias)
               registry->createLibraryNameForExtension("osggpuanimation"));
     const osgDB::ReaderWriter* reader = registry->getReaderWriterForExtension("glb");
     for (const char* extension : {"glb", "gltf"})
-        registry->addFileExtensionAlias(extension, extension); // as it was
+        registry->addFileExtensionAlias(extension, extension); // restores the default
     ASSERT_NE(reader, nullptr);
     EXPECT_STREQ(reader->className(), "osgGpuAnimation glTF 2.0 reader");
 }

@@ -347,7 +347,7 @@ TEST_F(SerializersTest, theWhiteTextureIsKnownInCopiesAndFiles)
     for (const char* format : formats)
         EXPECT_TRUE(isWhiteTexture(textureOf(*files.throughFile(*scene, format)))) << format;
     EXPECT_FALSE(isWhiteTexture(nullptr));
-    copy->setName(""); // in files of before it has none
+    copy->setName(""); // files of earlier versions have no name
     EXPECT_FALSE(isWhiteTexture(copy));
 }
 

@@ -19,14 +19,14 @@
 namespace osgGpuAnimation
 {
 
-/// For tests that keep scenes in OSG's own formats: plugins of the build are found, files are in a folder of the
-/// test's.
+/// For tests that store scenes in OSG's own formats: osgDB finds the plugins of the build, and the files are in a
+/// temporary folder.
 class StoredScene
 {
 public:
     StoredScene() { usePluginsOfTheBuild(); }
 
-    /// The node as it comes back from a file of that format; null where it does not.
+    /// Writes the node to a file of that format and reads it back; null if that fails.
     osg::ref_ptr<osg::Node> throughFile(const osg::Node& node, const std::string& format) const
     {
         const std::string file = folder.file("scene." + format);
@@ -36,7 +36,7 @@ public:
     ScratchFolder folder;
 };
 
-/// The largest difference of two palettes' numbers; huge where they are not of one size.
+/// The largest difference of two palettes' numbers; huge if their sizes differ.
 inline float paletteDifference(const AnimationController& a, const AnimationController& b)
 {
     std::vector<AffineMatrix> first, second;
@@ -54,7 +54,7 @@ inline float paletteDifference(const AnimationController& a, const AnimationCont
     return worst;
 }
 
-/// Whether the keyframes of two sets are the same bit by bit.
+/// True if the keyframes of two sets are equal bit by bit.
 inline bool haveSameKeyframes(const AnimationSet& a, const AnimationSet& b)
 {
     if (a.clips().size() != b.clips().size()) return false;

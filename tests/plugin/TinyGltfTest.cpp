@@ -78,7 +78,7 @@ TEST(TinyGltfTest, AFaultInTimesIsSaidOnceForEachClipThatItCosts)
     }
     auto& animations = file.model.animations;
     animations[2].samplers = animations[1].samplers; // one accessor in two clips
-    animations[3].channels.clear();                  // no channel has anything of those samplers
+    animations[3].channels.clear();                  // no channel uses those samplers
     file.slide(hip);
     const Result<ImportedModel> model = importModel(file.text(), "", {});
     ASSERT_TRUE(model) << model.error().message;

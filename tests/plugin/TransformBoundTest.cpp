@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Numbers that are finite by themselves and not together.
+// Numbers that are finite alone but overflow together.
 #include "gltf/Import.h"
 #include "plugin/ModelBuilder.h"
 
@@ -34,7 +34,7 @@ bool areFinite(const std::vector<JointTransform>& transforms)
                        [](const JointTransform& transform) { return isFinite(transform); });
 }
 
-/// Keyframes, static data of the palette, and the palette at times of every clip.
+/// True if the keyframes, the palette's static data, and the palette at several times of every clip are finite.
 bool isFinite(const std::shared_ptr<const AnimationSet>& shared)
 {
     const AnimationSet& set = *shared;
@@ -149,8 +149,8 @@ struct ReachCase
     std::string text;
     const char* message; ///< in the error or a warning
     bool isRefused;
-    std::size_t clips;      ///< that are left
-    std::size_t primitives; ///< likewise
+    std::size_t clips;      ///< the remaining ones
+    std::size_t primitives; ///< the remaining ones
 };
 
 const char* const beyond = "farther out than 1e18";

@@ -34,7 +34,7 @@ std::uint32_t mixed(std::uint32_t word)
     return (word ^ word >> 24) * murmur;
 }
 
-/// The word that is mixed into this.
+/// The inverse of mixed().
 std::uint32_t unmixed(std::uint32_t word)
 {
     std::uint32_t inverse = murmur; // modulo 2^32, by Newton's iteration
@@ -44,7 +44,7 @@ std::uint32_t unmixed(std::uint32_t word)
     return (word ^ word >> 24) * inverse;
 }
 
-/// Positions, all different, that MurmurHash2, meshoptimizer's, takes for the same.
+/// Different positions with one value of MurmurHash2, meshoptimizer's hash.
 Words positionsOfOneHash(std::size_t count)
 {
     Words positions;
@@ -62,7 +62,7 @@ Words positionsOfOneHash(std::size_t count)
 
 using Triangle = std::array<std::uint32_t, 3>;
 
-/// With the smallest corner first, in the same turn.
+/// Each triangle starts with its smallest index and keeps its winding.
 std::vector<Triangle> sortedTriangles(const std::vector<std::uint32_t>& indices)
 {
     std::vector<Triangle> triangles;
@@ -76,7 +76,7 @@ std::vector<Triangle> sortedTriangles(const std::vector<std::uint32_t>& indices)
     return triangles;
 }
 
-/// Vertices that a cache of the last 16 does not have.
+/// The number of vertices that miss a cache of the last 16.
 std::size_t shadedVertices(const std::vector<std::uint32_t>& indices)
 {
     std::vector<std::uint32_t> cache;
@@ -93,7 +93,7 @@ std::size_t shadedVertices(const std::vector<std::uint32_t>& indices)
 
 constexpr std::uint32_t gridSize = 40;
 
-/// The triangles of a square of quads, in no order.
+/// The triangles of a square of quads, in random order.
 std::vector<std::uint32_t> shuffledGrid()
 {
     std::vector<Triangle> triangles;
@@ -111,7 +111,7 @@ std::vector<std::uint32_t> shuffledGrid()
     return indices;
 }
 
-/// The indices of a mesh of that material's alpha mode, as they are read.
+/// The indices of a mesh whose material has that alpha mode, as imported.
 std::vector<std::uint32_t> readGrid(const std::string& alphaMode)
 {
     ModelBuilder file;
@@ -152,7 +152,7 @@ TEST(TriangleMeshTest, verticesAreNumberedInTheirOrder)
 
 TEST(TriangleMeshTest, verticesMadeForAHashTakeNoLonger)
 {
-    // With meshoptimizer's table 100,000 of them take 20 seconds.
+    // With meshoptimizer's table 100,000 of them would take 20 seconds.
     constexpr std::size_t count = 500000;
     const Words positions = positionsOfOneHash(count);
     const std::clock_t start = std::clock();
@@ -172,7 +172,7 @@ TEST(TriangleMeshTest, theSameTrianglesWithTheirVerticesShadedOnce)
 
 TEST(TriangleMeshTest, trianglesThatAllMeetInOneVertexStayAsTheyAre)
 {
-    // By the square of them it would take minutes.
+    // Quadratic time would be minutes.
     std::vector<std::uint32_t> fan;
     constexpr std::uint32_t triangles = 600000;
     for (std::uint32_t i = 0; i < triangles; ++i)

@@ -15,7 +15,7 @@ void writeString(std::string_view text, std::string& out)
 {
     static const char digits[] = "0123456789abcdef";
     out += '"';
-    std::size_t clean = 0; // from where text is still to be copied
+    std::size_t clean = 0; // the start of the text that is not copied yet
     for (std::size_t i = 0; i < text.size(); ++i)
     {
         const unsigned char byte = static_cast<unsigned char>(text[i]);
@@ -40,7 +40,7 @@ void writeNumber(double number, std::string& out)
     out.append(text, end.ptr);
 }
 
-// As deep as the tree, which the reader has limited.
+// The recursion is as deep as the tree, which the reader limits.
 void write(const JsonValue& value, std::string& out)
 {
     bool first = true;

@@ -12,17 +12,17 @@
 namespace osgGpuAnimation
 {
 
-/// A scene that something happens to all the time: characters are cloned from a model and removed, crowds' instances
-/// come and go, clips change. All by the random numbers handed in; between frames.
+/// A scene that changes between frames: characters are cloned from a model and removed, crowd instances are added and
+/// removed, clips change. The caller's random numbers select the changes.
 class SoakScene
 {
 public:
-    /// model: holds a character, and is not changed.
+    /// model: contains a character; it is not changed.
     explicit SoakScene(osg::ref_ptr<osg::Node> model);
 
     osg::Group& root() { return *_root; }
     void change(std::mt19937& random);
-    /// Takes everything out.
+    /// Removes everything.
     void clear();
 
 private:

@@ -29,8 +29,7 @@ private:
 
 } // namespace
 
-// One viewer for all windows: osgViewer keeps a few hundred bytes for every viewer that there ever was (its list of
-// Scenes).
+// One viewer for all windows: osgViewer never frees a few hundred bytes per viewer (its list of Scenes).
 SoakViewer::SoakViewer(osg::Group& scene) : _scene(&scene), _viewer(new osgViewer::Viewer)
 {
     _viewer->setKeyEventSetsDone(0);

@@ -23,7 +23,7 @@ public:
     void moveCamera(std::mt19937& random);
     void changeThreading(std::mt19937& random);
     void close();
-    /// A window of another size.
+    /// Opens a window of another size.
     bool open(std::mt19937& random);
 
     int glErrors() const { return _glErrors; }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Usage: soak [--seconds N] [--seed S] FILE
-// Clones, removes, changes clips, moves the camera, changes the window's size and the threading model, at random but
-// the same for the same seed, with the file's character. Prints GL errors and how much more memory is allocated, the
-// window closed and the scene empty, than in the first minute. Exit status 0: no GL error, and at most 2 % more memory.
+// With the file's character, clones, removes, changes clips, moves the camera, changes the window's size and the
+// threading model: at random, but the same for the same seed. Prints GL errors and the growth of allocated memory since
+// the first minute, measured with the window closed and the scene empty. Exit status 0: no GL error, and at most 2 %
+// growth.
 
 #include "SoakScene.h"
 #include "SoakViewer.h"
@@ -48,16 +49,16 @@ bool parse(int count, char** words, Arguments& arguments)
     return !arguments.file.empty() && arguments.seconds > 0.0;
 }
 
-/// Bytes that are allocated and not freed. What the process has in memory says less: it is twenty times as much, most
-/// of it libraries, and goes up and down by a tenth with what malloc keeps free for threads that are gone. With a
-/// window open llvmpipe's lists of triangles would be the most of it, and scatter likewise.
+/// Bytes that are allocated and not freed. Resident memory is less precise: it is twenty times as large, mostly
+/// libraries, and varies by a tenth with the memory that malloc keeps for ended threads. With an open window llvmpipe's
+/// lists of triangles would dominate and vary likewise.
 std::size_t allocatedBytes()
 {
     const struct mallinfo2 all = mallinfo2();
     return all.uordblks + all.hblkhd;
 }
 
-/// Kibibytes that the process has in memory, what malloc gives back given back. To be looked at, not judged.
+/// Resident memory in KiB after malloc_trim(). It is printed, but not checked.
 long residentMemory()
 {
     malloc_trim(0);
@@ -67,7 +68,7 @@ long residentMemory()
     return 0;
 }
 
-/// 0: there are none.
+/// 0 if there are no values.
 double median(std::vector<std::size_t> values)
 {
     if (values.empty()) return 0.0;

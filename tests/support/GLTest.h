@@ -27,7 +27,7 @@ namespace osgGpuAnimation
 class GLTest : public ::testing::Test
 {
 protected:
-    /// Pixels across and down.
+    /// The picture's width and height in pixels.
     virtual int pictureSide() const { return 64; }
 
     /// The options of the context; a derived fixture sets more samples, the core profile and so on.

@@ -9,7 +9,7 @@
 namespace osgGpuAnimation
 {
 
-/// Seconds of the frames that the tests of crossfades go by.
+/// The frame time of the crossfade tests, in seconds.
 constexpr double frameSeconds = 1.0 / 60.0;
 
 /// The current positions of the joints in the model's space.

@@ -12,10 +12,10 @@ namespace osgGpuAnimation
 constexpr long mostMebibytes = 512;
 constexpr double mostSeconds = 5.0 * slowdown;
 
-/// A sanitizer keeps freed memory back, and every byte has a shadow.
+/// A sanitizer delays frees and adds shadow memory.
 constexpr bool memoryIsMeasurable = !isSanitized;
 
-/// The most memory that this process has had, in MiB.
+/// The peak memory of this process, in MiB.
 inline long peakMemory()
 {
     rusage usage{};

@@ -24,7 +24,7 @@ public:
     const osg::Image& image() const { return *_image; }
     osg::ref_ptr<osg::Image> copy() const { return new osg::Image(*_image, osg::CopyOp::DEEP_COPY_ALL); }
 
-    /// Pixels that differ from the colour of the lower left corner, the background.
+    /// The number of pixels that differ from the colour of the lower left corner, the background.
     int pixelsDrawn() const
     {
         int count = 0;
@@ -34,7 +34,7 @@ public:
         return count;
     }
 
-    /// Pixels of two pictures that differ by more than the tolerance (a colour's part, 0 to 1) in any channel.
+    /// The number of pixels of two pictures that differ by more than the tolerance (0 to 1) in any channel.
     static int pixelsDifferent(const osg::Image& a, const osg::Image& b, float tolerance = 0.02f)
     {
         int count = a.s() == b.s() && a.t() == b.t() ? 0 : a.s() * a.t() + 1;
@@ -52,8 +52,8 @@ public:
         return count;
     }
 
-    /// The mean of the channels' differences, 0 to 1, over all pixels that show something in either picture, of which
-    /// a's lower left corner is the background.
+    /// The mean of the channels' differences, 0 to 1, over all pixels that differ from the background in either
+    /// picture; a's lower left corner is the background.
     static double meanDifference(const osg::Image& a, const osg::Image& b)
     {
         double sum = 0.0, count = 0.0;

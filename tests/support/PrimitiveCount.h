@@ -15,7 +15,7 @@ namespace osgGpuAnimation
 class PrimitiveCount : public osg::Referenced
 {
 public:
-    /// The picture is taken as before.
+    /// Replaces the camera's draw callbacks; the picture is taken as before.
     void attach(osg::Camera& camera, const Picture& picture)
     {
         camera.setInitialDrawCallback(new Begin(*this));

@@ -15,7 +15,7 @@ namespace osgGpuAnimation
 namespace
 {
 
-/// A file without a name, gone with the object.
+/// An unnamed file, deleted with the object.
 class ScratchFile
 {
 public:

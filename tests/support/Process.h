@@ -7,16 +7,16 @@
 namespace osgGpuAnimation
 {
 
-/// A program that was run to its end.
+/// The result of a program that has ended.
 struct Process
 {
-    int status = -1;        ///< exit status; 128 + n where signal n ended it, -1 where it did not start
-    double seconds = 0.0;   ///< of the processor: other programs may run
-    long peakMebibytes = 0; ///< the most memory it had
-    std::string out;        ///< what it wrote to standard output
-    std::string err;        ///< and to standard error
+    int status = -1;        ///< exit status; 128 + n if signal n ended it, -1 if it did not start
+    double seconds = 0.0;   ///< CPU time: other programs may run
+    long peakMebibytes = 0; ///< peak memory
+    std::string out;        ///< standard output
+    std::string err;        ///< standard error
 
-    /// Runs the program with these arguments, nothing on standard input.
+    /// Runs the program to its end with these arguments and empty standard input.
     static Process run(const std::string& program, const std::vector<std::string>& arguments);
 };
 

@@ -22,7 +22,7 @@ struct RandomCharacter
         int joints = 8;
         bool splines = true;
         bool steps = true;
-        bool chain = false; ///< each joint the child of the one before
+        bool chain = false; ///< each joint is the child of the previous one
         double swing = 1.0; ///< largest rotation from one key to the next, as a fraction of a half turn
         double reach = 1.0; ///< size of the translations
     };
@@ -54,7 +54,7 @@ struct RandomCharacter
         return channel.path == Channel::Path::Rotation ? 4 : 3;
     }
 
-    /// The joints are in level order only where they are a chain: jointOfInput leads from these to the skeleton's.
+    /// The joints are in level order only in a chain: jointOfInput maps them to the skeleton's.
     Skeleton skeleton() const { return Skeleton::create(joints).value(); }
 
     Clip clip(const Skeleton& skeleton) const
@@ -128,7 +128,7 @@ private:
         double time = number(0.0, 1.0) < 0.5 ? 0.0 : number(0.0, 1.0);
         for (int keys = whole(1, 6); keys > 0; --keys)
         {
-            // Quarters now and then, so that channels share some times; floats, as a file has them.
+            // Some times are quarters, so that channels share them; all are floats, as in a file.
             const double wanted = number(0.0, 1.0) < 0.5 ? std::ceil(time * 4.0) / 4.0 : time;
             times.push_back(static_cast<double>(static_cast<float>(wanted)));
             time = times.back() + number(0.05, 0.8);

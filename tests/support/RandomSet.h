@@ -14,9 +14,9 @@ struct RandomSetShape
 {
     unsigned int seed = 1;
     int joints = 30;
-    int depth = 8;        ///< levels the joints are spread over
-    int keys = 5;         ///< a channel
-    bool splines = false; ///< CUBICSPLINE channels among the others
+    int depth = 8;        ///< levels of the hierarchy
+    int keys = 5;         ///< per channel
+    bool splines = false; ///< adds CUBICSPLINE channels
     bool weights = true;  ///< two morph weight tracks of 5 and 30 weights
     bool secondSkin = true;
 };

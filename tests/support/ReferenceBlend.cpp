@@ -140,7 +140,7 @@ private:
         sum.scale = plus(sum.scale, scaled(track.scale, factor));
     }
 
-    /// b, or -b where that is on a's side.
+    /// b, or -b if b is in the opposite hemisphere of a.
     Numbers onSide(const Numbers& a, const Numbers& b)
     {
         if (_isWeights) return b;

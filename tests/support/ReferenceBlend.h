@@ -12,7 +12,7 @@
 namespace osgGpuAnimation::reference
 {
 
-/// One track's numbers: three of translation, four of rotation, three of scale; of a weight block all twelve.
+/// The numbers of one track: three of translation, four of rotation, three of scale; a weight block has all twelve.
 struct Track
 {
     Numbers translation, rotation, scale;
@@ -25,7 +25,7 @@ struct BlendedPose
     /// other one.
     double closestDecision = 1.0;
 
-    /// The palette entries of joints; those of weight blocks hold the weights.
+    /// The palette entries of joints; entries of weight blocks hold the weights.
     std::vector<glm::dmat4> palette(const AnimationSet& set) const;
 };
 

@@ -62,7 +62,7 @@ inline Numbers hermite(const Channel& channel, std::size_t width, std::size_t ke
     return result;
 }
 
-/// `width` numbers a value; rotations come out unit.
+/// The value at that time, `width` numbers; rotations are normalized.
 inline Numbers evaluate(const Channel& channel, std::size_t width, double time)
 {
     using Interpolation = Channel::Interpolation;

@@ -10,7 +10,7 @@ constexpr bool isSanitized = true;
 constexpr bool isSanitized = false;
 #endif
 
-/// What limits of time are multiplied by: they are meant for a Release build.
+/// The factor for time limits, which are chosen for a Release build.
 #if defined(NDEBUG)
 constexpr double slowdown = isSanitized ? 10.0 : 1.0;
 #else

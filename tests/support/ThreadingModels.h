@@ -6,7 +6,7 @@
 namespace osgGpuAnimation
 {
 
-/// All threading models that a viewer has, but for AutomaticSelection, which picks one of them.
+/// All threading models of a viewer except AutomaticSelection, which selects one of them.
 inline constexpr osgViewer::ViewerBase::ThreadingModel threadingModels[] = {
     osgViewer::ViewerBase::SingleThreaded, osgViewer::ViewerBase::CullDrawThreadPerContext,
     osgViewer::ViewerBase::DrawThreadPerContext, osgViewer::ViewerBase::CullThreadPerCameraDrawThreadPerContext};

@@ -11,14 +11,14 @@
 namespace osgGpuAnimation
 {
 
-/// A GL test that draws scenes with an osgViewer::Viewer on the test's context, the camera 10 units before the origin
-/// on -Y, looking along +Y with +Z up: a square of 4 units on each side of the origin fills the picture.
+/// A GL test that draws scenes with an osgViewer::Viewer on the test's context. The camera is 10 units before the
+/// origin on -Y and looks along +Y with +Z up: a square of 4 units on each side of the origin fills the picture.
 class ViewerGLTest : public GLTest
 {
 protected:
     void TearDown() override
     {
-        // As with a window: closing the context has the viewer's cameras release what their scenes have in it.
+        // As with a window: closing the context makes the viewer's cameras release the GL objects of their scenes.
         GLTest::TearDown();
         _viewer = nullptr;
     }
@@ -39,14 +39,14 @@ protected:
         return *_viewer;
     }
 
-    /// Draws the scene as it is at that simulation time (seconds) and keeps the picture.
+    /// Draws the scene at that simulation time (seconds) and keeps the picture.
     void drawAt(double simulationTime)
     {
         viewer().frame(simulationTime);
         context().makeCurrent();
     }
 
-    /// The scene as it is at the last of these times, when it has been drawn at each of them.
+    /// Draws the scene at each of these times and returns the last picture.
     osg::ref_ptr<osg::Image> pictureOf(osg::Node* scene, const std::vector<double>& times)
     {
         viewer().setSceneData(scene);

@@ -17,7 +17,7 @@ std::string base64(const std::vector<float>& numbers)
     std::vector<std::uint8_t> bytes(numbers.size() * sizeof(float));
     std::memcpy(bytes.data(), numbers.data(), bytes.size());
     while (bytes.size() % 3 != 0)
-        bytes.push_back(0); // a buffer may be longer than it says
+        bytes.push_back(0); // a buffer may be longer than its byteLength
     std::string text;
     for (std::size_t i = 0; i < bytes.size(); i += 3)
     {

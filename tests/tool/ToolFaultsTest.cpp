@@ -29,7 +29,7 @@ bool names(const json& entry, const std::string& said)
                        { return std::regex_search(said, std::regex(pattern, std::regex::icase)); });
 }
 
-/// Status 0 or 1, as expected, and a message about the element where there is something to say.
+/// Expects status 0 or 1, and a message about the element if the entry asks for one.
 void expectAnswer(const Process& inspect, const json& entry)
 {
     const std::string said = inspect.err + inspect.out;

@@ -30,7 +30,7 @@ osg::Vec4 colour(const osg::Image& image, unsigned int x, unsigned int y)
     return image.getColor(x, y);
 }
 
-/// Pixels that are not the background's, which has one colour a row.
+/// The number of pixels that differ from the background, which has one colour per row.
 int drawnPixels(const osg::Image& image)
 {
     int count = 0;

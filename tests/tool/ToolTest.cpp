@@ -203,7 +203,7 @@ TEST_F(ToolTest, inspectSaysHowFarCompactClipsAreOff)
     EXPECT_GT(keyframes["longestSide"], 0.0);
     EXPECT_NEAR(keyframes["tolerance"].get<double>(), 1e-3 * keyframes["longestSide"].get<double>(), 1e-12);
     EXPECT_LE(keyframes["error"], keyframes["tolerance"]);
-    // People get three digits.
+    // The text output has three digits.
     const Process text = run({"inspect", "FLAG", "--compact", "1e-3"});
     static const std::regex words(
         R"(; at most \d[-.\de]{0,7} off, \d[-.\de]{0,7} of the longest side, which is \d[.\d]{0,4}\n)");

@@ -13,11 +13,11 @@ namespace osgGpuAnimation::gltf
 // Reads accessors of a validated document (see TinyGltf.h) with strides, normalization and sparse substitution, in all
 // component types (glTF 2.0, section 3.6.2). The model's buffers are never changed.
 
-/// Numbers an element: 1 for SCALAR … 16 for MAT4; 0 for an unknown type.
+/// The numbers per element: 1 for SCALAR … 16 for MAT4; 0 for an unknown type.
 std::size_t componentCount(const tinygltf::Accessor& accessor);
-/// Bytes a number: 1, 2 or 4; 0 for a component type that glTF does not know.
+/// The bytes per number: 1, 2 or 4; 0 for a component type that glTF does not know.
 std::size_t componentBytes(int componentType);
-/// Bytes an element without stride; the columns of small matrices are padded to 4 bytes (section 3.6.2.4).
+/// The bytes per element without stride; the columns of small matrices are padded to 4 bytes (section 3.6.2.4).
 std::size_t elementBytes(const tinygltf::Accessor& accessor);
 /// The same without the padding behind the last column, which the last element does not need.
 std::size_t lastElementBytes(const tinygltf::Accessor& accessor);

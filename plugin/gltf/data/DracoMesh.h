@@ -31,7 +31,7 @@ public:
     ~DracoMesh();
 
     std::size_t vertices() const;
-    /// Three a triangle.
+    /// Three per triangle.
     std::vector<std::uint32_t> indices() const;
     /// The values of an attribute, vertex after vertex, as numbers of a glTF component type (5120 …).
     /// Errors: there is no such attribute, it has another number of components, a value does not fit.

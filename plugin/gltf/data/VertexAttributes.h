@@ -32,7 +32,7 @@ osg::ref_ptr<osg::Vec4Array> readColors(const tinygltf::Model& model, const tiny
 /// For the material's base colour texture, see TextureCoordinates.
 osg::ref_ptr<osg::Vec2Array> readTextureCoordinates(const tinygltf::Model& model, const tinygltf::Primitive& primitive);
 
-/// One a target of the primitive. Colours and texture coordinates are offsets to the results of the two functions
+/// One per target of the primitive. Colours and texture coordinates are offsets to the results of the two functions
 /// above; since displayColor() is not linear, colours are exact at weight 1 only.
 std::vector<MorphTarget> readMorphTargets(const tinygltf::Model& model, const tinygltf::Primitive& primitive);
 

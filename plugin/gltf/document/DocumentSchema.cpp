@@ -38,7 +38,7 @@ enum class Kind : std::uint8_t
     String,
     Number,
     Integer,
-    Index,    ///< an integer from 0 to the size of a collection, less one
+    Index,    ///< an integer from 0, below the size of a collection
     Choice,   ///< one of some texts
     Code,     ///< one of some integers
     Object,   ///< with the members of a table; others are left out

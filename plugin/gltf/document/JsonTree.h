@@ -93,7 +93,7 @@ public:
     /// Leaves a member out of its object from here on.
     void dropFrom(const JsonValue& object) const;
 
-    /// What it is, for messages: `null`, `8.5`, `"text"`, `an array of 3`, `an object`, `nothing`.
+    /// The value as text for messages: `null`, `8.5`, `"text"`, `an array of 3`, `an object`, `nothing`.
     std::string description() const;
 
     class Iterator

@@ -47,9 +47,9 @@ constexpr std::size_t bytesOfJsonValue = 128;
 /// The same for each letter of strings and keys.
 constexpr std::size_t bytesOfJsonLetter = 6;
 
-/// Checks that the elements of a document fit into ImportOptions::maxDocumentBytes. Two letters, `{}`, become a
-/// material of two kilobytes, so the check runs before any element is made. It expects nothing of the document but that
-/// its root is an object. Error: names the list that exceeds the limit.
+/// Checks that the elements of a document fit into ImportOptions::maxDocumentBytes. Two characters, `{}`, become a
+/// material of two kilobytes, so the check runs before any element is made. It requires of the document only that its
+/// root is an object. Error: names the list that exceeds the limit.
 std::optional<Error> checkDocumentBytes(JsonTree& json, std::size_t limit);
 
 } // namespace osgGpuAnimation::gltf

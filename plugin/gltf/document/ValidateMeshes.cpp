@@ -154,8 +154,8 @@ private:
     MemoryBudget& _budget;
     Report& _report;
     bool _quantized;
-    std::vector<std::int64_t> _largestIndices; ///< one an accessor
-    std::vector<std::uint32_t> _coordinates;   ///< one a material: the sets it reads, as bits
+    std::vector<std::int64_t> _largestIndices; ///< one per accessor
+    std::vector<std::uint32_t> _coordinates;   ///< one per material: the sets it reads, as bits
 };
 
 std::optional<Error> validateNodeWeights(const Model& model)
@@ -377,7 +377,7 @@ private:
     Model& _model;
     MemoryBudget& _budget;
     Report& _report;
-    std::vector<JointDemand> _demands; ///< one a mesh
+    std::vector<JointDemand> _demands; ///< one per mesh
 };
 
 } // namespace

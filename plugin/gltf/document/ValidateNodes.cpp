@@ -22,8 +22,8 @@ using Model = tinygltf::Model;
 
 struct NodeForest
 {
-    std::vector<int> parents; ///< one a node, -1 for a root
-    std::vector<int> roots;   ///< one a node: the root of its tree
+    std::vector<int> parents; ///< one per node, -1 for a root
+    std::vector<int> roots;   ///< one per node: the root of its tree
 };
 
 std::optional<Error> findParents(const Model& model, std::vector<int>& parents)
@@ -376,7 +376,7 @@ private:
 
     Model& _model;
     Report& _report;
-    std::vector<Times> _inputs; ///< one an accessor of the file
+    std::vector<Times> _inputs; ///< one per accessor of the file
     /// The accessor to take for a rotation output, by the file's accessor and whether it is read as CUBICSPLINE.
     std::map<std::pair<int, bool>, int> _rotations;
 };

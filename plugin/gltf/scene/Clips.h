@@ -16,7 +16,7 @@ namespace osgGpuAnimation::gltf
 struct Clips
 {
     std::vector<Clip> clips;
-    std::vector<int> animationOfClip; ///< one a clip: the file's animation number
+    std::vector<int> animationOfClip; ///< one per clip: the file's animation number
 };
 
 /// A clip that ClipBuilder refuses, or that exceeds the budget, is left out with a warning. Channels without a node are

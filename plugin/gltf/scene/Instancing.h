@@ -12,7 +12,7 @@
 namespace osgGpuAnimation::gltf
 {
 
-/// Whether the node repeats its mesh (EXT_mesh_gpu_instancing).
+/// True if the node repeats its mesh (EXT_mesh_gpu_instancing).
 bool isInstanced(const tinygltf::Node& node);
 
 /// From each instance to the node. A fault of the extension leaves one instance, at the node itself, with a warning.

@@ -26,7 +26,7 @@ std::size_t morphTargetCount(const tinygltf::Mesh& mesh)
     return mesh.primitives.front().targets.size();
 }
 
-/// Whether a primitive of the node's mesh follows the node.
+/// True if a primitive of the node's mesh follows the node.
 bool carriesRigidMesh(const tinygltf::Node& node, const tinygltf::Mesh& mesh)
 {
     return std::any_of(mesh.primitives.begin(), mesh.primitives.end(),

@@ -13,26 +13,25 @@ namespace osgGpuAnimation::gltf
 
 // The moving parts of a file: joints, skins and morph weights.
 
-/// Which nodes of the file are joints: every joint of a skin, every target of an animation, every node with a mesh
+/// The joints of a file are these nodes: every joint of a skin, every target of an animation, every node with a mesh
 /// under one of those (except skinned meshes, whose node has no effect), every node with a morphing mesh, and all their
-/// ancestors. A node whose matrix shears takes two joints, see NodeTransform.
+/// ancestors. A node whose matrix shears has two joints, see NodeTransform.
 struct Joints
 {
     Skeleton skeleton;
-    std::vector<int> ofNode;     ///< one a node: its joint, -1 if it is not a joint
-    std::vector<bool> moves;     ///< one a node: a skin or a clip can move it or an ancestor
-    std::vector<bool> isSheared; ///< one a node: it has two joints, so clips cannot drive it
+    std::vector<int> ofNode;     ///< one per node: its joint, -1 if it is not a joint
+    std::vector<bool> moves;     ///< one per node: a skin or a clip can move it or an ancestor
+    std::vector<bool> isSheared; ///< one per node: it has two joints, so clips cannot drive it
 };
 
 /// Error: that of Skeleton::create() (a node whose transform exceeds the range of float).
 Result<Joints> buildJoints(const tinygltf::Model& model, const NodeTree& tree);
 
-/// Whether a primitive's vertices follow a skin: the node has one, and the primitive has JOINTS_0 (and WEIGHTS_0: the
+/// True if a primitive's vertices follow a skin: the node has one, and the primitive has JOINTS_0 (and WEIGHTS_0: the
 /// validation refuses one without the other).
 bool isSkinned(const tinygltf::Node& node, const tinygltf::Primitive& primitive);
 
-/// Whether the primitive follows its node through the palette: the node moves or morphs, and the primitive has no
-/// skin.
+/// True if the primitive follows its node through the palette: the node moves or morphs, and the primitive has no skin.
 bool isRigidOnJoint(const tinygltf::Model& model, const Joints& joints, std::size_t node,
                     const tinygltf::Primitive& primitive);
 
@@ -46,7 +45,7 @@ std::vector<Skin> readSkins(const tinygltf::Model& model, const Joints& joints);
 struct Morphs
 {
     std::vector<MorphWeights> weights;
-    std::vector<int> ofNode; ///< one a node: index into `weights`, -1 if it has none
+    std::vector<int> ofNode; ///< one per node: index into `weights`, -1 if it has none
 };
 
 /// Defaults: the node's weights, else the mesh's, else 0 (glTF 2.0, section 3.7.2.2).

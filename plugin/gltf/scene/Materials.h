@@ -49,7 +49,7 @@ public:
     osg::StateSet* stateSet(const MaterialUse& use);
     /// The base colour factor for display; white for the default material.
     osg::Vec4 baseColor(int material) const;
-    /// Whether the material has a base colour texture.
+    /// True if the material has a base colour texture.
     bool wantsTexture(int material) const;
 
 private:

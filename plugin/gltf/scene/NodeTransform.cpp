@@ -59,7 +59,7 @@ bool straighten(glm::dmat3& columns, glm::dmat3& turns, int i, int j)
     return true;
 }
 
-/// Whether all columns are orthogonal, to the accuracy of a file's decimals.
+/// True if all columns are orthogonal, to the accuracy of a file's decimals.
 bool hasOrthogonalColumns(const glm::dmat3& matrix)
 {
     constexpr double tolerance = 1e-7;

@@ -14,7 +14,7 @@ namespace osgGpuAnimation::gltf
 {
 
 /// The nodes of a file as a forest, and the part of it that is drawn: the chosen scene's. All vectors but `roots` have
-/// one element a node of the file.
+/// one element per node of the file.
 struct NodeTree
 {
     int scene = -1;                  ///< the chosen scene; -1: the file has none, and all its roots are drawn
@@ -24,7 +24,7 @@ struct NodeTree
     std::vector<bool> drawn;         ///< at or below one of `roots`
     std::vector<glm::dmat4> toWorld; ///< at rest
 
-    /// Whether the node at rest mirrors, so that front faces become back faces.
+    /// True if the node at rest mirrors, so that front faces become back faces.
     bool isMirrored(int node) const;
 };
 

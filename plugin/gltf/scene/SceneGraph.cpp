@@ -71,7 +71,7 @@ double determinant(const osg::Matrixd& m)
            m(0, 2) * (m(1, 0) * m(2, 1) - m(1, 1) * m(2, 0));
 }
 
-/// Whether points at that distance from the origin can be drawn.
+/// True if points at that distance from the origin can be drawn.
 bool reaches(const TransformBound& reach, double radius)
 {
     return reach.fits() && reach.of(radius) <= TransformBound::farthest;

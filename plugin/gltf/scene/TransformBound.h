@@ -32,7 +32,7 @@ struct TransformBound
     bool fits() const { return stretch <= farthest && distance <= farthest; } ///< false for NaN
 };
 
-/// One a joint, from the joint to the model: at rest, or at all times of the clip.
+/// One per joint, from the joint to the model: at rest, or at all times of the clip.
 std::vector<TransformBound> boundsAtRest(const Skeleton& skeleton);
 std::vector<TransformBound> boundsOfClip(const Skeleton& skeleton, const Clip& clip);
 
@@ -45,7 +45,7 @@ std::string beyondFarthest();
 /// The largest distance of the points from the origin; infinite for NaN.
 double radiusOf(const osg::Vec3Array& points);
 
-/// One a palette entry, over the rest pose and all clips; 0 for entries of weights.
+/// One per palette entry, over the rest pose and all clips; 0 for entries of weights.
 std::vector<TransformBound> boundsOfEntries(const AnimationSet& set);
 
 } // namespace osgGpuAnimation::gltf

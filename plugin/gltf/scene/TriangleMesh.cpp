@@ -24,8 +24,8 @@ const unsigned char* at(const VertexStream& stream, std::size_t vertex)
     return static_cast<const unsigned char*>(stream.data) + vertex * stream.bytesAVertex;
 }
 
-/// A hash of each vertex: the sum of its words, each times a random factor of its place. Without the factors nobody can
-/// construct vertices with equal sums.
+/// A hash of each vertex: the sum of its words, each times a random factor of its place. An attacker who does not know
+/// the factors cannot construct vertices with equal sums.
 std::vector<std::uint64_t> hashes(const std::vector<VertexStream>& streams, std::size_t vertexCount)
 {
     std::random_device device;

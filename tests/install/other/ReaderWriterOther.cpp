@@ -2,7 +2,7 @@
 #include <osgDB/FileNameUtils>
 #include <osgDB/Registry>
 
-/// Somebody else's osgdb_gltf, as osgEarth has one: it takes the same extensions, and says who it is.
+/// A third-party osgdb_gltf, such as osgEarth's: it takes the same extensions, and its message names it.
 class ReaderWriterOther : public osgDB::ReaderWriter
 {
 public:

@@ -14,8 +14,8 @@ enum class DracoMethod
     Edgebreaker
 };
 
-/// The Draco stream of a mesh, without quantization. Attribute 0: positions, three floats a vertex; attribute 1:
-/// joints, four bytes a vertex. Empty where Draco fails.
+/// The Draco stream of a mesh, without quantization. Attribute 0: positions, three floats per vertex; attribute 1:
+/// joints, four bytes per vertex. Empty if Draco fails.
 std::string encodeDraco(const std::vector<float>& positions, const std::vector<std::uint8_t>& joints,
                         const std::vector<std::uint32_t>& indices, DracoMethod method);
 

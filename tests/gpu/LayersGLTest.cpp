@@ -123,7 +123,7 @@ TEST_P(LayersGLTest, differencesFromMirroredAndFlatScalesAndBeyondAWholeTurn)
     const auto set = makeAdditiveExtremes();
     PosePipeline* pipeline = PosePipeline::of(state());
     ASSERT_NE(pipeline, nullptr);
-    pipeline->setForm(GetParam());
+    pipeline->options().form = GetParam();
     PoseBatch batch(set);
     for (std::size_t times = 0; times <= 7; ++times)
         batch.add(addedTimes(*set, times));

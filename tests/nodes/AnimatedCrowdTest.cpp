@@ -205,7 +205,7 @@ TEST(AnimatedCrowdTest, spheresHoldShearedInstancesAndAreNoLargerThanNeeded)
                     (row == column ? 0.5f : 0.0f) + along[row] * along[column];
         CrowdInstances instances(testCharacterSet());
         instances.setClipBounds({box, box, box});
-        instances.add(root, playing("shift"), PoseBatch::white);
+        instances.add(root, osg::Vec3d(), playing("shift"), PoseBatch::white);
         const glm::vec4 sphere = instances.sphere(0);
         float farthest = 0.0f;
         for (int corner = 0; corner < 8; ++corner)

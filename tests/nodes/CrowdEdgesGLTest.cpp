@@ -224,10 +224,10 @@ TEST_F(CrowdEdgesGLTest, tintsAreTheInstancesOwnInEveryChunk)
     EXPECT_EQ(picture().pixelsDrawn(), 8 * 64);
     PosePipeline* pipeline = PosePipeline::of(state());
     const std::size_t texels = pipeline->getMaxTexels();
-    pipeline->setMaxTexels(inChunk * 3 * testCharacterSet()->paletteSize());
+    pipeline->options().maxTexels = inChunk * 3 * testCharacterSet()->paletteSize();
     const osg::ref_ptr<osg::Image> inChunks = pictureOf(crowd, {0.1});
     EXPECT_EQ(pipeline->place(*testCharacterSet(), 0, count - 1).chunkBegin, 2 * inChunk);
-    pipeline->setMaxTexels(texels);
+    pipeline->options().maxTexels = texels;
     EXPECT_EQ(Picture::pixelsDifferent(*whole, *inChunks), 0);
 }
 

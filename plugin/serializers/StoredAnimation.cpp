@@ -358,6 +358,15 @@ osgDB::RegisterWrapperProxy storedSet([]() -> osg::Object* { return new StoredAn
                                       [](osgDB::ObjectWrapper* wrapper)
                                       { addProperty(wrapper, "Contents", &StoredAnimationSet::transferContents); });
 
+/// The chain without FormerCallbacks. They keep their own links, because other nodes may start with them.
+osg::Callback* withoutFormer(osg::Callback* first)
+{
+    while (dynamic_cast<FormerCallback*>(first))
+        first = first->getNestedCallback();
+    if (first) first->setNestedCallback(withoutFormer(first->getNestedCallback()));
+    return first;
+}
+
 } // namespace
 
 void transferAnimationSet(ValueStream& stream, std::shared_ptr<const AnimationSet>& set)
@@ -390,26 +399,6 @@ void transferController(ValueStream& stream, AnimationController& controller)
     }
     stream.close();
 }
-
-namespace
-{
-
-/// The chain without FormerCallbacks. They keep their own links, because other nodes may start with them.
-osg::Callback* withoutFormer(osg::Callback* first)
-{
-    const auto skip = [](osg::Callback* callback)
-    {
-        while (dynamic_cast<FormerCallback*>(callback))
-            callback = callback->getNestedCallback();
-        return callback;
-    };
-    first = skip(first);
-    for (osg::Callback* callback = first; callback; callback = callback->getNestedCallback())
-        callback->setNestedCallback(skip(callback->getNestedCallback()));
-    return first;
-}
-
-} // namespace
 
 void dropFormerCallbacks(osg::Node& node)
 {

@@ -94,7 +94,7 @@ public:
     float getPixelError() const { return _pixelError; } ///< pixels, at least 0
 
     /// Advances all instances by the time since the last update; the first call only stores the time.
-    /// simulationTime: seconds.
+    /// simulationTime: seconds. Event callbacks are called as those of AnimatedCharacter::update().
     void update(double simulationTime) override;
 
     /// The instance of an Intersection's drawable. Empty: the drawable belongs to no crowd.

@@ -80,7 +80,8 @@ public:
 
     /// Advances the controller by the time since the last update; the first call only stores the time. A jump of the
     /// time in either direction moves the clips by the same amount, so equal times show equal poses.
-    /// simulationTime: seconds.
+    /// simulationTime: seconds. The event callback is called after the viewer's update traversal, or at once without a
+    /// viewer; it may also delete this character.
     void update(double simulationTime);
 
     /// Computes the bounds of every clip from the SkinnedGeometry below and sets the meshes' bounding boxes. Call it

@@ -106,7 +106,7 @@ public:
     float getPixelError() const { return _pixelError; } ///< pixels, at least 0
 
     /// Advances all instances by the time since the last update; the first call only stores the time.
-    /// simulationTime: seconds.
+    /// simulationTime: seconds. Event callbacks are called as those of AnimatedCharacter::update().
     void update(double simulationTime);
 
     /// The instance of a hit: an Intersection of any of OSG's intersectors. Empty: the hit is in no crowd. See

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Draws a SkinnedGeometry: skins, then reproduces the fixed pipeline. DRAW_...: see ShaderKey in
 // nodes/shading/ShaderPermutations.h. POSE_COLORED: 1: the mesh has colours; 2: only its morph targets have colours.
-#pragma import_defines(POSE_COLORED, POSE_PLACED)
+#pragma import_defines(POSE_COLORED, POSE_INSTANCED)
 
 void osgGpuAnimationSkin(inout vec4 vertex, inout vec3 normal);
 vec4 osgGpuAnimationTint();
@@ -37,7 +37,7 @@ void main()
     vec4 vertex = gl_Vertex;
     vec3 normal = gl_Normal;
     osgGpuAnimationSkin(vertex, normal);
-#ifdef POSE_PLACED
+#ifdef POSE_INSTANCED
     viewPosition = vertex.xyz; // already in eye space
     viewNormal = normal;
 #else

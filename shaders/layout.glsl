@@ -3,7 +3,7 @@
 
 // Keyframes: RGBA32UI, see animation/keyframes/PackedKeyframes.h. A joint transform is three texels (translation, rotation, scale).
 #define POSE_TEXELS_PER_TRANSFORM 3
-#define POSE_PLACE_HELD 0x80000000u // a place in half texels from the start of the buffer, not of the record
+#define POSE_ADDRESS_IS_CONSTANT 0x80000000u // a place in half texels from the start of the buffer, not of the record
 
 // Rotations of compact clips: three integers of 20 bits; a component is (integer - zero) * step.
 #define POSE_ROTATION_ZERO 524288.0f
@@ -11,7 +11,7 @@
 
 // The motion of a part (translation, scale), which decides what the mix stage fetches: PartMotion in C++.
 #define POSE_PART_FIXED 0
-#define POSE_PART_HELD 1
+#define POSE_PART_CONSTANT 1
 #define POSE_PART_MOVING 2
 
 // Blend samples: RGBA32UI, one texel per sample: keyframe, alpha (float bits), weight (float bits), control.
@@ -44,10 +44,10 @@
 
 // Vertex attributes of instanced characters, one per GL instance: three rows of the matrix to eye space, then the index of
 // the pose in its batch. OSG may use these locations for texture coordinates of units above 0 and secondary colours.
-#define POSE_PLACEMENT_ROW_0_LOCATION 6
-#define POSE_PLACEMENT_ROW_1_LOCATION 7
-#define POSE_PLACEMENT_ROW_2_LOCATION 10
-#define POSE_PLACED_POSE_LOCATION 11
+#define POSE_INSTANCE_ROW_0_LOCATION 6
+#define POSE_INSTANCE_ROW_1_LOCATION 7
+#define POSE_INSTANCE_ROW_2_LOCATION 10
+#define POSE_INSTANCE_POSE_LOCATION 11
 
 // The texture units that hold the palette, a mesh's morph targets and the instances' tints during its draw.
 #define POSE_PALETTE_UNIT 11

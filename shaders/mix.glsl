@@ -49,19 +49,19 @@ TrackPlace placeOf(uvec4 blendSample, int track)
     return TrackPlace(texelFetch(keyframes, int(keyframe.z) + track), keyframe.x, keyframe.y);
 }
 
-bool isHeld(uint part)
+bool isConstant(uint part)
 {
-    return (part & POSE_PLACE_HELD) != 0u;
+    return (part & POSE_ADDRESS_IS_CONSTANT) != 0u;
 }
 
 bool isCompact(TrackPlace place, uint part)
 {
-    return hasCompactKeys && !isHeld(part) && (!hasExactKeys || place.parts.w != 0u);
+    return hasCompactKeys && !isConstant(part) && (!hasExactKeys || place.parts.w != 0u);
 }
 
 uint placeIn(uint record, uint part)
 {
-    return isHeld(part) ? part & ~POSE_PLACE_HELD : record + part;
+    return isConstant(part) ? part & ~POSE_ADDRESS_IS_CONSTANT : record + part;
 }
 
 uvec3 packedNumbers(uvec2 words)
@@ -98,7 +98,7 @@ vec4 mixedPart(TrackPlace track, uint part, int rangeTexel, float alpha, int mot
     uint place = placeIn(track.first, part);
     uvec4 texel = texelFetch(keyframes, int(place >> 1));
     vec4 a = uintBitsToFloat(texel);
-    if (motion == POSE_PART_HELD) return a;
+    if (motion == POSE_PART_CONSTANT) return a;
     uint next = placeIn(track.second, part);
     uvec4 nextTexel = texelFetch(keyframes, int(next >> 1));
     vec4 b = uintBitsToFloat(nextTexel);
@@ -150,8 +150,8 @@ JointTransform interpolate(TrackPlace track, RestParts rest, float alpha, bool i
 // A part of a spline keyframe: its value (0), in-tangent (1) or out-tangent (2). Constant parts have tangents of 0.
 vec4 splinePart(uint record, uint part, uint tangent)
 {
-    vec4 number = uintBitsToFloat(texelFetch(keyframes, int(placeIn(record, part) >> 1) + (isHeld(part) ? 0 : int(tangent))));
-    return tangent != 0u && isHeld(part) ? vec4(0.0) : number;
+    vec4 number = uintBitsToFloat(texelFetch(keyframes, int(placeIn(record, part) >> 1) + (isConstant(part) ? 0 : int(tangent))));
+    return tangent != 0u && isConstant(part) ? vec4(0.0) : number;
 }
 
 vec4 hermite(TrackPlace track, uint part, vec4 h)

@@ -9,11 +9,11 @@
 //
 // OSG's shader defines (StateSet::setDefine, see applySkinDefines) remove parts that a mesh does not need, since some
 // drivers (llvmpipe) run both sides of every branch. Without the defines the uniforms decide.
-#pragma import_defines(POSE_INFLUENCES, POSE_NO_MORPHS, POSE_PLACED)
+#pragma import_defines(POSE_INFLUENCES, POSE_NO_MORPHS, POSE_INSTANCED)
 
 uniform samplerBuffer posePalette; // entry e of instance i: rows at texel (e * poseStride + i) * 3
 uniform int poseStride;
-uniform int poseInstance; // of the draw's first GL instance; POSE_PLACED: of the batch's first instance
+uniform int poseInstance; // of the draw's first GL instance; POSE_INSTANCED: of the batch's first instance
 uniform int poseInfluences; // the largest number per vertex: 1 to 8
 
 uniform samplerBuffer poseMorphDeltas; // by vertex, target, channel
@@ -37,15 +37,15 @@ in vec4 poseWeights0;
 in vec4 poseEntries1;
 in vec4 poseWeights1;
 
-#ifdef POSE_PLACED
-in vec4 posePlacementRow0; // the matrix of the GL instance to eye space
-in vec4 posePlacementRow1;
-in vec4 posePlacementRow2;
-in vec4 posePlacedPose; // x: its index in the batch
+#ifdef POSE_INSTANCED
+in vec4 poseInstanceRow0; // the matrix of the GL instance to eye space
+in vec4 poseInstanceRow1;
+in vec4 poseInstanceRow2;
+in vec4 poseInstancePose; // x: its index in the batch
 
 int osgGpuAnimationInstance()
 {
-    return poseInstance + int(posePlacedPose.x);
+    return poseInstance + int(poseInstancePose.x);
 }
 #else
 int osgGpuAnimationInstance()
@@ -130,7 +130,7 @@ void osgGpuAnimationSkin(inout vec4 vertex, inout vec3 normal)
     mat3x4 rows = osgGpuAnimationBlend(poseEntries0, poseWeights0, POSE_INFLUENCES);
     if (POSE_INFLUENCES > 4) rows += osgGpuAnimationBlend(poseEntries1, poseWeights1, POSE_INFLUENCES - 4);
     osgGpuAnimationMove(rows, vertex, normal);
-#ifdef POSE_PLACED
-    osgGpuAnimationMove(mat3x4(posePlacementRow0, posePlacementRow1, posePlacementRow2), vertex, normal);
+#ifdef POSE_INSTANCED
+    osgGpuAnimationMove(mat3x4(poseInstanceRow0, poseInstanceRow1, poseInstanceRow2), vertex, normal);
 #endif
 }

@@ -67,7 +67,7 @@ std::string wanted(const std::string& name)
 {
     if (name == "seed") return "a whole number from 0 to 4294967295";
     if (name == "spacing") return "a number of units above 0";
-    if (name == "pixelError") return LodRange::pixelErrorsTaken();
+    if (name == "pixelError") return LodRange::describePixelErrors();
     return "names or numbers of clips separated by commas";
 }
 

@@ -91,7 +91,7 @@ const std::vector<Option>& allOptions()
          { return read(value, options.compact.emplace()) && *options.compact > 0.0 && *options.compact <= 1.0; }},
         {{"pixelError=PIXELS",
           "fewer triangles while the error stays below that size on screen; default: 0, all triangles"},
-         LodRange::pixelErrorsTaken(),
+         LodRange::describePixelErrors(),
          [](const std::string& value, ImportOptions& options)
          { return read(value, options.pixelError) && LodRange::isPixelError(options.pixelError); }},
         {{"noKeys", "no keys for viewers on the character; default: n N k . , - + r j"},

@@ -330,7 +330,7 @@ void transferFade(ValueStream& stream, const char* name, LayerSnapshot::FadeStat
     stream.limited("a fade's curve", fade.curve, FadeCurve::Smooth).endLine();
 }
 
-void transferVoice(ValueStream& stream, LayerSnapshot::ActiveClip& activeClip)
+void transferActiveClip(ValueStream& stream, LayerSnapshot::ActiveClip& activeClip)
 {
     stream.property("Voice").values(activeClip.clip, activeClip.time, activeClip.speed);
     stream.limited("a loop mode", activeClip.loopMode, LoopMode::PingPong);
@@ -347,7 +347,7 @@ void transferLayer(ValueStream& stream, LayerSnapshot& layer)
     stream.limited("a layer's reference", layer.reference, Layer::Reference::FirstFrame).value(layer.blendPriority);
     stream.endLine();
     stream.list("Voices", layer.activeClips,
-                [&](LayerSnapshot::ActiveClip& activeClip) { transferVoice(stream, activeClip); });
+                [&](LayerSnapshot::ActiveClip& activeClip) { transferActiveClip(stream, activeClip); });
     transferFade(stream, "Crossfade", layer.crossfade);
     transferFade(stream, "Weight", layer.weight);
     stream.block("Mask", layer.mask, 8);

@@ -45,8 +45,8 @@ private:
     }
     glm::vec4 part(std::uint32_t part, std::uint32_t record, std::uint32_t range) const
     {
-        const bool isHeld = (part & POSE_PLACE_HELD) != 0u;
-        const std::uint32_t place = isHeld ? part & ~POSE_PLACE_HELD : record + part;
+        const bool isHeld = (part & POSE_ADDRESS_IS_CONSTANT) != 0u;
+        const std::uint32_t place = isHeld ? part & ~POSE_ADDRESS_IS_CONSTANT : record + part;
         const glm::uvec4 words = at(place / 2);
         if (!isHeld && range != 0)
         {

@@ -199,8 +199,8 @@ osg::ref_ptr<osg::Program> programWithOwnColors(unsigned int location)
 TEST_F(CharacterDrawsGLTest, theirAttributesAreTheMeshsOwnAgainAfterwards)
 {
     const osg::Vec4 colors[] = {{1, 0, 0, 1}, {0, 1, 0, 1}, {0, 0, 1, 1}, {1, 1, 0, 1}};
-    for (const unsigned int location : {POSE_PLACEMENT_ROW_0_LOCATION, POSE_PLACEMENT_ROW_1_LOCATION,
-                                        POSE_PLACEMENT_ROW_2_LOCATION, POSE_PLACED_POSE_LOCATION})
+    for (const unsigned int location : {POSE_INSTANCE_ROW_0_LOCATION, POSE_INSTANCE_ROW_1_LOCATION,
+                                        POSE_INSTANCE_ROW_2_LOCATION, POSE_INSTANCE_POSE_LOCATION})
     {
         SCOPED_TRACE(location);
         const auto colored = [&](osg::Group& scene)

@@ -61,14 +61,14 @@ protected:
 
 TEST_F(CharacterKeysTest, theKeysAreToldAtTheFirstFrameAndOnlyThenAndAreNoNotice)
 {
-    std::ostringstream told;
-    std::streambuf* const output = std::cout.rdbuf(told.rdbuf());
-    EXPECT_EQ(told.str(), "");
+    std::ostringstream isPrinted;
+    std::streambuf* const output = std::cout.rdbuf(isPrinted.rdbuf());
+    EXPECT_EQ(isPrinted.str(), "");
     send(osgGA::GUIEventAdapter::FRAME);
-    EXPECT_NE(told.str().find("n next clip"), std::string::npos) << told.str();
-    told.str("");
+    EXPECT_NE(isPrinted.str().find("n next clip"), std::string::npos) << isPrinted.str();
+    isPrinted.str("");
     send(osgGA::GUIEventAdapter::FRAME);
-    EXPECT_EQ(told.str(), "");
+    EXPECT_EQ(isPrinted.str(), "");
     EXPECT_EQ(log->text, "");
     std::cout.rdbuf(output);
 }

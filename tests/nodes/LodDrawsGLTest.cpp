@@ -56,8 +56,8 @@ osg::ref_ptr<SkinnedGeometry> makeBlank(std::size_t vertices)
 
 void fillUp(AnimatedCharacter& character)
 {
-    for (std::size_t vertices = 0; vertices < LodRange::mostVertices; vertices += LodLevels::mostVertices)
-        character.addChild(makeBlank(LodLevels::mostVertices));
+    for (std::size_t vertices = 0; vertices < LodRange::maxVertices; vertices += LodLevels::maxVertices)
+        character.addChild(makeBlank(LodLevels::maxVertices));
 }
 
 TEST_F(LodDrawsGLTest, whatComesAfterTheMostVerticesIsDrawnWhole)

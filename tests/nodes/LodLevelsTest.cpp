@@ -210,7 +210,7 @@ TEST(LodLevelsTest, takeNoTimeByTheSquareOfTheTrianglesAtAPoint)
 
 TEST(LodLevelsTest, areNotMadeOfVeryLargeMeshes)
 {
-    const osg::ref_ptr<SkinnedGeometry> disc = makeDisc(LodLevels::mostVertices / 2, 2);
+    const osg::ref_ptr<SkinnedGeometry> disc = makeDisc(LodLevels::maxVertices / 2, 2);
     const LodLevels levels(*disc, *armSet(), skinningOf(*disc));
     EXPECT_EQ(levels.finest(), LodLevels::allTriangles);
     EXPECT_EQ(drawn(*disc, levels, 10), disc->getPrimitiveSet(0)->getNumIndices());

@@ -4,8 +4,8 @@
 
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
-#include <osgGpuAnimation/nodes/lod/CollapsibleMesh.h>
 #include <osgGpuAnimation/nodes/lod/LodLevels.h>
+#include <osgGpuAnimation/nodes/lod/MeshConnectivity.h>
 #include <osgGpuAnimation/nodes/mesh/PaletteEntryBounds.h>
 
 #include <gtest/gtest.h>

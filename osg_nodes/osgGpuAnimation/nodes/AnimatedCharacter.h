@@ -105,7 +105,7 @@ public:
     /// error stays below it, see LodLevels. 0 (the default): all triangles. Each camera selects the level by distance,
     /// with the measure of small feature culling. The call creates the levels of the present meshes, which takes time
     /// (see MeshSimplifier); the next cull creates those of later changes. No levels are built for meshes that are not
-    /// direct children or for vertices beyond LodRange::mostVertices.
+    /// direct children or for vertices beyond LodRange::maxVertices.
     /// pixels: in [0, LodRange::largestPixelError]. Error: pixels is out of range or NaN.
     Result<bool> setPixelError(float pixels);
     float getPixelError() const { return _pixelError; } ///< pixels, at least 0

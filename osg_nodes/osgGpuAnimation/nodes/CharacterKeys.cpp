@@ -115,10 +115,10 @@ void multiplySpeed(AnimationController& controller, double factor)
     OSG_NOTICE << "speed " << controller.speed() << std::endl;
 }
 
-void tellKeysOnce()
+void printKeysOnce()
 {
-    static std::once_flag told;
-    std::call_once(told,
+    static std::once_flag isPrinted;
+    std::call_once(isPrinted,
                    []
                    {
                        std::string text;
@@ -191,7 +191,7 @@ bool CharacterKeys::handle(const osgGA::GUIEventAdapter& event, osgGA::GUIAction
     if (!character || event.getHandled()) return false;
     if (event.getEventType() == osgGA::GUIEventAdapter::FRAME)
     {
-        tellKeysOnce();
+        printKeysOnce();
         addToHelp(action);
     }
     if (event.getEventType() != osgGA::GUIEventAdapter::KEYDOWN) return false;
@@ -217,10 +217,10 @@ void CharacterKeys::addToHelp(osgGA::GUIActionAdapter& action)
 // A character with several parents receives each event once per parent.
 bool CharacterKeys::isFirstTime(const osgGA::GUIEventAdapter& event, const osg::Object& character)
 {
-    if (_event != &event) _told.clear();
+    if (_event != &event) _handled.clear();
     _event = &event;
-    if (std::find(_told.begin(), _told.end(), &character) != _told.end()) return false;
-    _told.push_back(&character);
+    if (std::find(_handled.begin(), _handled.end(), &character) != _handled.end()) return false;
+    _handled.push_back(&character);
     return true;
 }
 

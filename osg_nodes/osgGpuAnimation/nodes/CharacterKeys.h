@@ -75,7 +75,7 @@ private:
     double _fadeSeconds = 0.3;
     osg::observer_ptr<osg::View> _helped;              ///< the last view that addToHelp() has seen
     osg::ref_ptr<const osgGA::GUIEventAdapter> _event; ///< the last event
-    std::vector<const osg::Object*> _told;             ///< the characters that have handled _event
+    std::vector<const osg::Object*> _handled;          ///< the characters that have handled _event
 };
 
 } // namespace osgGpuAnimation

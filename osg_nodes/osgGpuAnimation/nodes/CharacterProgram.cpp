@@ -43,10 +43,10 @@ void bindSkinAttributes(osg::Program& program)
     program.addBindAttribLocation("poseWeights0", POSE_WEIGHTS_0_LOCATION);
     program.addBindAttribLocation("poseEntries1", POSE_ENTRIES_1_LOCATION);
     program.addBindAttribLocation("poseWeights1", POSE_WEIGHTS_1_LOCATION);
-    program.addBindAttribLocation("posePlacementRow0", POSE_PLACEMENT_ROW_0_LOCATION);
-    program.addBindAttribLocation("posePlacementRow1", POSE_PLACEMENT_ROW_1_LOCATION);
-    program.addBindAttribLocation("posePlacementRow2", POSE_PLACEMENT_ROW_2_LOCATION);
-    program.addBindAttribLocation("posePlacedPose", POSE_PLACED_POSE_LOCATION);
+    program.addBindAttribLocation("poseInstanceRow0", POSE_INSTANCE_ROW_0_LOCATION);
+    program.addBindAttribLocation("poseInstanceRow1", POSE_INSTANCE_ROW_1_LOCATION);
+    program.addBindAttribLocation("poseInstanceRow2", POSE_INSTANCE_ROW_2_LOCATION);
+    program.addBindAttribLocation("poseInstancePose", POSE_INSTANCE_POSE_LOCATION);
 }
 
 osg::ref_ptr<osg::Program> characterProgram()

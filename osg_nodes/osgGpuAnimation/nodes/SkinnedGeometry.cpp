@@ -73,7 +73,7 @@ const PosedMeshSource* posedMeshSource(const osg::NodeVisitor& visitor)
 
 } // namespace
 
-SkinnedGeometry::SkinnedGeometry() : _morphDeltas(std::make_unique<MorphDeltas>()), _detail(std::make_unique<MeshLod>())
+SkinnedGeometry::SkinnedGeometry() : _morphDeltas(std::make_unique<MorphDeltas>()), _lod(std::make_unique<MeshLod>())
 {
     setUseDisplayList(false);
     setUseVertexBufferObjects(true);
@@ -85,7 +85,7 @@ SkinnedGeometry::SkinnedGeometry() : _morphDeltas(std::make_unique<MorphDeltas>(
 SkinnedGeometry::SkinnedGeometry(const SkinnedGeometry& other, const osg::CopyOp& copyop)
     : osg::Geometry(other, copyop), _influences(other._influences), _rigidEntry(other._rigidEntry),
       _morphTargets(other._morphTargets), _morphDeltas(std::make_unique<MorphDeltas>(*other._morphDeltas)),
-      _morph(other._morph), _morphEntry(other._morphEntry), _detail(std::make_unique<MeshLod>(*other._detail))
+      _morph(other._morph), _morphEntry(other._morphEntry), _lod(std::make_unique<MeshLod>(*other._lod))
 {
 }
 
@@ -265,14 +265,14 @@ SkinnedGeometry::Colors SkinnedGeometry::getColors() const
 
 std::shared_ptr<const LodLevels> SkinnedGeometry::getLodLevels(const AnimationSet& set) const
 {
-    return _detail->of(*this, set,
-                       [this](const std::vector<AffineMatrix>& palette, std::vector<glm::dvec3>& out)
-                       { computePositions(palette, out); });
+    return _lod->of(*this, set,
+                    [this](const std::vector<AffineMatrix>& palette, std::vector<glm::dvec3>& out)
+                    { computePositions(palette, out); });
 }
 
 void SkinnedGeometry::forgetLodLevels()
 {
-    _detail->forget();
+    _lod->forget();
 }
 
 void SkinnedGeometry::drawImplementation(osg::RenderInfo& renderInfo) const
@@ -285,7 +285,7 @@ void SkinnedGeometry::drawImplementation(osg::RenderInfo& renderInfo) const
     if (!pipeline) return;
     const MeshVertexArrays arrays(state);
     if (binding->getSerial() != 0)
-        drawPlaced(renderInfo, *binding, *pipeline);
+        drawInstancedMesh(renderInfo, *binding, *pipeline);
     else if (binding->getInstanceCount() > 1 || binding->getLevel() != LodLevels::allTriangles)
         drawInstances(renderInfo, *binding, *pipeline);
     else if (const PalettePlace place =
@@ -330,8 +330,8 @@ void SkinnedGeometry::drawInstances(osg::RenderInfo& renderInfo, const PaletteBi
     withVertexArrays(renderInfo, draw);
 }
 
-void SkinnedGeometry::drawPlaced(osg::RenderInfo& renderInfo, const PaletteBinding& binding,
-                                 const PosePipeline& pipeline) const
+void SkinnedGeometry::drawInstancedMesh(osg::RenderInfo& renderInfo, const PaletteBinding& binding,
+                                        const PosePipeline& pipeline) const
 {
     const InstancedDraw placed(*renderInfo.getState(), binding);
     const auto draw = [&](osg::State& state)
@@ -373,7 +373,7 @@ void SkinnedGeometry::drawPrimitives(osg::State& state, int count, int level) co
 {
     const bool usesBuffers = state.useVertexBufferObject(_supportsVertexBufferObjects && _useVertexBufferObjects);
     std::shared_ptr<const LodLevels> levels;
-    if (level != LodLevels::allTriangles) levels = _detail->known(*this);
+    if (level != LodLevels::allTriangles) levels = _lod->known(*this);
     for (std::size_t i = 0; i < _primitives.size(); ++i)
     {
         const osg::PrimitiveSet* fewer = levels ? levels->elements(i, level) : nullptr;
@@ -394,14 +394,14 @@ void SkinnedGeometry::releaseGLObjects(osg::State* state) const
 {
     osg::Geometry::releaseGLObjects(state);
     if (_morphDeltas->texture) _morphDeltas->texture->releaseGLObjects(state);
-    if (const auto levels = _detail->known(*this)) levels->releaseGLObjects(state);
+    if (const auto levels = _lod->known(*this)) levels->releaseGLObjects(state);
 }
 
 void SkinnedGeometry::resizeGLObjectBuffers(unsigned int maxSize)
 {
     osg::Geometry::resizeGLObjectBuffers(maxSize);
     if (_morphDeltas->texture) _morphDeltas->texture->resizeGLObjectBuffers(maxSize);
-    if (const auto levels = _detail->known(*this)) levels->resizeGLObjectBuffers(maxSize);
+    if (const auto levels = _lod->known(*this)) levels->resizeGLObjectBuffers(maxSize);
 }
 
 } // namespace osgGpuAnimation

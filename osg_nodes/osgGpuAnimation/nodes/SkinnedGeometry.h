@@ -142,7 +142,8 @@ protected:
 
 private:
     void drawInstances(osg::RenderInfo& renderInfo, const PaletteBinding& binding, const PosePipeline& pipeline) const;
-    void drawPlaced(osg::RenderInfo& renderInfo, const PaletteBinding& binding, const PosePipeline& pipeline) const;
+    void drawInstancedMesh(osg::RenderInfo& renderInfo, const PaletteBinding& binding,
+                           const PosePipeline& pipeline) const;
     template <typename Draw>
     void withVertexArrays(osg::RenderInfo& renderInfo, Draw draw) const;
     void drawPrimitives(osg::State& state, int count, int level) const;
@@ -159,8 +160,8 @@ private:
     std::unique_ptr<MorphDeltas> _morphDeltas; ///< never null
     mutable std::atomic<bool> _isMorphLimitReported{false};
     int _morph = -1;
-    int _morphEntry = -1;             ///< the first palette entry of the weights
-    std::unique_ptr<MeshLod> _detail; ///< never null
+    int _morphEntry = -1;          ///< the first palette entry of the weights
+    std::unique_ptr<MeshLod> _lod; ///< never null
 };
 
 template <typename Function>

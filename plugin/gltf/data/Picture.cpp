@@ -44,7 +44,7 @@ std::string sizeText(std::uint32_t width, std::uint32_t height)
 Result<PictureHeader> checkSize(const char* mimeType, std::uint32_t width, std::uint32_t height,
                                 std::uint64_t mostPixels, std::size_t bytesOfPixel)
 {
-    const std::uint32_t most = PictureHeader::mostPixelsASide;
+    const std::uint32_t most = PictureHeader::maxPixelsPerSide;
     if (width < 1 || height < 1 || width > most || height > most)
         return unexpected("a picture from 1 x 1 to " + sizeText(most, most) + " pixels", sizeText(width, height));
     const std::uint64_t pixels = std::uint64_t(width) * height;
@@ -239,7 +239,7 @@ Result<PictureHeader> readJpegHeader(const Bytes& bytes)
         checkSize("image/jpeg", std::uint32_t(reader.width()), std::uint32_t(reader.height()), mostPixels, 4);
     // Each scan visits all pixels and may cost a few bytes: libjpeg-turbo's limit of 500 scans would allow minutes for
     // a large picture. Encoders write about ten.
-    constexpr std::uint64_t mostVisits = 16ull * PictureHeader::mostPixelsASide * PictureHeader::mostPixelsASide;
+    constexpr std::uint64_t mostVisits = 16ull * PictureHeader::maxPixelsPerSide * PictureHeader::maxPixelsPerSide;
     if (header && scansOf(bytes) * reader.width() * reader.height() > mostVisits)
         return unexpected("a JPEG of few scans", std::to_string(scansOf(bytes)));
     return header;

@@ -18,7 +18,7 @@ namespace osgGpuAnimation::gltf
 /// Format and size of a picture before it is decoded.
 struct PictureHeader
 {
-    static constexpr std::uint32_t mostPixelsASide = 16384;
+    static constexpr std::uint32_t maxPixelsPerSide = 16384;
 
     std::string mimeType; ///< by the bytes: image/png or image/jpeg
     std::uint32_t width = 0;
@@ -28,7 +28,7 @@ struct PictureHeader
 
 /// Reads the header of a PNG or JPEG and checks its size against the length of the data, so that a few bytes cannot
 /// make the decoder allocate gigabytes.
-/// Errors (`expected …, found …`): another format, a size of 0 or beyond mostPixelsASide, data that is cut off or far
+/// Errors (`expected …, found …`): another format, a size of 0 or beyond maxPixelsPerSide, data that is cut off or far
 /// too short for its size, a large JPEG with so many scans that decoding would take minutes.
 Result<PictureHeader> readPictureHeader(const std::vector<unsigned char>& bytes);
 

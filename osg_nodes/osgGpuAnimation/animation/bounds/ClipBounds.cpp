@@ -215,22 +215,22 @@ int ClipSweep::stepsNeeded() const
     double steps = 1.0;
     for (std::size_t p = 0; p < _parts.size(); ++p)
     {
-        const double strayed = _motions[_parts[p].joint].strayed(_parts[p].radius);
-        if (!(strayed > allowed) || !std::isfinite(strayed)) continue;
+        const double maxDeviation = _motions[_parts[p].joint].maxDeviation(_parts[p].radius);
+        if (!(maxDeviation > allowed) || !std::isfinite(maxDeviation)) continue;
         Aabb3d both = _boxes[p];
         both.add(_boxesBefore[p]);
-        steps = std::max(steps, std::ceil(std::sqrt(strayed / (allowed + _seen.slackAround(both)))));
+        steps = std::max(steps, std::ceil(std::sqrt(maxDeviation / (allowed + _seen.slackAround(both)))));
     }
     return static_cast<int>(std::min(steps, mostSteps));
 }
 
-void ClipSweep::gatherStrayed(const std::vector<Aabb3d>& boxes, int steps)
+void ClipSweep::addGrown(const std::vector<Aabb3d>& boxes, int steps)
 {
     for (std::size_t p = 0; p < boxes.size(); ++p)
     {
         const ChainMotion& motion = _motions[_parts[p].joint];
-        const double strayed = motion.strayed(_parts[p].radius) / (static_cast<double>(steps) * steps);
-        _swept.add(boxes[p].grownWithin(strayed, motion.reach(_parts[p].radius)));
+        const double maxDeviation = motion.maxDeviation(_parts[p].radius) / (static_cast<double>(steps) * steps);
+        _swept.add(boxes[p].grownWithin(maxDeviation, motion.reach(_parts[p].radius)));
     }
 }
 
@@ -238,8 +238,8 @@ void ClipSweep::sweepPiece(KeyframePair keyframes)
 {
     boundMotion(keyframes);
     const int steps = stepsNeeded();
-    gatherStrayed(_boxesBefore, steps);
-    gatherStrayed(_boxes, steps);
+    addGrown(_boxesBefore, steps);
+    addGrown(_boxes, steps);
     if (steps == 1) return;
 
     const std::vector<Aabb3d> boxesAfter = _boxes;
@@ -247,7 +247,7 @@ void ClipSweep::sweepPiece(KeyframePair keyframes)
     {
         keyframes.alpha = static_cast<double>(step) / steps;
         sample(keyframes);
-        gatherStrayed(_boxes, steps);
+        addGrown(_boxes, steps);
     }
     _boxes = boxesAfter;
 }

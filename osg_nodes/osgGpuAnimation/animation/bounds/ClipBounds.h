@@ -33,7 +33,7 @@ struct ChainMotion
     /// The largest distance from the root of a point within radius of the joint's origin.
     double reach(double radius) const { return origin + linear * radius; }
     /// The largest deviation of such a point from the straight line between its two ends: |p''| / 8.
-    double strayed(double radius) const { return (origin2 + linear2 * radius) / 8.0; }
+    double maxDeviation(double radius) const { return (origin2 + linear2 * radius) / 8.0; }
 };
 
 /// Moves the boxes of the palette entries through a clip and collects the space that they cover.
@@ -67,7 +67,7 @@ private:
     void sample(const KeyframePair& keyframes);
     void boundMotion(const KeyframePair& keyframes);
     int stepsNeeded() const;
-    void gatherStrayed(const std::vector<Aabb3d>& boxes, int steps);
+    void addGrown(const std::vector<Aabb3d>& boxes, int steps);
     void sweepPiece(KeyframePair keyframes);
 
     const AnimationSet& _set;

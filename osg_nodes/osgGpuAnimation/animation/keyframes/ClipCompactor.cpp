@@ -61,7 +61,7 @@ namespace
 
 // Shares of the tolerance, chosen by measuring characters: for one part of a joint that becomes constant, and for
 // dropped keyframes. The remainder covers rounding and constants that add up.
-constexpr double heldShare = 0.03;
+constexpr double constantShare = 0.03;
 constexpr double droppedShare = 0.9;
 constexpr int attempts = 4;
 
@@ -98,7 +98,7 @@ Clip ClipCompactor::compact(const Clip& clip)
 Clip ClipCompactor::attempt(const Clip& clip, double share)
 {
     std::vector<JointTransform> data = clip.data();
-    holdStill(clip, data, share * heldShare * _tolerance);
+    makePartsConstant(clip, data, share * constantShare * _tolerance);
     const std::vector<std::size_t> kept = keptKeyframes(clip, data, share * droppedShare * _tolerance);
 
     Clip made = clip;
@@ -117,7 +117,7 @@ Clip ClipCompactor::attempt(const Clip& clip, double share)
 }
 
 /// Makes parts constant that hardly move: at the value of the rest pose if that is near enough.
-void ClipCompactor::holdStill(const Clip& clip, std::vector<JointTransform>& data, double most) const
+void ClipCompactor::makePartsConstant(const Clip& clip, std::vector<JointTransform>& data, double most) const
 {
     const auto apart = [](glm::vec4 JointTransform::*part)
     {

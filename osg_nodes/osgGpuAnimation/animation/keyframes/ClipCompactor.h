@@ -40,7 +40,7 @@ public:
 
 private:
     Clip attempt(const Clip& clip, double share);
-    void holdStill(const Clip& clip, std::vector<JointTransform>& data, double most) const;
+    void makePartsConstant(const Clip& clip, std::vector<JointTransform>& data, double most) const;
     std::vector<std::size_t> keptKeyframes(const Clip& clip, const std::vector<JointTransform>& data, double most);
     std::size_t farthest(const Clip& clip, const std::vector<JointTransform>& data, std::size_t from, double most);
     double worstWithin(const Clip& clip, std::size_t from, std::size_t to, const JointTransform* a,

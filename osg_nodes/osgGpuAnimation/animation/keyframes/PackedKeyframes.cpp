@@ -51,12 +51,13 @@ PackedKeyframes::PackedKeyframes(const AnimationSet& set) : _set(set), _tracks(s
     for (const JointTransform& rest : set.restPose())
         for (const Part part : parts)
         {
-            _heldPlaces.emplace(bits(rest.*part), static_cast<std::uint32_t>(2 * _texels.size()));
+            _constantAddresses.emplace(bits(rest.*part), static_cast<std::uint32_t>(2 * _texels.size()));
             _texels.push_back(texel(rest.*part));
         }
     const auto table = static_cast<std::uint32_t>(_texels.size());
     for (const JointTransform& rest : set.restPose())
-        _texels.emplace_back(held(rest.translation), held(rest.rotation), held(rest.scale), 0u);
+        _texels.emplace_back(addressOfConstant(rest.translation), addressOfConstant(rest.rotation),
+                             addressOfConstant(rest.scale), 0u);
     if (!_texels.empty()) _texels.front() = {0u, 0u, table, 0u};
     for (std::size_t clip = 0; clip < set.clips().size(); ++clip)
         addClip(set.clips()[clip], set.firstKeyframe(clip));
@@ -107,7 +108,7 @@ void PackedKeyframes::placeTrack(const Clip& clip, std::size_t track, const Comp
         auto& place = entry[static_cast<glm::uvec4::length_type>(part)];
         if (compact ? columns[part] < 0 : !moves(clip, track, parts[part]))
         {
-            place = held(clip.at(0, track)->*parts[part]);
+            place = addressOfConstant(clip.at(0, track)->*parts[part]);
             continue;
         }
         place = _recordSize;
@@ -125,7 +126,7 @@ void PackedKeyframes::widenMotion(const Clip& clip, std::size_t track, const glm
     const JointTransform& rest = _set.restPose()[track];
     const auto widen = [&](PartMotion& motion, std::uint32_t place, Part part)
     {
-        if ((place & POSE_PLACE_HELD) == 0u) motion = PartMotion::Moving;
+        if ((place & POSE_ADDRESS_IS_CONSTANT) == 0u) motion = PartMotion::Moving;
         if (motion == PartMotion::Fixed && bits(value.*part) != bits(rest.*part)) motion = PartMotion::Constant;
     };
     widen(_tracks[track].translation, places.x, &JointTransform::translation);
@@ -153,11 +154,11 @@ void PackedKeyframes::writeRecord(const Clip& clip, std::size_t keyframe, std::v
     }
 }
 
-std::uint32_t PackedKeyframes::held(const glm::vec4& value)
+std::uint32_t PackedKeyframes::addressOfConstant(const glm::vec4& value)
 {
-    const auto [known, isNew] = _heldPlaces.emplace(bits(value), static_cast<std::uint32_t>(2 * _texels.size()));
+    const auto [known, isNew] = _constantAddresses.emplace(bits(value), static_cast<std::uint32_t>(2 * _texels.size()));
     if (isNew) _texels.push_back(texel(value));
-    return known->second | POSE_PLACE_HELD;
+    return known->second | POSE_ADDRESS_IS_CONSTANT;
 }
 
 /// Never 0: in a table 0 marks an exact track.

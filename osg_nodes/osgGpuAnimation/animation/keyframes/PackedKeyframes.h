@@ -67,14 +67,14 @@ private:
     void placeTrack(const Clip& clip, std::size_t track, const CompactTracks::Track* compact);
     void widenMotion(const Clip& clip, std::size_t track, const glm::uvec4& places);
     void writeRecord(const Clip& clip, std::size_t keyframe, std::vector<std::uint32_t>& words) const;
-    std::uint32_t held(const glm::vec4& value);
+    std::uint32_t addressOfConstant(const glm::vec4& value);
     std::uint32_t ranges(const CompactTracks::Track& track);
 
     const AnimationSet& _set;
     std::vector<glm::uvec4> _texels;
     std::size_t _restTexel = 0;
     std::vector<Track> _tracks;
-    std::map<std::array<std::uint32_t, 4>, std::uint32_t> _heldPlaces;
+    std::map<std::array<std::uint32_t, 4>, std::uint32_t> _constantAddresses;
     std::map<std::array<float, 12>, std::uint32_t> _rangeTexels;
 
     // For the current clip.

@@ -53,7 +53,7 @@ FeedbackTimer::Stamps FeedbackTimer::nextStamps()
 
 void FeedbackTimer::begin()
 {
-    _isMeasuring = _gl->isARBTimerQuerySupported && _inFlight.size() < mostInFlight;
+    _isMeasuring = _gl->isARBTimerQuerySupported && _inFlight.size() < maxInFlight;
     if (!_isMeasuring) return;
     _inFlight.push_back(nextStamps());
     _gl->glQueryCounter(_inFlight.back().begin, GL_TIMESTAMP);

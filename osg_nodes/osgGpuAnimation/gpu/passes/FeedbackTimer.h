@@ -66,7 +66,7 @@ private:
         GLuint end;
         unsigned int frameNumber;
     };
-    static constexpr std::size_t mostInFlight = 16;
+    static constexpr std::size_t maxInFlight = 16;
 
     Stamps nextStamps();
 

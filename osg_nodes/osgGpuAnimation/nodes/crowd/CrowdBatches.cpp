@@ -25,21 +25,23 @@ using Indices = std::vector<std::uint32_t>;
 
 /// Sorts the instances by blend cost; groups too small for a batch join the next higher cost.
 void sortByBlendCost(const CrowdInstances& instances, const Indices& seen,
-                     std::array<Indices, PoseBatch::blendCostCount>& loads)
+                     std::array<Indices, PoseBatch::blendCostCount>& indicesByCost)
 {
-    for (Indices& load : loads)
-        load.clear();
+    for (Indices& indices : indicesByCost)
+        indices.clear();
     for (const std::uint32_t index : seen)
-        loads[static_cast<std::size_t>(instances.load(index))].push_back(index);
-    std::size_t dearer = loads.size() - 1;
-    for (std::size_t load = dearer; load-- > 0;)
-        if (!loads[load].empty() && loads[load].size() < PoseBatch::minBatchSize && !loads[dearer].empty())
+        indicesByCost[static_cast<std::size_t>(instances.blendCost(index))].push_back(index);
+    std::size_t higherCost = indicesByCost.size() - 1;
+    for (std::size_t cost = higherCost; cost-- > 0;)
+        if (!indicesByCost[cost].empty() && indicesByCost[cost].size() < PoseBatch::minBatchSize &&
+            !indicesByCost[higherCost].empty())
         {
-            loads[dearer].insert(loads[dearer].end(), loads[load].begin(), loads[load].end());
-            loads[load].clear();
+            indicesByCost[higherCost].insert(indicesByCost[higherCost].end(), indicesByCost[cost].begin(),
+                                             indicesByCost[cost].end());
+            indicesByCost[cost].clear();
         }
-        else if (!loads[load].empty())
-            dearer = load;
+        else if (!indicesByCost[cost].empty())
+            higherCost = cost;
 }
 
 } // namespace
@@ -138,21 +140,21 @@ void CrowdLod::sort(std::vector<std::uint32_t>& indices, std::vector<Run>& outRu
     }
 }
 
-std::vector<DrawState> submitSeen(PoseFrame& frame, const CrowdInstances& instances, const CrowdLod& detail,
+std::vector<DrawState> submitSeen(PoseFrame& frame, const CrowdInstances& instances, const CrowdLod& lod,
                                   const std::vector<std::uint32_t>& seen)
 {
-    static thread_local std::array<Indices, PoseBatch::blendCostCount> loads;
-    sortByBlendCost(instances, seen, loads);
+    static thread_local std::array<Indices, PoseBatch::blendCostCount> indicesByCost;
+    sortByBlendCost(instances, seen, indicesByCost);
     std::vector<DrawState> draws;
     std::vector<CrowdLod::Run> runs;
-    for (Indices& load : loads)
+    for (Indices& indices : indicesByCost)
     {
-        if (load.empty()) continue;
-        if (detail.isOn()) detail.sort(load, runs);
+        if (indices.empty()) continue;
+        if (lod.isOn()) lod.sort(indices, runs);
         std::unique_ptr<PoseBatch> batch = frame.makeBatch(instances.set());
-        instances.addTo(*batch, load);
-        const SubmittedBatch submitted = frame.submit(std::move(batch), &instances, load);
-        if (!detail.isOn()) draws.push_back(submitted.all);
+        instances.addTo(*batch, indices);
+        const SubmittedBatch submitted = frame.submit(std::move(batch), &instances, indices);
+        if (!lod.isOn()) draws.push_back(submitted.all);
         std::size_t first = 0;
         for (const CrowdLod::Run& run : runs)
         {

@@ -81,7 +81,7 @@ private:
 /// Instances with one clip form one batch, and instances that mix clips form others if there are enough
 /// (PoseBatch::BlendCost). Each level of detail in use has its own draw. seen: indices of the visible instances.
 /// Cameras may cull concurrently.
-std::vector<DrawState> submitSeen(PoseFrame& frame, const CrowdInstances& instances, const CrowdLod& detail,
+std::vector<DrawState> submitSeen(PoseFrame& frame, const CrowdInstances& instances, const CrowdLod& lod,
                                   const std::vector<std::uint32_t>& seen);
 
 } // namespace osgGpuAnimation

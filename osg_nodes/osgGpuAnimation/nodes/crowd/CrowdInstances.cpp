@@ -243,7 +243,7 @@ void CrowdInstances::findSeen(const std::vector<glm::vec4>& planes, std::vector<
     }
 }
 
-PoseBatch::BlendCost CrowdInstances::load(std::size_t index) const
+PoseBatch::BlendCost CrowdInstances::blendCost(std::size_t index) const
 {
     return _controllers[index] ? PoseBatch::blendCostOf(_controllers[index]->instruction())
                                : PoseBatch::BlendCost::Plain;

@@ -76,7 +76,7 @@ public:
     } ///< centre, radius; radius below 0: empty
     std::uint32_t tint(std::size_t index) const { return _tints[index]; }
     PoseInstruction instruction(std::size_t index) const;
-    PoseBatch::BlendCost load(std::size_t index) const; ///< of its instruction
+    PoseBatch::BlendCost blendCost(std::size_t index) const; ///< of its instruction
     /// Valid until the next advance(), which may replace it by a CrowdPlayback.
     AnimationController& controller(std::size_t index);
     AnimationController controllerCopy(std::size_t index) const;

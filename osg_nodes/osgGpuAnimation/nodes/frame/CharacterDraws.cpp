@@ -72,7 +72,7 @@ bool CharacterDraws::Group::holds(const Group& other) const
            set == other.set && slot == other.slot && level == other.level && meshes == other.meshes;
 }
 
-bool CharacterDraws::Detail::isOf(const osg::Group& node) const
+bool CharacterDraws::LodInput::isOf(const osg::Group& node) const
 {
     if (children.size() != node.getNumChildren()) return false;
     for (unsigned int i = 0; i < node.getNumChildren(); ++i)
@@ -102,52 +102,52 @@ void CharacterDraws::draw(osgUtil::CullVisitor& visitor, LodView& view, const Dr
 int CharacterDraws::levelOf(osgUtil::CullVisitor& visitor, LodView& view, const DrawnCharacter& character)
 {
     if (!(character.pixelError > 0.0f)) return LodLevels::allTriangles;
-    const Detail& detail = lodOf(character);
-    if (!detail.box.valid()) return LodLevels::allTriangles;
-    const osg::Vec3 centre = detail.box.center();
-    return LodScale(visitor, view, character.pixelError, detail.range)
-        .level(glm::vec3(centre.x(), centre.y(), centre.z()), detail.box.radius(), character.rootMatrix);
+    const LodInput& lod = lodOf(character);
+    if (!lod.box.valid()) return LodLevels::allTriangles;
+    const osg::Vec3 centre = lod.box.center();
+    return LodScale(visitor, view, character.pixelError, lod.range)
+        .level(glm::vec3(centre.x(), centre.y(), centre.z()), lod.box.radius(), character.rootMatrix);
 }
 
 // Characters of one set usually share their meshes; otherwise the range is computed again for each character.
-const CharacterDraws::Detail& CharacterDraws::lodOf(const DrawnCharacter& character)
+const CharacterDraws::LodInput& CharacterDraws::lodOf(const DrawnCharacter& character)
 {
-    Detail& detail = _lods[&character.controller.set()];
-    if (detail.isOf(character.node)) return detail;
-    detail = {{}, LodRange(character.node, character.controller.set()), {}};
+    LodInput& lod = _lods[&character.controller.set()];
+    if (lod.isOf(character.node)) return lod;
+    lod = {{}, LodRange(character.node, character.controller.set()), {}};
     for (unsigned int i = 0; i < character.node.getNumChildren(); ++i)
-        detail.children.push_back(character.node.getChild(i));
-    forEachMesh(character.node, [&](const SkinnedGeometry& mesh) { detail.box.expandBy(mesh.getBoundingBox()); });
-    return detail;
+        lod.children.push_back(character.node.getChild(i));
+    forEachMesh(character.node, [&](const SkinnedGeometry& mesh) { lod.box.expandBy(mesh.getBoundingBox()); });
+    return lod;
 }
 
 // True: the meshes are part of a group's instanced draw. False: the caller draws all children normally.
 bool CharacterDraws::drawTogether(osgUtil::CullVisitor& visitor, const DrawnCharacter& character, PoseFrame& frame,
                                   SubmittedPose pose, int level, std::vector<osg::Node*>& outOthers)
 {
-    _asked.bin = visitor.getCurrentRenderBin();
-    _asked.projection = visitor.getProjectionMatrix();
-    _asked.traversalMask = visitor.getTraversalMask();
-    _asked.set = &character.controller.set();
-    _asked.slot = pose.slot;
-    _asked.level = level;
-    _asked.meshes.clear();
+    _candidate.bin = visitor.getCurrentRenderBin();
+    _candidate.projection = visitor.getProjectionMatrix();
+    _candidate.traversalMask = visitor.getTraversalMask();
+    _candidate.set = &character.controller.set();
+    _candidate.slot = pose.slot;
+    _candidate.level = level;
+    _candidate.meshes.clear();
     for (unsigned int i = 0; i < character.node.getNumChildren(); ++i)
     {
         SkinnedGeometry* mesh = asShared(character.node.getChild(i));
         if (!mesh)
             outOthers.push_back(character.node.getChild(i));
         else if (visitor.validNodeMask(*mesh))
-            _asked.meshes.push_back(mesh);
+            _candidate.meshes.push_back(mesh);
     }
-    if (_asked.meshes.empty()) return false;
+    if (_candidate.meshes.empty()) return false;
     std::vector<Group>& groups = _groups[visitor.getCurrentStateGraph()];
     const auto group =
-        std::find_if(groups.begin(), groups.end(), [&](const Group& known) { return known.holds(_asked); });
+        std::find_if(groups.begin(), groups.end(), [&](const Group& known) { return known.holds(_candidate); });
     if (group == groups.end())
     {
-        groups.push_back(_asked);
-        for (const SkinnedGeometry* mesh : _asked.meshes)
+        groups.push_back(_candidate);
+        for (const SkinnedGeometry* mesh : _candidate.meshes)
             groups.back().box.expandBy(mesh->getBoundingBox());
         return false;
     }
@@ -166,7 +166,7 @@ bool CharacterDraws::drawTogether(osgUtil::CullVisitor& visitor, const DrawnChar
 
 void CharacterDraws::open(osgUtil::CullVisitor& visitor, Group& group, PoseFrame& frame, float depth)
 {
-    const DrawState placed = frame.placedState(*group.set, group.slot, group.level);
+    const DrawState placed = frame.instancedState(*group.set, group.slot, group.level);
     group.together = placed.binding;
     const osg::ref_ptr<osg::RefMatrix> eye = new osg::RefMatrix;
     visitor.pushStateSet(placed.stateSet);

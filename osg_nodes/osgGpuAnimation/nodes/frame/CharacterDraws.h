@@ -94,7 +94,7 @@ private:
         bool holds(const Group& other) const;
     };
     /// The input of level selection.
-    struct Detail
+    struct LodInput
     {
         std::vector<const osg::Node*> children;
         LodRange range;
@@ -106,13 +106,13 @@ private:
     bool drawTogether(osgUtil::CullVisitor& visitor, const DrawnCharacter& character, PoseFrame& frame,
                       SubmittedPose pose, int level, std::vector<osg::Node*>& outOthers);
     int levelOf(osgUtil::CullVisitor& visitor, LodView& view, const DrawnCharacter& character);
-    const Detail& lodOf(const DrawnCharacter& character);
+    const LodInput& lodOf(const DrawnCharacter& character);
     void open(osgUtil::CullVisitor& visitor, Group& group, PoseFrame& frame, float depth);
 
     std::unordered_map<const osgUtil::StateGraph*, std::vector<Group>> _groups;
-    std::unordered_map<const AnimationSet*, Detail> _lods; ///< by set, for its last character
-    Group _asked;                                          ///< kept for its memory
-    DrawnInstances* _counted = nullptr;                    ///< the PoseStage's
+    std::unordered_map<const AnimationSet*, LodInput> _lods; ///< by set, for its last character
+    Group _candidate;                                        ///< kept for its memory
+    DrawnInstances* _counted = nullptr;                      ///< the PoseStage's
 };
 
 } // namespace osgGpuAnimation

@@ -34,8 +34,8 @@ void forgetArrays(osg::VertexArrayState& arrays)
     }
 }
 
-constexpr unsigned int attributeLocations[] = {POSE_PLACEMENT_ROW_0_LOCATION, POSE_PLACEMENT_ROW_1_LOCATION,
-                                               POSE_PLACEMENT_ROW_2_LOCATION, POSE_PLACED_POSE_LOCATION};
+constexpr unsigned int attributeLocations[] = {POSE_INSTANCE_ROW_0_LOCATION, POSE_INSTANCE_ROW_1_LOCATION,
+                                               POSE_INSTANCE_ROW_2_LOCATION, POSE_INSTANCE_POSE_LOCATION};
 
 std::size_t poseOf(const InstanceTransform& placement)
 {
@@ -149,13 +149,13 @@ void bindPalette(osg::State& state, const PalettePlace& place, int influences, i
 InstancedDraw::InstancedDraw(osg::State& state, const PaletteBinding& binding) : _state(state), _binding(binding)
 {
     const osg::Program::PerContextProgram* program = state.getLastAppliedProgramObject();
-    if (!program || program->getAttribLocation("posePlacedPose") != POSE_PLACED_POSE_LOCATION) return;
-    _placements = &InstanceTransformBuffers::of(state).buffer(binding.getSerial(), binding.getInstanceTransforms());
+    if (!program || program->getAttribLocation("poseInstancePose") != POSE_INSTANCE_POSE_LOCATION) return;
+    _transforms = &InstanceTransformBuffers::of(state).buffer(binding.getSerial(), binding.getInstanceTransforms());
 }
 
 InstancedDraw::~InstancedDraw()
 {
-    if (_placements)
+    if (_transforms)
     {
         const osg::GLExtensions& gl = *_state.get<osg::GLExtensions>();
         for (const unsigned int location : attributeLocations)
@@ -173,7 +173,7 @@ InstancedDraw::Run InstancedDraw::run(const PosePipeline& pipeline, std::size_t 
 {
     const std::vector<InstanceTransform>& placements = _binding.getInstanceTransforms();
     Run run{pipeline.place(*_binding.getAnimationSet(), _binding.getSlot(), poseOf(placements[first])), 1};
-    if (!_placements || run.place.texture == 0) return run;
+    if (!_transforms || run.place.texture == 0) return run;
     const auto isInChunk = [&](std::size_t pose) { return pose >= run.place.chunkBegin && pose < run.place.chunkEnd; };
     while (first + run.count < placements.size() && isInChunk(poseOf(placements[first + run.count])))
         ++run.count;
@@ -183,14 +183,14 @@ InstancedDraw::Run InstancedDraw::run(const PosePipeline& pipeline, std::size_t 
 
 void InstancedDraw::use(std::size_t first) const
 {
-    if (_placements)
+    if (_transforms)
     {
         // The buffer that is bound below is unknown to OSG.
         _state.getCurrentVertexArrayState()->unbindVertexBufferObject();
         std::size_t offset = first * sizeof(InstanceTransform);
         for (const unsigned int location : attributeLocations)
         {
-            _placements->bindAttributes(location, 1, sizeof(InstanceTransform), offset, 1);
+            _transforms->bindAttributes(location, 1, sizeof(InstanceTransform), offset, 1);
             offset += BufferTexture::texelBytes;
         }
         return;

@@ -68,7 +68,7 @@ public:
 private:
     osg::State& _state;
     const PaletteBinding& _binding;
-    const BufferTexture* _placements = nullptr; ///< null: one draw per character
+    const BufferTexture* _transforms = nullptr; ///< null: one draw per character
 };
 
 /// Draws `count` instances of the primitives (gl_InstanceID in [0, count)) and ignores their own number of instances.

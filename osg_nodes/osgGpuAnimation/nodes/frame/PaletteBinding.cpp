@@ -9,7 +9,7 @@ namespace osgGpuAnimation
 
 PaletteBinding::PaletteBinding(const PaletteBinding& other, const osg::CopyOp& copyop)
     : osg::StateAttribute(other, copyop), _set(other._set), _slot(other._slot), _instance(other._instance),
-      _instanceCount(other._instanceCount), _placements(other._placements), _serial(other._serial), _level(other._level)
+      _instanceCount(other._instanceCount), _transforms(other._transforms), _serial(other._serial), _level(other._level)
 {
 }
 
@@ -20,12 +20,12 @@ void PaletteBinding::set(std::shared_ptr<const AnimationSet> set, std::size_t sl
     _slot = slot;
     _instance = instance;
     _instanceCount = instanceCount;
-    _placements.clear();
+    _transforms.clear();
     _serial = 0;
     _level = LodLevels::allTriangles;
 }
 
-void PaletteBinding::setPlaced(std::shared_ptr<const AnimationSet> set, std::size_t slot)
+void PaletteBinding::setInstanced(std::shared_ptr<const AnimationSet> set, std::size_t slot)
 {
     static std::atomic<std::uint64_t> last{0};
     this->set(std::move(set), slot, 0, 0);

@@ -27,13 +27,13 @@ public:
     /// Selects instanceCount consecutive instances at the draw's own model-view matrix, with all triangles.
     void set(std::shared_ptr<const AnimationSet> set, std::size_t slot, std::size_t instance,
              std::size_t instanceCount = 1);
-    /// The level of detail; set() and setPlaced() reset it to all triangles.
+    /// The level of detail; set() and setInstanced() reset it to all triangles.
     void setLevel(int level) { _level = level; }
     int getLevel() const { return _level; }
     /// Selects instances with a placement each, for an instanced draw; add() adds them.
-    void setPlaced(std::shared_ptr<const AnimationSet> set, std::size_t slot);
-    void add(const InstanceTransform& placement) { _placements.push_back(placement); }
-    const std::vector<InstanceTransform>& getInstanceTransforms() const { return _placements; }
+    void setInstanced(std::shared_ptr<const AnimationSet> set, std::size_t slot);
+    void add(const InstanceTransform& placement) { _transforms.push_back(placement); }
+    const std::vector<InstanceTransform>& getInstanceTransforms() const { return _transforms; }
     /// Identifies the list of placements; 0: the instances use the draw's model-view matrix.
     std::uint64_t getSerial() const { return _serial; }
 
@@ -42,7 +42,7 @@ public:
     std::size_t getInstance() const { return _instance; }           ///< the first
     std::size_t getInstanceCount() const { return _instanceCount; } ///< consecutive
     /// The number of drawn instances, with placements or without.
-    std::size_t getDrawnCount() const { return _serial != 0 ? _placements.size() : _instanceCount; }
+    std::size_t getDrawnCount() const { return _serial != 0 ? _transforms.size() : _instanceCount; }
 
     int compare(const osg::StateAttribute& other) const override;
     void apply(osg::State&) const override {}
@@ -55,7 +55,7 @@ private:
     std::size_t _slot = 0;
     std::size_t _instance = 0;
     std::size_t _instanceCount = 1;
-    std::vector<InstanceTransform> _placements;
+    std::vector<InstanceTransform> _transforms;
     std::uint64_t _serial = 0;
     int _level = LodLevels::allTriangles;
 };

@@ -73,7 +73,7 @@ void PoseFrame::reset()
     _batchesOfSet.clear();
     _submitted.clear();
     _samples.clear();
-    for (StatePool* pool : {&_plainStates, &_tintedStates, &_placedStates})
+    for (StatePool* pool : {&_plainStates, &_tintedStates, &_instancedStates})
         pool->reset();
 }
 
@@ -82,7 +82,7 @@ SubmittedPose PoseFrame::submit(const osg::Node& node, const AnimationController
 {
     const std::lock_guard<std::mutex> lock(_mutex);
     Submitted& submitted = _submitted[&node];
-    if (!isStill(submitted, controller, rootMatrix))
+    if (!hasSameInstruction(submitted, controller, rootMatrix))
     {
         const PoseInstruction& instruction = controller.instruction();
         Batch& batch = openBatch(controller, rootMatrix);
@@ -94,8 +94,8 @@ SubmittedPose PoseFrame::submit(const osg::Node& node, const AnimationController
 }
 
 // Another viewer's frame with the same number may have a different node at the same address.
-bool PoseFrame::isStill(const Submitted& known, const AnimationController& controller,
-                        const AffineMatrix& rootMatrix) const
+bool PoseFrame::hasSameInstruction(const Submitted& known, const AnimationController& controller,
+                                   const AffineMatrix& rootMatrix) const
 {
     const PoseInstruction& instruction = controller.instruction();
     return known.batch && &known.batch->content->set() == &controller.set() &&
@@ -187,11 +187,11 @@ DrawState PoseFrame::partState(const AnimationSet& set, std::size_t slot, std::s
     return stateOf(*_batchesOfSet[&set][slot], first, count, level);
 }
 
-DrawState PoseFrame::placedState(const AnimationSet& set, std::size_t slot, int level)
+DrawState PoseFrame::instancedState(const AnimationSet& set, std::size_t slot, int level)
 {
     const std::lock_guard<std::mutex> lock(_mutex);
-    const DrawState state = _placedStates.next();
-    state.binding->setPlaced(_batchesOfSet[&set][slot]->content->sharedSet(), slot);
+    const DrawState state = _instancedStates.next();
+    state.binding->setInstanced(_batchesOfSet[&set][slot]->content->sharedSet(), slot);
     state.binding->setLevel(level);
     return state;
 }

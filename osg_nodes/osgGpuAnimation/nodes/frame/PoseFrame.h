@@ -60,7 +60,7 @@ public:
     /// frame is in use.
     osg::StateSet* stateOf(const osg::Node& node, const AnimationSet& set, SubmittedPose pose, int level);
     /// A new state for an instanced draw of several characters; the caller adds their placements to the binding.
-    DrawState placedState(const AnimationSet& set, std::size_t slot, int level);
+    DrawState instancedState(const AnimationSet& set, std::size_t slot, int level);
     /// A new state for `count` instances of the batch, starting at `first`.
     DrawState partState(const AnimationSet& set, std::size_t slot, std::size_t first, std::size_t count, int level);
 
@@ -114,7 +114,8 @@ private:
     void reset();
     void evaluateBatches(osg::State& state, PosePipeline* pipeline);
     void record(osg::Stats& stats, std::uint64_t evaluated) const;
-    bool isStill(const Submitted& known, const AnimationController& controller, const AffineMatrix& rootMatrix) const;
+    bool hasSameInstruction(const Submitted& known, const AnimationController& controller,
+                            const AffineMatrix& rootMatrix) const;
     Batch& openBatch(const AnimationController& controller, const AffineMatrix& rootMatrix);
     Batch& addBatch(std::unique_ptr<PoseBatch> content);
     std::unique_ptr<PoseBatch> spareBatch(std::shared_ptr<const AnimationSet> set);
@@ -132,7 +133,7 @@ private:
     std::vector<BlendSample> _samples; ///< of the submitted instructions
     StatePool _plainStates{nullptr, {}, 0};
     StatePool _tintedStates{"POSE_TINTED", {}, 0};
-    StatePool _placedStates{"POSE_PLACED", {}, 0}; ///< characters have no tints
+    StatePool _instancedStates{"POSE_INSTANCED", {}, 0}; ///< characters have no tints
 };
 
 } // namespace osgGpuAnimation

@@ -202,7 +202,7 @@ LodLevels::LodLevels(const osg::Geometry& mesh, const AnimationSet& set, const S
     for (const osg::ref_ptr<osg::PrimitiveSet>& primitives : mesh.getPrimitiveSetList())
         _primitives.push_back({primitives, primitives->getModifiedCount(), {}});
     const std::size_t vertexCount = _vertices ? _vertices->getNumElements() : 0;
-    if (vertexCount > mostVertices || !isWorthPoses(mesh, set)) return;
+    if (vertexCount > maxVertices || !isWorthPoses(mesh, set)) return;
     const PosedSurface surface = surfaceOf(mesh, set, skin);
     if (surface.poses.empty()) return;
     const double size = sizeOf(boxAround(surface.poses.front()));
@@ -217,17 +217,17 @@ void LodLevels::addSteps(const PosedSurface& surface, int finest, int coarsest, 
 {
     const std::vector<std::uint32_t> original = trianglesOf(*primitives.original, surface.vertexCount());
     if (original.size() < 3 * fewTriangles) return;
-    MeshSimplifier reduction(surface, original);
+    MeshSimplifier simplifier(surface, original);
     std::size_t kept = original.size() / 3;
     for (int level = finest; level <= coarsest; ++level)
     {
-        if (reduction.triangleCount() <= 1) break;
+        if (simplifier.triangleCount() <= 1) break;
         const double limit = std::ldexp(1.0, level);
-        reduction.reduce(limit, level < coarsest);
+        simplifier.reduce(limit, level < coarsest);
         const bool isWorthwhile =
-            static_cast<double>(reduction.triangleCount()) < worthwhile * static_cast<double>(kept);
-        if (!isWorthwhile || reduction.error() > limit) continue;
-        const std::vector<std::uint32_t> indices = reduction.indices();
+            static_cast<double>(simplifier.triangleCount()) < worthwhile * static_cast<double>(kept);
+        if (!isWorthwhile || simplifier.error() > limit) continue;
+        const std::vector<std::uint32_t> indices = simplifier.indices();
         kept = indices.size() / 3;
         osg::ref_ptr<osg::DrawElements> elements = surface.vertexCount() <= 65535
                                                        ? makeElements<osg::DrawElementsUShort>(indices)

@@ -32,7 +32,7 @@ struct PosedSurface;
 ///
 /// MeshSimplifier keeps the error in twelve poses at once (keyPoses() of the set). In other poses it may be larger: by
 /// at most half in tests at random times of real characters' clips. No levels are built for primitive sets other than
-/// indexed triangles, for meshes with positions that are not finite or for more than mostVertices. Each piece of a mesh
+/// indexed triangles, for meshes with positions that are not finite or for more than maxVertices. Each piece of a mesh
 /// keeps at least one triangle.
 ///
 /// The coarsest level is a 32nd of the character's size, since coarser ones make small characters thin. Only the
@@ -43,7 +43,7 @@ class LodLevels
 {
 public:
     static constexpr int allTriangles = std::numeric_limits<int>::min(); ///< the level without error
-    static constexpr std::size_t mostVertices = 100'000; ///< of a mesh with levels; such a mesh takes seconds
+    static constexpr std::size_t maxVertices = 100'000; ///< of a mesh with levels; such a mesh takes seconds
 
     /// The coarsest level within the error, in the character's units; allTriangles if the error is not above 0.
     static int levelOf(double error);

@@ -14,7 +14,7 @@
 namespace osgGpuAnimation
 {
 
-std::string LodRange::pixelErrorsTaken()
+std::string LodRange::describePixelErrors()
 {
     return "a number of pixels from 0 to " + std::to_string(largestPixelError);
 }
@@ -22,7 +22,7 @@ std::string LodRange::pixelErrorsTaken()
 Result<bool> LodRange::prepare(float pixels, const osg::Group& meshes, const AnimationSet& set)
 {
     if (!isPixelError(pixels))
-        return Error{"a pixel error of " + std::to_string(pixels) + ": it must be " + pixelErrorsTaken()};
+        return Error{"a pixel error of " + std::to_string(pixels) + ": it must be " + describePixelErrors()};
     if (pixels > 0.0f && set.paletteSize() > 0) static_cast<void>(LodRange(meshes, set));
     return true;
 }
@@ -34,7 +34,7 @@ LodRange::LodRange(const osg::Group& meshes, const AnimationSet& set)
                 [&](const SkinnedGeometry& mesh)
                 {
                     vertices += mesh.getVertexCount();
-                    if (vertices > mostVertices) return;
+                    if (vertices > maxVertices) return;
                     const std::shared_ptr<const LodLevels> levels = mesh.getLodLevels(set);
                     if (levels->finest() == LodLevels::allTriangles) return;
                     _finest = std::min(_finest, levels->finest());
@@ -115,7 +115,7 @@ float largestScale(const AffineMatrix& matrix)
 int LodScale::level(const glm::vec3& centre, float radius, const AffineMatrix& rootMatrix) const
 {
     const Measure& measure = _seen.farthest(centre, radius) < 0.0f ? _own : _seen;
-    return _range.held(LodLevels::levelOf(measure.nearest(centre, radius) / largestScale(rootMatrix)));
+    return _range.clamped(LodLevels::levelOf(measure.nearest(centre, radius) / largestScale(rootMatrix)));
 }
 
 } // namespace osgGpuAnimation

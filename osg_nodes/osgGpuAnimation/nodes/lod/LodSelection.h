@@ -24,13 +24,13 @@ class LodRange
 {
 public:
     /// The largest sum of vertices in a group. Meshes beyond it get no levels, unless another group contains them.
-    static constexpr std::size_t mostVertices = 10 * LodLevels::mostVertices;
+    static constexpr std::size_t maxVertices = 10 * LodLevels::maxVertices;
     static constexpr int largestPixelError = 1'000'000; ///< pixels
 
     /// True if setPixelError() of characters and crowds accepts the value.
     static bool isPixelError(double pixels) { return pixels >= 0.0 && pixels <= largestPixelError; }
     /// The accepted range, for messages.
-    static std::string pixelErrorsTaken();
+    static std::string describePixelErrors();
     /// Creates the levels of the SkinnedGeometry among a group's children, unless the pixel error is 0 or the set is
     /// empty. Error: pixels is out of range.
     static Result<bool> prepare(float pixels, const osg::Group& meshes, const AnimationSet& set);
@@ -41,7 +41,7 @@ public:
     LodRange(const osg::Group& meshes, const AnimationSet& set);
 
     /// The level clamped to the range; allTriangles if it is finer.
-    int held(int level) const
+    int clamped(int level) const
     {
         return level < _finest ? LodLevels::allTriangles : level > _coarsest ? _coarsest : level;
     }

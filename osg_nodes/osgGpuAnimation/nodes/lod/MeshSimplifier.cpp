@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/lod/MeshSimplifier.h>
 
-#include <osgGpuAnimation/nodes/lod/CollapsibleMesh.h>
+#include <osgGpuAnimation/nodes/lod/MeshConnectivity.h>
 
 #include <algorithm>
 #include <cmath>
@@ -28,13 +28,13 @@ glm::dvec3 normalOf(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& 
     return glm::cross(b - a, c - a); // its length is twice the area
 }
 
-Edge edgeOf(const CollapsibleMesh& mesh, const CollapsibleMesh::Corners& corners, std::size_t i)
+Edge edgeOf(const MeshConnectivity& mesh, const MeshConnectivity::Corners& corners, std::size_t i)
 {
     return std::minmax({mesh.pointOf(corners[i]), mesh.pointOf(corners[(i + 1) % 3])});
 }
 
 /// Sorted; each edge once per triangle.
-std::vector<Edge> edgesOf(const CollapsibleMesh& mesh)
+std::vector<Edge> edgesOf(const MeshConnectivity& mesh)
 {
     std::vector<Edge> edges;
     for (std::uint32_t triangle = 0; triangle < mesh.triangleCount(); ++triangle)
@@ -94,7 +94,7 @@ void MeshSimplifier::consider(std::uint32_t from, std::uint32_t to)
         const glm::dvec3 place = _mesh.at(pose, to), way = place - _mesh.at(pose, from);
         cost = std::max(cost, quadric.at(place) + lengthCost * glm::dot(way, way));
     }
-    if (cost <= _squaredLimit) _next.push({cost, from, to, _mesh.turnOf(from), _mesh.turnOf(to)});
+    if (cost <= _squaredLimit) _next.push({cost, from, to, _mesh.changeCountOf(from), _mesh.changeCountOf(to)});
 }
 
 void MeshSimplifier::considerAll()
@@ -114,11 +114,11 @@ void MeshSimplifier::reduce(double limit, bool keepSeams)
     for (int pass = 0; pass < mostPasses && hasCollapsed; ++pass)
     {
         considerAll();
-        hasCollapsed = collapseWhatIsConsidered();
+        hasCollapsed = collapseCandidates();
     }
 }
 
-bool MeshSimplifier::collapseWhatIsConsidered()
+bool MeshSimplifier::collapseCandidates()
 {
     bool hasCollapsed = false;
     const std::size_t poseCount = _mesh.poseCount();
@@ -127,7 +127,8 @@ bool MeshSimplifier::collapseWhatIsConsidered()
     {
         const Collapse next = _next.top();
         _next.pop();
-        if (next.fromTurn != _mesh.turnOf(next.from) || next.toTurn != _mesh.turnOf(next.to)) continue;
+        if (next.fromChanges != _mesh.changeCountOf(next.from) || next.toChanges != _mesh.changeCountOf(next.to))
+            continue;
         if (!findCorners(next.from, next.to, moved) || !isNear(next.from, next.to, moved)) continue;
         _mesh.collapse(next.from, next.to, moved);
         for (std::size_t pose = 0; pose < poseCount; ++pose)
@@ -236,8 +237,8 @@ bool MeshSimplifier::isNear(std::uint32_t from, std::uint32_t to, const std::vec
 }
 
 /// The triangles at a point after the collapse of `from`.
-std::vector<CollapsibleMesh::Corners> MeshSimplifier::cornersAfter(std::uint32_t point, std::uint32_t from,
-                                                                   const std::vector<Corners>& moved) const
+std::vector<MeshConnectivity::Corners> MeshSimplifier::cornersAfter(std::uint32_t point, std::uint32_t from,
+                                                                    const std::vector<Corners>& moved) const
 {
     std::vector<Corners> there;
     for (const Corners& corners : moved)
@@ -249,10 +250,10 @@ std::vector<CollapsibleMesh::Corners> MeshSimplifier::cornersAfter(std::uint32_t
     return there;
 }
 
-bool MeshSimplifier::areNear(std::uint32_t cameTo, const std::vector<Corners>& triangles) const
+bool MeshSimplifier::areNear(std::uint32_t collapsedInto, const std::vector<Corners>& triangles) const
 {
     for (std::size_t pose = 0; pose < _mesh.poseCount(); ++pose)
-        for (const std::uint32_t point : _mesh.cameTo(cameTo))
+        for (const std::uint32_t point : _mesh.collapsedInto(collapsedInto))
             if (squaredDistance(pose, point, triangles, _squaredLimit) > _squaredLimit) return false;
     return true;
 }
@@ -275,10 +276,10 @@ double MeshSimplifier::error() const
     double largest = 0.0;
     for (std::uint32_t now = 0; now < _mesh.pointCount(); ++now)
     {
-        if (_mesh.cameTo(now).size() < 2 || _mesh.trianglesAt(now).empty()) continue;
+        if (_mesh.collapsedInto(now).size() < 2 || _mesh.trianglesAt(now).empty()) continue;
         const std::vector<Corners> there = _mesh.cornersAround(now);
         for (std::size_t pose = 0; pose < _mesh.poseCount(); ++pose)
-            for (const std::uint32_t point : _mesh.cameTo(now))
+            for (const std::uint32_t point : _mesh.collapsedInto(now))
                 if (point != now) largest = std::max(largest, squaredDistance(pose, point, there, largest));
     }
     return std::sqrt(largest);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <osgGpuAnimation/nodes/lod/CollapsibleMesh.h>
+#include <osgGpuAnimation/nodes/lod/MeshConnectivity.h>
 
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
@@ -92,28 +92,28 @@ private:
     struct Collapse
     {
         double cost;
-        std::uint32_t from, to;         ///< points
-        std::uint32_t fromTurn, toTurn; ///< turnOf() when the collapse was considered
+        std::uint32_t from, to;               ///< points
+        std::uint32_t fromChanges, toChanges; ///< changeCountOf() when the collapse was considered
         bool operator<(const Collapse& other) const { return cost > other.cost; } ///< the cheapest comes first
     };
-    using Corners = CollapsibleMesh::Corners;
+    using Corners = MeshConnectivity::Corners;
 
     void addPlanes();
     bool isAlike(std::uint32_t vertex, std::uint32_t other) const;
     void consider(std::uint32_t from, std::uint32_t to);
     void considerAll();
-    bool collapseWhatIsConsidered();
+    bool collapseCandidates();
     bool findCorners(std::uint32_t from, std::uint32_t to, std::vector<Corners>& outMoved) const;
     bool turnsOver(const Corners& corners, std::uint32_t from, std::uint32_t to) const;
     bool findVertex(std::uint32_t given, std::uint32_t from, std::uint32_t to, std::uint32_t& outVertex) const;
     bool isNear(std::uint32_t from, std::uint32_t to, const std::vector<Corners>& moved) const;
     std::vector<Corners> cornersAfter(std::uint32_t point, std::uint32_t from, const std::vector<Corners>& moved) const;
-    bool areNear(std::uint32_t cameTo, const std::vector<Corners>& triangles) const;
+    bool areNear(std::uint32_t collapsedInto, const std::vector<Corners>& triangles) const;
     double squaredDistance(std::size_t pose, std::uint32_t point, const std::vector<Corners>& triangles,
                            double enough) const;
 
     const PosedSurface& _surface;
-    CollapsibleMesh _mesh;
+    MeshConnectivity _mesh;
     std::vector<PlaneQuadric> _quadrics; ///< by point, then pose
     std::priority_queue<Collapse> _next;
     double _squaredLimit = 0.0;

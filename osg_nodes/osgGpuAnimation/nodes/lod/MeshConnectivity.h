@@ -28,14 +28,14 @@ double squaredDistanceToTriangle(const glm::dvec3& point, const glm::dvec3& a, c
 
 /// The triangles of a PosedSurface with their connectivity: vertices with equal positions in all poses are one
 /// **point**. Points can be collapsed into others; degenerate triangles are then removed.
-class CollapsibleMesh
+class MeshConnectivity
 {
 public:
     using Corners = std::array<std::uint32_t, 3>; ///< vertices
 
     /// indices: whole triangles of the surface's vertices, each below vertexCount(). The surface must outlive this
     /// object.
-    CollapsibleMesh(const PosedSurface& surface, const std::vector<std::uint32_t>& indices);
+    MeshConnectivity(const PosedSurface& surface, const std::vector<std::uint32_t>& indices);
 
     std::size_t poseCount() const { return _surface.poses.size(); }
     std::size_t pointCount() const { return _placeOf.size(); }
@@ -64,17 +64,17 @@ public:
     std::vector<std::uint32_t> neighboursOf(std::uint32_t point) const;
 
     /// The point itself and the points collapsed into it; empty after it was collapsed itself.
-    const std::vector<std::uint32_t>& cameTo(std::uint32_t point) const { return _cameHere[point]; }
+    const std::vector<std::uint32_t>& collapsedInto(std::uint32_t point) const { return _collapsedInto[point]; }
     /// A counter of the changes of a point, to recognize outdated collapses.
-    std::uint32_t turnOf(std::uint32_t point) const { return _turn[point]; }
+    std::uint32_t changeCountOf(std::uint32_t point) const { return _changeCounts[point]; }
 
     /// Collapses `from` into `to`. moved: the new corners of the triangles at `from` without `to`, in the order of
     /// trianglesAt(). A point without triangles is collapsed as well.
     void collapse(std::uint32_t from, std::uint32_t to, const std::vector<Corners>& moved);
 
 private:
-    void joinPoints();
-    void go(std::uint32_t from, std::uint32_t to);
+    void weldPoints();
+    void moveCollapsed(std::uint32_t from, std::uint32_t to);
     void drop(std::uint32_t triangle, std::uint32_t into);
     Corners pointsOf(std::uint32_t triangle) const;
     bool isDouble(std::uint32_t triangle, std::uint32_t point) const;
@@ -84,11 +84,11 @@ private:
     std::vector<std::uint32_t> _placeOf;                 ///< by point: one of its vertices
     std::vector<std::vector<std::uint32_t>> _verticesOf; ///< by point
     std::vector<Corners> _triangles;
-    std::vector<bool> _isLeft; ///< by triangle
+    std::vector<bool> _remains; ///< by triangle
     std::size_t _triangleCount = 0;
-    std::vector<std::vector<std::uint32_t>> _trianglesAt; ///< by point
-    std::vector<std::vector<std::uint32_t>> _cameHere;    ///< by point
-    std::vector<std::uint32_t> _turn;                     ///< by point
+    std::vector<std::vector<std::uint32_t>> _trianglesAt;   ///< by point
+    std::vector<std::vector<std::uint32_t>> _collapsedInto; ///< by point
+    std::vector<std::uint32_t> _changeCounts;               ///< by point
 };
 
 } // namespace osgGpuAnimation

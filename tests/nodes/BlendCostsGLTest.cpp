@@ -52,7 +52,7 @@ double largestDifference(const std::vector<AffineMatrix>& left, const std::vecto
 }
 
 /// Many instances that play one clip, and some that crossfade.
-class PoseLoadsGLTest : public ViewerGLTest
+class BlendCostsGLTest : public ViewerGLTest
 {
 protected:
     PosePipeline& pipeline() { return *PosePipeline::of(state()); }
@@ -74,7 +74,7 @@ protected:
     }
 };
 
-TEST_F(PoseLoadsGLTest, ofACrowdThoseWhoFadeAreMixedApart)
+TEST_F(BlendCostsGLTest, ofACrowdThoseWhoFadeAreMixedApart)
 {
     osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*makeTestCharacter());
     for (std::size_t number = 0; number < everybody; ++number)
@@ -96,7 +96,7 @@ TEST_F(PoseLoadsGLTest, ofACrowdThoseWhoFadeAreMixedApart)
     }
 }
 
-TEST_F(PoseLoadsGLTest, ofSeparateCharactersThoseWhoFadeAreMixedApart)
+TEST_F(BlendCostsGLTest, ofSeparateCharactersThoseWhoFadeAreMixedApart)
 {
     osg::ref_ptr<osg::Group> root = new osg::Group;
     std::vector<AnimatedCharacter*> characters;
@@ -121,7 +121,7 @@ TEST_F(PoseLoadsGLTest, ofSeparateCharactersThoseWhoFadeAreMixedApart)
     }
 }
 
-TEST_F(PoseLoadsGLTest, fewStayInOneBatch)
+TEST_F(BlendCostsGLTest, fewStayInOneBatch)
 {
     osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*makeTestCharacter());
     for (std::size_t number = 0; number < PoseBatch::minBatchSize; ++number)

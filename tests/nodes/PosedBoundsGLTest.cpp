@@ -26,7 +26,7 @@ const NearFarMode nearFarModes[] = {
     {"near by primitives", osg::CullSettings::COMPUTE_NEAR_USING_PRIMITIVES},
 };
 
-class AnimatedReachGLTest : public ViewerGLTest
+class PosedBoundsGLTest : public ViewerGLTest
 {
 protected:
     /// Turns the node so that "shift", which moves the square along +X, moves it by 4 units towards the camera or away
@@ -70,7 +70,7 @@ protected:
 
 } // namespace
 
-TEST_F(AnimatedReachGLTest, nearAndFarPlanesHoldThePose)
+TEST_F(PosedBoundsGLTest, nearAndFarPlanesHoldThePose)
 {
     for (const double degrees : {-70.0, 70.0})
         for (const bool isCrowd : {false, true})
@@ -97,14 +97,14 @@ TEST_F(AnimatedReachGLTest, nearAndFarPlanesHoldThePose)
         }
 }
 
-TEST_F(AnimatedReachGLTest, theViewMaySeeThePoseAlone)
+TEST_F(PosedBoundsGLTest, theViewMaySeeThePoseAlone)
 {
     viewer().getCamera()->setProjectionMatrixAsOrtho(2.5, 5.0, -1.0, 1.5, 1, 20); // the bind pose ends at x = 1
     EXPECT_GE(pixelsOf(makeTestCharacter()), 64);
     EXPECT_GE(pixelsOf(crowdOfOne()), 64);
 }
 
-TEST_F(AnimatedReachGLTest, onlyWhatIsSmallIsCulledAsSmall)
+TEST_F(PosedBoundsGLTest, onlyWhatIsSmallIsCulledAsSmall)
 {
     for (const bool isCrowd : {false, true})
     {

@@ -82,7 +82,7 @@ void falsifyNormals(osg::Geometry& mesh)
 }
 
 /// Whatever attributes its mesh needs, a character looks as in the fixed pipeline.
-class SurfaceNeedsGLTest : public LitSurfaceGLTest
+class ShaderKeyGLTest : public LitSurfaceGLTest
 {
 protected:
     osg::ref_ptr<osg::Image> pictureOfFixed(void (*set)(osg::Geometry& mesh))
@@ -97,7 +97,7 @@ protected:
 constexpr int edgePixels = 40;
 constexpr float tolerance = 0.03f;
 
-class SurfaceNeedGLTest : public SurfaceNeedsGLTest, public ::testing::WithParamInterface<NeedCase>
+class SurfaceNeedGLTest : public ShaderKeyGLTest, public ::testing::WithParamInterface<NeedCase>
 {
 };
 
@@ -170,7 +170,7 @@ INSTANTIATE_TEST_SUITE_P(
                  }}),
     [](const auto& info) { return std::string(info.param.name); });
 
-TEST_F(SurfaceNeedsGLTest, theseLookDifferent)
+TEST_F(ShaderKeyGLTest, theseLookDifferent)
 {
     const osg::ref_ptr<osg::Image> plain = pictureOfFixed([](osg::Geometry&) {});
     const auto differ = [&](void (*set)(osg::Geometry&))
@@ -182,7 +182,7 @@ TEST_F(SurfaceNeedsGLTest, theseLookDifferent)
 }
 
 // Each frame uses another permutation of the program.
-TEST_F(SurfaceNeedsGLTest, needsChangeWhileItIsShown)
+TEST_F(ShaderKeyGLTest, needsChangeWhileItIsShown)
 {
     using Set = void (*)(osg::Geometry & mesh);
     const Set undress = [](osg::Geometry& mesh) { mesh.setColorArray(nullptr); };
@@ -212,7 +212,7 @@ TEST_F(SurfaceNeedsGLTest, needsChangeWhileItIsShown)
 }
 
 // A uniform from above applies if the mesh has none of its own, or with OVERRIDE unless the mesh's is PROTECTED.
-TEST_F(SurfaceNeedsGLTest, uniformsFromAboveCount)
+TEST_F(ShaderKeyGLTest, uniformsFromAboveCount)
 {
     const osg::ref_ptr<AnimatedCharacter> character = makePanelCharacter();
     osg::Geometry& mesh = meshOf(*character);

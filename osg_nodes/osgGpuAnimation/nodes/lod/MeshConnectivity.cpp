@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <osgGpuAnimation/nodes/lod/CollapsibleMesh.h>
+#include <osgGpuAnimation/nodes/lod/MeshConnectivity.h>
 
 #include <glm/geometric.hpp>
 
@@ -50,11 +50,11 @@ double squaredDistanceToTriangle(const glm::dvec3& point, const glm::dvec3& a, c
                      squaredDistanceToSegment(point, c, a)});
 }
 
-CollapsibleMesh::CollapsibleMesh(const PosedSurface& surface, const std::vector<std::uint32_t>& indices)
+MeshConnectivity::MeshConnectivity(const PosedSurface& surface, const std::vector<std::uint32_t>& indices)
     : _surface(surface)
 {
     assert(indices.size() % 3 == 0 && "triangles are whole");
-    joinPoints();
+    weldPoints();
     for (std::size_t i = 0; i + 2 < indices.size(); i += 3)
     {
         const Corners corners{indices[i], indices[i + 1], indices[i + 2]};
@@ -70,10 +70,10 @@ CollapsibleMesh::CollapsibleMesh(const PosedSurface& surface, const std::vector<
     for (std::vector<std::uint32_t>& vertices : _verticesOf)
         sortOnce(vertices);
     _triangleCount = _triangles.size();
-    _isLeft.assign(_triangles.size(), true);
+    _remains.assign(_triangles.size(), true);
 }
 
-void CollapsibleMesh::joinPoints()
+void MeshConnectivity::weldPoints()
 {
     std::vector<std::uint32_t> order(_surface.vertexCount());
     std::iota(order.begin(), order.end(), 0u);
@@ -93,28 +93,28 @@ void CollapsibleMesh::joinPoints()
     }
     _verticesOf.resize(_placeOf.size());
     _trianglesAt.resize(_placeOf.size());
-    _turn.assign(_placeOf.size(), 0);
-    _cameHere.resize(_placeOf.size());
-    for (std::uint32_t point = 0; point < _cameHere.size(); ++point)
-        _cameHere[point].push_back(point);
+    _changeCounts.assign(_placeOf.size(), 0);
+    _collapsedInto.resize(_placeOf.size());
+    for (std::uint32_t point = 0; point < _collapsedInto.size(); ++point)
+        _collapsedInto[point].push_back(point);
 }
 
-bool CollapsibleMesh::has(std::uint32_t triangle, std::uint32_t point) const
+bool MeshConnectivity::has(std::uint32_t triangle, std::uint32_t point) const
 {
     const Corners& corners = _triangles[triangle];
     return _pointOf[corners[0]] == point || _pointOf[corners[1]] == point || _pointOf[corners[2]] == point;
 }
 
-std::vector<std::uint32_t> CollapsibleMesh::indices() const
+std::vector<std::uint32_t> MeshConnectivity::indices() const
 {
     std::vector<std::uint32_t> indices;
     indices.reserve(3 * _triangleCount);
     for (std::size_t triangle = 0; triangle < _triangles.size(); ++triangle)
-        if (_isLeft[triangle]) indices.insert(indices.end(), _triangles[triangle].begin(), _triangles[triangle].end());
+        if (_remains[triangle]) indices.insert(indices.end(), _triangles[triangle].begin(), _triangles[triangle].end());
     return indices;
 }
 
-std::vector<std::uint32_t> CollapsibleMesh::neighboursOf(std::uint32_t point) const
+std::vector<std::uint32_t> MeshConnectivity::neighboursOf(std::uint32_t point) const
 {
     std::vector<std::uint32_t> neighbours;
     for (const std::uint32_t triangle : _trianglesAt[point])
@@ -124,7 +124,7 @@ std::vector<std::uint32_t> CollapsibleMesh::neighboursOf(std::uint32_t point) co
     return neighbours;
 }
 
-std::vector<CollapsibleMesh::Corners> CollapsibleMesh::cornersAround(std::uint32_t point) const
+std::vector<MeshConnectivity::Corners> MeshConnectivity::cornersAround(std::uint32_t point) const
 {
     std::vector<std::uint32_t> around;
     for (const std::uint32_t neighbour : neighboursOf(point))
@@ -136,12 +136,12 @@ std::vector<CollapsibleMesh::Corners> CollapsibleMesh::cornersAround(std::uint32
     return corners;
 }
 
-void CollapsibleMesh::collapse(std::uint32_t from, std::uint32_t to, const std::vector<Corners>& moved)
+void MeshConnectivity::collapse(std::uint32_t from, std::uint32_t to, const std::vector<Corners>& moved)
 {
     std::size_t next = 0;
     const std::vector<std::uint32_t> triangles = std::move(_trianglesAt[from]);
     _trianglesAt[from].clear();
-    go(from, to);
+    moveCollapsed(from, to);
     for (const std::uint32_t triangle : triangles)
         if (has(triangle, to))
             drop(triangle, to);
@@ -153,19 +153,19 @@ void CollapsibleMesh::collapse(std::uint32_t from, std::uint32_t to, const std::
     const std::vector<std::uint32_t> here = _trianglesAt[to];
     for (const std::uint32_t triangle : here)
         if (isDouble(triangle, to)) drop(triangle, to);
-    ++_turn[to];
+    ++_changeCounts[to];
 }
 
-void CollapsibleMesh::go(std::uint32_t from, std::uint32_t to)
+void MeshConnectivity::moveCollapsed(std::uint32_t from, std::uint32_t to)
 {
-    _cameHere[to].insert(_cameHere[to].end(), _cameHere[from].begin(), _cameHere[from].end());
-    _cameHere[from].clear();
-    ++_turn[from];
+    _collapsedInto[to].insert(_collapsedInto[to].end(), _collapsedInto[from].begin(), _collapsedInto[from].end());
+    _collapsedInto[from].clear();
+    ++_changeCounts[from];
 }
 
-void CollapsibleMesh::drop(std::uint32_t triangle, std::uint32_t into)
+void MeshConnectivity::drop(std::uint32_t triangle, std::uint32_t into)
 {
-    _isLeft[triangle] = false;
+    _remains[triangle] = false;
     --_triangleCount;
     for (const std::uint32_t vertex : _triangles[triangle])
     {
@@ -174,12 +174,12 @@ void CollapsibleMesh::drop(std::uint32_t triangle, std::uint32_t into)
         const auto found = std::find(there.begin(), there.end(), triangle);
         if (found == there.end()) continue; // already removed
         there.erase(found);
-        if (there.empty() && point != into) go(point, into);
+        if (there.empty() && point != into) moveCollapsed(point, into);
     }
 }
 
 /// Rotated to start with the lowest point; keeps the orientation.
-CollapsibleMesh::Corners CollapsibleMesh::pointsOf(std::uint32_t triangle) const
+MeshConnectivity::Corners MeshConnectivity::pointsOf(std::uint32_t triangle) const
 {
     Corners points = _triangles[triangle];
     for (std::uint32_t& corner : points)
@@ -189,7 +189,7 @@ CollapsibleMesh::Corners CollapsibleMesh::pointsOf(std::uint32_t triangle) const
 }
 
 /// True if a later triangle at the point has the same points and orientation.
-bool CollapsibleMesh::isDouble(std::uint32_t triangle, std::uint32_t point) const
+bool MeshConnectivity::isDouble(std::uint32_t triangle, std::uint32_t point) const
 {
     const Corners points = pointsOf(triangle);
     return std::any_of(_trianglesAt[point].begin(), _trianglesAt[point].end(),

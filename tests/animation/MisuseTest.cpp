@@ -45,7 +45,7 @@ std::shared_ptr<const AnimationSet> makeShortSet()
     return gaits->withClips(clips).value();
 }
 
-TEST(AwkwardUseTest, ACallbackMayReplaceAllThatItIsToldOf)
+TEST(MisuseTest, ACallbackMayReplaceAllThatItIsToldOf)
 {
     const auto set = makeShortSet();
     auto controller = std::make_unique<AnimationController>(set);
@@ -80,7 +80,7 @@ TEST(AwkwardUseTest, ACallbackMayReplaceAllThatItIsToldOf)
     EXPECT_TRUE(isSound(*controller));
 }
 
-TEST(AwkwardUseTest, CopiesMadeInTheMiddleOfFadesStandAlone)
+TEST(MisuseTest, CopiesMadeInTheMiddleOfFadesStandAlone)
 {
     auto first = std::make_unique<AnimationController>(makeGaitSet());
     ASSERT_TRUE(first->play("Walk"));
@@ -109,7 +109,7 @@ TEST(AwkwardUseTest, CopiesMadeInTheMiddleOfFadesStandAlone)
     EXPECT_TRUE(isSound(assigned));
 }
 
-TEST(AwkwardUseTest, ClipsOfNoLengthInEveryMode)
+TEST(MisuseTest, ClipsOfNoLengthInEveryMode)
 {
     const auto set = makeShortSet();
     ASSERT_EQ(set->clips()[0].duration(), 0.0);
@@ -135,7 +135,7 @@ TEST(AwkwardUseTest, ClipsOfNoLengthInEveryMode)
         }
 }
 
-TEST(AwkwardUseTest, ASetWithoutClips)
+TEST(MisuseTest, ASetWithoutClips)
 {
     const auto set = makeGaitSet()->withClips({}).value();
     AnimationController controller(set);
@@ -154,7 +154,7 @@ TEST(AwkwardUseTest, ASetWithoutClips)
     EXPECT_TRUE(withRootMotion(*set, "hips"));
 }
 
-TEST(AwkwardUseTest, MasksOfOtherSetsAreRefusedAndTheOldOneStays)
+TEST(MisuseTest, MasksOfOtherSetsAreRefusedAndTheOldOneStays)
 {
     const auto set = makeGaitSet();
     const Skeleton one = Skeleton::create({{"only", -1, {}, 0}}).value();
@@ -178,7 +178,7 @@ TEST(AwkwardUseTest, MasksOfOtherSetsAreRefusedAndTheOldOneStays)
     EXPECT_TRUE(isSound(moved));
 }
 
-TEST(AwkwardUseTest, EventsComeInTheOrderOfTimeAtOddRates)
+TEST(MisuseTest, EventsComeInTheOrderOfTimeAtOddRates)
 {
     const auto set = makeShortSet();
     for (double rate : {7.0, 23.976, 59.94, 1000.0 / 3.0, 0.3})

@@ -117,7 +117,7 @@ TEST(MotionBoundTest, NoPointStraysOrReachesFartherThanTheBound)
                 const glm::dvec3 after = piece.point((s + 1) * h, tip);
                 EXPECT_LE(glm::length(here), motion.reach(radius) * (1 + 1e-9)) << c.name;
                 const double second = glm::length(after - 2.0 * here + before) / (h * h);
-                const double bound = 8.0 * motion.strayed(radius);
+                const double bound = 8.0 * motion.maxDeviation(radius);
                 // Second differences lose six of the points' sixteen digits.
                 EXPECT_LE(second, bound + 1e-8) << c.name << ", piece " << i;
                 if (bound > 1e-8) closest = std::max(closest, second / bound);
@@ -139,7 +139,7 @@ TEST(MotionBoundTest, ASplineThroughTheZeroQuaternionHasNoBoundButItsReach)
         piece.second.insert(piece.second.end(),
                             {JointTransform{{1, 0, 0, 0}, {0, 0, 0, -1}, {1, 1, 1, 0}}, none, none});
     }
-    EXPECT_FALSE(std::isfinite(piece.motion().strayed(1.0)));
+    EXPECT_FALSE(std::isfinite(piece.motion().maxDeviation(1.0)));
     EXPECT_DOUBLE_EQ(piece.motion().reach(1.0), 4.0);
 }
 

@@ -4,6 +4,7 @@
 #include "gltf/ImportOptions.h"
 
 #include "cache/SeparateLoads.h"
+#include "cache/TypedWriters.h"
 
 #include <osg/Notify>
 #include <osgDB/FileNameUtils>
@@ -109,6 +110,7 @@ osgDB::ReaderWriter::ReadResult ReaderWriterGltf::import(const std::string& byte
 }
 
 static SeparateLoads::Installation separateLoads;
+static TypedWriters::Installation typedWriters;
 
 } // namespace osgGpuAnimation
 

@@ -4,6 +4,7 @@
 #include "gltf/ImportOptions.h"
 
 #include "cache/SeparateLoads.h"
+#include "cache/TypedWriters.h"
 
 #include <osg/Notify>
 #include <osgDB/FileNameUtils>
@@ -108,6 +109,7 @@ osgDB::ReaderWriter::ReadResult ReaderWriterGltf::import(const std::string& byte
 }
 
 static SeparateLoads::Installation separateLoads;
+static TypedWriters::Installation typedWriters;
 
 } // namespace osgGpuAnimation
 

@@ -2,6 +2,7 @@
 #include "serializers/StoredAnimation.h"
 
 #include "cache/SeparateLoads.h"
+#include "cache/TypedWriters.h"
 
 #include <osgGpuAnimation/animation/AnimationLayer.h>
 #include <osgGpuAnimation/animation/Clip.h>
@@ -22,6 +23,7 @@ namespace
 
 // Every file with objects of ours contains a set.
 SeparateLoads::Installation separateLoads;
+TypedWriters::Installation typedWriters;
 
 void transferJoints(ValueStream& stream, std::vector<Joint>& joints)
 {

@@ -4,8 +4,6 @@
 #include <osg/Geode>
 #include <osg/Notify>
 #include <osg/UserDataContainer>
-#include <osgDB/FileNameUtils>
-#include <osgDB/Registry>
 #include <osgUtil/IntersectionVisitor>
 #include <osgUtil/LineSegmentIntersector>
 #include <osgUtil/PlaneIntersector>
@@ -15,7 +13,6 @@
 #include <dlfcn.h>
 
 #include <algorithm>
-#include <iterator>
 #include <string_view>
 #include <typeinfo>
 
@@ -74,49 +71,6 @@ osg::Geode& keepForWriter(osg::NodeVisitor& visitor, const osg::Drawable& mesh, 
     kept.addUserObject(geode);
     return *geode;
 }
-
-/// Says so when a scene with characters is written as .osg or .ive. Those writers select nodes by OSG's own types and
-/// visit nothing. osgDB asks all ReaderWriters in turn; this one writes nothing itself.
-class TypedWriters : public osgDB::ReaderWriter
-{
-public:
-    const char* className() const override { return "osgGpuAnimation message about .osg and .ive"; }
-    bool acceptsExtension(const std::string&) const override { return false; }
-    WriteResult writeNode(const osg::Node& node, const std::string& fileName, const Options*) const override
-    {
-        class MeshFinder : public osg::NodeVisitor
-        {
-        public:
-            MeshFinder() : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN) {}
-            void apply(osg::Drawable& drawable) override
-            {
-                hasFound = hasFound || std::string_view(drawable.className()) == "SkinnedGeometry";
-            }
-            bool hasFound = false;
-        };
-        const std::string extension = osgDB::getLowerCaseFileExtension(fileName);
-        if (extension != "osg" && extension != "osgs" && extension != "ive") return WriteResult::FILE_NOT_HANDLED;
-        MeshFinder finder;
-        const_cast<osg::Node&>(node).accept(finder);
-        if (finder.hasFound)
-            OSG_WARN << "osgGpuAnimation: ." << extension
-                     << " cannot store characters and leaves them out. Write .osgb, .osgt or .osgx, which store the "
-                        "animation, or a mesh format such as .obj, which stores the present pose"
-                     << std::endl;
-        return WriteResult::FILE_NOT_HANDLED;
-    }
-};
-
-const osgDB::RegisterReaderWriterProxy<TypedWriters> typedWriters;
-
-/// A .osgb is read by the plugin that writes .osg, so that one is registered already. osgDB holds the lock of this list
-/// while it loads a library.
-[[maybe_unused]] const bool isAskedFirst = []
-{
-    osgDB::Registry::ReaderWriterList& list = osgDB::Registry::instance()->getReaderWriterList();
-    std::rotate(list.begin(), std::prev(list.end()), list.end());
-    return true;
-}();
 
 } // namespace
 

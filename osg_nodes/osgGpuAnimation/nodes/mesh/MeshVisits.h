@@ -19,8 +19,7 @@ bool isFileWriter(const osg::NodeVisitor& visitor);
 /// The visitor meets the posed geometry in place of the mesh.
 /// - Intersectors: the mesh is the last node of the path and the drawable of all hits of OSG's own intersectors.
 /// - File writers: a Geode contains the geometry, because some writers search for Geodes. It lives as long as the
-///   visitor. The first one gives a note that the animation is lost. (Writers that do not visit cannot be served; the
-///   source file of this header registers a message for them.)
+///   visitor. The first one gives a note that the animation is lost.
 void visitPosed(osg::NodeVisitor& visitor, osg::Drawable& mesh, osg::Geometry& posed);
 
 /// RAII: while this thread culls, a function draws the meshes below the source in place of the visitor. For crowds,

@@ -13,10 +13,10 @@ packages=(
     libpng-dev libturbojpeg0-dev
     libgl-dev libegl-dev
     openscenegraph libegl1 libegl-mesa0 libgl1 libglx-mesa0 libgl1-mesa-dri
-    libgtest-dev libbenchmark-dev python3 xvfb xauth dpkg-dev file libdraco7 libassimp5
+    libgtest-dev libbenchmark-dev glslang-tools python3 xvfb xauth dpkg-dev file libdraco7 libassimp5
 )
 # What .ci/run needs besides.
-ci_packages=(git clang-format doxygen)
+ci_packages=(git clang-format doxygen mesa-vulkan-drivers)
 
 is_installed()
 {

@@ -49,6 +49,9 @@ protected:
             GTEST_SKIP() << "no GL: " << reason;
         }
         _context = made.value();
+        const char* expected = std::getenv("OSGGPUANIMATION_RENDERER"); // see tests/zink.sh
+        const std::string renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+        ASSERT_TRUE(!expected || renderer.find(expected) != std::string::npos) << renderer;
     }
 
     void TearDown() override

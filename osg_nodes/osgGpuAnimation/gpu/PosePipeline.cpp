@@ -123,22 +123,14 @@ PosePipeline* PosePipeline::of(osg::State& state)
 FeedbackPass& PosePipeline::Parts::posePass(const PoseVariant& variant)
 {
     std::unique_ptr<FeedbackPass>& pass = posePasses[variant];
-    if (pass) return *pass;
-    using namespace shaders;
-    const std::string constants = variant.constants();
-    pass.reset(
-        new FeedbackPass(*gl, "pose", {constants.c_str(), mix_glsl, local_glsl, world_glsl, pose_vert}, rowOutputs));
+    if (!pass) pass = variant.makePosePass(*gl);
     return *pass;
 }
 
 FeedbackPass& PosePipeline::Parts::mixPass(const PoseVariant& variant)
 {
     std::unique_ptr<FeedbackPass>& pass = mixPasses[variant];
-    if (pass) return *pass;
-    using namespace shaders;
-    const std::string constants = variant.constants();
-    pass.reset(
-        new FeedbackPass(*gl, "mix", {constants.c_str(), mix_glsl, mix_vert}, {"translation", "rotation", "scale"}));
+    if (!pass) pass = variant.makeMixPass(*gl);
     return *pass;
 }
 

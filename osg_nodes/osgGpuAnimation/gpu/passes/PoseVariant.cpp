@@ -4,6 +4,7 @@
 #include <osgGpuAnimation/gpu/PoseBatch.h>
 
 #include <layout.glsl>
+#include <ShaderSources.h>
 
 #include <algorithm>
 #include <initializer_list>
@@ -31,6 +32,22 @@ void PoseVariant::setMotion(const PackedKeyframes::Track& motion)
     scaleMotion = motion.scale;
     hasExactKeys = motion.hasExactKeys;
     hasCompactKeys = motion.hasCompactKeys;
+}
+
+std::unique_ptr<FeedbackPass> PoseVariant::makePosePass(osg::GLExtensions& gl) const
+{
+    using namespace shaders;
+    const std::string constants = this->constants();
+    return std::unique_ptr<FeedbackPass>(new FeedbackPass(
+        gl, "pose", {constants.c_str(), mix_glsl, local_glsl, world_glsl, pose_vert}, {"row0", "row1", "row2"}));
+}
+
+std::unique_ptr<FeedbackPass> PoseVariant::makeMixPass(osg::GLExtensions& gl) const
+{
+    using namespace shaders;
+    const std::string constants = this->constants();
+    return std::unique_ptr<FeedbackPass>(
+        new FeedbackPass(gl, "mix", {constants.c_str(), mix_glsl, mix_vert}, {"translation", "rotation", "scale"}));
 }
 
 std::string PoseVariant::constants() const

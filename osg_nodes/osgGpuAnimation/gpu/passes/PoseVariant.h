@@ -2,7 +2,9 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/keyframes/PackedKeyframes.h>
+#include <osgGpuAnimation/gpu/FeedbackPass.h>
 
+#include <memory>
 #include <string>
 
 namespace osgGpuAnimation
@@ -35,10 +37,14 @@ struct PoseVariant
 
     bool operator<(const PoseVariant& other) const { return key() < other.key(); }
 
-    /// GLSL declarations: one constant per member, with the member's name.
-    std::string constants() const;
+    /// The pass of the fused form.
+    std::unique_ptr<FeedbackPass> makePosePass(osg::GLExtensions& gl) const;
+    /// The first pass of the separate form.
+    std::unique_ptr<FeedbackPass> makeMixPass(osg::GLExtensions& gl) const;
 
 private:
+    /// GLSL declarations: one constant per member, with the member's name.
+    std::string constants() const;
     /// A unique number per variant.
     unsigned int key() const;
 };

@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: MIT
+#include "support/GLTest.h"
+#include "support/Pairwise.h"
+#include "support/Process.h"
+#include "support/RandomSet.h"
+#include "support/ScratchFolder.h"
+
+#include <osgGpuAnimation/gpu/passes/PoseVariant.h>
+#include <osgGpuAnimation/gpu/PoseBatch.h>
+#include <osgGpuAnimation/gpu/PosePipeline.h>
+#include <osgGpuAnimation/nodes/CharacterProgram.h>
+#include <osgGpuAnimation/nodes/shading/ShaderPermutations.h>
+
+#include <ShaderSources.h>
+
+#include <map>
+#include <set>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+/// The sources of a program as GL gets them, each with its ending for glslangValidator.
+using Sources = std::vector<std::pair<std::string, std::string>>;
+
+/// While it lives, keeps the sources of every program that is linked in a context.
+class LinkedPrograms
+{
+public:
+    explicit LinkedPrograms(osg::GLExtensions& gl)
+        : _gl(&gl), _real{gl.glShaderSource, gl.glAttachShader, gl.glLinkProgram}
+    {
+        current = this;
+        gl.glShaderSource = [](GLuint shader, GLsizei count, const GLchar** texts, const GLint* lengths)
+        { current->setSource(shader, count, texts, lengths); };
+        gl.glAttachShader = [](GLuint program, GLuint shader)
+        {
+            current->_attached[program].push_back(current->_shaders[shader]);
+            current->_real.attach(program, shader);
+        };
+        gl.glLinkProgram = [](GLuint program)
+        {
+            current->programs.insert(current->_attached[program]);
+            current->_attached.erase(program);
+            current->_real.link(program);
+        };
+    }
+    ~LinkedPrograms()
+    {
+        _gl->glShaderSource = _real.source;
+        _gl->glAttachShader = _real.attach;
+        _gl->glLinkProgram = _real.link;
+    }
+    LinkedPrograms(const LinkedPrograms&) = delete;
+    LinkedPrograms& operator=(const LinkedPrograms&) = delete;
+
+    std::set<Sources> programs;
+
+private:
+    struct Functions
+    {
+        decltype(osg::GLExtensions::glShaderSource) source;
+        decltype(osg::GLExtensions::glAttachShader) attach;
+        decltype(osg::GLExtensions::glLinkProgram) link;
+    };
+
+    void setSource(GLuint shader, GLsizei count, const GLchar** texts, const GLint* lengths)
+    {
+        std::string text;
+        for (GLsizei i = 0; i < count; ++i)
+            text += lengths && lengths[i] >= 0 ? std::string(texts[i], static_cast<std::size_t>(lengths[i])) : texts[i];
+        GLint type = 0;
+        _gl->glGetShaderiv(shader, GL_SHADER_TYPE, &type);
+        _shaders[shader] = {type == GL_VERTEX_SHADER ? ".vert" : ".frag", text};
+        _real.source(shader, count, texts, lengths);
+    }
+
+    static inline LinkedPrograms* current = nullptr;
+    osg::GLExtensions* _gl;
+    Functions _real;
+    std::map<GLuint, Sources::value_type> _shaders;
+    std::map<GLuint, Sources> _attached;
+};
+
+/// What Khronos's reference compiler says of the programs: those that it refuses, with its message.
+std::vector<std::string> refused(const std::set<Sources>& programs, bool isCompatible)
+{
+    std::vector<std::string> messages;
+    for (const Sources& program : programs)
+    {
+        const ScratchFolder folder;
+        // It has the compatibility profile's names in GLSL 1.40, but not the macro that tells of them.
+        std::vector<std::string> arguments{"-l"};
+        if (isCompatible) arguments.push_back("-DGL_ARB_compatibility=1");
+        std::string text;
+        for (const auto& [ending, source] : program)
+        {
+            arguments.push_back(folder.write(std::to_string(arguments.size()) + ending, source));
+            text += source;
+        }
+        const Process compiler = Process::run("glslangValidator", arguments);
+        if (compiler.status != 0) messages.push_back(compiler.out + compiler.err + text);
+    }
+    return messages;
+}
+
+/// Every program that the kit composes passes Khronos's reference compiler.
+class ShaderLanguageGLTest : public GLTest
+{
+protected:
+    osg::ref_ptr<osg::GraphicsContext::Traits> traits() const override
+    {
+        osg::ref_ptr<osg::GraphicsContext::Traits> wanted = GLTest::traits();
+        if (_isCore) wanted->glContextProfileMask = 1;
+        if (_isCore) wanted->glContextVersion = "3.3";
+        return wanted;
+    }
+
+    void SetUp() override
+    {
+        if (Process::run("glslangValidator", {"--version"}).status == 0) return GLTest::SetUp();
+        if (std::getenv("OSGGPUANIMATION_REQUIRE_GL")) FAIL() << "glslangValidator is required and is not there";
+        GTEST_SKIP() << "no glslangValidator";
+    }
+
+    void changeToCoreProfile()
+    {
+        GLTest::TearDown();
+        _isCore = true;
+        GLTest::SetUp();
+    }
+
+    osg::GLExtensions& gl() { return *state().get<osg::GLExtensions>(); }
+
+    /// Links the characters' program with the state's defines.
+    void link(const osg::Program& program, const std::map<std::string, std::string>& defines)
+    {
+        const osg::ref_ptr<osg::StateSet> stateSet = new osg::StateSet;
+        stateSet->setAttribute(const_cast<osg::Program*>(&program));
+        for (const auto& [name, value] : defines)
+            stateSet->setDefine(name, value);
+        state().pushStateSet(stateSet);
+        state().apply();
+        state().popAllStateSets();
+        state().apply();
+    }
+
+    /// Links the surfaces' programs, each pair of keys and defines at least once.
+    void linkSurfaces()
+    {
+        const osg::ref_ptr<osg::Program> all = characterProgram();
+        const auto& permutations = static_cast<const ShaderPermutations&>(*all);
+        const std::uint8_t lights[] = {0, 1, 0xff}, points[] = {0, 2, 0xff}, maps[] = {0, 4, 0xfe};
+        const char* const influences[] = {"", "1", "4", "8"};
+        const char* const colors[] = {"", "1", "2"};
+        for (const std::vector<int>& row : pairwise({2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 3, 3, 3, 4, 4, 3, 2, 2, 2}))
+        {
+            ShaderKey key;
+            bool* const flags[] = {&key.isDepthOnly,      &key.isAlphaNeeded,  &key.isLit,         &key.hasFlatNormals,
+                                   &key.hasSpecular,      &key.isTextured,     &key.hasClipPlanes, &key.hasShadowBias,
+                                   &key.hasTextureMatrix, &key.hasShadowSplits};
+            std::size_t i = 0;
+            for (bool* flag : flags)
+                *flag = row[i++] != 0;
+            key.lights = lights[row[i++]];
+            key.pointLights = points[row[i++]];
+            key.shadowMaps = maps[row[i++]];
+            key.fog = static_cast<ShaderKey::Fog>(row[i++]);
+            std::map<std::string, std::string> defines{{"POSE_INFLUENCES", influences[row[i]]},
+                                                       {"POSE_COLORED", colors[row[i + 1]]}};
+            for (auto define = defines.begin(); define != defines.end();)
+                define = define->second.empty() ? defines.erase(define) : std::next(define);
+            i += 2;
+            for (const char* name : {"POSE_NO_MORPHS", "POSE_PLACED", "POSE_TINTED"})
+                if (row[i++] != 0) defines[name] = "1";
+            link(*permutations.variant(key), defines);
+        }
+        link(*captureProgram(), {});
+    }
+
+    /// As osggpuanim composes it.
+    static osg::ref_ptr<osg::Program> captureProgram()
+    {
+        osg::ref_ptr<osg::Program> program = new osg::Program;
+        program->addShader(skinShader());
+        program->addShader(new osg::Shader(osg::Shader::VERTEX, std::string("#version 140\n") + shaders::capture_vert));
+        bindSkinAttributes(*program);
+        return program;
+    }
+
+    /// Links the pose passes of both forms, each pair of a variant's members at least once.
+    void linkPosePasses()
+    {
+        for (const std::vector<int>& row : pairwise({2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 5, 3, 3}))
+        {
+            PoseVariant variant;
+            bool* const flags[] = {&variant.hasSplines,    &variant.hasSeveralSamples, &variant.hasWeights,
+                                   &variant.isRootLevel,   &variant.hasRoots,          &variant.hasLayers,
+                                   &variant.hasMasks,      &variant.hasAdditive,       &variant.hasExactKeys,
+                                   &variant.hasCompactKeys};
+            std::size_t i = 0;
+            for (bool* flag : flags)
+                *flag = row[i++] != 0;
+            variant.sampleCount = row[i++];
+            variant.translationMotion = static_cast<PartMotion>(row[i++]);
+            variant.scaleMotion = static_cast<PartMotion>(row[i++]);
+            for (const auto& pass : {variant.makePosePass(gl()), variant.makeMixPass(gl())})
+            {
+                EXPECT_TRUE(pass->valid());
+                pass->release();
+            }
+        }
+        PosePipeline& pipeline = *PosePipeline::of(state());
+        pipeline.options().form = PosePipeline::Form::Separate;
+        const std::shared_ptr<const AnimationSet> set = makeRandomSet({});
+        PoseBatch batch(set);
+        batch.add(instructionAt(*set, 0, 0.5));
+        EXPECT_TRUE(pipeline.evaluate(state(), batch, 0));
+    }
+
+private:
+    bool _isCore = false;
+};
+
+TEST_F(ShaderLanguageGLTest, everyProgramPassesTheReferenceCompiler)
+{
+    for (const bool isCore : {false, true})
+    {
+        SCOPED_TRACE(isCore ? "core profile" : "compatibility profile");
+        if (isCore) changeToCoreProfile();
+        LinkedPrograms linked(gl());
+        linkSurfaces();
+        if (!isCore) linkPosePasses(); // which are the same in both
+        EXPECT_GT(linked.programs.size(), isCore ? 20u : 60u);
+        for (const std::string& message : refused(linked.programs, !isCore))
+            ADD_FAILURE() << message;
+    }
+    takeGLErrors(); // an OSG with the fixed pipeline makes errors of its own in the core profile
+}
+
+TEST_F(ShaderLanguageGLTest, theReferenceCompilerSeesWhatItLooksFor)
+{
+    const std::string wrong = "#version 140\n#ifdef GL_ARB_compatibility\nint a = true;\n#endif\nvoid main() {}\n";
+    EXPECT_EQ(refused({{{".frag", wrong}}}, false).size(), 0u);
+    EXPECT_EQ(refused({{{".frag", wrong}}}, true).size(), 1u);
+    const std::string undefined = "#version 140\nvoid other();\nvoid main() { other(); }\n";
+    EXPECT_EQ(refused({{{".frag", undefined}}}, true).size(), 1u);
+}
+
+} // namespace
+
+} // namespace osgGpuAnimation

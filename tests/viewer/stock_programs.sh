@@ -1,0 +1,104 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# Usage: ONLY=osgshadow stock_programs.sh FILE.glb...
+# Runs OSG's example programs (Debian: openscenegraph) under Xvfb over each character as it is, over its first frame
+# stored as plain geometry (STILL_MESH makes it), and over the character held at that frame. Prints a line each: whether
+# the program ended well, the number of different pictures of some ten (plain geometry's behind it: the program itself
+# may move things), the pixels in which the held character differs from the plain geometry ("-" where pictures change),
+# and messages that the plain geometry does not cause. Exit status 0: all as with plain geometry, and animated; 77: a
+# program is not there. ONLY: a pattern of program lines.
+set -euo pipefail
+source "$(dirname "${BASH_SOURCE[0]}")/screen.sh"
+
+programs=(
+    "osgshadow --base --noUpdate --sm" "osgshadow --base --noUpdate --ssm" "osgshadow --base --noUpdate --pssm" "osgshadow --base --noUpdate --msm --positionalLight"
+    "osgshadow --base --noUpdate --lispsm" "osgshadow --base --noUpdate --two-sided" "osgshadow --base --noUpdate --two-pass" "osgshadow --sm --noUpdate"
+    osgpick osgcompositeviewer osgprerender osgoutline osgscribe osgthirdpersonview osgreflect osgcallback
+    osgkeyboardmouse osgsimplifier osgdistortion "osgcopy" osglight osgmultiviewpaging
+)
+mapfile -t models < <(realpath "$@")
+cd "$folder" # osgcopy writes files.
+export OSG_RUN_FRAME_COUNT=75 OSG_RUN_MAX_FRAME_RATE=30 OSG_WINDOW="0 0 256 256"
+
+# over NAME FILE PROGRAM...: $status is its exit status ("own loop": it had to be ended), $pictures the number of
+# different pictures; $folder/NAME.log what it said, $folder/NAME.picture the last one that was seen.
+over()
+{
+    local name=$1 file=$2 tenths program
+    shift 2
+    "$@" "$file" >"$folder/out" 2>"$folder/$name.log" &
+    program=$!
+    cp "$empty" "$folder/$name.picture"
+    for ((tenths = 0; tenths < 600; ++tenths)); do
+        if ! kill -0 $program 2>/dev/null || ! cmp -s "$screen" "$empty"; then break; fi
+        sleep 0.1
+    done
+    sleep 0.5 # The first frame may be half way onto the screen.
+    : >"$folder/sums"
+    for ((tenths = 0; tenths < 8; ++tenths)); do
+        kill -0 $program 2>/dev/null || break
+        cp "$screen" "$folder/now"
+        kill -0 $program 2>/dev/null || break
+        cmp -s "$folder/now" "$empty" || { mv "$folder/now" "$folder/$name.picture"; md5sum <"$folder/$name.picture" >>"$folder/sums"; }
+        sleep 0.2
+    done
+    pictures=$(sort -u "$folder/sums" | wc -l)
+    for ((tenths = 0; tenths < 30; ++tenths)); do
+        kill -0 $program 2>/dev/null || break
+        sleep 0.1
+    done
+    if kill -KILL $program 2>/dev/null; then
+        wait $program 2>/dev/null || true
+        status="own loop"
+    else
+        status=0
+        wait $program 2>/dev/null || status=$?
+    fi
+    for ((tenths = 0; tenths < 50; ++tenths)); do
+        cmp -s "$screen" "$empty" && break
+        sleep 0.1
+    done
+}
+
+# differing A B: pixels
+differing()
+{
+    cmp -l <(pixels "$1") <(pixels "$2") | awk '{ seen[int(($1 - 1) / 4)] } END { print length(seen) }' || true
+}
+
+failures=0
+printf '%-44s %-10s %-9s %-9s %-7s %s\n' program model ended pictures differ messages
+for model in "${models[@]}"; do
+    name=$(basename "$model" .glb)
+    "$STILL_MESH" "$model" "$folder/still.osgt" >/dev/null
+    osgconv -O "start=0 speed=0" "$model" "$folder/held.osgb" >"$folder/osgconv.log" 2>&1
+    for line in "${programs[@]}"; do
+        [[ $line =~ ${ONLY:-.} ]] || continue
+        read -ra program <<<"$line"
+        command -v "${program[0]}" >/dev/null || { echo "there is no ${program[0]}"; exit 77; }
+        over still "$folder/still.osgt" "${program[@]}"
+        stillStatus=$status stillPictures=$pictures
+        heldPictures=0 heldStatus=$status
+        if [ "$stillPictures" -eq 1 ]; then
+            over held "$folder/held.osgb" "${program[@]}"
+            heldPictures=$pictures heldStatus=$status
+        fi
+        over moving "$model" "${program[@]}"
+        differ=-
+        [ "$stillPictures" -ne 1 ] || [ "$heldPictures" -ne 1 ] || differ=$(differing "$folder/still.picture" "$folder/held.picture")
+        messages=$(comm -13 <(sort -u "$folder/still.log") <(sort -u "$folder/moving.log") | head -3 | tr '\n' ';')
+        verdict=
+        [ "$status" = "$stillStatus" ] && [ "$heldStatus" = "$stillStatus" ] && [ "$pictures" -gt 1 ] && [ -z "$messages" ] ||
+            { verdict=" FAILED"; failures=$((failures + 1)); }
+        printf '%-44s %-10s %-9s %-9s %-7s %s\n' "$line" "$name" "$status" "$pictures/$stillPictures" "$differ" "$messages$verdict"
+        if [ -n "${KEEP:-}" ]; then
+            for picture in still held moving; do
+                [ -f "$folder/$picture.picture" ] || continue
+                cp "$folder/$picture.picture" "$KEEP/$name.${line// /}.$picture.xwd"
+                cp "$folder/$picture.log" "$KEEP/$name.${line// /}.$picture.log"
+            done
+        fi
+    done
+done
+echo "$failures failed"
+[ $failures -eq 0 ]

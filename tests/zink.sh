@@ -1,0 +1,20 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# Usage: tests/zink.sh FOLDER_OF_TEST_PROGRAMS
+# Runs the GL tests on another driver than llvmpipe's OpenGL: Mesa's zink, over llvmpipe's Vulkan. Debian:
+# mesa-vulkan-drivers. Exit status 0: all passed, and none was skipped.
+set -euo pipefail
+
+XDG_RUNTIME_DIR=$(mktemp -d) # Vulkan's loader complains without one.
+export XDG_RUNTIME_DIR
+trap 'rm -rf "$XDG_RUNTIME_DIR"' EXIT
+export LIBGL_ALWAYS_SOFTWARE=1 MESA_LOADER_DRIVER_OVERRIDE=zink OSGGPUANIMATION_REQUIRE_GL=1
+# Each GL test fails where OpenGL's renderer has another name.
+export OSGGPUANIMATION_RENDERER=zink
+VK_ICD_FILENAMES=$(echo /usr/share/vulkan/icd.d/lvp_icd.*.json)
+export VK_ICD_FILENAMES
+failures=0
+for program in gpu nodes plugin tool; do
+    "$1/${program}_tests" --gtest_filter='*GLTest.*' --gtest_brief=1 || failures=$((failures + 1))
+done
+[ $failures -eq 0 ]

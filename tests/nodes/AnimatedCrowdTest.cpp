@@ -258,11 +258,28 @@ TEST(AnimatedCrowdTest, primitiveFunctorsGetAllInstancesInTheirPose)
     EXPECT_EQ(count.box._max, osg::Vec3(22, 0, 1));
 }
 
+TEST(AnimatedCrowdTest, tintsAreHeldBetweenBlackAndWhite)
+{
+    const osg::ref_ptr<AnimatedCrowd> crowd = emptyCrowd();
+    const osg::Vec4 bright(2.0f, -1.0f, std::nanf(""), 0.2f);
+    const AnimatedCrowd::Instance instance = crowd->add(osg::Matrixd(), playing("shift"), bright).value();
+    EXPECT_EQ(crowd->getInstances().tint(0), 0x330000FFu);
+    ASSERT_TRUE(crowd->setTint(instance, {0, 1e30f, 1, 1}));
+    EXPECT_EQ(crowd->getInstances().tint(0), 0xFFFFFF00u);
+}
+
 TEST(AnimatedCrowdTest, aCloneHasInstancesOfItsOwn)
 {
     const osg::ref_ptr<AnimatedCrowd> crowd = emptyCrowd();
     const AnimatedCrowd::Instance instance = crowd->add(osg::Matrixd::translate(1, 0, 0), playing("shift")).value();
+    crowd->update(0.0);
+    crowd->update(0.75);
     const osg::ref_ptr<AnimatedCrowd> other = osg::clone(crowd.get(), osg::CopyOp::DEEP_COPY_NODES);
+    for (const double time : {0.75, 1.25})
+    {
+        other->update(time);
+        EXPECT_NEAR(other->getInstances().controllerCopy(0).time(), time, 1e-9) << "it goes on where the first was";
+    }
     ASSERT_TRUE(other->setPlacement(instance, osg::Matrixd::translate(5, 0, 0)));
     EXPECT_EQ(crowd->getPlacement(instance).getTrans(), osg::Vec3d(1, 0, 0));
     EXPECT_EQ(&crowd->getAnimationSet(), &other->getAnimationSet());

@@ -134,6 +134,33 @@ TEST_F(JointAttachmentTest, TurnsWithItsJoint)
         EXPECT_FALSE(character->jointToModel(outside)) << "there are three";
 }
 
+TEST_F(JointAttachmentTest, MatricesOfBothWaysAreInverse)
+{
+    const osg::ref_ptr<JointAttachment> attachment = new JointAttachment("side");
+    const osg::ref_ptr<AnimatedCharacter> character = characterWith(attachment);
+    ASSERT_TRUE(character->getController().play("turn"));
+    character->getController().seek(0.5);
+    osg::NodeVisitor along;
+    along.pushOntoNodePath(character);
+    const osg::Matrix above = osg::Matrix::rotate(0.7, 1, 0, 0) * osg::Matrix::translate(1, 2, 3);
+    osg::Matrix toWorld = above, toLocal = osg::Matrix::inverse(above);
+    ASSERT_TRUE(attachment->computeLocalToWorldMatrix(toWorld, &along));
+    ASSERT_TRUE(attachment->computeWorldToLocalMatrix(toLocal, &along));
+    EXPECT_TRUE(isNear(osg::Vec3d(5, -4, 3) * toWorld * toLocal, {5, -4, 3}));
+    EXPECT_FALSE(isNear(osg::Vec3d(5, -4, 3) * toWorld, osg::Vec3d(5, -4, 3) * above));
+}
+
+TEST_F(JointAttachmentTest, BoundsOfTheCharacterHoldWhatIsAttached)
+{
+    const osg::ref_ptr<JointAttachment> attachment = new JointAttachment("tip");
+    const osg::ref_ptr<AnimatedCharacter> character = characterWith(attachment);
+    const osg::ref_ptr<osg::Geometry> lance = osg::createTexturedQuadGeometry({}, {0, 50, 0}, {0, 0, 1});
+    attachment->addChild(lance);
+    updateAt(*character, 0.0);
+    const osg::BoundingSphere& bound = character->getBound();
+    EXPECT_LE((osg::Vec3d(bound.center()) - osg::Vec3d(0, 50, 1)).length(), bound.radius() + 1e-4);
+}
+
 TEST_F(JointAttachmentTest, ClonesCarryTheirOwn)
 {
     osg::ref_ptr<AnimatedCharacter> one = characterWith(new JointAttachment("tip"));

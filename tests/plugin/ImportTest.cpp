@@ -263,6 +263,23 @@ TEST(ImportTest, mirroredInstancesTurnTheWinding)
     }
 }
 
+TEST(ImportTest, instancesAreScaledThenTurnedThenMoved)
+{
+    ThreeStones file;
+    const float half = std::sqrt(0.5f);
+    tinygltf::Value::Object attributes, extension;
+    attributes["TRANSLATION"] = tinygltf::Value(file.floats(TINYGLTF_TYPE_VEC3, {10, 0, 0}));
+    attributes["ROTATION"] = tinygltf::Value(file.floats(TINYGLTF_TYPE_VEC4, {0, 0, half, half})); // a quarter about +Z
+    attributes["SCALE"] = tinygltf::Value(file.floats(TINYGLTF_TYPE_VEC3, {3, 1, 1}));
+    extension["attributes"] = tinygltf::Value(attributes);
+    file.at(file.stone).extensions["EXT_mesh_gpu_instancing"] = tinygltf::Value(extension);
+    const ImportedModel model = imported(file);
+    const osg::Geometry& geometry = *primitiveOf(model, file.stone).geometry;
+    ASSERT_EQ(geometry.getNumParents(), 1u);
+    const auto& only = dynamic_cast<const osg::MatrixTransform&>(*geometry.getParent(0));
+    EXPECT_LT((osg::Vec3d(1, 0, 0) * only.getMatrix() - osg::Vec3d(10, 3, 0)).length(), 1e-6);
+}
+
 TEST(ImportTest, instancesAreLimited)
 {
     const ThreeStones file;

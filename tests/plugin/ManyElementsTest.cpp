@@ -237,7 +237,7 @@ TEST(ManyElementsTest, everyValueOfExtrasCounts)
     ImportOptions options;
     options.maxDocumentBytes = 100000;
     EXPECT_TRUE(importModel(withExtras(250), "", options));
-    const Result<ImportedModel> refused = importModel(withExtras(1000), "", options);
+    const Result<ImportedModel> refused = importModel(withExtras(500), "", options);
     ASSERT_FALSE(refused);
     EXPECT_NE(refused.error().message.find("limit maxDocumentBytes"), std::string::npos) << refused.error().message;
 }

@@ -195,6 +195,58 @@ TEST(MeshesTest, verticesAlikeAreJoinedForThePalette)
     }
 }
 
+TEST(MeshesTest, verticesOfOtherJointsAreNotJoined)
+{
+    ModelBuilder file;
+    const int mesh = file.mesh(
+        {{"POSITION", file.floats(TINYGLTF_TYPE_VEC3, {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0})}}, TINYGLTF_MODE_TRIANGLES,
+        file.integers(TINYGLTF_TYPE_SCALAR, TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE, {0, 1, 2, 3, 2, 1}));
+    const std::vector<float> ones{1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0};
+    file.primitive(mesh).attributes["WEIGHTS_0"] = file.floats(TINYGLTF_TYPE_VEC4, ones);
+    for (const unsigned int last : {0u, 1u}) // the joint of the fourth vertex, which lies where the first does
+    {
+        file.primitive(mesh).attributes["JOINTS_0"] =
+            file.integers(TINYGLTF_TYPE_VEC4, TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE,
+                          {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, last, 0, 0, 0});
+        ReadMesh read(file);
+        EXPECT_EQ(read.meshes.primitive(0, 0, true)->positions->size(), 3u + last);
+    }
+}
+
+// What is blended is drawn in the file's order.
+TEST(MeshesTest, blendedTrianglesKeepTheirOrder)
+{
+    constexpr unsigned int count = 98; // triangles of a strip
+    std::vector<float> points;
+    std::vector<unsigned int> corners;
+    for (unsigned int i = 0; i < count + 2; ++i)
+        points.insert(points.end(), {static_cast<float>(i / 2), static_cast<float>(i % 2), 0.0f});
+    for (unsigned int i = 0; i < count; ++i)
+    {
+        const unsigned int first = i * 37 % count;
+        corners.insert(corners.end(), {first, first + 1, first + 2});
+    }
+    for (const bool isBlended : {false, true})
+        for (const bool hasNormals : {false, true})
+        {
+            ModelBuilder file;
+            std::map<std::string, int> attributes{{"POSITION", file.floats(TINYGLTF_TYPE_VEC3, points)}};
+            if (hasNormals) attributes["NORMAL"] = attributes["POSITION"];
+            file.mesh(attributes, TINYGLTF_MODE_TRIANGLES,
+                      file.integers(TINYGLTF_TYPE_SCALAR, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, corners));
+            file.model.materials.resize(1);
+            file.model.materials[0].alphaMode = isBlended ? "BLEND" : "OPAQUE";
+            file.primitive(0).material = 0;
+            ReadMesh read(file);
+            const osg::PrimitiveSet& found = *read.meshes.primitive(0, 0, true)->primitiveSet;
+            ASSERT_EQ(found.getNumIndices(), corners.size());
+            bool isSame = true;
+            for (unsigned int i = 0; i < corners.size(); ++i)
+                isSame = isSame && found.index(i) == corners[i];
+            EXPECT_EQ(isSame, isBlended) << (hasNormals ? "with normals" : "without normals");
+        }
+}
+
 TEST(MeshesTest, alreadySeparateTrianglesStayAsTheyAre)
 {
     ModelBuilder file;

@@ -20,6 +20,8 @@ TEST(OptionStringTest, nothingAskedForIsTheDefault)
     EXPECT_FALSE(options.allowOutsideFiles);
     EXPECT_FALSE(options.compact);
     EXPECT_EQ(parseOptions("compact=1e-4").value().compact, 1e-4);
+    EXPECT_EQ(parseOptions("compact=1").value().compact, 1.0);
+    EXPECT_FALSE(parseOptions("compact=1.0000001"));
 }
 
 TEST(OptionStringTest, readsAllOptions)

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <string>
@@ -135,6 +136,35 @@ TEST(TinyGltfTest, WeightsAreMadeToSumToOne)
     const tinygltf::Model& model = answer.model.value();
     EXPECT_EQ(readFloats(model, model.meshes[0].primitives[0].attributes.at("WEIGHTS_0")),
               (std::vector<float>{0.5f, 0.5f, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0}));
+}
+
+TEST(TinyGltfTest, WeightsWithinTheirRoundingAreTakenAsTheyAre)
+{
+    for (const float second : {0.485f, 0.515f, 0.45f, 0.6f})
+    {
+        const bool isTaken = std::abs(second - 0.5f) < 0.02f;
+        ModelBuilder file = baseModel();
+        const std::vector<float> weights{0.5f, second, 0, 0, 0.5f, second, 0, 0, 0.5f, second, 0, 0};
+        file.primitive(0).attributes["WEIGHTS_0"] = file.floats(TINYGLTF_TYPE_VEC4, weights);
+        const LoadedDocument answer = load(file.text());
+        expectAnswer(answer, isTaken ? Expect::Valid : Expect::Warn, isTaken ? "" : "do not sum to 1");
+        const tinygltf::Model& model = answer.model.value();
+        const float found = readFloats(model, model.meshes[0].primitives[0].attributes.at("WEIGHTS_0"))[1];
+        EXPECT_NEAR(found, isTaken ? second : second / (0.5f + second), 1e-6f);
+    }
+}
+
+TEST(TinyGltfTest, RotationsWithinTheirRoundingAreTakenAsTheyAre)
+{
+    for (const double length : {0.993, 1.007, 0.99, 1.05})
+    {
+        const bool isTaken = std::abs(length - 1.0) < 0.0077;
+        Json document = baseDocument();
+        document["nodes"][0]["rotation"] = {0, 0, 0, length};
+        const LoadedDocument answer = load(document.dump());
+        expectAnswer(answer, isTaken ? Expect::Valid : Expect::Warn, isTaken ? "" : "nodes[0].rotation");
+        EXPECT_NEAR(answer.model.value().nodes[0].rotation[3], isTaken ? length : 1.0, 1e-9);
+    }
 }
 
 TEST(TinyGltfTest, WeightsOfSeveralSetsSumToOneTogether)

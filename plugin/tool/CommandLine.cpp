@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "CommandLine.h"
+#include "tool/CommandLine.h"
 
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>

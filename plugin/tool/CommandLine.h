@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "InspectCommand.h"
-#include "PoseCommand.h"
-#include "RenderCommand.h"
+#include "tool/InspectCommand.h"
+#include "tool/PoseCommand.h"
+#include "tool/RenderCommand.h"
 
 #include <CLI/App.hpp>
 

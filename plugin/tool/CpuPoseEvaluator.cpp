@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "CpuPoseEvaluator.h"
+#include "tool/CpuPoseEvaluator.h"
 
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "PoseEvaluator.h"
+#include "tool/PoseEvaluator.h"
 
 namespace osgGpuAnimation::tool
 {

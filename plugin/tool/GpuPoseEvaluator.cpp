@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "GpuPoseEvaluator.h"
+#include "tool/GpuPoseEvaluator.h"
 
 #include <osgGpuAnimation/nodes/CharacterProgram.h>
 

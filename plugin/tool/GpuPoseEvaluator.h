@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "PoseEvaluator.h"
+#include "tool/PoseEvaluator.h"
 
 #include <osgGpuAnimation/gpu/EglGraphicsContext.h>
 #include <osgGpuAnimation/gpu/PosePipeline.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "InspectCommand.h"
+#include "tool/InspectCommand.h"
 
-#include "ModelFile.h"
-#include "ModelReport.h"
+#include "tool/ModelFile.h"
+#include "tool/ModelReport.h"
 
 #include <iostream>
 
@@ -12,6 +12,7 @@ namespace osgGpuAnimation::tool
 Result<bool> InspectCommand::run() const
 {
     gltf::ImportOptions options;
+    options.noRotation = true;
     if (compact > 0.0) options.compact = compact;
     const Result<gltf::ImportedModel> model = readModel(file, options);
     if (!model) return Error{file + ": " + model.error().message};

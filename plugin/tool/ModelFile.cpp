@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ModelFile.h"
+#include "tool/ModelFile.h"
 
 #include "gltf/file/ModelBytes.h"
 

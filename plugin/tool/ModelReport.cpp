@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ModelReport.h"
+#include "tool/ModelReport.h"
 
 #include <osgGpuAnimation/gpu/buffers/AnimationBuffers.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>

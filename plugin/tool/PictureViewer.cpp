@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "PictureViewer.h"
+#include "tool/PictureViewer.h"
 
 #include <osgGpuAnimation/gpu/EglGraphicsContext.h>
 

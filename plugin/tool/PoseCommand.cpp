@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "PoseCommand.h"
+#include "tool/PoseCommand.h"
 
-#include "CpuPoseEvaluator.h"
-#include "GpuPoseEvaluator.h"
-#include "ModelFile.h"
-#include "PoseDocument.h"
+#include "tool/CpuPoseEvaluator.h"
+#include "tool/GpuPoseEvaluator.h"
+#include "tool/ModelFile.h"
+#include "tool/PoseDocument.h"
 
 #include <osgGpuAnimation/animation/AnimationController.h>
 

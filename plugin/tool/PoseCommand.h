@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "PoseRequest.h"
+#include "tool/PoseRequest.h"
 
 #include <osgGpuAnimation/animation/Result.h>
 

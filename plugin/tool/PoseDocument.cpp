@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "PoseDocument.h"
+#include "tool/PoseDocument.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "PoseEvaluator.h"
-#include "PoseRequest.h"
+#include "tool/PoseEvaluator.h"
+#include "tool/PoseRequest.h"
 
 #include <nlohmann/json.hpp>
 

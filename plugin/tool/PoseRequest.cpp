@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "PoseRequest.h"
+#include "tool/PoseRequest.h"
 
 #include <nlohmann/json.hpp>
 

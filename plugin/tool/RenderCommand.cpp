@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "RenderCommand.h"
+#include "tool/RenderCommand.h"
 
-#include "CpuPoseEvaluator.h"
-#include "ModelFile.h"
-#include "PictureViewer.h"
+#include "tool/CpuPoseEvaluator.h"
+#include "tool/ModelFile.h"
+#include "tool/PictureViewer.h"
 
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 

@@ -38,9 +38,8 @@ std::string armModel()
     return model.text();
 }
 
-/// The corners of both triangles, +Z up, and in the character's own space, +Y up.
+/// The corners of both triangles, +Z up.
 const Points armPoints = {{5, 0, 0}, {6, 0, 0}, {5, 0, 1}, {5, 0, 1}, {6, 0, 1}, {5, 0, 2}};
-const Points ownPoints = {{5, 0, 0}, {6, 0, 0}, {5, 1, 0}, {5, 1, 0}, {6, 1, 0}, {5, 2, 0}};
 
 struct Format
 {
@@ -153,7 +152,7 @@ TEST_P(WritersTest, crowdsHaveAllInstances)
 const Format formats[] = {{"obj", "noRotation", &armPoints},
                           {"stl", "", &armPoints},
                           {"3ds", "", &armPoints},
-                          {"ac", "", &ownPoints}, // OSG's writer of .ac ignores transforms
+                          {"ac", "", &armPoints},
                           {"dxf", "", &armPoints}};
 
 INSTANTIATE_TEST_SUITE_P(Formats, WritersTest, ::testing::ValuesIn(formats),

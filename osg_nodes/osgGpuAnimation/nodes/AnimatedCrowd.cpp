@@ -339,7 +339,12 @@ osg::ref_ptr<osg::Geometry> AnimatedCrowd::getPosedMesh(const SkinnedGeometry& m
 osg::ref_ptr<osg::Geometry> AnimatedCrowd::posedMesh(std::size_t index, const SkinnedGeometry& mesh,
                                                      bool withNormals) const
 {
-    if (index >= getNumInstances()) return new osg::Geometry;
+    if (index >= getNumInstances())
+    {
+        osg::ref_ptr<osg::Geometry> none = new osg::Geometry;
+        none->setVertexArray(new osg::Vec3Array);
+        return none;
+    }
     return _posed->of(_instances->handleOf(index))
         ->of(mesh, getSharedAnimationSet(), _instances->instruction(index), _instances->rootMatrix(index), withNormals);
 }

@@ -47,13 +47,17 @@ void renameAllHits(osgUtil::Intersector& intersector, const osg::Drawable& posed
                renameHits<osgUtil::PlaneIntersector>(intersector, posed, mesh));
 }
 
-/// The file name of the library that contains the visitor's class; empty if it is unknown.
-std::string_view libraryOf(const osg::NodeVisitor& visitor)
+/// True if the class lies in a library osgdb_* that writes files.
+bool isOfFileWriter(const std::type_info& type)
 {
-    Dl_info library;
-    if (!dladdr(&typeid(visitor), &library) || !library.dli_fname) return {};
-    const std::string_view path = library.dli_fname;
-    return path.substr(path.find_last_of('/') + 1);
+    Dl_info found;
+    if (!dladdr(&type, &found) || !found.dli_fname) return false;
+    const std::string_view path = found.dli_fname;
+    const std::string_view library = path.substr(path.find_last_of('/') + 1);
+    if (library.substr(0, 6) != "osgdb_") return false;
+    constexpr std::string_view others[] = {"serializers_", "gltf", "crowd", "osggpuanimation", "dot", "normals"};
+    return std::none_of(std::begin(others), std::end(others),
+                        [&](std::string_view other) { return library.substr(6, other.size()) == other; });
 }
 
 /// Keeps the geometry as long as the visitor exists, because some writers collect pointers and use them afterwards.
@@ -77,11 +81,12 @@ osg::Geode& keepForWriter(osg::NodeVisitor& visitor, const osg::Drawable& mesh, 
 bool isFileWriter(const osg::NodeVisitor& visitor)
 {
     if (visitor.getVisitorType() != osg::NodeVisitor::NODE_VISITOR) return false;
-    const std::string_view library = libraryOf(visitor);
-    if (library.substr(0, 6) != "osgdb_") return false;
-    constexpr std::string_view others[] = {"serializers_", "gltf", "crowd", "osggpuanimation", "dot", "normals"};
-    return std::none_of(std::begin(others), std::end(others),
-                        [&](std::string_view other) { return library.substr(6, other.size()) == other; });
+    // dladdr() takes microseconds, and a traversal asks for every mesh.
+    thread_local const std::type_info* lastType = nullptr;
+    thread_local bool isWriter = false;
+    if (&typeid(visitor) != lastType) isWriter = isOfFileWriter(typeid(visitor));
+    lastType = &typeid(visitor);
+    return isWriter;
 }
 
 void visitPosed(osg::NodeVisitor& visitor, osg::Drawable& mesh, osg::Geometry& posed)

@@ -68,20 +68,14 @@ void transferInstance(ValueStream& stream, StoredInstance& instance)
     stream.limited("an instance's playback", playback, Playback::Controller);
     if (playback == Playback::Plain) transferPlain(stream, instance.controller);
     stream.endLine();
-    if (playback == Playback::Controller)
-    {
-        stream.property("Controller");
-        transferController(stream, instance.controller);
-    }
+    if (playback == Playback::Controller) transferController(stream.property("Controller"), instance.controller);
     instance.tint = static_cast<std::uint32_t>(tint);
 }
 
 osg::Vec4 toColor(std::uint32_t rgba)
 {
-    osg::Vec4 color;
-    for (int channel = 0; channel < 4; ++channel)
-        color[channel] = static_cast<float>(rgba >> 8 * channel & 255u) / 255.0f;
-    return color;
+    const auto channel = [rgba](int shift) { return static_cast<float>(rgba >> shift & 255u) / 255.0f; };
+    return {channel(0), channel(8), channel(16), channel(24)};
 }
 
 void transferList(ValueStream& stream, AnimatedCrowd& crowd)

@@ -34,6 +34,8 @@ AnimatedCharacter::AnimatedCharacter() : AnimatedCharacter(nullptr) {}
 AnimatedCharacter::AnimatedCharacter(std::shared_ptr<const AnimationSet> set)
     : _controller(std::make_unique<AnimationController>(std::move(set)))
 {
+    static const std::shared_ptr<const Axes> identity = std::make_shared<const Axes>();
+    _axes = identity;
     // Not STATIC: the Optimizer must not flatten this transform or those above into the bind pose.
     setDataVariance(osg::Object::DYNAMIC);
     // The update traversal must reach this node without a callback.
@@ -42,9 +44,8 @@ AnimatedCharacter::AnimatedCharacter(std::shared_ptr<const AnimationSet> set)
 
 AnimatedCharacter::AnimatedCharacter(const AnimatedCharacter& other, const osg::CopyOp& copyop)
     : osg::MatrixTransform(other, copyop), _controller(std::make_unique<AnimationController>(*other._controller)),
-      _fileToNode(other._fileToNode), _rootMatrix(other._rootMatrix), _clipBounds(other._clipBounds),
-      _mixBounds(other._mixBounds), _updateTime(other._updateTime), _isDrawnTogether(other._isDrawnTogether),
-      _pixelError(other._pixelError)
+      _axes(other._axes), _clipBounds(other._clipBounds), _mixBounds(other._mixBounds), _updateTime(other._updateTime),
+      _isDrawnTogether(other._isDrawnTogether), _pixelError(other._pixelError)
 {
     // osg::Node copies its other callbacks, but not the event callbacks.
     setEventCallback(copyop(other.getEventCallback()));
@@ -78,8 +79,7 @@ Result<bool> AnimatedCharacter::setFileToNode(const osg::Matrixd& fileToNode)
 {
     const Result<AffineMatrix> root = toRootMatrix(fileToNode, "the transform from the file's axes", true);
     if (!root) return root.error();
-    _fileToNode = fileToNode;
-    _rootMatrix = root.value();
+    _axes = std::make_shared<const Axes>(Axes{fileToNode, root.value()});
     if (_clipBounds) setMeshBounds();
     return true;
 }
@@ -88,7 +88,7 @@ Result<osg::Matrixd> AnimatedCharacter::jointToModel(std::size_t joint) const
 {
     const std::size_t count = getAnimationSet().skeleton().jointCount();
     if (joint >= count) return Error{"there is no joint " + std::to_string(joint) + " among " + std::to_string(count)};
-    return toOsg(Pose::jointToModel(getAnimationSet(), _controller->instruction(), joint)) * _fileToNode;
+    return toOsg(Pose::jointToModel(getAnimationSet(), _controller->instruction(), joint)) * _axes->fileToNode;
 }
 
 Result<osg::Matrixd> AnimatedCharacter::jointToModel(const std::string& joint) const
@@ -100,7 +100,7 @@ Result<osg::Matrixd> AnimatedCharacter::jointToModel(const std::string& joint) c
 
 osg::Matrixd AnimatedCharacter::takeRootMotion()
 {
-    return toOsg(_controller->takeRootMotion(), _fileToNode);
+    return toOsg(_controller->takeRootMotion(), _axes->fileToNode);
 }
 
 void AnimatedCharacter::update(double simulationTime)
@@ -159,7 +159,7 @@ void AnimatedCharacter::setMeshBounds()
 {
     osg::BoundingBox all;
     for (const osg::BoundingBox& box : *_clipBounds)
-        all.expandBy(transformed(box, _fileToNode));
+        all.expandBy(transformed(box, _axes->fileToNode));
     forEachMeshBelow(*this, [&](SkinnedGeometry& mesh) { mesh.setInitialBound(all); });
     _played.clear();
     dirtyBound();
@@ -167,7 +167,7 @@ void AnimatedCharacter::setMeshBounds()
 
 osg::BoundingBox AnimatedCharacter::getClipBounds(int clip) const
 {
-    return transformed(clipBoundsInFile(clip), _fileToNode);
+    return transformed(clipBoundsInFile(clip), _axes->fileToNode);
 }
 
 osg::BoundingBox AnimatedCharacter::clipBoundsInFile(int clip) const
@@ -179,7 +179,7 @@ osg::BoundingBox AnimatedCharacter::clipBoundsInFile(int clip) const
 osg::ref_ptr<osg::Geometry> AnimatedCharacter::getPosedMesh(const SkinnedGeometry& mesh, bool withNormals) const
 {
     std::call_once(_posedMeshesMade, [this] { _posedMeshes = std::make_unique<PosedMeshes>(); });
-    return _posedMeshes->of(mesh, _controller->sharedSet(), _controller->instruction(), _rootMatrix, withNormals);
+    return _posedMeshes->of(mesh, _controller->sharedSet(), _controller->instruction(), _axes->rootMatrix, withNormals);
 }
 
 void AnimatedCharacter::acceptPosed(osg::PrimitiveFunctor& functor)
@@ -210,14 +210,14 @@ void AnimatedCharacter::traverse(osg::NodeVisitor& visitor)
         return;
     }
     const DepthPass pass(*cullVisitor);
-    PoseStage::draw(*cullVisitor, {*this, *_controller, _rootMatrix, _pixelError, _isDrawnTogether});
+    PoseStage::draw(*cullVisitor, {*this, *_controller, _axes->rootMatrix, _pixelError, _isDrawnTogether});
 }
 
 osg::BoundingBox AnimatedCharacter::boundsOf(const std::vector<PlayedClip>& played) const
 {
     const bool isAlone = played.size() == 1 && played.front().part == PlayedClip::Part::Mixed;
     if (isAlone || !_mixBounds) return getClipBounds(isAlone ? played.front().clip : _controller->clip());
-    return transformed(toOsg(_mixBounds->box(played)), _fileToNode);
+    return transformed(toOsg(_mixBounds->box(played)), _axes->fileToNode);
 }
 
 osg::BoundingBox AnimatedCharacter::getCurrentBounds() const

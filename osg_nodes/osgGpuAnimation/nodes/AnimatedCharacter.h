@@ -65,7 +65,7 @@ public:
     /// to +Z up with it. Default: the identity. Call it before cloning and before a crowd is made of the character.
     /// Errors: the matrix is not finite, not affine, or its determinant is not above 0.
     Result<bool> setFileToNode(const osg::Matrixd& fileToNode);
-    const osg::Matrixd& getFileToNode() const { return _fileToNode; } ///< affine, with an inverse
+    const osg::Matrixd& getFileToNode() const { return _axes->fileToNode; } ///< affine, with an inverse
 
     /// The present transform of a joint, from joint space to the character's own space. The CPU twin computes it from
     /// the joint's chain of parents, cheaply enough for every frame.
@@ -131,6 +131,11 @@ protected:
 
 private:
     friend class AnimatedCrowd;
+    struct Axes
+    {
+        osg::Matrixd fileToNode;
+        AffineMatrix rootMatrix; ///< the same as floats
+    };
 
     osg::BoundingBox clipBoundsInFile(int clip) const;
     void setMeshBounds();
@@ -139,8 +144,7 @@ private:
     void growMeshes(const osg::BoundingBox& box);
 
     std::unique_ptr<AnimationController> _controller;
-    osg::Matrixd _fileToNode;
-    AffineMatrix _rootMatrix; ///< the same as floats
+    std::shared_ptr<const Axes> _axes; ///< never null, shared with clones
     /// rest pose, then one per clip, in the file's axes
     std::shared_ptr<const std::vector<osg::BoundingBox>> _clipBounds;
     std::shared_ptr<const MixBounds> _mixBounds;       ///< null if _clipBounds is null

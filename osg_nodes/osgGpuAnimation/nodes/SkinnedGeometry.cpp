@@ -27,6 +27,8 @@ namespace osgGpuAnimation
 namespace
 {
 
+static_assert(PaletteBinding::allTriangles == LodLevels::allTriangles, "one value for all triangles");
+
 constexpr unsigned int entriesLocation(unsigned int influenceSet)
 {
     return influenceSet == 0 ? POSE_ENTRIES_0_LOCATION : POSE_ENTRIES_1_LOCATION;

@@ -22,7 +22,7 @@ void PaletteBinding::set(std::shared_ptr<const AnimationSet> set, std::size_t sl
     _instanceCount = instanceCount;
     _transforms.clear();
     _serial = 0;
-    _level = LodLevels::allTriangles;
+    _level = allTriangles;
 }
 
 void PaletteBinding::setInstanced(std::shared_ptr<const AnimationSet> set, std::size_t slot)

@@ -3,10 +3,10 @@
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/gpu/buffers/InstanceTransforms.h>
-#include <osgGpuAnimation/nodes/lod/LodLevels.h>
 
 #include <osg/StateAttribute>
 
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -19,6 +19,8 @@ class PaletteBinding : public osg::StateAttribute
 {
 public:
     static constexpr Type bindingType = static_cast<Type>(119); ///< beyond OSG's own types, within the enum's range
+
+    static constexpr int allTriangles = std::numeric_limits<int>::min(); ///< the level LodLevels::allTriangles
 
     PaletteBinding() = default;
     PaletteBinding(const PaletteBinding& other, const osg::CopyOp& copyop = osg::CopyOp::SHALLOW_COPY);
@@ -57,7 +59,7 @@ private:
     std::size_t _instanceCount = 1;
     std::vector<InstanceTransform> _transforms;
     std::uint64_t _serial = 0;
-    int _level = LodLevels::allTriangles;
+    int _level = allTriangles;
 };
 
 } // namespace osgGpuAnimation

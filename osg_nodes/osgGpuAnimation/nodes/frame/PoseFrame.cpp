@@ -2,6 +2,7 @@
 #include <osgGpuAnimation/nodes/frame/PoseFrame.h>
 
 #include <osgGpuAnimation/gpu/passes/FeedbackTimer.h>
+#include <osgGpuAnimation/nodes/lod/LodLevels.h>
 #include <osgGpuAnimation/nodes/PoseStatistics.h>
 
 #include <algorithm>

@@ -2,6 +2,7 @@
 #include "tool/ModelReport.h"
 
 #include <osgGpuAnimation/gpu/buffers/AnimationBuffers.h>
+#include <osgGpuAnimation/nodes/OsgMatrix.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
 #include <osg/NodeVisitor>
@@ -81,9 +82,7 @@ osg::BoundingBox restBounds(const gltf::ImportedModel& model)
     for (const gltf::ImportedPrimitive& primitive : model.primitives)
     {
         if (dynamic_cast<const SkinnedGeometry*>(primitive.geometry.get())) continue;
-        const osg::BoundingBox& box = primitive.geometry->getBoundingBox();
-        for (unsigned int corner = 0; box.valid() && corner < 8; ++corner)
-            bounds.expandBy(box.corner(corner) * primitive.toModel);
+        bounds.expandBy(transformed(primitive.geometry->getBoundingBox(), primitive.toModel));
     }
     return bounds;
 }

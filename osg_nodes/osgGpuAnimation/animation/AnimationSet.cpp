@@ -31,13 +31,10 @@ std::shared_ptr<const SetMask> MaskTable::use(const std::vector<float>& weights)
     return made;
 }
 
-std::uint32_t MaskTable::add(const std::vector<float>& weights)
+void MaskTable::keep(const std::shared_ptr<const SetMask>& mask)
 {
-    const std::shared_ptr<const SetMask> mask = use(weights);
-    if (!mask) return 0;
     const std::lock_guard<std::mutex> lock(_mutex);
-    if (std::find(_added.begin(), _added.end(), mask) == _added.end()) _added.push_back(mask);
-    return mask->number;
+    if (std::find(_kept.begin(), _kept.end(), mask) == _kept.end()) _kept.push_back(mask);
 }
 
 std::size_t MaskTable::count() const
@@ -218,7 +215,8 @@ Result<std::uint32_t> AnimationSet::addMask(const std::vector<float>& weights) c
 {
     const Result<std::shared_ptr<const SetMask>> mask = useMask(weights);
     if (!mask) return mask.error();
-    return _masks->add(weights);
+    _masks->keep(mask.value());
+    return mask.value()->number;
 }
 
 } // namespace osgGpuAnimation

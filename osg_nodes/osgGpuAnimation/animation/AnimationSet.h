@@ -72,8 +72,8 @@ public:
 
     /// The mask with these weights. Creates it if it is new. Null: maxMasks masks exist.
     std::shared_ptr<const SetMask> use(const std::vector<float>& weights);
-    /// As use(), and the table holds the mask as long as it exists itself. Returns the number; 0: maxMasks masks exist.
-    std::uint32_t add(const std::vector<float>& weights);
+    /// The table holds the mask as long as it exists itself. mask: of use().
+    void keep(const std::shared_ptr<const SetMask>& mask);
 
     std::size_t count() const; ///< number of masks that exist
     /// Null for 0 (no mask) and for numbers without a mask.
@@ -84,7 +84,7 @@ public:
 private:
     mutable std::mutex _mutex;
     std::vector<std::weak_ptr<const SetMask>> _masks; ///< by number - 1; expired: the number is free
-    std::vector<std::shared_ptr<const SetMask>> _added;
+    std::vector<std::shared_ptr<const SetMask>> _kept;
 };
 
 /// The input of AnimationSet::create().

@@ -189,11 +189,9 @@ void AnimatedCharacter::acceptPosed(osg::PrimitiveFunctor& functor)
 
 void AnimatedCharacter::accept(osg::NodeVisitor& visitor)
 {
-    if (!visitor.validNodeMask(*this)) return;
-    if (const std::optional<double> time = updateTimeOf(visitor)) update(*time);
-    visitor.pushOntoNodePath(this);
-    visitor.apply(*this);
-    visitor.popFromNodePath();
+    const std::optional<double> time = updateTimeOf(visitor);
+    if (time && visitor.validNodeMask(*this)) update(*time);
+    osg::MatrixTransform::accept(visitor);
 }
 
 void AnimatedCharacter::traverse(osg::NodeVisitor& visitor)

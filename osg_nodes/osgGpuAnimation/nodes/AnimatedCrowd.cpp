@@ -55,11 +55,11 @@ osg::Vec3d positionOf(const osg::Matrixd& fileToNode, const osg::Matrixd& placem
 }
 
 /// fileToNode, then the placement as seen from the origin.
-Result<AffineMatrix> placedRoot(const osg::Matrixd& fileToNode, const osg::Matrixd& placement, const osg::Vec3d& origin)
+osg::Matrixd rootFrom(const osg::Vec3d& origin, const osg::Matrixd& fileToNode, const osg::Matrixd& placement)
 {
     osg::Matrixd fromOrigin = placement;
     fromOrigin.setTrans(placement.getTrans() - origin);
-    return toRootMatrix(fileToNode * fromOrigin, "the placement", false);
+    return fileToNode * fromOrigin;
 }
 
 bool hasMeshAtOrBelow(osg::Node& node)
@@ -217,7 +217,7 @@ Result<AnimatedCrowd::Instance> AnimatedCrowd::add(const osg::Matrixd& placement
         return Error{"the crowd has " + std::to_string(getNumInstances()) + " instances, the most that one can have"};
     if (&controller.set() != &getAnimationSet()) return Error{"the controller is for another set than the crowd's"};
     const osg::Vec3d origin = _hasOrigin ? _origin : placement.getTrans();
-    const Result<AffineMatrix> root = placedRoot(_fileToNode, placement, origin);
+    const Result<AffineMatrix> root = toRootMatrix(rootFrom(origin, _fileToNode, placement), "the placement", false);
     if (!root) return root.error();
     _origin = origin;
     _hasOrigin = true;
@@ -232,9 +232,7 @@ Result<bool> AnimatedCrowd::setFileToNode(const osg::Matrixd& fileToNode)
     for (std::size_t index = 0; index < getNumInstances(); ++index)
     {
         const osg::Matrixd placement = getPlacement(_instances->handleOf(index));
-        osg::Matrixd fromOrigin = fileToNode * placement;
-        fromOrigin.setTrans(fromOrigin.getTrans() - _origin);
-        _instances->move(index, toAffine(fromOrigin), positionOf(fileToNode, placement));
+        _instances->move(index, toAffine(rootFrom(_origin, fileToNode, placement)), positionOf(fileToNode, placement));
     }
     _fileToNode = fileToNode;
     dirtyBound();
@@ -253,7 +251,7 @@ Result<bool> AnimatedCrowd::setPlacement(Instance instance, const osg::Matrixd& 
 {
     const std::size_t index = _instances->indexOf(instance);
     if (index == CrowdInstances::none) return noSuchInstance();
-    const Result<AffineMatrix> root = placedRoot(_fileToNode, placement, _origin);
+    const Result<AffineMatrix> root = toRootMatrix(rootFrom(_origin, _fileToNode, placement), "the placement", false);
     if (!root) return root.error();
     _instances->move(index, root.value(), positionOf(_fileToNode, placement));
     dirtyBound();
@@ -358,11 +356,9 @@ void AnimatedCrowd::acceptInstances(osg::PrimitiveFunctor& functor) const
 
 void AnimatedCrowd::accept(osg::NodeVisitor& visitor)
 {
-    if (!visitor.validNodeMask(*this)) return;
-    if (const std::optional<double> time = updateTimeOf(visitor)) update(*time);
-    visitor.pushOntoNodePath(this);
-    visitor.apply(*this);
-    visitor.popFromNodePath();
+    const std::optional<double> time = updateTimeOf(visitor);
+    if (time && visitor.validNodeMask(*this)) update(*time);
+    osg::Transform::accept(visitor);
 }
 
 void AnimatedCrowd::traverse(osg::NodeVisitor& visitor)

@@ -5,9 +5,9 @@
 
 #include <layout.glsl>
 
-#include <algorithm>
 #include <glm/geometric.hpp>
 
+#include <algorithm>
 #include <cstring>
 
 namespace osgGpuAnimation

@@ -1,53 +1,54 @@
 // SPDX-License-Identifier: MIT
-// Lights the base colour per fragment with OSG's lights like the fixed pipeline, then applies the shadow maps of
-// osgShadow's techniques and fog. In a core profile, which has no lights: a headlight. DRAW_...: see ShaderKey in
-// nodes/shading/ShaderPermutations.h. This shader reads inputs only if it needs them, because the linker removes unread
-// outputs of the vertex shader. POSE_COLORED: the mesh or its morph targets have colours; POSE_TINTED: the drawn
-// instances have tints.
-#pragma import_defines(POSE_COLORED, POSE_TINTED)
-
-uniform sampler2D baseColorTexture;
-uniform float alphaCutoff;
-
-uniform vec4 materialDiffuse; // gl_FrontMaterial.diffuse keeps other meshes' colours under colour material modes
-#ifndef GL_ARB_compatibility
-uniform vec4 materialEmission;
-#endif
+// Lights a surface with OSG's lights, then applies the shadow maps of osgShadow's techniques and fog: with MATERIAL_PBR as
+// glTF's metallic-roughness material in linear light, else the base colour in display space like the fixed pipeline. In a
+// core profile, which has no lights: a headlight. DRAW_...: see ShaderKey in nodes/shading/ShaderPermutations.h. Included
+// above: color.glsl, material.glsl, pbr.glsl, environment.glsl.
+#pragma import_defines(MATERIAL_PBR, TONE_MAPPING)
 
 uniform sampler2DShadow shadowMaps[7];  // of texture units 1 to 7
 uniform vec2 osgShadow_ambientBias;     // osgShadow::ShadowMap: the share of light in shadow, and the remainder
 uniform vec2 ambientBias;               // osgShadow::ParallelSplitShadowMap: the gain everywhere, and the loss in shadow
 
-in vec3 viewPosition;
-in vec3 viewNormal;
-in vec4 vertexColor;
-in vec2 textureCoordinate;
-
 out vec4 fragmentColor;
 
-vec4 baseColor()
-{
-    vec4 color = materialDiffuse;
-#if defined(POSE_COLORED) || defined(POSE_TINTED)
-    color *= vertexColor;
-#endif
-#if DRAW_TEXTURE
-    color *= texture(baseColorTexture, textureCoordinate);
-#endif
-    if (color.a < alphaCutoff) discard;
-    return color;
-}
-
-vec3 facingNormal()
-{
-#if DRAW_FLAT_NORMALS
-    return normalize(cross(dFdx(viewPosition), dFdy(viewPosition)));
-#else
-    return normalize(gl_FrontFacing ? viewNormal : -viewNormal);
-#endif
-}
-
 #ifdef GL_ARB_compatibility
+
+// The direction to the light, and its attenuation (OpenGL 2.1, section 2.14.1).
+vec3 directionTo(int index, out float strength)
+{
+    vec4 position = gl_LightSource[index].position;
+    strength = 1.0;
+    if ((DRAW_POINT_LIGHTS & (1 << index)) == 0) return normalize(position.xyz);
+    vec3 way = position.xyz / position.w - viewPosition;
+    float range = length(way);
+    vec3 toLight = way / range;
+    strength = 1.0 / (gl_LightSource[index].constantAttenuation + gl_LightSource[index].linearAttenuation * range +
+                      gl_LightSource[index].quadraticAttenuation * range * range);
+    float along = dot(-toLight, normalize(gl_LightSource[index].spotDirection));
+    if (gl_LightSource[index].spotCosCutoff > -1.0)
+        strength *= along < gl_LightSource[index].spotCosCutoff
+                        ? 0.0
+                        : pow(max(along, 0.0001), gl_LightSource[index].spotExponent);
+    return toLight;
+}
+
+#ifdef MATERIAL_PBR
+
+struct Light
+{
+    vec3 ambient; // the radiance of an even surrounding
+    vec3 direct;  // reflected
+};
+
+void addLight(int index, Surface surface, inout Light sum)
+{
+    float strength;
+    vec3 toLight = directionTo(index, strength);
+    sum.ambient += strength * gl_LightSource[index].ambient.rgb;
+    sum.direct += strength * gl_LightSource[index].diffuse.rgb * reflectedLight(surface, toLight);
+}
+
+#else
 
 struct Light
 {
@@ -56,25 +57,10 @@ struct Light
     vec3 specular;
 };
 
-// OpenGL 2.1, section 2.14.1.
 void addLight(int index, vec3 normal, inout Light sum)
 {
-    vec4 position = gl_LightSource[index].position;
-    vec3 toLight = normalize(position.xyz);
-    float strength = 1.0;
-    if ((DRAW_POINT_LIGHTS & (1 << index)) != 0)
-    {
-        vec3 way = position.xyz / position.w - viewPosition;
-        float range = length(way);
-        toLight = way / range;
-        strength = 1.0 / (gl_LightSource[index].constantAttenuation + gl_LightSource[index].linearAttenuation * range +
-                          gl_LightSource[index].quadraticAttenuation * range * range);
-        float along = dot(-toLight, normalize(gl_LightSource[index].spotDirection));
-        if (gl_LightSource[index].spotCosCutoff > -1.0)
-            strength *= along < gl_LightSource[index].spotCosCutoff
-                            ? 0.0
-                            : pow(max(along, 0.0001), gl_LightSource[index].spotExponent);
-    }
+    float strength;
+    vec3 toLight = directionTo(index, strength);
     float diffuse = max(dot(normal, toLight), 0.0);
     sum.ambient += strength * gl_LightSource[index].ambient.rgb;
     sum.diffuse += strength * diffuse * gl_LightSource[index].diffuse.rgb;
@@ -84,6 +70,8 @@ void addLight(int index, vec3 normal, inout Light sum)
     sum.specular += strength * specular * gl_LightSource[index].specular.rgb;
 #endif
 }
+
+#endif
 
 // The technique generates the unit's texture coordinates from the view position.
 float unshadowed(sampler2DShadow map, int unit)
@@ -139,38 +127,51 @@ vec3 shadowedColor(vec3 color, vec3 colorWithoutLights)
 
 vec3 litColor(vec3 base)
 {
+#ifdef MATERIAL_PBR
+    vec3 factors = materialSurface();
+    Surface lit = makeSurface(base, factors.x, factors.y, materialNormal());
+    Light sum = Light(gl_LightModel.ambient.rgb, vec3(0.0));
+#else
+    vec3 lit = materialNormal();
     Light sum = Light(vec3(0.0), vec3(0.0), vec3(0.0));
-    vec3 normal = facingNormal();
+#endif
 #if DRAW_LIGHTS & 1
-    addLight(0, normal, sum);
+    addLight(0, lit, sum);
 #endif
 #if DRAW_LIGHTS & 2
-    addLight(1, normal, sum);
+    addLight(1, lit, sum);
 #endif
 #if DRAW_LIGHTS & 4
-    addLight(2, normal, sum);
+    addLight(2, lit, sum);
 #endif
 #if DRAW_LIGHTS & 8
-    addLight(3, normal, sum);
+    addLight(3, lit, sum);
 #endif
 #if DRAW_LIGHTS & 16
-    addLight(4, normal, sum);
+    addLight(4, lit, sum);
 #endif
 #if DRAW_LIGHTS & 32
-    addLight(5, normal, sum);
+    addLight(5, lit, sum);
 #endif
 #if DRAW_LIGHTS & 64
-    addLight(6, normal, sum);
+    addLight(6, lit, sum);
 #endif
 #if DRAW_LIGHTS & 128
-    addLight(7, normal, sum);
+    addLight(7, lit, sum);
 #endif
+#ifdef MATERIAL_PBR
+#if DRAW_SHADOW_MAPS
+    sum.direct *= unshadowedByAll();
+#endif
+    return materialEmissive() + sum.direct + surroundingLight(lit, sum.ambient, factors.z);
+#else
     vec3 withoutLights = gl_FrontMaterial.emission.rgb + base * gl_LightModel.ambient.rgb;
     vec3 color = withoutLights + base * (sum.ambient + sum.diffuse) + gl_FrontMaterial.specular.rgb * sum.specular;
 #if DRAW_SHADOW_MAPS
     color = shadowedColor(color, withoutLights);
 #endif
     return color;
+#endif
 }
 
 vec3 foggedColor(vec3 color)
@@ -183,31 +184,57 @@ vec3 foggedColor(vec3 color)
 #else
     float clear = exp(-gl_Fog.density * gl_Fog.density * depth * depth);
 #endif
+#if defined(MATERIAL_PBR) && !DRAW_ENCODED
+    return mix(linearColor(gl_Fog.color.rgb), color, clamp(clear, 0.0, 1.0));
+#else
     return mix(gl_Fog.color.rgb, color, clamp(clear, 0.0, 1.0));
+#endif
 }
 
 #else
 
 vec3 litColor(vec3 base)
 {
-    return materialEmission.rgb + base * (0.2 + 0.8 * max(dot(facingNormal(), normalize(-viewPosition)), 0.0));
+#ifdef MATERIAL_PBR
+    vec3 factors = materialSurface();
+    Surface surface = makeSurface(base, factors.x, factors.y, materialNormal());
+    return materialEmissive() + 0.8 * reflectedLight(surface, surface.toEye) +
+           surroundingLight(surface, vec3(0.2), factors.z);
+#else
+    return materialEmission + base * (0.2 + 0.8 * max(dot(materialNormal(), normalize(-viewPosition)), 0.0));
+#endif
 }
 
 #endif
 
+// From linear light to the framebuffer's.
+vec3 shownColor(vec3 color)
+{
+#ifdef MATERIAL_PBR
+#ifdef TONE_MAPPING
+    color = toneMappedColor(color);
+#endif
+#if DRAW_ENCODED
+    color = displayColor(color);
+#endif
+#endif
+    return color;
+}
+
 void main()
 {
 #if DRAW_COLOR
-    vec4 color = baseColor();
+    vec4 color = materialBaseColor();
 #if DRAW_LIGHTING
     color.rgb = litColor(color.rgb);
 #endif
+    color.rgb = shownColor(color.rgb);
 #if DRAW_FOG && defined(GL_ARB_compatibility)
     color.rgb = foggedColor(color.rgb);
 #endif
     fragmentColor = color;
 #elif DRAW_ALPHA
-    fragmentColor = baseColor();
+    fragmentColor = materialBaseColor();
 #else
     fragmentColor = vec4(1.0);
 #endif

@@ -49,13 +49,24 @@
 #define POSE_INSTANCE_ROW_2_LOCATION 10
 #define POSE_INSTANCE_POSE_LOCATION 11
 
+// Vertex attributes of surfaces: the tangent, and the texture coordinates 1 and 2.
+#define POSE_TANGENT_LOCATION 4
+#define POSE_COORDINATES_LOCATION 9
+
+// The texture units of a material's maps, after those of osgShadow's techniques (1 to 7). Unit 0 is the base colour.
+#define METALLIC_ROUGHNESS_UNIT 8
+#define NORMAL_UNIT 9
+#define OCCLUSION_UNIT 10
+#define EMISSIVE_UNIT 14
+#define ENVIRONMENT_UNIT 15
+
 // The texture units that hold the palette, a mesh's morph targets and the instances' tints during its draw.
 #define POSE_PALETTE_UNIT 11
 #define POSE_MORPH_UNIT 12
 #define POSE_TINT_UNIT 13
 
 // Morph targets of a mesh: RGBA32F, for each vertex and target one texel per channel: position, normal, colour, texture
-// coordinate. The weights are in palette entries, twelve per entry.
+// coordinate, tangent. The weights are in palette entries, twelve per entry.
 #define POSE_WEIGHTS_PER_ENTRY 12
 
 // Vertex attributes of the pose pass, whose vertices are a batch's instances and whose GL instances are palette entries:

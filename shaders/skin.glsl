@@ -19,6 +19,7 @@ uniform int poseInfluences; // the largest number per vertex: 1 to 8
 uniform samplerBuffer poseMorphDeltas; // by vertex, target, channel
 uniform ivec2 poseMorph;               // number of targets (0: none), the first palette entry of their weights
 uniform ivec4 poseMorphChannels;       // channels per target; the index of normal, colour, texture coordinate, or -1
+uniform int poseMorphTangents;         // the index of the tangents' channel, or -1
 
 uniform samplerBuffer poseTints; // by instance
 uniform bool poseTinted;
@@ -108,29 +109,39 @@ void osgGpuAnimationMorphTextureCoordinate(inout vec2 coordinate)
     if (POSE_MORPH_TARGETS > 0 && poseMorphChannels.w >= 0) coordinate += osgGpuAnimationMorphSum(poseMorphChannels.w).xy;
 }
 
-void osgGpuAnimationMove(mat3x4 rows, inout vec4 vertex, inout vec3 normal)
+// Transforms normals by the inverse transpose, which is the cofactor matrix divided by the determinant. A mirrored tangent
+// frame changes its handedness (w).
+void osgGpuAnimationMove(mat3x4 rows, inout vec4 vertex, inout vec3 normal, inout vec4 tangent)
 {
     vertex = vec4(vertex * rows, vertex.w);
-
-    // Normals use the inverse transpose, which is the cofactor matrix divided by the determinant.
     vec3 cofactor0 = cross(rows[1].xyz, rows[2].xyz);
     vec3 cofactor1 = cross(rows[2].xyz, rows[0].xyz);
     vec3 cofactor2 = cross(rows[0].xyz, rows[1].xyz);
     vec3 turned = vec3(dot(cofactor0, normal), dot(cofactor1, normal), dot(cofactor2, normal));
-    normal = dot(rows[0].xyz, cofactor0) < 0.0 ? -turned : turned;
+    float handedness = dot(rows[0].xyz, cofactor0) < 0.0 ? -1.0 : 1.0;
+    normal = handedness * turned;
+    tangent = vec4(vec4(tangent.xyz, 0.0) * rows, handedness * tangent.w);
 }
 
-void osgGpuAnimationSkin(inout vec4 vertex, inout vec3 normal)
+// tangent: of glTF 2.0, section 3.7.2.1: w is 1 or -1.
+void osgGpuAnimationSkinTangent(inout vec4 vertex, inout vec3 normal, inout vec4 tangent)
 {
     if (POSE_MORPH_TARGETS > 0)
     {
         vertex.xyz += osgGpuAnimationMorphSum(0).xyz;
         if (poseMorphChannels.y >= 0) normal += osgGpuAnimationMorphSum(poseMorphChannels.y).xyz;
+        if (poseMorphTangents >= 0) tangent.xyz += osgGpuAnimationMorphSum(poseMorphTangents).xyz;
     }
     mat3x4 rows = osgGpuAnimationBlend(poseEntries0, poseWeights0, POSE_INFLUENCES);
     if (POSE_INFLUENCES > 4) rows += osgGpuAnimationBlend(poseEntries1, poseWeights1, POSE_INFLUENCES - 4);
-    osgGpuAnimationMove(rows, vertex, normal);
+    osgGpuAnimationMove(rows, vertex, normal, tangent);
 #ifdef POSE_INSTANCED
-    osgGpuAnimationMove(mat3x4(poseInstanceRow0, poseInstanceRow1, poseInstanceRow2), vertex, normal);
+    osgGpuAnimationMove(mat3x4(poseInstanceRow0, poseInstanceRow1, poseInstanceRow2), vertex, normal, tangent);
 #endif
+}
+
+void osgGpuAnimationSkin(inout vec4 vertex, inout vec3 normal)
+{
+    vec4 tangent = vec4(0.0);
+    osgGpuAnimationSkinTangent(vertex, normal, tangent);
 }

@@ -49,7 +49,7 @@ public:
     Importer(const tinygltf::Model& model, const std::string& fileName, const ImportOptions& options,
              ImportedModel& result)
         : _model(model), _fileName(osgDB::getStrippedName(fileName)), _options(options), _result(result),
-          _report(result.messages), _budget(options.maxDecodedBytes), _textures(model, _report)
+          _report(result.messages), _budget(options.maxDecodedBytes), _textures(model, _report, !options.fixedLighting)
     {
     }
 
@@ -111,8 +111,8 @@ void Importer::makeGraph(const NodeTree& tree, const Joints& joints, const Morph
         _result.root->addChild(_result.character);
     }
     _result.root->setName(sceneName);
-    Materials materials(_model, _textures);
-    Meshes meshes(_model, _budget, _report);
+    Materials materials(_model, _options.fixedLighting, _textures);
+    Meshes meshes(_model, !_options.fixedLighting, _budget, _report);
     Drawables drawables(_model, _result.set, meshes, materials, _budget, _report);
     const SceneParts parts{_model, tree, joints, morphs, drawables, _budget, _report};
     buildSceneGraph(parts, *still, _result.character, _result.primitives);

@@ -100,6 +100,10 @@ const std::vector<Option>& allOptions()
         {{"scene=INDEX", "the scene to show; default: the file's own"},
          number,
          [](const std::string& value, ImportOptions& options) { return read(value, options.scene.emplace()); }},
+        {{"lighting=pbr|fixed", "the materials' own look, or that of the fixed pipeline; default: pbr"},
+         "pbr or fixed",
+         [](const std::string& value, ImportOptions& options)
+         { return (options.fixedLighting = value == "fixed") || value == "pbr"; }},
         {{"noRotation", "keep glTF's +Y up; default: +Z up"}, "", setFlag<&ImportOptions::noRotation>},
         {{"allowOutsideFiles", "let a model read files outside its own folder"},
          "",

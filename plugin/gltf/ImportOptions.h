@@ -26,6 +26,7 @@ struct ImportOptions
     bool noKeys = false;            ///< no CharacterKeys on the character
     std::optional<int> scene;       ///< default: the file's own, else 0
     bool noRotation = false;        ///< keep glTF's +Y up; default: turn to OSG's +Z up at the root
+    bool fixedLighting = false;     ///< the fixed pipeline's look: base colours in display space, no other maps
     bool allowOutsideFiles = false; ///< URIs may name files outside the model's folder
 
     std::size_t maxJsonBytes = std::size_t(512) << 20; ///< of the JSON text, data URIs included

@@ -53,6 +53,28 @@ void transferMorphTargets(ValueStream& stream, SkinnedGeometry& mesh)
     if (stream.hasRead()) mesh.setMorphTargets(morph, entry, std::move(targets));
 }
 
+bool hasMorphTangents(const SkinnedGeometry& mesh)
+{
+    const std::vector<MorphTarget>& targets = mesh.getMorphTargets();
+    return std::any_of(targets.begin(), targets.end(), [](const MorphTarget& target) { return target.tangents; });
+}
+
+/// Follows MorphTargets, whose stored form has no tangents.
+void transferMorphTangents(ValueStream& stream, SkinnedGeometry& mesh)
+{
+    std::vector<MorphTarget> targets = mesh.getMorphTargets();
+    std::vector<osg::ref_ptr<osg::Vec3Array>> tangents;
+    if (!stream.isReading())
+        for (const MorphTarget& target : targets)
+            tangents.push_back(target.tangents);
+    stream.list("Tangents", tangents,
+                [&](osg::ref_ptr<osg::Vec3Array>& array) { transferArray(stream, "Tangents", array); });
+    if (!stream.hasRead()) return;
+    for (std::size_t i = 0; i < std::min(targets.size(), tangents.size()); ++i)
+        targets[i].tangents = tangents[i];
+    mesh.setMorphTargets(mesh.getMorph(), mesh.getMorphEntry(), std::move(targets));
+}
+
 /// Earlier versions stored whether a mesh was skinned once a frame. It is read and dropped.
 void dropSkinning(ValueStream& stream, SkinnedGeometry&)
 {
@@ -65,6 +87,7 @@ void addMeshProperties(osgDB::ObjectWrapper* wrapper)
     addProperty(wrapper, "Influences", &transferInfluences);
     addProperty<SkinnedGeometry>(wrapper, "MorphTargets", &transferMorphTargets,
                                  [](const SkinnedGeometry& mesh) { return !mesh.getMorphTargets().empty(); });
+    addProperty<SkinnedGeometry>(wrapper, "MorphTangents", &transferMorphTangents, &hasMorphTangents);
     addProperty<SkinnedGeometry>(wrapper, "Skinning", &dropSkinning, [](const SkinnedGeometry&) { return false; });
 }
 
@@ -74,10 +97,14 @@ osgDB::RegisterWrapperProxy skinnedGeometry([]() -> osg::Object* { return new Sk
                                             "osg::Geometry osgGpuAnimation::SkinnedGeometry",
                                             &addMeshProperties);
 
-// A file has no shaders: reading returns the program that all characters share.
+// A file has no shaders: reading returns the program that all characters, or all other surfaces, share.
 osgDB::RegisterWrapperProxy surfaceProgram([]() -> osg::Object* { return characterProgram().release(); },
                                            "osgGpuAnimation::SurfaceProgram", "osgGpuAnimation::SurfaceProgram",
                                            [](osgDB::ObjectWrapper*) {});
+
+osgDB::RegisterWrapperProxy stillSurfaceProgram([]() -> osg::Object* { return surfaceProgram().release(); },
+                                                "osgGpuAnimation::StillSurfaceProgram",
+                                                "osgGpuAnimation::StillSurfaceProgram", [](osgDB::ObjectWrapper*) {});
 
 using Fault = std::optional<std::string>;
 

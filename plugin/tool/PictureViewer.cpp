@@ -2,10 +2,16 @@
 #include "tool/PictureViewer.h"
 
 #include <osgGpuAnimation/gpu/EglGraphicsContext.h>
+#include <osgGpuAnimation/nodes/Environment.h>
 
 #include <osg/BoundingBox>
 #include <osg/Depth>
 #include <osg/Geometry>
+#include <osg/GLExtensions>
+#include <osg/LightModel>
+#include <osg/MatrixTransform>
+#include <osg/Projection>
+#include <osg/Texture2D>
 
 #include <algorithm>
 #include <cmath>
@@ -18,9 +24,10 @@ namespace
 
 constexpr double fieldOfView = 30.0; ///< degrees, vertical
 constexpr double margin = 1.08;      ///< size of the picture relative to the points in it
+constexpr unsigned int samplesAPixel = 4;
 
 /// A quad behind everything, light at the top and a little darker at the bottom.
-osg::ref_ptr<osg::Camera> makeBackground()
+osg::ref_ptr<osg::Node> makeBackground()
 {
     osg::ref_ptr<osg::Geometry> quad = new osg::Geometry;
     osg::ref_ptr<osg::Vec3Array> corners = new osg::Vec3Array;
@@ -40,27 +47,56 @@ osg::ref_ptr<osg::Camera> makeBackground()
     quad->setCullingActive(false);
     osg::StateSet* state = quad->getOrCreateStateSet();
     state->setMode(GL_LIGHTING, osg::StateAttribute::OFF);
-    state->setAttributeAndModes(new osg::Depth(osg::Depth::ALWAYS, 0.0, 1.0, false), osg::StateAttribute::OFF);
+    state->setAttributeAndModes(new osg::Depth(osg::Depth::ALWAYS, 0.0, 1.0, false));
+    state->setRenderBinDetails(-1, "RenderBin");
 
-    osg::ref_ptr<osg::Camera> camera = new osg::Camera;
-    camera->setReferenceFrame(osg::Transform::ABSOLUTE_RF);
-    camera->setProjectionMatrix(osg::Matrix::ortho2D(-1, 1, -1, 1));
-    camera->setViewMatrix(osg::Matrix::identity());
-    camera->setRenderOrder(osg::Camera::PRE_RENDER);
-    camera->setClearMask(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-    camera->setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
-    camera->addChild(quad);
-    return camera;
+    osg::ref_ptr<osg::MatrixTransform> place = new osg::MatrixTransform;
+    place->setReferenceFrame(osg::Transform::ABSOLUTE_RF);
+    place->setCullingActive(false);
+    place->addChild(quad);
+    osg::ref_ptr<osg::Projection> projection = new osg::Projection(osg::Matrix::ortho2D(-1, 1, -1, 1));
+    projection->setCullingActive(false);
+    projection->addChild(place);
+    return projection;
 }
 
-void setUpLight(osgViewer::Viewer& viewer)
+/// The radiance of the white surrounding, without the studio.
+float surroundingOf(Look look)
 {
+    return look == Look::Sun ? 0.3f : look == Look::File ? 0.05f : 1.0f;
+}
+
+void setUpLight(osgViewer::Viewer& viewer, Look look)
+{
+    if (look != Look::Sun) return viewer.setLightingMode(osg::View::NO_LIGHT);
     viewer.setLightingMode(osg::View::SKY_LIGHT);
     osg::Light* light = viewer.getLight();
     light->setPosition(osg::Vec4(0.6f, -0.9f, 1.1f, 0.0f));
-    light->setAmbient(osg::Vec4(0.3f, 0.3f, 0.32f, 1.0f));
+    light->setAmbient(osg::Vec4(0.0f, 0.0f, 0.0f, 1.0f));
     light->setDiffuse(osg::Vec4(0.7f, 0.7f, 0.68f, 1.0f));
     light->setSpecular(osg::Vec4(0.2f, 0.2f, 0.2f, 1.0f));
+}
+
+/// The scene in its surroundings.
+osg::ref_ptr<osg::Group> lit(osg::Node* scene, Look look)
+{
+    osg::ref_ptr<osg::Group> group = new osg::Group;
+    if (look == Look::Studio)
+    {
+        osg::ref_ptr<Environment> studio = new Environment;
+        studio->setToneMapping(true);
+        group = studio;
+    }
+    else
+    {
+        const float radiance = surroundingOf(look);
+        osg::ref_ptr<osg::LightModel> ambient = new osg::LightModel;
+        ambient->setAmbientIntensity(osg::Vec4(radiance, radiance, radiance, 1.0f));
+        group->getOrCreateStateSet()->setAttribute(ambient);
+    }
+    group->getOrCreateStateSet()->setMode(GL_LIGHTING, osg::StateAttribute::ON);
+    group->addChild(scene);
+    return group;
 }
 
 /// The position of the camera and its target.
@@ -121,17 +157,33 @@ Standpoint standpoint(const std::vector<osg::Vec3d>& points, const osg::Vec3d& b
 
 } // namespace
 
+/// OSG takes the address of an entry point for its extension; EGL has addresses of entry points that the driver lacks.
+class ForgetMissingExtensions : public osg::Operation
+{
+public:
+    void operator()(osg::Object* object) override
+    {
+        auto* const context = static_cast<osg::GraphicsContext*>(object);
+        osg::GLExtensions* const gl = context->getState()->get<osg::GLExtensions>();
+        if (!osg::isGLExtensionSupported(gl->contextID, "GL_NV_framebuffer_multisample_coverage"))
+            gl->glRenderbufferStorageMultisampleCoverageNV = nullptr;
+    }
+};
+
+/// Reads the picture from the texture.
 class PictureViewer::ReadPixels : public osg::Camera::DrawCallback
 {
 public:
     void operator()(osg::RenderInfo& renderInfo) const override
     {
-        const osg::GraphicsContext::Traits* traits = renderInfo.getState()->getGraphicsContext()->getTraits();
+        osg::State& state = *renderInfo.getState();
+        state.applyTextureAttribute(0, texture);
         image = new osg::Image;
-        image->readPixels(0, 0, traits->width, traits->height, GL_RGB, GL_UNSIGNED_BYTE);
+        image->readImageFromCurrentTexture(state.getContextID(), false);
         if (glGetError() != GL_NO_ERROR) image = nullptr;
     }
 
+    osg::ref_ptr<osg::Texture2D> texture;
     mutable osg::ref_ptr<osg::Image> image;
 };
 
@@ -139,24 +191,31 @@ PictureViewer::PictureViewer() : _reader(new ReadPixels) {}
 
 PictureViewer::~PictureViewer() = default;
 
-Result<std::unique_ptr<PictureViewer>> PictureViewer::create(int width, int height)
+Result<std::unique_ptr<PictureViewer>> PictureViewer::create(int width, int height, Look look)
 {
     osg::ref_ptr<osg::GraphicsContext::Traits> traits = new osg::GraphicsContext::Traits;
     traits->width = width;
     traits->height = height;
-    traits->sampleBuffers = 1;
-    traits->samples = 4;
     const Result<osg::ref_ptr<EglGraphicsContext>> context = EglGraphicsContext::create(traits);
     if (!context) return context.error();
 
     std::unique_ptr<PictureViewer> made(new PictureViewer);
+    made->_look = look;
     osgViewer::Viewer& viewer = made->_viewer;
     viewer.setThreadingModel(osgViewer::ViewerBase::SingleThreaded);
-    setUpLight(viewer);
+    viewer.setRealizeOperation(new ForgetMissingExtensions);
+    setUpLight(viewer, look);
     osg::Camera* camera = viewer.getCamera();
     camera->setGraphicsContext(context.value());
     camera->setViewport(0, 0, width, height);
-    camera->setClearMask(GL_DEPTH_BUFFER_BIT);
+    // Multisampled pbuffers are resolved differently by different drivers, framebuffer objects are not.
+    camera->setRenderTargetImplementation(osg::Camera::FRAME_BUFFER_OBJECT);
+    camera->attach(osg::Camera::DEPTH_BUFFER, GL_DEPTH_COMPONENT24);
+    osg::ref_ptr<osg::Texture2D> picture = new osg::Texture2D;
+    picture->setTextureSize(width, height);
+    picture->setInternalFormat(GL_RGBA8);
+    camera->attach(osg::Camera::COLOR_BUFFER, picture, 0, 0, false, samplesAPixel, samplesAPixel);
+    made->_reader->texture = picture;
     camera->setFinalDrawCallback(made->_reader);
     return made;
 }
@@ -165,7 +224,7 @@ void PictureViewer::show(osg::Node* scene, const std::vector<osg::Vec3d>& points
 {
     osg::ref_ptr<osg::Group> all = new osg::Group;
     all->addChild(makeBackground());
-    all->addChild(scene);
+    all->addChild(lit(scene, _look));
     _viewer.setSceneData(all);
 
     osg::Vec3d back(0.55, -1.0, 0.3);

@@ -13,17 +13,26 @@
 namespace osgGpuAnimation::tool
 {
 
-/// A viewer without a display whose frames become images: soft background, light from above the camera, 4x
-/// multisampling if the driver supports it.
+/// The light of a picture. Directions are in OSG's axes.
+enum class Look
+{
+    Studio, ///< Environment's studio alone, with tone mapping
+    Sun, ///< a light from (0.6, -0.9, 1.1) of irradiance / pi (0.7, 0.7, 0.68), and a white surrounding of radiance 0.3
+    Furnace, ///< a white surrounding of radiance 1 alone, in which white surfaces are white
+    File     ///< the file's own lights, and a white surrounding of radiance 0.05
+};
+
+/// A viewer without a display whose frames become images: soft background, four samples per pixel if the driver
+/// supports them.
 ///
-///     Result<std::unique_ptr<PictureViewer>> viewer = PictureViewer::create(800, 600);
+///     Result<std::unique_ptr<PictureViewer>> viewer = PictureViewer::create(800, 600, Look::Studio);
 ///     viewer.value()->show(scene, points);
 ///     osg::ref_ptr<osg::Image> image = viewer.value()->draw(0.5);
 class PictureViewer
 {
 public:
     /// Error: no graphics context, or none of that size, can be created.
-    static Result<std::unique_ptr<PictureViewer>> create(int width, int height);
+    static Result<std::unique_ptr<PictureViewer>> create(int width, int height, Look look);
     ~PictureViewer();
 
     /// Places the camera so that it sees all these points from -Y, a little from +X and from above.
@@ -38,6 +47,7 @@ private:
 
     osgViewer::Viewer _viewer;
     osg::ref_ptr<ReadPixels> _reader;
+    Look _look = Look::Studio;
 };
 
 } // namespace osgGpuAnimation::tool

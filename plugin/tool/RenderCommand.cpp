@@ -3,7 +3,6 @@
 
 #include "tool/CpuPoseEvaluator.h"
 #include "tool/ModelFile.h"
-#include "tool/PictureViewer.h"
 
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
@@ -89,7 +88,7 @@ Result<bool> RenderCommand::run() const
     options.noKeys = true; // no window, no keyboard
     const Result<gltf::ImportedModel> model = readModel(file, options);
     if (!model) return Error{file + ": " + model.error().message};
-    Result<std::unique_ptr<PictureViewer>> viewer = PictureViewer::create(width, height);
+    Result<std::unique_ptr<PictureViewer>> viewer = PictureViewer::create(width, height, look);
     if (!viewer) return Error{file + ": " + viewer.error().message};
     std::vector<double> times;
     for (int frame = 0; frame < frames.value_or(1); ++frame)

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "tool/PictureViewer.h"
+
 #include <osgGpuAnimation/animation/Result.h>
 
 #include <optional>
@@ -22,6 +24,7 @@ struct RenderCommand
     int height = 600;
     std::optional<int> frames; ///< the number of numbered pictures; none: one picture, named `output`
     double framesPerSecond = 30.0;
+    Look look = Look::Studio;
     std::string output; ///< a .png; with `frames` OUT.png becomes OUT.0001.png, OUT.0002.png …
 
     /// Error messages begin with the name of the file at fault.

@@ -21,12 +21,35 @@ osg::ref_ptr<osg::Shader> makeSkinShader()
                            std::string("#version 140\n") + shaders::layout_glsl + shaders::skin_glsl);
 }
 
-osg::ref_ptr<osg::Program> makeProgram()
+void bindSurfaceAttributes(osg::Program& program)
+{
+    program.addBindAttribLocation("poseTangent", POSE_TANGENT_LOCATION);
+    program.addBindAttribLocation("poseCoordinates", POSE_COORDINATES_LOCATION);
+}
+
+osg::ref_ptr<osg::Program> makeCharacterProgram()
 {
     osg::ref_ptr<osg::Program> program = new ShaderPermutations(skinShader());
     program->setName("osgGpuAnimation character");
     bindSkinAttributes(*program);
+    bindSurfaceAttributes(*program);
     return program;
+}
+
+osg::ref_ptr<osg::Program> makeSurfaceProgram()
+{
+    osg::ref_ptr<osg::Program> program = new ShaderPermutations;
+    program->setName("osgGpuAnimation surface");
+    bindSurfaceAttributes(*program);
+    return program;
+}
+
+void applyProgram(osg::StateSet& stateSet, osg::Program* program, osg::StateAttribute::GLModeValue value)
+{
+    stateSet.setAttributeAndModes(program, value);
+    stateSet.getOrCreateUniform("baseColorTexture", osg::Uniform::SAMPLER_2D)->set(0);
+    if (!stateSet.getUniform("alphaCutoff")) stateSet.addUniform(new osg::Uniform("alphaCutoff", 0.0f));
+    if (!stateSet.getUniform("unlit")) stateSet.addUniform(new osg::Uniform("unlit", false));
 }
 
 } // namespace
@@ -52,18 +75,27 @@ void bindSkinAttributes(osg::Program& program)
 osg::ref_ptr<osg::Program> characterProgram()
 {
     static SharedObject<osg::Program> shared;
-    return shared.get(makeProgram);
+    return shared.get(makeCharacterProgram);
 }
 
 void applyCharacterProgram(osg::StateSet& stateSet)
 {
     // osgShadow's casting cameras override the program with none, which would draw the bind pose.
-    stateSet.setAttributeAndModes(characterProgram(), osg::StateAttribute::ON | osg::StateAttribute::PROTECTED);
-    stateSet.getOrCreateUniform("baseColorTexture", osg::Uniform::SAMPLER_2D)->set(0);
-    if (!stateSet.getUniform("alphaCutoff")) stateSet.addUniform(new osg::Uniform("alphaCutoff", 0.0f));
-    if (!stateSet.getUniform("unlit")) stateSet.addUniform(new osg::Uniform("unlit", false));
+    applyProgram(stateSet, characterProgram(), osg::StateAttribute::ON | osg::StateAttribute::PROTECTED);
     if (!stateSet.getTextureAttribute(0, osg::StateAttribute::TEXTURE))
         stateSet.setTextureAttributeAndModes(0, whiteTexture());
+}
+
+osg::ref_ptr<osg::Program> surfaceProgram()
+{
+    static SharedObject<osg::Program> shared;
+    return shared.get(makeSurfaceProgram);
+}
+
+void applySurfaceProgram(osg::StateSet& stateSet, bool colored)
+{
+    applyProgram(stateSet, surfaceProgram(), osg::StateAttribute::ON);
+    if (colored) stateSet.setDefine("POSE_COLORED", "1");
 }
 
 void applySkinDefines(osg::StateSet& stateSet, int influences, bool hasMorphs)

@@ -13,12 +13,19 @@ namespace osgGpuAnimation
 /// It reproduces the fixed pipeline: OSG's enabled lights with attenuation and spots, osg::LightModel's ambient colour,
 /// osg::Material (diffuse times vertex colour is the base colour, lit or not), fog, clip planes, the texture of unit 0
 /// with its matrix if GL_TEXTURE_2D is on, and the shadow maps of osgShadow's techniques. In a depth-only pass it only
-/// skins. Uniforms: `float alphaCutoff` (fragments with less alpha are discarded; default 0), `bool unlit` (default
-/// false), `bool flatNormals` (lights each face by its own posed normal; default false).
+/// skins. With applyPbrMaterial() it shades glTF's metallic-roughness material in linear light instead. Uniforms:
+/// `float alphaCutoff` (fragments with less alpha are discarded; default 0), `bool unlit` (default false), `bool
+/// flatNormals` (lights each face by its own posed normal; default false).
 osg::ref_ptr<osg::Program> characterProgram();
 
 /// Sets the program, its uniforms' defaults and, if unit 0 has no texture, a white texture in the state.
 void applyCharacterProgram(osg::StateSet& stateSet);
+
+/// The same program for an osg::Geometry that does not move. Any program above with OVERRIDE replaces it.
+osg::ref_ptr<osg::Program> surfaceProgram();
+/// Sets the surface program as applyCharacterProgram() does the other. colored: the geometry has colours of its own for
+/// each vertex.
+void applySurfaceProgram(osg::StateSet& stateSet, bool colored);
 
 /// skin.glsl as a shader object for another program, whose vertex shader declares and calls
 ///

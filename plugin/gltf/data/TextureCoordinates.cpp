@@ -65,6 +65,27 @@ osg::Vec2 TextureCoordinates::transformed(const osg::Vec2& coordinates) const
                      static_cast<float>(1.0 - (_v[0] * u + _v[1] * v + _v[2])));
 }
 
+MapCoordinates mapCoordinates(const tinygltf::Material& material, bool allMaps)
+{
+    MapCoordinates maps;
+    const auto add = [&](const auto& texture, int& index)
+    {
+        if (texture.index < 0) return;
+        const TextureCoordinates coordinates(texture);
+        const auto known = std::find(maps.all.begin(), maps.all.end(), coordinates);
+        if (known == maps.all.end() && maps.all.size() == MapCoordinates::most) return;
+        index = static_cast<int>(known - maps.all.begin());
+        if (known == maps.all.end()) maps.all.push_back(coordinates);
+    };
+    add(material.pbrMetallicRoughness.baseColorTexture, maps.baseColor);
+    if (!allMaps) return maps;
+    add(material.normalTexture, maps.normal);
+    add(material.pbrMetallicRoughness.metallicRoughnessTexture, maps.metallicRoughness);
+    add(material.emissiveTexture, maps.emissive);
+    add(material.occlusionTexture, maps.occlusion);
+    return maps;
+}
+
 std::vector<std::uint32_t> materialCoordinates(const tinygltf::Model& model)
 {
     std::vector<std::uint32_t> sets;

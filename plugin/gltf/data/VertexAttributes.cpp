@@ -2,11 +2,10 @@
 #include "gltf/data/VertexAttributes.h"
 
 #include "gltf/data/Accessor.h"
-#include "gltf/data/TextureCoordinates.h"
 
-#include <cmath>
+#include <osgGpuAnimation/nodes/PbrMaterial.h>
+
 #include <cstring>
-#include <optional>
 
 namespace osgGpuAnimation::gltf
 {
@@ -15,18 +14,6 @@ namespace
 {
 
 using Attributes = std::map<std::string, int>;
-
-/// NaN becomes 0.
-double toUnit(double value)
-{
-    return value > 0.0 ? std::fmin(value, 1.0) : 0.0;
-}
-
-float encode(double linear)
-{
-    const double value = toUnit(linear);
-    return static_cast<float>(value <= 0.0031308 ? 12.92 * value : 1.055 * std::pow(value, 1.0 / 2.4) - 0.055);
-}
 
 /// -1 where there is none.
 int findAccessor(const Attributes& attributes, const std::string& name)
@@ -50,11 +37,6 @@ std::vector<osg::Vec4> readLinearColors(const tinygltf::Model& model, const Attr
     return colors;
 }
 
-osg::Vec4 forDisplay(const osg::Vec4& linear)
-{
-    return displayColor(linear.r(), linear.g(), linear.b(), linear.a());
-}
-
 osg::ref_ptr<osg::Vec4Array> readColorChanges(const tinygltf::Model& model, const Attributes& base,
                                               const Attributes& target)
 {
@@ -63,53 +45,23 @@ osg::ref_ptr<osg::Vec4Array> readColorChanges(const tinygltf::Model& model, cons
     if (from.empty() || change.empty()) return nullptr;
     osg::ref_ptr<osg::Vec4Array> changes = new osg::Vec4Array;
     for (std::size_t i = 0; i < from.size(); ++i)
-        changes->push_back(forDisplay(from[i] + change[i]) - forDisplay(from[i]));
+        changes->push_back(displayColor(from[i] + change[i]) - displayColor(from[i]));
     return changes;
 }
 
-/// The coordinates of the material's base colour texture; none if it has no texture.
-std::optional<TextureCoordinates> baseColorCoordinates(const tinygltf::Model& model,
-                                                       const tinygltf::Primitive& primitive)
-{
-    if (primitive.material < 0) return std::nullopt;
-    const tinygltf::Material& material = model.materials[static_cast<std::size_t>(primitive.material)];
-    const tinygltf::TextureInfo& texture = material.pbrMetallicRoughness.baseColorTexture;
-    if (texture.index < 0) return std::nullopt;
-    return TextureCoordinates(texture);
-}
-
-osg::ref_ptr<osg::Vec2Array> readTransformed(const tinygltf::Model& model, const Attributes& attributes,
-                                             const TextureCoordinates& coordinates)
-{
-    const int accessor = findAccessor(attributes, "TEXCOORD_" + std::to_string(coordinates.set()));
-    if (accessor < 0) return nullptr;
-    const std::vector<float> numbers = readFloats(model, accessor);
-    osg::ref_ptr<osg::Vec2Array> out = new osg::Vec2Array(osg::Array::BIND_PER_VERTEX);
-    out->reserve(numbers.size() / 2);
-    for (std::size_t i = 0; i + 2 <= numbers.size(); i += 2)
-        out->push_back(coordinates.transformed(osg::Vec2(numbers[i], numbers[i + 1])));
-    return out;
-}
-
 /// Transforms an offset; the transform is affine, so this is the image of the offset minus the image of zero.
-osg::ref_ptr<osg::Vec2Array> readCoordinateChanges(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
-                                                   const Attributes& target)
+osg::ref_ptr<osg::Vec2Array> readCoordinateChanges(const tinygltf::Model& model, const Attributes& target,
+                                                   const TextureCoordinates& coordinates)
 {
-    const std::optional<TextureCoordinates> coordinates = baseColorCoordinates(model, primitive);
-    osg::ref_ptr<osg::Vec2Array> changes = coordinates ? readTransformed(model, target, *coordinates) : nullptr;
+    osg::ref_ptr<osg::Vec2Array> changes = readTextureCoordinates(model, target, coordinates);
     if (!changes) return nullptr;
-    const osg::Vec2 none = coordinates->transformed(osg::Vec2(0, 0));
+    const osg::Vec2 none = coordinates.transformed(osg::Vec2(0, 0));
     for (osg::Vec2& change : *changes)
         change -= none;
     return changes;
 }
 
 } // namespace
-
-osg::Vec4 displayColor(double red, double green, double blue, double alpha)
-{
-    return osg::Vec4(encode(red), encode(green), encode(blue), static_cast<float>(toUnit(alpha)));
-}
 
 osg::ref_ptr<osg::Vec3Array> readVectors(const tinygltf::Model& model, const std::map<std::string, int>& attributes,
                                          const char* name)
@@ -129,23 +81,46 @@ osg::ref_ptr<osg::Vec4Array> readColors(const tinygltf::Model& model, const tiny
     osg::ref_ptr<osg::Vec4Array> colors = new osg::Vec4Array(osg::Array::BIND_PER_VERTEX);
     colors->reserve(linear.size());
     for (const osg::Vec4& color : linear)
-        colors->push_back(forDisplay(color));
+        colors->push_back(displayColor(color));
     return colors;
 }
 
-osg::ref_ptr<osg::Vec2Array> readTextureCoordinates(const tinygltf::Model& model, const tinygltf::Primitive& primitive)
+osg::ref_ptr<osg::Vec2Array> readTextureCoordinates(const tinygltf::Model& model,
+                                                    const std::map<std::string, int>& attributes,
+                                                    const TextureCoordinates& coordinates)
 {
-    const std::optional<TextureCoordinates> coordinates = baseColorCoordinates(model, primitive);
-    return coordinates ? readTransformed(model, primitive.attributes, *coordinates) : nullptr;
+    const int accessor = findAccessor(attributes, "TEXCOORD_" + std::to_string(coordinates.set()));
+    if (accessor < 0) return nullptr;
+    const std::vector<float> numbers = readFloats(model, accessor);
+    osg::ref_ptr<osg::Vec2Array> out = new osg::Vec2Array(osg::Array::BIND_PER_VERTEX);
+    out->reserve(numbers.size() / 2);
+    for (std::size_t i = 0; i + 2 <= numbers.size(); i += 2)
+        out->push_back(coordinates.transformed(osg::Vec2(numbers[i], numbers[i + 1])));
+    return out;
 }
 
-std::vector<MorphTarget> readMorphTargets(const tinygltf::Model& model, const tinygltf::Primitive& primitive)
+osg::ref_ptr<osg::Vec4Array> readTangents(const tinygltf::Model& model, const tinygltf::Primitive& primitive)
+{
+    const int accessor = findAccessor(primitive.attributes, "TANGENT");
+    if (accessor < 0) return nullptr;
+    const std::vector<float> numbers = readFloats(model, accessor);
+    osg::ref_ptr<osg::Vec4Array> tangents = new osg::Vec4Array(osg::Array::BIND_PER_VERTEX);
+    tangents->reserve(numbers.size() / 4);
+    for (std::size_t i = 0; i + 4 <= numbers.size(); i += 4)
+        tangents->push_back(
+            osg::Vec4(numbers[i], numbers[i + 1], numbers[i + 2], numbers[i + 3] < 0.0f ? -1.0f : 1.0f));
+    return tangents;
+}
+
+std::vector<MorphTarget> readMorphTargets(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
+                                          const TextureCoordinates* coordinates, bool withTangents)
 {
     std::vector<MorphTarget> targets;
     for (const Attributes& target : primitive.targets)
         targets.push_back({readVectors(model, target, "POSITION"), readVectors(model, target, "NORMAL"),
                            readColorChanges(model, primitive.attributes, target),
-                           readCoordinateChanges(model, primitive, target)});
+                           coordinates ? readCoordinateChanges(model, target, *coordinates) : nullptr,
+                           withTangents ? readVectors(model, target, "TANGENT") : nullptr});
     return targets;
 }
 

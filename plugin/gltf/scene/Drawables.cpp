@@ -5,6 +5,8 @@
 
 #include <osgGpuAnimation/animation/bounds/JointRange.h>
 
+#include <layout.glsl>
+
 #include <algorithm>
 #include <cmath>
 
@@ -50,18 +52,18 @@ osg::Geometry* Drawables::drawable(const DrawablePlace& place)
 /// plain geometry store the product.
 void Drawables::setColors(osg::Geometry& geometry, const MeshPrimitive& mesh, int material, bool palette)
 {
-    const osg::Vec4 base = palette ? osg::Vec4(1, 1, 1, 1) : _materials.baseColor(material);
+    const osg::Vec4 white(1, 1, 1, 1);
     if (!mesh.colors)
     {
-        geometry.setColorArray(overall(base));
+        geometry.setColorArray(overall(palette ? white : _materials.plainColor(white, material)));
         return;
     }
     osg::ref_ptr<osg::Vec4Array> colors = mesh.colors;
-    if (base != osg::Vec4(1, 1, 1, 1))
+    if (!palette && _materials.baseColor(material) != white)
     {
         colors = new osg::Vec4Array(*mesh.colors);
         for (osg::Vec4& color : *colors)
-            color = osg::componentMultiply(color, base);
+            color = _materials.plainColor(color, material);
     }
     geometry.setColorArray(colors, osg::Array::BIND_PER_VERTEX);
 }
@@ -130,6 +132,8 @@ osg::ref_ptr<osg::Geometry> Drawables::make(const DrawablePlace& place)
     geometry->setVertexArray(mesh->positions);
     if (mesh->normals) geometry->setNormalArray(mesh->normals, osg::Array::BIND_PER_VERTEX);
     if (mesh->texCoords) geometry->setTexCoordArray(0, mesh->texCoords, osg::Array::BIND_PER_VERTEX);
+    if (mesh->moreCoordinates) geometry->setVertexAttribArray(POSE_COORDINATES_LOCATION, mesh->moreCoordinates);
+    if (mesh->tangents) geometry->setVertexAttribArray(POSE_TANGENT_LOCATION, mesh->tangents);
     setColors(*geometry, *mesh, source.material, palette);
     geometry->addPrimitiveSet(mesh->primitiveSet);
     if (palette) setInfluences(*skinned, *mesh, place);
@@ -141,11 +145,12 @@ osg::ref_ptr<osg::Geometry> Drawables::make(const DrawablePlace& place)
     use.mirrored = place.mirrored;
     use.lit = mesh->normals.valid();
     use.flat = palette && mesh->isFlat;
-    use.textured = mesh->texCoords.valid();
+    use.coordinates = mesh->coordinates;
+    use.tangents = mesh->tangents.valid();
     use.colored = mesh->colors.valid();
     use.influences = palette ? skinned->getInfluenceCount() : 0;
     use.morphed = palette && place.morph >= 0;
-    if (_materials.wantsTexture(use.material) && !use.textured)
+    if (_materials.wantedCoordinates(use.material) & ~use.coordinates)
         _report.warn(mesh->label + ": lacks the texture coordinates that its material needs");
     geometry->setStateSet(_materials.stateSet(use));
     return geometry;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/scene/Materials.h"
 
-#include "gltf/data/VertexAttributes.h"
+#include "gltf/data/TextureCoordinates.h"
 
 #include <osgGpuAnimation/nodes/CharacterProgram.h>
 
@@ -25,34 +25,39 @@ const tinygltf::Material& materialOf(const tinygltf::Model& model, int index)
     return index < 0 ? plain : model.materials[static_cast<std::size_t>(index)];
 }
 
-osg::Vec4 emission(const tinygltf::Material& material)
+float emissiveStrength(const tinygltf::Material& material)
 {
-    if (material.emissiveFactor.empty()) return osg::Vec4(0, 0, 0, 1); // the default material
-    double strength = 1.0;
     const auto extension = material.extensions.find("KHR_materials_emissive_strength");
-    if (extension != material.extensions.end() && extension->second.Has("emissiveStrength"))
-        strength = extension->second.Get("emissiveStrength").GetNumberAsDouble();
-    const std::vector<double>& factor = material.emissiveFactor;
-    return displayColor(factor[0] * strength, factor[1] * strength, factor[2] * strength, 1.0);
+    if (extension == material.extensions.end() || !extension->second.Has("emissiveStrength")) return 1.0f;
+    return static_cast<float>(extension->second.Get("emissiveStrength").GetNumberAsDouble());
 }
 
-osg::ref_ptr<osg::Material> surface(const tinygltf::Material& material, const osg::Vec4& color, bool colored)
+osg::Vec3 emissiveFactor(const tinygltf::Material& material)
+{
+    const std::vector<double>& factor = material.emissiveFactor; // empty: the default material
+    return factor.empty() ? osg::Vec3() : osg::Vec3(osg::Vec3d(factor[0], factor[1], factor[2]));
+}
+
+osg::ref_ptr<osg::Material> fixedMaterial(const tinygltf::Material& material, const osg::Vec4& color, bool colored)
 {
     osg::ref_ptr<osg::Material> result = new osg::Material;
     result->setName(material.name);
     result->setDiffuse(osg::Material::FRONT_AND_BACK, color);
     result->setAmbient(osg::Material::FRONT_AND_BACK, color);
     result->setSpecular(osg::Material::FRONT_AND_BACK, osg::Vec4(0, 0, 0, 1));
-    result->setEmission(osg::Material::FRONT_AND_BACK, emission(material));
+    result->setEmission(osg::Material::FRONT_AND_BACK,
+                        displayColor(osg::Vec4(emissiveFactor(material) * emissiveStrength(material), 1.0f)));
     result->setColorMode(colored ? osg::Material::AMBIENT_AND_DIFFUSE : osg::Material::OFF);
     return result;
 }
 
-void setSides(osg::StateSet& state, bool doubleSided, bool mirrored)
+/// fixedLighting: the fixed pipeline needs a LightModel to light both sides; the shader needs none, and the LightModel
+/// above keeps its ambient light.
+void setSides(osg::StateSet& state, bool doubleSided, bool mirrored, bool fixedLighting)
 {
     state.setAttributeAndModes(new osg::CullFace(osg::CullFace::BACK),
                                doubleSided ? osg::StateAttribute::OFF : osg::StateAttribute::ON);
-    if (doubleSided)
+    if (doubleSided && fixedLighting)
     {
         osg::ref_ptr<osg::LightModel> lightModel = new osg::LightModel;
         lightModel->setTwoSided(true);
@@ -66,10 +71,8 @@ void setAlpha(osg::StateSet& state, const tinygltf::Material& material, bool pal
     if (material.alphaMode == "MASK")
     {
         const auto cutoff = static_cast<float>(material.alphaCutoff);
-        if (palette)
-            state.addUniform(new osg::Uniform("alphaCutoff", cutoff));
-        else
-            state.setAttributeAndModes(new osg::AlphaFunc(osg::AlphaFunc::GEQUAL, cutoff));
+        state.addUniform(new osg::Uniform("alphaCutoff", cutoff));
+        if (!palette) state.setAttributeAndModes(new osg::AlphaFunc(osg::AlphaFunc::GEQUAL, cutoff));
     }
     else if (material.alphaMode == "BLEND")
     {
@@ -81,7 +84,10 @@ void setAlpha(osg::StateSet& state, const tinygltf::Material& material, bool pal
 
 } // namespace
 
-Materials::Materials(const tinygltf::Model& model, Textures& textures) : _model(model), _textures(textures) {}
+Materials::Materials(const tinygltf::Model& model, bool fixedLighting, Textures& textures)
+    : _model(model), _fixedLighting(fixedLighting), _textures(textures)
+{
+}
 
 osg::StateSet* Materials::stateSet(const MaterialUse& use)
 {
@@ -96,12 +102,48 @@ osg::StateSet* Materials::stateSet(const MaterialUse& use)
 osg::Vec4 Materials::baseColor(int material) const
 {
     const std::vector<double>& factor = materialOf(_model, material).pbrMetallicRoughness.baseColorFactor;
-    return displayColor(factor[0], factor[1], factor[2], factor[3]);
+    return osg::Vec4(osg::Vec4d(factor[0], factor[1], factor[2], factor[3]));
 }
 
-bool Materials::wantsTexture(int material) const
+osg::Vec4 Materials::plainColor(const osg::Vec4& color, int material) const
 {
-    return materialOf(_model, material).pbrMetallicRoughness.baseColorTexture.index >= 0;
+    if (_fixedLighting) return componentMultiply(color, displayColor(baseColor(material)));
+    return displayColor(componentMultiply(linearColor(color), baseColor(material)));
+}
+
+unsigned int Materials::wantedCoordinates(int material) const
+{
+    return (1u << mapCoordinates(materialOf(_model, material), !_fixedLighting).all.size()) - 1u;
+}
+
+/// Leaves out maps whose coordinates the vertices lack.
+PbrMaterial Materials::pbrMaterial(const tinygltf::Material& material, const MaterialUse& use)
+{
+    const tinygltf::PbrMetallicRoughness& source = material.pbrMetallicRoughness;
+    PbrMaterial result;
+    result.baseColor = baseColor(use.material);
+    result.metallic = static_cast<float>(source.metallicFactor);
+    result.roughness = static_cast<float>(source.roughnessFactor);
+    result.normalScale = static_cast<float>(material.normalTexture.scale);
+    result.occlusionStrength = static_cast<float>(material.occlusionTexture.strength);
+    result.emissive = emissiveFactor(material);
+    result.emissiveStrength = emissiveStrength(material);
+    result.hasTangents = use.tangents;
+    result.hasMoreCoordinates = use.coordinates > 1;
+
+    const MapCoordinates coordinates = mapCoordinates(material, true);
+    const auto map = [&](int texture, int number, ColorSpace space) -> PbrMaterial::Map
+    {
+        if (number < 0 || !(use.coordinates & (1u << number))) return {};
+        return {_textures.texture(texture, space), number};
+    };
+    result.baseColorMap = map(source.baseColorTexture.index, coordinates.baseColor, ColorSpace::Srgb);
+    result.metallicRoughnessMap =
+        map(source.metallicRoughnessTexture.index, coordinates.metallicRoughness, ColorSpace::Linear);
+    result.normalMap = map(material.normalTexture.index, coordinates.normal, ColorSpace::Linear);
+    result.occlusionMap = map(material.occlusionTexture.index, coordinates.occlusion, ColorSpace::Linear);
+    result.emissiveMap = map(material.emissiveTexture.index, coordinates.emissive, ColorSpace::Srgb);
+    return result;
 }
 
 osg::ref_ptr<osg::StateSet> Materials::make(const MaterialUse& use)
@@ -110,24 +152,36 @@ osg::ref_ptr<osg::StateSet> Materials::make(const MaterialUse& use)
     osg::ref_ptr<osg::StateSet> state = new osg::StateSet;
     state->setName(material.name);
     const bool lit = use.lit && material.extensions.count("KHR_materials_unlit") == 0;
-    state->setAttribute(surface(material, baseColor(use.material), use.colored && !use.palette));
-    osg::Texture2D* texture =
-        use.textured ? _textures.texture(material.pbrMetallicRoughness.baseColorTexture.index) : nullptr;
-    if (texture) state->setTextureAttributeAndModes(0, texture);
-    setSides(*state, material.doubleSided, use.mirrored);
-    setAlpha(*state, material, use.palette);
-    if (use.palette)
+    const bool usesArray = use.colored && !use.palette; // the fixed pipeline reads the vertex colours alone
+    if (_fixedLighting)
     {
-        if (!lit) state->addUniform(new osg::Uniform("unlit", true));
-        if (use.flat) state->addUniform(new osg::Uniform("flatNormals", true));
-        applyCharacterProgram(*state);
-        applySkinDefines(*state, use.influences, use.morphed);
+        state->setAttribute(fixedMaterial(material, displayColor(baseColor(use.material)), usesArray));
+        osg::Texture2D* texture =
+            use.coordinates & 1u ? _textures.texture(material.pbrMetallicRoughness.baseColorTexture.index) : nullptr;
+        if (texture) state->setTextureAttributeAndModes(0, texture);
     }
     else
     {
-        if (!lit) state->setMode(GL_LIGHTING, osg::StateAttribute::OFF);
-        state->setMode(GL_NORMALIZE, osg::StateAttribute::ON); // nodes may scale
+        applyPbrMaterial(*state, pbrMaterial(material, use));
+        auto& colors = static_cast<osg::Material&>(*state->getAttribute(osg::StateAttribute::MATERIAL));
+        if (usesArray) colors.setColorMode(osg::Material::AMBIENT_AND_DIFFUSE);
     }
+    setSides(*state, material.doubleSided, use.mirrored, _fixedLighting);
+    setAlpha(*state, material, use.palette);
+    if (use.palette || !_fixedLighting)
+    {
+        if (!lit) state->addUniform(new osg::Uniform("unlit", true));
+        if (use.flat) state->addUniform(new osg::Uniform("flatNormals", true));
+    }
+    if (use.palette)
+    {
+        applyCharacterProgram(*state);
+        applySkinDefines(*state, use.influences, use.morphed);
+        return state;
+    }
+    if (!_fixedLighting) applySurfaceProgram(*state, use.colored);
+    if (!lit) state->setMode(GL_LIGHTING, osg::StateAttribute::OFF);
+    state->setMode(GL_NORMALIZE, osg::StateAttribute::ON); // nodes may scale
     return state;
 }
 

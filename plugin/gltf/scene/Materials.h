@@ -3,6 +3,8 @@
 
 #include "gltf/scene/Textures.h"
 
+#include <osgGpuAnimation/nodes/PbrMaterial.h>
+
 #include <osg/StateSet>
 #include <osg/Vec4>
 #include <tiny_gltf.h>
@@ -17,18 +19,19 @@ namespace osgGpuAnimation::gltf
 struct MaterialUse
 {
     int material = -1;     ///< -1: the specification's default material
-    bool palette = false;  ///< drawn by the character program, else by the fixed pipeline
+    bool palette = false;  ///< drawn by the character program, else a plain osg::Geometry
     bool mirrored = false; ///< front faces are clockwise
     bool lit = true;       ///< false: points and lines without normals
     bool flat = false;     ///< drawn from the palette, without normals in the file: faces compute theirs from the pose
-    bool textured = false; ///< has coordinates for the base colour texture
-    bool colored = false;  ///< has colours of its own for each vertex
-    int influences = 0;    ///< drawn from the palette: the most influences of a vertex
-    bool morphed = false;  ///< drawn from the palette: has morph targets
+    unsigned int coordinates = 0; ///< see MeshPrimitive::coordinates
+    bool tangents = false;
+    bool colored = false; ///< has colours of its own for each vertex
+    int influences = 0;   ///< drawn from the palette: the most influences of a vertex
+    bool morphed = false; ///< drawn from the palette: has morph targets
 
     auto key() const
     {
-        return std::tie(material, palette, mirrored, lit, flat, textured, colored, influences, morphed);
+        return std::tie(material, palette, mirrored, lit, flat, coordinates, tangents, colored, influences, morphed);
     }
     bool operator<(const MaterialUse& other) const { return key() < other.key(); }
 };
@@ -38,24 +41,28 @@ constexpr unsigned int mostParents = 4096;
 
 /// One osg::StateSet for each material and use of it, so that OSG can sort by it; another one after mostParents.
 ///
-/// From glTF's material (2.0, section 3.9) come the base colour (factor and texture), emission, alpha mode, double
-/// sidedness, KHR_materials_unlit and KHR_materials_emissive_strength; metalness, roughness, normal, occlusion and
-/// emissive textures have no counterpart in the fixed pipeline and are left out. Colours: see displayColor().
+/// A material becomes a PbrMaterial with its alpha mode, double sidedness and KHR_materials_unlit. With fixedLighting
+/// only base colour and emission remain, drawn as by the fixed pipeline.
 class Materials
 {
 public:
-    Materials(const tinygltf::Model& model, Textures& textures);
+    Materials(const tinygltf::Model& model, bool fixedLighting, Textures& textures);
 
     osg::StateSet* stateSet(const MaterialUse& use);
-    /// The base colour factor for display; white for the default material.
+    /// The linear base colour factor; white for the default material.
     osg::Vec4 baseColor(int material) const;
-    /// True if the material has a base colour texture.
-    bool wantsTexture(int material) const;
+    /// The colour array's element of a plain geometry, which the fixed pipeline uses in place of the material's colour.
+    /// color: of the vertex, as displayed.
+    osg::Vec4 plainColor(const osg::Vec4& color, int material) const;
+    /// The coordinates that the material's maps read, as bits by their numbers.
+    unsigned int wantedCoordinates(int material) const;
 
 private:
     osg::ref_ptr<osg::StateSet> make(const MaterialUse& use);
+    PbrMaterial pbrMaterial(const tinygltf::Material& material, const MaterialUse& use);
 
     const tinygltf::Model& _model;
+    const bool _fixedLighting;
     Textures& _textures;
     std::map<MaterialUse, osg::ref_ptr<osg::StateSet>> _stateSets;
 };

@@ -103,6 +103,8 @@ void visitArrays(MeshPrimitive& mesh, const Visitor& visit)
 {
     visit(mesh.positions);
     visit(mesh.texCoords);
+    visit(mesh.moreCoordinates);
+    visit(mesh.tangents);
     visit(mesh.colors);
     for (MorphTarget& target : mesh.targets)
     {
@@ -110,6 +112,7 @@ void visitArrays(MeshPrimitive& mesh, const Visitor& visit)
         visit(target.normals);
         visit(target.colors);
         visit(target.textureCoordinates);
+        visit(target.tangents);
     }
 }
 
@@ -195,8 +198,8 @@ bool isFlat(const tinygltf::Primitive& primitive)
 /// An upper bound of the memory that reading needs, influences included.
 std::size_t byteSize(const tinygltf::Model& model, const tinygltf::Primitive& primitive, std::size_t vertexCount)
 {
-    constexpr std::size_t aVertex = sizeof(osg::Vec3) * 2 + sizeof(osg::Vec2) + sizeof(osg::Vec4) + 2 * 24 + 8;
-    const std::size_t aTarget = sizeof(osg::Vec3) * 2 + sizeof(osg::Vec4) + sizeof(osg::Vec2);
+    constexpr std::size_t aVertex = sizeof(osg::Vec3) * 2 + sizeof(osg::Vec2) + 3 * sizeof(osg::Vec4) + 2 * 24 + 8;
+    const std::size_t aTarget = sizeof(osg::Vec3) * 3 + sizeof(osg::Vec4) + sizeof(osg::Vec2);
     const std::size_t indices =
         primitive.indices < 0 ? 0 : model.accessors[static_cast<std::size_t>(primitive.indices)].count;
     const std::size_t corners =
@@ -206,8 +209,8 @@ std::size_t byteSize(const tinygltf::Model& model, const tinygltf::Primitive& pr
 
 } // namespace
 
-Meshes::Meshes(const tinygltf::Model& model, MemoryBudget& budget, Report& report)
-    : _model(model), _budget(budget), _report(report)
+Meshes::Meshes(const tinygltf::Model& model, bool allMaps, MemoryBudget& budget, Report& report)
+    : _model(model), _allMaps(allMaps), _budget(budget), _report(report)
 {
 }
 
@@ -219,6 +222,37 @@ const MeshPrimitive* Meshes::primitive(int mesh, int primitive, bool skinned)
     const auto [place, isNew] = _primitives.try_emplace({mesh, primitive, welded});
     if (isNew) place->second = read(mesh, primitive, welded);
     return place->second ? &*place->second : nullptr;
+}
+
+/// Colours, texture coordinates, tangents and morph targets.
+void Meshes::readSurface(const tinygltf::Primitive& primitive, MeshPrimitive& mesh)
+{
+    static const tinygltf::Material plain;
+    const tinygltf::Material& material =
+        primitive.material < 0 ? plain : _model.materials[static_cast<std::size_t>(primitive.material)];
+    const MapCoordinates maps = mapCoordinates(material, _allMaps);
+    for (std::size_t number = 0; number < maps.all.size(); ++number)
+    {
+        const osg::ref_ptr<osg::Vec2Array> read =
+            readTextureCoordinates(_model, primitive.attributes, maps.all[number]);
+        if (!read) continue;
+        mesh.coordinates |= 1u << number;
+        if (number == 0)
+        {
+            mesh.texCoords = read;
+            continue;
+        }
+        if (!mesh.moreCoordinates)
+            mesh.moreCoordinates =
+                new osg::Vec4Array(osg::Array::BIND_PER_VERTEX, static_cast<unsigned int>(read->size()));
+        for (std::size_t vertex = 0; vertex < read->size(); ++vertex)
+            for (int i = 0; i < 2; ++i)
+                (*mesh.moreCoordinates)[vertex][2 * (static_cast<int>(number) - 1) + i] = (*read)[vertex][i];
+    }
+    const bool wantsTangents = maps.normal >= 0 && mesh.normals;
+    if (wantsTangents) mesh.tangents = readTangents(_model, primitive);
+    mesh.colors = readColors(_model, primitive);
+    mesh.targets = readMorphTargets(_model, primitive, mesh.texCoords ? &maps.all.front() : nullptr, wantsTangents);
 }
 
 std::optional<MeshPrimitive> Meshes::read(int meshIndex, int primitiveIndex, bool welded)
@@ -243,9 +277,7 @@ std::optional<MeshPrimitive> Meshes::read(int meshIndex, int primitiveIndex, boo
         return std::nullopt; // too few vertices for one element: the validation has warned of it
     mesh.positions = readVectors(_model, primitive.attributes, "POSITION");
     mesh.normals = readVectors(_model, primitive.attributes, "NORMAL");
-    mesh.texCoords = readTextureCoordinates(_model, primitive);
-    mesh.colors = readColors(_model, primitive);
-    mesh.targets = readMorphTargets(_model, primitive);
+    readSurface(primitive, mesh);
     mesh.radius = radiusOf(*mesh.positions);
     for (const MorphTarget& target : mesh.targets)
         mesh.targetRadii.push_back(target.positions ? radiusOf(*target.positions) : 0.0);

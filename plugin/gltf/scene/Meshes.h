@@ -26,9 +26,12 @@ struct MeshPrimitive
     std::string label;           ///< `meshes[3] "Cape".primitives[0]`, for messages
     std::size_t vertexCount = 0; ///< of the file's POSITION accessor
     osg::ref_ptr<osg::Vec3Array> positions;
-    osg::ref_ptr<osg::Vec3Array> normals;   ///< null: points or lines without normals, which are drawn unlit
-    osg::ref_ptr<osg::Vec2Array> texCoords; ///< for the material's base colour texture, see TextureCoordinates; or null
-    osg::ref_ptr<osg::Vec4Array> colors;    ///< for display, see displayColor(); or null
+    osg::ref_ptr<osg::Vec3Array> normals;         ///< null: points or lines without normals, which are drawn unlit
+    osg::ref_ptr<osg::Vec2Array> texCoords;       ///< number 0 of MapCoordinates, or null
+    osg::ref_ptr<osg::Vec4Array> moreCoordinates; ///< numbers 1 (xy) and 2 (zw), or null
+    osg::ref_ptr<osg::Vec4Array> tangents;        ///< only for normal maps; or null
+    osg::ref_ptr<osg::Vec4Array> colors;          ///< for display, see displayColor(); or null
+    unsigned int coordinates = 0;                 ///< bit n is set if the vertices have coordinates number n
     osg::ref_ptr<osg::PrimitiveSet> primitiveSet;
     std::vector<MorphTarget> targets;
     double radius = 0.0;             ///< of the farthest vertex from the mesh's origin
@@ -49,7 +52,8 @@ struct MeshPrimitive
 class Meshes
 {
 public:
-    Meshes(const tinygltf::Model& model, MemoryBudget& budget, Report& report);
+    /// allMaps: reads the coordinates of all maps and tangents, else only those of base colours.
+    Meshes(const tinygltf::Model& model, bool allMaps, MemoryBudget& budget, Report& report);
 
     /// skinned: by a skin, which makes vertices expensive: they are welded instead of split. Null if the primitive has
     /// nothing to draw.
@@ -57,8 +61,10 @@ public:
 
 private:
     std::optional<MeshPrimitive> read(int mesh, int primitive, bool welded);
+    void readSurface(const tinygltf::Primitive& primitive, MeshPrimitive& mesh);
 
     const tinygltf::Model& _model;
+    const bool _allMaps;
     MemoryBudget& _budget;
     Report& _report;
     std::map<std::tuple<int, int, bool>, std::optional<MeshPrimitive>> _primitives;

@@ -17,18 +17,12 @@ namespace osgGpuAnimation
 namespace
 {
 
-const std::string& defineName()
-{
-    static const std::string name = "POSE_DEPTH_ONLY";
-    return name;
-}
-
 osg::StateSet* depthOnlyState()
 {
     static const osg::ref_ptr<osg::StateSet> state = []
     {
         osg::ref_ptr<osg::StateSet> made = new osg::StateSet;
-        made->setDefine(defineName());
+        made->setDefine("POSE_DEPTH_ONLY");
         return made;
     }();
     return state.get();
@@ -169,10 +163,10 @@ bool DepthPass::isOf(const osg::Camera& camera)
                         [](const auto& buffer) { return buffer.first >= osg::Camera::COLOR_BUFFER; });
 }
 
-bool isDepthPass(osg::State& state)
+bool isDefined(osg::State& state, const std::string& name)
 {
     const auto& defines = state.getDefineMap().map;
-    const auto known = defines.find(defineName());
+    const auto known = defines.find(name);
     return known != defines.end() && !known->second.defineVec.empty() &&
            (known->second.defineVec.back().second & osg::StateAttribute::ON);
 }

@@ -10,6 +10,7 @@
 
 #include <functional>
 #include <optional>
+#include <string>
 
 namespace osgGpuAnimation
 {
@@ -48,8 +49,8 @@ private:
     osgUtil::CullVisitor* _visitor; ///< null: not a depth pass
 };
 
-/// True if POSE_DEPTH_ONLY is on in the present state.
-bool isDepthPass(osg::State& state);
+/// True if the shader define is on in the present state.
+bool isDefined(osg::State& state, const std::string& name);
 
 /// The simulation time, if an update traversal visits.
 inline std::optional<double> updateTimeOf(const osg::NodeVisitor& visitor)

@@ -64,7 +64,8 @@ public:
             for (const osg::Array* array : {static_cast<const osg::Array*>(target.positions.get()),
                                             static_cast<const osg::Array*>(target.normals.get()),
                                             static_cast<const osg::Array*>(target.colors.get()),
-                                            static_cast<const osg::Array*>(target.textureCoordinates.get())})
+                                            static_cast<const osg::Array*>(target.textureCoordinates.get()),
+                                            static_cast<const osg::Array*>(target.tangents.get())})
                 source.first.emplace_back(array, array ? array->getModifiedCount() : 0);
         return source;
     }
@@ -99,7 +100,7 @@ private:
 };
 
 osg::ref_ptr<osg::TextureBuffer> packTexture(const std::vector<MorphTarget>& targets, std::size_t vertexCount,
-                                             const std::array<int, 4>& channels)
+                                             const std::array<int, 5>& channels)
 {
     const std::size_t stride = targets.size() * static_cast<std::size_t>(channels[0]);
     osg::ref_ptr<osg::Image> image = new osg::Image;
@@ -114,6 +115,7 @@ osg::ref_ptr<osg::TextureBuffer> packTexture(const std::vector<MorphTarget>& tar
         if (channels[1] >= 0) pack(targets[i].normals.get(), vertexCount, stride, first + channels[1]);
         if (channels[2] >= 0) pack(targets[i].colors.get(), vertexCount, stride, first + channels[2]);
         if (channels[3] >= 0) pack(targets[i].textureCoordinates.get(), vertexCount, stride, first + channels[3]);
+        if (channels[4] >= 0) pack(targets[i].tangents.get(), vertexCount, stride, first + channels[4]);
     }
     osg::ref_ptr<osg::TextureBuffer> texture = new osg::TextureBuffer(image);
     texture->setInternalFormat(GL_RGBA32F_ARB);
@@ -126,10 +128,11 @@ osg::ref_ptr<osg::TextureBuffer> packTexture(const std::vector<MorphTarget>& tar
 MorphDeltas packMorphTargets(const std::vector<MorphTarget>& targets, std::size_t vertexCount)
 {
     MorphDeltas deltas;
-    std::array<int, 4>& channels = deltas.channels;
+    std::array<int, 5>& channels = deltas.channels;
     if (anyHas(targets, &MorphTarget::normals)) channels[1] = channels[0]++;
     if (anyHas(targets, &MorphTarget::colors)) channels[2] = channels[0]++;
     if (anyHas(targets, &MorphTarget::textureCoordinates)) channels[3] = channels[0]++;
+    if (anyHas(targets, &MorphTarget::tangents)) channels[4] = channels[0]++;
 
     const PackedDeltas::Source source = PackedDeltas::sourceOf(targets, vertexCount);
     deltas.texture = PackedDeltas::instance().find(source);
@@ -144,6 +147,7 @@ bool bindMorphTargets(osg::State& state, const MorphDeltas& deltas, std::size_t 
     static const unsigned int deltasName = osg::Uniform::getNameID("poseMorphDeltas");
     static const unsigned int morphName = osg::Uniform::getNameID("poseMorph");
     static const unsigned int channelsName = osg::Uniform::getNameID("poseMorphChannels");
+    static const unsigned int tangentsName = osg::Uniform::getNameID("poseMorphTangents");
     const osg::Program::PerContextProgram* program = state.getLastAppliedProgramObject();
     if (!program) return true;
     const osg::GLExtensions* gl = state.get<osg::GLExtensions>();
@@ -157,6 +161,7 @@ bool bindMorphTargets(osg::State& state, const MorphDeltas& deltas, std::size_t 
     state.applyTextureAttribute(POSE_MORPH_UNIT, deltas.texture.get());
     gl->glUniform4i(program->getUniformLocation(channelsName), deltas.channels[0], deltas.channels[1],
                     deltas.channels[2], deltas.channels[3]);
+    gl->glUniform1i(program->getUniformLocation(tangentsName), deltas.channels[4]);
     return true;
 }
 

@@ -16,9 +16,9 @@ namespace osgGpuAnimation
 struct MorphDeltas
 {
     osg::ref_ptr<osg::TextureBuffer> texture; ///< RGBA32F: by vertex, target, channel
-    /// The number of channels per target, then the indices of normal, colour and texture coordinate (-1: none).
-    /// Position is always channel 0.
-    std::array<int, 4> channels{1, -1, -1, -1};
+    /// The number of channels per target, then the indices of normal, colour, texture coordinate and tangent (-1:
+    /// none). Position is always channel 0.
+    std::array<int, 5> channels{1, -1, -1, -1, -1};
 };
 
 /// Packs the targets. Targets with the same arrays share one texture while it is in use, so that one mesh under many

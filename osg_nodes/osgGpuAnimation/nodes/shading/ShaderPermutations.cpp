@@ -2,6 +2,7 @@
 #include <osgGpuAnimation/nodes/shading/ShaderPermutations.h>
 
 #include <osgGpuAnimation/nodes/frame/CullScopes.h>
+#include <osgGpuAnimation/nodes/PbrMaterial.h>
 
 #include <osg/ColorMask>
 #include <osg/Fog>
@@ -13,6 +14,7 @@
 #include <ShaderSources.h>
 
 #include <array>
+#include <initializer_list>
 #include <string>
 
 namespace osgGpuAnimation
@@ -163,9 +165,12 @@ void readLights(const osg::State& state, ShaderKey& surface)
     surface.hasShadowSplits = surface.shadowMaps != 0 && hasUniform(state, "zShadow0");
 }
 
-osg::Shader* makeShader(osg::Shader::Type type, const ShaderKey& surface, const char* source)
+osg::Shader* makeShader(osg::Shader::Type type, const std::string& defines, std::initializer_list<const char*> sources)
 {
-    return new osg::Shader(type, "#version 140\n" + surface.defines() + source);
+    std::string text = "#version 140\n" + defines;
+    for (const char* source : sources)
+        text += source;
+    return new osg::Shader(type, text);
 }
 
 void setShadowUnits(osg::State& state)
@@ -193,11 +198,16 @@ void setMaterial(osg::State& state)
     if (!program) return;
     const auto* material = applied<osg::Material>(state, osg::StateAttribute::MATERIAL);
     const bool isOwn = material && !givesWayToColors(*material);
-    const osg::Vec4 diffuse = isOwn ? material->getDiffuse(osg::Material::FRONT) : osg::Vec4(1, 1, 1, 1);
-    const osg::Vec4 emission = material ? material->getEmission(osg::Material::FRONT) : osg::Vec4(0, 0, 0, 1);
+    osg::Vec4 diffuse = isOwn ? material->getDiffuse(osg::Material::FRONT) : osg::Vec4(1, 1, 1, 1);
+    osg::Vec4 emission = material ? material->getEmission(osg::Material::FRONT) : osg::Vec4(0, 0, 0, 1);
+    if (isDefined(state, "MATERIAL_PBR"))
+    {
+        diffuse = linearColor(diffuse);
+        emission = linearColor(emission);
+    }
     const osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
     gl.glUniform4fv(program->getUniformLocation(diffuseName), 1, diffuse.ptr());
-    gl.glUniform4fv(program->getUniformLocation(emissionName), 1, emission.ptr());
+    gl.glUniform3fv(program->getUniformLocation(emissionName), 1, emission.ptr());
 }
 
 osg::ref_ptr<osg::Texture2D> makeWhiteTexture()
@@ -219,7 +229,7 @@ ShaderKey ShaderKey::of(osg::State& state)
 {
     ShaderKey surface;
     surface.lights = 0;
-    surface.isDepthOnly = isDepthPass(state) || isColorMasked(state);
+    surface.isDepthOnly = isDefined(state, "POSE_DEPTH_ONLY") || isColorMasked(state);
     surface.isAlphaNeeded = surface.isDepthOnly && leavesPartsOut(state);
     surface.isLit = !surface.isDepthOnly && isLightingOn(state) && !isOn(state, "unlit");
     surface.hasFlatNormals = surface.isLit && isOn(state, "flatNormals");
@@ -231,6 +241,7 @@ ShaderKey ShaderKey::of(osg::State& state)
         surface.hasClipPlanes = surface.hasClipPlanes || state.getLastAppliedMode(GL_CLIP_PLANE0 + plane);
     if (surface.isLit) readLights(state, surface);
     if (!surface.isDepthOnly) surface.fog = fogOf(state);
+    surface.isEncoded = !state.getLastAppliedMode(GL_FRAMEBUFFER_SRGB);
     return surface;
 }
 
@@ -244,7 +255,7 @@ std::string ShaderKey::defines() const
            line("DRAW_CLIP_PLANES", hasClipPlanes) + line("DRAW_LIGHTS", lights) +
            line("DRAW_POINT_LIGHTS", pointLights) + line("DRAW_SHADOW_MAPS", shadowMaps) +
            line("DRAW_SHADOW_BIAS", hasShadowBias) + line("DRAW_SHADOW_SPLITS", hasShadowSplits) +
-           line("DRAW_FOG", static_cast<unsigned int>(fog));
+           line("DRAW_ENCODED", isEncoded) + line("DRAW_FOG", static_cast<unsigned int>(fog));
 }
 
 bool isWhiteTexture(const osg::StateAttribute* texture)
@@ -273,8 +284,11 @@ osg::ref_ptr<osg::Program> ShaderPermutations::variant(const ShaderKey& surface)
     if (_skin) program->addShader(_skin);
     for (const auto& [name, location] : getAttribBindingList())
         program->addBindAttribLocation(name, location);
-    program->addShader(makeShader(osg::Shader::VERTEX, surface, shaders::character_vert));
-    program->addShader(makeShader(osg::Shader::FRAGMENT, surface, shaders::character_frag));
+    const std::string defines = surface.defines() + "#define DRAW_SKINNED " + (_skin ? "1\n" : "0\n");
+    program->addShader(makeShader(osg::Shader::VERTEX, defines, {shaders::color_glsl, shaders::character_vert}));
+    program->addShader(makeShader(osg::Shader::FRAGMENT, defines,
+                                  {shaders::color_glsl, shaders::material_glsl, shaders::pbr_glsl,
+                                   shaders::environment_glsl, shaders::character_frag}));
     return program;
 }
 

@@ -41,6 +41,7 @@ struct ShaderKey
     std::uint8_t shadowMaps = 0;   ///< a bit for each texture unit, 1 to 7, with a depth map on generated coordinates
     bool hasShadowBias = false;    ///< osgShadow::ShadowMap: its uniform osgShadow_ambientBias exists
     bool hasShadowSplits = false;  ///< osgShadow::ParallelSplitShadowMap: its uniform zShadow0 exists
+    bool isEncoded = true;         ///< no GL_FRAMEBUFFER_SRGB: the shader encodes linear light for the display
     Fog fog = Fog::None;           ///< GL_FOG, and the osg::Fog's mode
 
     /// The key of the present state. Call it while attributes are applied, after the modes.
@@ -52,12 +53,12 @@ struct ShaderKey
     bool operator<(const ShaderKey& other) const { return key() < other.key(); }
 
 private:
-    std::tuple<bool, bool, bool, bool, bool, bool, bool, bool, bool, bool, unsigned, unsigned, unsigned, Fog>
+    std::tuple<bool, bool, bool, bool, bool, bool, bool, bool, bool, bool, bool, unsigned, unsigned, unsigned, Fog>
     key() const
     {
-        return {
-            isDepthOnly,   isAlphaNeeded, isLit,           hasFlatNormals, hasSpecular, isTextured, hasTextureMatrix,
-            hasClipPlanes, hasShadowBias, hasShadowSplits, lights,         pointLights, shadowMaps, fog};
+        return {isDepthOnly, isAlphaNeeded,    isLit,         hasFlatNormals, hasSpecular,
+                isTextured,  hasTextureMatrix, hasClipPlanes, hasShadowBias,  hasShadowSplits,
+                isEncoded,   lights,           pointLights,   shadowMaps,     fog};
     }
 };
 
@@ -88,16 +89,17 @@ private:
     osg::observer_ptr<Object> _object;
 };
 
-/// The attribute behind characterProgram(): one program per ShaderKey, created on demand. It reads the state whenever a
-/// StateSet with it is applied. Every permutation links the skinning shader and has the attribute locations of this
-/// program.
+/// The attribute behind characterProgram() and surfaceProgram(): one program per ShaderKey, created on demand. It reads
+/// the state whenever a StateSet with it is applied. Every permutation links the skinning shader and has the attribute
+/// locations of this program. OSG's shader defines add the maps of a material, see shaders/material.glsl.
 ///
 /// Set it PROTECTED, so that overriding programs from above (osgShadow's casting cameras, osgFX) do not draw the bind
 /// pose. An overriding program that links skin.glsl itself is applied instead.
 class ShaderPermutations : public osg::Program
 {
 public:
-    /// skin: skin.glsl. It is not in this program's own list of shaders: OSG compiles a program that has shaders.
+    /// skin: skin.glsl; null: the program draws meshes that do not move. It is not in this program's own list of
+    /// shaders: OSG compiles a program that has shaders.
     explicit ShaderPermutations(osg::Shader* skin = nullptr) : _skin(skin) {}
     /// Shares the shader; the copy creates its own programs.
     ShaderPermutations(const ShaderPermutations& other, const osg::CopyOp& copyop = osg::CopyOp::SHALLOW_COPY);
@@ -110,7 +112,7 @@ public:
         return dynamic_cast<const ShaderPermutations*>(object) != nullptr;
     }
     const char* libraryName() const override { return "osgGpuAnimation"; }
-    const char* className() const override { return "SurfaceProgram"; }
+    const char* className() const override { return _skin ? "SurfaceProgram" : "StillSurfaceProgram"; }
 
     void apply(osg::State& state) const override;
     void compileGLObjects(osg::State& state) const override;

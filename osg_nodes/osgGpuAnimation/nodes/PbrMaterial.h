@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osg/StateSet>
+#include <osg/Texture2D>
+#include <osg/Vec3>
+#include <osg/Vec4>
+
+namespace osgGpuAnimation
+{
+
+/// glTF's metallic-roughness material (2.0, section 3.9) for the character program and the surface program:
+///
+///     PbrMaterial material;
+///     material.metallic = 0.0f;
+///     material.baseColorMap.texture = picture;
+///     applyPbrMaterial(*mesh->getOrCreateStateSet(), material);
+///     applyCharacterProgram(*mesh->getOrCreateStateSet());
+///
+/// Without it the two programs reproduce the fixed pipeline.
+struct PbrMaterial
+{
+    /// A picture and the number of its texture coordinates: 0: of unit 0; 1, 2: the vertex attribute
+    /// POSE_COORDINATES_LOCATION of layout.glsl (xy, zw).
+    struct Map
+    {
+        osg::ref_ptr<osg::Texture2D> texture; ///< null: none
+        int coordinates = 0;
+    };
+
+    osg::Vec4 baseColor{1, 1, 1, 1}; ///< linear, in [0, 1]
+    float metallic = 1.0f;           ///< in [0, 1]
+    float roughness = 1.0f;          ///< in [0, 1]; its square is the alpha of GGX
+    float normalScale = 1.0f;
+    float occlusionStrength = 1.0f;  ///< in [0, 1]
+    osg::Vec3 emissive{0, 0, 0};     ///< linear, in [0, 1]
+    float emissiveStrength = 1.0f;   ///< KHR_materials_emissive_strength; 0 or more
+    Map baseColorMap;                ///< sRGB; its coordinates are number 0
+    Map metallicRoughnessMap;        ///< linear: green is roughness, blue is metallic
+    Map normalMap;                   ///< linear
+    Map occlusionMap;                ///< linear: red
+    Map emissiveMap;                 ///< sRGB
+    bool hasTangents = false;        ///< the meshes have the vertex attribute POSE_TANGENT_LOCATION
+    bool hasMoreCoordinates = false; ///< the meshes have the vertex attribute POSE_COORDINATES_LOCATION
+};
+
+/// Sets the material's textures, uniforms and shader defines, and an osg::Material with its colours, which materials
+/// above may override. Alpha modes and sides are not part of it.
+void applyPbrMaterial(osg::StateSet& stateSet, const PbrMaterial& material);
+
+/// A linear colour as an osg::Material and OSG's fixed pipeline show it: by the sRGB transfer function (IEC 61966-2-1),
+/// clamped to [0, 1]. Alpha is linear in both.
+osg::Vec4 displayColor(const osg::Vec4& linear);
+/// The inverse of displayColor().
+osg::Vec4 linearColor(const osg::Vec4& display);
+
+} // namespace osgGpuAnimation

@@ -49,7 +49,7 @@ public:
     Importer(const tinygltf::Model& model, const std::string& fileName, const ImportOptions& options,
              ImportedModel& result)
         : _model(model), _fileName(osgDB::getStrippedName(fileName)), _options(options), _result(result),
-          _report(result.messages), _budget(options.maxDecodedBytes), _textures(model, _report)
+          _report(result.messages), _budget(options.maxDecodedBytes), _textures(model, _report, true)
     {
     }
 

@@ -4,13 +4,17 @@
 #include "gltf/data/Picture.h"
 #include "gltf/file/Report.h"
 
+#include <algorithm>
 #include <atomic>
+#include <cstdint>
 #include <exception>
 #include <future>
-#include <set>
+#include <new>
+#include <string_view>
 #include <system_error>
 #include <thread>
 #include <utility>
+#include <vector>
 
 namespace osgGpuAnimation::gltf
 {
@@ -18,48 +22,139 @@ namespace osgGpuAnimation::gltf
 namespace
 {
 
-/// The base colour pictures of all materials. LoadImages has warned of pictures without bytes.
-std::set<int> wantedImages(const tinygltf::Model& model)
+/// Collects pictures that materials use, in the order of the calls and each once.
+class WantedImages
 {
-    std::set<int> wanted;
+public:
+    explicit WantedImages(const tinygltf::Model& model) : _model(model), _isKnown(model.images.size()) {}
+
+    /// Ignores pictures without bytes: LoadImages has warned of them.
+    void addTexture(int texture)
+    {
+        const int image = texture < 0 ? -1 : _model.textures[static_cast<std::size_t>(texture)].source;
+        if (image < 0 || _isKnown[static_cast<std::size_t>(image)]) return;
+        _isKnown[static_cast<std::size_t>(image)] = true;
+        if (!_model.images[static_cast<std::size_t>(image)].image.empty()) _images.push_back(image);
+    }
+    /// The textures of a material extension, whose names end in Texture. The schema has checked their indices: it keeps
+    /// only extensions that it knows.
+    void addExtension(const tinygltf::Value& extension)
+    {
+        constexpr std::string_view ending = "Texture";
+        for (const std::string& name : extension.Keys())
+        {
+            const tinygltf::Value& member = extension.Get(name);
+            if (name.size() >= ending.size() && name.compare(name.size() - ending.size(), ending.size(), ending) == 0 &&
+                member.Has("index"))
+                addTexture(member.Get("index").GetNumberAsInt());
+        }
+    }
+    std::vector<int> take() { return std::move(_images); }
+
+private:
+    const tinygltf::Model& _model;
+    std::vector<bool> _isKnown; ///< by image
+    std::vector<int> _images;
+};
+
+/// Base colours first: they show the most.
+std::vector<int> wantedImages(const tinygltf::Model& model, bool allMaps)
+{
+    WantedImages wanted(model);
+    for (const tinygltf::Material& material : model.materials)
+        wanted.addTexture(material.pbrMetallicRoughness.baseColorTexture.index);
+    if (!allMaps) return wanted.take();
     for (const tinygltf::Material& material : model.materials)
     {
-        const int texture = material.pbrMetallicRoughness.baseColorTexture.index;
-        const int image = texture < 0 ? -1 : model.textures[static_cast<std::size_t>(texture)].source;
-        if (image >= 0 && !model.images[static_cast<std::size_t>(image)].image.empty()) wanted.insert(image);
+        for (const int texture :
+             {material.pbrMetallicRoughness.metallicRoughnessTexture.index, material.normalTexture.index,
+              material.occlusionTexture.index, material.emissiveTexture.index})
+            wanted.addTexture(texture);
+        for (const auto& extension : material.extensions)
+            wanted.addExtension(extension.second);
     }
-    return wanted;
+    return wanted.take();
+}
+
+bool isGrey(const osg::Image& image)
+{
+    return image.getPixelFormat() == GL_LUMINANCE || image.getPixelFormat() == GL_LUMINANCE_ALPHA;
+}
+
+template <typename Channel>
+void copyGreyToRgb(const osg::Image& grey, osg::Image& rgb)
+{
+    const bool hasAlpha = grey.getPixelFormat() == GL_LUMINANCE_ALPHA;
+    for (int y = 0; y < grey.t(); ++y)
+    {
+        auto from = reinterpret_cast<const Channel*>(grey.data(0, static_cast<unsigned int>(y)));
+        auto to = reinterpret_cast<Channel*>(rgb.data(0, static_cast<unsigned int>(y)));
+        for (int x = 0; x < grey.s(); ++x)
+        {
+            to = std::fill_n(to, 3, *from++);
+            if (hasAlpha) *to++ = *from++;
+        }
+    }
+}
+
+/// A copy of a grey picture as RGB or RGBA.
+osg::ref_ptr<osg::Image> greyToRgb(const osg::Image& grey)
+{
+    osg::ref_ptr<osg::Image> rgb = new osg::Image;
+    const GLenum format = grey.getPixelFormat() == GL_LUMINANCE_ALPHA ? GL_RGBA : GL_RGB;
+    rgb->allocateImage(grey.s(), grey.t(), 1, format, grey.getDataType());
+    if (!rgb->data()) throw std::bad_alloc();
+    rgb->setInternalTextureFormat(static_cast<GLint>(format));
+    rgb->setName(grey.getName());
+    if (grey.getDataType() == GL_UNSIGNED_SHORT)
+        copyGreyToRgb<std::uint16_t>(grey, *rgb);
+    else
+        copyGreyToRgb<std::uint8_t>(grey, *rgb);
+    return rgb;
+}
+
+/// The texture format for an RGB or RGBA picture; GL has no sRGB format of 16 bits a channel.
+GLint internalFormat(const osg::Image& image, ColorSpace space)
+{
+    const bool hasAlpha = image.getPixelFormat() == GL_RGBA;
+    if (space == ColorSpace::Srgb) return hasAlpha ? GL_SRGB8_ALPHA8 : GL_SRGB8;
+    if (image.getDataType() == GL_UNSIGNED_SHORT) return hasAlpha ? GL_RGBA16 : GL_RGB16;
+    return hasAlpha ? GL_RGBA8 : GL_RGB8;
 }
 
 } // namespace
 
-/// The decoding thread and its results.
+/// The decoding threads and their results.
 class Textures::Decoding
 {
 public:
     using Decoded = Result<osg::ref_ptr<osg::Image>>;
 
-    explicit Decoding(const tinygltf::Model& model)
+    Decoding(const tinygltf::Model& model, bool allMaps)
     {
-        for (const int index : wantedImages(model))
+        for (const int index : wantedImages(model, allMaps))
         {
             _tasks.emplace_back(&model.images[static_cast<std::size_t>(index)].image, std::promise<Decoded>());
             _decoded.emplace(index, _tasks.back().second.get_future());
         }
-        if (_tasks.empty()) return;
+        const std::size_t threads =
+            std::min({_tasks.size(), mostThreads, std::size_t(std::max(1u, std::thread::hardware_concurrency()))});
+        _threads.reserve(threads);
         try
         {
-            _thread = std::thread(&Decoding::run, this);
+            while (_threads.size() < threads)
+                _threads.emplace_back(&Decoding::run, this);
         }
         catch (const std::system_error&)
         {
-            run(); // no thread can be started: decode at once
+            if (_threads.empty()) run(); // no thread can be started: decode at once
         }
     }
     ~Decoding()
     {
         _stop = true;
-        if (_thread.joinable()) _thread.join();
+        for (std::thread& thread : _threads)
+            thread.join();
     }
 
     bool has(int index) const { return _decoded.count(index) > 0; }
@@ -67,11 +162,14 @@ public:
     Decoded take(int index) { return _decoded.at(index).get(); }
 
 private:
+    /// A further thread brings less and less, and holds a decoder's memory.
+    static constexpr std::size_t mostThreads = 4;
+
     void run()
     {
-        for (auto& [bytes, promise] : _tasks)
+        for (std::size_t task = _next++; task < _tasks.size() && !_stop; task = _next++)
         {
-            if (_stop) return;
+            auto& [bytes, promise] = _tasks[task];
             try
             {
                 promise.set_value(decodePicture(*bytes));
@@ -85,22 +183,23 @@ private:
 
     std::vector<std::pair<const std::vector<unsigned char>*, std::promise<Decoded>>> _tasks;
     std::map<int, std::future<Decoded>> _decoded;
+    std::atomic<std::size_t> _next{0}; ///< the first task that no thread has begun
     std::atomic<bool> _stop{false};
-    std::thread _thread;
+    std::vector<std::thread> _threads;
 };
 
-Textures::Textures(const tinygltf::Model& model, Report& report)
-    : _model(model), _report(report), _decoding(std::make_unique<Decoding>(model))
+Textures::Textures(const tinygltf::Model& model, Report& report, bool allMaps)
+    : _model(model), _report(report), _decoding(std::make_unique<Decoding>(model, allMaps))
 {
 }
 
 Textures::~Textures() = default;
 
-osg::Texture2D* Textures::texture(int index)
+osg::Texture2D* Textures::texture(int index, ColorSpace space)
 {
     if (index < 0) return nullptr;
-    const auto [place, isNew] = _textures.try_emplace(index);
-    if (isNew) place->second = make(_model.textures[static_cast<std::size_t>(index)]);
+    const auto [place, isNew] = _textures.try_emplace({index, space});
+    if (isNew) place->second = make(_model.textures[static_cast<std::size_t>(index)], space);
     return place->second.get();
 }
 
@@ -122,13 +221,23 @@ osg::Image* Textures::image(int index)
     return place->second.get();
 }
 
-osg::ref_ptr<osg::Texture2D> Textures::make(const tinygltf::Texture& source)
+osg::Image* Textures::imageWithoutGrey(int index)
 {
-    osg::Image* picture = image(source.source);
+    osg::Image* const picture = image(index);
+    if (!picture || !isGrey(*picture)) return picture;
+    osg::ref_ptr<osg::Image>& rgb = _imagesWithoutGrey[index];
+    if (!rgb) rgb = greyToRgb(*picture);
+    return rgb;
+}
+
+osg::ref_ptr<osg::Texture2D> Textures::make(const tinygltf::Texture& source, ColorSpace space)
+{
+    osg::Image* picture = space == ColorSpace::Display ? image(source.source) : imageWithoutGrey(source.source);
     if (!picture) return nullptr;
     const tinygltf::Sampler sampler =
         source.sampler < 0 ? tinygltf::Sampler() : _model.samplers[static_cast<std::size_t>(source.sampler)];
     osg::ref_ptr<osg::Texture2D> texture = new osg::Texture2D(picture);
+    if (space != ColorSpace::Display) texture->setInternalFormat(internalFormat(*picture, space));
     texture->setName(source.name.empty() ? picture->getName() : source.name);
     // glTF and OSG both use OpenGL's numbers; the schema has checked them, and -1 says that the file gives no filter.
     texture->setWrap(osg::Texture::WRAP_S, static_cast<osg::Texture::WrapMode>(sampler.wrapS));

@@ -8,37 +8,49 @@
 
 #include <map>
 #include <memory>
-#include <string>
+#include <utility>
 
 namespace osgGpuAnimation::gltf
 {
 
-/// One osg::Texture2D for each texture of the file, with its sampler's filters and wrapping (glTF 2.0, section 3.8);
-/// textures of one picture share the osg::Image.
+/// The meaning of a picture's numbers, and the texture format that follows from it.
+enum class ColorSpace
+{
+    Display, ///< sampled as stored, for the fixed pipeline; the osg::Image decides the format
+    Srgb,    ///< colours in sRGB that GL decodes: GL_SRGB8 or GL_SRGB8_ALPHA8; 16 bits a channel are stored as 8
+    Linear   ///< data, sampled as stored: GL_RGB8, GL_RGBA8, GL_RGB16 or GL_RGBA16
+};
+
+/// One osg::Texture2D for each texture of the file and colour space, with its sampler's filters and wrapping (glTF 2.0,
+/// section 3.8). Textures of one picture share the osg::Image. For Srgb and Linear, grey pictures become RGB, because
+/// GL's core profile has no grey formats: they share a second osg::Image.
 ///
-/// A thread decodes the base colour pictures of all materials while the import reads clips and meshes, because decoding
-/// takes a large part of the load. Other pictures are never decoded.
+/// Up to four threads decode the pictures of all materials while the import reads clips and meshes, because decoding
+/// takes a large part of the load. Base colours come first.
 class Textures
 {
 public:
-    Textures(const tinygltf::Model& model, Report& report);
-    /// Does not wait for pictures that the thread has not begun.
+    /// allMaps: false decodes only base colours; texture() is then null for all other pictures.
+    Textures(const tinygltf::Model& model, Report& report, bool allMaps);
+    /// Does not wait for pictures whose decoding has not begun.
     ~Textures();
 
     /// Null for -1, and, with a warning, if the picture is missing or damaged: it is then drawn white.
-    osg::Texture2D* texture(int index);
+    osg::Texture2D* texture(int index, ColorSpace space = ColorSpace::Display);
 
 private:
     class Decoding;
 
     osg::Image* image(int index);
-    osg::ref_ptr<osg::Texture2D> make(const tinygltf::Texture& source);
+    osg::Image* imageWithoutGrey(int index);
+    osg::ref_ptr<osg::Texture2D> make(const tinygltf::Texture& source, ColorSpace space);
 
     const tinygltf::Model& _model;
     Report& _report;
     std::unique_ptr<Decoding> _decoding;
-    std::map<int, osg::ref_ptr<osg::Texture2D>> _textures;
-    std::map<int, osg::ref_ptr<osg::Image>> _images; ///< the requested ones; null if damaged
+    std::map<std::pair<int, ColorSpace>, osg::ref_ptr<osg::Texture2D>> _textures;
+    std::map<int, osg::ref_ptr<osg::Image>> _images;            ///< the requested ones; null if damaged
+    std::map<int, osg::ref_ptr<osg::Image>> _imagesWithoutGrey; ///< the grey ones of _images, as RGB or RGBA
 };
 
 } // namespace osgGpuAnimation::gltf

@@ -10,11 +10,13 @@
 namespace osgGpuAnimation
 {
 
-/// The file content of a picture whose upper half is red and whose lower half is blue. kind: png or jpg.
-inline std::string encodedPicture(const std::string& kind, int width, int height)
+/// The file content of a picture whose upper half is red and whose lower half is blue; 1 and 0 in grey formats.
+/// kind: png or jpg.
+inline std::string encodedPicture(const std::string& kind, int width, int height, GLenum format = GL_RGB,
+                                  GLenum type = GL_UNSIGNED_BYTE)
 {
     osg::ref_ptr<osg::Image> image = new osg::Image;
-    image->allocateImage(width, height, 1, GL_RGB, GL_UNSIGNED_BYTE);
+    image->allocateImage(width, height, 1, format, type);
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x)
             image->setColor(y < height / 2 ? osg::Vec4(0, 0, 1, 1) : osg::Vec4(1, 0, 0, 1),

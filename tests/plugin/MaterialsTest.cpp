@@ -23,7 +23,7 @@ class MaterialsTest : public ::testing::Test
 {
 protected:
     MaterialsTest()
-        : file(withPictures()), report(messages), textures(file.model, report), materials(file.model, textures)
+        : file(withPictures()), report(messages), textures(file.model, report, false), materials(file.model, textures)
     {
     }
 

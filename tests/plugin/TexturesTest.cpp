@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+#include "gltf/scene/Textures.h"
+#include "plugin/EncodedPicture.h"
+
+#include <gtest/gtest.h>
+
+namespace osgGpuAnimation::gltf
+{
+
+namespace
+{
+
+/// A texture of an extension, as the document has it.
+tinygltf::Value textureInfo(int index)
+{
+    tinygltf::Value::Object info;
+    info["index"] = tinygltf::Value(index);
+    return tinygltf::Value(info);
+}
+
+/// Textures 0 to 6, of a picture each; two materials use all but the last.
+tinygltf::Model manyMaps()
+{
+    const std::string png = encodedPicture("png", 2, 2);
+    tinygltf::Model model;
+    model.images.resize(7);
+    model.textures.resize(7);
+    for (std::size_t i = 0; i < 7; ++i)
+    {
+        model.images[i].image.assign(png.begin(), png.end());
+        model.textures[i].source = static_cast<int>(i);
+    }
+    model.materials.resize(2);
+    model.materials[0].normalTexture.index = 0;
+    model.materials[0].occlusionTexture.index = 1;
+    model.materials[0].emissiveTexture.index = 2;
+    model.materials[1].pbrMetallicRoughness.baseColorTexture.index = 3;
+    model.materials[1].pbrMetallicRoughness.metallicRoughnessTexture.index = 4;
+    tinygltf::Value::Object coat;
+    coat["clearcoatTexture"] = textureInfo(5);
+    coat["clearcoatFactor"] = tinygltf::Value(0.5);
+    model.materials[1].extensions["KHR_materials_clearcoat"] = tinygltf::Value(coat);
+    return model;
+}
+
+} // namespace
+
+TEST(TexturesTest, decodesTheMapsThatAreWanted)
+{
+    const tinygltf::Model model = manyMaps();
+    for (const bool allMaps : {true, false})
+    {
+        Messages messages;
+        Report report(messages);
+        Textures textures(model, report, allMaps);
+        for (int i = 0; i < 7; ++i)
+            EXPECT_EQ(textures.texture(i) != nullptr, allMaps ? i < 6 : i == 3) << i << ", all maps: " << allMaps;
+        EXPECT_TRUE(messages.warnings.empty());
+    }
+}
+
+} // namespace osgGpuAnimation::gltf

@@ -98,13 +98,13 @@ osgDB::RegisterWrapperProxy skinnedGeometry([]() -> osg::Object* { return new Sk
                                             &addMeshProperties);
 
 // A file has no shaders: reading returns the program that all characters, or all other surfaces, share.
-osgDB::RegisterWrapperProxy surfaceProgram([]() -> osg::Object* { return characterProgram().release(); },
-                                           "osgGpuAnimation::SurfaceProgram", "osgGpuAnimation::SurfaceProgram",
-                                           [](osgDB::ObjectWrapper*) {});
+osgDB::RegisterWrapperProxy characterProgramWrapper([]() -> osg::Object* { return characterProgram().release(); },
+                                                    "osgGpuAnimation::SurfaceProgram",
+                                                    "osgGpuAnimation::SurfaceProgram", [](osgDB::ObjectWrapper*) {});
 
-osgDB::RegisterWrapperProxy stillSurfaceProgram([]() -> osg::Object* { return surfaceProgram().release(); },
-                                                "osgGpuAnimation::StillSurfaceProgram",
-                                                "osgGpuAnimation::StillSurfaceProgram", [](osgDB::ObjectWrapper*) {});
+osgDB::RegisterWrapperProxy surfaceProgramWrapper([]() -> osg::Object* { return surfaceProgram().release(); },
+                                                  "osgGpuAnimation::StillSurfaceProgram",
+                                                  "osgGpuAnimation::StillSurfaceProgram", [](osgDB::ObjectWrapper*) {});
 
 using Fault = std::optional<std::string>;
 

@@ -14,7 +14,7 @@ struct MorphTarget
     osg::ref_ptr<osg::Vec3Array> normals;            ///< not normalized
     osg::ref_ptr<osg::Vec4Array> colors;             ///< red, green, blue, alpha
     osg::ref_ptr<osg::Vec2Array> textureCoordinates; ///< of unit 0
-    osg::ref_ptr<osg::Vec3Array> tangents;           ///< without w, which targets do not change
+    osg::ref_ptr<osg::Vec3Array> tangents{};         ///< without w, which targets do not change
 };
 
 } // namespace osgGpuAnimation

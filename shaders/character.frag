@@ -11,6 +11,18 @@ uniform vec2 ambientBias;               // osgShadow::ParallelSplitShadowMap: th
 
 out vec4 fragmentColor;
 
+#ifdef MATERIAL_PBR
+// Emission, reflected lights and reflected surroundings.
+vec3 surfaceColor(Surface surface, vec3 direct, vec3 ambient, float occlusion)
+{
+    vec3 emission = materialEmissive();
+#ifdef MATERIAL_CLEARCOAT
+    emission *= belowCoat(surface);
+#endif
+    return emission + direct + surroundingLight(surface, ambient, occlusion);
+}
+#endif
+
 #ifdef GL_ARB_compatibility
 
 // The direction to the light, and its attenuation (OpenGL 2.1, section 2.14.1).
@@ -163,7 +175,7 @@ vec3 litColor(vec3 base)
 #if DRAW_SHADOW_MAPS
     sum.direct *= unshadowedByAll();
 #endif
-    return materialEmissive() + sum.direct + surroundingLight(lit, sum.ambient, factors.z);
+    return surfaceColor(lit, sum.direct, sum.ambient, factors.z);
 #else
     vec3 withoutLights = gl_FrontMaterial.emission.rgb + base * gl_LightModel.ambient.rgb;
     vec3 color = withoutLights + base * (sum.ambient + sum.diffuse) + gl_FrontMaterial.specular.rgb * sum.specular;
@@ -198,8 +210,7 @@ vec3 litColor(vec3 base)
 #ifdef MATERIAL_PBR
     vec3 factors = materialSurface();
     Surface surface = makeSurface(base, factors.x, factors.y, materialNormal());
-    return materialEmissive() + 0.8 * reflectedLight(surface, surface.toEye) +
-           surroundingLight(surface, vec3(0.2), factors.z);
+    return surfaceColor(surface, 0.8 * reflectedLight(surface, surface.toEye), vec3(0.2), factors.z);
 #else
     return materialEmission + base * (0.2 + 0.8 * max(dot(materialNormal(), normalize(-viewPosition)), 0.0));
 #endif
@@ -231,6 +242,11 @@ void main()
     color.rgb = shownColor(color.rgb);
 #if DRAW_FOG && defined(GL_ARB_compatibility)
     color.rgb = foggedColor(color.rgb);
+#endif
+#ifdef MATERIAL_TRANSMISSION
+    // Blended with ONE and ONE_MINUS_SRC_ALPHA: the reflection stays.
+    float through = materialTransmittance() * (1.0 - materialFactors.x);
+    color = vec4(color.rgb * color.a, color.a * (1.0 - 0.96 * through));
 #endif
     fragmentColor = color;
 #elif DRAW_ALPHA

@@ -71,19 +71,29 @@ vec3 environmentRadiance(vec3 direction, float alpha, float cosEye)
 #endif
 #endif
 
+#ifdef ENVIRONMENT
+// From around the mirrored direction of a normal.
+vec3 mirroredRadiance(Surface surface, vec3 normal, float alpha)
+{
+    vec3 mirrored = reflect(-surface.toEye, normal);
+    mirrored = normalize(mix(mirrored, normal, alpha * alpha)); // rough lobes lean towards the normal
+    float cosEye = clamp(dot(normal, surface.toEye), 0.0, 1.0);
+    return environmentIntensity * environmentRadiance(environmentFromEye * mirrored, alpha, cosEye);
+}
+#endif
+
 // ambient: the radiance of an even surrounding, used without an environment. occlusion: 1: none.
 vec3 surroundingLight(Surface surface, vec3 ambient, float occlusion)
 {
-#ifdef ENVIRONMENT
-    vec3 mirrored = reflect(-surface.toEye, surface.normal);
-    mirrored = mix(mirrored, surface.normal, surface.alpha * surface.alpha); // rough lobes lean towards the normal
-    vec3 radiance = environmentRadiance(environmentFromEye * normalize(mirrored), surface.alpha, surface.cosEye);
-    vec3 irradiance = environmentIrradiance(environmentFromEye * surface.normal);
-    radiance *= environmentIntensity;
-    irradiance *= environmentIntensity;
-#else
     vec3 radiance = ambient;
+    vec3 coatRadiance = ambient;
     vec3 irradiance = ambient;
+#ifdef ENVIRONMENT
+    radiance = mirroredRadiance(surface, surface.normal, surface.alpha);
+    irradiance = environmentIntensity * environmentIrradiance(environmentFromEye * surface.normal);
+#ifdef MATERIAL_CLEARCOAT
+    coatRadiance = mirroredRadiance(surface, surface.coatNormal, surface.coatAlpha);
+#endif
 #endif
 #ifdef MATERIAL_OCCLUSION_MAP
     // Lagarde and de Rousiers, "Moving Frostbite to Physically Based Rendering", 2014.
@@ -91,5 +101,5 @@ vec3 surroundingLight(Surface surface, vec3 ambient, float occlusion)
     radiance *= clamp(pow(surface.cosEye + occlusion, exp2(-16.0 * roughness - 1.0)) - 1.0 + occlusion, 0.0, 1.0);
     irradiance *= occlusion;
 #endif
-    return reflectedSurroundings(surface, radiance, irradiance);
+    return reflectedSurroundings(surface, radiance, coatRadiance, irradiance);
 }

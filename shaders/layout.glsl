@@ -59,6 +59,7 @@
 #define OCCLUSION_UNIT 10
 #define EMISSIVE_UNIT 14
 #define ENVIRONMENT_UNIT 15
+#define EXTENSION_MAPS_UNIT 16 // the first of PbrMaterial::mostExtensionMaps
 
 // The texture units that hold the palette, a mesh's morph targets and the instances' tints during its draw.
 #define POSE_PALETTE_UNIT 11

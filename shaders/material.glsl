@@ -11,7 +11,10 @@
 // the vertex shader. POSE_COLORED: the mesh or its morph targets have colours; POSE_TINTED: the drawn instances have tints.
 #pragma import_defines(POSE_COLORED, POSE_TINTED, MATERIAL_PBR, MATERIAL_TANGENTS, MATERIAL_METALLIC_ROUGHNESS_MAP)
 #pragma import_defines(MATERIAL_NORMAL_MAP, MATERIAL_OCCLUSION_MAP, MATERIAL_EMISSIVE_MAP, MATERIAL_EMISSIVE_STRENGTH)
-#pragma import_defines(MATERIAL_MORE_COORDINATES)
+#pragma import_defines(MATERIAL_MORE_COORDINATES, MATERIAL_GLOSSINESS, MATERIAL_SPECULAR, MATERIAL_SPECULAR_COLOR_MAP)
+#pragma import_defines(MATERIAL_SPECULAR_MAP, MATERIAL_CLEARCOAT, MATERIAL_CLEARCOAT_MAP, MATERIAL_CLEARCOAT_ROUGHNESS_MAP)
+#pragma import_defines(MATERIAL_CLEARCOAT_NORMAL_MAP, MATERIAL_SHEEN, MATERIAL_SHEEN_COLOR_MAP)
+#pragma import_defines(MATERIAL_SHEEN_ROUGHNESS_MAP, MATERIAL_TRANSMISSION, MATERIAL_TRANSMISSION_MAP)
 
 #ifndef DRAW_TEXTURE
 #define DRAW_TEXTURE 1
@@ -23,6 +26,8 @@ uniform sampler2D metallicRoughnessTexture;
 uniform sampler2D normalTexture;
 uniform sampler2D occlusionTexture;
 uniform sampler2D emissiveTexture; // sRGB
+uniform sampler2D specularColorTexture; // sRGB
+uniform sampler2D specularTexture;
 
 uniform vec4 materialDiffuse;  // osg::Material's; gl_FrontMaterial keeps other meshes' colours under colour material modes
 uniform vec3 materialEmission; // osg::Material's
@@ -64,19 +69,26 @@ vec4 materialBaseColor()
     return color;
 }
 
-#ifdef MATERIAL_NORMAL_MAP
-// The map's normal in eye space. Without tangents, the derivatives of position and coordinates replace them (Mikkelsen,
-// "Bump Mapping Unparametrized Surfaces on the GPU", 2010). The second coordinate grows with the map's +Y.
-vec3 mappedNormal(vec3 normal)
+// The unperturbed normal; on back faces it points away from the viewer.
+vec3 meshNormal()
 {
-    vec2 place = coordinates(MATERIAL_NORMAL_MAP);
-    vec3 map = texture(normalTexture, place).xyz * 2.0 - 1.0;
-    map.xy *= materialFactors.z;
+#if DRAW_FLAT_NORMALS
+    vec3 normal = normalize(cross(dFdx(viewPosition), dFdy(viewPosition)));
+    return gl_FrontFacing ? normal : -normal;
+#else
+    return normalize(viewNormal);
+#endif
+}
+
+// The normal of a map, in eye space. map: in [-1, 1]. Without tangents, the derivatives of position and coordinates replace
+// them (Mikkelsen, "Bump Mapping Unparametrized Surfaces on the GPU", 2010). The second coordinate grows with the map's +Y.
+vec3 mappedNormal(vec3 map, vec2 place)
+{
+    vec3 normal = meshNormal();
     float facing = gl_FrontFacing ? 1.0 : -1.0;
 #ifdef MATERIAL_TANGENTS
     vec3 tangent = viewTangent.xyz;
     vec3 bitangent = viewTangent.w * cross(normal, tangent);
-    if (dot(tangent, tangent) < 1e-12) return facing * normal;
     map.xy *= facing;
 #else
     vec3 alongX = cross(dFdy(viewPosition), normal);
@@ -85,26 +97,21 @@ vec3 mappedNormal(vec3 normal)
     vec2 placeY = dFdy(place);
     vec3 tangent = alongX * placeX.x + alongY * placeY.x;
     vec3 bitangent = alongX * placeX.y + alongY * placeY.y;
-    float longest = max(dot(tangent, tangent), dot(bitangent, bitangent));
-    if (longest <= 0.0) return facing * normal;
-    map.xy *= inversesqrt(longest);
 #endif
+    float longest = max(dot(tangent, tangent), dot(bitangent, bitangent));
+    if (!(longest > 0.0)) return facing * normal;
+    map.xy *= inversesqrt(longest);
     return normalize(map.x * tangent + map.y * bitangent + map.z * facing * normal);
 }
-#endif
 
 vec3 materialNormal()
 {
-#if DRAW_FLAT_NORMALS
-    vec3 normal = normalize(cross(dFdx(viewPosition), dFdy(viewPosition)));
-    if (!gl_FrontFacing) normal = -normal;
-#else
-    vec3 normal = normalize(viewNormal);
-#endif
 #ifdef MATERIAL_NORMAL_MAP
-    return mappedNormal(normal);
+    vec2 place = coordinates(MATERIAL_NORMAL_MAP);
+    vec3 map = texture(normalTexture, place).xyz * 2.0 - 1.0;
+    return mappedNormal(vec3(map.xy * materialFactors.z, map.z), place);
 #else
-    return gl_FrontFacing ? normal : -normal;
+    return gl_FrontFacing ? meshNormal() : -meshNormal();
 #endif
 }
 
@@ -124,6 +131,9 @@ vec3 materialEmissive()
 vec3 materialSurface()
 {
     vec3 surface = vec3(materialFactors.xy, 1.0);
+#if defined(MATERIAL_GLOSSINESS) && defined(MATERIAL_SPECULAR_COLOR_MAP)
+    surface.y = 1.0 - (1.0 - surface.y) * texture(specularColorTexture, coordinates(MATERIAL_SPECULAR_COLOR_MAP)).a;
+#endif
 #ifdef MATERIAL_METALLIC_ROUGHNESS_MAP
     surface.xy *= texture(metallicRoughnessTexture, coordinates(MATERIAL_METALLIC_ROUGHNESS_MAP)).bg;
 #endif
@@ -133,6 +143,78 @@ vec3 materialSurface()
 #endif
     return surface;
 }
+
+#ifdef MATERIAL_SPECULAR
+uniform vec4 materialSpecular; // the colour reflected along the normal, and the reflection's weight
+// The same, with their maps.
+vec4 materialSpecularColor()
+{
+    vec4 specular = materialSpecular;
+#ifdef MATERIAL_SPECULAR_COLOR_MAP
+    specular.rgb *= texture(specularColorTexture, coordinates(MATERIAL_SPECULAR_COLOR_MAP)).rgb;
+#endif
+#ifdef MATERIAL_SPECULAR_MAP
+    specular.a *= texture(specularTexture, coordinates(MATERIAL_SPECULAR_MAP)).a;
+#endif
+    return specular;
+}
+#endif
+
+#ifdef MATERIAL_CLEARCOAT
+uniform vec2 materialClearcoat; // weight, roughness
+uniform sampler2D clearcoatTexture;
+uniform sampler2D clearcoatRoughnessTexture;
+uniform sampler2D clearcoatNormalTexture;
+// Weight and roughness of the clear coat, and its normal.
+vec2 materialCoat(out vec3 normal)
+{
+    vec2 coat = materialClearcoat;
+#ifdef MATERIAL_CLEARCOAT_MAP
+    coat.x *= texture(clearcoatTexture, coordinates(MATERIAL_CLEARCOAT_MAP)).r;
+#endif
+#ifdef MATERIAL_CLEARCOAT_ROUGHNESS_MAP
+    coat.y *= texture(clearcoatRoughnessTexture, coordinates(MATERIAL_CLEARCOAT_ROUGHNESS_MAP)).g;
+#endif
+#ifdef MATERIAL_CLEARCOAT_NORMAL_MAP
+    vec2 place = coordinates(MATERIAL_CLEARCOAT_NORMAL_MAP);
+    normal = mappedNormal(texture(clearcoatNormalTexture, place).xyz * 2.0 - 1.0, place);
+#else
+    normal = gl_FrontFacing ? meshNormal() : -meshNormal();
+#endif
+    return coat;
+}
+#endif
+
+#ifdef MATERIAL_SHEEN
+uniform vec4 materialSheen; // colour, roughness
+uniform sampler2D sheenColorTexture;
+uniform sampler2D sheenRoughnessTexture;
+// The same, with their maps.
+vec4 materialSheenColor()
+{
+    vec4 sheen = materialSheen;
+#ifdef MATERIAL_SHEEN_COLOR_MAP
+    sheen.rgb *= texture(sheenColorTexture, coordinates(MATERIAL_SHEEN_COLOR_MAP)).rgb;
+#endif
+#ifdef MATERIAL_SHEEN_ROUGHNESS_MAP
+    sheen.a *= texture(sheenRoughnessTexture, coordinates(MATERIAL_SHEEN_ROUGHNESS_MAP)).a;
+#endif
+    return sheen;
+}
+#endif
+
+#ifdef MATERIAL_TRANSMISSION
+uniform float materialTransmission;
+uniform sampler2D transmissionTexture;
+float materialTransmittance()
+{
+    float share = materialTransmission;
+#ifdef MATERIAL_TRANSMISSION_MAP
+    share *= texture(transmissionTexture, coordinates(MATERIAL_TRANSMISSION_MAP)).r;
+#endif
+    return share;
+}
+#endif
 
 void osgGpuAnimationMaterial(out vec4 baseColor, out vec3 emission, out vec3 metallicRoughnessOcclusion, out vec3 normal)
 {

@@ -36,43 +36,39 @@ void transferArray(ValueStream& stream, const char* name, osg::ref_ptr<Array>& a
     stream.close();
 }
 
-void transferMorphTargets(ValueStream& stream, SkinnedGeometry& mesh)
-{
-    std::int32_t morph = mesh.getMorph(), entry = mesh.getMorphEntry();
-    std::vector<MorphTarget> targets;
-    if (!stream.isReading()) targets = mesh.getMorphTargets();
-    stream.values(morph, entry).endLine();
-    const auto transferTarget = [&](MorphTarget& target)
-    {
-        transferArray(stream, "Positions", target.positions);
-        transferArray(stream, "Normals", target.normals);
-        transferArray(stream, "Colors", target.colors);
-        transferArray(stream, "TextureCoordinates", target.textureCoordinates);
-    };
-    stream.list("Targets", targets, transferTarget);
-    if (stream.hasRead()) mesh.setMorphTargets(morph, entry, std::move(targets));
-}
-
 bool hasMorphTangents(const SkinnedGeometry& mesh)
 {
     const std::vector<MorphTarget>& targets = mesh.getMorphTargets();
     return std::any_of(targets.begin(), targets.end(), [](const MorphTarget& target) { return target.tangents; });
 }
 
-/// Follows MorphTargets, whose stored form has no tangents.
-void transferMorphTangents(ValueStream& stream, SkinnedGeometry& mesh)
+/// In place of the morph's index: targets with tangents follow, and the index itself. The first form had none.
+constexpr std::int32_t withTangents = -2;
+
+void transferMorphTargets(ValueStream& stream, SkinnedGeometry& mesh)
 {
-    std::vector<MorphTarget> targets = mesh.getMorphTargets();
-    std::vector<osg::ref_ptr<osg::Vec3Array>> tangents;
-    if (!stream.isReading())
-        for (const MorphTarget& target : targets)
-            tangents.push_back(target.tangents);
-    stream.list("Tangents", tangents,
-                [&](osg::ref_ptr<osg::Vec3Array>& array) { transferArray(stream, "Tangents", array); });
-    if (!stream.hasRead()) return;
-    for (std::size_t i = 0; i < std::min(targets.size(), tangents.size()); ++i)
-        targets[i].tangents = tangents[i];
-    mesh.setMorphTargets(mesh.getMorph(), mesh.getMorphEntry(), std::move(targets));
+    std::int32_t form = hasMorphTangents(mesh) ? withTangents : 0;
+    std::int32_t morph = mesh.getMorph(), entry = mesh.getMorphEntry();
+    std::vector<MorphTarget> targets;
+    if (!stream.isReading()) targets = mesh.getMorphTargets();
+    if (form == withTangents) stream.value(form);
+    stream.value(morph);
+    if (stream.isReading() && morph == withTangents)
+    {
+        form = morph;
+        stream.value(morph);
+    }
+    stream.value(entry).endLine();
+    const auto transferTarget = [&](MorphTarget& target)
+    {
+        transferArray(stream, "Positions", target.positions);
+        transferArray(stream, "Normals", target.normals);
+        transferArray(stream, "Colors", target.colors);
+        transferArray(stream, "TextureCoordinates", target.textureCoordinates);
+        if (form == withTangents) transferArray(stream, "Tangents", target.tangents);
+    };
+    stream.list("Targets", targets, transferTarget);
+    if (stream.hasRead()) mesh.setMorphTargets(morph, entry, std::move(targets));
 }
 
 /// Earlier versions stored whether a mesh was skinned once a frame. It is read and dropped.
@@ -87,7 +83,6 @@ void addMeshProperties(osgDB::ObjectWrapper* wrapper)
     addProperty(wrapper, "Influences", &transferInfluences);
     addProperty<SkinnedGeometry>(wrapper, "MorphTargets", &transferMorphTargets,
                                  [](const SkinnedGeometry& mesh) { return !mesh.getMorphTargets().empty(); });
-    addProperty<SkinnedGeometry>(wrapper, "MorphTangents", &transferMorphTangents, &hasMorphTangents);
     addProperty<SkinnedGeometry>(wrapper, "Skinning", &dropSkinning, [](const SkinnedGeometry&) { return false; });
 }
 

@@ -42,7 +42,7 @@ protected:
         }
         MemoryBudget budget(1 << 20);
         Report report(messages);
-        Meshes meshes(file.model, budget, report);
+        Meshes meshes(file.model, true, budget, report);
         return readInfluences(file.model, file.primitive(0), *meshes.primitive(0, 0), *set, 0, report);
     }
 

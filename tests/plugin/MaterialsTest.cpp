@@ -23,7 +23,8 @@ class MaterialsTest : public ::testing::Test
 {
 protected:
     MaterialsTest()
-        : file(withPictures()), report(messages), textures(file.model, report, false), materials(file.model, textures)
+        : file(withPictures()), report(messages), textures(file.model, report, false),
+          materials(file.model, true, textures)
     {
     }
 
@@ -187,7 +188,7 @@ TEST_F(MaterialsTest, texturesAreSharedAndSampledAsTheFileSays)
     EXPECT_EQ(second->getFilter(osg::Texture::MIN_FILTER), osg::Texture::NEAREST_MIPMAP_LINEAR);
     EXPECT_EQ(second->getFilter(osg::Texture::MAG_FILTER), osg::Texture::NEAREST);
     material().pbrMetallicRoughness.baseColorTexture.index = 1;
-    const osg::StateSet& textured = state(true, [](MaterialUse& use) { use.textured = true; });
+    const osg::StateSet& textured = state(true, [](MaterialUse& use) { use.coordinates = 1; });
     EXPECT_EQ(textured.getTextureAttribute(0, osg::StateAttribute::TEXTURE), second);
 }
 

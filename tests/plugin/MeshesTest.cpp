@@ -16,7 +16,7 @@ namespace
 struct ReadMesh
 {
     explicit ReadMesh(const ModelBuilder& file, std::size_t bytes = std::size_t(1) << 30)
-        : budget(bytes), report(messages), meshes(file.model, budget, report), primitive(meshes.primitive(0, 0))
+        : budget(bytes), report(messages), meshes(file.model, true, budget, report), primitive(meshes.primitive(0, 0))
     {
     }
 

@@ -3,6 +3,8 @@
 
 #include <layout.glsl>
 
+#include <osg/BlendFunc>
+#include <osg/Depth>
 #include <osg/Material>
 
 #include <cmath>
@@ -34,6 +36,62 @@ void setMap(osg::StateSet& stateSet, const PbrMaterial::Map& map, int unit, cons
     stateSet.setDefine(define, std::to_string(map.coordinates));
 }
 
+/// The first mostExtensionMaps maps have a texture unit.
+void setExtensionMaps(osg::StateSet& stateSet, const PbrMaterial& material)
+{
+    const struct
+    {
+        const PbrMaterial::Map& map;
+        const char* sampler;
+        const char* define;
+    } maps[] = {
+        {material.specularColorMap, "specularColorTexture", "MATERIAL_SPECULAR_COLOR_MAP"},
+        {material.clearcoatMap, "clearcoatTexture", "MATERIAL_CLEARCOAT_MAP"},
+        {material.clearcoatRoughnessMap, "clearcoatRoughnessTexture", "MATERIAL_CLEARCOAT_ROUGHNESS_MAP"},
+        {material.clearcoatNormalMap, "clearcoatNormalTexture", "MATERIAL_CLEARCOAT_NORMAL_MAP"},
+        {material.sheenColorMap, "sheenColorTexture", "MATERIAL_SHEEN_COLOR_MAP"},
+        {material.sheenRoughnessMap, "sheenRoughnessTexture", "MATERIAL_SHEEN_ROUGHNESS_MAP"},
+        {material.specularMap, "specularTexture", "MATERIAL_SPECULAR_MAP"},
+        {material.transmissionMap, "transmissionTexture", "MATERIAL_TRANSMISSION_MAP"},
+    };
+    int used = 0;
+    for (const auto& [map, sampler, define] : maps)
+        if (map.texture && used < PbrMaterial::mostExtensionMaps)
+            setMap(stateSet, map, EXTENSION_MAPS_UNIT + used++, sampler, define);
+}
+
+void setExtensions(osg::StateSet& stateSet, const PbrMaterial& material)
+{
+    const osg::Vec4 specular(material.specularColor, material.specular);
+    if (specular != osg::Vec4(0.04f, 0.04f, 0.04f, 1.0f) || material.specularColorMap.texture ||
+        material.specularMap.texture)
+    {
+        stateSet.setDefine("MATERIAL_SPECULAR");
+        stateSet.addUniform(new osg::Uniform("materialSpecular", specular));
+    }
+    if (material.isSpecularGlossiness) stateSet.setDefine("MATERIAL_GLOSSINESS");
+    if (material.clearcoat > 0.0f)
+    {
+        stateSet.setDefine("MATERIAL_CLEARCOAT");
+        stateSet.addUniform(
+            new osg::Uniform("materialClearcoat", osg::Vec2(material.clearcoat, material.clearcoatRoughness)));
+    }
+    if (material.sheenColor != osg::Vec3())
+    {
+        stateSet.setDefine("MATERIAL_SHEEN");
+        stateSet.addUniform(new osg::Uniform("materialSheen", osg::Vec4(material.sheenColor, material.sheenRoughness)));
+    }
+    if (material.transmission > 0.0f)
+    {
+        stateSet.setDefine("MATERIAL_TRANSMISSION");
+        stateSet.addUniform(new osg::Uniform("materialTransmission", material.transmission));
+        stateSet.setAttributeAndModes(new osg::BlendFunc(osg::BlendFunc::ONE, osg::BlendFunc::ONE_MINUS_SRC_ALPHA));
+        stateSet.setAttributeAndModes(new osg::Depth(osg::Depth::LESS, 0.0, 1.0, false));
+        stateSet.setRenderingHint(osg::StateSet::TRANSPARENT_BIN);
+    }
+    setExtensionMaps(stateSet, material);
+}
+
 } // namespace
 
 void applyPbrMaterial(osg::StateSet& stateSet, const PbrMaterial& material)
@@ -62,7 +120,9 @@ void applyPbrMaterial(osg::StateSet& stateSet, const PbrMaterial& material)
         stateSet.addUniform(new osg::Uniform("emissiveStrength", material.emissiveStrength));
         stateSet.setDefine("MATERIAL_EMISSIVE_STRENGTH");
     }
-    if (material.normalMap.texture && material.hasTangents) stateSet.setDefine("MATERIAL_TANGENTS");
+    setExtensions(stateSet, material);
+    const bool hasNormalMap = material.normalMap.texture || material.clearcoatNormalMap.texture;
+    if (hasNormalMap && material.hasTangents) stateSet.setDefine("MATERIAL_TANGENTS");
     if (material.hasMoreCoordinates) stateSet.setDefine("MATERIAL_MORE_COORDINATES");
 }
 

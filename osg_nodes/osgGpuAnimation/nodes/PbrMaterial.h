@@ -32,14 +32,43 @@ struct PbrMaterial
     float metallic = 1.0f;           ///< in [0, 1]
     float roughness = 1.0f;          ///< in [0, 1]; its square is the alpha of GGX
     float normalScale = 1.0f;
-    float occlusionStrength = 1.0f;  ///< in [0, 1]
-    osg::Vec3 emissive{0, 0, 0};     ///< linear, in [0, 1]
-    float emissiveStrength = 1.0f;   ///< KHR_materials_emissive_strength; 0 or more
-    Map baseColorMap;                ///< sRGB; its coordinates are number 0
-    Map metallicRoughnessMap;        ///< linear: green is roughness, blue is metallic
-    Map normalMap;                   ///< linear
-    Map occlusionMap;                ///< linear: red
-    Map emissiveMap;                 ///< sRGB
+    float occlusionStrength = 1.0f; ///< in [0, 1]
+    osg::Vec3 emissive{0, 0, 0};    ///< linear, in [0, 1]
+    float emissiveStrength = 1.0f;  ///< KHR_materials_emissive_strength; 0 or more
+    Map baseColorMap;               ///< sRGB; its coordinates are number 0
+    Map metallicRoughnessMap;       ///< linear: green is roughness, blue is metallic
+    Map normalMap;                  ///< linear
+    Map occlusionMap;               ///< linear: red
+    Map emissiveMap;                ///< sRGB
+
+    // KHR_materials_specular and ior: the dielectric's reflection along the normal (0.04: an index of refraction
+    // of 1.5) and the weight of its reflection. isSpecularGlossiness: the converted
+    // KHR_materials_pbrSpecularGlossiness.
+    osg::Vec3 specularColor{0.04f, 0.04f, 0.04f}; ///< linear
+    float specular = 1.0f;                        ///< in [0, 1]
+    Map specularColorMap;                         ///< sRGB; isSpecularGlossiness: alpha is the glossiness
+    Map specularMap;                              ///< linear: alpha
+    bool isSpecularGlossiness = false;
+
+    // KHR_materials_clearcoat
+    float clearcoat = 0.0f;          ///< in [0, 1]
+    float clearcoatRoughness = 0.0f; ///< in [0, 1]
+    Map clearcoatMap;                ///< linear: red
+    Map clearcoatRoughnessMap;       ///< linear: green
+    Map clearcoatNormalMap;          ///< linear
+
+    // KHR_materials_sheen
+    osg::Vec3 sheenColor{0, 0, 0}; ///< linear, in [0, 1]
+    float sheenRoughness = 0.0f;   ///< in [0, 1]
+    Map sheenColorMap;             ///< sRGB
+    Map sheenRoughnessMap;         ///< linear: alpha
+
+    // KHR_materials_transmission: what lies behind is seen by blending, neither refracted nor coloured.
+    float transmission = 0.0f; ///< in [0, 1]
+    Map transmissionMap;       ///< linear: red
+
+    static constexpr int mostExtensionMaps = 3; ///< of those after emissiveMap; the others are left out
+
     bool hasTangents = false;        ///< the meshes have the vertex attribute POSE_TANGENT_LOCATION
     bool hasMoreCoordinates = false; ///< the meshes have the vertex attribute POSE_COORDINATES_LOCATION
 };

@@ -12,25 +12,17 @@ namespace
 {
 
 /// The texture's KHR_texture_transform, whose members the schema has checked; an empty value where it has none.
-template <typename TextureInfo>
-const tinygltf::Value& transformOf(const TextureInfo& texture)
+const tinygltf::Value& transformOf(const tinygltf::TextureInfo& texture)
 {
     static const tinygltf::Value none;
     const auto extension = texture.extensions.find("KHR_texture_transform");
     return extension == texture.extensions.end() ? none : extension->second;
 }
 
-template <typename TextureInfo>
-int setOf(const TextureInfo& texture)
+int setOf(const tinygltf::TextureInfo& texture)
 {
     const tinygltf::Value& transform = transformOf(texture);
     return transform.Has("texCoord") ? transform.Get("texCoord").GetNumberAsInt() : texture.texCoord;
-}
-
-template <typename TextureInfo>
-std::uint32_t bitOf(const TextureInfo& texture)
-{
-    return texture.index < 0 ? 0 : std::uint32_t(1) << setOf(texture); // the schema allows sets below 32
 }
 
 osg::Vec2d pairOf(const tinygltf::Value& transform, const char* member, const osg::Vec2d& otherwise)
@@ -63,37 +55,6 @@ osg::Vec2 TextureCoordinates::transformed(const osg::Vec2& coordinates) const
     const double v = coordinates.y();
     return osg::Vec2(static_cast<float>(_u[0] * u + _u[1] * v + _u[2]),
                      static_cast<float>(1.0 - (_v[0] * u + _v[1] * v + _v[2])));
-}
-
-MapCoordinates mapCoordinates(const tinygltf::Material& material, bool allMaps)
-{
-    MapCoordinates maps;
-    const auto add = [&](const auto& texture, int& index)
-    {
-        if (texture.index < 0) return;
-        const TextureCoordinates coordinates(texture);
-        const auto known = std::find(maps.all.begin(), maps.all.end(), coordinates);
-        if (known == maps.all.end() && maps.all.size() == MapCoordinates::most) return;
-        index = static_cast<int>(known - maps.all.begin());
-        if (known == maps.all.end()) maps.all.push_back(coordinates);
-    };
-    add(material.pbrMetallicRoughness.baseColorTexture, maps.baseColor);
-    if (!allMaps) return maps;
-    add(material.normalTexture, maps.normal);
-    add(material.pbrMetallicRoughness.metallicRoughnessTexture, maps.metallicRoughness);
-    add(material.emissiveTexture, maps.emissive);
-    add(material.occlusionTexture, maps.occlusion);
-    return maps;
-}
-
-std::vector<std::uint32_t> materialCoordinates(const tinygltf::Model& model)
-{
-    std::vector<std::uint32_t> sets;
-    for (const tinygltf::Material& material : model.materials)
-        sets.push_back(bitOf(material.pbrMetallicRoughness.baseColorTexture) |
-                       bitOf(material.pbrMetallicRoughness.metallicRoughnessTexture) | bitOf(material.normalTexture) |
-                       bitOf(material.occlusionTexture) | bitOf(material.emissiveTexture));
-    return sets;
 }
 
 } // namespace osgGpuAnimation::gltf

@@ -259,9 +259,12 @@ void checkNodeRules(const JsonValue& nodes, Report& report)
     }
 }
 
-const std::string_view supportedExtensions[] = {"KHR_mesh_quantization",   "KHR_texture_transform",
-                                                "KHR_materials_unlit",     "KHR_materials_emissive_strength",
-                                                "EXT_meshopt_compression", "KHR_draco_mesh_compression",
+const std::string_view supportedExtensions[] = {"KHR_mesh_quantization",      "KHR_texture_transform",
+                                                "KHR_materials_unlit",        "KHR_materials_emissive_strength",
+                                                "KHR_materials_ior",          "KHR_materials_specular",
+                                                "KHR_materials_clearcoat",    "KHR_materials_sheen",
+                                                "KHR_materials_transmission", "KHR_materials_pbrSpecularGlossiness",
+                                                "EXT_meshopt_compression",    "KHR_draco_mesh_compression",
                                                 "EXT_mesh_gpu_instancing"};
 
 bool isSupported(std::string_view extension)

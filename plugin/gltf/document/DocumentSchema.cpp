@@ -235,8 +235,37 @@ constexpr SchemaRule metallicRoughness[] = {
     object("metallicRoughnessTexture", textureInfo)};
 
 constexpr SchemaRule emissiveStrength[] = {number("emissiveStrength").from(0).orLeaveOut()};
-constexpr SchemaRule materialExtensions[] = {rule("KHR_materials_unlit", Kind::Object).orLeaveOut(),
-                                             object("KHR_materials_emissive_strength", emissiveStrength).orLeaveOut()};
+constexpr SchemaRule map(std::string_view name)
+{
+    return object(name, textureInfo).orLeaveOut();
+}
+constexpr SchemaRule unit(std::string_view name)
+{
+    return number(name).clamped(0, 1).orLeaveOut();
+}
+constexpr SchemaRule ior[] = {number("ior").from(0).orLeaveOut()};
+constexpr SchemaRule specular[] = {unit("specularFactor"), map("specularTexture"),
+                                   number("specularColorFactor").list(3, 3).from(0).orLeaveOut(),
+                                   map("specularColorTexture")};
+constexpr SchemaRule clearcoat[] = {unit("clearcoatFactor"), map("clearcoatTexture"), unit("clearcoatRoughnessFactor"),
+                                    map("clearcoatRoughnessTexture"),
+                                    object("clearcoatNormalTexture", normalTexture).orLeaveOut()};
+constexpr SchemaRule sheen[] = {number("sheenColorFactor").list(3, 3).clamped(0, 1).orLeaveOut(),
+                                map("sheenColorTexture"), unit("sheenRoughnessFactor"), map("sheenRoughnessTexture")};
+constexpr SchemaRule transmission[] = {unit("transmissionFactor"), map("transmissionTexture")};
+constexpr SchemaRule specularGlossiness[] = {number("diffuseFactor").list(4, 4).clamped(0, 1).orLeaveOut(),
+                                             map("diffuseTexture"),
+                                             number("specularFactor").list(3, 3).clamped(0, 1).orLeaveOut(),
+                                             unit("glossinessFactor"), map("specularGlossinessTexture")};
+constexpr SchemaRule materialExtensions[] = {
+    rule("KHR_materials_unlit", Kind::Object).orLeaveOut(),
+    object("KHR_materials_emissive_strength", emissiveStrength).orLeaveOut(),
+    object("KHR_materials_ior", ior).orLeaveOut(),
+    object("KHR_materials_specular", specular).orLeaveOut(),
+    object("KHR_materials_clearcoat", clearcoat).orLeaveOut(),
+    object("KHR_materials_sheen", sheen).orLeaveOut(),
+    object("KHR_materials_transmission", transmission).orLeaveOut(),
+    object("KHR_materials_pbrSpecularGlossiness", specularGlossiness).orLeaveOut()};
 
 constexpr SchemaRule material[] = {object("pbrMetallicRoughness", metallicRoughness),
                                    object("normalTexture", normalTexture),

@@ -3,7 +3,7 @@
 
 #include "gltf/data/Accessor.h"
 #include "gltf/data/AttributeSemantic.h"
-#include "gltf/data/TextureCoordinates.h"
+#include "gltf/data/MaterialMaps.h"
 #include "gltf/file/Report.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/scene/Materials.h"
 
-#include "gltf/data/TextureCoordinates.h"
+#include "gltf/data/MaterialMaps.h"
 
 #include <osgGpuAnimation/nodes/CharacterProgram.h>
 
@@ -25,13 +25,6 @@ const tinygltf::Material& materialOf(const tinygltf::Model& model, int index)
     return index < 0 ? plain : model.materials[static_cast<std::size_t>(index)];
 }
 
-float emissiveStrength(const tinygltf::Material& material)
-{
-    const auto extension = material.extensions.find("KHR_materials_emissive_strength");
-    if (extension == material.extensions.end() || !extension->second.Has("emissiveStrength")) return 1.0f;
-    return static_cast<float>(extension->second.Get("emissiveStrength").GetNumberAsDouble());
-}
-
 osg::Vec3 emissiveFactor(const tinygltf::Material& material)
 {
     const std::vector<double>& factor = material.emissiveFactor; // empty: the default material
@@ -40,13 +33,15 @@ osg::Vec3 emissiveFactor(const tinygltf::Material& material)
 
 osg::ref_ptr<osg::Material> fixedMaterial(const tinygltf::Material& material, const osg::Vec4& color, bool colored)
 {
+    PbrMaterial extended;
+    readMaterialExtensions(material, extended);
     osg::ref_ptr<osg::Material> result = new osg::Material;
     result->setName(material.name);
     result->setDiffuse(osg::Material::FRONT_AND_BACK, color);
     result->setAmbient(osg::Material::FRONT_AND_BACK, color);
     result->setSpecular(osg::Material::FRONT_AND_BACK, osg::Vec4(0, 0, 0, 1));
     result->setEmission(osg::Material::FRONT_AND_BACK,
-                        displayColor(osg::Vec4(emissiveFactor(material) * emissiveStrength(material), 1.0f)));
+                        displayColor(osg::Vec4(emissiveFactor(material) * extended.emissiveStrength, 1.0f)));
     result->setColorMode(colored ? osg::Material::AMBIENT_AND_DIFFUSE : osg::Material::OFF);
     return result;
 }
@@ -74,7 +69,7 @@ void setAlpha(osg::StateSet& state, const tinygltf::Material& material, bool pal
         state.addUniform(new osg::Uniform("alphaCutoff", cutoff));
         if (!palette) state.setAttributeAndModes(new osg::AlphaFunc(osg::AlphaFunc::GEQUAL, cutoff));
     }
-    else if (material.alphaMode == "BLEND")
+    else if (material.alphaMode == "BLEND" && !state.getAttribute(osg::StateAttribute::BLENDFUNC))
     {
         state.setAttributeAndModes(new osg::BlendFunc(osg::BlendFunc::SRC_ALPHA, osg::BlendFunc::ONE_MINUS_SRC_ALPHA));
         state.setAttributeAndModes(new osg::Depth(osg::Depth::LESS, 0.0, 1.0, false));
@@ -113,7 +108,7 @@ osg::Vec4 Materials::plainColor(const osg::Vec4& color, int material) const
 
 unsigned int Materials::wantedCoordinates(int material) const
 {
-    return (1u << mapCoordinates(materialOf(_model, material), !_fixedLighting).all.size()) - 1u;
+    return (1u << mapsOf(materialOf(_model, material), !_fixedLighting).coordinates.size()) - 1u;
 }
 
 /// Leaves out maps whose coordinates the vertices lack.
@@ -127,22 +122,13 @@ PbrMaterial Materials::pbrMaterial(const tinygltf::Material& material, const Mat
     result.normalScale = static_cast<float>(material.normalTexture.scale);
     result.occlusionStrength = static_cast<float>(material.occlusionTexture.strength);
     result.emissive = emissiveFactor(material);
-    result.emissiveStrength = emissiveStrength(material);
+    readMaterialExtensions(material, result);
     result.hasTangents = use.tangents;
     result.hasMoreCoordinates = use.coordinates > 1;
-
-    const MapCoordinates coordinates = mapCoordinates(material, true);
-    const auto map = [&](int texture, int number, ColorSpace space) -> PbrMaterial::Map
-    {
-        if (number < 0 || !(use.coordinates & (1u << number))) return {};
-        return {_textures.texture(texture, space), number};
-    };
-    result.baseColorMap = map(source.baseColorTexture.index, coordinates.baseColor, ColorSpace::Srgb);
-    result.metallicRoughnessMap =
-        map(source.metallicRoughnessTexture.index, coordinates.metallicRoughness, ColorSpace::Linear);
-    result.normalMap = map(material.normalTexture.index, coordinates.normal, ColorSpace::Linear);
-    result.occlusionMap = map(material.occlusionTexture.index, coordinates.occlusion, ColorSpace::Linear);
-    result.emissiveMap = map(material.emissiveTexture.index, coordinates.emissive, ColorSpace::Srgb);
+    for (const MaterialMap& map : mapsOf(material, true).maps)
+        if (map.number >= 0 && (use.coordinates & (1u << map.number)))
+            result.*map.place = {_textures.texture(map.texture, map.isColor ? ColorSpace::Srgb : ColorSpace::Linear),
+                                 map.number};
     return result;
 }
 

@@ -2,6 +2,7 @@
 #include "gltf/scene/Meshes.h"
 
 #include "gltf/data/Accessor.h"
+#include "gltf/data/MaterialMaps.h"
 #include "gltf/data/VertexAttributes.h"
 #include "gltf/file/Report.h"
 #include "gltf/scene/TransformBound.h"
@@ -230,11 +231,11 @@ void Meshes::readSurface(const tinygltf::Primitive& primitive, MeshPrimitive& me
     static const tinygltf::Material plain;
     const tinygltf::Material& material =
         primitive.material < 0 ? plain : _model.materials[static_cast<std::size_t>(primitive.material)];
-    const MapCoordinates maps = mapCoordinates(material, _allMaps);
-    for (std::size_t number = 0; number < maps.all.size(); ++number)
+    const MaterialMaps maps = mapsOf(material, _allMaps);
+    for (std::size_t number = 0; number < maps.coordinates.size(); ++number)
     {
         const osg::ref_ptr<osg::Vec2Array> read =
-            readTextureCoordinates(_model, primitive.attributes, maps.all[number]);
+            readTextureCoordinates(_model, primitive.attributes, maps.coordinates[number]);
         if (!read) continue;
         mesh.coordinates |= 1u << number;
         if (number == 0)
@@ -249,10 +250,11 @@ void Meshes::readSurface(const tinygltf::Primitive& primitive, MeshPrimitive& me
             for (int i = 0; i < 2; ++i)
                 (*mesh.moreCoordinates)[vertex][2 * (static_cast<int>(number) - 1) + i] = (*read)[vertex][i];
     }
-    const bool wantsTangents = maps.normal >= 0 && mesh.normals;
+    const bool wantsTangents = mesh.normals && maps.find(&PbrMaterial::normalMap);
     if (wantsTangents) mesh.tangents = readTangents(_model, primitive);
     mesh.colors = readColors(_model, primitive);
-    mesh.targets = readMorphTargets(_model, primitive, mesh.texCoords ? &maps.all.front() : nullptr, wantsTangents);
+    mesh.targets =
+        readMorphTargets(_model, primitive, mesh.texCoords ? &maps.coordinates.front() : nullptr, wantsTangents);
 }
 
 std::optional<MeshPrimitive> Meshes::read(int meshIndex, int primitiveIndex, bool welded)

@@ -27,7 +27,7 @@ struct MeshPrimitive
     std::size_t vertexCount = 0; ///< of the file's POSITION accessor
     osg::ref_ptr<osg::Vec3Array> positions;
     osg::ref_ptr<osg::Vec3Array> normals;         ///< null: points or lines without normals, which are drawn unlit
-    osg::ref_ptr<osg::Vec2Array> texCoords;       ///< number 0 of MapCoordinates, or null
+    osg::ref_ptr<osg::Vec2Array> texCoords;       ///< number 0 of MaterialMaps, or null
     osg::ref_ptr<osg::Vec4Array> moreCoordinates; ///< numbers 1 (xy) and 2 (zw), or null
     osg::ref_ptr<osg::Vec4Array> tangents;        ///< only for normal maps; or null
     osg::ref_ptr<osg::Vec4Array> colors;          ///< for display, see displayColor(); or null

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "gltf/data/TextureCoordinates.h"
+
+#include <osgGpuAnimation/nodes/PbrMaterial.h>
+
+#include <tiny_gltf.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace osgGpuAnimation::gltf
+{
+
+/// One map of a material.
+struct MaterialMap
+{
+    PbrMaterial::Map PbrMaterial::*place; ///< its place in the result
+    int texture = -1;                     ///< of the file
+    bool isColor = false;                 ///< sRGB, else data
+    int number = -1;                      ///< index into MaterialMaps::coordinates; -1: a vertex has no room for them
+};
+
+/// The maps of a material and the different texture coordinates that they read.
+struct MaterialMaps
+{
+    static constexpr std::size_t mostCoordinates = 3; ///< a vertex has that many; earlier maps come first
+
+    std::vector<MaterialMap> maps;               ///< the base colour first
+    std::vector<TextureCoordinates> coordinates; ///< at most mostCoordinates; number 0 is that of the base colour
+
+    /// The map at that place, or null.
+    const MaterialMap* find(PbrMaterial::Map PbrMaterial::*place) const;
+};
+
+/// Those of glTF 2.0, section 3.9, and of the material extensions. allMaps: false considers the base colour alone.
+MaterialMaps mapsOf(const tinygltf::Material& material, bool allMaps);
+
+/// The factors of KHR_materials_emissive_strength, ior, specular, clearcoat, sheen, transmission and
+/// pbrSpecularGlossiness, whose members the schema has checked.
+void readMaterialExtensions(const tinygltf::Material& material, PbrMaterial& outMaterial);
+
+/// One number a material: bit n is set where one of its textures reads TEXCOORD_n, KHR_texture_transform considered.
+std::vector<std::uint32_t> materialCoordinates(const tinygltf::Model& model);
+
+} // namespace osgGpuAnimation::gltf

@@ -13,7 +13,7 @@ packages=(
     libpng-dev libturbojpeg0-dev
     libgl-dev libegl-dev
     openscenegraph libegl1 libegl-mesa0 libgl1 libglx-mesa0 libgl1-mesa-dri
-    libgtest-dev libbenchmark-dev glslang-tools python3 xvfb xauth dpkg-dev file libdraco7 libassimp5
+    libgtest-dev libbenchmark-dev glslang-tools python3 python3-skimage python3-scipy python3-pil xvfb xauth dpkg-dev file libdraco7 libassimp5
 )
 # What .ci/run needs besides.
 ci_packages=(git clang-format doxygen mesa-vulkan-drivers)

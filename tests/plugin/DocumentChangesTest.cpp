@@ -53,6 +53,9 @@ const Change changes[] = {
     {"/asset/minVersion", "\"2.1\"", Expect::Refuse, "asset.minVersion"},
     {"/asset/generator", "[]", Expect::Warn, "asset.generator"},
     {"/extensionsRequired", "[\"EXT_no\"]", Expect::Refuse, "extensionsRequired[0]"},
+    {"/extensionsRequired", "[\"KHR_materials_mirror\",\"EXT_no\"]", Expect::Refuse, "extensionsRequired[1]"},
+    {"/extensionsRequired", "[\"KHR_texture_basisu\"]", Expect::Warn,
+     "extensionsRequired[0]: \"KHR_texture_basisu\" is not supported and changes looks alone; left out"},
     {"/extensionsUsed", "[\"EXT_no\"]", Expect::Valid, ""},
     {"/extensionsUsed", "[7]", Expect::Refuse, "extensionsUsed[0]"},
     // buffers and views
@@ -208,6 +211,17 @@ TEST(DocumentChangesTest, UnknownExtensionsAreOneNoteEach)
     ASSERT_EQ(answer.messages.notes.size(), 2u);
     EXPECT_NE(answer.messages.notes[0].find("EXT_no"), std::string::npos) << answer.messages.notes[0];
     EXPECT_NE(answer.messages.notes[1].find("EXT_neither"), std::string::npos) << answer.messages.notes[1];
+}
+
+TEST(DocumentChangesTest, ExtensionsThatChangeLooksAloneAreOneWarningEach)
+{
+    Json document = baseDocument();
+    document["extensionsRequired"] = {"EXT_materials_mirror", "EXT_texture_avif", "EXT_lights_ies"};
+    document["extensionsUsed"] = {"EXT_lights_ies", "EXT_texture_avif", "EXT_materials_mirror", "KHR_xmp_json_ld"};
+    const LoadedDocument answer = load(document.dump());
+    expectAnswer(answer, Expect::Warn, "extensionsRequired[2]: \"EXT_lights_ies\"");
+    EXPECT_EQ(answer.messages.warnings.size(), 4u) << answer.text();
+    EXPECT_TRUE(answer.messages.notes.empty());
 }
 
 TEST(DocumentChangesTest, CamerasAreLeftOut)

@@ -267,10 +267,27 @@ const std::string_view supportedExtensions[] = {"KHR_mesh_quantization",      "K
                                                 "EXT_meshopt_compression",    "KHR_draco_mesh_compression",
                                                 "EXT_mesh_gpu_instancing"};
 
-bool isSupported(std::string_view extension)
+/// Parts of the names of extensions that change looks alone, or nothing that is drawn: a file that requires them is
+/// shown without them.
+const std::string_view looksAloneNames[] = {
+    "_materials_", "_texture_", "_lights_", "KHR_environment_map", "MSFT_packing_", "KHR_techniques_webgl", "KHR_xmp"};
+
+enum class ExtensionSupport
 {
-    return std::find(std::begin(supportedExtensions), std::end(supportedExtensions), extension) !=
-           std::end(supportedExtensions);
+    Supported,
+    LooksAlone, ///< left out with a warning
+    Unknown     ///< a file that requires it is refused
+};
+
+ExtensionSupport supportOf(std::string_view extension)
+{
+    if (std::find(std::begin(supportedExtensions), std::end(supportedExtensions), extension) !=
+        std::end(supportedExtensions))
+        return ExtensionSupport::Supported;
+    const bool changesLooks =
+        std::any_of(std::begin(looksAloneNames), std::end(looksAloneNames),
+                    [extension](std::string_view part) { return extension.find(part) != std::string_view::npos; });
+    return changesLooks ? ExtensionSupport::LooksAlone : ExtensionSupport::Unknown;
 }
 
 /// "2.1" is 2 and 1; nothing if the text is not a version.
@@ -298,23 +315,26 @@ std::optional<Error> checkVersion(const JsonValue& asset)
     return std::nullopt;
 }
 
+/// One warning for each extension that changes looks alone, one note for each other that is not required.
 std::optional<Error> checkExtensions(const JsonValue& document, Report& report)
 {
-    std::size_t i = 0;
-    for (const JsonValue& extension : document["extensionsRequired"])
+    std::unordered_set<std::string_view> seen;
+    for (const char* const list : {"extensionsRequired", "extensionsUsed"})
     {
-        if (!isSupported(extension.text()))
-            return fault(elementName("extensionsRequired", i), "an extension that is supported",
-                         extension.description());
-        ++i;
-    }
-    i = 0;
-    for (const JsonValue& extension : document["extensionsUsed"])
-    {
-        if (!isSupported(extension.text()))
-            report.note(elementName("extensionsUsed", i) + ": " + extension.description() +
-                        " is not supported and ignored");
-        ++i;
+        std::size_t i = 0;
+        for (const JsonValue& extension : document[list])
+        {
+            const std::string name = elementName(list, i++);
+            const ExtensionSupport support = supportOf(extension.text());
+            if (support == ExtensionSupport::Supported || !seen.insert(extension.text()).second) continue;
+            if (support == ExtensionSupport::LooksAlone)
+                report.warn(name + ": " + extension.description() +
+                            " is not supported and changes looks alone; left out");
+            else if (list == std::string_view("extensionsRequired"))
+                return fault(name, "an extension that is supported", extension.description());
+            else
+                report.note(name + ": " + extension.description() + " is not supported and ignored");
+        }
     }
     return std::nullopt;
 }

@@ -30,6 +30,7 @@
 #include <osgGpuAnimation/nodes/OsgMatrix.h>
 #include <osgGpuAnimation/nodes/PickedJoint.h>
 #include <osgGpuAnimation/nodes/PoseStatistics.h>
+#include <osgGpuAnimation/nodes/PunctualLight.h>
 #include <osgGpuAnimation/nodes/RootMotionCallback.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 #include <osgGpuAnimation/nodes/StateGraphFile.h>

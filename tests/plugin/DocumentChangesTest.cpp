@@ -210,12 +210,4 @@ TEST(DocumentChangesTest, UnknownExtensionsAreOneNoteEach)
     EXPECT_NE(answer.messages.notes[1].find("EXT_neither"), std::string::npos) << answer.messages.notes[1];
 }
 
-TEST(DocumentChangesTest, CamerasAreLeftOut)
-{
-    Json document = baseDocument();
-    document["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.7}, {"znear", 0.1}}}}};
-    document["nodes"][0]["camera"] = 0;
-    expectAnswer(load(document.dump()), Expect::Valid, "");
-}
-
 } // namespace osgGpuAnimation::gltf

@@ -2,6 +2,7 @@
 #include "gltf/document/DocumentRules.h"
 
 #include "gltf/data/AttributeSemantic.h"
+#include "gltf/document/ViewRules.h"
 #include "gltf/file/Report.h"
 
 #include <algorithm>
@@ -262,7 +263,7 @@ void checkNodeRules(const JsonValue& nodes, Report& report)
 const std::string_view supportedExtensions[] = {"KHR_mesh_quantization",   "KHR_texture_transform",
                                                 "KHR_materials_unlit",     "KHR_materials_emissive_strength",
                                                 "EXT_meshopt_compression", "KHR_draco_mesh_compression",
-                                                "EXT_mesh_gpu_instancing"};
+                                                "EXT_mesh_gpu_instancing", "KHR_lights_punctual"};
 
 bool isSupported(std::string_view extension)
 {
@@ -329,18 +330,6 @@ std::optional<Error> checkImages(const JsonValue& images)
     return std::nullopt;
 }
 
-std::optional<Error> checkCameras(const JsonValue& cameras)
-{
-    std::size_t i = 0;
-    for (const JsonValue& camera : cameras)
-    {
-        const std::string_view type = camera["type"].text();
-        if (!camera[type]) return fault(elementName("cameras", i) + '.' + std::string(type), "an object", "nothing");
-        ++i;
-    }
-    return std::nullopt;
-}
-
 void noteScenes(const JsonValue& document, Report& report)
 {
     if (!document["scenes"])
@@ -356,11 +345,11 @@ std::optional<Error> checkDocumentRules(const JsonValue& document, Report& repor
     std::optional<Error> error = checkVersion(document["asset"]);
     if (!error) error = checkExtensions(document, report);
     if (!error) error = checkImages(document["images"]);
-    if (!error) error = checkCameras(document["cameras"]);
     if (!error) error = checkPrimitiveRules(document["meshes"], report);
     if (!error) error = checkAnimationRules(document["animations"], report);
     if (error) return error;
     checkNodeRules(document["nodes"], report);
+    checkViewRules(document, report);
     noteScenes(document, report);
     return std::nullopt;
 }

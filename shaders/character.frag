@@ -5,6 +5,8 @@
 // above: color.glsl, material.glsl, pbr.glsl, environment.glsl.
 #pragma import_defines(MATERIAL_PBR, TONE_MAPPING)
 
+uniform vec4 punctualLights[8]; // PunctualLight::coneAndRange()
+
 uniform sampler2DShadow shadowMaps[7];  // of texture units 1 to 7
 uniform vec2 osgShadow_ambientBias;     // osgShadow::ShadowMap: the share of light in shadow, and the remainder
 uniform vec2 ambientBias;               // osgShadow::ParallelSplitShadowMap: the gain everywhere, and the loss in shadow
@@ -37,6 +39,16 @@ vec3 directionTo(int index, out float strength)
     strength = 1.0 / (gl_LightSource[index].constantAttenuation + gl_LightSource[index].linearAttenuation * range +
                       gl_LightSource[index].quadraticAttenuation * range * range);
     float along = dot(-toLight, normalize(gl_LightSource[index].spotDirection));
+#ifdef MATERIAL_PBR
+    if ((DRAW_PUNCTUAL_LIGHTS & (1 << index)) != 0)
+    {
+        vec4 light = punctualLights[index];
+        float cone = clamp(along * light.x + light.y, 0.0, 1.0);
+        float share = range * range * light.z;
+        strength *= cone * cone * clamp(1.0 - share * share, 0.0, 1.0);
+        return toLight;
+    }
+#endif
     if (gl_LightSource[index].spotCosCutoff > -1.0)
         strength *= along < gl_LightSource[index].spotCosCutoff
                         ? 0.0

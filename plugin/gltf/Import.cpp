@@ -59,6 +59,8 @@ public:
 private:
     Result<bool> makeSet(const NodeTree& tree, const Joints& joints, const Morphs& morphs);
     void makeGraph(const NodeTree& tree, const Joints& joints, const Morphs& morphs);
+    std::vector<bool> nodesThatCarry(const Joints& joints) const;
+    Result<bool> chooseStart();
     Result<bool> finishClips();
     void describeFile(const NodeTree& tree);
     Result<bool> play(int clip);
@@ -114,9 +116,40 @@ void Importer::makeGraph(const NodeTree& tree, const Joints& joints, const Morph
     Materials materials(_model, _options.fixedLighting, _textures);
     Meshes meshes(_model, !_options.fixedLighting, _budget, _report);
     Drawables drawables(_model, _result.set, meshes, materials, _budget, _report);
-    const SceneParts parts{_model, tree, joints, morphs, drawables, _budget, _report};
-    buildSceneGraph(parts, *still, _result.character, _result.primitives);
+    if (!_options.noLights) _result.lights = findLights(_model, tree);
+    if (!_options.noCameras) _result.cameras = makeCameras(_model, tree);
+    const std::vector<bool> carries = nodesThatCarry(joints);
+    const SceneParts parts{_model, tree, joints, morphs, carries, drawables, _budget, _report};
+    NodePlaces places(_model, tree, joints, _result.character, *still,
+                      buildSceneGraph(parts, *still, _result.character, _result.primitives));
     if (_result.character && still->getNumChildren() > 0) _result.root->addChild(still);
+    addCameras(_result.cameras, places);
+    if (_result.lights.empty()) return;
+    const osg::Matrixd toFile = osg::Matrixd::inverse(_result.fileToNode);
+    addLights(_model, tree, _result.root->getBound().center() * toFile, places, *_result.root, _result.lights, _report);
+}
+
+/// By node: it stands still and has a light or a camera.
+std::vector<bool> Importer::nodesThatCarry(const Joints& joints) const
+{
+    std::vector<bool> carries(_model.nodes.size(), false);
+    const auto add = [&](int node)
+    { carries[static_cast<std::size_t>(node)] = !joints.moves[static_cast<std::size_t>(node)]; };
+    for (const ImportedLight& light : _result.lights)
+        add(light.node);
+    for (const ImportedCamera& camera : _result.cameras)
+        add(camera.node);
+    return carries;
+}
+
+Result<bool> Importer::chooseStart()
+{
+    if (!_options.camera) return true;
+    const Result<std::size_t> chosen = chooseCamera(_result.cameras, *_options.camera);
+    if (!chosen) return chosen.error();
+    _result.startCamera = _result.cameras[chosen.value()].view;
+    startWith(_result.cameras[chosen.value()], *_result.root);
+    return true;
 }
 
 /// Needs the meshes: they bound the effect of a joint's error, and some have levels of detail.
@@ -158,6 +191,8 @@ Result<bool> Importer::run()
     const Result<int> clip = chooseClip(_result, _options);
     if (!clip) return clip.error();
     makeGraph(tree.value(), joints.value(), morphs);
+    const Result<bool> started = chooseStart();
+    if (!started) return started.error();
     const Result<bool> finished = finishClips();
     if (!finished) return finished.error();
     describeFile(tree.value());

@@ -4,6 +4,8 @@
 #include "gltf/file/Report.h"
 #include "gltf/ImportOptions.h"
 #include "gltf/scene/SceneGraph.h"
+#include "gltf/view/Cameras.h"
+#include "gltf/view/Lights.h"
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
@@ -28,6 +30,9 @@ struct ImportedModel
     osg::ref_ptr<AnimatedCharacter> character;
     std::shared_ptr<const AnimationSet> set;   ///< the character's; null without a character
     std::vector<ImportedPrimitive> primitives; ///< by node, then primitive
+    std::vector<ImportedLight> lights;         ///< by node; empty with noLights
+    std::vector<ImportedCamera> cameras;       ///< by node; empty with noCameras
+    osg::ref_ptr<osg::CameraView> startCamera; ///< the one that the options name; null: none
 
     int scene = 0;                               ///< the imported scene, -1: the file has none
     std::vector<std::string> nodeNames;          ///< one per node of the file; empty if it has none
@@ -41,7 +46,7 @@ struct ImportedModel
 };
 
 /// Imports a file's content; see loadDocument() for bytes and fileName.
-/// Errors: those of loadDocument(); the options name a clip or scene that the file does not have.
+/// Errors: those of loadDocument(); the options name a clip, scene or camera that the file does not have.
 Result<ImportedModel> importModel(const std::string& bytes, const std::string& fileName, const ImportOptions& options);
 
 } // namespace osgGpuAnimation::gltf

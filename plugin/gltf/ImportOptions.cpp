@@ -104,6 +104,13 @@ const std::vector<Option>& allOptions()
          "pbr or fixed",
          [](const std::string& value, ImportOptions& options)
          { return (options.fixedLighting = value == "fixed") || value == "pbr"; }},
+        {{"camera=NAME|INDEX", "the camera that a viewer looks through at first; default: the viewer's own view"},
+         "a name or a number",
+         [](const std::string& value, ImportOptions& options) { return !options.camera.emplace(value).empty(); }},
+        {{"noCameras", "leave the file's cameras out"}, "", setFlag<&ImportOptions::noCameras>},
+        {{"noLights", "leave the file's lights out; default: GL's lights 1 to 7"},
+         "",
+         setFlag<&ImportOptions::noLights>},
         {{"noRotation", "keep glTF's +Y up; default: +Z up"}, "", setFlag<&ImportOptions::noRotation>},
         {{"allowOutsideFiles", "let a model read files outside its own folder"},
          "",

@@ -20,11 +20,15 @@ struct ImportOptions
     std::optional<double> start;     ///< seconds, clamped to that clip's duration; default: 0, or its end if speed < 0
     double speed = 1.0;              ///< of that clip, see AnimationLayer::setSpeed
     LoopMode loopMode = LoopMode::Loop;
-    double fadeSeconds = 0.3;       ///< of the keys' crossfades, see CharacterKeys
-    std::optional<double> compact;  ///< largest error of compact clips, see CompactedCharacter; above 0; none: exact
-    double pixelError = 0.0;        ///< see AnimatedCharacter::setPixelError; 0 or more
-    bool noKeys = false;            ///< no CharacterKeys on the character
-    std::optional<int> scene;       ///< default: the file's own, else 0
+    double fadeSeconds = 0.3;      ///< of the keys' crossfades, see CharacterKeys
+    std::optional<double> compact; ///< largest error of compact clips, see CompactedCharacter; above 0; none: exact
+    double pixelError = 0.0;       ///< see AnimatedCharacter::setPixelError; 0 or more
+    bool noKeys = false;           ///< no CharacterKeys on the character
+    std::optional<int> scene;      ///< default: the file's own, else 0
+    bool noLights = false;         ///< leave the file's lights out
+    bool noCameras = false;        ///< leave the file's cameras out
+    /// The camera of a viewer's first view: name, or index where none has that name; default: the viewer's own view
+    std::optional<std::string> camera;
     bool noRotation = false;        ///< keep glTF's +Y up; default: turn to OSG's +Z up at the root
     bool fixedLighting = false;     ///< the fixed pipeline's look: base colours in display space, no other maps
     bool allowOutsideFiles = false; ///< URIs may name files outside the model's folder

@@ -36,7 +36,7 @@ const char* const exitStatus = "\n\nExit status: 0 done, 1 a file is at fault (t
 
 const char* const inspectHelp =
     R"(What is told: joints and depth of the hierarchy, skins, palette entries (matrices computed on the GPU for each
-character), clips, meshes, materials, extensions, bytes on the GPU, warnings.
+character), clips, meshes, materials, lights, cameras, extensions, bytes on the GPU, warnings.
 
   osggpuanim inspect knight.glb
   osggpuanim inspect knight.glb --json | jq '.clips[].name')";
@@ -53,7 +53,7 @@ units and numbers; matrices are column-major. Times beyond the clip hold its end
 
 const char* const renderHelp =
     R"(Draws FILE through EGL (by Mesa's software renderer on a machine without a GPU). One camera, in front and to the
-side, shows everything in all pictures.
+side, shows everything in all pictures; with --camera, one of the file's.
 
   osggpuanim render fox.glb -o fox.png
   osggpuanim render fox.glb --clip Walk --time 0.3 --size 1920x1080 -o walk.png
@@ -159,6 +159,9 @@ void CommandLine::addRender()
     _renderApp->add_option("FILE", _render.file, "A .gltf or .glb")->required();
     _renderApp->add_option("--clip", _render.clip,
                            "A clip's name, or an animation's number where none has that name; default: the first clip");
+    _renderApp->add_option("--camera", _render.camera,
+                           "A camera of the file: its name, or its number where none has that name; default: a view "
+                           "of everything");
     _renderApp->add_option("--time", _render.time, "Seconds; clips loop (default 0)")->check(checkFinite);
     _renderApp
         ->add_option_function<std::string>(

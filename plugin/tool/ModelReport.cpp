@@ -167,6 +167,45 @@ ordered_json reportMeshes(const gltf::ImportedModel& model)
             {"morphTargets", targets}};
 }
 
+const char* kindName(PunctualLight::Kind kind)
+{
+    if (kind == PunctualLight::Kind::Directional) return "directional";
+    return kind == PunctualLight::Kind::Spot ? "spot" : "point";
+}
+
+/// number: OpenGL's, null for a light that is left out.
+ordered_json reportLights(const gltf::ImportedModel& model)
+{
+    ordered_json lights = ordered_json::array();
+    for (const gltf::ImportedLight& light : model.lights)
+    {
+        ordered_json report = {{"index", light.light}, {"node", light.node}, {"number", nullptr}};
+        if (light.source)
+        {
+            const auto& made = dynamic_cast<const PunctualLight&>(*light.source->getLight());
+            report["number"] = made.getLightNum();
+            report["name"] = made.getName();
+            report["type"] = kindName(made.getKind());
+        }
+        lights.push_back(std::move(report));
+    }
+    return lights;
+}
+
+ordered_json reportCameras(const gltf::ImportedModel& model)
+{
+    ordered_json cameras = ordered_json::array();
+    for (const gltf::ImportedCamera& camera : model.cameras)
+    {
+        const bool isPerspective = camera.view->getFieldOfViewMode() == osg::CameraView::VERTICAL;
+        cameras.push_back({{"index", camera.camera},
+                           {"name", camera.view->getName()},
+                           {"node", camera.node},
+                           {"type", isPerspective ? "perspective" : "orthographic"}});
+    }
+    return cameras;
+}
+
 std::string line(const std::string& label, const std::string& text)
 {
     std::ostringstream out;
@@ -254,6 +293,24 @@ std::string boundsText(const ordered_json& bounds)
     return text;
 }
 
+std::string lightsText(const ordered_json& lights)
+{
+    std::string text;
+    for (const ordered_json& light : lights)
+        if (!light["number"].is_null())
+            text += (text.empty() ? ": " : ", ") + nameOr(light["name"]) + " (" + light["type"].get<std::string>() +
+                    ", GL_LIGHT" + number(light["number"]) + ")";
+    return number(lights.size()) + text;
+}
+
+std::string camerasText(const ordered_json& cameras)
+{
+    std::string text;
+    for (const ordered_json& camera : cameras)
+        text += (text.empty() ? ": " : ", ") + nameOr(camera["name"]) + " (" + camera["type"].get<std::string>() + ")";
+    return number(cameras.size()) + text;
+}
+
 std::string clipLines(const ordered_json& clips)
 {
     std::ostringstream out;
@@ -287,6 +344,8 @@ ordered_json reportModel(const gltf::ImportedModel& model, const std::string& fi
             {"keyframes", reportKeyframes(model)},
             {"meshes", reportMeshes(model)},
             {"materials", model.materialNames},
+            {"lights", reportLights(model)},
+            {"cameras", reportCameras(model)},
             {"extensions", model.extensionsUsed},
             {"gpuBytes",
              {{"animation", animationBytes},
@@ -325,6 +384,8 @@ std::string reportText(const ordered_json& report)
                            number(meshes["still"]) + " still), " + number(meshes["vertices"]) + " vertices, " +
                            number(meshes["morphTargets"]) + " morph targets");
     text += line("materials", listed(report["materials"]));
+    text += line("lights", lightsText(report["lights"]));
+    text += line("cameras", camerasText(report["cameras"]));
     text += line("extensions", listed(report["extensions"]));
     text +=
         line("bytes on the GPU", number(bytes["total"]) + " (animation " + number(bytes["animation"]) + ", meshes " +

@@ -3,6 +3,7 @@
 
 #include <osgGpuAnimation/gpu/EglGraphicsContext.h>
 #include <osgGpuAnimation/nodes/Environment.h>
+#include <osgGpuAnimation/nodes/viewing/StartView.h>
 
 #include <osg/BoundingBox>
 #include <osg/Depth>
@@ -238,10 +239,21 @@ void PictureViewer::show(osg::Node* scene, const std::vector<osg::Vec3d>& points
     _viewer.realize();
 }
 
+void PictureViewer::lookThrough(const osg::CameraView& view)
+{
+    _view = &view;
+    setProjection(*_viewer.getCamera(), view);
+}
+
 osg::ref_ptr<osg::Image> PictureViewer::draw(double simulationTime)
 {
     _reader->image = nullptr;
-    _viewer.frame(simulationTime);
+    // As frame() does, but with the camera placed after the update, which moves it.
+    _viewer.advance(simulationTime);
+    _viewer.eventTraversal();
+    _viewer.updateTraversal();
+    if (_view) _viewer.getCamera()->setViewMatrix(osg::Matrixd::inverse(viewToWorld(*_view)));
+    _viewer.renderingTraversals();
     return _reader->image;
 }
 

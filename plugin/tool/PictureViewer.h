@@ -3,6 +3,7 @@
 
 #include <osgGpuAnimation/animation/Result.h>
 
+#include <osg/CameraView>
 #include <osg/Image>
 #include <osg/Vec3d>
 #include <osgViewer/Viewer>
@@ -37,6 +38,8 @@ public:
 
     /// Places the camera so that it sees all these points from -Y, a little from +X and from above.
     void show(osg::Node* scene, const std::vector<osg::Vec3d>& points);
+    /// From here on, sees what that camera of the scene sees, wherever it moves.
+    void lookThrough(const osg::CameraView& view);
     /// Draws a frame at that simulation time (seconds): RGB, 8 bits each. Null if GL reports an error.
     osg::ref_ptr<osg::Image> draw(double simulationTime);
 
@@ -48,6 +51,7 @@ private:
     osgViewer::Viewer _viewer;
     osg::ref_ptr<ReadPixels> _reader;
     Look _look = Look::Studio;
+    osg::ref_ptr<const osg::CameraView> _view; ///< null: the standpoint of show()
 };
 
 } // namespace osgGpuAnimation::tool

@@ -85,6 +85,7 @@ Result<bool> RenderCommand::run() const
 {
     gltf::ImportOptions options;
     options.clip = clip;
+    options.camera = camera;
     options.noKeys = true; // no window, no keyboard
     const Result<gltf::ImportedModel> model = readModel(file, options);
     if (!model) return Error{file + ": " + model.error().message};
@@ -94,6 +95,7 @@ Result<bool> RenderCommand::run() const
     for (int frame = 0; frame < frames.value_or(1); ++frame)
         times.push_back(time + frame / framesPerSecond);
     viewer.value()->show(model.value().root, pointsOf(model.value(), times));
+    if (model.value().startCamera) viewer.value()->lookThrough(*model.value().startCamera);
 
     for (std::size_t frame = 0; frame < times.size(); ++frame)
     {

@@ -12,15 +12,16 @@ namespace osgGpuAnimation::tool
 {
 
 /// `osggpuanim render`: draws pictures of a file without a display. One camera, in front and to the side, shows
-/// everything in all pictures.
+/// everything in all pictures, unless a camera of the file is asked for.
 struct RenderCommand
 {
     static constexpr int maxSize = 8192; ///< pixels, each way
 
     std::string file;
-    std::optional<std::string> clip; ///< name or animation number; default: the first
-    double time = 0.0;               ///< seconds; clips loop
-    int width = 800;                 ///< pixels, [1, maxSize]
+    std::optional<std::string> clip;   ///< name or animation number; default: the first
+    std::optional<std::string> camera; ///< of the file: name or number; default: none
+    double time = 0.0;                 ///< seconds; clips loop
+    int width = 800;                   ///< pixels, [1, maxSize]
     int height = 600;
     std::optional<int> frames; ///< the number of numbered pictures; none: one picture, named `output`
     double framesPerSecond = 30.0;

@@ -114,6 +114,29 @@ Seed instances()
     return seed("instances", std::move(document));
 }
 
+Seed lightsAndCameras()
+{
+    ModelBuilder file;
+    const int mast = file.node("mast", -1, file.triangle());
+    file.animation("sway");
+    file.slide(mast);
+    for (int node = 0; node < 3; ++node)
+        file.node("lamp", node == 0 ? mast : -1);
+    Json document = Json::parse(file.text());
+    const char* const name = "KHR_lights_punctual";
+    document["extensionsUsed"] = {name};
+    document["extensions"][name]["lights"] =
+        Json::parse(R"([{"type":"directional","color":[1,0.5,0.25],"intensity":3},{"type":"point","range":9},
+                        {"type":"spot","spot":{"innerConeAngle":0.1,"outerConeAngle":0.5},"name":"lamp"}])");
+    document["cameras"] = Json::parse(R"([{"type":"perspective","perspective":{"yfov":0.7,"znear":0.1}},
+                                          {"type":"orthographic","orthographic":{"xmag":1,"ymag":2,"zfar":9,"znear":0}}])");
+    for (int light = 0; light < 3; ++light)
+        document["nodes"][light + 1]["extensions"][name]["light"] = light;
+    document["nodes"][1]["camera"] = 0;
+    document["nodes"][2]["camera"] = 1;
+    return seed("lightsAndCameras", std::move(document));
+}
+
 Seed quantized()
 {
     ModelBuilder file;
@@ -193,6 +216,7 @@ std::vector<Seed> modelSeeds()
             sparse(),
             modes(),
             instances(),
+            lightsAndCameras(),
             quantized(),
             materials(),
             scenes(),

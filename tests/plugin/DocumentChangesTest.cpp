@@ -224,12 +224,4 @@ TEST(DocumentChangesTest, ExtensionsThatChangeLooksAloneAreOneWarningEach)
     EXPECT_TRUE(answer.messages.notes.empty());
 }
 
-TEST(DocumentChangesTest, CamerasAreLeftOut)
-{
-    Json document = baseDocument();
-    document["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.7}, {"znear", 0.1}}}}};
-    document["nodes"][0]["camera"] = 0;
-    expectAnswer(load(document.dump()), Expect::Valid, "");
-}
-
 } // namespace osgGpuAnimation::gltf

@@ -16,6 +16,9 @@ TEST(OptionStringTest, nothingAskedForIsTheDefault)
     const ImportOptions options = parseOptions("").value();
     EXPECT_FALSE(options.clip);
     EXPECT_FALSE(options.scene);
+    EXPECT_FALSE(options.camera);
+    EXPECT_FALSE(options.noLights);
+    EXPECT_FALSE(options.noCameras);
     EXPECT_FALSE(options.noRotation);
     EXPECT_FALSE(options.allowOutsideFiles);
     EXPECT_FALSE(options.compact);
@@ -28,10 +31,13 @@ TEST(OptionStringTest, readsAllOptions)
 {
     const ImportOptions options = parseOptions("  clip=Walk scene=2  noRotation allowOutsideFiles maxJsonDepth=5 "
                                                "maxJsonBytes=4 maxNodeDepth=6 maxElements=7 maxDocumentBytes=8 "
-                                               "maxDecodedBytes=8000000000")
+                                               "maxDecodedBytes=8000000000 camera=Top noLights noCameras")
                                       .value();
     EXPECT_EQ(options.clip, "Walk");
     EXPECT_EQ(options.scene, 2);
+    EXPECT_EQ(options.camera, "Top");
+    EXPECT_TRUE(options.noLights);
+    EXPECT_TRUE(options.noCameras);
     EXPECT_TRUE(options.noRotation);
     EXPECT_TRUE(options.allowOutsideFiles);
     EXPECT_EQ(options.maxJsonBytes, 4u);

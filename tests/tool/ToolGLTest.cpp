@@ -9,6 +9,8 @@
 
 #include <cmath>
 #include <string>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 namespace osgGpuAnimation
@@ -91,6 +93,74 @@ TEST_F(ToolGLTest, rendersTheFlagUprightAndRed)
     EXPECT_GT(red, 160 * 120 / 20);
     // osg::Image's first row is the lowest; the background is lighter above.
     EXPECT_GT(colour(*image, 0, 119).r(), colour(*image, 0, 0).r());
+}
+
+/// The flag with a lamp and two cameras before it: one on the hinge, which follows it, one that stands still.
+static std::string filmedFlag()
+{
+    json document = json::parse(swingingFlag());
+    const auto add = [&](int parent, json node)
+    {
+        json& siblings =
+            parent < 0 ? document["scenes"][0]["nodes"] : document["nodes"][std::size_t(parent)]["children"];
+        siblings.push_back(document["nodes"].size());
+        document["nodes"].push_back(std::move(node));
+    };
+    document["cameras"] = json::parse(R"([{"name":"film","type":"perspective","perspective":{"yfov":1,"znear":0.1}},
+        {"name":"plan","type":"orthographic","orthographic":{"xmag":4,"ymag":4,"znear":0.1,"zfar":99}}])");
+    document["extensionsUsed"] = {"KHR_lights_punctual"};
+    document["extensions"]["KHR_lights_punctual"]["lights"] = json::parse(R"([{"name":"sun","type":"directional"}])");
+    add(0, {{"camera", 0}, {"translation", {0, 1, 5}}});
+    add(-1, {{"camera", 1}, {"translation", {0, 0, 5}}});
+    add(-1, {{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+    return document.dump();
+}
+
+TEST_F(ToolGLTest, rendersThroughTheFilesCameras)
+{
+    const std::string filmed = folder.write("filmed.gltf", filmedFlag());
+    const auto picture = [&](const char* camera, const char* time)
+    {
+        const std::string name = folder.file("seen.png");
+        const Process done = Process::run(
+            OSGGPUANIM, {"render", filmed, "--camera", camera, "--time", time, "--size", "80x60", "-o", name});
+        EXPECT_EQ(done.status, 0) << done.err;
+        return osgDB::readRefImageFile(name);
+    };
+    const auto isFlag = [](const osg::Image& image, unsigned int x, unsigned int y)
+    { return colour(image, x, y).x() > 2.0f * colour(image, x, y).y(); };
+    // Parallel, 8 units high: a unit is 7.5 pixels. The flag spans (-1, 0) to (1, 2), a quarter turn later (-2, -1) to
+    // (0, 1).
+    const osg::ref_ptr<osg::Image> upright = picture("plan", "0"), turned = picture("1", "1.999");
+    for (const auto& [image, inside, outside] : {std::tuple(upright, osg::Vec2(0.8f, 1.8f), osg::Vec2(-1.5f, -0.5f)),
+                                                 std::tuple(turned, osg::Vec2(-1.8f, -0.8f), osg::Vec2(0.5f, 1.5f))})
+    {
+        const auto pixel = [](float units, float middle) { return static_cast<unsigned int>(middle + 7.5f * units); };
+        EXPECT_TRUE(isFlag(*image, pixel(inside.x(), 40.0f), pixel(inside.y(), 30.0f)));
+        EXPECT_FALSE(isFlag(*image, pixel(outside.x(), 40.0f), pixel(outside.y(), 30.0f)));
+    }
+    // The camera that turns with the flag sees it in the middle at all times.
+    for (const char* time : {"0", "0.9", "1.9"})
+    {
+        const osg::ref_ptr<osg::Image> image = picture("film", time);
+        EXPECT_TRUE(isFlag(*image, 33, 23) && isFlag(*image, 47, 37)) << time;
+        EXPECT_FALSE(isFlag(*image, 25, 30) || isFlag(*image, 40, 46)) << time;
+    }
+    const Process wrong = Process::run(OSGGPUANIM, {"render", filmed, "--camera", "x", "-o", folder.file("x.png")});
+    EXPECT_EQ(wrong.status, 1);
+    EXPECT_NE(wrong.err.find("the scene's cameras are: \"film\", \"plan\""), std::string::npos) << wrong.err;
+}
+
+TEST_F(ToolGLTest, inspectListsLightsAndCameras)
+{
+    const std::string filmed = folder.write("filmed.gltf", filmedFlag());
+    const json report = json::parse(Process::run(OSGGPUANIM, {"inspect", filmed, "--json"}).out);
+    EXPECT_EQ(report["lights"], json::parse(R"([{"index":0,"node":4,"number":1,"name":"sun","type":"directional"}])"));
+    EXPECT_EQ(report["cameras"], json::parse(R"([{"index":0,"name":"film","node":2,"type":"perspective"},
+                                                 {"index":1,"name":"plan","node":3,"type":"orthographic"}])"));
+    const std::string text = Process::run(OSGGPUANIM, {"inspect", filmed}).out;
+    for (const char* words : {"1: sun (directional, GL_LIGHT1)\n", "2: film (perspective), plan (orthographic)\n"})
+        EXPECT_NE(text.find(words), std::string::npos) << text;
 }
 
 TEST_F(ToolGLTest, rendersNumberedPicturesThatMove)

@@ -2,6 +2,7 @@
 #include "gltf/document/DocumentRules.h"
 
 #include "gltf/data/AttributeSemantic.h"
+#include "gltf/document/ViewRules.h"
 #include "gltf/file/Report.h"
 
 #include <algorithm>
@@ -265,7 +266,7 @@ const std::string_view supportedExtensions[] = {"KHR_mesh_quantization",      "K
                                                 "KHR_materials_clearcoat",    "KHR_materials_sheen",
                                                 "KHR_materials_transmission", "KHR_materials_pbrSpecularGlossiness",
                                                 "EXT_meshopt_compression",    "KHR_draco_mesh_compression",
-                                                "EXT_mesh_gpu_instancing"};
+                                                "EXT_mesh_gpu_instancing",    "KHR_lights_punctual"};
 
 /// Parts of the names of extensions that change looks alone, or nothing that is drawn: a file that requires them is
 /// shown without them.
@@ -352,18 +353,6 @@ std::optional<Error> checkImages(const JsonValue& images)
     return std::nullopt;
 }
 
-std::optional<Error> checkCameras(const JsonValue& cameras)
-{
-    std::size_t i = 0;
-    for (const JsonValue& camera : cameras)
-    {
-        const std::string_view type = camera["type"].text();
-        if (!camera[type]) return fault(elementName("cameras", i) + '.' + std::string(type), "an object", "nothing");
-        ++i;
-    }
-    return std::nullopt;
-}
-
 void noteScenes(const JsonValue& document, Report& report)
 {
     if (!document["scenes"])
@@ -379,11 +368,11 @@ std::optional<Error> checkDocumentRules(const JsonValue& document, Report& repor
     std::optional<Error> error = checkVersion(document["asset"]);
     if (!error) error = checkExtensions(document, report);
     if (!error) error = checkImages(document["images"]);
-    if (!error) error = checkCameras(document["cameras"]);
     if (!error) error = checkPrimitiveRules(document["meshes"], report);
     if (!error) error = checkAnimationRules(document["animations"], report);
     if (error) return error;
     checkNodeRules(document["nodes"], report);
+    checkViewRules(document, report);
     noteScenes(document, report);
     return std::nullopt;
 }

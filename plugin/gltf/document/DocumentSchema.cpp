@@ -296,7 +296,9 @@ constexpr SchemaRule mesh[] = {object("primitives", primitive).list().required()
                                extras};
 
 constexpr SchemaRule instancing[] = {indexMap("attributes", "accessors").required()};
-constexpr SchemaRule nodeExtensions[] = {object("EXT_mesh_gpu_instancing", instancing)};
+// checkViewRules() checks the lights, so that a faulty one costs only itself.
+constexpr SchemaRule punctual[] = {rule("KHR_lights_punctual", Kind::Any)};
+constexpr SchemaRule nodeExtensions[] = {object("EXT_mesh_gpu_instancing", instancing), punctual[0]};
 
 constexpr SchemaRule node[] = {index("camera", "cameras"),
                                index("children", "nodes").list(),
@@ -316,12 +318,12 @@ constexpr SchemaRule scene[] = {index("nodes", "nodes").list(), name, extras};
 constexpr SchemaRule skin[] = {index("inverseBindMatrices", "accessors"), index("skeleton", "nodes"),
                                index("joints", "nodes").list().required(), name};
 
-constexpr SchemaRule perspective[] = {number("aspectRatio").from(0), number("yfov").from(0).required(),
-                                      number("zfar").from(0), number("znear").from(0).required()};
-constexpr SchemaRule orthographic[] = {number("xmag").required(), number("ymag").required(),
-                                       number("zfar").from(0).required(), number("znear").from(0).required()};
-constexpr SchemaRule camera[] = {choice("type", "perspective orthographic").required(),
-                                 object("perspective", perspective), object("orthographic", orthographic), name};
+// Of cameras, the size of the view counts: checkViewRules() leaves out those without one.
+constexpr SchemaRule perspective[] = {number("yfov").orLeaveOut()};
+constexpr SchemaRule orthographic[] = {number("ymag").orLeaveOut()};
+constexpr SchemaRule camera[] = {choice("type", "perspective orthographic").orLeaveOut(),
+                                 object("perspective", perspective).orLeaveOut(),
+                                 object("orthographic", orthographic).orLeaveOut(), name};
 
 // ------------------------------------------------------------------------------------------------------ the document
 
@@ -336,6 +338,7 @@ constexpr SchemaRule documentMembers[] = {object("asset", asset).required(),
                                           object("buffers", buffer).list(),
                                           object("bufferViews", bufferView).list(),
                                           object("cameras", camera).list(),
+                                          object("extensions", punctual).orLeaveOut(),
                                           object("images", image).list(),
                                           object("materials", material).list(),
                                           object("meshes", mesh).list(),

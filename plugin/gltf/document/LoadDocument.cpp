@@ -252,6 +252,28 @@ void read(const JsonValue& json, tinygltf::Material& material)
     read(json["extras"], material.extras);
 }
 
+/// A camera without a type is left out.
+void read(const JsonValue& json, tinygltf::Camera& camera)
+{
+    read(json["type"], camera.type);
+    read(json["name"], camera.name);
+    read(json["perspective"]["yfov"], camera.perspective.yfov);
+    read(json["orthographic"]["ymag"], camera.orthographic.ymag);
+}
+
+/// Likewise.
+void read(const JsonValue& json, tinygltf::Light& light)
+{
+    light.color = {1.0, 1.0, 1.0};
+    read(json["type"], light.type);
+    read(json["name"], light.name);
+    read(json["color"], light.color);
+    read(json["intensity"], light.intensity);
+    read(json["range"], light.range);
+    read(json["spot"]["innerConeAngle"], light.spot.innerConeAngle);
+    read(json["spot"]["outerConeAngle"], light.spot.outerConeAngle);
+}
+
 template <typename Element>
 void read(const JsonValue& json, std::vector<Element>& elements)
 {
@@ -262,8 +284,8 @@ void read(const JsonValue& json, std::vector<Element>& elements)
         read(element, elements.emplace_back());
 }
 
-/// Fills a model from a document that has passed checkSchema() and checkDocumentRules(), without its buffers, images
-/// and cameras.
+/// Fills a model from a document that has passed checkSchema() and checkDocumentRules(), without its buffers and
+/// images.
 tinygltf::Model readModel(const JsonValue& document)
 {
     tinygltf::Model model;
@@ -278,6 +300,8 @@ tinygltf::Model readModel(const JsonValue& document)
     read(document["materials"], model.materials);
     read(document["textures"], model.textures);
     read(document["samplers"], model.samplers);
+    read(document["cameras"], model.cameras);
+    read(document["extensions"]["KHR_lights_punctual"]["lights"], model.lights);
     read(document["extensionsUsed"], model.extensionsUsed);
     read(document["extensionsRequired"], model.extensionsRequired);
     read(document["asset"]["version"], model.asset.version);

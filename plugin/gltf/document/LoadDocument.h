@@ -27,7 +27,7 @@ namespace osgGpuAnimation::gltf
 /// - rotations of animations, joint numbers and weights are mended in accessors of our own where the file's are faulty;
 /// - compressed meshes and buffer views are decompressed; accessors have no minValues and maxValues, because the bounds
 ///   are computed from the data;
-/// - cameras are checked and not read.
+/// - lights (KHR_lights_punctual) and cameras without a type are left out; of cameras, only yfov and ymag are read.
 ///
 /// bytes: the file's content, GLB or JSON. fileName: gives the folder of external files and appears in messages; empty
 /// for a stream, which then has no external files.

@@ -42,7 +42,13 @@ const List lists[] = {
     {"samplers", sizeof(tinygltf::Sampler), {}, {}},
     {"images", sizeof(tinygltf::Image), {}, {}},
     {"cameras", sizeof(tinygltf::Camera), {}, {}},
+    {"lights", sizeof(tinygltf::Light), {}, {}}, // of KHR_lights_punctual
 };
+
+JsonValue elementsOf(const JsonValue& document, const List& list)
+{
+    return list.name == "lights" ? document["extensions"]["KHR_lights_punctual"]["lights"] : document[list.name];
+}
 
 /// Extras become tinygltf::Values, which are more than twice as large as a value of the tree.
 std::size_t bytesOfExtras(const JsonValue& element)
@@ -71,7 +77,7 @@ std::optional<Error> checkDocumentBytes(JsonTree& json, std::size_t limit)
     std::size_t bytes = json.size() * bytesOfJsonValue;
     for (const List& list : lists)
     {
-        const JsonValue elements = json.root()[list.name];
+        const JsonValue elements = elementsOf(json.root(), list);
         if (!elements || !elements.is(JsonTree::Type::Array)) continue;
         bytes += bytesOf(elements, list);
         if (bytes > limit)

@@ -20,6 +20,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <utility>
 
 namespace osgGpuAnimation::gltf
 {
@@ -37,13 +38,14 @@ public:
     {
     }
 
-    void build()
+    std::vector<osg::ref_ptr<osg::Group>> build()
     {
         for (std::size_t node = 0; node < _parts.model.nodes.size(); ++node)
         {
             if (_parts.tree.drawn[node]) addMesh(node);
         }
         buildStillNodes();
+        return std::move(_groups);
     }
 
 private:
@@ -59,7 +61,7 @@ private:
     std::vector<ImportedPrimitive>& _primitives;
     std::vector<std::vector<osg::ref_ptr<osg::Geometry>>> _still; ///< by node: its plain geometries
     std::vector<double> _stillRadius;                             ///< by node: of its farthest vertex
-    std::vector<osg::ref_ptr<osg::Group>> _groups;                ///< by node: null where nothing is drawn below
+    std::vector<osg::ref_ptr<osg::Group>> _groups;                ///< by node: null where no transform is needed
     /// By geometry: the current one over the same arrays, with fewer than mostParents.
     std::map<const osg::Geometry*, osg::ref_ptr<osg::Geometry>> _open;
     std::set<const osg::Geometry*> _inCharacter;
@@ -201,7 +203,7 @@ void SceneGraphBuilder::buildStillNodes()
     for (auto node = tree.order.rbegin(); node != tree.order.rend(); ++node)
     {
         const auto index = static_cast<std::size_t>(*node);
-        if (!_still[index].empty()) needed[index] = true;
+        if (!_still[index].empty() || _parts.carries[index]) needed[index] = true;
         const int parent = tree.parents[index];
         if (needed[index] && parent >= 0) needed[static_cast<std::size_t>(parent)] = true;
     }
@@ -213,10 +215,11 @@ void SceneGraphBuilder::buildStillNodes()
 
 } // namespace
 
-void buildSceneGraph(const SceneParts& parts, osg::Group& still, AnimatedCharacter* character,
-                     std::vector<ImportedPrimitive>& primitives)
+std::vector<osg::ref_ptr<osg::Group>> buildSceneGraph(const SceneParts& parts, osg::Group& still,
+                                                      AnimatedCharacter* character,
+                                                      std::vector<ImportedPrimitive>& primitives)
 {
-    SceneGraphBuilder(parts, still, character, primitives).build();
+    return SceneGraphBuilder(parts, still, character, primitives).build();
 }
 
 } // namespace osgGpuAnimation::gltf

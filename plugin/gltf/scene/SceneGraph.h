@@ -55,15 +55,18 @@ struct SceneParts
     const NodeTree& tree;
     const Joints& joints;
     const Morphs& morphs;
+    const std::vector<bool>& carries; ///< by node: it stands still and carries something besides a mesh
     Drawables& drawables;
     MemoryBudget& budget;
     Report& report;
 };
 
 /// Fills `still`, the character and `primitives`. Everything drawn from the palette becomes a child of the character;
-/// the rest becomes MatrixTransforms below `still`, one a node of the file that carries a mesh or is above such a node,
-/// with geometries. Nodes that mirror set the winding in their state, so that front faces stay front faces.
-void buildSceneGraph(const SceneParts& parts, osg::Group& still, AnimatedCharacter* character,
-                     std::vector<ImportedPrimitive>& primitives);
+/// the rest becomes MatrixTransforms below `still`, one a node of the file that carries something or is above such a
+/// node, with geometries. Nodes that mirror set the winding in their state, so that front faces stay front faces.
+/// Returns these transforms, one per node of the file, null where there is none.
+std::vector<osg::ref_ptr<osg::Group>> buildSceneGraph(const SceneParts& parts, osg::Group& still,
+                                                      AnimatedCharacter* character,
+                                                      std::vector<ImportedPrimitive>& primitives);
 
 } // namespace osgGpuAnimation::gltf

@@ -3,6 +3,7 @@
 
 #include <osgGpuAnimation/nodes/frame/CullScopes.h>
 #include <osgGpuAnimation/nodes/PbrMaterial.h>
+#include <osgGpuAnimation/nodes/shading/PunctualLight.h>
 
 #include <osg/ColorMask>
 #include <osg/Fog>
@@ -120,6 +121,12 @@ bool isPointLight(const osg::State& state, unsigned int index)
     return light && light->getPosition().w() != 0.0f;
 }
 
+/// Null: an osg::Light of another class.
+const PunctualLight* punctualLight(const osg::State& state, unsigned int index)
+{
+    return dynamic_cast<const PunctualLight*>(applied<osg::Light>(state, osg::StateAttribute::LIGHT, index));
+}
+
 bool isShadowMap(const osg::State& state, unsigned int unit)
 {
     if (!state.getLastAppliedTextureMode(unit, GL_TEXTURE_GEN_S)) return false;
@@ -157,7 +164,9 @@ void readLights(const osg::State& state, ShaderKey& surface)
     {
         if (!state.getLastAppliedMode(GL_LIGHT0 + index)) continue;
         surface.lights |= static_cast<std::uint8_t>(1u << index);
-        if (isPointLight(state, index)) surface.pointLights |= static_cast<std::uint8_t>(1u << index);
+        if (!isPointLight(state, index)) continue;
+        surface.pointLights |= static_cast<std::uint8_t>(1u << index);
+        if (punctualLight(state, index)) surface.punctualLights |= static_cast<std::uint8_t>(1u << index);
     }
     for (unsigned int unit = 1; unit < generatedUnits; ++unit)
         if (isShadowMap(state, unit)) surface.shadowMaps |= static_cast<std::uint8_t>(1u << unit);
@@ -181,6 +190,17 @@ void setShadowUnits(osg::State& state)
     if (!program) return;
     state.get<osg::GLExtensions>()->glUniform1iv(program->getUniformLocation(mapsName),
                                                  static_cast<GLsizei>(units.size()), units.data());
+}
+
+void setPunctualLights(osg::State& state, unsigned int lights)
+{
+    static const unsigned int name = osg::Uniform::getNameID("punctualLights");
+    const osg::Program::PerContextProgram* program = state.getLastAppliedProgramObject();
+    if (!program) return;
+    std::array<osg::Vec4, lightCount> numbers;
+    for (unsigned int index = 0; index < lightCount; ++index)
+        if (lights & (1u << index)) numbers[index] = punctualLight(state, index)->coneAndRange();
+    state.get<osg::GLExtensions>()->glUniform4fv(program->getUniformLocation(name), lightCount, numbers[0].ptr());
 }
 
 bool givesWayToColors(const osg::Material& material)
@@ -253,9 +273,10 @@ std::string ShaderKey::defines() const
            line("DRAW_FLAT_NORMALS", hasFlatNormals) + line("DRAW_SPECULAR", hasSpecular) +
            line("DRAW_TEXTURE", isTextured) + line("DRAW_TEXTURE_MATRIX", hasTextureMatrix) +
            line("DRAW_CLIP_PLANES", hasClipPlanes) + line("DRAW_LIGHTS", lights) +
-           line("DRAW_POINT_LIGHTS", pointLights) + line("DRAW_SHADOW_MAPS", shadowMaps) +
-           line("DRAW_SHADOW_BIAS", hasShadowBias) + line("DRAW_SHADOW_SPLITS", hasShadowSplits) +
-           line("DRAW_ENCODED", isEncoded) + line("DRAW_FOG", static_cast<unsigned int>(fog));
+           line("DRAW_POINT_LIGHTS", pointLights) + line("DRAW_PUNCTUAL_LIGHTS", punctualLights) +
+           line("DRAW_SHADOW_MAPS", shadowMaps) + line("DRAW_SHADOW_BIAS", hasShadowBias) +
+           line("DRAW_SHADOW_SPLITS", hasShadowSplits) + line("DRAW_ENCODED", isEncoded) +
+           line("DRAW_FOG", static_cast<unsigned int>(fog));
 }
 
 bool isWhiteTexture(const osg::StateAttribute* texture)
@@ -319,6 +340,7 @@ void ShaderPermutations::apply(osg::State& state) const
         const ShaderKey surface = ShaderKey::of(state);
         variant(surface)->apply(state);
         if (surface.shadowMaps != 0) setShadowUnits(state);
+        if (surface.punctualLights != 0) setPunctualLights(state, surface.punctualLights);
         setMaterial(state);
     }
     // The next StateSet may have other modes with the same program, which OSG would consider applied.

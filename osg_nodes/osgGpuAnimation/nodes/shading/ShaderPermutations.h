@@ -34,15 +34,16 @@ struct ShaderKey
     bool hasFlatNormals = false; ///< lit, and the uniform `flatNormals` is set
     bool hasSpecular = false;    ///< lit, and the osg::Material's specular is not black
     bool isTextured = true;      ///< GL_TEXTURE_2D on unit 0, and not just the white texture of applyCharacterProgram()
-    bool hasTextureMatrix = false; ///< an osg::TexMat on unit 0
-    bool hasClipPlanes = false;    ///< any GL_CLIP_PLANEi
-    std::uint8_t lights = 1;       ///< a bit for each enabled GL_LIGHTi
-    std::uint8_t pointLights = 0;  ///< the lights with a position: attenuated, possibly spots
-    std::uint8_t shadowMaps = 0;   ///< a bit for each texture unit, 1 to 7, with a depth map on generated coordinates
-    bool hasShadowBias = false;    ///< osgShadow::ShadowMap: its uniform osgShadow_ambientBias exists
-    bool hasShadowSplits = false;  ///< osgShadow::ParallelSplitShadowMap: its uniform zShadow0 exists
-    bool isEncoded = true;         ///< no GL_FRAMEBUFFER_SRGB: the shader encodes linear light for the display
-    Fog fog = Fog::None;           ///< GL_FOG, and the osg::Fog's mode
+    bool hasTextureMatrix = false;   ///< an osg::TexMat on unit 0
+    bool hasClipPlanes = false;      ///< any GL_CLIP_PLANEi
+    std::uint8_t lights = 1;         ///< a bit for each enabled GL_LIGHTi
+    std::uint8_t pointLights = 0;    ///< the lights with a position: attenuated, possibly spots
+    std::uint8_t punctualLights = 0; ///< the point lights that are a PunctualLight: with glTF's cones and ranges
+    std::uint8_t shadowMaps = 0;     ///< a bit for each texture unit, 1 to 7, with a depth map on generated coordinates
+    bool hasShadowBias = false;      ///< osgShadow::ShadowMap: its uniform osgShadow_ambientBias exists
+    bool hasShadowSplits = false;    ///< osgShadow::ParallelSplitShadowMap: its uniform zShadow0 exists
+    bool isEncoded = true;           ///< no GL_FRAMEBUFFER_SRGB: the shader encodes linear light for the display
+    Fog fog = Fog::None;             ///< GL_FOG, and the osg::Fog's mode
 
     /// The key of the present state. Call it while attributes are applied, after the modes.
     static ShaderKey of(osg::State& state);
@@ -53,12 +54,11 @@ struct ShaderKey
     bool operator<(const ShaderKey& other) const { return key() < other.key(); }
 
 private:
-    std::tuple<bool, bool, bool, bool, bool, bool, bool, bool, bool, bool, bool, unsigned, unsigned, unsigned, Fog>
-    key() const
+    auto key() const
     {
-        return {isDepthOnly, isAlphaNeeded,    isLit,         hasFlatNormals, hasSpecular,
-                isTextured,  hasTextureMatrix, hasClipPlanes, hasShadowBias,  hasShadowSplits,
-                isEncoded,   lights,           pointLights,   shadowMaps,     fog};
+        return std::tie(isDepthOnly, isAlphaNeeded, isLit, hasFlatNormals, hasSpecular, isTextured, hasTextureMatrix,
+                        hasClipPlanes, lights, pointLights, punctualLights, shadowMaps, hasShadowBias, hasShadowSplits,
+                        isEncoded, fog);
     }
 };
 

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/nodes/viewing/StartView.h>
+
+#include <osgGpuAnimation/nodes/frame/CullScopes.h>
+#include <osgGpuAnimation/nodes/JointAttachment.h>
+
+#include <osg/NodeVisitor>
+#include <osg/ValueObject>
+#include <osgGA/CameraManipulator>
+
+#include <algorithm>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+/// Finds the first CameraView of a name.
+class CameraFinder : public osg::NodeVisitor
+{
+public:
+    explicit CameraFinder(const std::string& name) : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN), _name(name) {}
+
+    void apply(osg::CameraView& view) override
+    {
+        if (!found && view.getName() == _name) found = &view;
+        if (!found) traverse(view);
+    }
+
+    osg::CameraView* found = nullptr;
+
+private:
+    const std::string& _name;
+};
+
+osg::CameraView* findCamera(osg::Node& node, const std::string& name)
+{
+    CameraFinder finder(name);
+    node.accept(finder);
+    return finder.found;
+}
+
+bool isBelowAttachment(const osg::Node& node)
+{
+    for (const osg::Group* parent : node.getParents())
+        if (dynamic_cast<const JointAttachment*>(parent) || isBelowAttachment(*parent)) return true;
+    return false;
+}
+
+void goHome(const osgGA::GUIEventAdapter& event, osgViewer::View& view, const osg::Matrixd& toWorld)
+{
+    const osg::Vec3d eye = toWorld.getTrans();
+    const osg::Vec3d ahead = osg::Matrixd::transform3x3(osg::Vec3d(0, 0, -1), toWorld);
+    const osg::Vec3d up = osg::Matrixd::transform3x3(osg::Vec3d(0, 1, 0), toWorld);
+    // Manipulators turn about the centre: as deep as the scene's middle, where the camera looks at it.
+    const osg::BoundingSphere bound = view.getSceneData() ? view.getSceneData()->getBound() : osg::BoundingSphere();
+    const double depth = bound.valid() ? (osg::Vec3d(bound.center()) - eye) * ahead : 1.0;
+    const double distance = depth > 0.0 ? depth : std::max<double>(bound.radius(), 1e-6);
+    osgGA::CameraManipulator& manipulator = *view.getCameraManipulator();
+    manipulator.setHomePosition(eye, eye + ahead * distance, up, false);
+    manipulator.setAutoComputeHomePosition(false);
+    manipulator.home(event, view);
+}
+
+} // namespace
+
+void setProjection(osg::Camera& camera, const osg::CameraView& view)
+{
+    double height = 0.0;
+    const osg::Viewport* viewport = camera.getViewport();
+    const double aspect = viewport && viewport->aspectRatio() > 0.0 ? viewport->aspectRatio() : 1.0;
+    // The cull traversal computes the near and far planes.
+    if (view.getUserValue(orthographicHeightName, height))
+        camera.setProjectionMatrixAsOrtho(-0.5 * height * aspect, 0.5 * height * aspect, -0.5 * height, 0.5 * height,
+                                          1.0, 10000.0);
+    else if (view.getFieldOfViewMode() == osg::CameraView::VERTICAL)
+        camera.setProjectionMatrixAsPerspective(view.getFieldOfView(), aspect, 1.0, 10000.0);
+}
+
+osg::Matrixd viewToWorld(const osg::CameraView& view)
+{
+    const osg::MatrixList paths = view.getWorldMatrices();
+    if (paths.empty()) return osg::Matrixd();
+    return osg::Matrixd::rotate(paths.front().getRotate()) * osg::Matrixd::translate(paths.front().getTrans());
+}
+
+StartView::StartView(const StartView& other, const osg::CopyOp& copyop)
+    : osg::Object(other, copyop), osg::Callback(other, copyop), osgGA::GUIEventHandler(other, copyop),
+      _camera(other._camera)
+{
+}
+
+bool StartView::handle(const osgGA::GUIEventAdapter& event, osgGA::GUIActionAdapter& action, osg::Object* object,
+                       osg::NodeVisitor*)
+{
+    auto* view = dynamic_cast<osgViewer::View*>(action.asView());
+    auto* node = dynamic_cast<osg::Node*>(object);
+    if (!view || !node || !view->getCameraManipulator() || (_hasStarted && view != _view.get())) return false;
+    using Event = osgGA::GUIEventAdapter;
+    switch (event.getEventType())
+    {
+    case Event::FRAME:
+        if (!_hasStarted) start(event, *view, *node);
+        if (_isFollowing) followAfterUpdate(*node);
+        break;
+    case Event::PUSH:
+    case Event::SCROLL:
+        _isFollowing = false;
+        break;
+    case Event::KEYDOWN:
+        if (_hasStarted && event.getKey() == Event::KEY_Space)
+        {
+            const osg::CameraView* const camera = findCamera(*node, _camera);
+            _isFollowing = camera && isBelowAttachment(*camera);
+        }
+        break;
+    default:
+        break;
+    }
+    return false;
+}
+
+void StartView::start(const osgGA::GUIEventAdapter& event, osgViewer::View& view, osg::Node& node)
+{
+    const osg::CameraView* const camera = findCamera(node, _camera);
+    _hasStarted = true;
+    _view = &view;
+    if (!camera) return;
+    _isFollowing = isBelowAttachment(*camera);
+    setProjection(*view.getCamera(), *camera);
+    goHome(event, view, viewToWorld(*camera));
+}
+
+void StartView::followAfterUpdate(osg::Node& node)
+{
+    runAfterUpdate(node,
+                   [self = osg::ref_ptr<StartView>(this), watched = osg::observer_ptr<osg::Node>(&node)]
+                   {
+                       osg::ref_ptr<osg::Node> present;
+                       if (self->_isFollowing && watched.lock(present)) self->follow(*present);
+                   });
+}
+
+void StartView::follow(osg::Node& node)
+{
+    osg::ref_ptr<osgViewer::View> view;
+    const osg::CameraView* const camera = findCamera(node, _camera);
+    if (camera && _view.lock(view) && view->getCameraManipulator())
+        view->getCameraManipulator()->setByMatrix(viewToWorld(*camera));
+}
+
+} // namespace osgGpuAnimation

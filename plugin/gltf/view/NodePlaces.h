@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "gltf/scene/Joints.h"
+#include "gltf/scene/NodeTree.h"
+
+#include <osg/Group>
+#include <osg/ref_ptr>
+#include <tiny_gltf.h>
+
+#include <cstddef>
+#include <vector>
+
+namespace osgGpuAnimation
+{
+class AnimatedCharacter;
+}
+
+namespace osgGpuAnimation::gltf
+{
+
+/// The places in the graph of what nodes carry besides meshes: below the node's MatrixTransform if it stands still,
+/// else below a JointAttachment of the character. A node that moves with the joint above it and is none itself has a
+/// MatrixTransform in between.
+///
+/// The transforms of such nodes, and those above, are DYNAMIC: the Optimizer must not flatten them into the meshes.
+class NodePlaces
+{
+public:
+    /// transforms: see buildSceneGraph(); it has those of the still nodes that will be asked for. still: the group that
+    /// they are below. character: null if no node moves.
+    NodePlaces(const tinygltf::Model& model, const NodeTree& tree, const Joints& joints, AnimatedCharacter* character,
+               osg::Group& still, std::vector<osg::ref_ptr<osg::Group>> transforms);
+
+    /// Adds a child to the node's place. node: in the drawn part.
+    void add(std::size_t node, osg::Node* child);
+
+private:
+    osg::Group& placeOf(std::size_t node);
+    osg::ref_ptr<osg::Group> makeAttachment(std::size_t node) const;
+
+    const tinygltf::Model& _model;
+    const NodeTree& _tree;
+    const Joints& _joints;
+    AnimatedCharacter* _character;
+    osg::Group& _still;
+    std::vector<osg::ref_ptr<osg::Group>> _places; ///< by node; null: none yet
+};
+
+} // namespace osgGpuAnimation::gltf

@@ -144,6 +144,7 @@ public:
 TEST_P(ProfilesGLTest, leavesNoGlErrors)
 {
     changeTo(GetParam());
+    if (HasFatalFailure() || IsSkipped()) return;
     osg::ref_ptr<osg::Group> scene = makeScene();
     osg::ref_ptr<ErrorNotes> notes = new ErrorNotes;
     static_cast<osg::Drawable&>(*scene->getChild(0)->asGroup()->getChild(0)).setDrawCallback(notes);
@@ -240,6 +241,7 @@ TEST_F(ProfileGLTest, overriddenAndProtectedModesCountInEveryProfile)
     for (const ProfileCase& profile : {stock, ProfileCase{"Core33", 1, "3.3", 0}})
     {
         changeTo(profile);
+        if (HasFatalFailure() || IsSkipped()) return;
         osg::setNotifyHandler(new Warnings); // of the fixed pipeline in the core profile, see above
         const osg::ref_ptr<osg::Group> root = new osg::Group, above = new osg::Group;
         const osg::ref_ptr<AnimatedCharacter> character = makePanelCharacter();
@@ -277,6 +279,7 @@ TEST_F(ProfileGLTest, emissionIsAddedInEveryProfile)
     for (const ProfileCase& profile : {stock, ProfileCase{"Core33", 1, "3.3", 0}})
     {
         changeTo(profile);
+        if (HasFatalFailure() || IsSkipped()) return;
         osg::setNotifyHandler(new Warnings); // of the fixed pipeline in the core profile, see above
         const osg::ref_ptr<AnimatedCharacter> character = makePanelCharacter();
         osg::StateSet& state = *character->getChild(0)->getStateSet();

@@ -51,15 +51,13 @@ struct ShaderKey
     /// GLSL definitions of DRAW_COLOR, DRAW_ALPHA, DRAW_LIGHTING and so on, as numbers.
     std::string defines() const;
 
-    bool operator<(const ShaderKey& other) const { return key() < other.key(); }
-
-private:
     auto key() const
     {
         return std::tie(isDepthOnly, isAlphaNeeded, isLit, hasFlatNormals, hasSpecular, isTextured, hasTextureMatrix,
                         hasClipPlanes, lights, pointLights, punctualLights, shadowMaps, hasShadowBias, hasShadowSplits,
                         isEncoded, fog);
     }
+    bool operator<(const ShaderKey& other) const { return key() < other.key(); }
 };
 
 /// True for whiteTexture() and, by the name, for copies of it, also from files: shaders skip such a texture.

@@ -2,7 +2,9 @@
 #include "fuzz/Seed.h"
 
 #include "gltf/file/Uri.h"
+#include "plugin/EncodedPicture.h"
 #include "plugin/LoadedDocument.h"
+#include "plugin/PackedDocument.h"
 
 #include <utility>
 
@@ -184,6 +186,32 @@ Seed materials()
     return seed("materials", std::move(document));
 }
 
+Seed pictures()
+{
+    PackedDocument document;
+    document.json["buffers"] = {{{"byteLength", 1}}};
+    const std::pair<const char*, GLenum> kinds[] = {
+        {"png", GL_RGBA},  {"png", GL_LUMINANCE},     {"jpg", GL_RGB},           {"webp", GL_RGB},
+        {"webp", GL_RGBA}, {"lossless.webp", GL_RGB}, {"lossless.webp", GL_RGBA}};
+    for (const auto& [kind, format] : kinds)
+    {
+        const std::size_t picture = document.json["images"].size();
+        document.json["images"].push_back({{"bufferView", document.addView(encodedPicture(kind, 4, 4, format))}});
+        const Json info = {{"index", picture}};
+        document.json["materials"].push_back(
+            {{"pbrMetallicRoughness", {{"baseColorTexture", info}, {"metallicRoughnessTexture", info}}},
+             {"normalTexture", info},
+             {"occlusionTexture", info},
+             {"emissiveTexture", info}});
+        document.json["textures"].push_back(
+            {{"source", 0},
+             {"extensions", {{"EXT_texture_webp", {{"source", picture}}}, {"KHR_texture_basisu", {{"source", 0}}}}}});
+    }
+    document.json["extensionsUsed"] = {"EXT_texture_webp", "KHR_texture_basisu"};
+    document.json["buffers"][0]["byteLength"] = document.data().size();
+    return {"pictures", document.json, document.data()};
+}
+
 Seed scenes()
 {
     ModelBuilder file = baseModel();
@@ -219,6 +247,7 @@ std::vector<Seed> modelSeeds()
             lightsAndCameras(),
             quantized(),
             materials(),
+            pictures(),
             scenes(),
             external(),
             seed("least", Json{{"asset", {{"version", "2.0"}}}})};

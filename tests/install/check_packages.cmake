@@ -29,7 +29,7 @@ function(expect_file file)
 endfunction()
 
 unpack(libosggpuanimation0)
-foreach(library libopenscenegraph161 libmeshoptimizer2d libpng16-16 libturbojpeg0 libegl1 libstdc\\+\\+6)
+foreach(library libopenscenegraph161 libmeshoptimizer2d libpng16-16 libturbojpeg0 libwebp7 libegl1 libstdc\\+\\+6)
     expect_said("Depends:[^\n]* ${library}[ ,\n]")
 endforeach()
 expect_said("shlibs")

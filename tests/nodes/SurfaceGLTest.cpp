@@ -2,6 +2,7 @@
 #include "nodes/Panel.h"
 #include "support/ViewerGLTest.h"
 
+#include <osgGpuAnimation/nodes/PbrMaterial.h>
 #include <osgGpuAnimation/nodes/shading/ShaderPermutations.h>
 
 #include <osg/BlendFunc>
@@ -99,6 +100,20 @@ TEST_P(SurfaceGLTest, looksAsInTheFixedPipeline)
     const osg::ref_ptr<osg::Image> expected = pictureOf(makeBaked(*character), GetParam().set);
     const osg::ref_ptr<osg::Image> found = pictureOf(character, GetParam().set);
     EXPECT_LE(Picture::pixelsDifferent(*expected, *found, tolerance), edgePixels);
+    const osg::ref_ptr<osg::Image> without = pictureOf(character, [](osg::StateSet&) {});
+    EXPECT_EQ(Picture::pixelsDifferent(*without, *found, tolerance) > 2 * edgePixels, GetParam().hasEffect);
+}
+
+// With a PbrMaterial each state does visibly what it does without.
+TEST_P(SurfaceGLTest, changesPbrSurfacesToo)
+{
+    osg::ref_ptr<AnimatedCharacter> character = makePanelCharacter();
+    osg::StateSet& state = *static_cast<osg::Geometry&>(*character->getChild(0)).getStateSet();
+    PbrMaterial material;
+    material.baseColor.set(0.6f, 0.6f, 0.6f, 1.0f);
+    material.metallic = 0.0f;
+    applyPbrMaterial(state, material);
+    const osg::ref_ptr<osg::Image> found = pictureOf(character, GetParam().set);
     const osg::ref_ptr<osg::Image> without = pictureOf(character, [](osg::StateSet&) {});
     EXPECT_EQ(Picture::pixelsDifferent(*without, *found, tolerance) > 2 * edgePixels, GetParam().hasEffect);
 }

@@ -45,7 +45,20 @@ public:
         return static_cast<int>(json["accessors"].size()) - 1;
     }
 
+    /// Adds a block of data and a buffer view for it; returns the view's number.
+    std::size_t addView(const std::string& bytes)
+    {
+        json["bufferViews"].push_back(
+            {{"buffer", 0}, {"byteOffset", add(bytes.data(), bytes.size())}, {"byteLength", bytes.size()}});
+        return json["bufferViews"].size() - 1;
+    }
+
     Result<tinygltf::Model> load() const
+    {
+        Messages messages;
+        return load(messages);
+    }
+    Result<tinygltf::Model> load(Messages& messages) const
     {
         std::string binary = _data;
         binary.resize((binary.size() + 3) / 4 * 4);
@@ -53,7 +66,6 @@ public:
         document["buffers"][0]["byteLength"] = binary.size();
         std::string text = document.dump();
         text.resize((text.size() + 3) / 4 * 4, ' ');
-        Messages messages;
         return loadDocument(glb({{jsonChunk, text}, {binaryChunk, binary}}), "", {}, messages);
     }
 

@@ -46,6 +46,29 @@ std::string jpeg(std::uint32_t width, std::uint32_t height, std::size_t dataByte
            bigEndian(8, 2) + std::string("\x01\x01\0\0\0\0", 6) + std::string(dataBytes, 'x');
 }
 
+std::string littleEndian(std::uint32_t value, int count)
+{
+    const std::string bytes = bigEndian(value, count);
+    return std::string(bytes.rbegin(), bytes.rend());
+}
+
+std::string webp(const std::string& chunkType, const std::string& chunk)
+{
+    return "RIFF" + littleEndian(static_cast<std::uint32_t>(chunk.size() + 12), 4) + "WEBP" + chunkType +
+           littleEndian(static_cast<std::uint32_t>(chunk.size()), 4) + chunk;
+}
+
+/// A lossless WebP; dataBytes: an even number.
+std::string losslessWebp(std::uint32_t width, std::uint32_t height, std::size_t dataBytes)
+{
+    return webp("VP8L", '\x2f' + littleEndian((width - 1) | (height - 1) << 14, 4) + std::string(dataBytes + 1, 'x'));
+}
+
+std::string animatedWebp()
+{
+    return webp("VP8X", littleEndian(0x02, 4) + littleEndian(1, 3) + littleEndian(1, 3)); // 2 x 2 pixels
+}
+
 Result<PictureHeader> read(const std::string& text)
 {
     return readPictureHeader(Bytes(text.begin(), text.end()));
@@ -72,8 +95,8 @@ struct DamageCase
 };
 
 const DamageCase damages[] = {
-    {"empty", [](Bytes& png) { png.clear(); }, "expected a PNG or JPEG"},
-    {"text", [](Bytes& png) { png.assign(100, 'x'); }, "expected a PNG or JPEG"},
+    {"empty", [](Bytes& png) { png.clear(); }, "expected a PNG, JPEG or WebP, found other data"},
+    {"text", [](Bytes& png) { png.assign(100, 'x'); }, "expected a PNG, JPEG or WebP, found other data"},
     {"cut in the header", [](Bytes& png) { png.resize(20); }, "expected a PNG with IHDR"},
     {"cut off", [](Bytes& png) { png.resize(png.size() - 20); }, "cut off"},
     {"chunk past the end", [](Bytes& png) { png[33] = 0x7f; }, "cut off"},
@@ -90,6 +113,29 @@ const DamageCase damages[] = {
     {"no width", [](Bytes& png) { png[18] = png[19] = 0; }, "found 0 x 2"},
     {"15874 x 15874", [](Bytes& png) { png[18] = png[22] = 0x3e; }, "far too little"},
     {"2147483647 pixels", [](Bytes& png) { png[16] = 0x7f; }, "expected a picture from 1 x 1 to"},
+    {"a WebP that is cut off",
+     [](Bytes& png)
+     {
+         png = bytesOf(encodedPicture("webp", 64, 64));
+         png.resize(png.size() - 2);
+     },
+     "expected a WebP of its length, found one that is cut off"},
+    {"a WebP that ends after its first bytes", [](Bytes& png) { png = bytesOf(webp("VP8L", "")); },
+     "cut off or damaged"},
+    {"a WebP of other pixels",
+     [](Bytes& png)
+     {
+         png = bytesOf(encodedPicture("lossless.webp", 64, 64));
+         std::fill(png.begin() + 25, png.end(), static_cast<unsigned char>(0xff));
+     },
+     "the picture is damaged"},
+    {"an animated WebP", [](Bytes& png) { png = bytesOf(animatedWebp()); }, "found an animation"},
+    {"16383 x 16383 as a lossless WebP", [](Bytes& png) { png = bytesOf(losslessWebp(16383, 16383, 20)); },
+     "expected data for a picture of 16383 x 16383, found far too little"},
+    {"KTX2", [](Bytes& png) { png = bytesOf("\xabKTX 20\xbb\r\n\x1a\n and more"); },
+     "expected a PNG, JPEG or WebP, found KTX2"},
+    {"DDS", [](Bytes& png) { png = bytesOf("DDS |"); }, "found DDS"},
+    {"AVIF", [](Bytes& png) { png = bytesOf(std::string("\0\0\0\x1c", 4) + "ftypavif"); }, "found AVIF"},
     {"a JPEG that ends",
      [](Bytes& png) {
          png = {0xff, 0xd8, 0xff, 0xe0, 0x00};
@@ -120,6 +166,11 @@ TEST(PictureTest, TellsFormatAndSize)
     EXPECT_EQ(photo.value().mimeType, "image/jpeg");
     EXPECT_EQ(photo.value().width, 100u);
     EXPECT_EQ(photo.value().height, 50u);
+    const Result<PictureHeader> flat = read(losslessWebp(4096, 4095, 20));
+    ASSERT_TRUE(flat) << flat.error().message;
+    EXPECT_EQ(flat.value().mimeType, "image/webp");
+    EXPECT_EQ(flat.value().width, 4096u);
+    EXPECT_EQ(flat.value().height, 4095u);
 }
 
 TEST(PictureTest, RefusesBombsAndDamage)
@@ -158,14 +209,15 @@ TEST(PictureTest, RefusesBombsAndDamage)
 
 TEST(PictureTest, AnswersEveryTruncation)
 {
-    for (const std::string& whole : {png(3, 2, 20), jpeg(100, 50, 10)})
+    for (const std::string& whole : {png(3, 2, 20), jpeg(100, 50, 10), encodedPicture("webp", 16, 16, GL_RGBA),
+                                     encodedPicture("lossless.webp", 16, 16)})
         for (std::size_t length = 0; length < whole.size(); ++length)
             static_cast<void>(read(whole.substr(0, length)).operator bool());
 }
 
-TEST(PictureTest, decodesPngAndJpegWhateverTheyAreCalled)
+TEST(PictureTest, decodesEachFormatWhateverItIsCalled)
 {
-    for (const char* kind : {"png", "jpg"})
+    for (const char* kind : {"png", "jpg", "webp", "lossless.webp"})
     {
         const Bytes bytes = bytesOf(encodedPicture(kind, 64, 64));
         const auto image = decodeImage(bytes);
@@ -175,6 +227,21 @@ TEST(PictureTest, decodesPngAndJpegWhateverTheyAreCalled)
         EXPECT_EQ(readPictureHeader(bytes).value().decodedBytes, 4u * 64u * 64u);
         EXPECT_GT(image.value()->getColor(0, 63).r(), 0.8f); // the upper half is red
         EXPECT_LT(image.value()->getColor(0, 0).r(), 0.2f);
+    }
+}
+
+TEST(PictureTest, aWebpKeepsItsAlpha)
+{
+    for (const char* kind : {"webp", "lossless.webp"})
+    {
+        SCOPED_TRACE(kind);
+        EXPECT_EQ(decodeImage(bytesOf(encodedPicture(kind, 64, 64))).value()->getPixelFormat(), GLenum(GL_RGB));
+        const auto image = decodeImage(bytesOf(encodedPicture(kind, 64, 64, GL_RGBA)));
+        ASSERT_TRUE(image) << image.error().message;
+        EXPECT_EQ(image.value()->getPixelFormat(), GLenum(GL_RGBA));
+        EXPECT_EQ(image.value()->getColor(0, 63).a(), 1.0f);
+        EXPECT_NEAR(image.value()->getColor(0, 0).a(), 0.5f, 0.01f);
+        EXPECT_NEAR(image.value()->getColor(0, 0).b(), 1.0f, 0.05f); // not multiplied by alpha
     }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/scene/Textures.h"
 #include "plugin/EncodedPicture.h"
+#include "plugin/PackedDocument.h"
 
 #include <gtest/gtest.h>
 
@@ -55,6 +56,35 @@ TEST(TexturesTest, decodesTheMapsThatAreWanted)
         Textures textures(model, report, allMaps);
         for (int i = 0; i < 7; ++i)
             EXPECT_EQ(textures.texture(i) != nullptr, allMaps ? i < 6 : i == 3) << i << ", all maps: " << allMaps;
+        EXPECT_TRUE(messages.warnings.empty());
+    }
+}
+
+TEST(TexturesTest, theSourceOfAnExtensionIsPreferredIfItIsWebp)
+{
+    struct Case
+    {
+        const char* extension;
+        std::string picture;
+        int width; ///< of the picture that is shown
+    };
+    const Case cases[] = {{"EXT_texture_webp", encodedPicture("webp", 2, 2), 2},
+                          {"KHR_texture_basisu", "\xabKTX 20\xbb\r\n\x1a\n", 4}};
+    for (const Case& source : cases)
+    {
+        SCOPED_TRACE(source.extension);
+        PackedDocument document;
+        for (const std::string& picture : {encodedPicture("png", 4, 4), source.picture})
+            document.json["images"].push_back({{"bufferView", document.addView(picture)}});
+        document.json["textures"] = {{{"source", 0}, {"extensions", {{source.extension, {{"source", 1}}}}}}};
+        document.json["materials"] = {{{"emissiveTexture", {{"index", 0}}}}};
+        Messages messages;
+        const Result<tinygltf::Model> model = document.load(messages);
+        ASSERT_TRUE(model) << model.error().message;
+        Report report(messages);
+        Textures textures(model.value(), report, true);
+        ASSERT_TRUE(textures.texture(0));
+        EXPECT_EQ(textures.texture(0)->getImage()->s(), source.width);
         EXPECT_TRUE(messages.warnings.empty());
     }
 }

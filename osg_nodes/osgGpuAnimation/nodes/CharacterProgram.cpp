@@ -21,10 +21,17 @@ osg::ref_ptr<osg::Shader> makeSkinShader()
                            std::string("#version 140\n") + shaders::layout_glsl + shaders::skin_glsl);
 }
 
-void bindSurfaceAttributes(osg::Program& program)
+osg::ref_ptr<osg::Shader> makeSurfaceVertexShader()
 {
-    program.addBindAttribLocation("poseTangent", POSE_TANGENT_LOCATION);
-    program.addBindAttribLocation("poseCoordinates", POSE_COORDINATES_LOCATION);
+    const std::string text = std::string("#version 140\n#define DRAW_SKINNED 1\n#define DRAW_COLOR 1\n") +
+                             "#define DRAW_TEXTURE_MATRIX 0\n#define DRAW_CLIP_PLANES 0\n" + shaders::color_glsl +
+                             shaders::character_vert;
+    return new osg::Shader(osg::Shader::VERTEX, text);
+}
+
+osg::ref_ptr<osg::Shader> makeMaterialShader()
+{
+    return new osg::Shader(osg::Shader::FRAGMENT, std::string("#version 140\n") + shaders::material_glsl);
 }
 
 osg::ref_ptr<osg::Program> makeCharacterProgram()
@@ -32,7 +39,6 @@ osg::ref_ptr<osg::Program> makeCharacterProgram()
     osg::ref_ptr<osg::Program> program = new ShaderPermutations(skinShader());
     program->setName("osgGpuAnimation character");
     bindSkinAttributes(*program);
-    bindSurfaceAttributes(*program);
     return program;
 }
 
@@ -40,7 +46,7 @@ osg::ref_ptr<osg::Program> makeSurfaceProgram()
 {
     osg::ref_ptr<osg::Program> program = new ShaderPermutations;
     program->setName("osgGpuAnimation surface");
-    bindSurfaceAttributes(*program);
+    bindSkinAttributes(*program);
     return program;
 }
 
@@ -60,6 +66,18 @@ osg::ref_ptr<osg::Shader> skinShader()
     return shared.get(makeSkinShader);
 }
 
+osg::ref_ptr<osg::Shader> surfaceVertexShader()
+{
+    static SharedObject<osg::Shader> shared;
+    return shared.get(makeSurfaceVertexShader);
+}
+
+osg::ref_ptr<osg::Shader> materialShader()
+{
+    static SharedObject<osg::Shader> shared;
+    return shared.get(makeMaterialShader);
+}
+
 void bindSkinAttributes(osg::Program& program)
 {
     program.addBindAttribLocation("poseEntries0", POSE_ENTRIES_0_LOCATION);
@@ -70,6 +88,8 @@ void bindSkinAttributes(osg::Program& program)
     program.addBindAttribLocation("poseInstanceRow1", POSE_INSTANCE_ROW_1_LOCATION);
     program.addBindAttribLocation("poseInstanceRow2", POSE_INSTANCE_ROW_2_LOCATION);
     program.addBindAttribLocation("poseInstancePose", POSE_INSTANCE_POSE_LOCATION);
+    program.addBindAttribLocation("poseTangent", POSE_TANGENT_LOCATION);
+    program.addBindAttribLocation("poseCoordinates", POSE_COORDINATES_LOCATION);
 }
 
 osg::ref_ptr<osg::Program> characterProgram()

@@ -33,7 +33,13 @@ void applySurfaceProgram(osg::StateSet& stateSet, bool colored);
 ///
 /// Such a program also needs bindSkinAttributes().
 osg::ref_ptr<osg::Shader> skinShader();
-/// Binds the attributes of skin.glsl to the locations of layout.glsl.
+/// The vertex shader of characterProgram(), with the inputs of materialShader(), as a shader object for another program
+/// of characters. Such a program also needs skinShader() and bindSkinAttributes().
+osg::ref_ptr<osg::Shader> surfaceVertexShader();
+/// material.glsl as a fragment shader object for another program, whose fragment shader declares and calls
+/// osgGpuAnimationMaterial().
+osg::ref_ptr<osg::Shader> materialShader();
+/// Binds the attributes of the two vertex shaders to the locations of layout.glsl.
 void bindSkinAttributes(osg::Program& program);
 
 /// Sets shader defines that remove unused parts of skin.glsl for the meshes of this state, which saves a third of a

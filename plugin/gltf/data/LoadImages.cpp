@@ -6,6 +6,7 @@
 #include "gltf/file/Uri.h"
 
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -19,7 +20,8 @@ using Bytes = std::vector<unsigned char>;
 
 bool isKnownMimeType(std::string_view type)
 {
-    return type.empty() || type == "image/png" || type == "image/jpeg" || type == "application/octet-stream";
+    return type.empty() || type == "image/png" || type == "image/jpeg" || type == "image/webp" ||
+           type == "application/octet-stream";
 }
 
 Error tooLarge(const MemoryBudget& budget, std::size_t bytes)
@@ -38,8 +40,8 @@ Result<Bytes> readDataUri(std::string_view uri, MemoryBudget& budget, const std:
     Result<DataUri> data = decodeDataUri(uri, size.value());
     if (!data) return data.error();
     if (!isKnownMimeType(data.value().mimeType))
-        report.warn(name + ".uri: expected image/png or image/jpeg, found " + quoted(data.value().mimeType) +
-                    "; the bytes decide");
+        report.warn(name + ".uri: expected image/png, image/jpeg or image/webp, found " +
+                    quoted(data.value().mimeType) + "; the bytes decide");
     return std::move(data).value().bytes;
 }
 
@@ -77,20 +79,58 @@ Result<PictureHeader> checkBytes(const Bytes& bytes, MemoryBudget& budget)
     return header;
 }
 
+/// A texture extension that names an image of a format that is not read.
+struct OtherFormat
+{
+    std::string_view extension;
+    const char* name;
+};
+
+const OtherFormat otherFormats[] = {
+    {"KHR_texture_basisu", "KTX2"}, {"MSFT_texture_dds", "DDS"}, {"EXT_texture_avif", "AVIF"}};
+
+/// One flag for each image: true if only textures' extensions for other formats name it. Warns of textures that have
+/// no other picture.
+std::vector<bool> imagesOfOtherFormats(const JsonValue& document, const tinygltf::Model& model, Report& report)
+{
+    std::vector<bool> isOther(document["images"] ? document["images"].size() : 0);
+    std::size_t i = 0;
+    for (const JsonValue& texture : document["textures"])
+    {
+        const bool hasPicture = model.textures[i].source >= 0;
+        for (const OtherFormat& format : otherFormats)
+            if (const JsonValue source = texture["extensions"][format.extension]["source"])
+            {
+                isOther[std::size_t(source.number())] = true;
+                if (!hasPicture)
+                    report.warn(elementName("textures", i) + ": its picture is " + format.name + " (" +
+                                std::string(format.extension) +
+                                "), which is not supported; white is shown in its place");
+            }
+        ++i;
+    }
+    for (const tinygltf::Texture& texture : model.textures)
+        if (texture.source >= 0) isOther[std::size_t(texture.source)] = false;
+    return isOther;
+}
+
 } // namespace
 
-void loadImages(const JsonValue& images, const ModelFolder& folder, MemoryBudget& budget, Report& report,
+void loadImages(const JsonValue& document, const ModelFolder& folder, MemoryBudget& budget, Report& report,
                 tinygltf::Model& model)
 {
-    for (const JsonValue& json : images)
+    const std::vector<bool> isOtherFormat = imagesOfOtherFormats(document, model, report);
+    for (const JsonValue& json : document["images"])
     {
-        const std::string name = elementName("images", model.images.size());
+        const std::size_t index = model.images.size();
+        const std::string name = elementName("images", index);
         tinygltf::Image& image = model.images.emplace_back();
         image.as_is = true;
         const JsonValue uri = json["uri"];
         if (const JsonValue given = json["name"]) image.name = given.text();
         if (const JsonValue view = json["bufferView"]) image.bufferView = int(view.number());
         if (uri && !isDataUri(uri.text())) image.uri = uri.text();
+        if (isOtherFormat[index]) continue;
         Result<Bytes> bytes = !uri                    ? readView(model, image.bufferView, budget)
                               : isDataUri(uri.text()) ? readDataUri(uri.text(), budget, name, report)
                                                       : readFile(uri.text(), folder, budget);

@@ -4,11 +4,13 @@
 #include <osg/Endian>
 #include <png.h>
 #include <turbojpeg.h>
+#include <webp/decode.h>
 
 #include <algorithm>
 #include <csetjmp>
 #include <cstring>
 #include <memory>
+#include <string_view>
 
 namespace osgGpuAnimation::gltf
 {
@@ -28,6 +30,31 @@ bool isPng(const Bytes& bytes)
 bool isJpeg(const Bytes& bytes)
 {
     return bytes.size() >= 3 && bytes[0] == 0xff && bytes[1] == 0xd8 && bytes[2] == 0xff;
+}
+
+bool isWebp(const Bytes& bytes)
+{
+    return bytes.size() >= 12 && std::memcmp(&bytes[0], "RIFF", 4) == 0 && std::memcmp(&bytes[8], "WEBP", 4) == 0;
+}
+
+/// Formats of glTF extensions that are recognized but not read.
+const char* formatText(const Bytes& bytes)
+{
+    struct Signature
+    {
+        std::size_t at;
+        std::string_view bytes;
+        const char* name;
+    };
+    static constexpr Signature signatures[] = {{0, "\xabKTX 20\xbb\r\n\x1a\n", "KTX2"},
+                                               {0, "\xabKTX 11\xbb\r\n\x1a\n", "KTX"},
+                                               {0, "DDS ", "DDS"},
+                                               {4, "ftypavif", "AVIF"}};
+    for (const Signature& signature : signatures)
+        if (bytes.size() >= signature.at + signature.bytes.size() &&
+            std::memcmp(&bytes[signature.at], signature.bytes.data(), signature.bytes.size()) == 0)
+            return signature.name;
+    return "other data";
 }
 
 Error unexpected(const std::string& expected, const std::string& found)
@@ -254,18 +281,57 @@ osg::ref_ptr<osg::Image> decodeJpeg(const Bytes& bytes)
     return image->data() && reader.readRows(*image) ? image : nullptr;
 }
 
+// --------------------------------------------------------------------------------------------------------------- WebP
+
+std::uint32_t littleEndian(const unsigned char* bytes)
+{
+    return std::uint32_t(bytes[3]) << 24 | std::uint32_t(bytes[2]) << 16 | std::uint32_t(bytes[1]) << 8 | bytes[0];
+}
+
+Result<PictureHeader> readWebpHeader(const Bytes& bytes)
+{
+    // libwebp reads the header of a file whose pixels are cut off (WebP container specification, "WebP file header").
+    if (littleEndian(&bytes[4]) > bytes.size() - 8) return unexpected("a WebP of its length", "one that is cut off");
+    WebPBitstreamFeatures features;
+    if (WebPGetFeatures(bytes.data(), bytes.size(), &features) != VP8_STATUS_OK)
+        return unexpected("a WebP header", "one that is cut off or damaged");
+    if (features.has_animation != 0) return unexpected("a WebP of one picture", "an animation");
+    // Lossless data holds any number of pixels of one colour in 40 bytes; libwebp writes lossy ones at 600 a byte.
+    const std::uint64_t mostPixels = std::max<std::uint64_t>(4096 * 4096, std::uint64_t(bytes.size()) * 1032);
+    return checkSize("image/webp", std::uint32_t(features.width), std::uint32_t(features.height), mostPixels, 4);
+}
+
+osg::ref_ptr<osg::Image> decodeWebp(const Bytes& bytes)
+{
+    WebPDecoderConfig config;
+    if (!WebPInitDecoderConfig(&config) || WebPGetFeatures(bytes.data(), bytes.size(), &config.input) != VP8_STATUS_OK)
+        return nullptr;
+    const bool hasAlpha = config.input.has_alpha != 0;
+    const osg::ref_ptr<osg::Image> image = newImage(std::size_t(config.input.width), std::size_t(config.input.height),
+                                                    hasAlpha ? GL_RGBA : GL_RGB, GL_UNSIGNED_BYTE);
+    if (!image->data()) return nullptr;
+    config.options.flip = 1; // the first row at the bottom
+    config.output.colorspace = hasAlpha ? MODE_RGBA : MODE_RGB;
+    config.output.is_external_memory = 1;
+    config.output.u.RGBA = {image->data(), int(image->getRowSizeInBytes()), image->getTotalSizeInBytes()};
+    return WebPDecode(bytes.data(), bytes.size(), &config) == VP8_STATUS_OK ? image : nullptr;
+}
+
 } // namespace
 
 Result<PictureHeader> readPictureHeader(const Bytes& bytes)
 {
     if (isPng(bytes)) return readPngHeader(bytes);
     if (isJpeg(bytes)) return readJpegHeader(bytes);
-    return unexpected("a PNG or JPEG", "other data");
+    if (isWebp(bytes)) return readWebpHeader(bytes);
+    return unexpected("a PNG, JPEG or WebP", formatText(bytes));
 }
 
 Result<osg::ref_ptr<osg::Image>> decodePicture(const Bytes& bytes)
 {
-    const osg::ref_ptr<osg::Image> image = isPng(bytes) ? decodePng(bytes) : decodeJpeg(bytes);
+    const osg::ref_ptr<osg::Image> image = isPng(bytes)    ? decodePng(bytes)
+                                           : isWebp(bytes) ? decodeWebp(bytes)
+                                                           : decodeJpeg(bytes);
     if (!image) return Error{"the picture is damaged"};
     return image;
 }

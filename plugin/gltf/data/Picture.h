@@ -13,29 +13,32 @@
 namespace osgGpuAnimation::gltf
 {
 
-// PNG and JPEG, decoded by libpng and libjpeg-turbo: OSG's own readers leak memory over damaged pictures.
+// PNG, JPEG and WebP, decoded by libpng, libjpeg-turbo and libwebp: OSG's own readers leak memory over damaged pictures
+// and do not know WebP.
 
 /// Format and size of a picture before it is decoded.
 struct PictureHeader
 {
     static constexpr std::uint32_t maxPixelsPerSide = 16384;
 
-    std::string mimeType; ///< by the bytes: image/png or image/jpeg
+    std::string mimeType; ///< by the bytes: image/png, image/jpeg or image/webp
     std::uint32_t width = 0;
     std::uint32_t height = 0;
     std::size_t decodedBytes = 0; ///< with four channels of the depth that the file has
 };
 
-/// Reads the header of a PNG or JPEG and checks its size against the length of the data, so that a few bytes cannot
-/// make the decoder allocate gigabytes.
-/// Errors (`expected …, found …`): another format, a size of 0 or beyond maxPixelsPerSide, data that is cut off or far
-/// too short for its size, a large JPEG with so many scans that decoding would take minutes.
+/// Reads the header of a PNG, JPEG or WebP and checks its size against the length of the data, so that a few bytes
+/// cannot make the decoder allocate gigabytes. A WebP of up to 4096 x 4096 pixels may be of any length: lossless ones
+/// of one colour take 40 bytes.
+/// Errors (`expected …, found …`): another format, by name if it is KTX2, DDS or AVIF; a size of 0 or beyond
+/// maxPixelsPerSide; data that is cut off or far too short for its size; a large JPEG with so many scans that decoding
+/// would take minutes; an animated WebP.
 Result<PictureHeader> readPictureHeader(const std::vector<unsigned char>& bytes);
 
 /// Decodes a picture whose header was read, the first row at the bottom; callable on any thread. Ignores colour
 /// profiles, gamma and orientation (glTF 2.0, section 3.8.2.1).
 /// A PNG keeps its 8 or 16 bits a channel; a palette becomes RGB, transparent colours an alpha channel. A JPEG becomes
-/// grey or RGB; if its data is cut off, it keeps the pixels before the cut.
+/// grey or RGB; if its data is cut off, it keeps the pixels before the cut. A WebP becomes RGB or RGBA.
 /// Error: the picture is damaged.
 Result<osg::ref_ptr<osg::Image>> decodePicture(const std::vector<unsigned char>& bytes);
 

@@ -212,7 +212,13 @@ constexpr SchemaRule sampler[] = {
     code("magFilter", "9728 9729").orLeaveOut(), code("minFilter", "9728 9729 9984 9985 9986 9987").orLeaveOut(),
     code("wrapS", "33071 33648 10497").orLeaveOut(), code("wrapT", "33071 33648 10497").orLeaveOut(), name};
 
-constexpr SchemaRule texture[] = {index("sampler", "samplers"), index("source", "images"), name};
+constexpr SchemaRule otherSource[] = {index("source", "images").orLeaveOut()};
+constexpr SchemaRule otherSources[] = {
+    object("EXT_texture_webp", otherSource).orLeaveOut(), object("KHR_texture_basisu", otherSource).orLeaveOut(),
+    object("MSFT_texture_dds", otherSource).orLeaveOut(), object("EXT_texture_avif", otherSource).orLeaveOut()};
+
+constexpr SchemaRule texture[] = {index("sampler", "samplers"), index("source", "images"), name,
+                                  object("extensions", otherSources).orLeaveOut()};
 
 // More sets than any file has; a set is an array slot of OSG's geometries.
 constexpr SchemaRule texCoord = integer("texCoord").upTo(31).orLeaveOut();

@@ -208,6 +208,7 @@ void read(const JsonValue& json, tinygltf::Texture& texture)
 {
     read(json["sampler"], texture.sampler);
     read(json["source"], texture.source);
+    read(json["extensions"]["EXT_texture_webp"]["source"], texture.source); // `source` is for readers without WebP
     read(json["name"], texture.name);
 }
 
@@ -409,7 +410,7 @@ Result<tinygltf::Model> load(const std::string& bytes, const std::string& fileNa
     if (!error) error = validateMeshes(model, budget, report);
     if (!error) error = validateAnimations(model, report);
     if (error) return *error;
-    loadImages(document["images"], folder, budget, report, model);
+    loadImages(document, folder, budget, report, model);
     return model;
 }
 

@@ -4,6 +4,8 @@
 
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/CharacterProgram.h>
+#include <osgGpuAnimation/nodes/PbrMaterial.h>
+#include <osgGpuAnimation/nodes/shading/ShaderPermutations.h>
 
 #include <osgFX/AnisotropicLighting>
 #include <osgFX/Cartoon>
@@ -38,6 +40,30 @@ program->addShader(new osg::Shader(osg::Shader::FRAGMENT, R"(#version 140
     in vec3 viewNormal;
     out vec4 color;
     void main() { color = vec4(0.5 + 0.5 * viewNormal, 1.0); })"));
+bindSkinAttributes(*program);
+    // clang-format on
+    return program;
+}
+
+// The second program there, verbatim.
+osg::ref_ptr<osg::Program> makeOwnLight()
+{
+    // clang-format off
+osg::ref_ptr<osg::Program> program = new osg::Program;
+program->addShader(skinShader());
+program->addShader(surfaceVertexShader());               // the kit's own vertex shader: the inputs of materialShader()
+program->addShader(materialShader());
+program->addShader(new osg::Shader(osg::Shader::FRAGMENT, R"(#version 140
+    void osgGpuAnimationMaterial(out vec4 baseColor, out vec3 emission, out vec3 metallicRoughnessOcclusion,
+                                 out vec3 normal);
+    out vec4 color;
+    void main()
+    {
+        vec4 baseColor;
+        vec3 emission, metallicRoughnessOcclusion, normal;
+        osgGpuAnimationMaterial(baseColor, emission, metallicRoughnessOcclusion, normal);
+        color = vec4(sqrt(emission + baseColor.rgb * (0.3 + 0.7 * max(normal.z, 0.0))), baseColor.a);
+    })"));
 bindSkinAttributes(*program);
     // clang-format on
     return program;
@@ -92,6 +118,31 @@ TEST_F(ReadmeShadersGLTest, skinsWithOneCallOnAMeshAndFromAbove)
 }
 
 // A program that cannot skin would draw the bind pose.
+TEST_F(ReadmeShadersGLTest, aProgramMayReadTheMaterial)
+{
+    osg::ref_ptr<AnimatedCharacter> panel = makePanelCharacter();
+    osg::StateSet& state = *static_cast<osg::Geometry&>(*panel->getChild(0)).getStateSet();
+    PbrMaterial material;
+    material.baseColor.set(0.25f, 0.0f, 0.0f, 1.0f);
+    material.emissive.set(0.0f, 0.36f, 0.0f);
+    applyPbrMaterial(state, material);
+    state.setTextureMode(0, GL_TEXTURE_2D, osg::StateAttribute::OFF);
+    state.setTextureAttribute(0, whiteTexture());
+    state.setAttributeAndModes(makeOwnLight());
+    const osg::ref_ptr<osg::Image> image = pictureOf(panel);
+    EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
+    double red = 0.0, green = 0.0;
+    for (int y = 0; y < image->t(); ++y)
+        for (int x = 0; x < image->s(); ++x)
+        {
+            if (image->getColor(x, y) == image->getColor(0, 0)) continue;
+            red = std::max<double>(red, image->getColor(x, y).r());
+            green = std::max<double>(green, image->getColor(x, y).g());
+        }
+    EXPECT_NEAR(red, 0.5, 0.02);
+    EXPECT_NEAR(green, 0.6, 0.02);
+}
+
 TEST_F(ReadmeShadersGLTest, aProgramFromAboveThatDoesNotSkinIsNotTaken)
 {
     const osg::ref_ptr<osg::Image> plain = pictureOf(makePanelCharacter());

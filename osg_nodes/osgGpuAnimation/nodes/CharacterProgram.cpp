@@ -31,7 +31,9 @@ osg::ref_ptr<osg::Shader> makeSurfaceVertexShader()
 
 osg::ref_ptr<osg::Shader> makeMaterialShader()
 {
-    return new osg::Shader(osg::Shader::FRAGMENT, std::string("#version 140\n") + shaders::material_glsl);
+    // The kit's own program gets the colours of the applied osg::Material instead.
+    const std::string colors = "#define materialDiffuse baseColorFactor\n#define materialEmission emissiveFactor\n";
+    return new osg::Shader(osg::Shader::FRAGMENT, "#version 140\n" + colors + shaders::material_glsl);
 }
 
 osg::ref_ptr<osg::Program> makeCharacterProgram()

@@ -106,6 +106,8 @@ void applyPbrMaterial(osg::StateSet& stateSet, const PbrMaterial& material)
     stateSet.setAttribute(colors);
 
     stateSet.setDefine("MATERIAL_PBR");
+    stateSet.addUniform(new osg::Uniform("baseColorFactor", material.baseColor)); // for materialShader()
+    stateSet.addUniform(new osg::Uniform("emissiveFactor", material.emissive));
     stateSet.addUniform(
         new osg::Uniform("materialFactors", osg::Vec4(material.metallic, material.roughness, material.normalScale,
                                                       material.occlusionStrength)));

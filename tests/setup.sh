@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-# The set-up that scenes/view.sh, tests/run.sh and .ci/run share; for `source`, not to be run. It sets `root` (the
+# The set-up that scenes/view.sh, tests/run.sh, tests/clang.sh and .ci/run share; for `source`, not to be run. It sets `root` (the
 # repository) and `build` (its build folder) and offers install_missing PACKAGE..., configure_release [CMAKE'S OPTION...]
 # and build_targets [TARGET...].
 
@@ -16,7 +16,7 @@ packages=(
     libgtest-dev libbenchmark-dev glslang-tools python3 python3-skimage python3-scipy python3-pil xvfb xauth dpkg-dev file libdraco7 libassimp5
 )
 # What .ci/run needs besides.
-ci_packages=(git clang-format doxygen mesa-vulkan-drivers)
+ci_packages=(git clang clang-format doxygen mesa-vulkan-drivers)
 
 is_installed()
 {

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: MIT
-# For `source`: a screen of 256 x 256 pixels under Xvfb, whose picture lies in a file, $screen; $empty is what it is at
-# first. Offers show PICTURE ARGUMENT... and pixels PICTURE; ends with 77 where a program is not there. $folder is for
-# files of one's own.
+# For `source`: a screen of $width x $height pixels (256 x 256 unless set before) under Xvfb, whose picture lies in a
+# file, $screen; $empty is what it is at first. Offers show PICTURE ARGUMENT... and pixels PICTURE; ends with 77 where a
+# program is not there. $folder is for files of one's own.
 for program in Xvfb osgviewer osgconv; do
     command -v $program >/dev/null || { echo "there is no $program"; exit 77; }
 done
 
+width=${width:-256} height=${height:-256}
 folder=$(mktemp -d)
 server=
 end()
@@ -17,7 +18,7 @@ end()
 trap end EXIT
 
 # The first display number that is free, told on file descriptor 3.
-Xvfb -displayfd 3 -screen 0 256x256x24 -nocursor -nolisten tcp -fbdir "$folder" 3>"$folder/number" 2>"$folder/xvfb.log" &
+Xvfb -displayfd 3 -screen 0 ${width}x${height}x24 -nocursor -nolisten tcp -fbdir "$folder" 3>"$folder/number" 2>"$folder/xvfb.log" &
 server=$!
 for ((tenths = 0; tenths < 300; ++tenths)); do
     [ ! -s "$folder/number" ] || break
@@ -55,5 +56,5 @@ show()
 # pixels PICTURE: four bytes each, row by row, without what comes before them in an XWD file.
 pixels()
 {
-    tail -c $((256 * 256 * 4)) "$1"
+    tail -c $((width * height * 4)) "$1"
 }

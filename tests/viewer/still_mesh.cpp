@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Usage: still_mesh CHARACTER.glb STILL.osgt
 // Stores the first frame of the file's first clip as plain osg::Geometry that the fixed pipeline draws.
-#include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
@@ -36,38 +35,6 @@ std::vector<osg::ref_ptr<Wanted>> below(osg::Node& node)
     Collector<Wanted> collector;
     node.accept(collector);
     return collector.found;
-}
-
-std::vector<osg::Vec3> posed(const SkinnedGeometry& mesh, const std::vector<AffineMatrix>& palette)
-{
-    std::vector<glm::dvec3> computed;
-    mesh.computePositions(palette, computed);
-    std::vector<osg::Vec3> positions;
-    for (const glm::dvec3& position : computed)
-        positions.emplace_back(position.x, position.y, position.z);
-    return positions;
-}
-
-/// The posed normals: where the tips of the normals go, since skinning is linear and no character here has shear.
-osg::ref_ptr<osg::Vec3Array> posedNormals(const SkinnedGeometry& mesh, const std::vector<osg::Vec3>& positions,
-                                          const std::vector<AffineMatrix>& palette)
-{
-    const auto* bind = dynamic_cast<const osg::Vec3Array*>(mesh.getNormalArray());
-    const auto* vertices = dynamic_cast<const osg::Vec3Array*>(mesh.getVertexArray());
-    if (!bind || bind->size() != vertices->size()) return nullptr;
-    osg::ref_ptr<SkinnedGeometry> tips = new SkinnedGeometry(mesh);
-    osg::ref_ptr<osg::Vec3Array> ends = new osg::Vec3Array;
-    for (std::size_t i = 0; i < bind->size(); ++i)
-        ends->push_back((*vertices)[i] + (*bind)[i]);
-    tips->setVertexArray(ends);
-    const std::vector<osg::Vec3> posedEnds = posed(*tips, palette);
-    osg::ref_ptr<osg::Vec3Array> normals = new osg::Vec3Array(osg::Array::BIND_PER_VERTEX);
-    for (std::size_t i = 0; i < posedEnds.size(); ++i)
-    {
-        normals->push_back(posedEnds[i] - positions[i]);
-        normals->back().normalize();
-    }
-    return normals;
 }
 
 struct TriangleIndices
@@ -105,16 +72,13 @@ void makeFlat(osg::Geometry& mesh)
     mesh.addPrimitiveSet(new osg::DrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(positions->size())));
 }
 
-osg::ref_ptr<osg::Geometry> still(const SkinnedGeometry& mesh, const std::vector<AffineMatrix>& palette)
+osg::ref_ptr<osg::Geometry> still(const AnimatedCharacter& character, const SkinnedGeometry& mesh)
 {
-    osg::ref_ptr<osg::Geometry> plain = new osg::Geometry;
-    plain->setName(mesh.getName());
-    const std::vector<osg::Vec3> positions = posed(mesh, palette);
-    plain->setVertexArray(new osg::Vec3Array(positions.begin(), positions.end()));
-    plain->setNormalArray(posedNormals(mesh, positions, palette));
-    plain->setColorArray(const_cast<osg::Array*>(mesh.getColorArray()));
-    plain->setTexCoordArrayList(mesh.getTexCoordArrayList());
-    plain->setPrimitiveSetList(mesh.getPrimitiveSetList());
+    osg::ref_ptr<osg::Geometry> plain = character.getPosedMesh(mesh, true);
+    const osg::ref_ptr<osg::Geometry> usual = new osg::Geometry;
+    plain->setUseDisplayList(usual->getUseDisplayList());
+    plain->setUseVertexBufferObjects(usual->getUseVertexBufferObjects());
+    plain->setInitialBound(character.getCurrentBounds()); // programs place cameras and grounds by it
     if (!mesh.getStateSet()) return plain;
     bool isFlat = false;
     if (const osg::Uniform* uniform = mesh.getStateSet()->getUniform("flatNormals")) uniform->get(isFlat);
@@ -148,12 +112,10 @@ int main(int argc, char** argv)
     for (const osg::ref_ptr<AnimatedCharacter>& character : below<AnimatedCharacter>(*root))
     {
         const osg::BoundingSphere bound = character->getBound(); // of its meshes, which are replaced below
-        std::vector<AffineMatrix> palette;
-        Pose::evaluate(character->getAnimationSet(), character->getController().instruction(), AffineMatrix(), palette);
         for (const osg::ref_ptr<SkinnedGeometry>& mesh : below<SkinnedGeometry>(*character))
-            replace(*mesh, *still(*mesh, palette));
+            replace(*mesh, *still(*character, *mesh));
         osg::ref_ptr<osg::MatrixTransform> place = new osg::MatrixTransform(character->getMatrix());
-        place->setInitialBound(bound); // viewers begin at the same place
+        place->setInitialBound(bound);
         place->setName(character->getName());
         place->setStateSet(character->getStateSet());
         for (unsigned int i = 0; i < character->getNumChildren(); ++i)

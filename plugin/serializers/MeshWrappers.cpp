@@ -99,7 +99,8 @@ osgDB::RegisterWrapperProxy characterProgramWrapper([]() -> osg::Object* { retur
 
 osgDB::RegisterWrapperProxy surfaceProgramWrapper([]() -> osg::Object* { return surfaceProgram().release(); },
                                                   "osgGpuAnimation::StillSurfaceProgram",
-                                                  "osgGpuAnimation::StillSurfaceProgram", [](osgDB::ObjectWrapper*) {});
+                                                  "osgGpuAnimation::ExactNumbers osgGpuAnimation::StillSurfaceProgram",
+                                                  [](osgDB::ObjectWrapper*) {});
 
 using Fault = std::optional<std::string>;
 

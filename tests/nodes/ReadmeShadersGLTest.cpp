@@ -118,6 +118,29 @@ TEST_F(ReadmeShadersGLTest, skinsWithOneCallOnAMeshAndFromAbove)
 }
 
 // A program that cannot skin would draw the bind pose.
+// "Materials" there, verbatim.
+TEST_F(ReadmeShadersGLTest, aMaterialOfOnesOwnIsShown)
+{
+    const osg::ref_ptr<AnimatedCharacter> panel = makePanelCharacter();
+    osg::Geometry* const mesh = static_cast<osg::Geometry*>(panel->getChild(0));
+    // clang-format off
+PbrMaterial material;                                    // osgGpuAnimation/nodes/PbrMaterial.h
+material.baseColor.set(0.8f, 0.2f, 0.1f, 1.0f);          // linear
+material.metallic = 0.0f;
+material.roughness = 0.4f;
+osg::StateSet& state = *mesh->getOrCreateStateSet();
+applyPbrMaterial(state, material);
+applyCharacterProgram(state);                            // a SkinnedGeometry; others: applySurfaceProgram(state, false)
+    // clang-format on
+    state.setTextureMode(0, GL_TEXTURE_2D, osg::StateAttribute::OFF);
+    const osg::ref_ptr<osg::Image> image = pictureOf(panel);
+    int red = 0;
+    for (int y = 0; y < image->t(); ++y)
+        for (int x = 0; x < image->s(); ++x)
+            red += image->getColor(x, y).r() > 1.5f * image->getColor(x, y).g() && image->getColor(x, y).r() > 0.3f;
+    EXPECT_GT(red, 20);
+}
+
 TEST_F(ReadmeShadersGLTest, aProgramMayReadTheMaterial)
 {
     osg::ref_ptr<AnimatedCharacter> panel = makePanelCharacter();

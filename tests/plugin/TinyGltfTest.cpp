@@ -330,7 +330,7 @@ TEST(TinyGltfTest, PicturesComeFromFiles)
     folder.write("picture.png", "no picture");
     document["images"][0] = {{"uri", "picture.png"}, {"name", "wood"}};
     const LoadedDocument answer = load(document.dump(), folder.file("model.gltf"));
-    expectAnswer(answer, Expect::Warn, "images[0].uri: expected a PNG or JPEG");
+    expectAnswer(answer, Expect::Warn, "images[0].uri: expected a PNG, JPEG or WebP");
     EXPECT_TRUE(answer.model.value().images[0].image.empty());
     EXPECT_EQ(answer.model.value().images[0].name, "wood");
     document["images"][0]["uri"] = "../picture.png";

@@ -104,7 +104,7 @@ void replace(Old& old, osg::Node& with)
 int main(int argc, char** argv)
 {
     if (argc != 3) return 2;
-    const osg::ref_ptr<osgDB::Options> options = new osgDB::Options("start=0 speed=0");
+    const osg::ref_ptr<osgDB::Options> options = new osgDB::Options("start=0 speed=0 lighting=fixed");
     osg::ref_ptr<osg::Group> root = new osg::Group;
     const osg::ref_ptr<osg::Node> model = osgDB::readRefNodeFile(argv[1], options);
     if (!model) return 1;

@@ -86,7 +86,9 @@ printf '%-44s %-10s %-9s %-9s %-7s %s\n' program model ended pictures differ mes
 for model in "${models[@]}"; do
     name=$(basename "$model" .glb)
     "$STILL_MESH" "$model" "$folder/still.osgt" >/dev/null
-    osgconv -O "start=0 speed=0" "$model" "$folder/held.osgb" >"$folder/osgconv.log" 2>&1
+    # The look of the fixed pipeline, which plain geometry is drawn by.
+    osgconv -O "start=0 speed=0 lighting=fixed" "$model" "$folder/held.osgb" >"$folder/osgconv.log" 2>&1
+    osgconv -O "lighting=fixed" "$model" "$folder/moving.osgb" >>"$folder/osgconv.log" 2>&1
     for line in "${programs[@]}"; do
         [[ $line =~ ${ONLY:-.} ]] || continue
         read -ra program <<<"$line"
@@ -98,7 +100,7 @@ for model in "${models[@]}"; do
             over held "$folder/held.osgb" "${program[@]}"
             heldPictures=$pictures heldStatus=$status
         fi
-        over moving "$model" "${program[@]}"
+        over moving "$folder/moving.osgb" "${program[@]}"
         differ=-
         [ "$stillPictures" -ne 1 ] || [ "$heldPictures" -ne 1 ] || differ=$(differing "$folder/still.picture" "$folder/held.picture")
         messages=$(comm -13 <(sort -u "$folder/still.log") <(sort -u "$folder/moving.log") | head -3 | tr '\n' ';')

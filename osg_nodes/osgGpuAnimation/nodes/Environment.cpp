@@ -52,7 +52,7 @@ void Environment::setToneMapping(bool isOn)
 {
     _toneMapping = isOn;
     if (isOn)
-        getOrCreateStateSet()->setDefine("TONE_MAPPING");
+        getOrCreateStateSet()->setDefine("TONE_MAPPING", "1");
     else
         getOrCreateStateSet()->removeDefine("TONE_MAPPING");
 }

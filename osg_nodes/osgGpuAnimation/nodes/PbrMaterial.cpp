@@ -66,24 +66,24 @@ void setExtensions(osg::StateSet& stateSet, const PbrMaterial& material)
     if (specular != osg::Vec4(0.04f, 0.04f, 0.04f, 1.0f) || material.specularColorMap.texture ||
         material.specularMap.texture)
     {
-        stateSet.setDefine("MATERIAL_SPECULAR");
+        stateSet.setDefine("MATERIAL_SPECULAR", "1");
         stateSet.addUniform(new osg::Uniform("materialSpecular", specular));
     }
-    if (material.isSpecularGlossiness) stateSet.setDefine("MATERIAL_GLOSSINESS");
+    if (material.isSpecularGlossiness) stateSet.setDefine("MATERIAL_GLOSSINESS", "1");
     if (material.clearcoat > 0.0f)
     {
-        stateSet.setDefine("MATERIAL_CLEARCOAT");
+        stateSet.setDefine("MATERIAL_CLEARCOAT", "1");
         stateSet.addUniform(
             new osg::Uniform("materialClearcoat", osg::Vec2(material.clearcoat, material.clearcoatRoughness)));
     }
     if (material.sheenColor != osg::Vec3())
     {
-        stateSet.setDefine("MATERIAL_SHEEN");
+        stateSet.setDefine("MATERIAL_SHEEN", "1");
         stateSet.addUniform(new osg::Uniform("materialSheen", osg::Vec4(material.sheenColor, material.sheenRoughness)));
     }
     if (material.transmission > 0.0f)
     {
-        stateSet.setDefine("MATERIAL_TRANSMISSION");
+        stateSet.setDefine("MATERIAL_TRANSMISSION", "1");
         stateSet.addUniform(new osg::Uniform("materialTransmission", material.transmission));
         stateSet.setAttributeAndModes(new osg::BlendFunc(osg::BlendFunc::ONE, osg::BlendFunc::ONE_MINUS_SRC_ALPHA));
         stateSet.setAttributeAndModes(new osg::Depth(osg::Depth::LESS, 0.0, 1.0, false));
@@ -105,7 +105,7 @@ void applyPbrMaterial(osg::StateSet& stateSet, const PbrMaterial& material)
     colors->setEmission(osg::Material::FRONT_AND_BACK, displayColor(osg::Vec4(material.emissive, 1.0f)));
     stateSet.setAttribute(colors);
 
-    stateSet.setDefine("MATERIAL_PBR");
+    stateSet.setDefine("MATERIAL_PBR", "1"); // OSG's XML format cannot read defines without a value
     stateSet.addUniform(new osg::Uniform("baseColorFactor", material.baseColor)); // for materialShader()
     stateSet.addUniform(new osg::Uniform("emissiveFactor", material.emissive));
     stateSet.addUniform(
@@ -120,12 +120,12 @@ void applyPbrMaterial(osg::StateSet& stateSet, const PbrMaterial& material)
     if (material.emissiveStrength != 1.0f)
     {
         stateSet.addUniform(new osg::Uniform("emissiveStrength", material.emissiveStrength));
-        stateSet.setDefine("MATERIAL_EMISSIVE_STRENGTH");
+        stateSet.setDefine("MATERIAL_EMISSIVE_STRENGTH", "1");
     }
     setExtensions(stateSet, material);
     const bool hasNormalMap = material.normalMap.texture || material.clearcoatNormalMap.texture;
-    if (hasNormalMap && material.hasTangents) stateSet.setDefine("MATERIAL_TANGENTS");
-    if (material.hasMoreCoordinates) stateSet.setDefine("MATERIAL_MORE_COORDINATES");
+    if (hasNormalMap && material.hasTangents) stateSet.setDefine("MATERIAL_TANGENTS", "1");
+    if (material.hasMoreCoordinates) stateSet.setDefine("MATERIAL_MORE_COORDINATES", "1");
 }
 
 osg::Vec4 displayColor(const osg::Vec4& linear)

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/document/DocumentSchema.h"
 
+#include "gltf/document/SchemaRule.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -16,130 +18,7 @@ namespace osgGpuAnimation::gltf
 namespace
 {
 
-// ----------------------------------------------------------------------------------------------------------- the rules
-
-constexpr double largestInteger = 9007199254740991.0; // 2^53 - 1: exact in every JSON reader (section 2.7)
-constexpr double largestInt = 2147483647.0;
-constexpr double largestFloat = 3.4028234663852886e38;
-constexpr std::size_t anyCount = std::size_t(-1);
-
-/// The consequence for a member that breaks its rule.
-enum class OnFault : std::uint8_t
-{
-    Refuse,   ///< the document is refused
-    LeaveOut, ///< a warning; the member counts as absent
-    Clamp     ///< a warning; the number becomes the nearest allowed one (numbers out of range only)
-};
-
-enum class Kind : std::uint8_t
-{
-    Any,
-    Boolean,
-    String,
-    Number,
-    Integer,
-    Index,    ///< an integer from 0, below the size of a collection
-    Choice,   ///< one of some texts
-    Code,     ///< one of some integers
-    Object,   ///< with the members of a table; others are left out
-    IndexMap, ///< an object whose members are indices: the attributes of a primitive
-};
-
-/// The type and range of one member of a JSON object. Rules are built in tables:
-///
-///     index("mesh", "meshes"), number("matrix").list(16, 16), integer("count").from(1).required()
-struct SchemaRule
-{
-    std::string_view name;
-    Kind kind = Kind::Any;
-    bool isList = false; ///< an array of that kind
-    bool isRequired = false;
-    OnFault onFault = OnFault::Refuse;         ///< wrong type, wrong number of elements, missing, bad index
-    OnFault onRange = OnFault::LeaveOut;       ///< a number of the right type that is out of range
-    double least = 0.0, most = 0.0;            ///< of numbers, both inclusive
-    double step = 1.0;                         ///< integers are multiples of it
-    std::size_t leastCount = 0, mostCount = 0; ///< of the elements of a list
-    std::string_view collection;               ///< of indices: the array of the document that they refer to
-    std::string_view choices;                  ///< separated by spaces
-    const SchemaRule* members = nullptr;       ///< of objects
-    std::size_t memberCount = 0;
-
-    template <typename Member>
-    constexpr SchemaRule with(Member SchemaRule::*member, Member value) const
-    {
-        SchemaRule rule = *this;
-        rule.*member = value;
-        return rule;
-    }
-    constexpr SchemaRule required() const { return with(&SchemaRule::isRequired, true); }
-    constexpr SchemaRule withRangeFault(OnFault fault) const { return with(&SchemaRule::onRange, fault); }
-    /// Any fault removes this member only.
-    constexpr SchemaRule orLeaveOut() const
-    {
-        return with(&SchemaRule::onFault, OnFault::LeaveOut).withRangeFault(OnFault::LeaveOut);
-    }
-    constexpr SchemaRule from(double first) const { return with(&SchemaRule::least, first); }
-    constexpr SchemaRule upTo(double last) const { return with(&SchemaRule::most, last); }
-    constexpr SchemaRule clamped(double first, double last) const
-    {
-        return from(first).upTo(last).withRangeFault(OnFault::Clamp);
-    }
-    constexpr SchemaRule inStepsOf(double multiple) const { return with(&SchemaRule::step, multiple); }
-    constexpr SchemaRule list(std::size_t atLeast = 1, std::size_t atMost = anyCount) const
-    {
-        return with(&SchemaRule::isList, true)
-            .with(&SchemaRule::leastCount, atLeast)
-            .with(&SchemaRule::mostCount, atMost);
-    }
-};
-
-constexpr SchemaRule rule(std::string_view name, Kind kind)
-{
-    return SchemaRule().with(&SchemaRule::name, name).with(&SchemaRule::kind, kind);
-}
-
-constexpr SchemaRule text(std::string_view name)
-{
-    return rule(name, Kind::String);
-}
-
-constexpr SchemaRule integer(std::string_view name)
-{
-    return rule(name, Kind::Integer).upTo(largestInteger).withRangeFault(OnFault::Refuse);
-}
-
-constexpr SchemaRule number(std::string_view name)
-{
-    return rule(name, Kind::Number).from(-largestFloat).upTo(largestFloat);
-}
-
-constexpr SchemaRule index(std::string_view name, std::string_view collection)
-{
-    return rule(name, Kind::Index).with(&SchemaRule::collection, collection);
-}
-
-constexpr SchemaRule indexMap(std::string_view name, std::string_view collection)
-{
-    return rule(name, Kind::IndexMap).with(&SchemaRule::collection, collection);
-}
-
-constexpr SchemaRule choice(std::string_view name, std::string_view texts)
-{
-    return rule(name, Kind::Choice).with(&SchemaRule::choices, texts);
-}
-
-constexpr SchemaRule code(std::string_view name, std::string_view integers)
-{
-    return rule(name, Kind::Code).with(&SchemaRule::choices, integers);
-}
-
-template <std::size_t size>
-constexpr SchemaRule object(std::string_view name, const SchemaRule (&members)[size])
-{
-    SchemaRule made = rule(name, Kind::Object).with(&SchemaRule::memberCount, size);
-    made.members = members;
-    return made;
-}
+using namespace schema;
 
 constexpr SchemaRule name = text("name").orLeaveOut();
 constexpr SchemaRule extras = rule("extras", Kind::Any); // of elements whose extras may be read: they can be large

@@ -120,7 +120,7 @@ void Importer::makeGraph(const NodeTree& tree, const Joints& joints, const Morph
     if (!_options.noCameras) _result.cameras = makeCameras(_model, tree);
     const std::vector<bool> carries = nodesThatCarry(joints);
     const SceneParts parts{_model, tree, joints, morphs, carries, drawables, _budget, _report};
-    NodePlaces places(_model, tree, joints, _result.character, *still,
+    NodePlaces places(_model, tree, joints, _result.character,
                       buildSceneGraph(parts, *still, _result.character, _result.primitives));
     if (_result.character && still->getNumChildren() > 0) _result.root->addChild(still);
     addCameras(_result.cameras, places);

@@ -15,9 +15,8 @@ namespace osgGpuAnimation::gltf
 {
 
 NodePlaces::NodePlaces(const tinygltf::Model& model, const NodeTree& tree, const Joints& joints,
-                       AnimatedCharacter* character, osg::Group& still,
-                       std::vector<osg::ref_ptr<osg::Group>> transforms)
-    : _model(model), _tree(tree), _joints(joints), _character(character), _still(still), _places(std::move(transforms))
+                       AnimatedCharacter* character, std::vector<osg::ref_ptr<osg::Group>> transforms)
+    : _model(model), _tree(tree), _joints(joints), _character(character), _places(std::move(transforms))
 {
 }
 
@@ -28,14 +27,7 @@ void NodePlaces::add(std::size_t node, osg::Node* child)
 
 osg::Group& NodePlaces::placeOf(std::size_t node)
 {
-    if (_joints.moves[node])
-    {
-        if (!_places[node]) _places[node] = makeAttachment(node);
-        return *_places[node];
-    }
-    _still.setDataVariance(osg::Object::DYNAMIC);
-    for (int above = static_cast<int>(node); above >= 0; above = _tree.parents[static_cast<std::size_t>(above)])
-        _places[static_cast<std::size_t>(above)]->setDataVariance(osg::Object::DYNAMIC);
+    if (_joints.moves[node] && !_places[node]) _places[node] = makeAttachment(node);
     return *_places[node];
 }
 
@@ -52,7 +44,6 @@ osg::ref_ptr<osg::Group> NodePlaces::makeAttachment(std::size_t node) const
     if (joint == node) return attachment;
     osg::ref_ptr<osg::Group> place = new osg::MatrixTransform(toOsg(toJoint));
     place->setName(_model.nodes[node].name);
-    place->setDataVariance(osg::Object::DYNAMIC);
     attachment->addChild(place);
     return place;
 }

@@ -21,16 +21,14 @@ namespace osgGpuAnimation::gltf
 
 /// The places in the graph of what nodes carry besides meshes: below the node's MatrixTransform if it stands still,
 /// else below a JointAttachment of the character. A node that moves with the joint above it and is none itself has a
-/// MatrixTransform in between.
-///
-/// The transforms of such nodes, and those above, are DYNAMIC: the Optimizer must not flatten them into the meshes.
+/// MatrixTransform in between. (The Optimizer flattens no transform above a light or a camera.)
 class NodePlaces
 {
 public:
-    /// transforms: see buildSceneGraph(); it has those of the still nodes that will be asked for. still: the group that
-    /// they are below. character: null if no node moves.
+    /// transforms: see buildSceneGraph(); it has those of the still nodes that will be asked for. character: null if no
+    /// node moves.
     NodePlaces(const tinygltf::Model& model, const NodeTree& tree, const Joints& joints, AnimatedCharacter* character,
-               osg::Group& still, std::vector<osg::ref_ptr<osg::Group>> transforms);
+               std::vector<osg::ref_ptr<osg::Group>> transforms);
 
     /// Adds a child to the node's place. node: in the drawn part.
     void add(std::size_t node, osg::Node* child);
@@ -43,7 +41,6 @@ private:
     const NodeTree& _tree;
     const Joints& _joints;
     AnimatedCharacter* _character;
-    osg::Group& _still;
     std::vector<osg::ref_ptr<osg::Group>> _places; ///< by node; null: none yet
 };
 

@@ -3,6 +3,7 @@
 #include "support/ViewerGLTest.h"
 
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+#include <osgGpuAnimation/nodes/PbrMaterial.h>
 
 #include <osg/LightSource>
 #include <osg/ShapeDrawable>
@@ -96,6 +97,39 @@ TEST_P(ShadowGLTest, aCharacterCastsAndReceivesLikePlainGeometryInItsPose)
         EXPECT_GT(Picture::pixelsDifferent(*without, *found, 0.1f), edgePixels) << time;
         EXPECT_GE(Picture::pixelsDifferent(*start, *found, 0.1f), time > 0 ? edgePixels : 0) << time;
     }
+}
+
+/// The panel with a PbrMaterial.
+osg::ref_ptr<AnimatedCharacter> makePbrPanel()
+{
+    osg::ref_ptr<AnimatedCharacter> character = makePanelCharacter();
+    PbrMaterial material;
+    material.metallic = 0.0f;
+    applyPbrMaterial(*static_cast<osg::Geometry&>(*character->getChild(0)).getStateSet(), material);
+    return character;
+}
+
+// In shadow a PbrMaterial keeps the light of its surroundings, and that alone.
+TEST_P(ShadowGLTest, shadowsDarkenTheLightsOfPbrSurfacesAlone)
+{
+    const osg::ref_ptr<osg::Image> lit = pictureOf(makePbrPanel(), 0, nullptr);
+    const osg::ref_ptr<osg::Image> shadowed = pictureOf(makePbrPanel(), 0);
+    osg::ref_ptr<AnimatedCharacter> dark = makePbrPanel();
+    for (int i = 0; i < 8; ++i)
+        dark->getOrCreateStateSet()->setMode(GL_LIGHT0 + i, osg::StateAttribute::OFF);
+    const osg::ref_ptr<osg::Image> surroundings = pictureOf(dark, 0, nullptr);
+    int inShadow = 0, others = 0;
+    for (int y = 0; y < lit->t(); ++y)
+        for (int x = 0; x < lit->s(); ++x)
+        {
+            const float before = lit->getColor(x, y).g(), after = shadowed->getColor(x, y).g();
+            const float least = surroundings->getColor(x, y).g();
+            if (before < least + 0.2f) continue; // not on the panel
+            inShadow += after < least + 0.1f;    // the light's own ambient light is part of the surroundings
+            others += after < least - 0.02f;
+        }
+    EXPECT_GT(inShadow, 50);
+    EXPECT_LE(others, edgePixels);
 }
 
 TEST_P(ShadowGLTest, aCrowdCastsAndReceivesToo)

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: MIT
 # Usage: scenes/view.sh [FILE]
 # Installs what is missing on a Debian 12, builds the plugins into build/ and opens FILE (a .gltf or .glb; default: our
-# own Wanderer.glb) in the stock osgviewer. Pseudo-loaders may follow: Wanderer.glb.20x20.crowd. Without a display it
-# draws a picture (of the model alone) into build/ and says where.
+# own Wanderer.glb in the studio) in the stock osgviewer. Pseudo-loaders may follow: Wanderer.glb.20x20.crowd.studio.
+# Without a display it draws a picture (of the model or the crowd, in the studio's light) into build/ and says where.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/../tests/setup.sh"
 
@@ -12,7 +12,7 @@ if [ $# -gt 1 ] || [[ "${1:-}" == -* ]]; then
     [[ "${1:-}" == -h || "${1:-}" == --help ]] && exit 0
     exit 2
 fi
-file=${1:-$root/scenes/Wanderer.glb}
+file=${1:-$root/scenes/Wanderer.glb.studio}
 # The longest part of the name that is a file: what follows is for OSG's pseudo-loaders (.20x20.crowd, .90,0,0.rot).
 model=$file
 while [ ! -f "$model" ]; do
@@ -25,7 +25,7 @@ done
 
 install_missing "${packages[@]}"
 configure_release
-build_targets osgdb_gltf osgdb_crowd osgdb_serializers_osggpuanimation osggpuanim
+build_targets osgdb_gltf osgdb_crowd osgdb_studio osgdb_serializers_osggpuanimation osggpuanim
 export OSG_LIBRARY_PATH=$build/lib${OSG_LIBRARY_PATH:+:$OSG_LIBRARY_PATH}
 
 # Fails where the display that DISPLAY names is not there; osgviewer itself ends with 0 then.
@@ -43,6 +43,8 @@ show()
 if [ -n "${DISPLAY:-}" ] && show; then
     exit 0
 fi
+drawn=$model
+[[ "$file" =~ ^(.*\.[0-9]+[xX][0-9]+\.crowd)(\..*)?$ ]] && drawn=${BASH_REMATCH[1]}
 picture=$build/$(basename "${model%.*}").png
-"$build/bin/osggpuanim" render "$model" --time 0.5 -o "$picture"
-echo "There is no display to show $file on; a picture of $model is in $picture"
+"$build/bin/osggpuanim" render "$drawn" --time 0.5 -o "$picture"
+echo "There is no display to show $file on; a picture of $drawn is in $picture"

@@ -20,6 +20,6 @@ target_include_directories(sanitized_tests PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
 target_compile_definitions(sanitized_tests PRIVATE OSGGPUANIMATION_SHARED_ASSETS="${OSGGPUANIMATION_SHARED_ASSETS}"
                            OSGGPUANIMATION_PLUGIN_FOLDER="${CMAKE_LIBRARY_OUTPUT_DIRECTORY}"
                            OSGGPUANIMATION_SCENES="${CMAKE_SOURCE_DIR}/scenes")
-add_dependencies(sanitized_tests osgdb_gltf osgdb_crowd osgdb_serializers_osggpuanimation)
+add_dependencies(sanitized_tests osgdb_gltf osgdb_crowd osgdb_studio osgdb_serializers_osggpuanimation)
 gtest_discover_tests(sanitized_tests TEST_PREFIX sanitized. DISCOVERY_TIMEOUT 60
                      PROPERTIES TIMEOUT ${test_timeout} ENVIRONMENT "${discovered_environment}")

@@ -58,6 +58,7 @@ side, shows everything in all pictures; with --camera, one of the file's.
   osggpuanim render fox.glb -o fox.png
   osggpuanim render fox.glb --clip Walk --time 0.3 --size 1920x1080 -o walk.png
   osggpuanim render fox.glb --look sun -o sun.png
+  osggpuanim render fox.glb.20x20.crowd -o foxes.png         400 foxes, each at its own clip and time
   osggpuanim render fox.glb --frames 60 --fps 30 -o fox.png  fox.0001.png ... fox.0060.png, the first at --time)";
 
 std::string checkFinite(const std::string& text)
@@ -156,7 +157,7 @@ void CommandLine::addRender()
 {
     _renderApp = _app.add_subcommand("render", "Pictures of a file, without a display");
     _renderApp->footer(std::string(renderHelp) + exitStatus);
-    _renderApp->add_option("FILE", _render.file, "A .gltf or .glb")->required();
+    _renderApp->add_option("FILE", _render.file, "A .gltf or .glb; or a crowd of it: FILE.20x20.crowd")->required();
     _renderApp->add_option("--clip", _render.clip,
                            "A clip's name, or an animation's number where none has that name; default: the first clip");
     _renderApp->add_option("--camera", _render.camera,

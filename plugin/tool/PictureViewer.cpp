@@ -3,9 +3,9 @@
 
 #include <osgGpuAnimation/gpu/EglGraphicsContext.h>
 #include <osgGpuAnimation/nodes/Environment.h>
+#include <osgGpuAnimation/nodes/viewing/Standpoint.h>
 #include <osgGpuAnimation/nodes/viewing/StartView.h>
 
-#include <osg/BoundingBox>
 #include <osg/Depth>
 #include <osg/Geometry>
 #include <osg/GLExtensions>
@@ -13,9 +13,6 @@
 #include <osg/MatrixTransform>
 #include <osg/Projection>
 #include <osg/Texture2D>
-
-#include <algorithm>
-#include <cmath>
 
 namespace osgGpuAnimation::tool
 {
@@ -100,62 +97,6 @@ osg::ref_ptr<osg::Group> lit(osg::Node* scene, Look look)
     return group;
 }
 
-/// The position of the camera and its target.
-struct Standpoint
-{
-    osg::Vec3d eye;
-    osg::Vec3d middle;
-    double radius = 1.0; ///< of the points around the middle
-};
-
-/// The distance from the middle along `back` at which the picture holds all points.
-double fittingDistance(const std::vector<osg::Vec3d>& points, const Standpoint& place, const osg::Vec3d (&axes)[3],
-                       double aspect)
-{
-    const double tangent = std::tan(osg::DegreesToRadians(fieldOfView) / 2.0) / margin;
-    double distance = place.radius;
-    for (const osg::Vec3d& point : points)
-    {
-        const osg::Vec3d offset = point - place.middle;
-        const double spread = std::max(std::abs(offset * axes[1]), std::abs(offset * axes[0]) / aspect);
-        distance = std::max(distance, spread / tangent + offset * axes[2]);
-    }
-    return distance;
-}
-
-/// The view along `back` in which all points are visible and as large as possible.
-Standpoint standpoint(const std::vector<osg::Vec3d>& points, const osg::Vec3d& back, double aspect)
-{
-    osg::Vec3d right = osg::Vec3d(0, 0, 1) ^ back;
-    right.normalize();
-    const osg::Vec3d axes[] = {right, back ^ right, back};
-    osg::BoundingBoxd box; // along those axes
-    for (const osg::Vec3d& point : points)
-        box.expandBy(point * axes[0], point * axes[1], point * axes[2]);
-    if (!box.valid()) box.set(-1, -1, -1, 1, 1, 1);
-
-    Standpoint place;
-    place.middle = axes[0] * box.center().x() + axes[1] * box.center().y() + axes[2] * box.center().z();
-    place.radius = std::max(box.radius(), 1e-6);
-    double distance = fittingDistance(points, place, axes, aspect);
-    // Near points look larger, so the middle of the points is not the middle of the picture: a few steps centre it.
-    for (int step = 0; step < 4; ++step)
-    {
-        osg::BoundingBoxd seen;
-        for (const osg::Vec3d& point : points)
-        {
-            const osg::Vec3d offset = point - place.middle;
-            const double depth = distance - offset * back;
-            seen.expandBy(offset * axes[0] / depth, offset * axes[1] / depth, 0.0);
-        }
-        if (!seen.valid()) break;
-        place.middle += (axes[0] * seen.center().x() + axes[1] * seen.center().y()) * distance;
-        distance = fittingDistance(points, place, axes, aspect);
-    }
-    place.eye = place.middle + back * distance;
-    return place;
-}
-
 } // namespace
 
 /// OSG takes the address of an entry point for its extension; EGL has addresses of entry points that the driver lacks.
@@ -228,11 +169,9 @@ void PictureViewer::show(osg::Node* scene, const std::vector<osg::Vec3d>& points
     all->addChild(lit(scene, _look));
     _viewer.setSceneData(all);
 
-    osg::Vec3d back(0.55, -1.0, 0.3);
-    back.normalize();
     osg::Camera* camera = _viewer.getCamera();
     const double aspect = camera->getViewport()->aspectRatio();
-    const Standpoint place = standpoint(points, back, aspect);
+    const Standpoint place = raisedStandpoint(points, fieldOfView, aspect, margin);
     camera->setViewMatrixAsLookAt(place.eye, place.middle, osg::Vec3d(0, 0, 1));
     // The cull traversal computes the near and far planes.
     camera->setProjectionMatrixAsPerspective(fieldOfView, aspect, place.radius / 100.0, place.radius * 100.0);

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "tool/RenderCommand.h"
 
+#include "crowd/CrowdGrid.h"
 #include "tool/CpuPoseEvaluator.h"
 #include "tool/ModelFile.h"
 
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
+#include <osgGpuAnimation/nodes/studio/ModelExtent.h>
 
+#include <osgDB/FileNameUtils>
 #include <osgDB/Registry>
 
 #include <algorithm>
@@ -79,33 +82,79 @@ std::string numbered(const std::string& output, std::size_t number)
     return (path.parent_path() / name.str()).string();
 }
 
+Result<bool> writePicture(const osg::Image* image, const std::string& file, const std::string& name)
+{
+    if (!image) return Error{file + ": OpenGL reported an error while drawing"};
+    // writeImageFile() would print an error of its own.
+    if (!osgDB::Registry::instance()->writeImage(*image, name, nullptr).success())
+        return Error{name + ": cannot be written"};
+    return true;
+}
+
 } // namespace
 
 Result<bool> RenderCommand::run() const
 {
+    const bool isCrowd = osgDB::getLowerCaseFileExtension(file) == "crowd";
+    const Result<crowd::CrowdOptions> wanted =
+        isCrowd ? crowd::parseCrowd(osgDB::getNameLessExtension(file), "") : crowd::CrowdOptions();
+    if (!wanted) return Error{file + ": " + wanted.error().message};
+    crowd::CrowdOptions grid = wanted.value();
     gltf::ImportOptions options;
-    options.clip = clip;
     options.camera = camera;
     options.noKeys = true; // no window, no keyboard
-    const Result<gltf::ImportedModel> model = readModel(file, options);
-    if (!model) return Error{file + ": " + model.error().message};
+    if (!isCrowd)
+        options.clip = clip;
+    else if (clip)
+        grid.clips = {*clip};
+    const std::string modelFile = isCrowd ? grid.modelFile : file;
+    const Result<gltf::ImportedModel> model = readModel(modelFile, options);
+    if (!model) return Error{modelFile + ": " + model.error().message};
     Result<std::unique_ptr<PictureViewer>> viewer = PictureViewer::create(width, height, look);
     if (!viewer) return Error{file + ": " + viewer.error().message};
+    return isCrowd ? drawCrowd(*viewer.value(), *model.value().root, grid) : drawModel(*viewer.value(), model.value());
+}
+
+std::vector<double> RenderCommand::times() const
+{
     std::vector<double> times;
     for (int frame = 0; frame < frames.value_or(1); ++frame)
         times.push_back(time + frame / framesPerSecond);
-    viewer.value()->show(model.value().root, pointsOf(model.value(), times));
-    if (model.value().startCamera) viewer.value()->lookThrough(*model.value().startCamera);
+    return times;
+}
 
+std::string RenderCommand::outputOf(std::size_t frame) const
+{
+    return frames ? numbered(output, frame + 1) : output;
+}
+
+Result<bool> RenderCommand::drawModel(PictureViewer& viewer, const gltf::ImportedModel& model) const
+{
+    const std::vector<double> times = this->times();
+    viewer.show(model.root, pointsOf(model, times));
+    if (model.startCamera) viewer.lookThrough(*model.startCamera);
     for (std::size_t frame = 0; frame < times.size(); ++frame)
     {
-        if (model.value().character) showTime(model.value().character->getController(), times[frame]);
-        const osg::ref_ptr<osg::Image> image = viewer.value()->draw(times[frame] - time);
-        if (!image) return Error{file + ": OpenGL reported an error while drawing"};
-        const std::string name = frames ? numbered(output, frame + 1) : output;
-        // writeImageFile() would print an error of its own.
-        if (!osgDB::Registry::instance()->writeImage(*image, name, nullptr).success())
-            return Error{name + ": cannot be written"};
+        if (model.character) showTime(model.character->getController(), times[frame]);
+        const Result<bool> written = writePicture(viewer.draw(times[frame] - time).get(), file, outputOf(frame));
+        if (!written) return written;
+    }
+    return true;
+}
+
+Result<bool> RenderCommand::drawCrowd(PictureViewer& viewer, osg::Node& model, const crowd::CrowdOptions& grid) const
+{
+    const Result<osg::ref_ptr<AnimatedCrowd>> crowd = crowd::makeCrowd(model, grid);
+    if (!crowd) return Error{grid.modelFile + ": " + crowd.error().message};
+    osg::ref_ptr<osg::Group> scene = new osg::Group;
+    scene->addChild(crowd.value());
+    viewer.show(scene, osgGpuAnimation::pointsOf(*scene));
+    viewer.draw(0.0); // the time from which the clips run
+    const std::vector<double> times = this->times();
+    for (std::size_t frame = 0; frame < times.size(); ++frame)
+    {
+        const Result<bool> written = writePicture(viewer.draw(times[frame]).get(), file, outputOf(frame));
+        if (!written) return written;
     }
     return true;
 }

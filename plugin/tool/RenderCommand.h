@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "crowd/CrowdOptions.h"
+#include "gltf/Import.h"
 #include "tool/PictureViewer.h"
 
 #include <osgGpuAnimation/animation/Result.h>
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace osgGpuAnimation::tool
 {
@@ -17,8 +20,8 @@ struct RenderCommand
 {
     static constexpr int maxSize = 8192; ///< pixels, each way
 
-    std::string file;
-    std::optional<std::string> clip;   ///< name or animation number; default: the first
+    std::string file;                  ///< a .gltf or .glb, or a crowd of it: `fox.glb.20x20.crowd`
+    std::optional<std::string> clip;   ///< name or animation number; default: the first; of a crowd: all, at random
     std::optional<std::string> camera; ///< of the file: name or number; default: none
     double time = 0.0;                 ///< seconds; clips loop
     int width = 800;                   ///< pixels, [1, maxSize]
@@ -30,6 +33,12 @@ struct RenderCommand
 
     /// Error messages begin with the name of the file at fault.
     Result<bool> run() const;
+
+private:
+    std::vector<double> times() const;             ///< seconds, by frame
+    std::string outputOf(std::size_t frame) const; ///< the file's name
+    Result<bool> drawModel(PictureViewer& viewer, const gltf::ImportedModel& model) const;
+    Result<bool> drawCrowd(PictureViewer& viewer, osg::Node& model, const crowd::CrowdOptions& grid) const;
 };
 
 } // namespace osgGpuAnimation::tool

@@ -196,6 +196,25 @@ TEST_F(ToolGLTest, timesOutsideTheClipLoopInPictures)
     }
 }
 
+TEST_F(ToolGLTest, rendersACrowdThatMoves)
+{
+    std::vector<osg::ref_ptr<osg::Image>> pictures;
+    for (const char* time : {"0", "0.3"})
+    {
+        const std::string picture = folder.file(std::string("crowd") + time + ".png");
+        const Process done =
+            Process::run(OSGGPUANIM, {"render", flag + ".3x2.crowd", "--size", "96x64", "--time", time, "-o", picture});
+        ASSERT_EQ(done.status, 0) << done.err;
+        pictures.push_back(osgDB::readRefImageFile(picture));
+        ASSERT_TRUE(pictures.back());
+        EXPECT_GT(drawnPixels(*pictures.back()), 100);
+    }
+    EXPECT_NE(bytesOf(*pictures.front()), bytesOf(*pictures.back()));
+    const Process refused = Process::run(OSGGPUANIM, {"render", flag + ".0x2.crowd", "-o", folder.file("no.png")});
+    EXPECT_EQ(refused.status, 1);
+    EXPECT_EQ(refused.err, "osggpuanim: " + flag + ".0x2.crowd: a crowd of 0x2 is empty\n");
+}
+
 TEST_F(ToolGLTest, aPictureThatCannotBeWrittenIsStatus1)
 {
     const std::string nowhere = folder.file("no/such/flag.png");

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/nodes/studio/ModelExtent.h>
+
+#include <osgGpuAnimation/nodes/AnimatedCharacter.h>
+#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+#include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
+#include <osgGpuAnimation/nodes/mesh/PaletteEntryBounds.h>
+
+#include <osg/ComputeBoundsVisitor>
+#include <osg/Geometry>
+
+#include <set>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+/// Of a mesh that does not move; a larger one counts by the corners of its box.
+constexpr std::size_t largestVertexCount = 100000;
+
+/// The outermost instances in eight horizontal directions.
+std::set<std::size_t> outerInstances(const AnimatedCrowd& crowd)
+{
+    std::set<std::size_t> outer;
+    for (int x = -1; x <= 1 && crowd.getNumInstances() > 0; ++x)
+        for (int y = -1; y <= 1; ++y)
+        {
+            const auto along = [&](std::size_t index)
+            { return x * crowd.getInstances().position(index).x() + y * crowd.getInstances().position(index).y(); };
+            std::size_t farthest = 0;
+            for (std::size_t index = 1; index < crowd.getNumInstances(); ++index)
+                if (along(index) > along(farthest)) farthest = index;
+            outer.insert(farthest);
+        }
+    return outer;
+}
+
+class PointCollector : public osg::NodeVisitor
+{
+public:
+    PointCollector() : osg::NodeVisitor(NODE_VISITOR, TRAVERSE_ACTIVE_CHILDREN) {}
+
+    void apply(osg::Transform& transform) override
+    {
+        if (auto* character = dynamic_cast<AnimatedCharacter*>(&transform))
+            forEachMesh(*character, [&](const SkinnedGeometry& mesh) { add(*character->getPosedMesh(mesh)); });
+        else if (auto* crowd = dynamic_cast<AnimatedCrowd*>(&transform))
+            for (const std::size_t index : outerInstances(*crowd))
+                forEachMesh(*crowd, [&](const SkinnedGeometry& mesh)
+                            { add(*crowd->getPosedMesh(crowd->getInstances().handleOf(index), mesh)); });
+        traverse(transform);
+    }
+
+    void apply(osg::Geometry& geometry) override
+    {
+        const osg::Array* vertices = geometry.getVertexArray();
+        if (dynamic_cast<const osg::Vec3Array*>(vertices) && vertices->getNumElements() <= largestVertexCount)
+            add(geometry);
+        else
+            apply(static_cast<osg::Drawable&>(geometry));
+    }
+
+    void apply(osg::Drawable& drawable) override
+    {
+        if (dynamic_cast<SkinnedGeometry*>(&drawable)) return;
+        const osg::Matrixd toGroup = osg::computeLocalToWorld(getNodePath());
+        const osg::BoundingBox& box = drawable.getBoundingBox();
+        for (unsigned int corner = 0; corner < 8 && box.valid(); ++corner)
+            points.push_back(osg::Vec3d(box.corner(corner)) * toGroup);
+    }
+
+    std::vector<osg::Vec3d> points;
+
+private:
+    void add(const osg::Geometry& geometry)
+    {
+        const osg::Matrixd toGroup = osg::computeLocalToWorld(getNodePath());
+        if (const auto* vertices = dynamic_cast<const osg::Vec3Array*>(geometry.getVertexArray()))
+            for (const osg::Vec3& vertex : *vertices)
+                points.push_back(osg::Vec3d(vertex) * toGroup);
+    }
+};
+
+} // namespace
+
+osg::BoundingBoxd extentOf(osg::Group& group)
+{
+    osg::ComputeBoundsVisitor visitor;
+    group.osg::Group::traverse(visitor);
+    return osg::BoundingBoxd(visitor.getBoundingBox());
+}
+
+std::vector<osg::Vec3d> pointsOf(osg::Group& group)
+{
+    PointCollector collector;
+    group.osg::Group::traverse(collector);
+    return std::move(collector.points);
+}
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/nodes/studio/Studio.h>
+
+#include <osgGpuAnimation/nodes/frame/CullScopes.h>
+#include <osgGpuAnimation/nodes/studio/KeyShadow.h>
+#include <osgGpuAnimation/nodes/studio/ModelExtent.h>
+
+#include <osg/LightModel>
+
+#include <algorithm>
+#include <cmath>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+/// GL's lights, whose modes osgviewer's headlight and the application's lights switch on.
+constexpr unsigned int lights = 8;
+/// The light on meshes without PbrMaterial.
+constexpr float evenLight = 0.8f;
+
+/// The least z; top: without points.
+double lowest(const std::vector<osg::Vec3d>& points, double top)
+{
+    double z = top;
+    for (const osg::Vec3d& point : points)
+        z = std::min(z, point.z());
+    return z;
+}
+
+} // namespace
+
+Studio::Studio() : _shadow(new KeyShadow(*this))
+{
+    // The update traversal must reach this node without a callback.
+    setNumChildrenRequiringUpdateTraversal(getNumChildrenRequiringUpdateTraversal() + 1);
+    setToneMapping(true);
+    osg::StateSet* state = getOrCreateStateSet();
+    for (unsigned int light = 0; light < lights; ++light)
+        state->setMode(GL_LIGHT0 + light, osg::StateAttribute::OFF);
+    state->setMode(GL_LIGHTING, osg::StateAttribute::ON);
+    osg::ref_ptr<osg::LightModel> ambient = new osg::LightModel;
+    ambient->setAmbientIntensity(osg::Vec4(evenLight, evenLight, evenLight, 1.0f));
+    state->setAttribute(ambient);
+}
+
+Studio::Studio(const Studio& other, const osg::CopyOp& copyop)
+    : Environment(other, copyop), _shadow(new KeyShadow(*this))
+{
+    setNumChildrenRequiringUpdateTraversal(getNumChildrenRequiringUpdateTraversal() + 1);
+}
+
+void Studio::traverse(osg::NodeVisitor& visitor)
+{
+    osgUtil::CullVisitor* const cull = visitor.asCullVisitor();
+    const osg::Camera* const camera = cull ? cull->getCurrentCamera() : nullptr;
+    if (cull && !(camera && DepthPass::isOf(*camera))) cullSurroundings(*cull);
+    Environment::traverse(visitor);
+    if (visitor.getVisitorType() == osg::NodeVisitor::UPDATE_VISITOR) fit();
+}
+
+void Studio::cullSurroundings(osgUtil::CullVisitor& visitor)
+{
+    if (_ground) _shadow->accept(visitor);
+    _backdrop.cull(visitor, _ground, *_shadow);
+}
+
+void Studio::fit()
+{
+    const osg::BoundingSphere& bound = getBound();
+    if (bound.center() == _fitted.center() && bound.radius() == _fitted.radius()) return;
+    _fitted = bound;
+    const osg::BoundingBoxd box = extentOf(*this);
+    const double radius = box.radius();
+    if (!box.valid() || !(radius > 0.0) || !std::isfinite(radius)) return;
+    if (!_ground)
+    {
+        _ground = Ground{{0, 0, lowest(pointsOf(*this), box.zMax())}, radius, 1.0};
+        _ground->height = std::max(box.zMax() - _ground->middle.z(), 0.01 * radius);
+    }
+    _ground->middle.x() = box.center().x();
+    _ground->middle.y() = box.center().y();
+    _shadow->fit(box);
+}
+
+void Studio::resizeGLObjectBuffers(unsigned int maxSize)
+{
+    Environment::resizeGLObjectBuffers(maxSize);
+    _shadow->resizeGLObjectBuffers(maxSize);
+    _backdrop.getDrawable().resizeGLObjectBuffers(maxSize);
+}
+
+void Studio::releaseGLObjects(osg::State* state) const
+{
+    Environment::releaseGLObjects(state);
+    _shadow->releaseGLObjects(state);
+    _backdrop.getDrawable().releaseGLObjects(state);
+}
+
+void Studio::setThreadSafeRefUnref(bool threadSafe)
+{
+    Environment::setThreadSafeRefUnref(threadSafe);
+    _shadow->setThreadSafeRefUnref(threadSafe);
+    _backdrop.getDrawable().setThreadSafeRefUnref(threadSafe);
+}
+
+} // namespace osgGpuAnimation

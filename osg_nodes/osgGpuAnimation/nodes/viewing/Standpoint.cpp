@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/nodes/viewing/Standpoint.h>
+
+#include <osg/BoundingBox>
+#include <osg/Math>
+
+#include <algorithm>
+#include <cmath>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+/// The distance from the middle along `back` at which the picture holds all points. tangent: of half the height.
+double fittingDistance(const std::vector<osg::Vec3d>& points, const Standpoint& place, const osg::Vec3d (&axes)[3],
+                       double tangent, double aspect)
+{
+    double distance = place.radius;
+    for (const osg::Vec3d& point : points)
+    {
+        const osg::Vec3d offset = point - place.middle;
+        const double spread = std::max(std::abs(offset * axes[1]), std::abs(offset * axes[0]) / aspect);
+        distance = std::max(distance, spread / tangent + offset * axes[2]);
+    }
+    return distance;
+}
+
+} // namespace
+
+Standpoint raisedStandpoint(const std::vector<osg::Vec3d>& points, double fieldOfView, double aspect, double margin)
+{
+    osg::Vec3d back(0.55, -1.0, 0.3);
+    back.normalize();
+    const double tangent = std::tan(osg::DegreesToRadians(fieldOfView) / 2.0) / margin;
+    osg::Vec3d right = osg::Vec3d(0, 0, 1) ^ back;
+    right.normalize();
+    const osg::Vec3d axes[] = {right, back ^ right, back};
+    osg::BoundingBoxd box; // along those axes
+    for (const osg::Vec3d& point : points)
+        box.expandBy(point * axes[0], point * axes[1], point * axes[2]);
+    if (!box.valid()) box.set(-1, -1, -1, 1, 1, 1);
+
+    Standpoint place;
+    place.middle = axes[0] * box.center().x() + axes[1] * box.center().y() + axes[2] * box.center().z();
+    place.radius = std::max(box.radius(), 1e-6);
+    double distance = fittingDistance(points, place, axes, tangent, aspect);
+    // Near points look larger, so the middle of the points is not the middle of the picture: a few steps centre it.
+    for (int step = 0; step < 4; ++step)
+    {
+        osg::BoundingBoxd seen;
+        for (const osg::Vec3d& point : points)
+        {
+            const osg::Vec3d offset = point - place.middle;
+            const double depth = distance - offset * back;
+            seen.expandBy(offset * axes[0] / depth, offset * axes[1] / depth, 0.0);
+        }
+        if (!seen.valid()) break;
+        place.middle += (axes[0] * seen.center().x() + axes[1] * seen.center().y()) * distance;
+        distance = fittingDistance(points, place, axes, tangent, aspect);
+    }
+    place.eye = place.middle + back * distance;
+    return place;
+}
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT
+#include "support/TestCharacter.h"
+#include "support/ViewerGLTest.h"
+
+#include <osgGpuAnimation/nodes/studio/Studio.h>
+#include <osgGpuAnimation/nodes/viewing/RaisedHome.h>
+
+#include <osg/ComputeBoundsVisitor>
+#include <osgGA/TrackballManipulator>
+#include <osgUtil/IntersectionVisitor>
+#include <osgUtil/LineSegmentIntersector>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+/// The test character's square stands on the ground, at first with its left edge at the origin; its clip moves it by 2
+/// units along +X in 2 seconds. The camera looks straight down on it, +Y up in the picture.
+class StudioGLTest : public ViewerGLTest, public ::testing::WithParamInterface<bool>
+{
+protected:
+    int pictureSide() const override { return 128; }
+
+    osg::ref_ptr<Studio> makeScene()
+    {
+        osg::ref_ptr<Studio> studio = new Studio;
+        studio->addChild(makeTestCharacter());
+        viewer().getCamera()->setViewMatrixAsLookAt({1, 0, 10}, {1, 0, 0}, {0, 1, 0});
+        if (GetParam()) viewer().getCamera()->setProjectionMatrixAsPerspective(45.0, 1.0, 0.5, 5000.0);
+        return studio;
+    }
+
+    /// The brightness of a point on the ground, relative to that of one far from the model in the same row.
+    double brightness(const osg::Image& image, double x, double y)
+    {
+        const osg::Vec4 color = colorAt(image, osg::Vec3d(x, y, 0)), far = colorAt(image, osg::Vec3d(-2.8, y, 0));
+        return color.g() / far.g();
+    }
+
+private:
+    osg::Vec4 colorAt(const osg::Image& image, const osg::Vec3d& point)
+    {
+        const osg::Camera& camera = *viewer().getCamera();
+        const osg::Vec3d pixel =
+            point * camera.getViewMatrix() * camera.getProjectionMatrix() * camera.getViewport()->computeWindowMatrix();
+        return image.getColor(static_cast<int>(pixel.x()), static_cast<int>(pixel.y()));
+    }
+};
+
+TEST_P(StudioGLTest, theShadowLiesBehindTheModelAndFollowsItsPose)
+{
+    const osg::ref_ptr<Studio> studio = makeScene();
+    // The light comes from (0.6, -0.9, 1.1): a point at height z casts its shadow 0.55 z to the left, 0.82 z behind.
+    for (const double time : {0.0, 1.5})
+    {
+        const osg::ref_ptr<osg::Image> image = pictureOf(studio, {0.0, time});
+        const double here = time + 0.3, there = 1.5 - time + 0.3;
+        EXPECT_LT(brightness(*image, here, 0.3), 0.85) << time;
+        EXPECT_GT(brightness(*image, there, 0.3), 0.97) << time;
+        EXPECT_GT(brightness(*image, here, -0.7), 0.97) << "in front of the model " << time;
+        EXPECT_LT(brightness(*image, here, 1.9), 1.2) << "the ground fades into the backdrop " << time;
+    }
+}
+
+TEST_P(StudioGLTest, theApplicationsLightsDoNotShine)
+{
+    osg::ref_ptr<Studio> studio = makeScene();
+    viewer().setLightingMode(osg::View::HEADLIGHT);
+    const osg::ref_ptr<osg::Image> lit = pictureOf(studio, {0.0});
+    viewer().setLightingMode(osg::View::NO_LIGHT);
+    EXPECT_EQ(Picture::pixelsDifferent(*lit, *pictureOf(studio, {0.0}), 0.0f), 0);
+}
+
+TEST_P(StudioGLTest, groundAndBackdropAreInNoBoundsAndCannotBeHit)
+{
+    const osg::ref_ptr<Studio> studio = makeScene();
+    pictureOf(studio, {0.0});
+    ASSERT_TRUE(studio->getGround());
+    EXPECT_NEAR(studio->getGround()->middle.z(), 0.0, 1e-5);
+    osg::ComputeBoundsVisitor all, model;
+    studio->accept(all);
+    studio->getChild(0)->accept(model);
+    EXPECT_EQ(all.getBoundingBox()._min, model.getBoundingBox()._min);
+    EXPECT_EQ(all.getBoundingBox()._max, model.getBoundingBox()._max);
+    osg::ref_ptr<osgUtil::LineSegmentIntersector> ray =
+        new osgUtil::LineSegmentIntersector(osg::Vec3d(0.3, 0.3, 5.0), osg::Vec3d(0.3, 0.3, -5.0));
+    osgUtil::IntersectionVisitor visitor(ray);
+    studio->accept(visitor);
+    EXPECT_FALSE(ray->containsIntersections());
+}
+
+TEST_P(StudioGLTest, anEmptyStudioShowsTheBackdrop)
+{
+    osg::ref_ptr<Studio> studio = makeScene();
+    studio->removeChildren(0, 1);
+    const osg::ref_ptr<osg::Image> image = pictureOf(studio, {0.0});
+    EXPECT_FALSE(studio->getGround());
+    EXPECT_NEAR(image->getColor(64, 127).g(), 0.93, 0.01);
+    EXPECT_NEAR(image->getColor(64, 0).g(), 0.74, 0.01);
+}
+
+TEST_P(StudioGLTest, theHomeViewIsRaisedUnlessTheApplicationHasSetOne)
+{
+    for (const bool isSet : {false, true})
+    {
+        const osg::ref_ptr<Studio> studio = makeScene();
+        viewer().getCamera()->setProjectionMatrixAsPerspective(30.0, 1.0, 1.0, 100.0);
+        studio->addEventCallback(new RaisedHome);
+        osg::ref_ptr<osgGA::TrackballManipulator> manipulator = new osgGA::TrackballManipulator;
+        if (isSet) manipulator->setHomePosition({0, -20, 0}, {0, 0, 0}, {0, 0, 1});
+        viewer().setSceneData(studio);
+        viewer().setCameraManipulator(manipulator);
+        drawAt(0.0);
+        osg::Vec3d eye, middle, up, back(0.55, -1.0, 0.3);
+        manipulator->getHomePosition(eye, middle, up);
+        back.normalize();
+        osg::Vec3d found = eye - middle;
+        const double distance = found.normalize();
+        EXPECT_NEAR((found - (isSet ? osg::Vec3d(0, -1, 0) : back)).length(), 0.0, 1e-6) << isSet;
+        EXPECT_GT(distance, 1.0);
+        EXPECT_LT(distance, isSet ? 20.1 : 8.0);
+        viewer().setCameraManipulator(nullptr);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Projections, StudioGLTest, ::testing::Bool(),
+                         [](const auto& info) { return info.param ? "perspective" : "parallel"; });
+
+} // namespace
+
+} // namespace osgGpuAnimation

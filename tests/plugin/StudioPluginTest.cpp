@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: MIT
+#include "plugin/ModelBuilder.h"
+#include "plugin/PluginFolder.h"
+#include "support/NotifyLog.h"
+
+#include <osgGpuAnimation/nodes/AnimatedCharacter.h>
+#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+#include <osgGpuAnimation/nodes/studio/Studio.h>
+
+#include <gtest/gtest.h>
+#include <osg/MatrixTransform>
+#include <osgDB/ReadFile>
+#include <osgDB/Registry>
+#include <osgDB/WriteFile>
+
+#include <filesystem>
+#include <fstream>
+
+namespace osgGpuAnimation::gltf
+{
+
+namespace
+{
+
+using Read = osgDB::ReaderWriter::ReadResult;
+
+/// A folder with `arm.gltf`, which has a clip, and `empty.gltf`, which has no mesh.
+class StudioPluginTest : public ::testing::Test
+{
+protected:
+    void SetUp() override
+    {
+        usePluginsOfTheBuild();
+        const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+        folder = std::filesystem::path(::testing::TempDir()) / (std::string("osggpuanimation_studio_") + test->name());
+        std::filesystem::create_directories(folder);
+        ModelBuilder empty;
+        empty.node("nothing");
+        write("empty.gltf", empty.text());
+        ModelBuilder arm;
+        arm.node("sword", arm.node("arm"), arm.triangle());
+        arm.animation("Slide");
+        arm.slide(0);
+        write("arm.gltf", arm.text());
+    }
+
+    void TearDown() override { std::filesystem::remove_all(folder); }
+
+    void write(const std::string& name, const std::string& content)
+    {
+        std::ofstream(folder / name, std::ios::binary) << content;
+    }
+
+    Read read(const std::string& name, const std::string& options = "")
+    {
+        const osg::ref_ptr<osgDB::Options> held = new osgDB::Options(options);
+        return osgDB::Registry::instance()->readNode((folder / name).string(), held);
+    }
+
+    std::filesystem::path folder;
+};
+
+struct FaultCase
+{
+    const char* file;
+    const char* message; ///< a part of it
+};
+
+const FaultCase faults[] = {
+    {"absent.gltf.studio", "absent.gltf"},
+    {"absent.gltf.STUDIO", "absent.gltf"},
+    {"arm.studio", "is not a model's file, like fox.glb in fox.glb.studio"},
+    {"arm.gltf.0x0.crowd.studio", "arm.gltf.0x0.crowd: a crowd of 0x0 is empty"},
+    {"absent.gltf.2x2.crowd.studio", "absent.gltf"},
+    {"arm.gltf.studio.unknown.studio", "arm.gltf.studio.unknown"},
+};
+
+TEST_F(StudioPluginTest, faultsHaveAMessage)
+{
+    for (const FaultCase& fault : faults)
+    {
+        SCOPED_TRACE(fault.file);
+        const Read result = read(fault.file);
+        EXPECT_EQ(result.status(), Read::ERROR_IN_READING_FILE);
+        EXPECT_NE(result.message().find(fault.message), std::string::npos) << result.message();
+    }
+}
+
+TEST_F(StudioPluginTest, showsCharactersAndCrowds)
+{
+    for (const char* name : {"arm.gltf.studio", "arm.gltf.Studio", "arm.gltf.3x3.crowd.studio"})
+    {
+        SCOPED_TRACE(name);
+        const Read result = read(name);
+        const auto* studio = dynamic_cast<const Studio*>(result.getNode());
+        ASSERT_TRUE(studio) << result.message();
+        EXPECT_TRUE(studio->getToneMapping());
+        EXPECT_TRUE(studio->getNumChildrenRequiringEventTraversal() > 0) << "the home view";
+    }
+    osgDB::ReaderWriter* reader = osgDB::Registry::instance()->getReaderWriterForExtension("studio");
+    ASSERT_TRUE(reader);
+    EXPECT_EQ(reader->supportedOptions().count("noRotation"), 1u);
+    EXPECT_EQ(reader->readNode("fox.glb", nullptr).status(), Read::FILE_NOT_HANDLED);
+}
+
+TEST_F(StudioPluginTest, aModelThatKeepsYUpStandsOnAGroundOfItsOwnAxes)
+{
+    const Read result = read("arm.gltf.studio", "noRotation");
+    const auto* back = dynamic_cast<const osg::MatrixTransform*>(result.getNode());
+    ASSERT_TRUE(back) << result.message();
+    ASSERT_TRUE(dynamic_cast<const Studio*>(back->getChild(0)));
+    EXPECT_LT((osg::Matrixd::transform3x3(osg::Vec3d(0, 0, 1), back->getMatrix()) - osg::Vec3d(0, 1, 0)).length(), 1e-9)
+        << "the studio's +Z is the file's +Y";
+}
+
+TEST_F(StudioPluginTest, aFileWithoutMeshesIsReadWithAWarning)
+{
+    const osg::ref_ptr<NotifyLog> log = new NotifyLog(osg::WARN);
+    osg::setNotifyHandler(log);
+    const Read result = read("empty.gltf.studio");
+    osg::setNotifyHandler(new osg::StandardNotifyHandler);
+    EXPECT_TRUE(dynamic_cast<const Studio*>(result.getNode())) << result.message();
+    EXPECT_NE(log->text.find("nothing to see"), std::string::npos) << log->text;
+}
+
+TEST_F(StudioPluginTest, isKeptInOsgsFormats)
+{
+    const Read result = read("arm.gltf.studio");
+    ASSERT_TRUE(result.getNode()) << result.message();
+    for (const char* format : {"kept.osgb", "kept.osgt"})
+    {
+        const std::string file = (folder / format).string();
+        ASSERT_TRUE(osgDB::writeNodeFile(*result.getNode(), file)) << format;
+        const osg::ref_ptr<osg::Node> kept = osgDB::readRefNodeFile(file);
+        const auto* studio = dynamic_cast<const Studio*>(kept.get());
+        ASSERT_TRUE(studio) << format;
+        EXPECT_TRUE(studio->getStateSet()->getDefinePair("TONE_MAPPING")) << format;
+        EXPECT_TRUE(findCharacter(*kept)) << format;
+        EXPECT_TRUE(studio->getEventCallback()) << format;
+    }
+}
+
+} // namespace
+
+} // namespace osgGpuAnimation::gltf

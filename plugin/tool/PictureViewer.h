@@ -2,6 +2,7 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/Result.h>
+#include <osgGpuAnimation/nodes/Environment.h>
 
 #include <osg/Image>
 #include <osg/Vec3d>
@@ -35,6 +36,9 @@ public:
     static Result<std::unique_ptr<PictureViewer>> create(int width, int height, Look look);
     ~PictureViewer();
 
+    /// An equirectangular picture in place of the studio. Call it before show(). Error: as of
+    /// Environment::setPanorama().
+    Result<bool> setPanorama(osg::Image* panorama) { return _studio->setPanorama(panorama); }
     /// Places the camera so that it sees all these points from -Y, a little from +X and from above.
     void show(osg::Node* scene, const std::vector<osg::Vec3d>& points);
     /// Draws a frame at that simulation time (seconds): RGB, 8 bits each. Null if GL reports an error.
@@ -48,6 +52,7 @@ private:
     osgViewer::Viewer _viewer;
     osg::ref_ptr<ReadPixels> _reader;
     Look _look = Look::Studio;
+    osg::ref_ptr<Environment> _studio; ///< of Look::Studio
 };
 
 } // namespace osgGpuAnimation::tool

@@ -6,6 +6,7 @@
 
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
+#include <osgDB/FileUtils>
 #include <osgDB/Registry>
 
 #include <algorithm>
@@ -79,6 +80,26 @@ std::string numbered(const std::string& output, std::size_t number)
     return (path.parent_path() / name.str()).string();
 }
 
+Result<osg::ref_ptr<osg::Image>> readPicture(const std::string& name)
+{
+    if (!osgDB::fileExists(name)) return Error{name + ": there is no such file"};
+    // readImageFile() would print an error of its own.
+    osgDB::ReaderWriter::ReadResult read = osgDB::Registry::instance()->readImage(name, nullptr);
+    if (!read.validImage()) return Error{name + ": not a picture that OSG's plugins read"};
+    return osg::ref_ptr<osg::Image>(read.getImage());
+}
+
+/// Does nothing with an empty name.
+Result<bool> readEnvironment(const std::string& name, PictureViewer& viewer)
+{
+    if (name.empty()) return true;
+    const Result<osg::ref_ptr<osg::Image>> picture = readPicture(name);
+    if (!picture) return picture.error();
+    const Result<bool> taken = viewer.setPanorama(picture.value());
+    if (!taken) return Error{name + ": " + taken.error().message};
+    return true;
+}
+
 } // namespace
 
 Result<bool> RenderCommand::run() const
@@ -90,6 +111,8 @@ Result<bool> RenderCommand::run() const
     if (!model) return Error{file + ": " + model.error().message};
     Result<std::unique_ptr<PictureViewer>> viewer = PictureViewer::create(width, height, look);
     if (!viewer) return Error{file + ": " + viewer.error().message};
+    const Result<bool> surrounded = readEnvironment(environment, *viewer.value());
+    if (!surrounded) return surrounded.error();
     std::vector<double> times;
     for (int frame = 0; frame < frames.value_or(1); ++frame)
         times.push_back(time + frame / framesPerSecond);

@@ -80,24 +80,15 @@ std::string numbered(const std::string& output, std::size_t number)
     return (path.parent_path() / name.str()).string();
 }
 
+/// The picture of that file; null without a name.
 Result<osg::ref_ptr<osg::Image>> readPicture(const std::string& name)
 {
-    if (!osgDB::fileExists(name)) return Error{name + ": there is no such file"};
+    if (name.empty()) return osg::ref_ptr<osg::Image>();
+    if (!osgDB::fileExists(name)) return Error{name + ": no such file"};
     // readImageFile() would print an error of its own.
     osgDB::ReaderWriter::ReadResult read = osgDB::Registry::instance()->readImage(name, nullptr);
     if (!read.validImage()) return Error{name + ": not a picture that OSG's plugins read"};
     return osg::ref_ptr<osg::Image>(read.getImage());
-}
-
-/// Does nothing with an empty name.
-Result<bool> readEnvironment(const std::string& name, PictureViewer& viewer)
-{
-    if (name.empty()) return true;
-    const Result<osg::ref_ptr<osg::Image>> picture = readPicture(name);
-    if (!picture) return picture.error();
-    const Result<bool> taken = viewer.setPanorama(picture.value());
-    if (!taken) return Error{name + ": " + taken.error().message};
-    return true;
 }
 
 } // namespace
@@ -109,10 +100,15 @@ Result<bool> RenderCommand::run() const
     options.noKeys = true; // no window, no keyboard
     const Result<gltf::ImportedModel> model = readModel(file, options);
     if (!model) return Error{file + ": " + model.error().message};
+    const Result<osg::ref_ptr<osg::Image>> panorama = readPicture(environment);
+    if (!panorama) return panorama.error();
     Result<std::unique_ptr<PictureViewer>> viewer = PictureViewer::create(width, height, look);
     if (!viewer) return Error{file + ": " + viewer.error().message};
-    const Result<bool> surrounded = readEnvironment(environment, *viewer.value());
-    if (!surrounded) return surrounded.error();
+    if (panorama.value())
+    {
+        const Result<bool> taken = viewer.value()->setPanorama(panorama.value());
+        if (!taken) return Error{environment + ": " + taken.error().message};
+    }
     std::vector<double> times;
     for (int frame = 0; frame < frames.value_or(1); ++frame)
         times.push_back(time + frame / framesPerSecond);

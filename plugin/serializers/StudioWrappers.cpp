@@ -14,7 +14,9 @@ namespace
 
 osgDB::RegisterWrapperProxy wrappers[] = {
     {[]() -> osg::Object* { return new Studio; }, "osgGpuAnimation::Studio",
-     "osg::Object osg::Node osg::Group osgGpuAnimation::Studio", [](osgDB::ObjectWrapper*) {}},
+     "osgGpuAnimation::ExactNumbers osg::Object osg::Node osg::Group osgGpuAnimation::Environment "
+     "osgGpuAnimation::Studio",
+     [](osgDB::ObjectWrapper*) {}},
     {[]() -> osg::Object* { return new RaisedHome; }, "osgGpuAnimation::RaisedHome",
      "osg::Object osg::Callback osgGpuAnimation::RaisedHome", [](osgDB::ObjectWrapper*) {}},
 };

@@ -126,6 +126,12 @@ public:
         close();
     }
 
+    /// As OSG's textures store theirs: by the file's name or with its pixels, as the writer's options say.
+    void image(osg::ref_ptr<osg::Image>& image)
+    {
+        if (_out) _out->writeImage(image.get());
+        if (hasRead()) image = _in->readImage();
+    }
     template <typename Type>
     void object(osg::ref_ptr<Type>& object)
     {

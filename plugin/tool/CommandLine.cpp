@@ -59,6 +59,7 @@ side, shows everything in all pictures; with --camera, one of the file's.
   osggpuanim render fox.glb --clip Walk --time 0.3 --size 1920x1080 -o walk.png
   osggpuanim render fox.glb --look sun -o sun.png
   osggpuanim render fox.glb.20x20.crowd -o foxes.png         400 foxes, each at its own clip and time
+  osggpuanim render fox.glb --environment sunset.hdr -o sunset.png
   osggpuanim render fox.glb --frames 60 --fps 30 -o fox.png  fox.0001.png ... fox.0060.png, the first at --time)";
 
 std::string checkFinite(const std::string& text)
@@ -173,13 +174,20 @@ void CommandLine::addRender()
     _renderApp->add_option("--fps", _render.framesPerSecond, "Pictures a second (default 30)")
         ->check(CLI::Range(0.001, 100000.0))
         ->needs(frames);
+    CLI::Option* look =
+        _renderApp
+            ->add_option(
+                "--look", _render.look,
+                "studio: image-based light with tone mapping; sun: one light and an even surrounding; furnace: a "
+                "white surrounding; file: the file's own lights (default studio)")
+            ->option_text("studio|sun|furnace|file")
+            ->transform(CLI::Transformer(std::map<std::string, Look>{
+                {"studio", Look::Studio}, {"sun", Look::Sun}, {"furnace", Look::Furnace}, {"file", Look::File}}));
     _renderApp
-        ->add_option("--look", _render.look,
-                     "studio: image-based light with tone mapping; sun: one light and an even surrounding; furnace: a "
-                     "white surrounding; file: the file's own lights (default studio)")
-        ->option_text("studio|sun|furnace|file")
-        ->transform(CLI::Transformer(std::map<std::string, Look>{
-            {"studio", Look::Studio}, {"sun", Look::Sun}, {"furnace", Look::Furnace}, {"file", Look::File}}));
+        ->add_option("--environment", _render.environment,
+                     "An equirectangular picture (.hdr and what OSG's plugins read) in place of the studio")
+        ->option_text("FILE")
+        ->excludes(look);
     _renderApp->add_option("-o,--output", _render.output, "OUT.png")->required()->check(checkPng);
 }
 

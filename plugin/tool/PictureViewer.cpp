@@ -76,16 +76,10 @@ void setUpLight(osgViewer::Viewer& viewer, Look look)
 }
 
 /// The scene in its surroundings.
-osg::ref_ptr<osg::Group> lit(osg::Node* scene, Look look)
+osg::ref_ptr<osg::Group> lit(osg::Node* scene, Look look, Environment* studio)
 {
-    osg::ref_ptr<osg::Group> group = new osg::Group;
-    if (look == Look::Studio)
-    {
-        osg::ref_ptr<Environment> studio = new Environment;
-        studio->setToneMapping(true);
-        group = studio;
-    }
-    else
+    osg::ref_ptr<osg::Group> group = look == Look::Studio ? studio : new osg::Group;
+    if (look != Look::Studio)
     {
         const float radiance = surroundingOf(look);
         osg::ref_ptr<osg::LightModel> ambient = new osg::LightModel;
@@ -129,7 +123,10 @@ public:
     mutable osg::ref_ptr<osg::Image> image;
 };
 
-PictureViewer::PictureViewer() : _reader(new ReadPixels) {}
+PictureViewer::PictureViewer() : _reader(new ReadPixels), _studio(new Environment)
+{
+    _studio->setToneMapping(true);
+}
 
 PictureViewer::~PictureViewer() = default;
 
@@ -166,7 +163,7 @@ void PictureViewer::show(osg::Node* scene, const std::vector<osg::Vec3d>& points
 {
     osg::ref_ptr<osg::Group> all = new osg::Group;
     all->addChild(makeBackground());
-    all->addChild(lit(scene, _look));
+    all->addChild(lit(scene, _look, _studio));
     _viewer.setSceneData(all);
 
     osg::Camera* camera = _viewer.getCamera();

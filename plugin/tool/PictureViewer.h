@@ -2,6 +2,7 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/Result.h>
+#include <osgGpuAnimation/nodes/Environment.h>
 
 #include <osg/CameraView>
 #include <osg/Image>
@@ -36,6 +37,9 @@ public:
     static Result<std::unique_ptr<PictureViewer>> create(int width, int height, Look look);
     ~PictureViewer();
 
+    /// An equirectangular picture in place of the studio. Call it before show(). Error: as of
+    /// Environment::setPanorama().
+    Result<bool> setPanorama(osg::Image* panorama) { return _studio->setPanorama(panorama); }
     /// Places the camera so that it sees all these points from -Y, a little from +X and from above.
     void show(osg::Node* scene, const std::vector<osg::Vec3d>& points);
     /// From here on, sees what that camera of the scene sees, wherever it moves.
@@ -52,6 +56,7 @@ private:
     osg::ref_ptr<ReadPixels> _reader;
     Look _look = Look::Studio;
     osg::ref_ptr<const osg::CameraView> _view; ///< null: the standpoint of show()
+    osg::ref_ptr<Environment> _studio;         ///< of Look::Studio
 };
 
 } // namespace osgGpuAnimation::tool

@@ -9,6 +9,7 @@
 #include <osgGpuAnimation/nodes/studio/ModelExtent.h>
 
 #include <osgDB/FileNameUtils>
+#include <osgDB/FileUtils>
 #include <osgDB/Registry>
 
 #include <algorithm>
@@ -91,6 +92,17 @@ Result<bool> writePicture(const osg::Image* image, const std::string& file, cons
     return true;
 }
 
+/// The picture of that file; null without a name.
+Result<osg::ref_ptr<osg::Image>> readPicture(const std::string& name)
+{
+    if (name.empty()) return osg::ref_ptr<osg::Image>();
+    if (!osgDB::fileExists(name)) return Error{name + ": no such file"};
+    // readImageFile() would print an error of its own.
+    osgDB::ReaderWriter::ReadResult read = osgDB::Registry::instance()->readImage(name, nullptr);
+    if (!read.validImage()) return Error{name + ": not a picture that OSG's plugins read"};
+    return osg::ref_ptr<osg::Image>(read.getImage());
+}
+
 } // namespace
 
 Result<bool> RenderCommand::run() const
@@ -110,8 +122,15 @@ Result<bool> RenderCommand::run() const
     const std::string modelFile = isCrowd ? grid.modelFile : file;
     const Result<gltf::ImportedModel> model = readModel(modelFile, options);
     if (!model) return Error{modelFile + ": " + model.error().message};
+    const Result<osg::ref_ptr<osg::Image>> panorama = readPicture(environment);
+    if (!panorama) return panorama.error();
     Result<std::unique_ptr<PictureViewer>> viewer = PictureViewer::create(width, height, look);
     if (!viewer) return Error{file + ": " + viewer.error().message};
+    if (panorama.value())
+    {
+        const Result<bool> taken = viewer.value()->setPanorama(panorama.value());
+        if (!taken) return Error{environment + ": " + taken.error().message};
+    }
     return isCrowd ? drawCrowd(*viewer.value(), *model.value().root, grid) : drawModel(*viewer.value(), model.value());
 }
 

@@ -29,7 +29,8 @@ struct RenderCommand
     std::optional<int> frames; ///< the number of numbered pictures; none: one picture, named `output`
     double framesPerSecond = 30.0;
     Look look = Look::Studio;
-    std::string output; ///< a .png; with `frames` OUT.png becomes OUT.0001.png, OUT.0002.png …
+    std::string environment; ///< an equirectangular picture in place of the studio; empty: none
+    std::string output;      ///< a .png; with `frames` OUT.png becomes OUT.0001.png, OUT.0002.png …
 
     /// Error messages begin with the name of the file at fault.
     Result<bool> run() const;

@@ -9,10 +9,12 @@
 #include <osgGpuAnimation/gpu/PoseBatch.h>
 #include <osgGpuAnimation/gpu/PosePipeline.h>
 #include <osgGpuAnimation/nodes/CharacterProgram.h>
+#include <osgGpuAnimation/nodes/shading/PrefilteredMap.h>
 #include <osgGpuAnimation/nodes/shading/ShaderPermutations.h>
 
 #include <ShaderSources.h>
 
+#include <algorithm>
 #include <map>
 #include <set>
 
@@ -220,6 +222,19 @@ protected:
         EXPECT_TRUE(pipeline.evaluate(state(), batch, 0));
     }
 
+    /// Links the program that prefilters surroundings.
+    void linkPrefilter()
+    {
+        osg::ref_ptr<osg::Image> grey = new osg::Image;
+        grey->allocateImage(2, 1, 1, GL_LUMINANCE, GL_UNSIGNED_BYTE, 1);
+        std::fill_n(grey->data(), 2, static_cast<unsigned char>(99));
+        const auto radiance = RadianceCube::fromPanorama(*grey);
+        ASSERT_TRUE(radiance);
+        const osg::ref_ptr<PrefilteredMap> map = new PrefilteredMap(*radiance.value());
+        map->apply(state());
+        map->releaseGLObjects(&state());
+    }
+
 private:
     bool _isCore = false;
 };
@@ -234,6 +249,7 @@ TEST_F(ShaderLanguageGLTest, everyProgramPassesTheReferenceCompiler)
         LinkedPrograms linked(gl());
         linkSurfaces();
         if (!isCore) linkPosePasses(); // which are the same in both
+        linkPrefilter();
         EXPECT_GT(linked.programs.size(), isCore ? 20u : 60u);
         for (const std::string& message : refused(linked.programs, !isCore))
             ADD_FAILURE() << message;

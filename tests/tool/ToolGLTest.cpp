@@ -6,7 +6,9 @@
 
 #include <nlohmann/json.hpp>
 #include <osgDB/ReadFile>
+#include <osgDB/WriteFile>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <tuple>
@@ -161,6 +163,27 @@ TEST_F(ToolGLTest, inspectListsLightsAndCameras)
     const std::string text = Process::run(OSGGPUANIM, {"inspect", filmed}).out;
     for (const char* words : {"1: sun (directional, GL_LIGHT1)\n", "2: film (perspective), plan (orthographic)\n"})
         EXPECT_NE(text.find(words), std::string::npos) << text;
+}
+
+TEST_F(ToolGLTest, rendersInTheSurroundingsOfAPicture)
+{
+    const auto pictureIn = [this](unsigned char grey, int width)
+    {
+        osg::ref_ptr<osg::Image> panorama = new osg::Image;
+        panorama->allocateImage(width, 4, 1, GL_RGB, GL_UNSIGNED_BYTE, 1);
+        std::fill_n(panorama->data(), panorama->getTotalSizeInBytes(), grey);
+        const std::string environment = folder.file("grey.png"), picture = folder.file("grey_flag.png");
+        EXPECT_TRUE(osgDB::writeImageFile(*panorama, environment));
+        const Process done =
+            Process::run(OSGGPUANIM, {"render", flag, "--environment", environment, "--size", "40x30", "-o", picture});
+        EXPECT_EQ(done.status, width == 8 ? 0 : 1) << done.err;
+        EXPECT_EQ(done.err.find("found 9x4") != std::string::npos, width == 9) << done.err;
+        return osgDB::readRefImageFile(picture);
+    };
+    const osg::ref_ptr<osg::Image> dark = pictureIn(90, 8), bright = pictureIn(180, 8);
+    ASSERT_TRUE(dark && bright);
+    EXPECT_GT(colour(*bright, 20, 15).r(), colour(*dark, 20, 15).r() + 0.2f);
+    pictureIn(90, 9);
 }
 
 TEST_F(ToolGLTest, rendersNumberedPicturesThatMove)

@@ -91,6 +91,7 @@ TEST_F(ToolTest, wrongUsageEndsWithStatus2)
         {"render", "FLAG", "-o", "flag.png", "--frames", "0"},
         {"render", "FLAG", "-o", "flag.png", "--frames", "2", "--fps", "0"},
         {"render", "FLAG", "-o", "flag.png", "--fps", "24"},
+        {"render", "FLAG", "-o", "flag.png", "--environment", "FLAG", "--look", "sun"},
     };
     for (const Arguments& line : lines)
     {
@@ -135,6 +136,8 @@ TEST_F(ToolTest, aFaultyFileEndsWithStatus1AndOneLine)
         {{"pose", "FLAG", "--clip", "Fly", "--time", "0"}, flag, "Fly"},
         {{"render", scene, "-o", folder.file("x.png")}, scene, "the file is neither .gltf nor .glb"},
         {{"render", "FLAG", "--clip", "Fly", "-o", folder.file("x.png")}, flag, "Fly"},
+        {{"render", "FLAG", "--environment", missing, "-o", folder.file("x.png")}, missing, "no such file"},
+        {{"render", "FLAG", "--environment", notes, "-o", folder.file("x.png")}, notes, "not a picture"},
         {{"pose", "FLAG", "--like", missing}, missing, "cannot be read"},
         {{"pose", "FLAG", "--like", folder.file("")}, folder.file(""), ""},
         {{"pose", "FLAG", "--like", cut}, cut, ""},

@@ -1,9 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/Environment.h>
 
+#include <osgGpuAnimation/nodes/shading/PrefilteredMap.h>
+
+#include <layout.glsl>
+
 #include <osg/Matrix>
-#include <osg/Uniform>
 #include <osgUtil/CullVisitor>
+
+#ifndef GL_TEXTURE_CUBE_MAP_SEAMLESS
+#define GL_TEXTURE_CUBE_MAP_SEAMLESS 0x884F
+#endif
 
 namespace osgGpuAnimation
 {
@@ -26,35 +33,84 @@ osg::Matrix3 environmentFromEye(const osg::Matrix& nodeToEye, float rotation)
     return result;
 }
 
+osg::ref_ptr<osg::Uniform> harmonicsOf(const RadianceCube& radiance)
+{
+    const std::array<osg::Vec3f, 9> harmonics = radiance.harmonics();
+    osg::ref_ptr<osg::Uniform> uniform = new osg::Uniform(osg::Uniform::FLOAT_VEC3, "environmentHarmonics", 9);
+    for (unsigned int i = 0; i < harmonics.size(); ++i)
+        uniform->setElement(i, harmonics[i]);
+    return uniform;
+}
+
 } // namespace
 
 Environment::Environment()
 {
-    getOrCreateStateSet()->setDefine("ENVIRONMENT", "1");
     setIntensity(1.0f);
 }
 
 Environment::Environment(const Environment& other, const osg::CopyOp& copyop)
     : osg::Group(other, copyop), _intensity(other._intensity), _rotation(other._rotation),
-      _toneMapping(other._toneMapping)
+      _toneMapping(other._toneMapping), _panorama(other._panorama), _faces(other._faces), _map(other._map),
+      _harmonics(other._harmonics), _intensities(other._intensities)
 {
-    if (other.getStateSet() == getStateSet()) setStateSet(new osg::StateSet(*other.getStateSet(), copyop));
-    setIntensity(_intensity);
+}
+
+void Environment::setStudio()
+{
+    _panorama = nullptr;
+    _faces = nullptr;
+    _map = nullptr;
+    _harmonics = nullptr;
+}
+
+Result<bool> Environment::setPanorama(osg::Image* panorama)
+{
+    if (!panorama) return Error{"a panorama: expected a picture, found null"};
+    const Result<osg::ref_ptr<const RadianceCube>> radiance = RadianceCube::fromPanorama(*panorama);
+    if (!radiance) return radiance.error();
+    setStudio();
+    _panorama = panorama;
+    _map = new PrefilteredMap(*radiance.value());
+    _harmonics = harmonicsOf(*radiance.value());
+    return true;
+}
+
+Result<bool> Environment::setFaces(osg::TextureCubeMap* faces)
+{
+    if (!faces) return Error{"the faces of surroundings: expected a cube map, found null"};
+    const Result<osg::ref_ptr<const RadianceCube>> radiance = RadianceCube::fromFaces(*faces);
+    if (!radiance) return radiance.error();
+    setStudio();
+    _faces = faces;
+    _map = new PrefilteredMap(*radiance.value());
+    _harmonics = harmonicsOf(*radiance.value());
+    return true;
 }
 
 void Environment::setIntensity(float intensity)
 {
     _intensity = intensity;
-    getOrCreateStateSet()->addUniform(new osg::Uniform("environmentIntensity", intensity));
+    _intensities = new osg::Uniform("environmentIntensity", intensity);
 }
 
-void Environment::setToneMapping(bool isOn)
+/// All state of the surroundings. It is not in the node's own StateSet, which belongs to the user and is stored.
+osg::ref_ptr<osg::StateSet> Environment::makeLight(const osg::Matrix& nodeToEye) const
 {
-    _toneMapping = isOn;
-    if (isOn)
-        getOrCreateStateSet()->setDefine("TONE_MAPPING", "1");
-    else
-        getOrCreateStateSet()->removeDefine("TONE_MAPPING");
+    osg::ref_ptr<osg::StateSet> light = new osg::StateSet;
+    osg::ref_ptr<osg::Uniform> fromEye = new osg::Uniform(osg::Uniform::FLOAT_MAT3, "environmentFromEye");
+    fromEye->set(environmentFromEye(nodeToEye, _rotation));
+    light->addUniform(fromEye);
+    light->addUniform(_intensities);
+    light->setDefine("ENVIRONMENT", _map ? "2" : "1");
+    if (_toneMapping) light->setDefine("TONE_MAPPING");
+    if (!_map) return light;
+    light->setTextureAttribute(ENVIRONMENT_UNIT, _map);
+    light->setMode(GL_TEXTURE_CUBE_MAP_SEAMLESS, osg::StateAttribute::ON);
+    light->addUniform(_harmonics);
+    light->addUniform(new osg::Uniform("environmentMap", ENVIRONMENT_UNIT));
+    light->addUniform(new osg::Uniform("environmentLevels", static_cast<float>(PrefilteredMap::levels - 1)));
+    return light;
 }
 
 void Environment::traverse(osg::NodeVisitor& visitor)
@@ -62,13 +118,28 @@ void Environment::traverse(osg::NodeVisitor& visitor)
     osgUtil::CullVisitor* const cull = visitor.asCullVisitor();
     if (!cull) return osg::Group::traverse(visitor);
     // A new one for each camera and frame: the draw threads still use that of the frame before.
-    osg::ref_ptr<osg::StateSet> turned = new osg::StateSet;
-    osg::ref_ptr<osg::Uniform> fromEye = new osg::Uniform(osg::Uniform::FLOAT_MAT3, "environmentFromEye");
-    fromEye->set(environmentFromEye(*cull->getModelViewMatrix(), _rotation));
-    turned->addUniform(fromEye);
-    cull->pushStateSet(turned);
+    const osg::ref_ptr<osg::StateSet> light = makeLight(*cull->getModelViewMatrix());
+    cull->pushStateSet(light);
     osg::Group::traverse(visitor);
     cull->popStateSet();
+}
+
+void Environment::setThreadSafeRefUnref(bool threadSafe)
+{
+    osg::Group::setThreadSafeRefUnref(threadSafe);
+    if (_map) _map->setThreadSafeRefUnref(threadSafe);
+}
+
+void Environment::resizeGLObjectBuffers(unsigned int maxSize)
+{
+    osg::Group::resizeGLObjectBuffers(maxSize);
+    if (_map) _map->resizeGLObjectBuffers(maxSize);
+}
+
+void Environment::releaseGLObjects(osg::State* state) const
+{
+    osg::Group::releaseGLObjects(state);
+    if (_map) _map->releaseGLObjects(state);
 }
 
 } // namespace osgGpuAnimation

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: MIT
+#include "nodes/StudioPanorama.h"
+
+#include <osgGpuAnimation/nodes/Environment.h>
+#include <osgGpuAnimation/nodes/shading/RadianceCube.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <string>
+
+#ifndef GL_HALF_FLOAT
+#define GL_HALF_FLOAT 0x140B
+#endif
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+/// An image whose pixels all have the same bytes.
+template <typename Component>
+osg::ref_ptr<osg::Image> even(GLenum format, GLenum type, const std::vector<Component>& pixel, int width = 8,
+                              int height = 4)
+{
+    osg::ref_ptr<osg::Image> image = new osg::Image;
+    image->allocateImage(width, height, 1, format, type);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+            std::memcpy(image->data(static_cast<unsigned int>(x), static_cast<unsigned int>(y)), pixel.data(),
+                        pixel.size() * sizeof(Component));
+    return image;
+}
+
+osg::ref_ptr<osg::TextureCubeMap> cubeOf(const std::vector<osg::ref_ptr<osg::Image>>& images)
+{
+    osg::ref_ptr<osg::TextureCubeMap> cube = new osg::TextureCubeMap;
+    for (unsigned int face = 0; face < images.size(); ++face)
+        cube->setImage(face, images[face]);
+    return cube;
+}
+
+struct FormatCase
+{
+    const char* name;
+    osg::ref_ptr<osg::Image> image;
+    osg::Vec3f radiance;
+};
+
+const std::vector<FormatCase>& formatCases()
+{
+    using Bytes = std::vector<unsigned char>;
+    using Shorts = std::vector<unsigned short>;
+    using Floats = std::vector<float>;
+    constexpr float infinite = std::numeric_limits<float>::infinity(), none = std::numeric_limits<float>::quiet_NaN();
+    // sRGB: 188 of 255 is 0.503, 128 of 255 is 0.216.
+    static const std::vector<FormatCase> cases{
+        {"floats", even(GL_RGB, GL_FLOAT, Floats{0.25f, 2.0f, 30.0f}), {0.25f, 2.0f, 30.0f}},
+        {"floats with alpha", even(GL_RGBA, GL_FLOAT, Floats{1.0f, 2.0f, 3.0f, 0.0f}), {1.0f, 2.0f, 3.0f}},
+        {"half floats", even(GL_RGB, GL_HALF_FLOAT, Shorts{0x3c00, 0x4400, 0x3400}), {1.0f, 4.0f, 0.25f}},
+        {"bytes", even(GL_RGB, GL_UNSIGNED_BYTE, Bytes{255, 188, 128}), {1.0f, 0.503f, 0.216f}},
+        {"bytes, blue first", even(GL_BGRA, GL_UNSIGNED_BYTE, Bytes{255, 188, 128, 9}), {0.216f, 0.503f, 1.0f}},
+        {"grey bytes", even(GL_LUMINANCE, GL_UNSIGNED_BYTE, Bytes{188}), {0.503f, 0.503f, 0.503f}},
+        {"16 bits", even(GL_RGB, GL_UNSIGNED_SHORT, Shorts{65535, 48316, 0}), {1.0f, 0.503f, 0.0f}},
+        {"not finite", even(GL_RGB, GL_FLOAT, Floats{none, infinite, 1.0f}), {0.0f, 0.0f, 1.0f}},
+        {"out of range", even(GL_RGB, GL_FLOAT, Floats{-3.0f, 1e30f, 1.0f}), {0.0f, 65504.0f, 1.0f}},
+        {"half floats, not finite", even(GL_RGB, GL_HALF_FLOAT, Shorts{0x7c00, 0x7e01, 0xbc00}), {0.0f, 0.0f, 0.0f}},
+    };
+    return cases;
+}
+
+TEST(EnvironmentTest, picturesAreReadAsLinearRadiance)
+{
+    for (const FormatCase& each : formatCases())
+    {
+        SCOPED_TRACE(each.name);
+        const auto cube = RadianceCube::fromPanorama(*each.image);
+        ASSERT_TRUE(cube) << cube.error().message;
+        const std::array<osg::Vec3f, 9> harmonics = cube.value()->harmonics();
+        for (int channel = 0; channel < 3; ++channel)
+        {
+            const float expected = each.radiance[channel];
+            EXPECT_NEAR(harmonics[0][channel], expected, 0.002f * std::max(expected, 1.0f)) << channel;
+            for (std::size_t i = 1; i < harmonics.size(); ++i)
+                EXPECT_NEAR(harmonics[i][channel], 0.0f, 0.002f * std::max(expected, 1.0f)) << i;
+        }
+    }
+}
+
+struct SlopeCase
+{
+    const char* name;
+    float (*radiance)(const osg::Vec3f& direction);
+    std::size_t harmonic;
+    float expected; ///< the irradiance over pi of cosines keeps 2/3, of the second degree 1/4
+};
+
+const SlopeCase slopeCases[] = {
+    {"brighter above", [](const osg::Vec3f& d) { return 2.0f + d.y(); }, 1, 2.0f / 3.0f},
+    {"brighter at +Z", [](const osg::Vec3f& d) { return 2.0f + d.z(); }, 2, 2.0f / 3.0f},
+    {"brighter at +X", [](const osg::Vec3f& d) { return 2.0f + d.x(); }, 3, 2.0f / 3.0f},
+    {"xy", [](const osg::Vec3f& d) { return 2.0f + d.x() * d.y(); }, 4, 0.25f},
+    {"yz", [](const osg::Vec3f& d) { return 2.0f + d.y() * d.z(); }, 5, 0.25f},
+    {"3zz - 1", [](const osg::Vec3f& d) { return 2.0f + 3.0f * d.z() * d.z() - 1.0f; }, 6, 0.25f},
+    {"xz", [](const osg::Vec3f& d) { return 2.0f + d.x() * d.z(); }, 7, 0.25f},
+    {"xx - yy", [](const osg::Vec3f& d) { return 2.0f + d.x() * d.x() - d.y() * d.y(); }, 8, 0.25f},
+};
+
+TEST(EnvironmentTest, irradianceHasTheHarmonicsOfThePictures)
+{
+    for (const SlopeCase& each : slopeCases)
+    {
+        SCOPED_TRACE(each.name);
+        const auto radiance = [&](const osg::Vec3f& d) { return osg::Vec3f(1, 1, 1) * each.radiance(d); };
+        const auto panorama = RadianceCube::fromPanorama(*makePanorama(256, radiance));
+        const auto faces = RadianceCube::fromFaces(*makeFaces(32, radiance));
+        ASSERT_TRUE(panorama && faces);
+        for (const auto& cube : {panorama.value(), faces.value()})
+        {
+            const std::array<osg::Vec3f, 9> harmonics = cube->harmonics();
+            EXPECT_NEAR(harmonics[0].x(), 2.0f, 0.005f);
+            for (std::size_t i = 1; i < harmonics.size(); ++i)
+                EXPECT_NEAR(harmonics[i].x(), i == each.harmonic ? each.expected : 0.0f, 0.005f) << i;
+        }
+    }
+}
+
+struct FaultCase
+{
+    const char* message;
+    osg::ref_ptr<osg::Image> panorama;
+};
+
+TEST(EnvironmentTest, faultyPanoramasAreRefusedWithAMessage)
+{
+    const std::vector<unsigned char> white{255, 255, 255};
+    const osg::ref_ptr<osg::Image> layers = new osg::Image;
+    layers->allocateImage(8, 4, 3, GL_RGB, GL_UNSIGNED_BYTE);
+    const FaultCase cases[] = {
+        {"a panorama: expected a picture, found null", nullptr},
+        {"a panorama: expected a picture, found no pixels", new osg::Image},
+        {"a panorama: expected twice as many pixels across as up, found 4x4",
+         even(GL_RGB, GL_UNSIGNED_BYTE, white, 4, 4)},
+        {"a panorama: expected a picture of one layer, found 3", layers},
+        {"a panorama: expected RGB or luminance of 8 or 16 bits, half floats or floats, found the pixel format 0x1902 "
+         "with the data type 0x1401",
+         even(GL_DEPTH_COMPONENT, GL_UNSIGNED_BYTE, std::vector<unsigned char>{1})},
+        {"a panorama: expected RGB or luminance of 8 or 16 bits, half floats or floats, found the pixel format 0x1907 "
+         "with the data type 0x1405",
+         even(GL_RGB, GL_UNSIGNED_INT, std::vector<unsigned int>{1, 1, 1})},
+    };
+    const osg::ref_ptr<Environment> environment = new Environment;
+    const osg::ref_ptr<osg::Image> kept = even(GL_RGB, GL_UNSIGNED_BYTE, white);
+    ASSERT_TRUE(environment->setPanorama(kept));
+    for (const FaultCase& each : cases)
+    {
+        const Result<bool> taken = environment->setPanorama(each.panorama);
+        ASSERT_FALSE(taken) << each.message;
+        EXPECT_EQ(taken.error().message, each.message);
+        EXPECT_EQ(environment->getPanorama(), kept);
+    }
+}
+
+TEST(EnvironmentTest, faultyFacesAreRefusedWithAMessage)
+{
+    const std::vector<unsigned char> white{255, 255, 255};
+    const osg::ref_ptr<osg::Image> fine = even(GL_RGB, GL_UNSIGNED_BYTE, white, 4, 4);
+    const osg::ref_ptr<osg::Image> wide = even(GL_RGB, GL_UNSIGNED_BYTE, white, 8, 4);
+    const osg::ref_ptr<osg::Image> large = even(GL_RGB, GL_UNSIGNED_BYTE, white, 8, 8);
+    const std::pair<const char*, osg::ref_ptr<osg::TextureCubeMap>> cases[] = {
+        {"the faces of surroundings: expected a cube map, found null", nullptr},
+        {"the face POSITIVE_X: expected a picture, found no pixels", new osg::TextureCubeMap},
+        {"the face NEGATIVE_Z: expected a picture, found no pixels", cubeOf({fine, fine, fine, fine, fine})},
+        {"the face POSITIVE_X: expected 8x8 pixels, found 8x4", cubeOf({wide, wide, wide, wide, wide, wide})},
+        {"the face NEGATIVE_Y: expected 4x4 pixels, found 8x8", cubeOf({fine, fine, fine, large, fine, fine})},
+    };
+    const osg::ref_ptr<Environment> environment = new Environment;
+    for (const auto& [message, faces] : cases)
+    {
+        const Result<bool> taken = environment->setFaces(faces);
+        ASSERT_FALSE(taken) << message;
+        EXPECT_EQ(taken.error().message, message);
+        EXPECT_EQ(environment->getFaces(), nullptr);
+    }
+}
+
+TEST(EnvironmentTest, copiesAndTheNextSourceReplaceTheFormer)
+{
+    const osg::ref_ptr<Environment> environment = new Environment;
+    const osg::ref_ptr<osg::Image> panorama = makePanorama(16, studioRadiance);
+    ASSERT_TRUE(environment->setPanorama(panorama));
+    const osg::ref_ptr<Environment> copy = new Environment(*environment, osg::CopyOp::DEEP_COPY_ALL);
+    EXPECT_EQ(copy->getPanorama(), panorama);
+    ASSERT_TRUE(environment->setFaces(makeFaces(4, studioRadiance)));
+    EXPECT_EQ(environment->getPanorama(), nullptr);
+    EXPECT_NE(environment->getFaces(), nullptr);
+    environment->setStudio();
+    EXPECT_EQ(environment->getFaces(), nullptr);
+    EXPECT_EQ(copy->getPanorama(), panorama);
+}
+
+} // namespace
+
+} // namespace osgGpuAnimation

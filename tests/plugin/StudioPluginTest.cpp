@@ -80,7 +80,7 @@ TEST_F(StudioPluginTest, faultsHaveAMessage)
     for (const FaultCase& fault : faults)
     {
         SCOPED_TRACE(fault.file);
-        const Read result = read(fault.file);
+        Read result = read(fault.file);
         EXPECT_EQ(result.status(), Read::ERROR_IN_READING_FILE);
         EXPECT_NE(result.message().find(fault.message), std::string::npos) << result.message();
     }
@@ -91,7 +91,7 @@ TEST_F(StudioPluginTest, showsCharactersAndCrowds)
     for (const char* name : {"arm.gltf.studio", "arm.gltf.Studio", "arm.gltf.3x3.crowd.studio"})
     {
         SCOPED_TRACE(name);
-        const Read result = read(name);
+        Read result = read(name);
         const auto* studio = dynamic_cast<const Studio*>(result.getNode());
         ASSERT_TRUE(studio) << result.message();
         EXPECT_TRUE(studio->getToneMapping());
@@ -105,7 +105,7 @@ TEST_F(StudioPluginTest, showsCharactersAndCrowds)
 
 TEST_F(StudioPluginTest, aModelThatKeepsYUpStandsOnAGroundOfItsOwnAxes)
 {
-    const Read result = read("arm.gltf.studio", "noRotation");
+    Read result = read("arm.gltf.studio", "noRotation");
     const auto* back = dynamic_cast<const osg::MatrixTransform*>(result.getNode());
     ASSERT_TRUE(back) << result.message();
     ASSERT_TRUE(dynamic_cast<const Studio*>(back->getChild(0)));
@@ -117,7 +117,7 @@ TEST_F(StudioPluginTest, aFileWithoutMeshesIsReadWithAWarning)
 {
     const osg::ref_ptr<NotifyLog> log = new NotifyLog(osg::WARN);
     osg::setNotifyHandler(log);
-    const Read result = read("empty.gltf.studio");
+    Read result = read("empty.gltf.studio");
     osg::setNotifyHandler(new osg::StandardNotifyHandler);
     EXPECT_TRUE(dynamic_cast<const Studio*>(result.getNode())) << result.message();
     EXPECT_NE(log->text.find("nothing to see"), std::string::npos) << log->text;
@@ -125,7 +125,7 @@ TEST_F(StudioPluginTest, aFileWithoutMeshesIsReadWithAWarning)
 
 TEST_F(StudioPluginTest, isKeptInOsgsFormats)
 {
-    const Read result = read("arm.gltf.studio");
+    Read result = read("arm.gltf.studio");
     ASSERT_TRUE(result.getNode()) << result.message();
     for (const char* format : {"kept.osgb", "kept.osgt"})
     {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/Import.h"
 
+#include "gltf/data/MaterialVariants.h"
 #include "gltf/document/LoadDocument.h"
 #include "gltf/file/Report.h"
 #include "gltf/scene/Clips.h"
@@ -9,6 +10,7 @@
 #include "gltf/scene/TransformBound.h"
 
 #include <osgGpuAnimation/nodes/CharacterKeys.h>
+#include <osgGpuAnimation/nodes/mesh/MaterialVariants.h>
 
 #include <osgDB/FileNameUtils>
 
@@ -22,12 +24,31 @@ namespace
 
 constexpr std::size_t mostPaletteEntries = 65536; // a vertex names entries by 16 bits
 
+std::string listed(const std::vector<std::string>& names)
+{
+    std::string text;
+    for (const std::string& name : names)
+        text += (text.empty() ? "" : ", ") + quoted(name);
+    return text.empty() ? "none" : text;
+}
+
+/// The index of the variant to show first: by name, else by its number; -1: none.
+Result<int> chooseVariant(const std::vector<std::string>& names, const ImportOptions& options)
+{
+    if (!options.variant) return -1;
+    const auto named = std::find(names.begin(), names.end(), *options.variant);
+    const int index = named != names.end() ? static_cast<int>(named - names.begin())
+                                           : parsedNumber<int>(*options.variant).value_or(-1);
+    if (index >= 0 && static_cast<std::size_t>(index) < names.size()) return index;
+    return Error{"variant " + quoted(*options.variant) + " was asked for; the file's variants are: " + listed(names)};
+}
+
 std::string clipNames(const ImportedModel& imported)
 {
-    std::string names;
+    std::vector<std::string> names;
     for (std::size_t clip = 0; imported.set && clip < imported.set->clips().size(); ++clip)
-        names += (clip == 0 ? "" : ", ") + quoted(imported.set->clips()[clip].name());
-    return names.empty() ? "none" : names;
+        names.push_back(imported.set->clips()[clip].name());
+    return listed(names);
 }
 
 /// The index in the set of the clip to play first: by name, else by the file's animation number.
@@ -58,7 +79,8 @@ public:
 
 private:
     Result<bool> makeSet(const NodeTree& tree, const Joints& joints, const Morphs& morphs);
-    void makeGraph(const NodeTree& tree, const Joints& joints, const Morphs& morphs);
+    void makeGraph(const NodeTree& tree, const Joints& joints, const Morphs& morphs, int variant);
+    void nameVariants(int variant);
     std::vector<bool> nodesThatCarry(const Joints& joints) const;
     Result<bool> chooseStart();
     Result<bool> finishClips();
@@ -95,7 +117,7 @@ Result<bool> Importer::makeSet(const NodeTree& tree, const Joints& joints, const
     return true;
 }
 
-void Importer::makeGraph(const NodeTree& tree, const Joints& joints, const Morphs& morphs)
+void Importer::makeGraph(const NodeTree& tree, const Joints& joints, const Morphs& morphs, int variant)
 {
     // glTF is +Y up, OSG is +Z up. No other code of the import converts between them. The numbers are exact: the sine
     // and cosine of a rotation by pi / 2 are not.
@@ -115,7 +137,7 @@ void Importer::makeGraph(const NodeTree& tree, const Joints& joints, const Morph
     _result.root->setName(sceneName);
     Materials materials(_model, _options.fixedLighting, _textures);
     Meshes meshes(_model, !_options.fixedLighting, _budget, _report);
-    Drawables drawables(_model, _result.set, meshes, materials, _budget, _report);
+    Drawables drawables(_model, _result.set, meshes, materials, variant, _budget, _report);
     if (!_options.noLights) _result.lights = findLights(_model, tree);
     if (!_options.noCameras) _result.cameras = makeCameras(_model, tree);
     const std::vector<bool> carries = nodesThatCarry(joints);
@@ -124,9 +146,20 @@ void Importer::makeGraph(const NodeTree& tree, const Joints& joints, const Morph
                       buildSceneGraph(parts, *still, _result.character, _result.primitives));
     if (_result.character && still->getNumChildren() > 0) _result.root->addChild(still);
     addCameras(_result.cameras, places);
+    nameVariants(variant);
     if (_result.lights.empty()) return;
     const osg::Matrixd toFile = osg::Matrixd::inverse(_result.fileToNode);
     addLights(_model, tree, _result.root->getBound().center() * toFile, places, *_result.root, _result.lights, _report);
+}
+
+/// The meshes show the variant already.
+void Importer::nameVariants(int variant)
+{
+    if (!_result.character || _result.variantNames.empty()) return;
+    setVariantNames(*_result.character, _result.variantNames);
+    if (variant >= 0)
+        static_cast<void>(
+            _result.character->setMaterialVariant(_result.variantNames[static_cast<std::size_t>(variant)]));
 }
 
 /// By node: it stands still and has a light or a camera.
@@ -188,9 +221,12 @@ Result<bool> Importer::run()
     const Morphs morphs = readMorphs(_model);
     const Result<bool> made = makeSet(tree.value(), joints.value(), morphs);
     if (!made) return made.error();
+    _result.variantNames = variantNames(_model);
+    const Result<int> variant = chooseVariant(_result.variantNames, _options);
+    if (!variant) return variant.error();
     const Result<int> clip = chooseClip(_result, _options);
     if (!clip) return clip.error();
-    makeGraph(tree.value(), joints.value(), morphs);
+    makeGraph(tree.value(), joints.value(), morphs, variant.value());
     const Result<bool> started = chooseStart();
     if (!started) return started.error();
     const Result<bool> finished = finishClips();

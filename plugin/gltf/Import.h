@@ -40,13 +40,14 @@ struct ImportedModel
     std::optional<CompactedCharacter> compacted; ///< only if the options ask for compact clips
     std::vector<int> animationOfClip;            ///< the file's animation number of each clip of the set
     std::vector<std::string> materialNames;
+    std::vector<std::string> variantNames; ///< of KHR_materials_variants, each different
     std::vector<std::string> extensionsUsed;
     std::string generator; ///< asset.generator
     Messages messages;
 };
 
 /// Imports a file's content; see loadDocument() for bytes and fileName.
-/// Errors: those of loadDocument(); the options name a clip, scene or camera that the file does not have.
+/// Errors: those of loadDocument(); the options name a clip, scene, variant or camera that the file does not have.
 Result<ImportedModel> importModel(const std::string& bytes, const std::string& fileName, const ImportOptions& options);
 
 } // namespace osgGpuAnimation::gltf

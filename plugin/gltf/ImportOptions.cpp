@@ -104,6 +104,9 @@ const std::vector<Option>& allOptions()
          "pbr or fixed",
          [](const std::string& value, ImportOptions& options)
          { return (options.fixedLighting = value == "fixed") || value == "pbr"; }},
+        {{"variant=NAME|INDEX", "the variant of the file's materials, by name or by number; default: none"},
+         "a name or a number",
+         [](const std::string& value, ImportOptions& options) { return !options.variant.emplace(value).empty(); }},
         {{"camera=NAME|INDEX", "the camera that a viewer looks through at first; default: the viewer's own view"},
          "a name or a number",
          [](const std::string& value, ImportOptions& options) { return !options.camera.emplace(value).empty(); }},

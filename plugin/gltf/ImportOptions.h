@@ -29,6 +29,8 @@ struct ImportOptions
     bool noCameras = false;        ///< leave the file's cameras out
     /// The camera of a viewer's first view: name, or index where none has that name; default: the viewer's own view
     std::optional<std::string> camera;
+    /// The material variant shown at first: name, or index where none has that name; default: none
+    std::optional<std::string> variant;
     bool noRotation = false;        ///< keep glTF's +Y up; default: turn to OSG's +Z up at the root
     bool fixedLighting = false;     ///< the fixed pipeline's look: base colours in display space, no other maps
     bool allowOutsideFiles = false; ///< URIs may name files outside the model's folder

@@ -29,6 +29,7 @@ enum Extra : std::int32_t
     hasPixelError = 2, ///< the pixel error follows
     isDrawnAlone = 4,
     hasFileToNode = 8, ///< the transform follows
+    hasVariant = 16,   ///< the name of the material variant follows
 };
 
 std::int32_t extrasOf(const AnimatedCharacter& character)
@@ -37,20 +38,24 @@ std::int32_t extrasOf(const AnimatedCharacter& character)
     if (character.getPixelError() > 0.0f) extras |= hasPixelError;
     if (!character.isDrawnTogether()) extras |= isDrawnAlone;
     if (!character.getFileToNode().isIdentity()) extras |= hasFileToNode;
+    if (!character.getMaterialVariant().empty()) extras |= hasVariant;
     return extras;
 }
 
 void transferExtras(ValueStream& stream, AnimatedCharacter& character)
 {
     std::int32_t extras = extrasOf(character);
+    std::string variant = character.getMaterialVariant();
     double pixelError = static_cast<double>(character.getPixelError());
     stream.limited("the settings of a character", extras, 0,
-                   hasClipBounds | hasPixelError | isDrawnAlone | hasFileToNode);
+                   hasClipBounds | hasPixelError | isDrawnAlone | hasFileToNode | hasVariant);
     if (extras & hasPixelError) stream.value(pixelError);
     if (extras & hasFileToNode) transferFileToNode(stream, character);
+    if (extras & hasVariant) stream.value(variant);
     stream.endLine();
     if (!stream.hasRead()) return;
     character.setDrawnTogether(!(extras & isDrawnAlone));
+    stream.require("a character: ", character.setMaterialVariant(variant));
     if (extras & hasClipBounds) character.computeClipBounds();
     stream.require("a character: ", character.setPixelError(static_cast<float>(pixelError)));
 }

@@ -7,6 +7,7 @@
 #include <osgGpuAnimation/nodes/frame/CullScopes.h>
 #include <osgGpuAnimation/nodes/frame/PoseStage.h>
 #include <osgGpuAnimation/nodes/lod/LodSelection.h>
+#include <osgGpuAnimation/nodes/mesh/MaterialVariants.h>
 #include <osgGpuAnimation/nodes/mesh/PaletteEntryBounds.h>
 #include <osgGpuAnimation/nodes/OsgMatrix.h>
 #include <osgGpuAnimation/nodes/picking/PosedMesh.h>
@@ -14,6 +15,8 @@
 #include <osg/NodeVisitor>
 #include <osg/observer_ptr>
 #include <osgUtil/CullVisitor>
+
+#include <algorithm>
 
 namespace osgGpuAnimation
 {
@@ -32,7 +35,8 @@ EntryBoxes entryBoxesOf(osg::Node& node, PaletteEntryBounds bounds)
 AnimatedCharacter::AnimatedCharacter() : AnimatedCharacter(nullptr) {}
 
 AnimatedCharacter::AnimatedCharacter(std::shared_ptr<const AnimationSet> set)
-    : _controller(std::make_unique<AnimationController>(std::move(set)))
+    : _controller(std::make_unique<AnimationController>(std::move(set))),
+      _variantMeshes(std::make_shared<VariantMeshes>())
 {
     static const std::shared_ptr<const Axes> identity = std::make_shared<const Axes>();
     _axes = identity;
@@ -45,7 +49,8 @@ AnimatedCharacter::AnimatedCharacter(std::shared_ptr<const AnimationSet> set)
 AnimatedCharacter::AnimatedCharacter(const AnimatedCharacter& other, const osg::CopyOp& copyop)
     : osg::MatrixTransform(other, copyop), _controller(std::make_unique<AnimationController>(*other._controller)),
       _axes(other._axes), _clipBounds(other._clipBounds), _mixBounds(other._mixBounds), _updateTime(other._updateTime),
-      _isDrawnTogether(other._isDrawnTogether), _pixelError(other._pixelError)
+      _isDrawnTogether(other._isDrawnTogether), _pixelError(other._pixelError),
+      _materialVariant(other._materialVariant), _variantMeshes(other._variantMeshes)
 {
     // osg::Node copies its other callbacks, but not the event callbacks.
     setEventCallback(copyop(other.getEventCallback()));
@@ -73,6 +78,22 @@ Result<bool> AnimatedCharacter::setPixelError(float pixels)
     const Result<bool> prepared = LodRange::prepare(pixels, *this, getAnimationSet());
     if (prepared) _pixelError = pixels;
     return prepared;
+}
+
+std::vector<std::string> AnimatedCharacter::getMaterialVariants() const
+{
+    return variantNamesOf(*this);
+}
+
+Result<bool> AnimatedCharacter::setMaterialVariant(const std::string& name)
+{
+    const std::vector<std::string> names = getMaterialVariants();
+    if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end())
+        return Error{"there is no material variant \"" + name + "\"; the variants are " +
+                     quotedNames(names, [](const std::string& known) { return known; })};
+    _variantMeshes->show(*this, name);
+    _materialVariant = name;
+    return true;
 }
 
 Result<bool> AnimatedCharacter::setFileToNode(const osg::Matrixd& fileToNode)

@@ -12,6 +12,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace osgGpuAnimation
@@ -19,6 +20,7 @@ namespace osgGpuAnimation
 
 class MixBounds;
 class PosedMeshes;
+class VariantMeshes;
 struct PlayedClip;
 
 /// One animated character: owns a controller, shares an AnimationSet, and has its SkinnedGeometry drawables as
@@ -110,6 +112,16 @@ public:
     Result<bool> setPixelError(float pixels);
     float getPixelError() const { return _pixelError; } ///< pixels, at least 0
 
+    /// Shows the meshes in a variant of the file's materials (glTF: KHR_materials_variants), whose maps the import has
+    /// loaded. Clones show variants of their own; those that show the same one are drawn together. A direct child that
+    /// the variant changes is replaced by another drawable over the same arrays. Call it during the update traversal or
+    /// between frames. name: one of getMaterialVariants(); empty: the default materials. Error: another name; the
+    /// message lists the names.
+    Result<bool> setMaterialVariant(const std::string& name);
+    /// The name of the present variant; empty: the default materials.
+    const std::string& getMaterialVariant() const { return _materialVariant; }
+    std::vector<std::string> getMaterialVariants() const; ///< the names in the file's order
+
     /// A mesh below this node in the present pose, in the character's own space. The CPU twin computes it, and the
     /// result is kept until the pose changes. Intersectors test it in place of the mesh. withNormals: with normals and
     /// colours, if the mesh has them.
@@ -155,6 +167,8 @@ private:
     mutable std::once_flag _posedMeshesMade;
     bool _isDrawnTogether = true;
     float _pixelError = 0.0f;
+    std::string _materialVariant;
+    std::shared_ptr<VariantMeshes> _variantMeshes; ///< never null, shared with clones
 };
 
 /// The first AnimatedCharacter at or below the node, depth first; null if none exists.

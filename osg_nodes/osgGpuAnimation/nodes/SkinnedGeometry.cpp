@@ -6,6 +6,7 @@
 #include <osgGpuAnimation/nodes/frame/InstancedDraw.h>
 #include <osgGpuAnimation/nodes/frame/PaletteBinding.h>
 #include <osgGpuAnimation/nodes/lod/LodLevels.h>
+#include <osgGpuAnimation/nodes/mesh/MaterialVariants.h>
 #include <osgGpuAnimation/nodes/mesh/MeshVisits.h>
 #include <osgGpuAnimation/nodes/mesh/MorphDeltas.h>
 
@@ -397,6 +398,7 @@ void SkinnedGeometry::releaseGLObjects(osg::State* state) const
     osg::Geometry::releaseGLObjects(state);
     if (_morphDeltas->texture) _morphDeltas->texture->releaseGLObjects(state);
     if (const auto levels = _lod->known(*this)) levels->releaseGLObjects(state);
+    releaseVariantStates(*this, state);
 }
 
 void SkinnedGeometry::resizeGLObjectBuffers(unsigned int maxSize)
@@ -404,6 +406,7 @@ void SkinnedGeometry::resizeGLObjectBuffers(unsigned int maxSize)
     osg::Geometry::resizeGLObjectBuffers(maxSize);
     if (_morphDeltas->texture) _morphDeltas->texture->resizeGLObjectBuffers(maxSize);
     if (const auto levels = _lod->known(*this)) levels->resizeGLObjectBuffers(maxSize);
+    resizeVariantStates(*this, maxSize);
 }
 
 } // namespace osgGpuAnimation

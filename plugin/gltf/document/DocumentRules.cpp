@@ -2,6 +2,7 @@
 #include "gltf/document/DocumentRules.h"
 
 #include "gltf/data/AttributeSemantic.h"
+#include "gltf/document/VariantRules.h"
 #include "gltf/document/ViewRules.h"
 #include "gltf/file/Report.h"
 
@@ -266,7 +267,8 @@ const std::string_view supportedExtensions[] = {"KHR_mesh_quantization",      "K
                                                 "KHR_materials_clearcoat",    "KHR_materials_sheen",
                                                 "KHR_materials_transmission", "KHR_materials_pbrSpecularGlossiness",
                                                 "EXT_meshopt_compression",    "KHR_draco_mesh_compression",
-                                                "EXT_mesh_gpu_instancing",    "KHR_lights_punctual"};
+                                                "EXT_mesh_gpu_instancing",    "KHR_lights_punctual",
+                                                "KHR_materials_variants"};
 
 /// Parts of the names of extensions that change looks alone, or nothing that is drawn: a file that requires them is
 /// shown without them.
@@ -373,6 +375,7 @@ std::optional<Error> checkDocumentRules(const JsonValue& document, Report& repor
     if (error) return error;
     checkNodeRules(document["nodes"], report);
     checkViewRules(document, report);
+    checkVariantRules(document, report);
     noteScenes(document, report);
     return std::nullopt;
 }

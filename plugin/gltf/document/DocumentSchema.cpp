@@ -283,7 +283,9 @@ constexpr SchemaRule material[] = {object("pbrMetallicRoughness", metallicRoughn
 
 constexpr SchemaRule draco[] = {index("bufferView", "bufferViews").required(),
                                 rule("attributes", Kind::Any).required()};
-constexpr SchemaRule primitiveExtensions[] = {object("KHR_draco_mesh_compression", draco)};
+// checkVariantRules() checks variants, so that a faulty mapping costs only itself.
+constexpr SchemaRule variants = rule("KHR_materials_variants", Kind::Any);
+constexpr SchemaRule primitiveExtensions[] = {object("KHR_draco_mesh_compression", draco), variants};
 
 constexpr SchemaRule primitive[] = {indexMap("attributes", "accessors").required(),
                                     index("indices", "accessors"),
@@ -297,8 +299,8 @@ constexpr SchemaRule mesh[] = {object("primitives", primitive).list().required()
 
 constexpr SchemaRule instancing[] = {indexMap("attributes", "accessors").required()};
 // checkViewRules() checks the lights, so that a faulty one costs only itself.
-constexpr SchemaRule punctual[] = {rule("KHR_lights_punctual", Kind::Any)};
-constexpr SchemaRule nodeExtensions[] = {object("EXT_mesh_gpu_instancing", instancing), punctual[0]};
+constexpr SchemaRule punctual = rule("KHR_lights_punctual", Kind::Any);
+constexpr SchemaRule nodeExtensions[] = {object("EXT_mesh_gpu_instancing", instancing), punctual};
 
 constexpr SchemaRule node[] = {index("camera", "cameras"),
                                index("children", "nodes").list(),
@@ -330,6 +332,8 @@ constexpr SchemaRule camera[] = {choice("type", "perspective orthographic").orLe
 constexpr SchemaRule asset[] = {text("version").required(), text("minVersion"), text("generator").orLeaveOut(),
                                 text("copyright").orLeaveOut()};
 
+constexpr SchemaRule documentExtensions[] = {punctual, variants};
+
 constexpr SchemaRule documentMembers[] = {object("asset", asset).required(),
                                           text("extensionsUsed").list(),
                                           text("extensionsRequired").list(),
@@ -338,7 +342,7 @@ constexpr SchemaRule documentMembers[] = {object("asset", asset).required(),
                                           object("buffers", buffer).list(),
                                           object("bufferViews", bufferView).list(),
                                           object("cameras", camera).list(),
-                                          object("extensions", punctual).orLeaveOut(),
+                                          object("extensions", documentExtensions).orLeaveOut(),
                                           object("images", image).list(),
                                           object("materials", material).list(),
                                           object("meshes", mesh).list(),

@@ -155,6 +155,12 @@ void read(const JsonValue& json, tinygltf::Animation& animation)
     read(json["extras"], animation.extras);
 }
 
+void readVariants(const JsonValue& extensions, tinygltf::ExtensionMap& outExtensions)
+{
+    const char* const name = "KHR_materials_variants";
+    if (const JsonValue variants = extensions[name]) read(variants, outExtensions[name]);
+}
+
 void read(const JsonValue& json, tinygltf::Primitive& primitive)
 {
     primitive.mode = TINYGLTF_MODE_TRIANGLES;
@@ -163,6 +169,7 @@ void read(const JsonValue& json, tinygltf::Primitive& primitive)
     read(json["material"], primitive.material);
     read(json["mode"], primitive.mode);
     read(json["targets"], primitive.targets);
+    readVariants(json["extensions"], primitive.extensions);
 }
 
 void read(const JsonValue& json, tinygltf::Mesh& mesh)
@@ -302,6 +309,7 @@ tinygltf::Model readModel(const JsonValue& document)
     read(document["samplers"], model.samplers);
     read(document["cameras"], model.cameras);
     read(document["extensions"]["KHR_lights_punctual"]["lights"], model.lights);
+    readVariants(document["extensions"], model.extensions);
     read(document["extensionsUsed"], model.extensionsUsed);
     read(document["extensionsRequired"], model.extensionsRequired);
     read(document["asset"]["version"], model.asset.version);

@@ -57,9 +57,26 @@ std::size_t bytesOfExtras(const JsonValue& element)
     return extras ? (extras.valuesBelow() + 1) * sizeof(tinygltf::Value) : 0;
 }
 
-std::size_t bytesOf(const JsonValue& json, const List& list)
+/// So do variants.
+std::size_t bytesOfVariants(const JsonValue& element)
+{
+    const JsonValue variants = element["extensions"]["KHR_materials_variants"];
+    return variants ? (variants.valuesBelow() + 1) * sizeof(tinygltf::Value) : 0;
+}
+
+std::size_t bytesOfVariants(const JsonValue& meshes, const List& list)
 {
     std::size_t bytes = 0;
+    if (list.name != "meshes") return bytes;
+    for (const JsonValue& mesh : meshes)
+        for (const JsonValue& primitive : mesh["primitives"])
+            bytes += bytesOfVariants(primitive);
+    return bytes;
+}
+
+std::size_t bytesOf(const JsonValue& json, const List& list)
+{
+    std::size_t bytes = bytesOfVariants(json, list);
     for (const JsonValue& element : json)
     {
         bytes += list.bytesAnElement + bytesOfExtras(element);
@@ -74,7 +91,7 @@ std::size_t bytesOf(const JsonValue& json, const List& list)
 
 std::optional<Error> checkDocumentBytes(JsonTree& json, std::size_t limit)
 {
-    std::size_t bytes = json.size() * bytesOfJsonValue;
+    std::size_t bytes = json.size() * bytesOfJsonValue + bytesOfVariants(json.root());
     for (const List& list : lists)
     {
         const JsonValue elements = elementsOf(json.root(), list);

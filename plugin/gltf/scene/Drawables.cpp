@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/scene/Drawables.h"
 
+#include "gltf/data/MaterialVariants.h"
 #include "gltf/scene/Influences.h"
 
 #include <osgGpuAnimation/animation/bounds/JointRange.h>
+#include <osgGpuAnimation/nodes/mesh/MaterialVariants.h>
 
 #include <layout.glsl>
 
@@ -17,6 +19,7 @@ namespace
 {
 
 constexpr std::size_t bytesADrawable = 1024;
+constexpr std::size_t bytesAVariant = 4096; // an osg::StateSet with a material's attributes and uniforms
 constexpr std::size_t bytesAnInfluencedVertex =
     SkinnedGeometry::maxInfluenceSets * (sizeof(osg::Vec4us) + sizeof(osg::Vec4));
 // A limit for each target. Drawables share the packed targets, but each computes its bounds vertex by vertex.
@@ -32,8 +35,9 @@ osg::ref_ptr<osg::Vec4Array> overall(const osg::Vec4& color)
 } // namespace
 
 Drawables::Drawables(const tinygltf::Model& model, std::shared_ptr<const AnimationSet> set, Meshes& meshes,
-                     Materials& materials, MemoryBudget& budget, Report& report)
-    : _model(model), _set(std::move(set)), _meshes(meshes), _materials(materials), _budget(budget), _report(report)
+                     Materials& materials, int variant, MemoryBudget& budget, Report& report)
+    : _model(model), _set(std::move(set)), _meshes(meshes), _materials(materials), _variants(variantNames(model)),
+      _variant(variant), _budget(budget), _report(report)
 {
     if (_set) _entries = boundsOfEntries(*_set);
     std::map<std::vector<int>, int> skins;
@@ -134,26 +138,51 @@ osg::ref_ptr<osg::Geometry> Drawables::make(const DrawablePlace& place)
     if (mesh->texCoords) geometry->setTexCoordArray(0, mesh->texCoords, osg::Array::BIND_PER_VERTEX);
     if (mesh->moreCoordinates) geometry->setVertexAttribArray(POSE_COORDINATES_LOCATION, mesh->moreCoordinates);
     if (mesh->tangents) geometry->setVertexAttribArray(POSE_TANGENT_LOCATION, mesh->tangents);
-    setColors(*geometry, *mesh, source.material, palette);
+    const PrimitiveMaterials materials = materialsOf(_model, source, _materials.usesAllMaps());
+    const int material = materials.materialIn(_variant);
+    setColors(*geometry, *mesh, material, palette);
     geometry->addPrimitiveSet(mesh->primitiveSet);
     if (palette) setInfluences(*skinned, *mesh, place);
     if (place.morph >= 0) skinned->setMorphTargets(*_set, static_cast<std::size_t>(place.morph), mesh->targets);
 
     MaterialUse use;
-    use.material = source.material;
     use.palette = palette;
     use.mirrored = place.mirrored;
     use.lit = mesh->normals.valid();
     use.flat = palette && mesh->isFlat;
-    use.coordinates = mesh->coordinates;
-    use.tangents = mesh->tangents.valid();
     use.colored = mesh->colors.valid();
     use.influences = palette ? skinned->getInfluenceCount() : 0;
     use.morphed = palette && place.morph >= 0;
-    if (_materials.wantedCoordinates(use.material) & ~use.coordinates)
+    if (_materials.wantedCoordinates(material) & ~mesh->coordinates)
         _report.warn(mesh->label + ": lacks the texture coordinates that its material needs");
-    geometry->setStateSet(_materials.stateSet(use));
+    geometry->setStateSet(stateSet(*mesh, use, material));
+    for (const int variant : materials.withoutCoordinates)
+        _report.warn(mesh->label + ": its material of variant " + quoted(_variants[static_cast<std::size_t>(variant)]) +
+                     " reads other texture coordinates than its own material; it is drawn with its own");
+    if (palette && !materials.ofVariant.empty()) setVariants(*skinned, *mesh, materials, use);
     return geometry;
+}
+
+/// use: all but what depends on the material.
+osg::StateSet* Drawables::stateSet(const MeshPrimitive& mesh, MaterialUse use, int material)
+{
+    use.material = material;
+    use.coordinates = mesh.coordinates & _materials.wantedCoordinates(material);
+    use.tangents = mesh.tangents && _materials.hasNormalMap(material);
+    return _materials.stateSet(use);
+}
+
+void Drawables::setVariants(SkinnedGeometry& geometry, const MeshPrimitive& mesh, const PrimitiveMaterials& materials,
+                            const MaterialUse& use)
+{
+    const std::size_t bytes = materials.ofVariant.size() * bytesAVariant;
+    if (!_budget.take(bytes))
+        return _report.warn(mesh.label + ": its variants would take " + std::to_string(bytes) + " bytes, " +
+                            _budget.limitText() + "; left out");
+    std::vector<VariantState> states;
+    for (const auto& [variant, material] : materials.ofVariant)
+        states.push_back({_variants[static_cast<std::size_t>(variant)], stateSet(mesh, use, material)});
+    setVariantStates(geometry, stateSet(mesh, use, materials.own), states);
 }
 
 } // namespace osgGpuAnimation::gltf

@@ -36,9 +36,10 @@ struct DrawablePlace
 class Drawables
 {
 public:
-    /// set: null where nothing moves.
+    /// set: null where nothing moves. variant: the one that drawables show at first, an index of variantNames(); -1:
+    /// none.
     Drawables(const tinygltf::Model& model, std::shared_ptr<const AnimationSet> set, Meshes& meshes,
-              Materials& materials, MemoryBudget& budget, Report& report);
+              Materials& materials, int variant, MemoryBudget& budget, Report& report);
 
     /// The first skin of the file with the same palette entries as this one.
     int firstAlike(int skin) const { return _firstAlike[static_cast<std::size_t>(skin)]; }
@@ -54,12 +55,17 @@ private:
     osg::ref_ptr<osg::Geometry> make(const DrawablePlace& place);
     double farthestOf(const DrawablePlace& place, const MeshPrimitive& mesh) const;
     void setInfluences(SkinnedGeometry& geometry, const MeshPrimitive& mesh, const DrawablePlace& place);
+    osg::StateSet* stateSet(const MeshPrimitive& mesh, MaterialUse use, int material);
+    void setVariants(SkinnedGeometry& geometry, const MeshPrimitive& mesh, const PrimitiveMaterials& materials,
+                     const MaterialUse& use);
     void setColors(osg::Geometry& geometry, const MeshPrimitive& mesh, int material, bool palette);
 
     const tinygltf::Model& _model;
     std::shared_ptr<const AnimationSet> _set;
     Meshes& _meshes;
     Materials& _materials;
+    const std::vector<std::string> _variants; ///< names
+    const int _variant;
     MemoryBudget& _budget;
     Report& _report;
     std::vector<int> _firstAlike;         ///< by skin

@@ -106,6 +106,11 @@ osg::Vec4 Materials::plainColor(const osg::Vec4& color, int material) const
     return displayColor(componentMultiply(linearColor(color), baseColor(material)));
 }
 
+bool Materials::hasNormalMap(int material) const
+{
+    return mapsOf(materialOf(_model, material), !_fixedLighting).find(&PbrMaterial::normalMap) != nullptr;
+}
+
 unsigned int Materials::wantedCoordinates(int material) const
 {
     return (1u << mapsOf(materialOf(_model, material), !_fixedLighting).coordinates.size()) - 1u;

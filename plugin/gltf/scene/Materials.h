@@ -23,11 +23,11 @@ struct MaterialUse
     bool mirrored = false; ///< front faces are clockwise
     bool lit = true;       ///< false: points and lines without normals
     bool flat = false;     ///< drawn from the palette, without normals in the file: faces compute theirs from the pose
-    unsigned int coordinates = 0; ///< see MeshPrimitive::coordinates
-    bool tangents = false;
-    bool colored = false; ///< has colours of its own for each vertex
-    int influences = 0;   ///< drawn from the palette: the most influences of a vertex
-    bool morphed = false; ///< drawn from the palette: has morph targets
+    unsigned int coordinates = 0; ///< see MeshPrimitive::coordinates: those that the material reads
+    bool tangents = false;        ///< that the material reads
+    bool colored = false;         ///< has colours of its own for each vertex
+    int influences = 0;           ///< drawn from the palette: the most influences of a vertex
+    bool morphed = false;         ///< drawn from the palette: has morph targets
 
     auto key() const
     {
@@ -49,11 +49,13 @@ public:
     Materials(const tinygltf::Model& model, bool fixedLighting, Textures& textures);
 
     osg::StateSet* stateSet(const MaterialUse& use);
+    bool usesAllMaps() const { return !_fixedLighting; } ///< false: only base colours
     /// The linear base colour factor; white for the default material.
     osg::Vec4 baseColor(int material) const;
     /// The colour array's element of a plain geometry, which the fixed pipeline uses in place of the material's colour.
     /// color: of the vertex, as displayed.
     osg::Vec4 plainColor(const osg::Vec4& color, int material) const;
+    bool hasNormalMap(int material) const;
     /// The coordinates that the material's maps read, as bits by their numbers.
     unsigned int wantedCoordinates(int material) const;
 

@@ -2,7 +2,7 @@
 #include "gltf/scene/Meshes.h"
 
 #include "gltf/data/Accessor.h"
-#include "gltf/data/MaterialMaps.h"
+#include "gltf/data/MaterialVariants.h"
 #include "gltf/data/VertexAttributes.h"
 #include "gltf/file/Report.h"
 #include "gltf/scene/TransformBound.h"
@@ -74,12 +74,6 @@ std::vector<std::uint32_t> readIndices(const tinygltf::Model& model, const tinyg
     if (primitive.indices >= 0) indices = readIntegers(model, primitive.indices);
     indices.resize(wholeCount(primitive.mode, indices.size()));
     return indices;
-}
-
-bool isBlended(const tinygltf::Model& model, const tinygltf::Primitive& primitive)
-{
-    return primitive.material >= 0 &&
-           model.materials[static_cast<std::size_t>(primitive.material)].alphaMode == "BLEND";
 }
 
 /// The inverse of `sourceVertex`: the first vertex made from each of the file's. Appends the vertices that no triangle
@@ -156,7 +150,7 @@ std::vector<std::uint32_t> cornersOf(const MeshPrimitive& mesh, int mode, std::v
 
 /// Welds equal vertices, for a program that computes the normals of the faces.
 void makeSmooth(MeshPrimitive& mesh, const tinygltf::Model& model, const tinygltf::Primitive& primitive,
-                std::vector<std::uint32_t> indices)
+                std::vector<std::uint32_t> indices, bool isBlended)
 {
     std::vector<std::uint32_t> corners = cornersOf(mesh, primitive.mode, std::move(indices));
     WeldedVertices welded = weld(model, primitive, mesh);
@@ -167,7 +161,7 @@ void makeSmooth(MeshPrimitive& mesh, const tinygltf::Model& model, const tinyglt
         mesh.sourceVertex[welded.vertexOf[vertex]] = static_cast<std::uint32_t>(vertex);
     mesh.geometryVertex = std::make_shared<std::vector<std::uint32_t>>(std::move(welded.vertexOf));
     pickVertices(mesh);
-    if (!isBlended(model, primitive)) optimizeForVertexCache(corners, welded.count);
+    if (!isBlended) optimizeForVertexCache(corners, welded.count);
     mesh.primitiveSet = makePrimitiveSet(modeTriangles, corners, welded.count);
     mesh.normals = smoothNormals(*mesh.positions, corners);
     mesh.isFlat = true;
@@ -226,16 +220,12 @@ const MeshPrimitive* Meshes::primitive(int mesh, int primitive, bool skinned)
 }
 
 /// Colours, texture coordinates, tangents and morph targets.
-void Meshes::readSurface(const tinygltf::Primitive& primitive, MeshPrimitive& mesh)
+void Meshes::readSurface(const tinygltf::Primitive& primitive, const PrimitiveMaterials& materials, MeshPrimitive& mesh)
 {
-    static const tinygltf::Material plain;
-    const tinygltf::Material& material =
-        primitive.material < 0 ? plain : _model.materials[static_cast<std::size_t>(primitive.material)];
-    const MaterialMaps maps = mapsOf(material, _allMaps);
-    for (std::size_t number = 0; number < maps.coordinates.size(); ++number)
+    for (std::size_t number = 0; number < materials.coordinates.size(); ++number)
     {
         const osg::ref_ptr<osg::Vec2Array> read =
-            readTextureCoordinates(_model, primitive.attributes, maps.coordinates[number]);
+            readTextureCoordinates(_model, primitive.attributes, materials.coordinates[number]);
         if (!read) continue;
         mesh.coordinates |= 1u << number;
         if (number == 0)
@@ -250,11 +240,11 @@ void Meshes::readSurface(const tinygltf::Primitive& primitive, MeshPrimitive& me
             for (int i = 0; i < 2; ++i)
                 (*mesh.moreCoordinates)[vertex][2 * (static_cast<int>(number) - 1) + i] = (*read)[vertex][i];
     }
-    const bool wantsTangents = mesh.normals && maps.find(&PbrMaterial::normalMap);
+    const bool wantsTangents = mesh.normals && materials.hasNormalMap;
     if (wantsTangents) mesh.tangents = readTangents(_model, primitive);
     mesh.colors = readColors(_model, primitive);
     mesh.targets =
-        readMorphTargets(_model, primitive, mesh.texCoords ? &maps.coordinates.front() : nullptr, wantsTangents);
+        readMorphTargets(_model, primitive, mesh.texCoords ? &materials.coordinates.front() : nullptr, wantsTangents);
 }
 
 std::optional<MeshPrimitive> Meshes::read(int meshIndex, int primitiveIndex, bool welded)
@@ -279,20 +269,20 @@ std::optional<MeshPrimitive> Meshes::read(int meshIndex, int primitiveIndex, boo
         return std::nullopt; // too few vertices for one element: the validation has warned of it
     mesh.positions = readVectors(_model, primitive.attributes, "POSITION");
     mesh.normals = readVectors(_model, primitive.attributes, "NORMAL");
-    readSurface(primitive, mesh);
+    const PrimitiveMaterials materials = materialsOf(_model, primitive, _allMaps);
+    readSurface(primitive, materials, mesh);
     mesh.radius = radiusOf(*mesh.positions);
     for (const MorphTarget& target : mesh.targets)
         mesh.targetRadii.push_back(target.positions ? radiusOf(*target.positions) : 0.0);
     if (!mesh.normals && primitive.mode >= modeTriangles)
     {
         if (welded)
-            makeSmooth(mesh, _model, primitive, std::move(indices));
+            makeSmooth(mesh, _model, primitive, std::move(indices), materials.isBlended);
         else
             makeFlat(mesh, primitive.mode, std::move(indices));
         return mesh;
     }
-    if (primitive.mode == modeTriangles && !isBlended(_model, primitive))
-        optimizeForVertexCache(indices, mesh.vertexCount);
+    if (primitive.mode == modeTriangles && !materials.isBlended) optimizeForVertexCache(indices, mesh.vertexCount);
     mesh.primitiveSet = makePrimitiveSet(primitive.mode, indices, mesh.vertexCount);
     return mesh;
 }

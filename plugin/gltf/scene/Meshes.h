@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "gltf/data/MaterialVariants.h"
 #include "gltf/document/MemoryBudget.h"
 #include "gltf/file/Report.h"
 
@@ -27,7 +28,7 @@ struct MeshPrimitive
     std::size_t vertexCount = 0; ///< of the file's POSITION accessor
     osg::ref_ptr<osg::Vec3Array> positions;
     osg::ref_ptr<osg::Vec3Array> normals;         ///< null: points or lines without normals, which are drawn unlit
-    osg::ref_ptr<osg::Vec2Array> texCoords;       ///< number 0 of MaterialMaps, or null
+    osg::ref_ptr<osg::Vec2Array> texCoords;       ///< number 0 of PrimitiveMaterials, or null
     osg::ref_ptr<osg::Vec4Array> moreCoordinates; ///< numbers 1 (xy) and 2 (zw), or null
     osg::ref_ptr<osg::Vec4Array> tangents;        ///< only for normal maps; or null
     osg::ref_ptr<osg::Vec4Array> colors;          ///< for display, see displayColor(); or null
@@ -61,7 +62,7 @@ public:
 
 private:
     std::optional<MeshPrimitive> read(int mesh, int primitive, bool welded);
-    void readSurface(const tinygltf::Primitive& primitive, MeshPrimitive& mesh);
+    void readSurface(const tinygltf::Primitive& primitive, const PrimitiveMaterials& materials, MeshPrimitive& mesh);
 
     const tinygltf::Model& _model;
     const bool _allMaps;

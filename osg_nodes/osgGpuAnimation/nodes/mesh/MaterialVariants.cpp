@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/nodes/mesh/MaterialVariants.h>
+
+#include <osg/UserDataContainer>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+const char* const objectName = "osgGpuAnimation.materialVariants";
+
+const osg::UserDataContainer* variantsOf(const osg::Object& object)
+{
+    const osg::UserDataContainer* all = object.getUserDataContainer();
+    return all ? dynamic_cast<const osg::UserDataContainer*>(all->getUserObject(objectName)) : nullptr;
+}
+
+void setVariants(osg::Object& object, osg::UserDataContainer* variants)
+{
+    variants->setName(objectName);
+    osg::UserDataContainer& all = *object.getOrCreateUserDataContainer();
+    const unsigned int index = all.getUserObjectIndex(objectName);
+    if (index < all.getNumUserObjects())
+        all.setUserObject(index, variants);
+    else
+        all.addUserObject(variants);
+}
+
+/// A saved scene may hold any object.
+osg::StateSet* stateAt(const osg::UserDataContainer& variants, unsigned int index)
+{
+    return const_cast<osg::StateSet*>(dynamic_cast<const osg::StateSet*>(variants.getUserObject(index)));
+}
+
+template <typename Visit>
+void forEachVariantState(const osg::Geometry& mesh, Visit visit)
+{
+    const osg::UserDataContainer* variants = variantsOf(mesh);
+    for (unsigned int i = 0; variants && i < variants->getNumUserObjects(); ++i)
+        if (osg::StateSet* state = stateAt(*variants, i); state && state != mesh.getStateSet()) visit(*state);
+}
+
+/// True if the one can be drawn in place of the other, with its StateSet.
+bool isCopyOf(const osg::Geometry& one, const osg::Geometry& other)
+{
+    osg::Geometry::ArrayList arrays, otherArrays;
+    one.getArrayList(arrays);
+    other.getArrayList(otherArrays);
+    return arrays == otherArrays && one.getPrimitiveSetList() == other.getPrimitiveSetList() &&
+           one.getUserDataContainer() == other.getUserDataContainer() && one.getNodeMask() == other.getNodeMask() &&
+           one.getCullCallback() == other.getCullCallback() && one.getDrawCallback() == other.getDrawCallback();
+}
+
+} // namespace
+
+void setVariantNames(osg::Object& character, const std::vector<std::string>& names)
+{
+    osg::ref_ptr<osg::UserDataContainer> variants = new osg::DefaultUserDataContainer;
+    variants->setDescriptions(names);
+    setVariants(character, variants);
+}
+
+std::vector<std::string> variantNamesOf(const osg::Object& character)
+{
+    const osg::UserDataContainer* variants = variantsOf(character);
+    return variants ? variants->getDescriptions() : std::vector<std::string>();
+}
+
+// The first user object is the default; the descriptions name the variants of the others, in the same order.
+void setVariantStates(osg::Geometry& mesh, osg::StateSet* defaultState, const std::vector<VariantState>& states)
+{
+    osg::ref_ptr<osg::UserDataContainer> variants = new osg::DefaultUserDataContainer;
+    variants->addUserObject(defaultState);
+    for (const VariantState& state : states)
+    {
+        variants->addDescription(state.variant);
+        variants->addUserObject(state.state);
+    }
+    setVariants(mesh, variants);
+}
+
+osg::StateSet* variantState(const osg::Geometry& mesh, const std::string& variant)
+{
+    const osg::UserDataContainer* variants = variantsOf(mesh);
+    if (!variants) return nullptr;
+    const std::vector<std::string>& names = variants->getDescriptions();
+    for (unsigned int i = 0; i < names.size(); ++i)
+        if (names[i] == variant && !variant.empty()) return stateAt(*variants, i + 1);
+    return stateAt(*variants, 0);
+}
+
+void releaseVariantStates(const osg::Geometry& mesh, osg::State* state)
+{
+    forEachVariantState(mesh, [state](osg::StateSet& other) { other.releaseGLObjects(state); });
+}
+
+void resizeVariantStates(osg::Geometry& mesh, unsigned int maxSize)
+{
+    forEachVariantState(mesh, [maxSize](osg::StateSet& other) { other.resizeGLObjectBuffers(maxSize); });
+}
+
+void VariantMeshes::show(osg::Group& group, const std::string& variant)
+{
+    for (unsigned int i = 0; i < group.getNumChildren(); ++i)
+    {
+        auto* mesh = dynamic_cast<osg::Geometry*>(group.getChild(i));
+        osg::StateSet* state = mesh ? variantState(*mesh, variant) : nullptr;
+        if (!state || state == mesh->getStateSet()) continue;
+        const osg::ref_ptr<osg::Geometry> shown = withState(*mesh, state);
+        osg::BoundingBox box = shown->getInitialBound();
+        box.expandBy(mesh->getInitialBound());
+        if (box != shown->getInitialBound()) shown->setInitialBound(box);
+        group.setChild(i, shown);
+    }
+}
+
+osg::ref_ptr<osg::Geometry> VariantMeshes::withState(osg::Geometry& mesh, osg::StateSet* state)
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    _meshes[{mesh.getUserDataContainer(), mesh.getStateSet()}] = &mesh;
+    osg::observer_ptr<osg::Geometry>& known = _meshes[{mesh.getUserDataContainer(), state}];
+    osg::ref_ptr<osg::Geometry> shown;
+    // The key of a deleted mesh may have become that of another.
+    if (known.lock(shown) && shown->getStateSet() == state && isCopyOf(*shown, mesh)) return shown;
+    shown = osg::clone(&mesh, osg::CopyOp::SHALLOW_COPY);
+    shown->setStateSet(state);
+    known = shown;
+    return shown;
+}
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "gltf/data/TextureCoordinates.h"
+
+#include <tiny_gltf.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace osgGpuAnimation::gltf
+{
+
+/// The names of the file's variants (KHR_materials_variants), each different. A variant without a name, or with the
+/// name of an earlier one, is called `variants[INDEX]`.
+std::vector<std::string> variantNames(const tinygltf::Model& model);
+
+/// The materials of a primitive in all variants, and what its vertices need to be drawn with each of them.
+struct PrimitiveMaterials
+{
+    int own = -1;                 ///< without a variant, and in variants that do not map the primitive; -1: the default
+    std::map<int, int> ofVariant; ///< by variant: its material; only those that can be drawn
+    /// Variants whose material reads other texture coordinates than the vertices have: the own material is drawn.
+    std::vector<int> withoutCoordinates;
+    std::vector<TextureCoordinates> coordinates; ///< those that a material reads are the first of these
+    bool hasNormalMap = false;
+    bool isBlended = false; ///< in a variant: the order of the triangles counts
+
+    /// variant: -1: none.
+    int materialIn(int variant) const
+    {
+        const auto found = ofVariant.find(variant);
+        return found == ofVariant.end() ? own : found->second;
+    }
+};
+
+/// The document has passed checkVariantRules(). allMaps: false considers only base colours.
+PrimitiveMaterials materialsOf(const tinygltf::Model& model, const tinygltf::Primitive& primitive, bool allMaps);
+
+} // namespace osgGpuAnimation::gltf

@@ -3,6 +3,7 @@
 
 #include "tool/CpuPoseEvaluator.h"
 #include "tool/ModelFile.h"
+#include "tool/ProgressLine.h"
 
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
@@ -86,6 +87,7 @@ Result<bool> RenderCommand::run() const
     gltf::ImportOptions options;
     options.clip = clip;
     options.camera = camera;
+    options.variant = variant;
     options.noKeys = true; // no window, no keyboard
     const Result<gltf::ImportedModel> model = readModel(file, options);
     if (!model) return Error{file + ": " + model.error().message};
@@ -97,8 +99,10 @@ Result<bool> RenderCommand::run() const
     viewer.value()->show(model.value().root, pointsOf(model.value(), times));
     if (model.value().startCamera) viewer.value()->lookThrough(*model.value().startCamera);
 
+    ProgressLine progress("drawing");
     for (std::size_t frame = 0; frame < times.size(); ++frame)
     {
+        progress.set(frame, times.size());
         if (model.value().character) showTime(model.value().character->getController(), times[frame]);
         const osg::ref_ptr<osg::Image> image = viewer.value()->draw(times[frame] - time);
         if (!image) return Error{file + ": OpenGL reported an error while drawing"};

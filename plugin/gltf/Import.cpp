@@ -206,8 +206,7 @@ void Importer::describeFile(const NodeTree& tree)
     _result.nodeParents = tree.parents;
     for (const tinygltf::Node& node : _model.nodes)
         _result.nodeNames.push_back(node.name);
-    for (const tinygltf::Material& material : _model.materials)
-        _result.materialNames.push_back(material.name);
+    _result.materials = describeMaterials(_model);
     _result.extensionsUsed = _model.extensionsUsed;
     _result.generator = _model.asset.generator;
 }

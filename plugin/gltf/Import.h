@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "gltf/data/MaterialDescription.h"
 #include "gltf/file/Report.h"
 #include "gltf/ImportOptions.h"
 #include "gltf/scene/SceneGraph.h"
@@ -39,7 +40,7 @@ struct ImportedModel
     std::vector<int> nodeParents;                ///< -1 for roots
     std::optional<CompactedCharacter> compacted; ///< only if the options ask for compact clips
     std::vector<int> animationOfClip;            ///< the file's animation number of each clip of the set
-    std::vector<std::string> materialNames;
+    std::vector<MaterialDescription> materials;
     std::vector<std::string> variantNames; ///< of KHR_materials_variants, each different
     std::vector<std::string> extensionsUsed;
     std::string generator; ///< asset.generator

@@ -161,6 +161,9 @@ void CommandLine::addRender()
     _renderApp->add_option("FILE", _render.file, "A .gltf or .glb; or a crowd of it: FILE.20x20.crowd")->required();
     _renderApp->add_option("--clip", _render.clip,
                            "A clip's name, or an animation's number where none has that name; default: the first clip");
+    _renderApp->add_option("--variant", _render.variant,
+                           "A variant of the file's materials: its name, or its number where none has that name; "
+                           "default: none");
     _renderApp->add_option("--camera", _render.camera,
                            "A camera of the file: its name, or its number where none has that name; default: a view "
                            "of everything");

@@ -167,6 +167,27 @@ ordered_json reportMeshes(const gltf::ImportedModel& model)
             {"morphTargets", targets}};
 }
 
+ordered_json reportMaterials(const gltf::ImportedModel& model)
+{
+    ordered_json materials = ordered_json::array();
+    for (const gltf::MaterialDescription& material : model.materials)
+    {
+        ordered_json report = {{"name", material.name}, {"alphaMode", material.alphaMode}};
+        if (material.alphaMode == "MASK") report["alphaCutoff"] = material.alphaCutoff;
+        report["doubleSided"] = material.doubleSided;
+        report["unlit"] = material.unlit;
+        report["maps"] = ordered_json::array();
+        for (const gltf::MaterialDescription::Map& map : material.maps)
+        {
+            ordered_json size = nullptr;
+            if (map.width > 0) size = {map.width, map.height};
+            report["maps"].push_back({{"map", map.use}, {"image", map.image}, {"size", size}});
+        }
+        materials.push_back(std::move(report));
+    }
+    return materials;
+}
+
 const char* kindName(PunctualLight::Kind kind)
 {
     if (kind == PunctualLight::Kind::Directional) return "directional";
@@ -293,6 +314,29 @@ std::string boundsText(const ordered_json& bounds)
     return text;
 }
 
+/// One line a material: how it is drawn, then its maps.
+std::string materialLines(const ordered_json& materials)
+{
+    std::string text;
+    for (const ordered_json& material : materials)
+    {
+        text += "  " + nameOr(material["name"]) + ": ";
+        if (material["alphaMode"] == "OPAQUE") text += "opaque";
+        if (material["alphaMode"] == "BLEND") text += "blended";
+        if (material.contains("alphaCutoff")) text += "masked at " + rounded(material["alphaCutoff"]);
+        if (material["doubleSided"]) text += ", double sided";
+        if (material["unlit"]) text += ", unlit";
+        for (const ordered_json& map : material["maps"])
+        {
+            const ordered_json& size = map["size"];
+            text += "; " + map["map"].get<std::string>() + ' ' +
+                    (size.is_null() ? "(no picture)" : number(size[0]) + "x" + number(size[1]));
+        }
+        text += "\n";
+    }
+    return text;
+}
+
 std::string lightsText(const ordered_json& lights)
 {
     std::string text;
@@ -343,7 +387,8 @@ ordered_json reportModel(const gltf::ImportedModel& model, const std::string& fi
             {"clips", reportClips(model)},
             {"keyframes", reportKeyframes(model)},
             {"meshes", reportMeshes(model)},
-            {"materials", model.materialNames},
+            {"materials", reportMaterials(model)},
+            {"variants", model.variantNames},
             {"lights", reportLights(model)},
             {"cameras", reportCameras(model)},
             {"extensions", model.extensionsUsed},
@@ -383,7 +428,8 @@ std::string reportText(const ordered_json& report)
                            number(meshes["skinned"]) + " skinned, " + number(meshes["rigid"]) + " rigid on joints, " +
                            number(meshes["still"]) + " still), " + number(meshes["vertices"]) + " vertices, " +
                            number(meshes["morphTargets"]) + " morph targets");
-    text += line("materials", listed(report["materials"]));
+    text += line("materials", number(report["materials"].size())) + materialLines(report["materials"]);
+    text += line("variants", listed(report["variants"]));
     text += line("lights", lightsText(report["lights"]));
     text += line("cameras", camerasText(report["cameras"]));
     text += line("extensions", listed(report["extensions"]));

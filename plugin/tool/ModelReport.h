@@ -19,7 +19,10 @@ namespace osgGpuAnimation::tool
 ///     bounds       of the rest pose in the file's axes: [least corner, greatest corner], null if nothing is drawn
 ///     clips        index (the file's), name, seconds, keyframes, form (linear or spline), bounds (of what moves)
 ///     meshes       count, primitives, vertices, skinned, rigid, still (primitives each), morphTargets
-///     materials, extensions                             names
+///     materials    name, alphaMode (OPAQUE, MASK, BLEND), alphaCutoff (of MASK), doubleSided, unlit, maps (map, image:
+///     the
+///                  file's index, size: [width, height], null for a missing picture)
+///     variants, extensions                              names
 ///     gpuBytes     animation, meshes, textures, total   in GPU buffers, without the driver's own memory
 ///     warnings, notes
 nlohmann::ordered_json reportModel(const gltf::ImportedModel& model, const std::string& fileName);

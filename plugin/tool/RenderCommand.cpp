@@ -4,6 +4,7 @@
 #include "crowd/CrowdGrid.h"
 #include "tool/CpuPoseEvaluator.h"
 #include "tool/ModelFile.h"
+#include "tool/ProgressLine.h"
 
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 #include <osgGpuAnimation/nodes/studio/ModelExtent.h>
@@ -114,6 +115,7 @@ Result<bool> RenderCommand::run() const
     crowd::CrowdOptions grid = wanted.value();
     gltf::ImportOptions options;
     options.camera = camera;
+    options.variant = variant;
     options.noKeys = true; // no window, no keyboard
     if (!isCrowd)
         options.clip = clip;
@@ -152,8 +154,10 @@ Result<bool> RenderCommand::drawModel(PictureViewer& viewer, const gltf::Importe
     const std::vector<double> times = this->times();
     viewer.show(model.root, pointsOf(model, times));
     if (model.startCamera) viewer.lookThrough(*model.startCamera);
+    ProgressLine progress("drawing");
     for (std::size_t frame = 0; frame < times.size(); ++frame)
     {
+        progress.set(frame, times.size());
         if (model.character) showTime(model.character->getController(), times[frame]);
         const Result<bool> written = writePicture(viewer.draw(times[frame] - time).get(), file, outputOf(frame));
         if (!written) return written;
@@ -170,8 +174,10 @@ Result<bool> RenderCommand::drawCrowd(PictureViewer& viewer, osg::Node& model, c
     viewer.show(scene, osgGpuAnimation::pointsOf(*scene));
     viewer.draw(0.0); // the time from which the clips run
     const std::vector<double> times = this->times();
+    ProgressLine progress("drawing");
     for (std::size_t frame = 0; frame < times.size(); ++frame)
     {
+        progress.set(frame, times.size());
         const Result<bool> written = writePicture(viewer.draw(times[frame]).get(), file, outputOf(frame));
         if (!written) return written;
     }

@@ -20,11 +20,12 @@ struct RenderCommand
 {
     static constexpr int maxSize = 8192; ///< pixels, each way
 
-    std::string file;                  ///< a .gltf or .glb, or a crowd of it: `fox.glb.20x20.crowd`
-    std::optional<std::string> clip;   ///< name or animation number; default: the first; of a crowd: all, at random
-    std::optional<std::string> camera; ///< of the file: name or number; default: none
-    double time = 0.0;                 ///< seconds; clips loop
-    int width = 800;                   ///< pixels, [1, maxSize]
+    std::string file;                   ///< a .gltf or .glb, or a crowd of it: `fox.glb.20x20.crowd`
+    std::optional<std::string> clip;    ///< name or animation number; default: the first; of a crowd: all, at random
+    std::optional<std::string> camera;  ///< of the file: name or number; default: none
+    std::optional<std::string> variant; ///< of the file's materials: name or number; default: none
+    double time = 0.0;                  ///< seconds; clips loop
+    int width = 800;                    ///< pixels, [1, maxSize]
     int height = 600;
     std::optional<int> frames; ///< the number of numbered pictures; none: one picture, named `output`
     double framesPerSecond = 30.0;

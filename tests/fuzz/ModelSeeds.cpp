@@ -183,6 +183,11 @@ Seed materials()
           {{"KHR_materials_unlit", Json::object()}, {"KHR_materials_emissive_strength", {{"emissiveStrength", 2}}}}}}};
     document["extensionsUsed"] = {"KHR_texture_transform", "KHR_materials_unlit", "KHR_materials_emissive_strength",
                                   "VENDOR_unknown"};
+    document["materials"].push_back({{"name", "red"}});
+    const char* const variants = "KHR_materials_variants";
+    document["extensions"][variants]["variants"] = {{{"name", "plain"}}, {{"name", "red"}}};
+    document["meshes"][0]["primitives"][0]["extensions"][variants]["mappings"] = {
+        {{"material", 1}, {"variants", {0, 1}}}};
     return seed("materials", std::move(document));
 }
 

@@ -17,6 +17,7 @@ TEST(OptionStringTest, nothingAskedForIsTheDefault)
     EXPECT_FALSE(options.clip);
     EXPECT_FALSE(options.scene);
     EXPECT_FALSE(options.camera);
+    EXPECT_FALSE(options.variant);
     EXPECT_FALSE(options.noLights);
     EXPECT_FALSE(options.noCameras);
     EXPECT_FALSE(options.noRotation);
@@ -31,11 +32,12 @@ TEST(OptionStringTest, readsAllOptions)
 {
     const ImportOptions options = parseOptions("  clip=Walk scene=2  noRotation allowOutsideFiles maxJsonDepth=5 "
                                                "maxJsonBytes=4 maxNodeDepth=6 maxElements=7 maxDocumentBytes=8 "
-                                               "maxDecodedBytes=8000000000 camera=Top noLights noCameras")
+                                               "maxDecodedBytes=8000000000 camera=Top noLights noCameras variant=1")
                                       .value();
     EXPECT_EQ(options.clip, "Walk");
     EXPECT_EQ(options.scene, 2);
     EXPECT_EQ(options.camera, "Top");
+    EXPECT_EQ(options.variant, "1");
     EXPECT_TRUE(options.noLights);
     EXPECT_TRUE(options.noCameras);
     EXPECT_TRUE(options.noRotation);

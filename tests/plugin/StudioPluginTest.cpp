@@ -134,7 +134,7 @@ TEST_F(StudioPluginTest, isKeptInOsgsFormats)
         const osg::ref_ptr<osg::Node> kept = osgDB::readRefNodeFile(file);
         const auto* studio = dynamic_cast<const Studio*>(kept.get());
         ASSERT_TRUE(studio) << format;
-        EXPECT_TRUE(studio->getStateSet()->getDefinePair("TONE_MAPPING")) << format;
+        EXPECT_TRUE(studio->getToneMapping()) << format;
         EXPECT_TRUE(findCharacter(*kept)) << format;
         EXPECT_TRUE(studio->getEventCallback()) << format;
     }

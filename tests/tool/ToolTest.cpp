@@ -181,7 +181,9 @@ TEST_F(ToolTest, inspectSaysWhatIsInTheFile)
     EXPECT_EQ(report["meshes"]["count"], 1);
     EXPECT_EQ(report["meshes"]["vertices"], 4);
     EXPECT_EQ(report["meshes"]["rigid"], 1);
-    EXPECT_EQ(report["materials"], json({"red"}));
+    EXPECT_EQ(report["materials"],
+              json::parse(R"([{"name":"red","alphaMode":"OPAQUE","doubleSided":true,"unlit":false,"maps":[]}])"));
+    EXPECT_EQ(report["variants"], json::array());
     EXPECT_EQ(report["extensions"], json::array());
     EXPECT_GT(report["gpuBytes"]["animation"], 0);
     EXPECT_GE(report["gpuBytes"]["meshes"], 4 * 12);
@@ -194,7 +196,7 @@ TEST_F(ToolTest, inspectSaysWhatIsInTheFile)
     EXPECT_EQ(text.status, 0);
     for (const char* word : {"\n  hinge\n    flag\n", "bounds           (-1, 0, 0) to (1, 2, 0) in the rest pose",
                              "2 keyframes, bounds (-1, 0, 0) to (1, 3, 0)", "hinge", "Swing", "2.000 s",
-                             "palette entries", "red", "bytes on the GPU"})
+                             "palette entries", "\n  red: opaque, double sided\n", "bytes on the GPU"})
         EXPECT_NE(text.out.find(word), std::string::npos) << word << " in\n" << text.out;
 }
 

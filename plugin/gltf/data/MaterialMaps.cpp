@@ -94,7 +94,8 @@ class MapReader
 public:
     explicit MapReader(MaterialMaps& maps) : _maps(maps) {}
 
-    void add(const tinygltf::TextureInfo& texture, PbrMaterial::Map PbrMaterial::*place, bool isColor)
+    void add(const char* member, const tinygltf::TextureInfo& texture, PbrMaterial::Map PbrMaterial::*place,
+             bool isColor)
     {
         if (texture.index < 0) return;
         std::vector<TextureCoordinates>& all = _maps.coordinates;
@@ -103,7 +104,7 @@ public:
         const bool hasRoom = known != all.end() || all.size() < MaterialMaps::mostCoordinates;
         const int number = hasRoom ? static_cast<int>(known - all.begin()) : -1;
         if (known == all.end() && hasRoom) all.push_back(coordinates);
-        _maps.maps.push_back({place, texture.index, isColor, number});
+        _maps.maps.push_back({member, place, texture.index, isColor, number});
     }
 
 private:
@@ -126,18 +127,21 @@ MaterialMaps mapsOf(const tinygltf::Material& material, bool allMaps)
     const tinygltf::PbrMetallicRoughness& pbr = material.pbrMetallicRoughness;
     const tinygltf::Value& converted = extensionOf(material, specularGlossiness);
     const bool isConverted = allMaps && converted.IsObject();
-    reader.add(isConverted ? textureOf(converted, "diffuseTexture") : pbr.baseColorTexture, &PbrMaterial::baseColorMap,
-               true);
+    if (isConverted)
+        reader.add("diffuseTexture", textureOf(converted, "diffuseTexture"), &PbrMaterial::baseColorMap, true);
+    else
+        reader.add("baseColorTexture", pbr.baseColorTexture, &PbrMaterial::baseColorMap, true);
     if (!allMaps) return maps;
-    reader.add(plainInfo(material.normalTexture), &PbrMaterial::normalMap, false);
-    if (!isConverted) reader.add(pbr.metallicRoughnessTexture, &PbrMaterial::metallicRoughnessMap, false);
-    reader.add(material.emissiveTexture, &PbrMaterial::emissiveMap, true);
-    reader.add(plainInfo(material.occlusionTexture), &PbrMaterial::occlusionMap, false);
+    reader.add("normalTexture", plainInfo(material.normalTexture), &PbrMaterial::normalMap, false);
+    if (!isConverted)
+        reader.add("metallicRoughnessTexture", pbr.metallicRoughnessTexture, &PbrMaterial::metallicRoughnessMap, false);
+    reader.add("emissiveTexture", material.emissiveTexture, &PbrMaterial::emissiveMap, true);
+    reader.add("occlusionTexture", plainInfo(material.occlusionTexture), &PbrMaterial::occlusionMap, false);
     for (const ExtensionMap& map : extensionMaps)
     {
         if (map.place == &PbrMaterial::specularColorMap && isConverted != (map.extension == extensionMaps[0].extension))
             continue;
-        reader.add(textureOf(extensionOf(material, map.extension), map.member), map.place, map.isColor);
+        reader.add(map.member, textureOf(extensionOf(material, map.extension), map.member), map.place, map.isColor);
     }
     return maps;
 }

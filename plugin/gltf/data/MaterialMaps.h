@@ -16,6 +16,7 @@ namespace osgGpuAnimation::gltf
 /// One map of a material.
 struct MaterialMap
 {
+    const char* member;                   ///< glTF's name of it, like `normalTexture`
     PbrMaterial::Map PbrMaterial::*place; ///< its place in the result
     int texture = -1;                     ///< of the file
     bool isColor = false;                 ///< sRGB, else data

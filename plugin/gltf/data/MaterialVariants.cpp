@@ -12,13 +12,13 @@ namespace osgGpuAnimation::gltf
 namespace
 {
 
-const char* const variantExtension = "KHR_materials_variants";
+const char* const variantsName = "KHR_materials_variants";
 
 /// An empty value if the extension has no such member.
 const tinygltf::Value& memberOf(const tinygltf::ExtensionMap& extensions, const char* member)
 {
     static const tinygltf::Value none;
-    const auto extension = extensions.find(variantExtension);
+    const auto extension = extensions.find(variantsName);
     return extension == extensions.end() || !extension->second.Has(member) ? none : extension->second.Get(member);
 }
 

@@ -261,22 +261,14 @@ void checkNodeRules(const JsonValue& nodes, Report& report)
     }
 }
 
-const std::string_view supportedExtensions[] = {"KHR_mesh_quantization",
-                                                "KHR_texture_transform",
-                                                "KHR_materials_unlit",
-                                                "KHR_materials_emissive_strength",
-                                                "KHR_materials_ior",
-                                                "KHR_materials_specular",
-                                                "KHR_materials_clearcoat",
-                                                "KHR_materials_sheen",
-                                                "KHR_materials_transmission",
-                                                "KHR_materials_pbrSpecularGlossiness",
-                                                "EXT_meshopt_compression",
-                                                "KHR_draco_mesh_compression",
-                                                "EXT_mesh_gpu_instancing",
-                                                "KHR_lights_punctual",
-                                                "EXT_texture_webp",
-                                                "KHR_materials_variants"};
+const std::string_view supportedExtensions[] = {"KHR_mesh_quantization",      "KHR_texture_transform",
+                                                "KHR_materials_unlit",        "KHR_materials_emissive_strength",
+                                                "KHR_materials_ior",          "KHR_materials_specular",
+                                                "KHR_materials_clearcoat",    "KHR_materials_sheen",
+                                                "KHR_materials_transmission", "KHR_materials_pbrSpecularGlossiness",
+                                                "EXT_meshopt_compression",    "KHR_draco_mesh_compression",
+                                                "EXT_mesh_gpu_instancing",    "KHR_lights_punctual",
+                                                "EXT_texture_webp",           "KHR_materials_variants"};
 
 /// Parts of the names of extensions that change looks alone, or nothing that is drawn: a file that requires them is
 /// shown without them.

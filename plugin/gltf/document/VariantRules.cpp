@@ -17,7 +17,7 @@ constexpr std::string_view variantExtension = "KHR_materials_variants";
 
 using Fault = std::optional<Error>;
 
-void dropAll(const JsonValue& object)
+void dropMembers(const JsonValue& object)
 {
     if (!object.is(JsonTree::Type::Object)) return;
     for (const JsonValue& member : object)
@@ -60,7 +60,7 @@ std::size_t checkVariants(const JsonValue& extensions, Report& report)
             continue;
         }
         report.warn(fault(place + ".name", "a text", text.description()).message + "; the variant gets another name");
-        dropAll(variant);
+        dropMembers(variant);
     }
     return variants.size();
 }
@@ -121,7 +121,7 @@ void checkPrimitive(const JsonValue& primitive, const std::string& name, const C
             continue;
         }
         report.warn(wrong->message + "; the mapping is left out");
-        dropAll(mapping);
+        dropMembers(mapping);
     }
 }
 

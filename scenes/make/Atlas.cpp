@@ -58,6 +58,17 @@ void Atlas::paint(const Part& part)
             for (int channel = 0; channel < 3; ++channel)
                 _pixels[offset + channel] = static_cast<std::uint8_t>(std::lround(colour[channel] * 255.0));
         }
+    const int first = gutter / 2;
+    for (int y = part.rect.y / 2 - first; y < (part.rect.y + part.rect.height) / 2 + first; ++y)
+        for (int x = part.rect.x / 2 - first; x < (part.rect.x + part.rect.width) / 2 + first; ++x)
+        {
+            const double u = std::clamp((2.0 * x + 1.0 - part.rect.x) / part.rect.width, 0.0, 1.0);
+            const double v = std::clamp((2.0 * y + 1.0 - part.rect.y) / part.rect.height, 0.0, 1.0);
+            const glm::dvec3 reflection = glm::clamp(part.reflection(part.surfaceAt(u, v)), 0.0, 1.0);
+            for (int channel = 0; channel < 3; ++channel)
+                _reflections[(y * reflectionSize + x) * 3 + channel] =
+                    static_cast<std::uint8_t>(std::lround(reflection[channel] * 255.0));
+        }
 }
 
 } // namespace osgGpuAnimation::scenes

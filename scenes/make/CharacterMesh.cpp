@@ -7,17 +7,18 @@
 namespace osgGpuAnimation::scenes
 {
 
-void CharacterMesh::add(Part part, int width, int height, const Painter& painter)
+void CharacterMesh::add(Part part, int width, int height, const Painter& painter, const Painter& reflection)
 {
     part.rect.width = width;
     part.rect.height = height;
     part.painter = painter;
+    part.reflection = reflection;
     _parts.push_back(std::move(part));
 }
 
-void CharacterMesh::addPair(const Part& part, int width, int height, const Painter& painter)
+void CharacterMesh::addPair(const Part& part, int width, int height, const Painter& painter, const Painter& reflection)
 {
-    add(part, width, height, painter);
+    add(part, width, height, painter, reflection);
     _parts.push_back(mirrored(_parts.back(), _rig));
 }
 

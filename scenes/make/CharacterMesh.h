@@ -20,9 +20,9 @@ public:
     const Rig& rig() const { return _rig; }
 
     /// Takes the part in, with width x height texels of the atlas for `painter` to fill.
-    void add(Part part, int width, int height, const Painter& painter);
+    void add(Part part, int width, int height, const Painter& painter, const Painter& reflection);
     /// The part on the left side, and its mirror image.
-    void addPair(const Part& part, int width, int height, const Painter& painter);
+    void addPair(const Part& part, int width, int height, const Painter& painter, const Painter& reflection);
 
     /// Once all parts are in: the light on them, and the texture painted.
     void finish();

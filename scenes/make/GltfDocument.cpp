@@ -61,7 +61,7 @@ int GltfDocument::addNode(const std::string& name, int parent, const glm::dvec3&
     return index;
 }
 
-int GltfDocument::addTexture(const std::string& name, const std::vector<std::uint8_t>& png)
+int GltfDocument::addTexture(const std::string& name, const std::vector<std::uint8_t>& png, bool repeats)
 {
     tinygltf::Image image;
     image.name = name;
@@ -73,7 +73,7 @@ int GltfDocument::addTexture(const std::string& name, const std::vector<std::uin
     sampler.name = name;
     sampler.magFilter = TINYGLTF_TEXTURE_FILTER_LINEAR;
     sampler.minFilter = TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_LINEAR;
-    sampler.wrapS = sampler.wrapT = TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
+    sampler.wrapS = sampler.wrapT = repeats ? TINYGLTF_TEXTURE_WRAP_REPEAT : TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
     _model.samplers.push_back(sampler);
 
     tinygltf::Texture texture;
@@ -86,6 +86,9 @@ int GltfDocument::addTexture(const std::string& name, const std::vector<std::uin
 
 int GltfDocument::addMaterial(const tinygltf::Material& material)
 {
+    for (const auto& [name, value] : material.extensions)
+        if (std::find(_model.extensionsUsed.begin(), _model.extensionsUsed.end(), name) == _model.extensionsUsed.end())
+            _model.extensionsUsed.push_back(name);
     _model.materials.push_back(material);
     return static_cast<int>(_model.materials.size()) - 1;
 }
@@ -107,6 +110,8 @@ void GltfDocument::addPrimitive(int mesh, const PrimitiveArrays& arrays, int mat
     const int vertices = TINYGLTF_TARGET_ARRAY_BUFFER;
     primitive.attributes["POSITION"] = addFloats(flattened(arrays.positions), TINYGLTF_TYPE_VEC3, vertices, true);
     primitive.attributes["NORMAL"] = addFloats(flattened(arrays.normals), TINYGLTF_TYPE_VEC3, vertices, false);
+    if (!arrays.tangents.empty())
+        primitive.attributes["TANGENT"] = addFloats(flattened(arrays.tangents), TINYGLTF_TYPE_VEC4, vertices, false);
     if (!arrays.textureCoordinates.empty())
         primitive.attributes["TEXCOORD_0"] =
             addFloats(flattened(arrays.textureCoordinates), TINYGLTF_TYPE_VEC2, vertices, false);
@@ -127,6 +132,14 @@ void GltfDocument::addPrimitive(int mesh, const PrimitiveArrays& arrays, int mat
     const int view = addView(indices.data(), indices.size() * 2, TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
     primitive.indices = addAccessor(view, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, TINYGLTF_TYPE_SCALAR, indices.size());
     _model.meshes[mesh].primitives.push_back(primitive);
+}
+
+int GltfDocument::addMeshLike(const std::string& name, int other, int material)
+{
+    const int mesh = addMesh(name);
+    _model.meshes[mesh].primitives.push_back(_model.meshes[other].primitives.front());
+    _model.meshes[mesh].primitives.front().material = material;
+    return mesh;
 }
 
 int GltfDocument::addSkin(const std::string& name, const std::vector<int>& joints,

@@ -5,6 +5,7 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 
 #include <tiny_gltf.h>
 
@@ -21,6 +22,7 @@ struct PrimitiveArrays
 {
     std::vector<glm::dvec3> positions;
     std::vector<glm::dvec3> normals;
+    std::vector<glm::dvec4> tangents; ///< w: 1 or -1, the bitangent's side (glTF 2.0, 3.7.2.1)
     std::vector<glm::dvec2> textureCoordinates;
     std::vector<glm::dvec3> colours;                 ///< linear, [0, 1]
     std::vector<std::array<std::uint8_t, 4>> joints; ///< places in the skin's joint list
@@ -40,12 +42,15 @@ public:
                 const glm::dquat& rotation = glm::dquat(1.0, 0.0, 0.0, 0.0));
     tinygltf::Node& node(int index) { return _model.nodes[index]; }
 
-    /// A PNG picture with a mipmapped sampler.
-    int addTexture(const std::string& name, const std::vector<std::uint8_t>& png);
+    /// A PNG picture with a mipmapped sampler. repeats: the picture repeats outside of [0, 1]; else its edge does.
+    int addTexture(const std::string& name, const std::vector<std::uint8_t>& png, bool repeats = false);
+    /// Records the material's extensions as used by the file.
     int addMaterial(const tinygltf::Material& material);
 
     int addMesh(const std::string& name);
     void addPrimitive(int mesh, const PrimitiveArrays& arrays, int material);
+    /// A mesh with the vertices of another one's first primitive, and a material of its own.
+    int addMeshLike(const std::string& name, int other, int material);
     /// skeleton: the node that all joints hang on.
     int addSkin(const std::string& name, const std::vector<int>& joints, const std::vector<glm::dmat4>& inverseBinds,
                 int skeleton);

@@ -42,6 +42,7 @@ struct Part
     bool painted = true;       ///< false: shares the texture of the part that it mirrors
     AtlasRect rect;
     Painter painter;
+    Painter reflection; ///< gives (1, roughness, metallic), linear: the channels of glTF's metallic-roughness map
 
     int vertexAt(int row, int column) const { return row * columns + column; }
     glm::dvec2 textureCoordinate(int row, int column) const;

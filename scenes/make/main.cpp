@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "MaterialBalls.h"
 #include "serpent/Serpent.h"
 #include "wanderer/Wanderer.h"
 
@@ -12,15 +13,16 @@ int main(int argc, char** argv)
     if (argument.empty() || argument[0] == '-')
     {
         const bool asked = argument == "--help" || argument == "-h";
-        (asked ? std::cout : std::cerr)
-            << "usage: make_scenes FOLDER\n"
-               "Writes the project's own scenes, Wanderer.glb and Serpent.glb, into an existing folder.\n";
+        (asked ? std::cout : std::cerr) << "usage: make_scenes FOLDER\n"
+                                           "Writes the project's own scenes, Wanderer.glb, Serpent.glb and "
+                                           "MaterialBalls.glb, into an existing folder.\n";
         return asked ? 0 : 2;
     }
     try
     {
         osgGpuAnimation::scenes::writeWanderer(argument + "/Wanderer.glb");
         osgGpuAnimation::scenes::writeSerpent(argument + "/Serpent.glb");
+        osgGpuAnimation::scenes::writeMaterialBalls(argument + "/MaterialBalls.glb");
         return 0;
     }
     catch (const std::exception& error)

@@ -17,7 +17,9 @@ void writeSerpent(const std::string& path)
     tinygltf::Material material;
     material.name = "Scales";
     material.pbrMetallicRoughness.metallicFactor = 0.0;
-    material.pbrMetallicRoughness.roughnessFactor = 0.5;
+    material.pbrMetallicRoughness.roughnessFactor = 0.42;
+    material.extensions["KHR_materials_clearcoat"] = tinygltf::Value(tinygltf::Value::Object{
+        {"clearcoatFactor", tinygltf::Value(1.0)}, {"clearcoatRoughnessFactor", tinygltf::Value(0.12)}}); // water
     const int mesh = document.addMesh("Serpent");
     document.addPrimitive(mesh, serpentArrays(rig), document.addMaterial(material));
 

@@ -27,8 +27,9 @@ int addBody(GltfDocument& document, const Rig& rig)
     material.name = "Wanderer";
     material.pbrMetallicRoughness.baseColorTexture.index =
         document.addTexture("Wanderer", encodePng(parts.atlas().pixels(), Atlas::size, Atlas::size));
-    material.pbrMetallicRoughness.metallicFactor = 0.0;
-    material.pbrMetallicRoughness.roughnessFactor = 0.85;
+    const int reflections = Atlas::reflectionSize;
+    material.pbrMetallicRoughness.metallicRoughnessTexture.index =
+        document.addTexture("WandererReflections", encodePng(parts.atlas().reflections(), reflections, reflections));
     const int mesh = document.addMesh("Wanderer");
     document.addPrimitive(mesh, parts.arrays(), document.addMaterial(material));
     return mesh;

@@ -38,7 +38,7 @@ void addCoat(CharacterMesh& mesh)
     rings.push_back(coatRing(0.640, 0.205, 0.170, 0.170));
     rings.push_back(coatRing(0.720, 0.172, 0.142, 0.138));
     rings.push_back(coatRing(0.755, 0.000, 0.000, 0.000));
-    mesh.add(loft(rings, 26, coatBinder(mesh.rig())), 432, 312, wandererPaint::coat);
+    mesh.add(loft(rings, 26, coatBinder(mesh.rig())), 432, 312, wandererPaint::coat, wandererPaint::wool);
 }
 
 void addSleeves(CharacterMesh& mesh)
@@ -70,7 +70,7 @@ void addSleeves(CharacterMesh& mesh)
     const LoftRing inside = lower(1.02, 0.066, 0.067);
     for (const LoftRing& ring : {edge, cuff, cuff, end, end, inside, lower(0.90, 0.050, 0.050), lower(0.88, 0.0, 0.0)})
         rings.push_back(ring);
-    mesh.addPair(loft(rings, 13, armBinder(rig)), 200, 280, wandererPaint::sleeve);
+    mesh.addPair(loft(rings, 13, armBinder(rig)), 200, 280, wandererPaint::sleeve, wandererPaint::wool);
 }
 
 void addGloves(CharacterMesh& mesh)
@@ -84,7 +84,7 @@ void addGloves(CharacterMesh& mesh)
     const std::vector<LoftRing> hand = {at(-0.035, 0.034, 0.040), at(0.000, 0.035, 0.043), at(0.030, 0.038, 0.054),
                                         at(0.065, 0.039, 0.062),  at(0.095, 0.037, 0.061), at(0.125, 0.034, 0.057),
                                         at(0.155, 0.030, 0.047),  at(0.178, 0.021, 0.030), at(0.188, 0.000, 0.000)};
-    mesh.addPair(loft(refined(hand, 2), 12, gloveBinder(rig)), 132, 132, wandererPaint::glove);
+    mesh.addPair(loft(refined(hand, 2), 12, gloveBinder(rig)), 132, 132, wandererPaint::glove, wandererPaint::waxed);
 
     const glm::dvec3 root = rig.head("Thumb_L");
     const glm::dvec3 tip = glm::normalize(glm::dvec3(0.028, -0.030, 0.050));
@@ -100,7 +100,7 @@ void addGloves(CharacterMesh& mesh)
         const double out = glm::dot(position - root, tip) / 0.03;
         return Binding(handJoint).give(std::min(std::max(out, 0.0), 1.0), thumbJoint);
     };
-    mesh.addPair(loft(thumb, 8, binder), 60, 60, wandererPaint::glove);
+    mesh.addPair(loft(thumb, 8, binder), 60, 60, wandererPaint::glove, wandererPaint::waxed);
 }
 
 void addTrousers(CharacterMesh& mesh)
@@ -114,7 +114,8 @@ void addTrousers(CharacterMesh& mesh)
         at(0.490, 0.100, 0.010, 0.078, 0.080, 0.079),  at(0.400, 0.102, 0.013, 0.077, 0.080, 0.076),
         at(0.320, 0.103, 0.006, 0.076, 0.078, 0.078),  at(0.270, 0.104, 0.000, 0.072, 0.074, 0.076),
         at(0.220, 0.104, -0.004, 0.060, 0.060, 0.060), at(0.215, 0.104, -0.004, 0.0, 0.0, 0.0)};
-    mesh.addPair(loft(refined(rings, 2), 13, legBinder(mesh.rig())), 170, 210, wandererPaint::trousers);
+    mesh.addPair(loft(refined(rings, 2), 13, legBinder(mesh.rig())), 170, 210, wandererPaint::trousers,
+                 wandererPaint::wool);
 }
 
 /// A ring of the boot between ankle and toe: `tilt` degrees from level to upright, from instep down to the sole.
@@ -151,7 +152,7 @@ void addBoots(CharacterMesh& mesh)
     for (const LoftRing& ring : refined(foot, 1))
         rings.push_back(ring);
     rings.back().front = glm::dvec3(0.0);
-    mesh.addPair(loft(rings, 14, legBinder(mesh.rig())), 240, 246, wandererPaint::boot);
+    mesh.addPair(loft(rings, 14, legBinder(mesh.rig())), 240, 246, wandererPaint::boot, wandererPaint::waxed);
 
     const auto slab = [](double height, double grow, double side)
     {
@@ -167,7 +168,7 @@ void addBoots(CharacterMesh& mesh)
                                         slab(0.026, 0.000, 0.084),
                                         slab(0.034, -0.012, 0.080),
                                         levelRing({0.110, 0.040, 0.065}, 0.0, 0.0, 0.0)};
-    mesh.addPair(loft(sole, 16, legBinder(mesh.rig())), 180, 60, wandererPaint::sole);
+    mesh.addPair(loft(sole, 16, legBinder(mesh.rig())), 180, 60, wandererPaint::sole, wandererPaint::waxed);
 }
 
 } // namespace

@@ -39,7 +39,7 @@ void addScarf(CharacterMesh& mesh)
     const int neck = mesh.rig().index("Neck");
     const auto binder = [=](const glm::dvec3& position, const LoftRing&)
     { return Binding(chest).give(glm::smoothstep(1.17, 1.27, position.y) * 0.6, neck); };
-    mesh.add(loft(rings, 10, binder), 108, 296, wandererPaint::scarf);
+    mesh.add(loft(rings, 10, binder), 108, 296, wandererPaint::scarf, wandererPaint::wool);
 }
 
 void addScarfTail(CharacterMesh& mesh)
@@ -63,7 +63,7 @@ void addScarfTail(CharacterMesh& mesh)
         .then(rig.index("Scarf2"), rig.head("Scarf2"), {0.0, -1.0, -0.2}, 0.07)
         .then(rig.index("Scarf3"), rig.head("Scarf3"), {0.0, -1.0, -0.2}, 0.07);
     const auto binder = [=](const glm::dvec3&, const LoftRing& ring) { return tail.at(ring.center); };
-    mesh.add(loft(refined(rings, 2), 8, binder), 128, 220, wandererPaint::scarfTail);
+    mesh.add(loft(refined(rings, 2), 8, binder), 128, 220, wandererPaint::scarfTail, wandererPaint::wool);
 }
 
 void addBelt(CharacterMesh& mesh)
@@ -76,7 +76,7 @@ void addBelt(CharacterMesh& mesh)
     };
     const std::vector<LoftRing> belt = {band(0.884, -0.01), band(0.884, 0.008), band(0.884, 0.008), band(0.868, 0.011),
                                         band(0.850, 0.009), band(0.850, 0.009), band(0.850, -0.01)};
-    mesh.add(loft(belt, 26, coatBinder(mesh.rig())), 240, 28, wandererPaint::leather);
+    mesh.add(loft(belt, 26, coatBinder(mesh.rig())), 240, 28, wandererPaint::leather, wandererPaint::waxed);
 
     const double front = band(0.867, 0.012).front.z - 0.008;
     const auto plate = [&](double z, double half)
@@ -90,7 +90,7 @@ void addBelt(CharacterMesh& mesh)
     };
     const std::vector<LoftRing> buckle = {plate(-0.004, 0.0), plate(-0.004, 0.026), plate(0.006, 0.027),
                                           plate(0.009, 0.023), plate(0.009, 0.0)};
-    mesh.add(loft(buckle, 12, coatBinder(mesh.rig())), 60, 40, wandererPaint::brass);
+    mesh.add(loft(buckle, 12, coatBinder(mesh.rig())), 60, 40, wandererPaint::brass, wandererPaint::polished);
 }
 
 void addButtons(CharacterMesh& mesh)
@@ -100,7 +100,7 @@ void addButtons(CharacterMesh& mesh)
         const LoftRing coat = wandererCoatAt(height);
         const glm::dvec3 place(0.026, height, coat.center.z + coat.front.z * 0.985);
         const std::vector<LoftRing> disc = ellipsoid(place, {0.0, 0.0, 0.010}, {0.017, 0.0, 0.0}, {0.0, 0.017, 0.0}, 5);
-        mesh.add(loft(disc, 8, coatBinder(mesh.rig())), 28, 28, wandererPaint::brass);
+        mesh.add(loft(disc, 8, coatBinder(mesh.rig())), 28, 28, wandererPaint::brass, wandererPaint::polished);
     }
 }
 
@@ -128,7 +128,7 @@ void addStrap(CharacterMesh& mesh)
         ring.roundness = 0.6;
         rings.push_back(ring);
     }
-    mesh.add(loft(rings, 6, coatBinder(mesh.rig())), 40, 280, wandererPaint::leather);
+    mesh.add(loft(rings, 6, coatBinder(mesh.rig())), 40, 280, wandererPaint::leather, wandererPaint::waxed);
 }
 
 void addSatchel(CharacterMesh& mesh)
@@ -151,7 +151,8 @@ void addSatchel(CharacterMesh& mesh)
                                        section(0.006, 0.092, 0.052),  section(0.006, 0.099, 0.060),
                                        section(0.040, 0.098, 0.058),  section(0.066, 0.090, 0.046),
                                        section(0.076, 0.070, 0.030),  section(0.078, 0.0, 0.0)};
-    mesh.add(loft(bag, 18, rigidBinder(mesh.rig().index("Hips"))), 260, 150, wandererPaint::satchel);
+    mesh.add(loft(bag, 18, rigidBinder(mesh.rig().index("Hips"))), 260, 150, wandererPaint::satchel,
+             wandererPaint::satchelReflection);
 }
 
 } // namespace

@@ -36,11 +36,12 @@ void addFace(CharacterMesh& mesh)
         const double height = (ring.center.y - faceCenter.y) / faceHalf.y;
         ring.side *= 1.0 + 0.08 * std::max(0.0, 1.0 - std::abs(height + 0.45) / 0.55);
     }
-    mesh.add(loft(rings, 22, rigidBinder(mesh.rig().index("Head"))), 448, 296, wandererPaint::face);
+    mesh.add(loft(rings, 22, rigidBinder(mesh.rig().index("Head"))), 448, 296, wandererPaint::face,
+             wandererPaint::skinned);
 
     const glm::dvec3 nose = onFace(0.0, -0.045);
     const std::vector<LoftRing> nub = ellipsoid(nose, {0.0, 0.014, 0.0}, {0.019, 0.0, 0.0}, {0.0, 0.0, 0.016}, 6);
-    mesh.add(loft(nub, 8, rigidBinder(mesh.rig().index("Head"))), 40, 40, wandererPaint::face);
+    mesh.add(loft(nub, 8, rigidBinder(mesh.rig().index("Head"))), 40, 40, wandererPaint::face, wandererPaint::skinned);
 }
 
 void addEyes(CharacterMesh& mesh)
@@ -61,7 +62,8 @@ void addEyes(CharacterMesh& mesh)
             ring.front *= mirror;
             ring.side *= glm::dvec3(1.0, 1.0, sign);
         }
-        mesh.add(loft(rings, 12, rigidBinder(mesh.rig().index("Head"))), 72, 72, wandererPaint::eye);
+        mesh.add(loft(rings, 12, rigidBinder(mesh.rig().index("Head"))), 72, 72, wandererPaint::eye,
+                 wandererPaint::wetEye);
     }
 }
 
@@ -78,7 +80,7 @@ void addStrand(CharacterMesh& mesh, const glm::dvec3& root, const glm::dvec3& be
         const double swell = end ? 0.0 : std::pow(1.0 - t, 0.55) * (1.0 + 0.9 * t);
         rings.push_back(ringAcross(center, along, center - faceCenter, width * swell, 0.018 * swell));
     }
-    mesh.add(loft(rings, 7, rigidBinder(mesh.rig().index("Head"))), 44, 60, wandererPaint::hair);
+    mesh.add(loft(rings, 7, rigidBinder(mesh.rig().index("Head"))), 44, 60, wandererPaint::hair, wandererPaint::combed);
 }
 
 void addFringe(CharacterMesh& mesh)
@@ -129,13 +131,14 @@ void addHood(CharacterMesh& mesh)
     const std::vector<LoftRing> shell = refined(dome, 2);
     rings.insert(rings.end(), shell.begin() + 1, shell.end());
     rings.insert(rings.end(), tip.begin(), tip.end());
-    mesh.add(loft(rings, 24, hoodBinder(mesh.rig())), 432, 296, wandererPaint::hood);
+    mesh.add(loft(rings, 24, hoodBinder(mesh.rig())), 432, 296, wandererPaint::hood, wandererPaint::wool);
 
     std::vector<LoftRing> pompom =
         ellipsoid({0.0, 1.432, -0.446}, {0.0, 0.040, 0.014}, {0.044, 0.0, 0.0}, {0.0, -0.014, 0.042}, 9);
     for (std::size_t ring = 1; ring + 1 < pompom.size(); ++ring)
         pompom[ring].side *= ring % 2 ? 1.06 : 0.95;
-    mesh.add(loft(pompom, 12, rigidBinder(mesh.rig().index("HoodTip2"))), 70, 50, wandererPaint::fleece);
+    mesh.add(loft(pompom, 12, rigidBinder(mesh.rig().index("HoodTip2"))), 70, 50, wandererPaint::fleece,
+             wandererPaint::wool);
 }
 
 } // namespace

@@ -53,13 +53,14 @@ Part bar(double angle)
     return loft(refined(rings, 2), 5, rigidBinder(0));
 }
 
-tinygltf::Material material(const std::string& name, const std::vector<double>& colour, double metallic)
+tinygltf::Material material(const std::string& name, const std::vector<double>& colour, double metallic,
+                            double roughness)
 {
     tinygltf::Material result;
     result.name = name;
     result.pbrMetallicRoughness.baseColorFactor = colour;
     result.pbrMetallicRoughness.metallicFactor = metallic;
-    result.pbrMetallicRoughness.roughnessFactor = 0.45;
+    result.pbrMetallicRoughness.roughnessFactor = roughness;
     return result;
 }
 
@@ -80,7 +81,7 @@ int addWandererLantern(GltfDocument& document)
         turned({{-0.250, 0.0}, {-0.250, 0.060}, {-0.262, 0.068}, {-0.284, 0.068}, {-0.292, 0.058}, {-0.292, 0.0}}));
     for (int quarter = 0; quarter < 4; ++quarter)
         appendPart(frame, bar(glm::half_pi<double>() * (quarter + 0.5)));
-    document.addPrimitive(mesh, frame, document.addMaterial(material("Brass", {0.42, 0.22, 0.06, 1.0}, 0.3)));
+    document.addPrimitive(mesh, frame, document.addMaterial(material("Brass", {0.86, 0.60, 0.26, 1.0}, 1.0, 0.28)));
 
     PrimitiveArrays glass;
     std::vector<LoftRing> rings;
@@ -93,8 +94,10 @@ int addWandererLantern(GltfDocument& document)
                                          {-0.252, 0.0}})
         rings.push_back(levelRing({0.0, height, 0.0}, radius, radius, radius));
     appendPart(glass, loft(rings, 12, rigidBinder(0)));
-    tinygltf::Material glow = material("Glow", {0.95, 0.56, 0.14, 1.0}, 0.0);
-    glow.emissiveFactor = {0.40, 0.19, 0.03};
+    tinygltf::Material glow = material("Glow", {0.95, 0.56, 0.14, 1.0}, 0.0, 0.15);
+    glow.emissiveFactor = {1.0, 0.50, 0.09};
+    glow.extensions["KHR_materials_emissive_strength"] =
+        tinygltf::Value(tinygltf::Value::Object{{"emissiveStrength", tinygltf::Value(1.6)}});
     document.addPrimitive(mesh, glass, document.addMaterial(glow));
     return mesh;
 }

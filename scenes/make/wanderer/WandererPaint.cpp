@@ -234,10 +234,48 @@ dvec3 fleece(const SurfacePoint& point)
     return cream * (0.95 + 0.07 * noise(point.position * 90.0) + 0.05 * noise(point.position * 190.0));
 }
 
-dvec3 brass(const SurfacePoint& point)
+dvec3 brass(const SurfacePoint&)
 {
-    const double glint = 0.5 + 0.5 * std::sin(point.u * glm::two_pi<double>() + 1.0);
-    return brassYellow * (0.82 + 0.25 * glint);
+    return brassYellow;
+}
+
+dvec3 wool(const SurfacePoint& point)
+{
+    return dvec3(1.0, 0.92 + 0.04 * noise(point.position * 90.0), 0.0);
+}
+
+dvec3 skinned(const SurfacePoint&)
+{
+    return dvec3(1.0, 0.62, 0.0);
+}
+
+dvec3 wetEye(const SurfacePoint&)
+{
+    return dvec3(1.0, 0.12, 0.0);
+}
+
+dvec3 combed(const SurfacePoint&)
+{
+    return dvec3(1.0, 0.50, 0.0);
+}
+
+dvec3 waxed(const SurfacePoint& point)
+{
+    return dvec3(1.0, 0.46 + 0.12 * noise(point.position * 40.0), 0.0);
+}
+
+dvec3 satchelReflection(const SurfacePoint& point)
+{
+    const double across = (point.u - 0.5) * 0.46;
+    const double height = point.position.y - 0.762;
+    const double plate = brush::inside(brush::roundedBox(across, height, 0.017, 0.014, 0.004)) -
+                         brush::inside(brush::roundedBox(across, height, 0.009, 0.007, 0.002));
+    return brush::over(waxed(point), polished(point), plate);
+}
+
+dvec3 polished(const SurfacePoint& point)
+{
+    return dvec3(1.0, 0.30 + 0.08 * noise(point.position * 60.0), 1.0);
 }
 
 } // namespace osgGpuAnimation::scenes::wandererPaint

@@ -25,4 +25,14 @@ glm::dvec3 satchel(const SurfacePoint& point);
 glm::dvec3 fleece(const SurfacePoint& point);
 glm::dvec3 brass(const SurfacePoint& point);
 
+// How the materials reflect: (1, roughness, metallic).
+
+glm::dvec3 wool(const SurfacePoint& point);
+glm::dvec3 skinned(const SurfacePoint& point);
+glm::dvec3 wetEye(const SurfacePoint& point);
+glm::dvec3 combed(const SurfacePoint& point);
+glm::dvec3 waxed(const SurfacePoint& point);
+glm::dvec3 satchelReflection(const SurfacePoint& point);
+glm::dvec3 polished(const SurfacePoint& point);
+
 } // namespace osgGpuAnimation::scenes::wandererPaint

@@ -251,14 +251,18 @@ void main()
 #if DRAW_LIGHTING
     color.rgb = litColor(color.rgb);
 #endif
+#ifdef MATERIAL_TRANSMISSION
+    // Blended with ONE and ONE_MINUS_SRC_ALPHA: highlights cover what lies behind.
+    float through = materialTransmittance() * (1.0 - materialFactors.x);
+    float cover = max(1.0 - 0.96 * through, min(largest(color.rgb), 1.0));
+    color.rgb /= cover;
+#endif
     color.rgb = shownColor(color.rgb);
 #if DRAW_FOG && defined(GL_ARB_compatibility)
     color.rgb = foggedColor(color.rgb);
 #endif
 #ifdef MATERIAL_TRANSMISSION
-    // Blended with ONE and ONE_MINUS_SRC_ALPHA: the reflection stays.
-    float through = materialTransmittance() * (1.0 - materialFactors.x);
-    color = vec4(color.rgb * color.a, color.a * (1.0 - 0.96 * through));
+    color = vec4(color.rgb, 1.0) * (cover * color.a);
 #endif
     fragmentColor = color;
 #elif DRAW_ALPHA

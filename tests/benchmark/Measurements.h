@@ -36,6 +36,10 @@ Result<bool> measureFrames(const Subject& subject, const Effort& effort, Report&
 /// triangles.
 Result<bool> measureDraws(const Subject& subject, const Effort& effort, Report& report);
 
+/// glTF's shading of a picture that the character fills, under one light and in the studio, compared with the fixed
+/// pipeline's look.
+Result<bool> measureShading(const Subject& subject, const Effort& effort, Report& report);
+
 /// One crowd node compared with the same number of separate nodes: whole frames and their CPU time.
 Result<bool> measureCrowd(const Subject& subject, const Effort& effort, Report& report);
 

@@ -11,16 +11,9 @@
 namespace osgGpuAnimation::benchmark
 {
 
-namespace
+Result<std::shared_ptr<StagedViewer>> StagedViewer::create(osg::Node* scene, const osg::BoundingSphere& sight, int side)
 {
-
-constexpr int pictureSize = 64;
-
-} // namespace
-
-Result<std::shared_ptr<StagedViewer>> StagedViewer::create(osg::Node* scene, const osg::BoundingSphere& sight)
-{
-    Result<osg::ref_ptr<EglGraphicsContext>> context = EglGraphicsContext::create(pictureSize, pictureSize);
+    Result<osg::ref_ptr<EglGraphicsContext>> context = EglGraphicsContext::create(side, side);
     if (!context) return context.error();
     std::shared_ptr<StagedViewer> made(new StagedViewer(context.value()));
     osgViewer::Viewer& viewer = made->_viewer;
@@ -28,7 +21,7 @@ Result<std::shared_ptr<StagedViewer>> StagedViewer::create(osg::Node* scene, con
     viewer.setReleaseContextAtEndOfFrameHint(false);
     osg::Camera* camera = viewer.getCamera();
     camera->setGraphicsContext(context.value());
-    camera->setViewport(0, 0, pictureSize, pictureSize);
+    camera->setViewport(0, 0, side, side);
     camera->setClearColor(osg::Vec4(0, 0, 0, 0));
     camera->setCullingMode(osg::CullSettings::VIEW_FRUSTUM_CULLING);
     viewer.setSceneData(scene);
@@ -101,8 +94,9 @@ std::string StagedViewer::takeErrors()
 int StagedViewer::pixelsDrawn()
 {
     _context->makeCurrent();
-    std::vector<unsigned char> pixels(std::size_t(4) * pictureSize * pictureSize);
-    glReadPixels(0, 0, pictureSize, pictureSize, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
+    const int side = _context->getTraits()->width;
+    std::vector<unsigned char> pixels(std::size_t(4) * side * side);
+    glReadPixels(0, 0, side, side, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
     int drawn = 0;
     for (std::size_t pixel = 0; pixel < pixels.size(); pixel += 4)
         if (pixels[pixel] != 0 || pixels[pixel + 1] != 0 || pixels[pixel + 2] != 0) ++drawn;

@@ -24,13 +24,14 @@ struct FrameCost
     Spent updateAndCull() const { return {update.cpu + cull.cpu, update.wall + cull.wall}; }
 };
 
-/// An osgViewer without a display, 64x64 pixels, that runs each frame stage by stage. It shows the whole scene and
-/// culls no small features.
+/// An osgViewer without a display, by default of 64x64 pixels, that runs each frame stage by stage. It shows the whole
+/// scene and culls no small features.
 class StagedViewer
 {
 public:
-    /// sight: the bounds that the picture shows. Error: no GL is available.
-    static Result<std::shared_ptr<StagedViewer>> create(osg::Node* scene, const osg::BoundingSphere& sight);
+    /// sight: the bounds that the picture shows. side: pixels each way. Error: no GL is available.
+    static Result<std::shared_ptr<StagedViewer>> create(osg::Node* scene, const osg::BoundingSphere& sight,
+                                                        int side = 64);
     ~StagedViewer();
 
     /// Draws a frame at that simulation time (seconds). The first one is an ordinary viewer.frame(), timed as draw.

@@ -35,7 +35,9 @@ Result<Subject> loadSubject(const std::string& name, const std::string& fileName
 {
     std::ifstream stream(fileName, std::ios::binary);
     const std::string bytes(std::istreambuf_iterator<char>(stream), {});
-    Result<gltf::ImportedModel> model = gltf::importModel(bytes, fileName, {});
+    gltf::ImportOptions options;
+    options.fixedLighting = true;
+    Result<gltf::ImportedModel> model = gltf::importModel(bytes, fileName, options);
     if (!model) return model.error();
     Subject subject{name, fileName, std::move(model.value()), 0};
     if (!subject.model.set || subject.set().clips().empty()) return Error{"nothing moves"};

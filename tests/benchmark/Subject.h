@@ -21,6 +21,7 @@ struct Subject
     std::size_t vertexCount() const; ///< of all its meshes
 };
 
+/// Draws with the fixed pipeline's look, as osgAnimation does.
 /// Errors: those of the import; no clip of the file moves anything.
 Result<Subject> loadSubject(const std::string& name, const std::string& fileName);
 

@@ -322,6 +322,25 @@ TEST_F(PbrMaterialGLTest, normalMapsLeanTheNormal)
     }
 }
 
+// KHR_materials_clearcoat: seen along its normal, the coat lets 96 % of the light below pass.
+TEST_F(PbrMaterialGLTest, whatLiesBelowTheClearCoatIsDarker)
+{
+    surrounding->setAmbientIntensity(osg::Vec4(0, 0, 0, 1));
+    light->setPosition(osg::Vec4(2, -1, 0, 0)); // far from the coat's sharp highlight
+    PbrMaterial lit, glowing;
+    lit.metallic = glowing.metallic = 0.0f;
+    glowing.baseColor.set(0, 0, 0, 1);
+    glowing.emissive.set(0.5f, 0.5f, 0.5f);
+    for (PbrMaterial* material : {&lit, &glowing})
+    {
+        const float without = linearColor(middle(*pictureOf(panel(true, *material)))).g();
+        material->clearcoat = 1.0f;
+        const float found = middle(*pictureOf(panel(true, *material))).g();
+        EXPECT_NEAR(found, encoded(0.96 * without), 1.5 / 255);
+        EXPECT_LT(found, encoded(without) - 1.5f / 255);
+    }
+}
+
 TEST_F(PbrMaterialGLTest, occlusionDarkensSurroundingsAlone)
 {
     PbrMaterial open, occluded;

@@ -235,6 +235,20 @@ TEST_F(PbrMaterialGLTest, mapsMultiplyTheirFactors)
              m.normalMap.texture = plainTexture({0.5f, 0.5f, 1, 1});
          },
          [](PbrMaterial&) {}, false},
+        {"occlusion of half strength",
+         [](PbrMaterial& m) {
+             m.occlusionMap.texture = plainTexture({0, 0, 0, 1}), m.occlusionStrength = 0.5f;
+         },
+         [](PbrMaterial& m) {
+             m.occlusionMap.texture = plainTexture({0.5f, 0, 0, 1});
+         }},
+        {"a normal map of half scale",
+         [](PbrMaterial& m) {
+             m.normalMap.texture = plainTexture({0.9f, 0.5f, 0.8f, 1}), m.normalScale = 0.5f;
+         },
+         [](PbrMaterial& m) {
+             m.normalMap.texture = plainTexture({0.7f, 0.5f, 0.8f, 1});
+         }},
         {"no occlusion",
          [](PbrMaterial& m) {
              m.occlusionMap.texture = plainTexture({1, 0, 0, 1});

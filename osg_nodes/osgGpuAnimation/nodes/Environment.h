@@ -53,15 +53,15 @@ public:
 
     /// Multiplies the radiance; 0 or more; default 1.
     void setIntensity(float intensity);
-    float getIntensity() const { return _intensity; }
+    float getIntensity() const { return _intensity; } ///< 0 or more
 
     /// Turns the surroundings about +Z, counter-clockwise from above; radians; default 0.
     void setRotation(float radians) { _rotation = radians; }
-    float getRotation() const { return _rotation; }
+    float getRotation() const { return _rotation; } ///< radians
 
     /// Khronos PBR Neutral tone mapping of everything below; default false: colours above 1 are clamped.
     void setToneMapping(bool isOn) { _toneMapping = isOn; }
-    bool getToneMapping() const { return _toneMapping; }
+    bool getToneMapping() const { return _toneMapping; } ///< true: colours above 1 are compressed
 
     void traverse(osg::NodeVisitor& visitor) override;
     void setThreadSafeRefUnref(bool threadSafe) override;

@@ -25,21 +25,21 @@ struct PbrMaterial
     struct Map
     {
         osg::ref_ptr<osg::Texture2D> texture; ///< null: none
-        int coordinates = 0;
+        int coordinates = 0;                  ///< 0 to 2
     };
 
     osg::Vec4 baseColor{1, 1, 1, 1}; ///< linear, in [0, 1]
     float metallic = 1.0f;           ///< in [0, 1]
     float roughness = 1.0f;          ///< in [0, 1]; its square is the alpha of GGX
-    float normalScale = 1.0f;
-    float occlusionStrength = 1.0f; ///< in [0, 1]
-    osg::Vec3 emissive{0, 0, 0};    ///< linear, in [0, 1]
-    float emissiveStrength = 1.0f;  ///< KHR_materials_emissive_strength; 0 or more
-    Map baseColorMap;               ///< sRGB; its coordinates are number 0
-    Map metallicRoughnessMap;       ///< linear: green is roughness, blue is metallic
-    Map normalMap;                  ///< linear
-    Map occlusionMap;               ///< linear: red
-    Map emissiveMap;                ///< sRGB
+    float normalScale = 1.0f;        ///< of the map's first two components
+    float occlusionStrength = 1.0f;  ///< in [0, 1]
+    osg::Vec3 emissive{0, 0, 0};     ///< linear, in [0, 1]
+    float emissiveStrength = 1.0f;   ///< KHR_materials_emissive_strength; 0 or more
+    Map baseColorMap;                ///< sRGB; its coordinates are number 0
+    Map metallicRoughnessMap;        ///< linear: green is roughness, blue is metallic
+    Map normalMap;                   ///< linear
+    Map occlusionMap;                ///< linear: red
+    Map emissiveMap;                 ///< sRGB
 
     // KHR_materials_specular and ior: the dielectric's reflection along the normal (0.04: an index of refraction
     // of 1.5) and the weight of its reflection. isSpecularGlossiness: the converted
@@ -48,7 +48,7 @@ struct PbrMaterial
     float specular = 1.0f;                        ///< in [0, 1]
     Map specularColorMap;                         ///< sRGB; isSpecularGlossiness: alpha is the glossiness
     Map specularMap;                              ///< linear: alpha
-    bool isSpecularGlossiness = false;
+    bool isSpecularGlossiness = false;            ///< roughness is 1 - glossiness
 
     // KHR_materials_clearcoat
     float clearcoat = 0.0f;          ///< in [0, 1]

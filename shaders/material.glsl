@@ -80,6 +80,13 @@ vec3 meshNormal()
 #endif
 }
 
+// The unperturbed normal, towards the viewer.
+vec3 facingNormal()
+{
+    vec3 normal = meshNormal();
+    return gl_FrontFacing ? normal : -normal;
+}
+
 // The normal of a map, in eye space. map: in [-1, 1]. Without tangents, the derivatives of position and coordinates replace
 // them (Mikkelsen, "Bump Mapping Unparametrized Surfaces on the GPU", 2010). The second coordinate grows with the map's +Y.
 vec3 mappedNormal(vec3 map, vec2 place)
@@ -111,7 +118,7 @@ vec3 materialNormal()
     vec3 map = texture(normalTexture, place).xyz * 2.0 - 1.0;
     return mappedNormal(vec3(map.xy * materialFactors.z, map.z), place);
 #else
-    return gl_FrontFacing ? meshNormal() : -meshNormal();
+    return facingNormal();
 #endif
 }
 
@@ -179,7 +186,7 @@ vec2 materialCoat(out vec3 normal)
     vec2 place = coordinates(MATERIAL_CLEARCOAT_NORMAL_MAP);
     normal = mappedNormal(texture(clearcoatNormalTexture, place).xyz * 2.0 - 1.0, place);
 #else
-    normal = gl_FrontFacing ? meshNormal() : -meshNormal();
+    normal = facingNormal();
 #endif
     return coat;
 }

@@ -18,6 +18,7 @@ class ViewerGLTest : public GLTest
 protected:
     void TearDown() override
     {
+        _scenes.clear(); // before their context, which OSG would otherwise keep data of until the process ends
         // As with a window: closing the context makes the viewer's cameras release the GL objects of their scenes.
         GLTest::TearDown();
         _viewer = nullptr;
@@ -49,6 +50,7 @@ protected:
     /// Draws the scene at each of these times and returns the last picture.
     osg::ref_ptr<osg::Image> pictureOf(osg::Node* scene, const std::vector<double>& times)
     {
+        _scenes.emplace_back(scene);
         viewer().setSceneData(scene);
         for (const double time : times)
             drawAt(time);
@@ -60,6 +62,9 @@ protected:
 private:
     osg::ref_ptr<osgViewer::Viewer> _viewer;
     osg::ref_ptr<Picture> _picture = new Picture;
+    /// What was drawn stays alive: OSG takes a new vertex array at the address of a deleted one for the one that it set
+    /// last, and draws from freed memory (VertexArrayState::setArray in 3.6.5).
+    std::vector<osg::ref_ptr<osg::Node>> _scenes;
 };
 
 } // namespace osgGpuAnimation

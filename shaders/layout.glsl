@@ -20,7 +20,12 @@
 #define POSE_SAMPLE_ADDITIVE 2u  // adds its difference from the preceding REFERENCE
 #define POSE_SAMPLE_REFERENCE 4u // adds nothing itself; its weight is that of the next sample
 #define POSE_SAMPLE_ABOVE 8u     // the first sample of a higher blend priority
+#define POSE_SAMPLE_POSED 16u    // the keyframe is a posed one: its index among those of the batch
 #define POSE_SAMPLE_MASK_SHIFT 16
+
+// Posed keyframes: RGBA32UI, one transform per track. A number that is not set has this bit pattern, which is a NaN: shaders
+// compare it as an integer.
+#define POSE_NOT_SET 0xFFFFFFFFu
 
 // Additive layers do not change axes with a smaller reference scale.
 #define POSE_SMALLEST_SCALE 1e-6

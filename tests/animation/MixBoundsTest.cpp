@@ -90,7 +90,7 @@ TEST(MixBoundsTest, HoldWhateverLayersAndCrossfadesShow)
         const auto set = character == 0 ? makeGaitSet()
                                         : makeRandomSet({seed + character, 16, 6, 5, character % 2 == 1, true, true});
         const EntryBoxes boxes = someBoxes(*set);
-        const MixBounds bounds(*set, boxes, boxes);
+        const MixBounds bounds(*set, boxes);
         std::vector<PlayedClip> played;
         for (int stack = 0; stack < 60; ++stack)
         {
@@ -133,7 +133,7 @@ TEST(MixBoundsTest, AnAdditiveLayerIsMeasuredFromTheFirstFrame)
     {
         const auto set = startingElsewhere(c.path, c.firstAndLast);
         const EntryBoxes boxes = someBoxes(*set);
-        const MixBounds bounds(*set, boxes, boxes);
+        const MixBounds bounds(*set, boxes);
         AnimationController controller(set);
         AnimationLayer& added = controller.layer(1);
         added.setMode(AnimationLayer::Mode::Additive, AnimationLayer::Reference::FirstFrame);
@@ -153,7 +153,7 @@ TEST(MixBoundsTest, OfGaitsTheyAreNotMuchWiderThanTheGaits)
 {
     const auto set = makeGaitSet();
     const EntryBoxes boxes = someBoxes(*set);
-    const MixBounds bounds(*set, boxes, boxes);
+    const MixBounds bounds(*set, boxes);
     Box gaits;
     for (const char* name : {"Walk", "Run"})
         gaits.add(boundsOfClip(*set, set->findClip(name), boxes));

@@ -110,6 +110,41 @@ TEST(CharacterBoundsTest, HoldMorphWeightsThatAdditiveLayersRaiseAndLower)
     }
 }
 
+TEST(CharacterBoundsTest, HoldMorphWeightsThatTheApplicationPoses)
+{
+    using Mode = AnimationLayer::Mode;
+    struct Case
+    {
+        Mode mode;
+        float posed;
+        double weight; ///< at the end, over "rise" at 1
+    };
+    const Case cases[] = {{Mode::Override, 0.0f, 0.0},   {Mode::Override, -1.0f, -1.0}, {Mode::Override, 7.0f, 7.0},
+                          {Mode::Override, -30.0f, -30}, {Mode::Additive, 5.0f, 5.75},  {Mode::Additive, -9.0f, -8.25}};
+    for (const Case& c : cases)
+    {
+        SCOPED_TRACE(testing::Message() << (c.mode == Mode::Override ? "shown " : "added ") << c.posed);
+        const osg::ref_ptr<AnimatedCharacter> character = makeMorphedCharacter();
+        AnimationController& controller = character->getController();
+        controller.setLoopMode(LoopMode::Once);
+        ASSERT_TRUE(controller.play("rise"));
+        controller.layer(1).setMode(c.mode);
+        character->update(0.0);
+        character->update(1.0);
+        ASSERT_TRUE(controller.layer(1).pose().setMorphWeight(0, 0, c.posed));
+        character->update(1.0);
+        std::vector<AffineMatrix> palette;
+        Pose::evaluate(character->getAnimationSet(), controller.instruction(), AffineMatrix(), palette);
+        std::vector<glm::dvec3> positions;
+        const auto& square = dynamic_cast<const SkinnedGeometry&>(*character->getChild(0));
+        square.computePositions(palette, positions);
+        EXPECT_NEAR(positions.at(0).z, c.weight, 1e-5);
+        for (const glm::dvec3& position : positions)
+            for (const osg::BoundingBox& box : {character->getCurrentBounds(), square.getBoundingBox()})
+                EXPECT_TRUE(box.contains(osg::Vec3(position.x, position.y, position.z))) << position.z;
+    }
+}
+
 TEST(CharacterBoundsTest, ACloneHasItsOwn)
 {
     osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();

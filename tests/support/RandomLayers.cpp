@@ -50,6 +50,36 @@ void addRandomMasks(const AnimationSet& set, std::mt19937& random)
     }
 }
 
+std::shared_ptr<const JointPose> randomPose(const std::shared_ptr<const AnimationSet>& set, std::mt19937& random)
+{
+    const auto pose = std::make_shared<JointPose>(set);
+    const auto any = [&] { return static_cast<float>(number(random, -1.0, 1.0)); };
+    for (std::size_t joint = 0; joint < set->skeleton().jointCount(); ++joint)
+    {
+        const int parts = whole(random, 0, 11); // three of four joints have something
+        if ((parts & 1) != 0) pose->setTranslation(joint, {any(), any(), any()});
+        if ((parts & 2) != 0) pose->setRotation(joint, glm::quat(any(), any(), any(), any()));
+        if ((parts & 4) != 0) pose->setScale(joint, glm::vec3(1.0f) + 0.3f * glm::vec3(any(), any(), any()));
+    }
+    for (std::size_t morph = 0; morph < set->morphs().size(); ++morph)
+        for (std::size_t target = 0; target < set->morphs()[morph].defaults.size(); ++target)
+            if (whole(random, 0, 1) == 0) pose->setMorphWeight(morph, target, 2.0f * any());
+    return pose;
+}
+
+void addRandomPoses(const std::shared_ptr<const AnimationSet>& set, std::mt19937& random, PoseInstruction& instruction)
+{
+    for (std::size_t i = 0; i < instruction.sampleCount; ++i)
+    {
+        BlendSample& sample = instruction.samples[i];
+        if ((sample.control & POSE_SAMPLE_REFERENCE) != 0 || whole(random, 0, 2) != 0) continue;
+        sample.control = (sample.control & ~POSE_SAMPLE_SPLINE) | POSE_SAMPLE_POSED;
+        sample.keyframe = static_cast<std::uint32_t>(instruction.poses.size());
+        sample.alpha = 0.0f;
+        instruction.poses.push_back(randomPose(set, random));
+    }
+}
+
 PoseInstruction randomLayers(const AnimationSet& set, std::mt19937& random)
 {
     PoseInstruction out;

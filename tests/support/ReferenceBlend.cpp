@@ -2,6 +2,7 @@
 #include "support/ReferenceBlend.h"
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/animation/Pose.h>
 
 #include <layout.glsl>
 
@@ -86,6 +87,31 @@ private:
         return mask == 0 ? own : own * static_cast<double>(_set.masks().weights(mask)[_track]);
     }
 
+    /// What the pose of a posed sample has of the track; 0 where nothing is set.
+    JointPose::Track posed(std::size_t i) const
+    {
+        const std::uint32_t pose = _instruction.samples[i].keyframe;
+        if (pose < _instruction.poses.size() && _instruction.poses[pose])
+            for (const JointPose::Track& track : _instruction.poses[pose]->tracks())
+                if (track.track == _track) return track;
+        return {0, 0, {glm::vec4(0.0f), glm::vec4(0.0f), glm::vec4(0.0f)}};
+    }
+
+    /// 1 for each number that the sample has, else 0.
+    Track cover(std::size_t i) const
+    {
+        Track cover{Numbers(4, 1.0), Numbers(4, 1.0), Numbers(4, 1.0)};
+        if (!has(i, POSE_SAMPLE_POSED)) return cover;
+        const std::uint32_t numbers = posed(i).numbers;
+        for (std::size_t n = 0; n < 4; ++n)
+        {
+            cover.translation[n] = numbers >> n & 1u;
+            cover.rotation[n] = numbers >> (n + 4) & 1u;
+            cover.scale[n] = numbers >> (n + 8) & 1u;
+        }
+        return cover;
+    }
+
     const JointTransform* keyframe(std::size_t clip, std::size_t place) const
     {
         return _set.clips()[clip].at(place, _track);
@@ -112,6 +138,11 @@ private:
     Track sampled(std::size_t i)
     {
         const BlendSample& sample = _instruction.samples[i];
+        if (has(i, POSE_SAMPLE_POSED))
+        {
+            const JointTransform values = posed(i).values;
+            return {numbers(values.translation), numbers(values.rotation), numbers(values.scale)};
+        }
         const JointTransform* a = &_set.restPose()[_track];
         const JointTransform* b = a;
         bool isSpline = false;
@@ -149,26 +180,32 @@ private:
         return along < 0.0 ? scaled(b, -1.0) : b;
     }
 
+    /// The numbers of a part: `mixed` where the weights sum to 1, the rest from below.
+    static Numbers filled(const Numbers& below, Numbers mixed, const Numbers& whole)
+    {
+        for (std::size_t n = 0; n < mixed.size(); ++n)
+            mixed[n] = mixed[n] / std::max(whole[n], 1.0) + below[n] * (1.0 - std::min(whole[n], 1.0));
+        return mixed;
+    }
+
     Track over(const Track& below, std::size_t first, std::size_t end)
     {
-        double whole = 0.0;
-        for (std::size_t i = first; i < end; ++i)
-            whole += weight(i);
-        if (whole == 0.0) return below;
-        Track mixed{Numbers(4), Numbers(4), Numbers(4)};
+        Track whole{Numbers(4), Numbers(4), Numbers(4)};
+        Track mixed = whole;
         Numbers side;
         for (std::size_t i = first; i < end; ++i)
         {
             if (weight(i) == 0.0) continue;
             Track track = sampled(i);
-            if (side.empty()) side = track.rotation;
-            track.rotation = onSide(side, track.rotation);
-            add(mixed, track, weight(i) / std::max(whole, 1.0));
+            const Track has = cover(i);
+            if (side.empty() && has.rotation[0] > 0.0) side = track.rotation;
+            if (has.rotation[0] > 0.0) track.rotation = onSide(side, track.rotation);
+            add(mixed, track, weight(i)); // a number that the sample has not is 0
+            add(whole, has, weight(i));
         }
-        if (whole >= 1.0) return mixed;
-        mixed.rotation = onSide(below.rotation, mixed.rotation);
-        add(mixed, below, 1.0 - whole);
-        return mixed;
+        if (whole.rotation[0] > 0.0 && whole.rotation[0] < 1.0) mixed.rotation = onSide(below.rotation, mixed.rotation);
+        return {filled(below.translation, mixed.translation, whole.translation),
+                filled(below.rotation, mixed.rotation, whole.rotation), filled(below.scale, mixed.scale, whole.scale)};
     }
 
     void addDifferences(Track& total, std::size_t first)
@@ -178,7 +215,11 @@ private:
         {
             const double share = weight(i + 1);
             if (share == 0.0) continue;
-            const Track from = sampled(i), to = sampled(i + 1);
+            Track from = sampled(i), to = sampled(i + 1);
+            const Track has = cover(i + 1);
+            for (Numbers Track::*part : {&Track::translation, &Track::rotation, &Track::scale})
+                for (std::size_t n = 0; n < 4; ++n)
+                    if ((has.*part)[n] == 0.0) (to.*part)[n] = (from.*part)[n];
             total.translation =
                 plus(total.translation, scaled(plus(to.translation, scaled(from.translation, -1)), share));
             if (_isWeights)

@@ -24,6 +24,7 @@ void addAtMost(std::ptrdiff_t times, const PlayedClip& clip, std::vector<PlayedC
 bool coversAll(const AnimationLayer& layer)
 {
     if (layer.mode() != AnimationLayer::Mode::Override || layer.mask() != 0 || layer.weight() < 1.0f) return false;
+    if (layer.state() == PlayState::Stopped || layer.poseShare() > 0.0f) return false;
     double shares = 0.0;
     for (std::size_t v = 0; v < layer.mixer().activeClipCount(); ++v)
         shares += layer.mixer().activeClip(v).share;
@@ -33,12 +34,19 @@ bool coversAll(const AnimationLayer& layer)
 /// The number of blend samples of the layer's clips, see BlendList.
 std::size_t samplesOf(const AnimationLayer& layer)
 {
-    return layer.mixer().activeClipCount() * (layer.mode() == AnimationLayer::Mode::Additive ? 2 : 1);
+    const std::size_t clips = layer.state() == PlayState::Stopped ? 0 : layer.mixer().activeClipCount();
+    return (clips + (layer.poseShare() > 0.0f ? 1 : 0)) * (layer.mode() == AnimationLayer::Mode::Additive ? 2 : 1);
 }
 
 // A clip that fades into itself occurs twice: a mix of two of its times can be a pose that the clip never shows.
 void addActiveClips(const AnimationLayer& layer, std::vector<PlayedClip>& out)
 {
+    if (layer.poseShare() > 0.0f)
+        out.push_back(
+            {-1,
+             layer.mode() == AnimationLayer::Mode::Override ? PlayedClip::Part::Mixed : PlayedClip::Part::AddedToRest,
+             layer.findPose()->extent()});
+    if (layer.state() == PlayState::Stopped) return;
     for (std::size_t v = 0; v < layer.mixer().activeClipCount(); ++v)
     {
         const int clip = layer.mixer().activeClip(v).playback.clip();
@@ -79,6 +87,7 @@ AnimationController::AnimationController(const AnimationController& other)
       _instruction(other._instruction), _rootMotion(other._rootMotion)
 {
     copyUpperLayers(other);
+    if (!_instruction.poses.empty()) AnimationController::rebuildInstruction();
 }
 
 AnimationController& AnimationController::operator=(const AnimationController& other)
@@ -90,6 +99,7 @@ AnimationController& AnimationController::operator=(const AnimationController& o
     _rootMotionCurve = other._rootMotionCurve;
     _base = AnimationLayer(*this, other._base);
     copyUpperLayers(other);
+    if (!_instruction.poses.empty()) rebuildInstruction();
     return *this;
 }
 
@@ -215,7 +225,7 @@ void findPlayedClips(const AnimationController& controller, std::vector<PlayedCl
     for (std::size_t i = 0; i < controller.layerCount(); ++i)
     {
         const AnimationLayer& layer = controller.layer(i);
-        if (layer.state() == PlayState::Stopped || !(layer.weight() > 0.0f)) continue;
+        if (!(layer.weight() > 0.0f)) continue;
         isRestHidden = isRestHidden || coversAll(layer);
         samples += samplesOf(layer);
         addActiveClips(layer, out);

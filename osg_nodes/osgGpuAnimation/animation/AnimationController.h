@@ -160,7 +160,7 @@ private:
 
 /// Finds all clips whose samples can contribute to the pose now, for any weights and masks of the layers, and the rest
 /// pose if it can be visible. Mixed clips occur once (twice if active clips mix two times of a clip), added ones once
-/// per layer and active clip. out: its old content is replaced.
+/// per layer and active clip, poses once per layer. out: its old content is replaced.
 void findPlayedClips(const AnimationController& controller, std::vector<PlayedClip>& out);
 
 } // namespace osgGpuAnimation

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/AnimationLayer.h>
 
+#include <osgGpuAnimation/animation/bounds/JointRange.h>
 #include <osgGpuAnimation/animation/JointMask.h>
 #include <osgGpuAnimation/animation/playback/BlendList.h>
 #include <osgGpuAnimation/animation/playback/FrameEvents.h>
@@ -17,6 +18,7 @@ namespace osgGpuAnimation
 AnimationLayer::AnimationLayer(LayerOwner& owner, const AnimationLayer& other) : AnimationLayer(other)
 {
     _owner = &owner;
+    if (_posed) _posed = std::make_shared<Posed>(Posed{std::make_shared<JointPose>(*_posed->pose), _posed->share});
     _crossfadeMoment = _weightFadeMoment = -1.0;
     _mixer.clearSteps();
 }
@@ -32,6 +34,7 @@ Result<bool> AnimationLayer::play(std::size_t clip)
     if (!known) return known.error();
     _mixer.start(playbackOf(clip, _loopMode));
     _state = PlayState::Playing;
+    fadePose(0.0, 0.0, FadeCurve::Linear);
     rebuildInstruction();
     return true;
 }
@@ -55,14 +58,17 @@ Result<bool> AnimationLayer::crossfade(std::size_t clip, double seconds, const C
                      std::to_string(*options.speed) + ": expected a finite number"};
     if (options.speed) _speed = *options.speed;
     if (options.loopMode) _loopMode = *options.loopMode;
-    if (_state == PlayState::Stopped) _mixer.clear();
+    const bool isFromPose = clipShare() <= 0.0;
+    if (_state == PlayState::Stopped || isFromPose) _mixer.clear();
     ClipPlayback playback = playbackOf(clip, _loopMode);
     const bool sharesPhase = options.sync == Sync::Phase && !_mixer.isEmpty();
     if (sharesPhase) playback.setPhase(_mixer.current().phase());
-    if (seconds > 0.0)
+    // A pose that hides all clips fades out over the new one.
+    if (seconds > 0.0 && !isFromPose)
         _mixer.fadeTo(playback, seconds, options.curve, sharesPhase);
     else
         _mixer.start(playback);
+    fadePose(0.0, seconds, options.curve);
     _state = PlayState::Playing;
     rebuildInstruction();
     return true;
@@ -88,12 +94,49 @@ void AnimationLayer::resume()
 void AnimationLayer::stop()
 {
     _state = PlayState::Stopped;
+    fadePose(0.0, 0.0, FadeCurve::Linear);
     if (!_mixer.isEmpty())
     {
         _mixer.start(playbackOf(static_cast<std::size_t>(clip()), _loopMode));
         _mixer.current().seek(0.0);
     }
     rebuildInstruction();
+}
+
+JointPose& AnimationLayer::pose()
+{
+    if (_posed) return *_posed->pose;
+    const double share = _state == PlayState::Stopped ? 1.0 : 0.0;
+    _posed = std::make_shared<Posed>(Posed{std::make_shared<JointPose>(_owner->_set), Fade(share)});
+    rebuildInstruction();
+    return *_posed->pose;
+}
+
+bool AnimationLayer::showPose(double seconds, FadeCurve curve)
+{
+    if (!std::isfinite(seconds) || seconds < 0.0) return false;
+    pose();
+    fadePose(1.0, seconds, curve);
+    advancePose(0.0);
+    rebuildInstruction();
+    return true;
+}
+
+void AnimationLayer::fadePose(double share, double seconds, FadeCurve curve)
+{
+    if (_posed) _posed->share = Fade({_posed->share.value(), share, seconds, 0.0, curve});
+}
+
+/// Returns the share of the step after which the pose's fade ended, in [0, 1]; -1 if it did not end.
+double AnimationLayer::advancePose(double seconds)
+{
+    if (!_posed) return -1.0;
+    if (_posed->share.state().to > 0.0 && clipShare() <= 0.0 && _state != PlayState::Stopped)
+    {
+        _mixer.clear();
+        _state = PlayState::Stopped;
+    }
+    return _posed->share.advance(seconds);
 }
 
 bool AnimationLayer::seek(double seconds)
@@ -165,24 +208,37 @@ void AnimationLayer::setBlendPriority(int blendPriority)
 
 void AnimationLayer::advance(double seconds)
 {
+    const double poseMoment = _state == PlayState::Paused ? -1.0 : advancePose(seconds);
     const bool isMoving = _state == PlayState::Playing || _state == PlayState::Ended;
-    _crossfadeMoment = -1.0;
+    _crossfadeMoment = poseMoment;
     _weightFadeMoment = _state == PlayState::Paused ? -1.0 : _weight.advance(seconds);
     if (!isMoving) return _mixer.clearSteps();
-    _crossfadeMoment = _mixer.advance(seconds, _state == PlayState::Playing);
+    _crossfadeMoment = std::max(poseMoment, _mixer.advance(seconds, _state == PlayState::Playing));
     if (_mixer.activeClip(_mixer.activeClipCount() - 1).move.hasFinished) _state = PlayState::Ended;
 }
 
 BlendSample AnimationLayer::sampleOf(const ClipPlayback& playback, double time, double share) const
 {
     BlendSample sample = set().sampleAt(playback.clip(), time);
-    sample.weight = static_cast<float>(share * _weight.value());
+    sample.weight = static_cast<float>(share * clipShare() * _weight.value());
     sample.control |= mask() << POSE_SAMPLE_MASK_SHIFT;
     return sample;
 }
 
+void AnimationLayer::collectPose(BlendList& out) const
+{
+    const std::uint32_t mask = this->mask() << POSE_SAMPLE_MASK_SHIFT;
+    const auto weight = static_cast<float>(_posed->share.value() * _weight.value());
+    const BlendSample sample{out.addPose(_posed->pose), 0.0f, weight, mask | POSE_SAMPLE_POSED};
+    if (_mode == Mode::Override)
+        out.add(sample, _blendPriority);
+    else
+        out.addDifference(BlendSample{0, 0.0f, weight, mask}, sample);
+}
+
 void AnimationLayer::collect(BlendList& out) const
 {
+    if (_posed && _posed->isShown()) collectPose(out);
     if (_state == PlayState::Stopped) return;
     for (std::size_t v = 0; v < _mixer.activeClipCount(); ++v)
     {
@@ -203,6 +259,7 @@ bool AnimationLayer::isPlainLoop() const
     const bool isDefault = _mode == Mode::Override && _reference == Reference::RestPose && !_mask &&
                            _blendPriority == static_cast<int>(_index) && _weight.isFinished() && _weight.value() == 1.0;
     if (!isDefault || _loopMode != LoopMode::Loop || _state == PlayState::Ended) return false;
+    if (_posed) return false;
     if (_mixer.isEmpty()) return _state == PlayState::Stopped;
     const ClipPlayback& current = _mixer.current();
     return _state != PlayState::Stopped && !_mixer.isFading() && current.loopMode() == LoopMode::Loop &&
@@ -213,18 +270,30 @@ bool AnimationLayer::isPlainLoop() const
 /// curve, with its weight.
 void AnimationLayer::collectMotion(RootMotionBlend& out, const RootMotionCurve& usual) const
 {
+    if (_posed && _mode == Mode::Override) collectPoseMotion(out, usual);
     if (_state == PlayState::Stopped || _mode == Mode::Additive) return;
+    const double clipShare = _posed ? 1.0 - _posed->share.mean() : 1.0;
     for (std::size_t v = 0; v < _mixer.activeClipCount(); ++v)
     {
         const ClipMixer::ActiveClip& activeClip = _mixer.activeClip(v);
         const Clip& clip = set().clips()[static_cast<std::size_t>(activeClip.playback.clip())];
         const RootMotionCurve& curve = clip.rootMotion() ? *clip.rootMotion() : usual;
-        const double weight =
-            activeClip.meanShare * _weight.mean() * (_mask ? static_cast<double>(_mask->weights[curve.joint]) : 1.0);
+        const double weight = clipShare * activeClip.meanShare * _weight.mean() *
+                              (_mask ? static_cast<double>(_mask->weights[curve.joint]) : 1.0);
         out.add(clip.rootMotion() ? rootMotionOf(clip, activeClip.move, activeClip.playback.loopMode())
                                   : RootMotion{glm::dvec3(0.0), 0.0, curve.up},
                 weight, _blendPriority);
     }
+}
+
+/// A pose that sets the joint's translation holds the character in place.
+void AnimationLayer::collectPoseMotion(RootMotionBlend& out, const RootMotionCurve& usual) const
+{
+    const PoseExtent& extent = *_posed->pose->extent();
+    if (usual.joint >= extent.joints.size() || !extent.joints[usual.joint].moves) return;
+    const double weight =
+        _posed->share.mean() * _weight.mean() * (_mask ? static_cast<double>(_mask->weights[usual.joint]) : 1.0);
+    out.add(RootMotion{glm::dvec3(0.0), 0.0, usual.up}, weight, _blendPriority);
 }
 
 LayerStep AnimationLayer::lastStep() const
@@ -254,7 +323,8 @@ bool isSound(const Fade::State& state)
 std::optional<std::string> findFault(const LayerSnapshot& snapshot, const AnimationSet& set)
 {
     if (!std::isfinite(snapshot.speed)) return "a speed that is not finite";
-    if (!isSound(snapshot.weight) || !isSound(snapshot.crossfade)) return "a fade that cannot be";
+    for (const Fade::State& fade : {snapshot.weight, snapshot.crossfade, snapshot.poseShare})
+        if (!isSound(fade)) return "a fade that cannot be";
     if (snapshot.activeClips.size() > ClipMixer::maxActiveClips)
         return std::to_string(snapshot.activeClips.size()) + " clips at a time, at most " +
                std::to_string(ClipMixer::maxActiveClips) + " are possible";
@@ -302,6 +372,8 @@ LayerSnapshot AnimationLayer::snapshot() const
     snapshot.crossfade = _mixer.fade().state();
     snapshot.weight = _weight.state();
     if (_mask) snapshot.mask = _mask->weights;
+    if (_posed) snapshot.pose = _posed->pose->tracks();
+    if (_posed) snapshot.poseShare = _posed->share.state();
     snapshot.mode = _mode;
     snapshot.reference = _reference;
     snapshot.blendPriority = _blendPriority;
@@ -318,6 +390,12 @@ Result<bool> AnimationLayer::restore(const LayerSnapshot& snapshot)
         const Result<std::shared_ptr<const SetMask>> used = set.useMask(snapshot.mask);
         if (!used) return used.error();
         mask = used.value();
+    }
+    std::shared_ptr<Posed> posed;
+    if (!snapshot.pose.empty() || Fade(snapshot.poseShare).value() > 0.0)
+    {
+        posed = std::make_shared<Posed>(Posed{std::make_shared<JointPose>(_owner->_set), Fade(snapshot.poseShare)});
+        if (const Result<bool> set = posed->pose->setTracks(snapshot.pose); !set) return set.error();
     }
     std::vector<ClipMixer::ActiveClip> activeClips;
     for (const LayerSnapshot::ActiveClip& kept : snapshot.activeClips)
@@ -337,6 +415,7 @@ Result<bool> AnimationLayer::restore(const LayerSnapshot& snapshot)
     _speed = snapshot.speed;
     _weight = Fade(snapshot.weight);
     _mask = mask;
+    _posed = posed;
     _mode = snapshot.mode;
     _reference = snapshot.reference;
     _blendPriority = snapshot.blendPriority;

@@ -4,6 +4,7 @@
 #include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/animation/ClipMixer.h>
 #include <osgGpuAnimation/animation/Playback.h>
+#include <osgGpuAnimation/animation/Pose.h>
 
 #include <cstdint>
 #include <memory>
@@ -81,7 +82,20 @@ public:
 
     void pause();  ///< Playing → Paused; no effect in other states
     void resume(); ///< Paused → Playing; no effect in other states
-    void stop();   ///< → Stopped: time 0, the layer shows nothing
+    void stop();   ///< → Stopped: time 0, the layer shows nothing, not even its pose
+
+    /// The pose that the layer can show in place of a clip. The first call makes it, with nothing set; if the layer is
+    /// Stopped, it shows the pose from then on, otherwise after showPose(). It belongs to the layer.
+    JointPose& pose();
+    /// Shows pose() in place of the layer's clips, with the layer's weight, mask and mode; both references of mode
+    /// Additive are the rest pose. seconds: the length of the fade from the visible clips, which play on until its end;
+    /// the layer is Stopped then. play() and crossfade() lead back to a clip. Returns false, without a change, if the
+    /// seconds are negative or not finite.
+    bool showPose(double seconds = 0.0, FadeCurve curve = FadeCurve::Linear);
+    /// The share of the pose in the layer, in [0, 1]; the clips have the remainder.
+    float poseShare() const { return _posed ? static_cast<float>(_posed->share.value()) : 0.0f; }
+    /// The pose, if the layer has one: null before the first pose().
+    const JointPose* findPose() const { return _posed ? _posed->pose.get() : nullptr; }
 
     /// Sets the time of the current clip. seconds: on the time line of the clip, clamped to [0, duration]. Returns
     /// false, without a change, for NaN. Without a clip it has no effect. Ended becomes Playing unless the new time is
@@ -137,7 +151,7 @@ public:
     int blendPriority() const { return _blendPriority; } ///< see setBlendPriority()
 
     /// True if clip, time, speed and state describe the layer completely: it plays or pauses one clip in a loop, or
-    /// nothing, and everything else has its default.
+    /// nothing, it has no pose, and everything else has its default.
     bool isPlainLoop() const;
     /// The clips that contribute now and their shares.
     const ClipMixer& mixer() const { return _mixer; }
@@ -153,7 +167,20 @@ private:
     AnimationLayer(const AnimationLayer&) = default;
     AnimationLayer& operator=(const AnimationLayer&) = default;
 
+    /// A pose and its share of the layer.
+    struct Posed
+    {
+        std::shared_ptr<JointPose> pose; ///< instructions refer to it
+        Fade share{0.0};
+        bool isShown() const { return share.value() > 0.0; }
+    };
+
     const AnimationSet& set() const { return *_owner->_set; }
+    double clipShare() const { return _posed ? 1.0 - _posed->share.value() : 1.0; }
+    void fadePose(double share, double seconds, FadeCurve curve);
+    double advancePose(double seconds);
+    void collectPose(BlendList& out) const;
+    void collectPoseMotion(RootMotionBlend& out, const RootMotionCurve& usual) const;
     ClipPlayback playbackOf(std::size_t clip, LoopMode loopMode) const;
     void advance(double seconds);
     void collect(BlendList& out) const;
@@ -170,6 +197,7 @@ private:
     double _speed = 1.0;
     Fade _weight{1.0};
     std::shared_ptr<const SetMask> _mask; ///< null: none
+    std::shared_ptr<Posed> _posed;        ///< of this layer alone; null: no pose
     Mode _mode = Mode::Override;
     Reference _reference = Reference::RestPose;
     int _blendPriority = 0;
@@ -205,6 +233,8 @@ struct LayerSnapshot
     FadeState crossfade;                                        ///< the share of the newest clip
     FadeState weight;                                           ///< weight of the layer, in [0, 1]
     std::vector<float> mask;                                    ///< one weight per track; empty: no mask
+    std::vector<JointPose::Track> pose;                         ///< what is set in the layer's pose
+    FadeState poseShare{0.0, 0.0};                              ///< see AnimationLayer::poseShare()
     AnimationLayer::Mode mode = AnimationLayer::Mode::Override; ///< mode of the layer
     AnimationLayer::Reference reference = AnimationLayer::Reference::RestPose; ///< used in mode Additive
     int blendPriority = 0; ///< see AnimationLayer::setBlendPriority()

@@ -20,13 +20,17 @@ namespace osgGpuAnimation
 /// Additive layers take two samples: their reference, then the sample itself.
 struct BlendSample
 {
-    std::uint32_t keyframe = 0; ///< the first keyframe, see AnimationSet::firstKeyframe(); 0: the rest pose
-    float alpha = 0.0f;         ///< share of the second keyframe, in [0, 1)
-    float weight = 1.0f;        ///< in [0, 1]; negative values and NaN count as 0
-    std::uint32_t control = 0;  ///< bits of layout.glsl: POSE_SAMPLE_SPLINE …, and the number of the mask << 16
+    /// the first keyframe, see AnimationSet::firstKeyframe(); 0: the rest pose; POSE_SAMPLE_POSED: an index of
+    /// PoseInstruction::poses
+    std::uint32_t keyframe = 0;
+    float alpha = 0.0f;        ///< share of the second keyframe, in [0, 1)
+    float weight = 1.0f;       ///< in [0, 1]; negative values and NaN count as 0
+    std::uint32_t control = 0; ///< bits of layout.glsl: POSE_SAMPLE_SPLINE …, and the number of the mask << 16
 };
 
 static_assert(sizeof(BlendSample) == 16, "a blend sample is 16 bytes on the GPU");
+
+class JointPose;
 
 /// The blend samples of one character in one frame: the GPU mixes them to the character's pose. Default: the rest pose.
 ///
@@ -44,12 +48,17 @@ static_assert(sizeof(BlendSample) == 16, "a blend sample is 16 bytes on the GPU"
 /// - Additive samples come last; their order does not matter. With d = R_reference⁻¹ · R, rotations are multiplied by
 ///   exp(Σ weight · log d), with the sum limited to a full turn; translations get Σ weight · (T − T_reference); scales
 ///   are multiplied by Π (1 + weight · (S / S_reference − 1)), except on axes with a reference of 0.
+/// - A posed sample (POSE_SAMPLE_POSED) has no weight at the parts of joints and the morph weights that are not set in
+///   its pose.
 struct PoseInstruction
 {
     static constexpr std::size_t maxSamples = 16; ///< the maximum number of samples of one pose
 
     std::size_t sampleCount = 1;                 ///< [1, maxSamples]
     std::array<BlendSample, maxSamples> samples; ///< only the first sampleCount are used
+    /// The poses of the posed samples. They change with their layers; whoever keeps a pose for later takes its
+    /// JointPose::sharedKeyframe(). A null pose, or one with another number of tracks than the set, shows nothing.
+    std::vector<std::shared_ptr<const JointPose>> poses{};
 };
 
 struct Box;

@@ -4,6 +4,7 @@
 #include <osgGpuAnimation/animation/Playback.h>
 
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 namespace osgGpuAnimation
@@ -70,7 +71,9 @@ private:
     bool _isFresh = true; ///< no step has started at this time
 };
 
-/// A clip that contributes to a character's pose.
+struct PoseExtent;
+
+/// A clip, or a pose of the application, that contributes to a character's pose.
 struct PlayedClip
 {
     /// The contribution of a clip to the pose.
@@ -81,11 +84,15 @@ struct PlayedClip
         AddedToItsFirst, ///< its difference from its own first keyframe
     };
 
-    int clip = -1;           ///< -1: the rest pose
-    Part part = Part::Mixed; ///< the contribution
+    int clip = -1;                                    ///< -1: the rest pose
+    Part part = Part::Mixed;                          ///< the contribution
+    std::shared_ptr<const PoseExtent> pose = nullptr; ///< of a JointPose in place of the clip; null: the clip
 
-    /// True if clip and part are equal.
-    bool operator==(const PlayedClip& other) const { return clip == other.clip && part == other.part; }
+    /// True if clip and part are equal, and the extent is the same.
+    bool operator==(const PlayedClip& other) const
+    {
+        return clip == other.clip && part == other.part && pose == other.pose;
+    }
 };
 
 /// The clips that one layer plays at a time: the current clip and, during crossfades, the clips that fade out and play

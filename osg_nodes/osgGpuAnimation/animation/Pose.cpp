@@ -1,14 +1,393 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/Pose.h>
 
+#include <osgGpuAnimation/animation/bounds/JointRange.h>
+#include <osgGpuAnimation/animation/keyframes/PosedKeyframe.h>
 #include <osgGpuAnimation/animation/keyframes/TrackBlend.h>
 
 #include <layout.glsl>
 
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
 #include <cstring>
+#include <limits>
+#include <optional>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+using Part = PosedKeyframe::Part;
+
+constexpr std::uint32_t partBits = 0xFu; ///< of PosedKeyframe::setNumbers(): the numbers of a joint's first part
+
+bool isAllowed(float number)
+{
+    return std::abs(number) <= JointPose::largest; // false for NaN
+}
+
+bool isAllowed(const glm::vec3& numbers)
+{
+    return isAllowed(numbers.x) && isAllowed(numbers.y) && isAllowed(numbers.z);
+}
+
+/// The unit quaternion; none if it has no direction.
+std::optional<glm::vec4> unitRotation(const glm::vec4& rotation)
+{
+    const glm::dvec4 q(rotation);
+    const double squared = glm::dot(q, q); // of floats: neither too large nor too small for a double
+    if (!(squared > 0.0 && squared <= std::numeric_limits<double>::max())) return std::nullopt;
+    return glm::vec4(q / std::sqrt(squared));
+}
+
+/// Gives the transform a unit rotation and the w of translation and scale 0. False if a value is refused.
+bool makeAllowed(JointTransform& transform)
+{
+    glm::vec4& q = transform.rotation;
+    const float squared = glm::dot(q, q);
+    if (squared > 1e-20f && squared < 1e20f)
+        q *= 1.0f / std::sqrt(squared);
+    else if (const std::optional<glm::vec4> unit = unitRotation(q))
+        q = *unit;
+    else
+        return false;
+    transform.translation.w = transform.scale.w = 0.0f;
+    return isAllowed(glm::vec3(transform.translation)) && isAllowed(glm::vec3(transform.scale));
+}
+
+/// T · R · S of a matrix with an inverse, by its columns. A shear is dropped: the rotation keeps the direction of the
+/// first column and the plane of the first two.
+JointTransform decomposed(const glm::dmat4& matrix)
+{
+    glm::dmat3 axes(matrix);
+    glm::dvec3 scale(glm::length(axes[0]), glm::length(axes[1]), glm::length(axes[2]));
+    if (glm::determinant(axes) < 0.0) scale.x = -scale.x;
+    axes[0] /= scale.x;
+    axes[1] = glm::normalize(axes[1] - glm::dot(axes[0], axes[1]) * axes[0]);
+    axes[2] = glm::cross(axes[0], axes[1]);
+    const glm::dvec4 rotation = Rotation::numbers(glm::quat_cast(axes));
+    return {glm::vec4(glm::dvec4(glm::dvec3(matrix[3]), 0.0)), glm::vec4(rotation), glm::vec4(glm::dvec4(scale, 0.0))};
+}
+
+/// The largest length of a joint at rest.
+float longestJoint(const AnimationSet& set)
+{
+    float longest = 0.0f;
+    for (const Joint& joint : set.skeleton().joints())
+        longest = std::max(longest, glm::length(glm::vec3(joint.rest.translation)));
+    return longest;
+}
+
+std::string jointAt(const AnimationSet& set, std::size_t joint)
+{
+    return "joint " + std::to_string(joint) + " \"" + set.skeleton().joint(joint).name + "\"";
+}
+
+Error wrongCount(const char* what, std::size_t found, std::size_t expected)
+{
+    return Error{std::to_string(found) + " " + what + " for a skeleton of " + std::to_string(expected) + " joints"};
+}
+
+} // namespace
+
+JointPose::JointPose(std::shared_ptr<const AnimationSet> set)
+    : _set(AnimationSet::orEmpty(std::move(set))), _keyframe(std::make_shared<PosedKeyframe>(_set->trackCount())),
+      _extent(std::make_shared<const PoseExtent>())
+{
+}
+
+JointPose::JointPose(const JointPose& other)
+    : _set(other._set), _keyframe(std::make_shared<PosedKeyframe>(*other._keyframe)), _extent(other._extent)
+{
+}
+
+JointPose& JointPose::operator=(const JointPose& other)
+{
+    if (this == &other) return *this;
+    _set = other._set;
+    _keyframe = std::make_shared<PosedKeyframe>(*other._keyframe);
+    _isShared = false;
+    _extent = other._extent;
+    return *this;
+}
+
+JointPose::~JointPose() = default;
+
+bool JointPose::isEmpty() const
+{
+    return _keyframe->isEmpty();
+}
+
+std::shared_ptr<const PosedKeyframe> JointPose::sharedKeyframe() const
+{
+    _isShared = true;
+    return _keyframe;
+}
+
+/// The keyframe, which nobody shares.
+PosedKeyframe& JointPose::change()
+{
+    if (_isShared)
+    {
+        _keyframe = std::make_shared<PosedKeyframe>(*_keyframe);
+        _isShared = false;
+    }
+    return *_keyframe;
+}
+
+void JointPose::setPart(std::size_t joint, std::size_t part, const glm::vec4& value)
+{
+    change().setPart(joint, static_cast<Part>(part), value);
+    growExtent(joint, joint + 1);
+}
+
+bool JointPose::setTranslation(std::size_t joint, const glm::vec3& translation)
+{
+    if (!hasJoint(joint) || !isAllowed(translation)) return false;
+    setPart(joint, Part::Translation, glm::vec4(translation, 0.0f));
+    return true;
+}
+
+bool JointPose::setRotation(std::size_t joint, const glm::quat& rotation)
+{
+    const std::optional<glm::vec4> unit = unitRotation({rotation.x, rotation.y, rotation.z, rotation.w});
+    if (!hasJoint(joint) || !unit) return false;
+    setPart(joint, Part::Rotation, *unit);
+    return true;
+}
+
+bool JointPose::setScale(std::size_t joint, const glm::vec3& scale)
+{
+    if (!hasJoint(joint) || !isAllowed(scale)) return false;
+    setPart(joint, Part::Scale, glm::vec4(scale, 0.0f));
+    return true;
+}
+
+bool JointPose::setTransform(std::size_t joint, const JointTransform& transform)
+{
+    JointTransform allowed = transform;
+    if (!hasJoint(joint) || !makeAllowed(allowed)) return false;
+    PosedKeyframe& keyframe = change();
+    keyframe.setPart(joint, Part::Translation, allowed.translation);
+    keyframe.setPart(joint, Part::Rotation, allowed.rotation);
+    keyframe.setPart(joint, Part::Scale, allowed.scale);
+    growExtent(joint, joint + 1);
+    return true;
+}
+
+bool JointPose::setMorphWeight(std::size_t morph, std::size_t target, float weight)
+{
+    const std::vector<MorphWeights>& morphs = _set->morphs();
+    if (morph >= morphs.size() || target >= morphs[morph].defaults.size() || !isAllowed(weight)) return false;
+    change().setNumber(_set->firstTrackOfMorph(morph) + target / MorphWeights::weightsPerBlock,
+                       target % MorphWeights::weightsPerBlock, weight);
+    growExtent(weight);
+    return true;
+}
+
+Result<bool> JointPose::setTransforms(const std::vector<JointTransform>& transforms)
+{
+    const std::size_t count = _set->skeleton().jointCount();
+    if (transforms.size() != count) return wrongCount("transforms", transforms.size(), count);
+    thread_local std::vector<JointTransform> allowed; // called in every frame
+    allowed = transforms;
+    for (std::size_t joint = 0; joint < count; ++joint)
+        if (!makeAllowed(allowed[joint]))
+            return Error{jointAt(*_set, joint) + ": a number is not finite, or the rotation is 0"};
+    if (_isShared && _keyframe->trackCount() == count)
+    {
+        _keyframe = std::make_shared<PosedKeyframe>(allowed);
+        _isShared = false;
+    }
+    else
+        change().setTransforms(allowed);
+    growExtent(0, count);
+    return true;
+}
+
+Result<bool> JointPose::setModelTransforms(const std::vector<AffineMatrix>& jointToModel)
+{
+    const Skeleton& skeleton = _set->skeleton();
+    if (jointToModel.size() != skeleton.jointCount())
+        return wrongCount("matrices", jointToModel.size(), skeleton.jointCount());
+    thread_local std::vector<JointTransform> local;
+    local.clear();
+    for (std::size_t joint = 0; joint < skeleton.jointCount(); ++joint)
+    {
+        const glm::dmat4 matrix = jointToModel[joint].toColumns();
+        const double volume = glm::determinant(glm::dmat3(matrix));
+        if (!jointToModel[joint].isFinite() || volume == 0.0)
+            return Error{jointAt(*_set, joint) + ": its matrix is not finite or has no inverse"};
+        const int parent = skeleton.joint(joint).parent; // checked before
+        const glm::dmat4 above =
+            parent < 0 ? glm::dmat4(1.0) : jointToModel[static_cast<std::size_t>(parent)].toColumns();
+        local.push_back(decomposed(glm::inverse(above) * matrix));
+    }
+    return setTransforms(local);
+}
+
+void JointPose::reset()
+{
+    change().clear();
+    renewExtent();
+}
+
+bool JointPose::reset(std::size_t joint)
+{
+    if (!hasJoint(joint)) return false;
+    change().clear(joint);
+    renewExtent();
+    return true;
+}
+
+bool JointPose::resetMorph(std::size_t morph)
+{
+    if (morph >= _set->morphs().size()) return false;
+    for (std::size_t block = 0; block < _set->morphs()[morph].blockCount(); ++block)
+        change().clear(_set->firstTrackOfMorph(morph) + block);
+    renewExtent();
+    return true;
+}
+
+JointTransform JointPose::transform(std::size_t joint) const
+{
+    assert(hasJoint(joint) && "a joint of the set");
+    const JointTransform posed = _keyframe->values(joint);
+    const std::uint32_t numbers = _keyframe->setNumbers(joint);
+    JointTransform transform = _set->restPose()[joint];
+    for (std::size_t number = 0; number < 12; ++number)
+        if ((numbers >> number & 1u) != 0) transform.number(number) = posed.number(number);
+    return transform;
+}
+
+std::vector<JointPose::Track> JointPose::tracks() const
+{
+    std::vector<Track> tracks;
+    for (std::size_t track = 0; track < _keyframe->trackCount(); ++track)
+        if (const std::uint32_t numbers = _keyframe->setNumbers(track); numbers != 0)
+            tracks.push_back({static_cast<std::uint32_t>(track), numbers, _keyframe->values(track)});
+    return tracks;
+}
+
+Result<bool> JointPose::setTracks(const std::vector<Track>& tracks)
+{
+    JointPose pose(_set);
+    for (const Track& stored : tracks)
+    {
+        const auto has = [&](Part part) { return (stored.numbers >> 4 * part & partBits) == partBits; };
+        bool isGood = stored.track < _set->trackCount() && stored.numbers >> 12 == 0;
+        if (isGood && hasJoint(stored.track))
+        {
+            const glm::vec4& q = stored.values.rotation;
+            if (has(Part::Translation))
+                isGood = pose.setTranslation(stored.track, glm::vec3(stored.values.translation));
+            if (has(Part::Rotation)) isGood = isGood && pose.setRotation(stored.track, glm::quat(q.w, q.x, q.y, q.z));
+            if (has(Part::Scale)) isGood = isGood && pose.setScale(stored.track, glm::vec3(stored.values.scale));
+            isGood = isGood && pose._keyframe->setNumbers(stored.track) == stored.numbers;
+        }
+        else if (isGood)
+            for (std::size_t number = 0; number < 12; ++number)
+            {
+                if ((stored.numbers >> number & 1u) == 0) continue;
+                const float weight = stored.values.number(number);
+                isGood = isGood && isAllowed(weight);
+                pose._keyframe->setNumber(stored.track, number, weight);
+            }
+        if (!isGood)
+            return Error{"a pose with values of track " + std::to_string(stored.track) + " of " +
+                         std::to_string(_set->trackCount()) + " that cannot be"};
+    }
+    *this = pose;
+    renewExtent();
+    return true;
+}
+
+bool JointPose::isInExtent(std::size_t joint) const
+{
+    if (joint >= _extent->joints.size()) return false;
+    const PoseExtent::Joint& known = _extent->joints[joint];
+    const glm::uvec4* words = &_keyframe->texels()[3 * joint];
+    const auto isSet = [&](Part part) { return words[part].w != POSE_NOT_SET; };
+    const auto offset = [&](Part part, const glm::vec3& from)
+    {
+        glm::vec4 numbers;
+        std::memcpy(&numbers, &words[part], sizeof(numbers));
+        return glm::vec3(numbers) - from;
+    };
+    if (isSet(Part::Rotation) && !known.turns) return false;
+    if (isSet(Part::Translation))
+    {
+        // Of numbers too large for its square a translation is never inside, which costs new bounds only.
+        const glm::vec3 moved = offset(Part::Translation, known.translation);
+        if (!known.moves || !(glm::dot(moved, moved) <= 0.999f * known.shift * known.shift)) return false;
+    }
+    if (!isSet(Part::Scale)) return true;
+    const glm::vec3 grown = glm::abs(offset(Part::Scale, known.scale));
+    return known.scales && std::max({grown.x, grown.y, grown.z}) <= 0.999f * known.stretch;
+}
+
+/// Makes a larger extent if one of these joints has left the present one.
+void JointPose::growExtent(std::size_t firstJoint, std::size_t endJoint)
+{
+    std::shared_ptr<PoseExtent> grown;
+    for (std::size_t joint = firstJoint; joint < endJoint; ++joint)
+    {
+        if (isInExtent(joint)) continue;
+        if (!grown) grown = std::make_shared<PoseExtent>(*_extent);
+        grown->joints.resize(_set->skeleton().jointCount());
+        PoseExtent::Joint& known = grown->joints[joint];
+        const std::uint32_t numbers = _keyframe->setNumbers(joint);
+        const auto has = [&](Part part) { return (numbers >> 4 * part & partBits) != 0; };
+        const JointTransform posed = transform(joint);
+        known.moves = has(Part::Translation);
+        known.turns = has(Part::Rotation);
+        known.scales = has(Part::Scale);
+        // The margin of a translation is an eighth of the way from the rest pose or of the longest joint.
+        known.translation = glm::vec3(posed.translation);
+        known.shift = std::max(glm::distance(known.translation, glm::vec3(_set->restPose()[joint].translation)),
+                               longestJoint(*_set)) /
+                      8.0f;
+        known.scale = glm::vec3(posed.scale);
+        known.stretch = std::max({std::abs(known.scale.x), std::abs(known.scale.y), std::abs(known.scale.z)}) / 8.0f;
+    }
+    if (grown) _extent = grown;
+}
+
+void JointPose::growExtent(float weight)
+{
+    const double size = std::abs(static_cast<double>(weight));
+    if (_extent->largestWeight > 0.0 && size <= _extent->largestWeight) return;
+    const auto grown = std::make_shared<PoseExtent>(*_extent);
+    grown->largestWeight = size <= 1.0 ? 1.0 : 1.25 * size;
+    _extent = grown;
+}
+
+/// Makes an extent of the present values alone.
+void JointPose::renewExtent()
+{
+    _extent = std::make_shared<const PoseExtent>();
+    const std::size_t jointCount = _set->skeleton().jointCount();
+    for (std::size_t track = 0; track < _set->trackCount() && !isEmpty(); ++track)
+    {
+        const std::uint32_t numbers = _keyframe->setNumbers(track);
+        if (numbers == 0) continue;
+        if (track < jointCount)
+            growExtent(track, track + 1);
+        else
+            for (std::size_t number = 0; number < 12; ++number)
+                if ((numbers >> number & 1u) != 0) growExtent(_keyframe->values(track).number(number));
+    }
+}
+
+} // namespace osgGpuAnimation
 
 namespace osgGpuAnimation::Pose
 {
@@ -20,6 +399,7 @@ namespace
 struct Source
 {
     KeyframePair keyframes;
+    const PosedKeyframe* posed = nullptr; ///< in place of the keyframes
     double weight = 0.0;
     std::shared_ptr<const SetMask> mask; ///< null: none
     std::uint32_t control = 0;
@@ -49,6 +429,14 @@ KeyframePair findKeyframes(const AnimationSet& set, const BlendSample& sample)
     return pair;
 }
 
+/// Null if the pose does not fit the set.
+const PosedKeyframe* findPosed(const AnimationSet& set, const PoseInstruction& instruction, const BlendSample& sample)
+{
+    const JointPose* pose =
+        sample.keyframe < instruction.poses.size() ? instruction.poses[sample.keyframe].get() : nullptr;
+    return pose && pose->keyframe().trackCount() == set.trackCount() ? &pose->keyframe() : nullptr;
+}
+
 /// The samples of an instruction; blends them track by track.
 class Sources
 {
@@ -62,7 +450,13 @@ public:
             Source& source = _sources[i];
             source.control = sample.control;
             if (!(sample.weight > 0.0f)) continue;
-            source.keyframes = findKeyframes(set, sample);
+            if ((sample.control & POSE_SAMPLE_POSED) != 0)
+            {
+                source.posed = findPosed(set, instruction, sample);
+                if (!source.posed) continue;
+            }
+            else
+                source.keyframes = findKeyframes(set, sample);
             source.weight = static_cast<double>(sample.weight);
             source.mask = set.masks().find(sample.control >> POSE_SAMPLE_MASK_SHIFT);
         }
@@ -80,13 +474,15 @@ public:
             const double weight =
                 source.weight * (source.mask ? static_cast<double>(source.mask->weights[track]) : 1.0);
             if (!(weight > 0.0)) continue;
-            const MixedTrack sample = MixedTrack::between(source.keyframes, track, isWeights);
+            MixedTrack cover = MixedTrack::everything();
+            const MixedTrack sample = source.posed ? source.posed->sample(track, cover)
+                                                   : MixedTrack::between(source.keyframes, track, isWeights);
             if ((source.control & POSE_SAMPLE_REFERENCE) != 0)
                 reference = sample;
             else if ((source.control & POSE_SAMPLE_ADDITIVE) != 0)
-                blend.addDifference(reference, sample, weight);
+                blend.addDifference(reference, sample, weight, cover);
             else
-                blend.add(sample, weight);
+                blend.add(sample, weight, cover);
         }
         const MixedTrack mixed = blend.result();
         return {glm::vec4(mixed.translation), glm::vec4(mixed.rotation), glm::vec4(mixed.scale)};

@@ -24,8 +24,9 @@ namespace osgGpuAnimation
 namespace
 {
 
-EntryBoxes entryBoxesOf(osg::Node& node, PaletteEntryBounds bounds)
+EntryBoxes entryBoxesOf(osg::Node& node, const AnimationSet& set)
 {
+    PaletteEntryBounds bounds(set);
     forEachMeshBelow(node, [&](const SkinnedGeometry& mesh) { bounds.add(mesh); });
     return bounds.boxes();
 }
@@ -164,15 +165,14 @@ void AnimatedCharacter::growMeshes(const osg::BoundingBox& box)
 void AnimatedCharacter::computeClipBounds()
 {
     const AnimationSet& set = getAnimationSet();
-    const EntryBoxes boxes = entryBoxesOf(*this, PaletteEntryBounds(set));
-    EntryBoxes boxesWithAdded = boxes;
-    if (!set.morphs().empty()) boxesWithAdded = entryBoxesOf(*this, PaletteEntryBounds(set, maxLayers));
-
+    std::vector<const SkinnedGeometry*> meshes;
+    forEachMeshBelow(*this, [&](const SkinnedGeometry& mesh) { meshes.push_back(&mesh); });
+    MixBounds::Boxes boxes = mixBoxesOf(meshes, set);
     std::vector<osg::BoundingBox> bounds;
-    for (const Box& box : boundsOfClips(set, boxes))
+    for (const Box& box : boundsOfClips(set, boxes.ofClips))
         bounds.push_back(toOsg(box));
     _clipBounds = std::make_shared<const std::vector<osg::BoundingBox>>(std::move(bounds));
-    _mixBounds = std::make_shared<const MixBounds>(set, boxes, boxesWithAdded);
+    _mixBounds = std::make_shared<const MixBounds>(set, std::move(boxes));
     setMeshBounds();
 }
 
@@ -281,7 +281,7 @@ AnimatedCharacter* findCharacter(osg::Node& node)
 
 Result<CompactedCharacter> compactClipsOf(AnimatedCharacter& character, double fraction)
 {
-    const EntryBoxes boxes = entryBoxesOf(character, PaletteEntryBounds(character.getAnimationSet()));
+    const EntryBoxes boxes = entryBoxesOf(character, character.getAnimationSet());
     CompactedCharacter result;
     result.longestSide = longestSide(character.getAnimationSet(), boxes);
     result.tolerance = fraction * result.longestSide;

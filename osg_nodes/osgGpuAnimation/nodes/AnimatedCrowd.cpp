@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 
+#include <osgGpuAnimation/animation/bounds/MixBounds.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/crowd/CrowdBatches.h>
 #include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
@@ -25,11 +26,14 @@ namespace osgGpuAnimation
 namespace
 {
 
-std::vector<Box> clipBoundsOf(const AnimationSet& set, const osg::Group& meshes)
+void computeBounds(CrowdInstances& instances, const osg::Group& crowd)
 {
-    PaletteEntryBounds reach(set);
-    forEachMesh(meshes, [&](const SkinnedGeometry& mesh) { reach.add(mesh); });
-    return boundsOfClips(set, reach.boxes());
+    const AnimationSet& set = *instances.set();
+    std::vector<const SkinnedGeometry*> meshes;
+    forEachMesh(crowd, [&](const SkinnedGeometry& mesh) { meshes.push_back(&mesh); });
+    MixBounds::Boxes boxes = mixBoxesOf(meshes, set);
+    const std::vector<Box> bounds = boundsOfClips(set, boxes.ofClips);
+    instances.setClipBounds(bounds, std::make_shared<const MixBounds>(set, std::move(boxes)));
 }
 
 std::uint32_t toRgba(const osg::Vec4& color)
@@ -151,7 +155,7 @@ AnimatedCrowd::AnimatedCrowd(std::shared_ptr<const AnimationSet> set,
     setNumChildrenRequiringUpdateTraversal(getNumChildrenRequiringUpdateTraversal() + 1);
     for (const osg::ref_ptr<SkinnedGeometry>& mesh : meshes)
         addChild(mesh);
-    if (!meshes.empty()) _instances->setClipBounds(clipBoundsOf(getAnimationSet(), *this));
+    if (!meshes.empty()) computeBounds(*_instances, *this);
 }
 
 AnimatedCrowd::AnimatedCrowd(const AnimatedCharacter& character)
@@ -166,7 +170,10 @@ AnimatedCrowd::AnimatedCrowd(const AnimatedCharacter& character)
     for (int clip = -1; clip < static_cast<int>(getAnimationSet().clips().size()); ++clip)
         bounds.push_back(toBox(character.clipBoundsInFile(clip)));
     const bool areKnown = std::any_of(bounds.begin(), bounds.end(), [](const Box& box) { return !box.empty(); });
-    _instances->setClipBounds(areKnown ? bounds : clipBoundsOf(getAnimationSet(), *this));
+    if (areKnown)
+        _instances->setClipBounds(bounds, character._mixBounds);
+    else
+        computeBounds(*_instances, *this);
 }
 
 AnimatedCrowd::AnimatedCrowd(const AnimatedCrowd& other, const osg::CopyOp& copyop)
@@ -205,7 +212,7 @@ Result<bool> AnimatedCrowd::setAnimationSet(std::shared_ptr<const AnimationSet> 
     if (getNumInstances() > 0 || getAnimationSet().paletteSize() > 0) return Error{"a crowd that has a set keeps it"};
     if (!newSet) return Error{"a crowd needs a set"};
     _instances->setSet(std::move(newSet));
-    _instances->setClipBounds(clipBoundsOf(getAnimationSet(), *this));
+    computeBounds(*_instances, *this);
     dirtyBound();
     return setPixelError(_pixelError);
 }

@@ -129,6 +129,23 @@ void JointRange::addDifference(const JointRange& added, const JointTransform& re
     stretch += largestComponent(glm::abs(scale) + stretch) * growth;
 }
 
+JointRange PoseExtent::Joint::range(const JointRange& others) const
+{
+    JointRange range = others;
+    if (moves)
+    {
+        range.translation = glm::dvec3(translation);
+        range.shift = static_cast<double>(shift);
+    }
+    if (turns) range.turn = JointRange::anyTurn;
+    if (scales)
+    {
+        range.scale = glm::dvec3(scale);
+        range.stretch = static_cast<double>(stretch);
+    }
+    return range;
+}
+
 std::vector<JointRange> rangesOfClip(const AnimationSet& set, const Clip* clip)
 {
     std::vector<JointRange> ranges;

@@ -30,6 +30,31 @@ struct JointRange
     void addDifference(const JointRange& added, const JointTransform& reference);
 };
 
+/// The space in which a JointPose may move its joints without a new extent: bounds are computed from it, so they change
+/// rarely even if the pose changes in every frame. Rotations are unlimited; translations and scales have a margin.
+struct PoseExtent
+{
+    /// One joint of the pose: a ball around a translation and a cube around a scale, for the parts that are set. Small,
+    /// because it is checked in every frame.
+    struct Joint
+    {
+        glm::vec3 translation{0.0f};
+        float shift = 0.0f; ///< radius of the ball
+        glm::vec3 scale{1.0f};
+        float stretch = 0.0f; ///< half the cube's edge
+        bool moves = false;   ///< true if the translation is set
+        bool turns = false;   ///< true if the rotation is set
+        bool scales = false;  ///< true if the scale is set
+
+        /// The range; parts that are not set have that of `others`.
+        JointRange range(const JointRange& others) const;
+    };
+
+    std::vector<Joint> joints; ///< one per joint of the set; empty: no joint was ever set
+    /// No morph weight of the pose has a larger absolute value; at least 1. 0: no weight was ever set.
+    double largestWeight = 0.0;
+};
+
 /// The ranges of all joints over all times of a clip, between keyframes too. clip: null for the rest pose.
 std::vector<JointRange> rangesOfClip(const AnimationSet& set, const Clip* clip);
 

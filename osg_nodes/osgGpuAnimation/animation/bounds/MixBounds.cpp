@@ -68,8 +68,15 @@ Aabb3d transformed(const PaletteEntry& entry, const Box& entryBox, const JointTo
 
 } // namespace
 
-MixBounds::MixBounds(const AnimationSet& set, EntryBoxes entryBoxes, EntryBoxes withAdded)
-    : _set(set), _entryBoxes(std::move(entryBoxes)), _withAdded(std::move(withAdded))
+MixBounds::MixBounds(const AnimationSet& set, Boxes boxes) : _set(set), _boxes(std::move(boxes))
+{
+    for (const MorphWeights& morph : set.morphs())
+        for (const float weight : morph.defaults)
+            _largestRestWeight = std::max(_largestRestWeight, std::abs(static_cast<double>(weight)));
+}
+
+MixBounds::MixBounds(const AnimationSet& set, const EntryBoxes& entryBoxes)
+    : MixBounds(set, {entryBoxes, entryBoxes, entryBoxes, std::vector<float>(entryBoxes.size())})
 {
 }
 
@@ -94,7 +101,7 @@ MixBounds::Ranges MixBounds::rangesOf(const std::vector<PlayedClip>& played) con
     Ranges result;
     for (const PlayedClip& clip : played)
     {
-        if (clip.part != PlayedClip::Part::Mixed) continue;
+        if (clip.part != PlayedClip::Part::Mixed || clip.pose) continue;
         const std::shared_ptr<const Ranges> ranges = rangesOf(clip.clip);
         if (result.empty())
             result = *ranges;
@@ -104,8 +111,21 @@ MixBounds::Ranges MixBounds::rangesOf(const std::vector<PlayedClip>& played) con
     }
     if (result.empty()) result = *rangesOf(-1);
     for (const PlayedClip& clip : played)
+        if (clip.pose && clip.part == PlayedClip::Part::Mixed)
+            for (std::size_t joint = 0; joint < clip.pose->joints.size(); ++joint)
+                result[joint].add(clip.pose->joints[joint].range(result[joint]));
+    for (const PlayedClip& clip : played)
     {
         if (clip.part == PlayedClip::Part::Mixed) continue;
+        if (clip.pose)
+        {
+            for (std::size_t joint = 0; joint < clip.pose->joints.size(); ++joint)
+            {
+                const JointTransform& rest = _set.restPose()[joint];
+                result[joint].addDifference(clip.pose->joints[joint].range(JointRange::of(rest)), rest);
+            }
+            continue;
+        }
         const Clip* reference = clip.part == PlayedClip::Part::AddedToItsFirst ? findClip(clip.clip) : nullptr;
         const std::shared_ptr<const Ranges> ranges = rangesOf(clip.clip);
         for (std::size_t joint = 0; joint < result.size(); ++joint)
@@ -113,6 +133,31 @@ MixBounds::Ranges MixBounds::rangesOf(const std::vector<PlayedClip>& played) con
                                         reference ? *reference->at(0, joint) : _set.restPose()[joint]);
     }
     return result;
+}
+
+/// The box of the vertices that the entry moves, in bind pose, for all morph weights that can occur.
+Box MixBounds::entryBox(const std::vector<PlayedClip>& played, std::size_t entry) const
+{
+    bool isPosed = false, isAdded = false;
+    double posed = 1.0, added = 0.0; // the largest weight of poses that are mixed, and the sum of those that are added
+    for (const PlayedClip& clip : played)
+    {
+        const bool isMixed = clip.part == PlayedClip::Part::Mixed;
+        isAdded = isAdded || !(isMixed || clip.pose);
+        if (!clip.pose || !(clip.pose->largestWeight > 0.0)) continue;
+        isPosed = isPosed || isMixed;
+        if (isMixed)
+            posed = std::max(posed, clip.pose->largestWeight);
+        else
+            added += clip.pose->largestWeight + _largestRestWeight;
+    }
+    Box box = _boxes.ofClips[entry];
+    if (isAdded) box.add(_boxes.withAdded[entry]);
+    if (isPosed) box.add(_boxes.withPosed[entry]);
+    // Additive clips change the weights of poses, too: by at most the size of their box.
+    if (isAdded && isPosed) box.grow(glm::distance(_boxes.withAdded[entry].min, _boxes.withAdded[entry].max));
+    box.grow(_boxes.reaches[entry] * static_cast<float>(posed - 1.0 + added));
+    return box;
 }
 
 Box MixBounds::box(const std::vector<PlayedClip>& played) const
@@ -125,15 +170,12 @@ Box MixBounds::box(const std::vector<PlayedClip>& played) const
         const JointToModelBound above = parent < 0 ? JointToModelBound() : bounds[static_cast<std::size_t>(parent)];
         bounds.push_back(above.child(ranges[joint]));
     }
-    const bool isAdded = std::any_of(played.begin(), played.end(),
-                                     [](const PlayedClip& clip) { return clip.part != PlayedClip::Part::Mixed; });
-    const EntryBoxes& boxes = isAdded ? _withAdded : _entryBoxes;
     Aabb3d all;
-    for (std::size_t e = 0; e < std::min(boxes.size(), _set.paletteSize()); ++e)
+    for (std::size_t e = 0; e < std::min(_boxes.ofClips.size(), _set.paletteSize()); ++e)
     {
         const PaletteEntry& entry = _set.palette()[e];
-        if (entry.joint < 0 || boxes[e].empty()) continue;
-        all.add(transformed(entry, boxes[e], bounds[static_cast<std::size_t>(entry.joint)]));
+        if (entry.joint < 0 || _boxes.ofClips[e].empty()) continue;
+        all.add(transformed(entry, entryBox(played, e), bounds[static_cast<std::size_t>(entry.joint)]));
     }
     return all.toBox();
 }

@@ -20,6 +20,8 @@ struct JointRange;
 /// bounds the joint-to-model transforms of the mix from root to leaf: a ball contains the origin of the joint, and a
 /// matrix with a radius contains the linear part. Where these bounds exceed the joint's distance from the root, that
 /// distance is the bound.
+/// A pose of the application counts with its extent.
+///
 /// The boxes are conservative for any times, weights and masks. They are close to the clips' own boxes if the joints
 /// rotate little.
 ///
@@ -27,9 +29,19 @@ struct JointRange;
 class MixBounds
 {
 public:
-    /// The set must outlive this object. entryBoxes: one box per palette entry. withAdded: the same boxes for morph
-    /// weights that maxLayers additive layers have changed.
-    MixBounds(const AnimationSet& set, EntryBoxes entryBoxes, EntryBoxes withAdded);
+    /// The boxes of the vertices that the palette entries move, for different morph weights.
+    struct Boxes
+    {
+        EntryBoxes ofClips;         ///< all weights of the clips; one box per palette entry, like the others
+        EntryBoxes withAdded;       ///< the weights of the clips, changed by maxLayers additive layers
+        EntryBoxes withPosed;       ///< the weights of the clips, and any in [-1, 1]
+        std::vector<float> reaches; ///< the farthest that weights in [-1, 1] move a vertex
+    };
+
+    /// The set must outlive this object.
+    MixBounds(const AnimationSet& set, Boxes boxes);
+    /// The same without morph weights. entryBoxes: one box per palette entry.
+    MixBounds(const AnimationSet& set, const EntryBoxes& entryBoxes);
     ~MixBounds();
 
     /// The box in model space. Unknown clips count as the rest pose.
@@ -42,8 +54,11 @@ private:
     std::shared_ptr<const Ranges> rangesOf(int clip) const;
     Ranges rangesOf(const std::vector<PlayedClip>& played) const;
 
+    Box entryBox(const std::vector<PlayedClip>& played, std::size_t entry) const;
+
     const AnimationSet& _set;
-    EntryBoxes _entryBoxes, _withAdded;
+    Boxes _boxes;
+    double _largestRestWeight = 0.0; ///< no morph weight of the rest pose has a larger absolute value
     mutable std::mutex _mutex;
     mutable std::map<int, std::shared_ptr<const Ranges>> _ranges; ///< by clip
 };

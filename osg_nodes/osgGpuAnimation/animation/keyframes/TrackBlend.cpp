@@ -55,6 +55,12 @@ void addScaled(MixedTrack& sum, const MixedTrack& track, double factor)
     sum.scale += track.scale * factor;
 }
 
+/// Numbers of one blend priority over those of the lower ones. weight: the sum of the priority's weights.
+glm::dvec4 covered(const glm::dvec4& below, const glm::dvec4& group, const glm::dvec4& weight)
+{
+    return below * (1.0 - glm::min(weight, 1.0)) + group / glm::max(weight, 1.0);
+}
+
 /// sample / reference; 1 if the reference is 0.
 double ratio(double sample, double reference)
 {
@@ -77,38 +83,39 @@ TrackBlend::TrackBlend(const JointTransform& rest, bool isWeights) : _isWeights(
 
 void TrackBlend::beginBlendPriority()
 {
-    const double left = 1.0 - std::min(_weight, 1.0);
-    const double share = 1.0 / std::max(_weight, 1.0);
-    const bool isTurned = !_isWeights && glm::dot(_total.rotation, _group.rotation) < 0.0;
-    if (isTurned) _total.rotation = -_total.rotation;
-    MixedTrack total;
-    addScaled(total, _total, left);
-    addScaled(total, _group, share);
-    _total = total;
-    _group = MixedTrack();
-    _weight = 0.0;
+    if (!_isWeights && glm::dot(_total.rotation, _group.rotation) < 0.0) _total.rotation = -_total.rotation;
+    _total = {covered(_total.translation, _group.translation, _weights.translation),
+              covered(_total.rotation, _group.rotation, _weights.rotation),
+              covered(_total.scale, _group.scale, _weights.scale)};
+    _group = _weights = MixedTrack();
 }
 
-void TrackBlend::add(const MixedTrack& sample, double weight)
+void TrackBlend::add(const MixedTrack& sample, double weight, const MixedTrack& cover)
 {
-    if (_weight == 0.0) _hemisphere = sample.rotation;
-    _weight += weight;
+    if (_weights.rotation.w == 0.0) _hemisphere = sample.rotation;
+    addScaled(_weights, cover, weight);
     MixedTrack turned = sample;
     if (!_isWeights && glm::dot(_hemisphere, sample.rotation) < 0.0) turned.rotation = -turned.rotation;
     addScaled(_group, turned, weight);
 }
 
-void TrackBlend::addDifference(const MixedTrack& reference, const MixedTrack& sample, double weight)
+void TrackBlend::addDifference(const MixedTrack& reference, const MixedTrack& sample, double weight,
+                               const MixedTrack& cover)
 {
-    addScaled(_difference, sample, weight);
-    addScaled(_difference, reference, -weight);
+    const MixedTrack weights{weight * cover.translation, weight * cover.rotation, weight * cover.scale};
+    _difference.translation += weights.translation * (sample.translation - reference.translation);
+    _difference.rotation += weights.rotation * (sample.rotation - reference.rotation);
+    _difference.scale += weights.scale * (sample.scale - reference.scale);
     if (_isWeights) return;
-    const glm::dquat turn =
-        glm::conjugate(Rotation::quaternion(reference.rotation)) * Rotation::quaternion(sample.rotation);
-    const glm::dquat logarithm = glm::log(turn.w < 0.0 ? -turn : turn); // of the turn the short way
-    _turn += weight * glm::dvec3(logarithm.x, logarithm.y, logarithm.z);
+    if (cover.rotation.w > 0.0)
+    {
+        const glm::dquat turn =
+            glm::conjugate(Rotation::quaternion(reference.rotation)) * Rotation::quaternion(sample.rotation);
+        const glm::dquat logarithm = glm::log(turn.w < 0.0 ? -turn : turn); // of the turn the short way
+        _turn += weight * glm::dvec3(logarithm.x, logarithm.y, logarithm.z);
+    }
     for (int axis = 0; axis < 3; ++axis)
-        _growth[axis] *= 1.0 + weight * (ratio(sample.scale[axis], reference.scale[axis]) - 1.0);
+        _growth[axis] *= 1.0 + weights.scale[axis] * (ratio(sample.scale[axis], reference.scale[axis]) - 1.0);
 }
 
 MixedTrack TrackBlend::result()

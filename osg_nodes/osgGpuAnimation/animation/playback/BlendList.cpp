@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/playback/BlendList.h>
 
+#include <osgGpuAnimation/animation/Pose.h>
+
 #include <layout.glsl>
 
 #include <algorithm>
@@ -31,6 +33,13 @@ void BlendList::add(const BlendSample& sample, int blendPriority)
 void BlendList::addDifference(const BlendSample& reference, const BlendSample& sample)
 {
     insert({sample, reference, 0, true});
+}
+
+std::uint32_t BlendList::addPose(const std::shared_ptr<JointPose>& pose)
+{
+    assert(_poseCount < maxLayers && "one pose a layer");
+    _poses[_poseCount] = &pose;
+    return static_cast<std::uint32_t>(_poseCount++);
 }
 
 void BlendList::insert(const Item& item)
@@ -91,6 +100,9 @@ void BlendList::write(PoseInstruction& out)
     while (_sampleCount > PoseInstruction::maxSamples)
         removeLightest();
     out.sampleCount = 0;
+    out.poses.resize(_poseCount);
+    for (std::size_t pose = 0; pose < _poseCount; ++pose)
+        if (out.poses[pose] != *_poses[pose]) out.poses[pose] = *_poses[pose];
     for (std::size_t i = 0; i < _count; ++i)
     {
         const Item& item = _places[i].item;

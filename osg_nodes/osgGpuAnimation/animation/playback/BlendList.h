@@ -6,6 +6,8 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <memory>
 
 namespace osgGpuAnimation
 {
@@ -20,11 +22,15 @@ namespace osgGpuAnimation
 class BlendList
 {
 public:
-    static constexpr std::size_t maxItems = 64; ///< the most samples and differences that all layers can have
+    /// the most samples and differences that all layers can have: of eight clips and a pose each
+    static constexpr std::size_t maxItems = maxLayers * (ClipMixer::maxActiveClips + 1);
 
     /// Samples of weight 0 are ignored. At most maxItems samples and differences may be added.
     void add(const BlendSample& sample, int blendPriority);
     void addDifference(const BlendSample& reference, const BlendSample& sample);
+    /// The keyframe of samples that show the pose (see POSE_SAMPLE_POSED): at most maxLayers poses. pose: must stay
+    /// until write().
+    std::uint32_t addPose(const std::shared_ptr<JointPose>& pose);
     /// Writes the instruction; the rest pose if nothing was added. Call it once.
     void write(PoseInstruction& out);
 
@@ -51,6 +57,8 @@ private:
     std::array<Place, maxItems> _places;
     std::size_t _count = 0;
     std::size_t _sampleCount = 0; ///< samples of the items in an instruction
+    std::array<const std::shared_ptr<JointPose>*, maxLayers> _poses;
+    std::size_t _poseCount = 0;
 };
 
 /// The root motion of a step through a clip, however often it loops. The clip must have a rootMotion().

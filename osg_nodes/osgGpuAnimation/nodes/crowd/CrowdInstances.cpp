@@ -67,12 +67,15 @@ void takeOut(std::vector<Element>& elements, std::size_t index)
 
 CrowdInstances::CrowdInstances(const CrowdInstances& other)
     : _set(other._set), _clock(other._clock), _clipBounds(other._clipBounds), _allBounds(other._allBounds),
-      _rootMatrices(other._rootMatrices), _positions(other._positions), _spheres(other._spheres), _tints(other._tints),
-      _playbacks(other._playbacks), _handles(other._handles), _indexOfPlace(other._indexOfPlace),
-      _usesOfPlace(other._usesOfPlace), _freePlaces(other._freePlaces), _tinted(other._tinted)
+      _mixBounds(other._mixBounds), _rootMatrices(other._rootMatrices), _positions(other._positions),
+      _spheres(other._spheres), _tints(other._tints), _playbacks(other._playbacks), _handles(other._handles),
+      _indexOfPlace(other._indexOfPlace), _usesOfPlace(other._usesOfPlace), _freePlaces(other._freePlaces),
+      _tinted(other._tinted)
 {
     for (const std::unique_ptr<AnimationController>& controller : other._controllers)
         _controllers.push_back(controller ? std::make_unique<AnimationController>(*controller) : nullptr);
+    for (const std::unique_ptr<PosedBox>& box : other._posedBoxes)
+        _posedBoxes.push_back(box ? std::make_unique<PosedBox>(*box) : nullptr);
 }
 
 std::size_t CrowdInstances::indexOf(Handle handle) const
@@ -97,22 +100,51 @@ CrowdInstances::Handle CrowdInstances::newHandle(std::size_t index)
     return Handle(_usesOfPlace[place]) << 32 | place;
 }
 
-void CrowdInstances::setClipBounds(const std::vector<Box>& clipBounds)
+void CrowdInstances::setClipBounds(const std::vector<Box>& clipBounds, std::shared_ptr<const MixBounds> mixBounds)
 {
     _clipBounds = clipBounds;
+    _mixBounds = std::move(mixBounds);
     _allBounds = Box();
     for (const Box& box : clipBounds)
         _allBounds.add(box);
     for (std::size_t index = 0; index < size(); ++index)
+    {
+        _posedBoxes[index].reset();
+        updatePosedBox(index);
         _spheres[index] = placedSphere(index);
+    }
 }
 
 // A controller may mix any clips.
-glm::vec4 CrowdInstances::placedSphere(std::size_t index) const
+const Box& CrowdInstances::boxOf(std::size_t index) const
 {
+    if (_posedBoxes[index]) return _posedBoxes[index]->box;
     const auto bounds = static_cast<std::size_t>(_playbacks[index].clip() + 1);
     const bool isPlain = !_controllers[index] && bounds < _clipBounds.size();
-    return sphereAround(isPlain ? _clipBounds[bounds] : _allBounds, _rootMatrices[index]);
+    return isPlain ? _clipBounds[bounds] : _allBounds;
+}
+
+glm::vec4 CrowdInstances::placedSphere(std::size_t index) const
+{
+    return sphereAround(boxOf(index), _rootMatrices[index]);
+}
+
+/// True if the instance has another box than before because of its poses.
+bool CrowdInstances::updatePosedBox(std::size_t index)
+{
+    std::unique_ptr<PosedBox>& posed = _posedBoxes[index];
+    const bool isPosed = _controllers[index] && _mixBounds && !_controllers[index]->instruction().poses.empty();
+    if (!isPosed && !posed) return false;
+    if (!isPosed)
+    {
+        posed.reset();
+        return true;
+    }
+    thread_local std::vector<PlayedClip> played;
+    findPlayedClips(*_controllers[index], played);
+    if (posed && posed->played == played) return false;
+    posed = std::make_unique<PosedBox>(PosedBox{played, _mixBounds->box(played)});
+    return true;
 }
 
 Box CrowdInstances::bounds() const
@@ -130,7 +162,8 @@ Box CrowdInstances::bounds() const
             if (isAlone) clip = played.front().clip;
         }
         const auto place = static_cast<std::size_t>(clip + 1);
-        const Box& box = isAlone && place < _clipBounds.size() ? _clipBounds[place] : _allBounds;
+        const bool isOfClip = isAlone && !_posedBoxes[index] && place < _clipBounds.size();
+        const Box& box = isOfClip ? _clipBounds[place] : boxOf(index);
         if (!box.empty()) all.add(TransformedBox(_rootMatrices[index], box).bounds(glm::dmat3(1.0), glm::dvec3(0.0)));
     }
     return all.empty() ? Box() : Box{glm::vec3(all.min), glm::vec3(all.max)};
@@ -148,7 +181,9 @@ CrowdInstances::Handle CrowdInstances::add(const AffineMatrix& rootMatrix, const
     _tinted += tint != PoseBatch::white;
     _playbacks.push_back(isPlain ? CrowdPlayback(controller, _clock) : CrowdPlayback());
     _controllers.push_back(isPlain ? nullptr : std::make_unique<AnimationController>(controller));
+    _posedBoxes.emplace_back();
     _handles.push_back(newHandle(index));
+    updatePosedBox(index);
     _spheres[index] = placedSphere(index);
     return _handles[index];
 }
@@ -165,6 +200,7 @@ void CrowdInstances::remove(std::size_t index)
     takeOut(_tints, index);
     takeOut(_playbacks, index);
     takeOut(_controllers, index);
+    takeOut(_posedBoxes, index);
     takeOut(_handles, index);
     if (index < size()) _indexOfPlace[placeOf(_handles[index])] = static_cast<std::uint32_t>(index);
 }
@@ -221,6 +257,11 @@ bool CrowdInstances::advance(double seconds, PendingEvents& outEvents)
         std::unique_ptr<AnimationController>& controller = _controllers[index];
         if (!controller) continue;
         controller->advance(seconds, outEvents);
+        if (updatePosedBox(index))
+        {
+            _spheres[index] = placedSphere(index);
+            haveSpheresChanged = true;
+        }
         if (!controller->isPlainLoop()) continue;
         _playbacks[index] = CrowdPlayback(*controller, _clock);
         controller.reset();

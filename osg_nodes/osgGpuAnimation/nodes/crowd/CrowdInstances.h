@@ -3,6 +3,7 @@
 
 #include <osgGpuAnimation/animation/AnimationController.h>
 #include <osgGpuAnimation/animation/bounds/ClipBounds.h>
+#include <osgGpuAnimation/animation/bounds/MixBounds.h>
 #include <osgGpuAnimation/gpu/PoseBatch.h>
 
 #include <osg/Vec3d>
@@ -58,8 +59,9 @@ public:
     std::size_t indexOf(Handle handle) const; ///< none: no such instance
     Handle handleOf(std::size_t index) const { return _handles[index]; }
 
-    /// clipBounds: the box of an instance in the rest pose, then one per clip, in the character's space.
-    void setClipBounds(const std::vector<Box>& clipBounds);
+    /// clipBounds: the box of an instance in the rest pose, then one per clip, in the character's space. mixBounds: for
+    /// instances with poses of the application; null: none.
+    void setClipBounds(const std::vector<Box>& clipBounds, std::shared_ptr<const MixBounds> mixBounds = nullptr);
 
     /// rootMatrix: relative to the crowd's origin. position: the exact translation, in the crowd's space.
     Handle add(const AffineMatrix& rootMatrix, const osg::Vec3d& position, const AnimationController& controller,
@@ -80,7 +82,8 @@ public:
     /// Valid until the next advance(), which may replace it by a CrowdPlayback.
     AnimationController& controller(std::size_t index);
     AnimationController controllerCopy(std::size_t index) const;
-    /// The box around the boxes of all instances, each of the clip that it plays; of all clips if it mixes several.
+    /// The box around the boxes of all instances, each of the clip that it plays; of all clips if it mixes several; of
+    /// its mix if it has a JointPose.
     Box bounds() const;
     /// Without a controller there is none.
     RootMotion takeRootMotion(std::size_t index)
@@ -100,19 +103,30 @@ public:
 
 private:
     static std::size_t placeOf(Handle handle) { return handle & 0xFFFFFFFFu; } ///< in _indexOfPlace
+    /// The box of an instance with a JointPose, in the character's space.
+    struct PosedBox
+    {
+        std::vector<PlayedClip> played;
+        Box box;
+    };
+
+    const Box& boxOf(std::size_t index) const;
     glm::vec4 placedSphere(std::size_t index) const;
+    bool updatePosedBox(std::size_t index);
     Handle newHandle(std::size_t index);
 
     std::shared_ptr<const AnimationSet> _set;
     double _clock = 0.0; ///< seconds
     std::vector<Box> _clipBounds;
     Box _allBounds;
+    std::shared_ptr<const MixBounds> _mixBounds;
     std::vector<AffineMatrix> _rootMatrices;
     std::vector<osg::Vec3d> _positions;
     std::vector<glm::vec4> _spheres;
     std::vector<std::uint32_t> _tints;
     std::vector<CrowdPlayback> _playbacks;
     std::vector<std::unique_ptr<AnimationController>> _controllers; ///< mostly null
+    std::vector<std::unique_ptr<PosedBox>> _posedBoxes;             ///< null without a JointPose
     std::vector<Handle> _handles;
     std::vector<std::uint32_t> _indexOfPlace; ///< by the lower half of a handle
     std::vector<std::uint32_t> _usesOfPlace;

@@ -20,16 +20,28 @@ glm::vec3 toGlm(const osg::Vec3& vector)
     return {vector.x(), vector.y(), vector.z()};
 }
 
-/// The ranges of a morph's weights if additive layers change them.
-std::vector<WeightRange> rangesWithAdded(const AnimationSet& set, std::size_t morph, std::size_t additiveLayers)
+using Weights = PaletteEntryBounds::Weights;
+
+std::vector<WeightRange> rangesOf(const AnimationSet& set, std::size_t morph, Weights weights)
 {
     std::vector<WeightRange> ranges = weightRanges(set, morph);
     for (WeightRange& range : ranges)
     {
-        const float added = (range.max - range.min) * static_cast<float>(additiveLayers);
+        const float added = weights == Weights::WithAdded ? (range.max - range.min) * maxLayers : 0.0f;
         range = {range.min - added, range.max + added};
+        if (weights == Weights::WithPosed) range = {std::min(range.min, -1.0f), std::max(range.max, 1.0f)};
     }
     return ranges;
+}
+
+/// The farthest that weights in [-1, 1] move the vertex.
+float reachOfVertex(std::size_t vertex, const std::vector<MorphTarget>& targets)
+{
+    float reach = 0.0f;
+    for (const MorphTarget& target : targets)
+        if (const osg::Vec3Array* deltas = target.positions.get(); deltas && vertex < deltas->size())
+            reach += (*deltas)[vertex].length();
+    return reach;
 }
 
 /// The box of all morphed positions of one vertex.
@@ -76,8 +88,8 @@ void traverseWithBounds(osg::Group& group, const osg::BoundingBox& box, osg::Nod
     }
 }
 
-PaletteEntryBounds::PaletteEntryBounds(const AnimationSet& set, std::size_t additiveLayers)
-    : _set(&set), _additiveLayers(additiveLayers), _boxes(set.paletteSize())
+PaletteEntryBounds::PaletteEntryBounds(const AnimationSet& set, Weights weights)
+    : _set(&set), _weights(weights), _boxes(set.paletteSize()), _reaches(set.paletteSize())
 {
 }
 
@@ -91,15 +103,17 @@ void PaletteEntryBounds::add(const SkinnedGeometry& mesh)
         return;
     }
     std::vector<WeightRange> ranges;
-    if (mesh.getMorph() >= 0)
-        ranges = rangesWithAdded(*_set, static_cast<std::size_t>(mesh.getMorph()), _additiveLayers);
+    if (mesh.getMorph() >= 0) ranges = rangesOf(*_set, static_cast<std::size_t>(mesh.getMorph()), _weights);
     for (std::size_t vertex = 0; vertex < vertices->size(); ++vertex)
     {
         const Box bounds = boundsOfVertex((*vertices)[vertex], vertex, mesh.getMorphTargets(), ranges);
+        const float reach = reachOfVertex(vertex, mesh.getMorphTargets());
         mesh.forEachInfluence(vertex,
                               [&](std::size_t entry, float)
                               {
-                                  if (entry < _boxes.size()) _boxes[entry].add(bounds);
+                                  if (entry >= _boxes.size()) return;
+                                  _boxes[entry].add(bounds);
+                                  _reaches[entry] = std::max(_reaches[entry], reach);
                               });
     }
 }
@@ -110,6 +124,21 @@ void PaletteEntryBounds::addRigid(const osg::Vec3Array& vertices, std::size_t en
     for (std::size_t vertex = 0; isNew && vertex < vertices.size(); ++vertex)
         known->second.add(toGlm(vertices[vertex]));
     if (entry < _boxes.size()) _boxes[entry].add(known->second);
+}
+
+MixBounds::Boxes mixBoxesOf(const std::vector<const SkinnedGeometry*>& meshes, const AnimationSet& set)
+{
+    const auto boundsOf = [&](Weights weights)
+    {
+        PaletteEntryBounds bounds(set, weights);
+        for (const SkinnedGeometry* mesh : meshes)
+            bounds.add(*mesh);
+        return bounds;
+    };
+    const PaletteEntryBounds ofClips = boundsOf(Weights::OfClips);
+    if (set.morphs().empty()) return {ofClips.boxes(), ofClips.boxes(), ofClips.boxes(), ofClips.reaches()};
+    return {ofClips.boxes(), boundsOf(Weights::WithAdded).boxes(), boundsOf(Weights::WithPosed).boxes(),
+            ofClips.reaches()};
 }
 
 } // namespace osgGpuAnimation

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/bounds/ClipBounds.h>
+#include <osgGpuAnimation/animation/bounds/MixBounds.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
 #include <osg/Array>
@@ -10,6 +11,7 @@
 #include <osg/NodeVisitor>
 
 #include <map>
+#include <vector>
 
 namespace osgGpuAnimation
 {
@@ -70,7 +72,7 @@ bool computesBounds(osg::NodeVisitor& visitor);
 /// serve all clones and clips. box: valid.
 void traverseWithBounds(osg::Group& group, const osg::BoundingBox& box, osg::NodeVisitor& visitor);
 
-/// For each palette entry, the box of the vertices that it moves, in bind pose and over all morph weights of the clips.
+/// For each palette entry, the box of the vertices that it moves, in bind pose and over morph weights.
 /// The bounds of clips are computed from it.
 ///
 ///     PaletteEntryBounds entryBounds(set);
@@ -82,21 +84,34 @@ void traverseWithBounds(osg::Group& group, const osg::BoundingBox& box, osg::Nod
 class PaletteEntryBounds
 {
 public:
-    /// additiveLayers: the number of additive layers that may change the morph weights of the playing clip.
-    explicit PaletteEntryBounds(const AnimationSet& set, std::size_t additiveLayers = 0);
+    /// The morph weights that a mesh may have.
+    enum class Weights
+    {
+        OfClips,   ///< those of the rest pose and the clips
+        WithAdded, ///< the same, changed by maxLayers additive layers
+        WithPosed, ///< those of the rest pose and the clips, and any in [-1, 1]
+    };
+
+    explicit PaletteEntryBounds(const AnimationSet& set, Weights weights = Weights::OfClips);
 
     /// Adds the vertices of a mesh; ignores palette entries beyond the set's palette size.
     void add(const SkinnedGeometry& mesh);
 
     const EntryBoxes& boxes() const { return _boxes; } ///< one per palette entry of the set
+    /// One per palette entry: the farthest that morph weights in [-1, 1] move a vertex.
+    const std::vector<float>& reaches() const { return _reaches; }
 
 private:
     void addRigid(const osg::Vec3Array& vertices, std::size_t entry);
 
     const AnimationSet* _set;
-    std::size_t _additiveLayers;
+    Weights _weights;
     EntryBoxes _boxes;
+    std::vector<float> _reaches;
     std::map<const osg::Array*, Box> _bindBoxes; ///< by vertex array of a rigid mesh: shared arrays are scanned once
 };
+
+/// The boxes of the meshes, as MixBounds needs them. set: of the meshes.
+MixBounds::Boxes mixBoxesOf(const std::vector<const SkinnedGeometry*>& meshes, const AnimationSet& set);
 
 } // namespace osgGpuAnimation

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/picking/PosedMesh.h>
 
+#include <osgGpuAnimation/animation/keyframes/PosedKeyframe.h>
 #include <osgGpuAnimation/animation/Pose.h>
 
 #include <layout.glsl>
@@ -15,6 +16,12 @@ namespace osgGpuAnimation
 
 namespace
 {
+
+/// Identifies the content of the pose at that place.
+std::uint64_t serialOf(const PoseInstruction& instruction, std::size_t place)
+{
+    return instruction.poses[place] ? instruction.poses[place]->keyframe().serial() : 0;
+}
 
 osg::Vec3Array* toArray(const std::vector<glm::dvec3>& vectors)
 {
@@ -49,6 +56,9 @@ osg::ref_ptr<osg::Geometry> PosedMeshes::of(const SkinnedGeometry& mesh, const s
         _instruction = instruction;
         _rootToModel = rootToModel;
         _masks.clear();
+        _serials.clear();
+        for (std::size_t pose = 0; pose < instruction.poses.size(); ++pose)
+            _serials.push_back(serialOf(instruction, pose));
         for (std::size_t i = 0; i < instruction.sampleCount; ++i)
             if (auto mask = set->masks().find(instruction.samples[i].control >> POSE_SAMPLE_MASK_SHIFT))
                 _masks.push_back(mask);
@@ -67,7 +77,10 @@ bool PosedMeshes::holds(const std::shared_ptr<const AnimationSet>& set, const Po
 {
     // Compares bits, so that NaN equals itself.
     const auto isGone = [](const std::weak_ptr<const SetMask>& mask) { return mask.expired(); };
-    return _set == set && std::none_of(_masks.begin(), _masks.end(), isGone) &&
+    bool hasSerials = _serials.size() == instruction.poses.size();
+    for (std::size_t pose = 0; pose < _serials.size() && hasSerials; ++pose)
+        hasSerials = _serials[pose] == serialOf(instruction, pose);
+    return _set == set && std::none_of(_masks.begin(), _masks.end(), isGone) && hasSerials &&
            _instruction.sampleCount == instruction.sampleCount &&
            std::memcmp(_instruction.samples.data(), instruction.samples.data(),
                        instruction.sampleCount * sizeof(BlendSample)) == 0 &&

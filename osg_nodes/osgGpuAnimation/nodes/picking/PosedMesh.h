@@ -48,6 +48,7 @@ private:
     std::shared_ptr<const AnimationSet> _set;
     PoseInstruction _instruction;
     std::vector<std::weak_ptr<const SetMask>> _masks; ///< of the instruction
+    std::vector<std::uint64_t> _serials;              ///< of the instruction's poses
     AffineMatrix _rootToModel;
     std::vector<AffineMatrix> _palette;
     std::map<const SkinnedGeometry*, Posed> _meshes; ///< each value keeps its key alive

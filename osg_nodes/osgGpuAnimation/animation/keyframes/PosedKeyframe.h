@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osgGpuAnimation/animation/keyframes/TrackBlend.h>
+
+#include <glm/vec4.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace osgGpuAnimation
+{
+
+/// The content of a JointPose in the layout of the GPU: three texels per track, where a number that is not set has the
+/// bits POSE_NOT_SET. A part of a joint (translation, rotation, scale) is set as a whole, a morph weight alone.
+class PosedKeyframe
+{
+public:
+    /// The parts of a joint; the order is that of the texels.
+    enum Part : std::size_t
+    {
+        Translation,
+        Rotation,
+        Scale,
+    };
+
+    /// Nothing is set.
+    explicit PosedKeyframe(std::size_t trackCount);
+    /// All tracks are joints, and all their parts are set.
+    explicit PosedKeyframe(const std::vector<JointTransform>& transforms);
+
+    std::size_t trackCount() const { return _texels.size() / 3; }
+    const std::vector<glm::uvec4>& texels() const { return _texels; }
+    std::size_t byteSize() const { return _texels.size() * sizeof(glm::uvec4); }
+    /// Identifies the content: keyframes of equal serials are equal. Never 0.
+    std::uint64_t serial() const { return _serial; }
+    bool isEmpty() const { return _isEmpty; } ///< true if nothing is set
+    /// One bit per number of the track that is set, in the order of JointTransform::number().
+    std::uint32_t setNumbers(std::size_t track) const;
+    /// The numbers of a track, 0 where nothing is set.
+    JointTransform values(std::size_t track) const;
+    /// The same for the mix stage. outCover: 1 for each number that is set, else 0.
+    MixedTrack sample(std::size_t track, MixedTrack& outCover) const;
+
+    // Each change gives the keyframe another serial. The numbers are not checked.
+    void setPart(std::size_t joint, Part part, const glm::vec4& value);
+    void setTransforms(const std::vector<JointTransform>& transforms); ///< of the first tracks
+    void setNumber(std::size_t track, std::size_t number, float value);
+    void clear(std::size_t track);
+    void clear();
+
+private:
+    std::vector<glm::uvec4> _texels;
+    std::uint64_t _serial;
+    bool _isEmpty = true;
+};
+
+} // namespace osgGpuAnimation

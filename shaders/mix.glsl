@@ -2,7 +2,7 @@
 // Stage 1, mix: computes a track's joint transform from the two keyframes of each blend sample of its instance.
 
 // Constants of the program variant select the features of a batch, since some drivers run both sides of every branch:
-// const bool hasSplines, hasSeveralSamples, hasWeights, hasLayers, hasMasks, hasAdditive; hasExactKeys, hasCompactKeys:
+// const bool hasSplines, hasSeveralSamples, hasWeights, hasLayers, hasMasks, hasAdditive, hasPosed; hasExactKeys, hasCompactKeys:
 // the formats of the moving parts; const int translationMotion, scaleMotion: POSE_PART_FIXED ...;
 // const int sampleCount: blend samples per instance, if few; 0: use sampleStride.
 
@@ -12,6 +12,9 @@ uniform usamplerBuffer samples;   // sampleStride blend samples per instance
 uniform int sampleStride;
 uniform samplerBuffer masks;      // maskStride texels per mask
 uniform int maskStride;
+uniform usamplerBuffer posedKeyframes; // trackCount transforms per keyframe, see animation/keyframes/PosedKeyframe.h
+uniform int firstPosed;                // the number of the first of them
+uniform int trackCount;
 
 struct JointTransform
 {
@@ -187,6 +190,25 @@ JointTransform sampleTrack(uvec4 blendSample, int track, RestParts rest, bool is
     return interpolateSpline(place, rest, alpha, isWeights);
 }
 
+// A part of a posed keyframe. A number that is not set is 0, and so is its cover; the cover of the others is 1.
+vec4 posedPart(int texel, out vec4 cover)
+{
+    uvec4 words = texelFetch(posedKeyframes, texel);
+    uvec4 isSet = uvec4(notEqual(words, uvec4(POSE_NOT_SET)));
+    cover = vec4(isSet);
+    return uintBitsToFloat(words * isSet);
+}
+
+JointTransform posedTrack(uvec4 blendSample, int track, out JointTransform cover)
+{
+    int texel = ((int(blendSample.x) - firstPosed) * trackCount + track) * POSE_TEXELS_PER_TRANSFORM;
+    JointTransform t;
+    t.translation = posedPart(texel, cover.translation);
+    t.rotation = posedPart(texel + 1, cover.rotation);
+    t.scale = posedPart(texel + 2, cover.scale);
+    return t;
+}
+
 float maskWeight(uint control, int track)
 {
     return texelFetch(masks, int(control >> POSE_SAMPLE_MASK_SHIFT) * maskStride + track / POSE_WEIGHTS_PER_MASK_TEXEL)
@@ -200,11 +222,19 @@ void addScaled(inout JointTransform sum, JointTransform t, float factor)
     sum.scale += factor * t.scale;
 }
 
-// The weighted sum of one blend priority over the result of the lower ones.
-JointTransform covered(JointTransform below, JointTransform group, float weight, bool isWeights)
+vec4 coveredPart(vec4 below, vec4 group, vec4 weight)
 {
-    float left = 1.0 - min(weight, 1.0);
+    return (1.0 - min(weight, 1.0)) * below + group / max(weight, 1.0);
+}
+
+// The weighted sum of one blend priority over the result of the lower ones. weights: of each number, used with posed samples.
+JointTransform covered(JointTransform below, JointTransform group, float weight, JointTransform weights, bool isWeights)
+{
     if (!isWeights && dot(below.rotation, group.rotation) < 0.0) below.rotation = -below.rotation;
+    if (hasPosed) return JointTransform(coveredPart(below.translation, group.translation, weights.translation),
+                                        coveredPart(below.rotation, group.rotation, weights.rotation),
+                                        coveredPart(below.scale, group.scale, weights.scale));
+    float left = 1.0 - min(weight, 1.0);
     JointTransform sum = JointTransform(left * below.translation, left * below.rotation, left * below.scale);
     addScaled(sum, group, 1.0 / max(weight, 1.0));
     return sum;
@@ -242,6 +272,14 @@ struct Difference
     vec3 growth;
 };
 
+// Numbers that the sample has not are those of the reference: they change nothing.
+JointTransform completed(JointTransform t, JointTransform reference, JointTransform cover)
+{
+    return JointTransform(mix(reference.translation, t.translation, cover.translation),
+                          mix(reference.rotation, t.rotation, cover.rotation),
+                          mix(reference.scale, t.scale, cover.scale));
+}
+
 void addDifference(inout Difference difference, JointTransform reference, JointTransform t, float weight)
 {
     addScaled(difference.sum, t, weight);
@@ -274,12 +312,14 @@ uvec4 sampleOf(int instance, int number); // defined by the pass
 JointTransform mixSamples(int instance, int track, RestParts rest, bool isWeights)
 {
     const JointTransform nothing = JointTransform(vec4(0.0), vec4(0.0), vec4(0.0));
+    const JointTransform everything = JointTransform(vec4(1.0), vec4(1.0), vec4(1.0));
     JointTransform total = fetchRest(track);
     JointTransform group = nothing;
     JointTransform reference = nothing;
     Difference difference = Difference(nothing, vec3(0.0), vec3(1.0));
     vec4 hemisphere = vec4(0.0);
     float sum = 0.0;
+    JointTransform sums = nothing; // the weights of each number, with posed samples
     int count = sampleCount > 0 ? sampleCount : sampleStride; // a constant count is unrolled, which saves a third in llvmpipe
     for (int i = 0; i < count; ++i)
     {
@@ -288,24 +328,29 @@ JointTransform mixSamples(int instance, int track, RestParts rest, bool isWeight
         if (hasMasks) weight *= maskWeight(blendSample.w, track);
         if (hasLayers && (blendSample.w & POSE_SAMPLE_ABOVE) != 0u)
         {
-            total = covered(total, group, sum, isWeights);
+            total = covered(total, group, sum, sums, isWeights);
             group = nothing;
             sum = 0.0;
+            sums = nothing;
         }
         if (!(weight > 0.0)) continue;
-        JointTransform t = sampleTrack(blendSample, track, rest, isWeights);
+        JointTransform t;
+        JointTransform cover = everything;
+        if (hasPosed && (blendSample.w & POSE_SAMPLE_POSED) != 0u) t = posedTrack(blendSample, track, cover);
+        else t = sampleTrack(blendSample, track, rest, isWeights);
         if (hasAdditive && (blendSample.w & (POSE_SAMPLE_REFERENCE | POSE_SAMPLE_ADDITIVE)) != 0u)
         {
             if ((blendSample.w & POSE_SAMPLE_REFERENCE) != 0u) reference = t;
-            else addDifference(difference, reference, t, weight);
+            else addDifference(difference, reference, hasPosed ? completed(t, reference, cover) : t, weight);
             continue;
         }
-        if (sum == 0.0) hemisphere = t.rotation;
+        if ((hasPosed ? sums.rotation.w : sum) == 0.0) hemisphere = t.rotation;
         if (!isWeights && dot(hemisphere, t.rotation) < 0.0) t.rotation = -t.rotation;
         addScaled(group, t, weight);
-        sum += weight;
+        if (hasPosed) addScaled(sums, cover, weight);
+        else sum += weight;
     }
-    total = covered(total, group, sum, isWeights);
+    total = covered(total, group, sum, sums, isWeights);
     if (!isWeights) total.rotation = normalize(total.rotation);
     return hasAdditive ? changed(total, difference, isWeights) : total;
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/gpu/PoseBatch.h>
 
+#include <osgGpuAnimation/animation/keyframes/PosedKeyframe.h>
+
 #include <layout.glsl>
 
 #include <algorithm>
@@ -25,8 +27,17 @@ bool isPlain(const BlendSample& sample)
            sample.control >> POSE_SAMPLE_MASK_SHIFT == 0;
 }
 
-PoseBatch::BlendCost blendCost(bool isMixed, std::size_t sampleCount)
+/// Null if the sample shows no pose of a set with that many tracks, or one in which nothing is set.
+const JointPose* findPose(const PoseInstruction& instruction, const BlendSample& sample, std::size_t trackCount)
 {
+    if (sample.keyframe >= instruction.poses.size()) return nullptr;
+    const JointPose* pose = instruction.poses[sample.keyframe].get();
+    return pose && !pose->isEmpty() && pose->keyframe().trackCount() == trackCount ? pose : nullptr;
+}
+
+PoseBatch::BlendCost blendCost(bool isPosed, bool isMixed, std::size_t sampleCount)
+{
+    if (isPosed) return PoseBatch::BlendCost::Posed;
     if (!isMixed) return PoseBatch::BlendCost::Plain;
     return sampleCount <= 4 ? PoseBatch::BlendCost::Few : PoseBatch::BlendCost::Many;
 }
@@ -35,24 +46,45 @@ PoseBatch::BlendCost blendCost(bool isMixed, std::size_t sampleCount)
 
 PoseBatch::BlendCost PoseBatch::blendCostOf(const PoseInstruction& instruction)
 {
+    const bool isPosed = std::any_of(instruction.poses.begin(), instruction.poses.end(),
+                                     [](const auto& pose) { return pose && !pose->isEmpty(); });
     const bool isMixed = instruction.sampleCount != 1 || !isPlain(instruction.samples[0]);
-    return blendCost(isMixed, instruction.sampleCount);
+    return blendCost(isPosed, isMixed, instruction.sampleCount);
 }
 
 bool PoseBatch::accepts(const PoseInstruction& instruction) const
 {
-    return _size < minBatchSize || blendCostOf(instruction) == blendCost(_needs.mixing, _sampleStride);
+    return _size < minBatchSize || blendCostOf(instruction) == blendCost(_needs.posed, _needs.mixing, _sampleStride);
 }
 
-std::size_t PoseBatch::append(const BlendSample* samples, std::size_t count)
+/// Gives a posed sample its keyframe in the batch. False if there is none.
+bool PoseBatch::usePose(const PoseInstruction& instruction, BlendSample& sample)
+{
+    const JointPose* pose = findPose(instruction, sample, set().trackCount());
+    if (!pose) return false;
+    if (_firstPosed.empty()) _firstPosed.assign(_size + 1, 0);
+    sample.keyframe = static_cast<std::uint32_t>(_posed.size());
+    _posed.push_back(pose->sharedKeyframe());
+    _mostPosed = std::max<std::size_t>(_mostPosed, _posed.size() - _firstPosed[_size]);
+    _needs.posed = true;
+    return true;
+}
+
+std::size_t PoseBatch::append(const BlendSample* samples, std::size_t count, const PoseInstruction* instruction)
 {
     if (count > _sampleStride) widen(count);
+    if (!_firstPosed.empty()) _firstPosed.push_back(static_cast<std::uint32_t>(_posed.size()));
     for (const BlendSample* sample = samples; sample != samples + count; ++sample)
     {
         _samples.push_back(*sample);
         BlendSample& added = _samples.back();
         added.alpha = clampedToUnit(sample->alpha);
         added.weight = clampedToUnit(sample->weight);
+        if ((added.control & POSE_SAMPLE_POSED) != 0 && !(instruction && usePose(*instruction, added)))
+        {
+            // Nothing is set: the sample keeps its place and shows nothing.
+            added = {0, 0.0f, 0.0f, added.control & ~POSE_SAMPLE_POSED};
+        }
         addNeeds(added);
         // A mask that nobody holds any more is no mask.
         if (!holdMask(added.control >> POSE_SAMPLE_MASK_SHIFT)) added.control &= (1u << POSE_SAMPLE_MASK_SHIFT) - 1u;
@@ -83,7 +115,22 @@ void PoseBatch::addNeeds(const BlendSample& sample)
 
 std::size_t PoseBatch::add(const PoseInstruction& instruction)
 {
-    return append(instruction.samples.data(), std::min(instruction.sampleCount, PoseInstruction::maxSamples));
+    return append(instruction.samples.data(), std::min(instruction.sampleCount, PoseInstruction::maxSamples),
+                  &instruction);
+}
+
+bool PoseBatch::hasPoses(std::size_t instance, const PoseInstruction& instruction) const
+{
+    std::size_t posed = firstPosed(instance);
+    for (std::size_t i = 0; i < instruction.sampleCount; ++i)
+    {
+        const BlendSample& sample = instruction.samples[i];
+        if ((sample.control & POSE_SAMPLE_POSED) == 0) continue;
+        const JointPose* pose = findPose(instruction, sample, set().trackCount());
+        if (!pose) continue;
+        if (posed >= firstPosed(instance + 1) || _posed[posed++]->serial() != pose->keyframe().serial()) return false;
+    }
+    return posed == firstPosed(instance + 1);
 }
 
 void PoseBatch::setRootMatrix(const AffineMatrix& rootMatrix)
@@ -111,7 +158,7 @@ std::size_t PoseBatch::add(const PoseInstruction& instruction, const AffineMatri
 std::size_t PoseBatch::addSample(const BlendSample& sample, const AffineMatrix& rootMatrix)
 {
     assert(!_isRootCommon && "the batch has one root matrix for all");
-    const std::size_t instance = append(&sample, 1);
+    const std::size_t instance = append(&sample, 1, nullptr);
     _rootMatrices.resize(_size);
     _rootMatrices.back() = rootMatrix;
     return instance;
@@ -132,7 +179,9 @@ bool PoseBatch::isSame(const PoseBatch& other) const
                (left.empty() || std::memcmp(left.data(), right.data(), left.size() * sizeof(left[0])) == 0);
     };
     return _set == other._set && _sampleStride == other._sampleStride && same(_samples, other._samples) &&
-           same(_rootMatrices, other._rootMatrices) && same(_tints, other._tints);
+           same(_rootMatrices, other._rootMatrices) && same(_tints, other._tints) &&
+           std::equal(_posed.begin(), _posed.end(), other._posed.begin(), other._posed.end(),
+                      [](const auto& left, const auto& right) { return left->serial() == right->serial(); });
 }
 
 void PoseBatch::widen(std::size_t sampleStride)
@@ -155,6 +204,9 @@ void PoseBatch::clear()
     _isRootCommon = false;
     _tints.clear();
     _masks.clear();
+    _posed.clear();
+    _firstPosed.clear();
+    _mostPosed = 0;
 }
 
 void PoseBatch::reset(std::shared_ptr<const AnimationSet> set)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/animation/Pose.h>
 
 #include <osg/GL>
 
@@ -57,9 +58,10 @@ public:
         Plain, ///< one sample of full weight without a mask: no mixing
         Few,   ///< at most four samples: one or two crossfades
         Many,  ///< more than four samples
+        Posed, ///< some sample shows a JointPose, however many there are
     };
     /// Number of BlendCost values.
-    static constexpr std::size_t blendCostCount = 3;
+    static constexpr std::size_t blendCostCount = 4;
     /// The cost of one instruction.
     static BlendCost blendCostOf(const PoseInstruction& instruction);
     /// Below this number of instances a second batch costs more than the extra samples of mixed blend costs.
@@ -85,6 +87,7 @@ public:
         bool layers = false;   ///< samples of several blend priorities
         bool masks = false;    ///< samples with masks
         bool additive = false; ///< additive samples
+        bool posed = false;    ///< samples of poses
     };
     /// The needs of all instances together.
     const Needs& needs() const { return _needs; }
@@ -101,6 +104,17 @@ public:
     const std::vector<std::uint32_t>& tints() const { return _tints; }
     /// The masks of the samples by number; null: not used here. The batch holds them until it is cleared.
     const std::vector<std::shared_ptr<const SetMask>>& masks() const { return _masks; }
+    /// The posed keyframes: the samples of instance i name those from firstPosed(i) on. The batch shares them, so they
+    /// do not change.
+    const std::vector<std::shared_ptr<const PosedKeyframe>>& posed() const { return _posed; }
+    /// instance: at most size(), which gives posed().size().
+    std::size_t firstPosed(std::size_t instance) const
+    {
+        return instance < _firstPosed.size() ? _firstPosed[instance] : _posed.size();
+    }
+    std::size_t mostPosed() const { return _mostPosed; } ///< the largest number of posed keyframes of any instance
+    /// True if the instruction has the poses of the instance, with the same content.
+    bool hasPoses(std::size_t instance, const PoseInstruction& instruction) const;
     /// True if both have the same set and the same instances, byte by byte.
     bool isSame(const PoseBatch& other) const;
 
@@ -108,7 +122,8 @@ private:
     void widen(std::size_t sampleStride);
     void addNeeds(const BlendSample& sample);
     bool holdMask(std::uint32_t number);
-    std::size_t append(const BlendSample* samples, std::size_t count);
+    std::size_t append(const BlendSample* samples, std::size_t count, const PoseInstruction* instruction);
+    bool usePose(const PoseInstruction& instruction, BlendSample& sample);
 
     std::shared_ptr<const AnimationSet> _set;
     std::size_t _size = 0;
@@ -119,6 +134,9 @@ private:
     bool _isRootCommon = false; ///< true: _rootMatrices has one matrix for all instances
     std::vector<std::uint32_t> _tints;
     std::vector<std::shared_ptr<const SetMask>> _masks;
+    std::vector<std::shared_ptr<const PosedKeyframe>> _posed;
+    std::vector<std::uint32_t> _firstPosed; ///< by instance; empty: no instance has posed keyframes
+    std::size_t _mostPosed = 0;
 };
 
 } // namespace osgGpuAnimation

@@ -31,7 +31,7 @@ namespace
 
 constexpr std::size_t matrixBytes = sizeof(AffineMatrix);
 constexpr int unitKeyframes = 0, unitSamples = 1, unitEntries = 2, unitRoots = 3, unitPrevious = 4, unitMasks = 5;
-constexpr int unitCount = 6;
+constexpr int unitPosed = 6, unitCount = 7;
 
 constexpr std::initializer_list<const char*> rowOutputs{"row0", "row1", "row2"};
 
@@ -205,8 +205,10 @@ std::size_t PosePipeline::Parts::chunkCapacity(const PoseBatch& batch) const
         std::max(set.paletteSize(), pipeline._options.form == Form::Separate ? set.trackCount() : 0);
     const std::size_t byPalette =
         pipeline._options.maxTexels / (POSE_TEXELS_PER_MATRIX * std::max<std::size_t>(widest, 1));
+    const std::size_t byPosed = pipeline._options.maxTexels / std::max<std::size_t>(PosePalette::posedTexels(batch), 1);
     std::size_t capacity = std::max<std::size_t>(
-        std::min({byPalette, pipeline._options.maxTexels / batch.sampleStride(), pipeline._options.chunkSize}), 1);
+        std::min({byPalette, byPosed, pipeline._options.maxTexels / batch.sampleStride(), pipeline._options.chunkSize}),
+        1);
     while (PosePalette::widthOf(capacity) > capacity)
         --capacity;
     return capacity;
@@ -232,6 +234,12 @@ void PosePipeline::Parts::useMixInput(FeedbackPass& pass, const AnimationSet& se
     pass.setTexture("samples", unitSamples, chunk.samples.texture());
     pass.setTexture("masks", unitMasks, buffers.masks().texture());
     pass.setInt("maskStride", static_cast<int>(AnimationBuffers::texelsPerMask(set)));
+    if (!chunk.uploadedPosed.empty())
+    {
+        pass.setTexture("posedKeyframes", unitPosed, chunk.posed.texture());
+        pass.setInt("firstPosed", static_cast<int>(chunk.firstPosed));
+        pass.setInt("trackCount", static_cast<int>(set.trackCount()));
+    }
     pass.setInt("sampleStride", static_cast<int>(chunk.sampleStride));
     pass.setInt("instanceCount", static_cast<int>(chunk.width));
     pass.setInt("restTexel", static_cast<int>(buffers.restTexel()));

@@ -52,7 +52,7 @@ public:
     {
         std::uint64_t feedbackDraws = 0;      ///< draws of all passes
         std::uint64_t instancesEvaluated = 0; ///< palettes computed
-        std::uint64_t bytesUploaded = 0;      ///< samples, root matrices and tints, without the sets
+        std::uint64_t bytesUploaded = 0;      ///< samples, root matrices, tints and posed keyframes, without the sets
     };
 
     /// Called by OSG; use of() instead.

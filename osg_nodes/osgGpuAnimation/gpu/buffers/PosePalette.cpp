@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/gpu/buffers/PosePalette.h>
 
+#include <osgGpuAnimation/animation/keyframes/PosedKeyframe.h>
 #include <osgGpuAnimation/gpu/FeedbackPass.h>
 
 #include <layout.glsl>
@@ -57,7 +58,8 @@ std::size_t PosePalette::widthOf(std::size_t size)
 }
 
 PosePalette::Chunk::Chunk(osg::GLExtensions& gl)
-    : samples(gl, GL_RGBA32UI_EXT), roots(gl, GL_RGBA32F_ARB), tints(gl, GL_RGBA8), palette(gl, GL_RGBA32F_ARB)
+    : samples(gl, GL_RGBA32UI_EXT), roots(gl, GL_RGBA32F_ARB), tints(gl, GL_RGBA8), posed(gl, GL_RGBA32UI_EXT),
+      palette(gl, GL_RGBA32F_ARB)
 {
 }
 
@@ -81,6 +83,58 @@ void PosePalette::Chunk::bindInstances(osg::GLExtensions& gl) const
     else
         for (unsigned int row = 0; row < POSE_TEXELS_PER_MATRIX; ++row)
             gl.glDisableVertexAttribArray(POSE_ROOT_LOCATION + row);
+}
+
+std::size_t PosePalette::posedTexels(const PoseBatch& batch)
+{
+    return batch.mostPosed() * batch.set().trackCount() * POSE_TEXELS_PER_TRANSFORM;
+}
+
+/// Uploads the posed keyframes of the chunk that have changed. first: the chunk's first instance. True if one has.
+bool PosePalette::uploadPosed(const PoseBatch& batch, std::size_t first, Chunk& chunk, std::size_t& bytesUploaded)
+{
+    chunk.firstPosed = batch.firstPosed(first);
+    const std::size_t count = batch.firstPosed(first + chunk.size) - chunk.firstPosed;
+    const std::size_t bytes = batch.set().trackCount() * POSE_TEXELS_PER_TRANSFORM * BufferTexture::texelBytes;
+    if (count == 0)
+    {
+        const bool hadSome = !chunk.uploadedPosed.empty();
+        chunk.uploadedPosed.clear();
+        return hadSome;
+    }
+    const auto keyframe = [&](std::size_t place) -> const PosedKeyframe&
+    { return *batch.posed()[chunk.firstPosed + place]; };
+    if (chunk.posed.reserve(count * bytes)) chunk.uploadedPosed.clear(); // new storage is empty
+    const bool isOtherCount = chunk.uploadedPosed.size() != count;
+    chunk.uploadedPosed.resize(count, 0);
+    std::size_t changed = 0;
+    for (std::size_t place = 0; place < count; ++place)
+        changed += chunk.uploadedPosed[place] != keyframe(place).serial();
+    const bool isWhole = changed == count;
+    // Ranges of changed keyframes; if all changed, one that does not wait for earlier draws.
+    for (std::size_t begin = 0; begin < count && changed > 0;)
+    {
+        if (chunk.uploadedPosed[begin] == keyframe(begin).serial())
+        {
+            ++begin;
+            continue;
+        }
+        _posedTexels.clear();
+        std::size_t end = begin;
+        for (; end < count && chunk.uploadedPosed[end] != keyframe(end).serial(); ++end)
+        {
+            const std::vector<glm::uvec4>& texels = keyframe(end).texels();
+            _posedTexels.insert(_posedTexels.end(), texels.begin(), texels.end());
+            chunk.uploadedPosed[end] = keyframe(end).serial();
+        }
+        if (isWhole)
+            chunk.posed.upload(_posedTexels.data(), count * bytes);
+        else
+            chunk.posed.uploadPart(begin * bytes, _posedTexels.data(), (end - begin) * bytes);
+        bytesUploaded += (end - begin) * bytes;
+        begin = end;
+    }
+    return changed > 0 || isOtherCount;
 }
 
 std::vector<PosePalette::Chunk*> PosePalette::upload(const PoseBatch& batch, std::size_t chunkCapacity,
@@ -112,6 +166,7 @@ std::vector<PosePalette::Chunk*> PosePalette::upload(const PoseBatch& batch, std
         isChanged |= uploadChanged(roots, hasOwnRoots ? first : 0, hasOwnRoots ? size : roots.size(),
                                    hasOwnRoots ? chunk.width : roots.size(), chunk.uploadedRootMatrices, chunk.roots,
                                    bytesUploaded);
+        isChanged |= uploadPosed(batch, first, chunk, bytesUploaded);
         // Only the draw reads tints: the palette does not change.
         uploadChanged(batch.tints(), hasTints ? first : 0, hasTints ? size : 0, hasTints ? size : 0,
                       chunk.uploadedTints, chunk.tints, bytesUploaded);
@@ -146,7 +201,7 @@ void PosePalette::invalidate()
 void PosePalette::release()
 {
     for (const std::unique_ptr<Chunk>& chunk : _chunks)
-        for (BufferTexture* buffer : {&chunk->samples, &chunk->roots, &chunk->tints, &chunk->palette})
+        for (BufferTexture* buffer : {&chunk->samples, &chunk->roots, &chunk->tints, &chunk->posed, &chunk->palette})
             buffer->release();
     _chunks.clear();
 }

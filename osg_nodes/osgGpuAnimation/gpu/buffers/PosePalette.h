@@ -31,9 +31,12 @@ public:
         std::vector<BlendSample> uploadedSamples;       ///< content of `samples`
         std::vector<AffineMatrix> uploadedRootMatrices; ///< content of `roots`; a single one: for all instances
         std::vector<std::uint32_t> uploadedTints;       ///< content of `tints`
+        std::vector<std::uint64_t> uploadedPosed;       ///< the serials of the content of `posed`
+        std::size_t firstPosed = 0;                     ///< the keyframe of the batch that is the first of `posed`
         BufferTexture samples;
         BufferTexture roots;
         BufferTexture tints;
+        BufferTexture posed;      ///< RGBA32UI: the posed keyframes of the chunk's instances
         bool isEvaluated = false; ///< true if `palette` belongs to the inputs
         BufferTexture palette;    ///< RGBA32F: paletteSize * width matrices, entry-major
     };
@@ -52,12 +55,17 @@ public:
     PalettePlace place(std::size_t instance) const;
     /// Marks all chunks as not evaluated.
     void invalidate();
+    /// The texels that the posed keyframes of one instance take.
+    static std::size_t posedTexels(const PoseBatch& batch);
     const std::vector<std::unique_ptr<Chunk>>& chunks() const { return _chunks; }
 
     void release();
 
 private:
+    bool uploadPosed(const PoseBatch& batch, std::size_t first, Chunk& chunk, std::size_t& bytesUploaded);
+
     osg::GLExtensions* _gl;
+    std::vector<glm::uvec4> _posedTexels; ///< memory of uploadPosed()
     std::size_t _chunkCapacity = 1;
     std::vector<std::unique_ptr<Chunk>> _chunks;
     std::vector<std::weak_ptr<const SetMask>> _masks; ///< of the last batch, by number

@@ -23,6 +23,7 @@ PoseVariant PoseVariant::of(const PoseBatch& batch)
     variant.hasLayers = batch.needs().layers;
     variant.hasMasks = batch.needs().masks;
     variant.hasAdditive = batch.needs().additive;
+    variant.hasPosed = batch.needs().posed;
     return variant;
 }
 
@@ -59,7 +60,7 @@ std::string PoseVariant::constants() const
     return line("hasSplines", hasSplines) + line("hasSeveralSamples", hasSeveralSamples) +
            line("hasWeights", hasWeights) + line("isRootLevel", isRootLevel) + line("hasRoots", hasRoots) +
            line("hasLayers", hasLayers) + line("hasMasks", hasMasks) + line("hasAdditive", hasAdditive) +
-           line("hasExactKeys", hasExactKeys) + line("hasCompactKeys", hasCompactKeys) +
+           line("hasPosed", hasPosed) + line("hasExactKeys", hasExactKeys) + line("hasCompactKeys", hasCompactKeys) +
            number("sampleCount", sampleCount) + number("translationMotion", static_cast<int>(translationMotion)) +
            number("scaleMotion", static_cast<int>(scaleMotion));
 }
@@ -68,7 +69,7 @@ unsigned int PoseVariant::key() const
 {
     unsigned int key = 0;
     for (const bool has : {hasSplines, hasSeveralSamples, hasWeights, isRootLevel, hasRoots, hasLayers, hasMasks,
-                           hasAdditive, hasExactKeys, hasCompactKeys})
+                           hasAdditive, hasPosed, hasExactKeys, hasCompactKeys})
         key = 2 * key + (has ? 1 : 0);
     key = key * (POSE_SAMPLES_AS_ATTRIBUTES + 1) + static_cast<unsigned int>(sampleCount);
     return (4 * key + static_cast<unsigned int>(translationMotion)) * 4 + static_cast<unsigned int>(scaleMotion);

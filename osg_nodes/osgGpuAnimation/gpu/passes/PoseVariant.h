@@ -24,6 +24,7 @@ struct PoseVariant
     bool hasLayers = false;         ///< some instance has samples of several blend priorities
     bool hasMasks = false;          ///< some sample has a mask
     bool hasAdditive = false;       ///< some sample is additive
+    bool hasPosed = false;          ///< some sample shows a posed keyframe
     bool hasExactKeys = false;      ///< some exact clip moves some of the tracks
     bool hasCompactKeys = false;    ///< some compact clip moves some of the tracks
     int sampleCount = 0; ///< blend samples of an instance, if they are attributes; 0: the shader fetches them

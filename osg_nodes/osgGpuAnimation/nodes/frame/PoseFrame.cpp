@@ -100,7 +100,9 @@ bool PoseFrame::hasSameInstruction(const Submitted& known, const AnimationContro
 {
     const PoseInstruction& instruction = controller.instruction();
     return known.batch && &known.batch->content->set() == &controller.set() &&
-           known.batch->content->hasRootMatrix(rootMatrix) && known.sampleCount == instruction.sampleCount &&
+           known.batch->content->hasRootMatrix(rootMatrix) &&
+           known.batch->content->hasPoses(known.instance, instruction) &&
+           known.sampleCount == instruction.sampleCount &&
            std::equal(instruction.samples.begin(),
                       instruction.samples.begin() + static_cast<std::ptrdiff_t>(instruction.sampleCount),
                       _samples.begin() + static_cast<std::ptrdiff_t>(known.firstSample), isSame);

@@ -101,6 +101,28 @@ TEST_F(ReadmeDirectingTest, LayersAndMasks)
     EXPECT_EQ(controller.advance(0.1).sampleCount, 4u) << "base, gesture, and two for what is added";
 }
 
+TEST_F(ReadmeDirectingTest, PosedJoints)
+{
+    AnimationController& controller = fox->getController();
+    const auto receiveCapture = [] { return std::vector<JointTransform>(4); };
+    const auto simulateRagdoll = [] { return std::vector<AffineMatrix>(4); };
+    const std::size_t wrist = fox->getAnimationSet().skeleton().jointNamed("Hand.R").value();
+    AnimationLayer& yoke = controller.layer(3);
+    JointPose& pose = yoke.pose();
+    pose.setRotation(wrist, glm::angleAxis(0.5f, glm::vec3(1, 0, 0)));
+    EXPECT_EQ(controller.instruction().sampleCount, 2u);
+    yoke.fadeWeight(0.0f, 0.4);
+    pose.reset(wrist);
+    EXPECT_TRUE(pose.isEmpty());
+
+    std::vector<JointTransform> captured = receiveCapture();
+    succeeded(yoke.pose().setTransforms(captured));
+    std::vector<AffineMatrix> bodies = simulateRagdoll();
+    succeeded(yoke.pose().setModelTransforms(bodies));
+    yoke.showPose(0.2);
+    EXPECT_FALSE(pose.isEmpty());
+}
+
 TEST_F(ReadmeDirectingTest, Events)
 {
     std::string heard;

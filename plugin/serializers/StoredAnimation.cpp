@@ -340,7 +340,28 @@ void transferActiveClip(ValueStream& stream, LayerSnapshot::ActiveClip& activeCl
     stream.values(activeClip.shareBefore, activeClip.phaseGroup).endLine();
 }
 
-void transferLayer(ValueStream& stream, LayerSnapshot& layer)
+/// The version of a stored controller whose layers may have poses.
+constexpr std::int32_t versionWithPoses = 2;
+
+void transferPosedTrack(ValueStream& stream, JointPose::Track& track)
+{
+    auto index = static_cast<std::int32_t>(track.track), numbers = static_cast<std::int32_t>(track.numbers);
+    stream.property("Track").values(index, numbers);
+    stream.floats(&track.values.translation.x, 4).floats(&track.values.rotation.x, 4);
+    stream.floats(&track.values.scale.x, 4).endLine();
+    track.track = static_cast<std::uint32_t>(index);
+    track.numbers = static_cast<std::uint32_t>(numbers);
+}
+
+bool hasPose(const AnimationController& controller)
+{
+    bool has = false;
+    for (std::size_t i = 0; i < controller.layerCount(); ++i)
+        has = has || controller.layer(i).findPose();
+    return has;
+}
+
+void transferLayer(ValueStream& stream, std::int32_t version, LayerSnapshot& layer)
 {
     using Layer = AnimationLayer;
     stream.property("Layer").limited("a layer's state", layer.state, PlayState::Ended);
@@ -353,6 +374,9 @@ void transferLayer(ValueStream& stream, LayerSnapshot& layer)
     transferFade(stream, "Crossfade", layer.crossfade);
     transferFade(stream, "Weight", layer.weight);
     stream.block("Mask", layer.mask, 8);
+    if (version < versionWithPoses) return;
+    stream.list("Pose", layer.pose, [&](JointPose::Track& track) { transferPosedTrack(stream, track); });
+    transferFade(stream, "PoseShare", layer.poseShare);
 }
 
 osgDB::RegisterWrapperProxy storedSet([]() -> osg::Object* { return new StoredAnimationSet; },
@@ -385,15 +409,16 @@ void transferAnimationSet(ValueStream& stream, std::shared_ptr<const AnimationSe
 
 void transferController(ValueStream& stream, AnimationController& controller)
 {
-    std::int32_t version = 1;
-    stream.limited("the version of a controller", version, 1, 1).endLine();
+    // Controllers without poses stay readable for earlier versions.
+    std::int32_t version = hasPose(controller) ? versionWithPoses : 1;
+    stream.limited("the version of a controller", version, 1, versionWithPoses).endLine();
     const std::size_t layers = stream.open("Layers", controller.layerCount());
     if (layers > maxLayers) stream.fail(std::to_string(layers) + " layers, at most " + std::to_string(maxLayers));
     for (std::size_t i = 0; i < layers && stream.isGood(); ++i)
     {
         LayerSnapshot layer;
         if (!stream.isReading()) layer = controller.layer(i).snapshot();
-        transferLayer(stream, layer);
+        transferLayer(stream, version, layer);
         if (!stream.hasRead()) continue;
         if (const Result<bool> restored = controller.layer(i).restore(layer); !restored)
             OSG_WARN << "osgGpuAnimation: layer " << i << " of a character: " << restored.error().message

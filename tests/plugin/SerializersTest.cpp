@@ -319,6 +319,45 @@ TEST_F(SerializersTest, aCrowdKeepsItsInstances)
     EXPECT_EQ(log->text, "");
 }
 
+TEST_F(SerializersTest, posesAreKept)
+{
+    AnimationController& controller = character().getController();
+    ASSERT_TRUE(controller.play(0));
+    AnimationLayer& layer = controller.layer(1);
+    ASSERT_TRUE(layer.play(1));
+    ASSERT_TRUE(layer.pose().setRotation(0, glm::quat(0.5f, 0.5f, -0.5f, 0.5f)));
+    ASSERT_TRUE(layer.pose().setTranslation(1, {1, 2, 3}));
+    ASSERT_TRUE(layer.showPose(1.0));
+    controller.advance(0.25);
+    osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(character());
+    ASSERT_TRUE(crowd->add(osg::Matrixd(), controller));
+    const osg::ref_ptr<osg::Node> copy = osg::clone(scene.get(), osg::CopyOp::DEEP_COPY_NODES);
+    for (const char* format : formats)
+    {
+        SCOPED_TRACE(format);
+        const osg::ref_ptr<osg::Node> read = files.throughFile(*scene, format);
+        const osg::ref_ptr<osg::Node> readCrowd = files.throughFile(*crowd, format);
+        ASSERT_TRUE(read && findCharacter(*read) && readCrowd);
+        AnimationController ofCrowd = dynamic_cast<AnimatedCrowd&>(*readCrowd).getInstances().controllerCopy(0);
+        for (AnimationController again :
+             {findCharacter(*read)->getController(), ofCrowd, findCharacter(*copy)->getController()})
+        {
+            AnimationController now(controller);
+            EXPECT_EQ(again.layer(1).poseShare(), 0.25f);
+            EXPECT_LE(paletteDifference(now, again), 1e-6f);
+            EXPECT_LE(paletteDifference((now.advance(0.5), now), (again.advance(0.5), again)), 1e-6f);
+        }
+    }
+    EXPECT_EQ(log->text, "");
+    std::string text = textOf(*scene);
+    const std::size_t track = text.find("Track 0 240");
+    ASSERT_NE(track, std::string::npos);
+    text.replace(track, 11, "Track 9 240");
+    const osg::ref_ptr<osg::Node> wrong = osgDB::readRefNodeFile(files.folder.write("wrong.osgt", text));
+    ASSERT_TRUE(wrong) << "the layer is lost, the scene is not";
+    EXPECT_NE(log->text.find("a pose with values of track 9"), std::string::npos) << log->text;
+}
+
 TEST_F(SerializersTest, shadersAreNotInTheFile)
 {
     ASSERT_TRUE(osgDB::writeNodeFile(*scene, files.folder.file("arm.osgt")));

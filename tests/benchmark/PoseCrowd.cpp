@@ -71,13 +71,57 @@ Spent PoseCrowd::step(double seconds, PosePipeline::Form form)
     pipeline->options().chunkSize = _chunkSize;
     glFinish();
     const Stopwatch stopwatch;
+    refill(seconds);
+    submit(*pipeline);
+    return stopwatch.elapsed();
+}
+
+void PoseCrowd::refill(double seconds)
+{
     for (PoseBatch& batch : _batches)
         batch.clear();
     for (std::size_t i = 0; i < count(); ++i)
         _places[i] = add(_controllers[i].advance(seconds));
+}
+
+void PoseCrowd::submit(PosePipeline& pipeline)
+{
     for (std::size_t batch = 0; batch < _batches.size(); ++batch)
-        if (_batches[batch].size() > 0) pipeline->evaluate(state, _batches[batch], _firstSlot + batch);
+        if (_batches[batch].size() > 0) pipeline.evaluate(*_context->getState(), _batches[batch], _firstSlot + batch);
     glFinish();
+}
+
+Spent PoseCrowd::streamPoses(double seconds)
+{
+    if (_captured.empty())
+        for (int frame = 0; frame < 16; ++frame)
+        {
+            _captured.emplace_back();
+            Pose::mix(*_set, _controllers[0].advance(0.05), _captured.back());
+            _captured.back().resize(_set->skeleton().jointCount());
+        }
+    for (AnimationController& controller : _controllers)
+        if (!controller.layer(0).findPose()) controller.layer(0).showPose();
+    const Stopwatch stopwatch;
+    for (AnimationController& controller : _controllers)
+        static_cast<void>(controller.layer(0).pose().setTransforms(_captured[++_capturedFrame % _captured.size()]));
+    refill(seconds);
+    return stopwatch.elapsed();
+}
+
+void PoseCrowd::fade()
+{
+    for (AnimationController& controller : _controllers)
+        controller.layer(0).setWeight(controller.layer(0).weight() == 1.0f ? 0.99f : 1.0f);
+}
+
+Spent PoseCrowd::evaluate()
+{
+    PosePipeline* pipeline = PosePipeline::of(*_context->getState());
+    if (!pipeline) return {};
+    glFinish();
+    const Stopwatch stopwatch;
+    submit(*pipeline);
     return stopwatch.elapsed();
 }
 

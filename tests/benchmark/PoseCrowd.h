@@ -36,6 +36,15 @@ public:
     /// Advances all controllers and computes all palettes; returns when the GPU has finished.
     Spent step(double seconds, PosePipeline::Form form = PosePipeline::Form::Fused);
 
+    /// Writes all joints of all instances anew, as motion capture does, advances the controllers and fills the batches:
+    /// the CPU side of a frame of poses. Every instance shows its pose in place of the clip.
+    Spent streamPoses(double seconds);
+    void fade(); ///< Changes the weights of all base layers a little.
+    /// Advances all controllers without new poses and fills the batches.
+    void refill(double seconds);
+    /// Computes the palettes of the batches that are filled; returns when the GPU has finished.
+    Spent evaluate();
+
     /// Compares some palettes with the CPU twin's. Empty if they agree.
     std::string check();
 
@@ -49,9 +58,12 @@ private:
         std::size_t batch, instance;
     };
     Place add(const PoseInstruction& instruction);
+    void submit(PosePipeline& pipeline);
 
     std::vector<PoseBatch> _batches;
-    std::vector<Place> _places; ///< of the last step, one per character
+    std::vector<Place> _places;                         ///< of the last step, one per character
+    std::vector<std::vector<JointTransform>> _captured; ///< the frames of streamPoses()
+    std::size_t _capturedFrame = 0;
     bool _isDealtOut = true;
     osg::ref_ptr<osg::GraphicsContext> _context;
     std::size_t _firstSlot;

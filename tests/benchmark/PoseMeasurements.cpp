@@ -99,6 +99,49 @@ void addPoseRows(const Subject& subject, std::size_t count, const PoseSeries& se
         "an empty feedback pass of triangles");
 }
 
+/// Poses that the application writes in every frame, in place of clips.
+Result<bool> measureStreaming(const Subject& subject, const Effort& effort, osg::GraphicsContext& context,
+                              Report& report)
+{
+    std::cerr << subject.name << ": streaming poses" << std::endl;
+    PoseCrowd crowd(subject.model.set, subject.clip, effort.barCount, context);
+    PoseCrowd clips(subject.model.set, subject.clip, effort.barCount, context);
+    const std::vector<Series> series =
+        interleaved(effort.rounds, {[&] { return crowd.streamPoses(frameTime); }, [&] { return crowd.evaluate(); },
+                                    [&]
+                                    {
+                                        crowd.fade(); // other samples, the same poses
+                                        crowd.refill(frameTime);
+                                        return crowd.evaluate();
+                                    },
+                                    [&]
+                                    {
+                                        clips.refill(frameTime);
+                                        return clips.evaluate();
+                                    }});
+    for (PoseCrowd* one : {&crowd, &clips})
+        if (const std::string wrong = one->check(); !wrong.empty()) return Error{wrong};
+    const auto add = [&](Row row, const char* what, const char* unit, const char* other)
+    {
+        row.subject = subject.name;
+        row.count = effort.barCount;
+        row.what = what;
+        row.unit = unit;
+        row.otherName = other;
+        report.add(std::move(row));
+    };
+    const double perCharacter = 1e6 / static_cast<double>(effort.barCount);
+    Row row = compared(series[0], series[1], perCharacter, false);
+    row.bar = "ours ≤ 1.5 for 51 joints";
+    row.isMet = row.ours.median <= 1.5 * static_cast<double>(subject.jointCount()) / 51.0;
+    add(row, "streaming all joints, from setTransforms() to the batch", "µs a character", "upload and pose");
+    add(compared(series[1], series[2], perCharacter, false), "upload and pose, all poses new", "µs a character",
+        "no pose new");
+    add(compared(series[2], series[3], perCharacter, false), "pose of posed joints, without upload", "µs a character",
+        "a clip");
+    return true;
+}
+
 void addGrowth(const Subject& subject, const std::map<std::size_t, Figure>& perCharacter, Report& report)
 {
     const auto few = perCharacter.find(100);
@@ -141,7 +184,7 @@ Result<bool> measurePose(const Subject& subject, const Effort& effort, osg::Grap
         if (count == effort.barCount) addPoseRows(subject, count, series.value(), report);
     }
     addGrowth(subject, perCharacter, report);
-    return true;
+    return measureStreaming(subject, effort, context, report);
 }
 
 Result<bool> measureDepth(const Effort& effort, osg::GraphicsContext& context, Report& report)

@@ -1,0 +1,543 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/nodes/SpringBones.h>
+
+#include <osgGpuAnimation/animation/Pose.h>
+#include <osgGpuAnimation/nodes/AnimatedCharacter.h>
+#include <osgGpuAnimation/nodes/OsgMatrix.h>
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/type_ptr.hpp>
+#include <osg/Camera>
+#include <osg/Notify>
+#include <osg/observer_ptr>
+#include <osg/Transform>
+#include <osgUtil/CullVisitor>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <mutex>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+constexpr double fadeSeconds = 0.25;   ///< from the springs to the clips and back
+constexpr double gridTolerance = 1e-6; ///< of a substep: sums of frame times miss the substep's time by rounding
+
+glm::dvec3 toGlm(const osg::Vec3& vector)
+{
+    return {vector.x(), vector.y(), vector.z()};
+}
+
+glm::dmat4 toGlm(const osg::Matrixd& matrix)
+{
+    return glm::make_mat4(matrix.ptr());
+}
+
+/// A pair of joints of a chain: the head turns, the tail swings.
+struct Bone
+{
+    std::size_t head;
+    const SpringJoint* settings;
+    const std::vector<std::size_t>* colliders;
+    glm::dvec3 tail; ///< the tail's place at rest, in the head's space
+};
+
+/// The chains of one set, by joint.
+struct Springs
+{
+    std::vector<Bone> bones;                    ///< ancestors first
+    std::vector<std::size_t> moved;             ///< heads and all joints below them, ancestors first
+    std::vector<std::size_t> jointsOfColliders; ///< by collider
+};
+
+std::string nameOf(std::size_t collider)
+{
+    return "springs: collider " + std::to_string(collider) + ": ";
+}
+
+std::string nameOf(std::size_t chain, const std::string& joint)
+{
+    return "springs: chain " + std::to_string(chain) + ", joint \"" + joint + "\": ";
+}
+
+bool isLength(float value)
+{
+    return std::isfinite(value) && value >= 0.0f;
+}
+
+bool isFinite(const osg::Vec3& vector)
+{
+    return std::isfinite(vector.x()) && std::isfinite(vector.y()) && std::isfinite(vector.z());
+}
+
+std::optional<std::string> faultOf(const SpringJoint& joint)
+{
+    if (!isLength(joint.stiffness)) return "its stiffness is not in [0, infinity)";
+    if (!(joint.drag >= 0.0f && joint.drag <= 1.0f)) return "its drag is not in [0, 1]";
+    if (!std::isfinite(joint.gravity)) return "its gravity is not finite";
+    if (!(std::abs(joint.gravityDirection.length() - 1.0f) < 1e-3f)) return "its gravity's direction has not length 1";
+    if (!isLength(joint.radius)) return "its radius is not in [0, infinity)";
+    return std::nullopt;
+}
+
+/// The place of the joint `below` at rest in the space of `head`; none if it is no descendant.
+std::optional<glm::dvec3> placeAtRest(const Skeleton& skeleton, int head, int below)
+{
+    glm::dmat4 place(1.0);
+    for (int joint = below; joint != head; joint = skeleton.joint(static_cast<std::size_t>(joint)).parent)
+    {
+        if (joint < 0) return std::nullopt;
+        place = skeleton.joint(static_cast<std::size_t>(joint)).rest.toMatrix().toColumns() * place;
+    }
+    return glm::dvec3(place[3]);
+}
+
+/// What is wrong with the settings in any set.
+std::optional<Error> faultOf(const std::vector<SpringChain>& chains, const std::vector<SpringCollider>& colliders)
+{
+    for (std::size_t i = 0; i < colliders.size(); ++i)
+        if (!isLength(colliders[i].radius) || !isFinite(colliders[i].center) ||
+            !isFinite(colliders[i].tail.value_or(osg::Vec3())))
+            return Error{nameOf(i) + "its radius is not in [0, infinity), or its place is not finite"};
+    for (std::size_t i = 0; i < chains.size(); ++i)
+    {
+        const std::string name = "springs: chain " + std::to_string(i);
+        if (chains[i].joints.size() < 2)
+            return Error{name + " has " + std::to_string(chains[i].joints.size()) + " joints, not at least 2"};
+        for (const std::size_t collider : chains[i].colliders)
+            if (collider >= colliders.size()) return Error{name + ": there is no collider " + std::to_string(collider)};
+        for (const SpringJoint& joint : chains[i].joints)
+            if (const std::optional<std::string> fault = faultOf(joint)) return Error{nameOf(i, joint.joint) + *fault};
+    }
+    return std::nullopt;
+}
+
+Result<Springs> resolve(const AnimationSet& set, const std::vector<SpringChain>& chains,
+                        const std::vector<SpringCollider>& colliders)
+{
+    if (const std::optional<Error> fault = faultOf(chains, colliders)) return *fault;
+    const Skeleton& skeleton = set.skeleton();
+    Springs springs;
+    for (std::size_t i = 0; i < colliders.size(); ++i)
+    {
+        const Result<std::size_t> joint = skeleton.jointNamed(colliders[i].joint);
+        if (!joint) return Error{nameOf(i) + joint.error().message};
+        springs.jointsOfColliders.push_back(joint.value());
+    }
+    std::vector<bool> isMoved(skeleton.jointCount()), isUsed(skeleton.jointCount());
+    for (std::size_t i = 0; i < chains.size(); ++i)
+    {
+        std::optional<std::size_t> previous;
+        for (const SpringJoint& settings : chains[i].joints)
+        {
+            const std::string name = nameOf(i, settings.joint);
+            const Result<std::size_t> joint = skeleton.jointNamed(settings.joint);
+            if (!joint) return Error{name + joint.error().message};
+            if (isUsed[joint.value()]) return Error{name + "it is in two chains or twice in one"};
+            isUsed[joint.value()] = true;
+            if (previous)
+            {
+                const std::optional<glm::dvec3> tail =
+                    placeAtRest(skeleton, static_cast<int>(*previous), static_cast<int>(joint.value()));
+                if (!tail) return Error{name + "it is no descendant of the joint before it"};
+                if (!(glm::length(*tail) > 0.0)) return Error{name + "it has the place of the joint before it"};
+                springs.bones.push_back({*previous, &settings - 1, &chains[i].colliders, *tail});
+                isMoved[*previous] = true;
+            }
+            previous = joint.value();
+        }
+    }
+    const auto isAbove = [](const Bone& a, const Bone& b) { return a.head < b.head; }; // joints are in level order
+    std::sort(springs.bones.begin(), springs.bones.end(), isAbove);
+    for (std::size_t joint = 0; joint < skeleton.jointCount(); ++joint)
+    {
+        const int parent = skeleton.joint(joint).parent;
+        if (parent >= 0 && isMoved[static_cast<std::size_t>(parent)]) isMoved[joint] = true;
+        if (isMoved[joint]) springs.moved.push_back(joint);
+    }
+    return springs;
+}
+
+glm::dmat4 toMatrix(const JointTransform& transform, const glm::dquat& rotation)
+{
+    glm::dmat4 matrix = glm::mat4_cast(rotation);
+    for (int axis = 0; axis < 3; ++axis)
+        matrix[axis] *= static_cast<double>(transform.scale[axis]);
+    matrix[3] = glm::dvec4(glm::dvec3(transform.translation), 1.0);
+    return matrix;
+}
+
+/// The shortest turn from one direction to another.
+glm::dquat turnBetween(const glm::dvec3& from, const glm::dvec3& to)
+{
+    return glm::dquat(glm::normalize(from), glm::normalize(to));
+}
+
+/// From a to b by the share: the translation and what is no rotation linearly, the rotation on the sphere.
+osg::Matrixd between(const osg::Matrixd& a, const osg::Matrixd& b, double share)
+{
+    if (a == b) return b;
+    const osg::Matrixd turnA = rotationOf(a), turnB = rotationOf(b);
+    const osg::Matrixd restA = a * osg::Matrixd::inverse(turnA), restB = b * osg::Matrixd::inverse(turnB);
+    osg::Matrixd mixed;
+    for (int i = 0; i < 12; ++i)
+        mixed.ptr()[i] = (1.0 - share) * restA.ptr()[i] + share * restB.ptr()[i];
+    osg::Quat turn;
+    turn.slerp(share, turnA.getRotate(), turnB.getRotate());
+    mixed = mixed * osg::Matrixd::rotate(turn);
+    mixed.setTrans(a.getTrans() * (1.0 - share) + b.getTrans() * share);
+    return mixed;
+}
+
+/// Pushes the place out of the collider; false if it is outside.
+bool pushOut(const SpringCollider& collider, const glm::dmat4& jointToWorld, double scale, double radius,
+             glm::dvec3& place)
+{
+    const glm::dvec3 center(jointToWorld * glm::dvec4(toGlm(collider.center), 1.0));
+    glm::dvec3 away = place - center;
+    if (collider.tail)
+    {
+        const glm::dvec3 along = glm::dvec3(jointToWorld * glm::dvec4(toGlm(*collider.tail), 1.0)) - center;
+        const double squared = glm::dot(along, along), projected = glm::dot(along, away);
+        if (squared > 0.0) away -= along * std::clamp(projected / squared, 0.0, 1.0);
+    }
+    const double distance = glm::length(away), least = scale * (static_cast<double>(collider.radius) + radius);
+    if (!(distance < least) || distance == 0.0) return false;
+    place += away * (least / distance - 1.0);
+    return true;
+}
+
+/// The chains of one character.
+class State
+{
+public:
+    explicit State(AnimatedCharacter& character) : _character(&character) {}
+
+    /// The chains in the character's set; null, with one warning, if they do not fit it.
+    const Springs* springs(const std::vector<SpringChain>& chains, const std::vector<SpringCollider>& colliders)
+    {
+        const std::shared_ptr<const AnimationSet>& set = _character->getController().sharedSet();
+        if (_set != set)
+        {
+            Result<Springs> resolved = resolve(*set, chains, colliders);
+            if (!resolved) OSG_WARN << resolved.error().message << std::endl;
+            _springs = resolved ? std::optional<Springs>(std::move(resolved.value())) : std::nullopt;
+            _set = set;
+        }
+        return _springs ? &*_springs : nullptr;
+    }
+
+    const osg::observer_ptr<AnimatedCharacter>& character() const { return _character; }
+
+    void sawFrom(double distance, unsigned int frame)
+    {
+        _seenDistance = frame == _seenFrame ? std::min(_seenDistance, distance) : distance;
+        _seenFrame = frame;
+    }
+    /// frame: the present one, in which no camera has culled yet.
+    bool isSeenWithin(double distance, unsigned int frame) const
+    {
+        return _seenFrame && frame - *_seenFrame <= 1u && _seenDistance <= distance;
+    }
+
+    void reset() { _before.reset(); }
+
+    void update(const Springs& springs, const std::vector<SpringCollider>& colliders, AnimatedCharacter& character,
+                const osg::Matrixd& nodeToWorld, double time, std::size_t layer)
+    {
+        AnimationController& controller = character.getController();
+        const osg::Matrixd fileToWorld = character.getFileToNode() * nodeToWorld;
+        if (!fileToWorld.valid()) return;
+        const double start = _time, length = time - start;
+        const bool continues = _before && _before->sharedSet() == controller.sharedSet() && length >= 0.0 &&
+                               length <= SpringBones::longestStep;
+        const osg::Matrixd from = _fileToWorld;
+        _time = time;
+        _fileToWorld = fileToWorld;
+        if (!continues) _before.reset();
+        if (_before)
+        {
+            const double first = std::floor(start / SpringBones::substep + gridTolerance) + 1.0;
+            const double last = std::floor(time / SpringBones::substep + gridTolerance);
+            double now = start;
+            for (double number = first; number <= last; ++number)
+            {
+                const double at = std::clamp(number * SpringBones::substep, now, time);
+                takePose(_before->advance(at - now), between(from, fileToWorld, (at - start) / length));
+                swing(springs, colliders, 1.0);
+                now = at;
+            }
+            _before->advance(time - now);
+            if (hasJumped(controller)) _before.reset();
+        }
+        takePose(controller.instruction(), fileToWorld);
+        if (!_before) rest(springs);
+        const double since = time / SpringBones::substep - std::floor(time / SpringBones::substep + gridTolerance);
+        show(springs, colliders, std::max(since, 0.0), controller.layer(layer));
+        _before = std::make_unique<AnimationController>(controller);
+    }
+
+    void stop(AnimatedCharacter& character, std::size_t layer)
+    {
+        if (!_before) return;
+        _before.reset();
+        _isFaded = character.getController().layer(layer).fadeWeight(0.0f, fadeSeconds);
+    }
+
+private:
+    /// True if the time of a clip is not the one to which the controller would have played it.
+    bool hasJumped(const AnimationController& controller) const
+    {
+        const std::size_t count = std::min(controller.layerCount(), _before->layerCount());
+        for (std::size_t i = 0; i < count; ++i)
+        {
+            const AnimationLayer& before = std::as_const(*_before).layer(i);
+            const AnimationLayer& now = controller.layer(i);
+            if (before.clip() == now.clip() && std::abs(before.time() - now.time()) > SpringBones::seekSeconds)
+                return true;
+        }
+        return false;
+    }
+
+    void takePose(const PoseInstruction& instruction, const osg::Matrixd& fileToWorld)
+    {
+        const AnimationSet& set = _character->getAnimationSet();
+        Pose::mix(set, instruction, _tracks);
+        Pose::jointToModel(set, _tracks, AffineMatrix(), _jointToModel);
+        _rootToWorld = toGlm(fileToWorld);
+        _scale = std::cbrt(std::abs(glm::determinant(glm::dmat3(_rootToWorld))));
+    }
+
+    glm::dmat4 parentToWorld(const Skeleton& skeleton, std::size_t joint) const
+    {
+        const int parent = skeleton.joint(joint).parent;
+        return parent < 0 ? _rootToWorld : _jointToWorld[static_cast<std::size_t>(parent)];
+    }
+
+    /// Sets the matrices of all joints to the world. turn(bone, its index, parentToWorld): the rotation of the bone's
+    /// head.
+    template <typename Turn>
+    void place(const Springs& springs, Turn turn)
+    {
+        const Skeleton& skeleton = _character->getAnimationSet().skeleton();
+        // Colliders below a chain have the place of the step before until the chain reaches them.
+        const bool isNew = _jointToWorld.size() != skeleton.jointCount();
+        _jointToWorld.resize(skeleton.jointCount());
+        auto moved = springs.moved.begin();
+        for (std::size_t joint = 0; joint < skeleton.jointCount(); ++joint)
+        {
+            const bool isMoved = moved != springs.moved.end() && *moved == joint;
+            if (isMoved) ++moved;
+            if (!isMoved || isNew) _jointToWorld[joint] = _rootToWorld * _jointToModel[joint].toColumns();
+        }
+        auto bone = springs.bones.begin();
+        for (const std::size_t joint : springs.moved)
+        {
+            const JointTransform& local = _tracks[joint];
+            const glm::dmat4 above = parentToWorld(skeleton, joint);
+            glm::dquat rotation = Rotation::quaternion(local.rotation);
+            if (bone != springs.bones.end() && bone->head == joint)
+            {
+                rotation = turn(*bone, static_cast<std::size_t>(bone - springs.bones.begin()), above);
+                ++bone;
+            }
+            _jointToWorld[joint] = above * toMatrix(local, rotation);
+        }
+    }
+
+    void rest(const Springs& springs)
+    {
+        _rotations.resize(springs.bones.size());
+        _tails.resize(springs.bones.size());
+        _jointToWorld.clear();
+        place(springs,
+              [&](const Bone& bone, std::size_t index, const glm::dmat4& above)
+              {
+                  _rotations[index] = restRotation(bone);
+                  const glm::dmat4 atRest = above * toMatrix(_tracks[bone.head], _rotations[index]);
+                  _tails[index].now = _tails[index].before = glm::dvec3(atRest * glm::dvec4(bone.tail, 1.0));
+                  return _rotations[index];
+              });
+    }
+
+    glm::dquat restRotation(const Bone& bone) const
+    {
+        return Rotation::quaternion(_character->getAnimationSet().skeleton().joint(bone.head).rest.rotation);
+    }
+
+    /// Moves all tails by a share of a substep (VRMC_springBone 1.0, "Update procedure").
+    void swing(const Springs& springs, const std::vector<SpringCollider>& colliders, double share)
+    {
+        const double seconds = share * SpringBones::substep;
+        place(springs,
+              [&](const Bone& bone, std::size_t index, const glm::dmat4& above)
+              {
+                  const SpringJoint& settings = *bone.settings;
+                  const glm::dquat atRest = restRotation(bone);
+                  const JointTransform& local = _tracks[bone.head];
+                  const glm::dmat4 restToWorld = above * toMatrix(local, atRest);
+                  const glm::dvec3 head(restToWorld[3]);
+                  const glm::dvec3 restTail = glm::dvec3(restToWorld * glm::dvec4(bone.tail, 1.0)) - head;
+                  const double length = glm::length(restTail);
+                  Tail& tail = _tails[index];
+                  if (!(length > 0.0)) return _rotations[index] = atRest; // an animated scale of 0
+                  const auto keepLength = [&](const glm::dvec3& place)
+                  {
+                      const glm::dvec3 way = place - head;
+                      const double distance = glm::length(way);
+                      return head + (distance > 0.0 ? way * (length / distance) : restTail);
+                  };
+                  glm::dvec3 next = keepLength(
+                      tail.now + (tail.now - tail.before) * (share * (1.0 - static_cast<double>(settings.drag))) +
+                      restTail * (seconds * _scale * static_cast<double>(settings.stiffness) / length) +
+                      toGlm(settings.gravityDirection) * (seconds * _scale * static_cast<double>(settings.gravity)));
+                  for (const std::size_t number : *bone.colliders)
+                      if (pushOut(colliders[number], _jointToWorld[springs.jointsOfColliders[number]], _scale,
+                                  static_cast<double>(settings.radius), next))
+                          next = keepLength(next);
+                  tail.before = tail.now;
+                  tail.now = next;
+                  const glm::dvec3 scaled = bone.tail * glm::dvec3(local.scale);
+                  const glm::dvec3 wanted = glm::inverse(glm::dmat3(above)) * (next - head);
+                  const glm::dquat rotation = turnBetween(atRest * scaled, wanted) * atRest;
+                  return _rotations[index] = std::isfinite(glm::dot(rotation, rotation)) ? rotation : atRest;
+              });
+    }
+
+    /// Writes the rotations at the present time, which is a share of a substep after the last one.
+    void show(const Springs& springs, const std::vector<SpringCollider>& colliders, double share, AnimationLayer& layer)
+    {
+        const std::vector<Tail> tails = _tails;
+        const std::vector<glm::dquat> rotations = _rotations;
+        if (share > gridTolerance) swing(springs, colliders, share);
+        JointPose& pose = layer.pose();
+        for (std::size_t i = 0; i < springs.bones.size(); ++i)
+            pose.setRotation(springs.bones[i].head, glm::quat(_rotations[i]));
+        if (_isFaded) layer.fadeWeight(1.0f, fadeSeconds);
+        _isFaded = false;
+        _tails = tails;
+        _rotations = rotations;
+    }
+
+    struct Tail
+    {
+        glm::dvec3 now, before; ///< in world space, at the last substep and at the one before it
+    };
+
+    osg::observer_ptr<AnimatedCharacter> _character;
+    std::shared_ptr<const AnimationSet> _set; ///< of _springs
+    std::optional<Springs> _springs;
+    std::unique_ptr<AnimationController> _before; ///< the controller at _time; null: the chains start at rest
+    double _time = 0.0;                           ///< seconds, of the last update
+    osg::Matrixd _fileToWorld;                    ///< at _time
+    std::vector<Tail> _tails;                     ///< by bone
+    std::vector<glm::dquat> _rotations;           ///< by bone: of its head
+    bool _isFaded = false;                        ///< the layer's weight is 0 since stop()
+    double _seenDistance = 0.0;                   ///< in world units, in the frame _seenFrame
+    std::optional<unsigned int> _seenFrame;
+    // Of the present substep:
+    std::vector<JointTransform> _tracks;
+    std::vector<AffineMatrix> _jointToModel;
+    std::vector<glm::dmat4> _jointToWorld;
+    glm::dmat4 _rootToWorld{1.0};
+    double _scale = 1.0;
+};
+
+} // namespace
+
+/// The states of all characters. Cameras may cull concurrently.
+class SpringBones::States
+{
+public:
+    State& of(AnimatedCharacter& character)
+    {
+        const std::lock_guard<std::mutex> lock(_mutex);
+        const auto found = _states.find(&character);
+        if (found != _states.end() && found->second.character().valid()) return found->second;
+        for (auto entry = _states.begin(); entry != _states.end();)
+            entry = entry->second.character().valid() ? std::next(entry) : _states.erase(entry);
+        return _states.try_emplace(&character, character).first->second;
+    }
+
+    void clear() { _states.clear(); }
+
+    void reset()
+    {
+        for (auto& [character, state] : _states)
+            state.reset();
+    }
+
+private:
+    std::mutex _mutex;
+    std::map<const AnimatedCharacter*, State> _states;
+};
+
+SpringBones::SpringBones() : _layer(maxLayers - 1), _states(std::make_unique<States>()) {}
+
+SpringBones::SpringBones(const SpringBones& other, const osg::CopyOp& copyop)
+    : osg::Object(other, copyop), osg::Callback(other, copyop), osg::NodeCallback(other, copyop),
+      _chains(other._chains), _colliders(other._colliders), _layer(other._layer), _maxDistance(other._maxDistance),
+      _states(std::make_unique<States>())
+{
+}
+
+SpringBones::~SpringBones() = default;
+
+Result<bool> SpringBones::setChains(const AnimationSet& set, std::vector<SpringChain> chains,
+                                    std::vector<SpringCollider> colliders)
+{
+    const Result<Springs> resolved = resolve(set, chains, colliders);
+    if (!resolved) return resolved.error();
+    return setChains(std::move(chains), std::move(colliders));
+}
+
+Result<bool> SpringBones::setChains(std::vector<SpringChain> chains, std::vector<SpringCollider> colliders)
+{
+    if (const std::optional<Error> fault = faultOf(chains, colliders)) return *fault;
+    _chains = std::move(chains);
+    _colliders = std::move(colliders);
+    _states->clear();
+    return true;
+}
+
+void SpringBones::setLayer(std::size_t layer)
+{
+    _layer = std::min(layer, maxLayers - 1);
+}
+
+void SpringBones::reset()
+{
+    _states->reset();
+}
+
+void SpringBones::operator()(osg::Node* node, osg::NodeVisitor* visitor)
+{
+    auto* character = dynamic_cast<AnimatedCharacter*>(node);
+    const osg::FrameStamp* stamp = visitor->getFrameStamp();
+    if (character && stamp)
+    {
+        State& state = _states->of(*character);
+        const unsigned int frame = stamp->getFrameNumber();
+        const osg::Matrixd toWorld = osg::computeLocalToWorld(visitor->getNodePath());
+        if (osgUtil::CullVisitor* cull = visitor->asCullVisitor())
+        {
+            const osg::Vec3d eye = cull->getCurrentCamera()->getInverseViewMatrix().getTrans();
+            state.sawFrom((toWorld.getTrans() - eye).length(), frame);
+        }
+        else if (visitor->getVisitorType() == osg::NodeVisitor::UPDATE_VISITOR)
+        {
+            const Springs* springs = state.springs(_chains, _colliders);
+            if (springs && (std::isinf(_maxDistance) || state.isSeenWithin(_maxDistance, frame)))
+                state.update(*springs, _colliders, *character, toWorld, stamp->getSimulationTime(), _layer);
+            else
+                state.stop(*character, _layer);
+        }
+    }
+    traverse(node, visitor);
+}
+
+} // namespace osgGpuAnimation

@@ -54,6 +54,7 @@ tinygltf::TextureInfo plainInfo(const TextureInfo& texture)
 tinygltf::TextureInfo textureOf(const tinygltf::Value& extension, const char* member)
 {
     tinygltf::TextureInfo info;
+    if (!extension.Has(member)) return info;
     const tinygltf::Value& texture = extension.Get(member);
     if (!texture.Has("index")) return info;
     info.index = texture.Get("index").GetNumberAsInt();

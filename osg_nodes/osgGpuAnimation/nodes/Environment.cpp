@@ -69,10 +69,7 @@ Result<bool> Environment::setPanorama(osg::Image* panorama)
     if (!panorama) return Error{"a panorama: expected a picture, found null"};
     const Result<osg::ref_ptr<const RadianceCube>> radiance = RadianceCube::fromPanorama(*panorama);
     if (!radiance) return radiance.error();
-    setStudio();
-    _panorama = panorama;
-    _map = new PrefilteredMap(*radiance.value());
-    _harmonics = harmonicsOf(*radiance.value());
+    setPictures(panorama, nullptr, *radiance.value());
     return true;
 }
 
@@ -81,11 +78,16 @@ Result<bool> Environment::setFaces(osg::TextureCubeMap* faces)
     if (!faces) return Error{"the faces of surroundings: expected a cube map, found null"};
     const Result<osg::ref_ptr<const RadianceCube>> radiance = RadianceCube::fromFaces(*faces);
     if (!radiance) return radiance.error();
-    setStudio();
-    _faces = faces;
-    _map = new PrefilteredMap(*radiance.value());
-    _harmonics = harmonicsOf(*radiance.value());
+    setPictures(nullptr, faces, *radiance.value());
     return true;
+}
+
+void Environment::setPictures(osg::Image* panorama, osg::TextureCubeMap* faces, const RadianceCube& radiance)
+{
+    _panorama = panorama;
+    _faces = faces;
+    _map = new PrefilteredMap(radiance);
+    _harmonics = harmonicsOf(radiance);
 }
 
 void Environment::setIntensity(float intensity)

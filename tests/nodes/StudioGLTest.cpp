@@ -164,7 +164,6 @@ public:
     {
         osg::ref_ptr<osg::GraphicsContext::Traits> traits = new osg::GraphicsContext::Traits;
         traits->width = traits->height = side;
-        traits->windowDecoration = false;
         context = EglGraphicsContext::create(traits).value();
         const osg::ref_ptr<osgViewer::View> view = new osgViewer::View;
         osg::Camera& camera = *view->getCamera();

@@ -105,7 +105,7 @@ osg::ref_ptr<osg::StateSet> Environment::makeLight(const osg::Matrix& nodeToEye)
     light->addUniform(fromEye);
     light->addUniform(_intensities);
     light->setDefine("ENVIRONMENT", _map ? "2" : "1");
-    if (_toneMapping) light->setDefine("TONE_MAPPING");
+    if (_toneMapping) light->setDefine("TONE_MAPPING", "1");
     if (!_map) return light;
     light->setTextureAttribute(ENVIRONMENT_UNIT, _map);
     light->setMode(GL_TEXTURE_CUBE_MAP_SEAMLESS, osg::StateAttribute::ON);

@@ -136,7 +136,7 @@ void Importer::makeGraph(const NodeTree& tree, const Joints& joints, const Morph
     }
     _result.root->setName(sceneName);
     Materials materials(_model, _options.fixedLighting, _textures);
-    Meshes meshes(_model, !_options.fixedLighting, _budget, _report);
+    Meshes meshes(_model, materials.maps(), _budget, _report);
     Drawables drawables(_model, _result.set, meshes, materials, variant, _budget, _report);
     if (!_options.noLights) _result.lights = findLights(_model, tree);
     if (!_options.noCameras) _result.cameras = makeCameras(_model, tree);

@@ -3,6 +3,7 @@
 
 #include "gltf/data/MaterialVariants.h"
 #include "gltf/document/LoadDocument.h"
+#include "gltf/file/ProgressLine.h"
 #include "gltf/file/Report.h"
 #include "gltf/scene/Clips.h"
 #include "gltf/scene/Drawables.h"
@@ -197,6 +198,7 @@ Result<bool> Importer::finishClips()
         _result.set = _result.character->getController().sharedSet();
     }
     _result.character->computeClipBounds();
+    const ProgressLine progress("computing levels of detail");
     return _result.character->setPixelError(static_cast<float>(_options.pixelError));
 }
 

@@ -3,6 +3,7 @@
 
 #include "gltf/data/MaterialVariants.h"
 #include "gltf/document/LoadDocument.h"
+#include "gltf/file/ProgressLine.h"
 #include "gltf/file/Report.h"
 #include "gltf/scene/Clips.h"
 #include "gltf/scene/Drawables.h"
@@ -136,7 +137,7 @@ void Importer::makeGraph(const NodeTree& tree, const Joints& joints, const Morph
     }
     _result.root->setName(sceneName);
     Materials materials(_model, _options.fixedLighting, _textures);
-    Meshes meshes(_model, !_options.fixedLighting, _budget, _report);
+    Meshes meshes(_model, materials.maps(), _budget, _report);
     Drawables drawables(_model, _result.set, meshes, materials, variant, _budget, _report);
     if (!_options.noLights) _result.lights = findLights(_model, tree);
     if (!_options.noCameras) _result.cameras = makeCameras(_model, tree);
@@ -197,6 +198,7 @@ Result<bool> Importer::finishClips()
         _result.set = _result.character->getController().sharedSet();
     }
     _result.character->computeClipBounds();
+    const ProgressLine progress("computing levels of detail");
     return _result.character->setPixelError(static_cast<float>(_options.pixelError));
 }
 

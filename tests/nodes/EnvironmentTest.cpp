@@ -202,6 +202,59 @@ TEST(EnvironmentTest, copiesAndTheNextSourceReplaceTheFormer)
     EXPECT_EQ(copy->getPanorama(), panorama);
 }
 
+osg::Vec3f direction(float x, float y, float z)
+{
+    osg::Vec3f towards(x, y, z);
+    towards.normalize();
+    return towards;
+}
+
+struct KeyLightCase
+{
+    const char* name;
+    osg::Vec3f (*radiance)(const osg::Vec3f& direction); ///< glTF's axes
+    osg::Vec3f towards;
+    float least, most; ///< the share
+};
+
+constexpr float noShare = 0.0f;
+
+const KeyLightCase keyLightCases[] = {
+    // Its three lobes have 0.30, 0.04 and 0.11 of the irradiance 1.07 of the ground.
+    {"the studio", studioRadiance, direction(0.6f, 1.1f, 0.9f), 0.22f, 0.3f},
+    {"even", [](const osg::Vec3f&) { return osg::Vec3f(1, 1, 1); }, {0, 1, 0}, noShare, noShare},
+    {"black", [](const osg::Vec3f&) { return osg::Vec3f(); }, {0, 1, 0}, noShare, noShare},
+    {"a bright ground",
+     [](const osg::Vec3f& d) { return osg::Vec3f(1, 1, 1) * (d.y() < 0.0f ? 9.0f : 1.0f); },
+     {0, 1, 0},
+     noShare,
+     0.05f},
+    {"a small sun",
+     [](const osg::Vec3f& d)
+     { return osg::Vec3f(1, 1, 1) * (d * direction(-2, 1, 1) > 0.9994f ? 2000.0f : 0.2f); }, // within 2 degrees
+     direction(-2, 1, 1), 0.79f, 0.87f},
+    {"the higher of two",
+     [](const osg::Vec3f& d)
+     {
+         const float lamps = (d * direction(1, 1, 0) > 0.995f) + (d * direction(-4, 1, 0) > 0.995f);
+         return osg::Vec3f(1, 1, 1) * (lamps > 0.0f ? 50.0f : 0.1f);
+     },
+     direction(1, 1, 0), 0.6f, 0.75f},
+};
+
+TEST(EnvironmentTest, theKeyLightIsTheOneThatBrightensTheGroundMost)
+{
+    for (const KeyLightCase& each : keyLightCases)
+    {
+        SCOPED_TRACE(each.name);
+        const KeyLight light = RadianceCube::fromPanorama(*makePanorama(512, each.radiance)).value()->keyLight();
+        EXPECT_GE(light.share, each.least);
+        EXPECT_LE(light.share, each.most);
+        EXPECT_GT(light.towards * each.towards, 0.9994f) << "2 degrees";
+        EXPECT_NEAR(light.towards.length(), 1.0f, 1e-5f);
+    }
+}
+
 } // namespace
 
 } // namespace osgGpuAnimation

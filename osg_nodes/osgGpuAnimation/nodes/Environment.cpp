@@ -69,10 +69,7 @@ Result<bool> Environment::setPanorama(osg::Image* panorama)
     if (!panorama) return Error{"a panorama: expected a picture, found null"};
     const Result<osg::ref_ptr<const RadianceCube>> radiance = RadianceCube::fromPanorama(*panorama);
     if (!radiance) return radiance.error();
-    setStudio();
-    _panorama = panorama;
-    _map = new PrefilteredMap(*radiance.value());
-    _harmonics = harmonicsOf(*radiance.value());
+    setPictures(panorama, nullptr, *radiance.value());
     return true;
 }
 
@@ -81,11 +78,16 @@ Result<bool> Environment::setFaces(osg::TextureCubeMap* faces)
     if (!faces) return Error{"the faces of surroundings: expected a cube map, found null"};
     const Result<osg::ref_ptr<const RadianceCube>> radiance = RadianceCube::fromFaces(*faces);
     if (!radiance) return radiance.error();
-    setStudio();
-    _faces = faces;
-    _map = new PrefilteredMap(*radiance.value());
-    _harmonics = harmonicsOf(*radiance.value());
+    setPictures(nullptr, faces, *radiance.value());
     return true;
+}
+
+void Environment::setPictures(osg::Image* panorama, osg::TextureCubeMap* faces, const RadianceCube& radiance)
+{
+    _panorama = panorama;
+    _faces = faces;
+    _map = new PrefilteredMap(radiance);
+    _harmonics = harmonicsOf(radiance);
 }
 
 void Environment::setIntensity(float intensity)
@@ -103,7 +105,7 @@ osg::ref_ptr<osg::StateSet> Environment::makeLight(const osg::Matrix& nodeToEye)
     light->addUniform(fromEye);
     light->addUniform(_intensities);
     light->setDefine("ENVIRONMENT", _map ? "2" : "1");
-    if (_toneMapping) light->setDefine("TONE_MAPPING");
+    if (_toneMapping) light->setDefine("TONE_MAPPING", "1");
     if (!_map) return light;
     light->setTextureAttribute(ENVIRONMENT_UNIT, _map);
     light->setMode(GL_TEXTURE_CUBE_MAP_SEAMLESS, osg::StateAttribute::ON);

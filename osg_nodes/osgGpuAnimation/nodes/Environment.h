@@ -11,6 +11,8 @@
 namespace osgGpuAnimation
 {
 
+class RadianceCube;
+
 /// The surroundings that light everything below the node (image-based light): the materials of PbrMaterial, drawn by
 /// the character program or the surface program. They replace the ambient light of OSG's lights; the lights themselves
 /// still shine. Without an Environment, the ambient light is an even surrounding.
@@ -71,7 +73,10 @@ public:
 protected:
     ~Environment() override = default;
 
+    const osg::TextureCubeMap* getMap() const { return _map; } ///< prefiltered; null: the studio
+
 private:
+    void setPictures(osg::Image* panorama, osg::TextureCubeMap* faces, const RadianceCube& radiance);
     osg::ref_ptr<osg::StateSet> makeLight(const osg::Matrix& nodeToEye) const;
 
     float _intensity = 1.0f;

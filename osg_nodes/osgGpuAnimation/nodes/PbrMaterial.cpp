@@ -85,9 +85,7 @@ void setExtensions(osg::StateSet& stateSet, const PbrMaterial& material)
     {
         stateSet.setDefine("MATERIAL_TRANSMISSION", "1");
         stateSet.addUniform(new osg::Uniform("materialTransmission", material.transmission));
-        stateSet.setAttributeAndModes(new osg::BlendFunc(osg::BlendFunc::ONE, osg::BlendFunc::ONE_MINUS_SRC_ALPHA));
-        stateSet.setAttributeAndModes(new osg::Depth(osg::Depth::LESS, 0.0, 1.0, false));
-        stateSet.setRenderingHint(osg::StateSet::TRANSPARENT_BIN);
+        applyBlending(stateSet, GL_ONE);
     }
     setExtensionMaps(stateSet, material);
 }
@@ -126,6 +124,13 @@ void applyPbrMaterial(osg::StateSet& stateSet, const PbrMaterial& material)
     const bool hasNormalMap = material.normalMap.texture || material.clearcoatNormalMap.texture;
     if (hasNormalMap && material.hasTangents) stateSet.setDefine("MATERIAL_TANGENTS", "1");
     if (material.hasMoreCoordinates) stateSet.setDefine("MATERIAL_MORE_COORDINATES", "1");
+}
+
+void applyBlending(osg::StateSet& stateSet, GLenum sourceFactor)
+{
+    stateSet.setAttributeAndModes(new osg::BlendFunc(sourceFactor, GL_ONE_MINUS_SRC_ALPHA));
+    stateSet.setAttributeAndModes(new osg::Depth(osg::Depth::LESS, 0.0, 1.0, false));
+    stateSet.setRenderingHint(osg::StateSet::TRANSPARENT_BIN);
 }
 
 osg::Vec4 displayColor(const osg::Vec4& linear)

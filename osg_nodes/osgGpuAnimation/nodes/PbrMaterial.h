@@ -77,6 +77,10 @@ struct PbrMaterial
 /// above may override. Alpha modes and sides are not part of it.
 void applyPbrMaterial(osg::StateSet& stateSet, const PbrMaterial& material);
 
+/// Lets the surface be drawn after opaque ones, the farthest first, over what lies behind, and without depths of its
+/// own. sourceFactor: of glBlendFunc, GL_SRC_ALPHA, or GL_ONE if the colour is multiplied by alpha already.
+void applyBlending(osg::StateSet& stateSet, GLenum sourceFactor);
+
 /// A linear colour as an osg::Material and OSG's fixed pipeline show it: by the sRGB transfer function (IEC 61966-2-1),
 /// clamped to [0, 1]. Alpha is linear in both.
 osg::Vec4 displayColor(const osg::Vec4& linear);

@@ -147,6 +147,13 @@ MaterialMaps mapsOf(const tinygltf::Material& material, bool allMaps)
     return maps;
 }
 
+const MaterialMaps& MapsOfMaterials::of(int material)
+{
+    const auto [known, isNew] = _maps.try_emplace(material);
+    if (isNew && material >= 0) known->second = mapsOf(_model.materials[static_cast<std::size_t>(material)], _allMaps);
+    return known->second;
+}
+
 void readMaterialExtensions(const tinygltf::Material& material, PbrMaterial& outMaterial)
 {
     outMaterial.emissiveStrength =

@@ -8,6 +8,7 @@
 #include <tiny_gltf.h>
 
 #include <cstdint>
+#include <map>
 #include <vector>
 
 namespace osgGpuAnimation::gltf
@@ -37,6 +38,22 @@ struct MaterialMaps
 
 /// Those of glTF 2.0, section 3.9, and of the material extensions. allMaps: false considers the base colour alone.
 MaterialMaps mapsOf(const tinygltf::Material& material, bool allMaps);
+
+/// The maps of a file's materials, each computed once, when first asked for.
+class MapsOfMaterials
+{
+public:
+    /// allMaps: see mapsOf(). The model must outlive this.
+    MapsOfMaterials(const tinygltf::Model& model, bool allMaps) : _model(model), _allMaps(allMaps) {}
+
+    /// -1: the default material, which has none.
+    const MaterialMaps& of(int material);
+
+private:
+    const tinygltf::Model& _model;
+    const bool _allMaps;
+    std::map<int, MaterialMaps> _maps;
+};
 
 /// The factors of KHR_materials_emissive_strength, ior, specular, clearcoat, sheen, transmission and
 /// pbrSpecularGlossiness, whose members the schema has checked.

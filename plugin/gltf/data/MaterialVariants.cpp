@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/data/MaterialVariants.h"
 
-#include "gltf/data/MaterialMaps.h"
-
 #include <algorithm>
 #include <set>
 
@@ -32,9 +30,8 @@ bool takeCoordinates(const std::vector<TextureCoordinates>& wanted, std::vector<
 }
 
 /// False, and no change, if the vertices cannot have the coordinates of the material too.
-bool add(const tinygltf::Material& material, bool allMaps, PrimitiveMaterials& materials)
+bool add(const tinygltf::Material& material, const MaterialMaps& maps, PrimitiveMaterials& materials)
 {
-    const MaterialMaps maps = mapsOf(material, allMaps);
     if (!takeCoordinates(maps.coordinates, materials.coordinates)) return false;
     materials.hasNormalMap |= maps.find(&PbrMaterial::normalMap) != nullptr;
     materials.isBlended |= material.alphaMode == "BLEND";
@@ -58,13 +55,14 @@ std::vector<std::string> variantNames(const tinygltf::Model& model)
     return names;
 }
 
-PrimitiveMaterials materialsOf(const tinygltf::Model& model, const tinygltf::Primitive& primitive, bool allMaps)
+PrimitiveMaterials materialsOf(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
+                               MapsOfMaterials& maps)
 {
-    const auto materialAt = [&](int index) -> const tinygltf::Material&
-    { return model.materials[static_cast<std::size_t>(index)]; };
     PrimitiveMaterials materials;
+    const auto addMaterial = [&](int index)
+    { return add(model.materials[static_cast<std::size_t>(index)], maps.of(index), materials); };
     materials.own = primitive.material;
-    if (materials.own >= 0) add(materialAt(materials.own), allMaps, materials);
+    if (materials.own >= 0) addMaterial(materials.own);
     const tinygltf::Value& mappings = memberOf(primitive.extensions, "mappings");
     for (std::size_t i = 0; i < mappings.ArrayLen(); ++i)
     {
@@ -72,7 +70,7 @@ PrimitiveMaterials materialsOf(const tinygltf::Model& model, const tinygltf::Pri
         if (!mapping.Has("material")) continue;
         const int material = mapping.Get("material").GetNumberAsInt();
         const tinygltf::Value& variants = mapping.Get("variants");
-        const bool fits = add(materialAt(material), allMaps, materials);
+        const bool fits = addMaterial(material);
         for (std::size_t v = 0; v < variants.ArrayLen(); ++v)
         {
             const int variant = variants.Get(static_cast<int>(v)).GetNumberAsInt();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "gltf/data/TextureCoordinates.h"
+#include "gltf/data/MaterialMaps.h"
 
 #include <tiny_gltf.h>
 
@@ -35,7 +35,8 @@ struct PrimitiveMaterials
     }
 };
 
-/// The document has passed checkVariantRules(). allMaps: false considers only base colours.
-PrimitiveMaterials materialsOf(const tinygltf::Model& model, const tinygltf::Primitive& primitive, bool allMaps);
+/// The document has passed checkVariantRules().
+PrimitiveMaterials materialsOf(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
+                               MapsOfMaterials& maps);
 
 } // namespace osgGpuAnimation::gltf

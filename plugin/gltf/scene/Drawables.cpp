@@ -134,7 +134,7 @@ osg::ref_ptr<osg::Geometry> Drawables::make(const DrawablePlace& place)
     if (mesh->texCoords) geometry->setTexCoordArray(0, mesh->texCoords, osg::Array::BIND_PER_VERTEX);
     if (mesh->moreCoordinates) geometry->setVertexAttribArray(POSE_COORDINATES_LOCATION, mesh->moreCoordinates);
     if (mesh->tangents) geometry->setVertexAttribArray(POSE_TANGENT_LOCATION, mesh->tangents);
-    const PrimitiveMaterials materials = materialsOf(_model, source, _materials.usesAllMaps());
+    const PrimitiveMaterials materials = materialsOf(_model, source, _materials.maps());
     const int material = materials.materialIn(_variant);
     setColors(*geometry, *mesh, material, palette);
     geometry->addPrimitiveSet(mesh->primitiveSet);

@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/scene/Materials.h"
 
-#include "gltf/data/MaterialMaps.h"
-
 #include <osgGpuAnimation/nodes/CharacterProgram.h>
 
 #include <osg/AlphaFunc>
-#include <osg/BlendFunc>
 #include <osg/CullFace>
-#include <osg/Depth>
 #include <osg/FrontFace>
 #include <osg/LightModel>
 #include <osg/Material>
@@ -69,18 +65,14 @@ void setAlpha(osg::StateSet& state, const tinygltf::Material& material, bool pal
         state.addUniform(new osg::Uniform("alphaCutoff", cutoff));
         if (!palette) state.setAttributeAndModes(new osg::AlphaFunc(osg::AlphaFunc::GEQUAL, cutoff));
     }
-    else if (material.alphaMode == "BLEND" && !state.getAttribute(osg::StateAttribute::BLENDFUNC))
-    {
-        state.setAttributeAndModes(new osg::BlendFunc(osg::BlendFunc::SRC_ALPHA, osg::BlendFunc::ONE_MINUS_SRC_ALPHA));
-        state.setAttributeAndModes(new osg::Depth(osg::Depth::LESS, 0.0, 1.0, false));
-        state.setRenderingHint(osg::StateSet::TRANSPARENT_BIN);
-    }
+    else if (material.alphaMode == "BLEND")
+        applyBlending(state, GL_SRC_ALPHA);
 }
 
 } // namespace
 
 Materials::Materials(const tinygltf::Model& model, bool fixedLighting, Textures& textures)
-    : _model(model), _fixedLighting(fixedLighting), _textures(textures)
+    : _model(model), _fixedLighting(fixedLighting), _textures(textures), _maps(model, !fixedLighting)
 {
 }
 
@@ -106,14 +98,14 @@ osg::Vec4 Materials::plainColor(const osg::Vec4& color, int material) const
     return displayColor(componentMultiply(linearColor(color), baseColor(material)));
 }
 
-bool Materials::hasNormalMap(int material) const
+bool Materials::hasNormalMap(int material)
 {
-    return mapsOf(materialOf(_model, material), !_fixedLighting).find(&PbrMaterial::normalMap) != nullptr;
+    return _maps.of(material).find(&PbrMaterial::normalMap) != nullptr;
 }
 
-unsigned int Materials::wantedCoordinates(int material) const
+unsigned int Materials::wantedCoordinates(int material)
 {
-    return (1u << mapsOf(materialOf(_model, material), !_fixedLighting).coordinates.size()) - 1u;
+    return (1u << _maps.of(material).coordinates.size()) - 1u;
 }
 
 /// Leaves out maps whose coordinates the vertices lack.
@@ -130,7 +122,7 @@ PbrMaterial Materials::pbrMaterial(const tinygltf::Material& material, const Mat
     readMaterialExtensions(material, result);
     result.hasTangents = use.tangents;
     result.hasMoreCoordinates = use.coordinates > 1;
-    for (const MaterialMap& map : mapsOf(material, true).maps)
+    for (const MaterialMap& map : _maps.of(use.material).maps)
         if (map.number >= 0 && (use.coordinates & (1u << map.number)))
             result.*map.place = {_textures.texture(map.texture, map.isColor ? ColorSpace::Srgb : ColorSpace::Linear),
                                  map.number};
@@ -144,6 +136,7 @@ osg::ref_ptr<osg::StateSet> Materials::make(const MaterialUse& use)
     state->setName(material.name);
     const bool lit = use.lit && material.extensions.count("KHR_materials_unlit") == 0;
     const bool usesArray = use.colored && !use.palette; // the fixed pipeline reads the vertex colours alone
+    setAlpha(*state, material, use.palette); // before applyPbrMaterial(), whose transmission blends otherwise
     if (_fixedLighting)
     {
         state->setAttribute(fixedMaterial(material, displayColor(baseColor(use.material)), usesArray));
@@ -158,7 +151,6 @@ osg::ref_ptr<osg::StateSet> Materials::make(const MaterialUse& use)
         if (usesArray) colors.setColorMode(osg::Material::AMBIENT_AND_DIFFUSE);
     }
     setSides(*state, material.doubleSided, use.mirrored, _fixedLighting);
-    setAlpha(*state, material, use.palette);
     if (use.palette || !_fixedLighting)
     {
         if (!lit) state->addUniform(new osg::Uniform("unlit", true));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "gltf/data/MaterialMaps.h"
 #include "gltf/scene/Textures.h"
 
 #include <osgGpuAnimation/nodes/PbrMaterial.h>
@@ -49,15 +50,15 @@ public:
     Materials(const tinygltf::Model& model, bool fixedLighting, Textures& textures);
 
     osg::StateSet* stateSet(const MaterialUse& use);
-    bool usesAllMaps() const { return !_fixedLighting; } ///< false: only base colours
+    MapsOfMaterials& maps() { return _maps; } ///< with fixedLighting, of base colours alone
     /// The linear base colour factor; white for the default material.
     osg::Vec4 baseColor(int material) const;
     /// The colour array's element of a plain geometry, which the fixed pipeline uses in place of the material's colour.
     /// color: of the vertex, as displayed.
     osg::Vec4 plainColor(const osg::Vec4& color, int material) const;
-    bool hasNormalMap(int material) const;
+    bool hasNormalMap(int material);
     /// The coordinates that the material's maps read, as bits by their numbers.
-    unsigned int wantedCoordinates(int material) const;
+    unsigned int wantedCoordinates(int material);
 
 private:
     osg::ref_ptr<osg::StateSet> make(const MaterialUse& use);
@@ -66,6 +67,7 @@ private:
     const tinygltf::Model& _model;
     const bool _fixedLighting;
     Textures& _textures;
+    MapsOfMaterials _maps;
     std::map<MaterialUse, osg::ref_ptr<osg::StateSet>> _stateSets;
 };
 

@@ -23,6 +23,8 @@ public:
 
     void apply(osg::State& state) const override;
 
+    const RadianceCube& getRadiance() const { return *_radiance; } ///< what it is made of
+
 protected:
     ~PrefilteredMap() override = default;
 

@@ -283,6 +283,9 @@ TEST(AnimatedCrowdTest, aCloneHasInstancesOfItsOwn)
     ASSERT_TRUE(other->setPlacement(instance, osg::Matrixd::translate(5, 0, 0)));
     EXPECT_EQ(crowd->getPlacement(instance).getTrans(), osg::Vec3d(1, 0, 0));
     EXPECT_EQ(&crowd->getAnimationSet(), &other->getAnimationSet());
+    const osg::Vec3d origin = crowd->getOrigin();
+    ASSERT_TRUE(other->add(osg::Matrixd::translate(100, 0, 0), playing("shift")));
+    EXPECT_EQ(other->getOrigin(), origin) << "the instances that it has are placed relative to it";
 }
 
 TEST(AnimatedCrowdTest, theFirstInstanceLeavesAnOriginThatWasSet)

@@ -97,6 +97,22 @@ TEST_F(CrowdPluginTest, readsColumnsAndRowsByTheBounds)
     EXPECT_EQ(osg::Matrixd::transform3x3(osg::Vec3d(0, 0, 1), placement), osg::Vec3d(0, 0, 1));
 }
 
+TEST_F(CrowdPluginTest, theSpacingIsOfTheLargerHorizontalSide)
+{
+    ModelBuilder mast; // slides by 1: 1.5 wide, 8 high, 3 deep in the file's axes
+    mast.node("mast", -1, mast.mesh({{"POSITION", mast.floats(TINYGLTF_TYPE_VEC3, {0, 0, 0, 0.5f, 8, 0, 0, 0, 3})}}));
+    mast.animation("slide");
+    mast.slide(0);
+    write("mast.gltf", mast.text());
+    for (const char* options : {"", "noRotation"})
+    {
+        const osg::ref_ptr<AnimatedCrowd> crowd = readCrowd("mast.gltf.2x2.crowd", options);
+        ASSERT_TRUE(crowd);
+        // Neighbours are 1.2 sides apart; bounds may be a little larger than the vertices need.
+        EXPECT_NEAR(placeOf(*crowd, 1).x() - placeOf(*crowd, 0).x(), 3.6, 0.1) << options;
+    }
+}
+
 TEST_F(CrowdPluginTest, theSeedFixesClipsAndTimes)
 {
     const auto first = playedBy(*readCrowd("arm.gltf.5x5.crowd"));

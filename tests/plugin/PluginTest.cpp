@@ -137,6 +137,24 @@ TEST_F(PluginTest, readsStreams)
     EXPECT_EQ(reader->readNode(rubbish, nullptr).status(), Read::ERROR_IN_READING_FILE);
 }
 
+TEST_F(PluginTest, aStreamFindsItsFilesByTheDatabasePath)
+{
+    nlohmann::json document = nlohmann::json::parse(file.text());
+    document["buffers"][0]["uri"] = "arm.bin";
+    const std::vector<unsigned char>& bytes = file.model.buffers[0].data;
+    write("arm.bin", std::string(bytes.begin(), bytes.end()));
+    osgDB::ReaderWriter* reader = osgDB::Registry::instance()->getReaderWriterForExtension("gltf");
+    ASSERT_TRUE(reader);
+    const osg::ref_ptr<osgDB::Options> options = new osgDB::Options;
+    for (const bool hasPath : {false, true})
+    {
+        if (hasPath) options->getDatabasePathList().push_back(folder.string());
+        std::istringstream stream(document.dump());
+        Read result = reader->readNode(stream, options);
+        EXPECT_EQ(result.validNode(), hasPath) << result.message();
+    }
+}
+
 TEST_F(PluginTest, findsFilesByTheDatabasePath)
 {
     osg::ref_ptr<osgDB::Options> options = new osgDB::Options;

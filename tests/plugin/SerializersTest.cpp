@@ -166,6 +166,7 @@ TEST_F(SerializersTest, everythingBelowACharacterComesBack)
     clips[0] = clips[0].withMarkers({{0.25, "left foot"}, {0.5, ""}}).value();
     ASSERT_TRUE(character().setAnimationSet(moving.value()->withClips(clips).value()));
     character().addUpdateCallback(new RootMotionCallback);
+    dynamic_cast<CharacterKeys&>(*character().getEventCallback()).setFadeSeconds(1.75);
     for (const char* format : formats)
     {
         SCOPED_TRACE(format);
@@ -180,7 +181,9 @@ TEST_F(SerializersTest, everythingBelowACharacterComesBack)
         EXPECT_EQ(byName->getNumChildren(), 1u);
         EXPECT_EQ(byNumber->getJoint(), 2);
         EXPECT_TRUE(dynamic_cast<RootMotionCallback*>(back.getUpdateCallback()));
-        EXPECT_TRUE(dynamic_cast<CharacterKeys*>(back.getEventCallback()));
+        const auto* keys = dynamic_cast<const CharacterKeys*>(back.getEventCallback());
+        ASSERT_TRUE(keys);
+        EXPECT_EQ(keys->getFadeSeconds(), 1.75);
         const Clip& clip = back.getAnimationSet().clips()[0];
         ASSERT_EQ(clip.markers().size(), 2u);
         EXPECT_EQ(clip.markers()[0].name, "left foot");

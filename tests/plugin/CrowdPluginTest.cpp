@@ -103,7 +103,7 @@ TEST_F(CrowdPluginTest, theSpacingIsOfTheLargerHorizontalSide)
     mast.node("mast", -1, mast.mesh({{"POSITION", mast.floats(TINYGLTF_TYPE_VEC3, {0, 0, 0, 0.5f, 8, 0, 0, 0, 3})}}));
     mast.animation("slide");
     mast.slide(0);
-    write("mast.gltf", mast.text());
+    folder.write("mast.gltf", mast.text());
     for (const char* options : {"", "noRotation"})
     {
         const osg::ref_ptr<AnimatedCrowd> crowd = readCrowd("mast.gltf.2x2.crowd", options);

@@ -3,6 +3,7 @@
 
 #include <osgGpuAnimation/nodes/frame/CullScopes.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
+#include <osgGpuAnimation/nodes/OsgMatrix.h>
 
 #include <osg/NodeVisitor>
 #include <osg/ValueObject>
@@ -82,7 +83,7 @@ osg::Matrixd viewToWorld(const osg::CameraView& view)
 {
     const osg::MatrixList paths = view.getWorldMatrices();
     if (paths.empty()) return osg::Matrixd();
-    return osg::Matrixd::rotate(paths.front().getRotate()) * osg::Matrixd::translate(paths.front().getTrans());
+    return rotationOf(paths.front()) * osg::Matrixd::translate(paths.front().getTrans());
 }
 
 StartView::StartView(const StartView& other, const osg::CopyOp& copyop)

@@ -136,7 +136,7 @@ void Importer::makeGraph(const NodeTree& tree, const Joints& joints, const Morph
         _result.root->addChild(_result.character);
     }
     _result.root->setName(sceneName);
-    Materials materials(_model, _options.fixedLighting, _textures);
+    Materials materials(_model, _options.fixedLighting, _textures, _report);
     Meshes meshes(_model, materials.maps(), _budget, _report);
     Drawables drawables(_model, _result.set, meshes, materials, variant, _budget, _report);
     if (!_options.noLights) _result.lights = findLights(_model, tree);

@@ -116,6 +116,7 @@ Result<bool> RenderCommand::run() const
     gltf::ImportOptions options;
     options.camera = camera;
     options.variant = variant;
+    options.noLights = look != Look::File;
     options.noKeys = true; // no window, no keyboard
     if (!isCrowd)
         options.clip = clip;

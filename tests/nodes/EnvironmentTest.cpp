@@ -187,6 +187,22 @@ TEST(EnvironmentTest, faultyFacesAreRefusedWithAMessage)
     }
 }
 
+TEST(EnvironmentTest, numbersOutOfRangeAreRefused)
+{
+    constexpr float infinite = std::numeric_limits<float>::infinity(), none = std::numeric_limits<float>::quiet_NaN();
+    const osg::ref_ptr<Environment> environment = new Environment;
+    environment->setRotation(2.0f);
+    for (const float wrong : {-1.0f, infinite, -infinite, none})
+    {
+        environment->setIntensity(3.0f);
+        environment->setIntensity(wrong);
+        EXPECT_EQ(environment->getIntensity(), 0.0f) << wrong;
+        if (std::isfinite(wrong)) continue;
+        environment->setRotation(wrong);
+        EXPECT_EQ(environment->getRotation(), 2.0f) << wrong;
+    }
+}
+
 TEST(EnvironmentTest, copiesAndTheNextSourceReplaceTheFormer)
 {
     const osg::ref_ptr<Environment> environment = new Environment;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/Environment.h>
 
+#include <osgGpuAnimation/nodes/OsgMatrix.h>
 #include <osgGpuAnimation/nodes/shading/PrefilteredMap.h>
 
 #include <layout.glsl>
@@ -8,9 +9,7 @@
 #include <osg/Matrix>
 #include <osgUtil/CullVisitor>
 
-#ifndef GL_TEXTURE_CUBE_MAP_SEAMLESS
-#define GL_TEXTURE_CUBE_MAP_SEAMLESS 0x884F
-#endif
+#include <cmath>
 
 namespace osgGpuAnimation
 {
@@ -18,12 +17,11 @@ namespace osgGpuAnimation
 namespace
 {
 
-/// From eye space to glTF's axes (+Y up) of the surroundings.
+/// From eye space to glTF's axes (+Y up) of the surroundings. A node that mirrors mirrors the surroundings.
 osg::Matrix3 environmentFromEye(const osg::Matrix& nodeToEye, float rotation)
 {
-    osg::Matrix turn;
-    turn.orthoNormalize(nodeToEye);
-    turn.setTrans(0, 0, 0);
+    osg::Matrix turn = rotationOf(nodeToEye);
+    if (glm::determinant(glm::dmat3(glm::make_mat4(nodeToEye.ptr()))) < 0.0) turn.preMultScale(osg::Vec3d(-1, 1, 1));
     const osg::Matrix yUp(1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1);
     const osg::Matrix all = osg::Matrix::inverse(turn) * osg::Matrix::rotate(-rotation, osg::Vec3(0, 0, 1)) * yUp;
     osg::Matrix3 result;
@@ -92,8 +90,13 @@ void Environment::setPictures(osg::Image* panorama, osg::TextureCubeMap* faces, 
 
 void Environment::setIntensity(float intensity)
 {
-    _intensity = intensity;
-    _intensities = new osg::Uniform("environmentIntensity", intensity);
+    _intensity = std::isfinite(intensity) && intensity > 0.0f ? intensity : 0.0f;
+    _intensities = new osg::Uniform("environmentIntensity", _intensity);
+}
+
+void Environment::setRotation(float radians)
+{
+    if (std::isfinite(radians)) _rotation = radians;
 }
 
 /// All state of the surroundings. It is not in the node's own StateSet, which belongs to the user and is stored.

@@ -53,12 +53,13 @@ public:
     osg::Image* getPanorama() const { return _panorama; }    ///< null: the studio or faces
     osg::TextureCubeMap* getFaces() const { return _faces; } ///< null: the studio or a panorama
 
-    /// Multiplies the radiance; 0 or more; default 1.
+    /// Multiplies the radiance; default 1. A number that is negative or not finite counts as 0.
     void setIntensity(float intensity);
     float getIntensity() const { return _intensity; } ///< 0 or more
 
-    /// Turns the surroundings about +Z, counter-clockwise from above; radians; default 0.
-    void setRotation(float radians) { _rotation = radians; }
+    /// Turns the surroundings about +Z, counter-clockwise from above; radians; default 0. A number that is
+    /// not finite changes nothing.
+    void setRotation(float radians);
     float getRotation() const { return _rotation; } ///< radians
 
     /// Khronos PBR Neutral tone mapping of everything below; default false: colours above 1 are clamped.

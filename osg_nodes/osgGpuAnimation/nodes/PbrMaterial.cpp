@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <string>
+#include <vector>
 
 namespace osgGpuAnimation
 {
@@ -27,6 +28,93 @@ float decoded(float display)
     return display <= 0.04045f ? display / 12.92f : std::pow((display + 0.055f) / 1.055f, 2.4f);
 }
 
+/// A map with the names and the texture unit that the shader has for it.
+struct MapSlot
+{
+    PbrMaterial::Map PbrMaterial::*map;
+    const char* sampler;
+    const char* define;
+    int unit;
+};
+
+constexpr MapSlot coreMaps[] = {
+    {&PbrMaterial::metallicRoughnessMap, "metallicRoughnessTexture", "MATERIAL_METALLIC_ROUGHNESS_MAP",
+     METALLIC_ROUGHNESS_UNIT},
+    {&PbrMaterial::normalMap, "normalTexture", "MATERIAL_NORMAL_MAP", NORMAL_UNIT},
+    {&PbrMaterial::occlusionMap, "occlusionTexture", "MATERIAL_OCCLUSION_MAP", OCCLUSION_UNIT},
+    {&PbrMaterial::emissiveMap, "emissiveTexture", "MATERIAL_EMISSIVE_MAP", EMISSIVE_UNIT},
+};
+
+/// A map of an extension, which has the next texture unit from EXTENSION_MAPS_UNIT on if the extension has an effect.
+struct ExtensionMapSlot
+{
+    PbrMaterial::Map PbrMaterial::*map;
+    const char* sampler;
+    const char* define;
+    bool (*hasEffect)(const PbrMaterial& material);
+};
+
+bool hasSpecular(const PbrMaterial&)
+{
+    return true;
+}
+
+bool hasClearcoat(const PbrMaterial& material)
+{
+    return material.clearcoat > 0.0f;
+}
+
+bool hasSheen(const PbrMaterial& material)
+{
+    return material.sheenColor != osg::Vec3();
+}
+
+bool hasTransmission(const PbrMaterial& material)
+{
+    return material.transmission > 0.0f;
+}
+
+constexpr ExtensionMapSlot extensionMaps[] = {
+    {&PbrMaterial::specularColorMap, "specularColorTexture", "MATERIAL_SPECULAR_COLOR_MAP", &hasSpecular},
+    {&PbrMaterial::clearcoatMap, "clearcoatTexture", "MATERIAL_CLEARCOAT_MAP", &hasClearcoat},
+    {&PbrMaterial::clearcoatRoughnessMap, "clearcoatRoughnessTexture", "MATERIAL_CLEARCOAT_ROUGHNESS_MAP",
+     &hasClearcoat},
+    {&PbrMaterial::clearcoatNormalMap, "clearcoatNormalTexture", "MATERIAL_CLEARCOAT_NORMAL_MAP", &hasClearcoat},
+    {&PbrMaterial::sheenColorMap, "sheenColorTexture", "MATERIAL_SHEEN_COLOR_MAP", &hasSheen},
+    {&PbrMaterial::sheenRoughnessMap, "sheenRoughnessTexture", "MATERIAL_SHEEN_ROUGHNESS_MAP", &hasSheen},
+    {&PbrMaterial::specularMap, "specularTexture", "MATERIAL_SPECULAR_MAP", &hasSpecular},
+    {&PbrMaterial::transmissionMap, "transmissionTexture", "MATERIAL_TRANSMISSION_MAP", &hasTransmission},
+};
+
+bool hasDefine(const osg::StateSet& stateSet, const char* name)
+{
+    return stateSet.getDefineList().count(name) > 0;
+}
+
+/// Removes what applyPbrMaterial() has set, but for the osg::Material and the uniforms, which are replaced or not read.
+void removePbrMaterial(osg::StateSet& stateSet)
+{
+    if (!hasDefine(stateSet, "MATERIAL_PBR")) return;
+    if (hasDefine(stateSet, "MATERIAL_TRANSMISSION"))
+    {
+        stateSet.removeAttribute(osg::StateAttribute::BLENDFUNC);
+        stateSet.removeAttribute(osg::StateAttribute::DEPTH);
+        stateSet.setRenderingHint(osg::StateSet::DEFAULT_BIN);
+    }
+    stateSet.removeTextureAttribute(0, osg::StateAttribute::TEXTURE);
+    for (const MapSlot& slot : coreMaps)
+        if (hasDefine(stateSet, slot.define))
+            stateSet.removeTextureAttribute(static_cast<unsigned int>(slot.unit), osg::StateAttribute::TEXTURE);
+    unsigned int unit = EXTENSION_MAPS_UNIT;
+    for (const ExtensionMapSlot& slot : extensionMaps)
+        if (hasDefine(stateSet, slot.define)) stateSet.removeTextureAttribute(unit++, osg::StateAttribute::TEXTURE);
+    std::vector<std::string> defines;
+    for (const auto& define : stateSet.getDefineList())
+        if (define.first.compare(0, 9, "MATERIAL_") == 0) defines.push_back(define.first);
+    for (const std::string& define : defines)
+        stateSet.removeDefine(define);
+}
+
 void setMap(osg::StateSet& stateSet, const PbrMaterial::Map& map, int unit, const char* sampler, const char* define)
 {
     if (!map.texture) return;
@@ -39,25 +127,10 @@ void setMap(osg::StateSet& stateSet, const PbrMaterial::Map& map, int unit, cons
 /// The first mostExtensionMaps maps have a texture unit.
 void setExtensionMaps(osg::StateSet& stateSet, const PbrMaterial& material)
 {
-    const struct
-    {
-        const PbrMaterial::Map& map;
-        const char* sampler;
-        const char* define;
-    } maps[] = {
-        {material.specularColorMap, "specularColorTexture", "MATERIAL_SPECULAR_COLOR_MAP"},
-        {material.clearcoatMap, "clearcoatTexture", "MATERIAL_CLEARCOAT_MAP"},
-        {material.clearcoatRoughnessMap, "clearcoatRoughnessTexture", "MATERIAL_CLEARCOAT_ROUGHNESS_MAP"},
-        {material.clearcoatNormalMap, "clearcoatNormalTexture", "MATERIAL_CLEARCOAT_NORMAL_MAP"},
-        {material.sheenColorMap, "sheenColorTexture", "MATERIAL_SHEEN_COLOR_MAP"},
-        {material.sheenRoughnessMap, "sheenRoughnessTexture", "MATERIAL_SHEEN_ROUGHNESS_MAP"},
-        {material.specularMap, "specularTexture", "MATERIAL_SPECULAR_MAP"},
-        {material.transmissionMap, "transmissionTexture", "MATERIAL_TRANSMISSION_MAP"},
-    };
     int used = 0;
-    for (const auto& [map, sampler, define] : maps)
-        if (map.texture && used < PbrMaterial::mostExtensionMaps)
-            setMap(stateSet, map, EXTENSION_MAPS_UNIT + used++, sampler, define);
+    for (const ExtensionMapSlot& slot : extensionMaps)
+        if ((material.*slot.map).texture && slot.hasEffect(material) && used < PbrMaterial::mostExtensionMaps)
+            setMap(stateSet, material.*slot.map, EXTENSION_MAPS_UNIT + used++, slot.sampler, slot.define);
 }
 
 void setExtensions(osg::StateSet& stateSet, const PbrMaterial& material)
@@ -70,20 +143,22 @@ void setExtensions(osg::StateSet& stateSet, const PbrMaterial& material)
         stateSet.addUniform(new osg::Uniform("materialSpecular", specular));
     }
     if (material.isSpecularGlossiness) stateSet.setDefine("MATERIAL_GLOSSINESS", "1");
-    if (material.clearcoat > 0.0f)
+    if (hasClearcoat(material))
     {
         stateSet.setDefine("MATERIAL_CLEARCOAT", "1");
         stateSet.addUniform(
-            new osg::Uniform("materialClearcoat", osg::Vec2(material.clearcoat, material.clearcoatRoughness)));
+            new osg::Uniform("materialClearcoat", osg::Vec3(material.clearcoat, material.clearcoatRoughness,
+                                                            material.clearcoatNormalScale)));
     }
-    if (material.sheenColor != osg::Vec3())
+    if (hasSheen(material))
     {
         stateSet.setDefine("MATERIAL_SHEEN", "1");
         stateSet.addUniform(new osg::Uniform("materialSheen", osg::Vec4(material.sheenColor, material.sheenRoughness)));
     }
-    if (material.transmission > 0.0f)
+    if (hasTransmission(material))
     {
         stateSet.setDefine("MATERIAL_TRANSMISSION", "1");
+        if (material.isBlended) stateSet.setDefine("MATERIAL_BLENDED", "1");
         stateSet.addUniform(new osg::Uniform("materialTransmission", material.transmission));
         applyBlending(stateSet, GL_ONE);
     }
@@ -94,6 +169,7 @@ void setExtensions(osg::StateSet& stateSet, const PbrMaterial& material)
 
 void applyPbrMaterial(osg::StateSet& stateSet, const PbrMaterial& material)
 {
+    removePbrMaterial(stateSet);
     osg::ref_ptr<osg::Material> colors = new osg::Material;
     const osg::Vec4 color = displayColor(material.baseColor);
     colors->setName(stateSet.getName());
@@ -110,18 +186,15 @@ void applyPbrMaterial(osg::StateSet& stateSet, const PbrMaterial& material)
         new osg::Uniform("materialFactors", osg::Vec4(material.metallic, material.roughness, material.normalScale,
                                                       material.occlusionStrength)));
     if (material.baseColorMap.texture) stateSet.setTextureAttributeAndModes(0, material.baseColorMap.texture);
-    setMap(stateSet, material.metallicRoughnessMap, METALLIC_ROUGHNESS_UNIT, "metallicRoughnessTexture",
-           "MATERIAL_METALLIC_ROUGHNESS_MAP");
-    setMap(stateSet, material.normalMap, NORMAL_UNIT, "normalTexture", "MATERIAL_NORMAL_MAP");
-    setMap(stateSet, material.occlusionMap, OCCLUSION_UNIT, "occlusionTexture", "MATERIAL_OCCLUSION_MAP");
-    setMap(stateSet, material.emissiveMap, EMISSIVE_UNIT, "emissiveTexture", "MATERIAL_EMISSIVE_MAP");
+    for (const MapSlot& slot : coreMaps)
+        setMap(stateSet, material.*slot.map, slot.unit, slot.sampler, slot.define);
     if (material.emissiveStrength != 1.0f)
     {
         stateSet.addUniform(new osg::Uniform("emissiveStrength", material.emissiveStrength));
         stateSet.setDefine("MATERIAL_EMISSIVE_STRENGTH", "1");
     }
     setExtensions(stateSet, material);
-    const bool hasNormalMap = material.normalMap.texture || material.clearcoatNormalMap.texture;
+    const bool hasNormalMap = material.normalMap.texture || hasDefine(stateSet, "MATERIAL_CLEARCOAT_NORMAL_MAP");
     if (hasNormalMap && material.hasTangents) stateSet.setDefine("MATERIAL_TANGENTS", "1");
     if (material.hasMoreCoordinates) stateSet.setDefine("MATERIAL_MORE_COORDINATES", "1");
 }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/data/MaterialVariants.h"
 
+#include "gltf/data/UniqueNames.h"
+
 #include <algorithm>
-#include <set>
 
 namespace osgGpuAnimation::gltf
 {
@@ -15,9 +16,8 @@ const char* const variantsName = "KHR_materials_variants";
 /// An empty value if the extension has no such member.
 const tinygltf::Value& memberOf(const tinygltf::ExtensionMap& extensions, const char* member)
 {
-    static const tinygltf::Value none;
-    const auto extension = extensions.find(variantsName);
-    return extension == extensions.end() || !extension->second.Has(member) ? none : extension->second.Get(member);
+    const tinygltf::Value& extension = extensionOf(extensions, variantsName);
+    return extension.IsObject() ? extension.Get(member) : extension;
 }
 
 /// Takes the material's coordinates if they begin like the known ones, or the known ones like these.
@@ -33,7 +33,7 @@ bool takeCoordinates(const std::vector<TextureCoordinates>& wanted, std::vector<
 bool add(const tinygltf::Material& material, const MaterialMaps& maps, PrimitiveMaterials& materials)
 {
     if (!takeCoordinates(maps.coordinates, materials.coordinates)) return false;
-    materials.hasNormalMap |= maps.find(&PbrMaterial::normalMap) != nullptr;
+    materials.hasNormalMap |= maps.hasNormalMap();
     materials.isBlended |= material.alphaMode == "BLEND";
     return true;
 }
@@ -43,14 +43,13 @@ bool add(const tinygltf::Material& material, const MaterialMaps& maps, Primitive
 std::vector<std::string> variantNames(const tinygltf::Model& model)
 {
     const tinygltf::Value& variants = memberOf(model.extensions, "variants");
+    UniqueNames unique;
     std::vector<std::string> names;
-    std::set<std::string> taken{""};
     for (std::size_t i = 0; i < variants.ArrayLen(); ++i)
     {
         const tinygltf::Value& variant = variants.Get(static_cast<int>(i));
-        std::string name = variant.Has("name") ? variant.Get("name").Get<std::string>() : std::string();
-        if (!taken.insert(name).second) name = "variants[" + std::to_string(i) + "]";
-        names.push_back(std::move(name));
+        const std::string name = variant.Has("name") ? variant.Get("name").Get<std::string>() : std::string();
+        names.push_back(unique.unique(name.empty() ? "variants[" + std::to_string(i) + "]" : name));
     }
     return names;
 }

@@ -12,8 +12,8 @@
 namespace osgGpuAnimation::gltf
 {
 
-/// The names of the file's variants (KHR_materials_variants), each different. A variant without a name, or with the
-/// name of an earlier one, is called `variants[INDEX]`.
+/// The names of the file's variants (KHR_materials_variants), each different: a variant without a name is called
+/// `variants[INDEX]`, and of equal names, later ones get a number.
 std::vector<std::string> variantNames(const tinygltf::Model& model);
 
 /// The materials of a primitive in all variants, and what its vertices need to be drawn with each of them.

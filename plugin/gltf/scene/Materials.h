@@ -2,6 +2,7 @@
 #pragma once
 
 #include "gltf/data/MaterialMaps.h"
+#include "gltf/file/Report.h"
 #include "gltf/scene/Textures.h"
 
 #include <osgGpuAnimation/nodes/PbrMaterial.h>
@@ -10,7 +11,10 @@
 #include <osg/Vec4>
 #include <tiny_gltf.h>
 
+#include <cstddef>
 #include <map>
+#include <set>
+#include <string>
 #include <tuple>
 
 namespace osgGpuAnimation::gltf
@@ -43,11 +47,16 @@ constexpr unsigned int mostParents = 4096;
 /// One osg::StateSet for each material and use of it, so that OSG can sort by it; another one after mostParents.
 ///
 /// A material becomes a PbrMaterial with its alpha mode, double sidedness and KHR_materials_unlit. With fixedLighting
-/// only base colour and emission remain, drawn as by the fixed pipeline.
+/// only base colour and emission remain, drawn as by the fixed pipeline. A material's maps that are left out for want
+/// of room get a warning.
 class Materials
 {
 public:
-    Materials(const tinygltf::Model& model, bool fixedLighting, Textures& textures);
+    /// Each different set of maps, their coordinates and extensions needs programs of its own, which compile in about
+    /// 0.2 s. Materials of further sets keep the base colour map alone and lose their extensions, with a warning.
+    static constexpr std::size_t mostSets = 64;
+
+    Materials(const tinygltf::Model& model, bool fixedLighting, Textures& textures, Report& report);
 
     osg::StateSet* stateSet(const MaterialUse& use);
     MapsOfMaterials& maps() { return _maps; } ///< with fixedLighting, of base colours alone
@@ -63,11 +72,17 @@ public:
 private:
     osg::ref_ptr<osg::StateSet> make(const MaterialUse& use);
     PbrMaterial pbrMaterial(const tinygltf::Material& material, const MaterialUse& use);
+    PbrMaterial limited(const PbrMaterial& material);
+    void warnOfMaps(int material, const MaterialMaps& maps);
 
     const tinygltf::Model& _model;
     const bool _fixedLighting;
     Textures& _textures;
+    Report& _report;
     MapsOfMaterials _maps;
+    std::set<int> _warned;       ///< materials
+    std::set<std::string> _sets; ///< the shader defines of those in use
+    bool _hasTooManySets = false;
     std::map<MaterialUse, osg::ref_ptr<osg::StateSet>> _stateSets;
 };
 

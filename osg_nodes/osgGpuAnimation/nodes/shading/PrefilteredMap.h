@@ -5,6 +5,10 @@
 
 #include <osg/TextureCubeMap>
 
+#ifndef GL_TEXTURE_CUBE_MAP_SEAMLESS
+#define GL_TEXTURE_CUBE_MAP_SEAMLESS 0x884F
+#endif
+
 namespace osgGpuAnimation
 {
 

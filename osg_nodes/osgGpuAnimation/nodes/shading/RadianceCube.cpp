@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/shading/RadianceCube.h>
 
+#include <osgGpuAnimation/nodes/PbrMaterial.h>
+
 #include <osg/Math>
 
 #include <algorithm>
@@ -33,7 +35,7 @@ std::string sizeText(int width, int height)
 
 float linearOf(float encoded)
 {
-    return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
+    return linearColor(osg::Vec4(encoded, 0.0f, 0.0f, 1.0f)).r();
 }
 
 float floatOfHalf(std::uint16_t half)

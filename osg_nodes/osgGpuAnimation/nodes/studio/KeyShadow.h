@@ -24,7 +24,7 @@ public:
 
     /// From the group's space to the map, [0, 1] each way and in depth.
     osg::Matrixd toMap() const;
-    /// What the map covers, in units of the group's space: width, height, depth.
+    /// The extent of the map, in units of the group's space: width, height, depth.
     const osg::Vec3d& getSize() const { return _size; }
     osg::Texture2D& getMap() const { return *_map; } ///< depths, without comparison
 

@@ -3,6 +3,7 @@
 
 #include <osgGpuAnimation/nodes/frame/CullScopes.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
+#include <osgGpuAnimation/nodes/OsgMatrix.h>
 #include <osgGpuAnimation/nodes/viewing/Standpoint.h>
 
 #include <osg/NodeVisitor>
@@ -82,14 +83,7 @@ osg::Matrixd viewToWorld(const osg::CameraView& view)
 {
     const osg::MatrixList paths = view.getWorldMatrices();
     if (paths.empty()) return osg::Matrixd();
-    const osg::Matrixd& place = paths.front();
-    // osg::Matrixd::getRotate() is wrong for matrices with a scale.
-    osg::Vec3d back = osg::Matrixd::transform3x3(osg::Vec3d(0, 0, 1), place);
-    osg::Vec3d right = osg::Matrixd::transform3x3(osg::Vec3d(0, 1, 0), place) ^ back;
-    if (!(back.normalize() > 0.0) || !(right.normalize() > 0.0)) return osg::Matrixd::translate(place.getTrans());
-    const osg::Vec3d up = back ^ right, eye = place.getTrans();
-    return osg::Matrixd(right.x(), right.y(), right.z(), 0.0, up.x(), up.y(), up.z(), 0.0, back.x(), back.y(), back.z(),
-                        0.0, eye.x(), eye.y(), eye.z(), 1.0);
+    return rotationOf(paths.front()) * osg::Matrixd::translate(paths.front().getTrans());
 }
 
 StartView::StartView(const StartView& other, const osg::CopyOp& copyop)

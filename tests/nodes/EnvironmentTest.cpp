@@ -208,8 +208,14 @@ TEST(EnvironmentTest, copiesAndTheNextSourceReplaceTheFormer)
     const osg::ref_ptr<Environment> environment = new Environment;
     const osg::ref_ptr<osg::Image> panorama = makePanorama(16, studioRadiance);
     ASSERT_TRUE(environment->setPanorama(panorama));
+    environment->setIntensity(0.5f);
+    environment->setRotation(1.0f);
+    environment->setToneMapping(true);
     const osg::ref_ptr<Environment> copy = new Environment(*environment, osg::CopyOp::DEEP_COPY_ALL);
     EXPECT_EQ(copy->getPanorama(), panorama);
+    EXPECT_EQ(copy->getIntensity(), 0.5f);
+    EXPECT_EQ(copy->getRotation(), 1.0f);
+    EXPECT_TRUE(copy->getToneMapping());
     ASSERT_TRUE(environment->setFaces(makeFaces(4, studioRadiance)));
     EXPECT_EQ(environment->getPanorama(), nullptr);
     EXPECT_NE(environment->getFaces(), nullptr);

@@ -92,6 +92,32 @@ TEST(StateGraphFileTest, AStateMayPlayABlendSpace)
     EXPECT_EQ(controller.speed(), 0.5);
 }
 
+TEST(StateGraphFileTest, TheSpeedMayFollowTheGround)
+{
+    const auto set = makeStridingSet({{"Walk", 1.0, 1.2, 0.62}, {"Run", 0.6, 3.2, 0.36}});
+    const auto graph = parseStateGraph(*set, R"({
+        "states": {
+            "walk": { "clip": "Walk", "groundSpeed": "speed" },
+            "move": { "blend": [{ "clip": "Walk", "at": 1.2 }, { "clip": "Run", "at": 3.2 }], "parameter": "speed",
+                      "groundSpeed": "speed" }
+        },
+        "transitions": [{ "from": "walk", "to": "move", "when": "speed > 1.5" }]
+    })");
+    ASSERT_TRUE(graph) << graph.error().message;
+    AnimationController controller(set);
+    StateMachine machine(graph.value());
+    EXPECT_TRUE(machine.set("speed", 0.6));
+    machine.update(controller, 0.1);
+    EXPECT_NEAR(controller.speed(), 0.5, 0.005);
+    EXPECT_TRUE(machine.set("speed", 3.2));
+    machine.update(controller, 0.1);
+    EXPECT_EQ(machine.state(), "move");
+    EXPECT_NEAR(controller.speed(), 1.0, 0.01) << "a run at its own speed";
+    EXPECT_TRUE(machine.set("speed", 6.4));
+    machine.update(controller, 0.1);
+    EXPECT_NEAR(controller.speed(), 2.0, 0.02) << "beyond the fastest clip";
+}
+
 TEST(StateGraphFileTest, FaultsAreNamed)
 {
     struct Case
@@ -124,6 +150,10 @@ TEST(StateGraphFileTest, FaultsAreNamed)
          "transitions[0].when: expected a string, found number"},
         {R"({"states": {"a": {"clip": "Walk"}}, "transitions": [{"to": "a", "when": "x", "seconds": "1"}]})",
          "transitions[0].seconds: expected a number, found string"},
+        {R"({"states": {"a": {"clip": "Walk", "groundSpeed": 1}}})",
+         "states.a.groundSpeed: expected a string, found number"},
+        {R"({"states": {"a": {"clip": "Walk", "groundSpeed": "a b"}}})",
+         "state \"a\": \"a b\" is not the name of a parameter"},
         {R"({"sharedPhase": 1, "states": {"a": {"clip": "Walk"}}})",
          "sharedPhase: expected true or false, found number"},
         {R"({"states": {"a": {"blend": []}}})", "states.a: it has no \"parameter\""},

@@ -176,6 +176,24 @@ bool AnimationLayer::setSpeed(double speed)
     return true;
 }
 
+Result<bool> AnimationLayer::setGroundSpeed(double speed)
+{
+    if (!std::isfinite(speed)) return Error{"a ground speed that is not finite"};
+    if (_mixer.isEmpty()) return Error{"a ground speed for a layer that plays nothing"};
+    const ClipMixer::ActiveSpace* active = _mixer.currentSpace();
+    const double measured = active ? active->space->groundSpeedAt(set(), active->parameter)
+                                   : measureGroundSpeed(set(), static_cast<std::size_t>(clip()));
+    const double factor = measured > 0.0 ? speed / measured : HUGE_VAL;
+    if (std::isfinite(factor))
+        setSpeed(factor);
+    else if (speed == 0.0)
+        setSpeed(1.0);
+    else
+        return Error{"a ground speed for clip \"" + set().clips()[static_cast<std::size_t>(clip())].name() +
+                     "\": its feet stand"};
+    return true;
+}
+
 void AnimationLayer::setLoopMode(LoopMode mode)
 {
     _loopMode = mode;

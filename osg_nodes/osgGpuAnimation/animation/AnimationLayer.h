@@ -109,6 +109,12 @@ public:
     /// stops the time. Clips that fade out keep their speed. Returns false, without a change, if the speed is not
     /// finite.
     bool setSpeed(double speed);
+    /// Sets the speed (see setSpeed()) at which the feet of the current clip, or of the blend space at its parameter,
+    /// do not slide while the character moves at a ground speed. speed: the model's units a second (metres in glTF,
+    /// before any scale of the node); negative: backwards. Call it again after play(), crossfade() or setParameter(). A
+    /// clip whose feet stand takes speed 1 for a ground speed of 0. Errors, with the layer unchanged: a speed that is
+    /// not finite; nothing plays; the feet of the clip stand (see measureGroundSpeed()).
+    Result<bool> setGroundSpeed(double speed);
     /// Sets the loop mode of the current clip and of later ones; the time stays. A layer in state Ended remains in it
     /// until play(), crossfade() or seek().
     void setLoopMode(LoopMode mode);

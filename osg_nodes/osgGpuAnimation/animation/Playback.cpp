@@ -2,6 +2,7 @@
 #include <osgGpuAnimation/animation/Playback.h>
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/animation/playback/FootPaths.h>
 #include <osgGpuAnimation/animation/playback/Triangulation.h>
 
 #include <glm/common.hpp>
@@ -229,6 +230,94 @@ BlendSpace::Mix BlendSpace::mixAt(const glm::dvec2& parameter) const
     for (Weight& weight : mix.weights)
         weight.weight /= whole;
     return mix;
+}
+
+namespace
+{
+
+constexpr std::size_t samplesOfARound = 120;
+
+/// The ground speed of clips in equal shares, at phases that they reach together.
+double groundSpeedOfMix(const AnimationSet& set, const std::vector<BlendSpace::Point>& points)
+{
+    double moving = 0.0; // poses do not count in the time of a round
+    for (const BlendSpace::Point& point : points)
+        moving += point.duration() > 0.0 ? 1.0 : 0.0;
+    if (!(moving > 0.0)) return 0.0;
+    const auto phaseAt = [](std::size_t sample) { return static_cast<double>(sample) / samplesOfARound; };
+    std::vector<double> times;
+    for (std::size_t sample = 0; sample <= samplesOfARound; ++sample)
+    {
+        double seconds = 0.0;
+        for (const BlendSpace::Point& point : points)
+            seconds += (point.timeAt(phaseAt(sample)) - point.stops.front()) / moving;
+        times.push_back(seconds);
+    }
+    const auto poseAt = [&](std::size_t sample)
+    {
+        PoseInstruction instruction;
+        instruction.sampleCount = 0;
+        for (const BlendSpace::Point& point : points)
+        {
+            const double time = point.timeAt(phaseAt(sample)), duration = point.duration();
+            BlendSample& mixed = instruction.samples[instruction.sampleCount++];
+            mixed = set.sampleAt(static_cast<int>(point.clip), time > duration ? time - duration : time);
+            mixed.weight = 1.0f / static_cast<float>(points.size());
+        }
+        return instruction;
+    };
+    const FootPaths paths(set, std::move(times), poseAt);
+    return paths.groundSpeed(paths.feet());
+}
+
+double meanDuration(const std::vector<BlendSpace::Weight>& weights, const std::vector<BlendSpace::Point>& points)
+{
+    double seconds = 0.0, whole = 0.0;
+    for (const BlendSpace::Weight& weight : weights)
+    {
+        const double duration = points[weight.point].duration();
+        seconds += weight.weight * duration;
+        whole += duration > 0.0 ? weight.weight : 0.0;
+    }
+    return whole > 0.0 ? seconds / whole : 0.0;
+}
+
+} // namespace
+
+double BlendSpace::wayOf(const AnimationSet& set, std::size_t first, std::size_t second) const
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    const auto key = std::minmax(first, second);
+    if (const auto known = _ways.find(key); known != _ways.end()) return known->second;
+    std::vector<Point> points{_points[first]};
+    if (second != first) points.push_back(_points[second]);
+    const double seconds = meanDuration({{first, 0.5}, {second, 0.5}}, _points);
+    return _ways[key] = groundSpeedOfMix(set, points) * seconds;
+}
+
+double BlendSpace::groundSpeedAt(const AnimationSet& set, const glm::dvec2& parameter) const
+{
+    const Mix mix = mixAt(parameter);
+    const std::vector<Weight> weights(mix.weights.begin(),
+                                      mix.weights.begin() + static_cast<std::ptrdiff_t>(mix.count));
+    double way = 0.0; // quadratic, through the corners and the middles of the edges
+    for (std::size_t i = 0; i < weights.size(); ++i)
+    {
+        const double weight = weights[i].weight;
+        if (weight != 0.5) way += weight * (2.0 * weight - 1.0) * wayOf(set, weights[i].point, weights[i].point);
+        for (std::size_t j = 0; j < i; ++j)
+            way += 4.0 * weight * weights[j].weight * wayOf(set, weights[i].point, weights[j].point);
+    }
+    const double seconds = meanDuration(weights, _points);
+    return seconds > 0.0 ? std::max(way, 0.0) / seconds : 0.0;
+}
+
+double measureGroundSpeed(const AnimationSet& set, std::size_t clip)
+{
+    if (const std::optional<double> known = set.knownGroundSpeed(clip)) return *known;
+    const double speed = groundSpeedOfMix(set, {{clip, glm::dvec2(0.0), {0.0, set.clips()[clip].duration()}}});
+    set.keepGroundSpeed(clip, speed);
+    return speed;
 }
 
 } // namespace osgGpuAnimation

@@ -7,9 +7,12 @@
 
 #include <array>
 #include <cstddef>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace osgGpuAnimation
@@ -159,6 +162,10 @@ public:
     const std::vector<std::string>& syncMarkers() const { return _syncMarkers; } ///< as passed to create()
     /// The clips and weights at a parameter; NaN counts as 0.
     Mix mixAt(const glm::dvec2& parameter) const;
+    /// The ground speed of the mix at a parameter, in the model's units a second at speed 1, see measureGroundSpeed().
+    /// The mixes at the corners of a cell and halfway between them are measured once; the way of a round is
+    /// interpolated. Safe to call from several threads. set: one that it fits.
+    double groundSpeedAt(const AnimationSet& set, const glm::dvec2& parameter) const;
     /// True if its clips are clips of the set, with equal durations and markers.
     bool fits(const AnimationSet& set) const;
     /// As create(), with the clips by number, for example of another set. The points need no stops.
@@ -168,11 +175,23 @@ public:
 private:
     BlendSpace();
 
+    double wayOf(const AnimationSet& set, std::size_t first, std::size_t second) const;
+
     std::vector<Point> _points;
     std::vector<std::string> _syncMarkers;
     std::vector<glm::dvec2> _places; ///< of the points
     std::vector<PlaneCell> _cells;
+    mutable std::mutex _mutex;
+    /// The way of a round on the ground, for the mixes of two points in halves, or of one with itself.
+    mutable std::map<std::pair<std::size_t, std::size_t>, double> _ways;
 };
+
+/// The speed at which a clip walks on the spot: that of the ground below its feet, in the model's units a second at the
+/// clip's own speed. Feet are joints that end a limb, come within a tenth of the skeleton's height of its lowest place
+/// and lift again; they are on the ground as findFootContacts() says. 0: no feet, or they stand; the character's own
+/// movement within the clip does not count. The set keeps the value, so later calls cost nothing. Safe to call from
+/// several threads. clip: below set.clips().size().
+double measureGroundSpeed(const AnimationSet& set, std::size_t clip);
 
 /// An event of one layer during AnimationController::advance().
 struct AnimationEvent

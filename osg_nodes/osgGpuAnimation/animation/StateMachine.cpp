@@ -156,6 +156,12 @@ Result<bool> StateGraph::addState(const AnimationSet& set, const StateDescriptio
         state.clip = clip.value();
     }
     if (!std::isfinite(description.speed)) return Error{"its speed is not finite"};
+    if (!description.groundSpeed.empty())
+    {
+        const Result<std::size_t> parameter = addParameter(description.groundSpeed);
+        if (!parameter) return parameter.error();
+        state.groundSpeed = static_cast<int>(parameter.value());
+    }
     _states.push_back(std::move(state));
     return true;
 }
@@ -170,11 +176,18 @@ Result<bool> StateGraph::addBlend(const AnimationSet& set, const StateBlendDescr
                      " parameters: expected one or two"};
     for (const std::string& name : description.parameters)
     {
-        if (toWords(name) != std::vector<std::string>{name} || name.find_first_of(signs) != std::string::npos)
-            return Error{"\"" + name + "\" is not the name of a parameter: expected one word without < > = !"};
-        state.parameters.push_back(indexAdding(name, _parameters));
+        const Result<std::size_t> parameter = addParameter(name);
+        if (!parameter) return parameter.error();
+        state.parameters.push_back(parameter.value());
     }
     return true;
+}
+
+Result<std::size_t> StateGraph::addParameter(const std::string& name)
+{
+    if (toWords(name) != std::vector<std::string>{name} || name.find_first_of(signs) != std::string::npos)
+        return Error{"\"" + name + "\" is not the name of a parameter: expected one word without < > = !"};
+    return indexAdding(name, _parameters);
 }
 
 Result<bool> StateGraph::addTransition(const TransitionDescription& description)
@@ -323,14 +336,18 @@ bool StateMachine::play(const StateGraph::State& state, double seconds, const Cr
                                          : layer.crossfade(state.clip, seconds, options));
 }
 
-/// Passes the parameters of the current state to the blend space that the layer plays.
+/// Passes the parameters of the current state to the layer.
 void StateMachine::passParameters(AnimationLayer& layer) const
 {
     const StateGraph::State& state = _graph->states()[_state];
-    if (!state.space || !layer.blendSpace()) return;
-    const double x = _values[state.parameters.front()];
-    const double y = state.parameters.size() > 1 ? _values[state.parameters.back()] : 0.0;
-    if (layer.parameter() != glm::dvec2(x, y)) layer.setParameter(x, y);
+    if (state.space && layer.blendSpace())
+    {
+        const double x = _values[state.parameters.front()];
+        const double y = state.parameters.size() > 1 ? _values[state.parameters.back()] : 0.0;
+        if (layer.parameter() != glm::dvec2(x, y)) layer.setParameter(x, y);
+    }
+    // A clip whose feet stand keeps its speed.
+    if (state.groundSpeed >= 0) (void)layer.setGroundSpeed(_values[static_cast<std::size_t>(state.groundSpeed)]);
 }
 
 bool StateMachine::holds(const StateGraph::Condition& condition, const AnimationLayer& layer) const

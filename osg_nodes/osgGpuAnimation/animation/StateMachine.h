@@ -61,6 +61,8 @@ struct StateDescription
     LoopMode loopMode = LoopMode::Loop;                        ///< loop mode of the clip
     double speed = 1.0;                                        ///< finite; negative: backwards
     std::optional<StateBlendDescription> blend = std::nullopt; ///< in place of the clip
+    std::string groundSpeed =
+        {}; ///< the parameter for AnimationLayer::setGroundSpeed(), in place of speed; empty: none
 };
 
 /// The description of a transition from one state to another.
@@ -101,6 +103,7 @@ public:
         double speed;                                      ///< finite
         std::shared_ptr<const BlendSpace> space = nullptr; ///< null: the clip
         std::vector<std::size_t> parameters = {};          ///< indices of the parameters of the blend space: of x, of y
+        int groundSpeed = -1;                              ///< index of the parameter for the ground speed; -1: none
     };
     /// A condition with its name resolved.
     struct Condition
@@ -132,7 +135,7 @@ public:
 
     const std::vector<State>& states() const { return _states; }                ///< in the order of the description
     const std::vector<Transition>& transitions() const { return _transitions; } ///< in the order of the description
-    /// Names in the conditions and of blend spaces.
+    /// Names in the conditions, of blend spaces and of ground speeds.
     const std::vector<std::string>& parameters() const { return _parameters; }
     const std::vector<std::string>& triggers() const { return _triggers; } ///< names in the conditions
     std::size_t start() const { return _start; }                           ///< index of the start state
@@ -146,6 +149,7 @@ private:
 
     Result<bool> addState(const AnimationSet& set, const StateDescription& description);
     Result<bool> addBlend(const AnimationSet& set, const StateBlendDescription& description, State& state);
+    Result<std::size_t> addParameter(const std::string& name);
     Result<bool> addTransition(const TransitionDescription& description);
     Result<bool> addCondition(Transition& transition, const std::string& text);
     Result<std::size_t> stateNamed(const std::string& name) const;
@@ -178,8 +182,8 @@ public:
     double secondsInState() const { return _seconds; }                         ///< seconds since the state was entered
     double value(const std::string& parameter) const; ///< initially 0; 0 if there is no such parameter
 
-    /// Sets a parameter; update() passes it to a blend space of the current state. False, without a change, if no
-    /// condition and no blend space uses the parameter or the value is NaN.
+    /// Sets a parameter; update() passes it to the blend space and the ground speed of the current state. False,
+    /// without a change, if the graph does not use the parameter or the value is NaN.
     bool set(const std::string& parameter, double value);
     /// Fires a trigger: it stays fired until a transition that uses it is taken. False if no condition uses it.
     bool fire(const std::string& trigger);

@@ -168,16 +168,17 @@ StateDescription toState(const std::string& name, const Json& json)
     state.name = name;
     if (json.is_object() && json.contains("blend"))
     {
-        checkObject(json, where, {"blend", "parameter", "markers", "loop", "speed"});
+        checkObject(json, where, {"blend", "parameter", "markers", "loop", "speed", "groundSpeed"});
         state.blend = toBlend(json, where);
     }
     else
     {
-        checkObject(json, where, {"clip", "loop", "speed"});
+        checkObject(json, where, {"clip", "loop", "speed", "groundSpeed"});
         requireMember(json, "clip", where);
     }
     readText(json, "clip", where, state.clip);
     readNumber(json, "speed", where, state.speed);
+    readText(json, "groundSpeed", where, state.groundSpeed);
     readWord<LoopMode>(json, "loop", where,
                        {{"loop", LoopMode::Loop}, {"once", LoopMode::Once}, {"pingpong", LoopMode::PingPong}},
                        state.loopMode);

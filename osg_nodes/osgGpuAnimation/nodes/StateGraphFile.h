@@ -28,7 +28,8 @@ namespace osgGpuAnimation
 ///
 /// loop: "loop", "once" or "pingpong"; curve: "linear" or "smooth"; sync: "start" or "phase"; "when" may be one string
 /// instead of an array. A state has a "clip" or a "blend" (see BlendSpace): clips "at" a number or a pair of numbers,
-/// the "parameter" (two names in an array for pairs), and optionally its sync "markers". "sharedPhase": true keeps
+/// the "parameter" (two names in an array for pairs), and optionally its sync "markers". "groundSpeed": the name of a
+/// parameter for AnimationLayer::setGroundSpeed. "sharedPhase": true keeps
 /// layers of equal blend priority in phase (see AnimationLayer::setPhaseShared). Missing members have the defaults of
 /// StateDescription and TransitionDescription; a transition without "from" starts from every state.
 ///

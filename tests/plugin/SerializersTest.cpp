@@ -234,6 +234,32 @@ TEST_F(SerializersTest, everythingBelowACharacterComesBack)
     EXPECT_EQ(log->text, "");
 }
 
+TEST_F(SerializersTest, attachmentsKeepTheirOffsetAndInstance)
+{
+    const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(character());
+    const AnimationController controller(crowd->getSharedAnimationSet());
+    ASSERT_TRUE(crowd->remove(crowd->add(osg::Matrixd(), controller).value()));
+    ASSERT_TRUE(crowd->add(osg::Matrixd(), controller));
+    const osg::ref_ptr<JointAttachment> hand = new JointAttachment("hand");
+    hand->setOffset(osg::Matrixd::rotate(1, 0, 0, 1) * osg::Matrixd::translate(0.1, 2, 3));
+    hand->setInstance(crowd->add(osg::Matrixd::translate(7, 0, 0), controller).value());
+    crowd->addChild(hand);
+    EXPECT_EQ(textOf(*new JointAttachment("hand")).find("Joint -2"), std::string::npos) << "readable as before";
+    for (const char* format : formats)
+    {
+        const osg::ref_ptr<osg::Node> read = files.throughFile(*crowd, format);
+        auto* back = dynamic_cast<AnimatedCrowd*>(read.get());
+        ASSERT_TRUE(back);
+        const auto* again = dynamic_cast<JointAttachment*>(back->getChild(back->getNumChildren() - 1));
+        ASSERT_TRUE(again);
+        EXPECT_EQ(again->getJointName(), "hand");
+        EXPECT_TRUE(again->getOffset() == hand->getOffset());
+        ASSERT_TRUE(again->getInstance());
+        EXPECT_EQ(back->getPlacement(*again->getInstance()).getTrans(), osg::Vec3d(7, 0, 0));
+    }
+    EXPECT_EQ(log->text, "");
+}
+
 TEST_F(SerializersTest, aCharacterWithoutCallbacksHasNoneAfterwards)
 {
     character().setUpdateCallback(nullptr);

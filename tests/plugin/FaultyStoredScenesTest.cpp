@@ -68,7 +68,7 @@ const FaultCase faults[] = {
      "RootMotion 1 {\nJoint 9 0 1 0 Key 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 "
      "0\n",
      Answer::Error, "root motion does not exist"},
-    {"a newer controller", "Controller 1", "Controller 2", Answer::Error, "version of a controller"},
+    {"a newer controller", "Controller 1", "Controller 3", Answer::Error, "version of a controller"},
     {"nine layers", "Layers 1 ", "Layers 9 ", Answer::Error, "9 layers"},
     {"a state that there is not", "Layer 1 1 1", "Layer 4 1 1", Answer::Error, "state is 4"},
     {"a loop mode that there is not", "Layer 1 1 1", "Layer 1 3 1", Answer::Error, "loop mode is 3"},

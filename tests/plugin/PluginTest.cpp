@@ -19,6 +19,7 @@
 #include <filesystem>
 #include <fstream>
 #include <regex>
+#include <set>
 #include <sstream>
 #include <vector>
 
@@ -189,6 +190,21 @@ TEST_F(PluginTest, playsAsTheOptionsSay)
     EXPECT_EQ(log->text, "");
 }
 
+TEST_F(PluginTest, randomStartTimesDifferFromLoadToLoad)
+{
+    const auto timeOf = [&](const char* options)
+    { return findCharacter(*read("arm.gltf", options).getNode())->getController().time(); };
+    std::set<double> times;
+    for (int load = 0; load < 8; ++load)
+        times.insert(timeOf("clip=Slide randomStart=7"));
+    EXPECT_EQ(times.size(), 8u);
+    EXPECT_GE(*times.begin(), 0.0);
+    EXPECT_LT(*times.rbegin(), 1.0);
+    EXPECT_GT(*times.rbegin() - *times.begin(), 0.3) << "the eight of seed 7 are spread";
+    EXPECT_EQ(times.count(timeOf("clip=Slide randomStart=8")), 0u) << "another seed";
+    EXPECT_EQ(timeOf("clip=Slide start=0.25 randomStart=7"), 0.25);
+}
+
 TEST_F(PluginTest, tellsWhatItSupports)
 {
     osgDB::ReaderWriter* reader = osgDB::Registry::instance()->getReaderWriterForExtension("glb");
@@ -196,7 +212,7 @@ TEST_F(PluginTest, tellsWhatItSupports)
     EXPECT_TRUE(reader->acceptsExtension("GLTF"));
     EXPECT_FALSE(reader->acceptsExtension("obj"));
     for (const char* option : {"clip=NAME|INDEX", "scene=INDEX", "noRotation", "allowOutsideFiles", "start=SECONDS",
-                               "speed=NUMBER", "loop=once|loop|pingpong", "fade=SECONDS", "noKeys"})
+                               "speed=NUMBER", "loop=once|loop|pingpong", "fade=SECONDS", "noKeys", "randomStart=SEED"})
         EXPECT_EQ(reader->supportedOptions().count(option), 1u) << option;
     EXPECT_EQ(reader->readNode("model.obj", nullptr).status(), Read::FILE_NOT_HANDLED);
 }

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <csignal>
 #include <string>
 #include <vector>
 
@@ -32,18 +33,25 @@ std::string terminalOf(const std::vector<std::string>& arguments)
         execv(words.front(), words.data());
         _exit(127);
     }
+    // It works for 0.1 s at a time and then stands still, so that the work takes long on a fast machine, too.
+    int status = -1;
+    while (waitpid(child, &status, WNOHANG) == 0)
+    {
+        usleep(100000);
+        kill(child, SIGSTOP);
+        usleep(600000);
+        kill(child, SIGCONT);
+    }
     std::string written;
     char bytes[4096];
     for (ssize_t count; (count = read(terminal, bytes, sizeof bytes)) > 0;)
         written.append(bytes, static_cast<std::size_t>(count));
     close(terminal);
-    int status = -1;
-    waitpid(child, &status, 0);
     EXPECT_EQ(status, 0) << written;
     return written;
 }
 
-/// 30,000 poses in a file: more than half a second of work.
+/// 30,000 poses in a file: more than a tenth of a second of work.
 std::vector<std::string> longWork(const ScratchFolder& folder)
 {
     std::vector<std::string> arguments{

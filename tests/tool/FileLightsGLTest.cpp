@@ -70,7 +70,7 @@ json fileOf(const LightCase& each)
     file["nodes"][2]["translation"] = {each.place.x(), each.place.y(), each.place.z()};
     file["nodes"][2]["rotation"] = {std::sin(each.turn / 2.0), 0.0, 0.0, std::cos(each.turn / 2.0)};
     file["materials"][0]["pbrMetallicRoughness"]["roughnessFactor"] = each.roughness;
-    file["extensions"]["KHR_lights_punctual"]["lights"] = {json::parse(each.light)};
+    file["extensions"]["KHR_lights_punctual"]["lights"] = json::array({json::parse(each.light)});
     return file;
 }
 

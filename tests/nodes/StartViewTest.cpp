@@ -11,7 +11,8 @@ namespace osgGpuAnimation
 // glTF 2.0, section 3.10.2: scales above a camera have no effect on its view.
 TEST(StartViewTest, scalesAboveACameraDoNotTurnItsView)
 {
-    const osg::Vec3d scales[] = {{1, 1, 1}, {0.01, 0.01, 0.01}, {1e-6, 1e-6, 1e-6}, {300, 300, 300}, {0.1, 7, 2}};
+    const osg::Vec3d scales[] = {{1, 1, 1},   {0.01, 0.01, 0.01}, {1e-6, 1e-6, 1e-6}, {300, 300, 300},
+                                 {0.1, 7, 2}, {3, 3, 3},          {2, 1, 0.5},        {-1, 1, 1}};
     for (const double angle : {60.0, 170.0})
         for (const osg::Vec3d& scale : scales)
         {

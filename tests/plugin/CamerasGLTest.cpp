@@ -6,7 +6,6 @@
 #include <osgGpuAnimation/nodes/viewing/StartView.h>
 
 #include <osg/Math>
-#include <osg/MatrixTransform>
 #include <osg/ValueObject>
 #include <osgGA/KeySwitchMatrixManipulator>
 #include <osgGA/TrackballManipulator>
@@ -200,23 +199,6 @@ TEST(CamerasTest, viewsHaveTheFilesNumbersAndNames)
     EXPECT_EQ(height, 4.0);
     EXPECT_FALSE(model.startCamera);
     EXPECT_EQ(imported(file, with("wide 2")).startCamera->getName(), "wide 2");
-}
-
-// glTF 2.0, section 3.10.2
-TEST(CamerasTest, aScaleAboveACameraDoesNotScaleItsView)
-{
-    const osg::Matrixd expected = osg::Matrixd::rotate(0.7, 0.3, 1, 0.2) * osg::Matrixd::translate(1, 2, 3);
-    for (const osg::Vec3d& scale : {osg::Vec3d(1, 1, 1), osg::Vec3d(3, 3, 3), osg::Vec3d(0.01, 0.01, 0.01),
-                                    osg::Vec3d(2, 1, 0.5), osg::Vec3d(-1, 1, 1)})
-    {
-        const osg::ref_ptr<osg::MatrixTransform> above =
-            new osg::MatrixTransform(osg::Matrixd::scale(scale) * expected);
-        const osg::ref_ptr<osg::CameraView> view = new osg::CameraView;
-        above->addChild(view);
-        const osg::Matrixd found = viewToWorld(*view);
-        for (int i = 0; i < 16; ++i)
-            EXPECT_NEAR(found.ptr()[i], expected.ptr()[i], 1e-12) << scale.x() << ", number " << i;
-    }
 }
 
 TEST(CamerasTest, anUnknownCameraIsAnErrorThatListsThem)

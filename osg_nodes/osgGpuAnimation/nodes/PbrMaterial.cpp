@@ -45,45 +45,23 @@ constexpr MapSlot coreMaps[] = {
     {&PbrMaterial::emissiveMap, "emissiveTexture", "MATERIAL_EMISSIVE_MAP", EMISSIVE_UNIT},
 };
 
-/// A map of an extension, which has the next texture unit from EXTENSION_MAPS_UNIT on if the extension has an effect.
+/// A map of an extension, which has the next texture unit from EXTENSION_MAPS_UNIT on if it has an effect.
 struct ExtensionMapSlot
 {
     PbrMaterial::Map PbrMaterial::*map;
     const char* sampler;
     const char* define;
-    bool (*hasEffect)(const PbrMaterial& material);
 };
 
-bool hasSpecular(const PbrMaterial&)
-{
-    return true;
-}
-
-bool hasClearcoat(const PbrMaterial& material)
-{
-    return material.clearcoat > 0.0f;
-}
-
-bool hasSheen(const PbrMaterial& material)
-{
-    return material.sheenColor != osg::Vec3();
-}
-
-bool hasTransmission(const PbrMaterial& material)
-{
-    return material.transmission > 0.0f;
-}
-
 constexpr ExtensionMapSlot extensionMaps[] = {
-    {&PbrMaterial::specularColorMap, "specularColorTexture", "MATERIAL_SPECULAR_COLOR_MAP", &hasSpecular},
-    {&PbrMaterial::clearcoatMap, "clearcoatTexture", "MATERIAL_CLEARCOAT_MAP", &hasClearcoat},
-    {&PbrMaterial::clearcoatRoughnessMap, "clearcoatRoughnessTexture", "MATERIAL_CLEARCOAT_ROUGHNESS_MAP",
-     &hasClearcoat},
-    {&PbrMaterial::clearcoatNormalMap, "clearcoatNormalTexture", "MATERIAL_CLEARCOAT_NORMAL_MAP", &hasClearcoat},
-    {&PbrMaterial::sheenColorMap, "sheenColorTexture", "MATERIAL_SHEEN_COLOR_MAP", &hasSheen},
-    {&PbrMaterial::sheenRoughnessMap, "sheenRoughnessTexture", "MATERIAL_SHEEN_ROUGHNESS_MAP", &hasSheen},
-    {&PbrMaterial::specularMap, "specularTexture", "MATERIAL_SPECULAR_MAP", &hasSpecular},
-    {&PbrMaterial::transmissionMap, "transmissionTexture", "MATERIAL_TRANSMISSION_MAP", &hasTransmission},
+    {&PbrMaterial::specularColorMap, "specularColorTexture", "MATERIAL_SPECULAR_COLOR_MAP"},
+    {&PbrMaterial::clearcoatMap, "clearcoatTexture", "MATERIAL_CLEARCOAT_MAP"},
+    {&PbrMaterial::clearcoatRoughnessMap, "clearcoatRoughnessTexture", "MATERIAL_CLEARCOAT_ROUGHNESS_MAP"},
+    {&PbrMaterial::clearcoatNormalMap, "clearcoatNormalTexture", "MATERIAL_CLEARCOAT_NORMAL_MAP"},
+    {&PbrMaterial::sheenColorMap, "sheenColorTexture", "MATERIAL_SHEEN_COLOR_MAP"},
+    {&PbrMaterial::sheenRoughnessMap, "sheenRoughnessTexture", "MATERIAL_SHEEN_ROUGHNESS_MAP"},
+    {&PbrMaterial::specularMap, "specularTexture", "MATERIAL_SPECULAR_MAP"},
+    {&PbrMaterial::transmissionMap, "transmissionTexture", "MATERIAL_TRANSMISSION_MAP"},
 };
 
 bool hasDefine(const osg::StateSet& stateSet, const char* name)
@@ -129,7 +107,7 @@ void setExtensionMaps(osg::StateSet& stateSet, const PbrMaterial& material)
 {
     int used = 0;
     for (const ExtensionMapSlot& slot : extensionMaps)
-        if ((material.*slot.map).texture && slot.hasEffect(material) && used < PbrMaterial::mostExtensionMaps)
+        if ((material.*slot.map).texture && material.hasEffect(slot.map) && used < PbrMaterial::mostExtensionMaps)
             setMap(stateSet, material.*slot.map, EXTENSION_MAPS_UNIT + used++, slot.sampler, slot.define);
 }
 
@@ -143,19 +121,19 @@ void setExtensions(osg::StateSet& stateSet, const PbrMaterial& material)
         stateSet.addUniform(new osg::Uniform("materialSpecular", specular));
     }
     if (material.isSpecularGlossiness) stateSet.setDefine("MATERIAL_GLOSSINESS", "1");
-    if (hasClearcoat(material))
+    if (material.hasEffect(&PbrMaterial::clearcoatMap))
     {
         stateSet.setDefine("MATERIAL_CLEARCOAT", "1");
         stateSet.addUniform(
             new osg::Uniform("materialClearcoat", osg::Vec3(material.clearcoat, material.clearcoatRoughness,
                                                             material.clearcoatNormalScale)));
     }
-    if (hasSheen(material))
+    if (material.hasEffect(&PbrMaterial::sheenColorMap))
     {
         stateSet.setDefine("MATERIAL_SHEEN", "1");
         stateSet.addUniform(new osg::Uniform("materialSheen", osg::Vec4(material.sheenColor, material.sheenRoughness)));
     }
-    if (hasTransmission(material))
+    if (material.hasEffect(&PbrMaterial::transmissionMap))
     {
         stateSet.setDefine("MATERIAL_TRANSMISSION", "1");
         if (material.isBlended) stateSet.setDefine("MATERIAL_BLENDED", "1");
@@ -166,6 +144,15 @@ void setExtensions(osg::StateSet& stateSet, const PbrMaterial& material)
 }
 
 } // namespace
+
+bool PbrMaterial::hasEffect(Map PbrMaterial::*map) const
+{
+    if (map == &PbrMaterial::clearcoatMap || map == &PbrMaterial::clearcoatRoughnessMap ||
+        map == &PbrMaterial::clearcoatNormalMap)
+        return clearcoat > 0.0f;
+    if (map == &PbrMaterial::sheenColorMap || map == &PbrMaterial::sheenRoughnessMap) return sheenColor != osg::Vec3();
+    return map != &PbrMaterial::transmissionMap || transmission > 0.0f;
+}
 
 void applyPbrMaterial(osg::StateSet& stateSet, const PbrMaterial& material)
 {

@@ -70,12 +70,15 @@ struct PbrMaterial
     Map transmissionMap;       ///< linear: red
     bool isBlended = false;    ///< glTF's alpha mode BLEND: the alpha of the base colour counts, too
 
-    /// Of those after emissiveMap whose factor is not 0, in the order specularColorMap, clear coat, sheen, specularMap,
+    /// Of those after emissiveMap that have an effect, in the order specularColorMap, clear coat, sheen, specularMap,
     /// transmission; the others are left out.
     static constexpr int mostExtensionMaps = 3;
 
     bool hasTangents = false;        ///< the meshes have the vertex attribute 4: xyz, and the bitangent's sign
     bool hasMoreCoordinates = false; ///< the meshes have the vertex attribute 9, see Map
+
+    /// False for a map of clear coat, sheen or transmission while the factor that it multiplies is 0.
+    bool hasEffect(Map PbrMaterial::*map) const;
 };
 
 /// Sets the material's textures, uniforms and shader defines, and an osg::Material with its colours, which materials

@@ -16,41 +16,20 @@ struct ExtensionMap
     const char* member;
     PbrMaterial::Map PbrMaterial::*place;
     bool isColor;
-    bool (*hasEffect)(const PbrMaterial& factors);
 };
-
-bool always(const PbrMaterial&)
-{
-    return true;
-}
-
-bool hasCoat(const PbrMaterial& factors)
-{
-    return factors.clearcoat > 0.0f;
-}
-
-bool hasSheen(const PbrMaterial& factors)
-{
-    return factors.sheenColor != osg::Vec3();
-}
-
-bool isTransmissive(const PbrMaterial& factors)
-{
-    return factors.transmission > 0.0f;
-}
 
 const char* const specularGlossiness = "KHR_materials_pbrSpecularGlossiness";
 
 const ExtensionMap extensionMaps[] = {
-    {specularGlossiness, "specularGlossinessTexture", &PbrMaterial::specularColorMap, true, &always},
-    {"KHR_materials_specular", "specularColorTexture", &PbrMaterial::specularColorMap, true, &always},
-    {"KHR_materials_clearcoat", "clearcoatTexture", &PbrMaterial::clearcoatMap, false, &hasCoat},
-    {"KHR_materials_clearcoat", "clearcoatRoughnessTexture", &PbrMaterial::clearcoatRoughnessMap, false, &hasCoat},
-    {"KHR_materials_clearcoat", "clearcoatNormalTexture", &PbrMaterial::clearcoatNormalMap, false, &hasCoat},
-    {"KHR_materials_sheen", "sheenColorTexture", &PbrMaterial::sheenColorMap, true, &hasSheen},
-    {"KHR_materials_sheen", "sheenRoughnessTexture", &PbrMaterial::sheenRoughnessMap, false, &hasSheen},
-    {"KHR_materials_specular", "specularTexture", &PbrMaterial::specularMap, false, &always},
-    {"KHR_materials_transmission", "transmissionTexture", &PbrMaterial::transmissionMap, false, &isTransmissive},
+    {specularGlossiness, "specularGlossinessTexture", &PbrMaterial::specularColorMap, true},
+    {"KHR_materials_specular", "specularColorTexture", &PbrMaterial::specularColorMap, true},
+    {"KHR_materials_clearcoat", "clearcoatTexture", &PbrMaterial::clearcoatMap, false},
+    {"KHR_materials_clearcoat", "clearcoatRoughnessTexture", &PbrMaterial::clearcoatRoughnessMap, false},
+    {"KHR_materials_clearcoat", "clearcoatNormalTexture", &PbrMaterial::clearcoatNormalMap, false},
+    {"KHR_materials_sheen", "sheenColorTexture", &PbrMaterial::sheenColorMap, true},
+    {"KHR_materials_sheen", "sheenRoughnessTexture", &PbrMaterial::sheenRoughnessMap, false},
+    {"KHR_materials_specular", "specularTexture", &PbrMaterial::specularMap, false},
+    {"KHR_materials_transmission", "transmissionTexture", &PbrMaterial::transmissionMap, false},
 };
 
 /// The members that all kinds of texture infos have.
@@ -175,7 +154,7 @@ MaterialMaps mapsOf(const tinygltf::Material& material, bool allMaps)
     {
         if (map.place == &PbrMaterial::specularColorMap && isConverted != (map.extension == specularGlossiness))
             continue;
-        const MapUse use = !map.hasEffect(factors)                  ? MapUse::WithoutEffect
+        const MapUse use = !factors.hasEffect(map.place)            ? MapUse::WithoutEffect
                            : units < PbrMaterial::mostExtensionMaps ? MapUse::Shown
                                                                     : MapUse::NoTextureUnit;
         const tinygltf::TextureInfo texture = textureOf(extensionOf(material.extensions, map.extension), map.member);

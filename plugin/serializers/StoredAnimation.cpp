@@ -340,6 +340,44 @@ void transferActiveClip(ValueStream& stream, LayerSnapshot::ActiveClip& activeCl
     stream.values(activeClip.shareBefore, activeClip.phaseGroup).endLine();
 }
 
+/// The version of a stored controller; without blend spaces, controllers stay readable for earlier versions.
+constexpr std::int32_t versionWithBlends = 2;
+
+bool needsBlends(const LayerSnapshot& layer)
+{
+    return !layer.spaces.empty() || layer.parameter != glm::dvec2(0.0) || layer.isPhaseShared;
+}
+
+/// A space that cannot be created becomes null, with a warning; its layer then does not play.
+void transferSpace(ValueStream& stream, const AnimationSet& set, LayerSnapshot::ActiveSpace& space)
+{
+    std::vector<BlendSpace::Point> points;
+    std::vector<std::string> markers;
+    if (space.space) points = space.space->points();
+    if (space.space) markers = space.space->syncMarkers();
+    stream.property("Space").values(space.parameter.x, space.parameter.y, space.phase);
+    stream.values(space.isReturning, space.isFresh).endLine();
+    stream.list("Points", points,
+                [&](BlendSpace::Point& point)
+                { stream.property("Point").values(point.clip, point.place.x, point.place.y).endLine(); });
+    stream.list("SyncMarkers", markers,
+                [&](std::string& marker) { stream.property("Marker").value(marker).endLine(); });
+    if (!stream.hasRead()) return;
+    const auto made = BlendSpace::create(set, std::move(points), std::move(markers));
+    if (made)
+        space.space = made.value();
+    else
+        OSG_WARN << "osgGpuAnimation: a stored layer: " << made.error().message << std::endl;
+}
+
+void transferBlends(ValueStream& stream, const AnimationSet& set, LayerSnapshot& layer)
+{
+    stream.property("Parameter").values(layer.parameter.x, layer.parameter.y, layer.isPhaseShared).endLine();
+    stream.list("Spaces", layer.spaces, [&](LayerSnapshot::ActiveSpace& space) { transferSpace(stream, set, space); });
+    for (LayerSnapshot::ActiveClip& activeClip : layer.activeClips)
+        stream.property("Part").values(activeClip.space, activeClip.point, activeClip.weight).endLine();
+}
+
 void transferLayer(ValueStream& stream, LayerSnapshot& layer)
 {
     using Layer = AnimationLayer;
@@ -386,7 +424,9 @@ void transferAnimationSet(ValueStream& stream, std::shared_ptr<const AnimationSe
 void transferController(ValueStream& stream, AnimationController& controller)
 {
     std::int32_t version = 1;
-    stream.limited("the version of a controller", version, 1, 1).endLine();
+    for (std::size_t i = 0; !stream.isReading() && i < controller.layerCount(); ++i)
+        if (needsBlends(controller.layer(i).snapshot())) version = versionWithBlends;
+    stream.limited("the version of a controller", version, 1, versionWithBlends).endLine();
     const std::size_t layers = stream.open("Layers", controller.layerCount());
     if (layers > maxLayers) stream.fail(std::to_string(layers) + " layers, at most " + std::to_string(maxLayers));
     for (std::size_t i = 0; i < layers && stream.isGood(); ++i)
@@ -394,6 +434,7 @@ void transferController(ValueStream& stream, AnimationController& controller)
         LayerSnapshot layer;
         if (!stream.isReading()) layer = controller.layer(i).snapshot();
         transferLayer(stream, layer);
+        if (version >= versionWithBlends) transferBlends(stream, controller.set(), layer);
         if (!stream.hasRead()) continue;
         if (const Result<bool> restored = controller.layer(i).restore(layer); !restored)
             OSG_WARN << "osgGpuAnimation: layer " << i << " of a character: " << restored.error().message

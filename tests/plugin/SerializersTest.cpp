@@ -124,6 +124,47 @@ TEST_F(SerializersTest, layersGoOnWhereTheyWere)
     EXPECT_EQ(log->text, "");
 }
 
+TEST_F(SerializersTest, blendSpacesContinueWhereTheyWere)
+{
+    AnimationController& controller = character().getController();
+    EXPECT_EQ(textOf(*scene).find("Spaces"), std::string::npos) << "without one, files are as before";
+    const auto space = BlendSpace::create(controller.set(), {{"Slow slide", 0.0}, {"clip 1", 2.0}});
+    ASSERT_TRUE(space) << space.error().message;
+    AnimationLayer& upper = controller.layer(1);
+    ASSERT_TRUE(controller.play(1));
+    controller.advance(0.4);
+    ASSERT_TRUE(upper.setParameter(0.5));
+    ASSERT_TRUE(upper.play(space.value()));
+    controller.advance(0.3);
+    ASSERT_TRUE(upper.crossfade(space.value(), 1.0, {FadeCurve::Linear, Sync::Phase}));
+    ASSERT_TRUE(upper.setParameter(1.25));
+    upper.setPhaseShared(true);
+    controller.advance(0.1);
+    for (const char* format : formats)
+    {
+        SCOPED_TRACE(format);
+        const osg::ref_ptr<osg::Node> read = files.throughFile(*scene, format);
+        ASSERT_TRUE(read && findCharacter(*read));
+        AnimationController first = controller;
+        AnimationController& second = findCharacter(*read)->getController();
+        ASSERT_EQ(second.layerCount(), 2u);
+        ASSERT_TRUE(second.layer(1).blendSpace());
+        EXPECT_TRUE(second.layer(1).isPhaseShared());
+        EXPECT_EQ(second.layer(1).parameter().x, 1.25);
+        EXPECT_EQ(second.layer(1).mixer().activeClipCount(), 4u);
+        for (int step = 0; step < 40; ++step)
+        {
+            EXPECT_LE(paletteDifference(first, second), 1e-6f) << "step " << step;
+            for (AnimationController* each : {&first, &second})
+            {
+                each->layer(1).setParameter(0.05 * step);
+                each->advance(0.07);
+            }
+        }
+    }
+    EXPECT_EQ(log->text, "");
+}
+
 // A marker at the present time is told once: before the scene is stored, or after it is read.
 TEST_F(SerializersTest, markersAreToldOnceBeforeOrAfter)
 {
@@ -166,6 +207,7 @@ TEST_F(SerializersTest, everythingBelowACharacterComesBack)
     clips[0] = clips[0].withMarkers({{0.25, "left foot"}, {0.5, ""}}).value();
     ASSERT_TRUE(character().setAnimationSet(moving.value()->withClips(clips).value()));
     character().addUpdateCallback(new RootMotionCallback);
+    dynamic_cast<CharacterKeys&>(*character().getEventCallback()).setFadeSeconds(1.75);
     for (const char* format : formats)
     {
         SCOPED_TRACE(format);
@@ -180,7 +222,9 @@ TEST_F(SerializersTest, everythingBelowACharacterComesBack)
         EXPECT_EQ(byName->getNumChildren(), 1u);
         EXPECT_EQ(byNumber->getJoint(), 2);
         EXPECT_TRUE(dynamic_cast<RootMotionCallback*>(back.getUpdateCallback()));
-        EXPECT_TRUE(dynamic_cast<CharacterKeys*>(back.getEventCallback()));
+        const auto* keys = dynamic_cast<const CharacterKeys*>(back.getEventCallback());
+        ASSERT_TRUE(keys);
+        EXPECT_EQ(keys->getFadeSeconds(), 1.75);
         const Clip& clip = back.getAnimationSet().clips()[0];
         ASSERT_EQ(clip.markers().size(), 2u);
         EXPECT_EQ(clip.markers()[0].name, "left foot");
@@ -189,6 +233,32 @@ TEST_F(SerializersTest, everythingBelowACharacterComesBack)
         EXPECT_EQ(clip.rootMotion()->keys.size(), clip.keyframeCount());
         EXPECT_EQ(clip.rootMotionAt(0.5).translation, clips[0].rootMotionAt(0.5).translation);
         EXPECT_EQ(back.getCurrentBounds()._max, character().getCurrentBounds()._max);
+    }
+    EXPECT_EQ(log->text, "");
+}
+
+TEST_F(SerializersTest, attachmentsKeepTheirOffsetAndInstance)
+{
+    const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(character());
+    const AnimationController controller(crowd->getSharedAnimationSet());
+    ASSERT_TRUE(crowd->remove(crowd->add(osg::Matrixd(), controller).value()));
+    ASSERT_TRUE(crowd->add(osg::Matrixd(), controller));
+    const osg::ref_ptr<JointAttachment> hand = new JointAttachment("hand");
+    hand->setOffset(osg::Matrixd::rotate(1, 0, 0, 1) * osg::Matrixd::translate(0.1, 2, 3));
+    hand->setInstance(crowd->add(osg::Matrixd::translate(7, 0, 0), controller).value());
+    crowd->addChild(hand);
+    EXPECT_EQ(textOf(*new JointAttachment("hand")).find("Joint -2"), std::string::npos) << "readable as before";
+    for (const char* format : formats)
+    {
+        const osg::ref_ptr<osg::Node> read = files.throughFile(*crowd, format);
+        auto* back = dynamic_cast<AnimatedCrowd*>(read.get());
+        ASSERT_TRUE(back);
+        const auto* again = dynamic_cast<JointAttachment*>(back->getChild(back->getNumChildren() - 1));
+        ASSERT_TRUE(again);
+        EXPECT_EQ(again->getJointName(), "hand");
+        EXPECT_TRUE(again->getOffset() == hand->getOffset());
+        ASSERT_TRUE(again->getInstance());
+        EXPECT_EQ(back->getPlacement(*again->getInstance()).getTrans(), osg::Vec3d(7, 0, 0));
     }
     EXPECT_EQ(log->text, "");
 }

@@ -31,9 +31,11 @@ public:
         std::vector<BlendSample> uploadedSamples;       ///< content of `samples`
         std::vector<AffineMatrix> uploadedRootMatrices; ///< content of `roots`; a single one: for all instances
         std::vector<std::uint32_t> uploadedTints;       ///< content of `tints`
+        std::vector<ConstraintTarget> uploadedTargets;  ///< content of `targets`
         BufferTexture samples;
         BufferTexture roots;
         BufferTexture tints;
+        BufferTexture targets;
         bool isEvaluated = false; ///< true if `palette` belongs to the inputs
         BufferTexture palette;    ///< RGBA32F: paletteSize * width matrices, entry-major
     };

@@ -99,12 +99,21 @@ CrowdInstances::Handle CrowdInstances::newHandle(std::size_t index)
     return Handle(_usesOfPlace[place]) << 32 | place;
 }
 
-void CrowdInstances::setClipBounds(const std::vector<Box>& clipBounds)
+void CrowdInstances::setClipBounds(const std::vector<Box>& clipBounds,
+                                   const std::shared_ptr<const MixBounds>& mixBounds)
 {
     _clipBounds = clipBounds;
     _allBounds = Box();
     for (const Box& box : clipBounds)
         _allBounds.add(box);
+    if (mixBounds && !_set->constraints().empty())
+    {
+        std::vector<PlayedClip> all;
+        for (int clip = -1; clip < static_cast<int>(_set->clips().size()); ++clip)
+            all.push_back({clip, PlayedClip::Part::Mixed});
+        if (const Box constrained = mixBounds->box(all, ~std::uint64_t(0)); !constrained.empty())
+            _allBounds.add(constrained);
+    }
     for (std::size_t index = 0; index < size(); ++index)
         _spheres[index] = placedSphere(index);
 }
@@ -128,7 +137,7 @@ Box CrowdInstances::bounds() const
         if (_controllers[index])
         {
             findPlayedClips(*_controllers[index], played);
-            isAlone = played.size() == 1 && played.front().part == PlayedClip::Part::Mixed;
+            isAlone = played.size() == 1 && played.front().part == PlayedClip::Part::Mixed && !isConstrained(index);
             if (isAlone) clip = played.front().clip;
         }
         const auto place = static_cast<std::size_t>(clip + 1);

@@ -35,8 +35,22 @@
 
 // Palette entries, the static part: RGBA32F, nine texels per entry: head, three rows of parentBind, three of inverseBind,
 // translation and scale at rest.
-// The head contains four integers: parent entry (-1: the root), track (-1: none), 1 for morph weights or else 0, 0.
+// The head contains four integers: parent entry (-1: the root), track (-1: none), 1 for morph weights or else 0, the
+// code of the constraints' correction (0: none).
 #define POSE_TEXELS_PER_ENTRY 9
+
+// Constraints: RGBA32F, per constraint these texels, then one texel per joint of its path: track, code of the correction
+// to read (0: none), share of the turn, 0. The first texel contains the palette entry of the path's first joint and the
+// number of the target. A look-at: forward axis and the cosine of the cone (below -1: none), up axis and the sine of the
+// cone, offset. Two-bone inverse kinematics: hinge and soft reach, two unused texels.
+#define POSE_TEXELS_PER_CONSTRAINT 4
+
+// Targets: RGBA32F, ConstraintTarget in C++, for each instance one per constraint of the set: position and weight; pole
+// and twist; the last joint's rotation (0: none).
+#define POSE_TEXELS_PER_TARGET 3
+
+// Corrected rotations: RGBA32F. The code (first * 16 + count) * 16 + place of a joint is a CorrectionPlace in C++.
+#define POSE_CORRECTION_BASE 16
 
 // The palette: RGBA32F, a 3x4 matrix is three texels (rows). Entry e of instance i is matrix e * stride + i.
 #define POSE_TEXELS_PER_MATRIX 3

@@ -2,7 +2,8 @@
 // The default pipeline: mix, local and world in one pass, with one draw per level of the hierarchy. The vertices of a draw
 // are the batch's instances, and its GL instances are the level's palette entries. Data of an instance or an entry are
 // attributes, so that the shader fetches keyframes and parents only. The result's place in the palette is
-// entry * instanceCount + instance. Constants of the variant: those of mix.glsl; bool isRootLevel, hasRoots.
+// entry * instanceCount + instance. Constants of the variant: those of mix.glsl; bool isRootLevel, hasRoots;
+// bool hasConstraints: constraints have corrected the rotations of some entries.
 
 layout(location = POSE_SAMPLE_LOCATION) in uvec4 blendSamples[sampleCount > 0 ? sampleCount : 1];
 layout(location = POSE_ROOT_LOCATION) in mat3x4 rootMatrix;
@@ -14,6 +15,7 @@ layout(location = POSE_REST_LOCATION) in vec4 restParts[2]; // translation, scal
 uniform samplerBuffer parentLevels; // levels of the palette that include this level's parents
 uniform int firstParent;            // the first entry in parentLevels
 uniform int instanceCount;
+uniform samplerBuffer corrections;  // see constrain.vert
 
 out vec4 row0;
 out vec4 row1;
@@ -36,6 +38,8 @@ void main()
         RestParts rest = RestParts(restParts[0], restParts[1]);
         JointTransform t = hasSeveralSamples ? mixSamples(gl_VertexID, track, rest, isWeights)
                                              : sampleTrack(blendSamples[0], track, rest, isWeights);
+        if (hasConstraints && head.w > 0.0)
+            t.rotation = texelFetch(corrections, correctionTexel(int(head.w), gl_VertexID, instanceCount));
         matrix = isWeights ? mat3x4(t.translation, t.rotation, t.scale)
                            : localMatrix(t.translation, t.rotation, t.scale);
     }

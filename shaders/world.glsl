@@ -17,3 +17,11 @@ mat3x4 multiplied(mat3x4 a, mat3x4 b)
     product[2].w += a[2].w;
     return product;
 }
+
+// The texel of a corrected rotation, see layout.glsl.
+int correctionTexel(int code, int instance, int instances)
+{
+    int count = code / POSE_CORRECTION_BASE % POSE_CORRECTION_BASE;
+    return code / (POSE_CORRECTION_BASE * POSE_CORRECTION_BASE) * instances + instance * count +
+           code % POSE_CORRECTION_BASE;
+}

@@ -64,6 +64,24 @@ protected:
         return group;
     }
 
+    /// A crowd that looks at one point, or plays its clip.
+    static osg::ref_ptr<AnimatedCrowd> crowdOf(int count, bool isLooking)
+    {
+        osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
+        const auto set = character->getAnimationSet().withConstraints({LookAt{"look", {"base"}}});
+        EXPECT_TRUE(set && character->setAnimationSet(set.value()));
+        osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*character);
+        AnimationController controller(crowd->getSharedAnimationSet());
+        EXPECT_TRUE(controller.play("turn"));
+        for (int i = 0; i < count; ++i)
+        {
+            const auto instance = crowd->add(osg::Matrix::translate(0.2 * (i % 9), 0, 1), controller);
+            if (!isLooking) continue;
+            EXPECT_TRUE(crowd->constraint(instance.value(), "look").setWorldTarget(osg::Vec3d(1, -9, 2)));
+        }
+        return crowd;
+    }
+
     static osg::ref_ptr<osg::Group> characters(int count)
     {
         osg::ref_ptr<osg::Group> group = new osg::Group;
@@ -97,18 +115,33 @@ TEST_F(FrameCallsGLTest, feedbackAndUploadsDoNotGrowWithTheCharacters)
     }
 }
 
+TEST_F(FrameCallsGLTest, instancesThatLookAtAPointCostOneFeedbackDrawTogether)
+{
+    constexpr int count = 10000;
+    PosePipeline::of(state())->options().chunkSize = 2 * count; // one chunk
+    std::map<std::string, int> plain = callsOfAFrame(crowdOf(count, false));
+    std::map<std::string, int> looking = callsOfAFrame(crowdOf(count, true));
+    EXPECT_EQ(looking["glBeginTransformFeedback"], plain["glBeginTransformFeedback"] + 1);
+    EXPECT_EQ(looking["glDrawArrays"] + looking["glDrawArraysInstanced"],
+              plain["glDrawArrays"] + plain["glDrawArraysInstanced"] + 1);
+    for (const auto& [name, calls] : looking)
+        EXPECT_EQ(plain.count(name), 1u) << name << " is called " << calls << " times in a frame";
+}
+
 struct FeedbackCase
 {
     const char* name;
     PosePipeline::Form form;
     std::size_t chunkSize;
     bool hasCrowd; ///< with tints
+    bool isLooking = false;
 };
 
 const FeedbackCase feedbackCases[] = {
     {"fused", PosePipeline::Form::Fused, PosePipeline::usualChunkSize, false},
     {"fused, a crowd", PosePipeline::Form::Fused, PosePipeline::usualChunkSize, true},
     {"fused, three chunks, a crowd", PosePipeline::Form::Fused, 4, true},
+    {"fused, three chunks, constraints", PosePipeline::Form::Fused, 4, false, true},
     {"separate", PosePipeline::Form::Separate, PosePipeline::usualChunkSize, false},
     {"separate, three chunks, a crowd", PosePipeline::Form::Separate, 4, true},
 };
@@ -122,7 +155,9 @@ TEST_F(FrameCallsGLTest, noBufferThatFeedbackWritesHasAnotherBinding)
         options.form = each.form;
         options.chunkSize = each.chunkSize;
         viewer().getCamera()->setFinalDrawCallback(nullptr);
-        viewer().setSceneData(movingScene(each.hasCrowd));
+        const osg::ref_ptr<osg::Group> scene = movingScene(each.hasCrowd);
+        if (each.isLooking) scene->addChild(crowdOf(9, true));
+        viewer().setSceneData(scene);
         drawAt(0.0);
         const GlCallTrace trace(state());
         for (const double time : {0.1, 0.2, 0.3})

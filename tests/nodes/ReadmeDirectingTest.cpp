@@ -38,8 +38,10 @@ bool succeeded(const Result<T>& result)
 osg::ref_ptr<AnimatedCharacter> makeFox()
 {
     std::vector<Joint> joints;
-    for (const char* name : {"hips", "Shoulder.R", "Hand.R", "head"})
+    for (const char* name : {"hips", "Shoulder.R", "Elbow.R", "Hand.R", "head"})
         joints.push_back({name, static_cast<int>(joints.size()) - 1, {}, static_cast<int>(joints.size())});
+    for (const std::size_t bone : {2, 3}) // a straight arm
+        joints[bone].rest.translation.x = 1.0f;
     AnimationParts parts{Skeleton::create(joints).value(), {}, {}, {}, {}};
     for (const char* name : {"Survey", "Walk", "Run", "Wave", "Breathe", "Jump"})
     {
@@ -264,6 +266,30 @@ TEST_F(ReadmeDirectingTest, Crowds)
     EXPECT_TRUE(hand);
     osg::Vec4 tint = crowd->getTint(leader);
     EXPECT_EQ(tint, osg::Vec4(1, 1, 1, 1));
+}
+
+TEST_F(ReadmeDirectingTest, Constraints)
+{
+    LookAt look{"look", {"hips", "head"}};
+    look.shares = {0.3f, 0.7f};
+    look.cone = 1.2f;
+    look.turnSpeed = 4.0f;
+    TwoBoneIk reach{"reach", "Shoulder.R", "Elbow.R", "Hand.R"};
+    reach.hinge = {0, 1, 0};
+    auto constrained = fox->getAnimationSet().withConstraints({look, reach});
+    if (succeeded(constrained)) succeeded(fox->setAnimationSet(constrained.value()));
+    ASSERT_TRUE(constrained);
+
+    osg::ref_ptr<osg::MatrixTransform> bird = new osg::MatrixTransform(osg::Matrix::translate(0, 5, 5));
+    succeeded(fox->constraint("look").setTarget(osg::Vec3d(2, -3, 1)));
+    succeeded(fox->constraint("look").follow(bird));
+    succeeded(fox->constraint("reach").setWorldTarget(osg::Vec3d(1, 0, 1)));
+    succeeded(fox->constraint("reach").setPole(osg::Vec3d(0, 1, 0)));
+    succeeded(fox->constraint("reach").setWeight(0.5f));
+    EXPECT_TRUE(fox->getController().constraint("look").hasTarget());
+    EXPECT_EQ(fox->getController().constraint("reach").target().weight, 0.5f);
+    succeeded(fox->constraint("look").clear());
+    EXPECT_FALSE(fox->getController().constraint("look").hasTarget());
 }
 
 TEST_F(ReadmeDirectingTest, States)

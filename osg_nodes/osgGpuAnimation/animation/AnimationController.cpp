@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/AnimationController.h>
 
+#include <osgGpuAnimation/animation/constraints/AxisTurns.h>
+#include <osgGpuAnimation/animation/constraints/ConstraintGoals.h>
 #include <osgGpuAnimation/animation/playback/BlendList.h>
 #include <osgGpuAnimation/animation/playback/FrameEvents.h>
 
@@ -30,6 +32,13 @@ bool coversAll(const AnimationLayer& layer)
     for (std::size_t v = 0; v < layer.mixer().activeClipCount(); ++v)
         shares += layer.mixer().activeClip(v).share;
     return shares > 1.0 - 1e-6;
+}
+
+/// True if all coordinates are finite and small enough for the squares of shaders.
+bool isNear(const glm::vec3& v)
+{
+    constexpr float most = ConstraintHandle::farthestTarget;
+    return std::abs(v.x) <= most && std::abs(v.y) <= most && std::abs(v.z) <= most;
 }
 
 /// The number of blend samples of the layer's clips, see BlendList.
@@ -81,10 +90,17 @@ AnimationController::AnimationController(std::shared_ptr<const AnimationSet> set
         layer(i).setSpeed(before.speed());
     }
     _rootMotion = other._rootMotion;
+    if (!other._goals) return;
+    const std::vector<ConstraintChain>& chains = other.set().constraintChains();
+    for (std::size_t c = 0; c < chains.size(); ++c)
+        if (const Result<std::size_t> index = _set->constraintNamed(chains[c].name); index)
+            goal(index.value()) = other._goals->goal(c);
+    rebuildInstruction();
 }
 
 AnimationController::AnimationController(const AnimationController& other)
-    : LayerOwner(other), _rootMotionCurve(other._rootMotionCurve), _base(*this, other._base),
+    : LayerOwner(other), _rootMotionCurve(other._rootMotionCurve),
+      _goals(other._goals ? std::make_unique<ConstraintGoals>(*other._goals) : nullptr), _base(*this, other._base),
       _instruction(other._instruction), _rootMotion(other._rootMotion)
 {
     copyUpperLayers(other);
@@ -98,6 +114,7 @@ AnimationController& AnimationController::operator=(const AnimationController& o
     _instruction = other._instruction;
     _rootMotion = other._rootMotion;
     _rootMotionCurve = other._rootMotionCurve;
+    _goals = other._goals ? std::make_unique<ConstraintGoals>(*other._goals) : nullptr;
     _base = AnimationLayer(*this, other._base);
     copyUpperLayers(other);
     if (!_instruction.poses.empty()) rebuildInstruction();
@@ -129,7 +146,8 @@ const AnimationLayer& AnimationController::layer(std::size_t index) const
 
 bool AnimationController::isPlainLoop() const
 {
-    return _upper.empty() && !_eventCallback && !_rootMotionCurve && _base.isPlainLoop();
+    return _upper.empty() && !_eventCallback && !_rootMotionCurve && _base.isPlainLoop() &&
+           (!_goals || _goals->isDefault());
 }
 
 template <typename Function>
@@ -191,6 +209,7 @@ void AnimationController::step(double seconds)
     forEachLayer([&](AnimationLayer& layer) { isPhaseShared = isPhaseShared || layer.isPhaseShared(); });
     if (isPhaseShared) sharePaces();
     forEachLayer([step](AnimationLayer& layer) { layer.advance(step); });
+    if (_goals) _goals->advance(_set->constraintChains(), step);
     rebuildInstruction();
     if (_rootMotionCurve) accumulateRootMotion();
 }
@@ -220,6 +239,111 @@ void AnimationController::rebuildInstruction()
     BlendList samples;
     forEachLayer([&](const AnimationLayer& layer) { layer.collect(samples); });
     samples.write(_instruction);
+    if (_goals) _goals->write(_instruction.targets);
+}
+
+ConstraintGoal& AnimationController::goal(std::size_t constraint)
+{
+    if (!_goals) _goals = std::make_unique<ConstraintGoals>(_set->constraintChains().size());
+    return _goals->goal(constraint);
+}
+
+ConstraintHandle::ConstraintHandle(AnimationController& controller, const std::string& name)
+    : _controller(&controller), _index(controller.set().constraintNamed(name))
+{
+}
+
+template <typename Change>
+Result<bool> ConstraintHandle::change(bool isValid, const char* what, Change change)
+{
+    if (!_index) return _index.error();
+    if (!isValid) return Error{std::string(what) + " of a constraint is not finite or too far away"};
+    const ConstraintChain& chain = _controller->set().constraintChains()[_index.value()];
+    change(_controller->goal(_index.value()));
+    if (chain.turnSpeed > 0.0) _controller->_goals->advance(_controller->set().constraintChains(), 0.0);
+    _controller->rebuildInstruction();
+    return true;
+}
+
+Result<bool> ConstraintHandle::setTarget(const glm::vec3& position)
+{
+    return change(isNear(position), "the target",
+                  [&](ConstraintGoal& goal)
+                  {
+                      goal.target.position = position;
+                      goal.hasTarget = true;
+                  });
+}
+
+Result<bool> ConstraintHandle::setWeight(float weight)
+{
+    return change(!std::isnan(weight), "the weight",
+                  [&](ConstraintGoal& goal) { goal.target.weight = std::min(std::max(weight, 0.0f), 1.0f); });
+}
+
+Result<bool> ConstraintHandle::setPole(const glm::vec3& direction)
+{
+    const glm::dvec3 unit = AxisTurns::direction(glm::dvec3(direction), glm::dvec3(0.0));
+    return change(isNear(direction), "the pole", [&](ConstraintGoal& goal) { goal.target.pole = glm::vec3(unit); });
+}
+
+Result<bool> ConstraintHandle::setTwist(float radians)
+{
+    // The nearest equal angle: shaders compute sines of small angles only.
+    const double turn = 2.0 * 3.14159265358979;
+    const double angle = std::isfinite(radians) ? std::remainder(static_cast<double>(radians), turn) : 0.0;
+    return change(std::isfinite(radians), "the twist",
+                  [&](ConstraintGoal& goal) { goal.target.twist = static_cast<float>(angle); });
+}
+
+Result<bool> ConstraintHandle::setRotation(const glm::vec4& rotation)
+{
+    if (_index && _controller->set().constraintChains()[_index.value()].isLookAt)
+        return Error{"a look-at has no target rotation"};
+    const bool isFinite = isNear(glm::vec3(rotation)) && isNear(glm::vec3(rotation.w));
+    return change(isFinite, "the rotation",
+                  [&](ConstraintGoal& goal)
+                  {
+                      const bool isNone = rotation == glm::vec4(0.0f);
+                      goal.target.rotation = isNone ? rotation : glm::vec4(Rotation::unit(glm::dvec4(rotation)));
+                  });
+}
+
+Result<bool> ConstraintHandle::clear()
+{
+    return change(true, "", [](ConstraintGoal& goal) { goal = ConstraintGoal(); });
+}
+
+const ConstraintGoal* ConstraintHandle::find() const
+{
+    return _index && _controller->_goals ? &_controller->_goals->goal(_index.value()) : nullptr;
+}
+
+ConstraintTarget ConstraintHandle::target() const
+{
+    const ConstraintGoal* goal = find();
+    return goal ? goal->target : ConstraintGoal().target;
+}
+
+bool ConstraintHandle::hasTarget() const
+{
+    const ConstraintGoal* goal = find();
+    return goal && goal->hasTarget;
+}
+
+glm::vec3 ConstraintHandle::shownTarget() const
+{
+    const ConstraintGoal* goal = find();
+    return goal && goal->shown ? *goal->shown : target().position;
+}
+
+Result<bool> ConstraintHandle::setShownTarget(const glm::vec3& position)
+{
+    return change(isNear(position), "the target",
+                  [&](ConstraintGoal& goal)
+                  {
+                      if (_controller->set().constraintChains()[_index.value()].turnSpeed > 0.0) goal.shown = position;
+                  });
 }
 
 void AnimationController::accumulateRootMotion()

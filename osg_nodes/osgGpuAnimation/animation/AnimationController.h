@@ -15,8 +15,60 @@
 namespace osgGpuAnimation
 {
 
+struct ConstraintGoal;
 struct RootMotionCurve;
+class AnimationController;
+class ConstraintGoals;
 class PendingEvents;
+
+/// A constraint of one controller, see AnimationSet::withConstraints(). A handle is used at once and not kept:
+///
+///     controller.constraint("look").setTarget({0.0f, 1.6f, 3.0f});
+///     controller.constraint("left foot").setWeight(0.5f);
+///
+/// Positions, directions and rotations are in model space, in the axes of the set's file. Changes take effect at once.
+/// All functions return an error, without a change, if the set has no constraint of that name or a number is not
+/// finite.
+class ConstraintHandle
+{
+public:
+    static constexpr float farthestTarget = 1e12f; ///< of each coordinate of a target
+
+    /// Gives the constraint a target; without one it has no effect. With a turn speed the target is reached over the
+    /// next advance() calls. Further error: a coordinate is beyond farthestTarget.
+    Result<bool> setTarget(const glm::vec3& position);
+    /// Sets the share of the constraint, clamped to [0, 1]. The default is 1.
+    Result<bool> setWeight(float weight);
+    /// Sets the direction of the up axis or of the limb's mid joint, see ConstraintTarget::pole. 0: none.
+    Result<bool> setPole(const glm::vec3& direction);
+    /// Sets a further turn about the line to the target, in radians.
+    Result<bool> setTwist(float radians);
+    /// Sets the rotation of the limb's end joint: a quaternion x, y, z, w of any length, or 0 for none. Further error:
+    /// the constraint is a look-at.
+    Result<bool> setRotation(const glm::vec4& rotation);
+    /// Removes the target and restores the defaults: the clips alone move the chain.
+    Result<bool> clear();
+
+    /// What was set; its weight is the application's, whether or not there is a target. Defaults without such a
+    /// constraint.
+    ConstraintTarget target() const;
+    bool hasTarget() const; ///< true between setTarget() and clear()
+    /// The target that the chain shows now: behind target() while a turn speed limits it.
+    glm::vec3 shownTarget() const;
+    /// Sets the target that the chain shows now, for a stored controller. Has no effect without a turn speed. Errors:
+    /// those of setTarget().
+    Result<bool> setShownTarget(const glm::vec3& position);
+
+private:
+    friend class AnimationController;
+    ConstraintHandle(AnimationController& controller, const std::string& name);
+    template <typename Change>
+    Result<bool> change(bool isValid, const char* what, Change change);
+    const ConstraintGoal* find() const; ///< null: nothing was set
+
+    AnimationController* _controller;
+    Result<std::size_t> _index;
+};
 
 /// The mutable state of one instance: its clips, times, speeds and layers. A copy is an independent instance of the
 /// same set.
@@ -38,9 +90,10 @@ public:
 
     /// Starts with one Stopped layer. set: null counts as an empty one.
     explicit AnimationController(std::shared_ptr<const AnimationSet> set);
-    /// Copies another controller's layers, which then play the clips of the same numbers in this set, and its root
-    /// motion, for example after Clip::withMarkers(). A layer whose clips or mask do not fit the set becomes Stopped
-    /// and keeps only its speed and loop mode. The event callback is not copied.
+    /// Copies another controller's layers, which then play the clips of the same numbers in this set, the targets of
+    /// the constraints of the same names and its root motion, for example after Clip::withMarkers(). A layer whose
+    /// clips or mask do not fit the set becomes Stopped and keeps only its speed and loop mode. The event callback is
+    /// not copied.
     AnimationController(std::shared_ptr<const AnimationSet> set, const AnimationController& other);
     /// Copies everything except the event callback, which often belongs to one character.
     AnimationController(const AnimationController& other);
@@ -98,8 +151,13 @@ public:
     double speed() const { return _base.speed(); }                   ///< 1: the speed of the file
     LoopMode loopMode() const { return _base.loopMode(); }           ///< of the base layer
 
+    /// The constraint of that name. If the set has none, all functions of the handle return an error.
+    ConstraintHandle constraint(const std::string& name) { return ConstraintHandle(*this, name); }
+    /// True if some constraint has a target and a weight above 0.
+    bool isConstrained() const { return !_instruction.targets.empty(); }
+
     /// True if clip, time, speed and state describe the controller completely: one layer (see
-    /// AnimationLayer::isPlainLoop), no event callback, a set without root motion.
+    /// AnimationLayer::isPlainLoop), no event callback, no target of a constraint, a set without root motion.
     bool isPlainLoop() const;
 
     /// Moves every playing layer by seconds times its speed, passes the events of the step to the callback in the order
@@ -127,11 +185,13 @@ public:
 
 private:
     friend class AnimationLayer;
+    friend class ConstraintHandle;
 
     template <typename Function>
     void forEachLayer(Function function); ///< function(layer), from the base up
     void copyUpperLayers(const AnimationController& other);
     void rebuildInstruction() override;
+    ConstraintGoal& goal(std::size_t constraint);
     std::optional<double> sharedPhase(const AnimationLayer& layer, int clip) const override;
     std::optional<double> sharedRoundsPerSecond(const AnimationLayer& layer) const;
     void step(double seconds);
@@ -145,6 +205,7 @@ private:
     const RootMotionCurve* _rootMotionCurve = nullptr; ///< of the first clip that has one; null if none has
     std::shared_ptr<const EventCallback> _eventCallback;
     std::vector<std::unique_ptr<AnimationLayer>> _upper; ///< layers 1, 2 ...
+    std::unique_ptr<ConstraintGoals> _goals;             ///< null until the first is set
     AnimationLayer _base;
     PoseInstruction _instruction;
     RootMotion _rootMotion;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/AnimationSet.h>
 
+#include <osgGpuAnimation/animation/constraints/ConstraintChain.h>
 #include <osgGpuAnimation/animation/palette/PaletteBuilder.h>
 
 #include <layout.glsl>
@@ -115,6 +116,23 @@ std::optional<Error> findFaultInSize(const std::vector<Clip>& clips)
                  std::to_string(most) + " that addresses on the GPU reach"};
 }
 
+Result<std::vector<ConstraintChain>> chainsOf(const AnimationParts& parts)
+{
+    if (parts.constraints.size() > AnimationSet::maxConstraints)
+        return Error{std::to_string(parts.constraints.size()) + " constraints, at most " +
+                     std::to_string(AnimationSet::maxConstraints)};
+    std::vector<ConstraintChain> chains;
+    for (const Constraint& constraint : parts.constraints)
+    {
+        Result<ConstraintChain> chain = ConstraintChain::create(parts.skeleton, constraint);
+        if (!chain) return chain.error();
+        for (const ConstraintChain& other : chains)
+            if (other.name == chain.value().name) return Error{"two constraints are named \"" + other.name + "\""};
+        chains.push_back(std::move(chain).value());
+    }
+    return chains;
+}
+
 std::string namesOf(const std::vector<Clip>& clips)
 {
     return quotedNames(clips, [](const Clip& clip) { return clip.name(); });
@@ -122,8 +140,9 @@ std::string namesOf(const std::vector<Clip>& clips)
 
 } // namespace
 
-AnimationSet::AnimationSet(AnimationParts parts, std::shared_ptr<MaskTable> masks)
-    : _parts(std::move(parts)), _masks(std::move(masks))
+AnimationSet::AnimationSet(AnimationParts parts, std::shared_ptr<MaskTable> masks,
+                           std::shared_ptr<const std::vector<ConstraintChain>> constraintChains)
+    : _parts(std::move(parts)), _constraintChains(std::move(constraintChains)), _masks(std::move(masks))
 {
     _restPose = osgGpuAnimation::restPose(_parts.skeleton, _parts.morphs);
     _firstTracksOfMorphs = firstTracksOfMorphs(_parts.skeleton, _parts.morphs);
@@ -156,12 +175,23 @@ Result<std::shared_ptr<const AnimationSet>> AnimationSet::withClips(std::vector<
     return make(std::move(parts), _masks);
 }
 
+Result<std::shared_ptr<const AnimationSet>> AnimationSet::withConstraints(std::vector<Constraint> constraints) const
+{
+    AnimationParts parts = _parts;
+    parts.constraints = std::move(constraints);
+    return make(std::move(parts), _masks);
+}
+
 Result<std::shared_ptr<const AnimationSet>> AnimationSet::make(AnimationParts parts, std::shared_ptr<MaskTable> masks)
 {
     const std::size_t trackCount = firstTracksOfMorphs(parts.skeleton, parts.morphs).back();
     if (auto fault = findFault(parts, trackCount)) return *fault;
     if (auto fault = findFaultInSize(parts.clips)) return *fault;
-    return std::shared_ptr<const AnimationSet>(new AnimationSet(std::move(parts), std::move(masks)));
+    Result<std::vector<ConstraintChain>> chains = chainsOf(parts);
+    if (!chains) return chains.error();
+    return std::shared_ptr<const AnimationSet>(
+        new AnimationSet(std::move(parts), std::move(masks),
+                         std::make_shared<const std::vector<ConstraintChain>>(std::move(chains).value())));
 }
 
 int AnimationSet::entryOfRigidJoint(int joint) const
@@ -175,6 +205,15 @@ int AnimationSet::findClip(const std::string& name) const
     for (std::size_t c = 0; c < _parts.clips.size(); ++c)
         if (_parts.clips[c].name() == name) return static_cast<int>(c);
     return -1;
+}
+
+Result<std::size_t> AnimationSet::constraintNamed(const std::string& name) const
+{
+    const std::vector<ConstraintChain>& chains = *_constraintChains;
+    const auto nameOf = [](const ConstraintChain& chain) { return chain.name; };
+    for (std::size_t c = 0; c < chains.size(); ++c)
+        if (chains[c].name == name) return c;
+    return Error{"there is no constraint \"" + name + "\"; the constraints are " + quotedNames(chains, nameOf)};
 }
 
 Result<std::size_t> AnimationSet::clipNamed(const std::string& name) const

@@ -60,8 +60,11 @@ struct PoseInstruction
     /// The poses of the posed samples. They change with their layers; whoever keeps a pose for later takes its
     /// JointPose::sharedKeyframe(). A null pose, or one with another number of tracks than the set, shows nothing.
     std::vector<std::shared_ptr<const JointPose>> poses{};
+    /// One per constraint of the set, solved in this order after the mix; empty: none has an effect.
+    std::vector<ConstraintTarget> targets{};
 };
 
+struct ConstraintChain;
 struct Box;
 /// For each palette entry, the box of the vertices that it moves, in the mesh's space at bind time.
 using EntryBoxes = std::vector<Box>;
@@ -100,11 +103,12 @@ private:
 /// The input of AnimationSet::create().
 struct AnimationParts
 {
-    Skeleton skeleton;                ///< the joints
-    std::vector<Skin> skins;          ///< skins of the meshes
-    std::vector<int> rigidJoints;     ///< joints that carry a mesh without a skin
-    std::vector<MorphWeights> morphs; ///< meshes with morph weights
-    std::vector<Clip> clips;          ///< created for the same skeleton and morphs
+    Skeleton skeleton;                     ///< the joints
+    std::vector<Skin> skins;               ///< skins of the meshes
+    std::vector<int> rigidJoints;          ///< joints that carry a mesh without a skin
+    std::vector<MorphWeights> morphs;      ///< meshes with morph weights
+    std::vector<Clip> clips;               ///< created for the same skeleton and morphs
+    std::vector<Constraint> constraints{}; ///< in the order in which they are solved
 };
 
 /// Skeleton, palette and clips of one kind of character. It is immutable; all instances of the character share it on
@@ -113,8 +117,11 @@ struct AnimationParts
 class AnimationSet
 {
 public:
+    static constexpr std::size_t maxConstraints = 64; ///< of one set
+
     /// Errors: a skin or rigid joint out of range, a skin with fewer matrices than joints, a matrix or default weight
-    /// that is not finite, a clip with a wrong number of tracks, more keyframes than 32-bit offsets reach.
+    /// that is not finite, a clip with a wrong number of tracks, more keyframes than 32-bit offsets reach, a
+    /// constraint as in withConstraints().
     static Result<std::shared_ptr<const AnimationSet>> create(AnimationParts parts);
 
     ~AnimationSet();
@@ -126,11 +133,23 @@ public:
     /// Clip::withMarkers). Its palette is the same, so the meshes of this set fit it. Errors: those of create().
     Result<std::shared_ptr<const AnimationSet>> withClips(std::vector<Clip> clips) const;
 
-    const Skeleton& skeleton() const { return _parts.skeleton; }               ///< the joints
-    const std::vector<Skin>& skins() const { return _parts.skins; }            ///< as passed to create()
-    const std::vector<int>& rigidJoints() const { return _parts.rigidJoints; } ///< as passed to create()
-    const std::vector<MorphWeights>& morphs() const { return _parts.morphs; }  ///< as passed to create()
-    const std::vector<Clip>& clips() const { return _parts.clips; }            ///< as passed to create()
+    /// A set with the same skeleton, skins, morphs, masks and clips but these constraints, solved in this order. Its
+    /// palette is the same, so the meshes of this set fit it. Errors: a joint that does not exist; joints of a chain
+    /// that are no descendants of each other; a chain of more than 12 joints; numbers that are not finite or out of
+    /// range; axes that are 0 or parallel; a limb that is straight at rest and has no hinge; two equal names; more than
+    /// maxConstraints.
+    Result<std::shared_ptr<const AnimationSet>> withConstraints(std::vector<Constraint> constraints) const;
+
+    const Skeleton& skeleton() const { return _parts.skeleton; }                      ///< the joints
+    const std::vector<Skin>& skins() const { return _parts.skins; }                   ///< as passed to create()
+    const std::vector<int>& rigidJoints() const { return _parts.rigidJoints; }        ///< as passed to create()
+    const std::vector<MorphWeights>& morphs() const { return _parts.morphs; }         ///< as passed to create()
+    const std::vector<Clip>& clips() const { return _parts.clips; }                   ///< as passed to create()
+    const std::vector<Constraint>& constraints() const { return _parts.constraints; } ///< as passed to create()
+    /// The constraints after the look-up of their joints, for the kit's own code.
+    const std::vector<ConstraintChain>& constraintChains() const { return *_constraintChains; }
+    /// The index of the constraint of that name. Error: there is none; the message lists the existing names.
+    Result<std::size_t> constraintNamed(const std::string& name) const;
 
     std::size_t trackCount() const { return _restPose.size(); }               ///< joints, then weight blocks
     const std::vector<JointTransform>& restPose() const { return _restPose; } ///< trackCount() transforms
@@ -182,13 +201,15 @@ public:
     void keepGroundSpeed(std::size_t clip, double speed) const;
 
 private:
-    AnimationSet(AnimationParts parts, std::shared_ptr<MaskTable> masks);
+    AnimationSet(AnimationParts parts, std::shared_ptr<MaskTable> masks,
+                 std::shared_ptr<const std::vector<ConstraintChain>> constraintChains);
     static Result<std::shared_ptr<const AnimationSet>> make(AnimationParts parts, std::shared_ptr<MaskTable> masks);
 
     AnimationParts _parts;
     std::vector<JointTransform> _restPose;
     std::vector<std::size_t> _firstTracksOfMorphs; ///< and at the end the number of tracks
     PaletteLayout _layout;
+    std::shared_ptr<const std::vector<ConstraintChain>> _constraintChains; ///< never null
     std::vector<std::size_t> _firstKeyframes;
     std::size_t _keyframeCount = 1;
     std::shared_ptr<MaskTable> _masks; ///< shared by sets with equal tracks

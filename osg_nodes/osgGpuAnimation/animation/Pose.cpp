@@ -2,6 +2,7 @@
 #include <osgGpuAnimation/animation/Pose.h>
 
 #include <osgGpuAnimation/animation/bounds/JointRange.h>
+#include <osgGpuAnimation/animation/constraints/ConstraintSolver.h>
 #include <osgGpuAnimation/animation/keyframes/PosedKeyframe.h>
 #include <osgGpuAnimation/animation/keyframes/TrackBlend.h>
 
@@ -494,6 +495,54 @@ private:
     std::size_t _count = 0;
 };
 
+/// The joints of a pose, mixed on demand: a joint's matrix and the chains of constraints need few of them.
+class MixedJoints
+{
+public:
+    MixedJoints(const Sources& sources, const AnimationSet& set, const PoseInstruction& instruction,
+                std::vector<JointTransform>& joints, std::vector<bool>& isMixed)
+        : _sources(sources), _skeleton(set.skeleton()), _joints(joints), _isMixed(isMixed)
+    {
+        const std::vector<ConstraintChain>& chains = set.constraintChains();
+        for (std::size_t c = 0; c < std::min(chains.size(), instruction.targets.size()); ++c)
+            if (instruction.targets[c].weight > 0.0f) solve(chains[c], instruction.targets[c]);
+    }
+
+    const JointTransform& operator[](int joint) const
+    {
+        const auto index = static_cast<std::size_t>(joint);
+        if (!_isMixed[index]) _joints[index] = _sources.track(index);
+        _isMixed[index] = true;
+        return _joints[index];
+    }
+
+    glm::dmat4 toModel(int joint) const
+    {
+        glm::dmat4 matrix(1.0);
+        for (; joint >= 0; joint = _skeleton.joint(static_cast<std::size_t>(joint)).parent)
+            matrix = (*this)[joint].toMatrix().toColumns() * matrix;
+        return matrix;
+    }
+
+private:
+    void solve(const ConstraintChain& chain, const ConstraintTarget& target)
+    {
+        thread_local std::vector<JointTransform> solved;
+        solved.clear();
+        for (const int joint : chain.joints)
+            solved.push_back((*this)[joint]);
+        const int parent = _skeleton.joint(static_cast<std::size_t>(chain.joints.front())).parent;
+        solveConstraint(chain, target, toModel(parent), solved);
+        for (std::size_t place = 0; place < solved.size(); ++place)
+            _joints[static_cast<std::size_t>(chain.joints[place])] = solved[place];
+    }
+
+    const Sources& _sources;
+    const Skeleton& _skeleton;
+    std::vector<JointTransform>& _joints;
+    std::vector<bool>& _isMixed;
+};
+
 AffineMatrix weightsAsMatrix(const JointTransform& block)
 {
     AffineMatrix matrix;
@@ -509,6 +558,9 @@ void mix(const AnimationSet& set, const PoseInstruction& instruction, std::vecto
     outTracks.resize(set.trackCount());
     for (std::size_t track = 0; track < outTracks.size(); ++track)
         outTracks[track] = sources.track(track);
+    if (instruction.targets.empty()) return;
+    std::vector<bool> isMixed(outTracks.size(), true);
+    const MixedJoints constrained(sources, set, instruction, outTracks, isMixed);
 }
 
 void jointToModel(const AnimationSet& set, const std::vector<JointTransform>& tracks, const AffineMatrix& rootToModel,
@@ -530,6 +582,15 @@ AffineMatrix jointToModel(const AnimationSet& set, const PoseInstruction& instru
     const Skeleton& skeleton = set.skeleton();
     assert(joint < skeleton.jointCount() && "a joint of the set");
     const Sources sources(set, instruction);
+    if (!instruction.targets.empty())
+    {
+        thread_local std::vector<JointTransform> joints;
+        thread_local std::vector<bool> isMixed;
+        joints.resize(skeleton.jointCount());
+        isMixed.assign(skeleton.jointCount(), false);
+        const MixedJoints mixed(sources, set, instruction, joints, isMixed);
+        return AffineMatrix::fromColumns(mixed.toModel(static_cast<int>(joint)));
+    }
     AffineMatrix matrix = sources.track(joint).toMatrix();
     for (int parent = skeleton.joint(joint).parent; parent >= 0;
          parent = skeleton.joint(static_cast<std::size_t>(parent)).parent)

@@ -106,7 +106,7 @@ private:
 namespace Pose
 {
 
-/// The mix stage. outTracks: set.trackCount() transforms.
+/// The mix stage and the constraints. outTracks: set.trackCount() transforms.
 void mix(const AnimationSet& set, const PoseInstruction& instruction, std::vector<JointTransform>& outTracks);
 
 /// The local and world stages. tracks: as from mix(). outJointToModel: one matrix per joint; roots are multiplied by

@@ -4,9 +4,13 @@
 #include <osgGpuAnimation/animation/JointTransform.h>
 #include <osgGpuAnimation/animation/Result.h>
 
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
 #include <cstddef>
 #include <string>
 #include <unordered_map>
+#include <variant>
 #include <vector>
 
 namespace osgGpuAnimation
@@ -77,6 +81,61 @@ std::vector<std::size_t> firstTracksOfMorphs(const Skeleton& skeleton, const std
 
 /// One JointTransform per track: the rest transforms of the joints, then the default weights as weight blocks.
 std::vector<JointTransform> restPose(const Skeleton& skeleton, const std::vector<MorphWeights>& morphs);
+
+/// A declaration of a look-at: the last joint of a chain points its forward axis at a target, and the joints before it
+/// take shares of the turn. The chain may leave out joints, which then keep the pose of the clips.
+struct LookAt
+{
+    std::string name;                ///< unique among the constraints of a set
+    std::vector<std::string> joints; ///< from the trunk to the tip, such as spine, neck, head; the last one looks
+    /// One per joint, at least 0: the parts of the turn; their sum counts as 1. The last joint turns what is left, so
+    /// that it always meets the target. Empty: equal parts.
+    std::vector<float> shares{};
+    glm::vec3 forward{0, 0, 1}; ///< in the last joint's space, of any length
+    /// In the last joint's space, of any length, not parallel to forward. It keeps its side of the line to the target,
+    /// or turns to the target's pole: the joint does not roll.
+    glm::vec3 up{0, 1, 0};
+    glm::vec3 offset{0, 0, 0}; ///< where the line to the target begins, in the last joint's space: an eye, a muzzle
+    /// The largest angle between the forward axis of the clips' pose and the line to the target, seen from the offset
+    /// before the turn: radians in [0, pi]. A target outside the cone is followed on its edge.
+    float cone = 3.14159265f;
+    float turnSpeed = 0.0f; ///< the largest angle by which the line to the target turns, radians a second; 0: no limit
+};
+
+/// A declaration of two-bone inverse kinematics: hip, knee and ankle, or shoulder, elbow and wrist. The start joint and
+/// the mid joint turn so that the end joint reaches a target. It is exact if the joints of the limb have uniform
+/// scales.
+struct TwoBoneIk
+{
+    std::string name;  ///< unique among the constraints of a set
+    std::string start; ///< the hip or shoulder
+    std::string mid;   ///< the knee or elbow; a descendant of the start joint
+    std::string end;   ///< the ankle or wrist; a descendant of the mid joint
+    /// The axis about which the mid joint bends, in its own space, of any length: a positive turn bends the limb. 0:
+    /// the axis of the bend at rest.
+    glm::vec3 hinge{0, 0, 0};
+    /// The share of the limb's length, in [0, 1], beyond which the limb stretches slower than its target moves away, so
+    /// that the mid joint does not snap straight. 1: no such range.
+    float softReach = 1.0f;
+};
+
+/// What changes the mixed pose: it turns the joints of a chain towards a target. A set solves its constraints in the
+/// order of their declaration, each with the result of those before it (see AnimationSet::withConstraints()).
+using Constraint = std::variant<LookAt, TwoBoneIk>;
+
+/// The target of one constraint of one character, in model space. 48 bytes, as on the GPU.
+struct ConstraintTarget
+{
+    glm::vec3 position{0, 0, 0}; ///< finite
+    float weight = 0.0f;         ///< in [0, 1]: the share of the turn of each joint of the chain; 0: no effect
+    /// Where the look-at's up axis, or the limb's mid joint, points to: finite, of any length. 0: as in the clips'
+    /// pose.
+    glm::vec3 pole{0, 0, 0};
+    float twist = 0.0f;             ///< radians: a further turn about the line to the target
+    glm::vec4 rotation{0, 0, 0, 0}; ///< of the limb's end joint: a unit quaternion; 0: as in the clips' pose
+};
+
+static_assert(sizeof(ConstraintTarget) == 48, "a target is 48 bytes on the GPU");
 
 /// Joints with their inverse bind matrices (glTF 2.0, section 3.7.3).
 struct Skin

@@ -76,7 +76,7 @@ void FeedbackVertexArrays::release()
 }
 
 FeedbackPass::FeedbackPass(osg::GLExtensions& gl, const char* name, std::initializer_list<const char*> source,
-                           std::initializer_list<const char*> outputs)
+                           const std::vector<const char*>& outputs)
     : _gl(&gl), _bytesPerVertex(outputs.size() * 4 * sizeof(float))
 {
     std::string text = "#version 330\n";

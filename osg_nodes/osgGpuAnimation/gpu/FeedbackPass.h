@@ -76,7 +76,7 @@ public:
     /// capture, interleaved in this order. If the shader does not compile or link, the pass warns once and valid() is
     /// false.
     FeedbackPass(osg::GLExtensions& gl, const char* name, std::initializer_list<const char*> source,
-                 std::initializer_list<const char*> outputs);
+                 const std::vector<const char*>& outputs);
     FeedbackPass(const FeedbackPass&) = delete;
     FeedbackPass& operator=(const FeedbackPass&) = delete;
 

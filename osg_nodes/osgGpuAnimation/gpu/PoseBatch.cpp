@@ -5,8 +5,11 @@
 
 #include <layout.glsl>
 
+#include <glm/geometric.hpp>
+
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <cstring>
 
 namespace osgGpuAnimation
@@ -42,6 +45,34 @@ PoseBatch::BlendCost blendCost(bool isPosed, bool isMixed, std::size_t sampleCou
     return sampleCount <= 4 ? PoseBatch::BlendCost::Few : PoseBatch::BlendCost::Many;
 }
 
+bool isFinite(const glm::vec4& v)
+{
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z) && std::isfinite(v.w);
+}
+
+/// A target of model space in the space of the palette, as shaders need it: with no effect unless all is finite.
+ConstraintTarget inSpaceOf(const ConstraintTarget& target, const AffineMatrix& rootMatrix)
+{
+    ConstraintTarget moved = target;
+    moved.weight = clampedToUnit(target.weight);
+    moved.position = rootMatrix.transformPoint(target.position);
+    moved.pole = rootMatrix.transformVector(target.pole);
+    if (target.rotation != glm::vec4(0.0f))
+    {
+        glm::dmat3 axes(rootMatrix.toColumns());
+        for (int axis = 0; axis < 3; ++axis)
+            axes[axis] = glm::normalize(axes[axis]);
+        const glm::dquat turn = glm::quat_cast(axes);
+        moved.rotation =
+            glm::vec4(Rotation::unit(Rotation::numbers(turn * Rotation::quaternion(glm::dvec4(target.rotation)))));
+    }
+    // Shaders compute sines of small angles only.
+    moved.twist = std::remainder(target.twist, 6.28318531f);
+    const bool isGood = isFinite(glm::vec4(moved.position, 0.0f)) && isFinite(glm::vec4(moved.pole, moved.twist)) &&
+                        isFinite(moved.rotation);
+    return moved.weight > 0.0f && isGood ? moved : ConstraintTarget();
+}
+
 } // namespace
 
 PoseBatch::BlendCost PoseBatch::blendCostOf(const PoseInstruction& instruction)
@@ -54,6 +85,7 @@ PoseBatch::BlendCost PoseBatch::blendCostOf(const PoseInstruction& instruction)
 
 bool PoseBatch::accepts(const PoseInstruction& instruction) const
 {
+    if (_size > 0 && _targets.empty() != instruction.targets.empty()) return false;
     return _size < minBatchSize || blendCostOf(instruction) == blendCost(_needs.posed, _needs.mixing, _sampleStride);
 }
 
@@ -93,7 +125,29 @@ std::size_t PoseBatch::append(const BlendSample* samples, std::size_t count, con
     _needs.mixing = _needs.mixing || _sampleStride > 1;
     if (!_rootMatrices.empty() && !_isRootCommon) _rootMatrices.emplace_back();
     if (!_tints.empty()) _tints.push_back(white);
+    if (!_targets.empty()) _targets.resize((_size + 1) * set().constraints().size());
     return _size++;
+}
+
+void PoseBatch::addTargets(const std::vector<ConstraintTarget>& targets, const AffineMatrix& rootMatrix)
+{
+    const std::size_t count = set().constraints().size();
+    if (targets.size() != count) return; // none, or those of another set
+    _targets.resize(_size * count);
+    ConstraintTarget* place = _targets.data() + (_size - 1) * count;
+    for (std::size_t c = 0; c < count; ++c)
+    {
+        place[c] = inSpaceOf(targets[c], rootMatrix);
+        if (place[c].weight > 0.0f) _needs.constraints |= std::uint64_t(1) << c;
+    }
+}
+
+std::size_t PoseBatch::addInstance(const PoseInstruction& instruction, const AffineMatrix& rootMatrix)
+{
+    const std::size_t instance = append(instruction.samples.data(),
+                                        std::min(instruction.sampleCount, PoseInstruction::maxSamples), &instruction);
+    if (!instruction.targets.empty()) addTargets(instruction.targets, rootMatrix);
+    return instance;
 }
 
 /// False if there is no such mask.
@@ -115,8 +169,7 @@ void PoseBatch::addNeeds(const BlendSample& sample)
 
 std::size_t PoseBatch::add(const PoseInstruction& instruction)
 {
-    return append(instruction.samples.data(), std::min(instruction.sampleCount, PoseInstruction::maxSamples),
-                  &instruction);
+    return addInstance(instruction, _isRootCommon ? _rootMatrices.front() : AffineMatrix());
 }
 
 bool PoseBatch::hasPoses(std::size_t instance, const PoseInstruction& instruction) const
@@ -149,7 +202,7 @@ bool PoseBatch::hasRootMatrix(const AffineMatrix& rootMatrix) const
 std::size_t PoseBatch::add(const PoseInstruction& instruction, const AffineMatrix& rootMatrix)
 {
     assert(!_isRootCommon && "the batch has one root matrix for all");
-    const std::size_t instance = add(instruction);
+    const std::size_t instance = addInstance(instruction, rootMatrix);
     _rootMatrices.resize(_size);
     _rootMatrices.back() = rootMatrix;
     return instance;
@@ -179,7 +232,7 @@ bool PoseBatch::isSame(const PoseBatch& other) const
                (left.empty() || std::memcmp(left.data(), right.data(), left.size() * sizeof(left[0])) == 0);
     };
     return _set == other._set && _sampleStride == other._sampleStride && same(_samples, other._samples) &&
-           same(_rootMatrices, other._rootMatrices) && same(_tints, other._tints) &&
+           same(_rootMatrices, other._rootMatrices) && same(_tints, other._tints) && same(_targets, other._targets) &&
            std::equal(_posed.begin(), _posed.end(), other._posed.begin(), other._posed.end(),
                       [](const auto& left, const auto& right) { return left->serial() == right->serial(); });
 }
@@ -203,6 +256,7 @@ void PoseBatch::clear()
     _rootMatrices.clear();
     _isRootCommon = false;
     _tints.clear();
+    _targets.clear();
     _masks.clear();
     _posed.clear();
     _firstPosed.clear();

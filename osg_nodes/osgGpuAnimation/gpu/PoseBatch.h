@@ -67,7 +67,8 @@ public:
     /// Below this number of instances a second batch costs more than the extra samples of mixed blend costs.
     static constexpr std::size_t minBatchSize = 128;
     /// True if adding the instance would not raise the cost of the batch too far: it has the batch's blend cost, or the
-    /// batch has fewer than minBatchSize instances.
+    /// batch has fewer than minBatchSize instances. Instances with and without targets of constraints never share a
+    /// batch, so that those without cost nothing more.
     bool accepts(const PoseInstruction& instruction) const;
 
     /// Sets the colour that multiplies the instance's colour. rgba: 8 bits per channel, red in the lowest bits.
@@ -83,11 +84,12 @@ public:
     /// The features of the mix stage that at least one sample needs.
     struct Needs
     {
-        bool mixing = false;   ///< several samples, or one of less than full weight
-        bool layers = false;   ///< samples of several blend priorities
-        bool masks = false;    ///< samples with masks
-        bool additive = false; ///< additive samples
-        bool posed = false;    ///< samples of poses
+        bool mixing = false;           ///< several samples, or one of less than full weight
+        bool layers = false;           ///< samples of several blend priorities
+        bool masks = false;            ///< samples with masks
+        bool additive = false;         ///< additive samples
+        bool posed = false;            ///< samples of poses
+        std::uint64_t constraints = 0; ///< bit c: some instance has a target for constraint c of the set
     };
     /// The needs of all instances together.
     const Needs& needs() const { return _needs; }
@@ -100,6 +102,9 @@ public:
     const std::vector<BlendSample>& samples() const { return _samples; }
     /// size() matrices; a single one: for all instances; empty: the identity for all.
     const std::vector<AffineMatrix>& rootMatrices() const { return _rootMatrices; }
+    /// One target per instance and constraint of the set, instance by instance, in the space of the palette; empty: no
+    /// instance has one.
+    const std::vector<ConstraintTarget>& targets() const { return _targets; }
     /// size() colours; empty if all are white.
     const std::vector<std::uint32_t>& tints() const { return _tints; }
     /// The masks of the samples by number; null: not used here. The batch holds them until it is cleared.
@@ -124,6 +129,8 @@ private:
     bool holdMask(std::uint32_t number);
     std::size_t append(const BlendSample* samples, std::size_t count, const PoseInstruction* instruction);
     bool usePose(const PoseInstruction& instruction, BlendSample& sample);
+    void addTargets(const std::vector<ConstraintTarget>& targets, const AffineMatrix& rootMatrix);
+    std::size_t addInstance(const PoseInstruction& instruction, const AffineMatrix& rootMatrix);
 
     std::shared_ptr<const AnimationSet> _set;
     std::size_t _size = 0;
@@ -131,6 +138,7 @@ private:
     Needs _needs;
     std::vector<BlendSample> _samples;
     std::vector<AffineMatrix> _rootMatrices;
+    std::vector<ConstraintTarget> _targets;
     bool _isRootCommon = false; ///< true: _rootMatrices has one matrix for all instances
     std::vector<std::uint32_t> _tints;
     std::vector<std::shared_ptr<const SetMask>> _masks;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/gpu/PosePipeline.h>
 
+#include <osgGpuAnimation/animation/constraints/ConstraintPlan.h>
 #include <osgGpuAnimation/gpu/buffers/AnimationBuffers.h>
 #include <osgGpuAnimation/gpu/buffers/PosePalette.h>
 #include <osgGpuAnimation/gpu/FeedbackPass.h>
@@ -32,6 +33,9 @@ namespace
 constexpr std::size_t matrixBytes = sizeof(AffineMatrix);
 constexpr int unitKeyframes = 0, unitSamples = 1, unitEntries = 2, unitRoots = 3, unitPrevious = 4, unitMasks = 5;
 constexpr int unitPosed = 6, unitCount = 7;
+constexpr int unitCorrections = 7, unitConstants = 8, unitTargets = 9; // bound by batches with constraints only
+constexpr int unitCountWithConstraints = 10;
+constexpr std::size_t rotationBytes = BufferTexture::texelBytes;
 
 constexpr std::initializer_list<const char*> rowOutputs{"row0", "row1", "row2"};
 
@@ -61,25 +65,49 @@ struct SetResources
 };
 
 using Passes = std::map<PoseVariant, std::unique_ptr<FeedbackPass>>;
+using ConstraintPasses = std::map<std::pair<ConstraintShape, PoseVariant>, std::unique_ptr<FeedbackPass>>;
+
+/// The number of rotations that the constraints of a set may correct.
+std::size_t correctionsOf(const AnimationSet& set)
+{
+    std::size_t count = 0;
+    for (const ConstraintChain& chain : set.constraintChains())
+        count += chain.joints.size();
+    return count;
+}
+
+/// What the draws of one level of the palette read.
+struct LevelInput
+{
+    const AnimationSet& set;
+    const AnimationBuffers& buffers;
+    const ConstraintBuffers* constraints; ///< null: none
+    const PosePalette::Chunk& chunk;
+    GLuint parentLevels;     ///< texture
+    std::size_t firstParent; ///< the first palette entry in it
+};
 
 } // namespace
 
 struct PosePipeline::Parts
 {
     Parts(PosePipeline& pipeline, osg::GLExtensions& gl)
-        : pipeline(pipeline), gl(&gl), vertexArrays(gl), scratch(gl, GL_RGBA32F_ARB), mixedTracks(gl, GL_RGBA32F_ARB)
+        : pipeline(pipeline), gl(&gl), vertexArrays(gl), scratch(gl, GL_RGBA32F_ARB), mixedTracks(gl, GL_RGBA32F_ARB),
+          solved(gl, GL_RGBA32F_ARB), corrections(gl, GL_RGBA32F_ARB)
     {
         osg::setGLExtensionFuncPtr(copyBufferSubData, "glCopyBufferSubData");
     }
 
     FeedbackPass& posePass(const PoseVariant& variant);
     FeedbackPass& mixPass(const PoseVariant& variant);
+    FeedbackPass& constraintPass(const ConstraintShape& shape, const PoseVariant& variant);
     void makeSeparatePasses();
     void forgetUnusedSets();
     std::size_t chunkCapacity(const PoseBatch& batch) const;
     bool hasRoomForMasks(SetResources& resources, const PoseBatch& batch) const;
     SetResources& resourcesOf(const PoseBatch& batch);
-    bool evaluateFused(const PoseBatch& batch, const AnimationBuffers& buffers, PosePalette::Chunk& chunk);
+    bool evaluateFused(const PoseBatch& batch, AnimationBuffers& buffers, PosePalette::Chunk& chunk);
+    bool solveConstraints(const LevelInput& input, std::size_t number, PoseVariant variant);
     bool evaluateSeparate(const PoseBatch& batch, const AnimationBuffers& buffers, PosePalette::Chunk& chunk);
     void useMixInput(FeedbackPass& pass, const AnimationSet& set, const AnimationBuffers& buffers,
                      const PosePalette::Chunk& chunk);
@@ -92,10 +120,13 @@ struct PosePipeline::Parts
     FeedbackVertexArrays vertexArrays;
     Passes posePasses;
     Passes mixPasses;
+    ConstraintPasses constraintPasses;
     std::unique_ptr<FeedbackPass> localPass;
     std::unique_ptr<FeedbackPass> worldPass;
     BufferTexture scratch;     ///< fused: the odd levels, one after the other; separate: local matrices
     BufferTexture mixedTracks; ///< separate: the result of the mix stage
+    BufferTexture solved;      ///< the rotations of one draw of constraints
+    BufferTexture corrections; ///< those of all constraints so far, see CorrectionPlace
     std::map<const AnimationSet*, SetResources> sets;
 };
 
@@ -131,6 +162,13 @@ FeedbackPass& PosePipeline::Parts::mixPass(const PoseVariant& variant)
 {
     std::unique_ptr<FeedbackPass>& pass = mixPasses[variant];
     if (!pass) pass = variant.makeMixPass(*gl);
+    return *pass;
+}
+
+FeedbackPass& PosePipeline::Parts::constraintPass(const ConstraintShape& shape, const PoseVariant& variant)
+{
+    std::unique_ptr<FeedbackPass>& pass = constraintPasses[{shape, variant}];
+    if (!pass) pass = variant.makeConstraintPass(*gl, shape);
     return *pass;
 }
 
@@ -186,12 +224,15 @@ bool PosePipeline::evaluate(osg::State& state, const PoseBatch& batch, std::size
     if (changed.empty()) return true;
 
     const FeedbackVertexArrays::Names& vertexArrays = _parts->vertexArrays.of(state);
-    const FeedbackScope scope(state, _options.form == Form::Fused ? vertexArrays.pose : vertexArrays.empty, unitCount);
+    const bool isConstrained = batch.needs().constraints != 0;
+    const bool isFused = _options.form == Form::Fused || isConstrained;
+    const FeedbackScope scope(state, isFused ? vertexArrays.pose : vertexArrays.empty,
+                              isConstrained ? unitCountWithConstraints : unitCount);
     for (PosePalette::Chunk* chunk : changed)
     {
         chunk->palette.reserve(set.paletteSize() * chunk->width * matrixBytes);
-        chunk->isEvaluated = _options.form == Form::Fused ? _parts->evaluateFused(batch, *resources.buffers, *chunk)
-                                                          : _parts->evaluateSeparate(batch, *resources.buffers, *chunk);
+        chunk->isEvaluated = isFused ? _parts->evaluateFused(batch, *resources.buffers, *chunk)
+                                     : _parts->evaluateSeparate(batch, *resources.buffers, *chunk);
         if (!chunk->isEvaluated) return false;
         _counters.instancesEvaluated += chunk->size;
     }
@@ -203,8 +244,10 @@ std::size_t PosePipeline::Parts::chunkCapacity(const PoseBatch& batch) const
     const AnimationSet& set = batch.set();
     const std::size_t widest =
         std::max(set.paletteSize(), pipeline._options.form == Form::Separate ? set.trackCount() : 0);
-    const std::size_t byPalette =
-        pipeline._options.maxTexels / (POSE_TEXELS_PER_MATRIX * std::max<std::size_t>(widest, 1));
+    const std::size_t targetTexels = set.constraints().size() * POSE_TEXELS_PER_TARGET;
+    const std::size_t texels =
+        std::max({POSE_TEXELS_PER_MATRIX * widest, correctionsOf(set), targetTexels, std::size_t(1)});
+    const std::size_t byPalette = pipeline._options.maxTexels / texels;
     const std::size_t byPosed = pipeline._options.maxTexels / std::max<std::size_t>(PosePalette::posedTexels(batch), 1);
     std::size_t capacity = std::max<std::size_t>(
         std::min({byPalette, byPosed, pipeline._options.maxTexels / batch.sampleStride(), pipeline._options.chunkSize}),
@@ -248,11 +291,13 @@ void PosePipeline::Parts::useMixInput(FeedbackPass& pass, const AnimationSet& se
 
 // A buffer must not be read while feedback writes to it, so even levels are written to the palette and odd levels, one
 // after the other, to the scratch buffer. At the end the odd levels are copied to their places in the palette.
-bool PosePipeline::Parts::evaluateFused(const PoseBatch& batch, const AnimationBuffers& buffers,
-                                        PosePalette::Chunk& chunk)
+bool PosePipeline::Parts::evaluateFused(const PoseBatch& batch, AnimationBuffers& buffers, PosePalette::Chunk& chunk)
 {
     const AnimationSet& set = batch.set();
+    const std::uint64_t active = batch.needs().constraints;
+    const ConstraintBuffers* constraints = active != 0 ? &buffers.constraints(set, active) : nullptr;
     if (set.levelCount() > 1) scratch.reserve(oddEntries(set) * chunk.width * matrixBytes);
+    if (constraints) corrections.reserve(constraints->plan().correctionCount * chunk.width * rotationBytes);
     chunk.bindInstances(*gl);
     PoseVariant variant = PoseVariant::of(batch);
     if (chunk.hasSamplesAsAttributes()) variant.sampleCount = static_cast<int>(chunk.sampleStride);
@@ -261,22 +306,29 @@ bool PosePipeline::Parts::evaluateFused(const PoseBatch& batch, const AnimationB
     const std::size_t entryBytes = POSE_TEXELS_PER_ENTRY * BufferTexture::texelBytes;
     const std::vector<std::size_t>& levels = set.levels();
     const FeedbackPass* current = nullptr;
+    std::size_t solvedDraws = 0; // of the constraints
     std::size_t firstParent = 0; // first palette entry in the buffer that this level reads
     std::size_t oddEntry = 0;    // entries in the scratch buffer so far
     for (std::size_t level = 0; level < set.levelCount(); ++level)
     {
         if (level == 1) variant.isRootLevel = variant.hasRoots = variant.hasWeights = false;
-        variant.setMotion(buffers.levels()[level]);
         const bool isOdd = level % 2 != 0;
         const std::size_t count = levels[level + 1] - levels[level];
+        const LevelInput input{
+            set, buffers, constraints, chunk, (isOdd ? chunk.palette : scratch).texture(), isOdd ? 0 : firstParent};
+        for (; constraints && constraints->isSolvedBefore(level, solvedDraws); ++solvedDraws, current = nullptr)
+            if (!solveConstraints(input, solvedDraws, variant)) return false;
+        variant.setMotion(buffers.levels()[level]);
+        variant.hasConstraints = constraints && constraints->hasCorrections(level);
         FeedbackPass& pass = posePass(variant);
         if (!pass.valid()) return false;
         if (&pass != current) useMixInput(pass, set, buffers, chunk);
         current = &pass;
-        pass.setTexture("parentLevels", unitPrevious, (isOdd ? chunk.palette : scratch).texture());
-        pass.setInt("firstParent", static_cast<int>(isOdd ? 0 : firstParent));
-        buffers.entries().bindAttributes(POSE_HEAD_LOCATION, POSE_TEXELS_PER_ENTRY, entryBytes,
-                                         levels[level] * entryBytes, 1);
+        pass.setTexture("parentLevels", unitPrevious, input.parentLevels);
+        pass.setInt("firstParent", static_cast<int>(input.firstParent));
+        if (variant.hasConstraints) pass.setTexture("corrections", unitCorrections, corrections.texture());
+        (constraints ? constraints->entries() : buffers.entries())
+            .bindAttributes(POSE_HEAD_LOCATION, POSE_TEXELS_PER_ENTRY, entryBytes, levels[level] * entryBytes, 1);
         pass.runInstanced(chunk.width, count, (isOdd ? scratch : chunk.palette).buffer(),
                           (isOdd ? oddEntry : levels[level]) * chunk.width * matrixBytes);
         ++pipeline._counters.feedbackDraws;
@@ -285,6 +337,42 @@ bool PosePipeline::Parts::evaluateFused(const PoseBatch& batch, const AnimationB
         oddEntry += count;
     }
     gatherOddLevels(set, chunk);
+    return true;
+}
+
+// The draw reads the rotations of the constraints before, so it writes to a buffer of its own.
+bool PosePipeline::Parts::solveConstraints(const LevelInput& input, std::size_t number, PoseVariant variant)
+{
+    const ConstraintDraw& draw = input.constraints->plan().draws[number];
+    const ConstraintStep& step = input.constraints->plan().steps[draw.first];
+    const ConstraintChain& chain = input.set.constraintChains()[step.constraint];
+    variant.setMotion(input.buffers.anyTrack());
+    variant.translationMotion = std::max(variant.translationMotion, PartMotion::Constant);
+    variant.scaleMotion = std::max(variant.scaleMotion, PartMotion::Constant);
+    variant.hasWeights = variant.hasConstraints = false;
+    FeedbackPass& pass = constraintPass(ConstraintShape(step, chain), variant);
+    if (!pass.valid()) return false;
+    // Before the textures are bound: new storage unbinds that of the active unit.
+    const std::size_t jointBytes = input.chunk.width * rotationBytes;
+    const std::size_t bytes = draw.count * chain.joints.size() * jointBytes;
+    solved.reserve(bytes);
+    useMixInput(pass, input.set, input.buffers, input.chunk);
+    pass.setTexture("parentLevels", unitPrevious, input.parentLevels);
+    pass.setInt("firstParent", static_cast<int>(input.firstParent));
+    pass.setTexture("entries", unitEntries, input.constraints->entries().texture());
+    pass.setTexture("constraints", unitConstants, input.constraints->constants().texture());
+    pass.setInt("constraintTexel", input.constraints->firstTexel(number));
+    pass.setTexture("corrections", unitCorrections, corrections.texture());
+    pass.setTexture("targets", unitTargets, input.chunk.targets.texture());
+    pass.setInt("targetStride", static_cast<int>(input.set.constraints().size()));
+    pass.runInstanced(input.chunk.width, draw.count, solved.buffer(), 0);
+    ++pipeline._counters.feedbackDraws;
+    gl->glBindBuffer(GL_COPY_READ_BUFFER, solved.buffer());
+    gl->glBindBuffer(GL_COPY_WRITE_BUFFER, corrections.buffer());
+    copyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0,
+                      static_cast<GLintptr>(draw.firstCorrection * jointBytes), static_cast<GLsizeiptr>(bytes));
+    gl->glBindBuffer(GL_COPY_READ_BUFFER, 0);
+    gl->glBindBuffer(GL_COPY_WRITE_BUFFER, 0);
     return true;
 }
 
@@ -406,10 +494,14 @@ void PosePipeline::deleteAllGLObjects()
     for (Passes* passes : {&_parts->posePasses, &_parts->mixPasses})
         for (auto& [variant, pass] : *passes)
             pass->release();
+    for (auto& [shape, pass] : _parts->constraintPasses)
+        pass->release();
     for (FeedbackPass* pass : {_parts->localPass.get(), _parts->worldPass.get()})
         if (pass) pass->release();
     _parts->scratch.release();
     _parts->mixedTracks.release();
+    _parts->solved.release();
+    _parts->corrections.release();
     _parts->vertexArrays.release();
     discardAllGLObjects();
 }
@@ -419,10 +511,13 @@ void PosePipeline::discardAllGLObjects()
     _parts->sets.clear();
     _parts->posePasses.clear();
     _parts->mixPasses.clear();
+    _parts->constraintPasses.clear();
     _parts->localPass.reset();
     _parts->worldPass.reset();
     _parts->scratch.discard();
     _parts->mixedTracks.discard();
+    _parts->solved.discard();
+    _parts->corrections.discard();
     _parts->vertexArrays.discard();
 }
 

@@ -22,7 +22,8 @@ namespace osgGpuAnimation
 ///     PalettePlace place = pipeline->place(batch.set(), 0, instance);
 ///
 /// The fused form, the default, computes mix, local and world in one pass, with one draw per level of the hierarchy for
-/// all instances (see tests/benchmark/RESULTS.md). The separate form has one pass per stage.
+/// all instances (see tests/benchmark/RESULTS.md). The separate form has one pass per stage. A batch with targets of
+/// constraints takes the fused form, with at most one more draw per constraint.
 class PosePipeline : public osg::GraphicsObjectManager
 {
 public:

@@ -6,6 +6,7 @@
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/nodes/frame/CullScopes.h>
 #include <osgGpuAnimation/nodes/frame/PoseStage.h>
+#include <osgGpuAnimation/nodes/frame/WorldTargets.h>
 #include <osgGpuAnimation/nodes/lod/LodSelection.h>
 #include <osgGpuAnimation/nodes/mesh/MaterialVariants.h>
 #include <osgGpuAnimation/nodes/mesh/PaletteEntryBounds.h>
@@ -31,13 +32,95 @@ EntryBoxes entryBoxesOf(osg::Node& node, const AnimationSet& set)
     return bounds.boxes();
 }
 
+/// The constraints with an effect, bit c for constraint c.
+std::uint64_t constraintsOf(const AnimationController& controller)
+{
+    std::uint64_t constraints = 0;
+    const std::vector<ConstraintTarget>& targets = controller.instruction().targets;
+    for (std::size_t c = 0; c < targets.size(); ++c)
+        if (targets[c].weight > 0.0f) constraints |= std::uint64_t(1) << c;
+    return constraints;
+}
+
+Error noInstance()
+{
+    return Error{"the crowd has no such instance (any more)"};
+}
+
 } // namespace
+
+NodeConstraint::NodeConstraint(AnimationController* controller, const std::string& name,
+                               const osg::Matrixd& fileToSpace, const osg::Matrixd& spaceToWorld,
+                               WorldTargets& worldTargets, std::uint64_t instance)
+    : _controller(controller), _name(name), _fileToSpace(fileToSpace), _spaceToWorld(spaceToWorld),
+      _worldTargets(&worldTargets), _instance(instance)
+{
+}
+
+Result<bool> NodeConstraint::setTarget(const osg::Vec3d& position)
+{
+    if (!_controller) return noInstance();
+    Result<bool> taken =
+        _controller->constraint(_name).setTarget(toGlm(position * osg::Matrixd::inverse(_fileToSpace)));
+    if (taken) _worldTargets->remove(_instance, _name);
+    return taken;
+}
+
+Result<bool> NodeConstraint::setWorldTarget(const osg::Vec3d& position)
+{
+    Result<bool> taken = setTarget(position * osg::Matrixd::inverse(_spaceToWorld));
+    if (taken) _worldTargets->set(_instance, _name, {nullptr, false, position});
+    return taken;
+}
+
+Result<bool> NodeConstraint::follow(osg::Node* node, const osg::Vec3d& position)
+{
+    if (!node) return Error{"constraint \"" + _name + "\": there is no node to follow"};
+    Result<bool> taken = setTarget(position * toWorld(*node, true) * osg::Matrixd::inverse(_spaceToWorld));
+    if (taken) _worldTargets->set(_instance, _name, {node, true, position});
+    return taken;
+}
+
+Result<bool> NodeConstraint::setWeight(float weight)
+{
+    return _controller ? _controller->constraint(_name).setWeight(weight) : noInstance();
+}
+
+Result<bool> NodeConstraint::setPole(const osg::Vec3d& direction)
+{
+    if (!_controller) return noInstance();
+    const osg::Vec3d inFile = osg::Matrixd::transform3x3(direction, osg::Matrixd::inverse(_fileToSpace));
+    return _controller->constraint(_name).setPole(toGlm(inFile));
+}
+
+Result<bool> NodeConstraint::setTwist(double radians)
+{
+    return _controller ? _controller->constraint(_name).setTwist(static_cast<float>(radians)) : noInstance();
+}
+
+Result<bool> NodeConstraint::setRotation(const osg::Quat& rotation)
+{
+    if (!_controller) return noInstance();
+    osg::Vec3d translation, scale;
+    osg::Quat turn, scaleAxes;
+    _fileToSpace.decompose(translation, turn, scale, scaleAxes);
+    const osg::Quat inFile = rotation * turn.inverse();
+    return _controller->constraint(_name).setRotation(
+        glm::vec4(glm::dvec4(inFile.x(), inFile.y(), inFile.z(), inFile.w())));
+}
+
+Result<bool> NodeConstraint::clear()
+{
+    if (!_controller) return noInstance();
+    _worldTargets->remove(_instance, _name);
+    return _controller->constraint(_name).clear();
+}
 
 AnimatedCharacter::AnimatedCharacter() : AnimatedCharacter(nullptr) {}
 
 AnimatedCharacter::AnimatedCharacter(std::shared_ptr<const AnimationSet> set)
     : _controller(std::make_unique<AnimationController>(std::move(set))),
-      _variantMeshes(std::make_shared<VariantMeshes>())
+      _worldTargets(std::make_unique<WorldTargets>()), _variantMeshes(std::make_shared<VariantMeshes>())
 {
     static const std::shared_ptr<const Axes> identity = std::make_shared<const Axes>();
     _axes = identity;
@@ -50,8 +133,8 @@ AnimatedCharacter::AnimatedCharacter(std::shared_ptr<const AnimationSet> set)
 AnimatedCharacter::AnimatedCharacter(const AnimatedCharacter& other, const osg::CopyOp& copyop)
     : osg::MatrixTransform(other, copyop), _controller(std::make_unique<AnimationController>(*other._controller)),
       _axes(other._axes), _clipBounds(other._clipBounds), _mixBounds(other._mixBounds), _updateTime(other._updateTime),
-      _isDrawnTogether(other._isDrawnTogether), _pixelError(other._pixelError),
-      _materialVariant(other._materialVariant), _variantMeshes(other._variantMeshes)
+      _worldTargets(std::make_unique<WorldTargets>(*other._worldTargets)), _isDrawnTogether(other._isDrawnTogether),
+      _pixelError(other._pixelError), _materialVariant(other._materialVariant), _variantMeshes(other._variantMeshes)
 {
     // osg::Node copies its other callbacks, but not the event callbacks.
     setEventCallback(copyop(other.getEventCallback()));
@@ -72,6 +155,21 @@ Result<bool> AnimatedCharacter::setAnimationSet(std::shared_ptr<const AnimationS
     // The levels of detail depend on the poses of the clips.
     forEachMeshBelow(*this, [](SkinnedGeometry& mesh) { mesh.forgetLodLevels(); });
     return setPixelError(_pixelError);
+}
+
+NodeConstraint AnimatedCharacter::constraint(const std::string& name)
+{
+    return {_controller.get(), name, _axes->fileToNode, toWorld(*this, true), *_worldTargets, 0};
+}
+
+void AnimatedCharacter::takeWorldTargets()
+{
+    const osg::Matrixd worldToFile =
+        osg::Matrixd::inverse(toWorld(*this, true)) * osg::Matrixd::inverse(_axes->fileToNode);
+    _worldTargets->passOn(
+        [&](WorldTargets::Instance) -> WorldTargets::Owner {
+            return {_controller.get(), worldToFile};
+        });
 }
 
 Result<bool> AnimatedCharacter::setPixelError(float pixels)
@@ -131,6 +229,13 @@ void AnimatedCharacter::update(double simulationTime)
     if (_updateTime && simulationTime != *_updateTime) _controller->advance(simulationTime - *_updateTime, events);
     _updateTime = simulationTime;
     updateBounds();
+    if (!_worldTargets->isEmpty())
+        runAfterUpdate(*this,
+                       [character = osg::observer_ptr<AnimatedCharacter>(this)]
+                       {
+                           osg::ref_ptr<AnimatedCharacter> present;
+                           if (character.lock(present)) present->takeWorldTargets();
+                       });
     if (events.isEmpty()) return;
     runAfterUpdate(*this,
                    [events, character = osg::observer_ptr<AnimatedCharacter>(this)]
@@ -144,8 +249,10 @@ void AnimatedCharacter::update(double simulationTime)
 void AnimatedCharacter::updateBounds()
 {
     findPlayedClips(*_controller, _playedNow);
-    if (_playedNow == _played) return;
+    const std::uint64_t constraints = constraintsOf(*_controller);
+    if (_playedNow == _played && constraints == _constraints) return;
     std::swap(_played, _playedNow);
+    _constraints = constraints;
     dirtyBound();
     if (_mixBounds) growMeshes(boundsOf(_played));
 }
@@ -234,9 +341,10 @@ void AnimatedCharacter::traverse(osg::NodeVisitor& visitor)
 
 osg::BoundingBox AnimatedCharacter::boundsOf(const std::vector<PlayedClip>& played) const
 {
-    const bool isAlone = played.size() == 1 && played.front().part == PlayedClip::Part::Mixed;
+    const std::uint64_t constraints = constraintsOf(*_controller);
+    const bool isAlone = played.size() == 1 && played.front().part == PlayedClip::Part::Mixed && constraints == 0;
     if (isAlone || !_mixBounds) return getClipBounds(isAlone ? played.front().clip : _controller->clip());
-    return transformed(toOsg(_mixBounds->box(played)), _axes->fileToNode);
+    return transformed(toOsg(_mixBounds->box(played, constraints)), _axes->fileToNode);
 }
 
 osg::BoundingBox AnimatedCharacter::getCurrentBounds() const

@@ -9,6 +9,7 @@
 #include <osg/MatrixTransform>
 #include <osg/PrimitiveSet>
 
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -21,7 +22,52 @@ namespace osgGpuAnimation
 class MixBounds;
 class PosedMeshes;
 class VariantMeshes;
+class WorldTargets;
 struct PlayedClip;
+
+/// A constraint of an AnimatedCharacter or of an instance of an AnimatedCrowd, in OSG's types. A handle is used at once
+/// and not kept:
+///
+///     fox->constraint("look").setTarget(osg::Vec3d(0, -3, 1));
+///     fox->constraint("look").follow(bird);
+///
+/// Positions, directions and rotations are in the character's own space, of an instance in the space of its placement
+/// (OSG: +Z up), unless the function says otherwise. All functions return an error, without a change, if there is no
+/// such constraint or instance, or a number is not finite. See ConstraintHandle for the limits.
+class NodeConstraint
+{
+public:
+    /// Gives the constraint a target that moves with the character (of an instance: not with its placement).
+    Result<bool> setTarget(const osg::Vec3d& position);
+    /// Gives it a target in world space. Its place relative to the character is computed at the end of every update
+    /// traversal; without a viewer by AnimatedCharacter::update().
+    Result<bool> setWorldTarget(const osg::Vec3d& position);
+    /// Gives it a node as target, or a position in the node's space. The node is held weakly: after its end the last
+    /// target remains. The target is the node's place at the end of the update traversal, so a node that an update
+    /// callback moves is followed in the same frame; what moves later (a camera by its manipulator) is followed one
+    /// frame later. Of several places of a node the first counts. Error: node is null.
+    Result<bool> follow(osg::Node* node, const osg::Vec3d& position = osg::Vec3d());
+    Result<bool> setWeight(float weight); ///< See ConstraintHandle::setWeight().
+    /// See ConstraintHandle::setPole().
+    Result<bool> setPole(const osg::Vec3d& direction);
+    Result<bool> setTwist(double radians); ///< See ConstraintHandle::setTwist().
+    /// Sets the rotation of the limb's end joint; see ConstraintHandle::setRotation().
+    Result<bool> setRotation(const osg::Quat& rotation);
+    Result<bool> clear(); ///< See ConstraintHandle::clear(). Ends setWorldTarget() and follow().
+
+private:
+    friend class AnimatedCharacter;
+    friend class AnimatedCrowd;
+    NodeConstraint(AnimationController* controller, const std::string& name, const osg::Matrixd& fileToSpace,
+                   const osg::Matrixd& spaceToWorld, WorldTargets& worldTargets, std::uint64_t instance);
+
+    AnimationController* _controller; ///< null: there is no such instance
+    std::string _name;
+    osg::Matrixd _fileToSpace;
+    osg::Matrixd _spaceToWorld;
+    WorldTargets* _worldTargets;
+    std::uint64_t _instance;
+};
 
 /// One animated character: owns a controller, shares an AnimationSet, and has its SkinnedGeometry drawables as
 /// children. Its matrix places the character in its parent, like any MatrixTransform's.
@@ -56,6 +102,9 @@ public:
     /// The controller of this character alone.
     AnimationController& getController() { return *_controller; }
     const AnimationController& getController() const { return *_controller; } ///< the same, read only
+
+    /// The constraint of that name, see AnimationSet::withConstraints().
+    NodeConstraint constraint(const std::string& name);
 
     /// Replaces the set, for example by one with markers or root motion (AnimationSet::withClips, withRootMotion). The
     /// controller continues with the clips of the same indices (see AnimationController), and the bounds are computed
@@ -152,6 +201,7 @@ private:
     osg::BoundingBox clipBoundsInFile(int clip) const;
     void setMeshBounds();
     void updateBounds();
+    void takeWorldTargets();
     osg::BoundingBox boundsOf(const std::vector<PlayedClip>& played) const;
     void growMeshes(const osg::BoundingBox& box);
 
@@ -161,7 +211,9 @@ private:
     std::shared_ptr<const std::vector<osg::BoundingBox>> _clipBounds;
     std::shared_ptr<const MixBounds> _mixBounds;       ///< null if _clipBounds is null
     std::optional<double> _updateTime;                 ///< seconds of simulation time
+    std::unique_ptr<WorldTargets> _worldTargets;       ///< never null
     std::vector<PlayedClip> _played;                   ///< the clips at the last dirtyBound()
+    std::uint64_t _constraints = 0;                    ///< with an effect at the last dirtyBound(), bit by bit
     std::vector<PlayedClip> _playedNow;                ///< kept for its memory
     mutable std::unique_ptr<PosedMeshes> _posedMeshes; ///< created on demand; copies do not share it
     mutable std::once_flag _posedMeshesMade;

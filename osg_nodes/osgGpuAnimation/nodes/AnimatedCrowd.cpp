@@ -9,11 +9,13 @@
 #include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/nodes/frame/CullScopes.h>
 #include <osgGpuAnimation/nodes/frame/PoseStage.h>
+#include <osgGpuAnimation/nodes/frame/WorldTargets.h>
 #include <osgGpuAnimation/nodes/lod/LodSelection.h>
 #include <osgGpuAnimation/nodes/mesh/MeshVisits.h>
 #include <osgGpuAnimation/nodes/mesh/PaletteEntryBounds.h>
 #include <osgGpuAnimation/nodes/OsgMatrix.h>
 
+#include <osg/observer_ptr>
 #include <osgUtil/CullVisitor>
 #include <osgUtil/IntersectionVisitor>
 #include <osgUtil/Statistics>
@@ -155,7 +157,8 @@ AnimatedCrowd::AnimatedCrowd() : AnimatedCrowd(nullptr, {}) {}
 
 AnimatedCrowd::AnimatedCrowd(std::shared_ptr<const AnimationSet> set,
                              const std::vector<osg::ref_ptr<SkinnedGeometry>>& meshes)
-    : _instances(std::make_unique<CrowdInstances>(std::move(set))), _posed(std::make_unique<PosedInstances>())
+    : _instances(std::make_unique<CrowdInstances>(std::move(set))), _posed(std::make_unique<PosedInstances>()),
+      _worldTargets(std::make_unique<WorldTargets>())
 {
     // Not STATIC: the Optimizer must not flatten the transforms above into the bind pose.
     setDataVariance(osg::Object::DYNAMIC);
@@ -187,7 +190,8 @@ AnimatedCrowd::AnimatedCrowd(const AnimatedCharacter& character)
 AnimatedCrowd::AnimatedCrowd(const AnimatedCrowd& other, const osg::CopyOp& copyop)
     : osg::Transform(other, copyop), _instances(std::make_unique<CrowdInstances>(*other._instances)),
       _posed(std::make_unique<PosedInstances>()), _fileToNode(other._fileToNode), _origin(other._origin),
-      _hasOrigin(other._hasOrigin), _updateTime(other._updateTime), _pixelError(other._pixelError)
+      _hasOrigin(other._hasOrigin), _updateTime(other._updateTime),
+      _worldTargets(std::make_unique<WorldTargets>(*other._worldTargets)), _pixelError(other._pixelError)
 {
     // The update traversal must reach this node without a callback.
     setNumChildrenRequiringUpdateTraversal(getNumChildrenRequiringUpdateTraversal() + 1);
@@ -334,13 +338,37 @@ AnimationController* AnimatedCrowd::getController(Instance instance)
     return &_instances->controller(index);
 }
 
+osg::Matrixd AnimatedCrowd::fileToSpace(std::size_t index) const
+{
+    osg::Matrixd root = toOsg(_instances->rootMatrix(index));
+    root.setTrans(_instances->position(index));
+    return root;
+}
+
+NodeConstraint AnimatedCrowd::constraint(Instance instance, const std::string& name)
+{
+    const std::size_t index = _instances->indexOf(instance);
+    const osg::Matrixd fromFile = index == CrowdInstances::none ? osg::Matrixd() : fileToSpace(index);
+    return {getController(instance), name, fromFile, toWorld(*this, false), *_worldTargets, instance};
+}
+
+void AnimatedCrowd::takeWorldTargets()
+{
+    const osg::Matrixd worldToSpace = osg::Matrixd::inverse(toWorld(*this, false));
+    _worldTargets->passOn(
+        [&](Instance instance) -> WorldTargets::Owner
+        {
+            const std::size_t index = _instances->indexOf(instance);
+            if (index == CrowdInstances::none) return {};
+            return {&_instances->controller(index), worldToSpace * osg::Matrixd::inverse(fileToSpace(index))};
+        });
+}
+
 osg::Matrixd AnimatedCrowd::getPlacement(Instance instance) const
 {
     const std::size_t index = _instances->indexOf(instance);
     if (index == CrowdInstances::none) return osg::Matrixd();
-    osg::Matrixd root = toOsg(_instances->rootMatrix(index));
-    root.setTrans(_instances->position(index));
-    return osg::Matrixd::inverse(_fileToNode) * root;
+    return osg::Matrixd::inverse(_fileToNode) * fileToSpace(index);
 }
 
 osg::Matrixd AnimatedCrowd::takeRootMotion(Instance instance)
@@ -375,6 +403,13 @@ void AnimatedCrowd::update(double simulationTime)
     _updateTime = simulationTime;
     PendingEvents events;
     if (_instances->advance(step, events)) dirtyBound();
+    if (!_worldTargets->isEmpty())
+        runAfterUpdate(*this,
+                       [crowd = osg::observer_ptr<AnimatedCrowd>(this)]
+                       {
+                           osg::ref_ptr<AnimatedCrowd> present;
+                           if (crowd.lock(present)) present->takeWorldTargets();
+                       });
     if (!events.isEmpty()) runAfterUpdate(*this, [events] { events.deliver(); });
 }
 

@@ -8,7 +8,9 @@
 #include <osg/Transform>
 #include <osgUtil/CullVisitor>
 
+#include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -17,9 +19,11 @@ namespace osgGpuAnimation
 
 class AnimatedCharacter;
 class CrowdInstances;
+class NodeConstraint;
 class PosedInstances;
 class StateGraph;
 class StateMachine;
+class WorldTargets;
 
 /// Thousands of instances of one character in one node, each with its own placement, controller and tint. One instanced
 /// draw per mesh primitive shows them all.
@@ -91,6 +95,8 @@ public:
 
     /// The controller of an instance, for crossfades and layers; valid until the next update(). Null: no such instance.
     AnimationController* getController(Instance instance);
+    /// The constraint of that name of an instance, in the space that placements lead to. Include AnimatedCharacter.h.
+    NodeConstraint constraint(Instance instance, const std::string& name);
     /// The placement of an instance; the identity if no such instance exists (see contains()).
     osg::Matrixd getPlacement(Instance instance) const;
     /// The root motion of an instance since the last call, in the space that placements start from: the new placement
@@ -164,6 +170,8 @@ private:
     static std::optional<Instance> instanceOfMatrix(const osg::RefMatrix* matrix);
     osg::ref_ptr<osg::Geometry> getPosedMesh(const SkinnedGeometry& mesh, bool withNormals) const override;
     osg::ref_ptr<osg::Geometry> posedMesh(std::size_t index, const SkinnedGeometry& mesh, bool withNormals) const;
+    void takeWorldTargets();
+    osg::Matrixd fileToSpace(std::size_t index) const;
     void cull(osgUtil::CullVisitor& visitor);
     void visitInstances(osg::NodeVisitor& visitor);
     void count(osg::NodeVisitor& visitor);
@@ -173,8 +181,9 @@ private:
     osg::Matrixd _fileToNode;
     osg::Vec3d _origin;
     bool _hasOrigin = false;
-    std::optional<double> _updateTime; ///< seconds of simulation time
-    float _pixelError = 0.0f;          ///< pixels
+    std::optional<double> _updateTime;           ///< seconds of simulation time
+    std::unique_ptr<WorldTargets> _worldTargets; ///< never null
+    float _pixelError = 0.0f;                    ///< pixels
 };
 
 } // namespace osgGpuAnimation

@@ -2,6 +2,7 @@
 #include <osgGpuAnimation/animation/bounds/MixBounds.h>
 
 #include <osgGpuAnimation/animation/bounds/JointRange.h>
+#include <osgGpuAnimation/animation/constraints/ConstraintChain.h>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -160,9 +161,13 @@ Box MixBounds::entryBox(const std::vector<PlayedClip>& played, std::size_t entry
     return box;
 }
 
-Box MixBounds::box(const std::vector<PlayedClip>& played) const
+Box MixBounds::box(const std::vector<PlayedClip>& played, std::uint64_t constraints) const
 {
-    const Ranges ranges = rangesOf(played);
+    Ranges ranges = rangesOf(played);
+    for (std::size_t c = 0; c < _set.constraintChains().size(); ++c)
+        if (constraints >> c & 1)
+            for (const int joint : _set.constraintChains()[c].joints)
+                ranges[static_cast<std::size_t>(joint)].turn = JointRange::anyTurn;
     std::vector<JointToModelBound> bounds;
     for (std::size_t joint = 0; joint < ranges.size(); ++joint)
     {

@@ -5,6 +5,7 @@
 #include <osgGpuAnimation/animation/ClipMixer.h>
 #include <osgGpuAnimation/animation/math/Box.h>
 
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -44,8 +45,9 @@ public:
     MixBounds(const AnimationSet& set, const EntryBoxes& entryBoxes);
     ~MixBounds();
 
-    /// The box in model space. Unknown clips count as the rest pose.
-    Box box(const std::vector<PlayedClip>& played) const;
+    /// The box in model space. Unknown clips count as the rest pose. constraints: those of the set with an effect, bit
+    /// c for constraint c; they may turn the joints of their chains in any way.
+    Box box(const std::vector<PlayedClip>& played, std::uint64_t constraints = 0) const;
 
 private:
     using Ranges = std::vector<JointRange>;

@@ -32,6 +32,17 @@ PackedEntry packed(const PaletteEntry& entry, const std::vector<JointTransform>&
     return out;
 }
 
+std::vector<glm::vec4> packedEntries(const AnimationSet& set)
+{
+    std::vector<glm::vec4> texels;
+    for (const PaletteEntry& entry : set.palette())
+    {
+        const PackedEntry one = packed(entry, set.restPose());
+        texels.insert(texels.end(), one.begin(), one.end());
+    }
+    return texels;
+}
+
 void widen(PackedKeyframes::Track& all, const PackedKeyframes::Track& one)
 {
     all.translation = std::max(all.translation, one.translation);
@@ -43,7 +54,7 @@ void widen(PackedKeyframes::Track& all, const PackedKeyframes::Track& one)
 } // namespace
 
 AnimationBuffers::AnimationBuffers(osg::GLExtensions& gl, const AnimationSet& set, const PackedKeyframes& keyframes)
-    : _restTexel(keyframes.restTexel()), _levels(set.levelCount()), _keyframes(gl, GL_RGBA32UI_EXT),
+    : _gl(&gl), _restTexel(keyframes.restTexel()), _levels(set.levelCount()), _keyframes(gl, GL_RGBA32UI_EXT),
       _entries(gl, GL_RGBA32F_ARB), _masks(gl, GL_RGBA32F_ARB)
 {
     _keyframes.upload(keyframes.texels().data(), keyframes.byteSize());
@@ -56,11 +67,22 @@ AnimationBuffers::AnimationBuffers(osg::GLExtensions& gl, const AnimationSet& se
     for (std::size_t level = 2; level < _levels.size(); ++level)
         _levels[level] = _levels[1];
 
-    std::vector<PackedEntry> entries;
-    entries.reserve(set.paletteSize());
-    for (const PaletteEntry& entry : set.palette())
-        entries.push_back(packed(entry, set.restPose()));
-    _entries.upload(entries.data(), entries.size() * sizeof(PackedEntry));
+    const std::vector<glm::vec4> entries = packedEntries(set);
+    _entries.upload(entries.data(), entries.size() * sizeof(glm::vec4));
+}
+
+const ConstraintBuffers& AnimationBuffers::constraints(const AnimationSet& set, std::uint64_t active)
+{
+    constexpr std::size_t most = 64; // applications switch constraints on and off in any combination
+    if (_constraints.size() >= most && _constraints.count(active) == 0)
+    {
+        for (auto& [of, buffers] : _constraints)
+            buffers->release();
+        _constraints.clear();
+    }
+    std::unique_ptr<ConstraintBuffers>& known = _constraints[active];
+    if (!known) known = std::make_unique<ConstraintBuffers>(*_gl, set, active, packedEntries(set));
+    return *known;
 }
 
 std::size_t AnimationBuffers::texelsPerMask(const AnimationSet& set)
@@ -95,6 +117,8 @@ void AnimationBuffers::release()
     _keyframes.release();
     _entries.release();
     _masks.release();
+    for (auto& [active, buffers] : _constraints)
+        buffers->release();
 }
 
 } // namespace osgGpuAnimation

@@ -3,6 +3,11 @@
 
 #include <osgGpuAnimation/animation/keyframes/PackedKeyframes.h>
 #include <osgGpuAnimation/gpu/buffers/BufferTexture.h>
+#include <osgGpuAnimation/gpu/buffers/ConstraintBuffers.h>
+
+#include <map>
+#include <memory>
+#include <vector>
 
 namespace osgGpuAnimation
 {
@@ -29,20 +34,26 @@ public:
     /// Uploads the masks if one of them is new. masks: by number, see PoseBatch::masks().
     void updateMasks(const AnimationSet& set, const std::vector<std::shared_ptr<const SetMask>>& masks);
 
-    /// Bytes of the buffers without masks.
+    /// The data for these constraints of the set, made at the first call. active: bit c for constraint c, not 0.
+    /// Valid until the next call.
+    const ConstraintBuffers& constraints(const AnimationSet& set, std::uint64_t active);
+
+    /// Bytes of the buffers without masks and constraints.
     static std::size_t byteSize(const AnimationSet& set, const PackedKeyframes& keyframes);
 
     void release();
 
 private:
+    osg::GLExtensions* _gl;
     std::size_t _restTexel;
     std::vector<PackedKeyframes::Track> _levels;
     PackedKeyframes::Track _anyTrack;
     BufferTexture _keyframes;
     BufferTexture _entries;
     BufferTexture _masks;
-    std::vector<float> _maskWeights;                          ///< content of _masks
-    std::vector<std::weak_ptr<const SetMask>> _uploadedMasks; ///< by number
+    std::vector<float> _maskWeights;                                          ///< content of _masks
+    std::vector<std::weak_ptr<const SetMask>> _uploadedMasks;                 ///< by number
+    std::map<std::uint64_t, std::unique_ptr<ConstraintBuffers>> _constraints; ///< by active
 };
 
 } // namespace osgGpuAnimation

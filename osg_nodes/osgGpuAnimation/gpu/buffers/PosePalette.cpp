@@ -59,7 +59,7 @@ std::size_t PosePalette::widthOf(std::size_t size)
 
 PosePalette::Chunk::Chunk(osg::GLExtensions& gl)
     : samples(gl, GL_RGBA32UI_EXT), roots(gl, GL_RGBA32F_ARB), tints(gl, GL_RGBA8), posed(gl, GL_RGBA32UI_EXT),
-      palette(gl, GL_RGBA32F_ARB)
+      targets(gl, GL_RGBA32F_ARB), palette(gl, GL_RGBA32F_ARB)
 {
 }
 
@@ -151,6 +151,7 @@ std::vector<PosePalette::Chunk*> PosePalette::upload(const PoseBatch& batch, std
     const std::vector<AffineMatrix>& roots = batch.rootMatrices();
     const bool hasOwnRoots = roots.size() > 1;
     const bool hasTints = !batch.tints().empty();
+    const std::size_t targetStride = batch.targets().empty() ? 0 : batch.targets().size() / batch.size();
     std::size_t index = 0;
     for (std::size_t first = 0; first < batch.size(); first += chunkCapacity, ++index)
     {
@@ -167,6 +168,8 @@ std::vector<PosePalette::Chunk*> PosePalette::upload(const PoseBatch& batch, std
                                    hasOwnRoots ? chunk.width : roots.size(), chunk.uploadedRootMatrices, chunk.roots,
                                    bytesUploaded);
         isChanged |= uploadPosed(batch, first, chunk, bytesUploaded);
+        isChanged |= uploadChanged(batch.targets(), first * targetStride, size * targetStride,
+                                   chunk.width * targetStride, chunk.uploadedTargets, chunk.targets, bytesUploaded);
         // Only the draw reads tints: the palette does not change.
         uploadChanged(batch.tints(), hasTints ? first : 0, hasTints ? size : 0, hasTints ? size : 0,
                       chunk.uploadedTints, chunk.tints, bytesUploaded);
@@ -201,7 +204,8 @@ void PosePalette::invalidate()
 void PosePalette::release()
 {
     for (const std::unique_ptr<Chunk>& chunk : _chunks)
-        for (BufferTexture* buffer : {&chunk->samples, &chunk->roots, &chunk->tints, &chunk->posed, &chunk->palette})
+        for (BufferTexture* buffer :
+             {&chunk->samples, &chunk->roots, &chunk->tints, &chunk->posed, &chunk->targets, &chunk->palette})
             buffer->release();
     _chunks.clear();
 }

@@ -33,10 +33,12 @@ public:
         std::vector<std::uint32_t> uploadedTints;       ///< content of `tints`
         std::vector<std::uint64_t> uploadedPosed;       ///< the serials of the content of `posed`
         std::size_t firstPosed = 0;                     ///< the keyframe of the batch that is the first of `posed`
+        std::vector<ConstraintTarget> uploadedTargets;  ///< content of `targets`
         BufferTexture samples;
         BufferTexture roots;
         BufferTexture tints;
-        BufferTexture posed;      ///< RGBA32UI: the posed keyframes of the chunk's instances
+        BufferTexture posed; ///< RGBA32UI: the posed keyframes of the chunk's instances
+        BufferTexture targets;
         bool isEvaluated = false; ///< true if `palette` belongs to the inputs
         BufferTexture palette;    ///< RGBA32F: paletteSize * width matrices, entry-major
     };

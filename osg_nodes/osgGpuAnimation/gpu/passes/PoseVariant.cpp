@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/gpu/passes/PoseVariant.h>
 
+#include <osgGpuAnimation/animation/constraints/ConstraintPlan.h>
 #include <osgGpuAnimation/gpu/PoseBatch.h>
 
 #include <layout.glsl>
@@ -11,6 +12,27 @@
 
 namespace osgGpuAnimation
 {
+
+namespace
+{
+
+std::string declaration(const char* name, bool value)
+{
+    return std::string("const bool ") + name + (value ? " = true;\n" : " = false;\n");
+}
+
+std::string declaration(const char* name, int value)
+{
+    return std::string("const int ") + name + " = " + std::to_string(value) + ";\n";
+}
+
+} // namespace
+
+ConstraintShape::ConstraintShape(const ConstraintStep& step, const ConstraintChain& chain)
+    : isLookAt(chain.isLookAt), chainLength(static_cast<int>(chain.joints.size())),
+      midPlace(static_cast<int>(chain.mid)), aboveLength(static_cast<int>(step.chainBegin))
+{
+}
 
 PoseVariant PoseVariant::of(const PoseBatch& batch)
 {
@@ -43,6 +65,23 @@ std::unique_ptr<FeedbackPass> PoseVariant::makePosePass(osg::GLExtensions& gl) c
         gl, "pose", {constants.c_str(), mix_glsl, local_glsl, world_glsl, pose_vert}, {"row0", "row1", "row2"}));
 }
 
+std::unique_ptr<FeedbackPass> PoseVariant::makeConstraintPass(osg::GLExtensions& gl, const ConstraintShape& shape) const
+{
+    using namespace shaders;
+    const std::string constants =
+        this->constants() + declaration("isLookAt", shape.isLookAt) + declaration("chainLength", shape.chainLength) +
+        declaration("midPlace", shape.midPlace) + declaration("aboveLength", shape.aboveLength);
+    std::vector<std::string> names;
+    for (int joint = 0; joint < shape.chainLength; ++joint)
+        names.push_back("rotations[" + std::to_string(joint) + "]");
+    std::vector<const char*> outputs;
+    for (const std::string& name : names)
+        outputs.push_back(name.c_str());
+    return std::unique_ptr<FeedbackPass>(new FeedbackPass(
+        gl, "constrain", {constants.c_str(), mix_glsl, local_glsl, world_glsl, constrain_glsl, constrain_vert},
+        outputs));
+}
+
 std::unique_ptr<FeedbackPass> PoseVariant::makeMixPass(osg::GLExtensions& gl) const
 {
     using namespace shaders;
@@ -53,23 +92,21 @@ std::unique_ptr<FeedbackPass> PoseVariant::makeMixPass(osg::GLExtensions& gl) co
 
 std::string PoseVariant::constants() const
 {
-    const auto line = [](const char* name, bool value)
-    { return std::string("const bool ") + name + (value ? " = true;\n" : " = false;\n"); };
-    const auto number = [](const char* name, int value)
-    { return std::string("const int ") + name + " = " + std::to_string(value) + ";\n"; };
-    return line("hasSplines", hasSplines) + line("hasSeveralSamples", hasSeveralSamples) +
-           line("hasWeights", hasWeights) + line("isRootLevel", isRootLevel) + line("hasRoots", hasRoots) +
-           line("hasLayers", hasLayers) + line("hasMasks", hasMasks) + line("hasAdditive", hasAdditive) +
-           line("hasPosed", hasPosed) + line("hasExactKeys", hasExactKeys) + line("hasCompactKeys", hasCompactKeys) +
-           number("sampleCount", sampleCount) + number("translationMotion", static_cast<int>(translationMotion)) +
-           number("scaleMotion", static_cast<int>(scaleMotion));
+    return declaration("hasSplines", hasSplines) + declaration("hasSeveralSamples", hasSeveralSamples) +
+           declaration("hasWeights", hasWeights) + declaration("isRootLevel", isRootLevel) +
+           declaration("hasRoots", hasRoots) + declaration("hasLayers", hasLayers) + declaration("hasMasks", hasMasks) +
+           declaration("hasAdditive", hasAdditive) + declaration("hasPosed", hasPosed) +
+           declaration("hasExactKeys", hasExactKeys) + declaration("hasCompactKeys", hasCompactKeys) +
+           declaration("hasConstraints", hasConstraints) + declaration("sampleCount", sampleCount) +
+           declaration("translationMotion", static_cast<int>(translationMotion)) +
+           declaration("scaleMotion", static_cast<int>(scaleMotion));
 }
 
 unsigned int PoseVariant::key() const
 {
     unsigned int key = 0;
     for (const bool has : {hasSplines, hasSeveralSamples, hasWeights, isRootLevel, hasRoots, hasLayers, hasMasks,
-                           hasAdditive, hasPosed, hasExactKeys, hasCompactKeys})
+                           hasAdditive, hasPosed, hasExactKeys, hasCompactKeys, hasConstraints})
         key = 2 * key + (has ? 1 : 0);
     key = key * (POSE_SAMPLES_AS_ATTRIBUTES + 1) + static_cast<unsigned int>(sampleCount);
     return (4 * key + static_cast<unsigned int>(translationMotion)) * 4 + static_cast<unsigned int>(scaleMotion);

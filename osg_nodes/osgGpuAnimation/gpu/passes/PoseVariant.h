@@ -6,11 +6,31 @@
 
 #include <memory>
 #include <string>
+#include <tuple>
 
 namespace osgGpuAnimation
 {
 
 class PoseBatch;
+struct ConstraintChain;
+struct ConstraintStep;
+
+/// The kind of a constraint and the lengths of its path, which are constants of its program.
+struct ConstraintShape
+{
+    ConstraintShape(const ConstraintStep& step, const ConstraintChain& chain);
+
+    bool isLookAt;
+    int chainLength;
+    int midPlace;
+    int aboveLength; ///< joints of the path above the chain
+
+    bool operator<(const ConstraintShape& other) const
+    {
+        return std::tie(isLookAt, chainLength, midPlace, aboveLength) <
+               std::tie(other.isLookAt, other.chainLength, other.midPlace, other.aboveLength);
+    }
+};
 
 /// A permutation of the mix stage's programs. It omits the features that its batch does not need, since some drivers
 /// (llvmpipe) execute both sides of every branch.
@@ -27,6 +47,7 @@ struct PoseVariant
     bool hasPosed = false;          ///< some sample shows a posed keyframe
     bool hasExactKeys = false;      ///< some exact clip moves some of the tracks
     bool hasCompactKeys = false;    ///< some compact clip moves some of the tracks
+    bool hasConstraints = false;    ///< constraints correct the rotations of some entries
     int sampleCount = 0; ///< blend samples of an instance, if they are attributes; 0: the shader fetches them
     PartMotion translationMotion = PartMotion::Constant; ///< the largest of any track in any clip
     PartMotion scaleMotion = PartMotion::Constant;
@@ -40,6 +61,8 @@ struct PoseVariant
 
     /// The pass of the fused form.
     std::unique_ptr<FeedbackPass> makePosePass(osg::GLExtensions& gl) const;
+    /// The pass of one constraint in the fused form.
+    std::unique_ptr<FeedbackPass> makeConstraintPass(osg::GLExtensions& gl, const ConstraintShape& shape) const;
     /// The first pass of the separate form.
     std::unique_ptr<FeedbackPass> makeMixPass(osg::GLExtensions& gl) const;
 

@@ -23,16 +23,14 @@ osg::BoundingBox boxAround(const glm::vec4& sphere)
 
 using Indices = std::vector<std::uint32_t>;
 
-/// Sorts the instances by blend cost; groups too small for a batch join the next higher cost.
-void sortByBlendCost(const CrowdInstances& instances, const Indices& seen,
-                     std::array<Indices, PoseBatch::blendCostCount>& indicesByCost)
+/// Instances by blend cost, first those without constraints, then those with.
+using IndicesByCost = std::array<Indices, 2 * PoseBatch::blendCostCount>;
+
+/// Groups too small for a batch join the next higher cost. first: the lowest cost.
+void joinSmallGroups(IndicesByCost& indicesByCost, std::size_t first)
 {
-    for (Indices& indices : indicesByCost)
-        indices.clear();
-    for (const std::uint32_t index : seen)
-        indicesByCost[static_cast<std::size_t>(instances.blendCost(index))].push_back(index);
-    std::size_t higherCost = indicesByCost.size() - 1;
-    for (std::size_t cost = higherCost; cost-- > 0;)
+    std::size_t higherCost = first + PoseBatch::blendCostCount - 1;
+    for (std::size_t cost = higherCost; cost-- > first;)
         if (!indicesByCost[cost].empty() && indicesByCost[cost].size() < PoseBatch::minBatchSize &&
             !indicesByCost[higherCost].empty())
         {
@@ -42,6 +40,19 @@ void sortByBlendCost(const CrowdInstances& instances, const Indices& seen,
         }
         else if (!indicesByCost[cost].empty())
             higherCost = cost;
+}
+
+void sortByBlendCost(const CrowdInstances& instances, const Indices& seen, IndicesByCost& indicesByCost)
+{
+    for (Indices& indices : indicesByCost)
+        indices.clear();
+    for (const std::uint32_t index : seen)
+    {
+        const std::size_t first = instances.isConstrained(index) ? PoseBatch::blendCostCount : 0;
+        indicesByCost[first + static_cast<std::size_t>(instances.blendCost(index))].push_back(index);
+    }
+    joinSmallGroups(indicesByCost, 0);
+    joinSmallGroups(indicesByCost, PoseBatch::blendCostCount);
 }
 
 } // namespace
@@ -143,7 +154,7 @@ void CrowdLod::sort(std::vector<std::uint32_t>& indices, std::vector<Run>& outRu
 std::vector<DrawState> submitSeen(PoseFrame& frame, const CrowdInstances& instances, const CrowdLod& lod,
                                   const std::vector<std::uint32_t>& seen)
 {
-    static thread_local std::array<Indices, PoseBatch::blendCostCount> indicesByCost;
+    static thread_local IndicesByCost indicesByCost;
     sortByBlendCost(instances, seen, indicesByCost);
     std::vector<DrawState> draws;
     std::vector<CrowdLod::Run> runs;

@@ -79,8 +79,8 @@ private:
 
 /// Submits the visible instances of a crowd to the frame and returns one state per draw of the crowd's meshes.
 /// Instances with one clip form one batch, and instances that mix clips form others if there are enough
-/// (PoseBatch::BlendCost). Each level of detail in use has its own draw. seen: indices of the visible instances.
-/// Cameras may cull concurrently.
+/// (PoseBatch::BlendCost); instances with and without constraints never share one. Each level of detail in use has its
+/// own draw. seen: indices of the visible instances. Cameras may cull concurrently.
 std::vector<DrawState> submitSeen(PoseFrame& frame, const CrowdInstances& instances, const CrowdLod& lod,
                                   const std::vector<std::uint32_t>& seen);
 

@@ -55,6 +55,12 @@ glm::vec4 sphereAround(const Box& box, const AffineMatrix& matrix)
     return glm::vec4(matrix.transformPoint((box.min + box.max) * 0.5f), radius);
 }
 
+/// All constraints of the set, as bits: any of them may have targets.
+std::uint64_t anyConstraints(const AnimationSet& set)
+{
+    return set.constraints().empty() ? 0 : ~std::uint64_t(0);
+}
+
 /// Removes an element by moving the last one to its place.
 template <typename Element>
 void takeOut(std::vector<Element>& elements, std::size_t index)
@@ -109,6 +115,14 @@ void CrowdInstances::setClipBounds(const std::vector<Box>& clipBounds, std::shar
     _allBounds = Box();
     for (const Box& box : clipBounds)
         _allBounds.add(box);
+    if (_mixBounds && !_set->constraints().empty())
+    {
+        std::vector<PlayedClip> all;
+        for (int clip = -1; clip < static_cast<int>(_set->clips().size()); ++clip)
+            all.push_back({clip, PlayedClip::Part::Mixed});
+        if (const Box constrained = _mixBounds->box(all, anyConstraints(*_set)); !constrained.empty())
+            _allBounds.add(constrained);
+    }
     for (std::size_t index = 0; index < size(); ++index)
     {
         _posedBoxes[index].reset();
@@ -145,7 +159,7 @@ bool CrowdInstances::updatePosedBox(std::size_t index)
     thread_local std::vector<PlayedClip> played;
     findPlayedClips(*_controllers[index], played);
     if (posed && posed->played == played) return false;
-    posed = std::make_unique<PosedBox>(PosedBox{played, _mixBounds->box(played)});
+    posed = std::make_unique<PosedBox>(PosedBox{played, _mixBounds->box(played, anyConstraints(*_set))});
     return true;
 }
 
@@ -160,7 +174,7 @@ Box CrowdInstances::bounds() const
         if (_controllers[index])
         {
             findPlayedClips(*_controllers[index], played);
-            isAlone = played.size() == 1 && played.front().part == PlayedClip::Part::Mixed;
+            isAlone = played.size() == 1 && played.front().part == PlayedClip::Part::Mixed && !isConstrained(index);
             if (isAlone) clip = played.front().clip;
         }
         const auto place = static_cast<std::size_t>(clip + 1);

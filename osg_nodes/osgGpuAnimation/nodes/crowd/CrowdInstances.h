@@ -64,7 +64,7 @@ public:
     Handle handleOf(std::size_t index) const { return _handles[index]; }
 
     /// clipBounds: the box of an instance in the rest pose, then one per clip, in the character's space. mixBounds: for
-    /// instances with poses of the application; null: none.
+    /// instances with poses of the application or constraints; null: none.
     void setClipBounds(const std::vector<Box>& clipBounds, std::shared_ptr<const MixBounds> mixBounds = nullptr);
 
     /// rootMatrix: relative to the crowd's origin. position: the exact translation, in the crowd's space.
@@ -83,6 +83,8 @@ public:
     std::uint32_t tint(std::size_t index) const { return _tints[index]; }
     PoseInstruction instruction(std::size_t index) const;
     PoseBatch::BlendCost blendCost(std::size_t index) const; ///< of its instruction
+    /// True if a constraint has an effect on it.
+    bool isConstrained(std::size_t index) const { return _controllers[index] && _controllers[index]->isConstrained(); }
     /// Valid until the next advance(), which may replace it by a CrowdPlayback.
     AnimationController& controller(std::size_t index);
     AnimationController controllerCopy(std::size_t index) const;
@@ -131,7 +133,7 @@ private:
     std::shared_ptr<const AnimationSet> _set;
     double _clock = 0.0; ///< seconds
     std::vector<Box> _clipBounds;
-    Box _allBounds;
+    Box _allBounds; ///< of instances with a controller
     std::shared_ptr<const MixBounds> _mixBounds;
     std::vector<AffineMatrix> _rootMatrices;
     std::vector<osg::Vec3d> _positions;

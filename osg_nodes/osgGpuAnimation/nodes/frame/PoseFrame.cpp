@@ -6,6 +6,7 @@
 #include <osgGpuAnimation/nodes/PoseStatistics.h>
 
 #include <algorithm>
+#include <cstring>
 #include <unordered_set>
 
 namespace osgGpuAnimation
@@ -74,6 +75,7 @@ void PoseFrame::reset()
     _batchesOfSet.clear();
     _submitted.clear();
     _samples.clear();
+    _targets.clear();
     for (StatePool* pool : {&_plainStates, &_tintedStates, &_instancedStates})
         pool->reset();
 }
@@ -87,7 +89,9 @@ SubmittedPose PoseFrame::submit(const osg::Node& node, const AnimationController
     {
         const PoseInstruction& instruction = controller.instruction();
         Batch& batch = openBatch(controller, rootMatrix);
-        submitted = {&batch, batch.content->add(instruction), _samples.size(), instruction.sampleCount, nullptr};
+        submitted = {&batch,          batch.content->add(instruction), _samples.size(), instruction.sampleCount,
+                     _targets.size(), instruction.targets.size(),      nullptr};
+        _targets.insert(_targets.end(), instruction.targets.begin(), instruction.targets.end());
         _samples.insert(_samples.end(), instruction.samples.begin(),
                         instruction.samples.begin() + static_cast<std::ptrdiff_t>(instruction.sampleCount));
     }
@@ -105,7 +109,10 @@ bool PoseFrame::hasSameInstruction(const Submitted& known, const AnimationContro
            known.sampleCount == instruction.sampleCount &&
            std::equal(instruction.samples.begin(),
                       instruction.samples.begin() + static_cast<std::ptrdiff_t>(instruction.sampleCount),
-                      _samples.begin() + static_cast<std::ptrdiff_t>(known.firstSample), isSame);
+                      _samples.begin() + static_cast<std::ptrdiff_t>(known.firstSample), isSame) &&
+           known.targetCount == instruction.targets.size() &&
+           (known.targetCount == 0 || std::memcmp(_targets.data() + known.firstTarget, instruction.targets.data(),
+                                                  known.targetCount * sizeof(ConstraintTarget)) == 0);
 }
 
 osg::StateSet* PoseFrame::stateOf(const osg::Node& node, const AnimationSet& set, SubmittedPose pose, int level)

@@ -98,6 +98,8 @@ private:
         std::size_t instance;
         std::size_t firstSample; ///< of its instruction, in _samples
         std::size_t sampleCount;
+        std::size_t firstTarget; ///< of its constraints, in _targets
+        std::size_t targetCount;
         osg::StateSet* stateSet; ///< null: not created yet
     };
     /// States that frames reuse.
@@ -130,7 +132,8 @@ private:
         _batchesOfSet; ///< several may be open, with different blend costs
     std::vector<std::unique_ptr<PoseBatch>> _spareBatches;
     std::unordered_map<const osg::Node*, Submitted> _submitted;
-    std::vector<BlendSample> _samples; ///< of the submitted instructions
+    std::vector<BlendSample> _samples;      ///< of the submitted instructions
+    std::vector<ConstraintTarget> _targets; ///< of the submitted instructions
     StatePool _plainStates{nullptr, {}, 0};
     StatePool _tintedStates{"POSE_TINTED", {}, 0};
     StatePool _instancedStates{"POSE_INSTANCED", {}, 0}; ///< characters have no tints

@@ -82,6 +82,9 @@ bool PosedMeshes::holds(const std::shared_ptr<const AnimationSet>& set, const Po
         hasSerials = _serials[pose] == serialOf(instruction, pose);
     return _set == set && std::none_of(_masks.begin(), _masks.end(), isGone) && hasSerials &&
            _instruction.sampleCount == instruction.sampleCount &&
+           _instruction.targets.size() == instruction.targets.size() &&
+           (instruction.targets.empty() || std::memcmp(_instruction.targets.data(), instruction.targets.data(),
+                                                       instruction.targets.size() * sizeof(ConstraintTarget)) == 0) &&
            std::memcmp(_instruction.samples.data(), instruction.samples.data(),
                        instruction.sampleCount * sizeof(BlendSample)) == 0 &&
            std::memcmp(&_rootToModel, &rootToModel, sizeof(AffineMatrix)) == 0;

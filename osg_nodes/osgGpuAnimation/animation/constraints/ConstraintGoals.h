@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osgGpuAnimation/animation/constraints/ConstraintChain.h>
+
+#include <optional>
+#include <vector>
+
+namespace osgGpuAnimation
+{
+
+/// What the application wants from one constraint of one character.
+struct ConstraintGoal
+{
+    ConstraintTarget target{{}, 1.0f, {}, 0.0f, {}}; ///< the weight is the application's
+    bool hasTarget = false;                          ///< false: no effect
+    std::optional<glm::vec3> shown;                  ///< of a look-at with a turn speed: the target so far
+
+    bool isDefault() const; ///< true if nothing was set since the last clear
+};
+
+/// The goals of one character, one per constraint of its set.
+class ConstraintGoals
+{
+public:
+    explicit ConstraintGoals(std::size_t count) : _goals(count) {}
+
+    ConstraintGoal& goal(std::size_t constraint) { return _goals[constraint]; }
+    const ConstraintGoal& goal(std::size_t constraint) const { return _goals[constraint]; }
+    bool isDefault() const; ///< true if all goals are
+
+    /// Turns the lines to the targets by at most the turn speeds. seconds: finite; negative counts as positive.
+    void advance(const std::vector<ConstraintChain>& chains, double seconds);
+    /// The targets of a pose instruction; none if no constraint has an effect.
+    void write(std::vector<ConstraintTarget>& outTargets) const;
+
+private:
+    std::vector<ConstraintGoal> _goals;
+};
+
+} // namespace osgGpuAnimation

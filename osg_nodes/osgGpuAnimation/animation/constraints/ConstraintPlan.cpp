@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/animation/constraints/ConstraintPlan.h>
+
+#include <algorithm>
+#include <tuple>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+bool isAbove(const Skeleton& skeleton, int ancestor, int joint)
+{
+    do
+        joint = skeleton.joint(static_cast<std::size_t>(joint)).parent;
+    while (joint >= 0 && joint != ancestor);
+    return joint >= 0;
+}
+
+int depthOf(const Skeleton& skeleton, int joint)
+{
+    return skeleton.depths()[static_cast<std::size_t>(joint)];
+}
+
+/// A step and, per joint of its path, the step that has corrected the joint before, or -1.
+struct Draft
+{
+    ConstraintStep step;
+    std::vector<int> sourceSteps;
+    std::size_t draw = 0; ///< of its level
+};
+
+/// The constraint's step without its sources. active: bit c for constraint c.
+ConstraintStep stepOf(std::size_t constraint, const Skeleton& skeleton, const std::vector<ConstraintChain>& chains,
+                      std::uint64_t active)
+{
+    const std::vector<int>& chain = chains[constraint].joints;
+    int first = chain.front();
+    for (std::size_t later = constraint + 1; later < chains.size(); ++later)
+        if (const int start = chains[later].joints.front();
+            (active >> later & 1) != 0 && isAbove(skeleton, start, first))
+            first = start;
+    ConstraintStep step;
+    step.constraint = constraint;
+    step.level = static_cast<std::size_t>(depthOf(skeleton, first));
+    for (int joint = chain.front(); joint != first;)
+        step.path.push_back(joint = skeleton.joint(static_cast<std::size_t>(joint)).parent);
+    std::reverse(step.path.begin(), step.path.end());
+    step.chainBegin = step.path.size();
+    step.path.insert(step.path.end(), chain.begin(), chain.end());
+    return step;
+}
+
+/// Steps with equal keys may share a draw.
+auto keyOf(const Draft& draft, const std::vector<ConstraintChain>& chains)
+{
+    const ConstraintChain& chain = chains[draft.step.constraint];
+    return std::make_tuple(draft.step.level, draft.draw, chain.isLookAt, chain.joints.size(), chain.mid,
+                           draft.step.chainBegin);
+}
+
+} // namespace
+
+ConstraintPlan::ConstraintPlan(const Skeleton& skeleton, const std::vector<ConstraintChain>& chains,
+                               std::uint64_t active)
+    : correctionsOfJoints(skeleton.jointCount())
+{
+    std::vector<Draft> drafts; // in the order of declaration
+    std::vector<int> lastSteps(skeleton.jointCount(), -1);
+    for (std::size_t c = 0; c < chains.size(); ++c)
+    {
+        if ((active >> c & 1) == 0) continue;
+        Draft draft{stepOf(c, skeleton, chains, active), {}, 0};
+        for (const int joint : draft.step.path)
+        {
+            const int source = lastSteps[static_cast<std::size_t>(joint)];
+            draft.sourceSteps.push_back(source);
+            if (source < 0) continue;
+            const Draft& before = drafts[static_cast<std::size_t>(source)];
+            if (before.step.level == draft.step.level) draft.draw = std::max(draft.draw, before.draw + 1);
+        }
+        for (const int joint : chains[c].joints)
+            lastSteps[static_cast<std::size_t>(joint)] = static_cast<int>(drafts.size());
+        drafts.push_back(std::move(draft));
+    }
+
+    std::vector<std::size_t> order(drafts.size());
+    for (std::size_t i = 0; i < order.size(); ++i)
+        order[i] = i;
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return keyOf(drafts[a], chains) < keyOf(drafts[b], chains); });
+    std::vector<std::size_t> firstCorrections(drafts.size());
+    const auto placeOf = [&](int step, int joint)
+    {
+        if (step < 0) return CorrectionPlace();
+        const auto draft = static_cast<std::size_t>(step);
+        const std::vector<int>& joints = chains[drafts[draft].step.constraint].joints;
+        const auto place = std::find(joints.begin(), joints.end(), joint) - joints.begin();
+        return CorrectionPlace{firstCorrections[draft], joints.size(), static_cast<std::size_t>(place)};
+    };
+    for (std::size_t i = 0; i < order.size(); ++i)
+    {
+        Draft& draft = drafts[order[i]];
+        if (i == 0 || keyOf(drafts[order[i - 1]], chains) != keyOf(draft, chains))
+            draws.push_back({i, 0, correctionCount});
+        ++draws.back().count;
+        firstCorrections[order[i]] = correctionCount;
+        correctionCount += chains[draft.step.constraint].joints.size();
+        for (std::size_t place = 0; place < draft.step.path.size(); ++place)
+            draft.step.sources.push_back(placeOf(draft.sourceSteps[place], draft.step.path[place]));
+        steps.push_back(draft.step);
+    }
+    for (std::size_t joint = 0; joint < lastSteps.size(); ++joint)
+        correctionsOfJoints[joint] = placeOf(lastSteps[joint], static_cast<int>(joint));
+}
+
+} // namespace osgGpuAnimation

@@ -88,6 +88,8 @@ const FaultCase faults[] = {
      "1 elements"},
     {"vertices that are not there", "osg::DrawArrays \\{([^]*?)Count 3", "osg::DrawArrays {$1Count 300", Answer::NoMesh,
      "as a vertex"},
+    {"the vertex behind the last", "osg::DrawArrays \\{([^]*?)Count 3", "osg::DrawArrays {$1Count 4", Answer::NoMesh,
+     "3 as a vertex of 3"},
     {"no property of a set", "AnimationSet \\{", "Other {", Answer::Error, "without its AnimationSet"},
     {"no controller", "Controller 1", "Other 1", Answer::Error, "without its Controller"},
     {"no influences", "Influences -?[0-9]+", "Other 1", Answer::Error, "without its Influences"},

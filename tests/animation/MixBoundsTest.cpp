@@ -173,7 +173,7 @@ TEST(MixBoundsTest, AMixHoldsTheWholeWayOfEitherClip)
             }
             const auto set = AnimationSet::create({skeleton, {}, {}, {}, std::move(clips)}).value();
             const EntryBoxes boxes = someBoxes(*set);
-            const MixBounds bounds(*set, boxes, boxes);
+            const MixBounds bounds(*set, boxes);
             AnimationController controller(set);
             ASSERT_TRUE(controller.play(isMovingFirst ? 1 : 0));
             ASSERT_TRUE(controller.crossfade(isMovingFirst ? 0 : 1, 1.0));

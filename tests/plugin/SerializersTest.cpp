@@ -25,6 +25,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <regex>
 
 namespace osgGpuAnimation
@@ -426,6 +427,65 @@ TEST_F(SerializersTest, posesAreKept)
     const osg::ref_ptr<osg::Node> wrong = osgDB::readRefNodeFile(files.folder.write("wrong.osgt", text));
     ASSERT_TRUE(wrong) << "the layer is lost, the scene is not";
     EXPECT_NE(log->text.find("a pose with values of track 9"), std::string::npos) << log->text;
+}
+
+// Earlier versions read 1, and then 2, at most.
+TEST_F(SerializersTest, aControllerHasTheLowestVersionForItsLayers)
+{
+    AnimationController& controller = character().getController();
+    const auto space = BlendSpace::create(controller.set(), {{"Slow slide", 0.0}, {"clip 1", 2.0}}).value();
+    const auto playSpace = [&](AnimationLayer& layer) { EXPECT_TRUE(layer.setParameter(0.5) && layer.play(space)); };
+    const auto setPose = [](AnimationLayer& layer) { EXPECT_TRUE(layer.pose().setTranslation(1, {1, 2, 3})); };
+    struct Case
+    {
+        const char* name;
+        int version;
+        std::function<void()> setUp;
+    };
+    const Case cases[] = {
+        {"clips", 1, [&] { setUpLayers(controller); }},
+        {"a pose in which nothing is set, beside a clip", 1, [&] { controller.layer(0).pose(); }},
+        {"a blend space", 2, [&] { playSpace(controller.layer(0)); }},
+        {"a pose beside a clip", 3, [&] { setPose(controller.layer(0)); }},
+        {"an empty pose that hides the clips", 3, [&] { controller.layer(0).showPose(); }},
+        {"a blend space in one layer, a pose in another", 3,
+         [&]
+         {
+             playSpace(controller.layer(0));
+             setPose(controller.layer(1));
+         }},
+        {"a blend space that fades to a pose", 3,
+         [&]
+         {
+             playSpace(controller.layer(0));
+             setPose(controller.layer(0));
+             EXPECT_TRUE(controller.layer(0).showPose(1.0));
+             controller.advance(0.25);
+         }},
+    };
+    for (const Case& one : cases)
+    {
+        SCOPED_TRACE(one.name);
+        controller = AnimationController(controller.sharedSet());
+        ASSERT_TRUE(controller.play(0));
+        one.setUp();
+        EXPECT_NE(textOf(*scene).find("Controller " + std::to_string(one.version) + " "), std::string::npos);
+        for (const char* format : formats)
+        {
+            const osg::ref_ptr<osg::Node> read = files.throughFile(*scene, format);
+            ASSERT_TRUE(read && findCharacter(*read));
+            AnimationController first = controller, second = findCharacter(*read)->getController();
+            EXPECT_EQ(second.layer(0).blendSpace() != nullptr, first.layer(0).blendSpace() != nullptr);
+            EXPECT_EQ(second.layer(0).poseShare(), first.layer(0).poseShare());
+            for (int step = 0; step < 10; ++step)
+            {
+                EXPECT_LE(paletteDifference(first, second), 1e-6f) << format << ", step " << step;
+                first.advance(0.11);
+                second.advance(0.11);
+            }
+        }
+    }
+    EXPECT_EQ(log->text, "");
 }
 
 TEST_F(SerializersTest, shadersAreNotInTheFile)

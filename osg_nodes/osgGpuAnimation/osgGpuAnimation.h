@@ -32,6 +32,6 @@
 #include <osgGpuAnimation/nodes/PbrMaterial.h>
 #include <osgGpuAnimation/nodes/PickedJoint.h>
 #include <osgGpuAnimation/nodes/PoseStatistics.h>
-#include <osgGpuAnimation/nodes/RootMotionCallback.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
+#include <osgGpuAnimation/nodes/SpringBones.h>
 #include <osgGpuAnimation/nodes/StateGraphFile.h>

@@ -7,7 +7,6 @@
 #include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
 #include <osgGpuAnimation/nodes/PoseStatistics.h>
-#include <osgGpuAnimation/nodes/RootMotionCallback.h>
 
 #include <cmath>
 #include <cstdint>

@@ -3,6 +3,8 @@
 
 #include <osgGpuAnimation/nodes/SpringBones.h>
 
+#include <limits>
+
 // Spring chains in OSG's own formats: the settings; the chains begin at rest.
 
 namespace osgGpuAnimation::serializers

@@ -5,8 +5,8 @@
 
 #include <osgGpuAnimation/animation/ClipBuilder.h>
 #include <osgGpuAnimation/animation/JointMask.h>
+#include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
-#include <osgGpuAnimation/nodes/RootMotionCallback.h>
 
 #include <osg/Geometry>
 #include <osg/Group>

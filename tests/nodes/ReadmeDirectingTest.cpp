@@ -9,7 +9,7 @@
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
-#include <osgGpuAnimation/nodes/RootMotionCallback.h>
+#include <osgGpuAnimation/nodes/SpringBones.h>
 #include <osgGpuAnimation/nodes/StateGraphFile.h>
 
 #include <osg/Group>
@@ -38,10 +38,12 @@ bool succeeded(const Result<T>& result)
 osg::ref_ptr<AnimatedCharacter> makeFox()
 {
     std::vector<Joint> joints;
-    for (const char* name : {"hips", "Shoulder.R", "Elbow.R", "Hand.R", "head"})
+    for (const char* name : {"hips", "Shoulder.R", "Elbow.R", "Hand.R", "head", "Tail1", "Tail2", "Tail3"})
         joints.push_back({name, static_cast<int>(joints.size()) - 1, {}, static_cast<int>(joints.size())});
     for (const std::size_t bone : {2, 3}) // a straight arm
         joints[bone].rest.translation.x = 1.0f;
+    for (const std::size_t bone : {6, 7})
+        joints[bone].rest.translation.y = -20.0f;
     AnimationParts parts{Skeleton::create(joints).value(), {}, {}, {}, {}};
     for (const char* name : {"Survey", "Walk", "Run", "Wave", "Breathe", "Jump"})
     {
@@ -150,8 +152,9 @@ TEST_F(ReadmeDirectingTest, LayersAndMasks)
 TEST_F(ReadmeDirectingTest, PosedJoints)
 {
     AnimationController& controller = fox->getController();
-    const auto receiveCapture = [] { return std::vector<JointTransform>(4); };
-    const auto simulateRagdoll = [] { return std::vector<AffineMatrix>(4); };
+    const std::size_t joints = fox->getAnimationSet().skeleton().jointCount();
+    const auto receiveCapture = [&] { return std::vector<JointTransform>(joints); };
+    const auto simulateRagdoll = [&] { return std::vector<AffineMatrix>(joints); };
     const std::size_t wrist = fox->getAnimationSet().skeleton().jointNamed("Hand.R").value();
     AnimationLayer& yoke = controller.layer(3);
     JointPose& pose = yoke.pose();
@@ -167,6 +170,24 @@ TEST_F(ReadmeDirectingTest, PosedJoints)
     succeeded(yoke.pose().setModelTransforms(bodies));
     yoke.showPose(0.2);
     EXPECT_FALSE(pose.isEmpty());
+}
+
+TEST_F(ReadmeDirectingTest, Springs)
+{
+    SpringChain tail{{{"Tail1"}, {"Tail2"}, {"Tail3"}}, {0}};
+    for (SpringJoint& joint : tail.joints)
+    {
+        joint.stiffness = 60.0f;
+        joint.gravity = 20.0f;
+    }
+    SpringCollider leg{"hips", osg::Vec3(0, -10, 0), std::nullopt, 12.0f};
+    osg::ref_ptr<SpringBones> springs = new SpringBones;
+    if (succeeded(springs->setChains(fox->getAnimationSet(), {tail}, {leg}))) fox->addUpdateCallback(springs);
+    EXPECT_EQ(fox->getUpdateCallback(), springs);
+    springs->setMaxDistance(2000.0);
+    fox->addCullCallback(springs);
+    EXPECT_EQ(fox->getCullCallback(), springs);
+    springs->reset();
 }
 
 TEST_F(ReadmeDirectingTest, Events)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "support/TestCharacter.h"
 
+#include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
-#include <osgGpuAnimation/nodes/RootMotionCallback.h>
 
 #include <osg/AnimationPath>
 #include <osgUtil/UpdateVisitor>

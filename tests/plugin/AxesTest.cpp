@@ -7,7 +7,6 @@
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
-#include <osgGpuAnimation/nodes/RootMotionCallback.h>
 
 #include <osg/ComputeBoundsVisitor>
 #include <osgDB/ReadFile>

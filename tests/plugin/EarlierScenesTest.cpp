@@ -6,12 +6,12 @@
 #include <osgGpuAnimation/animation/ClipBuilder.h>
 #include <osgGpuAnimation/animation/JointMask.h>
 #include <osgGpuAnimation/animation/RootMotion.h>
+#include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/CharacterKeys.h>
 #include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
 #include <osgGpuAnimation/nodes/PoseStatistics.h>
-#include <osgGpuAnimation/nodes/RootMotionCallback.h>
 
 #include <gtest/gtest.h>
 #include <osgUtil/UpdateVisitor>

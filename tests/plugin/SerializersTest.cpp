@@ -9,14 +9,15 @@
 #include <osgGpuAnimation/animation/keyframes/CompactTracks.h>
 #include <osgGpuAnimation/animation/keyframes/PackedKeyframes.h>
 #include <osgGpuAnimation/animation/RootMotion.h>
+#include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/CharacterKeys.h>
 #include <osgGpuAnimation/nodes/CharacterProgram.h>
 #include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
 #include <osgGpuAnimation/nodes/PoseStatistics.h>
-#include <osgGpuAnimation/nodes/RootMotionCallback.h>
 #include <osgGpuAnimation/nodes/shading/ShaderPermutations.h>
+#include <osgGpuAnimation/nodes/SpringBones.h>
 
 #include <gtest/gtest.h>
 #include <osg/Program>
@@ -262,6 +263,48 @@ TEST_F(SerializersTest, attachmentsKeepTheirOffsetAndInstance)
         EXPECT_EQ(back->getPlacement(*again->getInstance()).getTrans(), osg::Vec3d(7, 0, 0));
     }
     EXPECT_EQ(log->text, "");
+}
+
+TEST_F(SerializersTest, springsAreKept)
+{
+    const osg::ref_ptr<SpringBones> springs = new SpringBones;
+    SpringChain chain{{{"arm \"1\" <&{ä", 3.0f, 0.25f, 0.5f, osg::Vec3(0, 0.6f, 0.8f), 0.125f}, {"hand"}}, {1, 0}};
+    const std::vector<SpringCollider> colliders{{"hand", osg::Vec3(1, 2, 3), std::nullopt, 0.5f},
+                                                {"hand", osg::Vec3(), osg::Vec3(4, 5, 6), 0.75f}};
+    ASSERT_TRUE(springs->setChains({chain}, colliders));
+    springs->setLayer(3);
+    character().addUpdateCallback(springs);
+    for (const double maxDistance : {std::numeric_limits<double>::infinity(), 12.5})
+        for (const char* format : formats)
+        {
+            SCOPED_TRACE(format);
+            springs->setMaxDistance(maxDistance);
+            const osg::ref_ptr<osg::Node> read = files.throughFile(*scene, format);
+            ASSERT_TRUE(read && findCharacter(*read));
+            const auto* back = dynamic_cast<SpringBones*>(findCharacter(*read)->getUpdateCallback());
+            ASSERT_TRUE(back);
+            EXPECT_EQ(back->getLayer(), 3u);
+            EXPECT_EQ(back->getMaxDistance(), maxDistance);
+            ASSERT_EQ(back->getChains().size(), 1u);
+            const SpringChain& backChain = back->getChains()[0];
+            EXPECT_EQ(backChain.colliders, chain.colliders);
+            ASSERT_EQ(backChain.joints.size(), 2u);
+            for (std::size_t i = 0; i < 2; ++i)
+            {
+                const SpringJoint &found = backChain.joints[i], &expected = chain.joints[i];
+                EXPECT_EQ(found.joint, expected.joint);
+                EXPECT_EQ(std::tie(found.stiffness, found.drag, found.gravity, found.gravityDirection, found.radius),
+                          std::tie(expected.stiffness, expected.drag, expected.gravity, expected.gravityDirection,
+                                   expected.radius));
+            }
+            ASSERT_EQ(back->getColliders().size(), 2u);
+            for (std::size_t i = 0; i < 2; ++i)
+            {
+                const SpringCollider &found = back->getColliders()[i], &expected = colliders[i];
+                EXPECT_EQ(std::tie(found.joint, found.center, found.tail, found.radius),
+                          std::tie(expected.joint, expected.center, expected.tail, expected.radius));
+            }
+        }
 }
 
 TEST_F(SerializersTest, aCharacterWithoutCallbacksHasNoneAfterwards)

@@ -369,6 +369,21 @@ osg::BoundingSphere AnimatedCharacter::computeBound() const
     return osg::BoundingSphere(transformed(box, getMatrix()));
 }
 
+RootMotionCallback::RootMotionCallback(const RootMotionCallback& other, const osg::CopyOp& copyop)
+    : osg::Object(other, copyop), osg::Callback(other, copyop), osg::NodeCallback(other, copyop)
+{
+}
+
+void RootMotionCallback::operator()(osg::Node* node, osg::NodeVisitor* visitor)
+{
+    if (auto* character = dynamic_cast<AnimatedCharacter*>(node))
+    {
+        const osg::Matrixd motion = character->takeRootMotion();
+        if (!motion.isIdentity()) character->preMult(motion);
+    }
+    traverse(node, visitor);
+}
+
 AnimatedCharacter* findCharacter(osg::Node& node)
 {
     class Finder : public osg::NodeVisitor

@@ -5,6 +5,7 @@
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
 #include <osg/BoundingBox>
+#include <osg/Callback>
 #include <osg/Geometry>
 #include <osg/MatrixTransform>
 #include <osg/PrimitiveSet>
@@ -221,6 +222,27 @@ private:
     float _pixelError = 0.0f;
     std::string _materialVariant;
     std::shared_ptr<VariantMeshes> _variantMeshes; ///< never null, shared with clones
+};
+
+/// Moves its AnimatedCharacter by the root motion of the clips: after each update it multiplies the character's matrix
+/// by the motion.
+///
+///     fox->addUpdateCallback(new RootMotionCallback);
+///
+/// It has no state, so copies of a character may share it.
+class RootMotionCallback : public osg::NodeCallback
+{
+public:
+    RootMotionCallback() = default;
+    /// A copy; the callback has no state.
+    RootMotionCallback(const RootMotionCallback& other, const osg::CopyOp& copyop);
+    META_Object(osgGpuAnimation, RootMotionCallback)
+
+    /// Applies the root motion since the last call, then continues the traversal.
+    void operator()(osg::Node* node, osg::NodeVisitor* visitor) override;
+
+protected:
+    ~RootMotionCallback() override = default;
 };
 
 /// The first AnimatedCharacter at or below the node, depth first; null if none exists.

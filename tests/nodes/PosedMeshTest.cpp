@@ -2,7 +2,7 @@
 #include "nodes/TriangleBox.h"
 #include "support/TestCharacter.h"
 
-#include <osgGpuAnimation/nodes/PickedJoint.h>
+#include <osgGpuAnimation/nodes/JointAttachment.h>
 
 #include <gtest/gtest.h>
 #include <osg/KdTree>

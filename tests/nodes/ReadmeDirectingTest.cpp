@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "nodes/Walker.h"
 #include "support/GaitSet.h"
 #include "support/ScratchFolder.h"
 #include "support/WorkingFolder.h"
@@ -8,10 +9,12 @@
 #include <osgGpuAnimation/animation/StateMachine.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+#include <osgGpuAnimation/nodes/GroundFeet.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
 #include <osgGpuAnimation/nodes/SpringBones.h>
 #include <osgGpuAnimation/nodes/StateGraphFile.h>
 
+#include <osg/Geometry>
 #include <osg/Group>
 
 #include <gtest/gtest.h>
@@ -311,6 +314,23 @@ TEST_F(ReadmeDirectingTest, Constraints)
     EXPECT_EQ(fox->getController().constraint("reach").target().weight, 0.5f);
     succeeded(fox->constraint("look").clear());
     EXPECT_FALSE(fox->getController().constraint("look").hasTarget());
+}
+
+TEST_F(ReadmeDirectingTest, FeetOnTheGround)
+{
+    const osg::ref_ptr<AnimatedCharacter> person = Walker::make();
+    const osg::ref_ptr<osg::Geometry> ground = osg::createTexturedQuadGeometry({-9, -9, 1}, {18, 0, 0}, {0, 18, 0});
+    auto standing = person->getAnimationSet().withConstraints(
+        {TwoBoneIk{"left", "thigh.L", "shank.L", "foot.L"}, TwoBoneIk{"right", "thigh.R", "shank.R", "foot.R"}});
+    if (succeeded(standing)) succeeded(person->setAnimationSet(standing.value()));
+
+    osg::ref_ptr<GroundFeet> feet = new GroundFeet(*ground);
+    if (succeeded(feet->setLegs(person->getAnimationSet(), {{"left", "toes.L"}, {"right", "toes.R"}})))
+        person->addUpdateCallback(feet);
+    feet->setMaxDistance(50.0);
+    person->addCullCallback(feet);
+    EXPECT_EQ(feet->getLegs().size(), 2u);
+    EXPECT_EQ(person->getUpdateCallback(), feet);
 }
 
 TEST_F(ReadmeDirectingTest, States)

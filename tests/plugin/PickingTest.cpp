@@ -3,7 +3,7 @@
 #include "plugin/PosedTriangles.h"
 #include "plugin/SharedAssets.h"
 
-#include <osgGpuAnimation/nodes/PickedJoint.h>
+#include <osgGpuAnimation/nodes/JointAttachment.h>
 
 #include <gtest/gtest.h>
 #include <osg/MatrixTransform>

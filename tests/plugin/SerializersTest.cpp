@@ -15,6 +15,7 @@
 #include <osgGpuAnimation/nodes/CharacterKeys.h>
 #include <osgGpuAnimation/nodes/CharacterProgram.h>
 #include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
+#include <osgGpuAnimation/nodes/GroundFeet.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
 #include <osgGpuAnimation/nodes/PoseStatistics.h>
 #include <osgGpuAnimation/nodes/shading/ShaderPermutations.h>
@@ -237,6 +238,41 @@ TEST_F(SerializersTest, everythingBelowACharacterComesBack)
         EXPECT_EQ(clip.rootMotionAt(0.5).translation, clips[0].rootMotionAt(0.5).translation);
         EXPECT_EQ(back.getCurrentBounds()._max, character().getCurrentBounds()._max);
     }
+    EXPECT_EQ(log->text, "");
+}
+
+TEST_F(SerializersTest, FeetOnTheGround)
+{
+    const osg::ref_ptr<osg::Group> ground = new osg::Group;
+    ground->setName("hill \"1\" <&{ä");
+    const osg::ref_ptr<GroundFeet> feet = new GroundFeet(*ground);
+    ASSERT_TRUE(feet->setLegs({{"left", "toes", 0.1, "down", "up"}, {"right \"leg\""}}));
+    feet->setTraversalMask(0x80000001u);
+    EXPECT_TRUE(feet->setReach(0.3) && feet->setMaxTilt(0.2) && feet->setLockDistance(0.0) && feet->setWeight(0.5));
+    character().addUpdateCallback(feet);
+    for (const bool isNear : {false, true})
+        for (const char* format : formats)
+        {
+            SCOPED_TRACE(format);
+            EXPECT_TRUE(!isNear || feet->setMaxDistance(20.25));
+            const osg::ref_ptr<osg::Node> read = files.throughFile(*scene, format);
+            ASSERT_TRUE(read && findCharacter(*read));
+            auto* back = dynamic_cast<GroundFeet*>(findCharacter(*read)->getUpdateCallback());
+            ASSERT_TRUE(back);
+            EXPECT_EQ(back->getGroundName(), ground->getName());
+            EXPECT_EQ(back->getTraversalMask(), 0x80000001u);
+            EXPECT_EQ(back->getReach(), 0.3);
+            EXPECT_EQ(back->getMaxTilt(), 0.2);
+            EXPECT_EQ(back->getLockDistance(), 0.0);
+            EXPECT_EQ(back->getWeight(), 0.5);
+            EXPECT_EQ(back->getMaxDistance(), feet->getMaxDistance());
+            ASSERT_EQ(back->getLegs().size(), 2u);
+            EXPECT_EQ(back->getLegs()[0].toe, "toes");
+            EXPECT_EQ(back->getLegs()[0].sole, 0.1);
+            EXPECT_EQ(back->getLegs()[0].touchMarker, "down");
+            EXPECT_EQ(back->getLegs()[0].leaveMarker, "up");
+            EXPECT_EQ(back->getLegs()[1].constraint, "right \"leg\"");
+        }
     EXPECT_EQ(log->text, "");
 }
 

@@ -69,8 +69,8 @@ Result<bool> AnimationLayer::crossfade(std::size_t clip, double seconds, const C
     return true;
 }
 
-/// Starts a clip at once or by a fade, at the phase of what the options name. A pose that hides all clips fades out over
-/// the new one.
+/// Starts a clip at once or by a fade, at the phase of what the options name. A pose that hides all clips fades out
+/// over the new one.
 void AnimationLayer::begin(ClipPlayback playback, double seconds, const CrossfadeOptions& options)
 {
     const bool isFromPose = clipShare() <= 0.0;

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Usage: direct_scenes SCENES FOLDER
-// Reads SCENES/Wanderer.glb and draws into FOLDER, without a display: Crossfade.png, Mask.png, Additive.png and
-// Attachment.png, each a row of wanderers, and Crowd.png, thousands of them. The plugin is looked for where
-// OSG_LIBRARY_PATH says. Ends with 77 where there is no GL.
+//        direct_scenes --view SCENES
+// Reads SCENES/Wanderer.glb and draws into FOLDER, without a display: Crossfade.png, Mask.png and others, each a row of
+// wanderers, Crowd.png and Gaze.png, thousands of them, and Hill.png. With --view it shows the hill in a window. The
+// plugin is looked for where OSG_LIBRARY_PATH says. Ends with 77 where there is no GL.
+
+#include "Hill.h"
 
 #include <osgGpuAnimation/animation/JointMask.h>
 #include <osgGpuAnimation/gpu/EglGraphicsContext.h>
@@ -106,20 +109,73 @@ void holdStaff(AnimatedCharacter& wanderer, int i)
     wanderer.addChild(hand);
 }
 
-osg::ref_ptr<osg::Group> makeRow(const osg::Node& model, const Direction& direction)
+/// From Walk to Run by the parameter of a blend space.
+void blendGaits(AnimatedCharacter& wanderer, int i)
 {
-    osg::ref_ptr<osg::Group> row = new osg::Group;
+    if (succeeds(playGaits(wanderer, 0.71 + 0.3475 * i))) wanderer.getController().advance(0.3);
+}
+
+/// A layer shows a pose of the application: the right arm, higher and higher.
+void poseArm(AnimatedCharacter& wanderer, int i)
+{
+    AnimationController& controller = wanderer.getController();
+    if (!succeeds(controller.play("Idle"))) return;
+    const Result<std::size_t> arm = wanderer.getAnimationSet().skeleton().jointNamed("UpperArm_R");
+    if (!succeeds(arm)) return;
+    JointPose& pose = controller.layer(1).pose();
+    const glm::vec4 rest = pose.transform(arm.value()).rotation;
+    pose.setRotation(arm.value(), glm::quat(rest.w, rest.x, rest.y, rest.z) *
+                                      glm::angleAxis(-0.5f * static_cast<float>(i), glm::vec3(1, 0, 0)));
+}
+
+/// All look at the middle of the row, a little before it and above.
+void lookAtLight(AnimatedCharacter& wanderer, int)
+{
+    if (!succeeds(wanderer.getController().play("Idle")) || !succeeds(addLook(wanderer))) return;
+    succeeds(wanderer.constraint("look").setWorldTarget(osg::Vec3d(0.0, -1.5, 1.7)));
+}
+
+/// Scarf and hood swing while they run.
+void swingScarf(AnimatedCharacter& wanderer, int i)
+{
+    if (succeeds(playGaits(wanderer, 0.71 + 0.3475 * i))) succeeds(addSprings(wanderer));
+}
+
+/// Walking uphill, downhill and across: the feet stay on the ground.
+void walkOnSlope(AnimatedCharacter& wanderer, int i)
+{
+    if (!succeeds(playGaits(wanderer, 0.71))) return;
+    wanderer.getController().seek(0.19 * i);
+    const osg::NodePathList paths = wanderer.getParentalNodePaths();
+    if (osg::Group* row = paths.empty() ? nullptr : paths.front().front()->asGroup())
+        succeeds(addGroundFeet(wanderer, *row->getChild(0)));
+}
+
+/// A picture of a row.
+struct Row
+{
+    const char* name;
+    Direction direction;
+    double seconds = 0.0; ///< of the animation before the picture
+    double slope = 0.0;   ///< radians, of the ground; 0: none is drawn
+    double facing = 35.0; ///< degrees; 0: towards the camera
+};
+
+osg::ref_ptr<osg::Group> makeRow(const osg::Node& model, const Row& row)
+{
+    osg::ref_ptr<osg::Group> group = new osg::Group;
+    if (row.slope != 0.0) group->addChild(makeSlope(row.slope));
     for (int i = 0; i < inARow; ++i)
     {
         osg::ref_ptr<osg::PositionAttitudeTransform> place = new osg::PositionAttitudeTransform;
         place->setPosition(osg::Vec3d(apart * (i - (inARow - 1) / 2.0), 0.0, 0.0));
-        place->setAttitude(osg::Quat(osg::DegreesToRadians(35.0), osg::Vec3d(0, 0, 1)));
+        place->setAttitude(osg::Quat(osg::DegreesToRadians(row.facing), osg::Vec3d(0, 0, 1)));
         osg::ref_ptr<osg::Node> wanderer = osg::clone(&model, osg::CopyOp::DEEP_COPY_NODES);
         place->addChild(wanderer);
-        row->addChild(place);
-        if (AnimatedCharacter* character = findCharacter(*wanderer)) direction(*character, i);
+        group->addChild(place);
+        if (AnimatedCharacter* character = findCharacter(*wanderer)) row.direction(*character, i);
     }
-    return row;
+    return group;
 }
 
 /// A field of wanderers, most of them walking the same way, each at its own time and a little out of line.
@@ -166,7 +222,8 @@ public:
     mutable osg::ref_ptr<osg::Image> image;
 };
 
-Result<bool> draw(osg::Node* scene, const Sight& sight, const std::string& file)
+/// seconds: of the animation before the picture is taken.
+Result<bool> draw(osg::Node* scene, const Sight& sight, double seconds, const std::string& file)
 {
     osg::ref_ptr<osg::GraphicsContext::Traits> traits = new osg::GraphicsContext::Traits;
     traits->width = width;
@@ -192,9 +249,30 @@ Result<bool> draw(osg::Node* scene, const Sight& sight, const std::string& file)
     camera->setFinalDrawCallback(reader);
     viewer.setSceneData(studio);
     viewer.realize();
-    viewer.frame(0.0);
+    constexpr double step = 1.0 / 60.0;
+    viewer.advance(0.0);
+    viewer.updateTraversal();
+    for (double time = step; time <= seconds; time += step)
+    {
+        viewer.advance(time);
+        viewer.updateTraversal();
+    }
+    viewer.renderingTraversals();
     if (!osgDB::writeImageFile(*reader->image, file)) return Error{file + ": cannot be written"};
     return true;
+}
+
+int view(const osg::Node& model)
+{
+    const Result<osg::ref_ptr<osg::Node>> hill = makeHill(model);
+    if (!succeeds(hill)) return 1;
+    osg::ref_ptr<Environment> studio = new Environment;
+    studio->setToneMapping(true);
+    studio->addChild(hill.value());
+    osgViewer::Viewer viewer;
+    viewer.setUpViewInWindow(100, 100, 1024, 768);
+    viewer.setSceneData(studio);
+    return viewer.run();
 }
 
 } // namespace
@@ -203,21 +281,33 @@ int main(int argc, char** argv)
 {
     if (argc != 3)
     {
-        std::cerr << "Usage: " << argv[0] << " SCENES FOLDER" << std::endl;
+        std::cerr << "Usage: " << argv[0] << " SCENES FOLDER\n       " << argv[0] << " --view SCENES" << std::endl;
         return 2;
     }
-    if (!succeeds(EglGraphicsContext::create(width, height))) return 77;
+    const bool isViewed = std::string(argv[1]) == "--view";
+    const std::string scenes = argv[isViewed ? 2 : 1], folder = argv[2];
+    if (!isViewed && !succeeds(EglGraphicsContext::create(width, height))) return 77;
     const osg::ref_ptr<osg::Node> model =
-        osgDB::readRefNodeFile(std::string(argv[1]) + "/Wanderer.glb", new osgDB::Options("noKeys"));
+        osgDB::readRefNodeFile(scenes + "/Wanderer.glb", new osgDB::Options("noKeys"));
     if (!model) return 1;
-    const std::pair<const char*, Direction> pictures[] = {
-        {"Crossfade", crossfade}, {"Mask", maskedWave}, {"Additive", additiveWave}, {"Attachment", holdStaff}};
-    for (const auto& [name, direction] : pictures)
-        if (!succeeds(draw(makeRow(*model, direction), {{0, -5.6, 1.2}, {0, 0, 0.86}, 22.0},
-                           std::string(argv[2]) + "/" + name + ".png")))
-            return 1;
+    if (isViewed) return view(*model);
+
+    const Row rows[] = {
+        {"Crossfade", crossfade},   {"BlendSpace", blendGaits},      {"Mask", maskedWave},
+        {"Additive", additiveWave}, {"PosedJoints", poseArm},        {"Springs", swingScarf, 2.0, 0.0, 140.0},
+        {"LookAt", lookAtLight},    {"Feet", walkOnSlope, 0.0, 0.3}, {"Attachment", holdStaff}};
+    const Sight before{{0, -5.6, 1.2}, {0, 0, 0.86}, 22.0};
+    for (const Row& row : rows)
+        if (!succeeds(draw(makeRow(*model, row), before, row.seconds, folder + "/" + row.name + ".png"))) return 1;
     AnimatedCharacter* wanderer = findCharacter(*model);
     if (!wanderer) return 1;
-    const Sight fromAbove{{-2, -4.5, 4.2}, {1, 9, 0}, 36.0};
-    return succeeds(draw(makeCrowd(*wanderer), fromAbove, std::string(argv[2]) + "/Crowd.png")) ? 0 : 1;
+    const Result<osg::ref_ptr<osg::Node>> gazers = makeGazers(*model), hill = makeHill(*model);
+    if (!succeeds(gazers) || !succeeds(hill)) return 1;
+    const Sight fromAbove{{-2, -4.5, 4.2}, {1, 9, 0}, 36.0}, square{{0, -6, 2.9}, {0, 6, 0.9}, 36.0};
+    const Sight onTheHill{{0.2, -1.4, 1.7}, {0.3, 2.0, 0.9}, 44.0};
+    return succeeds(draw(makeCrowd(*wanderer), fromAbove, 0.0, folder + "/Crowd.png")) &&
+                   succeeds(draw(gazers.value(), square, 0.0, folder + "/Gaze.png")) &&
+                   succeeds(draw(hill.value(), onTheHill, 3.0, folder + "/Hill.png"))
+               ? 0
+               : 1;
 }

@@ -26,43 +26,12 @@ namespace osgGpuAnimation
 namespace
 {
 
+using namespace PosedNumbers;
 using Part = PosedKeyframe::Part;
 
+static_assert(largest == JointPose::largest, "the same limit for callers");
+
 constexpr std::uint32_t partBits = 0xFu; ///< of PosedKeyframe::setNumbers(): the numbers of a joint's first part
-
-bool isAllowed(float number)
-{
-    return std::abs(number) <= JointPose::largest; // false for NaN
-}
-
-bool isAllowed(const glm::vec3& numbers)
-{
-    return isAllowed(numbers.x) && isAllowed(numbers.y) && isAllowed(numbers.z);
-}
-
-/// The unit quaternion; none if it has no direction.
-std::optional<glm::vec4> unitRotation(const glm::vec4& rotation)
-{
-    const glm::dvec4 q(rotation);
-    const double squared = glm::dot(q, q); // of floats: neither too large nor too small for a double
-    if (!(squared > 0.0 && squared <= std::numeric_limits<double>::max())) return std::nullopt;
-    return glm::vec4(q / std::sqrt(squared));
-}
-
-/// Gives the transform a unit rotation and the w of translation and scale 0. False if a value is refused.
-bool makeAllowed(JointTransform& transform)
-{
-    glm::vec4& q = transform.rotation;
-    const float squared = glm::dot(q, q);
-    if (squared > 1e-20f && squared < 1e20f)
-        q *= 1.0f / std::sqrt(squared);
-    else if (const std::optional<glm::vec4> unit = unitRotation(q))
-        q = *unit;
-    else
-        return false;
-    transform.translation.w = transform.scale.w = 0.0f;
-    return isAllowed(glm::vec3(transform.translation)) && isAllowed(glm::vec3(transform.scale));
-}
 
 /// T · R · S of a matrix with an inverse, by its columns. A shear is dropped: the rotation keeps the direction of the
 /// first column and the plane of the first two.
@@ -76,15 +45,6 @@ JointTransform decomposed(const glm::dmat4& matrix)
     axes[2] = glm::cross(axes[0], axes[1]);
     const glm::dvec4 rotation = Rotation::numbers(glm::quat_cast(axes));
     return {glm::vec4(glm::dvec4(glm::dvec3(matrix[3]), 0.0)), glm::vec4(rotation), glm::vec4(glm::dvec4(scale, 0.0))};
-}
-
-/// The largest length of a joint at rest.
-float longestJoint(const AnimationSet& set)
-{
-    float longest = 0.0f;
-    for (const Joint& joint : set.skeleton().joints())
-        longest = std::max(longest, glm::length(glm::vec3(joint.rest.translation)));
-    return longest;
 }
 
 std::string jointAt(const AnimationSet& set, std::size_t joint)

@@ -55,6 +55,9 @@ struct PoseExtent
     double largestWeight = 0.0;
 };
 
+/// The largest length of a joint at rest.
+float longestJoint(const AnimationSet& set);
+
 /// The ranges of all joints over all times of a clip, between keyframes too. clip: null for the rest pose.
 std::vector<JointRange> rangesOfClip(const AnimationSet& set, const Clip* clip);
 

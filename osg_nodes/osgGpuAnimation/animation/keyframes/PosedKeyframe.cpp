@@ -3,10 +3,14 @@
 
 #include <layout.glsl>
 
+#include <glm/geometric.hpp>
+
 #include <algorithm>
 #include <atomic>
 #include <cassert>
+#include <cmath>
 #include <cstring>
+#include <limits>
 
 namespace osgGpuAnimation
 {
@@ -113,6 +117,38 @@ void PosedKeyframe::clear()
     std::fill(_texels.begin(), _texels.end(), glm::uvec4(POSE_NOT_SET));
     _isEmpty = true;
     _serial = nextSerial();
+}
+
+bool PosedNumbers::isAllowed(float number)
+{
+    return std::abs(number) <= largest; // false for NaN
+}
+
+bool PosedNumbers::isAllowed(const glm::vec3& numbers)
+{
+    return isAllowed(numbers.x) && isAllowed(numbers.y) && isAllowed(numbers.z);
+}
+
+std::optional<glm::vec4> PosedNumbers::unitRotation(const glm::vec4& rotation)
+{
+    const glm::dvec4 q(rotation);
+    const double squared = glm::dot(q, q); // of floats: neither too large nor too small for a double
+    if (!(squared > 0.0 && squared <= std::numeric_limits<double>::max())) return std::nullopt;
+    return glm::vec4(q / std::sqrt(squared));
+}
+
+bool PosedNumbers::makeAllowed(JointTransform& transform)
+{
+    glm::vec4& q = transform.rotation;
+    const float squared = glm::dot(q, q);
+    if (squared > 1e-20f && squared < 1e20f)
+        q *= 1.0f / std::sqrt(squared);
+    else if (const std::optional<glm::vec4> unit = unitRotation(q))
+        q = *unit;
+    else
+        return false;
+    transform.translation.w = transform.scale.w = 0.0f;
+    return isAllowed(glm::vec3(transform.translation)) && isAllowed(glm::vec3(transform.scale));
 }
 
 } // namespace osgGpuAnimation

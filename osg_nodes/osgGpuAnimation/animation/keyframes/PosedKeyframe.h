@@ -3,10 +3,12 @@
 
 #include <osgGpuAnimation/animation/keyframes/TrackBlend.h>
 
+#include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace osgGpuAnimation
@@ -55,5 +57,19 @@ private:
     std::uint64_t _serial;
     bool _isEmpty = true;
 };
+
+/// What a pose may hold.
+namespace PosedNumbers
+{
+
+constexpr float largest = 1e18f; ///< the largest absolute value
+bool isAllowed(float number);    ///< false beyond ±largest and for NaN
+bool isAllowed(const glm::vec3& numbers);
+/// The unit quaternion; none if it has no direction.
+std::optional<glm::vec4> unitRotation(const glm::vec4& rotation);
+/// Gives the transform a unit rotation and the w of translation and scale 0. False if a value is not allowed.
+bool makeAllowed(JointTransform& transform);
+
+} // namespace PosedNumbers
 
 } // namespace osgGpuAnimation

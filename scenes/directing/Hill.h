@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osgGpuAnimation/animation/Result.h>
+#include <osgGpuAnimation/nodes/AnimatedCharacter.h>
+#include <osgGpuAnimation/nodes/SpringBones.h>
+
+#include <osg/Node>
+
+namespace osgGpuAnimation
+{
+
+/// Declares the constraint "look" of a wanderer's chest, neck and head.
+Result<bool> addLook(AnimatedCharacter& wanderer);
+/// Lets a wanderer's scarf and hood swing.
+Result<osg::ref_ptr<SpringBones>> addSprings(AnimatedCharacter& wanderer);
+/// Plays the blend space from Walk to Run. speed: metres a second, in [0.71, 2.1].
+Result<bool> playGaits(AnimatedCharacter& wanderer, double speed);
+/// Keeps a wanderer's feet on the ground; the constraint "look" is declared, too.
+Result<bool> addGroundFeet(AnimatedCharacter& wanderer, osg::Node& ground);
+
+/// A plane of 8 x 8 m through the origin that rises towards +X. angle: radians.
+osg::ref_ptr<osg::Node> makeSlope(double angle);
+/// A wanderer who follows a path over hilly ground, faster and slower, with the feet on the ground and the scarf on
+/// springs, and looks at a lantern that flies about. model: Wanderer.glb.
+Result<osg::ref_ptr<osg::Node>> makeHill(const osg::Node& model);
+/// 2,000 wanderers who all look at one bird. model: Wanderer.glb.
+Result<osg::ref_ptr<osg::Node>> makeGazers(const osg::Node& model);
+
+} // namespace osgGpuAnimation

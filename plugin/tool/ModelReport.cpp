@@ -152,19 +152,19 @@ ordered_json reportKeyframes(const gltf::ImportedModel& model)
 ordered_json reportMeshes(const gltf::ImportedModel& model)
 {
     std::set<int> meshes;
-    std::size_t vertices = 0, skinned = 0, rigid = 0, still = 0, targets = 0;
-    for (const gltf::ImportedPrimitive& primitive : model.primitives)
+    std::size_t primitives = 0, vertices = 0, skinned = 0, rigid = 0, still = 0, targets = 0;
+    for (const gltf::ImportedPrimitive& drawn : model.primitives)
     {
-        meshes.insert(primitive.mesh);
-        vertices += primitive.vertexCount;
-        targets += primitive.targets;
-        const bool isFromPalette = dynamic_cast<const SkinnedGeometry*>(primitive.geometry.get()) != nullptr;
-        ++(primitive.skin >= 0 ? skinned : (isFromPalette ? rigid : still));
+        const std::size_t count = drawn.primitives->size();
+        meshes.insert(drawn.mesh);
+        primitives += count;
+        vertices += count * drawn.vertexCount;
+        targets += count * drawn.targets;
+        const bool isFromPalette = dynamic_cast<const SkinnedGeometry*>(drawn.geometry.get()) != nullptr;
+        (drawn.skin >= 0 ? skinned : (isFromPalette ? rigid : still)) += count;
     }
-    return {{"count", meshes.size()}, {"primitives", model.primitives.size()},
-            {"vertices", vertices},   {"skinned", skinned},
-            {"rigid", rigid},         {"still", still},
-            {"morphTargets", targets}};
+    return {{"count", meshes.size()}, {"primitives", primitives}, {"vertices", vertices},   {"skinned", skinned},
+            {"rigid", rigid},         {"still", still},           {"morphTargets", targets}};
 }
 
 ordered_json reportMaterials(const gltf::ImportedModel& model)

@@ -65,9 +65,9 @@ ordered_json nullIfEmpty(const std::string& text)
     return text.empty() ? ordered_json(nullptr) : ordered_json(text);
 }
 
-std::string primitiveName(const gltf::ImportedPrimitive& primitive)
+std::string primitiveName(int node, int primitive)
 {
-    return "primitive " + std::to_string(primitive.primitive) + " of node " + std::to_string(primitive.node);
+    return "primitive " + std::to_string(primitive) + " of node " + std::to_string(node);
 }
 
 } // namespace
@@ -125,24 +125,27 @@ void PoseDocument::addSkins()
 Result<bool> PoseDocument::addPrimitives(const PoseRequest& request)
 {
     ordered_json& primitives = _document["primitives"] = ordered_json::array();
-    for (const gltf::ImportedPrimitive& primitive : _model.primitives)
+    for (const gltf::ImportedPrimitive& drawn : _model.primitives)
     {
-        const auto wanted = request.sampled.find({primitive.node, primitive.primitive});
-        _sampled.push_back(wanted != request.sampled.end() ? wanted->second : spreadVertices(primitive));
-        for (std::uint32_t vertex : _sampled.back())
+        for (const int number : *drawn.primitives)
         {
-            if (vertex >= primitive.vertexCount)
-                return Error{primitiveName(primitive) + ": vertex " + std::to_string(vertex) +
-                             " is asked for, it has " + std::to_string(primitive.vertexCount)};
+            const auto wanted = request.sampled.find({drawn.node, number});
+            _sampled.push_back(wanted != request.sampled.end() ? wanted->second : spreadVertices(drawn));
+            for (std::uint32_t vertex : _sampled.back())
+            {
+                if (vertex >= drawn.vertexCount)
+                    return Error{primitiveName(drawn.node, number) + ": vertex " + std::to_string(vertex) +
+                                 " is asked for, it has " + std::to_string(drawn.vertexCount)};
+            }
+            primitives.push_back({{"node", drawn.node},
+                                  {"mesh", drawn.mesh},
+                                  {"primitive", number},
+                                  {"skin", drawn.skin < 0 ? ordered_json(nullptr) : ordered_json(drawn.skin)},
+                                  {"targets", drawn.targets},
+                                  {"vertices", drawn.vertexCount},
+                                  {"influences", drawn.influences},
+                                  {"sampled", _sampled.back()}});
         }
-        primitives.push_back({{"node", primitive.node},
-                              {"mesh", primitive.mesh},
-                              {"primitive", primitive.primitive},
-                              {"skin", primitive.skin < 0 ? ordered_json(nullptr) : ordered_json(primitive.skin)},
-                              {"targets", primitive.targets},
-                              {"vertices", primitive.vertexCount},
-                              {"influences", primitive.influences},
-                              {"sampled", _sampled.back()}});
     }
     return true;
 }
@@ -160,10 +163,13 @@ void PoseDocument::add(double time, const EvaluatedPose& pose)
             box.add(position);
             whole.add(position);
         }
-        ordered_json primitive = {{"bbox", box.json()}};
-        for (std::uint32_t vertex : _sampled[p])
-            primitive["positions"].push_back({all[vertex].x, all[vertex].y, all[vertex].z});
-        primitives.push_back(std::move(primitive));
+        for (std::size_t i = 0; i < _model.primitives[p].primitives->size(); ++i)
+        {
+            ordered_json primitive = {{"bbox", box.json()}};
+            for (std::uint32_t vertex : _sampled[primitives.size()])
+                primitive["positions"].push_back({all[vertex].x, all[vertex].y, all[vertex].z});
+            primitives.push_back(std::move(primitive));
+        }
     }
     if (_document["frames"].empty() && whole.diagonal() > 0.0 && !whole.empty())
         _document["modelSize"] = whole.diagonal();

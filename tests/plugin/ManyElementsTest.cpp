@@ -189,7 +189,10 @@ TEST(ManyElementsTest, noObjectHasManyParents)
                 file.slide(node);
             }
             if (isOneMesh)
+            {
+                file.primitive(mesh).mode = TINYGLTF_MODE_TRIANGLE_STRIP; // so that each has a drawable of its own
                 file.model.meshes[0].primitives.resize(10000, file.primitive(mesh));
+            }
             else
                 for (int i = 0; i < 10000; ++i)
                     file.node("", node, mesh);

@@ -112,7 +112,7 @@ protected:
             const json& about = poses["primitives"][index];
             SCOPED_TRACE("primitive " + std::to_string(index));
             ASSERT_EQ(about["node"], primitive.node);
-            ASSERT_EQ(about["primitive"], primitive.primitive);
+            ASSERT_EQ(about["primitive"], primitive.primitives->front());
             ASSERT_EQ(about["skin"].is_null() ? -1 : about["skin"].get<int>(), primitive.skin);
             ASSERT_EQ(about["targets"], primitive.targets);
             ASSERT_EQ(about["vertices"], primitive.vertexCount);

@@ -11,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <regex>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -306,6 +307,42 @@ TEST_F(ToolTest, fixedWeightsMayTakeSeveralEntries)
     const Process done = run({"pose", file, "--like", wanted, "--evaluator", "cpu"});
     ASSERT_EQ(done.status, 0) << done.err;
     EXPECT_EQ(json::parse(done.out)["frames"][0]["weights"][0]["weights"], weights);
+}
+
+// One drawable shows the first and the third; the documents have one entry each.
+TEST_F(ToolTest, primitivesDrawnTogetherAreListedEach)
+{
+    json model = json::parse(swingingFlag());
+    json primitive = model["meshes"][0]["primitives"][0];
+    primitive["mode"] = 4;
+    model["meshes"][0]["primitives"] = {primitive, primitive, primitive};
+    model["meshes"][0]["primitives"][1].erase("material");
+    const std::string file = folder.write("three.gltf", model.dump());
+    const json report = json::parse(run({"inspect", file, "--json"}).out);
+    EXPECT_EQ(report["meshes"]["primitives"], 3);
+    EXPECT_EQ(report["meshes"]["rigid"], 3);
+    EXPECT_EQ(report["meshes"]["vertices"], 12);
+    const json like = {{"schema", "gltf-pose/1"},
+                       {"clip", nullptr},
+                       {"frames", {{{"time", 0}}}},
+                       {"primitives", {{{"node", 1}, {"primitive", 2}, {"sampled", {3}}}}}};
+    const Process done = run({"pose", file, "--like", folder.write("third.json", like.dump()), "--evaluator", "cpu"});
+    ASSERT_EQ(done.status, 0) << done.err;
+    const json document = json::parse(done.out), poses = document["frames"][0]["primitives"];
+    ASSERT_EQ(document["primitives"].size(), 3u);
+    ASSERT_EQ(poses.size(), 3u);
+    std::set<int> listed;
+    for (std::size_t i = 0; i < poses.size(); ++i)
+    {
+        const int number = document["primitives"][i]["primitive"];
+        listed.insert(number);
+        EXPECT_EQ(document["primitives"][i]["vertices"], 4);
+        EXPECT_EQ(poses[i]["bbox"], poses[0]["bbox"]);
+        EXPECT_EQ(poses[i].contains("positions"), number == 2);
+        if (number != 2) continue;
+        EXPECT_EQ(poses[i]["positions"][0], json({1.0, 2.0, 0.0}));
+    }
+    EXPECT_EQ(listed, (std::set<int>{0, 1, 2}));
 }
 
 TEST_F(ToolTest, poseLikeAnswersItsOwnDocument)

@@ -35,6 +35,7 @@ bool add(const tinygltf::Material& material, const MaterialMaps& maps, Primitive
     if (!takeCoordinates(maps.coordinates, materials.coordinates)) return false;
     materials.hasNormalMap |= maps.hasNormalMap();
     materials.isBlended |= material.alphaMode == "BLEND";
+    materials.isTransparent |= materials.isBlended || material.extensions.count("KHR_materials_transmission") > 0;
     return true;
 }
 

@@ -25,7 +25,8 @@ struct PrimitiveMaterials
     std::vector<int> withoutCoordinates;
     std::vector<TextureCoordinates> coordinates; ///< those that a material reads are the first of these
     bool hasNormalMap = false;
-    bool isBlended = false; ///< in a variant: the order of the triangles counts
+    bool isBlended = false;     ///< in a variant: the order of the triangles counts
+    bool isTransparent = false; ///< in a variant, blended or transmissive: OSG draws the farthest drawable first
 
     /// variant: -1: none.
     int materialIn(int variant) const

@@ -42,17 +42,18 @@ void leaveOut(const JsonValue& object, const JsonValue& member, const std::strin
     member.dropFrom(object);
 }
 
-void leaveOutUnknown(const JsonValue& attributes, const std::string& name, bool morph, Report& report)
+/// target: of a primitive; -1: its own attributes.
+void leaveOutUnknown(const JsonValue& attributes, const PrimitiveName& name, int target, Report& report)
 {
     for (const JsonValue& attribute : attributes)
     {
         const std::optional<AttributeSemantic> semantic = AttributeSemantic::parse(attribute.key());
-        if (!semantic || (morph && !isMorphable(semantic->kind)))
-            leaveOut(attributes, attribute, name, "no attribute that glTF knows", report);
+        if (!semantic || (target >= 0 && !isMorphable(semantic->kind)))
+            leaveOut(attributes, attribute, name.attributes(target), "no attribute that glTF knows", report);
     }
 }
 
-void leaveOutGaps(const JsonValue& attributes, const std::string& name, Report& report)
+void leaveOutGaps(const JsonValue& attributes, const PrimitiveName& name, Report& report)
 {
     std::array<std::bitset<AttributeSemantic::mostSets>, std::size_t(Kind::Custom) + 1> sets;
     for (const JsonValue& attribute : attributes)
@@ -67,7 +68,7 @@ void leaveOutGaps(const JsonValue& attributes, const std::string& name, Report& 
         for (int before = 0; before < semantic.set; ++before)
             if (!sets[std::size_t(semantic.kind)].test(std::size_t(before)))
             {
-                leaveOut(attributes, attribute, name, "the sets before it are missing", report);
+                leaveOut(attributes, attribute, name.attributes(), "the sets before it are missing", report);
                 break;
             }
     }
@@ -83,24 +84,24 @@ void empty(const JsonValue& primitive)
         if (const JsonValue value = primitive[member]) value.dropFrom(primitive);
 }
 
-void checkPrimitive(const JsonValue& primitive, const std::string& name, Report& report)
+void checkPrimitive(const JsonValue& primitive, const PrimitiveName& name, Report& report)
 {
     const JsonValue attributes = primitive["attributes"];
-    leaveOutUnknown(attributes, name + ".attributes", false, report);
-    leaveOutGaps(attributes, name + ".attributes", report);
-    std::size_t target = 0;
+    leaveOutUnknown(attributes, name, -1, report);
+    leaveOutGaps(attributes, name, report);
+    int target = 0;
     for (const JsonValue& targetAttributes : primitive["targets"])
-        leaveOutUnknown(targetAttributes, name + '.' + elementName("targets", target++), true, report);
+        leaveOutUnknown(targetAttributes, name, target++, report);
     if (attributes["POSITION"]) return;
-    report.warn(name + ".attributes: expected POSITION, found none; the primitive is not drawn");
+    report.warn(name.attributes() + ": expected POSITION, found none; the primitive is not drawn");
     empty(primitive);
 }
 
-std::optional<Error> checkDraco(const JsonValue& primitive, const std::string& name)
+std::optional<Error> checkDraco(const JsonValue& primitive, const PrimitiveName& name)
 {
     const JsonValue attributes = primitive["extensions"]["KHR_draco_mesh_compression"]["attributes"];
     if (!attributes) return std::nullopt;
-    const std::string place = name + ".extensions.KHR_draco_mesh_compression.attributes";
+    const std::string place = name.text() + ".extensions.KHR_draco_mesh_compression.attributes";
     if (!attributes.is(JsonTree::Type::Object)) return fault(place, "an object", attributes.description());
     if (attributes.size() > mostDracoAttributes)
         return fault(place, "at most " + std::to_string(mostDracoAttributes) + " attributes",
@@ -127,12 +128,12 @@ std::optional<Error> checkPrimitiveRules(const JsonValue& meshes, Report& report
         std::size_t targets = 0;
         for (const JsonValue& primitive : mesh["primitives"])
         {
-            const std::string name = elementName("meshes", m, "primitives", p);
+            const PrimitiveName name{m, p};
             const JsonValue list = primitive["targets"];
             const std::size_t count = list ? list.size() : 0;
             if (p == 0) targets = count;
             if (count != targets)
-                return fault(name + ".targets", std::to_string(targets) + " as in the primitives before",
+                return fault(name.text() + ".targets", std::to_string(targets) + " as in the primitives before",
                              std::to_string(count));
             if (std::optional<Error> error = checkDraco(primitive, name)) return error;
             checkPrimitive(primitive, name, report);

@@ -40,17 +40,15 @@ public:
     {
     }
 
-    std::optional<Error> validate(const tinygltf::Primitive& primitive, const std::string& name)
+    std::optional<Error> validate(const tinygltf::Primitive& primitive, const PrimitiveName& name)
     {
         const auto position = primitive.attributes.find("POSITION");
         if (position == primitive.attributes.end()) return std::nullopt; // not drawn, checkDocumentRules() has warned
         const std::size_t vertices = accessorOf(position->second).count;
-        std::optional<Error> error =
-            validateAttributes(primitive.attributes, {false, _quantized}, vertices, name + ".attributes");
+        std::optional<Error> error = validateAttributes(primitive.attributes, {false, _quantized}, vertices, name, -1);
         for (std::size_t t = 0; t < primitive.targets.size() && !error; ++t)
-            error = validateAttributes(primitive.targets[t], {true, _quantized}, vertices,
-                                       name + '.' + elementName("targets", t));
-        if (!error) error = validateSets(primitive.attributes, name + ".attributes");
+            error = validateAttributes(primitive.targets[t], {true, _quantized}, vertices, name, static_cast<int>(t));
+        if (!error) error = validateSets(primitive.attributes, name);
         if (!error) error = validateIndices(primitive, vertices, name);
         if (error) return error;
         warnOfIncomplete(primitive, vertices, name);
@@ -63,25 +61,27 @@ private:
 
     const tinygltf::Accessor& accessorOf(int index) const { return _model.accessors[std::size_t(index)]; }
 
+    /// target: of the primitive; -1: its own attributes.
     std::optional<Error> validateAttributes(const Attributes& attributes, AttributePlace place, std::size_t vertices,
-                                            const std::string& name)
+                                            const PrimitiveName& name, int target)
     {
         for (const auto& [attribute, index] : attributes)
         {
+            const auto subject = [&, &semantic = attribute] { return name.attributes(target) + '.' + semantic; };
             const tinygltf::Accessor& accessor = accessorOf(index);
             const std::string wrong = wrongAttributeFormat(accessor, AttributeSemantic::parse(attribute)->kind, place);
-            const std::string in = " in " + elementName("accessors", std::size_t(index));
-            if (!wrong.empty()) return fault(name + '.' + attribute, wrong, formatText(accessor) + in);
+            const auto in = [at = index] { return " in " + elementName("accessors", std::size_t(at)); };
+            if (!wrong.empty()) return fault(subject(), wrong, formatText(accessor) + in());
             if (accessor.count != vertices)
-                return fault(name + '.' + attribute, std::to_string(vertices) + " elements (the count of POSITION)",
-                             std::to_string(accessor.count) + in);
+                return fault(subject(), std::to_string(vertices) + " elements (the count of POSITION)",
+                             std::to_string(accessor.count) + in());
             if (!_budget.take(accessor.count * elementBytes(accessor)))
-                return fault(name + '.' + attribute, _budget.limitText() + " for all primitives", "more");
+                return fault(subject(), _budget.limitText() + " for all primitives", "more");
         }
         return std::nullopt;
     }
 
-    std::optional<Error> validateSets(const Attributes& attributes, const std::string& name) const
+    std::optional<Error> validateSets(const Attributes& attributes, const PrimitiveName& name) const
     {
         for (const auto& [attribute, index] : attributes)
         {
@@ -90,7 +90,8 @@ private:
                                         : semantic.kind == Kind::Weights ? "JOINTS_"
                                                                          : nullptr;
             if (partner && attributes.count(partner + std::to_string(semantic.set)) == 0)
-                return fault(name, partner + std::to_string(semantic.set) + " beside " + attribute, "none");
+                return fault(name.attributes(), partner + std::to_string(semantic.set) + " beside " + attribute,
+                             "none");
         }
         return std::nullopt;
     }
@@ -105,47 +106,47 @@ private:
     }
 
     std::optional<Error> validateIndices(const tinygltf::Primitive& primitive, std::size_t vertices,
-                                         const std::string& name)
+                                         const PrimitiveName& name)
     {
         if (primitive.indices < 0) return std::nullopt;
         const tinygltf::Accessor& accessor = accessorOf(primitive.indices);
-        const std::string in = " in " + elementName("accessors", std::size_t(primitive.indices));
+        const auto in = [&] { return " in " + elementName("accessors", std::size_t(primitive.indices)); };
         const bool integers = accessor.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ||
                               accessor.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ||
                               accessor.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
         if (accessor.type != TINYGLTF_TYPE_SCALAR || !integers || accessor.normalized)
-            return fault(name + ".indices", "SCALAR of unsigned byte, unsigned short or unsigned int",
-                         formatText(accessor) + in);
+            return fault(name.text() + ".indices", "SCALAR of unsigned byte, unsigned short or unsigned int",
+                         formatText(accessor) + in());
         if (!_budget.take(accessor.count * elementBytes(accessor)))
-            return fault(name + ".indices", _budget.limitText() + " for all primitives", "more");
+            return fault(name.text() + ".indices", _budget.limitText() + " for all primitives", "more");
         // The largest value of each type would restart the primitive (section 3.7.2.1).
         const std::size_t restart = (std::size_t(1) << 8 * componentBytes(accessor.componentType)) - 1;
         const std::int64_t largest = largestIndex(primitive.indices);
         if (std::size_t(largest) >= std::min(vertices, restart))
-            return fault(name + ".indices", "indices below " + std::to_string(std::min(vertices, restart)),
-                         std::to_string(largest) + in);
+            return fault(name.text() + ".indices", "indices below " + std::to_string(std::min(vertices, restart)),
+                         std::to_string(largest) + in());
         return std::nullopt;
     }
 
-    void warnOfIncomplete(const tinygltf::Primitive& primitive, std::size_t vertices, const std::string& name)
+    void warnOfIncomplete(const tinygltf::Primitive& primitive, std::size_t vertices, const PrimitiveName& name)
     {
         const std::size_t count = primitive.indices < 0 ? vertices : accessorOf(primitive.indices).count;
         const std::size_t least[] = {1, 2, 2, 2, 3, 3, 3};
         const std::size_t step[] = {1, 2, 1, 1, 3, 1, 1};
         const std::size_t mode = std::size_t(primitive.mode);
         if (count < least[mode] || count % step[mode] != 0)
-            _report.warn(name + ": its " + std::to_string(count) +
+            _report.warn(name.text() + ": its " + std::to_string(count) +
                          " indices or vertices end in an incomplete line or "
                          "triangle, which is not drawn");
     }
 
-    void warnOfCoordinates(const tinygltf::Primitive& primitive, const std::string& name)
+    void warnOfCoordinates(const tinygltf::Primitive& primitive, const PrimitiveName& name)
     {
         if (primitive.material < 0) return;
         const std::uint32_t used = _coordinates[std::size_t(primitive.material)];
         for (int set = 0; set < AttributeSemantic::mostSets; ++set)
             if ((used >> set & 1) && primitive.attributes.count("TEXCOORD_" + std::to_string(set)) == 0)
-                return _report.warn(name + ".attributes: expected TEXCOORD_" + std::to_string(set) + ", which " +
+                return _report.warn(name.attributes() + ": expected TEXCOORD_" + std::to_string(set) + ", which " +
                                     elementName("materials", std::size_t(primitive.material)) +
                                     " reads, found none; the texture is left out");
     }
@@ -293,7 +294,7 @@ public:
 
 private:
     using Step = std::optional<Error> (SkinningValidation::*)(std::size_t mesh, tinygltf::Primitive&,
-                                                              const std::string& name);
+                                                              const PrimitiveName& name);
 
     std::optional<Error> forEachPrimitive(Step step)
     {
@@ -302,19 +303,18 @@ private:
             {
                 tinygltf::Primitive& primitive = _model.meshes[m].primitives[p];
                 if (primitive.attributes.empty()) continue;
-                if (std::optional<Error> error = (this->*step)(m, primitive, elementName("meshes", m, "primitives", p)))
-                    return error;
+                if (std::optional<Error> error = (this->*step)(m, primitive, PrimitiveName{m, p})) return error;
             }
         return std::nullopt;
     }
 
-    std::optional<Error> checkWeights(std::size_t mesh, tinygltf::Primitive& primitive, const std::string& name)
+    std::optional<Error> checkWeights(std::size_t mesh, tinygltf::Primitive& primitive, const PrimitiveName& name)
     {
         Influences influences = readInfluences(_model, primitive);
         const std::optional<std::string> mended = mendWeights(influences.weights);
         _demands[mesh].add(influences);
         if (!mended) return std::nullopt;
-        const std::string element = name + ".attributes.WEIGHTS_0";
+        const std::string element = name.attributes() + ".WEIGHTS_0";
         _report.warn(element + ": " + *mended + "; made to sum to 1, there and where else it is so");
         for (std::size_t set = 0; set < influences.weights.size(); ++set)
         {
@@ -349,12 +349,12 @@ private:
         return std::nullopt;
     }
 
-    std::optional<Error> checkJoints(std::size_t mesh, tinygltf::Primitive& primitive, const std::string& name)
+    std::optional<Error> checkJoints(std::size_t mesh, tinygltf::Primitive& primitive, const PrimitiveName& name)
     {
         const JointDemand& demand = _demands[mesh];
         if (demand.jointsInAll <= demand.smallestSkin) return std::nullopt;
         const Influences influences = readInfluences(_model, primitive);
-        const std::string element = name + ".attributes.JOINTS_0";
+        const std::string element = name.attributes() + ".JOINTS_0";
         bool mended = false;
         for (std::size_t set = 0; set < influences.joints.size(); ++set)
         {
@@ -388,8 +388,7 @@ std::optional<Error> validateMeshes(Model& model, MemoryBudget& budget, Report& 
     MeshValidation validation(model, primitives, report);
     for (std::size_t m = 0; m < model.meshes.size(); ++m)
         for (std::size_t p = 0; p < model.meshes[m].primitives.size(); ++p)
-            if (std::optional<Error> error =
-                    validation.validate(model.meshes[m].primitives[p], elementName("meshes", m, "primitives", p)))
+            if (std::optional<Error> error = validation.validate(model.meshes[m].primitives[p], PrimitiveName{m, p}))
                 return error;
     if (std::optional<Error> error = validateNodeWeights(model)) return error;
     return SkinningValidation(model, budget, report).run();

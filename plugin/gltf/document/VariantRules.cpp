@@ -85,12 +85,12 @@ Fault checkMapping(const JsonValue& mapping, const std::string& name, const Coun
     return std::nullopt;
 }
 
-void checkPrimitive(const JsonValue& primitive, const std::string& name, const Counts& counts, Report& report)
+void checkPrimitive(const JsonValue& primitive, const PrimitiveName& name, const Counts& counts, Report& report)
 {
     const JsonValue extensions = primitive["extensions"], extension = extensions[variantExtension];
     if (!extension) return;
     const JsonValue mappings = extension.is(JsonTree::Type::Object) ? extension["mappings"] : JsonValue();
-    const std::string place = name + ".extensions.KHR_materials_variants.mappings";
+    const std::string place = name.text() + ".extensions.KHR_materials_variants.mappings";
     if (counts.variants == 0 || !mappings.is(JsonTree::Type::Array))
     {
         // Without the file's variants, one warning has named that.
@@ -125,7 +125,7 @@ void checkVariantRules(const JsonValue& document, Report& report)
     {
         std::size_t p = 0;
         for (const JsonValue& primitive : mesh["primitives"])
-            checkPrimitive(primitive, elementName("meshes", m, "primitives", p++), counts, report);
+            checkPrimitive(primitive, PrimitiveName{m, p++}, counts, report);
         ++m;
     }
 }

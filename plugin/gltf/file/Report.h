@@ -58,6 +58,21 @@ std::string elementName(std::string_view collection, std::size_t index, std::str
     return name;
 }
 
+/// A primitive of a mesh. A file may have millions, so their names become text in messages only.
+struct PrimitiveName
+{
+    std::size_t mesh = 0;
+    std::size_t primitive = 0;
+
+    std::string text() const { return elementName("meshes", mesh, "primitives", primitive); }
+    /// meshes[3].primitives[0].attributes, or with a target meshes[3].primitives[0].targets[1].
+    std::string attributes(int target = -1) const
+    {
+        return text() + '.' +
+               (target < 0 ? std::string("attributes") : elementName("targets", static_cast<std::size_t>(target)));
+    }
+};
+
 /// Text of the file for a message: in quotation marks, clipped, printable ASCII only.
 std::string quoted(std::string_view text);
 inline std::string quoted(const std::string& text)

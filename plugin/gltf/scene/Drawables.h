@@ -17,8 +17,8 @@
 namespace osgGpuAnimation::gltf
 {
 
-/// One use of a primitive. At most one of skin and joint is set; with neither it is a plain osg::Geometry, else a
-/// SkinnedGeometry.
+/// One use of a primitive, and of those drawn together with it. At most one of skin and joint is set; with neither it
+/// is a plain osg::Geometry, else a SkinnedGeometry.
 struct DrawablePlace
 {
     int mesh = -1;
@@ -43,6 +43,8 @@ public:
 
     /// The first skin of the file with the same palette entries as this one.
     int firstAlike(int skin) const { return _firstAlike[static_cast<std::size_t>(skin)]; }
+    /// The primitives to ask drawable() for, see Meshes.
+    const std::vector<int>& firstPrimitives(int mesh) { return _meshes.firstPrimitives(mesh); }
     /// Null if the primitive cannot be drawn.
     osg::Geometry* drawable(const DrawablePlace& place);
     /// The arrays of the primitive; null if it cannot be drawn.

@@ -8,7 +8,9 @@
 #include "gltf/scene/TransformBound.h"
 #include "gltf/scene/TriangleMesh.h"
 
+#include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace osgGpuAnimation::gltf
 {
@@ -67,14 +69,57 @@ osg::ref_ptr<osg::PrimitiveSet> makePrimitiveSet(int mode, const std::vector<std
                                 : makeElements<osg::DrawElementsUInt>(glMode, indices);
 }
 
-/// The indices of whole points, lines or triangles; empty where the primitive has none.
-std::vector<std::uint32_t> readIndices(const tinygltf::Model& model, const tinygltf::Primitive& primitive)
+const tinygltf::Accessor& accessorOf(const tinygltf::Model& model, int accessor)
 {
-    std::vector<std::uint32_t> indices;
-    if (primitive.indices >= 0) indices = readIntegers(model, primitive.indices);
-    indices.resize(wholeCount(primitive.mode, indices.size()));
-    return indices;
+    return model.accessors[static_cast<std::size_t>(accessor)];
 }
+
+/// Zero without POSITION.
+std::size_t vertexCountOf(const tinygltf::Model& model, const tinygltf::Primitive& primitive)
+{
+    const auto positions = primitive.attributes.find("POSITION");
+    return positions == primitive.attributes.end() ? 0 : accessorOf(model, positions->second).count;
+}
+
+/// The indices or vertices of whole points, lines or triangles.
+std::size_t drawnCount(const tinygltf::Model& model, const tinygltf::Primitive& primitive)
+{
+    const std::size_t vertices = vertexCountOf(model, primitive);
+    if (vertices == 0 || primitive.indices < 0) return wholeCount(primitive.mode, vertices);
+    return wholeCount(primitive.mode, accessorOf(model, primitive.indices).count);
+}
+
+/// Appends the indices of whole points, lines or triangles; 0, 1, 2, … where the primitive has none.
+void appendIndices(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
+                   std::vector<std::uint32_t>& indices)
+{
+    const std::size_t before = indices.size();
+    const auto count = static_cast<std::ptrdiff_t>(drawnCount(model, primitive));
+    indices.resize(before + static_cast<std::size_t>(count));
+    const auto added = indices.begin() + static_cast<std::ptrdiff_t>(before);
+    if (primitive.indices < 0) return std::iota(added, indices.end(), 0u);
+    const std::vector<std::uint32_t> read = readIntegers(model, primitive.indices);
+    std::copy(read.begin(), read.begin() + count, added);
+}
+
+bool isList(int mode)
+{
+    return mode == 0 || mode == 1 || mode == modeTriangles;
+}
+
+/// Primitives with equal keys have the same vertices and look alike in all variants.
+struct GroupKey
+{
+    const tinygltf::Primitive* primitive;
+    PrimitiveMaterials materials;
+
+    auto values() const
+    {
+        return std::tie(primitive->mode, materials.own, primitive->attributes, primitive->targets, materials.ofVariant,
+                        materials.withoutCoordinates);
+    }
+    bool operator<(const GroupKey& other) const { return values() < other.values(); }
+};
 
 /// The inverse of `sourceVertex`: the first vertex made from each of the file's. Appends the vertices that no triangle
 /// uses to `sourceVertex`, so that every vertex of the file exists, drawn or not.
@@ -190,16 +235,27 @@ bool isFlat(const tinygltf::Primitive& primitive)
     return primitive.mode >= modeTriangles && primitive.attributes.count("NORMAL") == 0;
 }
 
-/// An upper bound of the memory that reading needs, influences included.
-std::size_t byteSize(const tinygltf::Model& model, const tinygltf::Primitive& primitive, std::size_t vertexCount)
+/// An upper bound of the memory that reading a vertex needs, influences included.
+std::size_t bytesAVertex(const tinygltf::Primitive& primitive)
 {
-    constexpr std::size_t aVertex = sizeof(osg::Vec3) * 2 + sizeof(osg::Vec2) + 3 * sizeof(osg::Vec4) + 2 * 24 + 8;
-    const std::size_t aTarget = sizeof(osg::Vec3) * 3 + sizeof(osg::Vec4) + sizeof(osg::Vec2);
-    const std::size_t indices =
-        primitive.indices < 0 ? 0 : model.accessors[static_cast<std::size_t>(primitive.indices)].count;
-    const std::size_t corners =
-        !isFlat(primitive) ? 0 : (primitive.mode == modeTriangles ? 1 : 3) * (indices ? indices : vertexCount);
-    return (vertexCount + corners) * (aVertex + aTarget * primitive.targets.size()) + 3 * 4 * indices;
+    constexpr std::size_t alone = sizeof(osg::Vec3) * 2 + sizeof(osg::Vec2) + 3 * sizeof(osg::Vec4) + 2 * 24 + 8;
+    constexpr std::size_t aTarget = sizeof(osg::Vec3) * 3 + sizeof(osg::Vec4) + sizeof(osg::Vec2);
+    return alone + aTarget * primitive.targets.size();
+}
+
+/// The same for its indices, and for the vertices that flat normals need. hasIndices: in memory, not in the file.
+std::size_t bytesOfIndices(const tinygltf::Model& model, const tinygltf::Primitive& primitive, bool hasIndices)
+{
+    const std::size_t count =
+        primitive.indices < 0 ? vertexCountOf(model, primitive) : accessorOf(model, primitive.indices).count;
+    const std::size_t corners = !isFlat(primitive) ? 0 : (primitive.mode == modeTriangles ? 1 : 3) * count;
+    return corners * bytesAVertex(primitive) + (hasIndices ? 3 * sizeof(std::uint32_t) * count : 0);
+}
+
+std::string labelOf(const tinygltf::Mesh& mesh, int meshIndex, int primitive)
+{
+    return namedElement("meshes", static_cast<std::size_t>(meshIndex), mesh.name) + '.' +
+           elementName("primitives", static_cast<std::size_t>(primitive));
 }
 
 } // namespace
@@ -247,26 +303,70 @@ void Meshes::readSurface(const tinygltf::Primitive& primitive, const PrimitiveMa
         readMorphTargets(_model, primitive, mesh.texCoords ? &materials.coordinates.front() : nullptr, wantsTangents);
 }
 
-std::optional<MeshPrimitive> Meshes::read(int meshIndex, int primitiveIndex, bool welded)
+const Meshes::Groups& Meshes::groupsOf(int mesh)
 {
-    const tinygltf::Mesh& source = _model.meshes[static_cast<std::size_t>(meshIndex)];
-    const tinygltf::Primitive& primitive = source.primitives[static_cast<std::size_t>(primitiveIndex)];
-    MeshPrimitive mesh;
-    mesh.label = namedElement("meshes", static_cast<std::size_t>(meshIndex), source.name) + ".primitives[" +
-                 std::to_string(primitiveIndex) + "]";
-    const auto positions = primitive.attributes.find("POSITION");
-    if (positions == primitive.attributes.end()) return std::nullopt; // the validation has warned of it
-    mesh.vertexCount = _model.accessors[static_cast<std::size_t>(positions->second)].count;
-    const std::size_t bytes = byteSize(_model, primitive, mesh.vertexCount);
-    if (!_budget.take(bytes))
+    const auto [place, isNew] = _groups.try_emplace(mesh);
+    Groups& groups = place->second;
+    if (!isNew) return groups;
+    std::map<GroupKey, std::size_t> latest;
+    for (const tinygltf::Primitive& primitive : _model.meshes[static_cast<std::size_t>(mesh)].primitives)
     {
-        _report.warn(mesh.label + ": it would take " + std::to_string(bytes) + " bytes, " + _budget.limitText() +
-                     "; not drawn");
-        return std::nullopt;
+        const std::size_t number = groups.next.size();
+        groups.next.push_back(-1);
+        GroupKey key{&primitive, materialsOf(_model, primitive, _maps)};
+        std::size_t before = number;
+        if (isList(primitive.mode) && !key.materials.isTransparent)
+            before = std::exchange(latest.try_emplace(std::move(key), number).first->second, number);
+        if (before == number)
+            groups.firsts.push_back(static_cast<int>(number));
+        else
+            groups.next[before] = static_cast<int>(number);
     }
-    std::vector<std::uint32_t> indices = readIndices(_model, primitive);
-    if (primitive.indices >= 0 ? indices.empty() : wholeCount(primitive.mode, mesh.vertexCount) == 0)
-        return std::nullopt; // too few vertices for one element: the validation has warned of it
+    return groups;
+}
+
+/// Returns the indices of all primitives that are drawn together with the first; none where a single one has none.
+/// Those that exceed the memory budget are left out, with a warning each. outPrimitives: the others; none if nothing
+/// can be drawn.
+std::vector<std::uint32_t> Meshes::readGroup(int meshIndex, int first, std::vector<int>& outPrimitives)
+{
+    const tinygltf::Mesh& mesh = _model.meshes[static_cast<std::size_t>(meshIndex)];
+    const Groups& groups = groupsOf(meshIndex);
+    const bool isAlone = groups.next[static_cast<std::size_t>(first)] < 0;
+    const tinygltf::Primitive& alike = mesh.primitives[static_cast<std::size_t>(first)];
+    std::size_t bytesOfVertices = vertexCountOf(_model, alike) * bytesAVertex(alike);
+    std::vector<std::uint32_t> indices;
+    for (int number = first; number >= 0; number = groups.next[static_cast<std::size_t>(number)])
+    {
+        const tinygltf::Primitive& primitive = mesh.primitives[static_cast<std::size_t>(number)];
+        if (drawnCount(_model, primitive) == 0) continue; // the validation has warned of it
+        const bool hasIndices = !isAlone || primitive.indices >= 0;
+        const std::size_t bytes = bytesOfVertices + bytesOfIndices(_model, primitive, hasIndices);
+        if (!_budget.take(bytes))
+        {
+            _report.warn(labelOf(mesh, meshIndex, number) + ": it would take " + std::to_string(bytes) + " bytes, " +
+                         _budget.limitText() + "; not drawn");
+            continue;
+        }
+        bytesOfVertices = 0; // the others share them
+        outPrimitives.push_back(number);
+        if (hasIndices) appendIndices(_model, primitive, indices);
+    }
+    return indices;
+}
+
+std::optional<MeshPrimitive> Meshes::read(int meshIndex, int first, bool welded)
+{
+    std::vector<int> primitives;
+    std::vector<std::uint32_t> indices = readGroup(meshIndex, first, primitives);
+    if (primitives.empty()) return std::nullopt;
+    const tinygltf::Mesh& source = _model.meshes[static_cast<std::size_t>(meshIndex)];
+    const tinygltf::Primitive& primitive = source.primitives[static_cast<std::size_t>(primitives.front())];
+    MeshPrimitive mesh;
+    mesh.label = labelOf(source, meshIndex, primitives.front());
+    if (primitives.size() > 1) mesh.label += " and " + std::to_string(primitives.size() - 1) + " more";
+    mesh.primitives = std::make_shared<const std::vector<int>>(std::move(primitives));
+    mesh.vertexCount = vertexCountOf(_model, primitive);
     mesh.positions = readVectors(_model, primitive.attributes, "POSITION");
     mesh.normals = readVectors(_model, primitive.attributes, "NORMAL");
     const PrimitiveMaterials materials = materialsOf(_model, primitive, _maps);

@@ -21,10 +21,13 @@
 namespace osgGpuAnimation::gltf
 {
 
-/// A primitive's arrays as OSG draws them, in the mesh's own space.
+/// The arrays of a primitive, or of several drawn together, as OSG draws them, in the mesh's own space.
 struct MeshPrimitive
 {
-    std::string label;           ///< `meshes[3] "Cape".primitives[0]`, for messages
+    std::string
+        label; ///< `meshes[3] "Cape".primitives[0]` or `meshes[3] "Cape".primitives[0] and 2 more`, for messages
+    /// The file's numbers within the mesh, ascending; see Meshes.
+    std::shared_ptr<const std::vector<int>> primitives;
     std::size_t vertexCount = 0; ///< of the file's POSITION accessor
     osg::ref_ptr<osg::Vec3Array> positions;
     osg::ref_ptr<osg::Vec3Array> normals;         ///< null: points or lines without normals, which are drawn unlit
@@ -50,24 +53,40 @@ struct MeshPrimitive
 /// Reads the primitives of a file's meshes, each once: all modes, with or without indices, flat normals where a
 /// triangle mesh has none (glTF 2.0, section 3.7.2.1). Primitives that cannot be drawn are left out; the validation has
 /// warned of them.
+///
+/// Points, lines and triangles of one mesh are drawn together, in the order of the file, if they have the same
+/// attributes, targets and materials in all variants: one drawable has their indices. Transparent ones stay apart,
+/// since OSG sorts them by distance.
 class Meshes
 {
 public:
     /// Reads the texture coordinates that the maps need, and tangents for normal maps.
     Meshes(const tinygltf::Model& model, MapsOfMaterials& maps, MemoryBudget& budget, Report& report);
 
-    /// skinned: by a skin, which makes vertices expensive: they are welded instead of split. Null if the primitive has
-    /// nothing to draw.
+    /// The primitives of a mesh, ascending, without those that are drawn together with an earlier one.
+    const std::vector<int>& firstPrimitives(int mesh) { return groupsOf(mesh).firsts; }
+    /// One of firstPrimitives(), and those drawn together with it. skinned: by a skin, which makes vertices expensive:
+    /// they are welded instead of split. Null if there is nothing to draw.
     const MeshPrimitive* primitive(int mesh, int primitive, bool skinned = false);
 
 private:
-    std::optional<MeshPrimitive> read(int mesh, int primitive, bool welded);
+    /// The primitives of a mesh that are drawn together.
+    struct Groups
+    {
+        std::vector<int> firsts; ///< see firstPrimitives()
+        std::vector<int> next;   ///< by primitive: the next that is drawn together with it; -1: none
+    };
+
+    const Groups& groupsOf(int mesh);
+    std::optional<MeshPrimitive> read(int mesh, int first, bool welded);
+    std::vector<std::uint32_t> readGroup(int mesh, int first, std::vector<int>& outPrimitives);
     void readSurface(const tinygltf::Primitive& primitive, const PrimitiveMaterials& materials, MeshPrimitive& mesh);
 
     const tinygltf::Model& _model;
     MapsOfMaterials& _maps;
     MemoryBudget& _budget;
     Report& _report;
+    std::map<int, Groups> _groups; ///< by mesh
     std::map<std::tuple<int, int, bool>, std::optional<MeshPrimitive>> _primitives;
 };
 

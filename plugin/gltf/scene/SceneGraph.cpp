@@ -110,9 +110,9 @@ void SceneGraphBuilder::addMesh(std::size_t node)
     if (source.mesh < 0) return;
     const auto& primitives = _parts.model.meshes[static_cast<std::size_t>(source.mesh)].primitives;
     bool moves = false;
-    for (std::size_t index = 0; index < primitives.size(); ++index)
+    for (const int first : _parts.drawables.firstPrimitives(source.mesh))
     {
-        const DrawablePlace place = placeOf(node, static_cast<int>(index));
+        const DrawablePlace place = placeOf(node, first);
         osg::Geometry* geometry = _parts.drawables.drawable(place);
         if (!geometry) continue;
         const MeshPrimitive& mesh = *_parts.drawables.meshPrimitive(place);
@@ -126,12 +126,12 @@ void SceneGraphBuilder::addMesh(std::size_t node)
         ImportedPrimitive imported;
         imported.node = static_cast<int>(node);
         imported.mesh = place.mesh;
-        imported.primitive = place.primitive;
+        imported.primitives = mesh.primitives;
         imported.skin = place.skin < 0 ? -1 : source.skin;
         imported.morph = place.morph;
         imported.targets = mesh.targets.size();
         imported.vertexCount = mesh.vertexCount;
-        imported.influences = place.skin < 0 ? 0 : 4 * influenceSetCount(primitives[index]);
+        imported.influences = place.skin < 0 ? 0 : 4 * influenceSetCount(primitives[static_cast<std::size_t>(first)]);
         imported.geometry = geometry;
         imported.geometryVertex = mesh.geometryVertex;
         _primitives.push_back(std::move(imported));

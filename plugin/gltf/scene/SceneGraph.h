@@ -30,18 +30,19 @@ struct Joints;
 struct Morphs;
 struct NodeTree;
 
-/// One primitive of one mesh node of the scene, as it is in the graph.
+/// One primitive of one mesh node of the scene, as it is in the graph, or several that are drawn together.
 struct ImportedPrimitive
 {
     int node = -1; ///< the file's numbers
     int mesh = -1;
-    int primitive = -1;                   ///< within the mesh
     int skin = -1;                        ///< -1: none
     int morph = -1;                       ///< index into the set's morphs, -1: none
     std::size_t targets = 0;              ///< morph targets
     std::size_t vertexCount = 0;          ///< of the file's POSITION accessor
     std::size_t influences = 0;           ///< joints a vertex can name: 4 a JOINTS_n set
     osg::ref_ptr<osg::Geometry> geometry; ///< a SkinnedGeometry if it is drawn from the palette
+    /// The file's numbers within the mesh, ascending: more than one if they are drawn together, see Meshes.
+    std::shared_ptr<const std::vector<int>> primitives;
     /// vertexCount numbers: the vertex of `geometry` for each of the file's vertices; null if they are the same.
     std::shared_ptr<const std::vector<std::uint32_t>> geometryVertex;
     /// Of a plain geometry: its mesh-to-world transform at rest, in the file's axes; identity for a SkinnedGeometry.

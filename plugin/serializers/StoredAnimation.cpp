@@ -3,6 +3,7 @@
 
 #include "cache/SeparateLoads.h"
 #include "cache/TypedWriters.h"
+#include "serializers/StoredConstraints.h"
 
 #include <osgGpuAnimation/animation/AnimationLayer.h>
 #include <osgGpuAnimation/animation/Clip.h>
@@ -72,8 +73,10 @@ void transferMorphs(ValueStream& stream, std::vector<MorphWeights>& morphs)
                 });
 }
 
-/// The version of a stored set; before it, all clips are exact.
+/// The versions of a stored set: before the first, all clips are exact; sets without constraints do not need the
+/// second.
 constexpr std::int32_t versionWithCompactClips = 2;
+constexpr std::int32_t versionWithConstraints = 3;
 constexpr std::size_t floatsATransform = sizeof(JointTransform) / sizeof(float);
 /// Of all compact clips of a set together; the default of the glTF reader's budget.
 constexpr std::size_t maxCompactBytes = std::size_t(2) << 30;
@@ -298,6 +301,7 @@ private:
 void StoredAnimationSet::transferContents(ValueStream& stream, StoredAnimationSet& stored)
 {
     std::int32_t version = versionWithCompactClips;
+    std::vector<Constraint> constraints;
     std::vector<Joint> joints;
     std::vector<Skin> skins;
     std::vector<int> rigidJoints;
@@ -310,18 +314,22 @@ void StoredAnimationSet::transferContents(ValueStream& stream, StoredAnimationSe
         rigidJoints = set->rigidJoints();
         morphs = set->morphs();
         clips = set->clips();
+        constraints = set->constraints();
+        if (!constraints.empty()) version = versionWithConstraints;
     }
-    stream.limited("the version of an animation set", version, 1, versionWithCompactClips).endLine();
+    stream.limited("the version of an animation set", version, 1, versionWithConstraints).endLine();
     transferJoints(stream, joints);
     transferSkins(stream, skins);
     transferRigidJoints(stream, rigidJoints);
     transferMorphs(stream, morphs);
     transferClips(stream, version, joints.size(), morphs, clips);
+    if (version >= versionWithConstraints) transferConstraints(stream, constraints);
     if (!stream.hasRead()) return;
     Result<Skeleton> skeleton = toSkeleton(joints);
     if (!skeleton) return stream.fail(skeleton.error().message);
-    Result<std::shared_ptr<const AnimationSet>> made = AnimationSet::create(
-        {std::move(skeleton).value(), std::move(skins), std::move(rigidJoints), std::move(morphs), std::move(clips)});
+    Result<std::shared_ptr<const AnimationSet>> made =
+        AnimationSet::create({std::move(skeleton).value(), std::move(skins), std::move(rigidJoints), std::move(morphs),
+                              std::move(clips), std::move(constraints)});
     if (!made) return stream.fail(made.error().message);
     stored._read = made.value();
 }
@@ -340,8 +348,10 @@ void transferActiveClip(ValueStream& stream, LayerSnapshot::ActiveClip& activeCl
     stream.values(activeClip.shareBefore, activeClip.phaseGroup).endLine();
 }
 
-/// The version of a stored controller; without blend spaces, controllers stay readable for earlier versions.
+/// The versions of a stored controller; without blend spaces and targets of constraints, controllers stay readable for
+/// earlier versions.
 constexpr std::int32_t versionWithBlends = 2;
+constexpr std::int32_t versionWithTargets = 4;
 
 bool needsBlends(const LayerSnapshot& layer)
 {
@@ -426,7 +436,8 @@ void transferController(ValueStream& stream, AnimationController& controller)
     std::int32_t version = 1;
     for (std::size_t i = 0; !stream.isReading() && i < controller.layerCount(); ++i)
         if (needsBlends(controller.layer(i).snapshot())) version = versionWithBlends;
-    stream.limited("the version of a controller", version, 1, versionWithBlends).endLine();
+    if (!stream.isReading() && hasTargets(controller)) version = versionWithTargets;
+    stream.limited("the version of a controller", version, 1, versionWithTargets).endLine();
     const std::size_t layers = stream.open("Layers", controller.layerCount());
     if (layers > maxLayers) stream.fail(std::to_string(layers) + " layers, at most " + std::to_string(maxLayers));
     for (std::size_t i = 0; i < layers && stream.isGood(); ++i)
@@ -441,6 +452,7 @@ void transferController(ValueStream& stream, AnimationController& controller)
                      << "; it does not play" << std::endl;
     }
     stream.close();
+    if (version >= versionWithTargets) transferTargets(stream, controller);
 }
 
 void dropFormerCallbacks(osg::Node& node)

@@ -23,6 +23,10 @@ Result<bool> measurePose(const Subject& subject, const Effort& effort, osg::Grap
 Result<bool> measureSamples(const Subject& subject, const Effort& effort, osg::GraphicsContext& context,
                             Report& report);
 
+/// Look-ats and two-bone inverse kinematics compared with the same characters without. Requires a current context.
+Result<bool> measureConstraints(const Subject& subject, const Effort& effort, osg::GraphicsContext& context,
+                                Report& report);
+
 /// The same characters in chunks of different sizes. Requires a current context.
 Result<bool> measureChunks(const Subject& subject, const Effort& effort, osg::GraphicsContext& context, Report& report);
 

@@ -40,6 +40,15 @@ public:
     std::string check();
 
     std::size_t count() const { return _controllers.size(); }
+    const AnimationSet& set() const { return *_set; }
+
+    /// Calls function(index, controller) for all characters.
+    template <typename Function>
+    void forEach(Function function)
+    {
+        for (std::size_t i = 0; i < count(); ++i)
+            function(i, _controllers[i]);
+    }
 
 private:
     std::shared_ptr<const AnimationSet> _set;

@@ -22,7 +22,8 @@ namespace
 constexpr const char* usage = R"(osggpuanim_benchmark [options] OUTPUT_FOLDER
     measures this kit against osgAnimation, prints a table and writes benchmark.json and plots into the folder
     --quick           fewer characters and rounds
-    --only PART       pose, samples, chunks, depth, frames, crowd, draws, shading, start or load; several times, too
+    --only PART       pose, samples, constraints, chunks, depth, frames, crowd, draws, shading, start or load; several
+                      times, too
     --return-memory   leave it to glibc whether freed memory goes back to the kernel
     --subject NAME    Wanderer, Fox, CesiumMan or Knight; may be given several times
 )";
@@ -114,6 +115,8 @@ Result<bool> measureSubject(const Request& request, const Effort& effort, const 
         {"shading", measureShading}, {"start", measureStart}, {"load", measureLoad}};
     if (request.has("samples"))
         if (Result<bool> done = measureSamples(subject, effort, context, report); !done) return done;
+    if (request.has("constraints"))
+        if (Result<bool> done = measureConstraints(subject, effort, context, report); !done) return done;
     if (request.has("chunks"))
         if (Result<bool> done = measureChunks(subject, effort, context, report); !done) return done;
     if (request.has("pose"))

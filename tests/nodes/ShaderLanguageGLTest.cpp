@@ -5,6 +5,7 @@
 #include "support/RandomSet.h"
 #include "support/ScratchFolder.h"
 
+#include <osgGpuAnimation/animation/constraints/ConstraintPlan.h>
 #include <osgGpuAnimation/gpu/passes/PoseVariant.h>
 #include <osgGpuAnimation/gpu/PoseBatch.h>
 #include <osgGpuAnimation/gpu/PosePipeline.h>
@@ -195,20 +196,28 @@ protected:
     /// Links the pose passes of both forms, each pair of a variant's members at least once.
     void linkPosePasses()
     {
-        for (const std::vector<int>& row : pairwise({2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 5, 3, 3}))
+        for (const std::vector<int>& row : pairwise({2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 5, 3, 3}))
         {
             PoseVariant variant;
-            bool* const flags[] = {&variant.hasSplines,    &variant.hasSeveralSamples, &variant.hasWeights,
-                                   &variant.isRootLevel,   &variant.hasRoots,          &variant.hasLayers,
-                                   &variant.hasMasks,      &variant.hasAdditive,       &variant.hasExactKeys,
-                                   &variant.hasCompactKeys};
+            bool* const flags[] = {&variant.hasSplines,     &variant.hasSeveralSamples, &variant.hasWeights,
+                                   &variant.isRootLevel,    &variant.hasRoots,          &variant.hasLayers,
+                                   &variant.hasMasks,       &variant.hasAdditive,       &variant.hasExactKeys,
+                                   &variant.hasCompactKeys, &variant.hasConstraints};
             std::size_t i = 0;
             for (bool* flag : flags)
                 *flag = row[i++] != 0;
             variant.sampleCount = row[i++];
             variant.translationMotion = static_cast<PartMotion>(row[i++]);
             variant.scaleMotion = static_cast<PartMotion>(row[i++]);
-            for (const auto& pass : {variant.makePosePass(gl()), variant.makeMixPass(gl())})
+            ConstraintChain chain;
+            chain.isLookAt = variant.hasConstraints;
+            chain.joints = {1, 2, 3, 4};
+            chain.mid = 2;
+            ConstraintStep step;
+            step.chainBegin = 1;
+            const ConstraintShape shape(step, chain);
+            for (const auto& pass :
+                 {variant.makePosePass(gl()), variant.makeMixPass(gl()), variant.makeConstraintPass(gl(), shape)})
             {
                 EXPECT_TRUE(pass->valid());
                 pass->release();

@@ -38,7 +38,7 @@ struct FaultCase
 };
 
 const FaultCase faults[] = {
-    {"a newer version", "Contents 2", "Contents 3", Answer::Error, "version of an animation set"},
+    {"a newer version", "Contents 2", "Contents 9", Answer::Error, "version of an animation set"},
     {"a version that is no number", "Contents 2", "Contents x", Answer::Error, "\"x\""},
     {"too few joints", "Joints 3 ", "Joints 2 ", Answer::Error, "Skins"},
     {"too many joints", "Joints 3 ", "Joints 4000000000 ", Answer::Error, "Joint"},
@@ -68,7 +68,7 @@ const FaultCase faults[] = {
      "RootMotion 1 {\nJoint 9 0 1 0 Key 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 "
      "0\n",
      Answer::Error, "root motion does not exist"},
-    {"a newer controller", "Controller 1", "Controller 3", Answer::Error, "version of a controller"},
+    {"a newer controller", "Controller 1", "Controller 9", Answer::Error, "version of a controller"},
     {"nine layers", "Layers 1 ", "Layers 9 ", Answer::Error, "9 layers"},
     {"a state that there is not", "Layer 1 1 1", "Layer 4 1 1", Answer::Error, "state is 4"},
     {"a loop mode that there is not", "Layer 1 1 1", "Layer 1 3 1", Answer::Error, "loop mode is 3"},

@@ -2,6 +2,7 @@
 #include "plugin/ModelBuilder.h"
 #include "plugin/SharedAssets.h"
 #include "plugin/StoredScene.h"
+#include "support/Limb.h"
 #include "support/NotifyLog.h"
 
 #include <osgGpuAnimation/animation/ClipBuilder.h>
@@ -493,6 +494,57 @@ TEST_F(SerializersTest, setsOfTheFirstVersionAreRead)
     const osg::ref_ptr<osg::Node> read = osgDB::readRefNodeFile(files.folder.write("first.osgt", text));
     ASSERT_TRUE(read && findCharacter(*read)) << log->text;
     EXPECT_TRUE(haveSameKeyframes(character().getAnimationSet(), findCharacter(*read)->getAnimationSet()));
+}
+
+TEST_F(SerializersTest, constraintsAndTheirTargetsComeBack)
+{
+    EXPECT_EQ(textOf(*scene).find("Constraints"), std::string::npos) << "without one, files are as before";
+    LookAt look{"look", {"hips", "spine \"1\""}, {0.25f, 0.75f}, {1, 0, 0}, {0, 0, 1}, {0.1f, 0, 0}, 1.5f, 0.5f};
+    const auto set =
+        limbOf({jointAt("hips", {0, 1, 0}), jointAt("spine \"1\"", {0, 1, 0}), jointAt("hand", {0, 1, 0.1f})},
+               {look, TwoBoneIk{"reach", "hips", "spine \"1\"", "hand", {1, 0, 0}, 0.9f}, LookAt{"unused", {"hips"}}});
+    ASSERT_TRUE(set) << set.error().message;
+    const osg::ref_ptr<AnimatedCharacter> limb = new AnimatedCharacter(set.value());
+    AnimationController& controller = limb->getController();
+    EXPECT_EQ(textOf(*limb).find("Targets"), std::string::npos);
+    ASSERT_TRUE(controller.constraint("look").setTarget({2, 3, 4}));
+    ASSERT_TRUE(controller.constraint("look").setWeight(0.5f));
+    ASSERT_TRUE(controller.constraint("reach").setTarget({0.5f, 2, 0.5f}));
+    ASSERT_TRUE(controller.constraint("reach").setPole({0, 0, 1}));
+    ASSERT_TRUE(controller.constraint("reach").setTwist(0.3f));
+    ASSERT_TRUE(controller.constraint("reach").setRotation({1, 0, 0, 1}));
+    controller.advance(0.2); // on the way to the target
+    const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*limb);
+    ASSERT_TRUE(crowd->add(osg::Matrixd(), controller));
+    for (const char* format : formats)
+    {
+        SCOPED_TRACE(format);
+        const osg::ref_ptr<osg::Node> read = files.throughFile(*limb, format);
+        ASSERT_TRUE(read && findCharacter(*read)) << log->text;
+        const osg::ref_ptr<osg::Node> readCrowd = files.throughFile(*crowd, format);
+        auto* back = dynamic_cast<AnimatedCrowd*>(readCrowd.get());
+        ASSERT_TRUE(back);
+        EXPECT_EQ(findCharacter(*read)->getAnimationSet().constraints().size(), 3u);
+        AnimationController first = controller;
+        AnimationController second = findCharacter(*read)->getController();
+        AnimationController instance = back->getInstances().controllerCopy(0);
+        for (int step = 0; step < 20; ++step)
+        {
+            EXPECT_LE(paletteDifference(first, second), 1e-6f) << "step " << step;
+            EXPECT_LE(paletteDifference(first, instance), 1e-6f) << "step " << step;
+            for (AnimationController* each : {&first, &second, &instance})
+                each->advance(0.1);
+        }
+    }
+    EXPECT_EQ(log->text, "");
+
+    std::string text = std::regex_replace(textOf(*limb), std::regex("(Target [^0-9]*)2 3 4"), "$1 2 3 1e30");
+    ASSERT_NE(text, textOf(*limb));
+    const osg::ref_ptr<osg::Node> read = osgDB::readRefNodeFile(files.folder.write("far.osgt", text));
+    ASSERT_TRUE(read && findCharacter(*read)) << log->text;
+    EXPECT_FALSE(findCharacter(*read)->getController().constraint("look").hasTarget());
+    EXPECT_TRUE(findCharacter(*read)->getController().constraint("reach").hasTarget());
+    EXPECT_NE(log->text.find("it is dropped"), std::string::npos);
 }
 
 } // namespace osgGpuAnimation

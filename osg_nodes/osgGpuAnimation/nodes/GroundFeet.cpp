@@ -28,7 +28,8 @@ namespace
 {
 
 constexpr double straightest = 0.9999; ///< of a leg's length: the hips sink until planted feet are within it
-constexpr double leastUpright = 0.5;   ///< z of the character's up axis: lower ones have no feet on the ground
+constexpr double foresight = 1.5 * GroundFeet::blendSeconds; ///< the ground of a landing within this time counts
+constexpr double leastUpright = 0.5; ///< z of the character's up axis: lower ones have no feet on the ground
 
 std::string nameOf(const GroundLeg& leg)
 {
@@ -88,7 +89,7 @@ Result<Leg> resolve(const AnimationSet& set, const GroundLeg& leg)
                index(contact),
                leg.sole,
                std::min(chain.softReach, straightest),
-               PlantedTimes(index(contact), leg.touchMarker, leg.leaveMarker)};
+               PlantedTimes(index(ankle), index(contact), leg.touchMarker, leg.leaveMarker)};
 }
 
 /// The legs in one set, for all its characters.
@@ -231,9 +232,17 @@ private:
             _feet[i].takePose(pose);
             _longestLeg = std::max(_longestLeg, _feet[i].length());
         }
-        _isPlanted.resize(_feet.size());
+        _planted.resize(_feet.size());
+        _landings.assign(_feet.size(), std::nullopt);
         for (std::size_t i = 0; i < _feet.size(); ++i)
-            _isPlanted[i] = legs->legs[i].planted.isPlanted(controller);
+        {
+            PlantedTimes::Now& planted = _planted[i] = legs->legs[i].planted.now(controller);
+            if (!(planted.secondsToTouch <= foresight) || !(_seconds > 0.0)) continue;
+            const osg::Vec3d way = _way * (planted.secondsToTouch / _seconds);
+            const auto then = [&](const glm::dvec3& place)
+            { return osg::Vec3d(place.x, place.y, place.z) * fileToWorld + way; };
+            _landings[i] = GroundedFoot::Probes{then(planted.ankle), then(planted.contact)};
+        }
     }
 
     void standOnGround(const Settings& settings, GroundProbe& probe)
@@ -242,15 +251,29 @@ private:
         for (std::size_t i = 0; i < _feet.size(); ++i)
         {
             GroundedFoot& foot = _feet[i];
-            foot.lock(_isPlanted[i], _heading, _seconds, settings.lockDistance * foot.length());
+            foot.lock(_planted[i].isPlanted, _heading, _seconds, settings.lockDistance * foot.length());
             const double reach = settings.reach * foot.length();
-            for (const osg::Vec3d& place : {foot.heelProbe(), foot.toeProbe()})
-                _lines.push_back({{place.x(), place.y(), _height + reach}, 2.0 * reach});
+            const auto add = [&](const GroundedFoot::Probes& probes)
+            {
+                for (const osg::Vec3d& place : {probes.heel, probes.toe})
+                    _lines.push_back({{place.x(), place.y(), _height + reach}, 2.0 * reach});
+            };
+            add(foot.probes());
+            if (_landings[i]) add(*_landings[i]);
         }
         _points.assign(_lines.size(), std::nullopt);
         if (settings.ground) probe.highest(*settings.ground, settings.traversalMask, _lines, _points);
+        auto point = _points.begin();
+        const auto next = [&]
+        {
+            point += 2;
+            return GroundedFoot::Ground{point[-2], point[-1]};
+        };
         for (std::size_t i = 0; i < _feet.size(); ++i)
-            _feet[i].standOn(_points[2 * i], _points[2 * i + 1], _seconds, _isNew);
+        {
+            const GroundedFoot::Ground below = next();
+            _feet[i].standOn(below, _landings[i] ? next() : GroundedFoot::Ground(), _seconds, _isNew);
+        }
     }
 
     /// The character follows the slope and approaches the height at which its lowest foot stands.
@@ -279,7 +302,7 @@ private:
             height = _height + slope;
         _lowest = lowest;
         for (std::size_t i = 0; i < _feet.size(); ++i)
-            height = _feet[i].limitedHeight(_height, height, legs->legs[i].reach, _isPlanted[i], _seconds);
+            height = _feet[i].limitedHeight(_height, height, legs->legs[i].reach, _planted[i].isPlanted, _seconds);
         for (GroundedFoot& foot : _feet)
             foot.follow(height - _height);
         _height = height;
@@ -331,8 +354,9 @@ private:
     osg::Vec3d _way; ///< of the character relative to the ground, horizontal
     double _heading = 0.0;
     PoseInstruction _instruction;
-    std::vector<bool> _isPlanted;
-    std::vector<GroundProbe::Line> _lines; ///< of each foot those of the heel and the toe
+    std::vector<PlantedTimes::Now> _planted;                    ///< by leg
+    std::vector<std::optional<GroundedFoot::Probes>> _landings; ///< by leg: of feet that come down soon
+    std::vector<GroundProbe::Line> _lines; ///< of each foot those of its probes, then of its landing
     std::vector<std::optional<GroundPoint>> _points;
 };
 

@@ -43,7 +43,8 @@ struct GroundLeg
 /// After each update of the character it samples the feet of the clips and the ground below them (world space, +Z up),
 /// and sets the targets of the legs: each foot has the height above the ground, and the angle to it, that it has above
 /// the sole's plane in the clips. A foot that the clips plant keeps its place in the world until they lift it; the
-/// ground's height and angle, and the place of a lifted foot, change within blendSeconds.
+/// ground's height and angle, and the place of a lifted foot, change within blendSeconds. A foot is ready for a higher
+/// ground, such as a stair, when it comes down.
 ///
 /// **It sets the height of the character's matrix**: the lowest foot reaches its ground, and the hips sink no further.
 /// The application and root motion move the character in x and y; add this callback after theirs. At the first update,

@@ -17,9 +17,9 @@ constexpr double largestPivot = 0.8;  ///< radians by which a character turns ov
 const osg::Vec3d upwards(0.0, 0.0, 1.0);
 
 /// The ground of a foot that enters it neither at the heel nor at the toe.
-std::optional<GroundPoint> supportOf(const std::optional<GroundPoint>& heel, const std::optional<GroundPoint>& toe,
-                                     double tolerance)
+std::optional<GroundPoint> supportOf(const GroundedFoot::Ground& ground, double tolerance)
 {
+    const auto& [heel, toe] = ground;
     if (!heel || !toe) return toe ? toe : heel;
     if (heel->place.z() <= toe->heightAt(heel->place) + tolerance) return toe;
     if (toe->place.z() <= heel->heightAt(toe->place) + tolerance) return heel;
@@ -95,14 +95,15 @@ void GroundedFoot::lock(bool isPlanted, double heading, double seconds, double l
         }
     }
     if (_isLocked && wasLocked) return;
-    _toeProbe = place();
-    _heelProbe = _toeProbe + osg::Quat(_pivot, _pose.up) * (onClipsGround(_pose.ankle.getTrans()) - _below);
+    _probes.toe = place();
+    _probes.heel = _probes.toe + osg::Quat(_pivot, _pose.up) * (onClipsGround(_pose.ankle.getTrans()) - _below);
 }
 
-void GroundedFoot::standOn(const std::optional<GroundPoint>& heel, const std::optional<GroundPoint>& toe,
-                           double seconds, bool isNew)
+void GroundedFoot::standOn(const Ground& below, const Ground& landing, double seconds, bool isNew)
 {
-    const std::optional<GroundPoint> support = supportOf(heel, toe, smallestJump * _length);
+    std::optional<GroundPoint> support = supportOf(below, smallestJump * _length);
+    const std::optional<GroundPoint> next = supportOf(landing, smallestJump * _length);
+    if (next && (!support || next->heightAt(place()) > support->heightAt(place()))) support = next;
     const GroundPoint ground = support ? *support : GroundPoint{place(), _pose.up};
     const double share = remainder(seconds, _liftLeft);
     _lift *= share;
@@ -165,7 +166,7 @@ void GroundedFoot::follow(double rise)
 
 void GroundedFoot::carry(const osg::Matrixd& motion, double turn)
 {
-    for (osg::Vec3d* place : {&_lockPlace, &_toeProbe, &_heelProbe, &_ground.place})
+    for (osg::Vec3d* place : {&_lockPlace, &_probes.toe, &_probes.heel, &_ground.place})
         *place = *place * motion;
     _lockHeading += turn;
     const osg::Vec3d normal = osg::Matrixd::transform3x3(osg::Matrixd::inverse(motion), _ground.normal);

@@ -39,13 +39,20 @@ public:
     /// places in the clips and in the world; beyond it the foot loses its place.
     void lock(bool isPlanted, double heading, double seconds, double largestShift);
 
-    /// Places to sample the ground below: of a locked foot those where it came down.
-    const osg::Vec3d& toeProbe() const { return _toeProbe; }
-    const osg::Vec3d& heelProbe() const { return _heelProbe; } ///< below the ankle
-
-    /// The ground below the probes; both empty: none, the clips' ground takes its place. isNew: without a blend.
-    void standOn(const std::optional<GroundPoint>& heel, const std::optional<GroundPoint>& toe, double seconds,
-                 bool isNew);
+    /// Places of a foot to sample the ground below.
+    struct Probes
+    {
+        osg::Vec3d heel, toe; ///< heel: below the ankle
+    };
+    const Probes& probes() const { return _probes; } ///< of a locked foot those where it came down
+    /// The ground below two probes; empty: none.
+    struct Ground
+    {
+        std::optional<GroundPoint> heel, toe;
+    };
+    /// Without any ground the clips' ground takes its place. landing: where a lifted foot comes down soon: it is there
+    /// in time if that is higher. isNew: without a blend.
+    void standOn(const Ground& ground, const Ground& landing, double seconds, bool isNew);
     bool isGrounded() const { return _isGrounded; } ///< false: there is no ground
     /// The height of the character at which the foot is as far below the hips as in the clips. height: the present one.
     double wantedHeight(double height) const;
@@ -79,7 +86,7 @@ private:
     osg::Vec3d _shift;   ///< horizontal
     double _pivot = 0.0; ///< about the contact, radians
     double _shiftLeft = 0.0;
-    osg::Vec3d _toeProbe, _heelProbe;
+    Probes _probes;
 
     // The ground: until _liftLeft seconds have passed the foot stands elsewhere.
     bool _isGrounded = false;

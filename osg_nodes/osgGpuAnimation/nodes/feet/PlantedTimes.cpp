@@ -2,6 +2,7 @@
 #include <osgGpuAnimation/nodes/feet/PlantedTimes.h>
 
 #include <osgGpuAnimation/animation/AnimationController.h>
+#include <osgGpuAnimation/animation/Pose.h>
 
 #include <algorithm>
 
@@ -47,41 +48,73 @@ bool moves(const AnimationLayer& layer, const AnimationSet& set, std::size_t joi
 
 } // namespace
 
-const std::vector<FootContact>& PlantedTimes::contactsOf(const AnimationSet& set, int clip)
+const std::vector<PlantedTimes::Contact>& PlantedTimes::contactsOf(const AnimationSet& set, int clip)
 {
     _contacts.resize(set.clips().size());
     const auto index = static_cast<std::size_t>(clip);
-    if (!_contacts[index])
+    if (_contacts[index]) return *_contacts[index];
+    std::vector<FootContact> times = contactsOfMarkers(set.clips()[index], _touchMarker, _leaveMarker);
+    if (times.empty()) times = findFootContacts(set, index, _contact).value();
+    _contacts[index].emplace();
+    for (const FootContact& time : times)
     {
-        _contacts[index] = contactsOfMarkers(set.clips()[index], _touchMarker, _leaveMarker);
-        if (_contacts[index]->empty()) _contacts[index] = findFootContacts(set, index, _contact).value();
+        PoseInstruction touch;
+        touch.samples[0] = set.sampleAt(clip, time.touch);
+        const auto placeOf = [&](std::size_t joint)
+        { return glm::dvec3(Pose::jointToModel(set, touch, joint).toColumns()[3]); };
+        _contacts[index]->push_back({time, placeOf(_ankle), placeOf(_contact)});
     }
     return *_contacts[index];
 }
 
-bool PlantedTimes::isPlanted(const AnimationController& controller)
+bool PlantedTimes::plants(const AnimationSet& set, const ClipPlayback& playback)
+{
+    const std::vector<Contact>& contacts = contactsOf(set, playback.clip());
+    return !(playback.duration() > 0.0) ||
+           std::any_of(contacts.begin(), contacts.end(),
+                       [&](const Contact& contact)
+                       { return isWithin(contact.time, playback.shownTime(), playback.duration()); });
+}
+
+/// Clips that run backwards or back and forth have no landing that is foreseen.
+void PlantedTimes::findLanding(const AnimationSet& set, const ClipPlayback& playback, Now& now)
+{
+    if (!(playback.speed() > 0.0) || playback.loopMode() == LoopMode::PingPong) return;
+    for (const Contact& contact : contactsOf(set, playback.clip()))
+    {
+        double away = contact.time.touch - playback.shownTime();
+        if (away < 0.0 && playback.loopMode() == LoopMode::Loop) away += playback.duration();
+        if (away < 0.0 || away / playback.speed() >= now.secondsToTouch) continue;
+        now.secondsToTouch = away / playback.speed();
+        now.ankle = contact.ankle;
+        now.contact = contact.contact;
+    }
+}
+
+PlantedTimes::Now PlantedTimes::now(const AnimationController& controller)
 {
     const AnimationSet& set = controller.set();
+    Now now;
     for (std::size_t i = controller.layerCount(); i-- > 0;)
     {
         const AnimationLayer& layer = controller.layer(i);
         if (!moves(layer, set, _contact)) continue;
         double shares = 0.0, planted = 0.0;
+        const ClipMixer::ActiveClip* heaviest = nullptr;
         for (std::size_t v = 0; v < layer.mixer().activeClipCount(); ++v)
         {
             const ClipMixer::ActiveClip& active = layer.mixer().activeClip(v);
-            const ClipPlayback& playback = active.playback;
-            if (playback.clip() < 0 || !(active.share > 0.0)) continue;
+            if (active.playback.clip() < 0 || !(active.share > 0.0)) continue;
             shares += active.share;
-            const std::vector<FootContact>& contacts = contactsOf(set, playback.clip());
-            const auto isNow = [&](const FootContact& contact)
-            { return isWithin(contact, playback.shownTime(), playback.duration()); };
-            if (playback.duration() <= 0.0 || std::any_of(contacts.begin(), contacts.end(), isNow))
-                planted += active.share;
+            if (plants(set, active.playback)) planted += active.share;
+            if (!heaviest || active.share > heaviest->share) heaviest = &active;
         }
-        if (shares > 0.0) return planted >= 0.5 * shares;
+        if (!heaviest) continue;
+        now.isPlanted = planted >= 0.5 * shares;
+        if (!now.isPlanted && layer.isPlaying()) findLanding(set, heaviest->playback, now);
+        break;
     }
-    return true;
+    return now;
 }
 
 } // namespace osgGpuAnimation

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/ClipBuilder.h>
+#include <osgGpuAnimation/animation/ClipMixer.h>
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,22 +19,40 @@ class AnimationController;
 class PlantedTimes
 {
 public:
+    /// What the clips say now.
+    struct Now
+    {
+        bool isPlanted = true;
+        /// Until the heaviest clip plants a lifted foot; infinity: never.
+        double secondsToTouch = std::numeric_limits<double>::infinity();
+        glm::dvec3 ankle{0.0}, contact{0.0}; ///< their places then, in the file's space
+    };
+
     /// contact: the joint at the sole. The markers' names may be empty.
-    PlantedTimes(std::size_t contact, std::string touchMarker, std::string leaveMarker)
-        : _contact(contact), _touchMarker(std::move(touchMarker)), _leaveMarker(std::move(leaveMarker))
+    PlantedTimes(std::size_t ankle, std::size_t contact, std::string touchMarker, std::string leaveMarker)
+        : _ankle(ankle), _contact(contact), _touchMarker(std::move(touchMarker)), _leaveMarker(std::move(leaveMarker))
     {
     }
 
-    /// True if the clips that move the foot plant it now, by at least half of their weight. Without such a clip the
-    /// foot stands, as in the rest pose. controller: always of the same set.
-    bool isPlanted(const AnimationController& controller);
+    /// The foot is planted if the clips that move it plant it by at least half of their weight. Without such a clip it
+    /// stands, as in the rest pose. controller: always of the same set.
+    Now now(const AnimationController& controller);
 
 private:
-    const std::vector<FootContact>& contactsOf(const AnimationSet& set, int clip);
+    /// A contact in one clip.
+    struct Contact
+    {
+        FootContact time;
+        glm::dvec3 ankle, contact; ///< their places at the touch, in the file's space
+    };
 
-    std::size_t _contact;
+    const std::vector<Contact>& contactsOf(const AnimationSet& set, int clip);
+    bool plants(const AnimationSet& set, const ClipPlayback& playback);
+    void findLanding(const AnimationSet& set, const ClipPlayback& playback, Now& now);
+
+    std::size_t _ankle, _contact;
     std::string _touchMarker, _leaveMarker;
-    std::vector<std::optional<std::vector<FootContact>>> _contacts; ///< by clip; empty: not computed yet
+    std::vector<std::optional<std::vector<Contact>>> _contacts; ///< by clip; empty: not computed yet
 };
 
 } // namespace osgGpuAnimation

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include "PseudoLoader.h"
+
 #include "gltf/file/Report.h"
 #include "gltf/ImportOptions.h"
 
@@ -8,11 +10,9 @@
 #include <osg/MatrixTransform>
 #include <osg/Notify>
 #include <osgDB/FileNameUtils>
-#include <osgDB/ReadFile>
 #include <osgDB/Registry>
 
 #include <algorithm>
-#include <new>
 
 namespace osgGpuAnimation
 {
@@ -50,7 +50,7 @@ osg::ref_ptr<osg::Node> inStudio(osg::Node* model, bool modelIsYUp)
 
 /// The pseudo-loader for the studio: `fox.glb.studio` reads `fox.glb` with the plugin of its extension and puts it into
 /// a Studio. `fox.glb.20x20.crowd.studio` shows a crowd there.
-class ReaderWriterStudio : public osgDB::ReaderWriter
+class ReaderWriterStudio : public PseudoLoader
 {
 public:
     ReaderWriterStudio()
@@ -61,35 +61,13 @@ public:
 
     const char* className() const override { return "osgGpuAnimation studio pseudo-loader"; }
 
-    ReadResult readObject(const std::string& fileName, const Options* options) const override
-    {
-        return readNode(fileName, options);
-    }
-
-    ReadResult readNode(const std::string& fileName, const Options* options) const override
-    {
-        if (!acceptsExtension(osgDB::getLowerCaseFileExtension(fileName))) return ReadResult::FILE_NOT_HANDLED;
-        try
-        {
-            return read(osgDB::getNameLessExtension(fileName), options);
-        }
-        catch (const std::bad_alloc&)
-        {
-            return ReadResult::INSUFFICIENT_MEMORY_TO_LOAD;
-        }
-    }
-
-private:
-    ReadResult read(const std::string& modelFile, const Options* options) const
+protected:
+    ReadResult read(const std::string& modelFile, const Options* options) const override
     {
         if (osgDB::getLowerCaseFileExtension(modelFile).empty())
             return ReadResult(gltf::quoted(modelFile) + " is not a model's file, like fox.glb in fox.glb.studio");
-        ReadResult model = osgDB::Registry::instance()->readNode(modelFile, options);
-        if (!model.validNode())
-        {
-            if (!model.message().empty()) return ReadResult(modelFile + ": " + model.message());
-            return ReadResult("the studio's model " + modelFile + " cannot be read");
-        }
+        ReadResult model = readModel(modelFile, options, "studio");
+        if (!model.validNode()) return model;
         if (!model.getNode()->getBound().valid())
             OSG_WARN << className() << ": " << modelFile << ": nothing to see, so the studio is empty" << std::endl;
         return ReadResult(inStudio(model.getNode(), isYUp(options)).get());

@@ -3,7 +3,7 @@
 // glTF's metallic-roughness material in linear light, else the base colour in display space like the fixed pipeline. In a
 // core profile, which has no lights: a headlight. DRAW_...: see ShaderKey in nodes/shading/ShaderPermutations.h. Included
 // above: color.glsl, material.glsl, pbr.glsl, environment.glsl.
-#pragma import_defines(MATERIAL_PBR, TONE_MAPPING)
+#pragma import_defines(MATERIAL_PBR, MATERIAL_BLENDED, TONE_MAPPING)
 
 uniform vec4 punctualLights[8]; // PunctualLight::coneAndRange()
 
@@ -248,12 +248,15 @@ void main()
 {
 #if DRAW_COLOR
     vec4 color = materialBaseColor();
+#if defined(MATERIAL_TRANSMISSION) && !defined(MATERIAL_BLENDED)
+    color.a = 1.0; // glTF 2.0, section 3.9.4
+#endif
 #if DRAW_LIGHTING
     color.rgb = litColor(color.rgb);
 #endif
 #ifdef MATERIAL_TRANSMISSION
     // Blended with ONE and ONE_MINUS_SRC_ALPHA: highlights cover what lies behind.
-    float through = materialTransmittance() * (1.0 - materialFactors.x);
+    float through = materialTransmittance() * (1.0 - clamp(materialSurface().x, 0.0, 1.0));
     float cover = max(1.0 - 0.96 * through, min(largest(color.rgb), 1.0));
     color.rgb /= cover;
 #endif

@@ -99,6 +99,7 @@ vec3 surroundingLight(Surface surface, vec3 ambient, float occlusion)
     // Lagarde and de Rousiers, "Moving Frostbite to Physically Based Rendering", 2014.
     float roughness = sqrt(surface.alpha);
     radiance *= clamp(pow(surface.cosEye + occlusion, exp2(-16.0 * roughness - 1.0)) - 1.0 + occlusion, 0.0, 1.0);
+    coatRadiance *= occlusion;
     irradiance *= occlusion;
 #endif
     return reflectedSurroundings(surface, radiance, coatRadiance, irradiance);

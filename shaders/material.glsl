@@ -76,7 +76,9 @@ vec3 meshNormal()
     vec3 normal = normalize(cross(dFdx(viewPosition), dFdy(viewPosition)));
     return gl_FrontFacing ? normal : -normal;
 #else
-    return normalize(viewNormal);
+    float square = dot(viewNormal, viewNormal);
+    if (square > 0.0) return viewNormal * inversesqrt(square);
+    return vec3(0.0, 0.0, gl_FrontFacing ? 1.0 : -1.0); // of length 0: towards the viewer
 #endif
 }
 
@@ -168,14 +170,14 @@ vec4 materialSpecularColor()
 #endif
 
 #ifdef MATERIAL_CLEARCOAT
-uniform vec2 materialClearcoat; // weight, roughness
+uniform vec3 materialClearcoat; // weight, roughness, scale of the normal map
 uniform sampler2D clearcoatTexture;
 uniform sampler2D clearcoatRoughnessTexture;
 uniform sampler2D clearcoatNormalTexture;
 // Weight and roughness of the clear coat, and its normal.
 vec2 materialCoat(out vec3 normal)
 {
-    vec2 coat = materialClearcoat;
+    vec2 coat = materialClearcoat.xy;
 #ifdef MATERIAL_CLEARCOAT_MAP
     coat.x *= texture(clearcoatTexture, coordinates(MATERIAL_CLEARCOAT_MAP)).r;
 #endif
@@ -184,7 +186,8 @@ vec2 materialCoat(out vec3 normal)
 #endif
 #ifdef MATERIAL_CLEARCOAT_NORMAL_MAP
     vec2 place = coordinates(MATERIAL_CLEARCOAT_NORMAL_MAP);
-    normal = mappedNormal(texture(clearcoatNormalTexture, place).xyz * 2.0 - 1.0, place);
+    vec3 map = texture(clearcoatNormalTexture, place).xyz * 2.0 - 1.0;
+    normal = mappedNormal(vec3(map.xy * materialClearcoat.z, map.z), place);
 #else
     normal = facingNormal();
 #endif

@@ -15,6 +15,7 @@ uniform vec4 eyeDepth;       // of a point on the ground: above 0 in front of th
 uniform mat4 mapFromGround;  // to the shadow map: [0, 1] each way
 uniform vec3 mapSize;        // what the map covers, in the ground's units: width, height, depth
 uniform float modelHeight;   // in the ground's units
+uniform float shade;         // the share of the light that the shadow takes away
 uniform sampler2D shadowMap; // depths from the key light
 
 const int searches = 32;
@@ -92,7 +93,7 @@ float groundLight()
     vec4 place = mapFromGround * vec4(isSeen ? ground.xy : vec2(1e6), 0.0, 1.0);
     vec2 arriving = blockMean(arrivingLight(place.xyz));
     float pool = isSeen ? exp(-0.16 * dot(ground.xy, ground.xy)) : 0.0;
-    return (1.0 + 0.12 * pool) * mix(0.42, 1.0, arriving.x) * mix(0.2, 1.0, arriving.y);
+    return (1.0 + 0.12 * pool) * mix(1.0 - shade, 1.0, arriving.x) * mix(0.2, 1.0, arriving.y);
 }
 
 #endif

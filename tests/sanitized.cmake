@@ -13,8 +13,8 @@ set(OSGGPUANIMATION_UNITY ON) # for this program in any case: its files are the 
 # Those with names like others have stay apart.
 list(FILTER sanitized_sources INCLUDE REGEX "GLTest|GlCallTrace")
 osggpuanimation_unity(sanitized_tests ${sanitized_sources})
-target_link_libraries(sanitized_tests PRIVATE osgGpuAnimation_build osgGpuAnimation_gltf nlohmann_json::nlohmann_json
-                      ${OSGSHADOW_LIBRARIES} GTest::gtest GTest::gtest_main)
+target_link_libraries(sanitized_tests PRIVATE osgGpuAnimation_build osgGpuAnimation_gltf TinyGLTF::TinyGLTF
+                      nlohmann_json::nlohmann_json ${OSGSHADOW_LIBRARIES} GTest::gtest GTest::gtest_main)
 set_target_properties(sanitized_tests PROPERTIES ENABLE_EXPORTS ON) # for GlCallTrace
 target_include_directories(sanitized_tests PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
 target_compile_definitions(sanitized_tests PRIVATE OSGGPUANIMATION_SHARED_ASSETS="${OSGGPUANIMATION_SHARED_ASSETS}"

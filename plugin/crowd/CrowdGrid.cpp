@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "crowd/CrowdGrid.h"
 
+#include "gltf/file/ProgressLine.h"
 #include "gltf/file/Report.h"
 
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
@@ -103,7 +104,10 @@ Result<osg::ref_ptr<AnimatedCrowd>> makeCrowd(osg::Node& model, const CrowdOptio
         if (!added) return added.error();
     }
     if (options.pixelError)
+    {
+        const gltf::ProgressLine progress("computing levels of detail");
         if (const Result<bool> taken = crowd->setPixelError(*options.pixelError); !taken) return taken.error();
+    }
     crowd->addEventCallback(new PoseStatistics);
     return crowd;
 }

@@ -18,7 +18,7 @@ namespace
 {
 
 constexpr std::array<const char*, 3> ofCrowdsAlone{"clips", "spacing", "seed"};
-constexpr std::array<const char*, 5> ofSinglesAlone{"clip", "start", "speed", "loop", "fade"};
+constexpr std::array<const char*, 6> ofSinglesAlone{"clip", "start", "randomStart", "speed", "loop", "fade"};
 
 template <typename Names>
 bool isAmong(const Names& names, const std::string& name)

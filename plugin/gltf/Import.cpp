@@ -3,6 +3,7 @@
 
 #include "gltf/data/MaterialVariants.h"
 #include "gltf/document/LoadDocument.h"
+#include "gltf/file/ProgressLine.h"
 #include "gltf/file/Report.h"
 #include "gltf/scene/Clips.h"
 #include "gltf/scene/Drawables.h"
@@ -15,6 +16,9 @@
 #include <osgDB/FileNameUtils>
 
 #include <algorithm>
+#include <cstdint>
+#include <map>
+#include <mutex>
 
 namespace osgGpuAnimation::gltf
 {
@@ -49,6 +53,21 @@ std::string clipNames(const ImportedModel& imported)
     for (std::size_t clip = 0; imported.set && clip < imported.set->clips().size(); ++clip)
         names.push_back(imported.set->clips()[clip].name());
     return listed(names);
+}
+
+/// A number in [0, 1) that differs from call to call; the n-th of a seed is the same in every process.
+/// Source: Steele, Lea and Flood, "Fast splittable pseudorandom number generators" (2014), SplitMix64.
+double nextRandomShare(std::uint32_t seed)
+{
+    static std::mutex mutex;
+    static std::map<std::uint32_t, std::uint64_t> states;
+    const std::lock_guard<std::mutex> lock(mutex);
+    std::uint64_t& state = states.try_emplace(seed, std::uint64_t(seed) << 32).first->second;
+    std::uint64_t bits = state += 0x9E3779B97F4A7C15u;
+    bits = (bits ^ bits >> 30) * 0xBF58476D1CE4E5B9u;
+    bits = (bits ^ bits >> 27) * 0x94D049BB133111EBu;
+    bits ^= bits >> 31;
+    return static_cast<double>(bits >> 11) * 0x1p-53;
 }
 
 /// The index in the set of the clip to play first: by name, else by the file's animation number.
@@ -135,8 +154,8 @@ void Importer::makeGraph(const NodeTree& tree, const Joints& joints, const Morph
         _result.root->addChild(_result.character);
     }
     _result.root->setName(sceneName);
-    Materials materials(_model, _options.fixedLighting, _textures);
-    Meshes meshes(_model, !_options.fixedLighting, _budget, _report);
+    Materials materials(_model, _options.fixedLighting, _textures, _report);
+    Meshes meshes(_model, materials.maps(), _budget, _report);
     Drawables drawables(_model, _result.set, meshes, materials, variant, _budget, _report);
     if (!_options.noLights) _result.lights = findLights(_model, tree);
     if (!_options.noCameras) _result.cameras = makeCameras(_model, tree);
@@ -197,6 +216,7 @@ Result<bool> Importer::finishClips()
         _result.set = _result.character->getController().sharedSet();
     }
     _result.character->computeClipBounds();
+    const ProgressLine progress("computing levels of detail");
     return _result.character->setPixelError(static_cast<float>(_options.pixelError));
 }
 
@@ -243,7 +263,10 @@ Result<bool> Importer::play(int clip)
     controller.setLoopMode(_options.loopMode);
     if (clip < 0) return true;
     const Result<bool> playing = controller.play(static_cast<std::size_t>(clip));
-    if (playing && _options.start) controller.seek(*_options.start);
+    if (playing && _options.start)
+        controller.seek(*_options.start);
+    else if (playing && _options.randomStart)
+        controller.seek(nextRandomShare(*_options.randomStart) * controller.duration());
     return playing;
 }
 

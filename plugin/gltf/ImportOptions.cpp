@@ -74,6 +74,9 @@ const std::vector<Option>& allOptions()
          seconds,
          [](const std::string& value, ImportOptions& options)
          { return read(value, options.start.emplace()) && *options.start >= 0.0; }},
+        {{"randomStart=SEED", "each load starts at another time of the clip, unless start is given; default: all at 0"},
+         number,
+         [](const std::string& value, ImportOptions& options) { return read(value, options.randomStart.emplace()); }},
         {{"speed=NUMBER", "playback speed; negative: backwards; default: 1"},
          "a number",
          [](const std::string& value, ImportOptions& options) { return read(value, options.speed); }},

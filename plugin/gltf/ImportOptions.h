@@ -5,6 +5,7 @@
 #include <osgGpuAnimation/animation/Result.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>
@@ -18,7 +19,9 @@ struct ImportOptions
 {
     std::optional<std::string> clip; ///< name, or index where no clip has that name; default: the first
     std::optional<double> start;     ///< seconds, clamped to that clip's duration; default: 0, or its end if speed < 0
-    double speed = 1.0;              ///< of that clip, see AnimationLayer::setSpeed
+    /// Each load starts at another time of the clip; the same seed and order of loads give the same times.
+    std::optional<std::uint32_t> randomStart;
+    double speed = 1.0; ///< of that clip, see AnimationLayer::setSpeed
     LoopMode loopMode = LoopMode::Loop;
     double fadeSeconds = 0.3;      ///< of the keys' crossfades, see CharacterKeys
     std::optional<double> compact; ///< largest error of compact clips, see CompactedCharacter; above 0; none: exact

@@ -2,12 +2,16 @@
 #include "serializers/StoredAnimation.h"
 
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
+#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/CharacterKeys.h>
+#include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
 #include <osgGpuAnimation/nodes/PoseStatistics.h>
 #include <osgGpuAnimation/nodes/RootMotionCallback.h>
 
 #include <cmath>
+#include <cstdint>
+#include <optional>
 
 // A character, its attachments and callbacks in OSG's own formats.
 
@@ -75,16 +79,53 @@ void addCharacterProperties(osgDB::ObjectWrapper* wrapper)
     addProperty(wrapper, "Controller", &transferState);
 }
 
-void transferJoint(ValueStream& stream, JointAttachment& attachment)
+/// In place of a joint's number: it and further settings follow. Attachments with default settings stay readable for
+/// earlier versions.
+constexpr int withSettings = -2;
+
+/// The index of the attachment's instance in the crowd above it: its handle when the crowd is read. Empty: none.
+std::optional<std::uint64_t> storedInstance(const JointAttachment& attachment)
+{
+    if (!attachment.getInstance()) return std::nullopt;
+    for (const osg::NodePath& path : attachment.getParentalNodePaths())
+        for (const osg::Node* node : path)
+            if (const auto* crowd = dynamic_cast<const AnimatedCrowd*>(node))
+                if (crowd->contains(*attachment.getInstance()))
+                    return crowd->getInstances().indexOf(*attachment.getInstance());
+    return std::nullopt;
+}
+
+void transferSettings(ValueStream& stream, JointAttachment& attachment)
 {
     int joint = attachment.getJoint();
-    std::string name = attachment.getJointName();
-    stream.values(joint, name).endLine();
+    const std::optional<std::uint64_t> instance = storedInstance(attachment);
+    bool hasInstance = instance.has_value();
+    auto index = static_cast<std::size_t>(instance.value_or(0));
+    osg::Matrixd offset = attachment.getOffset();
+    stream.values(joint, hasInstance, index);
+    for (int number = 0; number < 16; ++number)
+        stream.value(offset.ptr()[number]);
     if (!stream.hasRead()) return;
-    if (name.empty())
-        attachment.setJoint(joint);
-    else
-        attachment.setJoint(name);
+    if (attachment.getJointName().empty()) attachment.setJoint(joint);
+    if (hasInstance) attachment.setInstance(index);
+    attachment.setOffset(offset);
+}
+
+void transferJoint(ValueStream& stream, JointAttachment& attachment)
+{
+    const bool isPlain = attachment.getOffset().isIdentity() && !storedInstance(attachment);
+    int joint = isPlain ? attachment.getJoint() : withSettings;
+    std::string name = attachment.getJointName();
+    stream.values(joint, name);
+    if (stream.hasRead())
+    {
+        if (name.empty())
+            attachment.setJoint(joint);
+        else
+            attachment.setJoint(name);
+    }
+    if (joint == withSettings) transferSettings(stream, attachment);
+    stream.endLine();
 }
 
 void transferFadeSeconds(ValueStream& stream, CharacterKeys& keys)

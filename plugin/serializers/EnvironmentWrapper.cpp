@@ -6,6 +6,7 @@
 #include <osg/Notify>
 
 #include <cmath>
+#include <limits>
 
 // Surroundings in OSG's own formats: the settings and the pictures, not what the node makes of them.
 
@@ -56,7 +57,8 @@ void transferSurroundings(ValueStream& stream, Environment& environment)
     Source source = sourceOf(environment);
     stream.values(intensity, rotation, isToneMapped);
     stream.limited("the source of surroundings", source, Source::Faces).endLine();
-    if (!std::isfinite(intensity) || intensity < 0.0 || !std::isfinite(rotation))
+    constexpr double largest = std::numeric_limits<float>::max();
+    if (!(intensity >= 0.0 && intensity <= largest && std::abs(rotation) <= largest))
         return stream.fail("surroundings of the intensity " + std::to_string(intensity) + ", turned by " +
                            std::to_string(rotation));
     if (stream.hasRead())

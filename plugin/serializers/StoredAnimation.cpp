@@ -340,8 +340,46 @@ void transferActiveClip(ValueStream& stream, LayerSnapshot::ActiveClip& activeCl
     stream.values(activeClip.shareBefore, activeClip.phaseGroup).endLine();
 }
 
-/// The version of a stored controller whose layers may have poses.
-constexpr std::int32_t versionWithPoses = 2;
+/// Versions of a stored controller, whose layers may have blend spaces, and poses as well. The lowest possible one is
+/// written, so that earlier versions read what they know.
+constexpr std::int32_t versionWithBlends = 2, versionWithPoses = 3;
+
+std::int32_t versionFor(const LayerSnapshot& layer)
+{
+    if (!layer.pose.empty() || layer.poseShare.from > 0.0 || layer.poseShare.to > 0.0) return versionWithPoses;
+    const bool hasBlends = !layer.spaces.empty() || layer.parameter != glm::dvec2(0.0) || layer.isPhaseShared;
+    return hasBlends ? versionWithBlends : 1;
+}
+
+/// A space that cannot be created becomes null, with a warning; its layer then does not play.
+void transferSpace(ValueStream& stream, const AnimationSet& set, LayerSnapshot::ActiveSpace& space)
+{
+    std::vector<BlendSpace::Point> points;
+    std::vector<std::string> markers;
+    if (space.space) points = space.space->points();
+    if (space.space) markers = space.space->syncMarkers();
+    stream.property("Space").values(space.parameter.x, space.parameter.y, space.phase);
+    stream.values(space.isReturning, space.isFresh).endLine();
+    stream.list("Points", points,
+                [&](BlendSpace::Point& point)
+                { stream.property("Point").values(point.clip, point.place.x, point.place.y).endLine(); });
+    stream.list("SyncMarkers", markers,
+                [&](std::string& marker) { stream.property("Marker").value(marker).endLine(); });
+    if (!stream.hasRead()) return;
+    const auto made = BlendSpace::create(set, std::move(points), std::move(markers));
+    if (made)
+        space.space = made.value();
+    else
+        OSG_WARN << "osgGpuAnimation: a stored layer: " << made.error().message << std::endl;
+}
+
+void transferBlends(ValueStream& stream, const AnimationSet& set, LayerSnapshot& layer)
+{
+    stream.property("Parameter").values(layer.parameter.x, layer.parameter.y, layer.isPhaseShared).endLine();
+    stream.list("Spaces", layer.spaces, [&](LayerSnapshot::ActiveSpace& space) { transferSpace(stream, set, space); });
+    for (LayerSnapshot::ActiveClip& activeClip : layer.activeClips)
+        stream.property("Part").values(activeClip.space, activeClip.point, activeClip.weight).endLine();
+}
 
 void transferPosedTrack(ValueStream& stream, JointPose::Track& track)
 {
@@ -353,15 +391,13 @@ void transferPosedTrack(ValueStream& stream, JointPose::Track& track)
     track.numbers = static_cast<std::uint32_t>(numbers);
 }
 
-bool hasPose(const AnimationController& controller)
+void transferPose(ValueStream& stream, LayerSnapshot& layer)
 {
-    bool has = false;
-    for (std::size_t i = 0; i < controller.layerCount(); ++i)
-        has = has || controller.layer(i).findPose();
-    return has;
+    stream.list("Pose", layer.pose, [&](JointPose::Track& track) { transferPosedTrack(stream, track); });
+    transferFade(stream, "PoseShare", layer.poseShare);
 }
 
-void transferLayer(ValueStream& stream, std::int32_t version, LayerSnapshot& layer)
+void transferLayer(ValueStream& stream, LayerSnapshot& layer)
 {
     using Layer = AnimationLayer;
     stream.property("Layer").limited("a layer's state", layer.state, PlayState::Ended);
@@ -374,9 +410,6 @@ void transferLayer(ValueStream& stream, std::int32_t version, LayerSnapshot& lay
     transferFade(stream, "Crossfade", layer.crossfade);
     transferFade(stream, "Weight", layer.weight);
     stream.block("Mask", layer.mask, 8);
-    if (version < versionWithPoses) return;
-    stream.list("Pose", layer.pose, [&](JointPose::Track& track) { transferPosedTrack(stream, track); });
-    transferFade(stream, "PoseShare", layer.poseShare);
 }
 
 osgDB::RegisterWrapperProxy storedSet([]() -> osg::Object* { return new StoredAnimationSet; },
@@ -409,8 +442,9 @@ void transferAnimationSet(ValueStream& stream, std::shared_ptr<const AnimationSe
 
 void transferController(ValueStream& stream, AnimationController& controller)
 {
-    // Controllers without poses stay readable for earlier versions.
-    std::int32_t version = hasPose(controller) ? versionWithPoses : 1;
+    std::int32_t version = 1;
+    for (std::size_t i = 0; !stream.isReading() && i < controller.layerCount(); ++i)
+        version = std::max(version, versionFor(controller.layer(i).snapshot()));
     stream.limited("the version of a controller", version, 1, versionWithPoses).endLine();
     const std::size_t layers = stream.open("Layers", controller.layerCount());
     if (layers > maxLayers) stream.fail(std::to_string(layers) + " layers, at most " + std::to_string(maxLayers));
@@ -418,7 +452,9 @@ void transferController(ValueStream& stream, AnimationController& controller)
     {
         LayerSnapshot layer;
         if (!stream.isReading()) layer = controller.layer(i).snapshot();
-        transferLayer(stream, version, layer);
+        transferLayer(stream, layer);
+        if (version >= versionWithBlends) transferBlends(stream, controller.set(), layer);
+        if (version >= versionWithPoses) transferPose(stream, layer);
         if (!stream.hasRead()) continue;
         if (const Result<bool> restored = controller.layer(i).restore(layer); !restored)
             OSG_WARN << "osgGpuAnimation: layer " << i << " of a character: " << restored.error().message

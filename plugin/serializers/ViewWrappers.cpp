@@ -4,6 +4,8 @@
 #include <osgGpuAnimation/nodes/shading/PunctualLight.h>
 #include <osgGpuAnimation/nodes/viewing/StartView.h>
 
+#include <osg/Notify>
+
 // Lights and first views in OSG's own formats. The cameras themselves are OSG's.
 
 namespace osgGpuAnimation::serializers
@@ -12,6 +14,12 @@ namespace osgGpuAnimation::serializers
 namespace
 {
 
+/// A value that the light cannot have, as of a cone beyond 90 degrees, costs that value alone.
+void report(const Result<bool>& taken)
+{
+    if (!taken) OSG_WARN << "osgGpuAnimation: a stored light keeps its own: " << taken.error().message << std::endl;
+}
+
 /// What osg::Light does not store.
 void transferCone(ValueStream& stream, PunctualLight& light)
 {
@@ -19,9 +27,9 @@ void transferCone(ValueStream& stream, PunctualLight& light)
     stream.values(inner, range).endLine();
     if (!stream.hasRead()) return;
     const float exponent = light.getSpotExponent(); // may be the application's own
-    stream.require("a light: ", light.setRange(static_cast<float>(range)));
+    report(light.setRange(static_cast<float>(range)));
     if (light.getKind() == PunctualLight::Kind::Spot)
-        stream.require("a light: ", light.setCone(static_cast<float>(inner), light.getSpotCutoff()));
+        report(light.setCone(static_cast<float>(inner), light.getSpotCutoff()));
     light.setSpotExponent(exponent);
 }
 

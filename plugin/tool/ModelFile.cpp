@@ -2,7 +2,7 @@
 #include "tool/ModelFile.h"
 
 #include "gltf/file/ModelBytes.h"
-#include "tool/ProgressLine.h"
+#include "gltf/file/ProgressLine.h"
 
 #include <osgDB/FileNameUtils>
 
@@ -31,7 +31,7 @@ Result<gltf::ImportedModel> readModel(const std::string& fileName, const gltf::I
     // Reading a pipe or a device could block or never end.
     if (!std::filesystem::is_regular_file(status)) return Error{"is not a regular file"};
 
-    const ProgressLine progress("reading " + osgDB::getSimpleFileName(fileName));
+    const gltf::ProgressLine progress("reading " + osgDB::getSimpleFileName(fileName));
     const Result<std::string> bytes = gltf::readModelFile(fileName, options);
     if (!bytes) return bytes.error();
     Result<gltf::ImportedModel> model = gltf::importModel(bytes.value(), fileName, options);

@@ -106,7 +106,7 @@ public:
     }
 };
 
-/// Reads the picture from the texture.
+/// Reads the colours from the texture. Its alpha is what blending has left there, not what the picture shows.
 class PictureViewer::ReadPixels : public osg::Camera::DrawCallback
 {
 public:
@@ -115,7 +115,9 @@ public:
         osg::State& state = *renderInfo.getState();
         state.applyTextureAttribute(0, texture);
         image = new osg::Image;
-        image->readImageFromCurrentTexture(state.getContextID(), false);
+        image->allocateImage(texture->getTextureWidth(), texture->getTextureHeight(), 1, GL_RGB, GL_UNSIGNED_BYTE, 1);
+        glPixelStorei(GL_PACK_ALIGNMENT, 1);
+        glGetTexImage(GL_TEXTURE_2D, 0, GL_RGB, GL_UNSIGNED_BYTE, image->data());
         if (glGetError() != GL_NO_ERROR) image = nullptr;
     }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "tool/PoseCommand.h"
 
+#include "gltf/file/ProgressLine.h"
 #include "tool/CpuPoseEvaluator.h"
 #include "tool/GpuPoseEvaluator.h"
 #include "tool/ModelFile.h"
@@ -98,8 +99,11 @@ Result<std::string> evaluate(const gltf::ImportedModel& model, const PoseRequest
                                                          evaluator ? evaluator->name() : "osggpuanim, nothing moves");
     if (!document) return document.error();
     PoseDocument poses = std::move(document).value();
-    for (double time : request.times)
+    gltf::ProgressLine progress("computing poses");
+    for (std::size_t frame = 0; frame < request.times.size(); ++frame)
     {
+        const double time = request.times[frame];
+        progress.set(frame, request.times.size());
         Result<EvaluatedPose> pose = EvaluatedPose();
         if (evaluator) pose = evaluator->evaluate(instructionAt(model, clip.value(), time), fixed.value());
         if (!pose) return pose.error();

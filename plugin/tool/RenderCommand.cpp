@@ -2,9 +2,9 @@
 #include "tool/RenderCommand.h"
 
 #include "crowd/CrowdGrid.h"
+#include "gltf/file/ProgressLine.h"
 #include "tool/CpuPoseEvaluator.h"
 #include "tool/ModelFile.h"
-#include "tool/ProgressLine.h"
 
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 #include <osgGpuAnimation/nodes/studio/ModelExtent.h>
@@ -116,6 +116,7 @@ Result<bool> RenderCommand::run() const
     gltf::ImportOptions options;
     options.camera = camera;
     options.variant = variant;
+    options.noLights = look != Look::File;
     options.noKeys = true; // no window, no keyboard
     if (!isCrowd)
         options.clip = clip;
@@ -151,10 +152,10 @@ std::string RenderCommand::outputOf(std::size_t frame) const
 
 Result<bool> RenderCommand::drawModel(PictureViewer& viewer, const gltf::ImportedModel& model) const
 {
+    gltf::ProgressLine progress("drawing");
     const std::vector<double> times = this->times();
     viewer.show(model.root, pointsOf(model, times));
     if (model.startCamera) viewer.lookThrough(*model.startCamera);
-    ProgressLine progress("drawing");
     for (std::size_t frame = 0; frame < times.size(); ++frame)
     {
         progress.set(frame, times.size());
@@ -167,6 +168,7 @@ Result<bool> RenderCommand::drawModel(PictureViewer& viewer, const gltf::Importe
 
 Result<bool> RenderCommand::drawCrowd(PictureViewer& viewer, osg::Node& model, const crowd::CrowdOptions& grid) const
 {
+    gltf::ProgressLine progress("drawing");
     const Result<osg::ref_ptr<AnimatedCrowd>> crowd = crowd::makeCrowd(model, grid);
     if (!crowd) return Error{grid.modelFile + ": " + crowd.error().message};
     osg::ref_ptr<osg::Group> scene = new osg::Group;
@@ -174,7 +176,6 @@ Result<bool> RenderCommand::drawCrowd(PictureViewer& viewer, osg::Node& model, c
     viewer.show(scene, osgGpuAnimation::pointsOf(*scene));
     viewer.draw(0.0); // the time from which the clips run
     const std::vector<double> times = this->times();
-    ProgressLine progress("drawing");
     for (std::size_t frame = 0; frame < times.size(); ++frame)
     {
         progress.set(frame, times.size());

@@ -8,9 +8,11 @@
 #include <osgGpuAnimation/gpu/EglGraphicsContext.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+#include <osgGpuAnimation/nodes/CharacterProgram.h>
+#include <osgGpuAnimation/nodes/Environment.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
+#include <osgGpuAnimation/nodes/PbrMaterial.h>
 
-#include <osg/Material>
 #include <osg/PositionAttitudeTransform>
 #include <osg/ShapeDrawable>
 #include <osgDB/ReadFile>
@@ -84,7 +86,12 @@ osg::ref_ptr<osg::Node> makeStaff()
     osg::ref_ptr<osg::Cylinder> shape = new osg::Cylinder(osg::Vec3(0.0f, 0.07f, 0.03f), 0.016f, 0.9f);
     shape->setRotation(osg::Quat(osg::DegreesToRadians(-45.0), osg::Vec3d(1, 0, 0)));
     osg::ref_ptr<osg::ShapeDrawable> staff = new osg::ShapeDrawable(shape);
-    staff->setColor(osg::Vec4(0.55f, 0.32f, 0.16f, 1.0f));
+    PbrMaterial wood;
+    wood.baseColor = linearColor(osg::Vec4(0.55f, 0.32f, 0.16f, 1.0f));
+    wood.metallic = 0.0f;
+    wood.roughness = 0.7f;
+    applyPbrMaterial(*staff->getOrCreateStateSet(), wood);
+    applySurfaceProgram(*staff->getOrCreateStateSet(), false);
     return staff;
 }
 
@@ -170,9 +177,11 @@ Result<bool> draw(osg::Node* scene, const Sight& sight, const std::string& file)
     if (!context) return context.error();
     osgViewer::Viewer viewer;
     viewer.setThreadingModel(osgViewer::ViewerBase::SingleThreaded);
-    viewer.setLightingMode(osg::View::SKY_LIGHT);
-    viewer.getLight()->setPosition(osg::Vec4(0.3f, -0.9f, 0.9f, 0.0f));
-    viewer.getLight()->setAmbient(osg::Vec4(0.3f, 0.3f, 0.32f, 1.0f));
+    viewer.setLightingMode(osg::View::NO_LIGHT);
+    osg::ref_ptr<Environment> studio = new Environment;
+    studio->setToneMapping(true);
+    studio->getOrCreateStateSet()->setMode(GL_LIGHTING, osg::StateAttribute::ON);
+    studio->addChild(scene);
     osg::Camera* camera = viewer.getCamera();
     camera->setGraphicsContext(context.value());
     camera->setViewport(0, 0, width, height);
@@ -181,7 +190,7 @@ Result<bool> draw(osg::Node* scene, const Sight& sight, const std::string& file)
     camera->setViewMatrixAsLookAt(sight.eye, sight.center, osg::Vec3d(0, 0, 1));
     osg::ref_ptr<ReadPixels> reader = new ReadPixels;
     camera->setFinalDrawCallback(reader);
-    viewer.setSceneData(scene);
+    viewer.setSceneData(studio);
     viewer.realize();
     viewer.frame(0.0);
     if (!osgDB::writeImageFile(*reader->image, file)) return Error{file + ": cannot be written"};

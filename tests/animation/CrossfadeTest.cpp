@@ -67,6 +67,24 @@ TEST(CrossfadeTest, InterruptedByCrossfadesAtRandomNothingJumps)
     }
 }
 
+// More clips than a mix can hold: the least one's share goes to the others, not to the rest pose.
+TEST(CrossfadeTest, TheSharesOfAFullMixSumToOne)
+{
+    AnimationController controller(makeGaitSet());
+    ASSERT_TRUE(controller.play(0));
+    for (std::size_t i = 1; i < 3 * ClipMixer::maxActiveClips; ++i)
+    {
+        ASSERT_TRUE(controller.crossfade(i % 3, 1.0));
+        controller.advance(0.2); // the least of eight has a share of some percent
+        const ClipMixer& mixer = controller.layer(0).mixer();
+        EXPECT_EQ(mixer.activeClipCount(), std::min(i + 1, ClipMixer::maxActiveClips));
+        double shares = 0.0;
+        for (std::size_t v = 0; v < mixer.activeClipCount(); ++v)
+            shares += mixer.activeClip(v).share;
+        EXPECT_NEAR(shares, 1.0, 1e-9) << i;
+    }
+}
+
 TEST(CrossfadeTest, GoesFromOnePoseToTheOtherByItsCurve)
 {
     const auto set = makeGaitSet();

@@ -149,6 +149,44 @@ TEST(MixBoundsTest, AnAdditiveLayerIsMeasuredFromTheFirstFrame)
     }
 }
 
+// A clip that holds still and one that moves to both sides of it: each mixes with the other's whole way.
+TEST(MixBoundsTest, AMixHoldsTheWholeWayOfEitherClip)
+{
+    const double half = std::sqrt(0.5);
+    const struct
+    {
+        Channel::Path path;
+        std::vector<double> still, moving; ///< first and last value
+    } cases[] = {{Channel::Path::Translation, {0, 0, 0, 0, 0, 0}, {-3, 0, 0, 3, 0, 0}},
+                 {Channel::Path::Scale, {1, 1, 1, 1, 1, 1}, {0.25, 0.25, 0.25, 1.75, 1.75, 1.75}},
+                 {Channel::Path::Rotation, {0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, -half, half, 0, 0, half, half}}};
+    for (const auto& c : cases)
+        for (const bool isMovingFirst : {false, true})
+        {
+            const Skeleton skeleton = Skeleton::create({Joint()}).value();
+            std::vector<Clip> clips;
+            for (const std::vector<double>& values : {c.still, c.moving})
+            {
+                ClipBuilder builder(skeleton, {});
+                ASSERT_TRUE(builder.add({c.path, Channel::Interpolation::Linear, 0, {0, 1}, values}));
+                clips.push_back(builder.build("clip"));
+            }
+            const auto set = AnimationSet::create({skeleton, {}, {}, {}, std::move(clips)}).value();
+            const EntryBoxes boxes = someBoxes(*set);
+            const MixBounds bounds(*set, boxes);
+            AnimationController controller(set);
+            ASSERT_TRUE(controller.play(isMovingFirst ? 1 : 0));
+            ASSERT_TRUE(controller.crossfade(isMovingFirst ? 0 : 1, 1.0));
+            std::vector<PlayedClip> played;
+            for (int frame = 0; frame < 10; ++frame, controller.advance(0.1))
+            {
+                findPlayedClips(controller, played);
+                Box seen;
+                EXPECT_LE(outside(bounds.box(played), controller, boxes, seen), 0.0) << frame;
+            }
+        }
+}
+
 TEST(MixBoundsTest, OfGaitsTheyAreNotMuchWiderThanTheGaits)
 {
     const auto set = makeGaitSet();

@@ -68,6 +68,29 @@ TEST(PoseBatchTest, aFullBatchSuitsThoseOfItsLoadAlone)
     }
 }
 
+TEST(PoseBatchTest, sameBatchesAgreeInSetPosesPlacesAndTints)
+{
+    const auto set = makeRandomSet({});
+    AffineMatrix aside;
+    aside.rows[0].w = 1.0f;
+    const auto makeBatch =
+        [&](const std::shared_ptr<const AnimationSet>& of, float alpha, const AffineMatrix& place, std::uint32_t tint)
+    {
+        PoseBatch batch(of);
+        for (const float share : {0.25f, alpha})
+            batch.addSample({1, share, 1.0f, 0}, place);
+        batch.setTint(1, tint);
+        return batch;
+    };
+    const PoseBatch batch = makeBatch(set, 0.5f, aside, 0xff0000ff);
+    EXPECT_TRUE(batch.isSame(makeBatch(set, 0.5f, aside, 0xff0000ff)));
+    EXPECT_FALSE(batch.isSame(makeBatch(makeRandomSet({}), 0.5f, aside, 0xff0000ff)));
+    EXPECT_FALSE(batch.isSame(makeBatch(set, 0.75f, aside, 0xff0000ff)));
+    EXPECT_FALSE(batch.isSame(makeBatch(set, 0.5f, AffineMatrix(), 0xff0000ff)));
+    EXPECT_FALSE(batch.isSame(makeBatch(set, 0.5f, aside, 0xff00ff00)));
+    EXPECT_FALSE(batch.isSame(makeBatch(set, 0.5f, aside, PoseBatch::white)));
+}
+
 } // namespace
 
 } // namespace osgGpuAnimation

@@ -3,8 +3,11 @@
 #include "support/RandomLayers.h"
 #include "support/RandomSet.h"
 
+#include <osgGpuAnimation/animation/keyframes/PackedKeyframes.h>
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/gpu/PosePipeline.h>
+
+#include <layout.glsl>
 
 #include <algorithm>
 #include <cmath>
@@ -130,6 +133,29 @@ INSTANTIATE_TEST_SUITE_P(Sets, PosePipelineGLTest,
                                                               PosePipeline::Form::Separate)));
 
 using PosePipelineCostGLTest = GLTest;
+
+// Chunks are padded to whole triangles: the padding counts too.
+TEST_F(PosePipelineCostGLTest, palettesFitTheLargestTextureBuffer)
+{
+    const auto set = makeRandomSet({7, 20, 6, 2, false, false, true});
+    const std::size_t texels = POSE_TEXELS_PER_MATRIX * set->paletteSize(); // an instance
+    const std::size_t least = PackedKeyframes(*set).texels().size() / texels + 1;
+    for (std::size_t capacity = least; capacity < least + 4; ++capacity)
+    {
+        PosePipeline* pipeline = PosePipeline::of(state());
+        pipeline->options().maxTexels = capacity * texels;
+        PoseBatch batch(set);
+        for (std::size_t i = 0; i < 3 * capacity; ++i)
+            batch.add(PoseInstruction());
+        ASSERT_TRUE(pipeline->evaluate(state(), batch, 0));
+        for (std::size_t i = 0; i < batch.size(); ++i)
+        {
+            const PalettePlace place = pipeline->place(*set, 0, i);
+            ASSERT_NE(place.texture, 0u);
+            EXPECT_LE(static_cast<std::size_t>(place.stride) * texels, capacity * texels);
+        }
+    }
+}
 
 TEST_F(PosePipelineCostGLTest, drawsDependOnTheSetAloneNotOnTheNumberOfCharacters)
 {

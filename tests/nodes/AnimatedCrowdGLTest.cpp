@@ -7,11 +7,14 @@
 #include <osgGpuAnimation/gpu/PosePipeline.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 
+#include <osg/Geometry>
 #include <osg/Group>
 #include <osg/Texture2D>
 #include <osgUtil/Optimizer>
 
+#include <initializer_list>
 #include <map>
+#include <vector>
 
 namespace osgGpuAnimation
 {
@@ -97,6 +100,51 @@ TEST_F(AnimatedCrowdGLTest, survivesTheOptimizerAsOsgviewerRunsIt)
     const osg::ref_ptr<osg::Image> after = pictureOf(root, {0.5});
     EXPECT_GT(picture().pixelsDrawn(), 3 * 64);
     EXPECT_EQ(Picture::pixelsDifferent(*before, *after), 0);
+}
+
+TEST_F(AnimatedCrowdGLTest, everyKindOfPrimitiveSetIsDrawnForEachInstance)
+{
+    const osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
+    auto& mesh = static_cast<osg::Geometry&>(*character->getChild(0));
+    auto& corners = static_cast<osg::Vec3Array&>(*mesh.getVertexArray());
+    const auto take = [](auto& array, std::initializer_list<std::size_t> order)
+    {
+        const auto before = array.asVector();
+        array.clear();
+        for (const std::size_t index : order)
+            array.push_back(before[index]);
+    };
+    take(corners, {0, 1, 2, 0, 2, 3}); // two triangles, and so two fans
+    take(static_cast<osg::Vec3Array&>(*mesh.getNormalArray()), {0, 0, 0, 0, 0, 0});
+    take(static_cast<osg::Vec4Array&>(*mesh.getColorArray()), {0, 0, 0, 0, 0, 0});
+    const osg::ref_ptr<osg::DrawArrayLengths> lengths = new osg::DrawArrayLengths(GL_TRIANGLE_FAN);
+    const osg::ref_ptr<osg::MultiDrawArrays> parts = new osg::MultiDrawArrays(GL_TRIANGLE_FAN);
+    const osg::ref_ptr<osg::DrawElementsUByte> bytes = new osg::DrawElementsUByte(GL_TRIANGLES);
+    const osg::ref_ptr<osg::DrawElementsUInt> words = new osg::DrawElementsUInt(GL_TRIANGLES);
+    for (int first = 0; first < 6; first += 3)
+    {
+        lengths->push_back(3);
+        parts->add(first, 3);
+    }
+    for (unsigned int index = 0; index < 6; ++index)
+    {
+        bytes->push_back(static_cast<GLubyte>(index));
+        words->push_back(index);
+    }
+    osg::ref_ptr<osg::Image> expected;
+    for (const osg::ref_ptr<osg::PrimitiveSet>& primitives : std::vector<osg::ref_ptr<osg::PrimitiveSet>>{
+             new osg::DrawArrays(GL_TRIANGLES, 0, 6), lengths, parts, bytes, words})
+    {
+        mesh.removePrimitiveSet(0, mesh.getNumPrimitiveSets());
+        mesh.addPrimitiveSet(primitives);
+        const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*character);
+        for (int index = 0; index < 4; ++index)
+            ASSERT_TRUE(crowd->add(placeOf(index), AnimationController(crowd->getSharedAnimationSet())));
+        const osg::ref_ptr<osg::Image> found = pictureOf(crowd, {0.0});
+        EXPECT_EQ(picture().pixelsDrawn(), 4 * 64) << primitives->className();
+        if (!expected) expected = found;
+        EXPECT_EQ(Picture::pixelsDifferent(*expected, *found), 0) << primitives->className();
+    }
 }
 
 TEST_F(AnimatedCrowdGLTest, drawsAndFeedbackDoNotGrowWithTheInstances)

@@ -2,6 +2,7 @@
 #include "nodes/TriangleBox.h"
 #include "support/TestCharacter.h"
 
+#include <osgGpuAnimation/animation/StateMachine.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
 
@@ -58,6 +59,74 @@ const BadPlacement badPlacements[] = {
 };
 
 } // namespace
+
+TEST(AnimatedCrowdTest, tellsItsTints)
+{
+    const osg::ref_ptr<AnimatedCrowd> crowd = emptyCrowd();
+    const AnimatedCrowd::Instance red = crowd->add(osg::Matrixd(), playing("shift"), {1, 0.2f, 0, 1}).value();
+    EXPECT_EQ(crowd->getTint(red), osg::Vec4(1, 51 / 255.0f, 0, 1));
+    ASSERT_TRUE(crowd->setTint(red, {0, 0, 1, 0.4f}));
+    EXPECT_EQ(crowd->getTint(red), osg::Vec4(0, 0, 1, 102 / 255.0f));
+    crowd->remove(red);
+    EXPECT_EQ(crowd->getTint(red), osg::Vec4(1, 1, 1, 1));
+}
+
+TEST(AnimatedCrowdTest, oneCallbackNamesTheInstances)
+{
+    const osg::ref_ptr<AnimatedCrowd> crowd = emptyCrowd();
+    const AnimatedCrowd::Instance first = crowd->add(osg::Matrixd(), playing("shift", 1.9)).value();
+    std::vector<AnimatedCrowd::Instance> heard;
+    crowd->setInstanceEventCallback(
+        [&](AnimatedCrowd::Instance instance, const AnimationEvent& event)
+        {
+            EXPECT_EQ(event.type, AnimationEvent::Type::Looped);
+            heard.push_back(instance);
+        });
+    const AnimatedCrowd::Instance second = crowd->add(osg::Matrixd(), playing("turn", 0.7)).value();
+    crowd->update(0.0);
+    crowd->update(0.2);
+    EXPECT_EQ(heard, std::vector<AnimatedCrowd::Instance>{first});
+    crowd->update(0.4);
+    EXPECT_EQ(heard, (std::vector<AnimatedCrowd::Instance>{first, second}));
+    const osg::ref_ptr<AnimatedCrowd> copy = new AnimatedCrowd(*crowd);
+    copy->update(50.0);
+    EXPECT_EQ(heard.size(), 2u) << "copies do not call it";
+    crowd->setInstanceEventCallback({});
+    crowd->update(50.0);
+    EXPECT_EQ(heard.size(), 2u);
+    EXPECT_EQ(crowd->getInstances().controllerCount(), 0u) << "plain loops again";
+}
+
+TEST(AnimatedCrowdTest, stateMachinesDriveInstances)
+{
+    const osg::ref_ptr<AnimatedCrowd> crowd = emptyCrowd();
+    const auto graph = StateGraph::create(crowd->getAnimationSet(),
+                                          {{{"calm", "shift"}, {"wild", "turn"}},
+                                           {{"calm", "wild", {"speed > 1"}, 0.1}, {"wild", "calm", {"stop"}}},
+                                           ""});
+    ASSERT_TRUE(graph) << graph.error().message;
+    const AnimatedCrowd::Instance first = crowd->add(osg::Matrixd(), playing("turn")).value();
+    const AnimatedCrowd::Instance second = crowd->add(osg::Matrixd(), playing("turn")).value();
+    EXPECT_FALSE(crowd->getStateMachine(first));
+    ASSERT_TRUE(crowd->setStateGraph(first, graph.value()));
+    crowd->update(0.0);
+    crowd->update(0.1);
+    EXPECT_EQ(crowd->getController(first)->clip(), 0);
+    EXPECT_EQ(crowd->getController(second)->clip(), 1);
+    ASSERT_TRUE(crowd->getStateMachine(first)->set("speed", 2.0));
+    const osg::ref_ptr<AnimatedCrowd> copy = new AnimatedCrowd(*crowd);
+    crowd->update(0.2);
+    EXPECT_EQ(crowd->getStateMachine(first)->state(), "wild");
+    EXPECT_EQ(copy->getStateMachine(first)->state(), "calm") << "a copy has its own";
+    copy->update(0.2);
+    EXPECT_EQ(copy->getStateMachine(first)->state(), "wild");
+    ASSERT_TRUE(crowd->setStateGraph(first, nullptr));
+    EXPECT_FALSE(crowd->getStateMachine(first));
+    crowd->remove(first);
+    EXPECT_FALSE(crowd->setStateGraph(first, graph.value()));
+    EXPECT_FALSE(crowd->getStateMachine(first));
+    crowd->update(0.3);
+}
 
 TEST(AnimatedCrowdTest, refusesBadPlacementsAndStaysAsItIs)
 {
@@ -283,6 +352,9 @@ TEST(AnimatedCrowdTest, aCloneHasInstancesOfItsOwn)
     ASSERT_TRUE(other->setPlacement(instance, osg::Matrixd::translate(5, 0, 0)));
     EXPECT_EQ(crowd->getPlacement(instance).getTrans(), osg::Vec3d(1, 0, 0));
     EXPECT_EQ(&crowd->getAnimationSet(), &other->getAnimationSet());
+    const osg::Vec3d origin = crowd->getOrigin();
+    ASSERT_TRUE(other->add(osg::Matrixd::translate(100, 0, 0), playing("shift")));
+    EXPECT_EQ(other->getOrigin(), origin) << "the instances that it has are placed relative to it";
 }
 
 TEST(AnimatedCrowdTest, theFirstInstanceLeavesAnOriginThatWasSet)

@@ -157,6 +157,19 @@ TEST_F(CrowdEdgesGLTest, nearAndFarPlanesHoldLargeInstancesBesideSmallOnes)
     }
 }
 
+// Its sphere reaches behind the eye, its square lies before it.
+TEST_F(CrowdEdgesGLTest, theNearPlaneHoldsAnInstanceAroundTheEye)
+{
+    const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*makeTestCharacter());
+    ASSERT_TRUE(crowd->add(osg::Matrixd::scale(6, 6, 6) * osg::Matrixd::translate(-2, -8, -3), still()));
+    ASSERT_TRUE(crowd->add(osg::Matrixd::translate(-4, 2, 0), still()));
+    viewer().getCamera()->setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
+    const osg::ref_ptr<osg::Image> expected = pictureOf(crowd, {0.0});
+    EXPECT_GT(picture().pixelsDrawn(), 40 * 40);
+    viewer().getCamera()->setComputeNearFarMode(osg::CullSettings::COMPUTE_NEAR_FAR_USING_BOUNDING_VOLUMES);
+    EXPECT_EQ(Picture::pixelsDifferent(*expected, *pictureOf(crowd, {0.0})), 0);
+}
+
 TEST_F(CrowdEdgesGLTest, aSceneViewWithoutAFrameStampDrawsItToo)
 {
     osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*makeTestCharacter());

@@ -12,6 +12,7 @@
 #include <osg/LightModel>
 #include <osg/MatrixTransform>
 
+#include <algorithm>
 #include <map>
 #include <string>
 
@@ -291,6 +292,26 @@ TEST_P(PrefilteredMapGLTest, theStateOfGlIsAsBeforeAndTheMapIsRight)
                 worst = std::max(worst, static_cast<float>((pixel - osg::Vec3f(2.0f, 1.0f, 0.5f)).length()));
             EXPECT_LT(worst, 0.01f) << "level " << level << ", face " << face;
         }
+    EXPECT_NO_GL_ERROR();
+}
+
+TEST_P(PrefilteredMapGLTest, belowOpenGL33TheMapIsBlack)
+{
+    const auto cube =
+        RadianceCube::fromPanorama(*makePanorama(16, [](const osg::Vec3f&) { return osg::Vec3f(1, 1, 1); }));
+    ASSERT_TRUE(cube);
+    takeGLErrors();
+    osg::GLExtensions& gl = *state().get<osg::GLExtensions>();
+    const float version = gl.glVersion;
+    gl.glVersion = 3.2f;
+    glPixelStorei(GL_UNPACK_ROW_LENGTH, 1000);
+    const osg::ref_ptr<PrefilteredMap> map = new PrefilteredMap(*cube.value());
+    map->apply(state());
+    gl.glVersion = version;
+    EXPECT_EQ(glState()["unpack row length"].front(), 1000);
+    std::vector<float> pixels(static_cast<std::size_t>(RadianceCube::side * RadianceCube::side * 3), 1.0f);
+    glGetTexImage(GL_TEXTURE_CUBE_MAP_POSITIVE_X, 0, GL_RGB, GL_FLOAT, pixels.data());
+    EXPECT_EQ(std::count(pixels.begin(), pixels.end(), 0.0f), static_cast<std::ptrdiff_t>(pixels.size()));
     EXPECT_NO_GL_ERROR();
 }
 

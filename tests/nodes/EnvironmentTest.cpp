@@ -187,19 +187,94 @@ TEST(EnvironmentTest, faultyFacesAreRefusedWithAMessage)
     }
 }
 
+TEST(EnvironmentTest, numbersOutOfRangeAreRefused)
+{
+    constexpr float infinite = std::numeric_limits<float>::infinity(), none = std::numeric_limits<float>::quiet_NaN();
+    const osg::ref_ptr<Environment> environment = new Environment;
+    environment->setRotation(2.0f);
+    for (const float wrong : {-1.0f, infinite, -infinite, none})
+    {
+        environment->setIntensity(3.0f);
+        environment->setIntensity(wrong);
+        EXPECT_EQ(environment->getIntensity(), 0.0f) << wrong;
+        if (std::isfinite(wrong)) continue;
+        environment->setRotation(wrong);
+        EXPECT_EQ(environment->getRotation(), 2.0f) << wrong;
+    }
+}
+
 TEST(EnvironmentTest, copiesAndTheNextSourceReplaceTheFormer)
 {
     const osg::ref_ptr<Environment> environment = new Environment;
     const osg::ref_ptr<osg::Image> panorama = makePanorama(16, studioRadiance);
     ASSERT_TRUE(environment->setPanorama(panorama));
+    environment->setIntensity(0.5f);
+    environment->setRotation(1.0f);
+    environment->setToneMapping(true);
     const osg::ref_ptr<Environment> copy = new Environment(*environment, osg::CopyOp::DEEP_COPY_ALL);
     EXPECT_EQ(copy->getPanorama(), panorama);
+    EXPECT_EQ(copy->getIntensity(), 0.5f);
+    EXPECT_EQ(copy->getRotation(), 1.0f);
+    EXPECT_TRUE(copy->getToneMapping());
     ASSERT_TRUE(environment->setFaces(makeFaces(4, studioRadiance)));
     EXPECT_EQ(environment->getPanorama(), nullptr);
     EXPECT_NE(environment->getFaces(), nullptr);
     environment->setStudio();
     EXPECT_EQ(environment->getFaces(), nullptr);
     EXPECT_EQ(copy->getPanorama(), panorama);
+}
+
+osg::Vec3f direction(float x, float y, float z)
+{
+    osg::Vec3f towards(x, y, z);
+    towards.normalize();
+    return towards;
+}
+
+struct KeyLightCase
+{
+    const char* name;
+    osg::Vec3f (*radiance)(const osg::Vec3f& direction); ///< glTF's axes
+    osg::Vec3f towards;
+    float least, most; ///< the share
+};
+
+constexpr float noShare = 0.0f;
+
+const KeyLightCase keyLightCases[] = {
+    // Its three lobes have 0.30, 0.04 and 0.11 of the irradiance 1.07 of the ground.
+    {"the studio", studioRadiance, direction(0.6f, 1.1f, 0.9f), 0.22f, 0.3f},
+    {"even", [](const osg::Vec3f&) { return osg::Vec3f(1, 1, 1); }, {0, 1, 0}, noShare, noShare},
+    {"black", [](const osg::Vec3f&) { return osg::Vec3f(); }, {0, 1, 0}, noShare, noShare},
+    {"a bright ground",
+     [](const osg::Vec3f& d) { return osg::Vec3f(1, 1, 1) * (d.y() < 0.0f ? 9.0f : 1.0f); },
+     {0, 1, 0},
+     noShare,
+     0.05f},
+    {"a small sun",
+     [](const osg::Vec3f& d)
+     { return osg::Vec3f(1, 1, 1) * (d * direction(-2, 1, 1) > 0.9994f ? 2000.0f : 0.2f); }, // within 2 degrees
+     direction(-2, 1, 1), 0.79f, 0.87f},
+    {"the higher of two",
+     [](const osg::Vec3f& d)
+     {
+         const float lamps = (d * direction(1, 1, 0) > 0.995f) + (d * direction(-4, 1, 0) > 0.995f);
+         return osg::Vec3f(1, 1, 1) * (lamps > 0.0f ? 50.0f : 0.1f);
+     },
+     direction(1, 1, 0), 0.6f, 0.75f},
+};
+
+TEST(EnvironmentTest, theKeyLightIsTheOneThatBrightensTheGroundMost)
+{
+    for (const KeyLightCase& each : keyLightCases)
+    {
+        SCOPED_TRACE(each.name);
+        const KeyLight light = RadianceCube::fromPanorama(*makePanorama(512, each.radiance)).value()->keyLight();
+        EXPECT_GE(light.share, each.least);
+        EXPECT_LE(light.share, each.most);
+        EXPECT_GT(light.towards * each.towards, 0.9994f) << "2 degrees";
+        EXPECT_NEAR(light.towards.length(), 1.0f, 1e-5f);
+    }
 }
 
 } // namespace

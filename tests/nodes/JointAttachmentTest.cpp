@@ -5,6 +5,7 @@
 
 #include <osgGpuAnimation/animation/ClipBuilder.h>
 #include <osgGpuAnimation/animation/JointMask.h>
+#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/RootMotionCallback.h>
 
 #include <osg/Geometry>
@@ -99,6 +100,77 @@ TEST_F(JointAttachmentTest, FollowsAJointByNameOrNumber)
         character->getController().setLoopMode(LoopMode::Once);
         EXPECT_TRUE(isNear(placesOf(*character, "sword")[0], {2, 0, 5})) << "at once, as the palette is drawn";
     }
+}
+
+TEST_F(JointAttachmentTest, AnOffsetIsInTheJointsSpace)
+{
+    const osg::ref_ptr<JointAttachment> attachment = new JointAttachment("tip");
+    attachment->setOffset(osg::Matrix::translate(1, 0, 0));
+    const osg::ref_ptr<AnimatedCharacter> character = characterWith(attachment);
+    ASSERT_TRUE(character->getController().play("turn"));
+    character->getController().setLoopMode(LoopMode::Once);
+    character->getController().seek(1.0);
+    EXPECT_TRUE(isNear(placesOf(*character, "sword")[0], {0, 0, -1})) << "a quarter about +Y";
+    const osg::ref_ptr<osg::Node> clone = osg::clone(character.get(), osg::CopyOp::DEEP_COPY_ALL);
+    EXPECT_TRUE(isNear(placesOf(*clone, "sword")[0], {0, 0, -1}));
+}
+
+TEST_F(JointAttachmentTest, WhatIsDetachedStaysWhereItIs)
+{
+    const osg::ref_ptr<osg::Group> root = new osg::Group;
+    const osg::ref_ptr<osg::MatrixTransform> room = new osg::MatrixTransform(osg::Matrix::rotate(0.5, 0, 0, 1));
+    const osg::ref_ptr<JointAttachment> attachment = new JointAttachment("side");
+    attachment->setOffset(osg::Matrix::translate(0, 0, 1));
+    const osg::ref_ptr<AnimatedCharacter> character = characterWith(attachment);
+    character->setMatrix(osg::Matrix::scale(2, 2, 2) * osg::Matrix::translate(0, 5, 0));
+    root->addChild(room);
+    root->addChild(character);
+    character->getController().seek(0.5);
+    const osg::Vec3d before = placesOf(*root, "sword").at(0);
+    const Result<osg::ref_ptr<osg::MatrixTransform>> lost = attachment->detach(*room);
+    ASSERT_TRUE(lost) << lost.error().message;
+    EXPECT_EQ(attachment->getNumParents(), 0u);
+    EXPECT_EQ(lost.value()->getParent(0), room);
+    character->getController().seek(1.5);
+    ASSERT_EQ(placesOf(*root, "sword").size(), 1u);
+    EXPECT_TRUE(isNear(placesOf(*root, "sword")[0], before));
+    EXPECT_TRUE(isNear(before, {5, 5, 2})) << "2 for the joint and 0.5 for the clip, 1 for the offset; times 2";
+
+    EXPECT_FALSE(attachment->detach(*room)) << "it has no parent any more";
+    character->addChild(attachment);
+    room->addChild(character);
+    EXPECT_FALSE(attachment->detach(*room)) << "two paths";
+}
+
+TEST_F(JointAttachmentTest, FollowsAnInstanceOfACrowd)
+{
+    const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*makeTestCharacter());
+    AnimationController controller(crowd->getSharedAnimationSet());
+    ASSERT_TRUE(controller.play("shift"));
+    ASSERT_TRUE(crowd->add(osg::Matrix::translate(100, 0, 0), controller));
+    const auto second = crowd->add(osg::Matrix::translate(100, 7, 0), controller).value();
+    const osg::ref_ptr<JointAttachment> attachment = new JointAttachment("side");
+    const osg::ref_ptr<osg::Geometry> sword = osg::createTexturedQuadGeometry({}, {1, 0, 0}, {0, 0, 1});
+    sword->setName("sword");
+    attachment->addChild(sword);
+    crowd->addChild(attachment);
+    updateAt(*crowd, 1.0);
+    EXPECT_TRUE(isNear(placesOf(*crowd, "sword").at(0), {100, 0, 0})) << "no instance yet: at the crowd's origin";
+    attachment->setInstance(second);
+    updateAt(*crowd, 1.5);
+    const Result<osg::Matrixd> joint = crowd->jointToCrowd(second, "side");
+    ASSERT_TRUE(joint);
+    EXPECT_TRUE(isNear(joint.value().getTrans(), {102.5, 7, 0}));
+    EXPECT_TRUE(isNear(placesOf(*crowd, "sword").at(0), {102.5, 7, 0}));
+    EXPECT_TRUE(isNear(attachment->getMatrix().getTrans(), {2.5, 7, 0})) << "relative to the crowd's origin";
+    ASSERT_TRUE(crowd->setPlacement(second, osg::Matrix::translate(0, 9, 0)));
+    EXPECT_TRUE(isNear(placesOf(*crowd, "sword").at(0), {2.5, 9, 0}));
+    updateAt(*crowd, 1.5);
+    crowd->remove(second);
+    updateAt(*crowd, 1.7);
+    EXPECT_TRUE(isNear(placesOf(*crowd, "sword").at(0), {2.5, 9, 0})) << "the instance is gone, the sword stays";
+    EXPECT_FALSE(crowd->jointToCrowd(second, "side"));
+    EXPECT_FALSE(crowd->jointToCrowd(second, 99));
 }
 
 TEST_F(JointAttachmentTest, FollowsANewJointAtOnce)

@@ -6,6 +6,8 @@
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/lod/LodSelection.h>
 
+#include <set>
+
 // Tests which meshes are drawn with fewer triangles, by the number of triangles in a frame.
 
 namespace osgGpuAnimation
@@ -95,6 +97,28 @@ TEST_F(LodDrawsGLTest, whatReachesBehindTheEyeIsDrawnWhole)
         EXPECT_EQ(trianglesAt(0.9), tubeTriangles) << animated->className();
         EXPECT_LT(trianglesAt(1.3), tubeTriangles / 4) << animated->className();
     }
+}
+
+// An error of the mesh grows with the largest scale of its placement, whatever way that scale points.
+TEST_F(LodDrawsGLTest, aTurnDoesNotChangeTheLevel)
+{
+    const osg::ref_ptr<AnimatedCharacter> character = makeTubeCharacter(armSet());
+    std::set<GLuint> counts;
+    for (const float error : {0.02f, 0.03f, 0.05f, 0.08f, 0.13f, 0.21f, 0.34f})
+    {
+        ASSERT_TRUE(character->setPixelError(error));
+        std::vector<GLuint> triangles;
+        for (const osg::Vec3d& towards : {osg::Vec3d(1, 0, 0), osg::Vec3d(1, 1, 1)})
+        {
+            const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*character);
+            const osg::Matrixd place = osg::Matrixd::scale(0.9, 0.1, 0.1) * osg::Matrixd::rotate({1, 0, 0}, towards);
+            ASSERT_TRUE(crowd->add(place, character->getController()));
+            triangles.push_back(trianglesOf(*crowd));
+        }
+        EXPECT_EQ(triangles[0], triangles[1]) << error;
+        counts.insert(triangles[0]);
+    }
+    EXPECT_GE(counts.size(), 3u);
 }
 
 TEST_F(LodDrawsGLTest, whatIsNotTheCharactersOwnChildIsDrawnWhole)

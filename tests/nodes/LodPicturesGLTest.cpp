@@ -215,7 +215,7 @@ protected:
         camera->setReferenceFrame(osg::Transform::ABSOLUTE_RF);
         camera->setRenderOrder(osg::Camera::POST_RENDER);
         camera->setComputeNearFarMode(osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR);
-        camera->setViewport(0, 0, side, side);
+        camera->setViewport(0, 0, viewportSide, viewportSide);
         camera->addChild(moved);
         look(*camera, centre * moved->getMatrix());
         LodSceneGLTest::look(*viewer().getCamera(), centre * moved->getMatrix(), 2500.0, 0.0);
@@ -226,6 +226,8 @@ protected:
         drawn(*scene);
         return primitives();
     }
+
+    int viewportSide = side; ///< of that camera
 };
 
 // Shadow passes use the main camera's level, so that no surface shadows itself.
@@ -239,6 +241,11 @@ TEST_F(LodShadowsGLTest, shadowMapsHaveTheLevelsOfTheCameraThatTheyAreFor)
         EXPECT_LT(4 * ofFewer, ofAll);
         EXPECT_EQ(primitivesOf(shadows, 0.0f), 2 * ofAll);
         EXPECT_EQ(primitivesOf(shadows, 0.5f), 2 * ofFewer);
+        viewportSide = side / 4; // a tube is a quarter as many pixels long
+        const GLuint inSmall = primitivesOf(plain, 0.5f);
+        EXPECT_LT(inSmall, ofFewer);
+        EXPECT_EQ(primitivesOf(shadows, 0.5f), 2 * inSmall);
+        viewportSide = side;
     }
 }
 

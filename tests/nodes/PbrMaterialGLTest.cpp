@@ -1,17 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "nodes/Panel.h"
-#include "support/ViewerGLTest.h"
+#include "nodes/PbrPanelGLTest.h"
 
-#include <osgGpuAnimation/nodes/CharacterProgram.h>
 #include <osgGpuAnimation/nodes/Environment.h>
-#include <osgGpuAnimation/nodes/PbrMaterial.h>
-
-#include <layout.glsl>
-
-#include <osg/FrontFace>
-#include <osg/LightModel>
-#include <osg/LightSource>
-#include <osg/MatrixTransform>
 
 #include <algorithm>
 #include <cmath>
@@ -23,115 +13,9 @@ namespace osgGpuAnimation
 namespace
 {
 
+using PbrMaterialGLTest = PbrPanelGLTest;
+
 constexpr double pi = 3.14159265358979;
-
-/// A picture of one colour. value: as stored, in [0, 1].
-osg::ref_ptr<osg::Texture2D> plainTexture(const osg::Vec4& value, bool isColor = false)
-{
-    osg::ref_ptr<osg::Image> image = new osg::Image;
-    image->allocateImage(2, 2, 1, GL_RGBA, GL_UNSIGNED_BYTE);
-    for (unsigned int texel = 0; texel < 4; ++texel)
-        image->setColor(value, texel % 2, texel / 2);
-    osg::ref_ptr<osg::Texture2D> texture = new osg::Texture2D(image);
-    texture->setInternalFormat(isColor ? GL_SRGB8_ALPHA8 : GL_RGBA8);
-    texture->setFilter(osg::Texture::MIN_FILTER, osg::Texture::LINEAR);
-    texture->setWrap(osg::Texture::WRAP_S, osg::Texture::REPEAT);
-    texture->setWrap(osg::Texture::WRAP_T, osg::Texture::REPEAT);
-    return texture;
-}
-
-/// The panel, moved by the palette or as plain geometry, under one light and an even surrounding.
-class PbrMaterialGLTest : public ViewerGLTest
-{
-protected:
-    PbrMaterialGLTest()
-    {
-        light->setPosition(osg::Vec4(0.3f, -1.0f, 0.5f, 0.0f));
-        light->setAmbient(osg::Vec4(0, 0, 0, 1));
-        light->setDiffuse(osg::Vec4(0.7f, 0.7f, 0.7f, 1));
-        surrounding->setAmbientIntensity(osg::Vec4(0.2f, 0.2f, 0.2f, 1));
-    }
-
-    static osg::ref_ptr<osg::Vec4Array> tangents(osg::Geometry& mesh, const osg::Vec4& tangent)
-    {
-        const std::vector<osg::Vec4> all(mesh.getVertexArray()->getNumElements(), tangent);
-        osg::ref_ptr<osg::Vec4Array> array = new osg::Vec4Array(all.begin(), all.end());
-        array->setBinding(osg::Array::BIND_PER_VERTEX);
-        return array;
-    }
-
-    /// tangent: w 0: none. scale: of the node above.
-    osg::ref_ptr<osg::Node> panel(bool isMoving, PbrMaterial material, const osg::Vec3& scale = {1, 1, 1},
-                                  const osg::Vec4& tangent = {}) const
-    {
-        osg::ref_ptr<AnimatedCharacter> character = makePanelCharacter();
-        osg::ref_ptr<osg::MatrixTransform> root = new osg::MatrixTransform(osg::Matrix::scale(scale));
-        osg::ref_ptr<osg::Node> subject = isMoving ? osg::ref_ptr<osg::Node>(character) : makeBaked(*character);
-        osg::Geometry& mesh = isMoving ? static_cast<osg::Geometry&>(*character->getChild(0)) : *findGeometry(*subject);
-        mesh.setStateSet(new osg::StateSet);
-        osg::StateSet& state = *mesh.getStateSet();
-        if (tangent.w() != 0.0f) mesh.setVertexAttribArray(POSE_TANGENT_LOCATION, tangents(mesh, tangent));
-        material.hasTangents = tangent.w() != 0.0f;
-        applyPbrMaterial(state, material);
-        if (isMoving)
-            applyCharacterProgram(state);
-        else
-            applySurfaceProgram(state, true);
-        if (scale.x() * scale.y() * scale.z() < 0.0f)
-            state.setAttributeAndModes(new osg::FrontFace(osg::FrontFace::CLOCKWISE));
-        root->addChild(subject);
-        return root;
-    }
-
-    static osg::Geometry* findGeometry(osg::Node& node)
-    {
-        if (node.asGeometry()) return node.asGeometry();
-        osg::Group* const group = node.asGroup();
-        for (unsigned int i = 0; group && i < group->getNumChildren(); ++i)
-            if (osg::Geometry* const found = findGeometry(*group->getChild(i))) return found;
-        return nullptr;
-    }
-
-    osg::ref_ptr<osg::Image> pictureOf(osg::Node* subject, osg::Group* group = new osg::Group)
-    {
-        const osg::ref_ptr<osg::Group> root = group;
-        root->addChild(subject);
-        osg::StateSet& state = *root->getOrCreateStateSet();
-        state.setMode(GL_LIGHTING, osg::StateAttribute::ON);
-        const osg::ref_ptr<osg::LightSource> source = new osg::LightSource; // an attribute alone moves with each mesh
-        source->setLight(light);
-        source->setStateSetModes(state, osg::StateAttribute::ON);
-        root->addChild(source);
-        state.setAttribute(surrounding);
-        viewer().setLightingMode(osg::View::NO_LIGHT);
-        viewer().getCamera()->setClearColor({0, 0, 1, 1});
-        osg::ref_ptr<osg::Image> image = ViewerGLTest::pictureOf(root, {0.0});
-        EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
-        return image;
-    }
-
-    /// The pixel in the middle of what is drawn; the background is blue. Its place in eye space goes to `position`.
-    osg::Vec4 middle(const osg::Image& image)
-    {
-        double sumX = 0, sumY = 0, count = 0;
-        for (int y = 0; y < image.t(); ++y)
-            for (int x = 0; x < image.s(); ++x)
-                if (image.getColor(x, y) != osg::Vec4(0, 0, 1, 1)) sumX += x, sumY += y, count += 1;
-        EXPECT_GT(count, 20);
-        const int x = static_cast<int>(sumX / std::max(count, 1.0)), y = static_cast<int>(sumY / std::max(count, 1.0));
-        position.set((x + 0.5) * 8 / image.s() - 4, (y + 0.5) * 8 / image.t() - 4, -10);
-        return image.getColor(x, y);
-    }
-
-    osg::ref_ptr<osg::Light> light = new osg::Light(0);
-    osg::ref_ptr<osg::LightModel> surrounding = new osg::LightModel;
-    osg::Vec3d position; ///< of the pixel that middle() found, in eye space
-};
-
-float encoded(double linear)
-{
-    return displayColor(osg::Vec4(static_cast<float>(linear), 0, 0, 1)).r();
-}
 
 /// Appendix B of glTF 2.0 in double precision: one channel, a light of irradiance 0.7 * pi along the normal's side.
 double specified(double base, double metallic, double roughness, const osg::Vec3d& toEye, const osg::Vec3d& toLight)
@@ -173,7 +57,7 @@ TEST_F(PbrMaterialGLTest, aLightIsReflectedAsSpecified)
             material.metallic = static_cast<float>(one.metallic);
             material.roughness = static_cast<float>(one.roughness);
             light->setPosition(osg::Vec4(one.toLight, 0));
-            const osg::Vec4 found = middle(*pictureOf(panel(isMoving, material)));
+            const osg::Vec4 found = middle(*pictureOf(pbrPanel(isMoving, material)));
             osg::Vec3d toEye = -position, toLight(one.toLight.x(), one.toLight.z(), -one.toLight.y());
             toEye.normalize();
             toLight.normalize();
@@ -195,7 +79,7 @@ TEST_F(PbrMaterialGLTest, aWhiteSurfaceInAWhiteSurroundingIsWhite)
             PbrMaterial material;
             material.metallic = metallic;
             material.roughness = roughness;
-            EXPECT_GE(middle(*pictureOf(panel(true, material))).g(), 253.0f / 255) << metallic << ' ' << roughness;
+            EXPECT_GE(middle(*pictureOf(pbrPanel(true, material))).g(), 253.0f / 255) << metallic << ' ' << roughness;
         }
 }
 
@@ -291,11 +175,11 @@ TEST_F(PbrMaterialGLTest, mapsMultiplyTheirFactors)
             PbrMaterial withMap = base, withFactor = base;
             one.withMap(withMap);
             one.withFactor(withFactor);
-            const osg::ref_ptr<osg::Image> expected = pictureOf(panel(true, withFactor));
+            const osg::ref_ptr<osg::Image> expected = pictureOf(pbrPanel(true, withFactor));
             // A map's numbers have 8 bits.
-            EXPECT_EQ(Picture::pixelsDifferent(*expected, *pictureOf(panel(isMoving, withMap)), 2.5f / 255), 0)
+            EXPECT_EQ(Picture::pixelsDifferent(*expected, *pictureOf(pbrPanel(isMoving, withMap)), 2.5f / 255), 0)
                 << one.name << (isMoving ? ", moving" : ", still");
-            const int changed = Picture::pixelsDifferent(*expected, *pictureOf(panel(true, base)), 2.5f / 255);
+            const int changed = Picture::pixelsDifferent(*expected, *pictureOf(pbrPanel(true, base)), 2.5f / 255);
             EXPECT_EQ(changed > 20, one.hasEffect) << one.name;
         }
 }
@@ -314,24 +198,24 @@ TEST_F(PbrMaterialGLTest, normalMapsLeanTheNormal)
     const osg::Vec3 plain(1, 1, 1);
     for (const bool isMoving : {true, false})
     {
-        const float without = middle(*pictureOf(panel(isMoving, flat))).r();
-        const float derived = middle(*pictureOf(panel(isMoving, leaning))).r();
-        const float right = middle(*pictureOf(panel(isMoving, leaning, plain, {1, 0, 0, 1}))).r();
-        const float left = middle(*pictureOf(panel(isMoving, leaning, plain, {-1, 0, 0, 1}))).r();
+        const float without = middle(*pictureOf(pbrPanel(isMoving, flat))).r();
+        const float derived = middle(*pictureOf(pbrPanel(isMoving, leaning))).r();
+        const float right = middle(*pictureOf(pbrPanel(isMoving, leaning, plain, {1, 0, 0, 1}))).r();
+        const float left = middle(*pictureOf(pbrPanel(isMoving, leaning, plain, {-1, 0, 0, 1}))).r();
         EXPECT_GT(derived, without + 0.05f);
         EXPECT_NEAR(right, derived, 2.0f / 255);
         EXPECT_LT(left, without - 0.05f);
         // A length of 0 says nothing: the mesh's own normal remains.
-        EXPECT_NEAR(middle(*pictureOf(panel(isMoving, leaning, plain, {0, 0, 0, 1}))).r(), without, 2.0f / 255);
+        EXPECT_NEAR(middle(*pictureOf(pbrPanel(isMoving, leaning, plain, {0, 0, 0, 1}))).r(), without, 2.0f / 255);
         // Mirrored at the plane x = 0, the map's right is on the left.
-        EXPECT_NEAR(middle(*pictureOf(panel(isMoving, leaning, {-1, 1, 1}, {1, 0, 0, 1}))).r(), left, 2.0f / 255);
-        EXPECT_NEAR(middle(*pictureOf(panel(isMoving, leaning, {-1, 1, 1}))).r(), left, 2.0f / 255);
+        EXPECT_NEAR(middle(*pictureOf(pbrPanel(isMoving, leaning, {-1, 1, 1}, {1, 0, 0, 1}))).r(), left, 2.0f / 255);
+        EXPECT_NEAR(middle(*pictureOf(pbrPanel(isMoving, leaning, {-1, 1, 1}))).r(), left, 2.0f / 255);
         // The bitangent's side, which a mirror keeps.
         light->setPosition(osg::Vec4(0, -1, 1, 0));
-        const float upwards = middle(*pictureOf(panel(isMoving, up, plain, {1, 0, 0, 1}))).r();
-        EXPECT_NEAR(middle(*pictureOf(panel(isMoving, up))).r(), upwards, 2.0f / 255);
-        EXPECT_NEAR(middle(*pictureOf(panel(isMoving, up, {-1, 1, 1}, {1, 0, 0, 1}))).r(), upwards, 2.0f / 255);
-        EXPECT_LT(middle(*pictureOf(panel(isMoving, up, plain, {1, 0, 0, -1}))).r(), upwards - 0.1f);
+        const float upwards = middle(*pictureOf(pbrPanel(isMoving, up, plain, {1, 0, 0, 1}))).r();
+        EXPECT_NEAR(middle(*pictureOf(pbrPanel(isMoving, up))).r(), upwards, 2.0f / 255);
+        EXPECT_NEAR(middle(*pictureOf(pbrPanel(isMoving, up, {-1, 1, 1}, {1, 0, 0, 1}))).r(), upwards, 2.0f / 255);
+        EXPECT_LT(middle(*pictureOf(pbrPanel(isMoving, up, plain, {1, 0, 0, -1}))).r(), upwards - 0.1f);
         light->setPosition(osg::Vec4(1, -1, 0, 0));
     }
 }
@@ -347,9 +231,9 @@ TEST_F(PbrMaterialGLTest, whatLiesBelowTheClearCoatIsDarker)
     glowing.emissive.set(0.5f, 0.5f, 0.5f);
     for (PbrMaterial* material : {&lit, &glowing})
     {
-        const float without = linearColor(middle(*pictureOf(panel(true, *material)))).g();
+        const float without = linearColor(middle(*pictureOf(pbrPanel(true, *material)))).g();
         material->clearcoat = 1.0f;
-        const float found = middle(*pictureOf(panel(true, *material))).g();
+        const float found = middle(*pictureOf(pbrPanel(true, *material))).g();
         EXPECT_NEAR(found, encoded(0.96 * without), 1.5 / 255);
         EXPECT_LT(found, encoded(without) - 1.5f / 255);
     }
@@ -360,10 +244,10 @@ TEST_F(PbrMaterialGLTest, occlusionDarkensSurroundingsAlone)
     PbrMaterial open, occluded;
     open.metallic = occluded.metallic = 0.0f;
     occluded.occlusionMap.texture = plainTexture({0, 1, 1, 1});
-    const osg::ref_ptr<osg::Image> found = pictureOf(panel(true, occluded));
-    EXPECT_GT(Picture::pixelsDifferent(*pictureOf(panel(true, open)), *found), 100);
+    const osg::ref_ptr<osg::Image> found = pictureOf(pbrPanel(true, occluded));
+    EXPECT_GT(Picture::pixelsDifferent(*pictureOf(pbrPanel(true, open)), *found), 100);
     surrounding->setAmbientIntensity(osg::Vec4(0, 0, 0, 1));
-    EXPECT_EQ(Picture::pixelsDifferent(*pictureOf(panel(true, open)), *found), 0);
+    EXPECT_EQ(Picture::pixelsDifferent(*pictureOf(pbrPanel(true, open)), *found), 0);
 }
 
 TEST_F(PbrMaterialGLTest, colorsAreMixedInLinearLight)
@@ -376,7 +260,7 @@ TEST_F(PbrMaterialGLTest, colorsAreMixedInLinearLight)
     material.emissiveStrength = 2.0f;
     material.metallic = 1.0f; // an even surrounding times the base colour, but for several bounces
     material.roughness = 0.0f;
-    const osg::Vec4 found = middle(*pictureOf(panel(true, material)));
+    const osg::Vec4 found = middle(*pictureOf(pbrPanel(true, material)));
     EXPECT_NEAR(found.r(), encoded(0.5 + 0.2), 2.0 / 255);
     EXPECT_NEAR(found.g(), encoded(0.25), 2.0 / 255);
 }
@@ -390,7 +274,7 @@ TEST_F(PbrMaterialGLTest, theEnvironmentTurnsAndHasAnIntensity)
     {
         osg::ref_ptr<Environment> studio = new Environment;
         set(*studio);
-        return middle(*pictureOf(panel(true, material), studio));
+        return middle(*pictureOf(pbrPanel(true, material), studio));
     };
     const osg::Vec4 plain = inStudio([](Environment&) {});
     const osg::Vec4 dark = inStudio([](Environment& studio) { studio.setIntensity(0.5f); });

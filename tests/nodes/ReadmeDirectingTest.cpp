@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "support/GaitSet.h"
 #include "support/ScratchFolder.h"
 #include "support/WorkingFolder.h"
 
@@ -6,6 +7,7 @@
 #include <osgGpuAnimation/animation/JointMask.h>
 #include <osgGpuAnimation/animation/StateMachine.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
+#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
 #include <osgGpuAnimation/nodes/RootMotionCallback.h>
 #include <osgGpuAnimation/nodes/StateGraphFile.h>
@@ -81,6 +83,48 @@ TEST_F(ReadmeDirectingTest, PlayingAndCrossfading)
     options.loopMode = LoopMode::Loop;
     succeeded(controller.crossfade("Walk", 0.3, options));
     EXPECT_EQ(controller.advance(0.1).sampleCount, 2u) << "the first crossfade had not begun to show";
+}
+
+TEST_F(ReadmeDirectingTest, BlendSpaces)
+{
+    AnimationController& controller = fox->getController();
+    auto gaits = BlendSpace::create(fox->getAnimationSet(), {{"Survey", 0.0}, {"Walk", 1.4}, {"Run", 4.0}});
+    if (succeeded(gaits))
+    {
+        succeeded(controller.crossfade(gaits.value(), 0.3));
+        controller.setParameter(2.2);
+    }
+    EXPECT_EQ(controller.advance(0.4).sampleCount, 2u) << "Walk and Run";
+
+    auto moves =
+        BlendSpace::create(fox->getAnimationSet(), {{"Survey", 0, 0}, {"Walk", 0, 1}, {"Run", 0, 3}, {"Jump", 1, 1}});
+    if (succeeded(moves)) succeeded(controller.layer(1).play(moves.value()));
+    controller.layer(1).setParameter(0.5, 1.5);
+    EXPECT_EQ(controller.advance(0.1).sampleCount, 5u) << "and three";
+}
+
+TEST_F(ReadmeDirectingTest, GroundSpeed)
+{
+    const auto set = makeStridingSet({{"Walk", 1.0, 1.1, 0.6}});
+    AnimationController controller(set);
+    succeeded(controller.play("Walk"));
+    succeeded(controller.layer(0).setGroundSpeed(2.2));
+    EXPECT_NEAR(controller.speed(), 2.0, 0.02);
+}
+
+TEST_F(ReadmeDirectingTest, Footsteps)
+{
+    const auto set = makeStridingSet({{"Walk", 1.0, 1.1, 0.6}});
+    std::vector<Joint> joints = set->skeleton().joints();
+    joints[5].name = "toes.l";
+    const osg::ref_ptr<AnimatedCharacter> fox = new AnimatedCharacter(
+        AnimationSet::create({Skeleton::create(joints).value(), {}, {}, {}, set->clips()}).value());
+    auto steps = findFootContacts(fox->getAnimationSet(), "Walk", "toes.l");
+    std::vector<ClipMarker> footsteps;
+    if (succeeded(steps))
+        for (const FootContact& step : steps.value())
+            footsteps.push_back({step.touch, "left foot"});
+    EXPECT_EQ(footsteps.size(), 1u);
 }
 
 TEST_F(ReadmeDirectingTest, LayersAndMasks)
@@ -170,6 +214,7 @@ TEST_F(ReadmeDirectingTest, AttachmentsAndQuestions)
     osg::ref_ptr<osg::Group> sword = new osg::Group;
     osg::ref_ptr<JointAttachment> hand = new JointAttachment("Hand.R");
     hand->addChild(sword);
+    hand->setOffset(osg::Matrix::translate(0, 0.1, 0));
     fox->addChild(hand);
 
     Result<osg::Matrixd> head = fox->jointToModel("head");
@@ -180,6 +225,45 @@ TEST_F(ReadmeDirectingTest, AttachmentsAndQuestions)
     bool walks = clip == fox->getAnimationSet().findClip("Walk") && controller.isPlaying();
     EXPECT_EQ(share, 0.0);
     EXPECT_TRUE(walks);
+
+    osg::ref_ptr<osg::Group> world = new osg::Group;
+    world->addChild(fox);
+    Result<osg::ref_ptr<osg::MatrixTransform>> dropped = hand->detach(*world);
+    EXPECT_TRUE(dropped);
+    EXPECT_EQ(sword->getParent(0), world->getChild(1));
+}
+
+TEST_F(ReadmeDirectingTest, Crowds)
+{
+    const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*fox);
+    const AnimationController controller(crowd->getSharedAnimationSet());
+    const AnimatedCrowd::Instance leader = crowd->add(osg::Matrix::translate(0, 5, 0), controller).value();
+    const osg::ref_ptr<osg::Group> flag = new osg::Group;
+    const auto graph = parseStateGraph(crowd->getAnimationSet(), R"({
+        "states": { "walk": { "clip": "Walk" }, "run": { "clip": "Run" } },
+        "transitions": [{ "from": "walk", "to": "run", "when": "speed > 1", "seconds": 0 }]
+    })")
+                           .value();
+    const auto playSound = [](AnimatedCrowd::Instance, const std::string&) {};
+    crowd->setInstanceEventCallback(
+        [&](AnimatedCrowd::Instance who, const AnimationEvent& event)
+        {
+            if (event.type == AnimationEvent::Type::Marker) playSound(who, event.marker->name);
+        });
+    succeeded(crowd->setStateGraph(leader, graph));
+    crowd->update(0.0);
+    crowd->getStateMachine(leader)->set("speed", 2.0);
+    crowd->update(0.1);
+    EXPECT_EQ(crowd->getStateMachine(leader)->state(), "run");
+
+    osg::ref_ptr<JointAttachment> banner = new JointAttachment("Hand.R");
+    banner->setInstance(leader);
+    banner->addChild(flag);
+    crowd->addChild(banner);
+    Result<osg::Matrixd> hand = crowd->jointToCrowd(leader, "Hand.R");
+    EXPECT_TRUE(hand);
+    osg::Vec4 tint = crowd->getTint(leader);
+    EXPECT_EQ(tint, osg::Vec4(1, 1, 1, 1));
 }
 
 TEST_F(ReadmeDirectingTest, States)

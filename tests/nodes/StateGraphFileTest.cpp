@@ -46,6 +46,78 @@ TEST(StateGraphFileTest, ReadsAllThatAGraphHas)
     EXPECT_EQ(graph.triggers(), std::vector<std::string>{"spin"});
 }
 
+TEST(StateGraphFileTest, AStateMayPlayABlendSpace)
+{
+    const auto set = makeGaitSet();
+    const auto graph = parseStateGraph(*set, R"({
+        "sharedPhase": true,
+        "states": {
+            "stand": { "clip": "Idle" },
+            "move": { "blend": [{ "clip": "Walk", "at": 1.5 }, { "clip": "Run", "at": 4 }], "parameter": "speed" },
+            "strafe": { "blend": [{ "clip": "Walk", "at": [1, 0] }, { "clip": "Run", "at": [0, 1] },
+                                  { "clip": "Turn", "at": [1, 1] }], "parameter": ["speed", "side"], "speed": 0.5 }
+        },
+        "transitions": [
+            { "from": "stand", "to": "move", "when": "speed > 0.1", "seconds": 0.3 },
+            { "from": "move", "to": "strafe", "when": "strafe", "sync": "phase" }
+        ]
+    })");
+    ASSERT_TRUE(graph) << graph.error().message;
+    EXPECT_EQ(graph.value()->parameters(), (std::vector<std::string>{"speed", "side"}));
+    AnimationController controller(set);
+    StateMachine machine(graph.value());
+    const auto step = [&](double speed)
+    {
+        EXPECT_TRUE(machine.set("speed", speed));
+        machine.update(controller, 0.1);
+        controller.advance(0.1);
+    };
+    step(0.0);
+    EXPECT_TRUE(controller.layer(0).isPhaseShared());
+    EXPECT_FALSE(controller.layer(0).blendSpace());
+    for (int i = 0; i < 4; ++i)
+        step(2.75);
+    EXPECT_EQ(machine.state(), "move");
+    ASSERT_EQ(controller.instruction().sampleCount, 2u);
+    EXPECT_FLOAT_EQ(controller.instruction().samples[0].weight, 0.5f) << "the parameter passes to the space";
+    step(4.0);
+    EXPECT_EQ(controller.instruction().sampleCount, 1u);
+    EXPECT_TRUE(machine.fire("strafe"));
+    EXPECT_TRUE(machine.set("side", 0.5));
+    for (int i = 0; i < 4; ++i)
+        step(0.75);
+    EXPECT_EQ(machine.state(), "strafe");
+    EXPECT_EQ(controller.layer(0).parameter(), glm::dvec2(0.75, 0.5));
+    EXPECT_EQ(controller.instruction().sampleCount, 3u);
+    EXPECT_EQ(controller.speed(), 0.5);
+}
+
+TEST(StateGraphFileTest, TheSpeedMayFollowTheGround)
+{
+    const auto set = makeStridingSet({{"Walk", 1.0, 1.2, 0.62}, {"Run", 0.6, 3.2, 0.36}});
+    const auto graph = parseStateGraph(*set, R"({
+        "states": {
+            "walk": { "clip": "Walk", "groundSpeed": "speed" },
+            "move": { "blend": [{ "clip": "Walk", "at": 1.2 }, { "clip": "Run", "at": 3.2 }], "parameter": "speed",
+                      "groundSpeed": "speed" }
+        },
+        "transitions": [{ "from": "walk", "to": "move", "when": "speed > 1.5" }]
+    })");
+    ASSERT_TRUE(graph) << graph.error().message;
+    AnimationController controller(set);
+    StateMachine machine(graph.value());
+    EXPECT_TRUE(machine.set("speed", 0.6));
+    machine.update(controller, 0.1);
+    EXPECT_NEAR(controller.speed(), 0.5, 0.005);
+    EXPECT_TRUE(machine.set("speed", 3.2));
+    machine.update(controller, 0.1);
+    EXPECT_EQ(machine.state(), "move");
+    EXPECT_NEAR(controller.speed(), 1.0, 0.01) << "a run at its own speed";
+    EXPECT_TRUE(machine.set("speed", 6.4));
+    machine.update(controller, 0.1);
+    EXPECT_NEAR(controller.speed(), 2.0, 0.02) << "beyond the fastest clip";
+}
+
 TEST(StateGraphFileTest, FaultsAreNamed)
 {
     struct Case
@@ -78,6 +150,27 @@ TEST(StateGraphFileTest, FaultsAreNamed)
          "transitions[0].when: expected a string, found number"},
         {R"({"states": {"a": {"clip": "Walk"}}, "transitions": [{"to": "a", "when": "x", "seconds": "1"}]})",
          "transitions[0].seconds: expected a number, found string"},
+        {R"({"states": {"a": {"clip": "Walk", "groundSpeed": 1}}})",
+         "states.a.groundSpeed: expected a string, found number"},
+        {R"({"states": {"a": {"clip": "Walk", "groundSpeed": "a b"}}})",
+         "state \"a\": \"a b\" is not the name of a parameter"},
+        {R"({"sharedPhase": 1, "states": {"a": {"clip": "Walk"}}})",
+         "sharedPhase: expected true or false, found number"},
+        {R"({"states": {"a": {"blend": []}}})", "states.a: it has no \"parameter\""},
+        {R"({"states": {"a": {"blend": [], "parameter": "x"}}})", "state \"a\": a blend space of 0 positions"},
+        {R"({"states": {"a": {"blend": {}, "parameter": "x"}}})", "states.a.blend: expected an array, found object"},
+        {R"({"states": {"a": {"blend": [{"clip": "Walk"}], "parameter": "x"}}})",
+         "states.a.blend[0]: it has no \"at\""},
+        {R"({"states": {"a": {"blend": [{"clip": "Walk", "at": "1"}], "parameter": "x"}}})",
+         "states.a.blend[0].at: expected a number or an array of two numbers, found string"},
+        {R"({"states": {"a": {"blend": [{"clip": "Fly", "at": 1}], "parameter": "x"}}})",
+         "state \"a\": a blend space: there is no clip \"Fly\""},
+        {R"({"states": {"a": {"blend": [{"clip": "Walk", "at": 1}], "parameter": ["x", "y", "z"]}}})",
+         "state \"a\": a blend space with 3 parameters: expected one or two"},
+        {R"({"states": {"a": {"blend": [{"clip": "Walk", "at": 1}], "parameter": "x > y"}}})",
+         "state \"a\": \"x > y\" is not the name of a parameter"},
+        {R"({"states": {"a": {"blend": [{"clip": "Walk", "at": 1}], "parameter": "x", "clip": "Walk"}}})",
+         "states.a: unknown member \"clip\""},
         {R"({"states": {"a": {"clip": "Walk"}}, "start": "b"})", "start: there is no state \"b\""},
     };
     const auto set = makeGaitSet();

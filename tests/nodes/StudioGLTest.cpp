@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
+#include "nodes/StudioPanorama.h"
 #include "support/TestCharacter.h"
+#include "support/ThreadingModels.h"
 #include "support/ViewerGLTest.h"
 
 #include <osgGpuAnimation/nodes/studio/Studio.h>
@@ -9,6 +11,7 @@
 #include <osgGA/TrackballManipulator>
 #include <osgUtil/IntersectionVisitor>
 #include <osgUtil/LineSegmentIntersector>
+#include <osgViewer/CompositeViewer>
 
 namespace osgGpuAnimation
 {
@@ -62,6 +65,34 @@ TEST_P(StudioGLTest, theShadowLiesBehindTheModelAndFollowsItsPose)
         EXPECT_GT(brightness(*image, here, -0.7), 0.97) << "in front of the model " << time;
         EXPECT_LT(brightness(*image, here, 1.9), 1.2) << "the ground fades into the backdrop " << time;
     }
+}
+
+/// A low sun, and a grey sky around it. towards: glTF's axes.
+osg::ref_ptr<osg::Image> sunnySky(osg::Vec3f towards)
+{
+    towards.normalize();
+    return makePanorama(256, [towards](const osg::Vec3f& d)
+                        { return osg::Vec3f(1, 1, 1) * (0.3f + 200.0f * std::exp(400.0f * (d * towards - 1.0f))); });
+}
+
+TEST_P(StudioGLTest, inSurroundingsFromAPictureTheShadowIsThatOfTheirBrightestLight)
+{
+    const osg::ref_ptr<Studio> studio = makeScene();
+    const auto shadowAt = [&](double x, double y) { return brightness(*pictureOf(studio, {0.0}), x, y) < 0.85; };
+    EXPECT_TRUE(shadowAt(0.5, 0.5));
+    EXPECT_FALSE(shadowAt(0.5, -0.5));
+    ASSERT_TRUE(studio->setPanorama(sunnySky({0, 1, -1}))); // behind the model
+    EXPECT_FALSE(shadowAt(0.5, 0.5));
+    EXPECT_TRUE(shadowAt(0.5, -0.5));
+    studio->setRotation(osg::PIf);
+    EXPECT_TRUE(shadowAt(0.5, 0.5));
+    EXPECT_FALSE(shadowAt(0.5, -0.5));
+    ASSERT_TRUE(studio->setPanorama(makePanorama(64, [](const osg::Vec3f&) { return osg::Vec3f(1, 1, 1); })));
+    EXPECT_FALSE(shadowAt(0.5, 0.5));
+    EXPECT_FALSE(shadowAt(0.5, -0.5));
+    studio->setStudio();
+    studio->setRotation(0.0f);
+    EXPECT_TRUE(shadowAt(0.5, 0.5));
 }
 
 TEST_P(StudioGLTest, theApplicationsLightsDoNotShine)
@@ -123,6 +154,74 @@ TEST_P(StudioGLTest, theHomeViewIsRaisedUnlessTheApplicationHasSetOne)
         EXPECT_LT(distance, isSet ? 20.1 : 8.0);
         viewer().setCameraManipulator(nullptr);
     }
+}
+
+/// A view of a viewer with its own window.
+class StudioWindow
+{
+public:
+    StudioWindow(osgViewer::CompositeViewer& viewer, osg::Node* scene, const osg::Camera& like, int side)
+    {
+        osg::ref_ptr<osg::GraphicsContext::Traits> traits = new osg::GraphicsContext::Traits;
+        traits->width = traits->height = side;
+        context = EglGraphicsContext::create(traits).value();
+        const osg::ref_ptr<osgViewer::View> view = new osgViewer::View;
+        osg::Camera& camera = *view->getCamera();
+        camera.setGraphicsContext(context);
+        camera.setViewport(0, 0, side, side);
+        camera.setProjectionMatrix(like.getProjectionMatrix());
+        camera.setViewMatrix(like.getViewMatrix());
+        camera.setComputeNearFarMode(like.getComputeNearFarMode());
+        camera.setFinalDrawCallback(picture);
+        view->setLightingMode(osg::View::NO_LIGHT);
+        view->setSceneData(scene);
+        viewer.addView(view);
+    }
+
+    osg::ref_ptr<EglGraphicsContext> context;
+    osg::ref_ptr<Picture> picture = new Picture;
+};
+
+TEST_P(StudioGLTest, severalWindowsShowTheSamePictureAlsoAfterAResize)
+{
+    const osg::ref_ptr<Studio> studio = makeScene();
+    viewer().setLightingMode(osg::View::NO_LIGHT);
+    ASSERT_TRUE(studio->setPanorama(sunnySky({0.6f, 1.1f, 0.9f})));
+    const osg::ref_ptr<osg::Image> large = pictureOf(studio, {0.0, 0.5});
+    viewer().getCamera()->setViewport(0, 0, 96, 96);
+    const osg::ref_ptr<osg::Image> small = pictureOf(studio, {0.5});
+    viewer().getCamera()->setViewport(0, 0, 128, 128);
+    const osg::ref_ptr<osg::Image> later = pictureOf(studio, {0.9});
+    EXPECT_GT(Picture::pixelsDifferent(*later, *large), 50);
+    viewer().setSceneData(nullptr);
+    context().releaseContext();
+    for (const auto threading : threadingModels)
+    {
+        SCOPED_TRACE(threading);
+        osgViewer::CompositeViewer both;
+        both.setThreadingModel(threading);
+        StudioWindow windows[] = {{both, studio, *viewer().getCamera(), 128},
+                                  {both, studio, *viewer().getCamera(), 128}};
+        both.realize();
+        for (const double time : {0.0, 0.3, 0.5})
+            both.frame(time);
+        both.stopThreading();
+        for (const StudioWindow& window : windows)
+            EXPECT_EQ(Picture::pixelsDifferent(*large, window.picture->image()), 0);
+        windows[1].context->resized(0, 0, 96, 96);
+        both.startThreading();
+        for (int frame = 0; frame < 3; ++frame)
+            both.frame(0.5);
+        both.stopThreading();
+        EXPECT_EQ(Picture::pixelsDifferent(*large, windows[0].picture->image()), 0) << "not resized";
+        EXPECT_EQ(Picture::pixelsDifferent(*small, windows[1].picture->image()), 0) << "resized";
+        windows[1].context->close(); // the other one keeps its GL objects
+        both.startThreading();
+        both.frame(0.9);
+        both.stopThreading();
+        EXPECT_EQ(Picture::pixelsDifferent(*later, windows[0].picture->image()), 0) << "the other window is closed";
+    }
+    context().makeCurrent();
 }
 
 INSTANTIATE_TEST_SUITE_P(Projections, StudioGLTest, ::testing::Bool(),

@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "plugin/ModelBuilder.h"
-#include "plugin/PluginFolder.h"
+#include "plugin/PseudoLoaderTest.h"
 #include "support/NotifyLog.h"
 
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
 
-#include <gtest/gtest.h>
 #include <osgDB/FileNameUtils>
-#include <osgDB/Registry>
 
-#include <filesystem>
-#include <fstream>
 #include <set>
 
 namespace osgGpuAnimation::gltf
@@ -22,41 +17,9 @@ namespace
 
 using Read = osgDB::ReaderWriter::ReadResult;
 
-/// A folder with `arm.gltf`, which has two clips, and `still.gltf`, which has no animation.
-class CrowdPluginTest : public ::testing::Test
+class CrowdPluginTest : public PseudoLoaderTest
 {
 protected:
-    void SetUp() override
-    {
-        usePluginsOfTheBuild();
-        const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-        folder = std::filesystem::path(::testing::TempDir()) / (std::string("osggpuanimation_crowd_") + test->name());
-        std::filesystem::create_directories(folder);
-        ModelBuilder still;
-        still.node("stone", -1, still.triangle());
-        write("still.gltf", still.text());
-        ModelBuilder arm;
-        arm.node("sword", arm.node("arm"), arm.triangle());
-        arm.animation("Slow slide");
-        arm.slide(0);
-        arm.animation("Slide");
-        arm.slide(0);
-        write("arm.gltf", arm.text());
-    }
-
-    void TearDown() override { std::filesystem::remove_all(folder); }
-
-    void write(const std::string& name, const std::string& content)
-    {
-        std::ofstream(folder / name, std::ios::binary) << content;
-    }
-
-    Read read(const std::string& name, const std::string& options = "")
-    {
-        const osg::ref_ptr<osgDB::Options> held = new osgDB::Options(options);
-        return osgDB::Registry::instance()->readNode((folder / name).string(), held);
-    }
-
     osg::ref_ptr<AnimatedCrowd> readCrowd(const std::string& name, const std::string& options = "")
     {
         Read result = read(name, options);
@@ -80,8 +43,6 @@ protected:
         }
         return played;
     }
-
-    std::filesystem::path folder;
 };
 
 struct FaultCase
@@ -134,6 +95,22 @@ TEST_F(CrowdPluginTest, readsColumnsAndRowsByTheBounds)
     EXPECT_EQ(osg::Matrixd::transform3x3(osg::Vec3d(0, 1, 0), crowd->getFileToNode() * placement), osg::Vec3d(0, 0, 1))
         << "+Z is up, as for the model itself";
     EXPECT_EQ(osg::Matrixd::transform3x3(osg::Vec3d(0, 0, 1), placement), osg::Vec3d(0, 0, 1));
+}
+
+TEST_F(CrowdPluginTest, theSpacingIsOfTheLargerHorizontalSide)
+{
+    ModelBuilder mast; // slides by 1: 1.5 wide, 8 high, 3 deep in the file's axes
+    mast.node("mast", -1, mast.mesh({{"POSITION", mast.floats(TINYGLTF_TYPE_VEC3, {0, 0, 0, 0.5f, 8, 0, 0, 0, 3})}}));
+    mast.animation("slide");
+    mast.slide(0);
+    folder.write("mast.gltf", mast.text());
+    for (const char* options : {"", "noRotation"})
+    {
+        const osg::ref_ptr<AnimatedCrowd> crowd = readCrowd("mast.gltf.2x2.crowd", options);
+        ASSERT_TRUE(crowd);
+        // Neighbours are 1.2 sides apart; bounds may be a little larger than the vertices need.
+        EXPECT_NEAR(placeOf(*crowd, 1).x() - placeOf(*crowd, 0).x(), 3.6, 0.1) << options;
+    }
 }
 
 TEST_F(CrowdPluginTest, theSeedFixesClipsAndTimes)

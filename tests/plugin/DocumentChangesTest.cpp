@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace osgGpuAnimation::gltf
 {
@@ -232,6 +234,23 @@ TEST(DocumentChangesTest, ExtensionsThatChangeLooksAloneAreOneWarningEach)
     expectAnswer(answer, Expect::Warn, "extensionsRequired[2]: \"EXT_lights_ies\"");
     EXPECT_EQ(answer.messages.warnings.size(), 4u) << answer.text();
     EXPECT_TRUE(answer.messages.notes.empty());
+}
+
+// glTF 2.0, section 3.7.2.1: the largest number of an index type would restart the primitive.
+TEST(DocumentChangesTest, theLargestNumberOfAnIndexTypeIsRefused)
+{
+    const std::pair<int, unsigned int> types[] = {{TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE, 255},
+                                                  {TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, 65535}};
+    for (const auto& [type, largest] : types)
+        for (const unsigned int index : {largest - 1, largest})
+        {
+            ModelBuilder file;
+            const int positions = file.floats(TINYGLTF_TYPE_VEC3, std::vector<float>(3 * (largest + 1)));
+            const int indices = file.integers(TINYGLTF_TYPE_SCALAR, type, {0, 1, index});
+            file.node("leaf", -1, file.mesh({{"POSITION", positions}}, TINYGLTF_MODE_TRIANGLES, indices));
+            expectAnswer(load(file.text()), index == largest ? Expect::Refuse : Expect::Valid,
+                         index == largest ? "indices below " + std::to_string(largest) : "");
+        }
 }
 
 } // namespace osgGpuAnimation::gltf

@@ -68,7 +68,7 @@ const FaultCase faults[] = {
      "RootMotion 1 {\nJoint 9 0 1 0 Key 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 "
      "0\n",
      Answer::Error, "root motion does not exist"},
-    {"a newer controller", "Controller 1", "Controller 3", Answer::Error, "version of a controller"},
+    {"a newer controller", "Controller 1", "Controller 4", Answer::Error, "version of a controller"},
     {"nine layers", "Layers 1 ", "Layers 9 ", Answer::Error, "9 layers"},
     {"a state that there is not", "Layer 1 1 1", "Layer 4 1 1", Answer::Error, "state is 4"},
     {"a loop mode that there is not", "Layer 1 1 1", "Layer 1 3 1", Answer::Error, "loop mode is 3"},
@@ -88,6 +88,8 @@ const FaultCase faults[] = {
      "1 elements"},
     {"vertices that are not there", "osg::DrawArrays \\{([^]*?)Count 3", "osg::DrawArrays {$1Count 300", Answer::NoMesh,
      "as a vertex"},
+    {"the vertex behind the last", "osg::DrawArrays \\{([^]*?)Count 3", "osg::DrawArrays {$1Count 4", Answer::NoMesh,
+     "3 as a vertex of 3"},
     {"no property of a set", "AnimationSet \\{", "Other {", Answer::Error, "without its AnimationSet"},
     {"no controller", "Controller 1", "Other 1", Answer::Error, "without its Controller"},
     {"no influences", "Influences -?[0-9]+", "Other 1", Answer::Error, "without its Influences"},

@@ -42,7 +42,8 @@ protected:
         }
         MemoryBudget budget(1 << 20);
         Report report(messages);
-        Meshes meshes(file.model, true, budget, report);
+        MapsOfMaterials maps(file.model, true);
+        Meshes meshes(file.model, maps, budget, report);
         return readInfluences(file.model, file.primitive(0), *meshes.primitive(0, 0), *set, 0, report);
     }
 

@@ -132,11 +132,57 @@ TEST(LightsTest, aLightBeyondFloatNumbersIsLeftOut)
     EXPECT_EQ(lightOf(model.lights[1]).getLightNum(), 1);
 }
 
+// An application may give a light what glTF has no name for: the scene stays readable.
+TEST(LightsTest, aStoredLightOfAWiderConeCostsNoScene)
+{
+    const StoredScene files;
+    const ImportedModel model = imported(threeLights());
+    osg::LightSource& torch = *model.lights[2].source;
+    torch.getLight()->setSpotCutoff(120.0f);
+    for (const char* format : {"osgb", "osgt", "osgx"})
+    {
+        const osg::ref_ptr<osg::Node> stored = files.throughFile(torch, format);
+        const auto* source = dynamic_cast<const osg::LightSource*>(stored.get());
+        ASSERT_TRUE(source && source->getLight()) << format;
+        EXPECT_EQ(source->getLight()->getSpotCutoff(), 120.0f) << format;
+        EXPECT_EQ(source->getLight()->getDiffuse(), torch.getLight()->getDiffuse()) << format;
+    }
+}
+
+// Places are nested like the nodes: as many transforms as nodes, not nodes times their depth.
+TEST(LightsTest, lightsBelowOneJointShareTheTransformsAboveThem)
+{
+    ModelBuilder file = threeLights();
+    const int cart = file.node("cart"), mast = file.node("mast", cart), yard = file.node("yard", mast);
+    file.at(mast).translation = {0.0, 2.0, 0.0};
+    file.at(yard).scale = {0.5, 0.5, 0.5};
+    file.animation("go");
+    file.slide(cart);
+    for (std::size_t lamp = 0; lamp < 2; ++lamp)
+    {
+        tinygltf::Value::Object members{{"light", tinygltf::Value(1)}};
+        const int node = file.node("lamp", yard);
+        file.at(node).translation = {0.0, 0.0, 1.0 + static_cast<double>(lamp)};
+        file.at(node).extensions["KHR_lights_punctual"] = tinygltf::Value(members);
+    }
+    ImportOptions options;
+    options.noRotation = true;
+    const ImportedModel model = imported(file, options);
+    ASSERT_EQ(model.lights.size(), 5u);
+    const auto yardOf = [&](std::size_t light) { return model.lights[light].source->getParent(0)->getParent(0); };
+    EXPECT_EQ(yardOf(3), yardOf(4));
+    EXPECT_EQ(yardOf(3)->getName(), "yard");
+    EXPECT_EQ(yardOf(3)->getParent(0)->getName(), "mast");
+    EXPECT_EQ(model.lights[4].source->getWorldMatrices().front().getTrans(), osg::Vec3d(0.0, 2.0, 1.0));
+}
+
 TEST(LightsTest, storedLightsHaveAllTheirValues)
 {
     const StoredScene files;
     const ImportedModel model = imported(threeLights());
     for (const ImportedLight& made : model.lights)
+    {
+        made.source->getLight()->setSpotExponent(7.0f); // the application's own
         for (const char* format : {"osgb", "osgt", "osgx"})
         {
             const osg::ref_ptr<osg::Node> stored = files.throughFile(*made.source, format);
@@ -145,6 +191,7 @@ TEST(LightsTest, storedLightsHaveAllTheirValues)
             EXPECT_EQ(source->getLight()->compare(*made.source->getLight()), 0) << format;
             EXPECT_FALSE(source->getBound().valid()) << format;
         }
+    }
 }
 
 } // namespace osgGpuAnimation::gltf

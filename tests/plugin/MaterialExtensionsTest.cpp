@@ -76,7 +76,7 @@ TEST(MaterialExtensionsTest, specularGlossinessReplacesMetalAndRoughness)
                             {"specularGlossinessTexture", texture(3)}});
     PbrMaterial result;
     readMaterialExtensions(material, result);
-    EXPECT_EQ(result.baseColor, osg::Vec4(0.1f, 0.2f, 0.3f, 0.5f));
+    EXPECT_EQ(baseColorOf(material), osg::Vec4(0.1f, 0.2f, 0.3f, 0.5f));
     EXPECT_EQ(result.metallic, 0.0f);
     EXPECT_FLOAT_EQ(result.roughness, 0.25f);
     EXPECT_EQ(result.specularColor, osg::Vec3(0.4f, 0.5f, 0.6f));
@@ -85,7 +85,53 @@ TEST(MaterialExtensionsTest, specularGlossinessReplacesMetalAndRoughness)
     EXPECT_EQ(maps.find(&PbrMaterial::baseColorMap)->texture, 2);
     EXPECT_EQ(maps.find(&PbrMaterial::specularColorMap)->texture, 3);
     EXPECT_FALSE(maps.find(&PbrMaterial::metallicRoughnessMap));
-    EXPECT_EQ(mapsOf(material, false).find(&PbrMaterial::baseColorMap)->texture, 0) << "lighting=fixed";
+    EXPECT_EQ(mapsOf(material, false).find(&PbrMaterial::baseColorMap)->texture, 2) << "lighting=fixed";
+}
+
+// The maps of the clear coat come before those of sheen and transmission.
+TEST(MaterialExtensionsTest, mapsOfExtensionsHaveThreeTextureUnitsIfTheyHaveAnEffect)
+{
+    const struct
+    {
+        double clearcoat, transmission;
+        bool isUnlit;
+        MapUse coat, sheen, transmitted;
+        bool hasNormalMap;
+    } cases[] = {
+        {1.0, 1.0, false, MapUse::Shown, MapUse::NoTextureUnit, MapUse::NoTextureUnit, true},
+        {0.0, 1.0, false, MapUse::WithoutEffect, MapUse::Shown, MapUse::Shown, false},
+        {0.0, 0.0, false, MapUse::WithoutEffect, MapUse::Shown, MapUse::WithoutEffect, false},
+        {0.0, 1.0, true, MapUse::WithoutEffect, MapUse::Shown, MapUse::WithoutEffect, false},
+    };
+    for (const auto& one : cases)
+    {
+        tinygltf::Material material;
+        material.extensions["KHR_materials_clearcoat"] = Value(Value::Object{{"clearcoatFactor", Value(one.clearcoat)},
+                                                                             {"clearcoatTexture", texture(0)},
+                                                                             {"clearcoatRoughnessTexture", texture(1)},
+                                                                             {"clearcoatNormalTexture", texture(2)}});
+        material.extensions["KHR_materials_sheen"] =
+            Value(Value::Object{{"sheenColorFactor", numbers({0.1, 0.2, 0.3})}, {"sheenColorTexture", texture(3)}});
+        material.extensions["KHR_materials_transmission"] =
+            Value(Value::Object{{"transmissionFactor", Value(one.transmission)}, {"transmissionTexture", texture(4)}});
+        if (one.isUnlit) material.extensions["KHR_materials_unlit"] = Value(Value::Object());
+        const MaterialMaps maps = mapsOf(material, true);
+        EXPECT_EQ(maps.find(&PbrMaterial::clearcoatNormalMap)->use, one.coat);
+        EXPECT_EQ(maps.find(&PbrMaterial::sheenColorMap)->use, one.sheen);
+        EXPECT_EQ(maps.find(&PbrMaterial::transmissionMap)->use, one.transmitted);
+        EXPECT_EQ(maps.hasNormalMap(), one.hasNormalMap);
+    }
+}
+
+TEST(MaterialExtensionsTest, theClearCoatsNormalMapHasAScale)
+{
+    tinygltf::Material material;
+    Value::Object map{{"index", Value(0)}, {"scale", Value(0.25)}};
+    material.extensions["KHR_materials_clearcoat"] =
+        Value(Value::Object{{"clearcoatFactor", Value(1.0)}, {"clearcoatNormalTexture", Value(map)}});
+    PbrMaterial result;
+    readMaterialExtensions(material, result);
+    EXPECT_EQ(result.clearcoatNormalScale, 0.25f);
 }
 
 // A vertex has three texture coordinates; the maps of the base colour and the normal come first.
@@ -99,13 +145,15 @@ TEST(MaterialExtensionsTest, mapsShareCoordinatesAndTheFourthHasNone)
     material.occlusionTexture.texCoord = 3;
     material.pbrMetallicRoughness.metallicRoughnessTexture.index = 7;
     material.pbrMetallicRoughness.metallicRoughnessTexture.texCoord = 2;
-    material.extensions["KHR_materials_clearcoat"] = Value(Value::Object{{"clearcoatTexture", texture(3, 1)}});
+    material.extensions["KHR_materials_clearcoat"] =
+        Value(Value::Object{{"clearcoatFactor", Value(1.0)}, {"clearcoatTexture", texture(3, 1)}});
     const MaterialMaps maps = mapsOf(material, true);
     EXPECT_EQ(maps.coordinates.size(), MaterialMaps::mostCoordinates);
     EXPECT_EQ(maps.find(&PbrMaterial::normalMap)->number, 0);
     EXPECT_EQ(maps.find(&PbrMaterial::metallicRoughnessMap)->number, 1);
     EXPECT_EQ(maps.find(&PbrMaterial::emissiveMap)->number, 2);
     EXPECT_EQ(maps.find(&PbrMaterial::occlusionMap)->number, -1);
+    EXPECT_EQ(maps.find(&PbrMaterial::occlusionMap)->use, MapUse::NoCoordinates);
     EXPECT_EQ(maps.find(&PbrMaterial::clearcoatMap)->number, 2);
 }
 

@@ -24,7 +24,7 @@ class MaterialsTest : public ::testing::Test
 protected:
     MaterialsTest()
         : file(withPictures()), report(messages), textures(file.model, report, false),
-          materials(file.model, true, textures)
+          materials(file.model, true, textures, report)
     {
     }
 

@@ -16,13 +16,15 @@ namespace
 struct ReadMesh
 {
     explicit ReadMesh(const ModelBuilder& file, std::size_t bytes = std::size_t(1) << 30)
-        : budget(bytes), report(messages), meshes(file.model, true, budget, report), primitive(meshes.primitive(0, 0))
+        : budget(bytes), report(messages), maps(file.model, true), meshes(file.model, maps, budget, report),
+          primitive(meshes.primitive(0, 0))
     {
     }
 
     Messages messages;
     MemoryBudget budget;
     Report report;
+    MapsOfMaterials maps;
     Meshes meshes;
     const MeshPrimitive* primitive;
 };

@@ -61,6 +61,19 @@ TEST(MorphDeltasTest, copiesAndStoredScenesShareToo)
         expectShared(stored.throughFile(*scene, format));
 }
 
+// The entry says where the palette has the copy's weights.
+TEST(MorphDeltasTest, copiedMeshesKeepTheirEntries)
+{
+    const osg::ref_ptr<osg::Node> scene = twoFaces();
+    for (const SkinnedGeometry* mesh : meshesOf(*scene))
+    {
+        const osg::ref_ptr<SkinnedGeometry> copy = osg::clone(mesh, osg::CopyOp::SHALLOW_COPY);
+        EXPECT_GE(mesh->getMorphEntry(), 0);
+        EXPECT_EQ(copy->getMorphEntry(), mesh->getMorphEntry());
+        EXPECT_EQ(copy->getMorph(), mesh->getMorph());
+    }
+}
+
 TEST(MorphDeltasTest, changedArraysArePackedAnew)
 {
     const osg::ref_ptr<osg::Node> scene = twoFaces();

@@ -207,6 +207,16 @@ TEST(PictureTest, RefusesBombsAndDamage)
     }
 }
 
+TEST(PictureTest, theLargestSideIsAccepted)
+{
+    const std::uint32_t most = PictureHeader::maxPixelsPerSide;
+    for (const std::string& file : {png(most, 1, 1000), png(1, most, 1000), jpeg(most, 1, 1000), jpeg(1, most, 1000)})
+        EXPECT_TRUE(read(file));
+    for (const std::string& file :
+         {png(most + 1, 1, 1000), png(1, most + 1, 1000), jpeg(most + 1, 1, 1000), jpeg(1, most + 1, 1000)})
+        EXPECT_NE(read(file).error().message.find("expected a picture from 1 x 1 to"), std::string::npos);
+}
+
 TEST(PictureTest, AnswersEveryTruncation)
 {
     for (const std::string& whole : {png(3, 2, 20), jpeg(100, 50, 10), encodedPicture("webp", 16, 16, GL_RGBA),

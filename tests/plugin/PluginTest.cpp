@@ -19,6 +19,7 @@
 #include <filesystem>
 #include <fstream>
 #include <regex>
+#include <set>
 #include <sstream>
 #include <vector>
 
@@ -137,6 +138,24 @@ TEST_F(PluginTest, readsStreams)
     EXPECT_EQ(reader->readNode(rubbish, nullptr).status(), Read::ERROR_IN_READING_FILE);
 }
 
+TEST_F(PluginTest, aStreamFindsItsFilesByTheDatabasePath)
+{
+    nlohmann::json document = nlohmann::json::parse(file.text());
+    document["buffers"][0]["uri"] = "arm.bin";
+    const std::vector<unsigned char>& bytes = file.model.buffers[0].data;
+    write("arm.bin", std::string(bytes.begin(), bytes.end()));
+    osgDB::ReaderWriter* reader = osgDB::Registry::instance()->getReaderWriterForExtension("gltf");
+    ASSERT_TRUE(reader);
+    const osg::ref_ptr<osgDB::Options> options = new osgDB::Options;
+    for (const bool hasPath : {false, true})
+    {
+        if (hasPath) options->getDatabasePathList().push_back(folder.string());
+        std::istringstream stream(document.dump());
+        Read result = reader->readNode(stream, options);
+        EXPECT_EQ(result.validNode(), hasPath) << result.message();
+    }
+}
+
 TEST_F(PluginTest, findsFilesByTheDatabasePath)
 {
     osg::ref_ptr<osgDB::Options> options = new osgDB::Options;
@@ -171,6 +190,21 @@ TEST_F(PluginTest, playsAsTheOptionsSay)
     EXPECT_EQ(log->text, "");
 }
 
+TEST_F(PluginTest, randomStartTimesDifferFromLoadToLoad)
+{
+    const auto timeOf = [&](const char* options)
+    { return findCharacter(*read("arm.gltf", options).getNode())->getController().time(); };
+    std::set<double> times;
+    for (int load = 0; load < 8; ++load)
+        times.insert(timeOf("clip=Slide randomStart=7"));
+    EXPECT_EQ(times.size(), 8u);
+    EXPECT_GE(*times.begin(), 0.0);
+    EXPECT_LT(*times.rbegin(), 1.0);
+    EXPECT_GT(*times.rbegin() - *times.begin(), 0.3) << "the eight of seed 7 are spread";
+    EXPECT_EQ(times.count(timeOf("clip=Slide randomStart=8")), 0u) << "another seed";
+    EXPECT_EQ(timeOf("clip=Slide start=0.25 randomStart=7"), 0.25);
+}
+
 TEST_F(PluginTest, tellsWhatItSupports)
 {
     osgDB::ReaderWriter* reader = osgDB::Registry::instance()->getReaderWriterForExtension("glb");
@@ -178,7 +212,7 @@ TEST_F(PluginTest, tellsWhatItSupports)
     EXPECT_TRUE(reader->acceptsExtension("GLTF"));
     EXPECT_FALSE(reader->acceptsExtension("obj"));
     for (const char* option : {"clip=NAME|INDEX", "scene=INDEX", "noRotation", "allowOutsideFiles", "start=SECONDS",
-                               "speed=NUMBER", "loop=once|loop|pingpong", "fade=SECONDS", "noKeys"})
+                               "speed=NUMBER", "loop=once|loop|pingpong", "fade=SECONDS", "noKeys", "randomStart=SEED"})
         EXPECT_EQ(reader->supportedOptions().count(option), 1u) << option;
     EXPECT_EQ(reader->readNode("model.obj", nullptr).status(), Read::FILE_NOT_HANDLED);
 }

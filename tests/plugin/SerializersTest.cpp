@@ -25,6 +25,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <regex>
 
 namespace osgGpuAnimation
@@ -124,6 +125,47 @@ TEST_F(SerializersTest, layersGoOnWhereTheyWere)
     EXPECT_EQ(log->text, "");
 }
 
+TEST_F(SerializersTest, blendSpacesContinueWhereTheyWere)
+{
+    AnimationController& controller = character().getController();
+    EXPECT_EQ(textOf(*scene).find("Spaces"), std::string::npos) << "without one, files are as before";
+    const auto space = BlendSpace::create(controller.set(), {{"Slow slide", 0.0}, {"clip 1", 2.0}});
+    ASSERT_TRUE(space) << space.error().message;
+    AnimationLayer& upper = controller.layer(1);
+    ASSERT_TRUE(controller.play(1));
+    controller.advance(0.4);
+    ASSERT_TRUE(upper.setParameter(0.5));
+    ASSERT_TRUE(upper.play(space.value()));
+    controller.advance(0.3);
+    ASSERT_TRUE(upper.crossfade(space.value(), 1.0, {FadeCurve::Linear, Sync::Phase}));
+    ASSERT_TRUE(upper.setParameter(1.25));
+    upper.setPhaseShared(true);
+    controller.advance(0.1);
+    for (const char* format : formats)
+    {
+        SCOPED_TRACE(format);
+        const osg::ref_ptr<osg::Node> read = files.throughFile(*scene, format);
+        ASSERT_TRUE(read && findCharacter(*read));
+        AnimationController first = controller;
+        AnimationController& second = findCharacter(*read)->getController();
+        ASSERT_EQ(second.layerCount(), 2u);
+        ASSERT_TRUE(second.layer(1).blendSpace());
+        EXPECT_TRUE(second.layer(1).isPhaseShared());
+        EXPECT_EQ(second.layer(1).parameter().x, 1.25);
+        EXPECT_EQ(second.layer(1).mixer().activeClipCount(), 4u);
+        for (int step = 0; step < 40; ++step)
+        {
+            EXPECT_LE(paletteDifference(first, second), 1e-6f) << "step " << step;
+            for (AnimationController* each : {&first, &second})
+            {
+                each->layer(1).setParameter(0.05 * step);
+                each->advance(0.07);
+            }
+        }
+    }
+    EXPECT_EQ(log->text, "");
+}
+
 // A marker at the present time is told once: before the scene is stored, or after it is read.
 TEST_F(SerializersTest, markersAreToldOnceBeforeOrAfter)
 {
@@ -166,6 +208,7 @@ TEST_F(SerializersTest, everythingBelowACharacterComesBack)
     clips[0] = clips[0].withMarkers({{0.25, "left foot"}, {0.5, ""}}).value();
     ASSERT_TRUE(character().setAnimationSet(moving.value()->withClips(clips).value()));
     character().addUpdateCallback(new RootMotionCallback);
+    dynamic_cast<CharacterKeys&>(*character().getEventCallback()).setFadeSeconds(1.75);
     for (const char* format : formats)
     {
         SCOPED_TRACE(format);
@@ -180,7 +223,9 @@ TEST_F(SerializersTest, everythingBelowACharacterComesBack)
         EXPECT_EQ(byName->getNumChildren(), 1u);
         EXPECT_EQ(byNumber->getJoint(), 2);
         EXPECT_TRUE(dynamic_cast<RootMotionCallback*>(back.getUpdateCallback()));
-        EXPECT_TRUE(dynamic_cast<CharacterKeys*>(back.getEventCallback()));
+        const auto* keys = dynamic_cast<const CharacterKeys*>(back.getEventCallback());
+        ASSERT_TRUE(keys);
+        EXPECT_EQ(keys->getFadeSeconds(), 1.75);
         const Clip& clip = back.getAnimationSet().clips()[0];
         ASSERT_EQ(clip.markers().size(), 2u);
         EXPECT_EQ(clip.markers()[0].name, "left foot");
@@ -189,6 +234,32 @@ TEST_F(SerializersTest, everythingBelowACharacterComesBack)
         EXPECT_EQ(clip.rootMotion()->keys.size(), clip.keyframeCount());
         EXPECT_EQ(clip.rootMotionAt(0.5).translation, clips[0].rootMotionAt(0.5).translation);
         EXPECT_EQ(back.getCurrentBounds()._max, character().getCurrentBounds()._max);
+    }
+    EXPECT_EQ(log->text, "");
+}
+
+TEST_F(SerializersTest, attachmentsKeepTheirOffsetAndInstance)
+{
+    const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(character());
+    const AnimationController controller(crowd->getSharedAnimationSet());
+    ASSERT_TRUE(crowd->remove(crowd->add(osg::Matrixd(), controller).value()));
+    ASSERT_TRUE(crowd->add(osg::Matrixd(), controller));
+    const osg::ref_ptr<JointAttachment> hand = new JointAttachment("hand");
+    hand->setOffset(osg::Matrixd::rotate(1, 0, 0, 1) * osg::Matrixd::translate(0.1, 2, 3));
+    hand->setInstance(crowd->add(osg::Matrixd::translate(7, 0, 0), controller).value());
+    crowd->addChild(hand);
+    EXPECT_EQ(textOf(*new JointAttachment("hand")).find("Joint -2"), std::string::npos) << "readable as before";
+    for (const char* format : formats)
+    {
+        const osg::ref_ptr<osg::Node> read = files.throughFile(*crowd, format);
+        auto* back = dynamic_cast<AnimatedCrowd*>(read.get());
+        ASSERT_TRUE(back);
+        const auto* again = dynamic_cast<JointAttachment*>(back->getChild(back->getNumChildren() - 1));
+        ASSERT_TRUE(again);
+        EXPECT_EQ(again->getJointName(), "hand");
+        EXPECT_TRUE(again->getOffset() == hand->getOffset());
+        ASSERT_TRUE(again->getInstance());
+        EXPECT_EQ(back->getPlacement(*again->getInstance()).getTrans(), osg::Vec3d(7, 0, 0));
     }
     EXPECT_EQ(log->text, "");
 }
@@ -356,6 +427,65 @@ TEST_F(SerializersTest, posesAreKept)
     const osg::ref_ptr<osg::Node> wrong = osgDB::readRefNodeFile(files.folder.write("wrong.osgt", text));
     ASSERT_TRUE(wrong) << "the layer is lost, the scene is not";
     EXPECT_NE(log->text.find("a pose with values of track 9"), std::string::npos) << log->text;
+}
+
+// Earlier versions read 1, and then 2, at most.
+TEST_F(SerializersTest, aControllerHasTheLowestVersionForItsLayers)
+{
+    AnimationController& controller = character().getController();
+    const auto space = BlendSpace::create(controller.set(), {{"Slow slide", 0.0}, {"clip 1", 2.0}}).value();
+    const auto playSpace = [&](AnimationLayer& layer) { EXPECT_TRUE(layer.setParameter(0.5) && layer.play(space)); };
+    const auto setPose = [](AnimationLayer& layer) { EXPECT_TRUE(layer.pose().setTranslation(1, {1, 2, 3})); };
+    struct Case
+    {
+        const char* name;
+        int version;
+        std::function<void()> setUp;
+    };
+    const Case cases[] = {
+        {"clips", 1, [&] { setUpLayers(controller); }},
+        {"a pose in which nothing is set, beside a clip", 1, [&] { controller.layer(0).pose(); }},
+        {"a blend space", 2, [&] { playSpace(controller.layer(0)); }},
+        {"a pose beside a clip", 3, [&] { setPose(controller.layer(0)); }},
+        {"an empty pose that hides the clips", 3, [&] { controller.layer(0).showPose(); }},
+        {"a blend space in one layer, a pose in another", 3,
+         [&]
+         {
+             playSpace(controller.layer(0));
+             setPose(controller.layer(1));
+         }},
+        {"a blend space that fades to a pose", 3,
+         [&]
+         {
+             playSpace(controller.layer(0));
+             setPose(controller.layer(0));
+             EXPECT_TRUE(controller.layer(0).showPose(1.0));
+             controller.advance(0.25);
+         }},
+    };
+    for (const Case& one : cases)
+    {
+        SCOPED_TRACE(one.name);
+        controller = AnimationController(controller.sharedSet());
+        ASSERT_TRUE(controller.play(0));
+        one.setUp();
+        EXPECT_NE(textOf(*scene).find("Controller " + std::to_string(one.version) + " "), std::string::npos);
+        for (const char* format : formats)
+        {
+            const osg::ref_ptr<osg::Node> read = files.throughFile(*scene, format);
+            ASSERT_TRUE(read && findCharacter(*read));
+            AnimationController first = controller, second = findCharacter(*read)->getController();
+            EXPECT_EQ(second.layer(0).blendSpace() != nullptr, first.layer(0).blendSpace() != nullptr);
+            EXPECT_EQ(second.layer(0).poseShare(), first.layer(0).poseShare());
+            for (int step = 0; step < 10; ++step)
+            {
+                EXPECT_LE(paletteDifference(first, second), 1e-6f) << format << ", step " << step;
+                first.advance(0.11);
+                second.advance(0.11);
+            }
+        }
+    }
+    EXPECT_EQ(log->text, "");
 }
 
 TEST_F(SerializersTest, shadersAreNotInTheFile)

@@ -142,6 +142,7 @@ TEST_F(StoredEnvironmentTest, settingsOutOfRangeMakeTheFileUnreadable)
     const std::pair<const char*, const char*> faults[] = {
         {"Surroundings -1 ", "osgGpuAnimation: surroundings of the intensity -1"},
         {"Surroundings nan ", "osgGpuAnimation: surroundings of the intensity nan"},
+        {"Surroundings 1e300 ", "osgGpuAnimation: surroundings of the intensity 1000000"},
         {"Surroundings many ", "expected a number, found \"many\""},
     };
     ASSERT_TRUE(read("osgt"));

@@ -1,20 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "plugin/ModelBuilder.h"
-#include "plugin/PluginFolder.h"
+#include "plugin/PseudoLoaderTest.h"
 #include "support/NotifyLog.h"
 
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/studio/Studio.h>
 
-#include <gtest/gtest.h>
 #include <osg/MatrixTransform>
 #include <osgDB/ReadFile>
-#include <osgDB/Registry>
 #include <osgDB/WriteFile>
-
-#include <filesystem>
-#include <fstream>
 
 namespace osgGpuAnimation::gltf
 {
@@ -22,43 +16,8 @@ namespace osgGpuAnimation::gltf
 namespace
 {
 
+using StudioPluginTest = PseudoLoaderTest;
 using Read = osgDB::ReaderWriter::ReadResult;
-
-/// A folder with `arm.gltf`, which has a clip, and `empty.gltf`, which has no mesh.
-class StudioPluginTest : public ::testing::Test
-{
-protected:
-    void SetUp() override
-    {
-        usePluginsOfTheBuild();
-        const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-        folder = std::filesystem::path(::testing::TempDir()) / (std::string("osggpuanimation_studio_") + test->name());
-        std::filesystem::create_directories(folder);
-        ModelBuilder empty;
-        empty.node("nothing");
-        write("empty.gltf", empty.text());
-        ModelBuilder arm;
-        arm.node("sword", arm.node("arm"), arm.triangle());
-        arm.animation("Slide");
-        arm.slide(0);
-        write("arm.gltf", arm.text());
-    }
-
-    void TearDown() override { std::filesystem::remove_all(folder); }
-
-    void write(const std::string& name, const std::string& content)
-    {
-        std::ofstream(folder / name, std::ios::binary) << content;
-    }
-
-    Read read(const std::string& name, const std::string& options = "")
-    {
-        const osg::ref_ptr<osgDB::Options> held = new osgDB::Options(options);
-        return osgDB::Registry::instance()->readNode((folder / name).string(), held);
-    }
-
-    std::filesystem::path folder;
-};
 
 struct FaultCase
 {
@@ -129,7 +88,7 @@ TEST_F(StudioPluginTest, isKeptInOsgsFormats)
     ASSERT_TRUE(result.getNode()) << result.message();
     for (const char* format : {"kept.osgb", "kept.osgt"})
     {
-        const std::string file = (folder / format).string();
+        const std::string file = folder.file(format);
         ASSERT_TRUE(osgDB::writeNodeFile(*result.getNode(), file)) << format;
         const osg::ref_ptr<osg::Node> kept = osgDB::readRefNodeFile(file);
         const auto* studio = dynamic_cast<const Studio*>(kept.get());

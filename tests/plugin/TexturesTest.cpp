@@ -60,6 +60,24 @@ TEST(TexturesTest, decodesTheMapsThatAreWanted)
     }
 }
 
+TEST(TexturesTest, oneForEachPictureSamplerAndColorSpace)
+{
+    tinygltf::Model model = manyMaps();
+    model.samplers.resize(1);
+    model.textures.resize(100, model.textures[3]); // of one picture
+    model.textures[99].sampler = 0;
+    Messages messages;
+    Report report(messages);
+    Textures textures(model, report, true);
+    osg::Texture2D* const first = textures.texture(3, ColorSpace::Srgb);
+    ASSERT_TRUE(first);
+    for (int i = 7; i < 99; ++i)
+        EXPECT_EQ(textures.texture(i, ColorSpace::Srgb), first) << i;
+    EXPECT_NE(textures.texture(99, ColorSpace::Srgb), first);
+    EXPECT_NE(textures.texture(3, ColorSpace::Linear), first);
+    EXPECT_EQ(textures.texture(99, ColorSpace::Srgb)->getImage(), first->getImage());
+}
+
 TEST(TexturesTest, theSourceOfAnExtensionIsPreferredIfItIsWebp)
 {
     struct Case

@@ -126,7 +126,8 @@ std::vector<std::uint32_t> readGrid(const std::string& alphaMode)
     Messages messages;
     MemoryBudget budget(std::size_t(1) << 30);
     Report report(messages);
-    Meshes meshes(file.model, true, budget, report);
+    MapsOfMaterials maps(file.model, true);
+    Meshes meshes(file.model, maps, budget, report);
     osg::DrawElements* elements = meshes.primitive(0, 0)->primitiveSet->getDrawElements();
     std::vector<std::uint32_t> indices;
     for (unsigned int i = 0; i < elements->getNumIndices(); ++i)

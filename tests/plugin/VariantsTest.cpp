@@ -128,15 +128,15 @@ TEST(VariantsTest, theOptionChoosesByNameOrNumber)
     const struct
     {
         const char *option, *name, *material;
-    } choices[] = {{"", "", "own"},           {"red one", "red one", "red"},  {"1", "red one", "red"},
-                   {"plain", "plain", "own"}, {"3", "variants[3]", "golden"}, {"variants[3]", "variants[3]", "golden"}};
+    } choices[] = {{"", "", "own"},           {"red one", "red one", "red"}, {"1", "red one", "red"},
+                   {"plain", "plain", "own"}, {"3", "plain 2", "golden"},    {"plain 2", "plain 2", "golden"}};
     for (const auto& choice : choices)
     {
         SCOPED_TRACE(choice.option);
         const ImportedModel model = importedIn(choice.option);
         ASSERT_TRUE(model.character);
         EXPECT_EQ(model.character->getMaterialVariants(),
-                  (std::vector<std::string>{"plain", "red one", "gold", "variants[3]"}));
+                  (std::vector<std::string>{"plain", "red one", "gold", "plain 2"}));
         EXPECT_EQ(model.character->getMaterialVariant(), choice.name);
         ASSERT_EQ(model.primitives.size(), 2u);
         for (const ImportedPrimitive& made : model.primitives) // the moving one, the still one
@@ -147,7 +147,16 @@ TEST(VariantsTest, theOptionChoosesByNameOrNumber)
     const Result<ImportedModel> refused = importModel(document().dump(), "", options);
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().message, "variant \"blue\" was asked for; the file's variants are: \"plain\", "
-                                       "\"red one\", \"gold\", \"variants[3]\"");
+                                       "\"red one\", \"gold\", \"plain 2\"");
+}
+
+TEST(VariantsTest, namesDiffer)
+{
+    Json made = document();
+    made["extensions"][extension]["variants"] =
+        Json::parse(R"([{}, {"name":"variants[0]"}, {"name":"x"}, {"name":"x 2"}, {"name":"x"}, {"name":"x"}])");
+    const ImportedModel model = importedIn("", made);
+    EXPECT_EQ(model.variantNames, (std::vector<std::string>{"variants[0]", "variants[0] 2", "x", "x 2", "x 3", "x 4"}));
 }
 
 TEST(VariantsTest, clonesShowTheirOwnAndShareTheMeshesOfAVariant)
@@ -182,7 +191,7 @@ TEST(VariantsTest, clonesShowTheirOwnAndShareTheMeshesOfAVariant)
     const Result<bool> refused = third->setMaterialVariant("blue");
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().message, "there is no material variant \"blue\"; the variants are \"plain\", "
-                                       "\"red one\", \"gold\", \"variants[3]\"");
+                                       "\"red one\", \"gold\", \"plain 2\"");
 }
 
 TEST(VariantsTest, areKeptInScenes)

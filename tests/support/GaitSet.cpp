@@ -4,6 +4,8 @@
 #include <osgGpuAnimation/animation/ClipBuilder.h>
 
 #include <cmath>
+#include <string>
+#include <utility>
 
 namespace osgGpuAnimation
 {
@@ -73,6 +75,72 @@ std::shared_ptr<const AnimationSet> makeGaitSet()
     AnimationParts parts{skeleton, {}, {}, {}, {}};
     parts.clips = {makeClip(skeleton, "Idle", 2.0, 0.1, false), makeClip(skeleton, "Walk", 1.0, 0.4, false),
                    makeClip(skeleton, "Run", 0.6, 0.6, false), makeClip(skeleton, "Turn", 1.5, 0.4, true)};
+    return AnimationSet::create(std::move(parts)).value();
+}
+
+namespace
+{
+
+/// The angles of thigh and shank, about +X, that place a foot in front of the hips and above the ground.
+std::pair<double, double> legAngles(double forward, double height)
+{
+    constexpr double segment = 0.5, hips = 0.9;
+    const double down = hips - height, reach = std::sqrt(forward * forward + down * down);
+    const double half = std::acos(reach / (2.0 * segment)); // an isosceles triangle with the knee in front
+    return {-(std::atan2(forward, down) + half), 2.0 * half};
+}
+
+/// Where the foot of a stride is: metres before the hips, metres above the ground.
+std::pair<double, double> footPlace(const Stride& stride, double phase)
+{
+    const double length = stride.speed * stride.duration * stride.duty;
+    if (phase < stride.duty) return {length * (0.5 - phase / stride.duty), 0.0};
+    const double swing = (phase - stride.duty) / (1.0 - stride.duty);
+    return {length * (swing * swing * (3.0 - 2.0 * swing) - 0.5), 0.2 * std::pow(std::sin(pi * swing), 2.0)};
+}
+
+Clip makeStrideClip(const Skeleton& skeleton, const Stride& stride)
+{
+    ClipBuilder builder(skeleton, {});
+    for (const char* side : {"L", "R"})
+        for (const char* part : {"thigh.", "shank."})
+        {
+            Channel channel{Channel::Path::Rotation,
+                            Channel::Interpolation::Linear,
+                            skeleton.findJoint(std::string(part) + side),
+                            {},
+                            {}};
+            constexpr int keys = 200;
+            for (int key = 0; key <= keys; ++key)
+            {
+                const double share = static_cast<double>(key) / keys;
+                const auto [forward, height] = footPlace(stride, std::fmod(share + (*side == 'R' ? 0.5 : 0.0), 1.0));
+                const auto [thigh, shank] = legAngles(forward, height);
+                const double half = (*part == 't' ? thigh : shank) / 2.0;
+                channel.times.push_back(stride.duration * share);
+                channel.values.insert(channel.values.end(), {std::sin(half), 0.0, 0.0, std::cos(half)});
+            }
+            (void)builder.add(channel);
+        }
+    return builder.build(stride.name);
+}
+
+} // namespace
+
+std::shared_ptr<const AnimationSet> makeStridingSet(const std::vector<Stride>& strides)
+{
+    std::vector<Joint> joints{makeJoint("hips", -1, 0.0f, 0.9f, 0.0f)};
+    for (const std::string side : {"L", "R"})
+    {
+        const int thigh = static_cast<int>(joints.size());
+        joints.push_back(makeJoint("thigh." + side, 0, side == "L" ? 0.1f : -0.1f, 0.0f, 0.0f));
+        joints.push_back(makeJoint("shank." + side, thigh, 0.0f, -0.5f, 0.0f));
+        joints.push_back(makeJoint("foot." + side, thigh + 1, 0.0f, -0.5f, 0.0f));
+    }
+    const Skeleton skeleton = Skeleton::create(joints).value();
+    AnimationParts parts{skeleton, {}, {}, {}, {}};
+    for (const Stride& stride : strides)
+        parts.clips.push_back(makeStrideClip(skeleton, stride));
     return AnimationSet::create(std::move(parts)).value();
 }
 

@@ -84,6 +84,7 @@ TEST_F(ToolGLTest, rendersTheFlagUprightAndRed)
     EXPECT_EQ(done.out.find("Keys of"), std::string::npos) << done.out;
     const osg::ref_ptr<osg::Image> image = osgDB::readRefImageFile(picture);
     ASSERT_TRUE(image);
+    EXPECT_EQ(image->getPixelFormat(), GLenum(GL_RGB)); // what is blended leaves no holes
     EXPECT_EQ(image->s(), 160);
     EXPECT_EQ(image->t(), 120);
     EXPECT_GT(drawnPixels(*image), 160 * 120 / 20);
@@ -151,6 +152,28 @@ TEST_F(ToolGLTest, rendersThroughTheFilesCameras)
     const Process wrong = Process::run(OSGGPUANIM, {"render", filmed, "--camera", "x", "-o", folder.file("x.png")});
     EXPECT_EQ(wrong.status, 1);
     EXPECT_NE(wrong.err.find("the scene's cameras are: \"film\", \"plan\""), std::string::npos) << wrong.err;
+}
+
+TEST_F(ToolGLTest, theFilesLightsShineInTheLookFileAlone)
+{
+    json dark = json::parse(filmedFlag());
+    dark["extensions"]["KHR_lights_punctual"]["lights"][0]["intensity"] = 0.0;
+    const std::string files[] = {folder.write("lit.gltf", filmedFlag()), folder.write("dark.gltf", dark.dump())};
+    for (const char* look : {"studio", "sun", "furnace", "file"})
+    {
+        std::string bytes[2];
+        for (int i = 0; i < 2; ++i)
+        {
+            const std::string picture = folder.file("look.png");
+            const Process done =
+                Process::run(OSGGPUANIM, {"render", files[i], "--look", look, "--size", "40x30", "-o", picture});
+            ASSERT_EQ(done.status, 0) << done.err;
+            const osg::ref_ptr<osg::Image> image = osgDB::readRefImageFile(picture);
+            ASSERT_TRUE(image);
+            bytes[i] = bytesOf(*image);
+        }
+        EXPECT_EQ(bytes[0] == bytes[1], look != std::string("file")) << look;
+    }
 }
 
 TEST_F(ToolGLTest, inspectListsLightsAndCameras)

@@ -215,6 +215,38 @@ TEST_F(ToolTest, inspectSaysHowFarCompactClipsAreOff)
     EXPECT_TRUE(std::regex_search(text.out, words)) << text.out;
 }
 
+TEST_F(ToolTest, compactTakesFractionsUpToTheWhole)
+{
+    const std::pair<const char*, int> fractions[] = {{"1", 0}, {"1.001", 2}, {"0", 2}, {"-0.1", 2}, {"nan", 2}};
+    for (const auto& [fraction, status] : fractions)
+    {
+        const Process done = run({"inspect", "FLAG", "--compact", fraction, "--json"});
+        EXPECT_EQ(done.status, status) << fraction << ": " << done.err;
+        if (status != 0) continue;
+        const json keyframes = json::parse(done.out)["keyframes"];
+        EXPECT_EQ(keyframes["tolerance"], keyframes["longestSide"]);
+    }
+}
+
+TEST_F(ToolTest, theModelsSizeIsThatOfTheFirstFrame)
+{
+    const auto diagonal = [](const json& box)
+    {
+        double squares = 0.0;
+        for (std::size_t i = 0; i < 3; ++i)
+            squares += std::pow(box[1][i].get<double>() - box[0][i].get<double>(), 2);
+        return std::sqrt(squares);
+    };
+    for (const auto& [first, second] : {std::pair("0", "1"), std::pair("1", "0")}) // the flag turns by 45 degrees
+    {
+        const Process done = run({"pose", "FLAG", "--time", first, "--time", second, "--evaluator", "cpu"});
+        ASSERT_EQ(done.status, 0) << done.err;
+        const json poses = json::parse(done.out);
+        EXPECT_NEAR(poses["modelSize"].get<double>(), diagonal(poses["frames"][0]["bbox"]), 1e-6);
+        EXPECT_GT(std::abs(diagonal(poses["frames"][1]["bbox"]) - diagonal(poses["frames"][0]["bbox"])), 0.1);
+    }
+}
+
 TEST_F(ToolTest, poseHoldsTheClipsEndsAndTakesNamesAndNumbers)
 {
     const Process named =

@@ -23,8 +23,9 @@ cd "$folder" # osgcopy writes files.
 # differ by up to 29 of 255. Edges round differently: at most 6 pixels.
 tolerance=32 mostPixels=10
 # Without lights the fixed pipeline draws white lines, the character's program the material's diffuse colour. It has no
-# soft shadows: SoftShadowMap's edges are hard.
-differs='^osgscribe|--ssm'
+# soft shadows: SoftShadowMap's edges are hard. osgthirdpersonview draws the frustum, whose planes follow the bounds, and a
+# character's hold its whole clip. ViewDependentShadowMap's program leaves the light's ambient part out of the shadow.
+differs='^osgscribe|^osgthirdpersonview|--ssm|--vdsm'
 export OSG_RUN_FRAME_COUNT=75 OSG_RUN_MAX_FRAME_RATE=30 OSG_WINDOW="0 0 256 256"
 
 # over NAME FILE PROGRAM...: $status is its exit status ("own loop": it had to be ended), $pictures the number of

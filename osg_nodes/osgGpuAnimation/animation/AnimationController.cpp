@@ -5,6 +5,7 @@
 #include <osgGpuAnimation/animation/playback/FrameEvents.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 
@@ -139,9 +140,56 @@ void AnimationController::forEachLayer(Function function)
         function(*layer);
 }
 
+std::optional<double> AnimationController::sharedPhase(const AnimationLayer& layer, int clip) const
+{
+    for (std::size_t i = 0; i < layerCount(); ++i)
+    {
+        const AnimationLayer& other = this->layer(i);
+        const bool isPartner = &other != &layer && other.isPhaseShared() && other.isPlaying() &&
+                               other.blendPriority() == layer.blendPriority();
+        if (isPartner) return other.mixer().phaseFor(clip);
+    }
+    return std::nullopt;
+}
+
+/// Empty: no other layer shares the phase of this one.
+std::optional<double> AnimationController::sharedRoundsPerSecond(const AnimationLayer& layer) const
+{
+    if (!layer.isPhaseShared()) return std::nullopt;
+    const AnimationLayer* lowest = nullptr;
+    double layers = 0.0, weight = 0.0, round = 0.0;
+    for (std::size_t i = 0; i < layerCount(); ++i)
+    {
+        const AnimationLayer& other = this->layer(i);
+        const double seconds = other.mixer().meanRoundSeconds();
+        if (!other.isPhaseShared() || !other.isPlaying() || other.blendPriority() != layer.blendPriority() ||
+            !(seconds > 0.0))
+            continue;
+        if (!lowest) lowest = &other;
+        layers += 1.0;
+        weight += static_cast<double>(other.weight());
+        round += static_cast<double>(other.weight()) * seconds;
+    }
+    if (layers < 2.0 || !(weight > 0.0)) return std::nullopt;
+    return lowest->speed() * weight / round;
+}
+
+/// Sets the pace of all layers from their times before the step.
+void AnimationController::sharePaces()
+{
+    std::array<std::optional<double>, maxLayers> roundsPerSecond;
+    for (std::size_t i = 0; i < layerCount(); ++i)
+        roundsPerSecond[i] = sharedRoundsPerSecond(layer(i));
+    for (std::size_t i = 0; i < layerCount(); ++i)
+        layer(i)._mixer.setRoundsPerSecond(roundsPerSecond[i]);
+}
+
 void AnimationController::step(double seconds)
 {
     const double step = std::isfinite(seconds) ? seconds : 0.0;
+    bool isPhaseShared = false;
+    forEachLayer([&](AnimationLayer& layer) { isPhaseShared = isPhaseShared || layer.isPhaseShared(); });
+    if (isPhaseShared) sharePaces();
     forEachLayer([step](AnimationLayer& layer) { layer.advance(step); });
     rebuildInstruction();
     if (_rootMotionCurve) accumulateRootMotion();

@@ -8,6 +8,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -71,10 +72,19 @@ public:
     {
         return _base.crossfade(name, seconds, options);
     }
-    void pause() { _base.pause(); }                               ///< Playing → Paused
-    void resume() { _base.resume(); }                             ///< Paused → Playing
-    void stop() { _base.stop(); }                                 ///< → Stopped
-    bool seek(double seconds) { return _base.seek(seconds); }     ///< See AnimationLayer::seek().
+    /// See AnimationLayer::play().
+    Result<bool> play(std::shared_ptr<const BlendSpace> space) { return _base.play(std::move(space)); }
+    /// See AnimationLayer::crossfade().
+    Result<bool> crossfade(std::shared_ptr<const BlendSpace> space, double seconds,
+                           const CrossfadeOptions& options = {})
+    {
+        return _base.crossfade(std::move(space), seconds, options);
+    }
+    bool setParameter(double x, double y = 0.0) { return _base.setParameter(x, y); } ///< See AnimationLayer.
+    void pause() { _base.pause(); }                                                  ///< Playing → Paused
+    void resume() { _base.resume(); }                                                ///< Paused → Playing
+    void stop() { _base.stop(); }                                                    ///< → Stopped
+    bool seek(double seconds) { return _base.seek(seconds); }                        ///< See AnimationLayer::seek().
     bool setSpeed(double speed) { return _base.setSpeed(speed); } ///< See AnimationLayer::setSpeed().
     void setLoopMode(LoopMode mode) { _base.setLoopMode(mode); }  ///< See AnimationLayer::setLoopMode().
 
@@ -122,7 +132,10 @@ private:
     void forEachLayer(Function function); ///< function(layer), from the base up
     void copyUpperLayers(const AnimationController& other);
     void rebuildInstruction() override;
+    std::optional<double> sharedPhase(const AnimationLayer& layer, int clip) const override;
+    std::optional<double> sharedRoundsPerSecond(const AnimationLayer& layer) const;
     void step(double seconds);
+    void sharePaces();
     template <typename Function>
     void forEachEvent(Function function) const; ///< function(event), in the order of time, for the last step
     void accumulateRootMotion();

@@ -30,13 +30,7 @@ ClipPlayback AnimationLayer::playbackOf(std::size_t clip, LoopMode loopMode) con
 
 Result<bool> AnimationLayer::play(std::size_t clip)
 {
-    const Result<std::size_t> known = set().clipAt(clip);
-    if (!known) return known.error();
-    _mixer.start(playbackOf(clip, _loopMode));
-    _state = PlayState::Playing;
-    fadePose(0.0, 0.0, FadeCurve::Linear);
-    rebuildInstruction();
-    return true;
+    return crossfade(clip, 0.0);
 }
 
 Result<bool> AnimationLayer::play(const std::string& name)
@@ -46,32 +40,95 @@ Result<bool> AnimationLayer::play(const std::string& name)
     return play(clip.value());
 }
 
+namespace
+{
+
+Result<bool> checkFade(const std::string& target, double seconds, const CrossfadeOptions& options)
+{
+    if (!std::isfinite(seconds) || seconds < 0.0)
+        return Error{"a crossfade to " + target + " of " + std::to_string(seconds) +
+                     " seconds: expected a finite number, at least 0"};
+    if (options.speed && !std::isfinite(*options.speed))
+        return Error{"a crossfade to " + target + " at a speed of " + std::to_string(*options.speed) +
+                     ": expected a finite number"};
+    return true;
+}
+
+} // namespace
+
 Result<bool> AnimationLayer::crossfade(std::size_t clip, double seconds, const CrossfadeOptions& options)
 {
     const Result<std::size_t> known = set().clipAt(clip);
     if (!known) return known.error();
-    if (!std::isfinite(seconds) || seconds < 0.0)
-        return Error{"a crossfade to clip \"" + set().clips()[clip].name() + "\" of " + std::to_string(seconds) +
-                     " seconds: expected a finite number, at least 0"};
-    if (options.speed && !std::isfinite(*options.speed))
-        return Error{"a crossfade to clip \"" + set().clips()[clip].name() + "\" at a speed of " +
-                     std::to_string(*options.speed) + ": expected a finite number"};
+    if (const auto sound = checkFade("clip \"" + set().clips()[clip].name() + "\"", seconds, options); !sound)
+        return sound.error();
     if (options.speed) _speed = *options.speed;
     if (options.loopMode) _loopMode = *options.loopMode;
+    begin(playbackOf(clip, _loopMode), seconds, options);
+    rebuildInstruction();
+    return true;
+}
+
+/// Starts a clip at once or by a fade, at the phase of what the options name. A pose that hides all clips fades out
+/// over the new one.
+void AnimationLayer::begin(ClipPlayback playback, double seconds, const CrossfadeOptions& options)
+{
     const bool isFromPose = clipShare() <= 0.0;
     if (_state == PlayState::Stopped || isFromPose) _mixer.clear();
-    ClipPlayback playback = playbackOf(clip, _loopMode);
     const bool sharesPhase = options.sync == Sync::Phase && !_mixer.isEmpty();
-    if (sharesPhase) playback.setPhase(_mixer.current().phase());
-    // A pose that hides all clips fades out over the new one.
+    if (sharesPhase) playback.setPhase(_mixer.phaseFor(playback.clip()));
+    if (_isPhaseShared)
+        if (const std::optional<double> phase = _owner->sharedPhase(*this, playback.clip())) playback.setPhase(*phase);
     if (seconds > 0.0 && !isFromPose)
         _mixer.fadeTo(playback, seconds, options.curve, sharesPhase);
     else
         _mixer.start(playback);
     fadePose(0.0, seconds, options.curve);
     _state = PlayState::Playing;
+}
+
+Result<bool> AnimationLayer::play(std::shared_ptr<const BlendSpace> space)
+{
+    return crossfade(std::move(space), 0.0);
+}
+
+Result<bool> AnimationLayer::crossfade(std::shared_ptr<const BlendSpace> space, double seconds,
+                                       const CrossfadeOptions& options)
+{
+    if (!space || !space->fits(set())) return Error{"the blend space is null or not made for this animation set"};
+    if (const auto sound = checkFade("a blend space", seconds, options); !sound) return sound.error();
+    if (options.speed) _speed = *options.speed;
+    if (options.loopMode) _loopMode = *options.loopMode;
+    const BlendSpace::Mix mix = space->mixAt(_parameter);
+    std::size_t point = mix.weights[mix.count - 1].point; // the heaviest, unless the current clip is one of them
+    for (std::size_t i = 0; i < mix.count; ++i)
+        if (static_cast<int>(space->points()[mix.weights[i].point].clip) == clip()) point = mix.weights[i].point;
+    begin(playbackOf(space->points()[point].clip, _loopMode), seconds, options);
+    _mixer.spread(std::move(space), point, _parameter);
     rebuildInstruction();
     return true;
+}
+
+bool AnimationLayer::setParameter(double x, double y)
+{
+    if (!std::isfinite(x) || !std::isfinite(y)) return false;
+    _parameter = {x, y};
+    if (!_mixer.currentSpace()) return true;
+    _mixer.setParameter(_parameter);
+    rebuildInstruction();
+    return true;
+}
+
+std::shared_ptr<const BlendSpace> AnimationLayer::blendSpace() const
+{
+    const ClipMixer::ActiveSpace* active = _mixer.currentSpace();
+    return active ? active->space : nullptr;
+}
+
+void AnimationLayer::setPhaseShared(bool isShared)
+{
+    _isPhaseShared = isShared;
+    if (!isShared) _mixer.setRoundsPerSecond(std::nullopt);
 }
 
 Result<bool> AnimationLayer::crossfade(const std::string& name, double seconds, const CrossfadeOptions& options)
@@ -97,8 +154,12 @@ void AnimationLayer::stop()
     fadePose(0.0, 0.0, FadeCurve::Linear);
     if (!_mixer.isEmpty())
     {
+        const ClipMixer::ActiveSpace* active = _mixer.currentSpace();
+        const std::shared_ptr<const BlendSpace> space = active ? active->space : nullptr;
+        const std::size_t point = _mixer.activeClip(_mixer.activeClipCount() - 1).point;
         _mixer.start(playbackOf(static_cast<std::size_t>(clip()), _loopMode));
-        _mixer.current().seek(0.0);
+        if (space) _mixer.spread(space, point, _parameter);
+        _mixer.seek(0.0);
     }
     rebuildInstruction();
 }
@@ -143,7 +204,7 @@ bool AnimationLayer::seek(double seconds)
 {
     if (std::isnan(seconds)) return false;
     if (_mixer.isEmpty()) return true;
-    _mixer.current().seek(seconds);
+    _mixer.seek(seconds);
     if (_state == PlayState::Ended && !_mixer.current().isAtEnd()) _state = PlayState::Playing;
     rebuildInstruction();
     return true;
@@ -153,14 +214,32 @@ bool AnimationLayer::setSpeed(double speed)
 {
     if (!std::isfinite(speed)) return false;
     _speed = speed;
-    if (!_mixer.isEmpty()) _mixer.current().setSpeed(speed);
+    _mixer.setSpeed(speed);
+    return true;
+}
+
+Result<bool> AnimationLayer::setGroundSpeed(double speed)
+{
+    if (!std::isfinite(speed)) return Error{"a ground speed that is not finite"};
+    if (_mixer.isEmpty()) return Error{"a ground speed for a layer that plays nothing"};
+    const ClipMixer::ActiveSpace* active = _mixer.currentSpace();
+    const double measured = active ? active->space->groundSpeedAt(set(), active->parameter)
+                                   : measureGroundSpeed(set(), static_cast<std::size_t>(clip()));
+    const double factor = measured > 0.0 ? speed / measured : HUGE_VAL;
+    if (std::isfinite(factor))
+        setSpeed(factor);
+    else if (speed == 0.0)
+        setSpeed(1.0);
+    else
+        return Error{"a ground speed for clip \"" + set().clips()[static_cast<std::size_t>(clip())].name() +
+                     "\": its feet stand"};
     return true;
 }
 
 void AnimationLayer::setLoopMode(LoopMode mode)
 {
     _loopMode = mode;
-    if (!_mixer.isEmpty()) _mixer.current().setLoopMode(mode);
+    _mixer.setLoopMode(mode);
     rebuildInstruction();
 }
 
@@ -259,7 +338,7 @@ bool AnimationLayer::isPlainLoop() const
     const bool isDefault = _mode == Mode::Override && _reference == Reference::RestPose && !_mask &&
                            _blendPriority == static_cast<int>(_index) && _weight.isFinished() && _weight.value() == 1.0;
     if (!isDefault || _loopMode != LoopMode::Loop || _state == PlayState::Ended) return false;
-    if (_posed) return false;
+    if (_posed || _isPhaseShared || _parameter != glm::dvec2(0.0) || _mixer.currentSpace()) return false;
     if (_mixer.isEmpty()) return _state == PlayState::Stopped;
     const ClipPlayback& current = _mixer.current();
     return _state != PlayState::Stopped && !_mixer.isFading() && current.loopMode() == LoopMode::Loop &&
@@ -320,6 +399,21 @@ bool isSound(const Fade::State& state)
            std::isfinite(state.elapsed) && state.elapsed >= 0.0;
 }
 
+bool isFinite(const glm::dvec2& parameter)
+{
+    return std::isfinite(parameter.x) && std::isfinite(parameter.y);
+}
+
+/// True if the clip is of none of the spaces, or of one that has it.
+bool isSound(const LayerSnapshot::ActiveClip& activeClip, const std::vector<LayerSnapshot::ActiveSpace>& spaces)
+{
+    if (activeClip.space < 0) return true;
+    if (static_cast<std::size_t>(activeClip.space) >= spaces.size()) return false;
+    const std::vector<BlendSpace::Point>& points = spaces[static_cast<std::size_t>(activeClip.space)].space->points();
+    return activeClip.point < points.size() && isShare(activeClip.weight) && activeClip.weight > 0.0 &&
+           static_cast<int>(points[activeClip.point].clip) == activeClip.clip;
+}
+
 std::optional<std::string> findFault(const LayerSnapshot& snapshot, const AnimationSet& set)
 {
     if (!std::isfinite(snapshot.speed)) return "a speed that is not finite";
@@ -329,8 +423,12 @@ std::optional<std::string> findFault(const LayerSnapshot& snapshot, const Animat
         return std::to_string(snapshot.activeClips.size()) + " clips at a time, at most " +
                std::to_string(ClipMixer::maxActiveClips) + " are possible";
     if (snapshot.activeClips.empty() && snapshot.state != PlayState::Stopped) return "a state of playing, but no clip";
+    if (!isFinite(snapshot.parameter)) return "a parameter that is not finite";
+    for (const LayerSnapshot::ActiveSpace& space : snapshot.spaces)
+        if (!space.space || !isFinite(space.parameter) || !isShare(space.phase)) return "a blend space that cannot be";
     for (const LayerSnapshot::ActiveClip& activeClip : snapshot.activeClips)
     {
+        if (!isSound(activeClip, snapshot.spaces)) return "a clip in a blend space that is not there";
         if (activeClip.clip < 0 || static_cast<std::size_t>(activeClip.clip) >= set.clips().size())
             return "clip " + std::to_string(activeClip.clip) + " of " + std::to_string(set.clips().size());
         if (!std::isfinite(activeClip.time) || !std::isfinite(activeClip.speed))
@@ -353,6 +451,25 @@ int phaseGroupOf(const ClipMixer& mixer, std::size_t activeClip)
     return static_cast<int>(first);
 }
 
+/// The spaces of the snapshot for the set, numbered by their order.
+Result<std::vector<ClipMixer::ActiveSpace>> spacesOf(const LayerSnapshot& snapshot, const AnimationSet& set)
+{
+    std::vector<ClipMixer::ActiveSpace> spaces;
+    for (const LayerSnapshot::ActiveSpace& kept : snapshot.spaces)
+    {
+        std::shared_ptr<const BlendSpace> space = kept.space;
+        if (!space->fits(set))
+        {
+            const auto made = BlendSpace::create(set, space->points(), space->syncMarkers());
+            if (!made) return made.error();
+            space = made.value();
+        }
+        spaces.push_back(
+            {space, static_cast<int>(spaces.size()), kept.parameter, kept.phase, kept.isReturning, kept.isFresh});
+    }
+    return spaces;
+}
+
 } // namespace
 
 LayerSnapshot AnimationLayer::snapshot() const
@@ -361,13 +478,19 @@ LayerSnapshot AnimationLayer::snapshot() const
     snapshot.state = _state;
     snapshot.loopMode = _loopMode;
     snapshot.speed = _speed;
+    for (const ClipMixer::ActiveSpace& space : _mixer.spaces())
+        snapshot.spaces.push_back({space.space, space.parameter, space.phase, space.isReturning, space.isFresh});
     for (std::size_t v = 0; v < _mixer.activeClipCount(); ++v)
     {
         const ClipMixer::ActiveClip& activeClip = _mixer.activeClip(v);
         const ClipPlayback& playback = activeClip.playback;
-        snapshot.activeClips.push_back({playback.clip(), playback.time(), playback.speed(), playback.loopMode(),
-                                        playback.isReturning(), playback.isFresh(), activeClip.share,
-                                        activeClip.shareBefore, phaseGroupOf(_mixer, v)});
+        const auto space = std::find_if(_mixer.spaces().begin(), _mixer.spaces().end(),
+                                        [&](const auto& active) { return active.number == activeClip.space; });
+        const bool isInSpace = space != _mixer.spaces().end();
+        snapshot.activeClips.push_back(
+            {playback.clip(), playback.time(), playback.speed(), playback.loopMode(), playback.isReturning(),
+             playback.isFresh(), activeClip.share, activeClip.shareBefore, phaseGroupOf(_mixer, v),
+             isInSpace ? static_cast<int>(space - _mixer.spaces().begin()) : -1, activeClip.point, activeClip.weight});
     }
     snapshot.crossfade = _mixer.fade().state();
     snapshot.weight = _weight.state();
@@ -377,6 +500,8 @@ LayerSnapshot AnimationLayer::snapshot() const
     snapshot.mode = _mode;
     snapshot.reference = _reference;
     snapshot.blendPriority = _blendPriority;
+    snapshot.parameter = _parameter;
+    snapshot.isPhaseShared = _isPhaseShared;
     return snapshot;
 }
 
@@ -397,6 +522,8 @@ Result<bool> AnimationLayer::restore(const LayerSnapshot& snapshot)
         posed = std::make_shared<Posed>(Posed{std::make_shared<JointPose>(_owner->_set), Fade(snapshot.poseShare)});
         if (const Result<bool> set = posed->pose->setTracks(snapshot.pose); !set) return set.error();
     }
+    const Result<std::vector<ClipMixer::ActiveSpace>> spaces = spacesOf(snapshot, set);
+    if (!spaces) return Error{"a layer with " + spaces.error().message};
     std::vector<ClipMixer::ActiveClip> activeClips;
     for (const LayerSnapshot::ActiveClip& kept : snapshot.activeClips)
     {
@@ -407,9 +534,12 @@ Result<bool> AnimationLayer::restore(const LayerSnapshot& snapshot)
         activeClip.share = kept.share;
         activeClip.shareBefore = kept.shareBefore;
         activeClip.phaseGroup = kept.phaseGroup;
+        activeClip.space = kept.space;
+        activeClip.point = kept.point;
+        activeClip.weight = kept.weight;
         activeClips.push_back(activeClip);
     }
-    _mixer.restore(activeClips, Fade(snapshot.crossfade));
+    _mixer.restore(activeClips, Fade(snapshot.crossfade), spaces.value());
     _state = snapshot.state;
     _loopMode = snapshot.loopMode;
     _speed = snapshot.speed;
@@ -419,6 +549,8 @@ Result<bool> AnimationLayer::restore(const LayerSnapshot& snapshot)
     _mode = snapshot.mode;
     _reference = snapshot.reference;
     _blendPriority = snapshot.blendPriority;
+    _parameter = snapshot.parameter;
+    _isPhaseShared = snapshot.isPhaseShared;
     rebuildInstruction();
     return true;
 }

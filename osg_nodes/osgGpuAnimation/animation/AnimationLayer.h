@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,6 +16,7 @@
 namespace osgGpuAnimation
 {
 
+class AnimationLayer;
 class JointMask;
 class BlendList;
 class RootMotionBlend;
@@ -34,6 +36,8 @@ protected:
     ~LayerOwner() = default;
 
     virtual void rebuildInstruction() = 0; ///< rebuilds the pose instruction from all layers
+    /// The phase of another layer that shares its phase with this one; of this clip, if it plays there.
+    virtual std::optional<double> sharedPhase(const AnimationLayer& layer, int clip) const = 0;
 
     std::shared_ptr<const AnimationSet> _set; ///< never null
 };
@@ -80,6 +84,20 @@ public:
     /// The same by name.
     Result<bool> crossfade(const std::string& name, double seconds, const CrossfadeOptions& options = {});
 
+    /// The same for a blend space, at the layer's parameter, see setParameter(). With Sync::Phase its clips start at
+    /// the phase of the current clip. clip(), time() and so on refer to the clip with the largest weight. Errors, with
+    /// the layer unchanged: the space is null or not made for the layer's set; those of a clip.
+    Result<bool> play(std::shared_ptr<const BlendSpace> space);
+    /// The same with a fade.
+    Result<bool> crossfade(std::shared_ptr<const BlendSpace> space, double seconds,
+                           const CrossfadeOptions& options = {});
+    /// Sets the parameter of the current blend space and of later ones; spaces that fade out keep theirs. The phase
+    /// stays, so the pose is continuous in the parameter. Returns false, without a change, if a number is not finite.
+    bool setParameter(double x, double y = 0.0);
+    const glm::dvec2& parameter() const { return _parameter; } ///< initially 0, 0
+    /// The blend space that plays; null: a clip or nothing.
+    std::shared_ptr<const BlendSpace> blendSpace() const;
+
     void pause();  ///< Playing → Paused; no effect in other states
     void resume(); ///< Paused → Playing; no effect in other states
     void stop();   ///< → Stopped: time 0, the layer shows nothing, not even its pose
@@ -105,6 +123,12 @@ public:
     /// stops the time. Clips that fade out keep their speed. Returns false, without a change, if the speed is not
     /// finite.
     bool setSpeed(double speed);
+    /// Sets the speed (see setSpeed()) at which the feet of the current clip, or of the blend space at its parameter,
+    /// do not slide while the character moves at a ground speed. speed: the model's units a second (metres in glTF,
+    /// before any scale of the node); negative: backwards. Call it again after play(), crossfade() or setParameter(). A
+    /// clip whose feet stand takes speed 1 for a ground speed of 0. Errors, with the layer unchanged: a speed that is
+    /// not finite; nothing plays; the feet of the clip stand (see measureGroundSpeed()).
+    Result<bool> setGroundSpeed(double speed);
     /// Sets the loop mode of the current clip and of later ones; the time stays. A layer in state Ended remains in it
     /// until play(), crossfade() or seek().
     void setLoopMode(LoopMode mode);
@@ -150,6 +174,12 @@ public:
     void setBlendPriority(int blendPriority);
     int blendPriority() const { return _blendPriority; } ///< see setBlendPriority()
 
+    /// Layers of equal blend priority that share their phase stay in step: play() and crossfade() start at the phase of
+    /// the lowest of them, and all take the same time for a round at its speed, the mean of their rounds by layer
+    /// weight. Default: false. Takes effect with the next play() or crossfade().
+    void setPhaseShared(bool isShared);
+    bool isPhaseShared() const { return _isPhaseShared; } ///< see setPhaseShared()
+
     /// True if clip, time, speed and state describe the layer completely: it plays or pauses one clip in a loop, or
     /// nothing, it has no pose, and everything else has its default.
     bool isPlainLoop() const;
@@ -182,6 +212,7 @@ private:
     void collectPose(BlendList& out) const;
     void collectPoseMotion(RootMotionBlend& out, const RootMotionCurve& usual) const;
     ClipPlayback playbackOf(std::size_t clip, LoopMode loopMode) const;
+    void begin(ClipPlayback playback, double seconds, const CrossfadeOptions& options);
     void advance(double seconds);
     void collect(BlendList& out) const;
     void collectMotion(RootMotionBlend& out, const RootMotionCurve& usual) const;
@@ -203,6 +234,8 @@ private:
     int _blendPriority = 0;
     double _crossfadeMoment = -1.0; ///< see LayerStep
     double _weightFadeMoment = -1.0;
+    glm::dvec2 _parameter{0.0};
+    bool _isPhaseShared = false;
 };
 
 /// The complete state of an AnimationLayer as plain numbers, also in the middle of a crossfade.
@@ -224,12 +257,25 @@ struct LayerSnapshot
         double share = 1.0;                 ///< of the layer, in [0, 1]
         double shareBefore = 0.0;           ///< in [0, 1]
         int phaseGroup = 0;                 ///< index of the first active clip that shares its phase
+        int space = -1;                     ///< index of its blend space in spaces, -1: none
+        std::size_t point = 0;              ///< index in the blend space
+        double weight = 1.0;                ///< in the blend space, in [0, 1]
+    };
+    /// A blend space that contributes, see ClipMixer::ActiveSpace.
+    struct ActiveSpace
+    {
+        std::shared_ptr<const BlendSpace> space; ///< immutable and shared; not null
+        glm::dvec2 parameter{0.0};               ///< finite
+        double phase = 0.0;                      ///< in [0, 1]
+        bool isReturning = false;                ///< see ClipPlayback::isReturning()
+        bool isFresh = true;                     ///< see ClipPlayback::isFresh()
     };
 
     PlayState state = PlayState::Stopped;                       ///< state of the layer
     LoopMode loopMode = LoopMode::Loop;                         ///< loop mode of the layer
     double speed = 1.0;                                         ///< finite; speed of the layer
     std::vector<ActiveClip> activeClips;                        ///< oldest first; empty if nothing was ever played
+    std::vector<ActiveSpace> spaces;                            ///< the blend spaces of the active clips
     FadeState crossfade;                                        ///< the share of the newest clip
     FadeState weight;                                           ///< weight of the layer, in [0, 1]
     std::vector<float> mask;                                    ///< one weight per track; empty: no mask
@@ -237,7 +283,9 @@ struct LayerSnapshot
     FadeState poseShare{0.0, 0.0};                              ///< see AnimationLayer::poseShare()
     AnimationLayer::Mode mode = AnimationLayer::Mode::Override; ///< mode of the layer
     AnimationLayer::Reference reference = AnimationLayer::Reference::RestPose; ///< used in mode Additive
-    int blendPriority = 0; ///< see AnimationLayer::setBlendPriority()
+    int blendPriority = 0;      ///< see AnimationLayer::setBlendPriority()
+    glm::dvec2 parameter{0.0};  ///< see AnimationLayer::setParameter(), finite
+    bool isPhaseShared = false; ///< see AnimationLayer::setPhaseShared()
 };
 
 } // namespace osgGpuAnimation

@@ -201,6 +201,20 @@ BlendSample AnimationSet::sampleAt(int clip, double time) const
             played.form() == Clip::Form::Spline ? POSE_SAMPLE_SPLINE : 0u};
 }
 
+std::optional<double> AnimationSet::knownGroundSpeed(std::size_t clip) const
+{
+    const std::lock_guard<std::mutex> lock(_groundSpeedMutex);
+    if (clip >= _groundSpeeds.size() || std::isnan(_groundSpeeds[clip])) return std::nullopt;
+    return _groundSpeeds[clip];
+}
+
+void AnimationSet::keepGroundSpeed(std::size_t clip, double speed) const
+{
+    const std::lock_guard<std::mutex> lock(_groundSpeedMutex);
+    _groundSpeeds.resize(_parts.clips.size(), std::numeric_limits<double>::quiet_NaN());
+    _groundSpeeds[clip] = speed;
+}
+
 Result<std::shared_ptr<const SetMask>> AnimationSet::useMask(const std::vector<float>& weights) const
 {
     if (weights.size() != trackCount())

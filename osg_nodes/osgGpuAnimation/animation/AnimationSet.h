@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -175,6 +176,11 @@ public:
     Result<std::uint32_t> addMask(const std::vector<float>& weights) const;
     const MaskTable& masks() const { return *_masks; } ///< the masks of this set
 
+    /// The value that keepGroundSpeed() was called with; empty: not measured yet. See measureGroundSpeed().
+    std::optional<double> knownGroundSpeed(std::size_t clip) const;
+    /// Keeps a measured value. Safe to call from several threads. clip: below clips().size().
+    void keepGroundSpeed(std::size_t clip, double speed) const;
+
 private:
     AnimationSet(AnimationParts parts, std::shared_ptr<MaskTable> masks);
     static Result<std::shared_ptr<const AnimationSet>> make(AnimationParts parts, std::shared_ptr<MaskTable> masks);
@@ -186,6 +192,8 @@ private:
     std::vector<std::size_t> _firstKeyframes;
     std::size_t _keyframeCount = 1;
     std::shared_ptr<MaskTable> _masks; ///< shared by sets with equal tracks
+    mutable std::mutex _groundSpeedMutex;
+    mutable std::vector<double> _groundSpeeds; ///< by clip; NaN: not measured yet
 };
 
 } // namespace osgGpuAnimation

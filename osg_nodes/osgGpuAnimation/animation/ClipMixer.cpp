@@ -2,6 +2,7 @@
 #include <osgGpuAnimation/animation/ClipMixer.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -125,9 +126,47 @@ PlaybackStep ClipPlayback::moveOnce(double seconds)
     return move;
 }
 
+namespace
+{
+
+/// A step through the common time line of a blend space as a step through one of its clips.
+PlaybackStep scaled(PlaybackStep step, double factor)
+{
+    step.from *= factor;
+    step.to *= factor;
+    step.distance = finiteProduct(step.distance, factor);
+    return step;
+}
+
+/// The step of a clip of a looping blend space. rounds: new rounds of the phase. seconds: of the blend space.
+PlaybackStep loopStep(const BlendSpace::Point& point, const ClipMixer::ActiveSpace& before, double phase, double rounds,
+                      double seconds)
+{
+    PlaybackStep step;
+    step.includesStart = before.isFresh;
+    step.isAscending = seconds >= 0.0;
+    step.distance = seconds;
+    const double duration = point.duration();
+    if (!(duration > 0.0)) return step;
+    const double from = point.timeAt(before.phase), to = point.timeAt(phase);
+    step.from = wrapped(from, duration);
+    step.to = wrapped(to, duration);
+    step.crossings = rounds + std::round((to - step.to) / duration) - std::round((from - step.from) / duration);
+    if (before.isFresh && seconds < 0.0 && step.from == 0.0) // a new clip that plays backwards starts at its end
+    {
+        step.from = duration;
+        step.crossings += 1.0;
+    }
+    if (seconds != 0.0) step.distance = finiteProduct(step.to - step.from + step.crossings * duration, 1.0);
+    return step;
+}
+
+} // namespace
+
 void ClipMixer::clear()
 {
     _leaving.clear();
+    _spaces.clear();
     _current = ActiveClip();
 }
 
@@ -139,25 +178,30 @@ void ClipMixer::start(const ClipPlayback& playback)
     _fade = Fade(1.0);
 }
 
-void ClipMixer::restore(const std::vector<ActiveClip>& activeClips, const Fade& fade)
+void ClipMixer::restore(const std::vector<ActiveClip>& activeClips, const Fade& fade, std::vector<ActiveSpace> spaces)
 {
     clear();
     _fade = fade;
     _lastPhaseGroup = 0;
+    _lastSpace = -1;
     if (activeClips.empty()) return;
     const auto last =
         activeClips.begin() + static_cast<std::ptrdiff_t>(std::min(activeClips.size(), maxActiveClips)) - 1;
     _leaving.assign(activeClips.begin(), last);
     _current = *last;
+    _spaces = std::move(spaces);
     clearSteps();
     for (std::size_t i = 0; i < activeClipCount(); ++i)
         _lastPhaseGroup = std::max(_lastPhaseGroup, activeClip(i).phaseGroup);
+    for (const ActiveSpace& space : _spaces)
+        _lastSpace = std::max(_lastSpace, space.number);
+    removeUnusedSpaces();
 }
 
 void ClipMixer::fadeTo(const ClipPlayback& playback, double seconds, FadeCurve curve, bool sharesPhase)
 {
     removeFaded();
-    makeRoom();
+    if (activeClipCount() == maxActiveClips) dropLightest(maxActiveClips);
     const int group = sharesPhase && !isEmpty() ? _current.phaseGroup : ++_lastPhaseGroup;
     if (!isEmpty()) _leaving.push_back(_current);
     for (ActiveClip& before : _leaving)
@@ -169,6 +213,98 @@ void ClipMixer::fadeTo(const ClipPlayback& playback, double seconds, FadeCurve c
     _fade = Fade({0.0, 1.0, seconds, 0.0, curve});
 }
 
+void ClipMixer::spread(std::shared_ptr<const BlendSpace> space, std::size_t point, const glm::dvec2& parameter)
+{
+    ActiveSpace active;
+    active.phase = space->points()[point].phaseAt(_current.playback.time());
+    if (_current.playback.loopMode() != LoopMode::Loop) active.phase = _current.playback.normalizedTime();
+    active.isReturning = _current.playback.isReturning();
+    active.space = std::move(space);
+    active.number = _current.space = ++_lastSpace;
+    _spaces.push_back(std::move(active));
+    setParameter(parameter);
+}
+
+void ClipMixer::setParameter(const glm::dvec2& parameter)
+{
+    const auto space = std::find_if(_spaces.begin(), _spaces.end(),
+                                    [&](const ActiveSpace& active) { return active.number == _current.space; });
+    if (_current.space < 0 || space == _spaces.end()) return;
+    space->parameter = parameter;
+    const auto isOfSpace = [&](const ActiveClip& activeClip) { return activeClip.space == _current.space; };
+    _leaving.erase(std::remove_if(_leaving.begin(), _leaving.end(), isOfSpace), _leaving.end());
+    const BlendSpace::Mix mix = space->space->mixAt(parameter);
+    while (_leaving.size() + mix.count > maxActiveClips)
+        dropLightest(_leaving.size());
+    ActiveClip activeClip = _current;
+    activeClip.move = PlaybackStep();
+    activeClip.shareBefore = 0.0;
+    for (std::size_t i = 0; i < mix.count; ++i)
+    {
+        const BlendSpace::Point& point = space->space->points()[mix.weights[i].point];
+        activeClip.playback = ClipPlayback(static_cast<int>(point.clip), point.duration(), _current.playback.speed(),
+                                           _current.playback.loopMode());
+        activeClip.point = mix.weights[i].point;
+        activeClip.weight = mix.weights[i].weight;
+        activeClip.share = activeClip.meanShare = _fade.value() * activeClip.weight;
+        if (i + 1 < mix.count)
+            _leaving.push_back(activeClip);
+        else
+            _current = activeClip;
+    }
+    placeClips(*space);
+}
+
+double ClipMixer::phaseFor(int clip) const
+{
+    for (const ActiveClip& activeClip : _leaving)
+        if (isCurrent(activeClip) && activeClip.playback.clip() == clip) return activeClip.playback.phase();
+    return _current.playback.phase();
+}
+
+void ClipMixer::seek(double seconds)
+{
+    _current.playback.seek(seconds);
+    for (ActiveSpace& space : _spaces)
+    {
+        if (space.number != _current.space) continue;
+        const bool isLoop = _current.playback.loopMode() == LoopMode::Loop;
+        space.phase = isLoop ? space.space->points()[_current.point].phaseAt(_current.playback.time())
+                             : _current.playback.normalizedTime();
+        space.isFresh = true;
+        placeClips(space);
+    }
+}
+
+void ClipMixer::setSpeed(double speed)
+{
+    for (std::size_t i = 0; i < activeClipCount(); ++i)
+        if (isCurrent(at(i))) at(i).playback.setSpeed(speed);
+}
+
+void ClipMixer::setLoopMode(LoopMode mode)
+{
+    const bool isNew = mode != _current.playback.loopMode();
+    for (std::size_t i = 0; i < activeClipCount(); ++i)
+        if (isCurrent(at(i))) at(i).playback.setLoopMode(mode);
+    for (ActiveSpace& space : _spaces)
+    {
+        if (space.number != _current.space || !isNew) continue;
+        space.isReturning = false;
+        const bool isLoop = mode == LoopMode::Loop;
+        space.phase = isLoop ? space.space->points()[_current.point].phaseAt(_current.playback.time())
+                             : _current.playback.normalizedTime();
+        placeClips(space);
+    }
+}
+
+const ClipMixer::ActiveSpace* ClipMixer::findSpace(int number) const
+{
+    for (const ActiveSpace& space : _spaces)
+        if (space.number == number) return &space;
+    return nullptr;
+}
+
 void ClipMixer::remove(std::size_t index)
 {
     if (index == _leaving.size()) _current = _leaving[--index];
@@ -177,24 +313,40 @@ void ClipMixer::remove(std::size_t index)
 
 void ClipMixer::removeFaded()
 {
+    if (_leaving.empty()) return; // the current blend space has one clip or there is none
     for (std::size_t i = _leaving.size(); i-- > 0;)
-        if (_fade.isFinished() || _leaving[i].share < negligible) remove(i);
+        if (!isCurrent(_leaving[i]) && (_fade.isFinished() || _leaving[i].share < negligible)) remove(i);
+    if (!_spaces.empty()) removeUnusedSpaces();
 }
 
-void ClipMixer::makeRoom()
+void ClipMixer::removeUnusedSpaces()
 {
-    if (activeClipCount() < maxActiveClips) return;
+    const auto isUnused = [&](const ActiveSpace& space)
+    {
+        return space.number != _current.space &&
+               std::none_of(_leaving.begin(), _leaving.end(),
+                            [&](const ActiveClip& activeClip) { return activeClip.space == space.number; });
+    };
+    _spaces.erase(std::remove_if(_spaces.begin(), _spaces.end(), isUnused), _spaces.end());
+}
+
+/// Removes the one of the first active clips with the smallest share; the others of them take it over.
+void ClipMixer::dropLightest(std::size_t candidates)
+{
     std::size_t least = 0;
     double whole = 0.0;
-    for (std::size_t i = 0; i < maxActiveClips; ++i)
+    for (std::size_t i = 0; i < candidates; ++i)
     {
         whole += at(i).share;
         if (at(i).share < at(least).share) least = i;
     }
-    const double grown = whole / (whole - at(least).share);
+    const double left = whole - at(least).share;
     remove(least);
-    for (std::size_t i = 0; i < activeClipCount(); ++i)
-        at(i).share *= grown;
+    for (std::size_t i = 0; i + 1 < candidates && left > 0.0; ++i)
+    {
+        at(i).share *= whole / left;
+        at(i).shareBefore *= whole / left;
+    }
 }
 
 double ClipMixer::advance(double seconds, bool isCurrentPlaying)
@@ -205,18 +357,24 @@ double ClipMixer::advance(double seconds, bool isCurrentPlaying)
     {
         for (ActiveClip& activeClip : _leaving)
         {
-            activeClip.share = activeClip.shareBefore * (1.0 - _fade.value());
-            activeClip.meanShare = activeClip.shareBefore * (1.0 - _fade.mean());
+            const bool isComing = isCurrent(activeClip);
+            activeClip.share =
+                isComing ? activeClip.weight * _fade.value() : activeClip.shareBefore * (1.0 - _fade.value());
+            activeClip.meanShare =
+                isComing ? activeClip.weight * _fade.mean() : activeClip.shareBefore * (1.0 - _fade.mean());
         }
-        _current.share = _fade.value();
-        _current.meanShare = _fade.mean();
+        _current.share = _current.weight * _fade.value();
+        _current.meanShare = _current.weight * _fade.mean();
     }
     else
         for (std::size_t i = 0; i < activeClipCount(); ++i)
             at(i).meanShare = at(i).share;
     for (ActiveClip& activeClip : _leaving)
-        activeClip.move = activeClip.playback.move(clipSeconds(activeClip, seconds));
-    _current.move = isCurrentPlaying ? _current.playback.move(clipSeconds(_current, seconds)) : PlaybackStep();
+        if (activeClip.space < 0) activeClip.move = activeClip.playback.move(clipSeconds(activeClip, seconds));
+    if (_current.space < 0)
+        _current.move = isCurrentPlaying ? _current.playback.move(clipSeconds(_current, seconds)) : PlaybackStep();
+    for (ActiveSpace& space : _spaces)
+        moveSpace(space, seconds, isCurrentPlaying || space.number != _current.space);
     return moment;
 }
 
@@ -228,6 +386,16 @@ void ClipMixer::clearSteps()
 
 double ClipMixer::clipSeconds(const ActiveClip& activeClip, double seconds) const
 {
+    if (_leaving.empty() && !_roundsPerSecond) return finiteProduct(seconds, activeClip.playback.speed());
+    return groupSeconds(activeClip, activeClip.playback.roundSeconds(), seconds);
+}
+
+/// Seconds on the time line of something in the active clip's phase group that has a round of its own. Clips without a
+/// duration follow the others.
+double ClipMixer::groupSeconds(const ActiveClip& activeClip, double ownRound, double seconds) const
+{
+    if (_roundsPerSecond && activeClip.phaseGroup == _current.phaseGroup)
+        return finiteProduct(seconds, *_roundsPerSecond * ownRound);
     double speed = activeClip.playback.speed();
     double members = 0.0, share = 0.0, round = 0.0;
     for (std::size_t i = 0; !_leaving.empty() && i < activeClipCount(); ++i)
@@ -235,15 +403,149 @@ double ClipMixer::clipSeconds(const ActiveClip& activeClip, double seconds) cons
         const ActiveClip& other = this->activeClip(i);
         if (other.phaseGroup != activeClip.phaseGroup) continue;
         members += 1.0;
-        share += other.meanShare;
+        share += other.playback.duration() > 0.0 ? other.meanShare : 0.0;
         round += other.meanShare * other.playback.roundSeconds();
         speed = other.playback.speed(); // the newest member decides
     }
     if (members > 1.0 && round > 0.0)
-        speed *= activeClip.playback.roundSeconds() * share / round;
+        speed *= ownRound * share / round;
     else if (members > 1.0)
         speed = activeClip.playback.speed();
     return finiteProduct(seconds, speed);
+}
+
+double ClipMixer::meanRoundSeconds() const
+{
+    double share = 0.0, round = 0.0;
+    for (std::size_t i = 0; i < activeClipCount(); ++i)
+    {
+        const ActiveClip& other = activeClip(i);
+        if (other.phaseGroup != _current.phaseGroup || !(other.playback.duration() > 0.0)) continue;
+        // A clip that starts to fade in counts as if it were visible.
+        const double counted = std::max(other.share, negligible);
+        share += counted;
+        round += counted * other.playback.roundSeconds();
+    }
+    return share > 0.0 ? round / share : 0.0;
+}
+
+/// The time line of a blend space in LoopMode::Loop: stretches between sync markers, each with the mean duration of the
+/// clips by weight.
+class ClipMixer::SpaceRound
+{
+public:
+    SpaceRound(const ClipMixer& mixer, const ActiveSpace& space)
+        : _stretchCount(space.space->points().front().stops.size() - 1)
+    {
+        for (std::size_t i = 0; i < mixer.activeClipCount(); ++i)
+        {
+            const ActiveClip& activeClip = mixer.activeClip(i);
+            if (activeClip.space != space.number) continue;
+            const BlendSpace::Point& point = space.space->points()[activeClip.point];
+            _newest = &activeClip;
+            if (!(point.duration() > 0.0)) continue;
+            _weights[_count] = activeClip.weight;
+            _points[_count++] = &point;
+        }
+        const double whole = _weights[0] + _weights[1] + _weights[2];
+        for (std::size_t i = 0; i < _count; ++i)
+        {
+            _weights[i] /= whole;
+            _seconds += _weights[i] * _points[i]->duration();
+        }
+    }
+
+    const ActiveClip& newest() const { return *_newest; }
+    double seconds() const { return _seconds; } ///< of a round; 0: all clips are poses
+
+    /// Moves a phase; returns the number of new rounds.
+    double move(double& phase, double seconds) const
+    {
+        if (!(_seconds > 0.0)) return 0.0;
+        const double unrolled = secondsAt(phase) + seconds;
+        double rest = wrapped(unrolled, _seconds);
+        const double rounds = std::round((unrolled - rest) / _seconds);
+        std::size_t stretch = 0;
+        for (; stretch + 1 < _stretchCount && rest >= stretchSeconds(stretch); ++stretch)
+            rest -= stretchSeconds(stretch);
+        const double length = stretchSeconds(stretch);
+        const double share = length > 0.0 ? std::min(rest / length, 1.0) : 0.0;
+        phase = (static_cast<double>(stretch) + share) / static_cast<double>(_stretchCount);
+        return rounds;
+    }
+
+private:
+    double stretchSeconds(std::size_t stretch) const
+    {
+        double seconds = 0.0;
+        for (std::size_t i = 0; i < _count; ++i)
+            seconds += _weights[i] * (_points[i]->stops[stretch + 1] - _points[i]->stops[stretch]);
+        return seconds;
+    }
+    double secondsAt(double phase) const
+    {
+        double seconds = 0.0;
+        for (std::size_t i = 0; i < _count; ++i)
+            seconds += _weights[i] * (_points[i]->timeAt(phase) - _points[i]->stops.front());
+        return seconds;
+    }
+
+    std::size_t _stretchCount, _count = 0;
+    const ActiveClip* _newest = nullptr;
+    std::array<const BlendSpace::Point*, 3> _points{};
+    std::array<double, 3> _weights{};
+    double _seconds = 0.0;
+};
+
+void ClipMixer::moveSpace(ActiveSpace& space, double seconds, bool isMoving)
+{
+    const SpaceRound round(*this, space);
+    const ClipPlayback& newest = round.newest().playback;
+    const double roundSeconds = round.seconds() * (newest.loopMode() == LoopMode::PingPong ? 2.0 : 1.0);
+    const double own = isMoving ? groupSeconds(round.newest(), roundSeconds, seconds) : 0.0;
+    const ActiveSpace before = space;
+    double rounds = 0.0;
+    PlaybackStep turn;
+    if (newest.loopMode() == LoopMode::Loop)
+    {
+        rounds = round.move(space.phase, own);
+        space.isFresh = space.isFresh && own == 0.0;
+    }
+    else if (isMoving)
+    {
+        ClipPlayback whole(0, round.seconds(), newest.speed(), newest.loopMode());
+        whole.restore(space.phase * round.seconds(), space.isReturning, space.isFresh);
+        turn = whole.move(own);
+        space.phase = whole.normalizedTime();
+        space.isReturning = whole.isReturning();
+        space.isFresh = whole.isFresh();
+    }
+    for (std::size_t i = 0; i < activeClipCount(); ++i)
+    {
+        if (at(i).space != space.number) continue;
+        const BlendSpace::Point& point = space.space->points()[at(i).point];
+        if (!isMoving)
+            at(i).move = PlaybackStep();
+        else if (newest.loopMode() == LoopMode::Loop)
+            at(i).move = loopStep(point, before, space.phase, rounds, own);
+        else
+            at(i).move = scaled(turn, round.seconds() > 0.0 ? point.duration() / round.seconds() : 0.0);
+    }
+    placeClips(space);
+}
+
+void ClipMixer::placeClips(const ActiveSpace& space)
+{
+    for (std::size_t i = 0; i < activeClipCount(); ++i)
+    {
+        ActiveClip& activeClip = at(i);
+        if (activeClip.space != space.number) continue;
+        const BlendSpace::Point& point = space.space->points()[activeClip.point];
+        double time = point.duration() * space.phase;
+        if (activeClip.playback.loopMode() == LoopMode::Loop && point.duration() > 0.0)
+            time = wrapped(point.timeAt(space.phase), point.duration());
+        activeClip.playback.restore(time, space.isReturning, space.isFresh);
+    }
 }
 
 } // namespace osgGpuAnimation

@@ -1,7 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/Playback.h>
 
+#include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/animation/playback/FootPaths.h>
+#include <osgGpuAnimation/animation/playback/Triangulation.h>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 namespace osgGpuAnimation
 {
@@ -50,6 +59,265 @@ double Fade::advance(double seconds)
     _value = from + (to - from) * progress(curve, now);
     _mean = from + (to - from) * meanProgress(curve, before, now);
     return -1.0;
+}
+
+BlendSpace::BlendSpace() = default;
+BlendSpace::~BlendSpace() = default;
+
+namespace
+{
+
+std::optional<std::string> findFaultInPlaces(const std::vector<BlendSpace::Point>& points)
+{
+    constexpr double farthest = 1e9;
+    double extent = 0.0;
+    for (const BlendSpace::Point& point : points)
+    {
+        const glm::dvec2 size = glm::abs(point.place);
+        if (!(size.x <= farthest && size.y <= farthest)) return "a coordinate is not finite or beyond 1e9";
+        extent = std::max({extent, glm::distance(point.place, points.front().place)});
+    }
+    for (std::size_t i = 0; i < points.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j)
+            if (glm::distance(points[i].place, points[j].place) <= extent * 1e-6)
+                return "positions " + std::to_string(j) + " and " + std::to_string(i) + " are equal or too close";
+    return std::nullopt;
+}
+
+/// The stops of a clip. Error: the markers are not all there, in this order of a round.
+Result<std::vector<double>> stopsOf(const Clip& clip, const std::vector<std::string>& markers)
+{
+    if (markers.empty() || !(clip.duration() > 0.0)) return std::vector<double>{0.0, clip.duration()};
+    std::vector<double> stops;
+    for (const std::string& name : markers)
+    {
+        const auto marker = std::find_if(clip.markers().begin(), clip.markers().end(),
+                                         [&](const ClipMarker& known) { return known.name == name; });
+        if (marker == clip.markers().end())
+            return Error{"clip \"" + clip.name() + "\" has no marker \"" + name + "\"; its markers are " +
+                         quotedNames(clip.markers(), [](const ClipMarker& known) { return known.name; })};
+        double time = marker->time;
+        if (!stops.empty() && time < stops.back()) time += clip.duration();
+        if (!stops.empty() && (time < stops.back() || time >= stops.front() + clip.duration()))
+            return Error{"clip \"" + clip.name() + "\" passes its marker \"" + name + "\" in another order"};
+        stops.push_back(time);
+    }
+    stops.push_back(stops.front() + clip.duration());
+    return stops;
+}
+
+/// Sets the stops of all points.
+Result<bool> findStops(const AnimationSet& set, std::vector<BlendSpace::Point>& points,
+                       const std::vector<std::string>& markers)
+{
+    for (BlendSpace::Point& point : points)
+    {
+        const Result<std::size_t> clip = set.clipAt(point.clip);
+        if (!clip) return clip.error();
+        const Result<std::vector<double>> stops = stopsOf(set.clips()[point.clip], markers);
+        if (!stops) return stops.error();
+        point.stops = stops.value();
+        if (!(point.duration() > 0.0)) point.stops.assign(markers.empty() ? 2 : markers.size() + 1, 0.0);
+    }
+    return true;
+}
+
+} // namespace
+
+Result<std::shared_ptr<const BlendSpace>> BlendSpace::create(const AnimationSet& set,
+                                                             const std::vector<Position>& positions,
+                                                             const std::vector<std::string>& syncMarkers)
+{
+    std::vector<Point> points;
+    for (const Position& position : positions)
+    {
+        const Result<std::size_t> clip = set.clipNamed(position.clip);
+        if (!clip) return Error{"a blend space: " + clip.error().message};
+        points.push_back({clip.value(), {position.x, position.y}, {}});
+    }
+    return create(set, std::move(points), syncMarkers);
+}
+
+Result<std::shared_ptr<const BlendSpace>> BlendSpace::create(const AnimationSet& set, std::vector<Point> points,
+                                                             std::vector<std::string> syncMarkers)
+{
+    if (points.empty() || points.size() > maxPositions)
+        return Error{"a blend space of " + std::to_string(points.size()) + " positions: 1 to " +
+                     std::to_string(maxPositions) + " are possible"};
+    if (const auto fault = findFaultInPlaces(points)) return Error{"a blend space: " + *fault};
+    if (const Result<bool> found = findStops(set, points, syncMarkers); !found)
+        return Error{"a blend space: " + found.error().message};
+    std::shared_ptr<BlendSpace> space(new BlendSpace);
+    for (const Point& point : points)
+        space->_places.push_back(point.place);
+    space->_points = std::move(points);
+    space->_syncMarkers = std::move(syncMarkers);
+    space->_cells = triangulate(space->_places);
+    for (std::size_t i = 0; i < space->_points.size(); ++i)
+        if (const Mix mix = space->mixAt(space->_places[i]); mix.count != 1 || mix.weights[0].point != i)
+            return Error{"a blend space: position " + std::to_string(i) + " is too close to a line of others"};
+    return std::shared_ptr<const BlendSpace>(std::move(space));
+}
+
+bool BlendSpace::fits(const AnimationSet& set) const
+{
+    std::vector<Point> points = _points;
+    return findStops(set, points, _syncMarkers) &&
+           std::equal(points.begin(), points.end(), _points.begin(),
+                      [](const Point& a, const Point& b) { return a.stops == b.stops; });
+}
+
+double BlendSpace::Point::timeAt(double phase) const
+{
+    const std::size_t stretches = stops.size() - 1;
+    const double place = phase * static_cast<double>(stretches);
+    const std::size_t stretch = std::min(static_cast<std::size_t>(std::max(place, 0.0)), stretches - 1);
+    const double share = place - static_cast<double>(stretch);
+    return stops[stretch] + share * (stops[stretch + 1] - stops[stretch]);
+}
+
+double BlendSpace::Point::phaseAt(double time) const
+{
+    const std::size_t stretches = stops.size() - 1;
+    if (!(duration() > 0.0)) return 0.0;
+    while (time < stops.front())
+        time += duration();
+    while (time >= stops.back())
+        time -= duration();
+    const auto next = std::upper_bound(stops.begin(), stops.end() - 1, time);
+    const auto stretch = static_cast<std::size_t>(std::max<std::ptrdiff_t>(next - stops.begin(), 1)) - 1;
+    const double share = (time - stops[stretch]) / (stops[stretch + 1] - stops[stretch]);
+    return (static_cast<double>(stretch) + std::clamp(share, 0.0, 1.0)) / static_cast<double>(stretches);
+}
+
+namespace
+{
+
+bool isLighter(const BlendSpace::Weight& a, const BlendSpace::Weight& b)
+{
+    return a.weight < b.weight || (a.weight == b.weight && a.point > b.point);
+}
+
+} // namespace
+
+BlendSpace::Mix BlendSpace::mixAt(const glm::dvec2& parameter) const
+{
+    static constexpr double farthest = 1e12; // squares stay finite
+    const auto number = [](double value) { return std::isnan(value) ? 0.0 : std::clamp(value, -farthest, farthest); };
+    const glm::dvec2 wanted(number(parameter.x), number(parameter.y));
+    const PlaneCell* nearestCell = &_cells.front();
+    NearestInCell nearest = nearestIn(*nearestCell, _places, wanted);
+    for (const PlaneCell& cell : _cells)
+    {
+        const NearestInCell other = nearestIn(cell, _places, wanted);
+        if (!(other.squaredDistance < nearest.squaredDistance)) continue;
+        nearest = other;
+        nearestCell = &cell;
+    }
+    constexpr double negligibleWeight = 1e-9;
+    Mix mix;
+    double whole = 0.0;
+    for (std::size_t corner = 0; corner < nearestCell->count; ++corner)
+    {
+        const Weight added{nearestCell->points[corner], nearest.weights[corner]};
+        if (added.weight < negligibleWeight) continue;
+        std::size_t place = mix.count++;
+        for (; place > 0 && isLighter(added, mix.weights[place - 1]); --place)
+            mix.weights[place] = mix.weights[place - 1];
+        mix.weights[place] = added;
+        whole += added.weight;
+    }
+    for (Weight& weight : mix.weights)
+        weight.weight /= whole;
+    return mix;
+}
+
+namespace
+{
+
+constexpr std::size_t samplesOfARound = 120;
+
+/// The ground speed of clips in equal shares, at phases that they reach together.
+double groundSpeedOfMix(const AnimationSet& set, const std::vector<BlendSpace::Point>& points)
+{
+    double moving = 0.0; // poses do not count in the time of a round
+    for (const BlendSpace::Point& point : points)
+        moving += point.duration() > 0.0 ? 1.0 : 0.0;
+    if (!(moving > 0.0)) return 0.0;
+    const auto phaseAt = [](std::size_t sample) { return static_cast<double>(sample) / samplesOfARound; };
+    std::vector<double> times;
+    for (std::size_t sample = 0; sample <= samplesOfARound; ++sample)
+    {
+        double seconds = 0.0;
+        for (const BlendSpace::Point& point : points)
+            seconds += (point.timeAt(phaseAt(sample)) - point.stops.front()) / moving;
+        times.push_back(seconds);
+    }
+    const auto poseAt = [&](std::size_t sample)
+    {
+        PoseInstruction instruction;
+        instruction.sampleCount = 0;
+        for (const BlendSpace::Point& point : points)
+        {
+            const double time = point.timeAt(phaseAt(sample)), duration = point.duration();
+            BlendSample& mixed = instruction.samples[instruction.sampleCount++];
+            mixed = set.sampleAt(static_cast<int>(point.clip), time > duration ? time - duration : time);
+            mixed.weight = 1.0f / static_cast<float>(points.size());
+        }
+        return instruction;
+    };
+    const FootPaths paths(set, std::move(times), poseAt);
+    return paths.groundSpeed(paths.feet());
+}
+
+double meanDuration(const std::vector<BlendSpace::Weight>& weights, const std::vector<BlendSpace::Point>& points)
+{
+    double seconds = 0.0, whole = 0.0;
+    for (const BlendSpace::Weight& weight : weights)
+    {
+        const double duration = points[weight.point].duration();
+        seconds += weight.weight * duration;
+        whole += duration > 0.0 ? weight.weight : 0.0;
+    }
+    return whole > 0.0 ? seconds / whole : 0.0;
+}
+
+} // namespace
+
+double BlendSpace::wayOf(const AnimationSet& set, std::size_t first, std::size_t second) const
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    const auto key = std::minmax(first, second);
+    if (const auto known = _ways.find(key); known != _ways.end()) return known->second;
+    std::vector<Point> points{_points[first]};
+    if (second != first) points.push_back(_points[second]);
+    const double seconds = meanDuration({{first, 0.5}, {second, 0.5}}, _points);
+    return _ways[key] = groundSpeedOfMix(set, points) * seconds;
+}
+
+double BlendSpace::groundSpeedAt(const AnimationSet& set, const glm::dvec2& parameter) const
+{
+    const Mix mix = mixAt(parameter);
+    const std::vector<Weight> weights(mix.weights.begin(),
+                                      mix.weights.begin() + static_cast<std::ptrdiff_t>(mix.count));
+    double way = 0.0; // quadratic, through the corners and the middles of the edges
+    for (std::size_t i = 0; i < weights.size(); ++i)
+    {
+        const double weight = weights[i].weight;
+        if (weight != 0.5) way += weight * (2.0 * weight - 1.0) * wayOf(set, weights[i].point, weights[i].point);
+        for (std::size_t j = 0; j < i; ++j)
+            way += 4.0 * weight * weights[j].weight * wayOf(set, weights[i].point, weights[j].point);
+    }
+    const double seconds = meanDuration(weights, _points);
+    return seconds > 0.0 ? std::max(way, 0.0) / seconds : 0.0;
+}
+
+double measureGroundSpeed(const AnimationSet& set, std::size_t clip)
+{
+    if (const std::optional<double> known = set.knownGroundSpeed(clip)) return *known;
+    const double speed = groundSpeedOfMix(set, {{clip, glm::dvec2(0.0), {0.0, set.clips()[clip].duration()}}});
+    set.keepGroundSpeed(clip, speed);
+    return speed;
 }
 
 } // namespace osgGpuAnimation

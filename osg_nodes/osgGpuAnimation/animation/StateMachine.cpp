@@ -135,6 +135,7 @@ Result<std::shared_ptr<const StateGraph>> StateGraph::create(const AnimationSet&
         if (!start) return Error{"start: " + start.error().message};
         graph->_start = start.value();
     }
+    graph->_isPhaseShared = description.isPhaseShared;
     return std::shared_ptr<const StateGraph>(std::move(graph));
 }
 
@@ -142,11 +143,51 @@ Result<bool> StateGraph::addState(const AnimationSet& set, const StateDescriptio
 {
     if (description.name.empty()) return Error{"it has no name"};
     if (findState(description.name) >= 0) return Error{"another has this name already"};
-    const Result<std::size_t> clip = set.clipNamed(description.clip);
-    if (!clip) return clip.error();
+    State state{description.name, 0, description.loopMode, description.speed};
+    if (description.blend)
+    {
+        if (!description.clip.empty()) return Error{"it has a clip and a blend space"};
+        if (const Result<bool> added = addBlend(set, *description.blend, state); !added) return added.error();
+    }
+    else
+    {
+        const Result<std::size_t> clip = set.clipNamed(description.clip);
+        if (!clip) return clip.error();
+        state.clip = clip.value();
+    }
     if (!std::isfinite(description.speed)) return Error{"its speed is not finite"};
-    _states.push_back({description.name, clip.value(), description.loopMode, description.speed});
+    if (!description.groundSpeed.empty())
+    {
+        const Result<std::size_t> parameter = addParameter(description.groundSpeed);
+        if (!parameter) return parameter.error();
+        state.groundSpeed = static_cast<int>(parameter.value());
+    }
+    _states.push_back(std::move(state));
     return true;
+}
+
+Result<bool> StateGraph::addBlend(const AnimationSet& set, const StateBlendDescription& description, State& state)
+{
+    const auto space = BlendSpace::create(set, description.positions, description.syncMarkers);
+    if (!space) return space.error();
+    state.space = space.value();
+    if (description.parameters.empty() || description.parameters.size() > 2)
+        return Error{"a blend space with " + std::to_string(description.parameters.size()) +
+                     " parameters: expected one or two"};
+    for (const std::string& name : description.parameters)
+    {
+        const Result<std::size_t> parameter = addParameter(name);
+        if (!parameter) return parameter.error();
+        state.parameters.push_back(parameter.value());
+    }
+    return true;
+}
+
+Result<std::size_t> StateGraph::addParameter(const std::string& name)
+{
+    if (toWords(name) != std::vector<std::string>{name} || name.find_first_of(signs) != std::string::npos)
+        return Error{"\"" + name + "\" is not the name of a parameter: expected one word without < > = !"};
+    return indexAdding(name, _parameters);
 }
 
 Result<bool> StateGraph::addTransition(const TransitionDescription& description)
@@ -268,7 +309,9 @@ bool StateMachine::update(AnimationController& controller, double seconds)
     {
         const StateGraph::State& state = _graph->states()[_state];
         const CrossfadeOptions options{FadeCurve::Linear, Sync::Start, state.loopMode, state.speed};
-        _hasStarted = static_cast<bool>(layer.crossfade(state.clip, 0.0, options));
+        if (_graph->isPhaseShared()) layer.setPhaseShared(true);
+        _hasStarted = play(state, 0.0, options, layer);
+        if (_hasStarted) passParameters(layer);
         return _hasStarted;
     }
     if (std::isfinite(seconds)) _seconds += std::max(seconds, 0.0);
@@ -278,9 +321,33 @@ bool StateMachine::update(AnimationController& controller, double seconds)
             transition.from < 0 ? transition.to != _state : static_cast<std::size_t>(transition.from) == _state;
         const auto isMet = [&](const StateGraph::Condition& condition) { return holds(condition, layer); };
         if (!isFromHere || !std::all_of(transition.conditions.begin(), transition.conditions.end(), isMet)) continue;
-        return enter(transition, layer);
+        if (!enter(transition, layer)) return false;
+        passParameters(layer);
+        return true;
     }
+    passParameters(layer);
     return false;
+}
+
+bool StateMachine::play(const StateGraph::State& state, double seconds, const CrossfadeOptions& options,
+                        AnimationLayer& layer) const
+{
+    return static_cast<bool>(state.space ? layer.crossfade(state.space, seconds, options)
+                                         : layer.crossfade(state.clip, seconds, options));
+}
+
+/// Passes the parameters of the current state to the layer.
+void StateMachine::passParameters(AnimationLayer& layer) const
+{
+    const StateGraph::State& state = _graph->states()[_state];
+    if (state.space && layer.blendSpace())
+    {
+        const double x = _values[state.parameters.front()];
+        const double y = state.parameters.size() > 1 ? _values[state.parameters.back()] : 0.0;
+        if (layer.parameter() != glm::dvec2(x, y)) layer.setParameter(x, y);
+    }
+    // A clip whose feet stand keeps its speed.
+    if (state.groundSpeed >= 0) (void)layer.setGroundSpeed(_values[static_cast<std::size_t>(state.groundSpeed)]);
 }
 
 bool StateMachine::holds(const StateGraph::Condition& condition, const AnimationLayer& layer) const
@@ -311,8 +378,7 @@ bool StateMachine::holds(const StateGraph::Condition& condition, const Animation
 
 bool StateMachine::enter(const StateGraph::Transition& transition, AnimationLayer& layer)
 {
-    const std::size_t clip = _graph->states()[transition.to].clip;
-    if (!layer.crossfade(clip, transition.seconds, transition.options)) return false;
+    if (!play(_graph->states()[transition.to], transition.seconds, transition.options, layer)) return false;
     for (const StateGraph::Condition& condition : transition.conditions)
         if (condition.test == Test::Fired) _isFired[condition.parameter] = false;
     _state = transition.to;

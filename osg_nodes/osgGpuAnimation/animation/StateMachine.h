@@ -7,6 +7,7 @@
 #include <osgGpuAnimation/animation/Result.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,13 +45,24 @@ struct StateCondition
     static Result<StateCondition> parse(const std::string& text);
 };
 
-/// The description of a state: a clip under a name.
+/// The description of a blend space whose parameter is one or two parameters of the state machine.
+struct StateBlendDescription
+{
+    std::vector<BlendSpace::Position> positions; ///< see BlendSpace::create()
+    std::vector<std::string> parameters;         ///< one or two names: of x, of y
+    std::vector<std::string> syncMarkers = {};   ///< see BlendSpace::create()
+};
+
+/// The description of a state: a clip or a blend space under a name.
 struct StateDescription
 {
-    std::string name;                   ///< unique and not empty
-    std::string clip;                   ///< name of a clip of the set
-    LoopMode loopMode = LoopMode::Loop; ///< loop mode of the clip
-    double speed = 1.0;                 ///< finite; negative: backwards
+    std::string name;                                          ///< unique and not empty
+    std::string clip;                                          ///< name of a clip of the set; empty with a blend space
+    LoopMode loopMode = LoopMode::Loop;                        ///< loop mode of the clip
+    double speed = 1.0;                                        ///< finite; negative: backwards
+    std::optional<StateBlendDescription> blend = std::nullopt; ///< in place of the clip
+    std::string groundSpeed =
+        {}; ///< the parameter for AnimationLayer::setGroundSpeed(), in place of speed; empty: none
 };
 
 /// The description of a transition from one state to another.
@@ -70,6 +82,7 @@ struct StateGraphDescription
     std::vector<StateDescription> states;           ///< at most StateGraph::maxStates
     std::vector<TransitionDescription> transitions; ///< in the order of evaluation
     std::string start;                              ///< empty: the first state
+    bool isPhaseShared = false;                     ///< see AnimationLayer::setPhaseShared()
 };
 
 /// States and transitions, checked against a set. It is immutable; the StateMachines of all characters share it.
@@ -84,10 +97,13 @@ public:
     /// A state with its clip resolved.
     struct State
     {
-        std::string name;  ///< unique
-        std::size_t clip;  ///< index in the set
-        LoopMode loopMode; ///< loop mode of the clip
-        double speed;      ///< finite
+        std::string name;                                  ///< unique
+        std::size_t clip;                                  ///< index in the set; unused with a blend space
+        LoopMode loopMode;                                 ///< loop mode of the clip
+        double speed;                                      ///< finite
+        std::shared_ptr<const BlendSpace> space = nullptr; ///< null: the clip
+        std::vector<std::size_t> parameters = {};          ///< indices of the parameters of the blend space: of x, of y
+        int groundSpeed = -1;                              ///< index of the parameter for the ground speed; -1: none
     };
     /// A condition with its name resolved.
     struct Condition
@@ -110,7 +126,8 @@ public:
         maxTransitions = 8192;                     ///< the maximum number of transitions
 
     /// Errors contain the name of the state or the number of the transition: no states; more than maxStates or
-    /// maxTransitions; a state without a name or with a name that another one has; an unknown clip or state; a
+    /// maxTransitions; a state without a name or with a name that another one has; an unknown clip or state; a blend
+    /// space beside a clip, or without one or two parameters; the errors of BlendSpace::create(); a
     /// transition without conditions; an invalid condition; "finished" if no source state plays once; seconds that are
     /// negative or not finite; a speed that is not finite; a parameter and a trigger of the same name.
     static Result<std::shared_ptr<const StateGraph>> create(const AnimationSet& set,
@@ -118,9 +135,11 @@ public:
 
     const std::vector<State>& states() const { return _states; }                ///< in the order of the description
     const std::vector<Transition>& transitions() const { return _transitions; } ///< in the order of the description
-    const std::vector<std::string>& parameters() const { return _parameters; }  ///< names in the conditions
-    const std::vector<std::string>& triggers() const { return _triggers; }      ///< names in the conditions
-    std::size_t start() const { return _start; }                                ///< index of the start state
+    /// Names in the conditions, of blend spaces and of ground speeds.
+    const std::vector<std::string>& parameters() const { return _parameters; }
+    const std::vector<std::string>& triggers() const { return _triggers; } ///< names in the conditions
+    std::size_t start() const { return _start; }                           ///< index of the start state
+    bool isPhaseShared() const { return _isPhaseShared; }                  ///< see AnimationLayer::setPhaseShared()
 
     int findState(const std::string& name) const; ///< -1 if there is none
 
@@ -129,6 +148,8 @@ private:
     StateGraph() = default;
 
     Result<bool> addState(const AnimationSet& set, const StateDescription& description);
+    Result<bool> addBlend(const AnimationSet& set, const StateBlendDescription& description, State& state);
+    Result<std::size_t> addParameter(const std::string& name);
     Result<bool> addTransition(const TransitionDescription& description);
     Result<bool> addCondition(Transition& transition, const std::string& text);
     Result<std::size_t> stateNamed(const std::string& name) const;
@@ -140,6 +161,7 @@ private:
     std::vector<std::string> _parameters;
     std::vector<std::string> _triggers;
     std::size_t _start = 0;
+    bool _isPhaseShared = false;
 };
 
 /// Drives one layer of a controller through the states of a StateGraph. The controller does not know the state machine:
@@ -160,7 +182,8 @@ public:
     double secondsInState() const { return _seconds; }                         ///< seconds since the state was entered
     double value(const std::string& parameter) const; ///< initially 0; 0 if there is no such parameter
 
-    /// Sets a parameter. False, without a change, if no condition uses the parameter or the value is NaN.
+    /// Sets a parameter; update() passes it to the blend space and the ground speed of the current state. False,
+    /// without a change, if the graph does not use the parameter or the value is NaN.
     bool set(const std::string& parameter, double value);
     /// Fires a trigger: it stays fired until a transition that uses it is taken. False if no condition uses it.
     bool fire(const std::string& trigger);
@@ -175,6 +198,9 @@ public:
 private:
     bool holds(const StateGraph::Condition& condition, const AnimationLayer& layer) const;
     bool enter(const StateGraph::Transition& transition, AnimationLayer& layer);
+    bool play(const StateGraph::State& state, double seconds, const CrossfadeOptions& options,
+              AnimationLayer& layer) const;
+    void passParameters(AnimationLayer& layer) const;
 
     std::shared_ptr<const StateGraph> _graph;
     std::size_t _layer;

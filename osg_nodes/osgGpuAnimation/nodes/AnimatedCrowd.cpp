@@ -2,6 +2,8 @@
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 
 #include <osgGpuAnimation/animation/bounds/MixBounds.h>
+#include <osgGpuAnimation/animation/Pose.h>
+#include <osgGpuAnimation/animation/StateMachine.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/crowd/CrowdBatches.h>
 #include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
@@ -46,6 +48,12 @@ std::uint32_t toRgba(const osg::Vec4& color)
         rgba |= static_cast<std::uint32_t>(std::lround(value * 255.0f)) << 8 * channel;
     }
     return rgba;
+}
+
+osg::Vec4 toColor(std::uint32_t rgba)
+{
+    const auto channel = [rgba](int shift) { return static_cast<float>(rgba >> shift & 255u) / 255.0f; };
+    return {channel(0), channel(8), channel(16), channel(24)};
 }
 
 Error noSuchInstance()
@@ -271,6 +279,51 @@ Result<bool> AnimatedCrowd::setTint(Instance instance, const osg::Vec4& tint)
     if (index == CrowdInstances::none) return noSuchInstance();
     _instances->setTint(index, toRgba(tint));
     return true;
+}
+
+osg::Vec4 AnimatedCrowd::getTint(Instance instance) const
+{
+    const std::size_t index = _instances->indexOf(instance);
+    return index == CrowdInstances::none ? osg::Vec4(1, 1, 1, 1) : toColor(_instances->tint(index));
+}
+
+Result<osg::Matrixd> AnimatedCrowd::jointToCrowd(Instance instance, std::size_t joint) const
+{
+    const std::size_t index = _instances->indexOf(instance);
+    if (index == CrowdInstances::none) return noSuchInstance();
+    const std::size_t count = getAnimationSet().skeleton().jointCount();
+    if (joint >= count) return Error{"there is no joint " + std::to_string(joint) + " among " + std::to_string(count)};
+    osg::Matrixd root = toOsg(_instances->rootMatrix(index));
+    root.setTrans(_instances->position(index));
+    return toOsg(Pose::jointToModel(getAnimationSet(), _instances->instruction(index), joint)) * root;
+}
+
+Result<osg::Matrixd> AnimatedCrowd::jointToCrowd(Instance instance, const std::string& joint) const
+{
+    const Result<std::size_t> found = getAnimationSet().skeleton().jointNamed(joint);
+    if (!found) return found.error();
+    return jointToCrowd(instance, found.value());
+}
+
+void AnimatedCrowd::setInstanceEventCallback(std::function<void(Instance, const AnimationEvent&)> callback)
+{
+    _instances->setEventCallback(std::move(callback));
+    dirtyBound();
+}
+
+Result<bool> AnimatedCrowd::setStateGraph(Instance instance, std::shared_ptr<const StateGraph> graph, std::size_t layer)
+{
+    const std::size_t index = _instances->indexOf(instance);
+    if (index == CrowdInstances::none) return noSuchInstance();
+    _instances->setStateMachine(index, graph ? std::make_unique<StateMachine>(std::move(graph), layer) : nullptr);
+    dirtyBound();
+    return true;
+}
+
+StateMachine* AnimatedCrowd::getStateMachine(Instance instance)
+{
+    const std::size_t index = _instances->indexOf(instance);
+    return index == CrowdInstances::none ? nullptr : _instances->stateMachine(index);
 }
 
 AnimationController* AnimatedCrowd::getController(Instance instance)

@@ -8,7 +8,9 @@
 #include <osg/Transform>
 #include <osgUtil/CullVisitor>
 
+#include <functional>
 #include <optional>
+#include <string>
 
 namespace osgGpuAnimation
 {
@@ -16,6 +18,8 @@ namespace osgGpuAnimation
 class AnimatedCharacter;
 class CrowdInstances;
 class PosedInstances;
+class StateGraph;
+class StateMachine;
 
 /// Thousands of instances of one character in one node, each with its own placement, controller and tint. One instanced
 /// draw per mesh primitive shows them all.
@@ -80,8 +84,10 @@ public:
     /// Errors: those of add(); no such instance.
     Result<bool> setPlacement(Instance instance, const osg::Matrixd& placement);
     Result<bool> setTint(Instance instance, const osg::Vec4& tint); ///< error: no such instance
-    bool contains(Instance instance) const;                         ///< true until the instance is removed
-    std::size_t getNumInstances() const;                            ///< in [0, maxInstances]
+    /// The tint of an instance, rounded to 8 bits a component; white if no such instance exists.
+    osg::Vec4 getTint(Instance instance) const;
+    bool contains(Instance instance) const; ///< true until the instance is removed
+    std::size_t getNumInstances() const;    ///< in [0, maxInstances]
 
     /// The controller of an instance, for crossfades and layers; valid until the next update(). Null: no such instance.
     AnimationController* getController(Instance instance);
@@ -90,6 +96,23 @@ public:
     /// The root motion of an instance since the last call, in the space that placements start from: the new placement
     /// is the motion times the old one. The identity without root motion or without such an instance.
     osg::Matrixd takeRootMotion(Instance instance);
+    /// The transform of a joint of an instance, from the joint's space to the space of this node; the CPU twin computes
+    /// it. joint: its index in the skeleton. Errors: no such instance or joint.
+    Result<osg::Matrixd> jointToCrowd(Instance instance, std::size_t joint) const;
+    Result<osg::Matrixd> jointToCrowd(Instance instance, const std::string& joint) const; ///< The same by name.
+
+    /// update() calls the callback with the events of all instances, in the order and at the times of
+    /// AnimatedCharacter::update(). It replaces the callbacks of the instances' controllers; a callback that a
+    /// controller gets later replaces it for that instance. With a callback every instance keeps a controller, which
+    /// costs more than a plain loop. An empty function removes it. Copies of the crowd do not copy it.
+    void setInstanceEventCallback(std::function<void(Instance, const AnimationEvent&)> callback);
+    /// Lets a state machine drive a layer of an instance: update() updates it before it advances the instance. graph:
+    /// null removes the machine. layer: see StateMachine. Copies of the crowd have copies of the machines; stored
+    /// scenes have none. Error: no such instance.
+    Result<bool> setStateGraph(Instance instance, std::shared_ptr<const StateGraph> graph, std::size_t layer = 0);
+    /// The state machine of an instance, for its parameters and triggers. Null: none. Valid until it is replaced or
+    /// removed.
+    StateMachine* getStateMachine(Instance instance);
     /// The arrays of all instances, for the kit's own plugins and tests.
     const CrowdInstances& getInstances() const { return *_instances; }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/Environment.h>
 
+#include <osgGpuAnimation/nodes/OsgMatrix.h>
 #include <osgGpuAnimation/nodes/shading/PrefilteredMap.h>
 
 #include <layout.glsl>
@@ -8,9 +9,7 @@
 #include <osg/Matrix>
 #include <osgUtil/CullVisitor>
 
-#ifndef GL_TEXTURE_CUBE_MAP_SEAMLESS
-#define GL_TEXTURE_CUBE_MAP_SEAMLESS 0x884F
-#endif
+#include <cmath>
 
 namespace osgGpuAnimation
 {
@@ -18,12 +17,11 @@ namespace osgGpuAnimation
 namespace
 {
 
-/// From eye space to glTF's axes (+Y up) of the surroundings.
+/// From eye space to glTF's axes (+Y up) of the surroundings. A node that mirrors mirrors the surroundings.
 osg::Matrix3 environmentFromEye(const osg::Matrix& nodeToEye, float rotation)
 {
-    osg::Matrix turn;
-    turn.orthoNormalize(nodeToEye);
-    turn.setTrans(0, 0, 0);
+    osg::Matrix turn = rotationOf(nodeToEye);
+    if (glm::determinant(glm::dmat3(glm::make_mat4(nodeToEye.ptr()))) < 0.0) turn.preMultScale(osg::Vec3d(-1, 1, 1));
     const osg::Matrix yUp(1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1);
     const osg::Matrix all = osg::Matrix::inverse(turn) * osg::Matrix::rotate(-rotation, osg::Vec3(0, 0, 1)) * yUp;
     osg::Matrix3 result;
@@ -69,10 +67,7 @@ Result<bool> Environment::setPanorama(osg::Image* panorama)
     if (!panorama) return Error{"a panorama: expected a picture, found null"};
     const Result<osg::ref_ptr<const RadianceCube>> radiance = RadianceCube::fromPanorama(*panorama);
     if (!radiance) return radiance.error();
-    setStudio();
-    _panorama = panorama;
-    _map = new PrefilteredMap(*radiance.value());
-    _harmonics = harmonicsOf(*radiance.value());
+    setPictures(panorama, nullptr, *radiance.value());
     return true;
 }
 
@@ -81,17 +76,27 @@ Result<bool> Environment::setFaces(osg::TextureCubeMap* faces)
     if (!faces) return Error{"the faces of surroundings: expected a cube map, found null"};
     const Result<osg::ref_ptr<const RadianceCube>> radiance = RadianceCube::fromFaces(*faces);
     if (!radiance) return radiance.error();
-    setStudio();
-    _faces = faces;
-    _map = new PrefilteredMap(*radiance.value());
-    _harmonics = harmonicsOf(*radiance.value());
+    setPictures(nullptr, faces, *radiance.value());
     return true;
+}
+
+void Environment::setPictures(osg::Image* panorama, osg::TextureCubeMap* faces, const RadianceCube& radiance)
+{
+    _panorama = panorama;
+    _faces = faces;
+    _map = new PrefilteredMap(radiance);
+    _harmonics = harmonicsOf(radiance);
 }
 
 void Environment::setIntensity(float intensity)
 {
-    _intensity = intensity;
-    _intensities = new osg::Uniform("environmentIntensity", intensity);
+    _intensity = std::isfinite(intensity) && intensity > 0.0f ? intensity : 0.0f;
+    _intensities = new osg::Uniform("environmentIntensity", _intensity);
+}
+
+void Environment::setRotation(float radians)
+{
+    if (std::isfinite(radians)) _rotation = radians;
 }
 
 /// All state of the surroundings. It is not in the node's own StateSet, which belongs to the user and is stored.
@@ -103,7 +108,7 @@ osg::ref_ptr<osg::StateSet> Environment::makeLight(const osg::Matrix& nodeToEye)
     light->addUniform(fromEye);
     light->addUniform(_intensities);
     light->setDefine("ENVIRONMENT", _map ? "2" : "1");
-    if (_toneMapping) light->setDefine("TONE_MAPPING");
+    if (_toneMapping) light->setDefine("TONE_MAPPING", "1");
     if (!_map) return light;
     light->setTextureAttribute(ENVIRONMENT_UNIT, _map);
     light->setMode(GL_TEXTURE_CUBE_MAP_SEAMLESS, osg::StateAttribute::ON);

@@ -11,6 +11,8 @@
 namespace osgGpuAnimation
 {
 
+class RadianceCube;
+
 /// The surroundings that light everything below the node (image-based light): the materials of PbrMaterial, drawn by
 /// the character program or the surface program. They replace the ambient light of OSG's lights; the lights themselves
 /// still shine. Without an Environment, the ambient light is an even surrounding.
@@ -51,12 +53,13 @@ public:
     osg::Image* getPanorama() const { return _panorama; }    ///< null: the studio or faces
     osg::TextureCubeMap* getFaces() const { return _faces; } ///< null: the studio or a panorama
 
-    /// Multiplies the radiance; 0 or more; default 1.
+    /// Multiplies the radiance; default 1. A number that is negative or not finite counts as 0.
     void setIntensity(float intensity);
     float getIntensity() const { return _intensity; } ///< 0 or more
 
-    /// Turns the surroundings about +Z, counter-clockwise from above; radians; default 0.
-    void setRotation(float radians) { _rotation = radians; }
+    /// Turns the surroundings about +Z, counter-clockwise from above; radians; default 0. A number that is
+    /// not finite changes nothing.
+    void setRotation(float radians);
     float getRotation() const { return _rotation; } ///< radians
 
     /// Khronos PBR Neutral tone mapping of everything below; default false: colours above 1 are clamped.
@@ -71,7 +74,10 @@ public:
 protected:
     ~Environment() override = default;
 
+    const osg::TextureCubeMap* getMap() const { return _map; } ///< prefiltered; null: the studio
+
 private:
+    void setPictures(osg::Image* panorama, osg::TextureCubeMap* faces, const RadianceCube& radiance);
     osg::ref_ptr<osg::StateSet> makeLight(const osg::Matrix& nodeToEye) const;
 
     float _intensity = 1.0f;

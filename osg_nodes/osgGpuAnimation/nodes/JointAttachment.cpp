@@ -2,6 +2,7 @@
 #include <osgGpuAnimation/nodes/JointAttachment.h>
 
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
+#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 
 #include <osg/NodeVisitor>
 #include <osg/Notify>
@@ -9,18 +10,29 @@
 namespace osgGpuAnimation
 {
 
-namespace
+/// The character or crowd whose joint an attachment follows; both null: none.
+struct JointAttachment::Host
 {
+    /// The nearest one above the end of the path.
+    explicit Host(const osg::NodePath& path)
+    {
+        for (auto node = path.rbegin(); node != path.rend() && !isFound(); ++node)
+        {
+            character = dynamic_cast<const AnimatedCharacter*>(*node);
+            crowd = dynamic_cast<const AnimatedCrowd*>(*node);
+        }
+    }
 
-/// The nearest character above the end of the path.
-const AnimatedCharacter* characterAbove(const osg::NodePath& path)
-{
-    for (auto node = path.rbegin(); node != path.rend(); ++node)
-        if (const auto* character = dynamic_cast<const AnimatedCharacter*>(*node)) return character;
-    return nullptr;
-}
+    bool isFound() const { return character || crowd; }
+    const std::shared_ptr<const AnimationSet>& set() const
+    {
+        return character ? character->getController().sharedSet() : crowd->getSharedAnimationSet();
+    }
+    const std::string& name() const { return character ? character->getName() : crowd->getName(); }
 
-} // namespace
+    const AnimatedCharacter* character = nullptr;
+    const AnimatedCrowd* crowd = nullptr;
+};
 
 JointAttachment::JointAttachment()
 {
@@ -40,8 +52,9 @@ JointAttachment::JointAttachment(int joint) : JointAttachment()
 }
 
 JointAttachment::JointAttachment(const JointAttachment& other, const osg::CopyOp& copyop)
-    : osg::MatrixTransform(other, copyop), _jointName(other._jointName), _joint(other._joint),
-      _resolvedSet(other._resolvedSet), _resolvedJoint(other._resolvedJoint), _hasWarned(other._hasWarned)
+    : osg::MatrixTransform(other, copyop), _jointName(other._jointName), _joint(other._joint), _offset(other._offset),
+      _instance(other._instance), _resolvedSet(other._resolvedSet), _resolvedJoint(other._resolvedJoint),
+      _hasWarned(other._hasWarned)
 {
     setNumChildrenRequiringUpdateTraversal(getNumChildrenRequiringUpdateTraversal() + 1);
 }
@@ -69,54 +82,84 @@ int JointAttachment::jointIn(const AnimationSet& set) const
     return joint >= 0 && static_cast<std::size_t>(joint) < set.skeleton().jointCount() ? joint : -1;
 }
 
-void JointAttachment::resolve(const AnimatedCharacter& character)
+void JointAttachment::resolve(const Host& host)
 {
-    if (&character.getAnimationSet() == _resolvedSet.get()) return;
-    _resolvedJoint = jointIn(character.getAnimationSet());
-    _resolvedSet = character.getController().sharedSet();
+    if (host.set() == _resolvedSet) return;
+    _resolvedJoint = jointIn(*host.set());
+    _resolvedSet = host.set();
     if (_resolvedJoint >= 0 || _hasWarned) return;
     _hasWarned = true;
     OSG_WARN << "osgGpuAnimation: an attachment follows joint "
-             << (_jointName.empty() ? std::to_string(_joint) : "\"" + _jointName + "\"") << ", but \""
-             << character.getName() << "\" has none such among its "
-             << character.getAnimationSet().skeleton().jointCount() << "; it stays at the character's origin"
-             << std::endl;
+             << (_jointName.empty() ? std::to_string(_joint) : "\"" + _jointName + "\"") << ", but \"" << host.name()
+             << "\" has none such among its " << host.set()->skeleton().jointCount()
+             << "; it stays at the character's origin" << std::endl;
 }
 
-osg::Matrixd JointAttachment::matrixIn(const AnimatedCharacter& character) const
+osg::Matrixd JointAttachment::matrixIn(const Host& host) const
 {
-    const int joint = jointIn(character.getAnimationSet());
-    const Result<osg::Matrixd> matrix = character.jointToModel(static_cast<std::size_t>(joint));
-    return matrix ? matrix.value() : osg::Matrixd();
+    const auto joint = static_cast<std::size_t>(jointIn(*host.set()));
+    if (host.character)
+    {
+        const Result<osg::Matrixd> matrix = host.character->jointToModel(joint);
+        return matrix ? _offset * matrix.value() : _offset;
+    }
+    if (!_instance || !host.crowd->contains(*_instance)) return getMatrix();
+    // Children of a crowd are relative to its origin.
+    const Result<osg::Matrixd> matrix = host.crowd->jointToCrowd(*_instance, joint);
+    return _offset * (matrix ? matrix.value() : host.crowd->getPlacement(*_instance)) *
+           osg::Matrixd::translate(-host.crowd->getOrigin());
 }
 
 void JointAttachment::traverse(osg::NodeVisitor& visitor)
 {
     if (visitor.getVisitorType() == osg::NodeVisitor::UPDATE_VISITOR)
-        if (const AnimatedCharacter* character = characterAbove(visitor.getNodePath()))
+        if (const Host host(visitor.getNodePath()); host.isFound())
         {
-            resolve(*character);
-            setMatrix(matrixIn(*character));
+            resolve(host);
+            setMatrix(matrixIn(host));
         }
     osg::MatrixTransform::traverse(visitor);
 }
 
 bool JointAttachment::computeLocalToWorldMatrix(osg::Matrix& matrix, osg::NodeVisitor* visitor) const
 {
-    const AnimatedCharacter* character = visitor ? characterAbove(visitor->getNodePath()) : nullptr;
-    if (!character || getReferenceFrame() != osg::Transform::RELATIVE_RF)
+    const Host host(visitor ? visitor->getNodePath() : osg::NodePath());
+    if (!host.isFound() || getReferenceFrame() != osg::Transform::RELATIVE_RF)
         return osg::MatrixTransform::computeLocalToWorldMatrix(matrix, visitor);
-    matrix.preMult(matrixIn(*character));
+    matrix.preMult(matrixIn(host));
     return true;
 }
 
 bool JointAttachment::computeWorldToLocalMatrix(osg::Matrix& matrix, osg::NodeVisitor* visitor) const
 {
-    const AnimatedCharacter* character = visitor ? characterAbove(visitor->getNodePath()) : nullptr;
-    if (!character || getReferenceFrame() != osg::Transform::RELATIVE_RF)
+    const Host host(visitor ? visitor->getNodePath() : osg::NodePath());
+    if (!host.isFound() || getReferenceFrame() != osg::Transform::RELATIVE_RF)
         return osg::MatrixTransform::computeWorldToLocalMatrix(matrix, visitor);
-    matrix.postMult(osg::Matrixd::inverse(matrixIn(*character)));
+    matrix.postMult(osg::Matrixd::inverse(matrixIn(host)));
     return true;
+}
+
+Result<osg::ref_ptr<osg::MatrixTransform>> JointAttachment::detach(osg::Group& newParent)
+{
+    const osg::NodePathList paths = getParentalNodePaths();
+    if (getNumParents() != 1 || paths.size() != 1)
+        return Error{"an attachment with " + std::to_string(getNumParents()) + " parents and " +
+                     std::to_string(paths.size()) + " paths from the root: expected one of each"};
+    const osg::ref_ptr<JointAttachment> alive = this;
+    osg::NodePath above = paths.front();
+    above.pop_back();
+    const Host host(above);
+    const osg::Matrixd own = host.isFound() ? matrixIn(host) : getMatrix();
+    const osg::Matrixd parentToWorld = osg::computeLocalToWorld(newParent.getParentalNodePaths().front());
+    const osg::ref_ptr<osg::MatrixTransform> placed =
+        new osg::MatrixTransform(own * osg::computeLocalToWorld(above) * osg::Matrixd::inverse(parentToWorld));
+    placed->setName(getName());
+    for (unsigned int child = 0; child < getNumChildren(); ++child)
+        placed->addChild(getChild(child));
+    removeChildren(0, getNumChildren());
+    getParent(0)->removeChild(this);
+    newParent.addChild(placed);
+    return placed;
 }
 
 } // namespace osgGpuAnimation

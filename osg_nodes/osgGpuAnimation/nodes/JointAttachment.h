@@ -1,27 +1,33 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <osgGpuAnimation/animation/Result.h>
+
 #include <osg/MatrixTransform>
 
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace osgGpuAnimation
 {
 
-class AnimatedCharacter;
 class AnimationSet;
 
-/// A group that follows a joint of the AnimatedCharacter above it and carries its children.
+/// A group that follows a joint of the AnimatedCharacter above it, or of an instance of the AnimatedCrowd above it, and
+/// carries its children.
 ///
 ///     osg::ref_ptr<JointAttachment> hand = new JointAttachment("Hand.R");
 ///     hand->addChild(sword);
+///     hand->setOffset(osg::Matrix::translate(0, 4, 0));              // in the joint's space
 ///     fox->addChild(hand);
+///     auto lost = hand->detach(*world);                              // later: the sword stays where it is
 ///
 /// The CPU twin computes the joint's matrix from the chain of parents; nothing is read back from the GPU. The character
 /// is looked up on the node path each time, so a clone of a character carries its own attachments and several
-/// characters may share one. Place the children relative to the joint by a transform below the attachment. Without such
-/// a joint the attachment stays at the character's origin and warns once.
+/// characters may share one. Without such a joint the attachment stays at the character's origin and warns once;
+/// without such an instance of the crowd it stays where it is.
 class JointAttachment : public osg::MatrixTransform
 {
 public:
@@ -40,6 +46,20 @@ public:
     const std::string& getJointName() const { return _jointName; } ///< empty: selected by index
     int getJoint() const { return _joint; }                        ///< -1: selected by name
 
+    /// Sets the place of the children relative to the joint: from their space to the joint's. Default: the identity.
+    void setOffset(const osg::Matrixd& offset) { _offset = offset; }
+    const osg::Matrixd& getOffset() const { return _offset; } ///< see setOffset()
+
+    /// Selects the instance of the crowd above, see AnimatedCrowd::Instance. Empty (the default): none.
+    void setInstance(std::optional<std::uint64_t> instance) { _instance = instance; }
+    std::optional<std::uint64_t> getInstance() const { return _instance; } ///< see setInstance()
+
+    /// Moves the children to a new transform below newParent, which shows them at the same place of the world, and
+    /// removes the attachment from its parent. Returns that transform. With several paths from the root to newParent
+    /// the place is right on the first. Call it outside of traversals, for example in an event callback.
+    /// Errors, with nothing changed: the attachment has no parent or several paths from the root.
+    Result<osg::ref_ptr<osg::MatrixTransform>> detach(osg::Group& newParent);
+
     /// During update: sets the matrix to the joint's transform.
     void traverse(osg::NodeVisitor& visitor) override;
     /// Applies the joint's present transform in the character of the visitor's node path.
@@ -51,12 +71,16 @@ protected:
     ~JointAttachment() override;
 
 private:
-    osg::Matrixd matrixIn(const AnimatedCharacter& character) const;
+    struct Host;
+
+    osg::Matrixd matrixIn(const Host& host) const;
     int jointIn(const AnimationSet& set) const;
-    void resolve(const AnimatedCharacter& character);
+    void resolve(const Host& host);
 
     std::string _jointName;
     int _joint = -1;
+    osg::Matrixd _offset;
+    std::optional<std::uint64_t> _instance;
     std::shared_ptr<const AnimationSet> _resolvedSet; ///< the set of the last look-up
     int _resolvedJoint = -1;
     bool _hasWarned = false;

@@ -64,6 +64,18 @@ inline osg::Matrixd toOsg(const RootMotion& motion, const osg::Matrixd& fileToNo
     return osg::Matrixd::inverse(fileToNode) * toOsg(motion.matrix()) * fileToNode;
 }
 
+/// The rotation of a matrix without its translation, scale and mirroring, from its rows, which are OSG's axes: +Z keeps
+/// its direction, +Y its plane with +Z. The identity if the matrix flattens +Y or +Z.
+inline osg::Matrixd rotationOf(const osg::Matrixd& matrix)
+{
+    osg::Vec3d z(matrix(2, 0), matrix(2, 1), matrix(2, 2)), y(matrix(1, 0), matrix(1, 1), matrix(1, 2));
+    if (!(z.normalize() > 0.0) || !(y.normalize() > 0.0)) return {};
+    y -= z * (y * z);
+    if (!(y.normalize() > 0.0)) return {};
+    const osg::Vec3d x = y ^ z;
+    return osg::Matrixd(x.x(), x.y(), x.z(), 0, y.x(), y.y(), y.z(), 0, z.x(), z.y(), z.z(), 0, 0, 0, 0, 1);
+}
+
 /// The smallest box around the eight corners of the transformed box; exact for quarter turns.
 inline osg::BoundingBox transformed(const osg::BoundingBox& box, const osg::Matrixd& matrix)
 {

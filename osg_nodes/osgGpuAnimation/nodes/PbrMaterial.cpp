@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <string>
+#include <vector>
 
 namespace osgGpuAnimation
 {
@@ -27,6 +28,71 @@ float decoded(float display)
     return display <= 0.04045f ? display / 12.92f : std::pow((display + 0.055f) / 1.055f, 2.4f);
 }
 
+/// A map with the names and the texture unit that the shader has for it.
+struct MapSlot
+{
+    PbrMaterial::Map PbrMaterial::*map;
+    const char* sampler;
+    const char* define;
+    int unit;
+};
+
+constexpr MapSlot coreMaps[] = {
+    {&PbrMaterial::metallicRoughnessMap, "metallicRoughnessTexture", "MATERIAL_METALLIC_ROUGHNESS_MAP",
+     METALLIC_ROUGHNESS_UNIT},
+    {&PbrMaterial::normalMap, "normalTexture", "MATERIAL_NORMAL_MAP", NORMAL_UNIT},
+    {&PbrMaterial::occlusionMap, "occlusionTexture", "MATERIAL_OCCLUSION_MAP", OCCLUSION_UNIT},
+    {&PbrMaterial::emissiveMap, "emissiveTexture", "MATERIAL_EMISSIVE_MAP", EMISSIVE_UNIT},
+};
+
+/// A map of an extension, which has the next texture unit from EXTENSION_MAPS_UNIT on if it has an effect.
+struct ExtensionMapSlot
+{
+    PbrMaterial::Map PbrMaterial::*map;
+    const char* sampler;
+    const char* define;
+};
+
+constexpr ExtensionMapSlot extensionMaps[] = {
+    {&PbrMaterial::specularColorMap, "specularColorTexture", "MATERIAL_SPECULAR_COLOR_MAP"},
+    {&PbrMaterial::clearcoatMap, "clearcoatTexture", "MATERIAL_CLEARCOAT_MAP"},
+    {&PbrMaterial::clearcoatRoughnessMap, "clearcoatRoughnessTexture", "MATERIAL_CLEARCOAT_ROUGHNESS_MAP"},
+    {&PbrMaterial::clearcoatNormalMap, "clearcoatNormalTexture", "MATERIAL_CLEARCOAT_NORMAL_MAP"},
+    {&PbrMaterial::sheenColorMap, "sheenColorTexture", "MATERIAL_SHEEN_COLOR_MAP"},
+    {&PbrMaterial::sheenRoughnessMap, "sheenRoughnessTexture", "MATERIAL_SHEEN_ROUGHNESS_MAP"},
+    {&PbrMaterial::specularMap, "specularTexture", "MATERIAL_SPECULAR_MAP"},
+    {&PbrMaterial::transmissionMap, "transmissionTexture", "MATERIAL_TRANSMISSION_MAP"},
+};
+
+bool hasDefine(const osg::StateSet& stateSet, const char* name)
+{
+    return stateSet.getDefineList().count(name) > 0;
+}
+
+/// Removes what applyPbrMaterial() has set, but for the osg::Material and the uniforms, which are replaced or not read.
+void removePbrMaterial(osg::StateSet& stateSet)
+{
+    if (!hasDefine(stateSet, "MATERIAL_PBR")) return;
+    if (hasDefine(stateSet, "MATERIAL_TRANSMISSION"))
+    {
+        stateSet.removeAttribute(osg::StateAttribute::BLENDFUNC);
+        stateSet.removeAttribute(osg::StateAttribute::DEPTH);
+        stateSet.setRenderingHint(osg::StateSet::DEFAULT_BIN);
+    }
+    stateSet.removeTextureAttribute(0, osg::StateAttribute::TEXTURE);
+    for (const MapSlot& slot : coreMaps)
+        if (hasDefine(stateSet, slot.define))
+            stateSet.removeTextureAttribute(static_cast<unsigned int>(slot.unit), osg::StateAttribute::TEXTURE);
+    unsigned int unit = EXTENSION_MAPS_UNIT;
+    for (const ExtensionMapSlot& slot : extensionMaps)
+        if (hasDefine(stateSet, slot.define)) stateSet.removeTextureAttribute(unit++, osg::StateAttribute::TEXTURE);
+    std::vector<std::string> defines;
+    for (const auto& define : stateSet.getDefineList())
+        if (define.first.compare(0, 9, "MATERIAL_") == 0) defines.push_back(define.first);
+    for (const std::string& define : defines)
+        stateSet.removeDefine(define);
+}
+
 void setMap(osg::StateSet& stateSet, const PbrMaterial::Map& map, int unit, const char* sampler, const char* define)
 {
     if (!map.texture) return;
@@ -39,25 +105,10 @@ void setMap(osg::StateSet& stateSet, const PbrMaterial::Map& map, int unit, cons
 /// The first mostExtensionMaps maps have a texture unit.
 void setExtensionMaps(osg::StateSet& stateSet, const PbrMaterial& material)
 {
-    const struct
-    {
-        const PbrMaterial::Map& map;
-        const char* sampler;
-        const char* define;
-    } maps[] = {
-        {material.specularColorMap, "specularColorTexture", "MATERIAL_SPECULAR_COLOR_MAP"},
-        {material.clearcoatMap, "clearcoatTexture", "MATERIAL_CLEARCOAT_MAP"},
-        {material.clearcoatRoughnessMap, "clearcoatRoughnessTexture", "MATERIAL_CLEARCOAT_ROUGHNESS_MAP"},
-        {material.clearcoatNormalMap, "clearcoatNormalTexture", "MATERIAL_CLEARCOAT_NORMAL_MAP"},
-        {material.sheenColorMap, "sheenColorTexture", "MATERIAL_SHEEN_COLOR_MAP"},
-        {material.sheenRoughnessMap, "sheenRoughnessTexture", "MATERIAL_SHEEN_ROUGHNESS_MAP"},
-        {material.specularMap, "specularTexture", "MATERIAL_SPECULAR_MAP"},
-        {material.transmissionMap, "transmissionTexture", "MATERIAL_TRANSMISSION_MAP"},
-    };
     int used = 0;
-    for (const auto& [map, sampler, define] : maps)
-        if (map.texture && used < PbrMaterial::mostExtensionMaps)
-            setMap(stateSet, map, EXTENSION_MAPS_UNIT + used++, sampler, define);
+    for (const ExtensionMapSlot& slot : extensionMaps)
+        if ((material.*slot.map).texture && material.hasEffect(slot.map) && used < PbrMaterial::mostExtensionMaps)
+            setMap(stateSet, material.*slot.map, EXTENSION_MAPS_UNIT + used++, slot.sampler, slot.define);
 }
 
 void setExtensions(osg::StateSet& stateSet, const PbrMaterial& material)
@@ -70,32 +121,42 @@ void setExtensions(osg::StateSet& stateSet, const PbrMaterial& material)
         stateSet.addUniform(new osg::Uniform("materialSpecular", specular));
     }
     if (material.isSpecularGlossiness) stateSet.setDefine("MATERIAL_GLOSSINESS", "1");
-    if (material.clearcoat > 0.0f)
+    if (material.hasEffect(&PbrMaterial::clearcoatMap))
     {
         stateSet.setDefine("MATERIAL_CLEARCOAT", "1");
         stateSet.addUniform(
-            new osg::Uniform("materialClearcoat", osg::Vec2(material.clearcoat, material.clearcoatRoughness)));
+            new osg::Uniform("materialClearcoat", osg::Vec3(material.clearcoat, material.clearcoatRoughness,
+                                                            material.clearcoatNormalScale)));
     }
-    if (material.sheenColor != osg::Vec3())
+    if (material.hasEffect(&PbrMaterial::sheenColorMap))
     {
         stateSet.setDefine("MATERIAL_SHEEN", "1");
         stateSet.addUniform(new osg::Uniform("materialSheen", osg::Vec4(material.sheenColor, material.sheenRoughness)));
     }
-    if (material.transmission > 0.0f)
+    if (material.hasEffect(&PbrMaterial::transmissionMap))
     {
         stateSet.setDefine("MATERIAL_TRANSMISSION", "1");
+        if (material.isBlended) stateSet.setDefine("MATERIAL_BLENDED", "1");
         stateSet.addUniform(new osg::Uniform("materialTransmission", material.transmission));
-        stateSet.setAttributeAndModes(new osg::BlendFunc(osg::BlendFunc::ONE, osg::BlendFunc::ONE_MINUS_SRC_ALPHA));
-        stateSet.setAttributeAndModes(new osg::Depth(osg::Depth::LESS, 0.0, 1.0, false));
-        stateSet.setRenderingHint(osg::StateSet::TRANSPARENT_BIN);
+        applyBlending(stateSet, GL_ONE);
     }
     setExtensionMaps(stateSet, material);
 }
 
 } // namespace
 
+bool PbrMaterial::hasEffect(Map PbrMaterial::*map) const
+{
+    if (map == &PbrMaterial::clearcoatMap || map == &PbrMaterial::clearcoatRoughnessMap ||
+        map == &PbrMaterial::clearcoatNormalMap)
+        return clearcoat > 0.0f;
+    if (map == &PbrMaterial::sheenColorMap || map == &PbrMaterial::sheenRoughnessMap) return sheenColor != osg::Vec3();
+    return map != &PbrMaterial::transmissionMap || transmission > 0.0f;
+}
+
 void applyPbrMaterial(osg::StateSet& stateSet, const PbrMaterial& material)
 {
+    removePbrMaterial(stateSet);
     osg::ref_ptr<osg::Material> colors = new osg::Material;
     const osg::Vec4 color = displayColor(material.baseColor);
     colors->setName(stateSet.getName());
@@ -112,20 +173,24 @@ void applyPbrMaterial(osg::StateSet& stateSet, const PbrMaterial& material)
         new osg::Uniform("materialFactors", osg::Vec4(material.metallic, material.roughness, material.normalScale,
                                                       material.occlusionStrength)));
     if (material.baseColorMap.texture) stateSet.setTextureAttributeAndModes(0, material.baseColorMap.texture);
-    setMap(stateSet, material.metallicRoughnessMap, METALLIC_ROUGHNESS_UNIT, "metallicRoughnessTexture",
-           "MATERIAL_METALLIC_ROUGHNESS_MAP");
-    setMap(stateSet, material.normalMap, NORMAL_UNIT, "normalTexture", "MATERIAL_NORMAL_MAP");
-    setMap(stateSet, material.occlusionMap, OCCLUSION_UNIT, "occlusionTexture", "MATERIAL_OCCLUSION_MAP");
-    setMap(stateSet, material.emissiveMap, EMISSIVE_UNIT, "emissiveTexture", "MATERIAL_EMISSIVE_MAP");
+    for (const MapSlot& slot : coreMaps)
+        setMap(stateSet, material.*slot.map, slot.unit, slot.sampler, slot.define);
     if (material.emissiveStrength != 1.0f)
     {
         stateSet.addUniform(new osg::Uniform("emissiveStrength", material.emissiveStrength));
         stateSet.setDefine("MATERIAL_EMISSIVE_STRENGTH", "1");
     }
     setExtensions(stateSet, material);
-    const bool hasNormalMap = material.normalMap.texture || material.clearcoatNormalMap.texture;
+    const bool hasNormalMap = material.normalMap.texture || hasDefine(stateSet, "MATERIAL_CLEARCOAT_NORMAL_MAP");
     if (hasNormalMap && material.hasTangents) stateSet.setDefine("MATERIAL_TANGENTS", "1");
     if (material.hasMoreCoordinates) stateSet.setDefine("MATERIAL_MORE_COORDINATES", "1");
+}
+
+void applyBlending(osg::StateSet& stateSet, GLenum sourceFactor)
+{
+    stateSet.setAttributeAndModes(new osg::BlendFunc(sourceFactor, GL_ONE_MINUS_SRC_ALPHA));
+    stateSet.setAttributeAndModes(new osg::Depth(osg::Depth::LESS, 0.0, 1.0, false));
+    stateSet.setRenderingHint(osg::StateSet::TRANSPARENT_BIN);
 }
 
 osg::Vec4 displayColor(const osg::Vec4& linear)

@@ -20,12 +20,13 @@ namespace osgGpuAnimation
 /// Without it the two programs reproduce the fixed pipeline.
 struct PbrMaterial
 {
-    /// A picture and the number of its texture coordinates: 0: of unit 0; 1, 2: the vertex attribute
-    /// POSE_COORDINATES_LOCATION of layout.glsl (xy, zw).
+    /// A picture and the number of its texture coordinates: 0: of unit 0; 1, 2: the vertex attribute 9 (xy, zw).
     struct Map
     {
-        osg::ref_ptr<osg::Texture2D> texture; ///< null: none
-        int coordinates = 0;                  ///< 0 to 2
+        /// Null: none. Its internal format: of sRGB maps GL_SRGB8 or GL_SRGB8_ALPHA8, of linear ones GL_RGB8 or
+        /// GL_RGBA8.
+        osg::ref_ptr<osg::Texture2D> texture;
+        int coordinates = 0; ///< 0 to 2
     };
 
     osg::Vec4 baseColor{1, 1, 1, 1}; ///< linear, in [0, 1]
@@ -51,11 +52,12 @@ struct PbrMaterial
     bool isSpecularGlossiness = false;            ///< roughness is 1 - glossiness
 
     // KHR_materials_clearcoat
-    float clearcoat = 0.0f;          ///< in [0, 1]
-    float clearcoatRoughness = 0.0f; ///< in [0, 1]
-    Map clearcoatMap;                ///< linear: red
-    Map clearcoatRoughnessMap;       ///< linear: green
-    Map clearcoatNormalMap;          ///< linear
+    float clearcoat = 0.0f;            ///< in [0, 1]
+    float clearcoatRoughness = 0.0f;   ///< in [0, 1]
+    Map clearcoatMap;                  ///< linear: red
+    Map clearcoatRoughnessMap;         ///< linear: green
+    float clearcoatNormalScale = 1.0f; ///< of the map's first two components
+    Map clearcoatNormalMap;            ///< linear
 
     // KHR_materials_sheen
     osg::Vec3 sheenColor{0, 0, 0}; ///< linear, in [0, 1]
@@ -66,16 +68,27 @@ struct PbrMaterial
     // KHR_materials_transmission: what lies behind is seen by blending, neither refracted nor coloured.
     float transmission = 0.0f; ///< in [0, 1]
     Map transmissionMap;       ///< linear: red
+    bool isBlended = false;    ///< glTF's alpha mode BLEND: the alpha of the base colour counts, too
 
-    static constexpr int mostExtensionMaps = 3; ///< of those after emissiveMap; the others are left out
+    /// Of those after emissiveMap that have an effect, in the order specularColorMap, clear coat, sheen, specularMap,
+    /// transmission; the others are left out.
+    static constexpr int mostExtensionMaps = 3;
 
-    bool hasTangents = false;        ///< the meshes have the vertex attribute POSE_TANGENT_LOCATION
-    bool hasMoreCoordinates = false; ///< the meshes have the vertex attribute POSE_COORDINATES_LOCATION
+    bool hasTangents = false;        ///< the meshes have the vertex attribute 4: xyz, and the bitangent's sign
+    bool hasMoreCoordinates = false; ///< the meshes have the vertex attribute 9, see Map
+
+    /// False for a map of clear coat, sheen or transmission while the factor that it multiplies is 0.
+    bool hasEffect(Map PbrMaterial::*map) const;
 };
 
 /// Sets the material's textures, uniforms and shader defines, and an osg::Material with its colours, which materials
-/// above may override. Alpha modes and sides are not part of it.
+/// above may override. Replaces the material of an earlier call. Alpha modes and sides are not part of it; a material
+/// with transmission is blended.
 void applyPbrMaterial(osg::StateSet& stateSet, const PbrMaterial& material);
+
+/// Lets the surface be drawn after opaque ones, the farthest first, over what lies behind, and without depths of its
+/// own. sourceFactor: of glBlendFunc, GL_SRC_ALPHA, or GL_ONE if the colour is multiplied by alpha already.
+void applyBlending(osg::StateSet& stateSet, GLenum sourceFactor);
 
 /// A linear colour as an osg::Material and OSG's fixed pipeline show it: by the sRGB transfer function (IEC 61966-2-1),
 /// clamped to [0, 1]. Alpha is linear in both.

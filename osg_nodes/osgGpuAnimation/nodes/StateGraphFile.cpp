@@ -116,34 +116,73 @@ void readWord(const Json& object, const char* name, const std::string& where, Wo
     throw Fault{where + "." + name + ": \"" + text + "\" is not one of " + known};
 }
 
-StateDescription toState(const std::string& name, const Json& json)
+/// One string or an array of strings.
+std::vector<std::string> toTexts(const Json& json, const std::string& where)
 {
-    const std::string where = "states." + name;
-    checkObject(json, where, {"clip", "loop", "speed"});
-    requireMember(json, "clip", where);
-    StateDescription state;
-    state.name = name;
-    readText(json, "clip", where, state.clip);
-    readNumber(json, "speed", where, state.speed);
-    readWord<LoopMode>(json, "loop", where,
-                       {{"loop", LoopMode::Loop}, {"once", LoopMode::Once}, {"pingpong", LoopMode::PingPong}},
-                       state.loopMode);
-    return state;
-}
-
-std::vector<std::string> toConditions(const Json& json, const std::string& where)
-{
-    std::vector<std::string> conditions;
-    const auto add = [&](const Json& condition)
+    std::vector<std::string> texts;
+    const auto add = [&](const Json& text)
     {
-        expect(condition.is_string(), where, "a string", condition);
-        conditions.push_back(condition.get<std::string>());
+        expect(text.is_string(), where, "a string", text);
+        texts.push_back(text.get<std::string>());
     };
     if (json.is_array())
         std::for_each(json.begin(), json.end(), add);
     else
         add(json);
-    return conditions;
+    return texts;
+}
+
+BlendSpace::Position toPosition(const Json& json, const std::string& where)
+{
+    checkObject(json, where, {"clip", "at"});
+    requireMember(json, "clip", where);
+    requireMember(json, "at", where);
+    BlendSpace::Position position;
+    readText(json, "clip", where, position.clip);
+    const Json& at = json["at"];
+    const bool isPair = at.is_array() && at.size() == 2 && at[0].is_number() && at[1].is_number();
+    expect(isPair || at.is_number(), where + ".at", "a number or an array of two numbers", at);
+    position.x = isPair ? at[0].get<double>() : at.get<double>();
+    position.y = isPair ? at[1].get<double>() : 0.0;
+    return position;
+}
+
+StateBlendDescription toBlend(const Json& json, const std::string& where)
+{
+    requireMember(json, "parameter", where);
+    StateBlendDescription blend;
+    const Json& positions = json["blend"];
+    expect(positions.is_array(), where + ".blend", "an array", positions);
+    for (const Json& position : positions)
+        blend.positions.push_back(
+            toPosition(position, where + ".blend[" + std::to_string(blend.positions.size()) + "]"));
+    blend.parameters = toTexts(json["parameter"], where + ".parameter");
+    if (json.contains("markers")) blend.syncMarkers = toTexts(json["markers"], where + ".markers");
+    return blend;
+}
+
+StateDescription toState(const std::string& name, const Json& json)
+{
+    const std::string where = "states." + name;
+    StateDescription state;
+    state.name = name;
+    if (json.is_object() && json.contains("blend"))
+    {
+        checkObject(json, where, {"blend", "parameter", "markers", "loop", "speed", "groundSpeed"});
+        state.blend = toBlend(json, where);
+    }
+    else
+    {
+        checkObject(json, where, {"clip", "loop", "speed", "groundSpeed"});
+        requireMember(json, "clip", where);
+    }
+    readText(json, "clip", where, state.clip);
+    readNumber(json, "speed", where, state.speed);
+    readText(json, "groundSpeed", where, state.groundSpeed);
+    readWord<LoopMode>(json, "loop", where,
+                       {{"loop", LoopMode::Loop}, {"once", LoopMode::Once}, {"pingpong", LoopMode::PingPong}},
+                       state.loopMode);
+    return state;
 }
 
 TransitionDescription toTransition(const Json& json, const std::string& where)
@@ -157,14 +196,19 @@ TransitionDescription toTransition(const Json& json, const std::string& where)
     readWord<FadeCurve>(json, "curve", where, {{"linear", FadeCurve::Linear}, {"smooth", FadeCurve::Smooth}},
                         transition.curve);
     readWord<Sync>(json, "sync", where, {{"start", Sync::Start}, {"phase", Sync::Phase}}, transition.sync);
-    if (json.contains("when")) transition.when = toConditions(json["when"], where + ".when");
+    if (json.contains("when")) transition.when = toTexts(json["when"], where + ".when");
     return transition;
 }
 
 StateGraphDescription toDescription(const Json& json)
 {
-    checkObject(json, "the file", {"start", "states", "transitions"});
+    checkObject(json, "the file", {"start", "states", "transitions", "sharedPhase"});
     StateGraphDescription description;
+    if (const auto shared = json.find("sharedPhase"); shared != json.end())
+    {
+        expect(shared->is_boolean(), "sharedPhase", "true or false", *shared);
+        description.isPhaseShared = shared->get<bool>();
+    }
     readText(json, "start", "the file", description.start);
     if (const auto states = json.find("states"); states != json.end())
     {

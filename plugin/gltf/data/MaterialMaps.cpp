@@ -18,27 +18,19 @@ struct ExtensionMap
     bool isColor;
 };
 
-constexpr ExtensionMap extensionMaps[] = {
-    {"KHR_materials_pbrSpecularGlossiness", "specularGlossinessTexture", &PbrMaterial::specularColorMap, true},
+const char* const specularGlossiness = "KHR_materials_pbrSpecularGlossiness";
+
+const ExtensionMap extensionMaps[] = {
+    {specularGlossiness, "specularGlossinessTexture", &PbrMaterial::specularColorMap, true},
+    {"KHR_materials_specular", "specularColorTexture", &PbrMaterial::specularColorMap, true},
     {"KHR_materials_clearcoat", "clearcoatTexture", &PbrMaterial::clearcoatMap, false},
     {"KHR_materials_clearcoat", "clearcoatRoughnessTexture", &PbrMaterial::clearcoatRoughnessMap, false},
     {"KHR_materials_clearcoat", "clearcoatNormalTexture", &PbrMaterial::clearcoatNormalMap, false},
     {"KHR_materials_sheen", "sheenColorTexture", &PbrMaterial::sheenColorMap, true},
     {"KHR_materials_sheen", "sheenRoughnessTexture", &PbrMaterial::sheenRoughnessMap, false},
-    {"KHR_materials_specular", "specularColorTexture", &PbrMaterial::specularColorMap, true},
     {"KHR_materials_specular", "specularTexture", &PbrMaterial::specularMap, false},
     {"KHR_materials_transmission", "transmissionTexture", &PbrMaterial::transmissionMap, false},
 };
-
-const char* const specularGlossiness = "KHR_materials_pbrSpecularGlossiness";
-
-/// An empty value where the material has no such extension.
-const tinygltf::Value& extensionOf(const tinygltf::Material& material, const char* name)
-{
-    static const tinygltf::Value none;
-    const auto extension = material.extensions.find(name);
-    return extension == material.extensions.end() ? none : extension->second;
-}
 
 /// The members that all kinds of texture infos have.
 template <typename TextureInfo>
@@ -54,6 +46,7 @@ tinygltf::TextureInfo plainInfo(const TextureInfo& texture)
 tinygltf::TextureInfo textureOf(const tinygltf::Value& extension, const char* member)
 {
     tinygltf::TextureInfo info;
+    if (!extension.Has(member)) return info;
     const tinygltf::Value& texture = extension.Get(member);
     if (!texture.Has("index")) return info;
     info.index = texture.Get("index").GetNumberAsInt();
@@ -80,9 +73,6 @@ osg::Vec3 colorOf(const tinygltf::Value& extension, const char* member, const os
 /// The extension's archived text: specular colour, diffuse colour and glossiness in place of metal and roughness.
 void readSpecularGlossiness(const tinygltf::Value& extension, PbrMaterial& outMaterial)
 {
-    const tinygltf::Value& diffuse = extension.Get("diffuseFactor");
-    for (int i = 0; i < 4; ++i)
-        outMaterial.baseColor[i] = diffuse.IsArray() ? static_cast<float>(diffuse.Get(i).GetNumberAsDouble()) : 1.0f;
     outMaterial.metallic = 0.0f;
     outMaterial.roughness = 1.0f - numberOf(extension, "glossinessFactor", 1.0);
     outMaterial.specularColor = colorOf(extension, "specularFactor", osg::Vec3(1, 1, 1));
@@ -94,20 +84,30 @@ class MapReader
 public:
     explicit MapReader(MaterialMaps& maps) : _maps(maps) {}
 
-    void add(const char* member, const tinygltf::TextureInfo& texture, PbrMaterial::Map PbrMaterial::*place,
-             bool isColor)
+    /// use: of the map if its coordinates have room. True if the map is shown.
+    bool add(const char* member, const tinygltf::TextureInfo& texture, PbrMaterial::Map PbrMaterial::*place,
+             bool isColor, MapUse use = MapUse::Shown)
     {
-        if (texture.index < 0) return;
-        std::vector<TextureCoordinates>& all = _maps.coordinates;
-        const TextureCoordinates coordinates(texture);
-        const auto known = std::find(all.begin(), all.end(), coordinates);
-        const bool hasRoom = known != all.end() || all.size() < MaterialMaps::mostCoordinates;
-        const int number = hasRoom ? static_cast<int>(known - all.begin()) : -1;
-        if (known == all.end() && hasRoom) all.push_back(coordinates);
-        _maps.maps.push_back({member, place, texture.index, isColor, number});
+        if (texture.index < 0) return false;
+        const int number = use == MapUse::Shown ? numberOf(TextureCoordinates(texture)) : -1;
+        if (use == MapUse::Shown && number < 0) use = MapUse::NoCoordinates;
+        _maps.maps.push_back({member, place, texture.index, isColor, use, number});
+        return use == MapUse::Shown;
     }
 
 private:
+    /// -1: a vertex has no room for them.
+    int numberOf(const TextureCoordinates& coordinates)
+    {
+        std::vector<TextureCoordinates>& all = _maps.coordinates;
+        const auto known = std::find(all.begin(), all.end(), coordinates);
+        const int number = static_cast<int>(known - all.begin());
+        if (known != all.end()) return number;
+        if (all.size() == MaterialMaps::mostCoordinates) return -1;
+        all.push_back(coordinates);
+        return number;
+    }
+
     MaterialMaps& _maps;
 };
 
@@ -120,13 +120,23 @@ const MaterialMap* MaterialMaps::find(PbrMaterial::Map PbrMaterial::*place) cons
     return found == maps.end() ? nullptr : &*found;
 }
 
+bool MaterialMaps::hasNormalMap() const
+{
+    return std::any_of(maps.begin(), maps.end(),
+                       [](const MaterialMap& map)
+                       {
+                           return map.use == MapUse::Shown && (map.place == &PbrMaterial::normalMap ||
+                                                               map.place == &PbrMaterial::clearcoatNormalMap);
+                       });
+}
+
 MaterialMaps mapsOf(const tinygltf::Material& material, bool allMaps)
 {
     MaterialMaps maps;
     MapReader reader(maps);
     const tinygltf::PbrMetallicRoughness& pbr = material.pbrMetallicRoughness;
-    const tinygltf::Value& converted = extensionOf(material, specularGlossiness);
-    const bool isConverted = allMaps && converted.IsObject();
+    const tinygltf::Value& converted = extensionOf(material.extensions, specularGlossiness);
+    const bool isConverted = converted.IsObject();
     if (isConverted)
         reader.add("diffuseTexture", textureOf(converted, "diffuseTexture"), &PbrMaterial::baseColorMap, true);
     else
@@ -137,33 +147,63 @@ MaterialMaps mapsOf(const tinygltf::Material& material, bool allMaps)
         reader.add("metallicRoughnessTexture", pbr.metallicRoughnessTexture, &PbrMaterial::metallicRoughnessMap, false);
     reader.add("emissiveTexture", material.emissiveTexture, &PbrMaterial::emissiveMap, true);
     reader.add("occlusionTexture", plainInfo(material.occlusionTexture), &PbrMaterial::occlusionMap, false);
+    PbrMaterial factors;
+    readMaterialExtensions(material, factors);
+    int units = 0;
     for (const ExtensionMap& map : extensionMaps)
     {
-        if (map.place == &PbrMaterial::specularColorMap && isConverted != (map.extension == extensionMaps[0].extension))
+        if (map.place == &PbrMaterial::specularColorMap && isConverted != (map.extension == specularGlossiness))
             continue;
-        reader.add(map.member, textureOf(extensionOf(material, map.extension), map.member), map.place, map.isColor);
+        const MapUse use = !factors.hasEffect(map.place)            ? MapUse::WithoutEffect
+                           : units < PbrMaterial::mostExtensionMaps ? MapUse::Shown
+                                                                    : MapUse::NoTextureUnit;
+        const tinygltf::TextureInfo texture = textureOf(extensionOf(material.extensions, map.extension), map.member);
+        if (reader.add(map.member, texture, map.place, map.isColor, use)) ++units;
     }
     return maps;
+}
+
+const MaterialMaps& MapsOfMaterials::of(int material)
+{
+    const auto [known, isNew] = _maps.try_emplace(material);
+    if (isNew && material >= 0) known->second = mapsOf(_model.materials[static_cast<std::size_t>(material)], _allMaps);
+    return known->second;
+}
+
+osg::Vec4 baseColorOf(const tinygltf::Material& material)
+{
+    const tinygltf::Value& converted = extensionOf(material.extensions, specularGlossiness);
+    osg::Vec4 color(1.0f, 1.0f, 1.0f, 1.0f);
+    for (int i = 0; i < 4; ++i)
+        if (!converted.IsObject())
+            color[i] = static_cast<float>(material.pbrMetallicRoughness.baseColorFactor[static_cast<std::size_t>(i)]);
+        else if (converted.Has("diffuseFactor"))
+            color[i] = static_cast<float>(converted.Get("diffuseFactor").Get(i).GetNumberAsDouble());
+    return color;
 }
 
 void readMaterialExtensions(const tinygltf::Material& material, PbrMaterial& outMaterial)
 {
     outMaterial.emissiveStrength =
-        numberOf(extensionOf(material, "KHR_materials_emissive_strength"), "emissiveStrength", 1.0);
-    const tinygltf::Value& specular = extensionOf(material, "KHR_materials_specular");
+        numberOf(extensionOf(material.extensions, "KHR_materials_emissive_strength"), "emissiveStrength", 1.0);
+    const tinygltf::Value& specular = extensionOf(material.extensions, "KHR_materials_specular");
     outMaterial.specular = numberOf(specular, "specularFactor", 1.0);
-    const double ior = numberOf(extensionOf(material, "KHR_materials_ior"), "ior", 1.5);
+    const double ior = numberOf(extensionOf(material.extensions, "KHR_materials_ior"), "ior", 1.5);
     const double reflection = ior > 0.0 ? (ior - 1.0) / (ior + 1.0) : 1.0; // 0 stands for infinity
     outMaterial.specularColor =
         colorOf(specular, "specularColorFactor", osg::Vec3(1, 1, 1)) * static_cast<float>(reflection * reflection);
-    const tinygltf::Value& clearcoat = extensionOf(material, "KHR_materials_clearcoat");
+    const tinygltf::Value& clearcoat = extensionOf(material.extensions, "KHR_materials_clearcoat");
     outMaterial.clearcoat = numberOf(clearcoat, "clearcoatFactor", 0.0);
     outMaterial.clearcoatRoughness = numberOf(clearcoat, "clearcoatRoughnessFactor", 0.0);
-    const tinygltf::Value& sheen = extensionOf(material, "KHR_materials_sheen");
+    if (clearcoat.Has("clearcoatNormalTexture"))
+        outMaterial.clearcoatNormalScale = numberOf(clearcoat.Get("clearcoatNormalTexture"), "scale", 1.0);
+    const tinygltf::Value& sheen = extensionOf(material.extensions, "KHR_materials_sheen");
     outMaterial.sheenColor = colorOf(sheen, "sheenColorFactor", osg::Vec3());
     outMaterial.sheenRoughness = numberOf(sheen, "sheenRoughnessFactor", 0.0);
-    outMaterial.transmission = numberOf(extensionOf(material, "KHR_materials_transmission"), "transmissionFactor", 0.0);
-    const tinygltf::Value& converted = extensionOf(material, specularGlossiness);
+    outMaterial.transmission =
+        numberOf(extensionOf(material.extensions, "KHR_materials_transmission"), "transmissionFactor", 0.0);
+    if (material.extensions.count("KHR_materials_unlit") > 0) outMaterial.transmission = 0.0f;
+    const tinygltf::Value& converted = extensionOf(material.extensions, specularGlossiness);
     if (converted.IsObject()) readSpecularGlossiness(converted, outMaterial);
 }
 

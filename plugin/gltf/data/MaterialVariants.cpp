@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/data/MaterialVariants.h"
 
-#include "gltf/data/MaterialMaps.h"
+#include "gltf/data/UniqueNames.h"
 
 #include <algorithm>
-#include <set>
 
 namespace osgGpuAnimation::gltf
 {
@@ -17,9 +16,8 @@ const char* const variantsName = "KHR_materials_variants";
 /// An empty value if the extension has no such member.
 const tinygltf::Value& memberOf(const tinygltf::ExtensionMap& extensions, const char* member)
 {
-    static const tinygltf::Value none;
-    const auto extension = extensions.find(variantsName);
-    return extension == extensions.end() || !extension->second.Has(member) ? none : extension->second.Get(member);
+    const tinygltf::Value& extension = extensionOf(extensions, variantsName);
+    return extension.IsObject() ? extension.Get(member) : extension;
 }
 
 /// Takes the material's coordinates if they begin like the known ones, or the known ones like these.
@@ -32,11 +30,10 @@ bool takeCoordinates(const std::vector<TextureCoordinates>& wanted, std::vector<
 }
 
 /// False, and no change, if the vertices cannot have the coordinates of the material too.
-bool add(const tinygltf::Material& material, bool allMaps, PrimitiveMaterials& materials)
+bool add(const tinygltf::Material& material, const MaterialMaps& maps, PrimitiveMaterials& materials)
 {
-    const MaterialMaps maps = mapsOf(material, allMaps);
     if (!takeCoordinates(maps.coordinates, materials.coordinates)) return false;
-    materials.hasNormalMap |= maps.find(&PbrMaterial::normalMap) != nullptr;
+    materials.hasNormalMap |= maps.hasNormalMap();
     materials.isBlended |= material.alphaMode == "BLEND";
     return true;
 }
@@ -46,25 +43,25 @@ bool add(const tinygltf::Material& material, bool allMaps, PrimitiveMaterials& m
 std::vector<std::string> variantNames(const tinygltf::Model& model)
 {
     const tinygltf::Value& variants = memberOf(model.extensions, "variants");
+    UniqueNames unique;
     std::vector<std::string> names;
-    std::set<std::string> taken{""};
     for (std::size_t i = 0; i < variants.ArrayLen(); ++i)
     {
         const tinygltf::Value& variant = variants.Get(static_cast<int>(i));
-        std::string name = variant.Has("name") ? variant.Get("name").Get<std::string>() : std::string();
-        if (!taken.insert(name).second) name = "variants[" + std::to_string(i) + "]";
-        names.push_back(std::move(name));
+        const std::string name = variant.Has("name") ? variant.Get("name").Get<std::string>() : std::string();
+        names.push_back(unique.unique(name.empty() ? "variants[" + std::to_string(i) + "]" : name));
     }
     return names;
 }
 
-PrimitiveMaterials materialsOf(const tinygltf::Model& model, const tinygltf::Primitive& primitive, bool allMaps)
+PrimitiveMaterials materialsOf(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
+                               MapsOfMaterials& maps)
 {
-    const auto materialAt = [&](int index) -> const tinygltf::Material&
-    { return model.materials[static_cast<std::size_t>(index)]; };
     PrimitiveMaterials materials;
+    const auto addMaterial = [&](int index)
+    { return add(model.materials[static_cast<std::size_t>(index)], maps.of(index), materials); };
     materials.own = primitive.material;
-    if (materials.own >= 0) add(materialAt(materials.own), allMaps, materials);
+    if (materials.own >= 0) addMaterial(materials.own);
     const tinygltf::Value& mappings = memberOf(primitive.extensions, "mappings");
     for (std::size_t i = 0; i < mappings.ArrayLen(); ++i)
     {
@@ -72,7 +69,7 @@ PrimitiveMaterials materialsOf(const tinygltf::Model& model, const tinygltf::Pri
         if (!mapping.Has("material")) continue;
         const int material = mapping.Get("material").GetNumberAsInt();
         const tinygltf::Value& variants = mapping.Get("variants");
-        const bool fits = add(materialAt(material), allMaps, materials);
+        const bool fits = addMaterial(material);
         for (std::size_t v = 0; v < variants.ArrayLen(); ++v)
         {
             const int variant = variants.Get(static_cast<int>(v)).GetNumberAsInt();

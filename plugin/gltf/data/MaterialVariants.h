@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "gltf/data/TextureCoordinates.h"
+#include "gltf/data/MaterialMaps.h"
 
 #include <tiny_gltf.h>
 
@@ -12,8 +12,8 @@
 namespace osgGpuAnimation::gltf
 {
 
-/// The names of the file's variants (KHR_materials_variants), each different. A variant without a name, or with the
-/// name of an earlier one, is called `variants[INDEX]`.
+/// The names of the file's variants (KHR_materials_variants), each different: a variant without a name is called
+/// `variants[INDEX]`, and of equal names, later ones get a number.
 std::vector<std::string> variantNames(const tinygltf::Model& model);
 
 /// The materials of a primitive in all variants, and what its vertices need to be drawn with each of them.
@@ -35,7 +35,8 @@ struct PrimitiveMaterials
     }
 };
 
-/// The document has passed checkVariantRules(). allMaps: false considers only base colours.
-PrimitiveMaterials materialsOf(const tinygltf::Model& model, const tinygltf::Primitive& primitive, bool allMaps);
+/// The document has passed checkVariantRules().
+PrimitiveMaterials materialsOf(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
+                               MapsOfMaterials& maps);
 
 } // namespace osgGpuAnimation::gltf

@@ -11,12 +11,10 @@ namespace osgGpuAnimation::gltf
 namespace
 {
 
-/// The texture's KHR_texture_transform, whose members the schema has checked; an empty value where it has none.
+/// The schema has checked its members.
 const tinygltf::Value& transformOf(const tinygltf::TextureInfo& texture)
 {
-    static const tinygltf::Value none;
-    const auto extension = texture.extensions.find("KHR_texture_transform");
-    return extension == texture.extensions.end() ? none : extension->second;
+    return extensionOf(texture.extensions, "KHR_texture_transform");
 }
 
 int setOf(const tinygltf::TextureInfo& texture)
@@ -33,6 +31,13 @@ osg::Vec2d pairOf(const tinygltf::Value& transform, const char* member, const os
 }
 
 } // namespace
+
+const tinygltf::Value& extensionOf(const tinygltf::ExtensionMap& extensions, const char* name)
+{
+    static const tinygltf::Value none;
+    const auto extension = extensions.find(name);
+    return extension == extensions.end() ? none : extension->second;
+}
 
 TextureCoordinates::TextureCoordinates(const tinygltf::TextureInfo& texture) : _set(setOf(texture))
 {

@@ -9,6 +9,9 @@
 namespace osgGpuAnimation::gltf
 {
 
+/// The extension of that name; an empty value if there is none.
+const tinygltf::Value& extensionOf(const tinygltf::ExtensionMap& extensions, const char* name);
+
 /// The texture coordinates of a texture: the TEXCOORD_n that it reads and its KHR_texture_transform. The import applies
 /// the transform to the vertices once.
 ///

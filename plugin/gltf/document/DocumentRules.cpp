@@ -73,18 +73,12 @@ void leaveOutGaps(const JsonValue& attributes, const std::string& name, Report& 
     }
 }
 
-void dropAll(const JsonValue& members)
-{
-    for (const JsonValue& member : members)
-        member.dropFrom(members);
-}
-
 /// Makes a primitive undrawable: no attributes, no indices, the same number of targets, all empty.
 void empty(const JsonValue& primitive)
 {
-    dropAll(primitive["attributes"]);
+    primitive["attributes"].dropMembers();
     for (const JsonValue& target : primitive["targets"])
-        dropAll(target);
+        target.dropMembers();
     for (const char* member : {"indices", "extensions"})
         if (const JsonValue value = primitive[member]) value.dropFrom(primitive);
 }

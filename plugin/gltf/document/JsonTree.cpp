@@ -86,6 +86,18 @@ void JsonValue::dropFrom(const JsonValue& object) const
     --_tree->_nodes[object._value].size;
 }
 
+void JsonValue::dropMembers() const
+{
+    if (!is(JsonTree::Type::Object)) return;
+    for (const JsonValue& member : *this)
+        member.dropFrom(*this);
+}
+
+bool JsonValue::isIndexBelow(std::size_t size) const
+{
+    return _tree && isInteger() && number() >= 0.0 && number() < static_cast<double>(size);
+}
+
 std::string JsonValue::description() const
 {
     if (!_tree) return "nothing";

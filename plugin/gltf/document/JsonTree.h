@@ -77,7 +77,8 @@ public:
 
     explicit operator bool() const { return _tree != nullptr; }
     bool is(JsonTree::Type type) const { return _tree != nullptr && node().type == type; }
-    bool isInteger() const; ///< also 8.0 (glTF 2.0, section 2.7)
+    bool isInteger() const;                    ///< also 8.0 (glTF 2.0, section 2.7)
+    bool isIndexBelow(std::size_t size) const; ///< an integer from 0, less than size
 
     JsonTree::Type type() const { return node().type; }
     std::size_t size() const { return node().size; } ///< of an array or object, less what was left out
@@ -92,6 +93,8 @@ public:
     void setNumber(double number) const { _tree->setNumber(_value, number); }
     /// Leaves a member out of its object from here on.
     void dropFrom(const JsonValue& object) const;
+    /// Leaves out all members of an object; changes no other value.
+    void dropMembers() const;
 
     /// The value as text for messages: `null`, `8.5`, `"text"`, `an array of 3`, `an object`, `nothing`.
     std::string description() const;

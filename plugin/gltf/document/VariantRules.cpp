@@ -17,22 +17,10 @@ constexpr std::string_view variantExtension = "KHR_materials_variants";
 
 using Fault = std::optional<Error>;
 
-void dropMembers(const JsonValue& object)
-{
-    if (!object.is(JsonTree::Type::Object)) return;
-    for (const JsonValue& member : object)
-        member.dropFrom(object);
-}
-
 void dropAllBut(const JsonValue& object, std::string_view first, std::string_view second = {})
 {
     for (const JsonValue& member : object)
         if (member.key() != first && member.key() != second) member.dropFrom(object);
-}
-
-bool isIndex(const JsonValue& value, std::size_t size)
-{
-    return value && value.isInteger() && value.number() >= 0.0 && value.number() < static_cast<double>(size);
 }
 
 /// Returns how many places the list has.
@@ -60,7 +48,7 @@ std::size_t checkVariants(const JsonValue& extensions, Report& report)
             continue;
         }
         report.warn(fault(place + ".name", "a text", text.description()).message + "; the variant gets another name");
-        dropMembers(variant);
+        variant.dropMembers();
     }
     return variants.size();
 }
@@ -77,7 +65,7 @@ Fault checkMapping(const JsonValue& mapping, const std::string& name, const Coun
 {
     if (!mapping.is(JsonTree::Type::Object)) return fault(name, "an object", mapping.description());
     const JsonValue material = mapping["material"], variants = mapping["variants"];
-    if (!isIndex(material, counts.materials))
+    if (!material.isIndexBelow(counts.materials))
         return fault(name + ".material",
                      "an index below " + std::to_string(counts.materials) + " of the file's materials",
                      material.description());
@@ -85,7 +73,7 @@ Fault checkMapping(const JsonValue& mapping, const std::string& name, const Coun
     std::unordered_set<std::size_t> own;
     for (const JsonValue& variant : variants)
     {
-        if (!isIndex(variant, counts.variants))
+        if (!variant.isIndexBelow(counts.variants))
             return fault(name + ".variants",
                          "indices below " + std::to_string(counts.variants) + " of the file's variants",
                          variant.description());
@@ -121,7 +109,7 @@ void checkPrimitive(const JsonValue& primitive, const std::string& name, const C
             continue;
         }
         report.warn(wrong->message + "; the mapping is left out");
-        dropMembers(mapping);
+        mapping.dropMembers();
     }
 }
 

@@ -7,7 +7,7 @@
 namespace osgGpuAnimation::gltf
 {
 
-/// The rules of KHR_materials_variants, in a document that has passed checkSchema(). No fault is worth the document.
+/// The rules of KHR_materials_variants, in a document that has passed checkSchema(). No fault refuses the document.
 /// Each has a warning:
 /// - a variant without a name loses its members and keeps its place;
 /// - a mapping that names a material or a variant that the file lacks, or a variant of an earlier mapping of the

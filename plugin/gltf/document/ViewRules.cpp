@@ -106,13 +106,6 @@ Fault checkLight(const JsonValue& light, const std::string& name, Report& report
     return wrong;
 }
 
-void dropAll(const JsonValue& object)
-{
-    if (!object.is(JsonTree::Type::Object)) return;
-    for (const JsonValue& member : object)
-        member.dropFrom(object);
-}
-
 /// Returns how many places the list has.
 std::size_t checkLights(const JsonValue& extensions, Report& report)
 {
@@ -131,7 +124,7 @@ std::size_t checkLights(const JsonValue& extensions, Report& report)
         const Fault wrong = checkLight(light, elementName(name, index++), report);
         if (!wrong) continue;
         report.warn(wrong->message + "; the light is left out");
-        dropAll(light);
+        light.dropMembers();
     }
     return lights.size();
 }
@@ -143,7 +136,7 @@ void checkNodeLight(const JsonValue& node, std::size_t index, std::size_t lights
     const JsonValue light = extension["light"];
     for (const JsonValue& member : extension)
         if (member.key() != "light") member.dropFrom(extension);
-    if (light && light.isInteger() && light.number() >= 0.0 && light.number() < static_cast<double>(lights)) return;
+    if (light.isIndexBelow(lights)) return;
     report.warn(fault(elementName("nodes", index) + ".extensions.KHR_lights_punctual.light",
                       "an index below " + std::to_string(lights) + " of the file's lights", light.description())
                     .message +
@@ -179,7 +172,7 @@ void checkViewRules(const JsonValue& document, Report& report)
         const Fault wrong = checkCamera(camera, elementName("cameras", index++));
         if (!wrong) continue;
         report.warn(wrong->message + "; the camera is left out");
-        dropAll(camera);
+        camera.dropMembers();
     }
 }
 

@@ -8,7 +8,7 @@ namespace osgGpuAnimation::gltf
 {
 
 /// The rules of lights (KHR_lights_punctual) and cameras (glTF 2.0, section 3.10), in a document that has passed
-/// checkSchema(). None of their faults is worth the document. Each has a warning:
+/// checkSchema(). No fault refuses the document. Each has a warning:
 /// - a light or camera of a wrong type or without what its type needs keeps its place, without members;
 /// - a member of a light that is out of range is left out, and its default counts;
 /// - a node's light that is not one of the file's is left out.

@@ -25,13 +25,6 @@ constexpr std::size_t bytesAnInfluencedVertex =
 // A limit for each target. Drawables share the packed targets, but each computes its bounds vertex by vertex.
 constexpr std::size_t bytesAMorphedVertex = 4 * sizeof(osg::Vec4);
 
-osg::ref_ptr<osg::Vec4Array> overall(const osg::Vec4& color)
-{
-    osg::ref_ptr<osg::Vec4Array> colors = new osg::Vec4Array(osg::Array::BIND_OVERALL, 1);
-    colors->front() = color;
-    return colors;
-}
-
 } // namespace
 
 Drawables::Drawables(const tinygltf::Model& model, std::shared_ptr<const AnimationSet> set, Meshes& meshes,
@@ -59,7 +52,10 @@ void Drawables::setColors(osg::Geometry& geometry, const MeshPrimitive& mesh, in
     const osg::Vec4 white(1, 1, 1, 1);
     if (!mesh.colors)
     {
-        geometry.setColorArray(overall(palette ? white : _materials.plainColor(white, material)));
+        const osg::Vec4 color = palette ? white : _materials.plainColor(white, material);
+        osg::ref_ptr<osg::Vec4Array>& colors = _overall[color];
+        if (!colors) colors = new osg::Vec4Array(osg::Array::BIND_OVERALL, 1, &color);
+        geometry.setColorArray(colors);
         return;
     }
     osg::ref_ptr<osg::Vec4Array> colors = mesh.colors;
@@ -138,7 +134,7 @@ osg::ref_ptr<osg::Geometry> Drawables::make(const DrawablePlace& place)
     if (mesh->texCoords) geometry->setTexCoordArray(0, mesh->texCoords, osg::Array::BIND_PER_VERTEX);
     if (mesh->moreCoordinates) geometry->setVertexAttribArray(POSE_COORDINATES_LOCATION, mesh->moreCoordinates);
     if (mesh->tangents) geometry->setVertexAttribArray(POSE_TANGENT_LOCATION, mesh->tangents);
-    const PrimitiveMaterials materials = materialsOf(_model, source, _materials.usesAllMaps());
+    const PrimitiveMaterials materials = materialsOf(_model, source, _materials.maps());
     const int material = materials.materialIn(_variant);
     setColors(*geometry, *mesh, material, palette);
     geometry->addPrimitiveSet(mesh->primitiveSet);

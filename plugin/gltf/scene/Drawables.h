@@ -71,6 +71,7 @@ private:
     std::vector<int> _firstAlike;         ///< by skin
     std::vector<TransformBound> _entries; ///< by palette entry
     std::map<DrawablePlace, osg::ref_ptr<osg::Geometry>> _drawables;
+    std::map<osg::Vec4, osg::ref_ptr<osg::Vec4Array>> _overall; ///< colour arrays of primitives without vertex colours
 };
 
 } // namespace osgGpuAnimation::gltf

@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/scene/Materials.h"
 
-#include "gltf/data/MaterialMaps.h"
-
 #include <osgGpuAnimation/nodes/CharacterProgram.h>
 
 #include <osg/AlphaFunc>
-#include <osg/BlendFunc>
 #include <osg/CullFace>
-#include <osg/Depth>
 #include <osg/FrontFace>
 #include <osg/LightModel>
 #include <osg/Material>
+
+#include <utility>
 
 namespace osgGpuAnimation::gltf
 {
@@ -69,18 +67,25 @@ void setAlpha(osg::StateSet& state, const tinygltf::Material& material, bool pal
         state.addUniform(new osg::Uniform("alphaCutoff", cutoff));
         if (!palette) state.setAttributeAndModes(new osg::AlphaFunc(osg::AlphaFunc::GEQUAL, cutoff));
     }
-    else if (material.alphaMode == "BLEND" && !state.getAttribute(osg::StateAttribute::BLENDFUNC))
-    {
-        state.setAttributeAndModes(new osg::BlendFunc(osg::BlendFunc::SRC_ALPHA, osg::BlendFunc::ONE_MINUS_SRC_ALPHA));
-        state.setAttributeAndModes(new osg::Depth(osg::Depth::LESS, 0.0, 1.0, false));
-        state.setRenderingHint(osg::StateSet::TRANSPARENT_BIN);
-    }
+    else if (material.alphaMode == "BLEND")
+        applyBlending(state, GL_SRC_ALPHA);
+}
+
+/// The shader defines that the material sets, as a text.
+std::string definesOf(const PbrMaterial& material)
+{
+    const osg::ref_ptr<osg::StateSet> state = new osg::StateSet;
+    applyPbrMaterial(*state, material);
+    std::string text;
+    for (const auto& [name, define] : state->getDefineList())
+        text += name + ' ' + define.first + '\n';
+    return text;
 }
 
 } // namespace
 
-Materials::Materials(const tinygltf::Model& model, bool fixedLighting, Textures& textures)
-    : _model(model), _fixedLighting(fixedLighting), _textures(textures)
+Materials::Materials(const tinygltf::Model& model, bool fixedLighting, Textures& textures, Report& report)
+    : _model(model), _fixedLighting(fixedLighting), _textures(textures), _report(report), _maps(model, !fixedLighting)
 {
 }
 
@@ -96,8 +101,7 @@ osg::StateSet* Materials::stateSet(const MaterialUse& use)
 
 osg::Vec4 Materials::baseColor(int material) const
 {
-    const std::vector<double>& factor = materialOf(_model, material).pbrMetallicRoughness.baseColorFactor;
-    return osg::Vec4(osg::Vec4d(factor[0], factor[1], factor[2], factor[3]));
+    return baseColorOf(materialOf(_model, material));
 }
 
 osg::Vec4 Materials::plainColor(const osg::Vec4& color, int material) const
@@ -106,14 +110,49 @@ osg::Vec4 Materials::plainColor(const osg::Vec4& color, int material) const
     return displayColor(componentMultiply(linearColor(color), baseColor(material)));
 }
 
-bool Materials::hasNormalMap(int material) const
+bool Materials::hasNormalMap(int material)
 {
-    return mapsOf(materialOf(_model, material), !_fixedLighting).find(&PbrMaterial::normalMap) != nullptr;
+    return _maps.of(material).hasNormalMap();
 }
 
-unsigned int Materials::wantedCoordinates(int material) const
+unsigned int Materials::wantedCoordinates(int material)
 {
-    return (1u << mapsOf(materialOf(_model, material), !_fixedLighting).coordinates.size()) - 1u;
+    return (1u << _maps.of(material).coordinates.size()) - 1u;
+}
+
+void Materials::warnOfMaps(int material, const MaterialMaps& maps)
+{
+    if (!_warned.insert(material).second) return;
+    const std::pair<MapUse, const char*> reasons[] = {
+        {MapUse::NoCoordinates, ": a vertex has room for 3 texture coordinates; left out"},
+        {MapUse::NoTextureUnit, ": a material has room for 3 maps of extensions; left out"}};
+    for (const auto& [use, reason] : reasons)
+    {
+        std::string members;
+        for (const MaterialMap& map : maps.maps)
+            if (map.use == use) members += (members.empty() ? "" : ", ") + std::string(map.member);
+        if (!members.empty())
+            _report.warn(elementName("materials", static_cast<std::size_t>(material), members) + reason);
+    }
+}
+
+/// The material itself while its set of shader defines is one of the first mostSets.
+PbrMaterial Materials::limited(const PbrMaterial& material)
+{
+    const std::string set = definesOf(material);
+    if (_sets.size() < mostSets) _sets.insert(set);
+    if (_sets.count(set) > 0) return material;
+    if (!_hasTooManySets)
+        _report.warn("materials: they have more than " + std::to_string(mostSets) +
+                     " different sets of maps and extensions; of the others, the base colour map alone is shown");
+    _hasTooManySets = true;
+    PbrMaterial plain;
+    plain.baseColor = material.baseColor;
+    plain.metallic = material.metallic;
+    plain.roughness = material.roughness;
+    plain.emissive = material.emissive;
+    plain.baseColorMap = material.baseColorMap;
+    return plain;
 }
 
 /// Leaves out maps whose coordinates the vertices lack.
@@ -130,7 +169,10 @@ PbrMaterial Materials::pbrMaterial(const tinygltf::Material& material, const Mat
     readMaterialExtensions(material, result);
     result.hasTangents = use.tangents;
     result.hasMoreCoordinates = use.coordinates > 1;
-    for (const MaterialMap& map : mapsOf(material, true).maps)
+    result.isBlended = material.alphaMode == "BLEND";
+    const MaterialMaps& maps = _maps.of(use.material);
+    warnOfMaps(use.material, maps);
+    for (const MaterialMap& map : maps.maps)
         if (map.number >= 0 && (use.coordinates & (1u << map.number)))
             result.*map.place = {_textures.texture(map.texture, map.isColor ? ColorSpace::Srgb : ColorSpace::Linear),
                                  map.number};
@@ -144,21 +186,22 @@ osg::ref_ptr<osg::StateSet> Materials::make(const MaterialUse& use)
     state->setName(material.name);
     const bool lit = use.lit && material.extensions.count("KHR_materials_unlit") == 0;
     const bool usesArray = use.colored && !use.palette; // the fixed pipeline reads the vertex colours alone
+    setAlpha(*state, material, use.palette); // before applyPbrMaterial(), whose transmission blends otherwise
     if (_fixedLighting)
     {
         state->setAttribute(fixedMaterial(material, displayColor(baseColor(use.material)), usesArray));
+        const MaterialMaps& maps = _maps.of(use.material);
         osg::Texture2D* texture =
-            use.coordinates & 1u ? _textures.texture(material.pbrMetallicRoughness.baseColorTexture.index) : nullptr;
+            use.coordinates & 1u && !maps.maps.empty() ? _textures.texture(maps.maps.front().texture) : nullptr;
         if (texture) state->setTextureAttributeAndModes(0, texture);
     }
     else
     {
-        applyPbrMaterial(*state, pbrMaterial(material, use));
+        applyPbrMaterial(*state, limited(pbrMaterial(material, use)));
         auto& colors = static_cast<osg::Material&>(*state->getAttribute(osg::StateAttribute::MATERIAL));
         if (usesArray) colors.setColorMode(osg::Material::AMBIENT_AND_DIFFUSE);
     }
     setSides(*state, material.doubleSided, use.mirrored, _fixedLighting);
-    setAlpha(*state, material, use.palette);
     if (use.palette || !_fixedLighting)
     {
         if (!lit) state->addUniform(new osg::Uniform("unlit", true));

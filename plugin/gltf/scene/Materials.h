@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "gltf/data/MaterialMaps.h"
+#include "gltf/file/Report.h"
 #include "gltf/scene/Textures.h"
 
 #include <osgGpuAnimation/nodes/PbrMaterial.h>
@@ -9,7 +11,10 @@
 #include <osg/Vec4>
 #include <tiny_gltf.h>
 
+#include <cstddef>
 #include <map>
+#include <set>
+#include <string>
 #include <tuple>
 
 namespace osgGpuAnimation::gltf
@@ -42,30 +47,42 @@ constexpr unsigned int mostParents = 4096;
 /// One osg::StateSet for each material and use of it, so that OSG can sort by it; another one after mostParents.
 ///
 /// A material becomes a PbrMaterial with its alpha mode, double sidedness and KHR_materials_unlit. With fixedLighting
-/// only base colour and emission remain, drawn as by the fixed pipeline.
+/// only base colour and emission remain, drawn as by the fixed pipeline. A material's maps that are left out for want
+/// of room get a warning.
 class Materials
 {
 public:
-    Materials(const tinygltf::Model& model, bool fixedLighting, Textures& textures);
+    /// Each different set of maps, their coordinates and extensions needs programs of its own, which compile in about
+    /// 0.2 s. Materials of further sets keep the base colour map alone and lose their extensions, with a warning.
+    static constexpr std::size_t mostSets = 64;
+
+    Materials(const tinygltf::Model& model, bool fixedLighting, Textures& textures, Report& report);
 
     osg::StateSet* stateSet(const MaterialUse& use);
-    bool usesAllMaps() const { return !_fixedLighting; } ///< false: only base colours
+    MapsOfMaterials& maps() { return _maps; } ///< with fixedLighting, of base colours alone
     /// The linear base colour factor; white for the default material.
     osg::Vec4 baseColor(int material) const;
     /// The colour array's element of a plain geometry, which the fixed pipeline uses in place of the material's colour.
     /// color: of the vertex, as displayed.
     osg::Vec4 plainColor(const osg::Vec4& color, int material) const;
-    bool hasNormalMap(int material) const;
+    bool hasNormalMap(int material);
     /// The coordinates that the material's maps read, as bits by their numbers.
-    unsigned int wantedCoordinates(int material) const;
+    unsigned int wantedCoordinates(int material);
 
 private:
     osg::ref_ptr<osg::StateSet> make(const MaterialUse& use);
     PbrMaterial pbrMaterial(const tinygltf::Material& material, const MaterialUse& use);
+    PbrMaterial limited(const PbrMaterial& material);
+    void warnOfMaps(int material, const MaterialMaps& maps);
 
     const tinygltf::Model& _model;
     const bool _fixedLighting;
     Textures& _textures;
+    Report& _report;
+    MapsOfMaterials _maps;
+    std::set<int> _warned;       ///< materials
+    std::set<std::string> _sets; ///< the shader defines of those in use
+    bool _hasTooManySets = false;
     std::map<MaterialUse, osg::ref_ptr<osg::StateSet>> _stateSets;
 };
 

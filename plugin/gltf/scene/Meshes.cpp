@@ -204,8 +204,8 @@ std::size_t byteSize(const tinygltf::Model& model, const tinygltf::Primitive& pr
 
 } // namespace
 
-Meshes::Meshes(const tinygltf::Model& model, bool allMaps, MemoryBudget& budget, Report& report)
-    : _model(model), _allMaps(allMaps), _budget(budget), _report(report)
+Meshes::Meshes(const tinygltf::Model& model, MapsOfMaterials& maps, MemoryBudget& budget, Report& report)
+    : _model(model), _maps(maps), _budget(budget), _report(report)
 {
 }
 
@@ -269,7 +269,7 @@ std::optional<MeshPrimitive> Meshes::read(int meshIndex, int primitiveIndex, boo
         return std::nullopt; // too few vertices for one element: the validation has warned of it
     mesh.positions = readVectors(_model, primitive.attributes, "POSITION");
     mesh.normals = readVectors(_model, primitive.attributes, "NORMAL");
-    const PrimitiveMaterials materials = materialsOf(_model, primitive, _allMaps);
+    const PrimitiveMaterials materials = materialsOf(_model, primitive, _maps);
     readSurface(primitive, materials, mesh);
     mesh.radius = radiusOf(*mesh.positions);
     for (const MorphTarget& target : mesh.targets)

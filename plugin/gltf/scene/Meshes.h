@@ -53,8 +53,8 @@ struct MeshPrimitive
 class Meshes
 {
 public:
-    /// allMaps: reads the coordinates of all maps and tangents, else only those of base colours.
-    Meshes(const tinygltf::Model& model, bool allMaps, MemoryBudget& budget, Report& report);
+    /// Reads the texture coordinates that the maps need, and tangents for normal maps.
+    Meshes(const tinygltf::Model& model, MapsOfMaterials& maps, MemoryBudget& budget, Report& report);
 
     /// skinned: by a skin, which makes vertices expensive: they are welded instead of split. Null if the primitive has
     /// nothing to draw.
@@ -65,7 +65,7 @@ private:
     void readSurface(const tinygltf::Primitive& primitive, const PrimitiveMaterials& materials, MeshPrimitive& mesh);
 
     const tinygltf::Model& _model;
-    const bool _allMaps;
+    MapsOfMaterials& _maps;
     MemoryBudget& _budget;
     Report& _report;
     std::map<std::tuple<int, int, bool>, std::optional<MeshPrimitive>> _primitives;

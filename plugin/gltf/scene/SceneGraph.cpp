@@ -53,7 +53,7 @@ private:
     DrawablePlace placeOf(std::size_t node, int primitive) const;
     void buildStillNodes();
     void addStill(std::size_t node);
-    static void addShared(osg::Group& place, osg::ref_ptr<osg::Geometry>& geometry);
+    void addShared(osg::Group& place, osg::Geometry& geometry);
 
     const SceneParts& _parts;
     osg::Group& _root; ///< of what stays still
@@ -62,7 +62,7 @@ private:
     std::vector<std::vector<osg::ref_ptr<osg::Geometry>>> _still; ///< by node: its plain geometries
     std::vector<double> _stillRadius;                             ///< by node: of its farthest vertex
     std::vector<osg::ref_ptr<osg::Group>> _groups;                ///< by node: null where no transform is needed
-    /// By geometry: the current one over the same arrays, with fewer than mostParents.
+    /// By geometry with mostParents: the current one over the same arrays, with fewer.
     std::map<const osg::Geometry*, osg::ref_ptr<osg::Geometry>> _open;
     std::set<const osg::Geometry*> _inCharacter;
 };
@@ -151,10 +151,16 @@ void SceneGraphBuilder::addMesh(std::size_t node)
 }
 
 /// After mostParents, a new Geometry over the same arrays replaces `geometry`.
-void SceneGraphBuilder::addShared(osg::Group& place, osg::ref_ptr<osg::Geometry>& geometry)
+void SceneGraphBuilder::addShared(osg::Group& place, osg::Geometry& geometry)
 {
-    if (geometry->getNumParents() >= mostParents) geometry = new osg::Geometry(*geometry, osg::CopyOp::SHALLOW_COPY);
-    place.addChild(geometry);
+    if (geometry.getNumParents() < mostParents)
+    {
+        place.addChild(&geometry);
+        return;
+    }
+    osg::ref_ptr<osg::Geometry>& open = _open[&geometry];
+    if (!open || open->getNumParents() >= mostParents) open = new osg::Geometry(geometry, osg::CopyOp::SHALLOW_COPY);
+    place.addChild(open);
 }
 
 void SceneGraphBuilder::addStill(std::size_t node)
@@ -192,7 +198,7 @@ void SceneGraphBuilder::addStill(std::size_t node)
     for (const osg::ref_ptr<osg::Group>& place : places)
     {
         for (const osg::ref_ptr<osg::Geometry>& geometry : _still[node])
-            addShared(*place, _open.try_emplace(geometry.get(), geometry).first->second);
+            addShared(*place, *geometry);
     }
 }
 

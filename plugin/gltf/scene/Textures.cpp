@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/scene/Textures.h"
 
+#include "gltf/data/MaterialMaps.h"
 #include "gltf/data/Picture.h"
 #include "gltf/file/Report.h"
 
@@ -10,7 +11,6 @@
 #include <exception>
 #include <future>
 #include <new>
-#include <string_view>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -36,19 +36,6 @@ public:
         _isKnown[static_cast<std::size_t>(image)] = true;
         if (!_model.images[static_cast<std::size_t>(image)].image.empty()) _images.push_back(image);
     }
-    /// The textures of a material extension, whose names end in Texture. The schema has checked their indices: it keeps
-    /// only extensions that it knows.
-    void addExtension(const tinygltf::Value& extension)
-    {
-        constexpr std::string_view ending = "Texture";
-        for (const std::string& name : extension.Keys())
-        {
-            const tinygltf::Value& member = extension.Get(name);
-            if (name.size() >= ending.size() && name.compare(name.size() - ending.size(), ending.size(), ending) == 0 &&
-                member.Has("index"))
-                addTexture(member.Get("index").GetNumberAsInt());
-        }
-    }
     std::vector<int> take() { return std::move(_images); }
 
 private:
@@ -57,22 +44,18 @@ private:
     std::vector<int> _images;
 };
 
-/// Base colours first: they show the most.
+/// Those of the maps that are shown. Base colours first: they show the most.
 std::vector<int> wantedImages(const tinygltf::Model& model, bool allMaps)
 {
+    std::vector<MaterialMaps> materials;
+    for (const tinygltf::Material& material : model.materials)
+        materials.push_back(mapsOf(material, allMaps));
     WantedImages wanted(model);
-    for (const tinygltf::Material& material : model.materials)
-        wanted.addTexture(material.pbrMetallicRoughness.baseColorTexture.index);
-    if (!allMaps) return wanted.take();
-    for (const tinygltf::Material& material : model.materials)
-    {
-        for (const int texture :
-             {material.pbrMetallicRoughness.metallicRoughnessTexture.index, material.normalTexture.index,
-              material.occlusionTexture.index, material.emissiveTexture.index})
-            wanted.addTexture(texture);
-        for (const auto& extension : material.extensions)
-            wanted.addExtension(extension.second);
-    }
+    for (const bool isBaseColor : {true, false})
+        for (const MaterialMaps& material : materials)
+            for (const MaterialMap& map : material.maps)
+                if (map.use == MapUse::Shown && (map.place == &PbrMaterial::baseColorMap) == isBaseColor)
+                    wanted.addTexture(map.texture);
     return wanted.take();
 }
 
@@ -198,8 +181,9 @@ Textures::~Textures() = default;
 osg::Texture2D* Textures::texture(int index, ColorSpace space)
 {
     if (index < 0) return nullptr;
-    const auto [place, isNew] = _textures.try_emplace({index, space});
-    if (isNew) place->second = make(_model.textures[static_cast<std::size_t>(index)], space);
+    const tinygltf::Texture& source = _model.textures[static_cast<std::size_t>(index)];
+    const auto [place, isNew] = _textures.try_emplace({source.source, source.sampler, space});
+    if (isNew) place->second = make(source, space);
     return place->second.get();
 }
 

@@ -8,7 +8,7 @@
 
 #include <map>
 #include <memory>
-#include <utility>
+#include <tuple>
 
 namespace osgGpuAnimation::gltf
 {
@@ -21,16 +21,18 @@ enum class ColorSpace
     Linear   ///< data, sampled as stored: GL_RGB8, GL_RGBA8, GL_RGB16 or GL_RGBA16
 };
 
-/// One osg::Texture2D for each texture of the file and colour space, with its sampler's filters and wrapping (glTF 2.0,
-/// section 3.8). Textures of one picture share the osg::Image. For Srgb and Linear, grey pictures become RGB, because
-/// GL's core profile has no grey formats: they share a second osg::Image.
+/// One osg::Texture2D for each picture, sampler and colour space in use, with the sampler's filters and wrapping (glTF
+/// 2.0, section 3.8): textures of the file that agree in them share it. Those of one picture share the osg::Image. For
+/// Srgb and Linear, grey pictures become RGB, because GL's core profile has no grey formats: they share a second
+/// osg::Image.
 ///
 /// Up to four threads decode the pictures of all materials while the import reads clips and meshes, because decoding
 /// takes a large part of the load. Base colours come first.
 class Textures
 {
 public:
-    /// allMaps: false decodes only base colours; texture() is then null for all other pictures.
+    /// Decodes the pictures of the maps that materials show, see MaterialMaps. allMaps: false: only of base colours.
+    /// texture() is null for all other pictures.
     Textures(const tinygltf::Model& model, Report& report, bool allMaps);
     /// Does not wait for pictures whose decoding has not begun.
     ~Textures();
@@ -48,7 +50,8 @@ private:
     const tinygltf::Model& _model;
     Report& _report;
     std::unique_ptr<Decoding> _decoding;
-    std::map<std::pair<int, ColorSpace>, osg::ref_ptr<osg::Texture2D>> _textures;
+    /// By picture, sampler and colour space.
+    std::map<std::tuple<int, int, ColorSpace>, osg::ref_ptr<osg::Texture2D>> _textures;
     std::map<int, osg::ref_ptr<osg::Image>> _images;            ///< the requested ones; null if damaged
     std::map<int, osg::ref_ptr<osg::Image>> _imagesWithoutGrey; ///< the grey ones of _images, as RGB or RGBA
 };

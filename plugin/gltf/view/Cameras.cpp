@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/view/Cameras.h"
 
+#include "gltf/data/UniqueNames.h"
 #include "gltf/file/Report.h"
 
 #include <osgGpuAnimation/nodes/viewing/StartView.h>
@@ -10,31 +11,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <set>
 
 namespace osgGpuAnimation::gltf
 {
 
 namespace
 {
-
-/// Names that occur once.
-class Names
-{
-public:
-    std::string unique(const std::string& name)
-    {
-        std::string made = name;
-        for (std::size_t& copies = _copies[name]; !_taken.insert(made).second;)
-            made = name + ' ' + std::to_string(++copies + 1);
-        return made;
-    }
-
-private:
-    std::set<std::string> _taken;
-    std::map<std::string, std::size_t> _copies; ///< by name
-};
 
 osg::ref_ptr<osg::CameraView> makeView(const tinygltf::Camera& camera)
 {
@@ -55,7 +37,7 @@ osg::ref_ptr<osg::CameraView> makeView(const tinygltf::Camera& camera)
 std::vector<ImportedCamera> makeCameras(const tinygltf::Model& model, const NodeTree& tree)
 {
     std::vector<ImportedCamera> cameras;
-    Names names;
+    UniqueNames names;
     for (std::size_t index = 0; index < model.nodes.size(); ++index)
     {
         const tinygltf::Node& node = model.nodes[index];

@@ -27,24 +27,34 @@ void NodePlaces::add(std::size_t node, osg::Node* child)
 
 osg::Group& NodePlaces::placeOf(std::size_t node)
 {
-    if (_joints.moves[node] && !_places[node]) _places[node] = makeAttachment(node);
+    // A loop, because nodes may be nested thousands deep. A node that moves is a joint or below one.
+    std::vector<std::size_t> missing;
+    for (std::size_t next = node; !_places[next]; next = static_cast<std::size_t>(_tree.parents[next]))
+    {
+        missing.push_back(next);
+        if (_joints.ofNode[next] >= 0) break;
+    }
+    for (; !missing.empty(); missing.pop_back())
+        _places[missing.back()] = makePlace(missing.back());
     return *_places[node];
 }
 
-osg::ref_ptr<osg::Group> NodePlaces::makeAttachment(std::size_t node) const
+/// The parent of a node that is no joint has a place.
+osg::ref_ptr<osg::Group> NodePlaces::makePlace(std::size_t node) const
 {
-    // A node that moves is a joint or below one.
-    glm::dmat4 toJoint(1.0);
-    std::size_t joint = node;
-    for (; _joints.ofNode[joint] < 0; joint = static_cast<std::size_t>(_tree.parents[joint]))
-        toJoint = localMatrix(_model.nodes[joint]) * toJoint;
-    osg::ref_ptr<osg::Group> attachment = new JointAttachment(_joints.ofNode[joint]);
-    attachment->setName(_model.nodes[joint].name);
-    _character->addChild(attachment);
-    if (joint == node) return attachment;
-    osg::ref_ptr<osg::Group> place = new osg::MatrixTransform(toOsg(toJoint));
+    const int joint = _joints.ofNode[node];
+    osg::ref_ptr<osg::Group> place;
+    if (joint >= 0)
+    {
+        place = new JointAttachment(joint);
+        _character->addChild(place);
+    }
+    else
+    {
+        place = new osg::MatrixTransform(toOsg(localMatrix(_model.nodes[node])));
+        _places[static_cast<std::size_t>(_tree.parents[node])]->addChild(place);
+    }
     place->setName(_model.nodes[node].name);
-    attachment->addChild(place);
     return place;
 }
 

@@ -19,14 +19,14 @@ class AnimatedCharacter;
 namespace osgGpuAnimation::gltf
 {
 
-/// The places in the graph of what nodes carry besides meshes: below the node's MatrixTransform if it stands still,
-/// else below a JointAttachment of the character. A node that moves with the joint above it and is none itself has a
-/// MatrixTransform in between. (The Optimizer flattens no transform above a light or a camera.)
+/// The places in the graph of what nodes carry besides meshes: below the node's MatrixTransform if it does not move,
+/// else below a JointAttachment of the character. A node that moves with a joint above it and is none itself has a
+/// MatrixTransform in the place of its parent. (The Optimizer flattens no transform above a light or a camera.)
 class NodePlaces
 {
 public:
-    /// transforms: see buildSceneGraph(); it has those of the still nodes that will be asked for. character: null if no
-    /// node moves.
+    /// transforms: see buildSceneGraph(); it has those of the nodes that do not move and are asked for. character: null
+    /// if no node moves.
     NodePlaces(const tinygltf::Model& model, const NodeTree& tree, const Joints& joints, AnimatedCharacter* character,
                std::vector<osg::ref_ptr<osg::Group>> transforms);
 
@@ -35,7 +35,7 @@ public:
 
 private:
     osg::Group& placeOf(std::size_t node);
-    osg::ref_ptr<osg::Group> makeAttachment(std::size_t node) const;
+    osg::ref_ptr<osg::Group> makePlace(std::size_t node) const;
 
     const tinygltf::Model& _model;
     const NodeTree& _tree;

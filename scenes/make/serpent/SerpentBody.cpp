@@ -4,6 +4,7 @@
 #include "../CharacterMesh.h"
 #include "SerpentPaint.h"
 #include "SerpentRig.h"
+#include "SerpentScales.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -196,21 +197,24 @@ void appendColours(PrimitiveArrays& arrays, const Part& part)
 
 } // namespace
 
-PrimitiveArrays serpentArrays(const Rig& rig)
+SerpentArrays serpentArrays(const Rig& rig)
 {
     std::vector<Part> parts = {body(rig), jaw(rig), crest(rig), tail(rig), eye(rig), sideFin(rig)};
     parts.push_back(mirrored(parts[4], rig));
     parts.push_back(mirrored(parts[5], rig));
     const double reach = 0.15; // metres
     computeLight(parts, reach);
-    PrimitiveArrays arrays;
+    SerpentArrays result;
     for (const Part& part : parts)
     {
+        const bool hasScales = &part == &parts.front();
+        PrimitiveArrays& arrays = hasScales ? result.scales : result.smooth;
         appendPart(arrays, part);
         appendBindings(arrays, part);
         appendColours(arrays, part);
+        if (hasScales) appendScales(arrays, part);
     }
-    return arrays;
+    return result;
 }
 
 } // namespace osgGpuAnimation::scenes

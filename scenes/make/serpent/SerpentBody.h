@@ -7,7 +7,14 @@
 namespace osgGpuAnimation::scenes
 {
 
-/// Body, head, jaw, eyes and fins in one primitive with vertex colours.
-PrimitiveArrays serpentArrays(const Rig& rig);
+/// The serpent with vertex colours: what has scales, with texture coordinates and tangents for their normal map, and
+/// what is smooth.
+struct SerpentArrays
+{
+    PrimitiveArrays scales; ///< body and head
+    PrimitiveArrays smooth; ///< jaw, eyes and fins
+};
+
+SerpentArrays serpentArrays(const Rig& rig);
 
 } // namespace osgGpuAnimation::scenes

@@ -76,6 +76,8 @@ CrowdInstances::CrowdInstances(const CrowdInstances& other)
         _controllers.push_back(controller ? std::make_unique<AnimationController>(*controller) : nullptr);
     for (const std::unique_ptr<PosedBox>& box : other._posedBoxes)
         _posedBoxes.push_back(box ? std::make_unique<PosedBox>(*box) : nullptr);
+    for (const auto& [handle, machine] : other._machines)
+        _machines.emplace(handle, std::make_unique<StateMachine>(*machine));
 }
 
 std::size_t CrowdInstances::indexOf(Handle handle) const
@@ -185,12 +187,14 @@ CrowdInstances::Handle CrowdInstances::add(const AffineMatrix& rootMatrix, const
     _handles.push_back(newHandle(index));
     updatePosedBox(index);
     _spheres[index] = placedSphere(index);
+    listenTo(index);
     return _handles[index];
 }
 
 void CrowdInstances::remove(std::size_t index)
 {
     const std::size_t place = placeOf(_handles[index]);
+    _machines.erase(_handles[index]);
     ++_usesOfPlace[place];
     _freePlaces.push_back(static_cast<std::uint32_t>(place));
     _tinted -= _tints[index] != PoseBatch::white;
@@ -248,8 +252,47 @@ std::size_t CrowdInstances::controllerCount() const
                                                   [](const auto& controller) { return controller != nullptr; }));
 }
 
+void CrowdInstances::setEventCallback(EventCallback callback)
+{
+    _eventCallback = callback ? std::make_shared<const EventCallback>(std::move(callback)) : nullptr;
+    for (std::size_t index = 0; index < size(); ++index)
+    {
+        if (_controllers[index]) _controllers[index]->setEventCallback({});
+        listenTo(index);
+    }
+}
+
+/// Gives the instance a controller that calls the common callback.
+void CrowdInstances::listenTo(std::size_t index)
+{
+    if (!_eventCallback) return;
+    const std::weak_ptr<const EventCallback> listener = _eventCallback;
+    const Handle handle = _handles[index];
+    controller(index).setEventCallback(
+        [listener, handle](const AnimationEvent& event)
+        {
+            if (const std::shared_ptr<const EventCallback> callback = listener.lock()) (*callback)(handle, event);
+        });
+}
+
+void CrowdInstances::setStateMachine(std::size_t index, std::unique_ptr<StateMachine> machine)
+{
+    if (!machine)
+        _machines.erase(_handles[index]);
+    else
+        _machines[_handles[index]] = std::move(machine);
+}
+
+StateMachine* CrowdInstances::stateMachine(std::size_t index)
+{
+    const auto found = _machines.find(_handles[index]);
+    return found == _machines.end() ? nullptr : found->second.get();
+}
+
 bool CrowdInstances::advance(double seconds, PendingEvents& outEvents)
 {
+    for (const auto& [handle, machine] : _machines)
+        machine->update(controller(indexOf(handle)), seconds);
     if (std::isfinite(seconds)) _clock += seconds;
     bool haveSpheresChanged = false;
     for (std::size_t index = 0; index < _controllers.size(); ++index)
@@ -262,7 +305,7 @@ bool CrowdInstances::advance(double seconds, PendingEvents& outEvents)
             _spheres[index] = placedSphere(index);
             haveSpheresChanged = true;
         }
-        if (!controller->isPlainLoop()) continue;
+        if (!controller->isPlainLoop() || _machines.count(_handles[index]) > 0) continue;
         _playbacks[index] = CrowdPlayback(*controller, _clock);
         controller.reset();
         _spheres[index] = placedSphere(index);

@@ -4,6 +4,7 @@
 #include <osgGpuAnimation/animation/AnimationController.h>
 #include <osgGpuAnimation/animation/bounds/ClipBounds.h>
 #include <osgGpuAnimation/animation/bounds/MixBounds.h>
+#include <osgGpuAnimation/animation/StateMachine.h>
 #include <osgGpuAnimation/gpu/PoseBatch.h>
 
 #include <osg/Vec3d>
@@ -11,7 +12,9 @@
 #include <glm/vec4.hpp>
 
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <unordered_map>
 #include <vector>
 
 namespace osgGpuAnimation
@@ -46,6 +49,7 @@ class CrowdInstances
 {
 public:
     using Handle = std::uint64_t; ///< lower half: place in the index table; upper half: its number of earlier uses
+    using EventCallback = std::function<void(Handle, const AnimationEvent&)>;
 
     /// set: null counts as an empty one.
     explicit CrowdInstances(std::shared_ptr<const AnimationSet> set) : _set(AnimationSet::orEmpty(std::move(set))) {}
@@ -93,6 +97,14 @@ public:
     /// The number of instances with a controller.
     std::size_t controllerCount() const;
 
+    /// Replaces the callbacks of all instances, and of those that are added later. Empty: removes them. Copies of this
+    /// object do not copy it. All instances keep a controller as long as there is one.
+    void setEventCallback(EventCallback callback);
+    /// advance() updates the machine of an instance; the instance keeps a controller. Null: removes the machine.
+    void setStateMachine(std::size_t index, std::unique_ptr<StateMachine> machine);
+    /// Null: none. Valid until the instance or its machine is removed.
+    StateMachine* stateMachine(std::size_t index);
+
     /// Advances all instances and appends their events. True if spheres have changed.
     bool advance(double seconds, PendingEvents& outEvents);
 
@@ -113,6 +125,7 @@ private:
     const Box& boxOf(std::size_t index) const;
     glm::vec4 placedSphere(std::size_t index) const;
     bool updatePosedBox(std::size_t index);
+    void listenTo(std::size_t index);
     Handle newHandle(std::size_t index);
 
     std::shared_ptr<const AnimationSet> _set;
@@ -132,6 +145,8 @@ private:
     std::vector<std::uint32_t> _usesOfPlace;
     std::vector<std::uint32_t> _freePlaces;
     std::size_t _tinted = 0; ///< instances that are not white
+    std::shared_ptr<const EventCallback> _eventCallback;
+    std::unordered_map<Handle, std::unique_ptr<StateMachine>> _machines;
 };
 
 } // namespace osgGpuAnimation

@@ -10,9 +10,6 @@
 #include <string>
 #include <vector>
 
-#ifndef GL_TEXTURE_CUBE_MAP_SEAMLESS
-#define GL_TEXTURE_CUBE_MAP_SEAMLESS 0x884F
-#endif
 #ifndef GL_RGBA16F_ARB
 #define GL_RGBA16F_ARB 0x881A
 #endif
@@ -185,13 +182,13 @@ GLenum faceTarget(int face)
     return GL_TEXTURE_CUBE_MAP_POSITIVE_X + static_cast<GLenum>(face);
 }
 
-/// Gives the texture that is bound its levels, without pixels.
-void allocateLevels(int count)
+/// Gives the texture that is bound its levels. pixels: black, or null: undefined.
+void allocateLevels(int count, const float* pixels)
 {
     for (int level = 0; level < count; ++level)
         for (int face = 0; face < 6; ++face)
             glTexImage2D(faceTarget(face), level, GL_RGBA16F_ARB, RadianceCube::side >> level,
-                         RadianceCube::side >> level, 0, GL_RGBA, GL_FLOAT, nullptr);
+                         RadianceCube::side >> level, 0, GL_RGBA, GL_FLOAT, pixels);
     glTexParameteri(GL_TEXTURE_CUBE_MAP, GL_TEXTURE_BASE_LEVEL, 0);
     glTexParameteri(GL_TEXTURE_CUBE_MAP, GL_TEXTURE_MAX_LEVEL, count - 1);
 }
@@ -219,14 +216,25 @@ private:
     GLuint _name = 0;
 };
 
+/// Makes all levels of the texture that is bound black.
+void blacken(osg::State& state, int levels)
+{
+    state.unbindPixelBufferObject();
+    const std::vector<float> black(static_cast<std::size_t>(RadianceCube::side * RadianceCube::side * 4), 0.0f);
+    const GLint rowLength = valueOf(GL_UNPACK_ROW_LENGTH);
+    glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
+    allocateLevels(levels, black.data());
+    glPixelStorei(GL_UNPACK_ROW_LENGTH, rowLength);
+}
+
 /// Draws all levels of all faces into the texture. The state's context must be current. Binds no texture to the active
-/// unit in the end.
-void prefilter(osg::State& state, GLuint texture, const RadianceCube& radiance)
+/// unit in the end. Returns false, and draws nothing, if the program cannot be used.
+bool prefilter(osg::State& state, GLuint texture, const RadianceCube& radiance)
 {
     osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
     const DrawingScope scope(state);
     PrefilterProgram program(gl);
-    if (!program.valid()) return;
+    if (!program.valid()) return false;
     const SourceTexture source(gl, radiance);
     program.set("radiance", static_cast<int>(state.getActiveTextureUnit()));
     program.set("side", static_cast<float>(RadianceCube::side));
@@ -244,6 +252,7 @@ void prefilter(osg::State& state, GLuint texture, const RadianceCube& radiance)
             glDrawArrays(GL_TRIANGLES, 0, 3);
         }
     }
+    return true;
 }
 
 } // namespace
@@ -270,7 +279,7 @@ void PrefilteredMap::allocate(osg::State& state) const
     made->setAllocated(levels, GL_RGBA16F_ARB, RadianceCube::side, RadianceCube::side, 1, 0);
     made->bind();
     applyTexParameters(GL_TEXTURE_CUBE_MAP, state);
-    allocateLevels(levels);
+    allocateLevels(levels, nullptr);
 }
 
 void PrefilteredMap::apply(osg::State& state) const
@@ -284,12 +293,13 @@ void PrefilteredMap::apply(osg::State& state) const
     allocate(state);
     TextureObject* made = getTextureObject(state.getContextID());
     const osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
-    if (gl.glVersion >= 3.3f)
-        prefilter(state, made->id(), *_radiance);
-    else
+    const bool canDraw = gl.glVersion >= 3.3f;
+    if (!canDraw)
         OSG_WARN << "osgGpuAnimation: this context has OpenGL " << gl.glVersion
                  << "; surroundings from a picture need 3.3 and are not reflected" << std::endl;
+    const bool isDrawn = canDraw && prefilter(state, made->id(), *_radiance);
     made->bind();
+    if (!isDrawn) blacken(state, levels);
 }
 
 } // namespace osgGpuAnimation

@@ -5,6 +5,10 @@
 
 #include <osg/TextureCubeMap>
 
+#ifndef GL_TEXTURE_CUBE_MAP_SEAMLESS
+#define GL_TEXTURE_CUBE_MAP_SEAMLESS 0x884F
+#endif
+
 namespace osgGpuAnimation
 {
 
@@ -22,6 +26,8 @@ public:
     explicit PrefilteredMap(const RadianceCube& radiance);
 
     void apply(osg::State& state) const override;
+
+    const RadianceCube& getRadiance() const { return *_radiance; } ///< what it is made of
 
 protected:
     ~PrefilteredMap() override = default;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/shading/RadianceCube.h>
 
+#include <osgGpuAnimation/nodes/PbrMaterial.h>
+
 #include <osg/Math>
 
 #include <algorithm>
@@ -33,7 +35,7 @@ std::string sizeText(int width, int height)
 
 float linearOf(float encoded)
 {
-    return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
+    return linearColor(osg::Vec4(encoded, 0.0f, 0.0f, 1.0f)).r();
 }
 
 float floatOfHalf(std::uint16_t half)
@@ -201,7 +203,7 @@ std::vector<osg::Vec3f> makeFace(Radiance radiance)
     return pixels;
 }
 
-/// The means of blocks of 8x8 pixels.
+/// The means of blocks of block x block pixels.
 std::vector<osg::Vec3f> reduced(const std::vector<osg::Vec3f>& face, int block)
 {
     const int side = RadianceCube::side / block;
@@ -212,6 +214,64 @@ std::vector<osg::Vec3f> reduced(const std::vector<osg::Vec3f>& face, int block)
             means[static_cast<std::size_t>(y / block * side + x / block)] +=
                 face[static_cast<std::size_t>(y * RadianceCube::side + x)] * weight;
     return means;
+}
+
+/// A part of the sphere.
+struct Patch
+{
+    osg::Vec3f towards; ///< unit length
+    osg::Vec3f radiance;
+    double weight; ///< in proportion to the solid angle
+};
+
+/// Patches of block x block pixels of each face.
+std::vector<Patch> patchesOf(const std::array<std::vector<osg::Vec3f>, 6>& faces, int block)
+{
+    const auto coarse = static_cast<std::size_t>(RadianceCube::side / block);
+    const auto place = [coarse](std::size_t at)
+    { return (static_cast<float>(at) + 0.5f) * 2.0f / static_cast<float>(coarse) - 1.0f; };
+    std::vector<Patch> patches;
+    for (int face = 0; face < 6; ++face)
+    {
+        const std::vector<osg::Vec3f> pixels = reduced(faces[static_cast<std::size_t>(face)], block);
+        for (std::size_t pixel = 0; pixel < pixels.size(); ++pixel)
+        {
+            const float s = place(pixel % coarse), t = place(pixel / coarse);
+            patches.push_back({RadianceCube::direction(face, s, t), pixels[pixel],
+                               std::pow(1.0 + static_cast<double>(s * s + t * t), -1.5)});
+        }
+    }
+    return patches;
+}
+
+/// The light of one patch on level ground, in proportion to its irradiance.
+double groundLight(const Patch& patch)
+{
+    const osg::Vec3f luminance(0.2126f, 0.7152f, 0.0722f);
+    return std::max(0.0, static_cast<double>(patch.towards.y())) * patch.weight *
+           static_cast<double>(patch.radiance * luminance);
+}
+
+/// The patch around which most light on the ground comes from a lobe as narrow as that of the studio's key light.
+osg::Vec3f brightest(const std::vector<Patch>& patches)
+{
+    constexpr float sharpness = 40.0f, lowest = 0.1736f; // the sine of 10 degrees
+    osg::Vec3f towards(0, 1, 0);
+    double most = 0.0;
+    for (const Patch& candidate : patches)
+    {
+        if (candidate.towards.y() < lowest) continue;
+        double sum = 0.0;
+        for (const Patch& patch : patches)
+            if (const float cosine = candidate.towards * patch.towards; cosine > 0.8f)
+                sum += groundLight(patch) * static_cast<double>(std::exp(sharpness * (cosine - 1.0f)));
+        if (sum > 1.0001 * most)
+        {
+            most = sum;
+            towards = candidate.towards;
+        }
+    }
+    return towards;
 }
 
 } // namespace
@@ -269,31 +329,23 @@ Result<osg::ref_ptr<const RadianceCube>> RadianceCube::fromFaces(const osg::Text
 
 std::array<osg::Vec3f, 9> RadianceCube::harmonics() const
 {
-    constexpr int block = 8, coarse = side / block;
     std::array<osg::Vec3d, 9> sums;
     double solidAngle = 0.0;
-    for (int face = 0; face < 6; ++face)
+    for (const Patch& patch : patchesOf(_faces, 8))
     {
-        const std::vector<osg::Vec3f> pixels = reduced(_faces[static_cast<std::size_t>(face)], block);
-        for (std::size_t pixel = 0; pixel < pixels.size(); ++pixel)
-        {
-            const float s = (static_cast<float>(pixel % coarse) + 0.5f) * 2.0f / coarse - 1.0f;
-            const float t = (static_cast<float>(pixel / coarse) + 0.5f) * 2.0f / coarse - 1.0f;
-            const double weight = std::pow(1.0 + static_cast<double>(s * s + t * t), -1.5);
-            const osg::Vec3d d = direction(face, s, t);
-            const double basis[] = {1.0,
-                                    d.y(),
-                                    d.z(),
-                                    d.x(),
-                                    d.x() * d.y(),
-                                    d.y() * d.z(),
-                                    3.0 * d.z() * d.z() - 1.0,
-                                    d.x() * d.z(),
-                                    d.x() * d.x() - d.y() * d.y()};
-            for (std::size_t i = 0; i < sums.size(); ++i)
-                sums[i] += osg::Vec3d(pixels[pixel]) * (basis[i] * weight);
-            solidAngle += weight;
-        }
+        const osg::Vec3d d = patch.towards;
+        const double basis[] = {1.0,
+                                d.y(),
+                                d.z(),
+                                d.x(),
+                                d.x() * d.y(),
+                                d.y() * d.z(),
+                                3.0 * d.z() * d.z() - 1.0,
+                                d.x() * d.z(),
+                                d.x() * d.x() - d.y() * d.y()};
+        for (std::size_t i = 0; i < sums.size(); ++i)
+            sums[i] += osg::Vec3d(patch.radiance) * (basis[i] * patch.weight);
+        solidAngle += patch.weight;
     }
     // The squared norms of the harmonics, and the factors 1, 2/3 and 1/4 of the cosine lobe, both times 4 pi.
     const double factors[] = {1.0, 2.0, 2.0, 2.0, 3.75, 3.75, 0.3125, 3.75, 0.9375};
@@ -301,6 +353,38 @@ std::array<osg::Vec3f, 9> RadianceCube::harmonics() const
     for (std::size_t i = 0; i < result.size(); ++i)
         result[i] = sums[i] * (factors[i] / solidAngle);
     return result;
+}
+
+KeyLight RadianceCube::keyLight() const
+{
+    constexpr float cone = 0.906f, ring = 0.766f; // the cosines of 25 and 40 degrees
+    const osg::Vec3f middle = brightest(patchesOf(_faces, 16));
+    const std::vector<Patch> patches = patchesOf(_faces, 8);
+    double around = 0.0, aroundWeight = 0.0, all = 0.0, excess = 0.0;
+    for (const Patch& patch : patches)
+    {
+        const float cosine = patch.towards * middle;
+        all += groundLight(patch);
+        if (cosine > cone || cosine < ring || patch.towards.y() <= 0.0f) continue;
+        around += groundLight(patch);
+        aroundWeight += patch.weight * static_cast<double>(patch.towards.y());
+    }
+    const double evenLight = aroundWeight > 0.0 ? around / aroundWeight : 0.0;
+    osg::Vec3d sum;
+    for (const Patch& patch : patches)
+    {
+        if (patch.towards * middle <= cone || patch.towards.y() <= 0.0f) continue;
+        const double level = evenLight * patch.weight * static_cast<double>(patch.towards.y());
+        const double more = std::max(0.0, groundLight(patch) - level);
+        excess += more;
+        sum += osg::Vec3d(patch.towards) * more;
+    }
+    KeyLight light;
+    if (excess <= 0.02 * all) return light; // an even sky
+    sum.normalize();
+    light.towards = sum;
+    light.share = static_cast<float>(excess / all);
+    return light;
 }
 
 } // namespace osgGpuAnimation

@@ -14,6 +14,13 @@
 namespace osgGpuAnimation
 {
 
+/// The brightest light of surroundings, for a shadow on level ground.
+struct KeyLight
+{
+    osg::Vec3f towards{0, 1, 0}; ///< unit length, glTF's axes; at least 10 degrees above the horizon
+    float share = 0.0f;          ///< of the ground's irradiance, in [0, 1]; 0: the surroundings are even
+};
+
 /// The radiance of surroundings, decoded from a picture: six square faces of linear RGB floats, laid out as GL samples
 /// a cube map (OpenGL 4.6, table 8.19) in glTF's axes (+Y up). Immutable. Every component is in [0, 65504], the range
 /// of half floats: components that are negative or not finite become 0, larger ones 65504.
@@ -37,6 +44,9 @@ public:
     /// The irradiance divided by pi as nine coefficients of 1, y, z, x, xy, yz, 3zz - 1, xz, xx - yy (Ramamoorthi and
     /// Hanrahan, "An Efficient Representation for Irradiance Environment Maps", 2001).
     std::array<osg::Vec3f, 9> harmonics() const;
+
+    /// The light that brightens level ground most, see KeyLight.
+    KeyLight keyLight() const;
 
     /// The unit direction of a place on a face. s, t: in [-1, 1]; t grows with the rows.
     static osg::Vec3f direction(int face, float s, float t);

@@ -76,6 +76,7 @@ osg::ref_ptr<osg::StateSet> groundState(const osg::Matrixd& studioToClip, const 
     state->addUniform(new osg::Uniform("mapFromGround", osg::Matrixf(toStudio * shadow.toMap())));
     state->addUniform(new osg::Uniform("mapSize", osg::Vec3(shadow.getSize() / ground.unit)));
     state->addUniform(new osg::Uniform("modelHeight", static_cast<float>(ground.height / ground.unit)));
+    state->addUniform(new osg::Uniform("shade", static_cast<float>(ground.shade)));
     state->setTextureAttribute(mapUnit, &shadow.getMap(), osg::StateAttribute::PROTECTED);
     state->addUniform(new osg::Uniform("shadowMap", static_cast<int>(mapUnit)));
     return state;

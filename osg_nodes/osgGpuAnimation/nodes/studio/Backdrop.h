@@ -18,6 +18,7 @@ struct Ground
     osg::Vec3d middle;   ///< below the model's middle, in the studio's space
     double unit = 1.0;   ///< the model's radius: the ground is light around it, and fades into the backdrop beyond
     double height = 1.0; ///< the model's, above 0
+    double shade = 0.0;  ///< the share of the light that the shadow takes away, in [0, 1]
 };
 
 /// A rectangle behind everything: a gradient, and a ground in it, which receives the shadow of the key light. One draw

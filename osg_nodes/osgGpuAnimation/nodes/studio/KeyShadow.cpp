@@ -4,6 +4,8 @@
 #include <osg/ColorMask>
 #include <osg/PolygonMode>
 
+#include <cmath>
+
 namespace osgGpuAnimation
 {
 
@@ -54,17 +56,10 @@ KeyShadow::KeyShadow(osg::Group& casters) : _map(new osg::Texture2D), _size(1.0,
     addChild(new Casters(casters));
 }
 
-osg::Vec3d KeyShadow::towardsLight()
+void KeyShadow::fit(const osg::BoundingBoxd& box, const osg::Vec3d& towardsLight)
 {
-    osg::Vec3d direction(0.6, -0.9, 1.1);
-    direction.normalize();
-    return direction;
-}
-
-void KeyShadow::fit(const osg::BoundingBoxd& box)
-{
-    const osg::Vec3d middle = box.center();
-    const osg::Matrixd view = osg::Matrixd::lookAt(middle + towardsLight() * box.radius(), middle, osg::Vec3d(0, 0, 1));
+    const osg::Vec3d middle = box.center(), up(0, std::abs(towardsLight.z()) > 0.99, 1); // not parallel to the light
+    const osg::Matrixd view = osg::Matrixd::lookAt(middle + towardsLight * box.radius(), middle, up);
     osg::BoundingBoxd seen;
     for (unsigned int corner = 0; corner < 8; ++corner)
         seen.expandBy(box.corner(corner) * view);

@@ -19,15 +19,12 @@ public:
     /// casters: the group; it must exist whenever this camera is culled.
     explicit KeyShadow(osg::Group& casters);
 
-    /// From the ground to the key light of Environment's studio, +Z up; of length 1.
-    static osg::Vec3d towardsLight();
-
-    /// Lets the map cover the box. box: valid, in the group's space.
-    void fit(const osg::BoundingBoxd& box);
+    /// Lets the map cover the box. box: valid, in the group's space. towardsLight: in that space, of length 1.
+    void fit(const osg::BoundingBoxd& box, const osg::Vec3d& towardsLight);
 
     /// From the group's space to the map, [0, 1] each way and in depth.
     osg::Matrixd toMap() const;
-    /// What the map covers, in units of the group's space: width, height, depth.
+    /// The extent of the map, in units of the group's space: width, height, depth.
     const osg::Vec3d& getSize() const { return _size; }
     osg::Texture2D& getMap() const { return *_map; } ///< depths, without comparison
 

@@ -27,6 +27,7 @@ std::set<std::size_t> outerInstances(const AnimatedCrowd& crowd)
     for (int x = -1; x <= 1 && crowd.getNumInstances() > 0; ++x)
         for (int y = -1; y <= 1; ++y)
         {
+            if (x == 0 && y == 0) continue;
             const auto along = [&](std::size_t index)
             { return x * crowd.getInstances().position(index).x() + y * crowd.getInstances().position(index).y(); };
             std::size_t farthest = 0;

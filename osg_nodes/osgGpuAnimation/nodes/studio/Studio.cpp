@@ -2,6 +2,7 @@
 #include <osgGpuAnimation/nodes/studio/Studio.h>
 
 #include <osgGpuAnimation/nodes/frame/CullScopes.h>
+#include <osgGpuAnimation/nodes/shading/PrefilteredMap.h>
 #include <osgGpuAnimation/nodes/studio/KeyShadow.h>
 #include <osgGpuAnimation/nodes/studio/ModelExtent.h>
 
@@ -28,6 +29,16 @@ double lowest(const std::vector<osg::Vec3d>& points, double top)
     for (const osg::Vec3d& point : points)
         z = std::min(z, point.z());
     return z;
+}
+
+/// Of the studio's formula, see environment.glsl.
+KeyLight studioLight()
+{
+    KeyLight light;
+    light.towards = osg::Vec3f(0.6f, 1.1f, 0.9f);
+    light.towards.normalize();
+    light.share = 0.29f;
+    return light;
 }
 
 } // namespace
@@ -70,7 +81,7 @@ void Studio::cullSurroundings(osgUtil::CullVisitor& visitor)
 void Studio::fit()
 {
     const osg::BoundingSphere& bound = getBound();
-    if (bound.center() == _fitted.center() && bound.radius() == _fitted.radius()) return;
+    if (!fitLight() && bound.center() == _fitted.center() && bound.radius() == _fitted.radius()) return;
     _fitted = bound;
     const osg::BoundingBoxd box = extentOf(*this);
     const double radius = box.radius();
@@ -82,7 +93,24 @@ void Studio::fit()
     }
     _ground->middle.x() = box.center().x();
     _ground->middle.y() = box.center().y();
-    _shadow->fit(box);
+    _ground->shade = _shade;
+    _shadow->fit(box, _towardsLight);
+}
+
+/// True if the light is another than before.
+bool Studio::fitLight()
+{
+    constexpr double emphasis = 2.0, darkest = 0.8; // shadows are darker than in truth, never black
+    const osg::TextureCubeMap* const map = getMap();
+    const float rotation = getRotation();
+    if (_towardsLight.length2() > 0.0 && map == _fittedMap && rotation == _fittedRotation) return false;
+    _fittedMap = map;
+    _fittedRotation = rotation;
+    const KeyLight light = map ? static_cast<const PrefilteredMap*>(map)->getRadiance().keyLight() : studioLight();
+    const osg::Vec3d towards(light.towards.x(), -light.towards.z(), light.towards.y());
+    _towardsLight = osg::Quat(static_cast<double>(rotation), osg::Vec3d(0, 0, 1)) * towards;
+    _shade = std::min(emphasis * static_cast<double>(light.share), darkest);
+    return true;
 }
 
 void Studio::resizeGLObjectBuffers(unsigned int maxSize)

@@ -14,7 +14,9 @@ namespace osgGpuAnimation
 /// ground are no children: bounds, intersectors and near and far planes do not see them. They are drawn first, over the
 /// whole viewport, and in no depth-only camera.
 ///
-/// The update traversal fits ground and shadow to the children. The ground keeps the height of the first update.
+/// The update traversal fits ground and shadow to the children. The ground keeps the height of the first update. In
+/// surroundings from a picture, the shadow is that of their brightest light above the ground; in even ones, the ground
+/// is only darker close to the model.
 class Studio : public Environment
 {
 public:
@@ -36,11 +38,16 @@ protected:
 
 private:
     void fit();
+    bool fitLight();
     void cullSurroundings(osgUtil::CullVisitor& visitor);
 
     osg::ref_ptr<KeyShadow> _shadow;
     Backdrop _backdrop;
-    osg::BoundingSphere _fitted; ///< the bound that ground and shadow are fitted to
+    osg::BoundingSphere _fitted;                        ///< the bound that ground and shadow are fitted to
+    osg::ref_ptr<const osg::TextureCubeMap> _fittedMap; ///< and the surroundings
+    float _fittedRotation = 0.0f;                       ///< radians
+    osg::Vec3d _towardsLight;                           ///< of length 1; 0: not fitted
+    double _shade = 0.0;                                ///< see Ground
     std::optional<Ground> _ground;
 };
 

@@ -52,12 +52,12 @@ bool RaisedHome::handle(const osgGA::GUIEventAdapter& event, osgGA::GUIActionAda
     const std::vector<osg::Vec3d> points = group ? shownPoints(*group) : std::vector<osg::Vec3d>();
     if (points.empty()) return false;
 
-    const Standpoint place = raisedStandpoint(points, fieldOfView, aspect, margin);
+    Standpoint place = raisedStandpoint(points, fieldOfView, aspect, margin);
     const osg::Matrixd toWorld = osg::computeLocalToWorld(visitor->getNodePath());
     const osg::Vec3d up = osg::Matrixd::transform3x3(osg::Vec3d(0, 0, 1), toWorld);
-    manipulator->setHomePosition(place.eye * toWorld, place.middle * toWorld, up, false);
-    manipulator->setAutoComputeHomePosition(false);
-    manipulator->home(event, *view);
+    place.eye = place.eye * toWorld;
+    place.middle = place.middle * toWorld;
+    goHome(event, *view, place, up);
     return false;
 }
 

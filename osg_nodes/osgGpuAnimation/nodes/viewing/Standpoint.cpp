@@ -4,6 +4,8 @@
 #include <osg/BoundingBox>
 #include <osg/Math>
 
+#include <osgGA/CameraManipulator>
+
 #include <algorithm>
 #include <cmath>
 
@@ -62,6 +64,14 @@ Standpoint raisedStandpoint(const std::vector<osg::Vec3d>& points, double fieldO
     }
     place.eye = place.middle + back * distance;
     return place;
+}
+
+void goHome(const osgGA::GUIEventAdapter& event, osgViewer::View& view, const Standpoint& place, const osg::Vec3d& up)
+{
+    osgGA::CameraManipulator& manipulator = *view.getCameraManipulator();
+    manipulator.setHomePosition(place.eye, place.middle, up, false);
+    manipulator.setAutoComputeHomePosition(false);
+    manipulator.home(event, view);
 }
 
 } // namespace osgGpuAnimation

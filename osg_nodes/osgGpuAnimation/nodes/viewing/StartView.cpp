@@ -3,6 +3,8 @@
 
 #include <osgGpuAnimation/nodes/frame/CullScopes.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
+#include <osgGpuAnimation/nodes/OsgMatrix.h>
+#include <osgGpuAnimation/nodes/viewing/Standpoint.h>
 
 #include <osg/NodeVisitor>
 #include <osg/ValueObject>
@@ -48,19 +50,18 @@ bool isBelowAttachment(const osg::Node& node)
     return false;
 }
 
-void goHome(const osgGA::GUIEventAdapter& event, osgViewer::View& view, const osg::Matrixd& toWorld)
+/// The position of the camera, and its target: manipulators turn about it.
+Standpoint standpointOf(const osgViewer::View& view, const osg::Matrixd& toWorld)
 {
-    const osg::Vec3d eye = toWorld.getTrans();
+    Standpoint place;
+    place.eye = toWorld.getTrans();
     const osg::Vec3d ahead = osg::Matrixd::transform3x3(osg::Vec3d(0, 0, -1), toWorld);
-    const osg::Vec3d up = osg::Matrixd::transform3x3(osg::Vec3d(0, 1, 0), toWorld);
-    // Manipulators turn about the centre: as deep as the scene's middle, where the camera looks at it.
+    // As deep as the scene's middle, where the camera looks at it.
     const osg::BoundingSphere bound = view.getSceneData() ? view.getSceneData()->getBound() : osg::BoundingSphere();
-    const double depth = bound.valid() ? (osg::Vec3d(bound.center()) - eye) * ahead : 1.0;
+    const double depth = bound.valid() ? (osg::Vec3d(bound.center()) - place.eye) * ahead : 1.0;
     const double distance = depth > 0.0 ? depth : std::max<double>(bound.radius(), 1e-6);
-    osgGA::CameraManipulator& manipulator = *view.getCameraManipulator();
-    manipulator.setHomePosition(eye, eye + ahead * distance, up, false);
-    manipulator.setAutoComputeHomePosition(false);
-    manipulator.home(event, view);
+    place.middle = place.eye + ahead * distance;
+    return place;
 }
 
 } // namespace
@@ -82,7 +83,7 @@ osg::Matrixd viewToWorld(const osg::CameraView& view)
 {
     const osg::MatrixList paths = view.getWorldMatrices();
     if (paths.empty()) return osg::Matrixd();
-    return osg::Matrixd::rotate(paths.front().getRotate()) * osg::Matrixd::translate(paths.front().getTrans());
+    return rotationOf(paths.front()) * osg::Matrixd::translate(paths.front().getTrans());
 }
 
 StartView::StartView(const StartView& other, const osg::CopyOp& copyop)
@@ -129,7 +130,8 @@ void StartView::start(const osgGA::GUIEventAdapter& event, osgViewer::View& view
     if (!camera) return;
     _isFollowing = isBelowAttachment(*camera);
     setProjection(*view.getCamera(), *camera);
-    goHome(event, view, viewToWorld(*camera));
+    const osg::Matrixd toWorld = viewToWorld(*camera);
+    goHome(event, view, standpointOf(view, toWorld), osg::Matrixd::transform3x3(osg::Vec3d(0, 1, 0), toWorld));
 }
 
 void StartView::followAfterUpdate(osg::Node& node)

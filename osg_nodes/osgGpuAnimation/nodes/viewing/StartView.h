@@ -29,7 +29,7 @@ osg::Matrixd viewToWorld(const osg::CameraView& view);
 ///     model->addEventCallback(new StartView("Camera"));
 ///
 /// At the first frame of the first view that has a camera manipulator, the view gets the projection of the CameraView.
-/// A CameraView that stands still becomes the home position of the manipulator (osgviewer's, too), which goes there.
+/// A CameraView that does not move becomes the home position of the manipulator (osgviewer's, too), which moves there.
 /// One below a JointAttachment moves: the manipulator follows it until a mouse button or the wheel is used, and again
 /// after the manipulators' home key, the space bar. The node finds the CameraView by its name, the first one below.
 class StartView : public osgGA::GUIEventHandler

@@ -8,10 +8,10 @@
 #include <string>
 #include <thread>
 
-namespace osgGpuAnimation::tool
+namespace osgGpuAnimation::gltf
 {
 
-/// Says on standard error what a command does if that takes longer than half a second. The end clears the line. If
+/// Says on standard error what a program does if that takes longer than half a second. The end clears the line. If
 /// standard error is no terminal, nothing is written.
 ///
 ///     ProgressLine progress("drawing");
@@ -39,4 +39,4 @@ private:
     std::thread _thread; ///< only on a terminal
 };
 
-} // namespace osgGpuAnimation::tool
+} // namespace osgGpuAnimation::gltf

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "tool/ProgressLine.h"
+#include "gltf/file/ProgressLine.h"
 
 #include <iostream>
 #include <utility>
 
 #include <unistd.h>
 
-namespace osgGpuAnimation::tool
+namespace osgGpuAnimation::gltf
 {
 
 namespace
@@ -60,4 +60,4 @@ void ProgressLine::write() const
     std::cerr << seconds << " s" << std::flush;
 }
 
-} // namespace osgGpuAnimation::tool
+} // namespace osgGpuAnimation::gltf

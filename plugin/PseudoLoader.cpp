@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+#include "PseudoLoader.h"
+
+#include <osgDB/FileNameUtils>
+#include <osgDB/Registry>
+
+#include <new>
+
+namespace osgGpuAnimation
+{
+
+PseudoLoader::ReadResult PseudoLoader::readObject(const std::string& fileName, const Options* options) const
+{
+    return readNode(fileName, options);
+}
+
+PseudoLoader::ReadResult PseudoLoader::readNode(const std::string& fileName, const Options* options) const
+{
+    if (!acceptsExtension(osgDB::getLowerCaseFileExtension(fileName))) return ReadResult::FILE_NOT_HANDLED;
+    try
+    {
+        return read(osgDB::getNameLessExtension(fileName), options);
+    }
+    catch (const std::bad_alloc&)
+    {
+        return ReadResult::INSUFFICIENT_MEMORY_TO_LOAD;
+    }
+}
+
+PseudoLoader::ReadResult PseudoLoader::readModel(const std::string& modelFile, const Options* options,
+                                                 const std::string& owner)
+{
+    ReadResult model = osgDB::Registry::instance()->readNode(modelFile, options);
+    if (model.validNode()) return model;
+    if (!model.message().empty()) return ReadResult(modelFile + ": " + model.message());
+    return ReadResult("the " + owner + "'s model " + modelFile + " cannot be read");
+}
+
+} // namespace osgGpuAnimation

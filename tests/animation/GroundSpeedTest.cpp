@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: MIT
+#include "support/GaitSet.h"
+
+#include <osgGpuAnimation/animation/AnimationController.h>
+#include <osgGpuAnimation/animation/ClipBuilder.h>
+#include <osgGpuAnimation/animation/Pose.h>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+const std::vector<Stride> strides{{"Walk", 1.0, 1.2, 0.62}, {"March", 0.8, 2.0, 0.54}, {"Run", 0.6, 3.2, 0.36}};
+
+TEST(GroundSpeedTest, ContactsAreThoseOfTheStride)
+{
+    const auto set = makeStridingSet(strides);
+    for (const Stride& stride : strides)
+        for (const char* side : {"L", "R"})
+        {
+            SCOPED_TRACE(std::string(stride.name) + side);
+            const auto contacts = findFootContacts(*set, stride.name, std::string("foot.") + side);
+            ASSERT_TRUE(contacts) << contacts.error().message;
+            ASSERT_EQ(contacts.value().size(), 1u);
+            // The foot is below a fifth of its lift for a while after it leaves the ground.
+            const double touch = *side == 'L' ? 0.0 : 0.5 * stride.duration;
+            double error = contacts.value()[0].touch - touch;
+            if (error > 0.5 * stride.duration) error -= stride.duration;
+            EXPECT_NEAR(error, 0.0, 0.05 * stride.duration);
+            EXPECT_NEAR(contacts.value()[0].leave - contacts.value()[0].touch, stride.duty * stride.duration,
+                        0.08 * stride.duration);
+        }
+    const auto hips = findFootContacts(*set, "Walk", "hips");
+    ASSERT_TRUE(hips);
+    ASSERT_EQ(hips.value().size(), 1u) << "it never lifts";
+    EXPECT_EQ(hips.value()[0].touch, 0.0);
+    EXPECT_NEAR(hips.value()[0].leave, 1.0, 1e-6);
+    EXPECT_FALSE(findFootContacts(*set, "Fly", "foot.L"));
+    EXPECT_FALSE(findFootContacts(*set, "Walk", "wing"));
+    EXPECT_FALSE(findFootContacts(*set, 9, 0));
+    EXPECT_FALSE(findFootContacts(*set, 0, 99));
+}
+
+TEST(GroundSpeedTest, AClipIsMeasuredByItsFeet)
+{
+    const auto set = makeStridingSet(strides);
+    for (std::size_t clip = 0; clip < strides.size(); ++clip)
+    {
+        EXPECT_NEAR(measureGroundSpeed(*set, clip), strides[clip].speed, 0.01 * strides[clip].speed);
+        EXPECT_EQ(measureGroundSpeed(*set, clip), set->knownGroundSpeed(clip));
+    }
+    AnimationController controller(set);
+    EXPECT_FALSE(controller.layer(0).setGroundSpeed(1.0)) << "nothing plays";
+    ASSERT_TRUE(controller.play("Run"));
+    EXPECT_FALSE(controller.layer(0).setGroundSpeed(std::nan("")));
+    ASSERT_TRUE(controller.layer(0).setGroundSpeed(-1.6));
+    EXPECT_NEAR(controller.speed(), -0.5, 0.005);
+    AnimationController standing(
+        makeGaitSet()->withClips({ClipBuilder(makeGaitSet()->skeleton(), {}).build("Stand")}).value());
+    ASSERT_TRUE(standing.play("Stand"));
+    EXPECT_FALSE(standing.layer(0).setGroundSpeed(1.0));
+    EXPECT_TRUE(standing.layer(0).setGroundSpeed(0.0));
+    EXPECT_EQ(standing.speed(), 1.0);
+}
+
+glm::dvec3 placeOf(const AnimationController& controller, const char* joint)
+{
+    const std::size_t index = controller.set().skeleton().jointNamed(joint).value();
+    const AffineMatrix matrix = Pose::jointToModel(controller.set(), controller.instruction(), index);
+    return {matrix.rows[0].w, matrix.rows[1].w, matrix.rows[2].w};
+}
+
+/// True if all clips that play have the foot on the ground.
+bool isPlanted(const AnimationController& controller, const char* foot)
+{
+    const ClipMixer& mixer = controller.layer(0).mixer();
+    for (std::size_t i = 0; i < mixer.activeClipCount(); ++i)
+    {
+        const ClipPlayback& playback = mixer.activeClip(i).playback;
+        const double phase = std::fmod(playback.phase() + (foot[5] == 'R' ? 0.5 : 0.0), 1.0);
+        if (phase >= strides[static_cast<std::size_t>(playback.clip())].duty) return false;
+    }
+    return true;
+}
+
+struct Slide
+{
+    double net = 0.0,  ///< from the first to the last moment of each contact, by the way of the character
+        largest = 0.0; ///< distance of a planted foot from its place at touch, by the way of a contact
+};
+
+Slide slideOf(AnimationController& controller, double speed)
+{
+    constexpr double frame = 1.0 / 480.0;
+    double slid = 0.0, way = 0.0, largest = 0.0, contacts = 0.0;
+    for (const char* foot : {"foot.L", "foot.R"})
+    {
+        glm::dvec3 began(0.0), last(0.0);
+        int frames = -1; // of the contact; below 0: the first one began before the first frame
+        bool wasPlanted = true;
+        for (int i = 0; i < 2400; ++i)
+        {
+            controller.advance(frame);
+            glm::dvec3 place = placeOf(controller, foot) + glm::dvec3(0.0, 0.0, speed * frame * i);
+            place.y = 0.0; // sliding is along the ground
+            const bool isNow = isPlanted(controller, foot);
+            if (isNow && !wasPlanted) began = place, frames = 0;
+            if (isNow && wasPlanted && frames >= 0) ++frames;
+            if (isNow && frames >= 0) largest = std::max(largest, glm::distance(place, began));
+            if (!isNow && wasPlanted && frames > 0)
+            {
+                slid += glm::distance(last, began);
+                way += speed * frame * frames;
+                contacts += 1.0;
+            }
+            last = place;
+            wasPlanted = isNow;
+        }
+    }
+    EXPECT_GE(contacts, 4.0);
+    return {slid / way, largest * contacts / way};
+}
+
+TEST(GroundSpeedTest, BetweenTwoGaitsFeetDoNotSlide)
+{
+    const auto bare = makeStridingSet(strides);
+    std::vector<Clip> clips;
+    for (std::size_t clip = 0; clip < strides.size(); ++clip)
+    {
+        std::vector<ClipMarker> markers;
+        for (const char* side : {"L", "R"})
+        {
+            const double touch = *side == 'L' ? 0.0 : 0.5 * strides[clip].duration;
+            const double leave = touch + strides[clip].duty * strides[clip].duration;
+            markers.push_back({touch, std::string("touch ") + side});
+            markers.push_back({std::fmod(leave, strides[clip].duration), std::string("leave ") + side});
+        }
+        clips.push_back(bare->clips()[clip].withMarkers(markers).value());
+    }
+    const auto set = bare->withClips(clips).value();
+    struct Case
+    {
+        const char *first, *second;
+        double from, to;
+        std::vector<std::string> markers;
+    };
+    const Case cases[] = {
+        {"Walk", "March", 1.2, 2.0, {"touch L", "leave R", "touch R", "leave L"}},
+        {"Walk", "March", 1.2, 2.0, {}},
+        {"Walk", "Run", 1.2, 3.2, {}},
+        {"March", "Run", 2.0, 3.2, {}},
+    };
+    for (const Case& c : cases)
+    {
+        SCOPED_TRACE(std::string(c.first) + " to " + c.second + (c.markers.empty() ? "" : " with markers"));
+        const auto space = BlendSpace::create(*set, {{c.first, c.from}, {c.second, c.to}}, c.markers);
+        ASSERT_TRUE(space) << space.error().message;
+        double worst = 0.0, largest = 0.0;
+        for (int step = 0; step <= 16; ++step)
+        {
+            const double speed = c.from + (c.to - c.from) * step / 16.0;
+            AnimationController controller(set);
+            ASSERT_TRUE(controller.play(space.value()));
+            ASSERT_TRUE(controller.setParameter(speed));
+            ASSERT_TRUE(controller.layer(0).setGroundSpeed(speed));
+            const Slide slide = slideOf(controller, speed);
+            worst = std::max(worst, slide.net);
+            largest = std::max(largest, slide.largest);
+        }
+        RecordProperty("net", std::to_string(worst));
+        RecordProperty("largest", std::to_string(largest));
+        EXPECT_LE(worst, 0.01);
+        EXPECT_LE(largest, 0.025) << "angles are mixed, not places: the speed varies within a contact";
+    }
+}
+
+} // namespace
+} // namespace osgGpuAnimation

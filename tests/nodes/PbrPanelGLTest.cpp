@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+#include "nodes/PbrPanelGLTest.h"
+
+#include "nodes/Panel.h"
+
+#include <osgGpuAnimation/nodes/CharacterProgram.h>
+
+#include <layout.glsl>
+
+#include <osg/FrontFace>
+#include <osg/LightSource>
+#include <osg/MatrixTransform>
+
+#include <algorithm>
+
+namespace osgGpuAnimation
+{
+
+osg::ref_ptr<osg::Texture2D> plainTexture(const osg::Vec4& value, bool isColor)
+{
+    osg::ref_ptr<osg::Image> image = new osg::Image;
+    image->allocateImage(2, 2, 1, GL_RGBA, GL_UNSIGNED_BYTE);
+    for (unsigned int texel = 0; texel < 4; ++texel)
+        image->setColor(value, texel % 2, texel / 2);
+    osg::ref_ptr<osg::Texture2D> texture = new osg::Texture2D(image);
+    texture->setInternalFormat(isColor ? GL_SRGB8_ALPHA8 : GL_RGBA8);
+    texture->setFilter(osg::Texture::MIN_FILTER, osg::Texture::LINEAR);
+    texture->setWrap(osg::Texture::WRAP_S, osg::Texture::REPEAT);
+    texture->setWrap(osg::Texture::WRAP_T, osg::Texture::REPEAT);
+    return texture;
+}
+
+float encoded(double linear)
+{
+    return displayColor(osg::Vec4(static_cast<float>(linear), 0, 0, 1)).r();
+}
+
+osg::Geometry* findGeometry(osg::Node& node)
+{
+    if (auto* const geometry = dynamic_cast<osg::Geometry*>(&node)) return geometry; // a SkinnedGeometry too
+    osg::Group* const group = node.asGroup();
+    for (unsigned int i = 0; group && i < group->getNumChildren(); ++i)
+        if (osg::Geometry* const found = findGeometry(*group->getChild(i))) return found;
+    return nullptr;
+}
+
+osg::ref_ptr<osg::Vec4Array> attribute(const osg::Geometry& mesh, const osg::Vec4& value)
+{
+    const std::vector<osg::Vec4> all(mesh.getVertexArray()->getNumElements(), value);
+    osg::ref_ptr<osg::Vec4Array> array = new osg::Vec4Array(all.begin(), all.end());
+    array->setBinding(osg::Array::BIND_PER_VERTEX);
+    return array;
+}
+
+osg::ref_ptr<osg::Node> pbrPanel(bool isMoving, PbrMaterial material, const osg::Vec3& scale, const osg::Vec4& tangent)
+{
+    osg::ref_ptr<AnimatedCharacter> character = makePanelCharacter();
+    osg::ref_ptr<osg::MatrixTransform> root = new osg::MatrixTransform(osg::Matrix::scale(scale));
+    osg::ref_ptr<osg::Node> subject = isMoving ? osg::ref_ptr<osg::Node>(character) : makeBaked(*character);
+    osg::Geometry& mesh = isMoving ? static_cast<osg::Geometry&>(*character->getChild(0)) : *findGeometry(*subject);
+    mesh.setStateSet(new osg::StateSet);
+    osg::StateSet& state = *mesh.getStateSet();
+    if (tangent.w() != 0.0f) mesh.setVertexAttribArray(POSE_TANGENT_LOCATION, attribute(mesh, tangent));
+    material.hasTangents = tangent.w() != 0.0f;
+    applyPbrMaterial(state, material);
+    if (isMoving)
+        applyCharacterProgram(state);
+    else
+        applySurfaceProgram(state, true);
+    if (scale.x() * scale.y() * scale.z() < 0.0f)
+        state.setAttributeAndModes(new osg::FrontFace(osg::FrontFace::CLOCKWISE));
+    root->addChild(subject);
+    return root;
+}
+
+PbrPanelGLTest::PbrPanelGLTest()
+{
+    light->setPosition(osg::Vec4(0.3f, -1.0f, 0.5f, 0.0f));
+    light->setAmbient(osg::Vec4(0, 0, 0, 1));
+    light->setDiffuse(osg::Vec4(0.7f, 0.7f, 0.7f, 1));
+    surrounding->setAmbientIntensity(osg::Vec4(0.2f, 0.2f, 0.2f, 1));
+}
+
+osg::ref_ptr<osg::Image> PbrPanelGLTest::pictureOf(osg::Node* subject, osg::Group* group)
+{
+    const osg::ref_ptr<osg::Group> root = group;
+    root->addChild(subject);
+    osg::StateSet& state = *root->getOrCreateStateSet();
+    state.setMode(GL_LIGHTING, osg::StateAttribute::ON);
+    const osg::ref_ptr<osg::LightSource> source = new osg::LightSource; // an attribute alone moves with each mesh
+    source->setLight(light);
+    source->setStateSetModes(state, osg::StateAttribute::ON);
+    root->addChild(source);
+    state.setAttribute(surrounding);
+    viewer().setLightingMode(osg::View::NO_LIGHT);
+    viewer().getCamera()->setClearColor({0, 0, 1, 1});
+    osg::ref_ptr<osg::Image> image = ViewerGLTest::pictureOf(root, {0.0});
+    EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
+    return image;
+}
+
+osg::Vec4 PbrPanelGLTest::middle(const osg::Image& image)
+{
+    double sumX = 0, sumY = 0, count = 0;
+    for (int y = 0; y < image.t(); ++y)
+        for (int x = 0; x < image.s(); ++x)
+            if (image.getColor(x, y) != osg::Vec4(0, 0, 1, 1)) sumX += x, sumY += y, count += 1;
+    EXPECT_GT(count, 20);
+    const int x = static_cast<int>(sumX / std::max(count, 1.0)), y = static_cast<int>(sumY / std::max(count, 1.0));
+    position.set((x + 0.5) * 8 / image.s() - 4, (y + 0.5) * 8 / image.t() - 4, -10);
+    return image.getColor(x, y);
+}
+
+} // namespace osgGpuAnimation

@@ -242,7 +242,7 @@ Result<osg::ref_ptr<osg::Node>> makeGazers(const osg::Node& model)
         const double shade = between(0.7, 1.0);
         const auto instance =
             crowd->add(osg::Matrixd::rotate(facing, osg::Vec3d(0, 0, 1)) * osg::Matrixd::translate(place), controller,
-                       osg::Vec4(shade, shade * between(0.8, 1.0), shade, 1.0));
+                       osg::Vec4(shade, shade * between(0.9, 1.0), shade * between(0.8, 1.0), 1.0));
         if (!instance) return instance.error();
         if (const Result<bool> followed = crowd->constraint(instance.value(), "look").follow(bird); !followed)
             return followed.error();

@@ -159,6 +159,7 @@ struct Row
     double seconds = 0.0; ///< of the animation before the picture
     double slope = 0.0;   ///< radians, of the ground; 0: none is drawn
     double facing = 35.0; ///< degrees; 0: towards the camera
+    double angle = 22.0;  ///< degrees, that the picture shows from top to bottom
 };
 
 osg::ref_ptr<osg::Group> makeRow(const osg::Node& model, const Row& row)
@@ -292,19 +293,21 @@ int main(int argc, char** argv)
     if (!model) return 1;
     if (isViewed) return view(*model);
 
-    const Row rows[] = {
-        {"Crossfade", crossfade},   {"BlendSpace", blendGaits},      {"Mask", maskedWave},
-        {"Additive", additiveWave}, {"PosedJoints", poseArm},        {"Springs", swingScarf, 2.0, 0.0, 140.0},
-        {"LookAt", lookAtLight},    {"Feet", walkOnSlope, 0.0, 0.3}, {"Attachment", holdStaff}};
-    const Sight before{{0, -5.6, 1.2}, {0, 0, 0.86}, 22.0};
+    const Row rows[] = {{"Crossfade", crossfade}, {"BlendSpace", blendGaits},
+                        {"Mask", maskedWave},     {"Additive", additiveWave},
+                        {"PosedJoints", poseArm}, {"Springs", swingScarf, 2.0, 0.0, 140.0},
+                        {"LookAt", lookAtLight},  {"Feet", walkOnSlope, 0.0, 0.3, 35.0, 32.0},
+                        {"Attachment", holdStaff}};
     for (const Row& row : rows)
-        if (!succeeds(draw(makeRow(*model, row), before, row.seconds, folder + "/" + row.name + ".png"))) return 1;
+        if (!succeeds(draw(makeRow(*model, row), {{0, -5.6, 1.2}, {0, 0, 0.86}, row.angle}, row.seconds,
+                           folder + "/" + row.name + ".png")))
+            return 1;
     AnimatedCharacter* wanderer = findCharacter(*model);
     if (!wanderer) return 1;
     const Result<osg::ref_ptr<osg::Node>> gazers = makeGazers(*model), hill = makeHill(*model);
     if (!succeeds(gazers) || !succeeds(hill)) return 1;
     const Sight fromAbove{{-2, -4.5, 4.2}, {1, 9, 0}, 36.0}, square{{0, -6, 2.9}, {0, 6, 0.9}, 36.0};
-    const Sight onTheHill{{0.2, -1.4, 1.7}, {0.3, 2.0, 0.9}, 44.0};
+    const Sight onTheHill{{-0.1, -2.2, 1.9}, {0.0, 2.0, 0.75}, 40.0};
     return succeeds(draw(makeCrowd(*wanderer), fromAbove, 0.0, folder + "/Crowd.png")) &&
                    succeeds(draw(gazers.value(), square, 0.0, folder + "/Gaze.png")) &&
                    succeeds(draw(hill.value(), onTheHill, 3.0, folder + "/Hill.png"))

@@ -254,6 +254,14 @@ TEST(LookAtTest, turnsNoFasterThanItsSpeed)
     ASSERT_TRUE(controller.constraint("look").clear());
     EXPECT_NEAR(Sight(controller, "head", look).angleTo(target), pi / 2, 1e-6);
     EXPECT_NEAR(Sight(copy, "head", look).angleTo(target), 0.0, 1e-4);
+
+    // In a set where the look-at has no largest speed, later targets are met at once.
+    LookAt fast{"look", {"head"}};
+    AnimationController other(limbOf({jointAt("head", {0, 1, 0})}, {fast}).value(), copy);
+    const glm::dvec3 later(0, 4, 1);
+    ASSERT_TRUE(other.constraint("look").setTarget(glm::vec3(later)));
+    other.advance(0.01);
+    EXPECT_NEAR(Sight(other, "head", fast).angleTo(later), 0.0, 1e-4);
 }
 
 // The second constraint sees the first one's result, even if the first one's chain hangs below its own.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "support/RandomSet.h"
 
+#include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/gpu/PoseBatch.h>
 
 #include <layout.glsl>
@@ -48,6 +49,19 @@ TEST(PoseBatchTest, loadsAreToldApart)
 {
     for (const LoadData& data : loadData)
         EXPECT_EQ(PoseBatch::blendCostOf(instructionOf(data)), data.load) << data.name;
+}
+
+// A layer may have faded its pose out: the instruction still knows the pose, and no sample shows it.
+TEST(PoseBatchTest, onlyPosesThatASampleShowsCount)
+{
+    const auto set = makeRandomSet({});
+    const auto pose = std::make_shared<JointPose>(set);
+    ASSERT_TRUE(pose->setTranslation(0, glm::vec3(1, 2, 3)));
+    PoseInstruction instruction = instructionOf(loadData[0]);
+    instruction.poses.push_back(pose);
+    EXPECT_EQ(PoseBatch::blendCostOf(instruction), BlendCost::Plain);
+    instruction.samples[0].control |= POSE_SAMPLE_POSED;
+    EXPECT_EQ(PoseBatch::blendCostOf(instruction), BlendCost::Posed);
 }
 
 TEST(PoseBatchTest, aFullBatchSuitsThoseOfItsLoadAlone)

@@ -33,8 +33,8 @@ namespace
 
 constexpr int links = 4; ///< joints of the tail
 
-/// A body that walks to and fro, turns and nods, with a tail of 0.3 m a joint and a leg.
-std::shared_ptr<const AnimationSet> dog()
+/// A body that walks to and fro, turns and nods, with a tail of 0.3 m a joint and a leg. duration: seconds of its clip.
+std::shared_ptr<const AnimationSet> dog(double duration)
 {
     std::vector<Joint> joints(3 + links);
     const auto define = [&](std::size_t index, const char* name, int parent, const glm::vec3& place)
@@ -57,7 +57,7 @@ std::shared_ptr<const AnimationSet> dog()
     Channel turns{Channel::Path::Rotation, Channel::Interpolation::Linear, 0, {}, {}};
     for (int key = 0; key <= 60; ++key)
     {
-        const double time = key / 30.0, phase = std::acos(-1.0) * time;
+        const double time = duration * key / 60.0, phase = std::acos(-1.0) * key / 30.0;
         moves.times.push_back(time);
         turns.times.push_back(time);
         for (const double value : {0.5 * std::sin(phase), 1.0 + 0.1 * std::sin(2.0 * phase), 0.0})
@@ -89,8 +89,9 @@ std::vector<SpringCollider> obstacles()
 
 struct Dog
 {
-    explicit Dog(std::vector<SpringChain> chains = {tail()}, std::vector<SpringCollider> colliders = {})
-        : character(new AnimatedCharacter(dog())), springs(new SpringBones)
+    explicit Dog(std::vector<SpringChain> chains = {tail()}, std::vector<SpringCollider> colliders = {},
+                 double duration = 2.0)
+        : character(new AnimatedCharacter(dog(duration))), springs(new SpringBones)
     {
         EXPECT_TRUE(character->setFileToNode(osg::Matrixd::rotate(osg::PI_2, osg::Vec3d(1, 0, 0))));
         EXPECT_TRUE(character->getController().play("wag"));
@@ -393,6 +394,83 @@ TEST(SpringBonesTest, beyondTheDistanceTheClipsAloneAreShown)
         const double off = (dog.joint("tail3") - stiff.joint("tail3")).length();
         EXPECT_EQ(off > 1e-5, swings) << off << " at " << time << " s";
     }
+}
+
+// A loop's end is no seek: in sums of frame times, rounding may put it between two equal times.
+TEST(SpringBonesTest, loopsAreNoJumps)
+{
+    for (const double duration : {0.2, 0.5, 1.2})
+        for (const double rate : {24.0, 30.0, 144.0})
+        {
+            Dog dog({tail()}, {}, duration), stiff({}, {}, duration);
+            for (Dog* each : {&dog, &stiff})
+                each->character->getController().setSpeed(1.2);
+            double least = 1.0;
+            for (int frame = 0; frame < 60.0 * rate; ++frame)
+            {
+                dog.updateTo(frame / rate);
+                stiff.updateTo(frame / rate);
+                if (frame > rate) least = std::min(least, (dog.joint("tail3") - stiff.joint("tail3")).length());
+            }
+            EXPECT_GT(least, 1e-5) << duration << " s, " << rate << " frames a second"; // gravity never lets them rest
+        }
+}
+
+TEST(SpringBonesTest, copiesOfAStoppedCharacterSwing)
+{
+    Dog dog, stiff(std::vector<SpringChain>{});
+    dog.updateTo(0.0);
+    dog.springs->setMaxDistance(20.0); // nobody sees it
+    for (int frame = 1; frame <= 60; ++frame)
+        dog.updateTo(frame / 60.0);
+    const osg::ref_ptr<AnimatedCharacter> copy = osg::clone(dog.character.get(), osg::CopyOp::DEEP_COPY_NODES);
+    dog.place->setChild(0, copy);
+    dog.character = copy;
+    dog.springs->setMaxDistance(std::numeric_limits<double>::infinity());
+    for (int frame = 0; frame <= 120; ++frame)
+    {
+        if (frame > 60) dog.updateTo(frame / 60.0);
+        stiff.updateTo(frame / 60.0);
+    }
+    EXPECT_GT((dog.joint("tail3") - stiff.joint("tail3")).length(), 0.02);
+}
+
+TEST(SpringBonesTest, severalPlacesOfACharacterAreOnePose)
+{
+    Dog dog, twice;
+    const osg::ref_ptr<osg::MatrixTransform> other = new osg::MatrixTransform(osg::Matrixd::translate(50, 0, 0));
+    other->addChild(twice.character);
+    twice.place->addChild(other);
+    for (int frame = 0; frame <= 100; ++frame)
+    {
+        dog.updateTo(frame / 144.0);
+        twice.updateTo(frame / 144.0);
+    }
+    const auto tailOf = [](const Dog& each) { return each.character->jointToModel("tail3").value().getTrans(); };
+    EXPECT_LT((tailOf(dog) - tailOf(twice)).length(), 1e-6);
+}
+
+TEST(SpringBonesTest, jointsOfEarlierChainsReturnToTheClips)
+{
+    Dog dog, stiff(std::vector<SpringChain>{});
+    for (int frame = 0; frame <= 60; ++frame)
+    {
+        if (frame == 30)
+        {
+            ASSERT_TRUE(dog.springs->setChains(dog.character->getAnimationSet(), {}));
+        }
+        dog.updateTo(frame / 60.0);
+        stiff.updateTo(frame / 60.0);
+    }
+    EXPECT_LT((dog.joint("tail3") - stiff.joint("tail3")).length(), 1e-6);
+}
+
+TEST(SpringBonesTest, hugeTimesEnd)
+{
+    Dog dog;
+    for (int i = 0; i < 3; ++i)
+        dog.updateTo(1.8e18); // nanoseconds since 1970
+    EXPECT_TRUE(dog.joint("tail3").valid());
 }
 
 struct FaultCase

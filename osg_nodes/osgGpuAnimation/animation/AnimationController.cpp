@@ -6,6 +6,8 @@
 #include <osgGpuAnimation/animation/playback/BlendList.h>
 #include <osgGpuAnimation/animation/playback/FrameEvents.h>
 
+#include <glm/gtc/constants.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -94,7 +96,11 @@ AnimationController::AnimationController(std::shared_ptr<const AnimationSet> set
     const std::vector<ConstraintChain>& chains = other.set().constraintChains();
     for (std::size_t c = 0; c < chains.size(); ++c)
         if (const Result<std::size_t> index = _set->constraintNamed(chains[c].name); index)
+        {
             goal(index.value()) = other._goals->goal(c);
+            // Targets that turn at once have no intermediate ones.
+            if (!(_set->constraintChains()[index.value()].turnSpeed > 0.0)) goal(index.value()).shown.reset();
+        }
     rebuildInstruction();
 }
 
@@ -290,7 +296,7 @@ Result<bool> ConstraintHandle::setPole(const glm::vec3& direction)
 Result<bool> ConstraintHandle::setTwist(float radians)
 {
     // The nearest equal angle: shaders compute sines of small angles only.
-    const double turn = 2.0 * 3.14159265358979;
+    const double turn = glm::two_pi<double>();
     const double angle = std::isfinite(radians) ? std::remainder(static_cast<double>(radians), turn) : 0.0;
     return change(std::isfinite(radians), "the twist",
                   [&](ConstraintGoal& goal) { goal.target.twist = static_cast<float>(angle); });

@@ -317,7 +317,7 @@ void AnimationLayer::collectPose(BlendList& out) const
 
 void AnimationLayer::collect(BlendList& out) const
 {
-    if (_posed && _posed->isShown()) collectPose(out);
+    if (_posed && _posed->isShown() && _weight.value() > 0.0) collectPose(out);
     if (_state == PlayState::Stopped) return;
     for (std::size_t v = 0; v < _mixer.activeClipCount(); ++v)
     {

@@ -247,11 +247,17 @@ Result<bool> JointPose::setTracks(const std::vector<Track>& tracks)
         bool isGood = stored.track < _set->trackCount() && stored.numbers >> 12 == 0;
         if (isGood && hasJoint(stored.track))
         {
-            const glm::vec4& q = stored.values.rotation;
-            if (has(Part::Translation))
-                isGood = pose.setTranslation(stored.track, glm::vec3(stored.values.translation));
-            if (has(Part::Rotation)) isGood = isGood && pose.setRotation(stored.track, glm::quat(q.w, q.x, q.y, q.z));
-            if (has(Part::Scale)) isGood = isGood && pose.setScale(stored.track, glm::vec3(stored.values.scale));
+            JointTransform allowed = stored.values;
+            if (!has(Part::Translation)) allowed.translation = glm::vec4(0.0f);
+            if (!has(Part::Rotation)) allowed.rotation = glm::vec4(0, 0, 0, 1);
+            if (!has(Part::Scale)) allowed.scale = glm::vec4(0.0f);
+            const std::optional<glm::vec4> rotation = unitRotation(allowed.rotation); // exactly that of setRotation()
+            isGood = rotation && makeAllowed(allowed);
+            if (isGood) allowed.rotation = *rotation;
+            for (const auto& [part, value] :
+                 {std::pair(Part::Translation, allowed.translation), std::pair(Part::Rotation, allowed.rotation),
+                  std::pair(Part::Scale, allowed.scale)})
+                if (has(part)) pose._keyframe->setPart(stored.track, part, value);
             isGood = isGood && pose._keyframe->setNumbers(stored.track) == stored.numbers;
         }
         else if (isGood)
@@ -299,10 +305,15 @@ bool JointPose::isInExtent(std::size_t joint) const
 void JointPose::growExtent(std::size_t firstJoint, std::size_t endJoint)
 {
     std::shared_ptr<PoseExtent> grown;
+    float longest = 0.0f;
     for (std::size_t joint = firstJoint; joint < endJoint; ++joint)
     {
-        if (isInExtent(joint)) continue;
-        if (!grown) grown = std::make_shared<PoseExtent>(*_extent);
+        if (isInExtent(joint) || _keyframe->setNumbers(joint) == 0) continue;
+        if (!grown)
+        {
+            grown = std::make_shared<PoseExtent>(*_extent);
+            longest = longestJoint(*_set);
+        }
         grown->joints.resize(_set->skeleton().jointCount());
         PoseExtent::Joint& known = grown->joints[joint];
         const std::uint32_t numbers = _keyframe->setNumbers(joint);
@@ -313,9 +324,8 @@ void JointPose::growExtent(std::size_t firstJoint, std::size_t endJoint)
         known.scales = has(Part::Scale);
         // The margin of a translation is an eighth of the way from the rest pose or of the longest joint.
         known.translation = glm::vec3(posed.translation);
-        known.shift = std::max(glm::distance(known.translation, glm::vec3(_set->restPose()[joint].translation)),
-                               longestJoint(*_set)) /
-                      8.0f;
+        const auto rest = glm::vec3(_set->restPose()[joint].translation);
+        known.shift = std::max(glm::distance(known.translation, rest), longest) / 8.0f;
         known.scale = glm::vec3(posed.scale);
         known.stretch = std::max({std::abs(known.scale.x), std::abs(known.scale.y), std::abs(known.scale.z)}) / 8.0f;
     }
@@ -335,16 +345,14 @@ void JointPose::growExtent(float weight)
 void JointPose::renewExtent()
 {
     _extent = std::make_shared<const PoseExtent>();
+    if (isEmpty()) return;
     const std::size_t jointCount = _set->skeleton().jointCount();
-    for (std::size_t track = 0; track < _set->trackCount() && !isEmpty(); ++track)
+    growExtent(0, jointCount);
+    for (std::size_t track = jointCount; track < _set->trackCount(); ++track)
     {
         const std::uint32_t numbers = _keyframe->setNumbers(track);
-        if (numbers == 0) continue;
-        if (track < jointCount)
-            growExtent(track, track + 1);
-        else
-            for (std::size_t number = 0; number < 12; ++number)
-                if ((numbers >> number & 1u) != 0) growExtent(_keyframe->values(track).number(number));
+        for (std::size_t number = 0; number < 12; ++number)
+            if ((numbers >> number & 1u) != 0) growExtent(_keyframe->values(track).number(number));
     }
 }
 

@@ -77,8 +77,14 @@ ConstraintTarget inSpaceOf(const ConstraintTarget& target, const AffineMatrix& r
 
 PoseBatch::BlendCost PoseBatch::blendCostOf(const PoseInstruction& instruction)
 {
-    const bool isPosed = std::any_of(instruction.poses.begin(), instruction.poses.end(),
-                                     [](const auto& pose) { return pose && !pose->isEmpty(); });
+    const auto isPosedSample = [&](const BlendSample& sample)
+    {
+        if ((sample.control & POSE_SAMPLE_POSED) == 0 || sample.keyframe >= instruction.poses.size()) return false;
+        const std::shared_ptr<const JointPose>& pose = instruction.poses[sample.keyframe];
+        return pose && !pose->isEmpty();
+    };
+    const auto end = instruction.samples.begin() + static_cast<std::ptrdiff_t>(instruction.sampleCount);
+    const bool isPosed = !instruction.poses.empty() && std::any_of(instruction.samples.begin(), end, isPosedSample);
     const bool isMixed = instruction.sampleCount != 1 || !isPlain(instruction.samples[0]);
     return blendCost(isPosed, isMixed, instruction.sampleCount);
 }

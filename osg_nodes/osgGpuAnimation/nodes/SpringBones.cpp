@@ -3,20 +3,19 @@
 
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
+#include <osgGpuAnimation/nodes/frame/CharacterStates.h>
 #include <osgGpuAnimation/nodes/OsgMatrix.h>
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/type_ptr.hpp>
 #include <osg/Camera>
 #include <osg/Notify>
-#include <osg/observer_ptr>
 #include <osg/Transform>
 #include <osgUtil/CullVisitor>
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <mutex>
+#include <optional>
 
 namespace osgGpuAnimation
 {
@@ -24,7 +23,8 @@ namespace osgGpuAnimation
 namespace
 {
 
-constexpr double fadeSeconds = 0.25;   ///< from the springs to the clips and back
+constexpr double fadeSeconds = 0.25; ///< from the springs to the clips and back
+constexpr double mostSubsteps = SpringBones::longestStep / SpringBones::substep + 1.0;
 constexpr double gridTolerance = 1e-6; ///< of a substep: sums of frame times miss the substep's time by rounding
 
 glm::dvec3 toGlm(const osg::Vec3& vector)
@@ -96,7 +96,7 @@ std::optional<glm::dvec3> placeAtRest(const Skeleton& skeleton, int head, int be
     return glm::dvec3(place[3]);
 }
 
-/// What is wrong with the settings in any set.
+/// The first fault of the settings that needs no set; none if they are good.
 std::optional<Error> faultOf(const std::vector<SpringChain>& chains, const std::vector<SpringCollider>& colliders)
 {
     for (std::size_t i = 0; i < colliders.size(); ++i)
@@ -215,12 +215,10 @@ bool pushOut(const SpringCollider& collider, const glm::dmat4& jointToWorld, dou
 class State
 {
 public:
-    explicit State(AnimatedCharacter& character) : _character(&character) {}
-
-    /// The chains in the character's set; null, with one warning, if they do not fit it.
-    const Springs* springs(const std::vector<SpringChain>& chains, const std::vector<SpringCollider>& colliders)
+    /// The chains in the set; null, with one warning, if they do not fit it.
+    const Springs* springs(const std::shared_ptr<const AnimationSet>& set, const std::vector<SpringChain>& chains,
+                           const std::vector<SpringCollider>& colliders)
     {
-        const std::shared_ptr<const AnimationSet>& set = _character->getController().sharedSet();
         if (_set != set)
         {
             Result<Springs> resolved = resolve(*set, chains, colliders);
@@ -231,27 +229,20 @@ public:
         return _springs ? &*_springs : nullptr;
     }
 
-    const osg::observer_ptr<AnimatedCharacter>& character() const { return _character; }
-
-    void sawFrom(double distance, unsigned int frame)
-    {
-        _seenDistance = frame == _seenFrame ? std::min(_seenDistance, distance) : distance;
-        _seenFrame = frame;
-    }
-    /// frame: the present one, in which no camera has culled yet.
-    bool isSeenWithin(double distance, unsigned int frame) const
-    {
-        return _seenFrame && frame - *_seenFrame <= 1u && _seenDistance <= distance;
-    }
+    SeenDistance seen;
 
     void reset() { _before.reset(); }
 
     void update(const Springs& springs, const std::vector<SpringCollider>& colliders, AnimatedCharacter& character,
-                const osg::Matrixd& nodeToWorld, double time, std::size_t layer)
+                const osg::Matrixd& nodeToWorld, const osg::FrameStamp& stamp, std::size_t layer)
     {
+        const double time = stamp.getSimulationTime();
+        const unsigned int frame = stamp.getFrameNumber();
         AnimationController& controller = character.getController();
         const osg::Matrixd fileToWorld = character.getFileToNode() * nodeToWorld;
-        if (!fileToWorld.valid()) return;
+        // A character with several places has one pose: that of the first.
+        if (!fileToWorld.valid() || _frame == frame) return;
+        _frame = frame;
         const double start = _time, length = time - start;
         const bool continues = _before && _before->sharedSet() == controller.sharedSet() && length >= 0.0 &&
                                length <= SpringBones::longestStep;
@@ -263,10 +254,11 @@ public:
         {
             const double first = std::floor(start / SpringBones::substep + gridTolerance) + 1.0;
             const double last = std::floor(time / SpringBones::substep + gridTolerance);
+            const int count = static_cast<int>(std::clamp(last - first + 1.0, 0.0, mostSubsteps));
             double now = start;
-            for (double number = first; number <= last; ++number)
+            for (int i = 0; i < count; ++i)
             {
-                const double at = std::clamp(number * SpringBones::substep, now, time);
+                const double at = std::clamp((first + i) * SpringBones::substep, now, time);
                 takePose(_before->advance(at - now), between(from, fileToWorld, (at - start) / length));
                 swing(springs, colliders, 1.0);
                 now = at;
@@ -297,15 +289,18 @@ private:
         {
             const AnimationLayer& before = std::as_const(*_before).layer(i);
             const AnimationLayer& now = controller.layer(i);
-            if (before.clip() == now.clip() && std::abs(before.time() - now.time()) > SpringBones::seekSeconds)
-                return true;
+            if (before.clip() != now.clip()) continue;
+            double apart = std::abs(before.time() - now.time());
+            // Rounding may put one of them before the end of the loop and the other after it.
+            if (now.loopMode() == LoopMode::Loop) apart = std::min(apart, std::abs(now.duration() - apart));
+            if (apart > SpringBones::seekSeconds) return true;
         }
         return false;
     }
 
     void takePose(const PoseInstruction& instruction, const osg::Matrixd& fileToWorld)
     {
-        const AnimationSet& set = _character->getAnimationSet();
+        const AnimationSet& set = *_set;
         Pose::mix(set, instruction, _tracks);
         Pose::jointToModel(set, _tracks, AffineMatrix(), _jointToModel);
         _rootToWorld = toGlm(fileToWorld);
@@ -323,7 +318,7 @@ private:
     template <typename Turn>
     void place(const Springs& springs, Turn turn)
     {
-        const Skeleton& skeleton = _character->getAnimationSet().skeleton();
+        const Skeleton& skeleton = _set->skeleton();
         // Colliders below a chain have the place of the step before until the chain reaches them.
         const bool isNew = _jointToWorld.size() != skeleton.jointCount();
         _jointToWorld.resize(skeleton.jointCount());
@@ -366,7 +361,7 @@ private:
 
     glm::dquat restRotation(const Bone& bone) const
     {
-        return Rotation::quaternion(_character->getAnimationSet().skeleton().joint(bone.head).rest.rotation);
+        return Rotation::quaternion(_set->skeleton().joint(bone.head).rest.rotation);
     }
 
     /// Moves all tails by a share of a substep (VRMC_springBone 1.0, "Update procedure").
@@ -415,6 +410,7 @@ private:
         const std::vector<glm::dquat> rotations = _rotations;
         if (share > gridTolerance) swing(springs, colliders, share);
         JointPose& pose = layer.pose();
+        if (!_before) pose.reset(); // also rotations of earlier chains
         for (std::size_t i = 0; i < springs.bones.size(); ++i)
             pose.setRotation(springs.bones[i].head, glm::quat(_rotations[i]));
         if (_isFaded) layer.fadeWeight(1.0f, fadeSeconds);
@@ -428,17 +424,15 @@ private:
         glm::dvec3 now, before; ///< in world space, at the last substep and at the one before it
     };
 
-    osg::observer_ptr<AnimatedCharacter> _character;
     std::shared_ptr<const AnimationSet> _set; ///< of _springs
     std::optional<Springs> _springs;
     std::unique_ptr<AnimationController> _before; ///< the controller at _time; null: the chains start at rest
     double _time = 0.0;                           ///< seconds, of the last update
+    std::optional<unsigned int> _frame;           ///< of the last update
     osg::Matrixd _fileToWorld;                    ///< at _time
     std::vector<Tail> _tails;                     ///< by bone
     std::vector<glm::dquat> _rotations;           ///< by bone: of its head
-    bool _isFaded = false;                        ///< the layer's weight is 0 since stop()
-    double _seenDistance = 0.0;                   ///< in world units, in the frame _seenFrame
-    std::optional<unsigned int> _seenFrame;
+    bool _isFaded = true; ///< the layer fades in again; a copied or stored character may have been stopped
     // Of the present substep:
     std::vector<JointTransform> _tracks;
     std::vector<AffineMatrix> _jointToModel;
@@ -449,31 +443,9 @@ private:
 
 } // namespace
 
-/// The states of all characters. Cameras may cull concurrently.
-class SpringBones::States
+/// One state per character.
+class SpringBones::States : public CharacterStates<State>
 {
-public:
-    State& of(AnimatedCharacter& character)
-    {
-        const std::lock_guard<std::mutex> lock(_mutex);
-        const auto found = _states.find(&character);
-        if (found != _states.end() && found->second.character().valid()) return found->second;
-        for (auto entry = _states.begin(); entry != _states.end();)
-            entry = entry->second.character().valid() ? std::next(entry) : _states.erase(entry);
-        return _states.try_emplace(&character, character).first->second;
-    }
-
-    void clear() { _states.clear(); }
-
-    void reset()
-    {
-        for (auto& [character, state] : _states)
-            state.reset();
-    }
-
-private:
-    std::mutex _mutex;
-    std::map<const AnimatedCharacter*, State> _states;
 };
 
 SpringBones::SpringBones() : _layer(maxLayers - 1), _states(std::make_unique<States>()) {}
@@ -511,7 +483,7 @@ void SpringBones::setLayer(std::size_t layer)
 
 void SpringBones::reset()
 {
-    _states->reset();
+    _states->forEach([](AnimatedCharacter&, State& state) { state.reset(); });
 }
 
 void SpringBones::operator()(osg::Node* node, osg::NodeVisitor* visitor)
@@ -526,13 +498,13 @@ void SpringBones::operator()(osg::Node* node, osg::NodeVisitor* visitor)
         if (osgUtil::CullVisitor* cull = visitor->asCullVisitor())
         {
             const osg::Vec3d eye = cull->getCurrentCamera()->getInverseViewMatrix().getTrans();
-            state.sawFrom((toWorld.getTrans() - eye).length(), frame);
+            state.seen.sawFrom((toWorld.getTrans() - eye).length(), frame);
         }
         else if (visitor->getVisitorType() == osg::NodeVisitor::UPDATE_VISITOR)
         {
-            const Springs* springs = state.springs(_chains, _colliders);
-            if (springs && (std::isinf(_maxDistance) || state.isSeenWithin(_maxDistance, frame)))
-                state.update(*springs, _colliders, *character, toWorld, stamp->getSimulationTime(), _layer);
+            const Springs* springs = state.springs(character->getController().sharedSet(), _chains, _colliders);
+            if (springs && state.seen.isWithin(_maxDistance, frame))
+                state.update(*springs, _colliders, *character, toWorld, *stamp, _layer);
             else
                 state.stop(*character, _layer);
         }

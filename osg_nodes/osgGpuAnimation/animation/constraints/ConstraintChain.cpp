@@ -4,6 +4,7 @@
 #include <osgGpuAnimation/animation/constraints/AxisTurns.h>
 
 #include <glm/geometric.hpp>
+#include <glm/gtc/constants.hpp>
 #include <glm/matrix.hpp>
 
 #include <algorithm>
@@ -15,8 +16,6 @@ namespace osgGpuAnimation
 
 namespace
 {
-
-constexpr double pi = 3.14159265358979;
 
 bool isFinite(const glm::vec3& v)
 {
@@ -110,7 +109,7 @@ Result<ConstraintChain> resolved(const Skeleton& skeleton, const LookAt& look)
     chain.forward = glm::normalize(glm::dvec3(look.forward));
     chain.up = glm::normalize(glm::dvec3(look.up));
     chain.offset = glm::dvec3(look.offset);
-    chain.cone = std::min(static_cast<double>(look.cone), pi);
+    chain.cone = std::min(static_cast<double>(look.cone), glm::pi<double>());
     chain.turnSpeed = static_cast<double>(look.turnSpeed);
     const glm::dmat4 rest = restMatrix(skeleton, chain.joints.back(), -1);
     chain.restEye = glm::dvec3(rest * glm::dvec4(chain.offset, 1.0));

@@ -5,6 +5,7 @@
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/gtc/constants.hpp>
 #include <glm/matrix.hpp>
 #include <glm/vec2.hpp>
 
@@ -21,7 +22,6 @@ namespace
 
 using namespace AxisTurns;
 
-constexpr double pi = 3.14159265358979;
 constexpr double smallestShare = 1e-5; ///< of a length: what is shorter counts as 0
 
 struct Local
@@ -84,7 +84,7 @@ glm::dvec3 limitedToCone(const glm::dvec3& wanted, const glm::dvec3& forward, co
 /// target may circle around the character without a jump.
 double foldOf(double halfAngle)
 {
-    constexpr double fold = pi / 3.0;
+    constexpr double pi = glm::pi<double>(), fold = pi / 3.0;
     return halfAngle > fold ? (pi - 2.0 * halfAngle) / halfAngle : 1.0;
 }
 

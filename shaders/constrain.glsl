@@ -6,7 +6,7 @@
 
 JointTransform chain[chainLength];
 
-// What the application wants, and the constraint's own numbers.
+// The target that the application sets, and the constraint's own numbers.
 struct Goal
 {
     vec3 position;

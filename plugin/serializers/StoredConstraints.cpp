@@ -28,7 +28,7 @@ void transferTwoBone(ValueStream& stream, TwoBoneIk& limb)
     stream.floats(&limb.hinge.x, 3).floats(&limb.softReach, 1).endLine();
 }
 
-/// What an application has set for one constraint.
+/// An application's settings of one constraint.
 struct StoredTarget
 {
     std::string constraint;

@@ -76,7 +76,7 @@ std::size_t correctionsOf(const AnimationSet& set)
     return count;
 }
 
-/// What the draws of one level of the palette read.
+/// The input of the draws of one level of the palette.
 struct LevelInput
 {
     const AnimationSet& set;

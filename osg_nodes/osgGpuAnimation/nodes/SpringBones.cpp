@@ -27,12 +27,12 @@ constexpr double fadeSeconds = 0.25; ///< from the springs to the clips and back
 constexpr double mostSubsteps = SpringBones::longestStep / SpringBones::substep + 1.0;
 constexpr double gridTolerance = 1e-6; ///< of a substep: sums of frame times miss the substep's time by rounding
 
-glm::dvec3 toGlm(const osg::Vec3& vector)
+glm::dvec3 toDouble(const osg::Vec3& vector)
 {
     return {vector.x(), vector.y(), vector.z()};
 }
 
-glm::dmat4 toGlm(const osg::Matrixd& matrix)
+glm::dmat4 toColumns(const osg::Matrixd& matrix)
 {
     return glm::make_mat4(matrix.ptr());
 }
@@ -177,7 +177,7 @@ glm::dquat turnBetween(const glm::dvec3& from, const glm::dvec3& to)
     return glm::dquat(glm::normalize(from), glm::normalize(to));
 }
 
-/// From a to b by the share: the translation and what is no rotation linearly, the rotation on the sphere.
+/// From a to b by the share: translation and scale linearly, rotation by slerp.
 osg::Matrixd between(const osg::Matrixd& a, const osg::Matrixd& b, double share)
 {
     if (a == b) return b;
@@ -197,11 +197,11 @@ osg::Matrixd between(const osg::Matrixd& a, const osg::Matrixd& b, double share)
 bool pushOut(const SpringCollider& collider, const glm::dmat4& jointToWorld, double scale, double radius,
              glm::dvec3& place)
 {
-    const glm::dvec3 center(jointToWorld * glm::dvec4(toGlm(collider.center), 1.0));
+    const glm::dvec3 center(jointToWorld * glm::dvec4(toDouble(collider.center), 1.0));
     glm::dvec3 away = place - center;
     if (collider.tail)
     {
-        const glm::dvec3 along = glm::dvec3(jointToWorld * glm::dvec4(toGlm(*collider.tail), 1.0)) - center;
+        const glm::dvec3 along = glm::dvec3(jointToWorld * glm::dvec4(toDouble(*collider.tail), 1.0)) - center;
         const double squared = glm::dot(along, along), projected = glm::dot(along, away);
         if (squared > 0.0) away -= along * std::clamp(projected / squared, 0.0, 1.0);
     }
@@ -303,7 +303,7 @@ private:
         const AnimationSet& set = *_set;
         Pose::mix(set, instruction, _tracks);
         Pose::jointToModel(set, _tracks, AffineMatrix(), _jointToModel);
-        _rootToWorld = toGlm(fileToWorld);
+        _rootToWorld = toColumns(fileToWorld);
         _scale = std::cbrt(std::abs(glm::determinant(glm::dmat3(_rootToWorld))));
     }
 
@@ -389,7 +389,7 @@ private:
                   glm::dvec3 next = keepLength(
                       tail.now + (tail.now - tail.before) * (share * (1.0 - static_cast<double>(settings.drag))) +
                       restTail * (seconds * _scale * static_cast<double>(settings.stiffness) / length) +
-                      toGlm(settings.gravityDirection) * (seconds * _scale * static_cast<double>(settings.gravity)));
+                      toDouble(settings.gravityDirection) * (seconds * _scale * static_cast<double>(settings.gravity)));
                   for (const std::size_t number : *bone.colliders)
                       if (pushOut(colliders[number], _jointToWorld[springs.jointsOfColliders[number]], _scale,
                                   static_cast<double>(settings.radius), next))

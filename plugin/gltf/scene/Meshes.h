@@ -24,8 +24,8 @@ namespace osgGpuAnimation::gltf
 /// The arrays of a primitive, or of several drawn together, as OSG draws them, in the mesh's own space.
 struct MeshPrimitive
 {
-    std::string
-        label; ///< `meshes[3] "Cape".primitives[0]` or `meshes[3] "Cape".primitives[0] and 2 more`, for messages
+    /// For messages: `meshes[3] "Cape".primitives[0]` or `meshes[3] "Cape".primitives[0] and 2 more`.
+    std::string label;
     /// The file's numbers within the mesh, ascending; see Meshes.
     std::shared_ptr<const std::vector<int>> primitives;
     std::size_t vertexCount = 0; ///< of the file's POSITION accessor

@@ -9,7 +9,7 @@
 namespace osgGpuAnimation
 {
 
-/// What the application wants from one constraint of one character.
+/// The application's settings of one constraint of one character.
 struct ConstraintGoal
 {
     ConstraintTarget target{{}, 1.0f, {}, 0.0f, {}}; ///< the weight is the application's

@@ -58,7 +58,7 @@ private:
     bool _isEmpty = true;
 };
 
-/// What a pose may hold.
+/// The values that a pose may hold.
 namespace PosedNumbers
 {
 

@@ -7,6 +7,7 @@
 #include <osgGpuAnimation/nodes/feet/GroundedFoot.h>
 #include <osgGpuAnimation/nodes/feet/PlantedTimes.h>
 #include <osgGpuAnimation/nodes/frame/CharacterStates.h>
+#include <osgGpuAnimation/nodes/frame/WorldTargets.h>
 #include <osgGpuAnimation/nodes/OsgMatrix.h>
 
 #include <osg/Notify>
@@ -36,7 +37,7 @@ std::string nameOf(const GroundLeg& leg)
     return "feet: leg \"" + leg.constraint + "\": ";
 }
 
-/// What is wrong with the legs in any set.
+/// The error of legs that fit no set; empty: there is none.
 std::optional<Error> faultOf(const std::vector<GroundLeg>& legs)
 {
     for (const GroundLeg& leg : legs)
@@ -131,7 +132,7 @@ osg::Matrixd atHeight(osg::Matrixd matrix, double height)
     return matrix;
 }
 
-/// What the callback says about all its characters.
+/// The settings of the callback, for all its characters.
 struct Settings
 {
     osg::ref_ptr<osg::Node> ground; ///< null: none
@@ -202,7 +203,7 @@ private:
                  _way.length() > _longestLeg;
         if (!_isNew) return;
         _seconds = 0.0;
-        _feet.assign(legs->legs.size(), GroundedFoot());
+        _feet.assign(legs->legs.size(), GroundedFoot(GroundFeet::blendSeconds));
         const std::optional<GroundPoint> start =
             settings.ground ? probe.nearest(*settings.ground, settings.traversalMask, _place) : std::nullopt;
         _height = start ? start->place.z() : _place.z();
@@ -318,11 +319,6 @@ private:
             character.setMatrix(character.getMatrix() * osg::Matrixd::translate(inParent));
     }
 
-    static glm::vec3 toGlm(const osg::Vec3d& vector)
-    {
-        return glm::vec3(glm::dvec3(vector.x(), vector.y(), vector.z()));
-    }
-
     void aim(AnimatedCharacter& character, const osg::Matrixd& nodeToWorld, double weight)
     {
         const osg::Matrixd worldToFile = osg::Matrixd::inverse(character.getFileToNode() * nodeToWorld);
@@ -331,7 +327,7 @@ private:
             const osg::Matrixd ankle = _feet[i].target() * worldToFile;
             const osg::Quat turn = rotationOf(ankle).getRotate();
             ConstraintHandle constraint = character.getController().constraint(legs->legs[i].constraint);
-            // What is not finite is refused: the previous target remains.
+            // The controller refuses positions that are not finite: the previous target remains.
             if (!constraint.setTarget(toGlm(ankle.getTrans()))) continue;
             static_cast<void>(constraint.setRotation(glm::vec4(glm::dvec4(turn.x(), turn.y(), turn.z(), turn.w()))));
             static_cast<void>(constraint.setWeight(static_cast<float>(weight)));
@@ -359,13 +355,6 @@ private:
     std::vector<GroundProbe::Line> _lines; ///< of each foot those of its probes, then of its landing
     std::vector<std::optional<GroundPoint>> _points;
 };
-
-/// From the node's own space along its first parents.
-osg::Matrixd toWorldOf(const osg::Node& node)
-{
-    const osg::NodePathList paths = node.getParentalNodePaths();
-    return paths.empty() ? osg::Matrixd() : osg::computeLocalToWorld(paths.front());
-}
 
 osg::Node* findNamed(osg::Node& top, const std::string& name)
 {
@@ -552,7 +541,7 @@ void GroundFeet::operator()(osg::Node* node, osg::NodeVisitor* visitor)
             if (_weight > 0.0 && state.seen.isWithin(_maxDistance, stamp->getFrameNumber()))
             {
                 const osg::ref_ptr<osg::Node> ground = groundIn(*path.front());
-                const osg::Matrixd groundToWorld = ground ? toWorldOf(*ground) : osg::Matrixd();
+                const osg::Matrixd groundToWorld = ground ? toWorld(*ground, true) : osg::Matrixd();
                 state.update(*character, path, *stamp,
                              {ground, groundToWorld, _traversalMask, _reach, _maxTilt, _lockDistance, _weight},
                              _states->probe);

@@ -36,7 +36,7 @@ private:
     std::optional<unsigned int> _frame;
 };
 
-/// What a callback that several characters share keeps for each of them. Cameras may cull concurrently.
+/// The states that a callback keeps for the characters that share it. Cameras may cull concurrently.
 template <typename State>
 class CharacterStates
 {

@@ -154,7 +154,7 @@ public:
     void stop(AnimatedCharacter& character)
     {
         reset();
-        if (!std::exchange(_hasTargets, false) || !legs) return;
+        if (!legs || !std::exchange(_hasTargets, false)) return;
         for (const Leg& leg : legs->legs)
             static_cast<void>(character.getController().constraint(leg.constraint).clear());
     }
@@ -337,7 +337,7 @@ private:
 
     std::optional<double> _time; ///< of the last update, seconds; empty: the next one starts anew
     unsigned int _frame = 0;
-    bool _hasTargets = false;
+    bool _hasTargets = true;         ///< copies of characters and scene files have the targets of the original
     std::vector<GroundedFoot> _feet; ///< by leg
     double _longestLeg = 0.0;
     double _height = 0.0; ///< of the character's origin
@@ -393,13 +393,13 @@ class GroundFeet::States : public CharacterStates<FeetState>
 {
 public:
     /// Looks the legs up if the character's set is new. False, with one warning: they do not fit it.
-    bool resolveLegs(const AnimatedCharacter& character, const std::vector<GroundLeg>& legs, FeetState& state)
+    bool resolveLegs(AnimatedCharacter& character, const std::vector<GroundLeg>& legs, FeetState& state)
     {
         const std::shared_ptr<const AnimationSet>& set = character.getController().sharedSet();
         if (state.set == set) return state.legs != nullptr;
+        state.stop(character); // clears the targets of the previous set's legs
         state.set = set;
         state.legs = _known[set.get()].lock();
-        state.reset();
         if (state.legs) return true;
         const Result<std::shared_ptr<Legs>> resolved = resolve(set, legs);
         if (!resolved) OSG_WARN << "osgGpuAnimation: " << resolved.error().message << std::endl;

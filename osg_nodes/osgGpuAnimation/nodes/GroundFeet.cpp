@@ -145,7 +145,6 @@ struct Settings
 class FeetState
 {
 public:
-    SeenDistance seen;
     std::shared_ptr<const AnimationSet> set; ///< for which the legs were looked up
     std::shared_ptr<Legs> legs;              ///< null: the set does not have them
 
@@ -527,18 +526,18 @@ void GroundFeet::operator()(osg::Node* node, osg::NodeVisitor* visitor)
     const osg::FrameStamp* stamp = visitor->getFrameStamp();
     if (character && stamp)
     {
-        FeetState& state = _states->of(*character);
         if (osgUtil::CullVisitor* cull = visitor->asCullVisitor())
         {
             const osg::Vec3d eye = cull->getCurrentCamera()->getInverseViewMatrix().getTrans();
             const osg::Vec3d origin = osg::computeLocalToWorld(visitor->getNodePath()).getTrans();
-            state.seen.sawFrom((origin - eye).length(), stamp->getFrameNumber());
+            _states->sawFrom(*character, (origin - eye).length(), stamp->getFrameNumber());
         }
-        else if (visitor->getVisitorType() == osg::NodeVisitor::UPDATE_VISITOR &&
+        else if (FeetState& state = _states->of(*character);
+                 visitor->getVisitorType() == osg::NodeVisitor::UPDATE_VISITOR &&
                  _states->resolveLegs(*character, _legs, state))
         {
             const osg::NodePath& path = visitor->getNodePath();
-            if (_weight > 0.0 && state.seen.isWithin(_maxDistance, stamp->getFrameNumber()))
+            if (_weight > 0.0 && _states->isWithin(*character, _maxDistance, stamp->getFrameNumber()))
             {
                 const osg::ref_ptr<osg::Node> ground = groundIn(*path.front());
                 const osg::Matrixd groundToWorld = ground ? toWorld(*ground, true) : osg::Matrixd();

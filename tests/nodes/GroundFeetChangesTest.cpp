@@ -106,6 +106,32 @@ TEST(GroundFeetChangesTest, legsThatFeetDoNotMoveHaveNoTargets)
         }
 }
 
+TEST(GroundFeetChangesTest, aNamedGroundIsFoundWhenItComes)
+{
+    const osg::ref_ptr<NotifyLog> log = new NotifyLog(osg::WARN);
+    Standing standing(0.1);
+    standing.feet->setGroundName("stage");
+    osg::setNotifyHandler(log);
+    standing.update();
+    for (const double height : {0.3, 0.5})
+    {
+        SCOPED_TRACE(height);
+        EXPECT_EQ(standing.feet->getGroundName(), "stage") << "for scene files";
+        standing.scene->addChild(level(height, "stage"));
+        standing.feet->reset();
+        standing.update();
+        EXPECT_NEAR(standing.height(), height, 0.001);
+        EXPECT_EQ(standing.feet->getGroundName(), "stage");
+        standing.scene->removeChild(2); // deletes it
+        standing.update();
+        EXPECT_FALSE(standing.feet->getGround());
+    }
+    osg::setNotifyHandler(new osg::StandardNotifyHandler);
+    const std::size_t first = log->text.find("there is no node \"stage\"");
+    EXPECT_NE(first, std::string::npos);
+    EXPECT_EQ(log->text.find("there is no node", first + 1), std::string::npos) << "one warning";
+}
+
 } // namespace
 
 } // namespace osgGpuAnimation

@@ -442,6 +442,8 @@ void GroundFeet::setGround(osg::Node* ground)
     _ground = ground;
     _isWholeScene = !ground;
     _groundName.clear();
+    _hasWarned = false;
+    _lastSearch = {};
 }
 
 osg::ref_ptr<osg::Node> GroundFeet::getGround() const
@@ -461,7 +463,7 @@ void GroundFeet::setGroundName(const std::string& name)
 std::string GroundFeet::getGroundName() const
 {
     const osg::ref_ptr<osg::Node> ground = getGround();
-    return ground ? ground->getName() : _groundName;
+    return ground && _groundName.empty() ? ground->getName() : _groundName;
 }
 
 Result<bool> GroundFeet::setLegs(const AnimationSet& set, std::vector<GroundLeg> legs)
@@ -509,15 +511,18 @@ void GroundFeet::reset()
     _states->forEach([](AnimatedCharacter&, FeetState& state) { state.reset(); });
 }
 
-osg::ref_ptr<osg::Node> GroundFeet::groundIn(osg::Node& scene)
+osg::ref_ptr<osg::Node> GroundFeet::groundIn(osg::Node& scene, unsigned int frame)
 {
     if (_isWholeScene) return &scene;
-    if (_groundName.empty()) return getGround();
-    osg::Node* const found = findNamed(scene, _groundName);
-    if (!found) OSG_WARN << "osgGpuAnimation: feet: there is no node \"" << _groundName << "\" below them" << std::endl;
-    _ground = found;
-    _groundName.clear();
-    return found;
+    const std::pair<const osg::Node*, unsigned int> search(&scene, frame);
+    osg::ref_ptr<osg::Node> ground = getGround();
+    if (ground || _groundName.empty() || search == _lastSearch) return ground;
+    _ground = ground = findNamed(scene, _groundName);
+    if (ground) return ground;
+    _lastSearch = search;
+    if (!std::exchange(_hasWarned, true))
+        OSG_WARN << "osgGpuAnimation: feet: there is no node \"" << _groundName << "\" below them" << std::endl;
+    return ground;
 }
 
 void GroundFeet::operator()(osg::Node* node, osg::NodeVisitor* visitor)
@@ -539,7 +544,7 @@ void GroundFeet::operator()(osg::Node* node, osg::NodeVisitor* visitor)
             const osg::NodePath& path = visitor->getNodePath();
             if (_weight > 0.0 && _states->isWithin(*character, _maxDistance, stamp->getFrameNumber()))
             {
-                const osg::ref_ptr<osg::Node> ground = groundIn(*path.front());
+                const osg::ref_ptr<osg::Node> ground = groundIn(*path.front(), stamp->getFrameNumber());
                 const osg::Matrixd groundToWorld = ground ? toWorld(*ground, true) : osg::Matrixd();
                 state.update(*character, path, *stamp,
                              {ground, groundToWorld, _traversalMask, _reach, _maxTilt, _lockDistance, _weight},

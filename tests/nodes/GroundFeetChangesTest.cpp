@@ -132,6 +132,47 @@ TEST(GroundFeetChangesTest, aNamedGroundIsFoundWhenItComes)
     EXPECT_EQ(log->text.find("there is no node", first + 1), std::string::npos) << "one warning";
 }
 
+TEST(GroundFeetChangesTest, theWeightSharesTheHeightBetweenMatrixAndGround)
+{
+    const osg::Matrixd turned = osg::Matrixd::rotate(osg::PI_2, 1, 0, 0) * osg::Matrixd::scale(0.5, 0.5, 0.5);
+    for (const bool isBelowTransform : {false, true})
+    {
+        SCOPED_TRACE(isBelowTransform);
+        Standing standing(0.4);
+        const osg::ref_ptr<osg::MatrixTransform> lift = new osg::MatrixTransform;
+        if (isBelowTransform)
+        {
+            lift->setMatrix(turned);
+            standing.scene->setChild(1, lift);
+            lift->addChild(standing.walker);
+        }
+        const auto setHeight = [&](double height)
+        {
+            const osg::Matrixd world = osg::Matrixd::translate(0, 0, height);
+            standing.walker->setMatrix(world * osg::Matrixd::inverse(lift->getMatrix()));
+        };
+        standing.feet->setWeight(0.5);
+        setHeight(0.0);
+        standing.update();
+        EXPECT_NEAR(standing.height(), 0.2, 1e-4);
+        standing.feet->setWeight(0.25);
+        standing.update();
+        EXPECT_NEAR(standing.height(), 0.1, 1e-4);
+        setHeight(0.2);
+        standing.update();
+        EXPECT_NEAR(standing.height(), 0.25, 1e-4) << "moved by the application";
+        standing.feet->setWeight(0.0);
+        standing.update();
+        EXPECT_NEAR(standing.height(), 0.25, 1e-4) << "it stays";
+        standing.feet->setWeight(1.0);
+        standing.update();
+        EXPECT_NEAR(standing.height(), 0.4, 1e-4);
+        standing.feet->setWeight(0.5);
+        standing.update();
+        EXPECT_NEAR(standing.height(), 0.3, 1e-4) << "the height of the application is 0.2 still";
+    }
+}
+
 } // namespace
 
 } // namespace osgGpuAnimation

@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <utility>
@@ -30,7 +31,8 @@ namespace
 
 constexpr double straightest = 0.9999; ///< of a leg's length: the hips sink until planted feet are within it
 constexpr double foresight = 1.5 * GroundFeet::blendSeconds; ///< the ground of a landing within this time counts
-constexpr double leastUpright = 0.5; ///< z of the character's up axis: lower ones have no feet on the ground
+constexpr double smallestMove = 1e-5; ///< of a leg's length: the application has not moved the character by less
+constexpr double leastUpright = 0.5;  ///< z of the character's up axis: lower ones have no feet on the ground
 
 std::string nameOf(const GroundLeg& leg)
 {
@@ -172,9 +174,11 @@ public:
         takePose(character, atHeight(given, _height));
         standOnGround(settings, probe);
         moveHeight(settings);
-        const double height = given(3, 2) + settings.weight * (_height - given(3, 2));
-        place(character, path, height - given(3, 2));
-        aim(character, atHeight(given, height), settings.weight);
+        const osg::Matrixd parentToWorld = osg::computeLocalToWorld({path.begin(), std::prev(path.end())});
+        const double own = given(3, 2) - addedHeight(character, parentToWorld);
+        const double rise = settings.weight * (_height - own);
+        place(character, parentToWorld, rise, own + rise - given(3, 2));
+        aim(character, atHeight(given, own + rise), settings.weight);
     }
 
 private:
@@ -308,14 +312,23 @@ private:
         _height = height;
     }
 
-    static void place(AnimatedCharacter& character, const osg::NodePath& path, double rise)
+    /// The part of the character's height that earlier updates have added; 0 if the application has changed it since.
+    double addedHeight(const AnimatedCharacter& character, const osg::Matrixd& parentToWorld) const
     {
-        osg::NodePath above = path;
-        above.pop_back();
-        const osg::Matrixd fromWorld = osg::Matrixd::inverse(osg::computeLocalToWorld(above));
-        const osg::Vec3d inParent = osg::Matrixd::transform3x3(osg::Vec3d(0.0, 0.0, rise), fromWorld);
-        if (rise != 0.0 && std::isfinite(inParent.length()))
-            character.setMatrix(character.getMatrix() * osg::Matrixd::translate(inParent));
+        const auto heightOf = [&](const osg::Vec3d& way) { return osg::Matrixd::transform3x3(way, parentToWorld).z(); };
+        const double change = heightOf(character.getMatrix().getTrans() - _placed);
+        return std::abs(change) <= smallestMove * _longestLeg ? heightOf(_rise) : 0.0;
+    }
+
+    /// rise: of the character's own height. step: of its present one.
+    void place(AnimatedCharacter& character, const osg::Matrixd& parentToWorld, double rise, double step)
+    {
+        const osg::Matrixd fromWorld = osg::Matrixd::inverse(parentToWorld);
+        const osg::Vec3d up = osg::Matrixd::transform3x3(osg::Vec3d(0.0, 0.0, 1.0), fromWorld);
+        if (!std::isfinite(up.length() * step)) return;
+        if (step != 0.0) character.setMatrix(character.getMatrix() * osg::Matrixd::translate(up * step));
+        _rise = up * rise;
+        _placed = character.getMatrix().getTrans();
     }
 
     void aim(AnimatedCharacter& character, const osg::Matrixd& nodeToWorld, double weight)
@@ -342,6 +355,9 @@ private:
     double _height = 0.0; ///< of the character's origin
     double _lowest = 0.0; ///< the height at which the lowest foot stands
     osg::Vec3d _place;    ///< of the character's origin, without that height
+    // In the space above the character:
+    osg::Vec3d _rise;   ///< from the height that the application has given
+    osg::Vec3d _placed; ///< the character's origin after the last update
     osg::Matrixd _groundToWorld;
     // Of the present step:
     double _seconds = 0.0;

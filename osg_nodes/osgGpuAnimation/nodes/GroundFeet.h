@@ -105,8 +105,9 @@ public:
     /// of the leg: at least 0, finite. 0: feet never keep their places. Default: 0.3.
     bool setLockDistance(double distance);
     double getLockDistance() const { return _lockDistance; } ///< see setLockDistance()
-    /// Sets the share of the ground in the pose and in the character's height, in [0, 1], for example 0 in a jump.
-    /// Above 0 after 0 the character starts anew. Default: 1.
+    /// Sets the share of the ground in the pose and in the character's height, in [0, 1], for example 0 in a jump. The
+    /// rest of the height is the one that the application has given the matrix. At 0 the height stays; above 0 after 0
+    /// the character starts anew. Default: 1.
     bool setWeight(double weight);
     double getWeight() const { return _weight; } ///< see setWeight()
     /// Stops for characters that no camera has drawn within this distance in the last frame: nothing is sampled, the

@@ -7,6 +7,7 @@
 #include <osgGpuAnimation/nodes/feet/GroundedFoot.h>
 #include <osgGpuAnimation/nodes/feet/PlantedTimes.h>
 #include <osgGpuAnimation/nodes/frame/CharacterStates.h>
+#include <osgGpuAnimation/nodes/frame/WorldTargets.h>
 #include <osgGpuAnimation/nodes/OsgMatrix.h>
 
 #include <osg/Notify>
@@ -15,6 +16,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <utility>
@@ -29,14 +31,15 @@ namespace
 
 constexpr double straightest = 0.9999; ///< of a leg's length: the hips sink until planted feet are within it
 constexpr double foresight = 1.5 * GroundFeet::blendSeconds; ///< the ground of a landing within this time counts
-constexpr double leastUpright = 0.5; ///< z of the character's up axis: lower ones have no feet on the ground
+constexpr double smallestMove = 1e-5; ///< of a leg's length: the application has not moved the character by less
+constexpr double leastUpright = 0.5;  ///< z of the character's up axis: lower ones have no feet on the ground
 
 std::string nameOf(const GroundLeg& leg)
 {
     return "feet: leg \"" + leg.constraint + "\": ";
 }
 
-/// What is wrong with the legs in any set.
+/// The error of legs that fit no set; empty: there is none.
 std::optional<Error> faultOf(const std::vector<GroundLeg>& legs)
 {
     for (const GroundLeg& leg : legs)
@@ -131,7 +134,7 @@ osg::Matrixd atHeight(osg::Matrixd matrix, double height)
     return matrix;
 }
 
-/// What the callback says about all its characters.
+/// The settings of the callback, for all its characters.
 struct Settings
 {
     osg::ref_ptr<osg::Node> ground; ///< null: none
@@ -144,7 +147,6 @@ struct Settings
 class FeetState
 {
 public:
-    SeenDistance seen;
     std::shared_ptr<const AnimationSet> set; ///< for which the legs were looked up
     std::shared_ptr<Legs> legs;              ///< null: the set does not have them
 
@@ -153,7 +155,7 @@ public:
     void stop(AnimatedCharacter& character)
     {
         reset();
-        if (!std::exchange(_hasTargets, false) || !legs) return;
+        if (!legs || !std::exchange(_hasTargets, false)) return;
         for (const Leg& leg : legs->legs)
             static_cast<void>(character.getController().constraint(leg.constraint).clear());
     }
@@ -172,9 +174,11 @@ public:
         takePose(character, atHeight(given, _height));
         standOnGround(settings, probe);
         moveHeight(settings);
-        const double height = given(3, 2) + settings.weight * (_height - given(3, 2));
-        place(character, path, height - given(3, 2));
-        aim(character, atHeight(given, height), settings.weight);
+        const osg::Matrixd parentToWorld = osg::computeLocalToWorld({path.begin(), std::prev(path.end())});
+        const double own = given(3, 2) - addedHeight(character, parentToWorld);
+        const double rise = settings.weight * (_height - own);
+        place(character, parentToWorld, rise, own + rise - given(3, 2));
+        aim(character, atHeight(given, own + rise), settings.weight);
     }
 
 private:
@@ -202,7 +206,7 @@ private:
                  _way.length() > _longestLeg;
         if (!_isNew) return;
         _seconds = 0.0;
-        _feet.assign(legs->legs.size(), GroundedFoot());
+        _feet.assign(legs->legs.size(), GroundedFoot(GroundFeet::blendSeconds));
         const std::optional<GroundPoint> start =
             settings.ground ? probe.nearest(*settings.ground, settings.traversalMask, _place) : std::nullopt;
         _height = start ? start->place.z() : _place.z();
@@ -308,19 +312,23 @@ private:
         _height = height;
     }
 
-    static void place(AnimatedCharacter& character, const osg::NodePath& path, double rise)
+    /// The part of the character's height that earlier updates have added; 0 if the application has changed it since.
+    double addedHeight(const AnimatedCharacter& character, const osg::Matrixd& parentToWorld) const
     {
-        osg::NodePath above = path;
-        above.pop_back();
-        const osg::Matrixd fromWorld = osg::Matrixd::inverse(osg::computeLocalToWorld(above));
-        const osg::Vec3d inParent = osg::Matrixd::transform3x3(osg::Vec3d(0.0, 0.0, rise), fromWorld);
-        if (rise != 0.0 && std::isfinite(inParent.length()))
-            character.setMatrix(character.getMatrix() * osg::Matrixd::translate(inParent));
+        const auto heightOf = [&](const osg::Vec3d& way) { return osg::Matrixd::transform3x3(way, parentToWorld).z(); };
+        const double change = heightOf(character.getMatrix().getTrans() - _placed);
+        return std::abs(change) <= smallestMove * _longestLeg ? heightOf(_rise) : 0.0;
     }
 
-    static glm::vec3 toGlm(const osg::Vec3d& vector)
+    /// rise: of the character's own height. step: of its present one.
+    void place(AnimatedCharacter& character, const osg::Matrixd& parentToWorld, double rise, double step)
     {
-        return glm::vec3(glm::dvec3(vector.x(), vector.y(), vector.z()));
+        const osg::Matrixd fromWorld = osg::Matrixd::inverse(parentToWorld);
+        const osg::Vec3d up = osg::Matrixd::transform3x3(osg::Vec3d(0.0, 0.0, 1.0), fromWorld);
+        if (!std::isfinite(up.length() * step)) return;
+        if (step != 0.0) character.setMatrix(character.getMatrix() * osg::Matrixd::translate(up * step));
+        _rise = up * rise;
+        _placed = character.getMatrix().getTrans();
     }
 
     void aim(AnimatedCharacter& character, const osg::Matrixd& nodeToWorld, double weight)
@@ -331,7 +339,7 @@ private:
             const osg::Matrixd ankle = _feet[i].target() * worldToFile;
             const osg::Quat turn = rotationOf(ankle).getRotate();
             ConstraintHandle constraint = character.getController().constraint(legs->legs[i].constraint);
-            // What is not finite is refused: the previous target remains.
+            // The controller refuses positions that are not finite: the previous target remains.
             if (!constraint.setTarget(toGlm(ankle.getTrans()))) continue;
             static_cast<void>(constraint.setRotation(glm::vec4(glm::dvec4(turn.x(), turn.y(), turn.z(), turn.w()))));
             static_cast<void>(constraint.setWeight(static_cast<float>(weight)));
@@ -341,12 +349,15 @@ private:
 
     std::optional<double> _time; ///< of the last update, seconds; empty: the next one starts anew
     unsigned int _frame = 0;
-    bool _hasTargets = false;
+    bool _hasTargets = true;         ///< copies of characters and scene files have the targets of the original
     std::vector<GroundedFoot> _feet; ///< by leg
     double _longestLeg = 0.0;
     double _height = 0.0; ///< of the character's origin
     double _lowest = 0.0; ///< the height at which the lowest foot stands
     osg::Vec3d _place;    ///< of the character's origin, without that height
+    // In the space above the character:
+    osg::Vec3d _rise;   ///< from the height that the application has given
+    osg::Vec3d _placed; ///< the character's origin after the last update
     osg::Matrixd _groundToWorld;
     // Of the present step:
     double _seconds = 0.0;
@@ -359,13 +370,6 @@ private:
     std::vector<GroundProbe::Line> _lines; ///< of each foot those of its probes, then of its landing
     std::vector<std::optional<GroundPoint>> _points;
 };
-
-/// From the node's own space along its first parents.
-osg::Matrixd toWorldOf(const osg::Node& node)
-{
-    const osg::NodePathList paths = node.getParentalNodePaths();
-    return paths.empty() ? osg::Matrixd() : osg::computeLocalToWorld(paths.front());
-}
 
 osg::Node* findNamed(osg::Node& top, const std::string& name)
 {
@@ -404,13 +408,13 @@ class GroundFeet::States : public CharacterStates<FeetState>
 {
 public:
     /// Looks the legs up if the character's set is new. False, with one warning: they do not fit it.
-    bool resolveLegs(const AnimatedCharacter& character, const std::vector<GroundLeg>& legs, FeetState& state)
+    bool resolveLegs(AnimatedCharacter& character, const std::vector<GroundLeg>& legs, FeetState& state)
     {
         const std::shared_ptr<const AnimationSet>& set = character.getController().sharedSet();
         if (state.set == set) return state.legs != nullptr;
+        state.stop(character); // clears the targets of the previous set's legs
         state.set = set;
         state.legs = _known[set.get()].lock();
-        state.reset();
         if (state.legs) return true;
         const Result<std::shared_ptr<Legs>> resolved = resolve(set, legs);
         if (!resolved) OSG_WARN << "osgGpuAnimation: " << resolved.error().message << std::endl;
@@ -454,6 +458,8 @@ void GroundFeet::setGround(osg::Node* ground)
     _ground = ground;
     _isWholeScene = !ground;
     _groundName.clear();
+    _hasWarned = false;
+    _lastSearch = {};
 }
 
 osg::ref_ptr<osg::Node> GroundFeet::getGround() const
@@ -473,7 +479,7 @@ void GroundFeet::setGroundName(const std::string& name)
 std::string GroundFeet::getGroundName() const
 {
     const osg::ref_ptr<osg::Node> ground = getGround();
-    return ground ? ground->getName() : _groundName;
+    return ground && _groundName.empty() ? ground->getName() : _groundName;
 }
 
 Result<bool> GroundFeet::setLegs(const AnimationSet& set, std::vector<GroundLeg> legs)
@@ -521,15 +527,18 @@ void GroundFeet::reset()
     _states->forEach([](AnimatedCharacter&, FeetState& state) { state.reset(); });
 }
 
-osg::ref_ptr<osg::Node> GroundFeet::groundIn(osg::Node& scene)
+osg::ref_ptr<osg::Node> GroundFeet::groundIn(osg::Node& scene, unsigned int frame)
 {
     if (_isWholeScene) return &scene;
-    if (_groundName.empty()) return getGround();
-    osg::Node* const found = findNamed(scene, _groundName);
-    if (!found) OSG_WARN << "osgGpuAnimation: feet: there is no node \"" << _groundName << "\" below them" << std::endl;
-    _ground = found;
-    _groundName.clear();
-    return found;
+    const std::pair<const osg::Node*, unsigned int> search(&scene, frame);
+    osg::ref_ptr<osg::Node> ground = getGround();
+    if (ground || _groundName.empty() || search == _lastSearch) return ground;
+    _ground = ground = findNamed(scene, _groundName);
+    if (ground) return ground;
+    _lastSearch = search;
+    if (!std::exchange(_hasWarned, true))
+        OSG_WARN << "osgGpuAnimation: feet: there is no node \"" << _groundName << "\" below them" << std::endl;
+    return ground;
 }
 
 void GroundFeet::operator()(osg::Node* node, osg::NodeVisitor* visitor)
@@ -538,21 +547,21 @@ void GroundFeet::operator()(osg::Node* node, osg::NodeVisitor* visitor)
     const osg::FrameStamp* stamp = visitor->getFrameStamp();
     if (character && stamp)
     {
-        FeetState& state = _states->of(*character);
         if (osgUtil::CullVisitor* cull = visitor->asCullVisitor())
         {
             const osg::Vec3d eye = cull->getCurrentCamera()->getInverseViewMatrix().getTrans();
             const osg::Vec3d origin = osg::computeLocalToWorld(visitor->getNodePath()).getTrans();
-            state.seen.sawFrom((origin - eye).length(), stamp->getFrameNumber());
+            _states->sawFrom(*character, (origin - eye).length(), stamp->getFrameNumber());
         }
-        else if (visitor->getVisitorType() == osg::NodeVisitor::UPDATE_VISITOR &&
+        else if (FeetState& state = _states->of(*character);
+                 visitor->getVisitorType() == osg::NodeVisitor::UPDATE_VISITOR &&
                  _states->resolveLegs(*character, _legs, state))
         {
             const osg::NodePath& path = visitor->getNodePath();
-            if (_weight > 0.0 && state.seen.isWithin(_maxDistance, stamp->getFrameNumber()))
+            if (_weight > 0.0 && _states->isWithin(*character, _maxDistance, stamp->getFrameNumber()))
             {
-                const osg::ref_ptr<osg::Node> ground = groundIn(*path.front());
-                const osg::Matrixd groundToWorld = ground ? toWorldOf(*ground) : osg::Matrixd();
+                const osg::ref_ptr<osg::Node> ground = groundIn(*path.front(), stamp->getFrameNumber());
+                const osg::Matrixd groundToWorld = ground ? toWorld(*ground, true) : osg::Matrixd();
                 state.update(*character, path, *stamp,
                              {ground, groundToWorld, _traversalMask, _reach, _maxTilt, _lockDistance, _weight},
                              _states->probe);

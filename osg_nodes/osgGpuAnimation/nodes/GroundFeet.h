@@ -11,6 +11,7 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace osgGpuAnimation
@@ -74,8 +75,8 @@ public:
     /// Scene files keep its name. Null (the default): the whole scene.
     void setGround(osg::Node* ground);
     osg::ref_ptr<osg::Node> getGround() const; ///< see setGround(); null after its end
-    /// Selects the first node of this name in the character's scene as ground, at the next update; without such a node
-    /// there is no ground. Empty: the whole scene.
+    /// Selects the first node of this name in the character's scene as ground. Each frame looks it up until it is
+    /// there, and again after its end; without such a node there is no ground. Empty: the whole scene.
     void setGroundName(const std::string& name);
     /// The name of setGroundName(), else of the ground; empty: the whole scene, or a ground without a name.
     std::string getGroundName() const;
@@ -104,8 +105,9 @@ public:
     /// of the leg: at least 0, finite. 0: feet never keep their places. Default: 0.3.
     bool setLockDistance(double distance);
     double getLockDistance() const { return _lockDistance; } ///< see setLockDistance()
-    /// Sets the share of the ground in the pose and in the character's height, in [0, 1], for example 0 in a jump.
-    /// Above 0 after 0 the character starts anew. Default: 1.
+    /// Sets the share of the ground in the pose and in the character's height, in [0, 1], for example 0 in a jump. The
+    /// rest of the height is the one that the application has given the matrix. At 0 the height stays; above 0 after 0
+    /// the character starts anew. Default: 1.
     bool setWeight(double weight);
     double getWeight() const { return _weight; } ///< see setWeight()
     /// Stops for characters that no camera has drawn within this distance in the last frame: nothing is sampled, the
@@ -133,11 +135,13 @@ protected:
 private:
     class States;
 
-    osg::ref_ptr<osg::Node> groundIn(osg::Node& scene);
+    osg::ref_ptr<osg::Node> groundIn(osg::Node& scene, unsigned int frame);
 
     osg::observer_ptr<osg::Node> _ground;
     bool _isWholeScene = true;
-    std::string _groundName; ///< to be looked up; empty: done
+    std::string _groundName;                               ///< of setGroundName()
+    bool _hasWarned = false;                               ///< there was no node of this name
+    std::pair<const osg::Node*, unsigned int> _lastSearch; ///< without success: the scene and the frame
     osg::Node::NodeMask _traversalMask = ~0u;
     std::vector<GroundLeg> _legs;
     double _reach = 0.6, _maxTilt = 0.7, _lockDistance = 0.3, _weight = 1.0;

@@ -3,6 +3,7 @@
 
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+#include <osgGpuAnimation/nodes/frame/WorldTargets.h>
 
 #include <osg/Camera>
 #include <osgUtil/LineSegmentIntersector>
@@ -23,15 +24,6 @@ constexpr double steepest = 0.17; ///< the least z of a normal: 80 degrees
 bool isFinite(const osg::Vec3d& vector)
 {
     return std::isfinite(vector.x()) && std::isfinite(vector.y()) && std::isfinite(vector.z());
-}
-
-/// From the space above the ground node to world space.
-osg::Matrixd aboveToWorld(const osg::Node& ground)
-{
-    osg::NodePathList paths = ground.getParentalNodePaths();
-    if (paths.empty()) return {};
-    paths.front().pop_back();
-    return osg::computeLocalToWorld(paths.front());
 }
 
 std::optional<GroundPoint> pointOf(const Intersector::Intersection& hit, const osg::Matrixd& aboveToWorld)
@@ -56,8 +48,8 @@ public:
                    Intersector::IntersectionLimit limit)
     {
         _ground = &ground;
-        _toWorld = aboveToWorld(ground);
-        const osg::Matrixd fromWorld = osg::Matrixd::inverse(_toWorld);
+        _aboveToWorld = toWorld(ground, false);
+        const osg::Matrixd fromWorld = osg::Matrixd::inverse(_aboveToWorld);
         const osg::ref_ptr<osgUtil::IntersectorGroup> group = new osgUtil::IntersectorGroup;
         while (_lines.size() < lines.size())
             _lines.push_back(new Intersector(osg::Vec3d(), osg::Vec3d()));
@@ -82,7 +74,7 @@ public:
     }
 
     const Intersector::Intersections& hits(std::size_t line) const { return _lines[line]->getIntersections(); }
-    const osg::Matrixd& toWorld() const { return _toWorld; }
+    const osg::Matrixd& aboveToWorld() const { return _aboveToWorld; } ///< of the ground node
 
     using osgUtil::IntersectionVisitor::apply;
     void apply(osg::Transform& transform) override
@@ -98,7 +90,7 @@ public:
 
 private:
     const osg::Node* _ground = nullptr;
-    osg::Matrixd _toWorld;
+    osg::Matrixd _aboveToWorld;
     std::vector<osg::ref_ptr<Intersector>> _lines;
 };
 
@@ -112,7 +104,7 @@ void GroundProbe::highest(osg::Node& ground, osg::Node::NodeMask traversalMask, 
     _visitor->intersect(ground, traversalMask, lines, Intersector::LIMIT_NEAREST);
     outPoints.assign(lines.size(), std::nullopt);
     for (std::size_t i = 0; i < lines.size(); ++i)
-        if (!_visitor->hits(i).empty()) outPoints[i] = pointOf(*_visitor->hits(i).begin(), _visitor->toWorld());
+        if (!_visitor->hits(i).empty()) outPoints[i] = pointOf(*_visitor->hits(i).begin(), _visitor->aboveToWorld());
     _visitor->forgetHits();
 }
 
@@ -120,16 +112,17 @@ std::optional<GroundPoint> GroundProbe::nearest(osg::Node& ground, osg::Node::No
                                                 const osg::Vec3d& place)
 {
     const osg::BoundingSphere& bound = ground.getBound();
-    const osg::Vec3d center = osg::Vec3d(bound.center()) * aboveToWorld(ground);
+    const osg::Matrixd aboveToWorld = toWorld(ground, false);
+    const osg::Vec3d center = osg::Vec3d(bound.center()) * aboveToWorld;
     if (!bound.valid() || !isFinite(center) || !isFinite(place)) return std::nullopt;
-    const osg::Vec3d scale = aboveToWorld(ground).getScale();
+    const osg::Vec3d scale = aboveToWorld.getScale();
     const double reach = static_cast<double>(bound.radius()) * std::max({scale.x(), scale.y(), scale.z()}) * 1.01;
     if (!std::isfinite(reach) || !(reach > 0.0)) return std::nullopt;
     const Line line{{place.x(), place.y(), center.z() + reach}, 2.0 * reach};
     _visitor->intersect(ground, traversalMask, {line}, Intersector::NO_LIMIT);
     std::optional<GroundPoint> nearest;
     for (const Intersector::Intersection& hit : _visitor->hits(0))
-        if (const auto point = pointOf(hit, _visitor->toWorld()))
+        if (const auto point = pointOf(hit, _visitor->aboveToWorld()))
             if (!nearest || std::abs(point->place.z() - place.z()) < std::abs(nearest->place.z() - place.z()))
                 nearest = point;
     _visitor->forgetHits();

@@ -91,7 +91,7 @@ void GroundedFoot::lock(bool isPlanted, double heading, double seconds, double l
         else
         {
             _mayLock = !isPlanted;
-            _shiftLeft = blendSeconds;
+            _shiftLeft = _blendSeconds;
         }
     }
     if (_isLocked && wasLocked) return;
@@ -114,7 +114,7 @@ void GroundedFoot::standOn(const Ground& below, const Ground& landing, double se
     {
         _lift += jump;
         _lean += turn;
-        _liftLeft = blendSeconds;
+        _liftLeft = _blendSeconds;
     }
     _ground = ground;
     _isGrounded = support.has_value();
@@ -152,7 +152,7 @@ double GroundedFoot::limitedHeight(double height, double wanted, double reach, b
     if (!isPlanted)
     {
         _beyond = std::max(wanted - limit, 0.0);
-        _beyondLeft = blendSeconds;
+        _beyondLeft = _blendSeconds;
         return wanted;
     }
     _beyond *= remainder(seconds, _beyondLeft);

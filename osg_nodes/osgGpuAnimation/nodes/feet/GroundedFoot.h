@@ -30,7 +30,8 @@ struct LegPose
 class GroundedFoot
 {
 public:
-    static constexpr double blendSeconds = 0.1; ///< until a change is followed completely
+    /// blendSeconds: until the foot has followed a change of its ground or place completely.
+    explicit GroundedFoot(double blendSeconds) : _blendSeconds(blendSeconds) {}
 
     void takePose(const LegPose& pose);
     double length() const { return _length; } ///< of the leg
@@ -75,6 +76,7 @@ private:
     osg::Vec3d onClipsGround(const osg::Vec3d& place) const;
     osg::Vec3d place() const { return _below + _shift; }
 
+    double _blendSeconds;
     LegPose _pose;
     osg::Vec3d _below; ///< the contact on the clips' ground
     double _length = 0.0;

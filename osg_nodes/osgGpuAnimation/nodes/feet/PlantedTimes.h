@@ -19,7 +19,7 @@ class AnimationController;
 class PlantedTimes
 {
 public:
-    /// What the clips say now.
+    /// The present state of the foot in the clips, and its next landing.
     struct Now
     {
         bool isPlanted = true;

@@ -36,7 +36,7 @@ private:
     std::optional<unsigned int> _frame;
 };
 
-/// What a callback that several characters share keeps for each of them. Cameras may cull concurrently.
+/// The states that a callback keeps for the characters that share it. Cameras may cull concurrently.
 template <typename State>
 class CharacterStates
 {
@@ -45,13 +45,20 @@ public:
     State& of(AnimatedCharacter& character)
     {
         const std::lock_guard<std::mutex> lock(_mutex);
-        const auto found = _states.find(&character);
-        if (found != _states.end() && found->second.character.valid()) return found->second.state;
-        for (auto entry = _states.begin(); entry != _states.end();)
-            entry = entry->second.character.valid() ? std::next(entry) : _states.erase(entry);
-        Entry& entry = _states[&character];
-        entry.character = &character;
-        return entry.state;
+        return entryOf(character).state;
+    }
+
+    /// Records the distance of a camera that draws the character, in world units. frame: the camera's.
+    void sawFrom(AnimatedCharacter& character, double distance, unsigned int frame)
+    {
+        const std::lock_guard<std::mutex> lock(_mutex);
+        entryOf(character).seen.sawFrom(distance, frame);
+    }
+    /// See SeenDistance::isWithin().
+    bool isWithin(AnimatedCharacter& character, double distance, unsigned int frame)
+    {
+        const std::lock_guard<std::mutex> lock(_mutex);
+        return entryOf(character).seen.isWithin(distance, frame);
     }
 
     void clear() { _states.clear(); }
@@ -70,7 +77,20 @@ private:
     {
         osg::observer_ptr<AnimatedCharacter> character;
         State state;
+        SeenDistance seen;
     };
+
+    /// The mutex is locked.
+    Entry& entryOf(AnimatedCharacter& character)
+    {
+        const auto found = _states.find(&character);
+        if (found != _states.end() && found->second.character.valid()) return found->second;
+        for (auto entry = _states.begin(); entry != _states.end();)
+            entry = entry->second.character.valid() ? std::next(entry) : _states.erase(entry);
+        Entry& entry = _states[&character];
+        entry.character = &character;
+        return entry;
+    }
 
     std::mutex _mutex;
     std::map<const AnimatedCharacter*, Entry> _states;

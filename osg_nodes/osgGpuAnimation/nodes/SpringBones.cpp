@@ -229,8 +229,6 @@ public:
         return _springs ? &*_springs : nullptr;
     }
 
-    SeenDistance seen;
-
     void reset() { _before.reset(); }
 
     void update(const Springs& springs, const std::vector<SpringCollider>& colliders, AnimatedCharacter& character,
@@ -492,18 +490,18 @@ void SpringBones::operator()(osg::Node* node, osg::NodeVisitor* visitor)
     const osg::FrameStamp* stamp = visitor->getFrameStamp();
     if (character && stamp)
     {
-        State& state = _states->of(*character);
         const unsigned int frame = stamp->getFrameNumber();
         const osg::Matrixd toWorld = osg::computeLocalToWorld(visitor->getNodePath());
         if (osgUtil::CullVisitor* cull = visitor->asCullVisitor())
         {
             const osg::Vec3d eye = cull->getCurrentCamera()->getInverseViewMatrix().getTrans();
-            state.seen.sawFrom((toWorld.getTrans() - eye).length(), frame);
+            _states->sawFrom(*character, (toWorld.getTrans() - eye).length(), frame);
         }
         else if (visitor->getVisitorType() == osg::NodeVisitor::UPDATE_VISITOR)
         {
+            State& state = _states->of(*character);
             const Springs* springs = state.springs(character->getController().sharedSet(), _chains, _colliders);
-            if (springs && state.seen.isWithin(_maxDistance, frame))
+            if (springs && _states->isWithin(*character, _maxDistance, frame))
                 state.update(*springs, _colliders, *character, toWorld, *stamp, _layer);
             else
                 state.stop(*character, _layer);

@@ -95,7 +95,9 @@ TEST_F(ConstraintsGLTest, randomSettingsAreTheTwinsPose)
     }
     std::printf("%zu compared, the worst by %.2e\n", compared, worst);
     EXPECT_GE(compared, 250u) << "of 500: the others are near singular axes";
-    EXPECT_LE(worst, 1e-5);
+    // Rounding of floats times the sensitivity of up to 57, over up to nine constraints; real models: 1e-5
+    // (LayersOfModelsGLTest).
+    EXPECT_LE(worst, 3e-5);
 }
 
 // Declared before a constraint higher up, the limb does not see its result: the path begins above the limb.

@@ -82,7 +82,9 @@ Constraint randomLookAt(const AnimationSet& set, const std::string& name, std::m
     do
         look.up = direction(random);
     while (glm::length(glm::cross(look.forward, look.up)) < 0.3f);
-    look.offset = direction(random) * (whole(random, 0, 1) == 0 ? 0.0f : 0.02f * sizeOf(set));
+    // One draw a statement: compilers evaluate operands in different orders.
+    const float away = whole(random, 0, 1) == 0 ? 0.0f : 0.02f * sizeOf(set);
+    look.offset = direction(random) * away;
     if (whole(random, 0, 1) == 0) look.cone = number(random, 0.3f, 2.5f);
     for (std::size_t i = 0; i < look.joints.size(); ++i)
         look.shares.push_back(number(random, 0.1f, 1.0f));
@@ -147,7 +149,10 @@ std::vector<ConstraintTarget> randomTargets(const AnimationSet& set, std::mt1993
         if (whole(random, 0, 1) == 0) target.pole = direction(random);
         if (whole(random, 0, 1) == 0) target.twist = number(random, -3.0f, 3.0f);
         if (!chain.isLookAt && whole(random, 0, 1) == 0)
-            target.rotation = glm::vec4(Rotation::unit(glm::dvec4(direction(random), number(random, -1, 1))));
+        {
+            const float w = number(random, -1, 1);
+            target.rotation = glm::vec4(Rotation::unit(glm::dvec4(direction(random), w)));
+        }
         targets.back() = target;
     }
     return targets;

@@ -19,21 +19,21 @@ namespace osgGpuAnimation
 namespace
 {
 
-float number(std::mt19937& random, float low, float high)
+float anyNumber(std::mt19937& random, float low, float high)
 {
     return std::uniform_real_distribution<float>(low, high)(random);
 }
 
-int whole(std::mt19937& random, int low, int high)
+int anyInteger(std::mt19937& random, int low, int high)
 {
     return std::uniform_int_distribution<int>(low, high)(random);
 }
 
-glm::vec3 direction(std::mt19937& random)
+glm::vec3 anyDirection(std::mt19937& random)
 {
     glm::vec3 v;
     do
-        v = {number(random, -1, 1), number(random, -1, 1), number(random, -1, 1)};
+        v = {anyNumber(random, -1, 1), anyNumber(random, -1, 1), anyNumber(random, -1, 1)};
     while (glm::length(v) < 0.2f || glm::length(v) > 1.0f);
     return glm::normalize(v);
 }
@@ -45,7 +45,7 @@ std::vector<AffineMatrix> jointsAtRest(const AnimationSet& set)
     return matrices;
 }
 
-glm::vec3 origin(const AffineMatrix& matrix)
+glm::vec3 originOf(const AffineMatrix& matrix)
 {
     return {matrix.rows[0].w, matrix.rows[1].w, matrix.rows[2].w};
 }
@@ -56,18 +56,18 @@ float sizeOf(const AnimationSet& set)
     glm::vec3 low(1e30f), high(-1e30f);
     for (const AffineMatrix& matrix : jointsAtRest(set))
     {
-        low = glm::min(low, origin(matrix));
-        high = glm::max(high, origin(matrix));
+        low = glm::min(low, originOf(matrix));
+        high = glm::max(high, originOf(matrix));
     }
     return std::max(glm::length(high - low), 1e-6f);
 }
 
 /// A joint and up to `count` - 1 of its ancestors, the highest first, named uniquely.
-std::vector<std::string> chain(const AnimationSet& set, int count, std::mt19937& random)
+std::vector<std::string> anyChain(const AnimationSet& set, int count, std::mt19937& random)
 {
     const Skeleton& skeleton = set.skeleton();
     std::vector<std::string> names;
-    int joint = whole(random, 0, static_cast<int>(skeleton.jointCount()) - 1);
+    int joint = anyInteger(random, 0, static_cast<int>(skeleton.jointCount()) - 1);
     for (; joint >= 0 && static_cast<int>(names.size()) < count;
          joint = skeleton.joint(static_cast<std::size_t>(joint)).parent)
         if (skeleton.findJoint(skeleton.joint(static_cast<std::size_t>(joint)).name) == joint)
@@ -77,33 +77,33 @@ std::vector<std::string> chain(const AnimationSet& set, int count, std::mt19937&
 
 Constraint randomLookAt(const AnimationSet& set, const std::string& name, std::mt19937& random)
 {
-    LookAt look{name, chain(set, whole(random, 1, 4), random)};
-    look.forward = direction(random);
+    LookAt look{name, anyChain(set, anyInteger(random, 1, 4), random)};
+    look.forward = anyDirection(random);
     do
-        look.up = direction(random);
+        look.up = anyDirection(random);
     while (glm::length(glm::cross(look.forward, look.up)) < 0.3f);
     // One draw a statement: compilers evaluate operands in different orders.
-    const float away = whole(random, 0, 1) == 0 ? 0.0f : 0.02f * sizeOf(set);
-    look.offset = direction(random) * away;
-    if (whole(random, 0, 1) == 0) look.cone = number(random, 0.3f, 2.5f);
+    const float away = anyInteger(random, 0, 1) == 0 ? 0.0f : 0.02f * sizeOf(set);
+    look.offset = anyDirection(random) * away;
+    if (anyInteger(random, 0, 1) == 0) look.cone = anyNumber(random, 0.3f, 2.5f);
     for (std::size_t i = 0; i < look.joints.size(); ++i)
-        look.shares.push_back(number(random, 0.1f, 1.0f));
+        look.shares.push_back(anyNumber(random, 0.1f, 1.0f));
     return look;
 }
 
 std::optional<Constraint> randomLimb(const AnimationSet& set, const std::string& name, std::mt19937& random)
 {
-    const std::vector<std::string> joints = chain(set, 3, random);
+    const std::vector<std::string> joints = anyChain(set, 3, random);
     if (joints.size() < 3) return std::nullopt;
     const std::vector<AffineMatrix> matrices = jointsAtRest(set);
     const auto place = [&](std::size_t i)
-    { return origin(matrices[static_cast<std::size_t>(set.skeleton().findJoint(joints[i]))]); };
+    { return originOf(matrices[static_cast<std::size_t>(set.skeleton().findJoint(joints[i]))]); };
     const float shortest = 0.02f * sizeOf(set);
     if (glm::distance(place(0), place(1)) < shortest || glm::distance(place(1), place(2)) < shortest)
         return std::nullopt;
     TwoBoneIk limb{name, joints[0], joints[1], joints[2]};
-    limb.hinge = direction(random);
-    if (whole(random, 0, 1) == 0) limb.softReach = number(random, 0.3f, 1.0f);
+    limb.hinge = anyDirection(random);
+    if (anyInteger(random, 0, 1) == 0) limb.softReach = anyNumber(random, 0.3f, 1.0f);
     return limb;
 }
 
@@ -134,24 +134,25 @@ std::vector<ConstraintTarget> randomTargets(const AnimationSet& set, std::mt1993
     {
         ConstraintTarget target;
         targets.push_back(target);
-        if (whole(random, 0, 4) == 0) continue;
+        if (anyInteger(random, 0, 4) == 0) continue;
         const auto joint = [&](std::size_t place)
-        { return origin(matrices[static_cast<std::size_t>(chain.joints[place])]); };
-        float away = number(random, 0.3f, 3.0f) * size;
+        { return originOf(matrices[static_cast<std::size_t>(chain.joints[place])]); };
+        float away = anyNumber(random, 0.3f, 3.0f) * size;
         if (!chain.isLookAt)
         {
             const float upper = glm::distance(joint(0), joint(chain.mid));
             const float lower = glm::distance(joint(chain.mid), joint(chain.joints.size() - 1));
-            away = std::abs(upper - lower) + number(random, 0.05f, 0.95f) * (upper + lower - std::abs(upper - lower));
+            away =
+                std::abs(upper - lower) + anyNumber(random, 0.05f, 0.95f) * (upper + lower - std::abs(upper - lower));
         }
-        target.position = joint(0) + direction(random) * away;
-        target.weight = whole(random, 0, 1) == 0 ? 1.0f : number(random, 0.1f, 1.0f);
-        if (whole(random, 0, 1) == 0) target.pole = direction(random);
-        if (whole(random, 0, 1) == 0) target.twist = number(random, -3.0f, 3.0f);
-        if (!chain.isLookAt && whole(random, 0, 1) == 0)
+        target.position = joint(0) + anyDirection(random) * away;
+        target.weight = anyInteger(random, 0, 1) == 0 ? 1.0f : anyNumber(random, 0.1f, 1.0f);
+        if (anyInteger(random, 0, 1) == 0) target.pole = anyDirection(random);
+        if (anyInteger(random, 0, 1) == 0) target.twist = anyNumber(random, -3.0f, 3.0f);
+        if (!chain.isLookAt && anyInteger(random, 0, 1) == 0)
         {
-            const float w = number(random, -1, 1);
-            target.rotation = glm::vec4(Rotation::unit(glm::dvec4(direction(random), w)));
+            const float w = anyNumber(random, -1, 1);
+            target.rotation = glm::vec4(Rotation::unit(glm::dvec4(anyDirection(random), w)));
         }
         targets.back() = target;
     }
@@ -192,8 +193,8 @@ double sensitivityOf(const AnimationSet& set, const PoseInstruction& instruction
         PoseInstruction moved = instruction;
         for (ConstraintTarget& target : moved.targets)
         {
-            target.position += direction(random) * (step * size);
-            if (target.pole != glm::vec3(0.0f)) target.pole += direction(random) * step;
+            target.position += anyDirection(random) * (step * size);
+            if (target.pole != glm::vec3(0.0f)) target.pole += anyDirection(random) * step;
         }
         worst = std::max(worst, apart(before, jointsOf(moved)) / static_cast<double>(step));
     }

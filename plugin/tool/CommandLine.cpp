@@ -11,7 +11,8 @@
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
-#include <map>
+#include <utility>
+#include <vector>
 
 namespace osgGpuAnimation::tool
 {
@@ -99,6 +100,35 @@ void readSize(const std::string& text, RenderCommand& command)
     command.height = height;
 }
 
+/// Adds an option whose values are those words, the default among them being the target's value.
+template <class Value>
+CLI::Option* addChoice(CLI::App& app, const std::string& name, Value& target,
+                       const std::vector<std::pair<std::string, Value>>& choices, const std::string& help)
+{
+    std::string words;
+    for (const auto& choice : choices)
+        words += (words.empty() ? "" : "|") + choice.first;
+    const auto take = [=, &target](const std::string& word)
+    {
+        const auto found = std::find_if(choices.begin(), choices.end(), [&](const auto& c) { return c.first == word; });
+        if (found == choices.end()) throw CLI::ValidationError(name, "'" + word + "' is not one of " + words);
+        target = found->second;
+    };
+    return app.add_option_function<std::string>(name, take, help)->option_text(words);
+}
+
+/// What is wrong, for people. CLI11 lists all words that it did not take, an unknown option's value and FILE among
+/// them.
+std::string messageOf(const CLI::ParseError& fault, const CLI::App& app)
+{
+    const std::vector<std::string> unknown = app.remaining(true);
+    const auto option = std::find_if(unknown.begin(), unknown.end(),
+                                     [](const std::string& word) { return word.size() > 1 && word.front() == '-'; });
+    if (option != unknown.end()) return "there is no option " + *option;
+    if (!unknown.empty() && app.get_subcommands().empty()) return "there is no command \"" + unknown.front() + "\"";
+    return fault.what();
+}
+
 } // namespace
 
 CommandLine::CommandLine() : _app(description, "osggpuanim")
@@ -143,14 +173,11 @@ void CommandLine::addPose()
                                              "to be taken");
     like->excludes(clip)->excludes(time)->excludes(bind);
     bind->excludes(clip)->excludes(time);
-    const std::map<std::string, PoseCommand::Evaluator> evaluators{{"gpu", PoseCommand::Evaluator::Gpu},
-                                                                   {"cpu", PoseCommand::Evaluator::Cpu}};
-    _poseApp
-        ->add_option("--evaluator", _pose.evaluator,
-                     "gpu (default): read back from the palette buffer and captured from the skinning shader; "
-                     "cpu: the same computed without GL")
-        ->transform(CLI::CheckedTransformer(evaluators))
-        ->option_text("gpu|cpu");
+    addChoice<PoseCommand::Evaluator>(
+        *_poseApp, "--evaluator", _pose.evaluator,
+        {{"gpu", PoseCommand::Evaluator::Gpu}, {"cpu", PoseCommand::Evaluator::Cpu}},
+        "gpu (default): read back from the palette buffer and captured from the skinning shader; "
+        "cpu: the same computed without GL");
     _poseApp->add_option("-o,--output", _pose.output, "OUT.json; default: standard output");
 }
 
@@ -177,18 +204,15 @@ void CommandLine::addRender()
     _renderApp->add_option("--fps", _render.framesPerSecond, "Pictures a second (default 30)")
         ->check(CLI::Range(0.001, 100000.0))
         ->needs(frames);
-    CLI::Option* look =
-        _renderApp
-            ->add_option(
-                "--look", _render.look,
-                "studio: image-based light with tone mapping; sun: one light and an even surrounding; furnace: a "
-                "white surrounding; file: the file's own lights (default studio)")
-            ->option_text("studio|sun|furnace|file")
-            ->transform(CLI::Transformer(std::map<std::string, Look>{
-                {"studio", Look::Studio}, {"sun", Look::Sun}, {"furnace", Look::Furnace}, {"file", Look::File}}));
+    CLI::Option* look = addChoice<Look>(
+        *_renderApp, "--look", _render.look,
+        {{"studio", Look::Studio}, {"sun", Look::Sun}, {"furnace", Look::Furnace}, {"file", Look::File}},
+        "studio: image-based light with tone mapping; sun: one light and an even surrounding; furnace: a "
+        "white surrounding; file: the file's own lights (default studio)");
     _renderApp
-        ->add_option("--environment", _render.environment,
-                     "An equirectangular picture (.hdr and what OSG's plugins read) in place of the studio")
+        ->add_option(
+            "--environment", _render.environment,
+            "An equirectangular picture (.hdr and what OSG's plugins read) in place of the studio; not with --look")
         ->option_text("FILE")
         ->excludes(look);
     _renderApp->add_option("-o,--output", _render.output, "OUT.png")->required()->check(checkPng);
@@ -204,7 +228,9 @@ int CommandLine::run(int argc, char** argv)
     }
     catch (const CLI::ParseError& fault)
     {
-        return _app.exit(fault) == 0 ? statusDone : statusWrongUsage;
+        if (fault.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return _app.exit(fault); // help
+        std::cerr << "osggpuanim: " << messageOf(fault, _app) << "\nRun with --help for more information." << std::endl;
+        return statusWrongUsage;
     }
     const Result<bool> done = runCommand();
     if (done) return statusDone;

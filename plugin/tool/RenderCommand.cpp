@@ -17,6 +17,7 @@
 #include <cmath>
 #include <filesystem>
 #include <iomanip>
+#include <iostream>
 #include <sstream>
 #include <vector>
 
@@ -123,8 +124,14 @@ Result<bool> RenderCommand::run() const
     else if (clip)
         grid.clips = {*clip};
     const std::string modelFile = isCrowd ? grid.modelFile : file;
+    if (osgDB::getLowerCaseFileExtension(modelFile) == "studio" && !osgDB::fileExists(modelFile))
+        return Error{modelFile + ": .studio is for OSG's viewers; `osggpuanim render " +
+                     osgDB::getNameLessExtension(modelFile) + "` draws in the studio's light"};
     const Result<gltf::ImportedModel> model = readModel(modelFile, options);
     if (!model) return Error{modelFile + ": " + model.error().message};
+    if (look == Look::File && model.value().lights.empty())
+        std::cerr << "osggpuanim: " << modelFile << ": the file has no lights; only a faint surrounding lights it"
+                  << std::endl;
     const Result<osg::ref_ptr<osg::Image>> panorama = readPicture(environment);
     if (!panorama) return panorama.error();
     Result<std::unique_ptr<PictureViewer>> viewer = PictureViewer::create(width, height, look);

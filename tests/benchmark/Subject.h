@@ -21,9 +21,9 @@ struct Subject
     std::size_t vertexCount() const; ///< of all its meshes
 };
 
-/// Draws with the fixed pipeline's look, as osgAnimation does.
+/// fixedLighting: with the fixed pipeline's look, as osgAnimation draws.
 /// Errors: those of the import; no clip of the file moves anything.
-Result<Subject> loadSubject(const std::string& name, const std::string& fileName);
+Result<Subject> loadSubject(const std::string& name, const std::string& fileName, bool fixedLighting);
 
 /// True if a property of the joint changes in the clip or differs from the rest pose.
 /// part: JointTransform::translation, rotation or scale.

@@ -78,7 +78,7 @@ std::vector<Subject> loadSubjects(const Request& request)
             std::cerr << name << ": not there, left out" << std::endl;
             continue;
         }
-        Result<Subject> subject = loadSubject(name, file);
+        Result<Subject> subject = loadSubject(name, file, true);
         if (!subject)
         {
             std::cerr << name << ": " << subject.error().message << std::endl;

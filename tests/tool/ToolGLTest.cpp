@@ -168,12 +168,20 @@ TEST_F(ToolGLTest, theFilesLightsShineInTheLookFileAlone)
             const Process done =
                 Process::run(OSGGPUANIM, {"render", files[i], "--look", look, "--size", "40x30", "-o", picture});
             ASSERT_EQ(done.status, 0) << done.err;
+            EXPECT_EQ(done.err, "");
             const osg::ref_ptr<osg::Image> image = osgDB::readRefImageFile(picture);
             ASSERT_TRUE(image);
             bytes[i] = bytesOf(*image);
         }
         EXPECT_EQ(bytes[0] == bytes[1], look != std::string("file")) << look;
     }
+    dark["extensions"].erase("KHR_lights_punctual");
+    for (json& node : dark["nodes"])
+        node.erase("extensions");
+    const Process unlit = Process::run(OSGGPUANIM, {"render", folder.write("unlit.gltf", dark.dump()), "--look", "file",
+                                                    "--size", "40x30", "-o", folder.file("unlit.png")});
+    EXPECT_EQ(unlit.status, 0);
+    EXPECT_NE(unlit.err.find("unlit.gltf: the file has no lights"), std::string::npos) << unlit.err;
 }
 
 TEST_F(ToolGLTest, inspectListsLightsAndCameras)

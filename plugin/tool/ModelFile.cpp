@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "tool/ModelFile.h"
 
+#ifdef OSGGPUANIMATION_ASSIMP
+#include "assimp/AssimpFile.h"
+#endif
 #include "gltf/file/ModelBytes.h"
 #include "gltf/file/ProgressLine.h"
 
@@ -20,6 +23,21 @@ bool isCalledGltf(const std::string& fileName)
     return extension == "gltf" || extension == "glb";
 }
 
+/// The file as glTF; of another format where Assimp reads it.
+Result<std::string> readGltf(const std::string& fileName, const gltf::ImportOptions& options, gltf::Messages& messages)
+{
+#ifdef OSGGPUANIMATION_ASSIMP
+    if (!isCalledGltf(fileName) && assimp::isFormat(osgDB::getLowerCaseFileExtension(fileName)))
+    {
+        gltf::Report report(messages);
+        return assimp::readAsGlb(fileName, options, report);
+    }
+#else
+    static_cast<void>(messages);
+#endif
+    return gltf::readModelFile(fileName, options);
+}
+
 } // namespace
 
 Result<gltf::ImportedModel> readModel(const std::string& fileName, const gltf::ImportOptions& options)
@@ -32,10 +50,18 @@ Result<gltf::ImportedModel> readModel(const std::string& fileName, const gltf::I
     if (!std::filesystem::is_regular_file(status)) return Error{"is not a regular file"};
 
     const gltf::ProgressLine progress("reading " + osgDB::getSimpleFileName(fileName));
-    const Result<std::string> bytes = gltf::readModelFile(fileName, options);
+    gltf::Messages messages;
+    const Result<std::string> bytes = readGltf(fileName, options, messages);
     if (!bytes) return bytes.error();
-    Result<gltf::ImportedModel> model = gltf::importModel(bytes.value(), fileName, options);
-    if (!model && !isCalledGltf(fileName)) return Error{"the file is neither .gltf nor .glb: " + model.error().message};
+    Result<gltf::ImportedModel> imported = gltf::importModel(bytes.value(), fileName, options);
+    if (!imported && !isCalledGltf(fileName))
+        return Error{"the file is neither .gltf nor .glb: " + imported.error().message};
+    if (!imported || (messages.warnings.empty() && messages.notes.empty())) return imported;
+    gltf::ImportedModel model = imported.value();
+    const auto putFirst = [](std::vector<std::string>& all, const std::vector<std::string>& first)
+    { all.insert(all.begin(), first.begin(), first.end()); };
+    putFirst(model.messages.warnings, messages.warnings);
+    putFirst(model.messages.notes, messages.notes);
     return model;
 }
 

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+#include "assimp/AssimpFile.h"
+
+#include "assimp/SceneConversion.h"
+
+#include <assimp/config.h>
+#include <assimp/DefaultIOSystem.h>
+#include <assimp/Importer.hpp>
+#include <assimp/postprocess.h>
+#include <assimp/ProgressHandler.hpp>
+#include <assimp/scene.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <system_error>
+
+namespace osgGpuAnimation::assimp
+{
+
+namespace
+{
+
+/// Regular files of a folder, to read.
+class FolderFiles : public Assimp::DefaultIOSystem
+{
+public:
+    FolderFiles(const std::string& fileName, bool allowOutsideFiles) : _allowOutsideFiles(allowOutsideFiles)
+    {
+        std::error_code failure;
+        _folder = std::filesystem::canonical(fileName, failure).parent_path();
+    }
+
+    bool Exists(const char* file) const override
+    {
+        std::error_code failure;
+        const std::filesystem::path path = std::filesystem::canonical(file, failure);
+        if (failure || !std::filesystem::is_regular_file(path, failure)) return false;
+        const auto [folderEnd, rest] = std::mismatch(_folder.begin(), _folder.end(), path.begin(), path.end());
+        static_cast<void>(rest);
+        return (_allowOutsideFiles || folderEnd == _folder.end()) &&
+               std::filesystem::file_size(path, failure) <= maxFileBytes;
+    }
+
+    Assimp::IOStream* Open(const char* file, const char* mode) override
+    {
+        return Exists(file) && mode[0] == 'r' ? DefaultIOSystem::Open(file, mode) : nullptr;
+    }
+
+private:
+    std::filesystem::path _folder;
+    bool _allowOutsideFiles;
+};
+
+class TimeLimit : public Assimp::ProgressHandler
+{
+public:
+    bool Update(float) override { return std::chrono::steady_clock::now() < _end; }
+
+private:
+    std::chrono::steady_clock::time_point _end =
+        std::chrono::steady_clock::now() +
+        std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(maxSeconds));
+};
+
+std::string firstLine(const std::string& text)
+{
+    return text.substr(0, text.find('\n'));
+}
+
+} // namespace
+
+bool isFormat(const std::string& extension)
+{
+    return !extension.empty() && Assimp::Importer().IsExtensionSupported(extension);
+}
+
+Result<std::string> readAsGlb(const std::string& fileName, const gltf::ImportOptions& options, gltf::Report& report)
+{
+    std::error_code failure;
+    if (std::filesystem::file_size(fileName, failure) > maxFileBytes && !failure)
+        return Error{"the file has more than " + std::to_string(maxFileBytes) + " bytes"};
+    Assimp::Importer importer;
+    importer.SetIOHandler(new FolderFiles(fileName, options.allowOutsideFiles)); // the importer deletes both
+    importer.SetProgressHandler(new TimeLimit);
+    // Otherwise each joint of FBX becomes a chain of nodes with names of Assimp's own.
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
+    const aiScene* const scene = importer.ReadFile(
+        fileName, aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_LimitBoneWeights |
+                      aiProcess_JoinIdenticalVertices | aiProcess_GenSmoothNormals | aiProcess_GlobalScale |
+                      aiProcess_FindInvalidData | aiProcess_ValidateDataStructure);
+    if (!scene) return Error{"Assimp cannot read it: " + gltf::printable(firstLine(importer.GetErrorString()), 300)};
+    return glbOf(*scene, fileName, options.maxDecodedBytes, report);
+}
+
+} // namespace osgGpuAnimation::assimp

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "gltf/file/Report.h"
+#include "gltf/ImportOptions.h"
+
+#include <osgGpuAnimation/animation/Result.h>
+
+#include <string>
+
+namespace osgGpuAnimation::assimp
+{
+
+/// A file of any format that Assimp reads, as GLB; see glbOf(). Files of FBX become metres by their unit; other formats
+/// keep their numbers.
+///
+/// Assimp checks files less than the reader of glTF does: a faulty file may end the process. What is bounded: the
+/// file's size (maxFileBytes), other files that it names (in or below its folder, unless options.allowOutsideFiles),
+/// the time (maxSeconds, between the steps at which Assimp asks), and the result (options.maxDecodedBytes).
+/// Errors: those bounds; Assimp cannot read the file; see glbOf().
+Result<std::string> readAsGlb(const std::string& fileName, const gltf::ImportOptions& options, gltf::Report& report);
+
+/// True for an extension (`fbx`) of Assimp's list.
+bool isFormat(const std::string& extension);
+
+constexpr std::size_t maxFileBytes = std::size_t(512) << 20;
+constexpr double maxSeconds = 60.0;
+
+} // namespace osgGpuAnimation::assimp

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: MIT
+#include "assimp/GlbWriter.h"
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <utility>
+
+namespace osgGpuAnimation::assimp
+{
+
+namespace
+{
+
+constexpr int arrayBuffer = 34962, elementArrayBuffer = 34963;           // bufferView.target
+constexpr int unsignedShort = 5123, unsignedInt = 5125, floating = 5126; // accessor.componentType
+
+std::size_t componentsOf(const char* type)
+{
+    return std::strcmp(type, "SCALAR") == 0 ? 1 : std::strcmp(type, "MAT4") == 0 ? 16 : std::size_t(type[3] - '0');
+}
+
+template <typename T>
+std::string_view bytesOf(const std::vector<T>& values)
+{
+    return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
+}
+
+void appendNumber(std::string& to, std::uint32_t number)
+{
+    for (int shift = 0; shift < 32; shift += 8)
+        to += static_cast<char>(number >> shift & 0xff);
+}
+
+} // namespace
+
+std::size_t append(nlohmann::json& array, nlohmann::json element)
+{
+    array.push_back(std::move(element));
+    return array.size() - 1;
+}
+
+GlbWriter::GlbWriter()
+{
+    document["asset"] = {{"version", "2.0"}, {"generator", "osgGpuAnimation"}};
+}
+
+std::size_t GlbWriter::addBytes(std::string_view bytes, int target)
+{
+    _binary.resize((_binary.size() + 3) / 4 * 4);
+    nlohmann::json view{{"buffer", 0}, {"byteOffset", _binary.size()}, {"byteLength", bytes.size()}};
+    if (target != 0) view["target"] = target;
+    _binary += bytes;
+    return append(document["bufferViews"], std::move(view));
+}
+
+std::size_t GlbWriter::addAccessor(std::size_t view, int componentType, std::size_t count, const char* type)
+{
+    return append(document["accessors"],
+                  {{"bufferView", view}, {"componentType", componentType}, {"count", count}, {"type", type}});
+}
+
+std::size_t GlbWriter::addFloats(const std::vector<float>& values, const char* type, Use use)
+{
+    if (use == Use::Times)
+        if (const auto known = _times.find(values); known != _times.end()) return known->second;
+    const std::size_t components = componentsOf(type);
+    const std::size_t accessor = addAccessor(addBytes(bytesOf(values), use == Use::Vertices ? arrayBuffer : 0),
+                                             floating, values.size() / components, type);
+    if (use == Use::Times) _times.emplace(values, accessor);
+    if (use == Use::Values) return accessor;
+    std::vector<float> least(components, std::numeric_limits<float>::max());
+    std::vector<float> most(components, std::numeric_limits<float>::lowest());
+    for (std::size_t i = 0; i < values.size(); ++i)
+    {
+        least[i % components] = std::min(least[i % components], values[i]);
+        most[i % components] = std::max(most[i % components], values[i]);
+    }
+    document["accessors"][accessor]["min"] = least;
+    document["accessors"][accessor]["max"] = most;
+    return accessor;
+}
+
+std::size_t GlbWriter::addIndices(const std::vector<std::uint32_t>& indices)
+{
+    return addAccessor(addBytes(bytesOf(indices), elementArrayBuffer), unsignedInt, indices.size(), "SCALAR");
+}
+
+std::size_t GlbWriter::addJoints(const std::vector<std::uint16_t>& joints)
+{
+    return addAccessor(addBytes(bytesOf(joints), arrayBuffer), unsignedShort, joints.size() / 4, "VEC4");
+}
+
+std::string GlbWriter::glb() const
+{
+    constexpr std::uint32_t version = 2, jsonChunk = 0x4e4f534a, binaryChunk = 0x004e4942; // "JSON", "BIN\0"
+    std::string binary = _binary;
+    binary.resize((binary.size() + 3) / 4 * 4);
+    nlohmann::json whole = document;
+    if (!binary.empty())
+        whole["buffers"] = nlohmann::json::array({nlohmann::json::object({{"byteLength", binary.size()}})});
+    // Names of a file may be no UTF-8.
+    std::string text = whole.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    text.resize((text.size() + 3) / 4 * 4, ' ');
+    const std::size_t chunks = 12 + 8 + text.size() + (binary.empty() ? 0 : 8 + binary.size());
+    std::string bytes = "glTF";
+    bytes.reserve(chunks);
+    appendNumber(bytes, version);
+    appendNumber(bytes, static_cast<std::uint32_t>(chunks));
+    appendNumber(bytes, static_cast<std::uint32_t>(text.size()));
+    appendNumber(bytes, jsonChunk);
+    bytes += text;
+    if (binary.empty()) return bytes;
+    appendNumber(bytes, static_cast<std::uint32_t>(binary.size()));
+    appendNumber(bytes, binaryChunk);
+    return bytes += binary;
+}
+
+} // namespace osgGpuAnimation::assimp

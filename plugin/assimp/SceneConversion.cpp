@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: MIT
+#include "assimp/SceneConversion.h"
+
+#include "assimp/AnimationConversion.h"
+#include "assimp/GlbWriter.h"
+#include "assimp/MaterialConversion.h"
+#include "assimp/MeshConversion.h"
+
+#include <assimp/scene.h>
+
+#include <cmath>
+#include <optional>
+#include <set>
+#include <utility>
+#include <vector>
+
+namespace osgGpuAnimation::assimp
+{
+
+namespace
+{
+
+using nlohmann::json;
+
+constexpr std::size_t mostDepth = 4096; // as in ImportOptions::maxNodeDepth
+
+json columnMajor(const aiMatrix4x4& matrix)
+{
+    json values = json::array();
+    for (unsigned int column = 0; column < 4; ++column)
+        for (unsigned int row = 0; row < 4; ++row)
+            values.push_back(matrix[row][column]);
+    return values;
+}
+
+bool isFinite(const aiMatrix4x4& matrix)
+{
+    float sum = 0.0f;
+    for (unsigned int row = 0; row < 4; ++row)
+        for (unsigned int column = 0; column < 4; ++column)
+            sum += std::abs(matrix[row][column]);
+    return std::isfinite(sum);
+}
+
+/// Turns the scene's axes to glTF's: +Y up, +Z forward. Identity where the metadata says nothing else.
+aiMatrix4x4 axesToYUp(const aiScene& scene)
+{
+    const char* const keys[3][2] = {
+        {"CoordAxis", "CoordAxisSign"}, {"UpAxis", "UpAxisSign"}, {"FrontAxis", "FrontAxisSign"}};
+    aiMatrix4x4 turn(aiVector3D(0.0f), aiQuaternion(), aiVector3D());
+    for (unsigned int row = 0; row < 3; ++row)
+    {
+        int axis = 0, sign = 0;
+        if (!scene.mMetaData || !scene.mMetaData->Get(keys[row][0], axis) ||
+            !scene.mMetaData->Get(keys[row][1], sign) || axis < 0 || axis > 2)
+            return {};
+        turn[row][axis] = sign < 0 ? -1.0f : 1.0f;
+    }
+    return std::abs(turn.Determinant()) == 1.0f ? turn : aiMatrix4x4();
+}
+
+class SceneWriter
+{
+public:
+    SceneWriter(const aiScene& scene, gltf::Report& report) : _scene(scene), _report(report)
+    {
+        for (unsigned int i = 0; i < scene.mNumAnimations; ++i)
+            for (unsigned int channel = 0; channel < scene.mAnimations[i]->mNumChannels; ++channel)
+                _animated.insert(scene.mAnimations[i]->mChannels[channel]->mNodeName.C_Str());
+    }
+
+    std::optional<Error> write(const std::string& modelFile, std::size_t mostBytes);
+    std::string glb() const { return _writer.glb(); }
+
+private:
+    struct Node
+    {
+        const aiNode* node;
+        std::size_t parent;
+        std::size_t depth;
+    };
+
+    std::optional<Error> addNodes();
+    void addMeshes(std::size_t number, MeshWriter& meshes);
+    std::size_t addChild(std::size_t parent, const std::string& name);
+    json transformOf(const aiNode& node);
+
+    const aiScene& _scene;
+    gltf::Report& _report;
+    GlbWriter _writer;
+    std::vector<Node> _nodes;
+    NodeNumbers _numbers;
+    std::set<std::string> _animated; ///< names of nodes with channels, which need translation, rotation and scale
+    MorphedNodes _morphed;
+};
+
+std::optional<Error> SceneWriter::write(const std::string& modelFile, std::size_t mostBytes)
+{
+    const auto isTooLarge = [&] { return _writer.size() > mostBytes; };
+    const Error tooLarge{"the scene has more than " + std::to_string(mostBytes) + " bytes of vertices and keys"};
+    if (const std::optional<Error> fault = addNodes()) return fault;
+    MeshWriter meshes(_numbers, _writer, _report);
+    for (std::size_t number = 0; number < _nodes.size(); ++number)
+    {
+        addMeshes(number, meshes);
+        if (isTooLarge()) return tooLarge;
+    }
+    writeAnimations(_scene, _numbers, _morphed, _writer, _report);
+    writeMaterials(_scene, modelFile, _writer, _report);
+    if (isTooLarge()) return tooLarge;
+
+    std::size_t root = 0;
+    if (const aiMatrix4x4 turn = axesToYUp(_scene); !turn.IsIdentity())
+        root = append(_writer.document["nodes"],
+                      {{"name", "axes"}, {"matrix", columnMajor(turn)}, {"children", json::array({0})}});
+    _writer.document["scenes"] = json::array({json::object({{"nodes", json::array({root})}})});
+    _writer.document["scene"] = 0;
+    return std::nullopt;
+}
+
+std::optional<Error> SceneWriter::addNodes()
+{
+    json& nodes = _writer.document["nodes"] = json::array();
+    std::vector<Node> open{{_scene.mRootNode, 0, 1}};
+    while (!open.empty())
+    {
+        const Node next = open.back();
+        open.pop_back();
+        if (next.depth > mostDepth) return Error{"the hierarchy of nodes is deeper than " + std::to_string(mostDepth)};
+        const std::size_t number = append(nodes, {{"name", next.node->mName.C_Str()}});
+        if (number > 0) nodes[next.parent]["children"].push_back(number);
+        _nodes.push_back(next);
+        _numbers.emplace(next.node->mName.C_Str(), number);
+        for (unsigned int i = next.node->mNumChildren; i > 0; --i)
+            open.push_back({next.node->mChildren[i - 1], number, next.depth + 1});
+    }
+    for (std::size_t number = 0; number < _nodes.size(); ++number)
+        nodes[number].update(transformOf(*_nodes[number].node));
+    return std::nullopt;
+}
+
+json SceneWriter::transformOf(const aiNode& node)
+{
+    const aiMatrix4x4& matrix = node.mTransformation;
+    if (!isFinite(matrix))
+    {
+        _report.warn("node " + gltf::quoted(std::string(node.mName.C_Str())) +
+                     ": its matrix is not finite; taken as identity");
+        return json::object();
+    }
+    if (matrix.IsIdentity()) return json::object();
+    if (_animated.count(node.mName.C_Str()) == 0) return {{"matrix", columnMajor(matrix)}};
+    aiVector3D scale, translation;
+    aiQuaternion rotation;
+    matrix.Decompose(scale, rotation, translation);
+    rotation.Normalize();
+    return {{"translation", {translation.x, translation.y, translation.z}},
+            {"rotation", {rotation.x, rotation.y, rotation.z, rotation.w}},
+            {"scale", {scale.x, scale.y, scale.z}}};
+}
+
+std::size_t SceneWriter::addChild(std::size_t parent, const std::string& name)
+{
+    json& nodes = _writer.document["nodes"];
+    const std::size_t number = append(nodes, {{"name", name}});
+    nodes[parent]["children"].push_back(number);
+    return number;
+}
+
+void SceneWriter::addMeshes(std::size_t number, MeshWriter& meshes)
+{
+    const aiNode& node = *_nodes[number].node;
+    std::vector<std::vector<const aiMesh*>> groups(1); // first the meshes that become primitives of one
+    for (unsigned int i = 0; i < node.mNumMeshes; ++i)
+    {
+        const aiMesh* const mesh = _scene.mMeshes[node.mMeshes[i]];
+        if (standsAlone(*mesh))
+            groups.push_back({mesh});
+        else
+            groups.front().push_back(mesh);
+    }
+    for (const std::vector<const aiMesh*>& group : groups)
+    {
+        if (group.empty()) continue;
+        const std::optional<WrittenMesh> written = meshes.write(group, number);
+        if (!written) continue;
+        const bool isTaken = _writer.document["nodes"][number].contains("mesh");
+        const std::size_t drawn = isTaken ? addChild(number, group.front()->mName.C_Str()) : number;
+        json& made = _writer.document["nodes"][drawn];
+        made["mesh"] = written->mesh;
+        if (written->skin) made["skin"] = *written->skin;
+        if (group.front()->mNumAnimMeshes > 0)
+            _morphed.emplace(number, std::pair(drawn, group.front()->mNumAnimMeshes));
+    }
+}
+
+} // namespace
+
+Result<std::string> glbOf(const aiScene& scene, const std::string& modelFile, std::size_t mostBytes,
+                          gltf::Report& report)
+{
+    if (!scene.mRootNode) return Error{"the file has no nodes"};
+    SceneWriter writer(scene, report);
+    if (const std::optional<Error> fault = writer.write(modelFile, mostBytes)) return *fault;
+    return writer.glb();
+}
+
+} // namespace osgGpuAnimation::assimp

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+namespace osgGpuAnimation
+{
+
+/// Doom 3: an arm of two bones, 2 units each, with one triangle at each bone; material `arm.tga`.
+inline std::string md5Mesh()
+{
+    return R"(MD5Version 10
+commandline ""
+
+numJoints 2
+numMeshes 1
+
+joints {
+	"upper"	-1 ( 0 0 0 ) ( 0 0 0 )
+	"lower"	0 ( 0 0 2 ) ( 0 0.38268343 0 )
+}
+
+mesh {
+	shader "arm"
+
+	numverts 6
+	vert 0 ( 0 0 ) 0 1
+	vert 1 ( 1 0 ) 1 1
+	vert 2 ( 0 1 ) 2 2
+	vert 3 ( 1 1 ) 4 1
+	vert 4 ( 0.5 0 ) 5 1
+	vert 5 ( 0.25 0.75 ) 6 1
+
+	numtris 2
+	tri 0 0 1 2
+	tri 1 3 4 5
+
+	numweights 7
+	weight 0 0 1 ( 0.5 0 0 )
+	weight 1 0 1 ( -0.5 0 0 )
+	weight 2 0 0.25 ( 0 0 2 )
+	weight 3 1 0.75 ( 0 0 0.5 )
+	weight 4 1 1 ( 0.5 0.5 1 )
+	weight 5 1 1 ( -0.5 0 1.5 )
+	weight 6 1 1 ( 0 -0.5 2 )
+}
+)";
+}
+
+/// Four frames at 24 a second: the upper bone moves and turns about x, the lower one about y.
+inline std::string md5Anim()
+{
+    return R"(MD5Version 10
+commandline ""
+
+numFrames 4
+numJoints 2
+frameRate 24
+numAnimatedComponents 4
+
+hierarchy {
+	"upper"	-1 10 0
+	"lower"	0 20 2
+}
+
+bounds {
+	( -5 -5 -5 ) ( 5 5 5 )
+	( -5 -5 -5 ) ( 5 5 5 )
+	( -5 -5 -5 ) ( 5 5 5 )
+	( -5 -5 -5 ) ( 5 5 5 )
+}
+
+baseframe {
+	( 0 0 0 ) ( 0 0 0 )
+	( 0 0 2 ) ( 0 0 0 )
+}
+
+frame 0 {
+	0 0 0.1 0.2
+}
+
+frame 1 {
+	0.5 0.2 0.2 0.4
+}
+
+frame 2 {
+	1 0.4 0 0.1
+}
+
+frame 3 {
+	0 0 -0.3 -0.2
+}
+)";
+}
+
+/// DirectX: a triangle that its frame moves, in ticks of 4,800 a second. Assimp takes a comma for a decimal point
+/// unless the number has one.
+inline std::string xFile()
+{
+    return R"(xof 0303txt 0032
+AnimTicksPerSecond { 4800; }
+Frame Root {
+ FrameTransformMatrix { 1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0;; }
+ Frame Flag {
+  FrameTransformMatrix { 1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,1.0,0.0,1.0;; }
+  Mesh Cloth {
+   3;
+   0.0;0.0;0.0;,
+   1.0;0.0;0.0;,
+   0.0;1.0;0.0;;
+   1;
+   3;0,1,2;;
+   MeshMaterialList { 1; 1; 0;
+    Material { 0.2;0.4;0.6;1;; 25; 0;0;0;; 0;0;0;; }
+   }
+  }
+ }
+}
+AnimationSet Wave {
+ Animation {
+  { Flag }
+  AnimationKey { 2; 3; 0;3;0.0,1.0,0.0;;,2400;3;2.0,1.0,0.0;;,4800;3;0.0,3.0,1.0;;; }
+  AnimationKey { 0; 3; 0;4;1.0,0.0,0.0,0.0;;,2400;4;0.8,0.6,0.0,0.0;;,4800;4;1.0,0.0,0.0,0.0;;; }
+  AnimationKey { 1; 2; 0;3;1.0,1.0,1.0;;,4800;3;1.0,2.0,1.0;;; }
+ }
+}
+)";
+}
+
+} // namespace osgGpuAnimation

@@ -10,10 +10,10 @@ build=$root/build
 packages=(
     g++ cmake ninja-build
     libopenscenegraph-dev libtinygltf-dev libdraco-dev libmeshoptimizer-dev libglm-dev libcli11-dev nlohmann-json3-dev
-    libpng-dev libturbojpeg0-dev libwebp-dev
+    libpng-dev libturbojpeg0-dev libwebp-dev libassimp-dev
     libgl-dev libegl-dev
     openscenegraph libegl1 libegl-mesa0 libgl1 libglx-mesa0 libgl1-mesa-dri
-    libgtest-dev libbenchmark-dev glslang-tools python3 python3-skimage python3-scipy python3-pil xvfb xauth dpkg-dev file libdraco7 libassimp5
+    libgtest-dev libbenchmark-dev glslang-tools python3 python3-skimage python3-scipy python3-pil xvfb xauth dpkg-dev file libdraco7
 )
 # What .ci/run needs besides.
 ci_packages=(git clang clang-format doxygen mesa-vulkan-drivers)

@@ -344,7 +344,9 @@ std::string lightsText(const ordered_json& lights)
         if (!light["number"].is_null())
             text += (text.empty() ? ": " : ", ") + nameOr(light["name"]) + " (" + light["type"].get<std::string>() +
                     ", GL_LIGHT" + number(light["number"]) + ")";
-    return number(lights.size()) + text;
+    const auto isLeftOut = [](const ordered_json& light) { return light["number"].is_null(); };
+    const auto leftOut = std::count_if(lights.begin(), lights.end(), isLeftOut);
+    return number(lights.size()) + text + (leftOut == 0 ? "" : "; " + number(leftOut) + " left out");
 }
 
 std::string camerasText(const ordered_json& cameras)

@@ -129,6 +129,8 @@ Result<bool> RenderCommand::run() const
                      osgDB::getNameLessExtension(modelFile) + "` draws in the studio's light"};
     const Result<gltf::ImportedModel> model = readModel(modelFile, options);
     if (!model) return Error{modelFile + ": " + model.error().message};
+    for (const std::string& warning : model.value().messages.warnings)
+        std::cerr << "osggpuanim: " << modelFile << ": " << warning << std::endl;
     if (look == Look::File && model.value().lights.empty())
         std::cerr << "osggpuanim: " << modelFile << ": the file has no lights; only a faint surrounding lights it"
                   << std::endl;

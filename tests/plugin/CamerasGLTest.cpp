@@ -155,6 +155,7 @@ TEST_F(CamerasGLTest, aMovingCameraIsFollowedUntilTheMouseIsUsed)
     file.animation("go");
     file.slide(cart);
     const ImportedModel model = imported(file, with("ride"));
+    viewer().unref_nodelete(); // like osgviewer's, which is on the stack: nobody holds it
     pictureOf(model.root, {0.0, 0.25});
     EXPECT_NEAR((eye() - osg::Vec3d(0.25, -3.0, 0.0)).length(), 0.0, 1e-5);
     drawAt(0.5);
@@ -166,6 +167,7 @@ TEST_F(CamerasGLTest, aMovingCameraIsFollowedUntilTheMouseIsUsed)
     viewer().getEventQueue()->keyPress(' ');
     drawAt(0.875);
     EXPECT_NEAR((eye() - osg::Vec3d(0.875, -3.0, 0.0)).length(), 0.0, 1e-5);
+    viewer().ref();
 }
 
 TEST_F(CamerasGLTest, withoutTheOptionAndWithoutAManipulatorNothingHappens)

@@ -200,6 +200,12 @@ const Change changes[] = {
     {"/materials/0/pbrMetallicRoughness/baseColorFactor", "[1,1,1]", Expect::Refuse, "baseColorFactor"},
     {"/materials/0/pbrMetallicRoughness/baseColorFactor", "[1,1,1,2]", Expect::Warn, "baseColorFactor[3]"},
     {"/materials/0/pbrMetallicRoughness/baseColorFactor", "[1,1,1,1.0000001]", Expect::Valid, ""},
+    {"/materials/0/extensions", R"({"KHR_materials_clearcoat":{"clearcoatTexture":{"index":99}}})", Expect::Warn,
+     "clearcoatTexture.index: expected an index below 1 of textures, found 99"},
+    {"/materials/0/extensions", R"({"KHR_materials_clearcoat":{"clearcoatNormalTexture":{"scale":"x","index":-1}}})",
+     Expect::Warn, "clearcoatNormalTexture.index"},
+    {"/materials/0/extensions", R"({"KHR_materials_sheen":{"sheenColorTexture":{}}})", Expect::Warn,
+     "sheenColorTexture.index"},
     {"/materials/0/alphaMode", "\"GLOW\"", Expect::Warn, "materials[0].alphaMode"},
 };
 

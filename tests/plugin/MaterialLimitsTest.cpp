@@ -5,6 +5,7 @@
 
 #include <osg/Material>
 
+#include <algorithm>
 #include <set>
 
 namespace osgGpuAnimation::gltf
@@ -145,15 +146,15 @@ TEST_F(MaterialLimitsTest, specularGlossinessGivesTheBaseColorInBothLooks)
     }
 }
 
-// The file's tangents serve the normal map of the clear coat, too.
+// The file's tangents serve the normal map of the clear coat, too. Tangents without a direction serve none.
 TEST_F(MaterialLimitsTest, tangentsAreReadForNormalMapsOfTheClearCoat)
 {
-    for (const double clearcoat : {1.0, 0.0})
+    for (const auto& [clearcoat, length] : {std::pair(1.0, 1.0f), {0.0, 1.0f}, {1.0, 0.0f}})
     {
         ModelBuilder wall;
         const int mesh = wall.triangle();
         std::map<std::string, int>& attributes = wall.primitive(mesh).attributes;
-        attributes["TANGENT"] = wall.floats(TINYGLTF_TYPE_VEC4, {1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1});
+        attributes["TANGENT"] = wall.floats(TINYGLTF_TYPE_VEC4, {1, 0, 0, 1, length, 0, 0, 1, 1, 0, 0, 1});
         attributes["TEXCOORD_0"] = wall.floats(TINYGLTF_TYPE_VEC2, {0, 0, 1, 0, 0, 1});
         tinygltf::Image picture;
         picture.uri = "missing.png";
@@ -167,7 +168,12 @@ TEST_F(MaterialLimitsTest, tangentsAreReadForNormalMapsOfTheClearCoat)
         wall.primitive(mesh).material = 0;
         const int node = wall.node("wall", -1, mesh);
         const ImportedModel model = imported(wall);
-        EXPECT_EQ(primitiveOf(model, node).geometry->getVertexAttribArray(4) != nullptr, clearcoat > 0.0);
+        EXPECT_EQ(primitiveOf(model, node).geometry->getVertexAttribArray(4) != nullptr,
+                  clearcoat > 0.0 && length > 0.0f);
+        const auto isOfTangents = [](const std::string& text)
+        { return text.find("TANGENT: expected directions") != std::string::npos; };
+        const std::vector<std::string>& warnings = model.messages.warnings;
+        EXPECT_EQ(std::count_if(warnings.begin(), warnings.end(), isOfTangents), length == 0.0f ? 1 : 0);
     }
 }
 

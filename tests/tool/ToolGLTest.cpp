@@ -188,11 +188,11 @@ TEST_F(ToolGLTest, inspectListsLightsAndCameras)
 {
     const std::string filmed = folder.write("filmed.gltf", filmedFlag());
     const json report = json::parse(Process::run(OSGGPUANIM, {"inspect", filmed, "--json"}).out);
-    EXPECT_EQ(report["lights"], json::parse(R"([{"index":0,"node":4,"number":1,"name":"sun","type":"directional"}])"));
+    EXPECT_EQ(report["lights"], json::parse(R"([{"index":0,"node":4,"number":7,"name":"sun","type":"directional"}])"));
     EXPECT_EQ(report["cameras"], json::parse(R"([{"index":0,"name":"film","node":2,"type":"perspective"},
                                                  {"index":1,"name":"plan","node":3,"type":"orthographic"}])"));
     const std::string text = Process::run(OSGGPUANIM, {"inspect", filmed}).out;
-    for (const char* words : {"1: sun (directional, GL_LIGHT1)\n", "2: film (perspective), plan (orthographic)\n"})
+    for (const char* words : {"1: sun (directional, GL_LIGHT7)\n", "2: film (perspective), plan (orthographic)\n"})
         EXPECT_NE(text.find(words), std::string::npos) << text;
 }
 

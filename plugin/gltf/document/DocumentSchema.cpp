@@ -114,6 +114,11 @@ constexpr SchemaRule normalTexture[] = {textureIndex, texCoord, number("scale"),
 constexpr SchemaRule occlusionTexture[] = {textureIndex, texCoord, number("strength").clamped(0, 1),
                                            textureInfoExtensions};
 
+// A fault in what an extension adds to the looks costs that map alone.
+constexpr SchemaRule addedTexture[] = {textureIndex.orLeaveOut(), texCoord, textureInfoExtensions};
+constexpr SchemaRule addedNormalTexture[] = {textureIndex.orLeaveOut(), texCoord, number("scale").orLeaveOut(),
+                                             textureInfoExtensions};
+
 constexpr SchemaRule metallicRoughness[] = {
     number("baseColorFactor").list(4, 4).clamped(0, 1), object("baseColorTexture", textureInfo),
     number("metallicFactor").clamped(0, 1), number("roughnessFactor").clamped(0, 1),
@@ -122,7 +127,7 @@ constexpr SchemaRule metallicRoughness[] = {
 constexpr SchemaRule emissiveStrength[] = {number("emissiveStrength").from(0).orLeaveOut()};
 constexpr SchemaRule map(std::string_view name)
 {
-    return object(name, textureInfo).orLeaveOut();
+    return object(name, addedTexture).orLeaveOut();
 }
 constexpr SchemaRule unit(std::string_view name)
 {
@@ -134,7 +139,7 @@ constexpr SchemaRule specular[] = {unit("specularFactor"), map("specularTexture"
                                    map("specularColorTexture")};
 constexpr SchemaRule clearcoat[] = {unit("clearcoatFactor"), map("clearcoatTexture"), unit("clearcoatRoughnessFactor"),
                                     map("clearcoatRoughnessTexture"),
-                                    object("clearcoatNormalTexture", normalTexture).orLeaveOut()};
+                                    object("clearcoatNormalTexture", addedNormalTexture).orLeaveOut()};
 constexpr SchemaRule sheen[] = {number("sheenColorFactor").list(3, 3).clamped(0, 1).orLeaveOut(),
                                 map("sheenColorTexture"), unit("sheenRoughnessFactor"), map("sheenRoughnessTexture")};
 constexpr SchemaRule transmission[] = {unit("transmissionFactor"), map("transmissionTexture")};

@@ -298,6 +298,14 @@ void Meshes::readSurface(const tinygltf::Primitive& primitive, const PrimitiveMa
     }
     const bool wantsTangents = mesh.normals && materials.hasNormalMap;
     if (wantsTangents) mesh.tangents = readTangents(_model, primitive);
+    const auto hasLength = [](const osg::Vec4& tangent)
+    { return tangent.x() != 0.0f || tangent.y() != 0.0f || tangent.z() != 0.0f; };
+    if (mesh.tangents && !std::all_of(mesh.tangents->begin(), mesh.tangents->end(), hasLength))
+    {
+        _report.warn(mesh.label + ": TANGENT: expected directions, found one of length 0; the normal map "
+                                  "follows the texture coordinates");
+        mesh.tangents = nullptr;
+    }
     mesh.colors = readColors(_model, primitive);
     mesh.targets =
         readMorphTargets(_model, primitive, mesh.texCoords ? &materials.coordinates.front() : nullptr, wantsTangents);

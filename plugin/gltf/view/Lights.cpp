@@ -13,7 +13,7 @@ namespace osgGpuAnimation::gltf
 namespace
 {
 
-constexpr unsigned int firstNumber = 1; ///< 0: the headlight of viewers
+constexpr unsigned int firstNumber = 7; ///< then down to 1: applications begin at 0, the headlight of viewers
 constexpr std::size_t mostLights = 7;
 
 /// The number of the node's light; -1: none.
@@ -78,7 +78,7 @@ std::vector<std::size_t> nearest(const tinygltf::Model& model, const NodeTree& t
     {
         std::sort(byDistance.begin(), byDistance.end());
         byDistance.resize(mostLights);
-        report.note("nodes: the scene has " + std::to_string(lights.size()) + " lights, OpenGL has " +
+        report.warn("nodes: the scene has " + std::to_string(lights.size()) + " lights, OpenGL has " +
                     std::to_string(mostLights) + " beside the viewer's; the nearest to its middle are shown");
     }
     std::vector<std::size_t> kept;
@@ -120,7 +120,7 @@ void addLights(const tinygltf::Model& model, const NodeTree& tree, const osg::Ve
         light.source = makeSource(model, light, *made.value());
         places.add(static_cast<std::size_t>(light.node), light.source);
         root.getOrCreateStateSet()->setMode(GL_LIGHT0 + number, osg::StateAttribute::ON);
-        ++number;
+        --number;
     }
 }
 

@@ -146,10 +146,10 @@ void StartView::followAfterUpdate(osg::Node& node)
 
 void StartView::follow(osg::Node& node)
 {
-    osg::ref_ptr<osgViewer::View> view;
     const osg::CameraView* const camera = findCamera(node, _camera);
-    if (camera && _view.lock(view) && view->getCameraManipulator())
-        view->getCameraManipulator()->setByMatrix(viewToWorld(*camera));
+    // Not lock(): a viewer on the stack, as osgviewer's, has no references.
+    if (camera && _view.valid() && _view->getCameraManipulator())
+        _view->getCameraManipulator()->setByMatrix(viewToWorld(*camera));
 }
 
 } // namespace osgGpuAnimation

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osgGpuAnimation/animation/Clip.h>
+
+#include <osg/Matrixd>
+#include <osgAnimation/Animation>
+#include <osgAnimation/Bone>
+#include <osgAnimation/UpdateBone>
+
+#include <vector>
+
+namespace osgGpuAnimation::osganimation
+{
+
+/// A bone's local transform under one osgAnimation::Animation, computed by osgAnimation itself from copies of the
+/// bone's stacked transforms and of its channels, so that the scene does not change. All kinds of stacked transforms
+/// and channels are covered.
+class BoneMotion
+{
+public:
+    /// update: the bone's callback; null: the bone keeps its matrix. animation: null: the pose without animation.
+    BoneMotion(const osgAnimation::Bone& bone, const osgAnimation::UpdateBone* update,
+               const osgAnimation::Animation* animation);
+
+    bool isMoving() const { return !_channels.empty(); } ///< a channel drives the bone
+    osg::Matrixd at(double seconds);                     ///< in the parent bone's space
+
+    /// Keys for translation, rotation and scale, all at the same times, with linear interpolation between them: at the
+    /// channels' own key times, and at as many more as it takes for the matrix between them to differ by less than
+    /// 1e-5 of its largest number. Where the matrix jumps, two keys are next to each other. target: the joint's index.
+    std::vector<Channel> channels(int target);
+
+private:
+    struct Key
+    {
+        double seconds;
+        osg::Matrixd matrix;
+    };
+
+    std::vector<double> keyTimes() const;
+    void addBetween(const Key& from, const Key& to, int depth, std::vector<Key>& keys);
+
+    osg::Matrixd _still; ///< without stacked transforms
+    osg::ref_ptr<osgAnimation::UpdateBone> _update;
+    std::vector<osg::ref_ptr<osgAnimation::Channel>> _channels;
+};
+
+/// T, R, S of a matrix that has no shear: the nearest otherwise.
+JointTransform transformOf(const osg::Matrixd& matrix);
+/// True if T · R · S differs from the matrix by less than 1e-4 of its largest number.
+bool hasNoShear(const osg::Matrixd& matrix);
+
+} // namespace osgGpuAnimation::osganimation

@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: MIT
+#include "osganimation/SkeletonConversion.h"
+
+#include "osganimation/BoneMotion.h"
+#include "osganimation/RigMeshes.h"
+
+#include <osgGpuAnimation/animation/ClipBuilder.h>
+#include <osgGpuAnimation/nodes/JointAttachment.h>
+#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
+
+#include <osgAnimation/AnimationManagerBase>
+#include <osgAnimation/MorphGeometry>
+#include <osgAnimation/Skeleton>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <utility>
+
+namespace osgGpuAnimation::osganimation
+{
+
+namespace
+{
+
+/// A manager and the node whose update callback it is.
+struct Manager
+{
+    osg::Node* owner;
+    osgAnimation::AnimationManagerBase* manager;
+};
+
+template <class Callback>
+Callback* callbackOf(osg::Node& node)
+{
+    for (osg::Callback* callback = node.getUpdateCallback(); callback; callback = callback->getNestedCallback())
+        if (auto* const found = dynamic_cast<Callback*>(callback)) return found;
+    return nullptr;
+}
+
+/// What the conversion looks for in a scene.
+class SceneParts : public osg::NodeVisitor
+{
+public:
+    SceneParts() : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN) {}
+
+    void apply(osg::Node& node) override
+    {
+        if (auto* const manager = callbackOf<osgAnimation::AnimationManagerBase>(node))
+            managers.push_back({&node, manager});
+        if (auto* const skeleton = dynamic_cast<osgAnimation::Skeleton*>(&node))
+            if (std::find(skeletons.begin(), skeletons.end(), skeleton) == skeletons.end())
+                skeletons.push_back(skeleton);
+        traverse(node);
+    }
+    void apply(osg::Drawable& drawable) override
+    {
+        hasMorphs = hasMorphs || dynamic_cast<osgAnimation::MorphGeometry*>(&drawable);
+    }
+
+    std::vector<Manager> managers;
+    std::vector<osg::ref_ptr<osgAnimation::Skeleton>> skeletons;
+    bool hasMorphs = false;
+};
+
+/// Takes the update callbacks (as osgAnimation's UpdateMaterial) from the attributes below a node, and gives them back
+/// in the end. StateSet's merge() and its copies do not count them for the update traversal; setUpdateCallback() does.
+class AttributeCallbacks : public osg::NodeVisitor
+{
+public:
+    explicit AttributeCallbacks(osg::Node& node) : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN)
+    {
+        node.accept(*this);
+        for (const auto& [attribute, callback] : _callbacks)
+            attribute->setUpdateCallback(nullptr);
+    }
+    ~AttributeCallbacks() override
+    {
+        for (const auto& [attribute, callback] : _callbacks)
+            attribute->setUpdateCallback(callback);
+    }
+    void apply(osg::Node& node) override
+    {
+        if (osg::StateSet* const state = node.getStateSet())
+            for (const auto& [type, attribute] : state->getAttributeList())
+                if (attribute.first->getUpdateCallback())
+                    _callbacks[attribute.first] = attribute.first->getUpdateCallback();
+        traverse(node);
+    }
+
+private:
+    std::map<osg::ref_ptr<osg::StateAttribute>, osg::ref_ptr<osg::StateAttributeCallback>> _callbacks;
+};
+
+/// What a bone or skeleton carries besides bones, after the meshes are gone.
+std::vector<osg::Node*> remainingChildren(osg::Group& group)
+{
+    std::vector<osg::Node*> children;
+    for (unsigned int i = 0; i < group.getNumChildren(); ++i)
+        if (!dynamic_cast<osgAnimation::Bone*>(group.getChild(i)) && !isEmpty(*group.getChild(i)))
+            children.push_back(group.getChild(i));
+    return children;
+}
+
+/// Turns one skeleton into a character.
+class SkeletonConverter
+{
+public:
+    SkeletonConverter(osgAnimation::Skeleton& skeleton, std::vector<std::string>& warnings)
+        : _skeleton(skeleton), _warnings(warnings)
+    {
+    }
+
+    /// Null, with a warning, if the skeleton has to stay.
+    osg::ref_ptr<AnimatedCharacter> character(const std::vector<Manager>& managers);
+    /// The channels' targets that the clips have.
+    const std::set<std::string>& targets() const { return _targets; }
+
+private:
+    bool findBones(osg::Node& node, int parent);
+    Result<std::shared_ptr<const AnimationSet>> makeSet(const std::vector<Manager>& managers);
+    void addClips(const std::vector<Manager>& managers, AnimationParts& parts);
+    void addChildren(AnimatedCharacter& character);
+    void stay(const std::string& reason) { _warnings.push_back("skeleton \"" + _skeleton.getName() + "\": " + reason); }
+
+    osgAnimation::Skeleton& _skeleton;
+    std::vector<std::string>& _warnings;
+    std::vector<BoneJoint> _bones;
+    std::vector<RigMesh> _meshes;
+    std::set<std::string> _targets;
+};
+
+bool SkeletonConverter::findBones(osg::Node& node, int parent)
+{
+    auto* const bone = dynamic_cast<osgAnimation::Bone*>(&node);
+    int here = parent;
+    if (bone)
+    {
+        here = static_cast<int>(_bones.size());
+        _bones.push_back({bone, callbackOf<osgAnimation::UpdateBone>(*bone), bone->getBoneParent() ? parent : -1});
+        if (!hasNoShear(BoneMotion(*bone, _bones.back().update, nullptr).at(0.0)))
+        {
+            stay("bone \"" + bone->getName() + "\" is sheared; it stays as it is");
+            return false;
+        }
+    }
+    osg::Group* const group = node.asGroup();
+    for (unsigned int i = 0; group && i < group->getNumChildren(); ++i)
+        if (!findBones(*group->getChild(i), here)) return false;
+    return true;
+}
+
+void SkeletonConverter::addClips(const std::vector<Manager>& managers, AnimationParts& parts)
+{
+    ClipBuilder builder(parts.skeleton, parts.morphs);
+    for (const Manager& each : managers)
+        for (const osg::ref_ptr<osgAnimation::Animation>& animation : each.manager->getAnimationList())
+        {
+            bool isMoving = false;
+            for (std::size_t i = 0; i < _bones.size(); ++i)
+            {
+                BoneMotion motion(*_bones[i].bone, _bones[i].update, animation);
+                if (!motion.isMoving()) continue;
+                isMoving = true;
+                _targets.insert(_bones[i].update->getName());
+                for (Channel& channel : motion.channels(parts.skeleton.jointOfInput(i)))
+                    if (const Result<bool> added = builder.add(std::move(channel)); !added)
+                        _warnings.push_back("animation \"" + animation->getName() + "\", bone \"" +
+                                            _bones[i].bone->getName() + "\": " + added.error().message);
+            }
+            if (isMoving) parts.clips.push_back(builder.build(animation->getName()));
+        }
+}
+
+Result<std::shared_ptr<const AnimationSet>> SkeletonConverter::makeSet(const std::vector<Manager>& managers)
+{
+    std::vector<Joint> joints;
+    for (const BoneJoint& each : _bones)
+        joints.push_back({each.bone->getName(), each.parent,
+                          transformOf(BoneMotion(*each.bone, each.update, nullptr).at(0.0)),
+                          static_cast<int>(joints.size())});
+    Result<Skeleton> skeleton = Skeleton::create(std::move(joints));
+    if (!skeleton) return skeleton.error();
+    AnimationParts parts{skeleton.value(), {}, {}, {}, {}};
+    for (const RigMesh& mesh : _meshes)
+    {
+        Skin skin{mesh.geometry->getName(), {}, mesh.inverseBinds};
+        for (const int bone : mesh.bones)
+            skin.joints.push_back(parts.skeleton.jointOfInput(static_cast<std::size_t>(bone)));
+        parts.skins.push_back(std::move(skin));
+    }
+    addClips(managers, parts);
+    return AnimationSet::create(std::move(parts));
+}
+
+void SkeletonConverter::addChildren(AnimatedCharacter& character)
+{
+    for (std::size_t skin = 0; skin < _meshes.size(); ++skin)
+        character.addChild(skinnedMesh(_meshes[skin], character.getAnimationSet(), skin, _warnings));
+    for (const RigMesh& mesh : _meshes)
+        while (mesh.geometry->getNumParents() > 0)
+            mesh.geometry->getParent(0)->removeChild(mesh.geometry);
+    for (const BoneJoint& each : _bones)
+        for (osg::Node* child : remainingChildren(*each.bone))
+        {
+            osg::ref_ptr<JointAttachment> attachment = new JointAttachment(each.bone->getName());
+            attachment->addChild(child);
+            character.addChild(attachment);
+        }
+    for (osg::Node* child : remainingChildren(_skeleton))
+        character.addChild(child);
+}
+
+osg::ref_ptr<AnimatedCharacter> SkeletonConverter::character(const std::vector<Manager>& managers)
+{
+    if (!findBones(_skeleton, -1)) return nullptr;
+    if (_bones.empty())
+    {
+        stay("it has no bones; it stays as it is");
+        return nullptr;
+    }
+    const AttributeCallbacks held(_skeleton);
+    _meshes = findMeshes(_skeleton, _bones, _warnings);
+    const Result<std::shared_ptr<const AnimationSet>> set = makeSet(managers);
+    if (!set)
+    {
+        stay(set.error().message + "; it stays as it is");
+        return nullptr;
+    }
+    osg::ref_ptr<AnimatedCharacter> made = new AnimatedCharacter(set.value());
+    made->setName(_skeleton.getName());
+    made->setMatrix(_skeleton.getMatrix());
+    made->setNodeMask(_skeleton.getNodeMask());
+    made->setStateSet(_skeleton.getStateSet());
+    made->setUserDataContainer(_skeleton.getUserDataContainer());
+    addChildren(*made);
+    made->computeClipBounds();
+    if (!set.value()->clips().empty()) static_cast<void>(made->getController().play(0));
+    return made;
+}
+
+/// The names that a manager's channels have as targets, but no clip has.
+std::set<std::string> targetsLeft(const osgAnimation::AnimationManagerBase& manager, const std::set<std::string>& taken)
+{
+    std::set<std::string> left;
+    for (const osg::ref_ptr<osgAnimation::Animation>& animation : manager.getAnimationList())
+        for (const osg::ref_ptr<osgAnimation::Channel>& channel : animation->getChannels())
+            if (taken.count(channel->getTargetName()) == 0) left.insert(channel->getTargetName());
+    return left;
+}
+
+} // namespace
+
+Conversion convertOsgAnimation(osg::Node& node)
+{
+    Conversion result;
+    result.node = &node;
+    SceneParts scene;
+    node.accept(scene);
+    std::set<std::string> taken;
+    for (const osg::ref_ptr<osgAnimation::Skeleton>& skeleton : scene.skeletons)
+    {
+        SkeletonConverter converter(*skeleton, result.warnings);
+        const osg::ref_ptr<AnimatedCharacter> character = converter.character(scene.managers);
+        if (!character) continue;
+        taken.insert(converter.targets().begin(), converter.targets().end());
+        const std::vector<osg::Group*> parents = skeleton->getParents();
+        for (osg::Group* parent : parents)
+            parent->replaceChild(skeleton, character);
+        if (skeleton == &node) result.node = character;
+        result.characters.push_back(character);
+    }
+    if (scene.hasMorphs) result.warnings.push_back("MorphGeometry stays as it is");
+    for (const Manager& each : scene.managers)
+    {
+        const std::set<std::string> left = targetsLeft(*each.manager, taken);
+        if (left.empty() || result.characters.empty())
+        {
+            if (left.empty()) each.owner->removeUpdateCallback(each.manager);
+            continue;
+        }
+        std::string names;
+        for (const std::string& name : left)
+            names += (names.empty() ? "\"" : ", \"") + name + "\"";
+        result.warnings.push_back("the animation manager stays, for channels that move no bone: " + names);
+    }
+    return result;
+}
+
+} // namespace osgGpuAnimation::osganimation

@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: MIT
+#include "osganimation/SkeletonConversion.h"
+#include "osganimation/SmallRig.h"
+#include "plugin/PluginFolder.h"
+#include "plugin/SharedAssets.h"
+#include "support/ScratchFolder.h"
+#include "support/ViewerGLTest.h"
+
+#include <osgGpuAnimation/nodes/JointAttachment.h>
+#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
+
+#include <osg/LightSource>
+#include <osgAnimation/BasicAnimationManager>
+#include <osgAnimation/Bone>
+#include <osgAnimation/RigGeometry>
+#include <osgDB/ReadFile>
+#include <osgDB/WriteFile>
+#include <osgUtil/UpdateVisitor>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <set>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+/// A scene of osgAnimation, posed by osgAnimation.
+class OriginalScene : public osg::NodeVisitor
+{
+public:
+    explicit OriginalScene(osg::Node* scene) : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN), _scene(scene)
+    {
+        scene->accept(*this);
+    }
+
+    void apply(osg::Node& node) override
+    {
+        if (auto* const found = dynamic_cast<osgAnimation::BasicAnimationManager*>(node.getUpdateCallback()))
+        {
+            manager = found;
+            manager->link(&node);
+        }
+        if (auto* const bone = dynamic_cast<osgAnimation::Bone*>(&node)) bones[bone->getName()] = bone;
+        traverse(node);
+    }
+
+    /// Shows the animation at that time and deforms the meshes.
+    void pose(osgAnimation::Animation& animation, double seconds)
+    {
+        for (const osg::ref_ptr<osgAnimation::Channel>& channel : animation.getChannels())
+        {
+            channel->getTarget()->reset();
+            channel->update(seconds, 1.0f, 0);
+        }
+        osgUtil::UpdateVisitor visitor;
+        osg::ref_ptr<osg::FrameStamp> stamp = new osg::FrameStamp;
+        visitor.setFrameStamp(stamp);
+        visitor.setTraversalNumber(++_updates);
+        _scene->accept(visitor);
+        _scene->accept(visitor);
+    }
+
+    osg::Node* scene() const { return _scene; }
+
+    osgAnimation::BasicAnimationManager* manager = nullptr;
+    std::map<std::string, osg::ref_ptr<osgAnimation::Bone>> bones;
+
+private:
+    osg::Node* _scene;
+    unsigned int _updates = 0;
+};
+
+class ConvertedScenesGLTest : public ViewerGLTest
+{
+protected:
+    int pictureSide() const override { return 256; }
+
+    /// The bones at 20 times of each animation, and pictures at one. make: the same scene each time; osgAnimation keeps
+    /// what an earlier animation has set.
+    void expectSamePoses(const std::function<osg::ref_ptr<osg::Node>()>& make, std::size_t clipCount)
+    {
+        const osg::ref_ptr<osg::Node> node = make();
+        const osganimation::Conversion converted = osganimation::convertOsgAnimation(*node);
+        ASSERT_EQ(converted.characters.size(), 1u);
+        AnimatedCharacter& character = *converted.characters.front();
+        const double size = character.getBound().radius();
+        ASSERT_GT(size, 0.0);
+        const std::vector<Clip>& clips = character.getAnimationSet().clips();
+        EXPECT_EQ(clips.size(), clipCount);
+        for (std::size_t clip = 0; clip < clips.size(); ++clip)
+        {
+            SCOPED_TRACE(clips[clip].name());
+            const osg::ref_ptr<osg::Node> source = make();
+            // osgAnimation does not normalize the normals that it turns and scales.
+            source->getOrCreateStateSet()->setMode(GL_NORMALIZE, osg::StateAttribute::ON);
+            OriginalScene original(source);
+            ASSERT_TRUE(original.manager);
+            const osgAnimation::AnimationList& animations = original.manager->getAnimationList();
+            const auto animation =
+                std::find_if(animations.begin(), animations.end(),
+                             [&](const auto& each) { return each->getName() == clips[clip].name(); });
+            ASSERT_NE(animation, animations.end());
+            ASSERT_TRUE(character.getController().play(clip));
+            character.getController().pause();
+            const double duration = character.getController().duration();
+            double worst = 0.0;
+            for (int i = 0; i < 20; ++i)
+            {
+                const double time = duration * (i + 0.37) / 20.0;
+                original.pose(**animation, time);
+                character.getController().seek(time);
+                for (const auto& [name, bone] : original.bones)
+                {
+                    const Result<osg::Matrixd> found = character.jointToModel(name);
+                    ASSERT_TRUE(found) << name;
+                    for (int e = 0; e < 12; ++e)
+                        worst = std::max(worst,
+                                         std::abs(found.value().ptr()[e] - bone->getMatrixInSkeletonSpace().ptr()[e]));
+                    worst = std::max(worst,
+                                     (found.value().getTrans() - bone->getMatrixInSkeletonSpace().getTrans()).length() /
+                                         size);
+                }
+            }
+            EXPECT_LE(worst, 1e-4);
+            // The last pose, drawn by both.
+            expectSamePicture(original.scene(), converted.node);
+        }
+    }
+
+    void expectSamePicture(osg::Node* original, osg::Node* converted)
+    {
+        osg::ref_ptr<osg::Image> pictures[2];
+        osg::Node* const scenes[] = {original, converted};
+        for (int i = 0; i < 2; ++i)
+        {
+            viewer().setSceneData(scenes[i]);
+            const osg::BoundingSphere bound = scenes[0]->getBound();
+            viewer().getCamera()->setProjectionMatrixAsOrtho(-bound.radius(), bound.radius(), -bound.radius(),
+                                                             bound.radius(), -10.0, 10.0);
+            viewer().getCamera()->setViewMatrixAsLookAt(bound.center() + osg::Vec3d(0, -2, 0), bound.center(),
+                                                        osg::Vec3d(0, 0, 1));
+            drawAt(0.0);
+            EXPECT_NO_GL_ERROR();
+            pictures[i] = picture().copy();
+        }
+        int covered = 0, outlines = 0;
+        double difference = 0.0;
+        const osg::Vec4 background = pictures[0]->getColor(0u, 0u);
+        for (unsigned int y = 0; y < 256; ++y)
+            for (unsigned int x = 0; x < 256; ++x)
+            {
+                const osg::Vec4 before = pictures[0]->getColor(x, y), after = pictures[1]->getColor(x, y);
+                covered += before != background;
+                outlines += (before == background) != (after == background);
+                difference += (after - before).length();
+            }
+        EXPECT_GT(covered, 500);
+        EXPECT_LE(outlines, covered / 200);
+        // The program lights fragments in place of vertices, and takes the diffuse colour for ambient light, too.
+        EXPECT_LE(difference / covered, 0.08);
+    }
+};
+
+TEST_F(ConvertedScenesGLTest, nathanTakesThePosesOfOsgAnimation)
+{
+    SKIP_WITHOUT_SHARED_FILE("assets/nathan/nathan.osg");
+    const std::string file = sharedFile("assets/nathan/nathan.osg");
+    expectSamePoses([&] { return osgDB::readRefNodeFile(file); }, 5); // the sixth animation moves a material
+}
+
+TEST_F(ConvertedScenesGLTest, allKindsOfChannelsAndMeshesTakeThePosesOfOsgAnimation)
+{
+    expectSamePoses([] { return osg::ref_ptr<osg::Node>(SmallRig().root); }, 2);
+    const SmallRig scene;
+    static_cast<void>(osganimation::convertOsgAnimation(*scene.root));
+    EXPECT_FALSE(scene.root->getUpdateCallback()) << "all its channels are in clips";
+    const AnimatedCharacter* const character = findCharacter(*scene.root);
+    ASSERT_TRUE(character);
+    EXPECT_EQ(character->getName(), "arm");
+    std::set<std::string> meshes;
+    for (unsigned int i = 0; i < character->getNumChildren(); ++i)
+        if (dynamic_cast<const SkinnedGeometry*>(character->getChild(i)))
+            meshes.insert(character->getChild(i)->getName());
+    EXPECT_EQ(meshes, (std::set<std::string>{"flag", "sleeve"}));
+}
+
+TEST_F(ConvertedScenesGLTest, whatCannotBeTurnedStaysOrIsAttached)
+{
+    SmallRig scene;
+    osg::ref_ptr<osg::LightSource> lamp = new osg::LightSource;
+    lamp->setName("lamp");
+    scene.lower->addChild(lamp);
+    osg::ref_ptr<osgAnimation::Vec3LinearChannel> other = new osgAnimation::Vec3LinearChannel;
+    other->setTargetName("door");
+    other->getOrCreateSampler()->getOrCreateKeyframeContainer()->push_back(osgAnimation::Vec3Keyframe(0.0, {}));
+    scene.manager->getAnimationList().front()->addChannel(other);
+    osg::ref_ptr<osgAnimation::Skeleton> empty = new osgAnimation::Skeleton;
+    empty->setName("empty");
+    scene.root->addChild(empty);
+    const osganimation::Conversion converted = osganimation::convertOsgAnimation(*scene.root);
+    ASSERT_EQ(converted.characters.size(), 1u);
+    EXPECT_EQ(converted.warnings,
+              (std::vector<std::string>{"skeleton \"empty\": it has no bones; it stays as it is",
+                                        "the animation manager stays, for channels that move no bone: \"door\""}));
+    ASSERT_EQ(lamp->getNumParents(), 2u); // of the bone, and the attachment
+    const auto* const attachment = dynamic_cast<const JointAttachment*>(lamp->getParent(1));
+    ASSERT_TRUE(attachment);
+    EXPECT_EQ(attachment->getJointName(), "lower");
+    EXPECT_EQ(empty->getNumParents(), 1u);
+
+    SmallRig sheared;
+    auto* const update = dynamic_cast<osgAnimation::UpdateBone*>(sheared.lower->getUpdateCallback());
+    update->getStackedTransforms().push_back(
+        new osgAnimation::StackedMatrixElement("shear", osg::Matrix(1, 0.5, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1)));
+    const osganimation::Conversion left = osganimation::convertOsgAnimation(*sheared.root);
+    EXPECT_TRUE(left.characters.empty());
+    EXPECT_EQ(left.warnings.front(), "skeleton \"arm\": bone \"lower\" is sheared; it stays as it is");
+    EXPECT_EQ(sheared.skeleton->getParent(0), sheared.root);
+}
+
+TEST_F(ConvertedScenesGLTest, thePseudoLoaderConvertsScenesOfAnyReader)
+{
+    usePluginsOfTheBuild();
+    const ScratchFolder folder;
+    const std::string file = folder.file("arm.osgt");
+    ASSERT_TRUE(osgDB::writeNodeFile(*SmallRig().root, file));
+    const osg::ref_ptr<osg::Node> node = osgDB::readRefNodeFile(file + ".gpuanim");
+    ASSERT_TRUE(node);
+    AnimatedCharacter* const character = findCharacter(*node);
+    ASSERT_TRUE(character);
+    EXPECT_TRUE(character->getController().isPlaying());
+    EXPECT_EQ(character->getAnimationSet().clips().size(), 2u);
+    // The character is a scene of the kit: it is stored and read again.
+    const std::string stored = folder.file("arm.osgb");
+    ASSERT_TRUE(osgDB::writeNodeFile(*node, stored));
+    const osg::ref_ptr<osg::Node> again = osgDB::readRefNodeFile(stored);
+    ASSERT_TRUE(again);
+    EXPECT_TRUE(findCharacter(*again));
+}
+
+} // namespace
+
+} // namespace osgGpuAnimation

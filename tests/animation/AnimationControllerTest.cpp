@@ -226,6 +226,22 @@ TEST(AnimationControllerTest, ALoopSoughtToItsEndShowsItsFirstFrame)
     EXPECT_EQ(shown(controller), 2.0);
 }
 
+TEST(AnimationControllerTest, ANewLoopModeRunsForwardsFromTheSameTime)
+{
+    AnimationController controller(makeSet());
+    controller.setLoopMode(LoopMode::PingPong);
+    ASSERT_TRUE(controller.play(walk));
+    controller.advance(2.5);
+    ASSERT_DOUBLE_EQ(controller.time(), 1.5) << "on its way back";
+    controller.setLoopMode(LoopMode::Loop);
+    EXPECT_DOUBLE_EQ(controller.time(), 1.5);
+    controller.advance(0.25);
+    EXPECT_DOUBLE_EQ(controller.time(), 1.75);
+    controller.setLoopMode(LoopMode::PingPong);
+    controller.advance(0.125);
+    EXPECT_DOUBLE_EQ(controller.time(), 1.875);
+}
+
 TEST(AnimationControllerTest, RefusesWhatItCannotDoAndStaysAsItWas)
 {
     AnimationController controller(makeSet());

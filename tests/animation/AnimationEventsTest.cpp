@@ -267,6 +267,19 @@ TEST(AnimationEventsTest, LayersTellTogetherInTheOrderOfTime)
     EXPECT_EQ(told, (std::vector<std::string>{"0a", "1a", "0b", "1/", "0c", "1b"}));
 }
 
+TEST(AnimationEventsTest, AtTheSameTimeLowerLayersTellFirst)
+{
+    AnimationController controller(makeSet(2.0, {0.5}));
+    std::string told;
+    controller.setEventCallback([&](const AnimationEvent& event)
+                                { told += std::to_string(event.layer) + letterOf(event) + " "; });
+    for (std::size_t layer = 0; layer < 3; ++layer)
+        ASSERT_TRUE(controller.layer(layer).play("A"));
+    controller.advance(2.0);
+    EXPECT_EQ(told.substr(0, 9), "0a 1a 2a ");
+    EXPECT_EQ(told.size(), 18u) << "and their ends: " << told;
+}
+
 TEST(AnimationEventsTest, ACrossfadeTellsMarkersOfBothWithTheirWeightsAndItsEnd)
 {
     AnimationController controller(makeSet(2.0, {0.1, 0.3, 0.5}));

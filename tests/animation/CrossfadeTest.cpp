@@ -67,21 +67,39 @@ TEST(CrossfadeTest, InterruptedByCrossfadesAtRandomNothingJumps)
     }
 }
 
+double sumOfShares(const AnimationController& controller)
+{
+    const ClipMixer& mixer = controller.layer(0).mixer();
+    double shares = 0.0;
+    for (std::size_t v = 0; v < mixer.activeClipCount(); ++v)
+        shares += mixer.activeClip(v).share;
+    return shares;
+}
+
 // More clips than a mix can hold: the least one's share goes to the others, not to the rest pose.
 TEST(CrossfadeTest, TheSharesOfAFullMixSumToOne)
 {
-    AnimationController controller(makeGaitSet());
+    const auto set = makeGaitSet();
+    AnimationController controller(set);
     ASSERT_TRUE(controller.play(0));
     for (std::size_t i = 1; i < 3 * ClipMixer::maxActiveClips; ++i)
     {
         ASSERT_TRUE(controller.crossfade(i % 3, 1.0));
         controller.advance(0.2); // the least of eight has a share of some percent
-        const ClipMixer& mixer = controller.layer(0).mixer();
-        EXPECT_EQ(mixer.activeClipCount(), std::min(i + 1, ClipMixer::maxActiveClips));
-        double shares = 0.0;
-        for (std::size_t v = 0; v < mixer.activeClipCount(); ++v)
-            shares += mixer.activeClip(v).share;
-        EXPECT_NEAR(shares, 1.0, 1e-9) << i;
+        EXPECT_EQ(controller.layer(0).mixer().activeClipCount(), std::min(i + 1, ClipMixer::maxActiveClips));
+        EXPECT_NEAR(sumOfShares(controller), 1.0, 1e-9) << i;
+    }
+    // A blend space takes the room of three clips at once, and more as its parameter moves.
+    ASSERT_TRUE(controller.setParameter(0.3, 0.3));
+    ASSERT_TRUE(controller.crossfade(
+        BlendSpace::create(*set, std::vector<BlendSpace::Position>{{"Idle", 0, 0}, {"Walk", 1, 0}, {"Run", 0, 1}})
+            .value(),
+        1.0));
+    for (int i = 0; i < 4; ++i)
+    {
+        controller.advance(0.2);
+        EXPECT_EQ(controller.layer(0).mixer().activeClipCount(), ClipMixer::maxActiveClips);
+        EXPECT_NEAR(sumOfShares(controller), 1.0, 1e-9) << "in the space, step " << i;
     }
 }
 

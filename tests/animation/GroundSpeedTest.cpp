@@ -69,6 +69,18 @@ TEST(GroundSpeedTest, AClipIsMeasuredByItsFeet)
     EXPECT_EQ(standing.speed(), 1.0);
 }
 
+// The legs of a rest pose are straight, so that angles are not quite in proportion to places.
+TEST(GroundSpeedTest, BetweenAPoseAndAClipItIsInProportionToTheWeight)
+{
+    const auto bare = makeStridingSet(strides);
+    std::vector<Clip> clips = bare->clips();
+    clips.push_back(ClipBuilder(bare->skeleton(), {}).build("Stand"));
+    const auto set = bare->withClips(clips).value();
+    const auto space = BlendSpace::create(*set, std::vector<BlendSpace::Position>{{"Stand", 0}, {"Walk", 1}}).value();
+    for (const double weight : {0.1, 0.25, 0.5, 0.75, 1.0})
+        EXPECT_NEAR(space->groundSpeedAt(*set, {weight, 0}) / weight, 1.2, 0.12) << weight;
+}
+
 glm::dvec3 placeOf(const AnimationController& controller, const char* joint)
 {
     const std::size_t index = controller.set().skeleton().jointNamed(joint).value();

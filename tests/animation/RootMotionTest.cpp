@@ -246,6 +246,21 @@ TEST(RootMotionTest, WeightsAboveOneInAllMoveByTheMean)
     }
 }
 
+TEST(RootMotionTest, ALayerAboveCoversTheMotionOfThoseBelow)
+{
+    const auto set =
+        stripped(*makeSet({{"Left", 1.0, 1.0, 0.4, false}, {"Still", 1.0, 0.0, 0.0, false}}), {true, false, true});
+    for (const float weight : {1.0f, 0.75f, 0.0f})
+    {
+        AnimationController controller(set);
+        ASSERT_TRUE(controller.play("Left"));
+        ASSERT_TRUE(controller.layer(1).play("Still"));
+        ASSERT_TRUE(controller.layer(1).setWeight(weight));
+        controller.advance(0.25);
+        EXPECT_NEAR(controller.takeRootMotion().yaw, 0.1 * (1.0 - static_cast<double>(weight)), 1e-6) << weight;
+    }
+}
+
 TEST(RootMotionTest, CrossfadesGoTheSameWayAtAnyFrameRate)
 {
     const auto set = stripped(*makeSet({{"Stand", 1.0, 0.0, 0.0, false}, {"Run", 0.5, 2.0, 0.0, false}}), {});
@@ -342,11 +357,12 @@ TEST(RootMotionTest, AssignedControllersMoveAsThoseTheyAreCopiesOf)
     AnimationController controller(still), walker(moving), sitter(still);
     ASSERT_TRUE(walker.play("Walk"));
     ASSERT_TRUE(sitter.play("Walk"));
+    walker.advance(0.25); // not taken yet
     for (int round = 0; round < 2; ++round)
     {
         controller = walker;
         controller.advance(0.5);
-        EXPECT_NEAR(controller.takeRootMotion().translation.z, -0.5, 1e-6) << round;
+        EXPECT_NEAR(controller.takeRootMotion().translation.z, -0.75, 1e-6) << round;
         controller = sitter;
         controller.advance(0.5);
         EXPECT_TRUE(controller.takeRootMotion().isNone()) << round;

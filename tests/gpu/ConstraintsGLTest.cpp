@@ -71,8 +71,9 @@ TEST_F(ConstraintsGLTest, randomSettingsAreTheTwinsPose)
         const auto set = withRandomConstraints(
             *makeRandomSet({seed + character, 24, 7, 5, character % 2 == 1, true, true}), 1 + 2 * character, random);
         addRandomMasks(*set, random);
-        const AffineMatrix root = AffineMatrix::fromColumns(
-            glm::dmat4(glm::mat4_cast(glm::angleAxis(0.3 * character, glm::dvec3(0.6, 0.8, 0.0)))) * 2.0);
+        glm::dmat4 placed(glm::mat4_cast(glm::angleAxis(0.3 * character, glm::dvec3(0.6, 0.8, 0.0))) * 2.0);
+        placed[3] = glm::dvec4(1.0, -2.0, 0.5, 1.0);
+        const AffineMatrix root = AffineMatrix::fromColumns(placed);
         std::vector<PoseInstruction> stacks(100);
         PoseBatch batch(set);
         for (PoseInstruction& stack : stacks)

@@ -105,6 +105,26 @@ TEST(PoseBatchTest, sameBatchesAgreeInSetPosesPlacesAndTints)
     EXPECT_FALSE(batch.isSame(makeBatch(set, 0.5f, aside, PoseBatch::white)));
 }
 
+TEST(PoseBatchTest, batchesWithOtherTargetsAreNotTheSame)
+{
+    LookAt look{"look", {"joint"}};
+    const auto set = AnimationSet::create({Skeleton::create({{"joint", -1, {}, 0}}).value(), {}, {0}, {}, {}, {look}});
+    ASSERT_TRUE(set) << set.error().message;
+    const auto makeBatch = [&](const glm::vec3& target)
+    {
+        PoseBatch batch(set.value());
+        PoseInstruction instruction;
+        instruction.targets.emplace_back();
+        instruction.targets[0].position = target;
+        instruction.targets[0].weight = 1.0f;
+        batch.add(instruction, AffineMatrix());
+        return batch;
+    };
+    const PoseBatch batch = makeBatch({1, 2, 3});
+    EXPECT_TRUE(batch.isSame(makeBatch({1, 2, 3})));
+    EXPECT_FALSE(batch.isSame(makeBatch({1, 2, 4})));
+}
+
 } // namespace
 
 } // namespace osgGpuAnimation

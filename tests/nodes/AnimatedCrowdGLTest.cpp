@@ -257,6 +257,12 @@ TEST_F(AnimatedCrowdGLTest, tintsMultiplyTheColour)
     ASSERT_TRUE(crowd->setTint(red, {0, 0, 1, 1}));
     drawAt(1);
     EXPECT_EQ(colorAt(52, 36), "0 0 255");
+    const osg::ref_ptr<AnimatedCrowd> copy = osg::clone(crowd.get());
+    viewer().setSceneData(copy);
+    drawAt(1);
+    EXPECT_EQ(colorAt(12, 36), "255 255 255");
+    EXPECT_EQ(colorAt(52, 36), "0 0 255");
+    viewer().setSceneData(crowd);
     ASSERT_TRUE(crowd->setTint(red, {1, 1, 1, 1}));
     drawAt(2);
     EXPECT_EQ(colorAt(52, 36), "255 255 255");

@@ -115,19 +115,22 @@ TEST(CharacterBoundsTest, HoldMorphWeightsThatTheApplicationPoses)
     using Mode = AnimationLayer::Mode;
     struct Case
     {
+        const char* clip; ///< at its end: 1 after "rise", 0 after "fall"
         Mode mode;
         float posed;
-        double weight; ///< at the end, over "rise" at 1
+        double weight; ///< at the end
     };
-    const Case cases[] = {{Mode::Override, 0.0f, 0.0},   {Mode::Override, -1.0f, -1.0}, {Mode::Override, 7.0f, 7.0},
-                          {Mode::Override, -30.0f, -30}, {Mode::Additive, 5.0f, 5.75},  {Mode::Additive, -9.0f, -8.25}};
+    const Case cases[] = {{"rise", Mode::Override, 0.0f, 0.0},   {"rise", Mode::Override, -1.0f, -1.0},
+                          {"rise", Mode::Override, 7.0f, 7.0},   {"rise", Mode::Override, -30.0f, -30},
+                          {"rise", Mode::Additive, 5.0f, 5.75},  {"rise", Mode::Additive, -9.0f, -8.25},
+                          {"fall", Mode::Additive, -1.0f, -1.25}};
     for (const Case& c : cases)
     {
         SCOPED_TRACE(testing::Message() << (c.mode == Mode::Override ? "shown " : "added ") << c.posed);
         const osg::ref_ptr<AnimatedCharacter> character = makeMorphedCharacter();
         AnimationController& controller = character->getController();
         controller.setLoopMode(LoopMode::Once);
-        ASSERT_TRUE(controller.play("rise"));
+        ASSERT_TRUE(controller.play(c.clip));
         controller.layer(1).setMode(c.mode);
         character->update(0.0);
         character->update(1.0);

@@ -8,6 +8,7 @@
 #include <osgGpuAnimation/nodes/PbrMaterial.h>
 #include <osgGpuAnimation/nodes/shading/PrefilteredMap.h>
 
+#include <osg/FrontFace>
 #include <osg/Geometry>
 #include <osg/LightModel>
 #include <osg/MatrixTransform>
@@ -109,6 +110,31 @@ TEST_F(EnvironmentGLTest, picturesOfTheStudioLightLikeTheStudio)
               0.03);
 }
 
+// In the direction of normal and eye GGX spreads a small light over 4 pi alpha^2, alpha the square of the roughness,
+// and directions count by their cosine. A rough white metal reflects 65 to 80 % at once.
+TEST_F(EnvironmentGLTest, aMetalSpreadsASmallLightByItsRoughness)
+{
+    constexpr double sharpness = 1000.0, strength = 12.0; // a solid angle of 2 pi / 1000
+    const auto spot = [](const osg::Vec3f& d)
+    {
+        const double light = strength * std::exp(sharpness * (static_cast<double>(d.z()) - 1.0));
+        return osg::Vec3f(1, 1, 1) * static_cast<float>(light);
+    };
+    const osg::ref_ptr<Environment> environment = new Environment;
+    ASSERT_TRUE(environment->setPanorama(makePanorama(512, spot)));
+    environment->getOrCreateStateSet()->setMode(GL_LIGHTING, osg::StateAttribute::ON);
+    for (const double roughness : {0.4, 0.6})
+    {
+        const double square = std::pow(roughness, 4.0), rest = 1.0 - square; // alpha squared
+        const double meanCosine = 2.0 / rest + 2.0 * square / (rest * rest) * std::log(square) - 1.0;
+        const double radiance = strength / (2.0 * sharpness * square * meanCosine);
+        environment->removeChildren(0, environment->getNumChildren());
+        environment->addChild(makeBall(1.0f, static_cast<float>(roughness)));
+        const auto found = static_cast<double>(linearColor(pictureIn(environment)->getColor(96, 96)).g());
+        EXPECT_NEAR(found / radiance, 0.7, 0.1) << roughness;
+    }
+}
+
 // Counter-clockwise from above: what is on the right, -Y as seen from the middle towards +X, comes to the middle.
 TEST_F(EnvironmentGLTest, rotationTurnsThePicture)
 {
@@ -117,6 +143,27 @@ TEST_F(EnvironmentGLTest, rotationTurnsThePicture)
     const osg::ref_ptr<osg::Image> panorama = makePanorama(512, studioRadiance);
     EXPECT_LT(Picture::meanDifference(*expected, *pictureWith(panorama.get(), 0.5f, osg::PI_2f)), 0.004);
     EXPECT_GT(Picture::meanDifference(*expected, *pictureWith(panorama.get(), 0.5f, -osg::PI_2f)), 0.03);
+}
+
+// A node above that mirrors mirrors model and surroundings alike.
+TEST_F(EnvironmentGLTest, theMirroredSceneIsTheMirrorImage)
+{
+    osg::ref_ptr<osg::Image> pictures[2];
+    for (const bool isMirrored : {false, true})
+    {
+        const osg::ref_ptr<Environment> environment = new Environment;
+        environment->setIntensity(0.5f);
+        addBalls(*environment);
+        const osg::ref_ptr<osg::MatrixTransform> above =
+            new osg::MatrixTransform(osg::Matrix::scale(isMirrored ? -1 : 1, 1, 1));
+        above->addChild(environment);
+        if (isMirrored)
+            above->getOrCreateStateSet()->setAttributeAndModes(new osg::FrontFace(osg::FrontFace::CLOCKWISE));
+        pictures[isMirrored ? 1 : 0] = pictureIn(above);
+    }
+    EXPECT_GT(Picture::pixelsDifferent(*pictures[0], *pictures[1]), 1000);
+    pictures[1]->flipHorizontal();
+    EXPECT_LT(Picture::pixelsDifferent(*pictures[0], *pictures[1]), 200) << "edges of the balls";
 }
 
 TEST_F(EnvironmentGLTest, intensityScalesThePicture)

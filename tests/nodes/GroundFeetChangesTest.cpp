@@ -4,16 +4,22 @@
 #include "nodes/Walker.h"
 #include "support/NotifyLog.h"
 
+#include <osgGpuAnimation/animation/JointMask.h>
+
 #include <osg/Geometry>
 #include <osg/Group>
+#include <osg/MatrixTransform>
 #include <osgUtil/UpdateVisitor>
 
 #include <gtest/gtest.h>
 
 #include <functional>
 #include <string>
+#include <utility>
+#include <vector>
 
-// Feet on the ground: copies, other sets, grounds that come later, and weights below 1.
+// Feet on the ground: copies, other sets, grounds that come later or turn, layers without legs, and weights
+// below 1.
 
 namespace osgGpuAnimation
 {
@@ -171,6 +177,57 @@ TEST(GroundFeetChangesTest, theWeightSharesTheHeightBetweenMatrixAndGround)
         standing.update();
         EXPECT_NEAR(standing.height(), 0.3, 1e-4) << "the height of the application is 0.2 still";
     }
+}
+
+TEST(GroundFeetChangesTest, aLayerThatDoesNotMoveTheLegsDoesNotPlantThem)
+{
+    Standing plain(0.1), nodding(0.1);
+    AnimationLayer& nod = nodding.walker->getController().layer(1);
+    ASSERT_TRUE(nod.play("Stand"));
+    ASSERT_TRUE(nod.setMask(JointMask::subtree(nodding.walker->getAnimationSet(), "head").value()));
+    for (Standing* person : {&plain, &nodding})
+        ASSERT_TRUE(person->walker->getController().play("Walk"));
+    for (int frame = 0; frame < 60; ++frame)
+        for (const char* joint : {"toes.L", "toes.R"})
+        {
+            std::vector<osg::Vec3d> places;
+            for (Standing* person : {&plain, &nodding})
+            {
+                person->update(1);
+                places.push_back(person->walker->jointToModel(joint).value().getTrans());
+            }
+            EXPECT_LT((places[1] - places[0]).length(), 1e-5) << joint << " in frame " << frame;
+        }
+}
+
+// A turntable carries a person: planted feet keep their places and directions on it.
+TEST(GroundFeetChangesTest, feetTurnWithTheirGround)
+{
+    Standing standing(0.1);
+    const osg::ref_ptr<osg::MatrixTransform> table = new osg::MatrixTransform;
+    table->addChild(standing.scene->getChild(0));
+    standing.scene->setChild(0, table);
+    standing.feet->setGround(table);
+    standing.walker->setMatrix(osg::Matrixd::translate(0.5, 0, 0));
+    standing.update();
+    const auto onTable = [&](const char* joint, const osg::Vec3d& place)
+    {
+        return place * standing.walker->jointToModel(joint).value() * standing.walker->getMatrix() *
+               osg::Matrixd::inverse(table->getMatrix());
+    };
+    const std::pair<const char*, osg::Vec3d> places[] = {{"toes.L", {}}, {"foot.L", {}}, {"foot.R", {0, 0, -0.1}}};
+    std::vector<osg::Vec3d> before;
+    for (const auto& [joint, place] : places)
+        before.push_back(onTable(joint, place));
+    const osg::Matrixd turn = osg::Matrixd::rotate(0.02, 0, 0, 1);
+    for (int i = 0; i < 30; ++i)
+    {
+        table->postMult(turn);
+        standing.walker->postMult(turn);
+        standing.update(1);
+    }
+    for (std::size_t i = 0; i < before.size(); ++i)
+        EXPECT_LT((onTable(places[i].first, places[i].second) - before[i]).length(), 1e-4) << places[i].first;
 }
 
 } // namespace

@@ -300,6 +300,17 @@ TEST(GroundFeetTest, aFootThatIsTooFarFromItsPlaceLosesIt)
     EXPECT_NEAR(stroll.heel("R").z(), heightBelow(*stroll.ground, stroll.heel("R")), 0.001) << "it starts anew there";
 }
 
+TEST(GroundFeetTest, feetLieOnAScaledGround)
+{
+    const osg::ref_ptr<osg::MatrixTransform> flattened = new osg::MatrixTransform(osg::Matrixd::scale(1, 1, 0.5));
+    flattened->addChild(slope(std::atan(2.0 * std::tan(20.0 * degree)) / degree));
+    Stroll plain(slope(20)), scaled(flattened);
+    for (Stroll* stroll : {&plain, &scaled})
+        stroll->stand();
+    for (const char* side : {"L", "R"})
+        EXPECT_LT((scaled.tip(side) - plain.tip(side)).length(), 1e-4) << side;
+}
+
 TEST(GroundFeetTest, markersSayWhenAFootIsPlanted)
 {
     Stroll stroll(slope(0));

@@ -60,6 +60,9 @@ TEST(NodeConstraintsTest, targetsAreInTheCharactersOwnSpaceOrInTheWorld)
     character->setMatrix(osg::Matrix::translate(10, 0, 0));
     character->update(0.0);
     expectNear(gaze(*character), osg::Vec3d(0, 1, 0));
+    ASSERT_TRUE(character->constraint("look").setTarget(osg::Vec3d(0, 0, 5)));
+    character->update(0.0);
+    expectNear(gaze(*character), osg::Vec3d(0, 0, 1));
     ASSERT_TRUE(character->constraint("look").clear());
     character->update(0.0);
     EXPECT_FALSE(character->getController().isConstrained());

@@ -116,7 +116,10 @@ TEST_F(PoseStatisticsGLTest, eachCharacterCountsOnceForAllCamerasAndBatches)
         }
         ASSERT_TRUE(crowd->add(osg::Matrixd::translate(-3.5 + 1.2 * i, 0, 0), controller));
     }
+    const osg::ref_ptr<AnimatedCrowd> second = new AnimatedCrowd(*first);
+    ASSERT_TRUE(second->add(osg::Matrixd::translate(-3, 0, 2), first->getController()));
     group->addChild(crowd);
+    group->addChild(second);
     group->addChild(first);
     for (const double right : {-1.0, 1.0, 4.0})
     {
@@ -135,8 +138,8 @@ TEST_F(PoseStatisticsGLTest, eachCharacterCountsOnceForAllCamerasAndBatches)
     for (const double time : {0.0, 0.1, 0.2})
     {
         drawAt(time);
-        EXPECT_EQ(recorded(PoseStatistics::charactersSeen), 7.0) << time;
-        EXPECT_EQ(recorded(PoseStatistics::jointsSeen), 7.0 * testCharacterSet()->skeleton().jointCount()) << time;
+        EXPECT_EQ(recorded(PoseStatistics::charactersSeen), 8.0) << time;
+        EXPECT_EQ(recorded(PoseStatistics::jointsSeen), 8.0 * testCharacterSet()->skeleton().jointCount()) << time;
     }
 }
 

@@ -219,6 +219,22 @@ TEST(PosedMeshTest, aPoseIsComputedOnce)
     EXPECT_NE(clone->getPosedMesh(mesh), character->getPosedMesh(mesh));
 }
 
+TEST(PosedMeshTest, aMovedTargetIsAnotherPose)
+{
+    const osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
+    LookAt look{"look", {"base"}};
+    look.forward = {1, 0, 0};
+    ASSERT_TRUE(character->setAnimationSet(character->getAnimationSet().withConstraints({look}).value()));
+    const auto& mesh = dynamic_cast<const SkinnedGeometry&>(*character->getChild(0));
+    const auto lookingAt = [&](const osg::Vec3d& target)
+    {
+        EXPECT_TRUE(character->constraint("look").setTarget(target));
+        return character->getPosedMesh(mesh)->getBoundingBox();
+    };
+    EXPECT_NEAR(lookingAt({5, 0, 0}).zMax(), 1.0f, 1e-5f);
+    EXPECT_NEAR(lookingAt({0, 0, -5}).zMax(), 0.0f, 1e-5f);
+}
+
 TEST(PosedMeshTest, kdTreesAreNotMadeOfBindPoses)
 {
     const osg::ref_ptr<AnimatedCharacter> character = shiftedCharacter();

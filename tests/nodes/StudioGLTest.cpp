@@ -4,6 +4,7 @@
 #include "support/ThreadingModels.h"
 #include "support/ViewerGLTest.h"
 
+#include <osgGpuAnimation/nodes/PbrMaterial.h>
 #include <osgGpuAnimation/nodes/studio/Studio.h>
 #include <osgGpuAnimation/nodes/viewing/RaisedHome.h>
 
@@ -12,6 +13,10 @@
 #include <osgUtil/IntersectionVisitor>
 #include <osgUtil/LineSegmentIntersector>
 #include <osgViewer/CompositeViewer>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
 
 namespace osgGpuAnimation
 {
@@ -68,11 +73,11 @@ TEST_P(StudioGLTest, theShadowLiesBehindTheModelAndFollowsItsPose)
 }
 
 /// A low sun, and a grey sky around it. towards: glTF's axes.
-osg::ref_ptr<osg::Image> sunnySky(osg::Vec3f towards)
+osg::ref_ptr<osg::Image> sunnySky(osg::Vec3f towards, float strength = 200.0f)
 {
     towards.normalize();
-    return makePanorama(256, [towards](const osg::Vec3f& d)
-                        { return osg::Vec3f(1, 1, 1) * (0.3f + 200.0f * std::exp(400.0f * (d * towards - 1.0f))); });
+    return makePanorama(256, [towards, strength](const osg::Vec3f& d)
+                        { return osg::Vec3f(1, 1, 1) * (0.3f + strength * std::exp(400.0f * (d * towards - 1.0f))); });
 }
 
 TEST_P(StudioGLTest, inSurroundingsFromAPictureTheShadowIsThatOfTheirBrightestLight)
@@ -93,6 +98,64 @@ TEST_P(StudioGLTest, inSurroundingsFromAPictureTheShadowIsThatOfTheirBrightestLi
     studio->setStudio();
     studio->setRotation(0.0f);
     EXPECT_TRUE(shadowAt(0.5, 0.5));
+}
+
+TEST_P(StudioGLTest, theShadowIsAsDarkAsTheLightIsStrong)
+{
+    const osg::ref_ptr<Studio> studio = makeScene();
+    std::vector<double> found;
+    for (const float strength : {200.0f, 20.0f})
+    {
+        ASSERT_TRUE(studio->setPanorama(sunnySky({0, 1, -1}, strength)));
+        found.push_back(brightness(*pictureOf(studio, {0.0}), 0.5, -0.5));
+    }
+    EXPECT_GT(found[1], found[0] + 0.1);
+}
+
+/// A level rectangle.
+osg::ref_ptr<osg::Node> plate(const osg::Vec3& corner, float side)
+{
+    return osg::createTexturedQuadGeometry(corner, {side, 0, 0}, {0, side, 0});
+}
+
+// The key light is 0.16 times as wide as it is far, to either side. The edge of a plate at height z is 1.40 z from its
+// shadow, whose ellipses are 1.29 times as long along Y as across the light; the middle half of the light is lost over
+// 0.81 of a disk's radius.
+TEST_P(StudioGLTest, theEdgeOfAShadowIsAsSoftAsItsCasterIsHigh)
+{
+    const osg::ref_ptr<Studio> studio = new Studio;
+    studio->addChild(plate({0.5f, -3.5f, 0}, 0.1f)); // on the ground
+    studio->addChild(plate({-2, -2, 0.5f}, 2));
+    studio->addChild(plate({1.5f, -3, 1.5f}, 3));
+    const std::pair<double, double> edges[] = {{-1.3, 0.5}, {2.2, 1.5}}; // along X, and their heights
+    for (const auto& [x, height] : edges)
+    {
+        const double y = 0.82 * height;
+        viewer().getCamera()->setViewMatrixAsLookAt({x, y, 10}, {x, y, 0}, {0, 1, 0});
+        viewer().getCamera()->setProjectionMatrixAsOrtho(-1, 1, -1, 1, 1, 20);
+        const osg::ref_ptr<osg::Image> image = pictureOf(studio, {0.0});
+        std::vector<double> light; // by row, upwards: the share of the light of the backdrop
+        for (int row = 0; row < image->t(); ++row)
+        {
+            double sum = 0.0;
+            for (int column = 48; column < 80; ++column)
+                sum += static_cast<double>(linearColor(image->getColor(column, row)).g());
+            const float backdrop = 0.74f + 0.19f * (static_cast<float>(row) + 0.5f) / static_cast<float>(image->t());
+            light.push_back(sum / static_cast<double>(32.0f * linearColor({0, backdrop, 0, 1}).g()));
+        }
+        const auto first = light.begin() + 64 - static_cast<std::ptrdiff_t>(0.7 * y * 64); // beside the plate
+        const auto [darkest, brightest] = std::minmax_element(first, light.end());
+        const auto rowOf = [&, low = *darkest, high = *brightest](double share)
+        {
+            const double wanted = low + share * (high - low);
+            const auto above = std::find_if(std::min_element(first, light.end()), light.end(),
+                                            [=](double value) { return value > wanted; });
+            return static_cast<double>(above - light.begin()) - (*above - wanted) / (*above - *(above - 1));
+        };
+        const double width = (rowOf(0.75) - rowOf(0.25)) / 64.0;
+        const double expected = 0.81 * 0.16 * 1.40 * 1.29 * height;
+        EXPECT_NEAR(width, expected, 0.1 * expected) << height;
+    }
 }
 
 TEST_P(StudioGLTest, theApplicationsLightsDoNotShine)

@@ -154,19 +154,29 @@ TEST_F(CamerasGLTest, aMovingCameraIsFollowedUntilTheMouseIsUsed)
     cameraNode(file, perspective(file, "ride", 1.0), {0.0, 0.0, 3.0}, cart);
     file.animation("go");
     file.slide(cart);
-    const ImportedModel model = imported(file, with("ride"));
     viewer().unref_nodelete(); // like osgviewer's, which is on the stack: nobody holds it
-    pictureOf(model.root, {0.0, 0.25});
-    EXPECT_NEAR((eye() - osg::Vec3d(0.25, -3.0, 0.0)).length(), 0.0, 1e-5);
-    drawAt(0.5);
-    EXPECT_NEAR((eye() - osg::Vec3d(0.5, -3.0, 0.0)).length(), 0.0, 1e-5);
-    viewer().getEventQueue()->mouseButtonPress(32, 32, 1);
-    viewer().getEventQueue()->mouseButtonRelease(32, 32, 1);
-    drawAt(0.75);
-    EXPECT_NEAR((eye() - osg::Vec3d(0.5, -3.0, 0.0)).length(), 0.0, 1e-5);
-    viewer().getEventQueue()->keyPress(' ');
-    drawAt(0.875);
-    EXPECT_NEAR((eye() - osg::Vec3d(0.875, -3.0, 0.0)).length(), 0.0, 1e-5);
+    for (const bool isScrolled : {false, true})
+    {
+        SCOPED_TRACE(isScrolled ? "scrolled" : "pressed");
+        const ImportedModel model = imported(file, with("ride"));
+        pictureOf(model.root, {0.0, 0.25});
+        EXPECT_NEAR((eye() - osg::Vec3d(0.25, -3.0, 0.0)).length(), 0.0, 1e-5);
+        drawAt(0.5);
+        EXPECT_NEAR((eye() - osg::Vec3d(0.5, -3.0, 0.0)).length(), 0.0, 1e-5);
+        if (isScrolled)
+            viewer().getEventQueue()->mouseScroll(osgGA::GUIEventAdapter::SCROLL_UP);
+        else
+        {
+            viewer().getEventQueue()->mouseButtonPress(32, 32, 1);
+            viewer().getEventQueue()->mouseButtonRelease(32, 32, 1);
+        }
+        drawAt(0.75);
+        EXPECT_NEAR(eye().x(), 0.5, 1e-5);
+        EXPECT_NEAR(eye().y(), -3.0, isScrolled ? 1.0 : 1e-5) << "the manipulator zooms";
+        viewer().getEventQueue()->keyPress(' ');
+        drawAt(0.875);
+        EXPECT_NEAR((eye() - osg::Vec3d(0.875, -3.0, 0.0)).length(), 0.0, 1e-5);
+    }
     viewer().ref();
 }
 

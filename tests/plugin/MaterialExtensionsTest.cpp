@@ -63,6 +63,18 @@ TEST(MaterialExtensionsTest, defaultsAreTheSpecifications)
     EXPECT_EQ(result.clearcoat + result.transmission + result.sheenColor.length(), 0.0f);
 }
 
+TEST(MaterialExtensionsTest, specularGlossinessIsWhiteAndSmoothByDefault)
+{
+    tinygltf::Material material;
+    material.extensions["KHR_materials_pbrSpecularGlossiness"] = Value(Value::Object{});
+    PbrMaterial result;
+    readMaterialExtensions(material, result);
+    EXPECT_EQ(baseColorOf(material), osg::Vec4(1, 1, 1, 1));
+    EXPECT_EQ(result.specularColor, osg::Vec3(1, 1, 1));
+    EXPECT_EQ(result.roughness, 0.0f);
+    EXPECT_EQ(result.metallic, 0.0f);
+}
+
 TEST(MaterialExtensionsTest, specularGlossinessReplacesMetalAndRoughness)
 {
     tinygltf::Material material;

@@ -93,6 +93,7 @@ TEST(OptionStringTest, readsHowTheClipPlays)
     EXPECT_TRUE(options.noKeys);
     EXPECT_EQ(options.pixelError, 0.5);
     EXPECT_EQ(none.pixelError, 0.0);
+    EXPECT_TRUE(parseOptions("start=0"));
     EXPECT_EQ(parseOptions("loop=once").value().loopMode, LoopMode::Once);
     EXPECT_EQ(parseOptions("loop=loop").value().loopMode, LoopMode::Loop);
 }

@@ -188,6 +188,15 @@ TEST(VariantsTest, clonesShowTheirOwnAndShareTheMeshesOfAVariant)
     EXPECT_EQ(&meshOf(*second), &meshOf(first));
     EXPECT_EQ(&meshOf(*third), &meshOf(first));
 
+    // A mesh that another clone shows holds what this one plays, too.
+    const osg::ref_ptr<AnimatedCharacter> fourth = cloneOf(first);
+    ASSERT_TRUE(fourth->setMaterialVariant("gold"));
+    const osg::BoundingBox larger(osg::Vec3(-50, -50, -50), osg::Vec3(50, 50, 50));
+    const_cast<osg::Drawable&>(meshOf(*third)).setInitialBound(larger);
+    ASSERT_TRUE(third->setMaterialVariant("gold"));
+    EXPECT_EQ(&meshOf(*third), &meshOf(*fourth));
+    EXPECT_EQ(meshOf(*third).getBoundingBox(), larger);
+
     const Result<bool> refused = third->setMaterialVariant("blue");
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().message, "there is no material variant \"blue\"; the variants are \"plain\", "

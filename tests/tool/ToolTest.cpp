@@ -209,6 +209,17 @@ TEST_F(ToolTest, inspectSaysWhatIsInTheFile)
         EXPECT_NE(text.out.find(word), std::string::npos) << word << " in\n" << text.out;
 }
 
+TEST_F(ToolTest, theBoundsHoldWhatDoesNotMoveInItsPlace)
+{
+    json still = json::parse(swingingFlag());
+    still.erase("animations");
+    const Process done = run({"inspect", folder.write("still.gltf", still.dump()), "--json"});
+    ASSERT_EQ(done.status, 0) << done.err;
+    const json report = json::parse(done.out);
+    EXPECT_EQ(report["meshes"]["still"], 1);
+    expectBounds(report["bounds"], {-1, 0, 0, 1, 2, 0});
+}
+
 TEST_F(ToolTest, inspectSaysHowFarCompactClipsAreOff)
 {
     const Process done = run({"inspect", "FLAG", "--compact", "1e-3", "--json"});

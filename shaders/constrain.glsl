@@ -2,7 +2,8 @@
 // The constraints of a chain of joints, in single precision; the CPU twin is animation/constraints. After mix.glsl,
 // local.glsl and world.glsl. All positions and axes are in the space of the parent of the chain's first joint, if no
 // other space is named. Constants of the program variant: bool isLookAt (else: two-bone inverse kinematics);
-// int chainLength, the joints of the chain; int midPlace, the limb's mid joint.
+// int chainLength, the joints of the chain; int midPlace, the limb's mid joint; bool hasCone, hasOffset: of look-ats;
+// bool hasDirections: some target has a pole, a twist or a rotation.
 
 JointTransform chain[chainLength];
 
@@ -16,6 +17,7 @@ struct Goal
 
 const float smallestSine = 1e-3;   // axes that enclose a smaller angle count as parallel
 const float smallestShare = 1e-5;  // of a length: what is shorter counts as 0
+const float smallestSize = 1e-36;  // a space of a smaller determinant counts as flat
 const float straightLimb = 0.02;   // the sine of a bend that counts as straight
 
 vec4 inverseOf(vec4 q)
@@ -87,6 +89,12 @@ vec4 framedTurn(vec3 from, vec3 up, vec3 to, vec3 pole)
     return quaternionProduct(turnAbout(to, dot(upTurned, poleAcross), dot(cross(upTurned, poleAcross), to)), turn);
 }
 
+// The turn, then the goal's twist about the line to the target.
+vec4 twisted(vec4 turn, vec3 to, Goal goal)
+{
+    return hasDirections ? quaternionProduct(quaternionExponential(to * (0.5 * goal.twist)), turn) : turn;
+}
+
 vec3 pointIn(mat3x4 matrix, vec3 point)
 {
     return vec4(point, 1.0) * matrix;
@@ -102,9 +110,14 @@ vec3 originOf(mat3x4 matrix)
     return vec3(matrix[0].w, matrix[1].w, matrix[2].w);
 }
 
-bool hasInverse(mat3x4 matrix)
+// The inverse of the 3x3 part; false if there is none.
+bool invert(mat3x4 matrix, out mat3 inverted)
 {
-    return abs(determinant(mat3(matrix))) > 1e-36;
+    vec3 a = matrix[0].xyz, b = matrix[1].xyz, c = matrix[2].xyz;
+    vec3 bc = cross(b, c);
+    float size = dot(a, bc);
+    inverted = transpose(mat3(bc, cross(c, a), cross(a, b))) * (1.0 / size);
+    return abs(size) > smallestSize;
 }
 
 // The space of joint `end`'s parent: the product of the joints before it.
@@ -127,7 +140,7 @@ struct LookAt
 
 vec3 limitedToCone(vec3 wanted, vec3 forward, vec3 up, LookAt look)
 {
-    if (dot(wanted, forward) >= look.coneCosine) return wanted;
+    if (!hasCone || dot(wanted, forward) >= look.coneCosine) return wanted;
     vec3 side = across(wanted, forward);
     if (isNone(side)) side = across(up, forward);
     if (isNone(side)) side = anyAcross(forward);
@@ -140,13 +153,15 @@ float shareOf(int joint); // of the turn, defined by the pass
 void shareTurn(vec4 turn)
 {
     const float pi = 3.14159265;
-    vec3 halfTurn = quaternionLogarithm(turn);
+    vec3 halfTurn = quaternionLogarithm(turn); // in the end of at most pi / 3
     float halfAngle = length(halfTurn);
     if (halfAngle > pi / 3.0) halfTurn *= (pi - 2.0 * halfAngle) / halfAngle;
     vec4 parent = vec4(0.0, 0.0, 0.0, 1.0); // orientation of the joint's parent
     for (int joint = 0; joint + 1 < chainLength; ++joint)
     {
-        vec4 part = quaternionExponential(halfTurn * shareOf(joint));
+        vec3 v = halfTurn * shareOf(joint);
+        vec3 sine = v * sinc(dot(v, v));
+        vec4 part = vec4(sine, sqrt(1.0 - dot(sine, sine)));
         vec4 inParent = quaternionProduct(inverseOf(parent), quaternionProduct(part, parent));
         chain[joint].rotation = quaternionProduct(inParent, chain[joint].rotation);
         parent = quaternionProduct(parent, chain[joint].rotation);
@@ -162,41 +177,56 @@ bool aim(LookAt look, Goal goal)
     vec3 line = goal.position - translation;
     float away = length(line);
     if (!(away > smallestShare * (length(goal.position) + length(translation)))) return false;
-    // The forward line meets the sphere through the goal. It may miss it if the goal is nearer than the line.
     vec3 forward = direction(scale * look.forward, look.forward);
-    vec3 offset = scale * look.offset;
-    float along = dot(offset, forward);
-    vec3 met = offset + forward * (sqrt(max(away * away - dot(offset, offset) + along * along, 0.0)) - along);
-    vec3 from = turned(chain[last].rotation, direction(met, forward));
+    vec3 met = forward;
+    if (hasOffset)
+    {
+        // The forward line meets the sphere through the goal. It may miss it if the goal is nearer than the line.
+        vec3 offset = scale * look.offset;
+        float along = dot(offset, forward);
+        met = offset + forward * (sqrt(max(away * away - dot(offset, offset) + along * along, 0.0)) - along);
+        met = direction(met, forward);
+    }
+    vec3 from = turned(chain[last].rotation, met);
     vec3 up = turned(chain[last].rotation, direction(scale * look.up, look.up));
     vec3 to = line / away;
-    vec4 turn = quaternionProduct(quaternionExponential(to * (0.5 * goal.twist)), framedTurn(from, up, to, goal.pole));
+    vec4 turn = twisted(framedTurn(from, up, to, goal.pole), to, goal);
     chain[last].rotation = quaternionProduct(turn, chain[last].rotation);
     return true;
 }
 
 bool solveLookAt(LookAt look, Goal goal)
 {
-    mat3x4 toParent = chainMatrix(chainLength);
-    vec3 eye = pointIn(toParent, look.offset);
-    vec3 forward = direction(vectorIn(toParent, look.forward), look.forward);
-    vec3 up = direction(vectorIn(toParent, look.up), look.up);
+    vec3 eye = hasOffset ? look.offset : vec3(0.0);
+    vec3 forward = look.forward;
+    vec3 up = look.up;
+    for (int joint = chainLength - 1; joint >= 0; --joint)
+    {
+        mat3x4 matrix = localMatrix(chain[joint].translation, chain[joint].rotation, chain[joint].scale);
+        eye = pointIn(matrix, eye);
+        forward = vectorIn(matrix, forward);
+        up = vectorIn(matrix, up);
+    }
+    forward = direction(forward, look.forward);
+    up = direction(up, look.up);
     vec3 line = goal.position - eye;
     float away = length(line);
     if (!(away > smallestShare * (length(goal.position) + length(eye)))) return false;
     vec3 wanted = limitedToCone(line / away, forward, up, look);
     goal.position = eye + wanted * away;
     if (goal.pole == vec3(0.0)) goal.pole = up;
-    if (chainLength > 1)
+    if (chainLength > 1) shareTurn(framedTurn(forward, up, wanted, goal.pole));
+    // The goal in the space of the last joint's parent.
+    float size = 1.0;
+    for (int joint = 0; joint + 1 < chainLength; ++joint)
     {
-        shareTurn(framedTurn(forward, up, wanted, goal.pole));
-        mat3x4 parent = chainMatrix(chainLength - 1);
-        if (!hasInverse(parent)) return false;
-        mat3 inverted = inverse(mat3(parent));
-        goal.position = (goal.position - originOf(parent)) * inverted;
-        goal.pole = goal.pole * inverted;
+        vec4 toJoint = inverseOf(chain[joint].rotation);
+        vec3 scale = chain[joint].scale.xyz;
+        size *= scale.x * scale.y * scale.z;
+        goal.position = turned(toJoint, goal.position - chain[joint].translation.xyz) / scale;
+        goal.pole = turned(toJoint, goal.pole) / scale;
     }
-    return aim(look, goal);
+    return abs(size) > smallestSize && aim(look, goal);
 }
 
 // The distance of the end joint from the start joint: at most the length of the limb.
@@ -252,7 +282,7 @@ bool solveTwoBone(vec3 hinge, float softReach, Goal goal)
     vec3 to = away > smallestShare * limb ? line / away : from;
     vec4 turn = goal.pole == vec3(0.0) ? shortestTurn(from, to, axis)
                                        : framedTurn(from, cross(from, axis), to, goal.pole);
-    turn = quaternionProduct(quaternionExponential(to * (0.5 * goal.twist)), turn);
+    turn = twisted(turn, to, goal);
 
     vec4 parent = vec4(0.0, 0.0, 0.0, 1.0); // orientation of the mid joint's parent
     for (int joint = 0; joint < midPlace; ++joint)
@@ -267,8 +297,9 @@ bool solveTwoBone(vec3 hinge, float softReach, Goal goal)
 void orient(vec4 rotation, mat3 modelToParent)
 {
     mat3x4 parent = chainMatrix(chainLength - 1);
-    if (!hasInverse(parent)) return;
-    mat3 toParent = modelToParent * inverse(mat3(parent));
+    mat3 inverted;
+    if (!invert(parent, inverted)) return;
+    mat3 toParent = modelToParent * inverted;
     const vec3 x = vec3(1.0, 0.0, 0.0);
     const vec3 y = vec3(0.0, 1.0, 0.0);
     chain[chainLength - 1].rotation = framedTurn(x, y, direction(turned(rotation, x) * toParent, x),

@@ -39,11 +39,13 @@
 // code of the constraints' correction (0: none).
 #define POSE_TEXELS_PER_ENTRY 9
 
-// Constraints: RGBA32F, per constraint these texels, then one texel per joint of its path: track, code of the correction
-// to read (0: none), share of the turn, 0. The first texel contains the palette entry of the path's first joint and the
-// number of the target. A look-at: forward axis and the cosine of the cone (below -1: none), up axis and the sine of the
-// cone, offset. Two-bone inverse kinematics: hinge and soft reach, two unused texels.
-#define POSE_TEXELS_PER_CONSTRAINT 4
+// Constraints: vec4, per constraint these, then three per joint of its chain: track, code of the correction to read (0:
+// none), share of the turn, 0; translation at rest; scale at rest. The first vec4 contains the parent entry of the path's
+// first joint and the number of the target; three rows of its parentBind follow, then three vec4. A look-at: forward axis
+// and the cosine of the cone (below -1: none), up axis and the sine of the cone, offset. Two-bone inverse kinematics: hinge
+// and soft reach, two unused.
+#define POSE_TEXELS_PER_CONSTRAINT 7
+#define POSE_TEXELS_PER_CHAIN_JOINT 3
 
 // Targets: RGBA32F, ConstraintTarget in C++, for each instance one per constraint of the set: position and weight; pole
 // and twist; the last joint's rotation (0: none).

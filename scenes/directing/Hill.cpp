@@ -9,9 +9,12 @@
 #include <osgGpuAnimation/nodes/SpringBones.h>
 
 #include <osg/Geometry>
+#include <osg/LightSource>
 #include <osg/Math>
 #include <osg/MatrixTransform>
 #include <osg/ShapeDrawable>
+#include <osgShadow/ShadowedScene>
+#include <osgShadow/ShadowMap>
 
 #include <cmath>
 #include <random>
@@ -64,7 +67,7 @@ osg::ref_ptr<osg::Node> makeGround()
     ground->setVertexArray(places);
     ground->setNormalArray(normals, osg::Array::BIND_PER_VERTEX);
     ground->addPrimitiveSet(triangles);
-    applyMaterial(*ground, osg::Vec4(0.36f, 0.5f, 0.24f, 1.0f));
+    applyMaterial(*ground, osg::Vec4(0.3f, 0.42f, 0.2f, 1.0f));
     return ground;
 }
 
@@ -194,11 +197,39 @@ Result<bool> addGroundFeet(AnimatedCharacter& wanderer, osg::Node& ground)
     return set;
 }
 
+namespace
+{
+
+constexpr osg::Node::NodeMask receivesShadow = 1, castsShadow = 2;
+
+/// Lights its children from the upper left behind, with shadows of those that cast them.
+osg::ref_ptr<osg::Group> makeSunlight()
+{
+    const osg::ref_ptr<osg::LightSource> sun = new osg::LightSource;
+    sun->getLight()->setLightNum(1);
+    sun->getLight()->setPosition(osg::Vec4(-0.45f, 0.45f, 0.8f, 0.0f));
+    sun->getLight()->setDiffuse(osg::Vec4(0.9f, 0.85f, 0.75f, 1.0f));
+    const osg::ref_ptr<osgShadow::ShadowMap> shadow = new osgShadow::ShadowMap;
+    shadow->setLight(sun);
+    shadow->setTextureSize(osg::Vec2s(2048, 2048));
+    shadow->setAmbientBias(osg::Vec2(0.0f, 1.0f));
+    const osg::ref_ptr<osgShadow::ShadowedScene> scene = new osgShadow::ShadowedScene(shadow);
+    scene->setReceivesShadowTraversalMask(receivesShadow);
+    scene->setCastsShadowTraversalMask(castsShadow);
+    scene->addChild(sun);
+    sun->setStateSetModes(*scene->getOrCreateStateSet(), osg::StateAttribute::ON);
+    return scene;
+}
+
+} // namespace
+
 Result<osg::ref_ptr<osg::Node>> makeHill(const osg::Node& model)
 {
-    const osg::ref_ptr<osg::Group> hill = new osg::Group;
+    const osg::ref_ptr<osg::Group> hill = makeSunlight();
     const osg::ref_ptr<osg::Node> ground = makeGround();
+    ground->setNodeMask(receivesShadow);
     const osg::ref_ptr<osg::MatrixTransform> lantern = makeLantern();
+    lantern->setNodeMask(receivesShadow);
     const osg::ref_ptr<osg::Node> copy = osg::clone(&model, osg::CopyOp::DEEP_COPY_NODES);
     for (osg::Node* child : {ground.get(), static_cast<osg::Node*>(lantern), copy.get()})
         hill->addChild(child);

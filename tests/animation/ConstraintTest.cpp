@@ -401,6 +401,11 @@ TEST(ConstraintTest, faultyDeclarationsAreErrorsThatNameThem)
                  l.hinge = {nan, 0, 0};
              })},
          "hinge"},
+        {{limb(
+             [](TwoBoneIk& l) {
+                 l.hinge = {0, -2, 0};
+             })},
+         "parallel to the upper bone"},
         {{limb([](TwoBoneIk& l) { l.softReach = 1.5f; })}, "soft reach"},
         {{limb([](TwoBoneIk& l) { l.mid = "d"; })}, "no descendant"},
         {{limb([](TwoBoneIk& l) { l.end = "tail"; })}, "\"tail\""},

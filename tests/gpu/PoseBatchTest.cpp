@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "support/RandomSet.h"
 
+#include <osgGpuAnimation/animation/AnimationController.h>
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/gpu/PoseBatch.h>
 
@@ -80,6 +81,32 @@ TEST(PoseBatchTest, aFullBatchSuitsThoseOfItsLoadAlone)
             EXPECT_EQ(batch.accepts(instructionOf(other)), other.load == inside.load)
                 << other.name << " beside " << inside.name;
     }
+}
+
+TEST(PoseBatchTest, needsNameTheFeaturesOfTargets)
+{
+    const auto set = makeRandomSet({});
+    const std::string joint = set->skeleton().joint(0).name;
+    const auto looking = set->withConstraints({LookAt{"first", {joint}}, LookAt{"second", {joint}}});
+    ASSERT_TRUE(looking) << looking.error().message;
+    AnimationController controller(looking.value());
+    PoseBatch batch(looking.value());
+    const auto added = [&]() -> const PoseBatch::Needs&
+    {
+        batch.add(controller.instruction());
+        return batch.needs();
+    };
+    ASSERT_TRUE(controller.constraint("second").setTarget({1, 2, 3}));
+    EXPECT_EQ(added().constraints, 2u);
+    EXPECT_EQ(batch.needs().directedTargets, 0u);
+    EXPECT_EQ(batch.needs().partialTargets, 0u);
+    ASSERT_TRUE(controller.constraint("second").setTwist(0.1f));
+    EXPECT_EQ(added().directedTargets, 2u);
+    ASSERT_TRUE(controller.constraint("first").setTarget({1, 2, 3}));
+    ASSERT_TRUE(controller.constraint("first").setWeight(0.5f));
+    EXPECT_EQ(added().partialTargets, 1u);
+    batch.clear();
+    EXPECT_EQ(batch.needs().directedTargets, 0u);
 }
 
 TEST(PoseBatchTest, sameBatchesAgreeInSetPosesPlacesAndTints)

@@ -232,4 +232,17 @@ TEST(GroundFeetChangesTest, feetTurnWithTheirGround)
 
 } // namespace
 
+TEST(GroundFeetChangesTest, aDeletedGroundKeepsItsNameForSceneFiles)
+{
+    osg::ref_ptr<osg::Group> ground = new osg::Group;
+    ground->setName("stage");
+    const osg::ref_ptr<GroundFeet> feet = new GroundFeet(*ground);
+    ground = nullptr;
+    EXPECT_FALSE(feet->getGround());
+    EXPECT_EQ(feet->getGroundName(), "stage");
+    EXPECT_EQ(osg::ref_ptr<GroundFeet>(osg::clone(feet.get()))->getGroundName(), "stage");
+    feet->setGround(nullptr);
+    EXPECT_EQ(feet->getGroundName(), "");
+}
+
 } // namespace osgGpuAnimation

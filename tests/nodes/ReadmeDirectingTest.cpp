@@ -157,7 +157,7 @@ TEST_F(ReadmeDirectingTest, PosedJoints)
     AnimationController& controller = fox->getController();
     const std::size_t joints = fox->getAnimationSet().skeleton().jointCount();
     const auto receiveCapture = [&] { return std::vector<JointTransform>(joints); };
-    const auto simulateRagdoll = [&] { return std::vector<AffineMatrix>(joints); };
+    const auto simulateRagdoll = [&] { return std::vector<osg::Matrixd>(joints); };
     const std::size_t wrist = fox->getAnimationSet().skeleton().jointNamed("Hand.R").value();
     AnimationLayer& yoke = controller.layer(3);
     JointPose& pose = yoke.pose();
@@ -169,8 +169,8 @@ TEST_F(ReadmeDirectingTest, PosedJoints)
 
     std::vector<JointTransform> captured = receiveCapture();
     succeeded(yoke.pose().setTransforms(captured));
-    std::vector<AffineMatrix> bodies = simulateRagdoll();
-    succeeded(yoke.pose().setModelTransforms(bodies));
+    std::vector<osg::Matrixd> bodies = simulateRagdoll();
+    succeeded(fox->setModelTransforms(3, bodies));
     yoke.showPose(0.2);
     EXPECT_FALSE(pose.isEmpty());
 }

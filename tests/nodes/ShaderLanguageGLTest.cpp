@@ -196,26 +196,25 @@ protected:
     /// Links the pose passes of both forms, each pair of a variant's members at least once.
     void linkPosePasses()
     {
-        for (const std::vector<int>& row : pairwise({2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 5, 3, 3}))
+        for (const std::vector<int>& row : pairwise({2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 5, 3, 3}))
         {
+            ConstraintShape shape;
             PoseVariant variant;
-            bool* const flags[] = {&variant.hasSplines,     &variant.hasSeveralSamples, &variant.hasWeights,
-                                   &variant.isRootLevel,    &variant.hasRoots,          &variant.hasLayers,
-                                   &variant.hasMasks,       &variant.hasAdditive,       &variant.hasExactKeys,
-                                   &variant.hasCompactKeys, &variant.hasConstraints};
+            bool* const flags[] = {
+                &variant.hasSplines,   &variant.hasSeveralSamples, &variant.hasWeights,     &variant.isRootLevel,
+                &variant.hasRoots,     &variant.hasLayers,         &variant.hasMasks,       &variant.hasAdditive,
+                &variant.hasExactKeys, &variant.hasCompactKeys,    &variant.hasConstraints, &shape.hasSources,
+                &shape.hasCone,        &shape.hasOffset,           &shape.hasDirections,    &shape.hasFractions};
             std::size_t i = 0;
             for (bool* flag : flags)
                 *flag = row[i++] != 0;
             variant.sampleCount = row[i++];
             variant.translationMotion = static_cast<PartMotion>(row[i++]);
             variant.scaleMotion = static_cast<PartMotion>(row[i++]);
-            ConstraintChain chain;
-            chain.isLookAt = variant.hasConstraints;
-            chain.joints = {1, 2, 3, 4};
-            chain.mid = 2;
-            ConstraintStep step;
-            step.chainBegin = 1;
-            const ConstraintShape shape(step, chain);
+            shape.isLookAt = variant.hasConstraints;
+            shape.chainLength = 4;
+            shape.midPlace = 2;
+            shape.aboveLength = 1;
             for (const auto& pass :
                  {variant.makePosePass(gl()), variant.makeMixPass(gl()), variant.makeConstraintPass(gl(), shape)})
             {

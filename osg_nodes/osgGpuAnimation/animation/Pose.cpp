@@ -180,7 +180,9 @@ Result<bool> JointPose::setModelTransforms(const std::vector<AffineMatrix>& join
     if (jointToModel.size() != skeleton.jointCount())
         return wrongCount("matrices", jointToModel.size(), skeleton.jointCount());
     thread_local std::vector<JointTransform> local;
+    thread_local std::vector<glm::dmat4> shown; // without shears, so that joints keep their places below a sheared one
     local.clear();
+    shown.clear();
     for (std::size_t joint = 0; joint < skeleton.jointCount(); ++joint)
     {
         const glm::dmat4 matrix = jointToModel[joint].toColumns();
@@ -188,9 +190,9 @@ Result<bool> JointPose::setModelTransforms(const std::vector<AffineMatrix>& join
         if (!jointToModel[joint].isFinite() || volume == 0.0)
             return Error{jointAt(*_set, joint) + ": its matrix is not finite or has no inverse"};
         const int parent = skeleton.joint(joint).parent; // checked before
-        const glm::dmat4 above =
-            parent < 0 ? glm::dmat4(1.0) : jointToModel[static_cast<std::size_t>(parent)].toColumns();
+        const glm::dmat4 above = parent < 0 ? glm::dmat4(1.0) : shown[static_cast<std::size_t>(parent)];
         local.push_back(decomposed(glm::inverse(above) * matrix));
+        shown.push_back(above * glm::dmat4(local.back().toMatrix().toColumns()));
     }
     return setTransforms(local);
 }

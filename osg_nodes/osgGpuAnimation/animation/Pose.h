@@ -54,7 +54,8 @@ public:
     /// Errors, without a change: a wrong number of transforms; a value is refused; the message names the joint.
     Result<bool> setTransforms(const std::vector<JointTransform>& transforms);
     /// The same for matrices to the model's space, as a physics engine has them. jointToModel: one per joint, in the
-    /// file's axes; a shear between a joint and its parent is dropped. Further error: a matrix has no inverse.
+    /// file's axes. A joint shows its translation, rotation and scale; a shear between it and its parent is dropped.
+    /// The joints below a sheared joint keep their places in the model. Further error: a matrix has no inverse.
     Result<bool> setModelTransforms(const std::vector<AffineMatrix>& jointToModel);
 
     void reset();                       ///< Nothing is set any more.

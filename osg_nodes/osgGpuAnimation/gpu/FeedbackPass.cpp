@@ -132,6 +132,11 @@ void FeedbackPass::setInt(const char* uniform, int value)
     _gl->glUniform1i(location(uniform), value);
 }
 
+void FeedbackPass::setVectors(const char* uniform, const std::vector<glm::vec4>& values)
+{
+    _gl->glUniform4fv(location(uniform), static_cast<GLsizei>(values.size()), &values.front().x);
+}
+
 void FeedbackPass::setTexture(const char* uniform, int unit, GLuint texture)
 {
     _gl->glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));

@@ -5,6 +5,8 @@
 #include <osg/observer_ptr>
 #include <osg/State>
 
+#include <glm/vec4.hpp>
+
 #include <initializer_list>
 #include <string>
 #include <unordered_map>
@@ -87,6 +89,8 @@ public:
     void use();
     /// Sets an int uniform.
     void setInt(const char* uniform, int value);
+    /// Sets an array. values: one or more.
+    void setVectors(const char* uniform, const std::vector<glm::vec4>& values);
     /// Binds a buffer texture to a unit and points the sampler there.
     void setTexture(const char* uniform, int unit, GLuint texture);
     /// Draws the points [firstVertex, firstVertex + count) and writes 16 bytes per output and point into the buffer.

@@ -50,6 +50,11 @@ bool isFinite(const glm::vec4& v)
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z) && std::isfinite(v.w);
 }
 
+bool isDirected(const ConstraintTarget& target)
+{
+    return target.twist != 0.0f || target.pole != glm::vec3(0.0f) || target.rotation != glm::vec4(0.0f);
+}
+
 /// A target of model space in the space of the palette, as shaders need it: with no effect unless all is finite.
 ConstraintTarget inSpaceOf(const ConstraintTarget& target, const AffineMatrix& rootMatrix)
 {
@@ -67,7 +72,8 @@ ConstraintTarget inSpaceOf(const ConstraintTarget& target, const AffineMatrix& r
             glm::vec4(Rotation::unit(Rotation::numbers(turn * Rotation::quaternion(glm::dvec4(target.rotation)))));
     }
     // Shaders compute sines of small angles only.
-    moved.twist = std::remainder(target.twist, 6.28318531f);
+    constexpr float wholeTurn = 6.28318531f;
+    if (std::abs(target.twist) > 0.5f * wholeTurn) moved.twist = std::remainder(target.twist, wholeTurn);
     const bool isGood = isFinite(glm::vec4(moved.position, 0.0f)) && isFinite(glm::vec4(moved.pole, moved.twist)) &&
                         isFinite(moved.rotation);
     return moved.weight > 0.0f && isGood ? moved : ConstraintTarget();
@@ -144,7 +150,11 @@ void PoseBatch::addTargets(const std::vector<ConstraintTarget>& targets, const A
     for (std::size_t c = 0; c < count; ++c)
     {
         place[c] = inSpaceOf(targets[c], rootMatrix);
-        if (place[c].weight > 0.0f) _needs.constraints |= std::uint64_t(1) << c;
+        if (!(place[c].weight > 0.0f)) continue;
+        const std::uint64_t bit = std::uint64_t(1) << c;
+        _needs.constraints |= bit;
+        if (isDirected(place[c])) _needs.directedTargets |= bit;
+        if (place[c].weight < 1.0f) _needs.partialTargets |= bit;
     }
 }
 

@@ -84,12 +84,14 @@ public:
     /// The features of the mix stage that at least one sample needs.
     struct Needs
     {
-        bool mixing = false;           ///< several samples, or one of less than full weight
-        bool layers = false;           ///< samples of several blend priorities
-        bool masks = false;            ///< samples with masks
-        bool additive = false;         ///< additive samples
-        bool posed = false;            ///< samples of poses
-        std::uint64_t constraints = 0; ///< bit c: some instance has a target for constraint c of the set
+        bool mixing = false;               ///< several samples, or one of less than full weight
+        bool layers = false;               ///< samples of several blend priorities
+        bool masks = false;                ///< samples with masks
+        bool additive = false;             ///< additive samples
+        bool posed = false;                ///< samples of poses
+        std::uint64_t constraints = 0;     ///< bit c: some instance has a target for constraint c of the set
+        std::uint64_t directedTargets = 0; ///< bit c: one of these has a pole, a twist or a rotation
+        std::uint64_t partialTargets = 0;  ///< bit c: one of these has a weight below 1
     };
     /// The needs of all instances together.
     const Needs& needs() const { return _needs; }

@@ -33,7 +33,7 @@ namespace
 constexpr std::size_t matrixBytes = sizeof(AffineMatrix);
 constexpr int unitKeyframes = 0, unitSamples = 1, unitEntries = 2, unitRoots = 3, unitPrevious = 4, unitMasks = 5;
 constexpr int unitPosed = 6, unitCount = 7;
-constexpr int unitCorrections = 7, unitConstants = 8, unitTargets = 9; // bound by batches with constraints only
+constexpr int unitCorrections = 7, unitJointsAbove = 8, unitTargets = 9; // bound by batches with constraints only
 constexpr int unitCountWithConstraints = 10;
 constexpr std::size_t rotationBytes = BufferTexture::texelBytes;
 
@@ -107,7 +107,7 @@ struct PosePipeline::Parts
     bool hasRoomForMasks(SetResources& resources, const PoseBatch& batch) const;
     SetResources& resourcesOf(const PoseBatch& batch);
     bool evaluateFused(const PoseBatch& batch, AnimationBuffers& buffers, PosePalette::Chunk& chunk);
-    bool solveConstraints(const LevelInput& input, std::size_t number, PoseVariant variant);
+    bool solveConstraint(const LevelInput& input, const PoseBatch& batch, std::size_t number, PoseVariant variant);
     bool evaluateSeparate(const PoseBatch& batch, const AnimationBuffers& buffers, PosePalette::Chunk& chunk);
     void useMixInput(FeedbackPass& pass, const AnimationSet& set, const AnimationBuffers& buffers,
                      const PosePalette::Chunk& chunk);
@@ -125,7 +125,7 @@ struct PosePipeline::Parts
     std::unique_ptr<FeedbackPass> worldPass;
     BufferTexture scratch;     ///< fused: the odd levels, one after the other; separate: local matrices
     BufferTexture mixedTracks; ///< separate: the result of the mix stage
-    BufferTexture solved;      ///< the rotations of one draw of constraints
+    BufferTexture solved;      ///< the rotations of one constraint
     BufferTexture corrections; ///< those of all constraints so far, see CorrectionPlace
     std::map<const AnimationSet*, SetResources> sets;
 };
@@ -306,7 +306,7 @@ bool PosePipeline::Parts::evaluateFused(const PoseBatch& batch, AnimationBuffers
     const std::size_t entryBytes = POSE_TEXELS_PER_ENTRY * BufferTexture::texelBytes;
     const std::vector<std::size_t>& levels = set.levels();
     const FeedbackPass* current = nullptr;
-    std::size_t solvedDraws = 0; // of the constraints
+    std::size_t solvedSteps = 0; // of the constraints
     std::size_t firstParent = 0; // first palette entry in the buffer that this level reads
     std::size_t oddEntry = 0;    // entries in the scratch buffer so far
     for (std::size_t level = 0; level < set.levelCount(); ++level)
@@ -316,8 +316,8 @@ bool PosePipeline::Parts::evaluateFused(const PoseBatch& batch, AnimationBuffers
         const std::size_t count = levels[level + 1] - levels[level];
         const LevelInput input{
             set, buffers, constraints, chunk, (isOdd ? chunk.palette : scratch).texture(), isOdd ? 0 : firstParent};
-        for (; constraints && constraints->isSolvedBefore(level, solvedDraws); ++solvedDraws, current = nullptr)
-            if (!solveConstraints(input, solvedDraws, variant)) return false;
+        for (; constraints && constraints->isSolvedBefore(level, solvedSteps); ++solvedSteps, current = nullptr)
+            if (!solveConstraint(input, batch, solvedSteps, variant)) return false;
         variant.setMotion(buffers.levels()[level]);
         variant.hasConstraints = constraints && constraints->hasCorrections(level);
         FeedbackPass& pass = posePass(variant);
@@ -341,36 +341,37 @@ bool PosePipeline::Parts::evaluateFused(const PoseBatch& batch, AnimationBuffers
 }
 
 // The draw reads the rotations of the constraints before, so it writes to a buffer of its own.
-bool PosePipeline::Parts::solveConstraints(const LevelInput& input, std::size_t number, PoseVariant variant)
+bool PosePipeline::Parts::solveConstraint(const LevelInput& input, const PoseBatch& batch, std::size_t number,
+                                          PoseVariant variant)
 {
-    const ConstraintDraw& draw = input.constraints->plan().draws[number];
-    const ConstraintStep& step = input.constraints->plan().steps[draw.first];
-    const ConstraintChain& chain = input.set.constraintChains()[step.constraint];
-    variant.setMotion(input.buffers.anyTrack());
-    variant.translationMotion = std::max(variant.translationMotion, PartMotion::Constant);
-    variant.scaleMotion = std::max(variant.scaleMotion, PartMotion::Constant);
+    const ConstraintStep& step = input.constraints->plan().steps[number];
+    const ConstraintShape shape(step, batch);
+    variant.setMotion(step.level == 0 ? input.buffers.anyTrack() : input.buffers.levels()[step.level]);
     variant.hasWeights = variant.hasConstraints = false;
-    FeedbackPass& pass = constraintPass(ConstraintShape(step, chain), variant);
+    FeedbackPass& pass = constraintPass(shape, variant);
     if (!pass.valid()) return false;
     // Before the textures are bound: new storage unbinds that of the active unit.
     const std::size_t jointBytes = input.chunk.width * rotationBytes;
-    const std::size_t bytes = draw.count * chain.joints.size() * jointBytes;
+    const std::size_t bytes = static_cast<std::size_t>(shape.chainLength) * jointBytes;
     solved.reserve(bytes);
     useMixInput(pass, input.set, input.buffers, input.chunk);
     pass.setTexture("parentLevels", unitPrevious, input.parentLevels);
     pass.setInt("firstParent", static_cast<int>(input.firstParent));
-    pass.setTexture("entries", unitEntries, input.constraints->entries().texture());
-    pass.setTexture("constraints", unitConstants, input.constraints->constants().texture());
-    pass.setInt("constraintTexel", input.constraints->firstTexel(number));
+    pass.setVectors("constraint", input.constraints->constants(number));
+    if (shape.aboveLength > 0)
+    {
+        pass.setTexture("jointsAbove", unitJointsAbove, input.constraints->jointsAbove().texture());
+        pass.setInt("firstAbove", input.constraints->firstAbove(number));
+    }
     pass.setTexture("corrections", unitCorrections, corrections.texture());
     pass.setTexture("targets", unitTargets, input.chunk.targets.texture());
     pass.setInt("targetStride", static_cast<int>(input.set.constraints().size()));
-    pass.runInstanced(input.chunk.width, draw.count, solved.buffer(), 0);
+    pass.runInstanced(input.chunk.width, 1, solved.buffer(), 0);
     ++pipeline._counters.feedbackDraws;
     gl->glBindBuffer(GL_COPY_READ_BUFFER, solved.buffer());
     gl->glBindBuffer(GL_COPY_WRITE_BUFFER, corrections.buffer());
     copyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0,
-                      static_cast<GLintptr>(draw.firstCorrection * jointBytes), static_cast<GLsizeiptr>(bytes));
+                      static_cast<GLintptr>(step.firstCorrection * jointBytes), static_cast<GLsizeiptr>(bytes));
     gl->glBindBuffer(GL_COPY_READ_BUFFER, 0);
     gl->glBindBuffer(GL_COPY_WRITE_BUFFER, 0);
     return true;

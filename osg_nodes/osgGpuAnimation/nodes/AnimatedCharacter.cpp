@@ -218,6 +218,11 @@ Result<osg::Matrixd> AnimatedCharacter::jointToModel(const std::string& joint) c
     return jointToModel(index.value());
 }
 
+Result<bool> AnimatedCharacter::setModelTransforms(std::size_t layer, const std::vector<osg::Matrixd>& jointToModel)
+{
+    return poseJoints(*_controller, layer, jointToModel, _axes->fileToNode);
+}
+
 osg::Matrixd AnimatedCharacter::takeRootMotion()
 {
     return toOsg(_controller->takeRootMotion(), _axes->fileToNode);

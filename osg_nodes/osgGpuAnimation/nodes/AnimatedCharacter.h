@@ -126,6 +126,14 @@ public:
     /// The same for the first joint of that name. Error: no joint has the name; the message lists the names.
     Result<osg::Matrixd> jointToModel(const std::string& joint) const;
 
+    /// Poses all joints in a layer of the controller, as physics or motion capture does in every frame: the inverse of
+    /// jointToModel(). Roots and joints below rotated and scaled parents take the matrices that they are given; a shear
+    /// between a joint and its parent is dropped, and the joints below keep their places. See JointPose for the layer.
+    /// layer: see AnimationController::layer(). jointToModel: one per joint, from joint space to the character's own
+    /// space. Errors, which leave the pose unchanged: a wrong number of matrices; a matrix is not finite, not affine or
+    /// has no inverse.
+    Result<bool> setModelTransforms(std::size_t layer, const std::vector<osg::Matrixd>& jointToModel);
+
     /// The root motion since the last call, in the character's own space: preMult() it to the matrix that places the
     /// character. The identity without root motion (see withRootMotion).
     osg::Matrixd takeRootMotion();

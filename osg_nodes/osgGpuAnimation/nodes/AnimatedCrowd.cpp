@@ -352,6 +352,13 @@ NodeConstraint AnimatedCrowd::constraint(Instance instance, const std::string& n
     return {getController(instance), name, fromFile, toWorld(*this, false), *_worldTargets, instance};
 }
 
+Result<bool> AnimatedCrowd::setModelTransforms(Instance instance, std::size_t layer,
+                                               const std::vector<osg::Matrixd>& jointToCrowd)
+{
+    if (!contains(instance)) return noSuchInstance();
+    return poseJoints(*getController(instance), layer, jointToCrowd, fileToSpace(_instances->indexOf(instance)));
+}
+
 void AnimatedCrowd::takeWorldTargets()
 {
     const osg::Matrixd worldToSpace = osg::Matrixd::inverse(toWorld(*this, false));

@@ -107,6 +107,11 @@ public:
     Result<osg::Matrixd> jointToCrowd(Instance instance, std::size_t joint) const;
     Result<osg::Matrixd> jointToCrowd(Instance instance, const std::string& joint) const; ///< The same by name.
 
+    /// Poses all joints in a layer of an instance, see AnimatedCharacter::setModelTransforms(). jointToCrowd: one per
+    /// joint, from joint space to the space of this node. Further error: no such instance.
+    Result<bool> setModelTransforms(Instance instance, std::size_t layer,
+                                    const std::vector<osg::Matrixd>& jointToCrowd);
+
     /// update() calls the callback with the events of all instances, in the order and at the times of
     /// AnimatedCharacter::update(). It replaces the callbacks of the instances' controllers; a callback that a
     /// controller gets later replaces it for that instance. With a callback every instance keeps a controller, which

@@ -445,9 +445,9 @@ GroundFeet::GroundFeet(osg::Node& ground) : GroundFeet()
 GroundFeet::GroundFeet(const GroundFeet& other, const osg::CopyOp& copyop)
     : osg::Object(other, copyop), osg::Callback(other, copyop), osg::NodeCallback(other, copyop),
       _ground(other._ground), _isWholeScene(other._isWholeScene), _groundName(other._groundName),
-      _traversalMask(other._traversalMask), _legs(other._legs), _reach(other._reach), _maxTilt(other._maxTilt),
-      _lockDistance(other._lockDistance), _weight(other._weight), _maxDistance(other._maxDistance),
-      _states(std::make_unique<States>())
+      _nodeName(other._nodeName), _traversalMask(other._traversalMask), _legs(other._legs), _reach(other._reach),
+      _maxTilt(other._maxTilt), _lockDistance(other._lockDistance), _weight(other._weight),
+      _maxDistance(other._maxDistance), _states(std::make_unique<States>())
 {
 }
 
@@ -458,6 +458,7 @@ void GroundFeet::setGround(osg::Node* ground)
     _ground = ground;
     _isWholeScene = !ground;
     _groundName.clear();
+    _nodeName = ground ? ground->getName() : std::string();
     _hasWarned = false;
     _lastSearch = {};
 }
@@ -479,7 +480,8 @@ void GroundFeet::setGroundName(const std::string& name)
 std::string GroundFeet::getGroundName() const
 {
     const osg::ref_ptr<osg::Node> ground = getGround();
-    return ground && _groundName.empty() ? ground->getName() : _groundName;
+    if (!_groundName.empty()) return _groundName;
+    return ground ? ground->getName() : _nodeName;
 }
 
 Result<bool> GroundFeet::setLegs(const AnimationSet& set, std::vector<GroundLeg> legs)

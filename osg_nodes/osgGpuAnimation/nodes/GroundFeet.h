@@ -78,7 +78,8 @@ public:
     /// Selects the first node of this name in the character's scene as ground. Each frame looks it up until it is
     /// there, and again after its end; without such a node there is no ground. Empty: the whole scene.
     void setGroundName(const std::string& name);
-    /// The name of setGroundName(), else of the ground; empty: the whole scene, or a ground without a name.
+    /// The name of setGroundName(), else of the ground (after its end: at setGround()); empty: the whole scene, or a
+    /// ground without a name.
     std::string getGroundName() const;
     /// Nodes are ground if (node mask & mask) is not 0, as in any traversal. Default: all.
     void setTraversalMask(osg::Node::NodeMask mask) { _traversalMask = mask; }
@@ -140,6 +141,7 @@ private:
     osg::observer_ptr<osg::Node> _ground;
     bool _isWholeScene = true;
     std::string _groundName;                               ///< of setGroundName()
+    std::string _nodeName;                                 ///< of the node of setGround() at that time
     bool _hasWarned = false;                               ///< there was no node of this name
     std::pair<const osg::Node*, unsigned int> _lastSearch; ///< without success: the scene and the frame
     osg::Node::NodeMask _traversalMask = ~0u;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <osgGpuAnimation/animation/AnimationController.h>
 #include <osgGpuAnimation/animation/JointTransform.h>
+#include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/animation/Result.h>
 #include <osgGpuAnimation/animation/RootMotion.h>
 
@@ -11,6 +13,7 @@
 #include <osg/Matrixd>
 
 #include <string>
+#include <vector>
 
 namespace osgGpuAnimation
 {
@@ -62,6 +65,24 @@ inline osg::Matrixd toOsg(const RootMotion& motion, const osg::Matrixd& fileToNo
 {
     if (motion.isNone()) return {};
     return osg::Matrixd::inverse(fileToNode) * toOsg(motion.matrix()) * fileToNode;
+}
+
+/// Poses all joints in a layer, see JointPose::setModelTransforms(). jointToNode: one per joint, from the joint's space
+/// to a node's. fileToNode: from the file's axes to the node's. Errors, without a change: those of
+/// setModelTransforms(); a matrix is not affine.
+inline Result<bool> poseJoints(AnimationController& controller, std::size_t layer,
+                               const std::vector<osg::Matrixd>& jointToNode, const osg::Matrixd& fileToNode)
+{
+    const osg::Matrixd nodeToFile = osg::Matrixd::inverse(fileToNode);
+    std::vector<AffineMatrix> jointToFile;
+    for (const osg::Matrixd& matrix : jointToNode)
+    {
+        if (matrix(0, 3) != 0.0 || matrix(1, 3) != 0.0 || matrix(2, 3) != 0.0 || matrix(3, 3) != 1.0)
+            return Error{"the matrix of joint " + std::to_string(jointToFile.size()) +
+                         " is not affine: its last column is not 0, 0, 0, 1"};
+        jointToFile.push_back(toAffine(matrix * nodeToFile));
+    }
+    return controller.layer(layer).pose().setModelTransforms(jointToFile);
 }
 
 /// The rotation of a matrix without its translation, scale and mirroring, from its rows, which are OSG's axes: +Z keeps

@@ -148,6 +148,9 @@ Result<ConstraintChain> resolved(const Skeleton& skeleton, const TwoBoneIk& limb
     chain.hinge = limb.hinge == glm::vec3(0.0f) ? AxisTurns::direction(glm::inverse(toParent) * bend, none)
                                                 : glm::normalize(glm::dvec3(limb.hinge));
     if (chain.hinge == none) return Error{"its hinge has no direction in the space of the mid joint"};
+    const glm::dvec3 hinge = AxisTurns::direction(toParent * chain.hinge, none); // 0: a scale of 0 flattens it
+    if (hinge != none && AxisTurns::across(hinge, upper) == none)
+        return Error{"its hinge is parallel to the upper bone at rest"};
     return chain;
 }
 

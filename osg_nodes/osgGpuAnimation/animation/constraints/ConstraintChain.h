@@ -21,8 +21,11 @@ struct ConstraintChain
 
     /// Errors: a joint that the skeleton does not have, joints that are no descendants of each other, more than
     /// maxJoints joints from the first to the last; numbers that are not finite or out of range; axes that are 0 or
-    /// parallel; a limb of no length, or one that is straight at rest and has no hinge.
+    /// parallel; a limb of no length, or one that is straight at rest and has no hinge; a hinge that is parallel to the
+    /// upper bone at rest.
     static Result<ConstraintChain> create(const Skeleton& skeleton, const Constraint& declaration);
+
+    bool hasCone() const { return cone < 3.14159; } ///< of a look-at; false: all directions are within it
 
     bool isLookAt = true; ///< false: two-bone inverse kinematics
     std::string name;

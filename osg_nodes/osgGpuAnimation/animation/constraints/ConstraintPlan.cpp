@@ -2,7 +2,6 @@
 #include <osgGpuAnimation/animation/constraints/ConstraintPlan.h>
 
 #include <algorithm>
-#include <tuple>
 
 namespace osgGpuAnimation
 {
@@ -28,7 +27,6 @@ struct Draft
 {
     ConstraintStep step;
     std::vector<int> sourceSteps;
-    std::size_t draw = 0; ///< of its level
 };
 
 /// The constraint's step without its sources. active: bit c for constraint c.
@@ -52,14 +50,6 @@ ConstraintStep stepOf(std::size_t constraint, const Skeleton& skeleton, const st
     return step;
 }
 
-/// Steps with equal keys may share a draw.
-auto keyOf(const Draft& draft, const std::vector<ConstraintChain>& chains)
-{
-    const ConstraintChain& chain = chains[draft.step.constraint];
-    return std::make_tuple(draft.step.level, draft.draw, chain.isLookAt, chain.joints.size(), chain.mid,
-                           draft.step.chainBegin);
-}
-
 } // namespace
 
 ConstraintPlan::ConstraintPlan(const Skeleton& skeleton, const std::vector<ConstraintChain>& chains,
@@ -71,15 +61,9 @@ ConstraintPlan::ConstraintPlan(const Skeleton& skeleton, const std::vector<Const
     for (std::size_t c = 0; c < chains.size(); ++c)
     {
         if ((active >> c & 1) == 0) continue;
-        Draft draft{stepOf(c, skeleton, chains, active), {}, 0};
+        Draft draft{stepOf(c, skeleton, chains, active), {}};
         for (const int joint : draft.step.path)
-        {
-            const int source = lastSteps[static_cast<std::size_t>(joint)];
-            draft.sourceSteps.push_back(source);
-            if (source < 0) continue;
-            const Draft& before = drafts[static_cast<std::size_t>(source)];
-            if (before.step.level == draft.step.level) draft.draw = std::max(draft.draw, before.draw + 1);
-        }
+            draft.sourceSteps.push_back(lastSteps[static_cast<std::size_t>(joint)]);
         for (const int joint : chains[c].joints)
             lastSteps[static_cast<std::size_t>(joint)] = static_cast<int>(drafts.size());
         drafts.push_back(std::move(draft));
@@ -89,23 +73,19 @@ ConstraintPlan::ConstraintPlan(const Skeleton& skeleton, const std::vector<Const
     for (std::size_t i = 0; i < order.size(); ++i)
         order[i] = i;
     std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return keyOf(drafts[a], chains) < keyOf(drafts[b], chains); });
-    std::vector<std::size_t> firstCorrections(drafts.size());
+                     [&](std::size_t a, std::size_t b) { return drafts[a].step.level < drafts[b].step.level; });
     const auto placeOf = [&](int step, int joint)
     {
         if (step < 0) return CorrectionPlace();
-        const auto draft = static_cast<std::size_t>(step);
-        const std::vector<int>& joints = chains[drafts[draft].step.constraint].joints;
+        const ConstraintStep& source = drafts[static_cast<std::size_t>(step)].step;
+        const std::vector<int>& joints = chains[source.constraint].joints;
         const auto place = std::find(joints.begin(), joints.end(), joint) - joints.begin();
-        return CorrectionPlace{firstCorrections[draft], joints.size(), static_cast<std::size_t>(place)};
+        return CorrectionPlace{source.firstCorrection, joints.size(), static_cast<std::size_t>(place)};
     };
-    for (std::size_t i = 0; i < order.size(); ++i)
+    for (const std::size_t i : order)
     {
-        Draft& draft = drafts[order[i]];
-        if (i == 0 || keyOf(drafts[order[i - 1]], chains) != keyOf(draft, chains))
-            draws.push_back({i, 0, correctionCount});
-        ++draws.back().count;
-        firstCorrections[order[i]] = correctionCount;
+        Draft& draft = drafts[i];
+        draft.step.firstCorrection = correctionCount;
         correctionCount += chains[draft.step.constraint].joints.size();
         for (std::size_t place = 0; place < draft.step.path.size(); ++place)
             draft.step.sources.push_back(placeOf(draft.sourceSteps[place], draft.step.path[place]));

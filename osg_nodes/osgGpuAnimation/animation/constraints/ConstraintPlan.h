@@ -33,15 +33,7 @@ struct ConstraintStep
     std::vector<int> path;      ///< joints, each the parent of the next: those above the chain, then the chain
     std::vector<CorrectionPlace> sources; ///< one per joint of the path: where its rotation is, if not the mixed one
     std::size_t chainBegin = 0;           ///< index in the path of the chain's first joint
-};
-
-/// Steps that one draw evaluates, since none needs the result of another: of the same level, kind and lengths, such as
-/// two legs.
-struct ConstraintDraw
-{
-    std::size_t first = 0;           ///< index of the first step
-    std::size_t count = 0;           ///< number of steps
-    std::size_t firstCorrection = 0; ///< CorrectionPlace::first of the first step; the others follow
+    std::size_t firstCorrection = 0;      ///< CorrectionPlace::first of its own rotations
 };
 
 /// The evaluation of some constraints of a set.
@@ -50,8 +42,7 @@ struct ConstraintPlan
     /// active: bit c for constraint c.
     ConstraintPlan(const Skeleton& skeleton, const std::vector<ConstraintChain>& chains, std::uint64_t active);
 
-    std::vector<ConstraintStep> steps;                ///< draw by draw
-    std::vector<ConstraintDraw> draws;                ///< in order
+    std::vector<ConstraintStep> steps;                ///< in the order of evaluation
     std::vector<CorrectionPlace> correctionsOfJoints; ///< by joint: the last one
     std::size_t correctionCount = 0;                  ///< rotations per instance
 };

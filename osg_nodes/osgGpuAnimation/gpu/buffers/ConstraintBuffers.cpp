@@ -13,31 +13,36 @@ namespace osgGpuAnimation
 namespace
 {
 
-void addTexels(const AnimationSet& set, const ConstraintStep& step, std::vector<glm::vec4>& texels)
+/// The uniforms of a step, see layout.glsl. entries: the texels of the palette entries.
+std::vector<glm::vec4> constantsOf(const AnimationSet& set, const ConstraintStep& step,
+                                   const std::vector<glm::vec4>& entries)
 {
     const ConstraintChain& chain = set.constraintChains()[step.constraint];
-    const auto texel = [&](const glm::dvec3& xyz, double w)
-    { texels.emplace_back(glm::vec3(xyz), static_cast<float>(w)); };
-    const auto entry = static_cast<float>(set.mainEntry(step.path.front()));
-    texels.emplace_back(entry, static_cast<float>(step.constraint), 0.0f, 0.0f);
-    constexpr double wholeCone = 3.14159;
+    const auto entry = static_cast<std::size_t>(set.mainEntry(step.path.front())) * POSE_TEXELS_PER_ENTRY;
+    std::vector<glm::vec4> constants{{entries[entry].x, static_cast<float>(step.constraint), 0.0f, 0.0f}};
+    for (std::size_t row = 1; row <= 3; ++row)
+        constants.push_back(entries[entry + row]);
+    const auto add = [&](const glm::dvec3& xyz, double w)
+    { constants.emplace_back(glm::vec3(xyz), static_cast<float>(w)); };
     if (chain.isLookAt)
     {
-        texel(chain.forward, chain.cone < wholeCone ? std::cos(chain.cone) : -2.0);
-        texel(chain.up, std::sin(chain.cone));
-        texel(chain.offset, 0.0);
+        add(chain.forward, chain.hasCone() ? std::cos(chain.cone) : -2.0);
+        add(chain.up, std::sin(chain.cone));
+        add(chain.offset, 0.0);
     }
     else
+        add(chain.hinge, chain.softReach);
+    constants.resize(POSE_TEXELS_PER_CONSTRAINT, glm::vec4(0.0f));
+    for (std::size_t joint = 0; joint < chain.joints.size(); ++joint)
     {
-        texel(chain.hinge, chain.softReach);
-        texels.resize(texels.size() + 2, glm::vec4(0.0f));
+        const JointTransform& rest = set.restPose()[static_cast<std::size_t>(chain.joints[joint])];
+        constants.emplace_back(static_cast<float>(chain.joints[joint]),
+                               static_cast<float>(step.sources[step.chainBegin + joint].code()),
+                               chain.isLookAt ? static_cast<float>(chain.shares[joint]) : 0.0f, 0.0f);
+        constants.push_back(rest.translation);
+        constants.push_back(rest.scale);
     }
-    for (std::size_t place = 0; place < step.path.size(); ++place)
-    {
-        const bool hasShare = chain.isLookAt && place >= step.chainBegin;
-        texels.emplace_back(static_cast<float>(step.path[place]), static_cast<float>(step.sources[place].code()),
-                            hasShare ? static_cast<float>(chain.shares[place - step.chainBegin]) : 0.0f, 0.0f);
-    }
+    return constants;
 }
 
 } // namespace
@@ -45,7 +50,7 @@ void addTexels(const AnimationSet& set, const ConstraintStep& step, std::vector<
 ConstraintBuffers::ConstraintBuffers(osg::GLExtensions& gl, const AnimationSet& set, std::uint64_t active,
                                      std::vector<glm::vec4> entries)
     : _plan(set.skeleton(), set.constraintChains(), active), _hasCorrections(set.levelCount(), false),
-      _entries(gl, GL_RGBA32F_ARB), _constants(gl, GL_RGBA32F_ARB)
+      _entries(gl, GL_RGBA32F_ARB), _jointsAbove(gl, GL_RGBA32F_ARB)
 {
     for (std::size_t level = 0; level < set.levelCount(); ++level)
         for (std::size_t e = set.levels()[level]; e < set.levels()[level + 1]; ++e)
@@ -57,20 +62,22 @@ ConstraintBuffers::ConstraintBuffers(osg::GLExtensions& gl, const AnimationSet& 
             if (code > 0) _hasCorrections[level] = true;
         }
     _entries.upload(entries.data(), entries.size() * sizeof(glm::vec4));
-    std::vector<glm::vec4> constants;
-    for (const ConstraintDraw& draw : _plan.draws)
+    std::vector<glm::vec4> jointsAbove;
+    for (const ConstraintStep& step : _plan.steps)
     {
-        _firstTexels.push_back(static_cast<int>(constants.size()));
-        for (std::size_t step = draw.first; step < draw.first + draw.count; ++step)
-            addTexels(set, _plan.steps[step], constants);
+        _constants.push_back(constantsOf(set, step, entries));
+        _firstAbove.push_back(static_cast<int>(jointsAbove.size()));
+        for (std::size_t place = 0; place < step.chainBegin; ++place)
+            jointsAbove.emplace_back(static_cast<float>(step.path[place]),
+                                     static_cast<float>(step.sources[place].code()), 0.0f, 0.0f);
     }
-    _constants.upload(constants.data(), constants.size() * sizeof(glm::vec4));
+    _jointsAbove.upload(jointsAbove.data(), jointsAbove.size() * sizeof(glm::vec4));
 }
 
 void ConstraintBuffers::release()
 {
     _entries.release();
-    _constants.release();
+    _jointsAbove.release();
 }
 
 } // namespace osgGpuAnimation

@@ -26,14 +26,16 @@ public:
     const ConstraintPlan& plan() const { return _plan; }
     /// RGBA32F: the palette entries with the codes of their corrections.
     const BufferTexture& entries() const { return _entries; }
-    /// RGBA32F: the numbers and the path of each constraint, see layout.glsl.
-    const BufferTexture& constants() const { return _constants; }
-    /// The first texel of a draw's first step in constants(). draw: index in the plan.
-    int firstTexel(std::size_t draw) const { return _firstTexels[draw]; }
-    /// True if the draw exists and must come before that level of the palette. draw: index in the plan.
-    bool isSolvedBefore(std::size_t level, std::size_t draw) const
+    /// The uniforms of a step, see layout.glsl. step: index in the plan.
+    const std::vector<glm::vec4>& constants(std::size_t step) const { return _constants[step]; }
+    /// RGBA32F: of all steps, the joints of the path above the chain: track, code of the correction to read (0: none).
+    const BufferTexture& jointsAbove() const { return _jointsAbove; }
+    /// The first texel of a step in jointsAbove(). step: index in the plan.
+    int firstAbove(std::size_t step) const { return _firstAbove[step]; }
+    /// True if the step exists and must come before that level of the palette. step: index in the plan.
+    bool isSolvedBefore(std::size_t level, std::size_t step) const
     {
-        return draw < _plan.draws.size() && _plan.steps[_plan.draws[draw].first].level == level;
+        return step < _plan.steps.size() && _plan.steps[step].level == level;
     }
     /// True if constraints correct the rotation of an entry of that level of the palette.
     bool hasCorrections(std::size_t level) const { return _hasCorrections[level]; }
@@ -42,10 +44,11 @@ public:
 
 private:
     ConstraintPlan _plan;
-    std::vector<int> _firstTexels;
-    std::vector<bool> _hasCorrections; ///< by level
+    std::vector<std::vector<glm::vec4>> _constants; ///< by step
+    std::vector<int> _firstAbove;                   ///< by step
+    std::vector<bool> _hasCorrections;              ///< by level
     BufferTexture _entries;
-    BufferTexture _constants;
+    BufferTexture _jointsAbove;
 };
 
 } // namespace osgGpuAnimation

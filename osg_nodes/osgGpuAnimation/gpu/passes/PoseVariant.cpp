@@ -28,10 +28,28 @@ std::string declaration(const char* name, int value)
 
 } // namespace
 
-ConstraintShape::ConstraintShape(const ConstraintStep& step, const ConstraintChain& chain)
-    : isLookAt(chain.isLookAt), chainLength(static_cast<int>(chain.joints.size())),
-      midPlace(static_cast<int>(chain.mid)), aboveLength(static_cast<int>(step.chainBegin))
+ConstraintShape::ConstraintShape(const ConstraintStep& step, const PoseBatch& batch)
 {
+    const ConstraintChain& chain = batch.set().constraintChains()[step.constraint];
+    isLookAt = chain.isLookAt;
+    chainLength = static_cast<int>(chain.joints.size());
+    midPlace = static_cast<int>(chain.mid);
+    aboveLength = static_cast<int>(step.chainBegin);
+    hasSources = std::any_of(step.sources.begin(), step.sources.end(),
+                             [](const CorrectionPlace& source) { return source.count > 0; });
+    hasCone = chain.hasCone();
+    hasOffset = chain.offset != glm::dvec3(0.0);
+    hasDirections = (batch.needs().directedTargets >> step.constraint & 1) != 0;
+    hasFractions = (batch.needs().partialTargets >> step.constraint & 1) != 0;
+}
+
+std::string ConstraintShape::constants() const
+{
+    return declaration("isLookAt", isLookAt) + declaration("chainLength", chainLength) +
+           declaration("midPlace", midPlace) + declaration("aboveLength", aboveLength) +
+           declaration("hasSources", hasSources) + declaration("hasCone", hasCone) +
+           declaration("hasOffset", hasOffset) + declaration("hasDirections", hasDirections) +
+           declaration("hasFractions", hasFractions);
 }
 
 PoseVariant PoseVariant::of(const PoseBatch& batch)
@@ -68,9 +86,7 @@ std::unique_ptr<FeedbackPass> PoseVariant::makePosePass(osg::GLExtensions& gl) c
 std::unique_ptr<FeedbackPass> PoseVariant::makeConstraintPass(osg::GLExtensions& gl, const ConstraintShape& shape) const
 {
     using namespace shaders;
-    const std::string constants =
-        this->constants() + declaration("isLookAt", shape.isLookAt) + declaration("chainLength", shape.chainLength) +
-        declaration("midPlace", shape.midPlace) + declaration("aboveLength", shape.aboveLength);
+    const std::string constants = this->constants() + shape.constants();
     std::vector<std::string> names;
     for (int joint = 0; joint < shape.chainLength; ++joint)
         names.push_back("rotations[" + std::to_string(joint) + "]");

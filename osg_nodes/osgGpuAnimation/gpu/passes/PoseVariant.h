@@ -12,23 +12,36 @@ namespace osgGpuAnimation
 {
 
 class PoseBatch;
-struct ConstraintChain;
 struct ConstraintStep;
 
-/// The kind of a constraint and the lengths of its path, which are constants of its program.
+/// The features of a constraint, the lengths of its path and the features of its targets in a batch: the constants of
+/// its program.
 struct ConstraintShape
 {
-    ConstraintShape(const ConstraintStep& step, const ConstraintChain& chain);
+    ConstraintShape() = default;
+    ConstraintShape(const ConstraintStep& step, const PoseBatch& batch);
 
-    bool isLookAt;
-    int chainLength;
-    int midPlace;
-    int aboveLength; ///< joints of the path above the chain
+    bool isLookAt = true;
+    int chainLength = 1;
+    int midPlace = 0;
+    int aboveLength = 0;        ///< joints of the path above the chain
+    bool hasSources = false;    ///< constraints before have turned joints of the path
+    bool hasCone = false;       ///< of a look-at
+    bool hasOffset = false;     ///< of a look-at
+    bool hasDirections = false; ///< some target has a pole, a twist or a rotation
+    bool hasFractions = false;  ///< some target has a weight below 1
 
-    bool operator<(const ConstraintShape& other) const
+    /// GLSL declarations: one constant per member, with the member's name.
+    std::string constants() const;
+
+    friend bool operator<(const ConstraintShape& left, const ConstraintShape& right)
     {
-        return std::tie(isLookAt, chainLength, midPlace, aboveLength) <
-               std::tie(other.isLookAt, other.chainLength, other.midPlace, other.aboveLength);
+        const auto key = [](const ConstraintShape& shape)
+        {
+            return std::tie(shape.isLookAt, shape.chainLength, shape.midPlace, shape.aboveLength, shape.hasSources,
+                            shape.hasCone, shape.hasOffset, shape.hasDirections, shape.hasFractions);
+        };
+        return key(left) < key(right);
     }
 };
 

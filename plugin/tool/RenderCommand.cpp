@@ -113,7 +113,9 @@ Result<bool> RenderCommand::run() const
         isCrowd ? crowd::parseCrowd(osgDB::getNameLessExtension(file), "") : crowd::CrowdOptions();
     if (!wanted) return Error{file + ": " + wanted.error().message};
     crowd::CrowdOptions grid = wanted.value();
-    gltf::ImportOptions options;
+    const Result<gltf::ImportOptions> given = importOptions(clips);
+    if (!given) return given.error();
+    gltf::ImportOptions options = given.value();
     options.camera = camera;
     options.variant = variant;
     options.noLights = look != Look::File;
@@ -125,6 +127,7 @@ Result<bool> RenderCommand::run() const
     const std::string modelFile = isCrowd ? grid.modelFile : file;
     const Result<gltf::ImportedModel> model = readModel(modelFile, options);
     if (!model) return Error{modelFile + ": " + model.error().message};
+    printClipWarnings(model.value());
     const Result<osg::ref_ptr<osg::Image>> panorama = readPicture(environment);
     if (!panorama) return panorama.error();
     Result<std::unique_ptr<PictureViewer>> viewer = PictureViewer::create(width, height, look);

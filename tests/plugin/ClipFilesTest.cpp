@@ -10,6 +10,7 @@
 
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
+#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 
 #include <osgDB/ReadFile>
 
@@ -250,6 +251,20 @@ TEST(ClipFilesTest, osgDbTakesTheOptionSeveralTimesAndNamesWithSpaces)
     ASSERT_EQ(character->getAnimationSet().clips().size(), 2u);
     EXPECT_EQ(character->getAnimationSet().clips()[0].name(), "Fast");
     EXPECT_EQ(character->getController().clip(), 1);
+}
+
+TEST(ClipFilesTest, aCrowdChoosesAmongTheClipsOfFilesToo)
+{
+    usePluginsOfTheBuild();
+    const ScratchFolder folder;
+    folder.write("Walk.gltf", bodyClips({"Walk", "Run"}).text());
+    osg::ref_ptr<osgDB::Options> options = new osgDB::Options("clips=Walk.gltf clips=Run");
+    const std::string path = folder.write("body.gltf", bodyModel().text());
+    const osg::ref_ptr<osg::Node> node = osgDB::readRefNodeFile(path + ".2x2.crowd", options);
+    ASSERT_TRUE(node);
+    const auto* crowd = dynamic_cast<const AnimatedCrowd*>(node.get());
+    ASSERT_TRUE(crowd);
+    EXPECT_EQ(crowd->getAnimationSet().clips().size(), 2u);
 }
 
 } // namespace

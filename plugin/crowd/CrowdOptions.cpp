@@ -7,6 +7,8 @@
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/lod/LodSelection.h>
 
+#include <osgDB/FileNameUtils>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -62,6 +64,13 @@ std::vector<std::string> splitAtCommas(const std::string& text)
     return parts;
 }
 
+/// True for `clips=FILE`, the model's option: the value ends in .glb or .gltf. Others are names of clips.
+bool namesClipsFile(const gltf::OptionWord& word)
+{
+    const std::string extension = osgDB::getLowerCaseFileExtension(word.value.value_or(""));
+    return word.name == "clips" && (extension == "glb" || extension == "gltf");
+}
+
 /// The values that the option accepts, for messages.
 std::string wanted(const std::string& name)
 {
@@ -81,7 +90,7 @@ bool apply(const gltf::OptionWord& word, CrowdOptions& out)
         return readNumber(value, out.pixelError.emplace()) && LodRange::isPixelError(*out.pixelError);
     if (word.name == "spacing")
         return readNumber(value, out.spacing.emplace()) && std::isfinite(*out.spacing) && *out.spacing > 0.0;
-    if (word.name != "clips") return true;
+    if (word.name != "clips" || namesClipsFile(word)) return true;
     out.clips = splitAtCommas(value);
     for (const std::string& clip : out.clips)
         if (clip.empty()) return false;
@@ -107,7 +116,7 @@ std::string modelOptions(const std::string& options)
 {
     std::vector<gltf::OptionWord> words = gltf::splitOptions(options);
     const auto isNotTheModels = [](const gltf::OptionWord& word)
-    { return isAmong(ofCrowdsAlone, word.name) || isAmong(ofSinglesAlone, word.name); };
+    { return (isAmong(ofCrowdsAlone, word.name) && !namesClipsFile(word)) || isAmong(ofSinglesAlone, word.name); };
     words.erase(std::remove_if(words.begin(), words.end(), isNotTheModels), words.end());
     return gltf::joinOptions(words);
 }

@@ -29,7 +29,8 @@ struct CrowdOptions
 /// The options of a crowd, each with a line of help.
 const std::vector<gltf::OptionHelp>& optionHelp();
 
-/// The option string for the crowd's model: without the options of crowds alone and those of single characters.
+/// The option string for the crowd's model: without the options of crowds alone and those of single characters. A value
+/// of `clips` that ends in .glb or .gltf is a file of clips for the model.
 std::string modelOptions(const std::string& options);
 
 /// A hint for each misspelt option of a crowd, and for each option of a model that has no effect on a crowd.

@@ -5,6 +5,7 @@
 #include "gltf/document/LoadDocument.h"
 #include "gltf/file/ProgressLine.h"
 #include "gltf/file/Report.h"
+#include "gltf/scene/ClipFiles.h"
 #include "gltf/scene/Clips.h"
 #include "gltf/scene/Drawables.h"
 #include "gltf/scene/Joints.h"
@@ -89,7 +90,8 @@ public:
     Importer(const tinygltf::Model& model, const std::string& fileName, const ImportOptions& options,
              ImportedModel& result)
         : _model(model), _fileName(osgDB::getStrippedName(fileName)), _options(options), _result(result),
-          _report(result.messages), _budget(options.maxDecodedBytes), _textures(model, _report, !options.fixedLighting)
+          _report(result.messages), _budget(options.maxDecodedBytes), _textures(model, _report, !options.fixedLighting),
+          _clipFiles(readClipFiles(fileName, options, _report))
     {
     }
 
@@ -98,6 +100,7 @@ public:
 
 private:
     Result<bool> makeSet(const NodeTree& tree, const Joints& joints, const Morphs& morphs);
+    void addClipFiles();
     void makeGraph(const NodeTree& tree, const Joints& joints, const Morphs& morphs, int variant);
     void nameVariants(int variant);
     std::vector<bool> nodesThatCarry(const Joints& joints) const;
@@ -113,11 +116,17 @@ private:
     Report _report;
     MemoryBudget _budget;
     Textures _textures; ///< starts decoding in its constructor
+    const std::vector<ClipFile> _clipFiles;
 };
 
 Result<bool> Importer::makeSet(const NodeTree& tree, const Joints& joints, const Morphs& morphs)
 {
-    if (joints.skeleton.jointCount() == 0) return true;
+    if (joints.skeleton.jointCount() == 0)
+    {
+        for (const ClipFile& file : _clipFiles)
+            _report.warn(file.name + ": the model has no joints; its clips are left out");
+        return true;
+    }
     Clips clips = readClips(_model, joints, morphs, _budget, _report);
     _result.animationOfClip = std::move(clips.animationOfClip);
     Result<std::shared_ptr<const AnimationSet>> set =
@@ -133,7 +142,17 @@ Result<bool> Importer::makeSet(const NodeTree& tree, const Joints& joints, const
         return Error{"skins and joints: " + std::to_string(set.value()->paletteSize()) +
                      " palette entries are needed, at most " + std::to_string(mostPaletteEntries) + " are possible"};
     _result.set = set.value();
+    addClipFiles();
     return true;
+}
+
+void Importer::addClipFiles()
+{
+    int animation = static_cast<int>(_model.animations.size());
+    for (const ClipFile& file : _clipFiles)
+        _result.set = withClipsOf(_result.set, file, _budget, _report);
+    while (_result.animationOfClip.size() < _result.set->clips().size())
+        _result.animationOfClip.push_back(animation++);
 }
 
 void Importer::makeGraph(const NodeTree& tree, const Joints& joints, const Morphs& morphs, int variant)
@@ -235,7 +254,7 @@ Result<bool> Importer::run()
 {
     const Result<NodeTree> tree = buildNodeTree(_model, _options);
     if (!tree) return tree.error();
-    const Result<Joints> joints = buildJoints(_model, tree.value());
+    const Result<Joints> joints = buildJoints(_model, tree.value(), nodesMovedBy(_clipFiles, _model));
     if (!joints) return joints.error();
     const Morphs morphs = readMorphs(_model);
     const Result<bool> made = makeSet(tree.value(), joints.value(), morphs);

@@ -39,7 +39,8 @@ struct ImportedModel
     std::vector<std::string> nodeNames;          ///< one per node of the file; empty if it has none
     std::vector<int> nodeParents;                ///< -1 for roots
     std::optional<CompactedCharacter> compacted; ///< only if the options ask for compact clips
-    std::vector<int> animationOfClip;            ///< the file's animation number of each clip of the set
+    /// The file's animation number of each clip of the set; the clips of other files have the numbers after them.
+    std::vector<int> animationOfClip;
     std::vector<MaterialDescription> materials;
     std::vector<std::string> variantNames; ///< of KHR_materials_variants, each different
     std::vector<std::string> extensionsUsed;

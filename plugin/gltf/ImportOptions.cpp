@@ -70,6 +70,10 @@ const std::vector<Option>& allOptions()
         {{"clip=NAME|INDEX", "the clip that plays at first, by name or by number; default: the first"},
          "a name or a number",
          [](const std::string& value, ImportOptions& options) { return !options.clip.emplace(value).empty(); }},
+        {{"clips=FILE", "adds the clips of another file, for the joints of the same names; may come again"},
+         "the name of a file",
+         [](const std::string& value, ImportOptions& options)
+         { return !options.clipsFiles.emplace_back(value).empty(); }},
         {{"start=SECONDS", "start time in that clip; beyond its end: its end"},
          seconds,
          [](const std::string& value, ImportOptions& options)
@@ -118,7 +122,7 @@ const std::vector<Option>& allOptions()
          "",
          setFlag<&ImportOptions::noLights>},
         {{"noRotation", "keep glTF's +Y up; default: +Z up"}, "", setFlag<&ImportOptions::noRotation>},
-        {{"allowOutsideFiles", "let a model read files outside its own folder"},
+        {{"allowOutsideFiles", "let a model read files outside its own folder, also for clips"},
          "",
          setFlag<&ImportOptions::allowOutsideFiles>},
         {{"maxJsonBytes=N", "bytes of the JSON text, data URIs included; default: 512 MiB"},

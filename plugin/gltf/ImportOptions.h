@@ -26,10 +26,14 @@ struct ImportOptions
     double fadeSeconds = 0.3;      ///< of the keys' crossfades, see CharacterKeys
     std::optional<double> compact; ///< largest error of compact clips, see CompactedCharacter; above 0; none: exact
     double pixelError = 0.0;       ///< see AnimatedCharacter::setPixelError; 0 or more
-    bool noKeys = false;           ///< no CharacterKeys on the character
-    std::optional<int> scene;      ///< default: the file's own, else 0
-    bool noLights = false;         ///< leave the file's lights out
-    bool noCameras = false;        ///< leave the file's cameras out
+    /// Files whose clips follow the model's own, see readClipFiles(): relative to the model's folder, else to the
+    /// current one; in or below the model's folder, or anywhere with allowOutsideFiles.
+    std::vector<std::string> clipsFiles;
+    bool allowOutsideClips = false; ///< clipsFiles alone may be anywhere
+    bool noKeys = false;            ///< no CharacterKeys on the character
+    std::optional<int> scene;       ///< default: the file's own, else 0
+    bool noLights = false;          ///< leave the file's lights out
+    bool noCameras = false;         ///< leave the file's cameras out
     /// The camera of a viewer's first view: name, or index where none has that name; default: the viewer's own view
     std::optional<std::string> camera;
     /// The material variant shown at first: name, or index where none has that name; default: none

@@ -40,6 +40,7 @@ const char* const inspectHelp =
 character), clips, meshes, materials, lights, cameras, extensions, bytes on the GPU, warnings.
 
   osggpuanim inspect knight.glb
+  osggpuanim inspect knight.glb --clips general.glb --clips combat.glb
   osggpuanim inspect knight.glb --json | jq '.clips[].name')";
 
 const char* const poseHelp =
@@ -59,6 +60,7 @@ side, shows everything in all pictures; with --camera, one of the file's.
   osggpuanim render fox.glb -o fox.png
   osggpuanim render fox.glb --clip Walk --time 0.3 --size 1920x1080 -o walk.png
   osggpuanim render fox.glb --look sun -o sun.png
+  osggpuanim render knight.glb --clips combat.glb --clip Block -o block.png
   osggpuanim render fox.glb.20x20.crowd -o foxes.png         400 foxes, each at its own clip and time
   osggpuanim render fox.glb --environment sunset.hdr -o sunset.png
   osggpuanim render fox.glb --frames 60 --fps 30 -o fox.png  fox.0001.png ... fox.0060.png, the first at --time)";
@@ -129,6 +131,16 @@ std::string messageOf(const CLI::ParseError& fault, const CLI::App& app)
     return fault.what();
 }
 
+/// --clips FILE, which may come again.
+void addClips(CLI::App& command, std::vector<std::string>& files)
+{
+    command
+        .add_option("--clips", files,
+                    "Add the clips of another .gltf or .glb, for joints of the same names; may come again")
+        ->option_text("FILE")
+        ->allow_extra_args(false);
+}
+
 } // namespace
 
 CommandLine::CommandLine() : _app(description, "osggpuanim")
@@ -145,6 +157,7 @@ void CommandLine::addInspect()
     _inspectApp = _app.add_subcommand("inspect", "What is in a file and what it costs");
     _inspectApp->footer(std::string(inspectHelp) + exitStatus);
     _inspectApp->add_option("FILE", _inspect.file, "A .gltf or .glb")->required();
+    addClips(*_inspectApp, _inspect.clips);
     _inspectApp->add_flag("--json", _inspect.json, "JSON, for programs");
     _inspectApp
         ->add_option(
@@ -159,6 +172,7 @@ void CommandLine::addPose()
     _poseApp = _app.add_subcommand("pose", "Where joints and vertices are at given times");
     _poseApp->footer(std::string(poseHelp) + exitStatus);
     _poseApp->add_option("FILE", _pose.file, "A .gltf or .glb")->required();
+    addClips(*_poseApp, _pose.clips);
     CLI::Option* clip = _poseApp->add_option("--clip", _pose.request.clip,
                                              "A clip's name, or an animation's number where none has that name; "
                                              "default: the first clip");
@@ -186,6 +200,7 @@ void CommandLine::addRender()
     _renderApp = _app.add_subcommand("render", "Pictures of a file, without a display");
     _renderApp->footer(std::string(renderHelp) + exitStatus);
     _renderApp->add_option("FILE", _render.file, "A .gltf or .glb; or a crowd of it: FILE.20x20.crowd")->required();
+    addClips(*_renderApp, _render.clips);
     _renderApp->add_option("--clip", _render.clip,
                            "A clip's name, or an animation's number where none has that name; default: the first clip");
     _renderApp->add_option("--variant", _render.variant,

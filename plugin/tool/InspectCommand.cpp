@@ -12,7 +12,9 @@ namespace osgGpuAnimation::tool
 
 Result<bool> InspectCommand::run() const
 {
-    gltf::ImportOptions options;
+    const Result<gltf::ImportOptions> given = importOptions(clips);
+    if (!given) return given.error();
+    gltf::ImportOptions options = given.value();
     options.noRotation = true;
     if (compact > 0.0) options.compact = compact;
     const Result<gltf::ImportedModel> model = readModel(file, options);

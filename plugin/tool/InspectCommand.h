@@ -4,6 +4,7 @@
 #include <osgGpuAnimation/animation/Result.h>
 
 #include <string>
+#include <vector>
 
 namespace osgGpuAnimation::tool
 {
@@ -12,8 +13,9 @@ namespace osgGpuAnimation::tool
 struct InspectCommand
 {
     std::string file;
-    double compact = 0.0; ///< see gltf::ImportOptions; 0: exact
-    bool json = false;    ///< prints JSON instead of text
+    std::vector<std::string> clips; ///< files whose clips are added
+    double compact = 0.0;           ///< see gltf::ImportOptions; 0: exact
+    bool json = false;              ///< prints JSON instead of text
 
     /// Error messages begin with the name of the file at fault.
     Result<bool> run() const;

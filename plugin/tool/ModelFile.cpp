@@ -10,6 +10,7 @@
 #include <osgDB/FileNameUtils>
 
 #include <filesystem>
+#include <iostream>
 
 namespace osgGpuAnimation::tool
 {
@@ -39,6 +40,26 @@ Result<std::string> readGltf(const std::string& fileName, const gltf::ImportOpti
 }
 
 } // namespace
+
+Result<gltf::ImportOptions> importOptions(const std::vector<std::string>& clipsFiles)
+{
+    gltf::ImportOptions options;
+    options.allowOutsideClips = true;
+    for (const std::string& file : clipsFiles)
+    {
+        std::error_code failure;
+        const std::filesystem::path path = std::filesystem::canonical(file, failure);
+        if (failure) return Error{file + ": there is no such file"};
+        options.clipsFiles.push_back(path.string());
+    }
+    return options;
+}
+
+void printClipWarnings(const gltf::ImportedModel& model)
+{
+    for (const std::string& warning : model.messages.warnings)
+        if (warning.rfind("clips ", 0) == 0) std::cerr << "osggpuanim: " << warning << std::endl;
+}
 
 Result<gltf::ImportedModel> readModel(const std::string& fileName, const gltf::ImportOptions& options)
 {

@@ -129,11 +129,14 @@ Result<bool> PoseCommand::run() const
         wanted = read.value();
     }
     if (wanted.bind && wanted.times.empty()) wanted.times = {0.0};
-    gltf::ImportOptions options;
+    const Result<gltf::ImportOptions> given = importOptions(clips);
+    if (!given) return given.error();
+    gltf::ImportOptions options = given.value();
     options.noRotation = true;
     options.clip = wanted.clip;
     const Result<gltf::ImportedModel> model = readModel(file, options);
     if (!model) return named(file, model.error());
+    printClipWarnings(model.value());
     const Result<std::string> text = evaluate(model.value(), wanted, *this);
     if (!text) return named(file, text.error());
 

@@ -6,6 +6,7 @@
 #include <osgGpuAnimation/animation/Result.h>
 
 #include <string>
+#include <vector>
 
 namespace osgGpuAnimation::tool
 {
@@ -20,8 +21,9 @@ struct PoseCommand
     };
 
     std::string file;
-    std::string like;    ///< a document that gives the request; empty: use `request`
-    PoseRequest request; ///< clip and times; bind with no times is time 0
+    std::vector<std::string> clips; ///< files whose clips are added
+    std::string like;               ///< a document that gives the request; empty: use `request`
+    PoseRequest request;            ///< clip and times; bind with no times is time 0
     Evaluator evaluator = Evaluator::Gpu;
     std::string output; ///< empty: standard output
 

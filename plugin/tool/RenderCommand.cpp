@@ -114,7 +114,9 @@ Result<bool> RenderCommand::run() const
         isCrowd ? crowd::parseCrowd(osgDB::getNameLessExtension(file), "") : crowd::CrowdOptions();
     if (!wanted) return Error{file + ": " + wanted.error().message};
     crowd::CrowdOptions grid = wanted.value();
-    gltf::ImportOptions options;
+    const Result<gltf::ImportOptions> given = importOptions(clips);
+    if (!given) return given.error();
+    gltf::ImportOptions options = given.value();
     options.camera = camera;
     options.variant = variant;
     options.noLights = look != Look::File;

@@ -21,6 +21,7 @@ struct RenderCommand
     static constexpr int maxSize = 8192; ///< pixels, each way
 
     std::string file;                   ///< a .gltf or .glb, or a crowd of it: `fox.glb.20x20.crowd`
+    std::vector<std::string> clips;     ///< files whose clips are added
     std::optional<std::string> clip;    ///< name or animation number; default: the first; of a crowd: all, at random
     std::optional<std::string> camera;  ///< of the file: name or number; default: none
     std::optional<std::string> variant; ///< of the file's materials: name or number; default: none

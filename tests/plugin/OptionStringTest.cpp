@@ -32,9 +32,11 @@ TEST(OptionStringTest, readsAllOptions)
 {
     const ImportOptions options = parseOptions("  clip=Walk scene=2  noRotation allowOutsideFiles maxJsonDepth=5 "
                                                "maxJsonBytes=4 maxNodeDepth=6 maxElements=7 maxDocumentBytes=8 "
-                                               "maxDecodedBytes=8000000000 camera=Top noLights noCameras variant=1")
+                                               "maxDecodedBytes=8000000000 camera=Top noLights noCameras variant=1 "
+                                               "clips=Run.glb clips=\"Walk fast.glb\"")
                                       .value();
     EXPECT_EQ(options.clip, "Walk");
+    EXPECT_EQ(options.clipsFiles, (std::vector<std::string>{"Run.glb", "Walk fast.glb"}));
     EXPECT_EQ(options.scene, 2);
     EXPECT_EQ(options.camera, "Top");
     EXPECT_EQ(options.variant, "1");
@@ -168,6 +170,7 @@ TEST(OptionStringTest, valuesThatDoNotFitAreErrors)
                              "speed=1e999",
                              "start=-0.5",
                              "start=nan",
+                             "clips=",
                              "start=",
                              "randomStart",
                              "randomStart=-1",
@@ -187,13 +190,13 @@ TEST(OptionStringTest, valuesThatDoNotFitAreErrors)
 TEST(OptionStringTest, MisspeltOptionsAreNamed)
 {
     const std::pair<const char*, const char*> words[] = {
-        {"clip=Run speed=2 noRotation maxElements=5", ""},
+        {"clip=Run clips=Run.glb speed=2 noRotation maxElements=5", ""},
         {"spacing=2 noTriStripPolygons dds_flip noColors", ""}, // others'
         {"Clip=Run", "\"clip\""},
         {"norotation", "\"noRotation\""},
         {"spead=2", "\"speed\""},
         {"cliq=2", "\"clip\""},
-        {"clips=Run", "\"clip\""},
+        {"clipx=Run", "\"clip\""},
         {"cip=Run", "\"clip\""},
         {"sepeed=2", "\"speed\""},
         {"sclae=2 spede=2", "\"speed\""},

@@ -211,8 +211,9 @@ TEST_F(PluginTest, tellsWhatItSupports)
     ASSERT_TRUE(reader);
     EXPECT_TRUE(reader->acceptsExtension("GLTF"));
     EXPECT_FALSE(reader->acceptsExtension("obj"));
-    for (const char* option : {"clip=NAME|INDEX", "scene=INDEX", "noRotation", "allowOutsideFiles", "start=SECONDS",
-                               "speed=NUMBER", "loop=once|loop|pingpong", "fade=SECONDS", "noKeys", "randomStart=SEED"})
+    for (const char* option :
+         {"clip=NAME|INDEX", "clips=FILE", "scene=INDEX", "noRotation", "allowOutsideFiles", "start=SECONDS",
+          "speed=NUMBER", "loop=once|loop|pingpong", "fade=SECONDS", "noKeys", "randomStart=SEED"})
         EXPECT_EQ(reader->supportedOptions().count(option), 1u) << option;
     EXPECT_EQ(reader->readNode("model.obj", nullptr).status(), Read::FILE_NOT_HANDLED);
 }

@@ -44,6 +44,7 @@ protected:
         usePluginsOfTheBuild();
         std::filesystem::copy_file(OSGGPUANIMATION_SCENES "/Wanderer.glb", _folder.file("fox.glb"));
         EXPECT_FALSE(osgDB::findDataFile("fox.glb").empty());
+        std::filesystem::copy_file(OSGGPUANIMATION_SCENES "/Wanderer.glb", _folder.file("moves.glb"));
     }
 
 private:
@@ -136,6 +137,18 @@ TEST_F(ReadmeTest, loadingWithOptions)
     const AnimatedCharacter& walker = *findCharacter(*node);
     EXPECT_EQ(walker.getAnimationSet().clips()[static_cast<std::size_t>(walker.getController().clip())].name(), "Walk");
     EXPECT_EQ(walker.getEventCallback(), nullptr);
+}
+
+TEST_F(ReadmeTest, clipsOfAnotherFile)
+{
+    osg::ref_ptr<osg::Node> node = osgDB::readRefNodeFile("fox.glb");
+    ASSERT_TRUE(node.valid());
+    AnimatedCharacter* fox = findCharacter(*node);
+    osg::ref_ptr<osg::Node> moves = osgDB::readRefNodeFile("moves.glb");
+    auto merged = fox->getAnimationSet().withClipsOf(findCharacter(*moves)->getAnimationSet());
+    if (succeeded(merged)) succeeded(fox->setAnimationSet(merged.value().set));
+    EXPECT_EQ(fox->getAnimationSet().clips().size(), 8u);
+    EXPECT_GE(fox->getAnimationSet().findClip("Run 2"), 0);
 }
 
 TEST_F(ReadmeTest, ourPluginIsChosenByAnAlias)

@@ -139,6 +139,7 @@ TEST_F(ToolTest, aFaultyFileEndsWithStatus1AndOneLine)
         {{"inspect", cut}, cut, ""},
         {{"inspect", cutGlb}, cutGlb, ""},
         {{"inspect", "/dev/zero"}, "/dev/zero", "not a regular file"},
+        {{"inspect", "FLAG", "--clips", missing}, missing, "no such file"},
         {{"pose", missing, "--time", "0"}, missing, "no such file"},
         {{"render", missing, "-o", folder.file("x.png")}, missing, "no such file"},
         {{"render", flag + ".studio", "-o", folder.file("x.png")}, flag + ".studio", "osggpuanim render " + flag + "`"},
@@ -218,6 +219,24 @@ TEST_F(ToolTest, theBoundsHoldWhatDoesNotMoveInItsPlace)
     const json report = json::parse(done.out);
     EXPECT_EQ(report["meshes"]["still"], 1);
     expectBounds(report["bounds"], {-1, 0, 0, 1, 2, 0});
+}
+
+TEST_F(ToolTest, clipsOfOtherFilesAreAdded)
+{
+    const std::string other = folder.write("other.gltf", swingingFlag());
+    const Process done = run({"inspect", "FLAG", "--clips", other, "--json"});
+    ASSERT_EQ(done.status, 0) << done.err;
+    const json clips = json::parse(done.out)["clips"];
+    ASSERT_EQ(clips.size(), 4u);
+    EXPECT_EQ(clips[3]["name"], "Rise 2");
+    EXPECT_EQ(clips[3]["bounds"], clips[1]["bounds"]);
+    const Arguments pose{"pose", "FLAG", "--clips", other, "--clip", "Swing 2", "--time", "1", "--evaluator", "cpu"};
+    EXPECT_EQ(run(pose).status, 0);
+    const std::string bad = folder.write("bad.gltf", "{");
+    const Process warned =
+        run({"pose", "FLAG", "--clips", bad, "--clip", "Swing", "--time", "1", "--evaluator", "cpu"});
+    EXPECT_EQ(warned.status, 0);
+    EXPECT_NE(warned.err.find("bad.gltf"), std::string::npos) << warned.err;
 }
 
 TEST_F(ToolTest, inspectSaysHowFarCompactClipsAreOff)

@@ -111,6 +111,18 @@ struct AnimationParts
     std::vector<Constraint> constraints{}; ///< in the order in which they are solved
 };
 
+class AnimationSet;
+
+/// The result of AnimationSet::withClipsOf().
+struct RetargetedSet
+{
+    std::shared_ptr<const AnimationSet> set; ///< never null; its last clips are the new ones
+    /// Joints and morphs of the set that have no counterpart: the new clips leave them at rest.
+    std::vector<std::string> atRest;
+    /// Joints and morphs that the other set's clips move and that have no counterpart in the set.
+    std::vector<std::string> leftOut;
+};
+
 /// Skeleton, palette and clips of one kind of character. It is immutable; all instances of the character share it on
 /// the CPU and, once per graphics context, on the GPU. A **track** is one JointTransform in every keyframe: first the
 /// tracks of the joints, then those of the weight blocks.
@@ -132,6 +144,25 @@ public:
     /// A set with the same skeleton, skins, morphs and masks but other clips, for example with markers (see
     /// Clip::withMarkers). Its palette is the same, so the meshes of this set fit it. Errors: those of create().
     Result<std::shared_ptr<const AnimationSet>> withClips(std::vector<Clip> clips) const;
+
+    /// A set with the same skeleton, skins, morphs and masks, with the clips of this set and then those of another one:
+    ///
+    ///     auto result = knight->getAnimationSet().withClipsOf(*general);
+    ///     if (result) set = result.value().set; // for AnimatedCharacter::setAnimationSet()
+    ///
+    /// Joints and morphs are matched by name, see RetargetOptions. Where their rest poses agree, the clips are copied
+    /// bit by bit. Elsewhere rotations keep their difference from the rest pose in model space (derived at
+    /// ClipRetargeter), so both characters must face the same way at rest. The hips and the joints above them move by
+    /// the ratio of the hip heights, which is that of the legs; at each keyframe the hips are shifted along +Y, so that
+    /// the body's height above the ground is that of the clip times the ratio. Other translations are those of this
+    /// set's rest pose; factors of the rest scale are kept. What has no counterpart keeps its rest pose. Times, markers
+    /// and morph weights are copied. A name that this set's clips have gets a number: `Idle 2`. The new clips are
+    /// exact: compact ones may be compacted again (see compactClips()).
+    ///
+    /// Errors: the other set has no clips; neither a joint nor a morph has a counterpart; a name in the options does
+    /// not exist; root motion was removed from a clip (see withRootMotion()) whose joint has another rest pose; errors
+    /// of create().
+    Result<RetargetedSet> withClipsOf(const AnimationSet& other, const RetargetOptions& options = {}) const;
 
     /// A set with the same skeleton, skins, morphs, masks and clips but these constraints, solved in this order. Its
     /// palette is the same, so the meshes of this set fit it. Errors: a joint that does not exist; joints of a chain

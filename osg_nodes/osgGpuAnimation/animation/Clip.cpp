@@ -48,6 +48,13 @@ Result<Clip> Clip::withMarkers(std::vector<ClipMarker> markers) const
     return clip;
 }
 
+Clip Clip::withName(std::string name) const
+{
+    Clip clip = *this;
+    clip._name = std::move(name);
+    return clip;
+}
+
 namespace
 {
 

@@ -6,6 +6,7 @@
 #include <osgGpuAnimation/animation/RootMotion.h>
 
 #include <cstddef>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -112,6 +113,9 @@ public:
     /// Error: a time that is negative or not finite.
     Result<Clip> withMarkers(std::vector<ClipMarker> markers) const;
 
+    /// A copy of the clip with another name.
+    Clip withName(std::string name) const;
+
     /// The motion that withRootMotion() removed from the clip; null if it removed none.
     const RootMotionCurve* rootMotion() const { return _rootMotion.get(); }
     /// That motion from the first keyframe to a time in seconds. There must be a rootMotion().
@@ -138,6 +142,17 @@ private:
     std::vector<ClipMarker> _markers;
     std::shared_ptr<const RootMotionCurve> _rootMotion;
     std::shared_ptr<const CompactTracks> _compactTracks;
+};
+
+/// Options of AnimationSet::withClipsOf().
+struct RetargetOptions
+{
+    /// From joints of the set to their counterparts in the set of the clips, where their names differ; to an empty
+    /// name: the joint has none. All others are matched by name, without namespaces and the prefix `mixamorig`.
+    std::map<std::string, std::string> counterparts{};
+    /// The joint of the set that carries the body. Empty: a joint called hips or pelvis, else the first joint below
+    /// which the skeleton branches.
+    std::string hips{};
 };
 
 /// The input of Clip::create(): everything that a clip exports.

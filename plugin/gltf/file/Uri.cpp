@@ -217,6 +217,20 @@ Result<RegularFile> ModelFolder::open(std::string_view uri) const
     return file;
 }
 
+Result<std::string> ModelFolder::find(const std::string& path) const
+{
+    fs::path folder = fs::path(_modelFile).parent_path();
+    if (folder.empty()) folder = ".";
+    std::error_code error;
+    fs::path file = fs::canonical(folder / path, error);
+    if (error) file = fs::canonical(path, error);
+    if (error) return Error{"the file does not exist"};
+    const fs::path home = fs::canonical(folder, error);
+    if (!_allowOutsideFiles && (error || _modelFile.empty() || !isBelow(file, home))) return outside(path);
+    if (file == fs::canonical(_modelFile, error) && !error) return Error{"it is the model file itself"};
+    return file.string();
+}
+
 Result<std::string> ModelFolder::resolve(const std::string& path) const
 {
     // Check the text first: files outside the folder are never looked up.

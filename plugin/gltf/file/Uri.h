@@ -47,6 +47,10 @@ public:
     /// Opens the file of a URI that is not a data URI. Errors are `expected …, found …` or name the file.
     Result<RegularFile> open(std::string_view uri) const;
 
+    /// The path, without symbolic links, of a file that the user named: relative to the folder, else to the current
+    /// one. Errors: it does not exist, is outside the folder, or is the model file itself.
+    Result<std::string> find(const std::string& path) const;
+
 private:
     Result<std::string> resolve(const std::string& path) const;
 

@@ -38,9 +38,10 @@ void mark(std::vector<bool>& flags, int node)
     if (node >= 0) flags[static_cast<std::size_t>(node)] = true;
 }
 
-std::vector<bool> movingNodes(const tinygltf::Model& model, const NodeTree& tree)
+std::vector<bool> movingNodes(const tinygltf::Model& model, const NodeTree& tree, const std::vector<bool>& movedNodes)
 {
-    std::vector<bool> moves(model.nodes.size(), false);
+    std::vector<bool> moves = movedNodes;
+    moves.resize(model.nodes.size(), false);
     for (const tinygltf::Skin& skin : model.skins)
     {
         for (const int joint : skin.joints)
@@ -62,9 +63,11 @@ std::vector<bool> movingNodes(const tinygltf::Model& model, const NodeTree& tree
 }
 
 /// `moves` includes everything below a moving node; of those only nodes with a mesh become joints.
-std::vector<bool> jointNodes(const tinygltf::Model& model, const NodeTree& tree, const std::vector<bool>& moves)
+std::vector<bool> jointNodes(const tinygltf::Model& model, const NodeTree& tree, const std::vector<bool>& moves,
+                             const std::vector<bool>& movedNodes)
 {
-    std::vector<bool> joints(model.nodes.size(), false);
+    std::vector<bool> joints = movedNodes;
+    joints.resize(model.nodes.size(), false);
     for (const tinygltf::Skin& skin : model.skins)
     {
         for (const int joint : skin.joints)
@@ -137,10 +140,10 @@ std::vector<int> rigidJoints(const tinygltf::Model& model, const NodeTree& tree,
     return result;
 }
 
-Result<Joints> buildJoints(const tinygltf::Model& model, const NodeTree& tree)
+Result<Joints> buildJoints(const tinygltf::Model& model, const NodeTree& tree, const std::vector<bool>& movedNodes)
 {
-    std::vector<bool> moves = movingNodes(model, tree);
-    const std::vector<bool> isJoint = jointNodes(model, tree, moves);
+    std::vector<bool> moves = movingNodes(model, tree, movedNodes);
+    const std::vector<bool> isJoint = jointNodes(model, tree, moves, movedNodes);
     std::vector<int> inputOfNode(model.nodes.size(), -1);
     std::vector<bool> isSheared(model.nodes.size(), false);
     std::vector<Joint> joints;

@@ -13,9 +13,9 @@ namespace osgGpuAnimation::gltf
 
 // The moving parts of a file: joints, skins and morph weights.
 
-/// The joints of a file are these nodes: every joint of a skin, every target of an animation, every node with a mesh
-/// under one of those (except skinned meshes, whose node has no effect), every node with a morphing mesh, and all their
-/// ancestors. A node whose matrix shears has two joints, see NodeTransform.
+/// The joints of a file are these nodes: every joint of a skin, every target of an animation (of this file or another
+/// one), every node with a mesh under one of those (except skinned meshes, whose node has no effect), every node with a
+/// morphing mesh, and all their ancestors. A node whose matrix shears has two joints, see NodeTransform.
 struct Joints
 {
     Skeleton skeleton;
@@ -24,8 +24,10 @@ struct Joints
     std::vector<bool> isSheared; ///< one per node: it has two joints, so clips cannot drive it
 };
 
+/// movedNodes: one per node, true if clips of another file move it; empty: none.
 /// Error: that of Skeleton::create() (a node whose transform exceeds the range of float).
-Result<Joints> buildJoints(const tinygltf::Model& model, const NodeTree& tree);
+Result<Joints> buildJoints(const tinygltf::Model& model, const NodeTree& tree,
+                           const std::vector<bool>& movedNodes = {});
 
 /// True if a primitive's vertices follow a skin: the node has one, and the primitive has JOINTS_0 (and WEIGHTS_0: the
 /// validation refuses one without the other).

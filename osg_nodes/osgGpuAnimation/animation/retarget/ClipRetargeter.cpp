@@ -1,0 +1,432 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/animation/retarget/ClipRetargeter.h>
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/matrix.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+constexpr JointTransform zeros{glm::vec4(0.0f), glm::vec4(0.0f), glm::vec4(0.0f)};
+
+bool isFinite(const glm::dmat3& m)
+{
+    return std::isfinite(glm::dot(m[0], m[0]) + glm::dot(m[1], m[1]) + glm::dot(m[2], m[2]));
+}
+
+glm::vec4 numbersOf(const glm::dquat& q)
+{
+    return glm::vec4(Rotation::numbers(q));
+}
+
+/// xyz, with the w that is there.
+void write(const glm::dvec3& value, glm::vec4& place)
+{
+    place = glm::vec4(glm::vec3(value), place.w);
+}
+
+/// True if a part differs from the rest transform's in any keyframe, or has a tangent.
+template <typename AreAlike>
+bool moves(const Clip& clip, std::size_t joint, const JointTransform& rest, AreAlike areAlike)
+{
+    for (std::size_t k = 0; k < clip.keyframeCount(); ++k)
+        for (std::size_t part = 0; part < clip.transformsPerTrack(); ++part)
+            if (!areAlike(clip.at(k, joint)[part], part == 0 ? rest : zeros)) return true;
+    return false;
+}
+
+} // namespace
+
+std::vector<JointMoves> JointMoves::of(const RestPlaces& rest, const Skeleton& skeleton, const Clip& clip)
+{
+    const auto isNear = [](glm::vec4 JointTransform::*part, double most)
+    {
+        return [=](const JointTransform& a, const JointTransform& b)
+        { return RestPose::areAlike(a.*part, b.*part, most); };
+    };
+    const auto isSameRotation = [](const JointTransform& a, const JointTransform& b)
+    {
+        if (b.rotation == zeros.rotation) return glm::length(glm::dvec4(a.rotation)) <= RestPose::tolerance;
+        return RestPose::areAlike(RestPose::unitOf(a.rotation), RestPose::unitOf(b.rotation));
+    };
+    std::vector<JointMoves> result;
+    for (std::size_t joint = 0; joint < skeleton.jointCount(); ++joint)
+    {
+        const JointTransform& own = skeleton.joint(joint).rest;
+        result.push_back(
+            {moves(clip, joint, own, isNear(&JointTransform::translation, RestPose::tolerance * rest.longest)),
+             moves(clip, joint, own, isSameRotation),
+             moves(clip, joint, own, isNear(&JointTransform::scale, RestPose::tolerance))});
+    }
+    return result;
+}
+
+ClipRetargeter::ClipRetargeter(const Rig& from, const Rig& to, RigMatch match)
+    : _from(from), _to(to), _match(std::move(match)), _trackCount(firstTracksOfMorphs(to.skeleton, to.morphs).back())
+{
+    for (const JointMatch& joint : _match.joints())
+        _factors.push_back(factorsOf(joint));
+}
+
+Result<ClipRetargeter> ClipRetargeter::create(const Rig& from, const Rig& to, const RetargetOptions& options)
+{
+    Result<RigMatch> match = RigMatch::create(from, to, options);
+    if (!match) return match.error();
+    return ClipRetargeter(from, to, std::move(match).value());
+}
+
+ClipRetargeter::Factors ClipRetargeter::factorsOf(const JointMatch& match) const
+{
+    Factors factors;
+    if (match.isSameRig)
+    {
+        factors.copiesRotation = factors.copiesTranslation = factors.copiesScale = true;
+        return factors;
+    }
+    const RestPlaces &fromRest = _match.fromRest(), &toRest = _match.toRest();
+    const Joint& own = _to.skeleton.joint(match.joint);
+    const Joint& other = _from.skeleton.joint(match.source);
+    const glm::dquat ownParent = toRest.rotationOf(own.parent), otherParent = fromRest.rotationOf(other.parent);
+    const glm::dquat ownRest = RestPose::unitOf(own.rest.rotation), otherRest = RestPose::unitOf(other.rest.rotation);
+    factors.before = glm::conjugate(ownParent) * otherParent;
+    factors.after = glm::conjugate(otherRest) * glm::conjugate(otherParent) * ownParent * ownRest;
+    factors.translation = match.ratio * glm::inverse(toRest.linearOf(own.parent)) * fromRest.linearOf(other.parent);
+    factors.movesBody = match.movesBody && isFinite(factors.translation);
+
+    // Squares of the cosines between the joints' axes: exact for axes in another order and for equal factors.
+    const glm::dmat3 axes = glm::mat3_cast(glm::conjugate(ownParent * ownRest) * (otherParent * otherRest));
+    const glm::dvec3 ownScale(own.rest.scale), otherScale(other.rest.scale);
+    for (int column = 0; column < 3; ++column)
+        factors.scale[column] = ownScale * axes[column] * axes[column] / otherScale[column];
+
+    const glm::dmat3 change = factors.translation - glm::dmat3(1.0);
+    const bool isSameSize =
+        glm::length(change[0]) + glm::length(change[1]) + glm::length(change[2]) <= RestPose::tolerance;
+    const bool hasSameFrame = RestPose::areAlike(ownParent, otherParent);
+    factors.copiesRotation = hasSameFrame && RestPose::areAlike(ownRest, otherRest);
+    factors.copiesTranslation =
+        hasSameFrame && (!match.movesBody || isSameSize) &&
+        RestPose::areAlike(own.rest.translation, other.rest.translation, RestPose::tolerance * toRest.longest);
+    factors.copiesScale =
+        factors.copiesRotation && RestPose::areAlike(own.rest.scale, other.rest.scale, RestPose::tolerance);
+    return factors;
+}
+
+/// Writes the keyframes of one clip of `to`.
+class ClipRetargeter::Writer
+{
+public:
+    Writer(const ClipRetargeter& retargeter, const Clip& clip, std::vector<JointTransform>& data)
+        : _retargeter(retargeter), _clip(clip), _data(data), _perTrack(clip.transformsPerTrack())
+    {
+    }
+
+    void follow(const JointMatch& match, const Factors& factors, const JointMoves& moves);
+    /// For a joint whose difference from rest depends on several joints of `from`.
+    void followFromAfar(std::size_t keyframe, const KeyframePose& pose, const JointMatch& match,
+                        const Factors& factors);
+    void makeLinear(const JointMatch& match); ///< after the last keyframe of followFromAfar()
+
+private:
+    JointTransform& at(std::size_t keyframe, std::size_t joint, std::size_t part)
+    {
+        return _data[(keyframe * _retargeter._trackCount + joint) * _perTrack + part];
+    }
+
+    const ClipRetargeter& _retargeter;
+    const Clip& _clip;
+    std::vector<JointTransform>& _data;
+    std::size_t _perTrack;
+};
+
+void ClipRetargeter::Writer::follow(const JointMatch& match, const Factors& factors, const JointMoves& moves)
+{
+    const glm::dvec3 ownRest(_retargeter._to.skeleton.joint(match.joint).rest.translation);
+    const glm::dvec3 otherRest(_retargeter._from.skeleton.joint(match.source).rest.translation);
+    const bool turns = moves.rotation && !factors.copiesRotation;
+    const bool shifts = moves.translation && factors.movesBody && !factors.copiesTranslation;
+    const bool grows = moves.scale && !factors.copiesScale && isFinite(factors.scale);
+    for (std::size_t k = 0; k < _clip.keyframeCount(); ++k)
+        for (std::size_t part = 0; part < _perTrack; ++part)
+        {
+            const JointTransform& key = _clip.at(k, match.source)[part];
+            JointTransform& out = at(k, match.joint, part);
+            const glm::dvec3 shift(key.translation), growth(key.scale);
+            if (factors.copiesRotation) out.rotation = key.rotation;
+            if (turns)
+                out.rotation =
+                    numbersOf(factors.before * Rotation::quaternion(glm::dvec4(key.rotation)) * factors.after);
+            if (factors.copiesRotation || turns) out.translation.w = key.translation.w;
+            if (factors.copiesTranslation) write(shift, out.translation);
+            if (shifts)
+                write(part == 0 ? ownRest + factors.translation * (shift - otherRest) : factors.translation * shift,
+                      out.translation);
+            if (factors.copiesScale) out.scale = key.scale;
+            if (grows) write(factors.scale * growth, out.scale);
+        }
+}
+
+/// Where the joints of a skeleton are at one keyframe.
+class ClipRetargeter::KeyframePose
+{
+public:
+    /// key: the first joint's transform; those of the others follow, at every `step`th place.
+    KeyframePose(const Skeleton& skeleton, const RestPlaces& rest, const JointTransform* key, std::size_t step)
+        : _rest(rest)
+    {
+        for (std::size_t joint = 0; joint < skeleton.jointCount(); ++joint, key += step)
+        {
+            const glm::dmat4 local = key->toMatrix().toColumns();
+            const glm::dquat rotation = RestPose::unitOf(key->rotation);
+            const int parent = skeleton.joint(joint).parent;
+            const auto above = static_cast<std::size_t>(std::max(parent, 0));
+            _jointToModel.push_back(parent < 0 ? local : _jointToModel[above] * local);
+            _rotations.push_back(parent < 0 ? rotation : _rotations[above] * rotation);
+        }
+    }
+
+    /// The joint's difference from rest in model space; the identity for -1.
+    glm::dquat turnOf(int joint) const
+    {
+        if (joint < 0) return glm::dquat(1, 0, 0, 0);
+        return _rotations[static_cast<std::size_t>(joint)] * glm::conjugate(_rest.rotationOf(joint));
+    }
+    glm::dvec3 originOf(std::size_t joint) const { return glm::dvec3(_jointToModel[joint][3]); }
+    /// Rotation and scale of the joint; the identity for -1.
+    glm::dmat3 linearOf(int joint) const
+    {
+        return joint < 0 ? glm::dmat3(1.0) : glm::dmat3(_jointToModel[static_cast<std::size_t>(joint)]);
+    }
+    /// Where the joint would be if it kept its rest transform relative to an ancestor, -1 for the model.
+    glm::dvec3 restOriginOf(std::size_t joint, int ancestor) const
+    {
+        const glm::dvec3 origin = _rest.originOf(joint);
+        if (ancestor < 0) return origin;
+        const auto above = static_cast<std::size_t>(ancestor);
+        return glm::dvec3(_jointToModel[above] * (glm::inverse(_rest.jointToModel[above]) * glm::dvec4(origin, 1.0)));
+    }
+
+private:
+    const RestPlaces& _rest;
+    std::vector<glm::dmat4> _jointToModel;
+    std::vector<glm::dquat> _rotations;
+};
+
+void ClipRetargeter::Writer::followFromAfar(std::size_t keyframe, const KeyframePose& pose, const JointMatch& match,
+                                            const Factors& factors)
+{
+    const RestPlaces& toRest = _retargeter._match.toRest();
+    const Joint& own = _retargeter._to.skeleton.joint(match.joint);
+    const glm::dquat parent = toRest.rotationOf(own.parent);
+    const glm::dquat back = glm::conjugate(pose.turnOf(match.above));
+    const glm::dquat turn = back * pose.turnOf(static_cast<int>(match.source));
+    JointTransform& out = at(keyframe, match.joint, 0);
+    out.rotation = numbersOf(glm::conjugate(parent) * turn * parent * RestPose::unitOf(own.rest.rotation));
+    out.translation = glm::vec4(glm::vec3(own.rest.translation), _perTrack == 3 ? 1.0f : 0.0f);
+    if (!factors.movesBody && !match.isSameRig) return;
+    const glm::dvec3 way = back * (pose.originOf(match.source) - pose.restOriginOf(match.source, match.above));
+    const glm::dvec3 shift = glm::inverse(toRest.linearOf(own.parent)) * (match.ratio * way);
+    write(glm::dvec3(own.rest.translation) + shift, out.translation);
+}
+
+void ClipRetargeter::Writer::makeLinear(const JointMatch& match)
+{
+    if (_perTrack != 3) return;
+    const std::size_t last = _clip.keyframeCount() - 1;
+    for (std::size_t k = 0; k <= last; ++k)
+    {
+        at(k, match.joint, 1).rotation = at(k, match.joint, 2).rotation = glm::vec4(0.0f);
+        const auto slope = [&](std::size_t from, std::size_t to)
+        { return at(to, match.joint, 0).translation - at(from, match.joint, 0).translation; };
+        at(k, match.joint, 1).translation = k == 0 ? glm::vec4(0.0f) : slope(k - 1, k);
+        at(k, match.joint, 2).translation = k == last ? glm::vec4(0.0f) : slope(k, k + 1);
+    }
+}
+
+/// The rest pose of `to` in all keyframes; tangents are 0.
+std::vector<JointTransform> ClipRetargeter::restKeyframes(const Clip& clip) const
+{
+    const std::vector<JointTransform> rest = restPose(_to.skeleton, _to.morphs);
+    const std::size_t perTrack = clip.transformsPerTrack();
+    std::vector<JointTransform> data;
+    data.reserve(clip.keyframeCount() * _trackCount * perTrack);
+    for (std::size_t k = 0; k < clip.keyframeCount(); ++k)
+        for (std::size_t track = 0; track < _trackCount; ++track)
+        {
+            data.push_back(rest[track]);
+            if (perTrack == 1) continue;
+            if (track < _to.skeleton.jointCount()) data.back().translation.w = 1.0f; // slerped, see Clip
+            data.insert(data.end(), 2, zeros);
+        }
+    return data;
+}
+
+/// Heights at which the parts of a body touch the ground.
+struct ClipRetargeter::Soles
+{
+    struct Part
+    {
+        const JointMatch* match;
+        double own, other; ///< heights in model space, in `to` and in `from`
+    };
+    std::vector<Part> parts;
+    std::size_t hips; ///< of `to`
+    double ratio;     ///< of the hip heights
+
+    /// A joint that is low at rest stands: it touches the ground at that height. Others touch it at the height of the
+    /// lowest joint.
+    Soles(const RigMatch& match, const BodyMatch& body) : hips(match.joints()[body.hips].joint), ratio(body.ratio)
+    {
+        constexpr double most = std::numeric_limits<double>::max();
+        double ownLeast = most, ownMost = -most, otherLeast = most, otherMost = -most;
+        for (const std::size_t index : body.parts)
+        {
+            const JointMatch& joint = match.joints()[index];
+            const double own = match.toRest().originOf(joint.joint).y,
+                         other = match.fromRest().originOf(joint.source).y;
+            parts.push_back({&joint, own, other});
+            ownLeast = std::min(ownLeast, own);
+            ownMost = std::max(ownMost, own);
+            otherLeast = std::min(otherLeast, other);
+            otherMost = std::max(otherMost, other);
+        }
+        constexpr double low = 0.15; // of the height: ankles and paws, not knees
+        for (Part& part : parts)
+        {
+            const bool stands = part.own - ownLeast <= low * (ownMost - ownLeast) &&
+                                part.other - otherLeast <= low * (otherMost - otherLeast);
+            if (!stands) part.own = ownLeast, part.other = otherLeast;
+        }
+    }
+
+    /// By how much the body of `to` is too low.
+    double shortfall(const KeyframePose& from, const KeyframePose& to) const
+    {
+        double own = std::numeric_limits<double>::max(), other = own;
+        for (const Part& part : parts)
+        {
+            own = std::min(own, to.originOf(part.match->joint).y - part.own);
+            other = std::min(other, from.originOf(part.match->source).y - part.other);
+        }
+        return ratio * other - own;
+    }
+};
+
+void ClipRetargeter::keepOnGround(const Clip& clip, std::vector<JointTransform>& data) const
+{
+    std::vector<Soles> bodies;
+    for (const BodyMatch& body : _match.bodies())
+        if (!_match.joints()[body.hips].isSameRig) bodies.emplace_back(_match, body);
+    if (bodies.empty()) return;
+    const std::size_t perTrack = clip.transformsPerTrack(), stride = _trackCount * perTrack;
+    std::vector<glm::vec4> before(bodies.size(), glm::vec4(0.0f)); // the shifts at the keyframe before
+    for (std::size_t k = 0; k < clip.keyframeCount(); ++k)
+    {
+        const KeyframePose from(_from.skeleton, _match.fromRest(), clip.at(k, 0), perTrack);
+        const KeyframePose to(_to.skeleton, _match.toRest(), &data[k * stride], perTrack);
+        for (std::size_t body = 0; body < bodies.size(); ++body)
+        {
+            const std::size_t hips = bodies[body].hips;
+            const glm::dvec3 up(0.0, bodies[body].shortfall(from, to), 0.0);
+            const glm::dvec3 shift = glm::inverse(to.linearOf(_to.skeleton.joint(hips).parent)) * up;
+            const glm::vec4 rounded(glm::vec3(shift), 0.0f);
+            const glm::vec4 added = std::isfinite(glm::dot(shift, shift)) ? rounded : glm::vec4(0.0f);
+            JointTransform* key = &data[k * stride + hips * perTrack];
+            key[0].translation += added;
+            if (perTrack == 3 && k > 0)
+            {
+                key[1].translation += added - before[body];
+                (key - stride)[2].translation += added - before[body];
+            }
+            before[body] = added;
+        }
+    }
+}
+
+void ClipRetargeter::copyWeights(const Clip& clip, std::vector<JointTransform>& data) const
+{
+    const std::vector<std::size_t> fromTracks = firstTracksOfMorphs(_from.skeleton, _from.morphs);
+    const std::vector<std::size_t> toTracks = firstTracksOfMorphs(_to.skeleton, _to.morphs);
+    const std::size_t perTrack = clip.transformsPerTrack();
+    for (std::size_t morph = 0; morph < _to.morphs.size(); ++morph)
+    {
+        const int source = _match.morphCounterparts()[morph];
+        if (source < 0) continue;
+        const std::size_t first = fromTracks[static_cast<std::size_t>(source)];
+        const std::size_t count = (toTracks[morph + 1] - toTracks[morph]) * perTrack;
+        for (std::size_t k = 0; k < clip.keyframeCount(); ++k)
+            std::copy_n(clip.at(k, first), count,
+                        data.begin() + static_cast<std::ptrdiff_t>((k * _trackCount + toTracks[morph]) * perTrack));
+    }
+}
+
+/// The same curve for the joint of `to`; null if the clip has none.
+Result<std::shared_ptr<const RootMotionCurve>> ClipRetargeter::rootMotionOf(const Clip& clip) const
+{
+    const RootMotionCurve* curve = clip.rootMotion();
+    if (!curve) return std::shared_ptr<const RootMotionCurve>();
+    for (std::size_t match = 0; match < _factors.size(); ++match)
+    {
+        if (_match.joints()[match].source != curve->joint || !_factors[match].copiesTranslation) continue;
+        auto copy = std::make_shared<RootMotionCurve>(*curve);
+        copy->joint = _match.joints()[match].joint;
+        return std::shared_ptr<const RootMotionCurve>(std::move(copy));
+    }
+    return Error{"clip \"" + clip.name() + "\": the motion of joint \"" + _from.skeleton.joint(curve->joint).name +
+                 "\" was removed before, and the joint has another rest pose here; remove it from the new clips"};
+}
+
+/// By joint of `from`: the number of joints that move, from the root down to this one.
+std::vector<std::size_t> ClipRetargeter::movesAbove(const std::vector<JointMoves>& moves) const
+{
+    std::vector<std::size_t> counts;
+    for (std::size_t joint = 0; joint < moves.size(); ++joint)
+    {
+        const int parent = _from.skeleton.joint(joint).parent;
+        counts.push_back((parent < 0 ? 0 : counts[static_cast<std::size_t>(parent)]) + moves[joint].any());
+    }
+    return counts;
+}
+
+Result<Clip> ClipRetargeter::retarget(const Clip& clip) const
+{
+    Result<std::shared_ptr<const RootMotionCurve>> rootMotion = rootMotionOf(clip);
+    if (!rootMotion) return rootMotion.error();
+    std::vector<JointTransform> data = restKeyframes(clip);
+    const std::vector<JointMoves> moves = JointMoves::of(_match.fromRest(), _from.skeleton, clip);
+    const std::vector<std::size_t> counts = movesAbove(moves);
+    const auto countAt = [&](int joint) { return joint < 0 ? 0 : counts[static_cast<std::size_t>(joint)]; };
+    Writer writer(*this, clip, data);
+    std::vector<std::size_t> afar; // indices of matches
+    for (std::size_t match = 0; match < _factors.size(); ++match)
+    {
+        const JointMatch& joint = _match.joints()[match];
+        writer.follow(joint, _factors[match], moves[joint.source]);
+        const bool isDirect =
+            joint.isBelow && countAt(_from.skeleton.joint(joint.source).parent) == countAt(joint.above);
+        if (!isDirect) afar.push_back(match);
+    }
+    for (std::size_t k = 0; k < clip.keyframeCount() && !afar.empty(); ++k)
+    {
+        const KeyframePose pose(_from.skeleton, _match.fromRest(), clip.at(k, 0), clip.transformsPerTrack());
+        for (const std::size_t match : afar)
+            writer.followFromAfar(k, pose, _match.joints()[match], _factors[match]);
+    }
+    for (const std::size_t match : afar)
+        writer.makeLinear(_match.joints()[match]);
+    keepOnGround(clip, data);
+    copyWeights(clip, data);
+    return Clip::create({clip.name(), clip.form(), _to.skeleton.jointCount(), _trackCount, clip.times(),
+                         std::move(data), clip.markers(), std::move(rootMotion).value(), nullptr});
+}
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace osgGpuAnimation
+{
+
+/// The part of a joint's name after namespaces and Mixamo's prefix, which differ from file to file: "Hips" of "Hips",
+/// "mixamorig:Hips", "mixamorig4_Hips", "mixamorigHips" and "Armature|hero:Hips".
+std::string bareJointName(const std::string& name);
+
+/// Finds the counterparts of joints by name. One per name: an index of `others`, -1 where there is none.
+///
+/// A name of `given` has the counterpart that `given` names, or none where that is empty. Other names have the joint of
+/// the same name, else of the same bareJointName(). Of several joints with one name, the n-th has the n-th as its
+/// counterpart, and the first one where there are fewer. Empty names have no counterpart.
+std::vector<int> findCounterparts(const std::vector<std::string>& names, const std::vector<std::string>& others,
+                                  const std::map<std::string, std::string>& given);
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,295 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/animation/retarget/RigMatch.h>
+
+#include <osgGpuAnimation/animation/retarget/JointNames.h>
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+template <typename T>
+std::vector<std::string> namesOf(const std::vector<T>& named)
+{
+    std::vector<std::string> names;
+    for (const T& element : named)
+        names.push_back(element.name);
+    return names;
+}
+
+/// "upperleg.l", "leftupleg": one of two.
+bool isOfOneSide(const std::string& name)
+{
+    const auto has = [&](const char* word) { return name.find(word) != std::string::npos; };
+    const std::size_t size = name.size();
+    const auto isPlain = [](char letter) { return std::isalnum(static_cast<unsigned char>(letter)) != 0; };
+    const bool endsInSide = size >= 2 && (name[size - 1] == 'l' || name[size - 1] == 'r') && !isPlain(name[size - 2]);
+    return has("left") || has("right") || endsInSide;
+}
+
+bool isCalledHips(const std::string& jointName)
+{
+    std::string name = bareJointName(jointName);
+    std::transform(name.begin(), name.end(), name.begin(),
+                   [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+    const bool isHips = name.find("hip") != std::string::npos || name.find("pelvis") != std::string::npos;
+    return isHips && !isOfOneSide(name);
+}
+
+std::optional<Error> findFault(const Rig& from, const Rig& to, const RetargetOptions& options)
+{
+    for (const auto& [name, counterpart] : options.counterparts)
+    {
+        const Result<std::size_t> own = to.skeleton.jointNamed(name);
+        if (!own) return own.error();
+        if (counterpart.empty()) continue;
+        const Result<std::size_t> other = from.skeleton.jointNamed(counterpart);
+        if (!other) return Error{"the counterpart of \"" + name + "\": " + other.error().message};
+    }
+    return std::nullopt;
+}
+
+} // namespace
+
+RestPlaces::RestPlaces(const Skeleton& skeleton)
+{
+    for (const Joint& joint : skeleton.joints())
+    {
+        const glm::dmat4 local = joint.rest.toMatrix().toColumns();
+        const glm::dquat rotation = RestPose::unitOf(joint.rest.rotation);
+        const auto parent = static_cast<std::size_t>(std::max(joint.parent, 0));
+        jointToModel.push_back(joint.parent < 0 ? local : jointToModel[parent] * local);
+        rotations.push_back(joint.parent < 0 ? rotation : rotations[parent] * rotation);
+        longest = std::max(longest, glm::length(glm::dvec3(joint.rest.translation)));
+    }
+}
+
+glm::dquat RestPlaces::rotationOf(int joint) const
+{
+    return joint < 0 ? glm::dquat(1, 0, 0, 0) : rotations[static_cast<std::size_t>(joint)];
+}
+
+glm::dmat3 RestPlaces::linearOf(int joint) const
+{
+    return joint < 0 ? glm::dmat3(1.0) : glm::dmat3(jointToModel[static_cast<std::size_t>(joint)]);
+}
+
+namespace RestPose
+{
+
+glm::dquat unitOf(const glm::vec4& rotation)
+{
+    return Rotation::quaternion(Rotation::unit(glm::dvec4(rotation)));
+}
+
+bool areAlike(const glm::dquat& a, const glm::dquat& b)
+{
+    return std::abs(glm::dot(a, b)) > 1.0 - tolerance * tolerance;
+}
+
+bool areAlike(const glm::vec4& a, const glm::vec4& b, double most)
+{
+    return glm::length(glm::dvec3(a) - glm::dvec3(b)) <= most;
+}
+
+} // namespace RestPose
+
+RigMatch::RigMatch(const Rig& from, const Rig& to, const RetargetOptions& options)
+    : _fromRest(from.skeleton), _toRest(to.skeleton),
+      _jointCounterparts(
+          findCounterparts(namesOf(to.skeleton.joints()), namesOf(from.skeleton.joints()), options.counterparts)),
+      _morphCounterparts(findCounterparts(namesOf(to.morphs), namesOf(from.morphs), {})),
+      _areHips(to.skeleton.jointCount())
+{
+    for (std::size_t morph = 0; morph < to.morphs.size(); ++morph)
+    {
+        int& source = _morphCounterparts[morph];
+        const bool fits = source >= 0 && from.morphs[static_cast<std::size_t>(source)].defaults.size() ==
+                                             to.morphs[morph].defaults.size();
+        if (!fits) source = -1;
+    }
+}
+
+Result<RigMatch> RigMatch::create(const Rig& from, const Rig& to, const RetargetOptions& options)
+{
+    if (std::optional<Error> fault = findFault(from, to, options)) return *fault;
+    RigMatch match(from, to, options);
+    const auto isNone = [](int counterpart) { return counterpart < 0; };
+    const std::vector<int>&joints = match._jointCounterparts, &morphs = match._morphCounterparts;
+    if (std::all_of(joints.begin(), joints.end(), isNone) && std::all_of(morphs.begin(), morphs.end(), isNone))
+    {
+        const auto nameOf = [](const Joint& joint) { return joint.name; };
+        return Error{"no joint has a counterpart: the joints are " + quotedNames(to.skeleton.joints(), nameOf) +
+                     "; those of the clips are " + quotedNames(from.skeleton.joints(), nameOf)};
+    }
+    match.addMatches(from, to);
+    match.markSameRigs(from, to);
+    match.findHips(to.skeleton, options.hips);
+    if (!options.hips.empty() && std::find(match._areHips.begin(), match._areHips.end(), true) == match._areHips.end())
+        return Error{"the hips \"" + options.hips + "\" are no joint with a counterpart"};
+    match.findBodies(to.skeleton);
+    match.markBodies(to.skeleton);
+    return match;
+}
+
+void RigMatch::addMatches(const Rig& from, const Rig& to)
+{
+    std::vector<int> aboveOf; // by joint: the counterpart of the nearest ancestor that has one
+    for (std::size_t joint = 0; joint < _jointCounterparts.size(); ++joint)
+    {
+        const int parent = to.skeleton.joint(joint).parent;
+        const auto up = static_cast<std::size_t>(std::max(parent, 0));
+        aboveOf.push_back(parent < 0 ? -1 : _jointCounterparts[up] >= 0 ? _jointCounterparts[up] : aboveOf[up]);
+        if (_jointCounterparts[joint] < 0) continue;
+        JointMatch match;
+        match.joint = joint;
+        match.source = static_cast<std::size_t>(_jointCounterparts[joint]);
+        match.above = aboveOf[joint];
+        int ancestor = from.skeleton.joint(match.source).parent;
+        while (ancestor >= 0 && ancestor != match.above)
+            ancestor = from.skeleton.joint(static_cast<std::size_t>(ancestor)).parent;
+        match.isBelow = ancestor == match.above;
+        _matches.push_back(match);
+    }
+}
+
+void RigMatch::markSameRigs(const Rig& from, const Rig& to)
+{
+    std::vector<int> topOf; // by joint: the highest joint with a counterpart, itself or above
+    for (std::size_t joint = 0; joint < _jointCounterparts.size(); ++joint)
+    {
+        const int parent = to.skeleton.joint(joint).parent;
+        topOf.push_back(parent < 0 ? -1 : topOf[static_cast<std::size_t>(parent)]);
+        if (topOf.back() < 0 && _jointCounterparts[joint] >= 0) topOf.back() = static_cast<int>(joint);
+    }
+    std::vector<bool> isSame(_jointCounterparts.size(), true); // by top
+    for (const JointMatch& match : _matches)
+    {
+        const Joint& own = to.skeleton.joint(match.joint);
+        const Joint& other = from.skeleton.joint(match.source);
+        const auto top = static_cast<std::size_t>(topOf[match.joint]);
+        const bool isChildInBoth = own.parent >= 0 && other.parent >= 0 &&
+                                   _jointCounterparts[static_cast<std::size_t>(own.parent)] == other.parent;
+        const bool isRestAlike =
+            RestPose::areAlike(RestPose::unitOf(own.rest.rotation), RestPose::unitOf(other.rest.rotation)) &&
+            RestPose::areAlike(own.rest.translation, other.rest.translation, RestPose::tolerance * _toRest.longest) &&
+            RestPose::areAlike(own.rest.scale, other.rest.scale, RestPose::tolerance);
+        if (!isRestAlike || !(top == match.joint || isChildInBoth)) isSame[top] = false;
+    }
+    for (JointMatch& match : _matches)
+        match.isSameRig = isSame[static_cast<std::size_t>(topOf[match.joint])];
+}
+
+/// The joints of that name; without a name those that are called so, else the first joint below which the body
+/// branches, else the first joint of all. Several characters in one skeleton have several.
+void RigMatch::findHips(const Skeleton& skeleton, const std::string& name)
+{
+    std::vector<int> sizes(skeleton.jointCount(), 0);    // joints with a counterpart, at or below
+    std::vector<int> branches(skeleton.jointCount(), 0); // children with at least two of those
+    for (std::size_t joint = skeleton.jointCount(); joint-- > 0;)
+    {
+        sizes[joint] += _jointCounterparts[joint] >= 0;
+        if (skeleton.joint(joint).parent < 0) continue;
+        const auto parent = static_cast<std::size_t>(skeleton.joint(joint).parent);
+        sizes[parent] += sizes[joint];
+        branches[parent] += sizes[joint] >= 2;
+    }
+    std::string wanted = name;
+    const auto find = [&](const auto& isIt)
+    {
+        if (!wanted.empty()) return;
+        const auto found = std::find_if(_matches.begin(), _matches.end(), isIt);
+        if (found != _matches.end()) wanted = skeleton.joint(found->joint).name;
+    };
+    find([&](const JointMatch& match) { return isCalledHips(skeleton.joint(match.joint).name); });
+    find([&](const JointMatch& match) { return branches[match.joint] >= 2; });
+    find([](const JointMatch&) { return true; });
+    for (const JointMatch& match : _matches)
+        _areHips[match.joint] = bareJointName(skeleton.joint(match.joint).name) == bareJointName(wanted);
+}
+
+/// The ratio of the lengths of the legs: from the first joint below the hips down to the lowest one at rest. Of
+/// skeletons without legs, the ratio of their sizes. legOf: by joint of `to`, the highest joint with a counterpart
+/// below the hips.
+double RigMatch::ratioOf(const BodyMatch& body, const std::vector<int>& legOf) const
+{
+    glm::dvec3 ownLeast(std::numeric_limits<double>::max()), ownMost(-ownLeast);
+    glm::dvec3 otherLeast(ownLeast), otherMost(ownMost);
+    const JointMatch* lowest = &_matches[body.hips];
+    for (const std::size_t part : body.parts)
+    {
+        const glm::dvec3 own = _toRest.originOf(_matches[part].joint),
+                         other = _fromRest.originOf(_matches[part].source);
+        if (own.y < _toRest.originOf(lowest->joint).y) lowest = &_matches[part];
+        ownLeast = glm::min(ownLeast, own);
+        ownMost = glm::max(ownMost, own);
+        otherLeast = glm::min(otherLeast, other);
+        otherMost = glm::max(otherMost, other);
+    }
+    const int leg = legOf[lowest->joint];
+    const bool isLeg = leg >= 0 && static_cast<std::size_t>(leg) != lowest->joint;
+    const std::size_t top = isLeg ? static_cast<std::size_t>(leg) : _matches[body.hips].joint;
+    const auto topSource = static_cast<std::size_t>(_jointCounterparts[top]);
+    const double own = _toRest.originOf(top).y - _toRest.originOf(lowest->joint).y;
+    const double other = _fromRest.originOf(topSource).y - _fromRest.originOf(lowest->source).y;
+    const double ownSize = glm::length(ownMost - ownLeast), otherSize = glm::length(otherMost - otherLeast);
+    constexpr double leastShare = 0.01; // of the size: less is no leg
+    if (own > leastShare * ownSize && other > leastShare * otherSize) return own / other;
+    return ownSize > 0.0 && otherSize > 0.0 ? ownSize / otherSize : 1.0;
+}
+
+void RigMatch::findBodies(const Skeleton& skeleton)
+{
+    std::vector<int> bodyOf(skeleton.jointCount(), -1), legOf(skeleton.jointCount(), -1);
+    auto match = _matches.begin();
+    for (std::size_t joint = 0; joint < skeleton.jointCount(); ++joint)
+    {
+        const int parent = skeleton.joint(joint).parent;
+        if (parent >= 0)
+        {
+            bodyOf[joint] = bodyOf[static_cast<std::size_t>(parent)];
+            legOf[joint] = legOf[static_cast<std::size_t>(parent)];
+        }
+        if (match == _matches.end() || match->joint != joint) continue;
+        const auto index = static_cast<std::size_t>(match++ - _matches.begin());
+        if (_areHips[joint])
+        {
+            bodyOf[joint] = static_cast<int>(_bodies.size());
+            legOf[joint] = -1;
+            _bodies.push_back({index});
+        }
+        else if (bodyOf[joint] >= 0 && legOf[joint] < 0)
+            legOf[joint] = static_cast<int>(joint);
+        if (bodyOf[joint] >= 0) _bodies[static_cast<std::size_t>(bodyOf[joint])].parts.push_back(index);
+    }
+    for (BodyMatch& body : _bodies)
+        body.ratio = ratioOf(body, legOf);
+}
+
+/// The hips and the joints above them.
+void RigMatch::markBodies(const Skeleton& skeleton)
+{
+    std::vector<double> ratios(skeleton.jointCount(), 0.0); // 0: not marked
+    for (const BodyMatch& body : _bodies)
+        for (int joint = static_cast<int>(_matches[body.hips].joint);
+             joint >= 0 && ratios[static_cast<std::size_t>(joint)] == 0.0;
+             joint = skeleton.joint(static_cast<std::size_t>(joint)).parent)
+            ratios[static_cast<std::size_t>(joint)] = body.ratio;
+    for (JointMatch& match : _matches)
+    {
+        match.movesBody = ratios[match.joint] != 0.0;
+        if (match.movesBody) match.ratio = ratios[match.joint];
+    }
+}
+
+} // namespace osgGpuAnimation

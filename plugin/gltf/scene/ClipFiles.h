@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "gltf/document/MemoryBudget.h"
+#include "gltf/file/Report.h"
+#include "gltf/ImportOptions.h"
+
+#include <osgGpuAnimation/animation/AnimationSet.h>
+
+#include <tiny_gltf.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace osgGpuAnimation::gltf
+{
+
+/// The clips of another file, see ImportOptions::clipsFiles.
+struct ClipFile
+{
+    std::string name;                        ///< for messages: `clips "General.glb"`
+    std::shared_ptr<const AnimationSet> set; ///< its joints, morphs and clips, without skins; at least one clip
+};
+
+/// Reads the clips of all files that the options name; files without meshes are valid. A file that cannot be read, has
+/// no clips, or is named twice, is left out with a warning.
+///
+/// A clip whose name says nothing (none, Mixamo's `mixamo.com`, FBX's `Take 001`) is named after its file.
+///
+/// modelFile: the model's own file, see ModelFolder; the clips of that file itself are refused.
+std::vector<ClipFile> readClipFiles(const std::string& modelFile, const ImportOptions& options, Report& report);
+
+/// One per node of the model: true if a clip of those files moves a joint of its name.
+std::vector<bool> nodesMovedBy(const std::vector<ClipFile>& files, const tinygltf::Model& model);
+
+/// The set with the clips of the file after its own, see AnimationSet::withClipsOf(). If that fails, or the clips
+/// exceed the budget, the set is returned as it is, with a warning; a clip that takes a joint too far is left out. A
+/// warning lists the joints without a counterpart; those of the set only if skins name them.
+std::shared_ptr<const AnimationSet> withClipsOf(const std::shared_ptr<const AnimationSet>& set, const ClipFile& file,
+                                                MemoryBudget& budget, Report& report);
+
+} // namespace osgGpuAnimation::gltf

@@ -1,0 +1,508 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/animation/AnimationSet.h>
+
+#include "support/RandomSet.h"
+#include <osgGpuAnimation/animation/ClipBuilder.h>
+#include <osgGpuAnimation/animation/Pose.h>
+#include <osgGpuAnimation/animation/retarget/JointNames.h>
+#include <osgGpuAnimation/animation/retarget/RigMatch.h>
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <functional>
+#include <map>
+#include <random>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+using Interpolation = Channel::Interpolation;
+using SetPointer = std::shared_ptr<const AnimationSet>;
+
+SetPointer makeSet(const std::vector<Joint>& joints, const std::vector<std::vector<Channel>>& clips,
+                   const std::vector<MorphWeights>& morphs = {})
+{
+    AnimationParts parts{Skeleton::create(joints).value(), {}, {}, morphs, {}};
+    ClipBuilder builder(parts.skeleton, morphs);
+    for (const std::vector<Channel>& channels : clips)
+    {
+        for (Channel channel : channels)
+        {
+            if (channel.path != Channel::Path::Weights)
+                channel.target = parts.skeleton.jointOfInput(static_cast<std::size_t>(channel.target));
+            EXPECT_TRUE(builder.add(channel));
+        }
+        parts.clips.push_back(builder.build("clip " + std::to_string(parts.clips.size())));
+    }
+    return AnimationSet::create(std::move(parts)).value();
+}
+
+RetargetedSet retargeted(const SetPointer& set, const SetPointer& clips, const RetargetOptions& options = {})
+{
+    const Result<RetargetedSet> result = set->withClipsOf(*clips, options);
+    EXPECT_TRUE(result) << result.error().message;
+    return result ? result.value() : RetargetedSet{set, {}, {}};
+}
+
+/// The joints of a set at one time, by name.
+struct PosedJoints
+{
+    std::map<std::string, glm::dquat> turns; ///< the difference from rest in model space
+    std::map<std::string, glm::dvec3> origins;
+
+    PosedJoints(const SetPointer& set, int clip, double time)
+    {
+        std::vector<JointTransform> tracks(set->trackCount());
+        Pose::mix(*set, instructionAt(*set, clip, time), tracks);
+        std::vector<AffineMatrix> toModel(set->skeleton().jointCount());
+        Pose::jointToModel(*set, tracks, AffineMatrix(), toModel);
+        const RestPlaces rest(set->skeleton());
+        std::vector<glm::dquat> rotations;
+        for (std::size_t joint = 0; joint < toModel.size(); ++joint)
+        {
+            const Joint& own = set->skeleton().joint(joint);
+            const glm::dquat local = RestPose::unitOf(tracks[joint].rotation);
+            rotations.push_back(own.parent < 0 ? local : rotations[static_cast<std::size_t>(own.parent)] * local);
+            turns[own.name] = rotations.back() * glm::conjugate(rest.rotations[joint]);
+            origins[own.name] = glm::dvec3(toModel[joint].transformPoint(glm::vec3(0.0f)));
+        }
+    }
+};
+
+double angleBetween(const glm::dquat& a, const glm::dquat& b)
+{
+    const glm::dquat difference = glm::conjugate(a) * b;
+    return 2.0 * std::atan2(glm::length(glm::dvec3(difference.x, difference.y, difference.z)), std::abs(difference.w));
+}
+
+glm::vec4 randomRotation(std::mt19937& random)
+{
+    std::normal_distribution<float> normal;
+    glm::vec4 q;
+    for (int i = 0; i < 4; ++i)
+        q[i] = normal(random);
+    return glm::normalize(q);
+}
+
+glm::vec4 randomPlace(std::mt19937& random)
+{
+    std::uniform_real_distribution<float> uniform(-1.0f, 1.0f);
+    glm::vec4 place(0.0f);
+    for (int i = 0; i < 3; ++i)
+        place[i] = uniform(random);
+    return place;
+}
+
+/// A random tree of the joints "joint 0" to "joint 11", the same for each seed, at random rest transforms. Between a
+/// joint and its parent there may be a joint "extra …".
+struct RandomRig
+{
+    std::vector<Joint> joints;
+    std::vector<int> named;  ///< indices of the joints
+    std::vector<int> extras; ///< of the others
+
+    RandomRig(unsigned int treeSeed, unsigned int restSeed, bool hasExtras)
+    {
+        std::mt19937 tree(treeSeed), random(restSeed);
+        for (int joint = 0; joint < 12; ++joint)
+        {
+            int parent = joint == 0 ? -1 : named[tree() % static_cast<unsigned int>(joint)];
+            if (hasExtras && random() % 2 == 0)
+            {
+                extras.push_back(
+                    add("extra " + std::to_string(restSeed) + "." + std::to_string(joint), parent, random));
+                parent = extras.back();
+            }
+            named.push_back(add("joint " + std::to_string(joint), parent, random));
+        }
+    }
+
+    int add(const std::string& name, int parent, std::mt19937& random)
+    {
+        Joint joint{name, parent, {}, -1};
+        joint.rest.rotation = randomRotation(random);
+        joint.rest.translation = randomPlace(random);
+        joints.push_back(joint);
+        return static_cast<int>(joints.size()) - 1;
+    }
+};
+
+Channel randomTurns(int joint, Interpolation interpolation, std::mt19937& random)
+{
+    Channel channel{Channel::Path::Rotation, interpolation, joint, {0.0, 0.25, 1.0, 1.5}, {}};
+    const bool isSpline = interpolation == Interpolation::CubicSpline;
+    for (std::size_t number = 0; number < channel.times.size() * (isSpline ? 3 : 1); ++number)
+    {
+        const glm::vec4 q = randomRotation(random);
+        channel.values.insert(channel.values.end(), {q.x, q.y, q.z, q.w});
+    }
+    return channel;
+}
+
+struct TurnCase
+{
+    const char* name;
+    std::vector<Interpolation> interpolations;
+    bool extras;               ///< both rigs have joints that the other one has not
+    bool extrasMove;           ///< in the clip
+    std::vector<double> times; ///< at which the differences agree
+};
+
+void PrintTo(const TurnCase& turn, std::ostream* out)
+{
+    *out << turn.name;
+}
+
+class TurnsTest : public ::testing::TestWithParam<TurnCase>
+{
+};
+
+TEST_P(TurnsTest, theDifferenceFromRestInModelSpaceIsThatOfTheClip)
+{
+    for (unsigned int seed = 1; seed <= 20; ++seed)
+    {
+        const RandomRig from(seed, 100 + seed, GetParam().extras);
+        const RandomRig to(seed, 200 + seed, GetParam().extras);
+        std::mt19937 random(seed);
+        std::vector<Channel> channels;
+        for (std::size_t joint = 0; joint < from.named.size(); ++joint)
+            channels.push_back(randomTurns(
+                from.named[joint], GetParam().interpolations[joint % GetParam().interpolations.size()], random));
+        for (const int extra : from.extras)
+            if (GetParam().extrasMove) channels.push_back(randomTurns(extra, Interpolation::Linear, random));
+        const SetPointer clips = makeSet(from.joints, {channels});
+        const RetargetedSet result = retargeted(makeSet(to.joints, {}), clips);
+        EXPECT_EQ(result.atRest.size(), to.extras.size());
+        EXPECT_EQ(result.leftOut.size(), GetParam().extrasMove ? from.extras.size() : 0u);
+        for (const double time : GetParam().times)
+        {
+            const PosedJoints wanted(clips, 0, time), made(result.set, 0, time);
+            for (std::size_t joint = 0; joint < from.named.size(); ++joint)
+            {
+                const std::string name = "joint " + std::to_string(joint);
+                EXPECT_LE(angleBetween(wanted.turns.at(name), made.turns.at(name)), 2e-5)
+                    << name << " at " << time << ", seed " << seed;
+            }
+        }
+    }
+}
+
+const std::vector<double> keyTimes{0.0, 0.25, 1.0, 1.5};
+const std::vector<double> anyTimes{0.0, 0.1, 0.25, 0.4, 0.77, 1.0, 1.3, 1.5};
+
+INSTANTIATE_TEST_SUITE_P(
+    Clips, TurnsTest,
+    ::testing::Values(
+        TurnCase{"linear", {Interpolation::Linear}, false, false, anyTimes},
+        TurnCase{"step", {Interpolation::Step}, false, false, anyTimes},
+        TurnCase{"cubic", {Interpolation::CubicSpline}, false, false, anyTimes},
+        TurnCase{"all kinds and joints without a counterpart",
+                 {Interpolation::CubicSpline, Interpolation::Linear, Interpolation::Step},
+                 true,
+                 false,
+                 anyTimes},
+        TurnCase{"linear, and joints without a counterpart move", {Interpolation::Linear}, true, true, keyTimes},
+        TurnCase{"cubic, and joints without a counterpart move", {Interpolation::CubicSpline}, true, true, keyTimes}));
+
+TEST(RetargetTest, onTheSameRestPoseClipsAreCopiedBitByBit)
+{
+    for (const bool splines : {false, true})
+    {
+        RandomSetShape shape;
+        shape.splines = splines;
+        const SetPointer whole = makeRandomSet(shape);
+        const SetPointer mesh = whole->withClips({}).value();
+        const RetargetedSet result = retargeted(mesh, whole);
+        EXPECT_TRUE(result.atRest.empty());
+        EXPECT_TRUE(result.leftOut.empty());
+        ASSERT_EQ(result.set->clips().size(), whole->clips().size());
+        for (std::size_t clip = 0; clip < whole->clips().size(); ++clip)
+        {
+            const Clip &wanted = whole->clips()[clip], &made = result.set->clips()[clip];
+            EXPECT_EQ(made.name(), wanted.name());
+            EXPECT_EQ(made.form(), wanted.form());
+            EXPECT_EQ(made.times(), wanted.times());
+            ASSERT_EQ(made.data().size(), wanted.data().size());
+            EXPECT_EQ(
+                std::memcmp(made.data().data(), wanted.data().data(), made.data().size() * sizeof(JointTransform)), 0)
+                << wanted.name();
+        }
+    }
+}
+
+/// Hips at a height with one leg of two segments and a foot; all sizes and the parent's units are the caller's.
+struct Leg
+{
+    float unit = 1.0f;  ///< scale of the node above the hips
+    float thigh = 1.0f; ///< lengths in model space
+    float shank = 1.0f;
+    glm::vec4 frame{0, 0, 0, 1}; ///< the rotation of the node above the hips
+
+    std::vector<Joint> joints() const
+    {
+        Joint root{"root", -1, {}, -1}, hips{"hips", 0, {}, -1}, thighJoint{"thigh", 1, {}, -1};
+        Joint shankJoint{"shank", 2, {}, -1}, foot{"foot", 3, {}, -1};
+        root.rest.rotation = frame;
+        root.rest.scale = glm::vec4(glm::vec3(unit), 0.0f);
+        const glm::quat back = glm::conjugate(glm::quat(frame.w, frame.x, frame.y, frame.z));
+        const auto local = [&](float y) { return glm::vec4(back * glm::vec3(0, y, 0) / unit, 0.0f); };
+        hips.rest.translation = local(thigh + shank + 0.3f);
+        thighJoint.rest.translation = local(-0.2f);
+        shankJoint.rest.translation = local(-thigh);
+        foot.rest.translation = local(-shank);
+        return {root, hips, thighJoint, shankJoint, foot};
+    }
+};
+
+const float half = std::sqrt(0.5f);
+
+TEST(RetargetTest, theHipsMoveByTheRatioOfTheLegs)
+{
+    struct Case
+    {
+        const char* name;
+        Leg leg;
+        double ratio;
+    };
+    const Case cases[]{
+        {"the same legs", {}, 1.0},
+        {"twice the legs", {1.0f, 2.0f, 2.0f}, 2.0},
+        {"in centimetres", {0.01f, 1.0f, 1.0f}, 1.0},
+        {"lying in its file", {1.0f, 0.5f, 0.5f, {-half, 0, 0, half}}, 0.5},
+    };
+    const SetPointer clips =
+        makeSet(Leg().joints(), {{{Channel::Path::Translation,
+                                   Interpolation::CubicSpline,
+                                   1,
+                                   {0.0, 1.0},
+                                   {0, 0, 0, 0, 2.3, 0, 1, 2, 3, 3, 2, 1, 0.5, 2.8, -1, 0, 0, 0}}}});
+    const PosedJoints before(clips, -1, 0.0);
+    for (const Case& one : cases)
+    {
+        const SetPointer set = makeSet(one.leg.joints(), {});
+        const RetargetedSet result = retargeted(set, clips);
+        const PosedJoints rest(set, -1, 0.0);
+        for (const double time : {0.0, 0.3, 0.5, 1.0})
+        {
+            const PosedJoints wanted(clips, 0, time), made(result.set, 0, time);
+            for (const char* joint : {"hips", "foot"})
+            {
+                const glm::dvec3 way = made.origins.at(joint) - rest.origins.at(joint);
+                const glm::dvec3 clipsWay = wanted.origins.at(joint) - before.origins.at(joint);
+                EXPECT_LE(glm::distance(way, one.ratio * clipsWay), 2e-6)
+                    << one.name << ", " << joint << " at " << time;
+            }
+        }
+    }
+}
+
+TEST(RetargetTest, theLowestJointStaysOnTheGroundWhateverTheProportions)
+{
+    for (const bool isSpline : {false, true})
+    {
+        // A squat: the hips go down as far as the bent leg asks for.
+        Channel hips{Channel::Path::Translation, Interpolation::Linear, 1, {}, {}};
+        Channel thigh{Channel::Path::Rotation, Interpolation::Linear, 2, {}, {}}, shank = thigh;
+        shank.target = 3;
+        for (int key = 0; key <= 8; ++key)
+        {
+            const double bend = 0.1 * key, ofThigh = 0.5 * bend, ofShank = 1.5 * bend; // from the vertical
+            for (Channel* channel : {&hips, &thigh, &shank})
+                channel->times.push_back(key);
+            const auto put = [](Channel& channel, std::initializer_list<double> v)
+            { channel.values.insert(channel.values.end(), v); };
+            if (isSpline) put(hips, {0, 0, 0});
+            put(hips, {0, 0.3 + std::cos(ofThigh) + std::cos(ofShank), 0});
+            if (isSpline) put(hips, {0, 0, 0});
+            const double ofKnee = ofThigh + ofShank;
+            put(thigh, {-std::sin(ofThigh / 2), 0, 0, std::cos(ofThigh / 2)});
+            put(shank, {std::sin(ofKnee / 2), 0, 0, std::cos(ofKnee / 2)});
+        }
+        if (isSpline) hips.interpolation = Interpolation::CubicSpline;
+        const SetPointer clips = makeSet(Leg().joints(), {{hips, thigh, shank}});
+        const RetargetedSet result = retargeted(makeSet(Leg{1.0f, 0.7f, 1.6f}.joints(), {}), clips);
+        for (int key = 0; key <= 8; ++key)
+        {
+            EXPECT_NEAR(PosedJoints(clips, 0, key).origins.at("foot").y, 0.1, 1e-6);
+            EXPECT_NEAR(PosedJoints(result.set, 0, key).origins.at("foot").y, 0.1, 1e-6) << key;
+            // Between keyframes the hips go straight, and feet in arcs.
+            const double between = PosedJoints(clips, 0, key + 0.5).origins.at("foot").y - 0.1;
+            EXPECT_NEAR(PosedJoints(result.set, 0, key + 0.5).origins.at("foot").y, 0.1 + 1.15 * between, 2e-3) << key;
+        }
+    }
+}
+
+TEST(RetargetTest, otherTranslationsAreTheSetsAndFactorsOfTheScaleAreKept)
+{
+    std::vector<Joint> from{{"hips", -1, {}, -1}, {"jaw", 0, {}, -1}, {"tail", 0, {}, -1}};
+    from[1].rest.translation = glm::vec4(0, 1, 0, 0);
+    from[2].rest.translation = glm::vec4(0, -1, 0, 0);
+    std::vector<Joint> to = from;
+    to[1].rest.translation = glm::vec4(0, 2, 0, 0);
+    to[1].rest.rotation = glm::vec4(0, 0, half, half); // its x axis is y, and its y axis is -x
+    to[1].rest.scale = glm::vec4(3, 3, 3, 0);
+    const auto channel = [](Channel::Path path, int joint) {
+        return Channel{path, Interpolation::Linear, joint, {0.0, 1.0}, {0, 1, 0, 2, 5, 1}};
+    };
+    const SetPointer clips = makeSet(from, {{channel(Channel::Path::Translation, 1), channel(Channel::Path::Scale, 1),
+                                             channel(Channel::Path::Translation, 2)}});
+    const RetargetedSet result = retargeted(makeSet(to, {}), clips);
+    const Clip& clip = result.set->clips().front();
+    const auto jaw = static_cast<std::size_t>(result.set->skeleton().findJoint("jaw"));
+    const auto tail = static_cast<std::size_t>(result.set->skeleton().findJoint("tail"));
+    for (std::size_t k = 0; k < 2; ++k)
+        EXPECT_EQ(clip.at(k, jaw)->translation, to[1].rest.translation);
+    EXPECT_LE(glm::distance(clip.at(1, jaw)->scale, glm::vec4(15, 6, 3, 0)), 1e-5f);
+    // The tail's frame and rest translation are those of the clip.
+    EXPECT_EQ(clip.at(1, tail)->translation, glm::vec4(2, 5, 1, 0));
+}
+
+TEST(RetargetTest, aRigThatIsTurnedAsAWholeIsTheSameRig)
+{
+    const RandomRig rig(3, 4, false);
+    std::mt19937 random(5);
+    const SetPointer clips = makeSet(rig.joints, {{randomTurns(4, Interpolation::Linear, random)}});
+    std::vector<Joint> placed = rig.joints;
+    for (Joint& joint : placed)
+        ++joint.parent;
+    Joint place{"place", -1, {}, -1};
+    place.rest.rotation = randomRotation(random);
+    placed.insert(placed.begin(), place);
+    const RetargetedSet result = retargeted(makeSet(placed, {}), clips);
+    const Clip &made = result.set->clips().front(), &wanted = clips->clips().front();
+    for (std::size_t k = 0; k < wanted.keyframeCount(); ++k)
+        for (std::size_t joint = 0; joint < wanted.trackCount(); ++joint)
+        {
+            const int own = result.set->skeleton().findJoint(clips->skeleton().joint(joint).name);
+            EXPECT_EQ(made.at(k, static_cast<std::size_t>(own))->rotation, wanted.at(k, joint)->rotation);
+        }
+}
+
+TEST(RetargetTest, jointsAreMatchedByNameWithoutPrefixes)
+{
+    EXPECT_EQ(bareJointName("mixamorig:Hips"), "Hips");
+    EXPECT_EQ(bareJointName("mixamorig12_LeftArm"), "LeftArm");
+    EXPECT_EQ(bareJointName("mixamorigLeftArm"), "LeftArm");
+    EXPECT_EQ(bareJointName("Armature|hero:spine.001"), "spine.001");
+    EXPECT_EQ(bareJointName("mixamorig"), "mixamorig");
+    EXPECT_EQ(bareJointName("odd:"), "odd:");
+
+    const std::vector<std::string> others{"Hips", "mixamorig:Spine", "Arm", "Arm", ""};
+    EXPECT_EQ(findCounterparts({"Hips", "Spine", "x:Spine", "tail", ""}, others, {}),
+              (std::vector<int>{0, 1, 1, -1, -1}));
+    EXPECT_EQ(findCounterparts({"Arm", "Arm", "Arm"}, others, {}), (std::vector<int>{2, 3, 2}));
+    EXPECT_EQ(findCounterparts({"Hips", "pelvis"}, others, {{"Hips", ""}, {"pelvis", "Hips"}}),
+              (std::vector<int>{-1, 0}));
+}
+
+TEST(RetargetTest, morphsMarkersAndNamesComeAlong)
+{
+    const std::vector<Joint> joints{{"hips", -1, {}, -1}, {"face", 0, {}, -1}};
+    const std::vector<MorphWeights> face{{"face", -1, {0.5f, 0.0f}}};
+    const Channel smile{Channel::Path::Weights, Interpolation::Linear, 0, {0.0, 2.0}, {0, 1, 1, 0.25}};
+    SetPointer clips = makeSet(joints, {{smile}, {}}, face);
+    clips = clips->withClips({clips->clips()[0].withMarkers({{0.5, "blink"}}).value(), clips->clips()[1]}).value();
+    const std::vector<MorphWeights> own{{"hat", -1, {0.0f}}, {"face", -1, {0.0f, 0.0f}}};
+    const RetargetedSet result = retargeted(makeSet(joints, {{}}, own), clips);
+    EXPECT_EQ(result.atRest, std::vector<std::string>{"hat"});
+    ASSERT_EQ(result.set->clips().size(), 3u);
+    EXPECT_EQ(result.set->clips()[0].name(), "clip 0");
+    EXPECT_EQ(result.set->clips()[1].name(), "clip 0 2");
+    EXPECT_EQ(result.set->clips()[2].name(), "clip 1");
+    const Clip& made = result.set->clips()[1];
+    ASSERT_EQ(made.markers().size(), 1u);
+    EXPECT_EQ(made.markers()[0].name, "blink");
+    const std::size_t track = result.set->firstTrackOfMorph(1);
+    EXPECT_EQ(made.at(1, track)->number(0), 1.0f);
+    EXPECT_EQ(made.at(1, track)->number(1), 0.25f);
+    const std::vector<MorphWeights> other{{"face", -1, {0.0f, 0.0f, 0.0f}}};
+    EXPECT_EQ(retargeted(makeSet(joints, {}, other), clips).leftOut, std::vector<std::string>{"face"});
+}
+
+TEST(RetargetTest, rootMotionStaysOutOfClipsOfTheSameRigOnly)
+{
+    const SetPointer clips = makeSet(
+        Leg().joints(), {{{Channel::Path::Translation, Interpolation::Linear, 1, {0.0, 1.0}, {0, 2.3, 0, 0, 2.3, 4}}}});
+    const SetPointer still = withRootMotion(*clips, "hips").value();
+    const RetargetedSet same = retargeted(makeSet(Leg().joints(), {}), still);
+    ASSERT_TRUE(same.set->clips()[0].rootMotion());
+    EXPECT_EQ(same.set->clips()[0].rootMotionAt(1.0).translation, glm::dvec3(0, 0, 4));
+    const Result<RetargetedSet> other = makeSet(Leg{1.0f, 2.0f, 2.0f}.joints(), {})->withClipsOf(*still);
+    ASSERT_FALSE(other);
+    EXPECT_NE(other.error().message.find("hips"), std::string::npos) << other.error().message;
+}
+
+TEST(RetargetTest, faultsAreErrorsThatNameThem)
+{
+    struct Case
+    {
+        const char* name;
+        std::vector<Joint> joints; ///< of the clips
+        std::size_t clips;
+        RetargetOptions options;
+        const char* message;
+    };
+    const std::vector<Joint> legs = Leg().joints();
+    const Case cases[]{
+        {"no clips", legs, 0, {}, "no clips"},
+        {"no shared joint", {{"wheel", -1, {}, -1}}, 1, {}, "\"wheel\""},
+        {"no joints", {}, 1, {}, "none"},
+        {"unknown joint", legs, 1, {{{"arm", "foot"}}, ""}, "\"arm\""},
+        {"unknown counterpart", legs, 1, {{{"foot", "paw"}}, ""}, "\"paw\""},
+        {"unknown hips", legs, 1, {{}, "pelvis"}, "\"pelvis\""},
+        {"hips without counterpart", legs, 1, {{{"hips", ""}}, "hips"}, "\"hips\""},
+    };
+    const SetPointer set = makeSet(legs, {});
+    for (const Case& one : cases)
+    {
+        const Result<RetargetedSet> result =
+            set->withClipsOf(*makeSet(one.joints, std::vector<std::vector<Channel>>(one.clips)), one.options);
+        ASSERT_FALSE(result) << one.name;
+        EXPECT_NE(result.error().message.find(one.message), std::string::npos) << result.error().message;
+    }
+}
+
+TEST(RetargetTest, hipsAreFoundByTheirNameOrWhereTheBodyBranches)
+{
+    struct Case
+    {
+        const char* name;
+        std::vector<Joint> joints;
+        const char* hips;
+    };
+    const auto joint = [](const char* name, int parent, float y)
+    {
+        Joint made{name, parent, {}, -1};
+        made.rest.translation = glm::vec4(0, y, 0, 0);
+        return made;
+    };
+    const Case cases[]{
+        {"by name",
+         {joint("root", -1, 0), joint("ik", 0, 0), joint("ik2", 1, 0), joint("Pelvis", 0, 2), joint("leg", 3, -1),
+          joint("foot", 4, -1)},
+         "Pelvis"},
+        {"not of one side",
+         {joint("body", -1, 2), joint("hip.l", 0, 0), joint("shin", 1, -1), joint("arm", 0, 0), joint("hand", 3, -1)},
+         "body"},
+        {"a chain", {joint("a", -1, 0), joint("b", 0, 1)}, "a"},
+    };
+    for (const Case& one : cases)
+    {
+        const Skeleton skeleton = Skeleton::create(one.joints).value();
+        const RigMatch match = RigMatch::create({skeleton, {}}, {skeleton, {}}, {}).value();
+        ASSERT_EQ(match.bodies().size(), 1u) << one.name;
+        EXPECT_EQ(skeleton.joint(match.joints()[match.bodies()[0].hips].joint).name, one.hips) << one.name;
+    }
+}
+
+} // namespace
+
+} // namespace osgGpuAnimation

@@ -97,6 +97,34 @@ TEST_P(PosedJointsGLTest, aThousandRandomStacksAreTheTwinsPose)
     EXPECT_EQ(glGetError(), GLenum(GL_NO_ERROR));
 }
 
+// As a ragdoll or motion capture: nothing but one pose of full weight each.
+TEST_P(PosedJointsGLTest, aPoseAloneReplacesTheClip)
+{
+    const auto set = makeRandomSet({});
+    std::vector<AnimationController> controllers(3, AnimationController(set));
+    PoseBatch batch(set);
+    for (std::size_t i = 0; i < controllers.size(); ++i)
+    {
+        ASSERT_TRUE(controllers[i].play(0));
+        AnimationLayer& layer = controllers[i].layer(0);
+        std::vector<JointTransform> transforms(set->skeleton().jointCount());
+        for (JointTransform& transform : transforms)
+            transform.translation = glm::vec4(static_cast<float>(i), 1.0f, 0.5f, 0.0f);
+        if (i < 2)
+            ASSERT_TRUE(layer.pose().setTransforms(transforms));
+        else
+            ASSERT_TRUE(layer.pose().setRotation(1, glm::quat(0, 1, 0, 0))); // the others at rest
+        ASSERT_TRUE(layer.showPose());
+        const PoseInstruction& instruction = controllers[i].advance(0.0);
+        ASSERT_EQ(instruction.sampleCount, 1u);
+        batch.add(instruction);
+    }
+    ASSERT_TRUE(pipeline->evaluate(state(), batch, 0));
+    for (std::size_t i = 0; i < controllers.size(); ++i)
+        EXPECT_LE(difference(*set, i, controllers[i].instruction()), 1e-5) << i;
+    EXPECT_EQ(glGetError(), GLenum(GL_NO_ERROR));
+}
+
 TEST_P(PosedJointsGLTest, uploadsWhatHasChangedAlone)
 {
     const auto set = makeRandomSet({});

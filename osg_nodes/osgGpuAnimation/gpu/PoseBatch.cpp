@@ -26,7 +26,7 @@ float clampedToUnit(float value)
 
 bool isPlain(const BlendSample& sample)
 {
-    return sample.weight == 1.0f && (sample.control & POSE_SAMPLE_ADDITIVE) == 0 &&
+    return sample.weight == 1.0f && (sample.control & (POSE_SAMPLE_ADDITIVE | POSE_SAMPLE_POSED)) == 0 &&
            sample.control >> POSE_SAMPLE_MASK_SHIFT == 0;
 }
 

@@ -106,29 +106,25 @@ constexpr SchemaRule textureTransform[] = {number("offset").list(2, 2).orLeaveOu
                                            number("scale").list(2, 2).orLeaveOut(), texCoord};
 constexpr SchemaRule textureExtensions[] = {object("KHR_texture_transform", textureTransform).orLeaveOut()};
 
-constexpr SchemaRule textureIndex = index("index", "textures").required();
+// A fault in a material costs its factor or map alone.
+constexpr SchemaRule textureIndex = index("index", "textures").required().orLeaveOut();
 constexpr SchemaRule textureInfoExtensions = object("extensions", textureExtensions).orLeaveOut();
 
 constexpr SchemaRule textureInfo[] = {textureIndex, texCoord, textureInfoExtensions};
-constexpr SchemaRule normalTexture[] = {textureIndex, texCoord, number("scale"), textureInfoExtensions};
-constexpr SchemaRule occlusionTexture[] = {textureIndex, texCoord, number("strength").clamped(0, 1),
+constexpr SchemaRule normalTexture[] = {textureIndex, texCoord, number("scale").orLeaveOut(), textureInfoExtensions};
+constexpr SchemaRule occlusionTexture[] = {textureIndex, texCoord, number("strength").orLeaveOut().clamped(0, 1),
                                            textureInfoExtensions};
-
-// A fault in what an extension adds to the looks costs that map alone.
-constexpr SchemaRule addedTexture[] = {textureIndex.orLeaveOut(), texCoord, textureInfoExtensions};
-constexpr SchemaRule addedNormalTexture[] = {textureIndex.orLeaveOut(), texCoord, number("scale").orLeaveOut(),
-                                             textureInfoExtensions};
-
-constexpr SchemaRule metallicRoughness[] = {
-    number("baseColorFactor").list(4, 4).clamped(0, 1), object("baseColorTexture", textureInfo),
-    number("metallicFactor").clamped(0, 1), number("roughnessFactor").clamped(0, 1),
-    object("metallicRoughnessTexture", textureInfo)};
-
-constexpr SchemaRule emissiveStrength[] = {number("emissiveStrength").from(0).orLeaveOut()};
 constexpr SchemaRule map(std::string_view name)
 {
-    return object(name, addedTexture).orLeaveOut();
+    return object(name, textureInfo).orLeaveOut();
 }
+
+constexpr SchemaRule metallicRoughness[] = {
+    number("baseColorFactor").list(4, 4).orLeaveOut().clamped(0, 1), map("baseColorTexture"),
+    number("metallicFactor").orLeaveOut().clamped(0, 1), number("roughnessFactor").orLeaveOut().clamped(0, 1),
+    map("metallicRoughnessTexture")};
+
+constexpr SchemaRule emissiveStrength[] = {number("emissiveStrength").from(0).orLeaveOut()};
 constexpr SchemaRule unit(std::string_view name)
 {
     return number(name).clamped(0, 1).orLeaveOut();
@@ -139,7 +135,7 @@ constexpr SchemaRule specular[] = {unit("specularFactor"), map("specularTexture"
                                    map("specularColorTexture")};
 constexpr SchemaRule clearcoat[] = {unit("clearcoatFactor"), map("clearcoatTexture"), unit("clearcoatRoughnessFactor"),
                                     map("clearcoatRoughnessTexture"),
-                                    object("clearcoatNormalTexture", addedNormalTexture).orLeaveOut()};
+                                    object("clearcoatNormalTexture", normalTexture).orLeaveOut()};
 constexpr SchemaRule sheen[] = {number("sheenColorFactor").list(3, 3).clamped(0, 1).orLeaveOut(),
                                 map("sheenColorTexture"), unit("sheenRoughnessFactor"), map("sheenRoughnessTexture")};
 constexpr SchemaRule transmission[] = {unit("transmissionFactor"), map("transmissionTexture")};
@@ -157,14 +153,14 @@ constexpr SchemaRule materialExtensions[] = {
     object("KHR_materials_transmission", transmission).orLeaveOut(),
     object("KHR_materials_pbrSpecularGlossiness", specularGlossiness).orLeaveOut()};
 
-constexpr SchemaRule material[] = {object("pbrMetallicRoughness", metallicRoughness),
-                                   object("normalTexture", normalTexture),
-                                   object("occlusionTexture", occlusionTexture),
-                                   object("emissiveTexture", textureInfo),
-                                   number("emissiveFactor").list(3, 3).clamped(0, 1),
+constexpr SchemaRule material[] = {object("pbrMetallicRoughness", metallicRoughness).orLeaveOut(),
+                                   object("normalTexture", normalTexture).orLeaveOut(),
+                                   object("occlusionTexture", occlusionTexture).orLeaveOut(),
+                                   map("emissiveTexture"),
+                                   number("emissiveFactor").list(3, 3).orLeaveOut().clamped(0, 1),
                                    choice("alphaMode", "OPAQUE MASK BLEND").orLeaveOut(),
-                                   number("alphaCutoff").clamped(0, largestFloat),
-                                   rule("doubleSided", Kind::Boolean),
+                                   number("alphaCutoff").orLeaveOut().clamped(0, largestFloat),
+                                   rule("doubleSided", Kind::Boolean).orLeaveOut(),
                                    name,
                                    object("extensions", materialExtensions).orLeaveOut(),
                                    extras};

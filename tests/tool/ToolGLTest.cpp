@@ -184,6 +184,18 @@ TEST_F(ToolGLTest, theFilesLightsShineInTheLookFileAlone)
     EXPECT_NE(unlit.err.find("unlit.gltf: the file has no lights"), std::string::npos) << unlit.err;
 }
 
+TEST_F(ToolGLTest, renderPrintsTheFilesWarnings)
+{
+    json faulty = json::parse(filmedFlag());
+    faulty["materials"] = json::parse(R"([{"emissiveTexture": {"index": 4}}])");
+    const Process done = Process::run(OSGGPUANIM, {"render", folder.write("faulty.gltf", faulty.dump()), "--size",
+                                                   "40x30", "-o", folder.file("faulty.png")});
+    EXPECT_EQ(done.status, 0);
+    EXPECT_NE(done.err.find("faulty.gltf: materials[0].emissiveTexture.index: expected an index below 0"),
+              std::string::npos)
+        << done.err;
+}
+
 TEST_F(ToolGLTest, inspectListsLightsAndCameras)
 {
     const std::string filmed = folder.write("filmed.gltf", filmedFlag());

@@ -100,7 +100,7 @@ protected:
     static osg::ref_ptr<osg::Node> makeCharacters()
     {
         osg::ref_ptr<osg::Node> model = osgDB::readRefNodeFile(ownScene("Wanderer.glb"));
-        osg::ref_ptr<JointAttachment> hand = new JointAttachment("Hand.R");
+        osg::ref_ptr<JointAttachment> hand = new JointAttachment("Hand_R");
         hand->addChild(new osg::ShapeDrawable(new osg::Box(osg::Vec3(), 0.3f)));
         findCharacter(*model)->addChild(hand);
         osg::ref_ptr<osg::Group> scene = new osg::Group;

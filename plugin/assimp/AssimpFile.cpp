@@ -2,6 +2,7 @@
 #include "assimp/AssimpFile.h"
 
 #include "assimp/SceneConversion.h"
+#include "gltf/file/Uri.h"
 
 #include <assimp/config.h>
 #include <assimp/DefaultIOSystem.h>
@@ -10,7 +11,6 @@
 #include <assimp/ProgressHandler.hpp>
 #include <assimp/scene.h>
 
-#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <system_error>
@@ -36,9 +36,7 @@ public:
         std::error_code failure;
         const std::filesystem::path path = std::filesystem::canonical(file, failure);
         if (failure || !std::filesystem::is_regular_file(path, failure)) return false;
-        const auto [folderEnd, rest] = std::mismatch(_folder.begin(), _folder.end(), path.begin(), path.end());
-        static_cast<void>(rest);
-        return (_allowOutsideFiles || folderEnd == _folder.end()) &&
+        return (_allowOutsideFiles || gltf::isBelow(path, _folder)) &&
                std::filesystem::file_size(path, failure) <= maxFileBytes;
     }
 
@@ -90,7 +88,7 @@ Result<std::string> readAsGlb(const std::string& fileName, const gltf::ImportOpt
                       aiProcess_JoinIdenticalVertices | aiProcess_GenSmoothNormals | aiProcess_GlobalScale |
                       aiProcess_FindInvalidData | aiProcess_ValidateDataStructure);
     if (!scene) return Error{"Assimp cannot read it: " + gltf::printable(firstLine(importer.GetErrorString()), 300)};
-    return glbOf(*scene, fileName, options.maxDecodedBytes, report);
+    return glbOf(*scene, fileName, options, report);
 }
 
 } // namespace osgGpuAnimation::assimp

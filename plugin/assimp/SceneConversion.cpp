@@ -22,8 +22,6 @@ namespace
 
 using nlohmann::json;
 
-constexpr std::size_t mostDepth = 4096; // as in ImportOptions::maxNodeDepth
-
 json columnMajor(const aiMatrix4x4& matrix)
 {
     json values = json::array();
@@ -69,7 +67,7 @@ public:
                 _animated.insert(scene.mAnimations[i]->mChannels[channel]->mNodeName.C_Str());
     }
 
-    std::optional<Error> write(const std::string& modelFile, std::size_t mostBytes);
+    std::optional<Error> write(const std::string& modelFile, const gltf::ImportOptions& options);
     std::string glb() const { return _writer.glb(); }
 
 private:
@@ -80,7 +78,7 @@ private:
         std::size_t depth;
     };
 
-    std::optional<Error> addNodes();
+    std::optional<Error> addNodes(std::size_t mostDepth);
     void addMeshes(std::size_t number, MeshWriter& meshes);
     std::size_t addChild(std::size_t parent, const std::string& name);
     json transformOf(const aiNode& node);
@@ -94,11 +92,12 @@ private:
     MorphedNodes _morphed;
 };
 
-std::optional<Error> SceneWriter::write(const std::string& modelFile, std::size_t mostBytes)
+std::optional<Error> SceneWriter::write(const std::string& modelFile, const gltf::ImportOptions& options)
 {
-    const auto isTooLarge = [&] { return _writer.size() > mostBytes; };
-    const Error tooLarge{"the scene has more than " + std::to_string(mostBytes) + " bytes of vertices and keys"};
-    if (const std::optional<Error> fault = addNodes()) return fault;
+    const auto isTooLarge = [&] { return _writer.size() > options.maxDecodedBytes; };
+    const Error tooLarge{"the scene has more than " + std::to_string(options.maxDecodedBytes) +
+                         " bytes of vertices and keys"};
+    if (const std::optional<Error> fault = addNodes(options.maxNodeDepth)) return fault;
     MeshWriter meshes(_numbers, _writer, _report);
     for (std::size_t number = 0; number < _nodes.size(); ++number)
     {
@@ -118,7 +117,7 @@ std::optional<Error> SceneWriter::write(const std::string& modelFile, std::size_
     return std::nullopt;
 }
 
-std::optional<Error> SceneWriter::addNodes()
+std::optional<Error> SceneWriter::addNodes(std::size_t mostDepth)
 {
     json& nodes = _writer.document["nodes"] = json::array();
     std::vector<Node> open{{_scene.mRootNode, 0, 1}};
@@ -196,12 +195,12 @@ void SceneWriter::addMeshes(std::size_t number, MeshWriter& meshes)
 
 } // namespace
 
-Result<std::string> glbOf(const aiScene& scene, const std::string& modelFile, std::size_t mostBytes,
+Result<std::string> glbOf(const aiScene& scene, const std::string& modelFile, const gltf::ImportOptions& options,
                           gltf::Report& report)
 {
     if (!scene.mRootNode) return Error{"the file has no nodes"};
     SceneWriter writer(scene, report);
-    if (const std::optional<Error> fault = writer.write(modelFile, mostBytes)) return *fault;
+    if (const std::optional<Error> fault = writer.write(modelFile, options)) return *fault;
     return writer.glb();
 }
 

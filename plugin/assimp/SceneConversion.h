@@ -2,10 +2,10 @@
 #pragma once
 
 #include "gltf/file/Report.h"
+#include "gltf/ImportOptions.h"
 
 #include <osgGpuAnimation/animation/Result.h>
 
-#include <cstddef>
 #include <string>
 
 struct aiScene;
@@ -23,8 +23,8 @@ namespace osgGpuAnimation::assimp
 ///
 /// modelFile: in whose folder, or in the folder `textures` there, pictures are searched for by their names without
 /// folders, if they are not where the scene says.
-/// Errors: more than mostBytes; a hierarchy deeper than 4,096 nodes.
-Result<std::string> glbOf(const aiScene& scene, const std::string& modelFile, std::size_t mostBytes,
+/// Errors: more than options.maxDecodedBytes; a hierarchy deeper than options.maxNodeDepth.
+Result<std::string> glbOf(const aiScene& scene, const std::string& modelFile, const gltf::ImportOptions& options,
                           gltf::Report& report);
 
 } // namespace osgGpuAnimation::assimp

@@ -3,7 +3,8 @@
 
 #include <osgGpuAnimation/nodes/OsgMatrix.h>
 
-#include <glm/gtc/quaternion.hpp>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -65,11 +66,9 @@ osg::Matrixd matrixOf(const JointTransform& transform)
 /// Linear, and slerp the short way, as the kit mixes two keys.
 JointTransform between(const JointTransform& a, const JointTransform& b, float share)
 {
-    const glm::quat from(a.rotation.w, a.rotation.x, a.rotation.y, a.rotation.z);
-    const glm::quat to(b.rotation.w, b.rotation.x, b.rotation.y, b.rotation.z);
-    const glm::quat rotation = glm::slerp(from, to, share);
-    return {glm::mix(a.translation, b.translation, share), glm::vec4(rotation.x, rotation.y, rotation.z, rotation.w),
-            glm::mix(a.scale, b.scale, share)};
+    const glm::dvec4 rotation =
+        Rotation::slerp(glm::dvec4(a.rotation), glm::dvec4(b.rotation), static_cast<double>(share));
+    return {glm::mix(a.translation, b.translation, share), glm::vec4(rotation), glm::mix(a.scale, b.scale, share)};
 }
 
 } // namespace

@@ -28,7 +28,7 @@ class MeshFinder : public osg::NodeVisitor
 public:
     MeshFinder(osgAnimation::Skeleton& skeleton, const std::vector<BoneJoint>& bones,
                std::vector<std::string>& warnings)
-        : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN), _skeleton(skeleton), _warnings(warnings)
+        : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN), _skeleton(skeleton), _bones(bones), _warnings(warnings)
     {
         for (std::size_t i = 0; i < bones.size(); ++i)
         {
@@ -91,17 +91,10 @@ private:
                 continue;
             }
             mesh.bones.push_back(found->second);
-            const auto* const bone = boneOf(found->second);
-            mesh.inverseBinds.push_back(toAffine(toSkeleton * bone->getInvBindMatrixInSkeletonSpace()));
+            const osgAnimation::Bone& bone = *_bones[static_cast<std::size_t>(found->second)].bone;
+            mesh.inverseBinds.push_back(toAffine(toSkeleton * bone.getInvBindMatrixInSkeletonSpace()));
         }
         if (!mesh.bones.empty()) meshes.push_back(std::move(mesh));
-    }
-
-    const osgAnimation::Bone* boneOf(int index) const
-    {
-        for (const auto& [node, known] : _indices)
-            if (known == index) return dynamic_cast<const osgAnimation::Bone*>(node);
-        return nullptr;
     }
 
     /// The same object for the same state sets.
@@ -116,6 +109,7 @@ private:
     }
 
     osgAnimation::Skeleton& _skeleton;
+    const std::vector<BoneJoint>& _bones;
     std::vector<std::string>& _warnings;
     std::map<const osg::Node*, int> _indices;
     std::map<std::string, int> _byName;

@@ -98,7 +98,9 @@ protected:
     Result<std::string> glb(std::size_t mostBytes = 1 << 20)
     {
         gltf::Report report(messages);
-        return assimp::glbOf(scene, folder.file("flag.fbx"), mostBytes, report);
+        gltf::ImportOptions options;
+        options.maxDecodedBytes = mostBytes;
+        return assimp::glbOf(scene, folder.file("flag.fbx"), options, report);
     }
 
     gltf::ImportedModel imported()

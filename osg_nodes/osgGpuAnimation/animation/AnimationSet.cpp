@@ -243,13 +243,7 @@ std::vector<std::string> atRest(const AnimationSet& set, const RigMatch& match)
 /// The names of those that clips of the other set move and that are nobody's counterpart.
 std::vector<std::string> leftOut(const AnimationSet& other, const RigMatch& match)
 {
-    std::vector<bool> isMoved(other.skeleton().jointCount(), false);
-    for (const Clip& clip : other.clips())
-    {
-        const std::vector<JointMoves> moves = JointMoves::of(match.fromRest(), other.skeleton(), clip);
-        for (std::size_t joint = 0; joint < isMoved.size(); ++joint)
-            isMoved[joint] = isMoved[joint] || moves[joint].any();
-    }
+    const std::vector<bool> isMoved = JointMoves::inAnyOf(match.fromRest(), other.skeleton(), other.clips());
     const std::vector<bool> isUsed = usedOf(isMoved.size(), match.jointCounterparts());
     const std::vector<bool> isMorphUsed = usedOf(other.morphs().size(), match.morphCounterparts());
     std::vector<std::string> names;

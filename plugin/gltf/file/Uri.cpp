@@ -156,12 +156,12 @@ bool leavesFolder(const fs::path& relative)
     return relative.is_absolute() || (normal.begin() != normal.end() && *normal.begin() == "..");
 }
 
+} // namespace
+
 bool isBelow(const fs::path& file, const fs::path& folder)
 {
     return std::mismatch(folder.begin(), folder.end(), file.begin(), file.end()).first == folder.end();
 }
-
-} // namespace
 
 bool isDataUri(std::string_view uri)
 {

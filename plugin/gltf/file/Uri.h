@@ -6,6 +6,7 @@
 #include <osgGpuAnimation/animation/Result.h>
 
 #include <cstddef>
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -35,6 +36,9 @@ Result<DataUri> decodeDataUri(std::string_view uri, std::size_t most);
 /// The path of a relative URI: percent-encoding is decoded, a plus sign stays a plus sign.
 /// Errors: empty, a scheme or drive letter, an incomplete percent-encoding, an encoded NUL, a backslash.
 Result<std::string> decodePath(std::string_view uri);
+
+/// True for a file in the folder or below it. Both: canonical.
+bool isBelow(const std::filesystem::path& file, const std::filesystem::path& folder);
 
 /// The folder that external files of a model must lie in or below, after symbolic links are resolved, unless the caller
 /// allows more. A model from a stream has no folder and no external files.

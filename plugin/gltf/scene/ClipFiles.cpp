@@ -109,13 +109,9 @@ std::vector<bool> nodesMovedBy(const std::vector<ClipFile>& files, const tinyglt
     for (const ClipFile& file : files)
     {
         const Skeleton& skeleton = file.set->skeleton();
-        const RestPlaces rest(skeleton);
-        for (const Clip& clip : file.set->clips())
-        {
-            const std::vector<JointMoves> moves = JointMoves::of(rest, skeleton, clip);
-            for (std::size_t joint = 0; joint < moves.size(); ++joint)
-                if (moves[joint].any()) moved.insert(bareJointName(skeleton.joint(joint).name));
-        }
+        const std::vector<bool> isMoved = JointMoves::inAnyOf(RestPlaces(skeleton), skeleton, file.set->clips());
+        for (std::size_t joint = 0; joint < isMoved.size(); ++joint)
+            if (isMoved[joint]) moved.insert(bareJointName(skeleton.joint(joint).name));
     }
     std::vector<bool> nodes(model.nodes.size(), false);
     for (std::size_t node = 0; node < nodes.size(); ++node)

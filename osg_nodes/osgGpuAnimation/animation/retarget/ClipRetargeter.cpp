@@ -70,6 +70,18 @@ std::vector<JointMoves> JointMoves::of(const RestPlaces& rest, const Skeleton& s
     return result;
 }
 
+std::vector<bool> JointMoves::inAnyOf(const RestPlaces& rest, const Skeleton& skeleton, const std::vector<Clip>& clips)
+{
+    std::vector<bool> isMoved(skeleton.jointCount(), false);
+    for (const Clip& clip : clips)
+    {
+        const std::vector<JointMoves> moves = of(rest, skeleton, clip);
+        for (std::size_t joint = 0; joint < moves.size(); ++joint)
+            isMoved[joint] = isMoved[joint] || moves[joint].any();
+    }
+    return isMoved;
+}
+
 ClipRetargeter::ClipRetargeter(const Rig& from, const Rig& to, RigMatch match)
     : _from(from), _to(to), _match(std::move(match)), _trackCount(firstTracksOfMorphs(to.skeleton, to.morphs).back())
 {

@@ -20,6 +20,8 @@ struct JointMoves
     bool any() const { return translation || rotation || scale; }
     /// One per joint of the skeleton.
     static std::vector<JointMoves> of(const RestPlaces& rest, const Skeleton& skeleton, const Clip& clip);
+    /// One per joint of the skeleton: true if any of the clips moves it.
+    static std::vector<bool> inAnyOf(const RestPlaces& rest, const Skeleton& skeleton, const std::vector<Clip>& clips);
 };
 
 /// Turns clips of one skeleton into clips of another one, keyframe by keyframe, see AnimationSet::withClipsOf().

@@ -7,6 +7,7 @@
 #include "support/ReferenceBlend.h"
 
 #include <osgGpuAnimation/animation/AnimationController.h>
+#include <osgGpuAnimation/animation/bounds/JointRange.h>
 #include <osgGpuAnimation/animation/bounds/MixBounds.h>
 #include <osgGpuAnimation/animation/ClipBuilder.h>
 #include <osgGpuAnimation/animation/JointMask.h>
@@ -234,6 +235,38 @@ TEST(JointPoseTest, aWholeSkeletonInJointSpaceOrModelSpace)
     ASSERT_TRUE(posed.layer(0).pose().setModelTransforms(model));
     for (std::size_t joint = 0; joint < expected.size(); ++joint)
         EXPECT_LE(distance(jointsOf(posed)[joint], model[joint]), 1e-5) << joint;
+}
+
+/// Bounds are computed anew for each extent, and an extent is a sum over all clips: neither may grow with the frames.
+TEST(JointPoseTest, extentsSettleWhileJointsSwingAndFollowWhatWalksAway)
+{
+    const auto set = makeRandomSet({3, 40, 9});
+    const float longest = longestJoint(*set);
+    JointPose pose(set);
+    std::vector<JointTransform> transforms(
+        set->restPose().begin(), set->restPose().begin() + static_cast<std::ptrdiff_t>(set->skeleton().jointCount()));
+    const auto framesWithNewExtents = [&](float reach, float speed, std::size_t frames)
+    {
+        std::size_t changes = 0;
+        for (std::size_t frame = 0; frame < frames; ++frame)
+        {
+            const float time = static_cast<float>(frame) / 60.0f;
+            transforms[3].translation.x = reach * std::sin(9.0f * time) + speed * time;
+            transforms[3].scale.y = 1.0f + 0.2f * std::sin(7.0f * time);
+            const auto before = pose.extent();
+            EXPECT_TRUE(pose.setTransforms(transforms));
+            changes += before != pose.extent();
+            const PoseExtent::Joint& known = pose.extent()->joints[3];
+            EXPECT_LE(glm::distance(known.translation, glm::vec3(transforms[3].translation)), known.shift);
+            EXPECT_LE(std::abs(known.scale.y - transforms[3].scale.y), known.stretch);
+        }
+        return changes;
+    };
+    EXPECT_LE(framesWithNewExtents(0.2f * longest, 0.0f, 600), 6u);
+    EXPECT_EQ(framesWithNewExtents(0.2f * longest, 0.0f, 600), 0u) << "settled";
+    EXPECT_LE(framesWithNewExtents(0.0f, longest, 600), 40u) << "ten joints' length in ten seconds";
+    // The way itself is not kept: the rest pose is ten lengths away, an eighth of it the margin.
+    EXPECT_LE(pose.extent()->joints[3].shift, 4.0f * 11.0f * longest / 8.0f);
 }
 
 TEST(JointPoseTest, mirroredMatricesKeepTheirMirror)

@@ -57,6 +57,39 @@ Error wrongCount(const char* what, std::size_t found, std::size_t expected)
     return Error{std::to_string(found) + " " + what + " for a skeleton of " + std::to_string(expected) + " joints"};
 }
 
+/// True if the extent contains the transform that these three texels hold.
+bool contains(const PoseExtent::Joint& known, const glm::uvec4* texels)
+{
+    const auto isSet = [&](Part part) { return texels[part].w != POSE_NOT_SET; };
+    const auto offset = [&](Part part, const glm::vec3& from)
+    {
+        glm::vec3 numbers;
+        std::memcpy(&numbers, &texels[part], sizeof(numbers));
+        return numbers - from;
+    };
+    if (isSet(Part::Rotation) && !known.turns) return false;
+    if (isSet(Part::Translation))
+    {
+        // Of numbers too large for its square a translation is never inside, which costs new bounds only.
+        const glm::vec3 moved = offset(Part::Translation, known.translation);
+        if (!known.moves || !(glm::dot(moved, moved) <= 0.999f * known.shift * known.shift)) return false;
+    }
+    if (!isSet(Part::Scale)) return true;
+    const glm::vec3 grown = glm::abs(offset(Part::Scale, known.scale));
+    return known.scales && std::max({grown.x, grown.y, grown.z}) <= 0.999f * known.stretch;
+}
+
+/// Lets the ball or cube of an extent reach a value. It grows around its centre up to the fourfold margin, so that a
+/// joint that swings soon stays inside; beyond that it begins anew around the value.
+void reach(bool& isKnown, glm::vec3& centre, float& radius, const glm::vec3& value, float distance, float margin)
+{
+    if (isKnown && distance <= 0.999f * radius) return;
+    const bool grows = isKnown && distance <= 3.0f * margin;
+    radius = grows ? distance + margin : margin;
+    if (!grows) centre = value;
+    isKnown = true;
+}
+
 } // namespace
 
 JointPose::JointPose(std::shared_ptr<const AnimationSet> set)
@@ -134,12 +167,8 @@ bool JointPose::setScale(std::size_t joint, const glm::vec3& scale)
 
 bool JointPose::setTransform(std::size_t joint, const JointTransform& transform)
 {
-    JointTransform allowed = transform;
-    if (!hasJoint(joint) || !makeAllowed(allowed)) return false;
-    PosedKeyframe& keyframe = change();
-    keyframe.setPart(joint, Part::Translation, allowed.translation);
-    keyframe.setPart(joint, Part::Rotation, allowed.rotation);
-    keyframe.setPart(joint, Part::Scale, allowed.scale);
+    if (!hasJoint(joint) || !isAllowed(transform)) return false;
+    change().setTransform(joint, transform);
     growExtent(joint, joint + 1);
     return true;
 }
@@ -158,18 +187,16 @@ Result<bool> JointPose::setTransforms(const std::vector<JointTransform>& transfo
 {
     const std::size_t count = _set->skeleton().jointCount();
     if (transforms.size() != count) return wrongCount("transforms", transforms.size(), count);
-    thread_local std::vector<JointTransform> allowed; // called in every frame
-    allowed = transforms;
     for (std::size_t joint = 0; joint < count; ++joint)
-        if (!makeAllowed(allowed[joint]))
+        if (!isAllowed(transforms[joint]))
             return Error{jointAt(*_set, joint) + ": a number is not finite, or the rotation is 0"};
     if (_isShared && _keyframe->trackCount() == count)
     {
-        _keyframe = std::make_shared<PosedKeyframe>(allowed);
+        _keyframe = std::make_shared<PosedKeyframe>(transforms);
         _isShared = false;
     }
     else
-        change().setTransforms(allowed);
+        change().setTransforms(transforms);
     growExtent(0, count);
     return true;
 }
@@ -253,9 +280,8 @@ Result<bool> JointPose::setTracks(const std::vector<Track>& tracks)
             if (!has(Part::Translation)) allowed.translation = glm::vec4(0.0f);
             if (!has(Part::Rotation)) allowed.rotation = glm::vec4(0, 0, 0, 1);
             if (!has(Part::Scale)) allowed.scale = glm::vec4(0.0f);
-            const std::optional<glm::vec4> rotation = unitRotation(allowed.rotation); // exactly that of setRotation()
-            isGood = rotation && makeAllowed(allowed);
-            if (isGood) allowed.rotation = *rotation;
+            isGood = isAllowed(allowed);
+            if (isGood) allowed.rotation = *unitRotation(allowed.rotation); // exactly that of setRotation()
             for (const auto& [part, value] :
                  {std::pair(Part::Translation, allowed.translation), std::pair(Part::Rotation, allowed.rotation),
                   std::pair(Part::Scale, allowed.scale)})
@@ -279,30 +305,6 @@ Result<bool> JointPose::setTracks(const std::vector<Track>& tracks)
     return true;
 }
 
-bool JointPose::isInExtent(std::size_t joint) const
-{
-    if (joint >= _extent->joints.size()) return false;
-    const PoseExtent::Joint& known = _extent->joints[joint];
-    const glm::uvec4* words = &_keyframe->texels()[3 * joint];
-    const auto isSet = [&](Part part) { return words[part].w != POSE_NOT_SET; };
-    const auto offset = [&](Part part, const glm::vec3& from)
-    {
-        glm::vec4 numbers;
-        std::memcpy(&numbers, &words[part], sizeof(numbers));
-        return glm::vec3(numbers) - from;
-    };
-    if (isSet(Part::Rotation) && !known.turns) return false;
-    if (isSet(Part::Translation))
-    {
-        // Of numbers too large for its square a translation is never inside, which costs new bounds only.
-        const glm::vec3 moved = offset(Part::Translation, known.translation);
-        if (!known.moves || !(glm::dot(moved, moved) <= 0.999f * known.shift * known.shift)) return false;
-    }
-    if (!isSet(Part::Scale)) return true;
-    const glm::vec3 grown = glm::abs(offset(Part::Scale, known.scale));
-    return known.scales && std::max({grown.x, grown.y, grown.z}) <= 0.999f * known.stretch;
-}
-
 /// Makes a larger extent if one of these joints has left the present one.
 void JointPose::growExtent(std::size_t firstJoint, std::size_t endJoint)
 {
@@ -310,7 +312,9 @@ void JointPose::growExtent(std::size_t firstJoint, std::size_t endJoint)
     float longest = 0.0f;
     for (std::size_t joint = firstJoint; joint < endJoint; ++joint)
     {
-        if (isInExtent(joint) || _keyframe->setNumbers(joint) == 0) continue;
+        const bool isKnown = joint < _extent->joints.size();
+        if (isKnown && contains(_extent->joints[joint], &_keyframe->texels()[3 * joint])) continue;
+        if (_keyframe->setNumbers(joint) == 0) continue;
         if (!grown)
         {
             grown = std::make_shared<PoseExtent>(*_extent);
@@ -321,15 +325,16 @@ void JointPose::growExtent(std::size_t firstJoint, std::size_t endJoint)
         const std::uint32_t numbers = _keyframe->setNumbers(joint);
         const auto has = [&](Part part) { return (numbers >> 4 * part & partBits) != 0; };
         const JointTransform posed = transform(joint);
-        known.moves = has(Part::Translation);
         known.turns = has(Part::Rotation);
-        known.scales = has(Part::Scale);
         // The margin of a translation is an eighth of the way from the rest pose or of the longest joint.
-        known.translation = glm::vec3(posed.translation);
-        const auto rest = glm::vec3(_set->restPose()[joint].translation);
-        known.shift = std::max(glm::distance(known.translation, rest), longest) / 8.0f;
-        known.scale = glm::vec3(posed.scale);
-        known.stretch = std::max({std::abs(known.scale.x), std::abs(known.scale.y), std::abs(known.scale.z)}) / 8.0f;
+        const glm::vec3 rest(_set->restPose()[joint].translation), place(posed.translation), scale(posed.scale);
+        const glm::vec3 size = glm::abs(scale), grownBy = glm::abs(scale - known.scale);
+        if (has(Part::Translation))
+            reach(known.moves, known.translation, known.shift, place, glm::distance(known.translation, place),
+                  std::max(glm::distance(place, rest), longest) / 8.0f);
+        if (has(Part::Scale))
+            reach(known.scales, known.scale, known.stretch, scale, std::max({grownBy.x, grownBy.y, grownBy.z}),
+                  std::max({size.x, size.y, size.z}) / 8.0f);
     }
     if (grown) _extent = grown;
 }

@@ -93,7 +93,6 @@ private:
     void setPart(std::size_t joint, std::size_t part, const glm::vec4& value);
     void growExtent(std::size_t firstJoint, std::size_t endJoint);
     void growExtent(float weight);
-    bool isInExtent(std::size_t joint) const;
     void renewExtent();
 
     std::shared_ptr<const AnimationSet> _set; ///< never null

@@ -37,6 +37,19 @@ glm::dvec4 coverOf(const glm::uvec4& words)
     return cover;
 }
 
+/// Writes an allowed transform with a unit rotation to three texels.
+void put(const JointTransform& transform, glm::uvec4* texels)
+{
+    std::memcpy(texels, &transform, sizeof(transform));
+    texels[PosedKeyframe::Translation].w = texels[PosedKeyframe::Scale].w = 0;
+    const float squared = glm::dot(transform.rotation, transform.rotation);
+    // Streams of whole skeletons are unit already, which halves their cost. The mix normalizes what rounding leaves.
+    if (std::abs(squared - 1.0f) < 1e-6f) return;
+    const glm::vec4 unit = squared > 1e-20f && squared < 1e20f ? transform.rotation / std::sqrt(squared)
+                                                               : *PosedNumbers::unitRotation(transform.rotation);
+    std::memcpy(&texels[PosedKeyframe::Rotation], &unit, sizeof(unit));
+}
+
 } // namespace
 
 PosedKeyframe::PosedKeyframe(std::size_t trackCount)
@@ -86,10 +99,18 @@ void PosedKeyframe::setPart(std::size_t joint, Part part, const glm::vec4& value
     _serial = nextSerial();
 }
 
+void PosedKeyframe::setTransform(std::size_t joint, const JointTransform& transform)
+{
+    put(transform, &_texels[3 * joint]);
+    _isEmpty = false;
+    _serial = nextSerial();
+}
+
 void PosedKeyframe::setTransforms(const std::vector<JointTransform>& transforms)
 {
     assert(transforms.size() <= trackCount() && "one transform a track");
-    if (!transforms.empty()) std::memcpy(_texels.data(), transforms.data(), transforms.size() * sizeof(JointTransform));
+    for (std::size_t joint = 0; joint < transforms.size(); ++joint)
+        put(transforms[joint], &_texels[3 * joint]);
     _isEmpty = _isEmpty && transforms.empty();
     _serial = nextSerial();
 }
@@ -119,40 +140,12 @@ void PosedKeyframe::clear()
     _serial = nextSerial();
 }
 
-bool PosedNumbers::isAllowed(float number)
-{
-    return std::abs(number) <= largest; // false for NaN
-}
-
-bool PosedNumbers::isAllowed(const glm::vec3& numbers)
-{
-    return isAllowed(numbers.x) && isAllowed(numbers.y) && isAllowed(numbers.z);
-}
-
 std::optional<glm::vec4> PosedNumbers::unitRotation(const glm::vec4& rotation)
 {
     const glm::dvec4 q(rotation);
     const double squared = glm::dot(q, q); // of floats: neither too large nor too small for a double
     if (!(squared > 0.0 && squared <= std::numeric_limits<double>::max())) return std::nullopt;
     return glm::vec4(q / std::sqrt(squared));
-}
-
-bool PosedNumbers::makeAllowed(JointTransform& transform)
-{
-    glm::vec4& q = transform.rotation;
-    const float squared = glm::dot(q, q);
-    // Streams of whole skeletons are unit already, which halves their cost. The mix normalizes what rounding leaves.
-    if (!(std::abs(squared - 1.0f) < 1e-6f))
-    {
-        if (squared > 1e-20f && squared < 1e20f)
-            q *= 1.0f / std::sqrt(squared);
-        else if (const std::optional<glm::vec4> unit = unitRotation(q))
-            q = *unit;
-        else
-            return false;
-    }
-    transform.translation.w = transform.scale.w = 0.0f;
-    return isAllowed(glm::vec3(transform.translation)) && isAllowed(glm::vec3(transform.scale));
 }
 
 } // namespace osgGpuAnimation

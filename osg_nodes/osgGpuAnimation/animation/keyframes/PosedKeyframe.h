@@ -3,9 +3,11 @@
 
 #include <osgGpuAnimation/animation/keyframes/TrackBlend.h>
 
+#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -29,7 +31,7 @@ public:
 
     /// Nothing is set.
     explicit PosedKeyframe(std::size_t trackCount);
-    /// All tracks are joints, and all their parts are set.
+    /// All tracks are joints, and all their parts are set as by setTransforms().
     explicit PosedKeyframe(const std::vector<JointTransform>& transforms);
 
     std::size_t trackCount() const { return _texels.size() / 3; }
@@ -47,7 +49,8 @@ public:
 
     // Each change gives the keyframe another serial. The numbers are not checked.
     void setPart(std::size_t joint, Part part, const glm::vec4& value);
-    void setTransforms(const std::vector<JointTransform>& transforms); ///< of the first tracks
+    void setTransform(std::size_t joint, const JointTransform& transform); ///< gives it a unit rotation
+    void setTransforms(const std::vector<JointTransform>& transforms);     ///< of the first tracks
     void setNumber(std::size_t track, std::size_t number, float value);
     void clear(std::size_t track);
     void clear();
@@ -63,12 +66,24 @@ namespace PosedNumbers
 {
 
 constexpr float largest = 1e18f; ///< the largest absolute value
-bool isAllowed(float number);    ///< false beyond ±largest and for NaN
-bool isAllowed(const glm::vec3& numbers);
+/// False beyond ±largest and for NaN.
+inline bool isAllowed(float number)
+{
+    return std::abs(number) <= largest;
+}
+inline bool isAllowed(const glm::vec3& numbers)
+{
+    return isAllowed(numbers.x) && isAllowed(numbers.y) && isAllowed(numbers.z);
+}
 /// The unit quaternion; none if it has no direction.
 std::optional<glm::vec4> unitRotation(const glm::vec4& rotation);
-/// Gives the transform a unit rotation and the w of translation and scale 0. False if a value is not allowed.
-bool makeAllowed(JointTransform& transform);
+/// True if all parts are allowed and the rotation has a direction.
+inline bool isAllowed(const JointTransform& transform)
+{
+    const float squared = glm::dot(transform.rotation, transform.rotation); // usually 1
+    const bool hasDirection = (squared > 1e-20f && squared < 1e20f) || unitRotation(transform.rotation).has_value();
+    return hasDirection && isAllowed(glm::vec3(transform.translation)) && isAllowed(glm::vec3(transform.scale));
+}
 
 } // namespace PosedNumbers
 

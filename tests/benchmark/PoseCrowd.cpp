@@ -163,7 +163,7 @@ Spent FeedbackFloor::step()
     glFinish();
     const Stopwatch stopwatch;
     {
-        const FeedbackScope scope(*_context->getState(), _vertexArray, 0);
+        const FeedbackScope scope(*_context->getState(), _vertexArray);
         _pass.use();
         if (_primitive == Primitive::Points)
             _pass.run(0, _matrices, _out.buffer(), 0);

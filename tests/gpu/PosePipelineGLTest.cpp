@@ -3,6 +3,7 @@
 #include "support/RandomLayers.h"
 #include "support/RandomSet.h"
 
+#include <osgGpuAnimation/animation/AnimationController.h>
 #include <osgGpuAnimation/animation/keyframes/PackedKeyframes.h>
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/gpu/PosePipeline.h>
@@ -228,6 +229,45 @@ TEST_F(PosePipelineCostGLTest, sendsTheRootsThatMovedAlone)
             EXPECT_LT(difference(pipeline->readPalette(state(), *set, 0, i), expected), 2e-6) << "instance " << i;
         }
     }
+}
+
+/// The vertex array object keeps what a batch has bound, for the batches of other sets, roots and samples after it too.
+TEST_F(PosePipelineCostGLTest, batchesByTurnsKeepTheirOwnInputsWithAndWithoutBaseInstances)
+{
+    osg::GLExtensions& gl = *state().get<osg::GLExtensions>();
+    const auto baseInstance = gl.glDrawArraysInstancedBaseInstance;
+    PosePipeline* pipeline = PosePipeline::of(state());
+    const std::shared_ptr<const AnimationSet> sets[] = {makeRandomSet({2, 30, 8, 5, false, true, true}),
+                                                        makeRandomSet({3, 12, 4, 5, false, false, true})};
+    const Roots roots[] = {Roots::None, Roots::Own, Roots::One, Roots::Own, Roots::None};
+    for (unsigned int step = 0; step < 40; ++step)
+    {
+        gl.glDrawArraysInstancedBaseInstance = step % 7 < 3 ? nullptr : baseInstance;
+        const auto& set = sets[step % 3 == 0 ? 1 : 0];
+        const std::size_t slot = step % 4;
+        const Roots kind = roots[step % 5];
+        const std::vector<Instance> instances = randomInstances(*set, 1 + step % 9, step);
+        AnimationController blended(set); // several samples per instance
+        ASSERT_TRUE(blended.play(0) && blended.crossfade(1, 1.0));
+        blended.advance(0.3);
+        PoseBatch batch(set);
+        if (kind == Roots::One) batch.setRootMatrix(instances[0].root);
+        for (std::size_t i = 0; i < instances.size(); ++i)
+        {
+            const PoseInstruction& instruction = step % 2 != 0 ? blended.instruction() : instances[i].instruction;
+            kind == Roots::Own ? batch.add(instruction, instances[i].root) : batch.add(instruction);
+        }
+        ASSERT_TRUE(pipeline->evaluate(state(), batch, slot));
+        for (std::size_t i = 0; i < instances.size(); ++i)
+        {
+            const PoseInstruction& instruction = step % 2 != 0 ? blended.instruction() : instances[i].instruction;
+            const AffineMatrix root = kind == Roots::None ? AffineMatrix() : instances[kind == Roots::Own ? i : 0].root;
+            std::vector<AffineMatrix> expected;
+            Pose::evaluate(*set, instruction, root, expected);
+            EXPECT_LT(difference(pipeline->readPalette(state(), *set, slot, i), expected), 4e-6) << step << ", " << i;
+        }
+    }
+    gl.glDrawArraysInstancedBaseInstance = baseInstance;
 }
 
 using ShaderSource = void(GL_APIENTRY*)(GLuint, GLsizei, const GLchar**, const GLint*);

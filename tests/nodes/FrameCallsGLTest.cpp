@@ -94,8 +94,13 @@ protected:
 TEST_F(FrameCallsGLTest, nothingIsAskedOfTheGpuAndNothingReadBack)
 {
     std::map<std::string, int> calls = callsOfAFrame(characters(10));
-    const char* const allowed[] = {"glDrawArrays",           "glDrawArraysInstanced", "glBeginTransformFeedback",
-                                   "glEndTransformFeedback", "glBufferData",          "glBufferSubData"};
+    const char* const allowed[] = {"glDrawArrays",
+                                   "glDrawArraysInstanced",
+                                   "glBeginTransformFeedback",
+                                   "glEndTransformFeedback",
+                                   "glBufferData",
+                                   "glBufferSubData",
+                                   "glUniform1i"};
     for (const char* name : allowed)
         calls.erase(name);
     for (const auto& [name, count] : calls)
@@ -113,6 +118,17 @@ TEST_F(FrameCallsGLTest, feedbackAndUploadsDoNotGrowWithTheCharacters)
         EXPECT_EQ(many["glBufferData"], one["glBufferData"]) << count;
         EXPECT_EQ(many["glBufferSubData"], one["glBufferSubData"]) << count;
     }
+}
+
+TEST_F(FrameCallsGLTest, levelsOfAPoseSetNoStateAnew)
+{
+    const osg::ref_ptr<AnimatedCharacter> deep = deepCharacter();
+    const auto levels = static_cast<int>(deep->getAnimationSet().levelCount());
+    std::map<std::string, int> calls = callsOfAFrame(deep);
+    EXPECT_EQ(calls["glBeginTransformFeedback"], levels);
+    EXPECT_EQ(calls["glVertexAttribDivisor"], 0);
+    EXPECT_EQ(calls["glUniform1i of a uniform that is not there"], 0);
+    EXPECT_LE(calls["glUniform1i"], levels + 6) << "the level's first parent; the draw's palette";
 }
 
 TEST_F(FrameCallsGLTest, instancesThatLookAtAPointCostOneFeedbackDrawTogether)

@@ -4,6 +4,9 @@
 #include <osg/GL>
 #include <osg/GLExtensions>
 
+#include <tuple>
+#include <type_traits>
+
 #include <dlfcn.h>
 
 namespace osgGpuAnimation
@@ -121,6 +124,24 @@ constexpr const char* beginName = "glBeginTransformFeedback";
 constexpr const char* endName = "glEndTransformFeedback";
 constexpr const char* instancedName = "glDrawArraysInstanced";
 
+struct MapTag;
+struct MapRangeTag;
+struct GetSubDataTag;
+struct BeginQueryTag;
+struct QueryResultTag;
+struct QueryResult64Tag;
+struct TimeStampTag;
+struct WaitTag;
+struct BeginFeedbackTag;
+struct EndFeedbackTag;
+struct UploadTag;
+struct UploadPartTag;
+struct GetUniformLocationTag;
+struct DrawInstancedTag;
+struct DrawBaseInstanceTag;
+struct AttributeDivisorTag;
+struct UniformTag;
+
 /// One wrapped pointer of GLExtensions: Tag tells pointers of one type apart.
 template <typename Tag, typename Return, typename... Arguments>
 struct Wrapped
@@ -130,6 +151,8 @@ struct Wrapped
     static Return GL_APIENTRY call(Arguments... arguments)
     {
         note(name);
+        if constexpr (std::is_same_v<Tag, UniformTag>)
+            if (std::get<0>(std::tie(arguments...)) < 0) note("glUniform1i of a uniform that is not there");
         if (name == beginName) isFeedbackActive = true;
         if (name == endName) isFeedbackActive = false;
         if (name == instancedName) checkFeedbackDraw();
@@ -154,21 +177,6 @@ void unwrap(Return(GL_APIENTRY*& pointer)(Arguments...))
     if (pointer == &W::call) pointer = W::real;
 }
 
-struct MapTag;
-struct MapRangeTag;
-struct GetSubDataTag;
-struct BeginQueryTag;
-struct QueryResultTag;
-struct QueryResult64Tag;
-struct TimeStampTag;
-struct WaitTag;
-struct BeginFeedbackTag;
-struct EndFeedbackTag;
-struct UploadTag;
-struct UploadPartTag;
-struct GetUniformLocationTag;
-struct DrawInstancedTag;
-
 template <typename Function>
 void forEachPointer(osg::GLExtensions& gl, Function function)
 {
@@ -185,6 +193,9 @@ void forEachPointer(osg::GLExtensions& gl, Function function)
     function(static_cast<UploadTag*>(nullptr), gl.glBufferData, "glBufferData");
     function(static_cast<UploadPartTag*>(nullptr), gl.glBufferSubData, "glBufferSubData");
     function(static_cast<DrawInstancedTag*>(nullptr), gl.glDrawArraysInstanced, instancedName);
+    function(static_cast<DrawBaseInstanceTag*>(nullptr), gl.glDrawArraysInstancedBaseInstance, instancedName);
+    function(static_cast<AttributeDivisorTag*>(nullptr), gl.glVertexAttribDivisor, "glVertexAttribDivisor");
+    function(static_cast<UniformTag*>(nullptr), gl.glUniform1i, "glUniform1i");
     function(static_cast<GetUniformLocationTag*>(nullptr), gl.glGetUniformLocation, "glGetUniformLocation");
 }
 

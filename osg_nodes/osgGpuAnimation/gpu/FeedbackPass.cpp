@@ -30,8 +30,8 @@ void unbindBufferTexture(osg::State& state, int unit)
 
 } // namespace
 
-FeedbackScope::FeedbackScope(osg::State& state, GLuint vertexArray, int units)
-    : _state(state), _units(units), _discard(state, GL_RASTERIZER_DISCARD, true)
+FeedbackScope::FeedbackScope(osg::State& state, GLuint vertexArray)
+    : _state(state), _discard(state, GL_RASTERIZER_DISCARD, true)
 {
     _state.bindVertexArrayObject(vertexArray);
     // The last draw of a mesh left its palette there, which the passes may write.
@@ -41,16 +41,34 @@ FeedbackScope::FeedbackScope(osg::State& state, GLuint vertexArray, int units)
 FeedbackScope::~FeedbackScope()
 {
     osg::GLExtensions* gl = _state.get<osg::GLExtensions>();
-    for (int unit = 0; unit < _units; ++unit)
-        unbindBufferTexture(_state, unit);
+    for (int unit = 0; unit < unitCount; ++unit)
+        if (_textures[static_cast<std::size_t>(unit)] != 0) unbindBufferTexture(_state, unit);
     gl->glActiveTexture(GL_TEXTURE0 + _state.getActiveTextureUnit());
+    gl->glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, 0);
     gl->glUseProgram(0);
     _state.setLastAppliedProgramObject(nullptr);
     _state.haveAppliedAttribute(osg::StateAttribute::PROGRAM);
     _state.unbindVertexArrayObject();
 }
 
-const FeedbackVertexArrays::Names& FeedbackVertexArrays::of(osg::State& state)
+void FeedbackScope::bindTexture(int unit, GLuint texture)
+{
+    GLuint& bound = _textures[static_cast<std::size_t>(unit)];
+    if (bound == texture) return;
+    if (unit != _active) _state.get<osg::GLExtensions>()->glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+    glBindTexture(GL_TEXTURE_BUFFER, texture);
+    _active = unit;
+    bound = texture;
+}
+
+void FeedbackScope::forgetActiveTexture()
+{
+    if (_active < 0) return;
+    glBindTexture(GL_TEXTURE_BUFFER, 0);
+    _textures[static_cast<std::size_t>(_active)] = 0;
+}
+
+FeedbackVertexArrays::Names& FeedbackVertexArrays::of(osg::State& state)
 {
     const auto known =
         std::find_if(_names.begin(), _names.end(), [&](const Names& names) { return names.state == &state; });
@@ -115,11 +133,11 @@ bool FeedbackPass::link(const char* name, const std::string& source, const std::
     return false;
 }
 
-GLint FeedbackPass::location(const char* uniform)
+FeedbackPass::Uniform& FeedbackPass::find(const char* uniform)
 {
-    const auto known = _locations.find(uniform);
-    if (known != _locations.end()) return known->second;
-    return _locations[uniform] = _gl->glGetUniformLocation(_program, uniform);
+    const auto [known, isNew] = _uniforms.try_emplace(uniform);
+    if (isNew) known->second.location = _gl->glGetUniformLocation(_program, uniform);
+    return known->second;
 }
 
 void FeedbackPass::use()
@@ -127,21 +145,23 @@ void FeedbackPass::use()
     _gl->glUseProgram(_program);
 }
 
-void FeedbackPass::setInt(const char* uniform, int value)
+bool FeedbackPass::setInt(const char* uniform, int value)
 {
-    _gl->glUniform1i(location(uniform), value);
+    Uniform& known = find(uniform);
+    if (known.location < 0) return false;
+    if (known.value != value) _gl->glUniform1i(known.location, value);
+    known.value = value;
+    return true;
 }
 
 void FeedbackPass::setVectors(const char* uniform, const std::vector<glm::vec4>& values)
 {
-    _gl->glUniform4fv(location(uniform), static_cast<GLsizei>(values.size()), &values.front().x);
+    _gl->glUniform4fv(find(uniform).location, static_cast<GLsizei>(values.size()), &values.front().x);
 }
 
-void FeedbackPass::setTexture(const char* uniform, int unit, GLuint texture)
+void FeedbackPass::setTexture(FeedbackScope& scope, const char* uniform, int unit, GLuint texture)
 {
-    _gl->glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
-    glBindTexture(GL_TEXTURE_BUFFER, texture);
-    _gl->glUniform1i(location(uniform), unit);
+    if (setInt(uniform, unit)) scope.bindTexture(unit, texture);
 }
 
 void FeedbackPass::begin(GLenum mode, std::size_t count, GLuint buffer, std::size_t byteOffset)
@@ -151,28 +171,26 @@ void FeedbackPass::begin(GLenum mode, std::size_t count, GLuint buffer, std::siz
     _gl->glBeginTransformFeedback(mode);
 }
 
-void FeedbackPass::end()
-{
-    _gl->glEndTransformFeedback();
-    _gl->glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, 0);
-}
-
 void FeedbackPass::run(std::size_t firstVertex, std::size_t count, GLuint buffer, std::size_t byteOffset)
 {
     if (count == 0) return;
     begin(GL_POINTS, count, buffer, byteOffset);
     glDrawArrays(GL_POINTS, static_cast<GLint>(firstVertex), static_cast<GLsizei>(count));
-    end();
+    _gl->glEndTransformFeedback();
 }
 
-void FeedbackPass::runInstanced(std::size_t vertexCount, std::size_t instanceCount, GLuint buffer,
-                                std::size_t byteOffset)
+void FeedbackPass::runInstanced(std::size_t vertexCount, std::size_t instanceCount, std::size_t firstInstance,
+                                GLuint buffer, std::size_t byteOffset)
 {
     if (vertexCount == 0 || instanceCount == 0) return;
     const GLenum mode = vertexCount % verticesOfFastest == 0 ? GL_TRIANGLES : GL_POINTS;
     begin(mode, vertexCount * instanceCount, buffer, byteOffset);
-    _gl->glDrawArraysInstanced(mode, 0, static_cast<GLsizei>(vertexCount), static_cast<GLsizei>(instanceCount));
-    end();
+    const auto vertices = static_cast<GLsizei>(vertexCount), instances = static_cast<GLsizei>(instanceCount);
+    if (firstInstance == 0)
+        _gl->glDrawArraysInstanced(mode, 0, vertices, instances);
+    else
+        _gl->glDrawArraysInstancedBaseInstance(mode, 0, vertices, instances, static_cast<GLuint>(firstInstance));
+    _gl->glEndTransformFeedback();
 }
 
 void FeedbackPass::release()

@@ -7,6 +7,8 @@
 
 #include <glm/vec4.hpp>
 
+#include <array>
+#include <cstdint>
 #include <initializer_list>
 #include <string>
 #include <unordered_map>
@@ -21,15 +23,22 @@ namespace osgGpuAnimation
 class FeedbackScope
 {
 public:
-    /// units: the passes bind buffer textures to the texture units [0, units).
-    FeedbackScope(osg::State& state, GLuint vertexArray, int units);
+    FeedbackScope(osg::State& state, GLuint vertexArray);
     ~FeedbackScope();
     FeedbackScope(const FeedbackScope&) = delete;
     FeedbackScope& operator=(const FeedbackScope&) = delete;
 
+    /// Binds a buffer texture to a unit below unitCount, unless the scope has bound it there.
+    void bindTexture(int unit, GLuint texture);
+    /// Call it after BufferTexture::reserve(), which leaves the active unit without a texture.
+    void forgetActiveTexture();
+
+    static constexpr int unitCount = 10;
+
 private:
     osg::State& _state;
-    int _units;
+    std::array<GLuint, unitCount> _textures{}; ///< by unit; 0: none
+    int _active = -1;                          ///< the active unit; -1: none of these
     osg::State::ApplyModeProxy _discard;
 };
 
@@ -44,13 +53,21 @@ public:
         osg::observer_ptr<osg::State> state; ///< null after the state's end
         GLuint pose = 0;                     ///< with the attributes of the pose pass
         GLuint empty = 0;                    ///< without attributes
+        // What the attributes of `pose` point to, by BufferTexture::serial(): calls that change nothing are left out.
+        std::uint64_t samples = 0;
+        std::size_t sampleStride = 0;
+        unsigned int sampleCount = 0; ///< enabled attributes
+        std::uint64_t roots = 0;
+        int rootDivisor = -1; ///< -1: disabled
+        std::uint64_t entries = 0;
+        std::size_t firstEntry = 0;
     };
 
     /// Creates no GL objects yet.
     explicit FeedbackVertexArrays(osg::GLExtensions& gl) : _gl(&gl) {}
 
     /// The names for a state, created at the first call. The state's context must be current.
-    const Names& of(osg::State& state);
+    Names& of(osg::State& state);
 
     /// Deletes the GL objects if only one state has some. With several states, each context deletes its own at its end.
     void release();
@@ -63,10 +80,10 @@ private:
 };
 
 /// One pass of the pipeline in one graphics context: a vertex shader whose outputs transform feedback captures. Use it
-/// within the lifetime of a FeedbackScope.
+/// within the lifetime of a FeedbackScope. Uniforms keep their values between frames; only changes are sent.
 ///
 ///     pass.use();
-///     pass.setTexture("keyframes", 0, buffers.keyframes().texture());
+///     pass.setTexture(scope, "keyframes", 0, buffers.keyframes().texture());
 ///     pass.run(firstVertex, count, out.buffer(), byteOffset);
 class FeedbackPass
 {
@@ -87,17 +104,24 @@ public:
 
     /// Makes the program current. Call it before the functions below.
     void use();
-    /// Sets an int uniform.
-    void setInt(const char* uniform, int value);
+    /// Sets an int uniform. False if the program does not use it.
+    bool setInt(const char* uniform, int value);
     /// Sets an array. values: one or more.
     void setVectors(const char* uniform, const std::vector<glm::vec4>& values);
-    /// Binds a buffer texture to a unit and points the sampler there.
-    void setTexture(const char* uniform, int unit, GLuint texture);
+    /// Binds a buffer texture to a unit and points the sampler there, if the program uses it.
+    void setTexture(FeedbackScope& scope, const char* uniform, int unit, GLuint texture);
     /// Draws the points [firstVertex, firstVertex + count) and writes 16 bytes per output and point into the buffer.
     void run(std::size_t firstVertex, std::size_t count, GLuint buffer, std::size_t byteOffset);
     /// Does the same for the vertices [0, vertexCount) of each GL instance, instance by instance. It draws triangles if
-    /// vertexCount is a multiple of 3, since llvmpipe has a fixed cost per primitive.
-    void runInstanced(std::size_t vertexCount, std::size_t instanceCount, GLuint buffer, std::size_t byteOffset);
+    /// vertexCount is a multiple of 3, since llvmpipe has a fixed cost per primitive. firstInstance: added to the index
+    /// of attributes with a divisor; other than 0 only if canOffsetInstances().
+    void runInstanced(std::size_t vertexCount, std::size_t instanceCount, std::size_t firstInstance, GLuint buffer,
+                      std::size_t byteOffset);
+    /// True if the context has OpenGL 4.2 or ARB_base_instance.
+    static bool canOffsetInstances(const osg::GLExtensions& gl)
+    {
+        return gl.glDrawArraysInstancedBaseInstance != nullptr;
+    }
 
     /// Deletes the program. The context must be current.
     void release();
@@ -105,15 +129,20 @@ public:
     void discard() { _program = 0; }
 
 private:
+    struct Uniform
+    {
+        GLint location = -1; ///< -1: the program does not use it
+        int value = 0;       ///< of an int uniform, GL's initial one at first
+    };
+
     void begin(GLenum mode, std::size_t count, GLuint buffer, std::size_t byteOffset);
-    void end();
-    GLint location(const char* uniform);
+    Uniform& find(const char* uniform);
     bool link(const char* name, const std::string& source, const std::vector<const char*>& outputs);
 
     osg::GLExtensions* _gl;
     GLuint _program = 0;
     std::size_t _bytesPerVertex;
-    std::unordered_map<std::string, GLint> _locations;
+    std::unordered_map<std::string, Uniform> _uniforms;
 };
 
 } // namespace osgGpuAnimation

@@ -32,9 +32,9 @@ namespace
 
 constexpr std::size_t matrixBytes = sizeof(AffineMatrix);
 constexpr int unitKeyframes = 0, unitSamples = 1, unitEntries = 2, unitRoots = 3, unitPrevious = 4, unitMasks = 5;
-constexpr int unitPosed = 6, unitCount = 7;
+constexpr int unitPosed = 6;
 constexpr int unitCorrections = 7, unitJointsAbove = 8, unitTargets = 9; // bound by batches with constraints only
-constexpr int unitCountWithConstraints = 10;
+static_assert(unitTargets < FeedbackScope::unitCount, "the scope unbinds all units");
 constexpr std::size_t rotationBytes = BufferTexture::texelBytes;
 
 constexpr std::initializer_list<const char*> rowOutputs{"row0", "row1", "row2"};
@@ -79,6 +79,7 @@ std::size_t correctionsOf(const AnimationSet& set)
 /// The input of the draws of one level of the palette.
 struct LevelInput
 {
+    FeedbackScope& scope;
     const AnimationSet& set;
     const AnimationBuffers& buffers;
     const ConstraintBuffers* constraints; ///< null: none
@@ -106,11 +107,14 @@ struct PosePipeline::Parts
     std::size_t chunkCapacity(const PoseBatch& batch) const;
     bool hasRoomForMasks(SetResources& resources, const PoseBatch& batch) const;
     SetResources& resourcesOf(const PoseBatch& batch);
-    bool evaluateFused(const PoseBatch& batch, AnimationBuffers& buffers, PosePalette::Chunk& chunk);
+    bool evaluateFused(FeedbackScope& scope, FeedbackVertexArrays::Names& arrays, const PoseBatch& batch,
+                       AnimationBuffers& buffers, PosePalette::Chunk& chunk);
     bool solveConstraint(const LevelInput& input, const PoseBatch& batch, std::size_t number, PoseVariant variant);
-    bool evaluateSeparate(const PoseBatch& batch, const AnimationBuffers& buffers, PosePalette::Chunk& chunk);
-    void useMixInput(FeedbackPass& pass, const AnimationSet& set, const AnimationBuffers& buffers,
+    bool evaluateSeparate(FeedbackScope& scope, const PoseBatch& batch, const AnimationBuffers& buffers,
+                          PosePalette::Chunk& chunk);
+    void useMixInput(FeedbackScope& scope, FeedbackPass& pass, const AnimationSet& set, const AnimationBuffers& buffers,
                      const PosePalette::Chunk& chunk);
+    void bindEntries(const BufferTexture& entries, std::size_t first, FeedbackVertexArrays::Names& arrays) const;
     void gatherOddLevels(const AnimationSet& set, const PosePalette::Chunk& chunk);
     void runSeparate(FeedbackPass& pass, std::size_t count, const BufferTexture& out);
 
@@ -223,16 +227,15 @@ bool PosePipeline::evaluate(osg::State& state, const PoseBatch& batch, std::size
         resources.palettes[slot]->upload(batch, _parts->chunkCapacity(batch), _counters.bytesUploaded);
     if (changed.empty()) return true;
 
-    const FeedbackVertexArrays::Names& vertexArrays = _parts->vertexArrays.of(state);
+    FeedbackVertexArrays::Names& vertexArrays = _parts->vertexArrays.of(state);
     const bool isConstrained = batch.needs().constraints != 0;
     const bool isFused = _options.form == Form::Fused || isConstrained;
-    const FeedbackScope scope(state, isFused ? vertexArrays.pose : vertexArrays.empty,
-                              isConstrained ? unitCountWithConstraints : unitCount);
+    FeedbackScope scope(state, isFused ? vertexArrays.pose : vertexArrays.empty);
     for (PosePalette::Chunk* chunk : changed)
     {
         chunk->palette.reserve(set.paletteSize() * chunk->width * matrixBytes);
-        chunk->isEvaluated = isFused ? _parts->evaluateFused(batch, *resources.buffers, *chunk)
-                                     : _parts->evaluateSeparate(batch, *resources.buffers, *chunk);
+        chunk->isEvaluated = isFused ? _parts->evaluateFused(scope, vertexArrays, batch, *resources.buffers, *chunk)
+                                     : _parts->evaluateSeparate(scope, batch, *resources.buffers, *chunk);
         if (!chunk->isEvaluated) return false;
         _counters.instancesEvaluated += chunk->size;
     }
@@ -269,17 +272,17 @@ bool PosePipeline::Parts::hasRoomForMasks(SetResources& resources, const PoseBat
     return false;
 }
 
-void PosePipeline::Parts::useMixInput(FeedbackPass& pass, const AnimationSet& set, const AnimationBuffers& buffers,
-                                      const PosePalette::Chunk& chunk)
+void PosePipeline::Parts::useMixInput(FeedbackScope& scope, FeedbackPass& pass, const AnimationSet& set,
+                                      const AnimationBuffers& buffers, const PosePalette::Chunk& chunk)
 {
     pass.use();
-    pass.setTexture("keyframes", unitKeyframes, buffers.keyframes().texture());
-    pass.setTexture("samples", unitSamples, chunk.samples.texture());
-    pass.setTexture("masks", unitMasks, buffers.masks().texture());
+    pass.setTexture(scope, "keyframes", unitKeyframes, buffers.keyframes().texture());
+    pass.setTexture(scope, "samples", unitSamples, chunk.samples.texture());
+    pass.setTexture(scope, "masks", unitMasks, buffers.masks().texture());
     pass.setInt("maskStride", static_cast<int>(AnimationBuffers::texelsPerMask(set)));
     if (!chunk.uploadedPosed.empty())
     {
-        pass.setTexture("posedKeyframes", unitPosed, chunk.posed.texture());
+        pass.setTexture(scope, "posedKeyframes", unitPosed, chunk.posed.texture());
         pass.setInt("firstPosed", static_cast<int>(chunk.firstPosed));
         pass.setInt("trackCount", static_cast<int>(set.trackCount()));
     }
@@ -291,19 +294,23 @@ void PosePipeline::Parts::useMixInput(FeedbackPass& pass, const AnimationSet& se
 
 // A buffer must not be read while feedback writes to it, so even levels are written to the palette and odd levels, one
 // after the other, to the scratch buffer. At the end the odd levels are copied to their places in the palette.
-bool PosePipeline::Parts::evaluateFused(const PoseBatch& batch, AnimationBuffers& buffers, PosePalette::Chunk& chunk)
+bool PosePipeline::Parts::evaluateFused(FeedbackScope& scope, FeedbackVertexArrays::Names& arrays,
+                                        const PoseBatch& batch, AnimationBuffers& buffers, PosePalette::Chunk& chunk)
 {
     const AnimationSet& set = batch.set();
     const std::uint64_t active = batch.needs().constraints;
     const ConstraintBuffers* constraints = active != 0 ? &buffers.constraints(set, active) : nullptr;
     if (set.levelCount() > 1) scratch.reserve(oddEntries(set) * chunk.width * matrixBytes);
     if (constraints) corrections.reserve(constraints->plan().correctionCount * chunk.width * rotationBytes);
-    chunk.bindInstances(*gl);
+    scope.forgetActiveTexture();
+    const BufferTexture& entries = constraints ? constraints->entries() : buffers.entries();
+    const bool canOffset = FeedbackPass::canOffsetInstances(*gl);
+    chunk.bindInstances(*gl, arrays);
+    bindEntries(entries, 0, arrays);
     PoseVariant variant = PoseVariant::of(batch);
     if (chunk.hasSamplesAsAttributes()) variant.sampleCount = static_cast<int>(chunk.sampleStride);
     variant.isRootLevel = true;
     variant.hasRoots = !chunk.uploadedRootMatrices.empty();
-    const std::size_t entryBytes = POSE_TEXELS_PER_ENTRY * BufferTexture::texelBytes;
     const std::vector<std::size_t>& levels = set.levels();
     const FeedbackPass* current = nullptr;
     std::size_t solvedSteps = 0; // of the constraints
@@ -314,22 +321,26 @@ bool PosePipeline::Parts::evaluateFused(const PoseBatch& batch, AnimationBuffers
         if (level == 1) variant.isRootLevel = variant.hasRoots = variant.hasWeights = false;
         const bool isOdd = level % 2 != 0;
         const std::size_t count = levels[level + 1] - levels[level];
-        const LevelInput input{
-            set, buffers, constraints, chunk, (isOdd ? chunk.palette : scratch).texture(), isOdd ? 0 : firstParent};
+        const LevelInput input{scope,
+                               set,
+                               buffers,
+                               constraints,
+                               chunk,
+                               (isOdd ? chunk.palette : scratch).texture(),
+                               isOdd ? 0 : firstParent};
         for (; constraints && constraints->isSolvedBefore(level, solvedSteps); ++solvedSteps, current = nullptr)
             if (!solveConstraint(input, batch, solvedSteps, variant)) return false;
         variant.setMotion(buffers.levels()[level]);
         variant.hasConstraints = constraints && constraints->hasCorrections(level);
         FeedbackPass& pass = posePass(variant);
         if (!pass.valid()) return false;
-        if (&pass != current) useMixInput(pass, set, buffers, chunk);
+        if (&pass != current) useMixInput(scope, pass, set, buffers, chunk);
         current = &pass;
-        pass.setTexture("parentLevels", unitPrevious, input.parentLevels);
+        pass.setTexture(scope, "parentLevels", unitPrevious, input.parentLevels);
         pass.setInt("firstParent", static_cast<int>(input.firstParent));
-        if (variant.hasConstraints) pass.setTexture("corrections", unitCorrections, corrections.texture());
-        (constraints ? constraints->entries() : buffers.entries())
-            .bindAttributes(POSE_HEAD_LOCATION, POSE_TEXELS_PER_ENTRY, entryBytes, levels[level] * entryBytes, 1);
-        pass.runInstanced(chunk.width, count, (isOdd ? scratch : chunk.palette).buffer(),
+        if (variant.hasConstraints) pass.setTexture(scope, "corrections", unitCorrections, corrections.texture());
+        if (!canOffset) bindEntries(entries, levels[level], arrays);
+        pass.runInstanced(chunk.width, count, canOffset ? levels[level] : 0, (isOdd ? scratch : chunk.palette).buffer(),
                           (isOdd ? oddEntry : levels[level]) * chunk.width * matrixBytes);
         ++pipeline._counters.feedbackDraws;
         if (!isOdd) continue;
@@ -338,6 +349,16 @@ bool PosePipeline::Parts::evaluateFused(const PoseBatch& batch, AnimationBuffers
     }
     gatherOddLevels(set, chunk);
     return true;
+}
+
+void PosePipeline::Parts::bindEntries(const BufferTexture& entries, std::size_t first,
+                                      FeedbackVertexArrays::Names& arrays) const
+{
+    if (arrays.entries == entries.serial() && arrays.firstEntry == first) return;
+    const std::size_t stride = POSE_TEXELS_PER_ENTRY * BufferTexture::texelBytes;
+    entries.bindAttributes(POSE_HEAD_LOCATION, POSE_TEXELS_PER_ENTRY, stride, first * stride, 1);
+    arrays.entries = entries.serial();
+    arrays.firstEntry = first;
 }
 
 // The draw reads the rotations of the constraints before, so it writes to a buffer of its own.
@@ -350,23 +371,24 @@ bool PosePipeline::Parts::solveConstraint(const LevelInput& input, const PoseBat
     variant.hasWeights = variant.hasConstraints = false;
     FeedbackPass& pass = constraintPass(shape, variant);
     if (!pass.valid()) return false;
-    // Before the textures are bound: new storage unbinds that of the active unit.
     const std::size_t jointBytes = input.chunk.width * rotationBytes;
     const std::size_t bytes = static_cast<std::size_t>(shape.chainLength) * jointBytes;
+    FeedbackScope& scope = input.scope;
     solved.reserve(bytes);
-    useMixInput(pass, input.set, input.buffers, input.chunk);
-    pass.setTexture("parentLevels", unitPrevious, input.parentLevels);
+    scope.forgetActiveTexture();
+    useMixInput(scope, pass, input.set, input.buffers, input.chunk);
+    pass.setTexture(scope, "parentLevels", unitPrevious, input.parentLevels);
     pass.setInt("firstParent", static_cast<int>(input.firstParent));
     pass.setVectors("constraint", input.constraints->constants(number));
     if (shape.aboveLength > 0)
     {
-        pass.setTexture("jointsAbove", unitJointsAbove, input.constraints->jointsAbove().texture());
+        pass.setTexture(scope, "jointsAbove", unitJointsAbove, input.constraints->jointsAbove().texture());
         pass.setInt("firstAbove", input.constraints->firstAbove(number));
     }
-    pass.setTexture("corrections", unitCorrections, corrections.texture());
-    pass.setTexture("targets", unitTargets, input.chunk.targets.texture());
+    pass.setTexture(scope, "corrections", unitCorrections, corrections.texture());
+    pass.setTexture(scope, "targets", unitTargets, input.chunk.targets.texture());
     pass.setInt("targetStride", static_cast<int>(input.set.constraints().size()));
-    pass.runInstanced(input.chunk.width, 1, solved.buffer(), 0);
+    pass.runInstanced(input.chunk.width, 1, 0, solved.buffer(), 0);
     ++pipeline._counters.feedbackDraws;
     gl->glBindBuffer(GL_COPY_READ_BUFFER, solved.buffer());
     gl->glBindBuffer(GL_COPY_WRITE_BUFFER, corrections.buffer());
@@ -402,13 +424,14 @@ void PosePipeline::Parts::runSeparate(FeedbackPass& pass, std::size_t count, con
     ++pipeline._counters.feedbackDraws;
 }
 
-bool PosePipeline::Parts::evaluateSeparate(const PoseBatch& batch, const AnimationBuffers& buffers,
-                                           PosePalette::Chunk& chunk)
+bool PosePipeline::Parts::evaluateSeparate(FeedbackScope& scope, const PoseBatch& batch,
+                                           const AnimationBuffers& buffers, PosePalette::Chunk& chunk)
 {
     const AnimationSet& set = batch.set();
     const std::size_t trackVertices = set.trackCount() * chunk.width;
     mixedTracks.reserve(trackVertices * sizeof(JointTransform));
     scratch.reserve(trackVertices * matrixBytes);
+    scope.forgetActiveTexture();
 
     makeSeparatePasses();
     PoseVariant variant = PoseVariant::of(batch);
@@ -417,21 +440,21 @@ bool PosePipeline::Parts::evaluateSeparate(const PoseBatch& batch, const Animati
     variant.scaleMotion = std::max(variant.scaleMotion, PartMotion::Constant);
     FeedbackPass& mixing = mixPass(variant);
     if (!mixing.valid() || !localPass->valid() || !worldPass->valid()) return false;
-    useMixInput(mixing, set, buffers, chunk);
+    useMixInput(scope, mixing, set, buffers, chunk);
     runSeparate(mixing, trackVertices, mixedTracks);
 
     localPass->use();
-    localPass->setTexture("mixedTracks", unitPrevious, mixedTracks.texture());
+    localPass->setTexture(scope, "mixedTracks", unitPrevious, mixedTracks.texture());
     localPass->setInt("instanceCount", static_cast<int>(chunk.width));
     localPass->setInt("jointCount", static_cast<int>(set.skeleton().jointCount()));
     runSeparate(*localPass, trackVertices, scratch);
 
     worldPass->use();
     worldPass->setInt("instanceCount", static_cast<int>(chunk.width));
-    worldPass->setTexture("entries", unitEntries, buffers.entries().texture());
-    worldPass->setTexture("roots", unitRoots, chunk.roots.texture());
+    worldPass->setTexture(scope, "entries", unitEntries, buffers.entries().texture());
+    worldPass->setTexture(scope, "roots", unitRoots, chunk.roots.texture());
     worldPass->setInt("rootCount", static_cast<int>(chunk.uploadedRootMatrices.size()));
-    worldPass->setTexture("localMatrices", unitPrevious, scratch.texture());
+    worldPass->setTexture(scope, "localMatrices", unitPrevious, scratch.texture());
     runSeparate(*worldPass, set.paletteSize() * chunk.width, chunk.palette);
     return true;
 }

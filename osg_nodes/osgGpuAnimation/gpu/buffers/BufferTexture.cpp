@@ -4,6 +4,7 @@
 #include <osg/Texture>
 
 #include <algorithm>
+#include <atomic>
 #include <cassert>
 
 namespace osgGpuAnimation
@@ -11,6 +12,8 @@ namespace osgGpuAnimation
 
 void BufferTexture::create()
 {
+    static std::atomic<std::uint64_t> last{0};
+    _serial = ++last;
     _gl->glGenBuffers(1, &_buffer);
     glGenTextures(1, &_texture);
 }
@@ -76,6 +79,7 @@ void BufferTexture::discard()
 {
     _buffer = 0;
     _texture = 0;
+    _serial = 0;
     _capacity = 0;
 }
 

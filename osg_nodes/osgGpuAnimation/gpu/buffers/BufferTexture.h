@@ -4,6 +4,7 @@
 #include <osg/GLExtensions>
 
 #include <cstddef>
+#include <cstdint>
 
 namespace osgGpuAnimation
 {
@@ -34,6 +35,8 @@ public:
     void bindAttributes(unsigned int location, unsigned int count, std::size_t stride, std::size_t byteOffset,
                         unsigned int divisor) const;
 
+    /// Identifies the buffer object among all that were ever created, as GL names do not; 0: none.
+    std::uint64_t serial() const { return _serial; }
     GLuint buffer() const { return _buffer; }
     GLuint texture() const { return _texture; }
 
@@ -47,6 +50,7 @@ private:
     GLenum _format;
     GLuint _buffer = 0;
     GLuint _texture = 0;
+    std::uint64_t _serial = 0;
     std::size_t _capacity = 0;
 };
 

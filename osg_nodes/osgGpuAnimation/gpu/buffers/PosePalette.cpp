@@ -68,21 +68,27 @@ bool PosePalette::Chunk::hasSamplesAsAttributes() const
     return sampleStride <= POSE_SAMPLES_AS_ATTRIBUTES;
 }
 
-void PosePalette::Chunk::bindInstances(osg::GLExtensions& gl) const
+void PosePalette::Chunk::bindInstances(osg::GLExtensions& gl, FeedbackVertexArrays::Names& arrays) const
 {
     // Compatibility profiles require attribute 0, so one sample is bound even if the shader fetches all samples.
     const unsigned int sampleCount = hasSamplesAsAttributes() ? static_cast<unsigned int>(sampleStride) : 1u;
-    samples.bindAttributes(POSE_SAMPLE_LOCATION, sampleCount, sampleStride * sizeof(BlendSample), 0, 0);
-    for (unsigned int unused = sampleCount; unused < POSE_SAMPLES_AS_ATTRIBUTES; ++unused)
+    if (arrays.samples != samples.serial() || arrays.sampleStride != sampleStride || arrays.sampleCount != sampleCount)
+        samples.bindAttributes(POSE_SAMPLE_LOCATION, sampleCount, sampleStride * sizeof(BlendSample), 0, 0);
+    for (unsigned int unused = sampleCount; unused < arrays.sampleCount; ++unused)
         gl.glDisableVertexAttribArray(POSE_SAMPLE_LOCATION + unused);
+    arrays.samples = samples.serial();
+    arrays.sampleStride = sampleStride;
+    arrays.sampleCount = sampleCount;
     // One matrix for all instances is the first element for every GL instance, which is a palette entry.
-    constexpr unsigned int never = 1u << 30;
-    if (!uploadedRootMatrices.empty())
+    constexpr int never = 1 << 30;
+    const int divisor = uploadedRootMatrices.empty() ? -1 : uploadedRootMatrices.size() == 1 ? never : 0;
+    if (divisor >= 0 && (arrays.roots != roots.serial() || arrays.rootDivisor != divisor))
         roots.bindAttributes(POSE_ROOT_LOCATION, POSE_TEXELS_PER_MATRIX, sizeof(AffineMatrix), 0,
-                             uploadedRootMatrices.size() == 1 ? never : 0);
-    else
-        for (unsigned int row = 0; row < POSE_TEXELS_PER_MATRIX; ++row)
-            gl.glDisableVertexAttribArray(POSE_ROOT_LOCATION + row);
+                             static_cast<unsigned int>(divisor));
+    for (unsigned int row = 0; divisor < 0 && arrays.rootDivisor >= 0 && row < POSE_TEXELS_PER_MATRIX; ++row)
+        gl.glDisableVertexAttribArray(POSE_ROOT_LOCATION + row);
+    arrays.roots = roots.serial();
+    arrays.rootDivisor = divisor;
 }
 
 std::size_t PosePalette::posedTexels(const PoseBatch& batch)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <osgGpuAnimation/gpu/buffers/BufferTexture.h>
+#include <osgGpuAnimation/gpu/FeedbackPass.h>
 #include <osgGpuAnimation/gpu/PoseBatch.h>
 
 #include <cstdint>
@@ -22,8 +23,8 @@ public:
 
         /// True if the pose pass gets all samples as attributes; otherwise it fetches them.
         bool hasSamplesAsAttributes() const;
-        /// Binds the instances as the vertices of the pose pass.
-        void bindInstances(osg::GLExtensions& gl) const;
+        /// Binds the instances as the vertices of the pose pass, in its vertex array object.
+        void bindInstances(osg::GLExtensions& gl, FeedbackVertexArrays::Names& arrays) const;
 
         std::size_t size = 0;  ///< instances
         std::size_t width = 0; ///< widthOf(size): the palette's stride

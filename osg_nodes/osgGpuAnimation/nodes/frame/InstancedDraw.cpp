@@ -126,19 +126,23 @@ void bindPalette(osg::State& state, const PalettePlace& place, int influences, i
     static const unsigned int tintsName = osg::Uniform::getNameID("poseTints");
     static const unsigned int tintedName = osg::Uniform::getNameID("poseTinted");
     const osg::GLExtensions* gl = state.get<osg::GLExtensions>();
+    const auto set = [&](unsigned int name, int value)
+    {
+        if (const GLint location = program->getUniformLocation(name); location >= 0) gl->glUniform1i(location, value);
+    };
     state.setActiveTextureUnit(POSE_PALETTE_UNIT);
     glBindTexture(GL_TEXTURE_BUFFER, place.texture);
-    gl->glUniform1i(program->getUniformLocation(paletteName), POSE_PALETTE_UNIT);
-    gl->glUniform1i(program->getUniformLocation(strideName), place.stride);
-    gl->glUniform1i(program->getUniformLocation(instanceName), place.instance);
-    gl->glUniform1i(program->getUniformLocation(influencesName), influences);
+    set(paletteName, POSE_PALETTE_UNIT);
+    set(strideName, place.stride);
+    set(instanceName, place.instance);
+    set(influencesName, influences);
     if (rigidEntry >= 0)
     {
         gl->glVertexAttrib4f(POSE_ENTRIES_0_LOCATION, static_cast<GLfloat>(rigidEntry), 0, 0, 0);
         gl->glVertexAttrib4f(POSE_WEIGHTS_0_LOCATION, 1, 0, 0, 0);
     }
-    gl->glUniform1i(program->getUniformLocation(tintsName), POSE_TINT_UNIT);
-    gl->glUniform1i(program->getUniformLocation(tintedName), place.tints != 0 ? 1 : 0);
+    set(tintsName, POSE_TINT_UNIT);
+    set(tintedName, place.tints != 0 ? 1 : 0);
     if (place.tints != 0)
     {
         state.setActiveTextureUnit(POSE_TINT_UNIT);

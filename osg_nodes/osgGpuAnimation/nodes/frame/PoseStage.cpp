@@ -130,6 +130,8 @@ void PoseStage::attach(osgUtil::CullVisitor& visitor)
     osgUtil::RenderBin* current = visitor.getCurrentRenderBin();
     visitor.setCurrentRenderBin(visitor.getRenderStage());
     accept(visitor);
+    for (auto& [order, stage] : visitor.getRenderStage()->getPreRenderList())
+        if (stage->getCamera() == this) stage->setInheritedPositionalStateContainer(nullptr); // lights nothing
     visitor.setCurrentRenderBin(current);
 }
 

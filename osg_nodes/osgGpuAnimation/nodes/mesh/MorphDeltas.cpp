@@ -150,11 +150,13 @@ bool bindMorphTargets(osg::State& state, const MorphDeltas& deltas, std::size_t 
     static const unsigned int tangentsName = osg::Uniform::getNameID("poseMorphTangents");
     const osg::Program::PerContextProgram* program = state.getLastAppliedProgramObject();
     if (!program) return true;
-    const osg::GLExtensions* gl = state.get<osg::GLExtensions>();
-    gl->glUniform1i(program->getUniformLocation(deltasName), POSE_MORPH_UNIT);
+    const GLint deltasLocation = program->getUniformLocation(deltasName);
     const PosePipeline* pipeline = PosePipeline::of(state);
     const bool fits = deltas.texture && pipeline &&
                       static_cast<std::size_t>(deltas.texture->getImage()->s()) <= pipeline->getMaxTexels();
+    if (deltasLocation < 0) return fits || !deltas.texture; // a program without morph targets
+    const osg::GLExtensions* gl = state.get<osg::GLExtensions>();
+    gl->glUniform1i(deltasLocation, POSE_MORPH_UNIT);
     const GLint targets = fits ? static_cast<GLint>(targetCount) : 0;
     gl->glUniform2i(program->getUniformLocation(morphName), targets, entry);
     if (!fits) return !deltas.texture;

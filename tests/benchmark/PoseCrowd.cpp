@@ -168,7 +168,7 @@ Spent FeedbackFloor::step()
         if (_primitive == Primitive::Points)
             _pass.run(0, _matrices, _out.buffer(), 0);
         else
-            _pass.runInstanced(_matrices, 1, _out.buffer(), 0);
+            _pass.runInstanced(_matrices, 1, 0, _out.buffer(), 0);
     }
     glFinish();
     return stopwatch.elapsed();

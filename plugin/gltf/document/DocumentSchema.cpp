@@ -48,19 +48,22 @@ constexpr SchemaRule accessor[] = {index("bufferView", "bufferViews"),
                                    name};
 
 constexpr SchemaRule fallback[] = {rule("fallback", Kind::Boolean)};
-constexpr SchemaRule bufferExtensions[] = {object("EXT_meshopt_compression", fallback)};
+constexpr SchemaRule bufferExtensions[] = {object("EXT_meshopt_compression", fallback),
+                                           object("KHR_meshopt_compression", fallback)};
 
 constexpr SchemaRule buffer[] = {text("uri"), integer("byteLength").from(1).required(), name,
                                  object("extensions", bufferExtensions)};
 
+// decompressMeshopt() refuses COLOR, so that a document with uncompressed data beside it is read.
 constexpr SchemaRule meshopt[] = {index("buffer", "buffers").required(),
                                   integer("byteOffset"),
                                   integer("byteLength").from(1).required(),
                                   integer("byteStride").from(1).upTo(256).required(),
                                   integer("count").from(1).required(),
                                   choice("mode", "ATTRIBUTES TRIANGLES INDICES").required(),
-                                  choice("filter", "NONE OCTAHEDRAL QUATERNION EXPONENTIAL")};
-constexpr SchemaRule bufferViewExtensions[] = {object("EXT_meshopt_compression", meshopt)};
+                                  choice("filter", "NONE OCTAHEDRAL QUATERNION EXPONENTIAL COLOR")};
+constexpr SchemaRule bufferViewExtensions[] = {object("EXT_meshopt_compression", meshopt),
+                                               object("KHR_meshopt_compression", meshopt)};
 
 constexpr SchemaRule bufferView[] = {
     index("buffer", "buffers").required(),      integer("byteOffset"),

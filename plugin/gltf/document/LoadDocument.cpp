@@ -355,6 +355,16 @@ Result<Bytes> readBinaryChunk(std::string_view binary, std::size_t byteLength, R
     return Bytes(binary.begin(), binary.begin() + std::ptrdiff_t(byteLength));
 }
 
+bool isMeshoptFallback(const JsonValue& buffer)
+{
+    for (const char* const extension : meshoptExtensions)
+    {
+        const JsonValue fallback = buffer["extensions"][extension]["fallback"];
+        if (fallback && fallback.boolean()) return true;
+    }
+    return false;
+}
+
 /// Fills model.buffers, each with byteLength bytes exactly: from its data URI, its external file (which may be longer),
 /// or the BIN chunk (glTF 2.0, section 3.6.1). A buffer without any of them stays empty; validateAccessors() refuses
 /// references to it.
@@ -373,8 +383,7 @@ std::optional<Error> loadBuffers(const JsonValue& buffers, const std::optional<s
         read(buffer["name"], loaded.name);
         if (!uri && !(i == 0 && binary))
         {
-            const JsonValue fallback = buffer["extensions"]["EXT_meshopt_compression"]["fallback"];
-            if (!fallback || !fallback.boolean())
+            if (!isMeshoptFallback(buffer))
                 report.warn(name + ": expected a uri or a BIN chunk, found neither; the buffer is empty");
             continue;
         }

@@ -147,6 +147,7 @@ constexpr SchemaRule specularGlossiness[] = {number("diffuseFactor").list(4, 4).
                                              number("specularFactor").list(3, 3).clamped(0, 1).orLeaveOut(),
                                              unit("glossinessFactor"), map("specularGlossinessTexture")};
 constexpr SchemaRule materialExtensions[] = {
+    rule("MSFT_lod", Kind::Object).orLeaveOut(), // not read: validateLods() notes it
     rule("KHR_materials_unlit", Kind::Object).orLeaveOut(),
     object("KHR_materials_emissive_strength", emissiveStrength).orLeaveOut(),
     object("KHR_materials_ior", ior).orLeaveOut(),
@@ -189,7 +190,10 @@ constexpr SchemaRule mesh[] = {object("primitives", primitive).list().required()
 constexpr SchemaRule instancing[] = {indexMap("attributes", "accessors").required()};
 // checkViewRules() checks the lights, so that a faulty one costs only itself.
 constexpr SchemaRule punctual = rule("KHR_lights_punctual", Kind::Any);
-constexpr SchemaRule nodeExtensions[] = {object("EXT_mesh_gpu_instancing", instancing), punctual};
+// validateLods() checks which nodes may be levels.
+constexpr SchemaRule lod[] = {index("ids", "nodes").list().required().orLeaveOut()};
+constexpr SchemaRule nodeExtensions[] = {object("EXT_mesh_gpu_instancing", instancing), punctual,
+                                         object("MSFT_lod", lod).orLeaveOut()};
 
 constexpr SchemaRule node[] = {index("camera", "cameras"),
                                index("children", "nodes").list(),

@@ -8,6 +8,7 @@
 #include "gltf/document/JsonReader.h"
 #include "gltf/document/MemoryBudget.h"
 #include "gltf/document/ValidateAccessors.h"
+#include "gltf/document/ValidateLods.h"
 #include "gltf/document/ValidateMeshes.h"
 #include "gltf/document/ValidateNodes.h"
 #include "gltf/file/ModelBytes.h"
@@ -424,6 +425,7 @@ Result<tinygltf::Model> load(const std::string& bytes, const std::string& fileNa
     if (!error) error = decompressDraco(document["meshes"], budget, model);
     if (!error) error = validateAccessors(model, known, budget);
     if (!error) error = validateNodes(model, options.maxNodeDepth, report);
+    if (!error) validateLods(model, report);
     if (!error) error = validateMeshes(model, budget, report);
     if (!error) error = validateAnimations(model, report);
     if (error) return *error;

@@ -74,6 +74,10 @@ const std::vector<Option>& allOptions()
          "the name of a file",
          [](const std::string& value, ImportOptions& options)
          { return !options.clipsFiles.emplace_back(value).empty(); }},
+        {{"clipJoints=FILE",
+          "joints of the model and their counterparts in clips=FILE, as JSON: {\"Hips\": \"pelvis\"}"},
+         "the name of a file",
+         [](const std::string& value, ImportOptions& options) { return !(options.clipJoints = value).empty(); }},
         {{"start=SECONDS", "start time in that clip; beyond its end: its end"},
          seconds,
          [](const std::string& value, ImportOptions& options)

@@ -29,7 +29,9 @@ struct ImportOptions
     /// Files whose clips follow the model's own, see readClipFiles(): relative to the model's folder, else to the
     /// current one; in or below the model's folder, or anywhere with allowOutsideFiles.
     std::vector<std::string> clipsFiles;
-    bool allowOutsideClips = false; ///< clipsFiles alone may be anywhere
+    /// A JSON file of joint names for clipsFiles, see readClipFiles(); found as those are. Empty: none.
+    std::string clipJoints;
+    bool allowOutsideClips = false; ///< clipsFiles and clipJoints alone may be anywhere
     bool noKeys = false;            ///< no CharacterKeys on the character
     std::optional<int> scene;       ///< default: the file's own, else 0
     bool noLights = false;          ///< leave the file's lights out

@@ -140,6 +140,7 @@ TEST_F(ToolTest, aFaultyFileEndsWithStatus1AndOneLine)
         {{"inspect", cutGlb}, cutGlb, ""},
         {{"inspect", "/dev/zero"}, "/dev/zero", "not a regular file"},
         {{"inspect", "FLAG", "--clips", missing}, missing, "no such file"},
+        {{"inspect", "FLAG", "--clip-joints", missing}, missing, "no such file"},
         {{"pose", missing, "--time", "0"}, missing, "no such file"},
         {{"render", missing, "-o", folder.file("x.png")}, missing, "no such file"},
         {{"render", flag + ".studio", "-o", folder.file("x.png")}, flag + ".studio", "osggpuanim render " + flag + "`"},

@@ -136,7 +136,8 @@ void addClips(CLI::App& command, std::vector<std::string>& files, std::string& j
 {
     command
         .add_option("--clips", files,
-                    "Add the clips of another .gltf or .glb, for joints of the same names; may come again")
+                    "Add the clips of another file (.gltf, .glb and what Assimp reads), for joints of the same names; "
+                    "may come again")
         ->option_text("FILE")
         ->allow_extra_args(false);
     command

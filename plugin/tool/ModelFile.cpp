@@ -45,6 +45,9 @@ Result<gltf::ImportOptions> importOptions(const std::vector<std::string>& clipsF
 {
     gltf::ImportOptions options;
     options.allowOutsideClips = true;
+#ifdef OSGGPUANIMATION_ASSIMP
+    options.otherFormats = assimp::readAsGlb;
+#endif
     std::error_code failure;
     for (const std::string& file : clipsFiles)
     {

@@ -240,6 +240,32 @@ TEST_F(ToolTest, clipsOfOtherFilesAreAdded)
     EXPECT_NE(warned.err.find("bad.gltf"), std::string::npos) << warned.err;
 }
 
+#ifdef OSGGPUANIMATION_ASSIMP
+TEST_F(ToolTest, clipsOfOtherFormatsAreAdded)
+{
+    const std::string other = folder.write("nod.bvh", R"(HIERARCHY
+ROOT hinge
+{
+    OFFSET 0 0 0
+    CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation
+    End Site
+    {
+        OFFSET 0 1 0
+    }
+}
+MOTION
+Frames: 2
+Frame Time: 0.5
+0 0 0 0 0 0
+0 1 0 0 0 0
+)");
+    const Process done = run({"inspect", "FLAG", "--clips", other, "--json"});
+    ASSERT_EQ(done.status, 0) << done.err;
+    const json clips = json::parse(done.out)["clips"];
+    ASSERT_EQ(clips.size(), 3u) << done.err;
+}
+#endif
+
 TEST_F(ToolTest, inspectSaysHowFarCompactClipsAreOff)
 {
     const Process done = run({"inspect", "FLAG", "--compact", "1e-3", "--json"});

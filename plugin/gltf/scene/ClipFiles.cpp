@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <iterator>
 #include <optional>
+#include <string_view>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -33,13 +34,37 @@ bool saysNothing(const std::string& clipName)
     return clipName.empty() || clipName.find("mixamo.com") != std::string::npos || clipName == "Take 001";
 }
 
+/// By its name or its first bytes. What is no regular file counts as one: reading it has the message.
+bool isGltf(const std::string& path)
+{
+    const std::string extension = osgDB::getLowerCaseFileExtension(path);
+    const Result<RegularFile> file = RegularFile::open(path);
+    char beginning[4] = {};
+    if (extension == "gltf" || extension == "glb" || !file || !file.value().read(beginning, sizeof beginning))
+        return true;
+    return std::string_view(beginning, sizeof beginning) == "glTF" || beginning[0] == '{';
+}
+
+/// The file as glTF. subject: begins each warning.
+Result<std::string> readAsGltf(const std::string& path, const ImportOptions& options, const std::string& subject,
+                               Report& report)
+{
+    if (!options.otherFormats || isGltf(path)) return readModelFile(path, options);
+    Messages messages;
+    Report ownReport(messages);
+    Result<std::string> bytes = options.otherFormats(path, options, ownReport);
+    for (const std::string& warning : messages.warnings)
+        if (warning.rfind("picture ", 0) != 0) report.warn(subject + ": " + warning); // clips need no pictures
+    return bytes;
+}
+
 /// The joints, morphs and clips of a file. subject: begins each of its warnings.
 Result<std::shared_ptr<const AnimationSet>> readSet(const std::string& path, const ImportOptions& options,
                                                     const std::string& subject, Report& report)
 {
     ImportOptions own = options;
     own.scene.reset();
-    const Result<std::string> bytes = readModelFile(path, own);
+    const Result<std::string> bytes = readAsGltf(path, own, subject, report);
     if (!bytes) return bytes.error();
     Messages messages;
     Report ownReport(messages);

@@ -40,7 +40,8 @@ ClipJoints readClipJoints(const std::string& modelFile, const ImportOptions& opt
 void warnOfUnknownJoints(const ClipJoints& joints, const Skeleton& model, const std::vector<ClipFile>& files,
                          Report& report);
 
-/// Reads the clips of all files that the options name; files without meshes are valid. A file that cannot be read, has
+/// Reads the clips of all files that the options name; files without meshes are valid. Files that are no glTF need
+/// options.otherFormats. A file that cannot be read, has
 /// no clips, or is named twice, is left out with a warning.
 ///
 /// A clip whose name says nothing (none, Mixamo's `mixamo.com`, FBX's `Take 001`) is named after its file.

@@ -64,11 +64,14 @@ std::vector<std::string> splitAtCommas(const std::string& text)
     return parts;
 }
 
-/// True for `clips=FILE`, the model's option: the value ends in .glb or .gltf. Others are names of clips.
+/// True for `clips=FILE`, the model's option: the value ends in the extension of a format that has characters. Others
+/// are names of clips, with dots, too: `mixamo.com`.
 bool namesClipsFile(const gltf::OptionWord& word)
 {
+    constexpr const char* formats[] = {"glb", "gltf", "fbx",     "bvh",     "dae",  "x",
+                                       "smd", "b3d",  "md5mesh", "md5anim", "ms3d", "ogex"};
     const std::string extension = osgDB::getLowerCaseFileExtension(word.value.value_or(""));
-    return word.name == "clips" && (extension == "glb" || extension == "gltf");
+    return word.name == "clips" && std::find(std::begin(formats), std::end(formats), extension) != std::end(formats);
 }
 
 /// The values that the option accepts, for messages.

@@ -91,7 +91,7 @@ public:
              ImportedModel& result)
         : _model(model), _fileName(osgDB::getStrippedName(fileName)), _options(options), _result(result),
           _report(result.messages), _budget(options.maxDecodedBytes), _textures(model, _report, !options.fixedLighting),
-          _clipFiles(readClipFiles(fileName, options, _report))
+          _clipFiles(readClipFiles(fileName, options, _report)), _clipJoints(readClipJoints(fileName, options, _report))
     {
     }
 
@@ -117,6 +117,7 @@ private:
     MemoryBudget _budget;
     Textures _textures; ///< starts decoding in its constructor
     const std::vector<ClipFile> _clipFiles;
+    const ClipJoints _clipJoints; ///< of those files
 };
 
 Result<bool> Importer::makeSet(const NodeTree& tree, const Joints& joints, const Morphs& morphs)
@@ -150,7 +151,8 @@ void Importer::addClipFiles()
 {
     int animation = static_cast<int>(_model.animations.size());
     for (const ClipFile& file : _clipFiles)
-        _result.set = withClipsOf(_result.set, file, _budget, _report);
+        _result.set = withClipsOf(_result.set, file, _clipJoints, _budget, _report);
+    warnOfUnknownJoints(_clipJoints, _result.set->skeleton(), _clipFiles, _report);
     while (_result.animationOfClip.size() < _result.set->clips().size())
         _result.animationOfClip.push_back(animation++);
 }
@@ -254,7 +256,7 @@ Result<bool> Importer::run()
 {
     const Result<NodeTree> tree = buildNodeTree(_model, _options);
     if (!tree) return tree.error();
-    const Result<Joints> joints = buildJoints(_model, tree.value(), nodesMovedBy(_clipFiles, _model));
+    const Result<Joints> joints = buildJoints(_model, tree.value(), nodesMovedBy(_clipFiles, _clipJoints, _model));
     if (!joints) return joints.error();
     const Morphs morphs = readMorphs(_model);
     const Result<bool> made = makeSet(tree.value(), joints.value(), morphs);

@@ -70,10 +70,15 @@ const std::vector<Option>& allOptions()
         {{"clip=NAME|INDEX", "the clip that plays at first, by name or by number; default: the first"},
          "a name or a number",
          [](const std::string& value, ImportOptions& options) { return !options.clip.emplace(value).empty(); }},
-        {{"clips=FILE", "adds the clips of another file, for the joints of the same names; may come again"},
+        {{"clips=FILE", "adds the clips of another file of any format with a reader, for the joints of the same names; "
+                        "may come again"},
          "the name of a file",
          [](const std::string& value, ImportOptions& options)
          { return !options.clipsFiles.emplace_back(value).empty(); }},
+        {{"clipJoints=FILE",
+          "joints of the model and their counterparts in clips=FILE, as JSON: {\"Hips\": \"pelvis\"}"},
+         "the name of a file",
+         [](const std::string& value, ImportOptions& options) { return !(options.clipJoints = value).empty(); }},
         {{"start=SECONDS", "start time in that clip; beyond its end: its end"},
          seconds,
          [](const std::string& value, ImportOptions& options)

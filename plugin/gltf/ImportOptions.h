@@ -14,6 +14,12 @@
 namespace osgGpuAnimation::gltf
 {
 
+class Report;
+struct ImportOptions;
+
+/// Reads a file of another format as glTF; report: warnings about it. Errors: it cannot.
+using OtherFormats = Result<std::string> (*)(const std::string& path, const ImportOptions& options, Report& report);
+
 /// The caller's choices for an import, and the limits that keep a file from any origin harmless.
 struct ImportOptions
 {
@@ -29,11 +35,14 @@ struct ImportOptions
     /// Files whose clips follow the model's own, see readClipFiles(): relative to the model's folder, else to the
     /// current one; in or below the model's folder, or anywhere with allowOutsideFiles.
     std::vector<std::string> clipsFiles;
-    bool allowOutsideClips = false; ///< clipsFiles alone may be anywhere
-    bool noKeys = false;            ///< no CharacterKeys on the character
-    std::optional<int> scene;       ///< default: the file's own, else 0
-    bool noLights = false;          ///< leave the file's lights out
-    bool noCameras = false;         ///< leave the file's cameras out
+    /// A JSON file of joint names for clipsFiles, see readClipFiles(); found as those are. Empty: none.
+    std::string clipJoints;
+    OtherFormats otherFormats = nullptr; ///< for clipsFiles that are no glTF; null: there is no such reader
+    bool allowOutsideClips = false;      ///< clipsFiles and clipJoints alone may be anywhere
+    bool noKeys = false;                 ///< no CharacterKeys on the character
+    std::optional<int> scene;            ///< default: the file's own, else 0
+    bool noLights = false;               ///< leave the file's lights out
+    bool noCameras = false;              ///< leave the file's cameras out
     /// The camera of a viewer's first view: name, or index where none has that name; default: the viewer's own view
     std::optional<std::string> camera;
     /// The material variant shown at first: name, or index where none has that name; default: none

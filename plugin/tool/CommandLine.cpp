@@ -131,14 +131,19 @@ std::string messageOf(const CLI::ParseError& fault, const CLI::App& app)
     return fault.what();
 }
 
-/// --clips FILE, which may come again.
-void addClips(CLI::App& command, std::vector<std::string>& files)
+/// --clips FILE, which may come again, and --clip-joints FILE.
+void addClips(CLI::App& command, std::vector<std::string>& files, std::string& joints)
 {
     command
         .add_option("--clips", files,
-                    "Add the clips of another .gltf or .glb, for joints of the same names; may come again")
+                    "Add the clips of another file (.gltf, .glb and what Assimp reads), for joints of the same names; "
+                    "may come again")
         ->option_text("FILE")
         ->allow_extra_args(false);
+    command
+        .add_option("--clip-joints", joints,
+                    "Joints and their counterparts in those files, as JSON: {\"Hips\": \"pelvis\"}")
+        ->option_text("FILE");
 }
 
 } // namespace
@@ -157,7 +162,7 @@ void CommandLine::addInspect()
     _inspectApp = _app.add_subcommand("inspect", "What is in a file and what it costs");
     _inspectApp->footer(std::string(inspectHelp) + exitStatus);
     _inspectApp->add_option("FILE", _inspect.file, "A .gltf or .glb")->required();
-    addClips(*_inspectApp, _inspect.clips);
+    addClips(*_inspectApp, _inspect.clips, _inspect.clipJoints);
     _inspectApp->add_flag("--json", _inspect.json, "JSON, for programs");
     _inspectApp
         ->add_option(
@@ -172,7 +177,7 @@ void CommandLine::addPose()
     _poseApp = _app.add_subcommand("pose", "Where joints and vertices are at given times");
     _poseApp->footer(std::string(poseHelp) + exitStatus);
     _poseApp->add_option("FILE", _pose.file, "A .gltf or .glb")->required();
-    addClips(*_poseApp, _pose.clips);
+    addClips(*_poseApp, _pose.clips, _pose.clipJoints);
     CLI::Option* clip = _poseApp->add_option("--clip", _pose.request.clip,
                                              "A clip's name, or an animation's number where none has that name; "
                                              "default: the first clip");
@@ -200,7 +205,7 @@ void CommandLine::addRender()
     _renderApp = _app.add_subcommand("render", "Pictures of a file, without a display");
     _renderApp->footer(std::string(renderHelp) + exitStatus);
     _renderApp->add_option("FILE", _render.file, "A .gltf or .glb; or a crowd of it: FILE.20x20.crowd")->required();
-    addClips(*_renderApp, _render.clips);
+    addClips(*_renderApp, _render.clips, _render.clipJoints);
     _renderApp->add_option("--clip", _render.clip,
                            "A clip's name, or an animation's number where none has that name; default: the first clip");
     _renderApp->add_option("--variant", _render.variant,

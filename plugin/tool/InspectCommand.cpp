@@ -12,7 +12,7 @@ namespace osgGpuAnimation::tool
 
 Result<bool> InspectCommand::run() const
 {
-    const Result<gltf::ImportOptions> given = importOptions(clips);
+    const Result<gltf::ImportOptions> given = importOptions(clips, clipJoints);
     if (!given) return given.error();
     gltf::ImportOptions options = given.value();
     options.noRotation = true;

@@ -14,6 +14,7 @@ struct InspectCommand
 {
     std::string file;
     std::vector<std::string> clips; ///< files whose clips are added
+    std::string clipJoints;         ///< a JSON file of joint names for those files; empty: none
     double compact = 0.0;           ///< see gltf::ImportOptions; 0: exact
     bool json = false;              ///< prints JSON instead of text
 

@@ -41,24 +41,30 @@ Result<std::string> readGltf(const std::string& fileName, const gltf::ImportOpti
 
 } // namespace
 
-Result<gltf::ImportOptions> importOptions(const std::vector<std::string>& clipsFiles)
+Result<gltf::ImportOptions> importOptions(const std::vector<std::string>& clipsFiles, const std::string& clipJoints)
 {
     gltf::ImportOptions options;
     options.allowOutsideClips = true;
+#ifdef OSGGPUANIMATION_ASSIMP
+    options.otherFormats = assimp::readAsGlb;
+#endif
+    std::error_code failure;
     for (const std::string& file : clipsFiles)
     {
-        std::error_code failure;
-        const std::filesystem::path path = std::filesystem::canonical(file, failure);
+        options.clipsFiles.push_back(std::filesystem::canonical(file, failure).string());
         if (failure) return Error{file + ": there is no such file"};
-        options.clipsFiles.push_back(path.string());
     }
+    if (clipJoints.empty()) return options;
+    options.clipJoints = std::filesystem::canonical(clipJoints, failure).string();
+    if (failure) return Error{clipJoints + ": there is no such file"};
     return options;
 }
 
 void printClipWarnings(const gltf::ImportedModel& model)
 {
     for (const std::string& warning : model.messages.warnings)
-        if (warning.rfind("clips ", 0) == 0) std::cerr << "osggpuanim: " << warning << std::endl;
+        if (warning.rfind("clips ", 0) == 0 || warning.rfind("clipJoints ", 0) == 0)
+            std::cerr << "osggpuanim: " << warning << std::endl;
 }
 
 Result<gltf::ImportedModel> readModel(const std::string& fileName, const gltf::ImportOptions& options)

@@ -9,9 +9,10 @@
 namespace osgGpuAnimation::tool
 {
 
-/// The options of an import that adds the clips of these files. The user named them: they may be anywhere, relative to
-/// the current folder. Error: a file does not exist; the message begins with its name.
-Result<gltf::ImportOptions> importOptions(const std::vector<std::string>& clipsFiles);
+/// The options of an import that adds the clips of these files. clipJoints: a file, see gltf::readClipJoints(); empty:
+/// none. The user named them: they may be anywhere, relative to the current folder. Error: a file does not exist; the
+/// message begins with its name.
+Result<gltf::ImportOptions> importOptions(const std::vector<std::string>& clipsFiles, const std::string& clipJoints);
 
 /// Prints the warnings about clips of other files on standard error.
 void printClipWarnings(const gltf::ImportedModel& model);

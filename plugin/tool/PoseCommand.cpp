@@ -129,7 +129,7 @@ Result<bool> PoseCommand::run() const
         wanted = read.value();
     }
     if (wanted.bind && wanted.times.empty()) wanted.times = {0.0};
-    const Result<gltf::ImportOptions> given = importOptions(clips);
+    const Result<gltf::ImportOptions> given = importOptions(clips, clipJoints);
     if (!given) return given.error();
     gltf::ImportOptions options = given.value();
     options.noRotation = true;

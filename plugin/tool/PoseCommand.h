@@ -22,6 +22,7 @@ struct PoseCommand
 
     std::string file;
     std::vector<std::string> clips; ///< files whose clips are added
+    std::string clipJoints;         ///< a JSON file of joint names for those files; empty: none
     std::string like;               ///< a document that gives the request; empty: use `request`
     PoseRequest request;            ///< clip and times; bind with no times is time 0
     Evaluator evaluator = Evaluator::Gpu;

@@ -114,7 +114,7 @@ Result<bool> RenderCommand::run() const
         isCrowd ? crowd::parseCrowd(osgDB::getNameLessExtension(file), "") : crowd::CrowdOptions();
     if (!wanted) return Error{file + ": " + wanted.error().message};
     crowd::CrowdOptions grid = wanted.value();
-    const Result<gltf::ImportOptions> given = importOptions(clips);
+    const Result<gltf::ImportOptions> given = importOptions(clips, clipJoints);
     if (!given) return given.error();
     gltf::ImportOptions options = given.value();
     options.camera = camera;

@@ -22,6 +22,7 @@ struct RenderCommand
 
     std::string file;                   ///< a .gltf or .glb, or a crowd of it: `fox.glb.20x20.crowd`
     std::vector<std::string> clips;     ///< files whose clips are added
+    std::string clipJoints;             ///< a JSON file of joint names for those files; empty: none
     std::optional<std::string> clip;    ///< name or animation number; default: the first; of a crowd: all, at random
     std::optional<std::string> camera;  ///< of the file: name or number; default: none
     std::optional<std::string> variant; ///< of the file's materials: name or number; default: none

@@ -225,6 +225,68 @@ TEST(ClipFilesTest, aFaultyFileCostsItsClipsAloneAndIsNamed)
     EXPECT_EQ(allOf(imported(model, withClips({"good.gltf"})).messages.warnings).find("clips \"good.gltf\""), 0u);
 }
 
+TEST(ClipFilesTest, aFileNamesTheCounterpartsOfJoints)
+{
+    const ScratchFolder folder;
+    ModelBuilder clips;
+    const int pelvis = clips.node("rig:pelvis"), neck = clips.node("neck_01", pelvis);
+    clips.animation("Nod");
+    clips.slide(neck);
+    clips.slide(pelvis);
+    folder.write("nod.gltf", clips.text());
+    folder.write("run.gltf", bodyClips({"Run"}).text()); // has the model's names
+    const std::string path = folder.write("body.gltf", bodyModel("mixamorig:").text());
+    struct Case
+    {
+        const char* names;
+        std::vector<std::string> warnings; ///< parts of them, in their order
+        float head;                        ///< the head's translation in the middle of "Nod"
+    };
+    const std::string atRest = "clips \"nod.gltf\": has no counterpart for ";
+    const std::vector<Case> cases = {
+        {R"({"Hips": "pelvis", "Head": "neck_01"})", {}, 0.5f},
+        {R"({"mixamorig:Hips": "rig:pelvis", "mixamorig:Head": "neck_01"})", {}, 0.5f},
+        {R"({"Hips": "pelvis", "Head": null})",
+         {atRest + "\"mixamorig:Head\"", "model has no counterpart for \"neck_01\"", "run.gltf", "run.gltf"},
+         0.0f},
+        {R"({"Hips": "pelvis", "Head": "neck_01", "Tail": "tail_01"})",
+         {"clipJoints \"names.json\": the model has no joint \"Tail\"",
+          "clipJoints \"names.json\": no file of clips has a joint \"tail_01\""},
+         0.5f},
+        {R"({"Hips": "pelvis", "Head": "neck_01", "Lamp": 7})",
+         {"clipJoints \"names.json\": \"Lamp\": expected the name of a joint or null, found 7; left out"},
+         0.5f},
+        {"[]", {"clipJoints \"names.json\": ", "clips \"nod.gltf\": no joint has a counterpart"}, -1.0f},
+        {"{", {"clipJoints \"names.json\": ", "no joint has a counterpart"}, -1.0f},
+    };
+    for (const Case& one : cases)
+    {
+        SCOPED_TRACE(one.names);
+        folder.write("names.json", one.names);
+        ImportOptions options = withClips({"nod.gltf", "run.gltf"});
+        options.clipJoints = "names.json";
+        const ImportedModel model = load(path, options);
+        ASSERT_EQ(model.messages.warnings.size(), one.warnings.size()) << allOf(model.messages.warnings);
+        for (std::size_t i = 0; i < one.warnings.size(); ++i)
+            EXPECT_NE(model.messages.warnings[i].find(one.warnings[i]), std::string::npos)
+                << model.messages.warnings[i];
+        const int clip = model.set->findClip("Nod");
+        ASSERT_EQ(clip >= 0, one.head >= 0.0f);
+        EXPECT_GE(model.set->findClip("Run"), 0);
+        if (clip < 0) continue;
+        std::vector<JointTransform> tracks(model.set->trackCount());
+        Pose::mix(*model.set, instructionAt(*model.set, clip, 0.5), tracks);
+        const auto head = static_cast<std::size_t>(model.set->skeleton().findJoint("mixamorig:Head"));
+        EXPECT_EQ(tracks[head].translation, glm::vec4(one.head, 0, 0, 0));
+    }
+    const ScratchFolder outside;
+    ImportOptions options = withClips({"run.gltf"});
+    options.clipJoints = outside.write("far.json", "{}");
+    EXPECT_NE(allOf(load(path, options).messages.warnings).find("allowOutsideFiles"), std::string::npos);
+    options.clipJoints = "none.json";
+    EXPECT_NE(allOf(load(path, options).messages.warnings).find("the file does not exist"), std::string::npos);
+}
+
 TEST(ClipFilesTest, keyframesAreLimited)
 {
     const ScratchFolder folder;

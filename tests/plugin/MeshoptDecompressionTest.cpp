@@ -46,12 +46,10 @@ Bytes encodeSequence(const std::vector<std::uint32_t>& indices)
 /// A document whose views are compressed and whose second buffer, the fallback, has no data.
 struct MeshoptDocument : PackedDocument
 {
-    MeshoptDocument()
+    explicit MeshoptDocument(const char* extensionName) : name(extensionName)
     {
-        json["extensionsUsed"] = json["extensionsRequired"] = {"EXT_meshopt_compression", "KHR_mesh_quantization"};
-        json["buffers"] = {
-            Json::object(),
-            {{"byteLength", 1 << 20}, {"extensions", {{"EXT_meshopt_compression", {{"fallback", true}}}}}}};
+        json["extensionsUsed"] = json["extensionsRequired"] = {name, "KHR_mesh_quantization"};
+        json["buffers"] = {Json::object(), {{"byteLength", 1 << 20}, {"extensions", {{name, {{"fallback", true}}}}}}};
     }
 
     int view(const Bytes& encoded, std::size_t count, std::size_t stride, const char* mode, const char* filter = "NONE")
@@ -59,20 +57,21 @@ struct MeshoptDocument : PackedDocument
         const Json extension = {{"buffer", 0},     {"byteOffset", add(encoded)}, {"byteLength", encoded.size()},
                                 {"count", count},  {"byteStride", stride},       {"mode", mode},
                                 {"filter", filter}};
-        Json made = {
-            {"buffer", 1}, {"byteLength", count * stride}, {"extensions", {{"EXT_meshopt_compression", extension}}}};
+        Json made = {{"buffer", 1}, {"byteLength", count * stride}, {"extensions", {{name, extension}}}};
         if (std::string(mode) == "ATTRIBUTES") made["byteStride"] = stride;
         json["bufferViews"].push_back(made);
         return static_cast<int>(json["bufferViews"].size()) - 1;
     }
 
-    Json& extension(std::size_t view) { return json["bufferViews"][view]["extensions"]["EXT_meshopt_compression"]; }
+    Json& extension(std::size_t view) { return json["bufferViews"][view]["extensions"][name]; }
+
+    const std::string name; ///< of the extension
 };
 
 /// The sheet: view 0 positions, view 1 triangles.
-MeshoptDocument sheet()
+MeshoptDocument sheet(const char* extension = "EXT_meshopt_compression")
 {
-    MeshoptDocument document;
+    MeshoptDocument document(extension);
     const std::vector<float> positions = sheetPositions(squares);
     const std::vector<std::uint32_t> indices = sheetIndices(squares);
     const int points = document.view(encodeVertices(positions.data(), vertices, 12), vertices, 12, "ATTRIBUTES");
@@ -92,17 +91,53 @@ std::string messageOf(const Result<tinygltf::Model>& model)
 
 TEST(MeshoptDecompressionTest, MeshesAreAsBefore)
 {
-    const Result<tinygltf::Model> model = sheet().load();
-    ASSERT_TRUE(model) << messageOf(model);
-    EXPECT_EQ(readFloats(model.value(), 0), sheetPositions(squares));
-    // The codec may rotate a triangle's corners, but keeps its winding.
-    std::vector<std::uint32_t> indices = readIntegers(model.value(), 1), expected = sheetIndices(squares);
-    ASSERT_EQ(indices.size(), expected.size());
-    for (std::vector<std::uint32_t>* list : {&indices, &expected})
-        for (std::size_t i = 0; i < list->size(); i += 3)
-            std::rotate(list->begin() + long(i), std::min_element(list->begin() + long(i), list->begin() + long(i) + 3),
-                        list->begin() + long(i) + 3);
-    EXPECT_EQ(indices, expected);
+    for (const char* const extension : meshoptExtensions)
+    {
+        Messages messages;
+        const Result<tinygltf::Model> model = sheet(extension).load(messages);
+        ASSERT_TRUE(model) << extension << ": " << messageOf(model);
+        EXPECT_TRUE(messages.warnings.empty()) << extension << ": " << messages.warnings.front();
+        EXPECT_EQ(readFloats(model.value(), 0), sheetPositions(squares)) << extension;
+        // The codec may rotate a triangle's corners, but keeps its winding.
+        std::vector<std::uint32_t> indices = readIntegers(model.value(), 1), expected = sheetIndices(squares);
+        ASSERT_EQ(indices.size(), expected.size()) << extension;
+        for (std::vector<std::uint32_t>* list : {&indices, &expected})
+            for (std::size_t i = 0; i < list->size(); i += 3)
+                std::rotate(list->begin() + long(i),
+                            std::min_element(list->begin() + long(i), list->begin() + long(i) + 3),
+                            list->begin() + long(i) + 3);
+        EXPECT_EQ(indices, expected) << extension;
+    }
+}
+
+TEST(MeshoptDecompressionTest, NewerFormsAreNamed)
+{
+    const std::string view = "bufferViews[0].extensions.KHR_meshopt_compression";
+    MeshoptDocument codec = sheet("KHR_meshopt_compression"), filter = codec;
+    codec.data()[codec.extension(0)["byteOffset"].get<std::size_t>()] = '\xa1';
+    filter.extension(0)["filter"] = "COLOR";
+    struct Case
+    {
+        MeshoptDocument& document;
+        std::string message;
+    };
+    const Case cases[] = {
+        {codec, view + ": expected vertex data of codec version 0 (first byte 0xa0), found version 1 (0xa1), which is "
+                       "not supported"},
+        {filter, view + ".filter: expected NONE, OCTAHEDRAL, QUATERNION or EXPONENTIAL, found COLOR, which is not "
+                        "supported"}};
+    for (const Case& c : cases)
+    {
+        EXPECT_EQ(messageOf(c.document.load()), c.message);
+        // Uncompressed data beside it is read.
+        const std::vector<float> positions(vertices * 3, 7.0f);
+        c.document.json.erase("extensionsRequired");
+        c.document.json["bufferViews"][0]["buffer"] = 0;
+        c.document.json["bufferViews"][0]["byteOffset"] = c.document.add(positions);
+        const Result<tinygltf::Model> model = c.document.load();
+        ASSERT_TRUE(model) << messageOf(model);
+        EXPECT_EQ(readFloats(model.value(), 0), positions);
+    }
 }
 
 TEST(MeshoptDecompressionTest, SequencesOfIndicesAreAsBefore)

@@ -33,10 +33,11 @@ TEST(OptionStringTest, readsAllOptions)
     const ImportOptions options = parseOptions("  clip=Walk scene=2  noRotation allowOutsideFiles maxJsonDepth=5 "
                                                "maxJsonBytes=4 maxNodeDepth=6 maxElements=7 maxDocumentBytes=8 "
                                                "maxDecodedBytes=8000000000 camera=Top noLights noCameras variant=1 "
-                                               "clips=Run.glb clips=\"Walk fast.glb\"")
+                                               "clips=Run.glb clips=\"Walk fast.glb\" clipJoints=names.json")
                                       .value();
     EXPECT_EQ(options.clip, "Walk");
     EXPECT_EQ(options.clipsFiles, (std::vector<std::string>{"Run.glb", "Walk fast.glb"}));
+    EXPECT_EQ(options.clipJoints, "names.json");
     EXPECT_EQ(options.scene, 2);
     EXPECT_EQ(options.camera, "Top");
     EXPECT_EQ(options.variant, "1");
@@ -171,6 +172,7 @@ TEST(OptionStringTest, valuesThatDoNotFitAreErrors)
                              "start=-0.5",
                              "start=nan",
                              "clips=",
+                             "clipJoints=",
                              "start=",
                              "randomStart",
                              "randomStart=-1",

@@ -140,6 +140,7 @@ TEST_F(ToolTest, aFaultyFileEndsWithStatus1AndOneLine)
         {{"inspect", cutGlb}, cutGlb, ""},
         {{"inspect", "/dev/zero"}, "/dev/zero", "not a regular file"},
         {{"inspect", "FLAG", "--clips", missing}, missing, "no such file"},
+        {{"inspect", "FLAG", "--clip-joints", missing}, missing, "no such file"},
         {{"pose", missing, "--time", "0"}, missing, "no such file"},
         {{"render", missing, "-o", folder.file("x.png")}, missing, "no such file"},
         {{"render", flag + ".studio", "-o", folder.file("x.png")}, flag + ".studio", "osggpuanim render " + flag + "`"},
@@ -238,6 +239,32 @@ TEST_F(ToolTest, clipsOfOtherFilesAreAdded)
     EXPECT_EQ(warned.status, 0);
     EXPECT_NE(warned.err.find("bad.gltf"), std::string::npos) << warned.err;
 }
+
+#ifdef OSGGPUANIMATION_ASSIMP
+TEST_F(ToolTest, clipsOfOtherFormatsAreAdded)
+{
+    const std::string other = folder.write("nod.bvh", R"(HIERARCHY
+ROOT hinge
+{
+    OFFSET 0 0 0
+    CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation
+    End Site
+    {
+        OFFSET 0 1 0
+    }
+}
+MOTION
+Frames: 2
+Frame Time: 0.5
+0 0 0 0 0 0
+0 1 0 0 0 0
+)");
+    const Process done = run({"inspect", "FLAG", "--clips", other, "--json"});
+    ASSERT_EQ(done.status, 0) << done.err;
+    const json clips = json::parse(done.out)["clips"];
+    ASSERT_EQ(clips.size(), 3u) << done.err;
+}
+#endif
 
 TEST_F(ToolTest, inspectSaysHowFarCompactClipsAreOff)
 {

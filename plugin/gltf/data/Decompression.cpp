@@ -31,6 +31,8 @@ bool isRequired(const Model& model, const char* extension)
 // allocated for it.
 const std::size_t bestRatio = 256;
 
+const unsigned char vertexCodec1 = 0xa1; // the first byte of its data (KHR_meshopt_compression, appendix A)
+
 /// One compressed view, its numbers in the ranges that the schema allows.
 struct Compressed
 {
@@ -68,6 +70,18 @@ std::string wrongShape(const Compressed& view)
     return "";
 }
 
+/// Refuses what KHR_meshopt_compression adds to EXT_meshopt_compression: the library cannot decode it.
+/// source: has the view's bytes, at least one.
+std::optional<Error> checkCodec(const Compressed& view, const Bytes& source, const std::string& name)
+{
+    if (view.filter == "COLOR")
+        return fault(name + ".filter", "NONE, OCTAHEDRAL, QUATERNION or EXPONENTIAL", "COLOR, which is not supported");
+    if (view.mode == "ATTRIBUTES" && source[view.byteOffset] == vertexCodec1)
+        return fault(name, "vertex data of codec version 0 (first byte 0xa0)",
+                     "version 1 (0xa1), which is not supported");
+    return std::nullopt;
+}
+
 std::optional<Error> check(const Compressed& view, const tinygltf::BufferView& parent, const Bytes& source,
                            const std::string& name)
 {
@@ -80,6 +94,7 @@ std::optional<Error> check(const Compressed& view, const tinygltf::BufferView& p
                      "data within the " + std::to_string(source.size()) + " bytes of " +
                          elementName("buffers", view.buffer),
                      std::to_string(view.byteLength) + " from byte " + std::to_string(view.byteOffset) + " on");
+    if (std::optional<Error> error = checkCodec(view, source, name)) return error;
     // No product here wraps: strides are at most 256, counts below 2^53.
     if (view.count * view.stride != parent.byteLength)
         return fault(name + ".count",
@@ -108,9 +123,9 @@ bool decode(const Compressed& view, const Bytes& source, Bytes& out)
     return true;
 }
 
-std::optional<Error> decompress(const Compressed& view, std::size_t index, MemoryBudget& budget, Model& model)
+std::optional<Error> decompress(const Compressed& view, std::size_t index, const std::string& name,
+                                MemoryBudget& budget, Model& model)
 {
-    const std::string name = elementName("bufferViews", index) + ".extensions.EXT_meshopt_compression";
     tinygltf::BufferView& parent = model.bufferViews[index];
     const Bytes& source = model.buffers[view.buffer].data;
     if (std::optional<Error> error = check(view, parent, source, name)) return error;
@@ -212,14 +227,20 @@ private:
 
 std::optional<Error> decompressMeshopt(const JsonValue& bufferViews, MemoryBudget& budget, Model& model)
 {
-    const bool required = isRequired(model, "EXT_meshopt_compression");
     std::size_t i = 0;
     for (const JsonValue& bufferView : bufferViews)
     {
-        const JsonValue compression = bufferView["extensions"]["EXT_meshopt_compression"];
         const bool hasFallback = !model.buffers[std::size_t(model.bufferViews[i].buffer)].data.empty();
-        if (compression && (required || !hasFallback))
-            if (std::optional<Error> error = decompress(Compressed(compression), i, budget, model)) return error;
+        for (const char* const extension : meshoptExtensions)
+        {
+            const JsonValue compression = bufferView["extensions"][extension];
+            if (!compression) continue;
+            const std::string name = elementName("bufferViews", i) + ".extensions." + extension;
+            if (isRequired(model, extension) || !hasFallback)
+                if (std::optional<Error> error = decompress(Compressed(compression), i, name, budget, model))
+                    return error;
+            break;
+        }
         ++i;
     }
     return std::nullopt;

@@ -17,7 +17,12 @@ namespace osgGpuAnimation::gltf
 // not require the extension, is left as it is. Both functions return the first fault, for which the document must be
 // refused.
 
-/// Decompresses the buffer views with EXT_meshopt_compression into new buffers, to which the views then refer.
+/// The extensions whose buffer views decompressMeshopt() reads.
+constexpr const char* meshoptExtensions[] = {"EXT_meshopt_compression", "KHR_meshopt_compression"};
+
+/// Decompresses the buffer views with one of meshoptExtensions into new buffers, to which the views then refer; the
+/// first extension counts if a view has both. Errors include data that meshoptimizer 0.18 does not decode: vertex data
+/// of codec version 1, and the filter COLOR (both of KHR_meshopt_compression).
 /// bufferViews: of the document; its buffers are loaded.
 std::optional<Error> decompressMeshopt(const JsonValue& bufferViews, MemoryBudget& budget, tinygltf::Model& model);
 

@@ -263,7 +263,8 @@ const std::string_view supportedExtensions[] = {"KHR_mesh_quantization",      "K
                                                 "KHR_materials_transmission", "KHR_materials_pbrSpecularGlossiness",
                                                 "EXT_meshopt_compression",    "KHR_draco_mesh_compression",
                                                 "EXT_mesh_gpu_instancing",    "KHR_lights_punctual",
-                                                "EXT_texture_webp",           "KHR_materials_variants"};
+                                                "EXT_texture_webp",           "KHR_materials_variants",
+                                                "KHR_meshopt_compression",    "MSFT_lod"};
 
 /// Parts of the names of extensions that change looks alone, or nothing that is drawn: a file that requires them is
 /// shown without them.

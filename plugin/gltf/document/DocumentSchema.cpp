@@ -48,19 +48,22 @@ constexpr SchemaRule accessor[] = {index("bufferView", "bufferViews"),
                                    name};
 
 constexpr SchemaRule fallback[] = {rule("fallback", Kind::Boolean)};
-constexpr SchemaRule bufferExtensions[] = {object("EXT_meshopt_compression", fallback)};
+constexpr SchemaRule bufferExtensions[] = {object("EXT_meshopt_compression", fallback),
+                                           object("KHR_meshopt_compression", fallback)};
 
 constexpr SchemaRule buffer[] = {text("uri"), integer("byteLength").from(1).required(), name,
                                  object("extensions", bufferExtensions)};
 
+// decompressMeshopt() refuses COLOR, so that a document with uncompressed data beside it is read.
 constexpr SchemaRule meshopt[] = {index("buffer", "buffers").required(),
                                   integer("byteOffset"),
                                   integer("byteLength").from(1).required(),
                                   integer("byteStride").from(1).upTo(256).required(),
                                   integer("count").from(1).required(),
                                   choice("mode", "ATTRIBUTES TRIANGLES INDICES").required(),
-                                  choice("filter", "NONE OCTAHEDRAL QUATERNION EXPONENTIAL")};
-constexpr SchemaRule bufferViewExtensions[] = {object("EXT_meshopt_compression", meshopt)};
+                                  choice("filter", "NONE OCTAHEDRAL QUATERNION EXPONENTIAL COLOR")};
+constexpr SchemaRule bufferViewExtensions[] = {object("EXT_meshopt_compression", meshopt),
+                                               object("KHR_meshopt_compression", meshopt)};
 
 constexpr SchemaRule bufferView[] = {
     index("buffer", "buffers").required(),      integer("byteOffset"),
@@ -144,6 +147,7 @@ constexpr SchemaRule specularGlossiness[] = {number("diffuseFactor").list(4, 4).
                                              number("specularFactor").list(3, 3).clamped(0, 1).orLeaveOut(),
                                              unit("glossinessFactor"), map("specularGlossinessTexture")};
 constexpr SchemaRule materialExtensions[] = {
+    rule("MSFT_lod", Kind::Object).orLeaveOut(), // not read: validateLods() notes it
     rule("KHR_materials_unlit", Kind::Object).orLeaveOut(),
     object("KHR_materials_emissive_strength", emissiveStrength).orLeaveOut(),
     object("KHR_materials_ior", ior).orLeaveOut(),
@@ -186,7 +190,10 @@ constexpr SchemaRule mesh[] = {object("primitives", primitive).list().required()
 constexpr SchemaRule instancing[] = {indexMap("attributes", "accessors").required()};
 // checkViewRules() checks the lights, so that a faulty one costs only itself.
 constexpr SchemaRule punctual = rule("KHR_lights_punctual", Kind::Any);
-constexpr SchemaRule nodeExtensions[] = {object("EXT_mesh_gpu_instancing", instancing), punctual};
+// validateLods() checks which nodes may be levels.
+constexpr SchemaRule lod[] = {index("ids", "nodes").list().required().orLeaveOut()};
+constexpr SchemaRule nodeExtensions[] = {object("EXT_mesh_gpu_instancing", instancing), punctual,
+                                         object("MSFT_lod", lod).orLeaveOut()};
 
 constexpr SchemaRule node[] = {index("camera", "cameras"),
                                index("children", "nodes").list(),

@@ -8,6 +8,7 @@
 #include "gltf/document/JsonReader.h"
 #include "gltf/document/MemoryBudget.h"
 #include "gltf/document/ValidateAccessors.h"
+#include "gltf/document/ValidateLods.h"
 #include "gltf/document/ValidateMeshes.h"
 #include "gltf/document/ValidateNodes.h"
 #include "gltf/file/ModelBytes.h"
@@ -355,6 +356,16 @@ Result<Bytes> readBinaryChunk(std::string_view binary, std::size_t byteLength, R
     return Bytes(binary.begin(), binary.begin() + std::ptrdiff_t(byteLength));
 }
 
+bool isMeshoptFallback(const JsonValue& buffer)
+{
+    for (const char* const extension : meshoptExtensions)
+    {
+        const JsonValue fallback = buffer["extensions"][extension]["fallback"];
+        if (fallback && fallback.boolean()) return true;
+    }
+    return false;
+}
+
 /// Fills model.buffers, each with byteLength bytes exactly: from its data URI, its external file (which may be longer),
 /// or the BIN chunk (glTF 2.0, section 3.6.1). A buffer without any of them stays empty; validateAccessors() refuses
 /// references to it.
@@ -373,8 +384,7 @@ std::optional<Error> loadBuffers(const JsonValue& buffers, const std::optional<s
         read(buffer["name"], loaded.name);
         if (!uri && !(i == 0 && binary))
         {
-            const JsonValue fallback = buffer["extensions"]["EXT_meshopt_compression"]["fallback"];
-            if (!fallback || !fallback.boolean())
+            if (!isMeshoptFallback(buffer))
                 report.warn(name + ": expected a uri or a BIN chunk, found neither; the buffer is empty");
             continue;
         }
@@ -415,6 +425,7 @@ Result<tinygltf::Model> load(const std::string& bytes, const std::string& fileNa
     if (!error) error = decompressDraco(document["meshes"], budget, model);
     if (!error) error = validateAccessors(model, known, budget);
     if (!error) error = validateNodes(model, options.maxNodeDepth, report);
+    if (!error) validateLods(model, report);
     if (!error) error = validateMeshes(model, budget, report);
     if (!error) error = validateAnimations(model, report);
     if (error) return *error;

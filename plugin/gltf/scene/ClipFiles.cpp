@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/scene/ClipFiles.h"
 
+#include "gltf/document/JsonReader.h"
 #include "gltf/document/LoadDocument.h"
 #include "gltf/file/Uri.h"
 #include "gltf/scene/Clips.h"
@@ -15,6 +16,9 @@
 
 #include <algorithm>
 #include <iterator>
+#include <optional>
+#include <string_view>
+#include <unordered_map>
 #include <unordered_set>
 
 namespace osgGpuAnimation::gltf
@@ -23,9 +27,35 @@ namespace osgGpuAnimation::gltf
 namespace
 {
 
+constexpr std::size_t mostNameBytes = std::size_t(1) << 20; // of a file of joint names
+
 bool saysNothing(const std::string& clipName)
 {
     return clipName.empty() || clipName.find("mixamo.com") != std::string::npos || clipName == "Take 001";
+}
+
+/// By its name or its first bytes. What is no regular file counts as one: reading it has the message.
+bool isGltf(const std::string& path)
+{
+    const std::string extension = osgDB::getLowerCaseFileExtension(path);
+    const Result<RegularFile> file = RegularFile::open(path);
+    char beginning[4] = {};
+    if (extension == "gltf" || extension == "glb" || !file || !file.value().read(beginning, sizeof beginning))
+        return true;
+    return std::string_view(beginning, sizeof beginning) == "glTF" || beginning[0] == '{';
+}
+
+/// The file as glTF. subject: begins each warning.
+Result<std::string> readAsGltf(const std::string& path, const ImportOptions& options, const std::string& subject,
+                               Report& report)
+{
+    if (!options.otherFormats || isGltf(path)) return readModelFile(path, options);
+    Messages messages;
+    Report ownReport(messages);
+    Result<std::string> bytes = options.otherFormats(path, options, ownReport);
+    for (const std::string& warning : messages.warnings)
+        if (warning.rfind("picture ", 0) != 0) report.warn(subject + ": " + warning); // clips need no pictures
+    return bytes;
 }
 
 /// The joints, morphs and clips of a file. subject: begins each of its warnings.
@@ -34,7 +64,7 @@ Result<std::shared_ptr<const AnimationSet>> readSet(const std::string& path, con
 {
     ImportOptions own = options;
     own.scene.reset();
-    const Result<std::string> bytes = readModelFile(path, own);
+    const Result<std::string> bytes = readAsGltf(path, own, subject, report);
     if (!bytes) return bytes.error();
     Messages messages;
     Report ownReport(messages);
@@ -79,7 +109,108 @@ std::string namesText(const std::vector<std::string>& names)
     return quotedNames(names, [](const std::string& name) { return printable(name); });
 }
 
+/// The joints of a skeleton by name, without namespaces.
+class JointsByName
+{
+public:
+    explicit JointsByName(const Skeleton& skeleton) : _skeleton(skeleton)
+    {
+        for (const Joint& joint : skeleton.joints())
+            _names.emplace(bareJointName(joint.name), &joint.name);
+    }
+
+    /// The joint's own name, of the first joint if there are several; null: there is none.
+    const std::string* find(const std::string& name) const
+    {
+        if (const int joint = _skeleton.findJoint(name); joint >= 0)
+            return &_skeleton.joint(static_cast<std::size_t>(joint)).name;
+        const auto found = _names.find(bareJointName(name));
+        return found == _names.end() ? nullptr : found->second;
+    }
+
+private:
+    const Skeleton& _skeleton;
+    std::unordered_map<std::string, const std::string*> _names;
+};
+
+RetargetOptions retargetOptions(const ClipJoints& joints, const Skeleton& model, const Skeleton& clips)
+{
+    RetargetOptions options;
+    if (joints.counterparts.empty()) return options;
+    const JointsByName others(clips);
+    for (const Joint& joint : model.joints())
+    {
+        const auto given = joints.counterparts.find(bareJointName(joint.name));
+        if (given == joints.counterparts.end() || joint.name.empty()) continue;
+        const std::string* const other = others.find(given->second);
+        if (other || given->second.empty()) options.counterparts[joint.name] = other ? *other : "";
+    }
+    return options;
+}
+
+Result<JsonTree> readNames(const ModelFolder& folder, const ImportOptions& options, std::string& outBytes,
+                           Report& report)
+{
+    const Result<std::string> path = folder.find(options.clipJoints);
+    if (!path) return path.error();
+    ImportOptions own = options;
+    own.maxJsonBytes = std::min(own.maxJsonBytes, mostNameBytes);
+    Result<std::string> bytes = readModelFile(path.value(), own);
+    if (!bytes) return bytes.error();
+    outBytes = std::move(bytes).value();
+    return readJson(outBytes, own, report);
+}
+
 } // namespace
+
+ClipJoints readClipJoints(const std::string& modelFile, const ImportOptions& options, Report& report)
+{
+    ClipJoints joints;
+    if (options.clipJoints.empty()) return joints;
+    joints.name = "clipJoints " + quoted(options.clipJoints);
+    const ModelFolder folder(modelFile, options.allowOutsideFiles || options.allowOutsideClips);
+    std::string bytes; // the tree refers to them
+    Result<JsonTree> read = readNames(folder, options, bytes, report);
+    if (!read)
+    {
+        report.warn(joints.name + ": " + read.error().message + "; joints are matched by equal names");
+        return joints;
+    }
+    JsonTree tree = std::move(read).value();
+    for (const JsonValue& member : tree.root())
+    {
+        const bool isNone = member.is(JsonTree::Type::Null);
+        if (isNone || member.is(JsonTree::Type::String))
+            joints.counterparts[bareJointName(std::string(member.key()))] = isNone ? "" : member.text();
+        else
+            report.warn(
+                fault(joints.name + ": " + quoted(member.key()), "the name of a joint or null", member.description())
+                    .message +
+                "; left out");
+    }
+    return joints;
+}
+
+void warnOfUnknownJoints(const ClipJoints& joints, const Skeleton& model, const std::vector<ClipFile>& files,
+                         Report& report)
+{
+    if (joints.counterparts.empty()) return;
+    const JointsByName own(model);
+    std::vector<JointsByName> others;
+    for (const ClipFile& file : files)
+        others.emplace_back(file.set->skeleton());
+    std::vector<std::string> notOwn, notOthers;
+    for (const auto& [name, counterpart] : joints.counterparts)
+    {
+        if (!own.find(name)) notOwn.push_back(name);
+        const bool isKnown =
+            std::any_of(others.begin(), others.end(),
+                        [&wanted = counterpart](const JointsByName& file) { return file.find(wanted); });
+        if (!counterpart.empty() && !isKnown) notOthers.push_back(counterpart);
+    }
+    if (!notOwn.empty()) report.warn(joints.name + ": the model has no joint " + namesText(notOwn));
+    if (!notOthers.empty()) report.warn(joints.name + ": no file of clips has a joint " + namesText(notOthers));
+}
 
 std::vector<ClipFile> readClipFiles(const std::string& modelFile, const ImportOptions& options, Report& report)
 {
@@ -103,7 +234,8 @@ std::vector<ClipFile> readClipFiles(const std::string& modelFile, const ImportOp
     return files;
 }
 
-std::vector<bool> nodesMovedBy(const std::vector<ClipFile>& files, const tinygltf::Model& model)
+std::vector<bool> nodesMovedBy(const std::vector<ClipFile>& files, const ClipJoints& joints,
+                               const tinygltf::Model& model)
 {
     std::unordered_set<std::string> moved;
     for (const ClipFile& file : files)
@@ -115,12 +247,17 @@ std::vector<bool> nodesMovedBy(const std::vector<ClipFile>& files, const tinyglt
     }
     std::vector<bool> nodes(model.nodes.size(), false);
     for (std::size_t node = 0; node < nodes.size(); ++node)
-        nodes[node] = !model.nodes[node].name.empty() && moved.count(bareJointName(model.nodes[node].name)) > 0;
+    {
+        const std::string name = bareJointName(model.nodes[node].name);
+        const auto given = joints.counterparts.find(name);
+        const bool isGiven = given != joints.counterparts.end() && moved.count(bareJointName(given->second)) > 0;
+        nodes[node] = !name.empty() && (isGiven || moved.count(name) > 0);
+    }
     return nodes;
 }
 
 std::shared_ptr<const AnimationSet> withClipsOf(const std::shared_ptr<const AnimationSet>& set, const ClipFile& file,
-                                                MemoryBudget& budget, Report& report)
+                                                const ClipJoints& joints, MemoryBudget& budget, Report& report)
 {
     const auto refuse = [&](const std::string& why)
     {
@@ -132,7 +269,8 @@ std::shared_ptr<const AnimationSet> withClipsOf(const std::shared_ptr<const Anim
         bytes += clip.keyframeCount() * clip.transformsPerTrack() * set->trackCount() * sizeof(JointTransform);
     if (!budget.take(bytes))
         return refuse("its clips would take " + std::to_string(bytes) + " bytes, " + budget.limitText());
-    const Result<RetargetedSet> result = set->withClipsOf(*file.set);
+    const Result<RetargetedSet> result =
+        set->withClipsOf(*file.set, retargetOptions(joints, set->skeleton(), file.set->skeleton()));
     if (!result) return refuse(result.error().message);
 
     const std::vector<std::string> atRest = namesInSkins(*set, result.value().atRest);

@@ -9,6 +9,7 @@
 
 #include <tiny_gltf.h>
 
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -23,7 +24,24 @@ struct ClipFile
     std::shared_ptr<const AnimationSet> set; ///< its joints, morphs and clips, without skins; at least one clip
 };
 
-/// Reads the clips of all files that the options name; files without meshes are valid. A file that cannot be read, has
+/// Joints whose names differ between the model and the files of clips, see ImportOptions::clipJoints.
+struct ClipJoints
+{
+    std::string name; ///< for messages: `clipJoints "names.json"`
+    /// From joints of the model, as bareJointName() has them, to their counterparts; an empty one: there is none.
+    std::map<std::string, std::string> counterparts;
+};
+
+/// Reads the names that the options give: a JSON object whose members are joints of the model, with their counterparts
+/// in the files of clips, null or "" where there shall be none. A fault costs the file or its member, with a warning.
+ClipJoints readClipJoints(const std::string& modelFile, const ImportOptions& options, Report& report);
+
+/// Warns of names that are neither the model's nor those of any file.
+void warnOfUnknownJoints(const ClipJoints& joints, const Skeleton& model, const std::vector<ClipFile>& files,
+                         Report& report);
+
+/// Reads the clips of all files that the options name; files without meshes are valid. Files that are no glTF need
+/// options.otherFormats. A file that cannot be read, has
 /// no clips, or is named twice, is left out with a warning.
 ///
 /// A clip whose name says nothing (none, Mixamo's `mixamo.com`, FBX's `Take 001`) is named after its file.
@@ -31,13 +49,15 @@ struct ClipFile
 /// modelFile: the model's own file, see ModelFolder; the clips of that file itself are refused.
 std::vector<ClipFile> readClipFiles(const std::string& modelFile, const ImportOptions& options, Report& report);
 
-/// One per node of the model: true if a clip of those files moves a joint of its name.
-std::vector<bool> nodesMovedBy(const std::vector<ClipFile>& files, const tinygltf::Model& model);
+/// One per node of the model: true if a clip of those files moves a joint of its name, or its counterpart.
+std::vector<bool> nodesMovedBy(const std::vector<ClipFile>& files, const ClipJoints& joints,
+                               const tinygltf::Model& model);
 
 /// The set with the clips of the file after its own, see AnimationSet::withClipsOf(). If that fails, or the clips
 /// exceed the budget, the set is returned as it is, with a warning; a clip that takes a joint too far is left out. A
-/// warning lists the joints without a counterpart; those of the set only if skins name them.
+/// warning lists the joints without a counterpart; those of the set only if skins name them. A given counterpart that
+/// the file does not have does not count.
 std::shared_ptr<const AnimationSet> withClipsOf(const std::shared_ptr<const AnimationSet>& set, const ClipFile& file,
-                                                MemoryBudget& budget, Report& report);
+                                                const ClipJoints& joints, MemoryBudget& budget, Report& report);
 
 } // namespace osgGpuAnimation::gltf

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/scene/NodeTree.h"
 
+#include "gltf/document/ValidateLods.h"
 #include "gltf/scene/NodeTransform.h"
 
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 
 #include <algorithm>
+#include <limits>
+#include <unordered_map>
 
 namespace osgGpuAnimation::gltf
 {
@@ -14,21 +17,66 @@ namespace osgGpuAnimation::gltf
 namespace
 {
 
-/// Sets parents, and order level by level: the validation has made sure that the nodes are trees.
-void orderNodes(const tinygltf::Model& model, NodeTree& tree)
+constexpr double viewHeight = 1080.0; ///< pixels, of the view that the shares of LodGroup become sizes for
+
+/// The siblings that levels of detail add to the file's: by node, the levels that follow it.
+using AddedSiblings = std::unordered_map<int, std::vector<int>>;
+
+/// Sets levels, and levelOf of the levels themselves.
+AddedSiblings addLevels(const tinygltf::Model& model, NodeTree& tree)
+{
+    AddedSiblings added;
+    tree.levelOf.assign(model.nodes.size(), -1);
+    const std::vector<LodGroup> groups = readLods(model);
+    for (std::size_t group = 0; group < groups.size(); ++group)
+    {
+        float maxPixels = std::numeric_limits<float>::max();
+        for (std::size_t level = 0; level < groups[group].nodes.size(); ++level)
+        {
+            const int node = groups[group].nodes[level];
+            const float minPixels = static_cast<float>(groups[group].shares[level] * viewHeight);
+            tree.levelOf[static_cast<std::size_t>(node)] = static_cast<int>(tree.levels.size());
+            tree.levels.push_back({node, group, minPixels, maxPixels});
+            maxPixels = minPixels;
+            if (level > 0) added[groups[group].nodes.front()].push_back(node);
+        }
+    }
+    return added;
+}
+
+/// Appends the nodes, each followed by the levels that are its siblings now; levels among the nodes are skipped.
+void append(const std::vector<int>& nodes, const AddedSiblings& added, const NodeTree& tree, std::vector<int>& out)
+{
+    for (const int node : nodes)
+    {
+        const int level = tree.levelOf[static_cast<std::size_t>(node)];
+        const bool isAdded = level > 0 && tree.levels[static_cast<std::size_t>(level)].group ==
+                                              tree.levels[static_cast<std::size_t>(level) - 1].group;
+        if (isAdded) continue;
+        out.push_back(node);
+        if (const auto found = added.find(node); found != added.end())
+            out.insert(out.end(), found->second.begin(), found->second.end());
+    }
+}
+
+/// Sets parents, and order level by level: the validation has made sure that the nodes are trees, also with the levels
+/// of detail as siblings of their nodes.
+void orderNodes(const tinygltf::Model& model, const AddedSiblings& added, NodeTree& tree)
 {
     tree.parents.assign(model.nodes.size(), -1);
     for (std::size_t node = 0; node < model.nodes.size(); ++node)
         for (const int child : model.nodes[node].children)
             tree.parents[static_cast<std::size_t>(child)] = static_cast<int>(node);
+    for (const auto& [node, levels] : added)
+        for (const int level : levels)
+            tree.parents[static_cast<std::size_t>(level)] = tree.parents[static_cast<std::size_t>(node)];
+    std::vector<int> roots;
     for (std::size_t node = 0; node < model.nodes.size(); ++node)
-        if (tree.parents[node] < 0) tree.order.push_back(static_cast<int>(node));
+        if (tree.parents[node] < 0) roots.push_back(static_cast<int>(node));
+    append(roots, added, tree, tree.order);
     tree.roots = tree.order;
     for (std::size_t next = 0; next < tree.order.size(); ++next)
-    {
-        const std::vector<int>& children = model.nodes[static_cast<std::size_t>(tree.order[next])].children;
-        tree.order.insert(tree.order.end(), children.begin(), children.end());
-    }
+        append(model.nodes[static_cast<std::size_t>(tree.order[next])].children, added, tree, tree.order);
 }
 
 /// The scene to draw; -1 if the file has none.
@@ -54,8 +102,13 @@ Result<NodeTree> buildNodeTree(const tinygltf::Model& model, const ImportOptions
     if (!scene) return scene.error();
     NodeTree tree;
     tree.scene = scene.value();
-    orderNodes(model, tree);
-    if (tree.scene >= 0) tree.roots = model.scenes[static_cast<std::size_t>(tree.scene)].nodes;
+    const AddedSiblings added = addLevels(model, tree);
+    orderNodes(model, added, tree);
+    if (tree.scene >= 0)
+    {
+        tree.roots.clear();
+        append(model.scenes[static_cast<std::size_t>(tree.scene)].nodes, added, tree, tree.roots);
+    }
     tree.drawn.resize(model.nodes.size());
     for (const int root : tree.roots)
         tree.drawn[static_cast<std::size_t>(root)] = true;
@@ -68,6 +121,7 @@ Result<NodeTree> buildNodeTree(const tinygltf::Model& model, const ImportOptions
         const auto parent = static_cast<std::size_t>(tree.parents[index]);
         tree.toWorld[index] = tree.toWorld[parent] * tree.toWorld[index];
         tree.drawn[index] = tree.drawn[parent];
+        if (tree.levelOf[index] < 0) tree.levelOf[index] = tree.levelOf[parent];
     }
     return tree;
 }

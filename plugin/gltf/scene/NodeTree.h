@@ -13,8 +13,17 @@
 namespace osgGpuAnimation::gltf
 {
 
-/// The nodes of a file as a forest, and the part of it that is drawn: the chosen scene's. All vectors but `roots` have
-/// one element per node of the file.
+/// A level of detail of a node (MSFT_lod).
+struct NodeLevel
+{
+    int node = -1;          ///< the level's own
+    std::size_t group = 0;  ///< the same for all levels of one node
+    float minPixels = 0.0f; ///< the size on screen that it is drawn from: the diameter of its bounding sphere
+    float maxPixels = 0.0f; ///< and below which; the largest float for the most detailed level
+};
+
+/// The nodes of a file as a forest, and the part of it that is drawn: the chosen scene's. All vectors but `roots`
+/// and `levels` have one element per node of the file.
 struct NodeTree
 {
     int scene = -1;                  ///< the chosen scene; -1: the file has none, and all its roots are drawn
@@ -23,6 +32,9 @@ struct NodeTree
     std::vector<int> roots;          ///< of the drawn part
     std::vector<bool> drawn;         ///< at or below one of `roots`
     std::vector<glm::dmat4> toWorld; ///< at rest
+    /// Levels of detail: siblings of the node that they stand for. No level is below another.
+    std::vector<NodeLevel> levels;
+    std::vector<int> levelOf; ///< the index into `levels` of the level that the node is, or is part of; -1: none
 
     /// True if the node at rest mirrors, so that front faces become back faces.
     bool isMirrored(int node) const;

@@ -15,6 +15,7 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <glm/matrix.hpp>
 #include <osg/FrontFace>
+#include <osg/LOD>
 #include <osg/MatrixTransform>
 
 #include <algorithm>
@@ -53,6 +54,8 @@ private:
     DrawablePlace placeOf(std::size_t node, int primitive) const;
     void buildStillNodes();
     void addStill(std::size_t node);
+    using Lods = std::map<std::size_t, osg::ref_ptr<osg::LOD>>;
+    void addLevel(std::size_t node, osg::Node& child, osg::Group& parent, Lods& lods) const;
     void addShared(osg::Group& place, osg::Geometry& geometry);
 
     const SceneParts& _parts;
@@ -64,7 +67,9 @@ private:
     std::vector<osg::ref_ptr<osg::Group>> _groups;                ///< by node: null where no transform is needed
     /// By geometry with mostParents: the current one over the same arrays, with fewer.
     std::map<const osg::Geometry*, osg::ref_ptr<osg::Geometry>> _open;
-    std::set<const osg::Geometry*> _inCharacter;
+    std::set<std::pair<int, const osg::Geometry*>> _inCharacter; ///< by level of detail, -1: none
+    // By group of levels of detail:
+    Lods _characterLods, _stillLods;
 };
 
 double determinant(const osg::Matrixd& m)
@@ -143,7 +148,8 @@ void SceneGraphBuilder::addMesh(std::size_t node)
             continue;
         }
         moves = true;
-        if (_inCharacter.insert(geometry).second) _character->addChild(geometry);
+        if (_inCharacter.insert({_parts.tree.levelOf[node], geometry}).second)
+            addLevel(node, *geometry, *_character, _characterLods);
     }
     if (moves && isInstanced(source))
         _parts.report.warn(namedElement("nodes", node, source.name) +
@@ -163,6 +169,26 @@ void SceneGraphBuilder::addShared(osg::Group& place, osg::Geometry& geometry)
     place.addChild(open);
 }
 
+/// Adds the child to the parent, or, if the node is part of a level of detail, to the parent's LOD of that group.
+void SceneGraphBuilder::addLevel(std::size_t node, osg::Node& child, osg::Group& parent, Lods& lods) const
+{
+    const int index = _parts.tree.levelOf[node];
+    if (index < 0)
+    {
+        parent.addChild(&child);
+        return;
+    }
+    const NodeLevel& level = _parts.tree.levels[static_cast<std::size_t>(index)];
+    osg::ref_ptr<osg::LOD>& lod = lods[level.group];
+    if (!lod)
+    {
+        lod = new osg::LOD;
+        lod->setRangeMode(osg::LOD::PIXEL_SIZE_ON_SCREEN);
+        parent.addChild(lod);
+    }
+    lod->addChild(&child, level.minPixels, level.maxPixels);
+}
+
 void SceneGraphBuilder::addStill(std::size_t node)
 {
     const tinygltf::Node& source = _parts.model.nodes[node];
@@ -171,7 +197,11 @@ void SceneGraphBuilder::addStill(std::size_t node)
     const osg::Matrixd local = toOsg(localMatrix(source));
     osg::ref_ptr<osg::MatrixTransform> transform = new osg::MatrixTransform(local);
     transform->setName(source.name);
-    above->addChild(transform);
+    const int level = _parts.tree.levelOf[node];
+    if (level >= 0 && _parts.tree.levels[static_cast<std::size_t>(level)].node == static_cast<int>(node))
+        addLevel(node, *transform, *above, _stillLods);
+    else
+        above->addChild(transform);
     _groups[node] = transform;
     if (determinant(local) < 0.0) setWinding(*transform, _parts.tree.isMirrored(static_cast<int>(node)));
     if (_still[node].empty()) return;

@@ -64,8 +64,9 @@ struct SceneParts
 
 /// Fills `still`, the character and `primitives`. Everything drawn from the palette becomes a child of the character;
 /// the rest becomes MatrixTransforms below `still`, one a node of the file that carries something or is above such a
-/// node, with geometries. Nodes that mirror set the winding in their state, so that front faces stay front faces.
-/// Returns these transforms, one per node of the file, null where there is none.
+/// node, with geometries. Levels of detail are below an osg::LOD, by size on screen. Nodes that mirror set the winding
+/// in their state, so that front faces stay front faces. Returns these transforms, one per node of the file, null where
+/// there is none.
 std::vector<osg::ref_ptr<osg::Group>> buildSceneGraph(const SceneParts& parts, osg::Group& still,
                                                       AnimatedCharacter* character,
                                                       std::vector<ImportedPrimitive>& primitives);

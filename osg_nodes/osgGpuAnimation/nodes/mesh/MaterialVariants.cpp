@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/mesh/MaterialVariants.h>
 
+#include <osg/LOD>
 #include <osg/UserDataContainer>
 
 namespace osgGpuAnimation
@@ -105,6 +106,7 @@ void VariantMeshes::show(osg::Group& group, const std::string& variant)
 {
     for (unsigned int i = 0; i < group.getNumChildren(); ++i)
     {
+        if (auto* levels = dynamic_cast<osg::LOD*>(group.getChild(i))) show(*levels, variant);
         auto* mesh = dynamic_cast<osg::Geometry*>(group.getChild(i));
         osg::StateSet* state = mesh ? variantState(*mesh, variant) : nullptr;
         if (!state || state == mesh->getStateSet()) continue;

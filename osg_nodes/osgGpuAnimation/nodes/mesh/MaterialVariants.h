@@ -41,7 +41,7 @@ void resizeVariantStates(osg::Geometry& mesh, unsigned int maxSize);
 class VariantMeshes
 {
 public:
-    /// Replaces the direct children of the group that the variant changes.
+    /// Replaces the meshes that the variant changes among the direct children of the group and of LODs there.
     void show(osg::Group& group, const std::string& variant);
 
 private:

@@ -8,8 +8,10 @@
 #include <osg/Array>
 #include <osg/BoundingBox>
 #include <osg/Group>
+#include <osg/LOD>
 #include <osg/NodeVisitor>
 
+#include <limits>
 #include <map>
 #include <vector>
 
@@ -53,14 +55,22 @@ void forEachMeshBelow(osg::Node& node, Function function)
     node.accept(visitor);
 }
 
-/// function(const SkinnedGeometry&), for every mesh among the children of the group.
+/// function(const SkinnedGeometry&), for every mesh among the children of the group, and for the most detailed level of
+/// each osg::LOD among them.
 template <typename Function>
 void forEachMesh(const osg::Group& group, Function function)
 {
+    const auto visit = [&](const osg::Node* child)
+    {
+        const auto* mesh = dynamic_cast<const SkinnedGeometry*>(child);
+        if (mesh) function(*mesh);
+        return mesh != nullptr;
+    };
     for (unsigned int child = 0; child < group.getNumChildren(); ++child)
     {
-        const auto* mesh = dynamic_cast<const SkinnedGeometry*>(group.getChild(child));
-        if (mesh) function(*mesh);
+        const auto* lod = visit(group.getChild(child)) ? nullptr : dynamic_cast<const osg::LOD*>(group.getChild(child));
+        for (unsigned int level = 0; lod && level < lod->getNumChildren(); ++level)
+            if (lod->getMaxRange(level) == std::numeric_limits<float>::max()) visit(lod->getChild(level));
     }
 }
 

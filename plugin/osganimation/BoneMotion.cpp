@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "osganimation/BoneMotion.h"
 
+#include "osganimation/CurveKeys.h"
+
 #include <osgGpuAnimation/nodes/OsgMatrix.h>
 
 #include <glm/common.hpp>
@@ -8,39 +10,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <tuple>
 
 namespace osgGpuAnimation::osganimation
 {
 
 namespace
 {
-
-constexpr double tolerance = 1e-5;
-constexpr int mostHalvings = 8;
-
-using KeyframeContainers =
-    std::tuple<osgAnimation::FloatKeyframeContainer, osgAnimation::DoubleKeyframeContainer,
-               osgAnimation::Vec2KeyframeContainer, osgAnimation::Vec3KeyframeContainer,
-               osgAnimation::Vec4KeyframeContainer, osgAnimation::QuatKeyframeContainer,
-               osgAnimation::MatrixKeyframeContainer, osgAnimation::FloatCubicBezierKeyframeContainer,
-               osgAnimation::DoubleCubicBezierKeyframeContainer, osgAnimation::Vec2CubicBezierKeyframeContainer,
-               osgAnimation::Vec3CubicBezierKeyframeContainer, osgAnimation::Vec4CubicBezierKeyframeContainer>;
-
-template <class Container>
-void addTimes(const osgAnimation::KeyframeContainer& keys, std::vector<double>& times)
-{
-    const auto* const typed = dynamic_cast<const Container*>(&keys);
-    for (std::size_t i = 0; typed && i < typed->size(); ++i)
-        times.push_back((*typed)[i].getTime());
-}
-
-template <class... Containers>
-void addTimesOf(const osgAnimation::KeyframeContainer& keys, std::vector<double>& times, std::tuple<Containers...>*)
-{
-    (addTimes<Containers>(keys, times), ...);
-}
 
 double largestNumber(const osg::Matrixd& matrix)
 {
@@ -61,14 +36,6 @@ double largestDifference(const osg::Matrixd& a, const osg::Matrixd& b)
 osg::Matrixd matrixOf(const JointTransform& transform)
 {
     return toOsg(transform.toMatrix());
-}
-
-/// Linear, and slerp the short way, as the kit mixes two keys.
-JointTransform between(const JointTransform& a, const JointTransform& b, float share)
-{
-    const glm::dvec4 rotation =
-        Rotation::slerp(glm::dvec4(a.rotation), glm::dvec4(b.rotation), static_cast<double>(share));
-    return {glm::mix(a.translation, b.translation, share), glm::vec4(rotation), glm::mix(a.scale, b.scale, share)};
 }
 
 } // namespace
@@ -111,6 +78,25 @@ BoneMotion::BoneMotion(const osgAnimation::Bone& bone, const osgAnimation::Updat
     }
 }
 
+double BoneMotion::difference(const osg::Matrixd& a, const osg::Matrixd& b)
+{
+    return largestDifference(a, b);
+}
+
+double BoneMotion::size(const osg::Matrixd& matrix)
+{
+    return largestNumber(matrix);
+}
+
+osg::Matrixd BoneMotion::between(const osg::Matrixd& from, const osg::Matrixd& to, float share)
+{
+    const JointTransform a = transformOf(from), b = transformOf(to);
+    const glm::dvec4 rotation =
+        Rotation::slerp(glm::dvec4(a.rotation), glm::dvec4(b.rotation), static_cast<double>(share));
+    return matrixOf(
+        {glm::mix(a.translation, b.translation, share), glm::vec4(rotation), glm::mix(a.scale, b.scale, share)});
+}
+
 osg::Matrixd BoneMotion::at(double seconds)
 {
     if (!_update) return _still;
@@ -122,63 +108,9 @@ osg::Matrixd BoneMotion::at(double seconds)
     return _update->getStackedTransforms().getMatrix();
 }
 
-std::vector<double> BoneMotion::keyTimes() const
-{
-    std::vector<double> times;
-    for (const osg::ref_ptr<osgAnimation::Channel>& channel : _channels)
-    {
-        // Without a const KeyframeContainer in osgAnimation.
-        osgAnimation::Sampler* const sampler = channel->getSampler();
-        if (const osgAnimation::KeyframeContainer* const keys = sampler->getKeyframeContainer())
-            addTimesOf(*keys, times, static_cast<KeyframeContainers*>(nullptr));
-    }
-    // Times of a clip are floats.
-    for (double& time : times)
-        time = static_cast<double>(static_cast<float>(time));
-    times.erase(
-        std::remove_if(times.begin(), times.end(), [](double time) { return !(time >= 0.0) || !std::isfinite(time); }),
-        times.end());
-    std::sort(times.begin(), times.end());
-    times.erase(std::unique(times.begin(), times.end()), times.end());
-    return times;
-}
-
-void BoneMotion::addBetween(const Key& from, const Key& to, int depth, std::vector<Key>& keys)
-{
-    const JointTransform first = transformOf(from.matrix), last = transformOf(to.matrix);
-    bool isLinear = true;
-    for (const double share : {0.25, 0.5, 0.75})
-    {
-        const osg::Matrixd exact = at(from.seconds + share * (to.seconds - from.seconds));
-        const osg::Matrixd linear = matrixOf(between(first, last, static_cast<float>(share)));
-        isLinear = isLinear && largestDifference(linear, exact) <= tolerance * largestNumber(exact);
-    }
-    const auto middle = static_cast<double>(static_cast<float>(0.5 * (from.seconds + to.seconds)));
-    if (isLinear || depth == mostHalvings || !(from.seconds < middle && middle < to.seconds)) return;
-    const Key between{middle, at(middle)};
-    addBetween(from, between, depth + 1, keys);
-    keys.push_back(between);
-    addBetween(between, to, depth + 1, keys);
-}
-
 std::vector<Channel> BoneMotion::channels(int target)
 {
-    std::vector<Key> keys;
-    for (const double time : keyTimes())
-    {
-        const Key next{time, at(time)};
-        if (!keys.empty())
-        {
-            // A step: the value just before this key is far from the value at it.
-            const Key previous = keys.back();
-            const double before = static_cast<double>(std::nextafter(static_cast<float>(time), 0.0f));
-            const Key last{before, before > previous.seconds ? at(before) : next.matrix};
-            const bool isStep = largestDifference(last.matrix, next.matrix) > 1e-3 * largestNumber(next.matrix) + 1e-9;
-            addBetween(previous, isStep ? last : next, 0, keys);
-            if (isStep) keys.push_back(last);
-        }
-        keys.push_back(next);
-    }
+    const std::vector<CurveKey<osg::Matrixd>> keys = linearKeys(*this, keyTimesOf(_channels));
     std::vector<Channel> made;
     if (keys.empty()) return made;
     for (const Channel::Path path : {Channel::Path::Translation, Channel::Path::Rotation, Channel::Path::Scale})
@@ -186,9 +118,9 @@ std::vector<Channel> BoneMotion::channels(int target)
         Channel channel;
         channel.path = path;
         channel.target = target;
-        for (const Key& key : keys)
+        for (const CurveKey<osg::Matrixd>& key : keys)
         {
-            const JointTransform transform = transformOf(key.matrix);
+            const JointTransform transform = transformOf(key.value);
             const glm::vec4& part = path == Channel::Path::Translation ? transform.translation
                                     : path == Channel::Path::Rotation  ? transform.rotation
                                                                        : transform.scale;

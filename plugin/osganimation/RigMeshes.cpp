@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "osganimation/RigMeshes.h"
 
+#include "osganimation/MorphMeshes.h"
+
 #include <osgGpuAnimation/nodes/CharacterProgram.h>
 #include <osgGpuAnimation/nodes/OsgMatrix.h>
 
@@ -47,6 +49,7 @@ public:
         const osg::NodePath& path = getNodePath();
         int bone = -1;
         bool isAnimated = false;
+        osgAnimation::UpdateMorph* weights = nullptr;
         osg::Matrixd toBone, toSkeleton;
         std::vector<osg::StateSet*> states;
         for (osg::Node* node : path)
@@ -54,6 +57,8 @@ public:
             if (node == &_skeleton) continue;
             if (node->getStateSet()) states.push_back(node->getStateSet());
             if (node == &drawable) break;
+            auto* const update = dynamic_cast<osgAnimation::UpdateMorph*>(node->getUpdateCallback());
+            if (update) weights = update;
             const auto known = _indices.find(node);
             if (const osg::Transform* const transform = node->asTransform())
             {
@@ -62,7 +67,7 @@ public:
                 toSkeleton.preMult(matrix);
                 toBone.preMult(matrix);
             }
-            isAnimated = known == _indices.end() && (isAnimated || node->getUpdateCallback());
+            isAnimated = known == _indices.end() && (isAnimated || (node->getUpdateCallback() && !update));
             if (known == _indices.end()) continue;
             bone = known->second;
             toBone.makeIdentity();
@@ -71,6 +76,9 @@ public:
             addRig(*rig, toSkeleton, states);
         else if (bone >= 0 && !isAnimated)
             meshes.push_back({geometry, merged(states), {bone}, {toAffine(toBone)}});
+        else
+            return;
+        addMorph(meshes.back(), weights);
     }
 
     std::vector<RigMesh> meshes;
@@ -94,7 +102,26 @@ private:
             const osgAnimation::Bone& bone = *_bones[static_cast<std::size_t>(found->second)].bone;
             mesh.inverseBinds.push_back(toAffine(toSkeleton * bone.getInvBindMatrixInSkeletonSpace()));
         }
-        if (!mesh.bones.empty()) meshes.push_back(std::move(mesh));
+        meshes.push_back(std::move(mesh));
+    }
+
+    void addMorph(RigMesh& mesh, osgAnimation::UpdateMorph* weights)
+    {
+        auto* const rig = dynamic_cast<osgAnimation::RigGeometry*>(mesh.geometry.get());
+        osg::Geometry* const source = rig ? rig->getSourceGeometry() : mesh.geometry.get();
+        auto* const morph = dynamic_cast<osgAnimation::MorphGeometry*>(source);
+        if (mesh.bones.empty())
+            meshes.pop_back();
+        else if (!morph || morph->getMorphTargetList().empty())
+            return;
+        else if (!morphTargetsOf(*morph))
+            _warnings.push_back("mesh \"" + mesh.geometry->getName() +
+                                "\": its morph targets have other numbers of vertices; they are left out");
+        else
+        {
+            mesh.morph = morph;
+            mesh.weights = weights;
+        }
     }
 
     /// The same object for the same state sets.
@@ -122,8 +149,10 @@ public:
     RemainsFinder() : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN) {}
     void apply(osg::Node& node) override
     {
-        hasRemains = hasRemains || node.getUpdateCallback() || node.getEventCallback() || node.getCullCallback() ||
-                     dynamic_cast<osg::LightSource*>(&node) || (!node.asGroup() && !node.asGeode());
+        const bool isMorph = dynamic_cast<osgAnimation::UpdateMorph*>(node.getUpdateCallback());
+        hasRemains = hasRemains || (node.getUpdateCallback() && !isMorph) || node.getEventCallback() ||
+                     node.getCullCallback() || dynamic_cast<osg::LightSource*>(&node) ||
+                     (!node.asGroup() && !node.asGeode());
         if (!hasRemains) traverse(node);
     }
     bool hasRemains = false;
@@ -216,7 +245,7 @@ std::vector<RigMesh> findMeshes(osgAnimation::Skeleton& skeleton, const std::vec
     return finder.meshes;
 }
 
-osg::ref_ptr<SkinnedGeometry> skinnedMesh(const RigMesh& mesh, const AnimationSet& set, std::size_t skin,
+osg::ref_ptr<SkinnedGeometry> skinnedMesh(const RigMesh& mesh, const AnimationSet& set, std::size_t skin, int morph,
                                           std::vector<std::string>& warnings)
 {
     const auto* const rig = dynamic_cast<const osgAnimation::RigGeometry*>(mesh.geometry.get());
@@ -224,6 +253,12 @@ osg::ref_ptr<SkinnedGeometry> skinnedMesh(const RigMesh& mesh, const AnimationSe
     osg::ref_ptr<SkinnedGeometry> made = new SkinnedGeometry;
     made->setName(mesh.geometry->getName().empty() ? source.getName() : mesh.geometry->getName());
     copyArrays(source, *made);
+    if (morph >= 0)
+    {
+        made->setVertexArray(morphSource(*mesh.morph, false));
+        made->setNormalArray(morphSource(*mesh.morph, true));
+        made->setMorphTargets(set, static_cast<std::size_t>(morph), *morphTargetsOf(*mesh.morph));
+    }
     if (rig)
     {
         std::vector<VertexWeights> weights =
@@ -242,7 +277,7 @@ osg::ref_ptr<SkinnedGeometry> skinnedMesh(const RigMesh& mesh, const AnimationSe
     if (!state->getAttribute(osg::StateAttribute::MATERIAL)) state->setAttribute(new osg::Material);
     setColors(source, *state, *made);
     applyCharacterProgram(*state);
-    applySkinDefines(*state, made->getInfluenceCount(), false);
+    applySkinDefines(*state, made->getInfluenceCount(), morph >= 0);
     made->setStateSet(state);
     return made;
 }

@@ -4,6 +4,7 @@
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
 #include <osgAnimation/Bone>
+#include <osgAnimation/MorphGeometry>
 #include <osgAnimation/Skeleton>
 #include <osgAnimation/UpdateBone>
 
@@ -28,6 +29,9 @@ struct RigMesh
     osg::ref_ptr<osg::StateSet> state;    ///< of all nodes from the skeleton down to it, and its own
     std::vector<int> bones;
     std::vector<AffineMatrix> inverseBinds; ///< one per bone
+    /// The geometry itself, or the source of a RigGeometry, if it is morphed.
+    osg::ref_ptr<osgAnimation::MorphGeometry> morph{};
+    osgAnimation::UpdateMorph* weights = nullptr; ///< drives them; null: nothing does
 };
 
 /// The geometries below a skeleton that are drawn from the palette: RigGeometry anywhere, other geometry below a bone,
@@ -35,8 +39,8 @@ struct RigMesh
 std::vector<RigMesh> findMeshes(osgAnimation::Skeleton& skeleton, const std::vector<BoneJoint>& bones,
                                 std::vector<std::string>& warnings);
 
-/// The mesh for a set with one skin a RigMesh.
-osg::ref_ptr<SkinnedGeometry> skinnedMesh(const RigMesh& mesh, const AnimationSet& set, std::size_t skin,
+/// The mesh for a set with one skin a RigMesh. morph: the index of the set's morph weights; -1: the mesh has none.
+osg::ref_ptr<SkinnedGeometry> skinnedMesh(const RigMesh& mesh, const AnimationSet& set, std::size_t skin, int morph,
                                           std::vector<std::string>& warnings);
 
 /// True if nothing is left of a subgraph but groups and transforms without callbacks.

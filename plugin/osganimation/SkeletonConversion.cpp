@@ -2,6 +2,7 @@
 #include "osganimation/SkeletonConversion.h"
 
 #include "osganimation/BoneMotion.h"
+#include "osganimation/MorphMeshes.h"
 #include "osganimation/RigMeshes.h"
 
 #include <osgGpuAnimation/animation/ClipBuilder.h>
@@ -120,6 +121,7 @@ private:
     bool findBones(osg::Node& node, int parent);
     Result<std::shared_ptr<const AnimationSet>> makeSet(const std::vector<Manager>& managers);
     void addClips(const std::vector<Manager>& managers, AnimationParts& parts);
+    bool addWeights(const osgAnimation::Animation& animation, const AnimationParts& parts, ClipBuilder& builder);
     void addChildren(AnimatedCharacter& character);
     void stay(const std::string& reason) { _warnings.push_back("skeleton \"" + _skeleton.getName() + "\": " + reason); }
 
@@ -168,8 +170,30 @@ void SkeletonConverter::addClips(const std::vector<Manager>& managers, Animation
                         _warnings.push_back("animation \"" + animation->getName() + "\", bone \"" +
                                             _bones[i].bone->getName() + "\": " + added.error().message);
             }
+            isMoving = addWeights(*animation, parts, builder) || isMoving;
             if (isMoving) parts.clips.push_back(builder.build(animation->getName()));
         }
+}
+
+/// True if the animation moves weights of morph targets.
+bool SkeletonConverter::addWeights(const osgAnimation::Animation& animation, const AnimationParts& parts,
+                                   ClipBuilder& builder)
+{
+    bool isMoving = false;
+    int morph = 0;
+    for (const RigMesh& mesh : _meshes)
+    {
+        if (!mesh.morph) continue;
+        const int target = morph++;
+        MorphMotion motion(parts.morphs[static_cast<std::size_t>(target)].defaults, mesh.weights, animation);
+        if (!motion.isMoving()) continue;
+        isMoving = true;
+        _targets.insert(mesh.weights->getTargetNames().begin(), mesh.weights->getTargetNames().end());
+        if (const Result<bool> added = builder.add(motion.channel(target)); !added)
+            _warnings.push_back("animation \"" + animation.getName() + "\", mesh \"" + mesh.geometry->getName() +
+                                "\": " + added.error().message);
+    }
+    return isMoving;
 }
 
 Result<std::shared_ptr<const AnimationSet>> SkeletonConverter::makeSet(const std::vector<Manager>& managers)
@@ -188,6 +212,12 @@ Result<std::shared_ptr<const AnimationSet>> SkeletonConverter::makeSet(const std
         for (const int bone : mesh.bones)
             skin.joints.push_back(parts.skeleton.jointOfInput(static_cast<std::size_t>(bone)));
         parts.skins.push_back(std::move(skin));
+        if (!mesh.morph) continue;
+        osgAnimation::AnimationList animations;
+        for (const Manager& each : managers)
+            animations.insert(animations.end(), each.manager->getAnimationList().begin(),
+                              each.manager->getAnimationList().end());
+        parts.morphs.push_back({mesh.geometry->getName(), -1, restWeights(*mesh.morph, mesh.weights, animations)});
     }
     addClips(managers, parts);
     return AnimationSet::create(std::move(parts));
@@ -195,8 +225,10 @@ Result<std::shared_ptr<const AnimationSet>> SkeletonConverter::makeSet(const std
 
 void SkeletonConverter::addChildren(AnimatedCharacter& character)
 {
+    int morphs = 0;
     for (std::size_t skin = 0; skin < _meshes.size(); ++skin)
-        character.addChild(skinnedMesh(_meshes[skin], character.getAnimationSet(), skin, _warnings));
+        character.addChild(skinnedMesh(_meshes[skin], character.getAnimationSet(), skin,
+                                       _meshes[skin].morph ? morphs++ : -1, _warnings));
     for (const RigMesh& mesh : _meshes)
         while (mesh.geometry->getNumParents() > 0)
             mesh.geometry->getParent(0)->removeChild(mesh.geometry);
@@ -270,7 +302,9 @@ Conversion convertOsgAnimation(osg::Node& node)
         if (skeleton == &node) result.node = character;
         result.characters.push_back(character);
     }
-    if (scene.hasMorphs) result.warnings.push_back("MorphGeometry stays as it is");
+    SceneParts left;
+    result.node->accept(left);
+    if (left.hasMorphs) result.warnings.push_back("MorphGeometry that no bone carries stays as it is");
     for (const Manager& each : scene.managers)
     {
         const std::set<std::string> left = targetsLeft(*each.manager, taken);

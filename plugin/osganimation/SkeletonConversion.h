@@ -28,8 +28,9 @@ struct Conversion
 ///     viewer.setSceneData(converted.node);
 ///
 /// The poses are osgAnimation's: see BoneMotion. A manager whose channels are all in clips is removed. What stays as it
-/// was, with a warning: skeletons without bones or with a shear in a bone, MorphGeometry, animated materials and
-/// transforms outside skeletons. Vertices keep their eight largest influences.
+/// was, with a warning: skeletons without bones or with a shear in a bone, MorphGeometry that no bone carries, animated
+/// materials and transforms outside skeletons. Vertices keep their eight largest influences. MorphGeometry below bones,
+/// and as the source of RigGeometry, becomes morph targets, its UpdateMorph's channels become weights.
 Conversion convertOsgAnimation(osg::Node& node);
 
 } // namespace osgGpuAnimation::osganimation

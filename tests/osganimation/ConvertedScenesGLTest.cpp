@@ -12,6 +12,7 @@
 #include <osg/LightSource>
 #include <osgAnimation/BasicAnimationManager>
 #include <osgAnimation/Bone>
+#include <osgAnimation/MorphGeometry>
 #include <osgAnimation/RigGeometry>
 #include <osgDB/ReadFile>
 #include <osgDB/WriteFile>
@@ -187,6 +188,110 @@ TEST_F(ConvertedScenesGLTest, allKindsOfChannelsAndMeshesTakeThePosesOfOsgAnimat
         if (dynamic_cast<const SkinnedGeometry*>(character->getChild(i)))
             meshes.insert(character->getChild(i)->getName());
     EXPECT_EQ(meshes, (std::set<std::string>{"flag", "sleeve"}));
+}
+
+/// A strip whose first target is a wider one, its second a longer one; RELATIVE targets are differences.
+osg::ref_ptr<osgAnimation::MorphGeometry> morphingStrip(osgAnimation::MorphGeometry::Method method)
+{
+    osg::ref_ptr<osg::Geometry> shapes[3];
+    for (int shape = 0; shape < 3; ++shape)
+    {
+        const bool isDifference = shape > 0 && method == osgAnimation::MorphGeometry::RELATIVE;
+        osg::ref_ptr<osg::Vec3Array> vertices = new osg::Vec3Array, normals = new osg::Vec3Array;
+        for (int i = 0; i < 4; ++i)
+        {
+            const osg::Vec3 base(i % 2 == 0 ? -0.3f : 0.3f, 0.0f, i / 2 == 0 ? 0.0f : 0.6f);
+            const osg::Vec3 moved(shape == 1 ? base.x() : 0.0f, 0.0f, shape == 2 ? base.z() : 0.0f);
+            vertices->push_back(isDifference ? moved : base + moved);
+            normals->push_back(isDifference ? osg::Vec3() : osg::Vec3(0, -1, 0));
+        }
+        shapes[shape] = new osg::Geometry;
+        shapes[shape]->setVertexArray(vertices);
+        shapes[shape]->setNormalArray(normals, osg::Array::BIND_PER_VERTEX);
+        shapes[shape]->addPrimitiveSet(new osg::DrawArrays(GL_TRIANGLE_STRIP, 0, 4));
+    }
+    osg::ref_ptr<osgAnimation::MorphGeometry> made = new osgAnimation::MorphGeometry(*shapes[0]);
+    made->setMethod(method);
+    made->addMorphTarget(shapes[1], 0.0f);
+    made->addMorphTarget(shapes[2], 0.25f);
+    return made;
+}
+
+/// The small rig with a morphing strip at a bone and a RigGeometry of another one, and an animation of their weights.
+osg::ref_ptr<osg::Node> morphingScene()
+{
+    const SmallRig scene;
+    osg::ref_ptr<osg::Geode> mouth = new osg::Geode, cuff = new osg::Geode;
+    osg::ref_ptr<osg::Material> even = new osg::Material; // the program takes the diffuse colour for ambient light
+    even->setAmbient(osg::Material::FRONT_AND_BACK, even->getDiffuse(osg::Material::FRONT));
+    for (osg::Geode* const geode : {mouth.get(), cuff.get()})
+        geode->getOrCreateStateSet()->setAttribute(even);
+    const osg::ref_ptr<osgAnimation::MorphGeometry> strip = morphingStrip(osgAnimation::MorphGeometry::NORMALIZED);
+    strip->setName("mouth");
+    mouth->addDrawable(strip);
+    const osg::ref_ptr<osgAnimation::UpdateMorph> mouthUpdate = new osgAnimation::UpdateMorph;
+    mouthUpdate->addTarget("mouth");
+    mouth->setUpdateCallback(mouthUpdate);
+    scene.lower->addChild(mouth);
+    osg::ref_ptr<osgAnimation::RigGeometry> rig = new osgAnimation::RigGeometry;
+    rig->setName("cuff");
+    rig->setSourceGeometry(morphingStrip(osgAnimation::MorphGeometry::RELATIVE));
+    osg::ref_ptr<osgAnimation::VertexInfluenceMap> map = new osgAnimation::VertexInfluenceMap;
+    for (unsigned int vertex = 0; vertex < 4; ++vertex)
+        (*map)["upper"].emplace_back(vertex, 1.0f);
+    (*map)["upper"].setName("upper");
+    rig->setInfluenceMap(map);
+    cuff->addDrawable(rig);
+    const osg::ref_ptr<osgAnimation::UpdateMorph> cuffUpdate = new osgAnimation::UpdateMorph;
+    cuffUpdate->addTarget("cuff");
+    cuff->setUpdateCallback(cuffUpdate);
+    scene.skeleton->addChild(cuff);
+
+    osg::ref_ptr<osgAnimation::Animation> puff = new osgAnimation::Animation;
+    puff->setName("Puff");
+    for (const char* const target : {"mouth", "cuff"})
+        for (const char* const weight : {"0", "1"})
+        {
+            osg::ref_ptr<osgAnimation::FloatLinearChannel> channel = new osgAnimation::FloatLinearChannel;
+            channel->setTargetName(target);
+            channel->setName(weight);
+            osgAnimation::FloatKeyframeContainer& keys = *channel->getOrCreateSampler()->getOrCreateKeyframeContainer();
+            keys.push_back(osgAnimation::FloatKeyframe(0.0, -0.5f)); // below 0 it does nothing
+            keys.push_back(osgAnimation::FloatKeyframe(1.0, *weight == '0' ? 1.5f : 0.7f));
+            puff->addChannel(channel);
+        }
+    scene.manager->registerAnimation(puff);
+    return scene.root;
+}
+
+TEST_F(ConvertedScenesGLTest, morphTargetsTakeTheShapesOfOsgAnimation)
+{
+    expectSamePoses(morphingScene, 3);
+    const osg::ref_ptr<osg::Node> node = morphingScene();
+    const osganimation::Conversion converted = osganimation::convertOsgAnimation(*node);
+    EXPECT_TRUE(converted.warnings.empty()) << converted.warnings.front();
+    const AnimationSet& set = converted.characters.front()->getAnimationSet();
+    ASSERT_EQ(set.morphs().size(), 2u);
+    EXPECT_EQ(set.morphs()[0].defaults, (std::vector<float>{0.0f, 0.0f})); // "Puff" drives both
+}
+
+TEST_F(ConvertedScenesGLTest, morphTargetsThatDoNotFitAreLeftOut)
+{
+    const SmallRig scene;
+    osg::ref_ptr<osg::Geode> mouth = new osg::Geode, loose = new osg::Geode;
+    const osg::ref_ptr<osgAnimation::MorphGeometry> strip = morphingStrip(osgAnimation::MorphGeometry::NORMALIZED);
+    strip->setName("mouth");
+    osg::ref_ptr<osg::Geometry> other = new osg::Geometry;
+    other->setVertexArray(new osg::Vec3Array(3));
+    strip->addMorphTarget(other);
+    mouth->addDrawable(strip);
+    scene.lower->addChild(mouth);
+    loose->addDrawable(morphingStrip(osgAnimation::MorphGeometry::NORMALIZED));
+    scene.root->addChild(loose);
+    EXPECT_EQ(
+        osganimation::convertOsgAnimation(*scene.root).warnings,
+        (std::vector<std::string>{"mesh \"mouth\": its morph targets have other numbers of vertices; they are left out",
+                                  "MorphGeometry that no bone carries stays as it is"}));
 }
 
 TEST_F(ConvertedScenesGLTest, whatCannotBeTurnedStaysOrIsAttached)

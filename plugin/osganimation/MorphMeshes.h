@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osgGpuAnimation/animation/Clip.h>
+#include <osgGpuAnimation/animation/Skeleton.h>
+#include <osgGpuAnimation/nodes/MorphTarget.h>
+
+#include <osgAnimation/Animation>
+#include <osgAnimation/MorphGeometry>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace osgGpuAnimation::osganimation
+{
+
+/// The weights of a MorphGeometry under one osgAnimation::Animation. osgAnimation ignores weights below 0, and so does
+/// the curve.
+class MorphMotion
+{
+public:
+    /// rest: one weight per target, without animation. update: the callback of the Geode that drives the weights; null:
+    /// nothing does.
+    MorphMotion(std::vector<float> rest, osgAnimation::UpdateMorph* update, const osgAnimation::Animation& animation);
+
+    bool drives(std::size_t weight) const { return _targets[weight].valid(); }
+    bool isMoving() const { return !_channels.empty(); } ///< a channel drives a weight
+    std::vector<float> at(double seconds);               ///< one per target
+    /// Linear keys, see linearKeys(). target: the index of the morph weights.
+    Channel channel(int target);
+
+    // For linearKeys():
+    static double difference(const std::vector<float>& a, const std::vector<float>& b); ///< the largest of two weights
+    static double size(const std::vector<float>&) { return 1.0; }
+    static std::vector<float> between(const std::vector<float>& from, const std::vector<float>& to, float share);
+
+private:
+    std::vector<float> _rest;
+    std::vector<osg::ref_ptr<osgAnimation::Channel>> _channels;
+    std::vector<osg::ref_ptr<osgAnimation::FloatTarget>> _targets; ///< one per weight; null: not driven
+};
+
+/// The mesh's own weights, without animation. One that any animation drives is 0 in the others, as osgAnimation has it.
+std::vector<float> restWeights(const osgAnimation::MorphGeometry& mesh, osgAnimation::UpdateMorph* update,
+                               const osgAnimation::AnimationList& animations);
+
+/// The vertices and normals before any weights; null: none.
+osg::Vec3Array* morphSource(const osgAnimation::MorphGeometry& mesh, bool normals);
+
+/// The targets as differences from those vertices. None, if a target has another number of vertices: the mesh cannot be
+/// morphed.
+std::optional<std::vector<MorphTarget>> morphTargetsOf(const osgAnimation::MorphGeometry& mesh);
+
+} // namespace osgGpuAnimation::osganimation

@@ -29,12 +29,15 @@ osgDB::ReaderWriter::ReadResult ModelReader::readNode(const std::string& fileNam
     if (path.empty()) return ReadResult::FILE_NOT_FOUND;
     try
     {
-        const Result<gltf::ImportOptions> importOptions = importOptionsOf(options);
-        if (!importOptions) return ReadResult(importOptions.error().message);
+        const Result<gltf::ImportOptions> given = importOptionsOf(options);
+        if (!given) return ReadResult(given.error().message);
+        gltf::ImportOptions importOptions = given.value();
+        importOptions.readClipsFile = [this](const std::string& file, const gltf::ImportOptions& own,
+                                             gltf::Messages& messages) { return readGltf(file, own, messages); };
         gltf::Messages messages;
-        const Result<std::string> bytes = readGltf(path, importOptions.value(), messages);
+        const Result<std::string> bytes = readGltf(path, importOptions, messages);
         if (!bytes) return ReadResult(bytes.error().message);
-        return import(bytes.value(), path, options, importOptions.value(), messages);
+        return import(bytes.value(), path, options, importOptions, messages);
     }
     catch (const std::bad_alloc&)
     {

@@ -25,7 +25,8 @@ public:
 protected:
     ModelReader();
 
-    /// The content of a file as glTF. path: of a file that osgDB found; messages: what the reading has to say.
+    /// The content of a file as glTF, also of a file of clips. path: of a file that osgDB found; messages: what the
+    /// reading has to say.
     virtual Result<std::string> readGltf(const std::string& path, const gltf::ImportOptions& options,
                                          gltf::Messages& messages) const = 0;
     /// The file that a name asks for.

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -13,6 +14,8 @@
 
 namespace osgGpuAnimation::gltf
 {
+
+struct Messages;
 
 /// The caller's choices for an import, and the limits that keep a file from any origin harmless.
 struct ImportOptions
@@ -30,16 +33,19 @@ struct ImportOptions
     /// current one; in or below the model's folder, or anywhere with allowOutsideFiles.
     std::vector<std::string> clipsFiles;
     bool allowOutsideClips = false; ///< clipsFiles alone may be anywhere
-    bool noKeys = false;            ///< no CharacterKeys on the character
-    std::optional<int> scene;       ///< default: the file's own, else 0
-    bool noLights = false;          ///< leave the file's lights out
-    bool noCameras = false;         ///< leave the file's cameras out
+    /// Reads one of the clipsFiles of any format as glTF. Empty: they are .gltf or .glb.
+    std::function<Result<std::string>(const std::string& path, const ImportOptions&, Messages&)> readClipsFile;
+    bool noKeys = false;      ///< no CharacterKeys on the character
+    std::optional<int> scene; ///< default: the file's own, else 0
+    bool noLights = false;    ///< leave the file's lights out
+    bool noCameras = false;   ///< leave the file's cameras out
     /// The camera of a viewer's first view: name, or index where none has that name; default: the viewer's own view
     std::optional<std::string> camera;
     /// The material variant shown at first: name, or index where none has that name; default: none
     std::optional<std::string> variant;
     bool noRotation = false;        ///< keep glTF's +Y up; default: turn to OSG's +Z up at the root
     bool fixedLighting = false;     ///< the fixed pipeline's look: base colours in display space, no other maps
+    bool keepEncoded = false;       ///< images keep their PNG or JPEG, for a writer; see keepEncoded()
     bool allowOutsideFiles = false; ///< URIs may name files outside the model's folder
 
     std::size_t maxJsonBytes = std::size_t(512) << 20; ///< of the JSON text, data URIs included

@@ -34,9 +34,10 @@ Result<std::shared_ptr<const AnimationSet>> readSet(const std::string& path, con
 {
     ImportOptions own = options;
     own.scene.reset();
-    const Result<std::string> bytes = readModelFile(path, own);
-    if (!bytes) return bytes.error();
     Messages messages;
+    const Result<std::string> bytes =
+        own.readClipsFile ? own.readClipsFile(path, own, messages) : readModelFile(path, own);
+    if (!bytes) return bytes.error();
     Report ownReport(messages);
     const Result<tinygltf::Model> model = loadDocument(bytes.value(), path, own, messages);
     if (!model) return model.error();

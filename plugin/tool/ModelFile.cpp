@@ -45,6 +45,7 @@ Result<gltf::ImportOptions> importOptions(const std::vector<std::string>& clipsF
 {
     gltf::ImportOptions options;
     options.allowOutsideClips = true;
+    options.readClipsFile = readGltf;
     for (const std::string& file : clipsFiles)
     {
         std::error_code failure;
@@ -59,6 +60,14 @@ void printClipWarnings(const gltf::ImportedModel& model)
 {
     for (const std::string& warning : model.messages.warnings)
         if (warning.rfind("clips ", 0) == 0) std::cerr << "osggpuanim: " << warning << std::endl;
+}
+
+bool isModelFormat(const std::string& fileName)
+{
+#ifdef OSGGPUANIMATION_ASSIMP
+    if (assimp::isFormat(osgDB::getLowerCaseFileExtension(fileName))) return true;
+#endif
+    return isCalledGltf(fileName);
 }
 
 Result<gltf::ImportedModel> readModel(const std::string& fileName, const gltf::ImportOptions& options)

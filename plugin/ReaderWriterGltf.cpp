@@ -1,20 +1,24 @@
 // SPDX-License-Identifier: MIT
+#include "gltf/Export.h"
 #include "gltf/file/ModelBytes.h"
 #include "ModelReader.h"
 
 #include "cache/SeparateLoads.h"
 #include "cache/TypedWriters.h"
 
+#include <osg/Notify>
 #include <osgDB/FileNameUtils>
 #include <osgDB/Registry>
 
+#include <fstream>
 #include <new>
 #include <string>
 
 namespace osgGpuAnimation
 {
 
-/// The osgPlugin for glTF 2.0: .gltf and .glb become an animated OSG graph, see gltf::importModel().
+/// The osgPlugin for glTF 2.0: .gltf and .glb become an animated OSG graph, see gltf::importModel(), and scenes become
+/// .glb, see gltf::exportModel().
 class ReaderWriterGltf : public ModelReader
 {
 public:
@@ -28,11 +32,34 @@ public:
 
     using ModelReader::readNode;
     using ModelReader::readObject;
+    using ModelReader::writeNode;
+    using ModelReader::writeObject;
     ReadResult readObject(std::istream& stream, const Options* options) const override
     {
         return readNode(stream, options);
     }
     ReadResult readNode(std::istream& stream, const Options* options) const override;
+
+    WriteResult writeObject(const osg::Object& object, const std::string& fileName,
+                            const Options* options) const override
+    {
+        const auto* const node = dynamic_cast<const osg::Node*>(&object);
+        return node ? writeNode(*node, fileName, options) : WriteResult(WriteResult::FILE_NOT_HANDLED);
+    }
+    WriteResult writeNode(const osg::Node& node, const std::string& fileName, const Options*) const override
+    {
+        std::ofstream stream;
+        const auto open = [&]() -> std::ostream&
+        {
+            stream.open(fileName, std::ios::binary);
+            return stream;
+        };
+        return write(node, fileName, open);
+    }
+    WriteResult writeNode(const osg::Node& node, std::ostream& stream, const Options*) const override
+    {
+        return write(node, "scene.glb", [&]() -> std::ostream& { return stream; });
+    }
 
 protected:
     Result<std::string> readGltf(const std::string& path, const gltf::ImportOptions& options,
@@ -40,6 +67,11 @@ protected:
     {
         return gltf::readModelFile(path, options);
     }
+
+private:
+    /// open: called once there is something to write.
+    template <typename Open>
+    WriteResult write(const osg::Node& node, const std::string& fileName, Open open) const;
 };
 
 osgDB::ReaderWriter::ReadResult ReaderWriterGltf::readNode(std::istream& stream, const Options* options) const
@@ -58,6 +90,29 @@ osgDB::ReaderWriter::ReadResult ReaderWriterGltf::readNode(std::istream& stream,
     catch (const std::bad_alloc&)
     {
         return ReadResult::INSUFFICIENT_MEMORY_TO_LOAD;
+    }
+}
+
+template <typename Open>
+osgDB::ReaderWriter::WriteResult ReaderWriterGltf::write(const osg::Node& node, const std::string& fileName,
+                                                         Open open) const
+{
+    const std::string extension = osgDB::getLowerCaseFileExtension(fileName);
+    if (!acceptsExtension(extension)) return WriteResult::FILE_NOT_HANDLED;
+    if (extension == "gltf") return WriteResult("glTF is written as .glb only");
+    try
+    {
+        gltf::Messages messages;
+        gltf::Report report(messages);
+        const Result<std::string> bytes = gltf::exportModel(node, report);
+        for (const std::string& warning : messages.warnings)
+            OSG_WARN << fileName << ": " << warning << std::endl;
+        if (!bytes) return WriteResult(bytes.error().message);
+        return open() << bytes.value() << std::flush ? WriteResult::FILE_SAVED : WriteResult::ERROR_IN_WRITING_FILE;
+    }
+    catch (const std::bad_alloc&)
+    {
+        return WriteResult("not enough memory");
     }
 }
 

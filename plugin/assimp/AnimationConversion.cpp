@@ -34,7 +34,7 @@ std::vector<float> numbersOf(const aiQuatKey& key)
 class AnimationWriter
 {
 public:
-    AnimationWriter(const aiAnimation& animation, GlbWriter& writer) : _animation(animation), _writer(writer)
+    AnimationWriter(const aiAnimation& animation, gltf::GlbWriter& writer) : _animation(animation), _writer(writer)
     {
         _secondsATick = 1.0 / (animation.mTicksPerSecond > 0.0 ? animation.mTicksPerSecond : usualTicksPerSecond);
         for (unsigned int i = 0; i < animation.mNumChannels; ++i)
@@ -86,9 +86,9 @@ private:
         }
         if (times.empty()) return;
         const std::size_t sampler =
-            append(_samplers, {{"input", _writer.addFloats(times, "SCALAR", GlbWriter::Use::Times)},
-                               {"output", _writer.addFloats(values, type, GlbWriter::Use::Values)}});
-        append(_channels, {{"sampler", sampler}, {"target", {{"node", node}, {"path", path}}}});
+            gltf::append(_samplers, {{"input", _writer.addFloats(times, "SCALAR", gltf::GlbWriter::Use::Times)},
+                                     {"output", _writer.addFloats(values, type, gltf::GlbWriter::Use::Values)}});
+        gltf::append(_channels, {{"sampler", sampler}, {"target", {{"node", node}, {"path", path}}}});
     }
 
     void addNode(const aiNodeAnim& channel, std::size_t node)
@@ -121,7 +121,7 @@ private:
     }
 
     const aiAnimation& _animation;
-    GlbWriter& _writer;
+    gltf::GlbWriter& _writer;
     double _secondsATick;
     double _start = 0.0; ///< ticks; below 0 where keys are
     json _channels = json::array();
@@ -130,8 +130,8 @@ private:
 
 } // namespace
 
-void writeAnimations(const aiScene& scene, const NodeNumbers& nodes, const MorphedNodes& morphed, GlbWriter& writer,
-                     gltf::Report& report)
+void writeAnimations(const aiScene& scene, const NodeNumbers& nodes, const MorphedNodes& morphed,
+                     gltf::GlbWriter& writer, gltf::Report& report)
 {
     for (unsigned int i = 0; i < scene.mNumAnimations; ++i)
     {
@@ -140,7 +140,7 @@ void writeAnimations(const aiScene& scene, const NodeNumbers& nodes, const Morph
             report.note(gltf::namedElement("animations", i, scene.mAnimations[i]->mName.C_Str()) +
                         " moves no node of the scene; left out");
         else
-            append(writer.document["animations"], std::move(made));
+            gltf::append(writer.document["animations"], std::move(made));
     }
 }
 

@@ -17,7 +17,7 @@ using MorphedNodes = std::multimap<std::size_t, std::pair<std::size_t, std::size
 /// Writes all animations, with linear keys. Times become seconds, from 0 on; without ticks per second, 25 are assumed.
 /// Keys that are not finite or go back in time are left out; of two keys at one time, the second follows at the next
 /// float.
-void writeAnimations(const aiScene& scene, const NodeNumbers& nodes, const MorphedNodes& morphed, GlbWriter& writer,
-                     gltf::Report& report);
+void writeAnimations(const aiScene& scene, const NodeNumbers& nodes, const MorphedNodes& morphed,
+                     gltf::GlbWriter& writer, gltf::Report& report);
 
 } // namespace osgGpuAnimation::assimp

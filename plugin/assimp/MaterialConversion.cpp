@@ -55,7 +55,7 @@ json transformOf(const aiUVTransform& transform)
 class MaterialWriter
 {
 public:
-    MaterialWriter(const aiMaterial& material, Pictures& pictures, GlbWriter& writer, gltf::Report& report)
+    MaterialWriter(const aiMaterial& material, Pictures& pictures, gltf::GlbWriter& writer, gltf::Report& report)
         : _material(material), _pictures(pictures), _writer(writer), _report(report)
     {
     }
@@ -95,8 +95,9 @@ private:
             if (!image) continue;
             json& samplers = _writer.document["samplers"];
             json& textures = _writer.document["textures"];
-            const std::size_t sampler = append(samplers, {{"wrapS", wrapOf(modes[0])}, {"wrapT", wrapOf(modes[1])}});
-            json info{{"index", append(textures, {{"source", *image}, {"sampler", sampler}})},
+            const std::size_t sampler =
+                gltf::append(samplers, {{"wrapS", wrapOf(modes[0])}, {"wrapT", wrapOf(modes[1])}});
+            json info{{"index", gltf::append(textures, {{"source", *image}, {"sampler", sampler}})},
                       {"texCoord", coordinates}};
             aiUVTransform transform;
             if (_material.Get(AI_MATKEY_UVTRANSFORM(type, 0), transform) == aiReturn_SUCCESS)
@@ -172,17 +173,18 @@ private:
 
     const aiMaterial& _material;
     Pictures& _pictures;
-    GlbWriter& _writer;
+    gltf::GlbWriter& _writer;
     gltf::Report& _report;
 };
 
 } // namespace
 
-void writeMaterials(const aiScene& scene, const std::string& modelFile, GlbWriter& writer, gltf::Report& report)
+void writeMaterials(const aiScene& scene, const std::string& modelFile, gltf::GlbWriter& writer, gltf::Report& report)
 {
     Pictures pictures(scene, modelFile, writer, report);
     for (unsigned int i = 0; i < scene.mNumMaterials; ++i)
-        append(writer.document["materials"], MaterialWriter(*scene.mMaterials[i], pictures, writer, report).written());
+        gltf::append(writer.document["materials"],
+                     MaterialWriter(*scene.mMaterials[i], pictures, writer, report).written());
 }
 
 } // namespace osgGpuAnimation::assimp

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "assimp/GlbWriter.h"
 #include "gltf/file/Report.h"
+#include "gltf/write/GlbWriter.h"
 
 #include <string>
 
@@ -16,6 +16,6 @@ namespace osgGpuAnimation::assimp
 /// of FBX has it. A texture replaces the base colour, as in FBX.
 /// PNG and JPEG are taken as they are, TGA and BMP become PNG by OSG's plugins; other pictures are left out with a
 /// warning. modelFile: see glbOf().
-void writeMaterials(const aiScene& scene, const std::string& modelFile, GlbWriter& writer, gltf::Report& report);
+void writeMaterials(const aiScene& scene, const std::string& modelFile, gltf::GlbWriter& writer, gltf::Report& report);
 
 } // namespace osgGpuAnimation::assimp

@@ -109,7 +109,7 @@ std::optional<WrittenMesh> MeshWriter::write(const std::vector<const aiMesh*>& m
         {
             const Influences bones = influences(*mesh, node);
             made["attributes"]["JOINTS_0"] = _writer.addJoints(bones.joints);
-            made["attributes"]["WEIGHTS_0"] = _writer.addFloats(bones.weights, "VEC4", GlbWriter::Use::Values);
+            made["attributes"]["WEIGHTS_0"] = _writer.addFloats(bones.weights, "VEC4", gltf::GlbWriter::Use::Values);
             skin = bones.skin;
         }
         primitives.push_back(std::move(made));
@@ -123,7 +123,7 @@ std::optional<WrittenMesh> MeshWriter::write(const std::vector<const aiMesh*>& m
         mesh["weights"].push_back(std::isfinite(weight) ? weight : 0.0f);
         mesh["extras"]["targetNames"].push_back(first.mAnimMeshes[i]->mName.C_Str());
     }
-    return WrittenMesh{append(_writer.document["meshes"], std::move(mesh)), skin};
+    return WrittenMesh{gltf::append(_writer.document["meshes"], std::move(mesh)), skin};
 }
 
 json MeshWriter::primitive(const aiMesh& mesh)
@@ -131,7 +131,7 @@ json MeshWriter::primitive(const aiMesh& mesh)
     const std::vector<std::uint32_t> indices = indicesOf(mesh);
     if (!mesh.HasPositions() || indices.empty()) return {};
     const auto vertices = [&](const std::vector<float>& values, const char* type)
-    { return _writer.addFloats(finite(values, mesh), type, GlbWriter::Use::Vertices); };
+    { return _writer.addFloats(finite(values, mesh), type, gltf::GlbWriter::Use::Vertices); };
     constexpr int triangles = 4, lines = 1, points = 0;
     const unsigned int corners = cornersOf(mesh);
     json made{{"mode", corners == 3 ? triangles : corners == 2 ? lines : points}, {"material", mesh.mMaterialIndex}};
@@ -164,11 +164,11 @@ void MeshWriter::addTargets(const aiMesh& mesh, json& made)
         if (target.mNumVertices == mesh.mNumVertices && target.mVertices)
             deltas["POSITION"] =
                 _writer.addFloats(finite(differences(target.mVertices, mesh.mVertices, mesh.mNumVertices), mesh),
-                                  "VEC3", GlbWriter::Use::Vertices);
+                                  "VEC3", gltf::GlbWriter::Use::Vertices);
         if (target.mNumVertices == mesh.mNumVertices && target.mNormals && mesh.HasNormals())
             deltas["NORMAL"] =
                 _writer.addFloats(finite(differences(target.mNormals, mesh.mNormals, mesh.mNumVertices), mesh), "VEC3",
-                                  GlbWriter::Use::Vertices);
+                                  gltf::GlbWriter::Use::Vertices);
         made["targets"].push_back(std::move(deltas));
     }
 }
@@ -235,8 +235,9 @@ std::size_t MeshWriter::addSkin(const aiMesh& mesh, std::vector<std::size_t> joi
     const auto key = std::make_pair(std::move(joints), finite(std::move(inverseBindMatrices), mesh));
     const auto known = _skins.find(key);
     if (known != _skins.end()) return known->second;
-    const std::size_t matrices = _writer.addFloats(key.second, "MAT4", GlbWriter::Use::Values);
-    return _skins[key] = append(_writer.document["skins"], {{"joints", key.first}, {"inverseBindMatrices", matrices}});
+    const std::size_t matrices = _writer.addFloats(key.second, "MAT4", gltf::GlbWriter::Use::Values);
+    return _skins[key] =
+               gltf::append(_writer.document["skins"], {{"joints", key.first}, {"inverseBindMatrices", matrices}});
 }
 
 std::vector<float> MeshWriter::finite(std::vector<float> values, const aiMesh& mesh)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "assimp/GlbWriter.h"
 #include "gltf/file/Report.h"
+#include "gltf/write/GlbWriter.h"
 
 #include <cstddef>
 #include <map>
@@ -29,7 +29,7 @@ struct WrittenMesh
 class MeshWriter
 {
 public:
-    MeshWriter(const NodeNumbers& nodes, GlbWriter& writer, gltf::Report& report)
+    MeshWriter(const NodeNumbers& nodes, gltf::GlbWriter& writer, gltf::Report& report)
         : _nodes(nodes), _writer(writer), _report(report)
     {
     }
@@ -54,7 +54,7 @@ private:
     std::vector<float> finite(std::vector<float> values, const aiMesh& mesh);
 
     const NodeNumbers& _nodes;
-    GlbWriter& _writer;
+    gltf::GlbWriter& _writer;
     gltf::Report& _report;
     std::map<const aiMesh*, nlohmann::json> _primitives;
     std::map<std::pair<std::vector<std::size_t>, std::vector<float>>, std::size_t> _skins;

@@ -110,7 +110,7 @@ std::string uriOf(const std::string& path)
 
 } // namespace
 
-Pictures::Pictures(const aiScene& scene, const std::string& modelFile, GlbWriter& writer, gltf::Report& report)
+Pictures::Pictures(const aiScene& scene, const std::string& modelFile, gltf::GlbWriter& writer, gltf::Report& report)
     : _scene(scene), _modelName(osgDB::getStrippedName(modelFile)), _folder(modelFile, false), _writer(writer),
       _report(report)
 {
@@ -131,9 +131,9 @@ std::optional<std::size_t> Pictures::write(const std::string& path)
         _report.warn("picture " + gltf::quoted(path) + ": " + bytes.error().message);
         return std::nullopt;
     }
-    return append(_writer.document["images"], {{"bufferView", _writer.addBytes(bytes.value())},
-                                               {"mimeType", mimeTypeOf(bytes.value())},
-                                               {"name", osgDB::getSimpleFileName(path)}});
+    return gltf::append(_writer.document["images"], {{"bufferView", _writer.addBytes(bytes.value())},
+                                                     {"mimeType", mimeTypeOf(bytes.value())},
+                                                     {"name", osgDB::getSimpleFileName(path)}});
 }
 
 Result<std::string> Pictures::bytesOf(const std::string& path) const

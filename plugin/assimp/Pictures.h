@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "assimp/GlbWriter.h"
 #include "gltf/file/Report.h"
 #include "gltf/file/Uri.h"
+#include "gltf/write/GlbWriter.h"
 
 #include <cstddef>
 #include <map>
@@ -20,7 +20,7 @@ class Pictures
 {
 public:
     /// modelFile: see glbOf().
-    Pictures(const aiScene& scene, const std::string& modelFile, GlbWriter& writer, gltf::Report& report);
+    Pictures(const aiScene& scene, const std::string& modelFile, gltf::GlbWriter& writer, gltf::Report& report);
 
     /// The index of the glTF image for a path as materials have it: `*0`, or a file's. None, with a warning, if it is
     /// not there or not a picture that can be read.
@@ -34,7 +34,7 @@ private:
     const aiScene& _scene;
     std::string _modelName; ///< without folder and extension
     gltf::ModelFolder _folder;
-    GlbWriter& _writer;
+    gltf::GlbWriter& _writer;
     gltf::Report& _report;
     std::map<std::string, std::optional<std::size_t>> _images;
 };

@@ -2,9 +2,9 @@
 #include "assimp/SceneConversion.h"
 
 #include "assimp/AnimationConversion.h"
-#include "assimp/GlbWriter.h"
 #include "assimp/MaterialConversion.h"
 #include "assimp/MeshConversion.h"
+#include "gltf/write/GlbWriter.h"
 
 #include <assimp/scene.h>
 
@@ -85,7 +85,7 @@ private:
 
     const aiScene& _scene;
     gltf::Report& _report;
-    GlbWriter _writer;
+    gltf::GlbWriter _writer;
     std::vector<Node> _nodes;
     NodeNumbers _numbers;
     std::set<std::string> _animated; ///< names of nodes with channels, which need translation, rotation and scale
@@ -110,8 +110,8 @@ std::optional<Error> SceneWriter::write(const std::string& modelFile, const gltf
 
     std::size_t root = 0;
     if (const aiMatrix4x4 turn = axesToYUp(_scene); !turn.IsIdentity())
-        root = append(_writer.document["nodes"],
-                      {{"name", "axes"}, {"matrix", columnMajor(turn)}, {"children", json::array({0})}});
+        root = gltf::append(_writer.document["nodes"],
+                            {{"name", "axes"}, {"matrix", columnMajor(turn)}, {"children", json::array({0})}});
     _writer.document["scenes"] = json::array({json::object({{"nodes", json::array({root})}})});
     _writer.document["scene"] = 0;
     return std::nullopt;
@@ -126,7 +126,7 @@ std::optional<Error> SceneWriter::addNodes(std::size_t mostDepth)
         const Node next = open.back();
         open.pop_back();
         if (next.depth > mostDepth) return Error{"the hierarchy of nodes is deeper than " + std::to_string(mostDepth)};
-        const std::size_t number = append(nodes, {{"name", next.node->mName.C_Str()}});
+        const std::size_t number = gltf::append(nodes, {{"name", next.node->mName.C_Str()}});
         if (number > 0) nodes[next.parent]["children"].push_back(number);
         _nodes.push_back(next);
         _numbers.emplace(next.node->mName.C_Str(), number);
@@ -161,7 +161,7 @@ json SceneWriter::transformOf(const aiNode& node)
 std::size_t SceneWriter::addChild(std::size_t parent, const std::string& name)
 {
     json& nodes = _writer.document["nodes"];
-    const std::size_t number = append(nodes, {{"name", name}});
+    const std::size_t number = gltf::append(nodes, {{"name", name}});
     nodes[parent]["children"].push_back(number);
     return number;
 }

@@ -90,7 +90,8 @@ public:
     Importer(const tinygltf::Model& model, const std::string& fileName, const ImportOptions& options,
              ImportedModel& result)
         : _model(model), _fileName(osgDB::getStrippedName(fileName)), _options(options), _result(result),
-          _report(result.messages), _budget(options.maxDecodedBytes), _textures(model, _report, !options.fixedLighting),
+          _report(result.messages), _budget(options.maxDecodedBytes),
+          _textures(model, _report, !options.fixedLighting, options.keepEncoded),
           _clipFiles(readClipFiles(fileName, options, _report)), _clipJoints(readClipJoints(fileName, options, _report))
     {
     }

@@ -49,6 +49,7 @@ struct ImportOptions
     std::optional<std::string> variant;
     bool noRotation = false;        ///< keep glTF's +Y up; default: turn to OSG's +Z up at the root
     bool fixedLighting = false;     ///< the fixed pipeline's look: base colours in display space, no other maps
+    bool keepEncoded = false;       ///< images keep their PNG or JPEG, for a writer; see keepEncoded()
     bool allowOutsideFiles = false; ///< URIs may name files outside the model's folder
 
     std::size_t maxJsonBytes = std::size_t(512) << 20; ///< of the JSON text, data URIs included

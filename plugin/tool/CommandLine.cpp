@@ -30,7 +30,9 @@ const char* const description = R"(Looks into animated glTF files as osgGpuAnima
   osggpuanim render fox.glb -o fox.png               a picture of it, without a display
   osggpuanim render fox.glb --clip Run --frames 48 --fps 24 -o run.png
                                                      run.0001.png ... run.0048.png
-  osggpuanim pose fox.glb --clip Walk --time 0.25    where joints and vertices are then, as JSON)";
+  osggpuanim pose fox.glb --clip Walk --time 0.25    where joints and vertices are then, as JSON
+  osggpuanim convert fox.fbx --clips run.fbx -o fox.glb
+                                                     one file of any model and its clips)";
 
 const char* const exitStatus = "\n\nExit status: 0 done, 1 a file is at fault (the message is on standard error), "
                                "2 wrong usage.";
@@ -65,6 +67,15 @@ side, shows everything in all pictures; with --camera, one of the file's.
   osggpuanim render fox.glb --environment sunset.hdr -o sunset.png
   osggpuanim render fox.glb --frames 60 --fps 30 -o fox.png  fox.0001.png ... fox.0060.png, the first at --time)";
 
+const char* const convertHelp =
+    R"(Writes FILE with its clips, and those of other files for the joints of the same names (retargeted where the rest pose
+differs), as one .glb: meshes with skins and morph targets, materials with pictures, markers, lights and cameras; or as
+.osgb, .osgt or .osgx, which store all that the kit has. FILE: what the other commands read, and what OSG reads.
+
+  osggpuanim convert knight.fbx --clips run.fbx -o knight.glb
+  osggpuanim convert knight.glb --clips general.glb --compact 1e-4 -o knight.osgb
+  osggpuanim convert nathan.osg.gpuanim -o nathan.glb)";
+
 std::string checkFinite(const std::string& text)
 {
     char* end = nullptr;
@@ -86,6 +97,16 @@ std::string checkPng(const std::string& name)
     std::transform(extension.begin(), extension.end(), extension.begin(),
                    [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
     return extension == ".png" ? "" : "'" + name + "' does not end in .png";
+}
+
+std::string checkSceneFile(const std::string& name)
+{
+    std::string extension = std::filesystem::path(name).extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+    for (const char* known : {".glb", ".osgb", ".osgt", ".osgx"})
+        if (extension == known) return "";
+    return "'" + name + "' does not end in .glb, .osgb, .osgt or .osgx";
 }
 
 /// "800x600" to two numbers; throws CLI11's validation error.
@@ -146,6 +167,16 @@ void addClips(CLI::App& command, std::vector<std::string>& files, std::string& j
         ->option_text("FILE");
 }
 
+void addCompact(CLI::App& command, double& fraction)
+{
+    command
+        .add_option(
+            "--compact", fraction,
+            "Compact clips with an error of at most that fraction of the model's longest side, for example 1e-4")
+        ->check(checkFraction)
+        ->option_text("FRACTION");
+}
+
 } // namespace
 
 CommandLine::CommandLine() : _app(description, "osggpuanim")
@@ -155,6 +186,7 @@ CommandLine::CommandLine() : _app(description, "osggpuanim")
     addInspect();
     addPose();
     addRender();
+    addConvert();
 }
 
 void CommandLine::addInspect()
@@ -164,12 +196,7 @@ void CommandLine::addInspect()
     _inspectApp->add_option("FILE", _inspect.file, "A .gltf or .glb")->required();
     addClips(*_inspectApp, _inspect.clips, _inspect.clipJoints);
     _inspectApp->add_flag("--json", _inspect.json, "JSON, for programs");
-    _inspectApp
-        ->add_option(
-            "--compact", _inspect.compact,
-            "Compact clips with an error of at most that fraction of the model's longest side, for example 1e-4")
-        ->check(checkFraction)
-        ->option_text("FRACTION");
+    addCompact(*_inspectApp, _inspect.compact);
 }
 
 void CommandLine::addPose()
@@ -238,6 +265,18 @@ void CommandLine::addRender()
     _renderApp->add_option("-o,--output", _render.output, "OUT.png")->required()->check(checkPng);
 }
 
+void CommandLine::addConvert()
+{
+    _convertApp = _app.add_subcommand("convert", "A model and its clips as one file");
+    _convertApp->footer(std::string(convertHelp) + exitStatus);
+    _convertApp->add_option("FILE", _convert.file, "A model of any format that can be read")->required();
+    addClips(*_convertApp, _convert.clips);
+    addCompact(*_convertApp, _convert.compact);
+    _convertApp->add_option("-o,--output", _convert.output, "OUT.glb, .osgb, .osgt or .osgx")
+        ->required()
+        ->check(checkSceneFile);
+}
+
 int CommandLine::run(int argc, char** argv)
 {
     try
@@ -262,6 +301,7 @@ Result<bool> CommandLine::runCommand() const
 {
     if (_inspectApp->parsed()) return _inspect.run();
     if (_poseApp->parsed()) return _pose.run();
+    if (_convertApp->parsed()) return _convert.run();
     return _render.run();
 }
 

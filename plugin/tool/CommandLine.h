@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "tool/ConvertCommand.h"
 #include "tool/InspectCommand.h"
 #include "tool/PoseCommand.h"
 #include "tool/RenderCommand.h"
@@ -25,15 +26,18 @@ private:
     void addInspect();
     void addPose();
     void addRender();
+    void addConvert();
     Result<bool> runCommand() const;
 
     CLI::App _app;
     CLI::App* _inspectApp = nullptr;
     CLI::App* _poseApp = nullptr;
     CLI::App* _renderApp = nullptr;
+    CLI::App* _convertApp = nullptr;
     InspectCommand _inspect;
     PoseCommand _pose;
     RenderCommand _render;
+    ConvertCommand _convert;
 };
 
 } // namespace osgGpuAnimation::tool

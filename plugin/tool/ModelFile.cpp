@@ -67,6 +67,14 @@ void printClipWarnings(const gltf::ImportedModel& model)
             std::cerr << "osggpuanim: " << warning << std::endl;
 }
 
+bool isModelFormat(const std::string& fileName)
+{
+#ifdef OSGGPUANIMATION_ASSIMP
+    if (assimp::isFormat(osgDB::getLowerCaseFileExtension(fileName))) return true;
+#endif
+    return isCalledGltf(fileName);
+}
+
 Result<gltf::ImportedModel> readModel(const std::string& fileName, const gltf::ImportOptions& options)
 {
     std::error_code failure;

@@ -17,6 +17,9 @@ Result<gltf::ImportOptions> importOptions(const std::vector<std::string>& clipsF
 /// Prints the warnings about clips of other files on standard error.
 void printClipWarnings(const gltf::ImportedModel& model);
 
+/// True for names of files that readModel() reads, by their extension.
+bool isModelFormat(const std::string& fileName);
+
 /// Reads and imports a .gltf or .glb, or a file of a format that Assimp reads where the build has it, in the file's own
 /// axes if options.noRotation says so. Errors: the file does not exist, is a folder, is empty, cannot be read, or the
 /// import refuses it.

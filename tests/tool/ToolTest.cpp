@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <regex>
 #include <set>
 #include <string>
@@ -59,9 +60,10 @@ TEST_F(ToolTest, helpTeachesTheCommands)
 {
     const Process help = run({"--help"});
     EXPECT_EQ(help.status, 0);
-    for (const char* word : {"inspect", "pose", "render", "osggpuanim render fox.glb -o fox.png", "Exit status"})
+    for (const char* word :
+         {"inspect", "pose", "render", "convert", "osggpuanim render fox.glb -o fox.png", "Exit status"})
         EXPECT_NE(help.out.find(word), std::string::npos) << word << " in\n" << help.out;
-    for (const char* command : {"inspect", "pose", "render"})
+    for (const char* command : {"inspect", "pose", "render", "convert"})
     {
         const Process more = run({command, "--help"});
         EXPECT_EQ(more.status, 0) << command;
@@ -100,6 +102,9 @@ TEST_F(ToolTest, wrongUsageEndsWithStatus2)
         {{"render", "FLAG", "-o", "flag.png", "--look", "moon"}, "'moon' is not one of studio|sun|furnace|file"},
         {{"render", "FLAG", "-o", "flag.png", "--environment", "FLAG", "--look", "sun"},
          "--look excludes --environment"},
+        {{"convert", "FLAG"}, "--output is required"},
+        {{"convert", "FLAG", "-o", "flag.gltf"}, "does not end in .glb, .osgb, .osgt or .osgx"},
+        {{"convert", "FLAG", "-o", "flag.glb", "--compact", "2"}, "'2' is not above 0 and at most 1"},
     };
     for (const auto& [line, said] : cases)
     {
@@ -158,6 +163,8 @@ TEST_F(ToolTest, aFaultyFileEndsWithStatus1AndOneLine)
         {{"pose", "FLAG", "--like", future, "--evaluator", "cpu"}, flag, "animations[5]"},
         {{"pose", "FLAG", "--like", weighted, "--evaluator", "cpu"}, flag, "no morph targets"},
         {{"pose", "FLAG", "--time", "0", "--evaluator", "cpu", "-o", nowhere}, nowhere, "cannot be written"},
+        {{"convert", missing, "-o", folder.file("x.glb")}, missing, "no such file"},
+        {{"convert", "FLAG", "-o", nowhere + ".glb"}, nowhere + ".glb", "cannot be written"},
     };
     for (const Case& one : cases)
     {
@@ -265,6 +272,36 @@ Frame Time: 0.5
     ASSERT_EQ(clips.size(), 3u) << done.err;
 }
 #endif
+
+/// A .glb, read as a scene of OSG's, is written as a .glb again: each of the files has the clips of both.
+TEST_F(ToolTest, convertWritesOneFileOfAModelAndItsClips)
+{
+    setenv("OSG_LIBRARY_PATH", OSGGPUANIMATION_PLUGIN_FOLDER, 1);
+    const std::string other = folder.write("other.gltf", swingingFlag());
+    const std::string glb = folder.file("flag.glb"), scene = folder.file("flag.osgb"), again = folder.file("again.glb");
+    const Arguments lines[] = {{"convert", "FLAG", "--clips", other, "-o", glb},
+                               {"convert", glb, "-o", scene},
+                               {"convert", scene, "--compact", "1e-3", "-o", again}};
+    for (const Arguments& line : lines)
+    {
+        const Process done = run(line);
+        ASSERT_EQ(done.status, 0) << joined(line) << done.err;
+        EXPECT_EQ(done.out + done.err, "") << joined(line);
+    }
+    for (const std::string& file : {glb, again})
+    {
+        const Process inspected = run({"inspect", file, "--json"});
+        ASSERT_EQ(inspected.status, 0) << inspected.err;
+        const json report = json::parse(inspected.out);
+        ASSERT_EQ(report["clips"].size(), 4u);
+        EXPECT_EQ(report["clips"][0]["name"], "Swing");
+        EXPECT_EQ(report["clips"][2]["name"], "Swing 2");
+        EXPECT_EQ(report["clips"][2]["seconds"], 2.0);
+        EXPECT_EQ(report["meshes"]["vertices"], 4);
+        EXPECT_EQ(report["materials"][0]["name"], "red");
+        expectBounds(report["clips"][1]["bounds"], {-1, 0, 0, 1, 3, 0}); // Rise: 1 up
+    }
+}
 
 TEST_F(ToolTest, inspectSaysHowFarCompactClipsAreOff)
 {

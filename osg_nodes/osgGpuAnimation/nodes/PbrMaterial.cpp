@@ -93,6 +93,57 @@ void removePbrMaterial(osg::StateSet& stateSet)
         stateSet.removeDefine(define);
 }
 
+/// value: unchanged if the StateSet has no such uniform.
+template <typename Value>
+void readUniform(const osg::StateSet& stateSet, const char* name, Value& value)
+{
+    if (const osg::Uniform* const uniform = stateSet.getUniform(name)) uniform->get(value);
+}
+
+PbrMaterial::Map mapAt(const osg::StateSet& stateSet, unsigned int unit, const char* define)
+{
+    const auto found = stateSet.getDefineList().find(define);
+    if (found == stateSet.getDefineList().end()) return {};
+    const osg::StateAttribute* const texture = stateSet.getTextureAttribute(unit, osg::StateAttribute::TEXTURE);
+    const int coordinates = found->second.first == "1" ? 1 : found->second.first == "2" ? 2 : 0;
+    return {const_cast<osg::Texture2D*>(dynamic_cast<const osg::Texture2D*>(texture)), coordinates};
+}
+
+void readExtensions(const osg::StateSet& stateSet, PbrMaterial& material)
+{
+    osg::Vec4 specular(material.specularColor, material.specular), sheen;
+    osg::Vec3 clearcoat(0.0f, 0.0f, 1.0f);
+    readUniform(stateSet, "emissiveStrength", material.emissiveStrength);
+    readUniform(stateSet, "materialSpecular", specular);
+    readUniform(stateSet, "materialClearcoat", clearcoat);
+    readUniform(stateSet, "materialSheen", sheen);
+    readUniform(stateSet, "materialTransmission", material.transmission);
+    // A uniform may be left from an earlier material, a define is not.
+    if (hasDefine(stateSet, "MATERIAL_SPECULAR"))
+    {
+        material.specularColor.set(specular.x(), specular.y(), specular.z());
+        material.specular = specular.w();
+    }
+    if (hasDefine(stateSet, "MATERIAL_CLEARCOAT"))
+    {
+        material.clearcoat = clearcoat.x();
+        material.clearcoatRoughness = clearcoat.y();
+        material.clearcoatNormalScale = clearcoat.z();
+    }
+    if (hasDefine(stateSet, "MATERIAL_SHEEN"))
+    {
+        material.sheenColor.set(sheen.x(), sheen.y(), sheen.z());
+        material.sheenRoughness = sheen.w();
+    }
+    if (!hasDefine(stateSet, "MATERIAL_TRANSMISSION")) material.transmission = 0.0f;
+    if (!hasDefine(stateSet, "MATERIAL_EMISSIVE_STRENGTH")) material.emissiveStrength = 1.0f;
+    material.isSpecularGlossiness = hasDefine(stateSet, "MATERIAL_GLOSSINESS");
+    material.isBlended = hasDefine(stateSet, "MATERIAL_BLENDED");
+    unsigned int unit = EXTENSION_MAPS_UNIT;
+    for (const ExtensionMapSlot& slot : extensionMaps)
+        if (hasDefine(stateSet, slot.define)) material.*slot.map = mapAt(stateSet, unit++, slot.define);
+}
+
 void setMap(osg::StateSet& stateSet, const PbrMaterial::Map& map, int unit, const char* sampler, const char* define)
 {
     if (!map.texture) return;
@@ -184,6 +235,28 @@ void applyPbrMaterial(osg::StateSet& stateSet, const PbrMaterial& material)
     const bool hasNormalMap = material.normalMap.texture || hasDefine(stateSet, "MATERIAL_CLEARCOAT_NORMAL_MAP");
     if (hasNormalMap && material.hasTangents) stateSet.setDefine("MATERIAL_TANGENTS", "1");
     if (material.hasMoreCoordinates) stateSet.setDefine("MATERIAL_MORE_COORDINATES", "1");
+}
+
+std::optional<PbrMaterial> pbrMaterialOf(const osg::StateSet& stateSet)
+{
+    if (!hasDefine(stateSet, "MATERIAL_PBR")) return std::nullopt;
+    PbrMaterial material;
+    readUniform(stateSet, "baseColorFactor", material.baseColor);
+    readUniform(stateSet, "emissiveFactor", material.emissive);
+    osg::Vec4 factors(material.metallic, material.roughness, material.normalScale, material.occlusionStrength);
+    readUniform(stateSet, "materialFactors", factors);
+    material.metallic = factors.x();
+    material.roughness = factors.y();
+    material.normalScale = factors.z();
+    material.occlusionStrength = factors.w();
+    const osg::StateAttribute* const base = stateSet.getTextureAttribute(0, osg::StateAttribute::TEXTURE);
+    material.baseColorMap.texture = const_cast<osg::Texture2D*>(dynamic_cast<const osg::Texture2D*>(base));
+    for (const MapSlot& slot : coreMaps)
+        material.*slot.map = mapAt(stateSet, static_cast<unsigned int>(slot.unit), slot.define);
+    readExtensions(stateSet, material);
+    material.hasTangents = hasDefine(stateSet, "MATERIAL_TANGENTS");
+    material.hasMoreCoordinates = hasDefine(stateSet, "MATERIAL_MORE_COORDINATES");
+    return material;
 }
 
 void applyBlending(osg::StateSet& stateSet, GLenum sourceFactor)

@@ -6,6 +6,8 @@
 #include <osg/Vec3>
 #include <osg/Vec4>
 
+#include <optional>
+
 namespace osgGpuAnimation
 {
 
@@ -85,6 +87,9 @@ struct PbrMaterial
 /// above may override. Replaces the material of an earlier call. Alpha modes and sides are not part of it; a material
 /// with transmission is blended.
 void applyPbrMaterial(osg::StateSet& stateSet, const PbrMaterial& material);
+/// The material of the last applyPbrMaterial() with this StateSet, as far as it has an effect. Empty: it has none. The
+/// textures are shared.
+std::optional<PbrMaterial> pbrMaterialOf(const osg::StateSet& stateSet);
 
 /// Lets the surface be drawn after opaque ones, the farthest first, over what lies behind, and without depths of its
 /// own. sourceFactor: of glBlendFunc, GL_SRC_ALPHA, or GL_ONE if the colour is multiplied by alpha already.

@@ -2,6 +2,7 @@
 #include "gltf/data/Picture.h"
 
 #include <osg/Endian>
+#include <osg/ValueObject>
 #include <png.h>
 #include <turbojpeg.h>
 #include <webp/decode.h>
@@ -19,6 +20,8 @@ namespace
 {
 
 using Bytes = std::vector<unsigned char>;
+
+const char* const encodedName = "encodedPicture"; // a user value of the image
 
 const unsigned char pngSignature[8] = {0x89, 'P', 'N', 'G', 0x0d, 0x0a, 0x1a, 0x0a};
 
@@ -334,6 +337,19 @@ Result<osg::ref_ptr<osg::Image>> decodePicture(const Bytes& bytes)
                                                            : decodeJpeg(bytes);
     if (!image) return Error{"the picture is damaged"};
     return image;
+}
+
+void keepEncoded(osg::Image& image, const Bytes& bytes)
+{
+    if (isPng(bytes) || isJpeg(bytes)) image.setUserValue(encodedName, std::string(bytes.begin(), bytes.end()));
+}
+
+const std::string* encodedPictureOf(const osg::Image& image)
+{
+    const osg::UserDataContainer* const all = image.getUserDataContainer();
+    const auto* const kept =
+        all ? dynamic_cast<const osg::StringValueObject*>(all->getUserObject(encodedName)) : nullptr;
+    return kept ? &kept->getValue() : nullptr;
 }
 
 } // namespace osgGpuAnimation::gltf

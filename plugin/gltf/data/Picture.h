@@ -42,4 +42,9 @@ Result<PictureHeader> readPictureHeader(const std::vector<unsigned char>& bytes)
 /// Error: the picture is damaged.
 Result<osg::ref_ptr<osg::Image>> decodePicture(const std::vector<unsigned char>& bytes);
 
+/// Lets the image keep its PNG or JPEG, so that a writer can embed it as it is; others are ignored.
+void keepEncoded(osg::Image& image, const std::vector<unsigned char>& bytes);
+/// Null: the image keeps none.
+const std::string* encodedPictureOf(const osg::Image& image);
+
 } // namespace osgGpuAnimation::gltf

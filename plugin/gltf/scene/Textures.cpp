@@ -171,8 +171,8 @@ private:
     std::vector<std::thread> _threads;
 };
 
-Textures::Textures(const tinygltf::Model& model, Report& report, bool allMaps)
-    : _model(model), _report(report), _decoding(std::make_unique<Decoding>(model, allMaps))
+Textures::Textures(const tinygltf::Model& model, Report& report, bool allMaps, bool keepsEncoded)
+    : _model(model), _report(report), _keepsEncoded(keepsEncoded), _decoding(std::make_unique<Decoding>(model, allMaps))
 {
 }
 
@@ -201,6 +201,7 @@ osg::Image* Textures::image(int index)
         return nullptr;
     }
     decoded.value()->setName(name);
+    if (_keepsEncoded) keepEncoded(*decoded.value(), _model.images[static_cast<std::size_t>(index)].image);
     place->second = decoded.value();
     return place->second.get();
 }
@@ -210,7 +211,9 @@ osg::Image* Textures::imageWithoutGrey(int index)
     osg::Image* const picture = image(index);
     if (!picture || !isGrey(*picture)) return picture;
     osg::ref_ptr<osg::Image>& rgb = _imagesWithoutGrey[index];
-    if (!rgb) rgb = greyToRgb(*picture);
+    if (rgb) return rgb;
+    rgb = greyToRgb(*picture);
+    if (_keepsEncoded) keepEncoded(*rgb, _model.images[static_cast<std::size_t>(index)].image);
     return rgb;
 }
 

@@ -32,8 +32,8 @@ class Textures
 {
 public:
     /// Decodes the pictures of the maps that materials show, see MaterialMaps. allMaps: false: only of base colours.
-    /// texture() is null for all other pictures.
-    Textures(const tinygltf::Model& model, Report& report, bool allMaps);
+    /// texture() is null for all other pictures. keepsEncoded: see keepEncoded().
+    Textures(const tinygltf::Model& model, Report& report, bool allMaps, bool keepsEncoded = false);
     /// Does not wait for pictures whose decoding has not begun.
     ~Textures();
 
@@ -49,6 +49,7 @@ private:
 
     const tinygltf::Model& _model;
     Report& _report;
+    const bool _keepsEncoded;
     std::unique_ptr<Decoding> _decoding;
     /// By picture, sampler and colour space.
     std::map<std::tuple<int, int, ColorSpace>, osg::ref_ptr<osg::Texture2D>> _textures;

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-namespace osgGpuAnimation::assimp
+namespace osgGpuAnimation::gltf
 {
 
 /// A glTF 2.0 document with one buffer, written as GLB (glTF 2.0, section 4.4).
@@ -41,6 +41,9 @@ public:
     /// The index of a new buffer view.
     std::size_t addBytes(std::string_view bytes, int target = 0);
 
+    /// Lists the extension in extensionsUsed, once.
+    void useExtension(const std::string& name);
+
     std::size_t size() const { return _binary.size(); } ///< bytes of the buffer
     std::string glb() const;
 
@@ -54,4 +57,4 @@ private:
 /// Appends to an array of the document, which is made if it is not there. Returns the element's index.
 std::size_t append(nlohmann::json& array, nlohmann::json element);
 
-} // namespace osgGpuAnimation::assimp
+} // namespace osgGpuAnimation::gltf

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "assimp/GlbWriter.h"
+#include "gltf/write/GlbWriter.h"
 
 #include <algorithm>
 #include <cstring>
 #include <limits>
 #include <utility>
 
-namespace osgGpuAnimation::assimp
+namespace osgGpuAnimation::gltf
 {
 
 namespace
@@ -91,6 +91,12 @@ std::size_t GlbWriter::addJoints(const std::vector<std::uint16_t>& joints)
     return addAccessor(addBytes(bytesOf(joints), arrayBuffer), unsignedShort, joints.size() / 4, "VEC4");
 }
 
+void GlbWriter::useExtension(const std::string& name)
+{
+    nlohmann::json& used = document["extensionsUsed"];
+    if (std::find(used.begin(), used.end(), name) == used.end()) used.push_back(name);
+}
+
 std::string GlbWriter::glb() const
 {
     constexpr std::uint32_t version = 2, jsonChunk = 0x4e4f534a, binaryChunk = 0x004e4942; // "JSON", "BIN\0"
@@ -116,4 +122,4 @@ std::string GlbWriter::glb() const
     return bytes += binary;
 }
 
-} // namespace osgGpuAnimation::assimp
+} // namespace osgGpuAnimation::gltf

@@ -1,0 +1,383 @@
+// SPDX-License-Identifier: MIT
+#include "gltf/Export.h"
+
+#include "gltf/write/CharacterWriter.h"
+#include "gltf/write/ClipWriter.h"
+#include "gltf/write/GeometryWriter.h"
+#include "gltf/write/GlbWriter.h"
+#include "gltf/write/NodeWriter.h"
+
+#include <osgGpuAnimation/nodes/AnimatedCharacter.h>
+#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+#include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
+#include <osgGpuAnimation/nodes/JointAttachment.h>
+#include <osgGpuAnimation/nodes/mesh/MaterialVariants.h>
+#include <osgGpuAnimation/nodes/shading/PunctualLight.h>
+#include <osgGpuAnimation/nodes/viewing/StartView.h>
+
+#include <osg/CameraView>
+#include <osg/LightSource>
+#include <osg/LOD>
+#include <osg/Math>
+#include <osg/Switch>
+#include <osg/ValueObject>
+
+#include <algorithm>
+#include <array>
+#include <deque>
+#include <map>
+#include <utility>
+#include <vector>
+
+namespace osgGpuAnimation::gltf
+{
+
+namespace
+{
+
+using nlohmann::json;
+
+constexpr std::size_t mostGlbBytes = 0xffffffffu;
+
+const std::shared_ptr<const AnimationSet>& setOf(const AnimatedCharacter& character)
+{
+    return character.getController().sharedSet();
+}
+
+const std::shared_ptr<const AnimationSet>& setOf(const AnimatedCrowd& crowd)
+{
+    return crowd.getSharedAnimationSet();
+}
+
+/// Where the traversal is.
+struct Whereabouts
+{
+    NodePlace* place = nullptr; ///< null: the scene
+    osg::Matrixd toPlace;       ///< not yet in a place
+    osg::ref_ptr<const osg::StateSet> state = new osg::StateSet;
+    const WrittenCharacter* character = nullptr; ///< above, see JointAttachment
+};
+
+/// Plain geometry at a place.
+struct PlacedGeometry
+{
+    NodePlace* place;
+    osg::ref_ptr<const osg::StateSet> state;
+    const osg::Geometry* geometry;
+};
+
+class SceneExporter
+{
+public:
+    SceneExporter(const osg::Node& scene, Report& report)
+        : _variants(variantsBelow(scene)), _report(report), _nodes(_writer, report),
+          _geometries(_writer, _variants, report), _characters(_writer, _nodes, _geometries), _clips(_writer, report)
+    {
+        json first = json::object();
+        if (!scene.getName().empty()) first["name"] = scene.getName();
+        _writer.document["scene"] = 0;
+        _writer.document["scenes"].push_back(std::move(first));
+        Whereabouts top;
+        top.toPlace.set(1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1); // from +Z up to +Y up, exactly
+        visit(scene, top);
+        writeGeometries();
+        for (const WrittenCharacter& character : _written)
+            _clips.write(character);
+        writeVariants();
+    }
+
+    Result<std::string> glb() const;
+
+private:
+    static std::vector<std::string> variantsBelow(const osg::Node& scene);
+
+    void visit(const osg::Node& node, Whereabouts at);
+    void visitChildren(const osg::Node& node, const Whereabouts& at);
+    void enter(const osg::Transform& transform, Whereabouts& at);
+    void visitAttachment(const JointAttachment& attachment, Whereabouts at);
+    template <typename Character>
+    void visitCharacter(const Character& character, const osg::Matrixd& toAbove, const Whereabouts& at);
+    void collectMeshes(const osg::Node& node, const osg::ref_ptr<const osg::StateSet>& above,
+                       std::vector<CharacterMesh>& meshes) const;
+    void addGeometry(const osg::Geometry& geometry, const Whereabouts& at);
+    void addLight(const osg::LightSource& source, const Whereabouts& at);
+    void addCamera(const osg::CameraView& view, const Whereabouts& at);
+    NodePlace* placeAt(const Whereabouts& at);
+    void writeGeometries();
+    void writeVariants();
+
+    GlbWriter _writer;
+    const std::vector<std::string> _variants;
+    Report& _report;
+    NodeWriter _nodes;
+    GeometryWriter _geometries;
+    CharacterWriter _characters;
+    ClipWriter _clips;
+    std::deque<WrittenCharacter> _written; ///< keeps addresses
+    std::vector<PlacedGeometry> _plain;
+    std::map<std::pair<NodePlace*, std::array<double, 16>>, NodePlace*> _unnamed; ///< places without a transform
+};
+
+/// The state of a node over that of the nodes above it. A kit's drawable has all of its own.
+osg::ref_ptr<const osg::StateSet> stateBelow(const osg::ref_ptr<const osg::StateSet>& above, const osg::Node& node)
+{
+    const osg::StateSet* const own = node.getStateSet();
+    if (!own) return above;
+    if (own->getDefinePair("MATERIAL_PBR")) return own;
+    osg::ref_ptr<osg::StateSet> merged = new osg::StateSet(*above);
+    merged->merge(*own);
+    if (!own->getName().empty()) merged->setName(own->getName());
+    if (own->useRenderBinDetails()) merged->setRenderingHint(own->getRenderingHint());
+    return merged;
+}
+
+/// Those that are drawn: the finest of an osg::LOD, the chosen ones of an osg::Switch.
+std::vector<const osg::Node*> childrenOf(const osg::Node& node)
+{
+    std::vector<const osg::Node*> children;
+    const osg::Group* const group = node.asGroup();
+    const auto* const levels = dynamic_cast<const osg::LOD*>(&node);
+    const auto* const choice = dynamic_cast<const osg::Switch*>(&node);
+    for (unsigned int i = 0; group && i < group->getNumChildren(); ++i)
+    {
+        const bool isHidden =
+            (choice && !choice->getValue(i)) ||
+            (levels && levels->getMinRange(i) > 0.0f && levels->getRangeMode() == osg::LOD::DISTANCE_FROM_EYE_POINT);
+        if (!isHidden && group->getChild(i)->getNodeMask() != 0) children.push_back(group->getChild(i));
+    }
+    return children;
+}
+
+std::vector<std::string> SceneExporter::variantsBelow(const osg::Node& scene)
+{
+    std::vector<std::string> names = variantNamesOf(scene);
+    for (const osg::Node* child : childrenOf(scene))
+        for (const std::string& name : variantsBelow(*child))
+            if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    return names;
+}
+
+NodePlace* SceneExporter::placeAt(const Whereabouts& at)
+{
+    if (at.toPlace.isIdentity()) return at.place;
+    std::array<double, 16> numbers;
+    std::copy_n(at.toPlace.ptr(), 16, numbers.begin());
+    NodePlace*& known = _unnamed[{at.place, numbers}];
+    if (!known) known = &_nodes.place(at.place, at.toPlace, "");
+    return known;
+}
+
+void SceneExporter::enter(const osg::Transform& transform, Whereabouts& at)
+{
+    osg::Matrix matrix;
+    transform.computeLocalToWorldMatrix(matrix, nullptr);
+    at.toPlace = matrix * at.toPlace;
+    if (at.toPlace.isIdentity() && transform.getName().empty()) return;
+    at.place = &_nodes.place(at.place, at.toPlace, transform.getName());
+    at.toPlace.makeIdentity();
+}
+
+void SceneExporter::visitChildren(const osg::Node& node, const Whereabouts& at)
+{
+    for (const osg::Node* child : childrenOf(node))
+        visit(*child, at);
+}
+
+void SceneExporter::visit(const osg::Node& node, Whereabouts at)
+{
+    const osg::ref_ptr<const osg::StateSet> above = at.state;
+    at.state = stateBelow(above, node);
+    if (const auto* const character = dynamic_cast<const AnimatedCharacter*>(&node))
+        return visitCharacter(*character, character->getFileToNode() * character->getMatrix(), at);
+    if (const auto* const crowd = dynamic_cast<const AnimatedCrowd*>(&node))
+    {
+        _report.warn("crowd " + quoted(node.getName()) + ": glTF has no crowds of characters; one of its " +
+                     std::to_string(crowd->getNumInstances()) + " instances is written");
+        const osg::Matrixd placement =
+            crowd->getNumInstances() > 0 ? crowd->getPlacement(crowd->getInstances().handleOf(0)) : osg::Matrixd();
+        return visitCharacter(*crowd, crowd->getFileToNode() * placement, at);
+    }
+    if (const auto* const attachment = dynamic_cast<const JointAttachment*>(&node))
+        return visitAttachment(*attachment, at);
+    if (const auto* const view = dynamic_cast<const osg::CameraView*>(&node))
+    {
+        addCamera(*view, at);
+        return visitChildren(node, at);
+    }
+    if (const osg::Transform* const transform = node.asTransform())
+    {
+        if (transform->getReferenceFrame() != osg::Transform::RELATIVE_RF)
+            return _report.warn("transform " + quoted(node.getName()) +
+                                ": it has a reference frame of its own; left out");
+        enter(*transform, at);
+    }
+    if (const auto* const source = dynamic_cast<const osg::LightSource*>(&node)) addLight(*source, at);
+    if (dynamic_cast<const SkinnedGeometry*>(&node))
+    {
+        if (at.character) return; // visitCharacter() has it
+        return _report.warn("mesh " + quoted(node.getName()) + ": there is no character above it; left out");
+    }
+    if (const auto* const geometry = dynamic_cast<const osg::Geometry*>(&node))
+        addGeometry(*geometry, at);
+    else if (node.asDrawable())
+        _report.warn("drawable " + quoted(node.getName()) + " (" + node.className() + "): it is no geometry; left out");
+    visitChildren(node, at);
+}
+
+void SceneExporter::visitAttachment(const JointAttachment& attachment, Whereabouts at)
+{
+    const std::string& name = attachment.getJointName();
+    const WrittenCharacter* const character = at.character;
+    const int joint = !character     ? -1
+                      : name.empty() ? attachment.getJoint()
+                                     : character->set->skeleton().findJoint(name);
+    if (joint < 0 || static_cast<std::size_t>(joint) >= character->nodeOfJoint.size())
+        return _report.warn("attachment " + quoted(attachment.getName().empty() ? name : attachment.getName()) +
+                            ": there is no such joint; left out");
+    at.place = &_nodes.placeOf(character->nodeOfJoint[static_cast<std::size_t>(joint)]);
+    at.toPlace = attachment.getOffset();
+    visitChildren(attachment, at);
+}
+
+/// toAbove: from the axes of the character's file to the node above.
+template <typename Character>
+void SceneExporter::visitCharacter(const Character& character, const osg::Matrixd& toAbove, const Whereabouts& at)
+{
+    std::vector<CharacterMesh> meshes;
+    for (const osg::Node* child : childrenOf(character))
+        collectMeshes(*child, at.state, meshes);
+    _written.push_back(
+        _characters.write(setOf(character), meshes, toAbove * at.toPlace, character.getName(), at.place));
+    Whereabouts below = at;
+    below.character = &_written.back();
+    enter(character, below);
+    for (const osg::Node* child : childrenOf(character))
+        visit(*child, below);
+}
+
+void SceneExporter::collectMeshes(const osg::Node& node, const osg::ref_ptr<const osg::StateSet>& above,
+                                  std::vector<CharacterMesh>& meshes) const
+{
+    const osg::ref_ptr<const osg::StateSet> own = stateBelow(above, node);
+    if (const auto* const mesh = dynamic_cast<const SkinnedGeometry*>(&node))
+        meshes.push_back({mesh, own});
+    else if (!node.asTransform())
+        for (const osg::Node* child : childrenOf(node))
+            collectMeshes(*child, own, meshes);
+}
+
+void SceneExporter::addGeometry(const osg::Geometry& geometry, const Whereabouts& at)
+{
+    _plain.push_back({placeAt(at), at.state, &geometry});
+}
+
+void SceneExporter::addLight(const osg::LightSource& source, const Whereabouts& at)
+{
+    const auto* const light = dynamic_cast<const PunctualLight*>(source.getLight());
+    if (!light) return _report.warn("light " + quoted(source.getName()) + ": it is no PunctualLight; left out");
+    // See PunctualLight::setIntensity().
+    const osg::Vec4 diffuse = light->getDiffuse();
+    const float most = std::max({diffuse.x(), diffuse.y(), diffuse.z()});
+    json made{{"intensity", most * osg::PI}};
+    if (!source.getName().empty()) made["name"] = source.getName();
+    if (most > 0.0f) made["color"] = {diffuse.x() / most, diffuse.y() / most, diffuse.z() / most};
+    if (light->getRange() > 0.0f) made["range"] = light->getRange();
+    const PunctualLight::Kind kind = light->getKind();
+    made["type"] = kind == PunctualLight::Kind::Directional ? "directional"
+                   : kind == PunctualLight::Kind::Spot      ? "spot"
+                                                            : "point";
+    if (kind == PunctualLight::Kind::Spot)
+        made["spot"] = {{"innerConeAngle", osg::DegreesToRadians(light->getInnerConeAngle())},
+                        {"outerConeAngle", std::min(osg::PI_2, osg::DegreesToRadians(double(light->getSpotCutoff())))}};
+    const char* const extension = "KHR_lights_punctual";
+    _writer.useExtension(extension);
+    const std::size_t number = append(_writer.document["extensions"][extension]["lights"], std::move(made));
+    const std::size_t node = _nodes.nodeFor(placeAt(at), "extensions", source.getName());
+    _nodes.at(node)["extensions"][extension]["light"] = number;
+}
+
+void SceneExporter::addCamera(const osg::CameraView& view, const Whereabouts& at)
+{
+    osg::Matrix matrix;
+    view.computeLocalToWorldMatrix(matrix, nullptr);
+    Whereabouts below = at;
+    below.toPlace = matrix * below.toPlace;
+    // A viewer finds the planes itself; files must have some.
+    constexpr double nearest = 0.01, farthest = 10000.0;
+    json made = json::object();
+    double height = 0.0;
+    if (view.getUserValue(orthographicHeightName, height))
+        made = {{"type", "orthographic"},
+                {"orthographic", {{"xmag", height / 2.0}, {"ymag", height / 2.0}, {"znear", 0.0}, {"zfar", farthest}}}};
+    else if (view.getFieldOfViewMode() == osg::CameraView::VERTICAL && view.getFieldOfView() > 0.0)
+        made = {{"type", "perspective"},
+                {"perspective", {{"yfov", osg::DegreesToRadians(view.getFieldOfView())}, {"znear", nearest}}}};
+    else
+        return _report.warn("camera " + quoted(view.getName()) + ": it has no vertical field of view; left out");
+    if (!view.getName().empty()) made["name"] = view.getName();
+    const std::size_t node = _nodes.nodeFor(placeAt(below), "camera", view.getName());
+    _nodes.at(node)["camera"] = append(_writer.document["cameras"], std::move(made));
+}
+
+/// Geometries of one name at one place are one mesh; equal meshes are written once.
+void SceneExporter::writeGeometries()
+{
+    using Parts = std::vector<std::pair<const osg::Geometry*, const osg::StateSet*>>;
+    std::vector<std::pair<NodePlace*, Parts>> meshes;
+    std::map<std::pair<NodePlace*, std::string>, std::size_t> known;
+    for (const PlacedGeometry& each : _plain)
+    {
+        const auto [number, isNew] = known.try_emplace({each.place, each.geometry->getName()}, meshes.size());
+        if (isNew) meshes.emplace_back(each.place, Parts());
+        meshes[number->second].second.emplace_back(each.geometry, each.state.get());
+    }
+    std::map<Parts, std::optional<std::size_t>> written;
+    for (const auto& [place, parts] : meshes)
+    {
+        const std::string& name = parts.front().first->getName();
+        const auto [number, isNew] = written.try_emplace(parts);
+        if (isNew)
+        {
+            json primitives = json::array();
+            for (const auto& [geometry, state] : parts)
+                for (json& primitive : _geometries.primitivesOf(*geometry, *state, nullptr))
+                    primitives.push_back(std::move(primitive));
+            json mesh = json::object();
+            if (!name.empty()) mesh["name"] = name;
+            if (!primitives.empty())
+            {
+                mesh["primitives"] = std::move(primitives);
+                number->second = append(_writer.document["meshes"], std::move(mesh));
+            }
+        }
+        if (number->second) _nodes.at(_nodes.nodeFor(place, "mesh", name))["mesh"] = *number->second;
+    }
+}
+
+void SceneExporter::writeVariants()
+{
+    const json& used = _writer.document["extensionsUsed"];
+    const char* const extension = "KHR_materials_variants";
+    if (std::find(used.begin(), used.end(), extension) != used.end())
+        for (const std::string& name : _variants)
+            _writer.document["extensions"][extension]["variants"].push_back({{"name", name}});
+    if (used.is_null()) _writer.document.erase("extensionsUsed");
+}
+
+Result<std::string> SceneExporter::glb() const
+{
+    if (!_writer.document.contains("nodes")) return Error{"there is nothing in the scene that glTF could store"};
+    if (_writer.size() > mostGlbBytes / 2) return Error{"the scene is too large for a GLB"};
+    std::string bytes = _writer.glb();
+    if (bytes.size() > mostGlbBytes) return Error{"the scene is too large for a GLB"};
+    return bytes;
+}
+
+} // namespace
+
+Result<std::string> exportModel(const osg::Node& scene, Report& report)
+{
+    return SceneExporter(scene, report).glb();
+}
+
+} // namespace osgGpuAnimation::gltf

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osgGpuAnimation/animation/Result.h>
+
+#include <string>
+#include <vector>
+
+namespace osgGpuAnimation::tool
+{
+
+/// `osggpuanim convert`: writes a model with all its clips as a GLB, see gltf::exportModel(), or in OSG's own formats.
+struct ConvertCommand
+{
+    std::string file;               ///< of the tool's own formats, or of OSG's: `nathan.osg.gpuanim`
+    std::vector<std::string> clips; ///< files whose clips are added
+    double compact = 0.0;           ///< see gltf::ImportOptions; 0: exact
+    std::string output;             ///< a .glb, .osgb, .osgt or .osgx
+
+    /// Error messages begin with the name of the file at fault.
+    Result<bool> run() const;
+};
+
+} // namespace osgGpuAnimation::tool

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "gltf/Export.h"
+#include "gltf/Import.h"
+
+#include <osgGpuAnimation/nodes/AnimatedCharacter.h>
+#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
+
+#include <osg/NodeVisitor>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace osgGpuAnimation
+{
+
+/// The vertices of a scene at a time of a clip, and the places of its joints, in the scene's space.
+class PosedScene : public osg::NodeVisitor
+{
+public:
+    /// clip: of all characters; -1: the rest pose.
+    PosedScene(osg::Node& scene, int clip, double time)
+        : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN), _clip(clip), _time(time)
+    {
+        scene.accept(*this);
+    }
+
+    /// Both in the order of the traversal. Meshes by name and number of vertices, joints by name.
+    std::map<std::pair<std::string, std::size_t>, std::vector<std::vector<osg::Vec3d>>> meshes;
+    std::map<std::string, std::vector<osg::Vec3d>> joints;
+
+    double size() const ///< the largest coordinate
+    {
+        double most = 0.0;
+        const auto add = [&](const osg::Vec3d& at) {
+            most = std::max({most, std::abs(at.x()), std::abs(at.y()), std::abs(at.z())});
+        };
+        for (const auto& [name, places] : joints)
+            std::for_each(places.begin(), places.end(), add);
+        for (const auto& [key, all] : meshes)
+            for (const std::vector<osg::Vec3d>& vertices : all)
+                std::for_each(vertices.begin(), vertices.end(), add);
+        return most;
+    }
+
+    void apply(osg::Transform& node) override
+    {
+        AnimatedCharacter* const outer = _character;
+        if (auto* const character = dynamic_cast<AnimatedCharacter*>(&node)) enter(*character);
+        traverse(node);
+        _character = outer;
+    }
+
+    void apply(osg::Drawable& drawable) override
+    {
+        const auto* const skinned = dynamic_cast<const SkinnedGeometry*>(&drawable);
+        const osg::ref_ptr<const osg::Geometry> geometry = skinned && _character
+                                                               ? _character->getPosedMesh(*skinned)
+                                                               : osg::ref_ptr<osg::Geometry>(drawable.asGeometry());
+        const auto* const vertices =
+            geometry ? dynamic_cast<const osg::Vec3Array*>(geometry->getVertexArray()) : nullptr;
+        if (!vertices) return;
+        const osg::Matrixd toScene = osg::computeLocalToWorld(getNodePath());
+        std::vector<osg::Vec3d> posed;
+        for (const osg::Vec3& vertex : *vertices)
+            posed.push_back(osg::Vec3d(vertex) * toScene);
+        meshes[{drawable.getName(), vertices->size()}].push_back(std::move(posed));
+    }
+
+private:
+    void enter(AnimatedCharacter& character)
+    {
+        _character = &character;
+        AnimationController& controller = character.getController();
+        controller.stop();
+        controller.setLoopMode(AnimationController::LoopMode::Once); // a clip does not wrap at its end
+        if (_clip >= 0)
+        {
+            static_cast<void>(controller.play(static_cast<std::size_t>(_clip)));
+            controller.pause();
+            controller.seek(_time);
+        }
+        const osg::Matrixd toScene = osg::computeLocalToWorld(getNodePath());
+        const Skeleton& skeleton = character.getAnimationSet().skeleton();
+        for (std::size_t joint = 0; joint < skeleton.jointCount(); ++joint)
+        {
+            const osg::Matrixd matrix = character.jointToModel(joint).value() * toScene;
+            std::vector<osg::Vec3d>& places = joints[skeleton.joint(joint).name];
+            for (const osg::Vec3d& point : {osg::Vec3d(), osg::Vec3d(1, 0, 0), osg::Vec3d(0, 1, 0)})
+                places.push_back(point * matrix);
+        }
+    }
+
+    const int _clip;
+    const double _time;
+    AnimatedCharacter* _character = nullptr;
+};
+
+/// The largest distance of the found points from the expected ones; huge if a name or a point is missing.
+template <typename Points>
+double distanceBetween(const Points& expected, const Points& found)
+{
+    double most = 0.0;
+    for (std::size_t i = 0; i < expected.size(); ++i)
+        if constexpr (std::is_same_v<Points, std::vector<osg::Vec3d>>)
+            most = std::max(most, i < found.size() ? (expected[i] - found[i]).length() : 1e30);
+        else
+            most = std::max(most, i < found.size() ? distanceBetween(expected[i], found[i]) : 1e30);
+    return most;
+}
+
+/// The scene as GLB and back. Empty if one of the two fails or warns, which fails the test.
+inline osg::ref_ptr<osg::Group> throughGlb(const osg::Node& scene, const std::vector<std::string>& warnings = {})
+{
+    gltf::Messages messages;
+    gltf::Report report(messages);
+    const Result<std::string> glb = gltf::exportModel(scene, report);
+    EXPECT_TRUE(glb) << glb.error().message;
+    EXPECT_EQ(messages.warnings, warnings);
+    if (!glb) return nullptr;
+    const Result<gltf::ImportedModel> model = gltf::importModel(glb.value(), "", {});
+    EXPECT_TRUE(model) << model.error().message;
+    if (!model) return nullptr;
+    EXPECT_EQ(model.value().messages.warnings, std::vector<std::string>());
+    return model.value().root;
+}
+
+/// Both scenes have the same vertices and joints at that time, within 1e-5 of the size.
+inline void expectSamePose(osg::Node& expected, osg::Node& found, int clip, double time)
+{
+    const PosedScene before(expected, clip, time), after(found, clip, time);
+    const double allowed = 1e-5 * before.size();
+    for (const auto& [key, vertices] : before.meshes)
+    {
+        const auto place = after.meshes.find(key);
+        ASSERT_NE(place, after.meshes.end()) << key.first << " of " << key.second << " vertices is missing";
+        EXPECT_LE(distanceBetween(vertices, place->second), allowed)
+            << key.first << ", clip " << clip << " at " << time;
+    }
+    for (const auto& [name, places] : before.joints)
+    {
+        const auto place = after.joints.find(name);
+        ASSERT_NE(place, after.joints.end()) << "joint " << name << " is missing";
+        EXPECT_LE(distanceBetween(places, place->second), allowed) << name << ", clip " << clip << " at " << time;
+    }
+}
+
+/// The same for all clips of the scenes' first characters, at both ends and at places between; and for their names,
+/// durations and markers.
+inline void expectSameClips(osg::Node& expected, osg::Node& found)
+{
+    expectSamePose(expected, found, -1, 0.0);
+    const AnimatedCharacter* const before = findCharacter(expected);
+    const AnimatedCharacter* const after = findCharacter(found);
+    ASSERT_EQ(before == nullptr, after == nullptr);
+    if (!before) return;
+    const std::vector<Clip>& clips = before->getAnimationSet().clips();
+    ASSERT_EQ(after->getAnimationSet().clips().size(), clips.size());
+    for (std::size_t clip = 0; clip < clips.size(); ++clip)
+    {
+        const Clip& other = after->getAnimationSet().clips()[clip];
+        EXPECT_EQ(other.name(), clips[clip].name());
+        EXPECT_EQ(other.duration(), clips[clip].duration()) << clips[clip].name();
+        ASSERT_EQ(other.markers().size(), clips[clip].markers().size()) << clips[clip].name();
+        for (std::size_t i = 0; i < other.markers().size(); ++i)
+        {
+            EXPECT_EQ(other.markers()[i].name, clips[clip].markers()[i].name);
+            EXPECT_EQ(other.markers()[i].time, clips[clip].markers()[i].time);
+        }
+        for (const double share : {0.0, 0.31, 0.77, 1.0})
+            expectSamePose(expected, found, static_cast<int>(clip), share * clips[clip].duration());
+    }
+}
+
+} // namespace osgGpuAnimation

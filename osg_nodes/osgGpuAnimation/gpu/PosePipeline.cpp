@@ -111,7 +111,10 @@ struct PosePipeline::Parts
     bool evaluateSeparate(const PoseBatch& batch, const AnimationBuffers& buffers, PosePalette::Chunk& chunk);
     void useMixInput(FeedbackPass& pass, const AnimationSet& set, const AnimationBuffers& buffers,
                      const PosePalette::Chunk& chunk);
+    bool evaluateGarments(const AnimationSet& set, const AnimationBuffers& buffers, PosePalette::Chunk& chunk,
+                          PoseVariant variant);
     void gatherOddLevels(const AnimationSet& set, const PosePalette::Chunk& chunk);
+    void copyFromScratch(const PosePalette::Chunk& chunk, std::size_t from, std::size_t to, std::size_t count);
     void runSeparate(FeedbackPass& pass, std::size_t count, const BufferTexture& out);
 
     PosePipeline& pipeline;
@@ -123,7 +126,7 @@ struct PosePipeline::Parts
     ConstraintPasses constraintPasses;
     std::unique_ptr<FeedbackPass> localPass;
     std::unique_ptr<FeedbackPass> worldPass;
-    BufferTexture scratch;     ///< fused: the odd levels, one after the other; separate: local matrices
+    BufferTexture scratch;     ///< fused: the odd levels, one after the other, then garments; separate: local matrices
     BufferTexture mixedTracks; ///< separate: the result of the mix stage
     BufferTexture solved;      ///< the rotations of one constraint
     BufferTexture corrections; ///< those of all constraints so far, see CorrectionPlace
@@ -296,7 +299,9 @@ bool PosePipeline::Parts::evaluateFused(const PoseBatch& batch, AnimationBuffers
     const AnimationSet& set = batch.set();
     const std::uint64_t active = batch.needs().constraints;
     const ConstraintBuffers* constraints = active != 0 ? &buffers.constraints(set, active) : nullptr;
-    if (set.levelCount() > 1) scratch.reserve(oddEntries(set) * chunk.width * matrixBytes);
+    const std::size_t garmentEntries = set.paletteSize() - set.levels().back();
+    if (const std::size_t most = std::max(oddEntries(set), garmentEntries); most > 0)
+        scratch.reserve(most * chunk.width * matrixBytes);
     if (constraints) corrections.reserve(constraints->plan().correctionCount * chunk.width * rotationBytes);
     chunk.bindInstances(*gl);
     PoseVariant variant = PoseVariant::of(batch);
@@ -337,6 +342,27 @@ bool PosePipeline::Parts::evaluateFused(const PoseBatch& batch, AnimationBuffers
         oddEntry += count;
     }
     gatherOddLevels(set, chunk);
+    return garmentEntries == 0 || evaluateGarments(set, buffers, chunk, variant);
+}
+
+// The parents of the garments' entries are in any level, so the draw reads the whole palette and writes to the scratch
+// buffer.
+bool PosePipeline::Parts::evaluateGarments(const AnimationSet& set, const AnimationBuffers& buffers,
+                                           PosePalette::Chunk& chunk, PoseVariant variant)
+{
+    variant.isRootLevel = variant.hasRoots = variant.hasWeights = variant.hasConstraints = false;
+    variant.setMotion(buffers.levels().back());
+    FeedbackPass& pass = posePass(variant);
+    if (!pass.valid()) return false;
+    const std::size_t first = set.levels().back(), count = set.paletteSize() - first;
+    const std::size_t entryBytes = POSE_TEXELS_PER_ENTRY * BufferTexture::texelBytes;
+    useMixInput(pass, set, buffers, chunk);
+    pass.setTexture("parentLevels", unitPrevious, chunk.palette.texture());
+    pass.setInt("firstParent", 0);
+    buffers.entries().bindAttributes(POSE_HEAD_LOCATION, POSE_TEXELS_PER_ENTRY, entryBytes, first * entryBytes, 1);
+    pass.runInstanced(chunk.width, count, scratch.buffer(), 0);
+    ++pipeline._counters.feedbackDraws;
+    copyFromScratch(chunk, 0, first, count);
     return true;
 }
 
@@ -379,19 +405,25 @@ bool PosePipeline::Parts::solveConstraint(const LevelInput& input, const PoseBat
 
 void PosePipeline::Parts::gatherOddLevels(const AnimationSet& set, const PosePalette::Chunk& chunk)
 {
-    if (set.levelCount() < 2) return;
-    gl->glBindBuffer(GL_COPY_READ_BUFFER, scratch.buffer());
-    gl->glBindBuffer(GL_COPY_WRITE_BUFFER, chunk.palette.buffer());
     const std::vector<std::size_t>& levels = set.levels();
-    const std::size_t entryBytes = chunk.width * matrixBytes;
     std::size_t from = 0;
     for (std::size_t level = 1; level < set.levelCount(); level += 2)
     {
-        const std::size_t bytes = (levels[level + 1] - levels[level]) * entryBytes;
-        copyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, static_cast<GLintptr>(from),
-                          static_cast<GLintptr>(levels[level] * entryBytes), static_cast<GLsizeiptr>(bytes));
-        from += bytes;
+        const std::size_t count = levels[level + 1] - levels[level];
+        copyFromScratch(chunk, from, levels[level], count);
+        from += count;
     }
+}
+
+/// Copies palette entries of all instances. from, to: the first entry in the scratch buffer and in the palette.
+void PosePipeline::Parts::copyFromScratch(const PosePalette::Chunk& chunk, std::size_t from, std::size_t to,
+                                          std::size_t count)
+{
+    const std::size_t entryBytes = chunk.width * matrixBytes;
+    gl->glBindBuffer(GL_COPY_READ_BUFFER, scratch.buffer());
+    gl->glBindBuffer(GL_COPY_WRITE_BUFFER, chunk.palette.buffer());
+    copyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, static_cast<GLintptr>(from * entryBytes),
+                      static_cast<GLintptr>(to * entryBytes), static_cast<GLsizeiptr>(count * entryBytes));
     gl->glBindBuffer(GL_COPY_READ_BUFFER, 0);
     gl->glBindBuffer(GL_COPY_WRITE_BUFFER, 0);
 }

@@ -10,6 +10,7 @@
 #include "gltf/scene/TransformBound.h"
 
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
+#include <osgGpuAnimation/nodes/mesh/MeshNames.h>
 #include <osgGpuAnimation/nodes/OsgMatrix.h>
 
 #include <glm/gtc/type_ptr.hpp>
@@ -143,7 +144,9 @@ void SceneGraphBuilder::addMesh(std::size_t node)
             continue;
         }
         moves = true;
-        if (_inCharacter.insert(geometry).second) _character->addChild(geometry);
+        if (!_inCharacter.insert(geometry).second) continue;
+        setNodeName(*geometry, source.name);
+        _character->addChild(geometry);
     }
     if (moves && isInstanced(source))
         _parts.report.warn(namedElement("nodes", node, source.name) +

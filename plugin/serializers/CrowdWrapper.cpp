@@ -72,12 +72,6 @@ void transferInstance(ValueStream& stream, StoredInstance& instance)
     instance.tint = static_cast<std::uint32_t>(tint);
 }
 
-osg::Vec4 toColor(std::uint32_t rgba)
-{
-    const auto channel = [rgba](int shift) { return static_cast<float>(rgba >> shift & 255u) / 255.0f; };
-    return {channel(0), channel(8), channel(16), channel(24)};
-}
-
 void transferList(ValueStream& stream, AnimatedCrowd& crowd)
 {
     const osg::Matrixd toPlacement = osg::Matrixd::inverse(crowd.getFileToNode());

@@ -37,7 +37,7 @@ void transferJoints(ValueStream& stream, std::vector<Joint>& joints)
                 });
 }
 
-void transferSkins(ValueStream& stream, std::vector<Skin>& skins)
+void transferSkins(ValueStream& stream, const char* name, std::vector<Skin>& skins)
 {
     const auto transferSkin = [&](Skin& skin)
     {
@@ -51,7 +51,7 @@ void transferSkins(ValueStream& stream, std::vector<Skin>& skins)
         }
         stream.close();
     };
-    stream.list("Skins", skins, transferSkin);
+    stream.list(name, skins, transferSkin);
 }
 
 void transferRigidJoints(ValueStream& stream, std::vector<int>& joints)
@@ -74,9 +74,10 @@ void transferMorphs(ValueStream& stream, std::vector<MorphWeights>& morphs)
 }
 
 /// The versions of a stored set: before the first, all clips are exact; sets without constraints do not need the
-/// second.
+/// second, those without garments not the third.
 constexpr std::int32_t versionWithCompactClips = 2;
 constexpr std::int32_t versionWithConstraints = 3;
+constexpr std::int32_t versionWithGarments = 4;
 constexpr std::size_t floatsATransform = sizeof(JointTransform) / sizeof(float);
 /// Of all compact clips of a set together; the default of the glTF reader's budget.
 constexpr std::size_t maxCompactBytes = std::size_t(2) << 30;
@@ -303,7 +304,7 @@ void StoredAnimationSet::transferContents(ValueStream& stream, StoredAnimationSe
     std::int32_t version = versionWithCompactClips;
     std::vector<Constraint> constraints;
     std::vector<Joint> joints;
-    std::vector<Skin> skins;
+    std::vector<Skin> skins, garments;
     std::vector<int> rigidJoints;
     std::vector<MorphWeights> morphs;
     std::vector<Clip> clips;
@@ -315,21 +316,24 @@ void StoredAnimationSet::transferContents(ValueStream& stream, StoredAnimationSe
         morphs = set->morphs();
         clips = set->clips();
         constraints = set->constraints();
+        garments = set->garments();
         if (!constraints.empty()) version = versionWithConstraints;
+        if (!garments.empty()) version = versionWithGarments;
     }
-    stream.limited("the version of an animation set", version, 1, versionWithConstraints).endLine();
+    stream.limited("the version of an animation set", version, 1, versionWithGarments).endLine();
     transferJoints(stream, joints);
-    transferSkins(stream, skins);
+    transferSkins(stream, "Skins", skins);
     transferRigidJoints(stream, rigidJoints);
     transferMorphs(stream, morphs);
     transferClips(stream, version, joints.size(), morphs, clips);
     if (version >= versionWithConstraints) transferConstraints(stream, constraints);
+    if (version >= versionWithGarments) transferSkins(stream, "Garments", garments);
     if (!stream.hasRead()) return;
     Result<Skeleton> skeleton = toSkeleton(joints);
     if (!skeleton) return stream.fail(skeleton.error().message);
     Result<std::shared_ptr<const AnimationSet>> made =
         AnimationSet::create({std::move(skeleton).value(), std::move(skins), std::move(rigidJoints), std::move(morphs),
-                              std::move(clips), std::move(constraints)});
+                              std::move(clips), std::move(constraints), std::move(garments)});
     if (!made) return stream.fail(made.error().message);
     stored._read = made.value();
 }

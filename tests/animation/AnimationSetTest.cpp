@@ -84,6 +84,39 @@ TEST(AnimationSetTest, FurtherBindsAreStaticChildrenOfTheMainEntry)
     EXPECT_TRUE(set->palette()[static_cast<std::size_t>(set->entryOfRigidJoint(0))].inverseBind.isIdentity());
 }
 
+TEST(AnimationSetTest, GarmentsTakeEntriesAfterAllOthers)
+{
+    const auto set = make({threeJoints(), {{"body", {0, 1}, {moved(1), moved(2)}}}, {2}, {}, {}});
+    const std::vector<Skin> coat{{"coat", {2, 0}, {moved(7), moved(8)}}};
+    const auto made = set->withGarments(coat);
+    ASSERT_TRUE(made) << made.error().message;
+    const AnimationSet& dressed = *made.value();
+    const std::size_t first = set->paletteSize();
+    ASSERT_EQ(dressed.paletteSize(), first + 2);
+    EXPECT_EQ(dressed.levels(), set->levels());
+    for (std::size_t e = 0; e < first; ++e)
+    {
+        EXPECT_EQ(dressed.palette()[e].joint, set->palette()[e].joint);
+        EXPECT_EQ(dressed.palette()[e].inverseBind.rows, set->palette()[e].inverseBind.rows);
+    }
+    for (std::size_t place = 0; place < 2; ++place)
+    {
+        const PaletteEntry& entry = dressed.palette()[first + place];
+        EXPECT_EQ(entry.kind, Kind::Static);
+        EXPECT_EQ(entry.joint, coat[0].joints[place]);
+        EXPECT_EQ(entry.parent, set->mainEntry(entry.joint));
+        EXPECT_EQ(entry.inverseBind.rows, coat[0].inverseBinds[place].rows);
+    }
+    EXPECT_EQ(&dressed.masks(), &set->masks());
+    EXPECT_EQ(set->withGarments(coat).value(), made.value()) << "equal garments share one set";
+    EXPECT_EQ(dressed.withGarments({}).value(), set) << "taken off";
+    EXPECT_NE(set->withGarments({coat[0], coat[0]}).value(), made.value());
+    EXPECT_EQ(dressed.withClips({}).value()->garments().size(), 1u);
+    const auto wrong = set->withGarments({{"hat", {3}, {moved(1)}}});
+    ASSERT_FALSE(wrong);
+    EXPECT_EQ(wrong.error().message, "garment 0 \"hat\": its joint 0 is 3, but there are 3");
+}
+
 TEST(AnimationSetTest, AMatrixThatCannotBeUndoneIsNoMainBind)
 {
     AffineMatrix flat;

@@ -73,7 +73,8 @@ struct PipelineData
     RandomSetShape shape;
     std::size_t instances;
     Roots roots;
-    std::size_t maxTexels; ///< 0: the context's own
+    std::size_t maxTexels;   ///< 0: the context's own
+    bool hasGarments{false}; ///< further entries of joints of all levels
 };
 
 void PrintTo(const PipelineData& data, std::ostream* out)
@@ -92,7 +93,26 @@ const PipelineData pipelineData[] = {
     {"with one root matrix for all", {8, 30, 8, 5, false, true, true}, 37, Roots::One, 0},
     {"one character with a root matrix", {9, 30, 8, 5, false, false, true}, 1, Roots::One, 0},
     {"one root matrix, in chunks", {7, 20, 6, 2, false, false, true}, 2500, Roots::One, 65536},
+    {"with garments", {11, 30, 8, 5, false, true, true}, 37, Roots::Own, 0, true},
+    {"with garments, on one joint", {12, 1, 1, 3, false, false, false}, 3, Roots::None, 0, true},
+    {"with garments, in chunks", {13, 20, 6, 2, false, false, true}, 2500, Roots::One, 65536, true},
 };
+
+/// The set with two garments, whose binds are those of its own entries, shifted.
+std::shared_ptr<const AnimationSet> withGarments(const AnimationSet& set)
+{
+    std::vector<Skin> garments(2);
+    for (std::size_t e = 0; e < set.paletteSize(); ++e)
+    {
+        const PaletteEntry& entry = set.palette()[e];
+        if (entry.kind == PaletteEntry::Kind::Weights) continue;
+        Skin& garment = garments[e % 2];
+        garment.joints.push_back(entry.joint);
+        garment.inverseBinds.push_back(entry.inverseBind);
+        garment.inverseBinds.back().rows[1].w += 0.25f;
+    }
+    return set.withGarments(garments).value();
+}
 
 class PosePipelineGLTest : public GLTest,
                            public ::testing::WithParamInterface<std::tuple<PipelineData, PosePipeline::Form>>
@@ -102,7 +122,9 @@ class PosePipelineGLTest : public GLTest,
 TEST_P(PosePipelineGLTest, agreesWithTheCpuTwin)
 {
     const PipelineData& data = std::get<0>(GetParam());
-    const auto set = makeRandomSet(data.shape);
+    const auto bare = makeRandomSet(data.shape);
+    const auto set = data.hasGarments ? withGarments(*bare) : bare;
+    ASSERT_EQ(set->paletteSize() > bare->paletteSize(), data.hasGarments);
     const std::vector<Instance> instances = randomInstances(*set, data.instances, data.shape.seed + 100);
     PoseBatch batch(set);
     if (data.roots == Roots::One) batch.setRootMatrix(instances.front().root);

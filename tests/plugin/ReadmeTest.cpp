@@ -44,7 +44,8 @@ protected:
         usePluginsOfTheBuild();
         std::filesystem::copy_file(OSGGPUANIMATION_SCENES "/Wanderer.glb", _folder.file("fox.glb"));
         EXPECT_FALSE(osgDB::findDataFile("fox.glb").empty());
-        std::filesystem::copy_file(OSGGPUANIMATION_SCENES "/Wanderer.glb", _folder.file("moves.glb"));
+        for (const char* file : {"moves.glb", "coat.glb"})
+            std::filesystem::copy_file(OSGGPUANIMATION_SCENES "/Wanderer.glb", _folder.file(file));
     }
 
 private:
@@ -149,6 +150,23 @@ TEST_F(ReadmeTest, clipsOfAnotherFile)
     if (succeeded(merged)) succeeded(fox->setAnimationSet(merged.value().set));
     EXPECT_EQ(fox->getAnimationSet().clips().size(), 8u);
     EXPECT_GE(fox->getAnimationSet().findClip("Run 2"), 0);
+}
+
+TEST_F(ReadmeTest, garmentsAndParts)
+{
+    osg::ref_ptr<osg::Node> node = osgDB::readRefNodeFile("fox.glb");
+    ASSERT_TRUE(node.valid());
+    AnimatedCharacter* fox = findCharacter(*node);
+    const unsigned int before = fox->getNumChildren();
+    osg::ref_ptr<osg::Node> coat = osgDB::readRefNodeFile("coat.glb");
+    auto worn = fox->wear(coat);
+    if (succeeded(worn)) std::cout << worn.value().addedEntries << " further palette entries" << std::endl;
+    EXPECT_EQ(fox->getNumChildren(), 2 * before);
+    if (!fox->takeOff(coat)) std::cout << "the coat was not worn" << std::endl;
+    EXPECT_EQ(fox->getNumChildren(), before);
+    if (fox->findMesh("Lantern")) succeeded(fox->setMeshVisible("Lantern", false));
+    EXPECT_EQ(fox->findMesh("Lantern")->getNodeMask(), 0u);
+    EXPECT_NE(fox->findMesh("Body")->getNodeMask(), 0u);
 }
 
 TEST_F(ReadmeTest, ourPluginIsChosenByAnAlias)

@@ -90,6 +90,9 @@ std::optional<Error> findFaultInSkin(const Skin& skin, const std::string& subjec
 std::optional<Error> findFault(const AnimationParts& parts, std::size_t trackCount)
 {
     const std::size_t jointCount = parts.skeleton.jointCount();
+    for (std::size_t g = 0; g < parts.garments.size(); ++g)
+        if (auto fault = findFaultInSkin(parts.garments[g], describe("garment", g, parts.garments[g]), jointCount))
+            return fault;
     for (std::size_t s = 0; s < parts.skins.size(); ++s)
         if (auto fault = findFaultInSkin(parts.skins[s], describe("skin", s, parts.skins[s]), jointCount)) return fault;
     for (int joint : parts.rigidJoints)
@@ -143,13 +146,21 @@ std::string namesOf(const std::vector<Clip>& clips)
 
 } // namespace
 
-AnimationSet::AnimationSet(AnimationParts parts, std::shared_ptr<MaskTable> masks,
+/// The sets that differ in their garments alone.
+struct AnimationSet::Family
+{
+    std::mutex mutex;
+    std::vector<std::weak_ptr<const AnimationSet>> sets;
+};
+
+AnimationSet::AnimationSet(AnimationParts parts, std::shared_ptr<MaskTable> masks, std::shared_ptr<Family> family,
                            std::shared_ptr<const std::vector<ConstraintChain>> constraintChains)
-    : _parts(std::move(parts)), _constraintChains(std::move(constraintChains)), _masks(std::move(masks))
+    : _parts(std::move(parts)), _constraintChains(std::move(constraintChains)), _masks(std::move(masks)),
+      _family(std::move(family))
 {
     _restPose = osgGpuAnimation::restPose(_parts.skeleton, _parts.morphs);
     _firstTracksOfMorphs = firstTracksOfMorphs(_parts.skeleton, _parts.morphs);
-    _layout = layOutPalette(_parts.skeleton, _parts.skins, _parts.rigidJoints, _parts.morphs);
+    _layout = layOutPalette(_parts.skeleton, _parts.skins, _parts.rigidJoints, _parts.morphs, _parts.garments);
     for (const Clip& clip : _parts.clips)
     {
         _firstKeyframes.push_back(_keyframeCount);
@@ -283,16 +294,60 @@ Result<std::shared_ptr<const AnimationSet>> AnimationSet::withConstraints(std::v
     return make(std::move(parts), _masks);
 }
 
+namespace
+{
+
+bool areEqual(const std::vector<Skin>& garments, const std::vector<Skin>& others)
+{
+    const auto isEqual = [](const Skin& garment, const Skin& other)
+    {
+        return garment.joints == other.joints &&
+               std::equal(garment.inverseBinds.begin(), garment.inverseBinds.end(), other.inverseBinds.begin(),
+                          other.inverseBinds.end(),
+                          [](const AffineMatrix& one, const AffineMatrix& two) { return one.rows == two.rows; });
+    };
+    return std::equal(garments.begin(), garments.end(), others.begin(), others.end(), isEqual);
+}
+
+} // namespace
+
+Result<std::shared_ptr<const AnimationSet>> AnimationSet::withGarments(std::vector<Skin> garments) const
+{
+    const std::lock_guard<std::mutex> lock(_family->mutex);
+    for (auto known = _family->sets.begin(); known != _family->sets.end();)
+    {
+        std::shared_ptr<const AnimationSet> set = known->lock();
+        if (set && areEqual(set->garments(), garments)) return set;
+        known = set ? std::next(known) : _family->sets.erase(known);
+    }
+    AnimationParts parts = _parts;
+    parts.garments = std::move(garments);
+    Result<std::shared_ptr<const AnimationSet>> made = make(std::move(parts), _masks, _family);
+    if (!made) return made;
+    const std::lock_guard<std::mutex> lockSpeeds(_groundSpeedMutex);
+    made.value()->_groundSpeeds = _groundSpeeds;
+    return made;
+}
+
 Result<std::shared_ptr<const AnimationSet>> AnimationSet::make(AnimationParts parts, std::shared_ptr<MaskTable> masks)
+{
+    return make(std::move(parts), std::move(masks), std::make_shared<Family>());
+}
+
+/// Adds the set to the family. The caller has locked a family that others know.
+Result<std::shared_ptr<const AnimationSet>> AnimationSet::make(AnimationParts parts, std::shared_ptr<MaskTable> masks,
+                                                               const std::shared_ptr<Family>& family)
 {
     const std::size_t trackCount = firstTracksOfMorphs(parts.skeleton, parts.morphs).back();
     if (auto fault = findFault(parts, trackCount)) return *fault;
     if (auto fault = findFaultInSize(parts.clips)) return *fault;
     Result<std::vector<ConstraintChain>> chains = chainsOf(parts);
     if (!chains) return chains.error();
-    return std::shared_ptr<const AnimationSet>(
-        new AnimationSet(std::move(parts), std::move(masks),
+    const std::shared_ptr<const AnimationSet> set(
+        new AnimationSet(std::move(parts), std::move(masks), family,
                          std::make_shared<const std::vector<ConstraintChain>>(std::move(chains).value())));
+    family->sets.push_back(set);
+    return set;
 }
 
 int AnimationSet::entryOfRigidJoint(int joint) const

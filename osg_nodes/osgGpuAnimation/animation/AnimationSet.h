@@ -109,6 +109,7 @@ struct AnimationParts
     std::vector<MorphWeights> morphs;      ///< meshes with morph weights
     std::vector<Clip> clips;               ///< created for the same skeleton and morphs
     std::vector<Constraint> constraints{}; ///< in the order in which they are solved
+    std::vector<Skin> garments{};          ///< inverse binds of meshes from other files, see withGarments()
 };
 
 class AnimationSet;
@@ -171,12 +172,19 @@ public:
     /// maxConstraints.
     Result<std::shared_ptr<const AnimationSet>> withConstraints(std::vector<Constraint> constraints) const;
 
+    /// A set with the same skeleton, skins, morphs, masks, clips and constraints but these garments: joints with the
+    /// inverse binds of meshes from other files. Each takes a palette entry of its own, after all others, so the meshes
+    /// of this set fit the new one. Sets are shared: while another one with these garments exists that was made of the
+    /// same set, the call returns that one. AnimatedCharacter::wear() calls it. Errors: as for skins in create().
+    Result<std::shared_ptr<const AnimationSet>> withGarments(std::vector<Skin> garments) const;
+
     const Skeleton& skeleton() const { return _parts.skeleton; }                      ///< the joints
     const std::vector<Skin>& skins() const { return _parts.skins; }                   ///< as passed to create()
     const std::vector<int>& rigidJoints() const { return _parts.rigidJoints; }        ///< as passed to create()
     const std::vector<MorphWeights>& morphs() const { return _parts.morphs; }         ///< as passed to create()
     const std::vector<Clip>& clips() const { return _parts.clips; }                   ///< as passed to create()
     const std::vector<Constraint>& constraints() const { return _parts.constraints; } ///< as passed to create()
+    const std::vector<Skin>& garments() const { return _parts.garments; }             ///< as passed to withGarments()
     /// The constraints after the look-up of their joints, for the kit's own code.
     const std::vector<ConstraintChain>& constraintChains() const { return *_constraintChains; }
     /// The index of the constraint of that name. Error: there is none; the message lists the existing names.
@@ -187,9 +195,11 @@ public:
     /// The track of the morph's first weight block. morph: below morphs().size().
     std::size_t firstTrackOfMorph(std::size_t morph) const { return _firstTracksOfMorphs[morph]; }
 
-    const std::vector<PaletteEntry>& palette() const { return _layout.entries; } ///< in the order of the levels
-    std::size_t paletteSize() const { return _layout.entries.size(); }           ///< number of entries
-    /// levelCount() + 1 entry indices: level l is [levels()[l], levels()[l + 1]).
+    /// In the order of the levels; the entries of garments come last.
+    const std::vector<PaletteEntry>& palette() const { return _layout.entries; }
+    std::size_t paletteSize() const { return _layout.entries.size(); } ///< number of entries
+    /// levelCount() + 1 entry indices: level l is [levels()[l], levels()[l + 1]). The last one is the first entry of
+    /// the garments, which belong to no level.
     const std::vector<std::size_t>& levels() const { return _layout.levels; }
     std::size_t levelCount() const { return _layout.levels.size() - 1; } ///< number of levels of the palette
 
@@ -232,9 +242,13 @@ public:
     void keepGroundSpeed(std::size_t clip, double speed) const;
 
 private:
-    AnimationSet(AnimationParts parts, std::shared_ptr<MaskTable> masks,
+    struct Family;
+
+    AnimationSet(AnimationParts parts, std::shared_ptr<MaskTable> masks, std::shared_ptr<Family> family,
                  std::shared_ptr<const std::vector<ConstraintChain>> constraintChains);
     static Result<std::shared_ptr<const AnimationSet>> make(AnimationParts parts, std::shared_ptr<MaskTable> masks);
+    static Result<std::shared_ptr<const AnimationSet>> make(AnimationParts parts, std::shared_ptr<MaskTable> masks,
+                                                            const std::shared_ptr<Family>& family);
 
     AnimationParts _parts;
     std::vector<JointTransform> _restPose;
@@ -244,6 +258,7 @@ private:
     std::vector<std::size_t> _firstKeyframes;
     std::size_t _keyframeCount = 1;
     std::shared_ptr<MaskTable> _masks; ///< shared by sets with equal tracks
+    std::shared_ptr<Family> _family;   ///< never null
     mutable std::mutex _groundSpeedMutex;
     mutable std::vector<double> _groundSpeeds; ///< by clip; NaN: not measured yet
 };

@@ -153,7 +153,8 @@ struct Skin
 ///     entry = parentEntry · parentBind · T·R·S · inverseBind        parentBind = (the parent entry's inverseBind)⁻¹
 ///
 /// Every joint has one main entry. A joint has further entries if several skins bind it differently or if it is skinned
-/// and also carries a rigid mesh. Further entries are children of the main entry and have no track.
+/// and also carries a rigid mesh. Further entries are children of the main entry and have no track. Those of garments
+/// come after all levels (see AnimationSet::withGarments()).
 ///
 /// The main entry takes the inverse bind matrix of the first skin that contains the joint if that matrix can be
 /// inverted without loss (see PaletteBuilder.cpp), else the identity. Equal matrices of one joint share an entry.
@@ -178,7 +179,7 @@ struct PaletteEntry
 /// All palette entries of an AnimationSet and how to find them.
 struct PaletteLayout
 {
-    std::vector<PaletteEntry> entries;         ///< level by level
+    std::vector<PaletteEntry> entries;         ///< level by level, then those of garments
     std::vector<std::size_t> levels;           ///< level count + 1 entry indices: level l is [levels[l], levels[l + 1])
     std::vector<std::vector<int>> entryOfSkin; ///< by skin, then by index in Skin::joints
     std::vector<int> entryOfRigidJoint;        ///< by joint; -1 if no rigid mesh hangs on the joint

@@ -76,6 +76,13 @@ std::size_t correctionsOf(const AnimationSet& set)
     return count;
 }
 
+/// Palette entries of all instances on their way from the scratch buffer to the palette.
+struct EntryCopy
+{
+    std::size_t from, to; ///< the first entry in each
+    std::size_t count;
+};
+
 /// The input of the draws of one level of the palette.
 struct LevelInput
 {
@@ -115,7 +122,10 @@ struct PosePipeline::Parts
     void useMixInput(FeedbackScope& scope, FeedbackPass& pass, const AnimationSet& set, const AnimationBuffers& buffers,
                      const PosePalette::Chunk& chunk);
     void bindEntries(const BufferTexture& entries, std::size_t first, FeedbackVertexArrays::Names& arrays) const;
+    bool evaluateGarments(FeedbackScope& scope, FeedbackVertexArrays::Names& arrays, const AnimationSet& set,
+                          const AnimationBuffers& buffers, PosePalette::Chunk& chunk, PoseVariant variant);
     void gatherOddLevels(const AnimationSet& set, const PosePalette::Chunk& chunk);
+    void copyFromScratch(const PosePalette::Chunk& chunk, const std::vector<EntryCopy>& copies);
     void runSeparate(FeedbackPass& pass, std::size_t count, const BufferTexture& out);
 
     PosePipeline& pipeline;
@@ -127,7 +137,7 @@ struct PosePipeline::Parts
     ConstraintPasses constraintPasses;
     std::unique_ptr<FeedbackPass> localPass;
     std::unique_ptr<FeedbackPass> worldPass;
-    BufferTexture scratch;     ///< fused: the odd levels, one after the other; separate: local matrices
+    BufferTexture scratch;     ///< fused: the odd levels, one after the other, then garments; separate: local matrices
     BufferTexture mixedTracks; ///< separate: the result of the mix stage
     BufferTexture solved;      ///< the rotations of one constraint
     BufferTexture corrections; ///< those of all constraints so far, see CorrectionPlace
@@ -300,7 +310,9 @@ bool PosePipeline::Parts::evaluateFused(FeedbackScope& scope, FeedbackVertexArra
     const AnimationSet& set = batch.set();
     const std::uint64_t active = batch.needs().constraints;
     const ConstraintBuffers* constraints = active != 0 ? &buffers.constraints(set, active) : nullptr;
-    if (set.levelCount() > 1) scratch.reserve(oddEntries(set) * chunk.width * matrixBytes);
+    const std::size_t garmentEntries = set.paletteSize() - set.levels().back();
+    if (const std::size_t most = std::max(oddEntries(set), garmentEntries); most > 0)
+        scratch.reserve(most * chunk.width * matrixBytes);
     if (constraints) corrections.reserve(constraints->plan().correctionCount * chunk.width * rotationBytes);
     scope.forgetActiveTexture();
     const BufferTexture& entries = constraints ? constraints->entries() : buffers.entries();
@@ -348,6 +360,28 @@ bool PosePipeline::Parts::evaluateFused(FeedbackScope& scope, FeedbackVertexArra
         oddEntry += count;
     }
     gatherOddLevels(set, chunk);
+    return garmentEntries == 0 || evaluateGarments(scope, arrays, set, buffers, chunk, variant);
+}
+
+// The parents of the garments' entries are in any level, so the draw reads the whole palette and writes to the scratch
+// buffer.
+bool PosePipeline::Parts::evaluateGarments(FeedbackScope& scope, FeedbackVertexArrays::Names& arrays,
+                                           const AnimationSet& set, const AnimationBuffers& buffers,
+                                           PosePalette::Chunk& chunk, PoseVariant variant)
+{
+    variant.isRootLevel = variant.hasRoots = variant.hasWeights = variant.hasConstraints = false;
+    variant.setMotion(buffers.levels().back());
+    FeedbackPass& pass = posePass(variant);
+    if (!pass.valid()) return false;
+    const std::size_t first = set.levels().back(), count = set.paletteSize() - first;
+    useMixInput(scope, pass, set, buffers, chunk);
+    pass.setTexture(scope, "parentLevels", unitPrevious, chunk.palette.texture());
+    pass.setInt("firstParent", 0);
+    const bool canOffset = FeedbackPass::canOffsetInstances(*gl);
+    bindEntries(buffers.entries(), canOffset ? 0 : first, arrays);
+    pass.runInstanced(chunk.width, count, canOffset ? first : 0, scratch.buffer(), 0);
+    ++pipeline._counters.feedbackDraws;
+    copyFromScratch(chunk, {{0, first, count}});
     return true;
 }
 
@@ -401,19 +435,27 @@ bool PosePipeline::Parts::solveConstraint(const LevelInput& input, const PoseBat
 
 void PosePipeline::Parts::gatherOddLevels(const AnimationSet& set, const PosePalette::Chunk& chunk)
 {
-    if (set.levelCount() < 2) return;
-    gl->glBindBuffer(GL_COPY_READ_BUFFER, scratch.buffer());
-    gl->glBindBuffer(GL_COPY_WRITE_BUFFER, chunk.palette.buffer());
     const std::vector<std::size_t>& levels = set.levels();
-    const std::size_t entryBytes = chunk.width * matrixBytes;
+    std::vector<EntryCopy> copies;
     std::size_t from = 0;
     for (std::size_t level = 1; level < set.levelCount(); level += 2)
     {
-        const std::size_t bytes = (levels[level + 1] - levels[level]) * entryBytes;
-        copyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, static_cast<GLintptr>(from),
-                          static_cast<GLintptr>(levels[level] * entryBytes), static_cast<GLsizeiptr>(bytes));
-        from += bytes;
+        copies.push_back({from, levels[level], levels[level + 1] - levels[level]});
+        from += copies.back().count;
     }
+    copyFromScratch(chunk, copies);
+}
+
+void PosePipeline::Parts::copyFromScratch(const PosePalette::Chunk& chunk, const std::vector<EntryCopy>& copies)
+{
+    if (copies.empty()) return;
+    const std::size_t entryBytes = chunk.width * matrixBytes;
+    gl->glBindBuffer(GL_COPY_READ_BUFFER, scratch.buffer());
+    gl->glBindBuffer(GL_COPY_WRITE_BUFFER, chunk.palette.buffer());
+    for (const EntryCopy& copy : copies)
+        copyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, static_cast<GLintptr>(copy.from * entryBytes),
+                          static_cast<GLintptr>(copy.to * entryBytes),
+                          static_cast<GLsizeiptr>(copy.count * entryBytes));
     gl->glBindBuffer(GL_COPY_READ_BUFFER, 0);
     gl->glBindBuffer(GL_COPY_WRITE_BUFFER, 0);
 }

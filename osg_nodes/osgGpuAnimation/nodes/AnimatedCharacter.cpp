@@ -9,7 +9,9 @@
 #include <osgGpuAnimation/nodes/frame/WorldTargets.h>
 #include <osgGpuAnimation/nodes/lod/LodSelection.h>
 #include <osgGpuAnimation/nodes/mesh/MaterialVariants.h>
+#include <osgGpuAnimation/nodes/mesh/MeshNames.h>
 #include <osgGpuAnimation/nodes/mesh/PaletteEntryBounds.h>
+#include <osgGpuAnimation/nodes/mesh/Wardrobe.h>
 #include <osgGpuAnimation/nodes/OsgMatrix.h>
 #include <osgGpuAnimation/nodes/picking/PosedMesh.h>
 
@@ -40,6 +42,13 @@ std::uint64_t constraintsOf(const AnimationController& controller)
     for (std::size_t c = 0; c < targets.size(); ++c)
         if (targets[c].weight > 0.0f) constraints |= std::uint64_t(1) << c;
     return constraints;
+}
+
+std::vector<const SkinnedGeometry*> meshesBelow(osg::Node& node)
+{
+    std::vector<const SkinnedGeometry*> meshes;
+    forEachMeshBelow(node, [&](const SkinnedGeometry& mesh) { meshes.push_back(&mesh); });
+    return meshes;
 }
 
 Error noInstance()
@@ -120,7 +129,8 @@ AnimatedCharacter::AnimatedCharacter() : AnimatedCharacter(nullptr) {}
 
 AnimatedCharacter::AnimatedCharacter(std::shared_ptr<const AnimationSet> set)
     : _controller(std::make_unique<AnimationController>(std::move(set))),
-      _worldTargets(std::make_unique<WorldTargets>()), _variantMeshes(std::make_shared<VariantMeshes>())
+      _worldTargets(std::make_unique<WorldTargets>()), _variantMeshes(std::make_shared<VariantMeshes>()),
+      _wardrobe(std::make_shared<Wardrobe>())
 {
     static const std::shared_ptr<const Axes> identity = std::make_shared<const Axes>();
     _axes = identity;
@@ -134,7 +144,8 @@ AnimatedCharacter::AnimatedCharacter(const AnimatedCharacter& other, const osg::
     : osg::MatrixTransform(other, copyop), _controller(std::make_unique<AnimationController>(*other._controller)),
       _axes(other._axes), _clipBounds(other._clipBounds), _mixBounds(other._mixBounds), _updateTime(other._updateTime),
       _worldTargets(std::make_unique<WorldTargets>(*other._worldTargets)), _isDrawnTogether(other._isDrawnTogether),
-      _pixelError(other._pixelError), _materialVariant(other._materialVariant), _variantMeshes(other._variantMeshes)
+      _pixelError(other._pixelError), _materialVariant(other._materialVariant), _variantMeshes(other._variantMeshes),
+      _wardrobe(other._wardrobe)
 {
     // osg::Node copies its other callbacks, but not the event callbacks.
     setEventCallback(copyop(other.getEventCallback()));
@@ -181,7 +192,14 @@ Result<bool> AnimatedCharacter::setPixelError(float pixels)
 
 std::vector<std::string> AnimatedCharacter::getMaterialVariants() const
 {
-    return variantNamesOf(*this);
+    std::vector<std::string> names = variantNamesOf(*this);
+    const auto addNames = [&](const SkinnedGeometry& mesh)
+    {
+        for (const std::string& name : variantNamesOf(mesh))
+            if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    };
+    forEachMesh(*this, addNames);
+    return names;
 }
 
 Result<bool> AnimatedCharacter::setMaterialVariant(const std::string& name)
@@ -192,6 +210,74 @@ Result<bool> AnimatedCharacter::setMaterialVariant(const std::string& name)
                      quotedNames(names, [](const std::string& known) { return known; })};
     _variantMeshes->show(*this, name);
     _materialVariant = name;
+    return true;
+}
+
+Result<WornGarment> AnimatedCharacter::wear(osg::Node* garment)
+{
+    AnimatedCharacter* source = garment ? findCharacter(*garment) : nullptr;
+    if (!source || source == this) return Error{"the garment has no animated character"};
+    const std::vector<const SkinnedGeometry*> meshes = meshesBelow(*source);
+    if (meshes.empty()) return Error{"the garment has no meshes that joints move"};
+    if (wears(_wardrobe->identifierOf(*source, meshes))) return Error{"the character wears the garment already"};
+    const Result<FittedGarment> fitted =
+        _wardrobe->fit(*source, source->getAnimationSet(), meshes, _controller->sharedSet());
+    if (!fitted) return fitted.error();
+    for (const osg::ref_ptr<SkinnedGeometry>& mesh : fitted.value().meshes)
+        addChild(mesh);
+    if (!_materialVariant.empty()) _variantMeshes->show(*this, _materialVariant);
+    useOutfit(fitted.value().set);
+    return WornGarment{fitted.value().addedEntries, fitted.value().followed, fitted.value().leftOut};
+}
+
+/// identifier: of a garment; empty: none.
+bool AnimatedCharacter::wears(const std::string& identifier) const
+{
+    const auto isPart = [&](const osg::ref_ptr<osg::Node>& child)
+    { return Wardrobe::identifierOf(*child) == identifier; };
+    return !identifier.empty() && std::any_of(_children.begin(), _children.end(), isPart);
+}
+
+bool AnimatedCharacter::takeOff(const osg::Node* garment)
+{
+    if (!garment) return false;
+    AnimatedCharacter* source = findCharacter(const_cast<osg::Node&>(*garment));
+    const std::string identifier =
+        source ? _wardrobe->identifierOf(*source, meshesBelow(*source)) : Wardrobe::identifierOf(*garment);
+    if (!wears(identifier)) return false;
+    for (unsigned int child = getNumChildren(); child-- > 0;)
+        if (Wardrobe::identifierOf(*getChild(child)) == identifier) removeChild(child);
+    useOutfit(Wardrobe::withoutUnused(_controller->sharedSet(), *this));
+    return true;
+}
+
+/// Takes a set that the present meshes fit. Clones share the meshes, so their boxes only grow.
+void AnimatedCharacter::useOutfit(const std::shared_ptr<const AnimationSet>& set)
+{
+    if (set != _controller->sharedSet()) *_controller = AnimationController(set, *_controller);
+    if (_clipBounds)
+    {
+        const ClipBoxes boxes = _wardrobe->boxes(meshesBelow(*this), set);
+        _clipBounds = boxes.ofClips;
+        _mixBounds = boxes.ofMixes;
+        growMeshes(boundsOfAllClips());
+        _played.clear();
+        dirtyBound();
+    }
+    (void)setPixelError(_pixelError);
+}
+
+SkinnedGeometry* AnimatedCharacter::findMesh(const std::string& name) const
+{
+    const Result<std::vector<SkinnedGeometry*>> meshes = meshesNamed(*this, name);
+    return meshes ? meshes.value().front() : nullptr;
+}
+
+Result<bool> AnimatedCharacter::setMeshVisible(const std::string& name, bool isVisible)
+{
+    const Result<std::vector<SkinnedGeometry*>> meshes = meshesNamed(*this, name);
+    if (!meshes) return meshes.error();
+    _variantMeshes->setVisible(*this, {meshes.value().begin(), meshes.value().end()}, isVisible);
     return true;
 }
 
@@ -276,23 +362,23 @@ void AnimatedCharacter::growMeshes(const osg::BoundingBox& box)
 
 void AnimatedCharacter::computeClipBounds()
 {
-    const AnimationSet& set = getAnimationSet();
-    std::vector<const SkinnedGeometry*> meshes;
-    forEachMeshBelow(*this, [&](const SkinnedGeometry& mesh) { meshes.push_back(&mesh); });
-    MixBounds::Boxes boxes = mixBoxesOf(meshes, set);
-    std::vector<osg::BoundingBox> bounds;
-    for (const Box& box : boundsOfClips(set, boxes.ofClips))
-        bounds.push_back(toOsg(box));
-    _clipBounds = std::make_shared<const std::vector<osg::BoundingBox>>(std::move(bounds));
-    _mixBounds = std::make_shared<const MixBounds>(set, std::move(boxes));
+    const ClipBoxes boxes(meshesBelow(*this), getAnimationSet());
+    _clipBounds = boxes.ofClips;
+    _mixBounds = boxes.ofMixes;
     setMeshBounds();
 }
 
-void AnimatedCharacter::setMeshBounds()
+osg::BoundingBox AnimatedCharacter::boundsOfAllClips() const
 {
     osg::BoundingBox all;
     for (const osg::BoundingBox& box : *_clipBounds)
         all.expandBy(transformed(box, _axes->fileToNode));
+    return all;
+}
+
+void AnimatedCharacter::setMeshBounds()
+{
+    const osg::BoundingBox all = boundsOfAllClips();
     forEachMeshBelow(*this, [&](SkinnedGeometry& mesh) { mesh.setInitialBound(all); });
     _played.clear();
     dirtyBound();
@@ -317,7 +403,11 @@ osg::ref_ptr<osg::Geometry> AnimatedCharacter::getPosedMesh(const SkinnedGeometr
 
 void AnimatedCharacter::acceptPosed(osg::PrimitiveFunctor& functor)
 {
-    forEachMeshBelow(*this, [&](const SkinnedGeometry& mesh) { getPosedMesh(mesh)->accept(functor); });
+    const auto pass = [&](const SkinnedGeometry& mesh)
+    {
+        if (mesh.getNodeMask() != 0) getPosedMesh(mesh)->accept(functor);
+    };
+    forEachMeshBelow(*this, pass);
 }
 
 void AnimatedCharacter::accept(osg::NodeVisitor& visitor)

@@ -23,6 +23,7 @@ namespace osgGpuAnimation
 class MixBounds;
 class PosedMeshes;
 class VariantMeshes;
+class Wardrobe;
 class WorldTargets;
 struct PlayedClip;
 
@@ -68,6 +69,16 @@ private:
     osg::Matrixd _spaceToWorld;
     WorldTargets* _worldTargets;
     std::uint64_t _instance;
+};
+
+/// What AnimatedCharacter::wear() has done.
+struct WornGarment
+{
+    std::size_t addedEntries =
+        0; ///< palette entries that only this garment needs: 48 bytes a character; 0: no pose work
+    /// Joints of the garment that the character lacks: their vertices follow the nearest joint above that it has.
+    std::vector<std::string> followed;
+    std::vector<std::string> leftOut; ///< morphs of the garment that the character lacks: their targets are left out
 };
 
 /// One animated character: owns a controller, shares an AnimationSet, and has its SkinnedGeometry drawables as
@@ -178,7 +189,37 @@ public:
     Result<bool> setMaterialVariant(const std::string& name);
     /// The name of the present variant; empty: the default materials.
     const std::string& getMaterialVariant() const { return _materialVariant; }
-    std::vector<std::string> getMaterialVariants() const; ///< the names in the file's order
+    /// The names in the file's order, then those of garments.
+    std::vector<std::string> getMaterialVariants() const;
+
+    /// Adds the meshes of a garment from another file, bound to this character's joints by name, see
+    /// "Garments" in the guide:
+    ///
+    ///     osg::ref_ptr<osg::Node> coat = osgDB::readRefNodeFile("coat.glb");
+    ///     if (auto worn = knight->wear(coat.get()); !worn) std::cerr << worn.error().message << "\n";
+    ///
+    /// Where joint and inverse bind matrix agree (to 1 / 100,000 of the garment's size), the meshes use the palette
+    /// entries of this character, so the garment adds no pose work. Otherwise the character gets a set with further
+    /// entries, which all characters with equal sets share that wear such garments, put on in the same order. Clones
+    /// and crowds made of the character wear the garment; characters that wear it are drawn together. Only the pose of
+    /// this character counts: the garment's clips do not. The garment is unchanged and need not be kept. Call it during
+    /// the update traversal or between frames; with further entries it invalidates references to layers.
+    /// garment: a node at or above an AnimatedCharacter with meshes. Errors, which change nothing: there is none; it is
+    /// worn already; a joint that moves vertices has no counterpart here, and no joint above it has one.
+    Result<WornGarment> wear(osg::Node* garment);
+    /// Removes the meshes of a garment, and the palette entries that only the garments put on last have needed.
+    /// garment: that of wear(), of this character or a clone of it, or a clone of the garment; or one of the garment's
+    /// meshes below this node, as hits and findMesh() name them. False: this character does not wear it.
+    bool takeOff(const osg::Node* garment);
+
+    /// The first mesh among the children that a node of that name shows in the file; if there is none, the first mesh
+    /// of that name. Null: neither exists. Clones share it.
+    SkinnedGeometry* findMesh(const std::string& name) const;
+    /// Shows or hides the meshes of a node of the file, or if there is no such node, of that name. Clones show meshes
+    /// of their own: a direct child that changes is replaced by another drawable over the same arrays, as with material
+    /// variants. Bounds do not change. Call it during the update traversal or between frames. Error: there is no such
+    /// mesh; the message lists the nodes' names.
+    Result<bool> setMeshVisible(const std::string& name, bool isVisible);
 
     /// A mesh below this node in the present pose, in the character's own space. The CPU twin computes it, and the
     /// result is kept until the pose changes. Intersectors test it in place of the mesh. withNormals: with normals and
@@ -207,7 +248,10 @@ private:
         AffineMatrix rootMatrix; ///< the same as floats
     };
 
+    bool wears(const std::string& identifier) const;
+    void useOutfit(const std::shared_ptr<const AnimationSet>& set);
     osg::BoundingBox clipBoundsInFile(int clip) const;
+    osg::BoundingBox boundsOfAllClips() const;
     void setMeshBounds();
     void updateBounds();
     void takeWorldTargets();
@@ -230,6 +274,7 @@ private:
     float _pixelError = 0.0f;
     std::string _materialVariant;
     std::shared_ptr<VariantMeshes> _variantMeshes; ///< never null, shared with clones
+    std::shared_ptr<Wardrobe> _wardrobe;           ///< never null, shared with clones
 };
 
 /// Moves its AnimatedCharacter by the root motion of the clips: after each update it multiplies the character's matrix

@@ -11,6 +11,8 @@
 #include <osgGpuAnimation/nodes/frame/PoseStage.h>
 #include <osgGpuAnimation/nodes/frame/WorldTargets.h>
 #include <osgGpuAnimation/nodes/lod/LodSelection.h>
+#include <osgGpuAnimation/nodes/mesh/MaterialVariants.h>
+#include <osgGpuAnimation/nodes/mesh/MeshNames.h>
 #include <osgGpuAnimation/nodes/mesh/MeshVisits.h>
 #include <osgGpuAnimation/nodes/mesh/PaletteEntryBounds.h>
 #include <osgGpuAnimation/nodes/OsgMatrix.h>
@@ -38,24 +40,6 @@ void computeBounds(CrowdInstances& instances, const osg::Group& crowd)
     MixBounds::Boxes boxes = mixBoxesOf(meshes, set);
     const std::vector<Box> bounds = boundsOfClips(set, boxes.ofClips);
     instances.setClipBounds(bounds, std::make_shared<const MixBounds>(set, std::move(boxes)));
-}
-
-std::uint32_t toRgba(const osg::Vec4& color)
-{
-    std::uint32_t rgba = 0;
-    for (int channel = 0; channel < 4; ++channel)
-    {
-        // The comparison is written so that NaN counts as 0.
-        const float value = color[channel] > 0.0f ? std::min(color[channel], 1.0f) : 0.0f;
-        rgba |= static_cast<std::uint32_t>(std::lround(value * 255.0f)) << 8 * channel;
-    }
-    return rgba;
-}
-
-osg::Vec4 toColor(std::uint32_t rgba)
-{
-    const auto channel = [rgba](int shift) { return static_cast<float>(rgba >> shift & 255u) / 255.0f; };
-    return {channel(0), channel(8), channel(16), channel(24)};
 }
 
 Error noSuchInstance()
@@ -452,8 +436,23 @@ osg::ref_ptr<osg::Geometry> AnimatedCrowd::posedMesh(std::size_t index, const Sk
 void AnimatedCrowd::acceptInstances(osg::PrimitiveFunctor& functor) const
 {
     for (std::size_t index = 0; index < getNumInstances(); ++index)
-        forEachMesh(*this, [&](const SkinnedGeometry& mesh)
-                    { getPosedMesh(_instances->handleOf(index), mesh)->accept(functor); });
+        for (const osg::ref_ptr<osg::Node>& child : _children)
+            if (const auto* mesh = dynamic_cast<const SkinnedGeometry*>(child.get()); mesh && mesh->getNodeMask() != 0)
+                getPosedMesh(_instances->handleOf(index), *mesh)->accept(functor);
+}
+
+SkinnedGeometry* AnimatedCrowd::findMesh(const std::string& name) const
+{
+    const Result<std::vector<SkinnedGeometry*>> meshes = meshesNamed(*this, name);
+    return meshes ? meshes.value().front() : nullptr;
+}
+
+Result<bool> AnimatedCrowd::setMeshVisible(const std::string& name, bool isVisible)
+{
+    const Result<std::vector<SkinnedGeometry*>> meshes = meshesNamed(*this, name);
+    if (!meshes) return meshes.error();
+    VariantMeshes().setVisible(*this, {meshes.value().begin(), meshes.value().end()}, isVisible);
+    return true;
 }
 
 void AnimatedCrowd::accept(osg::NodeVisitor& visitor)

@@ -133,6 +133,12 @@ public:
     bool setOrigin(const osg::Vec3d& origin);
     const osg::Vec3d& getOrigin() const { return _origin; } ///< in the space of this node
 
+    /// The first mesh of that name, see AnimatedCharacter::findMesh().
+    SkinnedGeometry* findMesh(const std::string& name) const;
+    /// Shows or hides meshes of all instances, see AnimatedCharacter::setMeshVisible(). Instances that show other
+    /// meshes are a crowd of their own. Not while the crowd is culled.
+    Result<bool> setMeshVisible(const std::string& name, bool isVisible);
+
     /// The largest error of the drawn surface on screen, in pixels: instances are drawn with fewer triangles while the
     /// error stays below it, with one instanced draw per mesh primitive and level. 0 (the default): all triangles.
     /// Range, cost, limits and errors: see AnimatedCharacter::setPixelError().

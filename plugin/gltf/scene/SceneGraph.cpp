@@ -10,6 +10,7 @@
 #include "gltf/scene/TransformBound.h"
 
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
+#include <osgGpuAnimation/nodes/mesh/MeshNames.h>
 #include <osgGpuAnimation/nodes/OsgMatrix.h>
 
 #include <glm/gtc/type_ptr.hpp>
@@ -148,8 +149,9 @@ void SceneGraphBuilder::addMesh(std::size_t node)
             continue;
         }
         moves = true;
-        if (_inCharacter.insert({_parts.tree.levelOf[node], geometry}).second)
-            addLevel(node, *geometry, *_character, _characterLods);
+        if (!_inCharacter.insert({_parts.tree.levelOf[node], geometry}).second) continue;
+        setNodeName(*geometry, source.name);
+        addLevel(node, *geometry, *_character, _characterLods);
     }
     if (moves && isInstanced(source))
         _parts.report.warn(namedElement("nodes", node, source.name) +

@@ -59,12 +59,16 @@ public:
     {
     }
 
-    PaletteLayout build()
+    PaletteLayout build(const std::vector<Skin>& garments)
     {
         chooseMainBinds();
         collectFurtherBinds();
         placeEntries();
         nameEntries();
+        for (const Skin& garment : garments)
+            for (std::size_t place = 0; place < garment.joints.size(); ++place)
+                _layout.entries.push_back(entryBelow(garment.joints[place], PaletteEntry::Kind::Static,
+                                                     garment.joints[place], garment.inverseBinds[place]));
         return std::move(_layout);
     }
 
@@ -76,6 +80,7 @@ private:
     void chooseMainBinds();
     void collectFurtherBinds();
     void placeEntries();
+    PaletteEntry entryBelow(int parentJoint, PaletteEntry::Kind kind, int joint, const AffineMatrix& inverseBind) const;
     void placeWeights();
     void nameEntries();
 
@@ -132,19 +137,9 @@ void PaletteBuilder::collectFurtherBinds()
 
 void PaletteBuilder::placeEntries()
 {
-    const auto place = [this](int joint, const AffineMatrix& inverseBind, int parentJoint, int track)
+    const auto place = [this](const PaletteEntry& entry)
     {
-        PaletteEntry entry;
-        entry.kind = track < 0 ? PaletteEntry::Kind::Static : PaletteEntry::Kind::Joint;
-        entry.joint = joint;
-        entry.track = track;
-        entry.inverseBind = inverseBind;
-        if (parentJoint >= 0)
-        {
-            entry.parent = _layout.mainEntry[static_cast<std::size_t>(parentJoint)];
-            entry.parentBind = inverse(_mainBinds[static_cast<std::size_t>(parentJoint)]);
-        }
-        _entryOfKey[keyOf(joint, inverseBind)] = static_cast<int>(_layout.entries.size());
+        _entryOfKey[keyOf(entry.joint, entry.inverseBind)] = static_cast<int>(_layout.entries.size());
         _layout.entries.push_back(entry);
     };
 
@@ -155,14 +150,31 @@ void PaletteBuilder::placeEntries()
         for (; joint < _skeleton.jointCount() && _skeleton.depths()[joint] == static_cast<int>(level); ++joint)
         {
             _layout.mainEntry.push_back(static_cast<int>(_layout.entries.size()));
-            place(static_cast<int>(joint), _mainBinds[joint], _skeleton.joint(joint).parent, static_cast<int>(joint));
+            place(entryBelow(_skeleton.joint(joint).parent, PaletteEntry::Kind::Joint, static_cast<int>(joint),
+                             _mainBinds[joint]));
         }
         if (level < _further.size())
             for (const auto& [owner, inverseBind] : _further[level])
-                place(owner, inverseBind, owner, -1);
+                place(entryBelow(owner, PaletteEntry::Kind::Static, owner, inverseBind));
         if (level == 0) placeWeights();
         if (_layout.entries.size() > _layout.levels.back()) _layout.levels.push_back(_layout.entries.size());
     }
+}
+
+PaletteEntry PaletteBuilder::entryBelow(int parentJoint, PaletteEntry::Kind kind, int joint,
+                                        const AffineMatrix& inverseBind) const
+{
+    PaletteEntry entry;
+    entry.kind = kind;
+    entry.joint = joint;
+    entry.track = kind == PaletteEntry::Kind::Joint ? joint : -1;
+    entry.inverseBind = inverseBind;
+    if (parentJoint >= 0)
+    {
+        entry.parent = _layout.mainEntry[static_cast<std::size_t>(parentJoint)];
+        entry.parentBind = inverse(_mainBinds[static_cast<std::size_t>(parentJoint)]);
+    }
+    return entry;
 }
 
 void PaletteBuilder::placeWeights()
@@ -198,9 +210,10 @@ void PaletteBuilder::nameEntries()
 } // namespace
 
 PaletteLayout layOutPalette(const Skeleton& skeleton, const std::vector<Skin>& skins,
-                            const std::vector<int>& rigidJoints, const std::vector<MorphWeights>& morphs)
+                            const std::vector<int>& rigidJoints, const std::vector<MorphWeights>& morphs,
+                            const std::vector<Skin>& garments)
 {
-    return PaletteBuilder(skeleton, skins, rigidJoints, morphs).build();
+    return PaletteBuilder(skeleton, skins, rigidJoints, morphs).build(garments);
 }
 
 } // namespace osgGpuAnimation

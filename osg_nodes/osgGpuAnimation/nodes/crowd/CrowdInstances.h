@@ -8,9 +8,12 @@
 #include <osgGpuAnimation/gpu/PoseBatch.h>
 
 #include <osg/Vec3d>
+#include <osg/Vec4>
 
 #include <glm/vec4.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -19,6 +22,24 @@
 
 namespace osgGpuAnimation
 {
+
+/// A tint in 32 bits: RGBA, 8 bits each, red lowest. Components are limited to [0, 1]; NaN counts as 0.
+inline std::uint32_t toRgba(const osg::Vec4& color)
+{
+    std::uint32_t rgba = 0;
+    for (int channel = 0; channel < 4; ++channel)
+    {
+        const float value = color[channel] > 0.0f ? std::min(color[channel], 1.0f) : 0.0f;
+        rgba |= static_cast<std::uint32_t>(std::lround(value * 255.0f)) << 8 * channel;
+    }
+    return rgba;
+}
+
+inline osg::Vec4 toColor(std::uint32_t rgba)
+{
+    const auto channel = [rgba](int shift) { return static_cast<float>(rgba >> shift & 255u) / 255.0f; };
+    return {channel(0), channel(8), channel(16), channel(24)};
+}
 
 /// The playback of an instance that loops one clip (AnimationController::isPlainLoop): the controller's state in 24
 /// bytes. Its time follows from the crowd's clock, so it needs no advance().

@@ -4,6 +4,8 @@
 #include <osg/LOD>
 #include <osg/UserDataContainer>
 
+#include <algorithm>
+
 namespace osgGpuAnimation
 {
 
@@ -43,15 +45,23 @@ void forEachVariantState(const osg::Geometry& mesh, Visit visit)
         if (osg::StateSet* state = stateAt(*variants, i); state && state != mesh.getStateSet()) visit(*state);
 }
 
-/// True if the one can be drawn in place of the other, with its StateSet.
+/// True if the one can be drawn in place of the other, with its StateSet and node mask.
 bool isCopyOf(const osg::Geometry& one, const osg::Geometry& other)
 {
     osg::Geometry::ArrayList arrays, otherArrays;
     one.getArrayList(arrays);
     other.getArrayList(otherArrays);
     return arrays == otherArrays && one.getPrimitiveSetList() == other.getPrimitiveSetList() &&
-           one.getUserDataContainer() == other.getUserDataContainer() && one.getNodeMask() == other.getNodeMask() &&
+           one.getUserDataContainer() == other.getUserDataContainer() &&
            one.getCullCallback() == other.getCullCallback() && one.getDrawCallback() == other.getDrawCallback();
+}
+
+void exchangeChild(osg::Group& group, unsigned int child, const osg::Geometry& mesh, osg::Geometry& shown)
+{
+    osg::BoundingBox box = shown.getInitialBound();
+    box.expandBy(mesh.getInitialBound());
+    if (box != shown.getInitialBound()) shown.setInitialBound(box);
+    group.setChild(child, &shown);
 }
 
 } // namespace
@@ -110,24 +120,51 @@ void VariantMeshes::show(osg::Group& group, const std::string& variant)
         auto* mesh = dynamic_cast<osg::Geometry*>(group.getChild(i));
         osg::StateSet* state = mesh ? variantState(*mesh, variant) : nullptr;
         if (!state || state == mesh->getStateSet()) continue;
-        const osg::ref_ptr<osg::Geometry> shown = withState(*mesh, state);
-        osg::BoundingBox box = shown->getInitialBound();
-        box.expandBy(mesh->getInitialBound());
-        if (box != shown->getInitialBound()) shown->setInitialBound(box);
-        group.setChild(i, shown);
+        const osg::ref_ptr<osg::Geometry> shown = copyOf(*mesh, state, mesh->getNodeMask());
+        exchangeChild(group, i, *mesh, *shown);
     }
 }
 
-osg::ref_ptr<osg::Geometry> VariantMeshes::withState(osg::Geometry& mesh, osg::StateSet* state)
+void VariantMeshes::setVisible(osg::Group& group, const std::vector<osg::Geometry*>& meshes, bool isVisible)
+{
+    for (unsigned int i = 0; i < group.getNumChildren(); ++i)
+    {
+        auto* mesh = dynamic_cast<osg::Geometry*>(group.getChild(i));
+        if (!mesh || std::find(meshes.begin(), meshes.end(), mesh) == meshes.end()) continue;
+        if ((mesh->getNodeMask() != 0) == isVisible) continue;
+        mesh->getOrCreateUserDataContainer(); // by which copies know each other
+        const osg::ref_ptr<osg::Geometry> shown =
+            isVisible ? visibleCopyOf(*mesh) : copyOf(*mesh, mesh->getStateSet(), 0);
+        exchangeChild(group, i, *mesh, *shown);
+    }
+}
+
+osg::ref_ptr<osg::Geometry> VariantMeshes::visibleCopyOf(osg::Geometry& hidden)
+{
+    osg::Node::NodeMask mask = ~0u;
+    {
+        const std::lock_guard<std::mutex> lock(_mutex);
+        const auto known = _meshes.lower_bound(Key{hidden.getUserDataContainer(), hidden.getStateSet(), 1});
+        const bool isOfMesh = known != _meshes.end() && std::get<0>(known->first) == hidden.getUserDataContainer() &&
+                              std::get<1>(known->first) == hidden.getStateSet();
+        osg::ref_ptr<osg::Geometry> mesh;
+        if (isOfMesh && known->second.lock(mesh) && isCopyOf(*mesh, hidden)) mask = mesh->getNodeMask();
+    }
+    return copyOf(hidden, hidden.getStateSet(), mask);
+}
+
+osg::ref_ptr<osg::Geometry> VariantMeshes::copyOf(osg::Geometry& mesh, osg::StateSet* state, osg::Node::NodeMask mask)
 {
     const std::lock_guard<std::mutex> lock(_mutex);
-    _meshes[{mesh.getUserDataContainer(), mesh.getStateSet()}] = &mesh;
-    osg::observer_ptr<osg::Geometry>& known = _meshes[{mesh.getUserDataContainer(), state}];
+    _meshes[{mesh.getUserDataContainer(), mesh.getStateSet(), mesh.getNodeMask()}] = &mesh;
+    osg::observer_ptr<osg::Geometry>& known = _meshes[{mesh.getUserDataContainer(), state, mask}];
     osg::ref_ptr<osg::Geometry> shown;
     // The key of a deleted mesh may have become that of another.
-    if (known.lock(shown) && shown->getStateSet() == state && isCopyOf(*shown, mesh)) return shown;
+    if (known.lock(shown) && shown->getStateSet() == state && shown->getNodeMask() == mask && isCopyOf(*shown, mesh))
+        return shown;
     shown = osg::clone(&mesh, osg::CopyOp::SHALLOW_COPY);
     shown->setStateSet(state);
+    shown->setNodeMask(mask);
     known = shown;
     return shown;
 }

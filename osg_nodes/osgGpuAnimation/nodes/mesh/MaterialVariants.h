@@ -9,7 +9,7 @@
 #include <map>
 #include <mutex>
 #include <string>
-#include <utility>
+#include <tuple>
 #include <vector>
 
 namespace osgGpuAnimation
@@ -36,18 +36,23 @@ osg::StateSet* variantState(const osg::Geometry& mesh, const std::string& varian
 void releaseVariantStates(const osg::Geometry& mesh, osg::State* state);
 void resizeVariantStates(osg::Geometry& mesh, unsigned int maxSize);
 
-/// The meshes of a character and its clones in the variants that they show. A mesh in another variant is a shallow copy
-/// of it, which exists once: characters that show the same variant share their meshes and are drawn together.
+/// The meshes of a character and its clones in the variants that they show, and hidden. A mesh in another variant, or
+/// a hidden one (with node mask 0), is a shallow copy of it, which exists once: characters that show the same share
+/// their meshes and are drawn together.
 class VariantMeshes
 {
 public:
     /// Replaces the meshes that the variant changes among the direct children of the group and of LODs there.
     void show(osg::Group& group, const std::string& variant);
+    /// Replaces these children of the group. A mesh of which no visible copy exists gets the node mask ~0.
+    void setVisible(osg::Group& group, const std::vector<osg::Geometry*>& meshes, bool isVisible);
 
 private:
-    osg::ref_ptr<osg::Geometry> withState(osg::Geometry& mesh, osg::StateSet* state);
+    osg::ref_ptr<osg::Geometry> copyOf(osg::Geometry& mesh, osg::StateSet* state, osg::Node::NodeMask mask);
+    osg::ref_ptr<osg::Geometry> visibleCopyOf(osg::Geometry& hidden);
 
-    using Key = std::pair<const osg::UserDataContainer*, const osg::StateSet*>; ///< copies share their user data
+    /// Copies share their user data.
+    using Key = std::tuple<const osg::UserDataContainer*, const osg::StateSet*, osg::Node::NodeMask>;
     std::mutex _mutex;
     std::map<Key, osg::observer_ptr<osg::Geometry>> _meshes;
 };

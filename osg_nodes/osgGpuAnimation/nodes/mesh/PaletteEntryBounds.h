@@ -35,14 +35,17 @@ inline Box toBox(const osg::BoundingBox& box)
     return result;
 }
 
-/// function(SkinnedGeometry&), for every mesh at or below the node.
+/// function(SkinnedGeometry&), for every mesh at or below the node, hidden ones included.
 template <typename Function>
 void forEachMeshBelow(osg::Node& node, Function function)
 {
     class Visitor : public osg::NodeVisitor
     {
     public:
-        explicit Visitor(Function& function) : NodeVisitor(TRAVERSE_ALL_CHILDREN), _function(function) {}
+        explicit Visitor(Function& function) : NodeVisitor(TRAVERSE_ALL_CHILDREN), _function(function)
+        {
+            setNodeMaskOverride(~0u);
+        }
         void apply(osg::Drawable& drawable) override
         {
             if (auto* mesh = dynamic_cast<SkinnedGeometry*>(&drawable)) _function(*mesh);

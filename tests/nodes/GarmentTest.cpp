@@ -1,0 +1,381 @@
+// SPDX-License-Identifier: MIT
+#include "nodes/Tube.h"
+
+#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+#include <osgGpuAnimation/nodes/JointAttachment.h>
+#include <osgGpuAnimation/nodes/mesh/MaterialVariants.h>
+#include <osgGpuAnimation/nodes/mesh/MeshNames.h>
+
+#include <gtest/gtest.h>
+#include <osg/Geometry>
+#include <osgUtil/IntersectionVisitor>
+#include <osgUtil/LineSegmentIntersector>
+
+#include <algorithm>
+
+// A body of two joints wears sleeves: tubes like its own arm. Whatever a sleeve's file says, a worn sleeve that is
+// bound like the arm is posed like the arm.
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+/// A sleeve from a file of its own: joints and binds of the two halves of the tube.
+struct Sleeve
+{
+    const char* name;
+    std::vector<Joint> joints; ///< of its file
+    int upper, lower;          ///< joints that move the halves
+    float lowerX;              ///< the place of the lower joint at rest
+    float scale;               ///< of the mesh at bind time
+    float rounding;            ///< of the inverse binds
+    std::size_t addedEntries;
+    std::vector<std::string> followed;
+};
+
+Joint joint(const char* name, int parent, float x)
+{
+    Joint made{name, parent, {}, -1};
+    made.rest.translation.x = x;
+    return made;
+}
+
+const Sleeve sleeves[] = {
+    {"the same joints", {joint("shoulder", -1, 0), joint("elbow", 0, 4)}, 0, 1, 4, 1, 0, 0, {}},
+    {"another order, names with a namespace",
+     {joint("rig", -1, 0), joint("hand", 3, 2), joint("coat:shoulder", 0, 0), joint("coat:elbow", 2, 4)},
+     2,
+     3,
+     4,
+     1,
+     0,
+     0,
+     {}},
+    {"other rounding", {joint("shoulder", -1, 0), joint("elbow", 0, 4)}, 0, 1, 4, 1, 1e-6f, 0, {}},
+    {"another scale at bind time", {joint("shoulder", -1, 0), joint("elbow", 0, 4)}, 0, 1, 4, 100, 0, 2, {}},
+    {"a joint that the body lacks",
+     {joint("shoulder", -1, 0), joint("elbow", 0, 4), joint("cuff", 1, 3), joint("button", 2, 0.5f)},
+     0,
+     3,
+     7.5f,
+     1,
+     0,
+     0,
+     {"button"}},
+};
+
+osg::ref_ptr<AnimatedCharacter> makeSleeve(const Sleeve& sleeve)
+{
+    AnimationParts parts{Skeleton::create(sleeve.joints).value(), {}, {}, {}, {}};
+    AffineMatrix upper, lower;
+    for (std::size_t row = 0; row < 3; ++row)
+        upper.rows[row][static_cast<int>(row)] = lower.rows[row][static_cast<int>(row)] = 1.0f / sleeve.scale;
+    upper.rows[1].x = lower.rows[2].w = sleeve.rounding;
+    lower.rows[0].w = -sleeve.lowerX;
+    const auto jointOf = [&](int input) { return parts.skeleton.jointOfInput(static_cast<std::size_t>(input)); };
+    parts.skins.push_back({"sleeve", {jointOf(sleeve.upper), jointOf(sleeve.lower)}, {upper, lower}});
+    const auto set = AnimationSet::create(std::move(parts)).value();
+    const osg::ref_ptr<SkinnedGeometry> tube = makeShownTube(*set);
+    for (osg::Vec3& vertex : static_cast<osg::Vec3Array&>(*tube->getVertexArray()))
+        vertex *= sleeve.scale;
+    tube->setName("sleeve");
+    osg::ref_ptr<AnimatedCharacter> character = new AnimatedCharacter(set);
+    character->addChild(tube);
+    return character;
+}
+
+osg::ref_ptr<AnimatedCharacter> makeBody(bool hasMorph = false)
+{
+    const osg::ref_ptr<AnimatedCharacter> body = makeTubeCharacter(armSet(hasMorph));
+    body->getChild(0)->setName("arm");
+    body->getController().seek(0.7);
+    return body;
+}
+
+osg::ref_ptr<AnimatedCharacter> cloneOf(const AnimatedCharacter& character)
+{
+    return osg::clone(&character, osg::CopyOp::DEEP_COPY_NODES);
+}
+
+SkinnedGeometry& meshAt(const osg::Group& group, unsigned int child)
+{
+    return dynamic_cast<SkinnedGeometry&>(*const_cast<osg::Node*>(group.getChild(child)));
+}
+
+double largestDistance(const osg::Geometry& one, const osg::Geometry& other)
+{
+    const auto& a = static_cast<const osg::Vec3Array&>(*one.getVertexArray());
+    const auto& b = static_cast<const osg::Vec3Array&>(*other.getVertexArray());
+    double largest = a.size() == b.size() ? 0.0 : 1e30;
+    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+        largest = std::max(largest, static_cast<double>((a[i] - b[i]).length()));
+    return largest;
+}
+
+/// The largest distance of the two meshes of a character, as posed.
+double distanceOfMeshes(const AnimatedCharacter& character)
+{
+    return largestDistance(*character.getPosedMesh(meshAt(character, 0)),
+                           *character.getPosedMesh(meshAt(character, 1)));
+}
+
+} // namespace
+
+TEST(GarmentTest, isPosedLikeTheBody)
+{
+    for (const Sleeve& sleeve : sleeves)
+    {
+        SCOPED_TRACE(sleeve.name);
+        const osg::ref_ptr<AnimatedCharacter> body = makeBody(), garment = makeSleeve(sleeve);
+        const std::shared_ptr<const AnimationSet> before = body->getController().sharedSet();
+        const double time = body->getController().time();
+        const Result<WornGarment> worn = body->wear(garment);
+        ASSERT_TRUE(worn) << worn.error().message;
+        EXPECT_EQ(worn.value().addedEntries, sleeve.addedEntries);
+        EXPECT_EQ(worn.value().followed, sleeve.followed);
+        EXPECT_EQ(body->getAnimationSet().paletteSize(), before->paletteSize() + sleeve.addedEntries);
+        EXPECT_EQ(body->getController().sharedSet() == before, sleeve.addedEntries == 0);
+        EXPECT_EQ(body->getController().time(), time);
+        ASSERT_EQ(body->getNumChildren(), 2u);
+        EXPECT_NE(body->getChild(1), garment->getChild(0)) << "the garment stays what it was";
+        EXPECT_EQ(garment->getNumChildren(), 1u);
+        EXPECT_LT(distanceOfMeshes(*body), 8.0 * 1e-6);
+        EXPECT_TRUE(body->takeOff(garment));
+        EXPECT_FALSE(body->takeOff(garment));
+        EXPECT_EQ(body->getNumChildren(), 1u);
+        EXPECT_EQ(body->getController().sharedSet(), before);
+    }
+}
+
+TEST(GarmentTest, ofRigidPartsFollowsTheirJoints)
+{
+    const osg::ref_ptr<AnimatedCharacter> garment = makeSleeve(sleeves[1]);
+    AnimationParts parts{garment->getAnimationSet().skeleton(), {}, {}, {}, {}};
+    const int elbow = parts.skeleton.findJoint("coat:elbow");
+    parts.rigidJoints = {elbow};
+    const auto set = AnimationSet::create(std::move(parts)).value();
+    const osg::ref_ptr<AnimatedCharacter> shield = new AnimatedCharacter(set);
+    const osg::ref_ptr<SkinnedGeometry> mesh = makeTube(*armSet());
+    mesh->setRigidEntry(static_cast<unsigned short>(set->entryOfRigidJoint(elbow)));
+    shield->addChild(mesh);
+    const osg::ref_ptr<AnimatedCharacter> body = makeBody();
+    const Result<WornGarment> worn = body->wear(shield);
+    ASSERT_TRUE(worn) << worn.error().message;
+    EXPECT_EQ(worn.value().addedEntries, 1u) << "the body has no rigid mesh on its elbow";
+    const osg::Matrixd elbowToModel = body->jointToModel("elbow").value();
+    const osg::ref_ptr<osg::Geometry> posed = body->getPosedMesh(meshAt(*body, 1));
+    const auto& bind = static_cast<const osg::Vec3Array&>(*mesh->getVertexArray());
+    for (std::size_t i = 0; i < bind.size(); ++i)
+        ASSERT_LT((static_cast<const osg::Vec3Array&>(*posed->getVertexArray())[i] - bind[i] * elbowToModel).length(),
+                  1e-5);
+}
+
+TEST(GarmentTest, thatCannotBeWornLeavesTheBodyAlone)
+{
+    const Sleeve strange{"strange", {joint("root", -1, 0), joint("tail", 0, 4)}, 0, 1, 4, 1, 0, 0, {}};
+    const osg::ref_ptr<AnimatedCharacter> body = makeBody(), worn = makeSleeve(sleeves[0]);
+    ASSERT_TRUE(body->wear(worn));
+    struct
+    {
+        osg::ref_ptr<osg::Node> garment;
+        const char* message;
+    } const cases[] = {
+        {nullptr, "the garment has no animated character"},
+        {new osg::Group, "the garment has no animated character"},
+        {body, "the garment has no animated character"},
+        {new AnimatedCharacter(armSet()), "the garment has no meshes that joints move"},
+        {worn, "the character wears the garment already"},
+        {makeSleeve(strange), "the character has no joints \"root\", \"tail\", nor any joint that is above them in the "
+                              "garment; its joints are \"shoulder\", \"elbow\""},
+    };
+    for (const auto& bad : cases)
+    {
+        const Result<WornGarment> result = body->wear(bad.garment.get());
+        ASSERT_FALSE(result) << bad.message;
+        EXPECT_EQ(result.error().message, bad.message);
+        EXPECT_EQ(body->getNumChildren(), 2u);
+    }
+    EXPECT_FALSE(body->takeOff(nullptr));
+    EXPECT_FALSE(body->takeOff(body->getChild(0))) << "the body's own";
+}
+
+TEST(GarmentTest, isSharedByAllWhoWearIt)
+{
+    for (const Sleeve& sleeve : sleeves)
+    {
+        SCOPED_TRACE(sleeve.name);
+        const osg::ref_ptr<AnimatedCharacter> first = makeBody(), garment = makeSleeve(sleeve);
+        const osg::ref_ptr<AnimatedCharacter> second = cloneOf(*first);
+        ASSERT_TRUE(first->wear(garment));
+        const osg::ref_ptr<AnimatedCharacter> dressed = cloneOf(*first);
+        const osg::ref_ptr<AnimatedCharacter> copy = osg::clone(first.get(), osg::CopyOp::DEEP_COPY_ALL);
+        ASSERT_TRUE(second->wear(cloneOf(*garment)));
+        for (const AnimatedCharacter* other : {second.get(), dressed.get()})
+        {
+            EXPECT_EQ(other->getController().sharedSet(), first->getController().sharedSet());
+            EXPECT_EQ(other->getChild(0), first->getChild(0));
+            EXPECT_EQ(other->getChild(1), first->getChild(1));
+        }
+        const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*first);
+        const AnimatedCrowd::Instance instance = crowd->add(osg::Matrixd(), first->getController()).value();
+        EXPECT_LT(
+            largestDistance(*crowd->getPosedMesh(instance, meshAt(*crowd, 1)), *first->getPosedMesh(meshAt(*first, 0))),
+            8.0 * 1e-6);
+        for (AnimatedCharacter* other : {dressed.get(), copy.get()})
+        {
+            EXPECT_TRUE(other->takeOff(garment));
+            EXPECT_EQ(other->getNumChildren(), 1u);
+        }
+        EXPECT_EQ(first->getNumChildren(), 2u);
+    }
+}
+
+TEST(GarmentTest, takenOffLeavesTheOthers)
+{
+    const osg::ref_ptr<AnimatedCharacter> body = makeBody();
+    const std::shared_ptr<const AnimationSet> bare = body->getController().sharedSet();
+    Sleeve thick = sleeves[3];
+    thick.scale = 10;
+    const osg::ref_ptr<AnimatedCharacter> coat = makeSleeve(sleeves[3]), shirt = makeSleeve(thick);
+    ASSERT_TRUE(body->wear(shirt));
+    ASSERT_TRUE(body->wear(coat));
+    EXPECT_EQ(body->getAnimationSet().paletteSize(), 6u);
+    EXPECT_TRUE(body->takeOff(shirt));
+    EXPECT_EQ(body->getAnimationSet().paletteSize(), 6u) << "the coat has its entries after the shirt's";
+    EXPECT_LT(distanceOfMeshes(*body), 8.0 * 1e-6);
+    EXPECT_TRUE(body->takeOff(body->getChild(1))) << "by the garment's mesh";
+    EXPECT_EQ(body->getController().sharedSet(), bare);
+    ASSERT_TRUE(body->wear(shirt));
+    ASSERT_TRUE(body->wear(coat));
+    EXPECT_TRUE(body->takeOff(coat));
+    EXPECT_EQ(body->getAnimationSet().paletteSize(), 4u);
+    EXPECT_LT(distanceOfMeshes(*body), 8.0 * 1e-6);
+}
+
+TEST(GarmentTest, belongsToTheBounds)
+{
+    Sleeve wide = sleeves[3];
+    wide.lowerX = 3; // its lower half lies 1 unit farther out
+    wide.scale = 1;
+    const osg::ref_ptr<AnimatedCharacter> body = makeBody(), garment = makeSleeve(wide);
+    const osg::BoundingBox before = body->getCurrentBounds();
+    ASSERT_TRUE(body->wear(garment));
+    const osg::BoundingBox now = body->getCurrentBounds();
+    EXPECT_GT(now.yMax(), before.yMax() + 0.5f);
+    EXPECT_TRUE(body->getBound().radius() > osg::BoundingSphere(before).radius() + 0.1f);
+    const osg::ref_ptr<osg::Geometry> posed = body->getPosedMesh(meshAt(*body, 1));
+    for (const osg::Vec3& vertex : static_cast<const osg::Vec3Array&>(*posed->getVertexArray()))
+        EXPECT_TRUE(now.contains(vertex, 1e-4f));
+    EXPECT_TRUE(body->takeOff(garment));
+    EXPECT_EQ(body->getCurrentBounds(), before);
+}
+
+TEST(GarmentTest, isPicked)
+{
+    Sleeve wide = sleeves[3];
+    wide.name = "wide";
+    const osg::ref_ptr<AnimatedCharacter> body = makeBody(), garment = makeSleeve(wide);
+    body->getController().seek(0.0);
+    for (osg::Vec3& vertex : static_cast<osg::Vec3Array&>(*meshAt(*garment, 0).getVertexArray()))
+        vertex = osg::Vec3(vertex.x(), 2 * vertex.y(), 2 * vertex.z());
+    ASSERT_TRUE(body->wear(garment));
+    const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*body);
+    const AnimatedCrowd::Instance instance =
+        crowd->add(osg::Matrixd::translate(0, 0, 50), body->getController()).value();
+    const osg::ref_ptr<osg::Group> scene = new osg::Group;
+    scene->addChild(body);
+    scene->addChild(crowd);
+    for (const double height : {0.0, 50.0})
+    {
+        const osg::ref_ptr<osgUtil::LineSegmentIntersector> ray =
+            new osgUtil::LineSegmentIntersector(osg::Vec3d(6, -20, height + 0.1), osg::Vec3d(6, 20, height + 0.1));
+        osgUtil::IntersectionVisitor visitor(ray);
+        scene->accept(visitor);
+        ASSERT_TRUE(ray->containsIntersections());
+        const auto hit = ray->getFirstIntersection();
+        EXPECT_EQ(hit.drawable.get(), body->getChild(1));
+        EXPECT_EQ(hit.drawable->getName(), "sleeve");
+        const std::optional<PickedJoint> picked = jointOf(hit);
+        ASSERT_TRUE(picked);
+        EXPECT_EQ(picked->set->skeleton().joint(picked->joint).name, "elbow");
+        EXPECT_EQ(AnimatedCrowd::instanceOf(hit) == instance, height > 0.0);
+    }
+}
+
+TEST(GarmentTest, morphsWithTheBodysWeights)
+{
+    const osg::ref_ptr<AnimatedCharacter> body = makeBody(true), garment = makeBody(true), plain = makeBody(false);
+    const osg::ref_ptr<AnimatedCharacter> other = cloneOf(*body);
+    const Result<WornGarment> worn = body->wear(garment);
+    ASSERT_TRUE(worn);
+    EXPECT_TRUE(worn.value().leftOut.empty());
+    EXPECT_EQ(worn.value().addedEntries, 0u);
+    EXPECT_LT(distanceOfMeshes(*body), 1e-6);
+    const Result<WornGarment> without = plain->wear(garment);
+    ASSERT_TRUE(without);
+    EXPECT_EQ(without.value().leftOut, std::vector<std::string>{"thick"});
+    EXPECT_LT(distanceOfMeshes(*plain), 1e-6) << "the shape without weights";
+}
+
+TEST(GarmentTest, showsVariantsOfItsMaterials)
+{
+    const osg::ref_ptr<AnimatedCharacter> body = makeBody(), garment = makeSleeve(sleeves[0]);
+    const osg::ref_ptr<osg::StateSet> plain = meshAt(*garment, 0).getStateSet(), red = new osg::StateSet;
+    setVariantStates(meshAt(*garment, 0), plain, {{"red", red}});
+    ASSERT_TRUE(body->wear(garment));
+    EXPECT_EQ(body->getMaterialVariants(), std::vector<std::string>{"red"});
+    ASSERT_TRUE(body->setMaterialVariant("red"));
+    EXPECT_EQ(body->getChild(1)->getStateSet(), red);
+    EXPECT_EQ(garment->getChild(0)->getStateSet(), plain);
+    EXPECT_TRUE(body->takeOff(garment)) << "in another variant it is the same garment";
+    EXPECT_EQ(body->getNumChildren(), 1u);
+}
+
+TEST(MeshNamesTest, nodesAreFoundBeforeMeshes)
+{
+    const osg::ref_ptr<AnimatedCharacter> body = makeBody();
+    for (const char* name : {"Plane", "Sword", "Cube"})
+    {
+        body->addChild(makeShownTube(body->getAnimationSet()));
+        body->getChild(body->getNumChildren() - 1)->setName(name);
+    }
+    setNodeName(*body->getChild(1), "Sword");
+    setNodeName(*body->getChild(2), "Cube");
+    setNodeName(*body->getChild(3), "Cube");
+    EXPECT_EQ(body->findMesh("arm"), body->getChild(0));
+    EXPECT_EQ(body->findMesh("Sword"), body->getChild(1));
+    EXPECT_EQ(body->findMesh("Cube"), body->getChild(2));
+    EXPECT_EQ(body->findMesh("Plane"), body->getChild(1)) << "a mesh's name";
+    EXPECT_EQ(body->findMesh("Shield"), nullptr);
+    const Result<bool> hidden = body->setMeshVisible("Shield", false);
+    ASSERT_FALSE(hidden);
+    EXPECT_EQ(hidden.error().message, "there is no mesh \"Shield\"; the meshes are \"arm\", \"Sword\", \"Cube\"");
+}
+
+TEST(MeshNamesTest, clonesShowMeshesOfTheirOwn)
+{
+    const osg::ref_ptr<AnimatedCharacter> body = makeBody(), second = cloneOf(*body), third = cloneOf(*body);
+    osg::Node* const shown = body->getChild(0);
+    shown->setNodeMask(0xF0);
+    const osg::BoundingBox bounds = body->getCurrentBounds();
+    ASSERT_TRUE(second->setMeshVisible("arm", false));
+    ASSERT_TRUE(third->setMeshVisible("arm", false));
+    EXPECT_EQ(body->getChild(0), shown);
+    EXPECT_EQ(shown->getNodeMask(), 0xF0u);
+    EXPECT_EQ(second->getChild(0)->getNodeMask(), 0u);
+    EXPECT_EQ(second->getChild(0), third->getChild(0)) << "who hides the same is drawn together";
+    second->computeClipBounds();
+    EXPECT_EQ(second->getCurrentBounds(), bounds) << "it may be shown at any time";
+    ASSERT_TRUE(second->setMeshVisible("arm", true));
+    EXPECT_EQ(second->getChild(0), shown);
+    const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*third);
+    EXPECT_EQ(crowd->getChild(0)->getNodeMask(), 0u);
+    ASSERT_TRUE(crowd->setMeshVisible("arm", true));
+    EXPECT_NE(crowd->findMesh("arm")->getNodeMask(), 0u);
+    EXPECT_EQ(third->getChild(0)->getNodeMask(), 0u);
+    EXPECT_FALSE(crowd->setMeshVisible("leg", true));
+}
+
+} // namespace osgGpuAnimation

@@ -270,7 +270,7 @@ void CommandLine::addConvert()
     _convertApp = _app.add_subcommand("convert", "A model and its clips as one file");
     _convertApp->footer(std::string(convertHelp) + exitStatus);
     _convertApp->add_option("FILE", _convert.file, "A model of any format that can be read")->required();
-    addClips(*_convertApp, _convert.clips);
+    addClips(*_convertApp, _convert.clips, _convert.clipJoints);
     addCompact(*_convertApp, _convert.compact);
     _convertApp->add_option("-o,--output", _convert.output, "OUT.glb, .osgb, .osgt or .osgx")
         ->required()

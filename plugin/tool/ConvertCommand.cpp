@@ -46,14 +46,16 @@ Result<bool> addClips(osg::Node& scene, const std::string& file, const gltf::Imp
     CharacterFinder finder;
     scene.accept(finder);
     const std::vector<gltf::ClipFile> clipFiles = gltf::readClipFiles(file, options, report);
+    const gltf::ClipJoints joints = gltf::readClipJoints(file, options, report);
     if (finder.characters.empty() && (!clipFiles.empty() || options.compact))
         report.warn("there is no character; clips stay as they are");
     for (AnimatedCharacter* const character : finder.characters)
     {
         gltf::MemoryBudget budget(options.maxDecodedBytes);
         std::shared_ptr<const AnimationSet> set = character->getController().sharedSet();
+        gltf::warnOfUnknownJoints(joints, set->skeleton(), clipFiles, report);
         for (const gltf::ClipFile& each : clipFiles)
-            set = gltf::withClipsOf(set, each, budget, report);
+            set = gltf::withClipsOf(set, each, joints, budget, report);
         if (!clipFiles.empty())
             if (const Result<bool> changed = character->setAnimationSet(set); !changed) return changed;
         if (!options.compact) continue;
@@ -101,7 +103,7 @@ Result<bool> writeGlb(const osg::Node& scene, const std::string& file)
 
 Result<bool> ConvertCommand::run() const
 {
-    const Result<gltf::ImportOptions> given = importOptions(clips);
+    const Result<gltf::ImportOptions> given = importOptions(clips, clipJoints);
     if (!given) return given.error();
     gltf::ImportOptions options = given.value();
     if (compact > 0.0) options.compact = compact;

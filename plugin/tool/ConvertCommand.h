@@ -14,6 +14,7 @@ struct ConvertCommand
 {
     std::string file;               ///< of the tool's own formats, or of OSG's: `nathan.osg.gpuanim`
     std::vector<std::string> clips; ///< files whose clips are added
+    std::string clipJoints;         ///< a JSON file of joint names for them; empty: none
     double compact = 0.0;           ///< see gltf::ImportOptions; 0: exact
     std::string output;             ///< a .glb, .osgb, .osgt or .osgx
 

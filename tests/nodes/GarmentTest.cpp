@@ -8,10 +8,12 @@
 
 #include <gtest/gtest.h>
 #include <osg/Geometry>
+#include <osg/LOD>
 #include <osgUtil/IntersectionVisitor>
 #include <osgUtil/LineSegmentIntersector>
 
 #include <algorithm>
+#include <limits>
 
 // A body of two joints wears sleeves: tubes like its own arm. Whatever a sleeve's file says, a worn sleeve that is
 // bound like the arm is posed like the arm.
@@ -376,6 +378,34 @@ TEST(MeshNamesTest, clonesShowMeshesOfTheirOwn)
     EXPECT_NE(crowd->findMesh("arm")->getNodeMask(), 0u);
     EXPECT_EQ(third->getChild(0)->getNodeMask(), 0u);
     EXPECT_FALSE(crowd->setMeshVisible("leg", true));
+}
+
+// As the file's own levels of detail are: below an osg::LOD, the first one without a largest size.
+TEST(MeshNamesTest, levelsOfDetailAreOneMesh)
+{
+    const osg::ref_ptr<AnimatedCharacter> body = makeBody(), other = makeBody();
+    const osg::ref_ptr<osg::LOD> levels = new osg::LOD;
+    levels->setRangeMode(osg::LOD::PIXEL_SIZE_ON_SCREEN);
+    for (const char* name : {"hand", "hand from afar"})
+    {
+        const bool isFirst = levels->getNumChildren() == 0;
+        levels->addChild(makeShownTube(body->getAnimationSet()), isFirst ? 100.0f : 0.0f,
+                         isFirst ? std::numeric_limits<float>::max() : 100.0f);
+        levels->getChild(levels->getNumChildren() - 1)->setName(name);
+    }
+    body->addChild(levels);
+    EXPECT_EQ(body->findMesh("hand"), levels->getChild(0));
+    for (const bool isVisible : {false, true})
+    {
+        ASSERT_TRUE(body->setMeshVisible("hand", isVisible));
+        for (unsigned int level = 0; level < 2; ++level)
+            EXPECT_EQ(levels->getChild(level)->getNodeMask() != 0, isVisible) << level;
+    }
+    EXPECT_EQ(levels->getMinRange(0), 100.0f);
+    ASSERT_TRUE(other->wear(body));
+    EXPECT_EQ(other->getNumChildren(), 3u) << "the first level is worn";
+    EXPECT_NE(other->findMesh("hand"), nullptr);
+    EXPECT_TRUE(other->takeOff(body));
 }
 
 } // namespace osgGpuAnimation

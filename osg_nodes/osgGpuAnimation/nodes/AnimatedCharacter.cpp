@@ -51,6 +51,14 @@ std::vector<const SkinnedGeometry*> meshesBelow(osg::Node& node)
     return meshes;
 }
 
+/// Those that others wear: of levels of detail in the file the first.
+std::vector<const SkinnedGeometry*> wornMeshes(const AnimatedCharacter& garment)
+{
+    std::vector<const SkinnedGeometry*> meshes;
+    forEachMesh(garment, [&](const SkinnedGeometry& mesh) { meshes.push_back(&mesh); });
+    return meshes;
+}
+
 Error noInstance()
 {
     return Error{"the crowd has no such instance (any more)"};
@@ -217,7 +225,7 @@ Result<WornGarment> AnimatedCharacter::wear(osg::Node* garment)
 {
     AnimatedCharacter* source = garment ? findCharacter(*garment) : nullptr;
     if (!source || source == this) return Error{"the garment has no animated character"};
-    const std::vector<const SkinnedGeometry*> meshes = meshesBelow(*source);
+    const std::vector<const SkinnedGeometry*> meshes = wornMeshes(*source);
     if (meshes.empty()) return Error{"the garment has no meshes that joints move"};
     if (wears(_wardrobe->identifierOf(*source, meshes))) return Error{"the character wears the garment already"};
     const Result<FittedGarment> fitted =
@@ -243,7 +251,7 @@ bool AnimatedCharacter::takeOff(const osg::Node* garment)
     if (!garment) return false;
     AnimatedCharacter* source = findCharacter(const_cast<osg::Node&>(*garment));
     const std::string identifier =
-        source ? _wardrobe->identifierOf(*source, meshesBelow(*source)) : Wardrobe::identifierOf(*garment);
+        source ? _wardrobe->identifierOf(*source, wornMeshes(*source)) : Wardrobe::identifierOf(*garment);
     if (!wears(identifier)) return false;
     for (unsigned int child = getNumChildren(); child-- > 0;)
         if (Wardrobe::identifierOf(*getChild(child)) == identifier) removeChild(child);
@@ -269,8 +277,7 @@ void AnimatedCharacter::useOutfit(const std::shared_ptr<const AnimationSet>& set
 
 SkinnedGeometry* AnimatedCharacter::findMesh(const std::string& name) const
 {
-    const Result<std::vector<SkinnedGeometry*>> meshes = meshesNamed(*this, name);
-    return meshes ? meshes.value().front() : nullptr;
+    return firstMeshNamed(*this, name);
 }
 
 Result<bool> AnimatedCharacter::setMeshVisible(const std::string& name, bool isVisible)

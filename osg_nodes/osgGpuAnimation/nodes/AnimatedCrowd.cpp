@@ -436,15 +436,16 @@ osg::ref_ptr<osg::Geometry> AnimatedCrowd::posedMesh(std::size_t index, const Sk
 void AnimatedCrowd::acceptInstances(osg::PrimitiveFunctor& functor) const
 {
     for (std::size_t index = 0; index < getNumInstances(); ++index)
-        for (const osg::ref_ptr<osg::Node>& child : _children)
-            if (const auto* mesh = dynamic_cast<const SkinnedGeometry*>(child.get()); mesh && mesh->getNodeMask() != 0)
-                getPosedMesh(_instances->handleOf(index), *mesh)->accept(functor);
+        forEachMesh(*this,
+                    [&](const SkinnedGeometry& mesh)
+                    {
+                        if (mesh.getNodeMask() != 0) getPosedMesh(_instances->handleOf(index), mesh)->accept(functor);
+                    });
 }
 
 SkinnedGeometry* AnimatedCrowd::findMesh(const std::string& name) const
 {
-    const Result<std::vector<SkinnedGeometry*>> meshes = meshesNamed(*this, name);
-    return meshes ? meshes.value().front() : nullptr;
+    return firstMeshNamed(*this, name);
 }
 
 Result<bool> AnimatedCrowd::setMeshVisible(const std::string& name, bool isVisible)

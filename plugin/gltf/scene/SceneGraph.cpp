@@ -150,7 +150,7 @@ void SceneGraphBuilder::addMesh(std::size_t node)
         }
         moves = true;
         if (!_inCharacter.insert({_parts.tree.levelOf[node], geometry}).second) continue;
-        setNodeName(*geometry, source.name);
+        if (geometry->getNumParents() == 0) setNodeName(*geometry, source.name);
         addLevel(node, *geometry, *_character, _characterLods);
     }
     if (moves && isInstanced(source))

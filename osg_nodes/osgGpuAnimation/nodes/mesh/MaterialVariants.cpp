@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/mesh/MaterialVariants.h>
 
-#include <osg/LOD>
 #include <osg/UserDataContainer>
 
 #include <algorithm>
@@ -129,6 +128,7 @@ void VariantMeshes::setVisible(osg::Group& group, const std::vector<osg::Geometr
 {
     for (unsigned int i = 0; i < group.getNumChildren(); ++i)
     {
+        if (auto* levels = dynamic_cast<osg::LOD*>(group.getChild(i))) setLevelsVisible(*levels, meshes, isVisible);
         auto* mesh = dynamic_cast<osg::Geometry*>(group.getChild(i));
         if (!mesh || std::find(meshes.begin(), meshes.end(), mesh) == meshes.end()) continue;
         if ((mesh->getNodeMask() != 0) == isVisible) continue;
@@ -137,6 +137,16 @@ void VariantMeshes::setVisible(osg::Group& group, const std::vector<osg::Geometr
             isVisible ? visibleCopyOf(*mesh) : copyOf(*mesh, mesh->getStateSet(), 0);
         exchangeChild(group, i, *mesh, *shown);
     }
+}
+
+/// All levels are shown or hidden together with one of them.
+void VariantMeshes::setLevelsVisible(osg::LOD& levels, const std::vector<osg::Geometry*>& meshes, bool isVisible)
+{
+    std::vector<osg::Geometry*> all;
+    for (unsigned int level = 0; level < levels.getNumChildren(); ++level)
+        if (auto* mesh = dynamic_cast<osg::Geometry*>(levels.getChild(level))) all.push_back(mesh);
+    if (std::find_first_of(all.begin(), all.end(), meshes.begin(), meshes.end()) != all.end())
+        setVisible(levels, all, isVisible);
 }
 
 osg::ref_ptr<osg::Geometry> VariantMeshes::visibleCopyOf(osg::Geometry& hidden)

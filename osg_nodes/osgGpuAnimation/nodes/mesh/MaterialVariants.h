@@ -3,6 +3,7 @@
 
 #include <osg/Geometry>
 #include <osg/Group>
+#include <osg/LOD>
 #include <osg/observer_ptr>
 #include <osg/StateSet>
 
@@ -44,11 +45,13 @@ class VariantMeshes
 public:
     /// Replaces the meshes that the variant changes among the direct children of the group and of LODs there.
     void show(osg::Group& group, const std::string& variant);
-    /// Replaces these children of the group. A mesh of which no visible copy exists gets the node mask ~0.
+    /// Replaces these meshes among the direct children of the group, and all levels of LODs there that have one. A mesh
+    /// of which no visible copy exists gets the node mask ~0.
     void setVisible(osg::Group& group, const std::vector<osg::Geometry*>& meshes, bool isVisible);
 
 private:
     osg::ref_ptr<osg::Geometry> copyOf(osg::Geometry& mesh, osg::StateSet* state, osg::Node::NodeMask mask);
+    void setLevelsVisible(osg::LOD& levels, const std::vector<osg::Geometry*>& meshes, bool isVisible);
     osg::ref_ptr<osg::Geometry> visibleCopyOf(osg::Geometry& hidden);
 
     /// Copies share their user data.

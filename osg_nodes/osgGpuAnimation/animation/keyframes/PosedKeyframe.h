@@ -3,6 +3,7 @@
 
 #include <osgGpuAnimation/animation/keyframes/TrackBlend.h>
 
+#include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
@@ -69,6 +70,9 @@ bool isAllowed(const glm::vec3& numbers);
 std::optional<glm::vec4> unitRotation(const glm::vec4& rotation);
 /// Gives the transform a unit rotation and the w of translation and scale 0. False if a value is not allowed.
 bool makeAllowed(JointTransform& transform);
+/// T · R · S of a matrix with an inverse, by its columns. A shear is dropped: the rotation keeps the direction of the
+/// first column and the plane of the first two.
+JointTransform decomposed(const glm::dmat4& matrix);
 
 } // namespace PosedNumbers
 

@@ -40,7 +40,10 @@ void forEachMeshBelow(osg::Node& node, Function function)
     class Visitor : public osg::NodeVisitor
     {
     public:
-        explicit Visitor(Function& function) : NodeVisitor(TRAVERSE_ALL_CHILDREN), _function(function) {}
+        explicit Visitor(Function& function) : NodeVisitor(TRAVERSE_ALL_CHILDREN), _function(function)
+        {
+            setNodeMaskOverride(~0u); // a mesh that is hidden now may be shown later
+        }
         void apply(osg::Drawable& drawable) override
         {
             if (auto* mesh = dynamic_cast<SkinnedGeometry*>(&drawable)) _function(*mesh);

@@ -257,6 +257,8 @@ TEST_F(AnimatedPropertiesGLTest, storedScenesKeepIt)
         SCOPED_TRACE(format);
         const osg::ref_ptr<osg::Node> stored = files.throughFile(*model.root, format);
         ASSERT_TRUE(stored);
+        EXPECT_TRUE(isNear(colorAt(*at(*stored, 0.5), 0, 0), osg::Vec3(0.735f, 0.0f, 0.735f)));
+        EXPECT_TRUE(isNear(colorAt(*at(*stored, 1.0), 2.5, 0), osg::Vec3())) << "hidden";
         for (const double time : {0.5, 1.0, 2.0})
         {
             const osg::ref_ptr<osg::Image> expected = at(*model.root, time);

@@ -3,6 +3,7 @@
 // ShaderKey in nodes/shading/ShaderPermutations.h. POSE_COLORED: 1: the mesh has colours; 2: only its morph targets have
 // colours. Included above: color.glsl.
 #pragma import_defines(POSE_COLORED, POSE_INSTANCED, MATERIAL_PBR, MATERIAL_TANGENTS, MATERIAL_MORE_COORDINATES)
+#pragma import_defines(MATERIAL_TEXTURE_TRANSFORM)
 
 void osgGpuAnimationSkin(inout vec4 vertex, inout vec3 normal);
 void osgGpuAnimationSkinTangent(inout vec4 vertex, inout vec3 normal, inout vec4 tangent);
@@ -21,6 +22,16 @@ out vec4 moreCoordinates;
 #ifdef MATERIAL_TANGENTS
 in vec4 poseTangent;
 out vec4 viewTangent;
+#endif
+
+#ifdef MATERIAL_TEXTURE_TRANSFORM
+uniform vec3 textureTransforms[6]; // of coordinates n: the rows 2 n and 2 n + 1 of a matrix
+
+vec2 transformedCoordinate(int number, vec2 coordinate)
+{
+    vec3 place = vec3(coordinate, 1.0);
+    return vec2(dot(textureTransforms[2 * number], place), dot(textureTransforms[2 * number + 1], place));
+}
 #endif
 
 // Colours of vertices, targets and tints are stored as displayed.
@@ -56,6 +67,13 @@ void passSurface()
 #endif
 #ifdef MATERIAL_MORE_COORDINATES
     moreCoordinates = poseCoordinates;
+#endif
+#ifdef MATERIAL_TEXTURE_TRANSFORM
+    textureCoordinate = transformedCoordinate(0, textureCoordinate);
+#ifdef MATERIAL_MORE_COORDINATES
+    moreCoordinates.xy = transformedCoordinate(1, moreCoordinates.xy);
+    moreCoordinates.zw = transformedCoordinate(2, moreCoordinates.zw);
+#endif
 #endif
 #if DRAW_TEXTURE_MATRIX && defined(GL_ARB_compatibility)
     textureCoordinate = (gl_TextureMatrix[0] * vec4(textureCoordinate, 0.0, 1.0)).xy;

@@ -7,6 +7,9 @@
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/PoseStatistics.h>
 
+#include <osg/Notify>
+
+#include <algorithm>
 #include <random>
 
 namespace osgGpuAnimation::crowd
@@ -86,6 +89,10 @@ Result<osg::ref_ptr<AnimatedCrowd>> makeCrowd(osg::Node& model, const CrowdOptio
     const Result<std::vector<std::size_t>> clips = findClips(character->getAnimationSet(), options.clips);
     if (!clips) return clips.error();
 
+    const std::vector<MorphWeights>& morphs = character->getAnimationSet().morphs();
+    if (std::any_of(morphs.begin(), morphs.end(), [](const MorphWeights& morph) { return morph.isProperty(); }))
+        OSG_WARN << "osgGpuAnimation: \"" << character->getName()
+                 << "\" has animated materials, lights or visibility; a crowd shows them at rest" << std::endl;
     osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*character);
     const osg::Matrixd placement = character->getWorldMatrices().front();
     const double spacing =

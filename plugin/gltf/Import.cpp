@@ -178,7 +178,7 @@ void Importer::makeGraph(const NodeTree& tree, const Joints& joints, const Morph
     _result.root->setName(sceneName);
     Materials materials(_model, _options.fixedLighting, _textures, _report);
     Meshes meshes(_model, materials.maps(), _budget, _report);
-    Drawables drawables(_model, _result.set, meshes, materials, variant, _budget, _report);
+    Drawables drawables(_model, tree, _result.set, meshes, materials, variant, _budget, _report);
     if (!_options.noLights) _result.lights = findLights(_model, tree);
     if (!_options.noCameras) _result.cameras = makeCameras(_model, tree);
     const std::vector<bool> carries = nodesThatCarry(joints);
@@ -257,7 +257,9 @@ Result<bool> Importer::run()
 {
     const Result<NodeTree> tree = buildNodeTree(_model, _options);
     if (!tree) return tree.error();
-    const Result<Joints> joints = buildJoints(_model, tree.value(), nodesMovedBy(_clipFiles, _clipJoints, _model));
+    std::vector<bool> moved = nodesMovedBy(_clipFiles, _clipJoints, _model);
+    addNodesOfProperties(_model, tree.value(), moved);
+    const Result<Joints> joints = buildJoints(_model, tree.value(), moved);
     if (!joints) return joints.error();
     const Morphs morphs = readMorphs(_model);
     const Result<bool> made = makeSet(tree.value(), joints.value(), morphs);

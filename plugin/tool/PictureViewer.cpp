@@ -190,6 +190,7 @@ osg::ref_ptr<osg::Image> PictureViewer::draw(double simulationTime)
     _viewer.advance(simulationTime);
     _viewer.eventTraversal();
     _viewer.updateTraversal();
+    if (_view) setProjection(*_viewer.getCamera(), *_view); // clips may animate it
     if (_view) _viewer.getCamera()->setViewMatrix(osg::Matrixd::inverse(viewToWorld(*_view)));
     _viewer.renderingTraversals();
     return _reader->image;

@@ -220,6 +220,7 @@ ordered_json PoseDocument::weights(const EvaluatedPose& pose) const
     for (std::size_t morph = 0; _model.set && morph < _model.set->morphs().size(); ++morph)
     {
         const MorphWeights& weights = _model.set->morphs()[morph];
+        if (weights.isProperty()) continue;
         ordered_json numbers = ordered_json::array();
         for (std::size_t w = 0; w < weights.defaults.size(); ++w)
         {

@@ -2,7 +2,9 @@
 #include <osgGpuAnimation/animation/AnimationSet.h>
 
 #include "support/RandomCharacter.h"
+#include <osgGpuAnimation/animation/bounds/JointRange.h>
 #include <osgGpuAnimation/animation/ClipBuilder.h>
+#include <osgGpuAnimation/animation/Pose.h>
 
 #include <gtest/gtest.h>
 
@@ -169,6 +171,37 @@ TEST(AnimationSetTest, WeightBlocksStandInTheFirstLevel)
         EXPECT_EQ(entry.joint, -1);
     }
     EXPECT_EQ(set->restPose()[5].translation, glm::vec4(0.5, 0, 0, 0)) << "the 25th weight, and nothing after it";
+}
+
+// Clips animate a property as they animate weights, but the GPU does not compute it.
+TEST(AnimationSetTest, PropertiesHaveTracksAndNoEntries)
+{
+    const Skeleton skeleton = threeJoints();
+    const std::vector<MorphWeights> morphs{
+        {"face", 0, {0.5f}}, {"/materials/0/emissiveFactor", -1, {1, 2, 3}}, {"hand", 0, {0.25f}}};
+    ClipBuilder builder(skeleton, morphs);
+    Channel channel{Channel::Path::Weights, Channel::Interpolation::Linear, 1, {0, 1}, {0, 0, 0, 4, 8, 1e9}};
+    ASSERT_TRUE(builder.add(channel));
+    const auto set = make({skeleton, {}, {}, morphs, {builder.build("glow")}});
+    EXPECT_EQ(set->trackCount(), 3u + 3u);
+    EXPECT_EQ(set->entryOfMorph(1), -1);
+    EXPECT_EQ(set->paletteSize(), 3u + 2u);
+    EXPECT_EQ(set->palette()[static_cast<std::size_t>(set->entryOfMorph(2))].track, 5);
+
+    PoseInstruction instruction;
+    std::vector<float> numbers;
+    Pose::properties(*set, instruction, numbers);
+    EXPECT_EQ(numbers, (std::vector<float>{1, 2, 3})) << "at rest";
+    instruction.samples[0] = set->sampleAt(0, 0.5);
+    instruction.samples[0].weight = 0.5f;
+    Pose::properties(*set, instruction, numbers);
+    EXPECT_EQ(numbers, (std::vector<float>{1.5f, 3, 0.25e9f + 1.5f})) << "half of the clip, half of the rest pose";
+
+    JointPose pose(set);
+    ASSERT_TRUE(pose.setMorphWeight(1, 2, 1e9f));
+    EXPECT_EQ(pose.extent()->largestWeight, 0.0) << "no vertex depends on it";
+    ASSERT_TRUE(pose.setMorphWeight(0, 0, 2.0f));
+    EXPECT_GT(pose.extent()->largestWeight, 1.0);
 }
 
 TEST(AnimationSetTest, EveryPaletteIsInLevelOrderAndWhole)

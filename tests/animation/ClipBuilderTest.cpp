@@ -147,6 +147,32 @@ TEST(ClipBuilderTest, WithoutChannelsItIsTheRestPose)
     EXPECT_EQ(clip.data()[1].rotation, glm::vec4(0.0f));
 }
 
+// Weights of one morph may have channels of their own, with times of their own.
+TEST(ClipBuilderTest, ChannelsDriveWeightsOneByOne)
+{
+    Channel first = channel(Path::Weights, Interpolation::Linear, {0, 2}, {1, 3});
+    first.weight = 0;
+    Channel second = channel(Path::Weights, Interpolation::Step, {0, 1}, {5, 6});
+    second.weight = 1;
+    const Clip clip = build({second});
+    EXPECT_EQ(clip.data()[1].translation, glm::vec4(0.1f, 5.0f, 0, 0));
+    const Clip both = build({first, second});
+    const Clip whole = build({channel(Path::Weights, Interpolation::Linear, {0, 2}, {1, 5, 3, 5})});
+    EXPECT_EQ(both.times(), (std::vector<float>{0, 1, 1, 2}));
+    EXPECT_EQ(both.data()[1].translation, whole.data()[1].translation);
+    EXPECT_EQ(both.data()[both.keyframeStride() * 2 + 1].translation, glm::vec4(2, 6, 0, 0));
+
+    const Skeleton skeleton = oneJoint();
+    ClipBuilder builder(skeleton, morphs());
+    ASSERT_TRUE(builder.add(first));
+    EXPECT_EQ(builder.add(first).error().message, "weights of morph 0: another channel has this target already");
+    first.weight = -1;
+    first.values = {1, 2, 3, 4};
+    EXPECT_EQ(builder.add(first).error().message, "weights of morph 0: another channel has this target already");
+    second.weight = 2;
+    EXPECT_EQ(builder.add(second).error().message, "weights of morph 0: there is no weight 2 among 2");
+}
+
 TEST(ClipBuilderTest, AStepJumpsOnlyWhereItsValueChanges)
 {
     const Clip clip = build({channel(Path::Scale, Interpolation::Step, {0, 1, 2}, {1, 1, 1, 1, 1, 1, 3, 3, 3}),

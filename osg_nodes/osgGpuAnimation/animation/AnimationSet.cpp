@@ -247,7 +247,8 @@ std::vector<std::string> atRest(const AnimationSet& set, const RigMatch& match)
     for (std::size_t joint = 0; joint < set.skeleton().jointCount(); ++joint)
         if (match.jointCounterparts()[joint] < 0) names.push_back(set.skeleton().joint(joint).name);
     for (std::size_t morph = 0; morph < set.morphs().size(); ++morph)
-        if (match.morphCounterparts()[morph] < 0) names.push_back(set.morphs()[morph].name);
+        if (match.morphCounterparts()[morph] < 0 && !set.morphs()[morph].isProperty())
+            names.push_back(set.morphs()[morph].name);
     return names;
 }
 

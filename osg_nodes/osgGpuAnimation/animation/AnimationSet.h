@@ -211,7 +211,7 @@ public:
     int entryOfRigidJoint(int joint) const;
     /// The joint's main entry; jointToModel = entry · (that entry's inverseBind)⁻¹.
     int mainEntry(int joint) const { return _layout.mainEntry[static_cast<std::size_t>(joint)]; }
-    /// The entry of a morph's first weight block; the others follow it. -1 if the morph has no weights.
+    /// The entry of a morph's first weight block; the others follow it. -1 without weights and for properties.
     int entryOfMorph(std::size_t morph) const { return _layout.entryOfMorph[morph]; }
 
     /// The first clip of that name; -1 if there is none.

@@ -30,7 +30,7 @@ struct Channel
         Translation, ///< 3 numbers per value
         Rotation,    ///< 4 numbers per value: quaternion x, y, z, w
         Scale,       ///< 3 numbers per value
-        Weights,     ///< one number per morph target, as many as MorphWeights::defaults
+        Weights,     ///< one number per morph target, as many as MorphWeights::defaults, or one, see weight
     };
     /// The interpolation between two keys (glTF 2.0, appendix C).
     enum class Interpolation
@@ -45,6 +45,7 @@ struct Channel
     int target = -1;            ///< a joint of the skeleton; for Weights, an index into the morph weights
     std::vector<double> times;  ///< seconds, strictly ascending
     std::vector<double> values; ///< all numbers of all keys, in the order of the keys
+    int weight = -1;            ///< for Weights: the only weight that the channel drives; -1: all
 };
 
 struct ClipParts;

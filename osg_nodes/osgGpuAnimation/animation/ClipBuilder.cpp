@@ -237,15 +237,20 @@ bool isSimilarity(const glm::dmat3& m)
 
 ClipBuilder::ClipBuilder(const Skeleton& skeleton, const std::vector<MorphWeights>& morphs)
     : _rest(restPose(skeleton, morphs)), _jointCount(skeleton.jointCount()),
-      _firstTrackOfMorph(firstTracksOfMorphs(skeleton, morphs)), _driven(skeleton.jointCount() * 3 + morphs.size())
+      _firstTrackOfMorph(firstTracksOfMorphs(skeleton, morphs)), _firstKeyOfMorph{skeleton.jointCount() * 3}
 {
     for (const MorphWeights& morph : morphs)
+    {
         _weightCounts.push_back(morph.defaults.size());
+        _firstKeyOfMorph.push_back(_firstKeyOfMorph.back() + morph.defaults.size());
+    }
+    _driven.resize(_firstKeyOfMorph.back());
 }
 
 std::size_t ClipBuilder::componentCount(const Channel& channel) const
 {
-    if (channel.path == Path::Weights) return _weightCounts[static_cast<std::size_t>(channel.target)];
+    if (channel.path == Path::Weights)
+        return channel.weight >= 0 ? 1 : _weightCounts[static_cast<std::size_t>(channel.target)];
     return channel.path == Path::Rotation ? 4 : 3;
 }
 
@@ -255,11 +260,14 @@ std::string ClipBuilder::describe(const Channel& channel) const
            std::to_string(channel.target) + ": ";
 }
 
-std::size_t ClipBuilder::keyOf(const Channel& channel) const
+std::pair<std::size_t, std::size_t> ClipBuilder::keysOf(const Channel& channel) const
 {
     const auto target = static_cast<std::size_t>(channel.target);
-    if (channel.path == Path::Weights) return _jointCount * 3 + target;
-    return target * 3 + static_cast<std::size_t>(channel.path);
+    std::size_t first = target * 3 + static_cast<std::size_t>(channel.path);
+    if (channel.path != Path::Weights) return {first, first + 1};
+    if (channel.weight < 0) return {_firstKeyOfMorph[target], _firstKeyOfMorph[target + 1]};
+    first = _firstKeyOfMorph[target] + static_cast<std::size_t>(channel.weight);
+    return {first, first + 1};
 }
 
 Result<bool> ClipBuilder::add(Channel channel)
@@ -268,12 +276,19 @@ Result<bool> ClipBuilder::add(Channel channel)
     const std::size_t targets = channel.path == Path::Weights ? _weightCounts.size() : _jointCount;
     if (channel.target < 0 || static_cast<std::size_t>(channel.target) >= targets)
         return Error{subject() + "there are " + std::to_string(targets)};
-    if (_driven[keyOf(channel)]) return Error{subject() + "another channel has this target already"};
     if (componentCount(channel) == 0) return Error{subject() + "it has no weights"};
+    if (channel.path == Path::Weights && channel.weight >= 0 &&
+        static_cast<std::size_t>(channel.weight) >= _weightCounts[static_cast<std::size_t>(channel.target)])
+        return Error{subject() + "there is no weight " + std::to_string(channel.weight) + " among " +
+                     std::to_string(_weightCounts[static_cast<std::size_t>(channel.target)])};
+    const auto [firstKey, endKey] = keysOf(channel);
+    const auto first = _driven.begin() + static_cast<std::ptrdiff_t>(firstKey);
+    const auto end = _driven.begin() + static_cast<std::ptrdiff_t>(endKey);
+    if (std::find(first, end, true) != end) return Error{subject() + "another channel has this target already"};
     if (auto fault = findFaultInTimes(channel.times)) return Error{subject() + *fault};
     if (auto fault = findFaultInValues(channel, componentCount(channel))) return Error{subject() + *fault};
 
-    _driven[keyOf(channel)] = true;
+    std::fill(first, end, true);
     _channels.push_back(std::move(channel));
     return true;
 }
@@ -317,7 +332,10 @@ Clip ClipBuilder::build(std::string name)
     {
         const auto target = static_cast<std::size_t>(curve.channel().target);
         const std::size_t track = curve.channel().path == Path::Weights ? _firstTrackOfMorph[target] : target;
-        writeCurve(curve, moments, spline, TrackWriter(*clip._data, clip, track, firstComponent(curve.channel().path)));
+        const std::size_t first = curve.channel().weight >= 0 && curve.channel().path == Path::Weights
+                                      ? static_cast<std::size_t>(curve.channel().weight)
+                                      : firstComponent(curve.channel().path);
+        writeCurve(curve, moments, spline, TrackWriter(*clip._data, clip, track, first));
     }
     _channels.clear();
     _driven.assign(_driven.size(), false);

@@ -5,6 +5,7 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace osgGpuAnimation
@@ -31,8 +32,8 @@ public:
 
     /// Adds a channel. Errors name the channel: no times; times that are negative, not finite or not ascending as
     /// floats; a wrong number of values; values that are not finite; a target out of range; a rotation of length 0; a
-    /// second channel with the same target and path. After an error the builder ignores that channel and remains
-    /// usable.
+    /// weight that the morph does not have; a second channel with the same target and path (and weight). After an error
+    /// the builder ignores that channel and remains usable.
     Result<bool> add(Channel channel);
 
     /// Creates the clip of all channels that were added since the last build(). Without channels the clip has one
@@ -47,14 +48,16 @@ private:
     Clip::Form form() const;
     std::size_t componentCount(const Channel& channel) const;
     std::string describe(const Channel& channel) const;
-    std::size_t keyOf(const Channel& channel) const;
+    /// The first and the last key + 1 of what the channel drives.
+    std::pair<std::size_t, std::size_t> keysOf(const Channel& channel) const;
 
     std::vector<JointTransform> _rest;
     std::size_t _jointCount;
     std::vector<std::size_t> _firstTrackOfMorph; ///< and at the end the number of tracks
     std::vector<std::size_t> _weightCounts;      ///< by morph
     std::vector<Channel> _channels;
-    std::vector<bool> _driven; ///< by keyOf(): three paths per joint, then one per morph
+    std::vector<std::size_t> _firstKeyOfMorph; ///< and at the end the number of keys
+    std::vector<bool> _driven;                 ///< by key: three paths per joint, then the weights of each morph
 };
 
 /// Options of compactClips().

@@ -17,7 +17,6 @@
 #include <cassert>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <optional>
 
 namespace osgGpuAnimation
@@ -32,20 +31,6 @@ using Part = PosedKeyframe::Part;
 static_assert(largest == JointPose::largest, "the same limit for callers");
 
 constexpr std::uint32_t partBits = 0xFu; ///< of PosedKeyframe::setNumbers(): the numbers of a joint's first part
-
-/// T · R · S of a matrix with an inverse, by its columns. A shear is dropped: the rotation keeps the direction of the
-/// first column and the plane of the first two.
-JointTransform decomposed(const glm::dmat4& matrix)
-{
-    glm::dmat3 axes(matrix);
-    glm::dvec3 scale(glm::length(axes[0]), glm::length(axes[1]), glm::length(axes[2]));
-    if (glm::determinant(axes) < 0.0) scale.x = -scale.x;
-    axes[0] /= scale.x;
-    axes[1] = glm::normalize(axes[1] - glm::dot(axes[0], axes[1]) * axes[0]);
-    axes[2] = glm::cross(axes[0], axes[1]);
-    const glm::dvec4 rotation = Rotation::numbers(glm::quat_cast(axes));
-    return {glm::vec4(glm::dvec4(glm::dvec3(matrix[3]), 0.0)), glm::vec4(rotation), glm::vec4(glm::dvec4(scale, 0.0))};
-}
 
 std::string jointAt(const AnimationSet& set, std::size_t joint)
 {
@@ -179,7 +164,7 @@ bool JointPose::setMorphWeight(std::size_t morph, std::size_t target, float weig
     if (morph >= morphs.size() || target >= morphs[morph].defaults.size() || !isAllowed(weight)) return false;
     change().setNumber(_set->firstTrackOfMorph(morph) + target / MorphWeights::weightsPerBlock,
                        target % MorphWeights::weightsPerBlock, weight);
-    growExtent(weight);
+    if (!morphs[morph].isProperty()) growExtent(weight);
     return true;
 }
 
@@ -353,13 +338,18 @@ void JointPose::renewExtent()
 {
     _extent = std::make_shared<const PoseExtent>();
     if (isEmpty()) return;
-    const std::size_t jointCount = _set->skeleton().jointCount();
-    growExtent(0, jointCount);
-    for (std::size_t track = jointCount; track < _set->trackCount(); ++track)
+    growExtent(0, _set->skeleton().jointCount());
+    for (std::size_t morph = 0; morph < _set->morphs().size(); ++morph)
     {
-        const std::uint32_t numbers = _keyframe->setNumbers(track);
-        for (std::size_t number = 0; number < 12; ++number)
-            if ((numbers >> number & 1u) != 0) growExtent(_keyframe->values(track).number(number));
+        const MorphWeights& weights = _set->morphs()[morph];
+        if (weights.isProperty()) continue;
+        const std::size_t first = _set->firstTrackOfMorph(morph);
+        for (std::size_t track = first; track < first + weights.blockCount(); ++track)
+        {
+            const std::uint32_t numbers = _keyframe->setNumbers(track);
+            for (std::size_t number = 0; number < 12; ++number)
+                if ((numbers >> number & 1u) != 0) growExtent(_keyframe->values(track).number(number));
+        }
     }
 }
 
@@ -571,6 +561,18 @@ AffineMatrix jointToModel(const AnimationSet& set, const PoseInstruction& instru
          parent = skeleton.joint(static_cast<std::size_t>(parent)).parent)
         matrix = sources.track(static_cast<std::size_t>(parent)).toMatrix() * matrix;
     return matrix;
+}
+
+void properties(const AnimationSet& set, const PoseInstruction& instruction, std::vector<float>& outNumbers)
+{
+    outNumbers.clear();
+    const Sources sources(set, instruction);
+    for (std::size_t morph = 0; morph < set.morphs().size(); ++morph)
+        for (std::size_t w = 0; set.morphs()[morph].isProperty() && w < set.morphs()[morph].defaults.size(); ++w)
+        {
+            const std::size_t track = set.firstTrackOfMorph(morph) + w / MorphWeights::weightsPerBlock;
+            outNumbers.push_back(sources.track(track).number(w % MorphWeights::weightsPerBlock));
+        }
 }
 
 void palette(const AnimationSet& set, const std::vector<JointTransform>& tracks,

@@ -118,6 +118,10 @@ void jointToModel(const AnimationSet& set, const std::vector<JointTransform>& tr
 /// joint: below set.skeleton().jointCount().
 AffineMatrix jointToModel(const AnimationSet& set, const PoseInstruction& instruction, std::size_t joint);
 
+/// The mix stage of the set's properties alone (see MorphWeights). outNumbers: the numbers of all properties, in the
+/// order of set.morphs().
+void properties(const AnimationSet& set, const PoseInstruction& instruction, std::vector<float>& outNumbers);
+
 /// outPalette: set.paletteSize() entries, row-major 3x4 matrices; weight blocks are copied.
 void palette(const AnimationSet& set, const std::vector<JointTransform>& tracks,
              const std::vector<AffineMatrix>& jointToModel, std::vector<AffineMatrix>& outPalette);

@@ -8,6 +8,7 @@
 #include <osgGpuAnimation/nodes/frame/PoseStage.h>
 #include <osgGpuAnimation/nodes/frame/WorldTargets.h>
 #include <osgGpuAnimation/nodes/lod/LodSelection.h>
+#include <osgGpuAnimation/nodes/mesh/AnimatedProperties.h>
 #include <osgGpuAnimation/nodes/mesh/MaterialVariants.h>
 #include <osgGpuAnimation/nodes/mesh/MeshNames.h>
 #include <osgGpuAnimation/nodes/mesh/PaletteEntryBounds.h>
@@ -138,7 +139,7 @@ AnimatedCharacter::AnimatedCharacter() : AnimatedCharacter(nullptr) {}
 AnimatedCharacter::AnimatedCharacter(std::shared_ptr<const AnimationSet> set)
     : _controller(std::make_unique<AnimationController>(std::move(set))),
       _worldTargets(std::make_unique<WorldTargets>()), _variantMeshes(std::make_shared<VariantMeshes>()),
-      _wardrobe(std::make_shared<Wardrobe>())
+      _wardrobe(std::make_shared<Wardrobe>()), _properties(AnimatedProperties::of(getAnimationSet()))
 {
     static const std::shared_ptr<const Axes> identity = std::make_shared<const Axes>();
     _axes = identity;
@@ -153,8 +154,9 @@ AnimatedCharacter::AnimatedCharacter(const AnimatedCharacter& other, const osg::
       _axes(other._axes), _clipBounds(other._clipBounds), _mixBounds(other._mixBounds), _updateTime(other._updateTime),
       _worldTargets(std::make_unique<WorldTargets>(*other._worldTargets)), _isDrawnTogether(other._isDrawnTogether),
       _pixelError(other._pixelError), _materialVariant(other._materialVariant), _variantMeshes(other._variantMeshes),
-      _wardrobe(other._wardrobe)
+      _wardrobe(other._wardrobe), _properties(AnimatedProperties::of(getAnimationSet()))
 {
+    if (_properties) _properties->bind(*this); // the children are the other's, too
     // osg::Node copies its other callbacks, but not the event callbacks.
     setEventCallback(copyop(other.getEventCallback()));
     // The update traversal must reach this node without a callback.
@@ -170,6 +172,7 @@ Result<bool> AnimatedCharacter::setAnimationSet(std::shared_ptr<const AnimationS
         return Error{"a set of " + std::to_string(newSet ? newSet->paletteSize() : 0) +
                      " palette entries for the meshes of one of " + std::to_string(getAnimationSet().paletteSize())};
     *_controller = AnimationController(std::move(newSet), *_controller);
+    _properties = AnimatedProperties::of(getAnimationSet());
     if (_clipBounds) computeClipBounds();
     // The levels of detail depend on the poses of the clips.
     forEachMeshBelow(*this, [](SkinnedGeometry& mesh) { mesh.forgetLodLevels(); });
@@ -218,6 +221,7 @@ Result<bool> AnimatedCharacter::setMaterialVariant(const std::string& name)
                      quotedNames(names, [](const std::string& known) { return known; })};
     _variantMeshes->show(*this, name);
     _materialVariant = name;
+    if (_properties && _properties->isBound()) _properties->bind(*this);
     return true;
 }
 
@@ -285,6 +289,7 @@ Result<bool> AnimatedCharacter::setMeshVisible(const std::string& name, bool isV
     const Result<std::vector<SkinnedGeometry*>> meshes = meshesNamed(*this, name);
     if (!meshes) return meshes.error();
     _variantMeshes->setVisible(*this, {meshes.value().begin(), meshes.value().end()}, isVisible);
+    if (_properties && _properties->isBound()) _properties->bind(*this);
     return true;
 }
 
@@ -327,6 +332,7 @@ void AnimatedCharacter::update(double simulationTime)
     if (_updateTime && simulationTime != *_updateTime) _controller->advance(simulationTime - *_updateTime, events);
     _updateTime = simulationTime;
     updateBounds();
+    if (_properties) showProperties();
     if (!_worldTargets->isEmpty())
         runAfterUpdate(*this,
                        [character = osg::observer_ptr<AnimatedCharacter>(this)]
@@ -342,6 +348,12 @@ void AnimatedCharacter::update(double simulationTime)
                        osg::ref_ptr<AnimatedCharacter> present;
                        if (character.lock(present)) present->updateBounds();
                    });
+}
+
+void AnimatedCharacter::showProperties()
+{
+    if (!_properties->isBound()) _properties->bind(*this);
+    _properties->apply(getAnimationSet(), _controller->instruction());
 }
 
 void AnimatedCharacter::updateBounds()

@@ -20,6 +20,7 @@
 namespace osgGpuAnimation
 {
 
+class AnimatedProperties;
 class MixBounds;
 class PosedMeshes;
 class VariantMeshes;
@@ -151,6 +152,7 @@ public:
 
     /// Advances the controller by the time since the last update; the first call only stores the time. A jump of the
     /// time in either direction moves the clips by the same amount, so equal times show equal poses.
+    /// Properties that clips animate (see MorphWeights) get their values, in StateSets of this character's own.
     /// simulationTime: seconds. The event callback is called after the viewer's update traversal, or at once without a
     /// viewer; it may also delete this character.
     void update(double simulationTime);
@@ -255,6 +257,7 @@ private:
     void setMeshBounds();
     void updateBounds();
     void takeWorldTargets();
+    void showProperties();
     osg::BoundingBox boundsOf(const std::vector<PlayedClip>& played) const;
     void growMeshes(const osg::BoundingBox& box);
 
@@ -273,8 +276,9 @@ private:
     bool _isDrawnTogether = true;
     float _pixelError = 0.0f;
     std::string _materialVariant;
-    std::shared_ptr<VariantMeshes> _variantMeshes; ///< never null, shared with clones
-    std::shared_ptr<Wardrobe> _wardrobe;           ///< never null, shared with clones
+    std::shared_ptr<VariantMeshes> _variantMeshes;   ///< never null, shared with clones
+    std::shared_ptr<Wardrobe> _wardrobe;             ///< never null, shared with clones
+    std::unique_ptr<AnimatedProperties> _properties; ///< null: the set has none
 };
 
 /// Moves its AnimatedCharacter by the root motion of the clips: after each update it multiplies the character's matrix

@@ -11,6 +11,7 @@
 #include <osgGpuAnimation/nodes/frame/PoseStage.h>
 #include <osgGpuAnimation/nodes/frame/WorldTargets.h>
 #include <osgGpuAnimation/nodes/lod/LodSelection.h>
+#include <osgGpuAnimation/nodes/mesh/AnimatedProperties.h>
 #include <osgGpuAnimation/nodes/mesh/MaterialVariants.h>
 #include <osgGpuAnimation/nodes/mesh/MeshNames.h>
 #include <osgGpuAnimation/nodes/mesh/MeshVisits.h>
@@ -160,12 +161,11 @@ AnimatedCrowd::AnimatedCrowd(const AnimatedCharacter& character)
     _pixelError = character.getPixelError();
     setName(character.getName());
     if (character.getStateSet()) setStateSet(const_cast<osg::StateSet*>(character.getStateSet()));
-    forEachMesh(character, [&](const SkinnedGeometry& mesh) { addChild(const_cast<SkinnedGeometry*>(&mesh)); });
+    addUnanimated(character, *this);
     std::vector<Box> bounds;
     for (int clip = -1; clip < static_cast<int>(getAnimationSet().clips().size()); ++clip)
         bounds.push_back(toBox(character.clipBoundsInFile(clip)));
-    const bool areKnown = std::any_of(bounds.begin(), bounds.end(), [](const Box& box) { return !box.empty(); });
-    if (areKnown)
+    if (std::any_of(bounds.begin(), bounds.end(), [](const Box& box) { return !box.empty(); }))
         _instances->setClipBounds(bounds, character._mixBounds);
     else
         computeBounds(*_instances, *this);

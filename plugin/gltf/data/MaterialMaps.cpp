@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/data/MaterialMaps.h"
 
+#include "gltf/document/AnimationPointers.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -82,16 +84,21 @@ void readSpecularGlossiness(const tinygltf::Value& extension, PbrMaterial& outMa
 class MapReader
 {
 public:
-    explicit MapReader(MaterialMaps& maps) : _maps(maps) {}
+    MapReader(MaterialMaps& maps, const std::function<bool(const std::string&)>& isAnimated)
+        : _maps(maps), _isAnimated(isAnimated)
+    {
+    }
 
-    /// use: of the map if its coordinates have room. True if the map is shown.
-    bool add(const char* member, const tinygltf::TextureInfo& texture, PbrMaterial::Map PbrMaterial::*place,
-             bool isColor, MapUse use = MapUse::Shown)
+    /// path: of the object that has the member, with a slash, or empty. use: of the map if its coordinates have room.
+    /// True if the map is shown.
+    bool add(const std::string& path, const char* member, const tinygltf::TextureInfo& texture,
+             PbrMaterial::Map PbrMaterial::*place, bool isColor, MapUse use = MapUse::Shown)
     {
         if (texture.index < 0) return false;
-        const int number = use == MapUse::Shown ? numberOf(TextureCoordinates(texture)) : -1;
+        const std::string animated = _isAnimated && _isAnimated(path + member) ? path + member : "";
+        const int number = use == MapUse::Shown ? numberOf(TextureCoordinates(texture, animated)) : -1;
         if (use == MapUse::Shown && number < 0) use = MapUse::NoCoordinates;
-        _maps.maps.push_back({member, place, texture.index, isColor, use, number});
+        _maps.maps.push_back({member, place, texture.index, isColor, use, number, animated});
         return use == MapUse::Shown;
     }
 
@@ -109,6 +116,7 @@ private:
     }
 
     MaterialMaps& _maps;
+    const std::function<bool(const std::string&)>& _isAnimated;
 };
 
 } // namespace
@@ -130,23 +138,26 @@ bool MaterialMaps::hasNormalMap() const
                        });
 }
 
-MaterialMaps mapsOf(const tinygltf::Material& material, bool allMaps)
+MaterialMaps mapsOf(const tinygltf::Material& material, bool allMaps,
+                    const std::function<bool(const std::string&)>& isAnimated)
 {
     MaterialMaps maps;
-    MapReader reader(maps);
+    MapReader reader(maps, isAnimated);
+    const std::string core = "pbrMetallicRoughness/";
     const tinygltf::PbrMetallicRoughness& pbr = material.pbrMetallicRoughness;
     const tinygltf::Value& converted = extensionOf(material.extensions, specularGlossiness);
     const bool isConverted = converted.IsObject();
     if (isConverted)
-        reader.add("diffuseTexture", textureOf(converted, "diffuseTexture"), &PbrMaterial::baseColorMap, true);
+        reader.add("", "diffuseTexture", textureOf(converted, "diffuseTexture"), &PbrMaterial::baseColorMap, true);
     else
-        reader.add("baseColorTexture", pbr.baseColorTexture, &PbrMaterial::baseColorMap, true);
+        reader.add(core, "baseColorTexture", pbr.baseColorTexture, &PbrMaterial::baseColorMap, true);
     if (!allMaps) return maps;
-    reader.add("normalTexture", plainInfo(material.normalTexture), &PbrMaterial::normalMap, false);
+    reader.add("", "normalTexture", plainInfo(material.normalTexture), &PbrMaterial::normalMap, false);
     if (!isConverted)
-        reader.add("metallicRoughnessTexture", pbr.metallicRoughnessTexture, &PbrMaterial::metallicRoughnessMap, false);
-    reader.add("emissiveTexture", material.emissiveTexture, &PbrMaterial::emissiveMap, true);
-    reader.add("occlusionTexture", plainInfo(material.occlusionTexture), &PbrMaterial::occlusionMap, false);
+        reader.add(core, "metallicRoughnessTexture", pbr.metallicRoughnessTexture, &PbrMaterial::metallicRoughnessMap,
+                   false);
+    reader.add("", "emissiveTexture", material.emissiveTexture, &PbrMaterial::emissiveMap, true);
+    reader.add("", "occlusionTexture", plainInfo(material.occlusionTexture), &PbrMaterial::occlusionMap, false);
     PbrMaterial factors;
     readMaterialExtensions(material, factors);
     int units = 0;
@@ -158,7 +169,8 @@ MaterialMaps mapsOf(const tinygltf::Material& material, bool allMaps)
                            : units < PbrMaterial::mostExtensionMaps ? MapUse::Shown
                                                                     : MapUse::NoTextureUnit;
         const tinygltf::TextureInfo texture = textureOf(extensionOf(material.extensions, map.extension), map.member);
-        if (reader.add(map.member, texture, map.place, map.isColor, use)) ++units;
+        const std::string path = "extensions/" + std::string(map.extension) + '/';
+        if (reader.add(path, map.member, texture, map.place, map.isColor, use)) ++units;
     }
     return maps;
 }
@@ -166,7 +178,13 @@ MaterialMaps mapsOf(const tinygltf::Material& material, bool allMaps)
 const MaterialMaps& MapsOfMaterials::of(int material)
 {
     const auto [known, isNew] = _maps.try_emplace(material);
-    if (isNew && material >= 0) known->second = mapsOf(_model.materials[static_cast<std::size_t>(material)], _allMaps);
+    const auto isAnimated = [&](const std::string& texture)
+    {
+        const std::string offset = texture + "/extensions/KHR_texture_transform/offset";
+        return !valueAtRest(_model, "/materials/" + std::to_string(material) + '/' + offset).empty();
+    };
+    if (isNew && material >= 0)
+        known->second = mapsOf(_model.materials[static_cast<std::size_t>(material)], _allMaps, isAnimated);
     return known->second;
 }
 

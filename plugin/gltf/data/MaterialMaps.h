@@ -8,7 +8,9 @@
 #include <tiny_gltf.h>
 
 #include <cstdint>
+#include <functional>
 #include <map>
+#include <string>
 #include <vector>
 
 namespace osgGpuAnimation::gltf
@@ -31,7 +33,8 @@ struct MaterialMap
     int texture = -1;                     ///< of the file
     bool isColor = false;                 ///< sRGB, else data
     MapUse use = MapUse::Shown;
-    int number = -1; ///< index into MaterialMaps::coordinates; -1: not shown
+    int number = -1;        ///< index into MaterialMaps::coordinates; -1: not shown
+    std::string animated{}; ///< the texture's name in PropertyMember if clips animate its transform; else empty
 };
 
 /// The maps of a material and the different texture coordinates that they read.
@@ -49,8 +52,10 @@ struct MaterialMaps
 };
 
 /// Those of glTF 2.0, section 3.9, and of the material extensions, those of an extension in PbrMaterial's order.
-/// allMaps: false considers the base colour alone.
-MaterialMaps mapsOf(const tinygltf::Material& material, bool allMaps);
+/// allMaps: false considers the base colour alone. isAnimated: true for the names (see PropertyMember) of textures
+/// whose transform clips animate.
+MaterialMaps mapsOf(const tinygltf::Material& material, bool allMaps,
+                    const std::function<bool(const std::string&)>& isAnimated = {});
 
 /// The maps of a file's materials, each computed once, when first asked for.
 class MapsOfMaterials

@@ -55,6 +55,14 @@ std::vector<std::string> variantNames(const tinygltf::Model& model)
     return names;
 }
 
+void forEachVariantMaterial(const tinygltf::Primitive& primitive, const std::function<void(int)>& visit)
+{
+    const tinygltf::Value& mappings = memberOf(primitive.extensions, "mappings");
+    for (std::size_t i = 0; i < mappings.ArrayLen(); ++i)
+        if (const tinygltf::Value& mapping = mappings.Get(static_cast<int>(i)); mapping.Has("material"))
+            visit(mapping.Get("material").GetNumberAsInt());
+}
+
 PrimitiveMaterials materialsOf(const tinygltf::Model& model, const tinygltf::Primitive& primitive,
                                MapsOfMaterials& maps)
 {

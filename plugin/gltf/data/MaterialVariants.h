@@ -5,6 +5,7 @@
 
 #include <tiny_gltf.h>
 
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -35,6 +36,9 @@ struct PrimitiveMaterials
         return found == ofVariant.end() ? own : found->second;
     }
 };
+
+/// visit: for the material of each mapping.
+void forEachVariantMaterial(const tinygltf::Primitive& primitive, const std::function<void(int)>& visit);
 
 /// The document has passed checkVariantRules().
 PrimitiveMaterials materialsOf(const tinygltf::Model& model, const tinygltf::Primitive& primitive,

@@ -4,6 +4,7 @@
 #include <osg/Vec2d>
 
 #include <cmath>
+#include <utility>
 
 namespace osgGpuAnimation::gltf
 {
@@ -39,9 +40,11 @@ const tinygltf::Value& extensionOf(const tinygltf::ExtensionMap& extensions, con
     return extension == extensions.end() ? none : extension->second;
 }
 
-TextureCoordinates::TextureCoordinates(const tinygltf::TextureInfo& texture) : _set(setOf(texture))
+TextureCoordinates::TextureCoordinates(const tinygltf::TextureInfo& texture, std::string animated)
+    : _set(setOf(texture)), _animated(std::move(animated))
 {
-    const tinygltf::Value& transform = transformOf(texture);
+    static const tinygltf::Value none;
+    const tinygltf::Value& transform = _animated.empty() ? transformOf(texture) : none;
     // Counter-clockwise as the viewer sees the picture, whose v runs down.
     const double angle = transform.Has("rotation") ? transform.Get("rotation").GetNumberAsDouble() : 0.0;
     const osg::Vec2d scale = pairOf(transform, "scale", osg::Vec2d(1.0, 1.0));

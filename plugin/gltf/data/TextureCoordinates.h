@@ -5,6 +5,7 @@
 #include <tiny_gltf.h>
 
 #include <algorithm>
+#include <string>
 
 namespace osgGpuAnimation::gltf
 {
@@ -19,17 +20,21 @@ const tinygltf::Value& extensionOf(const tinygltf::ExtensionMap& extensions, con
 class TextureCoordinates
 {
 public:
-    explicit TextureCoordinates(const tinygltf::TextureInfo& texture);
+    /// animated: not empty: clips animate the transform, so the vertices do without. The coordinates are those of the
+    /// texture of that name alone.
+    explicit TextureCoordinates(const tinygltf::TextureInfo& texture, std::string animated = "");
 
     int set() const { return _set; } ///< n of TEXCOORD_n, below AttributeSemantic::mostSets
     osg::Vec2 transformed(const osg::Vec2& coordinates) const;
     bool operator==(const TextureCoordinates& other) const
     {
-        return _set == other._set && std::equal(_u, _u + 3, other._u) && std::equal(_v, _v + 3, other._v);
+        return _set == other._set && _animated == other._animated && std::equal(_u, _u + 3, other._u) &&
+               std::equal(_v, _v + 3, other._v);
     }
 
 private:
     int _set;
+    std::string _animated;
     double _u[3]; ///< u' = _u[0] · u + _u[1] · v + _u[2]
     double _v[3];
 };

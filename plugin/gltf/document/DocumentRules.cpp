@@ -159,7 +159,9 @@ void checkTarget(const JsonValue& channel, std::size_t animation, std::size_t in
     const JsonValue target = channel["target"];
     if (!target) return;
     const JsonValue node = target["node"], path = target["path"];
-    if (!node || !path) return target.dropFrom(channel); // allowed: an extension may define the target
+    const bool hasPointer(target["extensions"]["KHR_animation_pointer"]["pointer"]);
+    if (path && path.text() == "pointer" && hasPointer) return; // resolvePointers() checks it
+    if (!node || !path) return target.dropFrom(channel);        // allowed: an extension may define the target
     const auto known = std::find(std::begin(paths), std::end(paths), path.text());
     const auto name = [&] { return elementName("animations", animation, "channels", index) + ".target"; };
     if (known == std::end(paths))
@@ -264,6 +266,7 @@ const std::string_view supportedExtensions[] = {"KHR_mesh_quantization",      "K
                                                 "EXT_meshopt_compression",    "KHR_draco_mesh_compression",
                                                 "EXT_mesh_gpu_instancing",    "KHR_lights_punctual",
                                                 "EXT_texture_webp",           "KHR_materials_variants",
+                                                "KHR_animation_pointer",      "KHR_node_visibility",
                                                 "KHR_meshopt_compression",    "MSFT_lod"};
 
 /// Parts of the names of extensions that change looks alone, or nothing that is drawn: a file that requires them is

@@ -73,7 +73,10 @@ constexpr SchemaRule bufferView[] = {
 
 // ------------------------------------------------------------------------------------------------------- animations
 
-constexpr SchemaRule target[] = {index("node", "nodes"), text("path").required().orLeaveOut()};
+constexpr SchemaRule pointer[] = {text("pointer").required().orLeaveOut()};
+constexpr SchemaRule targetExtensions[] = {object("KHR_animation_pointer", pointer).orLeaveOut()};
+constexpr SchemaRule target[] = {index("node", "nodes"), text("path").required().orLeaveOut(),
+                                 object("extensions", targetExtensions).orLeaveOut()};
 
 // checkDocumentRules() compares the index with the samplers of the animation.
 constexpr SchemaRule channel[] = {integer("sampler").upTo(largestInt).required(),
@@ -190,10 +193,12 @@ constexpr SchemaRule mesh[] = {object("primitives", primitive).list().required()
 constexpr SchemaRule instancing[] = {indexMap("attributes", "accessors").required()};
 // checkViewRules() checks the lights, so that a faulty one costs only itself.
 constexpr SchemaRule punctual = rule("KHR_lights_punctual", Kind::Any);
+constexpr SchemaRule visibility[] = {rule("visible", Kind::Boolean).orLeaveOut()};
 // validateLods() checks which nodes may be levels.
 constexpr SchemaRule lod[] = {index("ids", "nodes").list().required().orLeaveOut()};
 constexpr SchemaRule nodeExtensions[] = {object("EXT_mesh_gpu_instancing", instancing), punctual,
-                                         object("MSFT_lod", lod).orLeaveOut()};
+                                         object("MSFT_lod", lod).orLeaveOut(),
+                                         object("KHR_node_visibility", visibility).orLeaveOut()};
 
 constexpr SchemaRule node[] = {index("camera", "cameras"),
                                index("children", "nodes").list(),

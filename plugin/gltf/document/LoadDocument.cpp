@@ -3,6 +3,7 @@
 
 #include "gltf/data/Decompression.h"
 #include "gltf/data/LoadImages.h"
+#include "gltf/document/AnimationPointers.h"
 #include "gltf/document/DocumentRules.h"
 #include "gltf/document/DocumentSchema.h"
 #include "gltf/document/JsonReader.h"
@@ -139,6 +140,9 @@ void read(const JsonValue& json, tinygltf::AnimationChannel& channel)
     read(json["sampler"], channel.sampler);
     read(target["node"], channel.target_node);
     read(target["path"], channel.target_path);
+    if (channel.target_path != pointerPath) return;
+    channel.target_node = -1; // the specification forbids a node beside a pointer
+    read(target["extensions"]["KHR_animation_pointer"]["pointer"], channel.extensions["KHR_animation_pointer"]);
 }
 
 void read(const JsonValue& json, tinygltf::AnimationSampler& sampler)
@@ -416,6 +420,7 @@ Result<tinygltf::Model> load(const std::string& bytes, const std::string& fileNa
     if (error) return *error;
 
     tinygltf::Model model = readModel(document);
+    resolvePointers(document, model, report);
     const ModelFolder folder(fileName, options.allowOutsideFiles);
     MemoryBudget budget(options.maxDecodedBytes);
     error = loadBuffers(document["buffers"], container.value().binary, folder, budget, report, model);

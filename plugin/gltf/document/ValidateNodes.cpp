@@ -3,6 +3,7 @@
 
 #include "gltf/data/Accessor.h"
 #include "gltf/data/AttributeSemantic.h"
+#include "gltf/document/AnimationPointers.h"
 
 #include <algorithm>
 #include <cmath>
@@ -217,6 +218,24 @@ std::string wrongOutputFormat(const tinygltf::Accessor& output, std::string_view
     return output.type == TINYGLTF_TYPE_VEC3 && isFloat(output) ? "" : "VEC3 of float";
 }
 
+/// The same for a target of KHR_animation_pointer, which takes integers, too.
+std::string wrongPointerOutput(const tinygltf::Accessor& output, const tinygltf::AnimationChannel& channel)
+{
+    static constexpr std::pair<const char*, int> types[] = {{"SCALAR", TINYGLTF_TYPE_SCALAR},
+                                                            {"VEC2", TINYGLTF_TYPE_VEC2},
+                                                            {"VEC3", TINYGLTF_TYPE_VEC3},
+                                                            {"VEC4", TINYGLTF_TYPE_VEC4}};
+    const std::string_view path = channel.target_path;
+    const std::optional<PropertyPointer> property = propertyOf(channel);
+    const std::size_t count = property ? property->member->count : path == "weights" ? 1 : path == "rotation" ? 4 : 3;
+    if (property && property->member->isBoolean)
+        return output.type == TINYGLTF_TYPE_SCALAR && output.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE &&
+                       !output.normalized
+                   ? ""
+                   : "SCALAR of unsigned byte";
+    return output.type == types[count - 1].second ? "" : types[count - 1].first;
+}
+
 /// Checks one animation after another and remembers its findings about shared accessors.
 class AnimationValidation
 {
@@ -233,8 +252,14 @@ public:
                     validateInput(animation.samplers[s].input, elementName("animations", a, "samplers", s) + ".input"))
                 return error;
         for (std::size_t c = 0; c < animation.channels.size(); ++c)
-            if (animation.channels[c].target_node >= 0)
-                if (std::optional<Error> error = validateChannel(a, c)) return error;
+        {
+            if (!isUsed(animation.channels[c])) continue;
+            const std::optional<Error> error = validateChannel(a, c);
+            if (!error) continue;
+            if (!hasPointer(animation.channels[c])) return error;
+            _report.warn(error->message + "; channel ignored");
+            dropTarget(_model.animations[a].channels[c]);
+        }
         emptyIfFaulty(a);
         return std::nullopt;
     }
@@ -247,6 +272,11 @@ private:
         Negative, ///< the first one
         Twice,    ///< one of them
     };
+
+    static bool isUsed(const tinygltf::AnimationChannel& channel)
+    {
+        return channel.target_node >= 0 || propertyOf(channel).has_value();
+    }
 
     const tinygltf::Accessor& accessorOf(int index) const { return _model.accessors[std::size_t(index)]; }
 
@@ -275,7 +305,7 @@ private:
         tinygltf::Animation& animation = _model.animations[a];
         for (const tinygltf::AnimationChannel& channel : animation.channels)
         {
-            if (channel.target_node < 0) continue;
+            if (!isUsed(channel)) continue;
             const int input = animation.samplers[std::size_t(channel.sampler)].input;
             const Times times = _inputs[std::size_t(input)];
             if (times == Times::Good) continue;
@@ -304,9 +334,14 @@ private:
         { return elementName("animations", a, "samplers", std::size_t(channel.sampler)) + ".output"; };
         const auto channelName = [&] { return elementName("animations", a, "channels", c); };
 
-        const std::string wrong = wrongOutputFormat(output, channel.target_path);
+        const std::string wrong =
+            hasPointer(channel) ? wrongPointerOutput(output, channel) : wrongOutputFormat(output, channel.target_path);
         if (!wrong.empty())
             return fault(samplerName(), wrong + " for " + channel.target_path, formatText(output) + in(sampler.output));
+        const std::optional<PropertyPointer> property = propertyOf(channel);
+        if (property && property->member->isBoolean && sampler.interpolation != "STEP")
+            return fault(elementName("animations", a, "samplers", std::size_t(channel.sampler)) + ".interpolation",
+                         "STEP for " + channel.target_path, sampler.interpolation);
         const std::size_t values = valuesOfKey(channel);
         if (values == 0)
             return fault(channelName() + ".target", "a node with morph targets for weights",
@@ -317,6 +352,7 @@ private:
             return fault(samplerName(),
                          std::to_string(perTime) + " values for each of " + std::to_string(times) + " times",
                          std::to_string(output.count) + " values" + in(sampler.output));
+        if (property) return std::nullopt;
         warnOfMatrix(channel, channelName);
         if (std::string_view(channel.target_path) == "rotation") mendRotations(sampler, samplerName);
         return std::nullopt;
@@ -325,7 +361,7 @@ private:
     /// 1, or the number of morph targets for weights.
     std::size_t valuesOfKey(const tinygltf::AnimationChannel& channel) const
     {
-        if (std::string_view(channel.target_path) != "weights") return 1;
+        if (std::string_view(channel.target_path) != "weights" || weightOf(channel) >= 0) return 1;
         const int mesh = _model.nodes[std::size_t(channel.target_node)].mesh;
         return mesh < 0 ? 0 : _model.meshes[std::size_t(mesh)].primitives.front().targets.size();
     }

@@ -2,6 +2,7 @@
 #include "gltf/scene/Clips.h"
 
 #include "gltf/data/Accessor.h"
+#include "gltf/document/AnimationPointers.h"
 #include "gltf/file/Report.h"
 #include "gltf/scene/TransformBound.h"
 
@@ -110,12 +111,16 @@ bool ClipReader::addChannel(const tinygltf::Animation& animation, std::size_t in
 {
     const tinygltf::AnimationChannel& source = animation.channels[index];
     _channel = "channels[" + std::to_string(index) + "]";
-    if (source.target_node < 0) return true;
-    const auto node = static_cast<std::size_t>(source.target_node);
+    const std::optional<PropertyPointer> property = propertyOf(source);
+    if (source.target_node < 0 && !property) return true;
+    const auto node = static_cast<std::size_t>(source.target_node); // of no property
     const tinygltf::AnimationSampler& sampler = animation.samplers[static_cast<std::size_t>(source.sampler)];
     Channel channel;
-    channel.path = pathOf(source.target_path);
-    channel.target = channel.path == Channel::Path::Weights ? _morphs.ofNode[node] : _joints.ofNode[node];
+    channel.path = property ? Channel::Path::Weights : pathOf(source.target_path);
+    channel.target = property                                 ? _morphs.ofPointer.at(source.target_path)
+                     : channel.path == Channel::Path::Weights ? _morphs.ofNode[node]
+                                                              : _joints.ofNode[node];
+    channel.weight = weightOf(source);
     channel.interpolation = interpolationOf(sampler.interpolation);
     if (channel.path != Channel::Path::Weights && _joints.isSheared[node])
     {
@@ -127,6 +132,9 @@ bool ClipReader::addChannel(const tinygltf::Animation& animation, std::size_t in
     if (_channelBytes > _budget.left()) return fail("its keys take too many bytes, " + _budget.limitText());
     channel.times = readDoubles(_model, sampler.input);
     channel.values = readDoubles(_model, sampler.output);
+    if (property && property->member->isBoolean)
+        for (double& value : channel.values)
+            value = value == 0.0 ? 0.0 : 1.0;
     const Result<bool> added = _builder.add(std::move(channel));
     return added ? true : fail(added.error().message);
 }

@@ -2,6 +2,7 @@
 #include "gltf/scene/Drawables.h"
 
 #include "gltf/data/MaterialVariants.h"
+#include "gltf/document/AnimationPointers.h"
 #include "gltf/scene/Influences.h"
 
 #include <osgGpuAnimation/animation/bounds/JointRange.h>
@@ -19,7 +20,8 @@ namespace
 {
 
 constexpr std::size_t bytesADrawable = 1024;
-constexpr std::size_t bytesAVariant = 4096; // an osg::StateSet with a material's attributes and uniforms
+constexpr std::size_t bytesAVisibility = 32; // a node's number as text, and as a number
+constexpr std::size_t bytesAVariant = 4096;  // an osg::StateSet with a material's attributes and uniforms
 constexpr std::size_t bytesAnInfluencedVertex =
     SkinnedGeometry::maxInfluenceSets * (sizeof(osg::Vec4us) + sizeof(osg::Vec4));
 // A limit for each target. Drawables share the packed targets, but each computes its bounds vertex by vertex.
@@ -27,10 +29,10 @@ constexpr std::size_t bytesAMorphedVertex = 4 * sizeof(osg::Vec4);
 
 } // namespace
 
-Drawables::Drawables(const tinygltf::Model& model, std::shared_ptr<const AnimationSet> set, Meshes& meshes,
-                     Materials& materials, int variant, MemoryBudget& budget, Report& report)
-    : _model(model), _set(std::move(set)), _meshes(meshes), _materials(materials), _variants(variantNames(model)),
-      _variant(variant), _budget(budget), _report(report)
+Drawables::Drawables(const tinygltf::Model& model, const NodeTree& tree, std::shared_ptr<const AnimationSet> set,
+                     Meshes& meshes, Materials& materials, int variant, MemoryBudget& budget, Report& report)
+    : _model(model), _tree(tree), _set(std::move(set)), _meshes(meshes), _materials(materials),
+      _variants(variantNames(model)), _variant(variant), _budget(budget), _report(report)
 {
     if (_set) _entries = boundsOfEntries(*_set);
     std::map<std::vector<int>, int> skins;
@@ -102,6 +104,17 @@ double Drawables::farthestOf(const DrawablePlace& place, const MeshPrimitive& me
     return reach.of(radius);
 }
 
+void Drawables::setVisibility(osg::Geometry& geometry, const DrawablePlace& place) const
+{
+    const std::vector<int> nodes = place.hidden ? std::vector<int>() : _tree.visibilityWith(place.visibility);
+    const auto isHidden = [&](int node) {
+        return valueAtRest(_model, "/nodes/" + std::to_string(node) + "/extensions/KHR_node_visibility/visible")[0] ==
+               0;
+    };
+    if (place.hidden || std::any_of(nodes.begin(), nodes.end(), isHidden)) geometry.setNodeMask(0);
+    if (!nodes.empty()) markVisibility(geometry, nodes);
+}
+
 osg::ref_ptr<osg::Geometry> Drawables::make(const DrawablePlace& place)
 {
     const MeshPrimitive* mesh = meshPrimitive(place);
@@ -116,7 +129,8 @@ osg::ref_ptr<osg::Geometry> Drawables::make(const DrawablePlace& place)
     const bool palette = place.skin >= 0 || place.joint >= 0;
     const std::size_t bytesAVertex = (place.skin >= 0 ? bytesAnInfluencedVertex : 0) +
                                      (place.morph >= 0 ? mesh->targets.size() * bytesAMorphedVertex : 0);
-    const std::size_t bytes = mesh->positions->size() * bytesAVertex + bytesADrawable;
+    const std::size_t bytes = mesh->positions->size() * bytesAVertex + bytesADrawable +
+                              _tree.visibilityWith(place.visibility).size() * bytesAVisibility;
     if (!_budget.take(bytes))
     {
         _report.warn(mesh->label + ": it would take " + std::to_string(bytes) + " bytes, " + _budget.limitText() +
@@ -138,6 +152,7 @@ osg::ref_ptr<osg::Geometry> Drawables::make(const DrawablePlace& place)
     const int material = materials.materialIn(_variant);
     setColors(*geometry, *mesh, material, palette);
     geometry->addPrimitiveSet(mesh->primitiveSet);
+    setVisibility(*geometry, place);
     if (palette) setInfluences(*skinned, *mesh, place);
     if (place.morph >= 0) skinned->setMorphTargets(*_set, static_cast<std::size_t>(place.morph), mesh->targets);
 

@@ -3,6 +3,7 @@
 
 #include "gltf/scene/Materials.h"
 #include "gltf/scene/Meshes.h"
+#include "gltf/scene/NodeTree.h"
 #include "gltf/scene/TransformBound.h"
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
@@ -26,9 +27,11 @@ struct DrawablePlace
     int skin = -1;         ///< moves each vertex: the file's first skin with the same palette entries
     int joint = -1;        ///< of the skeleton: carries the whole primitive
     int morph = -1;        ///< index into the set's morphs
+    int visibility = -1;   ///< see NodeTree::visibility
+    bool hidden = false;   ///< see NodeTree::hidden
     bool mirrored = false; ///< with a joint: see MaterialUse
 
-    auto key() const { return std::tie(mesh, primitive, skin, joint, morph); }
+    auto key() const { return std::tie(mesh, primitive, skin, joint, morph, visibility, hidden); }
     bool operator<(const DrawablePlace& other) const { return key() < other.key(); }
 };
 
@@ -38,8 +41,8 @@ class Drawables
 public:
     /// set: null where nothing moves. variant: the one that drawables show at first, an index of variantNames(); -1:
     /// none.
-    Drawables(const tinygltf::Model& model, std::shared_ptr<const AnimationSet> set, Meshes& meshes,
-              Materials& materials, int variant, MemoryBudget& budget, Report& report);
+    Drawables(const tinygltf::Model& model, const NodeTree& tree, std::shared_ptr<const AnimationSet> set,
+              Meshes& meshes, Materials& materials, int variant, MemoryBudget& budget, Report& report);
 
     /// The first skin of the file with the same palette entries as this one.
     int firstAlike(int skin) const { return _firstAlike[static_cast<std::size_t>(skin)]; }
@@ -60,9 +63,11 @@ private:
     osg::StateSet* stateSet(const MeshPrimitive& mesh, MaterialUse use, int material);
     void setVariants(SkinnedGeometry& geometry, const MeshPrimitive& mesh, const PrimitiveMaterials& materials,
                      const MaterialUse& use);
+    void setVisibility(osg::Geometry& geometry, const DrawablePlace& place) const;
     void setColors(osg::Geometry& geometry, const MeshPrimitive& mesh, int material, bool palette);
 
     const tinygltf::Model& _model;
+    const NodeTree& _tree;
     std::shared_ptr<const AnimationSet> _set;
     Meshes& _meshes;
     Materials& _materials;

@@ -2,6 +2,8 @@
 #include "gltf/scene/Joints.h"
 
 #include "gltf/data/Accessor.h"
+#include "gltf/data/MaterialVariants.h"
+#include "gltf/document/AnimationPointers.h"
 #include "gltf/file/Report.h"
 #include "gltf/scene/NodeTransform.h"
 #include "gltf/scene/TransformBound.h"
@@ -113,6 +115,34 @@ std::vector<AffineMatrix> readInverseBinds(const tinygltf::Model& model, const t
 
 } // namespace
 
+void addNodesOfProperties(const tinygltf::Model& model, const NodeTree& tree, std::vector<bool>& nodes)
+{
+    using Object = PropertyMember::Object;
+    const std::vector<bool> materials = animatedObjects(model, Object::Material, model.materials.size());
+    const std::vector<bool> lights = animatedObjects(model, Object::Light, model.lights.size());
+    const std::vector<bool> cameras = animatedObjects(model, Object::Camera, model.cameras.size());
+    const auto isIn = [](const std::vector<bool>& flags, int index)
+    { return index >= 0 && flags[static_cast<std::size_t>(index)]; };
+    const auto isPrimitive = [&](const tinygltf::Primitive& primitive)
+    {
+        bool isAnimated = isIn(materials, primitive.material);
+        forEachVariantMaterial(primitive, [&](int material) { isAnimated = isAnimated || isIn(materials, material); });
+        return isAnimated;
+    };
+    std::vector<bool> meshes;
+    for (const tinygltf::Mesh& mesh : model.meshes)
+        meshes.push_back(std::any_of(mesh.primitives.begin(), mesh.primitives.end(), isPrimitive));
+    for (std::size_t index = 0; index < model.nodes.size(); ++index)
+    {
+        const tinygltf::Node& node = model.nodes[index];
+        const auto extension = node.extensions.find("KHR_lights_punctual");
+        const int light = extension == node.extensions.end() ? -1 : extension->second.Get("light").GetNumberAsInt();
+        const bool isHidable = tree.visibility[index] >= 0 && (node.mesh >= 0 || light >= 0);
+        if (isHidable || isIn(meshes, node.mesh) || isIn(lights, light) || isIn(cameras, node.camera))
+            nodes[index] = true;
+    }
+}
+
 bool isSkinned(const tinygltf::Node& node, const tinygltf::Primitive& primitive)
 {
     return node.skin >= 0 && primitive.attributes.count("JOINTS_0") > 0;
@@ -216,6 +246,11 @@ Morphs readMorphs(const tinygltf::Model& model)
         morph.defaults.resize(morphTargetCount(*mesh), 0.0f);
         morphs.ofNode[index] = static_cast<int>(morphs.weights.size());
         morphs.weights.push_back(std::move(morph));
+    }
+    for (MorphWeights& property : propertiesOf(model))
+    {
+        morphs.ofPointer[property.name] = static_cast<int>(morphs.weights.size());
+        morphs.weights.push_back(std::move(property));
     }
     return morphs;
 }

@@ -6,6 +6,8 @@
 #include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/animation/Skeleton.h>
 
+#include <map>
+#include <string>
 #include <vector>
 
 namespace osgGpuAnimation::gltf
@@ -29,6 +31,10 @@ struct Joints
 Result<Joints> buildJoints(const tinygltf::Model& model, const NodeTree& tree,
                            const std::vector<bool>& movedNodes = {});
 
+/// Sets the flags of the nodes whose mesh, light or camera has properties that clips animate, or whose visibility they
+/// animate: what is animated is part of the character. nodes: one per node.
+void addNodesOfProperties(const tinygltf::Model& model, const NodeTree& tree, std::vector<bool>& nodes);
+
 /// True if a primitive's vertices follow a skin: the node has one, and the primitive has JOINTS_0 (and WEIGHTS_0: the
 /// validation refuses one without the other).
 bool isSkinned(const tinygltf::Node& node, const tinygltf::Primitive& primitive);
@@ -43,11 +49,13 @@ std::vector<int> rigidJoints(const tinygltf::Model& model, const NodeTree& tree,
 /// All skins of the file, in its order (glTF 2.0, section 3.7.3). Absent inverseBindMatrices are identities.
 std::vector<Skin> readSkins(const tinygltf::Model& model, const Joints& joints);
 
-/// The morph weights of a file: one MorphWeights for each node whose mesh has morph targets.
+/// The morph weights of a file: one MorphWeights for each node whose mesh has morph targets, then one for each animated
+/// property.
 struct Morphs
 {
     std::vector<MorphWeights> weights;
-    std::vector<int> ofNode; ///< one per node: index into `weights`, -1 if it has none
+    std::vector<int> ofNode;              ///< one per node: index into `weights`, -1 if it has none
+    std::map<std::string, int> ofPointer; ///< by the pointer of a property: index into `weights`
 };
 
 /// Defaults: the node's weights, else the mesh's, else 0 (glTF 2.0, section 3.7.2.2).

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/scene/Materials.h"
 
+#include "gltf/document/AnimationPointers.h"
+
 #include <osgGpuAnimation/nodes/CharacterProgram.h>
 
 #include <osg/AlphaFunc>
@@ -85,7 +87,8 @@ std::string definesOf(const PbrMaterial& material)
 } // namespace
 
 Materials::Materials(const tinygltf::Model& model, bool fixedLighting, Textures& textures, Report& report)
-    : _model(model), _fixedLighting(fixedLighting), _textures(textures), _report(report), _maps(model, !fixedLighting)
+    : _model(model), _fixedLighting(fixedLighting), _textures(textures), _report(report), _maps(model, !fixedLighting),
+      _areAnimated(animatedObjects(model, PropertyMember::Object::Material, model.materials.size()))
 {
 }
 
@@ -179,6 +182,23 @@ PbrMaterial Materials::pbrMaterial(const tinygltf::Material& material, const Mat
     return result;
 }
 
+/// For AnimatedProperties: the mark, and the transforms of animated textures at rest.
+void Materials::setAnimated(osg::StateSet& state, const MaterialUse& use)
+{
+    if (use.material < 0 || !_areAnimated[static_cast<std::size_t>(use.material)]) return;
+    markMaterial(state, use.material);
+    for (const MaterialMap& map : _maps.of(use.material).maps)
+    {
+        if (map.animated.empty() || map.number < 0) continue;
+        const auto rest = [&](const char* part)
+        {
+            return valueAtRest(_model, "/materials/" + std::to_string(use.material) + '/' + map.animated +
+                                           "/extensions/KHR_texture_transform/" + part);
+        };
+        setTextureTransform(state, map.number, rest("offset").data(), rest("rotation")[0], rest("scale").data());
+    }
+}
+
 osg::ref_ptr<osg::StateSet> Materials::make(const MaterialUse& use)
 {
     const tinygltf::Material& material = materialOf(_model, use.material);
@@ -201,6 +221,7 @@ osg::ref_ptr<osg::StateSet> Materials::make(const MaterialUse& use)
         auto& colors = static_cast<osg::Material&>(*state->getAttribute(osg::StateAttribute::MATERIAL));
         if (usesArray) colors.setColorMode(osg::Material::AMBIENT_AND_DIFFUSE);
     }
+    setAnimated(*state, use);
     setSides(*state, material.doubleSided, use.mirrored, _fixedLighting);
     if (use.palette || !_fixedLighting)
     {

@@ -16,6 +16,7 @@
 #include <set>
 #include <string>
 #include <tuple>
+#include <vector>
 
 namespace osgGpuAnimation::gltf
 {
@@ -73,6 +74,7 @@ private:
     osg::ref_ptr<osg::StateSet> make(const MaterialUse& use);
     PbrMaterial pbrMaterial(const tinygltf::Material& material, const MaterialUse& use);
     PbrMaterial limited(const PbrMaterial& material);
+    void setAnimated(osg::StateSet& state, const MaterialUse& use);
     void warnOfMaps(int material, const MaterialMaps& maps);
 
     const tinygltf::Model& _model;
@@ -80,8 +82,9 @@ private:
     Textures& _textures;
     Report& _report;
     MapsOfMaterials _maps;
-    std::set<int> _warned;       ///< materials
-    std::set<std::string> _sets; ///< the shader defines of those in use
+    const std::vector<bool> _areAnimated; ///< by material
+    std::set<int> _warned;                ///< materials
+    std::set<std::string> _sets;          ///< the shader defines of those in use
     bool _hasTooManySets = false;
     std::map<MaterialUse, osg::ref_ptr<osg::StateSet>> _stateSets;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/scene/NodeTree.h"
 
+#include "gltf/document/AnimationPointers.h"
 #include "gltf/document/ValidateLods.h"
 #include "gltf/scene/NodeTransform.h"
 
@@ -89,11 +90,31 @@ Result<int> chooseScene(const tinygltf::Model& model, const ImportOptions& optio
     return count == 0 ? -1 : std::max(model.defaultScene, 0);
 }
 
+/// The node's own part of KHR_node_visibility.
+bool isVisible(const tinygltf::Node& node)
+{
+    const auto extension = node.extensions.find("KHR_node_visibility");
+    return extension == node.extensions.end() || !extension->second.Has("visible") ||
+           extension->second.Get("visible").Get<bool>();
+}
+
 } // namespace
 
 bool NodeTree::isMirrored(int node) const
 {
     return glm::determinant(glm::dmat3(toWorld[static_cast<std::size_t>(node)])) < 0.0;
+}
+
+std::vector<int> NodeTree::visibilityWith(int node) const
+{
+    std::vector<int> nodes;
+    while (node >= 0)
+    {
+        nodes.push_back(node);
+        const int parent = parents[static_cast<std::size_t>(node)];
+        node = parent < 0 ? -1 : visibility[static_cast<std::size_t>(parent)];
+    }
+    return nodes;
 }
 
 Result<NodeTree> buildNodeTree(const tinygltf::Model& model, const ImportOptions& options)
@@ -113,14 +134,21 @@ Result<NodeTree> buildNodeTree(const tinygltf::Model& model, const ImportOptions
     for (const int root : tree.roots)
         tree.drawn[static_cast<std::size_t>(root)] = true;
     tree.toWorld.resize(model.nodes.size());
+    tree.hidden.resize(model.nodes.size());
+    tree.visibility.resize(model.nodes.size(), -1);
+    const std::vector<bool> isAnimated = animatedObjects(model, PropertyMember::Object::Node, model.nodes.size());
     for (const int node : tree.order)
     {
         const auto index = static_cast<std::size_t>(node);
         tree.toWorld[index] = localMatrix(model.nodes[index]);
+        tree.hidden[index] = !isAnimated[index] && !isVisible(model.nodes[index]);
+        if (isAnimated[index]) tree.visibility[index] = node;
         if (tree.parents[index] < 0) continue;
         const auto parent = static_cast<std::size_t>(tree.parents[index]);
         tree.toWorld[index] = tree.toWorld[parent] * tree.toWorld[index];
         tree.drawn[index] = tree.drawn[parent];
+        if (tree.hidden[parent]) tree.hidden[index] = true;
+        if (tree.visibility[index] < 0) tree.visibility[index] = tree.visibility[parent];
         if (tree.levelOf[index] < 0) tree.levelOf[index] = tree.levelOf[parent];
     }
     return tree;

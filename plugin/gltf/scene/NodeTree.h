@@ -32,12 +32,17 @@ struct NodeTree
     std::vector<int> roots;          ///< of the drawn part
     std::vector<bool> drawn;         ///< at or below one of `roots`
     std::vector<glm::dmat4> toWorld; ///< at rest
+    std::vector<bool> hidden;        ///< it or a node above is not visible (KHR_node_visibility), in no clip
+    std::vector<int> visibility;     ///< the nearest node, itself or above, whose visibility clips animate; -1: none
     /// Levels of detail: siblings of the node that they stand for. No level is below another.
     std::vector<NodeLevel> levels;
     std::vector<int> levelOf; ///< the index into `levels` of the level that the node is, or is part of; -1: none
 
     /// True if the node at rest mirrors, so that front faces become back faces.
     bool isMirrored(int node) const;
+    /// All nodes that decide with this one: itself and those above whose visibility clips animate. node: one of
+    /// `visibility`; -1: none.
+    std::vector<int> visibilityWith(int node) const;
 };
 
 /// Error: the options name a scene that the file does not have.

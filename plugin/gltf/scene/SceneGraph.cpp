@@ -107,6 +107,8 @@ DrawablePlace SceneGraphBuilder::placeOf(std::size_t node, int primitive) const
         place.mirrored = _parts.tree.isMirrored(static_cast<int>(node));
     }
     if (place.skin >= 0 || place.joint >= 0) place.morph = _parts.morphs.ofNode[node];
+    place.visibility = _parts.tree.visibility[node];
+    place.hidden = _parts.tree.hidden[node];
     return place;
 }
 

@@ -2,6 +2,7 @@
 #include "gltf/view/Cameras.h"
 
 #include "gltf/data/UniqueNames.h"
+#include "gltf/document/AnimationPointers.h"
 #include "gltf/file/Report.h"
 
 #include <osgGpuAnimation/nodes/viewing/StartView.h>
@@ -38,6 +39,7 @@ std::vector<ImportedCamera> makeCameras(const tinygltf::Model& model, const Node
 {
     std::vector<ImportedCamera> cameras;
     UniqueNames names;
+    const std::vector<bool> areAnimated = animatedObjects(model, PropertyMember::Object::Camera, model.cameras.size());
     for (std::size_t index = 0; index < model.nodes.size(); ++index)
     {
         const tinygltf::Node& node = model.nodes[index];
@@ -46,6 +48,7 @@ std::vector<ImportedCamera> makeCameras(const tinygltf::Model& model, const Node
         if (camera.type.empty()) continue;
         const std::string& name = camera.name.empty() ? node.name : camera.name;
         cameras.push_back({node.camera, static_cast<int>(index), makeView(camera)});
+        if (areAnimated[static_cast<std::size_t>(node.camera)]) markCamera(*cameras.back().view, node.camera);
         cameras.back().view->setName(names.unique(name.empty() ? "camera " + std::to_string(node.camera) : name));
     }
     return cameras;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/view/Lights.h"
 
+#include "gltf/document/AnimationPointers.h"
+
 #include <osg/Math>
 
 #include <algorithm>
@@ -95,7 +97,7 @@ std::vector<ImportedLight> findLights(const tinygltf::Model& model, const NodeTr
     std::vector<ImportedLight> lights;
     for (std::size_t node = 0; node < model.nodes.size(); ++node)
     {
-        const int light = tree.drawn[node] ? lightOf(model.nodes[node]) : -1;
+        const int light = tree.drawn[node] && !tree.hidden[node] ? lightOf(model.nodes[node]) : -1;
         if (light >= 0 && !model.lights[static_cast<std::size_t>(light)].type.empty())
             lights.push_back({light, static_cast<int>(node), nullptr});
     }
@@ -106,6 +108,7 @@ void addLights(const tinygltf::Model& model, const NodeTree& tree, const osg::Ve
                osg::Group& root, std::vector<ImportedLight>& lights, Report& report)
 {
     unsigned int number = firstNumber;
+    const std::vector<bool> areAnimated = animatedObjects(model, PropertyMember::Object::Light, model.lights.size());
     for (const std::size_t index : nearest(model, tree, middle, lights, report))
     {
         ImportedLight& light = lights[index];
@@ -118,6 +121,9 @@ void addLights(const tinygltf::Model& model, const NodeTree& tree, const osg::Ve
             continue;
         }
         light.source = makeSource(model, light, *made.value());
+        if (areAnimated[source]) markLight(*light.source, light.light);
+        const std::vector<int> nodes = tree.visibilityWith(tree.visibility[static_cast<std::size_t>(light.node)]);
+        if (!nodes.empty()) markVisibility(*light.source, nodes);
         places.add(static_cast<std::size_t>(light.node), light.source);
         root.getOrCreateStateSet()->setMode(GL_LIGHT0 + number, osg::StateAttribute::ON);
         --number;

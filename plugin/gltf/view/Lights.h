@@ -25,7 +25,7 @@ struct ImportedLight
     osg::ref_ptr<osg::LightSource> source; ///< named after the light, else the node; null: beyond OpenGL's lights
 };
 
-/// The lights at the nodes of the drawn part, by node, without sources.
+/// The lights at the visible nodes of the drawn part, by node, without sources.
 std::vector<ImportedLight> findLights(const tinygltf::Model& model, const NodeTree& tree);
 
 /// Makes the sources: OpenGL's lights 1 to 7 (0 is the application's), in the order of the nodes, switched on for what

@@ -72,7 +72,7 @@ Aabb3d transformed(const PaletteEntry& entry, const Box& entryBox, const JointTo
 MixBounds::MixBounds(const AnimationSet& set, Boxes boxes) : _set(set), _boxes(std::move(boxes))
 {
     for (const MorphWeights& morph : set.morphs())
-        for (const float weight : morph.defaults)
+        for (const float weight : morph.isProperty() ? std::vector<float>() : morph.defaults)
             _largestRestWeight = std::max(_largestRestWeight, std::abs(static_cast<double>(weight)));
 }
 

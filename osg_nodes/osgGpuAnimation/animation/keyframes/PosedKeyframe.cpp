@@ -4,6 +4,9 @@
 #include <layout.glsl>
 
 #include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
 
 #include <algorithm>
 #include <atomic>
@@ -146,6 +149,18 @@ std::optional<glm::vec4> PosedNumbers::unitRotation(const glm::vec4& rotation)
     const double squared = glm::dot(q, q); // of floats: neither too large nor too small for a double
     if (!(squared > 0.0 && squared <= std::numeric_limits<double>::max())) return std::nullopt;
     return glm::vec4(q / std::sqrt(squared));
+}
+
+JointTransform PosedNumbers::decomposed(const glm::dmat4& matrix)
+{
+    glm::dmat3 axes(matrix);
+    glm::dvec3 scale(glm::length(axes[0]), glm::length(axes[1]), glm::length(axes[2]));
+    if (glm::determinant(axes) < 0.0) scale.x = -scale.x;
+    axes[0] /= scale.x;
+    axes[1] = glm::normalize(axes[1] - glm::dot(axes[0], axes[1]) * axes[0]);
+    axes[2] = glm::cross(axes[0], axes[1]);
+    const glm::dvec4 rotation = Rotation::numbers(glm::quat_cast(axes));
+    return {glm::vec4(glm::dvec4(glm::dvec3(matrix[3]), 0.0)), glm::vec4(rotation), glm::vec4(glm::dvec4(scale, 0.0))};
 }
 
 } // namespace osgGpuAnimation

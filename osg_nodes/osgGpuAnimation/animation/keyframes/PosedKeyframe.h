@@ -4,6 +4,7 @@
 #include <osgGpuAnimation/animation/keyframes/TrackBlend.h>
 
 #include <glm/geometric.hpp>
+#include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
@@ -84,6 +85,9 @@ inline bool isAllowed(const JointTransform& transform)
     const bool hasDirection = (squared > 1e-20f && squared < 1e20f) || unitRotation(transform.rotation).has_value();
     return hasDirection && isAllowed(glm::vec3(transform.translation)) && isAllowed(glm::vec3(transform.scale));
 }
+/// T · R · S of a matrix with an inverse, by its columns. A shear is dropped: the rotation keeps the direction of the
+/// first column and the plane of the first two.
+JointTransform decomposed(const glm::dmat4& matrix);
 
 } // namespace PosedNumbers
 

@@ -182,7 +182,13 @@ void PaletteBuilder::placeWeights()
     int track = static_cast<int>(_skeleton.jointCount());
     for (const MorphWeights& morph : _morphs)
     {
-        _layout.entryOfMorph.push_back(morph.blockCount() == 0 ? -1 : static_cast<int>(_layout.entries.size()));
+        const bool hasEntries = morph.blockCount() > 0 && !morph.isProperty();
+        _layout.entryOfMorph.push_back(hasEntries ? static_cast<int>(_layout.entries.size()) : -1);
+        if (!hasEntries)
+        {
+            track += static_cast<int>(morph.blockCount());
+            continue;
+        }
         for (std::size_t block = 0; block < morph.blockCount(); ++block)
         {
             PaletteEntry entry;

@@ -114,9 +114,11 @@ RigMatch::RigMatch(const Rig& from, const Rig& to, const RetargetOptions& option
     for (std::size_t morph = 0; morph < to.morphs.size(); ++morph)
     {
         int& source = _morphCounterparts[morph];
-        const bool fits = source >= 0 && from.morphs[static_cast<std::size_t>(source)].defaults.size() ==
-                                             to.morphs[morph].defaults.size();
-        if (!fits) source = -1;
+        if (source < 0) continue;
+        const MorphWeights& counterpart = from.morphs[static_cast<std::size_t>(source)];
+        if (counterpart.defaults.size() != to.morphs[morph].defaults.size() ||
+            counterpart.isProperty() != to.morphs[morph].isProperty())
+            source = -1;
     }
 }
 

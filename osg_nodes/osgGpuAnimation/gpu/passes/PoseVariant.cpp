@@ -58,7 +58,9 @@ PoseVariant PoseVariant::of(const PoseBatch& batch)
     PoseVariant variant;
     variant.hasSplines =
         std::any_of(clips.begin(), clips.end(), [](const Clip& clip) { return clip.form() == Clip::Form::Spline; });
-    variant.hasWeights = !batch.set().morphs().empty();
+    const std::vector<MorphWeights>& morphs = batch.set().morphs();
+    variant.hasWeights =
+        std::any_of(morphs.begin(), morphs.end(), [](const MorphWeights& morph) { return !morph.isProperty(); });
     variant.hasSeveralSamples = batch.needs().mixing;
     variant.hasLayers = batch.needs().layers;
     variant.hasMasks = batch.needs().masks;

@@ -44,7 +44,7 @@ void forEachMeshBelow(osg::Node& node, Function function)
     public:
         explicit Visitor(Function& function) : NodeVisitor(TRAVERSE_ALL_CHILDREN), _function(function)
         {
-            setNodeMaskOverride(~0u);
+            setNodeMaskOverride(~0u); // a mesh that is hidden now may be shown later
         }
         void apply(osg::Drawable& drawable) override
         {

@@ -148,6 +148,7 @@ void StartView::follow(osg::Node& node)
 {
     const osg::CameraView* const camera = findCamera(node, _camera);
     // Not lock(): a viewer on the stack, as osgviewer's, has no references.
+    if (camera && _view.valid() && isMarked(*camera)) setProjection(*_view->getCamera(), *camera);
     if (camera && _view.valid() && _view->getCameraManipulator())
         _view->getCameraManipulator()->setByMatrix(viewToWorld(*camera));
 }

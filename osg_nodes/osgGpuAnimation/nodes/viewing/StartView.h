@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <osgGpuAnimation/nodes/mesh/AnimatedProperties.h>
+
 #include <osg/Camera>
 #include <osg/CameraView>
 #include <osg/observer_ptr>
@@ -11,10 +13,6 @@
 
 namespace osgGpuAnimation
 {
-
-/// The name of the user value (double, scene units) that an osg::CameraView has if its projection is parallel: the
-/// height of what it shows. OSG's CameraView has only fields of view.
-constexpr const char* orthographicHeightName = "orthographicHeight";
 
 /// Sets the camera's projection to that of the view, for the aspect ratio of the camera's viewport: perspective by a
 /// vertical field of view, or parallel by orthographicHeightName. A CameraView with neither changes nothing.

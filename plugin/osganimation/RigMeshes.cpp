@@ -88,6 +88,12 @@ private:
                 const std::vector<osg::StateSet*>& states)
     {
         RigMesh mesh{&rig, merged(states), {}, {}};
+        if (!rig.getInfluenceMap())
+        {
+            _warnings.push_back("mesh \"" + rig.getName() + "\": it has no influence map; it is left out");
+            meshes.push_back(std::move(mesh)); // without bones
+            return;
+        }
         for (const auto& [name, influence] : *rig.getInfluenceMap())
         {
             static_cast<void>(influence);

@@ -233,6 +233,25 @@ TEST_F(JointAttachmentTest, BoundsOfTheCharacterHoldWhatIsAttached)
     EXPECT_LE((osg::Vec3d(bound.center()) - osg::Vec3d(0, 50, 1)).length(), bound.radius() + 1e-4);
 }
 
+TEST_F(JointAttachmentTest, BoundsOfClipsLeaveOutTheMeshesOfARider)
+{
+    const auto boundsWith = [](osg::Node* rider)
+    {
+        const osg::ref_ptr<JointAttachment> seat = new JointAttachment("tip");
+        if (rider) seat->addChild(rider);
+        const osg::ref_ptr<AnimatedCharacter> horse = makeTestCharacter();
+        horse->addChild(seat);
+        horse->computeClipBounds();
+        return horse->getClipBounds(0);
+    };
+    const osg::ref_ptr<AnimatedCharacter> rider = makeTestCharacter();
+    for (osg::Vec3& vertex : static_cast<osg::Vec3Array&>(*rider->getChild(0)->asGeometry()->getVertexArray()))
+        vertex *= 100.0f;
+    const osg::BoundingBox alone = boundsWith(nullptr), ridden = boundsWith(rider);
+    EXPECT_EQ(alone._min, ridden._min);
+    EXPECT_EQ(alone._max, ridden._max);
+}
+
 TEST_F(JointAttachmentTest, ClonesCarryTheirOwn)
 {
     osg::ref_ptr<AnimatedCharacter> one = characterWith(new JointAttachment("tip"));

@@ -288,9 +288,16 @@ TEST_F(ConvertedScenesGLTest, morphTargetsThatDoNotFitAreLeftOut)
     scene.lower->addChild(mouth);
     loose->addDrawable(morphingStrip(osgAnimation::MorphGeometry::NORMALIZED));
     scene.root->addChild(loose);
+    osg::ref_ptr<osg::Geode> coat = new osg::Geode;
+    osg::ref_ptr<osgAnimation::RigGeometry> rig = new osgAnimation::RigGeometry; // without an influence map
+    rig->setName("coat");
+    rig->setSourceGeometry(other);
+    coat->addDrawable(rig);
+    scene.skeleton->addChild(coat);
     EXPECT_EQ(
         osganimation::convertOsgAnimation(*scene.root).warnings,
         (std::vector<std::string>{"mesh \"mouth\": its morph targets have other numbers of vertices; they are left out",
+                                  "mesh \"coat\": it has no influence map; it is left out",
                                   "MorphGeometry that no bone carries stays as it is"}));
 }
 

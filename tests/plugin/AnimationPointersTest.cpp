@@ -276,6 +276,35 @@ TEST(AnimationPointersTest, aFaultCostsItsChannelAloneAndNamesThePointer)
     expectAnswer(answer, Expect::Warn, "samplers[0].interpolation: expected STEP for /nodes/0/extensions");
 }
 
+/// One mesh of many nodes, pointed at by many channels.
+TEST(AnimationPointersTest, manyPointersToOneMeshEndAtALimit)
+{
+    ModelBuilder file = movingFile(false);
+    Json document = Json::parse(file.text());
+    const Json node = {{"mesh", 0}};
+    for (int i = 0; i < 40000; ++i)
+    {
+        document["scenes"][0]["nodes"].push_back(document["nodes"].size());
+        document["nodes"].push_back(node);
+    }
+    Json& channels = document["animations"][0]["channels"];
+    const Json channel = channels[3];
+    for (const char* pointer : {"/meshes/0/weights/0", "/meshes/0/weights/1", "/meshes/0/weights/0"})
+    {
+        channels.push_back(channel);
+        channels.back()["target"] = target(pointer);
+    }
+    const LoadedDocument answer = load(document.dump());
+    const auto count = [&](const char* part)
+    {
+        const std::vector<std::string>& warnings = answer.messages.warnings;
+        return std::count_if(warnings.begin(), warnings.end(),
+                             [&](const std::string& warning) { return warning.find(part) != std::string::npos; });
+    };
+    EXPECT_EQ(count("the file's pointers move more than 65536 nodes"), 1);
+    EXPECT_EQ(count("another channel animates it"), 1);
+}
+
 // Curves are those of any channel. A group of properties is complete, with the file's values or the defaults.
 TEST(AnimationPointersTest, propertiesHaveTheirCurvesAndValuesAtRest)
 {

@@ -227,6 +227,47 @@ TEST(FileLodsTest, levelsThatContainEachOtherAreNoCycle)
     EXPECT_EQ(lodsOf(*model.root).size(), 1u);
 }
 
+TEST(FileLodsTest, levelsCountAsTheDepthOfTheirNode)
+{
+    ModelBuilder file;
+    int above = file.node("top"), level = file.node("level");
+    const int first = level;
+    for (int depth = 1; depth < 6; ++depth)
+        above = file.node("above", above, depth == 5 ? file.triangle() : -1);
+    for (int depth = 1; depth < 4; ++depth)
+        level = file.node("below", level, depth == 3 ? file.triangle() : -1);
+    Json document = Json::parse(file.text());
+    document["nodes"][above]["extensions"]["MSFT_lod"]["ids"] = {first};
+    document["scenes"][0]["nodes"] = {0};
+    ImportOptions options;
+    for (const std::size_t most : {std::size_t(8), std::size_t(9)})
+    {
+        options.maxNodeDepth = most;
+        const Result<ImportedModel> model = importModel(document.dump(), "", options);
+        ASSERT_TRUE(model) << model.error().message;
+        const std::vector<std::string>& warnings = model.value().messages.warnings;
+        if (most == 9)
+        {
+            EXPECT_TRUE(warnings.empty()) << warnings.front();
+            continue;
+        }
+        ASSERT_EQ(warnings.size(), 1u);
+        EXPECT_NE(warnings[0].find("expected a depth of at most 8 nodes (limit maxNodeDepth), found 9"),
+                  std::string::npos)
+            << warnings[0];
+    }
+}
+
+TEST(FileLodsTest, levelsAreHiddenWithTheirNode)
+{
+    Json document = levelsDocument();
+    document["nodes"][body]["extensions"]["KHR_node_visibility"]["visible"] = false;
+    const ImportedModel model = importedDocument(document);
+    for (const osg::LOD* lod : lodsOf(*model.root))
+        for (unsigned int level = 0; level < lod->getNumChildren(); ++level)
+            EXPECT_EQ(lod->getChild(level)->getNodeMask() == 0, lod == lodsOf(*model.root)[0]) << level;
+}
+
 TEST(FileLodsTest, levelsOfMaterialsAreOneNote)
 {
     Json document = baseDocument();

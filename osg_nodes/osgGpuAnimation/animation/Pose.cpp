@@ -4,7 +4,6 @@
 #include <osgGpuAnimation/animation/bounds/JointRange.h>
 #include <osgGpuAnimation/animation/constraints/ConstraintSolver.h>
 #include <osgGpuAnimation/animation/keyframes/PosedKeyframe.h>
-#include <osgGpuAnimation/animation/keyframes/TrackBlend.h>
 
 #include <layout.glsl>
 
@@ -59,9 +58,8 @@ bool contains(const PoseExtent::Joint& known, const glm::uvec4* texels)
         const glm::vec3 moved = offset(Part::Translation, known.translation);
         if (!known.moves || !(glm::dot(moved, moved) <= 0.999f * known.shift * known.shift)) return false;
     }
-    if (!isSet(Part::Scale)) return true;
     const glm::vec3 grown = glm::abs(offset(Part::Scale, known.scale));
-    return known.scales && std::max({grown.x, grown.y, grown.z}) <= 0.999f * known.stretch;
+    return !isSet(Part::Scale) || (known.scales && std::max({grown.x, grown.y, grown.z}) <= 0.999f * known.stretch);
 }
 
 /// Lets the ball or cube of an extent reach a value. It grows around its centre up to the fourfold margin, so that a
@@ -297,9 +295,10 @@ void JointPose::growExtent(std::size_t firstJoint, std::size_t endJoint)
     float longest = 0.0f;
     for (std::size_t joint = firstJoint; joint < endJoint; ++joint)
     {
-        const bool isKnown = joint < _extent->joints.size();
-        if (isKnown && contains(_extent->joints[joint], &_keyframe->texels()[3 * joint])) continue;
-        if (_keyframe->setNumbers(joint) == 0) continue;
+        if (joint < _extent->joints.size() && contains(_extent->joints[joint], &_keyframe->texels()[3 * joint]))
+            continue;
+        const std::uint32_t numbers = _keyframe->setNumbers(joint);
+        if (numbers == 0) continue;
         if (!grown)
         {
             grown = std::make_shared<PoseExtent>(*_extent);
@@ -307,7 +306,6 @@ void JointPose::growExtent(std::size_t firstJoint, std::size_t endJoint)
         }
         grown->joints.resize(_set->skeleton().jointCount());
         PoseExtent::Joint& known = grown->joints[joint];
-        const std::uint32_t numbers = _keyframe->setNumbers(joint);
         const auto has = [&](Part part) { return (numbers >> 4 * part & partBits) != 0; };
         const JointTransform posed = transform(joint);
         known.turns = has(Part::Rotation);
@@ -567,11 +565,13 @@ void properties(const AnimationSet& set, const PoseInstruction& instruction, std
 {
     outNumbers.clear();
     const Sources sources(set, instruction);
+    JointTransform block;
     for (std::size_t morph = 0; morph < set.morphs().size(); ++morph)
         for (std::size_t w = 0; set.morphs()[morph].isProperty() && w < set.morphs()[morph].defaults.size(); ++w)
         {
-            const std::size_t track = set.firstTrackOfMorph(morph) + w / MorphWeights::weightsPerBlock;
-            outNumbers.push_back(sources.track(track).number(w % MorphWeights::weightsPerBlock));
+            const std::size_t number = w % MorphWeights::weightsPerBlock;
+            if (number == 0) block = sources.track(set.firstTrackOfMorph(morph) + w / MorphWeights::weightsPerBlock);
+            outNumbers.push_back(block.number(number));
         }
 }
 

@@ -71,7 +71,7 @@ void FeedbackScope::forgetActiveTexture()
 FeedbackVertexArrays::Names& FeedbackVertexArrays::of(osg::State& state)
 {
     const auto known =
-        std::find_if(_names.begin(), _names.end(), [&](const Names& names) { return names.state == &state; });
+        std::find_if(_names.begin(), _names.end(), [&](const Names& names) { return names.state.get() == &state; });
     if (known != _names.end()) return *known;
     _names.erase(std::remove_if(_names.begin(), _names.end(), [](const Names& names) { return !names.state.valid(); }),
                  _names.end());

@@ -20,7 +20,7 @@ using Object = PropertyMember::Object;
 
 const char* const extensionName = "KHR_animation_pointer";
 const char* const weightName = "weight";
-constexpr std::size_t mostAdded = 65536; // nodes of all pointers: many may show one mesh
+constexpr std::size_t mostVisited = 65536; // nodes of all pointers: many may show one mesh
 
 const char* const nameOfObject[] = {"materials", "extensions.KHR_lights_punctual.lights", "cameras", "nodes"};
 
@@ -131,7 +131,7 @@ private:
     std::set<std::pair<int, int>> _takenWeights;    ///< node and weight
     std::set<int> _nodesWithTakenWeights;           ///< some of their weights are taken one by one
     std::map<int, std::vector<int>> _nodesOfMesh;
-    std::size_t _addedCount = 0;
+    std::size_t _visitedCount = 0;
 };
 
 void PointerResolver::refuse(const std::string& why)
@@ -182,8 +182,9 @@ void PointerResolver::addNodes(const TransformPointer& pointer)
 {
     for (const int index : pointer.isMesh ? nodesOf(pointer.index) : std::vector<int>{pointer.index})
     {
-        if (isTaken(index, pointer.path, pointer.weight) || _addedCount >= mostAdded) continue;
-        ++_addedCount;
+        if (_visitedCount == mostVisited) return;
+        ++_visitedCount;
+        if (isTaken(index, pointer.path, pointer.weight)) continue;
         if (pointer.weight >= 0)
         {
             _takenWeights.insert({index, pointer.weight});
@@ -203,8 +204,11 @@ void PointerResolver::resolveTransform(const TransformPointer& pointer)
 {
     const std::string fault = faultOf(pointer);
     if (!fault.empty()) return refuse(fault);
+    if (!_taken.insert({-1, _pointer}).second) return refuse("another channel animates it");
     const std::size_t before = _added.size();
     addNodes(pointer);
+    if (_visitedCount == mostVisited)
+        return refuse("the file's pointers move more than " + std::to_string(mostVisited) + " nodes");
     if (_added.size() == before)
         return refuse(pointer.isMesh ? "no node shows the mesh with its own weights, or another channel animates them"
                                      : "another channel animates it");

@@ -430,7 +430,7 @@ Result<tinygltf::Model> load(const std::string& bytes, const std::string& fileNa
     if (!error) error = decompressDraco(document["meshes"], budget, model);
     if (!error) error = validateAccessors(model, known, budget);
     if (!error) error = validateNodes(model, options.maxNodeDepth, report);
-    if (!error) validateLods(model, report);
+    if (!error) validateLods(model, options.maxNodeDepth, report);
     if (!error) error = validateMeshes(model, budget, report);
     if (!error) error = validateAnimations(model, report);
     if (error) return *error;

@@ -56,8 +56,9 @@ std::optional<std::vector<double>> readCoverage(const tinygltf::Value& coverage,
 class LodValidation
 {
 public:
-    explicit LodValidation(const tinygltf::Model& model)
-        : _model(model), _parents(model.nodes.size(), -1), _roots(model.nodes.size(), -1), _parts(model.nodes.size()),
+    LodValidation(const tinygltf::Model& model, std::size_t mostDepth)
+        : _model(model), _mostDepth(mostDepth), _depths(model.nodes.size(), 1), _heights(model.nodes.size(), 1),
+          _parents(model.nodes.size(), -1), _roots(model.nodes.size(), -1), _parts(model.nodes.size()),
           _isLevel(model.nodes.size(), false), _hasGroup(model.nodes.size(), false), _scenesOf(model.nodes.size())
     {
         for (std::size_t node = 0; node < model.nodes.size(); ++node)
@@ -68,10 +69,15 @@ public:
         for (std::size_t next = 0; next < _order.size(); ++next)
         {
             const int node = _order[next];
-            _roots[at(node)] = _parents[at(node)] < 0 ? node : _roots[at(_parents[at(node)])];
+            const int parent = _parents[at(node)];
+            _roots[at(node)] = parent < 0 ? node : _roots[at(parent)];
+            if (parent >= 0) _depths[at(node)] = _depths[at(parent)] + 1;
             const std::vector<int>& children = model.nodes[at(node)].children;
             _order.insert(_order.end(), children.begin(), children.end());
         }
+        for (auto node = _order.rbegin(); node != _order.rend(); ++node)
+            if (const int parent = _parents[at(*node)]; parent >= 0)
+                _heights[at(parent)] = std::max(_heights[at(parent)], _heights[at(*node)] + 1);
         for (std::size_t scene = 0; scene < model.scenes.size(); ++scene)
             for (const int node : model.scenes[scene].nodes)
                 _scenesOf[at(node)].push_back(scene);
@@ -123,6 +129,9 @@ private:
                          found + ", a child of " + elementName("nodes", at(_parents[at(level)])));
         if (_parts[at(level)] || (_parents[at(level)] < 0 && _hasGroup[at(level)]))
             return fault(name, "a node without levels of detail at or below it", found);
+        if (_depths[at(node)] + _heights[at(level)] - 1 > _mostDepth)
+            return fault(name, "a depth of at most " + std::to_string(_mostDepth) + " nodes (limit maxNodeDepth)",
+                         std::to_string(_depths[at(node)] + _heights[at(level)] - 1));
         for (const std::size_t scene : _scenesOf[at(level)])
             if (!isIn(node, scene))
                 return fault(name, "a node in one place",
@@ -137,6 +146,9 @@ private:
     }
 
     const tinygltf::Model& _model;
+    std::size_t _mostDepth;
+    std::vector<std::size_t> _depths;  ///< by node: 1 for roots
+    std::vector<std::size_t> _heights; ///< by node: 1 for nodes without children
     std::vector<int> _order;
     std::vector<int> _parents; ///< -1 for roots
     std::vector<int> _roots;   ///< one per node: the root of its tree
@@ -161,12 +173,12 @@ void noteMaterials(tinygltf::Model& model, Report& report)
 
 } // namespace
 
-void validateLods(tinygltf::Model& model, Report& report)
+void validateLods(tinygltf::Model& model, std::size_t mostDepth, Report& report)
 {
     noteMaterials(model, report);
     const auto hasLods = [](const tinygltf::Node& node) { return node.extensions.count(lodExtension) > 0; };
     if (std::none_of(model.nodes.begin(), model.nodes.end(), hasLods)) return;
-    LodValidation validation(model);
+    LodValidation validation(model, mostDepth);
     for (const int index : validation.order())
     {
         tinygltf::Node& node = model.nodes[static_cast<std::size_t>(index)];

@@ -5,6 +5,7 @@
 
 #include <tiny_gltf.h>
 
+#include <cstddef>
 #include <vector>
 
 namespace osgGpuAnimation::gltf
@@ -17,8 +18,8 @@ namespace osgGpuAnimation::gltf
 ///
 /// MSFT_screencoverage in the extras has one number for each level, or none for the last: from 1 to 0, not ascending.
 /// Others are left out with a warning. Levels of materials are left out with one note.
-/// model: its nodes are valid, see validateNodes().
-void validateLods(tinygltf::Model& model, Report& report);
+/// model: its nodes are valid, see validateNodes(). mostDepth: of the nodes with their levels, as there.
+void validateLods(tinygltf::Model& model, std::size_t mostDepth, Report& report);
 
 /// A node with its levels of detail.
 struct LodGroup

@@ -113,24 +113,26 @@ std::string namesText(const std::vector<std::string>& names)
 class JointsByName
 {
 public:
-    explicit JointsByName(const Skeleton& skeleton) : _skeleton(skeleton)
+    explicit JointsByName(const Skeleton& skeleton)
     {
         for (const Joint& joint : skeleton.joints())
+        {
+            _exact.emplace(joint.name, &joint.name);
             _names.emplace(bareJointName(joint.name), &joint.name);
+        }
     }
 
     /// The joint's own name, of the first joint if there are several; null: there is none.
     const std::string* find(const std::string& name) const
     {
-        if (const int joint = _skeleton.findJoint(name); joint >= 0)
-            return &_skeleton.joint(static_cast<std::size_t>(joint)).name;
+        if (const auto exact = _exact.find(name); exact != _exact.end()) return exact->second;
         const auto found = _names.find(bareJointName(name));
         return found == _names.end() ? nullptr : found->second;
     }
 
 private:
-    const Skeleton& _skeleton;
-    std::unordered_map<std::string, const std::string*> _names;
+    std::unordered_map<std::string, const std::string*> _exact;
+    std::unordered_map<std::string, const std::string*> _names; ///< by bare name
 };
 
 RetargetOptions retargetOptions(const ClipJoints& joints, const Skeleton& model, const Skeleton& clips)

@@ -107,11 +107,8 @@ double Drawables::farthestOf(const DrawablePlace& place, const MeshPrimitive& me
 void Drawables::setVisibility(osg::Geometry& geometry, const DrawablePlace& place) const
 {
     const std::vector<int> nodes = place.hidden ? std::vector<int>() : _tree.visibilityWith(place.visibility);
-    const auto isHidden = [&](int node) {
-        return valueAtRest(_model, "/nodes/" + std::to_string(node) + "/extensions/KHR_node_visibility/visible")[0] ==
-               0;
-    };
-    if (place.hidden || std::any_of(nodes.begin(), nodes.end(), isHidden)) geometry.setNodeMask(0);
+    const bool isHidden = place.visibility >= 0 && _tree.hiddenAtRest[static_cast<std::size_t>(place.visibility)];
+    if (place.hidden || isHidden) geometry.setNodeMask(0);
     if (!nodes.empty()) markVisibility(geometry, nodes);
 }
 

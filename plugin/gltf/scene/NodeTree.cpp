@@ -37,7 +37,7 @@ AddedSiblings addLevels(const tinygltf::Model& model, NodeTree& tree)
             const int node = groups[group].nodes[level];
             const float minPixels = static_cast<float>(groups[group].shares[level] * viewHeight);
             tree.levelOf[static_cast<std::size_t>(node)] = static_cast<int>(tree.levels.size());
-            tree.levels.push_back({node, group, minPixels, maxPixels});
+            tree.levels.push_back({node, groups[group].nodes.front(), group, minPixels, maxPixels});
             maxPixels = minPixels;
             if (level > 0) added[groups[group].nodes.front()].push_back(node);
         }
@@ -105,14 +105,22 @@ bool NodeTree::isMirrored(int node) const
     return glm::determinant(glm::dmat3(toWorld[static_cast<std::size_t>(node)])) < 0.0;
 }
 
+int NodeTree::above(int node) const
+{
+    const int level = levelOf[static_cast<std::size_t>(node)];
+    const NodeLevel* const first = level < 0 ? nullptr : &levels[static_cast<std::size_t>(level)];
+    if (first && first->node == node && first->firstNode != node) return first->firstNode;
+    return parents[static_cast<std::size_t>(node)];
+}
+
 std::vector<int> NodeTree::visibilityWith(int node) const
 {
     std::vector<int> nodes;
     while (node >= 0)
     {
         nodes.push_back(node);
-        const int parent = parents[static_cast<std::size_t>(node)];
-        node = parent < 0 ? -1 : visibility[static_cast<std::size_t>(parent)];
+        const int next = above(node);
+        node = next < 0 ? -1 : visibility[static_cast<std::size_t>(next)];
     }
     return nodes;
 }
@@ -135,6 +143,7 @@ Result<NodeTree> buildNodeTree(const tinygltf::Model& model, const ImportOptions
         tree.drawn[static_cast<std::size_t>(root)] = true;
     tree.toWorld.resize(model.nodes.size());
     tree.hidden.resize(model.nodes.size());
+    tree.hiddenAtRest.resize(model.nodes.size());
     tree.visibility.resize(model.nodes.size(), -1);
     const std::vector<bool> isAnimated = animatedObjects(model, PropertyMember::Object::Node, model.nodes.size());
     for (const int node : tree.order)
@@ -142,13 +151,19 @@ Result<NodeTree> buildNodeTree(const tinygltf::Model& model, const ImportOptions
         const auto index = static_cast<std::size_t>(node);
         tree.toWorld[index] = localMatrix(model.nodes[index]);
         tree.hidden[index] = !isAnimated[index] && !isVisible(model.nodes[index]);
+        tree.hiddenAtRest[index] = !isVisible(model.nodes[index]);
         if (isAnimated[index]) tree.visibility[index] = node;
+        if (const int above = tree.above(node); above >= 0)
+        {
+            const auto shown = static_cast<std::size_t>(above);
+            if (tree.hidden[shown]) tree.hidden[index] = true;
+            if (tree.hiddenAtRest[shown]) tree.hiddenAtRest[index] = true;
+            if (tree.visibility[index] < 0) tree.visibility[index] = tree.visibility[shown];
+        }
         if (tree.parents[index] < 0) continue;
         const auto parent = static_cast<std::size_t>(tree.parents[index]);
         tree.toWorld[index] = tree.toWorld[parent] * tree.toWorld[index];
         tree.drawn[index] = tree.drawn[parent];
-        if (tree.hidden[parent]) tree.hidden[index] = true;
-        if (tree.visibility[index] < 0) tree.visibility[index] = tree.visibility[parent];
         if (tree.levelOf[index] < 0) tree.levelOf[index] = tree.levelOf[parent];
     }
     return tree;

@@ -17,6 +17,7 @@ namespace osgGpuAnimation::gltf
 struct NodeLevel
 {
     int node = -1;          ///< the level's own
+    int firstNode = -1;     ///< that of the group's first level: the node that it stands for
     std::size_t group = 0;  ///< the same for all levels of one node
     float minPixels = 0.0f; ///< the size on screen that it is drawn from: the diameter of its bounding sphere
     float maxPixels = 0.0f; ///< and below which; the largest float for the most detailed level
@@ -33,6 +34,7 @@ struct NodeTree
     std::vector<bool> drawn;         ///< at or below one of `roots`
     std::vector<glm::dmat4> toWorld; ///< at rest
     std::vector<bool> hidden;        ///< it or a node above is not visible (KHR_node_visibility), in no clip
+    std::vector<bool> hiddenAtRest;  ///< the same at rest, where clips animate the visibility, too
     std::vector<int> visibility;     ///< the nearest node, itself or above, whose visibility clips animate; -1: none
     /// Levels of detail: siblings of the node that they stand for. No level is below another.
     std::vector<NodeLevel> levels;
@@ -40,6 +42,9 @@ struct NodeTree
 
     /// True if the node at rest mirrors, so that front faces become back faces.
     bool isMirrored(int node) const;
+    /// The node whose visibility counts for this one, too: its parent; of a further level of detail, the node that it
+    /// stands for. -1: none.
+    int above(int node) const;
     /// All nodes that decide with this one: itself and those above whose visibility clips animate. node: one of
     /// `visibility`; -1: none.
     std::vector<int> visibilityWith(int node) const;

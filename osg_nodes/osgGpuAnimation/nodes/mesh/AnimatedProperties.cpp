@@ -230,7 +230,7 @@ bool isMeshMarked(const osg::Drawable& mesh)
     return !visibilityOf(mesh).empty() || (mesh.getStateSet() && markOf(*mesh.getStateSet(), materialMark));
 }
 
-/// Calls visit for the lights and camera views at and below a node.
+/// Calls visit for the lights and camera views at and below a node, but for those of other characters below.
 template <typename Visit>
 class MarkedNodes : public osg::NodeVisitor
 {
@@ -238,6 +238,10 @@ public:
     explicit MarkedNodes(Visit visit) : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN), _visit(std::move(visit))
     {
         setNodeMaskOverride(~0u);
+    }
+    void apply(osg::Group& group) override
+    {
+        if (!dynamic_cast<PosedMeshSource*>(&group)) traverse(group);
     }
     void apply(osg::LightSource& source) override
     {

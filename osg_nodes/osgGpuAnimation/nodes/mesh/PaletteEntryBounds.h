@@ -13,6 +13,7 @@
 
 #include <limits>
 #include <map>
+#include <utility>
 #include <vector>
 
 namespace osgGpuAnimation
@@ -35,7 +36,8 @@ inline Box toBox(const osg::BoundingBox& box)
     return result;
 }
 
-/// function(SkinnedGeometry&), for every mesh at or below the node, hidden ones included.
+/// function(SkinnedGeometry&), for every mesh at or below the node, hidden ones included; not those of characters and
+/// crowds below a character or crowd, as a rider is below a horse.
 template <typename Function>
 void forEachMeshBelow(osg::Node& node, Function function)
 {
@@ -46,6 +48,14 @@ void forEachMeshBelow(osg::Node& node, Function function)
         {
             setNodeMaskOverride(~0u); // a mesh that is hidden now may be shown later
         }
+        void apply(osg::Group& group) override
+        {
+            const bool isSource = dynamic_cast<PosedMeshSource*>(&group) != nullptr;
+            if (isSource && _isInSource) return;
+            const bool before = std::exchange(_isInSource, _isInSource || isSource);
+            traverse(group);
+            _isInSource = before;
+        }
         void apply(osg::Drawable& drawable) override
         {
             if (auto* mesh = dynamic_cast<SkinnedGeometry*>(&drawable)) _function(*mesh);
@@ -53,6 +63,7 @@ void forEachMeshBelow(osg::Node& node, Function function)
 
     private:
         Function& _function;
+        bool _isInSource = false;
     };
     Visitor visitor(function);
     node.accept(visitor);

@@ -245,7 +245,8 @@ TEST_F(JointAttachmentTest, BoundsOfClipsLeaveOutTheMeshesOfARider)
         return horse->getClipBounds(0);
     };
     const osg::ref_ptr<AnimatedCharacter> rider = makeTestCharacter();
-    for (osg::Vec3& vertex : static_cast<osg::Vec3Array&>(*rider->getChild(0)->asGeometry()->getVertexArray()))
+    auto& mesh = dynamic_cast<osg::Geometry&>(*rider->getChild(0));
+    for (osg::Vec3& vertex : static_cast<osg::Vec3Array&>(*mesh.getVertexArray()))
         vertex *= 100.0f;
     const osg::BoundingBox alone = boundsWith(nullptr), ridden = boundsWith(rider);
     EXPECT_EQ(alone._min, ridden._min);

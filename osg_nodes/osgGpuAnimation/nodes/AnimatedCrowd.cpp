@@ -162,7 +162,7 @@ AnimatedCrowd::AnimatedCrowd(const AnimatedCharacter& character)
     _variantMeshes = character._variantMeshes;
     setName(character.getName());
     if (character.getStateSet()) setStateSet(const_cast<osg::StateSet*>(character.getStateSet()));
-    addUnanimated(character, *this);
+    addUnanimated(character, getAnimationSet(), *this);
     std::vector<Box> bounds;
     for (int clip = -1; clip < static_cast<int>(getAnimationSet().clips().size()); ++clip)
         bounds.push_back(toBox(character.clipBoundsInFile(clip)));

@@ -408,4 +408,40 @@ TEST(MeshNamesTest, levelsOfDetailAreOneMesh)
     EXPECT_TRUE(other->takeOff(body));
 }
 
+TEST(MeshNamesTest, clonesShareLevelsOfDetailUntilOneChanges)
+{
+    const osg::ref_ptr<AnimatedCharacter> body = makeBody();
+    const osg::ref_ptr<osg::LOD> levels = new osg::LOD;
+    const osg::ref_ptr<SkinnedGeometry> hand = makeShownTube(body->getAnimationSet());
+    const osg::ref_ptr<osg::StateSet> plain = hand->getStateSet(), red = new osg::StateSet;
+    setVariantStates(*hand, plain, {{"red", red}});
+    hand->setName("hand");
+    levels->addChild(hand, 0.0f, std::numeric_limits<float>::max());
+    body->addChild(levels);
+    const osg::ref_ptr<AnimatedCharacter> hidden = osg::clone(body.get()), painted = osg::clone(body.get());
+    ASSERT_TRUE(hidden->setMeshVisible("arm", false));
+    EXPECT_EQ(hidden->getChild(1), levels);
+    ASSERT_TRUE(hidden->setMeshVisible("hand", false));
+    ASSERT_TRUE(painted->setMaterialVariant("red"));
+    EXPECT_EQ(body->findMesh("hand"), hand);
+    EXPECT_EQ(levels->getChild(0), hand);
+    EXPECT_EQ(hidden->findMesh("hand")->getNodeMask(), 0u);
+    EXPECT_EQ(painted->findMesh("hand")->getStateSet(), red);
+}
+
+TEST(MeshNamesTest, hiddenMeshesKeepTheirNodeMask)
+{
+    const osg::ref_ptr<AnimatedCharacter> body = makeBody();
+    const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*makeBody());
+    body->findMesh("arm")->setNodeMask(0xF0);
+    crowd->findMesh("arm")->setNodeMask(0x0F);
+    for (const bool isVisible : {false, true, false, true})
+    {
+        ASSERT_TRUE(body->setMeshVisible("arm", isVisible));
+        ASSERT_TRUE(crowd->setMeshVisible("arm", isVisible));
+        EXPECT_EQ(body->findMesh("arm")->getNodeMask(), isVisible ? 0xF0u : 0u);
+        EXPECT_EQ(crowd->findMesh("arm")->getNodeMask(), isVisible ? 0x0Fu : 0u);
+    }
+}
+
 } // namespace osgGpuAnimation

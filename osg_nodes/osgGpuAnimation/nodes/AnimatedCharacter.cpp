@@ -219,9 +219,10 @@ Result<bool> AnimatedCharacter::setMaterialVariant(const std::string& name)
     if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end())
         return Error{"there is no material variant \"" + name + "\"; the variants are " +
                      quotedNames(names, [](const std::string& known) { return known; })};
+    if (_properties) _properties->restoreMasks();
     _variantMeshes->show(*this, name);
     _materialVariant = name;
-    if (_properties && _properties->isBound()) _properties->bind(*this);
+    rebindProperties();
     return true;
 }
 
@@ -237,8 +238,10 @@ Result<WornGarment> AnimatedCharacter::wear(osg::Node* garment)
     if (!fitted) return fitted.error();
     for (const osg::ref_ptr<SkinnedGeometry>& mesh : fitted.value().meshes)
         addChild(mesh);
+    if (_properties) _properties->restoreMasks();
     if (!_materialVariant.empty()) _variantMeshes->show(*this, _materialVariant);
     useOutfit(fitted.value().set);
+    rebindProperties();
     return WornGarment{fitted.value().addedEntries, fitted.value().followed, fitted.value().leftOut};
 }
 
@@ -288,8 +291,11 @@ Result<bool> AnimatedCharacter::setMeshVisible(const std::string& name, bool isV
 {
     const Result<std::vector<SkinnedGeometry*>> meshes = meshesNamed(*this, name);
     if (!meshes) return meshes.error();
-    _variantMeshes->setVisible(*this, {meshes.value().begin(), meshes.value().end()}, isVisible);
-    if (_properties && _properties->isBound()) _properties->bind(*this);
+    if (_properties && !_properties->isBound()) _properties->bind(*this);
+    if (_properties) _properties->restoreMasks();
+    const std::vector<SkinnedGeometry*> own = meshesNamed(*this, name).value();
+    _variantMeshes->setVisible(*this, {own.begin(), own.end()}, isVisible);
+    rebindProperties();
     return true;
 }
 
@@ -348,6 +354,14 @@ void AnimatedCharacter::update(double simulationTime)
                        osg::ref_ptr<AnimatedCharacter> present;
                        if (character.lock(present)) present->updateBounds();
                    });
+}
+
+/// After changes to the meshes with the masks that the application gave them.
+void AnimatedCharacter::rebindProperties()
+{
+    if (!_properties || !_properties->isBound()) return;
+    _properties->bind(*this);
+    showProperties();
 }
 
 void AnimatedCharacter::showProperties()

@@ -75,8 +75,8 @@ private:
 /// What AnimatedCharacter::wear() has done.
 struct WornGarment
 {
-    std::size_t addedEntries =
-        0; ///< palette entries that only this garment needs: 48 bytes a character; 0: no pose work
+    /// Palette entries that only this garment needs: 48 bytes a character; 0: no pose work.
+    std::size_t addedEntries = 0;
     /// Joints of the garment that the character lacks: their vertices follow the nearest joint above that it has.
     std::vector<std::string> followed;
     std::vector<std::string> leftOut; ///< morphs of the garment that the character lacks: their targets are left out
@@ -258,6 +258,7 @@ private:
     void updateBounds();
     void takeWorldTargets();
     void showProperties();
+    void rebindProperties();
     osg::BoundingBox boundsOf(const std::vector<PlayedClip>& played) const;
     void growMeshes(const osg::BoundingBox& box);
 

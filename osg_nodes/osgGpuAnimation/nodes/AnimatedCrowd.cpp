@@ -143,7 +143,7 @@ AnimatedCrowd::AnimatedCrowd() : AnimatedCrowd(nullptr, {}) {}
 AnimatedCrowd::AnimatedCrowd(std::shared_ptr<const AnimationSet> set,
                              const std::vector<osg::ref_ptr<SkinnedGeometry>>& meshes)
     : _instances(std::make_unique<CrowdInstances>(std::move(set))), _posed(std::make_unique<PosedInstances>()),
-      _worldTargets(std::make_unique<WorldTargets>())
+      _worldTargets(std::make_unique<WorldTargets>()), _variantMeshes(std::make_shared<VariantMeshes>())
 {
     // Not STATIC: the Optimizer must not flatten the transforms above into the bind pose.
     setDataVariance(osg::Object::DYNAMIC);
@@ -159,9 +159,10 @@ AnimatedCrowd::AnimatedCrowd(const AnimatedCharacter& character)
 {
     _fileToNode = character.getFileToNode();
     _pixelError = character.getPixelError();
+    _variantMeshes = character._variantMeshes;
     setName(character.getName());
     if (character.getStateSet()) setStateSet(const_cast<osg::StateSet*>(character.getStateSet()));
-    addUnanimated(character, *this);
+    addUnanimated(character, getAnimationSet(), *this);
     std::vector<Box> bounds;
     for (int clip = -1; clip < static_cast<int>(getAnimationSet().clips().size()); ++clip)
         bounds.push_back(toBox(character.clipBoundsInFile(clip)));
@@ -175,7 +176,8 @@ AnimatedCrowd::AnimatedCrowd(const AnimatedCrowd& other, const osg::CopyOp& copy
     : osg::Transform(other, copyop), _instances(std::make_unique<CrowdInstances>(*other._instances)),
       _posed(std::make_unique<PosedInstances>()), _fileToNode(other._fileToNode), _origin(other._origin),
       _hasOrigin(other._hasOrigin), _updateTime(other._updateTime),
-      _worldTargets(std::make_unique<WorldTargets>(*other._worldTargets)), _pixelError(other._pixelError)
+      _worldTargets(std::make_unique<WorldTargets>(*other._worldTargets)), _pixelError(other._pixelError),
+      _variantMeshes(other._variantMeshes)
 {
     // The update traversal must reach this node without a callback.
     setNumChildrenRequiringUpdateTraversal(getNumChildrenRequiringUpdateTraversal() + 1);
@@ -452,7 +454,7 @@ Result<bool> AnimatedCrowd::setMeshVisible(const std::string& name, bool isVisib
 {
     const Result<std::vector<SkinnedGeometry*>> meshes = meshesNamed(*this, name);
     if (!meshes) return meshes.error();
-    VariantMeshes().setVisible(*this, {meshes.value().begin(), meshes.value().end()}, isVisible);
+    _variantMeshes->setVisible(*this, {meshes.value().begin(), meshes.value().end()}, isVisible);
     return true;
 }
 
@@ -531,13 +533,12 @@ void AnimatedCrowd::visitInstances(osg::NodeVisitor& visitor)
             ofInstances.push_back(child);
         else
             child->accept(visitor);
-    const bool isIntersection = dynamic_cast<osgUtil::IntersectionVisitor*>(&visitor);
     const osg::ref_ptr<IntersectedInstance> intersected = new IntersectedInstance(*this, ofInstances);
     for (std::size_t index = 0; index < getNumInstances(); ++index)
     {
         const InstanceScope scope(index);
         intersected->setIndex(index);
-        if (isIntersection)
+        if (dynamic_cast<osgUtil::IntersectionVisitor*>(&visitor))
             visitor.apply(*intersected);
         else
             for (osg::Node* child : ofInstances)
@@ -564,8 +565,7 @@ osg::BoundingSphere AnimatedCrowd::computeBound() const
         const glm::vec4& sphere = _instances->sphere(index);
         box.expandBy(osg::BoundingSphere(osg::Vec3(sphere.x, sphere.y, sphere.z), sphere.w));
     }
-    osg::BoundingSphere bound;
-    if (box.valid()) bound = osg::BoundingSphere(box);
+    osg::BoundingSphere bound = box.valid() ? osg::BoundingSphere(box) : osg::BoundingSphere();
     for (const osg::ref_ptr<osg::Node>& child : _children)
     {
         // Also compute the bounds of the meshes: cameras that cull concurrently must find them ready.

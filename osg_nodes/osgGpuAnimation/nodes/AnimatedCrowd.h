@@ -23,6 +23,7 @@ class NodeConstraint;
 class PosedInstances;
 class StateGraph;
 class StateMachine;
+class VariantMeshes;
 class WorldTargets;
 
 /// Thousands of instances of one character in one node, each with its own placement, controller and tint. One instanced
@@ -192,9 +193,10 @@ private:
     osg::Matrixd _fileToNode;
     osg::Vec3d _origin;
     bool _hasOrigin = false;
-    std::optional<double> _updateTime;           ///< seconds of simulation time
-    std::unique_ptr<WorldTargets> _worldTargets; ///< never null
-    float _pixelError = 0.0f;                    ///< pixels
+    std::optional<double> _updateTime;             ///< seconds of simulation time
+    std::unique_ptr<WorldTargets> _worldTargets;   ///< never null
+    float _pixelError = 0.0f;                      ///< pixels
+    std::shared_ptr<VariantMeshes> _variantMeshes; ///< never null, shared with the character and clones
 };
 
 } // namespace osgGpuAnimation

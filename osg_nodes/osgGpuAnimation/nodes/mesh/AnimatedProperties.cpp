@@ -3,6 +3,7 @@
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/animation/Pose.h>
+#include <osgGpuAnimation/nodes/mesh/MaterialVariants.h>
 #include <osgGpuAnimation/nodes/mesh/PaletteEntryBounds.h>
 #include <osgGpuAnimation/nodes/PbrMaterial.h>
 #include <osgGpuAnimation/nodes/shading/PunctualLight.h>
@@ -17,7 +18,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <utility>
 
@@ -29,137 +29,16 @@ namespace
 
 using Object = PropertyMember::Object;
 
-constexpr float largest = std::numeric_limits<float>::max();
-constexpr float halfPi = 1.57079633f;
-
 const char* const materialMark = "osgGpuAnimation.material";
 const char* const lightMark = "osgGpuAnimation.light";
 const char* const cameraMark = "osgGpuAnimation.camera";
 const char* const visibilityMark = "osgGpuAnimation.visibility";
+const char* const maskKey = "osgGpuAnimation.nodeMask";
 const char* const transformsName = "textureTransforms";
 
 const char* const emissiveStrengthName = "extensions/KHR_materials_emissive_strength/emissiveStrength";
 const char* const iorName = "extensions/KHR_materials_ior/ior";
 const char* const specularColorName = "extensions/KHR_materials_specular/specularColorFactor";
-
-/// A texture of a material whose coordinates have a number of their own.
-struct TextureSlot
-{
-    const char* name;
-    const char* define; ///< null: its coordinates are number 0
-};
-
-constexpr TextureSlot textureSlots[] = {
-    {"pbrMetallicRoughness/baseColorTexture", nullptr},
-    {"pbrMetallicRoughness/metallicRoughnessTexture", "MATERIAL_METALLIC_ROUGHNESS_MAP"},
-    {"normalTexture", "MATERIAL_NORMAL_MAP"},
-    {"occlusionTexture", "MATERIAL_OCCLUSION_MAP"},
-    {"emissiveTexture", "MATERIAL_EMISSIVE_MAP"},
-    {"extensions/KHR_materials_specular/specularTexture", "MATERIAL_SPECULAR_MAP"},
-    {"extensions/KHR_materials_specular/specularColorTexture", "MATERIAL_SPECULAR_COLOR_MAP"},
-    {"extensions/KHR_materials_clearcoat/clearcoatTexture", "MATERIAL_CLEARCOAT_MAP"},
-    {"extensions/KHR_materials_clearcoat/clearcoatRoughnessTexture", "MATERIAL_CLEARCOAT_ROUGHNESS_MAP"},
-    {"extensions/KHR_materials_clearcoat/clearcoatNormalTexture", "MATERIAL_CLEARCOAT_NORMAL_MAP"},
-    {"extensions/KHR_materials_sheen/sheenColorTexture", "MATERIAL_SHEEN_COLOR_MAP"},
-    {"extensions/KHR_materials_sheen/sheenRoughnessTexture", "MATERIAL_SHEEN_ROUGHNESS_MAP"},
-    {"extensions/KHR_materials_transmission/transmissionTexture", "MATERIAL_TRANSMISSION_MAP"},
-};
-
-PropertyMember factor(const char* name, const char* uniform, std::size_t component, std::size_t count = 1,
-                      std::array<float, 4> rest = {})
-{
-    PropertyMember member;
-    member.name = name;
-    member.count = count;
-    member.rest = rest;
-    member.uniform = uniform;
-    member.component = component;
-    return member;
-}
-
-PropertyMember upTo(PropertyMember member, float most)
-{
-    member.most = most;
-    return member;
-}
-
-PropertyMember from(PropertyMember member, float least)
-{
-    member.least = least;
-    return member;
-}
-
-PropertyMember in(const char* group, PropertyMember member)
-{
-    member.group = group;
-    return member;
-}
-
-PropertyMember of(Object object, PropertyMember member)
-{
-    member.object = object;
-    return member;
-}
-
-void addMaterials(std::vector<PropertyMember>& all)
-{
-    all.push_back(factor("pbrMetallicRoughness/baseColorFactor", "baseColorFactor", 0, 4, {1, 1, 1, 1}));
-    all.push_back(factor("pbrMetallicRoughness/metallicFactor", "materialFactors", 0, 1, {1}));
-    all.push_back(factor("pbrMetallicRoughness/roughnessFactor", "materialFactors", 1, 1, {1}));
-    all.push_back(from(upTo(factor("normalTexture/scale", "materialFactors", 2, 1, {1}), largest), -largest));
-    all.push_back(factor("occlusionTexture/strength", "materialFactors", 3, 1, {1}));
-    all.push_back(upTo(factor("alphaCutoff", "alphaCutoff", 0, 1, {0.5f}), largest));
-    all.push_back(in("emission", factor("emissiveFactor", "emissiveFactor", 0, 3)));
-    all.push_back(in("emission", upTo(factor(emissiveStrengthName, "emissiveStrength", 0, 1, {1}), largest)));
-    all.push_back(in("reflection", upTo(factor(iorName, "", 0, 1, {1.5f}), largest)));
-    all.push_back(in("reflection", upTo(factor(specularColorName, "", 0, 3, {1, 1, 1}), largest)));
-    all.push_back(factor("extensions/KHR_materials_specular/specularFactor", "materialSpecular", 3, 1, {1}));
-    all.push_back(factor("extensions/KHR_materials_clearcoat/clearcoatFactor", "materialClearcoat", 0));
-    all.push_back(factor("extensions/KHR_materials_clearcoat/clearcoatRoughnessFactor", "materialClearcoat", 1));
-    all.push_back(from(
-        upTo(factor("extensions/KHR_materials_clearcoat/clearcoatNormalTexture/scale", "materialClearcoat", 2, 1, {1}),
-             largest),
-        -largest));
-    all.push_back(factor("extensions/KHR_materials_sheen/sheenColorFactor", "materialSheen", 0, 3));
-    all.push_back(factor("extensions/KHR_materials_sheen/sheenRoughnessFactor", "materialSheen", 3));
-    all.push_back(factor("extensions/KHR_materials_transmission/transmissionFactor", "materialTransmission", 0));
-    for (const TextureSlot& slot : textureSlots)
-        for (const auto& [part, count, rest] :
-             {std::tuple("offset", 2, 0.0f), std::tuple("rotation", 1, 0.0f), std::tuple("scale", 2, 1.0f)})
-        {
-            PropertyMember member;
-            member.name = std::string(slot.name) + "/extensions/KHR_texture_transform/" + part;
-            member.count = static_cast<std::size_t>(count);
-            member.rest = {rest, rest};
-            member.least = -largest;
-            member.most = largest;
-            member.group = member.texture = slot.name;
-            member.define = slot.define;
-            all.push_back(member);
-        }
-}
-
-std::vector<PropertyMember> makeMembers()
-{
-    std::vector<PropertyMember> all;
-    addMaterials(all);
-    const auto light = [](PropertyMember member) { return of(Object::Light, in("light", std::move(member))); };
-    all.push_back(light(upTo(factor("color", "", 0, 3, {1, 1, 1}), largest)));
-    all.push_back(light(upTo(factor("intensity", "", 0, 1, {1}), largest)));
-    all.push_back(light(upTo(factor("range", "", 0), largest)));
-    all.push_back(light(upTo(factor("spot/innerConeAngle", "", 0), halfPi)));
-    all.push_back(light(upTo(factor("spot/outerConeAngle", "", 0, 1, {halfPi / 2.0f}), halfPi)));
-    all.push_back(of(Object::Camera, from(upTo(factor("perspective/yfov", "", 0), 3.14f), 1e-3f)));
-    all.push_back(of(Object::Camera, from(upTo(factor("orthographic/ymag", "", 0), largest), -largest)));
-    PropertyMember visible = of(Object::Node, factor("extensions/KHR_node_visibility/visible", "", 0, 1, {1}));
-    visible.isBoolean = true;
-    all.push_back(visible);
-    return all;
-}
-
-/// The pointer's part before the index, by object.
-constexpr std::string_view prefixes[] = {"/materials/", "/extensions/KHR_lights_punctual/lights/", "/cameras/",
-                                         "/nodes/"};
 
 /// name: one of PropertyMember::all().
 const PropertyMember& memberNamed(Object object, const std::string& name)
@@ -230,6 +109,50 @@ bool isMeshMarked(const osg::Drawable& mesh)
     return !visibilityOf(mesh).empty() || (mesh.getStateSet() && markOf(*mesh.getStateSet(), materialMark));
 }
 
+/// Copies of the object share its user data, which is therefore replaced.
+osg::UserDataContainer& ownUserData(osg::Object& object)
+{
+    osg::ref_ptr<osg::UserDataContainer> own = new osg::DefaultUserDataContainer;
+    if (const osg::UserDataContainer* shared = object.getUserDataContainer()) own = osg::clone(shared);
+    object.setUserDataContainer(own);
+    return *own;
+}
+
+void removeMark(osg::Object& object, const char* mark)
+{
+    osg::UserDataContainer& data = ownUserData(object);
+    const unsigned int index = data.getUserObjectIndex(mark);
+    if (index < data.getNumUserObjects()) data.removeUserObject(index);
+}
+
+/// The mask that the application gives the mesh: 0 hides it whatever the clips do.
+osg::Node::NodeMask applicationMask(const osg::Node& mesh)
+{
+    unsigned int mask = ~0u; // of hidden meshes as they are imported
+    if (mesh.getNodeMask() != 0) return mesh.getNodeMask();
+    return mesh.getUserValue(maskKey, mask) ? mask : ~0u;
+}
+
+/// For applicationMask() while the mesh has the node mask 0. Copies and stored scenes keep it.
+void storeMask(osg::Node& mesh, osg::Node::NodeMask mask)
+{
+    unsigned int stored = 0;
+    if (mesh.getUserValue(maskKey, stored) && stored == mask) return;
+    const osg::UserDataContainer* data = mesh.getUserDataContainer();
+    if (data && data->referenceCount() > 1) ownUserData(mesh);
+    mesh.setUserValue(maskKey, static_cast<unsigned int>(mask));
+}
+
+/// A hidden light keeps the shown one as a user object.
+osg::Light* shownLight(osg::Light& light)
+{
+    const osg::UserDataContainer* data = light.getUserDataContainer();
+    for (unsigned int i = 0; data && i < data->getNumUserObjects(); ++i)
+        if (const auto* shown = dynamic_cast<const osg::Light*>(data->getUserObject(i)))
+            return const_cast<osg::Light*>(shown);
+    return nullptr;
+}
+
 /// Calls visit for the lights and camera views at and below a node, but for those of other characters below.
 template <typename Visit>
 class MarkedNodes : public osg::NodeVisitor
@@ -266,44 +189,6 @@ void forEachMarked(osg::Node& node, Visit visit)
 }
 
 } // namespace
-
-const std::vector<PropertyMember>& PropertyMember::all()
-{
-    static const std::vector<PropertyMember> members = makeMembers();
-    return members;
-}
-
-std::optional<int> parsePointerIndex(std::string_view text)
-{
-    const bool areDigits = std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
-    if (text.empty() || text.size() > 9 || !areDigits || (text.size() > 1 && text.front() == '0')) return std::nullopt;
-    int index = 0;
-    for (const char digit : text)
-        index = 10 * index + (digit - '0');
-    return index;
-}
-
-std::optional<PropertyPointer> PropertyPointer::parse(std::string_view pointer)
-{
-    for (std::size_t object = 0; object < std::size(prefixes); ++object)
-    {
-        if (pointer.substr(0, prefixes[object].size()) != prefixes[object]) continue;
-        const std::string_view rest = pointer.substr(prefixes[object].size());
-        const std::size_t slash = std::min(rest.find('/'), rest.size());
-        const std::optional<int> index = parsePointerIndex(rest.substr(0, slash));
-        if (!index || slash == rest.size()) return std::nullopt;
-        for (const PropertyMember& member : PropertyMember::all())
-            if (static_cast<std::size_t>(member.object) == object && rest.substr(slash + 1) == member.name)
-                return PropertyPointer{&member, *index};
-        return std::nullopt;
-    }
-    return std::nullopt;
-}
-
-std::string PropertyPointer::text(const PropertyMember& member, int index)
-{
-    return std::string(prefixes[static_cast<std::size_t>(member.object)]) + std::to_string(index) + '/' + member.name;
-}
 
 void markMaterial(osg::StateSet& stateSet, int material)
 {
@@ -354,14 +239,58 @@ void setTextureTransform(osg::StateSet& stateSet, int number, const float* offse
     uniform->setElement(row + 1, osg::Vec3(-v[0], v[1], 1.0f - v[1] - v[2]));
 }
 
-void addUnanimated(const osg::Group& character, osg::Group& crowd)
+UnanimatedMeshes::UnanimatedMeshes(const AnimationSet& set) : _properties(AnimatedProperties::of(set)) {}
+
+UnanimatedMeshes::~UnanimatedMeshes() = default;
+
+osg::StateSet* UnanimatedMeshes::stateAtRest(osg::StateSet* state)
 {
+    const std::optional<int> material = state ? markOf(*state, materialMark) : std::nullopt;
+    if (!material) return state;
+    osg::ref_ptr<osg::StateSet>& own = _states[state];
+    if (own) return own;
+    own = ownState(*state);
+    own->setDataVariance(osg::Object::STATIC);
+    removeMark(*own, materialMark);
+    if (_properties) _properties->setMaterials(*own, *material);
+    return own;
+}
+
+void UnanimatedMeshes::release(osg::Geometry& copy)
+{
+    const std::vector<std::string> names = variantNamesOf(copy);
+    bool isMarked = isMeshMarked(copy);
+    const auto stateOf = [&](const std::string& variant)
+    {
+        osg::StateSet* state = variantState(copy, variant);
+        const osg::ref_ptr<osg::StateSet> atRest = stateAtRest(state);
+        isMarked = isMarked || atRest != state;
+        return atRest;
+    };
+    const osg::ref_ptr<osg::StateSet> defaultState = stateOf("");
+    std::vector<VariantState> variants;
+    for (const std::string& name : names)
+        variants.push_back({name, stateOf(name)});
+    if (!isMarked) return;
+    if (const std::vector<int> nodes = visibilityOf(copy); !nodes.empty())
+    {
+        const bool isShown = !_properties || _properties->isVisible(nodes);
+        copy.setNodeMask(isShown ? applicationMask(copy) : 0);
+    }
+    copy.setStateSet(stateAtRest(copy.getStateSet()));
+    removeMark(copy, visibilityMark); // gives the copy its own user data, which the variants belong to
+    if (!names.empty()) setVariantStates(copy, defaultState, variants);
+}
+
+void addUnanimated(const osg::Group& character, const AnimationSet& set, osg::Group& crowd)
+{
+    UnanimatedMeshes unanimated(set);
     forEachMesh(character,
                 [&](const SkinnedGeometry& mesh)
                 {
                     osg::ref_ptr<SkinnedGeometry> added = const_cast<SkinnedGeometry*>(&mesh);
                     if (isMeshMarked(mesh)) added = osg::clone(&mesh, osg::CopyOp::SHALLOW_COPY);
-                    if (isMeshMarked(mesh) && mesh.getStateSet()) added->setStateSet(ownState(*mesh.getStateSet()));
+                    if (added != &mesh) unanimated.release(*added);
                     crowd.addChild(added);
                 });
 }
@@ -382,6 +311,7 @@ std::unique_ptr<AnimatedProperties> AnimatedProperties::of(const AnimationSet& s
             made->_firstNumbers[{pointer->member, pointer->index}] = first;
         }
         first += morph.defaults.size();
+        made->_numbers.insert(made->_numbers.end(), morph.defaults.begin(), morph.defaults.end());
     }
     return made;
 }
@@ -396,6 +326,14 @@ void AnimatedProperties::bind(osg::Group& character)
     _isBound = true;
     OwnStates owned;
     bindChildren(character, owned);
+    _hasApplicationMasks = false;
+}
+
+void AnimatedProperties::restoreMasks()
+{
+    for (const Hidable& hidable : _hidables)
+        hidable.mesh->setNodeMask(applicationMask(*hidable.mesh));
+    _hasApplicationMasks = _isBound;
 }
 
 void AnimatedProperties::bindChildren(osg::Group& character, OwnStates& owned)
@@ -442,23 +380,24 @@ void AnimatedProperties::bindMesh(osg::Drawable& mesh)
 {
     std::vector<int> nodes = visibilityOf(mesh);
     if (nodes.empty()) return;
-    const osg::Node::NodeMask mask = mesh.getNodeMask();
-    _hidables.push_back({&mesh, std::move(nodes), mask == 0 ? ~0u : mask});
+    if (_hasApplicationMasks && mesh.getNodeMask() == 0) storeMask(mesh, 0);
+    _hidables.push_back({&mesh, std::move(nodes)});
 }
 
 void AnimatedProperties::bindBelow(osg::Node& node)
 {
-    forEachMarked(
-        node,
-        [&](osg::Node& marked)
-        {
-            if (auto* view = dynamic_cast<osg::CameraView*>(&marked))
-                return _cameras.push_back({*markOf(*view, cameraMark), view});
-            auto& source = static_cast<osg::LightSource&>(marked);
-            osg::Light* light = source.getLight();
-            if (light)
-                _lights.push_back({markOf(source, lightMark).value_or(-1), &source, light, visibilityOf(source)});
-        });
+    forEachMarked(node,
+                  [&](osg::Node& marked)
+                  {
+                      if (auto* view = dynamic_cast<osg::CameraView*>(&marked))
+                          return _cameras.push_back({*markOf(*view, cameraMark), view});
+                      auto& source = static_cast<osg::LightSource&>(marked);
+                      osg::Light* light = source.getLight();
+                      if (!light) return;
+                      osg::Light* shown = shownLight(*light);
+                      _lights.push_back({markOf(source, lightMark).value_or(-1), &source, shown ? shown : light,
+                                         visibilityOf(source), shown == nullptr});
+                  });
 }
 
 std::array<float, 4> AnimatedProperties::valueOf(const PropertyMember& member, int index) const
@@ -474,6 +413,13 @@ bool AnimatedProperties::isVisible(const std::vector<int>& nodes) const
 {
     static const PropertyMember& visible = memberNamed(Object::Node, "extensions/KHR_node_visibility/visible");
     return std::all_of(nodes.begin(), nodes.end(), [&](int node) { return valueOf(visible, node)[0] >= 0.5f; });
+}
+
+void AnimatedProperties::setMaterials(osg::StateSet& state, int material) const
+{
+    for (const Property& property : _properties)
+        if (property.pointer.member->object == Object::Material && property.pointer.index == material)
+            setMaterial(state, property.pointer);
 }
 
 void AnimatedProperties::setMaterial(osg::StateSet& state, const PropertyPointer& pointer) const
@@ -540,6 +486,7 @@ void AnimatedProperties::setLight(Light& light, bool hasChanged) const
     {
         made->setDiffuse(osg::Vec4(0, 0, 0, 1));
         made->setSpecular(osg::Vec4(0, 0, 0, 1));
+        ownUserData(*made).addUserObject(light.shown);
     }
     light.source->setLight(made);
 }
@@ -555,13 +502,13 @@ void AnimatedProperties::setCamera(osg::CameraView& view, const PropertyPointer&
 
 void AnimatedProperties::setVisibility()
 {
-    for (Hidable& hidable : _hidables)
+    for (const Hidable& hidable : _hidables)
     {
         const bool isShown = isVisible(hidable.nodes);
-        const osg::Node::NodeMask mask = hidable.node->getNodeMask();
+        const osg::Node::NodeMask mask = hidable.mesh->getNodeMask();
         if (isShown == (mask != 0)) continue;
-        if (!isShown) hidable.mask = mask;
-        hidable.node->setNodeMask(isShown ? hidable.mask : 0);
+        if (!isShown) storeMask(*hidable.mesh, mask);
+        hidable.mesh->setNodeMask(isShown ? applicationMask(*hidable.mesh) : 0);
     }
 }
 

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <osgGpuAnimation/nodes/mesh/PropertyPointer.h>
+
 #include <osg/CameraView>
+#include <osg/Geometry>
 #include <osg/Group>
 #include <osg/LightSource>
 #include <osg/observer_ptr>
@@ -11,9 +14,7 @@
 #include <cstddef>
 #include <map>
 #include <memory>
-#include <optional>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -26,50 +27,6 @@ struct PoseInstruction;
 // The properties of a file that clips animate beside joints and morph weights: factors and texture transforms of
 // materials, lights, cameras, and the visibility of nodes. The set has their curves (see MorphWeights); the import
 // marks the objects of the scene that they change.
-
-/// One property of an object of glTF's object model that the kit draws.
-struct PropertyMember
-{
-    /// The kinds of objects.
-    enum class Object
-    {
-        Material,
-        Light, ///< of KHR_lights_punctual
-        Camera,
-        Node
-    };
-
-    Object object = Object::Material;
-    std::string name;             ///< the pointer's part after the object, as `pbrMetallicRoughness/metallicFactor`
-    std::size_t count = 1;        ///< numbers of a value, at most 4
-    std::array<float, 4> rest{};  ///< the specification's default value
-    float least = 0.0f;           ///< smaller numbers count as this
-    float most = 1.0f;            ///< larger numbers count as this
-    bool isBoolean = false;       ///< 0: false
-    std::string group{};          ///< members of one group are set together: a set has all or none; empty: no group
-    const char* uniform = "";     ///< of a material: the uniform that holds it
-    std::size_t component = 0;    ///< its first number there
-    std::string texture{};        ///< of a texture transform: the name of the texture, as `normalTexture`
-    const char* define = nullptr; ///< likewise: the shader define with the number of its coordinates; null: number 0
-
-    /// All that the kit draws.
-    static const std::vector<PropertyMember>& all();
-};
-
-/// A pointer to a property: `/materials/0/alphaCutoff`.
-struct PropertyPointer
-{
-    const PropertyMember* member = nullptr; ///< never null after parse()
-    int index = 0;                          ///< of the file's materials, lights, cameras or nodes
-
-    /// Nothing, if it is no pointer or points to nothing that the kit draws. Strict: no escapes, no leading zeros.
-    static std::optional<PropertyPointer> parse(std::string_view pointer);
-    /// The pointer to a member of an object.
-    static std::string text(const PropertyMember& member, int index);
-};
-
-/// An index without sign and leading zeros, at most nine digits; nothing for any other text.
-std::optional<int> parsePointerIndex(std::string_view text);
 
 // The marks of the import: user values, so that OSG's own serializers keep them. The numbers are the file's.
 void markMaterial(osg::StateSet& stateSet, int material); ///< a material with animated properties
@@ -88,8 +45,8 @@ constexpr const char* orthographicHeightName = "orthographicHeight";
 void setTextureTransform(osg::StateSet& stateSet, int number, const float* offset, float rotation, const float* scale);
 
 /// Adds the meshes that are direct children of a character to a crowd. In place of those that the character animates,
-/// copies over the same arrays, which keep the present material and visibility.
-void addUnanimated(const osg::Group& character, osg::Group& crowd);
+/// copies over the same arrays, see UnanimatedMeshes. set: the character's.
+void addUnanimated(const osg::Group& character, const AnimationSet& set, osg::Group& crowd);
 
 /// The properties of one character. It writes to StateSets, lights and camera views of its own, so that copies of the
 /// character show other times. A character whose set has no properties has none of these objects.
@@ -104,11 +61,14 @@ public:
     /// values.
     void bind(osg::Group& character);
     bool isBound() const { return _isBound; }
+    /// Gives the meshes the node masks that the application gave them, so that it can change them. bind() must follow.
+    void restoreMasks();
 
-    /// Sets the values of the instruction. The set is that of the construction.
+    /// Sets the values of the instruction. set: with the same morphs as that of the construction.
     void apply(const AnimationSet& set, const PoseInstruction& instruction);
 
 private:
+    friend class UnanimatedMeshes;
     struct Property
     {
         PropertyPointer pointer;
@@ -134,9 +94,8 @@ private:
     };
     struct Hidable
     {
-        osg::ref_ptr<osg::Node> node;
-        std::vector<int> nodes;
-        osg::Node::NodeMask mask = ~0u; ///< while it is visible
+        osg::ref_ptr<osg::Node> mesh;
+        std::vector<int> nodes; ///< see markVisibility()
     };
 
     AnimatedProperties() = default;
@@ -144,9 +103,10 @@ private:
     void bindChildren(osg::Group& group, OwnStates& owned);
     void bindMesh(osg::Drawable& mesh);
     void bindBelow(osg::Node& node);
-    /// The numbers that are shown, or the default; within the member's range.
+    /// The numbers that are shown, first those at rest, or the default; within the member's range.
     std::array<float, 4> valueOf(const PropertyMember& member, int index) const;
     bool isVisible(const std::vector<int>& nodes) const;
+    void setMaterials(osg::StateSet& state, int material) const;
     void setMaterial(osg::StateSet& state, const PropertyPointer& pointer) const;
     void setLight(Light& light, bool hasChanged) const;
     void setCamera(osg::CameraView& view, const PropertyPointer& pointer) const;
@@ -160,6 +120,26 @@ private:
     std::vector<Hidable> _hidables;
     std::vector<float> _numbers, _shown; ///< of all properties
     bool _isBound = false;
+    bool _hasApplicationMasks = false; ///< after restoreMasks()
+};
+
+/// Makes copies of the meshes of a character into meshes that no clip animates: for crowds, and for characters that
+/// wear them. They show materials and visibility as they are at rest. Copies made by one object share StateSets as the
+/// originals do.
+class UnanimatedMeshes
+{
+public:
+    explicit UnanimatedMeshes(const AnimationSet& set); ///< of the character
+    ~UnanimatedMeshes();
+
+    /// Removes the marks from a shallow copy of a mesh, which gets user data and StateSets of its own for it.
+    void release(osg::Geometry& copy);
+
+private:
+    osg::StateSet* stateAtRest(osg::StateSet* state);
+
+    std::unique_ptr<AnimatedProperties> _properties;                            ///< null: the set has none
+    std::map<osg::ref_ptr<osg::StateSet>, osg::ref_ptr<osg::StateSet>> _states; ///< at rest, by the marked one
 };
 
 } // namespace osgGpuAnimation

@@ -63,6 +63,19 @@ void exchangeChild(osg::Group& group, unsigned int child, const osg::Geometry& m
     group.setChild(child, &shown);
 }
 
+/// change(osg::LOD&), which may replace children. Clones of a character share its levels of detail: a copy changes.
+template <typename Change>
+void changeLevels(osg::Group& group, unsigned int child, Change change)
+{
+    auto* levels = dynamic_cast<osg::LOD*>(group.getChild(child));
+    if (!levels) return;
+    if (levels->getNumParents() == 1) return change(*levels);
+    const osg::ref_ptr<osg::LOD> own = osg::clone(levels, osg::CopyOp::SHALLOW_COPY);
+    change(*own);
+    for (unsigned int level = 0; level < own->getNumChildren(); ++level)
+        if (own->getChild(level) != levels->getChild(level)) return static_cast<void>(group.setChild(child, own));
+}
+
 } // namespace
 
 void setVariantNames(osg::Object& character, const std::vector<std::string>& names)
@@ -115,11 +128,11 @@ void VariantMeshes::show(osg::Group& group, const std::string& variant)
 {
     for (unsigned int i = 0; i < group.getNumChildren(); ++i)
     {
-        if (auto* levels = dynamic_cast<osg::LOD*>(group.getChild(i))) show(*levels, variant);
+        changeLevels(group, i, [&](osg::LOD& levels) { show(levels, variant); });
         auto* mesh = dynamic_cast<osg::Geometry*>(group.getChild(i));
         osg::StateSet* state = mesh ? variantState(*mesh, variant) : nullptr;
         if (!state || state == mesh->getStateSet()) continue;
-        const osg::ref_ptr<osg::Geometry> shown = copyOf(*mesh, state, mesh->getNodeMask());
+        const osg::ref_ptr<osg::Geometry> shown = copyOf(*mesh, state, mesh->getNodeMask() != 0);
         exchangeChild(group, i, *mesh, *shown);
     }
 }
@@ -128,13 +141,12 @@ void VariantMeshes::setVisible(osg::Group& group, const std::vector<osg::Geometr
 {
     for (unsigned int i = 0; i < group.getNumChildren(); ++i)
     {
-        if (auto* levels = dynamic_cast<osg::LOD*>(group.getChild(i))) setLevelsVisible(*levels, meshes, isVisible);
+        changeLevels(group, i, [&](osg::LOD& levels) { setLevelsVisible(levels, meshes, isVisible); });
         auto* mesh = dynamic_cast<osg::Geometry*>(group.getChild(i));
         if (!mesh || std::find(meshes.begin(), meshes.end(), mesh) == meshes.end()) continue;
         if ((mesh->getNodeMask() != 0) == isVisible) continue;
         mesh->getOrCreateUserDataContainer(); // by which copies know each other
-        const osg::ref_ptr<osg::Geometry> shown =
-            isVisible ? visibleCopyOf(*mesh) : copyOf(*mesh, mesh->getStateSet(), 0);
+        const osg::ref_ptr<osg::Geometry> shown = copyOf(*mesh, mesh->getStateSet(), isVisible);
         exchangeChild(group, i, *mesh, *shown);
     }
 }
@@ -149,27 +161,35 @@ void VariantMeshes::setLevelsVisible(osg::LOD& levels, const std::vector<osg::Ge
         setVisible(levels, all, isVisible);
 }
 
-osg::ref_ptr<osg::Geometry> VariantMeshes::visibleCopyOf(osg::Geometry& hidden)
+/// The node mask of the mesh while it is visible: the copies know that of a hidden one.
+osg::Node::NodeMask VariantMeshes::visibleMask(const osg::Geometry& mesh) const
 {
+    if (mesh.getNodeMask() != 0) return mesh.getNodeMask();
     osg::Node::NodeMask mask = ~0u;
+    const osg::UserDataContainer* family = mesh.getUserDataContainer();
+    for (auto copy = _meshes.lower_bound(Key{family, nullptr, 0, false});
+         copy != _meshes.end() && std::get<0>(copy->first) == family; ++copy)
     {
-        const std::lock_guard<std::mutex> lock(_mutex);
-        const auto known = _meshes.lower_bound(Key{hidden.getUserDataContainer(), hidden.getStateSet(), 1});
-        const bool isOfMesh = known != _meshes.end() && std::get<0>(known->first) == hidden.getUserDataContainer() &&
-                              std::get<1>(known->first) == hidden.getStateSet();
-        osg::ref_ptr<osg::Geometry> mesh;
-        if (isOfMesh && known->second.lock(mesh) && isCopyOf(*mesh, hidden)) mask = mesh->getNodeMask();
+        osg::ref_ptr<osg::Geometry> known;
+        if (!copy->second.lock(known) || !isCopyOf(*known, mesh)) continue;
+        mask = std::get<2>(copy->first);
+        if (known == &mesh) break;
     }
-    return copyOf(hidden, hidden.getStateSet(), mask);
+    return mask;
 }
 
-osg::ref_ptr<osg::Geometry> VariantMeshes::copyOf(osg::Geometry& mesh, osg::StateSet* state, osg::Node::NodeMask mask)
+osg::ref_ptr<osg::Geometry> VariantMeshes::copyOf(osg::Geometry& mesh, osg::StateSet* state, bool isVisible)
 {
     const std::lock_guard<std::mutex> lock(_mutex);
-    _meshes[{mesh.getUserDataContainer(), mesh.getStateSet(), mesh.getNodeMask()}] = &mesh;
-    osg::observer_ptr<osg::Geometry>& known = _meshes[{mesh.getUserDataContainer(), state, mask}];
+    for (auto copy = _meshes.begin(); copy != _meshes.end();)
+        copy = copy->second.valid() ? std::next(copy) : _meshes.erase(copy);
+    const osg::Node::NodeMask visible = visibleMask(mesh), mask = isVisible ? visible : 0;
+    const osg::UserDataContainer* family = mesh.getUserDataContainer();
+    osg::observer_ptr<osg::Geometry>& present = _meshes[{family, mesh.getStateSet(), visible, mesh.getNodeMask() != 0}];
     osg::ref_ptr<osg::Geometry> shown;
     // The key of a deleted mesh may have become that of another.
+    if (!present.lock(shown) || !isCopyOf(*shown, mesh)) present = &mesh;
+    osg::observer_ptr<osg::Geometry>& known = _meshes[{family, state, visible, isVisible}];
     if (known.lock(shown) && shown->getStateSet() == state && shown->getNodeMask() == mask && isCopyOf(*shown, mesh))
         return shown;
     shown = osg::clone(&mesh, osg::CopyOp::SHALLOW_COPY);

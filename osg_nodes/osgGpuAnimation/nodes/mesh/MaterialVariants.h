@@ -45,17 +45,17 @@ class VariantMeshes
 public:
     /// Replaces the meshes that the variant changes among the direct children of the group and of LODs there.
     void show(osg::Group& group, const std::string& variant);
-    /// Replaces these meshes among the direct children of the group, and all levels of LODs there that have one. A mesh
-    /// of which no visible copy exists gets the node mask ~0.
+    /// Replaces these meshes among the direct children of the group, and all levels of LODs there that have one. A
+    /// hidden mesh gets the node mask that it or a copy of it had; ~0 if it has always been hidden.
     void setVisible(osg::Group& group, const std::vector<osg::Geometry*>& meshes, bool isVisible);
 
 private:
-    osg::ref_ptr<osg::Geometry> copyOf(osg::Geometry& mesh, osg::StateSet* state, osg::Node::NodeMask mask);
+    osg::ref_ptr<osg::Geometry> copyOf(osg::Geometry& mesh, osg::StateSet* state, bool isVisible);
     void setLevelsVisible(osg::LOD& levels, const std::vector<osg::Geometry*>& meshes, bool isVisible);
-    osg::ref_ptr<osg::Geometry> visibleCopyOf(osg::Geometry& hidden);
+    osg::Node::NodeMask visibleMask(const osg::Geometry& mesh) const;
 
-    /// Copies share their user data.
-    using Key = std::tuple<const osg::UserDataContainer*, const osg::StateSet*, osg::Node::NodeMask>;
+    /// The user data that copies share, the StateSet, the node mask while it is visible, and whether it is.
+    using Key = std::tuple<const osg::UserDataContainer*, const osg::StateSet*, osg::Node::NodeMask, bool>;
     std::mutex _mutex;
     std::map<Key, osg::observer_ptr<osg::Geometry>> _meshes;
 };

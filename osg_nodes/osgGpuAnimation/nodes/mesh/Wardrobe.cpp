@@ -3,6 +3,7 @@
 
 #include <osgGpuAnimation/animation/bounds/ClipBounds.h>
 #include <osgGpuAnimation/animation/retarget/JointNames.h>
+#include <osgGpuAnimation/nodes/mesh/AnimatedProperties.h>
 #include <osgGpuAnimation/nodes/mesh/PaletteEntryBounds.h>
 
 #include <osg/UserDataContainer>
@@ -285,9 +286,11 @@ Result<FittedGarment> Wardrobe::fit(const osg::Node& garment, const AnimationSet
     Result<FittedGarment> made = fitter.fit(body);
     if (!made) return made;
     FittedGarment fitted = made.value();
+    UnanimatedMeshes unanimated(set);
     for (const SkinnedGeometry* source : meshes)
     {
         const osg::ref_ptr<SkinnedGeometry> mesh = new SkinnedGeometry(*source, osg::CopyOp::SHALLOW_COPY);
+        unanimated.release(*mesh);
         setIdentifier(*mesh, identifier);
         setEntries(*mesh, *source, fitter);
         setMorphs(*mesh, *source, set, fitted);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include "assimp/AssimpFile.h"
-#include "gltf/file/ModelBytes.h"
 #include "ModelReader.h"
 
 #include "cache/SeparateLoads.h"
@@ -58,8 +57,6 @@ protected:
     Result<std::string> readGltf(const std::string& path, const gltf::ImportOptions& options,
                                  gltf::Messages& messages) const override
     {
-        const std::string extension = osgDB::getLowerCaseFileExtension(path);
-        if (extension == "gltf" || extension == "glb") return gltf::readModelFile(path, options); // a file of clips
         gltf::Report report(messages);
         return assimp::readAsGlb(path, options, report);
     }

@@ -25,7 +25,9 @@
 #include <algorithm>
 #include <array>
 #include <deque>
+#include <limits>
 #include <map>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -56,6 +58,7 @@ struct Whereabouts
     osg::Matrixd toPlace;       ///< not yet in a place
     osg::ref_ptr<const osg::StateSet> state = new osg::StateSet;
     const WrittenCharacter* character = nullptr; ///< above, see JointAttachment
+    bool isHidden = false;
 };
 
 /// Plain geometry at a place.
@@ -64,6 +67,13 @@ struct PlacedGeometry
     NodePlace* place;
     osg::ref_ptr<const osg::StateSet> state;
     const osg::Geometry* geometry;
+    bool isHidden;
+};
+
+struct Child
+{
+    const osg::Node* node;
+    bool isHidden; ///< by its mask or an osg::Switch
 };
 
 class SceneExporter
@@ -79,7 +89,13 @@ public:
         _writer.document["scenes"].push_back(std::move(first));
         Whereabouts top;
         top.toPlace.set(1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1); // from +Z up to +Y up, exactly
-        visit(scene, top);
+        _open.push_back({{&scene, false}, std::make_shared<const Whereabouts>(top)});
+        while (!_open.empty())
+        {
+            const OpenNode next = std::move(_open.back());
+            _open.pop_back();
+            visit(next.child, *next.above);
+        }
         writeGeometries();
         for (const WrittenCharacter& character : _written)
             _clips.write(character);
@@ -91,13 +107,20 @@ public:
 private:
     static std::vector<std::string> variantsBelow(const osg::Node& scene);
 
-    void visit(const osg::Node& node, Whereabouts at);
+    /// A node that visit() shall have next. Scenes may be deeper than the call stack.
+    struct OpenNode
+    {
+        Child child;
+        std::shared_ptr<const Whereabouts> above;
+    };
+
+    void visit(const Child& child, const Whereabouts& above);
     void visitChildren(const osg::Node& node, const Whereabouts& at);
     void enter(const osg::Transform& transform, Whereabouts& at);
-    void visitAttachment(const JointAttachment& attachment, Whereabouts at);
+    void visitAttachment(const JointAttachment& attachment, const Whereabouts& above);
     template <typename Character>
     void visitCharacter(const Character& character, const osg::Matrixd& toAbove, const Whereabouts& at);
-    void collectMeshes(const osg::Node& node, const osg::ref_ptr<const osg::StateSet>& above,
+    void collectMeshes(const Child& child, const osg::ref_ptr<const osg::StateSet>& above,
                        std::vector<CharacterMesh>& meshes) const;
     void addGeometry(const osg::Geometry& geometry, const Whereabouts& at);
     void addLight(const osg::LightSource& source, const Whereabouts& at);
@@ -114,6 +137,7 @@ private:
     CharacterWriter _characters;
     ClipWriter _clips;
     std::deque<WrittenCharacter> _written; ///< keeps addresses
+    std::vector<OpenNode> _open;           ///< the next one last
     std::vector<PlacedGeometry> _plain;
     std::map<std::pair<NodePlace*, std::array<double, 16>>, NodePlace*> _unnamed; ///< places without a transform
 };
@@ -131,29 +155,50 @@ osg::ref_ptr<const osg::StateSet> stateBelow(const osg::ref_ptr<const osg::State
     return merged;
 }
 
-/// Those that are drawn: the finest of an osg::LOD, the chosen ones of an osg::Switch.
-std::vector<const osg::Node*> childrenOf(const osg::Node& node)
+/// True for the children of the finest level.
+bool isFinest(const osg::LOD& levels, unsigned int child)
 {
-    std::vector<const osg::Node*> children;
+    const auto coarseness = [&](unsigned int number)
+    {
+        if (number >= levels.getNumRanges()) return std::numeric_limits<float>::max();
+        return levels.getRangeMode() == osg::LOD::DISTANCE_FROM_EYE_POINT ? levels.getMinRange(number)
+                                                                          : -levels.getMaxRange(number);
+    };
+    for (unsigned int other = 0; other < levels.getNumChildren(); ++other)
+        if (coarseness(other) < coarseness(child)) return false;
+    return true;
+}
+
+/// Of an osg::LOD, only the finest level.
+std::vector<Child> childrenOf(const osg::Node& node)
+{
+    std::vector<Child> children;
     const osg::Group* const group = node.asGroup();
     const auto* const levels = dynamic_cast<const osg::LOD*>(&node);
     const auto* const choice = dynamic_cast<const osg::Switch*>(&node);
     for (unsigned int i = 0; group && i < group->getNumChildren(); ++i)
     {
-        const bool isHidden =
-            (choice && !choice->getValue(i)) ||
-            (levels && levels->getMinRange(i) > 0.0f && levels->getRangeMode() == osg::LOD::DISTANCE_FROM_EYE_POINT);
-        if (!isHidden && group->getChild(i)->getNodeMask() != 0) children.push_back(group->getChild(i));
+        const osg::Node* const child = group->getChild(i);
+        if (levels && !isFinest(*levels, i)) continue;
+        children.push_back({child, child->getNodeMask() == 0 || (choice && !choice->getValue(i))});
     }
     return children;
 }
 
 std::vector<std::string> SceneExporter::variantsBelow(const osg::Node& scene)
 {
-    std::vector<std::string> names = variantNamesOf(scene);
-    for (const osg::Node* child : childrenOf(scene))
-        for (const std::string& name : variantsBelow(*child))
+    std::vector<std::string> names;
+    std::vector<const osg::Node*> open{&scene};
+    while (!open.empty())
+    {
+        const osg::Node& node = *open.back();
+        open.pop_back();
+        for (const std::string& name : variantNamesOf(node))
             if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+        const std::vector<Child> children = childrenOf(node);
+        for (auto child = children.rbegin(); child != children.rend(); ++child)
+            open.push_back(child->node);
+    }
     return names;
 }
 
@@ -179,14 +224,20 @@ void SceneExporter::enter(const osg::Transform& transform, Whereabouts& at)
 
 void SceneExporter::visitChildren(const osg::Node& node, const Whereabouts& at)
 {
-    for (const osg::Node* child : childrenOf(node))
-        visit(*child, at);
+    const std::vector<Child> children = childrenOf(node);
+    if (children.empty()) return;
+    const auto shared = std::make_shared<const Whereabouts>(at);
+    for (auto child = children.rbegin(); child != children.rend(); ++child)
+        _open.push_back({*child, shared});
 }
 
-void SceneExporter::visit(const osg::Node& node, Whereabouts at)
+/// above: of the node above.
+void SceneExporter::visit(const Child& child, const Whereabouts& above)
 {
-    const osg::ref_ptr<const osg::StateSet> above = at.state;
-    at.state = stateBelow(above, node);
+    const osg::Node& node = *child.node;
+    Whereabouts at = above;
+    at.state = stateBelow(above.state, node);
+    at.isHidden = above.isHidden || child.isHidden;
     if (const auto* const character = dynamic_cast<const AnimatedCharacter*>(&node))
         return visitCharacter(*character, character->getFileToNode() * character->getMatrix(), at);
     if (const auto* const crowd = dynamic_cast<const AnimatedCrowd*>(&node))
@@ -224,8 +275,9 @@ void SceneExporter::visit(const osg::Node& node, Whereabouts at)
     visitChildren(node, at);
 }
 
-void SceneExporter::visitAttachment(const JointAttachment& attachment, Whereabouts at)
+void SceneExporter::visitAttachment(const JointAttachment& attachment, const Whereabouts& above)
 {
+    Whereabouts at = above;
     const std::string& name = attachment.getJointName();
     const WrittenCharacter* const character = at.character;
     const int joint = !character     ? -1
@@ -244,37 +296,38 @@ template <typename Character>
 void SceneExporter::visitCharacter(const Character& character, const osg::Matrixd& toAbove, const Whereabouts& at)
 {
     std::vector<CharacterMesh> meshes;
-    for (const osg::Node* child : childrenOf(character))
-        collectMeshes(*child, at.state, meshes);
+    for (const Child& child : childrenOf(character))
+        collectMeshes({child.node, at.isHidden || child.isHidden}, at.state, meshes);
     _written.push_back(
         _characters.write(setOf(character), meshes, toAbove * at.toPlace, character.getName(), at.place));
     Whereabouts below = at;
     below.character = &_written.back();
     enter(character, below);
-    for (const osg::Node* child : childrenOf(character))
-        visit(*child, below);
+    visitChildren(character, below);
 }
 
-void SceneExporter::collectMeshes(const osg::Node& node, const osg::ref_ptr<const osg::StateSet>& above,
+void SceneExporter::collectMeshes(const Child& child, const osg::ref_ptr<const osg::StateSet>& above,
                                   std::vector<CharacterMesh>& meshes) const
 {
+    const osg::Node& node = *child.node;
     const osg::ref_ptr<const osg::StateSet> own = stateBelow(above, node);
     if (const auto* const mesh = dynamic_cast<const SkinnedGeometry*>(&node))
-        meshes.push_back({mesh, own});
+        meshes.push_back({mesh, own, child.isHidden});
     else if (!node.asTransform())
-        for (const osg::Node* child : childrenOf(node))
-            collectMeshes(*child, own, meshes);
+        for (const Child& below : childrenOf(node))
+            collectMeshes({below.node, child.isHidden || below.isHidden}, own, meshes);
 }
 
 void SceneExporter::addGeometry(const osg::Geometry& geometry, const Whereabouts& at)
 {
-    _plain.push_back({placeAt(at), at.state, &geometry});
+    _plain.push_back({placeAt(at), at.state, &geometry, at.isHidden});
 }
 
 void SceneExporter::addLight(const osg::LightSource& source, const Whereabouts& at)
 {
     const auto* const light = dynamic_cast<const PunctualLight*>(source.getLight());
     if (!light) return _report.warn("light " + quoted(source.getName()) + ": it is no PunctualLight; left out");
+    if (at.isHidden) return _report.warn("light " + quoted(source.getName()) + ": it is hidden; left out");
     // See PunctualLight::setIntensity().
     const osg::Vec4 diffuse = light->getDiffuse();
     const float most = std::max({diffuse.x(), diffuse.y(), diffuse.z()});
@@ -323,12 +376,14 @@ void SceneExporter::addCamera(const osg::CameraView& view, const Whereabouts& at
 void SceneExporter::writeGeometries()
 {
     using Parts = std::vector<std::pair<const osg::Geometry*, const osg::StateSet*>>;
-    std::vector<std::pair<NodePlace*, Parts>> meshes;
-    std::map<std::pair<NodePlace*, std::string>, std::size_t> known;
+    using Place = std::pair<NodePlace*, bool>; ///< and whether the mesh is hidden
+    std::vector<std::pair<Place, Parts>> meshes;
+    std::map<std::pair<Place, std::string>, std::size_t> known;
     for (const PlacedGeometry& each : _plain)
     {
-        const auto [number, isNew] = known.try_emplace({each.place, each.geometry->getName()}, meshes.size());
-        if (isNew) meshes.emplace_back(each.place, Parts());
+        const auto [number, isNew] =
+            known.try_emplace({{each.place, each.isHidden}, each.geometry->getName()}, meshes.size());
+        if (isNew) meshes.emplace_back(Place(each.place, each.isHidden), Parts());
         meshes[number->second].second.emplace_back(each.geometry, each.state.get());
     }
     std::map<Parts, std::optional<std::size_t>> written;
@@ -350,7 +405,12 @@ void SceneExporter::writeGeometries()
                 number->second = append(_writer.document["meshes"], std::move(mesh));
             }
         }
-        if (number->second) _nodes.at(_nodes.nodeFor(place, "mesh", name))["mesh"] = *number->second;
+        if (!number->second) continue;
+        const auto& [above, isHidden] = place;
+        const std::size_t node =
+            isHidden ? _nodes.add(name, JointTransform(), above) : _nodes.nodeFor(above, "mesh", name);
+        _nodes.at(node)["mesh"] = *number->second;
+        if (isHidden) _nodes.hide(node);
     }
 }
 

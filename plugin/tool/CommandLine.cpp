@@ -4,12 +4,12 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 
+#include <osgDB/FileNameUtils>
+
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <filesystem>
 #include <iostream>
 #include <utility>
 #include <vector>
@@ -93,18 +93,13 @@ std::string checkFraction(const std::string& text)
 
 std::string checkPng(const std::string& name)
 {
-    std::string extension = std::filesystem::path(name).extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
-    return extension == ".png" ? "" : "'" + name + "' does not end in .png";
+    return osgDB::getLowerCaseFileExtension(name) == "png" ? "" : "'" + name + "' does not end in .png";
 }
 
 std::string checkSceneFile(const std::string& name)
 {
-    std::string extension = std::filesystem::path(name).extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
-    for (const char* known : {".glb", ".osgb", ".osgt", ".osgx"})
+    const std::string extension = osgDB::getLowerCaseFileExtension(name);
+    for (const char* known : {"glb", "osgb", "osgt", "osgx"})
         if (extension == known) return "";
     return "'" + name + "' does not end in .glb, .osgb, .osgt or .osgx";
 }

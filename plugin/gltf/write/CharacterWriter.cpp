@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/write/CharacterWriter.h"
 
+#include <osgGpuAnimation/nodes/mesh/MeshNames.h>
+
 #include <algorithm>
 #include <set>
 #include <utility>
@@ -54,24 +56,27 @@ int CharacterWriter::skinOf(const AnimationSet& set, const SkinnedGeometry& mesh
     return static_cast<int>(_skins.size()) - 1;
 }
 
-/// Primitives of one mesh of the file have its name, skin and morph.
+/// Primitives of one mesh of the file have its name, that of its node, its skin and its morph.
 void CharacterWriter::addGroups(const AnimationSet& set, const std::vector<CharacterMesh>& meshes)
 {
     for (const CharacterMesh& each : meshes)
     {
         Group group{each.mesh->getName(),
+                    nodeNameOf(*each.mesh),
                     carrierOf(set, *each.mesh),
                     -1,
                     each.mesh->getMorphTargets().empty() ? -1 : each.mesh->getMorph(),
                     each.mesh->getMorphTargets().size(),
+                    each.isHidden,
                     {}};
         if (group.joint < 0) group.skin = skinOf(set, *each.mesh);
         const auto same = std::find_if(_groups.begin(), _groups.end(),
                                        [&](const Group& other)
                                        {
-                                           return other.name == group.name && other.joint == group.joint &&
-                                                  other.skin == group.skin && other.morph == group.morph &&
-                                                  other.targets == group.targets;
+                                           return other.name == group.name && other.nodeName == group.nodeName &&
+                                                  other.joint == group.joint && other.skin == group.skin &&
+                                                  other.morph == group.morph && other.targets == group.targets &&
+                                                  other.isHidden == group.isHidden;
                                        });
         (same == _groups.end() ? _groups.emplace_back(std::move(group)) : *same).meshes.push_back(each);
     }
@@ -151,7 +156,10 @@ void CharacterWriter::writeGroup(const Group& group, WrittenCharacter& made)
     // The node of a morphing mesh is a joint, of a skinned one, too.
     const int joint = group.joint >= 0 ? group.joint : morph ? set.skeleton().jointOfSourceNode(morph->sourceNode) : -1;
     NodePlace* const place = joint < 0 ? nullptr : &_nodes.placeOf(made.nodeOfJoint[static_cast<std::size_t>(joint)]);
-    const std::size_t node = _nodes.nodeFor(place, "mesh", morph ? morph->name : group.name);
+    const std::string& name = morph ? morph->name : group.nodeName;
+    const std::size_t node =
+        group.isHidden ? _nodes.add(name, JointTransform(), place) : _nodes.nodeFor(place, "mesh", name);
+    if (group.isHidden) _nodes.hide(node);
     nlohmann::json mesh{{"primitives", std::move(primitives)}};
     if (!group.name.empty()) mesh["name"] = group.name;
     _nodes.at(node)["mesh"] = append(_writer.document["meshes"], std::move(mesh));

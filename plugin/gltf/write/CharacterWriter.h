@@ -26,6 +26,7 @@ struct CharacterMesh
 {
     const SkinnedGeometry* mesh = nullptr;
     osg::ref_ptr<const osg::StateSet> state;
+    bool isHidden = false;
 };
 
 /// The nodes that a character became.
@@ -58,11 +59,13 @@ private:
     /// Meshes with one node.
     struct Group
     {
-        std::string name;
-        int joint = -1; ///< carries it; -1: skinned
-        int skin = -1;  ///< index of _skins
+        std::string name;     ///< of the mesh
+        std::string nodeName; ///< see nodeNameOf()
+        int joint = -1;       ///< carries it; -1: skinned
+        int skin = -1;        ///< index of _skins
         int morph = -1;
         std::size_t targets = 0;
+        bool isHidden = false;
         std::vector<CharacterMesh> meshes;
     };
 

@@ -12,6 +12,7 @@ namespace
 {
 
 constexpr std::size_t numbersOfTrack = 12;
+constexpr std::size_t mostKeysOfPiece = 256; ///< bounds the time of joinedPieces(), the square of it
 
 /// One keyframe of a property. Tangents: multiplied by the length of their interval, as in Clip.
 struct PropertyKey
@@ -156,7 +157,7 @@ std::vector<PropertyKey> joinedPieces(const std::vector<PropertyKey>& keys)
     for (std::size_t first = 0; first + 1 < keys.size();)
     {
         std::size_t last = first + 1;
-        while (last + 1 < keys.size() && isOnePiece(keys, first, last + 1))
+        while (last + 1 < keys.size() && last - first < mostKeysOfPiece && isOnePiece(keys, first, last + 1))
             ++last;
         const auto scale = [&](std::vector<float>& tangent, double pieceLength)
         {

@@ -4,6 +4,9 @@
 #include "gltf/write/ClipKeys.h"
 
 #include <algorithm>
+#include <set>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace osgGpuAnimation::gltf
@@ -36,12 +39,14 @@ std::vector<float> restValues(const AnimationSet& set, const ClipProperty& prope
 
 void addMarkers(const std::vector<ClipMarker>& markers, nlohmann::json& animation)
 {
+    if (markers.empty()) return;
+    nlohmann::json& all = animation["extras"]["markers"];
+    std::set<std::pair<double, std::string>> known;
+    for (const nlohmann::json& marker : all) // of the same clip of another character
+        known.emplace(marker["time"].get<double>(), marker["name"].get<std::string>());
     for (const ClipMarker& marker : markers)
-    {
-        nlohmann::json& all = animation["extras"]["markers"];
-        nlohmann::json one{{"time", marker.time}, {"name", marker.name}};
-        if (std::find(all.begin(), all.end(), one) == all.end()) all.push_back(std::move(one));
-    }
+        if (known.emplace(marker.time, marker.name).second)
+            all.push_back({{"time", marker.time}, {"name", marker.name}});
 }
 
 } // namespace
@@ -122,6 +127,12 @@ void ClipWriter::write(const WrittenCharacter& character)
         else
             _writer.document["animations"][number->second] = std::move(animation);
     }
+    const std::vector<MorphWeights>& morphs = character.set->morphs();
+    const auto properties =
+        std::count_if(morphs.begin(), morphs.end(), [](const MorphWeights& morph) { return morph.isProperty(); });
+    if (properties > 0)
+        _report.warn("animated properties of materials, lights, cameras and nodes: their curves are not written; " +
+                     std::to_string(properties) + " keep one value");
     if (!character.set->constraints().empty())
         _report.warn("constraints: glTF has none; " + std::to_string(character.set->constraints().size()) +
                      " are left out");

@@ -28,11 +28,13 @@ bool appendNumbers(const osg::Array& array, std::size_t components, float scale,
     out.reserve(elements->size() * components);
     for (const auto& element : *elements)
         for (std::size_t i = 0; i < components; ++i)
-            out.push_back(i < element.num_components ? static_cast<float>(element[static_cast<int>(i)]) * scale : 1.0f);
+            out.push_back(i < element.num_components ? static_cast<float>(element[static_cast<int>(i)]) * scale
+                          : i == 3                   ? 1.0f
+                                                     : 0.0f);
     return true;
 }
 
-/// By vertex; components that the array lacks are 1. Empty: an array of another kind.
+/// By vertex; of components that the array lacks, the fourth is 1, others are 0. Empty: an array of another kind.
 std::vector<float> numbersOf(const osg::Array* array, std::size_t components)
 {
     std::vector<float> numbers;
@@ -176,13 +178,27 @@ GeometryWriter::Values GeometryWriter::finite(Values values)
     return values;
 }
 
-/// make: the values, of a new accessor.
+/// make: the values, of a new accessor; further ones than those of the vertices are cut off. Nothing is added, with a
+/// warning, if there are fewer.
 template <typename Make>
-void GeometryWriter::add(Attributes& to, const char* name, const osg::Array* array, const char* type, Make make)
+void GeometryWriter::add(Attributes& to, const char* name, const osg::Array* array, std::size_t vertices,
+                         std::size_t components, Make make)
 {
-    const auto [place, isNew] = _accessors.try_emplace({array, nullptr, std::string(name)});
-    if (isNew) place->second = _writer.addFloats(finite(make()), type, GlbWriter::Use::Vertices);
-    to[name] = place->second;
+    const auto [place, isNew] = _accessors.try_emplace({array, vertices, std::string(name)});
+    if (isNew)
+    {
+        Values values = make();
+        if (values.size() < vertices * components)
+            _report.warn(_label + ": " + name + " is an array of a kind that is not read (" + array->className() +
+                         "); left out");
+        else
+        {
+            values.resize(vertices * components);
+            const std::string type = "VEC" + std::to_string(components);
+            place->second = _writer.addFloats(finite(std::move(values)), type.c_str(), GlbWriter::Use::Vertices);
+        }
+    }
+    if (place->second) to[name] = *place->second;
 }
 
 GeometryWriter::Attributes GeometryWriter::attributesOf(const osg::Geometry& geometry, const osg::StateSet& state,
@@ -191,7 +207,7 @@ GeometryWriter::Attributes GeometryWriter::attributesOf(const osg::Geometry& geo
     Attributes made = json::object();
     const osg::Array* const positions = geometry.getVertexArray();
     const std::size_t vertices = positions->getNumElements();
-    add(made, "POSITION", positions, "VEC3", [&] { return numbersOf(positions, 3); });
+    add(made, "POSITION", positions, vertices, 3, [&] { return numbersOf(positions, 3); });
     const auto addUnit = [&](const char* name, const osg::Array* array, std::size_t components)
     {
         const auto make = [&]
@@ -202,7 +218,7 @@ GeometryWriter::Attributes GeometryWriter::attributesOf(const osg::Geometry& geo
                 numbers[at] = numbers[at] < 0.0f ? -1.0f : 1.0f;
             return numbers;
         };
-        add(made, name, array, components == 4 ? "VEC4" : "VEC3", make);
+        add(made, name, array, vertices, components, make);
     };
     const osg::Array* const normals = geometry.getNormalArray();
     if (isOfEachVertex(normals, vertices) && !isLitByFaces(state)) addUnit("NORMAL", normals, 3);
@@ -210,18 +226,21 @@ GeometryWriter::Attributes GeometryWriter::attributesOf(const osg::Geometry& geo
     if (isOfEachVertex(tangents, vertices) && made.contains("NORMAL")) addUnit("TANGENT", tangents, 4);
     const osg::Array* const coordinates = geometry.getTexCoordArray(0);
     if (isOfEachVertex(coordinates, vertices))
-        add(made, "TEXCOORD_0", coordinates, "VEC2",
+        add(made, "TEXCOORD_0", coordinates, vertices, 2,
             [&]
             { return textureCoordinatesOf(*coordinates, std::min<std::size_t>(coordinates->getDataSize(), 4), 0); });
     const osg::Array* const more = geometry.getVertexAttribArray(POSE_COORDINATES_LOCATION);
     if (isOfEachVertex(more, vertices) && made.contains("TEXCOORD_0"))
     {
-        add(made, "TEXCOORD_1", more, "VEC2", [&] { return textureCoordinatesOf(*more, 4, 0); });
-        add(made, "TEXCOORD_2", more, "VEC2", [&] { return textureCoordinatesOf(*more, 4, 2); });
+        add(made, "TEXCOORD_1", more, vertices, 2, [&] { return textureCoordinatesOf(*more, 4, 0); });
+        add(made, "TEXCOORD_2", more, vertices, 2, [&] { return textureCoordinatesOf(*more, 4, 2); });
     }
     if (!hasColors) return made;
     const osg::Array* const colors = geometry.getColorArray();
     const Values display = numbersOf(colors, 4);
+    if (colors && display.empty())
+        _report.warn(_label + ": COLOR_0 is an array of a kind that is not read (" + colors->className() +
+                     "); written as white");
     Values written;
     for (std::size_t vertex = 0; vertex < vertices; ++vertex)
     {
@@ -301,13 +320,13 @@ json GeometryWriter::targetsOf(const SkinnedGeometry& mesh, const Attributes& ba
         const auto addVectors = [&](const char* name, const osg::Vec3Array* array)
         {
             if (array && array->size() == vertices && base.contains(name))
-                add(deltas, name, array, "VEC3", [&] { return numbersOf(array, 3); });
+                add(deltas, name, array, vertices, 3, [&] { return numbersOf(array, 3); });
         };
         addVectors("POSITION", target.positions);
         addVectors("NORMAL", target.normals);
         addVectors("TANGENT", target.tangents);
         if (target.textureCoordinates && target.textureCoordinates->size() == vertices && base.contains("TEXCOORD_0"))
-            add(deltas, "TEXCOORD_0", target.textureCoordinates, "VEC2",
+            add(deltas, "TEXCOORD_0", target.textureCoordinates, vertices, 2,
                 [&]
                 {
                     Values numbers = numbersOf(target.textureCoordinates, 2);
@@ -366,6 +385,7 @@ json GeometryWriter::primitivesOf(const osg::Geometry& geometry, const osg::Stat
     const auto* const mesh = dynamic_cast<const SkinnedGeometry*>(&geometry);
     const ColorUse colors = colorUseOf(geometry, state);
     Attributes attributes = attributesOf(geometry, state, colors.isShown);
+    if (!attributes.contains("POSITION")) return primitives; // add() warned
     if (mesh && skin) addInfluences(*mesh, *skin, attributes);
     unsigned int coordinates = 0;
     for (unsigned int number = 0; number < 3; ++number)

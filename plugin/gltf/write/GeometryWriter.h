@@ -12,6 +12,7 @@
 
 #include <cstddef>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <tuple>
@@ -21,7 +22,8 @@ namespace osgGpuAnimation::gltf
 {
 
 /// Writes drawables as primitives of glTF meshes (2.0, section 3.7.2), arrays that are shared once. Quads, polygons,
-/// strips and fans become triangles. Texture matrices, and normals and colours of whole primitives, are left out.
+/// strips and fans become triangles. Texture matrices of the fixed pipeline, and normals and colours of whole
+/// primitives, are left out.
 class GeometryWriter
 {
 public:
@@ -43,7 +45,8 @@ private:
     using Values = std::vector<float>;
 
     template <typename Make>
-    void add(Attributes& to, const char* name, const osg::Array* array, const char* type, Make make);
+    void add(Attributes& to, const char* name, const osg::Array* array, std::size_t vertices, std::size_t components,
+             Make make);
     Attributes attributesOf(const osg::Geometry& geometry, const osg::StateSet& state, bool hasColors);
     void addInfluences(const SkinnedGeometry& mesh, const SkinPlaces& skin, Attributes& to);
     nlohmann::json targetsOf(const SkinnedGeometry& mesh, const Attributes& base);
@@ -55,7 +58,8 @@ private:
     const std::vector<std::string>& _variants;
     Report& _report;
     std::string _label; ///< of the drawable that is being written, for messages
-    std::map<std::tuple<const osg::Array*, const osg::Array*, std::string>, std::size_t> _accessors;
+    /// by array, number of vertices and name; none: the array cannot be written
+    std::map<std::tuple<const osg::Array*, std::size_t, std::string>, std::optional<std::size_t>> _accessors;
     std::map<std::tuple<const osg::Array*, const osg::Array*, SkinPlaces, std::size_t>, Attributes> _influences;
 };
 

@@ -85,6 +85,23 @@ void MaterialWriter::addMap(json& to, const char* member, const PbrMaterial::Map
     if (!texture) return;
     to[member]["index"] = *texture;
     if (map.coordinates > 0) to[member]["texCoord"] = map.coordinates;
+    addTransform(to[member], map.coordinates);
+}
+
+/// The inverse of setTextureTransform().
+void MaterialWriter::addTransform(json& to, int coordinates)
+{
+    const auto row = static_cast<unsigned int>(2 * coordinates);
+    osg::Vec3 first, second;
+    if (!_transforms || !_transforms->getElement(row, first) || !_transforms->getElement(row + 1, second)) return;
+    const double u[] = {first.x(), -first.y(), first.z() + first.y()};
+    const double v[] = {-second.x(), second.y(), 1.0 - second.y() - second.z()};
+    const double width = std::hypot(u[0], v[0]);
+    const double rotation = width > 0.0 ? std::atan2(-v[0], u[0]) : std::atan2(u[1], v[1]);
+    const double height = u[1] * std::sin(rotation) + v[1] * std::cos(rotation);
+    if (u[2] == 0.0 && v[2] == 0.0 && rotation == 0.0 && width == 1.0 && height == 1.0) return;
+    addExtension(to, "KHR_texture_transform",
+                 {{"offset", {u[2], v[2]}}, {"rotation", rotation}, {"scale", {width, height}}});
 }
 
 void MaterialWriter::addExtension(json& to, const char* name, json extension)
@@ -182,6 +199,7 @@ json MaterialWriter::written(const osg::StateSet& state, PbrMaterial material)
 std::size_t MaterialWriter::materialOf(const osg::StateSet& state, unsigned int coordinates, bool isColored)
 {
     _coordinates = coordinates;
+    _transforms = state.getUniform("textureTransforms");
     PbrMaterial material = pbrMaterialOf(state).value_or(fixedMaterialOf(state));
     if (isColored) material.baseColor.set(1.0f, 1.0f, 1.0f, 1.0f);
     json made = written(state, std::move(material));

@@ -7,6 +7,7 @@
 #include <osgGpuAnimation/nodes/PbrMaterial.h>
 
 #include <osg/StateSet>
+#include <osg/Uniform>
 
 #include <cstddef>
 #include <map>
@@ -18,6 +19,7 @@ namespace osgGpuAnimation::gltf
 /// Writes StateSets as glTF materials (2.0, section 3.9, and the extensions of PbrMaterial), equal ones once. A
 /// StateSet with a PbrMaterial becomes that material. Others have the look of the fixed pipeline: osg::Material's
 /// diffuse colour becomes the base colour and its exponent the roughness, the texture of unit 0 the base colour map.
+/// Texture transforms that the import left to the shader become KHR_texture_transform.
 class MaterialWriter
 {
 public:
@@ -30,12 +32,14 @@ public:
 private:
     nlohmann::json written(const osg::StateSet& state, PbrMaterial material);
     void addMap(nlohmann::json& to, const char* member, const PbrMaterial::Map& map);
+    void addTransform(nlohmann::json& to, int coordinates);
     void addExtensions(nlohmann::json& to, const PbrMaterial& material);
     void addExtension(nlohmann::json& to, const char* name, nlohmann::json extension);
 
     GlbWriter& _writer;
     PictureWriter _pictures;
     unsigned int _coordinates = 0;                 ///< of the material that is being written
+    const osg::Uniform* _transforms = nullptr;     ///< likewise: of its coordinates; null: none
     std::map<std::string, std::size_t> _materials; ///< by text
 };
 

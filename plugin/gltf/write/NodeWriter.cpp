@@ -4,6 +4,7 @@
 #include "gltf/scene/NodeTransform.h"
 
 #include <utility>
+#include <vector>
 
 namespace osgGpuAnimation::gltf
 {
@@ -54,8 +55,19 @@ std::size_t NodeWriter::addMatrix(const std::string& name, const osg::Matrixd& t
 
 std::size_t NodeWriter::nodeOf(NodePlace& place)
 {
-    if (!place.node) place.node = addMatrix(place.name, place.toAbove, place.above);
+    std::vector<NodePlace*> missing;
+    for (NodePlace* each = &place; each && !each->node; each = each->above)
+        missing.push_back(each);
+    for (auto each = missing.rbegin(); each != missing.rend(); ++each) // a node above exists first: no recursion
+        (*each)->node = addMatrix((*each)->name, (*each)->toAbove, (*each)->above);
     return *place.node;
+}
+
+void NodeWriter::hide(std::size_t node)
+{
+    const char* const extension = "KHR_node_visibility";
+    at(node)["extensions"][extension]["visible"] = false;
+    _writer.useExtension(extension);
 }
 
 std::size_t NodeWriter::nodeFor(NodePlace* place, const char* member, const std::string& name)

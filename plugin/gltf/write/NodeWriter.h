@@ -44,6 +44,9 @@ public:
     /// with the name. place: null: the scene.
     std::size_t nodeFor(NodePlace* place, const char* member, const std::string& name);
 
+    /// Neither the node nor those below it are drawn (KHR_node_visibility).
+    void hide(std::size_t node);
+
     nlohmann::json& at(std::size_t node) { return _writer.document["nodes"][node]; }
 
 private:

@@ -33,6 +33,20 @@ PointerFile redToBlue()
     return file;
 }
 
+/// A node with a light that shines along -Z.
+int lampOf(PointerFile& file)
+{
+    tinygltf::Light light;
+    light.type = "directional";
+    light.intensity = osg::PI;
+    light.color = {1, 1, 1};
+    file.model.lights.push_back(light);
+    const int lamp = file.node("lamp");
+    file.at(lamp).extensions["KHR_lights_punctual"] =
+        tinygltf::Value(tinygltf::Value::Object{{"light", tinygltf::Value(0)}});
+    return lamp;
+}
+
 class AnimatedPropertiesGLTest : public ViewerGLTest
 {
 protected:
@@ -175,14 +189,7 @@ TEST_F(AnimatedPropertiesGLTest, aLightDims)
 {
     PointerFile file;
     file.quad("wall", 0, 0, file.material("wall", {1, 1, 1, 1}, true));
-    tinygltf::Light light;
-    light.type = "directional";
-    light.intensity = osg::PI;
-    light.color = {1, 1, 1};
-    file.model.lights.push_back(light);
-    const int lamp = file.node("lamp");
-    file.at(lamp).extensions["KHR_lights_punctual"] =
-        tinygltf::Value(tinygltf::Value::Object{{"light", tinygltf::Value(0)}});
+    const int lamp = lampOf(file);
     file.animation("dim");
     const std::string lights = "/extensions/KHR_lights_punctual/lights/0/";
     file.animate(lights + "intensity", TINYGLTF_TYPE_SCALAR, {1.57f, 0.157f, 1.57f});
@@ -264,6 +271,30 @@ TEST_F(AnimatedPropertiesGLTest, storedScenesKeepIt)
             const osg::ref_ptr<osg::Image> expected = at(*model.root, time);
             EXPECT_EQ(Picture::pixelsDifferent(*at(*stored, time), *expected), 0) << time;
         }
+    }
+}
+
+TEST_F(AnimatedPropertiesGLTest, storedScenesShowAgainWhatIsHiddenNow)
+{
+    PointerFile file;
+    const int wall = file.quad("wall", 0, 0, file.material("wall", {1, 1, 1, 1}, true));
+    file.quad("still", 2.5f, 0, file.material("still", {1, 1, 1, 1}, true), wall);
+    file.animation("blink");
+    file.show(wall, {1, 1, 1});
+    file.show(lampOf(file), {1, 0, 1});
+    const ImportedModel model = importedFrom(file.document());
+    model.root->getOrCreateStateSet()->setMode(GL_LIGHTING, osg::StateAttribute::ON);
+    at(*model.root, 1.0);
+    ASSERT_TRUE(model.character->setMeshVisible("still", false));
+    for (const char* format : {"osgb", "osgt", "osgx"})
+    {
+        SCOPED_TRACE(format);
+        const osg::ref_ptr<osg::Node> stored = files.throughFile(*model.root, format);
+        ASSERT_TRUE(stored);
+        EXPECT_LT(colorAt(*at(*stored, 1.0), 0, 0).x(), 0.4f) << "ambient light";
+        const osg::ref_ptr<osg::Image> lit = at(*stored, 2.0);
+        EXPECT_GT(colorAt(*lit, 0, 0).x(), 0.8f);
+        EXPECT_TRUE(isNear(colorAt(*lit, 2.5, 0), osg::Vec3())) << "hidden by the application";
     }
 }
 

@@ -41,8 +41,7 @@ void warnOfUnknownJoints(const ClipJoints& joints, const Skeleton& model, const 
                          Report& report);
 
 /// Reads the clips of all files that the options name; files without meshes are valid. Files that are no glTF need
-/// options.otherFormats. A file that cannot be read, has
-/// no clips, or is named twice, is left out with a warning.
+/// options.otherFormats. A file that cannot be read, has no clips, or is named twice, is left out with a warning.
 ///
 /// A clip whose name says nothing (none, Mixamo's `mixamo.com`, FBX's `Take 001`) is named after its file.
 ///

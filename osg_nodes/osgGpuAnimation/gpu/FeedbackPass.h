@@ -23,6 +23,7 @@ namespace osgGpuAnimation
 class FeedbackScope
 {
 public:
+    /// vertexArray: the object whose attributes the passes read.
     FeedbackScope(osg::State& state, GLuint vertexArray);
     ~FeedbackScope();
     FeedbackScope(const FeedbackScope&) = delete;
@@ -33,7 +34,7 @@ public:
     /// Call it after BufferTexture::reserve(), which leaves the active unit without a texture.
     void forgetActiveTexture();
 
-    static constexpr int unitCount = 10;
+    static constexpr int unitCount = 10; ///< texture units that passes may use
 
 private:
     osg::State& _state;
@@ -53,14 +54,14 @@ public:
         osg::observer_ptr<osg::State> state; ///< null after the state's end
         GLuint pose = 0;                     ///< with the attributes of the pose pass
         GLuint empty = 0;                    ///< without attributes
-        // What the attributes of `pose` point to, by BufferTexture::serial(): calls that change nothing are left out.
-        std::uint64_t samples = 0;
-        std::size_t sampleStride = 0;
+        // What the attributes of `pose` point to: calls that change nothing are left out.
+        std::uint64_t samples = 0;    ///< BufferTexture::serial() of the blend samples; 0: none
+        std::size_t sampleStride = 0; ///< blend samples of an instance
         unsigned int sampleCount = 0; ///< enabled attributes
-        std::uint64_t roots = 0;
-        int rootDivisor = -1; ///< -1: disabled
-        std::uint64_t entries = 0;
-        std::size_t firstEntry = 0;
+        std::uint64_t roots = 0;      ///< serial of the root matrices
+        int rootDivisor = -1;         ///< -1: disabled
+        std::uint64_t entries = 0;    ///< serial of the palette entries
+        std::size_t firstEntry = 0;   ///< the first palette entry
     };
 
     /// Creates no GL objects yet.

@@ -12,6 +12,16 @@ namespace osgGpuAnimation
 /// "mixamorig:Hips", "mixamorig4_Hips", "mixamorigHips" and "Armature|hero:Hips".
 std::string bareJointName(const std::string& name);
 
+/// The names of joints, morphs and other elements that have one.
+template <typename T>
+std::vector<std::string> namesIn(const std::vector<T>& elements)
+{
+    std::vector<std::string> names;
+    for (const T& element : elements)
+        names.push_back(element.name);
+    return names;
+}
+
 /// Finds the counterparts of joints by name. One per name: an index of `others`, -1 where there is none.
 ///
 /// A name of `given` has the counterpart that `given` names, or none where that is empty. Other names have the joint of

@@ -18,15 +18,6 @@ namespace osgGpuAnimation
 namespace
 {
 
-template <typename T>
-std::vector<std::string> namesOf(const std::vector<T>& named)
-{
-    std::vector<std::string> names;
-    for (const T& element : named)
-        names.push_back(element.name);
-    return names;
-}
-
 /// "upperleg.l", "leftupleg": one of two.
 bool isOfOneSide(const std::string& name)
 {
@@ -107,8 +98,8 @@ bool areAlike(const glm::vec4& a, const glm::vec4& b, double most)
 RigMatch::RigMatch(const Rig& from, const Rig& to, const RetargetOptions& options)
     : _fromRest(from.skeleton), _toRest(to.skeleton),
       _jointCounterparts(
-          findCounterparts(namesOf(to.skeleton.joints()), namesOf(from.skeleton.joints()), options.counterparts)),
-      _morphCounterparts(findCounterparts(namesOf(to.morphs), namesOf(from.morphs), {})),
+          findCounterparts(namesIn(to.skeleton.joints()), namesIn(from.skeleton.joints()), options.counterparts)),
+      _morphCounterparts(findCounterparts(namesIn(to.morphs), namesIn(from.morphs), {})),
       _areHips(to.skeleton.jointCount())
 {
     for (std::size_t morph = 0; morph < to.morphs.size(); ++morph)

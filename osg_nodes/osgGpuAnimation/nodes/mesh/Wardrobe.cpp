@@ -24,15 +24,6 @@ namespace
 
 const char* const garmentKey = "osgGpuAnimation.garment";
 
-template <typename T>
-std::vector<std::string> namesIn(const std::vector<T>& named)
-{
-    std::vector<std::string> names;
-    for (const T& element : named)
-        names.push_back(element.name);
-    return names;
-}
-
 std::string quotedList(const std::vector<std::string>& names)
 {
     return quotedNames(names, [](const std::string& name) { return name; });
@@ -43,19 +34,12 @@ void addOnce(std::vector<std::string>& names, const std::string& name)
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
 }
 
-/// function(unsigned short entry), for each influence with a weight.
+/// function(std::size_t entry), for each influence with a weight.
 template <typename Function>
 void forEachEntry(const SkinnedGeometry& mesh, Function function)
 {
-    if (mesh.getRigidEntry() >= 0) function(static_cast<unsigned short>(mesh.getRigidEntry()));
-    for (unsigned int i = 0; i < SkinnedGeometry::maxInfluenceSets && mesh.getEntries(i) && mesh.getWeights(i); ++i)
-    {
-        const osg::Vec4usArray& entries = *mesh.getEntries(i);
-        const osg::Vec4Array& weights = *mesh.getWeights(i);
-        for (std::size_t vertex = 0; vertex < std::min(entries.size(), weights.size()); ++vertex)
-            for (int influence = 0; influence < 4; ++influence)
-                if (weights[vertex][influence] != 0.0f) function(entries[vertex][influence]);
-    }
+    for (std::size_t vertex = 0; vertex < mesh.getVertexCount(); ++vertex)
+        mesh.forEachInfluence(vertex, [&](std::size_t entry, float) { function(entry); });
 }
 
 double farthestVertex(const std::vector<const SkinnedGeometry*>& meshes)
@@ -96,7 +80,7 @@ public:
         std::vector<bool> isUsed(garment.paletteSize(), false);
         for (const SkinnedGeometry* mesh : meshes)
             forEachEntry(*mesh,
-                         [&](unsigned short entry)
+                         [&](std::size_t entry)
                          {
                              if (entry < isUsed.size()) isUsed[entry] = true;
                          });
@@ -344,9 +328,8 @@ std::shared_ptr<const AnimationSet> Wardrobe::withoutUnused(const std::shared_pt
 {
     if (set->garments().empty()) return set;
     std::size_t needed = 0;
-    forEachMesh(
-        meshes, [&](const SkinnedGeometry& mesh)
-        { forEachEntry(mesh, [&](unsigned short entry) { needed = std::max<std::size_t>(needed, entry + 1); }); });
+    forEachMesh(meshes, [&](const SkinnedGeometry& mesh)
+                { forEachEntry(mesh, [&](std::size_t entry) { needed = std::max(needed, entry + 1); }); });
     std::vector<Skin> garments;
     for (std::size_t end = set->levels().back(); end < needed && garments.size() < set->garments().size();)
     {

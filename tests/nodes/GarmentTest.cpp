@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "nodes/Tube.h"
+#include "support/VertexDistance.h"
 
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
@@ -104,16 +105,6 @@ osg::ref_ptr<AnimatedCharacter> cloneOf(const AnimatedCharacter& character)
 SkinnedGeometry& meshAt(const osg::Group& group, unsigned int child)
 {
     return dynamic_cast<SkinnedGeometry&>(*const_cast<osg::Node*>(group.getChild(child)));
-}
-
-double largestDistance(const osg::Geometry& one, const osg::Geometry& other)
-{
-    const auto& a = static_cast<const osg::Vec3Array&>(*one.getVertexArray());
-    const auto& b = static_cast<const osg::Vec3Array&>(*other.getVertexArray());
-    double largest = a.size() == b.size() ? 0.0 : 1e30;
-    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
-        largest = std::max(largest, static_cast<double>((a[i] - b[i]).length()));
-    return largest;
 }
 
 /// The largest distance of the two meshes of a character, as posed.

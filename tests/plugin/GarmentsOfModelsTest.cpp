@@ -5,6 +5,7 @@
 #include "plugin/SharedAssets.h"
 #include "plugin/SplitModel.h"
 #include "plugin/StoredScene.h"
+#include "support/VertexDistance.h"
 #include "support/ViewerGLTest.h"
 
 #include <osgGpuAnimation/gpu/PosePipeline.h>
@@ -81,16 +82,6 @@ osg::ref_ptr<AnimatedCharacter> characterOf(const std::string& bytes)
     const Result<ImportedModel> model = importModel(bytes, "", {});
     EXPECT_TRUE(model) << model.error().message;
     return model ? model.value().character : nullptr;
-}
-
-double largestDistance(const osg::Geometry& one, const osg::Geometry& other)
-{
-    const auto& a = static_cast<const osg::Vec3Array&>(*one.getVertexArray());
-    const auto& b = static_cast<const osg::Vec3Array&>(*other.getVertexArray());
-    double largest = a.size() == b.size() ? 0.0 : 1e30;
-    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
-        largest = std::max(largest, static_cast<double>((a[i] - b[i]).length()));
-    return largest;
 }
 
 struct Dressing

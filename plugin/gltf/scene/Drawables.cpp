@@ -104,12 +104,11 @@ double Drawables::farthestOf(const DrawablePlace& place, const MeshPrimitive& me
     return reach.of(radius);
 }
 
-void Drawables::setVisibility(osg::Geometry& geometry, const DrawablePlace& place) const
+void Drawables::setVisibility(osg::Geometry& geometry, const DrawablePlace& place, const std::vector<int>& nodes) const
 {
-    const std::vector<int> nodes = place.hidden ? std::vector<int>() : _tree.visibilityWith(place.visibility);
     const bool isHidden = place.visibility >= 0 && _tree.hiddenAtRest[static_cast<std::size_t>(place.visibility)];
     if (place.hidden || isHidden) geometry.setNodeMask(0);
-    if (!nodes.empty()) markVisibility(geometry, nodes);
+    if (!place.hidden && !nodes.empty()) markVisibility(geometry, nodes);
 }
 
 osg::ref_ptr<osg::Geometry> Drawables::make(const DrawablePlace& place)
@@ -126,8 +125,9 @@ osg::ref_ptr<osg::Geometry> Drawables::make(const DrawablePlace& place)
     const bool palette = place.skin >= 0 || place.joint >= 0;
     const std::size_t bytesAVertex = (place.skin >= 0 ? bytesAnInfluencedVertex : 0) +
                                      (place.morph >= 0 ? mesh->targets.size() * bytesAMorphedVertex : 0);
-    const std::size_t bytes = mesh->positions->size() * bytesAVertex + bytesADrawable +
-                              _tree.visibilityWith(place.visibility).size() * bytesAVisibility;
+    const std::vector<int> visibility = _tree.visibilityWith(place.visibility);
+    const std::size_t bytes =
+        mesh->positions->size() * bytesAVertex + bytesADrawable + visibility.size() * bytesAVisibility;
     if (!_budget.take(bytes))
     {
         _report.warn(mesh->label + ": it would take " + std::to_string(bytes) + " bytes, " + _budget.limitText() +
@@ -149,7 +149,7 @@ osg::ref_ptr<osg::Geometry> Drawables::make(const DrawablePlace& place)
     const int material = materials.materialIn(_variant);
     setColors(*geometry, *mesh, material, palette);
     geometry->addPrimitiveSet(mesh->primitiveSet);
-    setVisibility(*geometry, place);
+    setVisibility(*geometry, place, visibility);
     if (palette) setInfluences(*skinned, *mesh, place);
     if (place.morph >= 0) skinned->setMorphTargets(*_set, static_cast<std::size_t>(place.morph), mesh->targets);
 

@@ -1,33 +1,22 @@
 // SPDX-License-Identifier: MIT
-#include "plugin/ModelBuilder.h"
 #include "plugin/SharedAssets.h"
-#include "plugin/StoredScene.h"
+#include "plugin/StoredArm.h"
 #include "support/Limb.h"
-#include "support/NotifyLog.h"
 
-#include <osgGpuAnimation/animation/ClipBuilder.h>
 #include <osgGpuAnimation/animation/JointMask.h>
 #include <osgGpuAnimation/animation/keyframes/CompactTracks.h>
 #include <osgGpuAnimation/animation/keyframes/PackedKeyframes.h>
-#include <osgGpuAnimation/animation/RootMotion.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
-#include <osgGpuAnimation/nodes/CharacterKeys.h>
 #include <osgGpuAnimation/nodes/CharacterProgram.h>
 #include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
-#include <osgGpuAnimation/nodes/GroundFeet.h>
-#include <osgGpuAnimation/nodes/JointAttachment.h>
 #include <osgGpuAnimation/nodes/PoseStatistics.h>
 #include <osgGpuAnimation/nodes/shading/ShaderPermutations.h>
-#include <osgGpuAnimation/nodes/SpringBones.h>
 
 #include <gtest/gtest.h>
-#include <osg/Program>
 #include <osg/Texture2D>
-#include <osgDB/FileUtils>
 
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <regex>
 
@@ -37,44 +26,8 @@ namespace osgGpuAnimation
 namespace
 {
 
-const char* const formats[] = {"osgb", "osgt", "osgx"};
-
-/// A sword on an arm that slides (two clips), and a skinned triangle; read through osgDB.
-class SerializersTest : public ::testing::Test
+class SerializersTest : public StoredArmTest
 {
-protected:
-    void SetUp() override
-    {
-        gltf::ModelBuilder model;
-        const int arm = model.node("arm \"1\" <&{ä");
-        model.node("sword", arm, model.triangle());
-        const int skinned = model.node("skinned", -1, model.skinnedTriangle());
-        model.at(skinned).skin = model.skin({arm, model.node("hand", arm)});
-        model.animation("Slow slide");
-        model.slide(arm);
-        model.animation("");
-        model.channel(arm, "rotation", {0, 2}, TINYGLTF_TYPE_VEC4, {0, 0, 0, 1, 0, 1, 0, 0});
-        scene = osgDB::readRefNodeFile(files.folder.write("arm.gltf", model.text()));
-        ASSERT_TRUE(scene);
-        osg::setNotifyHandler(log);
-    }
-
-    void TearDown() override { osg::setNotifyHandler(new osg::StandardNotifyHandler); }
-
-    AnimatedCharacter& character() { return *findCharacter(*scene); }
-
-    /// The node's .osgt.
-    std::string textOf(const osg::Node& node) const
-    {
-        const std::string file = files.folder.file("text.osgt");
-        EXPECT_TRUE(osgDB::writeNodeFile(node, file));
-        std::ifstream stream(file);
-        return std::string(std::istreambuf_iterator<char>(stream), {});
-    }
-
-    StoredScene files;
-    osg::ref_ptr<osg::Node> scene;
-    osg::ref_ptr<NotifyLog> log = new NotifyLog(osg::WARN);
 };
 
 void setUpLayers(AnimationController& controller)
@@ -105,7 +58,7 @@ void setUpLayers(AnimationController& controller)
 TEST_F(SerializersTest, layersGoOnWhereTheyWere)
 {
     setUpLayers(character().getController());
-    for (const char* format : formats)
+    for (const char* format : storedFormats)
     {
         SCOPED_TRACE(format);
         const osg::ref_ptr<osg::Node> read = files.throughFile(*scene, format);
@@ -144,7 +97,7 @@ TEST_F(SerializersTest, blendSpacesContinueWhereTheyWere)
     ASSERT_TRUE(upper.setParameter(1.25));
     upper.setPhaseShared(true);
     controller.advance(0.1);
-    for (const char* format : formats)
+    for (const char* format : storedFormats)
     {
         SCOPED_TRACE(format);
         const osg::ref_ptr<osg::Node> read = files.throughFile(*scene, format);
@@ -182,7 +135,7 @@ TEST_F(SerializersTest, markersAreToldOnceBeforeOrAfter)
         const char* told; ///< of the first 0.25 s after reading
     };
     for (const Case& c : {Case{0.0, 0.0, "a"}, Case{0.0, 0.5, ""}, Case{0.5, 0.0, "b"}, Case{0.25, 0.25, ""}})
-        for (const char* format : formats)
+        for (const char* format : storedFormats)
         {
             AnimationController& before = character().getController();
             ASSERT_TRUE(before.play(0));
@@ -199,161 +152,6 @@ TEST_F(SerializersTest, markersAreToldOnceBeforeOrAfter)
         }
 }
 
-TEST_F(SerializersTest, everythingBelowACharacterComesBack)
-{
-    osg::ref_ptr<JointAttachment> hand = new JointAttachment("hand");
-    hand->addChild(new osg::Group);
-    character().addChild(hand);
-    character().addChild(new JointAttachment(2));
-    auto moving = withRootMotion(character().getAnimationSet(), "arm \"1\" <&{ä", {true, false, false});
-    ASSERT_TRUE(moving) << moving.error().message;
-    std::vector<Clip> clips = moving.value()->clips();
-    clips[0] = clips[0].withMarkers({{0.25, "left foot"}, {0.5, ""}}).value();
-    ASSERT_TRUE(character().setAnimationSet(moving.value()->withClips(clips).value()));
-    character().addUpdateCallback(new RootMotionCallback);
-    dynamic_cast<CharacterKeys&>(*character().getEventCallback()).setFadeSeconds(1.75);
-    for (const char* format : formats)
-    {
-        SCOPED_TRACE(format);
-        const osg::ref_ptr<osg::Node> read = files.throughFile(*scene, format);
-        ASSERT_TRUE(read && findCharacter(*read));
-        AnimatedCharacter& back = *findCharacter(*read);
-        ASSERT_EQ(back.getNumChildren(), character().getNumChildren());
-        const auto* byName = dynamic_cast<JointAttachment*>(back.getChild(back.getNumChildren() - 2));
-        const auto* byNumber = dynamic_cast<JointAttachment*>(back.getChild(back.getNumChildren() - 1));
-        ASSERT_TRUE(byName && byNumber);
-        EXPECT_EQ(byName->getJointName(), "hand");
-        EXPECT_EQ(byName->getNumChildren(), 1u);
-        EXPECT_EQ(byNumber->getJoint(), 2);
-        EXPECT_TRUE(dynamic_cast<RootMotionCallback*>(back.getUpdateCallback()));
-        const auto* keys = dynamic_cast<const CharacterKeys*>(back.getEventCallback());
-        ASSERT_TRUE(keys);
-        EXPECT_EQ(keys->getFadeSeconds(), 1.75);
-        const Clip& clip = back.getAnimationSet().clips()[0];
-        ASSERT_EQ(clip.markers().size(), 2u);
-        EXPECT_EQ(clip.markers()[0].name, "left foot");
-        EXPECT_EQ(clip.markers()[0].time, 0.25);
-        ASSERT_TRUE(clip.rootMotion());
-        EXPECT_EQ(clip.rootMotion()->keys.size(), clip.keyframeCount());
-        EXPECT_EQ(clip.rootMotionAt(0.5).translation, clips[0].rootMotionAt(0.5).translation);
-        EXPECT_EQ(back.getCurrentBounds()._max, character().getCurrentBounds()._max);
-    }
-    EXPECT_EQ(log->text, "");
-}
-
-TEST_F(SerializersTest, FeetOnTheGround)
-{
-    const osg::ref_ptr<osg::Group> ground = new osg::Group;
-    ground->setName("hill \"1\" <&{ä");
-    const osg::ref_ptr<GroundFeet> feet = new GroundFeet(*ground);
-    ASSERT_TRUE(feet->setLegs({{"left", "toes", 0.1, "down", "up"}, {"right \"leg\""}}));
-    feet->setTraversalMask(0x80000001u);
-    EXPECT_TRUE(feet->setReach(0.3) && feet->setMaxTilt(0.2) && feet->setLockDistance(0.0) && feet->setWeight(0.5));
-    character().addUpdateCallback(feet);
-    for (const bool isNear : {false, true})
-        for (const char* format : formats)
-        {
-            SCOPED_TRACE(format);
-            EXPECT_TRUE(!isNear || feet->setMaxDistance(20.25));
-            const osg::ref_ptr<osg::Node> read = files.throughFile(*scene, format);
-            ASSERT_TRUE(read && findCharacter(*read));
-            auto* back = dynamic_cast<GroundFeet*>(findCharacter(*read)->getUpdateCallback());
-            ASSERT_TRUE(back);
-            EXPECT_EQ(back->getGroundName(), ground->getName());
-            EXPECT_EQ(back->getTraversalMask(), 0x80000001u);
-            EXPECT_EQ(back->getReach(), 0.3);
-            EXPECT_EQ(back->getMaxTilt(), 0.2);
-            EXPECT_EQ(back->getLockDistance(), 0.0);
-            EXPECT_EQ(back->getWeight(), 0.5);
-            EXPECT_EQ(back->getMaxDistance(), feet->getMaxDistance());
-            ASSERT_EQ(back->getLegs().size(), 2u);
-            EXPECT_EQ(back->getLegs()[0].toe, "toes");
-            EXPECT_EQ(back->getLegs()[0].sole, 0.1);
-            EXPECT_EQ(back->getLegs()[0].touchMarker, "down");
-            EXPECT_EQ(back->getLegs()[0].leaveMarker, "up");
-            EXPECT_EQ(back->getLegs()[1].constraint, "right \"leg\"");
-        }
-    EXPECT_EQ(log->text, "");
-}
-
-TEST_F(SerializersTest, attachmentsKeepTheirOffsetAndInstance)
-{
-    const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(character());
-    const AnimationController controller(crowd->getSharedAnimationSet());
-    ASSERT_TRUE(crowd->remove(crowd->add(osg::Matrixd(), controller).value()));
-    ASSERT_TRUE(crowd->add(osg::Matrixd(), controller));
-    const osg::ref_ptr<JointAttachment> hand = new JointAttachment("hand");
-    hand->setOffset(osg::Matrixd::rotate(1, 0, 0, 1) * osg::Matrixd::translate(0.1, 2, 3));
-    hand->setInstance(crowd->add(osg::Matrixd::translate(7, 0, 0), controller).value());
-    crowd->addChild(hand);
-    EXPECT_EQ(textOf(*new JointAttachment("hand")).find("Joint -2"), std::string::npos) << "readable as before";
-    for (const char* format : formats)
-    {
-        const osg::ref_ptr<osg::Node> read = files.throughFile(*crowd, format);
-        auto* back = dynamic_cast<AnimatedCrowd*>(read.get());
-        ASSERT_TRUE(back);
-        const auto* again = dynamic_cast<JointAttachment*>(back->getChild(back->getNumChildren() - 1));
-        ASSERT_TRUE(again);
-        EXPECT_EQ(again->getJointName(), "hand");
-        EXPECT_TRUE(again->getOffset() == hand->getOffset());
-        ASSERT_TRUE(again->getInstance());
-        EXPECT_EQ(back->getPlacement(*again->getInstance()).getTrans(), osg::Vec3d(7, 0, 0));
-    }
-    EXPECT_EQ(log->text, "");
-}
-
-TEST_F(SerializersTest, springsAreKept)
-{
-    const osg::ref_ptr<SpringBones> springs = new SpringBones;
-    SpringChain chain{{{"arm \"1\" <&{ä", 3.0f, 0.25f, 0.5f, osg::Vec3(0, 0.6f, 0.8f), 0.125f}, {"hand"}}, {1, 0}};
-    const std::vector<SpringCollider> colliders{{"hand", osg::Vec3(1, 2, 3), std::nullopt, 0.5f},
-                                                {"hand", osg::Vec3(), osg::Vec3(4, 5, 6), 0.75f}};
-    ASSERT_TRUE(springs->setChains({chain}, colliders));
-    springs->setLayer(3);
-    character().addUpdateCallback(springs);
-    for (const double maxDistance : {std::numeric_limits<double>::infinity(), 12.5})
-        for (const char* format : formats)
-        {
-            SCOPED_TRACE(format);
-            springs->setMaxDistance(maxDistance);
-            const osg::ref_ptr<osg::Node> read = files.throughFile(*scene, format);
-            ASSERT_TRUE(read && findCharacter(*read));
-            const auto* back = dynamic_cast<SpringBones*>(findCharacter(*read)->getUpdateCallback());
-            ASSERT_TRUE(back);
-            EXPECT_EQ(back->getLayer(), 3u);
-            EXPECT_EQ(back->getMaxDistance(), maxDistance);
-            ASSERT_EQ(back->getChains().size(), 1u);
-            const SpringChain& backChain = back->getChains()[0];
-            EXPECT_EQ(backChain.colliders, chain.colliders);
-            ASSERT_EQ(backChain.joints.size(), 2u);
-            for (std::size_t i = 0; i < 2; ++i)
-            {
-                const SpringJoint &found = backChain.joints[i], &expected = chain.joints[i];
-                EXPECT_EQ(found.joint, expected.joint);
-                EXPECT_EQ(std::tie(found.stiffness, found.drag, found.gravity, found.gravityDirection, found.radius),
-                          std::tie(expected.stiffness, expected.drag, expected.gravity, expected.gravityDirection,
-                                   expected.radius));
-            }
-            ASSERT_EQ(back->getColliders().size(), 2u);
-            for (std::size_t i = 0; i < 2; ++i)
-            {
-                const SpringCollider &found = back->getColliders()[i], &expected = colliders[i];
-                EXPECT_EQ(std::tie(found.joint, found.center, found.tail, found.radius),
-                          std::tie(expected.joint, expected.center, expected.tail, expected.radius));
-            }
-        }
-}
-
-TEST_F(SerializersTest, aCharacterWithoutCallbacksHasNoneAfterwards)
-{
-    character().setUpdateCallback(nullptr);
-    character().setEventCallback(nullptr);
-    const osg::ref_ptr<osg::Node> read = files.throughFile(*scene, "osgb");
-    ASSERT_TRUE(read && findCharacter(*read));
-    EXPECT_FALSE(findCharacter(*read)->getUpdateCallback());
-    EXPECT_FALSE(findCharacter(*read)->getEventCallback());
-}
-
 TEST_F(SerializersTest, charactersOfOneSetShareItAfterwards)
 {
     osg::ref_ptr<osg::Group> both = new osg::Group;
@@ -361,7 +159,7 @@ TEST_F(SerializersTest, charactersOfOneSetShareItAfterwards)
     const osg::ref_ptr<osg::Node> clone = osg::clone(scene.get(), osg::CopyOp::DEEP_COPY_NODES);
     findCharacter(*clone)->getController().setSpeed(3.0);
     both->addChild(clone);
-    for (const char* format : formats)
+    for (const char* format : storedFormats)
     {
         const osg::ref_ptr<osg::Node> read = files.throughFile(*both, format);
         ASSERT_TRUE(read && read->asGroup()->getNumChildren() == 2);
@@ -378,7 +176,7 @@ TEST_F(SerializersTest, charactersOfOneSetShareItAfterwards)
 TEST_F(SerializersTest, pixelErrorsComeBack)
 {
     const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(character());
-    for (const char* format : formats)
+    for (const char* format : storedFormats)
         for (const float pixels : {0.0f, 0.3f})
         {
             ASSERT_TRUE(character().setPixelError(pixels));
@@ -400,7 +198,7 @@ TEST_F(SerializersTest, pixelErrorsComeBack)
 
 TEST_F(SerializersTest, drawnAloneComesBack)
 {
-    for (const char* format : formats)
+    for (const char* format : storedFormats)
         for (const bool isTogether : {true, false})
             for (const float pixels : {0.0f, 0.3f})
             {
@@ -444,7 +242,7 @@ TEST_F(SerializersTest, aCrowdKeepsItsInstances)
     ASSERT_TRUE(crowd->add(osg::Matrixd::translate(1e6, -2e6, 40), controller));
     crowd->update(0.0);
     crowd->update(0.4);
-    for (const char* format : formats)
+    for (const char* format : storedFormats)
     {
         SCOPED_TRACE(format);
         const osg::ref_ptr<osg::Node> read = files.throughFile(*crowd, format);
@@ -483,7 +281,7 @@ TEST_F(SerializersTest, posesAreKept)
     osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(character());
     ASSERT_TRUE(crowd->add(osg::Matrixd(), controller));
     const osg::ref_ptr<osg::Node> copy = osg::clone(scene.get(), osg::CopyOp::DEEP_COPY_NODES);
-    for (const char* format : formats)
+    for (const char* format : storedFormats)
     {
         SCOPED_TRACE(format);
         const osg::ref_ptr<osg::Node> read = files.throughFile(*scene, format);
@@ -550,7 +348,7 @@ TEST_F(SerializersTest, aControllerHasTheLowestVersionForItsLayers)
         ASSERT_TRUE(controller.play(0));
         one.setUp();
         EXPECT_NE(textOf(*scene).find("Controller " + std::to_string(one.version) + " "), std::string::npos);
-        for (const char* format : formats)
+        for (const char* format : storedFormats)
         {
             const osg::ref_ptr<osg::Node> read = files.throughFile(*scene, format);
             ASSERT_TRUE(read && findCharacter(*read));
@@ -593,7 +391,7 @@ TEST_F(SerializersTest, theWhiteTextureIsKnownInCopiesAndFiles)
     EXPECT_TRUE(isWhiteTexture(white));
     const osg::ref_ptr<osg::Texture2D> copy = osg::clone(white, osg::CopyOp::DEEP_COPY_ALL);
     EXPECT_TRUE(isWhiteTexture(copy));
-    for (const char* format : formats)
+    for (const char* format : storedFormats)
         EXPECT_TRUE(isWhiteTexture(textureOf(*files.throughFile(*scene, format)))) << format;
     EXPECT_FALSE(isWhiteTexture(nullptr));
     copy->setName(""); // files of earlier versions have no name
@@ -610,7 +408,7 @@ TEST_F(SerializersTest, compactClipsStayCompact)
     ASSERT_TRUE(set.clips().front().compactTracks());
     ASSERT_TRUE(files.throughFile(*exact, "osgb"));
     const auto exactBytes = std::filesystem::file_size(files.folder.file("scene.osgb"));
-    for (const char* format : formats)
+    for (const char* format : storedFormats)
     {
         SCOPED_TRACE(format);
         const osg::ref_ptr<osg::Node> read = files.throughFile(*compact, format);
@@ -658,7 +456,7 @@ TEST_F(SerializersTest, constraintsAndTheirTargetsComeBack)
     controller.advance(0.2); // on the way to the target
     const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*limb);
     ASSERT_TRUE(crowd->add(osg::Matrixd(), controller));
-    for (const char* format : formats)
+    for (const char* format : storedFormats)
     {
         SCOPED_TRACE(format);
         const osg::ref_ptr<osg::Node> read = files.throughFile(*limb, format);

@@ -92,7 +92,8 @@ public:
         : _model(model), _fileName(osgDB::getStrippedName(fileName)), _options(options), _result(result),
           _report(result.messages), _budget(options.maxDecodedBytes),
           _textures(model, _report, !options.fixedLighting, options.keepEncoded),
-          _clipFiles(readClipFiles(fileName, options, _report)), _clipJoints(readClipJoints(fileName, options, _report))
+          _clipFiles(readClipFiles(fileName, options, _report, &model)),
+          _clipJoints(readClipJoints(fileName, options, _report))
     {
     }
 

@@ -178,10 +178,10 @@ void showEnd(AnimatedCharacter& character)
 }
 
 /// The numbers of a set's property in a clip at a time; empty: there is none.
-std::vector<float> valueAt(const AnimationSet& set, const std::string& pointer, double time)
+std::vector<float> valueAt(const AnimationSet& set, const std::string& pointer, double time, int clip = 0)
 {
     PoseInstruction instruction;
-    instruction.samples[0] = set.sampleAt(0, time);
+    instruction.samples[0] = set.sampleAt(clip, time);
     std::vector<float> all;
     Pose::properties(set, instruction, all);
     std::size_t first = 0;
@@ -197,6 +197,45 @@ std::vector<float> valueAt(const AnimationSet& set, const std::string& pointer, 
 }
 
 } // namespace
+
+// The materials of the two files have other orders.
+TEST(AnimationPointersTest, clipsOfOtherFilesAnimateObjectsOfTheSameName)
+{
+    const auto fileOf = [](const std::vector<std::string>& materials, const std::string& clip)
+    {
+        PointerFile file;
+        file.animation(clip);
+        for (std::size_t i = 0; i < materials.size(); ++i)
+        {
+            file.quad("quad " + std::to_string(i), 3.0f * static_cast<float>(i), 0,
+                      file.material(materials[i], {1, 1, 1, 1}));
+            const float end = materials[i] == "red" ? 0.25f : 0.75f;
+            file.animate("/materials/" + std::to_string(i) + "/pbrMetallicRoughness/baseColorFactor",
+                         TINYGLTF_TYPE_VEC4, {1, 1, 1, 1, end, 0, 0, 1});
+        }
+        return file.document().dump();
+    };
+    const ScratchFolder folder;
+    folder.write("clips.gltf", fileOf({"blue", "red", "", "green"}, "other"));
+    ImportOptions options;
+    options.clipsFiles = {"clips.gltf"};
+    const std::string model = fileOf({"red", "blue", "black", "white"}, "own");
+    const Result<ImportedModel> read = importModel(model, folder.file("model.gltf"), options);
+    ASSERT_TRUE(read) << read.error().message;
+    const AnimationSet& set = *read.value().set;
+    ASSERT_EQ(set.clips().size(), 2u);
+    for (const auto& [material, red] :
+         {std::pair(0, 0.25f), std::pair(1, 0.75f), std::pair(2, 1.0f), std::pair(3, 1.0f)})
+    {
+        const std::string pointer = "/materials/" + std::to_string(material) + "/pbrMetallicRoughness/baseColorFactor";
+        EXPECT_EQ(valueAt(set, pointer, 1.0, 1).at(0), red) << pointer;
+    }
+    ASSERT_FALSE(read.value().messages.warnings.empty());
+    const std::string& warning = read.value().messages.warnings.back();
+    for (const char* left :
+         {"/materials/2/pbrMetallicRoughness/baseColorFactor without a name", "baseColorFactor of green"})
+        EXPECT_NE(warning.find(left), std::string::npos) << warning;
+}
 
 TEST(AnimationPointersTest, nodesMoveAsByPathBitByBit)
 {

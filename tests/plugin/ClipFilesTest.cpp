@@ -242,7 +242,7 @@ TEST(ClipFilesTest, aFileNamesTheCounterpartsOfJoints)
         std::vector<std::string> warnings; ///< parts of them, in their order
         float head;                        ///< the head's translation in the middle of "Nod"
     };
-    const std::string atRest = "clips \"nod.gltf\": has no counterpart for ";
+    const std::string atRest = "clips \"nod.gltf\": they have no counterpart for ";
     const std::vector<Case> cases = {
         {R"({"Hips": "pelvis", "Head": "neck_01"})", {}, 0.5f},
         {R"({"mixamorig:Hips": "rig:pelvis", "mixamorig:Head": "neck_01"})", {}, 0.5f},

@@ -11,6 +11,7 @@
 
 #include <osgGpuAnimation/animation/retarget/ClipRetargeter.h>
 #include <osgGpuAnimation/animation/retarget/JointNames.h>
+#include <osgGpuAnimation/nodes/mesh/PropertyPointer.h>
 
 #include <osgDB/FileNameUtils>
 
@@ -29,9 +30,11 @@ namespace
 
 constexpr std::size_t mostNameBytes = std::size_t(1) << 20; // of a file of joint names
 
+/// "Motion" is Assimp's name for the clip of each BVH.
 bool saysNothing(const std::string& clipName)
 {
-    return clipName.empty() || clipName.find("mixamo.com") != std::string::npos || clipName == "Take 001";
+    return clipName.empty() || clipName.find("mixamo.com") != std::string::npos || clipName == "Take 001" ||
+           clipName == "Motion";
 }
 
 /// By its name or its first bytes. What is no regular file counts as one: reading it has the message.
@@ -58,9 +61,42 @@ Result<std::string> readAsGltf(const std::string& path, const ImportOptions& opt
     return bytes;
 }
 
-/// The joints, morphs and clips of a file. subject: begins each of its warnings.
+/// The names of the objects that have such properties, by number.
+std::vector<std::string> objectNames(const tinygltf::Model& model, PropertyMember::Object object)
+{
+    switch (object)
+    {
+    case PropertyMember::Object::Material:
+        return namesIn(model.materials);
+    case PropertyMember::Object::Light:
+        return namesIn(model.lights);
+    case PropertyMember::Object::Camera:
+        return namesIn(model.cameras);
+    case PropertyMember::Object::Node:
+        return namesIn(model.nodes);
+    }
+    return {};
+}
+
+/// The pointer to the same property of the model's object of the same name. If there is none, a text that names no
+/// property. Objects without names are matched by number.
+std::string pointerIn(const tinygltf::Model& model, const tinygltf::Model& file, const std::string& pointer)
+{
+    const std::optional<PropertyPointer> property = PropertyPointer::parse(pointer);
+    if (!property) return pointer;
+    const auto index = static_cast<std::size_t>(property->index);
+    const std::vector<std::string> names = objectNames(file, property->member->object);
+    const std::vector<std::string> others = objectNames(model, property->member->object);
+    const int counterpart = findCounterparts(names, others, {})[index];
+    if (counterpart >= 0) return PropertyPointer::text(*property->member, counterpart);
+    if (!names[index].empty()) return pointer + " of " + names[index];
+    return index < others.size() && others[index].empty() ? pointer : pointer + " without a name";
+}
+
+/// The joints, morphs and clips of a file. target: see readClipFiles(). subject: begins each of the file's warnings.
 Result<std::shared_ptr<const AnimationSet>> readSet(const std::string& path, const ImportOptions& options,
-                                                    const std::string& subject, Report& report)
+                                                    const tinygltf::Model* target, const std::string& subject,
+                                                    Report& report)
 {
     ImportOptions own = options;
     own.scene.reset();
@@ -78,12 +114,14 @@ Result<std::shared_ptr<const AnimationSet>> readSet(const std::string& path, con
         isPlain.push_back(node.mesh < 0);
     const Result<Joints> joints = buildJoints(model.value(), tree.value(), isPlain);
     if (!joints) return joints.error();
-    const Morphs morphs = readMorphs(model.value());
+    Morphs morphs = readMorphs(model.value());
     MemoryBudget budget(own.maxDecodedBytes);
     Clips clips = readClips(model.value(), joints.value(), morphs, budget, ownReport);
     for (std::size_t clip = 0; clip < clips.clips.size(); ++clip)
         if (saysNothing(model.value().animations[static_cast<std::size_t>(clips.animationOfClip[clip])].name))
             clips.clips[clip] = clips.clips[clip].withName(osgDB::getStrippedName(path));
+    for (MorphWeights& morph : morphs.weights)
+        if (target && morph.isProperty()) morph.name = pointerIn(*target, model.value(), morph.name);
     for (const std::string& warning : messages.warnings)
         report.warn(subject + ": " + warning);
     if (clips.clips.empty()) return Error{"the file has no clips"};
@@ -214,7 +252,8 @@ void warnOfUnknownJoints(const ClipJoints& joints, const Skeleton& model, const 
     if (!notOthers.empty()) report.warn(joints.name + ": no file of clips has a joint " + namesText(notOthers));
 }
 
-std::vector<ClipFile> readClipFiles(const std::string& modelFile, const ImportOptions& options, Report& report)
+std::vector<ClipFile> readClipFiles(const std::string& modelFile, const ImportOptions& options, Report& report,
+                                    const tinygltf::Model* target)
 {
     const ModelFolder folder(modelFile, options.allowOutsideFiles || options.allowOutsideClips);
     std::vector<ClipFile> files;
@@ -227,7 +266,7 @@ std::vector<ClipFile> readClipFiles(const std::string& modelFile, const ImportOp
         if (!path)
             set = path.error();
         else if (known.insert(path.value()).second)
-            set = readSet(path.value(), options, name, report);
+            set = readSet(path.value(), options, target, name, report);
         if (set)
             files.push_back({name, set.value()});
         else
@@ -277,7 +316,8 @@ std::shared_ptr<const AnimationSet> withClipsOf(const std::shared_ptr<const Anim
 
     const std::vector<std::string> atRest = namesInSkins(*set, result.value().atRest);
     const std::vector<std::string>& leftOut = result.value().leftOut;
-    if (!atRest.empty()) report.warn(file.name + ": has no counterpart for " + namesText(atRest) + "; kept at rest");
+    if (!atRest.empty())
+        report.warn(file.name + ": they have no counterpart for " + namesText(atRest) + "; kept at rest");
     if (!leftOut.empty()) report.warn(file.name + ": the model has no counterpart for " + namesText(leftOut));
     std::vector<Clip> clips = set->clips();
     for (std::size_t clip = clips.size(); clip < result.value().set->clips().size(); ++clip)

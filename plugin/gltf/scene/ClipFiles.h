@@ -43,10 +43,14 @@ void warnOfUnknownJoints(const ClipJoints& joints, const Skeleton& model, const 
 /// Reads the clips of all files that the options name; files without meshes are valid. Files that are no glTF need
 /// options.otherFormats. A file that cannot be read, has no clips, or is named twice, is left out with a warning.
 ///
-/// A clip whose name says nothing (none, Mixamo's `mixamo.com`, FBX's `Take 001`) is named after its file.
+/// A clip whose name says nothing (none, Mixamo's `mixamo.com`, FBX's `Take 001`, `Motion` of a BVH) is named after its
+/// file.
 ///
 /// modelFile: the model's own file, see ModelFolder; the clips of that file itself are refused.
-std::vector<ClipFile> readClipFiles(const std::string& modelFile, const ImportOptions& options, Report& report);
+/// target: the model that the clips are for. Its objects have the animated properties of the file's objects of the same
+/// name, or number where they have no names. Null: by number alone.
+std::vector<ClipFile> readClipFiles(const std::string& modelFile, const ImportOptions& options, Report& report,
+                                    const tinygltf::Model* target = nullptr);
 
 /// One per node of the model: true if a clip of those files moves a joint of its name, or its counterpart.
 std::vector<bool> nodesMovedBy(const std::vector<ClipFile>& files, const ClipJoints& joints,

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Usage: scenes/view.sh [FILE]
-# Installs what is missing on a Debian 12, builds the plugins into build/ and opens FILE (a .gltf or .glb; default: our
+# Installs what is missing on a Debian 12, builds the plugins into build/ and opens FILE (.glb, .gltf, .fbx, …; default: our
 # own Wanderer.glb in the studio) in the stock osgviewer. Pseudo-loaders may follow: Wanderer.glb.20x20.crowd.studio.
 # Without a display it draws a picture (of the model or the crowd, in the studio's light) into build/ and says where.
 set -euo pipefail
@@ -25,7 +25,7 @@ done
 
 install_missing "${packages[@]}"
 configure_release
-build_targets osgdb_gltf osgdb_crowd osgdb_studio osgdb_serializers_osggpuanimation osggpuanim
+build_targets plugins osggpuanim
 export OSG_LIBRARY_PATH=$build/lib${OSG_LIBRARY_PATH:+:$OSG_LIBRARY_PATH}
 
 # Fails where the display that DISPLAY names is not there; osgviewer itself ends with 0 then.
@@ -44,6 +44,7 @@ if [ -n "${DISPLAY:-}" ] && show; then
     exit 0
 fi
 drawn=$model
+[[ "$file" == "$model.gpuanim"* ]] && drawn=$model.gpuanim
 [[ "$file" =~ ^(.*\.[0-9]+[xX][0-9]+\.crowd)(\..*)?$ ]] && drawn=${BASH_REMATCH[1]}
 picture=$build/$(basename "${model%.*}").png
 "$build/bin/osggpuanim" render "$drawn" --time 0.5 -o "$picture"

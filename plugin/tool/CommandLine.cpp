@@ -24,7 +24,9 @@ constexpr int statusDone = 0;
 constexpr int statusFileAtFault = 1;
 constexpr int statusWrongUsage = 2;
 
-const char* const description = R"(Looks into animated glTF files as osgGpuAnimation plays them.
+const char* const anyModel = "A .gltf or .glb, or what Assimp or OSG's plugins read (.fbx, .osgb, scene.osg.gpuanim)";
+
+const char* const description = R"(Looks into animated models as osgGpuAnimation plays them.
 
   osggpuanim inspect fox.glb                         what is in it: joints, clips, bytes
   osggpuanim render fox.glb -o fox.png               a picture of it, without a display
@@ -70,7 +72,7 @@ side, shows everything in all pictures; with --camera, one of the file's.
 const char* const convertHelp =
     R"(Writes FILE with its clips, and those of other files for the joints of the same names (retargeted where the rest pose
 differs), as one .glb: meshes with skins and morph targets, materials with pictures, markers, lights and cameras; or as
-.osgb, .osgt or .osgx, which store all that the kit has. FILE: what the other commands read, and what OSG reads.
+.osgb, .osgt or .osgx, which store all that the kit has. Scenes that OSG reads stay what they are.
 
   osggpuanim convert knight.fbx --clips run.fbx -o knight.glb
   osggpuanim convert knight.glb --clips general.glb --compact 1e-4 -o knight.osgb
@@ -188,7 +190,7 @@ void CommandLine::addInspect()
 {
     _inspectApp = _app.add_subcommand("inspect", "What is in a file and what it costs");
     _inspectApp->footer(std::string(inspectHelp) + exitStatus);
-    _inspectApp->add_option("FILE", _inspect.file, "A .gltf or .glb")->required();
+    _inspectApp->add_option("FILE", _inspect.file, anyModel)->required();
     addClips(*_inspectApp, _inspect.clips, _inspect.clipJoints);
     _inspectApp->add_flag("--json", _inspect.json, "JSON, for programs");
     addCompact(*_inspectApp, _inspect.compact);
@@ -198,7 +200,7 @@ void CommandLine::addPose()
 {
     _poseApp = _app.add_subcommand("pose", "Where joints and vertices are at given times");
     _poseApp->footer(std::string(poseHelp) + exitStatus);
-    _poseApp->add_option("FILE", _pose.file, "A .gltf or .glb")->required();
+    _poseApp->add_option("FILE", _pose.file, anyModel)->required();
     addClips(*_poseApp, _pose.clips, _pose.clipJoints);
     CLI::Option* clip = _poseApp->add_option("--clip", _pose.request.clip,
                                              "A clip's name, or an animation's number where none has that name; "
@@ -226,7 +228,8 @@ void CommandLine::addRender()
 {
     _renderApp = _app.add_subcommand("render", "Pictures of a file, without a display");
     _renderApp->footer(std::string(renderHelp) + exitStatus);
-    _renderApp->add_option("FILE", _render.file, "A .gltf or .glb; or a crowd of it: FILE.20x20.crowd")->required();
+    _renderApp->add_option("FILE", _render.file, std::string(anyModel) + "; or a crowd of it: FILE.20x20.crowd")
+        ->required();
     addClips(*_renderApp, _render.clips, _render.clipJoints);
     _renderApp->add_option("--clip", _render.clip,
                            "A clip's name, or an animation's number where none has that name; default: the first clip");

@@ -7,7 +7,6 @@
 #include "tool/ModelFile.h"
 
 #include <osgDB/FileNameUtils>
-#include <osgDB/ReadFile>
 #include <osgDB/WriteFile>
 
 #include <fstream>
@@ -65,14 +64,14 @@ Result<bool> addClips(osg::Node& scene, const std::string& file, const gltf::Imp
     return true;
 }
 
-/// A file that OSG's plugins read.
-Result<Scene> readScene(const std::string& file, const gltf::ImportOptions& options)
+/// A scene stays what it is: readModel() would export it to glTF.
+Result<Scene> readWithClips(const std::string& file, const gltf::ImportOptions& options)
 {
-    const Scene scene = osgDB::readRefNodeFile(file);
-    if (!scene) return Error{"OSG cannot read it; its message is above"};
     gltf::Messages messages;
     gltf::Report report(messages);
-    const Result<bool> added = addClips(*scene, file, options, report);
+    const Result<Scene> scene = readScene(file, report);
+    if (!scene) return scene;
+    const Result<bool> added = addClips(*scene.value(), file, options, report);
     printWarnings(file, messages);
     if (!added) return added.error();
     return scene;
@@ -80,7 +79,7 @@ Result<Scene> readScene(const std::string& file, const gltf::ImportOptions& opti
 
 Result<Scene> read(const std::string& file, const gltf::ImportOptions& options)
 {
-    if (!isModelFormat(file)) return readScene(file, options);
+    if (!isModelFormat(file)) return readWithClips(file, options);
     const Result<gltf::ImportedModel> model = readModel(file, options);
     if (!model) return model.error();
     printWarnings(file, model.value().messages);

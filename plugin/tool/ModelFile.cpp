@@ -4,10 +4,13 @@
 #ifdef OSGGPUANIMATION_ASSIMP
 #include "assimp/AssimpFile.h"
 #endif
+#include "gltf/Export.h"
 #include "gltf/file/ModelBytes.h"
 #include "gltf/file/ProgressLine.h"
 
+#include <osg/NodeVisitor>
 #include <osgDB/FileNameUtils>
+#include <osgDB/Registry>
 
 #include <filesystem>
 #include <iostream>
@@ -24,19 +27,52 @@ bool isCalledGltf(const std::string& fileName)
     return extension == "gltf" || extension == "glb";
 }
 
-/// The file as glTF; of another format where Assimp reads it.
+/// True if a plugin of OSG may read it: by its extension, as osgDB does, pseudo-loaders included.
+bool isSceneFormat(const std::string& fileName)
+{
+    const std::string extension = osgDB::getLowerCaseFileExtension(fileName);
+    return !isModelFormat(fileName) && !extension.empty() &&
+           osgDB::Registry::instance()->getReaderWriterForExtension(extension);
+}
+
+/// Searches for an osgAnimation::Skeleton, by name: the tool does not link osgAnimation.
+class SkeletonFinder : public osg::NodeVisitor
+{
+public:
+    SkeletonFinder() : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN) {}
+    void apply(osg::Node& node) override
+    {
+        found =
+            found || (std::string(node.libraryName()) == "osgAnimation" && std::string(node.className()) == "Skeleton");
+        if (!found) traverse(node);
+    }
+    bool found = false;
+};
+
+/// The file as glTF; of another format where Assimp or OSG reads it.
 Result<std::string> readGltf(const std::string& fileName, const gltf::ImportOptions& options, gltf::Messages& messages)
 {
+    gltf::Report report(messages);
 #ifdef OSGGPUANIMATION_ASSIMP
     if (!isCalledGltf(fileName) && assimp::isFormat(osgDB::getLowerCaseFileExtension(fileName)))
-    {
-        gltf::Report report(messages);
         return assimp::readAsGlb(fileName, options, report);
-    }
-#else
-    static_cast<void>(messages);
 #endif
-    return gltf::readModelFile(fileName, options);
+    if (!isSceneFormat(fileName)) return gltf::readModelFile(fileName, options);
+    const Result<osg::ref_ptr<osg::Node>> scene = readScene(fileName, report);
+    if (!scene) return scene.error();
+    return gltf::exportModel(*scene.value(), report);
+}
+
+/// An error, or true.
+Result<bool> checkRegularFile(const std::string& fileName)
+{
+    std::error_code failure;
+    const std::filesystem::file_status status = std::filesystem::status(fileName, failure);
+    if (!std::filesystem::exists(status)) return Error{"there is no such file"};
+    if (std::filesystem::is_directory(status)) return Error{"is a folder, not a file"};
+    // Reading a pipe or a device could block or never end.
+    if (!std::filesystem::is_regular_file(status)) return Error{"is not a regular file"};
+    return true;
 }
 
 } // namespace
@@ -75,14 +111,26 @@ bool isModelFormat(const std::string& fileName)
     return isCalledGltf(fileName);
 }
 
+Result<osg::ref_ptr<osg::Node>> readScene(const std::string& fileName, gltf::Report& report)
+{
+    // readRefNodeFile() would print an error of its own.
+    osgDB::ReaderWriter::ReadResult read = osgDB::Registry::instance()->readNode(fileName, nullptr);
+    if (read.status() == osgDB::ReaderWriter::ReadResult::FILE_NOT_FOUND) return Error{"there is no such file"};
+    const osg::ref_ptr<osg::Node> scene = read.getNode();
+    if (!scene) return Error{"OSG cannot read it" + (read.message().empty() ? "" : ": " + read.message())};
+    SkeletonFinder finder;
+    scene->accept(finder);
+    if (finder.found && osgDB::getLowerCaseFileExtension(fileName) != "gpuanim")
+        report.warn("its characters of osgAnimation keep their pose; " + osgDB::getSimpleFileName(fileName) +
+                    ".gpuanim has their clips");
+    return scene;
+}
+
 Result<gltf::ImportedModel> readModel(const std::string& fileName, const gltf::ImportOptions& options)
 {
-    std::error_code failure;
-    const std::filesystem::file_status status = std::filesystem::status(fileName, failure);
-    if (!std::filesystem::exists(status)) return Error{"there is no such file"};
-    if (std::filesystem::is_directory(status)) return Error{"is a folder, not a .gltf or .glb file"};
-    // Reading a pipe or a device could block or never end.
-    if (!std::filesystem::is_regular_file(status)) return Error{"is not a regular file"};
+    // Where there is no such file, the name may be one for a pseudo-loader.
+    const Result<bool> regular = checkRegularFile(fileName);
+    if (!regular && (std::filesystem::exists(fileName) || !isSceneFormat(fileName))) return regular.error();
 
     const gltf::ProgressLine progress("reading " + osgDB::getSimpleFileName(fileName));
     gltf::Messages messages;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "gltf/file/Report.h"
 #include "gltf/Import.h"
 
 #include <string>
@@ -20,9 +21,13 @@ void printClipWarnings(const gltf::ImportedModel& model);
 /// True for names of files that readModel() reads, by their extension.
 bool isModelFormat(const std::string& fileName);
 
-/// Reads and imports a .gltf or .glb, or a file of a format that Assimp reads where the build has it, in the file's own
-/// axes if options.noRotation says so. Errors: the file does not exist, is a folder, is empty, cannot be read, or the
-/// import refuses it.
+/// Reads a file with OSG's plugins. A warning says if it has characters of osgAnimation. Errors: the file does not
+/// exist, or no plugin reads it.
+Result<osg::ref_ptr<osg::Node>> readScene(const std::string& fileName, gltf::Report& report);
+
+/// Reads and imports a .gltf or .glb, a file of a format that Assimp reads where the build has it, or a scene that
+/// OSG's plugins read, which is exported to glTF first; in the file's own axes if options.noRotation says so. Errors:
+/// the file does not exist, is a folder, is empty, cannot be read, or the import refuses it.
 Result<gltf::ImportedModel> readModel(const std::string& fileName, const gltf::ImportOptions& options);
 
 } // namespace osgGpuAnimation::tool

@@ -165,7 +165,11 @@ Result<bool> RenderCommand::drawModel(PictureViewer& viewer, const gltf::Importe
 {
     gltf::ProgressLine progress("drawing");
     const std::vector<double> times = this->times();
-    viewer.show(model.root, pointsOf(model, times));
+    const std::vector<osg::Vec3d> points = pointsOf(model, times);
+    if (points.empty())
+        std::cerr << "osggpuanim: " << file << ": there is nothing to draw; a file of clips needs a model, see --clips"
+                  << std::endl;
+    viewer.show(model.root, points);
     if (model.startCamera) viewer.lookThrough(*model.startCamera);
     for (std::size_t frame = 0; frame < times.size(); ++frame)
     {

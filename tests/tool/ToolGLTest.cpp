@@ -194,6 +194,14 @@ TEST_F(ToolGLTest, renderPrintsTheFilesWarnings)
     EXPECT_NE(done.err.find("faulty.gltf: materials[0].emissiveTexture.index: expected an index below 0"),
               std::string::npos)
         << done.err;
+
+    json clips = json::parse(swingingFlag());
+    for (json& node : clips["nodes"])
+        node.erase("mesh");
+    const Process empty = Process::run(OSGGPUANIM, {"render", folder.write("clips.gltf", clips.dump()), "--size",
+                                                    "40x30", "-o", folder.file("clips.png")});
+    EXPECT_EQ(empty.status, 0) << empty.err;
+    EXPECT_NE(empty.err.find("clips.gltf: there is nothing to draw"), std::string::npos) << empty.err;
 }
 
 TEST_F(ToolGLTest, inspectListsLightsAndCameras)

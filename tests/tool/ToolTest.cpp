@@ -150,7 +150,9 @@ TEST_F(ToolTest, aFaultyFileEndsWithStatus1AndOneLine)
         {{"render", missing, "-o", folder.file("x.png")}, missing, "no such file"},
         {{"render", flag + ".studio", "-o", folder.file("x.png")}, flag + ".studio", "osggpuanim render " + flag + "`"},
         {{"pose", "FLAG", "--clip", "Fly", "--time", "0"}, flag, "Fly"},
-        {{"render", scene, "-o", folder.file("x.png")}, scene, "the file is neither .gltf nor .glb"},
+        {{"render", scene, "-o", folder.file("x.png")}, scene, "OSG cannot read it"},
+        {{"inspect", folder.file("none.osgb")}, folder.file("none.osgb"), "no such file"},
+        {{"inspect", folder.write("notes.txt2", "no model")}, folder.file("notes.txt2"), "neither .gltf nor .glb"},
         {{"render", "FLAG", "--clip", "Fly", "-o", folder.file("x.png")}, flag, "Fly"},
         {{"render", "FLAG", "--environment", missing, "-o", folder.file("x.png")}, missing, "no such file"},
         {{"render", "FLAG", "--environment", notes, "-o", folder.file("x.png")}, notes, "not a picture"},
@@ -288,7 +290,7 @@ TEST_F(ToolTest, convertWritesOneFileOfAModelAndItsClips)
         ASSERT_EQ(done.status, 0) << joined(line) << done.err;
         EXPECT_EQ(done.out + done.err, "") << joined(line);
     }
-    for (const std::string& file : {glb, again})
+    for (const std::string& file : {glb, scene, again})
     {
         const Process inspected = run({"inspect", file, "--json"});
         ASSERT_EQ(inspected.status, 0) << inspected.err;

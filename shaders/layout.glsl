@@ -86,6 +86,9 @@
 #define POSE_PALETTE_UNIT 11
 #define POSE_MORPH_UNIT 12
 #define POSE_TINT_UNIT 13
+// The texture units of instances with shared poses: the list of those drawn, and the placements of all.
+#define POSE_DRAWN_UNIT 30
+#define POSE_PLACEMENT_UNIT 31
 
 // Morph targets of a mesh: RGBA32F, for each vertex and target one texel per channel: position, normal, colour, texture
 // coordinate, tangent. The weights are in palette entries, twelve per entry.

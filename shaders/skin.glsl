@@ -4,16 +4,16 @@
 //     void osgGpuAnimationSkin(inout vec4 vertex, inout vec3 normal);
 // and call it with the vertex and normal of the bind pose. It returns them in the space that gl_ModelViewMatrix transforms
 // from: the character's own space, or eye space in an instanced draw of several characters.
-// In instanced draws each GL instance is one instance of the batch, see AnimatedCrowd; vec4 osgGpuAnimationTint() is its
+// In instanced draws each GL instance is one instance of the batch or of poseDrawn, see AnimatedCrowd; vec4 osgGpuAnimationTint() is its
 // colour. Attributes are bound to the locations of layout.glsl; SkinnedGeometry sets the uniforms when it draws.
 //
 // OSG's shader defines (StateSet::setDefine, see applySkinDefines) remove parts that a mesh does not need, since some
 // drivers (llvmpipe) run both sides of every branch. Without the defines the uniforms decide.
-#pragma import_defines(POSE_INFLUENCES, POSE_NO_MORPHS, POSE_INSTANCED)
+#pragma import_defines(POSE_INFLUENCES, POSE_NO_MORPHS, POSE_INSTANCED, POSE_PLACED)
 
 uniform samplerBuffer posePalette; // entry e of instance i: rows at texel (e * poseStride + i) * 3
 uniform int poseStride;
-uniform int poseInstance; // of the draw's first GL instance; POSE_INSTANCED: of the batch's first instance
+uniform int poseInstance; // of the draw's first GL instance; POSE_INSTANCED: of the batch's first; POSE_PLACED: in poseDrawn
 uniform int poseInfluences; // the largest number per vertex: 1 to 8
 
 uniform samplerBuffer poseMorphDeltas; // by vertex, target, channel
@@ -48,6 +48,19 @@ int osgGpuAnimationInstance()
 {
     return poseInstance + int(poseInstancePose.x);
 }
+#elif defined(POSE_PLACED)
+uniform usamplerBuffer poseDrawn;     // per GL instance, from poseInstance on: its pose in the batch, its number in the crowd
+uniform samplerBuffer posePlacements; // by number in the crowd: rows at texel number * 3
+
+int osgGpuAnimationInstance()
+{
+    return int(texelFetch(poseDrawn, poseInstance + gl_InstanceID).x);
+}
+
+int osgGpuAnimationPlacement()
+{
+    return int(texelFetch(poseDrawn, poseInstance + gl_InstanceID).y);
+}
 #else
 int osgGpuAnimationInstance()
 {
@@ -57,7 +70,11 @@ int osgGpuAnimationInstance()
 
 vec4 osgGpuAnimationTint()
 {
+#ifdef POSE_PLACED
+    return poseTinted ? texelFetch(poseTints, osgGpuAnimationPlacement()) : vec4(1.0);
+#else
     return poseTinted ? texelFetch(poseTints, osgGpuAnimationInstance()) : vec4(1.0);
+#endif
 }
 
 mat3x4 osgGpuAnimationEntry(float entry)
@@ -137,6 +154,10 @@ void osgGpuAnimationSkinTangent(inout vec4 vertex, inout vec3 normal, inout vec4
     osgGpuAnimationMove(rows, vertex, normal, tangent);
 #ifdef POSE_INSTANCED
     osgGpuAnimationMove(mat3x4(poseInstanceRow0, poseInstanceRow1, poseInstanceRow2), vertex, normal, tangent);
+#elif defined(POSE_PLACED)
+    int texel = osgGpuAnimationPlacement() * POSE_TEXELS_PER_MATRIX;
+    osgGpuAnimationMove(mat3x4(texelFetch(posePlacements, texel), texelFetch(posePlacements, texel + 1),
+                               texelFetch(posePlacements, texel + 2)), vertex, normal, tangent);
 #endif
 }
 

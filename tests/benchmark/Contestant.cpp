@@ -24,9 +24,9 @@ void Contestant::measure()
     draw.push_back(cost.draw);
 }
 
-Result<Contestant> contestant(osg::Node* scene, const osg::BoundingSphere& sight, int side)
+Result<Contestant> contestant(osg::Node* scene, const osg::BoundingSphere& sight, int width, int height)
 {
-    Result<std::shared_ptr<StagedViewer>> viewer = StagedViewer::create(scene, sight, side);
+    Result<std::shared_ptr<StagedViewer>> viewer = StagedViewer::create(scene, sight, width, height);
     if (!viewer) return viewer.error();
     Contestant made;
     made.viewer = std::move(viewer.value());

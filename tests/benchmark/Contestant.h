@@ -23,8 +23,8 @@ struct Contestant
     void measure(); ///< draws one frame and records its cost
 };
 
-/// side: of the picture, in pixels. Error: no GL is available.
-Result<Contestant> contestant(osg::Node* scene, const osg::BoundingSphere& sight, int side = 64);
+/// width, height: of the picture, see StagedViewer. Error: no GL is available.
+Result<Contestant> contestant(osg::Node* scene, const osg::BoundingSphere& sight, int width = 64, int height = 0);
 
 /// Draws frames until all programs and buffers exist and osgAnimation is set up; then measures the contestants in
 /// turns.

@@ -47,6 +47,10 @@ Result<bool> measureShading(const Subject& subject, const Effort& effort, Report
 /// One crowd node compared with the same number of separate nodes: whole frames and their CPU time.
 Result<bool> measureCrowd(const Subject& subject, const Effort& effort, Report& report);
 
+/// A field of 99,856 instances of a crowd with a pixel error, of which the camera sees half: whole frames, poses and
+/// bytes.
+Result<bool> measureField(const Subject& subject, const Effort& effort, Report& report);
+
 /// The memory and the first frame of many characters.
 Result<bool> measureStart(const Subject& subject, const Effort& effort, Report& report);
 

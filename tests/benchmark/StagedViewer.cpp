@@ -11,9 +11,11 @@
 namespace osgGpuAnimation::benchmark
 {
 
-Result<std::shared_ptr<StagedViewer>> StagedViewer::create(osg::Node* scene, const osg::BoundingSphere& sight, int side)
+Result<std::shared_ptr<StagedViewer>> StagedViewer::create(osg::Node* scene, const osg::BoundingSphere& sight,
+                                                           int width, int height)
 {
-    Result<osg::ref_ptr<EglGraphicsContext>> context = EglGraphicsContext::create(side, side);
+    if (height == 0) height = width;
+    Result<osg::ref_ptr<EglGraphicsContext>> context = EglGraphicsContext::create(width, height);
     if (!context) return context.error();
     std::shared_ptr<StagedViewer> made(new StagedViewer(context.value()));
     osgViewer::Viewer& viewer = made->_viewer;
@@ -21,7 +23,7 @@ Result<std::shared_ptr<StagedViewer>> StagedViewer::create(osg::Node* scene, con
     viewer.setReleaseContextAtEndOfFrameHint(false);
     osg::Camera* camera = viewer.getCamera();
     camera->setGraphicsContext(context.value());
-    camera->setViewport(0, 0, side, side);
+    camera->setViewport(0, 0, width, height);
     camera->setClearColor(osg::Vec4(0, 0, 0, 0));
     camera->setCullingMode(osg::CullSettings::VIEW_FRUSTUM_CULLING);
     viewer.setSceneData(scene);
@@ -45,6 +47,15 @@ void StagedViewer::lookAt(const osg::BoundingSphere& sight)
     osg::Camera* camera = _viewer.getCamera();
     camera->setViewMatrixAsLookAt(sight.center() + back * sight.radius() * 4.0, sight.center(), osg::Vec3d(0, 0, 1));
     camera->setProjectionMatrixAsPerspective(35.0, 1.0, sight.radius(), sight.radius() * 10.0);
+}
+
+void StagedViewer::lookFrom(const osg::Vec3d& eye, const osg::Vec3d& centre, double fieldOfView)
+{
+    osg::Camera* camera = _viewer.getCamera();
+    const osg::Viewport* viewport = camera->getViewport();
+    camera->setViewMatrixAsLookAt(eye, centre, osg::Vec3d(0, 0, 1));
+    camera->setProjectionMatrixAsPerspective(fieldOfView, viewport->width() / viewport->height(), 1.0,
+                                             10.0 * _sight.radius());
 }
 
 void StagedViewer::lookAside()
@@ -94,9 +105,9 @@ std::string StagedViewer::takeErrors()
 int StagedViewer::pixelsDrawn()
 {
     _context->makeCurrent();
-    const int side = _context->getTraits()->width;
-    std::vector<unsigned char> pixels(std::size_t(4) * side * side);
-    glReadPixels(0, 0, side, side, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
+    const int width = _context->getTraits()->width, height = _context->getTraits()->height;
+    std::vector<unsigned char> pixels(std::size_t(4) * width * height);
+    glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
     int drawn = 0;
     for (std::size_t pixel = 0; pixel < pixels.size(); pixel += 4)
         if (pixels[pixel] != 0 || pixels[pixel + 1] != 0 || pixels[pixel + 2] != 0) ++drawn;

@@ -29,13 +29,17 @@ struct FrameCost
 class StagedViewer
 {
 public:
-    /// sight: the bounds that the picture shows. side: pixels each way. Error: no GL is available.
+    /// sight: the bounds that the picture shows. width, height: in pixels; a height of 0: a square. Error: no GL is
+    /// available.
     static Result<std::shared_ptr<StagedViewer>> create(osg::Node* scene, const osg::BoundingSphere& sight,
-                                                        int side = 64);
+                                                        int width = 64, int height = 0);
     ~StagedViewer();
 
     /// Draws a frame at that simulation time (seconds). The first one is an ordinary viewer.frame(), timed as draw.
     FrameCost frame(double time);
+
+    /// Looks from a place to another one, in place of the whole scene. fieldOfView: vertical, in degrees.
+    void lookFrom(const osg::Vec3d& eye, const osg::Vec3d& centre, double fieldOfView);
 
     /// From the next frame on the scene is culled and drawn as before, but outside the picture: llvmpipe keeps up to 36
     /// MiB of triangles per picture, which would distort the memory of the scene.

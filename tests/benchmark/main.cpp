@@ -22,8 +22,8 @@ namespace
 constexpr const char* usage = R"(osggpuanim_benchmark [options] OUTPUT_FOLDER
     measures this kit against osgAnimation, prints a table and writes benchmark.json and plots into the folder
     --quick           fewer characters and rounds
-    --only PART       pose, samples, constraints, chunks, depth, frames, crowd, draws, shading, start or load; several
-                      times, too
+    --only PART       pose, samples, constraints, chunks, depth, frames, crowd, field, draws, shading, start or load;
+                      several times, too
     --return-memory   leave it to glibc whether freed memory goes back to the kernel
     --subject NAME    Wanderer, Fox, CesiumMan or Knight; may be given several times
 )";
@@ -111,7 +111,7 @@ Result<bool> measureSubject(const Request& request, const Effort& effort, const 
                             osg::GraphicsContext& context, Report& report)
 {
     const std::pair<const char*, Result<bool> (*)(const Subject&, const Effort&, Report&)> inViewers[] = {
-        {"frames", measureFrames},   {"crowd", measureCrowd}, {"draws", measureDraws},
+        {"frames", measureFrames},   {"crowd", measureCrowd}, {"field", measureField}, {"draws", measureDraws},
         {"shading", measureShading}, {"start", measureStart}, {"load", measureLoad}};
     if (request.has("samples"))
         if (Result<bool> done = measureSamples(subject, effort, context, report); !done) return done;

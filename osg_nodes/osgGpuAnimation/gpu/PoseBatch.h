@@ -51,6 +51,8 @@ public:
     std::size_t add(const PoseInstruction& instruction, const AffineMatrix& rootMatrix);
     /// Does the same for a pose of one sample.
     std::size_t addSample(const BlendSample& sample, const AffineMatrix& rootMatrix);
+    /// Adds a pose of one sample without a root matrix of its own.
+    std::size_t addSample(const BlendSample& sample) { return append(&sample, 1, nullptr); }
 
     /// The cost of mixing a pose.
     enum class BlendCost

@@ -7,6 +7,7 @@
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/crowd/CrowdBatches.h>
 #include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
+#include <osgGpuAnimation/nodes/crowd/SharedPoses.h>
 #include <osgGpuAnimation/nodes/frame/CullScopes.h>
 #include <osgGpuAnimation/nodes/frame/PoseStage.h>
 #include <osgGpuAnimation/nodes/frame/WorldTargets.h>
@@ -67,23 +68,6 @@ bool hasMeshAtOrBelow(osg::Node& node)
     forEachMeshBelow(node, [&](const SkinnedGeometry&) { has = true; });
     return has;
 }
-
-/// RAII: while this thread draws the children of a crowd that are no meshes, the visitor culls none: the bounds of
-/// groups that an application has inserted above a mesh do not contain the instances.
-class UnculledScope
-{
-public:
-    explicit UnculledScope(osgUtil::CullVisitor& visitor)
-        : _visitor(visitor), _mask(visitor.getCurrentCullingSet().getCullingMask())
-    {
-        _visitor.getCurrentCullingSet().setCullingMask(osg::CullingSet::NO_CULLING);
-    }
-    ~UnculledScope() { _visitor.getCurrentCullingSet().setCullingMask(_mask); }
-
-private:
-    osgUtil::CullVisitor& _visitor;
-    osg::CullingSet::Mask _mask;
-};
 
 } // namespace
 
@@ -177,6 +161,7 @@ AnimatedCrowd::AnimatedCrowd(const AnimatedCrowd& other, const osg::CopyOp& copy
       _posed(std::make_unique<PosedInstances>()), _fileToNode(other._fileToNode), _origin(other._origin),
       _hasOrigin(other._hasOrigin), _updateTime(other._updateTime),
       _worldTargets(std::make_unique<WorldTargets>(*other._worldTargets)), _pixelError(other._pixelError),
+      _sharedPoses(other._sharedPoses ? std::make_unique<SharedPoses>(*other._sharedPoses) : nullptr),
       _variantMeshes(other._variantMeshes)
 {
     // The update traversal must reach this node without a callback.
@@ -394,6 +379,7 @@ void AnimatedCrowd::update(double simulationTime)
 {
     const double step = _updateTime ? simulationTime - *_updateTime : 0.0;
     _updateTime = simulationTime;
+    prepareSharedPoses();
     PendingEvents events;
     if (_instances->advance(step, events)) dirtyBound();
     if (!_worldTargets->isEmpty())
@@ -492,7 +478,10 @@ void AnimatedCrowd::cull(osgUtil::CullVisitor& visitor)
         view.look(*_instances, seen);
         const LodScale scale(visitor, PoseStage::lodView(visitor), _pixelError,
                              _pixelError > 0.0f ? LodRange(*this, getAnimationSet()) : LodRange());
-        draws = submitSeen(PoseStage::frame(visitor), *_instances, CrowdLod(*_instances, scale), seen);
+        PoseFrame& frame = PoseStage::frame(visitor);
+        if (_sharedPoses && scale.isOn()) draws = _sharedPoses->submit(frame, *_instances, scale, seen);
+        for (const DrawState& draw : submitSeen(frame, *_instances, CrowdLod(*_instances, scale), seen))
+            draws.push_back(draw);
     }
     for (const DrawState& draw : draws)
     {
@@ -521,8 +510,18 @@ void AnimatedCrowd::cull(osgUtil::CullVisitor& visitor)
 Result<bool> AnimatedCrowd::setPixelError(float pixels)
 {
     const Result<bool> prepared = LodRange::prepare(pixels, *this, getAnimationSet());
-    if (prepared) _pixelError = pixels;
+    if (!prepared) return prepared;
+    _pixelError = pixels;
+    prepareSharedPoses();
     return prepared;
+}
+
+void AnimatedCrowd::prepareSharedPoses()
+{
+    if (!(_pixelError > 0.0f) || getAnimationSet().paletteSize() == 0)
+        _sharedPoses = nullptr;
+    else if (!_sharedPoses || !_sharedPoses->isOf(*this))
+        _sharedPoses = std::make_unique<SharedPoses>(*this, getAnimationSet());
 }
 
 void AnimatedCrowd::visitInstances(osg::NodeVisitor& visitor)

@@ -21,6 +21,7 @@ class AnimatedCharacter;
 class CrowdInstances;
 class NodeConstraint;
 class PosedInstances;
+class SharedPoses;
 class StateGraph;
 class StateMachine;
 class VariantMeshes;
@@ -183,6 +184,7 @@ private:
     osg::ref_ptr<osg::Geometry> getPosedMesh(const SkinnedGeometry& mesh, bool withNormals) const override;
     osg::ref_ptr<osg::Geometry> posedMesh(std::size_t index, const SkinnedGeometry& mesh, bool withNormals) const;
     void takeWorldTargets();
+    void prepareSharedPoses();
     osg::Matrixd fileToSpace(std::size_t index) const;
     void cull(osgUtil::CullVisitor& visitor);
     void visitInstances(osg::NodeVisitor& visitor);
@@ -196,6 +198,7 @@ private:
     std::optional<double> _updateTime;             ///< seconds of simulation time
     std::unique_ptr<WorldTargets> _worldTargets;   ///< never null
     float _pixelError = 0.0f;                      ///< pixels
+    std::unique_ptr<SharedPoses> _sharedPoses;     ///< null: no pixel error
     std::shared_ptr<VariantMeshes> _variantMeshes; ///< never null, shared with the character and clones
 };
 

@@ -289,6 +289,8 @@ void SkinnedGeometry::drawImplementation(osg::RenderInfo& renderInfo) const
     const MeshVertexArrays arrays(state);
     if (binding->getSerial() != 0)
         drawInstancedMesh(renderInfo, *binding, *pipeline);
+    else if (binding->getPlaced())
+        drawPlaced(renderInfo, *binding, *pipeline);
     else if (binding->getInstanceCount() > 1 || binding->getLevel() != LodLevels::allTriangles)
         drawInstances(renderInfo, *binding, *pipeline);
     else if (const PalettePlace place =
@@ -329,6 +331,20 @@ void SkinnedGeometry::drawInstances(osg::RenderInfo& renderInfo, const PaletteBi
             drawPrimitives(state, static_cast<int>(count), binding.getLevel());
             first += count;
         }
+    };
+    withVertexArrays(renderInfo, draw);
+}
+
+void SkinnedGeometry::drawPlaced(osg::RenderInfo& renderInfo, const PaletteBinding& binding,
+                                 const PosePipeline& pipeline) const
+{
+    const PlacedDraw placed(*renderInfo.getState(), pipeline, binding);
+    if (placed.place().texture == 0) return;
+    const auto draw = [&](osg::State& state)
+    {
+        bindPalette(state, placed.place());
+        placed.use();
+        drawPrimitives(state, static_cast<int>(binding.getInstanceCount()), binding.getLevel());
     };
     withVertexArrays(renderInfo, draw);
 }

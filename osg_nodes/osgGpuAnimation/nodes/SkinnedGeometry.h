@@ -142,6 +142,7 @@ protected:
 
 private:
     void drawInstances(osg::RenderInfo& renderInfo, const PaletteBinding& binding, const PosePipeline& pipeline) const;
+    void drawPlaced(osg::RenderInfo& renderInfo, const PaletteBinding& binding, const PosePipeline& pipeline) const;
     void drawInstancedMesh(osg::RenderInfo& renderInfo, const PaletteBinding& binding,
                            const PosePipeline& pipeline) const;
     template <typename Draw>

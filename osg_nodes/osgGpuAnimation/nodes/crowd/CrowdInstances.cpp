@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
 
+#include <osgGpuAnimation/nodes/lod/LodLevels.h>
+
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -22,7 +24,7 @@ double CrowdPlayback::time(const AnimationSet& set, double clock) const
     if (_clip < 0) return 0.0;
     const double duration = set.clips()[static_cast<std::size_t>(_clip)].duration();
     if (!(duration > 0.0)) return 0.0;
-    const double unrolled = _isPaused ? _offset : _offset + _speed * clock;
+    const double unrolled = unrolledTime(clock);
     const double time = unrolled - std::floor(unrolled / duration) * duration;
     // Rounding of the quotient may cross an integer.
     return time >= 0.0 && time < duration ? time : 0.0;
@@ -74,9 +76,9 @@ void takeOut(std::vector<Element>& elements, std::size_t index)
 CrowdInstances::CrowdInstances(const CrowdInstances& other)
     : _set(other._set), _clock(other._clock), _clipBounds(other._clipBounds), _allBounds(other._allBounds),
       _mixBounds(other._mixBounds), _rootMatrices(other._rootMatrices), _positions(other._positions),
-      _spheres(other._spheres), _tints(other._tints), _playbacks(other._playbacks), _handles(other._handles),
-      _indexOfPlace(other._indexOfPlace), _usesOfPlace(other._usesOfPlace), _freePlaces(other._freePlaces),
-      _tinted(other._tinted)
+      _cells(other._cells), _scales(other._scales), _tints(other._tints), _playbacks(other._playbacks),
+      _isControlledKnown(false), _handles(other._handles), _indexOfPlace(other._indexOfPlace),
+      _usesOfPlace(other._usesOfPlace), _freePlaces(other._freePlaces), _tinted(other._tinted)
 {
     for (const std::unique_ptr<AnimationController>& controller : other._controllers)
         _controllers.push_back(controller ? std::make_unique<AnimationController>(*controller) : nullptr);
@@ -127,7 +129,7 @@ void CrowdInstances::setClipBounds(const std::vector<Box>& clipBounds, std::shar
     {
         _posedBoxes[index].reset();
         updatePosedBox(index);
-        _spheres[index] = placedSphere(index);
+        updateSphere(index);
     }
 }
 
@@ -140,9 +142,9 @@ const Box& CrowdInstances::boxOf(std::size_t index) const
     return isPlain ? _clipBounds[bounds] : _allBounds;
 }
 
-glm::vec4 CrowdInstances::placedSphere(std::size_t index) const
+void CrowdInstances::updateSphere(std::size_t index)
 {
-    return sphereAround(boxOf(index), _rootMatrices[index]);
+    _cells.move(index, sphereAround(boxOf(index), _rootMatrices[index]));
 }
 
 /// True if the instance has another box than before because of its poses.
@@ -190,17 +192,18 @@ CrowdInstances::Handle CrowdInstances::add(const AffineMatrix& rootMatrix, const
 {
     const std::size_t index = size();
     const bool isPlain = controller.isPlainLoop();
-    _rootMatrices.push_back(rootMatrix);
+    _rootMatrices.add(rootMatrix);
     _positions.push_back(position);
-    _spheres.emplace_back();
-    _tints.push_back(tint);
+    _scales.push_back(largestScale(rootMatrix));
+    _tints.add(tint);
     _tinted += tint != PoseBatch::white;
     _playbacks.push_back(isPlain ? CrowdPlayback(controller, _clock) : CrowdPlayback());
     _controllers.push_back(isPlain ? nullptr : std::make_unique<AnimationController>(controller));
     _posedBoxes.emplace_back();
     _handles.push_back(newHandle(index));
     updatePosedBox(index);
-    _spheres[index] = placedSphere(index);
+    _cells.add(sphereAround(boxOf(index), rootMatrix));
+    _isControlledKnown = _isControlledKnown && isPlain;
     listenTo(index);
     return _handles[index];
 }
@@ -212,28 +215,31 @@ void CrowdInstances::remove(std::size_t index)
     ++_usesOfPlace[place];
     _freePlaces.push_back(static_cast<std::uint32_t>(place));
     _tinted -= _tints[index] != PoseBatch::white;
-    takeOut(_rootMatrices, index);
+    _rootMatrices.remove(index);
     takeOut(_positions, index);
-    takeOut(_spheres, index);
-    takeOut(_tints, index);
+    _cells.remove(index);
+    takeOut(_scales, index);
+    _tints.remove(index);
     takeOut(_playbacks, index);
     takeOut(_controllers, index);
     takeOut(_posedBoxes, index);
     takeOut(_handles, index);
+    _isControlledKnown = _isControlledKnown && _controlled.empty();
     if (index < size()) _indexOfPlace[placeOf(_handles[index])] = static_cast<std::uint32_t>(index);
 }
 
 void CrowdInstances::move(std::size_t index, const AffineMatrix& rootMatrix, const osg::Vec3d& position)
 {
-    _rootMatrices[index] = rootMatrix;
+    _rootMatrices.set(index, rootMatrix);
     _positions[index] = position;
-    _spheres[index] = placedSphere(index);
+    _scales[index] = largestScale(rootMatrix);
+    updateSphere(index);
 }
 
 void CrowdInstances::setTint(std::size_t index, std::uint32_t tint)
 {
     _tinted -= _tints[index] != PoseBatch::white;
-    _tints[index] = tint;
+    _tints.set(index, tint);
     _tinted += tint != PoseBatch::white;
 }
 
@@ -250,7 +256,8 @@ AnimationController& CrowdInstances::controller(std::size_t index)
     if (!_controllers[index])
     {
         _controllers[index] = std::make_unique<AnimationController>(_playbacks[index].controller(_set, _clock));
-        _spheres[index] = placedSphere(index);
+        _isControlledKnown = false;
+        updateSphere(index);
     }
     return *_controllers[index];
 }
@@ -308,37 +315,31 @@ bool CrowdInstances::advance(double seconds, PendingEvents& outEvents)
     for (const auto& [handle, machine] : _machines)
         machine->update(controller(indexOf(handle)), seconds);
     if (std::isfinite(seconds)) _clock += seconds;
+    if (!_isControlledKnown)
+    {
+        _controlled.clear();
+        for (std::size_t index = 0; index < _controllers.size(); ++index)
+            if (_controllers[index]) _controlled.push_back(static_cast<std::uint32_t>(index));
+        _isControlledKnown = true;
+    }
     bool haveSpheresChanged = false;
-    for (std::size_t index = 0; index < _controllers.size(); ++index)
+    for (const std::uint32_t index : _controlled)
     {
         std::unique_ptr<AnimationController>& controller = _controllers[index];
-        if (!controller) continue;
         controller->advance(seconds, outEvents);
         if (updatePosedBox(index))
         {
-            _spheres[index] = placedSphere(index);
+            updateSphere(index);
             haveSpheresChanged = true;
         }
         if (!controller->isPlainLoop() || _machines.count(_handles[index]) > 0) continue;
         _playbacks[index] = CrowdPlayback(*controller, _clock);
         controller.reset();
-        _spheres[index] = placedSphere(index);
+        _isControlledKnown = false;
+        updateSphere(index);
         haveSpheresChanged = true;
     }
     return haveSpheresChanged;
-}
-
-void CrowdInstances::findSeen(const std::vector<glm::vec4>& planes, std::vector<std::uint32_t>& outIndices) const
-{
-    outIndices.clear();
-    for (std::size_t index = 0; index < _spheres.size(); ++index)
-    {
-        const glm::vec4& sphere = _spheres[index];
-        bool isSeen = sphere.w >= 0.0f;
-        for (const glm::vec4& plane : planes)
-            isSeen = isSeen && plane.x * sphere.x + plane.y * sphere.y + plane.z * sphere.z + plane.w >= -sphere.w;
-        if (isSeen) outIndices.push_back(static_cast<std::uint32_t>(index));
-    }
 }
 
 PoseBatch::BlendCost CrowdInstances::blendCost(std::size_t index) const

@@ -5,7 +5,9 @@
 #include <osgGpuAnimation/animation/bounds/ClipBounds.h>
 #include <osgGpuAnimation/animation/bounds/MixBounds.h>
 #include <osgGpuAnimation/animation/StateMachine.h>
+#include <osgGpuAnimation/gpu/buffers/SharedBlocks.h>
 #include <osgGpuAnimation/gpu/PoseBatch.h>
+#include <osgGpuAnimation/nodes/crowd/CrowdCells.h>
 
 #include <osg/Vec3d>
 #include <osg/Vec4>
@@ -51,6 +53,8 @@ public:
     CrowdPlayback(const AnimationController& controller, double clock);
 
     int clip() const { return _clip; } ///< -1: none, the rest pose
+    /// Seconds since a start of the clip, with all rounds.
+    double unrolledTime(double clock) const { return _isPaused ? _offset : _offset + _speed * clock; }
     /// Clip time in seconds, in [0, duration).
     double time(const AnimationSet& set, double clock) const;
     BlendSample sample(const AnimationSet& set, double clock) const { return set.sampleAt(_clip, time(set, clock)); }
@@ -97,10 +101,9 @@ public:
 
     const AffineMatrix& rootMatrix(std::size_t index) const { return _rootMatrices[index]; }
     const osg::Vec3d& position(std::size_t index) const { return _positions[index]; }
-    const glm::vec4& sphere(std::size_t index) const
-    {
-        return _spheres[index];
-    } ///< centre, radius; radius below 0: empty
+    /// Centre, radius; radius below 0: empty.
+    const glm::vec4& sphere(std::size_t index) const { return _cells.sphere(index); }
+    float scale(std::size_t index) const { return _scales[index]; } ///< the largest of its root matrix
     std::uint32_t tint(std::size_t index) const { return _tints[index]; }
     PoseInstruction instruction(std::size_t index) const;
     PoseBatch::BlendCost blendCost(std::size_t index) const; ///< of its instruction
@@ -117,8 +120,21 @@ public:
     {
         return _controllers[index] ? _controllers[index]->takeRootMotion() : RootMotion();
     }
+    bool hasController(std::size_t index) const { return _controllers[index] != nullptr; }
     /// The number of instances with a controller.
     std::size_t controllerCount() const;
+    /// Of an instance without a controller: -1: the rest pose.
+    int clip(std::size_t index) const { return _playbacks[index].clip(); }
+    /// Of an instance without a controller: seconds since a start of the clip, with all rounds.
+    double unrolledTime(std::size_t index) const { return _playbacks[index].unrolledTime(_clock); }
+    /// Identifies this object and no copy.
+    const std::shared_ptr<const void>& identity() const { return _identity; }
+    /// Snapshots for frames, by index. Tints: empty if all are white.
+    SharedBlocks<AffineMatrix>::Snapshot placements() const { return _rootMatrices.snapshot(); }
+    SharedBlocks<std::uint32_t>::Snapshot tints() const
+    {
+        return _tinted > 0 ? _tints.snapshot() : SharedBlocks<std::uint32_t>::Snapshot();
+    }
 
     /// Replaces the callbacks of all instances, and of those that are added later. Empty: removes them. Copies of this
     /// object do not copy it. All instances keep a controller as long as there is one.
@@ -131,8 +147,11 @@ public:
     /// Advances all instances and appends their events. True if spheres have changed.
     bool advance(double seconds, PendingEvents& outEvents);
 
-    /// The indices of the instances whose sphere reaches n · p + d >= 0 of every plane.
-    void findSeen(const std::vector<glm::vec4>& planes, std::vector<std::uint32_t>& outIndices) const;
+    /// The indices, ascending, of the instances whose sphere reaches n · p + d >= 0 of every plane.
+    void findSeen(const std::vector<glm::vec4>& planes, std::vector<std::uint32_t>& outIndices) const
+    {
+        _cells.findSeen(planes, outIndices);
+    }
     /// Adds the instances to the batch, in the order of the indices.
     void addTo(PoseBatch& batch, const std::vector<std::uint32_t>& indices) const;
 
@@ -146,7 +165,7 @@ private:
     };
 
     const Box& boxOf(std::size_t index) const;
-    glm::vec4 placedSphere(std::size_t index) const;
+    void updateSphere(std::size_t index);
     bool updatePosedBox(std::size_t index);
     void listenTo(std::size_t index);
     Handle newHandle(std::size_t index);
@@ -156,18 +175,22 @@ private:
     std::vector<Box> _clipBounds;
     Box _allBounds; ///< of instances with a controller
     std::shared_ptr<const MixBounds> _mixBounds;
-    std::vector<AffineMatrix> _rootMatrices;
+    SharedBlocks<AffineMatrix> _rootMatrices;
     std::vector<osg::Vec3d> _positions;
-    std::vector<glm::vec4> _spheres;
-    std::vector<std::uint32_t> _tints;
+    CrowdCells _cells;
+    std::vector<float> _scales;
+    SharedBlocks<std::uint32_t> _tints;
     std::vector<CrowdPlayback> _playbacks;
     std::vector<std::unique_ptr<AnimationController>> _controllers; ///< mostly null
+    std::vector<std::uint32_t> _controlled;                         ///< the indices of those that are not null
+    bool _isControlledKnown = true;                                 ///< false: _controlled is out of date
     std::vector<std::unique_ptr<PosedBox>> _posedBoxes;             ///< null without a JointPose
     std::vector<Handle> _handles;
     std::vector<std::uint32_t> _indexOfPlace; ///< by the lower half of a handle
     std::vector<std::uint32_t> _usesOfPlace;
     std::vector<std::uint32_t> _freePlaces;
     std::size_t _tinted = 0; ///< instances that are not white
+    std::shared_ptr<const void> _identity = std::make_shared<char>();
     std::shared_ptr<const EventCallback> _eventCallback;
     std::unordered_map<Handle, std::unique_ptr<StateMachine>> _machines;
 };

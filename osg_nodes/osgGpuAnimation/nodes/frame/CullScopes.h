@@ -49,6 +49,25 @@ private:
     osgUtil::CullVisitor* _visitor; ///< null: not a depth pass
 };
 
+/// RAII: the visitor culls nothing, such as the children of a crowd that are no meshes: the bounds of groups that an
+/// application has inserted above a mesh do not contain the instances.
+class UnculledScope
+{
+public:
+    explicit UnculledScope(osgUtil::CullVisitor& visitor)
+        : _visitor(visitor), _mask(visitor.getCurrentCullingSet().getCullingMask())
+    {
+        _visitor.getCurrentCullingSet().setCullingMask(osg::CullingSet::NO_CULLING);
+    }
+    ~UnculledScope() { _visitor.getCurrentCullingSet().setCullingMask(_mask); }
+    UnculledScope(const UnculledScope&) = delete;
+    UnculledScope& operator=(const UnculledScope&) = delete;
+
+private:
+    osgUtil::CullVisitor& _visitor;
+    osg::CullingSet::Mask _mask; ///< before
+};
+
 /// True if the shader define is on in the present state.
 bool isDefined(osg::State& state, const std::string& name);
 

@@ -150,6 +150,35 @@ void bindPalette(osg::State& state, const PalettePlace& place, int influences, i
     }
 }
 
+PlacedDraw::PlacedDraw(osg::State& state, const PosePipeline& pipeline, const PaletteBinding& binding) : _state(state)
+{
+    const std::shared_ptr<const PlacedInstances>& placed = binding.getPlaced();
+    const PalettePlace palette = pipeline.place(*binding.getAnimationSet(), binding.getSlot(), 0);
+    if (palette.texture == 0 || palette.chunkEnd < placed->poseCount) return;
+    _textures = PlacedInstanceBuffers::of(state).textures(placed, pipeline.getMaxTexels());
+    if (_textures.drawn == 0) return;
+    _place = palette;
+    _place.instance = static_cast<int>(binding.getInstance());
+    _place.tints = _textures.tints;
+}
+
+void PlacedDraw::use() const
+{
+    const osg::Program::PerContextProgram* program = _state.getLastAppliedProgramObject();
+    if (!program) return;
+    static const unsigned int drawnName = osg::Uniform::getNameID("poseDrawn");
+    static const unsigned int placementsName = osg::Uniform::getNameID("posePlacements");
+    const auto bind = [&](unsigned int name, int unit, GLuint texture)
+    {
+        _state.setActiveTextureUnit(static_cast<unsigned int>(unit));
+        glBindTexture(GL_TEXTURE_BUFFER, texture);
+        const GLint location = program->getUniformLocation(name);
+        if (location >= 0) _state.get<osg::GLExtensions>()->glUniform1i(location, unit);
+    };
+    bind(drawnName, POSE_DRAWN_UNIT, _textures.drawn);
+    bind(placementsName, POSE_PLACEMENT_UNIT, _textures.placements);
+}
+
 InstancedDraw::InstancedDraw(osg::State& state, const PaletteBinding& binding) : _state(state), _binding(binding)
 {
     const osg::Program::PerContextProgram* program = state.getLastAppliedProgramObject();

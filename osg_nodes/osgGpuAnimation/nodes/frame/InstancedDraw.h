@@ -40,6 +40,24 @@ private:
 /// influences: the largest number per vertex. rigidEntry: moves all vertices; -1: influences are per vertex.
 void bindPalette(osg::State& state, const PalettePlace& place, int influences, int rigidEntry);
 
+/// The draw of instances with shared poses: the list of the drawn instances and the placements of all.
+class PlacedDraw
+{
+public:
+    PlacedDraw(osg::State& state, const PosePipeline& pipeline, const PaletteBinding& binding);
+
+    /// For bindPalette(), from the first drawn instance on. Its texture is 0 if a buffer texture of the context cannot
+    /// hold the placements or the poses.
+    const PalettePlace& place() const { return _place; }
+    /// Binds the list and the placements and sets their uniforms, after bindPalette().
+    void use() const;
+
+private:
+    osg::State& _state;
+    PalettePlace _place;
+    PlacedInstanceBuffers::Textures _textures;
+};
+
 /// RAII: passes the placements of several characters to the program for the draws of one mesh. Programs that do not
 /// link skin.glsl get one draw per character, with its placement in the model-view matrix.
 class InstancedDraw

@@ -3,6 +3,7 @@
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/gpu/buffers/InstanceTransforms.h>
+#include <osgGpuAnimation/gpu/buffers/PlacedInstances.h>
 
 #include <osg/StateAttribute>
 
@@ -29,6 +30,11 @@ public:
     /// Selects instanceCount consecutive instances at the draw's own model-view matrix, with all triangles.
     void set(std::shared_ptr<const AnimationSet> set, std::size_t slot, std::size_t instance,
              std::size_t instanceCount = 1);
+    /// Selects instances of a crowd that share poses: [first, first + count) of placed.drawn, whose poses are indices
+    /// of the batch.
+    void setPlaced(std::shared_ptr<const AnimationSet> set, std::size_t slot,
+                   std::shared_ptr<const PlacedInstances> placed, std::size_t first, std::size_t count);
+    const std::shared_ptr<const PlacedInstances>& getPlaced() const { return _placed; } ///< null: poses are not shared
     /// The level of detail; set() and setInstanced() reset it to all triangles.
     void setLevel(int level) { _level = level; }
     int getLevel() const { return _level; }
@@ -58,6 +64,7 @@ private:
     std::size_t _instance = 0;
     std::size_t _instanceCount = 1;
     std::vector<InstanceTransform> _transforms;
+    std::shared_ptr<const PlacedInstances> _placed;
     std::uint64_t _serial = 0;
     int _level = allTriangles;
 };

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 #include <unordered_set>
 
 namespace osgGpuAnimation
@@ -40,9 +41,15 @@ osg::ref_ptr<PoseFrame> PoseFrame::forContext(unsigned int contextId, const osg:
     const unsigned int frameNumber = stamp ? stamp->getFrameNumber() : 0;
     const double referenceTime = stamp ? stamp->getReferenceTime() : 0.0;
     static std::mutex mutex;
-    static std::unordered_map<unsigned int, std::vector<osg::ref_ptr<PoseFrame>>> framesOfContext; // the latest last
+    struct Context
+    {
+        std::vector<osg::ref_ptr<PoseFrame>> frames; ///< the latest last
+        std::shared_ptr<std::atomic<std::size_t>> maxTexels =
+            std::make_shared<std::atomic<std::size_t>>(std::numeric_limits<std::size_t>::max());
+    };
+    static std::unordered_map<unsigned int, Context> contexts;
     const std::lock_guard<std::mutex> lock(mutex);
-    std::vector<osg::ref_ptr<PoseFrame>>& frames = framesOfContext[contextId];
+    std::vector<osg::ref_ptr<PoseFrame>>& frames = contexts[contextId].frames;
     // The palettes of frames before the latest are overwritten.
     if (!frames.empty() && frames.back()->_frameNumber == frameNumber &&
         frames.back()->_referenceTime == referenceTime && (!stamp || frames.back()->_stamp.valid()))
@@ -59,6 +66,7 @@ osg::ref_ptr<PoseFrame> PoseFrame::forContext(unsigned int contextId, const osg:
     next->_frameNumber = frameNumber;
     next->_referenceTime = referenceTime;
     next->_stamp = stamp;
+    next->_maxTexels = contexts[contextId].maxTexels;
     return next;
 }
 
@@ -76,7 +84,8 @@ void PoseFrame::reset()
     _submitted.clear();
     _samples.clear();
     _targets.clear();
-    for (StatePool* pool : {&_plainStates, &_tintedStates, &_instancedStates})
+    _shared.clear();
+    for (StatePool* pool : {&_plainStates, &_tintedStates, &_instancedStates, &_placedStates, &_placedTintedStates})
         pool->reset();
 }
 
@@ -182,6 +191,33 @@ SubmittedBatch PoseFrame::submit(std::unique_ptr<PoseBatch> content, const void*
     return {batch.slot, batch.all};
 }
 
+std::size_t PoseFrame::submitShared(std::unique_ptr<PoseBatch> content, const void* crowd,
+                                    std::shared_ptr<const PlacedInstances> placed)
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    _shared.push_back({crowd, content->sharedSet(), std::move(placed)});
+    for (const Batch* batch : _batchesOfSet[&content->set()])
+        if (batch->isShared && batch->content->isSame(*content))
+        {
+            _spareBatches.push_back(std::move(content));
+            return batch->slot;
+        }
+    Batch& batch = addBatch(std::move(content));
+    batch.isShared = true;
+    return batch.slot;
+}
+
+DrawState PoseFrame::placedState(const AnimationSet& set, std::size_t slot,
+                                 const std::shared_ptr<const PlacedInstances>& placed, std::size_t first,
+                                 std::size_t count, int level)
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    const DrawState state = (placed->tints.empty() ? _placedStates : _placedTintedStates).next();
+    state.binding->setPlaced(_batchesOfSet[&set][slot]->content->sharedSet(), slot, placed, first, count);
+    state.binding->setLevel(level);
+    return state;
+}
+
 DrawState PoseFrame::stateOf(const Batch& batch, std::size_t instance, std::size_t instanceCount, int level)
 {
     const DrawState state = (batch.content->tints().empty() ? _plainStates : _tintedStates).next();
@@ -212,7 +248,8 @@ DrawState PoseFrame::StatePool::next()
     {
         states.push_back(new osg::StateSet);
         states.back()->setAttribute(new PaletteBinding);
-        if (define) states.back()->setDefine(define);
+        for (const char* define : defines)
+            states.back()->setDefine(define);
     }
     osg::StateSet& state = *states[used++];
     return {&state, &bindingOf(state)};
@@ -231,6 +268,7 @@ void PoseFrame::evaluate(osg::State& state, osg::Stats* stats)
 {
     const std::lock_guard<std::mutex> lock(_mutex);
     PosePipeline* pipeline = PosePipeline::of(state);
+    if (pipeline) *_maxTexels = pipeline->getMaxTexels();
     if (!stats || !pipeline) return evaluateBatches(state, pipeline);
     FeedbackTimer& timer = FeedbackTimer::of(state);
     const std::uint64_t evaluatedBefore = pipeline->getCounters().instancesEvaluated;
@@ -261,13 +299,18 @@ void PoseFrame::record(osg::Stats& stats, std::uint64_t evaluated) const
     for (const auto& [node, submitted] : _submitted)
         joints += submitted.batch->content->set().skeleton().jointCount();
     std::unordered_map<const void*, std::unordered_set<std::uint32_t>> seenOfCrowds;
+    const auto count = [&](const void* crowd, std::uint32_t instance, const AnimationSet& set)
+    {
+        if (!seenOfCrowds[crowd].insert(instance).second) return;
+        ++seen;
+        joints += set.skeleton().jointCount();
+    };
     for (const std::unique_ptr<Batch>& batch : _batches)
         for (const std::uint32_t instance : batch->instances)
-        {
-            if (!seenOfCrowds[batch->crowd].insert(instance).second) continue;
-            ++seen;
-            joints += batch->content->set().skeleton().jointCount();
-        }
+            count(batch->crowd, instance, batch->content->set());
+    for (const Shared& shared : _shared)
+        for (const PlacedInstances::Drawn& drawn : shared.placed->drawn)
+            count(shared.crowd, drawn.instance, *shared.set);
     stats.setAttribute(_frameNumber, PoseStatistics::charactersSeen, static_cast<double>(seen));
     stats.setAttribute(_frameNumber, PoseStatistics::jointsSeen, static_cast<double>(joints));
     addTo(stats, _frameNumber, PoseStatistics::charactersEvaluated, static_cast<double>(evaluated));

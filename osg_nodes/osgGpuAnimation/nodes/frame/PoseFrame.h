@@ -14,6 +14,7 @@
 #include <osg/StateSet>
 #include <osg/Stats>
 
+#include <atomic>
 #include <memory>
 #include <mutex>
 #include <unordered_map>
@@ -71,6 +72,17 @@ public:
     SubmittedBatch submit(std::unique_ptr<PoseBatch> batch, const void* crowd,
                           const std::vector<std::uint32_t>& instances);
 
+    /// Adds a batch of poses that instances of a crowd share, unless an equal one was submitted. Returns its slot.
+    std::size_t submitShared(std::unique_ptr<PoseBatch> batch, const void* crowd,
+                             std::shared_ptr<const PlacedInstances> placed);
+    /// A new state for [first, first + count) of the placed instances, with the poses of that slot.
+    DrawState placedState(const AnimationSet& set, std::size_t slot,
+                          const std::shared_ptr<const PlacedInstances>& placed, std::size_t first, std::size_t count,
+                          int level);
+    /// The largest buffer texture of the context, in texels; before the first evaluate() in the context it is unknown
+    /// and counts as unlimited.
+    std::size_t getMaxTexels() const { return *_maxTexels; }
+
     /// Evaluates the submitted batches that were not evaluated before. stats: receives the attributes of
     /// PoseStatistics; null: records nothing.
     void evaluate(osg::State& state, osg::Stats* stats);
@@ -90,7 +102,9 @@ private:
         std::vector<std::uint32_t> instances{}; ///< of the crowd
         bool isEvaluated = false;
 
-        bool isOpen() const { return !all.stateSet && !isEvaluated; }
+        bool isShared = false; ///< its poses are for PlacedInstances
+
+        bool isOpen() const { return !all.stateSet && !isShared && !isEvaluated; }
     };
     struct Submitted
     {
@@ -102,10 +116,17 @@ private:
         std::size_t targetCount;
         osg::StateSet* stateSet; ///< null: not created yet
     };
+    /// Instances with shared poses, for the statistics.
+    struct Shared
+    {
+        const void* crowd;
+        std::shared_ptr<const AnimationSet> set;
+        std::shared_ptr<const PlacedInstances> placed;
+    };
     /// States that frames reuse.
     struct StatePool
     {
-        const char* define; ///< for the program; null: none
+        std::vector<const char*> defines; ///< for the program
         std::vector<osg::ref_ptr<osg::StateSet>> states;
         std::size_t used = 0;
 
@@ -134,9 +155,13 @@ private:
     std::unordered_map<const osg::Node*, Submitted> _submitted;
     std::vector<BlendSample> _samples;      ///< of the submitted instructions
     std::vector<ConstraintTarget> _targets; ///< of the submitted instructions
-    StatePool _plainStates{nullptr, {}, 0};
-    StatePool _tintedStates{"POSE_TINTED", {}, 0};
-    StatePool _instancedStates{"POSE_INSTANCED", {}, 0}; ///< characters have no tints
+    std::vector<Shared> _shared;
+    std::shared_ptr<std::atomic<std::size_t>> _maxTexels; ///< the context's
+    StatePool _plainStates{{}, {}, 0};
+    StatePool _tintedStates{{"POSE_TINTED"}, {}, 0};
+    StatePool _instancedStates{{"POSE_INSTANCED"}, {}, 0}; ///< characters have no tints
+    StatePool _placedStates{{"POSE_PLACED"}, {}, 0};
+    StatePool _placedTintedStates{{"POSE_PLACED", "POSE_TINTED"}, {}, 0};
 };
 
 } // namespace osgGpuAnimation

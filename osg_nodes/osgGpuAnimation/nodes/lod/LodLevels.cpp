@@ -191,6 +191,17 @@ std::vector<PoseInstruction> keyPoses(const AnimationSet& set, std::size_t count
     return chosen;
 }
 
+float largestScale(const AffineMatrix& matrix)
+{
+    float largest = 0.0f;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+        const float x = matrix.rows[0][axis], y = matrix.rows[1][axis], z = matrix.rows[2][axis];
+        largest = std::max(largest, x * x + y * y + z * z);
+    }
+    return std::sqrt(largest);
+}
+
 int LodLevels::levelOf(double error)
 {
     return error > 0.0 && std::isfinite(error) ? std::ilogb(error) : allTriangles;

@@ -25,6 +25,9 @@ std::vector<PoseInstruction> keyPoses(const AnimationSet& set, std::size_t count
 
 struct PosedSurface;
 
+/// The largest length of a transformed unit axis.
+float largestScale(const AffineMatrix& matrix);
+
 /// Reduced triangles for a mesh over the same vertices, so that palettes, influences and morph targets do not change. A
 /// **level** is the exponent of the largest error as a power of two, in the character's own units for any mesh space:
 /// at level -3 no vertex of the mesh is farther than 1/8 from the drawn surface. One level therefore means the same for

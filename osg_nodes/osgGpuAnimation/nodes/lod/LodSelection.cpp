@@ -95,27 +95,10 @@ LodScale::LodScale(osgUtil::CullVisitor& visitor, LodView& view, float pixelErro
     _own = Measure(visitor.getCurrentCullingSet().getPixelSizeVector(), pixelError);
 }
 
-namespace
-{
-
-/// The largest length of a transformed unit axis.
-float largestScale(const AffineMatrix& matrix)
-{
-    float largest = 0.0f;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-        const float x = matrix.rows[0][axis], y = matrix.rows[1][axis], z = matrix.rows[2][axis];
-        largest = std::max(largest, x * x + y * y + z * z);
-    }
-    return std::sqrt(largest);
-}
-
-} // namespace
-
-int LodScale::level(const glm::vec3& centre, float radius, const AffineMatrix& rootMatrix) const
+float LodScale::allowedError(const glm::vec3& centre, float radius, float scale) const
 {
     const Measure& measure = _seen.farthest(centre, radius) < 0.0f ? _own : _seen;
-    return _range.clamped(LodLevels::levelOf(measure.nearest(centre, radius) / largestScale(rootMatrix)));
+    return measure.nearest(centre, radius) / scale;
 }
 
 } // namespace osgGpuAnimation

@@ -85,7 +85,15 @@ public:
 
     /// The level for a sphere. centre, radius: in the visitor's space. rootMatrix: from the set's space to that space.
     /// The nearest point decides; a sphere that reaches behind the eye gets all triangles.
-    int level(const glm::vec3& centre, float radius, const AffineMatrix& rootMatrix) const;
+    int level(const glm::vec3& centre, float radius, const AffineMatrix& rootMatrix) const
+    {
+        return levelWithin(allowedError(centre, radius, largestScale(rootMatrix)));
+    }
+    /// The error that the pixel error allows for a sphere, in the units of the set; at most 0: none. scale: the largest
+    /// of the placement.
+    float allowedError(const glm::vec3& centre, float radius, float scale) const;
+    /// The coarsest level within an error in the units of the set.
+    int levelWithin(float error) const { return _range.clamped(LodLevels::levelOf(error)); }
 
     /// False: all triangles everywhere.
     bool isOn() const { return _seen.errorAt != glm::vec4(0.0f); }

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/animation/bounds/ClipTravel.h>
+
+#include <osgGpuAnimation/animation/Pose.h>
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+/// Samples between two keyframes: a joint that turns by a right angle between them strays from the chord by 1 %.
+constexpr int stepsPerPiece = 4;
+/// The arcs that vertices describe between two samples are longer than their chords.
+constexpr double arcPerChord = 1.05;
+
+/// The corners of the boxes of all palette entries in one pose, and the pose's morph weights.
+class PosedCorners
+{
+public:
+    PosedCorners(const AnimationSet& set, const EntryBoxes& entryBoxes, const std::vector<float>& reaches)
+        : _set(set), _boxes(entryBoxes), _reaches(reaches)
+    {
+    }
+
+    /// Takes the pose. The farthest that a vertex has moved since the pose before, along straight lines.
+    double moveTo(const BlendSample& sample)
+    {
+        PoseInstruction instruction;
+        instruction.samples[0] = sample;
+        Pose::evaluate(_set, instruction, AffineMatrix(), _palette);
+        const double weightChange = changeOfWeights();
+        double farthest = 0.0;
+        for (std::size_t entry = 0; entry < std::min(_palette.size(), _boxes.size()); ++entry)
+        {
+            if (_set.palette()[entry].kind == PaletteEntry::Kind::Weights || _boxes[entry].empty()) continue;
+            double moved = 0.0;
+            for (int corner = 0; corner < 8 && entry < _before.size(); ++corner)
+            {
+                const glm::vec3 point = _boxes[entry].corner(corner);
+                moved = std::max<double>(
+                    moved, glm::distance(_palette[entry].transformPoint(point), _before[entry].transformPoint(point)));
+            }
+            if (weightChange > 0.0 && entry < _reaches.size())
+                moved += weightChange * static_cast<double>(_reaches[entry]) * sizeOf(_palette[entry]);
+            farthest = std::max(farthest, moved);
+        }
+        _before = _palette;
+        return farthest;
+    }
+
+private:
+    double changeOfWeights() const
+    {
+        double largest = 0.0;
+        for (std::size_t entry = 0; entry < _before.size(); ++entry)
+            for (int row = 0; row < 3 && _set.palette()[entry].kind == PaletteEntry::Kind::Weights; ++row)
+                for (int i = 0; i < 4; ++i)
+                    largest =
+                        std::max<double>(largest, std::abs(_palette[entry].rows[static_cast<std::size_t>(row)][i] -
+                                                           _before[entry].rows[static_cast<std::size_t>(row)][i]));
+        return largest;
+    }
+
+    /// At least the largest length of a transformed unit vector.
+    static double sizeOf(const AffineMatrix& matrix)
+    {
+        double squares = 0.0;
+        for (const glm::vec4& row : matrix.rows)
+            squares += glm::dot(glm::dvec3(row), glm::dvec3(row));
+        return std::sqrt(squares);
+    }
+
+    const AnimationSet& _set;
+    const EntryBoxes& _boxes;
+    const std::vector<float>& _reaches;
+    std::vector<AffineMatrix> _palette;
+    std::vector<AffineMatrix> _before; ///< empty: no pose yet
+};
+
+} // namespace
+
+ClipTravel::ClipTravel(const AnimationSet& set, std::size_t clip, const EntryBoxes& entryBoxes,
+                       const std::vector<float>& reaches)
+{
+    const Clip& moving = set.clips()[clip];
+    const std::vector<float>& times = moving.times();
+    if (times.empty()) return;
+    BlendSample sample = set.sampleAt(static_cast<int>(clip), times.front());
+    _control = sample.control;
+    const auto first = static_cast<std::uint32_t>(sample.keyframe - moving.locate(times.front()).keyframe);
+    PosedCorners corners(set, entryBoxes, reaches);
+    double travel = 0.0;
+    const auto add = [&](std::size_t keyframe, double alpha, double time)
+    {
+        sample.keyframe = first + static_cast<std::uint32_t>(keyframe);
+        sample.alpha = static_cast<float>(alpha);
+        travel += arcPerChord * corners.moveTo(sample);
+        _samples.push_back({static_cast<float>(time), static_cast<float>(travel), sample.keyframe, sample.alpha});
+    };
+    add(moving.duration() > 0.0 ? 0 : moving.locate(0.0).keyframe, 0.0, times.front());
+    if (!(moving.duration() > 0.0)) return;
+    for (std::size_t keyframe = 0; keyframe + 1 < times.size(); ++keyframe)
+    {
+        const double begin = times[keyframe], duration = times[keyframe + 1] - begin;
+        for (int step = 1; step < stepsPerPiece && duration > 0.0; ++step)
+        {
+            const double alpha = static_cast<double>(step) / stepsPerPiece;
+            add(keyframe, alpha, begin + alpha * duration);
+        }
+        add(keyframe + 1, 0.0, times[keyframe + 1]);
+    }
+    const std::size_t parts = _samples.size();
+    _partsPerSecond = static_cast<float>(static_cast<double>(parts) / moving.duration());
+    std::uint32_t last = 0;
+    for (std::size_t part = 0; part < parts; ++part)
+    {
+        while (last + 1 < _samples.size() && _samples[last + 1].time * _partsPerSecond <= static_cast<float>(part))
+            ++last;
+        _firstOf.push_back(last);
+    }
+}
+
+float ClipTravel::at(float time) const
+{
+    if (!(length() > 0.0f)) return 0.0f;
+    const float part = std::min(std::max(time * _partsPerSecond, 0.0f), static_cast<float>(_firstOf.size() - 1));
+    const Sample* sample = &_samples[_firstOf[static_cast<std::size_t>(part)]];
+    const Sample* last = &_samples.back();
+    while (sample != last && sample[1].time <= time)
+        ++sample;
+    if (sample == last || time <= sample->time) return sample->travel;
+    return sample->travel +
+           (time - sample->time) / (sample[1].time - sample->time) * (sample[1].travel - sample->travel);
+}
+
+BlendSample ClipTravel::sampleAt(float travel) const
+{
+    if (_samples.empty()) return {};
+    const auto after = std::lower_bound(_samples.begin(), _samples.end(), travel,
+                                        [](const Sample& sample, float wanted) { return sample.travel < wanted; });
+    if (after == _samples.end() || after == _samples.begin())
+    {
+        const Sample& end = after == _samples.begin() ? _samples.front() : _samples.back();
+        return {end.keyframe, end.alpha, 1.0f, _control};
+    }
+    const Sample& before = after[-1];
+    const float alphaAfter = after->keyframe == before.keyframe ? after->alpha : 1.0f;
+    const float share = (travel - before.travel) / (after->travel - before.travel);
+    return {before.keyframe, before.alpha + share * (alphaAfter - before.alpha), 1.0f, _control};
+}
+
+std::vector<ClipTravel> travelsOfClips(const AnimationSet& set, const EntryBoxes& entryBoxes,
+                                       const std::vector<float>& reaches)
+{
+    std::vector<ClipTravel> travels;
+    for (std::size_t clip = 0; clip < set.clips().size(); ++clip)
+        travels.emplace_back(set, clip, entryBoxes, reaches);
+    return travels;
+}
+
+} // namespace osgGpuAnimation

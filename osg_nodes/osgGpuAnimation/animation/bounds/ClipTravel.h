@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/animation/math/Box.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace osgGpuAnimation
+{
+
+/// The way of a clip's fastest vertex since the start of the clip, where the fastest vertex of each moment counts: no
+/// vertex moves farther between two times of the clip than the difference of their travels. Phases of equal travel
+/// therefore have equal errors, however fast or slow the clip moves there.
+class ClipTravel
+{
+public:
+    /// The travel of a clip without motion: 0.
+    ClipTravel() = default;
+    /// entryBoxes: the box of the vertices of each palette entry. reaches: see MixBounds::Boxes. clip: of the set.
+    ClipTravel(const AnimationSet& set, std::size_t clip, const EntryBoxes& entryBoxes,
+               const std::vector<float>& reaches);
+
+    float length() const
+    {
+        return _samples.empty() ? 0.0f : _samples.back().travel;
+    } ///< of the whole clip, in model units
+    /// The travel at a time in seconds, in [0, length()].
+    float at(float time) const;
+    /// The pose with that travel. In a jump of the clip it is a mix of the poses before and after.
+    BlendSample sampleAt(float travel) const;
+
+private:
+    /// A pose of the clip.
+    struct Sample
+    {
+        float time;
+        float travel;
+        std::uint32_t keyframe; ///< of the set
+        float alpha;            ///< to the next keyframe
+    };
+
+    std::vector<Sample> _samples;        ///< ascending, the same time twice at a jump
+    std::vector<std::uint32_t> _firstOf; ///< by part of the duration: the last sample at or before its start
+    float _partsPerSecond = 0.0f;
+    std::uint32_t _control = 0; ///< see BlendSample
+};
+
+/// The travels of all clips of the set.
+std::vector<ClipTravel> travelsOfClips(const AnimationSet& set, const EntryBoxes& entryBoxes,
+                                       const std::vector<float>& reaches);
+
+} // namespace osgGpuAnimation

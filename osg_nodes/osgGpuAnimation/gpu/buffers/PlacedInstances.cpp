@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/gpu/buffers/PlacedInstances.h>
+
+#include <osgGpuAnimation/gpu/buffers/BufferTexture.h>
+
+#include <layout.glsl>
+
+#include <osg/ContextData>
+
+#include <algorithm>
+
+namespace osgGpuAnimation
+{
+
+PlacedInstanceBuffers::PlacedInstanceBuffers(unsigned int contextId)
+    : osg::GraphicsObjectManager("PlacedInstanceBuffers", contextId), _gl(osg::GLExtensions::Get(contextId, true))
+{
+}
+
+PlacedInstanceBuffers& PlacedInstanceBuffers::of(osg::State& state)
+{
+    return *osg::get<PlacedInstanceBuffers>(state.getContextID());
+}
+
+/// Uploads the blocks that have changed, side by side ones together.
+template <typename Element>
+void PlacedInstanceBuffers::upload(const typename SharedBlocks<Element>::Snapshot& blocks, Blocks& uploaded)
+{
+    using Block = typename SharedBlocks<Element>::Block;
+    constexpr std::size_t bytes = sizeof(Block::elements);
+    if (uploaded.buffer->reserve(blocks.size() * bytes)) uploaded.serials.clear(); // new storage is empty
+    uploaded.serials.resize(blocks.size(), 0);
+    const auto isNew = [&](std::size_t block) { return uploaded.serials[block] != blocks[block]->serial; };
+    std::vector<Element> changed;
+    for (std::size_t first = 0; first < blocks.size(); ++first)
+    {
+        if (!isNew(first)) continue;
+        std::size_t end = first;
+        changed.clear();
+        for (; end < blocks.size() && isNew(end); ++end)
+        {
+            changed.insert(changed.end(), blocks[end]->elements.begin(), blocks[end]->elements.end());
+            uploaded.serials[end] = blocks[end]->serial;
+        }
+        // All of it at once does not wait for earlier draws.
+        if (end - first == blocks.size())
+            uploaded.buffer->upload(changed.data(), blocks.size() * bytes);
+        else
+            uploaded.buffer->uploadPart(first * bytes, changed.data(), (end - first) * bytes);
+        _bytesUploaded += (end - first) * bytes;
+        first = end;
+    }
+}
+
+const BufferTexture& PlacedInstanceBuffers::listBuffer(const std::shared_ptr<const PlacedInstances>& placed)
+{
+    auto list =
+        std::find_if(_lists.begin(), _lists.end(),
+                     [&](const List& known) { return known.serial == placed->serial && known.list.lock() == placed; });
+    if (list != _lists.end()) return *list->buffer;
+    list = std::find_if(_lists.begin(), _lists.end(),
+                        [&](const List& known) { return known.list.expired() || known.list.lock() == placed; });
+    if (list == _lists.end()) list = _lists.insert(list, {{}, 0, std::make_unique<BufferTexture>(*_gl, GL_RG32UI)});
+    list->list = placed;
+    list->serial = placed->serial;
+    const std::size_t bytes = placed->drawn.size() * sizeof(PlacedInstances::Drawn);
+    list->buffer->upload(placed->drawn.data(), bytes);
+    _bytesUploaded += bytes;
+    return *list->buffer;
+}
+
+PlacedInstanceBuffers::Textures PlacedInstanceBuffers::textures(const std::shared_ptr<const PlacedInstances>& placed,
+                                                                std::size_t maxTexels)
+{
+    forgetUnused();
+    const std::size_t placementTexels =
+        placed->placements.size() * SharedBlocks<AffineMatrix>::blockSize * POSE_TEXELS_PER_MATRIX;
+    if (std::max(placementTexels, placed->drawn.size()) > maxTexels) return {};
+    Crowd& crowd = _crowds[placed->crowd.get()];
+    if (!crowd.placements.buffer)
+        crowd = {placed->crowd,
+                 {std::make_unique<BufferTexture>(*_gl, GL_RGBA32F_ARB), {}},
+                 {std::make_unique<BufferTexture>(*_gl, GL_RGBA8), {}}};
+    upload<AffineMatrix>(placed->placements, crowd.placements);
+    if (!placed->tints.empty()) upload<std::uint32_t>(placed->tints, crowd.tints);
+    return {listBuffer(placed).texture(), crowd.placements.buffer->texture(),
+            placed->tints.empty() ? 0 : crowd.tints.buffer->texture()};
+}
+
+void PlacedInstanceBuffers::forgetUnused()
+{
+    for (auto crowd = _crowds.begin(); crowd != _crowds.end();)
+    {
+        if (!crowd->second.crowd.expired())
+        {
+            ++crowd;
+            continue;
+        }
+        crowd->second.placements.buffer->release();
+        crowd->second.tints.buffer->release();
+        crowd = _crowds.erase(crowd);
+    }
+}
+
+template <typename Function>
+void PlacedInstanceBuffers::forEachBuffer(Function function)
+{
+    for (auto& [key, crowd] : _crowds)
+    {
+        function(*crowd.placements.buffer);
+        function(*crowd.tints.buffer);
+    }
+    for (List& list : _lists)
+        function(*list.buffer);
+}
+
+void PlacedInstanceBuffers::deleteAllGLObjects()
+{
+    forEachBuffer([](BufferTexture& buffer) { buffer.release(); });
+    discardAllGLObjects();
+}
+
+void PlacedInstanceBuffers::discardAllGLObjects()
+{
+    forEachBuffer([](BufferTexture& buffer) { buffer.discard(); });
+    _crowds.clear();
+    _lists.clear();
+}
+
+} // namespace osgGpuAnimation

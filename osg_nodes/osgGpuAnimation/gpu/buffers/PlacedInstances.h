@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osgGpuAnimation/animation/JointTransform.h>
+#include <osgGpuAnimation/gpu/buffers/BufferTexture.h>
+#include <osgGpuAnimation/gpu/buffers/SharedBlocks.h>
+
+#include <osg/GLObjects>
+#include <osg/State>
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <vector>
+
+namespace osgGpuAnimation
+{
+
+/// Instances of a crowd that share poses, as skin.glsl draws them: a snapshot for one camera.
+struct PlacedInstances
+{
+    /// An instance: 8 bytes in each frame.
+    struct Drawn
+    {
+        std::uint32_t pose;     ///< index in the PoseBatch
+        std::uint32_t instance; ///< index in the placements and tints
+    };
+
+    std::uint64_t serial = 0;                        ///< identifies `drawn`; never reused
+    std::shared_ptr<const void> crowd;               ///< identifies the crowd, whose placements stay on the GPU
+    std::vector<Drawn> drawn;                        ///< level by level
+    std::size_t poseCount = 0;                       ///< above the poses of all
+    SharedBlocks<AffineMatrix>::Snapshot placements; ///< from the character's space to that of the draw
+    SharedBlocks<std::uint32_t>::Snapshot tints;     ///< see PoseBatch::setTint(); empty: all are white
+};
+
+/// The buffers of PlacedInstances in one graphics context. Lists and blocks that have not changed are not uploaded
+/// again. Call it on the draw side only, with the context current.
+class PlacedInstanceBuffers : public osg::GraphicsObjectManager
+{
+public:
+    /// Buffer textures; 0: the context cannot hold them.
+    struct Textures
+    {
+        GLuint drawn = 0;      ///< RG32UI
+        GLuint placements = 0; ///< RGBA32F, three texels each
+        GLuint tints = 0;      ///< RGBA8; 0: all are white
+    };
+
+    explicit PlacedInstanceBuffers(unsigned int contextId);
+
+    static PlacedInstanceBuffers& of(osg::State& state);
+
+    /// The textures with this content. maxTexels: of a buffer texture.
+    Textures textures(const std::shared_ptr<const PlacedInstances>& placed, std::size_t maxTexels);
+
+    std::uint64_t getBytesUploaded() const { return _bytesUploaded; } ///< so far
+
+    void flushDeletedGLObjects(double, double&) override {}
+    void flushAllDeletedGLObjects() override {}
+    void deleteAllGLObjects() override;
+    void discardAllGLObjects() override;
+
+protected:
+    ~PlacedInstanceBuffers() override = default;
+
+private:
+    /// A buffer with the content of blocks.
+    struct Blocks
+    {
+        std::unique_ptr<BufferTexture> buffer;
+        std::vector<std::uint64_t> serials; ///< of the uploaded blocks
+    };
+    struct Crowd
+    {
+        std::weak_ptr<const void> crowd;
+        Blocks placements;
+        Blocks tints;
+    };
+    struct List
+    {
+        std::weak_ptr<const PlacedInstances> list;
+        std::uint64_t serial; ///< a list may be filled again
+        std::unique_ptr<BufferTexture> buffer;
+    };
+
+    template <typename Element>
+    void upload(const typename SharedBlocks<Element>::Snapshot& blocks, Blocks& uploaded);
+    const BufferTexture& listBuffer(const std::shared_ptr<const PlacedInstances>& placed);
+    void forgetUnused();
+    template <typename Function>
+    void forEachBuffer(Function function);
+
+    osg::GLExtensions* _gl;
+    std::map<const void*, Crowd> _crowds;
+    std::vector<List> _lists;
+    std::uint64_t _bytesUploaded = 0;
+};
+
+} // namespace osgGpuAnimation

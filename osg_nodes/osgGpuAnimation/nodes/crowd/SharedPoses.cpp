@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/nodes/crowd/SharedPoses.h>
+
+#include <osgGpuAnimation/gpu/PosePipeline.h>
+#include <osgGpuAnimation/nodes/mesh/PaletteEntryBounds.h>
+
+#include <layout.glsl>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <map>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+constexpr int bandsPerOctave = 4;
+/// A level of detail takes at most this part of the allowed error, so that poses keep the rest: below one band.
+constexpr float mostOfLevel = 0.85f;
+constexpr int ownPose = -1; ///< in place of a number of phases
+
+/// Allowed errors of a quarter of an octave: they have one level of detail and one error of poses.
+int bandOf(float error)
+{
+    return static_cast<int>(std::floor(std::log2(error) * bandsPerOctave));
+}
+
+} // namespace
+
+/// The instances of one camera, by level, and the batch with their poses.
+class SharedPoses::Collection
+{
+public:
+    Collection(const Meshes& meshes, const CrowdInstances& instances, const LodScale& scale)
+        : _meshes(meshes), _instances(instances), _scale(scale), _poses(posesOfThread())
+    {
+        const std::size_t needed = (meshes.travels.size() + 1) * posesPerClip;
+        if (_poses.size() < needed) _poses.resize(needed, none);
+    }
+    ~Collection() { clear(); }
+
+    bool isEmpty() const { return _count == 0; }
+    void clear()
+    {
+        for (const std::uint32_t place : _used)
+            _poses[place] = none;
+        _used.clear();
+        for (auto& [level, drawn] : _drawn)
+            drawn.clear();
+        _count = 0;
+    }
+
+    void add(std::uint32_t index, PoseBatch& batch)
+    {
+        const glm::vec4& sphere = _instances.sphere(index);
+        const float error = _scale.allowedError(glm::vec3(sphere), sphere.w, _instances.scale(index));
+        const Band& band = bandFor(error);
+        band.drawn->push_back({poseOf(index, band, batch), index});
+        ++_count;
+    }
+
+    /// Writes the list, level by level. function(level, first, count)
+    template <typename Function>
+    void write(std::vector<PlacedInstances::Drawn>& out, Function function) const
+    {
+        out.reserve(_count);
+        for (const auto& [level, drawn] : _drawn)
+        {
+            if (drawn.empty()) continue;
+            function(level, out.size(), drawn.size());
+            out.insert(out.end(), drawn.begin(), drawn.end());
+        }
+    }
+
+private:
+    static constexpr std::size_t posesPerClip = 2 * mostPhases;
+    static constexpr std::uint32_t none = ~std::uint32_t(0);
+    struct Band
+    {
+        float least = 0.0f, end = 0.0f; ///< the errors of the band
+        std::vector<PlacedInstances::Drawn>* drawn = nullptr;
+        std::vector<int> phases; ///< by clip + 1: a power of two or ownPose
+    };
+
+    /// By clip and phase; all `none` between two collections.
+    static std::vector<std::uint32_t>& posesOfThread()
+    {
+        static thread_local std::vector<std::uint32_t> poses;
+        return poses;
+    }
+
+    const Band& bandFor(float error)
+    {
+        if (_lastBand && error >= _lastBand->least && error < _lastBand->end) return *_lastBand;
+        const bool isAny = error > 0.0f && std::isfinite(error);
+        const int number = isAny ? bandOf(error) : std::numeric_limits<int>::min();
+        Band& band = _bands[number];
+        if (!band.drawn)
+        {
+            if (isAny) band.least = std::exp2(static_cast<float>(number) / bandsPerOctave);
+            if (isAny) band.end = std::exp2(static_cast<float>(number + 1) / bandsPerOctave);
+            const int level = _scale.levelWithin(mostOfLevel * band.least);
+            const float ofLevel = level == LodLevels::allTriangles ? 0.0f : std::ldexp(1.0f, level);
+            band.drawn = &_drawn[level];
+            band.phases.push_back(1);
+            for (const ClipTravel& travel : _meshes.travels)
+                band.phases.push_back(phasesOf(travel, band.least - ofLevel));
+        }
+        _lastBand = &band;
+        return band;
+    }
+
+    /// Enough that no vertex is farther than `error` from its place in the middle of a phase.
+    static int phasesOf(const ClipTravel& travel, float error)
+    {
+        const float needed = travel.length() / (2.0f * error);
+        if (!(needed <= static_cast<float>(mostPhases))) return travel.length() > 0.0f ? ownPose : 1;
+        int phases = 1;
+        while (static_cast<float>(phases) < needed)
+            phases *= 2;
+        return phases;
+    }
+
+    std::uint32_t poseOf(std::uint32_t index, const Band& band, PoseBatch& batch)
+    {
+        const int clip = _instances.clip(index);
+        const auto place = static_cast<std::size_t>(clip + 1);
+        const int phases = place < band.phases.size() ? band.phases[place] : ownPose;
+        if (phases == ownPose)
+            return static_cast<std::uint32_t>(batch.addSample(_instances.instruction(index).samples[0]));
+        const ClipTravel* travel = clip < 0 ? nullptr : &_meshes.travels[static_cast<std::size_t>(clip)];
+        int phase = 0;
+        if (phases > 1)
+        {
+            const double time = _instances.unrolledTime(index);
+            const double round = time * _meshes.roundsPerSecond[place - 1];
+            const float at = travel->at(static_cast<float>(time - std::floor(round) * _meshes.durations[place - 1]));
+            phase = std::min(static_cast<int>(at / travel->length() * static_cast<float>(phases)), phases - 1);
+        }
+        std::uint32_t& pose = _poses[place * posesPerClip + static_cast<std::size_t>(phases + phase)];
+        if (pose != none) return pose;
+        _used.push_back(static_cast<std::uint32_t>(&pose - _poses.data()));
+        const float middle = (static_cast<float>(phase) + 0.5f) / static_cast<float>(phases);
+        const BlendSample sample = travel ? travel->sampleAt(middle * travel->length()) : BlendSample{};
+        return pose = static_cast<std::uint32_t>(batch.addSample(sample));
+    }
+
+    const Meshes& _meshes;
+    const CrowdInstances& _instances;
+    const LodScale& _scale;
+    std::vector<std::uint32_t>& _poses;
+    std::vector<std::uint32_t> _used;                          ///< the places in _poses that are not `none`
+    std::map<int, std::vector<PlacedInstances::Drawn>> _drawn; ///< by level
+    std::map<int, Band> _bands;
+    const Band* _lastBand = nullptr;
+    std::size_t _count = 0;
+};
+
+SharedPoses::SharedPoses(const osg::Group& meshes, const AnimationSet& set)
+{
+    const std::shared_ptr<Meshes> computed = std::make_shared<Meshes>();
+    for (unsigned int child = 0; child < meshes.getNumChildren(); ++child)
+        computed->children.push_back(meshes.getChild(child));
+    std::vector<const SkinnedGeometry*> skinned;
+    forEachMesh(meshes, [&](const SkinnedGeometry& mesh) { skinned.push_back(&mesh); });
+    const MixBounds::Boxes boxes = mixBoxesOf(skinned, set);
+    computed->travels = travelsOfClips(set, boxes.ofClips, boxes.reaches);
+    for (const Clip& clip : set.clips())
+    {
+        computed->durations.push_back(clip.duration());
+        computed->roundsPerSecond.push_back(clip.duration() > 0.0 ? 1.0 / clip.duration() : 0.0);
+    }
+    _meshes = computed;
+}
+
+bool SharedPoses::isOf(const osg::Group& meshes) const
+{
+    if (meshes.getNumChildren() != _meshes->children.size()) return false;
+    for (unsigned int child = 0; child < meshes.getNumChildren(); ++child)
+        if (meshes.getChild(child) != _meshes->children[child]) return false;
+    return true;
+}
+
+/// The list itself, or an equal one that a frame has drawn already and that is on the GPU.
+std::shared_ptr<const PlacedInstances> SharedPoses::shared(std::shared_ptr<PlacedInstances> placed) const
+{
+    static std::atomic<std::uint64_t> last{0};
+    constexpr std::size_t mostKept = 4;
+    const auto isSame = [&](const std::shared_ptr<const PlacedInstances>& known)
+    {
+        return known->crowd == placed->crowd && known->placements == placed->placements &&
+               known->tints == placed->tints && known->drawn.size() == placed->drawn.size() &&
+               std::memcmp(known->drawn.data(), placed->drawn.data(),
+                           placed->drawn.size() * sizeof(PlacedInstances::Drawn)) == 0;
+    };
+    const std::lock_guard<std::mutex> lock(_mutex);
+    if (const auto known = std::find_if(_latest.begin(), _latest.end(), isSame); known != _latest.end()) return *known;
+    placed->serial = ++last;
+    if (_latest.size() < mostKept)
+        _latest.push_back(placed);
+    else
+        _latest[_next++ % mostKept] = placed;
+    return placed;
+}
+
+std::vector<DrawState> SharedPoses::submit(PoseFrame& frame, const CrowdInstances& instances, const LodScale& scale,
+                                           std::vector<std::uint32_t>& seen) const
+{
+    const AnimationSet& set = *instances.set();
+    const std::size_t placementTexels =
+        (instances.size() + SharedBlocks<AffineMatrix>::blockSize) * POSE_TEXELS_PER_MATRIX;
+    const std::size_t mostPoses =
+        std::min(frame.getMaxTexels() / (set.paletteSize() * POSE_TEXELS_PER_MATRIX), PosePipeline::usualChunkSize);
+    std::vector<DrawState> draws;
+    if (placementTexels > frame.getMaxTexels() || mostPoses == 0) return draws;
+
+    Collection collection(*_meshes, instances, scale);
+    std::unique_ptr<PoseBatch> batch;
+    const auto flush = [&]
+    {
+        struct Run
+        {
+            int level;
+            std::size_t first, count;
+        };
+        std::vector<Run> runs;
+        const std::shared_ptr<PlacedInstances> list = std::make_shared<PlacedInstances>();
+        list->crowd = instances.identity();
+        list->placements = instances.placements();
+        list->tints = instances.tints();
+        list->poseCount = batch->size();
+        collection.write(list->drawn,
+                         [&](int level, std::size_t first, std::size_t count) {
+                             runs.push_back({level, first, count});
+                         });
+        collection.clear();
+        const std::shared_ptr<const PlacedInstances> placed = shared(list);
+        const std::size_t slot = frame.submitShared(std::move(batch), &instances, placed);
+        for (const Run& run : runs)
+            draws.push_back(frame.placedState(set, slot, placed, run.first, run.count, run.level));
+    };
+    std::size_t left = 0;
+    for (const std::uint32_t index : seen)
+    {
+        if (instances.hasController(index))
+        {
+            seen[left++] = index;
+            continue;
+        }
+        if (!batch) batch = frame.makeBatch(instances.set());
+        collection.add(index, *batch);
+        if (batch->size() == mostPoses) flush();
+    }
+    seen.resize(left);
+    if (!collection.isEmpty()) flush();
+    return draws;
+}
+
+} // namespace osgGpuAnimation

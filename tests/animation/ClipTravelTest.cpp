@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: MIT
+#include "support/RandomSet.h"
+
+#include <osgGpuAnimation/animation/bounds/ClipTravel.h>
+#include <osgGpuAnimation/animation/ClipBuilder.h>
+#include <osgGpuAnimation/animation/Pose.h>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+constexpr float half = 0.5f;
+
+EntryBoxes boxesOf(const AnimationSet& set)
+{
+    Box box;
+    box.add(glm::vec3(-half));
+    box.add(glm::vec3(half));
+    return EntryBoxes(set.paletteSize(), box);
+}
+
+std::vector<AffineMatrix> paletteOf(const AnimationSet& set, const BlendSample& sample)
+{
+    PoseInstruction instruction;
+    instruction.samples[0] = sample;
+    std::vector<AffineMatrix> palette;
+    Pose::evaluate(set, instruction, AffineMatrix(), palette);
+    return palette;
+}
+
+/// The farthest that a corner moves from one pose to the other.
+double distanceBetween(const AnimationSet& set, const BlendSample& from, const BlendSample& to)
+{
+    const std::vector<AffineMatrix> first = paletteOf(set, from), second = paletteOf(set, to);
+    double farthest = 0.0;
+    for (std::size_t entry = 0; entry < first.size(); ++entry)
+        for (int corner = 0; corner < 8 && set.palette()[entry].kind != PaletteEntry::Kind::Weights; ++corner)
+        {
+            const glm::vec3 point = boxesOf(set)[entry].corner(corner);
+            farthest = std::max<double>(
+                farthest, glm::distance(first[entry].transformPoint(point), second[entry].transformPoint(point)));
+        }
+    return farthest;
+}
+
+} // namespace
+
+// Linear, stepped and spline channels at random times.
+TEST(ClipTravelTest, noVertexMovesFartherThanTheTravel)
+{
+    for (const bool splines : {false, true})
+    {
+        RandomSetShape shape;
+        shape.splines = splines;
+        const auto set = makeRandomSet(shape);
+        std::mt19937 random(3);
+        for (std::size_t clip = 0; clip < set->clips().size(); ++clip)
+        {
+            const ClipTravel travel(*set, clip, boxesOf(*set), std::vector<float>(set->paletteSize(), 0.0f));
+            const auto number = static_cast<int>(clip);
+            std::uniform_real_distribution<float> times(0.0f, static_cast<float>(set->clips()[clip].duration()));
+            for (int i = 0; i < 100; ++i)
+            {
+                const float from = times(random);
+                const float to = times(random);
+                const double moved = distanceBetween(*set, set->sampleAt(number, from), set->sampleAt(number, to));
+                EXPECT_LE(moved, std::abs(travel.at(to) - travel.at(from)) + 1e-4 * travel.length());
+                const BlendSample shown = travel.sampleAt(travel.at(from));
+                EXPECT_LE(distanceBetween(*set, set->sampleAt(number, from), shown), 1e-3 * travel.length());
+            }
+        }
+    }
+}
+
+namespace
+{
+
+/// One joint that moves along x by the values at the times.
+std::shared_ptr<const AnimationSet> slidingSet(Channel::Interpolation interpolation, std::vector<double> times,
+                                               const std::vector<double>& along)
+{
+    AnimationParts parts{Skeleton::create({{"joint", -1, {}, 0}}).value(), {}, {}, {}, {}};
+    parts.skins.push_back({"skin", {0}, {AffineMatrix()}});
+    Channel channel{Channel::Path::Translation, interpolation, 0, std::move(times), {}};
+    for (const double x : along)
+        channel.values.insert(channel.values.end(), {x, 0.0, 0.0});
+    ClipBuilder builder(parts.skeleton, parts.morphs);
+    EXPECT_TRUE(builder.add(channel));
+    parts.clips.push_back(builder.build("slide"));
+    return AnimationSet::create(std::move(parts)).value();
+}
+
+} // namespace
+
+TEST(ClipTravelTest, isTheLengthOfTheWayThereAndBack)
+{
+    const auto set = slidingSet(Channel::Interpolation::Linear, {0, 1, 3}, {0, 4, 0});
+    const ClipTravel travel(*set, 0, boxesOf(*set), {});
+    EXPECT_NEAR(travel.length(), 8.0f, 0.05f * 8.0f + 1e-4f) << "arcs count 5 % longer than chords";
+    EXPECT_NEAR(travel.at(1.0f), 0.5f * travel.length(), 1e-4f);
+    EXPECT_NEAR(travel.at(2.0f), 0.75f * travel.length(), 1e-4f);
+    EXPECT_EQ(travel.at(-1.0f), 0.0f);
+    EXPECT_EQ(travel.at(9.0f), travel.length());
+    const BlendSample shown = travel.sampleAt(0.75f * travel.length());
+    EXPECT_LE(distanceBetween(*set, shown, set->sampleAt(0, 2.0)), 1e-4);
+}
+
+// Before a jump and after it are two places, although the time between them is 0.
+TEST(ClipTravelTest, jumpsCountAsWay)
+{
+    const auto set = slidingSet(Channel::Interpolation::Step, {0, 1, 2}, {0, 4, 4});
+    const ClipTravel travel(*set, 0, boxesOf(*set), {});
+    EXPECT_EQ(travel.at(0.99f), 0.0f);
+    EXPECT_NEAR(travel.at(1.0f), 4.2f, 1e-4f);
+    const BlendSample middle = travel.sampleAt(0.5f * travel.length());
+    EXPECT_NEAR(distanceBetween(*set, middle, set->sampleAt(0, 0.5)), 2.0, 1e-4) << "half way";
+}
+
+TEST(ClipTravelTest, morphWeightsMoveVerticesByTheirReach)
+{
+    const auto set = makeRandomSet({});
+    const EntryBoxes none(set->paletteSize(), boxesOf(*set).front());
+    const ClipTravel without(*set, 0, none, std::vector<float>(set->paletteSize(), 0.0f));
+    const ClipTravel with(*set, 0, none, std::vector<float>(set->paletteSize(), 10.0f));
+    EXPECT_GT(with.length(), without.length());
+}
+
+} // namespace osgGpuAnimation

@@ -131,6 +131,18 @@ TEST_F(PbrMaterialEdgesGLTest, materialsThatLookTheSame)
     EXPECT_LT(middleOf(square(blended)).g(), middleOf(square(glass(1))).g() - 0.05f);
 }
 
+// Light that passes through is not scattered: half of it is missing. The share of the cover is 1 - 0.96 * 0.5.
+TEST_F(PbrMaterialEdgesGLTest, transmittedLightIsNotScattered)
+{
+    PbrMaterial material;
+    material.metallic = material.specular = 0.0f;
+    const float scattered = linearColor(middleOf(square(material))).g();
+    EXPECT_GT(scattered, 0.2f);
+    material.transmission = 0.5f;
+    const float shown = displayColor(osg::Vec4(0, 0.5f * scattered / 0.52f, 0, 1)).g();
+    EXPECT_NEAR(middleOf(square(material)).g(), 0.52f * shown, 2.0f / 255);
+}
+
 TEST_F(PbrMaterialEdgesGLTest, occlusionReachesTheClearCoat)
 {
     PbrMaterial material;

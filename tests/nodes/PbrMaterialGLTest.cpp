@@ -292,6 +292,35 @@ TEST_F(PbrMaterialGLTest, aCoatOverNothingIsASurface)
         }
 }
 
+// KHR_materials_sheen over a surface that reflects nothing, in double precision: Charlie's distribution and Neubelt's
+// visibility; its alpha is the square of the roughness.
+TEST_F(PbrMaterialGLTest, sheenIsReflectedAsSpecified)
+{
+    surrounding->setAmbientIntensity(osg::Vec4(0, 0, 0, 1));
+    for (const double roughness : {0.4, 0.6, 1.0})
+        for (const osg::Vec3& direction : {osg::Vec3(1, -1, 0), osg::Vec3(2, -1, 0.5f)})
+        {
+            PbrMaterial material;
+            material.baseColor.set(0, 0, 0, 1);
+            material.metallic = material.specular = 0.0f;
+            material.sheenColor.set(0.8f, 0.8f, 0.8f);
+            material.sheenRoughness = static_cast<float>(roughness);
+            light->setPosition(osg::Vec4(direction, 0));
+            light->setDiffuse(osg::Vec4(2, 2, 2, 1));
+            const float found = middle(*pictureOf(pbrPanel(true, material))).g();
+            osg::Vec3d toEye = -position, toLight(direction.x(), direction.z(), -direction.y());
+            toEye.normalize();
+            toLight.normalize();
+            osg::Vec3d halfway = toEye + toLight;
+            halfway.normalize();
+            const double inverse = 1.0 / (roughness * roughness), cosLight = toLight.z(), cosEye = toEye.z();
+            const double distribution =
+                (2.0 + inverse) * std::pow(1.0 - halfway.z() * halfway.z(), 0.5 * inverse) / (2.0 * pi);
+            const double visibility = 0.25 / (cosLight + cosEye - cosLight * cosEye);
+            EXPECT_NEAR(found, encoded(2.0 * pi * cosLight * 0.8 * distribution * visibility), 2.0 / 255) << roughness;
+        }
+}
+
 // Light is added up, so half a coat looks halfway between none and a whole one: in lights and surroundings.
 TEST_F(PbrMaterialGLTest, halfACoatIsHalfway)
 {

@@ -6,11 +6,13 @@
 #include "support/RandomSet.h"
 #include "support/ReferenceBlend.h"
 
+#include <osgGpuAnimation/animation/ClipBuilder.h>
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/gpu/PosePipeline.h>
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace osgGpuAnimation
 {
@@ -123,6 +125,34 @@ TEST_F(ConstraintsGLTest, theOrderOfDeclarationIsTheTwins)
         ASSERT_TRUE(pipeline->evaluate(state(), batch, 0));
         EXPECT_LE(differenceFromTwin(controller.instruction(), *set, 0), 5e-6);
     }
+}
+
+// The path begins at the root, which no clip moves, and ends at a joint that slides and grows.
+TEST_F(ConstraintsGLTest, jointsOfAPathMoveAsTheirLevelsDo)
+{
+    std::vector<Joint> joints{jointAt("root", {0, 1, 0}), jointAt("middle", {0, 0.5f, 0}),
+                              jointAt("tip", {0, 0.2f, 0})};
+    for (int joint = 0; joint < 3; ++joint)
+        joints[static_cast<std::size_t>(joint)].parent = joint - 1;
+    const Skeleton skeleton = Skeleton::create(joints).value();
+    ClipBuilder builder(skeleton, {});
+    for (const auto& [path, end] : {std::pair(Channel::Path::Translation, glm::dvec3(0.7, 0.9, -0.3)),
+                                    std::pair(Channel::Path::Scale, glm::dvec3(1.5, 2.0, 0.8))})
+    {
+        Channel channel{path, Channel::Interpolation::Linear, 1, {0.0, 1.0}, {}};
+        channel.values = {0.0, 0.5, 0.0, end.x, end.y, end.z};
+        if (path == Channel::Path::Scale) channel.values = {1.0, 1.0, 1.0, end.x, end.y, end.z};
+        (void)builder.add(channel);
+    }
+    AnimationParts parts{skeleton, {}, {}, {}, {}, {LookAt{"look", {"root", "middle", "tip"}}}};
+    parts.clips = {builder.build("slide")};
+    const auto set = AnimationSet::create(std::move(parts)).value();
+    PoseInstruction instruction = instructionAt(*set, 0, 0.6);
+    instruction.targets.assign(1, {{2, 3, 1}, 1.0f, {0, 0, 0}, 0.0f, {0, 0, 0, 0}});
+    PoseBatch batch(set);
+    batch.add(instruction);
+    ASSERT_TRUE(pipeline->evaluate(state(), batch, 0));
+    EXPECT_LE(differenceFromTwin(instruction, *set, 0), 5e-6);
 }
 
 // As many draws as levels and constraints with a target; none more for batches without.

@@ -6,9 +6,11 @@
 
 #include <osg/Geometry>
 #include <osg/GLExtensions>
+#include <osgViewer/GraphicsWindow>
 #include <osgViewer/Viewer>
 
 #include <array>
+#include <utility>
 #include <vector>
 
 namespace osgGpuAnimation
@@ -188,12 +190,43 @@ TEST_F(EglGraphicsContextGLTest, multisamplesOrSaysThatItDoesNot)
     EXPECT_EQ(clearAndRead(0.0f, 0.2f, 1.0f), (Colour{0, 51, 255, 255}));
 }
 
+// EGL lists deeper colours and those with alpha first.
+TEST_F(EglGraphicsContextGLTest, hasTheColorBitsAskedFor)
+{
+    for (const unsigned int alpha : {0u, 8u})
+    {
+        osg::ref_ptr<osg::GraphicsContext::Traits> traits = sizedTraits(16, 16);
+        traits->alpha = alpha;
+        Result<osg::ref_ptr<EglGraphicsContext>> made = EglGraphicsContext::create(traits.get());
+        ASSERT_TRUE(made) << made.error().message;
+        ASSERT_TRUE(made.value()->realize() && made.value()->makeCurrent());
+        const std::pair<GLenum, GLint> bits[] = {
+            {GL_RED_BITS, 8}, {GL_GREEN_BITS, 8}, {GL_BLUE_BITS, 8}, {GL_ALPHA_BITS, static_cast<GLint>(alpha)}};
+        for (const auto& [name, expected] : bits)
+        {
+            GLint found = -1;
+            glGetIntegerv(name, &found);
+            EXPECT_EQ(found, expected) << name << " with " << alpha << " bits of alpha";
+        }
+        made.value()->close();
+        EXPECT_FALSE(made.value()->valid());
+        EXPECT_FALSE(made.value()->isRealized());
+        EXPECT_FALSE(made.value()->makeCurrent()) << "closed";
+    }
+    ASSERT_TRUE(context().makeCurrent());
+}
+
 TEST_F(EglGraphicsContextGLTest, refusesWhatCannotBe)
 {
     EXPECT_FALSE(EglGraphicsContext::create(nullptr));
     EXPECT_FALSE(EglGraphicsContext::create(0, 10));
     EXPECT_FALSE(EglGraphicsContext::create(10, -1));
     osg::ref_ptr<osg::GraphicsContext::Traits> traits = sizedTraits(16, 16);
+    traits->sharedContext = new osgViewer::GraphicsWindowEmbedded(0, 0, 16, 16);
+    const Result<osg::ref_ptr<EglGraphicsContext>> shared = EglGraphicsContext::create(traits.get());
+    ASSERT_FALSE(shared);
+    EXPECT_EQ(shared.error().message, "EGL: sharedContext is not an EglGraphicsContext");
+    traits->sharedContext = nullptr;
     traits->glContextVersion = "9.1";
     Result<osg::ref_ptr<EglGraphicsContext>> made = EglGraphicsContext::create(traits.get());
     ASSERT_FALSE(made);

@@ -132,6 +132,83 @@ TEST(PoseBatchTest, sameBatchesAgreeInSetPosesPlacesAndTints)
     EXPECT_FALSE(batch.isSame(makeBatch(set, 0.5f, aside, PoseBatch::white)));
 }
 
+/// One sample of full weight that shows this pose.
+PoseInstruction showing(const std::shared_ptr<const JointPose>& pose)
+{
+    PoseInstruction instruction = instructionOf(loadData[0]);
+    instruction.samples[0].control = POSE_SAMPLE_POSED;
+    instruction.poses.push_back(pose);
+    return instruction;
+}
+
+TEST(PoseBatchTest, posesAreComparedByTheirContent)
+{
+    const auto set = makeRandomSet({});
+    const auto poseOf = [&](float x)
+    {
+        const auto pose = std::make_shared<JointPose>(set);
+        EXPECT_TRUE(pose->setTranslation(0, glm::vec3(x, 2, 3)));
+        return pose;
+    };
+    const auto pose = poseOf(1.0f);
+    const PoseInstruction plain = instructionOf(loadData[0]), shown = showing(pose), another = showing(poseOf(1.0f));
+    PoseBatch batch(set), same(set), different(set);
+    for (PoseBatch* each : {&batch, &same, &different})
+        each->add(plain);
+    batch.add(shown);
+    same.add(shown);
+    different.add(another);
+    EXPECT_TRUE(batch.isSame(same));
+    EXPECT_FALSE(batch.isSame(different));
+    EXPECT_TRUE(batch.hasPoses(0, plain));
+    EXPECT_FALSE(batch.hasPoses(0, shown));
+    EXPECT_TRUE(batch.hasPoses(1, shown));
+    EXPECT_FALSE(batch.hasPoses(1, plain));
+    EXPECT_FALSE(batch.hasPoses(1, another));
+    EXPECT_TRUE(pose->setTranslation(0, glm::vec3(7, 2, 3)));
+    EXPECT_FALSE(batch.hasPoses(1, showing(pose))) << "changed since";
+}
+
+TEST(PoseBatchTest, instancesAfterATintedOneAreWhite)
+{
+    PoseBatch batch(makeRandomSet({}));
+    for (int instance = 0; instance < 3; ++instance)
+    {
+        batch.add(instructionOf(loadData[0]));
+        if (instance == 1) batch.setTint(1, 0xff0000ffu);
+    }
+    EXPECT_EQ(batch.tints(), (std::vector<std::uint32_t>{PoseBatch::white, 0xff0000ffu, PoseBatch::white}));
+}
+
+TEST(PoseBatchTest, aClearedBatchIsAsNew)
+{
+    const auto set = makeRandomSet({});
+    const auto pose = std::make_shared<JointPose>(set);
+    ASSERT_TRUE(pose->setTranslation(0, glm::vec3(1, 2, 3)));
+    AffineMatrix aside;
+    aside.rows[0].w = 1.0f;
+    PoseBatch batch(set);
+    batch.setRootMatrix(aside);
+    for (const PoseInstruction& instruction : {instructionOf(loadData[6]), showing(pose)})
+        batch.setTint(batch.add(instruction), 0xff0000ffu);
+    batch.clear();
+    PoseBatch fresh(set);
+    EXPECT_TRUE(batch.isSame(fresh));
+    EXPECT_TRUE(batch.hasRootMatrix(AffineMatrix()));
+    for (PoseBatch* each : {&batch, &fresh})
+    {
+        each->add(instructionOf(loadData[0]));
+        each->add(showing(pose), aside);
+    }
+    EXPECT_TRUE(batch.isSame(fresh));
+    EXPECT_EQ(batch.rootMatrices().size(), 2u);
+    EXPECT_EQ(batch.sampleStride(), 1u);
+    EXPECT_EQ(batch.firstPosed(1), 0u);
+    EXPECT_EQ(batch.firstPosed(2), 1u);
+    EXPECT_EQ(batch.mostPosed(), 1u);
+    EXPECT_FALSE(batch.needs().layers || batch.needs().masks || batch.needs().additive);
+}
+
 TEST(PoseBatchTest, batchesWithOtherTargetsAreNotTheSame)
 {
     LookAt look{"look", {"joint"}};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "support/GLTest.h"
+#include "support/NotifyLog.h"
 #include "support/RandomLayers.h"
 #include "support/RandomSet.h"
 
@@ -262,11 +263,12 @@ TEST_F(PosePipelineCostGLTest, batchesByTurnsKeepTheirOwnInputsWithAndWithoutBas
     const std::shared_ptr<const AnimationSet> sets[] = {makeRandomSet({2, 30, 8, 5, false, true, true}),
                                                         makeRandomSet({3, 12, 4, 5, false, false, true})};
     const Roots roots[] = {Roots::None, Roots::Own, Roots::One, Roots::Own, Roots::None};
-    for (unsigned int step = 0; step < 40; ++step)
+    for (unsigned int step = 0; step < 60; ++step)
     {
         gl.glDrawArraysInstancedBaseInstance = step % 7 < 3 ? nullptr : baseInstance;
-        const auto& set = sets[step % 3 == 0 ? 1 : 0];
-        const std::size_t slot = step % 4;
+        const bool isOnePalette = step >= 40; // whose buffers stay the same
+        const auto& set = sets[step % 3 == 0 && !isOnePalette ? 1 : 0];
+        const std::size_t slot = isOnePalette ? 0 : step % 4;
         const Roots kind = roots[step % 5];
         const std::vector<Instance> instances = randomInstances(*set, 1 + step % 9, step);
         AnimationController blended(set); // several samples per instance
@@ -360,6 +362,95 @@ TEST_F(PosePipelineCostGLTest, refusesASetBeyondTheBufferTextureLimit)
     batch.add({});
     EXPECT_FALSE(pipeline->evaluate(state(), batch, 0));
     EXPECT_EQ(pipeline->place(*set, 0, 0).texture, 0u);
+}
+
+/// A set without clips, whose palette entries take more room than its keyframes.
+std::shared_ptr<const AnimationSet> jointsAlone(const std::vector<Constraint>& constraints, int count)
+{
+    std::vector<Joint> joints;
+    for (int joint = 0; joint < count; ++joint)
+        joints.push_back({"joint" + std::to_string(joint), joint - 1, {}, 0});
+    return AnimationSet::create({Skeleton::create(joints).value(), {}, {0}, {}, {}, constraints}).value();
+}
+
+TEST_F(PosePipelineCostGLTest, aSetThatFillsTheBufferTextureIsTaken)
+{
+    PosePipeline* pipeline = PosePipeline::of(state());
+    for (const bool hasClips : {true, false})
+    {
+        const auto makeSet = [&] { return hasClips ? makeRandomSet({}) : jointsAlone({}, 40); };
+        const std::size_t keyframes = PackedKeyframes(*makeSet()).texels().size();
+        const std::size_t entries = makeSet()->paletteSize() * POSE_TEXELS_PER_ENTRY;
+        ASSERT_EQ(keyframes > entries, hasClips);
+        const std::size_t needed = std::max(keyframes, entries);
+        for (const std::size_t room : {needed, needed - 1})
+        {
+            const auto set = makeSet();
+            pipeline->options().maxTexels = room;
+            PoseBatch batch(set);
+            batch.add({});
+            const osg::ref_ptr<NotifyLog> log = new NotifyLog(osg::WARN);
+            osg::setNotifyHandler(log);
+            for (int frame = 0; frame < 2; ++frame)
+                EXPECT_EQ(pipeline->evaluate(state(), batch, 0), room == needed) << needed - room;
+            osg::setNotifyHandler(new osg::StandardNotifyHandler);
+            const std::string text = "texels (keyframes)";
+            EXPECT_EQ(log->text.find(text) != std::string::npos, room < needed) << log->text;
+            EXPECT_EQ(log->text.find(text), log->text.rfind(text)) << "one warning";
+        }
+    }
+}
+
+TEST_F(PosePipelineCostGLTest, masksThatFillTheBufferTextureAreTaken)
+{
+    const auto set = makeRandomSet({});
+    std::mt19937 random(1);
+    addRandomMasks(*set, random);
+    PoseInstruction instruction = instructionAt(*set, 0, 0.5);
+    instruction.samples[0].control |= 1u << POSE_SAMPLE_MASK_SHIFT;
+    PoseBatch batch(set);
+    batch.add(instruction);
+    PosePipeline* pipeline = PosePipeline::of(state());
+    ASSERT_TRUE(pipeline->evaluate(state(), batch, 0));
+    const std::size_t needed = batch.masks().size() * ((set->trackCount() + 3) / 4);
+    const osg::ref_ptr<NotifyLog> log = new NotifyLog(osg::WARN);
+    osg::setNotifyHandler(log);
+    for (const std::size_t room : {needed, needed - 1, needed - 1})
+    {
+        pipeline->options().maxTexels = room;
+        EXPECT_EQ(pipeline->evaluate(state(), batch, 0), room == needed) << needed - room;
+    }
+    osg::setNotifyHandler(new osg::StandardNotifyHandler);
+    EXPECT_NE(log->text.find("masks"), std::string::npos);
+    EXPECT_EQ(log->text.find("masks"), log->text.rfind("masks")) << "one warning";
+}
+
+// Besides the palette, the blend samples and the targets of a chunk fit its buffer textures.
+TEST_F(PosePipelineCostGLTest, samplesAndTargetsFitTheBufferTextureToo)
+{
+    std::vector<Constraint> looks;
+    for (int look = 0; look < 8; ++look)
+        looks.push_back(LookAt{"look" + std::to_string(look), {"joint0"}});
+    PosePipeline* pipeline = PosePipeline::of(state());
+    pipeline->options().maxTexels = 1000;
+    for (const bool hasTargets : {false, true})
+    {
+        const auto set = jointsAlone(hasTargets ? looks : std::vector<Constraint>(), 2);
+        PoseInstruction instruction = instructionAt(*set, -1, 0.0);
+        if (hasTargets) instruction.targets.assign(looks.size(), {{1, 2, 3}, 1.0f, {0, 0, 0}, 0.0f, {0, 0, 0, 0}});
+        for (; !hasTargets && instruction.sampleCount < PoseInstruction::maxSamples; ++instruction.sampleCount)
+            instruction.samples[instruction.sampleCount] = instruction.samples[0];
+        PoseBatch batch(set);
+        for (int i = 0; i < 400; ++i)
+            batch.add(instruction);
+        const std::size_t texels = hasTargets ? looks.size() * POSE_TEXELS_PER_TARGET : PoseInstruction::maxSamples;
+        ASSERT_GT(texels, set->paletteSize() * POSE_TEXELS_PER_MATRIX);
+        const std::uint64_t before = pipeline->getCounters().instancesEvaluated;
+        ASSERT_TRUE(pipeline->evaluate(state(), batch, 0));
+        EXPECT_EQ(pipeline->getCounters().instancesEvaluated - before, 400u) << "each in its chunk";
+        for (std::size_t i = 0; i < batch.size(); ++i)
+            ASSERT_LE(static_cast<std::size_t>(pipeline->place(*set, 0, i).stride) * texels, 1000u) << i;
+    }
 }
 
 TEST_F(PosePipelineCostGLTest, forgetsSetsThatNobodyUses)

@@ -190,6 +190,20 @@ TEST_F(EnvironmentGLTest, evenPicturesLightLikeEvenAmbientLight)
     EXPECT_EQ(Picture::pixelsDifferent(*expected, *pictureWith(bytes.get(), 0.6f), 0.005f), 0);
 }
 
+// What is shown of a copy, and after another source; of a picture wider than it is read, and at its seam.
+TEST_F(EnvironmentGLTest, copiesAndTheNextSourceAreShown)
+{
+    const osg::ref_ptr<Environment> environment = new Environment, studio = new Environment;
+    const osg::ref_ptr<osg::Image> ofStudio = pictureIn(studio);
+    ASSERT_TRUE(environment->setPanorama(makePanorama(64, [](const osg::Vec3f&) { return osg::Vec3f(0.2f, 0, 0); })));
+    const osg::ref_ptr<osg::Image> red = pictureIn(environment);
+    EXPECT_GT(Picture::pixelsDifferent(*ofStudio, *red), 5000);
+    const osg::ref_ptr<Environment> copy = new Environment(*environment);
+    environment->setStudio();
+    EXPECT_EQ(Picture::pixelsDifferent(*ofStudio, *pictureIn(environment), 0.005f), 0);
+    EXPECT_EQ(Picture::pixelsDifferent(*red, *pictureIn(copy), 0.005f), 0) << "the copy keeps its own";
+}
+
 TEST_F(EnvironmentGLTest, theInnerOfTwoEnvironmentsCounts)
 {
     const osg::ref_ptr<Environment> outer = new Environment, inner = new Environment, alone = new Environment;

@@ -11,6 +11,9 @@
 #include <limits>
 #include <string>
 
+#ifndef GL_RG
+#define GL_RG 0x8227
+#endif
 #ifndef GL_HALF_FLOAT
 #define GL_HALF_FLOAT 0x140B
 #endif
@@ -63,6 +66,11 @@ const std::vector<FormatCase>& formatCases()
         {"half floats", even(GL_RGB, GL_HALF_FLOAT, Shorts{0x3c00, 0x4400, 0x3400}), {1.0f, 4.0f, 0.25f}},
         {"bytes", even(GL_RGB, GL_UNSIGNED_BYTE, Bytes{255, 188, 128}), {1.0f, 0.503f, 0.216f}},
         {"bytes, blue first", even(GL_BGRA, GL_UNSIGNED_BYTE, Bytes{255, 188, 128, 9}), {0.216f, 0.503f, 1.0f}},
+        {"bytes, three of them, blue first",
+         even(GL_BGR, GL_UNSIGNED_BYTE, Bytes{255, 188, 128}),
+         {0.216f, 0.503f, 1.0f}},
+        {"red and green", even(GL_RG, GL_FLOAT, Floats{0.25f, 0.5f}), {0.25f, 0.5f, 0.5f}},
+        {"grey floats with alpha", even(GL_LUMINANCE_ALPHA, GL_FLOAT, Floats{0.25f, 0.9f}), {0.25f, 0.25f, 0.25f}},
         {"grey bytes", even(GL_LUMINANCE, GL_UNSIGNED_BYTE, Bytes{188}), {0.503f, 0.503f, 0.503f}},
         {"16 bits", even(GL_RGB, GL_UNSIGNED_SHORT, Shorts{65535, 48316, 0}), {1.0f, 0.503f, 0.0f}},
         {"not finite", even(GL_RGB, GL_FLOAT, Floats{none, infinite, 1.0f}), {0.0f, 0.0f, 1.0f}},
@@ -125,6 +133,43 @@ TEST(EnvironmentTest, irradianceHasTheHarmonicsOfThePictures)
             for (std::size_t i = 1; i < harmonics.size(); ++i)
                 EXPECT_NEAR(harmonics[i].x(), i == each.harmonic ? each.expected : 0.0f, 0.005f) << i;
         }
+    }
+}
+
+/// A checkered step in longitude, so that each half of the picture has its own mean.
+float stepped(const osg::Vec3f& d)
+{
+    return 1.0f + (d.x() > 0.0f ? 0.5f : 0.0f);
+}
+
+// Pictures of more pixels than faces have are reduced as they are read: 2,100 pixels across leave a part of a block.
+TEST(EnvironmentTest, largePicturesAreReduced)
+{
+    const auto radiance = [](const osg::Vec3f& d) { return osg::Vec3f(1, 1, 1) * stepped(d); };
+    const auto expected = RadianceCube::fromPanorama(*makePanorama(1024, radiance)).value()->harmonics();
+    const auto panorama = RadianceCube::fromPanorama(*makePanorama(2100, radiance)).value();
+    const auto faces = RadianceCube::fromFaces(*makeFaces(515, radiance)).value();
+    for (const auto& cube : {panorama, faces})
+    {
+        const auto found = cube->harmonics();
+        for (std::size_t i = 0; i < found.size(); ++i)
+            EXPECT_NEAR(found[i].x(), expected[i].x(), 0.005f) << i;
+        for (int face = 0; face < 6; ++face)
+            for (const osg::Vec3f& pixel : cube->face(face))
+                ASSERT_TRUE(pixel.x() > 0.999f && pixel.x() < 1.501f) << face << ": " << pixel.x();
+    }
+}
+
+// The first and the last column of a panorama are neighbours, at -X.
+TEST(EnvironmentTest, aPanoramaIsClosed)
+{
+    const auto cube = RadianceCube::fromPanorama(
+        *makePanorama(16, [](const osg::Vec3f& d) { return osg::Vec3f(1, 1, 1) * (2.0f + d.z()); }));
+    const std::vector<osg::Vec3f>& face = cube.value()->face(1);
+    for (int column = 1; column < RadianceCube::side; ++column)
+    {
+        const std::size_t at = static_cast<std::size_t>(RadianceCube::side * RadianceCube::side / 2 + column);
+        EXPECT_NEAR(face[at].x(), face[at - 1].x(), 0.02f) << column;
     }
 }
 

@@ -132,10 +132,13 @@ TEST_F(PbrLightGLTest, backFacesHaveTheReversedNormal)
     for (const bool isMoving : {true, false})
         for (const float tangent : {0.0f, 1.0f})
         {
-            const auto at = [&](const osg::Vec3& toLight, const PbrMaterial& material, bool fromBehind)
+            const auto at = [&](const osg::Vec3& toLight, const PbrMaterial& material, bool fromBehind,
+                                bool isFlat = false, float length = 1.0f)
             {
                 light->setPosition(osg::Vec4(toLight, 0));
-                const osg::ref_ptr<osg::Node> front = pbrPanel(isMoving, material, {1, 1, 1}, {tangent, 0, 0, tangent});
+                const osg::ref_ptr<osg::Node> front =
+                    pbrPanel(isMoving, material, {1, 1, 1}, {length * tangent, 0, 0, tangent});
+                if (isFlat) findGeometry(*front)->getStateSet()->addUniform(new osg::Uniform("flatNormals", true));
                 return middle(*pictureOf(fromBehind ? seenFromBehind(front).get() : front.get())).r();
             };
             const osg::Vec3 right(1, -1, 0), above(0, -1, 1), below(0, -1, -1);
@@ -143,6 +146,9 @@ TEST_F(PbrLightGLTest, backFacesHaveTheReversedNormal)
             EXPECT_NEAR(at(right, leaning, true), at(right, leaning, false), 2.0f / 255) << tangent;
             EXPECT_NEAR(at(above, up, true), at(below, up, false), 2.0f / 255) << tangent;
             EXPECT_GT(at(below, up, true), at(above, up, true) + 0.1f) << tangent;
+            EXPECT_NEAR(at(right, level, true, true), at(right, level, true), 2.0f / 255) << "faces' own normals";
+            if (tangent == 0.0f) continue;
+            EXPECT_NEAR(at(right, leaning, true, false, 0.0f), at(right, level, true), 2.0f / 255) << "no tangent";
         }
 }
 
@@ -211,14 +217,125 @@ TEST_F(PbrLightGLTest, mapsReadTheCoordinatesOfTheirNumber)
         }
 }
 
+/// Maps together, and the factors without which they have no effect.
+struct MapsCase
+{
+    const char* name;
+    std::vector<PbrMaterial::Map PbrMaterial::*> maps;
+    void (*prepare)(PbrMaterial& material);
+};
+
+const MapsCase mapsCases[] = {
+    {"core",
+     {&PbrMaterial::metallicRoughnessMap, &PbrMaterial::normalMap, &PbrMaterial::occlusionMap,
+      &PbrMaterial::emissiveMap},
+     [](PbrMaterial& m) { m.emissive.set(0.2f, 0.2f, 0.2f); }},
+    {"coat",
+     {&PbrMaterial::clearcoatMap, &PbrMaterial::clearcoatRoughnessMap},
+     [](PbrMaterial& m) { m.clearcoat = m.clearcoatRoughness = 1.0f; }},
+    {"coat's normal, specular colour and sheen",
+     {&PbrMaterial::clearcoatNormalMap, &PbrMaterial::specularColorMap, &PbrMaterial::sheenColorMap},
+     [](PbrMaterial& m)
+     {
+         m.clearcoat = 1.0f, m.clearcoatRoughness = 0.5f;
+         m.specularColor.set(0.9f, 0.9f, 0.9f);
+         m.sheenColor.set(1, 1, 1), m.sheenRoughness = 0.8f;
+     }},
+    {"sheen's roughness, specular and transmission",
+     {&PbrMaterial::sheenRoughnessMap, &PbrMaterial::specularMap, &PbrMaterial::transmissionMap},
+     [](PbrMaterial& m)
+     {
+         m.specularColor.set(0.5f, 0.5f, 0.5f);
+         m.sheenColor.set(1, 1, 1), m.sheenRoughness = 1.0f;
+         m.transmission = 0.8f;
+     }},
+    {"glossiness", {&PbrMaterial::specularColorMap}, [](PbrMaterial& m) { m.isSpecularGlossiness = true; }},
+};
+
+// A place of the maps by the first or by the second coordinates looks the same, and unlike another place.
+TEST_F(PbrLightGLTest, everyMapReadsItsOwnCoordinates)
+{
+    light->setPosition(osg::Vec4(0, -1, 0.1f, 0));
+    for (const MapsCase& each : mapsCases)
+    {
+        SCOPED_TRACE(each.name);
+        PbrMaterial material;
+        material.baseColor.set(0.5f, 0.4f, 0.3f, 1);
+        material.metallic = 0.3f;
+        material.roughness = 0.7f;
+        material.hasMoreCoordinates = true;
+        each.prepare(material);
+        const auto colorWith = [&](int number, float first, float second)
+        {
+            for (PbrMaterial::Map PbrMaterial::*const map : each.maps)
+            {
+                const bool isNormal = map == &PbrMaterial::normalMap || map == &PbrMaterial::clearcoatNormalMap;
+                const osg::ref_ptr<osg::Texture2D> halves =
+                    plainTexture(isNormal ? osg::Vec4(0.5f, 0.5f, 1, 1) : osg::Vec4(0.2f, 0.3f, 0.2f, 0.2f));
+                for (unsigned int row = 0; row < 2; ++row)
+                    halves->getImage()->setColor(
+                        isNormal ? osg::Vec4(0.8f, 0.6f, 0.8f, 1) : osg::Vec4(0.9f, 0.8f, 0.9f, 0.9f), 1, row);
+                halves->setFilter(osg::Texture::MAG_FILTER, osg::Texture::NEAREST);
+                halves->setFilter(osg::Texture::MIN_FILTER, osg::Texture::NEAREST);
+                material.*map = {halves, number};
+            }
+            const osg::ref_ptr<osg::Node> subject = pbrPanel(true, material, {1, 1, 1}, {1, 0, 0, 1});
+            osg::Geometry& mesh = *findGeometry(*subject);
+            for (osg::Vec2& place : static_cast<osg::Vec2Array&>(*mesh.getTexCoordArray(0)))
+                place.set(first, 0.5f);
+            mesh.setVertexAttribArray(POSE_COORDINATES_LOCATION, attribute(mesh, {second, 0.5f, first, 0.5f}));
+            return middle(*pictureOf(subject));
+        };
+        const osg::Vec4 expected = colorWith(0, 0.75f, 0.25f);
+        EXPECT_GT((expected - colorWith(0, 0.25f, 0.75f)).length(), 4.0f / 255);
+        EXPECT_LT((expected - colorWith(1, 0.25f, 0.75f)).length(), 1.5f / 255);
+    }
+}
+
+// KHR_texture_transform: the rows 2 n and 2 n + 1 are those of the coordinates n.
+TEST_F(PbrLightGLTest, transformsAreThoseOfTheirCoordinates)
+{
+    light->setDiffuse(osg::Vec4(0, 0, 0, 1));
+    surrounding->setAmbientIntensity(osg::Vec4(0, 0, 0, 1));
+    PbrMaterial material;
+    material.hasMoreCoordinates = true;
+    material.emissive.set(1, 1, 1);
+    const osg::ref_ptr<osg::Texture2D> squares = plainTexture({0, 0, 0, 1});
+    squares->getImage()->allocateImage(4, 4, 1, GL_RGBA, GL_UNSIGNED_BYTE);
+    const auto value = [](unsigned int column, unsigned int row) { return 0.05f + 0.06f * float(4 * row + column); };
+    for (unsigned int place = 0; place < 16; ++place)
+        squares->getImage()->setColor(osg::Vec4(1, 1, 1, 1) * value(place % 4, place / 4), place % 4, place / 4);
+    squares->setFilter(osg::Texture::MAG_FILTER, osg::Texture::NEAREST);
+    squares->setFilter(osg::Texture::MIN_FILTER, osg::Texture::NEAREST);
+    material.emissiveMap.texture = squares;
+    const osg::Vec3 rows[] = {{0, 1, 0}, {1, 0, 0.75f}, {1, 0, 0.5f}, {0, 1, 0.25f}, {-1, 0, 1}, {1, 0, 0}};
+    const std::pair<unsigned int, unsigned int> squaresOf[] = {{1, 3}, {2, 2}, {3, 0}};
+    for (const int number : {0, 1, 2})
+    {
+        material.emissiveMap.coordinates = number;
+        const osg::ref_ptr<osg::Node> subject = pbrPanel(true, material);
+        osg::Geometry& mesh = *findGeometry(*subject);
+        for (osg::Vec2& place : static_cast<osg::Vec2Array&>(*mesh.getTexCoordArray(0)))
+            place.set(0.125f, 0.375f);
+        mesh.setVertexAttribArray(POSE_COORDINATES_LOCATION, attribute(mesh, {0.125f, 0.375f, 0.125f, 0.375f}));
+        mesh.getStateSet()->setDefine("MATERIAL_TEXTURE_TRANSFORM", "1");
+        const osg::ref_ptr<osg::Uniform> transforms =
+            new osg::Uniform(osg::Uniform::FLOAT_VEC3, "textureTransforms", 6);
+        for (unsigned int row = 0; row < 6; ++row)
+            transforms->setElement(row, rows[row]);
+        mesh.getStateSet()->addUniform(transforms);
+        const auto& [column, row] = squaresOf[number];
+        EXPECT_NEAR(middle(*pictureOf(subject)).r(), encoded(value(column, row)), 2.0 / 255) << number;
+    }
+}
+
 TEST_F(PbrLightGLTest, theToneMapperIsKhronoss)
 {
     light->setDiffuse(osg::Vec4(0, 0, 0, 1));
-    const std::pair<osg::Vec3, float> cases[] = {{{0.5f, 0.3f, 0.2f}, 1},
-                                                 {{0.05f, 0.02f, 0.03f}, 1},
-                                                 {{1, 0.1f, 0.1f}, 4}, // highlights lose their colour
-                                                 {{0.2f, 0.5f, 1}, 8},
-                                                 {{1, 1, 1}, 2}};
+    const std::pair<osg::Vec3, float> cases[] = {{{0.5f, 0.3f, 0.2f}, 1}, {{0.05f, 0.02f, 0.03f}, 1},
+                                                 {{0.9f, 0.6f, 0.4f}, 1}, // between the start and 1
+                                                 {{1, 0.1f, 0.1f}, 4},    // highlights lose their colour
+                                                 {{0.2f, 0.5f, 1}, 8},    {{1, 1, 1}, 2}};
     for (const auto& [color, strength] : cases)
     {
         PbrMaterial glowing;
@@ -265,6 +382,43 @@ TEST_F(PbrLightGLTest, aSpotFadesToTheEdgeOfItsCone)
     }
 }
 
+// KHR_lights_punctual: a window of 1 - (distance / range)^4. The highest light number, which has uniforms of its own.
+TEST_F(PbrLightGLTest, aLightEndsAtItsRange)
+{
+    surrounding->setAmbientIntensity(osg::Vec4(0, 0, 0, 1));
+    PbrMaterial material;
+    material.metallic = 0.0f;
+    middle(*pictureOf(pbrPanel(true, material)));
+    const auto lit = [&](float range)
+    {
+        const osg::ref_ptr<PunctualLight> made = new PunctualLight(PunctualLight::Kind::Point, 7);
+        EXPECT_TRUE(made->setIntensity({1, 1, 1}, 8.0f));
+        EXPECT_TRUE(made->setRange(range));
+        made->setPosition(osg::Vec4(position.x(), -2, position.y(), 1));
+        light = made;
+        return linearColor(middle(*pictureOf(pbrPanel(true, material)))).g();
+    };
+    const float whole = lit(0.0f);
+    EXPECT_GT(whole, 0.3f);
+    for (const double range : {1.9, 2.2, 3.0, 9.0})
+        EXPECT_NEAR(lit(static_cast<float>(range)) / whole, std::max(1.0 - std::pow(2.0 / range, 4.0), 0.0), 0.02)
+            << range;
+}
+
+TEST_F(PbrLightGLTest, theAmbientLightOfALampIsAttenuated)
+{
+    PbrMaterial white;
+    white.metallic = 0.0f;
+    light->setDiffuse(osg::Vec4(0, 0, 0, 1));
+    const float expected = middle(*pictureOf(pbrPanel(true, white))).g(); // in a surrounding of 0.2
+    surrounding->setAmbientIntensity(osg::Vec4(0, 0, 0, 1));
+    light->setAmbient(osg::Vec4(0.8f, 0.8f, 0.8f, 1));
+    light->setPosition(osg::Vec4(2 * position.x(), -4, 2 * position.y(), 2)); // 2 units before the panel
+    light->setConstantAttenuation(0);
+    light->setQuadraticAttenuation(1);
+    EXPECT_NEAR(middle(*pictureOf(pbrPanel(true, white))).g(), expected, 2.0f / 255);
+}
+
 // Fog is mixed as displayed, like the fixed pipeline's; for a framebuffer that encodes, all of the shader is linear.
 TEST_F(PbrLightGLTest, fogIsMixedInTheLightOfTheFramebuffer)
 {
@@ -291,22 +445,22 @@ TEST_F(PbrLightGLTest, fogIsMixedInTheLightOfTheFramebuffer)
     }
 }
 
-// Tints are colours as displayed: on a surface that reflects everything, a tint looks as it is written.
+// Tints are colours as displayed: on a surface that scatters everything, a tint looks as it is written.
 TEST_F(PbrLightGLTest, tintsOfACrowdAreMultipliedInLinearLight)
 {
     light->setDiffuse(osg::Vec4(0, 0, 0, 1));
     surrounding->setAmbientIntensity(osg::Vec4(1, 1, 1, 1));
-    PbrMaterial mirror;
-    mirror.baseColor.set(1, 0.5f, 1, 1);
-    mirror.roughness = 0.0f;
-    const osg::ref_ptr<osg::Node> subject = pbrPanel(true, mirror);
+    PbrMaterial matt; // scatters all light of the surroundings
+    matt.baseColor.set(1, 0.5f, 1, 1);
+    matt.metallic = matt.specular = 0.0f;
+    const osg::ref_ptr<osg::Node> subject = pbrPanel(true, matt);
     const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*findCharacter(*subject));
     const AnimationController controller(crowd->getSharedAnimationSet());
-    ASSERT_TRUE(crowd->add(osg::Matrix(), controller, osg::Vec4(0.5f, 0.8f, 0.75f, 1)));
+    ASSERT_TRUE(crowd->add(osg::Matrix(), controller, osg::Vec4(0.5f, 0.8f, 0.03f, 1)));
     const osg::Vec4 found = middle(*pictureOf(crowd));
     EXPECT_NEAR(found.r(), 0.5f, 2.0f / 255);
     EXPECT_NEAR(found.g(), encoded(0.5 * linearColor({0, 0.8f, 0, 1}).g()), 2.0 / 255);
-    EXPECT_NEAR(found.b(), 0.75f, 2.0f / 255);
+    EXPECT_NEAR(found.b(), 0.03f, 2.0f / 255) << "the straight part of the transfer function";
 }
 
 // GL 3.3 has 16 units a shader stage at least: of more maps the first three are used, and no unit beyond is touched.

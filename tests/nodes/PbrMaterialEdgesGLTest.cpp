@@ -104,11 +104,17 @@ TEST_F(PbrMaterialEdgesGLTest, materialsThatLookTheSame)
     PbrMaterial coatedByScale = coated;
     coatedByScale.clearcoatNormalMap.texture = plainTexture({0.9f, 0.5f, 0.8f, 1});
     coatedByScale.clearcoatNormalScale = 0.5f;
+    PbrMaterial metal = glass(1);
+    metal.metallic = 1.0f;
+    metal.baseColor.set(0.5f, 0.3f, 0.4f, 1);
+    PbrMaterial opaqueMetal = metal;
+    opaqueMetal.transmission = 0.0f;
     const struct
     {
         const char* name;
         PbrMaterial expected, found;
-    } cases[] = {{"what the metal's map lets through", metalByFactor, metalByMap},
+    } cases[] = {{"a metal lets no light through", opaqueMetal, metal},
+                 {"what the metal's map lets through", metalByFactor, metalByMap},
                  {"an opaque material with an alpha", glass(1), glass(0.3f)},
                  {"a coat's normal map of half scale", coated, coatedByScale}};
     for (const auto& one : cases)
@@ -117,9 +123,24 @@ TEST_F(PbrMaterialEdgesGLTest, materialsThatLookTheSame)
         for (int channel = 0; channel < 3; ++channel)
             EXPECT_NEAR(found[channel], expected[channel], 2.0f / 255) << one.name << ", channel " << channel;
     }
+    PbrMaterial glowing = glass(1);
+    glowing.emissive.set(1, 1, 1);
+    EXPECT_GT(middleOf(square(glowing)).g(), 0.98f) << "highlights cover the background";
     PbrMaterial blended = glass(0.3f);
     blended.isBlended = true;
     EXPECT_LT(middleOf(square(blended)).g(), middleOf(square(glass(1))).g() - 0.05f);
+}
+
+// Light that passes through is not scattered: half of it is missing. The share of the cover is 1 - 0.96 * 0.5.
+TEST_F(PbrMaterialEdgesGLTest, transmittedLightIsNotScattered)
+{
+    PbrMaterial material;
+    material.metallic = material.specular = 0.0f;
+    const float scattered = linearColor(middleOf(square(material))).g();
+    EXPECT_GT(scattered, 0.2f);
+    material.transmission = 0.5f;
+    const float shown = displayColor(osg::Vec4(0, 0.5f * scattered / 0.52f, 0, 1)).g();
+    EXPECT_NEAR(middleOf(square(material)).g(), 0.52f * shown, 2.0f / 255);
 }
 
 TEST_F(PbrMaterialEdgesGLTest, occlusionReachesTheClearCoat)
@@ -132,6 +153,36 @@ TEST_F(PbrMaterialEdgesGLTest, occlusionReachesTheClearCoat)
     material.occlusionMap.texture = plainTexture({0, 0, 0, 1});
     surroundings->addChild(square(material));
     EXPECT_LT(middleOf(surroundings, 0.0f).g(), 2.0f / 255);
+}
+
+// A coat and fibres over a surface that reflects nothing, towards the studio's key light: the roughness below does not
+// count.
+TEST_F(PbrMaterialEdgesGLTest, coatAndSheenHaveTheirOwnRoughness)
+{
+    const auto inStudio = [&](const PbrMaterial& material)
+    {
+        const osg::ref_ptr<osg::Group> studio = new Environment;
+        studio->addChild(square(material, osg::Vec3(0.389f, -1.583f, 0.713f)));
+        return middleOf(studio, 0.0f).g();
+    };
+    PbrMaterial plain;
+    plain.baseColor.set(0, 0, 0, 1);
+    plain.metallic = 0.0f;
+    plain.roughness = 0.2f;
+    PbrMaterial coated = plain;
+    coated.specular = 0.0f;
+    PbrMaterial fibres = coated;
+    coated.roughness = 1.0f;
+    coated.clearcoat = 1.0f;
+    coated.clearcoatRoughness = 0.2f;
+    EXPECT_GT(inStudio(plain), 0.3f);
+    EXPECT_NEAR(inStudio(coated), inStudio(plain), 3.0f / 255);
+    fibres.sheenColor.set(1, 1, 1);
+    fibres.sheenRoughness = 1.0f;
+    const float smooth = inStudio(fibres);
+    fibres.roughness = 1.0f;
+    EXPECT_GT(smooth, 0.1f);
+    EXPECT_NEAR(inStudio(fibres), smooth, 1.0f / 255);
 }
 
 TEST_F(PbrMaterialEdgesGLTest, aNormalOfLengthZeroFacesTheViewer)

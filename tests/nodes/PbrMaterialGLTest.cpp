@@ -163,6 +163,33 @@ TEST_F(PbrMaterialGLTest, mapsMultiplyTheirFactors)
              m.specularMap.texture = plainTexture({0, 0, 0, 0.2f});
          },
          [](PbrMaterial& m) { m.specular = 0.2f; }},
+        {"specular colour",
+         [](PbrMaterial& m)
+         {
+             m.specularColor.set(0.8f, 0.6f, 0.4f);
+             m.specularColorMap.texture = plainTexture({0.7f, 0.5f, 1, 1}, true);
+         },
+         [](PbrMaterial& m)
+         {
+             const osg::Vec4 color = linearColor({0.7f, 0.5f, 1, 1});
+             m.specularColor.set(0.8f * color.r(), 0.6f * color.g(), 0.4f);
+         }},
+        {"transmission",
+         [](PbrMaterial& m) {
+             m.transmission = 0.8f, m.transmissionMap.texture = plainTexture({0.5f, 1, 1, 1});
+         },
+         [](PbrMaterial& m) { m.transmission = 0.4f; }},
+        {"glossiness",
+         [](PbrMaterial& m)
+         {
+             m.specularColor.set(0.5f, 0.5f, 0.5f), m.isSpecularGlossiness = true;
+             m.specularColorMap.texture = plainTexture({1, 1, 1, 0.2f}, true);
+         },
+         [](PbrMaterial& m)
+         {
+             m.specularColor.set(0.5f, 0.5f, 0.5f);
+             m.roughness = 1.0f - 0.2f * (1.0f - m.roughness);
+         }},
     };
     for (const bool isMoving : {true, false})
         for (const auto& one : cases)
@@ -236,6 +263,85 @@ TEST_F(PbrMaterialGLTest, whatLiesBelowTheClearCoatIsDarker)
         const float found = middle(*pictureOf(pbrPanel(true, *material))).g();
         EXPECT_NEAR(found, encoded(0.96 * without), 1.5 / 255);
         EXPECT_LT(found, encoded(without) - 1.5f / 255);
+    }
+}
+
+// A coat over a surface that reflects nothing is a black dielectric with the coat's roughness and normal.
+TEST_F(PbrMaterialGLTest, aCoatOverNothingIsASurface)
+{
+    surrounding->setAmbientIntensity(osg::Vec4(0, 0, 0, 1));
+    for (const osg::Vec3& toLight : {osg::Vec3(0.5f, -1, 0.2f), osg::Vec3(2, -1, 0), osg::Vec3(-1, -1, -1)})
+        for (const bool isLeaning : {false, true})
+        {
+            light->setPosition(osg::Vec4(toLight, 0));
+            light->setDiffuse(osg::Vec4(6, 6, 6, 1));
+            const osg::ref_ptr<osg::Texture2D> leaning = plainTexture({0.75f, 0.5f, 0.933f, 1});
+            PbrMaterial coated, plain;
+            for (PbrMaterial* material : {&coated, &plain})
+            {
+                material->baseColor.set(0, 0, 0, 1);
+                material->metallic = 0.0f;
+            }
+            coated.specular = 0.0f;
+            coated.clearcoat = 1.0f;
+            coated.clearcoatRoughness = plain.roughness = 0.6f;
+            if (isLeaning) coated.clearcoatNormalMap.texture = plain.normalMap.texture = leaning;
+            coated.clearcoatNormalScale = plain.normalScale = 0.5f;
+            const osg::Vec4 expected = middle(*pictureOf(pbrPanel(true, plain)));
+            EXPECT_NEAR(middle(*pictureOf(pbrPanel(true, coated))).g(), expected.g(), 1.5f / 255) << toLight.x();
+        }
+}
+
+// KHR_materials_sheen over a surface that reflects nothing, in double precision: Charlie's distribution and Neubelt's
+// visibility; its alpha is the square of the roughness.
+TEST_F(PbrMaterialGLTest, sheenIsReflectedAsSpecified)
+{
+    surrounding->setAmbientIntensity(osg::Vec4(0, 0, 0, 1));
+    for (const double roughness : {0.4, 0.6, 1.0})
+        for (const osg::Vec3& direction : {osg::Vec3(1, -1, 0), osg::Vec3(2, -1, 0.5f)})
+        {
+            PbrMaterial material;
+            material.baseColor.set(0, 0, 0, 1);
+            material.metallic = material.specular = 0.0f;
+            material.sheenColor.set(0.8f, 0.8f, 0.8f);
+            material.sheenRoughness = static_cast<float>(roughness);
+            light->setPosition(osg::Vec4(direction, 0));
+            light->setDiffuse(osg::Vec4(2, 2, 2, 1));
+            const float found = middle(*pictureOf(pbrPanel(true, material))).g();
+            osg::Vec3d toEye = -position, toLight(direction.x(), direction.z(), -direction.y());
+            toEye.normalize();
+            toLight.normalize();
+            osg::Vec3d halfway = toEye + toLight;
+            halfway.normalize();
+            const double inverse = 1.0 / (roughness * roughness), cosLight = toLight.z(), cosEye = toEye.z();
+            const double distribution =
+                (2.0 + inverse) * std::pow(1.0 - halfway.z() * halfway.z(), 0.5 * inverse) / (2.0 * pi);
+            const double visibility = 0.25 / (cosLight + cosEye - cosLight * cosEye);
+            EXPECT_NEAR(found, encoded(2.0 * pi * cosLight * 0.8 * distribution * visibility), 2.0 / 255) << roughness;
+        }
+}
+
+// Light is added up, so half a coat looks halfway between none and a whole one: in lights and surroundings.
+TEST_F(PbrMaterialGLTest, halfACoatIsHalfway)
+{
+    const osg::Vec4 black(0, 0, 0, 1), grey(0.5f, 0.5f, 0.5f, 1);
+    for (const bool isLight : {true, false})
+    {
+        light->setPosition(osg::Vec4(0.2f, -1, 0.2f, 0));
+        light->setDiffuse(isLight ? grey : black);
+        surrounding->setAmbientIntensity(isLight ? black : grey);
+        float found[3];
+        for (int half = 0; half < 3; ++half)
+        {
+            PbrMaterial material;
+            material.baseColor.set(0.1f, 0.1f, 0.1f, 1);
+            material.metallic = 0.0f;
+            material.clearcoat = 0.5f * static_cast<float>(half);
+            material.clearcoatRoughness = 0.5f;
+            found[half] = linearColor(middle(*pictureOf(pbrPanel(true, material)))).g();
+        }
+        EXPECT_GT(found[2], found[0] + 0.01f);
+        EXPECT_NEAR(found[1], 0.5f * (found[0] + found[2]), 0.003f) << isLight;
     }
 }
 

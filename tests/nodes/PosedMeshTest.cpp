@@ -2,6 +2,7 @@
 #include "nodes/TriangleBox.h"
 #include "support/TestCharacter.h"
 
+#include <osgGpuAnimation/animation/JointMask.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
 
 #include <gtest/gtest.h>
@@ -212,6 +213,9 @@ TEST(PosedMeshTest, aPoseIsComputedOnce)
     EXPECT_EQ(first, character->getPosedMesh(mesh));
     character->getController().seek(0.5);
     EXPECT_NE(first, character->getPosedMesh(mesh)) << "another pose";
+    const osg::ref_ptr<osg::Geometry> before = character->getPosedMesh(mesh);
+    mesh.setVertexArray(osg::clone(mesh.getVertexArray(), osg::CopyOp::DEEP_COPY_ALL));
+    EXPECT_NE(before, character->getPosedMesh(mesh)) << "another array";
     const osg::ref_ptr<osg::Geometry> second = character->getPosedMesh(mesh);
     mesh.getVertexArray()->dirty();
     EXPECT_NE(second, character->getPosedMesh(mesh)) << "other vertices";
@@ -233,6 +237,59 @@ TEST(PosedMeshTest, aMovedTargetIsAnotherPose)
     };
     EXPECT_NEAR(lookingAt({5, 0, 0}).zMax(), 1.0f, 1e-5f);
     EXPECT_NEAR(lookingAt({0, 0, -5}).zMax(), 0.0f, 1e-5f);
+}
+
+TEST(PosedMeshTest, aChangedPoseOfJointsIsAnotherPose)
+{
+    const osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
+    const auto& mesh = dynamic_cast<const SkinnedGeometry&>(*character->getChild(0));
+    AnimationController& controller = character->getController();
+    const auto leftAt = [&](float x)
+    {
+        EXPECT_TRUE(controller.layer(1).pose().setTranslation(1, glm::vec3(x, 0, 0)));
+        controller.advance(0.0);
+        return character->getPosedMesh(mesh)->getBoundingBox().xMin();
+    };
+    const float first = leftAt(1.0f);
+    EXPECT_NEAR(leftAt(4.0f) - first, 3.0f, 1e-5f);
+    EXPECT_NEAR(leftAt(2.0f) - first, 1.0f, 1e-5f);
+}
+
+// Numbers of freed masks are used again: the samples are equal bit by bit.
+TEST(PosedMeshTest, anotherMaskOfThatNumberIsAnotherPose)
+{
+    const osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
+    const auto& mesh = dynamic_cast<const SkinnedGeometry&>(*character->getChild(0));
+    AnimationController& controller = character->getController();
+    ASSERT_TRUE(controller.layer(1).play("turn"));
+    controller.layer(1).seek(0.5);
+    const auto setMask = [&](float weight)
+    {
+        JointMask mask(character->getAnimationSet());
+        for (std::size_t joint = 0; joint < character->getAnimationSet().skeleton().jointCount(); ++joint)
+            mask.setJoint(joint, weight);
+        EXPECT_TRUE(controller.layer(1).setMask(mask));
+    };
+    setMask(1.0f);
+    const std::uint32_t number = controller.layer(1).mask();
+    const osg::BoundingBox turned = character->getPosedMesh(mesh)->getBoundingBox();
+    setMask(0.5f);
+    setMask(0.0f);
+    ASSERT_EQ(controller.layer(1).mask(), number);
+    const osg::BoundingBox still = character->getPosedMesh(mesh)->getBoundingBox();
+    EXPECT_GT((still._max - turned._max).length() + (still._min - turned._min).length(), 0.3f);
+}
+
+TEST(PosedMeshTest, normalsBelowScaledJointsHaveLengthOne)
+{
+    const osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
+    const auto& mesh = dynamic_cast<const SkinnedGeometry&>(*character->getChild(0));
+    ASSERT_TRUE(character->getController().layer(1).pose().setScale(1, glm::vec3(3, 2, 0.5f)));
+    character->getController().advance(0.0);
+    const osg::ref_ptr<osg::Geometry> posed = character->getPosedMesh(mesh, true);
+    EXPECT_NEAR(posed->getBoundingBox().xMax() - posed->getBoundingBox().xMin(), 3.0f, 1e-5f);
+    for (const osg::Vec3& normal : dynamic_cast<const osg::Vec3Array&>(*posed->getNormalArray()))
+        EXPECT_LE((normal - osg::Vec3(0, -1, 0)).length(), 1e-6f);
 }
 
 TEST(PosedMeshTest, kdTreesAreNotMadeOfBindPoses)

@@ -4,9 +4,12 @@
 #include "support/ViewerGLTest.h"
 
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+#include <osgGpuAnimation/nodes/PbrMaterial.h>
 
 #include <osg/GLExtensions>
 #include <osg/Image>
+#include <osg/LightModel>
+#include <osg/LightSource>
 #include <osg/Material>
 #include <osg/Notify>
 
@@ -295,6 +298,52 @@ TEST_F(ProfileGLTest, emissionIsAddedInEveryProfile)
             EXPECT_NEAR(glowing[channel] - plain[channel], added, 0.01f) << profile.name << ", channel " << channel;
         osg::setNotifyHandler(new osg::StandardNotifyHandler);
         if (context().isCoreProfile()) takeGLErrors();
+    }
+}
+
+// The core profile has no lights: 0.8 of a light from the eye and 0.2 from all around take their place.
+TEST_F(ProfileGLTest, aHeadlightTakesThePlaceOfLightsInTheCoreProfile)
+{
+    for (const bool isPbr : {false, true})
+    {
+        osg::ref_ptr<osg::Image> pictures[2];
+        for (const bool isCore : {false, true})
+        {
+            changeTo(isCore ? ProfileCase{"Core33", 1, "3.3", 0} : stock);
+            if (HasFatalFailure() || IsSkipped()) return;
+            if (isCore) osg::setNotifyHandler(new Warnings); // of the fixed pipeline, see above
+            const osg::ref_ptr<AnimatedCharacter> character = makePanelCharacter();
+            character->setMatrix(osg::Matrix::rotate(0.6, 0, 0, 1));
+            osg::StateSet& own = *character->getChild(0)->getStateSet();
+            PbrMaterial material;
+            material.metallic = 0.4f;
+            material.emissive.set(0, 0.1f, 0);
+            if (isPbr)
+                applyPbrMaterial(own, material);
+            else
+                static_cast<osg::Material&>(*own.getAttribute(osg::StateAttribute::MATERIAL))
+                    .setEmission(osg::Material::FRONT_AND_BACK, osg::Vec4(0, 0.1f, 0, 1));
+            const osg::ref_ptr<osg::LightSource> source = new osg::LightSource;
+            source->getLight()->setPosition(osg::Vec4(0, -1, 0, 0));
+            source->getLight()->setAmbient(osg::Vec4(0, 0, 0, 1));
+            source->getLight()->setDiffuse(osg::Vec4(0.8f, 0.8f, 0.8f, 1));
+            source->getLight()->setSpecular(osg::Vec4(0, 0, 0, 1));
+            const osg::ref_ptr<osg::LightModel> model = new osg::LightModel;
+            model->setAmbientIntensity(osg::Vec4(0.2f, 0.2f, 0.2f, 1));
+            const osg::ref_ptr<osg::Group> scene = isCore ? new osg::Group : source.get();
+            scene->addChild(character);
+            scene->getOrCreateStateSet()->setMode(GL_LIGHTING, on);
+            if (!isCore) source->setStateSetModes(*scene->getStateSet(), on);
+            if (!isCore) scene->getStateSet()->setAttribute(model);
+            // So far away that the way to the eye is the same everywhere.
+            viewer().getCamera()->setProjectionMatrixAsOrtho(-4, 4, -4, 4, 1, 4000);
+            viewer().getCamera()->setViewMatrixAsLookAt({0, -2000, 0}, {0, 0, 0}, {0, 0, 1});
+            pictures[isCore ? 1 : 0] = pictureOf(scene);
+            EXPECT_GT(picture().pixelsDrawn(), 150);
+            osg::setNotifyHandler(new osg::StandardNotifyHandler);
+            if (isCore) takeGLErrors();
+        }
+        EXPECT_EQ(Picture::pixelsDifferent(*pictures[0], *pictures[1], 2.5f / 255), 0) << isPbr;
     }
 }
 

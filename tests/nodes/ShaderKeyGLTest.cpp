@@ -3,11 +3,16 @@
 #include "nodes/Panel.h"
 
 #include <osgGpuAnimation/nodes/CharacterProgram.h>
+#include <osgGpuAnimation/nodes/shading/ShaderPermutations.h>
 
+#include <osg/ColorMask>
 #include <osg/Material>
+#include <osg/Texture2D>
 
 #include <algorithm>
 #include <iterator>
+#include <set>
+#include <string>
 
 namespace osgGpuAnimation
 {
@@ -155,6 +160,13 @@ INSTANTIATE_TEST_SUITE_P(
                      mesh.getStateSet()->addUniform(new osg::Uniform("unlit", 1.0f));
                      setWhite(mesh);
                  }},
+        NeedCase{"UnlitByAnUnsignedNumber", setUnlit,
+                 [](osg::Geometry& mesh)
+                 {
+                     mesh.getStateSet()->removeUniform("unlit");
+                     mesh.getStateSet()->addUniform(new osg::Uniform("unlit", 1u));
+                     setWhite(mesh);
+                 }},
         NeedCase{"FacesNormals", [](osg::Geometry&) {}, falsifyNormals}, NeedCase{"Shine", shine, shine},
         NeedCase{"ShineOfFacesNormals", shine,
                  [](osg::Geometry& mesh)
@@ -208,6 +220,99 @@ TEST_F(ShaderKeyGLTest, needsChangeWhileItIsShown)
         steps[i](meshOf(*kept));
         drawAt(0.0);
         EXPECT_EQ(Picture::pixelsDifferent(*expected[i], picture().image()), 0) << i;
+    }
+}
+
+// A key that differs in one member has a program of its own, with other definitions; the same key has the same one.
+TEST(ShaderKeyTest, everyMemberMakesAnotherProgram)
+{
+    void (*const changes[])(ShaderKey&) = {
+        [](ShaderKey&) {},
+        [](ShaderKey& key) { key.isDepthOnly = true; },
+        [](ShaderKey& key) { key.isAlphaNeeded = true; },
+        [](ShaderKey& key) { key.isLit = false; },
+        [](ShaderKey& key) { key.hasFlatNormals = true; },
+        [](ShaderKey& key) { key.hasSpecular = true; },
+        [](ShaderKey& key) { key.isTextured = false; },
+        [](ShaderKey& key) { key.hasTextureMatrix = true; },
+        [](ShaderKey& key) { key.hasClipPlanes = true; },
+        [](ShaderKey& key) { key.lights = 0; },
+        [](ShaderKey& key) { key.lights = 128; },
+        [](ShaderKey& key) { key.pointLights = 1; },
+        [](ShaderKey& key) { key.punctualLights = 1; },
+        [](ShaderKey& key) { key.shadowMaps = 2; },
+        [](ShaderKey& key) { key.hasShadowBias = true; },
+        [](ShaderKey& key) { key.hasShadowSplits = true; },
+        [](ShaderKey& key) { key.isEncoded = false; },
+        [](ShaderKey& key) { key.fog = ShaderKey::Fog::Linear; },
+        [](ShaderKey& key) { key.fog = ShaderKey::Fog::Exp; },
+        [](ShaderKey& key) { key.fog = ShaderKey::Fog::Exp2; },
+    };
+    const osg::ref_ptr<osg::Program> all = characterProgram();
+    const auto& permutations = static_cast<const ShaderPermutations&>(*all);
+    std::set<osg::ref_ptr<osg::Program>> programs;
+    std::set<std::string> definitions;
+    for (int round = 0; round < 2; ++round)
+    {
+        for (const auto& change : changes)
+        {
+            ShaderKey key;
+            change(key);
+            programs.insert(permutations.variant(key));
+            definitions.insert(key.defines());
+        }
+        EXPECT_EQ(programs.size(), std::size(changes));
+        EXPECT_EQ(definitions.size(), std::size(changes));
+    }
+}
+
+// Copies skin too, and a mesh that gets morph targets loses the define that leaves them out.
+TEST(ShaderKeyTest, copiesSkinAndDefinesAreReplaced)
+{
+    for (const osg::ref_ptr<osg::Program>& program : {characterProgram(), surfaceProgram()})
+    {
+        const osg::ref_ptr<osg::Program> copy = osg::clone(program.get(), osg::CopyOp::DEEP_COPY_ALL);
+        EXPECT_STREQ(copy->className(), program->className());
+        EXPECT_EQ(copy->getAttribBindingList(), program->getAttribBindingList());
+        EXPECT_NE(static_cast<ShaderPermutations&>(*copy).variant(ShaderKey()),
+                  static_cast<ShaderPermutations&>(*program).variant(ShaderKey()));
+        EXPECT_EQ(static_cast<ShaderPermutations&>(*copy).variant(ShaderKey())->getNumShaders(),
+                  static_cast<ShaderPermutations&>(*program).variant(ShaderKey())->getNumShaders());
+    }
+    const osg::ref_ptr<osg::StateSet> state = new osg::StateSet;
+    applySkinDefines(*state, 1, false);
+    EXPECT_EQ(state->getDefineList().count("POSE_NO_MORPHS"), 1u);
+    applySkinDefines(*state, 8, true);
+    EXPECT_EQ(state->getDefineList().count("POSE_NO_MORPHS"), 0u);
+    EXPECT_EQ(state->getDefineList().at("POSE_INFLUENCES").first, "8");
+}
+
+// A pass that writes depths alone leaves the holes of a mask: the wall behind is seen through them.
+TEST_F(ShaderKeyGLTest, holesOfAMaskAreInDepthsToo)
+{
+    const osg::ref_ptr<osg::Geometry> wall =
+        osg::createTexturedQuadGeometry(osg::Vec3(-4, 3, -4), osg::Vec3(8, 0, 0), osg::Vec3(0, 0, 8));
+    wall->setColorArray(one(osg::Vec4(1, 1, 0, 1)), overall);
+    wall->getOrCreateStateSet()->setMode(GL_LIGHTING, off);
+    wall->getStateSet()->setRenderBinDetails(1, "RenderBin");
+    for (const float cutoff : {0.0f, 0.5f})
+    {
+        const osg::ref_ptr<AnimatedCharacter> character = makePanelCharacter();
+        osg::StateSet& state = *meshOf(*character).getStateSet();
+        osg::Image& image =
+            *static_cast<osg::Texture2D&>(*state.getTextureAttribute(0, osg::StateAttribute::TEXTURE)).getImage();
+        image.setColor(osg::Vec4(1, 1, 1, 0.4f), 1, 0); // the right half
+        state.getUniform("alphaCutoff")->set(cutoff);
+        state.setAttribute(new osg::ColorMask(false, false, false, false));
+        const osg::ref_ptr<osg::Group> scene = new osg::Group;
+        scene->addChild(character);
+        scene->addChild(wall);
+        const osg::ref_ptr<osg::Image> found = pictureOf(scene);
+        int hidden = 0;
+        for (int y = 0; y < found->t(); ++y)
+            for (int x = 0; x < found->s(); ++x)
+                hidden += found->getColor(x, y) != osg::Vec4(1, 1, 0, 1);
+        EXPECT_NEAR(hidden, cutoff > 0.0f ? 512 : 1024, 40) << cutoff; // of 32 x 32 pixels
     }
 }
 

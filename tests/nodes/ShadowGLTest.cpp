@@ -178,9 +178,17 @@ osgShadow::ShadowTechnique* make()
     return new Technique;
 }
 
+/// With two different numbers.
+osgShadow::ShadowTechnique* makeShadowMap()
+{
+    auto* map = new osgShadow::ShadowMap;
+    map->setAmbientBias(osg::Vec2(0.2f, 0.8f));
+    return map;
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Techniques, ShadowGLTest,
-    ::testing::Values(TechniqueCase{"ShadowMap", make<osgShadow::ShadowMap>},
+    ::testing::Values(TechniqueCase{"ShadowMap", makeShadowMap},
                       TechniqueCase{"ViewDependentShadowMap", make<osgShadow::ViewDependentShadowMap>},
                       TechniqueCase{"StandardShadowMap", make<osgShadow::StandardShadowMap>},
                       TechniqueCase{"LightSpacePerspectiveShadowMap",

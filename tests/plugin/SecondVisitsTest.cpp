@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "plugin/PackedDocument.h"
 #include "plugin/PointerFile.h"
-#include "plugin/StoredScene.h"
 
 #include <gtest/gtest.h>
 

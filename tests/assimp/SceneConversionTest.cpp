@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "assimp/SceneConversion.h"
+#include "gltf/data/Picture.h"
 #include "gltf/Import.h"
+#include "plugin/GlbParts.h"
 #include "plugin/ModelVertices.h"
 #include "support/ScratchFolder.h"
 
@@ -8,9 +10,11 @@
 #include <assimp/scene.h>
 
 #include <gtest/gtest.h>
+#include <osg/Image>
 
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <limits>
 #include <memory>
 
@@ -126,10 +130,12 @@ TEST_F(SceneConversionTest, theUpwardAxisOfTheMetadataBecomesY)
 {
     struct
     {
-        int axes[6]; ///< coordinate axis, its sign, up, front
-        osg::Vec3 top;
-    } const cases[] = {
-        {{0, 1, 1, 1, 2, 1}, {0, 0, 2}}, {{0, 1, 2, 1, 1, -1}, {0, 2, 0}}, {{1, 1, 2, 1, 0, 1}, {0, 2, 0}}};
+        int axes[6];         ///< coordinate axis, its sign, up, front
+        osg::Vec3 top, side; ///< of the scene's (0, 0, 2) and (1, 3, 0)
+    } const cases[] = {{{0, 1, 1, 1, 2, 1}, {0, 0, 2}, {1, 3, 0}},
+                       {{0, 1, 2, 1, 1, -1}, {0, 2, 0}, {1, 0, -3}},
+                       {{1, 1, 2, 1, 0, 1}, {0, 2, 0}, {3, 0, 1}}};
+    mesh->mVertices[1] = {1, 3, 0};
     const char* const keys[] = {"CoordAxis", "CoordAxisSign", "UpAxis", "UpAxisSign", "FrontAxis", "FrontAxisSign"};
     for (const auto& each : cases)
     {
@@ -142,6 +148,7 @@ TEST_F(SceneConversionTest, theUpwardAxisOfTheMetadataBecomesY)
         const auto* positions = dynamic_cast<const osg::Vec3Array*>(cloth.geometry->getVertexArray());
         ASSERT_TRUE(positions);
         EXPECT_LT(((*positions)[2] * cloth.toModel - each.top).length(), 1e-6f) << each.axes[2];
+        EXPECT_LT(((*positions)[1] * cloth.toModel - each.side).length(), 1e-6f) << each.axes[2];
     }
 }
 
@@ -217,6 +224,191 @@ TEST_F(SceneConversionTest, boundsOfSizeAndDepth)
     const Result<std::string> deep = glb();
     ASSERT_FALSE(deep);
     EXPECT_NE(deep.error().message.find("deeper than 4096"), std::string::npos) << deep.error().message;
+}
+
+template <class Value>
+void set(aiMaterial& material, const Value& value, const char* key, unsigned int type, unsigned int index)
+{
+    material.AddProperty(&value, 1, key, type, index);
+}
+
+void setPicture(aiMaterial& material, aiTextureType type, const char* path, int coordinates = 0)
+{
+    const aiString name(path);
+    material.AddProperty(&name, AI_MATKEY_TEXTURE(type, 0));
+    material.AddProperty(&coordinates, 1, AI_MATKEY_UVWSRC(type, 0));
+}
+
+/// The numbers of a colour are linear in both.
+TEST_F(SceneConversionTest, factorsOfMaterials)
+{
+    const auto color = [](float r, float g, float b) { return aiColor3D(r, g, b); };
+    struct
+    {
+        const char* name;
+        std::function<void(aiMaterial&)> setUp;
+        const char* expected; ///< changes of the plain material
+    } const cases[] = {
+        {"nothing", [](aiMaterial&) {}, "{}"},
+        {"a diffuse colour", [&](aiMaterial& m) { set(m, color(0.5f, 0.25f, 2.0f), AI_MATKEY_COLOR_DIFFUSE); },
+         R"({"pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.25, 1, 1]}})"},
+        {"the base colour counts more",
+         [&](aiMaterial& m)
+         {
+             set(m, color(0.5f, 0.25f, 0), AI_MATKEY_COLOR_DIFFUSE);
+             set(m, aiColor4D(0.125f, 0.75f, 1.0f, 0.5f), AI_MATKEY_BASE_COLOR);
+         },
+         R"({"pbrMetallicRoughness": {"baseColorFactor": [0.125, 0.75, 1, 1]}})"},
+        {"opacity", [](aiMaterial& m) { set(m, 0.25f, AI_MATKEY_OPACITY); },
+         R"({"pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.25]}, "alphaMode": "BLEND"})"},
+        {"no opacity at all is taken for opaque", [](aiMaterial& m) { set(m, 0.0f, AI_MATKEY_OPACITY); }, "{}"},
+        {"metal and roughness",
+         [](aiMaterial& m)
+         {
+             set(m, 0.75f, AI_MATKEY_METALLIC_FACTOR);
+             set(m, 0.125f, AI_MATKEY_ROUGHNESS_FACTOR);
+             set(m, 64.0f, AI_MATKEY_SHININESS);
+         },
+         R"({"pbrMetallicRoughness": {"metallicFactor": 0.75, "roughnessFactor": 0.125}})"},
+        {"shininess: 1 - sqrt(36) / 10", [](aiMaterial& m) { set(m, 36.0f, AI_MATKEY_SHININESS); },
+         R"({"pbrMetallicRoughness": {"roughnessFactor": 0.4}})"},
+        {"emission", [&](aiMaterial& m) { set(m, color(0, 0.5f, 3), AI_MATKEY_COLOR_EMISSIVE); },
+         R"({"emissiveFactor": [0, 0.5, 1]})"},
+        {"both sides", [](aiMaterial& m) { set(m, 1, AI_MATKEY_TWOSIDED); }, R"({"doubleSided": true})"},
+        {"one side", [](aiMaterial& m) { set(m, 0, AI_MATKEY_TWOSIDED); }, "{}"},
+    };
+    using nlohmann::json;
+    const json plain = json::parse(R"({"name": "", "pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 1],
+        "metallicFactor": 0, "roughnessFactor": 1}})");
+    for (const auto& each : cases)
+    {
+        material->Clear();
+        each.setUp(*material);
+        const Result<std::string> bytes = glb();
+        ASSERT_TRUE(bytes) << bytes.error().message;
+        json found = gltf::GlbParts(bytes.value()).json["materials"][0], expected = plain;
+        expected.merge_patch(json::parse(each.expected));
+        const json::json_pointer roughness("/pbrMetallicRoughness/roughnessFactor");
+        EXPECT_NEAR(found[roughness].get<double>(), expected[roughness].get<double>(), 1e-6) << each.name;
+        found[roughness] = expected[roughness] = 0;
+        EXPECT_EQ(found, expected) << each.name;
+    }
+}
+
+/// Pictures in the file: 2 x 2 pixels, the upper left one red, the lower left one green, the others blue.
+TEST_F(SceneConversionTest, picturesAreUprightAndKeepTheirPlaces)
+{
+    aiTexture* const picture = new aiTexture;
+    picture->mFilename = "skin.png";
+    picture->mWidth = picture->mHeight = 2;
+    picture->pcData = new aiTexel[4];
+    for (int i = 0; i < 4; ++i)
+    {
+        const unsigned char red = i == 0 ? 255 : 0, green = i == 2 ? 255 : 0, blue = i % 2 == 1 ? 255 : 0;
+        picture->pcData[i].r = red;
+        picture->pcData[i].g = green;
+        picture->pcData[i].b = blue;
+        picture->pcData[i].a = static_cast<unsigned char>(64 * i);
+    }
+    scene.mNumTextures = 1;
+    scene.mTextures = arrayOf({picture});
+    setPicture(*material, aiTextureType_DIFFUSE, "*0", 1);
+    set(*material, aiColor3D(0.5f, 0.5f, 0.5f), AI_MATKEY_COLOR_DIFFUSE); // the picture takes its place
+    set(*material, int(aiTextureMapMode_Mirror), AI_MATKEY_MAPPINGMODE_U(aiTextureType_DIFFUSE, 0));
+    set(*material, int(aiTextureMapMode_Clamp), AI_MATKEY_MAPPINGMODE_V(aiTextureType_DIFFUSE, 0));
+    aiUVTransform transform;
+    transform.mTranslation = aiVector2D(0.25f, 0.125f);
+    transform.mScaling = aiVector2D(2.0f, 4.0f);
+    set(*material, transform, AI_MATKEY_UVTRANSFORM(aiTextureType_DIFFUSE, 0));
+    setPicture(*material, aiTextureType_OPACITY, "*0");
+    setPicture(*material, aiTextureType_METALNESS, "*0");
+    setPicture(*material, aiTextureType_DIFFUSE_ROUGHNESS, "*0");
+    setPicture(*material, aiTextureType_EMISSIVE, "*0");
+    const Result<std::string> bytes = glb();
+    ASSERT_TRUE(bytes) << bytes.error().message;
+    const gltf::GlbParts made(bytes.value());
+    const nlohmann::json& found = made.json["materials"][0];
+    const nlohmann::json& surface = found["pbrMetallicRoughness"];
+    EXPECT_EQ(surface["baseColorFactor"], nlohmann::json({1, 1, 1, 1}));
+    EXPECT_EQ(found["alphaMode"], "MASK") << "the picture is that of the opacity";
+    EXPECT_EQ(found["emissiveFactor"], nlohmann::json({1, 1, 1}));
+    EXPECT_EQ(surface["metallicFactor"], 1.0);
+    EXPECT_EQ(surface["roughnessFactor"], 1.0);
+    EXPECT_TRUE(surface.contains("metallicRoughnessTexture"));
+    const nlohmann::json& info = surface["baseColorTexture"];
+    EXPECT_EQ(info["texCoord"], 1);
+    const nlohmann::json& texture = made.json["textures"][info["index"].get<std::size_t>()];
+    const nlohmann::json& sampler = made.json["samplers"][texture["sampler"].get<std::size_t>()];
+    EXPECT_EQ(sampler["wrapS"], 33648);
+    EXPECT_EQ(sampler["wrapT"], 33071);
+    // v goes up there and down here: (u, v) = (0.5, 0.25) shows u = 1.25, v = 1.125 there.
+    const nlohmann::json& moved = info["extensions"]["KHR_texture_transform"];
+    EXPECT_FLOAT_EQ(moved["scale"][0].get<float>() * 0.5f + moved["offset"][0].get<float>(), 1.25f);
+    EXPECT_FLOAT_EQ(moved["scale"][1].get<float>() * (1.0f - 0.25f) + moved["offset"][1].get<float>(), 1.0f - 1.125f);
+    ASSERT_EQ(made.json["images"].size(), 1u);
+    const std::string png = made.bytes(made.json["images"][0]["bufferView"]);
+    const auto image = gltf::decodePicture({png.begin(), png.end()});
+    ASSERT_TRUE(image) << image.error().message;
+    EXPECT_EQ(image.value()->getColor(0u, 1u), osg::Vec4(1, 0, 0, 0)) << "upper left";
+    EXPECT_LT((image.value()->getColor(0u, 0u) - osg::Vec4(0, 1, 0, 128 / 255.0f)).length(), 0.01f) << "lower left";
+    EXPECT_LT((image.value()->getColor(1u, 0u) - osg::Vec4(0, 0, 1, 192 / 255.0f)).length(), 0.01f);
+}
+
+TEST_F(SceneConversionTest, verticesKeepTheirDirectionsAndColours)
+{
+    mesh->mNormals = new aiVector3D[3]{{0, -2, 0}, {0, -1, 0}, {0, 0, 0}};
+    mesh->mTangents = new aiVector3D[3]{{3, 0, 0}, {1, 0, 0}, {1, 0, 0}};
+    mesh->mBitangents = new aiVector3D[3]{{0, 0, 1}, {0, 0, -1}, {0, 0, 1}};
+    mesh->mColors[0] = new aiColor4D[3]{{0.5f, 2, -1, 0.25f}, {0, 0.5f, 1, 1}, {1, 1, 1, 1}};
+    mesh->mTextureCoords[0][1].y = 0.25f;
+    const Result<std::string> bytes = glb();
+    ASSERT_TRUE(bytes) << bytes.error().message;
+    const gltf::GlbParts made(bytes.value());
+    using Numbers = std::vector<double>;
+    EXPECT_EQ(made.attribute("NORMAL"), (Numbers{0, -1, 0, 0, -1, 0, 0, 0, 1}));
+    // normal x tangent of the first two is (0, 0, 2 * 3) and (0, 0, 1).
+    const Numbers tangents = made.attribute("TANGENT");
+    ASSERT_EQ(tangents.size(), 12u);
+    EXPECT_EQ(tangents[0], 1.0);
+    EXPECT_EQ(tangents[3], 1.0);
+    EXPECT_EQ(tangents[7], -1.0);
+    EXPECT_EQ(made.attribute("COLOR_0"), (Numbers{0.5, 1, 0, 0.25, 0, 0.5, 1, 1, 1, 1, 1, 1}));
+    EXPECT_EQ(made.attribute("TEXCOORD_0"), (Numbers{0, 1, 1, 0.75, 0, 0}));
+}
+
+/// Weights of a vertex are scaled to 1; one without any stays where its node is.
+TEST_F(SceneConversionTest, weightsOfAllSumsAndOfNone)
+{
+    aiNode* const bone = new aiNode("Bone");
+    bone->mParent = flag;
+    bone->mTransformation.b4 = 3.0f;
+    flag->mNumChildren = 1;
+    flag->mChildren = arrayOf({bone});
+    flag->mTransformation.a4 = 5.0f;
+    aiBone* const skin = new aiBone;
+    skin->mName = "Bone";
+    skin->mNumWeights = 2;
+    skin->mWeights = new aiVertexWeight[2]{{0, 0.25f}, {1, 2.0f}};
+    mesh->mNumBones = 1;
+    mesh->mBones = arrayOf({skin});
+    const gltf::ImportedModel model = imported();
+    EXPECT_TRUE(model.messages.warnings.empty()) << "the import has nothing to mend";
+    const std::vector<glm::dvec3> found = gltf::ModelVertices(model, -1, 0.0).positions(model.primitives.at(0));
+    ASSERT_EQ(found.size(), 3u);
+    EXPECT_LT(glm::length(found[0] - glm::dvec3(5, 3, 0)), 1e-5) << "with the bone";
+    EXPECT_LT(glm::length(found[1] - glm::dvec3(6, 3, 0)), 1e-5) << "with the bone";
+    EXPECT_LT(glm::length(found[2] - glm::dvec3(5, 0, 2)), 1e-5) << "with its node";
+}
+
+/// Keys that go back in time are left out; two of one time are a jump.
+TEST_F(SceneConversionTest, keysAscend)
+{
+    animate({slide("Jump", 1.0, {{0, {0, 0, 0}}, {2, {0, 2, 0}}, {1, {0, 9, 0}}, {2, {0, 6, 0}}, {4, {0, 8, 0}}})});
+    const gltf::ImportedModel model = imported();
+    EXPECT_TRUE(model.messages.warnings.empty());
+    ASSERT_EQ(model.set->clips().size(), 1u);
+    for (const auto& [time, height] : {std::pair(1.0, 1.0), {1.999, 1.999}, {2.001, 6.001}, {3.0, 7.0}})
+        EXPECT_NEAR(gltf::ModelVertices(model, 0, time).positions(model.primitives[0])[0].y, height, 1e-3) << time;
 }
 
 } // namespace

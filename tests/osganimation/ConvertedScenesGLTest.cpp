@@ -273,6 +273,11 @@ TEST_F(ConvertedScenesGLTest, morphTargetsTakeTheShapesOfOsgAnimation)
     const AnimationSet& set = converted.characters.front()->getAnimationSet();
     ASSERT_EQ(set.morphs().size(), 2u);
     EXPECT_EQ(set.morphs()[0].defaults, (std::vector<float>{0.0f, 0.0f})); // "Puff" drives both
+    const Clip& puff = set.clips().back();
+    for (std::size_t keyframe = 0; keyframe < puff.keyframeCount(); ++keyframe)
+        for (std::size_t morph = 0; morph < 2; ++morph)
+            for (std::size_t weight = 0; weight < 2; ++weight)
+                EXPECT_GE(puff.at(keyframe, set.firstTrackOfMorph(morph))->number(weight), 0.0f) << keyframe;
 }
 
 TEST_F(ConvertedScenesGLTest, morphTargetsThatDoNotFitAreLeftOut)

@@ -188,7 +188,9 @@ TEST(ExportTest, severalCharactersBecomeOneThatMovesThemTogether)
     const PosedScene before(*scene, 0, 1.2), after(*read, 0, 1.2);
     for (const auto& [key, vertices] : before.meshes)
         EXPECT_LE(distanceBetween(vertices, after.meshes.at(key)), 1e-5 * before.size()) << key.first;
-    EXPECT_EQ(findCharacter(*read)->getAnimationSet().clips().size(), 4u);
+    const std::vector<Clip>& clips = findCharacter(*read)->getAnimationSet().clips();
+    ASSERT_EQ(clips.size(), 4u);
+    EXPECT_EQ(clips[0].markers().size(), 1u) << "the marker of both";
 }
 
 TEST(ExportTest, aCrowdIsWrittenAsOneInstance)

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/write/ClipKeys.h"
+#include "plugin/EncodedPicture.h"
+#include "plugin/ExportedDocument.h"
 #include "plugin/ImportedFile.h"
 #include "plugin/PointerFile.h"
 #include "plugin/RoundTrip.h"
@@ -7,6 +9,7 @@
 #include <osgGpuAnimation/animation/ClipBuilder.h>
 #include <osgGpuAnimation/nodes/mesh/AnimatedProperties.h>
 #include <osgGpuAnimation/nodes/mesh/MeshNames.h>
+#include <osgGpuAnimation/nodes/PbrMaterial.h>
 #include <osgGpuAnimation/nodes/shading/PunctualLight.h>
 
 #include <osg/LightSource>
@@ -14,8 +17,6 @@
 #include <osg/MatrixTransform>
 #include <osg/Switch>
 #include <osg/Texture2D>
-
-#include <nlohmann/json.hpp>
 
 #include <cmath>
 
@@ -31,14 +32,7 @@ using Strings = std::vector<std::string>;
 /// The JSON of the scene's GLB. warnings: those that are expected.
 Json documentOf(const osg::Node& scene, const Strings& warnings = {})
 {
-    Messages messages;
-    Report report(messages);
-    const Result<std::string> glb = exportModel(scene, report);
-    EXPECT_TRUE(glb) << glb.error().message;
-    EXPECT_EQ(messages.warnings, warnings);
-    if (!glb) return Json::object();
-    const auto byte = [&](std::size_t at) { return static_cast<unsigned char>(glb.value()[at]); };
-    return Json::parse(glb.value().substr(20, byte(12) + 256u * byte(13) + 65536u * byte(14)));
+    return exported(scene, warnings).json;
 }
 
 Strings namesOf(const Json& document, const char* member)
@@ -47,16 +41,6 @@ Strings namesOf(const Json& document, const char* member)
     for (const Json& each : document.value(member, Json::array()))
         names.push_back(each.value("name", ""));
     return names;
-}
-
-osg::ref_ptr<osg::Geometry> triangle(const std::string& name)
-{
-    osg::ref_ptr<osg::Geometry> made = new osg::Geometry;
-    made->setName(name);
-    const osg::Vec3 corners[] = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}};
-    made->setVertexArray(new osg::Vec3Array(3, corners));
-    made->addPrimitiveSet(new osg::DrawArrays(GL_TRIANGLES, 0, 3));
-    return made;
 }
 
 /// A skinned character with one mesh at each of the two nodes; all meshes have one name.
@@ -111,8 +95,8 @@ TEST(ExportedPartsTest, ofLevelsOfDetailTheFinestIsWritten)
     {
         const osg::ref_ptr<osg::LOD> levels = new osg::LOD;
         levels->setRangeMode(each.mode);
-        levels->addChild(triangle("first"), each.ranges[0][0], each.ranges[0][1]);
-        levels->addChild(triangle("second"), each.ranges[1][0], each.ranges[1][1]);
+        levels->addChild(plainTriangle("first"), each.ranges[0][0], each.ranges[0][1]);
+        levels->addChild(plainTriangle("second"), each.ranges[1][0], each.ranges[1][1]);
         EXPECT_EQ(namesOf(documentOf(*levels), "meshes"), Strings{each.finest});
     }
 }
@@ -165,10 +149,10 @@ TEST(ExportedPartsTest, hiddenGeometryDoesNotHideItsNeighbours)
     const osg::ref_ptr<osg::MatrixTransform> scene = new osg::MatrixTransform(osg::Matrix::translate(1, 2, 3));
     scene->setName("place");
     const osg::ref_ptr<osg::Switch> choice = new osg::Switch;
-    choice->addChild(triangle("off"), false);
-    choice->addChild(triangle("on"), true);
+    choice->addChild(plainTriangle("off"), false);
+    choice->addChild(plainTriangle("on"), true);
     scene->addChild(choice);
-    const osg::ref_ptr<osg::Geometry> masked = triangle("masked");
+    const osg::ref_ptr<osg::Geometry> masked = plainTriangle("masked");
     masked->setNodeMask(0);
     scene->addChild(masked);
     const Json document = documentOf(*scene);
@@ -184,7 +168,7 @@ TEST(ExportedPartsTest, hiddenGeometryDoesNotHideItsNeighbours)
 
 TEST(ExportedPartsTest, transformsOfUniformsReachTheCoordinates)
 {
-    const osg::ref_ptr<osg::Geometry> geometry = triangle("slide");
+    const osg::ref_ptr<osg::Geometry> geometry = plainTriangle("slide");
     geometry->setNormalArray(new osg::Vec3Array(3), osg::Array::BIND_PER_VERTEX);
     for (osg::Vec3& normal : *static_cast<osg::Vec3Array*>(geometry->getNormalArray()))
         normal.set(0, -1, 0);
@@ -235,7 +219,7 @@ TEST(ExportedPartsTest, animatedPropertiesAreLostWithOneWarning)
 
 TEST(ExportedPartsTest, arraysOfOtherKindsAreLeftOutWithAWarning)
 {
-    const osg::ref_ptr<osg::Geometry> geometry = triangle("packed");
+    const osg::ref_ptr<osg::Geometry> geometry = plainTriangle("packed");
     geometry->setNormalArray(new osg::Vec3bArray(3), osg::Array::BIND_PER_VERTEX);
     geometry->setTexCoordArray(0, new osg::Vec2sArray(3));
     const Json document = documentOf(
@@ -246,7 +230,7 @@ TEST(ExportedPartsTest, arraysOfOtherKindsAreLeftOutWithAWarning)
 
 TEST(ExportedPartsTest, arraysAreCutToTheVertices)
 {
-    const osg::ref_ptr<osg::Geometry> geometry = triangle("flat");
+    const osg::ref_ptr<osg::Geometry> geometry = plainTriangle("flat");
     const osg::Vec2 corners[] = {{0, 0}, {1, 0}, {0, 1}};
     geometry->setVertexArray(new osg::Vec2Array(3, corners));
     geometry->setTexCoordArray(0, new osg::Vec2Array(osg::Array::BIND_PER_VERTEX, 5));
@@ -270,6 +254,222 @@ TEST(ExportedPartsTest, aLongSplineIsWrittenInPiecesOf256Keys)
     ASSERT_TRUE(builder.add(channel));
     const ClipKeys keys = keysOf(builder.build("line"), {0, 0, 3, false}, {0, 0, 0});
     EXPECT_EQ(keys.times, std::vector<float>({0, 4, 8, 12, 16}));
+}
+
+/// A jump of a value between two keyframes of one time: the first of them is one float earlier.
+TEST(ExportedPartsTest, jumpsAreKeysOfTwoTimes)
+{
+    ClipParts parts;
+    parts.name = "jump";
+    parts.jointCount = parts.trackCount = 1;
+    parts.times = {0, 1, 1, 2};
+    for (const float x : {0.0f, 1.0f, 5.0f, 6.0f})
+    {
+        parts.data.emplace_back();
+        parts.data.back().translation.x = x;
+    }
+    const Result<Clip> clip = Clip::create(parts);
+    ASSERT_TRUE(clip) << clip.error().message;
+    const ClipKeys keys = keysOf(clip.value(), {0, 0, 3, false}, {0, 0, 0});
+    EXPECT_EQ(keys.times, std::vector<float>({0, std::nextafter(1.0f, 0.0f), 1, 2}));
+    ASSERT_EQ(keys.values.size(), 12u);
+    for (std::size_t key = 0; key < 4; ++key)
+        EXPECT_EQ(keys.values[3 * key], parts.data[key].translation.x);
+}
+
+TEST(ExportedPartsTest, theLastOfEqualStepsKeepsTheDuration)
+{
+    const Skeleton skeleton = Skeleton::create({{"mover", -1, {}, 0}}).value();
+    ClipBuilder builder(skeleton, {});
+    ASSERT_TRUE(builder.add({Channel::Path::Translation,
+                             Channel::Interpolation::Step,
+                             0,
+                             {0, 1, 2, 4},
+                             {0, 0, 0, 3, 0, 0, 3, 0, 0, 3, 0, 0}}));
+    const ClipKeys keys = keysOf(builder.build("steps"), {0, 0, 3, false}, {0, 0, 0});
+    EXPECT_STREQ(keys.interpolation, "STEP");
+    EXPECT_EQ(keys.times, std::vector<float>({0, 1, 4}));
+}
+
+TEST(ExportedPartsTest, aCharactersOwnMatrixIsAboveTheTurnOfItsFile)
+{
+    const ImportedModel model = imported(skinnedFile("Hat", "Coat"));
+    ASSERT_TRUE(model.root);
+    findCharacter(*model.root)
+        ->setMatrix(osg::Matrix::rotate(0.5, osg::Vec3(0, 0, 1)) * osg::Matrix::translate(1, 2, 3));
+    const osg::ref_ptr<osg::Group> read = throughGlb(*model.root);
+    ASSERT_TRUE(read);
+    expectSamePose(*model.root, *read, 0, 0.5);
+}
+
+/// Meshes that follow one joint, but not as they are: they become skinned, each with its own number of vertices.
+TEST(ExportedPartsTest, meshesOfOneEntryWithAnInverseBindComeBack)
+{
+    Skin skin{"skin", {0}, {AffineMatrix()}};
+    skin.inverseBinds[0].rows[0].w = 5.0f;
+    AnimationParts parts{Skeleton::create({{"joint", -1, {}, 0}}).value(), {skin}, {}, {}, {}};
+    const auto set = AnimationSet::create(std::move(parts));
+    ASSERT_TRUE(set) << set.error().message;
+    const osg::ref_ptr<AnimatedCharacter> character = new AnimatedCharacter(set.value());
+    for (const unsigned int count : {3u, 6u})
+    {
+        const osg::ref_ptr<SkinnedGeometry> mesh = new SkinnedGeometry;
+        mesh->setName("mesh " + std::to_string(count));
+        const osg::ref_ptr<osg::Vec3Array> positions = new osg::Vec3Array, normals = new osg::Vec3Array;
+        for (unsigned int i = 0; i < count; ++i)
+        {
+            positions->push_back(osg::Vec3(i % 3 == 1, static_cast<float>(i), i % 3 == 2));
+            normals->push_back(osg::Vec3(0, -1, 0));
+        }
+        mesh->setVertexArray(positions);
+        mesh->setNormalArray(normals, osg::Array::BIND_PER_VERTEX);
+        mesh->addPrimitiveSet(new osg::DrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(count)));
+        mesh->setRigidEntry(static_cast<unsigned short>(set.value()->entryOfSkin(0, 0)));
+        character->addChild(mesh);
+    }
+    const osg::ref_ptr<osg::Group> read = throughGlb(*character);
+    ASSERT_TRUE(read);
+    expectSamePose(*character, *read, -1, 0.0);
+}
+
+TEST(ExportedPartsTest, ofTheMeshesOfANodeOneMayBeHidden)
+{
+    ModelBuilder file = skinnedFile("Hat", "Coat");
+    file.model.meshes[0].primitives.push_back(file.model.meshes[0].primitives[0]);
+    file.model.materials.resize(2);
+    for (std::size_t i = 0; i < 2; ++i)
+    {
+        file.model.materials[i].name = i == 0 ? "felt" : "band";
+        file.model.materials[i].emissiveFactor = {0.5 * double(i), 0, 0};
+        file.model.meshes[0].primitives[i].material = static_cast<int>(i);
+    }
+    const ImportedModel model = imported(file);
+    ASSERT_TRUE(model.root);
+    for (const ImportedPrimitive& primitive : model.primitives)
+        if (primitive.geometry->getStateSet()->getName() == "band") primitive.geometry->setNodeMask(0);
+    const Json document = documentOf(*model.root);
+    for (const Json& node : document["nodes"])
+        if (node.contains("mesh"))
+            for (const Json& primitive : document["meshes"][node["mesh"].get<std::size_t>()]["primitives"])
+            {
+                const Json& material = document["materials"][primitive["material"].get<std::size_t>()];
+                EXPECT_EQ(node.contains("extensions"), material.value("name", "") == "band") << material;
+            }
+}
+
+/// The joints of a skin have a node above them all, so nothing warns of the file that is read again.
+TEST(ExportedPartsTest, aSkinOfTwoRootsGetsANodeAbove)
+{
+    ModelBuilder file;
+    const int mesh = file.skinnedTriangle();
+    const int first = file.node("first"), second = file.node("second");
+    file.at(file.node("skinned", -1, mesh)).skin = file.skin({first, second});
+    file.animation("move");
+    file.slide(second);
+    const ImportedModel model = imported(file);
+    ASSERT_TRUE(model.root);
+    EXPECT_EQ(model.messages.warnings.size(), 1u);
+    const osg::ref_ptr<osg::Group> read = throughGlb(*model.root);
+    ASSERT_TRUE(read);
+    expectSamePose(*model.root, *read, 0, 0.5);
+}
+
+TEST(ExportedPartsTest, transformsThatAreNotAffineAreLeftOut)
+{
+    for (int column = 0; column < 4; ++column)
+    {
+        const osg::ref_ptr<osg::MatrixTransform> scene = new osg::MatrixTransform;
+        scene->setName("lens");
+        osg::Matrixd matrix = osg::Matrixd::translate(1, 2, 3);
+        matrix(column, 3) = 2.0;
+        scene->setMatrix(matrix);
+        scene->addChild(plainTriangle("triangle"));
+        documentOf(*scene, {"transform \"lens\": it is not affine; left out"});
+    }
+}
+
+/// A surface of the kit has all of its state; plain ones have that of the nodes above, too.
+TEST(ExportedPartsTest, statesAboveReachPlainSurfacesOnly)
+{
+    const osg::ref_ptr<osg::Group> scene = new osg::Group;
+    scene->getOrCreateStateSet()->setMode(GL_BLEND, osg::StateAttribute::ON);
+    const osg::ref_ptr<osg::Geometry> plain = plainTriangle("plain"), own = plainTriangle("own");
+    PbrMaterial material;
+    material.metallic = 0.25f;
+    applyPbrMaterial(*own->getOrCreateStateSet(), material);
+    scene->addChild(plain);
+    scene->addChild(own);
+    const Json document = documentOf(*scene);
+    for (const Json& mesh : document["meshes"])
+    {
+        const Json& made = document["materials"][mesh["primitives"][0]["material"].get<std::size_t>()];
+        EXPECT_EQ(made.value("alphaMode", "OPAQUE"), mesh["name"] == "plain" ? "BLEND" : "OPAQUE") << mesh["name"];
+    }
+}
+
+/// A picture that is kept as it was is a JPEG again; others become PNG.
+TEST(ExportedPartsTest, keptPicturesStayJpegs)
+{
+    PointerFile file;
+    file.quad("red", 0, 0, file.material("red", {1, 1, 1, 1}));
+    file.model.textures.resize(1);
+    file.model.textures[0].source = 0;
+    file.model.materials[0].pbrMetallicRoughness.baseColorTexture.index = 0;
+    Json json = Json::parse(file.text());
+    const std::string jpeg = encodedPicture("jpg", 4, 4);
+    std::string uri = "data:image/jpeg,";
+    for (const char byte : jpeg)
+    {
+        constexpr const char* digits = "0123456789ABCDEF";
+        const auto value = static_cast<unsigned char>(byte);
+        uri.append({'%', digits[value / 16], digits[value % 16]});
+    }
+    json["images"] = {{{"uri", uri}}};
+    for (const bool isKept : {false, true})
+    {
+        ImportOptions options;
+        options.keepEncoded = isKept;
+        const ImportedModel model = importedFrom(json, options);
+        ASSERT_TRUE(model.root);
+        const GlbParts made = exported(*model.root);
+        ASSERT_EQ(made.json["images"].size(), 1u);
+        EXPECT_EQ(made.json["images"][0]["mimeType"], isKept ? "image/jpeg" : "image/png");
+        EXPECT_EQ(made.bytes(made.json["images"][0]["bufferView"]) == jpeg, isKept);
+    }
+}
+
+/// The primitive has its own material, whatever the character shows.
+TEST(ExportedPartsTest, variantsAreWrittenBesideTheOwnMaterial)
+{
+    PointerFile file;
+    const int node = file.quad("coat", 0, 0, file.material("own", {1, 0, 0, 1}));
+    static_cast<void>(file.material("snow", {1, 1, 1, 1}));
+    file.animation("move");
+    file.slide(node);
+    Json json = file.document();
+    json["extensionsUsed"].push_back("KHR_materials_variants");
+    json["extensions"]["KHR_materials_variants"]["variants"] = {{{"name", "summer"}}, {{"name", "winter"}}};
+    json["meshes"][0]["primitives"][0]["extensions"]["KHR_materials_variants"]["mappings"] = {
+        {{"material", 1}, {"variants", {1}}}};
+    for (const char* const shown : {"", "winter"})
+    {
+        const ImportedModel model = importedFrom(json);
+        ASSERT_TRUE(model.root);
+        if (*shown)
+        {
+            ASSERT_TRUE(findCharacter(*model.root)->setMaterialVariant(shown));
+        }
+        const Json document = documentOf(*model.root);
+        const Json& primitive = document["meshes"][0]["primitives"][0];
+        const auto nameOf = [&](const Json& material)
+        { return document["materials"][material.get<std::size_t>()]["name"]; };
+        EXPECT_EQ(nameOf(primitive["material"]), "own") << shown;
+        EXPECT_EQ(namesOf(document["extensions"]["KHR_materials_variants"], "variants"), Strings({"summer", "winter"}));
+        const Json& mappings = primitive["extensions"]["KHR_materials_variants"]["mappings"];
+        ASSERT_EQ(mappings.size(), 1u);
+        EXPECT_EQ(nameOf(mappings[0]["material"]), "snow");
+        EXPECT_EQ(mappings[0]["variants"], Json({1}));
+    }
 }
 
 } // namespace

@@ -458,4 +458,50 @@ TEST_F(ToolTest, poseLikeAnswersItsOwnDocument)
     EXPECT_EQ(json::parse(std::ifstream(second)), json::parse(std::ifstream(first)));
 }
 
+/// What does not move is where its node is.
+TEST_F(ToolTest, poseTellsThePlacesOfWhatDoesNotMove)
+{
+    json still = json::parse(swingingFlag());
+    still.erase("animations");
+    still["nodes"][0]["scale"] = {2, 1, 1};
+    const Process done = run({"pose", folder.write("still.gltf", still.dump()), "--bind", "--evaluator", "cpu"});
+    ASSERT_EQ(done.status, 0) << done.err;
+    expectBounds(json::parse(done.out)["frames"][0]["bbox"], {-2, 0, 0, 2, 2, 0});
+}
+
+/// Of many vertices, 64 are sampled, from the first on over all of them.
+TEST_F(ToolTest, sampledVerticesAreSpread)
+{
+    json model = {{"asset", {{"version", "2.0"}}}, {"scenes", {{{"nodes", {0}}}}}, {"nodes", {{{"mesh", 0}}}}};
+    model["accessors"] = {
+        {{"componentType", 5126}, {"count", 192}, {"type", "VEC3"}, {"min", {0, 0, 0}}, {"max", {0, 0, 0}}}};
+    model["meshes"] = {
+        {{"primitives", {{{"attributes", {{"POSITION", 0}}}, {"targets", {{{"POSITION", 0}}}}, {"mode", 0}}}}}};
+    const Process done = run({"pose", folder.write("points.gltf", model.dump()), "--bind", "--evaluator", "cpu"});
+    ASSERT_EQ(done.status, 0) << done.err;
+    const json sampled = json::parse(done.out)["primitives"][0]["sampled"];
+    ASSERT_EQ(sampled.size(), 64u);
+    for (std::size_t i = 0; i < 64; ++i)
+        EXPECT_EQ(sampled[i], 3 * i);
+}
+
+/// Arrays that several nodes show are on the GPU once.
+TEST_F(ToolTest, inspectCountsSharedArraysOnce)
+{
+    json model = json::parse(swingingFlag());
+    model.erase("animations");
+    const auto bytes = [&]
+    {
+        const Process done = run({"inspect", folder.write("still.gltf", model.dump()), "--json"});
+        EXPECT_EQ(done.status, 0) << done.err;
+        return json::parse(done.out)["gpuBytes"]["meshes"].get<int>();
+    };
+    const int one = bytes();
+    json second = model["nodes"][1];
+    second["scale"] = {1, 1, -1}; // another node, the same arrays
+    model["nodes"].push_back(second);
+    model["nodes"][0]["children"].push_back(model["nodes"].size() - 1);
+    EXPECT_EQ(bytes(), one);
+}
+
 } // namespace osgGpuAnimation

@@ -47,9 +47,9 @@ TEST(CharacterBoundsTest, FollowWhatLayersAndCrossfadesPlay)
     EXPECT_GE(square->getBoundingBox().xMax(), character->getCurrentBounds().xMax());
 }
 
-/// A square whose only morph target, of weight 0.25 at rest, lifts it by one unit. "rise" takes the weight from 0 to 1
-/// in a second, "fall" back.
-osg::ref_ptr<AnimatedCharacter> makeMorphedCharacter()
+/// A square whose only morph target, of weight 0.25 at rest, lifts its first corner by `lift`, the others less. "rise"
+/// takes the weight from 0 to 1 in a second, "fall" back.
+osg::ref_ptr<AnimatedCharacter> makeMorphedCharacter(float lift)
 {
     AnimationParts parts{Skeleton::create({Joint()}).value(), {}, {0}, {{"lift", -1, {0.25f}}}, {}};
     for (const double first : {0.0, 1.0})
@@ -63,7 +63,8 @@ osg::ref_ptr<AnimatedCharacter> makeMorphedCharacter()
     osg::ref_ptr<SkinnedGeometry> square = makeTestSquare(1);
     square->setRigidEntry(static_cast<unsigned short>(set->entryOfRigidJoint(0)));
     osg::ref_ptr<osg::Vec3Array> lifted = new osg::Vec3Array(4);
-    std::fill(lifted->begin(), lifted->end(), osg::Vec3(0, 0, 1));
+    for (std::size_t corner = 0; corner < lifted->size(); ++corner)
+        (*lifted)[corner].z() = lift * (1.0f - 0.2f * static_cast<float>(corner));
     square->setMorphTargets(*set, 0, {{lifted, nullptr, nullptr, nullptr}});
     osg::ref_ptr<AnimatedCharacter> character = new AnimatedCharacter(set);
     character->addChild(square);
@@ -85,29 +86,31 @@ TEST(CharacterBoundsTest, HoldMorphWeightsThatAdditiveLayersRaiseAndLower)
                           {"rise", "rise", Reference::FirstFrame, 2.0},
                           {"rise", "rise", Reference::RestPose, 1.75}};
     for (const Case& c : cases)
-    {
-        SCOPED_TRACE(testing::Message() << c.clip << " and " << c.added << " to " << c.weight);
-        const osg::ref_ptr<AnimatedCharacter> character = makeMorphedCharacter();
-        AnimationController& controller = character->getController();
-        controller.setLoopMode(LoopMode::Once);
-        ASSERT_TRUE(controller.play(c.clip));
-        AnimationLayer& added = controller.layer(1);
-        added.setMode(AnimationLayer::Mode::Additive, c.reference);
-        added.setLoopMode(LoopMode::Once);
-        ASSERT_TRUE(added.play(c.added));
-        character->update(0.0);
-        character->update(1.0);
-        std::vector<AffineMatrix> palette;
-        Pose::evaluate(character->getAnimationSet(), controller.instruction(), AffineMatrix(), palette);
-        std::vector<glm::dvec3> positions;
-        const auto& square = dynamic_cast<const SkinnedGeometry&>(*character->getChild(0));
-        square.computePositions(palette, positions);
-        ASSERT_EQ(positions.size(), 4u);
-        EXPECT_NEAR(positions[0].z, c.weight, 1e-6);
-        for (const glm::dvec3& position : positions)
-            for (const osg::BoundingBox& box : {character->getCurrentBounds(), square.getBoundingBox()})
-                EXPECT_TRUE(box.contains(osg::Vec3(position.x, position.y, position.z))) << position.z;
-    }
+        for (const float lift : {1.0f, -1.0f})
+        {
+            SCOPED_TRACE(lift);
+            SCOPED_TRACE(testing::Message() << c.clip << " and " << c.added << " to " << c.weight);
+            const osg::ref_ptr<AnimatedCharacter> character = makeMorphedCharacter(lift);
+            AnimationController& controller = character->getController();
+            controller.setLoopMode(LoopMode::Once);
+            ASSERT_TRUE(controller.play(c.clip));
+            AnimationLayer& added = controller.layer(1);
+            added.setMode(AnimationLayer::Mode::Additive, c.reference);
+            added.setLoopMode(LoopMode::Once);
+            ASSERT_TRUE(added.play(c.added));
+            character->update(0.0);
+            character->update(1.0);
+            std::vector<AffineMatrix> palette;
+            Pose::evaluate(character->getAnimationSet(), controller.instruction(), AffineMatrix(), palette);
+            std::vector<glm::dvec3> positions;
+            const auto& square = dynamic_cast<const SkinnedGeometry&>(*character->getChild(0));
+            square.computePositions(palette, positions);
+            ASSERT_EQ(positions.size(), 4u);
+            EXPECT_NEAR(positions[0].z, lift * c.weight, 1e-6);
+            for (const glm::dvec3& position : positions)
+                for (const osg::BoundingBox& box : {character->getCurrentBounds(), square.getBoundingBox()})
+                    EXPECT_TRUE(box.contains(osg::Vec3(position.x, position.y, position.z))) << position.z;
+        }
 }
 
 TEST(CharacterBoundsTest, HoldMorphWeightsThatTheApplicationPoses)
@@ -125,27 +128,29 @@ TEST(CharacterBoundsTest, HoldMorphWeightsThatTheApplicationPoses)
                           {"rise", Mode::Additive, 5.0f, 5.75},  {"rise", Mode::Additive, -9.0f, -8.25},
                           {"fall", Mode::Additive, -1.0f, -1.25}};
     for (const Case& c : cases)
-    {
-        SCOPED_TRACE(testing::Message() << (c.mode == Mode::Override ? "shown " : "added ") << c.posed);
-        const osg::ref_ptr<AnimatedCharacter> character = makeMorphedCharacter();
-        AnimationController& controller = character->getController();
-        controller.setLoopMode(LoopMode::Once);
-        ASSERT_TRUE(controller.play(c.clip));
-        controller.layer(1).setMode(c.mode);
-        character->update(0.0);
-        character->update(1.0);
-        ASSERT_TRUE(controller.layer(1).pose().setMorphWeight(0, 0, c.posed));
-        character->update(1.0);
-        std::vector<AffineMatrix> palette;
-        Pose::evaluate(character->getAnimationSet(), controller.instruction(), AffineMatrix(), palette);
-        std::vector<glm::dvec3> positions;
-        const auto& square = dynamic_cast<const SkinnedGeometry&>(*character->getChild(0));
-        square.computePositions(palette, positions);
-        EXPECT_NEAR(positions.at(0).z, c.weight, 1e-5);
-        for (const glm::dvec3& position : positions)
-            for (const osg::BoundingBox& box : {character->getCurrentBounds(), square.getBoundingBox()})
-                EXPECT_TRUE(box.contains(osg::Vec3(position.x, position.y, position.z))) << position.z;
-    }
+        for (const float lift : {1.0f, -1.0f})
+        {
+            SCOPED_TRACE(lift);
+            SCOPED_TRACE(testing::Message() << (c.mode == Mode::Override ? "shown " : "added ") << c.posed);
+            const osg::ref_ptr<AnimatedCharacter> character = makeMorphedCharacter(lift);
+            AnimationController& controller = character->getController();
+            controller.setLoopMode(LoopMode::Once);
+            ASSERT_TRUE(controller.play(c.clip));
+            controller.layer(1).setMode(c.mode);
+            character->update(0.0);
+            character->update(1.0);
+            ASSERT_TRUE(controller.layer(1).pose().setMorphWeight(0, 0, c.posed));
+            character->update(1.0);
+            std::vector<AffineMatrix> palette;
+            Pose::evaluate(character->getAnimationSet(), controller.instruction(), AffineMatrix(), palette);
+            std::vector<glm::dvec3> positions;
+            const auto& square = dynamic_cast<const SkinnedGeometry&>(*character->getChild(0));
+            square.computePositions(palette, positions);
+            EXPECT_NEAR(positions.at(0).z, lift * c.weight, 1e-5);
+            for (const glm::dvec3& position : positions)
+                for (const osg::BoundingBox& box : {character->getCurrentBounds(), square.getBoundingBox()})
+                    EXPECT_TRUE(box.contains(osg::Vec3(position.x, position.y, position.z))) << position.z;
+        }
 }
 
 TEST(CharacterBoundsTest, ACloneHasItsOwn)

@@ -125,6 +125,15 @@ const Change changes[] = {
      [](osg::Group& group) { characterOf(group, 0).getChild(0)->setCullCallback(new osg::NodeCallback); },
      everybody + 1 + 1},
     {"a mesh that is masked out", [](osg::Group& group) { characterOf(group, 0).getChild(0)->setNodeMask(0); }, 1 + 1},
+    {"half of them with another set",
+     [](osg::Group& group)
+     {
+         const AnimationSet& set = characterOf(group, 0).getAnimationSet();
+         const auto other = set.withClips(set.clips()).value();
+         for (int index = 0; index < everybody; index += 2)
+             EXPECT_TRUE(characterOf(group, index).setAnimationSet(other));
+     },
+     2 * (2 + 2)},
     {"one has lost a mesh", [](osg::Group& group) { characterOf(group, 5).removeChild(1); }, 1 + 2 + 2},
     {"other things below them",
      [](osg::Group& group)

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "nodes/Tube.h"
 #include "support/NotifyLog.h"
 #include "support/TestCharacter.h"
 
@@ -49,6 +50,16 @@ protected:
         visitor->setActionAdapter(viewer ? viewer : &actions);
         visitor->addEvent(event);
         scene->accept(*visitor);
+    }
+    /// A key that another handler has taken.
+    void pressHandled(int key)
+    {
+        osg::ref_ptr<osgGA::GUIEventAdapter> event = new osgGA::GUIEventAdapter;
+        event->setEventType(osgGA::GUIEventAdapter::KEYDOWN);
+        event->setKey(key);
+        event->setHandled(true);
+        const osg::ref_ptr<CharacterKeys> keys = new CharacterKeys;
+        EXPECT_FALSE(keys->handle(*event, actions, character, nullptr));
     }
     void press(int key) { send(osgGA::GUIEventAdapter::KEYDOWN, key); }
 
@@ -184,6 +195,14 @@ TEST_F(CharacterKeysTest, slowerFasterAndTheOtherWay)
     for (int i = 0; i < 100; ++i)
         press('+');
     EXPECT_DOUBLE_EQ(controller.speed(), -64.0);
+    for (int i = 0; i < 100; ++i)
+        press('-');
+    EXPECT_DOUBLE_EQ(controller.speed(), -1.0 / 64.0);
+    press(osgGA::GUIEventAdapter::KEY_KP_Add);
+    EXPECT_DOUBLE_EQ(controller.speed(), -1.25 / 64.0);
+    press(osgGA::GUIEventAdapter::KEY_KP_Subtract);
+    EXPECT_DOUBLE_EQ(controller.speed(), -1.0 / 64.0);
+    controller.setSpeed(-64.0);
     controller.setLoopMode(LoopMode::Once);
     controller.advance(100.0);
     ASSERT_EQ(controller.state(), PlayState::Ended);
@@ -202,6 +221,41 @@ TEST_F(CharacterKeysTest, jointsComeAndGo)
         << "all but the root have a parent";
     press('j');
     EXPECT_FALSE(hasJointLines(*character));
+}
+
+TEST_F(CharacterKeysTest, jointLinesLeadFromJointToJoint)
+{
+    for (const auto& set : {testCharacterSet(), armSet()})
+    {
+        const osg::ref_ptr<AnimatedCharacter> posed = new AnimatedCharacter(set);
+        ASSERT_TRUE(posed->getController().play(set->clips().size() - 1));
+        posed->getController().seek(0.6);
+        const osg::ref_ptr<SkinnedGeometry> lines = makeJointLines(*set);
+        const osg::ref_ptr<osg::Geometry> mesh = posed->getPosedMesh(*lines);
+        const auto& ends = dynamic_cast<const osg::Vec3Array&>(*mesh->getVertexArray());
+        std::size_t end = 0;
+        for (std::size_t joint = 0; joint < set->skeleton().jointCount(); ++joint)
+        {
+            const int parent = set->skeleton().joint(joint).parent;
+            if (parent < 0) continue;
+            for (const std::size_t each : {static_cast<std::size_t>(parent), joint})
+                EXPECT_LT((ends.at(end++) - posed->jointToModel(each).value().getTrans()).length(), 1e-5) << joint;
+        }
+        EXPECT_EQ(end, ends.size());
+    }
+}
+
+TEST_F(CharacterKeysTest, withoutAClipTheFirstOneComes)
+{
+    for (const int key : {'n', 'N'})
+    {
+        const osg::ref_ptr<AnimatedCharacter> still = new AnimatedCharacter(testCharacterSet());
+        still->addEventCallback(new CharacterKeys);
+        scene->setChild(0, still);
+        press(key);
+        EXPECT_EQ(still->getController().clip(), 0);
+    }
+    EXPECT_EQ(osg::ref_ptr<CharacterKeys>(osg::clone(new CharacterKeys(1.5)))->getFadeSeconds(), 1.5);
 }
 
 TEST_F(CharacterKeysTest, aCharacterUnderTwoParentsHearsAKeyOnce)
@@ -227,6 +281,8 @@ TEST_F(CharacterKeysTest, otherKeysAndKeysThatOthersTookAreLeftAlone)
     for (int key : {'s', 'f', 'h', 'w', 'l', 't', 'b', 'm', 'e', 'z', 'Z', 'c', 'C', 'v', 'o',
                     '1', '7', '*', '/', '<', '>', ' ', 'q', 'a', 'p', '(', ')', '[', ']'})
         press(key);
+    pressHandled('n');
+    EXPECT_EQ(controller.clip(), 0);
     EXPECT_EQ(actions.redraws, 0) << "keys of osgviewer and its manipulators";
     EXPECT_EQ(log->text, "");
 }

@@ -135,6 +135,56 @@ TEST_F(CrowdEdgesGLTest, placesThatAreNoNumbersLeaveTheOthersAsTheyAre)
     }
 }
 
+TEST_F(CrowdEdgesGLTest, hiddenMeshesAreNotDrawn)
+{
+    const osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
+    character->addChild(makeTestSquare(2));
+    const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*character);
+    ASSERT_TRUE(crowd->add(osg::Matrixd::translate(-3, 0, 0), still()));
+    pictureOf(crowd, {0.0});
+    EXPECT_EQ(picture().pixelsDrawn(), 2 * 64);
+    crowd->getChild(0)->setNodeMask(0);
+    pictureOf(crowd, {0.0});
+    EXPECT_EQ(picture().pixelsDrawn(), 64);
+    EXPECT_NO_GL_ERROR();
+}
+
+// Eight pixels a unit: the square's sphere has a diameter of 11.3 pixels.
+TEST_F(CrowdEdgesGLTest, smallInstancesAreCulledByTheirDiameter)
+{
+    viewer().getCamera()->setSmallFeatureCullingPixelSize(10.0f);
+    const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*makeTestCharacter());
+    for (const double scale : {1.0, 0.91, 0.86, 0.5})
+        ASSERT_TRUE(crowd->add(osg::Matrixd::scale(scale, scale, scale), still()));
+    viewer().setSceneData(crowd);
+    drawAt(0);
+    EXPECT_EQ(PosePipeline::of(state())->getCounters().instancesEvaluated, 2u);
+    EXPECT_NO_GL_ERROR();
+}
+
+TEST_F(CrowdEdgesGLTest, aCharacterBelowACrowdHasItsOwnPose)
+{
+    const auto pictureWith = [&](bool isBelow)
+    {
+        const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*makeTestCharacter());
+        EXPECT_TRUE(crowd->add(osg::Matrixd::translate(-3, 0, 0), still()));
+        EXPECT_TRUE(crowd->add(osg::Matrixd::translate(-3, 0, 2), still()));
+        const osg::ref_ptr<AnimatedCharacter> rider = makeTestCharacter();
+        EXPECT_TRUE(rider->getController().play("turn"));
+        rider->getController().pause();
+        rider->getController().seek(0.3);
+        rider->setMatrix(osg::Matrixd::translate(isBelow ? osg::Vec3d(4, 0, 1) : osg::Vec3d(1, 0, 1)));
+        const osg::ref_ptr<osg::Group> scene = new osg::Group;
+        scene->addChild(crowd);
+        (isBelow ? static_cast<osg::Group*>(crowd) : scene.get())->addChild(rider);
+        return pictureOf(scene, {0.0});
+    };
+    const osg::ref_ptr<osg::Image> expected = pictureWith(false);
+    EXPECT_GT(picture().pixelsDrawn(), 2 * 64 + 32);
+    EXPECT_EQ(Picture::pixelsDifferent(*expected, *pictureWith(true)), 0);
+    EXPECT_NO_GL_ERROR();
+}
+
 // The instance that reaches farthest (or nearest) is not the one with the farthest (or nearest) centre.
 TEST_F(CrowdEdgesGLTest, nearAndFarPlanesHoldLargeInstancesBesideSmallOnes)
 {

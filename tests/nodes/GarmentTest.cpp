@@ -7,6 +7,7 @@
 #include <osgGpuAnimation/nodes/mesh/MaterialVariants.h>
 #include <osgGpuAnimation/nodes/mesh/MeshNames.h>
 
+#include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 #include <osg/Geometry>
 #include <osg/LOD>
@@ -14,7 +15,9 @@
 #include <osgUtil/LineSegmentIntersector>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <utility>
 
 // A body of two joints wears sleeves: tubes like its own arm. Whatever a sleeve's file says, a worn sleeve that is
 // bound like the arm is posed like the arm.
@@ -31,38 +34,49 @@ struct Sleeve
     const char* name;
     std::vector<Joint> joints; ///< of its file
     int upper, lower;          ///< joints that move the halves
-    float lowerX;              ///< the place of the lower joint at rest
+    float shift;               ///< of the lower joint's bind matrix along +X, from its place at rest
     float scale;               ///< of the mesh at bind time
     float rounding;            ///< of the inverse binds
     std::size_t addedEntries;
     std::vector<std::string> followed;
 };
 
-Joint joint(const char* name, int parent, float x)
+/// turn: about +Z, radians.
+Joint joint(const char* name, int parent, float x, float turn = 0.0f)
 {
     Joint made{name, parent, {}, -1};
     made.rest.translation.x = x;
+    made.rest.rotation = {0.0f, 0.0f, std::sin(0.5f * turn), std::cos(0.5f * turn)};
     return made;
 }
 
 const Sleeve sleeves[] = {
-    {"the same joints", {joint("shoulder", -1, 0), joint("elbow", 0, 4)}, 0, 1, 4, 1, 0, 0, {}},
+    {"the same joints", {joint("shoulder", -1, 0), joint("elbow", 0, 4)}, 0, 1, 0, 1, 0, 0, {}},
     {"another order, names with a namespace",
      {joint("rig", -1, 0), joint("hand", 3, 2), joint("coat:shoulder", 0, 0), joint("coat:elbow", 2, 4)},
      2,
      3,
-     4,
+     0,
      1,
      0,
      0,
      {}},
-    {"other rounding", {joint("shoulder", -1, 0), joint("elbow", 0, 4)}, 0, 1, 4, 1, 1e-6f, 0, {}},
-    {"another scale at bind time", {joint("shoulder", -1, 0), joint("elbow", 0, 4)}, 0, 1, 4, 100, 0, 2, {}},
+    {"other rounding", {joint("shoulder", -1, 0), joint("elbow", 0, 4)}, 0, 1, 0, 1, 1e-6f, 0, {}},
+    {"another scale at bind time", {joint("shoulder", -1, 0), joint("elbow", 0, 4)}, 0, 1, 0, 100, 0, 2, {}},
     {"a joint that the body lacks",
      {joint("shoulder", -1, 0), joint("elbow", 0, 4), joint("cuff", 1, 3), joint("button", 2, 0.5f)},
      0,
      3,
-     7.5f,
+     0,
+     1,
+     0,
+     0,
+     {"button"}},
+    {"turned joints that the body lacks",
+     {joint("shoulder", -1, 0), joint("elbow", 0, 4), joint("cuff", 1, 3, 0.5f), joint("button", 2, 0.5f, -1.2f)},
+     0,
+     3,
+     0,
      1,
      0,
      0,
@@ -72,17 +86,32 @@ const Sleeve sleeves[] = {
 osg::ref_ptr<AnimatedCharacter> makeSleeve(const Sleeve& sleeve)
 {
     AnimationParts parts{Skeleton::create(sleeve.joints).value(), {}, {}, {}, {}};
-    AffineMatrix upper, lower;
-    for (std::size_t row = 0; row < 3; ++row)
-        upper.rows[row][static_cast<int>(row)] = lower.rows[row][static_cast<int>(row)] = 1.0f / sleeve.scale;
-    upper.rows[1].x = lower.rows[2].w = sleeve.rounding;
-    lower.rows[0].w = -sleeve.lowerX;
     const auto jointOf = [&](int input) { return parts.skeleton.jointOfInput(static_cast<std::size_t>(input)); };
+    glm::dmat4 lowerToModel(1.0);
+    for (int above = jointOf(sleeve.lower); above >= 0;
+         above = parts.skeleton.joint(static_cast<std::size_t>(above)).parent)
+        lowerToModel = parts.skeleton.joint(static_cast<std::size_t>(above)).rest.toMatrix().toColumns() * lowerToModel;
+    const glm::dmat4 size = glm::scale(glm::dmat4(1.0), glm::dvec3(1.0 / sleeve.scale));
+    const glm::dmat4 shifted = glm::translate(glm::dmat4(1.0), glm::dvec3(sleeve.shift, 0.0, 0.0));
+    AffineMatrix upper = AffineMatrix::fromColumns(size);
+    AffineMatrix lower = AffineMatrix::fromColumns(glm::inverse(lowerToModel) * shifted * size);
+    upper.rows[1].x = sleeve.rounding;
+    lower.rows[2].w += sleeve.rounding;
     parts.skins.push_back({"sleeve", {jointOf(sleeve.upper), jointOf(sleeve.lower)}, {upper, lower}});
     const auto set = AnimationSet::create(std::move(parts)).value();
     const osg::ref_ptr<SkinnedGeometry> tube = makeShownTube(*set);
     for (osg::Vec3& vertex : static_cast<osg::Vec3Array&>(*tube->getVertexArray()))
         vertex *= sleeve.scale;
+    // In the last two of four influences.
+    const osg::ref_ptr<osg::Vec4usArray> entries = new osg::Vec4usArray(*tube->getEntries(0));
+    const osg::ref_ptr<osg::Vec4Array> weights = new osg::Vec4Array(*tube->getWeights(0));
+    for (std::size_t vertex = 0; vertex < entries->size(); ++vertex)
+        for (int influence = 0; influence < 2; ++influence)
+        {
+            std::swap((*entries)[vertex][influence], (*entries)[vertex][influence + 2]);
+            std::swap((*weights)[vertex][influence], (*weights)[vertex][influence + 2]);
+        }
+    tube->setInfluences(0, entries, weights);
     tube->setName("sleeve");
     osg::ref_ptr<AnimatedCharacter> character = new AnimatedCharacter(set);
     character->addChild(tube);
@@ -163,11 +192,16 @@ TEST(GarmentTest, ofRigidPartsFollowsTheirJoints)
     for (std::size_t i = 0; i < bind.size(); ++i)
         ASSERT_LT((static_cast<const osg::Vec3Array&>(*posed->getVertexArray())[i] - bind[i] * elbowToModel).length(),
                   1e-5);
+    const osg::ref_ptr<AnimatedCharacter> coat = makeSleeve(sleeves[3]);
+    ASSERT_TRUE(body->wear(coat));
+    EXPECT_TRUE(body->takeOff(coat));
+    EXPECT_EQ(body->getAnimationSet().paletteSize(), armSet()->paletteSize() + 1) << "the shield's entry remains";
+    EXPECT_LT(largestDistance(*body->getPosedMesh(meshAt(*body, 1)), *posed), 1e-6);
 }
 
 TEST(GarmentTest, thatCannotBeWornLeavesTheBodyAlone)
 {
-    const Sleeve strange{"strange", {joint("root", -1, 0), joint("tail", 0, 4)}, 0, 1, 4, 1, 0, 0, {}};
+    const Sleeve strange{"strange", {joint("root", -1, 0), joint("tail", 0, 4)}, 0, 1, 0, 1, 0, 0, {}};
     const osg::ref_ptr<AnimatedCharacter> body = makeBody(), worn = makeSleeve(sleeves[0]);
     ASSERT_TRUE(body->wear(worn));
     struct
@@ -247,10 +281,23 @@ TEST(GarmentTest, takenOffLeavesTheOthers)
     EXPECT_LT(distanceOfMeshes(*body), 8.0 * 1e-6);
 }
 
+TEST(GarmentTest, takesWhatItWearsItself)
+{
+    const osg::ref_ptr<AnimatedCharacter> body = makeBody(), coat = makeSleeve(sleeves[0]),
+                                          badge = makeSleeve(sleeves[1]);
+    ASSERT_TRUE(coat->wear(badge));
+    ASSERT_TRUE(body->wear(coat));
+    ASSERT_EQ(body->getNumChildren(), 3u);
+    EXPECT_FALSE(body->takeOff(badge)) << "it is the coat's";
+    EXPECT_TRUE(body->takeOff(coat));
+    EXPECT_EQ(body->getNumChildren(), 1u);
+    EXPECT_TRUE(coat->takeOff(badge));
+}
+
 TEST(GarmentTest, belongsToTheBounds)
 {
     Sleeve wide = sleeves[3];
-    wide.lowerX = 3; // its lower half lies 1 unit farther out
+    wide.shift = 1; // its lower half lies 1 unit farther out
     wide.scale = 1;
     const osg::ref_ptr<AnimatedCharacter> body = makeBody(), garment = makeSleeve(wide);
     const osg::BoundingBox before = body->getCurrentBounds();
@@ -324,6 +371,9 @@ TEST(GarmentTest, showsVariantsOfItsMaterials)
     EXPECT_EQ(garment->getChild(0)->getStateSet(), plain);
     EXPECT_TRUE(body->takeOff(garment)) << "in another variant it is the same garment";
     EXPECT_EQ(body->getNumChildren(), 1u);
+    ASSERT_TRUE(body->wear(garment));
+    EXPECT_EQ(body->getChild(1)->getStateSet(), red) << "the variant of the body when it is put on";
+    EXPECT_EQ(cloneOf(*body)->getMaterialVariant(), "red");
 }
 
 TEST(MeshNamesTest, nodesAreFoundBeforeMeshes)

@@ -121,6 +121,7 @@ TEST_F(JointAttachmentTest, WhatIsDetachedStaysWhereItIs)
     const osg::ref_ptr<osg::MatrixTransform> room = new osg::MatrixTransform(osg::Matrix::rotate(0.5, 0, 0, 1));
     const osg::ref_ptr<JointAttachment> attachment = new JointAttachment("side");
     attachment->setOffset(osg::Matrix::translate(0, 0, 1));
+    attachment->setName("scabbard");
     const osg::ref_ptr<AnimatedCharacter> character = characterWith(attachment);
     character->setMatrix(osg::Matrix::scale(2, 2, 2) * osg::Matrix::translate(0, 5, 0));
     root->addChild(room);
@@ -131,6 +132,7 @@ TEST_F(JointAttachmentTest, WhatIsDetachedStaysWhereItIs)
     ASSERT_TRUE(lost) << lost.error().message;
     EXPECT_EQ(attachment->getNumParents(), 0u);
     EXPECT_EQ(lost.value()->getParent(0), room);
+    EXPECT_EQ(lost.value()->getName(), "scabbard");
     character->getController().seek(1.5);
     ASSERT_EQ(placesOf(*root, "sword").size(), 1u);
     EXPECT_TRUE(isNear(placesOf(*root, "sword")[0], before));
@@ -165,6 +167,11 @@ TEST_F(JointAttachmentTest, FollowsAnInstanceOfACrowd)
     EXPECT_TRUE(isNear(attachment->getMatrix().getTrans(), {2.5, 7, 0})) << "relative to the crowd's origin";
     ASSERT_TRUE(crowd->setPlacement(second, osg::Matrix::translate(0, 9, 0)));
     EXPECT_TRUE(isNear(placesOf(*crowd, "sword").at(0), {2.5, 9, 0}));
+    const osg::ref_ptr<JointAttachment> copy = osg::clone(attachment.get());
+    EXPECT_EQ(copy->getInstance(), second);
+    attachment->setJoint("wing");
+    EXPECT_TRUE(isNear(placesOf(*crowd, "sword").at(0), {0, 9, 0})) << "no such joint: at the placement";
+    attachment->setJoint("side");
     updateAt(*crowd, 1.5);
     crowd->remove(second);
     updateAt(*crowd, 1.7);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "nodes/Walker.h"
 #include "support/TestCharacter.h"
 
 #include <osgGpuAnimation/animation/Pose.h>
@@ -6,6 +7,7 @@
 #include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
 
+#include <osg/ComputeBoundsVisitor>
 #include <osg/MatrixTransform>
 
 #include <gtest/gtest.h>
@@ -63,6 +65,7 @@ TEST(NodeConstraintsTest, targetsAreInTheCharactersOwnSpaceOrInTheWorld)
     ASSERT_TRUE(character->constraint("look").setTarget(osg::Vec3d(0, 0, 5)));
     character->update(0.0);
     expectNear(gaze(*character), osg::Vec3d(0, 0, 1));
+    ASSERT_TRUE(character->constraint("look").setWorldTarget(osg::Vec3d(10, 7, 0)));
     ASSERT_TRUE(character->constraint("look").clear());
     character->update(0.0);
     EXPECT_FALSE(character->getController().isConstrained());
@@ -93,6 +96,9 @@ TEST(NodeConstraintsTest, attachmentsMeshesAndBoundsHaveThePoseOfTheTwin)
     character->computeClipBounds();
     const osg::ref_ptr<JointAttachment> held = new JointAttachment("side");
     character->addChild(held);
+    character->update(0.0);
+    const osg::BoundingSphere still = character->getBound();
+    EXPECT_LT(still.radius(), 2.0);
     for (const osg::Vec3d& target :
          {osg::Vec3d(0, 0, 9), osg::Vec3d(0, 0, -9), osg::Vec3d(-9, 0, 0), osg::Vec3d(0, 9, 0)})
     {
@@ -112,7 +118,11 @@ TEST(NodeConstraintsTest, attachmentsMeshesAndBoundsHaveThePoseOfTheTwin)
                 bounds.expandBy(bounds._min - osg::Vec3(1e-4f, 1e-4f, 1e-4f));
                 bounds.expandBy(bounds._max + osg::Vec3(1e-4f, 1e-4f, 1e-4f));
                 for (const osg::Vec3& vertex : static_cast<const osg::Vec3Array&>(*posed->getVertexArray()))
+                {
                     EXPECT_TRUE(bounds.contains(vertex));
+                    const osg::BoundingSphere& sphere = character->getBound();
+                    EXPECT_LE((osg::Vec3(sphere.center()) - vertex).length(), sphere.radius() + 1e-4f);
+                }
             }
     }
 }
@@ -143,12 +153,64 @@ TEST(NodeConstraintsTest, instancesOfACrowdHaveTargetsOfTheirOwn)
     bird->setMatrix(osg::Matrix::translate(200, 50, 0));
     crowd->update(0.1);
     expectNear(gazeOf(second), osg::Vec3d(1, 0, 0));
+    const auto& mesh = dynamic_cast<const SkinnedGeometry&>(*crowd->getChild(0));
+    osg::ComputeBoundsVisitor bounds;
+    crowd->accept(bounds);
+    for (const osg::Vec3d& target : {osg::Vec3d(100, 0, 5), osg::Vec3d(100, 0, -5), osg::Vec3d(95, 0, 0)})
+    {
+        ASSERT_TRUE(crowd->constraint(first, "look").setTarget(target));
+        const glm::vec4& sphere = crowd->getInstances().sphere(crowd->getInstances().indexOf(first));
+        const osg::ref_ptr<osg::Geometry> posed = crowd->getPosedMesh(first, mesh);
+        for (const osg::Vec3& vertex : dynamic_cast<const osg::Vec3Array&>(*posed->getVertexArray()))
+        {
+            EXPECT_LE((vertex - osg::Vec3(sphere.x, sphere.y, sphere.z)).length(), sphere.w + 1e-4f);
+            const osg::Vec3d place = osg::Vec3d(vertex) + crowd->getOrigin();
+            EXPECT_TRUE(bounds.getBoundingBox().contains(place, 1e-3f)) << "of all targets";
+        }
+    }
     crowd->remove(second);
     EXPECT_FALSE(crowd->constraint(second, "look").setTarget(osg::Vec3d()));
     crowd->update(0.2);
     ASSERT_TRUE(crowd->constraint(first, "look").clear());
     crowd->update(0.3);
     EXPECT_EQ(crowd->getInstances().controllerCount(), 0u);
+}
+
+// The Walker's left leg: its file is turned to +Z up, and the person has turned.
+TEST(NodeConstraintsTest, polesTwistsAndRotationsAreInTheCharactersOwnSpace)
+{
+    const osg::ref_ptr<AnimatedCharacter> walker = Walker::make();
+    walker->setMatrix(osg::Matrix::rotate(1.0, osg::Vec3(0, 0, 1)) * osg::Matrix::translate(3, 4, 5));
+    const auto placeOf = [&](const char* joint) { return walker->jointToModel(joint).value().getTrans(); };
+    const osg::Vec3d hip = placeOf("thigh.L"), ankle(0.1, -0.1, 0.4);
+    NodeConstraint leg = walker->constraint("left");
+    ASSERT_TRUE(leg.setTarget(ankle));
+    osg::Vec3d along = ankle - hip;
+    along.normalize();
+    // From the line between hip and ankle to the knee.
+    const auto kneeWay = [&]
+    {
+        osg::Vec3d way = placeOf("shank.L") - hip;
+        way -= along * (way * along);
+        way.normalize();
+        return way;
+    };
+    for (const osg::Vec3d& pole : {osg::Vec3d(1, 0, 0), osg::Vec3d(1, -2, 0.5), osg::Vec3d(-1, 1, 0)})
+    {
+        ASSERT_TRUE(leg.setPole(pole) && leg.setTwist(0.0));
+        osg::Vec3d wanted = pole - along * (pole * along);
+        wanted.normalize();
+        expectNear(placeOf("foot.L"), ankle);
+        EXPECT_LT((kneeWay() - wanted).length(), 1e-3) << pole.x();
+        ASSERT_TRUE(leg.setTwist(0.5));
+        EXPECT_LT((kneeWay() - osg::Quat(0.5, along) * wanted).length(), 1e-3) << "right-handed about the line";
+    }
+    const osg::Quat turn(0.8, osg::Vec3d(1, 2, 3));
+    ASSERT_TRUE(leg.setRotation(turn));
+    const osg::Matrixd foot = walker->jointToModel("foot.L").value(), wanted = osg::Matrixd::rotate(turn);
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 3; ++column)
+            EXPECT_NEAR(foot(row, column), wanted(row, column), 1e-4) << row << ' ' << column;
 }
 
 TEST(NodeConstraintsTest, badInputIsAnErrorAndKeepsThePose)

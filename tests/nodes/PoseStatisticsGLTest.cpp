@@ -22,6 +22,13 @@ class OpenStatsHandler : public osgViewer::StatsHandler
 {
 public:
     std::size_t lineCount() const { return _userStatsLines.size(); }
+    /// From the attribute to the displayed number; 0: no such line.
+    float multiplierOf(const std::string& attribute) const
+    {
+        for (const UserStatsLine& line : _userStatsLines)
+            if (line.timeTakenName == attribute) return line.multiplier;
+        return 0.0f;
+    }
 };
 
 class PoseStatisticsGLTest : public ViewerGLTest
@@ -219,6 +226,8 @@ TEST_F(PoseStatisticsGLTest, aKeyAddsTheLinesOnceWhileNothingIsShown)
         drawAt(0.1);
         EXPECT_EQ(handler->lineCount(), 4u) << static_cast<char>(key);
     }
+    EXPECT_EQ(handler->multiplierOf(PoseStatistics::timeTaken), 1e6f) << "seconds to microseconds";
+    EXPECT_EQ(handler->multiplierOf(PoseStatistics::jointsSeen), 1.0f);
 }
 
 TEST_F(PoseStatisticsGLTest, anApplicationWithoutKeysAddsTheHandler)

@@ -14,6 +14,10 @@
 #include <osgUtil/RayIntersector>
 #include <osgUtil/Statistics>
 
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
 // OSG's visitors see characters and crowds in their current pose, with the number of primitives that are drawn.
 
 namespace osgGpuAnimation
@@ -156,6 +160,60 @@ TEST(PosedMeshTest, crowdsArePickedBelowInsertedGroups)
             EXPECT_EQ(jointOf(*hit)->instance, instance);
         }
         if (!isInserted) insertAbove(hit->nodePath);
+    }
+}
+
+TEST(PosedMeshTest, aRiderIsPickedNotTheHorse)
+{
+    const osg::ref_ptr<AnimatedCharacter> horse = shiftedCharacter(), rider = shiftedCharacter();
+    const osg::ref_ptr<osg::MatrixTransform> seat = new osg::MatrixTransform(osg::Matrix::translate(0, 0, 10));
+    seat->addChild(rider);
+    horse->addChild(seat);
+    const osg::ref_ptr<osgUtil::LineSegmentIntersector> line =
+        new osgUtil::LineSegmentIntersector(osg::Vec3d(2, -5, 10.4), osg::Vec3d(2, 5, 10.4));
+    osgUtil::IntersectionVisitor visitor(line);
+    horse->accept(visitor);
+    ASSERT_TRUE(line->containsIntersections());
+    const std::optional<PickedJoint> picked = jointOf(line->getFirstIntersection());
+    ASSERT_TRUE(picked);
+    EXPECT_EQ(picked->character, rider);
+}
+
+// The corners of the triangle follow joints of their own: "tip" the one at the origin, "side" the others.
+TEST(PosedMeshTest, theJointIsThatOfTheNearestCorner)
+{
+    const osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
+    const AnimationSet& set = character->getAnimationSet();
+    auto& mesh = dynamic_cast<SkinnedGeometry&>(*character->getChild(0));
+    auto& corners = dynamic_cast<osg::Vec3Array&>(*mesh.getVertexArray());
+    const osg::Vec3 places[] = {{0, 0, 0}, {-1, 0, 0}, {-1, 0, 1}, {-1, 0, 1}}; // "side" is at x = 2
+    std::copy(std::begin(places), std::end(places), corners.begin());
+    const osg::ref_ptr<osg::Vec4usArray> entries = new osg::Vec4usArray;
+    for (const int joint : {1, 2, 2, 2})
+        entries->push_back(osg::Vec4us(static_cast<unsigned short>(set.entryOfRigidJoint(joint)), 0, 0, 0));
+    const osg::ref_ptr<osg::Vec4Array> weights = new osg::Vec4Array(4);
+    std::fill(weights->begin(), weights->end(), osg::Vec4(1, 0, 0, 0));
+    mesh.setInfluences(0, entries, weights);
+    for (const auto& [place, joint] : {std::pair(osg::Vec3d(0.2, 0, 0.1), "tip"), {osg::Vec3d(0.9, 0, 0.1), "side"}})
+    {
+        const osg::ref_ptr<osgUtil::LineSegmentIntersector> line =
+            new osgUtil::LineSegmentIntersector(place - osg::Vec3d(0, 5, 0), place + osg::Vec3d(0, 5, 0));
+        const osg::Vec3 margin(0.05f, 0.05f, 0.05f);
+        osg::Polytope box;
+        box.setToBoundingBox(osg::BoundingBox(osg::Vec3(place) - margin, osg::Vec3(place) + margin));
+        const osg::ref_ptr<osgUtil::PolytopeIntersector> polytope = new osgUtil::PolytopeIntersector(box);
+        const osg::ref_ptr<osgUtil::IntersectorGroup> group = new osgUtil::IntersectorGroup;
+        group->addIntersector(line);
+        group->addIntersector(polytope);
+        osgUtil::IntersectionVisitor visitor(group);
+        character->accept(visitor);
+        ASSERT_TRUE(line->containsIntersections() && polytope->containsIntersections());
+        for (const std::optional<PickedJoint>& picked :
+             {jointOf(line->getFirstIntersection()), jointOf(polytope->getFirstIntersection())})
+        {
+            ASSERT_TRUE(picked);
+            EXPECT_EQ(set.skeleton().joint(picked->joint).name, joint);
+        }
     }
 }
 
@@ -311,6 +369,10 @@ TEST(PosedMeshTest, functorsGetThePose)
     EXPECT_EQ(seen.triangles, 2);
     EXPECT_EQ(seen.box._min, osg::Vec3(1.5f, 0, 0));
     EXPECT_EQ(seen.box._max, osg::Vec3(2.5f, 0, 1));
+    character->getChild(0)->setNodeMask(0);
+    osg::TriangleFunctor<TriangleBox> hidden;
+    character->acceptPosed(hidden);
+    EXPECT_EQ(hidden.triangles, 0);
 }
 
 TEST(PosedMeshTest, statisticsCountWhatIsDrawn)
@@ -322,14 +384,15 @@ TEST(PosedMeshTest, statisticsCountWhatIsDrawn)
     const AnimationController controller(testCharacterSet());
     for (int i = 0; i < 7; ++i)
         ASSERT_TRUE(crowd->add(osg::Matrix::translate(i, 0, 0), controller));
+    crowd->addChild(osg::createTexturedQuadGeometry({}, {1, 0, 0}, {0, 0, 1}));
     scene->addChild(crowd);
     osgUtil::StatsVisitor statistics;
     scene->accept(statistics);
     statistics.totalUpStats();
-    EXPECT_EQ(statistics._numInstancedDrawable, 2u + 7u);
-    EXPECT_EQ(statistics._drawableSet.size(), 2u);
-    EXPECT_EQ(statistics._instancedStats._vertexCount, 4u * 9u);
-    EXPECT_EQ(statistics._uniqueStats._vertexCount, 4u * 2u);
+    EXPECT_EQ(statistics._numInstancedDrawable, 2u + 7u + 1u);
+    EXPECT_EQ(statistics._drawableSet.size(), 3u);
+    EXPECT_EQ(statistics._instancedStats._vertexCount, 4u * 10u);
+    EXPECT_EQ(statistics._uniqueStats._vertexCount, 4u * 3u);
 }
 
 } // namespace osgGpuAnimation

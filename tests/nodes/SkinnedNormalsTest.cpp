@@ -105,6 +105,30 @@ TEST(SkinnedNormalsTest, stayAtARightAngleToTheMorphedAndSkinnedTriangle)
     EXPECT_LT(mirrored, 300);
 }
 
+// Palette entries hold twelve weights; target 13 is the second one of the second entry. Its array has one vertex.
+TEST(SkinnedNormalsTest, eachMorphTargetHasItsOwnWeight)
+{
+    const osg::ref_ptr<SkinnedGeometry> mesh = new SkinnedGeometry;
+    mesh->setVertexArray(new osg::Vec3Array(2));
+    mesh->setRigidEntry(0);
+    std::vector<MorphTarget> targets;
+    for (unsigned int target = 0; target < 14; ++target)
+    {
+        targets.push_back({new osg::Vec3Array(target == 13 ? 1 : 2), nullptr, nullptr, nullptr});
+        (*targets.back().positions)[0].z() = target == 13 ? 1.0f : 100.0f;
+    }
+    mesh->setMorphTargets(0, 1, targets);
+    std::vector<AffineMatrix> palette(3);
+    for (std::size_t entry = 1; entry < 3; ++entry)
+        palette[entry].rows = {};
+    palette[2].rows[0].y = 0.75f;
+    std::vector<glm::dvec3> positions;
+    mesh->computePositions(palette, positions);
+    ASSERT_EQ(positions.size(), 2u);
+    EXPECT_EQ(positions[0], glm::dvec3(0.0, 0.0, 0.75));
+    EXPECT_EQ(positions[1], glm::dvec3(0.0));
+}
+
 TEST(SkinnedNormalsTest, thereAreNoneWithoutOneAVertex)
 {
     Tetrahedra random(8);

@@ -298,15 +298,19 @@ TEST(SpringBonesTest, jumpsResetTheChains)
         {"a faster clip", [](Dog& dog) { dog.character->getController().setSpeed(1.5); }, false},
         {"seek", [](Dog& dog) { dog.character->getController().seek(1.7); }, true},
         {"reset", [](Dog& dog) { dog.springs->reset(); }, true},
-        {"a later time", [](Dog& dog) { dog.updateTo(8.0); }, true},
+        {"seek on another layer", [](Dog& dog) { dog.character->getController().layer(1).seek(1.7); }, true},
+        {"a time that is 1.25 s later", [](Dog& dog) { dog.updateTo(2.25); }, true},
         {"an earlier time", [](Dog& dog) { dog.updateTo(0.25); }, true},
     };
     for (const JumpCase& each : cases)
     {
         Dog dog, stiff(std::vector<SpringChain>{}), fresh;
         for (Dog* one : {&dog, &stiff})
+        {
+            EXPECT_TRUE(one->character->getController().layer(1).play("wag"));
             for (int frame = 0; frame <= 60; ++frame)
                 one->updateTo(frame / 60.0);
+        }
         for (Dog* one : {&dog, &stiff})
         {
             each.jump(*one);
@@ -496,6 +500,7 @@ TEST(SpringBonesTest, faultsAreNamedAndChangeNothing)
         {"no collider", [](auto& chain, auto&) { chain.colliders = {2}; }, "no collider 2"},
         {"collider's joint", [](auto&, auto& colliders) { colliders[0].joint = "wing"; }, "wing"},
         {"collider's radius", [&](auto&, auto& colliders) { colliders[1].radius = nan; }, "collider 1"},
+        {"collider's centre", [&](auto&, auto& colliders) { colliders[0].center.z() = nan; }, "collider 0"},
         {"collider's place", [&](auto&, auto& colliders) { colliders[1].tail->x() = nan; }, "collider 1"},
     };
     for (const FaultCase& each : cases)

@@ -17,12 +17,13 @@ constexpr char text[] = R"({
     "states": {
         "stand": { "clip": "Idle" },
         "walk": { "clip": "Walk", "speed": 1.5 },
-        "spin": { "clip": "Turn", "loop": "once" }
+        "spin": { "clip": "Turn", "loop": "once" },
+        "sway": { "clip": "Turn", "loop": "pingpong" }
     },
     "transitions": [
         { "from": "stand", "to": "walk", "when": ["speed > 0.1", "after 0.5"], "seconds": 0.3, "sync": "phase" },
         { "to": "spin", "when": "spin", "curve": "smooth" },
-        { "from": "spin", "to": "stand", "when": ["finished"] }
+        { "from": "spin", "to": "stand", "when": ["finished"], "curve": "linear", "sync": "start" }
     ]
 })";
 
@@ -32,16 +33,22 @@ TEST(StateGraphFileTest, ReadsAllThatAGraphHas)
     const auto result = parseStateGraph(*set, text);
     ASSERT_TRUE(result) << result.error().message;
     const StateGraph& graph = *result.value();
-    ASSERT_EQ(graph.states().size(), 3u);
+    ASSERT_EQ(graph.states().size(), 4u);
     EXPECT_EQ(graph.states()[graph.start()].name, "walk");
     EXPECT_EQ(graph.states()[1].speed, 1.5);
+    EXPECT_EQ(graph.states()[1].loopMode, LoopMode::Loop);
     EXPECT_EQ(graph.states()[2].loopMode, LoopMode::Once);
+    EXPECT_EQ(graph.states()[3].loopMode, LoopMode::PingPong);
     ASSERT_EQ(graph.transitions().size(), 3u);
     EXPECT_EQ(graph.transitions()[0].conditions.size(), 2u);
     EXPECT_EQ(graph.transitions()[0].seconds, 0.3);
     EXPECT_EQ(graph.transitions()[0].options.sync, Sync::Phase);
     EXPECT_EQ(graph.transitions()[1].from, -1);
     EXPECT_EQ(graph.transitions()[1].options.curve, FadeCurve::Smooth);
+    EXPECT_EQ(graph.transitions()[2].from, 2);
+    EXPECT_EQ(graph.transitions()[2].to, 0);
+    EXPECT_EQ(graph.transitions()[2].options.curve, FadeCurve::Linear);
+    EXPECT_EQ(graph.transitions()[2].options.sync, Sync::Start);
     EXPECT_EQ(graph.parameters(), std::vector<std::string>{"speed"});
     EXPECT_EQ(graph.triggers(), std::vector<std::string>{"spin"});
 }
@@ -90,6 +97,22 @@ TEST(StateGraphFileTest, AStateMayPlayABlendSpace)
     EXPECT_EQ(controller.layer(0).parameter(), glm::dvec2(0.75, 0.5));
     EXPECT_EQ(controller.instruction().sampleCount, 3u);
     EXPECT_EQ(controller.speed(), 0.5);
+}
+
+TEST(StateGraphFileTest, TheMarkersOfABlendSpaceAreRead)
+{
+    const auto gait = makeGaitSet();
+    std::vector<Clip> clips = gait->clips();
+    for (Clip& clip : clips)
+        clip = clip.withMarkers({{0.1, "left"}, {0.4, "right"}}).value();
+    const auto graph = parseStateGraph(*gait->withClips(clips).value(), R"({"states": {"move": {
+        "blend": [{ "clip": "Walk", "at": [1.5, -2] }, { "clip": "Run", "at": [4, 3] }],
+        "parameter": ["speed", "side"], "markers": ["left", "right"] }}})");
+    ASSERT_TRUE(graph) << graph.error().message;
+    const BlendSpace& space = *graph.value()->states()[0].space;
+    EXPECT_EQ(space.syncMarkers(), (std::vector<std::string>{"left", "right"}));
+    EXPECT_EQ(space.points()[0].place, glm::dvec2(1.5, -2));
+    EXPECT_EQ(space.points()[1].place, glm::dvec2(4, 3));
 }
 
 TEST(StateGraphFileTest, TheSpeedMayFollowTheGround)
@@ -194,7 +217,9 @@ TEST(StateGraphFileTest, DeepAndLongTextsAreErrorsLikeAnyOther)
         ASSERT_FALSE(deep);
         EXPECT_NE(deep.error().message.find("nested more than 256 deep"), std::string::npos) << deep.error().message;
     }
-    EXPECT_FALSE(parseStateGraph(*set, nested(200)));
+    const auto lessDeep = parseStateGraph(*set, nested(200));
+    ASSERT_FALSE(lessDeep);
+    EXPECT_EQ(lessDeep.error().message, "states.a: expected an object, found array");
     EXPECT_FALSE(parseStateGraph(*set, std::string(60000, '[')));
 
     std::string many = "{\"states\":{\"a\":{\"clip\":\"Walk\"}";
@@ -211,6 +236,10 @@ TEST(StateGraphFileTest, ReadsFilesAndNamesThemInErrors)
     const auto set = makeGaitSet();
     const ScratchFolder folder;
     EXPECT_TRUE(readStateGraphFile(*set, folder.write("good.states.json", text)));
+    const std::string longest = text + std::string((1 << 16) - std::string(text).size(), ' ');
+    EXPECT_TRUE(parseStateGraph(*set, longest));
+    EXPECT_TRUE(readStateGraphFile(*set, folder.write("longest.states.json", longest)));
+    EXPECT_EQ(readStateGraphFile(*set, "/dev/null").error().message, "/dev/null: is not a plain file");
     const std::string bad = folder.write("bad.states.json", "{}");
     const auto faulty = readStateGraphFile(*set, bad);
     ASSERT_FALSE(faulty);

@@ -10,6 +10,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace osgGpuAnimation
 {
@@ -303,6 +304,38 @@ TEST(AnimationSetTest, FindsClipsByNameTheFirstOfSeveral)
     const auto set = make({skeleton, {}, {}, {}, {builder.build("a"), builder.build("b"), builder.build("b")}});
     EXPECT_EQ(set->findClip("b"), 1);
     EXPECT_EQ(set->findClip("B"), -1);
+}
+
+TEST(AnimationSetTest, ASkinMayHaveMoreMatricesThanJointsAndEachIsChecked)
+{
+    EXPECT_TRUE(AnimationSet::create({threeJoints(), {{"s", {1}, {moved(1), moved(2)}}}, {}, {}, {}}));
+    AffineMatrix bad;
+    bad.rows[2].w = std::numeric_limits<float>::infinity();
+    const auto made = AnimationSet::create({threeJoints(), {{"s", {0, 1}, {moved(1), bad}}}, {}, {}, {}});
+    ASSERT_FALSE(made);
+    EXPECT_EQ(made.error().message, "skin 0 \"s\": its inverse bind matrix 1 is not finite");
+    EXPECT_FALSE(AnimationSet::create({threeJoints(), {}, {3}, {}, {}})) << "one more than the last joint";
+    EXPECT_TRUE(AnimationSet::create({threeJoints(), {}, {2}, {}, {}}));
+}
+
+TEST(AnimationSetTest, DerivedSetsKeepMasksAndWhatWasMeasured)
+{
+    const Skeleton skeleton = threeJoints();
+    const auto set = make({skeleton, {}, {}, {}, {ClipBuilder(skeleton, {}).build("a")}});
+    set->keepGroundSpeed(0, 1.5);
+    const auto dressed = set->withGarments({{"coat", {2}, {moved(7)}}}).value();
+    EXPECT_EQ(dressed->knownGroundSpeed(0), std::optional<double>(1.5));
+    EXPECT_NE(set->withGarments({{"coat", {2}, {moved(8)}}}).value(), dressed) << "another inverse bind";
+    const auto aimed = set->withConstraints({LookAt{"look", {"root"}}}).value();
+    EXPECT_EQ(&aimed->masks(), &set->masks());
+    EXPECT_EQ(&set->withClips({}).value()->masks(), &set->masks());
+    EXPECT_EQ(aimed->knownGroundSpeed(0), std::nullopt);
+    std::vector<Constraint> many;
+    for (std::size_t c = 0; c < AnimationSet::maxConstraints; ++c)
+        many.emplace_back(LookAt{"look " + std::to_string(c), {"root"}});
+    EXPECT_TRUE(set->withConstraints(many));
+    many.emplace_back(LookAt{"one more", {"root"}});
+    EXPECT_FALSE(set->withConstraints(many));
 }
 
 } // namespace

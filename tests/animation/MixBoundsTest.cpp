@@ -233,5 +233,52 @@ TEST(MixBoundsTest, ClipsPlayedAreThoseThatShow)
     EXPECT_EQ(clips(), (std::vector<int>{2, -1})) << "what weights leave of 1";
 }
 
+TEST(MixBoundsTest, WhateverCanShowIsPlayed)
+{
+    const auto set = makeGaitSet();
+    std::vector<PlayedClip> played;
+    const auto countOf = [&](const AnimationController& controller, int clip)
+    {
+        findPlayedClips(controller, played);
+        return std::count_if(played.begin(), played.end(),
+                             [&](const PlayedClip& one) { return one.clip == clip && !one.pose; });
+    };
+    AnimationController itself(set);
+    ASSERT_TRUE(itself.play(1));
+    for (int i = 0; i < 2; ++i)
+    {
+        itself.advance(0.1);
+        ASSERT_TRUE(itself.crossfade(1, 1.0));
+    }
+    EXPECT_EQ(countOf(itself, 1), 2) << "three times of one clip: as two of them";
+
+    AnimationController posed(set);
+    ASSERT_TRUE(posed.play(1));
+    ASSERT_TRUE(posed.layer(0).pose().setTranslation(3, glm::vec3(1.0f)));
+    EXPECT_EQ(countOf(posed, -1), 0);
+    ASSERT_TRUE(posed.layer(0).showPose(1.0));
+    posed.advance(0.5);
+    EXPECT_EQ(countOf(posed, -1), 1) << "a pose does not set all joints";
+    EXPECT_EQ(countOf(posed, 1), 1);
+
+    AnimationController crowded(set);
+    ASSERT_TRUE(crowded.play(1));
+    for (std::size_t layer = 1; layer < maxLayers; ++layer)
+    {
+        crowded.layer(layer).setMode(AnimationLayer::Mode::Additive);
+        ASSERT_TRUE(crowded.layer(layer).play(0));
+    }
+    EXPECT_EQ(countOf(crowded, -1), 0) << "15 samples";
+    ASSERT_TRUE(crowded.layer(1).crossfade(2, 1.0));
+    crowded.advance(0.1);
+    EXPECT_EQ(countOf(crowded, -1), 1) << "17 samples, of which one is dropped";
+
+    AnimationController stacked(set);
+    ASSERT_TRUE(stacked.play(1));
+    ASSERT_TRUE(stacked.layer(1).play(2));
+    stacked.layer(1).setWeight(0.5f);
+    EXPECT_EQ(countOf(stacked, -1), 0) << "the base hides the rest pose below a lighter layer";
+}
+
 } // namespace
 } // namespace osgGpuAnimation

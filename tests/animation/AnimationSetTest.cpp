@@ -203,6 +203,8 @@ TEST(AnimationSetTest, PropertiesHaveTracksAndNoEntries)
     EXPECT_EQ(pose.extent()->largestWeight, 0.0) << "no vertex depends on it";
     ASSERT_TRUE(pose.setMorphWeight(0, 0, 2.0f));
     EXPECT_GT(pose.extent()->largestWeight, 1.0);
+    ASSERT_TRUE(pose.resetMorph(0));
+    EXPECT_EQ(pose.extent()->largestWeight, 0.0) << "nor after a reset";
 }
 
 TEST(AnimationSetTest, EveryPaletteIsInLevelOrderAndWhole)
@@ -336,6 +338,30 @@ TEST(AnimationSetTest, DerivedSetsKeepMasksAndWhatWasMeasured)
     EXPECT_TRUE(set->withConstraints(many));
     many.emplace_back(LookAt{"one more", {"root"}});
     EXPECT_FALSE(set->withConstraints(many));
+}
+
+TEST(AnimationSetTest, WeightsBeyondTheFirstBlockCount)
+{
+    const Skeleton skeleton = threeJoints();
+    std::vector<float> numbers(14);
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+        numbers[i] = static_cast<float>(i);
+    const std::vector<MorphWeights> morphs{{"face", 0, std::vector<float>(14, 0.5f)}, {"/cameras/0", -1, numbers}};
+    ClipBuilder builder(skeleton, morphs);
+    Channel channel{Channel::Path::Weights, Channel::Interpolation::CubicSpline, 0, {0, 1}, {}};
+    channel.values = {0, 0.25, 6, -3, 0.75, 0}; // in-tangent, value, out-tangent
+    channel.weight = 13;
+    ASSERT_TRUE(builder.add(channel));
+    const auto set = make({skeleton, {}, {}, morphs, {builder.build("a")}});
+    const std::vector<WeightRange> ranges = weightRanges(*set, 0);
+    ASSERT_EQ(ranges.size(), 14u);
+    EXPECT_EQ(ranges[12].min, 0.5f) << "the default alone";
+    EXPECT_EQ(ranges[12].max, 0.5f);
+    EXPECT_NEAR(ranges[13].min, 0.25f, 1e-6f);
+    EXPECT_NEAR(ranges[13].max, 2.25f, 1e-6f) << "a third of the tangents beyond the values";
+    std::vector<float> shown;
+    Pose::properties(*set, PoseInstruction(), shown);
+    EXPECT_EQ(shown, numbers);
 }
 
 } // namespace

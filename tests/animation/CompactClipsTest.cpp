@@ -275,4 +275,10 @@ TEST(CompactClipsTest, smallTurnsAndScalesOfFarVerticesStay)
     }
 }
 
+TEST(CompactClipsTest, withoutVerticesTheJointsAreTheSize)
+{
+    const auto set = setOf(twoJoints(), {}, ClipBuilder(twoJoints(), {}).build("still"));
+    EXPECT_NEAR(longestSide(*set, EntryBoxes(set->paletteSize())), 1.0, 1e-4);
+}
+
 } // namespace osgGpuAnimation

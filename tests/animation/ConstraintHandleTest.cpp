@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
+#include <utility>
 
 namespace osgGpuAnimation
 {
@@ -85,6 +87,8 @@ TEST(ConstraintHandleTest, ATargetWithATurnSpeedStartsAnewAfterClear)
     ASSERT_TRUE(slow.setShownTarget({0, 2, 0}));
     EXPECT_EQ(slow.shownTarget(), glm::vec3(0, 2, 0));
     ASSERT_TRUE(fast.setTarget(target));
+    ASSERT_EQ(controller.instruction().targets.size(), 3u);
+    EXPECT_EQ(controller.instruction().targets[2].weight, 0.0f) << "a constraint without a target has no effect";
     ASSERT_TRUE(fast.setShownTarget({0, 2, 0}));
     EXPECT_EQ(fast.shownTarget(), target) << "without a turn speed nothing lags behind";
     ASSERT_TRUE(fast.setWeight(0.0f));
@@ -123,6 +127,39 @@ TEST(ConstraintHandleTest, AnySettingIsNotTheDefault)
         EXPECT_FALSE(other.isPlainLoop()) << which << ": in a copy for another set, too";
         ASSERT_TRUE(controller.constraint("leg").clear());
         EXPECT_TRUE(controller.isPlainLoop()) << which;
+    }
+}
+
+// The line of sight starts at the offset and along the forward axis of the rest pose, in model space.
+TEST(ConstraintHandleTest, ATurnBeginsAtTheLineOfTheRestPose)
+{
+    LookAt look{"look", {"head"}};
+    look.turnSpeed = 0.25f;
+    look.offset = {0, 0, 1};
+    look.up = {0, 7, 0};
+    const glm::dquat quarter = glm::angleAxis(std::acos(0.0), glm::dvec3(0, 1, 0)); // +Z becomes +X
+    const auto set = limbOf({jointAt("head", {0, 5, 0}, quarter)}, {look}).value();
+    AnimationController controller(set);
+    ASSERT_TRUE(controller.constraint("look").setTarget({1, 5, -4}));
+    EXPECT_LE(glm::distance(controller.constraint("look").shownTarget(), glm::vec3(5, 5, 0)), 1e-5f);
+    controller.advance(100.0);
+    EXPECT_EQ(controller.constraint("look").shownTarget(), glm::vec3(1, 5, -4));
+}
+
+TEST(ConstraintHandleTest, TheLongestChainIsAcceptedAndNoLonger)
+{
+    std::vector<Joint> joints;
+    for (int i = 0; i < 13; ++i)
+        joints.push_back(jointAt(("j" + std::to_string(i)).c_str(), {0, 1, 0}));
+    EXPECT_TRUE(limbOf(joints, {LookAt{"look", {"j1", "j12"}}})) << "twelve joints";
+    EXPECT_FALSE(limbOf(joints, {LookAt{"look", {"j0", "j12"}}}));
+    EXPECT_FALSE(limbOf(joints, {LookAt{"look", {"j0", "j0"}}}));
+    LookAt look{"look", {"j0"}};
+    const std::pair<float, bool> cones[] = {{0.0f, true}, {3.1416f, true}, {-0.1f, false}, {3.3f, false}};
+    for (const auto& [cone, isAllowed] : cones)
+    {
+        look.cone = cone;
+        EXPECT_EQ(static_cast<bool>(limbOf(joints, {look})), isAllowed) << cone;
     }
 }
 

@@ -19,7 +19,10 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <layout.glsl>
 #include <limits>
+#include <memory>
+#include <utility>
 
 namespace osgGpuAnimation
 {
@@ -505,7 +508,7 @@ TEST(JointPoseTest, extentsHoldWhatIsSetAndShrinkAfterAReset)
     EXPECT_TRUE(pose.extent()->joints[3].turns);
     ASSERT_TRUE(pose.setTranslation(4, {1e6f, 0, 0}));
     EXPECT_TRUE(pose.extent()->joints[4].moves);
-    ASSERT_TRUE(pose.setMorphWeight(1, 3, 0.25f));
+    ASSERT_TRUE(pose.setMorphWeight(1, 3, 0.0f));
     EXPECT_EQ(pose.extent()->largestWeight, 1.0) << "at least 1";
     ASSERT_TRUE(pose.setMorphWeight(1, 3, -8.0f));
     EXPECT_GE(pose.extent()->largestWeight, 8.0);
@@ -528,6 +531,10 @@ TEST(JointPoseTest, extentsHoldWhatIsSetAndShrinkAfterAReset)
         EXPECT_FALSE(pose.setTracks(bad)) << numbers << ": half a part, or a number beyond twelve";
     }
     std::vector<JointPose::Track> other = stored;
+    other.back().numbers |= 0x1000u;
+    EXPECT_FALSE(pose.setTracks(other)) << "a thirteenth weight";
+    other = stored;
+    other[0].values.translation = glm::vec4(INFINITY); // not set
     ASSERT_EQ(other[1].track, 4u);
     other[1].values.rotation = glm::vec4(0.0f); // not set
     EXPECT_TRUE(pose.setTracks(other)) << "what is not set may be anything";
@@ -563,6 +570,28 @@ TEST(JointPoseTest, belowAShearedJointJointsKeepTheirPlaces)
             EXPECT_NEAR(shown[joint].rows[row].w, model[joint].rows[row].w, 1e-5f) << joint;
     model[1].rows[1] = glm::vec4(0.0f);
     EXPECT_FALSE(pose.setModelTransforms(model)) << "no inverse";
+}
+
+TEST(JointPoseTest, posesThatDoNotFitTheSetShowNothing)
+{
+    const auto set = makeRandomSet({});
+    const auto other = AnimationSet::create({Skeleton::create({Joint()}).value(), {}, {}, {}, {}}).value();
+    const auto foreign = std::make_shared<JointPose>(other), own = std::make_shared<JointPose>(set);
+    ASSERT_TRUE(foreign->setTranslation(0, glm::vec3(9.0f)));
+    ASSERT_TRUE(own->setTranslation(0, glm::vec3(9.0f)));
+    PoseInstruction instruction;
+    instruction.sampleCount = PoseInstruction::maxSamples;
+    for (BlendSample& sample : instruction.samples)
+        sample = {0, 0.0f, 0.0f, POSE_SAMPLE_POSED};
+    instruction.samples.back() = {1, 0.0f, 1.0f, POSE_SAMPLE_POSED};
+    std::vector<JointTransform> tracks;
+    const std::shared_ptr<const JointPose> poses[] = {foreign, nullptr, own};
+    for (const auto& pose : poses)
+    {
+        instruction.poses = {own, pose};
+        Pose::mix(*set, instruction, tracks);
+        EXPECT_EQ(tracks[0].translation.x, pose == own ? 9.0f : set->restPose()[0].translation.x);
+    }
 }
 
 } // namespace osgGpuAnimation

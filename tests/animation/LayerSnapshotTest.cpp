@@ -239,5 +239,17 @@ TEST(LayerSnapshotTest, FaultsAreNamedAndTheEdgesAreAccepted)
     }
 }
 
+TEST(LayerSnapshotTest, APoseWithNothingSetIsKeptWithItsShare)
+{
+    const auto set = makeMarkedSet();
+    AnimationController source(set), restored(set);
+    source.layer(0).pose();
+    ASSERT_EQ(source.layer(0).poseShare(), 1.0f);
+    ASSERT_TRUE(restored.layer(0).restore(source.layer(0).snapshot()));
+    EXPECT_EQ(restored.layer(0).poseShare(), 1.0f);
+    ASSERT_TRUE(restored.layer(0).pose().setTranslation(1, glm::vec3(1.0f)));
+    EXPECT_EQ(restored.instruction().poses.size(), 1u) << "it shows at once";
+}
+
 } // namespace
 } // namespace osgGpuAnimation

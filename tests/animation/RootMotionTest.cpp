@@ -138,6 +138,10 @@ TEST(RootMotionTest, MotionAndWhatIsLeftMakeTheOldPose)
             gone = gone * after.takeRootMotion();
             EXPECT_LE(difference(gone.matrix() * headAt(after), headAt(before)), c.tolerance) << c.name << " " << i;
         }
+        EXPECT_TRUE(c.axes.vertical || std::abs(gone.translation.y) <= 1e-9) << c.name;
+        EXPECT_TRUE(c.axes.horizontal || c.axes.yaw ||
+                    glm::length(glm::dvec2(gone.translation.x, gone.translation.z)) <= 1e-9)
+            << c.name;
         // The clip no longer contains the extracted motion: the hips stay over one spot.
         const glm::dmat4 hips = Pose::jointToModel(*left, after.instruction(), 1).toColumns();
         EXPECT_TRUE(!c.axes.horizontal || glm::length(glm::dvec2(hips[3].x, hips[3].z)) <= 1e-5) << c.name;
@@ -553,6 +557,11 @@ TEST(RootMotionTest, AnyParentsAxesAndFirstPoseKeepTheOldPose)
                 instruction.samples[0] = set.sampleAt(0, time);
                 return Pose::jointToModel(set, instruction, 2).toColumns();
             };
+            AnimationController walker(left);
+            ASSERT_TRUE(walker.play(0));
+            walker.advance(0.5);
+            EXPECT_LE(difference(walker.rootMotion().matrix(), left->clips()[0].rootMotionAt(0.5).matrix()), 1e-9)
+                << "about the same axis";
             const glm::dmat4 first = hipsAt(*left, 0.0);
             for (int step = 0; step <= 4 * keys; ++step)
             {

@@ -442,5 +442,67 @@ TEST(AnimationEventsTest, TellingDoesNotAllocate)
     EXPECT_GT(count, 50u);
 }
 
+// A clip without markers: what ends is reported all the same.
+TEST(AnimationEventsTest, EndsAreReportedWithoutMarkers)
+{
+    const Skeleton skeleton = Skeleton::create({Joint()}).value();
+    const std::vector<Clip> clips{makeClip(skeleton, "A", 1.0, {}), ClipBuilder(skeleton, {}).build("Instant")};
+    const auto set = AnimationSet::create({skeleton, {}, {}, {}, clips}).value();
+    struct Case
+    {
+        std::size_t clip;
+        LoopMode mode;
+        float weight; ///< fades there in 1 s
+        const char* told;
+        double moment; ///< of the first event
+    };
+    const Case cases[] = {
+        {0, LoopMode::Once, 1.0f, "./", 0.5},
+        {0, LoopMode::Loop, 0.0f, "|/|", 0.5},
+        {1, LoopMode::Once, 0.0f, "/.", 0.5},
+        {1, LoopMode::Loop, 0.0f, "/", 0.5},
+    };
+    for (const Case& c : cases)
+    {
+        AnimationController controller(set);
+        controller.setLoopMode(c.mode);
+        ASSERT_TRUE(controller.play(c.clip));
+        ASSERT_TRUE(controller.layer(0).fadeWeight(c.weight, 1.0));
+        std::string told;
+        std::vector<double> moments;
+        controller.setEventCallback(
+            [&](const AnimationEvent& event)
+            {
+                told += letterOf(event);
+                moments.push_back(event.moment);
+            });
+        controller.advance(2.0);
+        std::string sorted = told;
+        EXPECT_EQ(told.size(), std::string(c.told).size()) << told << " for " << c.told;
+        ASSERT_FALSE(moments.empty());
+        EXPECT_NEAR(moments.front(), c.moment, 1e-12) << c.told;
+        EXPECT_EQ(moments.back(), told.back() == '.' || told.back() == '|' ? 1.0 : 0.5) << told;
+    }
+}
+
+// A clip without length that fades out is not at its beginning a second time.
+TEST(AnimationEventsTest, AMarkerOfAnInstantIsReportedOnce)
+{
+    const Skeleton skeleton = Skeleton::create({Joint()}).value();
+    const Clip instant = ClipBuilder(skeleton, {}).build("Instant").withMarkers({{0.0, "a"}}).value();
+    const std::vector<Clip> clips{instant, makeClip(skeleton, "A", 1.0, {})};
+    AnimationController controller(AnimationSet::create({skeleton, {}, {}, {}, clips}).value());
+    std::string told;
+    tellInto(controller, told);
+    controller.setLoopMode(LoopMode::Once);
+    ASSERT_TRUE(controller.play(0));
+    controller.advance(0.0);
+    EXPECT_EQ(told, "a.");
+    ASSERT_TRUE(controller.crossfade(1, 5.0));
+    controller.advance(0.25);
+    controller.advance(0.25);
+    EXPECT_EQ(told, "a.");
+}
+
 } // namespace
 } // namespace osgGpuAnimation

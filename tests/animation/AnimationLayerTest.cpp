@@ -2,6 +2,7 @@
 #include "support/GaitSet.h"
 
 #include <osgGpuAnimation/animation/AnimationController.h>
+#include <osgGpuAnimation/animation/ClipBuilder.h>
 #include <osgGpuAnimation/animation/JointMask.h>
 #include <osgGpuAnimation/animation/Pose.h>
 
@@ -11,7 +12,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <random>
+#include <string>
+#include <utility>
 
 namespace osgGpuAnimation
 {
@@ -302,6 +306,86 @@ TEST(AnimationLayerTest, CopiesHaveLayersOfTheirOwn)
     EXPECT_EQ(second.layer(1).state(), PlayState::Stopped);
     ASSERT_TRUE(second.layer(1).play("Run"));
     EXPECT_EQ(first.layer(1).state(), PlayState::Stopped);
+}
+
+TEST(AnimationLayerTest, AnythingOutOfTheOrdinaryIsNoPlainLoop)
+{
+    const auto set = makeGaitSet();
+    using Change = std::function<void(AnimationController&)>;
+    const std::pair<const char*, Change> changes[] = {
+        {"once", [](AnimationController& c) { c.setLoopMode(LoopMode::Once); }},
+        {"a crossfade", [](AnimationController& c) { (void)c.crossfade(2, 1.0); }},
+        {"a weight", [](AnimationController& c) { c.layer(0).setWeight(0.5f); }},
+        {"a fade of the weight", [](AnimationController& c) { c.layer(0).fadeWeight(1.0f, 1.0); }},
+        {"a mask", [](AnimationController& c) { (void)c.layer(0).setMask(JointMask(c.set(), 1.0f)); }},
+        {"a mode", [](AnimationController& c) { c.layer(0).setMode(AnimationLayer::Mode::Additive); }},
+        {"a blend priority", [](AnimationController& c) { c.layer(0).setBlendPriority(1); }},
+        {"a shared phase", [](AnimationController& c) { c.layer(0).setPhaseShared(true); }},
+        {"a parameter", [](AnimationController& c) { c.setParameter(0.0, 1.0); }},
+        {"a pose", [](AnimationController& c) { c.layer(0).pose(); }},
+        {"a second layer", [](AnimationController& c) { c.layer(1); }},
+        {"a listener", [](AnimationController& c) { c.setEventCallback([](const AnimationEvent&) {}); }},
+        {"a clip at another speed",
+         [](AnimationController& c)
+         {
+             LayerSnapshot kept = c.layer(0).snapshot();
+             kept.activeClips[0].speed = 2.0;
+             (void)c.layer(0).restore(kept);
+         }},
+        {"a space",
+         [](AnimationController& c) {
+             (void)c.play(BlendSpace::create(c.set(), std::vector<BlendSpace::Position>{{"Walk", 0.0}}).value());
+         }},
+    };
+    for (const auto& [name, change] : changes)
+    {
+        AnimationController controller(set);
+        ASSERT_TRUE(controller.play(1));
+        controller.setSpeed(-3.0);
+        controller.pause();
+        EXPECT_TRUE(controller.isPlainLoop());
+        change(controller);
+        EXPECT_FALSE(controller.isPlainLoop()) << name;
+    }
+    AnimationController moving(withRootMotion(*set, "hips").value());
+    ASSERT_TRUE(moving.play(1));
+    EXPECT_FALSE(moving.isPlainLoop()) << "root motion";
+}
+
+// A clip that does not return to where it began, so that its first frame is not its last.
+TEST(AnimationLayerTest, TheReferenceIsTheFirstFrameAlsoOfAClipThatEndsElsewhere)
+{
+    const Skeleton skeleton = Skeleton::create({Joint()}).value();
+    ClipBuilder builder(skeleton, {});
+    ASSERT_TRUE(
+        builder.add({Channel::Path::Translation, Channel::Interpolation::Linear, 0, {0, 1}, {3, 0, 0, 5, 0, 0}}));
+    AnimationController controller(AnimationSet::create({skeleton, {}, {}, {}, {builder.build("a")}}).value());
+    controller.layer(0).setMode(AnimationLayer::Mode::Additive, AnimationLayer::Reference::FirstFrame);
+    ASSERT_TRUE(controller.play(0));
+    ASSERT_TRUE(controller.seek(0.5));
+    EXPECT_NEAR(mixed(controller)[0].translation.x, 1.0f, 1e-6f);
+    controller.layer(0).setMode(AnimationLayer::Mode::Additive, AnimationLayer::Reference::RestPose);
+    EXPECT_NEAR(mixed(controller)[0].translation.x, 4.0f, 1e-6f);
+}
+
+TEST(AnimationLayerTest, PausedAllFadesStandStill)
+{
+    const auto set = makeGaitSet();
+    AnimationController controller(set);
+    AnimationLayer& layer = controller.layer(0);
+    ASSERT_TRUE(layer.play("Walk"));
+    ASSERT_TRUE(layer.pose().setTranslation(2, glm::vec3(1.0f)));
+    ASSERT_TRUE(layer.showPose(1.0));
+    ASSERT_TRUE(layer.fadeWeight(0.0f, 1.0));
+    controller.advance(0.25);
+    layer.pause();
+    controller.advance(0.5);
+    EXPECT_NEAR(layer.weight(), 0.75f, 1e-6f);
+    EXPECT_NEAR(layer.poseShare(), 0.25f, 1e-6f);
+    layer.resume();
+    controller.advance(0.25);
+    EXPECT_NEAR(layer.weight(), 0.5f, 1e-6f);
+    EXPECT_NEAR(layer.poseShare(), 0.5f, 1e-6f);
 }
 
 } // namespace

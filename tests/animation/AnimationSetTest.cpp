@@ -10,6 +10,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace osgGpuAnimation
 {
@@ -202,6 +203,8 @@ TEST(AnimationSetTest, PropertiesHaveTracksAndNoEntries)
     EXPECT_EQ(pose.extent()->largestWeight, 0.0) << "no vertex depends on it";
     ASSERT_TRUE(pose.setMorphWeight(0, 0, 2.0f));
     EXPECT_GT(pose.extent()->largestWeight, 1.0);
+    ASSERT_TRUE(pose.resetMorph(0));
+    EXPECT_EQ(pose.extent()->largestWeight, 0.0) << "nor after a reset";
 }
 
 TEST(AnimationSetTest, EveryPaletteIsInLevelOrderAndWhole)
@@ -303,6 +306,62 @@ TEST(AnimationSetTest, FindsClipsByNameTheFirstOfSeveral)
     const auto set = make({skeleton, {}, {}, {}, {builder.build("a"), builder.build("b"), builder.build("b")}});
     EXPECT_EQ(set->findClip("b"), 1);
     EXPECT_EQ(set->findClip("B"), -1);
+}
+
+TEST(AnimationSetTest, ASkinMayHaveMoreMatricesThanJointsAndEachIsChecked)
+{
+    EXPECT_TRUE(AnimationSet::create({threeJoints(), {{"s", {1}, {moved(1), moved(2)}}}, {}, {}, {}}));
+    AffineMatrix bad;
+    bad.rows[2].w = std::numeric_limits<float>::infinity();
+    const auto made = AnimationSet::create({threeJoints(), {{"s", {0, 1}, {moved(1), bad}}}, {}, {}, {}});
+    ASSERT_FALSE(made);
+    EXPECT_EQ(made.error().message, "skin 0 \"s\": its inverse bind matrix 1 is not finite");
+    EXPECT_FALSE(AnimationSet::create({threeJoints(), {}, {3}, {}, {}})) << "one more than the last joint";
+    EXPECT_TRUE(AnimationSet::create({threeJoints(), {}, {2}, {}, {}}));
+}
+
+TEST(AnimationSetTest, DerivedSetsKeepMasksAndWhatWasMeasured)
+{
+    const Skeleton skeleton = threeJoints();
+    const auto set = make({skeleton, {}, {}, {}, {ClipBuilder(skeleton, {}).build("a")}});
+    set->keepGroundSpeed(0, 1.5);
+    const auto dressed = set->withGarments({{"coat", {2}, {moved(7)}}}).value();
+    EXPECT_EQ(dressed->knownGroundSpeed(0), std::optional<double>(1.5));
+    EXPECT_NE(set->withGarments({{"coat", {2}, {moved(8)}}}).value(), dressed) << "another inverse bind";
+    const auto aimed = set->withConstraints({LookAt{"look", {"root"}}}).value();
+    EXPECT_EQ(&aimed->masks(), &set->masks());
+    EXPECT_EQ(&set->withClips({}).value()->masks(), &set->masks());
+    EXPECT_EQ(aimed->knownGroundSpeed(0), std::nullopt);
+    std::vector<Constraint> many;
+    for (std::size_t c = 0; c < AnimationSet::maxConstraints; ++c)
+        many.emplace_back(LookAt{"look " + std::to_string(c), {"root"}});
+    EXPECT_TRUE(set->withConstraints(many));
+    many.emplace_back(LookAt{"one more", {"root"}});
+    EXPECT_FALSE(set->withConstraints(many));
+}
+
+TEST(AnimationSetTest, WeightsBeyondTheFirstBlockCount)
+{
+    const Skeleton skeleton = threeJoints();
+    std::vector<float> numbers(14);
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+        numbers[i] = static_cast<float>(i);
+    const std::vector<MorphWeights> morphs{{"face", 0, std::vector<float>(14, 0.5f)}, {"/cameras/0", -1, numbers}};
+    ClipBuilder builder(skeleton, morphs);
+    Channel channel{Channel::Path::Weights, Channel::Interpolation::CubicSpline, 0, {0, 1}, {}};
+    channel.values = {0, 0.25, 6, -3, 0.75, 0}; // in-tangent, value, out-tangent
+    channel.weight = 13;
+    ASSERT_TRUE(builder.add(channel));
+    const auto set = make({skeleton, {}, {}, morphs, {builder.build("a")}});
+    const std::vector<WeightRange> ranges = weightRanges(*set, 0);
+    ASSERT_EQ(ranges.size(), 14u);
+    EXPECT_EQ(ranges[12].min, 0.5f) << "the default alone";
+    EXPECT_EQ(ranges[12].max, 0.5f);
+    EXPECT_NEAR(ranges[13].min, 0.25f, 1e-6f);
+    EXPECT_NEAR(ranges[13].max, 2.25f, 1e-6f) << "a third of the tangents beyond the values";
+    std::vector<float> shown;
+    Pose::properties(*set, PoseInstruction(), shown);
+    EXPECT_EQ(shown, numbers);
 }
 
 } // namespace

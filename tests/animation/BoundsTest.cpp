@@ -214,5 +214,52 @@ TEST(BoundsTest, BoxesGrowAndUnite)
     EXPECT_EQ(b.max, glm::vec3(1.5, 6.5, 3.5));
 }
 
+TEST(BoundsTest, AnEmptyBoxStaysEmpty)
+{
+    Box inverted = box(glm::vec3(1.0f), glm::vec3(0.5f));
+    inverted.grow(10.0f);
+    EXPECT_TRUE(inverted.empty());
+    Box one = box(glm::vec3(0.0f), glm::vec3(1.0f));
+    one.add(box(glm::vec3(3.0f, 0.0f, 0.0f), glm::vec3(2.0f, 1.0f, 1.0f)));
+    EXPECT_EQ(one.max, glm::vec3(1.0f));
+    EXPECT_EQ(Aabb3d().diagonal(), 0.0);
+    EXPECT_TRUE(Aabb3d().toBox().empty());
+}
+
+TEST(BoundsTest, ABoxGrowsWithinABallButNeverShrinks)
+{
+    const Aabb3d start{{-1.0, -5.0, 2.0}, {1.0, 5.0, 3.0}};
+    const Aabb3d grown = start.grownWithin(2.0, 4.0);
+    EXPECT_EQ(grown.min, glm::dvec3(-3.0, -5.0, 0.0)) << "y is outside the ball";
+    EXPECT_EQ(grown.max, glm::dvec3(3.0, 5.0, 4.0)) << "z reaches the ball";
+    EXPECT_EQ(grown.slackAround(start), 0.0);
+    EXPECT_EQ((Aabb3d{{-3.0, -9.0, 0.0}, {9.0, 9.0, 9.0}}.slackAround(start)), 2.0) << "the face at min.x";
+    EXPECT_EQ((Aabb3d{{-9.0, -9.0, -9.0}, {9.0, 9.0, 3.5}}.slackAround(start)), 0.5) << "the face at max.z";
+    const Aabb3d endless = start.grownWithin(std::nan(""), std::nan(""));
+    EXPECT_EQ(endless.max, glm::dvec3(Aabb3d::limit)) << "no number: the largest";
+}
+
+TEST(BoundsTest, RoundedBoxesLeaveRoomForSinglePrecision)
+{
+    const Box rounded = Aabb3d{{-1000.0, 1.0, 1.0}, {-999.0, 2.0, 2.0}}.toBox();
+    EXPECT_NEAR(rounded.max.y, 2.01f, 1e-6f) << "1e-5 of the largest coordinate, which is negative";
+    EXPECT_NEAR(rounded.min.x, -1000.01f, 1e-4f);
+    const double nan = std::nan("");
+    const Aabb3d unknown = Aabb3d::about({nan, 0.0, 1e300}, {1.0, nan, 1.0});
+    EXPECT_EQ(unknown.min, glm::dvec3(-Aabb3d::limit, -Aabb3d::limit, Aabb3d::limit));
+    EXPECT_EQ(unknown.max, glm::dvec3(Aabb3d::limit));
+}
+
+TEST(BoundsTest, JointsBeyondTheLimitDoNotCount)
+{
+    std::vector<Joint> joints(3);
+    joints[1].rest.translation = {2, -3, 4, 0};
+    joints[2].rest.translation = {0, 2e18f, 0, 0};
+    const auto set = AnimationSet::create({Skeleton::create(joints).value(), {}, {}, {}, {}}).value();
+    const Box bounds = boundsOfJoints(*set);
+    EXPECT_EQ(bounds.min, glm::vec3(0, -3, 0));
+    EXPECT_EQ(bounds.max, glm::vec3(2, 0, 4));
+}
+
 } // namespace
 } // namespace osgGpuAnimation

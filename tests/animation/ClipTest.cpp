@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <memory>
+#include <string>
 
 namespace osgGpuAnimation
 {
@@ -64,6 +67,83 @@ TEST(ClipTest, ItsDurationIsTheLastKeyframesTime)
     EXPECT_EQ(makeClip().duration(), 4.0);
     const Skeleton skeleton = Skeleton::create({Joint()}).value();
     EXPECT_EQ(ClipBuilder(skeleton, {}).build("rest").duration(), 0.0);
+}
+
+/// Two keyframes of one joint and one weight block.
+ClipParts partsOfTwo(Clip::Form form = Clip::Form::Linear)
+{
+    ClipParts parts{"two", form, 1, 2, {0.0f, 1.0f}, {}, {}, nullptr, nullptr};
+    parts.data.resize(2 * 2 * Clip::transformsPerTrack(form));
+    return parts;
+}
+
+std::shared_ptr<const RootMotionCurve> curveOf(std::size_t joint, std::size_t keys,
+                                               const std::function<void(RootMotionCurve&)>& change = {})
+{
+    auto curve = std::make_shared<RootMotionCurve>();
+    curve->joint = joint;
+    curve->keys.resize(keys);
+    if (change) change(*curve);
+    return curve;
+}
+
+TEST(ClipTest, PartsThatCannotBeAreErrorsAndTheEdgesAreAccepted)
+{
+    const float endless = std::numeric_limits<float>::infinity();
+    const double nan = std::nan("");
+    struct Case
+    {
+        const char* message; ///< empty: accepted
+        std::function<void(ClipParts&)> change;
+    };
+    const glm::vec4 zero(0.0f);
+    const Case cases[] = {
+        {"", [](ClipParts&) {}},
+        {"it has no keyframes", [](ClipParts& parts) { parts.times.clear(), parts.data.clear(); }},
+        {"",
+         [](ClipParts& parts) {
+             parts.times = {0.0f, 0.0f};
+         }},
+        {"time 2 (0.000000) occurs more than twice",
+         [](ClipParts& parts) {
+             parts.times = {0.0f, 0.0f, 0.0f}, parts.data.resize(6);
+         }},
+        {"time 1 (0.500000) is before",
+         [](ClipParts& parts) {
+             parts.times = {1.0f, 0.5f};
+         }},
+        {"time 0 (-0.500000) is negative", [](ClipParts& parts) { parts.times[0] = -0.5f; }},
+        {"time 1 (inf) is negative or not finite", [=](ClipParts& parts) { parts.times[1] = endless; }},
+        {"4 joint transforms are needed, but there are 5", [](ClipParts& parts) { parts.data.resize(5); }},
+        {"track 0 at keyframe 1: the rotation has length 0", [=](ClipParts& parts) { parts.data[2].rotation = zero; }},
+        {"", [=](ClipParts& parts) { parts.data[3].rotation = zero; }}, // weights
+        {"", [=](ClipParts& parts) { parts = partsOfTwo(Clip::Form::Spline), parts.data[1].rotation = zero; }},
+        {"track 1 at keyframe 1: a number is not finite", [=](ClipParts& parts) { parts.data[3].scale.w = endless; }},
+        {"", [](ClipParts& parts) { parts.rootMotion = curveOf(0, 2); }},
+        {"the joint of its root motion does not exist", [](ClipParts& parts) { parts.rootMotion = curveOf(1, 2); }},
+        {"its root motion has 1 keys for 2 keyframes", [](ClipParts& parts) { parts.rootMotion = curveOf(0, 1); }},
+        {"a number of its root motion is not finite", [=](ClipParts& parts)
+         { parts.rootMotion = curveOf(0, 2, [=](RootMotionCurve& curve) { curve.keys[1].yaw = nan; }); }},
+        {"a number of its root motion is not finite", [=](ClipParts& parts)
+         { parts.rootMotion = curveOf(0, 2, [=](RootMotionCurve& curve) { curve.keys[1].pivot.out.z = nan; }); }},
+        {"a number of its root motion is not finite", [=](ClipParts& parts)
+         { parts.rootMotion = curveOf(0, 2, [=](RootMotionCurve& curve) { curve.keys[0].displacement.in.y = nan; }); }},
+        {"a number of its root motion is not finite", [=](ClipParts& parts)
+         { parts.rootMotion = curveOf(0, 2, [](RootMotionCurve& curve) { curve.up = glm::dvec3(0.0); }); }},
+        {"marker \"step\" of clip \"two\": its time",
+         [](ClipParts& parts) {
+             parts.markers = {{-0.1, "step"}};
+         }},
+    };
+    for (std::size_t i = 0; i < std::size(cases); ++i)
+    {
+        ClipParts parts = partsOfTwo();
+        cases[i].change(parts);
+        const Result<Clip> made = Clip::create(parts);
+        const std::string message = made ? "" : made.error().message;
+        ASSERT_EQ(message.empty(), *cases[i].message == '\0') << "case " << i << ": " << message;
+        EXPECT_NE(message.find(cases[i].message), std::string::npos) << "case " << i << ": " << message;
+    }
 }
 
 } // namespace

@@ -12,8 +12,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <memory>
 #include <random>
+#include <string>
+#include <utility>
 
 namespace osgGpuAnimation
 {
@@ -193,5 +197,88 @@ TEST(QuantizedVec3Test, numbersAndRotationsComeBack)
 }
 
 } // namespace
+
+TEST(CompactClipsTest, tracksThatDoNotFitAreRefused)
+{
+    ClipBuilder builder(twoJoints(), {});
+    Channel bent = straightWay(8, 8.0);
+    for (std::size_t key = 0; key < 9; ++key)
+        bent.values[3 * key + 1] = static_cast<double>(key * key);
+    ASSERT_TRUE(builder.add(bent));
+    const auto set = setOf(twoJoints(), {}, builder.build("bent"));
+    const auto made = compactClips(*set, cubes(*set, 1.0f), {1e-2});
+    ASSERT_TRUE(made);
+    const Clip& clip = made.value().set->clips()[0];
+    ASSERT_TRUE(clip.compactTracks());
+    using Change = std::function<void(CompactTracks&)>;
+    const std::pair<const char*, Change> changes[] = {
+        {"", [](CompactTracks&) {}},
+        {"", [](CompactTracks& tracks) { tracks.tracks[1].scale = 0; }},
+        {"beyond the last column",
+         [](CompactTracks& tracks) { tracks.tracks[1].rotation = static_cast<int>(tracks.columnCount); }},
+        {"no column", [](CompactTracks& tracks) { tracks.tracks[1].rotation = -2; }},
+        {"one value more", [](CompactTracks& tracks) { tracks.keyframes.emplace_back(); }},
+        {"one value less", [](CompactTracks& tracks) { tracks.keyframes.pop_back(); }},
+        {"a joint less", [](CompactTracks& tracks) { tracks.tracks.pop_back(); }},
+        {"an endless step", [](CompactTracks& tracks) { tracks.tracks[1].scaleRange.step.z = INFINITY; }},
+        {"no number", [](CompactTracks& tracks) { tracks.tracks[0].translationRange.base.x = NAN; }},
+    };
+    for (const auto& [name, change] : changes)
+    {
+        CompactTracks tracks = *clip.compactTracks();
+        change(tracks);
+        const Result<Clip> again = Clip::create({clip.name(),
+                                                 clip.form(),
+                                                 2,
+                                                 2,
+                                                 clip.times(),
+                                                 clip.data(),
+                                                 {},
+                                                 nullptr,
+                                                 std::make_shared<const CompactTracks>(tracks)});
+        EXPECT_EQ(static_cast<bool>(again), *name == '\0') << name;
+    }
+}
+
+// The tolerance is that of vertices: far from the joint a small turn counts, and so does a small scale.
+TEST(CompactClipsTest, smallTurnsAndScalesOfFarVerticesStay)
+{
+    for (const bool isScale : {false, true})
+    {
+        ClipBuilder builder(twoJoints(), {});
+        Channel channel{
+            isScale ? Channel::Path::Scale : Channel::Path::Rotation, Channel::Interpolation::Linear, 1, {0, 1, 2}, {}};
+        for (const double x : {0.0, 2e-4, 0.0})
+        {
+            if (isScale)
+                channel.values.insert(channel.values.end(), {1.0 + x, 1.0, 1.0});
+            else
+                channel.values.insert(channel.values.end(), {0.0, 0.0, std::sin(x), std::cos(x)});
+        }
+        ASSERT_TRUE(builder.add(channel));
+        AnimationParts parts{twoJoints(), {}, {}, {}, {builder.build("sway")}};
+        AffineMatrix inverseBind;
+        inverseBind.rows[0].w = 1000.0f; // vertices near 0 in the mesh's space are 1000 units from the joint
+        parts.skins.push_back({"far", {0, 1}, {AffineMatrix(), inverseBind}});
+        const auto set = AnimationSet::create(std::move(parts)).value();
+        const EntryBoxes boxes = cubes(*set, 1.0f);
+        for (const double tolerance : {0.01, 1.0})
+        {
+            const auto made = compactClips(*set, boxes, {tolerance}).value();
+            const Clip& clip = made.set->clips()[0];
+            const JointTransform &middle = *clip.at(clip.keyframeCount() / 2, 1), &rest = set->restPose()[1];
+            const bool isKept = isScale ? middle.scale.x != rest.scale.x : middle.rotation.z != rest.rotation.z;
+            EXPECT_EQ(isKept, tolerance < 0.1) << isScale << " at " << tolerance;
+            EXPECT_LE(made.errors[0], tolerance);
+            EXPECT_GE(made.errors[0], tolerance < 0.1 ? 0.0 : 0.15) << "the error that was made";
+        }
+    }
+}
+
+TEST(CompactClipsTest, withoutVerticesTheJointsAreTheSize)
+{
+    const auto set = setOf(twoJoints(), {}, ClipBuilder(twoJoints(), {}).build("still"));
+    EXPECT_NEAR(longestSide(*set, EntryBoxes(set->paletteSize())), 1.0, 1e-4);
+}
 
 } // namespace osgGpuAnimation

@@ -172,5 +172,18 @@ TEST(JointMaskTest, MasksLiveAsLongAsTheirUsers)
     EXPECT_EQ(restored.layer(3).snapshot().mask[0], 67.0f / 1000.0f);
 }
 
+TEST(JointMaskTest, TheLastMorphHasAWeightAndOneBeyondHasNot)
+{
+    const std::vector<MorphWeights> morphs{{"face", 0, std::vector<float>(14)}, {"hand", 0, {0.5f}}};
+    const auto set = AnimationSet::create({Skeleton::create({Joint()}).value(), {}, {}, morphs, {}}).value();
+    JointMask mask(*set);
+    EXPECT_TRUE(mask.setMorph(1, 0.5f));
+    EXPECT_FALSE(mask.setMorph(2, 0.5f));
+    EXPECT_FALSE(mask.setJoint(1, 0.5f));
+    EXPECT_EQ(mask.weights(), (std::vector<float>{0, 0, 0, 0.5f}));
+    EXPECT_TRUE(mask.setMorph(0, 1.0f));
+    EXPECT_EQ(mask.inverted().weights(), (std::vector<float>{1, 0, 0, 0.5f}));
+}
+
 } // namespace
 } // namespace osgGpuAnimation

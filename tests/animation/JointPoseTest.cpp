@@ -16,9 +16,13 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <layout.glsl>
 #include <limits>
+#include <memory>
+#include <utility>
 
 namespace osgGpuAnimation
 {
@@ -448,5 +452,146 @@ TEST_F(PosedLayerTest, boundsContainWhatIsPosedAndStayWhileJointsTurn)
 }
 
 } // namespace
+
+TEST(JointPoseTest, transformsAreStoredCleanedAndResetAsAWhole)
+{
+    const auto set = makeRandomSet({});
+    JointPose pose(set);
+    auto expectNew = [&, serial = pose.keyframe().serial()](const char* change) mutable
+    {
+        EXPECT_NE(pose.keyframe().serial(), serial) << change;
+        serial = pose.keyframe().serial();
+    };
+    EXPECT_TRUE(pose.isEmpty());
+    ASSERT_TRUE(pose.setScale(3, {2, 3, 4}));
+    EXPECT_FALSE(pose.isEmpty());
+    expectNew("a part");
+    ASSERT_TRUE(pose.reset(3));
+    EXPECT_TRUE(pose.isEmpty());
+    EXPECT_EQ(pose.transform(3).scale, set->restPose()[3].scale) << "all three parts are reset";
+    EXPECT_TRUE(pose.tracks().empty());
+    expectNew("a reset joint");
+    ASSERT_TRUE(pose.setTransform(3, {{1, 2, 3, 9}, {0, 0, 0.997f, 0}, {1, 1, 1, 9}}));
+    EXPECT_EQ(pose.transform(3).translation, glm::vec4(1, 2, 3, 0));
+    EXPECT_EQ(pose.transform(3).scale.w, 0.0f);
+    EXPECT_NEAR(pose.transform(3).rotation.z, 1.0f, 1e-6f) << "unit";
+    expectNew("a transform");
+    pose.reset();
+    expectNew("a reset");
+    EXPECT_TRUE(pose.extent()->joints.empty());
+    std::vector<JointTransform> all(set->skeleton().jointCount());
+    ASSERT_TRUE(pose.setTransforms(all));
+    expectNew("all transforms");
+    const auto shared = pose.sharedKeyframe();
+    ASSERT_TRUE(pose.setTransforms(all));
+    expectNew("all transforms of a shared pose");
+    EXPECT_NE(shared, pose.sharedKeyframe());
+}
+
+TEST(JointPoseTest, extentsHoldWhatIsSetAndShrinkAfterAReset)
+{
+    const auto set = makeRandomSet({});
+    JointPose pose(set);
+    const auto holdsScale = [&](std::size_t joint)
+    {
+        const PoseExtent::Joint& known = pose.extent()->joints[joint];
+        const glm::vec3 off = glm::abs(known.scale - glm::vec3(pose.transform(joint).scale));
+        return known.scales && std::max({off.x, off.y, off.z}) <= known.stretch;
+    };
+    for (const float scale : {1.0f, -9.0f, 0.5f, 40.0f})
+    {
+        ASSERT_TRUE(pose.setScale(3, {scale, 1, 1}));
+        EXPECT_TRUE(holdsScale(3)) << scale;
+    }
+    EXPECT_FALSE(pose.extent()->joints[3].turns);
+    ASSERT_TRUE(pose.setRotation(3, glm::quat(0, 1, 0, 0)));
+    EXPECT_TRUE(pose.extent()->joints[3].turns);
+    ASSERT_TRUE(pose.setTranslation(4, {1e6f, 0, 0}));
+    EXPECT_TRUE(pose.extent()->joints[4].moves);
+    ASSERT_TRUE(pose.setMorphWeight(1, 3, 0.0f));
+    EXPECT_EQ(pose.extent()->largestWeight, 1.0) << "at least 1";
+    ASSERT_TRUE(pose.setMorphWeight(1, 3, -8.0f));
+    EXPECT_GE(pose.extent()->largestWeight, 8.0);
+    const std::vector<JointPose::Track> stored = pose.tracks();
+    ASSERT_TRUE(pose.reset(4));
+    ASSERT_TRUE(pose.reset(3));
+    EXPECT_TRUE(pose.extent()->joints.empty() ||
+                !(pose.extent()->joints[4].moves || pose.extent()->joints[3].turns || pose.extent()->joints[3].scales));
+    EXPECT_GE(pose.extent()->largestWeight, 8.0);
+    ASSERT_TRUE(pose.resetMorph(1));
+    EXPECT_EQ(pose.extent()->largestWeight, 0.0);
+    ASSERT_TRUE(pose.setTracks(stored));
+    EXPECT_TRUE(holdsScale(3));
+    EXPECT_TRUE(pose.extent()->joints[4].moves);
+    EXPECT_GE(pose.extent()->largestWeight, 8.0);
+    for (const std::uint32_t numbers : {0x1000u, 0x1Fu, 0x7u})
+    {
+        std::vector<JointPose::Track> bad = stored;
+        bad[0].numbers = numbers;
+        EXPECT_FALSE(pose.setTracks(bad)) << numbers << ": half a part, or a number beyond twelve";
+    }
+    std::vector<JointPose::Track> other = stored;
+    other.back().numbers |= 0x1000u;
+    EXPECT_FALSE(pose.setTracks(other)) << "a thirteenth weight";
+    other = stored;
+    other[0].values.translation = glm::vec4(INFINITY); // not set
+    ASSERT_EQ(other[1].track, 4u);
+    other[1].values.rotation = glm::vec4(0.0f); // not set
+    EXPECT_TRUE(pose.setTracks(other)) << "what is not set may be anything";
+    other.back().values.translation.w = INFINITY;
+    ASSERT_TRUE((other.back().numbers & 8u) != 0) << "weight 3";
+    EXPECT_FALSE(pose.setTracks(other)) << "an infinite weight";
+}
+
+TEST(JointPoseTest, belowAShearedJointJointsKeepTheirPlaces)
+{
+    std::vector<Joint> joints(3);
+    for (int i = 1; i < 3; ++i)
+        joints[static_cast<std::size_t>(i)].parent = i - 1;
+    const auto set = AnimationSet::create({Skeleton::create(joints).value(), {}, {}, {}, {}}).value();
+    JointPose pose(set);
+    std::vector<AffineMatrix> model(3);
+    model[0].rows = {glm::vec4(0, -2, 1, 5), glm::vec4(3, 1, 0, 6), glm::vec4(0, 0, 1, 7)};
+    model[1].rows[0].w = 2.0f;
+    model[2].rows = {glm::vec4(0, 0, 1, -4), glm::vec4(1, 0, 0, 3), glm::vec4(0, 1, 0, 2)};
+    ASSERT_TRUE(pose.setModelTransforms(model));
+    const glm::dvec4 q(pose.transform(0).rotation);
+    EXPECT_NEAR(glm::length(q), 1.0, 1e-6);
+    const glm::dmat3 turned = Rotation::matrix(q);
+    EXPECT_NEAR(turned[0].y, 1.0, 1e-6) << "the direction of the first column";
+    EXPECT_NEAR(turned[2].z, 1.0, 1e-6) << "the plane of the first two";
+    std::vector<AffineMatrix> shown;
+    std::vector<JointTransform> tracks;
+    for (std::size_t joint = 0; joint < 3; ++joint)
+        tracks.push_back(pose.transform(joint));
+    Pose::jointToModel(*set, tracks, AffineMatrix(), shown);
+    for (std::size_t joint = 0; joint < 3; ++joint)
+        for (std::size_t row = 0; row < 3; ++row)
+            EXPECT_NEAR(shown[joint].rows[row].w, model[joint].rows[row].w, 1e-5f) << joint;
+    model[1].rows[1] = glm::vec4(0.0f);
+    EXPECT_FALSE(pose.setModelTransforms(model)) << "no inverse";
+}
+
+TEST(JointPoseTest, posesThatDoNotFitTheSetShowNothing)
+{
+    const auto set = makeRandomSet({});
+    const auto other = AnimationSet::create({Skeleton::create({Joint()}).value(), {}, {}, {}, {}}).value();
+    const auto foreign = std::make_shared<JointPose>(other), own = std::make_shared<JointPose>(set);
+    ASSERT_TRUE(foreign->setTranslation(0, glm::vec3(9.0f)));
+    ASSERT_TRUE(own->setTranslation(0, glm::vec3(9.0f)));
+    PoseInstruction instruction;
+    instruction.sampleCount = PoseInstruction::maxSamples;
+    for (BlendSample& sample : instruction.samples)
+        sample = {0, 0.0f, 0.0f, POSE_SAMPLE_POSED};
+    instruction.samples.back() = {1, 0.0f, 1.0f, POSE_SAMPLE_POSED};
+    std::vector<JointTransform> tracks;
+    const std::shared_ptr<const JointPose> poses[] = {foreign, nullptr, own};
+    for (const auto& pose : poses)
+    {
+        instruction.poses = {own, pose};
+        Pose::mix(*set, instruction, tracks);
+        EXPECT_EQ(tracks[0].translation.x, pose == own ? 9.0f : set->restPose()[0].translation.x);
+    }
+}
 
 } // namespace osgGpuAnimation

@@ -6,6 +6,7 @@
 
 #include <osgGpuAnimation/animation/AnimationController.h>
 #include <osgGpuAnimation/animation/bounds/ClipBounds.h>
+#include <osgGpuAnimation/animation/bounds/JointRange.h>
 #include <osgGpuAnimation/animation/ClipBuilder.h>
 #include <osgGpuAnimation/animation/JointMask.h>
 #include <osgGpuAnimation/animation/Pose.h>
@@ -15,7 +16,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <random>
+#include <utility>
 
 namespace osgGpuAnimation
 {
@@ -231,6 +234,134 @@ TEST(MixBoundsTest, ClipsPlayedAreThoseThatShow)
     EXPECT_EQ(clips(), (std::vector<int>{2}));
     controller.layer(0).setWeight(0.5f);
     EXPECT_EQ(clips(), (std::vector<int>{2, -1})) << "what weights leave of 1";
+}
+
+TEST(MixBoundsTest, WhateverCanShowIsPlayed)
+{
+    const auto set = makeGaitSet();
+    std::vector<PlayedClip> played;
+    const auto countOf = [&](const AnimationController& controller, int clip)
+    {
+        findPlayedClips(controller, played);
+        return std::count_if(played.begin(), played.end(),
+                             [&](const PlayedClip& one) { return one.clip == clip && !one.pose; });
+    };
+    AnimationController itself(set);
+    ASSERT_TRUE(itself.play(1));
+    for (int i = 0; i < 2; ++i)
+    {
+        itself.advance(0.1);
+        ASSERT_TRUE(itself.crossfade(1, 1.0));
+    }
+    EXPECT_EQ(countOf(itself, 1), 2) << "three times of one clip: as two of them";
+
+    AnimationController posed(set);
+    ASSERT_TRUE(posed.play(1));
+    ASSERT_TRUE(posed.layer(0).pose().setTranslation(3, glm::vec3(1.0f)));
+    EXPECT_EQ(countOf(posed, -1), 0);
+    ASSERT_TRUE(posed.layer(0).showPose(1.0));
+    posed.advance(0.5);
+    EXPECT_EQ(countOf(posed, -1), 1) << "a pose does not set all joints";
+    EXPECT_EQ(countOf(posed, 1), 1);
+
+    AnimationController crowded(set);
+    ASSERT_TRUE(crowded.play(1));
+    for (std::size_t layer = 1; layer < maxLayers; ++layer)
+    {
+        crowded.layer(layer).setMode(AnimationLayer::Mode::Additive);
+        ASSERT_TRUE(crowded.layer(layer).play(0));
+    }
+    EXPECT_EQ(countOf(crowded, -1), 0) << "15 samples";
+    ASSERT_TRUE(crowded.layer(1).crossfade(2, 1.0));
+    crowded.advance(0.1);
+    EXPECT_EQ(countOf(crowded, -1), 1) << "17 samples, of which one is dropped";
+
+    AnimationController stacked(set);
+    ASSERT_TRUE(stacked.play(1));
+    ASSERT_TRUE(stacked.layer(1).play(2));
+    stacked.layer(1).setWeight(0.5f);
+    EXPECT_EQ(countOf(stacked, -1), 0) << "the base hides the rest pose below a lighter layer";
+}
+
+// One joint at rest: the box is that of the entry for the weights that can occur.
+TEST(MixBoundsTest, TheEntrysBoxIsThatOfTheWeightsThatCanOccur)
+{
+    const std::vector<MorphWeights> morphs{{"face", 0, {-0.5f}}, {"/cameras/0", -1, {100.0f}}};
+    const auto set = AnimationSet::create({Skeleton::create({Joint()}).value(), {}, {}, morphs, {}}).value();
+    const auto cube = [](float size) { return Box{glm::vec3(-size), glm::vec3(size)}; };
+    MixBounds::Boxes boxes{EntryBoxes(set->paletteSize()), EntryBoxes(set->paletteSize()),
+                           EntryBoxes(set->paletteSize()), std::vector<float>(set->paletteSize())};
+    const auto entry = static_cast<std::size_t>(set->mainEntry(0));
+    boxes.ofClips[entry] = cube(1.0f);
+    boxes.withAdded[entry] = cube(2.0f);
+    boxes.withPosed[entry] = cube(3.0f);
+    boxes.reaches[entry] = 10.0f;
+    const MixBounds bounds(*set, boxes);
+    using Part = PlayedClip::Part;
+    const auto pose = [](double largestWeight, Part part)
+    {
+        PoseExtent extent;
+        extent.largestWeight = largestWeight;
+        return PlayedClip{-1, part, std::make_shared<const PoseExtent>(extent)};
+    };
+    const PlayedClip rest{-1, Part::Mixed}, added{-1, Part::AddedToRest};
+    const float diagonal = glm::length(glm::vec3(4.0f));
+    struct Case
+    {
+        const char* name;
+        std::vector<PlayedClip> played;
+        float size;
+    };
+    const Case cases[] = {
+        {"clips", {rest}, 1.0f},
+        {"a pose without weights", {rest, pose(0.0, Part::Mixed)}, 1.0f},
+        {"a pose of weights up to 1", {rest, pose(1.0, Part::Mixed)}, 3.0f},
+        {"the largest weight of two poses", {rest, pose(4.0, Part::Mixed), pose(2.0, Part::Mixed)}, 3.0f + 30.0f},
+        {"an added clip", {rest, added}, 2.0f},
+        {"added poses, from the rest pose's weight", {rest, pose(2.0, Part::AddedToRest)}, 1.0f + 25.0f},
+        {"two of them", {rest, pose(2.0, Part::AddedToRest), pose(1.0, Part::AddedToRest)}, 1.0f + 40.0f},
+        {"a pose and an added clip", {rest, added, pose(1.0, Part::Mixed)}, 3.0f + diagonal},
+    };
+    for (const Case& c : cases)
+    {
+        const Box box = bounds.box(c.played);
+        EXPECT_NEAR(box.max.x, c.size, 1e-3f) << c.name;
+        EXPECT_NEAR(box.min.z, -c.size, 1e-3f) << c.name;
+    }
+}
+
+// Poses and constraints that may turn, move or scale a joint.
+TEST(MixBoundsTest, PosesAndConstraintsReachAsFarAsTheirJoints)
+{
+    std::vector<Joint> joints(2);
+    joints[0].name = "a", joints[1].name = "b";
+    joints[1].parent = 0;
+    joints[1].rest.translation = {10, 0, 0, 0};
+    const auto bare = AnimationSet::create({Skeleton::create(joints).value(), {}, {}, {}, {}}).value();
+    const auto set = bare->withConstraints({LookAt{"at a", {"a"}}, LookAt{"at b", {"b"}}}).value();
+    EntryBoxes boxes(set->paletteSize());
+    boxes[static_cast<std::size_t>(set->mainEntry(1))] = Box{glm::vec3(0.0f), glm::vec3(1.0f, 0.5f, 0.0f)};
+    const MixBounds bounds(*set, boxes);
+    const std::vector<PlayedClip> rest{{-1}};
+    EXPECT_NEAR(bounds.box(rest).min.x, 10.0f, 1e-3f);
+    EXPECT_NEAR(bounds.box(rest, 2).min.x, 9.0f, 0.5f) << "b turns about itself";
+    EXPECT_LE(bounds.box(rest, 2).min.x, 9.0f);
+    EXPECT_LE(bounds.box(rest, 1).min.x, -11.0f) << "a turns b round";
+    PoseExtent::Joint moving, turning, scaling;
+    moving.moves = turning.turns = scaling.scales = true;
+    moving.translation = {20, 0, 0};
+    moving.shift = 2.0f;
+    scaling.scale = {3, 1, 1};
+    scaling.stretch = 1.0f;
+    const std::pair<PoseExtent::Joint, float> cases[] = {{moving, 23.0f}, {turning, 11.0f}, {scaling, 14.0f}};
+    for (const auto& [joint, reach] : cases)
+    {
+        PoseExtent extent;
+        extent.joints = {PoseExtent::Joint(), joint};
+        const Box box = bounds.box({{-1}, {-1, PlayedClip::Part::Mixed, std::make_shared<const PoseExtent>(extent)}});
+        EXPECT_GE(box.max.x, reach);
+        EXPECT_LE(box.min.x, joint.turns ? 9.0f : 10.0f);
+    }
 }
 
 } // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/bounds/ClipBounds.h>
 
+#include <osgGpuAnimation/animation/bounds/JointRange.h>
 #include <osgGpuAnimation/animation/JointTransform.h>
 
 #include <glm/geometric.hpp>
@@ -8,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <glm/gtc/quaternion.hpp>
 #include <random>
 #include <vector>
 
@@ -141,6 +143,77 @@ TEST(MotionBoundTest, ASplineThroughTheZeroQuaternionHasNoBoundButItsReach)
     }
     EXPECT_FALSE(std::isfinite(piece.motion().maxDeviation(1.0)));
     EXPECT_DOUBLE_EQ(piece.motion().reach(1.0), 4.0);
+}
+
+// Any transforms of two ranges, and what an additive sample makes of them, are inside the range of both.
+TEST(JointRangeTest, SumsHoldTheTransformsOfBoth)
+{
+    std::mt19937 random(7);
+    const auto number = [&](double low, double high)
+    { return std::uniform_real_distribution<double>(low, high)(random); };
+    const auto vector = [&](double size)
+    {
+        const double x = number(-size, size);
+        const double y = number(-size, size);
+        return glm::dvec3(x, y, number(-size, size));
+    };
+    const auto turnedBy = [&](const glm::dvec4& q, double angle) { // angle: between quaternions
+        const glm::dvec3 axis = glm::normalize(vector(1.0) + glm::dvec3(0.0, 0.0, 1e-3));
+        return Rotation::numbers(Rotation::quaternion(q) * glm::dquat(std::cos(angle), axis * std::sin(angle)));
+    };
+    const auto randomRange = [&](const glm::dvec4& about)
+    {
+        JointRange range;
+        range.translation = vector(3.0);
+        range.shift = number(0.0, 2.0);
+        range.scale = glm::dvec3(2.0) + vector(1.5);
+        range.stretch = number(0.0, 1.0);
+        range.rotation = turnedBy(about, number(0.0, 0.3)) * (random() % 2 ? 1.0 : -1.0);
+        range.turn = number(0.0, 0.2);
+        return range;
+    };
+    struct Member
+    {
+        glm::dvec3 translation, scale;
+        glm::dvec4 rotation;
+    };
+    const auto memberOf = [&](const JointRange& range)
+    {
+        const double angle = range.turn * (random() % 2 ? 1.0 : number(0.0, 1.0));
+        const glm::dvec3 side = glm::normalize(vector(1.0) + glm::dvec3(0.0, 0.0, 1e-3));
+        return Member{range.translation + range.shift * side, range.scale + vector(1.0) * range.stretch,
+                      turnedBy(range.rotation, angle)};
+    };
+    const auto expectHolds = [](const JointRange& range, const Member& member)
+    {
+        EXPECT_LE(glm::distance(member.translation, range.translation), range.shift + 1e-9);
+        EXPECT_LE(largestComponent(member.scale - range.scale), range.stretch + 1e-9);
+        const double cosine = std::min(std::abs(glm::dot(member.rotation, range.rotation)), 1.0);
+        EXPECT_LE(std::acos(cosine), range.turn + 1e-6);
+    };
+    for (int i = 0; i < 2000; ++i)
+    {
+        const glm::dvec4 about = turnedBy({0, 0, 0, 1}, number(0.0, 3.0));
+        const JointRange a = randomRange(about), b = randomRange(about);
+        JointRange both = a;
+        both.add(b);
+        expectHolds(both, memberOf(a));
+        expectHolds(both, memberOf(b));
+
+        const JointTransform reference{
+            glm::vec4(glm::vec3(vector(3.0)), 0.0f), glm::vec4(turnedBy(about, 0.1)), {1.5f, -0.5f, 0.0f, 0.0f}};
+        JointRange added = a;
+        added.addDifference(b, reference);
+        const Member below = memberOf(a), sample = memberOf(b);
+        Member sum = below;
+        sum.translation += sample.translation - glm::dvec3(reference.translation);
+        for (int axis = 0; axis < 2; ++axis) // a reference of 0 changes nothing
+            sum.scale[axis] *= sample.scale[axis] / static_cast<double>(reference.scale[axis]);
+        glm::dquat turn = glm::conjugate(Rotation::quaternion(Rotation::unit(glm::dvec4(reference.rotation)))) *
+                          Rotation::quaternion(sample.rotation);
+        sum.rotation = Rotation::numbers(Rotation::quaternion(below.rotation) * turn);
+        expectHolds(added, sum);
+    }
 }
 
 } // namespace

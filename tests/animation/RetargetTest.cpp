@@ -505,4 +505,12 @@ TEST(RetargetTest, hipsAreFoundByTheirNameOrWhereTheBodyBranches)
 
 } // namespace
 
+TEST(RetargetTest, theSameNameComesBeforeASimilarOne)
+{
+    EXPECT_EQ(bareJointName("Armature|hero"), "hero");
+    EXPECT_EQ(bareJointName("mixamorig"), "mixamorig");
+    EXPECT_EQ(findCounterparts({"ns:Hips", "Hips", "other:Hips", ""}, {"Hips", "ns:Hips", ""}, {}),
+              (std::vector<int>{1, 0, 0, -1}));
+}
+
 } // namespace osgGpuAnimation

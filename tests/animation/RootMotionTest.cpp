@@ -13,7 +13,9 @@
 
 #include <cmath>
 #include <functional>
+#include <glm/gtc/quaternion.hpp>
 #include <random>
+#include <utility>
 
 namespace osgGpuAnimation
 {
@@ -136,6 +138,10 @@ TEST(RootMotionTest, MotionAndWhatIsLeftMakeTheOldPose)
             gone = gone * after.takeRootMotion();
             EXPECT_LE(difference(gone.matrix() * headAt(after), headAt(before)), c.tolerance) << c.name << " " << i;
         }
+        EXPECT_TRUE(c.axes.vertical || std::abs(gone.translation.y) <= 1e-9) << c.name;
+        EXPECT_TRUE(c.axes.horizontal || c.axes.yaw ||
+                    glm::length(glm::dvec2(gone.translation.x, gone.translation.z)) <= 1e-9)
+            << c.name;
         // The clip no longer contains the extracted motion: the hips stay over one spot.
         const glm::dmat4 hips = Pose::jointToModel(*left, after.instruction(), 1).toColumns();
         EXPECT_TRUE(!c.axes.horizontal || glm::length(glm::dvec2(hips[3].x, hips[3].z)) <= 1e-5) << c.name;
@@ -377,6 +383,209 @@ TEST(RootMotionTest, AdvancingDoesNotAllocate)
     for (int i = 0; i < 1000; ++i)
         controller.advance(0.37);
     EXPECT_EQ(allocationCount(), before);
+}
+
+// The same motions about an up axis other than +Y.
+TEST(RootMotionTest, MotionsKeepTheirUpAxis)
+{
+    const glm::dvec3 up = glm::normalize(glm::dvec3(0.2, -0.3, 1.0));
+    const RootMotion step{{1.0, 2.0, -0.5}, 0.7, up}, other{{-3.0, 0.4, 0.1}, -1.9, up};
+    const glm::dvec4 point(0.3, -2.0, 5.0, 1.0);
+    const auto apart = [&](const RootMotion& motion, const glm::dmat4& expected)
+    { return glm::length(motion.matrix() * point - expected * point); };
+    EXPECT_LE(glm::length(glm::dvec3(step.matrix() * point) - step.transformPoint(glm::dvec3(point))), 1e-12);
+    EXPECT_LE(apart(step * other, step.matrix() * other.matrix()), 1e-12);
+    EXPECT_LE(apart(step.inverse(), glm::inverse(step.matrix())), 1e-12);
+    EXPECT_LE(apart(step.power(3.0), step.matrix() * step.matrix() * step.matrix()), 1e-12);
+    EXPECT_LE(apart(step.power(-2.9), glm::inverse(step.matrix() * step.matrix())), 1e-12) << "rounded towards 0";
+    for (const RootMotion& motion : {step * other, step.inverse(), step.power(3.0), step.power(0.0)})
+        EXPECT_EQ(motion.up, up);
+    EXPECT_TRUE(step.power(0.5).isNone());
+    const RootMotion straight{{1.0, 0.0, 0.0}, 0.0, up};
+    for (const double sign : {1.0, -1.0})
+        EXPECT_EQ(straight.power(sign * 1e30).translation.x, sign * 1099511627776.0) << "limited to 2^40";
+}
+
+// Layer 1 holds the character only if its pose sets the joint's translation; additive layers do not move it.
+TEST(RootMotionTest, PosesHoldTheCharacterByTheirMeanShare)
+{
+    const auto set = stripped(*makeSet({{"Walk", 1.0, 1.5, 0.0, false}, {"Run", 0.5, 3.0, 0.0, false}}), {});
+    const auto motionOf = [](AnimationController& controller, double seconds, int steps)
+    {
+        (void)controller.takeRootMotion();
+        for (int i = 0; i < steps; ++i)
+            controller.advance(seconds / steps);
+        return -controller.takeRootMotion().translation.z;
+    };
+    AnimationController layered(set);
+    ASSERT_TRUE(layered.play("Walk"));
+    ASSERT_TRUE(layered.layer(1).pose().setRotation(1, glm::quat(0, 1, 0, 0)));
+    EXPECT_NEAR(motionOf(layered, 1.0, 4), 1.5, 1e-6) << "a turn of the hips holds nothing";
+    ASSERT_TRUE(layered.layer(1).pose().setTranslation(1, glm::vec3(0.0f)));
+    EXPECT_NEAR(motionOf(layered, 1.0, 4), 0.0, 1e-6);
+    layered.layer(1).setWeight(0.25f);
+    EXPECT_NEAR(motionOf(layered, 1.0, 4), 0.75 * 1.5, 1e-6);
+    layered.layer(1).stop();
+    layered.layer(2).setMode(AnimationLayer::Mode::Additive);
+    ASSERT_TRUE(layered.layer(2).play("Run"));
+    EXPECT_NEAR(motionOf(layered, 1.0, 4), 1.5, 1e-6) << "additive layers are ignored";
+    for (const int steps : {1, 5})
+    {
+        AnimationController fading(set);
+        ASSERT_TRUE(fading.play("Walk"));
+        ASSERT_TRUE(fading.layer(0).pose().setTranslation(1, glm::vec3(0.0f)));
+        ASSERT_TRUE(fading.layer(0).showPose(1.0));
+        EXPECT_NEAR(motionOf(fading, 1.0, steps), 0.75, 1e-6) << steps;
+        AnimationController light(set);
+        ASSERT_TRUE(light.play("Walk"));
+        ASSERT_TRUE(light.layer(0).fadeWeight(0.0f, 1.0));
+        EXPECT_NEAR(motionOf(light, 1.0, steps), 0.75, 1e-6) << steps;
+    }
+}
+
+// While a layer is paused its share is constant, whatever its fade did in the step before.
+TEST(RootMotionTest, APausedLayerCoversByItsPresentWeight)
+{
+    const auto set = stripped(*makeSet({{"Walk", 1.0, 1.5, 0.0, false}, {"Run", 0.5, 3.0, 0.0, false}}), {});
+    AnimationController controller(set);
+    ASSERT_TRUE(controller.play("Walk"));
+    AnimationLayer& upper = controller.layer(1);
+    ASSERT_TRUE(upper.play("Run"));
+    ASSERT_TRUE(upper.fadeWeight(0.0f, 1.0));
+    controller.advance(0.5);
+    upper.pause();
+    (void)controller.takeRootMotion();
+    controller.advance(0.25);
+    EXPECT_NEAR(controller.takeRootMotion().translation.z, -0.5 * 0.25 * 1.5, 1e-6);
+    upper.resume();
+    upper.setWeight(1.0f);
+    ASSERT_TRUE(upper.crossfade("Walk", 1.0));
+    controller.advance(0.5);
+    upper.pause();
+    (void)controller.takeRootMotion();
+    controller.advance(0.25);
+    EXPECT_NEAR(controller.takeRootMotion().translation.z, 0.0, 1e-6) << "both clips together cover all";
+}
+
+TEST(RootMotionTest, ThereAndBackWithinOneStepIsTheWayBetweenItsEnds)
+{
+    const auto set = stripped(*makeSet({{"Walk", 1.0, 1.5, 0.0, false}}), {});
+    AnimationController controller(set);
+    controller.setLoopMode(LoopMode::PingPong);
+    ASSERT_TRUE(controller.play("Walk"));
+    const std::pair<double, double> steps[] = {{0.75, 0.75}, {0.5, 0.0}, {1.0, -0.5}, {2.0, 0.0}};
+    for (const auto& [seconds, share] : steps)
+    {
+        controller.advance(seconds);
+        EXPECT_NEAR(-controller.takeRootMotion().translation.z, 1.5 * share, 1e-6) << seconds;
+    }
+}
+
+TEST(RootMotionTest, TheHigherBlendPriorityCoversWhicheverLayerItIs)
+{
+    const auto set = stripped(*makeSet({{"Walk", 1.0, 1.5, 0.0, false}, {"Run", 0.5, 3.0, 0.0, false}}), {});
+    AnimationController controller(set), next(set);
+    controller.layer(0).setBlendPriority(5);
+    ASSERT_TRUE(controller.play("Walk"));
+    ASSERT_TRUE(controller.layer(1).play("Run"));
+    ASSERT_TRUE(controller.layer(2).play("Run"));
+    controller.advance(0.5);
+    EXPECT_NEAR(controller.rootMotion().translation.z, -0.75, 1e-6);
+    const AnimationController other(set, controller);
+    EXPECT_EQ(other.rootMotion().translation, controller.rootMotion().translation) << "goes along to another set";
+}
+
+// Two parents that turn, a first pose that is no rest pose, and an up axis that is no axis of anything.
+TEST(RootMotionTest, AnyParentsAxesAndFirstPoseKeepTheOldPose)
+{
+    std::vector<Joint> joints{{"a", -1, {}, 0}, {"b", 0, {}, 1}, {"hips", 1, {}, 2}};
+    joints[0].rest = {{1, 2, 3, 0}, {0.5f, 0, 0, 0.8f}, {2, 2, 2, 0}};
+    joints[1].rest = {{0.3f, -1, 0, 0}, {0, 0.2f, -0.6f, 0.7f}, {1, 1, 1, 0}};
+    const Skeleton skeleton = Skeleton::create(joints).value();
+    for (const auto interpolation : {Channel::Interpolation::Linear, Channel::Interpolation::CubicSpline})
+        for (const RootMotionAxes& axes :
+             {RootMotionAxes{true, false, true, {0, 0, 2}}, RootMotionAxes{false, true, true, {1, 2, -1}},
+              RootMotionAxes{true, true, false, {0, 3, 0}}})
+        {
+            const bool isSpline = interpolation == Channel::Interpolation::CubicSpline;
+            SCOPED_TRACE(std::to_string(axes.up.x) + (isSpline ? " spline" : " linear"));
+            const glm::dquat parents = Rotation::quaternion(Rotation::unit(glm::dvec4(joints[0].rest.rotation))) *
+                                       Rotation::quaternion(Rotation::unit(glm::dvec4(joints[1].rest.rotation)));
+            const glm::dvec3 up = glm::normalize(axes.up);
+            Channel turn{Channel::Path::Rotation, interpolation, 2, {}, {}};
+            Channel place{Channel::Path::Translation, interpolation, 2, {}, {}};
+            // Turns by 4 radians about up in model space, from a first heading; the tangents are its derivative.
+            const auto heading = [&](double time)
+            {
+                return glm::conjugate(parents) * glm::angleAxis(4.0 * time, up) *
+                       glm::angleAxis(1.0 + 0.3 * std::sin(5.0 * time), glm::normalize(glm::dvec3(1, -1, 0.5)));
+            };
+            const auto put = [&](Channel& channel, const glm::dvec4& before, const glm::dvec4& at,
+                                 const glm::dvec4& after, int count)
+            {
+                for (const glm::dvec4& value : {(after - before) / 0.002, at, (after - before) / 0.002})
+                    for (int i = 0; i < count; ++i)
+                        channel.values.push_back(value[i]);
+            };
+            constexpr int keys = 24;
+            for (int key = 0; key <= keys; ++key)
+            {
+                const double time = static_cast<double>(key) / keys;
+                for (Channel* channel : {&turn, &place})
+                    channel->times.push_back(time);
+                const auto numbers = [&](double t) { return Rotation::numbers(heading(t)); };
+                const auto way = [](double t) { return glm::dvec4(t * t, 2.0 * t, std::sin(3.0 * t), 0.0); };
+                if (isSpline)
+                {
+                    put(turn, numbers(time - 0.001), numbers(time), numbers(time + 0.001), 4);
+                    put(place, way(time - 0.001), way(time), way(time + 0.001), 3);
+                    continue;
+                }
+                for (int i = 0; i < 4; ++i)
+                    turn.values.push_back(numbers(time)[i]);
+                for (int i = 0; i < 3; ++i)
+                    place.values.push_back(way(time)[i]);
+            }
+            ClipBuilder builder(skeleton, {});
+            ASSERT_TRUE(builder.add(turn));
+            ASSERT_TRUE(builder.add(place));
+            const auto whole = AnimationSet::create({skeleton, {}, {}, {}, {builder.build("A")}}).value();
+            const auto left = stripped(*whole, axes);
+            const auto hipsAt = [](const AnimationSet& set, double time)
+            {
+                PoseInstruction instruction;
+                instruction.samples[0] = set.sampleAt(0, time);
+                return Pose::jointToModel(set, instruction, 2).toColumns();
+            };
+            AnimationController walker(left);
+            ASSERT_TRUE(walker.play(0));
+            walker.advance(0.5);
+            EXPECT_LE(difference(walker.rootMotion().matrix(), left->clips()[0].rootMotionAt(0.5).matrix()), 1e-9)
+                << "about the same axis";
+            const glm::dmat4 first = hipsAt(*left, 0.0);
+            for (int step = 0; step <= 4 * keys; ++step)
+            {
+                const double time = 0.25 * step / keys;
+                const glm::dmat4 rest = hipsAt(*left, time);
+                const glm::dmat4 again = left->clips()[0].rootMotionAt(time).matrix() * rest;
+                const bool isKey = step % 4 == 0 || !axes.yaw;
+                EXPECT_LE(difference(again, hipsAt(*whole, time)), isKey ? 2e-5 : isSpline ? 2e-3 : 4e-3) << step;
+                if (step % 4 != 0) continue;
+                const glm::dvec3 moved = glm::dvec3(rest[3] - first[3]);
+                const double along = glm::dot(moved, up);
+                EXPECT_TRUE(!axes.vertical || std::abs(along) <= 2e-5) << step;
+                EXPECT_TRUE(!axes.horizontal || glm::length(moved - along * up) <= 2e-5) << step;
+                const glm::dquat turned = glm::quat_cast(glm::dmat3(rest) * glm::inverse(glm::dmat3(first)));
+                EXPECT_TRUE(!axes.yaw || std::abs(glm::dot(glm::dvec3(turned.x, turned.y, turned.z), up)) <= 2e-5)
+                    << step;
+            }
+        }
+    EXPECT_FALSE(
+        withRootMotion(*makeSet({{"A", 1.0, 1.0, 0.0, false}}), "hips", {true, false, false, {0, HUGE_VAL, 0}}));
+    joints[0].rest.scale = {1, 1, 2, 0};
+    const Skeleton skewed = Skeleton::create(joints).value();
+    const auto still = AnimationSet::create({skewed, {}, {}, {}, {ClipBuilder(skewed, {}).build("Still")}}).value();
+    EXPECT_FALSE(withRootMotion(*still, "hips")) << "z alone is larger";
 }
 
 } // namespace

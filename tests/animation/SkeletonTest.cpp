@@ -96,5 +96,17 @@ TEST(SkeletonTest, RestRotationsBecomeUnit)
     EXPECT_EQ(made.value().joint(1).rest.rotation, glm::vec4(0, 0, 0, 1));
 }
 
+TEST(SkeletonTest, OfSeveralTheFirstCountsAndUnusedNumbersAreZero)
+{
+    Joint odd = joint("twin", 0, 7);
+    odd.rest.translation.w = odd.rest.scale.w = 5.0f;
+    const Result<Skeleton> made = Skeleton::create({joint("root", -1, 3), odd, joint("twin", 0, 7)});
+    ASSERT_TRUE(made);
+    EXPECT_EQ(made.value().jointOfSourceNode(7), 1);
+    EXPECT_EQ(made.value().findJoint("twin"), 1);
+    EXPECT_EQ(made.value().joint(1).rest.translation.w, 0.0f);
+    EXPECT_EQ(made.value().joint(1).rest.scale.w, 0.0f);
+}
+
 } // namespace
 } // namespace osgGpuAnimation

@@ -7,6 +7,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
 
 namespace osgGpuAnimation
 {
@@ -261,6 +264,118 @@ TEST(StateGraphTest, FaultsAreNamed)
                   true)
             << graph.error().message;
     }
+}
+
+TEST(StateMachineTest, EachComparisonBelowAtAndAboveItsNumber)
+{
+    struct Case
+    {
+        const char* condition;
+        bool below, equal, above;
+    };
+    const Case cases[] = {
+        {"x > 0.5", false, false, true}, {"x >= 0.5", false, true, true},  {"x < 0.5", true, false, false},
+        {"x <= 0.5", true, true, false}, {"x == 0.5", false, true, false}, {"x != 0.5", true, false, true},
+    };
+    const auto set = makeGaitSet();
+    for (const Case& c : cases)
+    {
+        const auto graph =
+            StateGraph::create(*set, {{{"stand", "Idle"}, {"go", "Walk"}}, {{"stand", "go", {c.condition}}}, ""});
+        ASSERT_TRUE(graph) << graph.error().message;
+        const std::pair<double, bool> values[] = {{0.25, c.below}, {0.5, c.equal}, {0.75, c.above}};
+        for (const auto& [value, isTaken] : values)
+        {
+            AnimationController controller(set);
+            StateMachine machine(graph.value());
+            machine.set("x", value);
+            machine.update(controller, 0.1);
+            EXPECT_EQ(machine.update(controller, 0.1), isTaken) << c.condition << " at " << value;
+        }
+    }
+}
+
+TEST(StateMachineTest, OddConditionsAreReadOrRefused)
+{
+    using Test = StateCondition::Test;
+    const std::pair<const char*, std::optional<Test>> cases[] = {
+        {"after 0", Test::After},     {"after -1", std::nullopt},   {"after 1 2", std::nullopt},
+        {"after", std::nullopt},      {"Finished", std::nullopt},   {"AFTER", std::nullopt},
+        {"finished", Test::Finished}, {"7", std::nullopt},          {"jump7", Test::Fired},
+        {"x > 0.5m", std::nullopt},   {"x > 1e999", std::nullopt},  {"x y > 1", std::nullopt},
+        {"x =< 1", std::nullopt},     {"", std::nullopt},           {"jump now", std::nullopt},
+        {"x > 1 > 2", std::nullopt},  {"finished 1", std::nullopt}, {"x > -.5", Test::Greater},
+    };
+    for (const auto& [text, test] : cases)
+    {
+        const Result<StateCondition> parsed = StateCondition::parse(text);
+        ASSERT_EQ(static_cast<bool>(parsed), test.has_value()) << text;
+        EXPECT_TRUE(!test || parsed.value().test == *test) << text;
+    }
+}
+
+TEST(StateMachineTest, ABlendSpaceGetsBothParametersAtOnceAndTheCurveIsThatOfTheTransition)
+{
+    const auto set = makeGaitSet();
+    StateDescription move{"move", ""}, aim{"aim", ""};
+    move.blend = StateBlendDescription{{{"Walk", 0, 0}, {"Run", 1, 0}, {"Idle", 0, 1}}, {"x", "y"}};
+    aim.blend = StateBlendDescription{{{"Idle", 0}, {"Turn", 1}}, {"angle"}};
+    const StateGraphDescription description{
+        {move, aim}, {{"move", "aim", {"aim"}, 1.0, FadeCurve::Smooth}, {"aim", "move", {"go"}}}, "", true};
+    const auto graph = StateGraph::create(*set, description);
+    ASSERT_TRUE(graph) << graph.error().message;
+    AnimationController controller(set);
+    StateMachine machine(graph.value());
+    machine.set("x", 0.25);
+    machine.set("y", 0.5);
+    machine.set("angle", 0.75);
+    ASSERT_TRUE(machine.update(controller, 0.1));
+    EXPECT_EQ(controller.layer(0).parameter(), glm::dvec2(0.25, 0.5)) << "from the first frame on";
+    EXPECT_TRUE(controller.layer(0).isPhaseShared());
+    machine.set("y", 0.25);
+    EXPECT_FALSE(machine.update(controller, 0.1));
+    EXPECT_EQ(controller.layer(0).parameter(), glm::dvec2(0.25, 0.25));
+    machine.fire("aim");
+    ASSERT_TRUE(machine.update(controller, 0.1));
+    EXPECT_EQ(controller.layer(0).parameter(), glm::dvec2(0.75, 0.0)) << "of the new state, at once";
+    controller.advance(0.25);
+    EXPECT_NEAR(controller.layer(0).mixer().fade().value(), 0.15625, 1e-12) << "3x² - 2x³";
+    EXPECT_FALSE(machine.update(controller, -5.0));
+    EXPECT_EQ(machine.secondsInState(), 0.0) << "negative seconds do not count";
+}
+
+TEST(StateMachineTest, APausedClipHasNotFinished)
+{
+    const auto set = makeGaitSet();
+    AnimationController controller(set);
+    StateMachine machine(makeGraph(*set));
+    machine.update(controller, 0.0);
+    machine.fire("spin");
+    ASSERT_TRUE(machine.update(controller, 0.1));
+    controller.pause();
+    EXPECT_FALSE(machine.update(controller, 0.1));
+    controller.stop();
+    EXPECT_FALSE(machine.update(controller, 0.1));
+    EXPECT_EQ(machine.state(), "spin");
+}
+
+TEST(StateGraphTest, AcceptsTheLargestGraph)
+{
+    const auto set = makeGaitSet();
+    StateGraphDescription largest;
+    for (std::size_t s = 0; s < StateGraph::maxStates; ++s)
+        largest.states.push_back({"s" + std::to_string(s), "Walk"});
+    largest.transitions.resize(StateGraph::maxTransitions, {"s0", "s1", {"after 0"}, 0.0});
+    const auto graph = StateGraph::create(*set, largest);
+    EXPECT_TRUE(graph) << graph.error().message;
+    largest.transitions.push_back(largest.transitions.front());
+    EXPECT_FALSE(StateGraph::create(*set, largest));
+    StateGraphDescription wrong = description();
+    wrong.transitions[2] = {"", "spin", {"finished"}, 0.0};
+    EXPECT_FALSE(StateGraph::create(*set, wrong)) << "the only state that ends is the target itself";
+    wrong = description();
+    wrong.transitions[0].seconds = -0.1;
+    EXPECT_FALSE(StateGraph::create(*set, wrong));
 }
 
 } // namespace

@@ -287,10 +287,12 @@ void AnimationLayer::setBlendPriority(int blendPriority)
 
 void AnimationLayer::advance(double seconds)
 {
-    const double poseMoment = _state == PlayState::Paused ? -1.0 : advancePose(seconds);
+    const bool isPaused = _state == PlayState::Paused; // fades stand still: their means are their values
+    if (isPaused && _posed) (void)_posed->share.advance(0.0);
+    const double poseMoment = isPaused ? -1.0 : advancePose(seconds);
     const bool isMoving = _state == PlayState::Playing || _state == PlayState::Ended;
     _crossfadeMoment = poseMoment;
-    _weightFadeMoment = _state == PlayState::Paused ? -1.0 : _weight.advance(seconds);
+    _weightFadeMoment = _weight.advance(isPaused ? 0.0 : seconds);
     if (!isMoving) return _mixer.clearSteps();
     _crossfadeMoment = std::max(poseMoment, _mixer.advance(seconds, _state == PlayState::Playing));
     if (_mixer.activeClip(_mixer.activeClipCount() - 1).move.hasFinished) _state = PlayState::Ended;

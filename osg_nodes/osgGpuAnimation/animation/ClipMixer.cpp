@@ -378,10 +378,14 @@ double ClipMixer::advance(double seconds, bool isCurrentPlaying)
     return moment;
 }
 
+/// For a step in which nothing moves: the shares are constant.
 void ClipMixer::clearSteps()
 {
     for (std::size_t i = 0; i < activeClipCount(); ++i)
+    {
         at(i).move = PlaybackStep();
+        at(i).meanShare = at(i).share;
+    }
 }
 
 double ClipMixer::clipSeconds(const ActiveClip& activeClip, double seconds) const

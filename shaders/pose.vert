@@ -3,7 +3,7 @@
 // are the batch's instances, and its GL instances are the level's palette entries. Data of an instance or an entry are
 // attributes, so that the shader fetches keyframes and parents only. The result's place in the palette is
 // entry * instanceCount + instance. Constants of the variant: those of mix.glsl; bool isRootLevel, hasRoots;
-// bool hasConstraints: constraints have corrected the rotations of some entries.
+// bool hasCorrections: constraints have corrected the rotations of all entries of the draw, so none is mixed.
 
 layout(location = POSE_SAMPLE_LOCATION) in uvec4 blendSamples[sampleCount > 0 ? sampleCount : 1];
 layout(location = POSE_ROOT_LOCATION) in mat3x4 rootMatrix;
@@ -38,7 +38,7 @@ void main()
         RestParts rest = RestParts(restParts[0], restParts[1]);
         JointTransform t = hasSeveralSamples ? mixSamples(gl_VertexID, track, rest, isWeights)
                                              : sampleTrack(blendSamples[0], track, rest, isWeights);
-        if (hasConstraints && head.w > 0.0)
+        if (hasCorrections)
             t.rotation = texelFetch(corrections, correctionTexel(int(head.w), gl_VertexID, instanceCount));
         matrix = isWeights ? mat3x4(t.translation, t.rotation, t.scale)
                            : localMatrix(t.translation, t.rotation, t.scale);

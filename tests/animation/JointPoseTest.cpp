@@ -216,6 +216,31 @@ TEST(JointPoseTest, refusesBadInputAndKeepsThePose)
     EXPECT_NE(refused.error().message.find("joint 7 \"" + set->skeleton().joint(7).name + "\""), std::string::npos);
 }
 
+// Whole skeletons take a shorter way as soon as the extent contains them.
+TEST(JointPoseTest, aStreamThatHasSettledRefusesBadNumbers)
+{
+    const auto set = makeRandomSet({});
+    const std::vector<JointTransform> good(set->skeleton().jointCount());
+    JointPose pose(set);
+    ASSERT_TRUE(pose.setTransforms(good));
+    ASSERT_TRUE(pose.setTransforms(good));
+    const std::uint64_t serial = pose.keyframe().serial();
+    for (const std::size_t number : {0, 1, 2, 4, 5, 6, 7, 8, 9, 10})
+        for (const float bad : {none, infinite})
+        {
+            std::vector<JointTransform> transforms = good;
+            transforms[1].number(number) = bad;
+            EXPECT_FALSE(pose.setTransforms(transforms)) << number;
+            EXPECT_EQ(pose.keyframe().serial(), serial);
+        }
+    // The fourth numbers mean nothing and are stored as 0.
+    std::vector<JointTransform> marked = good;
+    marked[1].translation.w = marked[1].scale.w = none;
+    ASSERT_TRUE(pose.setTransforms(marked));
+    EXPECT_EQ(pose.keyframe().values(1).translation, glm::vec4(0.0f));
+    EXPECT_EQ(pose.keyframe().setNumbers(1), 0xFFFu);
+}
+
 TEST(JointPoseTest, aWholeSkeletonInJointSpaceOrModelSpace)
 {
     const auto set = makeRandomSet({3, 40, 9});

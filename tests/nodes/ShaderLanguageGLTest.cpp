@@ -203,7 +203,7 @@ protected:
             bool* const flags[] = {
                 &variant.hasSplines,   &variant.hasSeveralSamples, &variant.hasWeights,     &variant.isRootLevel,
                 &variant.hasRoots,     &variant.hasLayers,         &variant.hasMasks,       &variant.hasAdditive,
-                &variant.hasExactKeys, &variant.hasCompactKeys,    &variant.hasConstraints, &shape.hasSources,
+                &variant.hasExactKeys, &variant.hasCompactKeys,    &variant.hasCorrections, &shape.hasSources,
                 &shape.hasCone,        &shape.hasOffset,           &shape.hasDirections,    &shape.hasFractions};
             std::size_t i = 0;
             for (bool* flag : flags)
@@ -211,7 +211,7 @@ protected:
             variant.sampleCount = row[i++];
             variant.translationMotion = static_cast<PartMotion>(row[i++]);
             variant.scaleMotion = static_cast<PartMotion>(row[i++]);
-            shape.isLookAt = variant.hasConstraints;
+            shape.isLookAt = variant.hasCorrections;
             shape.chainLength = 4;
             shape.midPlace = 2;
             shape.aboveLength = 1;

@@ -101,7 +101,7 @@ AnimationController::AnimationController(std::shared_ptr<const AnimationSet> set
             // Targets that turn at once have no intermediate ones.
             if (!(_set->constraintChains()[index.value()].turnSpeed > 0.0)) goal(index.value()).shown.reset();
         }
-    rebuildInstruction();
+    if (_goals) _goals->write(_instruction.targets);
 }
 
 AnimationController::AnimationController(const AnimationController& other)
@@ -215,7 +215,7 @@ void AnimationController::step(double seconds)
     forEachLayer([&](AnimationLayer& layer) { isPhaseShared = isPhaseShared || layer.isPhaseShared(); });
     if (isPhaseShared) sharePaces();
     forEachLayer([step](AnimationLayer& layer) { layer.advance(step); });
-    if (_goals) _goals->advance(_set->constraintChains(), step);
+    if (_goals && _goals->advance(_set->constraintChains(), step)) _goals->write(_instruction.targets);
     rebuildInstruction();
     if (_rootMotionCurve) accumulateRootMotion();
 }
@@ -244,8 +244,7 @@ void AnimationController::rebuildInstruction()
 {
     BlendList samples;
     forEachLayer([&](const AnimationLayer& layer) { layer.collect(samples); });
-    samples.write(_instruction);
-    if (_goals) _goals->write(_instruction.targets);
+    samples.write(_instruction); // the targets change with the goals alone
 }
 
 ConstraintGoal& AnimationController::goal(std::size_t constraint)
@@ -267,7 +266,7 @@ Result<bool> ConstraintHandle::change(bool isValid, const char* what, Change cha
     const ConstraintChain& chain = _controller->set().constraintChains()[_index.value()];
     change(_controller->goal(_index.value()));
     if (chain.turnSpeed > 0.0) _controller->_goals->advance(_controller->set().constraintChains(), 0.0);
-    _controller->rebuildInstruction();
+    _controller->_goals->write(_controller->_instruction.targets);
     return true;
 }
 

@@ -63,13 +63,14 @@ bool contains(const PoseExtent::Joint& known, const glm::uvec4* texels)
 }
 
 /// Lets the ball or cube of an extent reach a value. It grows around its centre up to the fourfold margin, so that a
-/// joint that swings soon stays inside; beyond that it begins anew around the value.
+/// joint that swings soon stays inside; beyond that it begins anew around the value. It contains allowed values only.
 void reach(bool& isKnown, glm::vec3& centre, float& radius, const glm::vec3& value, float distance, float margin)
 {
     if (isKnown && distance <= 0.999f * radius) return;
     const bool grows = isKnown && distance <= 3.0f * margin;
-    radius = grows ? distance + margin : margin;
     if (!grows) centre = value;
+    const glm::vec3 size = glm::abs(centre);
+    radius = std::min(grows ? distance + margin : margin, largest - std::max({size.x, size.y, size.z}));
     isKnown = true;
 }
 
@@ -170,17 +171,18 @@ Result<bool> JointPose::setTransforms(const std::vector<JointTransform>& transfo
 {
     const std::size_t count = _set->skeleton().jointCount();
     if (transforms.size() != count) return wrongCount("transforms", transforms.size(), count);
-    for (std::size_t joint = 0; joint < count; ++joint)
+    const bool isInside = _extent->containsAll(transforms);
+    for (std::size_t joint = 0; joint < count && !isInside; ++joint)
         if (!isAllowed(transforms[joint]))
             return Error{jointAt(*_set, joint) + ": a number is not finite, or the rotation is 0"};
     if (_isShared && _keyframe->trackCount() == count)
     {
-        _keyframe = std::make_shared<PosedKeyframe>(transforms);
+        _keyframe = std::make_shared<PosedKeyframe>(transforms, isInside);
         _isShared = false;
     }
     else
         change().setTransforms(transforms);
-    growExtent(0, count);
+    if (!isInside) growExtent(0, count);
     return true;
 }
 
@@ -299,11 +301,8 @@ void JointPose::growExtent(std::size_t firstJoint, std::size_t endJoint)
             continue;
         const std::uint32_t numbers = _keyframe->setNumbers(joint);
         if (numbers == 0) continue;
-        if (!grown)
-        {
-            grown = std::make_shared<PoseExtent>(*_extent);
-            longest = longestJoint(*_set);
-        }
+        if (!grown) longest = longestJoint(*_set);
+        if (!grown) grown = std::make_shared<PoseExtent>(*_extent);
         grown->joints.resize(_set->skeleton().jointCount());
         PoseExtent::Joint& known = grown->joints[joint];
         const auto has = [&](Part part) { return (numbers >> 4 * part & partBits) != 0; };

@@ -45,9 +45,9 @@ PoseBatch::BlendCost blendCost(bool isPosed, bool isMixed, std::size_t sampleCou
     return sampleCount <= 4 ? PoseBatch::BlendCost::Few : PoseBatch::BlendCost::Many;
 }
 
-bool isFinite(const glm::vec4& v)
+bool isFinite(const glm::vec3& v)
 {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z) && std::isfinite(v.w);
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
 bool isDirected(const ConstraintTarget& target)
@@ -74,8 +74,8 @@ ConstraintTarget inSpaceOf(const ConstraintTarget& target, const AffineMatrix& r
     // Shaders compute sines of small angles only.
     constexpr float wholeTurn = 6.28318531f;
     if (std::abs(target.twist) > 0.5f * wholeTurn) moved.twist = std::remainder(target.twist, wholeTurn);
-    const bool isGood = isFinite(glm::vec4(moved.position, 0.0f)) && isFinite(glm::vec4(moved.pole, moved.twist)) &&
-                        isFinite(moved.rotation);
+    const bool isGood = isFinite(moved.position) && isFinite(moved.pole) && std::isfinite(moved.twist) &&
+                        isFinite(glm::vec3(moved.rotation)) && std::isfinite(moved.rotation.w);
     return moved.weight > 0.0f && isGood ? moved : ConstraintTarget();
 }
 
@@ -137,19 +137,28 @@ std::size_t PoseBatch::append(const BlendSample* samples, std::size_t count, con
     _needs.mixing = _needs.mixing || _sampleStride > 1;
     if (!_rootMatrices.empty() && !_isRootCommon) _rootMatrices.emplace_back();
     if (!_tints.empty()) _tints.push_back(white);
-    if (!_targets.empty()) _targets.resize((_size + 1) * set().constraints().size());
     return _size++;
 }
 
+/// The targets of the last instance.
 void PoseBatch::addTargets(const std::vector<ConstraintTarget>& targets, const AffineMatrix& rootMatrix)
 {
     const std::size_t count = set().constraints().size();
-    if (targets.size() != count) return; // none, or those of another set
-    _targets.resize(_size * count);
+    if (targets.empty() || targets.size() != count) // none, or those of another set
+    {
+        if (!_targets.empty()) _targets.resize(_size * count);
+        return;
+    }
+    _targets.resize((_size - 1) * count);
+    _targets.insert(_targets.end(), targets.begin(), targets.end());
+    const bool isRootIdentity = rootMatrix.isIdentity();
     ConstraintTarget* place = _targets.data() + (_size - 1) * count;
     for (std::size_t c = 0; c < count; ++c)
     {
-        place[c] = inSpaceOf(targets[c], rootMatrix);
+        const ConstraintTarget& target = targets[c];
+        const bool isReady = isRootIdentity && target.weight > 0.0f && target.weight <= 1.0f && !isDirected(target) &&
+                             isFinite(target.position);
+        if (!isReady) place[c] = inSpaceOf(target, rootMatrix);
         if (!(place[c].weight > 0.0f)) continue;
         const std::uint64_t bit = std::uint64_t(1) << c;
         _needs.constraints |= bit;
@@ -162,7 +171,7 @@ std::size_t PoseBatch::addInstance(const PoseInstruction& instruction, const Aff
 {
     const std::size_t instance = append(instruction.samples.data(),
                                         std::min(instruction.sampleCount, PoseInstruction::maxSamples), &instruction);
-    if (!instruction.targets.empty()) addTargets(instruction.targets, rootMatrix);
+    addTargets(instruction.targets, rootMatrix);
     return instance;
 }
 
@@ -228,6 +237,7 @@ std::size_t PoseBatch::addSample(const BlendSample& sample, const AffineMatrix& 
 {
     assert(!_isRootCommon && "the batch has one root matrix for all");
     const std::size_t instance = append(&sample, 1, nullptr);
+    addTargets({}, rootMatrix);
     _rootMatrices.resize(_size);
     _rootMatrices.back() = rootMatrix;
     return instance;

@@ -343,18 +343,26 @@ bool PosePipeline::Parts::evaluateFused(FeedbackScope& scope, FeedbackVertexArra
         for (; constraints && constraints->isSolvedBefore(level, solvedSteps); ++solvedSteps, current = nullptr)
             if (!solveConstraint(input, batch, solvedSteps, variant)) return false;
         variant.setMotion(buffers.levels()[level]);
-        variant.hasConstraints = constraints && constraints->hasCorrections(level);
-        FeedbackPass& pass = posePass(variant);
-        if (!pass.valid()) return false;
-        if (&pass != current) useMixInput(scope, pass, set, buffers, chunk);
-        current = &pass;
-        pass.setTexture(scope, "parentLevels", unitPrevious, input.parentLevels);
-        pass.setInt("firstParent", static_cast<int>(input.firstParent));
-        if (variant.hasConstraints) pass.setTexture(scope, "corrections", unitCorrections, corrections.texture());
-        if (!canOffset) bindEntries(entries, levels[level], arrays);
-        pass.runInstanced(chunk.width, count, canOffset ? levels[level] : 0, (isOdd ? scratch : chunk.palette).buffer(),
-                          (isOdd ? oddEntry : levels[level]) * chunk.width * matrixBytes);
-        ++pipeline._counters.feedbackDraws;
+        const BufferTexture& out = isOdd ? scratch : chunk.palette;
+        const std::size_t outBegin = isOdd ? oddEntry : levels[level];
+        for (std::size_t first = levels[level], end = first; first < levels[level + 1]; first = end)
+        {
+            PoseVariant present = variant;
+            end = constraints ? constraints->endOfRun(first, levels[level + 1]) : levels[level + 1];
+            present.hasCorrections = constraints && constraints->isCorrected(first);
+            if (present.hasCorrections) present.hasWeights = false;
+            FeedbackPass& pass = posePass(present);
+            if (!pass.valid()) return false;
+            if (&pass != current) useMixInput(scope, pass, set, buffers, chunk);
+            current = &pass;
+            pass.setTexture(scope, "parentLevels", unitPrevious, input.parentLevels);
+            pass.setInt("firstParent", static_cast<int>(input.firstParent));
+            if (present.hasCorrections) pass.setTexture(scope, "corrections", unitCorrections, corrections.texture());
+            if (!canOffset) bindEntries(entries, first, arrays);
+            pass.runInstanced(chunk.width, end - first, canOffset ? first : 0, out.buffer(),
+                              (outBegin + first - levels[level]) * chunk.width * matrixBytes);
+            ++pipeline._counters.feedbackDraws;
+        }
         if (!isOdd) continue;
         firstParent = levels[level] - oddEntry;
         oddEntry += count;
@@ -369,7 +377,7 @@ bool PosePipeline::Parts::evaluateGarments(FeedbackScope& scope, FeedbackVertexA
                                            const AnimationSet& set, const AnimationBuffers& buffers,
                                            PosePalette::Chunk& chunk, PoseVariant variant)
 {
-    variant.isRootLevel = variant.hasRoots = variant.hasWeights = variant.hasConstraints = false;
+    variant.isRootLevel = variant.hasRoots = variant.hasWeights = variant.hasCorrections = false;
     variant.setMotion(buffers.levels().back());
     FeedbackPass& pass = posePass(variant);
     if (!pass.valid()) return false;
@@ -402,7 +410,7 @@ bool PosePipeline::Parts::solveConstraint(const LevelInput& input, const PoseBat
     const ConstraintStep& step = input.constraints->plan().steps[number];
     const ConstraintShape shape(step, batch);
     variant.setMotion(step.level == 0 ? input.buffers.anyTrack() : input.buffers.levels()[step.level]);
-    variant.hasWeights = variant.hasConstraints = false;
+    variant.hasWeights = variant.hasCorrections = false;
     FeedbackPass& pass = constraintPass(shape, variant);
     if (!pass.valid()) return false;
     const std::size_t jointBytes = input.chunk.width * rotationBytes;

@@ -23,7 +23,7 @@ namespace osgGpuAnimation
 ///
 /// The fused form, the default, computes mix, local and world in one pass, with one draw per level of the hierarchy for
 /// all instances (see tests/benchmark/RESULTS.md). The separate form has one pass per stage. A batch with targets of
-/// constraints takes the fused form, with at most one more draw per constraint.
+/// constraints takes the fused form: one more draw per constraint, and one per run of entries that they turn or not.
 class PosePipeline : public osg::GraphicsObjectManager
 {
 public:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/bounds/JointRange.h>
 
+#include <osgGpuAnimation/animation/keyframes/PosedKeyframe.h>
 #include <osgGpuAnimation/animation/math/Box.h>
 
 #include <layout.glsl>
@@ -144,6 +145,26 @@ JointRange PoseExtent::Joint::range(const JointRange& others) const
         range.stretch = static_cast<double>(stretch);
     }
     return range;
+}
+
+// Without branches, since applications stream whole skeletons.
+bool PoseExtent::containsAll(const std::vector<JointTransform>& transforms) const
+{
+    if (joints.size() != transforms.size()) return false;
+    bool isInside = true;
+    for (std::size_t joint = 0; joint < transforms.size(); ++joint)
+    {
+        const Joint& known = joints[joint];
+        const JointTransform& t = transforms[joint];
+        const glm::vec3 moved = glm::vec3(t.translation) - known.translation;
+        const glm::vec3 grown = glm::abs(glm::vec3(t.scale) - known.scale);
+        const float distance = glm::dot(moved, moved), stretch = 0.999f * known.stretch;
+        const bool isStored = PosedNumbers::isStoredAsItIs(t), isKnown = known.moves & known.turns & known.scales;
+        // No maximum, which would hide a NaN.
+        isInside = isInside & isStored & isKnown & (distance <= 0.999f * known.shift * known.shift) &
+                   (grown.x <= stretch) & (grown.y <= stretch) & (grown.z <= stretch);
+    }
+    return isInside;
 }
 
 std::vector<JointRange> rangesOfClip(const AnimationSet& set, const Clip* clip)

@@ -50,6 +50,10 @@ struct PoseExtent
         JointRange range(const JointRange& others) const;
     };
 
+    /// True if a keyframe stores these transforms as they are (see PosedNumbers), and the extent contains all of them.
+    /// What it contains is allowed. transforms: one per joint.
+    bool containsAll(const std::vector<JointTransform>& transforms) const;
+
     std::vector<Joint> joints; ///< one per joint of the set; empty: no joint was ever set
     /// No morph weight of the pose has a larger absolute value; at least 1. 0: no weight was ever set.
     double largestWeight = 0.0;

@@ -44,11 +44,16 @@ bool ConstraintGoals::isDefault() const
     return std::all_of(_goals.begin(), _goals.end(), [](const ConstraintGoal& goal) { return goal.isDefault(); });
 }
 
-void ConstraintGoals::advance(const std::vector<ConstraintChain>& chains, double seconds)
+bool ConstraintGoals::advance(const std::vector<ConstraintChain>& chains, double seconds)
 {
-    for (std::size_t c = 0; c < std::min(chains.size(), _goals.size()); ++c)
-        if (chains[c].turnSpeed > 0.0 && _goals[c].hasTarget)
-            _goals[c].shown = turnedTowards(chains[c], _goals[c], chains[c].turnSpeed * std::abs(seconds));
+    bool isAnyTurned = false;
+    for (std::size_t c = 0; c < chains.size(); ++c)
+    {
+        if (!(chains[c].turnSpeed > 0.0) || c >= _goals.size() || !_goals[c].hasTarget) continue;
+        _goals[c].shown = turnedTowards(chains[c], _goals[c], chains[c].turnSpeed * std::abs(seconds));
+        isAnyTurned = true;
+    }
+    return isAnyTurned;
 }
 
 void ConstraintGoals::write(std::vector<ConstraintTarget>& outTargets) const

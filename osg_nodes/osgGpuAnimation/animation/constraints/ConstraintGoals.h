@@ -29,8 +29,9 @@ public:
     const ConstraintGoal& goal(std::size_t constraint) const { return _goals[constraint]; }
     bool isDefault() const; ///< true if all goals are
 
-    /// Turns the lines to the targets by at most the turn speeds. seconds: finite; negative counts as positive.
-    void advance(const std::vector<ConstraintChain>& chains, double seconds);
+    /// Turns the lines to the targets by at most the turn speeds. seconds: finite; negative counts as positive. False
+    /// if no goal with a target has a turn speed, so that nothing has changed.
+    bool advance(const std::vector<ConstraintChain>& chains, double seconds);
     /// The targets of a pose instruction; none if no constraint has an effect.
     void write(std::vector<ConstraintTarget>& outTargets) const;
 

@@ -44,10 +44,9 @@ glm::dvec4 coverOf(const glm::uvec4& words)
 void put(const JointTransform& transform, glm::uvec4* texels)
 {
     std::memcpy(texels, &transform, sizeof(transform));
+    if (PosedNumbers::isStoredAsItIs(transform)) return;
     texels[PosedKeyframe::Translation].w = texels[PosedKeyframe::Scale].w = 0;
     const float squared = glm::dot(transform.rotation, transform.rotation);
-    // Streams of whole skeletons are unit already, which halves their cost. The mix normalizes what rounding leaves.
-    if (std::abs(squared - 1.0f) < 1e-6f) return;
     const glm::vec4 unit = squared > 1e-20f && squared < 1e20f ? transform.rotation / std::sqrt(squared)
                                                                : *PosedNumbers::unitRotation(transform.rotation);
     std::memcpy(&texels[PosedKeyframe::Rotation], &unit, sizeof(unit));
@@ -60,9 +59,13 @@ PosedKeyframe::PosedKeyframe(std::size_t trackCount)
 {
 }
 
-PosedKeyframe::PosedKeyframe(const std::vector<JointTransform>& transforms) : _texels(3 * transforms.size()), _serial(0)
+PosedKeyframe::PosedKeyframe(const std::vector<JointTransform>& transforms, bool areStoredAsTheyAre)
+    : _texels(3 * transforms.size()), _serial(nextSerial()), _isEmpty(transforms.empty())
 {
-    setTransforms(transforms);
+    if (areStoredAsTheyAre && !transforms.empty())
+        std::memcpy(_texels.data(), transforms.data(), transforms.size() * sizeof(JointTransform));
+    else
+        setTransforms(transforms);
 }
 
 std::uint32_t PosedKeyframe::setNumbers(std::size_t track) const

@@ -32,8 +32,9 @@ public:
 
     /// Nothing is set.
     explicit PosedKeyframe(std::size_t trackCount);
-    /// All tracks are joints, and all their parts are set as by setTransforms().
-    explicit PosedKeyframe(const std::vector<JointTransform>& transforms);
+    /// All tracks are joints, and all their parts are set as by setTransforms(). areStoredAsTheyAre: all transforms
+    /// are, see PosedNumbers::isStoredAsItIs().
+    PosedKeyframe(const std::vector<JointTransform>& transforms, bool areStoredAsTheyAre);
 
     std::size_t trackCount() const { return _texels.size() / 3; }
     const std::vector<glm::uvec4>& texels() const { return _texels; }
@@ -84,6 +85,14 @@ inline bool isAllowed(const JointTransform& transform)
     const float squared = glm::dot(transform.rotation, transform.rotation); // usually 1
     const bool hasDirection = (squared > 1e-20f && squared < 1e20f) || unitRotation(transform.rotation).has_value();
     return hasDirection && isAllowed(glm::vec3(transform.translation)) && isAllowed(glm::vec3(transform.scale));
+}
+/// True if a keyframe takes the transform without a change, as in streams of whole skeletons: it has a unit rotation
+/// and 0 in the fourth numbers. The mix stage normalizes what rounding leaves.
+inline bool isStoredAsItIs(const JointTransform& transform)
+{
+    const float squared = glm::dot(transform.rotation, transform.rotation);
+    const bool isUnit = std::abs(squared - 1.0f) < 1e-6f;
+    return isUnit & (transform.translation.w == 0.0f) & (transform.scale.w == 0.0f);
 }
 /// T · R · S of a matrix with an inverse, by its columns. A shear is dropped: the rotation keeps the direction of the
 /// first column and the plane of the first two.

@@ -5,6 +5,7 @@
 
 #include <layout.glsl>
 
+#include <algorithm>
 #include <cmath>
 
 namespace osgGpuAnimation
@@ -49,18 +50,17 @@ std::vector<glm::vec4> constantsOf(const AnimationSet& set, const ConstraintStep
 
 ConstraintBuffers::ConstraintBuffers(osg::GLExtensions& gl, const AnimationSet& set, std::uint64_t active,
                                      std::vector<glm::vec4> entries)
-    : _plan(set.skeleton(), set.constraintChains(), active), _hasCorrections(set.levelCount(), false),
+    : _plan(set.skeleton(), set.constraintChains(), active), _isCorrected(set.paletteSize(), false),
       _entries(gl, GL_RGBA32F_ARB), _jointsAbove(gl, GL_RGBA32F_ARB)
 {
-    for (std::size_t level = 0; level < set.levelCount(); ++level)
-        for (std::size_t e = set.levels()[level]; e < set.levels()[level + 1]; ++e)
-        {
-            const PaletteEntry& entry = set.palette()[e];
-            if (entry.kind != PaletteEntry::Kind::Joint) continue;
-            const int code = _plan.correctionsOfJoints[static_cast<std::size_t>(entry.joint)].code();
-            entries[e * POSE_TEXELS_PER_ENTRY].w = static_cast<float>(code);
-            if (code > 0) _hasCorrections[level] = true;
-        }
+    for (std::size_t e = 0; e < set.levels().back(); ++e)
+    {
+        const PaletteEntry& entry = set.palette()[e];
+        if (entry.kind != PaletteEntry::Kind::Joint) continue;
+        const int code = _plan.correctionsOfJoints[static_cast<std::size_t>(entry.joint)].code();
+        entries[e * POSE_TEXELS_PER_ENTRY].w = static_cast<float>(code);
+        _isCorrected[e] = code > 0;
+    }
     _entries.upload(entries.data(), entries.size() * sizeof(glm::vec4));
     std::vector<glm::vec4> jointsAbove;
     for (const ConstraintStep& step : _plan.steps)
@@ -72,6 +72,13 @@ ConstraintBuffers::ConstraintBuffers(osg::GLExtensions& gl, const AnimationSet& 
                                      static_cast<float>(step.sources[place].code()), 0.0f, 0.0f);
     }
     _jointsAbove.upload(jointsAbove.data(), jointsAbove.size() * sizeof(glm::vec4));
+}
+
+std::size_t ConstraintBuffers::endOfRun(std::size_t first, std::size_t end) const
+{
+    const auto begin = _isCorrected.begin() + static_cast<std::ptrdiff_t>(first);
+    const auto found = std::find(begin, _isCorrected.begin() + static_cast<std::ptrdiff_t>(end), !_isCorrected[first]);
+    return static_cast<std::size_t>(found - _isCorrected.begin());
 }
 
 void ConstraintBuffers::release()

@@ -37,8 +37,10 @@ public:
     {
         return step < _plan.steps.size() && _plan.steps[step].level == level;
     }
-    /// True if constraints correct the rotation of an entry of that level of the palette.
-    bool hasCorrections(std::size_t level) const { return _hasCorrections[level]; }
+    /// True if constraints correct the rotation of that palette entry.
+    bool isCorrected(std::size_t entry) const { return _isCorrected[entry]; }
+    /// The end of the run of entries from `first` on of which all are corrected or none. end: the end of the level.
+    std::size_t endOfRun(std::size_t first, std::size_t end) const;
 
     void release();
 
@@ -46,7 +48,7 @@ private:
     ConstraintPlan _plan;
     std::vector<std::vector<glm::vec4>> _constants; ///< by step
     std::vector<int> _firstAbove;                   ///< by step
-    std::vector<bool> _hasCorrections;              ///< by level
+    std::vector<bool> _isCorrected;                 ///< by palette entry
     BufferTexture _entries;
     BufferTexture _jointsAbove;
 };

@@ -115,7 +115,7 @@ std::string PoseVariant::constants() const
            declaration("hasRoots", hasRoots) + declaration("hasLayers", hasLayers) + declaration("hasMasks", hasMasks) +
            declaration("hasAdditive", hasAdditive) + declaration("hasPosed", hasPosed) +
            declaration("hasExactKeys", hasExactKeys) + declaration("hasCompactKeys", hasCompactKeys) +
-           declaration("hasConstraints", hasConstraints) + declaration("sampleCount", sampleCount) +
+           declaration("hasCorrections", hasCorrections) + declaration("sampleCount", sampleCount) +
            declaration("translationMotion", static_cast<int>(translationMotion)) +
            declaration("scaleMotion", static_cast<int>(scaleMotion));
 }
@@ -124,7 +124,7 @@ unsigned int PoseVariant::key() const
 {
     unsigned int key = 0;
     for (const bool has : {hasSplines, hasSeveralSamples, hasWeights, isRootLevel, hasRoots, hasLayers, hasMasks,
-                           hasAdditive, hasPosed, hasExactKeys, hasCompactKeys, hasConstraints})
+                           hasAdditive, hasPosed, hasExactKeys, hasCompactKeys, hasCorrections})
         key = 2 * key + (has ? 1 : 0);
     key = key * (POSE_SAMPLES_AS_ATTRIBUTES + 1) + static_cast<unsigned int>(sampleCount);
     return (4 * key + static_cast<unsigned int>(translationMotion)) * 4 + static_cast<unsigned int>(scaleMotion);

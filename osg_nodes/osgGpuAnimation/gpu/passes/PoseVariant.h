@@ -60,7 +60,7 @@ struct PoseVariant
     bool hasPosed = false;          ///< some sample shows a posed keyframe
     bool hasExactKeys = false;      ///< some exact clip moves some of the tracks
     bool hasCompactKeys = false;    ///< some compact clip moves some of the tracks
-    bool hasConstraints = false;    ///< constraints correct the rotations of some entries
+    bool hasCorrections = false;    ///< constraints have corrected the rotations of all entries
     int sampleCount = 0; ///< blend samples of an instance, if they are attributes; 0: the shader fetches them
     PartMotion translationMotion = PartMotion::Constant; ///< the largest of any track in any clip
     PartMotion scaleMotion = PartMotion::Constant;

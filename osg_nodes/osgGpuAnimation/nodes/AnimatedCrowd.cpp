@@ -487,18 +487,18 @@ void AnimatedCrowd::cull(osgUtil::CullVisitor& visitor)
     static thread_local std::vector<std::uint32_t> seen; // keeps its storage from cull to cull
     _instances->findSeen(isCullingActive() ? view.planes() : std::vector<glm::vec4>(), seen);
     std::vector<DrawState> draws;
+    const LodRange lods = seen.empty() ? LodRange() : LodRange::ofCharacter(_pixelError, *this, getAnimationSet());
     if (!seen.empty() && getAnimationSet().paletteSize() > 0)
     {
         view.look(*_instances, seen);
-        const LodScale scale(visitor, PoseStage::lodView(visitor), _pixelError,
-                             _pixelError > 0.0f ? LodRange(*this, getAnimationSet()) : LodRange());
+        const LodScale scale(visitor, PoseStage::lodView(visitor), _pixelError, lods);
         draws = submitSeen(PoseStage::frame(visitor), *_instances, CrowdLod(*_instances, scale), seen);
     }
     for (const DrawState& draw : draws)
     {
         visitor.pushStateSet(draw.stateSet);
-        forEachMesh(*this,
-                    [&](const SkinnedGeometry& mesh) { view.draw(const_cast<SkinnedGeometry&>(mesh), *draw.binding); });
+        const auto show = [&](SkinnedGeometry& mesh) { view.draw(mesh, *draw.binding); };
+        lods.forEachMeshAt(draw.binding->getLevel(), *this, show);
         visitor.popStateSet();
     }
     const UnculledScope unculled(visitor);

@@ -13,7 +13,7 @@
 
 uniform samplerBuffer posePalette; // entry e of instance i: rows at texel (e * poseStride + i) * 3
 uniform int poseStride;
-uniform int poseInstance; // of the draw's first GL instance; POSE_INSTANCED: of the batch's first; POSE_PLACED: in poseDrawn
+uniform int poseInstance; // of the first GL instance; POSE_INSTANCED: of the batch's first; POSE_PLACED: in poseDrawn
 uniform int poseInfluences; // the largest number per vertex: 1 to 8
 
 uniform samplerBuffer poseMorphDeltas; // by vertex, target, channel
@@ -49,7 +49,7 @@ int osgGpuAnimationInstance()
     return poseInstance + int(poseInstancePose.x);
 }
 #elif defined(POSE_PLACED)
-uniform usamplerBuffer poseDrawn;     // per GL instance, from poseInstance on: its pose in the batch, its number in the crowd
+uniform usamplerBuffer poseDrawn; // per GL instance, from poseInstance on: its pose in the batch, its number in the crowd
 uniform samplerBuffer posePlacements; // by number in the crowd: rows at texel number * 3
 
 int osgGpuAnimationInstance()

@@ -116,7 +116,8 @@ protected:
     osg::ref_ptr<AnimatedCrowd> _crowd;
     std::vector<AnimatedCrowd::Instance> _instances;
     osg::ref_ptr<BindingRecord> _record = new BindingRecord;
-    const osg::Matrixd _crowdView = osg::Matrixd::lookAt(osg::Vec3d(0, -60, 30), osg::Vec3d(0, 300, 0), osg::Vec3d(0, 0, 1));
+    const osg::Matrixd _crowdView =
+        osg::Matrixd::lookAt(osg::Vec3d(0, -60, 30), osg::Vec3d(0, 300, 0), osg::Vec3d(0, 0, 1));
     std::mt19937 _random{11};
 };
 
@@ -231,6 +232,50 @@ TEST_F(SharedPosesGLTest, theyLookAsWithPosesOfTheirOwn)
     drawNext(0.45);
     EXPECT_EQ(sharing(), 0u);
     EXPECT_LE(Picture::meanDifference(*exact, picture().image()), 0.02);
+}
+
+// A batch of shared poses fits a chunk of the palette.
+TEST_F(SharedPosesGLTest, moreThanAChunkOfPosesIsDrawn)
+{
+    constexpr int side = 66;
+    const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*makeTubeCharacter(armSet()));
+    for (int i = 0; i < side * side; ++i)
+    {
+        AnimationController controller(crowd->getSharedAnimationSet());
+        ASSERT_TRUE(controller.play(0));
+        controller.seek(static_cast<double>(i) / (side * side));
+        ASSERT_TRUE(
+            crowd->add(osg::Matrixd::translate(12.0 * (i % side - side / 2), 12.0 * (i / side), 0), controller));
+    }
+    pictureOf(crowd, {0.0, 0.1});
+    const int expected = picture().pixelsDrawn();
+    ASSERT_TRUE(crowd->setPixelError(1e-5f));
+    const std::uint64_t before = pipeline().getCounters().instancesEvaluated;
+    pictureOf(crowd, {0.2, 0.1});
+    EXPECT_GT(pipeline().getCounters().instancesEvaluated - before, PosePipeline::usualChunkSize);
+    EXPECT_NEAR(picture().pixelsDrawn(), expected, 0.001 * expected);
+}
+
+TEST_F(SharedPosesGLTest, meshesBelowOtherNodesMove)
+{
+    const osg::ref_ptr<osg::Group> group = new osg::Group;
+    group->addChild(&mesh());
+    _crowd->removeChild(0, 1);
+    _crowd->addChild(group);
+    ASSERT_TRUE(_crowd->setPixelError(0.5f));
+    const osg::ref_ptr<osg::Image> early = pictureOf(_crowd, {0.0, 0.1});
+    const osg::ref_ptr<osg::Image> late = pictureOf(_crowd, {0.6});
+    EXPECT_GT(Picture::pixelsDifferent(*early, *late), 100);
+}
+
+TEST_F(SharedPosesGLTest, timesBeyondAllNumbersShowTheStart)
+{
+    for (const AnimatedCrowd::Instance instance : _instances)
+        _crowd->getController(instance)->setSpeed(1e308);
+    ASSERT_TRUE(_crowd->setPixelError(0.5f));
+    const osg::ref_ptr<osg::Image> first = pictureOf(_crowd, {0.0, 10.0, 30.0});
+    EXPECT_GT(sharing(), 0u);
+    EXPECT_GT(picture().pixelsDrawn(), 100);
 }
 
 // Cameras that see the same take the same list; a copy has placements of its own.

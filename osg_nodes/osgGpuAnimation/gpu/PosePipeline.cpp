@@ -252,22 +252,25 @@ bool PosePipeline::evaluate(osg::State& state, const PoseBatch& batch, std::size
     return true;
 }
 
-std::size_t PosePipeline::Parts::chunkCapacity(const PoseBatch& batch) const
+std::size_t PosePipeline::chunkCapacity(const AnimationSet& set, const Options& options)
 {
-    const AnimationSet& set = batch.set();
-    const std::size_t widest =
-        std::max(set.paletteSize(), pipeline._options.form == Form::Separate ? set.trackCount() : 0);
+    const std::size_t widest = std::max(set.paletteSize(), options.form == Form::Separate ? set.trackCount() : 0);
     const std::size_t targetTexels = set.constraints().size() * POSE_TEXELS_PER_TARGET;
     const std::size_t texels =
         std::max({POSE_TEXELS_PER_MATRIX * widest, correctionsOf(set), targetTexels, std::size_t(1)});
-    const std::size_t byPalette = pipeline._options.maxTexels / texels;
-    const std::size_t byPosed = pipeline._options.maxTexels / std::max<std::size_t>(PosePalette::posedTexels(batch), 1);
-    std::size_t capacity = std::max<std::size_t>(
-        std::min({byPalette, byPosed, pipeline._options.maxTexels / batch.sampleStride(), pipeline._options.chunkSize}),
-        1);
+    std::size_t capacity = std::max<std::size_t>(std::min(options.maxTexels / texels, options.chunkSize), 1);
     while (PosePalette::widthOf(capacity) > capacity)
         --capacity;
     return capacity;
+}
+
+std::size_t PosePipeline::Parts::chunkCapacity(const PoseBatch& batch) const
+{
+    Options options = pipeline._options;
+    const std::size_t posedTexels = std::max<std::size_t>(PosePalette::posedTexels(batch), 1);
+    options.chunkSize =
+        std::min({options.chunkSize, options.maxTexels / posedTexels, options.maxTexels / batch.sampleStride()});
+    return PosePipeline::chunkCapacity(batch.set(), options);
 }
 
 bool PosePipeline::Parts::hasRoomForMasks(SetResources& resources, const PoseBatch& batch) const

@@ -70,6 +70,9 @@ public:
     /// drawn.
     bool evaluate(osg::State& state, const PoseBatch& batch, std::size_t slot);
 
+    /// The largest number of poses of one sample that one chunk holds, so that one buffer texture has all of them.
+    static std::size_t chunkCapacity(const AnimationSet& set, const Options& options);
+
     /// The palette of an instance of the last batch of this set and slot; its texture is 0 if there is none.
     PalettePlace place(const AnimationSet& set, std::size_t slot, std::size_t instance) const;
 

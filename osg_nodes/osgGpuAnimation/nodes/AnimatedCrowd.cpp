@@ -519,6 +519,7 @@ Result<bool> AnimatedCrowd::setPixelError(float pixels)
 void AnimatedCrowd::prepareSharedPoses()
 {
     const bool isOn = _pixelError > 0.0f && getAnimationSet().paletteSize() > 0;
+    if (_sharedPoses) _sharedPoses->forgetUnused();
     if (isOn == (_sharedPoses != nullptr) && (!isOn || _sharedPoses->isOf(*this))) return;
     _sharedPoses = isOn ? std::make_unique<SharedPoses>(*this, getAnimationSet()) : nullptr;
     static_cast<void>(LodRange::ofCharacter(_pixelError, *this, getAnimationSet())); // creates missing levels

@@ -142,8 +142,9 @@ public:
     Result<bool> setMeshVisible(const std::string& name, bool isVisible);
 
     /// The largest error of the drawn surface on screen, in pixels: instances are drawn with fewer triangles while the
-    /// error stays below it, with one instanced draw per mesh primitive and level. 0 (the default): all triangles.
-    /// Range, cost, limits and errors: see AnimatedCharacter::setPixelError().
+    /// error stays below it, with one instanced draw per mesh primitive and level, and those that loop one clip share
+    /// poses as far as the error permits. 0 (the default): all triangles and exact poses. Range, cost, limits and
+    /// errors: see AnimatedCharacter::setPixelError().
     Result<bool> setPixelError(float pixels);
     float getPixelError() const { return _pixelError; } ///< pixels, at least 0
 

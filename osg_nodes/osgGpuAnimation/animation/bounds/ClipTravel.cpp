@@ -28,7 +28,8 @@ public:
     {
     }
 
-    /// Takes the pose. The farthest that a vertex has moved since the pose before, along straight lines.
+    /// Takes the pose. Returns the largest distance that a vertex has moved since the pose before, along a straight
+    /// line.
     double moveTo(const BlendSample& sample)
     {
         PoseInstruction instruction;
@@ -38,7 +39,7 @@ public:
         double farthest = 0.0;
         for (std::size_t entry = 0; entry < std::min(_palette.size(), _boxes.size()); ++entry)
         {
-            if (_set.palette()[entry].kind == PaletteEntry::Kind::Weights || _boxes[entry].empty()) continue;
+            if (!isMoving(entry)) continue;
             double moved = 0.0;
             for (int corner = 0; corner < 8 && entry < _before.size(); ++corner)
             {
@@ -54,7 +55,22 @@ public:
         return farthest;
     }
 
+    /// The diagonal of the box around all corners.
+    double size() const
+    {
+        Box all;
+        for (std::size_t entry = 0; entry < std::min(_palette.size(), _boxes.size()); ++entry)
+            for (int corner = 0; corner < 8 && isMoving(entry); ++corner)
+                all.add(_palette[entry].transformPoint(_boxes[entry].corner(corner)));
+        return all.empty() ? 0.0 : glm::distance(all.min, all.max);
+    }
+
 private:
+    bool isMoving(std::size_t entry) const
+    {
+        return _set.palette()[entry].kind != PaletteEntry::Kind::Weights && !_boxes[entry].empty();
+    }
+
     double changeOfWeights() const
     {
         double largest = 0.0;
@@ -67,7 +83,7 @@ private:
         return largest;
     }
 
-    /// At least the largest length of a transformed unit vector.
+    /// An upper bound for the length of a transformed unit vector.
     static double sizeOf(const AffineMatrix& matrix)
     {
         double squares = 0.0;
@@ -108,6 +124,7 @@ ClipTravel::ClipTravel(const AnimationSet& set, std::size_t clip, const EntryBox
     for (std::size_t keyframe = 0; keyframe + 1 < times.size(); ++keyframe)
     {
         const double begin = times[keyframe], duration = times[keyframe + 1] - begin;
+        if (!(duration > 0.0)) travel += corners.size();
         for (int step = 1; step < stepsPerPiece && duration > 0.0; ++step)
         {
             const double alpha = static_cast<double>(step) / stepsPerPiece;
@@ -118,7 +135,7 @@ ClipTravel::ClipTravel(const AnimationSet& set, std::size_t clip, const EntryBox
     const std::size_t parts = _samples.size();
     _partsPerSecond = static_cast<float>(static_cast<double>(parts) / moving.duration());
     std::uint32_t last = 0;
-    for (std::size_t part = 0; part < parts; ++part)
+    for (std::size_t part = 0; part <= parts; ++part)
     {
         while (last + 1 < _samples.size() && _samples[last + 1].time * _partsPerSecond <= static_cast<float>(part))
             ++last;
@@ -129,12 +146,13 @@ ClipTravel::ClipTravel(const AnimationSet& set, std::size_t clip, const EntryBox
 float ClipTravel::at(float time) const
 {
     if (!(length() > 0.0f)) return 0.0f;
-    const float part = std::min(std::max(time * _partsPerSecond, 0.0f), static_cast<float>(_firstOf.size() - 1));
-    const Sample* sample = &_samples[_firstOf[static_cast<std::size_t>(part)]];
-    const Sample* last = &_samples.back();
-    while (sample != last && sample[1].time <= time)
-        ++sample;
-    if (sample == last || time <= sample->time) return sample->travel;
+    if (!(time > 0.0f)) return 0.0f;
+    const auto part =
+        static_cast<std::size_t>(std::min(time * _partsPerSecond, static_cast<float>(_firstOf.size() - 2)));
+    const Sample* sample = std::upper_bound(&_samples[_firstOf[part]] + 1, &_samples[_firstOf[part + 1]] + 1, time,
+                                            [](float wanted, const Sample& after) { return wanted < after.time; }) -
+                           1;
+    if (sample == &_samples.back() || time <= sample->time) return sample->travel;
     return sample->travel +
            (time - sample->time) / (sample[1].time - sample->time) * (sample[1].travel - sample->travel);
 }
@@ -150,6 +168,10 @@ BlendSample ClipTravel::sampleAt(float travel) const
         return {end.keyframe, end.alpha, 1.0f, _control};
     }
     const Sample& before = after[-1];
+    const bool isJump = before.time == after->time;
+    if (isJump && after->travel - travel < travel - before.travel)
+        return {after->keyframe, after->alpha, 1.0f, _control};
+    if (isJump) return {before.keyframe, before.alpha, 1.0f, _control};
     const float alphaAfter = after->keyframe == before.keyframe ? after->alpha : 1.0f;
     const float share = (travel - before.travel) / (after->travel - before.travel);
     return {before.keyframe, before.alpha + share * (alphaAfter - before.alpha), 1.0f, _control};

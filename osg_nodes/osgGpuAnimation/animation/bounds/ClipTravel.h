@@ -10,9 +10,10 @@
 namespace osgGpuAnimation
 {
 
-/// The way of a clip's fastest vertex since the start of the clip, where the fastest vertex of each moment counts: no
-/// vertex moves farther between two times of the clip than the difference of their travels. Phases of equal travel
-/// therefore have equal errors, however fast or slow the clip moves there.
+/// The distance that the fastest vertex of each moment covers since the start of a clip: no vertex moves farther
+/// between two times of the clip than the difference of their travels. Phases of equal travel therefore have equal
+/// errors, at any speed of the clip. A jump counts its distance and the size of the character, so that a phase rarely
+/// holds both of its sides.
 class ClipTravel
 {
 public:
@@ -28,7 +29,7 @@ public:
     } ///< of the whole clip, in model units
     /// The travel at a time in seconds, in [0, length()].
     float at(float time) const;
-    /// The pose with that travel. In a jump of the clip it is a mix of the poses before and after.
+    /// The pose with that travel; in a jump of the clip the nearer one of the poses before and after.
     BlendSample sampleAt(float travel) const;
 
 private:

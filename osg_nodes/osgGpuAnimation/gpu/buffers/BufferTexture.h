@@ -14,7 +14,8 @@ namespace osgGpuAnimation
 class BufferTexture
 {
 public:
-    /// format: GL_RGBA32F or GL_RGBA32UI, 16 bytes a texel; GL_RGBA8, 4 bytes, for shaders alone.
+    /// format: GL_RGBA32F or GL_RGBA32UI, 16 bytes a texel; GL_RG32UI and GL_RGBA8, 8 and 4
+    /// bytes, for shaders alone.
     BufferTexture(osg::GLExtensions& gl, GLenum format) : _gl(&gl), _format(format) {}
     ~BufferTexture() = default;
     BufferTexture(const BufferTexture&) = delete;

@@ -55,14 +55,11 @@ void PlacedInstanceBuffers::upload(const typename SharedBlocks<Element>::Snapsho
 const BufferTexture& PlacedInstanceBuffers::listBuffer(const std::shared_ptr<const PlacedInstances>& placed)
 {
     auto list =
-        std::find_if(_lists.begin(), _lists.end(),
-                     [&](const List& known) { return known.serial == placed->serial && known.list.lock() == placed; });
+        std::find_if(_lists.begin(), _lists.end(), [&](const List& known) { return known.list.lock() == placed; });
     if (list != _lists.end()) return *list->buffer;
-    list = std::find_if(_lists.begin(), _lists.end(),
-                        [&](const List& known) { return known.list.expired() || known.list.lock() == placed; });
-    if (list == _lists.end()) list = _lists.insert(list, {{}, 0, std::make_unique<BufferTexture>(*_gl, GL_RG32UI)});
+    list = std::find_if(_lists.begin(), _lists.end(), [](const List& known) { return known.list.expired(); });
+    if (list == _lists.end()) list = _lists.insert(list, {{}, std::make_unique<BufferTexture>(*_gl, GL_RG32UI)});
     list->list = placed;
-    list->serial = placed->serial;
     const std::size_t bytes = placed->drawn.size() * sizeof(PlacedInstances::Drawn);
     list->buffer->upload(placed->drawn.data(), bytes);
     _bytesUploaded += bytes;

@@ -26,7 +26,6 @@ struct PlacedInstances
         std::uint32_t instance; ///< index in the placements and tints
     };
 
-    std::uint64_t serial = 0;                        ///< identifies `drawn`; never reused
     std::shared_ptr<const void> crowd;               ///< identifies the crowd, whose placements stay on the GPU
     std::vector<Drawn> drawn;                        ///< level by level
     std::size_t poseCount = 0;                       ///< above the poses of all
@@ -56,7 +55,7 @@ public:
 
     std::uint64_t getBytesUploaded() const { return _bytesUploaded; } ///< so far
 
-    void flushDeletedGLObjects(double, double&) override {}
+    void flushDeletedGLObjects(double, double&) override { forgetUnused(); }
     void flushAllDeletedGLObjects() override {}
     void deleteAllGLObjects() override;
     void discardAllGLObjects() override;
@@ -80,7 +79,6 @@ private:
     struct List
     {
         std::weak_ptr<const PlacedInstances> list;
-        std::uint64_t serial; ///< a list may be filled again
         std::unique_ptr<BufferTexture> buffer;
     };
 

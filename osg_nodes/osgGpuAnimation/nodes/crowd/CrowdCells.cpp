@@ -117,7 +117,7 @@ void CrowdCells::adaptEdge(const Cell& used)
 
 void CrowdCells::add(const glm::vec4& sphere)
 {
-    if (_edge == 0.0f) _edge = sphere.w > 0.0f ? radiiOfFirstEdge * sphere.w : 1.0f;
+    if (_edge == 0.0f) _edge = sphere.w > 0.0f ? std::min(radiiOfFirstEdge * sphere.w, 1e30f) : 1.0f;
     _spheres.push_back(sphere);
     _places.emplace_back();
     put(_spheres.size() - 1);

@@ -53,10 +53,9 @@ public:
     CrowdPlayback(const AnimationController& controller, double clock);
 
     int clip() const { return _clip; } ///< -1: none, the rest pose
-    /// Seconds since a start of the clip, with all rounds.
-    double unrolledTime(double clock) const { return _isPaused ? _offset : _offset + _speed * clock; }
-    /// Clip time in seconds, in [0, duration).
-    double time(const AnimationSet& set, double clock) const;
+    /// Clip time in seconds, in [0, duration). duration: of the clip.
+    double time(double duration, double clock) const;
+    double time(const AnimationSet& set, double clock) const; ///< The same.
     BlendSample sample(const AnimationSet& set, double clock) const { return set.sampleAt(_clip, time(set, clock)); }
     /// A controller in the same state.
     AnimationController controller(const std::shared_ptr<const AnimationSet>& set, double clock) const;
@@ -125,8 +124,8 @@ public:
     std::size_t controllerCount() const;
     /// Of an instance without a controller: -1: the rest pose.
     int clip(std::size_t index) const { return _playbacks[index].clip(); }
-    /// Of an instance without a controller: seconds since a start of the clip, with all rounds.
-    double unrolledTime(std::size_t index) const { return _playbacks[index].unrolledTime(_clock); }
+    /// Of an instance without a controller: clip time in seconds, in [0, duration). duration: of its clip.
+    double time(std::size_t index, double duration) const { return _playbacks[index].time(duration, _clock); }
     /// Identifies this object and no copy.
     const std::shared_ptr<const void>& identity() const { return _identity; }
     /// Snapshots for frames, by index. Tints: empty if all are white.

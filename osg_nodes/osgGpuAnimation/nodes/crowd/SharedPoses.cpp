@@ -6,8 +6,9 @@
 
 #include <layout.glsl>
 
+#include <glm/geometric.hpp>
+
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -137,9 +138,7 @@ private:
         int phase = 0;
         if (phases > 1)
         {
-            const double time = _instances.unrolledTime(index);
-            const double round = time * _meshes.roundsPerSecond[place - 1];
-            const float at = travel->at(static_cast<float>(time - std::floor(round) * _meshes.durations[place - 1]));
+            const float at = travel->at(static_cast<float>(_instances.time(index, _meshes.durations[place - 1])));
             phase = std::min(static_cast<int>(at / travel->length() * static_cast<float>(phases)), phases - 1);
         }
         std::uint32_t& pose = _poses[place * posesPerClip + static_cast<std::size_t>(phases + phase)];
@@ -161,36 +160,53 @@ private:
     std::size_t _count = 0;
 };
 
-SharedPoses::SharedPoses(const osg::Group& meshes, const AnimationSet& set)
+SharedPoses::Shape::Shape(SkinnedGeometry& mesh) : mesh(&mesh), vertices(mesh.getVertexArray()) {}
+
+/// All meshes below the crowd, those of all levels of detail included.
+std::vector<SharedPoses::Shape> SharedPoses::shapesBelow(const osg::Group& crowd)
+{
+    std::vector<Shape> shapes;
+    for (unsigned int child = 0; child < crowd.getNumChildren(); ++child)
+        forEachMeshBelow(*const_cast<osg::Node*>(crowd.getChild(child)),
+                         [&](SkinnedGeometry& mesh) { shapes.emplace_back(mesh); });
+    return shapes;
+}
+
+SharedPoses::SharedPoses(const osg::Group& crowd, const AnimationSet& set)
 {
     const std::shared_ptr<Meshes> computed = std::make_shared<Meshes>();
-    for (unsigned int child = 0; child < meshes.getNumChildren(); ++child)
-        computed->children.push_back(meshes.getChild(child));
+    computed->shapes = shapesBelow(crowd);
     std::vector<const SkinnedGeometry*> skinned;
-    forEachMesh(meshes, [&](const SkinnedGeometry& mesh) { skinned.push_back(&mesh); });
-    const MixBounds::Boxes boxes = mixBoxesOf(skinned, set);
+    for (const Shape& shape : computed->shapes)
+        skinned.push_back(shape.mesh.get());
+    MixBounds::Boxes boxes = mixBoxesOf(skinned, set);
+    // Weights change colours and normals too: they count as if they moved the vertices through their box.
+    const bool isMorphed = std::any_of(skinned.begin(), skinned.end(),
+                                       [](const SkinnedGeometry* mesh) { return !mesh->getMorphTargets().empty(); });
+    for (std::size_t entry = 0; isMorphed && entry < boxes.reaches.size(); ++entry)
+        if (const Box& box = boxes.ofClips[entry]; !box.empty())
+            boxes.reaches[entry] = std::max(boxes.reaches[entry], glm::distance(box.min, box.max));
     computed->travels = travelsOfClips(set, boxes.ofClips, boxes.reaches);
     for (const Clip& clip : set.clips())
-    {
         computed->durations.push_back(clip.duration());
-        computed->roundsPerSecond.push_back(clip.duration() > 0.0 ? 1.0 / clip.duration() : 0.0);
-    }
     _meshes = computed;
 }
 
-bool SharedPoses::isOf(const osg::Group& meshes) const
+bool SharedPoses::isOf(const osg::Group& crowd) const
 {
-    if (meshes.getNumChildren() != _meshes->children.size()) return false;
-    for (unsigned int child = 0; child < meshes.getNumChildren(); ++child)
-        if (meshes.getChild(child) != _meshes->children[child]) return false;
-    return true;
+    return shapesBelow(crowd) == _meshes->shapes;
 }
 
-/// The list itself, or an equal one that a frame has drawn already and that is on the GPU.
+void SharedPoses::forgetUnused()
+{
+    _before = std::move(_latest);
+    _latest.clear();
+}
+
+/// The list itself, or an equal one that was drawn since the update before and is on the GPU.
 std::shared_ptr<const PlacedInstances> SharedPoses::shared(std::shared_ptr<PlacedInstances> placed) const
 {
-    static std::atomic<std::uint64_t> last{0};
-    constexpr std::size_t mostKept = 4;
+    constexpr std::size_t mostKept = 16; // of a crowd without updates
     const auto isSame = [&](const std::shared_ptr<const PlacedInstances>& known)
     {
         return known->crowd == placed->crowd && known->placements == placed->placements &&
@@ -200,12 +216,9 @@ std::shared_ptr<const PlacedInstances> SharedPoses::shared(std::shared_ptr<Place
     };
     const std::lock_guard<std::mutex> lock(_mutex);
     if (const auto known = std::find_if(_latest.begin(), _latest.end(), isSame); known != _latest.end()) return *known;
-    placed->serial = ++last;
-    if (_latest.size() < mostKept)
-        _latest.push_back(placed);
-    else
-        _latest[_next++ % mostKept] = placed;
-    return placed;
+    const auto before = std::find_if(_before.begin(), _before.end(), isSame);
+    if (_latest.size() == mostKept) _latest.erase(_latest.begin());
+    return _latest.emplace_back(before != _before.end() ? *before : placed);
 }
 
 std::vector<DrawState> SharedPoses::submit(PoseFrame& frame, const CrowdInstances& instances, const LodScale& scale,
@@ -217,7 +230,7 @@ std::vector<DrawState> SharedPoses::submit(PoseFrame& frame, const CrowdInstance
     const std::size_t mostPoses =
         std::min(frame.getMaxTexels() / (set.paletteSize() * POSE_TEXELS_PER_MATRIX), PosePipeline::usualChunkSize);
     std::vector<DrawState> draws;
-    if (placementTexels > frame.getMaxTexels() || mostPoses == 0) return draws;
+    if (placementTexels > frame.getMaxTexels()) return draws;
 
     Collection collection(*_meshes, instances, scale);
     std::unique_ptr<PoseBatch> batch;

@@ -6,6 +6,7 @@
 #include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/nodes/frame/PoseFrame.h>
 #include <osgGpuAnimation/nodes/lod/LodSelection.h>
+#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
 #include <osg/Group>
 
@@ -27,14 +28,16 @@ class SharedPoses
 public:
     static constexpr int mostPhases = 512; ///< of a clip, a power of two
 
-    /// meshes: the crowd's, among its children.
-    SharedPoses(const osg::Group& meshes, const AnimationSet& set);
+    /// crowd: the node with the meshes.
+    SharedPoses(const osg::Group& crowd, const AnimationSet& set);
     /// Shares what was computed from the meshes.
     SharedPoses(const SharedPoses& other) : _meshes(other._meshes) {}
     SharedPoses& operator=(const SharedPoses&) = delete;
 
-    /// True if the group still has the same meshes.
-    bool isOf(const osg::Group& meshes) const;
+    /// True if the crowd still has the same meshes.
+    bool isOf(const osg::Group& crowd) const;
+    /// Called in each update: forgets the lists that were not drawn since the last call.
+    void forgetUnused();
 
     /// Submits the visible instances without a controller to the frame, takes them out of the list, and returns a state
     /// for each draw of the crowd's meshes. scale: of the camera that culls. Cameras may cull concurrently.
@@ -42,22 +45,31 @@ public:
                                   std::vector<std::uint32_t>& seen) const;
 
 private:
+    /// A mesh and what its vertices are.
+    struct Shape
+    {
+        explicit Shape(SkinnedGeometry& mesh);
+        bool operator==(const Shape& other) const { return mesh == other.mesh && vertices == other.vertices; }
+
+        osg::ref_ptr<const SkinnedGeometry> mesh;
+        osg::ref_ptr<const osg::Array> vertices;
+    };
     /// What depends on the meshes.
     struct Meshes
     {
-        std::vector<const osg::Node*> children;
-        std::vector<ClipTravel> travels; ///< by clip, as the others
+        std::vector<Shape> shapes;
+        std::vector<ClipTravel> travels; ///< by clip, as the durations
         std::vector<double> durations;   ///< seconds
-        std::vector<double> roundsPerSecond;
     };
     class Collection;
 
+    static std::vector<Shape> shapesBelow(const osg::Group& crowd);
     std::shared_ptr<const PlacedInstances> shared(std::shared_ptr<PlacedInstances> placed) const;
 
     std::shared_ptr<const Meshes> _meshes;
     mutable std::mutex _mutex;
-    mutable std::vector<std::shared_ptr<const PlacedInstances>> _latest; ///< lists of the last frames
-    mutable std::size_t _next = 0;                                       ///< the one to replace
+    mutable std::vector<std::shared_ptr<const PlacedInstances>> _latest; ///< lists drawn since the last update
+    std::vector<std::shared_ptr<const PlacedInstances>> _before;         ///< those of the update before
 };
 
 } // namespace osgGpuAnimation

@@ -7,10 +7,12 @@
 
 #include <osg/ContextData>
 #include <osg/GLExtensions>
+#include <osg/Notify>
 #include <osg/Program>
 #include <osg/Texture>
 
 #include <algorithm>
+#include <atomic>
 #include <iterator>
 
 namespace osgGpuAnimation
@@ -154,9 +156,17 @@ PlacedDraw::PlacedDraw(osg::State& state, const PosePipeline& pipeline, const Pa
 {
     const std::shared_ptr<const PlacedInstances>& placed = binding.getPlaced();
     const PalettePlace palette = pipeline.place(*binding.getAnimationSet(), binding.getSlot(), 0);
-    if (palette.texture == 0 || palette.chunkEnd < placed->poseCount) return;
-    _textures = PlacedInstanceBuffers::of(state).textures(placed, pipeline.getMaxTexels());
-    if (_textures.drawn == 0) return;
+    if (palette.texture == 0) return;
+    if (palette.chunkEnd >= placed->poseCount)
+        _textures = PlacedInstanceBuffers::of(state).textures(placed, pipeline.getMaxTexels());
+    if (_textures.drawn == 0)
+    {
+        static std::atomic<bool> isReported{false};
+        if (isReported.exchange(true)) return;
+        OSG_WARN << "osgGpuAnimation: the buffer textures of this context hold " << pipeline.getMaxTexels()
+                 << " texels, fewer than a crowd needs that shares poses; it is drawn from the next frame on\n";
+        return;
+    }
     _place = palette;
     _place.instance = static_cast<int>(binding.getInstance());
     _place.tints = _textures.tints;

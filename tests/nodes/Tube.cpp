@@ -11,7 +11,7 @@
 namespace osgGpuAnimation
 {
 
-std::shared_ptr<const AnimationSet> armSet(bool hasMorph)
+std::shared_ptr<const AnimationSet> armSet(bool hasMorph, std::size_t clips)
 {
     JointTransform elbow;
     elbow.translation.x = 4.0f;
@@ -28,7 +28,7 @@ std::shared_ptr<const AnimationSet> armSet(bool hasMorph)
     {
         EXPECT_TRUE(builder.add({Channel::Path::Weights, Channel::Interpolation::Linear, 0, {0, 1}, {0, 1}}));
     }
-    parts.clips.push_back(builder.build("bend"));
+    parts.clips.assign(clips, builder.build("bend"));
     return AnimationSet::create(std::move(parts)).value();
 }
 

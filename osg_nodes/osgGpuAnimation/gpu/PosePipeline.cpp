@@ -267,9 +267,8 @@ std::size_t PosePipeline::chunkCapacity(const AnimationSet& set, const Options& 
 std::size_t PosePipeline::Parts::chunkCapacity(const PoseBatch& batch) const
 {
     Options options = pipeline._options;
-    const std::size_t posedTexels = std::max<std::size_t>(PosePalette::posedTexels(batch), 1);
-    options.chunkSize =
-        std::min({options.chunkSize, options.maxTexels / posedTexels, options.maxTexels / batch.sampleStride()});
+    const std::size_t texels = std::max(PosePalette::posedTexels(batch), batch.sampleStride());
+    options.chunkSize = std::min(options.chunkSize, options.maxTexels / texels);
     return PosePipeline::chunkCapacity(batch.set(), options);
 }
 

@@ -56,13 +56,17 @@ public:
         _count = 0;
     }
 
-    void add(std::uint32_t index, PoseBatch& batch)
+    /// Adds the instance to the list, and the pose of its phase to the batch if it is new there. False: the instance
+    /// needs a pose of its own.
+    bool add(std::uint32_t index, PoseBatch& batch)
     {
         const glm::vec4& sphere = _instances.sphere(index);
-        const float error = _scale.allowedError(glm::vec3(sphere), sphere.w, _instances.scale(index));
-        const Band& band = bandFor(error);
-        band.drawn->push_back({poseOf(index, band, batch), index});
+        const Band& band = bandFor(_scale.allowedError(glm::vec3(sphere), sphere.w, _instances.scale(index)));
+        const auto clip = static_cast<std::size_t>(_instances.clip(index) + 1);
+        if (clip >= band.phases.size() || band.phases[clip] == ownPose) return false;
+        band.drawn->push_back({poseOf(index, clip, band.phases[clip], batch), index});
         ++_count;
+        return true;
     }
 
     /// Writes the list, level by level. function(level, first, count)
@@ -127,26 +131,22 @@ private:
         return phases;
     }
 
-    std::uint32_t poseOf(std::uint32_t index, const Band& band, PoseBatch& batch)
+    /// clip: its number + 1; 0: the rest pose.
+    std::uint32_t poseOf(std::uint32_t index, std::size_t clip, int phases, PoseBatch& batch)
     {
-        const int clip = _instances.clip(index);
-        const auto place = static_cast<std::size_t>(clip + 1);
-        const int phases = place < band.phases.size() ? band.phases[place] : ownPose;
-        if (phases == ownPose)
-            return static_cast<std::uint32_t>(batch.addSample(_instances.instruction(index).samples[0]));
-        const ClipTravel* travel = clip < 0 ? nullptr : &_meshes.travels[static_cast<std::size_t>(clip)];
+        const ClipTravel* travel = clip == 0 ? nullptr : &_meshes.travels[clip - 1];
         int phase = 0;
         if (phases > 1)
         {
-            const float at = travel->at(static_cast<float>(_instances.time(index, _meshes.durations[place - 1])));
+            const float at = travel->at(static_cast<float>(_instances.time(index, _meshes.durations[clip - 1])));
             phase = std::min(static_cast<int>(at / travel->length() * static_cast<float>(phases)), phases - 1);
         }
-        std::uint32_t& pose = _poses[place * posesPerClip + static_cast<std::size_t>(phases + phase)];
-        if (pose != none) return pose;
-        _used.push_back(static_cast<std::uint32_t>(&pose - _poses.data()));
+        const std::size_t place = clip * posesPerClip + static_cast<std::size_t>(phases + phase);
+        if (_poses[place] != none) return _poses[place];
+        _used.push_back(static_cast<std::uint32_t>(place));
         const float middle = (static_cast<float>(phase) + 0.5f) / static_cast<float>(phases);
         const BlendSample sample = travel ? travel->sampleAt(middle * travel->length()) : BlendSample{};
-        return pose = static_cast<std::uint32_t>(batch.addSample(sample));
+        return _poses[place] = static_cast<std::uint32_t>(batch.addSample(sample));
     }
 
     const Meshes& _meshes;
@@ -227,8 +227,9 @@ std::vector<DrawState> SharedPoses::submit(PoseFrame& frame, const CrowdInstance
     const AnimationSet& set = *instances.set();
     const std::size_t placementTexels =
         (instances.size() + SharedBlocks<AffineMatrix>::blockSize) * POSE_TEXELS_PER_MATRIX;
-    const std::size_t mostPoses =
-        std::min(frame.getMaxTexels() / (set.paletteSize() * POSE_TEXELS_PER_MATRIX), PosePipeline::usualChunkSize);
+    PosePipeline::Options options;
+    options.maxTexels = frame.getMaxTexels();
+    const std::size_t mostPoses = PosePipeline::chunkCapacity(set, options);
     std::vector<DrawState> draws;
     if (placementTexels > frame.getMaxTexels()) return draws;
 
@@ -260,14 +261,11 @@ std::vector<DrawState> SharedPoses::submit(PoseFrame& frame, const CrowdInstance
     std::size_t left = 0;
     for (const std::uint32_t index : seen)
     {
-        if (instances.hasController(index))
-        {
-            seen[left++] = index;
-            continue;
-        }
         if (!batch) batch = frame.makeBatch(instances.set());
-        collection.add(index, *batch);
-        if (batch->size() == mostPoses) flush();
+        if (instances.hasController(index) || !collection.add(index, *batch))
+            seen[left++] = index;
+        else if (batch->size() == mostPoses)
+            flush();
     }
     seen.resize(left);
     if (!collection.isEmpty()) flush();

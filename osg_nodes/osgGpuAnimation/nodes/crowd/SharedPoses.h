@@ -21,8 +21,8 @@ namespace osgGpuAnimation
 /// The poses that instances of a crowd with a pixel error share. A clip is cut into phases of equal ClipTravel, the
 /// more the larger an instance is on screen; all instances in one phase show the pose of its middle. The distance of a
 /// vertex from its exact place, plus the error of the level of detail, stays within the pixel error. Instances that
-/// show more phases than `mostPhases` have poses of their own, and so do those with a controller, which the crowd
-/// submits itself.
+/// need more than `mostPhases` phases have poses of their own, and so do those with a controller: the crowd submits
+/// them itself.
 class SharedPoses
 {
 public:
@@ -39,8 +39,8 @@ public:
     /// Called in each update: forgets the lists that were not drawn since the last call.
     void forgetUnused();
 
-    /// Submits the visible instances without a controller to the frame, takes them out of the list, and returns a state
-    /// for each draw of the crowd's meshes. scale: of the camera that culls. Cameras may cull concurrently.
+    /// Submits the visible instances that share poses to the frame, takes them out of the list, and returns a state for
+    /// each draw of the crowd's meshes. scale: of the camera that culls. Cameras may cull concurrently.
     std::vector<DrawState> submit(PoseFrame& frame, const CrowdInstances& instances, const LodScale& scale,
                                   std::vector<std::uint32_t>& seen) const;
 

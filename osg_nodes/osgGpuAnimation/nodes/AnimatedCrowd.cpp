@@ -473,11 +473,11 @@ void AnimatedCrowd::cull(osgUtil::CullVisitor& visitor)
     static thread_local std::vector<std::uint32_t> seen; // keeps its storage from cull to cull
     _instances->findSeen(isCullingActive() ? view.planes() : std::vector<glm::vec4>(), seen);
     std::vector<DrawState> draws;
-    const LodRange lods = seen.empty() ? LodRange() : LodRange::ofCharacter(_pixelError, *this, getAnimationSet());
     if (!seen.empty() && getAnimationSet().paletteSize() > 0)
     {
         view.look(*_instances, seen);
-        const LodScale scale(visitor, PoseStage::lodView(visitor), _pixelError, lods);
+        const LodScale scale(visitor, PoseStage::lodView(visitor), _pixelError,
+                             _pixelError > 0.0f ? LodRange(*this, getAnimationSet()) : LodRange());
         PoseFrame& frame = PoseStage::frame(visitor);
         if (_sharedPoses && scale.isOn()) draws = _sharedPoses->submit(frame, *_instances, scale, seen);
         for (const DrawState& draw : submitSeen(frame, *_instances, CrowdLod(*_instances, scale), seen))
@@ -486,8 +486,8 @@ void AnimatedCrowd::cull(osgUtil::CullVisitor& visitor)
     for (const DrawState& draw : draws)
     {
         visitor.pushStateSet(draw.stateSet);
-        const auto show = [&](SkinnedGeometry& mesh) { view.draw(mesh, *draw.binding); };
-        lods.forEachMeshAt(draw.binding->getLevel(), *this, show);
+        forEachMesh(*this,
+                    [&](const SkinnedGeometry& mesh) { view.draw(const_cast<SkinnedGeometry&>(mesh), *draw.binding); });
         visitor.popStateSet();
     }
     const UnculledScope unculled(visitor);
@@ -522,7 +522,6 @@ void AnimatedCrowd::prepareSharedPoses()
     if (_sharedPoses) _sharedPoses->forgetUnused();
     if (isOn == (_sharedPoses != nullptr) && (!isOn || _sharedPoses->isOf(*this))) return;
     _sharedPoses = isOn ? std::make_unique<SharedPoses>(*this, getAnimationSet()) : nullptr;
-    static_cast<void>(LodRange::ofCharacter(_pixelError, *this, getAnimationSet())); // creates missing levels
 }
 
 void AnimatedCrowd::visitInstances(osg::NodeVisitor& visitor)

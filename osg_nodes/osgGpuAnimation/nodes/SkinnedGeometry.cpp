@@ -414,7 +414,6 @@ void SkinnedGeometry::releaseGLObjects(osg::State* state) const
     osg::Geometry::releaseGLObjects(state);
     if (_morphDeltas->texture) _morphDeltas->texture->releaseGLObjects(state);
     if (const auto levels = _lod->known(*this)) levels->releaseGLObjects(state);
-    _lod->releaseCommon(state);
     releaseVariantStates(*this, state);
 }
 
@@ -423,7 +422,6 @@ void SkinnedGeometry::resizeGLObjectBuffers(unsigned int maxSize)
     osg::Geometry::resizeGLObjectBuffers(maxSize);
     if (_morphDeltas->texture) _morphDeltas->texture->resizeGLObjectBuffers(maxSize);
     if (const auto levels = _lod->known(*this)) levels->resizeGLObjectBuffers(maxSize);
-    _lod->resizeCommon(maxSize);
     resizeVariantStates(*this, maxSize);
 }
 

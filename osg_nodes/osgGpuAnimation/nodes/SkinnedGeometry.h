@@ -113,8 +113,6 @@ public:
     std::shared_ptr<const LodLevels> getLodLevels(const AnimationSet& set) const;
     /// Discards the levels of detail, for example after a change of the clips; getLodLevels() creates new ones.
     void forgetLodLevels();
-    /// The cache of the levels of detail, for the kit's own use.
-    const MeshLod& getLod() const { return *_lod; }
 
     /// The number of elements of the vertex array; 0 without one.
     std::size_t getVertexCount() const { return getVertexArray() ? getVertexArray()->getNumElements() : 0; }

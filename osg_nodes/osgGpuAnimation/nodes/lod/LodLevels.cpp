@@ -66,6 +66,7 @@ std::vector<PoseInstruction> poolOf(const AnimationSet& set)
     return pool;
 }
 
+constexpr std::size_t poseCount = 12;
 // The finest level is the mesh's size divided by 2 to that power; the coarsest, which alone may cross texture seams, is
 // the character's size divided so: coarser levels save little more and make small characters thin.
 constexpr int finestFraction = 8;
@@ -102,7 +103,7 @@ PosedSurface surfaceOf(const osg::Geometry& mesh, const AnimationSet& set, const
     PosedSurface surface;
     std::vector<AffineMatrix> palette;
     std::vector<glm::dvec3> positions;
-    for (const PoseInstruction& pose : keyPoses(set, LodLevels::poseCount))
+    for (const PoseInstruction& pose : keyPoses(set, poseCount))
     {
         Pose::evaluate(set, pose, AffineMatrix(), palette);
         skin(palette, positions);
@@ -131,6 +132,21 @@ double sizeOf(const Box& box)
     return box.empty() ? 0.0 : glm::distance(glm::dvec3(box.min), glm::dvec3(box.max));
 }
 
+/// Whole triangles; empty for other primitives.
+std::vector<std::uint32_t> trianglesOf(const osg::PrimitiveSet& primitives, std::size_t vertexCount)
+{
+    std::vector<std::uint32_t> indices;
+    const osg::DrawElements* elements = primitives.getDrawElements();
+    if (!elements || primitives.getMode() != GL_TRIANGLES || !elements->getDataPointer()) return indices;
+    for (unsigned int i = 0; i + 2 < elements->getNumIndices(); i += 3)
+        for (unsigned int corner = i; corner < i + 3; ++corner)
+        {
+            if (elements->index(corner) >= vertexCount) return {};
+            indices.push_back(elements->index(corner));
+        }
+    return indices;
+}
+
 /// True if posing the palette costs no more than reducing the triangles. Meshes of many small, separately animated
 /// parts get no levels.
 bool isWorthPoses(const osg::Geometry& mesh, const AnimationSet& set)
@@ -150,20 +166,6 @@ osg::ref_ptr<osg::DrawElements> makeElements(const std::vector<std::uint32_t>& i
 }
 
 } // namespace
-
-std::vector<std::uint32_t> trianglesOf(const osg::PrimitiveSet& primitives, std::size_t vertexCount)
-{
-    std::vector<std::uint32_t> indices;
-    const osg::DrawElements* elements = primitives.getDrawElements();
-    if (!elements || primitives.getMode() != GL_TRIANGLES || !elements->getDataPointer()) return indices;
-    for (unsigned int i = 0; i + 2 < elements->getNumIndices(); i += 3)
-        for (unsigned int corner = i; corner < i + 3; ++corner)
-        {
-            if (elements->index(corner) >= vertexCount) return {};
-            indices.push_back(elements->index(corner));
-        }
-    return indices;
-}
 
 std::vector<PoseInstruction> keyPoses(const AnimationSet& set, std::size_t count)
 {
@@ -301,22 +303,6 @@ std::shared_ptr<const LodLevels> MeshLod::of(const osg::Geometry& mesh, const An
 void MeshLod::forget()
 {
     std::atomic_store(&_levels, std::shared_ptr<const LodLevels>());
-    const std::lock_guard<std::mutex> lock(_commonMutex);
-    _common.clear();
-}
-
-void MeshLod::releaseCommon(osg::State* state) const
-{
-    const std::lock_guard<std::mutex> lock(_commonMutex);
-    for (const std::shared_ptr<const CommonLevels>& levels : _common)
-        levels->releaseGLObjects(state);
-}
-
-void MeshLod::resizeCommon(unsigned int maxSize) const
-{
-    const std::lock_guard<std::mutex> lock(_commonMutex);
-    for (const std::shared_ptr<const CommonLevels>& levels : _common)
-        levels->resizeGLObjectBuffers(maxSize);
 }
 
 } // namespace osgGpuAnimation

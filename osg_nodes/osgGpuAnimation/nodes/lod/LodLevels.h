@@ -28,9 +28,6 @@ struct PosedSurface;
 /// The largest length of a transformed unit axis.
 float largestScale(const AffineMatrix& matrix);
 
-/// The whole triangles of indexed triangles; empty for other primitives and for an index that is out of range.
-std::vector<std::uint32_t> trianglesOf(const osg::PrimitiveSet& primitives, std::size_t vertexCount);
-
 /// Reduced triangles for a mesh over the same vertices, so that palettes, influences and morph targets do not change. A
 /// **level** is the exponent of the largest error as a power of two, in the character's own units for any mesh space:
 /// at level -3 no vertex of the mesh is farther than 1/8 from the drawn surface. One level therefore means the same for
@@ -50,7 +47,6 @@ class LodLevels
 public:
     static constexpr int allTriangles = std::numeric_limits<int>::min(); ///< the level without error
     static constexpr std::size_t maxVertices = 100'000; ///< of a mesh with levels; such a mesh takes seconds
-    static constexpr std::size_t poseCount = 12;        ///< of the key poses
 
     /// The coarsest level within the error, in the character's units; allTriangles if the error is not above 0.
     static int levelOf(double error);
@@ -97,15 +93,6 @@ private:
     int _coarsest = allTriangles;
 };
 
-/// Levels of several meshes together (CharacterLevels), as the first of those meshes knows them.
-class CommonLevels
-{
-public:
-    virtual ~CommonLevels() = default;
-    virtual void releaseGLObjects(osg::State* state) const = 0;
-    virtual void resizeGLObjectBuffers(unsigned int maxSize) const = 0;
-};
-
 /// The cached LodLevels of a mesh, created on demand, once for all threads, and again after a change of the mesh's
 /// vertices or primitives. Copies share them.
 class MeshLod
@@ -120,32 +107,12 @@ public:
                                         const LodLevels::Skinning& skin) const;
     /// Null: not created, or the mesh has changed.
     std::shared_ptr<const LodLevels> known(const osg::Geometry& mesh) const;
-    /// The levels of this mesh with others that isKnown(const CommonLevels&) accepts; else those that make() returns.
-    /// Concurrent calls wait. The last maxCommon levels are kept. Copies have none.
-    template <typename IsKnown, typename Make>
-    std::shared_ptr<const CommonLevels> common(IsKnown isKnown, Make make) const;
-    static constexpr std::size_t maxCommon = 8;
     /// Discards the levels after a change of influences, morph targets or clips.
     void forget();
-    /// For the levels of this mesh with others.
-    void releaseCommon(osg::State* state) const;
-    void resizeCommon(unsigned int maxSize) const;
 
 private:
     mutable std::mutex _mutex;
-    mutable std::mutex _commonMutex;
-    mutable std::vector<std::shared_ptr<const CommonLevels>> _common; ///< the oldest first
-    mutable std::shared_ptr<const LodLevels> _levels;                 ///< accessed atomically
+    mutable std::shared_ptr<const LodLevels> _levels; ///< accessed atomically
 };
-
-template <typename IsKnown, typename Make>
-std::shared_ptr<const CommonLevels> MeshLod::common(IsKnown isKnown, Make make) const
-{
-    const std::lock_guard<std::mutex> lock(_commonMutex);
-    for (const std::shared_ptr<const CommonLevels>& levels : _common)
-        if (isKnown(*levels)) return levels;
-    if (_common.size() >= maxCommon) _common.erase(_common.begin());
-    return _common.emplace_back(make());
-}
 
 } // namespace osgGpuAnimation

@@ -2,6 +2,7 @@
 #include <osgGpuAnimation/nodes/lod/LodSelection.h>
 
 #include <osgGpuAnimation/nodes/frame/CullScopes.h>
+#include <osgGpuAnimation/nodes/mesh/PaletteEntryBounds.h>
 
 #include <osg/Transform>
 
@@ -39,18 +40,6 @@ LodRange::LodRange(const osg::Group& meshes, const AnimationSet& set)
                     _finest = std::min(_finest, levels->finest());
                     _coarsest = std::max(_coarsest, levels->coarsest());
                 });
-}
-
-LodRange LodRange::ofCharacter(float pixelError, const osg::Group& meshes, const AnimationSet& set)
-{
-    if (!(pixelError > 0.0f) || set.paletteSize() == 0) return {};
-    LodRange range(meshes, set);
-    std::size_t vertices = 0;
-    forEachMesh(meshes, [&](const SkinnedGeometry& mesh) { vertices += mesh.getVertexCount(); });
-    if (range._coarsest == LodLevels::allTriangles || vertices > maxVertices) return range;
-    range._together = CharacterLevels::of(meshes, set);
-    if (range._together) range._coarsest = std::max(range._coarsest, range._together->coarsest());
-    return range;
 }
 
 namespace

@@ -2,9 +2,7 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/Result.h>
-#include <osgGpuAnimation/nodes/lod/CharacterLevels.h>
 #include <osgGpuAnimation/nodes/lod/LodLevels.h>
-#include <osgGpuAnimation/nodes/mesh/PaletteEntryBounds.h>
 
 #include <osg/Camera>
 #include <osg/Group>
@@ -16,7 +14,6 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
-#include <memory>
 #include <string>
 
 namespace osgGpuAnimation
@@ -43,15 +40,6 @@ public:
     /// without levels are drawn with all triangles.
     LodRange(const osg::Group& meshes, const AnimationSet& set);
 
-    /// The same with the levels of the meshes together (CharacterLevels), which this function creates if missing.
-    /// Without levels if the pixel error is 0 or the set is empty.
-    static LodRange ofCharacter(float pixelError, const osg::Group& meshes, const AnimationSet& set);
-
-    /// function(SkinnedGeometry&), for the meshes to draw at a level in place of the group's. meshes: those of the
-    /// range.
-    template <typename Function>
-    void forEachMeshAt(int level, const osg::Group& meshes, Function function) const;
-
     /// The level clamped to the range; allTriangles if it is finer.
     int clamped(int level) const
     {
@@ -61,21 +49,7 @@ public:
 private:
     int _finest = std::numeric_limits<int>::max();
     int _coarsest = LodLevels::allTriangles;
-    std::shared_ptr<const CharacterLevels> _together; ///< null: each mesh has its own levels alone
 };
-
-template <typename Function>
-void LodRange::forEachMeshAt(int level, const osg::Group& meshes, Function function) const
-{
-    const auto draw = [&](const SkinnedGeometry& mesh) { function(const_cast<SkinnedGeometry&>(mesh)); };
-    if (!_together) return forEachMesh(meshes, draw);
-    forEachMesh(meshes,
-                [&](const SkinnedGeometry& mesh)
-                {
-                    if (!_together->isReplaced(mesh, level)) draw(mesh);
-                });
-    _together->forEachMeshAt(level, draw);
-}
 
 /// The view that selects levels of detail: the camera that culls or, for an absolute depth-only camera (see DepthPass),
 /// which is taken for a shadow map, the camera above it. The result is cached until another camera culls. One object

@@ -4,7 +4,6 @@
 #include <osgGpuAnimation/nodes/lod/MeshConnectivity.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -106,42 +105,7 @@ void MeshSimplifier::considerAll()
             consider(point, neighbour);
 }
 
-/// Considers pairs of points within the limit in all poses, whether an edge connects them or not.
-void MeshSimplifier::considerNear()
-{
-    using Cell = std::array<std::int64_t, 3>; // as large as the limit, in the first pose
-    std::vector<std::pair<Cell, std::uint32_t>> points;
-    const double cellSize = std::sqrt(_squaredLimit);
-    for (std::uint32_t point = 0; point < _mesh.pointCount(); ++point)
-    {
-        if (_mesh.trianglesAt(point).empty()) continue;
-        const glm::dvec3 cell = _mesh.at(0, point) / cellSize;
-        points.push_back({{std::llround(cell.x), std::llround(cell.y), std::llround(cell.z)}, point});
-    }
-    std::sort(points.begin(), points.end());
-    const auto isBefore = [](const auto& a, const auto& b) { return a.first < b.first; };
-    for (const auto& [cell, from] : points)
-        for (int neighbour = 0; neighbour < 27; ++neighbour)
-        {
-            const Cell there{cell[0] + neighbour % 3 - 1, cell[1] + neighbour / 3 % 3 - 1, cell[2] + neighbour / 9 - 1};
-            const auto [first, last] =
-                std::equal_range(points.begin(), points.end(), std::pair(there, std::uint32_t(0)), isBefore);
-            for (auto to = first; to != last; ++to)
-                if (to->second != from && isWithinLimit(from, to->second)) consider(from, to->second);
-        }
-}
-
-bool MeshSimplifier::isWithinLimit(std::uint32_t point, std::uint32_t other) const
-{
-    for (std::size_t pose = 0; pose < _mesh.poseCount(); ++pose)
-    {
-        const glm::dvec3 way = _mesh.at(pose, other) - _mesh.at(pose, point);
-        if (glm::dot(way, way) > _squaredLimit) return false;
-    }
-    return true;
-}
-
-void MeshSimplifier::reduce(double limit, bool keepSeams, bool joinPieces)
+void MeshSimplifier::reduce(double limit, bool keepSeams)
 {
     _squaredLimit = limit * limit;
     _keepsSeams = keepSeams;
@@ -150,7 +114,6 @@ void MeshSimplifier::reduce(double limit, bool keepSeams, bool joinPieces)
     for (int pass = 0; pass < mostPasses && hasCollapsed; ++pass)
     {
         considerAll();
-        if (joinPieces) considerNear();
         hasCollapsed = collapseCandidates();
     }
 }

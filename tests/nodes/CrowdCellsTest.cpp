@@ -96,7 +96,10 @@ TEST_P(CrowdCellsTest, findWhatATestOfEachSphereFinds)
         for (int i = 0; i < 200; ++i)
         {
             const std::size_t index = below(spheres.size());
-            spheres[index] = sphere();
+            if (i % 2 == 0)
+                spheres[index] = sphere();
+            else // mostly within its cell
+                spheres[index] += glm::vec4(number(-2.0f, 2.0f), number(-2.0f, 2.0f), 0.0f, 0.0f) * GetParam().radius;
             cells.move(index, spheres[index]);
         }
         const CrowdCells copy(cells);

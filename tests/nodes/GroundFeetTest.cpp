@@ -493,8 +493,10 @@ TEST(GroundFeetTest, standsOnAGroundThatMoves)
     Stroll stroll(lift);
     stroll.stand();
     const osg::Vec3d start = stroll.ball("L");
+    const double standing = stroll.walker->getMatrix().getTrans().z();
     for (int frame = 0; frame < 60; ++frame)
     {
+        EXPECT_NEAR(stroll.walker->getMatrix().getTrans().z() - 0.05 * frame, standing, 0.005) << "not behind the lift";
         lift->postMult(osg::Matrixd::translate(0.002, 0, 0.05));
         stroll.walk(1.0 / 60.0, 0.0);
         ASSERT_NEAR(stroll.ball("L").z(), heightBelow(*lift, stroll.ball("L")), 0.001);

@@ -197,6 +197,24 @@ TEST_F(SharedPosesGLTest, uploadsFollowWhatChanges)
         << "one walks";
 }
 
+// The buffer of placements is a new one after instances have come.
+TEST_F(SharedPosesGLTest, aCrowdThatGrowsKeepsItsPlaces)
+{
+    ASSERT_TRUE(_crowd->setPixelError(0.1f));
+    drawNext(0.0);
+    drawNext(0.1);
+    AnimationController controller(_crowd->getSharedAnimationSet());
+    ASSERT_TRUE(controller.play(0));
+    for (int i = 0; i < 5000; ++i)
+        ASSERT_TRUE(_crowd->add(osg::Matrixd::translate(0, -1e5, 0), controller)) << "behind the eye";
+    drawNext(0.2);
+    EXPECT_GT(sharing(), 0u);
+    const osg::ref_ptr<osg::Image> shared = picture().copy();
+    ASSERT_TRUE(_crowd->setPixelError(0.0f));
+    drawNext(0.2);
+    EXPECT_LE(Picture::meanDifference(*shared, picture().image()), 0.02);
+}
+
 // Crossfades, events and the like have controllers; without a pixel error nobody shares.
 TEST_F(SharedPosesGLTest, othersKeepPosesOfTheirOwn)
 {

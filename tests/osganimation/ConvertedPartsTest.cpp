@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "osganimation/MorphMeshes.h"
 #include "osganimation/SkeletonConversion.h"
 #include "osganimation/SmallRig.h"
 
@@ -167,6 +168,31 @@ TEST(ConvertedPartsTest, callbacksOfMaterialsStay)
     rig.skeleton->getChild(rig.skeleton->getNumChildren() - 1)->getOrCreateStateSet()->setAttribute(material);
     ASSERT_TRUE(converted(rig));
     EXPECT_TRUE(material->getUpdateCallback());
+}
+
+// Targets of method NORMALIZED are whole shapes: equal ones change nothing.
+TEST(ConvertedPartsTest, equalShapesHaveNoDeltas)
+{
+    osg::ref_ptr<osg::Geometry> shapes[2];
+    for (osg::ref_ptr<osg::Geometry>& shape : shapes)
+    {
+        shape = new osg::Geometry;
+        osg::ref_ptr<osg::Vec3Array> vertices = new osg::Vec3Array;
+        for (const osg::Vec3& vertex : {osg::Vec3(0, 0, 0), osg::Vec3(1, 0, 0), osg::Vec3(0, 0, 1)})
+            vertices->push_back(vertex);
+        shape->setVertexArray(vertices);
+        shape->setNormalArray(new osg::Vec3Array(osg::Array::BIND_PER_VERTEX, 3));
+        for (osg::Vec3& normal : static_cast<osg::Vec3Array&>(*shape->getNormalArray()))
+            normal.set(0, -1, 0);
+    }
+    const osg::ref_ptr<osgAnimation::MorphGeometry> mesh = new osgAnimation::MorphGeometry(*shapes[0]);
+    mesh->setMethod(osgAnimation::MorphGeometry::NORMALIZED);
+    mesh->addMorphTarget(shapes[1], 0.0f);
+    const auto targets = osganimation::morphTargetsOf(*mesh);
+    ASSERT_TRUE(targets);
+    ASSERT_TRUE((*targets)[0].normals);
+    for (const osg::Vec3& normal : *(*targets)[0].normals)
+        EXPECT_EQ(normal, osg::Vec3());
 }
 
 } // namespace

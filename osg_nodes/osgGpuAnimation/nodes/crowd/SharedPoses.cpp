@@ -20,12 +20,11 @@ namespace osgGpuAnimation
 namespace
 {
 
-constexpr int bandsPerOctave = 4;
-/// A level of detail takes at most this part of the allowed error, so that poses keep the rest: below one band.
-constexpr float mostOfLevel = 0.85f;
+constexpr int bandsPerOctave = 8;
 constexpr int ownPose = -1; ///< in place of a number of phases
 
-/// Allowed errors of a quarter of an octave: they have one level of detail and one error of poses.
+/// Allowed errors of an eighth of an octave: they have one level of detail, as without shared poses, and one error of
+/// poses, which is the rest.
 int bandOf(float error)
 {
     return static_cast<int>(std::floor(std::log2(error) * bandsPerOctave));
@@ -109,7 +108,7 @@ private:
         {
             if (isAny) band.least = std::exp2(static_cast<float>(number) / bandsPerOctave);
             if (isAny) band.end = std::exp2(static_cast<float>(number + 1) / bandsPerOctave);
-            const int level = _scale.levelWithin(mostOfLevel * band.least);
+            const int level = _scale.levelWithin(band.least);
             const float ofLevel = level == LodLevels::allTriangles ? 0.0f : std::ldexp(1.0f, level);
             band.drawn = &_drawn[level];
             band.phases.push_back(1);

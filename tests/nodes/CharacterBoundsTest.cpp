@@ -72,6 +72,16 @@ osg::ref_ptr<AnimatedCharacter> makeMorphedCharacter(float lift)
     return character;
 }
 
+/// The vertices of the mesh as the controller poses them.
+std::vector<glm::dvec3> positionsOf(const SkinnedGeometry& mesh, const AnimationController& controller)
+{
+    std::vector<AffineMatrix> palette;
+    Pose::evaluate(controller.set(), controller.instruction(), AffineMatrix(), palette);
+    std::vector<glm::dvec3> positions;
+    mesh.computePositions(palette, positions);
+    return positions;
+}
+
 TEST(CharacterBoundsTest, HoldMorphWeightsThatAdditiveLayersRaiseAndLower)
 {
     struct Case
@@ -100,11 +110,8 @@ TEST(CharacterBoundsTest, HoldMorphWeightsThatAdditiveLayersRaiseAndLower)
             ASSERT_TRUE(added.play(c.added));
             character->update(0.0);
             character->update(1.0);
-            std::vector<AffineMatrix> palette;
-            Pose::evaluate(character->getAnimationSet(), controller.instruction(), AffineMatrix(), palette);
-            std::vector<glm::dvec3> positions;
             const auto& square = dynamic_cast<const SkinnedGeometry&>(*character->getChild(0));
-            square.computePositions(palette, positions);
+            const std::vector<glm::dvec3> positions = positionsOf(square, controller);
             ASSERT_EQ(positions.size(), 4u);
             EXPECT_NEAR(positions[0].z, lift * c.weight, 1e-6);
             for (const glm::dvec3& position : positions)
@@ -141,11 +148,8 @@ TEST(CharacterBoundsTest, HoldMorphWeightsThatTheApplicationPoses)
             character->update(1.0);
             ASSERT_TRUE(controller.layer(1).pose().setMorphWeight(0, 0, c.posed));
             character->update(1.0);
-            std::vector<AffineMatrix> palette;
-            Pose::evaluate(character->getAnimationSet(), controller.instruction(), AffineMatrix(), palette);
-            std::vector<glm::dvec3> positions;
             const auto& square = dynamic_cast<const SkinnedGeometry&>(*character->getChild(0));
-            square.computePositions(palette, positions);
+            const std::vector<glm::dvec3> positions = positionsOf(square, controller);
             EXPECT_NEAR(positions.at(0).z, lift * c.weight, 1e-5);
             for (const glm::dvec3& position : positions)
                 for (const osg::BoundingBox& box : {character->getCurrentBounds(), square.getBoundingBox()})

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
+#include "nodes/UpdateVisits.h"
+
 #include <osgGpuAnimation/animation/ClipBuilder.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/SpringBones.h>
 
 #include <osg/MatrixTransform>
-#include <osgUtil/UpdateVisitor>
 
 #include <gtest/gtest.h>
 
@@ -69,15 +70,7 @@ struct Hanging
         return AnimationSet::create(std::move(parts)).value();
     }
 
-    void updateTo(double time)
-    {
-        const osg::ref_ptr<osg::FrameStamp> stamp = new osg::FrameStamp;
-        stamp->setFrameNumber(++frame);
-        stamp->setSimulationTime(time);
-        osgUtil::UpdateVisitor visitor;
-        visitor.setFrameStamp(stamp);
-        place->accept(visitor);
-    }
+    void updateTo(double time) { updates.visit(*place, time); }
     void settle(double seconds = 3.0)
     {
         for (int i = 0; i <= 60.0 * seconds; ++i)
@@ -98,7 +91,7 @@ struct Hanging
     osg::ref_ptr<osg::MatrixTransform> place = new osg::MatrixTransform;
     osg::ref_ptr<AnimatedCharacter> character;
     osg::ref_ptr<SpringBones> springs;
-    unsigned int frame = 0;
+    UpdateVisits updates;
 };
 
 /// A horizontal rod of four joints.

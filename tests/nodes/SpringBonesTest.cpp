@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "nodes/UpdateVisits.h"
 #include "support/NotifyLog.h"
 
 #include <osgGpuAnimation/animation/ClipBuilder.h>
@@ -100,15 +101,7 @@ struct Dog
         place->addChild(character);
     }
 
-    void updateTo(double time)
-    {
-        const osg::ref_ptr<osg::FrameStamp> stamp = new osg::FrameStamp;
-        stamp->setFrameNumber(++frame);
-        stamp->setSimulationTime(time);
-        osgUtil::UpdateVisitor visitor;
-        visitor.setFrameStamp(stamp);
-        place->accept(visitor);
-    }
+    void updateTo(double time) { updates.visit(*place, time); }
 
     /// In world space.
     osg::Vec3d joint(const std::string& name) const
@@ -120,7 +113,7 @@ struct Dog
     osg::ref_ptr<osg::MatrixTransform> place = new osg::MatrixTransform;
     osg::ref_ptr<AnimatedCharacter> character;
     osg::ref_ptr<SpringBones> springs;
-    unsigned int frame = 0;
+    UpdateVisits updates;
 };
 
 /// VRMC_springBone 1.0, "SpringBone Algorithm", for the dog's tail, in double precision. It takes the poses of the body
@@ -314,8 +307,8 @@ TEST(SpringBonesTest, jumpsResetTheChains)
         for (Dog* one : {&dog, &stiff})
         {
             each.jump(*one);
-            const double time = one->frame > 61 ? one->character->getController().time() : 1.0;
-            if (one->frame == 61) one->updateTo(time);
+            const double time = one->updates.frame > 61 ? one->character->getController().time() : 1.0;
+            if (one->updates.frame == 61) one->updateTo(time);
         }
         const double off = (dog.joint("tail3") - stiff.joint("tail3")).length();
         if (each.resets)
@@ -373,7 +366,7 @@ TEST(SpringBonesTest, beyondTheDistanceTheClipsAloneAreShown)
         const osg::ref_ptr<osgUtil::RenderStage> stage = new osgUtil::RenderStage;
         stage->setCamera(camera);
         const osg::ref_ptr<osg::FrameStamp> stamp = new osg::FrameStamp;
-        stamp->setFrameNumber(dog.frame);
+        stamp->setFrameNumber(dog.updates.frame);
         const osg::ref_ptr<osgUtil::CullVisitor> visitor = new osgUtil::CullVisitor;
         visitor->setFrameStamp(stamp);
         visitor->setRenderStage(stage);

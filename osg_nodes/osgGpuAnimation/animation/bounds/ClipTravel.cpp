@@ -133,6 +133,9 @@ ClipTravel::ClipTravel(const AnimationSet& set, std::size_t clip, const EntryBox
         add(keyframe + 1, 0.0, times[keyframe + 1]);
     }
     const std::size_t parts = _samples.size();
+    for (std::size_t i = 0; i + 1 < parts; ++i)
+        if (const float seconds = _samples[i + 1].time - _samples[i].time; seconds > 0.0f)
+            _samples[i].speed = (_samples[i + 1].travel - _samples[i].travel) / seconds;
     _partsPerSecond = static_cast<float>(static_cast<double>(parts) / moving.duration());
     std::uint32_t last = 0;
     for (std::size_t part = 0; part <= parts; ++part)
@@ -141,20 +144,6 @@ ClipTravel::ClipTravel(const AnimationSet& set, std::size_t clip, const EntryBox
             ++last;
         _firstOf.push_back(last);
     }
-}
-
-float ClipTravel::at(float time) const
-{
-    if (!(length() > 0.0f)) return 0.0f;
-    if (!(time > 0.0f)) return 0.0f;
-    const auto part =
-        static_cast<std::size_t>(std::min(time * _partsPerSecond, static_cast<float>(_firstOf.size() - 2)));
-    const Sample* sample = std::upper_bound(&_samples[_firstOf[part]] + 1, &_samples[_firstOf[part + 1]] + 1, time,
-                                            [](float wanted, const Sample& after) { return wanted < after.time; }) -
-                           1;
-    if (sample == &_samples.back() || time <= sample->time) return sample->travel;
-    return sample->travel +
-           (time - sample->time) / (sample[1].time - sample->time) * (sample[1].travel - sample->travel);
 }
 
 BlendSample ClipTravel::sampleAt(float travel) const

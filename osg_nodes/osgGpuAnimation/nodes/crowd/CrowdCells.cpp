@@ -81,6 +81,7 @@ void CrowdCells::Cell::contain(const glm::vec4& sphere)
     min = glm::min(min, glm::vec3(sphere));
     max = glm::max(max, glm::vec3(sphere));
     radius = std::max(radius, sphere.w);
+    hasUnseen = hasUnseen || !(sphere.w >= 0.0f);
 }
 
 void CrowdCells::put(std::size_t index)
@@ -154,16 +155,18 @@ void CrowdCells::findSeen(const std::vector<glm::vec4>& planes, std::vector<std:
     {
         const Side side = sideOf(planes, cell.min, cell.max, cell.radius);
         if (side == Side::Outside) continue;
-        static const std::vector<glm::vec4> none;
-        const std::vector<glm::vec4>& tested = side == Side::Inside ? none : planes;
+        const bool areAllSeen = side == Side::Inside && !cell.hasUnseen;
         for (const std::uint32_t index : cell.indices)
-            seen[index / 64] |= static_cast<std::uint64_t>(isSeen(tested, _spheres[index])) << index % 64;
+            seen[index / 64] |= static_cast<std::uint64_t>(areAllSeen || isSeen(planes, _spheres[index])) << index % 64;
     }
-    outIndices.clear();
+    std::size_t count = 0;
+    for (const std::uint64_t bits : seen)
+        count += static_cast<std::size_t>(__builtin_popcountll(bits));
+    outIndices.resize(count);
+    std::uint32_t* out = outIndices.data();
     for (std::size_t word = 0; word < seen.size(); ++word)
         for (std::uint64_t bits = seen[word]; bits != 0; bits &= bits - 1)
-            outIndices.push_back(
-                static_cast<std::uint32_t>(64 * word + static_cast<std::size_t>(__builtin_ctzll(bits))));
+            *out++ = static_cast<std::uint32_t>(64 * word + static_cast<std::size_t>(__builtin_ctzll(bits)));
 }
 
 } // namespace osgGpuAnimation

@@ -49,6 +49,7 @@ private:
         Key key{};
         glm::vec3 min{1e38f}, max{-1e38f}; ///< of all centres and radii so far: they never shrink
         float radius = 0.0f;
+        bool hasUnseen = false; ///< a sphere with a radius below 0 was in the cell
         std::vector<std::uint32_t> indices;
 
         void contain(const glm::vec4& sphere);

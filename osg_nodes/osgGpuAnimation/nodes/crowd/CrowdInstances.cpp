@@ -19,15 +19,6 @@ CrowdPlayback::CrowdPlayback(const AnimationController& controller, double clock
     if (!_isPaused) _offset -= _speed * clock;
 }
 
-double CrowdPlayback::time(double duration, double clock) const
-{
-    if (!(duration > 0.0)) return 0.0;
-    const double unrolled = _isPaused ? _offset : _offset + _speed * clock;
-    const double time = unrolled - std::floor(unrolled / duration) * duration;
-    // Rounding of the quotient may cross an integer.
-    return time >= 0.0 && time < duration ? time : 0.0;
-}
-
 double CrowdPlayback::time(const AnimationSet& set, double clock) const
 {
     return _clip < 0 ? 0.0 : time(set.clips()[static_cast<std::size_t>(_clip)].duration(), clock);

@@ -54,7 +54,14 @@ public:
 
     int clip() const { return _clip; } ///< -1: none, the rest pose
     /// Clip time in seconds, in [0, duration). duration: of the clip.
-    double time(double duration, double clock) const;
+    double time(double duration, double clock) const
+    {
+        if (!(duration > 0.0)) return 0.0;
+        const double unrolled = _isPaused ? _offset : _offset + _speed * clock;
+        const double time = unrolled - std::floor(unrolled / duration) * duration;
+        // Rounding of the quotient may cross an integer.
+        return time >= 0.0 && time < duration ? time : 0.0;
+    }
     double time(const AnimationSet& set, double clock) const; ///< The same.
     BlendSample sample(const AnimationSet& set, double clock) const { return set.sampleAt(_clip, time(set, clock)); }
     /// A controller in the same state.

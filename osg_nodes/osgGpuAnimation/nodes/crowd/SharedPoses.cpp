@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -20,14 +21,29 @@ namespace osgGpuAnimation
 namespace
 {
 
-constexpr int bandsPerOctave = 8;
 constexpr int ownPose = -1; ///< in place of a number of phases
 
-/// Allowed errors of an eighth of an octave: they have one level of detail, as without shared poses, and one error of
-/// poses, which is the rest.
-int bandOf(float error)
+/// The errors of a band have one level of detail, as without shared poses, and one error of poses, which is the rest. A
+/// band is an eighth of the errors between two powers of two: its number is the upper bits of a float.
+constexpr std::uint32_t bitsInBand = 20;
+constexpr std::size_t bandCount = std::size_t(1) << (31 - bitsInBand);
+
+/// Errors that allow nothing are in band 0.
+std::size_t bandOf(float error)
 {
-    return static_cast<int>(std::floor(std::log2(error) * bandsPerOctave));
+    if (!(error > 0.0f && error < std::numeric_limits<float>::infinity())) return 0;
+    std::uint32_t bits;
+    std::memcpy(&bits, &error, sizeof(bits));
+    return bits >> bitsInBand;
+}
+
+/// 0 for band 0.
+float leastErrorOf(std::size_t band)
+{
+    const std::uint32_t bits = static_cast<std::uint32_t>(band) << bitsInBand;
+    float error;
+    std::memcpy(&error, &bits, sizeof(error));
+    return error;
 }
 
 } // namespace
@@ -37,7 +53,7 @@ class SharedPoses::Collection
 {
 public:
     Collection(const Meshes& meshes, const CrowdInstances& instances, const LodScale& scale)
-        : _meshes(meshes), _instances(instances), _scale(scale), _poses(posesOfThread())
+        : _meshes(meshes), _instances(instances), _scale(scale), _poses(posesOfThread()), _drawn(drawnOfThread())
     {
         const std::size_t needed = (meshes.travels.size() + 1) * posesPerClip;
         if (_poses.size() < needed) _poses.resize(needed, none);
@@ -62,7 +78,7 @@ public:
         const glm::vec4& sphere = _instances.sphere(index);
         const Band& band = bandFor(_scale.allowedError(glm::vec3(sphere), sphere.w, _instances.scale(index)));
         const auto clip = static_cast<std::size_t>(_instances.clip(index) + 1);
-        if (clip >= band.phases.size() || band.phases[clip] == ownPose) return false;
+        if (clip >= band.phases.size() || band.phases[clip].count == ownPose) return false;
         band.drawn->push_back({poseOf(index, clip, band.phases[clip], batch), index});
         ++_count;
         return true;
@@ -86,9 +102,14 @@ private:
     static constexpr std::uint32_t none = ~std::uint32_t(0);
     struct Band
     {
-        float least = 0.0f, end = 0.0f; ///< the errors of the band
+        struct Phases
+        {
+            int count;       ///< a power of two or ownPose
+            float perTravel; ///< count / travel of the clip
+        };
+
         std::vector<PlacedInstances::Drawn>* drawn = nullptr;
-        std::vector<int> phases; ///< by clip + 1: a power of two or ownPose
+        std::vector<Phases> phases; ///< by clip + 1
     };
 
     /// By clip and phase; all `none` between two collections.
@@ -98,25 +119,31 @@ private:
         return poses;
     }
 
+    using DrawnByLevel = std::map<int, std::vector<PlacedInstances::Drawn>>;
+    /// Without instances between two collections; keeps its storage.
+    static DrawnByLevel& drawnOfThread()
+    {
+        static thread_local DrawnByLevel drawn;
+        return drawn;
+    }
+
     const Band& bandFor(float error)
     {
-        if (_lastBand && error >= _lastBand->least && error < _lastBand->end) return *_lastBand;
-        const bool isAny = error > 0.0f && std::isfinite(error);
-        const int number = isAny ? bandOf(error) : std::numeric_limits<int>::min();
-        Band& band = _bands[number];
-        if (!band.drawn)
+        const std::size_t number = bandOf(error);
+        std::unique_ptr<Band>& band = _bands[number];
+        if (band) return *band;
+        band = std::make_unique<Band>();
+        const float least = leastErrorOf(number);
+        const int level = _scale.levelWithin(least);
+        const float ofLevel = level == LodLevels::allTriangles ? 0.0f : std::ldexp(1.0f, level);
+        band->drawn = &_drawn[level];
+        band->phases.push_back({1, 0.0f});
+        for (const ClipTravel& travel : _meshes.travels)
         {
-            if (isAny) band.least = std::exp2(static_cast<float>(number) / bandsPerOctave);
-            if (isAny) band.end = std::exp2(static_cast<float>(number + 1) / bandsPerOctave);
-            const int level = _scale.levelWithin(band.least);
-            const float ofLevel = level == LodLevels::allTriangles ? 0.0f : std::ldexp(1.0f, level);
-            band.drawn = &_drawn[level];
-            band.phases.push_back(1);
-            for (const ClipTravel& travel : _meshes.travels)
-                band.phases.push_back(phasesOf(travel, band.least - ofLevel));
+            const int count = phasesOf(travel, least - ofLevel);
+            band->phases.push_back({count, static_cast<float>(count) / travel.length()});
         }
-        _lastBand = &band;
-        return band;
+        return *band;
     }
 
     /// Enough that no vertex is farther than `error` from its place in the middle of a phase.
@@ -131,19 +158,19 @@ private:
     }
 
     /// clip: its number + 1; 0: the rest pose.
-    std::uint32_t poseOf(std::uint32_t index, std::size_t clip, int phases, PoseBatch& batch)
+    std::uint32_t poseOf(std::uint32_t index, std::size_t clip, const Band::Phases& phases, PoseBatch& batch)
     {
         const ClipTravel* travel = clip == 0 ? nullptr : &_meshes.travels[clip - 1];
         int phase = 0;
-        if (phases > 1)
+        if (phases.count > 1)
         {
             const float at = travel->at(static_cast<float>(_instances.time(index, _meshes.durations[clip - 1])));
-            phase = std::min(static_cast<int>(at / travel->length() * static_cast<float>(phases)), phases - 1);
+            phase = std::min(static_cast<int>(at * phases.perTravel), phases.count - 1);
         }
-        const std::size_t place = clip * posesPerClip + static_cast<std::size_t>(phases + phase);
+        const std::size_t place = clip * posesPerClip + static_cast<std::size_t>(phases.count + phase);
         if (_poses[place] != none) return _poses[place];
         _used.push_back(static_cast<std::uint32_t>(place));
-        const float middle = (static_cast<float>(phase) + 0.5f) / static_cast<float>(phases);
+        const float middle = (static_cast<float>(phase) + 0.5f) / static_cast<float>(phases.count);
         const BlendSample sample = travel ? travel->sampleAt(middle * travel->length()) : BlendSample{};
         return _poses[place] = static_cast<std::uint32_t>(batch.addSample(sample));
     }
@@ -152,10 +179,9 @@ private:
     const CrowdInstances& _instances;
     const LodScale& _scale;
     std::vector<std::uint32_t>& _poses;
-    std::vector<std::uint32_t> _used;                          ///< the places in _poses that are not `none`
-    std::map<int, std::vector<PlacedInstances::Drawn>> _drawn; ///< by level
-    std::map<int, Band> _bands;
-    const Band* _lastBand = nullptr;
+    std::vector<std::uint32_t> _used; ///< the places in _poses that are not `none`
+    DrawnByLevel& _drawn;
+    std::array<std::unique_ptr<Band>, bandCount> _bands;
     std::size_t _count = 0;
 };
 

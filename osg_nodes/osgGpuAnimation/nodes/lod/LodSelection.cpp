@@ -95,10 +95,4 @@ LodScale::LodScale(osgUtil::CullVisitor& visitor, LodView& view, float pixelErro
     _own = Measure(visitor.getCurrentCullingSet().getPixelSizeVector(), pixelError);
 }
 
-float LodScale::allowedError(const glm::vec3& centre, float radius, float scale) const
-{
-    const Measure& measure = _seen.farthest(centre, radius) < 0.0f ? _own : _seen;
-    return measure.nearest(centre, radius) / scale;
-}
-
 } // namespace osgGpuAnimation

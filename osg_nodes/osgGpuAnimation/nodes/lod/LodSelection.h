@@ -91,7 +91,11 @@ public:
     }
     /// The error that the pixel error allows for a sphere, in the units of the set; at most 0: none. scale: the largest
     /// of the placement.
-    float allowedError(const glm::vec3& centre, float radius, float scale) const;
+    float allowedError(const glm::vec3& centre, float radius, float scale) const
+    {
+        const float seen = _seen.at(centre), reach = _seen.slope * radius;
+        return (seen + reach < 0.0f ? _own.at(centre) - _own.slope * radius : seen - reach) / scale;
+    }
     /// The coarsest level within an error in the units of the set.
     int levelWithin(float error) const { return _range.clamped(LodLevels::levelOf(error)); }
 
@@ -108,8 +112,6 @@ private:
         Measure() = default;
         Measure(const osg::Vec4& halfPixel, float pixelError);
         float at(const glm::vec3& place) const { return glm::dot(errorAt, glm::vec4(place, 1.0f)); }
-        float nearest(const glm::vec3& centre, float radius) const { return at(centre) - slope * radius; }
-        float farthest(const glm::vec3& centre, float radius) const { return at(centre) + slope * radius; }
     };
 
     LodRange _range;

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <iostream>
-#include <malloc.h>
 #include <map>
 
 namespace osgGpuAnimation::benchmark
@@ -77,19 +76,12 @@ std::string checkAlike(Contestant& all, Contestant& fewer)
     return "levels of detail show " + std::to_string(found) + " pixels, all triangles " + std::to_string(expected);
 }
 
-/// Bytes allocated on the heap; they include the GPU's memory if GL is a software renderer.
-double bytesInUse()
-{
-    const struct mallinfo2 info = mallinfo2();
-    return static_cast<double>(info.uordblks + info.hblkhd);
-}
-
 /// The cost of the first frame of a scene.
 struct Start
 {
-    Spent spent;            ///< the nodes made, and the first frame
-    double beyond = 0.0;    ///< CPU seconds of the first frame alone beyond an ordinary frame
-    int pixels = 0;         ///< that differ from the background
+    Spent spent;         ///< the nodes made, and the first frame
+    double beyond = 0.0; ///< CPU seconds of the first frame alone beyond an ordinary frame
+    int pixels = 0;      ///< that differ from the background
 };
 
 template <typename MakeScene>
@@ -263,8 +255,9 @@ Result<bool> measureStart(const Subject& subject, const Effort& effort, Report& 
         row.isMet = row.ours.median <= 0.3;
         report.add(row);
     }
-    for (const auto& [what, figures] : {std::pair("first frame beyond an ordinary one", &beyond),
-                                        std::pair("first frame beyond an ordinary one, pixel error 0.5", &beyondOfFewer)})
+    for (const auto& [what, figures] :
+         {std::pair("first frame beyond an ordinary one", &beyond),
+          std::pair("first frame beyond an ordinary one, pixel error 0.5", &beyondOfFewer)})
     {
         row = named({}, subject, count, what, "ms", "");
         row.ours = figureOf(*figures);

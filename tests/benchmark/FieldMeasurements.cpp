@@ -101,16 +101,6 @@ private:
     std::vector<AnimatedCrowd::Instance> _instances;
 };
 
-/// The triangles of the last frame, counted as OSG's statistics do.
-double trianglesIn(StagedViewer& viewer)
-{
-    osgUtil::Statistics statistics;
-    viewer.count(statistics);
-    const auto& counts = statistics.getPrimitiveCountMap();
-    const auto found = counts.find(GL_TRIANGLES);
-    return found == counts.end() ? 0.0 : static_cast<double>(found->second);
-}
-
 /// The bytes that a field adds to a viewer's process, outside the picture, whose triangles llvmpipe would keep.
 Result<double> bytesOfField(const Subject& subject, const osg::BoundingSphere& sight, std::size_t count)
 {
@@ -189,8 +179,7 @@ Result<bool> measureMixed(const std::vector<Subject>& subjects, const Effort& ef
     if (!made) return made.error();
     std::vector<Contestant> contestants{std::move(made.value())};
     StagedViewer& viewer = *contestants.front().viewer;
-    viewer.collectCounts();
-    std::vector<double> cpu, moving, poses, bytes, triangles;
+    std::vector<double> cpu, moving, poses, bytes;
     const int frames = 8 * effort.rounds;
     for (int frame = -3; frame < frames; ++frame)
     {
@@ -212,7 +201,6 @@ Result<bool> measureMixed(const std::vector<Subject>& subjects, const Effort& ef
         moving.push_back(1e3 * walked);
         poses.push_back(after.poses - before.poses);
         bytes.push_back((after.bytes - before.bytes) / static_cast<double>(places));
-        triangles.push_back(trianglesIn(viewer));
     }
     if (const std::string wrong = check(contestants); !wrong.empty()) return Error{wrong};
     const auto addRow = [&](const char* what, const char* unit, std::vector<double> values)
@@ -229,7 +217,6 @@ Result<bool> measureMixed(const std::vector<Subject>& subjects, const Effort& ef
     addRow("placements set", "ms", std::move(moving));
     addRow("poses evaluated", "a frame", std::move(poses));
     addRow("uploaded", "bytes an instance", std::move(bytes));
-    addRow("triangles drawn", "a frame", std::move(triangles));
     return true;
 }
 

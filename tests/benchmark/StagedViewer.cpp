@@ -66,18 +66,6 @@ void StagedViewer::lookAside()
     camera->setViewMatrix(camera->getViewMatrix() * osg::Matrixd::translate(1000.0 * _sight.radius(), 0.0, 0.0));
 }
 
-void StagedViewer::collectCounts()
-{
-    if (!_viewer.getCamera()->getStats()) _viewer.getCamera()->setStats(new osg::Stats("benchmark"));
-    _viewer.getCamera()->getStats()->collectStats("scene", true);
-}
-
-void StagedViewer::count(osgUtil::Statistics& statistics)
-{
-    auto* renderer = static_cast<osgViewer::Renderer*>(_viewer.getCamera()->getRenderer());
-    renderer->getSceneView(0)->getStats(statistics);
-}
-
 FrameCost StagedViewer::frame(double time)
 {
     FrameCost cost;

@@ -5,7 +5,6 @@
 
 #include <osgGpuAnimation/gpu/PosePipeline.h>
 
-#include <osgUtil/Statistics>
 #include <osgViewer/Viewer>
 
 #include <memory>
@@ -46,15 +45,10 @@ public:
     /// MiB of triangles per picture, which would distort the memory of the scene.
     void lookAside();
 
-    /// From the next frame on OSG's statistics can count what is drawn.
-    void collectCounts();
-
     /// The functions below require an earlier frame. Returns the pending GL errors; empty if there are none.
     std::string takeErrors();
     /// The number of pixels of the last frame that differ from the background.
     int pixelsDrawn();
-    /// Adds what the last frame has drawn. Requires collectCounts().
-    void count(osgUtil::Statistics& statistics);
     osg::State& state() { return *_context->getState(); }
     void makeCurrent() { _context->makeCurrent(); }
 

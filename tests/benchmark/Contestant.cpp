@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "Contestant.h"
 
+#include <malloc.h>
+
 namespace osgGpuAnimation::benchmark
 {
 
@@ -52,6 +54,12 @@ std::string check(std::vector<Contestant>& contestants)
         if (contestants[i].viewer->pixelsDrawn() < 4) return "scene " + std::to_string(i) + " is empty";
     }
     return "";
+}
+
+double bytesInUse()
+{
+    const struct mallinfo2 info = mallinfo2();
+    return static_cast<double>(info.uordblks + info.hblkhd);
 }
 
 Row named(Row row, const Subject& subject, std::size_t count, const std::string& what, const char* unit,

@@ -33,6 +33,9 @@ void race(std::vector<Contestant>& contestants, int rounds);
 /// The faults of the drawn frames; empty if there are none.
 std::string check(std::vector<Contestant>& contestants);
 
+/// Bytes allocated on the heap; they include the GPU's memory if GL is a software renderer.
+double bytesInUse();
+
 /// The row with its labels.
 Row named(Row row, const Subject& subject, std::size_t count, const std::string& what, const char* unit,
           const char* other);

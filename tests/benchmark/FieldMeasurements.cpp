@@ -20,19 +20,22 @@ namespace
 constexpr std::size_t columns = 316; ///< and as many rows
 constexpr float pixelError = 0.5f;
 
+constexpr std::size_t places = columns * columns;
+
 /// Of neighbours, in the units of the subject's file.
 double spacingOf(const Subject& subject)
 {
     const std::map<std::string, double> known{{"Fox", 110.0}, {"CesiumMan", 1.1}, {"Knight", 2.2}, {"Wanderer", 1.1}};
-    return known.at(subject.name);
+    const auto bar = known.find(subject.name);
+    return bar == known.end() ? 1.3 * subject.model.root->getBound().radius() : bar->second;
 }
 
 /// Everybody loops some clip of the file from some time on.
-osg::ref_ptr<AnimatedCrowd> makeField(const Subject& subject)
+osg::ref_ptr<AnimatedCrowd> makeField(const Subject& subject, std::size_t count = places)
 {
     osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*subject.model.character);
     std::mt19937 random(1);
-    for (std::size_t place = 0; place < columns * columns; ++place)
+    for (std::size_t place = 0; place < count; ++place)
     {
         AnimationController controller(crowd->getSharedAnimationSet());
         static_cast<void>(controller.play(random() % subject.set().clips().size()));
@@ -58,6 +61,68 @@ struct Counts
 
     double poses, bytes;
 };
+
+/// Every so many places of a field belong to one kind; neighbours are 1 unit apart.
+class MixedCrowd
+{
+public:
+    MixedCrowd(const Subject& subject, std::size_t first, std::size_t step)
+        : _first(first), _step(step), _scale(1.0 / spacingOf(subject)), _crowd(makeField(subject, 0))
+    {
+        for (std::size_t place = first; place < places; place += step)
+        {
+            AnimationController controller(_crowd->getSharedAnimationSet());
+            static_cast<void>(controller.play(place / step % subject.set().clips().size()));
+            controller.seek(phaseOf(place, controller.duration()));
+            if (const auto added = _crowd->add(placement(place, 0.0), controller)) _instances.push_back(added.value());
+        }
+    }
+
+    /// Everyone has walked that far along y.
+    void walk(double way)
+    {
+        for (std::size_t i = 0; i < _instances.size(); ++i)
+            static_cast<void>(_crowd->setPlacement(_instances[i], placement(_first + i * _step, way)));
+    }
+
+    AnimatedCrowd& node() const { return *_crowd; }
+
+private:
+    osg::Matrixd placement(std::size_t place, double way) const
+    {
+        return osg::Matrixd::scale(_scale, _scale, _scale) *
+               osg::Matrixd::translate(static_cast<double>(place % columns), static_cast<double>(place / columns) + way,
+                                       0.0);
+    }
+
+    std::size_t _first, _step;
+    double _scale;
+    osg::ref_ptr<AnimatedCrowd> _crowd;
+    std::vector<AnimatedCrowd::Instance> _instances;
+};
+
+/// The bytes that a field adds to a viewer's process, outside the picture, whose triangles llvmpipe would keep.
+Result<double> bytesOfField(const Subject& subject, const osg::BoundingSphere& sight, std::size_t count)
+{
+    osg::ref_ptr<osg::Group> root = new osg::Group;
+    Result<Contestant> made = contestant(root, sight, 1280, 720);
+    if (!made) return made.error();
+    Contestant viewing = made.value();
+    StagedViewer& viewer = *viewing.viewer;
+    viewer.lookFrom(sight.center() + osg::Vec3d(0.0, -0.74, 0.06) * sight.radius(), sight.center(), 30.0);
+    viewer.lookAside();
+    viewing.frame();
+    const double before = bytesInUse();
+    const osg::ref_ptr<AnimatedCrowd> field = makeField(subject, count);
+    if (const Result<bool> set = field->setPixelError(pixelError); !set) return set.error();
+    root->addChild(field);
+    for (int frame = 0; frame < 4; ++frame)
+        viewing.frame();
+    const double bytes = bytesInUse() - before;
+    if (const std::string errors = viewer.takeErrors(); !errors.empty()) return Error{"GL reports " + errors};
+    if (Counts(viewer).poses < 1.0) return Error{"no pose was evaluated"};
+    return bytes;
+}
 
 } // namespace
 
@@ -96,6 +161,77 @@ Result<bool> measureField(const Subject& subject, const Effort& effort, Report& 
     addRow("the field, update + cull", "µs an instance", microseconds(contestants.front().updateAndCull));
     addRow("the field, poses evaluated", "a frame", {after.poses - before.poses});
     addRow("the field, uploaded", "bytes an instance", {(after.bytes - before.bytes) / count});
+    return true;
+}
+
+Result<bool> measureMixed(const std::vector<Subject>& subjects, const Effort& effort, Report& report)
+{
+    std::cerr << "a field of " << places << " of " << subjects.size() << " kinds" << std::endl;
+    osg::ref_ptr<osg::Group> root = new osg::Group;
+    std::vector<MixedCrowd> crowds;
+    for (std::size_t kind = 0; kind < subjects.size(); ++kind)
+    {
+        crowds.emplace_back(subjects[kind], kind, subjects.size());
+        if (const Result<bool> set = crowds.back().node().setPixelError(pixelError); !set) return set.error();
+        root->addChild(&crowds.back().node());
+    }
+    Result<Contestant> made = contestant(root, root->getBound(), 1280, 720);
+    if (!made) return made.error();
+    std::vector<Contestant> contestants{std::move(made.value())};
+    StagedViewer& viewer = *contestants.front().viewer;
+    std::vector<double> cpu, moving, poses, bytes;
+    const int frames = 8 * effort.rounds;
+    for (int frame = -3; frame < frames; ++frame)
+    {
+        // From one corner across the field to the opposite one, low above it.
+        const double along = static_cast<double>(columns) * (frame + 3) / (frames + 3);
+        viewer.lookFrom(osg::Vec3d(along, 0.8 * along - 10.0, 6.0), osg::Vec3d(along + 40.0, along + 50.0, 0.0), 40.0);
+        const Stopwatch walk;
+        for (MixedCrowd& crowd : crowds)
+            crowd.walk(0.02 * (frame + 3));
+        const double walked = walk.elapsed().cpu;
+        if (frame < 0)
+        {
+            contestants.front().frame();
+            continue;
+        }
+        const Counts before(viewer);
+        cpu.push_back(1e3 * contestants.front().frame().whole().cpu);
+        const Counts after(viewer);
+        moving.push_back(1e3 * walked);
+        poses.push_back(after.poses - before.poses);
+        bytes.push_back((after.bytes - before.bytes) / static_cast<double>(places));
+    }
+    if (const std::string wrong = check(contestants); !wrong.empty()) return Error{wrong};
+    const auto addRow = [&](const char* what, const char* unit, std::vector<double> values)
+    {
+        Row row;
+        row.subject = std::to_string(subjects.size()) + " kinds";
+        row.count = places;
+        row.what = std::string("mixed field, flown through, ") + what;
+        row.unit = unit;
+        row.ours = figureOf(std::move(values));
+        report.add(row);
+    };
+    addRow("whole frame", "ms", std::move(cpu));
+    addRow("placements set", "ms", std::move(moving));
+    addRow("poses evaluated", "a frame", std::move(poses));
+    addRow("uploaded", "bytes an instance", std::move(bytes));
+    return true;
+}
+
+Result<bool> measureMemory(const Subject& subject, const Effort&, Report& report)
+{
+    std::cerr << subject.name << ": memory of a field" << std::endl;
+    const osg::BoundingSphere sight = makeField(subject)->getBound();
+    const Result<double> one = bytesOfField(subject, sight, 1), all = bytesOfField(subject, sight, places);
+    if (!one || !all) return one ? all.error() : one.error();
+    Row row = named({}, subject, places, "the field, memory beyond the set, CPU and GPU", "MiB", "");
+    const double mebibytes = (all.value() - one.value()) / (1024.0 * 1024.0);
+    row.ours = {mebibytes, mebibytes, mebibytes};
+    row.bar = "≤ 64 MiB";
+    row.isMet = mebibytes <= 64.0;
+    report.add(row);
     return true;
 }
 

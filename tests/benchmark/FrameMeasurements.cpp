@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <iostream>
-#include <malloc.h>
 #include <map>
 
 namespace osgGpuAnimation::benchmark
@@ -77,18 +76,12 @@ std::string checkAlike(Contestant& all, Contestant& fewer)
     return "levels of detail show " + std::to_string(found) + " pixels, all triangles " + std::to_string(expected);
 }
 
-/// Bytes allocated on the heap; they include the GPU's memory if GL is a software renderer.
-double bytesInUse()
-{
-    const struct mallinfo2 info = mallinfo2();
-    return static_cast<double>(info.uordblks + info.hblkhd);
-}
-
 /// The cost of the first frame of a scene.
 struct Start
 {
-    Spent spent;
-    int pixels = 0; ///< that differ from the background
+    Spent spent;         ///< the nodes made, and the first frame
+    double beyond = 0.0; ///< CPU seconds of the first frame alone beyond an ordinary frame
+    int pixels = 0;      ///< that differ from the background
 };
 
 template <typename MakeScene>
@@ -103,8 +96,14 @@ Result<Start> start(MakeScene makeScene, const osg::BoundingSphere& sight)
     const Stopwatch stopwatch;
     auto scene = makeScene();
     root->addChild(scene.root);
+    const Stopwatch first;
     viewing.frame();
     start.spent = stopwatch.elapsed();
+    start.beyond = first.elapsed().cpu;
+    std::vector<double> ordinary;
+    for (int frame = 0; frame < 5; ++frame)
+        ordinary.push_back(viewing.frame().whole().cpu);
+    start.beyond -= figureOf(ordinary).median;
     if (const std::string errors = viewing.viewer->takeErrors(); !errors.empty()) return Error{errors};
     start.pixels = viewing.viewer->pixelsDrawn();
     return start;
@@ -220,7 +219,7 @@ Result<bool> measureStart(const Subject& subject, const Effort& effort, Report& 
     constexpr std::size_t count = 1000, few = 10; // few: the one-time cost of programs and of the set
     const osg::BoundingSphere sight = CharacterScene(subject, count).root->getBound();
     CharacterScene(subject, 1).setPixelError(pixelError); // levels of detail are made while a file is loaded
-    std::vector<double> seconds, secondsOfFewer, elapsed, bytes;
+    std::vector<double> seconds, secondsOfFewer, elapsed, bytes, beyond, beyondOfFewer;
     for (int round = 0; round < std::min(effort.frameRounds, 3); ++round)
     {
         const Result<Start> many = start([&] { return CharacterScene(subject, count); }, sight);
@@ -240,6 +239,8 @@ Result<bool> measureStart(const Subject& subject, const Effort& effort, Report& 
         seconds.push_back(many.value().spent.cpu);
         elapsed.push_back(many.value().spent.wall);
         secondsOfFewer.push_back(fewer.value().spent.cpu);
+        beyond.push_back(1e3 * many.value().beyond);
+        beyondOfFewer.push_back(1e3 * fewer.value().beyond);
         bytes.push_back((ofMany.value() - ofFew.value()) / (1024.0 * (count - few)));
     }
     Row row;
@@ -252,6 +253,16 @@ Result<bool> measureStart(const Subject& subject, const Effort& effort, Report& 
         row.ours = figureOf(*figures);
         row.bar = "≤ 0.3 s";
         row.isMet = row.ours.median <= 0.3;
+        report.add(row);
+    }
+    for (const auto& [what, figures] :
+         {std::pair("first frame beyond an ordinary one", &beyond),
+          std::pair("first frame beyond an ordinary one, pixel error 0.5", &beyondOfFewer)})
+    {
+        row = named({}, subject, count, what, "ms", "");
+        row.ours = figureOf(*figures);
+        row.bar = "≤ 60 ms";
+        row.isMet = row.ours.median <= 60.0;
         report.add(row);
     }
     row = named({}, subject, count, "memory, CPU and GPU", "KiB a character", "");

@@ -51,6 +51,12 @@ Result<bool> measureCrowd(const Subject& subject, const Effort& effort, Report& 
 /// bytes.
 Result<bool> measureField(const Subject& subject, const Effort& effort, Report& report);
 
+/// A crowd of 99,856 of all subjects in turns; everyone walks and one camera flies through: times and counts a frame.
+Result<bool> measureMixed(const std::vector<Subject>& subjects, const Effort& effort, Report& report);
+
+/// The memory of a field of 99,856 beyond that of a field of one, on the CPU and the GPU.
+Result<bool> measureMemory(const Subject& subject, const Effort& effort, Report& report);
+
 /// The memory and the first frame of many characters.
 Result<bool> measureStart(const Subject& subject, const Effort& effort, Report& report);
 

@@ -19,13 +19,13 @@ namespace osgGpuAnimation::benchmark
 namespace
 {
 
-constexpr const char* usage = R"(osggpuanim_benchmark [options] OUTPUT_FOLDER
-    measures this kit against osgAnimation, prints a table and writes benchmark.json and plots into the folder
+constexpr const char* usage = R"(osggpuanim_benchmark [options] OUTPUT_FOLDER FILE...
+    measures this kit against osgAnimation with the characters of glTF files, prints a table and writes benchmark.json
+    and plots into the folder
     --quick           fewer characters and rounds
-    --only PART       pose, samples, constraints, chunks, depth, frames, crowd, field, draws, shading, start or load;
-                      several times, too
+    --only PART       pose, samples, constraints, chunks, depth, frames, crowd, field, mixed, draws, shading, start,
+                      memory or load; several times, too
     --return-memory   leave it to glibc whether freed memory goes back to the kernel
-    --subject NAME    Wanderer, Fox, CesiumMan or Knight; may be given several times
 )";
 
 struct Request
@@ -33,8 +33,8 @@ struct Request
     std::string folder;
     bool isQuick = false;
     bool returnsMemory = false;
-    std::set<std::string> parts;    ///< empty: all
-    std::set<std::string> subjects; ///< empty: all
+    std::set<std::string> parts; ///< empty: all
+    std::vector<std::string> files;
 
     bool has(const std::string& part) const { return parts.empty() || parts.count(part) != 0; }
 };
@@ -51,37 +51,26 @@ bool parse(int count, char** words, Request& request)
             request.returnsMemory = true;
         else if (word == "--only" && hasValue)
             request.parts.insert(words[++i]);
-        else if (word == "--subject" && hasValue)
-            request.subjects.insert(words[++i]);
-        else if (word.rfind("--", 0) == 0 || !request.folder.empty())
+        else if (word.rfind("--", 0) == 0)
             return false;
-        else
+        else if (request.folder.empty())
             request.folder = word;
+        else
+            request.files.push_back(word);
     }
-    return !request.folder.empty();
+    return !request.files.empty();
 }
 
 std::vector<Subject> loadSubjects(const Request& request)
 {
-    const std::string assets = std::string(OSGGPUANIMATION_SHARED_ASSETS) + "/assets/";
-    const std::pair<const char*, std::string> files[] = {
-        {"Wanderer", std::string(OSGGPUANIMATION_SOURCE_FOLDER) + "/scenes/Wanderer.glb"},
-        {"Fox", assets + "Fox/Fox.glb"},
-        {"CesiumMan", assets + "CesiumMan/CesiumMan.glb"},
-        {"Knight", assets + "Knight/Knight.glb"}};
     std::vector<Subject> subjects;
-    for (const auto& [name, file] : files)
+    for (const std::string& file : request.files)
     {
-        if (!request.subjects.empty() && request.subjects.count(name) == 0) continue;
-        if (!std::filesystem::is_regular_file(file))
-        {
-            std::cerr << name << ": not there, left out" << std::endl;
-            continue;
-        }
+        const std::string name = std::filesystem::path(file).stem().string();
         Result<Subject> subject = loadSubject(name, file, true);
         if (!subject)
         {
-            std::cerr << name << ": " << subject.error().message << std::endl;
+            std::cerr << file << ": " << subject.error().message << ", left out" << std::endl;
             continue;
         }
         std::cerr << name << ": " << subject.value().jointCount() << " joints, " << subject.value().set().paletteSize()
@@ -100,6 +89,7 @@ std::map<std::string, std::string> describeMachine()
     for (std::string line; std::getline(cpuInfo, line);)
         if (line.rfind("model name", 0) == 0) machine["processor"] = line.substr(line.find(':') + 2);
     machine["cores"] = std::to_string(std::thread::hardware_concurrency());
+    machine["GL vendor"] = reinterpret_cast<const char*>(glGetString(GL_VENDOR));
     machine["GL renderer"] = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
     machine["GL version"] = reinterpret_cast<const char*>(glGetString(GL_VERSION));
     machine["compiler"] = __VERSION__;
@@ -111,8 +101,8 @@ Result<bool> measureSubject(const Request& request, const Effort& effort, const 
                             osg::GraphicsContext& context, Report& report)
 {
     const std::pair<const char*, Result<bool> (*)(const Subject&, const Effort&, Report&)> inViewers[] = {
-        {"frames", measureFrames},   {"crowd", measureCrowd}, {"field", measureField}, {"draws", measureDraws},
-        {"shading", measureShading}, {"start", measureStart}, {"load", measureLoad}};
+        {"frames", measureFrames},   {"crowd", measureCrowd}, {"field", measureField},   {"draws", measureDraws},
+        {"shading", measureShading}, {"start", measureStart}, {"memory", measureMemory}, {"load", measureLoad}};
     if (request.has("samples"))
         if (Result<bool> done = measureSamples(subject, effort, context, report); !done) return done;
     if (request.has("constraints"))
@@ -136,9 +126,15 @@ Result<bool> measureAll(const Request& request, osg::GraphicsContext& context, R
     const Effort effort = request.isQuick ? Effort::quick() : Effort();
     if (request.has("depth"))
         if (Result<bool> done = measureDepth(effort, context, report); !done) return done;
-    for (const Subject& subject : loadSubjects(request))
+    const std::vector<Subject> subjects = loadSubjects(request);
+    if (subjects.empty()) return Error{"no file holds an animated character"};
+    for (const Subject& subject : subjects)
         if (Result<bool> done = measureSubject(request, effort, subject, context, report); !done)
             return Error{subject.name + ": " + done.error().message};
+    context.releaseContext();
+    if (request.has("mixed"))
+        if (Result<bool> done = measureMixed(subjects, effort, report); !done) return done;
+    context.makeCurrent();
     if (const std::string errors = takeGlErrors(); !errors.empty()) return Error{"GL reports " + errors};
     if (!watch->warnings().empty()) return Error{"OSG says: " + watch->warnings()};
     return true;

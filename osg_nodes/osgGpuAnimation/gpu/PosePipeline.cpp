@@ -76,10 +76,10 @@ std::size_t correctionsOf(const AnimationSet& set)
     return count;
 }
 
-/// Palette entries of all instances on their way from the scratch buffer to the palette.
-struct EntryCopy
+/// Units (palette entries, or joints, of all instances) on their way from one buffer to another.
+struct UnitCopy
 {
-    std::size_t from, to; ///< the first entry in each
+    std::size_t from, to; ///< the first unit in each
     std::size_t count;
 };
 
@@ -125,7 +125,8 @@ struct PosePipeline::Parts
     bool evaluateGarments(FeedbackScope& scope, FeedbackVertexArrays::Names& arrays, const AnimationSet& set,
                           const AnimationBuffers& buffers, PosePalette::Chunk& chunk, PoseVariant variant);
     void gatherOddLevels(const AnimationSet& set, const PosePalette::Chunk& chunk);
-    void copyFromScratch(const PosePalette::Chunk& chunk, const std::vector<EntryCopy>& copies);
+    void copy(const BufferTexture& from, const BufferTexture& to, std::size_t unitBytes,
+              const std::vector<UnitCopy>& copies) const;
     void runSeparate(FeedbackPass& pass, std::size_t count, const BufferTexture& out);
 
     PosePipeline& pipeline;
@@ -391,7 +392,7 @@ bool PosePipeline::Parts::evaluateGarments(FeedbackScope& scope, FeedbackVertexA
     bindEntries(buffers.entries(), canOffset ? 0 : first, arrays);
     pass.runInstanced(chunk.width, count, canOffset ? first : 0, scratch.buffer(), 0);
     ++pipeline._counters.feedbackDraws;
-    copyFromScratch(chunk, {{0, first, count}});
+    copy(scratch, chunk.palette, chunk.width * matrixBytes, {{0, first, count}});
     return true;
 }
 
@@ -416,9 +417,9 @@ bool PosePipeline::Parts::solveConstraint(const LevelInput& input, const PoseBat
     FeedbackPass& pass = constraintPass(shape, variant);
     if (!pass.valid()) return false;
     const std::size_t jointBytes = input.chunk.width * rotationBytes;
-    const std::size_t bytes = static_cast<std::size_t>(shape.chainLength) * jointBytes;
+    const auto joints = static_cast<std::size_t>(shape.chainLength);
     FeedbackScope& scope = input.scope;
-    solved.reserve(bytes);
+    solved.reserve(joints * jointBytes);
     scope.forgetActiveTexture();
     useMixInput(scope, pass, input.set, input.buffers, input.chunk);
     pass.setTexture(scope, "parentLevels", unitPrevious, input.parentLevels);
@@ -434,38 +435,32 @@ bool PosePipeline::Parts::solveConstraint(const LevelInput& input, const PoseBat
     pass.setInt("targetStride", static_cast<int>(input.set.constraints().size()));
     pass.runInstanced(input.chunk.width, 1, 0, solved.buffer(), 0);
     ++pipeline._counters.feedbackDraws;
-    gl->glBindBuffer(GL_COPY_READ_BUFFER, solved.buffer());
-    gl->glBindBuffer(GL_COPY_WRITE_BUFFER, corrections.buffer());
-    copyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0,
-                      static_cast<GLintptr>(step.firstCorrection * jointBytes), static_cast<GLsizeiptr>(bytes));
-    gl->glBindBuffer(GL_COPY_READ_BUFFER, 0);
-    gl->glBindBuffer(GL_COPY_WRITE_BUFFER, 0);
+    copy(solved, corrections, jointBytes, {{0, step.firstCorrection, joints}});
     return true;
 }
 
 void PosePipeline::Parts::gatherOddLevels(const AnimationSet& set, const PosePalette::Chunk& chunk)
 {
     const std::vector<std::size_t>& levels = set.levels();
-    std::vector<EntryCopy> copies;
+    std::vector<UnitCopy> copies;
     std::size_t from = 0;
     for (std::size_t level = 1; level < set.levelCount(); level += 2)
     {
         copies.push_back({from, levels[level], levels[level + 1] - levels[level]});
         from += copies.back().count;
     }
-    copyFromScratch(chunk, copies);
+    copy(scratch, chunk.palette, chunk.width * matrixBytes, copies);
 }
 
-void PosePipeline::Parts::copyFromScratch(const PosePalette::Chunk& chunk, const std::vector<EntryCopy>& copies)
+void PosePipeline::Parts::copy(const BufferTexture& from, const BufferTexture& to, std::size_t unitBytes,
+                               const std::vector<UnitCopy>& copies) const
 {
     if (copies.empty()) return;
-    const std::size_t entryBytes = chunk.width * matrixBytes;
-    gl->glBindBuffer(GL_COPY_READ_BUFFER, scratch.buffer());
-    gl->glBindBuffer(GL_COPY_WRITE_BUFFER, chunk.palette.buffer());
-    for (const EntryCopy& copy : copies)
-        copyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, static_cast<GLintptr>(copy.from * entryBytes),
-                          static_cast<GLintptr>(copy.to * entryBytes),
-                          static_cast<GLsizeiptr>(copy.count * entryBytes));
+    gl->glBindBuffer(GL_COPY_READ_BUFFER, from.buffer());
+    gl->glBindBuffer(GL_COPY_WRITE_BUFFER, to.buffer());
+    for (const UnitCopy& copy : copies)
+        copyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, static_cast<GLintptr>(copy.from * unitBytes),
+                          static_cast<GLintptr>(copy.to * unitBytes), static_cast<GLsizeiptr>(copy.count * unitBytes));
     gl->glBindBuffer(GL_COPY_READ_BUFFER, 0);
     gl->glBindBuffer(GL_COPY_WRITE_BUFFER, 0);
 }

@@ -32,69 +32,77 @@ int bandOf(float error)
 
 } // namespace
 
-/// The instances of one camera, by level, and the batch with their poses.
+/// The instances of one camera, by level, and the batches with their poses, each pose once.
 class SharedPoses::Collection
 {
 public:
-    Collection(const Meshes& meshes, const CrowdInstances& instances, const LodScale& scale)
-        : _meshes(meshes), _instances(instances), _scale(scale), _poses(posesOfThread())
+    /// mostPoses: of a batch.
+    Collection(const Meshes& meshes, const CrowdInstances& instances, const LodScale& scale, PoseFrame& frame,
+               std::size_t mostPoses)
+        : _meshes(meshes), _instances(instances), _scale(scale), _frame(frame), _mostPoses(mostPoses),
+          _poses(posesOfThread())
     {
         const std::size_t needed = (meshes.travels.size() + 1) * posesPerClip;
-        if (_poses.size() < needed) _poses.resize(needed, none);
+        if (_poses.size() < needed) _poses.resize(needed);
     }
-    ~Collection() { clear(); }
-
-    bool isEmpty() const { return _count == 0; }
-    void clear()
+    ~Collection()
     {
         for (const std::uint32_t place : _used)
-            _poses[place] = none;
-        _used.clear();
-        for (auto& [level, drawn] : _drawn)
-            drawn.clear();
-        _count = 0;
+            _poses[place] = PoseOfBatch();
     }
 
-    /// Adds the instance to the list, and the pose of its phase to the batch if it is new there. False: the instance
-    /// needs a pose of its own.
-    bool add(std::uint32_t index, PoseBatch& batch)
+    std::size_t batchCount() const { return _batches.size(); }
+    std::unique_ptr<PoseBatch> takeBatch(std::size_t batch) { return std::move(_batches[batch]); }
+
+    /// Adds the instance to the list of a batch that has the pose of its phase. False: the instance needs a pose of its
+    /// own.
+    bool add(std::uint32_t index)
     {
         const glm::vec4& sphere = _instances.sphere(index);
         const Band& band = bandFor(_scale.allowedError(glm::vec3(sphere), sphere.w, _instances.scale(index)));
         const auto clip = static_cast<std::size_t>(_instances.clip(index) + 1);
         if (clip >= band.phases.size() || band.phases[clip] == ownPose) return false;
-        band.drawn->push_back({poseOf(index, clip, band.phases[clip], batch), index});
-        ++_count;
+        const PoseOfBatch pose = poseOf(index, clip, band.phases[clip]);
+        if (pose.batch >= band.drawn->size()) band.drawn->resize(pose.batch + 1);
+        (*band.drawn)[pose.batch].push_back({pose.pose, index});
         return true;
     }
 
-    /// Writes the list, level by level. function(level, first, count)
+    /// Writes the list of a batch, level by level. function(level, first, count)
     template <typename Function>
-    void write(std::vector<PlacedInstances::Drawn>& out, Function function) const
+    void write(std::size_t batch, std::vector<PlacedInstances::Drawn>& out, Function function) const
     {
-        out.reserve(_count);
-        for (const auto& [level, drawn] : _drawn)
+        std::size_t count = 0;
+        for (const auto& [level, lists] : _drawn)
+            count += batch < lists.size() ? lists[batch].size() : 0;
+        out.reserve(count);
+        for (const auto& [level, lists] : _drawn)
         {
-            if (drawn.empty()) continue;
-            function(level, out.size(), drawn.size());
-            out.insert(out.end(), drawn.begin(), drawn.end());
+            if (batch >= lists.size() || lists[batch].empty()) continue;
+            function(level, out.size(), lists[batch].size());
+            out.insert(out.end(), lists[batch].begin(), lists[batch].end());
         }
     }
 
 private:
     static constexpr std::size_t posesPerClip = 2 * mostPhases;
     static constexpr std::uint32_t none = ~std::uint32_t(0);
+    struct PoseOfBatch
+    {
+        std::uint32_t batch = none, pose = none;
+    };
+    using ListOfBatch = std::vector<std::vector<PlacedInstances::Drawn>>;
     struct Band
     {
         float least = 0.0f, end = 0.0f; ///< the errors of the band
-        std::vector<PlacedInstances::Drawn>* drawn = nullptr;
+        ListOfBatch* drawn = nullptr;
         std::vector<int> phases; ///< by clip + 1: a power of two or ownPose
     };
 
     /// By clip and phase; all `none` between two collections.
-    static std::vector<std::uint32_t>& posesOfThread()
+    static std::vector<PoseOfBatch>& posesOfThread()
     {
-        static thread_local std::vector<std::uint32_t> poses;
+        static thread_local std::vector<PoseOfBatch> poses;
         return poses;
     }
 
@@ -131,7 +139,7 @@ private:
     }
 
     /// clip: its number + 1; 0: the rest pose.
-    std::uint32_t poseOf(std::uint32_t index, std::size_t clip, int phases, PoseBatch& batch)
+    PoseOfBatch poseOf(std::uint32_t index, std::size_t clip, int phases)
     {
         const ClipTravel* travel = clip == 0 ? nullptr : &_meshes.travels[clip - 1];
         int phase = 0;
@@ -141,22 +149,27 @@ private:
             phase = std::min(static_cast<int>(at / travel->length() * static_cast<float>(phases)), phases - 1);
         }
         const std::size_t place = clip * posesPerClip + static_cast<std::size_t>(phases + phase);
-        if (_poses[place] != none) return _poses[place];
+        if (_poses[place].pose != none) return _poses[place];
         _used.push_back(static_cast<std::uint32_t>(place));
         const float middle = (static_cast<float>(phase) + 0.5f) / static_cast<float>(phases);
         const BlendSample sample = travel ? travel->sampleAt(middle * travel->length()) : BlendSample{};
-        return _poses[place] = static_cast<std::uint32_t>(batch.addSample(sample));
+        if (_batches.empty() || _batches.back()->size() == _mostPoses)
+            _batches.push_back(_frame.makeBatch(_instances.set()));
+        return _poses[place] = {static_cast<std::uint32_t>(_batches.size() - 1),
+                                static_cast<std::uint32_t>(_batches.back()->addSample(sample))};
     }
 
     const Meshes& _meshes;
     const CrowdInstances& _instances;
     const LodScale& _scale;
-    std::vector<std::uint32_t>& _poses;
-    std::vector<std::uint32_t> _used;                          ///< the places in _poses that are not `none`
-    std::map<int, std::vector<PlacedInstances::Drawn>> _drawn; ///< by level
+    PoseFrame& _frame;
+    std::size_t _mostPoses;
+    std::vector<std::unique_ptr<PoseBatch>> _batches;
+    std::vector<PoseOfBatch>& _poses;
+    std::vector<std::uint32_t> _used;  ///< the places in _poses that are not `none`
+    std::map<int, ListOfBatch> _drawn; ///< by level
     std::map<int, Band> _bands;
     const Band* _lastBand = nullptr;
-    std::size_t _count = 0;
 };
 
 SharedPoses::Shape::Shape(SkinnedGeometry& mesh) : mesh(&mesh), vertices(mesh.getVertexArray()) {}
@@ -232,9 +245,12 @@ std::vector<DrawState> SharedPoses::submit(PoseFrame& frame, const CrowdInstance
     std::vector<DrawState> draws;
     if (placementTexels > frame.getMaxTexels()) return draws;
 
-    Collection collection(*_meshes, instances, scale);
-    std::unique_ptr<PoseBatch> batch;
-    const auto flush = [&]
+    Collection collection(*_meshes, instances, scale, frame, mostPoses);
+    std::size_t left = 0;
+    for (const std::uint32_t index : seen)
+        if (instances.hasController(index) || !collection.add(index)) seen[left++] = index;
+    seen.resize(left);
+    for (std::size_t number = 0; number < collection.batchCount(); ++number)
     {
         struct Run
         {
@@ -242,32 +258,21 @@ std::vector<DrawState> SharedPoses::submit(PoseFrame& frame, const CrowdInstance
             std::size_t first, count;
         };
         std::vector<Run> runs;
+        std::unique_ptr<PoseBatch> batch = collection.takeBatch(number);
         const std::shared_ptr<PlacedInstances> list = std::make_shared<PlacedInstances>();
         list->crowd = instances.identity();
         list->placements = instances.placements();
         list->tints = instances.tints();
         list->poseCount = batch->size();
-        collection.write(list->drawn,
+        collection.write(number, list->drawn,
                          [&](int level, std::size_t first, std::size_t count) {
                              runs.push_back({level, first, count});
                          });
-        collection.clear();
         const std::shared_ptr<const PlacedInstances> placed = shared(list);
         const std::size_t slot = frame.submitShared(std::move(batch), &instances, placed);
         for (const Run& run : runs)
             draws.push_back(frame.placedState(set, slot, placed, run.first, run.count, run.level));
-    };
-    std::size_t left = 0;
-    for (const std::uint32_t index : seen)
-    {
-        if (!batch) batch = frame.makeBatch(instances.set());
-        if (instances.hasController(index) || !collection.add(index, *batch))
-            seen[left++] = index;
-        else if (batch->size() == mostPoses)
-            flush();
     }
-    seen.resize(left);
-    if (!collection.isEmpty()) flush();
     return draws;
 }
 

@@ -48,52 +48,59 @@ float leastErrorOf(std::size_t band)
 
 } // namespace
 
-/// The instances of one camera, by level, and the batch with their poses.
+/// The instances of one camera, by level, and the batches with their poses, each pose once.
 class SharedPoses::Collection
 {
 public:
-    Collection(const Meshes& meshes, const CrowdInstances& instances, const LodScale& scale)
-        : _meshes(meshes), _instances(instances), _scale(scale), _poses(posesOfThread()), _drawn(drawnOfThread())
+    /// mostPoses: of a batch.
+    Collection(const Meshes& meshes, const CrowdInstances& instances, const LodScale& scale, PoseFrame& frame,
+               std::size_t mostPoses)
+        : _meshes(meshes), _instances(instances), _scale(scale), _frame(frame), _mostPoses(mostPoses),
+          _poses(posesOfThread()), _drawn(drawnOfThread())
     {
         const std::size_t needed = (meshes.travels.size() + 1) * posesPerClip;
         if (_poses.size() < needed) _poses.resize(needed, none);
     }
-    ~Collection() { clear(); }
-
-    bool isEmpty() const { return _count == 0; }
-    void clear()
+    ~Collection()
     {
         for (const std::uint32_t place : _used)
             _poses[place] = none;
-        _used.clear();
         for (auto& [level, drawn] : _drawn)
             drawn.clear();
-        _count = 0;
     }
 
-    /// Adds the instance to the list, and the pose of its phase to the batch if it is new there. False: the instance
-    /// needs a pose of its own.
-    bool add(std::uint32_t index, PoseBatch& batch)
+    std::size_t batchCount() const { return _batches.size(); }
+    std::unique_ptr<PoseBatch> takeBatch(std::size_t batch) { return std::move(_batches[batch]); }
+
+    /// Adds the instance with the pose of its phase. False: the instance needs a pose of its own.
+    bool add(std::uint32_t index)
     {
         const glm::vec4& sphere = _instances.sphere(index);
         const Band& band = bandFor(_scale.allowedError(glm::vec3(sphere), sphere.w, _instances.scale(index)));
         const auto clip = static_cast<std::size_t>(_instances.clip(index) + 1);
         if (clip >= band.phases.size() || band.phases[clip].count == ownPose) return false;
-        band.drawn->push_back({poseOf(index, clip, band.phases[clip], batch), index});
-        ++_count;
+        band.drawn->push_back({poseOf(index, clip, band.phases[clip]), index});
         return true;
     }
 
-    /// Writes the list, level by level. function(level, first, count)
+    /// Writes the list of a batch, level by level. function(level, first, count)
     template <typename Function>
-    void write(std::vector<PlacedInstances::Drawn>& out, Function function) const
+    void write(std::size_t batch, std::vector<PlacedInstances::Drawn>& out, Function function) const
     {
-        out.reserve(_count);
+        std::size_t count = 0;
+        for (const auto& [level, drawn] : _drawn)
+            count += drawn.size();
+        out.reserve(count / _batches.size());
         for (const auto& [level, drawn] : _drawn)
         {
-            if (drawn.empty()) continue;
-            function(level, out.size(), drawn.size());
-            out.insert(out.end(), drawn.begin(), drawn.end());
+            const std::size_t first = out.size();
+            if (_batches.size() == 1)
+                out.insert(out.end(), drawn.begin(), drawn.end());
+            else
+                for (const auto& [pose, instance] : drawn)
+                    if (pose / _mostPoses == batch)
+                        out.push_back({static_cast<std::uint32_t>(pose % _mostPoses), instance});
+            if (out.size() > first) function(level, first, out.size() - first);
         }
     }
 
@@ -119,6 +126,7 @@ private:
         return poses;
     }
 
+    /// Poses are numbered through all batches.
     using DrawnByLevel = std::map<int, std::vector<PlacedInstances::Drawn>>;
     /// Without instances between two collections; keeps its storage.
     static DrawnByLevel& drawnOfThread()
@@ -158,7 +166,7 @@ private:
     }
 
     /// clip: its number + 1; 0: the rest pose.
-    std::uint32_t poseOf(std::uint32_t index, std::size_t clip, const Band::Phases& phases, PoseBatch& batch)
+    std::uint32_t poseOf(std::uint32_t index, std::size_t clip, const Band::Phases& phases)
     {
         const ClipTravel* travel = clip == 0 ? nullptr : &_meshes.travels[clip - 1];
         int phase = 0;
@@ -172,17 +180,22 @@ private:
         _used.push_back(static_cast<std::uint32_t>(place));
         const float middle = (static_cast<float>(phase) + 0.5f) / static_cast<float>(phases.count);
         const BlendSample sample = travel ? travel->sampleAt(middle * travel->length()) : BlendSample{};
-        return _poses[place] = static_cast<std::uint32_t>(batch.addSample(sample));
+        if (_batches.empty() || _batches.back()->size() == _mostPoses)
+            _batches.push_back(_frame.makeBatch(_instances.set()));
+        const std::size_t before = (_batches.size() - 1) * _mostPoses;
+        return _poses[place] = static_cast<std::uint32_t>(before + _batches.back()->addSample(sample));
     }
 
     const Meshes& _meshes;
     const CrowdInstances& _instances;
     const LodScale& _scale;
+    PoseFrame& _frame;
+    std::size_t _mostPoses;
+    std::vector<std::unique_ptr<PoseBatch>> _batches;
     std::vector<std::uint32_t>& _poses;
     std::vector<std::uint32_t> _used; ///< the places in _poses that are not `none`
     DrawnByLevel& _drawn;
     std::array<std::unique_ptr<Band>, bandCount> _bands;
-    std::size_t _count = 0;
 };
 
 SharedPoses::Shape::Shape(SkinnedGeometry& mesh) : mesh(&mesh), vertices(mesh.getVertexArray()) {}
@@ -258,9 +271,12 @@ std::vector<DrawState> SharedPoses::submit(PoseFrame& frame, const CrowdInstance
     std::vector<DrawState> draws;
     if (placementTexels > frame.getMaxTexels()) return draws;
 
-    Collection collection(*_meshes, instances, scale);
-    std::unique_ptr<PoseBatch> batch;
-    const auto flush = [&]
+    Collection collection(*_meshes, instances, scale, frame, mostPoses);
+    std::size_t left = 0;
+    for (const std::uint32_t index : seen)
+        if (instances.hasController(index) || !collection.add(index)) seen[left++] = index;
+    seen.resize(left);
+    for (std::size_t number = 0; number < collection.batchCount(); ++number)
     {
         struct Run
         {
@@ -268,32 +284,21 @@ std::vector<DrawState> SharedPoses::submit(PoseFrame& frame, const CrowdInstance
             std::size_t first, count;
         };
         std::vector<Run> runs;
+        std::unique_ptr<PoseBatch> batch = collection.takeBatch(number);
         const std::shared_ptr<PlacedInstances> list = std::make_shared<PlacedInstances>();
         list->crowd = instances.identity();
         list->placements = instances.placements();
         list->tints = instances.tints();
         list->poseCount = batch->size();
-        collection.write(list->drawn,
+        collection.write(number, list->drawn,
                          [&](int level, std::size_t first, std::size_t count) {
                              runs.push_back({level, first, count});
                          });
-        collection.clear();
         const std::shared_ptr<const PlacedInstances> placed = shared(list);
         const std::size_t slot = frame.submitShared(std::move(batch), &instances, placed);
         for (const Run& run : runs)
             draws.push_back(frame.placedState(set, slot, placed, run.first, run.count, run.level));
-    };
-    std::size_t left = 0;
-    for (const std::uint32_t index : seen)
-    {
-        if (!batch) batch = frame.makeBatch(instances.set());
-        if (instances.hasController(index) || !collection.add(index, *batch))
-            seen[left++] = index;
-        else if (batch->size() == mostPoses)
-            flush();
     }
-    seen.resize(left);
-    if (!collection.isEmpty()) flush();
     return draws;
 }
 

@@ -23,7 +23,7 @@ bool BufferTexture::reserve(std::size_t bytes)
     bytes = std::max(bytes, texelBytes);
     if (bytes <= _capacity) return false;
     if (_buffer == 0) create();
-    _capacity = std::max(bytes, _capacity + _capacity / 2);
+    _capacity = std::max(bytes, _capacity + _capacity / 8);
     _gl->glBindBuffer(GL_TEXTURE_BUFFER, _buffer);
     _gl->glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(_capacity), nullptr, GL_DYNAMIC_COPY);
     glBindTexture(GL_TEXTURE_BUFFER, _texture);

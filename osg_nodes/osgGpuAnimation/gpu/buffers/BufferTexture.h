@@ -23,8 +23,8 @@ public:
 
     static constexpr std::size_t texelBytes = 16;
 
-    /// Reserves storage: it grows by at least half and never shrinks. True if the storage is new; its content is then
-    /// undefined.
+    /// Reserves storage: it grows by at least an eighth and never shrinks. True if the storage is new; its content is
+    /// then undefined.
     bool reserve(std::size_t bytes);
     /// Reserves and replaces the content from the start. It does not wait for earlier draws that use the storage.
     void upload(const void* data, std::size_t bytes);

@@ -30,11 +30,13 @@ private:
 } // namespace
 
 // One viewer for all windows: osgViewer never frees a few hundred bytes per viewer (its list of Scenes).
-SoakViewer::SoakViewer(osg::Group& scene) : _scene(&scene), _viewer(new osgViewer::Viewer)
+SoakViewer::SoakViewer(osg::Group& scene) : _scene(&scene), _viewer(new osgViewer::Viewer), _second(new osg::Camera)
 {
     _viewer->setKeyEventSetsDone(0);
     _viewer->setThreadingModel(osgViewer::ViewerBase::SingleThreaded);
-    _viewer->getCamera()->setFinalDrawCallback(new ErrorCount(_glErrors));
+    for (osg::Camera* camera : {_viewer->getCamera(), _second.get()})
+        camera->setFinalDrawCallback(new ErrorCount(_glErrors));
+    _viewer->addSlave(_second, osg::Matrixd(), osg::Matrixd::rotate(osg::DegreesToRadians(50.0), osg::Y_AXIS));
     _viewer->setSceneData(_scene);
     open(320, 240);
 }
@@ -54,9 +56,12 @@ bool SoakViewer::open(int width, int height)
     }
     _window = window.value();
     osg::Camera& camera = *_viewer->getCamera();
+    const int half = width / 2;
     camera.setGraphicsContext(_window);
-    camera.setViewport(0, 0, width, height);
-    camera.setProjectionMatrixAsPerspective(40.0, double(width) / height, 1.0, 10000.0);
+    camera.setViewport(0, 0, half, height);
+    camera.setProjectionMatrixAsPerspective(40.0, double(half) / height, 1.0, 10000.0);
+    _second->setGraphicsContext(_window);
+    _second->setViewport(half, 0, width - half, height);
     _viewer->realize();
     return _viewer->isRealized();
 }
@@ -66,7 +71,8 @@ void SoakViewer::close()
     if (!_window) return;
     _viewer->stopThreading();
     _window->close();
-    _viewer->getCamera()->setGraphicsContext(nullptr);
+    for (osg::Camera* camera : {_viewer->getCamera(), _second.get()})
+        camera->setGraphicsContext(nullptr);
     _window = nullptr;
 }
 

@@ -90,6 +90,16 @@ void SoakViewer::moveCamera(std::mt19937& random)
     _viewer->getCamera()->setViewMatrixAsLookAt(from, bound.center(), {0, 0, 1});
 }
 
+// With draw threads a camera keeps two frames.
+void SoakViewer::settle(double time)
+{
+    _viewer->setThreadingModel(osgViewer::ViewerBase::DrawThreadPerContext);
+    std::mt19937 same;
+    moveCamera(same);
+    for (int frames = 0; frames < 3; ++frames)
+        _viewer->frame(time);
+}
+
 void SoakViewer::changeThreading(std::mt19937& random)
 {
     _viewer->setThreadingModel(threadingModels[std::uniform_int_distribution<int>(0, 3)(random)]);

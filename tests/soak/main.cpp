@@ -93,7 +93,7 @@ private:
 void changeViewer(SoakViewer& viewer, unsigned int frame, std::mt19937& random)
 {
     if (frame % 7 == 0) viewer.moveCamera(random);
-    if (frame % 60 == 0) viewer.changeThreading(random);
+    if (frame % 20 == 0) viewer.changeThreading(random);
 }
 
 int soak(const Arguments& arguments, osg::ref_ptr<osg::Node> model)
@@ -112,6 +112,7 @@ int soak(const Arguments& arguments, osg::ref_ptr<osg::Node> model)
         changeViewer(viewer, frame, random);
         viewer.frame(frame / 60.0);
         if (++frame % framesOfAWindow != 0) continue;
+        viewer.settle(frame / 60.0);
         viewer.close();
         scene.clear();
         const double seconds = clock.seconds();

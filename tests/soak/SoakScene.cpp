@@ -59,7 +59,7 @@ void SoakScene::changeClip(AnimationController& controller, std::mt19937& random
     if (clips == 0) return;
     const std::string name = controller.set().clips()[below(clips, random)].name();
     const bool fades = below(2, random) == 0;
-    const auto changed = fades ? controller.crossfade(name, 0.4) : controller.play(name);
+    const auto changed = fades ? controller.crossfade(name, 0.3) : controller.play(name);
     (void)changed; // the clip is there
     controller.setSpeed(0.5 + 0.25 * static_cast<double>(below(6, random)));
 }

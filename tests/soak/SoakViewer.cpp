@@ -94,8 +94,9 @@ void SoakViewer::moveCamera(std::mt19937& random)
 void SoakViewer::settle(double time)
 {
     _viewer->setThreadingModel(osgViewer::ViewerBase::DrawThreadPerContext);
-    std::mt19937 same;
-    moveCamera(same);
+    const osg::BoundingSphere bound = _scene->getBound();
+    const osg::Vec3d above = bound.center() + osg::Vec3d(0.0, 0.0, 40.0 * bound.radius());
+    _viewer->getCamera()->setViewMatrixAsLookAt(above, bound.center(), osg::Y_AXIS);
     for (int frames = 0; frames < 3; ++frames)
         _viewer->frame(time);
 }

@@ -23,8 +23,7 @@ public:
     void frame(double time);
     void moveCamera(std::mt19937& random);
     void changeThreading(std::mt19937& random);
-    /// Draws from the same place whatever was before: the cameras keep what they drew last, which grows with what they
-    /// see.
+    /// Draws everything, since cameras and batches keep memory for what they drew.
     void settle(double time);
     void close();
     /// Opens a window of another size.

@@ -24,6 +24,10 @@ constexpr float pixelError = 0.5f;
 
 constexpr std::size_t places = columns * columns;
 
+// Of ARB_pipeline_statistics_query.
+constexpr GLenum shaderInvocations = 0x82F0; ///< of vertices
+constexpr GLenum primitivesClipped = 0x82F6;
+
 /// Of neighbours, in the units of the subject's file.
 double spacingOf(const Subject& subject)
 {
@@ -63,6 +67,25 @@ struct Counts
 
     double poses, bytes;
 };
+
+/// A count of GL's pipeline statistics over one frame, passes of poses included. The context has
+/// ARB_pipeline_statistics_query.
+double countedInFrame(Contestant& contestant, GLenum what)
+{
+    StagedViewer& viewer = *contestant.viewer;
+    viewer.makeCurrent();
+    const osg::GLExtensions& gl = *viewer.state().get<osg::GLExtensions>();
+    GLuint query = 0;
+    gl.glGenQueries(1, &query);
+    gl.glBeginQuery(what, query);
+    contestant.frame();
+    viewer.makeCurrent();
+    gl.glEndQuery(what);
+    GLuint64 count = 0;
+    gl.glGetQueryObjectui64v(query, GL_QUERY_RESULT, &count);
+    gl.glDeleteQueries(1, &query);
+    return static_cast<double>(count);
+}
 
 /// Every so many places of a field belong to one kind; neighbours are 1 unit apart.
 class MixedCrowd
@@ -171,9 +194,19 @@ Result<bool> measureField(const Subject& subject, const Effort& effort, Report& 
         return each;
     };
     addRow("the field, whole frame", "µs an instance", microseconds(contestants.front().whole));
+    std::vector<double> byTheClock;
+    for (const Spent& spent : contestants.front().whole)
+        byTheClock.push_back(1e3 * spent.wall);
+    addRow("the field, whole frame by the clock", "ms", std::move(byTheClock));
     addRow("the field, update + cull", "µs an instance", microseconds(contestants.front().updateAndCull));
     addRow("the field, poses evaluated", "a frame", {after.poses - before.poses});
     addRow("the field, uploaded", "bytes an instance", {(after.bytes - before.bytes) / count});
+    if (!osg::isGLExtensionOrVersionSupported(viewer.state().getContextID(), "GL_ARB_pipeline_statistics_query", 4.6f))
+        return true;
+    addRow("the field, triangles drawn", "a frame", {countedInFrame(contestants.front(), primitivesClipped)});
+    addRow("the field, vertices shaded, poses' too", "a frame",
+           {countedInFrame(contestants.front(), shaderInvocations)});
+    if (const std::string errors = viewer.takeErrors(); !errors.empty()) return Error{"GL reports " + errors};
     return true;
 }
 

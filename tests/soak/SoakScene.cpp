@@ -2,6 +2,7 @@
 #include "SoakScene.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace osgGpuAnimation
 {
@@ -19,17 +20,22 @@ std::size_t below(std::size_t end, std::mt19937& random)
 
 } // namespace
 
-SoakScene::SoakScene(osg::ref_ptr<osg::Node> model) : _model(model), _root(new osg::Group), _clones(new osg::Group)
+SoakScene::SoakScene(osg::ref_ptr<osg::Node> model, std::size_t fieldCount, std::mt19937& random)
+    : _model(model), _root(new osg::Group), _clones(new osg::Group), _crowd(new AnimatedCrowd(*findCharacter(*model))),
+      _field(new AnimatedCrowd(*findCharacter(*model)))
 {
-    _root->addChild(_clones);
-    _crowd = new AnimatedCrowd(*findCharacter(*_model));
-    _root->addChild(_crowd);
+    for (osg::Node* child : std::initializer_list<osg::Node*>{_clones, _crowd, _field})
+        _root->addChild(child);
+    const double density = std::max(1.0, static_cast<double>(fieldCount) / mostInstances);
+    _reach = 15.0 * _model->getBound().radius() * std::sqrt(density);
+    static_cast<void>(_field->setPixelError(0.5f)); // in range
+    while (_fieldInstances.size() < fieldCount)
+        _fieldInstances.push_back(addTo(*_field, random));
 }
 
 osg::Matrixd SoakScene::randomPlace(std::mt19937& random) const
 {
-    const double reach = 15.0 * _model->getBound().radius();
-    std::uniform_real_distribution<double> along(-reach, reach);
+    std::uniform_real_distribution<double> along(-_reach, _reach);
     const double x = along(random);
     return osg::Matrixd::translate(x, along(random), 0.0);
 }
@@ -53,7 +59,7 @@ void SoakScene::changeClip(AnimationController& controller, std::mt19937& random
     if (clips == 0) return;
     const std::string name = controller.set().clips()[below(clips, random)].name();
     const bool fades = below(2, random) == 0;
-    const auto changed = fades ? controller.crossfade(name, 0.4) : controller.play(name);
+    const auto changed = fades ? controller.crossfade(name, 0.3) : controller.play(name);
     (void)changed; // the clip is there
     controller.setSpeed(0.5 + 0.25 * static_cast<double>(below(6, random)));
 }
@@ -68,9 +74,29 @@ void SoakScene::changeCrowd(std::mt19937& random)
         _instances.pop_back();
         return;
     }
-    AnimationController controller(_crowd->getSharedAnimationSet());
+    _instances.push_back(addTo(*_crowd, random));
+}
+
+AnimatedCrowd::Instance SoakScene::addTo(AnimatedCrowd& crowd, std::mt19937& random)
+{
+    AnimationController controller(crowd.getSharedAnimationSet());
     changeClip(controller, random);
-    if (const auto added = _crowd->add(randomPlace(random), controller)) _instances.push_back(added.value());
+    return crowd.add(randomPlace(random), controller).value(); // the place is finite, the set the crowd's
+}
+
+void SoakScene::changeField(std::mt19937& random)
+{
+    const auto some = [&]() -> AnimatedCrowd::Instance&
+    { return _fieldInstances[below(_fieldInstances.size(), random)]; };
+    for (std::size_t change = 0; change < _fieldInstances.size() / 100; ++change)
+    {
+        AnimatedCrowd::Instance& replaced = some();
+        _field->remove(replaced);
+        replaced = addTo(*_field, random);
+        const AnimatedCrowd::Instance moved = some();
+        static_cast<void>(_field->setPlacement(moved, randomPlace(random))); // it is there
+        changeClip(*_field->getController(some()), random);
+    }
 }
 
 void SoakScene::clear()
@@ -89,6 +115,7 @@ void SoakScene::change(std::mt19937& random)
     else
         removeOne(random);
     changeCrowd(random);
+    changeField(random);
     if (_clones->getNumChildren() > 0)
     {
         osg::Node& node = *_clones->getChild(static_cast<unsigned int>(below(_clones->getNumChildren(), random)));

@@ -30,11 +30,13 @@ private:
 } // namespace
 
 // One viewer for all windows: osgViewer never frees a few hundred bytes per viewer (its list of Scenes).
-SoakViewer::SoakViewer(osg::Group& scene) : _scene(&scene), _viewer(new osgViewer::Viewer)
+SoakViewer::SoakViewer(osg::Group& scene) : _scene(&scene), _viewer(new osgViewer::Viewer), _second(new osg::Camera)
 {
     _viewer->setKeyEventSetsDone(0);
     _viewer->setThreadingModel(osgViewer::ViewerBase::SingleThreaded);
-    _viewer->getCamera()->setFinalDrawCallback(new ErrorCount(_glErrors));
+    for (osg::Camera* camera : {_viewer->getCamera(), _second.get()})
+        camera->setFinalDrawCallback(new ErrorCount(_glErrors));
+    _viewer->addSlave(_second, osg::Matrixd(), osg::Matrixd::rotate(osg::DegreesToRadians(50.0), osg::Y_AXIS));
     _viewer->setSceneData(_scene);
     open(320, 240);
 }
@@ -54,9 +56,12 @@ bool SoakViewer::open(int width, int height)
     }
     _window = window.value();
     osg::Camera& camera = *_viewer->getCamera();
+    const int half = width / 2;
     camera.setGraphicsContext(_window);
-    camera.setViewport(0, 0, width, height);
-    camera.setProjectionMatrixAsPerspective(40.0, double(width) / height, 1.0, 10000.0);
+    camera.setViewport(0, 0, half, height);
+    camera.setProjectionMatrixAsPerspective(40.0, double(half) / height, 1.0, 10000.0);
+    _second->setGraphicsContext(_window);
+    _second->setViewport(half, 0, width - half, height);
     _viewer->realize();
     return _viewer->isRealized();
 }
@@ -66,7 +71,8 @@ void SoakViewer::close()
     if (!_window) return;
     _viewer->stopThreading();
     _window->close();
-    _viewer->getCamera()->setGraphicsContext(nullptr);
+    for (osg::Camera* camera : {_viewer->getCamera(), _second.get()})
+        camera->setGraphicsContext(nullptr);
     _window = nullptr;
 }
 
@@ -82,6 +88,17 @@ void SoakViewer::moveCamera(std::mt19937& random)
     osg::Vec3d from(way(random), way(random), 0.3 + 0.2 * way(random));
     from = bound.center() + from * bound.radius();
     _viewer->getCamera()->setViewMatrixAsLookAt(from, bound.center(), {0, 0, 1});
+}
+
+// With draw threads a camera keeps two frames.
+void SoakViewer::settle(double time)
+{
+    _viewer->setThreadingModel(osgViewer::ViewerBase::DrawThreadPerContext);
+    const osg::BoundingSphere bound = _scene->getBound();
+    const osg::Vec3d above = bound.center() + osg::Vec3d(0.0, 0.0, 40.0 * bound.radius());
+    _viewer->getCamera()->setViewMatrixAsLookAt(above, bound.center(), osg::Y_AXIS);
+    for (int frames = 0; frames < 3; ++frames)
+        _viewer->frame(time);
 }
 
 void SoakViewer::changeThreading(std::mt19937& random)

@@ -10,7 +10,8 @@
 namespace osgGpuAnimation
 {
 
-/// Draws a scene without a display while its window's size, the camera and the threading model change.
+/// Draws a scene without a display, by two cameras side by side, while the window's size, the cameras and the threading
+/// model change.
 class SoakViewer
 {
 public:
@@ -22,6 +23,8 @@ public:
     void frame(double time);
     void moveCamera(std::mt19937& random);
     void changeThreading(std::mt19937& random);
+    /// Draws everything, since cameras and batches keep memory for what they drew.
+    void settle(double time);
     void close();
     /// Opens a window of another size.
     bool open(std::mt19937& random);
@@ -33,6 +36,7 @@ private:
 
     osg::ref_ptr<osg::Group> _scene;
     osg::ref_ptr<osgViewer::Viewer> _viewer;
+    osg::ref_ptr<osg::Camera> _second; ///< a slave of the viewer's camera, looks another way
     osg::ref_ptr<osg::GraphicsContext> _window;
     std::atomic<int> _glErrors{0};
 };

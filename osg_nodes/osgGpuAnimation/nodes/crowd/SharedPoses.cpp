@@ -176,14 +176,21 @@ private:
             phase = std::min(static_cast<int>(at * phases.perTravel), phases.count - 1);
         }
         const std::size_t place = clip * posesPerClip + static_cast<std::size_t>(phases.count + phase);
-        if (_poses[place] != none) return _poses[place];
-        _used.push_back(static_cast<std::uint32_t>(place));
-        const float middle = (static_cast<float>(phase) + 0.5f) / static_cast<float>(phases.count);
-        const BlendSample sample = travel ? travel->sampleAt(middle * travel->length()) : BlendSample{};
+        if (_poses[place] == none)
+        {
+            const float middle = (static_cast<float>(phase) + 0.5f) / static_cast<float>(phases.count);
+            addPose(place, travel ? travel->sampleAt(middle * travel->length()) : BlendSample{});
+        }
+        return _poses[place];
+    }
+
+    void addPose(std::size_t place, const BlendSample& sample)
+    {
         if (_batches.empty() || _batches.back()->size() == _mostPoses)
             _batches.push_back(_frame.makeBatch(_instances.set()));
         const std::size_t before = (_batches.size() - 1) * _mostPoses;
-        return _poses[place] = static_cast<std::uint32_t>(before + _batches.back()->addSample(sample));
+        _poses[place] = static_cast<std::uint32_t>(before + _batches.back()->addSample(sample));
+        _used.push_back(static_cast<std::uint32_t>(place));
     }
 
     const Meshes& _meshes;

@@ -127,6 +127,8 @@ public:
         return _controllers[index] ? _controllers[index]->takeRootMotion() : RootMotion();
     }
     bool hasController(std::size_t index) const { return _controllers[index] != nullptr; }
+    /// True if no instance has a controller; it may be false after changes, until the next advance().
+    bool isWithoutControllers() const { return _isControlledKnown && _controlled.empty(); }
     /// The number of instances with a controller.
     std::size_t controllerCount() const;
     /// Of an instance without a controller: -1: the rest pose.

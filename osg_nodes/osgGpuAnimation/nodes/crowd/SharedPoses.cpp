@@ -279,9 +279,10 @@ std::vector<DrawState> SharedPoses::submit(PoseFrame& frame, const CrowdInstance
     if (placementTexels > frame.getMaxTexels()) return draws;
 
     Collection collection(*_meshes, instances, scale, frame, mostPoses);
+    const bool arePlain = instances.isWithoutControllers();
     std::size_t left = 0;
     for (const std::uint32_t index : seen)
-        if (instances.hasController(index) || !collection.add(index)) seen[left++] = index;
+        if ((!arePlain && instances.hasController(index)) || !collection.add(index)) seen[left++] = index;
     seen.resize(left);
     for (std::size_t number = 0; number < collection.batchCount(); ++number)
     {

@@ -127,6 +127,17 @@ TEST(ClipTravelTest, jumpsCountAsWay)
     }
 }
 
+TEST(ClipTravelTest, timesThatNearlyCoincideAreAJump)
+{
+    const auto set = slidingSet(Channel::Interpolation::Linear, {0, 1e-40f, 1}, {0, 4, 4});
+    const ClipTravel travel(*set, 0, boxesOf(*set), {});
+    for (const float time : {1e-45f, 5e-41f, 1e-40f, 0.5f})
+    {
+        EXPECT_GE(travel.at(time), 0.0f) << time;
+        EXPECT_LE(travel.at(time), travel.length()) << time;
+    }
+}
+
 TEST(ClipTravelTest, morphWeightsMoveVerticesByTheirReach)
 {
     const auto set = makeRandomSet({});

@@ -134,8 +134,11 @@ ClipTravel::ClipTravel(const AnimationSet& set, std::size_t clip, const EntryBox
     }
     const std::size_t parts = _samples.size();
     for (std::size_t i = 0; i + 1 < parts; ++i)
-        if (const float seconds = _samples[i + 1].time - _samples[i].time; seconds > 0.0f)
-            _samples[i].speed = (_samples[i + 1].travel - _samples[i].travel) / seconds;
+        // Times that nearly coincide count as a jump.
+        if (const float speed =
+                (_samples[i + 1].travel - _samples[i].travel) / (_samples[i + 1].time - _samples[i].time);
+            std::isfinite(speed))
+            _samples[i].speed = speed;
     _partsPerSecond = static_cast<float>(static_cast<double>(parts) / moving.duration());
     std::uint32_t last = 0;
     for (std::size_t part = 0; part <= parts; ++part)

@@ -188,9 +188,9 @@ private:
     {
         if (_batches.empty() || _batches.back()->size() == _mostPoses)
             _batches.push_back(_frame.makeBatch(_instances.set()));
+        _used.push_back(static_cast<std::uint32_t>(place));
         const std::size_t before = (_batches.size() - 1) * _mostPoses;
         _poses[place] = static_cast<std::uint32_t>(before + _batches.back()->addSample(sample));
-        _used.push_back(static_cast<std::uint32_t>(place));
     }
 
     const Meshes& _meshes;

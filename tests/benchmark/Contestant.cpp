@@ -73,4 +73,14 @@ Row named(Row row, const Subject& subject, std::size_t count, const std::string&
     return row;
 }
 
+Row limited(const Figure& ours, double limit, const std::string& bar, const Subject& subject, std::size_t count,
+            const std::string& what, const char* unit)
+{
+    Row row = named({}, subject, count, what, unit, "");
+    row.ours = ours;
+    row.bar = bar;
+    row.isMet = ours.median <= limit;
+    return row;
+}
+
 } // namespace osgGpuAnimation::benchmark

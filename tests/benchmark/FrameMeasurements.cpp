@@ -243,34 +243,18 @@ Result<bool> measureStart(const Subject& subject, const Effort& effort, Report& 
         beyondOfFewer.push_back(1e3 * fewer.value().beyond);
         bytes.push_back((ofMany.value() - ofFew.value()) / (1024.0 * (count - few)));
     }
-    Row row;
     for (const auto& [what, figures] :
          {std::pair("first frame, nodes made and drawn", &seconds),
           std::pair("first frame, nodes made and drawn, by the clock", &elapsed),
           std::pair("first frame, nodes made and drawn, pixel error 0.5", &secondsOfFewer)})
-    {
-        row = named({}, subject, count, what, "s", "");
-        row.ours = figureOf(*figures);
-        row.bar = "≤ 0.3 s";
-        row.isMet = row.ours.median <= 0.3;
-        report.add(row);
-    }
+        report.add(limited(figureOf(*figures), 0.3, "≤ 0.3 s", subject, count, what, "s"));
     for (const auto& [what, figures] :
          {std::pair("first frame beyond an ordinary one", &beyond),
           std::pair("first frame beyond an ordinary one, pixel error 0.5", &beyondOfFewer)})
-    {
-        row = named({}, subject, count, what, "ms", "");
-        row.ours = figureOf(*figures);
-        row.bar = "≤ 60 ms";
-        row.isMet = row.ours.median <= 60.0;
-        report.add(row);
-    }
-    row = named({}, subject, count, "memory, CPU and GPU", "KiB a character", "");
-    row.ours = figureOf(bytes);
+        report.add(limited(figureOf(*figures), 60.0, "≤ 60 ms", subject, count, what, "ms"));
     const double limit = 4.0 + 48.0 * static_cast<double>(subject.set().paletteSize()) / 1024.0;
-    row.bar = "≤ 4 KiB + 48 B an entry";
-    row.isMet = row.ours.median <= limit;
-    report.add(row);
+    report.add(limited(figureOf(bytes), limit, "≤ 4 KiB + 48 B an entry", subject, count, "memory, CPU and GPU",
+                       "KiB a character"));
     return true;
 }
 

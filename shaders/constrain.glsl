@@ -5,6 +5,8 @@
 // int chainLength, the joints of the chain; int midPlace, the limb's mid joint; bool hasCone, hasOffset: of look-ats;
 // bool hasDirections: some target has a pole, a twist or a rotation.
 
+// Compilers unroll a loop that runs over the whole array. In other loops they may index the array at run time: look-ats of
+// three joints then take 1.7 times as long in llvmpipe.
 JointTransform chain[chainLength];
 
 // The target that the application sets, and the constraint's own numbers.

@@ -156,13 +156,16 @@ void PoseBatch::addTargets(const std::vector<ConstraintTarget>& targets, const A
     for (std::size_t c = 0; c < count; ++c)
     {
         const ConstraintTarget& target = targets[c];
+        const std::uint64_t bit = std::uint64_t(1) << c;
         const bool isReady = isRootIdentity && target.weight > 0.0f && target.weight <= 1.0f && !isDirected(target) &&
                              isFinite(target.position);
-        if (!isReady) place[c] = inSpaceOf(target, rootMatrix);
-        if (!(place[c].weight > 0.0f)) continue;
-        const std::uint64_t bit = std::uint64_t(1) << c;
+        if (!isReady)
+        {
+            place[c] = inSpaceOf(target, rootMatrix);
+            if (!(place[c].weight > 0.0f)) continue;
+            if (isDirected(place[c])) _needs.directedTargets |= bit;
+        }
         _needs.constraints |= bit;
-        if (isDirected(place[c])) _needs.directedTargets |= bit;
         if (place[c].weight < 1.0f) _needs.partialTargets |= bit;
     }
 }

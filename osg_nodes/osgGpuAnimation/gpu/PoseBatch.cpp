@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/gpu/PoseBatch.h>
 
+#include <osgGpuAnimation/animation/constraints/AxisTurns.h>
 #include <osgGpuAnimation/animation/keyframes/PosedKeyframe.h>
 
 #include <layout.glsl>
@@ -64,12 +65,13 @@ ConstraintTarget inSpaceOf(const ConstraintTarget& target, const AffineMatrix& r
     moved.pole = rootMatrix.transformVector(target.pole);
     if (target.rotation != glm::vec4(0.0f))
     {
-        glm::dmat3 axes(rootMatrix.toColumns());
-        for (int axis = 0; axis < 3; ++axis)
-            axes[axis] = glm::normalize(axes[axis]);
-        const glm::dquat turn = glm::quat_cast(axes);
-        moved.rotation =
-            glm::vec4(Rotation::unit(Rotation::numbers(turn * Rotation::quaternion(glm::dvec4(target.rotation)))));
+        // Shaders use the directions of x and of y across x, which follow matrices that scale, mirror or shear.
+        const glm::dmat3 toPalette(rootMatrix.toColumns());
+        const glm::dvec4 rotation = Rotation::unit(glm::dvec4(target.rotation));
+        const glm::dvec3 x(1.0, 0.0, 0.0), y(0.0, 1.0, 0.0);
+        const auto movedTo = [&](const glm::dvec3& axis)
+        { return AxisTurns::direction(toPalette * AxisTurns::turned(rotation, axis), axis); };
+        moved.rotation = glm::vec4(AxisTurns::framed(x, y, movedTo(x), movedTo(y)));
     }
     // Shaders compute sines of small angles only.
     constexpr float wholeTurn = 6.28318531f;

@@ -301,12 +301,9 @@ void JointPose::growExtent(std::size_t firstJoint, std::size_t endJoint)
             continue;
         const std::uint32_t numbers = _keyframe->setNumbers(joint);
         if (numbers == 0) continue;
-        if (!grown)
-        {
-            longest = longestJoint(*_set);
-            grown = std::make_shared<PoseExtent>(*_extent);
-            grown->joints.resize(_set->skeleton().jointCount());
-        }
+        if (!grown) longest = longestJoint(*_set);
+        if (!grown) grown = std::make_shared<PoseExtent>(*_extent);
+        grown->joints.resize(_set->skeleton().jointCount());
         PoseExtent::Joint& known = grown->joints[joint];
         const auto has = [&](Part part) { return (numbers >> 4 * part & partBits) != 0; };
         const JointTransform posed = transform(joint);

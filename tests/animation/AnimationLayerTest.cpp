@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "support/GaitSet.h"
+#include "support/MixedPose.h"
 
 #include <osgGpuAnimation/animation/AnimationController.h>
 #include <osgGpuAnimation/animation/ClipBuilder.h>
@@ -22,13 +23,6 @@ namespace osgGpuAnimation
 
 namespace
 {
-
-std::vector<JointTransform> mixed(const AnimationController& controller)
-{
-    std::vector<JointTransform> tracks;
-    Pose::mix(controller.set(), controller.instruction(), tracks);
-    return tracks;
-}
 
 std::vector<JointTransform> clipAt(const std::shared_ptr<const AnimationSet>& set, const char* clip, double time)
 {

@@ -10,6 +10,8 @@
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/gpu/PosePipeline.h>
 
+#include <glm/gtc/matrix_transform.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -153,6 +155,34 @@ TEST_F(ConstraintsGLTest, jointsOfAPathMoveAsTheirLevelsDo)
     batch.add(instruction);
     ASSERT_TRUE(pipeline->evaluate(state(), batch, 0));
     EXPECT_LE(differenceFromTwin(instruction, *set, 0), 5e-6);
+}
+
+// Shaders read an end joint's rotation in the space of the palette.
+TEST_F(ConstraintsGLTest, endRotationsFollowAnyRootMatrix)
+{
+    const auto set = limbOf({jointAt("hip", {0.1f, 1, 0}, glm::angleAxis(0.4, glm::dvec3(0.6, 0, 0.8))),
+                             jointAt("knee", {0, -0.4f, 0.05f}), jointAt("foot", {0, -0.4f, -0.05f})},
+                            {TwoBoneIk{"leg", "hip", "knee", "foot"}})
+                         .value();
+    AnimationController controller(set);
+    ASSERT_TRUE(controller.constraint("leg").setTarget({0.2f, 0.4f, 0.1f}));
+    ASSERT_TRUE(controller.constraint("leg").setRotation({0.5f, -0.1f, 0.7f, 0.5f}));
+    const glm::dmat4 turn = glm::mat4_cast(glm::angleAxis(0.8, glm::dvec3(0.6, 0.8, 0.0)));
+    glm::dmat4 sheared(1.0);
+    sheared[1].x = 0.5;
+    const std::pair<const char*, glm::dmat4> roots[] = {
+        {"uniform", turn * glm::scale(glm::dmat4(1.0), glm::dvec3(2.0))},
+        {"not uniform", turn * glm::scale(glm::dmat4(1.0), glm::dvec3(1.0, 2.0, 0.5))},
+        {"mirrored", turn * glm::scale(glm::dmat4(1.0), glm::dvec3(1.0, -1.0, 1.0))},
+        {"sheared", turn * sheared}};
+    for (const auto& [name, columns] : roots)
+    {
+        const AffineMatrix root = AffineMatrix::fromColumns(columns);
+        PoseBatch batch(set);
+        batch.add(controller.instruction(), root);
+        ASSERT_TRUE(pipeline->evaluate(state(), batch, 0));
+        EXPECT_LE(differenceFromTwin(controller.instruction(), *set, 0, root), 5e-6) << name;
+    }
 }
 
 // As many draws as levels and constraints with a target; none more for batches without.

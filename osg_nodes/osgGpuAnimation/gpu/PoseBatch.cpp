@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/gpu/PoseBatch.h>
 
+#include <osgGpuAnimation/animation/constraints/AxisTurns.h>
 #include <osgGpuAnimation/animation/keyframes/PosedKeyframe.h>
 
 #include <layout.glsl>
@@ -64,12 +65,13 @@ ConstraintTarget inSpaceOf(const ConstraintTarget& target, const AffineMatrix& r
     moved.pole = rootMatrix.transformVector(target.pole);
     if (target.rotation != glm::vec4(0.0f))
     {
-        glm::dmat3 axes(rootMatrix.toColumns());
-        for (int axis = 0; axis < 3; ++axis)
-            axes[axis] = glm::normalize(axes[axis]);
-        const glm::dquat turn = glm::quat_cast(axes);
-        moved.rotation =
-            glm::vec4(Rotation::unit(Rotation::numbers(turn * Rotation::quaternion(glm::dvec4(target.rotation)))));
+        // Shaders use the directions of x and of y across x, which follow matrices that scale, mirror or shear.
+        const glm::dmat3 toPalette(rootMatrix.toColumns());
+        const glm::dvec4 rotation = Rotation::unit(glm::dvec4(target.rotation));
+        const glm::dvec3 x(1.0, 0.0, 0.0), y(0.0, 1.0, 0.0);
+        const auto movedTo = [&](const glm::dvec3& axis)
+        { return AxisTurns::direction(toPalette * AxisTurns::turned(rotation, axis), axis); };
+        moved.rotation = glm::vec4(AxisTurns::framed(x, y, movedTo(x), movedTo(y)));
     }
     // Shaders compute sines of small angles only.
     constexpr float wholeTurn = 6.28318531f;
@@ -156,13 +158,16 @@ void PoseBatch::addTargets(const std::vector<ConstraintTarget>& targets, const A
     for (std::size_t c = 0; c < count; ++c)
     {
         const ConstraintTarget& target = targets[c];
+        const std::uint64_t bit = std::uint64_t(1) << c;
         const bool isReady = isRootIdentity && target.weight > 0.0f && target.weight <= 1.0f && !isDirected(target) &&
                              isFinite(target.position);
-        if (!isReady) place[c] = inSpaceOf(target, rootMatrix);
-        if (!(place[c].weight > 0.0f)) continue;
-        const std::uint64_t bit = std::uint64_t(1) << c;
+        if (!isReady)
+        {
+            place[c] = inSpaceOf(target, rootMatrix);
+            if (!(place[c].weight > 0.0f)) continue;
+            if (isDirected(place[c])) _needs.directedTargets |= bit;
+        }
         _needs.constraints |= bit;
-        if (isDirected(place[c])) _needs.directedTargets |= bit;
         if (place[c].weight < 1.0f) _needs.partialTargets |= bit;
     }
 }

@@ -121,7 +121,9 @@ struct PosePipeline::Parts
                           PosePalette::Chunk& chunk);
     void useMixInput(FeedbackScope& scope, FeedbackPass& pass, const AnimationSet& set, const AnimationBuffers& buffers,
                      const PosePalette::Chunk& chunk);
-    void bindEntries(const BufferTexture& entries, std::size_t first, FeedbackVertexArrays::Names& arrays) const;
+    void drawEntries(FeedbackPass& pass, FeedbackVertexArrays::Names& arrays, const BufferTexture& entries,
+                     std::size_t first, std::size_t count, std::size_t width, const BufferTexture& out,
+                     std::size_t place);
     bool evaluateGarments(FeedbackScope& scope, FeedbackVertexArrays::Names& arrays, const AnimationSet& set,
                           const AnimationBuffers& buffers, PosePalette::Chunk& chunk, PoseVariant variant);
     void gatherOddLevels(const AnimationSet& set, const PosePalette::Chunk& chunk);
@@ -319,9 +321,7 @@ bool PosePipeline::Parts::evaluateFused(FeedbackScope& scope, FeedbackVertexArra
     if (constraints) corrections.reserve(constraints->plan().correctionCount * chunk.width * rotationBytes);
     scope.forgetActiveTexture();
     const BufferTexture& entries = constraints ? constraints->entries() : buffers.entries();
-    const bool canOffset = FeedbackPass::canOffsetInstances(*gl);
     chunk.bindInstances(*gl, arrays);
-    bindEntries(entries, 0, arrays);
     PoseVariant variant = PoseVariant::of(batch);
     if (chunk.hasSamplesAsAttributes()) variant.sampleCount = static_cast<int>(chunk.sampleStride);
     variant.isRootLevel = true;
@@ -361,10 +361,7 @@ bool PosePipeline::Parts::evaluateFused(FeedbackScope& scope, FeedbackVertexArra
             pass.setTexture(scope, "parentLevels", unitPrevious, input.parentLevels);
             pass.setInt("firstParent", static_cast<int>(input.firstParent));
             if (present.hasCorrections) pass.setTexture(scope, "corrections", unitCorrections, corrections.texture());
-            if (!canOffset) bindEntries(entries, first, arrays);
-            pass.runInstanced(chunk.width, end - first, canOffset ? first : 0, out.buffer(),
-                              (outBegin + first - levels[level]) * chunk.width * matrixBytes);
-            ++pipeline._counters.feedbackDraws;
+            drawEntries(pass, arrays, entries, first, end - first, chunk.width, out, outBegin + first - levels[level]);
         }
         if (!isOdd) continue;
         firstParent = levels[level] - oddEntry;
@@ -388,22 +385,27 @@ bool PosePipeline::Parts::evaluateGarments(FeedbackScope& scope, FeedbackVertexA
     useMixInput(scope, pass, set, buffers, chunk);
     pass.setTexture(scope, "parentLevels", unitPrevious, chunk.palette.texture());
     pass.setInt("firstParent", 0);
-    const bool canOffset = FeedbackPass::canOffsetInstances(*gl);
-    bindEntries(buffers.entries(), canOffset ? 0 : first, arrays);
-    pass.runInstanced(chunk.width, count, canOffset ? first : 0, scratch.buffer(), 0);
-    ++pipeline._counters.feedbackDraws;
+    drawEntries(pass, arrays, buffers.entries(), first, count, chunk.width, scratch, 0);
     copy(scratch, chunk.palette, chunk.width * matrixBytes, {{0, first, count}});
     return true;
 }
 
-void PosePipeline::Parts::bindEntries(const BufferTexture& entries, std::size_t first,
-                                      FeedbackVertexArrays::Names& arrays) const
+// Computes palette entries of `width` instances. place: of the first one in the output, in entries.
+void PosePipeline::Parts::drawEntries(FeedbackPass& pass, FeedbackVertexArrays::Names& arrays,
+                                      const BufferTexture& entries, std::size_t first, std::size_t count,
+                                      std::size_t width, const BufferTexture& out, std::size_t place)
 {
-    if (arrays.entries == entries.serial() && arrays.firstEntry == first) return;
-    const std::size_t stride = POSE_TEXELS_PER_ENTRY * BufferTexture::texelBytes;
-    entries.bindAttributes(POSE_HEAD_LOCATION, POSE_TEXELS_PER_ENTRY, stride, first * stride, 1);
-    arrays.entries = entries.serial();
-    arrays.firstEntry = first;
+    const bool canOffset = FeedbackPass::canOffsetInstances(*gl);
+    if (const std::size_t bound = canOffset ? 0 : first;
+        arrays.entries != entries.serial() || arrays.firstEntry != bound)
+    {
+        const std::size_t stride = POSE_TEXELS_PER_ENTRY * BufferTexture::texelBytes;
+        entries.bindAttributes(POSE_HEAD_LOCATION, POSE_TEXELS_PER_ENTRY, stride, bound * stride, 1);
+        arrays.entries = entries.serial();
+        arrays.firstEntry = bound;
+    }
+    pass.runInstanced(width, count, canOffset ? first : 0, out.buffer(), place * width * matrixBytes);
+    ++pipeline._counters.feedbackDraws;
 }
 
 // The draw reads the rotations of the constraints before, so it writes to a buffer of its own.

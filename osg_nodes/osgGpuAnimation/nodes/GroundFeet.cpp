@@ -417,9 +417,15 @@ public:
         state.legs = _known[set.get()].lock();
         if (state.legs) return true;
         const Result<std::shared_ptr<Legs>> resolved = resolve(set, legs);
-        if (!resolved) OSG_WARN << "osgGpuAnimation: " << resolved.error().message << std::endl;
-        if (resolved) _known[set.get()] = state.legs = resolved.value();
-        return state.legs != nullptr;
+        if (resolved)
+        {
+            _known[set.get()] = state.legs = resolved.value();
+            return true;
+        }
+        OSG_WARN << "osgGpuAnimation: " << resolved.error().message << std::endl;
+        for (const GroundLeg& leg : legs) // a copy has the targets of the original
+            static_cast<void>(character.getController().constraint(leg.constraint).clear());
+        return false;
     }
 
     void forgetLegs()

@@ -3,6 +3,7 @@
 
 #include <osgGpuAnimation/gpu/passes/FeedbackTimer.h>
 #include <osgGpuAnimation/gpu/PosePipeline.h>
+#include <osgGpuAnimation/nodes/frame/InstancedDraw.h>
 
 #include <osg/UserDataContainer>
 #include <osgUtil/GLObjectsVisitor>
@@ -99,6 +100,8 @@ public:
     void compileGLObjects(osg::RenderInfo& renderInfo) const override
     {
         osg::State& state = *renderInfo.getState();
+        // Another thread may draw in a context of the same number.
+        if (MeshVertexArrays::isNumberShared(state)) return;
         PosePipeline* pipeline = PosePipeline::of(state);
         if (!pipeline) return;
         DeletionLists::make(state);

@@ -141,10 +141,22 @@ TEST_F(TexturesGLTest, aPictureServesSeveralColorSpaces)
     EXPECT_NE(display, colors);
     EXPECT_EQ(colors, file.textures().texture(0, ColorSpace::Srgb));
     EXPECT_NE(colors->getImage(), display->getImage()) << "their mipmaps differ";
-    EXPECT_EQ(file.textures().texture(0, ColorSpace::Linear)->getImage(), display->getImage());
     apply(*colors);
     apply(*display);
-    EXPECT_EQ(levelParameter(0, GL_TEXTURE_INTERNAL_FORMAT), GL_RGB);
+    EXPECT_EQ(levelParameter(0, GL_TEXTURE_INTERNAL_FORMAT), GL_RGB8);
+}
+
+// As in a DatabasePager: OSG uses the GL texture of a deleted one again for another of the same size and format.
+TEST_F(TexturesGLTest, aGlTextureIsUsedAgain)
+{
+    for (const ColorSpace space : {ColorSpace::Display, ColorSpace::Srgb, ColorSpace::Linear})
+        for (int round = 0; round < 3; ++round)
+        {
+            TextureFile file(encodedPicture("png", 4, 4));
+            apply(*file.textures().texture(0, space));
+            EXPECT_EQ(lastPixel(0), osg::Vec4(1, 0, 0, 1));
+            EXPECT_EQ(takeGLErrors(), "") << "round " << round << ", space " << static_cast<int>(space);
+        }
 }
 
 } // namespace osgGpuAnimation::gltf

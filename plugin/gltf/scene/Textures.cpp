@@ -218,13 +218,16 @@ osg::Image* Textures::imageWithoutGrey(int index)
     return rgb;
 }
 
-osg::Image* Textures::imageWithMipmaps(osg::Image& picture, bool isSrgb)
+osg::Image* Textures::imageWithMipmaps(osg::Image& picture, ColorSpace space)
 {
-    osg::ref_ptr<osg::Image>& known = _imagesWithMipmaps[{&picture, isSrgb}];
+    const auto first = _imagesWithMipmaps.lower_bound({&picture, ColorSpace::Display});
+    const bool isUsed = first != _imagesWithMipmaps.end() && first->first.first == &picture;
+    osg::ref_ptr<osg::Image>& known = _imagesWithMipmaps[{&picture, space}];
     if (known) return known;
-    const bool isOtherUse = _imagesWithMipmaps.count({&picture, !isSrgb}) > 0;
-    known = isOtherUse ? new osg::Image(picture, osg::CopyOp::DEEP_COPY_ALL) : &picture;
-    addMipmaps(*known, isSrgb);
+    known = isUsed ? new osg::Image(picture, osg::CopyOp::DEEP_COPY_ALL) : &picture;
+    addMipmaps(*known, space == ColorSpace::Srgb);
+    // OSG would otherwise allocate a GL texture again that it uses again, which is an error for one with mipmaps.
+    if (space != ColorSpace::Display) known->setInternalTextureFormat(internalFormat(*known, space));
     return known;
 }
 
@@ -238,7 +241,7 @@ osg::ref_ptr<osg::Texture2D> Textures::make(const tinygltf::Texture& source, Col
     const auto minFilter = sampler.minFilter < 0 ? osg::Texture::LINEAR_MIPMAP_LINEAR
                                                  : static_cast<osg::Texture::FilterMode>(sampler.minFilter);
     if (minFilter != osg::Texture::LINEAR && minFilter != osg::Texture::NEAREST)
-        picture = imageWithMipmaps(*picture, space == ColorSpace::Srgb);
+        picture = imageWithMipmaps(*picture, space);
     osg::ref_ptr<osg::Texture2D> texture = new osg::Texture2D(picture);
     if (space != ColorSpace::Display) texture->setInternalFormat(internalFormat(*picture, space));
     texture->setName(source.name.empty() ? picture->getName() : source.name);

@@ -30,6 +30,15 @@ protected:
         return *_root;
     }
 
+    /// The content of the framebuffer.
+    osg::ref_ptr<osg::Image> shownNow()
+    {
+        osg::ref_ptr<osg::Image> shown = new osg::Image;
+        shown->readPixels(0, 0, picture().image().s(), picture().image().t(), picture().image().getPixelFormat(),
+                          GL_UNSIGNED_BYTE);
+        return shown;
+    }
+
     void compileAtOnce(osg::Node& node)
     {
         osgUtil::GLObjectsVisitor visitor;
@@ -138,6 +147,7 @@ TEST_F(FirstDrawGLTest, aCompileTraversalBetweenFramesChangesNoPicture)
     for (int round = 0; round < 3; ++round)
     {
         compileAtOnce(root);
+        EXPECT_EQ(Picture::pixelsDifferent(*before, *shownNow()), 0) << "it draws into the frame, round " << round;
         drawAt(0.5);
         EXPECT_EQ(Picture::pixelsDifferent(*before, picture().image()), 0) << round;
         EXPECT_NO_GL_ERROR();

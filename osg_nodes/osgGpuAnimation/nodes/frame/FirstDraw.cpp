@@ -9,8 +9,8 @@
 #include <osgUtil/GLObjectsVisitor>
 #include <osgUtil/IncrementalCompileOperation>
 
-#include <algorithm>
 #include <memory>
+#include <set>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -47,38 +47,37 @@ struct StatedMesh
 {
     osg::ref_ptr<SkinnedGeometry> mesh;
     StateSets stateSets;
-
-    bool hasStateOf(const StatedMesh& other) const
-    {
-        return stateSets == other.stateSets && mesh->getColors() == other.mesh->getColors();
-    }
 };
 
-/// The meshes below a node, with the state sets of the nodes down to them; one mesh for each state.
+/// The meshes below a character, with the state sets of the nodes down to them; one mesh for each state.
 class MeshCollector : public osg::NodeVisitor
 {
 public:
-    explicit MeshCollector(StateSets above)
-        : osg::NodeVisitor(osg::NodeVisitor::TRAVERSE_ACTIVE_CHILDREN), _above(std::move(above))
+    /// isInstanced: only the meshes of instanced draws.
+    MeshCollector(StateSets above, bool isInstanced)
+        : osg::NodeVisitor(osg::NodeVisitor::TRAVERSE_ACTIVE_CHILDREN), _above(std::move(above)),
+          _isInstanced(isInstanced)
     {
     }
 
     void apply(osg::Drawable& drawable) override
     {
         auto* mesh = dynamic_cast<SkinnedGeometry*>(&drawable);
-        if (!mesh) return;
+        if (!mesh || mesh->getDrawCallback()) return; // there is no view that a callback may expect
+        const bool isChild = getNodePath().size() == 2;
+        if (_isInstanced && !(isChild && canBeDrawnTogether(*mesh))) return;
         StatedMesh found{mesh, _above};
         for (const osg::Node* node : getNodePath())
             addStateSet(*node, found.stateSets);
-        if (std::none_of(meshes.begin(), meshes.end(),
-                         [&](const StatedMesh& known) { return known.hasStateOf(found); }))
-            meshes.push_back(std::move(found));
+        if (_known.emplace(found.stateSets, mesh->getColors()).second) meshes.push_back(std::move(found));
     }
 
     std::vector<StatedMesh> meshes;
 
 private:
     StateSets _above;
+    bool _isInstanced;
+    std::set<std::pair<StateSets, SkinnedGeometry::Colors>> _known;
 };
 
 /// The drawable that visitors compile. Not DYNAMIC, and with vertex buffers: visitors compile only such drawables.
@@ -106,7 +105,6 @@ public:
         if (!pipeline) return;
         DeletionLists::make(state);
         if (pipeline->place(*_set, 0, 0).texture == 0 && !pipeline->evaluate(state, _batch, 0)) return;
-        const osg::State::ApplyModeProxy discard(state, GL_RASTERIZER_DISCARD, true);
         const unsigned int stackSize = state.getStateSetStackSize();
         const osg::ref_ptr<osg::StateSet> view = viewState();
         for (const StatedMesh& each : _meshes)
@@ -120,6 +118,7 @@ public:
             each.mesh->draw(renderInfo);
             state.popStateSetStackToSize(stackSize);
         }
+        state.applyMode(GL_RASTERIZER_DISCARD, false); // before the next frame clears
         state.get<osg::GLExtensions>()->glUseProgram(0);
         state.setLastAppliedProgramObject(nullptr);
         state.haveAppliedAttribute(osg::StateAttribute::PROGRAM);
@@ -145,6 +144,7 @@ private:
         else
             binding->set(_set, 0, 0);
         stateSet->setAttribute(binding);
+        stateSet->setMode(GL_RASTERIZER_DISCARD, osg::StateAttribute::ON | osg::StateAttribute::OVERRIDE);
         if (mesh.getColors() != SkinnedGeometry::Colors::White)
             stateSet->setDefine("POSE_COLORED", mesh.getColors() == SkinnedGeometry::Colors::Array ? "1" : "2");
         return stateSet;
@@ -200,9 +200,10 @@ void prepareFirstDraw(osg::NodeVisitor& visitor, const DrawnCharacter& character
     StateSets above;
     for (const osg::Node* node : visitor.getNodePath())
         if (node != &character.node) addStateSet(*node, above);
-    MeshCollector collector(std::move(above));
+    const bool isInstanced = known.size() == 1;
+    MeshCollector collector(std::move(above), isInstanced);
     character.node.accept(collector);
-    known.push_back(new FirstDraw(character, std::move(collector.meshes), known.size() == 1));
+    known.push_back(new FirstDraw(character, std::move(collector.meshes), isInstanced));
     visitor.apply(static_cast<osg::Drawable&>(*known.back()));
 }
 

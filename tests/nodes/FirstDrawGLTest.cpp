@@ -144,9 +144,15 @@ TEST_F(FirstDrawGLTest, aCompileTraversalBetweenFramesChangesNoPicture)
     drawAt(0.5);
     drawAt(0.5);
     const osg::ref_ptr<osg::Image> before = picture().copy();
+    // In clip space, where matrices that no frame has set would draw it, it covers the picture.
+    const osg::ref_ptr<AnimatedCharacter> wide = makeTestCharacter();
+    const osg::Vec3 corners[] = {{-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0}};
+    auto& mesh = dynamic_cast<SkinnedGeometry&>(*wide->getChild(0));
+    mesh.setVertexArray(new osg::Vec3Array(4, const_cast<osg::Vec3*>(corners)));
     for (int round = 0; round < 3; ++round)
     {
         compileAtOnce(root);
+        compileAtOnce(*wide);
         EXPECT_EQ(Picture::pixelsDifferent(*before, *shownNow()), 0) << "it draws into the frame, round " << round;
         drawAt(0.5);
         EXPECT_EQ(Picture::pixelsDifferent(*before, picture().image()), 0) << round;

@@ -3,6 +3,8 @@
 #include "support/TestCharacter.h"
 #include "support/ViewerGLTest.h"
 
+#include <osgGpuAnimation/nodes/Environment.h>
+
 #include <osg/MatrixTransform>
 #include <osg/Texture2D>
 #include <osgUtil/GLObjectsVisitor>
@@ -132,6 +134,28 @@ TEST_F(FirstDrawGLTest, theFirstFrameAfterACompileTraversalCompilesNothing)
         EXPECT_EQ(Picture::pixelsDifferent(*expected, picture().image()), 0);
         EXPECT_NO_GL_ERROR();
     }
+}
+
+// A light of the scene, surroundings, shadows: the traversal does not know the programs, so it links those of poses
+// alone.
+TEST_F(FirstDrawGLTest, noProgramIsCompiledInVain)
+{
+    const auto linked = [&](osg::Node& node)
+    {
+        const GlCallTrace trace(state());
+        compileAtOnce(node);
+        return trace.count("glLinkProgram");
+    };
+    beginAgain();
+    const int ofPlain = linked(*makeCharacters(1));
+    beginAgain();
+    const osg::ref_ptr<osg::Node> lit = makeCharacters(1);
+    lit->getOrCreateStateSet()->setMode(GL_LIGHT1, osg::StateAttribute::ON);
+    EXPECT_EQ(linked(*lit), ofPlain - 1);
+    beginAgain();
+    const osg::ref_ptr<Environment> surroundings = new Environment;
+    surroundings->addChild(makeCharacters(1));
+    EXPECT_EQ(linked(*surroundings), ofPlain - 1);
 }
 
 // Applications compile more than once: when they attach a scene, and after each change of the graphics context.

@@ -11,6 +11,7 @@
 
 #include <memory>
 #include <set>
+#include <string>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -40,6 +41,21 @@ osg::ref_ptr<osg::StateSet> viewState()
     stateSet->setMode(GL_LIGHTING, osg::StateAttribute::ON);
     stateSet->setMode(GL_LIGHT0, osg::StateAttribute::ON);
     return stateSet;
+}
+
+/// True if the frame will draw below these nodes with their state sets and a headlight: no node adds other state when
+/// it is culled, as effects, shadows and surroundings do, and no light of the scene is on. Programs for other state
+/// would be compiled in vain.
+bool hasKnownState(const osg::NodePath& path, const osg::Node& character)
+{
+    for (const osg::Node* node : path)
+    {
+        if (node != &character && (node->libraryName() != std::string("osg") || node->getCullCallback())) return false;
+        const osg::StateSet* stateSet = node->getStateSet();
+        for (GLenum light = GL_LIGHT0; stateSet && light <= GL_LIGHT7; ++light)
+            if (stateSet->getMode(light) & osg::StateAttribute::ON) return false;
+    }
+    return true;
 }
 
 /// A mesh with the state sets that apply to it, from the root on.
@@ -202,7 +218,7 @@ void prepareFirstDraw(osg::NodeVisitor& visitor, const DrawnCharacter& character
         if (node != &character.node) addStateSet(*node, above);
     const bool isInstanced = known.size() == 1;
     MeshCollector collector(std::move(above), isInstanced);
-    character.node.accept(collector);
+    if (hasKnownState(visitor.getNodePath(), character.node)) character.node.accept(collector);
     known.push_back(new FirstDraw(character, std::move(collector.meshes), isInstanced));
     visitor.apply(static_cast<osg::Drawable&>(*known.back()));
 }

@@ -71,12 +71,11 @@ std::string sourceName(const tinygltf::Image& image)
     return image.bufferView >= 0 ? ".bufferView: " : ".uri: ";
 }
 
-Result<PictureHeader> checkBytes(const Bytes& picture, MemoryBudget& budget)
+Result<PictureHeader> checkBytes(const Bytes& bytes, MemoryBudget& budget)
 {
-    Result<PictureHeader> header = readPictureHeader(picture);
+    Result<PictureHeader> header = readPictureHeader(bytes);
     if (!header) return header;
-    const std::size_t bytes = header.value().decodedBytes + header.value().decodedBytes / 3; // with mipmaps
-    if (!budget.take(bytes)) return tooLarge(budget, bytes);
+    if (!budget.take(header.value().decodedBytes)) return tooLarge(budget, header.value().decodedBytes);
     return header;
 }
 

@@ -2,7 +2,6 @@
 #include "gltf/scene/Textures.h"
 
 #include "gltf/data/MaterialMaps.h"
-#include "gltf/data/Mipmaps.h"
 #include "gltf/data/Picture.h"
 #include "gltf/file/Report.h"
 
@@ -218,36 +217,21 @@ osg::Image* Textures::imageWithoutGrey(int index)
     return rgb;
 }
 
-osg::Image* Textures::imageWithMipmaps(osg::Image& picture, ColorSpace space)
-{
-    const auto first = _imagesWithMipmaps.lower_bound({&picture, ColorSpace::Display});
-    const bool isUsed = first != _imagesWithMipmaps.end() && first->first.first == &picture;
-    osg::ref_ptr<osg::Image>& known = _imagesWithMipmaps[{&picture, space}];
-    if (known) return known;
-    known = isUsed ? new osg::Image(picture, osg::CopyOp::DEEP_COPY_ALL) : &picture;
-    addMipmaps(*known, space == ColorSpace::Srgb);
-    // OSG would otherwise allocate a GL texture again that it uses again, which is an error for one with mipmaps.
-    if (space != ColorSpace::Display) known->setInternalTextureFormat(internalFormat(*known, space));
-    return known;
-}
-
 osg::ref_ptr<osg::Texture2D> Textures::make(const tinygltf::Texture& source, ColorSpace space)
 {
     osg::Image* picture = space == ColorSpace::Display ? image(source.source) : imageWithoutGrey(source.source);
     if (!picture) return nullptr;
     const tinygltf::Sampler sampler =
         source.sampler < 0 ? tinygltf::Sampler() : _model.samplers[static_cast<std::size_t>(source.sampler)];
-    // glTF and OSG both use OpenGL's numbers; the schema has checked them, and -1 says that the file gives no filter.
-    const auto minFilter = sampler.minFilter < 0 ? osg::Texture::LINEAR_MIPMAP_LINEAR
-                                                 : static_cast<osg::Texture::FilterMode>(sampler.minFilter);
-    if (minFilter != osg::Texture::LINEAR && minFilter != osg::Texture::NEAREST)
-        picture = imageWithMipmaps(*picture, space);
     osg::ref_ptr<osg::Texture2D> texture = new osg::Texture2D(picture);
     if (space != ColorSpace::Display) texture->setInternalFormat(internalFormat(*picture, space));
     texture->setName(source.name.empty() ? picture->getName() : source.name);
+    // glTF and OSG both use OpenGL's numbers; the schema has checked them, and -1 says that the file gives no filter.
     texture->setWrap(osg::Texture::WRAP_S, static_cast<osg::Texture::WrapMode>(sampler.wrapS));
     texture->setWrap(osg::Texture::WRAP_T, static_cast<osg::Texture::WrapMode>(sampler.wrapT));
-    texture->setFilter(osg::Texture::MIN_FILTER, minFilter);
+    texture->setFilter(osg::Texture::MIN_FILTER, sampler.minFilter < 0
+                                                     ? osg::Texture::LINEAR_MIPMAP_LINEAR
+                                                     : static_cast<osg::Texture::FilterMode>(sampler.minFilter));
     texture->setFilter(osg::Texture::MAG_FILTER, sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST
                                                      ? osg::Texture::NEAREST
                                                      : osg::Texture::LINEAR);

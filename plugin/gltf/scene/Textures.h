@@ -9,7 +9,6 @@
 #include <map>
 #include <memory>
 #include <tuple>
-#include <utility>
 
 namespace osgGpuAnimation::gltf
 {
@@ -25,7 +24,7 @@ enum class ColorSpace
 /// One osg::Texture2D for each picture, sampler and colour space in use, with the sampler's filters and wrapping (glTF
 /// 2.0, section 3.8): textures of the file that agree in them share it. Those of one picture share the osg::Image. For
 /// Srgb and Linear, grey pictures become RGB, because GL's core profile has no grey formats: they share a second
-/// osg::Image. A picture that textures with mipmaps use has them, see addMipmaps(), in an osg::Image for each space.
+/// osg::Image.
 ///
 /// Up to four threads decode the pictures of all materials while the import reads clips and meshes, because decoding
 /// takes a large part of the load. Base colours come first.
@@ -46,7 +45,6 @@ private:
 
     osg::Image* image(int index);
     osg::Image* imageWithoutGrey(int index);
-    osg::Image* imageWithMipmaps(osg::Image& picture, ColorSpace space);
     osg::ref_ptr<osg::Texture2D> make(const tinygltf::Texture& source, ColorSpace space);
 
     const tinygltf::Model& _model;
@@ -57,7 +55,6 @@ private:
     std::map<std::tuple<int, int, ColorSpace>, osg::ref_ptr<osg::Texture2D>> _textures;
     std::map<int, osg::ref_ptr<osg::Image>> _images;            ///< the requested ones; null if damaged
     std::map<int, osg::ref_ptr<osg::Image>> _imagesWithoutGrey; ///< the grey ones of _images, as RGB or RGBA
-    std::map<std::pair<const osg::Image*, ColorSpace>, osg::ref_ptr<osg::Image>> _imagesWithMipmaps; ///< by picture
 };
 
 } // namespace osgGpuAnimation::gltf

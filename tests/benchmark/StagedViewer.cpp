@@ -3,6 +3,7 @@
 
 #include <osgGpuAnimation/gpu/EglGraphicsContext.h>
 
+#include <osgUtil/GLObjectsVisitor>
 #include <osgViewer/Renderer>
 
 #include <sstream>
@@ -56,6 +57,15 @@ void StagedViewer::lookFrom(const osg::Vec3d& eye, const osg::Vec3d& centre, dou
     camera->setViewMatrixAsLookAt(eye, centre, osg::Vec3d(0, 0, 1));
     camera->setProjectionMatrixAsPerspective(fieldOfView, viewport->width() / viewport->height(), 1.0,
                                              10.0 * _sight.radius());
+}
+
+void StagedViewer::compile(osg::Node& scene)
+{
+    _context->makeCurrent();
+    osgUtil::GLObjectsVisitor visitor;
+    visitor.setState(_context->getState());
+    visitor.compile(scene);
+    glFinish();
 }
 
 void StagedViewer::lookAside()

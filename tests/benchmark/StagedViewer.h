@@ -41,6 +41,9 @@ public:
     /// Looks from a place to another one, in place of the whole scene. fieldOfView: vertical, in degrees.
     void lookFrom(const osg::Vec3d& eye, const osg::Vec3d& centre, double fieldOfView);
 
+    /// Runs OSG's compile traversal over a scene, until the GPU has finished. Call it after the first frame.
+    void compile(osg::Node& scene);
+
     /// From the next frame on the scene is culled and drawn as before, but outside the picture: llvmpipe keeps up to 36
     /// MiB of triangles per picture, which would distort the memory of the scene.
     void lookAside();

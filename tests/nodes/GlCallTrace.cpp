@@ -141,6 +141,8 @@ struct DrawInstancedTag;
 struct DrawBaseInstanceTag;
 struct AttributeDivisorTag;
 struct UniformTag;
+struct CompileTag;
+struct LinkTag;
 
 /// One wrapped pointer of GLExtensions: Tag tells pointers of one type apart.
 template <typename Tag, typename Return, typename... Arguments>
@@ -197,6 +199,8 @@ void forEachPointer(osg::GLExtensions& gl, Function function)
     function(static_cast<AttributeDivisorTag*>(nullptr), gl.glVertexAttribDivisor, "glVertexAttribDivisor");
     function(static_cast<UniformTag*>(nullptr), gl.glUniform1i, "glUniform1i");
     function(static_cast<GetUniformLocationTag*>(nullptr), gl.glGetUniformLocation, "glGetUniformLocation");
+    function(static_cast<CompileTag*>(nullptr), gl.glCompileShader, "glCompileShader");
+    function(static_cast<LinkTag*>(nullptr), gl.glLinkProgram, "glLinkProgram");
 }
 
 struct Wrapper

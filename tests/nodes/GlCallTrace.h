@@ -11,10 +11,10 @@ namespace osgGpuAnimation
 {
 
 /// Counts GL calls that stall or that cost by the call, while it lives: queries of state (glGet*), glFinish, glFlush,
-/// read-backs, maps, GL queries, waits; and draws, feedback, buffer uploads, uniforms and divisors of attributes. The
-/// functions that the libraries link to are replaced by this program's own of the same name, those that OSG fetches by
-/// pointer in its GLExtensions. At each feedback draw it asks GL for every binding point, since a buffer that feedback
-/// writes may have no other.
+/// read-backs, maps, GL queries, waits; and draws, feedback, buffer uploads, compiled shaders, linked programs,
+/// uniforms and divisors of attributes. The functions that the libraries link to are replaced by this program's own of
+/// the same name, those that OSG fetches by pointer in its GLExtensions. At each feedback draw it asks GL for every
+/// binding point, since a buffer that feedback writes may have no other.
 class GlCallTrace
 {
 public:

@@ -5,6 +5,7 @@
 #include <osgGpuAnimation/animation/ClipBuilder.h>
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/nodes/frame/CullScopes.h>
+#include <osgGpuAnimation/nodes/frame/FirstDraw.h>
 #include <osgGpuAnimation/nodes/frame/PoseStage.h>
 #include <osgGpuAnimation/nodes/frame/WorldTargets.h>
 #include <osgGpuAnimation/nodes/lod/LodSelection.h>
@@ -461,6 +462,7 @@ void AnimatedCharacter::traverse(osg::NodeVisitor& visitor)
             traverseWithBounds(*this, now, visitor);
         else if (!keepFlattenedPlace(*this, visitor))
             osg::MatrixTransform::traverse(visitor);
+        prepareFirstDraw(visitor, {*this, *_controller, _axes->rootMatrix, _pixelError, _isDrawnTogether});
         return;
     }
     const DepthPass pass(*cullVisitor);

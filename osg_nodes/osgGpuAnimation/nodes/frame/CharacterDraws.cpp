@@ -43,12 +43,6 @@ bool isOrderedByState(const osg::StateSet* stateSet)
     return !stateSet->useRenderBinDetails() || isOrderedByState(osgUtil::RenderBin::getDefaultRenderBinSortMode());
 }
 
-bool canBeDrawnTogether(const SkinnedGeometry& mesh)
-{
-    return !mesh.getCullCallback() && !mesh.getDrawCallback() && mesh.getBoundingBox().valid() &&
-           isOrderedByState(mesh.getStateSet()) && !InstancedDraw::isRefusedBy(mesh);
-}
-
 bool canDrawTogether(osgUtil::CullVisitor& visitor)
 {
     const osg::CullSettings::ComputeNearFarMode mode = visitor.getComputeNearFarMode();
@@ -65,6 +59,12 @@ SkinnedGeometry* asShared(osg::Node* child)
 }
 
 } // namespace
+
+bool canBeDrawnTogether(const SkinnedGeometry& mesh)
+{
+    return !mesh.getCullCallback() && !mesh.getDrawCallback() && mesh.getBoundingBox().valid() &&
+           isOrderedByState(mesh.getStateSet()) && !InstancedDraw::isRefusedBy(mesh);
+}
 
 bool CharacterDraws::Group::holds(const Group& other) const
 {

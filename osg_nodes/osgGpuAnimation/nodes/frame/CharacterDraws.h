@@ -56,6 +56,9 @@ struct DrawnCharacter
     bool isDrawnTogether; ///< true: may share instanced draws with other characters
 };
 
+/// True if characters may share instanced draws of a mesh that is their child.
+bool canBeDrawnTogether(const SkinnedGeometry& mesh);
+
 /// The draws of one cull visitor's characters in a frame. Characters with the same meshes and state, in a bin sorted by
 /// state, form a group: the first is drawn normally, all others by one instanced draw per mesh primitive.
 ///

@@ -347,9 +347,10 @@ void ShaderPermutations::apply(osg::State& state) const
     state.haveAppliedAttribute(osg::StateAttribute::PROGRAM);
 }
 
+// A compile traversal applies no defines, and every mesh that moves has some: prepareFirstDraw() compiles its programs.
 void ShaderPermutations::compileGLObjects(osg::State& state) const
 {
-    variant(ShaderKey())->compileGLObjects(state);
+    if (!_skin) variant(ShaderKey())->compileGLObjects(state);
 }
 
 void ShaderPermutations::setThreadSafeRefUnref(bool threadSafe)

@@ -256,8 +256,7 @@ private:
                 std::uint32_t place = 0;
                 const auto vectorAt = [&](std::int32_t column, const Range& range)
                 { return glm::vec4(range.base + range.step * numbers(k, column, place), 0.0f); };
-                if (track.translation >= 0)
-                    transform.translation = vectorAt(track.translation, track.translationRange);
+                if (track.translation >= 0) transform.translation = vectorAt(track.translation, track.translationRange);
                 if (track.scale >= 0) transform.scale = vectorAt(track.scale, track.scaleRange);
                 if (track.rotation < 0) continue;
                 const glm::vec3 components = (numbers(k, track.rotation, place) - rotationZero) * rotationStep;
@@ -332,8 +331,8 @@ void transferClip(ValueStream& stream, std::int32_t version, ClipParts& clip, st
 }
 
 /// A clip that cannot be created makes the file unreadable; the message names it. Compact clips store their tracks and
-/// records (see CompactTracks), the transforms at rest and the morph weights. Memory holds all their keyframes, so these
-/// are limited.
+/// records (see CompactTracks), the transforms at rest and the morph weights. Memory holds all their keyframes, so
+/// these are limited.
 void transferClips(ValueStream& stream, std::int32_t version, std::size_t jointCount,
                    const std::vector<MorphWeights>& morphs, std::vector<Clip>& clips)
 {

@@ -31,8 +31,7 @@ std::size_t Subject::vertexCount() const
     return count;
 }
 
-Result<Subject> loadSubject(const std::string& name, const std::string& fileName, bool fixedLighting,
-                            double compact)
+Result<Subject> loadSubject(const std::string& name, const std::string& fileName, bool fixedLighting, double compact)
 {
     std::ifstream stream(fileName, std::ios::binary);
     const std::string bytes(std::istreambuf_iterator<char>(stream), {});

@@ -13,8 +13,8 @@ namespace osgGpuAnimation
 namespace
 {
 
-constexpr std::array<glm::vec4 JointTransform::*, 3> partsOfTracks{
-    &JointTransform::translation, &JointTransform::rotation, &JointTransform::scale};
+constexpr std::array<glm::vec4 JointTransform::*, 3> partsOfTracks{&JointTransform::translation,
+                                                                   &JointTransform::rotation, &JointTransform::scale};
 constexpr std::size_t rotationPart = 1;
 
 } // namespace

@@ -54,10 +54,7 @@ public:
     }
 
 private:
-    glm::uvec4::value_type& word()
-    {
-        return _record[_bit / CompactTracks::texelBits][static_cast<int>(_bit / 32 % 4)];
-    }
+    glm::uvec4::value_type& word() { return _record[_bit / CompactTracks::texelBits][static_cast<int>(_bit / 32 % 4)]; }
 
     glm::uvec4* _record;
     std::uint32_t _bit;
@@ -126,8 +123,8 @@ void CompactTracks::Part::setRange(const glm::vec3& least, const glm::vec3& most
     for (int axis = 0; axis < 3; ++axis)
     {
         const float extent = most[axis] - least[axis];
-        step[axis] = bits[axis] == 0 ? 0.0f : std::ldexp(extent, -static_cast<int>(bits[axis]));
-        base[axis] = least[axis] + 0.5f * (bits[axis] == 0 ? extent : step[axis]);
+        step[axis] = bits[axis] == 0 ? 0.0f : extent / static_cast<float>((1u << bits[axis]) - 1u);
+        base[axis] = bits[axis] == 0 ? least[axis] + 0.5f * extent : least[axis];
     }
 }
 
@@ -225,7 +222,8 @@ bool CompactTracks::placeParts()
         if (texel == used.end()) texel = used.insert(texel, 0u);
         const auto index = static_cast<std::size_t>(texel - used.begin());
         // A part without bits may lie at the end of a full texel: it reads none of its bits.
-        run.part->firstBit = static_cast<std::int32_t>(index * texelBits + std::min<std::size_t>(*texel, texelBits - 1));
+        run.part->firstBit =
+            static_cast<std::int32_t>(index * texelBits + std::min<std::size_t>(*texel, texelBits - 1));
         *texel += run.bits;
     }
     recordSize = used.size();

@@ -118,7 +118,8 @@ void PackedKeyframes::placeCompactTrack(const Clip& clip, std::size_t track, con
     {
         const auto bit = static_cast<std::uint32_t>(rotation.firstBit);
         const std::uint32_t texel = bit / CompactTracks::texelBits;
-        const glm::uvec3 ranges = rotation.ranges | rotation.bits << static_cast<std::uint32_t>(POSE_ROTATION_BITS_SHIFT);
+        const glm::uvec3 ranges = rotation.ranges | rotation.bits
+                                                        << static_cast<std::uint32_t>(POSE_ROTATION_BITS_SHIFT);
         entry = {ranges.x | texel % 64u << POSE_ROTATION_PLACE_SHIFT,
                  ranges.y | bit % CompactTracks::texelBits << POSE_ROTATION_PLACE_SHIFT,
                  ranges.z | rotation.place << POSE_ROTATION_PLACE_SHIFT | texel / 64u << POSE_ROTATION_HIGH_SHIFT, 0u};

@@ -50,8 +50,9 @@ void PoseDistance::from(const std::vector<JointTransform>& pose)
 PoseDistance::Worst PoseDistance::to(const std::vector<JointTransform>& pose)
 {
     Worst worst;
-    const auto infinite = [&](std::size_t joint)
-    { return Worst{std::numeric_limits<double>::infinity(), joint, glm::vec3(0.0f)}; };
+    const auto infinite = [&](std::size_t joint) {
+        return Worst{std::numeric_limits<double>::infinity(), joint, glm::vec3(0.0f)};
+    };
     if (hasOtherWeights(pose)) return infinite(0);
     Pose::jointToModel(_set, pose, AffineMatrix(), _joints);
     float farthest = 0.0f; // squared

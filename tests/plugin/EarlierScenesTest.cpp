@@ -147,7 +147,7 @@ osg::ref_ptr<osg::Group> makeScene(const ScratchFolder& folder)
 }
 
 /// The same states, poses and bounds, now and later.
-void expectSamePlayback(AnimationController first, AnimationController second, float tolerance)
+void expectSamePlayback(AnimationController first, AnimationController second, float tolerance = 1e-6f)
 {
     ASSERT_EQ(second.layerCount(), first.layerCount());
     for (std::size_t i = 0; i < first.layerCount(); ++i)
@@ -318,7 +318,6 @@ TEST_P(EarlierScenesTest, updatesAdvanceOnce)
             scene->accept(visitor);
         }
     for (const unsigned int child : {0u, 2u, 3u})
-        // The compact clips of the fixtures have 20 bits a number, and all their keyframes.
         expectSameCharacter(characterIn(*expected, child), characterIn(*found, child), child == 3u ? 1e-5f : 0.0f);
     const auto controllerOf = [](osg::Group& scene, std::size_t instance)
     { return dynamic_cast<AnimatedCrowd&>(*scene.getChild(1)).getInstances().controllerCopy(instance); };

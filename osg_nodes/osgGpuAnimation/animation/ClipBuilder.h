@@ -76,7 +76,7 @@ struct CompactedSet
 };
 
 /// Makes the clips of a set smaller, on the GPU and on the CPU: parts that hardly move become constant, keyframes that
-/// their neighbours predict are dropped, and values are rounded to 20 bits of their range (see CompactTracks).
+/// their neighbours predict are dropped, and each number of a part takes as few bits as the error allows, 0 to 20.
 ///
 ///     const auto compact = compactClips(set, entryBoxes, {1e-4 * longestSide(set, entryBoxes)});
 ///

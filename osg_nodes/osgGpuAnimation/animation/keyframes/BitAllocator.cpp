@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/keyframes/BitAllocator.h>
 
+#include <osgGpuAnimation/animation/Pose.h>
+
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
@@ -73,19 +75,13 @@ void BitAllocator::round(std::size_t joint)
     }
 }
 
-/// Calls visit(number) for the moving numbers of the joint and its ancestors that may have more bits.
+/// Calls visit(number) for the moving numbers of the joint that may have more bits.
 template <typename Visit>
-void BitAllocator::forNumbersAbove(std::size_t joint, Visit visit) const
+void BitAllocator::forNumbers(std::size_t joint, Visit visit) const
 {
-    for (int above = static_cast<int>(joint); above >= 0;
-         above = _set.skeleton().joint(static_cast<std::size_t>(above)).parent)
-        for (std::size_t part = 0; part < partCount; ++part)
-        {
-            if (!_moving[static_cast<std::size_t>(above)][part].isMoving) continue;
-            const glm::uvec3 bits = bitsOf(static_cast<std::size_t>(above), part);
-            for (int axis = 0; axis < 3; ++axis)
-                if (bits[axis] < CompactTracks::mostBits) visit(Number{static_cast<std::size_t>(above), part, axis});
-        }
+    for (std::size_t part = 0; part < partCount; ++part)
+        for (int axis = 0; _moving[joint][part].isMoving && axis < 3; ++axis)
+            if (bitsOf(joint, part)[axis] < CompactTracks::mostBits) visit(Number{joint, part, axis});
 }
 
 float BitAllocator::largestError(const Number& number) const
@@ -100,11 +96,11 @@ float BitAllocator::largestError(const Number& number) const
     return 0.5f * step;
 }
 
-/// The way of the joint's point if the number is off by its largest error.
-double BitAllocator::effect(const std::vector<JointTransform>& pose, const Number& number, std::size_t joint,
-                            const glm::vec3& point)
+/// The way of a point in the joint's space if the number is off by its largest error. transform: the joint's.
+double BitAllocator::effect(const JointTransform& transform, const Number& number, const glm::vec3& point,
+                            const std::vector<AffineMatrix>& jointToModel) const
 {
-    JointTransform off = pose[number.joint];
+    JointTransform off = transform;
     const float error = largestError(number);
     if (number.part == rotationPart)
     {
@@ -115,17 +111,10 @@ double BitAllocator::effect(const std::vector<JointTransform>& pose, const Numbe
     }
     else
         (off.*partsOfTracks[number.part])[number.axis] += error;
-
-    glm::vec3 right = point, wrong = point;
-    for (int above = static_cast<int>(joint); above >= 0;)
-    {
-        const auto index = static_cast<std::size_t>(above);
-        const AffineMatrix matrix = pose[index].toMatrix();
-        right = matrix.transformPoint(right);
-        wrong = (index == number.joint ? off.toMatrix() : matrix).transformPoint(wrong);
-        above = _set.skeleton().joint(index).parent;
-    }
-    return static_cast<double>(glm::distance(right, wrong));
+    const glm::vec3 way = off.toMatrix().transformPoint(point) - transform.toMatrix().transformPoint(point);
+    const int parent = _set.skeleton().joint(number.joint).parent;
+    return static_cast<double>(
+        glm::length(parent < 0 ? way : jointToModel[static_cast<std::size_t>(parent)].transformVector(way)));
 }
 
 void BitAllocator::addBit(const Number& number)
@@ -144,34 +133,57 @@ void BitAllocator::begin(const PoseDistance& distance, double most)
 {
     const std::vector<JointTransform> pose(_rounded.begin(),
                                            _rounded.begin() + static_cast<std::ptrdiff_t>(_set.trackCount()));
-    for (std::size_t joint = 0; joint < _moving.size(); ++joint)
-        forNumbersAbove(joint,
-                        [&](const Number& number)
-                        {
-                            const glm::vec3& point = distance.points(joint).back();
-                            while (bitsOf(number.joint, number.part)[number.axis] < CompactTracks::mostBits &&
-                                   effect(pose, number, joint, point) > most)
-                                addBit(number);
-                        });
-    for (std::size_t joint = 0; joint < _moving.size(); ++joint)
+    std::vector<AffineMatrix> jointToModel;
+    Pose::jointToModel(_set, pose, AffineMatrix(), jointToModel);
+    // Of each joint a point that it moves far: its own one, or that of a child. In its own space.
+    std::vector<glm::vec3> far(_moving.size());
+    for (std::size_t joint = 0; joint < far.size(); ++joint)
+        far[joint] = distance.points(joint).back();
+    for (std::size_t joint = far.size(); joint-- > 0;)
+    {
+        forNumbers(joint,
+                   [&](const Number& number)
+                   {
+                       while (bitsOf(joint, number.part)[number.axis] < CompactTracks::mostBits &&
+                              effect(pose[joint], number, far[joint], jointToModel) > most)
+                           addBit(number);
+                   });
         round(joint);
+        const int parent = _set.skeleton().joint(joint).parent;
+        if (parent < 0) continue;
+        const glm::vec3 inParent = pose[joint].toMatrix().transformPoint(far[joint]);
+        glm::vec3& farther = far[static_cast<std::size_t>(parent)];
+        if (glm::length(inParent) > glm::length(farther)) farther = inParent;
+    }
 }
 
-bool BitAllocator::raise(const std::vector<JointTransform>& pose, const PoseDistance::Worst& worst)
+bool BitAllocator::raise(const std::vector<JointTransform>& pose, const PoseDistance& distance,
+                         const PoseDistance::Worst& worst)
 {
-    Number best;
+    // Numbers of nearly the same effect are raised together: one at a time takes long for deep skeletons.
+    constexpr double share = 0.9;
+    _effects.clear();
     double largest = 0.0;
-    forNumbersAbove(worst.joint,
-                    [&](const Number& number)
-                    {
-                        const double way = effect(pose, number, worst.joint, worst.point);
-                        if (!(way > largest)) return;
-                        largest = way;
-                        best = number;
-                    });
+    glm::vec3 point = worst.point;
+    for (int joint = static_cast<int>(worst.joint); joint >= 0;)
+    {
+        const auto index = static_cast<std::size_t>(joint);
+        forNumbers(index,
+                   [&](const Number& number)
+                   {
+                       _effects.emplace_back(effect(pose[index], number, point, distance.jointToModel()), number);
+                       largest = std::max(largest, _effects.back().first);
+                   });
+        point = pose[index].toMatrix().transformPoint(point);
+        joint = _set.skeleton().joint(index).parent;
+    }
     if (!(largest > 0.0)) return false;
-    addBit(best);
-    round(best.joint);
+    for (const auto& [way, number] : _effects)
+    {
+        if (!(way >= share * largest)) continue;
+        addBit(number);
+        round(number.joint);
+    }
     return true;
 }
 

@@ -5,24 +5,25 @@
 #include <osgGpuAnimation/animation/keyframes/PoseDistance.h>
 
 #include <array>
+#include <utility>
 #include <vector>
 
 namespace osgGpuAnimation
 {
 
 /// Chooses how many bits each number of a compact clip takes: it begins with few, and each raise() gives one more to
-/// the number whose rounding moves a point most.
+/// the numbers whose rounding moves a point most.
 class BitAllocator
 {
 public:
     /// wanted: trackCount() transforms per keyframe; they are rounded here. The set must outlive this object.
     BitAllocator(const AnimationSet& set, std::vector<JointTransform> wanted);
 
-    /// The bits with which no number alone moves a point of the first keyframe farther than that.
+    /// Begins with the bits with which no number alone moves a point of the first keyframe farther than `most`.
     void begin(const PoseDistance& distance, double most);
-    /// Gives one number more bits. pose: a mix of rounded keyframes. worst: a point of it that is too far off.
-    /// False: all numbers that move the point have the most bits.
-    bool raise(const std::vector<JointTransform>& pose, const PoseDistance::Worst& worst);
+    /// Gives numbers that move the point more bits. pose: a mix of rounded keyframes, the last one of distance.to().
+    /// False: all of them have the most bits.
+    bool raise(const std::vector<JointTransform>& pose, const PoseDistance& distance, const PoseDistance::Worst& worst);
 
     /// The rounded keyframes.
     const std::vector<JointTransform>& rounded() const { return _rounded; }
@@ -46,11 +47,11 @@ private:
     };
 
     template <typename Visit>
-    void forNumbersAbove(std::size_t joint, Visit visit) const;
+    void forNumbers(std::size_t joint, Visit visit) const;
     glm::uvec3 bitsOf(std::size_t joint, std::size_t part) const;
     float largestError(const Number& number) const;
-    double effect(const std::vector<JointTransform>& pose, const Number& number, std::size_t joint,
-                  const glm::vec3& point);
+    double effect(const JointTransform& transform, const Number& number, const glm::vec3& point,
+                  const std::vector<AffineMatrix>& jointToModel) const;
     void addBit(const Number& number);
     void setBits(std::size_t joint, std::size_t part, const glm::uvec3& bits);
     void round(std::size_t joint);
@@ -59,6 +60,7 @@ private:
     std::vector<JointTransform> _wanted, _rounded;
     std::vector<std::array<Moving, partCount>> _moving; ///< by joint: translation, rotation, scale
     CompactTracks _tracks;
+    std::vector<std::pair<double, Number>> _effects; ///< of the last raise()
 };
 
 } // namespace osgGpuAnimation

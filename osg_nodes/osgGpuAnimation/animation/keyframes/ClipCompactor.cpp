@@ -208,7 +208,7 @@ bool ClipCompactor::chooseBits(const Clip& clip, const std::vector<std::size_t>&
             mix(&bits.rounded()[k * stride], &bits.rounded()[next * stride], share, _madePose);
             const PoseDistance::Worst worst = _distance.to(_madePose);
             if (worst.distance <= _tolerance) return true;
-            isPossible = std::isfinite(worst.distance) && bits.raise(_madePose, worst);
+            isPossible = std::isfinite(worst.distance) && bits.raise(_madePose, _distance, worst);
             isRaised = true;
         }
         return false;

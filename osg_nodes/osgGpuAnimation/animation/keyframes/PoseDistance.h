@@ -27,6 +27,8 @@ public:
     /// pose: one transform per track, for the next calls of to(), which compare with it.
     void from(const std::vector<JointTransform>& pose);
     Worst to(const std::vector<JointTransform>& pose);
+    /// The joints' matrices in that pose.
+    const std::vector<AffineMatrix>& jointToModel() const { return _joints; }
 
     /// The points of a joint in its own space: its origin, and the corners of its entries' boxes.
     const std::vector<glm::vec3>& points(std::size_t joint) const { return _points[joint]; }

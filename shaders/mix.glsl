@@ -62,8 +62,9 @@ uint placeIn(uint record, uint part)
     return isConstant(part) ? part & ~POSE_ADDRESS_IS_CONSTANT : record + part;
 }
 
-// Three numbers of these counts of bits, the first one from that bit of the texel on; then the two bits after them.
-uvec4 packedNumbers(uvec4 texel, uint bit, uvec3 bits)
+// Three numbers of these counts of bits, the first one from that bit of the texel on; then the two bits after them. They are
+// signed since processors without a conversion from unsigned integers to floats take several instructions for it.
+ivec4 packedNumbers(uvec4 texel, uint bit, uvec3 bits)
 {
     uint word = bit >> 5;
     uint shift = bit & 31u;
@@ -73,22 +74,22 @@ uvec4 packedNumbers(uvec4 texel, uint bit, uvec3 bits)
     uint high = (words.y >> shift) | (words.z << 1 << (31u - shift));
     uint second = (low >> bits.x) | (high << 1 << (31u - bits.x));
     uint third = (second >> bits.y) | (high >> bits.x << 1 << (31u - bits.y));
-    return uvec4(uvec3(low, second, third) & masks, third >> bits.z & 3u);
+    return ivec4(uvec4(uvec3(low, second, third) & masks, third >> bits.z & 3u));
 }
 
 vec4 packedRotation(uvec4 texel, uvec3 parts)
 {
     uvec3 bits = (parts >> POSE_ROTATION_BITS_SHIFT) & 31u;
-    uvec4 numbers = packedNumbers(texel, parts.y >> POSE_ROTATION_PLACE_SHIFT, bits);
-    uvec3 ranges = parts & 0xFFFFFu;
-    vec3 least = vec3(ranges & 1023u) * POSE_ROTATION_RANGE_UNIT - 1.0;
+    ivec4 numbers = packedNumbers(texel, parts.y >> POSE_ROTATION_PLACE_SHIFT, bits);
+    ivec3 ranges = ivec3(parts & 0xFFFFFu);
+    vec3 least = vec3(ranges & 1023) * POSE_ROTATION_RANGE_UNIT - 1.0;
     vec3 extent = (vec3(ranges >> 10) + 1.0) * POSE_ROTATION_RANGE_UNIT;
     vec3 power = uintBitsToFloat((127u - bits) << 23); // 2^-bits
     vec3 v = mix(least + extent * power * (vec3(numbers.xyz) + 0.5), vec3(ranges) * POSE_ROTATION_FINE_UNIT - 1.0,
                  equal(bits, uvec3(0u)));
     float rest = sqrt(max(1.0 - dot(v, v), 0.0));
     uint omitted = parts.z >> POSE_ROTATION_PLACE_SHIFT & 7u;
-    if (omitted == POSE_ROTATION_LARGEST) omitted = numbers.w;
+    if (omitted == POSE_ROTATION_LARGEST) omitted = uint(numbers.w);
     return vec4(omitted == 0u ? rest : v.x, omitted == 1u ? rest : (omitted == 0u ? v.x : v.y),
                 omitted == 2u ? rest : (omitted == 3u ? v.z : v.y), omitted == 3u ? rest : v.z);
 }

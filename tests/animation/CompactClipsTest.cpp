@@ -254,6 +254,28 @@ TEST(CompactTracksTest, recordsHaveALargestSize)
     }
 }
 
+// Applications attach nodes to joints without vertices, too.
+TEST(CompactClipsTest, jointsWithoutVerticesTurnAsTheyDid)
+{
+    ClipBuilder builder(twoJoints(), {});
+    Channel channel{Channel::Path::Rotation, Channel::Interpolation::Linear, 1, {0, 1, 2}, {}};
+    for (const double x : {0.0, 0.4, -0.3})
+        channel.values.insert(channel.values.end(), {0.0, 0.0, std::sin(x), std::cos(x)});
+    ASSERT_TRUE(builder.add(channel));
+    const auto exact = setOf(twoJoints(), {}, builder.build("sway"));
+    const EntryBoxes none(exact->paletteSize());
+    const double size = longestSide(*exact, none);
+    const Clip made = compactClips(*exact, none, {1e-3 * size}).value().set->clips()[0];
+    ASSERT_TRUE(made.compactTracks());
+    ASSERT_EQ(made.keyframeCount(), 3u);
+    for (std::size_t k = 0; k < 3; ++k)
+    {
+        const glm::vec4 &p = made.at(k, 1)->rotation, &q = exact->clips()[0].at(k, 1)->rotation;
+        // Half the size away, a turn by an angle moves a point by that angle, which is twice the difference.
+        EXPECT_LE(2.0 * 0.5 * apart(p, q), 1.01e-3) << k;
+    }
+}
+
 // Near the joint a small turn does not count, far from it it does: the bits are those that the vertices need.
 TEST(CompactClipsTest, farVerticesHaveMoreBits)
 {

@@ -77,13 +77,13 @@ std::string shared(const char* name)
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, CompactModelsTest,
-                         ::testing::Values(ModelCase{"Knight", shared("Knight/Knight.glb"), 1e-4, 400000},
-                                           ModelCase{"Knight, coarse", shared("Knight/Knight.glb"), 1e-3, 330000},
-                                           ModelCase{"Knight, fine", shared("Knight/Knight.glb"), 1e-5, 520000},
+                         ::testing::Values(ModelCase{"Knight", shared("Knight/Knight.glb"), 1e-4, 450000},
+                                           ModelCase{"Knight, coarse", shared("Knight/Knight.glb"), 1e-3, 340000},
+                                           ModelCase{"Knight, fine", shared("Knight/Knight.glb"), 1e-5, 540000},
                                            ModelCase{"Fox", shared("Fox/Fox.glb"), 1e-4, 13000},
-                                           ModelCase{"CesiumMan", shared("CesiumMan/CesiumMan.glb"), 1e-4, 7500},
-                                           ModelCase{"Wanderer", OSGGPUANIMATION_SCENES "/Wanderer.glb", 1e-4, 27000},
-                                           ModelCase{"Serpent", OSGGPUANIMATION_SCENES "/Serpent.glb", 1e-4, 19000}));
+                                           ModelCase{"CesiumMan", shared("CesiumMan/CesiumMan.glb"), 1e-4, 8000},
+                                           ModelCase{"Wanderer", OSGGPUANIMATION_SCENES "/Wanderer.glb", 1e-4, 29000},
+                                           ModelCase{"Serpent", OSGGPUANIMATION_SCENES "/Serpent.glb", 1e-4, 22000}));
 
 } // namespace
 

@@ -24,6 +24,9 @@ constexpr double beginningShare = 0.5;
 constexpr double droppedShares[] = {0.75, 0.1};
 constexpr int attempts = 4;
 
+/// Of the model's size: something attached to a joint reaches that far.
+constexpr double reachShare = 0.5;
+
 /// True if all values of a track are within `most` of a value.
 template <typename Distance>
 bool isNear(const std::vector<JointTransform>& data, std::size_t track, std::size_t stride, const JointTransform& value,
@@ -37,8 +40,8 @@ bool isNear(const std::vector<JointTransform>& data, std::size_t track, std::siz
 } // namespace
 
 ClipCompactor::ClipCompactor(const AnimationSet& set, const EntryBoxes& entryBoxes, double size, double tolerance)
-    : _set(set), _tolerance(tolerance), _size(size), _distance(set, entryBoxes), _exactPose(set.trackCount()),
-      _madePose(set.trackCount())
+    : _set(set), _tolerance(tolerance), _size(size), _distance(set, entryBoxes, reachShare * size),
+      _exactPose(set.trackCount()), _madePose(set.trackCount())
 {
 }
 

@@ -12,9 +12,19 @@
 namespace osgGpuAnimation
 {
 
-PoseDistance::PoseDistance(const AnimationSet& set, const EntryBoxes& entryBoxes) : _set(set)
+PoseDistance::PoseDistance(const AnimationSet& set, const EntryBoxes& entryBoxes, double reach) : _set(set)
 {
     _points.assign(set.skeleton().jointCount(), {glm::vec3(0.0f)});
+    Pose::jointToModel(set, set.restPose(), AffineMatrix(), _joints);
+    for (std::size_t joint = 0; joint < _points.size(); ++joint)
+        for (int axis = 0; axis < 3; ++axis)
+        {
+            glm::vec3 point(0.0f);
+            point[axis] = 1.0f;
+            // A joint of the scale 0 shows nothing.
+            const float scale = glm::length(_joints[joint].transformVector(point));
+            if (scale > 0.0f) _points[joint].push_back(point * static_cast<float>(reach) / scale);
+        }
     for (std::size_t entry = 0; entry < entryBoxes.size(); ++entry)
     {
         const PaletteEntry& moved = set.palette()[entry];

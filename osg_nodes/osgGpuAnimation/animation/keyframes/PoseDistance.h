@@ -21,8 +21,9 @@ public:
         glm::vec3 point{0.0f}; ///< in the joint's space
     };
 
-    /// entryBoxes: one box per palette entry. The set must outlive this object.
-    PoseDistance(const AnimationSet& set, const EntryBoxes& entryBoxes);
+    /// entryBoxes: one box per palette entry. reach: how far something may be attached from a joint, in the model's
+    /// units. The set must outlive this object.
+    PoseDistance(const AnimationSet& set, const EntryBoxes& entryBoxes, double reach);
 
     /// pose: one transform per track, for the next calls of to(), which compare with it.
     void from(const std::vector<JointTransform>& pose);
@@ -30,7 +31,8 @@ public:
     /// The joints' matrices in that pose.
     const std::vector<AffineMatrix>& jointToModel() const { return _joints; }
 
-    /// The points of a joint in its own space: its origin, and the corners of its entries' boxes.
+    /// The points of a joint in its own space: its origin, points on its axes at the reach, and the corners of its
+    /// entries' boxes.
     const std::vector<glm::vec3>& points(std::size_t joint) const { return _points[joint]; }
 
 private:

@@ -17,21 +17,21 @@ namespace osgGpuAnimation
 namespace
 {
 
-using Part = CompactTracks::Part;
-using RotationPart = CompactTracks::RotationPart;
+using CompactPart = CompactTracks::Part;
+using CompactRotation = CompactTracks::RotationPart;
 
 constexpr std::uint32_t rangeSteps = 1024; ///< values of 10 bits
 constexpr auto rangeUnit = static_cast<float>(POSE_ROTATION_RANGE_UNIT);
 constexpr auto fineUnit = static_cast<float>(POSE_ROTATION_FINE_UNIT);
 
-std::uint32_t countOfBits(const Part& part)
+std::uint32_t countOfBits(const CompactPart& part)
 {
     return part.bits.x + part.bits.y + part.bits.z;
 }
 
-std::uint32_t countOfBits(const RotationPart& part)
+std::uint32_t countOfBits(const CompactRotation& part)
 {
-    return countOfBits(static_cast<const Part&>(part)) + (part.place == CompactTracks::largestPlace ? 2u : 0u);
+    return countOfBits(static_cast<const CompactPart&>(part)) + (part.place == CompactTracks::largestPlace ? 2u : 0u);
 }
 
 /// A run of bits of a record.
@@ -74,19 +74,19 @@ glm::uvec3 readNumbers(BitRun& run, const glm::uvec3& bits)
     return numbers;
 }
 
-glm::vec4 rounded(const Part& part, const glm::vec4& value)
+glm::vec4 rounded(const CompactPart& part, const glm::vec4& value)
 {
     return glm::vec4(part.valueOf(part.numbersOf(glm::vec3(value))), 0.0f);
 }
 
-glm::vec4 roundedRotation(const RotationPart& part, const glm::vec4& value)
+glm::vec4 roundedRotation(const CompactRotation& part, const glm::vec4& value)
 {
     std::uint32_t place = part.place;
     const glm::vec3 components = CompactTracks::componentsOf(value, place);
     return CompactTracks::rotationOf(part.valueOf(part.numbersOf(components)), place);
 }
 
-bool isSound(const Part& part, std::uint32_t bits, std::size_t recordSize)
+bool isSound(const CompactPart& part, std::uint32_t bits, std::size_t recordSize)
 {
     if (!part.isMoving()) return part.firstBit == -1;
     const auto first = static_cast<std::size_t>(part.firstBit);

@@ -134,7 +134,7 @@ const FaultCase formerFaults[] = {
     {"a range that is not finite", "Track 0 -1 -1 0", "Track 0 -1 -1 inf", Answer::Error, "not finite"},
     {"fewer joints", "Compact 3 ", "Compact 2 ", Answer::Error, ""},
     {"less that is held", "Held 36 ", "Held 24 ", Answer::Error, ""},
-    {"half a number", "Packed 6 (.*)\n *[0-9]+ ", "Packed 5 $1\n", Answer::Error, "numbers"},
+    {"half a number", "Packed 6 (.*)\n *[0-9]+ ", "Packed 5 $1\n", Answer::Error, "compact keyframes do not fit"},
     {"a number that cannot be", "(Packed 6 .*\n *)[0-9]+ ", "$1 nan ", Answer::NoFault, ""},
     {"a Spline that is compact", "Clip Slide 0 1", "Clip Slide 1 1", Answer::Error, "compact keyframes do not fit"},
 };

@@ -3,11 +3,25 @@
 
 // Keyframes: RGBA32UI, see animation/keyframes/PackedKeyframes.h. A joint transform is three texels (translation, rotation, scale).
 #define POSE_TEXELS_PER_TRANSFORM 3
-#define POSE_ADDRESS_IS_CONSTANT 0x80000000u // a place in half texels from the start of the buffer, not of the record
+#define POSE_ADDRESS_IS_CONSTANT 0x80000000u // an address in the buffer, not in the record
 
-// Rotations of compact clips: three integers of 20 bits; a component is (integer - zero) * step.
-#define POSE_ROTATION_ZERO 524288.0f
-#define POSE_ROTATION_STEP 1.348702e-6f // each of the three is at most sqrt(1 / 2)
+// A track's entry in the table of a compact clip that moves it; its last word is the address of its vectors. If its rotation
+// moves, each of the first three words has a component's range (20 bits: the least value and the extent in units of 1 / 512;
+// without bits the value in units of 2^-19) and its bits in a record (5 bits). The rest is the place of the numbers: the lower
+// 6 bits of the texel in the record; the first bit in that texel (7 bits); the omitted component (3 bits, 4: of two bits that
+// follow the numbers) and the upper 4 bits of the texel. Values are those of the middle of a step.
+#define POSE_ROTATION_RANGE_UNIT 0.001953125
+#define POSE_ROTATION_FINE_UNIT 1.9073486328125e-06
+#define POSE_ROTATION_BITS_SHIFT 20
+#define POSE_ROTATION_PLACE_SHIFT 25
+#define POSE_ROTATION_HIGH_SHIFT 28
+#define POSE_ROTATION_LARGEST 4u // the place if a keyframe omits its largest component
+
+// The vectors of a compact track: translation, scale; then, if one of them moves, a second texel of each. The last word of the
+// first texel is 0 for a constant; else POSE_VECTOR_MOVES and the first bit in the record. Then the first texel has the base,
+// the second the step and the bits of each number: value = base + step * number.
+#define POSE_VECTOR_MOVES 0x80000000u
+#define POSE_VECTOR_BITS 5
 
 // The motion of a part (translation, scale), which decides what the mix stage fetches: PartMotion in C++.
 #define POSE_PART_FIXED 0

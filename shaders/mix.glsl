@@ -41,7 +41,7 @@ JointTransform fetchRest(int track)
 // The places of a track's values in two keyframes.
 struct TrackPlace
 {
-    uvec4 parts; // places of translation, rotation, scale; w: texel of the ranges of a compact track, 0: exact
+    uvec4 parts; // places of rotation, translation, scale; w: texel of the vectors of a compact track, 0: exact
     uint first;  // the places of the keyframes' records
     uint second;
 };
@@ -57,59 +57,76 @@ bool isConstant(uint part)
     return (part & POSE_ADDRESS_IS_CONSTANT) != 0u;
 }
 
-bool isCompact(TrackPlace place, uint part)
-{
-    return hasCompactKeys && !isConstant(part) && (!hasExactKeys || place.parts.w != 0u);
-}
-
 uint placeIn(uint record, uint part)
 {
     return isConstant(part) ? part & ~POSE_ADDRESS_IS_CONSTANT : record + part;
 }
 
-uvec3 packedNumbers(uvec2 words)
+// Three numbers of these counts of bits, the first one from that bit of the texel on; then the two bits after them. They are
+// signed since processors without a conversion from unsigned integers to floats take several instructions for it.
+ivec4 packedNumbers(uvec4 texel, uint bit, uvec3 bits)
 {
-    return uvec3(words.x & 0xFFFFFu, (words.x >> 20) | ((words.y & 0xFFu) << 12), (words.y >> 8) & 0xFFFFFu);
+    uint word = bit >> 5;
+    uint shift = bit & 31u;
+    uvec3 words = word == 0u ? texel.xyz : word == 1u ? texel.yzw : word == 2u ? uvec3(texel.zw, 0u) : uvec3(texel.w, 0u, 0u);
+    uvec3 masks = (uvec3(1u) << bits) - 1u;
+    uint low = (words.x >> shift) | (words.y << 1 << (31u - shift));
+    uint high = (words.y >> shift) | (words.z << 1 << (31u - shift));
+    uint second = (low >> bits.x) | (high << 1 << (31u - bits.x));
+    uint third = (second >> bits.y) | (high >> bits.x << 1 << (31u - bits.y));
+    return ivec4(uvec4(uvec3(low, second, third) & masks, third >> bits.z & 3u));
 }
 
-vec4 packedRotation(uvec2 words)
+vec4 packedRotation(uvec4 texel, uvec3 parts)
 {
-    vec3 v = (vec3(packedNumbers(words)) - POSE_ROTATION_ZERO) * POSE_ROTATION_STEP;
+    uvec3 bits = (parts >> POSE_ROTATION_BITS_SHIFT) & 31u;
+    ivec4 numbers = packedNumbers(texel, parts.y >> POSE_ROTATION_PLACE_SHIFT, bits);
+    ivec3 ranges = ivec3(parts & 0xFFFFFu);
+    vec3 least = vec3(ranges & 1023) * POSE_ROTATION_RANGE_UNIT - 1.0;
+    vec3 extent = (vec3(ranges >> 10) + 1.0) * POSE_ROTATION_RANGE_UNIT;
+    vec3 power = uintBitsToFloat((127u - bits) << 23); // 2^-bits
+    vec3 v = mix(least + extent * power * (vec3(numbers.xyz) + 0.5), vec3(ranges) * POSE_ROTATION_FINE_UNIT - 1.0,
+                 equal(bits, uvec3(0u)));
     float rest = sqrt(max(1.0 - dot(v, v), 0.0));
-    uint place = words.y >> 28;
-    return vec4(place == 0u ? rest : v.x, place == 1u ? rest : (place == 0u ? v.x : v.y),
-                place == 2u ? rest : (place == 3u ? v.z : v.y), place == 3u ? rest : v.z);
-}
-
-// The half texel at a place.
-uvec2 halfTexel(uvec4 texel, uint place)
-{
-    return (place & 1u) == 0u ? texel.xy : texel.zw;
+    uint omitted = parts.z >> POSE_ROTATION_PLACE_SHIFT & 7u;
+    if (omitted == POSE_ROTATION_LARGEST) omitted = uint(numbers.w);
+    return vec4(omitted == 0u ? rest : v.x, omitted == 1u ? rest : (omitted == 0u ? v.x : v.y),
+                omitted == 2u ? rest : (omitted == 3u ? v.z : v.y), omitted == 3u ? rest : v.z);
 }
 
 vec4 rotationIn(uint record, TrackPlace track)
 {
-    uint place = placeIn(record, track.parts.y);
-    uvec4 texel = texelFetch(keyframes, int(place >> 1));
+    bool isCompact = hasCompactKeys && !isConstant(track.parts.x) && (!hasExactKeys || track.parts.w != 0u);
+    uint part = isCompact ? (track.parts.x >> POSE_ROTATION_PLACE_SHIFT) | (track.parts.z >> POSE_ROTATION_HIGH_SHIFT << 6)
+                          : track.parts.x;
+    uvec4 texel = texelFetch(keyframes, int(placeIn(record, part)));
     vec4 exact = uintBitsToFloat(texel);
-    return isCompact(track, track.parts.y) ? packedRotation(halfTexel(texel, place)) : exact;
+    return isCompact ? packedRotation(texel, track.parts.xyz) : exact;
 }
 
-// A translation or scale; rangeTexel is read for compact tracks only.
-vec4 mixedPart(TrackPlace track, uint part, int rangeTexel, float alpha, int motion)
+vec3 vectorIn(uint record, uvec4 first, uvec4 second)
 {
-    uint place = placeIn(track.first, part);
-    uvec4 texel = texelFetch(keyframes, int(place >> 1));
+    uvec3 bits = (second.www >> uvec3(0u, POSE_VECTOR_BITS, 2 * POSE_VECTOR_BITS)) & 31u;
+    uint bit = first.w & ~POSE_VECTOR_MOVES;
+    uvec4 texel = texelFetch(keyframes, int(record + (bit >> 7)));
+    return uintBitsToFloat(first.xyz) + uintBitsToFloat(second.xyz) * vec3(packedNumbers(texel, bit & 127u, bits).xyz);
+}
+
+// A translation (0) or scale (1). part: its place, if the track is exact.
+vec4 mixedPart(TrackPlace track, uint part, uint number, float alpha, int motion)
+{
+    bool isCompact = hasCompactKeys && track.parts.w != 0u;
+    uint place = isCompact ? track.parts.w + number : placeIn(track.first, part);
+    uvec4 texel = texelFetch(keyframes, int(place));
     vec4 a = uintBitsToFloat(texel);
     if (motion == POSE_PART_CONSTANT) return a;
-    uint next = placeIn(track.second, part);
-    uvec4 nextTexel = texelFetch(keyframes, int(next >> 1));
-    vec4 b = uintBitsToFloat(nextTexel);
-    if (!isCompact(track, part)) return mix(a, b, alpha);
-    vec3 base = uintBitsToFloat(texelFetch(keyframes, rangeTexel).xyz);
-    vec3 size = uintBitsToFloat(texelFetch(keyframes, rangeTexel + 1).xyz);
-    return vec4(mix(base + size * vec3(packedNumbers(halfTexel(texel, place))),
-                    base + size * vec3(packedNumbers(halfTexel(nextTexel, next))), alpha), 0.0);
+    if (isCompact && (texel.w & POSE_VECTOR_MOVES) != 0u)
+    {
+        uvec4 second = texelFetch(keyframes, int(place + 2u));
+        return vec4(mix(vectorIn(track.first, texel, second), vectorIn(track.second, texel, second), alpha), 0.0);
+    }
+    if (!hasExactKeys || isCompact) return a;
+    return mix(a, uintBitsToFloat(texelFetch(keyframes, int(placeIn(track.second, part)))), alpha);
 }
 
 // sin(x) / x for x * x in [0, (pi / 2)^2], to 4e-9.
@@ -142,18 +159,17 @@ JointTransform interpolate(TrackPlace track, RestParts rest, float alpha, bool i
     vec4 a = rotationIn(track.first, track);
     vec4 b = rotationIn(track.second, track);
     vec4 rotation = isWeights ? mix(a, b, alpha) : slerpShortest(a, b, alpha);
-    int ranges = int(track.parts.w);
     return JointTransform(
         translationMotion == POSE_PART_FIXED ? rest.translation
-                                             : mixedPart(track, track.parts.x, ranges, alpha, translationMotion),
+                                             : mixedPart(track, track.parts.y, 0u, alpha, translationMotion),
         rotation,
-        scaleMotion == POSE_PART_FIXED ? rest.scale : mixedPart(track, track.parts.z, ranges + 2, alpha, scaleMotion));
+        scaleMotion == POSE_PART_FIXED ? rest.scale : mixedPart(track, track.parts.z, 1u, alpha, scaleMotion));
 }
 
 // A part of a spline keyframe: its value (0), in-tangent (1) or out-tangent (2). Constant parts have tangents of 0.
 vec4 splinePart(uint record, uint part, uint tangent)
 {
-    vec4 number = uintBitsToFloat(texelFetch(keyframes, int(placeIn(record, part) >> 1) + (isConstant(part) ? 0 : int(tangent))));
+    vec4 number = uintBitsToFloat(texelFetch(keyframes, int(placeIn(record, part)) + (isConstant(part) ? 0 : int(tangent))));
     return tangent != 0u && isConstant(part) ? vec4(0.0) : number;
 }
 
@@ -171,11 +187,11 @@ JointTransform interpolateSpline(TrackPlace track, RestParts rest, float alpha, 
     vec4 h = vec4(2.0 * alpha3 - 3.0 * alpha2 + 1.0, alpha3 - 2.0 * alpha2 + alpha, alpha3 - alpha2,
                   3.0 * alpha2 - 2.0 * alpha3);
     vec4 translation = rest.translation;
-    if (translationMotion != POSE_PART_FIXED) translation = hermite(track, track.parts.x, h);
+    if (translationMotion != POSE_PART_FIXED) translation = hermite(track, track.parts.y, h);
     // A flag: 1 if the rotation is slerped.
-    float mark = translationMotion == POSE_PART_FIXED ? rest.translation.w : splinePart(track.first, track.parts.x, 0u).w;
-    vec4 rotation = hermite(track, track.parts.y, h);
-    vec4 slerped = slerpShortest(splinePart(track.first, track.parts.y, 0u), splinePart(track.second, track.parts.y, 0u),
+    float mark = translationMotion == POSE_PART_FIXED ? rest.translation.w : splinePart(track.first, track.parts.y, 0u).w;
+    vec4 rotation = hermite(track, track.parts.x, h);
+    vec4 slerped = slerpShortest(splinePart(track.first, track.parts.x, 0u), splinePart(track.second, track.parts.x, 0u),
                                  alpha);
     if (!isWeights) rotation = mark == 1.0 ? slerped : normalize(rotation);
     return JointTransform(translation, rotation,

@@ -3,6 +3,7 @@
 
 #include "cache/SeparateLoads.h"
 #include "cache/TypedWriters.h"
+#include "serializers/StoredCompactClips.h"
 #include "serializers/StoredConstraints.h"
 
 #include <osgGpuAnimation/animation/AnimationLayer.h>
@@ -74,108 +75,15 @@ void transferMorphs(ValueStream& stream, std::vector<MorphWeights>& morphs)
 }
 
 /// The versions of a stored set: before the first, all clips are exact; sets without constraints do not need the
-/// second, those without garments not the third.
+/// second, those without garments not the third, and those without compact clips not the last: before it, compact
+/// clips have other keyframes, see StoredCompactClips.h.
 constexpr std::int32_t versionWithCompactClips = 2;
 constexpr std::int32_t versionWithConstraints = 3;
 constexpr std::int32_t versionWithGarments = 4;
+constexpr std::int32_t versionWithBitCounts = 5;
 constexpr std::size_t floatsATransform = sizeof(JointTransform) / sizeof(float);
 /// Of all compact clips of a set together; the default of the glTF reader's budget.
 constexpr std::size_t maxCompactBytes = std::size_t(2) << 30;
-constexpr float placeUnit = static_cast<float>(QuantizedVec3::largest) + 1.0f;
-
-std::vector<float> packedNumbers(const std::vector<QuantizedVec3>& keyframes)
-{
-    std::vector<float> floats;
-    floats.reserve(3 * keyframes.size());
-    for (const QuantizedVec3& triple : keyframes)
-    {
-        const glm::vec3 numbers(triple.numbers());
-        floats.insert(floats.end(), {numbers.x, numbers.y, numbers.z + placeUnit * static_cast<float>(triple.place())});
-    }
-    return floats;
-}
-
-std::vector<QuantizedVec3> toTriples(const std::vector<float>& floats)
-{
-    // The nearest whole number in [0, largest]; 0 for NaN.
-    const auto whole = [](float number, float largest)
-    { return static_cast<std::uint32_t>(std::min(std::max(0.0f, number), largest)); };
-    constexpr auto largest = static_cast<float>(QuantizedVec3::largest);
-    std::vector<QuantizedVec3> triples;
-    triples.reserve(floats.size() / 3);
-    for (std::size_t i = 0; i + 2 < floats.size(); i += 3)
-    {
-        const std::uint32_t last = whole(floats[i + 2], 4.0f * placeUnit - 1.0f);
-        const glm::uvec3 numbers(whole(floats[i], largest), whole(floats[i + 1], largest),
-                                 last & QuantizedVec3::largest);
-        triples.push_back(QuantizedVec3::of(numbers, last >> 20));
-    }
-    return triples;
-}
-
-void transferTrack(ValueStream& stream, CompactTracks::Track& track)
-{
-    stream.property("Track").values(track.translation, track.rotation, track.scale);
-    for (CompactTracks::Range* range : {&track.translationRange, &track.scaleRange})
-        stream.floats(&range->base.x, 3).floats(&range->step.x, 3);
-    stream.endLine();
-}
-
-/// The keyframes of a compact clip as the file has them.
-struct CompactParts
-{
-    CompactTracks tracks;
-    std::vector<JointTransform> held;    ///< one per joint: the values of joints at rest
-    std::vector<JointTransform> weights; ///< by keyframe: the weight blocks
-    std::vector<float> packed;           ///< three per QuantizedVec3
-};
-
-CompactParts toCompactParts(const ClipParts& clip)
-{
-    CompactParts compact{*clip.compactTracks, {}, {}, packedNumbers(clip.compactTracks->keyframes)};
-    const auto joints = static_cast<std::ptrdiff_t>(clip.jointCount);
-    const auto tracks = static_cast<std::ptrdiff_t>(clip.trackCount);
-    compact.held.assign(clip.data.begin(), clip.data.begin() + joints);
-    for (auto keyframe = clip.data.begin(); tracks > 0 && keyframe != clip.data.end(); keyframe += tracks)
-        compact.weights.insert(compact.weights.end(), keyframe + joints, keyframe + tracks);
-    return compact;
-}
-
-/// Fills data with the transforms at rest and the weights; Clip::create decodes what moves. Subtracts the
-/// bytes of the keyframes from bytesLeft. Error: the parts do not fit each other or exceed bytesLeft.
-Result<bool> toClipParts(CompactParts compact, ClipParts& clip, std::size_t& bytesLeft)
-{
-    const std::size_t keyframes = clip.times.size(), weightTracks = clip.trackCount - clip.jointCount;
-    if (compact.held.size() != clip.jointCount || compact.packed.size() % 3 != 0 ||
-        compact.weights.size() != keyframes * weightTracks)
-        return Error{"clip \"" + clip.name + "\": the numbers of its compact keyframes are not those of the clip"};
-    if (clip.trackCount > 0 && keyframes > bytesLeft / sizeof(JointTransform) / clip.trackCount)
-        return Error{"clip \"" + clip.name + "\": its keyframes would exceed the memory for compact clips"};
-    bytesLeft -= keyframes * clip.trackCount * sizeof(JointTransform);
-    clip.data.reserve(keyframes * clip.trackCount);
-    for (auto weights = compact.weights.begin(); clip.data.size() < keyframes * clip.trackCount;)
-    {
-        clip.data.insert(clip.data.end(), compact.held.begin(), compact.held.end());
-        clip.data.insert(clip.data.end(), weights, weights + static_cast<std::ptrdiff_t>(weightTracks));
-        weights += static_cast<std::ptrdiff_t>(weightTracks);
-    }
-    compact.tracks.keyframes = toTriples(compact.packed);
-    compact.tracks.columnCount = keyframes == 0 ? 0 : compact.tracks.keyframes.size() / keyframes;
-    clip.compactTracks = std::make_shared<const CompactTracks>(std::move(compact.tracks));
-    return true;
-}
-
-void transferCompactKeyframes(ValueStream& stream, ClipParts& clip, std::size_t& bytesLeft)
-{
-    CompactParts compact;
-    if (!stream.isReading()) compact = toCompactParts(clip);
-    stream.list("Compact", compact.tracks.tracks, [&](CompactTracks::Track& track) { transferTrack(stream, track); });
-    stream.block("Held", compact.held, floatsATransform);
-    stream.block("Weights", compact.weights, floatsATransform);
-    stream.block("Packed", compact.packed, 3 * std::max<std::size_t>(compact.tracks.columnCount, 1));
-    if (!stream.hasRead()) return;
-    stream.require("", toClipParts(std::move(compact), clip, bytesLeft));
-}
 
 void transferRootMotion(ValueStream& stream, std::shared_ptr<const RootMotionCurve>& motion)
 {
@@ -217,7 +125,9 @@ void transferClip(ValueStream& stream, std::int32_t version, ClipParts& clip, st
     if (version >= versionWithCompactClips) stream.value(isCompact);
     stream.endLine();
     stream.block("Times", clip.times, 8);
-    if (isCompact)
+    if (isCompact && version < versionWithBitCounts)
+        readFormerCompactKeyframes(stream, clip, compactBytesLeft);
+    else if (isCompact)
         transferCompactKeyframes(stream, clip, compactBytesLeft);
     else
         stream.block("Keyframes", clip.data, floatsATransform);
@@ -226,9 +136,9 @@ void transferClip(ValueStream& stream, std::int32_t version, ClipParts& clip, st
     transferRootMotion(stream, clip.rootMotion);
 }
 
-/// A clip that cannot be created makes the file unreadable; the message names it. Compact clips store the column of
-/// each joint's keyframes, the transforms at rest, the morph weights, and the packed numbers x, y and z + place * 2^20
-/// (see QuantizedVec3). Memory holds all their keyframes, so these are limited.
+/// A clip that cannot be created makes the file unreadable; the message names it. Compact clips store their tracks and
+/// records (see CompactTracks), the transforms at rest and the morph weights. Memory holds all their keyframes, so
+/// these are limited.
 void transferClips(ValueStream& stream, std::int32_t version, std::size_t jointCount,
                    const std::vector<MorphWeights>& morphs, std::vector<Clip>& clips)
 {
@@ -319,8 +229,10 @@ void StoredAnimationSet::transferContents(ValueStream& stream, StoredAnimationSe
         garments = set->garments();
         if (!constraints.empty()) version = versionWithConstraints;
         if (!garments.empty()) version = versionWithGarments;
+        const auto isCompact = [](const Clip& clip) { return clip.compactTracks() != nullptr; };
+        if (std::any_of(clips.begin(), clips.end(), isCompact)) version = versionWithBitCounts;
     }
-    stream.limited("the version of an animation set", version, 1, versionWithGarments).endLine();
+    stream.limited("the version of an animation set", version, 1, versionWithBitCounts).endLine();
     transferJoints(stream, joints);
     transferSkins(stream, "Skins", skins);
     transferRigidJoints(stream, rigidJoints);

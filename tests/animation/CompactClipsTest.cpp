@@ -11,6 +11,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -103,7 +104,10 @@ TEST(CompactClipsTest, whatHardlyMovesIsHeldAtRest)
         {Channel::Path::Translation, Channel::Interpolation::Linear, 1, {0, 4}, {1.0, 1e-7, 0, 1.0, 0, -1e-7}}));
     const auto exact = setOf(twoJoints(), {}, builder.build("walk"));
     const CompactedSet compact = compactClips(*exact, cubes(*exact, 1.0f), {1e-4}).value();
-    EXPECT_EQ(compact.set->clips()[0].compactTracks()->columnCount, 1u);
+    const CompactTracks& tracks = *compact.set->clips()[0].compactTracks();
+    EXPECT_TRUE(tracks.tracks[0].translation.isMoving());
+    EXPECT_FALSE(tracks.tracks[1].translation.isMoving());
+    EXPECT_EQ(tracks.recordSize, 1u);
     const PackedKeyframes packed(*compact.set);
     EXPECT_EQ(packed.tracks()[0].translation, PartMotion::Moving);
     EXPECT_EQ(packed.tracks()[1].translation, PartMotion::Fixed);
@@ -176,24 +180,122 @@ TEST(CompactClipsTest, aSetOfNothingAndOfStillsIsCompactAsWell)
     EXPECT_TRUE(compactClips(*still, EntryBoxes(still->paletteSize()), {1e-3}));
 }
 
-TEST(QuantizedVec3Test, numbersAndRotationsComeBack)
+/// Keyframes of one joint that turns and slides at random; their rotations are within `reach` of the identity.
+std::vector<JointTransform> randomKeyframes(std::size_t count, float reach, std::mt19937& random)
+{
+    std::uniform_real_distribution<float> component(-reach, reach);
+    std::vector<JointTransform> keyframes(count);
+    for (JointTransform& transform : keyframes)
+    {
+        transform.rotation =
+            glm::normalize(glm::vec4(component(random), component(random), component(random), 1.0f - reach + 0.01f));
+        transform.translation = glm::vec4(100.0f + component(random), 1e-3f * component(random), 2.0f, 0.0f);
+    }
+    return keyframes;
+}
+
+double apart(const glm::vec4& p, const glm::vec4& q)
+{
+    return static_cast<double>(std::min(glm::length(p - q), glm::length(p + q)));
+}
+
+TEST(CompactTracksTest, valuesComeBackWithinHalfAStep)
 {
     std::mt19937 random(11);
-    std::uniform_int_distribution<std::uint32_t> number(0, QuantizedVec3::largest);
-    std::uniform_real_distribution<float> component(-1.0f, 1.0f);
-    for (int i = 0; i < 10000; ++i)
+    for (const float reach : {1e-4f, 0.01f, 0.3f, 1.0f})
     {
-        const glm::uvec3 numbers(number(random), number(random), number(random));
-        const QuantizedVec3 packed = QuantizedVec3::of(numbers, static_cast<std::uint32_t>(i % 4));
-        EXPECT_EQ(packed.numbers(), numbers);
-        EXPECT_EQ(packed.place(), static_cast<std::uint32_t>(i % 4));
-
-        const glm::vec4 q = glm::normalize(
-            glm::vec4(component(random), component(random), component(random), component(random) + 0.01f));
-        const glm::vec4 back = QuantizedVec3::ofRotation(q).rotation();
-        // Half a quantization step in three components, and its effect on the fourth.
-        EXPECT_LE(glm::length(glm::dot(q, back) < 0.0f ? q + back : q - back), 3e-6f);
+        SCOPED_TRACE(reach);
+        const std::vector<JointTransform> wanted = randomKeyframes(500, reach, random);
+        CompactTracks tracks = CompactTracks::finest(wanted, 1, 1);
+        const CompactTracks::RotationPart& rotation = tracks.tracks[0].rotation;
+        EXPECT_EQ(rotation.place == CompactTracks::largestPlace, reach == 1.0f) << "w comes near 0";
+        std::vector<JointTransform> found = wanted;
+        ASSERT_TRUE(tracks.pack(found, 1));
+        EXPECT_TRUE(tracks.isFor(1, 500));
+        // Ranges are rounded up to units of 1 / 512, and an omitted component of 0.3 makes errors larger.
+        const double most = 2.0 * (2.0 * static_cast<double>(reach) + 2.0 / 512.0) / (1u << 20);
+        for (std::size_t k = 0; k < wanted.size(); ++k)
+        {
+            EXPECT_LE(apart(found[k].rotation, wanted[k].rotation), most + 3e-7);
+            EXPECT_LE(glm::distance(found[k].translation, wanted[k].translation), 1e-5f); // floats around 100
+            EXPECT_EQ(found[k].translation.z, 2.0f);
+        }
     }
+}
+
+TEST(CompactTracksTest, numbersReachBothEndsAndWithoutBitsAreTheMiddle)
+{
+    CompactTracks::Part part;
+    part.setRange(glm::vec3(1.0f), glm::vec3(2.0f), glm::uvec3(0u, 1u, 2u));
+    EXPECT_EQ(part.valueOf(glm::uvec3(0u)), glm::vec3(1.5f, 1.0f, 1.0f));
+    EXPECT_EQ(part.valueOf(glm::uvec3(0u, 1u, 3u)), glm::vec3(1.5f, 2.0f, 2.0f));
+    EXPECT_EQ(part.numbersOf(glm::vec3(5.0f)), glm::uvec3(0u, 1u, 3u));
+    EXPECT_EQ(part.numbersOf(glm::vec3(-5.0f)), glm::uvec3(0u));
+    CompactTracks::RotationPart rotation;
+    rotation.setRange(glm::vec3(0.1f), glm::vec3(0.2f), glm::uvec3(0u));
+    EXPECT_NEAR(rotation.valueOf(glm::uvec3(0u)).x, 0.15f, 1e-6f);
+}
+
+// Each part lies in one texel, whatever its bits.
+TEST(CompactTracksTest, recordsHaveALargestSize)
+{
+    std::mt19937 random(3);
+    for (const std::size_t joints : {1u, 700u, 1500u})
+    {
+        std::vector<JointTransform> data;
+        for (std::size_t k = 0; k < 2; ++k)
+        {
+            const std::vector<JointTransform> keyframe = randomKeyframes(joints, 0.3f, random);
+            data.insert(data.end(), keyframe.begin(), keyframe.end());
+        }
+        CompactTracks tracks = CompactTracks::finest(data, joints, joints);
+        EXPECT_EQ(tracks.pack(data, joints), joints < 1500u) << joints;
+        EXPECT_EQ(tracks.isFor(joints, 2), joints < 1500u) << joints;
+    }
+}
+
+// Applications attach nodes to joints without vertices, too.
+TEST(CompactClipsTest, jointsWithoutVerticesTurnAsTheyDid)
+{
+    ClipBuilder builder(twoJoints(), {});
+    Channel channel{Channel::Path::Rotation, Channel::Interpolation::Linear, 1, {0, 1, 2}, {}};
+    for (const double x : {0.0, 0.4, -0.3})
+        channel.values.insert(channel.values.end(), {0.0, 0.0, std::sin(x), std::cos(x)});
+    ASSERT_TRUE(builder.add(channel));
+    const auto exact = setOf(twoJoints(), {}, builder.build("sway"));
+    const EntryBoxes none(exact->paletteSize());
+    const double size = longestSide(*exact, none);
+    const Clip made = compactClips(*exact, none, {1e-3 * size}).value().set->clips()[0];
+    ASSERT_TRUE(made.compactTracks());
+    ASSERT_EQ(made.keyframeCount(), 3u);
+    for (std::size_t k = 0; k < 3; ++k)
+    {
+        const glm::vec4 &p = made.at(k, 1)->rotation, &q = exact->clips()[0].at(k, 1)->rotation;
+        // Half the size away, a turn by an angle moves a point by that angle, which is twice the difference.
+        EXPECT_LE(2.0 * 0.5 * apart(p, q), 1.01e-3) << k;
+    }
+}
+
+// Near the joint a small turn does not count, far from it it does: the bits are those that the vertices need.
+TEST(CompactClipsTest, farVerticesHaveMoreBits)
+{
+    std::array<std::uint32_t, 2> bits{};
+    for (const bool isFar : {false, true})
+    {
+        ClipBuilder builder(twoJoints(), {});
+        Channel channel{Channel::Path::Rotation, Channel::Interpolation::Linear, 1, {0, 1, 2, 3}, {}};
+        for (const double x : {0.0, 0.4, -0.3, 0.17})
+            channel.values.insert(channel.values.end(), {0.0, 0.0, std::sin(x), std::cos(x)});
+        ASSERT_TRUE(builder.add(channel));
+        const auto set = setOf(twoJoints(), {}, builder.build("sway"));
+        const auto made = compactClips(*set, cubes(*set, isFar ? 64.0f : 1.0f), {1e-2}).value();
+        ASSERT_TRUE(made.set->clips()[0].compactTracks());
+        const CompactTracks::RotationPart& rotation = made.set->clips()[0].compactTracks()->tracks[1].rotation;
+        EXPECT_EQ(rotation.bits.x + rotation.bits.y, 0u) << "the axis of the turn alone has bits";
+        bits[isFar ? 1 : 0] = rotation.bits.z;
+        EXPECT_LE(made.errors[0], 1e-2);
+    }
+    EXPECT_NEAR(bits[1], bits[0] + 6, 1.0) << "64 times as far";
 }
 
 } // namespace
@@ -213,15 +315,24 @@ TEST(CompactClipsTest, tracksThatDoNotFitAreRefused)
     using Change = std::function<void(CompactTracks&)>;
     const std::pair<const char*, Change> changes[] = {
         {"", [](CompactTracks&) {}},
-        {"", [](CompactTracks& tracks) { tracks.tracks[1].scale = 0; }},
-        {"beyond the last column",
-         [](CompactTracks& tracks) { tracks.tracks[1].rotation = static_cast<int>(tracks.columnCount); }},
-        {"no column", [](CompactTracks& tracks) { tracks.tracks[1].rotation = -2; }},
-        {"one value more", [](CompactTracks& tracks) { tracks.keyframes.emplace_back(); }},
-        {"one value less", [](CompactTracks& tracks) { tracks.keyframes.pop_back(); }},
+        {"a texel beyond the record", [](CompactTracks& tracks) { tracks.tracks[0].translation.firstBit = 128; }},
+        {"numbers across texels", [](CompactTracks& tracks) { tracks.tracks[0].translation.firstBit = 127; }},
+        {"no place", [](CompactTracks& tracks) { tracks.tracks[1].scale.firstBit = -2; }},
+        {"a number of too many bits",
+         [](CompactTracks& tracks) { tracks.tracks[0].translation.bits.y = CompactTracks::mostBits + 1; }},
+        {"one texel more", [](CompactTracks& tracks) { tracks.records.emplace_back(0u); }},
+        {"one texel less", [](CompactTracks& tracks) { tracks.records.pop_back(); }},
         {"a joint less", [](CompactTracks& tracks) { tracks.tracks.pop_back(); }},
-        {"an endless step", [](CompactTracks& tracks) { tracks.tracks[1].scaleRange.step.z = INFINITY; }},
-        {"no number", [](CompactTracks& tracks) { tracks.tracks[0].translationRange.base.x = NAN; }},
+        {"an endless step", [](CompactTracks& tracks) { tracks.tracks[0].translation.step.z = INFINITY; }},
+        {"no number", [](CompactTracks& tracks) { tracks.tracks[0].translation.base.x = NAN; }},
+        {"no component", [](CompactTracks& tracks) { tracks.tracks[1].rotation.place = 5; }},
+        {"a range of too many bits", [](CompactTracks& tracks) { tracks.tracks[1].rotation.ranges.x = 1u << 20; }},
+        {"a record that is too large",
+         [&](CompactTracks& tracks)
+         {
+             tracks.recordSize = CompactTracks::mostTexels + 1;
+             tracks.records.resize(tracks.recordSize * clip.keyframeCount());
+         }},
     };
     for (const auto& [name, change] : changes)
     {

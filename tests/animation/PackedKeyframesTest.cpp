@@ -28,37 +28,66 @@ public:
         const glm::uvec4 directory = at(keyframe);
         const glm::uvec4 parts = at(directory.z + track);
         const std::uint32_t record = next ? directory.y : directory.x;
-        return {part(parts.x, record, parts.w), part(parts.y, record, parts.w == 0 ? 0 : rotation),
-                part(parts.z, record, parts.w == 0 ? 0 : parts.w + 2)};
+        if (parts.w == 0) return {exact(parts.y, record), exact(parts.x, record), exact(parts.z, record)};
+        return {vector(parts.w, record), isConstant(parts.x) ? exact(parts.x, record) : rotation(parts, record),
+                vector(parts.w + 1, record)};
     }
 
 private:
-    static constexpr std::uint32_t rotation = 0xFFFFFFFFu; ///< replaces a range
-
     glm::uvec4 at(std::size_t texel) const { return _packed.texels().at(texel); }
-    glm::vec3 numbers(std::size_t texel) const
+    static bool isConstant(std::uint32_t part) { return (part & POSE_ADDRESS_IS_CONSTANT) != 0u; }
+    static glm::vec4 floats(const glm::uvec4& words)
     {
-        glm::vec3 out;
-        const glm::uvec4 words = at(texel);
-        std::memcpy(&out, &words, sizeof(out));
-        return out;
-    }
-    glm::vec4 part(std::uint32_t part, std::uint32_t record, std::uint32_t range) const
-    {
-        const bool isHeld = (part & POSE_ADDRESS_IS_CONSTANT) != 0u;
-        const std::uint32_t place = isHeld ? part & ~POSE_ADDRESS_IS_CONSTANT : record + part;
-        const glm::uvec4 words = at(place / 2);
-        if (!isHeld && range != 0)
-        {
-            const QuantizedVec3 packed =
-                place % 2 == 0 ? QuantizedVec3{words.x, words.y} : QuantizedVec3{words.z, words.w};
-            if (range == rotation) return packed.rotation();
-            return glm::vec4(CompactTracks::Range{numbers(range), numbers(range + 1)}.unpack(packed), 0.0f);
-        }
-        EXPECT_EQ(place % 2, 0u) << "exact numbers are whole texels";
         glm::vec4 out;
         std::memcpy(&out, &words, sizeof(out));
         return out;
+    }
+    glm::vec4 exact(std::uint32_t part, std::uint32_t record) const
+    {
+        return floats(at(isConstant(part) ? part & ~POSE_ADDRESS_IS_CONSTANT : record + part));
+    }
+
+    /// The number of `count` bits; advances the bit of the texel.
+    static std::uint32_t number(const glm::uvec4& texel, std::uint32_t& bit, std::uint32_t count)
+    {
+        EXPECT_LE(bit + count, 128u) << "a part lies in one texel";
+        std::uint32_t value = 0;
+        for (std::uint32_t i = 0; i < count; ++i, ++bit)
+            value |= (texel[static_cast<int>(bit / 32)] >> bit % 32 & 1u) << i;
+        return value;
+    }
+    static glm::uvec3 numbers(const glm::uvec4& texel, std::uint32_t& bit, const glm::uvec3& bits)
+    {
+        glm::uvec3 out;
+        for (int axis = 0; axis < 3; ++axis)
+            out[axis] = number(texel, bit, bits[axis]);
+        return out;
+    }
+
+    glm::vec4 rotation(const glm::uvec4& parts, std::uint32_t record) const
+    {
+        CompactTracks::RotationPart part;
+        part.bits = glm::uvec3(parts) >> 20u & 31u;
+        part.setRanges(glm::uvec3(parts) & 0xFFFFFu);
+        std::uint32_t bit = parts.y >> 25, place = parts.z >> 25 & 7u;
+        const glm::uvec4 texel = at(record + (parts.x >> 25 | parts.z >> 28 << 6));
+        const glm::uvec3 found = numbers(texel, bit, part.bits);
+        if (place == POSE_ROTATION_LARGEST) place = number(texel, bit, 2);
+        return CompactTracks::rotationOf(part.valueOf(found), place);
+    }
+
+    glm::vec4 vector(std::uint32_t place, std::uint32_t record) const
+    {
+        const glm::uvec4 first = at(place);
+        if ((first.w & POSE_VECTOR_MOVES) == 0u) return floats(first);
+        const glm::uvec4 second = at(place + 2);
+        CompactTracks::Part part;
+        part.bits = glm::uvec3(second.w & 31u, second.w >> 5 & 31u, second.w >> 10 & 31u);
+        part.base = glm::vec3(floats(first));
+        part.step = glm::vec3(floats(second));
+        std::uint32_t bit = first.w % 128;
+        const glm::uvec4 texel = at(record + (first.w & ~POSE_VECTOR_MOVES) / 128);
+        return glm::vec4(part.valueOf(numbers(texel, bit, part.bits)), 0.0f);
     }
 
     PackedKeyframes _packed;

@@ -30,6 +30,10 @@ Result<bool> measureConstraints(const Subject& subject, const Effort& effort, os
 /// The same characters in chunks of different sizes. Requires a current context.
 Result<bool> measureChunks(const Subject& subject, const Effort& effort, osg::GraphicsContext& context, Report& report);
 
+/// Compact clips compared with exact ones: pose and bytes. Requires a current context.
+Result<bool> measureCompact(const Subject& subject, const Effort& effort, osg::GraphicsContext& context,
+                            Report& report);
+
 /// The cost per joint in chains of 8 to 64 joints. Requires a current context.
 Result<bool> measureDepth(const Effort& effort, osg::GraphicsContext& context, Report& report);
 

@@ -31,13 +31,14 @@ std::size_t Subject::vertexCount() const
     return count;
 }
 
-Result<Subject> loadSubject(const std::string& name, const std::string& fileName, bool fixedLighting)
+Result<Subject> loadSubject(const std::string& name, const std::string& fileName, bool fixedLighting, double compact)
 {
     std::ifstream stream(fileName, std::ios::binary);
     const std::string bytes(std::istreambuf_iterator<char>(stream), {});
     gltf::ImportOptions options;
     options.fixedLighting = fixedLighting;
     options.noKeys = true;
+    if (compact > 0.0) options.compact = compact;
     Result<gltf::ImportedModel> model = gltf::importModel(bytes, fileName, options);
     if (!model) return model.error();
     Subject subject{name, fileName, std::move(model.value()), 0};

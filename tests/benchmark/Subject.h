@@ -21,9 +21,10 @@ struct Subject
     std::size_t vertexCount() const; ///< of all its meshes
 };
 
-/// fixedLighting: with the fixed pipeline's look, as osgAnimation draws.
+/// fixedLighting: with the fixed pipeline's look, as osgAnimation draws. compact: see gltf::ImportOptions; 0: exact.
 /// Errors: those of the import; no clip of the file moves anything.
-Result<Subject> loadSubject(const std::string& name, const std::string& fileName, bool fixedLighting);
+Result<Subject> loadSubject(const std::string& name, const std::string& fileName, bool fixedLighting,
+                            double compact = 0.0);
 
 /// True if a property of the joint changes in the clip or differs from the rest pose.
 /// part: JointTransform::translation, rotation or scale.

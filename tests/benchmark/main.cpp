@@ -23,8 +23,8 @@ constexpr const char* usage = R"(osggpuanim_benchmark [options] OUTPUT_FOLDER FI
     measures this kit against osgAnimation with the characters of glTF files, prints a table and writes benchmark.json
     and plots into the folder
     --quick           fewer characters and rounds
-    --only PART       pose, samples, constraints, chunks, depth, frames, crowd, field, mixed, draws, shading, start,
-                      memory or load; several times, too
+    --only PART       pose, samples, constraints, chunks, compact, depth, frames, crowd, field, mixed, draws, shading,
+                      start, memory or load; several times, too
     --return-memory   leave it to glibc whether freed memory goes back to the kernel
 )";
 
@@ -109,6 +109,8 @@ Result<bool> measureSubject(const Request& request, const Effort& effort, const 
         if (Result<bool> done = measureConstraints(subject, effort, context, report); !done) return done;
     if (request.has("chunks"))
         if (Result<bool> done = measureChunks(subject, effort, context, report); !done) return done;
+    if (request.has("compact"))
+        if (Result<bool> done = measureCompact(subject, effort, context, report); !done) return done;
     if (request.has("pose"))
         if (Result<bool> done = measurePose(subject, effort, context, report); !done) return done;
     context.releaseContext();

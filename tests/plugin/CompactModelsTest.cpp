@@ -77,13 +77,13 @@ std::string shared(const char* name)
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, CompactModelsTest,
-                         ::testing::Values(ModelCase{"Knight", shared("Knight/Knight.glb"), 1e-4, 770000},
-                                           ModelCase{"Knight, coarse", shared("Knight/Knight.glb"), 1e-3, 700000},
-                                           ModelCase{"Knight, fine", shared("Knight/Knight.glb"), 1e-5, 840000},
-                                           ModelCase{"Fox", shared("Fox/Fox.glb"), 1e-4, 60000},
-                                           ModelCase{"CesiumMan", shared("CesiumMan/CesiumMan.glb"), 1e-4, 20000},
-                                           ModelCase{"Wanderer", OSGGPUANIMATION_SCENES "/Wanderer.glb", 1e-4, 300000},
-                                           ModelCase{"Serpent", OSGGPUANIMATION_SCENES "/Serpent.glb", 1e-4, 300000}));
+                         ::testing::Values(ModelCase{"Knight", shared("Knight/Knight.glb"), 1e-4, 450000},
+                                           ModelCase{"Knight, coarse", shared("Knight/Knight.glb"), 1e-3, 340000},
+                                           ModelCase{"Knight, fine", shared("Knight/Knight.glb"), 1e-5, 540000},
+                                           ModelCase{"Fox", shared("Fox/Fox.glb"), 1e-4, 13000},
+                                           ModelCase{"CesiumMan", shared("CesiumMan/CesiumMan.glb"), 1e-4, 8000},
+                                           ModelCase{"Wanderer", OSGGPUANIMATION_SCENES "/Wanderer.glb", 1e-4, 29000},
+                                           ModelCase{"Serpent", OSGGPUANIMATION_SCENES "/Serpent.glb", 1e-4, 22000}));
 
 } // namespace
 

@@ -110,7 +110,7 @@ std::optional<Error> findFault(const AnimationParts& parts, std::size_t trackCou
     return std::nullopt;
 }
 
-/// Addresses on the GPU have 31 bits and count half texels, six per transform (see PackedKeyframes).
+/// Addresses on the GPU have 31 bits and count texels, at most eight per transform or track (see PackedKeyframes).
 std::optional<Error> findFaultInSize(const std::vector<Clip>& clips)
 {
     constexpr std::size_t most = (std::size_t(1) << 31) / 16;

@@ -63,7 +63,7 @@ private:
 /// Options of compactClips().
 struct CompactOptions
 {
-    /// The largest error of a vertex or a joint's origin in the model's units, above 0: for example a fraction of
+    /// The largest error of a vertex or a joint in the model's units, above 0: for example a fraction of
     /// longestSide().
     double tolerance = 0.0;
 };
@@ -76,15 +76,16 @@ struct CompactedSet
 };
 
 /// Makes the clips of a set smaller, on the GPU and on the CPU: parts that hardly move become constant, keyframes that
-/// their neighbours predict are dropped, and values are rounded to 20 bits of their range (see CompactTracks).
+/// their neighbours predict are dropped, and each number of a part takes as few bits as the error allows, 0 to 20.
 ///
 ///     const auto compact = compactClips(set, entryBoxes, {1e-4 * longestSide(set, entryBoxes)});
 ///
-/// The error is measured at every keyframe of the exact clip and halfway between them, at the joints' origins and at
-/// the corners of the entries' boxes (a vertex is a convex combination of those). A clip that would exceed the
-/// tolerance stays exact, as do Spline clips and clips that are compact already. Morph weights, and the keyframes of
-/// clips with root motion, are kept exactly. A mix of clips has at most their errors; an additive layer adds the errors
-/// of the clip and of its reference.
+/// The error is measured at every keyframe of the exact clip and halfway between them: at the joints' origins, at half
+/// the longestSide() from them along each axis of the joint (where something may be attached), and at the corners of
+/// the entries' boxes (a vertex is a convex combination of those). A clip that would exceed the tolerance stays exact,
+/// as do Spline clips and clips that are compact already. Morph weights, and the keyframes of clips with root motion,
+/// are kept exactly. A mix of clips has at most their errors; an additive layer adds the errors of the clip and of its
+/// reference.
 ///
 /// entryBoxes: one box per palette entry. Errors: a tolerance that is not finite and above 0; a wrong number of boxes.
 Result<CompactedSet> compactClips(const AnimationSet& set, const EntryBoxes& entryBoxes, const CompactOptions& options);

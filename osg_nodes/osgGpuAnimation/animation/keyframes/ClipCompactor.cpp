@@ -1,69 +1,31 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/keyframes/ClipCompactor.h>
 
+#include <osgGpuAnimation/animation/keyframes/BitAllocator.h>
 #include <osgGpuAnimation/animation/keyframes/CompactTracks.h>
 #include <osgGpuAnimation/animation/keyframes/TrackBlend.h>
-#include <osgGpuAnimation/animation/Pose.h>
 
 #include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace osgGpuAnimation
 {
 
-PoseDistance::PoseDistance(const AnimationSet& set, const EntryBoxes& entryBoxes) : _set(set)
-{
-    _points.assign(set.skeleton().jointCount(), {glm::vec3(0.0f)});
-    for (std::size_t entry = 0; entry < entryBoxes.size(); ++entry)
-    {
-        const PaletteEntry& moved = set.palette()[entry];
-        const Box& box = entryBoxes[entry];
-        if (box.empty() || moved.joint < 0) continue;
-        std::vector<glm::vec3>& points = _points[static_cast<std::size_t>(moved.joint)];
-        for (int corner = 0; corner < 8; ++corner)
-            points.push_back(moved.inverseBind.transformPoint(box.corner(corner)));
-    }
-}
-
-bool PoseDistance::hasOtherWeights(const std::vector<JointTransform>& a, const std::vector<JointTransform>& b) const
-{
-    for (std::size_t track = _set.skeleton().jointCount(); track < a.size(); ++track)
-        for (std::size_t i = 0; i < MorphWeights::weightsPerBlock; ++i)
-        {
-            const float weight = a[track].number(i);
-            if (!(std::abs(weight - b[track].number(i)) <= 1e-6f * std::max(1.0f, std::abs(weight)))) return true;
-        }
-    return false;
-}
-
-double PoseDistance::between(const std::vector<JointTransform>& a, const std::vector<JointTransform>& b)
-{
-    if (hasOtherWeights(a, b)) return std::numeric_limits<double>::infinity();
-    Pose::jointToModel(_set, a, AffineMatrix(), _jointsOfA);
-    Pose::jointToModel(_set, b, AffineMatrix(), _jointsOfB);
-    float worst = 0.0f;
-    for (std::size_t joint = 0; joint < _points.size(); ++joint)
-        for (const glm::vec3& point : _points[joint])
-        {
-            const glm::vec3 way = _jointsOfA[joint].transformPoint(point) - _jointsOfB[joint].transformPoint(point);
-            const float squared = glm::dot(way, way);
-            if (!std::isfinite(squared)) return std::numeric_limits<double>::infinity();
-            worst = std::max(worst, squared);
-        }
-    return std::sqrt(static_cast<double>(worst));
-}
-
 namespace
 {
 
-// Shares of the tolerance, chosen by measuring characters: for one part of a joint that becomes constant, and for
-// dropped keyframes. The remainder covers rounding and constants that add up.
+// Shares of the tolerance, chosen by measuring characters: for one part of a joint that becomes constant, for the
+// bits that one number begins with, and for dropped keyframes. Rounding has what is left. Where few keyframes can be
+// dropped, all are kept for fewer bits.
 constexpr double constantShare = 0.03;
-constexpr double droppedShare = 0.9;
+constexpr double beginningShare = 0.5;
+constexpr double droppedShares[] = {0.75, 0.1};
 constexpr int attempts = 4;
+
+/// Of the model's size: something attached to a joint reaches that far.
+constexpr double reachShare = 0.5;
 
 /// True if all values of a track are within `most` of a value.
 template <typename Distance>
@@ -78,40 +40,53 @@ bool isNear(const std::vector<JointTransform>& data, std::size_t track, std::siz
 } // namespace
 
 ClipCompactor::ClipCompactor(const AnimationSet& set, const EntryBoxes& entryBoxes, double size, double tolerance)
-    : _set(set), _tolerance(tolerance), _size(size), _distance(set, entryBoxes), _exactPose(set.trackCount()),
-      _madePose(set.trackCount())
+    : _set(set), _tolerance(tolerance), _size(size), _distance(set, entryBoxes, reachShare * size),
+      _exactPose(set.trackCount()), _madePose(set.trackCount())
 {
 }
 
 Clip ClipCompactor::compact(const Clip& clip)
 {
+    Clip best = clip;
+    double error = 0.0;
     double share = 1.0;
     for (int i = 0; i < attempts && clip.form() == Clip::Form::Linear && !clip.compactTracks(); ++i, share *= 0.5)
     {
-        Clip made = attempt(clip, share);
-        if (_error <= _tolerance) return made;
+        for (const double dropped : droppedShares)
+        {
+            Clip made = attempt(clip, share * constantShare, share * dropped);
+            if (!made.compactTracks() || !(_error <= _tolerance)) continue;
+            if (best.compactTracks() && best.compactTracks()->records.size() <= made.compactTracks()->records.size())
+                continue;
+            best = made;
+            error = _error;
+        }
+        if (best.compactTracks()) break;
     }
-    _error = 0.0;
-    return clip;
+    _error = error;
+    return best;
 }
 
-Clip ClipCompactor::attempt(const Clip& clip, double share)
+Clip ClipCompactor::attempt(const Clip& clip, double constant, double dropped)
 {
     std::vector<JointTransform> data = clip.data();
-    makePartsConstant(clip, data, share * constantShare * _tolerance);
-    const std::vector<std::size_t> kept = keptKeyframes(clip, data, share * droppedShare * _tolerance);
+    makePartsConstant(clip, data, constant * _tolerance);
+    const std::vector<std::size_t> kept = keptKeyframes(clip, data, dropped * _tolerance);
 
     Clip made = clip;
     made._times.clear();
-    made._data = std::make_shared<std::vector<JointTransform>>();
+    std::vector<JointTransform> wanted;
     for (const std::size_t k : kept)
     {
         made._times.push_back(clip.times()[k]);
         const auto from = data.begin() + static_cast<std::ptrdiff_t>(k * clip.keyframeStride());
-        made._data->insert(made._data->end(), from, from + static_cast<std::ptrdiff_t>(clip.keyframeStride()));
+        wanted.insert(wanted.end(), from, from + static_cast<std::ptrdiff_t>(clip.keyframeStride()));
     }
-    made._compactTracks = std::make_shared<const CompactTracks>(
-        CompactTracks::pack(*made._data, made.trackCount(), _set.skeleton().jointCount()));
+    BitAllocator bits(_set, std::move(wanted));
+    CompactTracks tracks;
+    made._data = std::make_shared<std::vector<JointTransform>>();
+    if (!chooseBits(clip, kept, bits) || !bits.finish(tracks, *made._data)) return clip;
+    made._compactTracks = std::make_shared<const CompactTracks>(std::move(tracks));
     _error = errorOf(clip, made, kept);
     return made;
 }
@@ -172,7 +147,15 @@ std::size_t ClipCompactor::farthest(const Clip& clip, const std::vector<JointTra
     const auto tells = [&](std::size_t to)
     {
         const std::size_t stride = clip.keyframeStride();
-        return worstWithin(clip, from, to, &data[from * stride], &data[to * stride], most) <= most;
+        bool isNearEnough = true;
+        forPosesBetween(clip, from, to,
+                        [&](double share)
+                        {
+                            mix(&data[from * stride], &data[to * stride], share, _madePose);
+                            isNearEnough = _distance.to(_madePose).distance <= most;
+                            return isNearEnough;
+                        });
+        return isNearEnough;
     };
     std::size_t good = from + 1;
     std::size_t bad = end + 1;
@@ -194,27 +177,55 @@ std::size_t ClipCompactor::farthest(const Clip& clip, const std::vector<JointTra
     return good;
 }
 
-/// The largest error of a mix of a and b against the clip's keyframes [from, to] and the points halfway between them.
-/// Stops at an error above `enough`.
-double ClipCompactor::worstWithin(const Clip& clip, std::size_t from, std::size_t to, const JointTransform* a,
-                                  const JointTransform* b, double enough)
+/// Calls visit(share of `to`) with _distance from the clip's pose at keyframe `from`, then at those before `to` and at
+/// the times halfway between them, as long as it returns true.
+template <typename Visit>
+void ClipCompactor::forPosesBetween(const Clip& clip, std::size_t from, std::size_t to, Visit visit)
 {
     const auto timeOf = [&](std::size_t k) { return static_cast<double>(clip.times()[k]); };
     const double span = timeOf(to) - timeOf(from);
-    double worst = 0.0;
-    for (std::size_t step = 0; step <= 2 * (to - from) && worst <= enough; ++step)
+    const std::size_t stride = clip.keyframeStride();
+    for (std::size_t step = 0; step == 0 || step < 2 * (to - from); ++step)
     {
         const std::size_t k = from + step / 2;
         const bool isHalfway = step % 2 != 0;
         if (isHalfway && !(span > 0.0)) continue; // a jump
-        const std::size_t stride = clip.keyframeStride();
         const JointTransform* exact = &clip.data()[k * stride];
         const double time = isHalfway ? 0.5 * (timeOf(k) + timeOf(k + 1)) : timeOf(k);
         mix(exact, isHalfway ? exact + stride : exact, isHalfway ? 0.5 : 0.0, _exactPose);
-        mix(a, b, span > 0.0 ? (time - timeOf(from)) / span : static_cast<double>(k == to), _madePose);
-        worst = std::max(worst, _distance.between(_exactPose, _madePose));
+        _distance.from(_exactPose);
+        if (!visit(span > 0.0 ? (time - timeOf(from)) / span : 0.0)) return;
     }
-    return worst;
+}
+
+/// Raises bits until all poses are near enough. False: they cannot be.
+bool ClipCompactor::chooseBits(const Clip& clip, const std::vector<std::size_t>& kept, BitAllocator& bits)
+{
+    bits.begin(_distance, beginningShare * _tolerance);
+    const std::size_t stride = clip.keyframeStride();
+    bool isRaised = true, isPossible = true;
+    const auto approach = [&](std::size_t k, std::size_t next, double share)
+    {
+        while (isPossible)
+        {
+            mix(&bits.rounded()[k * stride], &bits.rounded()[next * stride], share, _madePose);
+            const PoseDistance::Worst worst = _distance.to(_madePose);
+            if (worst.distance <= _tolerance) return true;
+            isPossible = std::isfinite(worst.distance) && bits.raise(_madePose, _distance, worst);
+            isRaised = true;
+        }
+        return false;
+    };
+    while (isRaised && isPossible)
+    {
+        isRaised = false;
+        for (std::size_t k = 0; k < kept.size() && isPossible; ++k)
+        {
+            const std::size_t next = std::min(k + 1, kept.size() - 1);
+            forPosesBetween(clip, kept[k], kept[next], [&](double share) { return approach(k, next, share); });
+        }
+    }
+    return isPossible;
 }
 
 void ClipCompactor::mix(const JointTransform* a, const JointTransform* b, double alpha,
@@ -231,12 +242,16 @@ void ClipCompactor::mix(const JointTransform* a, const JointTransform* b, double
 double ClipCompactor::errorOf(const Clip& clip, const Clip& made, const std::vector<std::size_t>& kept)
 {
     double worst = 0.0;
-    const std::size_t stride = clip.keyframeStride();
     for (std::size_t k = 0; k < kept.size() && worst <= _tolerance; ++k)
     {
         const std::size_t next = std::min(k + 1, kept.size() - 1);
-        worst = std::max(worst, worstWithin(clip, kept[k], kept[next], &made.data()[k * stride],
-                                            &made.data()[next * stride], _tolerance));
+        forPosesBetween(clip, kept[k], kept[next],
+                        [&](double share)
+                        {
+                            mix(made.at(k, 0), made.at(next, 0), share, _madePose);
+                            worst = std::max(worst, _distance.to(_madePose).distance);
+                            return worst <= _tolerance;
+                        });
     }
     return worst;
 }

@@ -1,31 +1,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <osgGpuAnimation/animation/AnimationSet.h>
-#include <osgGpuAnimation/animation/math/Box.h>
+#include <osgGpuAnimation/animation/keyframes/PoseDistance.h>
 
 #include <vector>
 
 namespace osgGpuAnimation
 {
 
-/// The distance between two poses of a set in the model's units, see compactClips().
-class PoseDistance
-{
-public:
-    /// entryBoxes: one box per palette entry. The set must outlive this object.
-    PoseDistance(const AnimationSet& set, const EntryBoxes& entryBoxes);
-
-    /// a, b: one transform per track. Infinite if morph weights differ by more than rounding or a number is not finite.
-    double between(const std::vector<JointTransform>& a, const std::vector<JointTransform>& b);
-
-private:
-    bool hasOtherWeights(const std::vector<JointTransform>& a, const std::vector<JointTransform>& b) const;
-
-    const AnimationSet& _set;
-    std::vector<std::vector<glm::vec3>> _points; ///< of each joint, in its own space
-    std::vector<AffineMatrix> _jointsOfA, _jointsOfB;
-};
+class BitAllocator;
 
 /// Creates compact clips of the clips of a set, see compactClips().
 class ClipCompactor
@@ -39,12 +22,13 @@ public:
     double error() const { return _error; } ///< of the last result of compact(), in the model's units
 
 private:
-    Clip attempt(const Clip& clip, double share);
+    Clip attempt(const Clip& clip, double constantShare, double droppedShare);
     void makePartsConstant(const Clip& clip, std::vector<JointTransform>& data, double most) const;
     std::vector<std::size_t> keptKeyframes(const Clip& clip, const std::vector<JointTransform>& data, double most);
     std::size_t farthest(const Clip& clip, const std::vector<JointTransform>& data, std::size_t from, double most);
-    double worstWithin(const Clip& clip, std::size_t from, std::size_t to, const JointTransform* a,
-                       const JointTransform* b, double enough);
+    bool chooseBits(const Clip& clip, const std::vector<std::size_t>& kept, BitAllocator& bits);
+    template <typename Visit>
+    void forPosesBetween(const Clip& clip, std::size_t from, std::size_t to, Visit visit);
     void mix(const JointTransform* a, const JointTransform* b, double alpha, std::vector<JointTransform>& out) const;
     double errorOf(const Clip& clip, const Clip& made, const std::vector<std::size_t>& kept);
 

@@ -13,67 +13,96 @@
 namespace osgGpuAnimation
 {
 
-/// Three integers of 20 bits and an index of 2 bits in 8 bytes: a rotation, translation or scale of a compact clip. The
-/// GPU uses the same layout (layout.glsl, mix.glsl).
-struct QuantizedVec3
-{
-    std::uint32_t low = 0;
-    std::uint32_t high = 0;
-
-    static constexpr std::uint32_t largest = (1u << 20) - 1;
-
-    /// numbers: each in [0, largest]. place: in [0, 3].
-    static QuantizedVec3 of(const glm::uvec3& numbers, std::uint32_t place);
-    glm::uvec3 numbers() const;
-    std::uint32_t place() const { return high >> 28; }
-
-    /// Stores the three smallest components of a rotation; place is the index of the largest one. The error is at most
-    /// 7e-7 per component. q: of a length above 0.
-    static QuantizedVec3 ofRotation(const glm::vec4& q);
-    glm::vec4 rotation() const; ///< unit
-};
-
-/// The keyframes of a compact clip as the GPU stores them: 8 bytes for each part (translation, rotation or scale) that
-/// moves, nothing for a constant part. compactClips() creates them; Clip::data() contains the decoded values. Weight
-/// blocks are not part of it: they are stored exactly.
+/// The keyframes of a compact clip as the GPU stores them: one record of whole texels (128 bits) per keyframe. A part
+/// (translation, rotation or scale) that moves has three numbers per record, side by side in one texel, each with its
+/// own count of bits; a constant part has none. The GPU uses the same layout (layout.glsl, mix.glsl). compactClips()
+/// creates them; Clip::data() contains the decoded values. Weight blocks are not part of it: they are stored exactly.
 struct CompactTracks
 {
-    /// Quantization of a translation or a scale: value = base + step * number, axis by axis.
-    struct Range
+    static constexpr std::uint32_t mostBits = 20;   ///< of one number
+    static constexpr std::size_t mostTexels = 1024; ///< of one record
+    static constexpr std::size_t texelBits = 128;
+    /// Rotation::place if each keyframe omits its largest component; two bits after its numbers say which one.
+    static constexpr std::uint32_t largestPlace = 4;
+
+    /// The numbers of a part; on each axis value = base + step * number.
+    struct Part
     {
+        std::int32_t firstBit = -1; ///< of the part within a record; -1: it is constant, and data() has its value
+        glm::uvec3 bits{0u};        ///< of the number of each axis, at most mostBits; 0: the value is base
         glm::vec3 base{0.0f};
         glm::vec3 step{0.0f};
 
-        QuantizedVec3 pack(const glm::vec3& value) const; ///< the nearest value
-        glm::vec3 unpack(const QuantizedVec3& packed) const;
+        bool isMoving() const { return firstBit >= 0; }
+        glm::uvec3 numbersOf(const glm::vec3& value) const; ///< the nearest ones
+        glm::vec3 valueOf(const glm::uvec3& numbers) const;
+        /// Makes values in [least, most] representable with these bits.
+        void setRange(const glm::vec3& least, const glm::vec3& most, const glm::uvec3& newBits);
     };
 
-    /// Columns of a keyframe that contain a joint's translation, rotation and scale. -1: the part is constant and
-    /// data() has its value.
+    /// The components of a unit quaternion but one, which follows from them and is not negative.
+    struct RotationPart : Part
+    {
+        std::uint32_t place = 3; ///< the index of the omitted component, or largestPlace
+        /// Base and step as the GPU stores them: the least value in 10 bits and the extent in 10 bits, both in units of
+        /// 1 / 512; without bits the value in units of 2^-19.
+        glm::uvec3 ranges{0u};
+
+        void setRange(const glm::vec3& least, const glm::vec3& most, const glm::uvec3& newBits);
+        void setRanges(const glm::uvec3& newRanges); ///< after bits; each below 2^20
+    };
+
     struct Track
     {
-        int translation = -1;
-        int rotation = -1;
-        int scale = -1;
-        Range translationRange;
-        Range scaleRange;
+        Part translation;
+        RotationPart rotation;
+        Part scale;
     };
 
-    std::vector<Track> tracks; ///< one per joint
-    std::size_t columnCount = 0;
-    std::vector<QuantizedVec3> keyframes; ///< columnCount per keyframe of the clip
+    std::vector<Track> tracks;       ///< one per joint
+    std::size_t recordSize = 0;      ///< texels
+    std::vector<glm::uvec4> records; ///< recordSize per keyframe of the clip
 
-    /// Packs keyframes and replaces moving parts in data by their decoded values.
-    /// data: trackCount transforms per keyframe; the first jointCount of them are joints.
-    static CompactTracks pack(std::vector<JointTransform>& data, std::size_t trackCount, std::size_t jointCount);
+    /// A rotation without the component at `place`; largestPlace is replaced by the place of its largest component.
+    static glm::vec3 componentsOf(const glm::vec4& rotation, std::uint32_t& place);
+    /// The unit rotation. place: below largestPlace.
+    static glm::vec4 rotationOf(const glm::vec3& components, std::uint32_t place);
+
+    /// The values of a transform after rounding to the numbers of a track; constant parts stay.
+    static void round(const Track& track, JointTransform& transform);
+
+    /// Places the numbers of the tracks, whose moving parts have any firstBit from 0 on, in records, and replaces
+    /// moving parts in data by their decoded values. False if a record would have more than mostTexels.
+    /// data: trackCount transforms per keyframe; the first tracks.size() of them are joints.
+    bool pack(std::vector<JointTransform>& data, std::size_t trackCount);
+    /// Tracks with the moving parts of data, where values keep at least 20 bits of their range. To be packed.
+    static CompactTracks finest(const std::vector<JointTransform>& data, std::size_t trackCount,
+                                std::size_t jointCount);
+
     /// True if the sizes match a clip with these numbers of joints and keyframes and all numbers are valid.
     bool isFor(std::size_t jointCount, std::size_t keyframeCount) const;
     /// Writes the decoded values of the moving parts into data. data: trackCount transforms per keyframe.
     void unpack(std::vector<JointTransform>& data, std::size_t trackCount) const;
 
 private:
-    void unpackTransform(std::size_t keyframe, const Track& track, JointTransform& transform) const;
-    void packTransform(std::size_t keyframe, const Track& track, JointTransform& transform);
+    bool placeParts();
+};
+
+/// The values of one part of a joint in interleaved keyframes.
+struct PartKeys
+{
+    const JointTransform* first;
+    std::size_t stride;
+    std::size_t count;
+    glm::vec4 JointTransform::*part;
+
+    const glm::vec4& operator[](std::size_t keyframe) const { return first[keyframe * stride].*part; }
+    bool move() const;
+    /// The range of the values; of the components without the one at `place` for rotations.
+    void range(glm::vec3& outLeast, glm::vec3& outMost) const;
+    void range(std::uint32_t place, glm::vec3& outLeast, glm::vec3& outMost) const;
+    /// The place for RotationPart: that of a component which is never small, else largestPlace.
+    std::uint32_t omittedPlace() const;
 };
 
 } // namespace osgGpuAnimation

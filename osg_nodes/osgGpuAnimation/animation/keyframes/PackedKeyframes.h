@@ -24,15 +24,16 @@ enum class PartMotion
 
 /// All keyframes of a set in the layout of the GPU: only the parts of a track that move are stored per keyframe.
 ///
-/// Texels of four 32-bit words, one section after the other:
+/// Texels of four 32-bit words, one section after the other; addresses count texels:
 /// - a directory: one texel per keyframe of the set, in the order of AnimationSet::firstKeyframe(): the address of its
 ///   record, the address of the next keyframe's record (its own at the end of a clip), the address of the clip's table;
 /// - the rest pose: three texels per track;
-/// - one table per clip: one texel per track has the addresses of its translation, rotation and scale, and the address
-///   of the ranges of a compact track. An address points into the record, or to a value that is constant in the clip;
-///   equal constants of a set are stored once;
-/// - the records. A value of an exact clip takes one texel (three for splines: value, in- and out-tangent). A value of
-///   a compact clip takes half a texel. Addresses count half texels.
+/// - one table per clip: one texel per track has the addresses of its rotation, translation and scale. An address
+///   points into the record, or to a value that is constant in the clip; equal constants of a set are stored once.
+///   A track that a compact clip moves has its packed rotation there instead (unless that is constant), and last the
+///   address of its vectors: see layout.glsl;
+/// - the records. A value of an exact clip takes one texel (three for splines: value, in- and out-tangent). The record
+///   of a compact clip is that of CompactTracks.
 class PackedKeyframes
 {
 public:
@@ -55,32 +56,32 @@ public:
 private:
     using Part = glm::vec4 JointTransform::*;
 
-    /// A moving part of the current clip.
+    /// A moving part of the current clip that is stored exactly.
     struct Column
     {
         std::size_t track;
         Part part;
-        int compact; ///< its column in the clip's CompactTracks, -1: exact
     };
 
     void addClip(const Clip& clip, std::size_t firstKeyframe);
-    void placeTrack(const Clip& clip, std::size_t track, const CompactTracks::Track* compact);
-    void widenMotion(const Clip& clip, std::size_t track, const glm::uvec4& places);
-    void writeRecord(const Clip& clip, std::size_t keyframe, std::vector<std::uint32_t>& words) const;
+    void placeTrack(const Clip& clip, std::size_t track);
+    void placeCompactTrack(const Clip& clip, std::size_t track, const CompactTracks::Track& compact);
+    void widenMotion(const Clip& clip, std::size_t track, bool movesTranslation, bool movesScale);
+    void writeRecord(const Clip& clip, std::size_t keyframe);
     std::uint32_t addressOfConstant(const glm::vec4& value);
-    std::uint32_t ranges(const CompactTracks::Track& track);
+    std::uint32_t addressOfVectors(const Clip& clip, std::size_t track, const CompactTracks::Track& compact);
 
     const AnimationSet& _set;
     std::vector<glm::uvec4> _texels;
     std::size_t _restTexel = 0;
     std::vector<Track> _tracks;
     std::map<std::array<std::uint32_t, 4>, std::uint32_t> _constantAddresses;
-    std::map<std::array<float, 12>, std::uint32_t> _rangeTexels;
+    std::map<std::array<std::uint32_t, 16>, std::uint32_t> _vectorAddresses;
 
     // For the current clip.
     std::vector<glm::uvec4> _table;
     std::vector<Column> _columns;
-    std::uint32_t _recordSize = 0; ///< half texels
+    std::uint32_t _recordSize = 0; ///< texels
 };
 
 } // namespace osgGpuAnimation

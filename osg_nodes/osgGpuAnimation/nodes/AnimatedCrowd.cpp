@@ -49,24 +49,12 @@ Error noSuchInstance()
     return Error{"the crowd has no such instance (any more)"};
 }
 
-osg::Vec3d positionOf(const osg::Matrixd& fileToNode, const osg::Matrixd& placement)
-{
-    return (fileToNode * placement).getTrans();
-}
-
 /// fileToNode, then the placement as seen from the origin.
 osg::Matrixd rootFrom(const osg::Vec3d& origin, const osg::Matrixd& fileToNode, const osg::Matrixd& placement)
 {
     osg::Matrixd fromOrigin = placement;
     fromOrigin.setTrans(placement.getTrans() - origin);
     return fileToNode * fromOrigin;
-}
-
-bool hasMeshAtOrBelow(osg::Node& node)
-{
-    bool has = false;
-    forEachMeshBelow(node, [&](const SkinnedGeometry&) { has = true; });
-    return has;
 }
 
 } // namespace
@@ -154,6 +142,7 @@ AnimatedCrowd::AnimatedCrowd(const AnimatedCharacter& character)
         _instances->setClipBounds(bounds, character._mixBounds);
     else
         computeBounds(*_instances, *this);
+    prepareSharedPoses();
 }
 
 AnimatedCrowd::AnimatedCrowd(const AnimatedCrowd& other, const osg::CopyOp& copyop)
@@ -212,7 +201,7 @@ Result<AnimatedCrowd::Instance> AnimatedCrowd::add(const osg::Matrixd& placement
     _origin = origin;
     _hasOrigin = true;
     dirtyBound();
-    return _instances->add(root.value(), positionOf(_fileToNode, placement), controller, toRgba(tint));
+    return _instances->add(root.value(), (_fileToNode * placement).getTrans(), controller, toRgba(tint));
 }
 
 Result<bool> AnimatedCrowd::setFileToNode(const osg::Matrixd& fileToNode)
@@ -222,7 +211,8 @@ Result<bool> AnimatedCrowd::setFileToNode(const osg::Matrixd& fileToNode)
     for (std::size_t index = 0; index < getNumInstances(); ++index)
     {
         const osg::Matrixd placement = getPlacement(_instances->handleOf(index));
-        _instances->move(index, toAffine(rootFrom(_origin, fileToNode, placement)), positionOf(fileToNode, placement));
+        _instances->move(index, toAffine(rootFrom(_origin, fileToNode, placement)),
+                         (fileToNode * placement).getTrans());
     }
     _fileToNode = fileToNode;
     dirtyBound();
@@ -243,7 +233,7 @@ Result<bool> AnimatedCrowd::setPlacement(Instance instance, const osg::Matrixd& 
     if (index == CrowdInstances::none) return noSuchInstance();
     const Result<AffineMatrix> root = toRootMatrix(rootFrom(_origin, _fileToNode, placement), "the placement", false);
     if (!root) return root.error();
-    _instances->move(index, root.value(), positionOf(_fileToNode, placement));
+    _instances->move(index, root.value(), (_fileToNode * placement).getTrans());
     dirtyBound();
     return true;
 }
@@ -441,6 +431,7 @@ Result<bool> AnimatedCrowd::setMeshVisible(const std::string& name, bool isVisib
     const Result<std::vector<SkinnedGeometry*>> meshes = meshesNamed(*this, name);
     if (!meshes) return meshes.error();
     _variantMeshes->setVisible(*this, {meshes.value().begin(), meshes.value().end()}, isVisible);
+    _sharedPoses = nullptr; // its levels are of the meshes that were visible
     return true;
 }
 
@@ -473,11 +464,13 @@ void AnimatedCrowd::cull(osgUtil::CullVisitor& visitor)
     static thread_local std::vector<std::uint32_t> seen; // keeps its storage from cull to cull
     _instances->findSeen(isCullingActive() ? view.planes() : std::vector<glm::vec4>(), seen);
     std::vector<DrawState> draws;
+    LodRange lods;
     if (!seen.empty() && getAnimationSet().paletteSize() > 0)
     {
         view.look(*_instances, seen);
-        const LodScale scale(visitor, PoseStage::lodView(visitor), _pixelError,
-                             _pixelError > 0.0f ? LodRange(*this, getAnimationSet()) : LodRange());
+        if (_pixelError > 0.0f)
+            lods = LodRange(*this, getAnimationSet(), _sharedPoses ? _sharedPoses->levels() : nullptr);
+        const LodScale scale(visitor, PoseStage::lodView(visitor), _pixelError, lods);
         PoseFrame& frame = PoseStage::frame(visitor);
         if (_sharedPoses && scale.isOn()) draws = _sharedPoses->submit(frame, *_instances, scale, seen);
         for (const DrawState& draw : submitSeen(frame, *_instances, CrowdLod(*_instances, scale), seen))
@@ -486,8 +479,9 @@ void AnimatedCrowd::cull(osgUtil::CullVisitor& visitor)
     for (const DrawState& draw : draws)
     {
         visitor.pushStateSet(draw.stateSet);
-        forEachMesh(*this,
-                    [&](const SkinnedGeometry& mesh) { view.draw(const_cast<SkinnedGeometry&>(mesh), *draw.binding); });
+        lods.forEachMeshAt(draw.binding->getLevel(), *this,
+                           [&](const SkinnedGeometry& mesh)
+                           { view.draw(const_cast<SkinnedGeometry&>(mesh), *draw.binding); });
         visitor.popStateSet();
     }
     const UnculledScope unculled(visitor);
@@ -502,18 +496,17 @@ void AnimatedCrowd::cull(osgUtil::CullVisitor& visitor)
                                   }
                               });
     for (const osg::ref_ptr<osg::Node>& child : _children)
-    {
         if (!dynamic_cast<const SkinnedGeometry*>(child.get())) child->accept(visitor);
-    }
 }
 
 Result<bool> AnimatedCrowd::setPixelError(float pixels)
 {
-    const Result<bool> prepared = LodRange::prepare(pixels, *this, getAnimationSet());
-    if (!prepared) return prepared;
+    const Result<bool> checked = LodRange::check(pixels);
+    if (!checked) return checked;
     _pixelError = pixels;
+    if (_sharedPoses && !_sharedPoses->levels()->isOf(*this, getAnimationSet())) _sharedPoses = nullptr;
     prepareSharedPoses();
-    return prepared;
+    return checked;
 }
 
 void AnimatedCrowd::prepareSharedPoses()
@@ -522,6 +515,7 @@ void AnimatedCrowd::prepareSharedPoses()
     if (_sharedPoses) _sharedPoses->forgetUnused();
     if (isOn == (_sharedPoses != nullptr) && (!isOn || _sharedPoses->isOf(*this))) return;
     _sharedPoses = isOn ? std::make_unique<SharedPoses>(*this, getAnimationSet()) : nullptr;
+    if (isOn) static_cast<void>(LodRange(*this, getAnimationSet(), _sharedPoses->levels())); // levels of other meshes
 }
 
 void AnimatedCrowd::visitInstances(osg::NodeVisitor& visitor)
@@ -554,6 +548,18 @@ void AnimatedCrowd::count(osg::NodeVisitor& visitor)
         for (std::size_t time = 0; time < times; ++time)
             child->accept(visitor);
     }
+}
+
+void AnimatedCrowd::releaseGLObjects(osg::State* state) const
+{
+    osg::Transform::releaseGLObjects(state);
+    if (_sharedPoses) _sharedPoses->levels()->releaseGLObjects(state);
+}
+
+void AnimatedCrowd::resizeGLObjectBuffers(unsigned int maxSize)
+{
+    osg::Transform::resizeGLObjectBuffers(maxSize);
+    if (_sharedPoses) _sharedPoses->levels()->resizeGLObjectBuffers(maxSize);
 }
 
 osg::BoundingSphere AnimatedCrowd::computeBound() const

@@ -169,6 +169,8 @@ public:
     /// statistics count every instance; visitors that compute bounds get the box around all instances as they play now.
     void traverse(osg::NodeVisitor& visitor) override;
     osg::BoundingSphere computeBound() const override; ///< around all instances and the other children
+    void releaseGLObjects(osg::State* state = nullptr) const override;
+    void resizeGLObjectBuffers(unsigned int maxSize) override;
     /// Applies the origin to the matrix.
     bool computeLocalToWorldMatrix(osg::Matrix& matrix, osg::NodeVisitor* visitor) const override;
     /// Removes the origin from the matrix.

@@ -25,6 +25,7 @@ constexpr int ownPose = -1; ///< in place of a number of phases
 
 /// The errors of a band have one level of detail, as without shared poses, and one error of poses, which is the rest. A
 /// band is an eighth of the errors between two powers of two: its number is the upper bits of a float.
+constexpr float mostOfLevel = 0.8f; ///< the share of an error that a level of detail may have
 constexpr std::uint32_t bitsInBand = 20;
 constexpr std::size_t bandCount = std::size_t(1) << (31 - bitsInBand);
 
@@ -142,8 +143,8 @@ private:
         if (band) return *band;
         band = std::make_unique<Band>();
         const float least = leastErrorOf(number);
-        const int level = _scale.levelWithin(least);
-        const float ofLevel = level == LodLevels::allTriangles ? 0.0f : std::ldexp(1.0f, level);
+        const int level = _scale.levelWithin(mostOfLevel * least);
+        const auto ofLevel = static_cast<float>(LodLevels::errorOf(level));
         band->drawn = &_drawn[level];
         band->phases.push_back({1, 0.0f});
         for (const ClipTravel& travel : _meshes.travels)
@@ -234,6 +235,7 @@ SharedPoses::SharedPoses(const osg::Group& crowd, const AnimationSet& set)
     computed->travels = travelsOfClips(set, boxes.ofClips, boxes.reaches);
     for (const Clip& clip : set.clips())
         computed->durations.push_back(clip.duration());
+    computed->levels = std::make_shared<const CharacterLevels>(crowd, set);
     _meshes = computed;
 }
 

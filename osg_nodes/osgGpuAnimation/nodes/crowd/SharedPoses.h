@@ -36,6 +36,8 @@ public:
 
     /// True if the crowd still has the same meshes.
     bool isOf(const osg::Group& crowd) const;
+    /// The levels of the meshes together, for LodRange; never null.
+    const std::shared_ptr<const CharacterLevels>& levels() const { return _meshes->levels; }
     /// Called in each update: forgets the lists that were not drawn since the last call.
     void forgetUnused();
 
@@ -60,6 +62,7 @@ private:
         std::vector<Shape> shapes;
         std::vector<ClipTravel> travels; ///< by clip, as the durations
         std::vector<double> durations;   ///< seconds
+        std::shared_ptr<const CharacterLevels> levels;
     };
     class Collection;
 

@@ -66,7 +66,6 @@ std::vector<PoseInstruction> poolOf(const AnimationSet& set)
     return pool;
 }
 
-constexpr std::size_t poseCount = 12;
 // The finest level is the mesh's size divided by 2 to that power; the coarsest, which alone may cross texture seams, is
 // the character's size divided so: coarser levels save little more and make small characters thin.
 constexpr int finestFraction = 8;
@@ -103,7 +102,7 @@ PosedSurface surfaceOf(const osg::Geometry& mesh, const AnimationSet& set, const
     PosedSurface surface;
     std::vector<AffineMatrix> palette;
     std::vector<glm::dvec3> positions;
-    for (const PoseInstruction& pose : keyPoses(set, poseCount))
+    for (const PoseInstruction& pose : keyPoses(set, LodLevels::poseCount))
     {
         Pose::evaluate(set, pose, AffineMatrix(), palette);
         skin(palette, positions);
@@ -132,21 +131,6 @@ double sizeOf(const Box& box)
     return box.empty() ? 0.0 : glm::distance(glm::dvec3(box.min), glm::dvec3(box.max));
 }
 
-/// Whole triangles; empty for other primitives.
-std::vector<std::uint32_t> trianglesOf(const osg::PrimitiveSet& primitives, std::size_t vertexCount)
-{
-    std::vector<std::uint32_t> indices;
-    const osg::DrawElements* elements = primitives.getDrawElements();
-    if (!elements || primitives.getMode() != GL_TRIANGLES || !elements->getDataPointer()) return indices;
-    for (unsigned int i = 0; i + 2 < elements->getNumIndices(); i += 3)
-        for (unsigned int corner = i; corner < i + 3; ++corner)
-        {
-            if (elements->index(corner) >= vertexCount) return {};
-            indices.push_back(elements->index(corner));
-        }
-    return indices;
-}
-
 /// True if posing the palette costs no more than reducing the triangles. Meshes of many small, separately animated
 /// parts get no levels.
 bool isWorthPoses(const osg::Geometry& mesh, const AnimationSet& set)
@@ -166,6 +150,20 @@ osg::ref_ptr<osg::DrawElements> makeElements(const std::vector<std::uint32_t>& i
 }
 
 } // namespace
+
+std::vector<std::uint32_t> trianglesOf(const osg::PrimitiveSet& primitives, std::size_t vertexCount)
+{
+    std::vector<std::uint32_t> indices;
+    const osg::DrawElements* elements = primitives.getDrawElements();
+    if (!elements || primitives.getMode() != GL_TRIANGLES || !elements->getDataPointer()) return indices;
+    for (unsigned int i = 0; i + 2 < elements->getNumIndices(); i += 3)
+        for (unsigned int corner = i; corner < i + 3; ++corner)
+        {
+            if (elements->index(corner) >= vertexCount) return {};
+            indices.push_back(elements->index(corner));
+        }
+    return indices;
+}
 
 std::vector<PoseInstruction> keyPoses(const AnimationSet& set, std::size_t count)
 {
@@ -204,7 +202,14 @@ float largestScale(const AffineMatrix& matrix)
 
 int LodLevels::levelOf(double error)
 {
-    return error > 0.0 && std::isfinite(error) ? std::ilogb(error) : allTriangles;
+    if (!(error > 0.0 && std::isfinite(error))) return allTriangles;
+    const int powerOfTwo = std::ilogb(error);
+    return 2 * powerOfTwo + (std::ldexp(error, -powerOfTwo) >= std::sqrt(2.0) ? 1 : 0);
+}
+
+double LodLevels::errorOf(int level)
+{
+    return level == allTriangles ? 0.0 : std::exp2(0.5 * level);
 }
 
 LodLevels::LodLevels(const osg::Geometry& mesh, const AnimationSet& set, const Skinning& skin)
@@ -221,7 +226,7 @@ LodLevels::LodLevels(const osg::Geometry& mesh, const AnimationSet& set, const S
     const int coarsest = std::min(std::ilogb(std::max(size, sizeOf(boundsOfJoints(set)))) - coarsestFraction,
                                   std::ilogb(size) + mostBeyondSize);
     for (Primitives& primitives : _primitives)
-        addSteps(surface, std::ilogb(size) - finestFraction, coarsest, primitives);
+        addSteps(surface, 2 * (std::ilogb(size) - finestFraction), 2 * coarsest, primitives);
 }
 
 void LodLevels::addSteps(const PosedSurface& surface, int finest, int coarsest, Primitives& primitives)
@@ -233,7 +238,7 @@ void LodLevels::addSteps(const PosedSurface& surface, int finest, int coarsest, 
     for (int level = finest; level <= coarsest; ++level)
     {
         if (simplifier.triangleCount() <= 1) break;
-        const double limit = std::ldexp(1.0, level);
+        const double limit = errorOf(level);
         simplifier.reduce(limit, level < coarsest);
         const bool isWorthwhile =
             static_cast<double>(simplifier.triangleCount()) < worthwhile * static_cast<double>(kept);

@@ -9,6 +9,7 @@
 #include <glm/vec3.hpp>
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -28,10 +29,13 @@ struct PosedSurface;
 /// The largest length of a transformed unit axis.
 float largestScale(const AffineMatrix& matrix);
 
+/// The whole triangles of indexed triangles; empty for other primitives and for an index that is out of range.
+std::vector<std::uint32_t> trianglesOf(const osg::PrimitiveSet& primitives, std::size_t vertexCount);
+
 /// Reduced triangles for a mesh over the same vertices, so that palettes, influences and morph targets do not change. A
-/// **level** is the exponent of the largest error as a power of two, in the character's own units for any mesh space:
-/// at level -3 no vertex of the mesh is farther than 1/8 from the drawn surface. One level therefore means the same for
-/// all meshes of a character.
+/// **level** is the exponent of the largest error as a power of the square root of 2, in the character's own units for
+/// any mesh space: at level -6 no vertex of the mesh is farther than 1/8 from the drawn surface. One level therefore
+/// means the same for all meshes of a character.
 ///
 /// MeshSimplifier keeps the error in twelve poses at once (keyPoses() of the set). In other poses it may be larger: by
 /// at most half in tests at random times of real characters' clips. No levels are built for primitive sets other than
@@ -47,9 +51,11 @@ class LodLevels
 public:
     static constexpr int allTriangles = std::numeric_limits<int>::min(); ///< the level without error
     static constexpr std::size_t maxVertices = 100'000; ///< of a mesh with levels; such a mesh takes seconds
+    static constexpr std::size_t poseCount = 12;        ///< of the key poses
 
     /// The coarsest level within the error, in the character's units; allTriangles if the error is not above 0.
     static int levelOf(double error);
+    static double errorOf(int level); ///< in the character's units; 0 for allTriangles
 
     /// Computes one position per vertex in the pose of a palette (the set's paletteSize() entries).
     using Skinning =

@@ -19,26 +19,36 @@ std::string LodRange::describePixelErrors()
     return "a number of pixels from 0 to " + std::to_string(largestPixelError);
 }
 
-Result<bool> LodRange::prepare(float pixels, const osg::Group& meshes, const AnimationSet& set)
+Result<bool> LodRange::check(float pixels)
 {
-    if (!isPixelError(pixels))
-        return Error{"a pixel error of " + std::to_string(pixels) + ": it must be " + describePixelErrors()};
-    if (pixels > 0.0f && set.paletteSize() > 0) static_cast<void>(LodRange(meshes, set));
-    return true;
+    if (isPixelError(pixels)) return true;
+    return Error{"a pixel error of " + std::to_string(pixels) + ": it must be " + describePixelErrors()};
 }
 
-LodRange::LodRange(const osg::Group& meshes, const AnimationSet& set)
+Result<bool> LodRange::prepare(float pixels, const osg::Group& meshes, const AnimationSet& set)
 {
+    const Result<bool> checked = check(pixels);
+    if (checked && pixels > 0.0f && set.paletteSize() > 0) static_cast<void>(LodRange(meshes, set));
+    return checked;
+}
+
+LodRange::LodRange(const osg::Group& meshes, const AnimationSet& set, std::shared_ptr<const CharacterLevels> together)
+    : _together(together && together->isOf(meshes, set) ? std::move(together) : nullptr)
+{
+    const auto add = [&](const auto& levels)
+    {
+        if (levels.finest() == LodLevels::allTriangles) return;
+        _finest = std::min(_finest, levels.finest());
+        _coarsest = std::max(_coarsest, levels.coarsest());
+    };
+    if (_together) add(*_together);
     std::size_t vertices = 0;
     forEachMesh(meshes,
                 [&](const SkinnedGeometry& mesh)
                 {
                     vertices += mesh.getVertexCount();
-                    if (vertices > maxVertices) return;
-                    const std::shared_ptr<const LodLevels> levels = mesh.getLodLevels(set);
-                    if (levels->finest() == LodLevels::allTriangles) return;
-                    _finest = std::min(_finest, levels->finest());
-                    _coarsest = std::max(_coarsest, levels->coarsest());
+                    if (vertices <= maxVertices && !(_together && _together->contains(mesh)))
+                        add(*mesh.getLodLevels(set));
                 });
 }
 

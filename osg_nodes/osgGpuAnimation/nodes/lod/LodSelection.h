@@ -2,6 +2,7 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/Result.h>
+#include <osgGpuAnimation/nodes/lod/CharacterLevels.h>
 #include <osgGpuAnimation/nodes/lod/LodLevels.h>
 
 #include <osg/Camera>
@@ -14,6 +15,7 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
+#include <memory>
 #include <string>
 
 namespace osgGpuAnimation
@@ -31,14 +33,27 @@ public:
     static bool isPixelError(double pixels) { return pixels >= 0.0 && pixels <= largestPixelError; }
     /// The accepted range, for messages.
     static std::string describePixelErrors();
+    /// Error: the value is out of range or NaN.
+    static Result<bool> check(float pixels);
     /// Creates the levels of the SkinnedGeometry among a group's children, unless the pixel error is 0 or the set is
     /// empty. Error: pixels is out of range.
     static Result<bool> prepare(float pixels, const osg::Group& meshes, const AnimationSet& set);
 
     LodRange() = default;
     /// The range of the SkinnedGeometry among a group's children. Only this constructor creates missing levels; meshes
-    /// without levels are drawn with all triangles.
-    LodRange(const osg::Group& meshes, const AnimationSet& set);
+    /// without levels are drawn with all triangles. together: replaces meshes if it isOf() the group; null: nothing.
+    LodRange(const osg::Group& meshes, const AnimationSet& set,
+             std::shared_ptr<const CharacterLevels> together = nullptr);
+
+    /// function(const SkinnedGeometry&), for the meshes to draw at a level in place of the group's.
+    template <typename Function>
+    void forEachMeshAt(int level, const osg::Group& meshes, Function function) const
+    {
+        if (_together)
+            _together->forEachMeshAt(level, meshes, function);
+        else
+            forEachMesh(meshes, function);
+    }
 
     /// The level clamped to the range; allTriangles if it is finer.
     int clamped(int level) const
@@ -49,6 +64,7 @@ public:
 private:
     int _finest = std::numeric_limits<int>::max();
     int _coarsest = LodLevels::allTriangles;
+    std::shared_ptr<const CharacterLevels> _together; ///< null: each mesh has its own levels
 };
 
 /// The view that selects levels of detail: the camera that culls or, for an absolute depth-only camera (see DepthPass),

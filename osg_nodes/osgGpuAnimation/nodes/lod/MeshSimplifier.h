@@ -67,7 +67,7 @@ private:
 /// It collapses edges, one point into its neighbour, in the order of the largest quadric error over all poses (see
 /// PlaneQuadric; Mohr and Gleicher, Deformation Sensitive Decimation, 2003). A collapse is allowed only if all points
 /// that were collapsed into its ends stay near the new triangles. No triangle flips in any pose. Each connected piece
-/// keeps at least one triangle.
+/// keeps at least one triangle, unless pieces are joined.
 ///
 /// Time is proportional to points times poses: about 0.1 s for the 2,300 points of 3,300 vertices in 12 poses, for all
 /// limits together.
@@ -79,8 +79,10 @@ public:
     MeshSimplifier(const PosedSurface& surface, const std::vector<std::uint32_t>& indices);
 
     /// Collapses edges while the error stays below about `limit`, in the poses' units; see error(). Call it with
-    /// ascending limits. keepSeams: texture coordinates stay on their side of a seam.
-    void reduce(double limit, bool keepSeams);
+    /// ascending limits. keepSeams: texture coordinates stay on their side of a seam. joinPieces: points within the
+    /// limit in all poses are collapsed too if no edge connects them, as those of separate parts.
+    void reduce(double limit, bool keepSeams, bool joinPieces = false);
+    const MeshConnectivity& mesh() const { return _mesh; } ///< the remaining triangles
     std::size_t triangleCount() const { return _mesh.triangleCount(); }
     std::vector<std::uint32_t> indices() const { return _mesh.indices(); } ///< in the original order and orientation
 
@@ -102,6 +104,8 @@ private:
     bool isAlike(std::uint32_t vertex, std::uint32_t other) const;
     void consider(std::uint32_t from, std::uint32_t to);
     void considerAll();
+    void considerNear();
+    bool isWithinLimit(std::uint32_t point, std::uint32_t other) const;
     bool collapseCandidates();
     bool findCorners(std::uint32_t from, std::uint32_t to, std::vector<Corners>& outMoved) const;
     bool turnsOver(const Corners& corners, std::uint32_t from, std::uint32_t to) const;

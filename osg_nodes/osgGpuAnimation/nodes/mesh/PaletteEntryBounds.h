@@ -69,6 +69,13 @@ void forEachMeshBelow(osg::Node& node, Function function)
     node.accept(visitor);
 }
 
+inline bool hasMeshAtOrBelow(osg::Node& node)
+{
+    bool has = false;
+    forEachMeshBelow(node, [&](const SkinnedGeometry&) { has = true; });
+    return has;
+}
+
 /// function(const SkinnedGeometry&), for every mesh among the children of the group, and for the most detailed level of
 /// each osg::LOD among them.
 template <typename Function>

@@ -54,6 +54,18 @@ Result<bool> fillKeyframes(const CompactParts& compact, ClipParts& clip, std::si
     return true;
 }
 
+/// Packing would replace numbers that are not finite.
+Result<bool> checkFinite(const ClipParts& clip)
+{
+    const auto isFinite = [](const JointTransform& transform)
+    {
+        const auto* numbers = reinterpret_cast<const float*>(&transform);
+        return std::all_of(numbers, numbers + floatsATransform, [](float number) { return std::isfinite(number); });
+    };
+    if (std::all_of(clip.data.begin(), clip.data.end(), isFinite)) return true;
+    return Error{"clip \"" + clip.name + "\": a number of its compact keyframes is not finite"};
+}
+
 void transferWords(ValueStream& stream, glm::uvec3& words)
 {
     for (int axis = 0; axis < 3; ++axis)
@@ -117,6 +129,8 @@ public:
         if (stream.isGood()) stream.require("", fillKeyframes(parts, clip, bytesLeft));
         if (!stream.isGood()) return;
         former.decode(clip);
+        stream.require("", checkFinite(clip));
+        if (!stream.isGood()) return;
         CompactTracks tracks = CompactTracks::finest(clip.data, clip.trackCount, clip.jointCount);
         // A record that would be too large leaves the clip exact.
         if (tracks.pack(clip.data, clip.trackCount))
@@ -205,6 +219,7 @@ void transferCompactKeyframes(ValueStream& stream, ClipParts& clip, std::size_t&
     transferRecords(stream, compact.tracks);
     if (!stream.hasRead()) return;
     stream.require("", fillKeyframes(compact, clip, bytesLeft));
+    if (!stream.isGood()) return;
     for (CompactTracks::Track& track : compact.tracks.tracks)
         track.rotation.setRanges(track.rotation.ranges);
     clip.compactTracks = std::make_shared<const CompactTracks>(std::move(compact.tracks));

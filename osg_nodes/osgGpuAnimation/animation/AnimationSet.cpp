@@ -110,7 +110,8 @@ std::optional<Error> findFault(const AnimationParts& parts, std::size_t trackCou
     return std::nullopt;
 }
 
-/// Addresses on the GPU have 31 bits and count texels, at most eight per transform or track (see PackedKeyframes).
+/// Addresses on the GPU have 31 bits and count texels, at most eight per transform or track (see PackedKeyframes);
+/// larger records of compact clips from a file are refused by the limit of buffer textures.
 std::optional<Error> findFaultInSize(const std::vector<Clip>& clips)
 {
     constexpr std::size_t most = (std::size_t(1) << 31) / 16;

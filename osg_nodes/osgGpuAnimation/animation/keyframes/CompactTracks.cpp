@@ -47,10 +47,17 @@ public:
     }
     std::uint32_t read(std::uint32_t count)
     {
-        std::uint32_t number = 0;
-        for (std::uint32_t i = 0; i < count; ++i, ++_bit)
-            number |= (word() >> _bit % 32 & 1u) << i;
-        return number;
+        if (count == 0) return 0;
+        const std::uint32_t shift = _bit % 32;
+        std::uint64_t words = word() >> shift;
+        if (shift + count > 32)
+        {
+            _bit += 32;
+            words |= std::uint64_t(word()) << (32 - shift);
+            _bit -= 32;
+        }
+        _bit += count;
+        return static_cast<std::uint32_t>(words & ((std::uint64_t(1) << count) - 1));
     }
 
 private:
@@ -88,7 +95,7 @@ glm::vec4 roundedRotation(const CompactRotation& part, const glm::vec4& value)
 
 bool isSound(const CompactPart& part, std::uint32_t bits, std::size_t recordSize)
 {
-    if (!part.isMoving()) return part.firstBit == -1;
+    if (!part.isMoving()) return part.firstBit == -1 && part.bits == glm::uvec3(0u);
     const auto first = static_cast<std::size_t>(part.firstBit);
     const glm::vec3 sum = glm::abs(part.base) + glm::abs(part.step);
     return glm::all(glm::lessThanEqual(part.bits, glm::uvec3(CompactTracks::mostBits))) &&
@@ -154,7 +161,7 @@ void CompactTracks::RotationPart::setRanges(const glm::uvec3& newRanges)
     {
         const float extent = static_cast<float>((ranges[axis] >> 10) + 1u) * rangeUnit;
         const float least = static_cast<float>(ranges[axis] & (rangeSteps - 1u)) * rangeUnit - 1.0f;
-        step[axis] = bits[axis] == 0 ? 0.0f : std::ldexp(extent, -static_cast<int>(bits[axis]));
+        step[axis] = bits[axis] == 0 ? 0.0f : std::ldexp(extent, -static_cast<int>(std::min(bits[axis], mostBits)));
         base[axis] = bits[axis] == 0 ? static_cast<float>(ranges[axis]) * fineUnit - 1.0f : least + 0.5f * step[axis];
     }
 }

@@ -43,14 +43,19 @@ osg::ref_ptr<osg::StateSet> viewState()
     return stateSet;
 }
 
-/// True if the frame will draw below these nodes with their state sets and a headlight: no node adds other state when
-/// it is culled, as effects, shadows and surroundings do, and no light of the scene is on. Programs for other state
-/// would be compiled in vain.
+/// True if culling the node adds no state, as that of effects, shadows, surroundings and nested characters does.
+bool isPlain(const osg::Node& node)
+{
+    return node.libraryName() == std::string("osg") && !node.getCullCallback();
+}
+
+/// True if the frame will draw below these nodes with their state sets and a headlight: all are plain, and no light of
+/// the scene is on. Programs for other state would be compiled in vain.
 bool hasKnownState(const osg::NodePath& path, const osg::Node& character)
 {
     for (const osg::Node* node : path)
     {
-        if (node != &character && (node->libraryName() != std::string("osg") || node->getCullCallback())) return false;
+        if (node != &character && !isPlain(*node)) return false;
         const osg::StateSet* stateSet = node->getStateSet();
         for (GLenum light = GL_LIGHT0; stateSet && light <= GL_LIGHT7; ++light)
             if (stateSet->getMode(light) & osg::StateAttribute::ON) return false;
@@ -65,7 +70,8 @@ struct StatedMesh
     StateSets stateSets;
 };
 
-/// The meshes below a character, with the state sets of the nodes down to them; one mesh for each state.
+/// The meshes below a character, with the state sets of the nodes down to them; one mesh for each state. Nothing below
+/// nodes that add state when they are culled.
 class MeshCollector : public osg::NodeVisitor
 {
 public:
@@ -76,10 +82,16 @@ public:
     {
     }
 
+    void apply(osg::Node& node) override
+    {
+        if (getNodePath().size() == 1 || isPlain(node)) traverse(node);
+    }
+
     void apply(osg::Drawable& drawable) override
     {
         auto* mesh = dynamic_cast<SkinnedGeometry*>(&drawable);
-        if (!mesh || mesh->getDrawCallback()) return; // there is no view that a callback may expect
+        // There is no view that a callback may expect.
+        if (!mesh || mesh->getDrawCallback() || mesh->getCullCallback()) return;
         const bool isChild = getNodePath().size() == 2;
         if (_isInstanced && !(isChild && canBeDrawnTogether(*mesh))) return;
         StatedMesh found{mesh, _above};
@@ -134,11 +146,12 @@ public:
             each.mesh->draw(renderInfo);
             state.popStateSetStackToSize(stackSize);
         }
+        // OSG remembers the applied attributes by their addresses, and those of the view and the frames go.
+        state.apply();
         state.applyMode(GL_RASTERIZER_DISCARD, false); // before the next frame clears
         state.get<osg::GLExtensions>()->glUseProgram(0);
         state.setLastAppliedProgramObject(nullptr);
         state.haveAppliedAttribute(osg::StateAttribute::PROGRAM);
-        // The state sets of the frame go.
         state.haveAppliedAttribute(PaletteBinding::bindingType);
     }
 

@@ -57,12 +57,9 @@ Result<bool> fillKeyframes(const CompactParts& compact, ClipParts& clip, std::si
 /// Packing would replace numbers that are not finite.
 Result<bool> checkFinite(const ClipParts& clip)
 {
-    const auto isFinite = [](const JointTransform& transform)
-    {
-        const auto* numbers = reinterpret_cast<const float*>(&transform);
-        return std::all_of(numbers, numbers + floatsATransform, [](float number) { return std::isfinite(number); });
-    };
-    if (std::all_of(clip.data.begin(), clip.data.end(), isFinite)) return true;
+    const bool isFinite = std::all_of(clip.data.begin(), clip.data.end(),
+                                      [](const JointTransform& transform) { return transform.isFinite(); });
+    if (isFinite) return true;
     return Error{"clip \"" + clip.name + "\": a number of its compact keyframes is not finite"};
 }
 

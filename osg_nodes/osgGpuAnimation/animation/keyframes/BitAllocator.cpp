@@ -19,6 +19,12 @@ constexpr std::array<glm::vec4 JointTransform::*, 3> partsOfTracks{&JointTransfo
                                                                    &JointTransform::rotation, &JointTransform::scale};
 constexpr std::size_t rotationPart = 1;
 
+const CompactTracks::Part& partOf(const CompactTracks::Track& track, std::size_t part)
+{
+    if (part == rotationPart) return track.rotation;
+    return part == 0 ? track.translation : track.scale;
+}
+
 } // namespace
 
 BitAllocator::BitAllocator(const AnimationSet& set, std::vector<JointTransform> wanted)
@@ -62,8 +68,7 @@ void BitAllocator::setBits(std::size_t joint, std::size_t part, const glm::uvec3
 
 glm::uvec3 BitAllocator::bitsOf(std::size_t joint, std::size_t part) const
 {
-    const CompactTracks::Track& track = _tracks.tracks[joint];
-    return part == 0 ? track.translation.bits : part == rotationPart ? track.rotation.bits : track.scale.bits;
+    return partOf(_tracks.tracks[joint], part).bits;
 }
 
 void BitAllocator::round(std::size_t joint)
@@ -87,10 +92,7 @@ void BitAllocator::forNumbers(std::size_t joint, Visit visit) const
 float BitAllocator::largestError(const Number& number) const
 {
     const Moving& moving = _moving[number.joint][number.part];
-    const CompactTracks::Track& track = _tracks.tracks[number.joint];
-    const CompactTracks::Part& part = number.part == 0              ? track.translation
-                                      : number.part == rotationPart ? track.rotation
-                                                                    : track.scale;
+    const CompactTracks::Part& part = partOf(_tracks.tracks[number.joint], number.part);
     const float step =
         part.bits[number.axis] == 0 ? moving.most[number.axis] - moving.least[number.axis] : part.step[number.axis];
     return 0.5f * step;

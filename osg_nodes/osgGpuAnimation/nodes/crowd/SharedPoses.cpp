@@ -14,6 +14,7 @@
 #include <cstring>
 #include <limits>
 #include <map>
+#include <optional>
 
 namespace osgGpuAnimation
 {
@@ -21,10 +22,8 @@ namespace osgGpuAnimation
 namespace
 {
 
-constexpr int ownPose = -1; ///< in place of a number of phases
-
-/// The errors of a band have one level of detail, as without shared poses, and one error of poses, which is the rest. A
-/// band is an eighth of the errors between two powers of two: its number is the upper bits of a float.
+/// The errors of a band have one level of detail, as without shared poses; the rest of the error is for poses. A band is
+/// an eighth of the errors between two powers of two: its number is the upper bits of a float.
 constexpr std::uint32_t bitsInBand = 20;
 constexpr std::size_t bandCount = std::size_t(1) << (31 - bitsInBand);
 
@@ -72,14 +71,15 @@ public:
     std::size_t batchCount() const { return _batches.size(); }
     std::unique_ptr<PoseBatch> takeBatch(std::size_t batch) { return std::move(_batches[batch]); }
 
-    /// Adds the instance with the pose of its phase. False: the instance needs a pose of its own.
+    /// Adds the instance with a pose near its own. False: the instance needs a pose of its own.
     bool add(std::uint32_t index)
     {
         const glm::vec4& sphere = _instances.sphere(index);
-        const Band& band = bandFor(_scale.allowedError(glm::vec3(sphere), sphere.w, _instances.scale(index)));
-        const auto clip = static_cast<std::size_t>(_instances.clip(index) + 1);
-        if (clip >= band.phases.size() || band.phases[clip].count == ownPose) return false;
-        band.drawn->push_back({poseOf(index, clip, band.phases[clip]), index});
+        const float error = _scale.allowedError(glm::vec3(sphere), sphere.w, _instances.scale(index));
+        const Band& band = bandFor(error);
+        const std::uint32_t pose = poseOf(index, error - band.ofLevel);
+        if (pose == none) return false;
+        band.drawn->push_back({pose, index});
         return true;
     }
 
@@ -105,18 +105,12 @@ public:
     }
 
 private:
-    static constexpr std::size_t posesPerClip = 2 * mostPhases;
+    static constexpr std::size_t posesPerClip = mostPhases + 1;
     static constexpr std::uint32_t none = ~std::uint32_t(0);
     struct Band
     {
-        struct Phases
-        {
-            int count;       ///< a power of two or ownPose
-            float perTravel; ///< count / travel of the clip
-        };
-
-        std::vector<PlacedInstances::Drawn>* drawn = nullptr;
-        std::vector<Phases> phases; ///< by clip + 1
+        std::vector<PlacedInstances::Drawn>* drawn;
+        float ofLevel; ///< the error of the level of detail
     };
 
     /// By clip and phase; all `none` between two collections.
@@ -138,49 +132,53 @@ private:
     const Band& bandFor(float error)
     {
         const std::size_t number = bandOf(error);
-        std::unique_ptr<Band>& band = _bands[number];
-        if (band) return *band;
-        band = std::make_unique<Band>();
-        const float least = leastErrorOf(number);
-        const int level = _scale.levelWithin(least);
-        const float ofLevel = level == LodLevels::allTriangles ? 0.0f : std::ldexp(1.0f, level);
-        band->drawn = &_drawn[level];
-        band->phases.push_back({1, 0.0f});
-        for (const ClipTravel& travel : _meshes.travels)
+        std::optional<Band>& band = _bands[number];
+        if (!band)
         {
-            const int count = phasesOf(travel, least - ofLevel);
-            band->phases.push_back({count, static_cast<float>(count) / travel.length()});
+            const int level = _scale.levelWithin(leastErrorOf(number));
+            band = Band{&_drawn[level], level == LodLevels::allTriangles ? 0.0f : std::ldexp(1.0f, level)};
         }
         return *band;
     }
 
-    /// Enough that no vertex is farther than `error` from its place in the middle of a phase.
-    static int phasesOf(const ClipTravel& travel, float error)
+    /// The pose of the roundest phase within the error. none: no phase is within it.
+    std::uint32_t poseOf(std::uint32_t index, float error)
     {
-        const float needed = travel.length() / (2.0f * error);
-        if (!(needed <= static_cast<float>(mostPhases))) return travel.length() > 0.0f ? ownPose : 1;
-        int phases = 1;
-        while (static_cast<float>(phases) < needed)
-            phases *= 2;
-        return phases;
+        const int clip = _instances.clip(index);
+        if (clip < 0) return poseAt(0, nullptr, 0);
+        const ClipTravel& travel = _meshes.travels[static_cast<std::size_t>(clip)];
+        std::uint32_t phase = 0;
+        if (travel.length() > 0.0f)
+        {
+            const double duration = _meshes.durations[static_cast<std::size_t>(clip)];
+            const float phases = static_cast<float>(mostPhases) / travel.length();
+            const float at = travel.at(static_cast<float>(_instances.time(index, duration)));
+            const float first = std::max(std::ceil((at - error) * phases), 0.0f);
+            const float last = std::min(std::floor((at + error) * phases), static_cast<float>(mostPhases));
+            if (!(first <= last)) return none;
+            phase = roundest(static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last));
+        }
+        return poseAt(static_cast<std::size_t>(clip) + 1, &travel, phase);
+    }
+
+    /// The number of most zeros at its end in binary, in [first, last]: the more instances choose it, the fewer poses.
+    static std::uint32_t roundest(std::uint32_t first, std::uint32_t last)
+    {
+        if (first == 0) return 0;
+        std::uint32_t mask = (first - 1) ^ last; // all bits from the highest one that differs
+        for (const int shift : {1, 2, 4, 8, 16})
+            mask |= mask >> shift;
+        return last & ~(mask >> 1);
     }
 
     /// clip: its number + 1; 0: the rest pose.
-    std::uint32_t poseOf(std::uint32_t index, std::size_t clip, const Band::Phases& phases)
+    std::uint32_t poseAt(std::size_t clip, const ClipTravel* travel, std::uint32_t phase)
     {
-        const ClipTravel* travel = clip == 0 ? nullptr : &_meshes.travels[clip - 1];
-        int phase = 0;
-        if (phases.count > 1)
-        {
-            const float at = travel->at(static_cast<float>(_instances.time(index, _meshes.durations[clip - 1])));
-            phase = std::min(static_cast<int>(at * phases.perTravel), phases.count - 1);
-        }
-        const std::size_t place = clip * posesPerClip + static_cast<std::size_t>(phases.count + phase);
+        const std::size_t place = clip * posesPerClip + phase;
         if (_poses[place] == none)
-        {
-            const float middle = (static_cast<float>(phase) + 0.5f) / static_cast<float>(phases.count);
-            addPose(place, travel ? travel->sampleAt(middle * travel->length()) : BlendSample{});
-        }
+            addPose(place, travel ? travel->sampleAt(travel->length() * static_cast<float>(phase) /
+                                                     static_cast<float>(mostPhases))
+                                  : BlendSample{});
         return _poses[place];
     }
 
@@ -202,7 +200,7 @@ private:
     std::vector<std::uint32_t>& _poses;
     std::vector<std::uint32_t> _used; ///< the places in _poses that are not `none`
     DrawnByLevel& _drawn;
-    std::array<std::unique_ptr<Band>, bandCount> _bands;
+    std::array<std::optional<Band>, bandCount> _bands;
 };
 
 SharedPoses::Shape::Shape(SkinnedGeometry& mesh) : mesh(&mesh), vertices(mesh.getVertexArray()) {}

@@ -18,15 +18,16 @@
 namespace osgGpuAnimation
 {
 
-/// The poses that instances of a crowd with a pixel error share. A clip is cut into phases of equal ClipTravel, the
-/// more the larger an instance is on screen; all instances in one phase show the pose of its middle. The distance of a
-/// vertex from its exact place, plus the error of the level of detail, stays within the pixel error. Instances that
-/// need more than `mostPhases` phases have poses of their own, and so do those with a controller: the crowd submits
-/// them itself.
+/// The poses that instances of a crowd with a pixel error share. A clip has poses at `mostPhases` steps of equal
+/// ClipTravel. An instance shows the one within its error whose number ends in the most zeros in binary: large and small
+/// instances then choose the same ones, and the smaller an instance is on screen, the fewer there are to choose from. The
+/// distance of a vertex from its exact place, plus the error of the level of detail, stays within the pixel error.
+/// Instances with no step within their error have poses of their own, and so do those with a controller: the crowd
+/// submits them itself.
 class SharedPoses
 {
 public:
-    static constexpr int mostPhases = 512; ///< of a clip, a power of two
+    static constexpr int mostPhases = 512; ///< steps of a clip, a power of two
 
     /// crowd: the node with the meshes.
     SharedPoses(const osg::Group& crowd, const AnimationSet& set);

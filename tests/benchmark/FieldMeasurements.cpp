@@ -61,6 +61,13 @@ void lookAcross(StagedViewer& viewer, const osg::BoundingSphere& field)
     viewer.lookFrom(centre + osg::Vec3d(0.0, -0.74, 0.06) * field.radius(), centre, 30.0);
 }
 
+/// distance: from the centre, in radii.
+void lookFromTheAir(StagedViewer& viewer, const osg::BoundingSphere& field, double distance)
+{
+    const osg::Vec3d centre = field.center();
+    viewer.lookFrom(centre + osg::Vec3d(0.0, -0.5, 0.9) * distance * field.radius(), centre, 30.0);
+}
+
 /// What the context has evaluated and uploaded so far.
 struct Counts
 {
@@ -209,6 +216,16 @@ Result<bool> measureField(const Subject& subject, const Effort& effort, Report& 
     addRow("the field, update + cull", "µs an instance", microseconds(contestants.front().updateAndCull));
     addRow("the field, poses evaluated", "a frame", {after.poses - before.poses});
     addRow("the field, uploaded", "bytes an instance", {(after.bytes - before.bytes) / count});
+    const std::pair<const char*, double> views[] = {{"the field, all in view, update + cull", 3.0},
+                                                    {"the field, a tenth in view, update + cull", 0.62}};
+    for (const auto& [what, distance] : views)
+    {
+        lookFromTheAir(viewer, bound, distance);
+        contestants.front().updateAndCull.clear();
+        race(contestants, effort.rounds);
+        addRow(what, "µs an instance", microseconds(contestants.front().updateAndCull));
+    }
+    lookAcross(viewer, bound);
     if (!osg::isGLExtensionOrVersionSupported(viewer.state().getContextID(), "GL_ARB_pipeline_statistics_query", 4.6f))
         return true;
     addRow("the field, triangles drawn", "a frame", {countedInFrame(contestants.front(), primitivesClipped)});

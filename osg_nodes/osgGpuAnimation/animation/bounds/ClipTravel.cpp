@@ -132,8 +132,8 @@ ClipTravel::ClipTravel(const AnimationSet& set, std::size_t clip, const EntryBox
         }
         add(keyframe + 1, 0.0, times[keyframe + 1]);
     }
-    const std::size_t parts = _samples.size();
-    for (std::size_t i = 0; i + 1 < parts; ++i)
+    const std::size_t parts = 2 * _samples.size();
+    for (std::size_t i = 0; i + 1 < _samples.size(); ++i)
         // Times that nearly coincide count as a jump.
         if (const float speed =
                 (_samples[i + 1].travel - _samples[i].travel) / (_samples[i + 1].time - _samples[i].time);
@@ -167,15 +167,6 @@ BlendSample ClipTravel::sampleAt(float travel) const
     const float alphaAfter = after->keyframe == before.keyframe ? after->alpha : 1.0f;
     const float share = (travel - before.travel) / (after->travel - before.travel);
     return {before.keyframe, before.alpha + share * (alphaAfter - before.alpha), 1.0f, _control};
-}
-
-std::vector<ClipTravel> travelsOfClips(const AnimationSet& set, const EntryBoxes& entryBoxes,
-                                       const std::vector<float>& reaches)
-{
-    std::vector<ClipTravel> travels;
-    for (std::size_t clip = 0; clip < set.clips().size(); ++clip)
-        travels.emplace_back(set, clip, entryBoxes, reaches);
-    return travels;
 }
 
 } // namespace osgGpuAnimation

@@ -63,8 +63,4 @@ private:
     std::uint32_t _control = 0; ///< see BlendSample
 };
 
-/// The travels of all clips of the set.
-std::vector<ClipTravel> travelsOfClips(const AnimationSet& set, const EntryBoxes& entryBoxes,
-                                       const std::vector<float>& reaches);
-
 } // namespace osgGpuAnimation

@@ -22,8 +22,8 @@ namespace osgGpuAnimation
 namespace
 {
 
-/// The errors of a band have one level of detail, as without shared poses; the rest of the error is for poses. A band is
-/// an eighth of the errors between two powers of two: its number is the upper bits of a float.
+/// The errors of a band have one level of detail, as without shared poses; the rest of the error is for poses. A band
+/// is an eighth of the errors between two powers of two: its number is the upper bits of a float.
 constexpr std::uint32_t bitsInBand = 20;
 constexpr std::size_t bandCount = std::size_t(1) << (31 - bitsInBand);
 
@@ -48,6 +48,9 @@ float leastErrorOf(std::size_t band)
 } // namespace
 
 /// The instances of one camera, by level, and the batches with their poses, each pose once.
+///
+/// An instance may show any step of its clip from a first to a last one. The fewest poses for all: in ascending order
+/// of the last steps, an instance that contains none of the steps chosen so far chooses its last one.
 class SharedPoses::Collection
 {
 public:
@@ -55,15 +58,9 @@ public:
     Collection(const Meshes& meshes, const CrowdInstances& instances, const LodScale& scale, PoseFrame& frame,
                std::size_t mostPoses)
         : _meshes(meshes), _instances(instances), _scale(scale), _frame(frame), _mostPoses(mostPoses),
-          _poses(posesOfThread()), _drawn(drawnOfThread())
+          _placeOfClip(meshes.clips.size() + 1, none), _steps(stepsOfThread()), _drawn(drawnOfThread())
     {
-        const std::size_t needed = (meshes.travels.size() + 1) * posesPerClip;
-        if (_poses.size() < needed) _poses.resize(needed, none);
-    }
-    ~Collection()
-    {
-        for (const std::uint32_t place : _used)
-            _poses[place] = none;
+        _steps.clear();
         for (auto& [level, drawn] : _drawn)
             drawn.clear();
     }
@@ -71,16 +68,33 @@ public:
     std::size_t batchCount() const { return _batches.size(); }
     std::unique_ptr<PoseBatch> takeBatch(std::size_t batch) { return std::move(_batches[batch]); }
 
-    /// Adds the instance with a pose near its own. False: the instance needs a pose of its own.
-    bool add(std::uint32_t index)
+    /// Takes the instances without a controller out of the list, except those that need a pose of their own.
+    void takeFrom(std::vector<std::uint32_t>& seen)
     {
-        const glm::vec4& sphere = _instances.sphere(index);
-        const float error = _scale.allowedError(glm::vec3(sphere), sphere.w, _instances.scale(index));
-        const Band& band = bandFor(error);
-        const std::uint32_t pose = poseOf(index, error - band.ofLevel);
-        if (pose == none) return false;
-        band.drawn->push_back({pose, index});
-        return true;
+        const bool arePlain = _instances.isWithoutControllers();
+        std::size_t left = 0;
+        for (const std::uint32_t index : seen)
+            if ((!arePlain && _instances.hasController(index)) || !add(index)) seen[left++] = index;
+        seen.resize(left);
+    }
+
+    /// To call once, after all instances were added.
+    void choosePoses()
+    {
+        for (const std::size_t clip : _clips)
+        {
+            std::uint32_t chosen = 0, pose = none; // 1 + the latest chosen step
+            for (std::uint32_t step = 0; step <= static_cast<std::uint32_t>(mostSteps); ++step)
+            {
+                std::uint32_t& needed = _steps[_placeOfClip[clip] + step];
+                if (needed > chosen)
+                {
+                    chosen = step + 1;
+                    pose = addPose(clip, step);
+                }
+                if (needed > 0) needed = pose;
+            }
+        }
     }
 
     /// Writes the list of a batch, level by level. function(level, first, count)
@@ -91,42 +105,68 @@ public:
         for (const auto& [level, drawn] : _drawn)
             count += drawn.size();
         out.reserve(count / _batches.size());
+        const auto before = static_cast<std::uint32_t>(batch * _mostPoses); // poses of the batches before
         for (const auto& [level, drawn] : _drawn)
         {
             const std::size_t first = out.size();
-            if (_batches.size() == 1)
-                out.insert(out.end(), drawn.begin(), drawn.end());
-            else
-                for (const auto& [pose, instance] : drawn)
-                    if (pose / _mostPoses == batch)
-                        out.push_back({static_cast<std::uint32_t>(pose % _mostPoses), instance});
+            for (const auto& [place, instance] : drawn)
+                if (const std::uint32_t pose = _steps[place] - before; pose < _mostPoses)
+                    out.push_back({pose, instance});
             if (out.size() > first) function(level, first, out.size() - first);
         }
     }
 
 private:
-    static constexpr std::size_t posesPerClip = mostPhases + 1;
     static constexpr std::uint32_t none = ~std::uint32_t(0);
     struct Band
     {
-        std::vector<PlacedInstances::Drawn>* drawn;
-        float ofLevel; ///< the error of the level of detail
+        std::vector<PlacedInstances::Drawn>* drawn; ///< `pose` is a place in _steps
+        float ofLevel;                              ///< the error of the level of detail
     };
-
-    /// By clip and phase; all `none` between two collections.
-    static std::vector<std::uint32_t>& posesOfThread()
-    {
-        static thread_local std::vector<std::uint32_t> poses;
-        return poses;
-    }
-
-    /// Poses are numbered through all batches.
     using DrawnByLevel = std::map<int, std::vector<PlacedInstances::Drawn>>;
-    /// Without instances between two collections; keeps its storage.
+
+    static std::vector<std::uint32_t>& stepsOfThread()
+    {
+        static thread_local std::vector<std::uint32_t> steps;
+        return steps;
+    }
     static DrawnByLevel& drawnOfThread()
     {
         static thread_local DrawnByLevel drawn;
         return drawn;
+    }
+
+    /// False: the instance needs a pose of its own.
+    bool add(std::uint32_t index)
+    {
+        const glm::vec4& sphere = _instances.sphere(index);
+        const float error = _scale.allowedError(glm::vec3(sphere), sphere.w, _instances.scale(index));
+        const Band& band = bandFor(error);
+        const int clip = _instances.clip(index);
+        int first = 0, last = 0;
+        if (clip >= 0)
+        {
+            const SharedClip& shared = _meshes.clips[static_cast<std::size_t>(clip)];
+            const float reach = (error - band.ofLevel) * shared.stepsPerTravel;
+            if (!(reach >= 0.0f)) return false;
+            first = last = mostSteps / 2;
+            if (reach < static_cast<float>(mostSteps / 2)) // else all steps reach the middle
+            {
+                const float time = static_cast<float>(_instances.time(index, shared.duration));
+                const float step = shared.travel.at(time) * shared.stepsPerTravel;
+                // Without branches on the phase, which no processor could predict.
+                const int begin = static_cast<int>(step - reach);
+                first = std::max(begin + static_cast<int>(static_cast<float>(begin) < step - reach), 0);
+                last = std::min(static_cast<int>(step + reach), mostSteps);
+            }
+            if (first > last) return false;
+        }
+        const std::uint32_t place = placeOf(static_cast<std::size_t>(clip + 1)) + static_cast<std::uint32_t>(last);
+        if (_steps[place] <= static_cast<std::uint32_t>(first)) _steps[place] = static_cast<std::uint32_t>(first) + 1;
+        PlacedInstances::Drawn& drawn = band.drawn->emplace_back();
+        drawn.pose = place;
+        drawn.instance = index;
+        return true;
     }
 
     const Band& bandFor(float error)
@@ -141,54 +181,30 @@ private:
         return *band;
     }
 
-    /// The pose of the roundest phase within the error. none: no phase is within it.
-    std::uint32_t poseOf(std::uint32_t index, float error)
+    /// Of the first step of a clip in _steps. clip: its number + 1; 0: the rest pose.
+    std::uint32_t placeOf(std::size_t clip)
     {
-        const int clip = _instances.clip(index);
-        if (clip < 0) return poseAt(0, nullptr, 0);
-        const ClipTravel& travel = _meshes.travels[static_cast<std::size_t>(clip)];
-        std::uint32_t phase = 0;
-        if (travel.length() > 0.0f)
+        if (_placeOfClip[clip] == none)
         {
-            const double duration = _meshes.durations[static_cast<std::size_t>(clip)];
-            const float phases = static_cast<float>(mostPhases) / travel.length();
-            const float at = travel.at(static_cast<float>(_instances.time(index, duration)));
-            const float first = std::max(std::ceil((at - error) * phases), 0.0f);
-            const float last = std::min(std::floor((at + error) * phases), static_cast<float>(mostPhases));
-            if (!(first <= last)) return none;
-            phase = roundest(static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last));
+            _clips.push_back(clip);
+            _placeOfClip[clip] = static_cast<std::uint32_t>(_steps.size());
+            _steps.resize(_steps.size() + mostSteps + 1, 0);
         }
-        return poseAt(static_cast<std::size_t>(clip) + 1, &travel, phase);
+        return _placeOfClip[clip];
     }
 
-    /// The number of most zeros at its end in binary, in [first, last]: the more instances choose it, the fewer poses.
-    static std::uint32_t roundest(std::uint32_t first, std::uint32_t last)
+    std::uint32_t addPose(std::size_t clip, std::uint32_t step)
     {
-        if (first == 0) return 0;
-        std::uint32_t mask = (first - 1) ^ last; // all bits from the highest one that differs
-        for (const int shift : {1, 2, 4, 8, 16})
-            mask |= mask >> shift;
-        return last & ~(mask >> 1);
-    }
-
-    /// clip: its number + 1; 0: the rest pose.
-    std::uint32_t poseAt(std::size_t clip, const ClipTravel* travel, std::uint32_t phase)
-    {
-        const std::size_t place = clip * posesPerClip + phase;
-        if (_poses[place] == none)
-            addPose(place, travel ? travel->sampleAt(travel->length() * static_cast<float>(phase) /
-                                                     static_cast<float>(mostPhases))
-                                  : BlendSample{});
-        return _poses[place];
-    }
-
-    void addPose(std::size_t place, const BlendSample& sample)
-    {
+        BlendSample sample;
+        if (clip > 0)
+        {
+            const ClipTravel& travel = _meshes.clips[clip - 1].travel;
+            sample = travel.sampleAt(travel.length() * static_cast<float>(step) / static_cast<float>(mostSteps));
+        }
         if (_batches.empty() || _batches.back()->size() == _mostPoses)
             _batches.push_back(_frame.makeBatch(_instances.set()));
-        _used.push_back(static_cast<std::uint32_t>(place));
         const std::size_t before = (_batches.size() - 1) * _mostPoses;
-        _poses[place] = static_cast<std::uint32_t>(before + _batches.back()->addSample(sample));
+        return static_cast<std::uint32_t>(before + _batches.back()->addSample(sample));
     }
 
     const Meshes& _meshes;
@@ -197,9 +213,11 @@ private:
     PoseFrame& _frame;
     std::size_t _mostPoses;
     std::vector<std::unique_ptr<PoseBatch>> _batches;
-    std::vector<std::uint32_t>& _poses;
-    std::vector<std::uint32_t> _used; ///< the places in _poses that are not `none`
-    DrawnByLevel& _drawn;
+    std::vector<std::size_t> _clips;         ///< those of the added instances
+    std::vector<std::uint32_t> _placeOfClip; ///< by clip + 1; none: no instance plays it
+    std::vector<std::uint32_t>& _steps;      ///< by place: 1 + the largest first step of the instances with that last
+                                             ///< step, 0 without; after choosePoses() the number of their pose
+    DrawnByLevel& _drawn;                    ///< poses are numbered through all batches
     std::array<std::optional<Band>, bandCount> _bands;
 };
 
@@ -229,9 +247,12 @@ SharedPoses::SharedPoses(const osg::Group& crowd, const AnimationSet& set)
     for (std::size_t entry = 0; isMorphed && entry < boxes.reaches.size(); ++entry)
         if (const Box& box = boxes.ofClips[entry]; !box.empty())
             boxes.reaches[entry] = std::max(boxes.reaches[entry], glm::distance(box.min, box.max));
-    computed->travels = travelsOfClips(set, boxes.ofClips, boxes.reaches);
-    for (const Clip& clip : set.clips())
-        computed->durations.push_back(clip.duration());
+    for (std::size_t clip = 0; clip < set.clips().size(); ++clip)
+    {
+        ClipTravel travel(set, clip, boxes.ofClips, boxes.reaches);
+        const float stepsPerTravel = travel.length() > 0.0f ? static_cast<float>(mostSteps) / travel.length() : 0.0f;
+        computed->clips.push_back({std::move(travel), set.clips()[clip].duration(), stepsPerTravel});
+    }
     _meshes = computed;
 }
 
@@ -277,11 +298,8 @@ std::vector<DrawState> SharedPoses::submit(PoseFrame& frame, const CrowdInstance
     if (placementTexels > frame.getMaxTexels()) return draws;
 
     Collection collection(*_meshes, instances, scale, frame, mostPoses);
-    const bool arePlain = instances.isWithoutControllers();
-    std::size_t left = 0;
-    for (const std::uint32_t index : seen)
-        if ((!arePlain && instances.hasController(index)) || !collection.add(index)) seen[left++] = index;
-    seen.resize(left);
+    collection.takeFrom(seen);
+    collection.choosePoses();
     for (std::size_t number = 0; number < collection.batchCount(); ++number)
     {
         struct Run

@@ -18,16 +18,14 @@
 namespace osgGpuAnimation
 {
 
-/// The poses that instances of a crowd with a pixel error share. A clip has poses at `mostPhases` steps of equal
-/// ClipTravel. An instance shows the one within its error whose number ends in the most zeros in binary: large and small
-/// instances then choose the same ones, and the smaller an instance is on screen, the fewer there are to choose from. The
-/// distance of a vertex from its exact place, plus the error of the level of detail, stays within the pixel error.
-/// Instances with no step within their error have poses of their own, and so do those with a controller: the crowd
-/// submits them itself.
+/// The poses that instances of a crowd with a pixel error share: the fewest, at `mostSteps` steps of equal ClipTravel
+/// of each clip, that have one within the error of every instance. The distance of a vertex from its exact place, plus
+/// the error of the level of detail, stays within the pixel error. Instances with no step within their error have poses
+/// of their own, and so do those with a controller: the crowd submits them itself.
 class SharedPoses
 {
 public:
-    static constexpr int mostPhases = 512; ///< steps of a clip, a power of two
+    static constexpr int mostSteps = 1024; ///< of a clip
 
     /// crowd: the node with the meshes.
     SharedPoses(const osg::Group& crowd, const AnimationSet& set);
@@ -55,12 +53,17 @@ private:
         osg::ref_ptr<const SkinnedGeometry> mesh;
         osg::ref_ptr<const osg::Array> vertices;
     };
+    struct SharedClip
+    {
+        ClipTravel travel;
+        double duration;      ///< seconds
+        float stepsPerTravel; ///< 0: a clip without motion
+    };
     /// What depends on the meshes.
     struct Meshes
     {
         std::vector<Shape> shapes;
-        std::vector<ClipTravel> travels; ///< by clip, as the durations
-        std::vector<double> durations;   ///< seconds
+        std::vector<SharedClip> clips;
     };
     class Collection;
 

@@ -49,8 +49,9 @@ float leastErrorOf(std::size_t band)
 
 /// The instances of one camera, by level, and the batches with their poses, each pose once.
 ///
-/// An instance may show any step of its clip from a first to a last one. The fewest poses for all: in ascending order
-/// of the last steps, an instance that contains none of the steps chosen so far chooses its last one.
+/// An instance may show any step of its clip from a first to a last one; there is one if its error is at least half a
+/// step. The fewest poses for all: in ascending order of the last steps, an instance that contains none of the steps
+/// chosen so far chooses its last one.
 class SharedPoses::Collection
 {
 public:
@@ -148,7 +149,7 @@ private:
         {
             const SharedClip& shared = _meshes.clips[static_cast<std::size_t>(clip)];
             const float reach = (error - band.ofLevel) * shared.stepsPerTravel;
-            if (!(reach >= 0.0f)) return false;
+            if (!(reach >= 0.5f)) return false;
             first = last = mostSteps / 2;
             if (reach < static_cast<float>(mostSteps / 2)) // else all steps reach the middle
             {
@@ -159,7 +160,6 @@ private:
                 first = std::max(begin + static_cast<int>(static_cast<float>(begin) < step - reach), 0);
                 last = std::min(static_cast<int>(step + reach), mostSteps);
             }
-            if (first > last) return false;
         }
         const std::uint32_t place = placeOf(static_cast<std::size_t>(clip + 1)) + static_cast<std::uint32_t>(last);
         if (_steps[place] <= static_cast<std::uint32_t>(first)) _steps[place] = static_cast<std::uint32_t>(first) + 1;
@@ -250,7 +250,8 @@ SharedPoses::SharedPoses(const osg::Group& crowd, const AnimationSet& set)
     for (std::size_t clip = 0; clip < set.clips().size(); ++clip)
     {
         ClipTravel travel(set, clip, boxes.ofClips, boxes.reaches);
-        const float stepsPerTravel = travel.length() > 0.0f ? static_cast<float>(mostSteps) / travel.length() : 0.0f;
+        const float stepsPerTravel = travel.length() > 0.0f ? static_cast<float>(mostSteps) / travel.length()
+                                                            : std::numeric_limits<float>::infinity();
         computed->clips.push_back({std::move(travel), set.clips()[clip].duration(), stepsPerTravel});
     }
     _meshes = computed;

@@ -57,7 +57,7 @@ private:
     {
         ClipTravel travel;
         double duration;      ///< seconds
-        float stepsPerTravel; ///< 0: a clip without motion
+        float stepsPerTravel; ///< infinity: a clip without motion
     };
     /// What depends on the meshes.
     struct Meshes

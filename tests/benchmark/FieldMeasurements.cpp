@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "Contestant.h"
+#include "Field.h"
 #include "Measurements.h"
-#include "Scenes.h"
+#include "PoseCrowd.h"
 
 #include <osgGpuAnimation/gpu/buffers/PlacedInstances.h>
 #include <osgGpuAnimation/gpu/PosePipeline.h>
@@ -10,8 +11,6 @@
 
 #include <algorithm>
 #include <iostream>
-#include <map>
-#include <random>
 
 namespace osgGpuAnimation::benchmark
 {
@@ -19,47 +18,9 @@ namespace osgGpuAnimation::benchmark
 namespace
 {
 
-constexpr std::size_t columns = 316; ///< and as many rows
-constexpr float pixelError = 0.5f;
-
-constexpr std::size_t places = columns * columns;
-
 // Of ARB_pipeline_statistics_query.
 constexpr GLenum shaderInvocations = 0x82F0; ///< of vertices
 constexpr GLenum primitivesClipped = 0x82F6;
-
-/// Of neighbours, in the units of the subject's file.
-double spacingOf(const Subject& subject)
-{
-    const std::map<std::string, double> known{{"Fox", 110.0}, {"CesiumMan", 1.1}, {"Knight", 2.2}, {"Wanderer", 1.1}};
-    const auto bar = known.find(subject.name);
-    return bar == known.end() ? 1.3 * subject.model.root->getBound().radius() : bar->second;
-}
-
-/// Everybody loops some clip of the file from some time on. step: 1: all places are taken, else each so many.
-osg::ref_ptr<AnimatedCrowd> makeField(const Subject& subject, std::size_t step = 1)
-{
-    osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*subject.model.character);
-    const double spacing = spacingOf(subject);
-    std::mt19937 random(1);
-    for (std::size_t place = 0; place < places; place += step)
-    {
-        AnimationController controller(crowd->getSharedAnimationSet());
-        static_cast<void>(controller.play(random() % subject.set().clips().size()));
-        controller.seek(phaseOf(place, controller.duration()));
-        const double x = spacing * static_cast<double>(place % columns);
-        const double y = spacing * static_cast<double>(place / columns);
-        static_cast<void>(crowd->add(osg::Matrixd::translate(x, y, 0.0), controller));
-    }
-    return crowd;
-}
-
-/// From before the field over half of it.
-void lookAcross(StagedViewer& viewer, const osg::BoundingSphere& field)
-{
-    const osg::Vec3d centre = field.center();
-    viewer.lookFrom(centre + osg::Vec3d(0.0, -0.74, 0.06) * field.radius(), centre, 30.0);
-}
 
 /// distance: from the centre, in radii.
 void lookFromTheAir(StagedViewer& viewer, const osg::BoundingSphere& field, double distance)
@@ -162,7 +123,7 @@ Result<double> bytesOfField(const Subject& subject, double& outPoses)
         viewing.frame();
         before = bytesInUse();
         const osg::ref_ptr<AnimatedCrowd> field = makeField(subject, step);
-        if (const Result<bool> set = field->setPixelError(pixelError); !set) return set.error();
+        if (const Result<bool> set = field->setPixelError(fieldPixelError); !set) return set.error();
         root->addChild(field);
         for (int frame = 0; frame < 3; ++frame)
             viewing.frame();
@@ -182,7 +143,7 @@ Result<bool> measureField(const Subject& subject, const Effort& effort, Report& 
 {
     std::cerr << subject.name << ": a field of " << places << std::endl;
     const osg::ref_ptr<AnimatedCrowd> field = makeField(subject);
-    if (const Result<bool> set = field->setPixelError(pixelError); !set) return set.error();
+    if (const Result<bool> set = field->setPixelError(fieldPixelError); !set) return set.error();
     const osg::BoundingSphere bound = field->getBound();
     Result<Contestant> made = contestant(field, bound, 1280, 720);
     if (!made) return made.error();
@@ -243,7 +204,7 @@ Result<bool> measureMixed(const std::vector<Subject>& subjects, const Effort& ef
     for (std::size_t kind = 0; kind < subjects.size(); ++kind)
     {
         crowds.emplace_back(subjects[kind], kind, subjects.size());
-        if (const Result<bool> set = crowds.back().node().setPixelError(pixelError); !set) return set.error();
+        if (const Result<bool> set = crowds.back().node().setPixelError(fieldPixelError); !set) return set.error();
         root->addChild(&crowds.back().node());
     }
     Result<Contestant> made = contestant(root, root->getBound(), 1280, 720);

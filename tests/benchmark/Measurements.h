@@ -58,6 +58,11 @@ Result<bool> measureField(const Subject& subject, const Effort& effort, Report& 
 /// A crowd of 99,856 of all subjects in turns; everyone walks and one camera flies through: times and counts a frame.
 Result<bool> measureMixed(const std::vector<Subject>& subjects, const Effort& effort, Report& report);
 
+/// Pictures of instances with a pixel error of 0.5 against those with all triangles and exact poses: 100 of 4, 8 and 16
+/// pixels of height, 8x8 supersampled (coverage, and the structural similarity of Wang et al., Image Quality
+/// Assessment, 2004), and the field (steps of brightness from row to row).
+Result<bool> measurePictures(const Subject& subject, const Effort& effort, Report& report);
+
 /// The memory of a field of 99,856 beyond that of a field of one, on the CPU and the GPU.
 Result<bool> measureMemory(const Subject& subject, const Effort& effort, Report& report);
 

@@ -112,15 +112,21 @@ std::string StagedViewer::takeErrors()
     return takeGlErrors();
 }
 
-int StagedViewer::pixelsDrawn()
+std::vector<unsigned char> StagedViewer::pixels()
 {
     _context->makeCurrent();
     const int width = _context->getTraits()->width, height = _context->getTraits()->height;
     std::vector<unsigned char> pixels(std::size_t(4) * width * height);
     glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
+    return pixels;
+}
+
+int StagedViewer::pixelsDrawn()
+{
+    const std::vector<unsigned char> picture = pixels();
     int drawn = 0;
-    for (std::size_t pixel = 0; pixel < pixels.size(); pixel += 4)
-        if (pixels[pixel] != 0 || pixels[pixel + 1] != 0 || pixels[pixel + 2] != 0) ++drawn;
+    for (std::size_t pixel = 0; pixel < picture.size(); pixel += 4)
+        if (picture[pixel] != 0 || picture[pixel + 1] != 0 || picture[pixel + 2] != 0) ++drawn;
     return drawn;
 }
 

@@ -9,6 +9,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace osgGpuAnimation::benchmark
 {
@@ -50,6 +51,8 @@ public:
 
     /// The functions below require an earlier frame. Returns the pending GL errors; empty if there are none.
     std::string takeErrors();
+    /// The last frame in RGBA, 8 bits a channel; the background is 0.
+    std::vector<unsigned char> pixels();
     /// The number of pixels of the last frame that differ from the background.
     int pixelsDrawn();
     osg::State& state() { return *_context->getState(); }

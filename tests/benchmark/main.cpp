@@ -23,8 +23,8 @@ constexpr const char* usage = R"(osggpuanim_benchmark [options] OUTPUT_FOLDER FI
     measures this kit against osgAnimation with the characters of glTF files, prints a table and writes benchmark.json
     and plots into the folder
     --quick           fewer characters and rounds
-    --only PART       pose, samples, constraints, chunks, compact, depth, frames, crowd, field, mixed, draws, shading,
-                      start, memory or load; several times, too
+    --only PART       pose, samples, constraints, chunks, compact, depth, frames, crowd, field, mixed, pictures, draws,
+                      shading, start, memory or load; several times, too
     --return-memory   leave it to glibc whether freed memory goes back to the kernel
 )";
 
@@ -101,8 +101,9 @@ Result<bool> measureSubject(const Request& request, const Effort& effort, const 
                             osg::GraphicsContext& context, Report& report)
 {
     const std::pair<const char*, Result<bool> (*)(const Subject&, const Effort&, Report&)> inViewers[] = {
-        {"frames", measureFrames},   {"crowd", measureCrowd}, {"field", measureField},   {"draws", measureDraws},
-        {"shading", measureShading}, {"start", measureStart}, {"memory", measureMemory}, {"load", measureLoad}};
+        {"frames", measureFrames}, {"crowd", measureCrowd},       {"field", measureField},
+        {"draws", measureDraws},   {"pictures", measurePictures}, {"shading", measureShading},
+        {"start", measureStart},   {"memory", measureMemory},     {"load", measureLoad}};
     if (request.has("samples"))
         if (Result<bool> done = measureSamples(subject, effort, context, report); !done) return done;
     if (request.has("constraints"))

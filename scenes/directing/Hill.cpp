@@ -80,7 +80,7 @@ public:
         const double radius = pathRadius - 1.15 + 0.25 * std::sin(0.7 * time - 2.1);
         const double x = radius * std::cos(angle), y = radius * std::sin(angle);
         dynamic_cast<osg::MatrixTransform&>(*node).setMatrix(
-            osg::Matrixd::translate(x, y, heightAt(x, y) + 1.65 + 0.15 * std::sin(1.7 * time - 5.1)));
+            osg::Matrixd::translate(x, y, heightAt(x, y) + 1.45 + 0.15 * std::sin(1.7 * time - 5.1)));
         traverse(node, visitor);
     }
 };
@@ -202,8 +202,8 @@ Result<osg::ref_ptr<osg::Node>> makeGazers(const osg::Node& model)
     if (!wanderer) return Error{"the model has no character"};
     if (const Result<bool> look = addLook(*wanderer); !look) return look.error();
     const osg::ref_ptr<osg::MatrixTransform> bird = new osg::MatrixTransform(
-        osg::Matrixd::scale(1.4, 1.4, 1.4) * osg::Matrixd::rotate(0.6, osg::Vec3d(0, 1, 0)) *
-        osg::Matrixd::rotate(-1.2, osg::Vec3d(0, 0, 1)) * osg::Matrixd::translate(4.0, 0.5, 3.2));
+        osg::Matrixd::scale(1.2, 1.2, 1.2) * osg::Matrixd::rotate(0.6, osg::Vec3d(0, 1, 0)) *
+        osg::Matrixd::rotate(-1.2, osg::Vec3d(0, 0, 1)) * osg::Matrixd::translate(2.9, -0.8, 3.0));
     bird->addChild(makeBird());
     square->addChild(bird);
     const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*wanderer);

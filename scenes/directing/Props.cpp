@@ -49,7 +49,7 @@ osg::ref_ptr<osg::Group> makeLantern()
 {
     const osg::Vec4 brass(0.62f, 0.42f, 0.16f, 1.0f);
     const osg::ref_ptr<osg::Group> lantern = new osg::Group;
-    lantern->addChild(makePart(new osg::Sphere({0, 0, 0}, 0.066f), {1.0f, 0.75f, 0.3f, 1.0f}, {}, {1.6f, 0.8f, 0.15f}));
+    lantern->addChild(makePart(new osg::Sphere({0, 0, 0}, 0.066f), {1.0f, 0.75f, 0.3f, 1.0f}, {}, {2.4f, 1.1f, 0.15f}));
     lantern->addChild(makePart(new osg::Cylinder({0, 0, -0.095f}, 0.085f, 0.03f), brass));
     lantern->addChild(makePart(new osg::Cone({0, 0, 0.1f}, 0.11f, 0.09f), brass));
     lantern->addChild(makePart(new osg::Sphere({0, 0, 0.175f}, 0.022f), brass));
@@ -87,7 +87,7 @@ osg::ref_ptr<osg::Group> makeBird()
 osg::ref_ptr<osg::Group> makeRamp(double angle, const osg::Vec3d& place)
 {
     constexpr int stripes = 8;
-    constexpr double length = 0.76, thickness = 0.3, stripe = length / stripes;
+    constexpr double length = 0.72, thickness = 0.3, stripe = length / stripes;
     const osg::Matrixd rising = osg::Matrixd::rotate(-angle, osg::Vec3d(0, 1, 0)) * osg::Matrixd::translate(place);
     const osg::ref_ptr<osg::Group> ramp = new osg::Group;
     for (int i = 0; i < stripes; ++i)

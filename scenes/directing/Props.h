@@ -20,7 +20,7 @@ osg::ref_ptr<osg::MatrixTransform> makePart(osg::Shape* shape, const osg::Vec4& 
 osg::ref_ptr<osg::Group> makeLantern();
 /// A bird around its middle with a span of 1.3 m, which flies towards -Y.
 osg::ref_ptr<osg::Group> makeBird();
-/// A ramp of 0.76 x 0.7 m around its middle, in stripes, which rises towards +X. angle: radians.
+/// A ramp of 0.72 x 0.7 m around its middle, in stripes, which rises towards +X. angle: radians.
 osg::ref_ptr<osg::Group> makeRamp(double angle, const osg::Vec3d& middle);
 
 /// Lights its children from the upper left, with shadows of those that cast them. towards: the direction to the sun.

@@ -3,7 +3,8 @@
 //        direct_scenes --view SCENES
 // Reads SCENES/Wanderer.glb and draws into FOLDER, without a display: Crossfade.png, Mask.png and others, each a row of
 // wanderers, Crowd.png and Gaze.png, thousands of them, and Hill.png. With --view it shows the hill in a window. The
-// plugin is looked for where OSG_LIBRARY_PATH says. Ends with 77 where there is no GL.
+// plugin is looked for where OSG_LIBRARY_PATH says. Ends with 77 where there is no GL, and with 1 where there is no
+// display for --view.
 
 #include "Hill.h"
 #include "Props.h"
@@ -101,7 +102,7 @@ void holdStaff(AnimatedCharacter& wanderer, int i)
     const glm::vec3 bend(1, 0, 0), curl(0, 0, 1);
     JointPose& pose = controller.layer(1).pose();
     turnJoint(wanderer, pose, "LowerArm_R", 1.5f, bend);
-    turnJoint(wanderer, pose, "Hand_R", 0.5f, glm::vec3(0, 1, 0));
+    turnJoint(wanderer, pose, "Hand_R", 0.85f, glm::vec3(0, 1, 0));
     turnJoint(wanderer, pose, "Fingers_R", 1.5f, curl);
     turnJoint(wanderer, pose, "FingerTips_R", 1.6f, curl);
     turnJoint(wanderer, pose, "Thumb_R", 0.8f, curl);
@@ -177,7 +178,7 @@ void swingScarf(AnimatedCharacter& wanderer, int i)
 void walkUphill(AnimatedCharacter& wanderer, int i)
 {
     if (!succeeds(playGaits(wanderer, 0.71))) return;
-    wanderer.getController().seek(0.04 + 0.4 * (i / 2));
+    wanderer.getController().seek(0.04 + 0.48 * (i / 2));
     osg::Group* row = rowOf(wanderer);
     if (row && i % 2 == 1) succeeds(addGroundFeet(wanderer, *row->getChild(0)));
 }
@@ -189,33 +190,33 @@ struct Row
     Direction direction;
     double seconds = 0.0; ///< of the animation before the picture
     double facing = 35.0; ///< degrees; 0: towards the camera
-    bool inPairs = false; ///< three pairs, else five wanderers
-    bool onRamps = false; ///< each has its own ramp of 17 degrees below, in sunlight
+    int pairs = 0;        ///< of wanderers; 0: five, not in pairs
+    bool onRamps = false; ///< each has its own ramp of 20 degrees below, in sunlight
 };
 
 osg::ref_ptr<osg::Group> makeRow(const osg::Node& model, const Row& row)
 {
-    const int count = row.inPairs ? 6 : inARow;
-    const double gap = row.inPairs ? 0.8 : 1.0, pairGap = row.inPairs ? 0.15 : 0.0; // metres
+    const int count = row.pairs > 0 ? 2 * row.pairs : inARow;
+    const double gap = row.pairs > 0 ? 0.8 : 1.0, pairGap = row.pairs > 0 ? 0.15 : 0.0; // metres
     osg::ref_ptr<osg::Group> group = new osg::Group, ground = new osg::Group;
     group->addChild(ground);
     for (int i = 0; i < count; ++i)
     {
-        const double x = gap * (i - (count - 1) / 2.0) + pairGap * (i / 2 - 1);
+        const double x = gap * (i - (count - 1) / 2.0) + pairGap * (i / 2 - (row.pairs - 1) / 2.0);
         osg::ref_ptr<osg::PositionAttitudeTransform> place = new osg::PositionAttitudeTransform;
         place->setPosition(osg::Vec3d(x, 0.0, 0.0));
         place->setAttitude(osg::Quat(osg::DegreesToRadians(row.facing), osg::Vec3d(0, 0, 1)));
         osg::ref_ptr<osg::Node> wanderer = osg::clone(&model, osg::CopyOp::DEEP_COPY_NODES);
         place->addChild(wanderer);
         group->addChild(place);
-        if (row.onRamps) ground->addChild(makeRamp(osg::DegreesToRadians(17.0), osg::Vec3d(x, 0.0, 0.0)));
+        if (row.onRamps) ground->addChild(makeRamp(osg::DegreesToRadians(20.0), osg::Vec3d(x, 0.0, 0.0)));
     }
     for (int i = 0; i < count; ++i)
         if (AnimatedCharacter* wanderer = findCharacter(*group->getChild(i + 1))) row.direction(*wanderer, i);
     if (!row.onRamps) return group;
-    ground->addChild(makePart(new osg::Box({0, 0, -0.36f}, 40.0f, 40.0f, 0.5f), {0.8f, 0.81f, 0.83f, 1.0f}));
+    ground->addChild(makePart(new osg::Box({0, 0, -0.36f}, 40.0f, 40.0f, 0.5f), {0.68f, 0.7f, 0.72f, 1.0f}));
     ground->setNodeMask(receivesShadow);
-    osg::ref_ptr<osg::Group> sunlight = makeSunlight({0.15f, -0.35f, 1.0f});
+    osg::ref_ptr<osg::Group> sunlight = makeSunlight({-0.1f, 0.25f, 1.0f});
     sunlight->addChild(group);
     return sunlight;
 }
@@ -347,17 +348,18 @@ int main(int argc, char** argv)
                         {"Mask", maskedWave},
                         {"Additive", additiveWave},
                         {"PosedJoints", poseArm},
-                        {"Springs", swingScarf, springSeconds, 180.0, true},
+                        {"Springs", swingScarf, springSeconds, 180.0, 3},
                         {"LookAt", lookAtBall, 0.0, 0.0},
-                        {"Feet", walkUphill, 0.0, 85.0, true, true},
+                        {"Feet", walkUphill, 0.0, 85.0, 2, true},
                         {"Attachment", holdStaff}};
+    const Sight whole{{0, -5.6, 1.2}, {0, 0, 0.86}, 22.0}, legs{{0, -5.6, 1.9}, {0, 0, 0.46}, 15.0};
     for (const Row& row : rows)
     {
         const osg::ref_ptr<osg::Group> scene = makeRow(*model, row);
         const osg::ref_ptr<Environment> surroundings =
             row.onRamps ? new Environment : static_cast<Environment*>(new Studio);
-        if (!succeeds(draw(scene, surroundings, {{0, -5.6, 1.2}, {0, 0, row.onRamps ? 0.78 : 0.86}, 22.0}, row.seconds,
-                           folder + "/" + row.name + ".png")))
+        if (!succeeds(
+                draw(scene, surroundings, row.onRamps ? legs : whole, row.seconds, folder + "/" + row.name + ".png")))
             return 1;
     }
     AnimatedCharacter* wanderer = findCharacter(*model);
@@ -365,7 +367,7 @@ int main(int argc, char** argv)
     const Result<osg::ref_ptr<osg::Node>> gazers = makeGazers(*model), hill = makeHill(*model);
     if (!succeeds(gazers) || !succeeds(hill)) return 1;
     const Sight fromAbove{{-2, -4.5, 4.2}, {1, 9, 0}, 36.0}, square{{0, -6, 2.9}, {0, 6, 0.9}, 36.0};
-    const Sight onTheHill{{-1.6, 2.2, 1.5}, {1.86, 1.9, 1.28}, 38.0};
+    const Sight onTheHill{{-1.6, 2.2, 1.5}, {1.86, 1.95, 1.2}, 33.0};
     const bool isDrawn = succeeds(draw(makeCrowd(*wanderer), new Studio, fromAbove, 0.0, folder + "/Crowd.png")) &&
                          succeeds(draw(gazers.value(), new Studio, square, 0.0, folder + "/Gaze.png")) &&
                          succeeds(draw(hill.value(), new Environment, onTheHill, 3.0, folder + "/Hill.png"));

@@ -8,6 +8,7 @@
 namespace osgGpuAnimation
 {
 
+/// Masks of nodes below makeSunlight(); other nodes do both.
 constexpr osg::Node::NodeMask receivesShadow = 1, castsShadow = 2;
 
 /// Draws the node with a dull, even material. color: sRGB, in [0, 1]. emission: linear radiance.
@@ -23,7 +24,8 @@ osg::ref_ptr<osg::Group> makeBird();
 /// A ramp of 0.72 x 0.7 m around its middle, in stripes, which rises towards +X. angle: radians.
 osg::ref_ptr<osg::Group> makeRamp(double angle, const osg::Vec3d& middle);
 
-/// Lights its children from the upper left, with shadows of those that cast them. towards: the direction to the sun.
+/// Lights its children by a sun, with the shadows of those whose mask contains castsShadow. towards: the direction to
+/// the sun.
 osg::ref_ptr<osg::Group> makeSunlight(const osg::Vec3& towards);
 
 } // namespace osgGpuAnimation

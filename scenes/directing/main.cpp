@@ -367,7 +367,7 @@ int main(int argc, char** argv)
     const Result<osg::ref_ptr<osg::Node>> gazers = makeGazers(*model), hill = makeHill(*model);
     if (!succeeds(gazers) || !succeeds(hill)) return 1;
     const Sight fromAbove{{-2, -4.5, 4.2}, {1, 9, 0}, 36.0}, square{{0, -6, 2.9}, {0, 6, 0.9}, 36.0};
-    const Sight onTheHill{{-1.6, 2.2, 1.5}, {1.86, 1.95, 1.2}, 33.0};
+    const Sight onTheHill{{-1.6, 2.2, 1.5}, {1.86, 1.95, 1.17}, 34.0};
     const bool isDrawn = succeeds(draw(makeCrowd(*wanderer), new Studio, fromAbove, 0.0, folder + "/Crowd.png")) &&
                          succeeds(draw(gazers.value(), new Studio, square, 0.0, folder + "/Gaze.png")) &&
                          succeeds(draw(hill.value(), new Environment, onTheHill, 3.0, folder + "/Hill.png"));

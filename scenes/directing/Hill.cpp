@@ -1,20 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "Hill.h"
 
+#include "Props.h"
+
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
-#include <osgGpuAnimation/nodes/CharacterProgram.h>
 #include <osgGpuAnimation/nodes/GroundFeet.h>
-#include <osgGpuAnimation/nodes/PbrMaterial.h>
 #include <osgGpuAnimation/nodes/SpringBones.h>
 
 #include <osg/Geometry>
-#include <osg/LightSource>
 #include <osg/Math>
 #include <osg/MatrixTransform>
-#include <osg/ShapeDrawable>
-#include <osgShadow/ShadowedScene>
-#include <osgShadow/ShadowMap>
 
 #include <cmath>
 #include <random>
@@ -29,17 +25,6 @@ namespace
 double heightAt(double x, double y)
 {
     return 0.5 * std::sin(0.45 * x + 0.6) * std::cos(0.4 * y) + 0.12 * std::sin(1.3 * x - 0.9 * y);
-}
-
-void applyMaterial(osg::Node& node, const osg::Vec4& color, const osg::Vec3& emission = {})
-{
-    PbrMaterial material;
-    material.baseColor = linearColor(color);
-    material.metallic = 0.0f;
-    material.roughness = 0.8f;
-    material.emissive = emission;
-    applyPbrMaterial(*node.getOrCreateStateSet(), material);
-    applySurfaceProgram(*node.getOrCreateStateSet(), false);
 }
 
 osg::ref_ptr<osg::Node> makeGround()
@@ -71,41 +56,34 @@ osg::ref_ptr<osg::Node> makeGround()
     return ground;
 }
 
-} // namespace
+constexpr double pathRadius = 3.0; ///< metres, of the circle that the wanderer follows
 
-osg::ref_ptr<osg::Node> makeSlope(double angle)
+double speedAt(double time)
 {
-    osg::ref_ptr<osg::Geometry> slope = osg::createTexturedQuadGeometry(
-        osg::Vec3(-4, -4, -4.0 * std::tan(angle)), osg::Vec3(8, 0, 8.0 * std::tan(angle)), osg::Vec3(0, 8, 0));
-    applyMaterial(*slope, osg::Vec4(0.66f, 0.62f, 0.55f, 1.0f));
-    return slope;
+    return 1.3 - 0.6 * std::cos(0.5 * time);
 }
 
-namespace
+/// Radians from +X, at that time.
+double angleAt(double time)
 {
+    return (1.3 * time - 1.2 * std::sin(0.5 * time)) / pathRadius; // the integral of the speed
+}
 
-/// Flies round the path, up and down.
+/// Flies beside the wanderer's head, inside the circle, to and fro.
 class FlyAbout : public osg::NodeCallback
 {
 public:
     void operator()(osg::Node* node, osg::NodeVisitor* visitor) override
     {
         const double time = visitor->getFrameStamp()->getSimulationTime();
-        dynamic_cast<osg::MatrixTransform&>(*node).setMatrix(osg::Matrixd::translate(
-            2.2 * std::cos(0.7 * time + 0.5), 2.2 * std::sin(0.9 * time), 1.5 + 0.5 * std::sin(1.7 * time)));
+        const double angle = angleAt(time) + 0.15 + 0.2 * std::sin(0.9 * time - 2.7);
+        const double radius = pathRadius - 1.15 + 0.25 * std::sin(0.7 * time - 2.1);
+        const double x = radius * std::cos(angle), y = radius * std::sin(angle);
+        dynamic_cast<osg::MatrixTransform&>(*node).setMatrix(
+            osg::Matrixd::translate(x, y, heightAt(x, y) + 1.45 + 0.15 * std::sin(1.7 * time - 5.1)));
         traverse(node, visitor);
     }
 };
-
-osg::ref_ptr<osg::MatrixTransform> makeLantern()
-{
-    osg::ref_ptr<osg::ShapeDrawable> glow = new osg::ShapeDrawable(new osg::Sphere(osg::Vec3(), 0.07f));
-    applyMaterial(*glow, osg::Vec4(1.0f, 0.8f, 0.4f, 1.0f), osg::Vec3(3.0f, 1.8f, 0.5f));
-    osg::ref_ptr<osg::MatrixTransform> lantern = new osg::MatrixTransform;
-    lantern->addChild(glow);
-    lantern->addUpdateCallback(new FlyAbout);
-    return lantern;
-}
 
 /// Leads its character round a circle on the ground, at 0.7 to 1.9 m/s. It runs before GroundFeet.
 class Walk : public osg::NodeCallback
@@ -113,12 +91,10 @@ class Walk : public osg::NodeCallback
 public:
     void operator()(osg::Node* node, osg::NodeVisitor* visitor) override
     {
-        constexpr double radius = 3.0;
         auto& wanderer = dynamic_cast<AnimatedCharacter&>(*node);
         const double time = visitor->getFrameStamp()->getSimulationTime();
-        const double speed = 1.3 - 0.6 * std::cos(0.5 * time);
-        const double way = 1.3 * time - 1.2 * std::sin(0.5 * time); // its integral
-        const double angle = way / radius, x = radius * std::cos(angle), y = radius * std::sin(angle);
+        const double speed = speedAt(time), angle = angleAt(time);
+        const double x = pathRadius * std::cos(angle), y = pathRadius * std::sin(angle);
         wanderer.setMatrix(osg::Matrixd::rotate(angle + osg::PI, osg::Vec3d(0, 0, 1)) *
                            osg::Matrixd::translate(x, y, heightAt(x, y)));
         AnimationLayer& gait = wanderer.getController().layer(0);
@@ -197,39 +173,14 @@ Result<bool> addGroundFeet(AnimatedCharacter& wanderer, osg::Node& ground)
     return set;
 }
 
-namespace
-{
-
-constexpr osg::Node::NodeMask receivesShadow = 1, castsShadow = 2;
-
-/// Lights its children from the upper left behind, with shadows of those that cast them.
-osg::ref_ptr<osg::Group> makeSunlight()
-{
-    const osg::ref_ptr<osg::LightSource> sun = new osg::LightSource;
-    sun->getLight()->setLightNum(1);
-    sun->getLight()->setPosition(osg::Vec4(-0.45f, 0.45f, 0.8f, 0.0f));
-    sun->getLight()->setDiffuse(osg::Vec4(0.9f, 0.85f, 0.75f, 1.0f));
-    const osg::ref_ptr<osgShadow::ShadowMap> shadow = new osgShadow::ShadowMap;
-    shadow->setLight(sun);
-    shadow->setTextureSize(osg::Vec2s(2048, 2048));
-    shadow->setAmbientBias(osg::Vec2(0.0f, 1.0f));
-    const osg::ref_ptr<osgShadow::ShadowedScene> scene = new osgShadow::ShadowedScene(shadow);
-    scene->setReceivesShadowTraversalMask(receivesShadow);
-    scene->setCastsShadowTraversalMask(castsShadow);
-    scene->addChild(sun);
-    sun->setStateSetModes(*scene->getOrCreateStateSet(), osg::StateAttribute::ON);
-    return scene;
-}
-
-} // namespace
-
 Result<osg::ref_ptr<osg::Node>> makeHill(const osg::Node& model)
 {
-    const osg::ref_ptr<osg::Group> hill = makeSunlight();
+    const osg::ref_ptr<osg::Group> hill = makeSunlight({-0.45f, 0.45f, 0.8f});
     const osg::ref_ptr<osg::Node> ground = makeGround();
     ground->setNodeMask(receivesShadow);
-    const osg::ref_ptr<osg::MatrixTransform> lantern = makeLantern();
-    lantern->setNodeMask(receivesShadow);
+    const osg::ref_ptr<osg::MatrixTransform> lantern = new osg::MatrixTransform;
+    lantern->addChild(makeLantern());
+    lantern->addUpdateCallback(new FlyAbout);
     const osg::ref_ptr<osg::Node> copy = osg::clone(&model, osg::CopyOp::DEEP_COPY_NODES);
     for (osg::Node* child : {ground.get(), static_cast<osg::Node*>(lantern), copy.get()})
         hill->addChild(child);
@@ -250,10 +201,10 @@ Result<osg::ref_ptr<osg::Node>> makeGazers(const osg::Node& model)
     AnimatedCharacter* wanderer = findCharacter(*copy);
     if (!wanderer) return Error{"the model has no character"};
     if (const Result<bool> look = addLook(*wanderer); !look) return look.error();
-    const osg::ref_ptr<osg::MatrixTransform> bird = new osg::MatrixTransform(osg::Matrixd::translate(0.0, -1.5, 2.6));
-    const osg::ref_ptr<osg::ShapeDrawable> shape = new osg::ShapeDrawable(new osg::Cone(osg::Vec3(), 0.07f, 0.25f));
-    applyMaterial(*shape, osg::Vec4(0.9f, 0.15f, 0.1f, 1.0f), osg::Vec3(0.5f, 0.05f, 0.02f));
-    bird->addChild(shape);
+    const osg::ref_ptr<osg::MatrixTransform> bird = new osg::MatrixTransform(
+        osg::Matrixd::scale(1.2, 1.2, 1.2) * osg::Matrixd::rotate(0.6, osg::Vec3d(0, 1, 0)) *
+        osg::Matrixd::rotate(-1.2, osg::Vec3d(0, 0, 1)) * osg::Matrixd::translate(2.9, -0.8, 3.0));
+    bird->addChild(makeBird());
     square->addChild(bird);
     const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*wanderer);
     square->addChild(crowd);
@@ -268,8 +219,7 @@ Result<osg::ref_ptr<osg::Node>> makeGazers(const osg::Node& model)
         controller.seek(between(0.0, 5.0));
         const osg::Vec3d place(1.1 * (i % columns - 0.5 * columns) + between(-0.3, 0.3),
                                1.1 * (i / columns) + between(-0.3, 0.3), 0.0);
-        // They face the bird roughly.
-        const double facing = std::atan2(-place.x(), place.y() + 1.5) + between(-0.5, 0.5);
+        const double facing = between(-0.4, 0.4); // the bodies; the heads turn from there
         const double shade = between(0.7, 1.0);
         const auto instance =
             crowd->add(osg::Matrixd::rotate(facing, osg::Vec3d(0, 0, 1)) * osg::Matrixd::translate(place), controller,

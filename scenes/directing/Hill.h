@@ -19,10 +19,8 @@ Result<bool> playGaits(AnimatedCharacter& wanderer, double speed);
 /// Keeps a wanderer's feet on the ground; the constraint "look" is declared, too.
 Result<bool> addGroundFeet(AnimatedCharacter& wanderer, osg::Node& ground);
 
-/// A plane of 8 x 8 m through the origin that rises towards +X. angle: radians.
-osg::ref_ptr<osg::Node> makeSlope(double angle);
 /// A wanderer who follows a path over hilly ground, faster and slower, with the feet on the ground and the scarf on
-/// springs, and looks at a lantern that flies about. model: Wanderer.glb.
+/// springs, and looks at a lantern that flies beside it. model: Wanderer.glb.
 Result<osg::ref_ptr<osg::Node>> makeHill(const osg::Node& model);
 /// 2,000 wanderers who all look at one bird. model: Wanderer.glb.
 Result<osg::ref_ptr<osg::Node>> makeGazers(const osg::Node& model);

@@ -3,25 +3,26 @@
 //        direct_scenes --view SCENES
 // Reads SCENES/Wanderer.glb and draws into FOLDER, without a display: Crossfade.png, Mask.png and others, each a row of
 // wanderers, Crowd.png and Gaze.png, thousands of them, and Hill.png. With --view it shows the hill in a window. The
-// plugin is looked for where OSG_LIBRARY_PATH says. Ends with 77 where there is no GL.
+// plugin is looked for where OSG_LIBRARY_PATH says. Ends with 77 where there is no GL, and with 1 where there is no
+// display for --view.
 
 #include "Hill.h"
+#include "Props.h"
 
 #include <osgGpuAnimation/animation/JointMask.h>
 #include <osgGpuAnimation/gpu/EglGraphicsContext.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
-#include <osgGpuAnimation/nodes/CharacterProgram.h>
 #include <osgGpuAnimation/nodes/Environment.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
-#include <osgGpuAnimation/nodes/PbrMaterial.h>
+#include <osgGpuAnimation/nodes/studio/Studio.h>
 
 #include <osg/PositionAttitudeTransform>
-#include <osg/ShapeDrawable>
 #include <osgDB/ReadFile>
 #include <osgDB/WriteFile>
 #include <osgViewer/Viewer>
 
+#include <cmath>
 #include <functional>
 #include <iostream>
 #include <random>
@@ -33,7 +34,6 @@ namespace
 {
 
 constexpr int width = 900, height = 378;
-constexpr double apart = 1.0; ///< metres from one wanderer to the next
 constexpr int inARow = 5;
 
 /// Sets up number i of the row.
@@ -83,29 +83,31 @@ void additiveWave(AnimatedCharacter& wanderer, int i)
     added.setWeight(0.25f * static_cast<float>(i));
 }
 
-/// A stick to walk with, held in its middle; the hand's own axis runs along the fingers.
-osg::ref_ptr<osg::Node> makeStaff()
+/// Turns a joint from its rest, in the space of its parent. angle: radians.
+bool turnJoint(const AnimatedCharacter& wanderer, JointPose& pose, const char* name, float angle, const glm::vec3& axis)
 {
-    osg::ref_ptr<osg::Cylinder> shape = new osg::Cylinder(osg::Vec3(0.0f, 0.07f, 0.03f), 0.016f, 0.9f);
-    shape->setRotation(osg::Quat(osg::DegreesToRadians(-45.0), osg::Vec3d(1, 0, 0)));
-    osg::ref_ptr<osg::ShapeDrawable> staff = new osg::ShapeDrawable(shape);
-    PbrMaterial wood;
-    wood.baseColor = linearColor(osg::Vec4(0.55f, 0.32f, 0.16f, 1.0f));
-    wood.metallic = 0.0f;
-    wood.roughness = 0.7f;
-    applyPbrMaterial(*staff->getOrCreateStateSet(), wood);
-    applySurfaceProgram(*staff->getOrCreateStateSet(), false);
-    return staff;
+    const Result<std::size_t> joint = wanderer.getAnimationSet().skeleton().jointNamed(name);
+    if (!succeeds(joint)) return false;
+    const glm::vec4 rest = pose.transform(joint.value()).rotation;
+    return pose.setRotation(joint.value(), glm::angleAxis(angle, axis) * glm::quat(rest.w, rest.x, rest.y, rest.z));
 }
 
-/// Walking with a staff in the right hand.
+/// Walking with a staff in the right hand: the forearm and the fingers are posed, the rest of the arm swings.
 void holdStaff(AnimatedCharacter& wanderer, int i)
 {
     AnimationController& controller = wanderer.getController();
     if (!succeeds(controller.play("Walk"))) return;
     controller.seek(0.96 * i / inARow);
+    // The joints of the arm point along +Y; the thumb is on the side of +Z, the palm looks along -X.
+    const glm::vec3 bend(1, 0, 0), curl(0, 0, 1);
+    JointPose& pose = controller.layer(1).pose();
+    turnJoint(wanderer, pose, "LowerArm_R", 1.5f, bend);
+    turnJoint(wanderer, pose, "Hand_R", 0.85f, glm::vec3(0, 1, 0));
+    turnJoint(wanderer, pose, "Fingers_R", 1.5f, curl);
+    turnJoint(wanderer, pose, "FingerTips_R", 1.6f, curl);
+    turnJoint(wanderer, pose, "Thumb_R", 0.8f, curl);
     osg::ref_ptr<JointAttachment> hand = new JointAttachment("Hand_R");
-    hand->addChild(makeStaff());
+    hand->addChild(makePart(new osg::Cylinder({-0.035f, 0.1f, 0.0f}, 0.016f, 1.35f), {0.55f, 0.32f, 0.16f, 1.0f}));
     wanderer.addChild(hand);
 }
 
@@ -128,27 +130,57 @@ void poseArm(AnimatedCharacter& wanderer, int i)
                                       glm::angleAxis(-0.5f * static_cast<float>(i), glm::vec3(1, 0, 0)));
 }
 
-/// All look at the middle of the row, a little before it and above.
-void lookAtLight(AnimatedCharacter& wanderer, int)
+/// The group of all wanderers, whose first child is their ground.
+osg::Group* rowOf(const AnimatedCharacter& wanderer)
 {
-    if (!succeeds(wanderer.getController().play("Idle")) || !succeeds(addLook(wanderer))) return;
-    succeeds(wanderer.constraint("look").setWorldTarget(osg::Vec3d(0.0, -1.5, 1.7)));
+    const osg::NodePathList paths = wanderer.getParentalNodePaths();
+    return paths.empty() ? nullptr : paths.front().front()->asGroup();
 }
 
-/// Scarf and hood swing while they run.
+const osg::Vec3d seenPoint(0.5, -0.6, 1.4); ///< of the picture LookAt: before the row, between two wanderers
+
+void lookAtBall(AnimatedCharacter& wanderer, int i)
+{
+    if (osg::Group* row = rowOf(wanderer); row && i == 0)
+        row->addChild(makePart(new osg::Sphere(seenPoint, 0.08f), {0.85f, 0.2f, 0.12f, 1.0f}));
+    if (!succeeds(wanderer.getController().play("Idle")) || !succeeds(addLook(wanderer))) return;
+    succeeds(wanderer.constraint("look").setWorldTarget(seenPoint));
+}
+
+constexpr double springSeconds = 2.0; ///< of the picture Springs
+
+/// Turns its character on the spot. All have the same direction at springSeconds.
+class Spin : public osg::NodeCallback
+{
+public:
+    explicit Spin(double speed) : _speed(speed) {}
+    void operator()(osg::Node* node, osg::NodeVisitor* visitor) override
+    {
+        const double time = visitor->getFrameStamp()->getSimulationTime();
+        dynamic_cast<AnimatedCharacter&>(*node).setMatrix(
+            osg::Matrixd::rotate(_speed * (time - springSeconds), osg::Vec3d(0, 0, 1)));
+        traverse(node, visitor);
+    }
+
+private:
+    double _speed; ///< radians a second
+};
+
+/// They turn on the spot, faster from pair to pair. Of each pair, scarf and hood of the right one swing.
 void swingScarf(AnimatedCharacter& wanderer, int i)
 {
-    if (succeeds(playGaits(wanderer, 0.71 + 0.3475 * i))) succeeds(addSprings(wanderer));
+    if (!succeeds(wanderer.getController().play("Idle"))) return;
+    wanderer.addUpdateCallback(new Spin(osg::PI * (1 << (i / 2))));
+    if (i % 2 == 1) succeeds(addSprings(wanderer));
 }
 
-/// Walking uphill, downhill and across: the feet stay on the ground.
-void walkOnSlope(AnimatedCharacter& wanderer, int i)
+/// Walking uphill. Of each pair, the feet of the right one stay on the ground.
+void walkUphill(AnimatedCharacter& wanderer, int i)
 {
     if (!succeeds(playGaits(wanderer, 0.71))) return;
-    wanderer.getController().seek(0.19 * i);
-    const osg::NodePathList paths = wanderer.getParentalNodePaths();
-    if (osg::Group* row = paths.empty() ? nullptr : paths.front().front()->asGroup())
-        succeeds(addGroundFeet(wanderer, *row->getChild(0)));
+    wanderer.getController().seek(0.04 + 0.48 * (i / 2));
+    osg::Group* row = rowOf(wanderer);
+    if (row && i % 2 == 1) succeeds(addGroundFeet(wanderer, *row->getChild(0)));
 }
 
 /// A picture of a row.
@@ -157,26 +189,36 @@ struct Row
     const char* name;
     Direction direction;
     double seconds = 0.0; ///< of the animation before the picture
-    double slope = 0.0;   ///< radians, of the ground; 0: none is drawn
     double facing = 35.0; ///< degrees; 0: towards the camera
-    double angle = 22.0;  ///< degrees, that the picture shows from top to bottom
+    int pairs = 0;        ///< of wanderers; 0: five, not in pairs
+    bool onRamps = false; ///< each has its own ramp of 20 degrees below, in sunlight
 };
 
 osg::ref_ptr<osg::Group> makeRow(const osg::Node& model, const Row& row)
 {
-    osg::ref_ptr<osg::Group> group = new osg::Group;
-    if (row.slope != 0.0) group->addChild(makeSlope(row.slope));
-    for (int i = 0; i < inARow; ++i)
+    const int count = row.pairs > 0 ? 2 * row.pairs : inARow;
+    const double gap = row.pairs > 0 ? 0.8 : 1.0, pairGap = row.pairs > 0 ? 0.15 : 0.0; // metres
+    osg::ref_ptr<osg::Group> group = new osg::Group, ground = new osg::Group;
+    group->addChild(ground);
+    for (int i = 0; i < count; ++i)
     {
+        const double x = gap * (i - (count - 1) / 2.0) + pairGap * (i / 2 - (row.pairs - 1) / 2.0);
         osg::ref_ptr<osg::PositionAttitudeTransform> place = new osg::PositionAttitudeTransform;
-        place->setPosition(osg::Vec3d(apart * (i - (inARow - 1) / 2.0), 0.0, 0.0));
+        place->setPosition(osg::Vec3d(x, 0.0, 0.0));
         place->setAttitude(osg::Quat(osg::DegreesToRadians(row.facing), osg::Vec3d(0, 0, 1)));
         osg::ref_ptr<osg::Node> wanderer = osg::clone(&model, osg::CopyOp::DEEP_COPY_NODES);
         place->addChild(wanderer);
         group->addChild(place);
-        if (AnimatedCharacter* character = findCharacter(*wanderer)) row.direction(*character, i);
+        if (row.onRamps) ground->addChild(makeRamp(osg::DegreesToRadians(20.0), osg::Vec3d(x, 0.0, 0.0)));
     }
-    return group;
+    for (int i = 0; i < count; ++i)
+        if (AnimatedCharacter* wanderer = findCharacter(*group->getChild(i + 1))) row.direction(*wanderer, i);
+    if (!row.onRamps) return group;
+    ground->addChild(makePart(new osg::Box({0, 0, -0.36f}, 40.0f, 40.0f, 0.5f), {0.68f, 0.7f, 0.72f, 1.0f}));
+    ground->setNodeMask(receivesShadow);
+    osg::ref_ptr<osg::Group> sunlight = makeSunlight({-0.1f, 0.25f, 1.0f});
+    sunlight->addChild(group);
+    return sunlight;
 }
 
 /// A field of wanderers, most of them walking the same way, each at its own time and a little out of line.
@@ -223,8 +265,9 @@ public:
     mutable osg::ref_ptr<osg::Image> image;
 };
 
-/// seconds: of the animation before the picture is taken.
-Result<bool> draw(osg::Node* scene, const Sight& sight, double seconds, const std::string& file)
+/// surroundings: of the scene. seconds: of the animation before the picture is taken.
+Result<bool> draw(osg::Node* scene, Environment* surroundings, const Sight& sight, double seconds,
+                  const std::string& file)
 {
     osg::ref_ptr<osg::GraphicsContext::Traits> traits = new osg::GraphicsContext::Traits;
     traits->width = width;
@@ -236,7 +279,7 @@ Result<bool> draw(osg::Node* scene, const Sight& sight, double seconds, const st
     osgViewer::Viewer viewer;
     viewer.setThreadingModel(osgViewer::ViewerBase::SingleThreaded);
     viewer.setLightingMode(osg::View::NO_LIGHT);
-    osg::ref_ptr<Environment> studio = new Environment;
+    const osg::ref_ptr<Environment> studio = surroundings;
     studio->setToneMapping(true);
     studio->getOrCreateStateSet()->setMode(GL_LIGHTING, osg::StateAttribute::ON);
     studio->addChild(scene);
@@ -253,9 +296,9 @@ Result<bool> draw(osg::Node* scene, const Sight& sight, double seconds, const st
     constexpr double step = 1.0 / 60.0;
     viewer.advance(0.0);
     viewer.updateTraversal();
-    for (double time = step; time <= seconds; time += step)
+    for (int frame = 1; frame <= std::lround(seconds / step); ++frame)
     {
-        viewer.advance(time);
+        viewer.advance(step * frame);
         viewer.updateTraversal();
     }
     viewer.renderingTraversals();
@@ -271,9 +314,16 @@ int view(const osg::Node& model)
     studio->setToneMapping(true);
     studio->addChild(hill.value());
     osgViewer::Viewer viewer;
-    viewer.setUpViewInWindow(100, 100, 1024, 768);
     viewer.setSceneData(studio);
-    return viewer.run();
+    const osg::NotifySeverity severity = osg::getNotifyLevel();
+    osg::setNotifyLevel(osg::FATAL); // one sentence instead of OSG's
+    viewer.setUpViewInWindow(100, 100, 1024, 768);
+    viewer.realize();
+    osg::setNotifyLevel(severity);
+    if (viewer.isRealized()) return viewer.run();
+    std::cerr << "There is no display to show the hill on; \"direct_scenes SCENES FOLDER\" draws pictures without one."
+              << std::endl;
+    return 1;
 }
 
 } // namespace
@@ -293,24 +343,33 @@ int main(int argc, char** argv)
     if (!model) return 1;
     if (isViewed) return view(*model);
 
-    const Row rows[] = {{"Crossfade", crossfade}, {"BlendSpace", blendGaits},
-                        {"Mask", maskedWave},     {"Additive", additiveWave},
-                        {"PosedJoints", poseArm}, {"Springs", swingScarf, 2.0, 0.0, 140.0},
-                        {"LookAt", lookAtLight},  {"Feet", walkOnSlope, 0.0, 0.3, 35.0, 32.0},
+    const Row rows[] = {{"Crossfade", crossfade},
+                        {"BlendSpace", blendGaits},
+                        {"Mask", maskedWave},
+                        {"Additive", additiveWave},
+                        {"PosedJoints", poseArm},
+                        {"Springs", swingScarf, springSeconds, 180.0, 3},
+                        {"LookAt", lookAtBall, 0.0, 0.0},
+                        {"Feet", walkUphill, 0.0, 85.0, 2, true},
                         {"Attachment", holdStaff}};
+    const Sight whole{{0, -5.6, 1.2}, {0, 0, 0.86}, 22.0}, legs{{0, -5.6, 1.9}, {0, 0, 0.46}, 15.0};
     for (const Row& row : rows)
-        if (!succeeds(draw(makeRow(*model, row), {{0, -5.6, 1.2}, {0, 0, 0.86}, row.angle}, row.seconds,
-                           folder + "/" + row.name + ".png")))
+    {
+        const osg::ref_ptr<osg::Group> scene = makeRow(*model, row);
+        const osg::ref_ptr<Environment> surroundings =
+            row.onRamps ? new Environment : static_cast<Environment*>(new Studio);
+        if (!succeeds(
+                draw(scene, surroundings, row.onRamps ? legs : whole, row.seconds, folder + "/" + row.name + ".png")))
             return 1;
+    }
     AnimatedCharacter* wanderer = findCharacter(*model);
     if (!wanderer) return 1;
     const Result<osg::ref_ptr<osg::Node>> gazers = makeGazers(*model), hill = makeHill(*model);
     if (!succeeds(gazers) || !succeeds(hill)) return 1;
     const Sight fromAbove{{-2, -4.5, 4.2}, {1, 9, 0}, 36.0}, square{{0, -6, 2.9}, {0, 6, 0.9}, 36.0};
-    const Sight onTheHill{{-0.1, -2.2, 1.9}, {0.0, 2.0, 0.75}, 40.0};
-    return succeeds(draw(makeCrowd(*wanderer), fromAbove, 0.0, folder + "/Crowd.png")) &&
-                   succeeds(draw(gazers.value(), square, 0.0, folder + "/Gaze.png")) &&
-                   succeeds(draw(hill.value(), onTheHill, 3.0, folder + "/Hill.png"))
-               ? 0
-               : 1;
+    const Sight onTheHill{{-1.6, 2.2, 1.5}, {1.86, 1.95, 1.17}, 34.0};
+    const bool isDrawn = succeeds(draw(makeCrowd(*wanderer), new Studio, fromAbove, 0.0, folder + "/Crowd.png")) &&
+                         succeeds(draw(gazers.value(), new Studio, square, 0.0, folder + "/Gaze.png")) &&
+                         succeeds(draw(hill.value(), new Environment, onTheHill, 3.0, folder + "/Hill.png"));
+    return isDrawn ? 0 : 1;
 }

@@ -46,7 +46,8 @@ std::optional<Error> faultOf(const std::vector<GroundLeg>& legs)
     {
         const auto isSame = [&](const GroundLeg& other) { return other.constraint == leg.constraint; };
         if (std::count_if(legs.begin(), legs.end(), isSame) > 1) return Error{nameOf(leg) + "it is there twice"};
-        if (!std::isfinite(leg.sole)) return Error{nameOf(leg) + "its sole is not finite"};
+        if (!std::isfinite(leg.sole))
+            return Error{nameOf(leg) + "its sole is " + std::to_string(leg.sole) + ", not finite"};
         if (leg.touchMarker.empty() != leg.leaveMarker.empty())
             return Error{nameOf(leg) + "it has one marker, not two or none"};
     }

@@ -119,7 +119,9 @@ TEST_F(ReadmeDirectingTest, GroundSpeed)
 {
     AnimationController& controller = wanderer->getController();
     const double seconds = 0.5;
+    ASSERT_TRUE(controller.play("Idle"));
     const double speed = 1.0;
+    succeeded(controller.play("Walk"));
     succeeded(controller.layer(0).setGroundSpeed(speed));
     EXPECT_NEAR(controller.speed(), 1.0 / 0.71, 0.02);
     wanderer->setMatrix(osg::Matrix::translate(0, -speed * seconds, 0) * wanderer->getMatrix());
@@ -220,8 +222,7 @@ TEST_F(ReadmeDirectingTest, Events)
 {
     std::string heard;
     const auto playSound = [&](const std::string& name, float) { heard += name + ";"; };
-    EXPECT_TRUE(wanderer->getController().play("Wave"));
-    wanderer->getController().setLoopMode(LoopMode::Once);
+    AnimationController& controller = wanderer->getController();
     std::shared_ptr<const AnimationSet> set = wanderer->getController().sharedSet();
     const std::size_t wave = set->clipNamed("Wave").value();
     Result<Clip> marked = set->clips()[wave].withMarkers({{0.6, "arm up"}, {2.6, "arm down"}});
@@ -232,17 +233,20 @@ TEST_F(ReadmeDirectingTest, Events)
         auto withMarkers = set->withClips(clips);
         if (succeeded(withMarkers)) succeeded(wanderer->setAnimationSet(withMarkers.value()));
     }
-    wanderer->getController().setEventCallback(
+    controller.setLoopMode(LoopMode::Once);
+    succeeded(controller.play("Wave"));
+    controller.setEventCallback(
         [&](const AnimationEvent& event)
         {
             if (event.type == AnimationEvent::Type::Marker) playSound(event.marker->name, event.weight);
             if (event.type == AnimationEvent::Type::Finished)
-                succeeded(wanderer->getController().crossfade("Idle", 0.3));
+                succeeded(controller.crossfade("Idle", 0.3, {FadeCurve::Linear, Sync::Start, LoopMode::Loop}));
         });
-    wanderer->getController().advance(2.7);
+    controller.advance(2.7);
     EXPECT_EQ(heard, "arm up;arm down;");
-    wanderer->getController().advance(1.0);
-    EXPECT_EQ(wanderer->getController().clip(), wanderer->getAnimationSet().findClip("Idle"));
+    controller.advance(1.0);
+    EXPECT_EQ(controller.clip(), wanderer->getAnimationSet().findClip("Idle"));
+    EXPECT_EQ(controller.loopMode(), LoopMode::Loop);
 
     const Clip late = wanderer->getAnimationSet().clips()[wave].withMarkers({{99.0, "late"}}).value();
     EXPECT_EQ(late.markers().back().time, late.duration()) << "it moves to the end";

@@ -19,7 +19,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
 
 // The snippets of the guide directing.md, with the character that it names: scenes/Wanderer.glb, and those of crowds.md
 // that direct instances. tests/house/SnippetTest.cpp compares these statements with the guides.

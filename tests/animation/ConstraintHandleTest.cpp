@@ -61,6 +61,36 @@ TEST(ConstraintHandleTest, NumbersAreKeptAsTheShadersNeedThem)
         }
 }
 
+TEST(ConstraintHandleTest, ARefusalNamesTheConstraintAndTheValue)
+{
+    AnimationController controller(makeAimingSet());
+    ConstraintHandle fast = controller.constraint("fast"), leg = controller.constraint("leg");
+    struct Case
+    {
+        Result<bool> result;
+        const char* message;
+    };
+    const Case cases[] = {
+        {fast.setTarget({NAN, 0, 0.5f}),
+         "constraint \"fast\": its target (nan, 0.000000, 0.500000), in the file's axes, is not finite or beyond 1e12"},
+        {leg.setShownTarget({0, 0, INFINITY}), "constraint \"leg\": its shown target (0.000000, 0.000000, inf), in the "
+                                               "file's axes, is not finite or beyond 1e12"},
+        {leg.setPole({0, 0, -INFINITY}),
+         "constraint \"leg\": its pole (0.000000, 0.000000, -inf), in the file's axes, is not finite or beyond 1e12"},
+        {fast.setWeight(NAN), "constraint \"fast\": its weight is nan"},
+        {fast.setTwist(INFINITY), "constraint \"fast\": its twist is inf, not finite"},
+        {leg.setRotation({0, 0, NAN, 1}),
+         "constraint \"leg\": its rotation (0.000000, 0.000000, nan, 1.000000) is not finite or beyond 1e12"},
+        {fast.setRotation({0, 0, 0, 1}), "constraint \"fast\": a look-at has no target rotation"},
+    };
+    for (const Case& c : cases)
+    {
+        ASSERT_FALSE(c.result) << c.message;
+        EXPECT_EQ(c.result.error().message, c.message);
+    }
+    EXPECT_TRUE(controller.isPlainLoop()) << "nothing was changed";
+}
+
 TEST(ConstraintHandleTest, ATargetWithATurnSpeedStartsAnewAfterClear)
 {
     AnimationController controller(makeAimingSet());

@@ -370,17 +370,17 @@ TEST(ConstraintTest, faultyDeclarationsAreErrorsThatNameThem)
              [](LookAt& l) {
                  l.shares = {1, -1};
              })},
-         "shares"},
+         "its share 1 is -1.000000, not at least 0 and finite"},
         {{looking(
              [](LookAt& l) {
                  l.shares = {0, 0};
              })},
-         "shares"},
+         "its shares are all 0"},
         {{looking(
              [=](LookAt& l) {
                  l.shares = {1, nan};
              })},
-         "shares"},
+         "its share 1 is nan, not at least 0 and finite"},
         {{looking([=](LookAt& l) { l.offset.x = nan; })}, "not finite"},
         {{looking(
              [](LookAt& l) {

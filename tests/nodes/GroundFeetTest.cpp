@@ -435,7 +435,7 @@ TEST(GroundFeetTest, refusesLegsThatTheSetDoesNotHave)
         {"no joint", {{"left", "toes"}}, "leg \"left\": there is no joint"},
         {"another foot", {{"left", "toes.R"}}, "leg \"left\": its toe \"toes.R\" is not below its ankle"},
         {"twice", {{"left"}, {"left", "toes.L"}}, "leg \"left\": it is there twice"},
-        {"sole", {{"left", "toes.L", nan}}, "leg \"left\": its sole is not finite"},
+        {"sole", {{"left", "toes.L", nan}}, "leg \"left\": its sole is nan, not finite"},
         {"markers", {{"left", "", 0.0, "down"}}, "leg \"left\": it has one marker"},
     };
     const osg::ref_ptr<GroundFeet> legs = new GroundFeet;

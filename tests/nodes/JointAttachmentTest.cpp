@@ -138,7 +138,10 @@ TEST_F(JointAttachmentTest, WhatIsDetachedStaysWhereItIs)
     EXPECT_TRUE(isNear(placesOf(*root, "sword")[0], before));
     EXPECT_TRUE(isNear(before, {5, 5, 2})) << "2 for the joint and 0.5 for the clip, 1 for the offset; times 2";
 
-    EXPECT_FALSE(attachment->detach(*room)) << "it has no parent any more";
+    const auto again = attachment->detach(*room);
+    ASSERT_FALSE(again) << "it has no parent any more";
+    EXPECT_EQ(again.error().message, "the attachment of joint \"side\" has 0 parents and 1 paths from the root: "
+                                     "expected one of each");
     character->addChild(attachment);
     room->addChild(character);
     EXPECT_FALSE(attachment->detach(*room)) << "two paths";

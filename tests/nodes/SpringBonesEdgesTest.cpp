@@ -220,7 +220,15 @@ TEST(SpringBonesEdgesTest, valuesAtTheEndsOfTheirRangesAreTaken)
     };
     refused({{{{"b"}, {"same place"}}, {}}}, "joint \"same place\": it has the place of the joint before it");
     refused({{{{"a"}, {"b"}}, {}}, {{{"b"}, {"c"}}, {}}}, "chain 1, joint \"b\": it is in two chains");
-    refused({{{{"a", 1.0f, -0.1f}, {"b"}}, {}}}, "its drag is not in [0, 1]");
+    refused({{{{"a", 1.0f, -0.1f}, {"b"}}, {}}}, "its drag is -0.100000, not in [0, 1]");
+    refused({{{{"a", HUGE_VALF}, {"b"}}, {}}}, "its stiffness is inf, not in [0, infinity)");
+    refused({{{{"a", 1.0f, 0.5f, std::nanf("")}, {"b"}}, {}}}, "its gravity is nan, not finite");
+    SpringJoint joint{"a"};
+    joint.gravityDirection = {0, 0.5f, 0};
+    refused({{{joint, {"b"}}, {}}}, "its gravity's direction has length 0.500000, not 1");
+    joint = {"a"};
+    joint.radius = -1.0f;
+    refused({{{joint, {"b"}}, {}}}, "its radius is -1.000000, not in [0, infinity)");
 }
 
 TEST(SpringBonesEdgesTest, copiesHaveAllSettings)

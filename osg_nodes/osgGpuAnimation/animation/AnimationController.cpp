@@ -43,6 +43,14 @@ bool isNear(const glm::vec3& v)
     return std::abs(v.x) <= most && std::abs(v.y) <= most && std::abs(v.z) <= most;
 }
 
+/// The fault of a vector of a constraint; empty: there is none.
+std::string faultOf(const char* what, const glm::vec3& v)
+{
+    if (isNear(v)) return {};
+    return std::string(what) + " (" + std::to_string(v.x) + ", " + std::to_string(v.y) + ", " + std::to_string(v.z) +
+           "), in the file's axes, is not finite or beyond 1e12";
+}
+
 /// The number of blend samples of the layer's clips, see BlendList.
 std::size_t samplesOf(const AnimationLayer& layer)
 {
@@ -262,8 +270,8 @@ template <typename Change>
 Result<bool> ConstraintHandle::change(bool isValid, const char* what, Change change)
 {
     if (!_index) return _index.error();
-    if (!isValid) return Error{std::string(what) + " of a constraint is not finite or too far away"};
     const ConstraintChain& chain = _controller->set().constraintChains()[_index.value()];
+    if (!isValid) return Error{"constraint \"" + chain.name + "\": " + what};
     change(_controller->goal(_index.value()));
     if (chain.turnSpeed > 0.0) _controller->_goals->advance(_controller->set().constraintChains(), 0.0);
     _controller->_goals->write(_controller->_instruction.targets);
@@ -272,7 +280,8 @@ Result<bool> ConstraintHandle::change(bool isValid, const char* what, Change cha
 
 Result<bool> ConstraintHandle::setTarget(const glm::vec3& position)
 {
-    return change(isNear(position), "the target",
+    const std::string fault = faultOf("its target", position);
+    return change(fault.empty(), fault.c_str(),
                   [&](ConstraintGoal& goal)
                   {
                       goal.target.position = position;
@@ -282,14 +291,15 @@ Result<bool> ConstraintHandle::setTarget(const glm::vec3& position)
 
 Result<bool> ConstraintHandle::setWeight(float weight)
 {
-    return change(!std::isnan(weight), "the weight",
+    return change(!std::isnan(weight), "its weight is nan",
                   [&](ConstraintGoal& goal) { goal.target.weight = std::min(std::max(weight, 0.0f), 1.0f); });
 }
 
 Result<bool> ConstraintHandle::setPole(const glm::vec3& direction)
 {
     const glm::dvec3 unit = AxisTurns::direction(glm::dvec3(direction), glm::dvec3(0.0));
-    return change(isNear(direction), "the pole", [&](ConstraintGoal& goal) { goal.target.pole = glm::vec3(unit); });
+    const std::string fault = faultOf("its pole", direction);
+    return change(fault.empty(), fault.c_str(), [&](ConstraintGoal& goal) { goal.target.pole = glm::vec3(unit); });
 }
 
 Result<bool> ConstraintHandle::setTwist(float radians)
@@ -297,16 +307,21 @@ Result<bool> ConstraintHandle::setTwist(float radians)
     // The nearest equal angle: shaders compute sines of small angles only.
     const double turn = glm::two_pi<double>();
     const double angle = std::isfinite(radians) ? std::remainder(static_cast<double>(radians), turn) : 0.0;
-    return change(std::isfinite(radians), "the twist",
+    std::string fault;
+    if (!std::isfinite(radians)) fault = "its twist is " + std::to_string(radians) + ", not finite";
+    return change(fault.empty(), fault.c_str(),
                   [&](ConstraintGoal& goal) { goal.target.twist = static_cast<float>(angle); });
 }
 
 Result<bool> ConstraintHandle::setRotation(const glm::vec4& rotation)
 {
+    std::string fault;
     if (_index && _controller->set().constraintChains()[_index.value()].isLookAt)
-        return Error{"a look-at has no target rotation"};
-    const bool isFinite = isNear(glm::vec3(rotation)) && isNear(glm::vec3(rotation.w));
-    return change(isFinite, "the rotation",
+        fault = "a look-at has no target rotation";
+    else if (!isNear(glm::vec3(rotation)) || !isNear(glm::vec3(rotation.w)))
+        fault = "its rotation (" + std::to_string(rotation.x) + ", " + std::to_string(rotation.y) + ", " +
+                std::to_string(rotation.z) + ", " + std::to_string(rotation.w) + ") is not finite or beyond 1e12";
+    return change(fault.empty(), fault.c_str(),
                   [&](ConstraintGoal& goal)
                   {
                       const bool isNone = rotation == glm::vec4(0.0f);
@@ -344,7 +359,8 @@ glm::vec3 ConstraintHandle::shownTarget() const
 
 Result<bool> ConstraintHandle::setShownTarget(const glm::vec3& position)
 {
-    return change(isNear(position), "the target",
+    const std::string fault = faultOf("its shown target", position);
+    return change(fault.empty(), fault.c_str(),
                   [&](ConstraintGoal& goal)
                   {
                       if (_controller->set().constraintChains()[_index.value()].turnSpeed > 0.0) goal.shown = position;

@@ -220,7 +220,7 @@ bool AnimationLayer::setSpeed(double speed)
 
 Result<bool> AnimationLayer::setGroundSpeed(double speed)
 {
-    if (!std::isfinite(speed)) return Error{"a ground speed that is not finite"};
+    if (!std::isfinite(speed)) return Error{"a ground speed of " + std::to_string(speed) + ": it must be finite"};
     if (_mixer.isEmpty()) return Error{"a ground speed for a layer that plays nothing"};
     const ClipMixer::ActiveSpace* active = _mixer.currentSpace();
     const double measured = active ? active->space->groundSpeedAt(set(), active->parameter)
@@ -232,7 +232,7 @@ Result<bool> AnimationLayer::setGroundSpeed(double speed)
         setSpeed(1.0);
     else
         return Error{"a ground speed for clip \"" + set().clips()[static_cast<std::size_t>(clip())].name() +
-                     "\": its feet stand"};
+                     "\": its feet stand, so no speed fits; setSpeed() sets one"};
     return true;
 }
 

@@ -71,11 +71,13 @@ std::optional<std::string> findFaultInPlaces(const std::vector<BlendSpace::Point
 {
     constexpr double farthest = 1e9;
     double extent = 0.0;
-    for (const BlendSpace::Point& point : points)
+    for (std::size_t i = 0; i < points.size(); ++i)
     {
-        const glm::dvec2 size = glm::abs(point.place);
-        if (!(size.x <= farthest && size.y <= farthest)) return "a coordinate is not finite or beyond 1e9";
-        extent = std::max({extent, glm::distance(point.place, points.front().place)});
+        const glm::dvec2& place = points[i].place;
+        if (!(std::abs(place.x) <= farthest && std::abs(place.y) <= farthest))
+            return "position " + std::to_string(i) + " is (" + std::to_string(place.x) + ", " +
+                   std::to_string(place.y) + "), which is not finite or beyond 1e9";
+        extent = std::max(extent, glm::distance(place, points.front().place));
     }
     for (std::size_t i = 0; i < points.size(); ++i)
         for (std::size_t j = 0; j < i; ++j)

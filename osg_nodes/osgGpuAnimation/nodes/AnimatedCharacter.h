@@ -110,7 +110,7 @@ public:
     /// During update: calls update() with the frame stamp's simulation time, then the update callbacks.
     void accept(osg::NodeVisitor& visitor) override;
 
-    /// The skeleton, palette layout and clips, shared with the copies of this character.
+    /// The set, which copies share. Valid until setAnimationSet(): to keep it, hold getController().sharedSet().
     const AnimationSet& getAnimationSet() const { return _controller->set(); }
     /// The controller of this character alone.
     AnimationController& getController() { return *_controller; }

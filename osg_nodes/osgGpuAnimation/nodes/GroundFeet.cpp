@@ -46,7 +46,8 @@ std::optional<Error> faultOf(const std::vector<GroundLeg>& legs)
     {
         const auto isSame = [&](const GroundLeg& other) { return other.constraint == leg.constraint; };
         if (std::count_if(legs.begin(), legs.end(), isSame) > 1) return Error{nameOf(leg) + "it is there twice"};
-        if (!std::isfinite(leg.sole)) return Error{nameOf(leg) + "its sole is not finite"};
+        if (!std::isfinite(leg.sole))
+            return Error{nameOf(leg) + "its sole is " + std::to_string(leg.sole) + ", not finite"};
         if (leg.touchMarker.empty() != leg.leaveMarker.empty())
             return Error{nameOf(leg) + "it has one marker, not two or none"};
     }
@@ -210,6 +211,7 @@ private:
         const std::optional<GroundPoint> start =
             settings.ground ? probe.nearest(*settings.ground, settings.traversalMask, _place) : std::nullopt;
         _height = start ? start->place.z() : _place.z();
+        _groundAbove = 0.0;
     }
 
     /// The pose of the clips, without the targets of the legs.
@@ -260,7 +262,7 @@ private:
             const auto add = [&](const GroundedFoot::Probes& probes)
             {
                 for (const osg::Vec3d& place : {probes.heel, probes.toe})
-                    _lines.push_back({{place.x(), place.y(), _height + reach}, 2.0 * reach});
+                    _lines.push_back({{place.x(), place.y(), _height + _groundAbove + reach}, 2.0 * reach});
             };
             add(foot.probes());
             if (_landings[i]) add(*_landings[i]);
@@ -283,15 +285,18 @@ private:
     /// The character follows the slope and approaches the height at which its lowest foot stands.
     void moveHeight(const Settings& settings)
     {
-        double lowest = std::numeric_limits<double>::infinity(), rise = 0.0, grounded = 0.0;
+        double lowest = std::numeric_limits<double>::infinity(), sum = 0.0, rise = 0.0, grounded = 0.0;
         for (GroundedFoot& foot : _feet)
         {
             foot.solve(settings.maxTilt);
             if (!foot.isGrounded()) continue;
-            lowest = std::min(lowest, foot.wantedHeight(_height));
+            const double wanted = foot.wantedHeight(_height);
+            lowest = std::min(lowest, wanted);
+            sum += wanted;
             rise += foot.riseOver(_way);
             grounded += 1.0;
         }
+        _groundAbove = 0.0;
         if (grounded == 0.0) return;
         const double slope = _isNew ? 0.0 : rise / grounded, before = _lowest + slope;
         double height = lowest;
@@ -310,6 +315,7 @@ private:
         for (GroundedFoot& foot : _feet)
             foot.follow(height - _height);
         _height = height;
+        _groundAbove = sum / grounded - height;
     }
 
     /// The part of the character's height that earlier updates have added; 0 if the application has changed it since.
@@ -352,9 +358,10 @@ private:
     bool _hasTargets = true;         ///< copies of characters and scene files have the targets of the original
     std::vector<GroundedFoot> _feet; ///< by leg
     double _longestLeg = 0.0;
-    double _height = 0.0; ///< of the character's origin
-    double _lowest = 0.0; ///< the height at which the lowest foot stands
-    osg::Vec3d _place;    ///< of the character's origin, without that height
+    double _height = 0.0;      ///< of the character's origin
+    double _lowest = 0.0;      ///< the height at which the lowest foot stands
+    double _groundAbove = 0.0; ///< mean height of the ground below the feet, above the character's origin
+    osg::Vec3d _place;         ///< of the character's origin, without that height
     // In the space above the character:
     osg::Vec3d _rise;   ///< from the height that the application has given
     osg::Vec3d _placed; ///< the character's origin after the last update

@@ -95,7 +95,7 @@ public:
 
     // The following setters return false, without a change, if a number is out of range or NaN.
 
-    /// Sets the largest height of the ground below a foot above or below the character's own height, in lengths of the
+    /// Sets the largest height of the ground below a foot above or below the mean ground of all feet, in lengths of the
     /// leg. Ground beyond it does not count. reach: above 0, finite. Default: 0.6.
     bool setReach(double reach);
     double getReach() const { return _reach; } ///< see setReach()

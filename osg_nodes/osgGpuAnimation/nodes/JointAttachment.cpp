@@ -10,6 +10,17 @@
 namespace osgGpuAnimation
 {
 
+namespace
+{
+
+/// For messages: the name in quotes, or the number of a joint without a name.
+std::string nameOfJoint(const std::string& name, int joint)
+{
+    return name.empty() ? std::to_string(joint) : "\"" + name + "\"";
+}
+
+} // namespace
+
 /// The character or crowd whose joint an attachment follows; both null: none.
 struct JointAttachment::Host
 {
@@ -89,9 +100,8 @@ void JointAttachment::resolve(const Host& host)
     _resolvedSet = host.set();
     if (_resolvedJoint >= 0 || _hasWarned) return;
     _hasWarned = true;
-    OSG_WARN << "osgGpuAnimation: an attachment follows joint "
-             << (_jointName.empty() ? std::to_string(_joint) : "\"" + _jointName + "\"") << ", but \"" << host.name()
-             << "\" has none such among its " << host.set()->skeleton().jointCount()
+    OSG_WARN << "osgGpuAnimation: an attachment follows joint " << nameOfJoint(_jointName, _joint) << ", but \""
+             << host.name() << "\" has none such among its " << host.set()->skeleton().jointCount()
              << "; it stays at the character's origin" << std::endl;
 }
 
@@ -143,8 +153,9 @@ Result<osg::ref_ptr<osg::MatrixTransform>> JointAttachment::detach(osg::Group& n
 {
     const osg::NodePathList paths = getParentalNodePaths();
     if (getNumParents() != 1 || paths.size() != 1)
-        return Error{"an attachment with " + std::to_string(getNumParents()) + " parents and " +
-                     std::to_string(paths.size()) + " paths from the root: expected one of each"};
+        return Error{"the attachment of joint " + nameOfJoint(_jointName, _joint) + " has " +
+                     std::to_string(getNumParents()) + " parents and " + std::to_string(paths.size()) +
+                     " paths from the root: expected one of each"};
     const osg::ref_ptr<JointAttachment> alive = this;
     osg::NodePath above = paths.front();
     above.pop_back();

@@ -76,11 +76,14 @@ bool isFinite(const osg::Vec3& vector)
 
 std::optional<std::string> faultOf(const SpringJoint& joint)
 {
-    if (!isLength(joint.stiffness)) return "its stiffness is not in [0, infinity)";
-    if (!(joint.drag >= 0.0f && joint.drag <= 1.0f)) return "its drag is not in [0, 1]";
-    if (!std::isfinite(joint.gravity)) return "its gravity is not finite";
-    if (!(std::abs(joint.gravityDirection.length() - 1.0f) < 1e-3f)) return "its gravity's direction has not length 1";
-    if (!isLength(joint.radius)) return "its radius is not in [0, infinity)";
+    const auto fault = [](const std::string& subject, float value, const char* expected)
+    { return subject + std::to_string(value) + ", not " + expected; };
+    if (!isLength(joint.stiffness)) return fault("its stiffness is ", joint.stiffness, "in [0, infinity)");
+    if (!(joint.drag >= 0.0f && joint.drag <= 1.0f)) return fault("its drag is ", joint.drag, "in [0, 1]");
+    if (!std::isfinite(joint.gravity)) return fault("its gravity is ", joint.gravity, "finite");
+    const float length = joint.gravityDirection.length();
+    if (!(std::abs(length - 1.0f) < 1e-3f)) return fault("its gravity's direction has length ", length, "1");
+    if (!isLength(joint.radius)) return fault("its radius is ", joint.radius, "in [0, infinity)");
     return std::nullopt;
 }
 

@@ -74,11 +74,12 @@ std::optional<Error> findFault(const LookAt& look)
     if (!look.shares.empty() && look.shares.size() != look.joints.size())
         return Error{std::to_string(look.shares.size()) + " shares for " + std::to_string(look.joints.size()) +
                      " joints"};
-    if (std::any_of(look.shares.begin(), look.shares.end(),
-                    [](float share) { return !std::isfinite(share) || share < 0.0f; }) ||
-        (!look.shares.empty() &&
-         std::all_of(look.shares.begin(), look.shares.end(), [](float s) { return s == 0.0f; })))
-        return Error{"its shares are not at least 0 and finite, with one above 0"};
+    for (std::size_t i = 0; i < look.shares.size(); ++i)
+        if (!std::isfinite(look.shares[i]) || look.shares[i] < 0.0f)
+            return Error{"its share " + std::to_string(i) + " is " + std::to_string(look.shares[i]) +
+                         ", not at least 0 and finite"};
+    if (!look.shares.empty() && std::all_of(look.shares.begin(), look.shares.end(), [](float s) { return s == 0.0f; }))
+        return Error{"its shares are all 0"};
     if (!isFinite(look.forward) || !isFinite(look.up) || !isFinite(look.offset))
         return Error{"an axis or the offset is not finite"};
     const glm::dvec3 none(0.0), forward = AxisTurns::direction(glm::dvec3(look.forward), none);

@@ -3,6 +3,7 @@
 
 #include <osgGpuAnimation/nodes/CharacterProgram.h>
 #include <osgGpuAnimation/nodes/mesh/PaletteEntryBounds.h>
+#include <osgGpuAnimation/nodes/shading/MipmapUpload.h>
 #include <osgGpuAnimation/nodes/shading/ShaderPermutations.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
@@ -78,12 +79,22 @@ void dropSkinning(ValueStream& stream, SkinnedGeometry&)
     stream.value(skinning);
 }
 
+/// A stored texture does not say how it is uploaded.
+struct MipmapsAfterReading : osgDB::FinishedObjectReadCallback
+{
+    void objectRead(osgDB::InputStream&, osg::Object& object) override
+    {
+        if (osg::StateSet* state = static_cast<SkinnedGeometry&>(object).getStateSet()) uploadWithMipmaps(*state);
+    }
+};
+
 void addMeshProperties(osgDB::ObjectWrapper* wrapper)
 {
     addProperty(wrapper, "Influences", &transferInfluences);
     addProperty<SkinnedGeometry>(wrapper, "MorphTargets", &transferMorphTargets,
                                  [](const SkinnedGeometry& mesh) { return !mesh.getMorphTargets().empty(); });
     addProperty<SkinnedGeometry>(wrapper, "Skinning", &dropSkinning, [](const SkinnedGeometry&) { return false; });
+    wrapper->addFinishedObjectReadCallback(new MipmapsAfterReading);
 }
 
 osgDB::RegisterWrapperProxy skinnedGeometry([]() -> osg::Object* { return new SkinnedGeometry; },

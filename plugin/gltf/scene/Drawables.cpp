@@ -7,6 +7,7 @@
 
 #include <osgGpuAnimation/animation/bounds/JointRange.h>
 #include <osgGpuAnimation/nodes/mesh/MaterialVariants.h>
+#include <osgGpuAnimation/nodes/shading/MipmapUpload.h>
 
 #include <layout.glsl>
 
@@ -164,6 +165,7 @@ osg::ref_ptr<osg::Geometry> Drawables::make(const DrawablePlace& place)
     if (_materials.wantedCoordinates(material) & ~mesh->coordinates)
         _report.warn(mesh->label + ": lacks the texture coordinates that its material needs");
     geometry->setStateSet(stateSet(*mesh, use, material));
+    if (palette) uploadWithMipmaps(*geometry->getStateSet());
     for (const int variant : materials.withoutCoordinates)
         _report.warn(mesh->label + ": its material of variant " + quoted(_variants[static_cast<std::size_t>(variant)]) +
                      " reads other texture coordinates than its own material; it is drawn with its own");

@@ -5,8 +5,6 @@
 #include "gltf/data/Picture.h"
 #include "gltf/file/Report.h"
 
-#include <osgGpuAnimation/nodes/shading/MipmapUpload.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
@@ -238,7 +236,6 @@ osg::ref_ptr<osg::Texture2D> Textures::make(const tinygltf::Texture& source, Col
                                                      ? osg::Texture::NEAREST
                                                      : osg::Texture::LINEAR);
     texture->setResizeNonPowerOfTwoHint(false);
-    uploadWithMipmaps(*texture);
     return texture;
 }
 

@@ -147,8 +147,8 @@ public:
     using osg::Texture2D::isSafeToUnrefImageData;
 };
 
-/// Specifies each level by glTexImage2D: OSG would make the storage immutable, and other textures, which get released GL
-/// textures from OSG's pool, could not specify it again.
+/// Specifies each level by glTexImage2D: OSG would make the storage immutable, and other textures, which get released
+/// GL textures from OSG's pool, could not specify it again.
 void uploadLevels(const osg::Image& levels, GLint internalFormat)
 {
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
@@ -237,6 +237,14 @@ void uploadWithMipmaps(osg::Texture2D& texture)
     const osg::Texture::FilterMode filter = texture.getFilter(osg::Texture::MIN_FILTER);
     if (filter == osg::Texture::LINEAR || filter == osg::Texture::NEAREST) return;
     if (texture.getImage() && isHalvable(*texture.getImage())) texture.setSubloadCallback(upload);
+}
+
+void uploadWithMipmaps(osg::StateSet& state)
+{
+    for (unsigned int unit = 0; unit < state.getNumTextureAttributeLists(); ++unit)
+        if (auto* texture =
+                dynamic_cast<osg::Texture2D*>(state.getTextureAttribute(unit, osg::StateAttribute::TEXTURE)))
+            uploadWithMipmaps(*texture);
 }
 
 } // namespace osgGpuAnimation

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <osg/Image>
+#include <osg/StateSet>
 #include <osg/Texture2D>
 
 namespace osgGpuAnimation
@@ -18,8 +19,10 @@ osg::ref_ptr<osg::Image> withMipmaps(const osg::Image& picture, GLint internalFo
 /// more. A core profile makes none if OSG was built for the compatibility profile.
 ///
 /// The texture keeps its image, filters and formats as without the call, and applications may change them: GL makes the
-/// levels if withMipmaps() is null. Copies of the texture upload likewise; stored and read again, it leaves the levels
-/// to GL.
+/// levels if withMipmaps() is null. Copies of the texture upload likewise.
 void uploadWithMipmaps(osg::Texture2D& texture);
+/// The same for all osg::Texture2D of a state set. The readers of models and of stored scenes call it for that of each
+/// SkinnedGeometry.
+void uploadWithMipmaps(osg::StateSet& state);
 
 } // namespace osgGpuAnimation

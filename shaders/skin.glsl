@@ -24,6 +24,8 @@ uniform int poseMorphTangents;         // the index of the tangents' channel, or
 uniform samplerBuffer poseTints; // by instance
 uniform bool poseTinted;
 
+uniform float poseOutset; // how far skinned vertices move along their normals, see LodLevels
+
 #ifndef POSE_INFLUENCES
 #define POSE_INFLUENCES poseInfluences
 #endif
@@ -152,6 +154,7 @@ void osgGpuAnimationSkinTangent(inout vec4 vertex, inout vec3 normal, inout vec4
     mat3x4 rows = osgGpuAnimationBlend(poseEntries0, poseWeights0, POSE_INFLUENCES);
     if (POSE_INFLUENCES > 4) rows += osgGpuAnimationBlend(poseEntries1, poseWeights1, POSE_INFLUENCES - 4);
     osgGpuAnimationMove(rows, vertex, normal, tangent);
+    if (poseOutset > 0.0) vertex.xyz += poseOutset * inversesqrt(max(dot(normal, normal), 1e-30)) * normal;
 #ifdef POSE_INSTANCED
     osgGpuAnimationMove(mat3x4(poseInstanceRow0, poseInstanceRow1, poseInstanceRow2), vertex, normal, tangent);
 #elif defined(POSE_PLACED)

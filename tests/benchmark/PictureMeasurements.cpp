@@ -129,7 +129,7 @@ Result<bool> comparePictures(const Subject& subject, int pixels, Report& report)
     const double coverage = 100.0 * pictures[1].drawn / pictures[0].drawn;
     addRow("pictures, coverage", "%", coverage, std::abs(coverage - 100.0) <= 2.0, "98 to 102 %");
     const double similarity = structuralSimilarity(pictures[0], pictures[1]);
-    addRow("pictures, structural similarity", "", similarity, similarity >= 0.98, "≥ 0.98");
+    addRow("pictures, structural similarity", "%", 100.0 * similarity, similarity >= 0.98, "≥ 98 %");
     return true;
 }
 

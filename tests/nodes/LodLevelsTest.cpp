@@ -20,7 +20,7 @@ namespace
 /// The number of drawn indices of the first primitive set.
 std::size_t drawn(const SkinnedGeometry& mesh, const LodLevels& levels, int level)
 {
-    const osg::DrawElements* elements = levels.elements(0, level);
+    const osg::DrawElements* elements = levels.reduced(0, level).elements;
     return (elements ? *elements : *mesh.getPrimitiveSet(0)).getNumIndices();
 }
 
@@ -118,7 +118,7 @@ TEST(LodLevelsTest, keepTextureCoordinatesOnTheirSideOfASeam)
     strip->setRigidEntry(static_cast<unsigned short>(set->entryOfRigidJoint(1)));
     strip->addPrimitiveSet(triangles);
     const LodLevels levels(*strip, *set->withClips({}).value(), skinningOf(*strip));
-    const osg::DrawElements* few = levels.elements(0, levels.finest());
+    const osg::DrawElements* few = levels.reduced(0, levels.finest()).elements;
     ASSERT_NE(few, nullptr);
     EXPECT_LE(few->getNumIndices(), 3u * 40u) << "it is flat";
     for (unsigned int i = 0; i < few->getNumIndices(); i += 3)

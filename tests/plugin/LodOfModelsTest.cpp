@@ -36,7 +36,7 @@ void PrintTo(const ModelCase& model, std::ostream* out)
 
 std::vector<unsigned int> indicesAt(const SkinnedGeometry& mesh, const LodLevels& levels, int level)
 {
-    const osg::DrawElements* drawn = levels.elements(0, level);
+    const osg::DrawElements* drawn = levels.reduced(0, level).elements;
     if (!drawn) drawn = mesh.getPrimitiveSet(0)->getDrawElements();
     std::vector<unsigned int> indices;
     for (unsigned int i = 0; i < drawn->getNumIndices(); ++i)

@@ -298,6 +298,7 @@ void SkinnedGeometry::drawImplementation(osg::RenderInfo& renderInfo) const
              place.texture != 0)
     {
         bindPalette(state, place);
+        setOutset(state, 0.0f);
         osg::Geometry::drawImplementation(renderInfo);
     }
 }
@@ -395,8 +396,12 @@ void SkinnedGeometry::drawPrimitives(osg::State& state, int count, int level) co
     if (level != LodLevels::allTriangles) levels = _lod->known(*this);
     for (std::size_t i = 0; i < _primitives.size(); ++i)
     {
-        const osg::PrimitiveSet* fewer = levels ? levels->elements(i, level) : nullptr;
-        drawInstanced(state, fewer ? *fewer : *_primitives[i], count, usesBuffers);
+        const LodLevels::Reduced reduced = levels ? levels->reduced(i, level) : LodLevels::Reduced();
+        setOutset(state, reduced.outset);
+        if (reduced.elements)
+            drawInstanced(state, *reduced.elements, count, usesBuffers);
+        else
+            drawInstanced(state, *_primitives[i], count, usesBuffers);
     }
 }
 

@@ -176,7 +176,7 @@ private:
         if (!band)
         {
             const int level = _scale.levelWithin(leastErrorOf(number));
-            band = Band{&_drawn[level], level == LodLevels::allTriangles ? 0.0f : std::ldexp(1.0f, level)};
+            band = Band{&_drawn[level], static_cast<float>(LodLevels::errorOf(level))};
         }
         return *band;
     }

@@ -152,6 +152,14 @@ void bindPalette(osg::State& state, const PalettePlace& place, int influences, i
     }
 }
 
+void setOutset(osg::State& state, float outset)
+{
+    static const unsigned int name = osg::Uniform::getNameID("poseOutset");
+    const osg::Program::PerContextProgram* program = state.getLastAppliedProgramObject();
+    const GLint location = program ? program->getUniformLocation(name) : -1;
+    if (location >= 0) state.get<osg::GLExtensions>()->glUniform1f(location, outset);
+}
+
 PlacedDraw::PlacedDraw(osg::State& state, const PosePipeline& pipeline, const PaletteBinding& binding) : _state(state)
 {
     const std::shared_ptr<const PlacedInstances>& placed = binding.getPlaced();

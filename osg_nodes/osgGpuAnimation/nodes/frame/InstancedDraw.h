@@ -39,6 +39,8 @@ private:
 /// Binds the palette and the tints and sets the uniforms of skin.glsl in the applied program.
 /// influences: the largest number per vertex. rigidEntry: moves all vertices; -1: influences are per vertex.
 void bindPalette(osg::State& state, const PalettePlace& place, int influences, int rigidEntry);
+/// For the next draws, after bindPalette(): see LodLevels::Reduced.
+void setOutset(osg::State& state, float outset);
 
 /// The draw of instances with shared poses: the list of the drawn instances and the placements of all.
 class PlacedDraw

@@ -75,6 +75,7 @@ constexpr int mostBeyondSize = 10;       ///< powers of two above the mesh's siz
 constexpr double worthwhile = 0.85;      ///< a level has at most this share of the previous level's triangles
 constexpr std::size_t fewTriangles = 16; ///< meshes with fewer get no levels
 constexpr std::size_t entriesATriangle = 8;
+constexpr double mostOutset = 0.125; ///< of a level's error; more would cost triangles nearby
 
 template <typename OsgArray, typename Vector>
 void copyTo(const osg::Array* array, std::size_t count, std::vector<Vector>& out)
@@ -147,6 +148,26 @@ std::vector<std::uint32_t> trianglesOf(const osg::PrimitiveSet& primitives, std:
     return indices;
 }
 
+struct Extent
+{
+    double area = 0.0, volume = 0.0;
+};
+
+/// In the rest pose. The volume of an open surface is that of the cone from its first vertex.
+Extent extentOf(const PosedSurface& surface, const std::vector<std::uint32_t>& indices)
+{
+    const std::vector<glm::vec3>& places = surface.poses.front();
+    const auto edgeTo = [&](std::uint32_t vertex) { return glm::dvec3(places[vertex]) - glm::dvec3(places.front()); };
+    Extent extent;
+    for (std::size_t corner = 0; corner + 2 < indices.size(); corner += 3)
+    {
+        const glm::dvec3 a = edgeTo(indices[corner]), b = edgeTo(indices[corner + 1]), c = edgeTo(indices[corner + 2]);
+        extent.area += glm::length(glm::cross(b - a, c - a)) / 2.0;
+        extent.volume += glm::dot(a, glm::cross(b, c)) / 6.0;
+    }
+    return extent;
+}
+
 /// True if posing the palette costs no more than reducing the triangles. Meshes of many small, separately animated
 /// parts get no levels.
 bool isWorthPoses(const osg::Geometry& mesh, const AnimationSet& set)
@@ -204,7 +225,12 @@ float largestScale(const AffineMatrix& matrix)
 
 int LodLevels::levelOf(double error)
 {
-    return error > 0.0 && std::isfinite(error) ? std::ilogb(error) : allTriangles;
+    return error > 0.0 && std::isfinite(error) ? std::ilogb(error / (1.0 + mostOutset)) : allTriangles;
+}
+
+double LodLevels::errorOf(int level)
+{
+    return level == allTriangles ? 0.0 : std::ldexp(1.0 + mostOutset, level);
 }
 
 LodLevels::LodLevels(const osg::Geometry& mesh, const AnimationSet& set, const Skinning& skin)
@@ -229,6 +255,7 @@ void LodLevels::addSteps(const PosedSurface& surface, int finest, int coarsest, 
     const std::vector<std::uint32_t> original = trianglesOf(*primitives.original, surface.vertexCount());
     if (original.size() < 3 * fewTriangles) return;
     MeshSimplifier simplifier(surface, original);
+    const Extent whole = extentOf(surface, original);
     std::size_t kept = original.size() / 3;
     for (int level = finest; level <= coarsest; ++level)
     {
@@ -244,7 +271,9 @@ void LodLevels::addSteps(const PosedSurface& surface, int finest, int coarsest, 
                                                        ? makeElements<osg::DrawElementsUShort>(indices)
                                                        : makeElements<osg::DrawElementsUInt>(indices);
         elements->setElementBufferObject(_buffer);
-        primitives.steps.push_back({level, elements});
+        const Extent extent = extentOf(surface, indices);
+        const double lost = extent.area > 0.0 ? (whole.volume - extent.volume) / extent.area : 0.0;
+        primitives.steps.push_back({level, elements, static_cast<float>(std::clamp(lost, 0.0, mostOutset * limit))});
     }
     if (primitives.steps.empty()) return;
     const int first = primitives.steps.front().level;
@@ -264,12 +293,12 @@ bool LodLevels::isOf(const osg::Geometry& mesh) const
     return true;
 }
 
-const osg::DrawElements* LodLevels::elements(std::size_t primitiveSet, int level) const
+LodLevels::Reduced LodLevels::reduced(std::size_t primitiveSet, int level) const
 {
-    const osg::DrawElements* found = nullptr;
+    Reduced found;
     if (primitiveSet >= _primitives.size()) return found;
     for (const Step& step : _primitives[primitiveSet].steps)
-        if (step.level <= level) found = step.elements;
+        if (step.level <= level) found = {step.elements, step.outset};
     return found;
 }
 

@@ -30,7 +30,8 @@ float largestScale(const AffineMatrix& matrix);
 
 /// Reduced triangles for a mesh over the same vertices, so that palettes, influences and morph targets do not change. A
 /// **level** is the exponent of the largest error as a power of two, in the character's own units for any mesh space:
-/// at level -3 no vertex of the mesh is farther than 1/8 from the drawn surface. One level therefore means the same for
+/// at level -3 no vertex of the mesh is farther than 1/8 from the reduced triangles, nor 9/64 from the drawn surface,
+/// which is a little larger. One level therefore means the same for
 /// all meshes of a character.
 ///
 /// MeshSimplifier keeps the error in twelve poses at once (keyPoses() of the set). In other poses it may be larger: by
@@ -50,6 +51,8 @@ public:
 
     /// The coarsest level within the error, in the character's units; allTriangles if the error is not above 0.
     static int levelOf(double error);
+    /// The largest error of a level, in the character's units, its outset included. 0 for allTriangles.
+    static double errorOf(int level);
 
     /// Computes one position per vertex in the pose of a palette (the set's paletteSize() entries).
     using Skinning =
@@ -64,8 +67,14 @@ public:
     /// The finest and the coarsest level with reduced triangles; allTriangles: no such level.
     int finest() const { return _finest; }
     int coarsest() const { return _coarsest; }
-    /// The reduced triangles of the mesh's primitive set at a level; null: draw the primitive set itself.
-    const osg::DrawElements* elements(std::size_t primitiveSet, int level) const;
+    struct Reduced
+    {
+        const osg::DrawElements* elements = nullptr; ///< null: draw the primitive set itself
+        float outset = 0.0f; ///< how far vertices move along their normals, in the character's units
+    };
+    /// The reduced triangles of the mesh's primitive set at a level. Their vertices lie on the original surface and
+    /// most of their area within it; the outset gives them its volume, so that small characters do not get thin.
+    Reduced reduced(std::size_t primitiveSet, int level) const;
 
     void releaseGLObjects(osg::State* state) const;
     void resizeGLObjectBuffers(unsigned int maxSize) const;
@@ -75,6 +84,7 @@ private:
     {
         int level; ///< and coarser ones
         osg::ref_ptr<osg::DrawElements> elements;
+        float outset;
     };
     struct Primitives
     {

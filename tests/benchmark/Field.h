@@ -17,7 +17,7 @@ constexpr float fieldPixelError = 0.5f;
 
 /// Of neighbours, in the units of the subject's file.
 double spacingOf(const Subject& subject);
-/// Everybody loops some clip of the file from some time on. step: 1: all places are taken, else each so many.
+/// Everybody loops some clip of the file from some time on. step: each step-th place is taken.
 osg::ref_ptr<AnimatedCrowd> makeField(const Subject& subject, std::size_t step = 1);
 /// From before the field over half of it.
 void lookAcross(StagedViewer& viewer, const osg::BoundingSphere& field);

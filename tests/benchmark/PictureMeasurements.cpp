@@ -94,7 +94,7 @@ osg::ref_ptr<AnimatedCrowd> makeWall(const Subject& subject, double spacing)
     return crowd;
 }
 
-/// Of instances so many pixels tall: with the pixel error, and exact ones.
+/// Of instances of that height in pixels: with the pixel error, and exact ones.
 Result<bool> comparePictures(const Subject& subject, int pixels, Report& report)
 {
     const osg::BoundingBox box = subject.model.character->getClipBounds(-1);
@@ -167,6 +167,8 @@ Result<bool> compareRows(const Subject& subject, Report& report)
     std::vector<double> ratios;
     for (std::size_t row = 0; row < rows[0].size(); ++row)
         if (rows[0][row] > 0.0 && rows[1][row] > 0.0) ratios.push_back(rows[1][row] / rows[0][row]);
+    if (const std::string errors = made.value()->takeErrors(); !errors.empty()) return Error{"GL reports " + errors};
+    if (ratios.size() < 2 * band) return Error{"the field's picture has " + std::to_string(ratios.size()) + " rows"};
     double largest = 0.0;
     for (std::size_t row = band; row + band <= ratios.size(); ++row)
     {

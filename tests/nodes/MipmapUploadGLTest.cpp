@@ -176,8 +176,10 @@ TEST_F(MipmapUploadGLTest, oneColourStaysTheSame)
 TEST_F(MipmapUploadGLTest, leavesOtherPicturesToGL)
 {
     for (const osg::ref_ptr<osg::Image>& picture :
-         {newPicture(24, 16, GL_RGB), newPicture(16, 16, GL_RGB, GL_UNSIGNED_SHORT), newPicture(16, 16, GL_BGR)})
+         {newPicture(24, 16, GL_RGB), newPicture(16, 16, GL_RGB, GL_UNSIGNED_SHORT), newPicture(16, 16, GL_BGR),
+          newPicture(4096, 2048, GL_LUMINANCE)})
         EXPECT_FALSE(newTexture(picture, GL_RGB8)->getSubloadCallback());
+    EXPECT_FALSE(withMipmaps(*newPicture(16, 16, GL_RGB), GL_SLUMINANCE8)) << "no format of the kit's";
 }
 
 TEST_F(MipmapUploadGLTest, followsTheImageOfTheTexture)
@@ -187,6 +189,7 @@ TEST_F(MipmapUploadGLTest, followsTheImageOfTheTexture)
     const osg::ref_ptr<osg::Texture2D> copy = new osg::Texture2D(*texture);
     apply(*copy);
     apply(*texture);
+    const GLuint name = texture->getTextureObject(state().getContextID())->id();
     std::fill_n(picture->data(), picture->getTotalSizeInBytes() / 2, static_cast<unsigned char>(200));
     picture->dirty();
     for (const osg::ref_ptr<osg::Texture2D>& each : {texture, copy})
@@ -194,6 +197,7 @@ TEST_F(MipmapUploadGLTest, followsTheImageOfTheTexture)
         apply(*each);
         expectLevels(*picture, GL_SRGB8);
     }
+    EXPECT_EQ(texture->getTextureObject(state().getContextID())->id(), name) << "it is written again";
     // Another size, a side that GL has to halve, and back.
     for (const auto& [width, height] : {std::pair(8, 4), std::pair(12, 8), std::pair(16, 16)})
     {

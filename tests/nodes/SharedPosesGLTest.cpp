@@ -253,7 +253,7 @@ TEST_F(SharedPosesGLTest, theyLookAsWithPosesOfTheirOwn)
     EXPECT_LE(Picture::meanDifference(*exact, picture().image()), 0.025);
 }
 
-// A batch of shared poses fits a chunk of the palette: ten clips have more phases than that.
+// A batch of shared poses fits a chunk of the palette: ten clips have more steps than that.
 TEST_F(SharedPosesGLTest, moreThanAChunkOfPosesIsDrawnAndEachIsEvaluatedOnce)
 {
     constexpr int side = 66, clips = 10, places = side * side;

@@ -165,7 +165,6 @@ osg::ref_ptr<osg::Geometry> Drawables::make(const DrawablePlace& place)
     if (_materials.wantedCoordinates(material) & ~mesh->coordinates)
         _report.warn(mesh->label + ": lacks the texture coordinates that its material needs");
     geometry->setStateSet(stateSet(*mesh, use, material));
-    if (palette) uploadWithMipmaps(*geometry->getStateSet());
     for (const int variant : materials.withoutCoordinates)
         _report.warn(mesh->label + ": its material of variant " + quoted(_variants[static_cast<std::size_t>(variant)]) +
                      " reads other texture coordinates than its own material; it is drawn with its own");
@@ -179,7 +178,9 @@ osg::StateSet* Drawables::stateSet(const MeshPrimitive& mesh, MaterialUse use, i
     use.material = material;
     use.coordinates = mesh.coordinates & _materials.wantedCoordinates(material);
     use.tangents = mesh.tangents && _materials.hasNormalMap(material);
-    return _materials.stateSet(use);
+    osg::StateSet* made = _materials.stateSet(use);
+    if (use.palette) uploadWithMipmaps(*made);
+    return made;
 }
 
 void Drawables::setVariants(SkinnedGeometry& geometry, const MeshPrimitive& mesh, const PrimitiveMaterials& materials,

@@ -50,8 +50,8 @@ float leastErrorOf(std::size_t band)
 /// The instances of one camera, by level, and the batches with their poses, each pose once.
 ///
 /// An instance may show any step of its clip from a first to a last one; there is one if its error is at least half a
-/// step. The fewest poses for all: in ascending order of the last steps, an instance that contains none of the steps
-/// chosen so far chooses its last one.
+/// step. It shows the one that ends in the most zeros in binary. So large and small instances choose the same steps,
+/// and each instance keeps its own step in all passes of a frame and as long as it may show it.
 class SharedPoses::Collection
 {
 public:
@@ -59,9 +59,9 @@ public:
     Collection(const Meshes& meshes, const CrowdInstances& instances, const LodScale& scale, PoseFrame& frame,
                std::size_t mostPoses)
         : _meshes(meshes), _instances(instances), _scale(scale), _frame(frame), _mostPoses(mostPoses),
-          _placeOfClip(meshes.clips.size() + 1, none), _steps(stepsOfThread()), _drawn(drawnOfThread())
+          _placeOfClip(meshes.clips.size() + 1, none), _poses(posesOfThread()), _drawn(drawnOfThread())
     {
-        _steps.clear();
+        _poses.clear();
         for (auto& [level, drawn] : _drawn)
             drawn.clear();
     }
@@ -79,25 +79,6 @@ public:
         seen.resize(left);
     }
 
-    /// To call once, after all instances were added.
-    void choosePoses()
-    {
-        for (const std::size_t clip : _clips)
-        {
-            std::uint32_t chosen = 0, pose = none; // 1 + the latest chosen step
-            for (std::uint32_t step = 0; step <= static_cast<std::uint32_t>(mostSteps); ++step)
-            {
-                std::uint32_t& needed = _steps[_placeOfClip[clip] + step];
-                if (needed > chosen)
-                {
-                    chosen = step + 1;
-                    pose = addPose(clip, step);
-                }
-                if (needed > 0) needed = pose;
-            }
-        }
-    }
-
     /// Writes the list of a batch, level by level. function(level, first, count)
     template <typename Function>
     void write(std::size_t batch, std::vector<PlacedInstances::Drawn>& out, Function function) const
@@ -110,9 +91,8 @@ public:
         for (const auto& [level, drawn] : _drawn)
         {
             const std::size_t first = out.size();
-            for (const auto& [place, instance] : drawn)
-                if (const std::uint32_t pose = _steps[place] - before; pose < _mostPoses)
-                    out.push_back({pose, instance});
+            for (const auto& [number, instance] : drawn)
+                if (const std::uint32_t pose = number - before; pose < _mostPoses) out.push_back({pose, instance});
             if (out.size() > first) function(level, first, out.size() - first);
         }
     }
@@ -121,15 +101,15 @@ private:
     static constexpr std::uint32_t none = ~std::uint32_t(0);
     struct Band
     {
-        std::vector<PlacedInstances::Drawn>* drawn; ///< `pose` is a place in _steps
+        std::vector<PlacedInstances::Drawn>* drawn; ///< poses are numbered through all batches
         float ofLevel;                              ///< the error of the level of detail
     };
     using DrawnByLevel = std::map<int, std::vector<PlacedInstances::Drawn>>;
 
-    static std::vector<std::uint32_t>& stepsOfThread()
+    static std::vector<std::uint32_t>& posesOfThread()
     {
-        static thread_local std::vector<std::uint32_t> steps;
-        return steps;
+        static thread_local std::vector<std::uint32_t> poses;
+        return poses;
     }
     static DrawnByLevel& drawnOfThread()
     {
@@ -144,29 +124,40 @@ private:
         const float error = _scale.allowedError(glm::vec3(sphere), sphere.w, _instances.scale(index));
         const Band& band = bandFor(error);
         const int clip = _instances.clip(index);
-        int first = 0, last = 0;
-        if (clip >= 0)
+        std::uint32_t step = 0;
+        if (clip >= 0 && _meshes.clips[static_cast<std::size_t>(clip)].stepsPerTravel > 0.0f)
         {
             const SharedClip& shared = _meshes.clips[static_cast<std::size_t>(clip)];
             const float reach = (error - band.ofLevel) * shared.stepsPerTravel;
             if (!(reach >= 0.5f)) return false;
-            first = last = mostSteps / 2;
+            step = mostSteps / 2;
             if (reach < static_cast<float>(mostSteps / 2)) // else all steps reach the middle
             {
                 const float time = static_cast<float>(_instances.time(index, shared.duration));
-                const float step = shared.travel.at(time) * shared.stepsPerTravel;
+                const float at = shared.travel.at(time) * shared.stepsPerTravel;
                 // Without branches on the phase, which no processor could predict.
-                const int begin = static_cast<int>(step - reach);
-                first = std::max(begin + static_cast<int>(static_cast<float>(begin) < step - reach), 0);
-                last = std::min(static_cast<int>(step + reach), mostSteps);
+                const int begin = static_cast<int>(at - reach);
+                const int first = std::max(begin + static_cast<int>(static_cast<float>(begin) < at - reach), 0);
+                const int last = std::min(static_cast<int>(at + reach), mostSteps);
+                step = roundest(static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last));
             }
         }
-        const std::uint32_t place = placeOf(static_cast<std::size_t>(clip + 1)) + static_cast<std::uint32_t>(last);
-        if (_steps[place] <= static_cast<std::uint32_t>(first)) _steps[place] = static_cast<std::uint32_t>(first) + 1;
+        const std::size_t place = placeOf(static_cast<std::size_t>(clip + 1)) + step;
+        if (_poses[place] == none) _poses[place] = addPose(static_cast<std::size_t>(clip + 1), step);
         PlacedInstances::Drawn& drawn = band.drawn->emplace_back();
-        drawn.pose = place;
+        drawn.pose = _poses[place];
         drawn.instance = index;
         return true;
+    }
+
+    /// The number in [first, last] that ends in the most zeros in binary.
+    static std::uint32_t roundest(std::uint32_t first, std::uint32_t last)
+    {
+        if (first == 0) return 0;
+        std::uint32_t mask = (first - 1) ^ last; // all bits from the highest one that differs
+        for (const int shift : {1, 2, 4, 8})
+            mask |= mask >> shift;
+        return last & ~(mask >> 1);
     }
 
     const Band& bandFor(float error)
@@ -181,14 +172,13 @@ private:
         return *band;
     }
 
-    /// Of the first step of a clip in _steps. clip: its number + 1; 0: the rest pose.
+    /// Of the first step of a clip in _poses. clip: its number + 1; 0: the rest pose.
     std::uint32_t placeOf(std::size_t clip)
     {
         if (_placeOfClip[clip] == none)
         {
-            _clips.push_back(clip);
-            _placeOfClip[clip] = static_cast<std::uint32_t>(_steps.size());
-            _steps.resize(_steps.size() + mostSteps + 1, 0);
+            _placeOfClip[clip] = static_cast<std::uint32_t>(_poses.size());
+            _poses.resize(_poses.size() + mostSteps + 1, none);
         }
         return _placeOfClip[clip];
     }
@@ -213,11 +203,9 @@ private:
     PoseFrame& _frame;
     std::size_t _mostPoses;
     std::vector<std::unique_ptr<PoseBatch>> _batches;
-    std::vector<std::size_t> _clips;         ///< those of the added instances
     std::vector<std::uint32_t> _placeOfClip; ///< by clip + 1; none: no instance plays it
-    std::vector<std::uint32_t>& _steps;      ///< by place: 1 + the largest first step of the instances with that last
-                                             ///< step, 0 without; after choosePoses() the number of their pose
-    DrawnByLevel& _drawn;                    ///< poses are numbered through all batches
+    std::vector<std::uint32_t>& _poses;      ///< by place; none: no instance shows that step
+    DrawnByLevel& _drawn;
     std::array<std::optional<Band>, bandCount> _bands;
 };
 
@@ -300,7 +288,6 @@ std::vector<DrawState> SharedPoses::submit(PoseFrame& frame, const CrowdInstance
 
     Collection collection(*_meshes, instances, scale, frame, mostPoses);
     collection.takeFrom(seen);
-    collection.choosePoses();
     for (std::size_t number = 0; number < collection.batchCount(); ++number)
     {
         struct Run

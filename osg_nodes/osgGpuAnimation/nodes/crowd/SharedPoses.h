@@ -18,10 +18,10 @@
 namespace osgGpuAnimation
 {
 
-/// The poses that instances of a crowd with a pixel error share: the fewest, at `mostSteps` steps of equal ClipTravel
-/// of each clip, that have one within the error of every instance. The distance of a vertex from its exact place, plus
-/// the error of the level of detail, stays within the pixel error. Instances with no step within their error have poses
-/// of their own, and so do those with a controller: the crowd submits them itself.
+/// The poses that instances of a crowd with a pixel error share: those at `mostSteps` steps of equal ClipTravel of each
+/// clip. The distance of a vertex from its exact place, plus the error of the level of detail, stays within the pixel
+/// error. Instances whose error is less than half a step have poses of their own, and so do those with a controller:
+/// the crowd submits them itself.
 class SharedPoses
 {
 public:
@@ -57,7 +57,7 @@ private:
     {
         ClipTravel travel;
         double duration;      ///< seconds
-        float stepsPerTravel; ///< infinity: a clip without motion
+        float stepsPerTravel; ///< 0: a clip without motion
     };
     /// What depends on the meshes.
     struct Meshes

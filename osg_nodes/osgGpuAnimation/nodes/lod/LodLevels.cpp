@@ -75,7 +75,7 @@ constexpr int mostBeyondSize = 10;       ///< powers of two above the mesh's siz
 constexpr double worthwhile = 0.85;      ///< a level has at most this share of the previous level's triangles
 constexpr std::size_t fewTriangles = 16; ///< meshes with fewer get no levels
 constexpr std::size_t entriesATriangle = 8;
-constexpr double mostOutset = 0.125; ///< of a level's error; more would cost triangles nearby
+constexpr double mostOutset = 0.25; ///< of a level's error
 
 template <typename OsgArray, typename Vector>
 void copyTo(const osg::Array* array, std::size_t count, std::vector<Vector>& out)

@@ -30,7 +30,7 @@ float largestScale(const AffineMatrix& matrix);
 
 /// Reduced triangles for a mesh over the same vertices, so that palettes, influences and morph targets do not change. A
 /// **level** is the exponent of the largest error as a power of two, in the character's own units for any mesh space:
-/// at level -3 no vertex of the mesh is farther than 1/8 from the reduced triangles, nor 9/64 from the drawn surface,
+/// at level -3 no vertex of the mesh is farther than 1/8 from the reduced triangles, nor 5/32 from the drawn surface,
 /// which is a little larger. One level therefore means the same for
 /// all meshes of a character.
 ///

@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 
 namespace osgGpuAnimation
 {
@@ -104,15 +105,35 @@ void halve(GLenum format, const std::uint8_t* from, Level level, std::uint8_t* t
     }
 }
 
+constexpr std::int64_t mostPixels = 2048 * 2048; ///< beyond, the CPU takes longer than a driver that compiles shaders
+
 bool isPowerOfTwo(int side)
 {
     return side > 0 && (side & (side - 1)) == 0;
 }
 
-bool isSrgb(GLint internalFormat)
+/// Whether colours are stored in sRGB; of the formats without compression and with 8 bits a channel.
+std::optional<bool> isSrgb(GLint internalFormat)
 {
-    return internalFormat == GL_SRGB || internalFormat == GL_SRGB8 || internalFormat == GL_SRGB_ALPHA ||
-           internalFormat == GL_SRGB8_ALPHA8;
+    switch (internalFormat)
+    {
+    case GL_SRGB:
+    case GL_SRGB8:
+    case GL_SRGB_ALPHA:
+    case GL_SRGB8_ALPHA8:
+        return true;
+    case GL_LUMINANCE:
+    case GL_LUMINANCE8:
+    case GL_LUMINANCE_ALPHA:
+    case GL_LUMINANCE8_ALPHA8:
+    case GL_RGB:
+    case GL_RGB8:
+    case GL_RGBA:
+    case GL_RGBA8:
+        return false;
+    default:
+        return std::nullopt;
+    }
 }
 
 /// The channels of the formats that halve() knows; 0: another format.
@@ -133,7 +154,8 @@ std::size_t channelsOf(const osg::Image& picture)
 bool isHalvable(const osg::Image& picture)
 {
     return picture.data() && isPowerOfTwo(picture.s()) && isPowerOfTwo(picture.t()) && picture.r() == 1 &&
-           picture.getDataType() == GL_UNSIGNED_BYTE && channelsOf(picture) > 0 && !picture.isMipmap() &&
+           std::int64_t(picture.s()) * picture.t() <= mostPixels && picture.getDataType() == GL_UNSIGNED_BYTE &&
+           channelsOf(picture) > 0 && !picture.isMipmap() &&
            picture.getRowStepInBytes() == static_cast<unsigned int>(picture.s()) * channelsOf(picture) &&
            !dynamic_cast<const osg::ImageStream*>(&picture);
 }
@@ -164,34 +186,61 @@ void uploadLevels(const osg::Image& levels, GLint internalFormat)
 class MipmapUpload : public osg::Texture2D::SubloadCallback
 {
 public:
-    /// A changed image gets a new GL texture.
+    /// False, too, if the size or format of a changed image is another one.
     bool textureObjectValid(const osg::Texture2D& texture, osg::State& state) const override
     {
-        return !texture.isDirty(state.getContextID());
+        return !texture.isDirty(state.getContextID()) || SubloadCallback::textureObjectValid(texture, state);
+    }
+
+    /// OSG calls it before load(), in the same thread. From then on another context may release the image.
+    osg::ref_ptr<osg::Texture::TextureObject> generateTextureObject(const osg::Texture2D& texture,
+                                                                    osg::State& state) const override
+    {
+        imageToLoad() = texture.getImage();
+        return SubloadCallback::generateTextureObject(texture, state);
     }
 
     void load(const osg::Texture2D& texture, osg::State& state) const override
     {
-        const osg::ref_ptr<const osg::Image> image = texture.getImage();
+        osg::ref_ptr<const osg::Image> image;
+        image.swap(imageToLoad());
         if (!image || !image->data()) return;
-        GLsizei width = 0, height = 0, count = 0;
-        std::invoke(&UploadSteps::computeRequiredTextureDimensions, texture, state, *image, width, height, count);
-        std::invoke(&UploadSteps::computeInternalFormat, texture);
-        texture.setTextureSize(width, height);
-        texture.setNumMipmapLevels(static_cast<unsigned int>(count));
-        osg::ref_ptr<osg::Image> levels;
-        if (count > 1 && width == image->s() && height == image->t() && texture.getBorderWidth() == 0)
-            levels = withMipmaps(*image, texture.getInternalFormat());
-        if (levels)
-            uploadLevels(*levels, texture.getInternalFormat());
-        else
-            texture.applyTexImage2D_load(state, GL_TEXTURE_2D, image, width, height, count);
+        upload(texture, *image, state);
         if (std::invoke(&UploadSteps::isSafeToUnrefImageData, texture, state) &&
             image->getDataVariance() == osg::Object::STATIC)
             const_cast<osg::Texture2D&>(texture).setImage(static_cast<osg::Image*>(nullptr));
     }
 
-    void subload(const osg::Texture2D&, osg::State&) const override {}
+    void subload(const osg::Texture2D& texture, osg::State& state) const override
+    {
+        if (!texture.isDirty(state.getContextID())) return;
+        const osg::ref_ptr<const osg::Image> image = texture.getImage();
+        texture.getModifiedCount(state.getContextID()) = image->getModifiedCount();
+        upload(texture, *image, state);
+    }
+
+private:
+    static osg::ref_ptr<const osg::Image>& imageToLoad()
+    {
+        static thread_local osg::ref_ptr<const osg::Image> image;
+        return image;
+    }
+
+    static void upload(const osg::Texture2D& texture, const osg::Image& image, osg::State& state)
+    {
+        GLsizei width = 0, height = 0, count = 0;
+        std::invoke(&UploadSteps::computeRequiredTextureDimensions, texture, state, image, width, height, count);
+        std::invoke(&UploadSteps::computeInternalFormat, texture);
+        texture.setTextureSize(width, height);
+        texture.setNumMipmapLevels(static_cast<unsigned int>(count));
+        osg::ref_ptr<osg::Image> levels;
+        if (count > 1 && width == image.s() && height == image.t() && texture.getBorderWidth() == 0)
+            levels = withMipmaps(image, texture.getInternalFormat());
+        if (levels)
+            uploadLevels(*levels, texture.getInternalFormat());
+        else
+            texture.applyTexImage2D_load(state, GL_TEXTURE_2D, &image, width, height, count);
+    }
 };
 
 } // namespace
@@ -199,7 +248,8 @@ public:
 osg::ref_ptr<osg::Image> withMipmaps(const osg::Image& picture, GLint internalFormat)
 {
     static const SrgbMean srgbMean;
-    if (!isHalvable(picture) || osg::Texture::isCompressedInternalFormat(internalFormat)) return nullptr;
+    const std::optional<bool> isInSrgb = isSrgb(internalFormat);
+    if (!isHalvable(picture) || !isInSrgb) return nullptr;
     const GLenum format = picture.getPixelFormat();
     const std::size_t channels = channelsOf(picture);
     const auto bytesOf = [&](Level level) { return level.width * level.height * channels; };
@@ -221,7 +271,7 @@ osg::ref_ptr<osg::Image> withMipmaps(const osg::Image& picture, GLint internalFo
     Level level = whole;
     for (const unsigned int offset : offsets)
     {
-        if (isSrgb(internalFormat))
+        if (*isInSrgb)
             halve(format, from, level, data + offset, srgbMean);
         else
             halve(format, from, level, data + offset, StoredMean());

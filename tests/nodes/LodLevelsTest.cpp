@@ -37,10 +37,15 @@ LodLevels::Skinning skinningOf(const SkinnedGeometry& mesh)
 
 TEST(LodLevelsTest, areCalledAfterPowersOfTwo)
 {
-    EXPECT_EQ(LodLevels::levelOf(1.0), 0);
-    EXPECT_EQ(LodLevels::levelOf(1.99), 0);
-    EXPECT_EQ(LodLevels::levelOf(0.25), -2);
-    EXPECT_EQ(LodLevels::levelOf(0.24), -3);
+    for (const int level : {0, -2})
+    {
+        const double error = LodLevels::errorOf(level); // 5/4 and 5/16
+        EXPECT_EQ(error, std::ldexp(1.25, level));
+        EXPECT_EQ(LodLevels::levelOf(error), level);
+        EXPECT_EQ(LodLevels::levelOf(1.99 * error), level);
+        EXPECT_EQ(LodLevels::levelOf(0.99 * error), level - 1);
+    }
+    EXPECT_EQ(LodLevels::errorOf(LodLevels::allTriangles), 0.0);
     for (const double nothing : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()})
         EXPECT_EQ(LodLevels::levelOf(nothing), LodLevels::allTriangles);
 }
@@ -56,6 +61,17 @@ TEST(LodLevelsTest, keepAnElbowThatBendsInAClip)
     EXPECT_GT(drawn(*tube, ofBending, level), 2 * drawn(*tube, ofStill, level));
     EXPECT_LT(drawn(*tube, ofBending, level), tube->getPrimitiveSet(0)->getNumIndices() / 4);
     EXPECT_EQ(drawn(*tube, ofBending, LodLevels::allTriangles), tube->getPrimitiveSet(0)->getNumIndices());
+}
+
+TEST(LodLevelsTest, haveTheVolumeOfTheMesh)
+{
+    const std::shared_ptr<const AnimationSet> bending = armSet();
+    const osg::ref_ptr<SkinnedGeometry> tube = makeTube(*bending);
+    const LodLevels levels(*tube, *bending, skinningOf(*tube));
+    EXPECT_EQ(levels.reduced(0, LodLevels::allTriangles).outset, 0.0f);
+    EXPECT_GT(levels.reduced(0, levels.coarsest()).outset, 0.02 * std::ldexp(1.0, levels.coarsest()));
+    for (int level = levels.finest(); level <= levels.coarsest(); ++level)
+        EXPECT_LE(std::ldexp(1.0, level) + levels.reduced(0, level).outset, LodLevels::errorOf(level)) << level;
 }
 
 TEST(LodLevelsTest, aNewSetMakesTheLevelsOfItsPoses)

@@ -154,7 +154,7 @@ TEST_P(LodModelsGLTest, lookAsWithAllTriangles)
         const float tone = (meanColor(*expected) - meanColor(*found)).length();
         EXPECT_LT(difference, moved) << "at " << pixels << " pixels";
         EXPECT_LT(tone, 0.12f) << "at " << pixels << " pixels";
-        EXPECT_NEAR(foundPixels, expectedPixels, 0.2 * expectedPixels + 10.0) << "at " << pixels << " pixels";
+        EXPECT_NEAR(foundPixels, expectedPixels, 0.04 * expectedPixels + 10.0) << "at " << pixels << " pixels";
         const GLuint least = pixels > 200.0 ? 1 : pixels > 40.0 ? 2 : 4; // the least reduction factor
         EXPECT_LE(least * ofFewer, ofAll) << "at " << pixels << " pixels";
     }

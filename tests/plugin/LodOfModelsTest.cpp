@@ -135,8 +135,8 @@ TEST_P(LodOfModelsTest, haveFewerTrianglesTheFartherOffTheyMayBe)
         EXPECT_LE(now, before) << "level " << level;
         before = now;
     }
-    EXPECT_LE(trianglesAt(LodLevels::levelOf(size / 16.0)), GetParam().trianglesFar);
-    EXPECT_LE(trianglesAt(LodLevels::levelOf(size / 256.0)), GetParam().trianglesNear);
+    EXPECT_LE(trianglesAt(std::ilogb(size / 16.0)), GetParam().trianglesFar);
+    EXPECT_LE(trianglesAt(std::ilogb(size / 256.0)), GetParam().trianglesNear);
 }
 
 TEST_P(LodOfModelsTest, nameVerticesThereAreAndNoTriangleTwice)

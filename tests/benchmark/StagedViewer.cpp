@@ -36,8 +36,9 @@ Result<std::shared_ptr<StagedViewer>> StagedViewer::create(osg::Node* scene, con
 
 StagedViewer::~StagedViewer()
 {
-    _viewer.setSceneData(nullptr);
+    // The scene must release its GL objects first: OSG destroys its vertex array states at exit, after what they use.
     _context->close();
+    _viewer.setSceneData(nullptr);
 }
 
 void StagedViewer::lookAt(const osg::BoundingSphere& sight)

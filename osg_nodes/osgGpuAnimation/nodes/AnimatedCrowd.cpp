@@ -162,7 +162,7 @@ AnimatedCrowd::AnimatedCrowd(const AnimatedCrowd& other, const osg::CopyOp& copy
       _hasOrigin(other._hasOrigin), _updateTime(other._updateTime),
       _worldTargets(std::make_unique<WorldTargets>(*other._worldTargets)), _pixelError(other._pixelError),
       _sharedPoses(other._sharedPoses ? std::make_unique<SharedPoses>(*other._sharedPoses) : nullptr),
-      _variantMeshes(other._variantMeshes)
+      _characterLevels(other._characterLevels), _variantMeshes(other._variantMeshes)
 {
     // The update traversal must reach this node without a callback.
     setNumChildrenRequiringUpdateTraversal(getNumChildrenRequiringUpdateTraversal() + 1);
@@ -473,11 +473,12 @@ void AnimatedCrowd::cull(osgUtil::CullVisitor& visitor)
     static thread_local std::vector<std::uint32_t> seen; // keeps its storage from cull to cull
     _instances->findSeen(isCullingActive() ? view.planes() : std::vector<glm::vec4>(), seen);
     std::vector<DrawState> draws;
+    LodRange lods;
     if (!seen.empty() && getAnimationSet().paletteSize() > 0)
     {
         view.look(*_instances, seen);
-        const LodScale scale(visitor, PoseStage::lodView(visitor), _pixelError,
-                             _pixelError > 0.0f ? LodRange(*this, getAnimationSet()) : LodRange());
+        if (_pixelError > 0.0f) lods = LodRange(*this, getAnimationSet(), _characterLevels);
+        const LodScale scale(visitor, PoseStage::lodView(visitor), _pixelError, lods);
         PoseFrame& frame = PoseStage::frame(visitor);
         if (_sharedPoses && scale.isOn()) draws = _sharedPoses->submit(frame, *_instances, scale, seen);
         for (const DrawState& draw : submitSeen(frame, *_instances, CrowdLod(*_instances, scale), seen))
@@ -486,8 +487,9 @@ void AnimatedCrowd::cull(osgUtil::CullVisitor& visitor)
     for (const DrawState& draw : draws)
     {
         visitor.pushStateSet(draw.stateSet);
-        forEachMesh(*this,
-                    [&](const SkinnedGeometry& mesh) { view.draw(const_cast<SkinnedGeometry&>(mesh), *draw.binding); });
+        lods.forEachMeshAt(draw.binding->getLevel(), *this,
+                           [&](const SkinnedGeometry& mesh)
+                           { view.draw(const_cast<SkinnedGeometry&>(mesh), *draw.binding); });
         visitor.popStateSet();
     }
     const UnculledScope unculled(visitor);
@@ -513,6 +515,10 @@ Result<bool> AnimatedCrowd::setPixelError(float pixels)
     if (!prepared) return prepared;
     _pixelError = pixels;
     prepareSharedPoses();
+    if (!_sharedPoses)
+        _characterLevels = nullptr;
+    else if (!_characterLevels || !_characterLevels->isOf(*this, getAnimationSet()))
+        _characterLevels = std::make_shared<const CharacterLevels>(*this, getAnimationSet());
     return prepared;
 }
 
@@ -554,6 +560,18 @@ void AnimatedCrowd::count(osg::NodeVisitor& visitor)
         for (std::size_t time = 0; time < times; ++time)
             child->accept(visitor);
     }
+}
+
+void AnimatedCrowd::releaseGLObjects(osg::State* state) const
+{
+    osg::Transform::releaseGLObjects(state);
+    if (_characterLevels) _characterLevels->releaseGLObjects(state);
+}
+
+void AnimatedCrowd::resizeGLObjectBuffers(unsigned int maxSize)
+{
+    osg::Transform::resizeGLObjectBuffers(maxSize);
+    if (_characterLevels) _characterLevels->resizeGLObjectBuffers(maxSize);
 }
 
 osg::BoundingSphere AnimatedCrowd::computeBound() const

@@ -18,6 +18,7 @@ namespace osgGpuAnimation
 {
 
 class AnimatedCharacter;
+class CharacterLevels;
 class CrowdInstances;
 class NodeConstraint;
 class PosedInstances;
@@ -169,6 +170,8 @@ public:
     /// statistics count every instance; visitors that compute bounds get the box around all instances as they play now.
     void traverse(osg::NodeVisitor& visitor) override;
     osg::BoundingSphere computeBound() const override; ///< around all instances and the other children
+    void releaseGLObjects(osg::State* state = nullptr) const override;
+    void resizeGLObjectBuffers(unsigned int maxSize) override;
     /// Applies the origin to the matrix.
     bool computeLocalToWorldMatrix(osg::Matrix& matrix, osg::NodeVisitor* visitor) const override;
     /// Removes the origin from the matrix.
@@ -200,6 +203,7 @@ private:
     std::unique_ptr<WorldTargets> _worldTargets;   ///< never null
     float _pixelError = 0.0f;                      ///< pixels
     std::unique_ptr<SharedPoses> _sharedPoses;     ///< null: no pixel error
+    std::shared_ptr<const CharacterLevels> _characterLevels; ///< null: without a pixel error
     std::shared_ptr<VariantMeshes> _variantMeshes; ///< never null, shared with the character and clones
 };
 

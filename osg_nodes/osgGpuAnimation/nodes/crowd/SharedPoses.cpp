@@ -24,6 +24,7 @@ namespace
 
 /// The errors of a band have one level of detail, as without shared poses; the rest of the error is for poses. A band
 /// is an eighth of the errors between two powers of two: its number is the upper bits of a float.
+constexpr float mostOfLevel = 1.0f; ///< the share of an error that a level of detail may have
 constexpr std::uint32_t bitsInBand = 20;
 constexpr std::size_t bandCount = std::size_t(1) << (31 - bitsInBand);
 
@@ -166,8 +167,8 @@ private:
         std::optional<Band>& band = _bands[number];
         if (!band)
         {
-            const int level = _scale.levelWithin(leastErrorOf(number));
-            band = Band{&_drawn[level], static_cast<float>(LodLevels::errorOf(level))};
+            const int level = _scale.levelWithin(mostOfLevel * leastErrorOf(number));
+            band = Band{&_drawn[level], static_cast<float>(_scale.foundError(level))};
         }
         return *band;
     }

@@ -66,7 +66,6 @@ std::vector<PoseInstruction> poolOf(const AnimationSet& set)
     return pool;
 }
 
-constexpr std::size_t poseCount = 12;
 // The finest level is the mesh's size divided by 2 to that power; the coarsest, which alone may cross texture seams, is
 // the character's size divided so: coarser levels save little more and make small characters thin.
 constexpr int finestFraction = 8;
@@ -104,7 +103,7 @@ PosedSurface surfaceOf(const osg::Geometry& mesh, const AnimationSet& set, const
     PosedSurface surface;
     std::vector<AffineMatrix> palette;
     std::vector<glm::dvec3> positions;
-    for (const PoseInstruction& pose : keyPoses(set, poseCount))
+    for (const PoseInstruction& pose : keyPoses(set, LodLevels::poseCount))
     {
         Pose::evaluate(set, pose, AffineMatrix(), palette);
         skin(palette, positions);
@@ -131,21 +130,6 @@ Box boxAround(const std::vector<glm::vec3>& positions)
 double sizeOf(const Box& box)
 {
     return box.empty() ? 0.0 : glm::distance(glm::dvec3(box.min), glm::dvec3(box.max));
-}
-
-/// Whole triangles; empty for other primitives.
-std::vector<std::uint32_t> trianglesOf(const osg::PrimitiveSet& primitives, std::size_t vertexCount)
-{
-    std::vector<std::uint32_t> indices;
-    const osg::DrawElements* elements = primitives.getDrawElements();
-    if (!elements || primitives.getMode() != GL_TRIANGLES || !elements->getDataPointer()) return indices;
-    for (unsigned int i = 0; i + 2 < elements->getNumIndices(); i += 3)
-        for (unsigned int corner = i; corner < i + 3; ++corner)
-        {
-            if (elements->index(corner) >= vertexCount) return {};
-            indices.push_back(elements->index(corner));
-        }
-    return indices;
 }
 
 struct Extent
@@ -223,14 +207,31 @@ float largestScale(const AffineMatrix& matrix)
     return std::sqrt(largest);
 }
 
+std::vector<std::uint32_t> LodLevels::trianglesOf(const osg::PrimitiveSet& primitives, std::size_t vertexCount)
+{
+    std::vector<std::uint32_t> indices;
+    const osg::DrawElements* elements = primitives.getDrawElements();
+    if (!elements || primitives.getMode() != GL_TRIANGLES || !elements->getDataPointer()) return indices;
+    for (unsigned int i = 0; i + 2 < elements->getNumIndices(); i += 3)
+        for (unsigned int corner = i; corner < i + 3; ++corner)
+        {
+            if (elements->index(corner) >= vertexCount) return {};
+            indices.push_back(elements->index(corner));
+        }
+    return indices;
+}
+
 int LodLevels::levelOf(double error)
 {
-    return error > 0.0 && std::isfinite(error) ? std::ilogb(error / (1.0 + mostOutset)) : allTriangles;
+    if (!(error > 0.0 && std::isfinite(error))) return allTriangles;
+    const double limit = error / (1.0 + mostOutset);
+    const int powerOfTwo = std::ilogb(limit);
+    return 2 * powerOfTwo + (std::ldexp(limit, -powerOfTwo) >= std::sqrt(2.0) ? 1 : 0);
 }
 
 double LodLevels::errorOf(int level)
 {
-    return level == allTriangles ? 0.0 : std::ldexp(1.0 + mostOutset, level);
+    return level == allTriangles ? 0.0 : (1.0 + mostOutset) * std::exp2(0.5 * level);
 }
 
 LodLevels::LodLevels(const osg::Geometry& mesh, const AnimationSet& set, const Skinning& skin)
@@ -247,7 +248,7 @@ LodLevels::LodLevels(const osg::Geometry& mesh, const AnimationSet& set, const S
     const int coarsest = std::min(std::ilogb(std::max(size, sizeOf(boundsOfJoints(set)))) - coarsestFraction,
                                   std::ilogb(size) + mostBeyondSize);
     for (Primitives& primitives : _primitives)
-        addSteps(surface, std::ilogb(size) - finestFraction, coarsest, primitives);
+        addSteps(surface, 2 * (std::ilogb(size) - finestFraction), 2 * coarsest, primitives);
 }
 
 void LodLevels::addSteps(const PosedSurface& surface, int finest, int coarsest, Primitives& primitives)
@@ -260,11 +261,12 @@ void LodLevels::addSteps(const PosedSurface& surface, int finest, int coarsest, 
     for (int level = finest; level <= coarsest; ++level)
     {
         if (simplifier.triangleCount() <= 1) break;
-        const double limit = std::ldexp(1.0, level);
+        const double limit = errorOf(level) / (1.0 + mostOutset);
         simplifier.reduce(limit, level < coarsest);
         const bool isWorthwhile =
             static_cast<double>(simplifier.triangleCount()) < worthwhile * static_cast<double>(kept);
-        if (!isWorthwhile || simplifier.error() > limit) continue;
+        const double found = isWorthwhile ? simplifier.error() : 0.0;
+        if (!isWorthwhile || found > limit) continue;
         const std::vector<std::uint32_t> indices = simplifier.indices();
         kept = indices.size() / 3;
         osg::ref_ptr<osg::DrawElements> elements = surface.vertexCount() <= 65535
@@ -273,7 +275,8 @@ void LodLevels::addSteps(const PosedSurface& surface, int finest, int coarsest, 
         elements->setElementBufferObject(_buffer);
         const Extent extent = extentOf(surface, indices);
         const double lost = extent.area > 0.0 ? (whole.volume - extent.volume) / extent.area : 0.0;
-        primitives.steps.push_back({level, elements, static_cast<float>(std::clamp(lost, 0.0, mostOutset * limit))});
+        const double outset = std::clamp(lost, 0.0, mostOutset * limit);
+        primitives.steps.push_back({level, elements, static_cast<float>(outset), found + outset});
     }
     if (primitives.steps.empty()) return;
     const int first = primitives.steps.front().level;
@@ -298,8 +301,16 @@ LodLevels::Reduced LodLevels::reduced(std::size_t primitiveSet, int level) const
     Reduced found;
     if (primitiveSet >= _primitives.size()) return found;
     for (const Step& step : _primitives[primitiveSet].steps)
-        if (step.level <= level) found = {step.elements, step.outset};
+        if (step.level <= level) found = {step.elements, step.outset, step.error};
     return found;
+}
+
+double LodLevels::foundError(int level) const
+{
+    double largest = 0.0;
+    for (std::size_t i = 0; i < _primitives.size(); ++i)
+        largest = std::max(largest, reduced(i, level).error);
+    return largest;
 }
 
 void LodLevels::releaseGLObjects(osg::State* state) const

@@ -29,10 +29,9 @@ struct PosedSurface;
 float largestScale(const AffineMatrix& matrix);
 
 /// Reduced triangles for a mesh over the same vertices, so that palettes, influences and morph targets do not change. A
-/// **level** is the exponent of the largest error as a power of two, in the character's own units for any mesh space:
-/// at level -3 no vertex of the mesh is farther than 1/8 from the reduced triangles, nor 5/32 from the drawn surface,
-/// which is a little larger. One level therefore means the same for
-/// all meshes of a character.
+/// **level** is the exponent of the largest error as a power of the square root of two, in the character's own units
+/// for any mesh space: at level -6 no vertex of the mesh is farther than 1/8 from the reduced triangles, nor 5/32 from
+/// the drawn surface, which is a little larger. One level therefore means the same for all meshes of a character.
 ///
 /// MeshSimplifier keeps the error in twelve poses at once (keyPoses() of the set). In other poses it may be larger: by
 /// at most half in tests at random times of real characters' clips. No levels are built for primitive sets other than
@@ -48,6 +47,7 @@ class LodLevels
 public:
     static constexpr int allTriangles = std::numeric_limits<int>::min(); ///< the level without error
     static constexpr std::size_t maxVertices = 100'000; ///< of a mesh with levels; such a mesh takes seconds
+    static constexpr std::size_t poseCount = 12;        ///< in which the error is measured, see keyPoses()
 
     /// The coarsest level within the error, in the character's units; allTriangles if the error is not above 0.
     static int levelOf(double error);
@@ -71,10 +71,16 @@ public:
     {
         const osg::DrawElements* elements = nullptr; ///< null: draw the primitive set itself
         float outset = 0.0f; ///< how far vertices move along their normals, in the character's units
+        double error = 0.0;  ///< the largest distance of a vertex from the drawn surface, in the character's units
     };
     /// The reduced triangles of the mesh's primitive set at a level. Their vertices lie on the original surface and
     /// most of their area within it; the outset gives them its volume, so that small characters do not get thin.
     Reduced reduced(std::size_t primitiveSet, int level) const;
+    /// The largest error of the mesh's reduced triangles at a level; at most errorOf(level).
+    double foundError(int level) const;
+
+    /// Whole triangles, by vertex; empty for other primitives and for vertices that do not exist.
+    static std::vector<std::uint32_t> trianglesOf(const osg::PrimitiveSet& primitives, std::size_t vertexCount);
 
     void releaseGLObjects(osg::State* state) const;
     void resizeGLObjectBuffers(unsigned int maxSize) const;
@@ -85,6 +91,7 @@ private:
         int level; ///< and coarser ones
         osg::ref_ptr<osg::DrawElements> elements;
         float outset;
+        double error;
     };
     struct Primitives
     {

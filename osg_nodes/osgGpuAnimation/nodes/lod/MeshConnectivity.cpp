@@ -188,12 +188,17 @@ MeshConnectivity::Corners MeshConnectivity::pointsOf(std::uint32_t triangle) con
     return points;
 }
 
-/// True if a later triangle at the point has the same points and orientation.
+/// True if a later triangle at the point has the same points and, unless the surface is two-sided, orientation.
 bool MeshConnectivity::isDouble(std::uint32_t triangle, std::uint32_t point) const
 {
-    const Corners points = pointsOf(triangle);
+    const Corners points = pointsOf(triangle), turned{points[0], points[2], points[1]};
     return std::any_of(_trianglesAt[point].begin(), _trianglesAt[point].end(),
-                       [&](std::uint32_t other) { return other > triangle && pointsOf(other) == points; });
+                       [&](std::uint32_t other)
+                       {
+                           if (other <= triangle) return false;
+                           const Corners ofOther = pointsOf(other);
+                           return ofOther == points || (_surface.isTwoSided && ofOther == turned);
+                       });
 }
 
 } // namespace osgGpuAnimation

@@ -18,6 +18,7 @@ struct PosedSurface
     std::vector<std::vector<glm::vec3>> poses; ///< at least one pose; each has one position per vertex
     std::vector<glm::vec3> normals;            ///< one per vertex, or empty
     std::vector<glm::vec2> texCoords;          ///< one per vertex, or empty
+    bool isTwoSided = false;                   ///< triangles show the same from behind
 
     std::size_t vertexCount() const { return poses.front().size(); }
 };

@@ -4,6 +4,7 @@
 #include <osgGpuAnimation/nodes/lod/MeshConnectivity.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -18,6 +19,10 @@ constexpr double borderWeight = 4.0;       ///< of the planes that hold open bor
 constexpr double lengthCost = 1e-4;        ///< of an edge's squared length: of equal costs the shorter edge is first
 constexpr double sharpestTurn = 0.05;      ///< the smallest cosine between the normals before and after
 constexpr std::size_t mostTriangles = 100; ///< at an edge or a neighbour: the cost of fans is quadratic
+constexpr std::size_t mostCollapsed = 4096; ///< into one point: each further collapse checks all of them
+constexpr double costBeyondLimit = 4.0;    ///< quadrics are means: a collapse of that cost may be near enough
+constexpr std::size_t mostNear = 8;        ///< points of a neighbouring cell to join: dense spots have many
+constexpr double farthestCell = 1e15;      ///< farther ones have no number
 constexpr int mostPasses = 3;              ///< over all remaining edges, for one limit
 constexpr double texCoordsCount = 100.0;   ///< weight relative to normals when a vertex is selected
 
@@ -86,15 +91,16 @@ void MeshSimplifier::addPlanes()
 void MeshSimplifier::consider(std::uint32_t from, std::uint32_t to)
 {
     const std::size_t poseCount = _mesh.poseCount();
+    const double most = costBeyondLimit * _squaredLimit;
     double cost = 0.0;
-    for (std::size_t pose = 0; pose < poseCount && cost <= _squaredLimit; ++pose)
+    for (std::size_t pose = 0; pose < poseCount && cost <= most; ++pose)
     {
         PlaneQuadric quadric = _quadrics[from * poseCount + pose];
         quadric += _quadrics[to * poseCount + pose];
         const glm::dvec3 place = _mesh.at(pose, to), way = place - _mesh.at(pose, from);
         cost = std::max(cost, quadric.at(place) + lengthCost * glm::dot(way, way));
     }
-    if (cost <= _squaredLimit) _next.push({cost, from, to, _mesh.changeCountOf(from), _mesh.changeCountOf(to)});
+    if (cost <= most) _next.push({cost, from, to, _mesh.changeCountOf(from), _mesh.changeCountOf(to)});
 }
 
 void MeshSimplifier::considerAll()
@@ -105,7 +111,43 @@ void MeshSimplifier::considerAll()
             consider(point, neighbour);
 }
 
-void MeshSimplifier::reduce(double limit, bool keepSeams)
+/// Considers pairs of points within the limit in all poses, whether an edge connects them or not.
+void MeshSimplifier::considerNear()
+{
+    using Cell = std::array<std::int64_t, 3>; // as large as the limit, in the first pose
+    std::vector<std::pair<Cell, std::uint32_t>> points;
+    const double cellSize = std::sqrt(_squaredLimit);
+    for (std::uint32_t point = 0; point < _mesh.pointCount(); ++point)
+    {
+        const glm::dvec3 cell = _mesh.at(0, point) / cellSize;
+        if (_mesh.trianglesAt(point).empty() || !(glm::length(cell) < farthestCell)) continue;
+        points.push_back({{std::llround(cell.x), std::llround(cell.y), std::llround(cell.z)}, point});
+    }
+    std::sort(points.begin(), points.end());
+    const auto isBefore = [](const auto& a, const auto& b) { return a.first < b.first; };
+    for (const auto& [cell, from] : points)
+        for (int neighbour = 0; neighbour < 27; ++neighbour)
+        {
+            const Cell there{cell[0] + neighbour % 3 - 1, cell[1] + neighbour / 3 % 3 - 1, cell[2] + neighbour / 9 - 1};
+            const auto [first, last] =
+                std::equal_range(points.begin(), points.end(), std::pair(there, std::uint32_t(0)), isBefore);
+            const auto end = first + std::min<std::ptrdiff_t>(last - first, mostNear);
+            for (auto to = first; to != end; ++to)
+                if (to->second != from && isWithinLimit(from, to->second)) consider(from, to->second);
+        }
+}
+
+bool MeshSimplifier::isWithinLimit(std::uint32_t point, std::uint32_t other) const
+{
+    for (std::size_t pose = 0; pose < _mesh.poseCount(); ++pose)
+    {
+        const glm::dvec3 way = _mesh.at(pose, other) - _mesh.at(pose, point);
+        if (glm::dot(way, way) > _squaredLimit) return false;
+    }
+    return true;
+}
+
+void MeshSimplifier::reduce(double limit, bool keepSeams, bool joinPieces)
 {
     _squaredLimit = limit * limit;
     _keepsSeams = keepSeams;
@@ -114,6 +156,7 @@ void MeshSimplifier::reduce(double limit, bool keepSeams)
     for (int pass = 0; pass < mostPasses && hasCollapsed; ++pass)
     {
         considerAll();
+        if (joinPieces) considerNear();
         hasCollapsed = collapseCandidates();
     }
 }
@@ -149,6 +192,7 @@ bool MeshSimplifier::findCorners(std::uint32_t from, std::uint32_t to, std::vect
     const std::vector<std::uint32_t>&here = _mesh.trianglesAt(from), &there = _mesh.trianglesAt(to);
     outMoved.clear();
     if (here.size() + there.size() > mostTriangles) return false;
+    if (_mesh.collapsedInto(from).size() + _mesh.collapsedInto(to).size() > mostCollapsed) return false;
     for (const std::uint32_t triangle : here)
     {
         Corners corners = _mesh.corners(triangle);

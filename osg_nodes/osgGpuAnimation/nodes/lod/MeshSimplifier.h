@@ -79,10 +79,12 @@ public:
     MeshSimplifier(const PosedSurface& surface, const std::vector<std::uint32_t>& indices);
 
     /// Collapses edges while the error stays below about `limit`, in the poses' units; see error(). Call it with
-    /// ascending limits. keepSeams: texture coordinates stay on their side of a seam.
-    void reduce(double limit, bool keepSeams);
+    /// ascending limits. keepSeams: texture coordinates stay on their side of a seam. joinPieces: also collapses points
+    /// into near points that no edge connects them with.
+    void reduce(double limit, bool keepSeams, bool joinPieces = false);
     std::size_t triangleCount() const { return _mesh.triangleCount(); }
     std::vector<std::uint32_t> indices() const { return _mesh.indices(); } ///< in the original order and orientation
+    const MeshConnectivity& mesh() const { return _mesh; }
 
     /// An upper bound, over all poses, for the distance from an original point to the reduced surface, in the poses'
     /// units. It is measured to the triangles around the point that the original was collapsed into.
@@ -102,6 +104,8 @@ private:
     bool isAlike(std::uint32_t vertex, std::uint32_t other) const;
     void consider(std::uint32_t from, std::uint32_t to);
     void considerAll();
+    void considerNear();
+    bool isWithinLimit(std::uint32_t point, std::uint32_t other) const;
     bool collapseCandidates();
     bool findCorners(std::uint32_t from, std::uint32_t to, std::vector<Corners>& outMoved) const;
     bool turnsOver(const Corners& corners, std::uint32_t from, std::uint32_t to) const;

@@ -112,6 +112,23 @@ TEST(ClipTravelTest, isTheLengthOfTheWayThereAndBack)
     EXPECT_LE(distanceBetween(*set, shown, set->sampleAt(0, 2.0)), 1e-4);
 }
 
+// A part of the duration may have many keyframes or none.
+TEST(ClipTravelTest, keyframesMayHaveAnyDistance)
+{
+    const std::vector<double> times{0.5, 0.51, 0.52, 0.525, 2, 7, 7.001, 7.002, 7.003, 10};
+    std::vector<double> along;
+    for (std::size_t i = 0; i < times.size(); ++i)
+        along.push_back(static_cast<double>(i * i));
+    const auto set = slidingSet(Channel::Interpolation::Linear, times, along);
+    const ClipTravel travel(*set, 0, boxesOf(*set), {});
+    const float perUnit = travel.length() / static_cast<float>(along.back());
+    for (float time = 0.0f; time <= 10.0f; time += 0.0005f)
+    {
+        const float x = paletteOf(*set, set->sampleAt(0, time))[0].rows[0].w;
+        EXPECT_NEAR(travel.at(time), perUnit * x, 1e-3f * travel.length()) << time;
+    }
+}
+
 // Before a jump and after it are two places, although the time between them is 0.
 TEST(ClipTravelTest, jumpsCountAsWay)
 {

@@ -14,6 +14,7 @@
 
 #include <cmath>
 #include <limits>
+#include <vector>
 
 // Crowds of turned files, other children of crowds, copies, removed instances, and times that are no numbers.
 
@@ -190,6 +191,55 @@ TEST(AnimatedCrowdEdgesTest, boundsFollowEachNewPose)
     crowd->update(0.2);
     const osg::Vec3d there = crowd->jointToCrowd(instance, "tip").value().getTrans();
     EXPECT_LE((osg::Vec3d(crowd->getBound().center()) - there).length(), crowd->getBound().radius());
+}
+
+// Cull reads copies of the properties of instances.
+TEST(AnimatedCrowdEdgesTest, theMembersOfCellsFollowTheirInstances)
+{
+    const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*makeTestCharacter());
+    const auto set = crowd->getSharedAnimationSet();
+    std::vector<AnimatedCrowd::Instance> added;
+    for (int i = 0; i < 40; ++i)
+    {
+        AnimationController controller = shiftingAt(set, 0.01 * i);
+        controller.setSpeed(0.5 + 0.1 * i);
+        if (i % 5 == 0) controller.pause();
+        added.push_back(crowd->add(osg::Matrixd::translate(3.0 * i, 0, 0), controller).value());
+    }
+    const auto check = [&](std::size_t controlled)
+    {
+        const CrowdInstances& instances = crowd->getInstances();
+        SeenMembers seen;
+        instances.findSeen({}, seen);
+        EXPECT_EQ(seen.size(), instances.size());
+        for (const SeenMembers::Span& span : seen.spans())
+            for (const CrowdMember* member = span.begin; member != span.end; ++member)
+            {
+                EXPECT_EQ(member->sphere, instances.sphere(member->index));
+                EXPECT_EQ(member->scale, instances.scale(member->index));
+                if (member->clip == CrowdMember::controlled) --controlled;
+                if (member->clip == CrowdMember::controlled) continue;
+                const AnimationController copy = instances.controllerCopy(member->index);
+                EXPECT_EQ(member->clip, copy.clip());
+                const double unrolled = member->offset + member->speed * instances.clock();
+                const double duration = set->clips()[static_cast<std::size_t>(member->clip)].duration();
+                EXPECT_NEAR(CrowdPlayback::loopTime(unrolled, duration), copy.time(), 1e-9);
+            }
+        EXPECT_EQ(controlled, 0u);
+    };
+    crowd->update(0.0);
+    crowd->update(100.3);
+    check(0);
+    for (std::size_t i = 0; i < 6; ++i)
+        EXPECT_TRUE(crowd->getController(added[i])->crossfade("shift", 0.5));
+    check(6);
+    EXPECT_TRUE(crowd->setPlacement(added[3], osg::Matrixd::scale(2, 2, 2) * osg::Matrixd::translate(500, 7, 0)));
+    EXPECT_TRUE(crowd->remove(added[7]));
+    EXPECT_TRUE(crowd->remove(added[20]));
+    check(6);
+    crowd->update(102.0);
+    crowd->update(102.5);
+    check(0);
 }
 
 TEST(AnimatedCrowdEdgesTest, timesThatAreNoNumbersMoveNobody)

@@ -4,6 +4,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
 
 namespace osgGpuAnimation
@@ -77,7 +78,22 @@ TEST_P(CrowdCellsTest, findWhatATestOfEachSphereFinds)
 {
     CrowdCells cells;
     std::vector<glm::vec4> spheres;
+    SeenMembers members;
     std::vector<std::uint32_t> found;
+    const auto find = [&](const CrowdCells& in, const std::vector<glm::vec4>& sides)
+    {
+        in.findSeen(sides, members);
+        members.findIndices(spheres.size(), found);
+        for (const SeenMembers::Span& span : members.spans())
+            for (const CrowdMember* member = span.begin; member != span.end; ++member)
+            {
+                EXPECT_EQ(member->sphere, spheres[member->index]);
+                for (int axis = 0; axis < 3; ++axis)
+                    EXPECT_LE(std::abs(member->sphere[axis] - span.centre[axis]),
+                              span.half[axis] + 1e-6f * std::abs(span.centre[axis]));
+                EXPECT_LE(member->sphere.w, span.radius);
+            }
+    };
     std::size_t seen = 0;
     for (int round = 0; round < 40; ++round)
     {
@@ -100,7 +116,7 @@ TEST_P(CrowdCellsTest, findWhatATestOfEachSphereFinds)
                 spheres[index] = sphere();
             else // mostly within its cell
                 spheres[index] += glm::vec4(number(-2.0f, 2.0f), number(-2.0f, 2.0f), 0.0f, 0.0f) * GetParam().radius;
-            cells.move(index, spheres[index]);
+            cells.set(index, spheres[index]);
         }
         const CrowdCells copy(cells);
         for (const std::vector<glm::vec4>& sides : {planes(), std::vector<glm::vec4>()})
@@ -108,9 +124,9 @@ TEST_P(CrowdCellsTest, findWhatATestOfEachSphereFinds)
             std::vector<std::uint32_t> expected;
             for (std::size_t index = 0; index < spheres.size(); ++index)
                 if (reaches(spheres[index], sides)) expected.push_back(static_cast<std::uint32_t>(index));
-            cells.findSeen(sides, found);
+            find(cells, sides);
             EXPECT_EQ(found, expected) << round;
-            copy.findSeen(sides, found);
+            find(copy, sides);
             EXPECT_EQ(found, expected) << round << ", copy";
             seen += sides.empty() ? 0 : expected.size();
         }
@@ -123,7 +139,7 @@ TEST_P(CrowdCellsTest, findWhatATestOfEachSphereFinds)
         cells.remove(spheres.size() - 1);
         spheres.pop_back();
     }
-    cells.findSeen({}, found);
+    find(cells, {});
     EXPECT_TRUE(found.empty());
     EXPECT_EQ(cells.cellCount(), 0u);
 }

@@ -470,19 +470,16 @@ void AnimatedCrowd::cull(osgUtil::CullVisitor& visitor)
 {
     const DepthPass pass(visitor);
     CrowdView view(visitor);
-    static thread_local std::vector<std::uint32_t> seen; // keeps its storage from cull to cull
+    static thread_local SeenMembers seen; // keeps its storage from cull to cull
     _instances->findSeen(isCullingActive() ? view.planes() : std::vector<glm::vec4>(), seen);
     std::vector<DrawState> draws;
     LodRange lods;
-    if (!seen.empty() && getAnimationSet().paletteSize() > 0)
+    if (seen.size() > 0 && getAnimationSet().paletteSize() > 0)
     {
-        view.look(*_instances, seen);
+        view.look(seen);
         if (_pixelError > 0.0f) lods = LodRange(*this, getAnimationSet(), _characterLevels);
         const LodScale scale(visitor, PoseStage::lodView(visitor), _pixelError, lods);
-        PoseFrame& frame = PoseStage::frame(visitor);
-        if (_sharedPoses && scale.isOn()) draws = _sharedPoses->submit(frame, *_instances, scale, seen);
-        for (const DrawState& draw : submitSeen(frame, *_instances, CrowdLod(*_instances, scale), seen))
-            draws.push_back(draw);
+        draws = submitSeen(PoseStage::frame(visitor), *_instances, scale, _sharedPoses.get(), seen);
     }
     for (const DrawState& draw : draws)
     {

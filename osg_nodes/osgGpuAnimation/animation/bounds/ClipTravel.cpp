@@ -117,7 +117,8 @@ ClipTravel::ClipTravel(const AnimationSet& set, std::size_t clip, const EntryBox
         sample.keyframe = first + static_cast<std::uint32_t>(keyframe);
         sample.alpha = static_cast<float>(alpha);
         travel += arcPerChord * corners.moveTo(sample);
-        _samples.push_back({static_cast<float>(time), static_cast<float>(travel), sample.keyframe, sample.alpha});
+        _samples.push_back(
+            {sample.alpha, sample.keyframe, {static_cast<float>(time), static_cast<float>(travel), 0.0f}});
     };
     add(moving.duration() > 0.0 ? 0 : moving.locate(0.0).keyframe, 0.0, times.front());
     if (!(moving.duration() > 0.0)) return;
@@ -132,40 +133,60 @@ ClipTravel::ClipTravel(const AnimationSet& set, std::size_t clip, const EntryBox
         }
         add(keyframe + 1, 0.0, times[keyframe + 1]);
     }
-    const std::size_t parts = 2 * _samples.size();
     for (std::size_t i = 0; i + 1 < _samples.size(); ++i)
-        // Times that nearly coincide count as a jump.
-        if (const float speed =
-                (_samples[i + 1].travel - _samples[i].travel) / (_samples[i + 1].time - _samples[i].time);
-            std::isfinite(speed))
-            _samples[i].speed = speed;
-    _partsPerSecond = static_cast<float>(static_cast<double>(parts) / moving.duration());
-    std::uint32_t last = 0;
-    for (std::size_t part = 0; part <= parts; ++part)
     {
-        while (last + 1 < _samples.size() && _samples[last + 1].time * _partsPerSecond <= static_cast<float>(part))
-            ++last;
-        _firstOf.push_back(last);
+        Piece& piece = _samples[i].piece;
+        const Piece& next = _samples[i + 1].piece;
+        // Times that nearly coincide count as a jump.
+        if (const float speed = (next.travel - piece.travel) / (next.time - piece.time); std::isfinite(speed))
+            piece.speed = speed;
     }
+    divide(moving.duration());
+}
+
+/// Makes the parts.
+void ClipTravel::divide(double duration)
+{
+    _partsPerSecond = static_cast<float>(static_cast<double>(_samples.size()) / duration);
+    _lastPart = static_cast<float>(_samples.size() - 1);
+    const auto partOf = [&](const Sample& sample)
+    { return static_cast<std::size_t>(std::min(std::max(sample.piece.time * _partsPerSecond, 0.0f), _lastPart)); };
+    std::size_t next = 0; // the first sample in a later part
+    for (std::size_t part = 0; part < _samples.size(); ++part)
+    {
+        const std::size_t inside = next;
+        while (next < _samples.size() && partOf(_samples[next]) == part)
+            ++next;
+        const std::size_t first = std::max<std::size_t>(inside, 1) - 1; // of the part's start
+        const std::size_t second = std::min(first + 1, _samples.size() - 1);
+        _parts.push_back({{_samples[first].piece, _samples[second].piece}, next - first > 2});
+    }
+}
+
+float ClipTravel::search(float time) const
+{
+    const auto isBefore = [](float wanted, const Sample& after) { return wanted < after.piece.time; };
+    return std::upper_bound(_samples.begin() + 1, _samples.end(), time, isBefore)[-1].piece.at(time);
 }
 
 BlendSample ClipTravel::sampleAt(float travel) const
 {
     if (_samples.empty()) return {};
-    const auto after = std::lower_bound(_samples.begin(), _samples.end(), travel,
-                                        [](const Sample& sample, float wanted) { return sample.travel < wanted; });
+    const auto after =
+        std::lower_bound(_samples.begin(), _samples.end(), travel,
+                         [](const Sample& sample, float wanted) { return sample.piece.travel < wanted; });
     if (after == _samples.end() || after == _samples.begin())
     {
         const Sample& end = after == _samples.begin() ? _samples.front() : _samples.back();
         return {end.keyframe, end.alpha, 1.0f, _control};
     }
     const Sample& before = after[-1];
-    const bool isJump = before.time == after->time;
-    if (isJump && after->travel - travel < travel - before.travel)
+    const bool isJump = before.piece.time == after->piece.time;
+    if (isJump && after->piece.travel - travel < travel - before.piece.travel)
         return {after->keyframe, after->alpha, 1.0f, _control};
     if (isJump) return {before.keyframe, before.alpha, 1.0f, _control};
     const float alphaAfter = after->keyframe == before.keyframe ? after->alpha : 1.0f;
-    const float share = (travel - before.travel) / (after->travel - before.travel);
+    const float share = (travel - before.piece.travel) / (after->piece.travel - before.piece.travel);
     return {before.keyframe, before.alpha + share * (alphaAfter - before.alpha), 1.0f, _control};
 }
 

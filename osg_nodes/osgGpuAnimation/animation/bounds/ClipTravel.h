@@ -5,6 +5,7 @@
 #include <osgGpuAnimation/animation/math/Box.h>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -27,39 +28,62 @@ public:
 
     float length() const
     {
-        return _samples.empty() ? 0.0f : _samples.back().travel;
+        return _samples.empty() ? 0.0f : _samples.back().piece.travel;
     } ///< of the whole clip, in model units
     /// The travel at a time in seconds, in [0, length()].
     float at(float time) const
     {
-        if (!(length() > 0.0f) || !(time > 0.0f)) return 0.0f;
-        const auto part =
-            static_cast<std::size_t>(std::min(time * _partsPerSecond, static_cast<float>(_firstOf.size() - 2)));
-        const Sample *sample = &_samples[_firstOf[part]], *last = &_samples[_firstOf[part + 1]];
-        const auto isBefore = [](float wanted, const Sample& after) { return wanted < after.time; };
-        if (last - sample > 1)
-            sample = std::upper_bound(sample + 1, last + 1, time, isBefore) - 1;
-        else // without a branch, which no processor could predict
-            sample += static_cast<int>(last != sample) & static_cast<int>(time >= last->time);
-        return sample->travel + std::max(time - sample->time, 0.0f) * sample->speed;
+        if (_parts.empty() || !(time > 0.0f)) return 0.0f;
+        const Part& part = partAt(time);
+        if (part.isSearched) return search(time);
+        // Without a branch, which no processor could predict.
+        const Piece& piece = part.pieces[static_cast<std::size_t>(time >= part.pieces[1].time)];
+        return piece.at(time);
+    }
+    /// Starts to load what at() reads. time: in [0, duration).
+    void prefetch(float time) const
+    {
+        if (!_parts.empty()) __builtin_prefetch(&partAt(time));
     }
     /// The pose with that travel; in a jump of the clip the nearer one of the poses before and after.
     BlendSample sampleAt(float travel) const;
 
 private:
+    /// Times at which the fastest vertex has one speed.
+    struct Piece
+    {
+        float time; ///< of its start
+        float travel;
+        float speed; ///< travel per second; 0: a jump or the end
+
+        float at(float now) const { return travel + std::max(now - time, 0.0f) * speed; }
+    };
     /// A pose of the clip.
     struct Sample
     {
-        float time;
-        float travel;
-        std::uint32_t keyframe; ///< of the set
         float alpha;            ///< to the next keyframe
-        float speed = 0.0f;     ///< travel per second to the next sample; 0: a jump or the end
+        std::uint32_t keyframe; ///< of the set
+        Piece piece;            ///< from here to the next sample
+    };
+    /// Equal parts of the duration: a look-up reads one place of memory.
+    struct Part
+    {
+        std::array<Piece, 2> pieces; ///< of its start, and the next one
+        bool isSearched;             ///< there are more
     };
 
-    std::vector<Sample> _samples;        ///< ascending, the same time twice at a jump
-    std::vector<std::uint32_t> _firstOf; ///< by part of the duration: the last sample at or before its start
+    /// time: at least 0.
+    const Part& partAt(float time) const
+    {
+        return _parts[static_cast<std::size_t>(static_cast<std::int32_t>(std::min(time * _partsPerSecond, _lastPart)))];
+    }
+    void divide(double duration);
+    float search(float time) const;
+
+    std::vector<Sample> _samples; ///< ascending, the same time twice at a jump
+    std::vector<Part> _parts;     ///< as many as samples
     float _partsPerSecond = 0.0f;
+    float _lastPart = 0.0f;
     std::uint32_t _control = 0; ///< see BlendSample
 };
 

@@ -3,6 +3,7 @@
 
 #include <osgGpuAnimation/nodes/frame/PoseStage.h>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -90,22 +91,38 @@ std::vector<glm::vec4> CrowdView::planes() const
     return planes;
 }
 
-void CrowdView::look(const CrowdInstances& instances, const std::vector<std::uint32_t>& indices)
+void CrowdView::look(const SeenMembers& seen)
 {
     const osg::Matrix& toEye = *_visitor.getModelViewMatrix();
     const glm::vec4 depthOf(-toEye(0, 2), -toEye(1, 2), -toEye(2, 2), -toEye(3, 2));
     const float scale = glm::length(glm::vec3(depthOf));
     float nearest = 1e30f, farthest = -1e30f;
     glm::vec4 nearestSphere(0.0f, 0.0f, 0.0f, -1.0f), farthestSphere = nearestSphere;
-    for (const std::uint32_t index : indices)
+    const auto lookAt = [&](const SeenMembers::Span& span)
     {
-        const glm::vec4& sphere = instances.sphere(index);
-        const float depth = glm::dot(depthOf, glm::vec4(glm::vec3(sphere), 1.0f));
-        const float reach = sphere.w * scale;
-        // Instances behind the eye do not affect the near plane.
-        if (depth + reach < 0.0f) continue;
-        if (depth - reach < nearest) nearest = depth - reach, nearestSphere = sphere;
-        if (depth + reach > farthest) farthest = depth + reach, farthestSphere = sphere;
+        for (const CrowdMember* member = span.begin; member != span.end; ++member)
+        {
+            const glm::vec4& sphere = member->sphere;
+            const float depth = glm::dot(depthOf, glm::vec4(glm::vec3(sphere), 1.0f));
+            const float reach = sphere.w * scale;
+            // Instances behind the eye do not affect the near plane.
+            if (depth + reach < 0.0f) continue;
+            if (depth - reach < nearest) nearest = depth - reach, nearestSphere = sphere;
+            if (depth + reach > farthest) farthest = depth + reach, farthestSphere = sphere;
+        }
+    };
+    const auto middleOf = [&](const SeenMembers::Span& span)
+    { return glm::dot(depthOf, glm::vec4(span.centre, 1.0f)); };
+    const auto isNearer = [&](const SeenMembers::Span& a, const SeenMembers::Span& b)
+    { return middleOf(a) < middleOf(b); };
+    // The other cells are mostly between the first and the last one.
+    const auto [first, last] = std::minmax_element(seen.spans().begin(), seen.spans().end(), isNearer);
+    lookAt(*first);
+    lookAt(*last);
+    for (const SeenMembers::Span& span : seen.spans())
+    {
+        const float half = glm::dot(glm::abs(glm::vec3(depthOf)), span.half) + span.radius * scale;
+        if (middleOf(span) - half < nearest || middleOf(span) + half > farthest) lookAt(span);
     }
     if (nearestSphere.w < 0.0f) return;
     _depth = 0.5f * (nearest + farthest);

@@ -43,8 +43,8 @@ public:
 
     /// The planes of the view volume and of small feature culling; an instance is visible if it reaches n · p + d >= 0.
     std::vector<glm::vec4> planes() const;
-    /// Updates the camera's near and far planes. indices: the visible instances, at least one.
-    void look(const CrowdInstances& instances, const std::vector<std::uint32_t>& indices);
+    /// Updates the camera's near and far planes. seen: at least one.
+    void look(const SeenMembers& seen);
     /// Adds the mesh to the visitor's render bin at the mean depth of look() if its node mask allows it.
     void draw(SkinnedGeometry& mesh, const PaletteBinding& binding);
 

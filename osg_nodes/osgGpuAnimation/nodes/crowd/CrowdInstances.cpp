@@ -19,6 +19,13 @@ CrowdPlayback::CrowdPlayback(const AnimationController& controller, double clock
     if (!_isPaused) _offset -= _speed * clock;
 }
 
+void CrowdPlayback::describe(CrowdMember& member) const
+{
+    member.clip = _clip;
+    member.offset = _offset;
+    member.speed = _isPaused ? 0.0 : _speed;
+}
+
 double CrowdPlayback::time(const AnimationSet& set, double clock) const
 {
     return _clip < 0 ? 0.0 : time(set.clips()[static_cast<std::size_t>(_clip)].duration(), clock);
@@ -123,7 +130,7 @@ void CrowdInstances::setClipBounds(const std::vector<Box>& clipBounds, std::shar
     {
         _posedBoxes[index].reset();
         updatePosedBox(index);
-        updateSphere(index);
+        updateMember(index);
     }
 }
 
@@ -136,9 +143,15 @@ const Box& CrowdInstances::boxOf(std::size_t index) const
     return isPlain ? _clipBounds[bounds] : _allBounds;
 }
 
-void CrowdInstances::updateSphere(std::size_t index)
+CrowdMember CrowdInstances::memberOf(std::size_t index) const
 {
-    _cells.move(index, sphereAround(boxOf(index), _rootMatrices[index]));
+    CrowdMember member(sphereAround(boxOf(index), _rootMatrices[index]));
+    member.scale = _scales[index];
+    if (_controllers[index])
+        member.clip = CrowdMember::controlled;
+    else
+        _playbacks[index].describe(member);
+    return member;
 }
 
 /// True if the instance has another box than before because of its poses.
@@ -196,7 +209,7 @@ CrowdInstances::Handle CrowdInstances::add(const AffineMatrix& rootMatrix, const
     _posedBoxes.emplace_back();
     _handles.push_back(newHandle(index));
     updatePosedBox(index);
-    _cells.add(sphereAround(boxOf(index), rootMatrix));
+    _cells.add(memberOf(index));
     _isControlledKnown = _isControlledKnown && isPlain;
     listenTo(index);
     return _handles[index];
@@ -227,7 +240,7 @@ void CrowdInstances::move(std::size_t index, const AffineMatrix& rootMatrix, con
     _rootMatrices.set(index, rootMatrix);
     _positions[index] = position;
     _scales[index] = largestScale(rootMatrix);
-    updateSphere(index);
+    updateMember(index);
 }
 
 void CrowdInstances::setTint(std::size_t index, std::uint32_t tint)
@@ -251,7 +264,7 @@ AnimationController& CrowdInstances::controller(std::size_t index)
     {
         _controllers[index] = std::make_unique<AnimationController>(_playbacks[index].controller(_set, _clock));
         _isControlledKnown = false;
-        updateSphere(index);
+        updateMember(index);
     }
     return *_controllers[index];
 }
@@ -323,14 +336,14 @@ bool CrowdInstances::advance(double seconds, PendingEvents& outEvents)
         controller->advance(seconds, outEvents);
         if (updatePosedBox(index))
         {
-            updateSphere(index);
+            updateMember(index);
             haveSpheresChanged = true;
         }
         if (!controller->isPlainLoop() || _machines.count(_handles[index]) > 0) continue;
         _playbacks[index] = CrowdPlayback(*controller, _clock);
         controller.reset();
         _isControlledKnown = false;
-        updateSphere(index);
+        updateMember(index);
         haveSpheresChanged = true;
     }
     return haveSpheresChanged;

@@ -56,14 +56,22 @@ public:
     /// Clip time in seconds, in [0, duration). duration: of the clip.
     double time(double duration, double clock) const
     {
-        if (!(duration > 0.0)) return 0.0;
-        const double unrolled = _isPaused ? _offset : _offset + _speed * clock;
-        const double time = unrolled - std::floor(unrolled / duration) * duration;
-        // Rounding of the quotient may cross an integer.
+        return loopTime(_isPaused ? _offset : _offset + _speed * clock, duration);
+    }
+    /// The time of a loop in seconds, in [0, duration). unrolled: the clip seconds of all its rounds.
+    static double loopTime(double unrolled, double duration)
+    {
+        // Rounds to the nearest integer, without a call of the library: beyond 2^51 loops the time is 0.
+        constexpr double toInteger = 1.5 * (std::uint64_t(1) << 52);
+        const double loops = (unrolled / duration + toInteger) - toInteger;
+        double time = unrolled - loops * duration;
+        time += time < 0.0 ? duration : 0.0;
         return time >= 0.0 && time < duration ? time : 0.0;
     }
     double time(const AnimationSet& set, double clock) const; ///< The same.
     BlendSample sample(const AnimationSet& set, double clock) const { return set.sampleAt(_clip, time(set, clock)); }
+    /// Sets the clip and the times of a member.
+    void describe(CrowdMember& member) const;
     /// A controller in the same state.
     AnimationController controller(const std::shared_ptr<const AnimationSet>& set, double clock) const;
 
@@ -126,15 +134,9 @@ public:
     {
         return _controllers[index] ? _controllers[index]->takeRootMotion() : RootMotion();
     }
-    bool hasController(std::size_t index) const { return _controllers[index] != nullptr; }
-    /// True if no instance has a controller; it may be false after changes, until the next advance().
-    bool isWithoutControllers() const { return _isControlledKnown && _controlled.empty(); }
     /// The number of instances with a controller.
     std::size_t controllerCount() const;
-    /// Of an instance without a controller: -1: the rest pose.
-    int clip(std::size_t index) const { return _playbacks[index].clip(); }
-    /// Of an instance without a controller: clip time in seconds, in [0, duration). duration: of its clip.
-    double time(std::size_t index, double duration) const { return _playbacks[index].time(duration, _clock); }
+    double clock() const { return _clock; } ///< seconds; see CrowdMember
     /// Identifies this object and no copy.
     const std::shared_ptr<const void>& identity() const { return _identity; }
     /// Snapshots for frames, by index. Tints: empty if all are white.
@@ -155,10 +157,10 @@ public:
     /// Advances all instances and appends their events. True if spheres have changed.
     bool advance(double seconds, PendingEvents& outEvents);
 
-    /// The indices, ascending, of the instances whose sphere reaches n · p + d >= 0 of every plane.
-    void findSeen(const std::vector<glm::vec4>& planes, std::vector<std::uint32_t>& outIndices) const
+    /// See CrowdCells.
+    void findSeen(const std::vector<glm::vec4>& planes, SeenMembers& outSeen) const
     {
-        _cells.findSeen(planes, outIndices);
+        _cells.findSeen(planes, outSeen);
     }
     /// Adds the instances to the batch, in the order of the indices.
     void addTo(PoseBatch& batch, const std::vector<std::uint32_t>& indices) const;
@@ -173,7 +175,8 @@ private:
     };
 
     const Box& boxOf(std::size_t index) const;
-    void updateSphere(std::size_t index);
+    CrowdMember memberOf(std::size_t index) const;
+    void updateMember(std::size_t index) { _cells.set(index, memberOf(index)); }
     bool updatePosedBox(std::size_t index);
     void listenTo(std::size_t index);
     Handle newHandle(std::size_t index);

@@ -2,6 +2,7 @@
 #include <osgGpuAnimation/nodes/crowd/SharedPoses.h>
 
 #include <osgGpuAnimation/gpu/PosePipeline.h>
+#include <osgGpuAnimation/nodes/crowd/CrowdBatches.h>
 #include <osgGpuAnimation/nodes/mesh/PaletteEntryBounds.h>
 
 #include <layout.glsl>
@@ -14,7 +15,6 @@
 #include <cstring>
 #include <limits>
 #include <map>
-#include <optional>
 
 namespace osgGpuAnimation
 {
@@ -56,106 +56,213 @@ float leastErrorOf(std::size_t band)
 class SharedPoses::Collection
 {
 public:
-    /// mostPoses: of a batch.
-    Collection(const Meshes& meshes, const CrowdInstances& instances, const LodScale& scale, PoseFrame& frame,
-               std::size_t mostPoses)
-        : _meshes(meshes), _instances(instances), _scale(scale), _frame(frame), _mostPoses(mostPoses),
-          _placeOfClip(meshes.clips.size() + 1, none), _poses(posesOfThread()), _drawn(drawnOfThread())
+    Collection(const Meshes& meshes, const CrowdInstances& instances, const LodScale& scale)
+        : _meshes(meshes), _scale(scale), _clock(instances.clock()), _storage(storageOfThread())
     {
-        _poses.clear();
-        for (auto& [level, drawn] : _drawn)
-            drawn.clear();
+        _storage.clear(meshes.clips.size());
     }
 
-    std::size_t batchCount() const { return _batches.size(); }
-    std::unique_ptr<PoseBatch> takeBatch(std::size_t batch) { return std::move(_batches[batch]); }
-
-    /// Takes the instances without a controller out of the list, except those that need a pose of their own.
-    void takeFrom(std::vector<std::uint32_t>& seen)
+    /// Takes the members that share poses. outOthers: the indices of the rest.
+    void take(const SeenMembers& seen, std::vector<std::uint32_t>& outOthers)
     {
-        const bool arePlain = _instances.isWithoutControllers();
-        std::size_t left = 0;
-        for (const std::uint32_t index : seen)
-            if ((!arePlain && _instances.hasController(index)) || !add(index)) seen[left++] = index;
-        seen.resize(left);
+        outOthers.clear();
+        for (const SeenMembers::Span& span : seen.spans())
+            for (const CrowdMember* begin = span.begin; begin != span.end;)
+            {
+                const std::ptrdiff_t count = std::min<std::ptrdiff_t>(span.end - begin, blockSize);
+                const std::size_t sharing = chooseSharing(begin, begin + count, outOthers);
+                findTravels(sharing);
+                addSteps(sharing);
+                begin += count;
+            }
     }
 
-    /// Writes the list of a batch, level by level. function(level, first, count)
+    /// Numbers the steps that instances show and adds their poses to batches. function(): an empty batch. mostPoses: of
+    /// a batch.
     template <typename Function>
-    void write(std::size_t batch, std::vector<PlacedInstances::Drawn>& out, Function function) const
+    std::vector<std::unique_ptr<PoseBatch>> makeBatches(std::size_t mostPoses, Function function)
     {
-        std::size_t count = 0;
-        for (const auto& [level, drawn] : _drawn)
-            count += drawn.size();
-        out.reserve(count / _batches.size());
-        const auto before = static_cast<std::uint32_t>(batch * _mostPoses); // poses of the batches before
-        for (const auto& [level, drawn] : _drawn)
+        std::vector<std::unique_ptr<PoseBatch>> batches;
+        std::uint32_t number = 0;
+        for (std::size_t word = 0; word < _storage.shown.size(); ++word)
+        {
+            ShownSteps& shown = _storage.shown[word];
+            shown.before = number;
+            const BlendSample* poses = nullptr;
+            for (std::uint64_t bits = shown.bits; bits != 0; bits &= bits - 1, ++number)
+            {
+                const std::size_t place = 64 * word + static_cast<std::size_t>(__builtin_ctzll(bits));
+                if (!poses) poses = _meshes.clips[_storage.clips[place / stepsOfClip]].poses.data();
+                if (number % mostPoses == 0) batches.push_back(function());
+                batches.back()->addSample(poses[place % stepsOfClip]);
+            }
+        }
+        return batches;
+    }
+
+    /// Writes the list of a batch, level by level, with the poses [first, first + count) of all batches.
+    /// function(level, first, count): of a level in the list.
+    template <typename Function>
+    void write(std::size_t firstPose, std::size_t poseCount, std::vector<PlacedInstances::Drawn>& out,
+               Function function) const
+    {
+        std::size_t most = 0;
+        for (const auto& [level, shown] : _storage.shownOfLevel)
+            most += shown.size();
+        out.reserve(most);
+        for (const auto& [level, shown] : _storage.shownOfLevel)
         {
             const std::size_t first = out.size();
-            for (const auto& [number, instance] : drawn)
-                if (const std::uint32_t pose = number - before; pose < _mostPoses) out.push_back({pose, instance});
+            out.resize(first + shown.size());
+            PlacedInstances::Drawn* end = out.data() + first;
+            for (const PlacedInstances::Drawn& instance : shown)
+            {
+                const std::uint32_t place = instance.pose;
+                const std::uint32_t pose =
+                    _storage.shown[place / 64].numberOf(place % 64) - static_cast<std::uint32_t>(firstPose);
+                *end = {pose, instance.instance};
+                end += pose < poseCount;
+            }
+            out.resize(static_cast<std::size_t>(end - out.data()));
             if (out.size() > first) function(level, first, out.size() - first);
         }
     }
 
 private:
     static constexpr std::uint32_t none = ~std::uint32_t(0);
+    static constexpr std::size_t stepsOfClip = (mostSteps / 64 + 1) * 64; ///< whole words of bits
+    using Shown = std::vector<PlacedInstances::Drawn>;                    ///< poses are places: clips and their steps
     struct Band
     {
-        std::vector<PlacedInstances::Drawn>* drawn; ///< poses are numbered through all batches
-        float ofLevel;                              ///< the error of the level of detail
+        Shown* shown;  ///< null: the band is new
+        float ofLevel; ///< the error of the level of detail
     };
-    using DrawnByLevel = std::map<int, std::vector<PlacedInstances::Drawn>>;
+    /// The shown ones of 64 steps, and the number of poses before them.
+    struct ShownSteps
+    {
+        std::uint64_t bits;
+        std::uint32_t before;
 
-    static std::vector<std::uint32_t>& posesOfThread()
-    {
-        static thread_local std::vector<std::uint32_t> poses;
-        return poses;
-    }
-    static DrawnByLevel& drawnOfThread()
-    {
-        static thread_local DrawnByLevel drawn;
-        return drawn;
-    }
-
-    /// False: the instance needs a pose of its own.
-    bool add(std::uint32_t index)
-    {
-        const glm::vec4& sphere = _instances.sphere(index);
-        const float error = _scale.allowedError(glm::vec3(sphere), sphere.w, _instances.scale(index));
-        const Band& band = bandFor(error);
-        const int clip = _instances.clip(index);
-        std::uint32_t step = 0;
-        if (clip >= 0 && _meshes.clips[static_cast<std::size_t>(clip)].stepsPerTravel > 0.0f)
+        /// The number of the pose of a shown step.
+        std::uint32_t numberOf(std::uint32_t step) const
         {
-            const SharedClip& shared = _meshes.clips[static_cast<std::size_t>(clip)];
-            const float reach = (error - band.ofLevel) * shared.stepsPerTravel;
-            if (!(reach >= 0.5f)) return false;
-            step = mostSteps / 2;
-            if (reach < static_cast<float>(mostSteps / 2)) // else all steps reach the middle
-            {
-                const float time = static_cast<float>(_instances.time(index, shared.duration));
-                const float at = shared.travel.at(time) * shared.stepsPerTravel;
-                // Without branches on the phase, which no processor could predict.
-                const int begin = static_cast<int>(at - reach);
-                const int first = std::max(begin + static_cast<int>(static_cast<float>(begin) < at - reach), 0);
-                const int last = std::min(static_cast<int>(at + reach), mostSteps);
-                step = roundest(static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last));
-            }
+            // Counts bits: a table of numbers would not fit the caches, and not every processor has an instruction.
+            std::uint64_t count = bits & ((std::uint64_t(1) << step) - 1);
+            count -= count >> 1 & 0x5555555555555555u;
+            count = (count & 0x3333333333333333u) + (count >> 2 & 0x3333333333333333u);
+            count = (count + (count >> 4)) & 0x0F0F0F0F0F0F0F0Fu;
+            return before + static_cast<std::uint32_t>(count * 0x0101010101010101u >> 56);
         }
-        const std::size_t place = placeOf(static_cast<std::size_t>(clip + 1)) + step;
-        if (_poses[place] == none) _poses[place] = addPose(static_cast<std::size_t>(clip + 1), step);
-        PlacedInstances::Drawn& drawn = band.drawn->emplace_back();
-        drawn.pose = _poses[place];
-        drawn.instance = index;
-        return true;
+    };
+    static constexpr std::ptrdiff_t blockSize = 128; ///< members
+    /// A member that shares its pose.
+    struct Chosen
+    {
+        const CrowdMember* member;
+        const SharedClip* shared;
+        Shown* shown;
+        std::uint32_t firstPlace; ///< of the steps of its clip
+        float reach;              ///< in steps, in [0, mostSteps]
+    };
+    /// Kept from cull to cull.
+    struct Storage
+    {
+        std::array<Chosen, blockSize> chosen;
+        std::array<float, blockSize> travels;   ///< of the chosen ones, in steps
+        std::vector<std::uint32_t> firstOfClip; ///< the place of its first step; none: no instance plays it
+        std::vector<std::uint32_t> clips;       ///< those that instances play, in the order of their places
+        std::vector<ShownSteps> shown;          ///< by place / 64
+        std::map<int, Shown> shownOfLevel;
+        std::array<Band, bandCount> bands;
+
+        void clear(std::size_t clipCount)
+        {
+            firstOfClip.assign(clipCount, none);
+            clips.clear();
+            shown.clear();
+            for (auto& [level, drawn] : shownOfLevel)
+                drawn.clear();
+            bands.fill({nullptr, 0.0f});
+        }
+    };
+
+    /// Not inline: loops would look up the thread's address again and again.
+    [[gnu::noinline]] static Storage& storageOfThread()
+    {
+        static thread_local Storage storage;
+        return storage;
+    }
+
+    // Members pass several short loops in blocks: a processor overlaps the members of a short loop.
+
+    /// Chooses the members that share poses. Returns their number.
+    std::size_t chooseSharing(const CrowdMember* begin, const CrowdMember* end, std::vector<std::uint32_t>& outOthers)
+    {
+        std::array<float, blockSize> errors;
+        for (const CrowdMember* member = begin; member != end; ++member)
+            errors[member - begin] = _scale.allowedError(glm::vec3(member->sphere), member->sphere.w, member->scale);
+        std::size_t sharing = 0, others = outOthers.size();
+        outOthers.resize(others + static_cast<std::size_t>(end - begin));
+        for (const CrowdMember* member = begin; member != end; ++member)
+        {
+            const float error = errors[member - begin];
+            const Band& band = bandFor(error);
+            const auto clip = static_cast<std::size_t>(member->clip - CrowdMember::controlled);
+            const SharedClip& shared = _meshes.clips[clip];
+            const float reach = (error - band.ofLevel) * shared.stepsPerTravel;
+            const bool shares = reach >= shared.leastReach;
+            // Without a branch that no processor could predict.
+            outOthers[others] = member->index;
+            _storage.chosen[sharing] = {member, &shared, band.shown, firstOf(clip),
+                                        std::min(std::max(reach, 0.0f), static_cast<float>(mostSteps))};
+            others += !shares;
+            sharing += shares;
+        }
+        outOthers.resize(others);
+        return sharing;
+    }
+
+    /// Finds the travels of the chosen members, in steps.
+    void findTravels(std::size_t count)
+    {
+        std::array<float, blockSize> times;
+        for (std::size_t i = 0; i < count; ++i)
+        {
+            const Chosen& chosen = _storage.chosen[i];
+            const double unrolled = chosen.member->offset + chosen.member->speed * _clock;
+            times[i] = static_cast<float>(CrowdPlayback::loopTime(unrolled, chosen.shared->duration));
+            chosen.shared->travel.prefetch(times[i]);
+        }
+        for (std::size_t i = 0; i < count; ++i)
+        {
+            const SharedClip& shared = *_storage.chosen[i].shared;
+            _storage.travels[i] = shared.travel.at(times[i]) * shared.stepsPerTravel;
+        }
+    }
+
+    /// Adds the chosen members with the steps that they show.
+    void addSteps(std::size_t count)
+    {
+        for (std::size_t i = 0; i < count; ++i)
+        {
+            const Chosen& chosen = _storage.chosen[i];
+            const float travel = _storage.travels[i];
+            const int begin = static_cast<int>(travel - chosen.reach);
+            const int first = std::max(begin + static_cast<int>(static_cast<float>(begin) < travel - chosen.reach), 0);
+            const int last = std::min(static_cast<int>(travel + chosen.reach), mostSteps);
+            const std::uint32_t step = roundest(static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last));
+            // From there on all steps reach the middle.
+            const bool reachesMiddle = chosen.reach >= static_cast<float>(mostSteps / 2);
+            const std::uint32_t place = chosen.firstPlace + (reachesMiddle ? mostSteps / 2 : step);
+            _storage.shown[place / 64].bits |= std::uint64_t(1) << place % 64;
+            chosen.shown->push_back({place, chosen.member->index});
+        }
     }
 
     /// The number in [first, last] that ends in the most zeros in binary.
     static std::uint32_t roundest(std::uint32_t first, std::uint32_t last)
     {
-        if (first == 0) return 0;
-        std::uint32_t mask = (first - 1) ^ last; // all bits from the highest one that differs
+        std::uint32_t mask = (first - 1) ^ last; // all bits from the highest one that differs; for 0 the result is 0
         for (const int shift : {1, 2, 4, 8})
             mask |= mask >> shift;
         return last & ~(mask >> 1);
@@ -164,50 +271,32 @@ private:
     const Band& bandFor(float error)
     {
         const std::size_t number = bandOf(error);
-        std::optional<Band>& band = _bands[number];
-        if (!band)
+        Band& band = _storage.bands[number];
+        if (!band.shown)
         {
             const int level = _scale.levelWithin(mostOfLevel * leastErrorOf(number));
-            band = Band{&_drawn[level], static_cast<float>(_scale.foundError(level))};
+            band = {&_storage.shownOfLevel[level], static_cast<float>(_scale.foundError(level))};
         }
-        return *band;
+        return band;
     }
 
-    /// Of the first step of a clip in _poses. clip: its number + 1; 0: the rest pose.
-    std::uint32_t placeOf(std::size_t clip)
+    /// The place of the first step of a clip.
+    std::uint32_t firstOf(std::size_t clip)
     {
-        if (_placeOfClip[clip] == none)
+        std::uint32_t& first = _storage.firstOfClip[clip];
+        if (first == none)
         {
-            _placeOfClip[clip] = static_cast<std::uint32_t>(_poses.size());
-            _poses.resize(_poses.size() + mostSteps + 1, none);
+            first = static_cast<std::uint32_t>(_storage.clips.size() * stepsOfClip);
+            _storage.clips.push_back(static_cast<std::uint32_t>(clip));
+            _storage.shown.resize(_storage.shown.size() + stepsOfClip / 64, {0, 0});
         }
-        return _placeOfClip[clip];
-    }
-
-    std::uint32_t addPose(std::size_t clip, std::uint32_t step)
-    {
-        BlendSample sample;
-        if (clip > 0)
-        {
-            const ClipTravel& travel = _meshes.clips[clip - 1].travel;
-            sample = travel.sampleAt(travel.length() * static_cast<float>(step) / static_cast<float>(mostSteps));
-        }
-        if (_batches.empty() || _batches.back()->size() == _mostPoses)
-            _batches.push_back(_frame.makeBatch(_instances.set()));
-        const std::size_t before = (_batches.size() - 1) * _mostPoses;
-        return static_cast<std::uint32_t>(before + _batches.back()->addSample(sample));
+        return first;
     }
 
     const Meshes& _meshes;
-    const CrowdInstances& _instances;
     const LodScale& _scale;
-    PoseFrame& _frame;
-    std::size_t _mostPoses;
-    std::vector<std::unique_ptr<PoseBatch>> _batches;
-    std::vector<std::uint32_t> _placeOfClip; ///< by clip + 1; none: no instance plays it
-    std::vector<std::uint32_t>& _poses;      ///< by place; none: no instance shows that step
-    DrawnByLevel& _drawn;
-    std::array<std::optional<Band>, bandCount> _bands;
+    double _clock; ///< seconds
+    Storage& _storage;
 };
 
 SharedPoses::Shape::Shape(SkinnedGeometry& mesh) : mesh(&mesh), vertices(mesh.getVertexArray()) {}
@@ -236,12 +325,21 @@ SharedPoses::SharedPoses(const osg::Group& crowd, const AnimationSet& set)
     for (std::size_t entry = 0; isMorphed && entry < boxes.reaches.size(); ++entry)
         if (const Box& box = boxes.ofClips[entry]; !box.empty())
             boxes.reaches[entry] = std::max(boxes.reaches[entry], glm::distance(box.min, box.max));
+    computed->clips.emplace_back().leastReach = std::numeric_limits<float>::infinity();
+    computed->clips.emplace_back().poses.emplace_back();
     for (std::size_t clip = 0; clip < set.clips().size(); ++clip)
     {
-        ClipTravel travel(set, clip, boxes.ofClips, boxes.reaches);
-        const float stepsPerTravel = travel.length() > 0.0f ? static_cast<float>(mostSteps) / travel.length()
-                                                            : std::numeric_limits<float>::infinity();
-        computed->clips.push_back({std::move(travel), set.clips()[clip].duration(), stepsPerTravel});
+        SharedClip& shared = computed->clips.emplace_back();
+        shared.travel = ClipTravel(set, clip, boxes.ofClips, boxes.reaches);
+        shared.duration = set.clips()[clip].duration();
+        const float length = shared.travel.length();
+        const int steps = length > 0.0f ? mostSteps : 0;
+        for (int step = 0; step <= steps; ++step)
+            shared.poses.push_back(
+                shared.travel.sampleAt(length * static_cast<float>(step) / static_cast<float>(mostSteps)));
+        if (steps == 0) continue;
+        shared.stepsPerTravel = static_cast<float>(steps) / length;
+        shared.leastReach = 0.5f;
     }
     _meshes = computed;
 }
@@ -276,7 +374,7 @@ std::shared_ptr<const PlacedInstances> SharedPoses::shared(std::shared_ptr<Place
 }
 
 std::vector<DrawState> SharedPoses::submit(PoseFrame& frame, const CrowdInstances& instances, const LodScale& scale,
-                                           std::vector<std::uint32_t>& seen) const
+                                           const SeenMembers& seen, std::vector<std::uint32_t>& outOthers) const
 {
     const AnimationSet& set = *instances.set();
     const std::size_t placementTexels =
@@ -285,11 +383,16 @@ std::vector<DrawState> SharedPoses::submit(PoseFrame& frame, const CrowdInstance
     options.maxTexels = frame.getMaxTexels();
     const std::size_t mostPoses = PosePipeline::chunkCapacity(set, options);
     std::vector<DrawState> draws;
-    if (placementTexels > frame.getMaxTexels()) return draws;
-
-    Collection collection(*_meshes, instances, scale, frame, mostPoses);
-    collection.takeFrom(seen);
-    for (std::size_t number = 0; number < collection.batchCount(); ++number)
+    if (placementTexels > frame.getMaxTexels())
+    {
+        seen.findIndices(instances.size(), outOthers);
+        return draws;
+    }
+    Collection collection(*_meshes, instances, scale);
+    collection.take(seen, outOthers);
+    std::size_t firstPose = 0;
+    for (std::unique_ptr<PoseBatch>& batch :
+         collection.makeBatches(mostPoses, [&] { return frame.makeBatch(instances.set()); }))
     {
         struct Run
         {
@@ -297,21 +400,35 @@ std::vector<DrawState> SharedPoses::submit(PoseFrame& frame, const CrowdInstance
             std::size_t first, count;
         };
         std::vector<Run> runs;
-        std::unique_ptr<PoseBatch> batch = collection.takeBatch(number);
         const std::shared_ptr<PlacedInstances> list = std::make_shared<PlacedInstances>();
         list->crowd = instances.identity();
         list->placements = instances.placements();
         list->tints = instances.tints();
         list->poseCount = batch->size();
-        collection.write(number, list->drawn,
+        collection.write(firstPose, batch->size(), list->drawn,
                          [&](int level, std::size_t first, std::size_t count) {
                              runs.push_back({level, first, count});
                          });
+        firstPose += batch->size();
         const std::shared_ptr<const PlacedInstances> placed = shared(list);
         const std::size_t slot = frame.submitShared(std::move(batch), &instances, placed);
         for (const Run& run : runs)
             draws.push_back(frame.placedState(set, slot, placed, run.first, run.count, run.level));
     }
+    return draws;
+}
+
+std::vector<DrawState> submitSeen(PoseFrame& frame, const CrowdInstances& instances, const LodScale& scale,
+                                  const SharedPoses* shared, const SeenMembers& seen)
+{
+    static thread_local std::vector<std::uint32_t> others; // keeps its storage from cull to cull
+    std::vector<DrawState> draws;
+    if (shared && scale.isOn())
+        draws = shared->submit(frame, instances, scale, seen, others);
+    else
+        seen.findIndices(instances.size(), others);
+    for (const DrawState& draw : submitSeen(frame, instances, CrowdLod(instances, scale), others))
+        draws.push_back(draw);
     return draws;
 }
 

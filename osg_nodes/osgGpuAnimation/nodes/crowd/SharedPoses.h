@@ -38,10 +38,10 @@ public:
     /// Called in each update: forgets the lists that were not drawn since the last call.
     void forgetUnused();
 
-    /// Submits the visible instances that share poses to the frame, takes them out of the list, and returns a state for
-    /// each draw of the crowd's meshes. scale: of the camera that culls. Cameras may cull concurrently.
+    /// Submits the visible instances that share poses to the frame and returns a state for each draw of the crowd's
+    /// meshes. outOthers: the indices of the others. scale: of the camera that culls. Cameras may cull concurrently.
     std::vector<DrawState> submit(PoseFrame& frame, const CrowdInstances& instances, const LodScale& scale,
-                                  std::vector<std::uint32_t>& seen) const;
+                                  const SeenMembers& seen, std::vector<std::uint32_t>& outOthers) const;
 
 private:
     /// A mesh and what its vertices are.
@@ -55,15 +55,17 @@ private:
     };
     struct SharedClip
     {
-        ClipTravel travel;
-        double duration;      ///< seconds
-        float stepsPerTravel; ///< 0: a clip without motion
+        ClipTravel travel{};
+        double duration = 0.0;            ///< seconds
+        float stepsPerTravel = 0.0f;      ///< 0: a clip without motion
+        float leastReach = -1.0f;         ///< in steps; an instance that reaches less has a pose of its own
+        std::vector<BlendSample> poses{}; ///< by step
     };
     /// What depends on the meshes.
     struct Meshes
     {
         std::vector<Shape> shapes;
-        std::vector<SharedClip> clips;
+        std::vector<SharedClip> clips; ///< of instances with a controller: none share; the rest pose; those of the set
     };
     class Collection;
 
@@ -75,5 +77,10 @@ private:
     mutable std::vector<std::shared_ptr<const PlacedInstances>> _latest; ///< lists drawn since the last update
     std::vector<std::shared_ptr<const PlacedInstances>> _before;         ///< those of the update before
 };
+
+/// Submits the visible instances of a crowd to the frame and returns a state for each draw of the crowd's meshes.
+/// shared: of the crowd; null: no instances share poses.
+std::vector<DrawState> submitSeen(PoseFrame& frame, const CrowdInstances& instances, const LodScale& scale,
+                                  const SharedPoses* shared, const SeenMembers& seen);
 
 } // namespace osgGpuAnimation

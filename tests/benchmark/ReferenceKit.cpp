@@ -15,12 +15,8 @@
 
 #include <osg/Material>
 
-#include <layout.glsl>
-#include <ShaderSources.h>
-
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 namespace osgGpuAnimation::benchmark
 {
@@ -54,14 +50,6 @@ void main()
 }
 )";
 
-/// Replaces skin.glsl: leaves the vertex unchanged.
-constexpr const char* noSkin = R"(
-void osgGpuAnimationSkin(inout vec4 vertex, inout vec3 normal) {}
-vec4 osgGpuAnimationTint() { return vec4(1.0); }
-void osgGpuAnimationMorphColor(inout vec4 color) {}
-void osgGpuAnimationMorphTextureCoordinate(inout vec2 coordinate) {}
-)";
-
 constexpr const char* leastVertexShader = R"(#version 140
 void main()
 {
@@ -77,33 +65,26 @@ void main()
 }
 )";
 
-/// The prologue of the permutation that the kit's program selects for the mesh in these scenes: one distant light.
-std::string surfacePrologue(const osg::Geometry& mesh)
+/// The permutation of the kit's program for meshes that do not move, as the kit selects it for the mesh in these
+/// scenes: one distant light.
+osg::ref_ptr<osg::Program> unskinnedProgram(const osg::Geometry& mesh)
 {
+    static const osg::ref_ptr<ShaderPermutations> permutations = new ShaderPermutations;
     ShaderKey surface;
     const osg::Uniform* flatNormals = mesh.getStateSet() ? mesh.getStateSet()->getUniform("flatNormals") : nullptr;
     if (flatNormals) flatNormals->get(surface.hasFlatNormals);
-    return "#version 140\n" + surface.defines();
+    return permutations->variant(surface);
 }
 
+/// That permutation's fragment shader behind another vertex shader.
 osg::ref_ptr<osg::Program> makeProgram(const osg::Geometry& mesh, const std::string& vertex)
 {
     osg::ref_ptr<osg::Program> program = new osg::Program;
     program->addShader(new osg::Shader(osg::Shader::VERTEX, vertex));
-    program->addShader(new osg::Shader(osg::Shader::FRAGMENT, surfacePrologue(mesh) + shaders::character_frag));
+    const osg::ref_ptr<osg::Program> unskinned = unskinnedProgram(mesh);
+    for (unsigned int i = 0; i < unskinned->getNumShaders(); ++i)
+        if (unskinned->getShader(i)->getType() == osg::Shader::FRAGMENT) program->addShader(unskinned->getShader(i));
     return program;
-}
-
-/// One program per permutation, shared by all its meshes.
-osg::Program* unskinnedProgram(const osg::Geometry& mesh)
-{
-    static std::map<std::string, osg::ref_ptr<osg::Program>> programs;
-    const std::string prologue = surfacePrologue(mesh);
-    osg::ref_ptr<osg::Program>& program = programs[prologue];
-    if (program) return program.get();
-    program = makeProgram(mesh, prologue + shaders::character_vert);
-    program->addShader(new osg::Shader(osg::Shader::VERTEX, std::string("#version 140\n") + noSkin));
-    return program.get();
 }
 
 /// The cheapest program that draws the triangles: the position and one colour.
@@ -330,7 +311,9 @@ osg::ref_ptr<osg::Geometry> unskinned(const SkinnedGeometry& geometry, Shading s
     state->addUniform(
         new osg::Uniform("materialDiffuse", material ? material->getDiffuse(osg::Material::FRONT) : white));
     if (geometry.getColors() != SkinnedGeometry::Colors::White) state->setDefine("POSE_COLORED", "1");
-    state->setAttributeAndModes(shading == Shading::Least ? leastProgram() : unskinnedProgram(geometry));
+    osg::ref_ptr<osg::Program> program = leastProgram();
+    if (shading == Shading::AsCharacters) program = unskinnedProgram(geometry);
+    state->setAttributeAndModes(program);
     plain->setStateSet(state);
     return plain;
 }

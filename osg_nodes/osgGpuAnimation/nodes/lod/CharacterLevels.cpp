@@ -5,6 +5,7 @@
 #include <osgGpuAnimation/nodes/lod/MergedMesh.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace osgGpuAnimation
 {
@@ -16,6 +17,9 @@ namespace
 constexpr double finestShare = 1.0 / 90.0, coarsestShare = 0.25;
 constexpr double worthwhile = 0.9; ///< a level has at most this share of the triangles before
 constexpr std::size_t fewestTriangles = 8;
+// A mesh is used from the level on at which its picture has that structural similarity, with pixels that are twice the
+// level's error: a pixel error of 0.5.
+constexpr double leastSimilarity = 0.97, usualPixel = 2.0;
 
 /// Of the parts at a level of their own.
 std::size_t trianglesOf(const CharacterLevels::Parts& parts, const AnimationSet& set, int level)
@@ -89,18 +93,23 @@ void CharacterLevels::merge(const Parts& parts, const AnimationSet& set,
     MergedMesh mesh(parts, palettes);
     if (!mesh.isValid()) return;
     Merged merged{parts, {}};
-    std::size_t kept = 0;
+    std::size_t kept = std::numeric_limits<std::size_t>::max();
     const int coarsest = LodLevels::levelOf(coarsestShare * mesh.size());
     for (int level = LodLevels::levelOf(finestShare * mesh.size()); level <= coarsest; ++level)
     {
-        if (!merged.steps.empty() && kept <= fewestTriangles) break;
-        const std::size_t before = merged.steps.empty() ? trianglesOf(parts, set, level) : kept;
         mesh.reduce(LodLevels::errorOf(level));
-        if (static_cast<double>(mesh.triangleCount()) > worthwhile * static_cast<double>(before)) continue;
+        if (static_cast<double>(mesh.triangleCount()) > worthwhile * static_cast<double>(kept)) continue;
         const MergedMesh::Made made = mesh.make(LodLevels::errorOf(level));
         if (!made.mesh) continue;
         kept = mesh.triangleCount();
-        merged.steps.push_back({level, made.mesh, made.error});
+        int from = level;
+        while (from <= coarsest && mesh.similarity(usualPixel * LodLevels::errorOf(from)) < leastSimilarity)
+            ++from;
+        if (from > coarsest || (merged.steps.empty() && kept >= trianglesOf(parts, set, from))) continue;
+        while (!merged.steps.empty() && merged.steps.back().level >= from)
+            merged.steps.pop_back();
+        merged.steps.push_back({from, made.mesh, made.error});
+        if (kept <= fewestTriangles) break;
     }
     if (merged.steps.empty()) return;
     const int first = merged.steps.front().level;
@@ -128,10 +137,9 @@ double CharacterLevels::foundError(int level) const
 bool CharacterLevels::isMerged(const SkinnedGeometry& part, int level) const
 {
     return std::any_of(_merged.begin(), _merged.end(),
-                       [&](const Merged& merged)
-                       {
-                           return merged.at(level) && std::find(merged.parts.begin(), merged.parts.end(), &part) !=
-                                                          merged.parts.end();
+                       [&](const Merged& merged) {
+                           return merged.at(level) &&
+                                  std::find(merged.parts.begin(), merged.parts.end(), &part) != merged.parts.end();
                        });
 }
 

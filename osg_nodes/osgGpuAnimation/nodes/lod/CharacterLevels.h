@@ -38,8 +38,8 @@ public:
     /// True if a merged mesh shows the part at the level.
     bool isMerged(const SkinnedGeometry& part, int level) const;
 
-    /// function(const SkinnedGeometry&), for the meshes to draw at a level in place of the group's: merged ones with all
-    /// their triangles, and parts at the level. meshes: isOf() is true for it.
+    /// function(const SkinnedGeometry&), for the meshes to draw at a level in place of the group's: merged ones with
+    /// all their triangles, and parts at the level. meshes: isOf() is true for it.
     template <typename Function>
     void forEachMeshAt(int level, const osg::Group& meshes, Function function) const;
 

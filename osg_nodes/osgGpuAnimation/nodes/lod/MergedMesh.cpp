@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 namespace osgGpuAnimation
 {
@@ -18,9 +19,10 @@ namespace osgGpuAnimation
 namespace
 {
 
-constexpr double reductionShare = 0.9; ///< of a level's error; the rest is for the outset
+constexpr double reductionShare = 0.8; ///< of a level's error; the rest is for the outset
 constexpr int searchSteps = 5;         ///< for the outset
-constexpr float sharpestEdge = -0.8f;  ///< the smallest cosine between the normals of triangles that share a vertex
+constexpr int fittingSteps = 8;        ///< for the colours
+constexpr double fewSeen = 0.1;        ///< of the cells that show a triangle: a side with no more is not visible
 constexpr float farthest = 1e18f;      ///< squares of larger coordinates are not finite
 
 bool isPlaced(const glm::vec3& position)
@@ -61,9 +63,38 @@ float brightness(const glm::vec3& normal, const glm::vec3& towardsViewer)
     return everywhere + (1.0f - everywhere) * std::max(glm::dot(normal, towardsViewer), 0.0f);
 }
 
-bool isSmooth(const glm::vec3& normal, const glm::vec3& other)
+float shadeOf(const osg::Vec4& color)
 {
-    return glm::dot(normal, other) > sharpestEdge * glm::length(normal) * glm::length(other);
+    return (color.r() + color.g() + color.b()) / 3.0f;
+}
+
+/// The means of a view's cells in square pixels. cells: across a pixel.
+std::vector<double> pixelsOf(const std::vector<float>& view, double cells)
+{
+    const auto across = static_cast<std::size_t>(std::ceil(SurfaceViews::cellsAcross / std::max(cells, 1.0)));
+    std::vector<double> pixels(across * across);
+    for (std::size_t cell = 0; cell < view.size(); ++cell)
+    {
+        const std::size_t x = cell % SurfaceViews::cellsAcross, y = cell / SurfaceViews::cellsAcross;
+        const auto pixelAt = [&](std::size_t place)
+        { return std::min(static_cast<std::size_t>(static_cast<double>(place) / std::max(cells, 1.0)), across - 1); };
+        pixels[pixelAt(y) * across + pixelAt(x)] += view[cell] / (cells * cells);
+    }
+    return pixels;
+}
+
+double structuralSimilarity(const std::vector<double>& a, const std::vector<double>& b)
+{
+    constexpr double c1 = 0.01 * 0.01, c2 = 0.03 * 0.03;
+    const auto count = static_cast<double>(a.size());
+    const double meanA = std::accumulate(a.begin(), a.end(), 0.0) / count;
+    const double meanB = std::accumulate(b.begin(), b.end(), 0.0) / count;
+    const double squaresA = std::inner_product(a.begin(), a.end(), a.begin(), 0.0) / count;
+    const double squaresB = std::inner_product(b.begin(), b.end(), b.begin(), 0.0) / count;
+    const double products = std::inner_product(a.begin(), a.end(), b.begin(), 0.0) / count;
+    const double variances = squaresA - meanA * meanA + squaresB - meanB * meanB;
+    return (2.0 * meanA * meanB + c1) * (2.0 * (products - meanA * meanB) + c2) /
+           ((meanA * meanA + meanB * meanB + c1) * (variances + c2));
 }
 
 } // namespace
@@ -98,6 +129,12 @@ MergedMesh::MergedMesh(const Parts& parts, const Palettes& palettes) : _parts(pa
     addTriangles();
     if (!(_size > 0.0) || _indices.size() > 3 * maxTriangles) return;
     look();
+    for (std::uint32_t vertex = 0; vertex < _surface.vertexCount(); ++vertex)
+    {
+        const std::uint32_t corners[3] = {vertex, vertex, vertex};
+        const osg::Vec4 color = _colors.front().stored(surfaceAt(corners, glm::vec3(1.0f, 0.0f, 0.0f)).color);
+        _surface.colors.emplace_back(color.r(), color.g(), color.b());
+    }
     _simplifier.emplace(_surface, _indices);
 }
 
@@ -176,6 +213,11 @@ void MergedMesh::look()
             ++_coveredCells;
             sum += looks.back().surface.metallicRoughness;
         }
+        std::vector<float>& shades = _shades.emplace_back();
+        for (const Look& look : looks)
+            shades.push_back(look.isVisible ? shadeOf(_colors.front().stored(look.surface.color) *
+                                                      brightness(look.normal, _views->towards(view)))
+                                            : 0.0f);
     }
     if (_coveredCells > 0) _metallicRoughness = sum / static_cast<float>(_coveredCells);
 }
@@ -190,10 +232,34 @@ MergedMesh::Made MergedMesh::make(double error)
     const double found = _simplifier->error();
     Coarse made = coarse();
     if (!(found <= error) || made.indices.empty()) return {};
-    fitNormals(made);
     fitColors(made);
-    const std::vector<glm::dvec3> offsets = bindOffsets(made, outsets(made, error - found));
+    const std::vector<glm::vec3> moves = outsets(made, error - found);
+    for (std::size_t vertex = 0; vertex < moves.size(); ++vertex)
+        made.positions[vertex] += moves[vertex];
+    shade(made);
+    const std::vector<glm::dvec3> offsets = bindOffsets(made, moves);
     return {meshOf(made, offsets), found + farthestMove(made, offsets)};
+}
+
+/// The remaining triangles, by vertex of the parts, as a surface of one side: of two-sided parts, those that are
+/// visible from behind are turned or doubled, so that the driver can cull the others.
+std::vector<std::uint32_t> MergedMesh::oneSided() const
+{
+    const std::vector<std::uint32_t> corners = _simplifier->indices();
+    if (!_surface.isTwoSided) return corners;
+    std::vector<std::size_t> fronts(corners.size() / 3), backs(corners.size() / 3);
+    for (std::size_t view = 0; view < SurfaceViews::viewCount; ++view)
+        for (const SurfaceViews::Seen& seen : _views->seen(view, {_surface.poses.front(), corners, true}))
+            if (seen.triangle != SurfaceViews::Seen::none) ++(seen.isFront ? fronts : backs)[seen.triangle];
+    std::vector<std::uint32_t> sided;
+    for (std::size_t triangle = 0; triangle < fronts.size(); ++triangle)
+    {
+        const auto few = static_cast<std::size_t>(fewSeen * static_cast<double>(fronts[triangle] + backs[triangle]));
+        const auto first = corners.begin() + static_cast<std::ptrdiff_t>(3 * triangle);
+        if (fronts[triangle] > few || backs[triangle] <= few) sided.insert(sided.end(), first, first + 3);
+        if (backs[triangle] > few) sided.insert(sided.end(), {first[0], first[2], first[1]});
+    }
+    return sided;
 }
 
 MergedMesh::Coarse MergedMesh::coarse() const
@@ -201,30 +267,24 @@ MergedMesh::Coarse MergedMesh::coarse() const
     const MeshConnectivity& reduced = _simplifier->mesh();
     const std::vector<glm::vec3>& positions = _surface.poses.front();
     Coarse coarse;
-    std::multimap<std::uint32_t, std::uint32_t> verticesOf; // by point
-    const std::vector<std::uint32_t> corners = reduced.indices();
+    std::map<std::uint32_t, std::uint32_t> vertexOf; // by point
+    const std::vector<std::uint32_t> corners = oneSided();
     for (std::size_t corner = 0; corner < corners.size(); ++corner)
     {
-        const glm::vec3 normal = normalOf(positions, &corners[corner - corner % 3]);
+        const auto next = static_cast<std::uint32_t>(coarse.points.size());
         const std::uint32_t point = reduced.pointOf(corners[corner]);
-        const auto [first, last] = verticesOf.equal_range(point);
-        const auto beside = std::find_if(first, last, [&](const auto& known)
-                                         { return isSmooth(coarse.normals[known.second], normal); });
-        auto vertex = static_cast<std::uint32_t>(coarse.points.size());
-        if (beside != last)
-            vertex = beside->second;
-        else
+        const auto [known, isNew] = vertexOf.emplace(point, next);
+        if (isNew)
         {
-            verticesOf.emplace(point, vertex);
             coarse.points.push_back(reduced.verticesOf(point).front());
             coarse.positions.push_back(positions[coarse.points.back()]);
             coarse.normals.emplace_back(0.0f);
         }
-        coarse.indices.push_back(vertex);
-        coarse.normals[vertex] += normal;
+        coarse.indices.push_back(known->second);
+        coarse.normals[known->second] += normalOf(positions, &corners[corner - corner % 3]);
     }
     for (glm::vec3& normal : coarse.normals)
-        normal = unit(normal, glm::vec3(0.0f, 0.0f, 1.0f));
+        normal = unit(normal, glm::vec3(0.0f));
     return coarse;
 }
 
@@ -234,58 +294,96 @@ void MergedMesh::forEachSeen(const Coarse& coarse, Function function) const
 {
     for (std::size_t view = 0; view < SurfaceViews::viewCount; ++view)
     {
-        const std::vector<SurfaceViews::Seen> cells =
-            _views->seen(view, {coarse.positions, coarse.indices, _surface.isTwoSided});
+        const std::vector<SurfaceViews::Seen> cells = _views->seen(view, {coarse.positions, coarse.indices, false});
         for (std::size_t cell = 0; cell < cells.size(); ++cell)
             if (cells[cell].triangle != SurfaceViews::Seen::none && _looks[view][cell].isVisible)
                 function(view, cells[cell], _looks[view][cell]);
     }
 }
 
-void MergedMesh::fitNormals(Coarse& coarse) const
-{
-    std::vector<glm::vec3> sums(coarse.points.size(), glm::vec3(0.0f));
-    forEachSeen(coarse,
-                [&](std::size_t, const SurfaceViews::Seen& seen, const Look& look)
-                {
-                    const std::uint32_t* triangle = &coarse.indices[3 * seen.triangle];
-                    for (int corner = 0; corner < 3; ++corner)
-                        sums[triangle[corner]] +=
-                            (seen.isFront ? seen.barycentric[corner] : -seen.barycentric[corner]) * look.normal;
-                });
-    for (std::size_t vertex = 0; vertex < sums.size(); ++vertex)
-        coarse.normals[vertex] = unit(sums[vertex], coarse.normals[vertex]);
-}
-
-/// Normals that are means are more alike than those of the surface: with its mean colours, the mesh would be brighter.
+/// Takes the colours that differ least from the parts in the views when they are interpolated and lit from there: flat
+/// triangles are brighter than what they replace.
 void MergedMesh::fitColors(Coarse& coarse) const
 {
-    std::vector<osg::Vec4> sums(coarse.points.size());
-    std::vector<float> weights(coarse.points.size());
+    struct Target
+    {
+        const std::uint32_t* triangle;
+        glm::vec3 barycentric;
+        float light;     ///< of the mesh
+        osg::Vec4 shown; ///< by the parts
+    };
+    std::vector<Target> targets;
     forEachSeen(coarse,
                 [&](std::size_t view, const SurfaceViews::Seen& seen, const Look& look)
                 {
                     const std::uint32_t* triangle = &coarse.indices[3 * seen.triangle];
-                    glm::vec3 normal(0.0f);
-                    for (int corner = 0; corner < 3; ++corner)
-                        normal += seen.barycentric[corner] * coarse.normals[triangle[corner]];
-                    normal = unit(seen.isFront ? normal : -normal, _views->towards(view));
-                    const float shown = brightness(look.normal, _views->towards(view)),
-                                made = brightness(normal, _views->towards(view));
-                    for (int corner = 0; corner < 3; ++corner)
-                    {
-                        sums[triangle[corner]] += look.surface.color * (seen.barycentric[corner] * shown);
-                        weights[triangle[corner]] += seen.barycentric[corner] * made;
-                    }
+                    const glm::vec3 normal = unit(normalOf(coarse.positions, triangle), _views->towards(view));
+                    targets.push_back({triangle, seen.barycentric, brightness(normal, _views->towards(view)),
+                                       look.surface.color * brightness(look.normal, _views->towards(view))});
                 });
-    for (std::size_t vertex = 0; vertex < sums.size(); ++vertex)
+    std::vector<osg::Vec4> colors;
+    for (const std::uint32_t point : coarse.points)
     {
-        const std::uint32_t point = coarse.points[vertex], corners[3] = {point, point, point};
-        osg::Vec4 mean = weights[vertex] > 0.0f ? sums[vertex] / weights[vertex]
-                                                : surfaceAt(corners, glm::vec3(1.0f, 0.0f, 0.0f)).color;
-        mean.a() = 1.0f;
-        coarse.colors.push_back(_colors.front().stored(mean));
+        const std::uint32_t corners[3] = {point, point, point};
+        colors.push_back(surfaceAt(corners, glm::vec3(1.0f, 0.0f, 0.0f)).color);
     }
+    for (int step = 0; step < fittingSteps; ++step)
+    {
+        std::vector<osg::Vec4> sums(colors.size());
+        std::vector<float> weights(colors.size());
+        for (const Target& target : targets)
+        {
+            osg::Vec4 missing = target.shown;
+            for (int corner = 0; corner < 3; ++corner)
+                missing -= colors[target.triangle[corner]] * (target.light * target.barycentric[corner]);
+            for (int corner = 0; corner < 3; ++corner)
+            {
+                sums[target.triangle[corner]] += missing * target.barycentric[corner];
+                weights[target.triangle[corner]] += target.light * target.barycentric[corner];
+            }
+        }
+        for (std::size_t vertex = 0; vertex < colors.size(); ++vertex)
+            if (weights[vertex] > 0.0f) colors[vertex] += sums[vertex] / weights[vertex];
+    }
+    for (osg::Vec4& color : colors)
+    {
+        for (int component = 0; component < 3; ++component)
+            color[component] = std::clamp(color[component], 0.0f, 1.0f);
+        color.a() = 1.0f;
+        coarse.colors.push_back(_colors.front().stored(color));
+    }
+}
+
+/// Takes the views of a mesh for similarity().
+void MergedMesh::shade(const Coarse& coarse)
+{
+    _madeShades.assign(SurfaceViews::viewCount, {});
+    for (std::size_t view = 0; view < SurfaceViews::viewCount; ++view)
+        for (const SurfaceViews::Seen& seen : _views->seen(view, {coarse.positions, coarse.indices, false}))
+        {
+            float shade = 0.0f;
+            if (seen.triangle != SurfaceViews::Seen::none)
+            {
+                const std::uint32_t* triangle = &coarse.indices[3 * seen.triangle];
+                osg::Vec4 color;
+                for (int corner = 0; corner < 3; ++corner)
+                    color += coarse.colors[triangle[corner]] * seen.barycentric[corner];
+                const glm::vec3 normal = unit(normalOf(coarse.positions, triangle), _views->towards(view));
+                shade = shadeOf(color * brightness(normal, _views->towards(view)));
+            }
+            _madeShades[view].push_back(shade);
+        }
+}
+
+double MergedMesh::similarity(double pixel) const
+{
+    double sum = 0.0;
+    for (std::size_t view = 0; view < SurfaceViews::viewCount; ++view)
+    {
+        const double cells = pixel / _views->cellSize(view);
+        sum += structuralSimilarity(pixelsOf(_shades[view], cells), pixelsOf(_madeShades[view], cells));
+    }
+    return sum / SurfaceViews::viewCount;
 }
 
 /// For each vertex, the mean direction from its neighbours, of length 1 at most: a tip or the edge of a sheet points
@@ -313,7 +411,7 @@ std::size_t MergedMesh::covered(const Coarse& coarse, const std::vector<glm::vec
     std::vector<glm::vec3> positions = coarse.positions;
     for (std::size_t vertex = 0; vertex < positions.size(); ++vertex)
         positions[vertex] += share * outsets[vertex];
-    return _views->coveredCells({positions, coarse.indices, _surface.isTwoSided});
+    return _views->coveredCells({positions, coarse.indices, false});
 }
 
 /// How the vertices move in the rest pose, by at most that length, for the mesh to cover the views as the parts do.
@@ -328,7 +426,8 @@ std::vector<glm::vec3> MergedMesh::outsets(const Coarse& coarse, double most) co
     }
     const std::size_t unmoved = covered(coarse, alongNormals, 0.0f);
     const float farthest = static_cast<float>(unmoved < _coveredCells ? most : -most);
-    const auto missing = [&](std::size_t cells) { return cells > _coveredCells ? cells - _coveredCells : _coveredCells - cells; };
+    const auto missing = [&](std::size_t cells)
+    { return cells > _coveredCells ? cells - _coveredCells : _coveredCells - cells; };
     std::vector<glm::vec3>* best = nullptr;
     float share = 0.0f;
     std::size_t least = missing(unmoved);
@@ -397,7 +496,7 @@ double MergedMesh::farthestMove(const Coarse& coarse, const std::vector<glm::dve
 osg::ref_ptr<SkinnedGeometry> MergedMesh::meshOf(const Coarse& coarse, const std::vector<glm::dvec3>& bindOffsets) const
 {
     const std::size_t count = coarse.points.size();
-    osg::ref_ptr<osg::Vec3Array> positions = new osg::Vec3Array, normals = new osg::Vec3Array;
+    osg::ref_ptr<osg::Vec3Array> positions = new osg::Vec3Array;
     osg::ref_ptr<osg::Vec4Array> colors = new osg::Vec4Array(coarse.colors.begin(), coarse.colors.end());
     for (std::size_t vertex = 0; vertex < count; ++vertex)
     {
@@ -406,15 +505,9 @@ osg::ref_ptr<SkinnedGeometry> MergedMesh::meshOf(const Coarse& coarse, const std
             static_cast<const osg::Vec3Array&>(*_parts[source.part]->getVertexArray())[source.vertex];
         const glm::dvec3& offset = bindOffsets[vertex];
         positions->push_back(osg::Vec3d(bind) + osg::Vec3d(offset.x, offset.y, offset.z));
-        // skin.glsl multiplies normals by the cofactors.
-        const glm::vec3 normal(glm::transpose(matrixOf(coarse.points[vertex], _palettes.front())) *
-                               glm::dvec3(coarse.normals[vertex]));
-        const glm::vec3 ofBind = unit(normal, coarse.normals[vertex]);
-        normals->push_back(osg::Vec3(ofBind.x, ofBind.y, ofBind.z));
     }
     osg::ref_ptr<SkinnedGeometry> mesh = new SkinnedGeometry;
     mesh->setVertexArray(positions);
-    mesh->setNormalArray(normals, osg::Array::BIND_PER_VERTEX);
     mesh->setColorArray(colors, osg::Array::BIND_PER_VERTEX);
     setInfluences(coarse, *mesh);
     osg::ref_ptr<osg::DrawElementsUShort> elements = new osg::DrawElementsUShort(GL_TRIANGLES);
@@ -448,8 +541,7 @@ void MergedMesh::setInfluences(const Coarse& coarse, SkinnedGeometry& mesh) cons
                                               [&](std::size_t entry, float weight)
                                               {
                                                   const auto place = static_cast<int>(number % 4);
-                                                  (*entries[number / 4])[vertex][place] =
-                                                      static_cast<GLushort>(entry);
+                                                  (*entries[number / 4])[vertex][place] = static_cast<GLushort>(entry);
                                                   (*weights[number / 4])[vertex][place] = weight;
                                                   ++number;
                                               });

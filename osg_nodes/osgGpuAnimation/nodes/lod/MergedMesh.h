@@ -16,11 +16,10 @@
 namespace osgGpuAnimation
 {
 
-/// Several parts of a character as one mesh with colours in its vertices instead of textures, reduced to coarse levels
-/// of detail. The parts' pieces are joined where they are nearer to each other than the error of a level. Normals and
-/// colours are the means of the visible surface that a vertex replaces (see SurfaceViews), the colours so that a light
-/// at the viewer makes the mesh as bright as the parts, and the vertices are moved until it covers the views as the
-/// parts do. A temporary object:
+/// Several parts of a character as one mesh with colours in its vertices instead of textures and flat triangles,
+/// reduced to coarse levels of detail. The parts' pieces are joined where they are nearer to each other than the error
+/// of a level. The colours are fitted to views of the parts (see SurfaceViews), and the vertices are moved until the
+/// mesh covers the views as the parts do. A temporary object:
 ///
 ///     MergedMesh merged(parts, palettes);
 ///     if (merged.isValid()) merged.reduce(error);
@@ -57,6 +56,10 @@ public:
     };
     /// The mesh of the last reduce(). error: its limit.
     Made make(double error);
+    /// The mean structural similarity, in [-1, 1], of views of the last made mesh to views of the parts, both lit from
+    /// the viewer (Wang et al., Image Quality Assessment: From Error Visibility to Structural Similarity, 2004).
+    /// pixel: its size in the set's units.
+    double similarity(double pixel) const;
 
 private:
     /// A vertex of a part.
@@ -72,13 +75,13 @@ private:
         SurfaceColor::Look surface{};
         glm::vec3 normal{0.0f}; ///< towards the viewer, of length 1
     };
-    /// The vertices of a level. Triangles that face opposite sides share none.
+    /// The triangles of a level.
     struct Coarse
     {
         std::vector<std::uint32_t> points; ///< by vertex: of the parts
         std::vector<std::uint32_t> indices;
         std::vector<glm::vec3> positions; ///< in the rest pose
-        std::vector<glm::vec3> normals;   ///< in the rest pose, of length 1
+        std::vector<glm::vec3> normals;   ///< in the rest pose, of length 1 or 0: the mean of the triangles
         std::vector<osg::Vec4> colors;    ///< see SurfaceColor::stored()
     };
 
@@ -88,12 +91,13 @@ private:
     void look();
     SurfaceColor::Look surfaceAt(const std::uint32_t* triangle, const glm::vec3& barycentric) const;
     Look lookAt(const SurfaceViews::Seen& seen) const;
+    std::vector<std::uint32_t> oneSided() const;
     Coarse coarse() const;
     template <typename Function>
     void forEachSeen(const Coarse& coarse, Function function) const;
-    void fitNormals(Coarse& coarse) const;
     void fitColors(Coarse& coarse) const;
     std::vector<glm::vec3> fromNeighbours(const Coarse& coarse) const;
+    void shade(const Coarse& coarse);
     std::size_t covered(const Coarse& coarse, const std::vector<glm::vec3>& outsets, float share) const;
     std::vector<glm::vec3> outsets(const Coarse& coarse, double most) const;
     glm::dmat3 matrixOf(std::uint32_t vertex, const std::vector<AffineMatrix>& palette) const;
@@ -112,7 +116,8 @@ private:
     double _size = 0.0;
     std::optional<MeshSimplifier> _simplifier;
     std::optional<SurfaceViews> _views;
-    std::vector<std::vector<Look>> _looks; ///< by view, then cell
+    std::vector<std::vector<Look>> _looks;                ///< by view, then cell
+    std::vector<std::vector<float>> _shades, _madeShades; ///< brightness of parts and last mesh; by view, then cell
     std::size_t _coveredCells = 0;
     osg::Vec2 _metallicRoughness{1, 1}; ///< the mean of the map
 };

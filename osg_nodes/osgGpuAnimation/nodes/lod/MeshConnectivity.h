@@ -18,6 +18,7 @@ struct PosedSurface
     std::vector<std::vector<glm::vec3>> poses; ///< at least one pose; each has one position per vertex
     std::vector<glm::vec3> normals;            ///< one per vertex, or empty
     std::vector<glm::vec2> texCoords;          ///< one per vertex, or empty
+    std::vector<glm::vec3> colors;             ///< one per vertex, in [0, 1], or empty
     bool isTwoSided = false;                   ///< triangles show the same from behind
 
     std::size_t vertexCount() const { return poses.front().size(); }
@@ -46,6 +47,11 @@ public:
     glm::dvec3 at(std::size_t pose, std::uint32_t point) const
     {
         return glm::dvec3(_surface.poses[pose][_placeOf[point]]);
+    }
+    /// The colour of one of its vertices; black without colours.
+    glm::vec3 colorOf(std::uint32_t point) const
+    {
+        return _surface.colors.empty() ? glm::vec3(0.0f) : _surface.colors[_placeOf[point]];
     }
     glm::dvec3 at(std::size_t pose, const Corners& corners, int corner) const
     {

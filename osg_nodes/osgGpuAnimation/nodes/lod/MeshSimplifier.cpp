@@ -15,16 +15,17 @@ namespace osgGpuAnimation
 namespace
 {
 
-constexpr double borderWeight = 4.0;       ///< of the planes that hold open borders, relative to triangles
-constexpr double lengthCost = 1e-4;        ///< of an edge's squared length: of equal costs the shorter edge is first
-constexpr double sharpestTurn = 0.05;      ///< the smallest cosine between the normals before and after
-constexpr std::size_t mostTriangles = 100; ///< at an edge or a neighbour: the cost of fans is quadratic
+constexpr double borderWeight = 4.0;        ///< of the planes that hold open borders, relative to triangles
+constexpr double lengthCost = 1e-4;         ///< of an edge's squared length: of equal costs the shorter edge is first
+constexpr double colorCost = 2.0;           ///< of a squared difference of colours, relative to the squared limit
+constexpr double sharpestTurn = 0.05;       ///< the smallest cosine between the normals before and after
+constexpr std::size_t mostTriangles = 100;  ///< at an edge or a neighbour: the cost of fans is quadratic
 constexpr std::size_t mostCollapsed = 4096; ///< into one point: each further collapse checks all of them
-constexpr double costBeyondLimit = 4.0;    ///< quadrics are means: a collapse of that cost may be near enough
-constexpr std::size_t mostNear = 8;        ///< points of a neighbouring cell to join: dense spots have many
-constexpr double farthestCell = 1e15;      ///< farther ones have no number
-constexpr int mostPasses = 3;              ///< over all remaining edges, for one limit
-constexpr double texCoordsCount = 100.0;   ///< weight relative to normals when a vertex is selected
+constexpr double costBeyondLimit = 4.0;     ///< quadrics are means: a collapse of that cost may be near enough
+constexpr std::size_t mostNear = 8;         ///< points of a neighbouring cell to join: dense spots have many
+constexpr double farthestCell = 1e15;       ///< farther ones have no number
+constexpr int mostPasses = 3;               ///< over all remaining edges, for one limit
+constexpr double texCoordsCount = 100.0;    ///< weight relative to normals when a vertex is selected
 
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
@@ -92,13 +93,15 @@ void MeshSimplifier::consider(std::uint32_t from, std::uint32_t to)
 {
     const std::size_t poseCount = _mesh.poseCount();
     const double most = costBeyondLimit * _squaredLimit;
+    const glm::dvec3 recolored(_mesh.colorOf(to) - _mesh.colorOf(from));
+    const double ofColor = colorCost * _squaredLimit * glm::dot(recolored, recolored);
     double cost = 0.0;
     for (std::size_t pose = 0; pose < poseCount && cost <= most; ++pose)
     {
         PlaneQuadric quadric = _quadrics[from * poseCount + pose];
         quadric += _quadrics[to * poseCount + pose];
         const glm::dvec3 place = _mesh.at(pose, to), way = place - _mesh.at(pose, from);
-        cost = std::max(cost, quadric.at(place) + lengthCost * glm::dot(way, way));
+        cost = std::max(cost, quadric.at(place) + lengthCost * glm::dot(way, way) + ofColor);
     }
     if (cost <= most) _next.push({cost, from, to, _mesh.changeCountOf(from), _mesh.changeCountOf(to)});
 }

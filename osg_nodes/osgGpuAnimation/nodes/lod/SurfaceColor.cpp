@@ -16,9 +16,9 @@ namespace
 {
 
 constexpr PbrMaterial::Map PbrMaterial::*irreplaceable[] = {
-    &PbrMaterial::emissiveMap,        &PbrMaterial::specularColorMap,      &PbrMaterial::specularMap,
-    &PbrMaterial::clearcoatMap,       &PbrMaterial::clearcoatRoughnessMap, &PbrMaterial::clearcoatNormalMap,
-    &PbrMaterial::sheenColorMap,      &PbrMaterial::sheenRoughnessMap,     &PbrMaterial::transmissionMap};
+    &PbrMaterial::emissiveMap,   &PbrMaterial::specularColorMap,      &PbrMaterial::specularMap,
+    &PbrMaterial::clearcoatMap,  &PbrMaterial::clearcoatRoughnessMap, &PbrMaterial::clearcoatNormalMap,
+    &PbrMaterial::sheenColorMap, &PbrMaterial::sheenRoughnessMap,     &PbrMaterial::transmissionMap};
 
 /// True if the CPU can read the picture.
 bool isReadable(const osg::Texture2D* texture)
@@ -83,11 +83,10 @@ std::optional<const osg::Array*> colorsOf(const SkinnedGeometry& mesh)
     if (!colors || mesh.getColors() != SkinnedGeometry::Colors::Array) return std::nullopt;
     const bool isOverall = colors->getBinding() == osg::Array::BIND_OVERALL;
     const std::size_t needed = isOverall ? 1 : mesh.getVertexCount();
-    const bool isKnown =
-        dynamic_cast<const osg::Vec4Array*>(colors) ||
-        (dynamic_cast<const osg::Vec4ubArray*>(colors) && colors->getNormalize());
-    const bool isFit = (isOverall || colors->getBinding() == osg::Array::BIND_PER_VERTEX) &&
-                       colors->getNumElements() >= needed;
+    const bool isKnown = dynamic_cast<const osg::Vec4Array*>(colors) ||
+                         (dynamic_cast<const osg::Vec4ubArray*>(colors) && colors->getNormalize());
+    const bool isFit =
+        (isOverall || colors->getBinding() == osg::Array::BIND_PER_VERTEX) && colors->getNumElements() >= needed;
     return isKnown && isFit ? std::optional(colors) : std::nullopt;
 }
 
@@ -96,7 +95,8 @@ std::optional<const osg::Array*> colorsOf(const SkinnedGeometry& mesh)
 std::optional<SurfaceColor> SurfaceColor::of(const SkinnedGeometry& mesh)
 {
     const osg::StateSet* state = mesh.getStateSet();
-    if (!state || !dynamic_cast<const ShaderPermutations*>(state->getAttribute(osg::StateAttribute::PROGRAM))) return {};
+    if (!state || !dynamic_cast<const ShaderPermutations*>(state->getAttribute(osg::StateAttribute::PROGRAM)))
+        return {};
     if (!isOpaque(*state) || !hasUsualSides(*state) || hasTextureTransform(*state)) return {};
     const std::optional<const osg::Array*> colors = colorsOf(mesh);
     if (!colors) return {};
@@ -173,7 +173,8 @@ osg::ref_ptr<osg::StateSet> SurfaceColor::state(int influences, const osg::Vec2&
         material->hasTangents = material->hasMoreCoordinates = false;
         applyPbrMaterial(*state, *material);
     }
-    state->removeUniform("flatNormals");
+    state->addUniform(new osg::Uniform("flatNormals", true));
+    state->setAttributeAndModes(new osg::CullFace(osg::CullFace::BACK));
     applyCharacterProgram(*state); // a white texture
     applySkinDefines(*state, influences, false);
     return state;

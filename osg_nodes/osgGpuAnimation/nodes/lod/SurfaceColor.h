@@ -30,7 +30,7 @@ public:
     /// What a point of the surface contributes.
     struct Look
     {
-        osg::Vec4 color{0, 0, 0, 0};     ///< without the material's own colour; linear() if the material is linear
+        osg::Vec4 color{0, 0, 0, 0};       ///< without the material's own colour; linear() if the material is linear
         osg::Vec2 metallicRoughness{0, 0}; ///< of the map
     };
     /// corners: vertices of a triangle. shares: barycentric coordinates of the point.
@@ -38,8 +38,8 @@ public:
     /// A mean of Look::color as the colour array stores it.
     osg::Vec4 stored(const osg::Vec4& color) const { return _isLinear ? displayColor(color) : color; }
 
-    /// The StateSet for vertices with these colours. influences: see applySkinDefines(). metallicRoughness: the mean of
-    /// the map. Values that the mesh's material shares stay shared.
+    /// The StateSet for a surface of one side and flat triangles whose vertices have these colours. influences: see
+    /// applySkinDefines(). metallicRoughness: the mean of the map. Values that the mesh's material shares stay shared.
     osg::ref_ptr<osg::StateSet> state(int influences, const osg::Vec2& metallicRoughness) const;
 
 private:

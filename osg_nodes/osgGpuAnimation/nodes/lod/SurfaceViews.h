@@ -34,7 +34,7 @@ public:
         static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
         std::uint32_t triangle = none;
-        bool isFront = true;        ///< its corners are counter-clockwise in the view
+        bool isFront = true;         ///< its corners are counter-clockwise in the view
         glm::vec3 barycentric{0.0f}; ///< of the cell's centre, by corner
     };
 
@@ -43,6 +43,7 @@ public:
 
     /// The direction to the viewer, of length 1.
     glm::vec3 towards(std::size_t view) const { return glm::vec3(_grids[view].towards); }
+    double cellSize(std::size_t view) const { return _grids[view].cell; } ///< the length of a cell's side
     /// One element per cell of a view, in [0, viewCount).
     std::vector<Seen> seen(std::size_t view, const Surface& surface) const;
     /// The number of cells of all views that the surface covers.

@@ -151,7 +151,7 @@ TEST_F(SharedPosesGLTest, posesAndLevelsTogetherStayWithinThePixelError)
         for (const BindingRecord::Draw& draw : _record->draws)
         {
             if (!draw.placed) continue; // poses of their own
-            const double ofLevel = draw.level == LodLevels::allTriangles ? 0.0 : std::ldexp(1.0, draw.level);
+            const double ofLevel = mesh().getLodLevels(_crowd->getAnimationSet())->foundError(draw.level);
             for (std::size_t i = draw.first; i < draw.first + draw.count; ++i, ++drawn)
             {
                 const PlacedInstances::Drawn& instance = draw.placed->drawn[i];

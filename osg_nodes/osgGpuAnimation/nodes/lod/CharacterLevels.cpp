@@ -39,33 +39,40 @@ std::size_t trianglesOf(const CharacterLevels::Parts& parts, const AnimationSet&
 
 } // namespace
 
-bool CharacterLevels::Part::operator==(const Part& other) const
+CharacterLevels::Part::Part(const SkinnedGeometry& mesh)
+    : mesh(&mesh), vertices(mesh.getVertexArray()), modifiedCount(vertices ? vertices->getModifiedCount() : 0),
+      state(mesh.getStateSet()), mask(mesh.getNodeMask())
 {
-    return mesh == other.mesh && vertices == other.vertices && modifiedCount == other.modifiedCount &&
-           state == other.state && mask == other.mask;
+    for (const osg::ref_ptr<osg::PrimitiveSet>& set : mesh.getPrimitiveSetList())
+        primitives.push_back({set, set->getModifiedCount()});
 }
 
-std::vector<CharacterLevels::Part> CharacterLevels::partsOf(const osg::Group& meshes)
+bool CharacterLevels::Part::isOf(const SkinnedGeometry& present) const
 {
-    std::vector<Part> parts;
-    forEachMesh(meshes,
-                [&](const SkinnedGeometry& mesh)
-                {
-                    const osg::Array* vertices = mesh.getVertexArray();
-                    parts.push_back({&mesh, vertices, vertices ? vertices->getModifiedCount() : 0, mesh.getStateSet(),
-                                     mesh.getNodeMask()});
-                });
-    return parts;
+    if (&present != mesh || present.getVertexArray() != vertices || present.getStateSet() != state) return false;
+    if (present.getNodeMask() != mask || (vertices && vertices->getModifiedCount() != modifiedCount)) return false;
+    const osg::Geometry::PrimitiveSetList& sets = present.getPrimitiveSetList();
+    return std::equal(sets.begin(), sets.end(), primitives.begin(), primitives.end(),
+                      [](const osg::ref_ptr<osg::PrimitiveSet>& set, const Primitives& known)
+                      { return set == known.set && set->getModifiedCount() == known.modifiedCount; });
 }
 
 bool CharacterLevels::isOf(const osg::Group& meshes, const AnimationSet& set) const
 {
-    return &set == _set && partsOf(meshes) == _parts;
+    bool isSame = &set == _set;
+    std::size_t count = 0;
+    forEachMesh(meshes,
+                [&](const SkinnedGeometry& mesh)
+                {
+                    isSame = isSame && count < _parts.size() && _parts[count].isOf(mesh);
+                    ++count;
+                });
+    return isSame && count == _parts.size();
 }
 
-CharacterLevels::CharacterLevels(const osg::Group& meshes, const AnimationSet& set)
-    : _set(&set), _parts(partsOf(meshes))
+CharacterLevels::CharacterLevels(const osg::Group& meshes, const AnimationSet& set) : _set(&set)
 {
+    forEachMesh(meshes, [&](const SkinnedGeometry& mesh) { _parts.emplace_back(mesh); });
     if (set.paletteSize() == 0 || _parts.size() > maxParts) return;
     std::vector<Parts> groups;
     for (const Part& part : _parts)

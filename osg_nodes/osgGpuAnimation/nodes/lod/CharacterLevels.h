@@ -27,7 +27,7 @@ public:
     /// Creates the levels of the meshes among the group's children (see forEachMesh()) in 0.1 to 2 s.
     CharacterLevels(const osg::Group& meshes, const AnimationSet& set);
 
-    /// True if the group has the same visible meshes with the same vertices and materials.
+    /// True if the group has the same visible meshes with the same vertices, primitives and StateSets.
     bool isOf(const osg::Group& meshes, const AnimationSet& set) const;
 
     /// The finest and the coarsest level; allTriangles: there are none.
@@ -50,13 +50,21 @@ private:
     /// What the levels of a part depend on.
     struct Part
     {
+        struct Primitives
+        {
+            osg::ref_ptr<const osg::PrimitiveSet> set;
+            unsigned int modifiedCount;
+        };
+
+        explicit Part(const SkinnedGeometry& mesh);
+        bool isOf(const SkinnedGeometry& present) const;
+
         osg::ref_ptr<const SkinnedGeometry> mesh;
         osg::ref_ptr<const osg::Array> vertices;
         unsigned int modifiedCount; ///< of the vertices
+        std::vector<Primitives> primitives;
         osg::ref_ptr<const osg::StateSet> state;
         osg::Node::NodeMask mask;
-
-        bool operator==(const Part& other) const;
     };
     struct Step
     {
@@ -73,7 +81,6 @@ private:
         const Step* at(int level) const; ///< null: the parts themselves
     };
 
-    static std::vector<Part> partsOf(const osg::Group& meshes);
     void merge(const Parts& parts, const AnimationSet& set, const std::vector<std::vector<AffineMatrix>>& palettes);
 
     const AnimationSet* _set; ///< not dereferenced

@@ -495,12 +495,11 @@ void AnimatedCrowd::cull(osgUtil::CullVisitor& visitor)
 
 Result<bool> AnimatedCrowd::setPixelError(float pixels)
 {
-    const Result<bool> prepared = LodRange::prepare(pixels, *this, getAnimationSet());
-    if (!prepared) return prepared;
+    if (const Result<bool> set = LodRange::prepare(pixels, *this, getAnimationSet()); !set) return set;
     _pixelError = pixels;
     if (_characterLevels && !_characterLevels->isOf(*this, getAnimationSet())) _characterLevels = nullptr;
     prepareSharedPoses();
-    return prepared;
+    return true;
 }
 
 void AnimatedCrowd::prepareSharedPoses()

@@ -177,7 +177,9 @@ Fault findFaultInMorphs(const SkinnedGeometry& mesh, const AnimationSet& set)
     return std::nullopt;
 }
 
-Fault findFault(const SkinnedGeometry& mesh, const AnimationSet& set)
+} // namespace
+
+std::optional<std::string> findFault(const SkinnedGeometry& mesh, const AnimationSet& set)
 {
     const osg::Array* positions = mesh.getVertexArray();
     if (!positions) return "no vertices";
@@ -188,14 +190,12 @@ Fault findFault(const SkinnedGeometry& mesh, const AnimationSet& set)
     return findFaultInMorphs(mesh, set);
 }
 
-} // namespace
-
 void removeUnfitMeshes(osg::Group& group, const AnimationSet& set)
 {
     std::vector<osg::ref_ptr<osg::Drawable>> unfit;
     const auto find = [&](SkinnedGeometry& mesh)
     {
-        const Fault fault = findFault(mesh, set);
+        const std::optional<std::string> fault = findFault(mesh, set);
         if (!fault) return;
         OSG_WARN << "osgGpuAnimation: mesh \"" << mesh.getName() << "\" has " << *fault << "; it is not drawn"
                  << std::endl;

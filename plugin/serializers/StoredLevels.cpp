@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "serializers/StoredLevels.h"
 
+#include "serializers/StoredAnimation.h"
+
+#include <osgGpuAnimation/nodes/lod/CharacterLevels.h>
 #include <osgGpuAnimation/nodes/lod/LodLevels.h>
+#include <osgGpuAnimation/nodes/mesh/PaletteEntryBounds.h>
 
 #include <osg/Notify>
 
@@ -60,6 +64,39 @@ void transferStep(ValueStream& stream, LodLevels::Step& step)
         transferIndices<std::uint16_t, osg::DrawElementsUShort>(stream, step.elements);
 }
 
+Checksum checksumOf(const osg::Group& meshes)
+{
+    Checksum checksum;
+    forEachMesh(meshes, [&](const SkinnedGeometry& mesh) { addMesh(checksum, mesh); });
+    return checksum;
+}
+
+void transferMerged(ValueStream& stream, CharacterLevels::Merged& merged)
+{
+    stream.list("Parts", merged.parts, [&](std::size_t& part) { stream.value(part); });
+    stream.list("Steps", merged.steps,
+                [&](CharacterLevels::Step& step)
+                {
+                    stream.property("Step").values(step.level, step.error).endLine();
+                    stream.open("Mesh", 1);
+                    stream.object(step.mesh);
+                    stream.close();
+                });
+}
+
+/// Of a mesh in place of parts.
+std::optional<std::string> findFault(const std::vector<CharacterLevels::Merged>& levels, const AnimationSet& set)
+{
+    for (std::size_t i = 0; i < levels.size(); ++i)
+        for (std::size_t step = 0; step < levels[i].steps.size(); ++step)
+        {
+            const SkinnedGeometry* mesh = levels[i].steps[step].mesh;
+            const std::optional<std::string> fault = mesh ? serializers::findFault(*mesh, set) : "no mesh";
+            if (fault) return "merged parts " + std::to_string(i) + ", step " + std::to_string(step) + ": " + *fault;
+        }
+    return std::nullopt;
+}
+
 void warn(const osg::Object& object, const char* kind, const std::string& message)
 {
     OSG_WARN << "osgGpuAnimation: the levels of detail of " << kind << " \"" << object.getName()
@@ -80,14 +117,28 @@ void transferLodLevels(ValueStream& stream, SkinnedGeometry& mesh)
     stream.property("Checksum").value(sum).endLine();
     stream.list("Levels", levels,
                 [&](LodLevels::Steps& steps)
-                {
-                    stream.list("Steps", steps, [&](LodLevels::Step& step) { transferStep(stream, step); });
-                });
+                { stream.list("Steps", steps, [&](LodLevels::Step& step) { transferStep(stream, step); }); });
     if (!stream.hasRead()) return;
     if (sum != checksum.value()) return warn(mesh, "mesh", "its vertices or primitives have changed");
     const Result<std::shared_ptr<const LodLevels>> restored = LodLevels::restored(mesh, std::move(levels));
     if (!restored) return warn(mesh, "mesh", restored.error().message);
     mesh.setLodLevels(restored.value());
+}
+
+void transferCharacterLevels(ValueStream& stream, AnimatedCrowd& crowd)
+{
+    const Checksum checksum = checksumOf(crowd);
+    std::int32_t sum = checksum.value();
+    std::vector<CharacterLevels::Merged> levels;
+    if (!stream.isReading()) levels = crowd.getCharacterLevels()->merged();
+    stream.property("Checksum").value(sum).endLine();
+    stream.list("Merged", levels, [&](CharacterLevels::Merged& merged) { transferMerged(stream, merged); });
+    if (!stream.hasRead()) return;
+    if (sum != checksum.value()) return warn(crowd, "crowd", "its meshes have changed");
+    if (const auto fault = findFault(levels, crowd.getAnimationSet())) return warn(crowd, "crowd", *fault);
+    const auto restored = CharacterLevels::restored(crowd, crowd.getAnimationSet(), std::move(levels));
+    if (!restored) return warn(crowd, "crowd", restored.error().message);
+    crowd.setCharacterLevels(restored.value());
 }
 
 } // namespace osgGpuAnimation::serializers

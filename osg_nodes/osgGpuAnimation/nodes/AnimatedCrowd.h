@@ -148,6 +148,10 @@ public:
     /// errors: see AnimatedCharacter::setPixelError().
     Result<bool> setPixelError(float pixels);
     float getPixelError() const { return _pixelError; } ///< pixels, at least 0
+    /// The levels of detail of the character as a whole, for the kit's own serializers. Null: without a pixel error.
+    /// setPixelError() creates them unless those that are set match the meshes.
+    const std::shared_ptr<const CharacterLevels>& getCharacterLevels() const { return _characterLevels; }
+    void setCharacterLevels(std::shared_ptr<const CharacterLevels> levels) { _characterLevels = std::move(levels); }
 
     /// Advances all instances by the time since the last update; the first call only stores the time.
     /// simulationTime: seconds. Event callbacks are called as those of AnimatedCharacter::update().
@@ -199,12 +203,12 @@ private:
     osg::Matrixd _fileToNode;
     osg::Vec3d _origin;
     bool _hasOrigin = false;
-    std::optional<double> _updateTime;             ///< seconds of simulation time
-    std::unique_ptr<WorldTargets> _worldTargets;   ///< never null
-    float _pixelError = 0.0f;                      ///< pixels
-    std::unique_ptr<SharedPoses> _sharedPoses;     ///< null: no pixel error
+    std::optional<double> _updateTime;                       ///< seconds of simulation time
+    std::unique_ptr<WorldTargets> _worldTargets;             ///< never null
+    float _pixelError = 0.0f;                                ///< pixels
+    std::unique_ptr<SharedPoses> _sharedPoses;               ///< null: no pixel error
     std::shared_ptr<const CharacterLevels> _characterLevels; ///< null: without a pixel error
-    std::shared_ptr<VariantMeshes> _variantMeshes; ///< never null, shared with the character and clones
+    std::shared_ptr<VariantMeshes> _variantMeshes;           ///< never null, shared with the character and clones
 };
 
 } // namespace osgGpuAnimation

@@ -149,6 +149,10 @@ public:
     /// default): all triangles and exact poses. Range, cost, limits and errors: see AnimatedCharacter::setPixelError().
     Result<bool> setPixelError(float pixels);
     float getPixelError() const { return _pixelError; } ///< pixels, at least 0
+    /// The levels of detail of the character as a whole, for the kit's own serializers. Null: without a pixel error.
+    /// setPixelError() creates them unless those that are set match the meshes.
+    const std::shared_ptr<const CharacterLevels>& getCharacterLevels() const { return _characterLevels; }
+    void setCharacterLevels(std::shared_ptr<const CharacterLevels> levels) { _characterLevels = std::move(levels); }
 
     /// Advances all instances by the time since the last update; the first call only stores the time.
     /// simulationTime: seconds. Event callbacks are called as those of AnimatedCharacter::update().

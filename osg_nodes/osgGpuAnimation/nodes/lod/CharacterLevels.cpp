@@ -22,7 +22,7 @@ constexpr std::size_t fewestTriangles = 8;
 constexpr double leastSimilarity = 0.97, usualPixel = 2.0;
 
 /// Of the parts at a level of their own.
-std::size_t trianglesOf(const CharacterLevels::Parts& parts, const AnimationSet& set, int level)
+std::size_t trianglesOf(const MergedMesh::Parts& parts, const AnimationSet& set, int level)
 {
     std::size_t indices = 0;
     for (const SkinnedGeometry* part : parts)
@@ -70,36 +70,47 @@ bool CharacterLevels::isOf(const osg::Group& meshes, const AnimationSet& set) co
     return isSame && count == _parts.size();
 }
 
-CharacterLevels::CharacterLevels(const osg::Group& meshes, const AnimationSet& set) : _set(&set)
+std::vector<CharacterLevels::Part> CharacterLevels::partsOf(const osg::Group& meshes)
 {
-    forEachMesh(meshes, [&](const SkinnedGeometry& mesh) { _parts.emplace_back(mesh); });
+    std::vector<Part> parts;
+    forEachMesh(meshes, [&](const SkinnedGeometry& mesh) { parts.emplace_back(mesh); });
+    return parts;
+}
+
+CharacterLevels::CharacterLevels(const osg::Group& meshes, const AnimationSet& set)
+    : CharacterLevels(partsOf(meshes), set)
+{
     if (set.paletteSize() == 0 || _parts.size() > maxParts) return;
-    std::vector<Parts> groups;
-    for (const Part& part : _parts)
+    std::vector<Indices> groups;
+    for (std::size_t part = 0; part < _parts.size(); ++part)
     {
-        if (!MergedMesh::accepts(*part.mesh)) continue;
+        const SkinnedGeometry& mesh = *_parts[part].mesh;
+        if (!MergedMesh::accepts(mesh)) continue;
         const auto alike =
             std::find_if(groups.begin(), groups.end(),
-                         [&](const Parts& group) { return MergedMesh::areAlike(*group.front(), *part.mesh); });
+                         [&](const Indices& group) { return MergedMesh::areAlike(*_parts[group.front()].mesh, mesh); });
         if (alike == groups.end())
-            groups.push_back({part.mesh});
+            groups.push_back({part});
         else
-            alike->push_back(part.mesh);
+            alike->push_back(part);
     }
     if (groups.empty()) return;
     std::vector<std::vector<AffineMatrix>> palettes;
     for (const PoseInstruction& pose : keyPoses(set, LodLevels::poseCount))
         Pose::evaluate(set, pose, AffineMatrix(), palettes.emplace_back());
-    for (const Parts& group : groups)
+    for (const Indices& group : groups)
         merge(group, set, palettes);
 }
 
-void CharacterLevels::merge(const Parts& parts, const AnimationSet& set,
+void CharacterLevels::merge(const Indices& indices, const AnimationSet& set,
                             const std::vector<std::vector<AffineMatrix>>& palettes)
 {
+    MergedMesh::Parts parts;
+    for (const std::size_t part : indices)
+        parts.push_back(_parts[part].mesh);
     MergedMesh mesh(parts, palettes);
     if (!mesh.isValid()) return;
-    Merged merged{parts, {}};
+    Merged merged{indices, {}};
     std::size_t kept = std::numeric_limits<std::size_t>::max();
     const int coarsest = LodLevels::levelOf(coarsestShare * mesh.size());
     for (int level = LodLevels::levelOf(finestShare * mesh.size()); level <= coarsest; ++level)
@@ -118,11 +129,48 @@ void CharacterLevels::merge(const Parts& parts, const AnimationSet& set,
         merged.steps.push_back({from, made.mesh, made.error});
         if (kept <= fewestTriangles) break;
     }
-    if (merged.steps.empty()) return;
+    if (!merged.steps.empty()) include(std::move(merged));
+}
+
+void CharacterLevels::include(Merged merged)
+{
     const int first = merged.steps.front().level;
     _finest = _finest == LodLevels::allTriangles ? first : std::min(_finest, first);
     _coarsest = std::max(_coarsest, merged.steps.back().level);
-    _merged.push_back(merged);
+    _merged.push_back(std::move(merged));
+}
+
+Result<std::shared_ptr<const CharacterLevels>>
+CharacterLevels::restored(const osg::Group& meshes, const AnimationSet& set, std::vector<Merged> merged)
+{
+    const std::shared_ptr<CharacterLevels> levels(new CharacterLevels(partsOf(meshes), set));
+    for (std::size_t i = 0; i < merged.size(); ++i)
+        if (const Result<bool> taken = levels->restore(std::move(merged[i])); !taken)
+            return Error{"merged parts " + std::to_string(i) + ": " + taken.error().message};
+    return std::shared_ptr<const CharacterLevels>(levels);
+}
+
+Result<bool> CharacterLevels::restore(Merged merged)
+{
+    std::size_t first = 0;
+    for (const std::size_t part : merged.parts)
+    {
+        if (part < first || part >= _parts.size())
+            return Error{"part " + std::to_string(part) + " of " + std::to_string(_parts.size())};
+        if (isMerged(*_parts[part].mesh, std::numeric_limits<int>::max()))
+            return Error{"part " + std::to_string(part) + " a second time"};
+        first = part + 1;
+    }
+    if (merged.parts.empty() || merged.steps.empty()) return Error{"no parts or no levels"};
+    int previous = LodLevels::allTriangles;
+    for (const Step& step : merged.steps)
+    {
+        if (!LodLevels::mayFollow(previous, step.level, step.error))
+            return Error{"level " + std::to_string(step.level) + " with an error of " + std::to_string(step.error)};
+        previous = step.level;
+    }
+    include(std::move(merged));
+    return true;
 }
 
 const CharacterLevels::Step* CharacterLevels::Merged::at(int level) const
@@ -143,11 +191,10 @@ double CharacterLevels::foundError(int level) const
 
 bool CharacterLevels::isMerged(const SkinnedGeometry& part, int level) const
 {
+    const auto isPart = [&](std::size_t index) { return _parts[index].mesh == &part; };
     return std::any_of(_merged.begin(), _merged.end(),
-                       [&](const Merged& merged) {
-                           return merged.at(level) &&
-                                  std::find(merged.parts.begin(), merged.parts.end(), &part) != merged.parts.end();
-                       });
+                       [&](const Merged& merged)
+                       { return merged.at(level) && std::any_of(merged.parts.begin(), merged.parts.end(), isPart); });
 }
 
 void CharacterLevels::releaseGLObjects(osg::State* state) const

@@ -8,7 +8,9 @@
 #include <osg/Group>
 #include <osg/StateSet>
 
+#include <cstddef>
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace osgGpuAnimation
@@ -21,11 +23,30 @@ namespace osgGpuAnimation
 class CharacterLevels
 {
 public:
-    using Parts = std::vector<const SkinnedGeometry*>;
     static constexpr std::size_t maxParts = 256; ///< a character of more has no such levels
 
     /// Creates the levels of the meshes among the group's children (see forEachMesh()) in 0.1 to 2 s.
     CharacterLevels(const osg::Group& meshes, const AnimationSet& set);
+
+    struct Step
+    {
+        int level = LodLevels::allTriangles; ///< and coarser ones
+        osg::ref_ptr<SkinnedGeometry> mesh;
+        double error = 0.0; ///< see foundError()
+    };
+    /// The meshes of several parts by level.
+    struct Merged
+    {
+        std::vector<std::size_t> parts; ///< ascending, by their order among the meshes of forEachMesh()
+        std::vector<Step> steps;        ///< by ascending levels
+
+        const Step* at(int level) const; ///< null: the parts themselves
+    };
+    /// The levels that a file contains. merged: from merged() of the same meshes. They are untrusted, except for the
+    /// steps' meshes: an error names the first element that does not fit.
+    static Result<std::shared_ptr<const CharacterLevels>> restored(const osg::Group& meshes, const AnimationSet& set,
+                                                                   std::vector<Merged> merged);
+    const std::vector<Merged>& merged() const { return _merged; }
 
     /// True if the group has the same visible meshes with the same vertices, primitives and StateSets.
     bool isOf(const osg::Group& meshes, const AnimationSet& set) const;
@@ -66,22 +87,13 @@ private:
         osg::ref_ptr<const osg::StateSet> state;
         osg::Node::NodeMask mask;
     };
-    struct Step
-    {
-        int level; ///< and coarser ones
-        osg::ref_ptr<SkinnedGeometry> mesh;
-        double error;
-    };
-    /// The meshes of several parts by level.
-    struct Merged
-    {
-        Parts parts;
-        std::vector<Step> steps; ///< by ascending levels
+    using Indices = std::vector<std::size_t>; ///< of parts
 
-        const Step* at(int level) const; ///< null: the parts themselves
-    };
-
-    void merge(const Parts& parts, const AnimationSet& set, const std::vector<std::vector<AffineMatrix>>& palettes);
+    static std::vector<Part> partsOf(const osg::Group& meshes);
+    CharacterLevels(std::vector<Part> parts, const AnimationSet& set) : _set(&set), _parts(std::move(parts)) {}
+    Result<bool> restore(Merged merged);
+    void merge(const Indices& indices, const AnimationSet& set, const std::vector<std::vector<AffineMatrix>>& palettes);
+    void include(Merged merged);
 
     const AnimationSet* _set; ///< not dereferenced
     std::vector<Part> _parts;

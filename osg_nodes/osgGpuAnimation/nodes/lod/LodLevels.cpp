@@ -234,11 +234,15 @@ double LodLevels::errorOf(int level)
     return level == allTriangles ? 0.0 : (1.0 + mostOutset) * std::exp2(0.5 * level);
 }
 
-LodLevels::LodLevels(const osg::Geometry& mesh, const AnimationSet& set, const Skinning& skin)
+LodLevels::LodLevels(const osg::Geometry& mesh)
     : _vertices(mesh.getVertexArray()), _modifiedCount(_vertices ? _vertices->getModifiedCount() : 0)
 {
     for (const osg::ref_ptr<osg::PrimitiveSet>& primitives : mesh.getPrimitiveSetList())
         _primitives.push_back({primitives, primitives->getModifiedCount(), {}});
+}
+
+LodLevels::LodLevels(const osg::Geometry& mesh, const AnimationSet& set, const Skinning& skin) : LodLevels(mesh)
+{
     const std::size_t vertexCount = _vertices ? _vertices->getNumElements() : 0;
     if (vertexCount > maxVertices || !isWorthPoses(mesh, set)) return;
     const PosedSurface surface = surfaceOf(mesh, set, skin);
@@ -278,10 +282,58 @@ void LodLevels::addSteps(const PosedSurface& surface, int finest, int coarsest, 
         const double outset = std::clamp(lost, 0.0, mostOutset * limit);
         primitives.steps.push_back({level, elements, static_cast<float>(outset), found + outset});
     }
-    if (primitives.steps.empty()) return;
-    const int first = primitives.steps.front().level;
+    includeRange(primitives.steps);
+}
+
+void LodLevels::includeRange(const Steps& steps)
+{
+    if (steps.empty()) return;
+    const int first = steps.front().level;
     _finest = _finest == allTriangles ? first : std::min(_finest, first);
-    _coarsest = std::max(_coarsest, primitives.steps.back().level);
+    _coarsest = std::max(_coarsest, steps.back().level);
+}
+
+bool LodLevels::mayFollow(int previous, int level, double error)
+{
+    // Cull computes with floats.
+    return level > previous && std::isnormal(static_cast<float>(errorOf(level))) && error >= 0.0 &&
+           std::isfinite(static_cast<float>(error));
+}
+
+Result<std::shared_ptr<const LodLevels>> LodLevels::restored(const osg::Geometry& mesh, std::vector<Steps> steps)
+{
+    if (steps.size() != mesh.getNumPrimitiveSets())
+        return Error{std::to_string(steps.size()) + " lists of levels for " +
+                     std::to_string(mesh.getNumPrimitiveSets()) + " primitive sets"};
+    for (const osg::ref_ptr<osg::PrimitiveSet>& primitives : mesh.getPrimitiveSetList())
+        if (!primitives) return Error{"a missing primitive set"};
+    const std::shared_ptr<LodLevels> levels(new LodLevels(mesh));
+    for (std::size_t i = 0; i < steps.size(); ++i)
+        if (const Result<bool> taken = levels->restore(i, std::move(steps[i])); !taken) return taken.error();
+    return std::shared_ptr<const LodLevels>(levels);
+}
+
+Result<bool> LodLevels::restore(std::size_t primitiveSet, Steps steps)
+{
+    const std::size_t vertexCount = _vertices ? _vertices->getNumElements() : 0;
+    int previous = allTriangles;
+    for (std::size_t i = 0; i < steps.size(); ++i)
+    {
+        const Step& step = steps[i];
+        const std::string subject = "primitive set " + std::to_string(primitiveSet) + ", step " + std::to_string(i);
+        if (!mayFollow(previous, step.level, step.error) || !(step.outset >= 0.0f && std::isfinite(step.outset)))
+            return Error{subject + ": level " + std::to_string(step.level) + " with an error of " +
+                         std::to_string(step.error) + " and an outset of " + std::to_string(step.outset)};
+        const std::size_t count = step.elements->getNumIndices();
+        if (count == 0 || trianglesOf(*step.elements, vertexCount).size() != count)
+            return Error{subject + ": " + std::to_string(count) + " indices that are not whole triangles of " +
+                         std::to_string(vertexCount) + " vertices"};
+        step.elements->setElementBufferObject(_buffer);
+        previous = step.level;
+    }
+    includeRange(steps);
+    _primitives[primitiveSet].steps = std::move(steps);
+    return true;
 }
 
 bool LodLevels::isOf(const osg::Geometry& mesh) const
@@ -340,9 +392,9 @@ std::shared_ptr<const LodLevels> MeshLod::of(const osg::Geometry& mesh, const An
     return made;
 }
 
-void MeshLod::forget()
+void MeshLod::set(std::shared_ptr<const LodLevels> levels)
 {
-    std::atomic_store(&_levels, std::shared_ptr<const LodLevels>());
+    std::atomic_store(&_levels, std::move(levels));
 }
 
 } // namespace osgGpuAnimation

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/animation/Result.h>
 
 #include <osg/Geometry>
 #include <osg/State>
@@ -61,6 +62,23 @@ public:
     /// The cost is proportional to the mesh's points times poses, see MeshSimplifier.
     LodLevels(const osg::Geometry& mesh, const AnimationSet& set, const Skinning& skin);
 
+    /// The reduced triangles of a primitive set.
+    struct Step
+    {
+        int level = allTriangles; ///< and coarser ones
+        osg::ref_ptr<osg::DrawElements> elements;
+        float outset = 0.0f; ///< see Reduced
+        double error = 0.0;  ///< see Reduced
+    };
+    using Steps = std::vector<Step>; ///< by ascending levels
+    /// The levels that a file contains. steps: by primitive set, from steps() of the same mesh. They are untrusted: an
+    /// error names the first step that does not fit the mesh.
+    static Result<std::shared_ptr<const LodLevels>> restored(const osg::Geometry& mesh, std::vector<Steps> steps);
+    /// primitiveSet: of the mesh.
+    const Steps& steps(std::size_t primitiveSet) const { return _primitives[primitiveSet].steps; }
+    /// True if a step with that level and error may follow the previous level (allTriangles: none).
+    static bool mayFollow(int previous, int level, double error);
+
     /// True if the levels match the mesh's present arrays and primitives.
     bool isOf(const osg::Geometry& mesh) const;
 
@@ -86,20 +104,16 @@ public:
     void resizeGLObjectBuffers(unsigned int maxSize) const;
 
 private:
-    struct Step
-    {
-        int level; ///< and coarser ones
-        osg::ref_ptr<osg::DrawElements> elements;
-        float outset;
-        double error;
-    };
     struct Primitives
     {
         osg::ref_ptr<const osg::PrimitiveSet> original;
         unsigned int modifiedCount; ///< of the original
-        std::vector<Step> steps;    ///< by ascending levels
+        Steps steps;
     };
 
+    explicit LodLevels(const osg::Geometry& mesh); ///< without steps
+    Result<bool> restore(std::size_t primitiveSet, Steps steps);
+    void includeRange(const Steps& steps);
     void addSteps(const PosedSurface& surface, int finest, int coarsest, Primitives& primitives);
 
     osg::ref_ptr<const osg::Array> _vertices;
@@ -124,8 +138,9 @@ public:
                                         const LodLevels::Skinning& skin) const;
     /// Null: not created, or the mesh has changed.
     std::shared_ptr<const LodLevels> known(const osg::Geometry& mesh) const;
+    void set(std::shared_ptr<const LodLevels> levels); ///< in place of those that of() would create
     /// Discards the levels after a change of influences, morph targets or clips.
-    void forget();
+    void forget() { set(nullptr); }
 
 private:
     mutable std::mutex _mutex;

@@ -28,7 +28,7 @@ constexpr unsigned int partCount = 4;
 constexpr int across = 8; ///< instances per row and per column
 constexpr float pixelError = 0.5f;
 
-/// Stripes across the tube, dark and light.
+/// From dark to light along the tube.
 osg::ref_ptr<osg::Texture2D> makePicture()
 {
     osg::ref_ptr<osg::Image> image = new osg::Image;
@@ -36,7 +36,7 @@ osg::ref_ptr<osg::Texture2D> makePicture()
     for (int column = 0; column < 64; ++column)
         for (int channel = 0; channel < 3; ++channel)
             image->data(static_cast<unsigned int>(column))[channel] =
-                static_cast<unsigned char>((column % 2 ? 40 : 160) + 40 * channel);
+                static_cast<unsigned char>(60 + 2 * column + 20 * channel);
     osg::ref_ptr<osg::Texture2D> picture = new osg::Texture2D(image);
     picture->setFilter(osg::Texture::MAG_FILTER, osg::Texture::LINEAR);
     return picture;

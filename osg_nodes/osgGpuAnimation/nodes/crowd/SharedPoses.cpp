@@ -24,7 +24,6 @@ namespace
 
 /// The errors of a band have one level of detail, as without shared poses; the rest of the error is for poses. A band
 /// is an eighth of the errors between two powers of two: its number is the upper bits of a float.
-constexpr float mostOfLevel = 0.85f; ///< the share of an error that a level of detail may have
 constexpr std::uint32_t bitsInBand = 20;
 constexpr std::size_t bandCount = std::size_t(1) << (31 - bitsInBand);
 
@@ -274,7 +273,7 @@ private:
         Band& band = _storage.bands[number];
         if (!band.shown)
         {
-            const int level = _scale.levelWithin(mostOfLevel * leastErrorOf(number));
+            const int level = _scale.levelWithin(leastErrorOf(number));
             band = {&_storage.shownOfLevel[level], static_cast<float>(_scale.foundError(level))};
         }
         return band;

@@ -17,6 +17,8 @@ namespace
 constexpr double finestShare = 1.0 / 90.0, coarsestShare = 0.25;
 constexpr double worthwhile = 0.9; ///< a level has at most this share of the triangles before
 constexpr std::size_t fewestTriangles = 8;
+// The error is measured in more poses than that of a mesh's own levels, as long as there are not more vertices to pose.
+constexpr std::size_t mostPoses = 48, posedVertices = 150'000;
 // A mesh is used from the level on at which its picture has that structural similarity, with pixels that are twice the
 // level's error: a pixel error of 0.5.
 constexpr double leastSimilarity = 0.97, usualPixel = 2.0;
@@ -96,7 +98,11 @@ CharacterLevels::CharacterLevels(const osg::Group& meshes, const AnimationSet& s
     }
     if (groups.empty()) return;
     std::vector<std::vector<AffineMatrix>> palettes;
-    for (const PoseInstruction& pose : keyPoses(set, LodLevels::poseCount))
+    std::size_t vertices = 1;
+    for (const Part& part : _parts)
+        vertices += part.mesh->getVertexCount();
+    for (const PoseInstruction& pose :
+         keyPoses(set, std::clamp(posedVertices / vertices, LodLevels::poseCount, mostPoses)))
         Pose::evaluate(set, pose, AffineMatrix(), palettes.emplace_back());
     for (const Indices& group : groups)
         merge(group, set, palettes);
@@ -117,13 +123,14 @@ void CharacterLevels::merge(const Indices& indices, const AnimationSet& set,
     {
         mesh.reduce(LodLevels::errorOf(level));
         if (static_cast<double>(mesh.triangleCount()) > worthwhile * static_cast<double>(kept)) continue;
+        if (merged.steps.empty() && mesh.triangleCount() > trianglesOf(parts, set, level)) continue;
         const MergedMesh::Made made = mesh.make(LodLevels::errorOf(level));
         if (!made.mesh) continue;
         kept = mesh.triangleCount();
         int from = level;
         while (from <= coarsest && mesh.similarity(usualPixel * LodLevels::errorOf(from)) < leastSimilarity)
             ++from;
-        if (from > coarsest || (merged.steps.empty() && kept >= trianglesOf(parts, set, from))) continue;
+        if (from > coarsest || (merged.steps.empty() && kept > trianglesOf(parts, set, from))) continue;
         while (!merged.steps.empty() && merged.steps.back().level >= from)
             merged.steps.pop_back();
         merged.steps.push_back({from, made.mesh, made.error});

@@ -52,15 +52,19 @@ bool hasTextureTransform(const osg::StateSet& state)
            state.getDefineList().count("MATERIAL_TEXTURE_TRANSFORM") > 0;
 }
 
-osg::Vec4 texelAt(const osg::Image& image, const osg::Vec2& place)
+osg::Vec4 texelAt(const osg::Texture2D& texture, const osg::Vec2& place)
 {
-    const auto column = [](float coordinate, int size)
+    const osg::Image& image = *texture.getImage();
+    const auto column = [&](float coordinate, osg::Texture::WrapParameter wrap, int size)
     {
-        const float share = coordinate - std::floor(coordinate); // NaN: the first
-        return std::min(static_cast<int>(share >= 0.0f ? share * static_cast<float>(size) : 0.0f), size - 1);
+        const bool repeats =
+            texture.getWrap(wrap) == osg::Texture::REPEAT || texture.getWrap(wrap) == osg::Texture::MIRROR;
+        const float share = repeats ? coordinate - std::floor(coordinate) : std::min(coordinate, 1.0f);
+        const float texel = share >= 0.0f ? share * static_cast<float>(size) : 0.0f; // NaN: the first
+        return static_cast<unsigned int>(std::min(static_cast<int>(texel), size - 1));
     };
-    const unsigned char* texel = image.data(static_cast<unsigned int>(column(place.x(), image.s())),
-                                            static_cast<unsigned int>(column(place.y(), image.t())));
+    const unsigned char* texel = image.data(column(place.x(), osg::Texture::WRAP_S, image.s()),
+                                            column(place.y(), osg::Texture::WRAP_T, image.t()));
     const unsigned int components = osg::Image::computeNumComponents(image.getPixelFormat());
     const auto component = [&](unsigned int i) { return static_cast<float>(texel[i]) / 255.0f; };
     if (components < 3) return {component(0), component(0), component(0), 1.0f};
@@ -106,7 +110,7 @@ std::optional<SurfaceColor> SurfaceColor::of(const SkinnedGeometry& mesh)
     const std::optional<PbrMaterial> material = pbrMaterialOf(*state);
     color._isLinear = material.has_value();
     const osg::StateAttribute* base = state->getTextureAttribute(0, osg::StateAttribute::TEXTURE);
-    std::vector<std::pair<const osg::StateAttribute*, osg::ref_ptr<const osg::Image>*>> maps;
+    std::vector<std::pair<const osg::StateAttribute*, osg::ref_ptr<const osg::Texture2D>*>> maps;
     if (base && !isWhiteTexture(base)) maps.emplace_back(base, &color._baseColor);
     if (material)
     {
@@ -116,11 +120,11 @@ std::optional<SurfaceColor> SurfaceColor::of(const SkinnedGeometry& mesh)
         if (const osg::Texture2D* map = material->metallicRoughnessMap.texture)
             maps.emplace_back(map, &color._metallicRoughness);
     }
-    for (const auto& [texture, image] : maps)
+    for (const auto& [texture, map] : maps)
     {
         const auto* picture = dynamic_cast<const osg::Texture2D*>(texture);
         if (!isReadable(picture)) return {};
-        *image = picture->getImage();
+        *map = picture;
     }
     if (maps.empty()) return color;
     color._coordinates = dynamic_cast<const osg::Vec2Array*>(mesh.getTexCoordArray(0));

@@ -4,8 +4,8 @@
 #include <osgGpuAnimation/nodes/PbrMaterial.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
-#include <osg/Image>
 #include <osg/StateSet>
+#include <osg/Texture2D>
 #include <osg/Vec2>
 #include <osg/Vec4>
 
@@ -46,9 +46,9 @@ private:
     SurfaceColor() = default;
 
     osg::ref_ptr<const osg::StateSet> _state;
-    osg::ref_ptr<const osg::Image> _baseColor, _metallicRoughness; ///< null: white
-    osg::ref_ptr<const osg::Vec2Array> _coordinates;               ///< null: none
-    osg::ref_ptr<const osg::Array> _colors;                        ///< null: white
+    osg::ref_ptr<const osg::Texture2D> _baseColor, _metallicRoughness; ///< null: white
+    osg::ref_ptr<const osg::Vec2Array> _coordinates;                   ///< null: none
+    osg::ref_ptr<const osg::Array> _colors;                            ///< null: white
     bool _isLinear = false;
 };
 

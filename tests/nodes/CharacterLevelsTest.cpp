@@ -22,7 +22,7 @@ namespace osgGpuAnimation
 namespace
 {
 
-constexpr unsigned int partCount = 4;
+constexpr unsigned int partCount = 16;
 constexpr int coarsestOfAll = 99;
 
 /// A character of a tube in parts.
@@ -34,6 +34,7 @@ struct Arm
 
     Arm()
     {
+        parts.front()->getStateSet()->setMode(GL_CULL_FACE, osg::StateAttribute::ON); // nothing is seen inside
         for (const osg::ref_ptr<SkinnedGeometry>& part : parts)
             meshes->addChild(part);
     }
@@ -71,6 +72,7 @@ osg::ref_ptr<osg::StateSet> stateOf(const osg::Vec4& color)
     osg::ref_ptr<osg::Material> material = new osg::Material;
     material->setDiffuse(osg::Material::FRONT_AND_BACK, color);
     state->setAttribute(material);
+    state->setMode(GL_CULL_FACE, osg::StateAttribute::ON); // the tubes are open: nothing is seen inside
     applyCharacterProgram(*state);
     return state;
 }
@@ -97,15 +99,14 @@ const MaterialsCase materialsCases[] = {
      [](Arm& arm)
      {
          for (std::size_t part = 0; part < partCount; ++part)
-             arm.parts[part]->setStateSet(stateOf({1, part % 2 ? 1.0f : 0.0f, 0, 1}));
+             arm.parts[part]->setStateSet(stateOf({1, part < partCount / 2 ? 1.0f : 0.0f, 0, 1}));
      }},
-    {"one is two-sided", 2,
+    {"two masks", 2,
      [](Arm& arm)
      {
-         arm.parts[1]->setStateSet(new osg::StateSet(*arm.parts[0]->getStateSet()));
-         arm.parts[0]->getStateSet()->setMode(GL_CULL_FACE, osg::StateAttribute::ON);
+         for (std::size_t part = 0; part < partCount / 2; ++part)
+             arm.parts[part]->setNodeMask(2);
      }},
-    {"two masks", 2, [](Arm& arm) { arm.parts[2]->setNodeMask(2); }},
 };
 
 TEST(CharacterLevelsTest, partsOfOneMaterialBecomeOneMesh)
@@ -227,7 +228,7 @@ TEST(CharacterLevelsTest, haveFewerTrianglesLevelByLevel)
         before = trianglesAt(level);
     }
     EXPECT_LE(trianglesAt(levels.finest()), tubeTriangles / 8);
-    EXPECT_LE(before, 12u);
+    EXPECT_LE(before, tubeTriangles / 40) << "coarser ones do not look like the tube";
     EXPECT_GE(before, 2u);
     EXPECT_EQ(trianglesAt(coarsestOfAll), before);
 }
@@ -414,7 +415,7 @@ TEST(CharacterLevelsTest, oddMeshesTakeBoundedTime)
         const std::clock_t begin = std::clock(); // CPU time: other programs may run
         const CharacterLevels levels(*meshes, *set);
         const double seconds = double(std::clock() - begin) / CLOCKS_PER_SEC;
-        EXPECT_LT(seconds, 10.0);
+        EXPECT_LT(seconds, 30.0) << "by the square of the vertices it would take minutes";
         if (limit.made != Made::Either)
         {
             EXPECT_EQ(levels.finest() != LodLevels::allTriangles, limit.made == Made::Levels);

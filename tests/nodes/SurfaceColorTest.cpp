@@ -35,7 +35,10 @@ osg::ref_ptr<osg::Texture2D> makeMap(GLenum format = GL_RGB, const Bytes& bytes 
     image->allocateImage(2, 2, 1, format, GL_UNSIGNED_BYTE);
     std::fill_n(image->data(), image->getTotalSizeInBytes(), static_cast<unsigned char>(255));
     std::copy_n(bytes.begin(), std::min<std::size_t>(bytes.size(), image->getTotalSizeInBytes()), image->data());
-    return new osg::Texture2D(image);
+    osg::ref_ptr<osg::Texture2D> map = new osg::Texture2D(image);
+    for (const auto wrap : {osg::Texture::WRAP_S, osg::Texture::WRAP_T})
+        map->setWrap(wrap, osg::Texture::REPEAT);
+    return map;
 }
 
 /// A lit square with a picture: vertex i shows texel i of the lower left, lower right, upper right and upper left ones.

@@ -82,7 +82,10 @@ std::vector<CharacterLevels::Part> CharacterLevels::partsOf(const osg::Group& me
 CharacterLevels::CharacterLevels(const osg::Group& meshes, const AnimationSet& set)
     : CharacterLevels(partsOf(meshes), set)
 {
-    if (set.paletteSize() == 0 || _parts.size() > maxParts) return;
+    std::size_t vertices = 1;
+    for (const Part& part : _parts)
+        vertices += part.mesh->getVertexCount();
+    if (set.paletteSize() == 0 || _parts.size() > maxParts || vertices > maxVertices) return;
     std::vector<Indices> groups;
     for (std::size_t part = 0; part < _parts.size(); ++part)
     {
@@ -98,9 +101,6 @@ CharacterLevels::CharacterLevels(const osg::Group& meshes, const AnimationSet& s
     }
     if (groups.empty()) return;
     std::vector<std::vector<AffineMatrix>> palettes;
-    std::size_t vertices = 1;
-    for (const Part& part : _parts)
-        vertices += part.mesh->getVertexCount();
     for (const PoseInstruction& pose :
          keyPoses(set, std::clamp(posedVertices / vertices, LodLevels::poseCount, mostPoses)))
         Pose::evaluate(set, pose, AffineMatrix(), palettes.emplace_back());

@@ -23,7 +23,8 @@ namespace osgGpuAnimation
 class CharacterLevels
 {
 public:
-    static constexpr std::size_t maxParts = 256; ///< a character of more has no such levels
+    static constexpr std::size_t maxParts = 256;          ///< a character of more has no such levels
+    static constexpr std::size_t maxVertices = 1'000'000; ///< a character of more has no such levels
 
     /// Creates the levels of the meshes among the group's children (see forEachMesh()) in 0.1 to 2 s.
     CharacterLevels(const osg::Group& meshes, const AnimationSet& set);

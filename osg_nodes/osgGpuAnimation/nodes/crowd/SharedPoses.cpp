@@ -125,6 +125,7 @@ public:
             out.resize(static_cast<std::size_t>(end - out.data()));
             if (out.size() > first) function(level, first, out.size() - first);
         }
+        out.shrink_to_fit(); // the list is kept; of several batches each has a part of the instances
     }
 
 private:

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "serializers/StoredAnimation.h"
+#include "serializers/StoredLevels.h"
 
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
+#include <osgGpuAnimation/nodes/lod/CharacterLevels.h>
 #include <osgGpuAnimation/nodes/OsgMatrix.h>
 
 namespace osgGpuAnimation::serializers
@@ -23,7 +25,14 @@ enum Version : std::int32_t
     withPixelError = 2,
     withUpdateRate = 3, ///< no longer written
     withFileToNode = 4, ///< and pixel error
+    withLevels = 5,     ///< and all of the above, except for the update rate
 };
+
+bool hasLevels(const AnimatedCrowd& crowd)
+{
+    const std::shared_ptr<const CharacterLevels>& levels = crowd.getCharacterLevels();
+    return levels && levels->isOf(crowd, crowd.getAnimationSet());
+}
 
 /// The playback data after an instance's placement.
 enum class Playback
@@ -94,15 +103,17 @@ void transferInstances(ValueStream& stream, AnimatedCrowd& crowd)
 {
     std::int32_t version = crowd.getPixelError() > 0.0f ? withPixelError : plain;
     if (!crowd.getFileToNode().isIdentity()) version = withFileToNode;
+    if (hasLevels(crowd)) version = withLevels;
     osg::Vec3d origin = crowd.getOrigin();
     double pixelError = static_cast<double>(crowd.getPixelError()), updatePixels = 0.0;
     std::int32_t updatesEvery = 1;
-    stream.limited("the version of a crowd", version, plain, withFileToNode);
+    stream.limited("the version of a crowd", version, plain, withLevels);
     stream.values(origin.x(), origin.y(), origin.z());
     if (version >= withPixelError) stream.value(pixelError);
     if (version == withUpdateRate) stream.values(updatesEvery, updatePixels);
-    if (version == withFileToNode) transferFileToNode(stream, crowd);
+    if (version >= withFileToNode) transferFileToNode(stream, crowd);
     stream.endLine();
+    if (version == withLevels) transferCharacterLevels(stream, crowd);
     if (stream.hasRead())
     {
         if (!crowd.setOrigin(origin)) stream.fail("a crowd: its origin is not finite");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "serializers/StoredAnimation.h"
+#include "serializers/StoredLevels.h"
 
 #include <osgGpuAnimation/nodes/CharacterProgram.h>
 #include <osgGpuAnimation/nodes/mesh/PaletteEntryBounds.h>
@@ -72,11 +73,15 @@ void transferMorphTargets(ValueStream& stream, SkinnedGeometry& mesh)
     if (stream.hasRead()) mesh.setMorphTargets(morph, entry, std::move(targets));
 }
 
-/// Earlier versions stored whether a mesh was skinned once a frame. It is read and dropped.
-void dropSkinning(ValueStream& stream, SkinnedGeometry&)
+/// In place of the skinning mode: the levels of detail follow.
+constexpr std::int32_t withLevels = -2;
+
+/// Earlier versions stored here whether a mesh was skinned once a frame. That is read and dropped.
+void transferLevels(ValueStream& stream, SkinnedGeometry& mesh)
 {
-    std::int32_t skinning = 0;
-    stream.value(skinning);
+    std::int32_t form = withLevels;
+    stream.value(form).endLine();
+    if (form == withLevels) transferLodLevels(stream, mesh);
 }
 
 /// A stored texture does not say how it is uploaded.
@@ -93,7 +98,9 @@ void addMeshProperties(osgDB::ObjectWrapper* wrapper)
     addProperty(wrapper, "Influences", &transferInfluences);
     addProperty<SkinnedGeometry>(wrapper, "MorphTargets", &transferMorphTargets,
                                  [](const SkinnedGeometry& mesh) { return !mesh.getMorphTargets().empty(); });
-    addProperty<SkinnedGeometry>(wrapper, "Skinning", &dropSkinning, [](const SkinnedGeometry&) { return false; });
+    // The property keeps the name of its first content: a binary file has no place for another one.
+    addProperty<SkinnedGeometry>(wrapper, "Skinning", &transferLevels,
+                                 [](const SkinnedGeometry& mesh) { return mesh.findLodLevels() != nullptr; });
     wrapper->addFinishedObjectReadCallback(new MipmapsAfterReading);
 }
 
@@ -170,7 +177,9 @@ Fault findFaultInMorphs(const SkinnedGeometry& mesh, const AnimationSet& set)
     return std::nullopt;
 }
 
-Fault findFault(const SkinnedGeometry& mesh, const AnimationSet& set)
+} // namespace
+
+std::optional<std::string> findFault(const SkinnedGeometry& mesh, const AnimationSet& set)
 {
     const osg::Array* positions = mesh.getVertexArray();
     if (!positions) return "no vertices";
@@ -181,14 +190,12 @@ Fault findFault(const SkinnedGeometry& mesh, const AnimationSet& set)
     return findFaultInMorphs(mesh, set);
 }
 
-} // namespace
-
 void removeUnfitMeshes(osg::Group& group, const AnimationSet& set)
 {
     std::vector<osg::ref_ptr<osg::Drawable>> unfit;
     const auto find = [&](SkinnedGeometry& mesh)
     {
-        const Fault fault = findFault(mesh, set);
+        const std::optional<std::string> fault = findFault(mesh, set);
         if (!fault) return;
         OSG_WARN << "osgGpuAnimation: mesh \"" << mesh.getName() << "\" has " << *fault << "; it is not drawn"
                  << std::endl;

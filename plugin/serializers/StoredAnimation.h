@@ -5,10 +5,13 @@
 
 #include <osgGpuAnimation/animation/AnimationController.h>
 #include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
 #include <osg/Group>
 
 #include <memory>
+#include <optional>
+#include <string>
 
 namespace osgGpuAnimation::serializers
 {
@@ -17,8 +20,11 @@ namespace osgGpuAnimation::serializers
 /// set still share it after reading. A set that cannot be read makes the file unreadable.
 void transferAnimationSet(ValueStream& stream, std::shared_ptr<const AnimationSet>& set);
 
-/// Removes, with a warning, every SkinnedGeometry below the group that refers to palette entries, morphs or vertices
-/// that do not exist: files are untrusted, and the GPU does not check indices.
+/// A reference of the mesh to palette entries, morphs or vertices that do not exist: files are untrusted, and the GPU
+/// does not check indices.
+std::optional<std::string> findFault(const SkinnedGeometry& mesh, const AnimationSet& set);
+
+/// Removes, with a warning, every SkinnedGeometry with a fault below the group.
 void removeUnfitMeshes(osg::Group& group, const AnimationSet& set);
 
 /// A callback that earlier versions had. Files contain it; reading drops it from characters and crowds, and elsewhere

@@ -141,17 +141,22 @@ ValueStream& ValueStream::limited(const char* subject, std::int32_t& integer, st
     return *this;
 }
 
-ValueStream& ValueStream::floats(float* values, std::size_t count)
+template <typename Number>
+ValueStream& ValueStream::numbers(Number* values, std::size_t count)
 {
     if (!isBinary())
         for (std::size_t i = 0; i < count; ++i)
             number(values[i]);
     else if (_out)
-        _out->writeCharArray(reinterpret_cast<const char*>(values), static_cast<unsigned int>(count * sizeof(float)));
+        _out->writeCharArray(reinterpret_cast<const char*>(values), static_cast<unsigned int>(count * sizeof(Number)));
     else
-        readBytes(reinterpret_cast<char*>(values), count, sizeof(float));
+        readBytes(reinterpret_cast<char*>(values), count, sizeof(Number));
     return *this;
 }
+
+template ValueStream& ValueStream::numbers(float*, std::size_t);
+template ValueStream& ValueStream::numbers(std::uint16_t*, std::size_t);
+template ValueStream& ValueStream::numbers(std::uint32_t*, std::size_t);
 
 void ValueStream::endLine()
 {

@@ -74,7 +74,7 @@ public:
         value = static_cast<Enum>(integer);
         return *this;
     }
-    ValueStream& floats(float* values, std::size_t count);
+    ValueStream& floats(float* values, std::size_t count) { return numbers(values, count); }
     void endLine();
 
     /// Starts a property that holds `size` items; returns the number of items to transfer.
@@ -101,28 +101,33 @@ public:
         }
     }
 
-    /// Items that consist of floats, `count` floats together; reading expects an empty vector.
-    template <typename Item>
-    ValueStream& floats(std::vector<Item>& items, std::size_t count)
+    /// Items that consist of numbers, `count` numbers together; reading expects an empty vector.
+    template <typename Number, typename Item>
+    ValueStream& numbers(std::vector<Item>& items, std::size_t count)
     {
-        constexpr std::size_t perItem = sizeof(Item) / sizeof(float), itemsAtOnce = 4096;
+        constexpr std::size_t perItem = sizeof(Item) / sizeof(Number), itemsAtOnce = 4096;
         for (std::size_t done = 0; done < count / perItem && isGood(); done += itemsAtOnce)
         {
             const std::size_t step = std::min(itemsAtOnce, count / perItem - done);
             if (isReading()) items.resize(done + step);
-            floats(reinterpret_cast<float*>(items.data() + done), step * perItem);
+            numbers(reinterpret_cast<Number*>(items.data() + done), step * perItem);
         }
         if (count % perItem != 0) fail(std::to_string(count) + " numbers, not " + std::to_string(perItem) + " an item");
         return *this;
     }
-    /// A property that holds floats alone; the text formats break the line after each `perLine`.
     template <typename Item>
+    ValueStream& floats(std::vector<Item>& items, std::size_t count)
+    {
+        return numbers<float>(items, count);
+    }
+    /// A property that holds numbers alone; the text formats break the line after each `perLine`.
+    template <typename Number = float, typename Item>
     void block(const char* name, std::vector<Item>& items, std::size_t perLine)
     {
-        const std::size_t count = open(name, items.size() * sizeof(Item) / sizeof(float));
-        if (isReading()) floats(items, count);
+        const std::size_t count = open(name, items.size() * sizeof(Item) / sizeof(Number));
+        if (isReading()) numbers<Number>(items, count);
         for (std::size_t done = 0; !isReading() && done < count; done += perLine)
-            floats(reinterpret_cast<float*>(items.data()) + done, std::min(perLine, count - done)).endLine();
+            numbers(reinterpret_cast<Number*>(items.data()) + done, std::min(perLine, count - done)).endLine();
         close();
     }
 
@@ -143,6 +148,8 @@ private:
     bool isBinary() const { return _in ? _in->isBinary() : _out->isBinary(); }
     template <typename Number>
     ValueStream& number(Number& value);
+    template <typename Number>
+    ValueStream& numbers(Number* values, std::size_t count);
     template <typename Stored, typename Value>
     ValueStream& as(Value& value)
     {

@@ -259,7 +259,7 @@ TEST_F(CrowdEdgesGLTest, tintsAreTheInstancesOwnAtEveryLevelOfDetail)
     GLuint primitivesAlone = 0;
     for (int i = 0; i < 6; ++i)
     {
-        const double away = i % 3 == 0 ? 45.0 : i % 3 == 1 ? 90.0 : 180.0;
+        const double away = i % 3 == 0 ? 45.0 : i % 3 == 1 ? 90.0 : 270.0;
         const osg::Matrixd place =
             osg::Matrixd::translate((i < 3 ? -0.2 : 0.03) * away, away - 10.0, (i % 3 - 1) * 0.16 * away);
         const osg::Vec4 tint(0.3f * static_cast<float>(i % 3), i < 3 ? 0.3f : 0.6f, 1, 1);

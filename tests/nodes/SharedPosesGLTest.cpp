@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "nodes/Tube.h"
+#include "support/BindingRecord.h"
 #include "support/ViewerGLTest.h"
 
 #include <osgGpuAnimation/animation/Pose.h>
-#include <osgGpuAnimation/gpu/buffers/PlacedInstances.h>
 #include <osgGpuAnimation/gpu/PosePipeline.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
-#include <osgGpuAnimation/nodes/frame/PaletteBinding.h>
 #include <osgGpuAnimation/nodes/lod/LodLevels.h>
 
 #include <glm/geometric.hpp>
@@ -27,29 +26,6 @@ namespace
 
 constexpr std::size_t across = 40; ///< instances of a row
 constexpr double fieldOfView = 30.0;
-
-/// Draws a mesh and keeps what selects its poses.
-class BindingRecord : public osg::Drawable::DrawCallback
-{
-public:
-    struct Draw
-    {
-        std::shared_ptr<const PlacedInstances> placed; ///< null: poses are not shared
-        std::size_t slot, first, count;
-        int level;
-    };
-
-    void drawImplementation(osg::RenderInfo& info, const osg::Drawable* drawable) const override
-    {
-        drawable->drawImplementation(info);
-        const auto* binding =
-            static_cast<const PaletteBinding*>(info.getState()->getLastAppliedAttribute(PaletteBinding::bindingType));
-        draws.push_back({binding->getPlaced(), binding->getSlot(), binding->getInstance(), binding->getDrawnCount(),
-                         binding->getLevel()});
-    }
-
-    mutable std::vector<Draw> draws;
-};
 
 class SharedPosesGLTest : public ViewerGLTest
 {
@@ -151,7 +127,7 @@ TEST_F(SharedPosesGLTest, posesAndLevelsTogetherStayWithinThePixelError)
         for (const BindingRecord::Draw& draw : _record->draws)
         {
             if (!draw.placed) continue; // poses of their own
-            const double ofLevel = draw.level == LodLevels::allTriangles ? 0.0 : std::ldexp(1.0, draw.level);
+            const double ofLevel = mesh().getLodLevels(_crowd->getAnimationSet())->foundError(draw.level);
             for (std::size_t i = draw.first; i < draw.first + draw.count; ++i, ++drawn)
             {
                 const PlacedInstances::Drawn& instance = draw.placed->drawn[i];

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <type_traits>
 
 namespace osgGpuAnimation
 {
@@ -75,6 +76,33 @@ osg::ref_ptr<SkinnedGeometry> makeShownTube(const AnimationSet& set)
     if (!set.morphs().empty()) tube->setMorphTargets(set, 0, {{thicker, nullptr, nullptr, nullptr}});
     applyCharacterProgram(*tube->getOrCreateStateSet());
     return tube;
+}
+
+std::vector<osg::ref_ptr<SkinnedGeometry>> makeTubeParts(const AnimationSet& set, unsigned int count)
+{
+    const osg::ref_ptr<SkinnedGeometry> tube = makeShownTube(set);
+    const unsigned int columns = tubeColumns / count;
+    std::vector<osg::ref_ptr<SkinnedGeometry>> parts;
+    for (unsigned int part = 0; part < count; ++part)
+    {
+        const auto cut = [&](const auto* array)
+        {
+            using Array = std::remove_const_t<std::remove_pointer_t<decltype(array)>>;
+            const auto first = array->begin() + part * columns * tubeRows;
+            osg::ref_ptr<Array> piece = new Array(first, first + (columns + 1) * tubeRows);
+            piece->setBinding(array->getBinding());
+            return piece;
+        };
+        osg::ref_ptr<SkinnedGeometry> mesh = new SkinnedGeometry;
+        mesh->setVertexArray(cut(static_cast<const osg::Vec3Array*>(tube->getVertexArray())));
+        mesh->setNormalArray(cut(static_cast<const osg::Vec3Array*>(tube->getNormalArray())));
+        mesh->setInfluences(0, cut(tube->getEntries(0)), cut(tube->getWeights(0)));
+        const auto& triangles = static_cast<const osg::DrawElementsUShort&>(*tube->getPrimitiveSet(0));
+        mesh->addPrimitiveSet(new osg::DrawElementsUShort(GL_TRIANGLES, 6 * columns * tubeRows, &triangles.front()));
+        mesh->setStateSet(tube->getStateSet());
+        parts.push_back(mesh);
+    }
+    return parts;
 }
 
 osg::ref_ptr<AnimatedCharacter> makeTubeCharacter(std::shared_ptr<const AnimationSet> set)

@@ -4,6 +4,8 @@
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
+#include <vector>
+
 namespace osgGpuAnimation
 {
 
@@ -20,6 +22,9 @@ osg::ref_ptr<SkinnedGeometry> makeTube(const AnimationSet& set);
 
 /// The same tube with normals, lit and white; if the set has a morph, it thickens the tube's first half.
 osg::ref_ptr<SkinnedGeometry> makeShownTube(const AnimationSet& set);
+
+/// The shown tube, cut across into that many meshes of equally many columns. They share one StateSet.
+std::vector<osg::ref_ptr<SkinnedGeometry>> makeTubeParts(const AnimationSet& set, unsigned int count);
 
 /// A character with such a tube that plays the clip.
 osg::ref_ptr<AnimatedCharacter> makeTubeCharacter(std::shared_ptr<const AnimationSet> set);

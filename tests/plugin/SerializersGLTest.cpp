@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "plugin/SharedAssets.h"
 #include "plugin/StoredScene.h"
+#include "support/PrimitiveCount.h"
 #include "support/ViewerGLTest.h"
 
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
@@ -54,6 +55,22 @@ protected:
             taken.push_back(picture().copy());
         }
         return taken;
+    }
+
+    /// Nine characters at different times.
+    static osg::ref_ptr<AnimatedCrowd> makeCrowd()
+    {
+        const osg::ref_ptr<osg::Node> model = osgDB::readRefNodeFile(file());
+        osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*findCharacter(*model));
+        AnimationController controller(crowd->getSharedAnimationSet());
+        EXPECT_TRUE(controller.play(0));
+        const double radius = model->getBound().radius();
+        for (int i = 0; i < 9; ++i)
+        {
+            controller.seek(0.13 * i);
+            EXPECT_TRUE(crowd->add(osg::Matrixd::translate(i % 3 * radius, i / 3 * radius, 0.0), controller));
+        }
+        return crowd;
     }
 
     StoredScene files;
@@ -116,6 +133,32 @@ TEST_P(SerializersGLTest, theOptimizerMayComeBefore)
     const auto found = pictures(*read);
     for (std::size_t i = 0; i < expected.size(); ++i)
         EXPECT_EQ(Picture::pixelsDifferent(*expected[i], *found[i], 0.0f), 0) << "picture " << i;
+}
+
+TEST_P(SerializersGLTest, crowdsAtLevelsOfDetailDrawTheSameTriangles)
+{
+    if (GetParam().shared) SKIP_WITHOUT_SHARED_FILE(GetParam().shared);
+    const osg::ref_ptr<PrimitiveCount> count = new PrimitiveCount;
+    count->attach(*viewer().getCamera(), picture());
+    for (const float pixels : {0.5f, 4.0f})
+    {
+        const osg::ref_ptr<AnimatedCrowd> crowd = makeCrowd();
+        ASSERT_TRUE(crowd->setPixelError(pixels));
+        std::vector<osg::ref_ptr<osg::Node>> read;
+        for (const char* format : {"osgb", "osgt", "osgx"})
+            read.push_back(files.throughFile(*crowd, format));
+        const auto expected = pictures(*crowd);
+        const GLuint primitives = count->primitives();
+        for (const osg::ref_ptr<osg::Node>& again : read)
+        {
+            SCOPED_TRACE(pixels);
+            ASSERT_TRUE(again);
+            const auto found = pictures(*again);
+            EXPECT_EQ(count->primitives(), primitives);
+            for (std::size_t i = 0; i < expected.size(); ++i)
+                EXPECT_EQ(Picture::pixelsDifferent(*expected[i], *found[i], 0.0f), 0) << "picture " << i;
+        }
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, SerializersGLTest, ::testing::ValuesIn(models),

@@ -176,7 +176,7 @@ Result<bool> AnimatedCharacter::setAnimationSet(std::shared_ptr<const AnimationS
     _properties = AnimatedProperties::of(getAnimationSet());
     if (_clipBounds) computeClipBounds();
     // The levels of detail depend on the poses of the clips.
-    forEachMeshBelow(*this, [](SkinnedGeometry& mesh) { mesh.forgetLodLevels(); });
+    if (!isFirst) forEachMeshBelow(*this, [](SkinnedGeometry& mesh) { mesh.forgetLodLevels(); });
     return setPixelError(_pixelError);
 }
 

@@ -49,24 +49,12 @@ Error noSuchInstance()
     return Error{"the crowd has no such instance (any more)"};
 }
 
-osg::Vec3d positionOf(const osg::Matrixd& fileToNode, const osg::Matrixd& placement)
-{
-    return (fileToNode * placement).getTrans();
-}
-
 /// fileToNode, then the placement as seen from the origin.
 osg::Matrixd rootFrom(const osg::Vec3d& origin, const osg::Matrixd& fileToNode, const osg::Matrixd& placement)
 {
     osg::Matrixd fromOrigin = placement;
     fromOrigin.setTrans(placement.getTrans() - origin);
     return fileToNode * fromOrigin;
-}
-
-bool hasMeshAtOrBelow(osg::Node& node)
-{
-    bool has = false;
-    forEachMeshBelow(node, [&](const SkinnedGeometry&) { has = true; });
-    return has;
 }
 
 } // namespace
@@ -162,7 +150,7 @@ AnimatedCrowd::AnimatedCrowd(const AnimatedCrowd& other, const osg::CopyOp& copy
       _hasOrigin(other._hasOrigin), _updateTime(other._updateTime),
       _worldTargets(std::make_unique<WorldTargets>(*other._worldTargets)), _pixelError(other._pixelError),
       _sharedPoses(other._sharedPoses ? std::make_unique<SharedPoses>(*other._sharedPoses) : nullptr),
-      _variantMeshes(other._variantMeshes)
+      _characterLevels(other._characterLevels), _variantMeshes(other._variantMeshes)
 {
     // The update traversal must reach this node without a callback.
     setNumChildrenRequiringUpdateTraversal(getNumChildrenRequiringUpdateTraversal() + 1);
@@ -212,7 +200,7 @@ Result<AnimatedCrowd::Instance> AnimatedCrowd::add(const osg::Matrixd& placement
     _origin = origin;
     _hasOrigin = true;
     dirtyBound();
-    return _instances->add(root.value(), positionOf(_fileToNode, placement), controller, toRgba(tint));
+    return _instances->add(root.value(), (_fileToNode * placement).getTrans(), controller, toRgba(tint));
 }
 
 Result<bool> AnimatedCrowd::setFileToNode(const osg::Matrixd& fileToNode)
@@ -222,7 +210,8 @@ Result<bool> AnimatedCrowd::setFileToNode(const osg::Matrixd& fileToNode)
     for (std::size_t index = 0; index < getNumInstances(); ++index)
     {
         const osg::Matrixd placement = getPlacement(_instances->handleOf(index));
-        _instances->move(index, toAffine(rootFrom(_origin, fileToNode, placement)), positionOf(fileToNode, placement));
+        _instances->move(index, toAffine(rootFrom(_origin, fileToNode, placement)),
+                         (fileToNode * placement).getTrans());
     }
     _fileToNode = fileToNode;
     dirtyBound();
@@ -243,7 +232,7 @@ Result<bool> AnimatedCrowd::setPlacement(Instance instance, const osg::Matrixd& 
     if (index == CrowdInstances::none) return noSuchInstance();
     const Result<AffineMatrix> root = toRootMatrix(rootFrom(_origin, _fileToNode, placement), "the placement", false);
     if (!root) return root.error();
-    _instances->move(index, root.value(), positionOf(_fileToNode, placement));
+    _instances->move(index, root.value(), (_fileToNode * placement).getTrans());
     dirtyBound();
     return true;
 }
@@ -473,18 +462,20 @@ void AnimatedCrowd::cull(osgUtil::CullVisitor& visitor)
     static thread_local SeenMembers seen; // keeps its storage from cull to cull
     _instances->findSeen(isCullingActive() ? view.planes() : std::vector<glm::vec4>(), seen);
     std::vector<DrawState> draws;
+    LodRange lods;
     if (seen.size() > 0 && getAnimationSet().paletteSize() > 0)
     {
         view.look(seen);
-        const LodScale scale(visitor, PoseStage::lodView(visitor), _pixelError,
-                             _pixelError > 0.0f ? LodRange(*this, getAnimationSet()) : LodRange());
+        if (_pixelError > 0.0f) lods = LodRange(*this, getAnimationSet(), _characterLevels);
+        const LodScale scale(visitor, PoseStage::lodView(visitor), _pixelError, lods);
         draws = submitSeen(PoseStage::frame(visitor), *_instances, scale, _sharedPoses.get(), seen);
     }
     for (const DrawState& draw : draws)
     {
         visitor.pushStateSet(draw.stateSet);
-        forEachMesh(*this,
-                    [&](const SkinnedGeometry& mesh) { view.draw(const_cast<SkinnedGeometry&>(mesh), *draw.binding); });
+        lods.forEachMeshAt(draw.binding->getLevel(), *this,
+                           [&](const SkinnedGeometry& mesh)
+                           { view.draw(const_cast<SkinnedGeometry&>(mesh), *draw.binding); });
         visitor.popStateSet();
     }
     const UnculledScope unculled(visitor);
@@ -499,24 +490,24 @@ void AnimatedCrowd::cull(osgUtil::CullVisitor& visitor)
                                   }
                               });
     for (const osg::ref_ptr<osg::Node>& child : _children)
-    {
         if (!dynamic_cast<const SkinnedGeometry*>(child.get())) child->accept(visitor);
-    }
 }
 
 Result<bool> AnimatedCrowd::setPixelError(float pixels)
 {
-    const Result<bool> prepared = LodRange::prepare(pixels, *this, getAnimationSet());
-    if (!prepared) return prepared;
+    if (const Result<bool> set = LodRange::prepare(pixels, *this, getAnimationSet()); !set) return set;
     _pixelError = pixels;
+    if (_characterLevels && !_characterLevels->isOf(*this, getAnimationSet())) _characterLevels = nullptr;
     prepareSharedPoses();
-    return prepared;
+    return true;
 }
 
 void AnimatedCrowd::prepareSharedPoses()
 {
     const bool isOn = _pixelError > 0.0f && getAnimationSet().paletteSize() > 0;
     if (_sharedPoses) _sharedPoses->forgetUnused();
+    if (!isOn || !_characterLevels)
+        _characterLevels = isOn ? std::make_shared<const CharacterLevels>(*this, getAnimationSet()) : nullptr;
     if (isOn == (_sharedPoses != nullptr) && (!isOn || _sharedPoses->isOf(*this))) return;
     _sharedPoses = isOn ? std::make_unique<SharedPoses>(*this, getAnimationSet()) : nullptr;
 }
@@ -525,10 +516,11 @@ void AnimatedCrowd::visitInstances(osg::NodeVisitor& visitor)
 {
     std::vector<osg::Node*> ofInstances;
     for (const osg::ref_ptr<osg::Node>& child : _children)
-        if (hasMeshAtOrBelow(*child))
-            ofInstances.push_back(child);
-        else
-            child->accept(visitor);
+    {
+        bool hasMesh = false;
+        forEachMeshBelow(*child, [&](const SkinnedGeometry&) { hasMesh = true; });
+        hasMesh ? ofInstances.push_back(child) : child->accept(visitor);
+    }
     const osg::ref_ptr<IntersectedInstance> intersected = new IntersectedInstance(*this, ofInstances);
     for (std::size_t index = 0; index < getNumInstances(); ++index)
     {
@@ -547,10 +539,22 @@ void AnimatedCrowd::count(osg::NodeVisitor& visitor)
 {
     for (const osg::ref_ptr<osg::Node>& child : _children)
     {
-        const std::size_t times = dynamic_cast<SkinnedGeometry*>(child.get()) ? getNumInstances() : 1;
-        for (std::size_t time = 0; time < times; ++time)
+        std::size_t times = dynamic_cast<SkinnedGeometry*>(child.get()) ? getNumInstances() : 1;
+        while (times-- > 0)
             child->accept(visitor);
     }
+}
+
+void AnimatedCrowd::releaseGLObjects(osg::State* state) const
+{
+    osg::Transform::releaseGLObjects(state);
+    if (_characterLevels) _characterLevels->releaseGLObjects(state);
+}
+
+void AnimatedCrowd::resizeGLObjectBuffers(unsigned int maxSize)
+{
+    osg::Transform::resizeGLObjectBuffers(maxSize);
+    if (_characterLevels) _characterLevels->resizeGLObjectBuffers(maxSize);
 }
 
 osg::BoundingSphere AnimatedCrowd::computeBound() const

@@ -18,6 +18,7 @@ namespace osgGpuAnimation
 {
 
 class AnimatedCharacter;
+class CharacterLevels;
 class CrowdInstances;
 class NodeConstraint;
 class PosedInstances;
@@ -138,15 +139,21 @@ public:
     /// The first mesh of that name, see AnimatedCharacter::findMesh().
     SkinnedGeometry* findMesh(const std::string& name) const;
     /// Shows or hides meshes of all instances, see AnimatedCharacter::setMeshVisible(). Instances that show other
-    /// meshes are a crowd of their own. Not while the crowd is culled.
+    /// meshes are a crowd of their own. With a pixel error, call setPixelError() again: it makes the levels of detail
+    /// of what is visible now. Not while the crowd is culled.
     Result<bool> setMeshVisible(const std::string& name, bool isVisible);
 
     /// The largest error of the drawn surface on screen, in pixels: instances are drawn with fewer triangles while the
-    /// error stays below it, with one instanced draw per mesh primitive and level, and those that loop one clip share
-    /// poses as far as the error permits. 0 (the default): all triangles and exact poses. Range, cost, limits and
-    /// errors: see AnimatedCharacter::setPixelError().
+    /// error stays below it, with one instanced draw per mesh primitive and level, those of a few pixels as one mesh
+    /// per material without textures, and those that loop one clip share poses as far as the error permits. 0 (the
+    /// default): all triangles and exact poses. Range, cost, limits and errors: see AnimatedCharacter::setPixelError().
     Result<bool> setPixelError(float pixels);
     float getPixelError() const { return _pixelError; } ///< pixels, at least 0
+    /// The levels of detail of the character as a whole, for the kit's own serializers. Null: without a pixel error.
+    /// setPixelError() creates them unless those that are set match the meshes.
+    const std::shared_ptr<const CharacterLevels>& getCharacterLevels() const { return _characterLevels; }
+    /// Sets what setPixelError() would create, for the kit's own serializers: call it before setPixelError().
+    void setCharacterLevels(std::shared_ptr<const CharacterLevels> levels) { _characterLevels = std::move(levels); }
 
     /// Advances all instances by the time since the last update; the first call only stores the time.
     /// simulationTime: seconds. Event callbacks are called as those of AnimatedCharacter::update().
@@ -169,6 +176,8 @@ public:
     /// statistics count every instance; visitors that compute bounds get the box around all instances as they play now.
     void traverse(osg::NodeVisitor& visitor) override;
     osg::BoundingSphere computeBound() const override; ///< around all instances and the other children
+    void releaseGLObjects(osg::State* state = nullptr) const override;
+    void resizeGLObjectBuffers(unsigned int maxSize) override;
     /// Applies the origin to the matrix.
     bool computeLocalToWorldMatrix(osg::Matrix& matrix, osg::NodeVisitor* visitor) const override;
     /// Removes the origin from the matrix.
@@ -196,11 +205,12 @@ private:
     osg::Matrixd _fileToNode;
     osg::Vec3d _origin;
     bool _hasOrigin = false;
-    std::optional<double> _updateTime;             ///< seconds of simulation time
-    std::unique_ptr<WorldTargets> _worldTargets;   ///< never null
-    float _pixelError = 0.0f;                      ///< pixels
-    std::unique_ptr<SharedPoses> _sharedPoses;     ///< null: no pixel error
-    std::shared_ptr<VariantMeshes> _variantMeshes; ///< never null, shared with the character and clones
+    std::optional<double> _updateTime;                       ///< seconds of simulation time
+    std::unique_ptr<WorldTargets> _worldTargets;             ///< never null
+    float _pixelError = 0.0f;                                ///< pixels
+    std::unique_ptr<SharedPoses> _sharedPoses;               ///< null: no pixel error
+    std::shared_ptr<const CharacterLevels> _characterLevels; ///< null: without a pixel error
+    std::shared_ptr<VariantMeshes> _variantMeshes;           ///< never null, shared with the character and clones
 };
 
 } // namespace osgGpuAnimation

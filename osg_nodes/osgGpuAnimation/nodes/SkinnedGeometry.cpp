@@ -273,6 +273,16 @@ std::shared_ptr<const LodLevels> SkinnedGeometry::getLodLevels(const AnimationSe
                     { computePositions(palette, out); });
 }
 
+std::shared_ptr<const LodLevels> SkinnedGeometry::findLodLevels() const
+{
+    return _lod->known(*this);
+}
+
+void SkinnedGeometry::setLodLevels(std::shared_ptr<const LodLevels> levels)
+{
+    _lod->set(std::move(levels));
+}
+
 void SkinnedGeometry::forgetLodLevels()
 {
     _lod->forget();

@@ -111,6 +111,9 @@ public:
 
     /// The levels of detail, see AnimatedCharacter::setPixelError(). The first call creates them from poses of the set.
     std::shared_ptr<const LodLevels> getLodLevels(const AnimationSet& set) const;
+    /// The same without creating any, for the kit's own serializers. Null: not created, or the mesh has changed.
+    std::shared_ptr<const LodLevels> findLodLevels() const;
+    void setLodLevels(std::shared_ptr<const LodLevels> levels); ///< of this mesh, see LodLevels::restored()
     /// Discards the levels of detail, for example after a change of the clips; getLodLevels() creates new ones.
     void forgetLodLevels();
 

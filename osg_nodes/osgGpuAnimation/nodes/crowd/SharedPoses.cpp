@@ -275,7 +275,7 @@ private:
         if (!band.shown)
         {
             const int level = _scale.levelWithin(leastErrorOf(number));
-            band = {&_storage.shownOfLevel[level], static_cast<float>(LodLevels::errorOf(level))};
+            band = {&_storage.shownOfLevel[level], static_cast<float>(_scale.foundError(level))};
         }
         return band;
     }

@@ -49,33 +49,18 @@ float distanceOf(const Joints& a, const Joints& b)
     return distance;
 }
 
-std::vector<PoseInstruction> poolOf(const AnimationSet& set)
-{
-    std::vector<PoseInstruction> pool;
-    const std::size_t clips = set.clips().size();
-    const std::size_t perClip = clips == 0 ? 0 : std::clamp<std::size_t>(poolSize / clips, 1, 16);
-    const std::size_t stride = std::max<std::size_t>(clips / poolSize, 1);
-    for (std::size_t clip = 0; clip < clips; clip += stride)
-        for (std::size_t time = 0; time < perClip; ++time)
-        {
-            const double share = (static_cast<double>(time) + 0.5) / static_cast<double>(perClip);
-            PoseInstruction instruction;
-            instruction.samples[0] = set.sampleAt(static_cast<int>(clip), share * set.clips()[clip].duration());
-            pool.push_back(instruction);
-        }
-    return pool;
-}
-
-constexpr std::size_t poseCount = 12;
 // The finest level is the mesh's size divided by 2 to that power; the coarsest, which alone may cross texture seams, is
 // the character's size divided so: coarser levels save little more and make small characters thin.
 constexpr int finestFraction = 8;
 constexpr int coarsestFraction = 5;
-constexpr int mostBeyondSize = 10;       ///< powers of two above the mesh's size; it is one triangle there
-constexpr double worthwhile = 0.85;      ///< a level has at most this share of the previous level's triangles
-constexpr std::size_t fewTriangles = 16; ///< meshes with fewer get no levels
+constexpr int mostBeyondSize = 10;            ///< powers of two above the mesh's size; it is one triangle there
+constexpr double worthwhile = 0.85;           ///< a level has at most this share of the previous level's triangles
+constexpr std::size_t measuredPerKeyPose = 4; ///< poses
+constexpr int mostAttempts = 8;               ///< with more key poses each
+constexpr std::size_t fewTriangles = 16;      ///< meshes with fewer get no levels
 constexpr std::size_t entriesATriangle = 8;
 constexpr double mostOutset = 0.25; ///< of a level's error
+constexpr int levelsPerOctave = 2;
 
 template <typename OsgArray, typename Vector>
 void copyTo(const osg::Array* array, std::size_t count, std::vector<Vector>& out)
@@ -91,26 +76,24 @@ void copyTo(const osg::Array* array, std::size_t count, std::vector<Vector>& out
     }
 }
 
-bool isFinite(const glm::vec3& position)
-{
-    // Squares of larger coordinates are not finite.
-    constexpr float farthest = 1e18f;
-    return std::abs(position.x) < farthest && std::abs(position.y) < farthest && std::abs(position.z) < farthest;
-}
-
 /// Without poses if a position is not finite in one of them.
-PosedSurface surfaceOf(const osg::Geometry& mesh, const AnimationSet& set, const LodLevels::Skinning& skin)
+PosedSurface surfaceOf(const osg::Geometry& mesh, const AnimationSet& set, const LodLevels::Skinning& skin,
+                       std::size_t poseCount)
 {
     PosedSurface surface;
     std::vector<AffineMatrix> palette;
     std::vector<glm::dvec3> positions;
-    for (const PoseInstruction& pose : keyPoses(set, poseCount))
+    std::vector<PoseInstruction> poses = keyPoses(set, poseCount);
+    surface.keyPoses = poses.size();
+    const std::vector<PoseInstruction> others = spreadPoses(set, measuredPerKeyPose * poseCount);
+    poses.insert(poses.end(), others.begin(), others.end());
+    for (const PoseInstruction& pose : poses)
     {
         Pose::evaluate(set, pose, AffineMatrix(), palette);
         skin(palette, positions);
         surface.poses.emplace_back(positions.begin(), positions.end());
         const std::vector<glm::vec3>& posed = surface.poses.back();
-        if (!posed.empty() && std::all_of(posed.begin(), posed.end(), isFinite)) continue;
+        if (!posed.empty() && std::all_of(posed.begin(), posed.end(), isPlaced)) continue;
         surface.poses.clear();
         return surface;
     }
@@ -120,32 +103,9 @@ PosedSurface surfaceOf(const osg::Geometry& mesh, const AnimationSet& set, const
     return surface;
 }
 
-Box boxAround(const std::vector<glm::vec3>& positions)
-{
-    Box box;
-    for (const glm::vec3& position : positions)
-        box.add(position);
-    return box;
-}
-
 double sizeOf(const Box& box)
 {
     return box.empty() ? 0.0 : glm::distance(glm::dvec3(box.min), glm::dvec3(box.max));
-}
-
-/// Whole triangles; empty for other primitives.
-std::vector<std::uint32_t> trianglesOf(const osg::PrimitiveSet& primitives, std::size_t vertexCount)
-{
-    std::vector<std::uint32_t> indices;
-    const osg::DrawElements* elements = primitives.getDrawElements();
-    if (!elements || primitives.getMode() != GL_TRIANGLES || !elements->getDataPointer()) return indices;
-    for (unsigned int i = 0; i + 2 < elements->getNumIndices(); i += 3)
-        for (unsigned int corner = i; corner < i + 3; ++corner)
-        {
-            if (elements->index(corner) >= vertexCount) return {};
-            indices.push_back(elements->index(corner));
-        }
-    return indices;
 }
 
 struct Extent
@@ -188,10 +148,27 @@ osg::ref_ptr<osg::DrawElements> makeElements(const std::vector<std::uint32_t>& i
 
 } // namespace
 
+std::vector<PoseInstruction> spreadPoses(const AnimationSet& set, std::size_t count)
+{
+    std::vector<PoseInstruction> pool;
+    const std::size_t clips = set.clips().size();
+    const std::size_t perClip = clips == 0 ? 0 : std::clamp<std::size_t>(count / clips, 1, count / 4);
+    const std::size_t stride = std::max<std::size_t>(clips / count, 1);
+    for (std::size_t clip = 0; clip < clips; clip += stride)
+        for (std::size_t time = 0; time < perClip; ++time)
+        {
+            const double share = (static_cast<double>(time) + 0.5) / static_cast<double>(perClip);
+            PoseInstruction instruction;
+            instruction.samples[0] = set.sampleAt(static_cast<int>(clip), share * set.clips()[clip].duration());
+            pool.push_back(instruction);
+        }
+    return pool;
+}
+
 std::vector<PoseInstruction> keyPoses(const AnimationSet& set, std::size_t count)
 {
     std::vector<PoseInstruction> chosen{PoseInstruction()};
-    const std::vector<PoseInstruction> pool = poolOf(set);
+    const std::vector<PoseInstruction> pool = spreadPoses(set, poolSize);
     std::vector<Joints> joints;
     std::vector<float> distances;
     Joints last = jointsOf(set, chosen.front());
@@ -223,62 +200,160 @@ float largestScale(const AffineMatrix& matrix)
     return std::sqrt(largest);
 }
 
+std::vector<std::uint32_t> LodLevels::trianglesOf(const osg::PrimitiveSet& primitives, std::size_t vertexCount)
+{
+    std::vector<std::uint32_t> indices;
+    const osg::DrawElements* elements = primitives.getDrawElements();
+    if (!elements || primitives.getMode() != GL_TRIANGLES || !elements->getDataPointer()) return indices;
+    for (unsigned int i = 0; i + 2 < elements->getNumIndices(); i += 3)
+        for (unsigned int corner = i; corner < i + 3; ++corner)
+        {
+            if (elements->index(corner) >= vertexCount) return {};
+            indices.push_back(elements->index(corner));
+        }
+    return indices;
+}
+
+std::size_t LodLevels::poseCountOf(std::size_t vertices, std::size_t posedVertices)
+{
+    return std::clamp(posedVertices / std::max<std::size_t>(vertices, 1), fewestPoses, mostPoses);
+}
+
 int LodLevels::levelOf(double error)
 {
-    return error > 0.0 && std::isfinite(error) ? std::ilogb(error / (1.0 + mostOutset)) : allTriangles;
+    if (!(error > 0.0 && std::isfinite(error))) return allTriangles;
+    const int level = static_cast<int>(std::floor(levelsPerOctave * std::log2(error / (1.0 + mostOutset))));
+    return errorOf(level + 1) <= error ? level + 1 : level; // rounding
+}
+
+int LodLevels::levelFor(double error)
+{
+    const int level = levelOf(error);
+    return level != allTriangles && errorOf(level) < error ? level + 1 : level;
 }
 
 double LodLevels::errorOf(int level)
 {
-    return level == allTriangles ? 0.0 : std::ldexp(1.0 + mostOutset, level);
+    return level == allTriangles ? 0.0 : (1.0 + mostOutset) * std::exp2(static_cast<double>(level) / levelsPerOctave);
 }
 
-LodLevels::LodLevels(const osg::Geometry& mesh, const AnimationSet& set, const Skinning& skin)
+LodLevels::LodLevels(const osg::Geometry& mesh)
     : _vertices(mesh.getVertexArray()), _modifiedCount(_vertices ? _vertices->getModifiedCount() : 0)
 {
     for (const osg::ref_ptr<osg::PrimitiveSet>& primitives : mesh.getPrimitiveSetList())
         _primitives.push_back({primitives, primitives->getModifiedCount(), {}});
-    const std::size_t vertexCount = _vertices ? _vertices->getNumElements() : 0;
-    if (vertexCount > maxVertices || !isWorthPoses(mesh, set)) return;
-    const PosedSurface surface = surfaceOf(mesh, set, skin);
-    if (surface.poses.empty()) return;
-    const double size = sizeOf(boxAround(surface.poses.front()));
-    if (!(size > 0.0)) return;
-    const int coarsest = std::min(std::ilogb(std::max(size, sizeOf(boundsOfJoints(set)))) - coarsestFraction,
-                                  std::ilogb(size) + mostBeyondSize);
-    for (Primitives& primitives : _primitives)
-        addSteps(surface, std::ilogb(size) - finestFraction, coarsest, primitives);
 }
 
-void LodLevels::addSteps(const PosedSurface& surface, int finest, int coarsest, Primitives& primitives)
+LodLevels::LodLevels(const osg::Geometry& mesh, const AnimationSet& set, const Skinning& skin) : LodLevels(mesh)
 {
+    const std::size_t vertexCount = _vertices ? _vertices->getNumElements() : 0;
+    if (vertexCount > maxVertices || !isWorthPoses(mesh, set)) return;
+    PosedSurface surface = surfaceOf(mesh, set, skin, poseCountOf(vertexCount));
+    if (surface.poses.empty()) return;
+    const double size = surface.size();
+    if (!(size > 0.0)) return;
+    const int finest = levelsPerOctave * (std::ilogb(size) - finestFraction);
+    const int coarsest =
+        levelsPerOctave * std::min(std::ilogb(std::max(size, sizeOf(boundsOfJoints(set)))) - coarsestFraction,
+                                   std::ilogb(size) + mostBeyondSize);
+    for (int attempt = 0; attempt < mostAttempts; ++attempt)
+    {
+        std::set<std::size_t> beyond;
+        for (Primitives& primitives : _primitives)
+            addSteps(surface, finest, coarsest, primitives, beyond);
+        if (beyond.empty()) break;
+        for (const std::size_t pose : beyond)
+            std::swap(surface.poses[surface.keyPoses++], surface.poses[pose]);
+    }
+    for (const Primitives& primitives : _primitives)
+        includeRange(primitives.steps);
+}
+
+/// outBeyond: receives poses in which the error of a level is too large: they should be key poses.
+void LodLevels::addSteps(const PosedSurface& surface, int finest, int coarsest, Primitives& primitives,
+                         std::set<std::size_t>& outBeyond) const
+{
+    primitives.steps.clear();
     const std::vector<std::uint32_t> original = trianglesOf(*primitives.original, surface.vertexCount());
     if (original.size() < 3 * fewTriangles) return;
     MeshSimplifier simplifier(surface, original);
     const Extent whole = extentOf(surface, original);
     std::size_t kept = original.size() / 3;
-    for (int level = finest; level <= coarsest; ++level)
+    for (int level = finest; level <= coarsest; level += levelsPerOctave)
     {
         if (simplifier.triangleCount() <= 1) break;
-        const double limit = std::ldexp(1.0, level);
+        const double limit = errorOf(level) / (1.0 + mostOutset);
         simplifier.reduce(limit, level < coarsest);
-        const bool isWorthwhile =
-            static_cast<double>(simplifier.triangleCount()) < worthwhile * static_cast<double>(kept);
-        if (!isWorthwhile || simplifier.error() > limit) continue;
+        if (static_cast<double>(simplifier.triangleCount()) >= worthwhile * static_cast<double>(kept)) continue;
         const std::vector<std::uint32_t> indices = simplifier.indices();
-        kept = indices.size() / 3;
+        const Extent extent = extentOf(surface, indices);
+        const double lost = extent.area > 0.0 ? (whole.volume - extent.volume) / extent.area : 0.0;
+        const double outset = std::clamp(lost, 0.0, mostOutset * limit);
+        std::size_t worst = 0;
+        const double error = simplifier.error(&worst) + outset;
+        if (error > errorOf(level) && worst >= surface.keyPoses) outBeyond.insert(worst);
+        const int first = std::max(level, levelFor(error));
+        if (first > coarsest) continue;
         osg::ref_ptr<osg::DrawElements> elements = surface.vertexCount() <= 65535
                                                        ? makeElements<osg::DrawElementsUShort>(indices)
                                                        : makeElements<osg::DrawElementsUInt>(indices);
         elements->setElementBufferObject(_buffer);
-        const Extent extent = extentOf(surface, indices);
-        const double lost = extent.area > 0.0 ? (whole.volume - extent.volume) / extent.area : 0.0;
-        primitives.steps.push_back({level, elements, static_cast<float>(std::clamp(lost, 0.0, mostOutset * limit))});
+        while (!primitives.steps.empty() && primitives.steps.back().level >= first)
+            primitives.steps.pop_back();
+        primitives.steps.push_back({first, elements, static_cast<float>(outset), error});
+        kept = indices.size() / 3;
     }
-    if (primitives.steps.empty()) return;
-    const int first = primitives.steps.front().level;
+}
+
+void LodLevels::includeRange(const Steps& steps)
+{
+    if (steps.empty()) return;
+    const int first = steps.front().level;
     _finest = _finest == allTriangles ? first : std::min(_finest, first);
-    _coarsest = std::max(_coarsest, primitives.steps.back().level);
+    _coarsest = std::max(_coarsest, steps.back().level);
+}
+
+bool LodLevels::mayFollow(int previous, int level, double error)
+{
+    // Cull computes with floats.
+    return level > previous && std::isnormal(static_cast<float>(errorOf(level))) && error >= 0.0 &&
+           std::isfinite(static_cast<float>(error));
+}
+
+Result<std::shared_ptr<const LodLevels>> LodLevels::restored(const osg::Geometry& mesh, std::vector<Steps> steps)
+{
+    if (steps.size() != mesh.getNumPrimitiveSets())
+        return Error{std::to_string(steps.size()) + " lists of levels for " +
+                     std::to_string(mesh.getNumPrimitiveSets()) + " primitive sets"};
+    for (const osg::ref_ptr<osg::PrimitiveSet>& primitives : mesh.getPrimitiveSetList())
+        if (!primitives) return Error{"a missing primitive set"};
+    const std::shared_ptr<LodLevels> levels(new LodLevels(mesh));
+    for (std::size_t i = 0; i < steps.size(); ++i)
+        if (const Result<bool> taken = levels->restore(i, std::move(steps[i])); !taken) return taken.error();
+    return std::shared_ptr<const LodLevels>(levels);
+}
+
+Result<bool> LodLevels::restore(std::size_t primitiveSet, Steps steps)
+{
+    const std::size_t vertexCount = _vertices ? _vertices->getNumElements() : 0;
+    int previous = allTriangles;
+    for (std::size_t i = 0; i < steps.size(); ++i)
+    {
+        const Step& step = steps[i];
+        const std::string subject = "primitive set " + std::to_string(primitiveSet) + ", step " + std::to_string(i);
+        if (!mayFollow(previous, step.level, step.error) || !(step.outset >= 0.0f && std::isfinite(step.outset)))
+            return Error{subject + ": level " + std::to_string(step.level) + " with an error of " +
+                         std::to_string(step.error) + " and an outset of " + std::to_string(step.outset)};
+        const std::size_t count = step.elements->getNumIndices();
+        if (count == 0 || trianglesOf(*step.elements, vertexCount).size() != count)
+            return Error{subject + ": " + std::to_string(count) + " indices that are not whole triangles of " +
+                         std::to_string(vertexCount) + " vertices"};
+        step.elements->setElementBufferObject(_buffer);
+        previous = step.level;
+    }
+    includeRange(steps);
+    _primitives[primitiveSet].steps = std::move(steps);
+    return true;
 }
 
 bool LodLevels::isOf(const osg::Geometry& mesh) const
@@ -298,8 +373,16 @@ LodLevels::Reduced LodLevels::reduced(std::size_t primitiveSet, int level) const
     Reduced found;
     if (primitiveSet >= _primitives.size()) return found;
     for (const Step& step : _primitives[primitiveSet].steps)
-        if (step.level <= level) found = {step.elements, step.outset};
+        if (step.level <= level) found = {step.elements, step.outset, step.error};
     return found;
+}
+
+double LodLevels::foundError(int level) const
+{
+    double largest = 0.0;
+    for (std::size_t i = 0; i < _primitives.size(); ++i)
+        largest = std::max(largest, reduced(i, level).error);
+    return largest;
 }
 
 void LodLevels::releaseGLObjects(osg::State* state) const
@@ -329,9 +412,9 @@ std::shared_ptr<const LodLevels> MeshLod::of(const osg::Geometry& mesh, const An
     return made;
 }
 
-void MeshLod::forget()
+void MeshLod::set(std::shared_ptr<const LodLevels> levels)
 {
-    std::atomic_store(&_levels, std::shared_ptr<const LodLevels>());
+    std::atomic_store(&_levels, std::move(levels));
 }
 
 } // namespace osgGpuAnimation

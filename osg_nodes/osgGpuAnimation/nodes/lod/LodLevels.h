@@ -2,6 +2,7 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/animation/Result.h>
 
 #include <osg/Geometry>
 #include <osg/State>
@@ -13,6 +14,7 @@
 #include <limits>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <vector>
 
 namespace osgGpuAnimation
@@ -22,6 +24,8 @@ namespace osgGpuAnimation
 /// of the poses before it (relative to the joints' mean, so that walking does not count). The candidates are about 64
 /// times spread over the clips. count: at least 1; the result is shorter if the clips have fewer different poses.
 std::vector<PoseInstruction> keyPoses(const AnimationSet& set, std::size_t count);
+/// About so many times, spread over the clips; at most a quarter of them in one clip. count: at least 4.
+std::vector<PoseInstruction> spreadPoses(const AnimationSet& set, std::size_t count);
 
 struct PosedSurface;
 
@@ -29,15 +33,14 @@ struct PosedSurface;
 float largestScale(const AffineMatrix& matrix);
 
 /// Reduced triangles for a mesh over the same vertices, so that palettes, influences and morph targets do not change. A
-/// **level** is the exponent of the largest error as a power of two, in the character's own units for any mesh space:
-/// at level -3 no vertex of the mesh is farther than 1/8 from the reduced triangles, nor 5/32 from the drawn surface,
-/// which is a little larger. One level therefore means the same for
-/// all meshes of a character.
+/// **level** is the exponent of the largest error as a power of the square root of two, in the character's own units
+/// for any mesh space: at level -6 no vertex of the mesh is farther than 1/8 from the reduced triangles, nor 5/32 from
+/// the drawn surface, which is a little larger. One level therefore means the same for all meshes of a character.
 ///
-/// MeshSimplifier keeps the error in twelve poses at once (keyPoses() of the set). In other poses it may be larger: by
-/// at most half in tests at random times of real characters' clips. No levels are built for primitive sets other than
-/// indexed triangles, for meshes with positions that are not finite or for more than maxVertices. Each piece of a mesh
-/// keeps at least one triangle.
+/// MeshSimplifier keeps the error in 12 to 48 poses at once (keyPoses() of the set; fewer poses for more vertices). The
+/// error of the result is measured in about four times as many others, spread over the clips. No levels are built for
+/// primitive sets other than indexed triangles, for meshes with positions that are not finite or for more than
+/// maxVertices. Each piece of a mesh keeps at least one triangle.
 ///
 /// The coarsest level is a 32nd of the character's size, since coarser ones make small characters thin. Only the
 /// coarsest level may cross texture seams.
@@ -48,9 +51,15 @@ class LodLevels
 public:
     static constexpr int allTriangles = std::numeric_limits<int>::min(); ///< the level without error
     static constexpr std::size_t maxVertices = 100'000; ///< of a mesh with levels; such a mesh takes seconds
+    /// The number of key poses in which the error of so many vertices is measured: as many as posedVertices allows, in
+    /// [fewestPoses, mostPoses].
+    static std::size_t poseCountOf(std::size_t vertices, std::size_t posedVertices = 21'000);
+    static constexpr std::size_t fewestPoses = 12, mostPoses = 48;
 
     /// The coarsest level within the error, in the character's units; allTriangles if the error is not above 0.
     static int levelOf(double error);
+    /// The finest level that permits the error, in the character's units; allTriangles if the error is not above 0.
+    static int levelFor(double error);
     /// The largest error of a level, in the character's units, its outset included. 0 for allTriangles.
     static double errorOf(int level);
 
@@ -60,6 +69,23 @@ public:
 
     /// The cost is proportional to the mesh's points times poses, see MeshSimplifier.
     LodLevels(const osg::Geometry& mesh, const AnimationSet& set, const Skinning& skin);
+
+    /// The reduced triangles of a primitive set.
+    struct Step
+    {
+        int level = allTriangles; ///< and coarser ones
+        osg::ref_ptr<osg::DrawElements> elements;
+        float outset = 0.0f; ///< see Reduced
+        double error = 0.0;  ///< see Reduced
+    };
+    using Steps = std::vector<Step>; ///< by ascending levels
+    /// The levels that a file contains. steps: by primitive set, from steps() of the same mesh. They are untrusted: an
+    /// error names the first step that does not fit the mesh.
+    static Result<std::shared_ptr<const LodLevels>> restored(const osg::Geometry& mesh, std::vector<Steps> steps);
+    /// primitiveSet: of the mesh.
+    const Steps& steps(std::size_t primitiveSet) const { return _primitives[primitiveSet].steps; }
+    /// True if a step with that level and error may follow the previous level (allTriangles: none).
+    static bool mayFollow(int previous, int level, double error);
 
     /// True if the levels match the mesh's present arrays and primitives.
     bool isOf(const osg::Geometry& mesh) const;
@@ -71,29 +97,33 @@ public:
     {
         const osg::DrawElements* elements = nullptr; ///< null: draw the primitive set itself
         float outset = 0.0f; ///< how far vertices move along their normals, in the character's units
+        double error = 0.0;  ///< the largest distance of a vertex from the drawn surface, in the character's units
     };
     /// The reduced triangles of the mesh's primitive set at a level. Their vertices lie on the original surface and
     /// most of their area within it; the outset gives them its volume, so that small characters do not get thin.
     Reduced reduced(std::size_t primitiveSet, int level) const;
+    /// The largest error of the mesh's reduced triangles at a level; at most errorOf(level).
+    double foundError(int level) const;
+
+    /// Whole triangles, by vertex; empty for other primitives and for vertices that do not exist.
+    static std::vector<std::uint32_t> trianglesOf(const osg::PrimitiveSet& primitives, std::size_t vertexCount);
 
     void releaseGLObjects(osg::State* state) const;
     void resizeGLObjectBuffers(unsigned int maxSize) const;
 
 private:
-    struct Step
-    {
-        int level; ///< and coarser ones
-        osg::ref_ptr<osg::DrawElements> elements;
-        float outset;
-    };
     struct Primitives
     {
         osg::ref_ptr<const osg::PrimitiveSet> original;
         unsigned int modifiedCount; ///< of the original
-        std::vector<Step> steps;    ///< by ascending levels
+        Steps steps;
     };
 
-    void addSteps(const PosedSurface& surface, int finest, int coarsest, Primitives& primitives);
+    explicit LodLevels(const osg::Geometry& mesh); ///< without steps
+    Result<bool> restore(std::size_t primitiveSet, Steps steps);
+    void includeRange(const Steps& steps);
+    void addSteps(const PosedSurface& surface, int finest, int coarsest, Primitives& primitives,
+                  std::set<std::size_t>& outBeyond) const;
 
     osg::ref_ptr<const osg::Array> _vertices;
     unsigned int _modifiedCount = 0; ///< of the vertices
@@ -117,8 +147,9 @@ public:
                                         const LodLevels::Skinning& skin) const;
     /// Null: not created, or the mesh has changed.
     std::shared_ptr<const LodLevels> known(const osg::Geometry& mesh) const;
+    void set(std::shared_ptr<const LodLevels> levels); ///< in place of those that of() would create
     /// Discards the levels after a change of influences, morph targets or clips.
-    void forget();
+    void forget() { set(nullptr); }
 
 private:
     mutable std::mutex _mutex;

@@ -27,19 +27,34 @@ Result<bool> LodRange::prepare(float pixels, const osg::Group& meshes, const Ani
     return true;
 }
 
-LodRange::LodRange(const osg::Group& meshes, const AnimationSet& set)
+LodRange::LodRange(const osg::Group& meshes, const AnimationSet& set, std::shared_ptr<const CharacterLevels> merged)
+    : _merged(merged && merged->isOf(meshes, set) ? std::move(merged) : nullptr)
 {
+    const auto add = [&](const auto& levels)
+    {
+        if (levels.finest() == LodLevels::allTriangles) return;
+        _finest = std::min(_finest, levels.finest());
+        _coarsest = std::max(_coarsest, levels.coarsest());
+    };
+    if (_merged) add(*_merged);
     std::size_t vertices = 0;
     forEachMesh(meshes,
                 [&](const SkinnedGeometry& mesh)
                 {
                     vertices += mesh.getVertexCount();
                     if (vertices > maxVertices) return;
-                    const std::shared_ptr<const LodLevels> levels = mesh.getLodLevels(set);
-                    if (levels->finest() == LodLevels::allTriangles) return;
-                    _finest = std::min(_finest, levels->finest());
-                    _coarsest = std::max(_coarsest, levels->coarsest());
+                    _ofMeshes.emplace_back(&mesh, mesh.getLodLevels(set));
+                    add(*_ofMeshes.back().second);
                 });
+}
+
+double LodRange::foundError(int level) const
+{
+    if (level == LodLevels::allTriangles) return 0.0;
+    double largest = _merged ? _merged->foundError(level) : 0.0;
+    for (const auto& [mesh, levels] : _ofMeshes)
+        if (!_merged || !_merged->isMerged(*mesh, level)) largest = std::max(largest, levels->foundError(level));
+    return largest;
 }
 
 namespace

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/Result.h>
+#include <osgGpuAnimation/nodes/lod/CharacterLevels.h>
 #include <osgGpuAnimation/nodes/lod/LodLevels.h>
 
 #include <osg/Camera>
@@ -14,7 +15,10 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
+#include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace osgGpuAnimation
 {
@@ -37,18 +41,32 @@ public:
 
     LodRange() = default;
     /// The range of the SkinnedGeometry among a group's children. Only this constructor creates missing levels; meshes
-    /// without levels are drawn with all triangles.
-    LodRange(const osg::Group& meshes, const AnimationSet& set);
+    /// without levels are drawn with all triangles. merged: replaces meshes if it isOf() the group; null: nothing.
+    LodRange(const osg::Group& meshes, const AnimationSet& set,
+             std::shared_ptr<const CharacterLevels> merged = nullptr);
 
     /// The level clamped to the range; allTriangles if it is finer.
     int clamped(int level) const
     {
         return level < _finest ? LodLevels::allTriangles : level > _coarsest ? _coarsest : level;
     }
+    /// The largest error of the surface at a level, in the set's units; at most LodLevels::errorOf(level).
+    double foundError(int level) const;
+    /// function(const SkinnedGeometry&), for the meshes to draw at a level in place of the group's.
+    template <typename Function>
+    void forEachMeshAt(int level, const osg::Group& meshes, Function function) const
+    {
+        if (_merged)
+            _merged->forEachMeshAt(level, meshes, function);
+        else
+            forEachMesh(meshes, function);
+    }
 
 private:
     int _finest = std::numeric_limits<int>::max();
     int _coarsest = LodLevels::allTriangles;
+    std::vector<std::pair<const SkinnedGeometry*, std::shared_ptr<const LodLevels>>> _ofMeshes;
+    std::shared_ptr<const CharacterLevels> _merged; ///< null: each mesh has its own levels
 };
 
 /// The view that selects levels of detail: the camera that culls or, for an absolute depth-only camera (see DepthPass),
@@ -98,6 +116,7 @@ public:
     }
     /// The coarsest level within an error in the units of the set.
     int levelWithin(float error) const { return _range.clamped(LodLevels::levelOf(error)); }
+    double foundError(int level) const { return _range.foundError(level); } ///< See LodRange.
 
     /// False: all triangles everywhere.
     bool isOn() const { return _seen.errorAt != glm::vec4(0.0f); }

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/lod/MeshConnectivity.h>
 
+#include <osgGpuAnimation/animation/math/Box.h>
+
 #include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <numeric>
 
 namespace osgGpuAnimation
@@ -33,6 +36,20 @@ void sortOnce(std::vector<std::uint32_t>& numbers)
 }
 
 } // namespace
+
+double PosedSurface::size() const
+{
+    Box box;
+    for (const glm::vec3& position : poses.front())
+        box.add(position);
+    return box.empty() ? 0.0 : glm::distance(glm::dvec3(box.min), glm::dvec3(box.max));
+}
+
+bool isPlaced(const glm::vec3& position)
+{
+    constexpr float farthest = 1e18f;
+    return std::abs(position.x) < farthest && std::abs(position.y) < farthest && std::abs(position.z) < farthest;
+}
 
 double squaredDistanceToTriangle(const glm::dvec3& point, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c)
 {
@@ -188,12 +205,17 @@ MeshConnectivity::Corners MeshConnectivity::pointsOf(std::uint32_t triangle) con
     return points;
 }
 
-/// True if a later triangle at the point has the same points and orientation.
+/// True if a later triangle at the point has the same points and, unless the surface is two-sided, orientation.
 bool MeshConnectivity::isDouble(std::uint32_t triangle, std::uint32_t point) const
 {
-    const Corners points = pointsOf(triangle);
+    const Corners points = pointsOf(triangle), turned{points[0], points[2], points[1]};
     return std::any_of(_trianglesAt[point].begin(), _trianglesAt[point].end(),
-                       [&](std::uint32_t other) { return other > triangle && pointsOf(other) == points; });
+                       [&](std::uint32_t other)
+                       {
+                           if (other <= triangle) return false;
+                           const Corners ofOther = pointsOf(other);
+                           return ofOther == points || (_surface.isTwoSided && ofOther == turned);
+                       });
 }
 
 } // namespace osgGpuAnimation

@@ -4,9 +4,11 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace osgGpuAnimation
@@ -15,12 +17,22 @@ namespace osgGpuAnimation
 /// The vertices of a mesh in several poses: the input of MeshSimplifier.
 struct PosedSurface
 {
-    std::vector<std::vector<glm::vec3>> poses; ///< at least one pose; each has one position per vertex
-    std::vector<glm::vec3> normals;            ///< one per vertex, or empty
-    std::vector<glm::vec2> texCoords;          ///< one per vertex, or empty
+    using Poses = std::vector<std::vector<glm::vec3>>; ///< by pose, then vertex: a position
+
+    Poses poses;                                                    ///< at least one
+    std::size_t keyPoses = std::numeric_limits<std::size_t>::max(); ///< triangles are selected in so many first poses
+    std::vector<glm::vec3> normals;                                 ///< one per vertex, or empty
+    std::vector<glm::vec2> texCoords;                               ///< one per vertex, or empty
+    std::vector<glm::vec3> colors;                                  ///< one per vertex, in [0, 1], or empty
+    bool isTwoSided = false;                                        ///< triangles show the same from behind
 
     std::size_t vertexCount() const { return poses.front().size(); }
+    /// The diagonal of the box in the first pose; 0 without vertices.
+    double size() const;
 };
+
+/// True if the squares of its coordinates are finite, too.
+bool isPlaced(const glm::vec3& position);
 
 /// The squared distance from a point to a triangle; a triangle without area is a segment or a point.
 double squaredDistanceToTriangle(const glm::dvec3& point, const glm::dvec3& a, const glm::dvec3& b,
@@ -37,7 +49,7 @@ public:
     /// object.
     MeshConnectivity(const PosedSurface& surface, const std::vector<std::uint32_t>& indices);
 
-    std::size_t poseCount() const { return _surface.poses.size(); }
+    std::size_t keyPoseCount() const { return std::min(_surface.keyPoses, _surface.poses.size()); }
     std::size_t pointCount() const { return _placeOf.size(); }
     std::uint32_t pointOf(std::uint32_t vertex) const { return _pointOf[vertex]; }
     /// The vertices of the point that original triangles use.
@@ -45,6 +57,12 @@ public:
     glm::dvec3 at(std::size_t pose, std::uint32_t point) const
     {
         return glm::dvec3(_surface.poses[pose][_placeOf[point]]);
+    }
+    std::uint32_t placeOf(std::uint32_t point) const { return _placeOf[point]; } ///< one of its vertices
+    /// The colour of one of its vertices; black without colours.
+    glm::vec3 colorOf(std::uint32_t point) const
+    {
+        return _surface.colors.empty() ? glm::vec3(0.0f) : _surface.colors[_placeOf[point]];
     }
     glm::dvec3 at(std::size_t pose, const Corners& corners, int corner) const
     {

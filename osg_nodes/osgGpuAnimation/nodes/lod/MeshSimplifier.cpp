@@ -4,6 +4,7 @@
 #include <osgGpuAnimation/nodes/lod/MeshConnectivity.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -14,12 +15,17 @@ namespace osgGpuAnimation
 namespace
 {
 
-constexpr double borderWeight = 4.0;       ///< of the planes that hold open borders, relative to triangles
-constexpr double lengthCost = 1e-4;        ///< of an edge's squared length: of equal costs the shorter edge is first
-constexpr double sharpestTurn = 0.05;      ///< the smallest cosine between the normals before and after
-constexpr std::size_t mostTriangles = 100; ///< at an edge or a neighbour: the cost of fans is quadratic
-constexpr int mostPasses = 3;              ///< over all remaining edges, for one limit
-constexpr double texCoordsCount = 100.0;   ///< weight relative to normals when a vertex is selected
+constexpr double borderWeight = 4.0;        ///< of the planes that hold open borders, relative to triangles
+constexpr double lengthCost = 1e-4;         ///< of an edge's squared length: of equal costs the shorter edge is first
+constexpr double colorCost = 2.0;           ///< of a squared difference of colours, relative to the squared limit
+constexpr double sharpestTurn = 0.05;       ///< the smallest cosine between the normals before and after
+constexpr std::size_t mostTriangles = 100;  ///< at an edge or a neighbour: the cost of fans is quadratic
+constexpr std::size_t mostCollapsed = 1000; ///< into one point: each further collapse checks all of them
+constexpr double costBeyondLimit = 4.0;     ///< quadrics are means: a collapse of that cost may be near enough
+constexpr std::size_t mostNear = 8;         ///< points of a neighbouring cell to join: dense spots have many
+constexpr double farthestCell = 1e15;       ///< farther ones have no number
+constexpr int mostPasses = 3;               ///< over all remaining edges, for one limit
+constexpr double texCoordsCount = 100.0;    ///< weight relative to normals when a vertex is selected
 
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
@@ -44,10 +50,31 @@ std::vector<Edge> edgesOf(const MeshConnectivity& mesh)
     return edges;
 }
 
+/// To the nearest triangle, or to one within `enough`. triangles: of the positions. inOutNearest: the triangle to begin
+/// with; that triangle.
+double squaredDistance(const glm::dvec3& from, const std::vector<glm::vec3>& positions,
+                       const std::vector<MeshConnectivity::Corners>& triangles, double enough,
+                       std::size_t& inOutNearest)
+{
+    double nearest = std::numeric_limits<double>::infinity();
+    const std::size_t first = inOutNearest;
+    for (std::size_t i = 0; i < triangles.size() && nearest > enough; ++i)
+    {
+        const std::size_t triangle = first + i < triangles.size() ? first + i : first + i - triangles.size();
+        const auto& [a, b, c] = triangles[triangle];
+        const double distance = squaredDistanceToTriangle(from, glm::dvec3(positions[a]), glm::dvec3(positions[b]),
+                                                          glm::dvec3(positions[c]));
+        if (!(distance < nearest)) continue;
+        nearest = distance;
+        inOutNearest = triangle;
+    }
+    return nearest;
+}
+
 } // namespace
 
 MeshSimplifier::MeshSimplifier(const PosedSurface& surface, const std::vector<std::uint32_t>& indices)
-    : _surface(surface), _mesh(surface, indices), _quadrics(_mesh.pointCount() * _mesh.poseCount())
+    : _surface(surface), _mesh(surface, indices), _quadrics(_mesh.pointCount() * _mesh.keyPoseCount())
 {
     addPlanes();
 }
@@ -55,7 +82,7 @@ MeshSimplifier::MeshSimplifier(const PosedSurface& surface, const std::vector<st
 /// Adds the planes of all triangles and, at open borders, the planes across them.
 void MeshSimplifier::addPlanes()
 {
-    const std::size_t poseCount = _mesh.poseCount();
+    const std::size_t poseCount = _mesh.keyPoseCount();
     const std::vector<Edge> edges = edgesOf(_mesh);
     for (std::uint32_t triangle = 0; triangle < _mesh.triangleCount(); ++triangle)
     {
@@ -85,16 +112,19 @@ void MeshSimplifier::addPlanes()
 
 void MeshSimplifier::consider(std::uint32_t from, std::uint32_t to)
 {
-    const std::size_t poseCount = _mesh.poseCount();
+    const std::size_t poseCount = _mesh.keyPoseCount();
+    const double most = costBeyondLimit * _squaredLimit;
+    const glm::dvec3 recolored(_mesh.colorOf(to) - _mesh.colorOf(from));
+    const double ofColor = colorCost * _squaredLimit * glm::dot(recolored, recolored);
     double cost = 0.0;
-    for (std::size_t pose = 0; pose < poseCount && cost <= _squaredLimit; ++pose)
+    for (std::size_t pose = 0; pose < poseCount && cost <= most; ++pose)
     {
         PlaneQuadric quadric = _quadrics[from * poseCount + pose];
         quadric += _quadrics[to * poseCount + pose];
         const glm::dvec3 place = _mesh.at(pose, to), way = place - _mesh.at(pose, from);
-        cost = std::max(cost, quadric.at(place) + lengthCost * glm::dot(way, way));
+        cost = std::max(cost, quadric.at(place) + lengthCost * glm::dot(way, way) + ofColor);
     }
-    if (cost <= _squaredLimit) _next.push({cost, from, to, _mesh.changeCountOf(from), _mesh.changeCountOf(to)});
+    if (cost <= most) _next.push({cost, from, to, _mesh.changeCountOf(from), _mesh.changeCountOf(to)});
 }
 
 void MeshSimplifier::considerAll()
@@ -105,7 +135,43 @@ void MeshSimplifier::considerAll()
             consider(point, neighbour);
 }
 
-void MeshSimplifier::reduce(double limit, bool keepSeams)
+/// Considers pairs of points within the limit in all poses, whether an edge connects them or not.
+void MeshSimplifier::considerNear()
+{
+    using Cell = std::array<std::int64_t, 3>; // as large as the limit, in the first pose
+    std::vector<std::pair<Cell, std::uint32_t>> points;
+    const double cellSize = std::sqrt(_squaredLimit);
+    for (std::uint32_t point = 0; point < _mesh.pointCount(); ++point)
+    {
+        const glm::dvec3 cell = _mesh.at(0, point) / cellSize;
+        if (_mesh.trianglesAt(point).empty() || !(glm::length(cell) < farthestCell)) continue;
+        points.push_back({{std::llround(cell.x), std::llround(cell.y), std::llround(cell.z)}, point});
+    }
+    std::sort(points.begin(), points.end());
+    const auto isBefore = [](const auto& a, const auto& b) { return a.first < b.first; };
+    for (const auto& [cell, from] : points)
+        for (int neighbour = 0; neighbour < 27; ++neighbour)
+        {
+            const Cell there{cell[0] + neighbour % 3 - 1, cell[1] + neighbour / 3 % 3 - 1, cell[2] + neighbour / 9 - 1};
+            const auto [first, last] =
+                std::equal_range(points.begin(), points.end(), std::pair(there, std::uint32_t(0)), isBefore);
+            const auto end = first + std::min<std::ptrdiff_t>(last - first, mostNear);
+            for (auto to = first; to != end; ++to)
+                if (to->second != from && isWithinLimit(from, to->second)) consider(from, to->second);
+        }
+}
+
+bool MeshSimplifier::isWithinLimit(std::uint32_t point, std::uint32_t other) const
+{
+    for (std::size_t pose = 0; pose < _mesh.keyPoseCount(); ++pose)
+    {
+        const glm::dvec3 way = _mesh.at(pose, other) - _mesh.at(pose, point);
+        if (glm::dot(way, way) > _squaredLimit) return false;
+    }
+    return true;
+}
+
+void MeshSimplifier::reduce(double limit, bool keepSeams, bool joinPieces)
 {
     _squaredLimit = limit * limit;
     _keepsSeams = keepSeams;
@@ -114,6 +180,7 @@ void MeshSimplifier::reduce(double limit, bool keepSeams)
     for (int pass = 0; pass < mostPasses && hasCollapsed; ++pass)
     {
         considerAll();
+        if (joinPieces) considerNear();
         hasCollapsed = collapseCandidates();
     }
 }
@@ -121,7 +188,7 @@ void MeshSimplifier::reduce(double limit, bool keepSeams)
 bool MeshSimplifier::collapseCandidates()
 {
     bool hasCollapsed = false;
-    const std::size_t poseCount = _mesh.poseCount();
+    const std::size_t poseCount = _mesh.keyPoseCount();
     std::vector<Corners> moved;
     while (!_next.empty())
     {
@@ -149,6 +216,7 @@ bool MeshSimplifier::findCorners(std::uint32_t from, std::uint32_t to, std::vect
     const std::vector<std::uint32_t>&here = _mesh.trianglesAt(from), &there = _mesh.trianglesAt(to);
     outMoved.clear();
     if (here.size() + there.size() > mostTriangles) return false;
+    if (_mesh.collapsedInto(from).size() + _mesh.collapsedInto(to).size() > mostCollapsed) return false;
     for (const std::uint32_t triangle : here)
     {
         Corners corners = _mesh.corners(triangle);
@@ -164,7 +232,7 @@ bool MeshSimplifier::findCorners(std::uint32_t from, std::uint32_t to, std::vect
 
 bool MeshSimplifier::turnsOver(const Corners& corners, std::uint32_t from, std::uint32_t to) const
 {
-    for (std::size_t pose = 0; pose < _mesh.poseCount(); ++pose)
+    for (std::size_t pose = 0; pose < _mesh.keyPoseCount(); ++pose)
     {
         const auto placeOf = [&](std::uint32_t vertex)
         {
@@ -252,36 +320,54 @@ std::vector<MeshConnectivity::Corners> MeshSimplifier::cornersAfter(std::uint32_
 
 bool MeshSimplifier::areNear(std::uint32_t collapsedInto, const std::vector<Corners>& triangles) const
 {
-    for (std::size_t pose = 0; pose < _mesh.poseCount(); ++pose)
+    for (std::size_t pose = 0; pose < _mesh.keyPoseCount(); ++pose)
         for (const std::uint32_t point : _mesh.collapsedInto(collapsedInto))
-            if (squaredDistance(pose, point, triangles, _squaredLimit) > _squaredLimit) return false;
+        {
+            std::size_t first = 0;
+            if (squaredDistance(_mesh.at(pose, point), _surface.poses[pose], triangles, _squaredLimit, first) >
+                _squaredLimit)
+                return false;
+        }
     return true;
 }
 
-/// To the nearest triangle, or to the first one within `enough`.
-double MeshSimplifier::squaredDistance(std::size_t pose, std::uint32_t point, const std::vector<Corners>& triangles,
-                                       double enough) const
+double MeshSimplifier::error(std::size_t* outPose) const
 {
-    const glm::dvec3 place = _mesh.at(pose, point);
-    double nearest = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < triangles.size() && nearest > enough; ++i)
-        nearest = std::min(nearest,
-                           squaredDistanceToTriangle(place, _mesh.at(pose, triangles[i], 0),
-                                                     _mesh.at(pose, triangles[i], 1), _mesh.at(pose, triangles[i], 2)));
-    return nearest;
+    std::vector<std::uint32_t> vertexOf;
+    for (std::uint32_t point = 0; point < _mesh.pointCount(); ++point)
+        vertexOf.push_back(_mesh.placeOf(point));
+    return errorOfMoved(_surface.poses, vertexOf, outPose);
 }
 
-double MeshSimplifier::error() const
+double MeshSimplifier::errorOfMoved(const PosedSurface::Poses& poses, const std::vector<std::uint32_t>& vertexOf,
+                                    std::size_t* outPose) const
 {
-    double largest = 0.0;
-    for (std::uint32_t now = 0; now < _mesh.pointCount(); ++now)
+    struct Remaining
     {
-        if (_mesh.collapsedInto(now).size() < 2 || _mesh.trianglesAt(now).empty()) continue;
-        const std::vector<Corners> there = _mesh.cornersAround(now);
-        for (std::size_t pose = 0; pose < _mesh.poseCount(); ++pose)
-            for (const std::uint32_t point : _mesh.collapsedInto(now))
-                if (point != now) largest = std::max(largest, squaredDistance(pose, point, there, largest));
+        const std::vector<std::uint32_t>& points; ///< that were collapsed into one
+        std::vector<Corners> triangles;           ///< around it
+    };
+    std::vector<Remaining> all;
+    for (std::uint32_t point = 0; point < _mesh.pointCount(); ++point)
+    {
+        if (_mesh.trianglesAt(point).empty()) continue;
+        all.push_back({_mesh.collapsedInto(point), _mesh.cornersAround(point)});
+        for (Corners& corners : all.back().triangles)
+            for (std::uint32_t& corner : corners)
+                corner = vertexOf[_mesh.pointOf(corner)];
     }
+    std::vector<std::size_t> nearest(_mesh.pointCount()); // of its triangles, in the pose before
+    double largest = 0.0;                                 // squared
+    for (std::size_t pose = 0; pose < poses.size(); ++pose)
+        for (const Remaining& remaining : all)
+            for (const std::uint32_t point : remaining.points)
+            {
+                const double distance =
+                    squaredDistance(_mesh.at(pose, point), poses[pose], remaining.triangles, largest, nearest[point]);
+                if (!(distance > largest)) continue;
+                largest = distance;
+                if (outPose) *outPose = pose;
+            }
     return std::sqrt(largest);
 }
 

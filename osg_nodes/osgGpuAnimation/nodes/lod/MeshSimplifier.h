@@ -79,14 +79,21 @@ public:
     MeshSimplifier(const PosedSurface& surface, const std::vector<std::uint32_t>& indices);
 
     /// Collapses edges while the error stays below about `limit`, in the poses' units; see error(). Call it with
-    /// ascending limits. keepSeams: texture coordinates stay on their side of a seam.
-    void reduce(double limit, bool keepSeams);
+    /// ascending limits. keepSeams: texture coordinates stay on their side of a seam. joinPieces: also collapses points
+    /// into near points that no edge connects them with.
+    void reduce(double limit, bool keepSeams, bool joinPieces = false);
     std::size_t triangleCount() const { return _mesh.triangleCount(); }
     std::vector<std::uint32_t> indices() const { return _mesh.indices(); } ///< in the original order and orientation
+    const MeshConnectivity& mesh() const { return _mesh; }
 
     /// An upper bound, over all poses, for the distance from an original point to the reduced surface, in the poses'
-    /// units. It is measured to the triangles around the point that the original was collapsed into.
-    double error() const;
+    /// units. It is measured to the triangles around the point that the original was collapsed into. outPose: where it
+    /// is so large.
+    double error(std::size_t* outPose = nullptr) const;
+    /// The same with moved vertices. poses: their positions, as many poses as those of the surface. vertexOf: by point,
+    /// the number of its vertex there.
+    double errorOfMoved(const PosedSurface::Poses& poses, const std::vector<std::uint32_t>& vertexOf,
+                        std::size_t* outPose = nullptr) const;
 
 private:
     struct Collapse
@@ -102,6 +109,8 @@ private:
     bool isAlike(std::uint32_t vertex, std::uint32_t other) const;
     void consider(std::uint32_t from, std::uint32_t to);
     void considerAll();
+    void considerNear();
+    bool isWithinLimit(std::uint32_t point, std::uint32_t other) const;
     bool collapseCandidates();
     bool findCorners(std::uint32_t from, std::uint32_t to, std::vector<Corners>& outMoved) const;
     bool turnsOver(const Corners& corners, std::uint32_t from, std::uint32_t to) const;
@@ -109,8 +118,6 @@ private:
     bool isNear(std::uint32_t from, std::uint32_t to, const std::vector<Corners>& moved) const;
     std::vector<Corners> cornersAfter(std::uint32_t point, std::uint32_t from, const std::vector<Corners>& moved) const;
     bool areNear(std::uint32_t collapsedInto, const std::vector<Corners>& triangles) const;
-    double squaredDistance(std::size_t pose, std::uint32_t point, const std::vector<Corners>& triangles,
-                           double enough) const;
 
     const PosedSurface& _surface;
     MeshConnectivity _mesh;

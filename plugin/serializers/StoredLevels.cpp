@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: MIT
+#include "serializers/StoredLevels.h"
+
+#include "serializers/StoredAnimation.h"
+
+#include <osgGpuAnimation/nodes/lod/CharacterLevels.h>
+#include <osgGpuAnimation/nodes/lod/LodLevels.h>
+#include <osgGpuAnimation/nodes/mesh/PaletteEntryBounds.h>
+
+#include <osg/Notify>
+
+namespace osgGpuAnimation::serializers
+{
+
+namespace
+{
+
+/// FNV-1a.
+class Checksum
+{
+public:
+    template <typename Number>
+    void add(const Number* values, std::size_t count)
+    {
+        const auto* bytes = reinterpret_cast<const unsigned char*>(values);
+        for (std::size_t i = 0; i < count * sizeof(Number); ++i)
+            _sum = (_sum ^ bytes[i]) * 16777619u;
+    }
+    void add(std::uint32_t value) { add(&value, 1); }
+    std::int32_t value() const { return static_cast<std::int32_t>(_sum); }
+
+private:
+    std::uint32_t _sum = 2166136261u;
+};
+
+/// Of what levels are made from: the vertices and the indices.
+void addMesh(Checksum& checksum, const osg::Geometry& mesh)
+{
+    if (const auto* vertices = dynamic_cast<const osg::Vec3Array*>(mesh.getVertexArray()))
+        checksum.add(vertices->asVector().data(), vertices->size());
+    for (const osg::ref_ptr<osg::PrimitiveSet>& primitives : mesh.getPrimitiveSetList())
+    {
+        const osg::DrawElements* elements = primitives ? primitives->getDrawElements() : nullptr;
+        checksum.add(primitives ? primitives->getMode() : 0);
+        for (unsigned int i = 0; elements && i < elements->getNumIndices(); ++i)
+            checksum.add(elements->index(i));
+    }
+}
+
+template <typename Number, typename Elements>
+void transferIndices(ValueStream& stream, osg::ref_ptr<osg::DrawElements>& elements)
+{
+    if (stream.isReading()) elements = new Elements(GL_TRIANGLES);
+    stream.block<Number>("Indices", static_cast<Elements&>(*elements).asVector(), 24);
+}
+
+void transferStep(ValueStream& stream, LodLevels::Step& step)
+{
+    bool isWide = dynamic_cast<const osg::DrawElementsUInt*>(step.elements.get()) != nullptr;
+    stream.property("Step").values(step.level, step.error).floats(&step.outset, 1).value(isWide).endLine();
+    if (isWide)
+        transferIndices<std::uint32_t, osg::DrawElementsUInt>(stream, step.elements);
+    else
+        transferIndices<std::uint16_t, osg::DrawElementsUShort>(stream, step.elements);
+}
+
+Checksum checksumOf(const osg::Group& meshes)
+{
+    Checksum checksum;
+    forEachMesh(meshes, [&](const SkinnedGeometry& mesh) { addMesh(checksum, mesh); });
+    return checksum;
+}
+
+void transferMerged(ValueStream& stream, CharacterLevels::Merged& merged)
+{
+    stream.list("Parts", merged.parts, [&](std::size_t& part) { stream.value(part); });
+    stream.list("Steps", merged.steps,
+                [&](CharacterLevels::Step& step)
+                {
+                    stream.property("Step").values(step.level, step.error).endLine();
+                    stream.open("Mesh", 1);
+                    stream.object(step.mesh);
+                    stream.close();
+                });
+}
+
+/// Of a mesh in place of parts.
+std::optional<std::string> findFault(const std::vector<CharacterLevels::Merged>& levels, const AnimationSet& set)
+{
+    for (std::size_t i = 0; i < levels.size(); ++i)
+        for (std::size_t step = 0; step < levels[i].steps.size(); ++step)
+        {
+            const SkinnedGeometry* mesh = levels[i].steps[step].mesh;
+            const std::optional<std::string> fault = mesh ? serializers::findFault(*mesh, set) : "no mesh";
+            if (fault) return "merged parts " + std::to_string(i) + ", step " + std::to_string(step) + ": " + *fault;
+        }
+    return std::nullopt;
+}
+
+void warn(const osg::Object& object, const char* kind, const std::string& message)
+{
+    OSG_WARN << "osgGpuAnimation: the levels of detail of " << kind << " \"" << object.getName()
+             << "\" are made anew: " << message << std::endl;
+}
+
+} // namespace
+
+void transferLodLevels(ValueStream& stream, SkinnedGeometry& mesh)
+{
+    Checksum checksum;
+    addMesh(checksum, mesh);
+    std::int32_t sum = checksum.value();
+    std::vector<LodLevels::Steps> levels;
+    if (!stream.isReading())
+        for (unsigned int i = 0; i < mesh.getNumPrimitiveSets(); ++i)
+            levels.push_back(mesh.findLodLevels()->steps(i));
+    stream.property("Checksum").value(sum).endLine();
+    stream.list("Levels", levels,
+                [&](LodLevels::Steps& steps)
+                { stream.list("Steps", steps, [&](LodLevels::Step& step) { transferStep(stream, step); }); });
+    if (!stream.hasRead()) return;
+    if (sum != checksum.value()) return warn(mesh, "mesh", "its vertices or primitives have changed");
+    const Result<std::shared_ptr<const LodLevels>> restored = LodLevels::restored(mesh, std::move(levels));
+    if (!restored) return warn(mesh, "mesh", restored.error().message);
+    mesh.setLodLevels(restored.value());
+}
+
+void transferCharacterLevels(ValueStream& stream, AnimatedCrowd& crowd)
+{
+    const Checksum checksum = checksumOf(crowd);
+    std::int32_t sum = checksum.value();
+    std::vector<CharacterLevels::Merged> levels;
+    if (!stream.isReading()) levels = crowd.getCharacterLevels()->merged();
+    stream.property("Checksum").value(sum).endLine();
+    stream.list("Merged", levels, [&](CharacterLevels::Merged& merged) { transferMerged(stream, merged); });
+    if (!stream.hasRead()) return;
+    if (sum != checksum.value()) return warn(crowd, "crowd", "its meshes have changed");
+    if (const auto fault = findFault(levels, crowd.getAnimationSet())) return warn(crowd, "crowd", *fault);
+    const auto restored = CharacterLevels::restored(crowd, crowd.getAnimationSet(), std::move(levels));
+    if (!restored) return warn(crowd, "crowd", restored.error().message);
+    crowd.setCharacterLevels(restored.value());
+}
+
+} // namespace osgGpuAnimation::serializers

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-# The set-up that scenes/view.sh, tests/run.sh, tests/clang.sh and .ci/run share; for `source`, not to be run. It sets `root` (the
-# repository) and `build` (its build folder) and offers install_missing PACKAGE..., configure_release [CMAKE'S OPTION...]
-# and build_targets [TARGET...].
+# The set-up that scenes/view.sh, tests/run.sh, tests/sanitize.sh and .ci/run share; for `source`, not to be run. It sets
+# `root` (the repository) and `build` (its build folder) and offers install_missing PACKAGE..., configure_release [CMAKE'S
+# OPTION...] and build_targets [TARGET...].
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build=$root/build

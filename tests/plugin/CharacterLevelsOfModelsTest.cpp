@@ -53,11 +53,15 @@ protected:
     /// The largest error at a level of what its meshes are: merged or not.
     double foundError(int level) const { return LodRange(*model.character, *model.set, levels).foundError(level); }
 
+    void expectErrorsInTheKeyPoses() const;
+    void expectErrorsAtRandomTimes() const;
+    void expectFewMeshesAndTrianglesWhenFar() const;
+
     ImportedModel model;
     std::shared_ptr<const CharacterLevels> levels;
 };
 
-TEST_P(CharacterLevelsOfModelsTest, stayWithinTheirErrorInTheKeyPoses)
+void CharacterLevelsOfModelsTest::expectErrorsInTheKeyPoses() const
 {
     for (const PoseInstruction& pose : keyPoses(*model.set, LodLevels::fewestPoses))
     {
@@ -72,7 +76,7 @@ TEST_P(CharacterLevelsOfModelsTest, stayWithinTheirErrorInTheKeyPoses)
     }
 }
 
-TEST_P(CharacterLevelsOfModelsTest, stayWithinTheirErrorAtRandomTimes)
+void CharacterLevelsOfModelsTest::expectErrorsAtRandomTimes() const
 {
     std::mt19937 random(23);
     struct Largest
@@ -107,7 +111,7 @@ TEST_P(CharacterLevelsOfModelsTest, stayWithinTheirErrorAtRandomTimes)
     }
 }
 
-TEST_P(CharacterLevelsOfModelsTest, areFewMeshesAndFewTrianglesWhenFar)
+void CharacterLevelsOfModelsTest::expectFewMeshesAndTrianglesWhenFar() const
 {
     std::size_t meshes = 0;
     levels->forEachMeshAt(levels->coarsest(), *model.character, [&](const SkinnedGeometry&) { ++meshes; });
@@ -121,6 +125,14 @@ TEST_P(CharacterLevelsOfModelsTest, areFewMeshesAndFewTrianglesWhenFar)
         before = now;
     }
     EXPECT_LE(before, GetParam().mostTriangles);
+}
+
+// One test: the levels are created once.
+TEST_P(CharacterLevelsOfModelsTest, stayWithinTheirErrorAndBecomeFewTriangles)
+{
+    expectErrorsInTheKeyPoses();
+    expectErrorsAtRandomTimes();
+    expectFewMeshesAndTrianglesWhenFar();
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, CharacterLevelsOfModelsTest,

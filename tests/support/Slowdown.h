@@ -4,7 +4,7 @@
 namespace osgGpuAnimation
 {
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#if defined(OSGGPUANIMATION_SANITIZED)
 constexpr bool isSanitized = true;
 #else
 constexpr bool isSanitized = false;

@@ -19,7 +19,7 @@ constexpr double worthwhile = 0.9; ///< a level has at most this share of the tr
 constexpr std::size_t fewestTriangles = 8;
 constexpr double coarser = 1.19;               ///< a limit, relative to the one before
 constexpr std::size_t posedVertices = 300'000; ///< in all key poses
-constexpr std::size_t measuredPoses = 256;     ///< beside the key poses
+constexpr std::size_t otherPoses = 256;        ///< beside the key poses
 // A mesh is used from the level on at which its picture has that structural similarity, with pixels that are twice the
 // level's error: a pixel error of 0.5.
 constexpr double leastSimilarity = 0.98, usualPixel = 2.0;
@@ -107,13 +107,11 @@ CharacterLevels::CharacterLevels(const osg::Group& meshes, const AnimationSet& s
     }
     if (groups.empty()) return;
     std::vector<std::vector<AffineMatrix>> palettes;
-    for (const PoseInstruction& pose : keyPoses(set, LodLevels::poseCountOf(vertices, posedVertices)))
-        Pose::evaluate(set, pose, AffineMatrix(), palettes.emplace_back());
-    const std::size_t keyPoseCount = palettes.size();
-    for (const PoseInstruction& pose : spreadPoses(set, measuredPoses))
+    const MeasuredPoses measured(set, LodLevels::poseCountOf(vertices, posedVertices), otherPoses);
+    for (const PoseInstruction& pose : measured.poses)
         Pose::evaluate(set, pose, AffineMatrix(), palettes.emplace_back());
     for (const Indices& group : groups)
-        merge(group, set, palettes, keyPoseCount);
+        merge(group, set, palettes, measured.keyPoseCount);
 }
 
 void CharacterLevels::merge(const Indices& indices, const AnimationSet& set, const MergedParts::Palettes& palettes,

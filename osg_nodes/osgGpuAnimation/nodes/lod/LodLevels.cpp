@@ -83,11 +83,9 @@ PosedSurface surfaceOf(const osg::Geometry& mesh, const AnimationSet& set, const
     PosedSurface surface;
     std::vector<AffineMatrix> palette;
     std::vector<glm::dvec3> positions;
-    std::vector<PoseInstruction> poses = keyPoses(set, poseCount);
-    surface.keyPoses = poses.size();
-    const std::vector<PoseInstruction> others = spreadPoses(set, measuredPerKeyPose * poseCount);
-    poses.insert(poses.end(), others.begin(), others.end());
-    for (const PoseInstruction& pose : poses)
+    const MeasuredPoses measured(set, poseCount, measuredPerKeyPose * poseCount);
+    surface.keyPoses = measured.keyPoseCount;
+    for (const PoseInstruction& pose : measured.poses)
     {
         Pose::evaluate(set, pose, AffineMatrix(), palette);
         skin(palette, positions);
@@ -146,8 +144,7 @@ osg::ref_ptr<osg::DrawElements> makeElements(const std::vector<std::uint32_t>& i
     return elements;
 }
 
-} // namespace
-
+/// About so many times, spread over the clips; at most a quarter of them in one clip. count: at least 4.
 std::vector<PoseInstruction> spreadPoses(const AnimationSet& set, std::size_t count)
 {
     std::vector<PoseInstruction> pool;
@@ -164,6 +161,8 @@ std::vector<PoseInstruction> spreadPoses(const AnimationSet& set, std::size_t co
         }
     return pool;
 }
+
+} // namespace
 
 std::vector<PoseInstruction> keyPoses(const AnimationSet& set, std::size_t count)
 {
@@ -187,6 +186,13 @@ std::vector<PoseInstruction> keyPoses(const AnimationSet& set, std::size_t count
             distances[other] = std::min(distances[other], distanceOf(joints[other], joints[index]));
     }
     return chosen;
+}
+
+MeasuredPoses::MeasuredPoses(const AnimationSet& set, std::size_t mostKeyPoses, std::size_t otherPoseCount)
+    : poses(keyPoses(set, mostKeyPoses)), keyPoseCount(poses.size())
+{
+    const std::vector<PoseInstruction> others = spreadPoses(set, otherPoseCount);
+    poses.insert(poses.end(), others.begin(), others.end());
 }
 
 float largestScale(const AffineMatrix& matrix)

@@ -24,8 +24,15 @@ namespace osgGpuAnimation
 /// of the poses before it (relative to the joints' mean, so that walking does not count). The candidates are about 64
 /// times spread over the clips. count: at least 1; the result is shorter if the clips have fewer different poses.
 std::vector<PoseInstruction> keyPoses(const AnimationSet& set, std::size_t count);
-/// About so many times, spread over the clips; at most a quarter of them in one clip. count: at least 4.
-std::vector<PoseInstruction> spreadPoses(const AnimationSet& set, std::size_t count);
+/// The poses in which the errors of levels are measured: keyPoses(), and about `otherPoseCount` times spread over the
+/// clips, at most a quarter of them in one clip. Both counts: at least 4.
+struct MeasuredPoses
+{
+    MeasuredPoses(const AnimationSet& set, std::size_t mostKeyPoses, std::size_t otherPoseCount);
+
+    std::vector<PoseInstruction> poses; ///< the key poses come first
+    std::size_t keyPoseCount;
+};
 
 struct PosedSurface;
 

@@ -101,7 +101,10 @@ protected:
     {
         osg::ref_ptr<osg::Node> model = osgDB::readRefNodeFile(ownScene("Wanderer.glb"));
         osg::ref_ptr<JointAttachment> hand = new JointAttachment("Hand_R");
-        hand->addChild(new osg::ShapeDrawable(new osg::Box(osg::Vec3(), 0.3f)));
+        const osg::ref_ptr<osg::ShapeDrawable> box = new osg::ShapeDrawable(new osg::Box(osg::Vec3(), 0.3f));
+        box->setUseDisplayList(false); // Mesa's zink leaves one out now and then
+        box->setUseVertexBufferObjects(true);
+        hand->addChild(box);
         findCharacter(*model)->addChild(hand);
         osg::ref_ptr<osg::Group> scene = new osg::Group;
         scene->addChild(placed(model, osg::Matrix::translate(-2, 0, 0)));

@@ -142,20 +142,10 @@ private:
 /// What a picture shows in front of its background.
 struct Shown
 {
-    double pixels = 0.0;
+    double pixels;
     osg::Vec4 color; ///< the mean
 
-    explicit Shown(const osg::Image& image)
-    {
-        for (int y = 0; y < image.t(); ++y)
-            for (int x = 0; x < image.s(); ++x)
-            {
-                if (image.getColor(x, y) == image.getColor(0, 0)) continue;
-                pixels += 1.0;
-                color += image.getColor(x, y);
-            }
-        color /= static_cast<float>(std::max(pixels, 1.0));
-    }
+    explicit Shown(const osg::Image& image) : pixels(Picture::pixelsDrawn(image)), color(Picture::meanColor(image)) {}
 };
 
 /// Of the mean colour.

@@ -23,30 +23,6 @@ namespace osgGpuAnimation
 namespace
 {
 
-int pixelsDrawn(const osg::Image& image)
-{
-    int count = 0;
-    for (int y = 0; y < image.t(); ++y)
-        for (int x = 0; x < image.s(); ++x)
-            count += image.getColor(x, y) != image.getColor(0, 0);
-    return count;
-}
-
-/// The mean colour of the pixels that differ from the background.
-osg::Vec4 meanColor(const osg::Image& image)
-{
-    osg::Vec4 sum;
-    float count = 0.0f;
-    for (int y = 0; y < image.t(); ++y)
-        for (int x = 0; x < image.s(); ++x)
-        {
-            if (image.getColor(x, y) == image.getColor(0, 0)) continue;
-            sum += image.getColor(x, y);
-            count += 1.0f;
-        }
-    return sum / std::max(count, 1.0f);
-}
-
 class LodGLTest : public ViewerGLTest
 {
 protected:
@@ -138,8 +114,8 @@ protected:
         {
             lookAside(scene, pixels, 1.0 * (step % steps) / steps, 1.0 * (step / steps) / steps);
             const osg::ref_ptr<osg::Image> image = ViewerGLTest::pictureOf(&scene, {0.2});
-            shown.pixels += static_cast<double>(pixelsDrawn(*image)) / (steps * steps);
-            shown.color += meanColor(*image) / static_cast<float>(steps * steps);
+            shown.pixels += static_cast<double>(Picture::pixelsDrawn(*image)) / (steps * steps);
+            shown.color += Picture::meanColor(*image) / static_cast<float>(steps * steps);
         }
         return shown;
     }

@@ -5,6 +5,9 @@
 #include <osg/Image>
 #include <osgViewer/Viewer>
 
+#include <algorithm>
+#include <cmath>
+
 namespace osgGpuAnimation
 {
 
@@ -25,13 +28,23 @@ public:
     osg::ref_ptr<osg::Image> copy() const { return new osg::Image(*_image, osg::CopyOp::DEEP_COPY_ALL); }
 
     /// The number of pixels that differ from the colour of the lower left corner, the background.
-    int pixelsDrawn() const
+    int pixelsDrawn() const { return pixelsDrawn(*_image); }
+    static int pixelsDrawn(const osg::Image& image)
     {
         int count = 0;
-        for (int y = 0; y < _image->t(); ++y)
-            for (int x = 0; x < _image->s(); ++x)
-                if (_image->getColor(x, y) != _image->getColor(0, 0)) ++count;
+        for (int y = 0; y < image.t(); ++y)
+            for (int x = 0; x < image.s(); ++x)
+                if (image.getColor(x, y) != image.getColor(0, 0)) ++count;
         return count;
+    }
+    /// The mean colour of these pixels.
+    static osg::Vec4 meanColor(const osg::Image& image)
+    {
+        osg::Vec4 sum;
+        for (int y = 0; y < image.t(); ++y)
+            for (int x = 0; x < image.s(); ++x)
+                if (image.getColor(x, y) != image.getColor(0, 0)) sum += image.getColor(x, y);
+        return sum / std::max(static_cast<float>(pixelsDrawn(image)), 1.0f);
     }
 
     /// The number of pixels of two pictures that differ by more than the tolerance (0 to 1) in any channel.

@@ -47,8 +47,7 @@ double MergedMesh::fit()
         poses = _parts.posesOf(_mesh);
         error = _simplifier.errorOfMoved(poses, _vertexOf);
     }
-    _views.fitColors(_mesh, poses);
-    _shades = _views.shadesOf(_mesh, poses);
+    _shades = _views.fitColors(_mesh, poses);
     return error;
 }
 

@@ -226,7 +226,7 @@ float MergedViews::lightOf(const std::vector<glm::vec3>& positions, const std::u
     return brightness(unit(areaNormal(positions, triangle), towards), towards);
 }
 
-void MergedViews::fitColors(CoarseMesh& mesh, const Poses& poses) const
+MergedViews::Shades MergedViews::fitColors(CoarseMesh& mesh, const Poses& poses) const
 {
     struct Target
     {
@@ -236,10 +236,11 @@ void MergedViews::fitColors(CoarseMesh& mesh, const Poses& poses) const
         osg::Vec4 shown; ///< by the parts
     };
     std::vector<Target> targets;
+    SeenCells seen;
     for (std::size_t view = 0; view < SurfaceViews::viewCount; ++view)
     {
         const std::vector<glm::vec3>& positions = poses[_views.poseOf(view)];
-        const std::vector<Seen> cells = _views.seen(view, {poses, mesh.indices, false});
+        const std::vector<Seen>& cells = seen.emplace_back(_views.seen(view, {poses, mesh.indices, false}));
         for (std::size_t cell = 0; cell < cells.size(); ++cell)
         {
             const Look& look = _looks[view][cell];
@@ -276,22 +277,24 @@ void MergedViews::fitColors(CoarseMesh& mesh, const Poses& poses) const
             color[component] = std::clamp(color[component], 0.0f, 1.0f);
         color.a() = 1.0f;
     }
+    return shadesOf(mesh, poses, seen);
 }
 
-MergedViews::Shades MergedViews::shadesOf(const CoarseMesh& mesh, const Poses& poses) const
+/// seen: of the mesh.
+MergedViews::Shades MergedViews::shadesOf(const CoarseMesh& mesh, const Poses& poses, const SeenCells& seen) const
 {
     Shades shades;
     for (std::size_t view = 0; view < SurfaceViews::viewCount; ++view)
     {
         std::vector<float>& ofView = shades.emplace_back();
-        for (const Seen& seen : _views.seen(view, {poses, mesh.indices, false}))
+        for (const Seen& cell : seen[view])
         {
             ofView.push_back(0.0f);
-            if (seen.triangle == Seen::none) continue;
-            const std::uint32_t* triangle = &mesh.indices[3 * seen.triangle];
+            if (cell.triangle == Seen::none) continue;
+            const std::uint32_t* triangle = &mesh.indices[3 * cell.triangle];
             osg::Vec4 color;
             for (int corner = 0; corner < 3; ++corner)
-                color += mesh.colors[triangle[corner]] * seen.barycentric[corner];
+                color += mesh.colors[triangle[corner]] * cell.barycentric[corner];
             const float light = lightOf(poses[_views.poseOf(view)], triangle, view);
             ofView.back() = shadeOf(_parts.stored(color) * light);
         }

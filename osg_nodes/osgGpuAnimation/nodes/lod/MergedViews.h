@@ -33,12 +33,11 @@ public:
     void fitCoverage(CoarseMesh& mesh, double most) const;
 
     using Poses = PosedSurface::Poses;
-    /// Takes the colours that differ least from the parts in the views when they are interpolated: flat triangles are
-    /// brighter than what they replace. poses: of the mesh.
-    void fitColors(CoarseMesh& mesh, const Poses& poses) const;
     /// The brightness of the views of a mesh, by view, then cell.
     using Shades = std::vector<std::vector<float>>;
-    Shades shadesOf(const CoarseMesh& mesh, const Poses& poses) const;
+    /// Takes the colours that differ least from the parts in the views when they are interpolated: flat triangles are
+    /// brighter than what they replace. Returns how the views look with them. poses: of the mesh.
+    Shades fitColors(CoarseMesh& mesh, const Poses& poses) const;
     /// The mean structural similarity, in [-1, 1], of views of a mesh to those of the parts (Wang et al., Image Quality
     /// Assessment: From Error Visibility to Structural Similarity, 2004). pixel: its size in the set's units.
     double similarity(const Shades& shades, double pixel) const;
@@ -64,6 +63,8 @@ private:
     void addMoves(const CoarseMesh& mesh, const Poses& poses, std::size_t view, const std::vector<glm::mat3>& turns,
                   Moves& moves) const;
     float lightOf(const std::vector<glm::vec3>& positions, const std::uint32_t* triangle, std::size_t view) const;
+    using SeenCells = std::vector<std::vector<SurfaceViews::Seen>>; ///< by view, then cell
+    Shades shadesOf(const CoarseMesh& mesh, const Poses& poses, const SeenCells& seen) const;
 
     const MergedParts& _parts;
     SurfaceViews _views;

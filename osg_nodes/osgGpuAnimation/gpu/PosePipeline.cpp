@@ -319,7 +319,6 @@ bool PosePipeline::Parts::evaluateFused(FeedbackScope& scope, FeedbackVertexArra
     if (const std::size_t most = std::max(oddEntries(set), garmentEntries); most > 0)
         scratch.reserve(most * chunk.width * matrixBytes);
     if (constraints) corrections.reserve(constraints->plan().correctionCount * chunk.width * rotationBytes);
-    scope.forgetActiveTexture();
     const BufferTexture& entries = constraints ? constraints->entries() : buffers.entries();
     chunk.bindInstances(*gl, arrays);
     PoseVariant variant = PoseVariant::of(batch);
@@ -422,7 +421,6 @@ bool PosePipeline::Parts::solveConstraint(const LevelInput& input, const PoseBat
     const auto joints = static_cast<std::size_t>(shape.chainLength);
     FeedbackScope& scope = input.scope;
     solved.reserve(joints * jointBytes);
-    scope.forgetActiveTexture();
     useMixInput(scope, pass, input.set, input.buffers, input.chunk);
     pass.setTexture(scope, "parentLevels", unitPrevious, input.parentLevels);
     pass.setInt("firstParent", static_cast<int>(input.firstParent));
@@ -480,7 +478,6 @@ bool PosePipeline::Parts::evaluateSeparate(FeedbackScope& scope, const PoseBatch
     const std::size_t trackVertices = set.trackCount() * chunk.width;
     mixedTracks.reserve(trackVertices * sizeof(JointTransform));
     scratch.reserve(trackVertices * matrixBytes);
-    scope.forgetActiveTexture();
 
     makeSeparatePasses();
     PoseVariant variant = PoseVariant::of(batch);

@@ -12,11 +12,12 @@
 #include <cstdlib>
 #include <dlfcn.h>
 #include <filesystem>
+#include <link.h>
 #include <set>
 #include <string>
 #include <vector>
 
-// Libraries in the current folder, under all names for which OSG asks: the tool loads none of them.
+// Libraries in the current folder, under all names for which OSG and the system ask: the tool loads none of them.
 
 namespace osgGpuAnimation
 {
@@ -26,10 +27,18 @@ namespace
 
 namespace fs = std::filesystem;
 
-/// The names of OSG's libraries and plugins and of the kit's.
+/// The names of OSG's libraries and plugins, of the kit's, and of the libraries that they need.
 std::set<std::string> namesOfLibraries(const std::string& plugins)
 {
     std::set<std::string> names{"osgdb_nosuch.so", "osgdb_gpuanim.so", "osgdb_assimp.so"};
+    // What this program has loaded: libosg.so.161 …
+    const auto insert = [](dl_phdr_info* library, std::size_t, void* list)
+    {
+        const std::string name = fs::path(library->dlpi_name).filename().string();
+        if (name.rfind("lib", 0) == 0) static_cast<std::set<std::string>*>(list)->insert(name);
+        return 0;
+    };
+    dl_iterate_phdr(insert, &names);
     osgDB::FilePathList folders = osgDB::Registry::instance()->getLibraryFilePathList();
     folders.push_back(OSGGPUANIMATION_PLUGIN_FOLDER);
     for (const std::string& folder : folders)

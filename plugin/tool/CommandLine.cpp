@@ -262,8 +262,8 @@ void CommandLine::addRender()
         ->add_option_function<std::string>(
             "--view", [this](const std::string& text) { _render.view = readView(text); },
             "From where, in degrees: 0,0 is level, in front; azimuth 90 is the model's left side; elevation 90 is "
-            "above "
-            "(default: about 29,15)")
+            "above; "
+            "default: about 29,15")
         ->option_text("AZIMUTH,ELEVATION")
         ->excludes(camera);
     _renderApp->add_option("--time", _render.time, "Seconds; clips loop (default 0)")->check(checkFinite);

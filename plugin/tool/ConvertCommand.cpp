@@ -31,51 +31,36 @@ void printWarnings(const std::string& file, const gltf::Messages& messages)
         std::cerr << "osggpuanim: " << file << ": " << warning << std::endl;
 }
 
-class NodeFinder : public osg::NodeVisitor
+class CharacterFinder : public osg::NodeVisitor
 {
 public:
-    NodeFinder() : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN) { setNodeMaskOverride(~0u); }
+    CharacterFinder() : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN) { setNodeMaskOverride(~0u); }
     void apply(osg::Node& node) override
     {
-        if (!_known.insert(&node).second) return;
-        nodes.push_back(&node);
+        if (!_known.insert(&node).second) return; // it has several parents
+        if (auto* const character = dynamic_cast<AnimatedCharacter*>(&node)) characters.push_back(character);
         traverse(node);
     }
-    std::vector<osg::Node*> nodes;
+    std::vector<AnimatedCharacter*> characters;
 
 private:
     std::set<const osg::Node*> _known;
 };
-
-/// All nodes of the scene, hidden ones too, each once.
-std::vector<osg::Node*> nodesOf(osg::Node& scene)
-{
-    NodeFinder finder;
-    scene.accept(finder);
-    return finder.nodes;
-}
-
-std::vector<AnimatedCharacter*> charactersOf(osg::Node& scene)
-{
-    std::vector<AnimatedCharacter*> characters;
-    for (osg::Node* const node : nodesOf(scene))
-        if (auto* const character = dynamic_cast<AnimatedCharacter*>(node)) characters.push_back(character);
-    return characters;
-}
 
 /// What the import does to its own characters. Error: what was asked for is not done.
 Result<bool> addClips(osg::Node& scene, const std::string& file, const gltf::ImportOptions& options,
                       gltf::Messages& messages)
 {
     gltf::Report report(messages);
-    const std::vector<AnimatedCharacter*> characters = charactersOf(scene);
+    CharacterFinder finder;
+    scene.accept(finder);
     const std::vector<gltf::ClipFile> clipFiles = gltf::readClipFiles(file, options, report);
     const gltf::ClipJoints joints = gltf::readClipJoints(file, options, report);
     if (!messages.unmet.empty()) return Error{messages.unmet.front()};
-    if (characters.empty() && (!clipFiles.empty() || options.compact))
+    if (finder.characters.empty() && (!clipFiles.empty() || options.compact))
         return Error{"there is no character whose clips could be changed"};
     std::vector<bool> isAdded(clipFiles.size(), false); // to one of the characters, at least
-    for (AnimatedCharacter* const character : characters)
+    for (AnimatedCharacter* const character : finder.characters)
     {
         gltf::MemoryBudget budget(options.maxDecodedBytes);
         std::shared_ptr<const AnimationSet> set = character->getController().sharedSet();

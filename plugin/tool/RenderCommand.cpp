@@ -181,6 +181,13 @@ std::vector<double> RenderCommand::times() const
     return times;
 }
 
+Result<bool> RenderCommand::show(PictureViewer& viewer, osg::Node& scene, const std::vector<osg::Vec3d>& points) const
+{
+    if (points.empty()) return Error{file + ": there is nothing to draw; a file of clips needs a model, see --clips"};
+    viewer.show(&scene, turntable ? turned(points) : points, view);
+    return true;
+}
+
 Result<bool> RenderCommand::drawPictures(PictureViewer& viewer,
                                          const std::function<double(double)>& simulationTime) const
 {
@@ -199,9 +206,7 @@ Result<bool> RenderCommand::drawPictures(PictureViewer& viewer,
 
 Result<bool> RenderCommand::drawModel(PictureViewer& viewer, const gltf::ImportedModel& model) const
 {
-    const std::vector<osg::Vec3d> points = pointsOf(model, times());
-    if (points.empty()) return Error{file + ": there is nothing to draw; a file of clips needs a model, see --clips"};
-    viewer.show(model.root, turntable ? turned(points) : points, view);
+    if (const Result<bool> shown = show(viewer, *model.root, pointsOf(model, times())); !shown) return shown;
     if (model.startCamera) viewer.lookThrough(*model.startCamera);
     return drawPictures(viewer,
                         [&](double seconds)
@@ -217,8 +222,7 @@ Result<bool> RenderCommand::drawCrowd(PictureViewer& viewer, osg::Node& model, c
     if (!crowd) return Error{grid.modelFile + ": " + crowd.error().message};
     osg::ref_ptr<osg::Group> scene = new osg::Group;
     scene->addChild(crowd.value());
-    const std::vector<osg::Vec3d> points = osgGpuAnimation::pointsOf(*scene);
-    viewer.show(scene, turntable ? turned(points) : points, view);
+    if (const Result<bool> shown = show(viewer, *scene, osgGpuAnimation::pointsOf(*scene)); !shown) return shown;
     viewer.draw(0.0); // the time from which the clips run
     return drawPictures(viewer, [](double seconds) { return seconds; });
 }

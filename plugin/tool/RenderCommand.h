@@ -43,6 +43,8 @@ struct RenderCommand
 
 private:
     std::vector<double> times() const; ///< seconds, by picture
+    /// points: of the scene, at all times. Error: there are none.
+    Result<bool> show(PictureViewer& viewer, osg::Node& scene, const std::vector<osg::Vec3d>& points) const;
     /// simulationTime: of the viewer, from a picture's time; called before the picture is drawn.
     Result<bool> drawPictures(PictureViewer& viewer, const std::function<double(double)>& simulationTime) const;
     Result<bool> drawModel(PictureViewer& viewer, const gltf::ImportedModel& model) const;

@@ -60,6 +60,7 @@ TEST(SavedFileTest, aFileIsWrittenAsAWholeOrStaysAsItWas)
     const std::string file = folder.file("a.glb");
     const std::string large(100000, 'x');
     EXPECT_EQ(messageOf(saveFile(file, "first")), "");
+    fs::permissions(file, fs::perms::owner_read | fs::perms::owner_write);
     EXPECT_EQ(messageOf(saveFile(file, "second")), "");
     {
         const FullDisk full(4096);
@@ -70,6 +71,7 @@ TEST(SavedFileTest, aFileIsWrittenAsAWholeOrStaysAsItWas)
     EXPECT_EQ(std::distance(fs::directory_iterator(folder.file("")), {}), 1) << "no other file is left";
     EXPECT_EQ(messageOf(saveFile(file, large)), "");
     EXPECT_EQ(contentOf(file), large);
+    EXPECT_EQ(fs::status(file).permissions(), fs::perms::owner_read | fs::perms::owner_write);
     EXPECT_EQ(messageOf(saveFile(folder.file("no/a.glb"), "")), "cannot be written: No such file or directory");
     EXPECT_EQ(messageOf(saveFile(folder.file(""), "")), "cannot be written: Is a directory");
 }

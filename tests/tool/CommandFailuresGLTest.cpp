@@ -129,6 +129,7 @@ const Failure failures[] = {
     {{"render", "flag.gltf.0x2.crowd", "-o", "out/x.png"}, 1, "flag.gltf.0x2.crowd: ", "a crowd of 0x2 is empty"},
     {{"render", "cut.osgb", "-o", "out/x.png"}, 1, "cut.osgb: ", "OSG cannot read it"},
     {{"render", "clips.gltf", "-o", "out/kept.png"}, 1, "clips.gltf: ", "there is nothing to draw"},
+    {{"render", "clips.gltf.2x2.crowd", "-o", "out/x.png"}, 1, "clips.gltf", "nothing to draw"},
     {{"render", "flag.gltf", "--clip", "Fly", "-o", "out/x.png"}, 1, "flag.gltf: ", "Fly"},
     {{"render", "flag.gltf", "--clips", "strange.gltf", "-o", "out/x.png"}, 1, "flag.gltf: ", "strange.gltf"},
     {{"render", "flag.gltf.2x2.crowd", "--clips", "strange.gltf", "-o", "out/x.png"}, 1, "flag.gltf: ", "strange.gltf"},

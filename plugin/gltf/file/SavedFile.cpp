@@ -40,6 +40,7 @@ Result<bool> saveFile(const std::string& file, std::string_view bytes)
     const std::string part = target + '.' + std::to_string(getpid()) + ".part";
     int code = writeBytes(part, "wbx", bytes);
     if (code == EEXIST) return result(code); // somebody else's
+    if (code == 0 && fs::exists(status)) fs::permissions(part, status.permissions(), failure);
     if (code == 0 && std::rename(part.c_str(), target.c_str()) != 0) code = errno;
     if (code != 0) fs::remove(part, failure);
     return result(code);

@@ -6,11 +6,15 @@
 #include <nlohmann/json.hpp>
 
 #include <gtest/gtest.h>
+#include <osgDB/ReadFile>
+#include <osgDB/Registry>
+#include <osgDB/WriteFile>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <regex>
 #include <set>
 #include <string>
@@ -189,6 +193,35 @@ TEST_F(ToolTest, convertWritesOneFileOfAModelAndItsClips)
         EXPECT_EQ(report["materials"][0]["name"], "red");
         expectBounds(report["clips"][1]["bounds"], {-1, 0, 0, 1, 3, 0}); // Rise: 1 up
     }
+}
+
+TEST_F(ToolTest, convertNeedsOneCharacterForEachFileOfClips)
+{
+    setenv("OSG_LIBRARY_PATH", OSGGPUANIMATION_PLUGIN_FOLDER, 1);
+    osgDB::Registry::instance()->getLibraryFilePathList().push_front(OSGGPUANIMATION_PLUGIN_FOLDER);
+    json door = json::parse(swingingFlag());
+    door["nodes"][0]["name"] = "door";
+    door["nodes"][1]["name"] = "knob";
+    const std::string doorClips = folder.write("door.gltf", door.dump());
+    door["nodes"][0]["name"] = "lid";
+    door["nodes"][1]["name"] = "box";
+    const std::string lidClips = folder.write("lid.gltf", door.dump());
+    const osg::ref_ptr<osg::Group> both = new osg::Group;
+    for (const std::string& model : {flag, doorClips})
+    {
+        const std::string stored = folder.file("one.osgb");
+        ASSERT_EQ(run({"convert", model, "-o", stored}).status, 0);
+        both->addChild(osgDB::readRefNodeFile(stored));
+    }
+    const std::string scene = folder.file("both.osgb"), out = folder.file("out.osgb");
+    ASSERT_TRUE(osgDB::writeNodeFile(*both, scene));
+    const Process added = run({"convert", scene, "--clips", flag, "--clips", doorClips, "-o", out});
+    EXPECT_EQ(added.status, 0) << added.err;
+    std::filesystem::remove(out);
+    const Process refused = run({"convert", scene, "--clips", flag, "--clips", lidClips, "-o", out});
+    EXPECT_EQ(refused.status, 1) << refused.err;
+    EXPECT_NE(refused.err.find("lid.gltf"), std::string::npos) << refused.err;
+    EXPECT_FALSE(std::filesystem::exists(out));
 }
 
 TEST_F(ToolTest, inspectSaysHowFarCompactClipsAreOff)

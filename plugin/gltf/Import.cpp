@@ -127,7 +127,7 @@ Result<bool> Importer::makeSet(const NodeTree& tree, const Joints& joints, const
     if (joints.skeleton.jointCount() == 0)
     {
         for (const ClipFile& file : _clipFiles)
-            _report.warn(file.name + ": the model has no joints; its clips are left out");
+            _report.unmet(file.name + ": the model has no joints", "its clips are left out");
         return true;
     }
     Clips clips = readClips(_model, joints, morphs, _budget, _report);

@@ -139,7 +139,9 @@ Result<gltf::ImportedModel> readModel(const std::string& fileName, const gltf::I
     Result<gltf::ImportedModel> imported = gltf::importModel(bytes.value(), fileName, options);
     if (!imported && !isCalledGltf(fileName))
         return Error{"the file is neither .gltf nor .glb: " + imported.error().message};
-    if (!imported || (messages.warnings.empty() && messages.notes.empty())) return imported;
+    if (!imported) return imported;
+    if (!imported.value().messages.unmet.empty()) return Error{imported.value().messages.unmet.front()};
+    if (messages.warnings.empty() && messages.notes.empty()) return imported;
     gltf::ImportedModel model = imported.value();
     const auto putFirst = [](std::vector<std::string>& all, const std::vector<std::string>& first)
     { all.insert(all.begin(), first.begin(), first.end()); };

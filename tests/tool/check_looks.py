@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: MIT
 """Compares pictures of `osggpuanim render --look` with the shared reference pictures.
 
-check_looks.py OSGGPUANIM SHARED NAME
+check_looks.py OSGGPUANIM SHARED NAME [FOLDER]
 
-SHARED is the folder with assets/ and looks/; NAME is a reference picture's, as `Fox.studio`. Needs python3-skimage, -scipy
-and -pil, of the system's Python.
+SHARED is the folder with assets/ and looks/; NAME is a reference picture's, as `Fox.studio`. The picture stays in
+FOLDER, if one is given. Needs python3-skimage, -scipy and -pil, of the system's Python.
 """
 import glob
 import importlib.util
@@ -71,10 +71,10 @@ def faults(compare, picture, shared, name, look):
 
 
 def main():
-    tool, shared, picture = sys.argv[1:]
+    tool, shared, picture, *kept = sys.argv[1:]
     name, look = picture.split(".")
     with tempfile.TemporaryDirectory() as folder:
-        output = os.path.join(folder, picture + ".png")
+        output = os.path.join(*(kept or [folder]), picture + ".png")
         subprocess.run([tool, "render", model_of(shared, name), "--look", look, "--time", str(TIMES.get(name, 0.0)),
                         "--size", "512x512", "-o", output], check=True)
         found = list(faults(comparison(shared), output, shared, name, look))

@@ -1,0 +1,208 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# Usage: [OUT=FOLDER] [LIMIT=SECONDS] go.sh [PART...]
+# Runs what tests/gpu/pack.sh packed, on a machine with a graphics card; a software renderer serves, too. Parts:
+#     tests   the GL tests (FILTER: others, as for --gtest_filter)
+#     poses   the oracle's poses, evaluated by the card, within 1e-5 of the model's size
+#     looks   pictures against the reference pictures
+#     bench   the benchmark (BENCH: its options)
+# Default: all, in this order, within LIMIT seconds together (560). The machine needs a driver with EGL and OpenGL 3.3,
+# bash and xz; python3 for poses; scikit-image and SciPy for looks. OUT (default: out/ beside this file) gets the logs
+# and table.md, which is printed last. Exit status 0: everything that was asked for ran and passed.
+set -euo pipefail
+
+tests=(gpu_tests nodes_tests plugin_tests tool_tests osganimation_tests)
+sections=nodes,skins,weights,positions,bbox # as in tests/tool/oracle.cmake
+read -ra options <<<"${BENCH:---quick --only pose --only crowd --only field --only mixed}"
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+project=$here/project
+shared=$here/shared
+build=$project/build
+tool=$build/bin/osggpuanim
+mkdir -p "${OUT:=$here/out}"
+out=$(cd "$OUT" && pwd)
+faults=0
+
+fail()
+{
+    echo "go.sh: $*" >&2
+    exit 1
+}
+
+unpack()
+{
+    [ -f "$here/pack.tar.xz" ] || fail "there is no $here/pack.tar.xz; tests/gpu/pack.sh makes it"
+    rm -rf "$project" "$shared"
+    tar -C "$here" -xJf "$here/pack.tar.xz"
+    # The machine's own libraries are newer, and its driver may need that.
+    /sbin/ldconfig -p | awk '/x86-64/ { print $1 }' | (cd "$build/lib" && xargs rm -f --)
+}
+
+check_pack()
+{
+    local part
+    cd "$project"
+    for part in "${tests[@]/#/build/bin/}" build/bin/osggpuanim{,_benchmark} build/lib/osgPlugins-* \
+        scenes tests/plugin/fixtures tests/tool/check_{oracle,looks}.py \
+        ../shared/{assets,oracle,looks/models,looks/pictures}; do
+        [ -e "$part" ] || fail "$part is not in the pack"
+    done
+}
+
+# The paths that the tests were compiled with.
+link_paths()
+{
+    local root folder part
+    { read -r root && read -r folder; } <"$here/paths"
+    for part in build scenes tests/plugin/fixtures; do
+        link "$project/$part" "$root/$part"
+    done
+    link "$shared" "$folder"
+    [ "$root/build" -ef "$build" ] || fail "the tests would use $root/build; tests/gpu/bare.sh runs them apart from it"
+}
+
+link()
+{
+    [ -e "$2" ] || { mkdir -p "$(dirname "$2")" && ln -sfn "$1" "$2"; } ||
+        fail "cannot create $2, which the tests were compiled with"
+}
+
+# The driver of a container with NVIDIA's has a folder of its own.
+find_driver()
+{
+    local vendor folder
+    for vendor in {/usr/local/nvidia,/usr}/share/glvnd/egl_vendor.d/10_nvidia.json; do
+        [ -f "$vendor" ] || continue
+        export __EGL_VENDOR_LIBRARY_FILENAMES=$vendor
+        export OSGGPUANIMATION_EGL_PLATFORM=${OSGGPUANIMATION_EGL_PLATFORM:-device}
+        break
+    done
+    export LD_LIBRARY_PATH=$build/lib OSG_LIBRARY_PATH=$build/lib OSGGPUANIMATION_REQUIRE_GL=1
+    for folder in /usr/local/nvidia/lib{64,}; do
+        [ ! -d "$folder" ] || LD_LIBRARY_PATH+=:$folder
+    done
+}
+
+# What draws.
+describe()
+{
+    nvidia-smi --query-gpu=name,driver_version --format=csv,noheader 2>/dev/null || true
+    "$tool" pose "$project/scenes/Wanderer.glb" --bind --evaluator gpu -o "$here/pose.json" >"$here/log" 2>&1 ||
+        fail "the tool does not evaluate a pose: $(cat "$here/log")"
+    grep -oE 'osggpuanim, GPU: [^"]+' "$here/pose.json"
+}
+
+# Runs a command until LIMIT at most.
+timed()
+{
+    local left=$((${LIMIT:-560} - SECONDS))
+    [ $left -gt 0 ] || { echo "no time is left"; return 124; }
+    timeout --kill-after=5 $left "$@"
+}
+
+# A row of the table: begin, then try COMMAND... for each check, or other counts, then end.
+begin()
+{
+    part=$1 began=$SECONDS passed=0 count=0 failed=()
+}
+
+# try NAME COMMAND...
+try()
+{
+    count=$((count + 1))
+    if timed "${@:2}" >"$here/log" 2>&1; then
+        passed=$((passed + 1))
+    else
+        failed+=("$1")
+    fi
+    { echo "== $1"; cat "$here/log"; } >>"$out/$part.log"
+}
+
+end()
+{
+    [ "$count" -gt 0 ] || failed+=("nothing ran")
+    [ ${#failed[@]} -eq 0 ] || faults=$((faults + 1))
+    [ ${#failed[@]} -le 12 ] || failed=("${failed[@]:0:12}" "and $((${#failed[@]} - 12)) more")
+    echo "| $part | $passed of $count | $((SECONDS - began)) s | ${failed[*]:-–} |" | tee -a "$out/table.md"
+}
+
+run_tests()
+{
+    local program status
+    for program in "${tests[@]}"; do
+        begin "$program"
+        status=0
+        timed "$build/bin/$program" --gtest_filter="${FILTER:-*GLTest*}" >"$here/log" 2>&1 || status=$?
+        cat "$here/log" >>"$out/tests.log"
+        count=$(sed -nE 's/^\[=+\] Running ([0-9]+) tests? from.*/\1/p' "$here/log")
+        count=${count:-0}
+        passed=$(grep -c '^\[       OK' "$here/log") || true
+        # Failed and skipped tests, and the last one of a program that crashed or ran out of time.
+        sed -nE 's/^\[  (FAILED|SKIPPED) +\] ([^ ,]+\.[^ ,]+).*/\2/p' "$here/log" | sort -u >"$here/names"
+        mapfile -t failed <"$here/names"
+        if [ $status -gt 1 ]; then
+            failed+=("$(sed -n 's/^\[ RUN      \] //p' "$here/log" | tail -1): exit status $status")
+        elif [ ${#failed[@]} -eq 0 ] && { [ $status -eq 1 ] || [ "$passed" -ne "$count" ]; }; then
+            failed=("exit status $status")
+        fi
+        end
+    done
+}
+
+run_poses()
+{
+    local file
+    begin poses
+    for file in "$shared"/oracle/*.json; do
+        try "$(basename "$file" .json)" \
+            python3 tests/tool/check_oracle.py "$tool" gpu "$shared" "$(basename "$file")" $sections
+    done
+    end
+}
+
+run_looks()
+{
+    local file
+    begin looks
+    mkdir -p "$here/pictures"
+    for file in "$shared"/looks/pictures/*.png; do
+        [[ $file != *.integrated.png ]] || continue
+        try "$(basename "$file" .png)" \
+            python3 tests/tool/check_looks.py "$tool" "$shared" "$(basename "$file" .png)" "$here/pictures"
+    done
+    tar -C "$here" -cJf "$out/pictures.tar.xz" pictures
+    end
+}
+
+run_bench()
+{
+    begin bench
+    try bench "$build/bin/osggpuanim_benchmark" "$here/bench" \
+        "$shared"/assets/{Fox/Fox,CesiumMan/CesiumMan,Knight/Knight}.glb "${options[@]}"
+    [ ! -f "$here/bench/benchmark.json" ] || cp "$here/bench/benchmark.json" "$out"
+    end
+    cat "$out/bench.log"
+}
+
+[ $# -gt 0 ] || set -- tests poses looks bench
+modules=json
+for part in "$@"; do
+    [[ " tests poses looks bench " == *" $part "* ]] || fail "expected tests, poses, looks or bench, found $part"
+    [ "$part" != looks ] || modules=skimage,scipy,PIL
+done
+[[ " $* " != *" looks "* && " $* " != *" poses "* ]] || python3 -c "import $modules" || fail "python3 needs $modules"
+rm -f "$out"/{tests,poses,looks,bench}.log
+unpack
+check_pack # and go there
+link_paths
+find_driver
+{
+    describe
+    printf '\n%s\n' '| part | passed | time | not passed |' '| --- | --- | --- | --- |'
+} >"$out/table.md"
+for part in "$@"; do
+    "run_$part"
+done
+echo
+cat "$out/table.md"
+[ $faults -eq 0 ]

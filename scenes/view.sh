@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Usage: scenes/view.sh [FILE]
-# Installs what is missing on a Debian 12, builds the plugins into build/ and opens FILE (.glb, .gltf, .fbx, …; default: our
+# Installs what is missing on a Debian (12, 13 or sid), builds the plugins into build/ and opens FILE (.glb, .gltf, .fbx, …; default: our
 # own Wanderer.glb in the studio) in the stock osgviewer. Pseudo-loaders may follow: Wanderer.glb.20x20.crowd.studio.
 # Without a display it draws a picture (of the model or the crowd, in the studio's light) into build/ and says where.
 set -euo pipefail
@@ -23,7 +23,7 @@ while [ ! -f "$model" ]; do
     model=${model%.*}
 done
 
-install_missing "${packages[@]}"
+install_missing "${view_packages[@]}"
 configure_release
 build_targets plugins osggpuanim
 export OSG_LIBRARY_PATH=$build/lib${OSG_LIBRARY_PATH:+:$OSG_LIBRARY_PATH}

@@ -14,16 +14,15 @@ if [[ ! "$name" =~ ^(bookworm|trixie|sid)$ ]] || [[ ! "${2:-view}" == view ]]; t
 fi
 folder=$root/build-$name
 
-# The machine's own mirrors of Debian, with another release.
+# The machine's own mirrors of Debian, with this release; sid has no updates apart.
 sources()
 {
-    local here format='deb $(REPO_URI) $(RELEASE) $(COMPONENT)'
-    here=$(. /etc/os-release && echo "$VERSION_CODENAME")
-    apt-get indextargets --format "$format" 'Created-By: Packages' 'Origin: Debian' 'Component: main' |
-        sed "s/ $here\b/ $name/" | if [ "$name" = sid ]; then grep ' sid main$'; else cat; fi
+    apt-get indextargets --format 'deb $(REPO_URI) $(RELEASE) $(COMPONENT)' 'Created-By: Packages' 'Origin: Debian' |
+        sed -nE "s/^(deb [^ ]+ )[a-z]+(-updates|-security)? main$/\1$name\2 main/p" | sort -u |
+        if [ "$name" = sid ]; then grep ' sid main$'; else cat; fi
 }
 
-# A mirror may have a copy of sid that is older than a week; a proxy of apt's here is one there.
+# What apt here needs to reach its mirrors. A mirror's copy of sid may be older than its date allows.
 settings()
 {
     apt-config dump --no-empty Acquire::http
@@ -38,7 +37,8 @@ inside()
         env -i PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin HOME=/root "$@"
 }
 
-if [ ! -e "$folder/etc/debian_version" ]; then
+if [ ! -d "$folder/src" ]; then # which is made last
+    rm -rf "$folder"
     mkdir -p "$folder"
     settings >"$folder.apt"
     sources | mmdebstrap --variant=minbase --aptopt="$folder.apt" "$name" "$folder" -

@@ -18,7 +18,7 @@ view_packages=(
 test_packages=(
     libgtest-dev libbenchmark-dev glslang-tools python3 python3-skimage python3-scipy python3-pil xvfb xauth dpkg-dev file
 )
-ci_packages=(git clang clang-format doxygen mesa-vulkan-drivers)
+ci_packages=(git clang clang-format doxygen mesa-vulkan-drivers mmdebstrap)
 
 is_installed()
 {

@@ -30,11 +30,12 @@ settings()
     echo 'Acquire::Check-Valid-Until "false";'
 }
 
-# In the bare system, with processes and mounts of its own that end with it.
+# In the bare system, with processes and mounts of its own that end with it; OSGGPUANIMATION_… of the environment are passed.
 inside()
 {
     unshare --mount --pid --fork --kill-child --mount-proc="$folder/proc" chroot "$folder" \
-        env -i PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin HOME=/root "$@"
+        env -i PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin HOME=/root \
+        $(env | grep '^OSGGPUANIMATION_') "$@"
 }
 
 if [ ! -d "$folder/src" ]; then # which is made last
@@ -60,4 +61,5 @@ time inside "$tree/scenes/view.sh" </dev/null
 [ -s "$folder$tree/build/Wanderer.png" ]
 [ $# -eq 1 ] || exit 0
 echo "Debian $name: tests/run.sh"
-time inside OSGGPUANIMATION_REQUIRE_GL=1 "$tree/tests/run.sh" </dev/null
+export OSGGPUANIMATION_REQUIRE_GL=1
+time inside "$tree/tests/run.sh" </dev/null

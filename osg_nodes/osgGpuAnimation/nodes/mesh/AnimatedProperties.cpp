@@ -19,6 +19,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <string_view>
 #include <utility>
 
 namespace osgGpuAnimation
@@ -41,11 +42,11 @@ const char* const iorName = "extensions/KHR_materials_ior/ior";
 const char* const specularColorName = "extensions/KHR_materials_specular/specularColorFactor";
 
 /// name: one of PropertyMember::all().
-const PropertyMember& memberNamed(Object object, const std::string& name)
+const PropertyMember& memberNamed(Object object, std::string_view name)
 {
     static const auto members = []
     {
-        std::map<std::pair<Object, std::string>, const PropertyMember*> byName;
+        std::map<std::pair<Object, std::string_view>, const PropertyMember*> byName;
         for (const PropertyMember& member : PropertyMember::all())
             byName[{member.object, member.name}] = &member;
         return byName;
@@ -425,7 +426,7 @@ void AnimatedProperties::setMaterials(osg::StateSet& state, int material) const
 void AnimatedProperties::setMaterial(osg::StateSet& state, const PropertyPointer& pointer) const
 {
     const PropertyMember& member = *pointer.member;
-    const auto value = [&](const std::string& name)
+    const auto value = [&](std::string_view name)
     { return valueOf(memberNamed(Object::Material, name), pointer.index); };
     const std::array<float, 4> own = valueOf(member, pointer.index);
     setNumbers(state, member.uniform, member.component, member.count, own.data());

@@ -8,6 +8,7 @@
 
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace osgGpuAnimation
@@ -77,17 +78,22 @@ private:
 
     void compareTextures()
     {
+        constexpr std::pair<GLenum, GLenum> bindings[] = {{GL_TEXTURE_2D, GL_TEXTURE_BINDING_2D},
+                                                          {GL_TEXTURE_CUBE_MAP, GL_TEXTURE_BINDING_CUBE_MAP},
+                                                          {GL_TEXTURE_BUFFER, 0x8C2C}}; // GL_TEXTURE_BINDING_BUFFER
         const GLuint active = integer(GL_ACTIVE_TEXTURE) - GL_TEXTURE0;
         compare("active texture unit", active, _state.getActiveTextureUnit());
         for (GLuint unit = 0; unit < 32; ++unit)
         {
-            const auto* recorded = dynamic_cast<const osg::TextureBuffer*>(
+            const auto* recorded = dynamic_cast<const osg::Texture*>(
                 _state.getLastAppliedTextureAttribute(unit, osg::StateAttribute::TEXTURE));
             const osg::Texture::TextureObject* object =
                 recorded ? recorded->getTextureObject(_state.getContextID()) : nullptr;
             if (!object) continue; // without a record, OSG binds before it draws
             _gl.glActiveTexture(GL_TEXTURE0 + unit);
-            compare("buffer texture of unit " + std::to_string(unit), integer(0x8C2C), object->id());
+            for (const auto& [target, query] : bindings)
+                if (recorded->getTextureTarget() == target)
+                    compare("texture of unit " + std::to_string(unit), integer(query), object->id());
         }
         _gl.glActiveTexture(GL_TEXTURE0 + active);
     }
@@ -98,26 +104,45 @@ private:
                 nameOf(const_cast<osg::VertexArrayState&>(arrays).getCurrentElementBufferObject()));
         std::map<GLuint, bool> recorded;
         for (GLuint i = 0; i < arrays._vertexAttribArrays.size(); ++i)
-            recorded[i] = arrays._vertexAttribArrays[i] && arrays._vertexAttribArrays[i]->active;
-        const auto record = [&](const osg::VertexArrayState::ArrayDispatch* array, GLenum legacy, GLuint alias)
+            recorded[i] = isActive(arrays._vertexAttribArrays[i].get());
+        if (_state.getUseVertexAttributeAliasing())
         {
-            const bool isActive = array && array->active;
-            if (_state.getUseVertexAttributeAliasing())
-                recorded[alias] = recorded[alias] || isActive;
-            else if (integer(0x9126) != 1) // GL_CONTEXT_PROFILE_MASK: the core profile has no legacy arrays
-                compare("legacy array " + std::to_string(legacy), glIsEnabled(legacy), isActive);
-        };
-        record(arrays._vertexArray.get(), GL_VERTEX_ARRAY, _state.getVertexAlias()._location);
-        record(arrays._normalArray.get(), GL_NORMAL_ARRAY, _state.getNormalAlias()._location);
-        record(arrays._colorArray.get(), GL_COLOR_ARRAY, _state.getColorAlias()._location);
-        for (GLuint unit = 0; _state.getUseVertexAttributeAliasing() && unit < arrays._texCoordArrays.size(); ++unit)
-            record(arrays._texCoordArrays[unit].get(), 0, _state.getTexCoordAliasList()[unit]._location);
+            const auto record = [&](const osg::VertexArrayState::ArrayDispatch* array, GLuint alias)
+            { recorded[alias] = recorded[alias] || isActive(array); };
+            record(arrays._vertexArray.get(), _state.getVertexAlias()._location);
+            record(arrays._normalArray.get(), _state.getNormalAlias()._location);
+            record(arrays._colorArray.get(), _state.getColorAlias()._location);
+            for (GLuint unit = 0; unit < arrays._texCoordArrays.size(); ++unit)
+                record(arrays._texCoordArrays[unit].get(), _state.getTexCoordAliasList()[unit]._location);
+        }
+        else if (integer(0x9126) != 1) // GL_CONTEXT_PROFILE_MASK: the core profile has no legacy arrays
+            compareLegacyArrays(arrays);
         for (GLuint location = 0; location < integer(0x8869); ++location) // GL_MAX_VERTEX_ATTRIBS
         {
             const std::string name = "vertex attribute " + std::to_string(location);
             compare(name, attribute(location, 0x8622), recorded[location]); // GL_VERTEX_ATTRIB_ARRAY_ENABLED
             compare(name + "'s divisor", attribute(location, 0x88FE), 0);
         }
+    }
+
+    static bool isActive(const osg::VertexArrayState::ArrayDispatch* array) { return array && array->active; }
+
+    void compareLegacyArrays(const osg::VertexArrayState& arrays)
+    {
+        const auto compareArray = [&](const char* name, GLenum array, const auto& dispatch)
+        { compare(name, glIsEnabled(array), isActive(dispatch.get())); };
+        compareArray("vertex array", GL_VERTEX_ARRAY, arrays._vertexArray);
+        compareArray("normal array", GL_NORMAL_ARRAY, arrays._normalArray);
+        compareArray("colour array", GL_COLOR_ARRAY, arrays._colorArray);
+        compareArray("second colour array", GL_SECONDARY_COLOR_ARRAY, arrays._secondaryColorArray);
+        compareArray("fog coordinate array", GL_FOG_COORDINATE_ARRAY, arrays._fogCoordArray);
+        const GLuint active = integer(GL_CLIENT_ACTIVE_TEXTURE) - GL_TEXTURE0;
+        for (GLuint unit = 0; unit < arrays._texCoordArrays.size(); ++unit)
+        {
+            _gl.glClientActiveTexture(GL_TEXTURE0 + unit);
+            compareArray("texture coordinate array", GL_TEXTURE_COORD_ARRAY, arrays._texCoordArrays[unit]);
+        }
+        _gl.glClientActiveTexture(GL_TEXTURE0 + active);
     }
 
     GLuint attribute(GLuint location, GLenum name) const

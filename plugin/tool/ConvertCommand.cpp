@@ -6,6 +6,8 @@
 #include "gltf/scene/ClipFiles.h"
 #include "tool/ModelFile.h"
 
+#include <osgGpuAnimation/nodes/mesh/SceneVisitor.h>
+
 #include <osgDB/FileNameUtils>
 #include <osgDB/WriteFile>
 
@@ -26,10 +28,11 @@ void printWarnings(const std::string& file, const gltf::Messages& messages)
         std::cerr << "osggpuanim: " << file << ": " << warning << std::endl;
 }
 
-class CharacterFinder : public osg::NodeVisitor
+class CharacterFinder : public SceneVisitor
 {
 public:
-    CharacterFinder() : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN) {}
+    using SceneVisitor::apply;
+    CharacterFinder() : SceneVisitor(Shared::Once, TRAVERSE_ALL_CHILDREN) {}
     void apply(osg::MatrixTransform& node) override
     {
         if (auto* const character = dynamic_cast<AnimatedCharacter*>(&node)) characters.push_back(character);

@@ -535,7 +535,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     Report report(messages);
     const Result<std::string> glb = exportModel(made.scene(), report);
     if (!glb) return 0;
-    const Result<ImportedModel> read = importModel(glb.value(), "", {});
+    ImportOptions options;
+    options.noLights = true; // their data are checked all the same; a warning says that OpenGL shows seven
+    const Result<ImportedModel> read = importModel(glb.value(), "", options);
     if (!read) fail(read.error().message);
     if (!read.value().messages.warnings.empty()) fail(read.value().messages.warnings.front());
     return 0;

@@ -424,6 +424,32 @@ TEST(ExportedFaultsTest, jointsDeeperThanTheImportReadsAreLeftOut)
     EXPECT_EQ(reread.model.primitives.size(), 1u);
 }
 
+// A skin of glTF has each joint once.
+TEST(ExportedFaultsTest, aMeshMayFollowAJointByTwoInverseBinds)
+{
+    AffineMatrix shifted;
+    shifted.rows[0].w = 1.0f;
+    AnimationParts parts{Skeleton::create({{"joint", -1, {}, 0}}).value(), {}, {}, {}, {}};
+    parts.skins = {{"one", {0}, {AffineMatrix()}}, {"other", {0}, {shifted}}};
+    const auto set = AnimationSet::create(std::move(parts)).value();
+    const osg::ref_ptr<SkinnedGeometry> mesh = rigidTriangle(*set, 0);
+    const osg::ref_ptr<osg::Vec4usArray> entries = new osg::Vec4usArray(3);
+    const osg::ref_ptr<osg::Vec4Array> weights = new osg::Vec4Array(3);
+    for (unsigned int vertex = 0; vertex < 3; ++vertex)
+    {
+        (*entries)[vertex].set(static_cast<GLushort>(set->entryOfSkin(0, 0)),
+                               static_cast<GLushort>(set->entryOfSkin(1, 0)), 0, 0);
+        (*weights)[vertex].set(0.5f, 0.5f, 0.0f, 0.0f);
+    }
+    mesh->setInfluences(0, entries, weights);
+    const osg::ref_ptr<AnimatedCharacter> character = new AnimatedCharacter(set);
+    character->addChild(mesh);
+    const Reread reread(*character);
+    EXPECT_EQ(reread.error, "");
+    EXPECT_EQ(reread.messages.warnings, Warnings());
+    EXPECT_EQ(reread.model.primitives.size(), 1u);
+}
+
 TEST(ExportedFaultsTest, aGroupBelowItselfIsWrittenOnce)
 {
     const osg::ref_ptr<osg::Group> outer = new osg::Group;

@@ -9,8 +9,8 @@
 #include "gltf/scene/Clips.h"
 #include "gltf/scene/Drawables.h"
 #include "gltf/scene/Joints.h"
-#include "gltf/scene/TransformBound.h"
 
+#include <osgGpuAnimation/animation/bounds/TransformBound.h>
 #include <osgGpuAnimation/nodes/CharacterKeys.h>
 #include <osgGpuAnimation/nodes/mesh/MaterialVariants.h>
 

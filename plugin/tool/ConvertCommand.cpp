@@ -7,6 +7,8 @@
 #include "gltf/scene/ClipFiles.h"
 #include "tool/ModelFile.h"
 
+#include <osgGpuAnimation/nodes/mesh/SceneVisitor.h>
+
 #include <osg/Notify>
 #include <osgDB/FileNameUtils>
 #include <osgDB/Registry>
@@ -14,7 +16,6 @@
 
 #include <algorithm>
 #include <iostream>
-#include <set>
 #include <sstream>
 
 namespace osgGpuAnimation::tool
@@ -31,20 +32,17 @@ void printWarnings(const std::string& file, const gltf::Messages& messages)
         std::cerr << "osggpuanim: " << file << ": " << warning << std::endl;
 }
 
-class CharacterFinder : public osg::NodeVisitor
+class CharacterFinder : public SceneVisitor
 {
 public:
-    CharacterFinder() : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN) { setNodeMaskOverride(~0u); }
-    void apply(osg::Node& node) override
+    using SceneVisitor::apply;
+    CharacterFinder() : SceneVisitor(Shared::Once, TRAVERSE_ALL_CHILDREN) { setNodeMaskOverride(~0u); }
+    void apply(osg::MatrixTransform& node) override
     {
-        if (!_known.insert(&node).second) return; // it has several parents
         if (auto* const character = dynamic_cast<AnimatedCharacter*>(&node)) characters.push_back(character);
         traverse(node);
     }
     std::vector<AnimatedCharacter*> characters;
-
-private:
-    std::set<const osg::Node*> _known;
 };
 
 /// What the import does to its own characters. Error: what was asked for is not done.

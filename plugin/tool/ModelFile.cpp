@@ -8,7 +8,8 @@
 #include "gltf/file/ModelBytes.h"
 #include "gltf/file/ProgressLine.h"
 
-#include <osg/NodeVisitor>
+#include <osgGpuAnimation/nodes/mesh/SceneVisitor.h>
+
 #include <osgDB/FileNameUtils>
 #include <osgDB/Registry>
 
@@ -36,10 +37,11 @@ bool isSceneFormat(const std::string& fileName)
 }
 
 /// Searches for an osgAnimation::Skeleton, by name: the tool does not link osgAnimation.
-class SkeletonFinder : public osg::NodeVisitor
+class SkeletonFinder : public SceneVisitor
 {
 public:
-    SkeletonFinder() : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN) {}
+    using SceneVisitor::apply;
+    SkeletonFinder() : SceneVisitor(Shared::Once, TRAVERSE_ALL_CHILDREN) {}
     void apply(osg::Node& node) override
     {
         found =

@@ -194,7 +194,8 @@ void PosePipeline::Parts::makeSeparatePasses()
     if (localPass) return;
     using namespace shaders;
     localPass.reset(new FeedbackPass(*gl, "local", {local_glsl, local_vert}, rowOutputs));
-    worldPass.reset(new FeedbackPass(*gl, "world", {world_glsl, world_vert}, rowOutputs));
+    worldPass.reset(
+        new FeedbackPass(*gl, "world", {"const bool hasLimits = true;\n", world_glsl, world_vert}, rowOutputs));
 }
 
 SetResources& PosePipeline::Parts::resourcesOf(const PoseBatch& batch)
@@ -321,7 +322,7 @@ bool PosePipeline::Parts::evaluateFused(FeedbackScope& scope, FeedbackVertexArra
     if (constraints) corrections.reserve(constraints->plan().correctionCount * chunk.width * rotationBytes);
     const BufferTexture& entries = constraints ? constraints->entries() : buffers.entries();
     chunk.bindInstances(*gl, arrays);
-    PoseVariant variant = PoseVariant::of(batch);
+    PoseVariant variant = PoseVariant::of(batch, buffers.isModest());
     if (chunk.hasSamplesAsAttributes()) variant.sampleCount = static_cast<int>(chunk.sampleStride);
     variant.isRootLevel = true;
     variant.hasRoots = !chunk.uploadedRootMatrices.empty();
@@ -480,7 +481,7 @@ bool PosePipeline::Parts::evaluateSeparate(FeedbackScope& scope, const PoseBatch
     scratch.reserve(trackVertices * matrixBytes);
 
     makeSeparatePasses();
-    PoseVariant variant = PoseVariant::of(batch);
+    PoseVariant variant = PoseVariant::of(batch, buffers.isModest());
     variant.setMotion(buffers.anyTrack());
     variant.translationMotion = std::max(variant.translationMotion, PartMotion::Constant);
     variant.scaleMotion = std::max(variant.scaleMotion, PartMotion::Constant);

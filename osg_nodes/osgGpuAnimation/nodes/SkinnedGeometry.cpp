@@ -414,7 +414,7 @@ void SkinnedGeometry::drawPrimitives(osg::State& state, int count, int level) co
         setOutset(state, reduced.outset);
         if (reduced.elements)
             drawInstanced(state, *reduced.elements, count, usesBuffers);
-        else
+        else if (_primitives[i])
             drawInstanced(state, *_primitives[i], count, usesBuffers);
     }
 }

@@ -7,8 +7,8 @@
 #include "gltf/scene/Clips.h"
 #include "gltf/scene/Joints.h"
 #include "gltf/scene/NodeTree.h"
-#include "gltf/scene/TransformBound.h"
 
+#include <osgGpuAnimation/animation/bounds/TransformBound.h>
 #include <osgGpuAnimation/animation/retarget/ClipRetargeter.h>
 #include <osgGpuAnimation/animation/retarget/JointNames.h>
 #include <osgGpuAnimation/nodes/mesh/PropertyPointer.h>

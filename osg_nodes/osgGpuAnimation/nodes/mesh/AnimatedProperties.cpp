@@ -5,6 +5,7 @@
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/nodes/mesh/MaterialVariants.h>
 #include <osgGpuAnimation/nodes/mesh/PaletteEntryBounds.h>
+#include <osgGpuAnimation/nodes/mesh/SceneVisitor.h>
 #include <osgGpuAnimation/nodes/PbrMaterial.h>
 #include <osgGpuAnimation/nodes/shading/PunctualLight.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
@@ -13,7 +14,6 @@
 #include <osg/LOD>
 #include <osg/Material>
 #include <osg/Math>
-#include <osg/NodeVisitor>
 #include <osg/ValueObject>
 
 #include <algorithm>
@@ -156,10 +156,11 @@ osg::Light* shownLight(osg::Light& light)
 
 /// Calls visit for the lights and camera views at and below a node, but for those of other characters below.
 template <typename Visit>
-class MarkedNodes : public osg::NodeVisitor
+class MarkedNodes : public SceneVisitor
 {
 public:
-    explicit MarkedNodes(Visit visit) : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN), _visit(std::move(visit))
+    using SceneVisitor::apply;
+    explicit MarkedNodes(Visit visit) : SceneVisitor(Shared::Once, TRAVERSE_ALL_CHILDREN), _visit(std::move(visit))
     {
         setNodeMaskOverride(~0u);
     }

@@ -198,7 +198,7 @@ link_paths
 find_driver
 {
     describe
-    printf '\n%s\n' '| part | passed | time | not passed |' '| --- | --- | --- | --- |'
+    printf '\n%s\n%s\n' '| part | passed | time | not passed |' '| --- | --- | --- | --- |'
 } >"$out/table.md"
 for part in "$@"; do
     "run_$part"

@@ -170,7 +170,7 @@ run_looks()
         try "$(basename "$file" .png)" \
             python3 tests/tool/check_looks.py "$tool" "$shared" "$(basename "$file" .png)" "$here/pictures"
     done
-    tar -C "$here" -cJf "$out/pictures.tar.xz" pictures
+    tar -C "$here" -c pictures | xz >"$out/pictures.tar.xz"
     end
 }
 

@@ -7,8 +7,8 @@
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/../setup.sh"
 
-packages=(bash coreutils findutils grep sed mawk tar xz-utils libc-bin python3 python3-skimage python3-scipy python3-pil
-    libegl-mesa0 libgl1-mesa-dri)
+packages=(bash dash coreutils findutils grep sed mawk tar xz-utils libc-bin
+    python3 python3-skimage python3-scipy python3-pil libegl-mesa0 libgl1-mesa-dri)
 [ -f "$root/.gpu/pack.tar.xz" ] || { echo "bare.sh: there is no .gpu; tests/gpu/pack.sh makes it" >&2; exit 1; }
 
 bare=$(mktemp -d)

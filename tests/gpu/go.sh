@@ -170,7 +170,7 @@ run_looks()
         try "$(basename "$file" .png)" \
             python3 tests/tool/check_looks.py "$tool" "$shared" "$(basename "$file" .png)" "$here/pictures"
     done
-    tar -C "$here" -cJf "$out/pictures.tar.xz" pictures
+    tar -C "$here" -c pictures | xz >"$out/pictures.tar.xz"
     end
 }
 
@@ -198,7 +198,7 @@ link_paths
 find_driver
 {
     describe
-    printf '\n%s\n' '| part | passed | time | not passed |' '| --- | --- | --- | --- |'
+    printf '\n%s\n%s\n' '| part | passed | time | not passed |' '| --- | --- | --- | --- |'
 } >"$out/table.md"
 for part in "$@"; do
     "run_$part"

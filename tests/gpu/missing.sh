@@ -6,7 +6,8 @@ set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-mkdir -p "$folder"/{build/bin,tests/gpu,other/project/{build/{bin,lib/osgPlugins-0},scenes,tests/{plugin/fixtures,tool}}}
+mkdir -p "$folder"/{build/bin,tests/gpu}
+mkdir -p "$folder"/other/project/{build/{bin,lib/osgPlugins-0},scenes,tests/{plugin/fixtures,tool}}
 mkdir -p "$folder"/other/shared/{assets,oracle,looks/{models,pictures}}
 cp "$here/../setup.sh" "$folder/tests"
 cp "$here"/{pack,go}.sh "$folder/tests/gpu"

@@ -48,7 +48,8 @@ osg::ref_ptr<osg::Image> asRgba(const osg::Image& image)
             const osg::Vec4 color = image.getColor(static_cast<unsigned int>(x), static_cast<unsigned int>(y));
             unsigned char* const pixel = rgba->data(static_cast<unsigned int>(x), static_cast<unsigned int>(y));
             for (int i = 0; i < 4; ++i)
-                pixel[i] = static_cast<unsigned char>(std::clamp(color[i], 0.0f, 1.0f) * 255.0f + 0.5f);
+                pixel[i] =
+                    static_cast<unsigned char>((color[i] > 0.0f ? std::min(color[i], 1.0f) : 0.0f) * 255.0f + 0.5f);
         }
     return rgba;
 }

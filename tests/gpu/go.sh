@@ -132,7 +132,8 @@ run_tests()
     for program in "${tests[@]}"; do
         begin "$program"
         status=0
-        timed "$build/bin/$program" --gtest_filter="${FILTER:-*GLTest*-ShaderLanguageGLTest.*}" >"$here/log" 2>&1 || status=$?
+        timed "$build/bin/$program" --gtest_filter="${FILTER:-*GLTest*-ShaderLanguageGLTest.*}" >"$here/log" 2>&1 ||
+            status=$?
         cat "$here/log" >>"$out/tests.log"
         count=$(sed -nE 's/^\[=+\] Running ([0-9]+) tests? from.*/\1/p' "$here/log")
         count=${count:-0}

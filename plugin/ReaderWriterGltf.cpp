@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/Export.h"
 #include "gltf/file/ModelBytes.h"
+#include "gltf/file/SavedFile.h"
 #include "ModelReader.h"
 
 #include "cache/SeparateLoads.h"
@@ -10,7 +11,6 @@
 #include <osgDB/FileNameUtils>
 #include <osgDB/Registry>
 
-#include <fstream>
 #include <new>
 #include <string>
 
@@ -48,17 +48,16 @@ public:
     }
     WriteResult writeNode(const osg::Node& node, const std::string& fileName, const Options*) const override
     {
-        std::ofstream stream;
-        const auto open = [&]() -> std::ostream&
-        {
-            stream.open(fileName, std::ios::binary);
-            return stream;
-        };
-        return write(node, fileName, open);
+        return write(node, fileName, [&](const std::string& bytes) { return gltf::saveFile(fileName, bytes); });
     }
     WriteResult writeNode(const osg::Node& node, std::ostream& stream, const Options*) const override
     {
-        return write(node, "scene.glb", [&]() -> std::ostream& { return stream; });
+        const auto save = [&](const std::string& bytes) -> Result<bool>
+        {
+            if (stream << bytes << std::flush) return true;
+            return Error{"the stream cannot be written"};
+        };
+        return write(node, "scene.glb", save);
     }
 
 protected:
@@ -69,9 +68,9 @@ protected:
     }
 
 private:
-    /// open: called once there is something to write.
-    template <typename Open>
-    WriteResult write(const osg::Node& node, const std::string& fileName, Open open) const;
+    /// save: called with the bytes of the file.
+    template <typename Save>
+    WriteResult write(const osg::Node& node, const std::string& fileName, Save save) const;
 };
 
 osgDB::ReaderWriter::ReadResult ReaderWriterGltf::readNode(std::istream& stream, const Options* options) const
@@ -93,9 +92,9 @@ osgDB::ReaderWriter::ReadResult ReaderWriterGltf::readNode(std::istream& stream,
     }
 }
 
-template <typename Open>
+template <typename Save>
 osgDB::ReaderWriter::WriteResult ReaderWriterGltf::write(const osg::Node& node, const std::string& fileName,
-                                                         Open open) const
+                                                         Save save) const
 {
     const std::string extension = osgDB::getLowerCaseFileExtension(fileName);
     if (!acceptsExtension(extension)) return WriteResult::FILE_NOT_HANDLED;
@@ -108,7 +107,8 @@ osgDB::ReaderWriter::WriteResult ReaderWriterGltf::write(const osg::Node& node, 
         for (const std::string& warning : messages.warnings)
             OSG_WARN << fileName << ": " << warning << std::endl;
         if (!bytes) return WriteResult(bytes.error().message);
-        return open() << bytes.value() << std::flush ? WriteResult::FILE_SAVED : WriteResult::ERROR_IN_WRITING_FILE;
+        const Result<bool> saved = save(bytes.value());
+        return saved ? WriteResult(WriteResult::FILE_SAVED) : WriteResult(saved.error().message);
     }
     catch (const std::bad_alloc&)
     {

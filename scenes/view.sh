@@ -1,14 +1,15 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Usage: scenes/view.sh [FILE]
-# Installs what is missing on a Debian 12, builds the plugins into build/ and opens FILE (.glb, .gltf, .fbx, …; default: our
-# own Wanderer.glb in the studio) in the stock osgviewer. Pseudo-loaders may follow: Wanderer.glb.20x20.crowd.studio.
-# Without a display it draws a picture (of the model or the crowd, in the studio's light) into build/ and says where.
+# Installs what is missing on a Debian (12, 13 or sid), builds the plugins into build/ and opens FILE (.glb, .gltf, .fbx,
+# …; default: our own Wanderer.glb in the studio) in the stock osgviewer. Pseudo-loaders may follow:
+# Wanderer.glb.20x20.crowd.studio. Without a display it draws a picture (of the model or the crowd, in the studio's light)
+# into build/ and says where.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/../tests/setup.sh"
 
 if [ $# -gt 1 ] || [[ "${1:-}" == -* ]]; then
-    sed -n '3,6s/^# //p' "${BASH_SOURCE[0]}"
+    sed -n '3,7s/^# //p' "${BASH_SOURCE[0]}"
     [[ "${1:-}" == -h || "${1:-}" == --help ]] && exit 0
     exit 2
 fi
@@ -23,7 +24,7 @@ while [ ! -f "$model" ]; do
     model=${model%.*}
 done
 
-install_missing "${packages[@]}"
+install_missing "${view_packages[@]}"
 configure_release
 build_targets plugins osggpuanim
 export OSG_LIBRARY_PATH=$build/lib${OSG_LIBRARY_PATH:+:$OSG_LIBRARY_PATH}

@@ -71,6 +71,9 @@
 // The palette: RGBA32F, a 3x4 matrix is three texels (rows). Entry e of instance i is matrix e * stride + i.
 #define POSE_TEXELS_PER_MATRIX 3
 
+// Products of matrices keep their numbers within this, in the shaders and on the CPU, so that their products are finite.
+#define POSE_LARGEST_NUMBER 1e18
+
 // Vertex attributes of a skinned mesh: palette entries and their weights, four per set.
 #define POSE_ENTRIES_0_LOCATION 12
 #define POSE_WEIGHTS_0_LOCATION 13

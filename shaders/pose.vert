@@ -2,7 +2,7 @@
 // The default pipeline: mix, local and world in one pass, with one draw per level of the hierarchy. The vertices of a draw
 // are the batch's instances, and its GL instances are the level's palette entries. Data of an instance or an entry are
 // attributes, so that the shader fetches keyframes and parents only. The result's place in the palette is
-// entry * instanceCount + instance. Constants of the variant: those of mix.glsl; bool isRootLevel, hasRoots;
+// entry * instanceCount + instance. Constants of the variant: those of mix.glsl and world.glsl; bool isRootLevel, hasRoots;
 // bool hasCorrections: constraints have corrected the rotations of all entries of the draw, so none is mixed.
 
 layout(location = POSE_SAMPLE_LOCATION) in uvec4 blendSamples[sampleCount > 0 ? sampleCount : 1];
@@ -41,7 +41,7 @@ void main()
         if (hasCorrections)
             t.rotation = texelFetch(corrections, correctionTexel(int(head.w), gl_VertexID, instanceCount));
         matrix = isWeights ? mat3x4(t.translation, t.rotation, t.scale)
-                           : localMatrix(t.translation, t.rotation, t.scale);
+                           : limited(localMatrix(t.translation, t.rotation, t.scale));
     }
     if (!isWeights)
     {

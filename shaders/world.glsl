@@ -8,6 +8,18 @@ mat3x4 fetchMatrix(samplerBuffer source, int texel)
     return mat3x4(texelFetch(source, texel), texelFetch(source, texel + 1), texelFetch(source, texel + 2));
 }
 
+// Numbers beyond POSE_LARGEST_NUMBER are limited; those that are no number become 0. bool hasLimits: a constant of the
+// variant; false if the numbers of the batch cannot become so large.
+vec4 limited(vec4 row)
+{
+    return clamp(mix(row, vec4(0.0), isnan(row)), -POSE_LARGEST_NUMBER, POSE_LARGEST_NUMBER);
+}
+
+mat3x4 limited(mat3x4 matrix)
+{
+    return hasLimits ? mat3x4(limited(matrix[0]), limited(matrix[1]), limited(matrix[2])) : matrix;
+}
+
 // a * b of affine matrices stored by rows.
 mat3x4 multiplied(mat3x4 a, mat3x4 b)
 {
@@ -15,7 +27,7 @@ mat3x4 multiplied(mat3x4 a, mat3x4 b)
     product[0].w += a[0].w;
     product[1].w += a[1].w;
     product[2].w += a[2].w;
-    return product;
+    return limited(product);
 }
 
 // The texel of a corrected rotation, see layout.glsl.

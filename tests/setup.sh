@@ -6,17 +6,19 @@
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build=$root/build
 
-# Debian 12's names. First what builds, then what shows (osgviewer, Mesa's software renderer), then what tests.
-packages=(
+# Debian's names, in every release alike: no library has the number of its version, the -dev packages bring it in.
+# What builds and what shows (osgviewer, Mesa's software renderer).
+view_packages=(
     g++ cmake ninja-build
     libopenscenegraph-dev libtinygltf-dev libdraco-dev libmeshoptimizer-dev libglm-dev libcli11-dev nlohmann-json3-dev
     libpng-dev libturbojpeg0-dev libwebp-dev libassimp-dev
-    libgl-dev libegl-dev
-    openscenegraph libegl1 libegl-mesa0 libgl1 libglx-mesa0 libgl1-mesa-dri
-    libgtest-dev libbenchmark-dev glslang-tools python3 python3-skimage python3-scipy python3-pil xvfb xauth dpkg-dev file libdraco7
+    libgl-dev libegl-dev openscenegraph libgl1-mesa-dri
 )
-# What .ci/run needs besides.
-ci_packages=(git clang clang-format doxygen mesa-vulkan-drivers)
+# What the tests need besides, and what .ci/run does.
+test_packages=(
+    libgtest-dev libbenchmark-dev glslang-tools python3 python3-skimage python3-scipy python3-pil xvfb xauth dpkg-dev file
+)
+ci_packages=(git clang clang-format doxygen mesa-vulkan-drivers mmdebstrap)
 
 is_installed()
 {
@@ -52,13 +54,15 @@ install_missing()
     as_root env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends "${missing[@]}"
 }
 
-# Configures a release build in $build. With or without tests is as it was there, unless an option says so.
+# Configures a release build in $build. Without an option that says so, a new folder has no tests, and another stays with
+# or without. OSGGPUANIMATION_WERROR=ON in the environment makes warnings errors.
 configure_release()
 {
-    local generator=()
+    local options=()
     # A build folder keeps the generator it was made with.
-    [ -f "$build/CMakeCache.txt" ] || generator=(-G Ninja)
-    cmake -S "$root" -B "$build" "${generator[@]}" -DCMAKE_BUILD_TYPE=Release "$@"
+    [ -f "$build/CMakeCache.txt" ] || options=(-G Ninja -DBUILD_TESTING=OFF)
+    [ -z "${OSGGPUANIMATION_WERROR:-}" ] || options+=("-DOSGGPUANIMATION_WERROR=$OSGGPUANIMATION_WERROR")
+    cmake -S "$root" -B "$build" "${options[@]}" -DCMAKE_BUILD_TYPE=Release "$@"
 }
 
 # Builds the targets in $build, or everything.

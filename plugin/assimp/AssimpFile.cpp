@@ -7,6 +7,7 @@
 #include <assimp/config.h>
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/Importer.hpp>
+#include <assimp/IOSystem.hpp>
 #include <assimp/postprocess.h>
 #include <assimp/ProgressHandler.hpp>
 #include <assimp/scene.h>
@@ -21,8 +22,8 @@ namespace osgGpuAnimation::assimp
 namespace
 {
 
-/// Regular files of a folder, to read.
-class FolderFiles : public Assimp::DefaultIOSystem
+/// Regular files of a folder, to read. Assimp 6 has a DefaultIOSystem that is final.
+class FolderFiles : public Assimp::IOSystem
 {
 public:
     FolderFiles(const std::string& fileName, bool allowOutsideFiles) : _allowOutsideFiles(allowOutsideFiles)
@@ -42,10 +43,15 @@ public:
 
     Assimp::IOStream* Open(const char* file, const char* mode) override
     {
-        return Exists(file) && mode[0] == 'r' ? DefaultIOSystem::Open(file, mode) : nullptr;
+        return Exists(file) && mode[0] == 'r' ? _files.Open(file, mode) : nullptr;
     }
 
+    void Close(Assimp::IOStream* stream) override { _files.Close(stream); }
+    char getOsSeparator() const override { return _files.getOsSeparator(); }
+    bool ComparePaths(const char* one, const char* second) const override { return _files.ComparePaths(one, second); }
+
 private:
+    Assimp::DefaultIOSystem _files;
     std::filesystem::path _folder;
     bool _allowOutsideFiles;
 };

@@ -68,7 +68,7 @@ public:
     }
 
     std::optional<Error> write(const std::string& modelFile, const gltf::ImportOptions& options);
-    std::string glb() const { return _writer.glb(); }
+    Result<std::string> glb() const { return _writer.glb(_report); }
 
 private:
     struct Node

@@ -3,8 +3,8 @@
 
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+#include <osgGpuAnimation/nodes/mesh/SceneVisitor.h>
 
-#include <osg/NodeVisitor>
 #include <osgDB/Registry>
 
 namespace osgGpuAnimation
@@ -13,10 +13,11 @@ namespace osgGpuAnimation
 namespace
 {
 
-class OwnNodes : public osg::NodeVisitor
+class OwnNodes : public SceneVisitor
 {
 public:
-    OwnNodes() : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN) {}
+    using SceneVisitor::apply;
+    OwnNodes() : SceneVisitor(Shared::Once, TRAVERSE_ALL_CHILDREN) {}
 
     void apply(osg::Transform& transform) override
     {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/Export.h"
 
+#include "gltf/write/CharacterReach.h"
 #include "gltf/write/CharacterWriter.h"
 #include "gltf/write/ClipWriter.h"
 #include "gltf/write/GeometryWriter.h"
@@ -12,9 +13,11 @@
 #include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
 #include <osgGpuAnimation/nodes/mesh/MaterialVariants.h>
+#include <osgGpuAnimation/nodes/mesh/SceneVisitor.h>
 #include <osgGpuAnimation/nodes/shading/PunctualLight.h>
 #include <osgGpuAnimation/nodes/viewing/StartView.h>
 
+#include <glm/gtc/type_ptr.hpp>
 #include <osg/CameraView>
 #include <osg/LightSource>
 #include <osg/LOD>
@@ -24,10 +27,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <deque>
 #include <limits>
 #include <map>
 #include <memory>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -38,8 +43,6 @@ namespace
 {
 
 using nlohmann::json;
-
-constexpr std::size_t mostGlbBytes = 0xffffffffu;
 
 const std::shared_ptr<const AnimationSet>& setOf(const AnimatedCharacter& character)
 {
@@ -59,6 +62,7 @@ struct Whereabouts
     osg::ref_ptr<const osg::StateSet> state = new osg::StateSet;
     const WrittenCharacter* character = nullptr; ///< above, see JointAttachment
     bool isHidden = false;
+    std::size_t depth = 0; ///< nodes of the scene above
 };
 
 /// Plain geometry at a place.
@@ -76,6 +80,12 @@ struct Child
     bool isHidden; ///< by its mask or an osg::Switch
 };
 
+/// For traversals without recursion.
+SceneGuard pathGuard()
+{
+    return SceneGuard(SceneGuard::Shared::EachPath, std::numeric_limits<std::size_t>::max());
+}
+
 class SceneExporter
 {
 public:
@@ -90,12 +100,13 @@ public:
         Whereabouts top;
         top.toPlace.set(1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1); // from +Z up to +Y up, exactly
         _open.push_back({{&scene, false}, std::make_shared<const Whereabouts>(top)});
-        while (!_open.empty())
+        while (!_open.empty() && !_guard.isBeyondMaxPaths())
         {
             const OpenNode next = std::move(_open.back());
             _open.pop_back();
             visit(next.child, *next.above);
         }
+        if (_guard.isBeyondMaxPaths()) return; // glb() refuses the scene
         writeGeometries();
         for (const WrittenCharacter& character : _written)
             _clips.write(character);
@@ -114,14 +125,14 @@ private:
         std::shared_ptr<const Whereabouts> above;
     };
 
+    bool mayVisit(const osg::Node& node, std::size_t depth);
     void visit(const Child& child, const Whereabouts& above);
     void visitChildren(const osg::Node& node, const Whereabouts& at);
     void enter(const osg::Transform& transform, Whereabouts& at);
     void visitAttachment(const JointAttachment& attachment, const Whereabouts& above);
     template <typename Character>
     void visitCharacter(const Character& character, const osg::Matrixd& toAbove, const Whereabouts& at);
-    void collectMeshes(const Child& child, const osg::ref_ptr<const osg::StateSet>& above,
-                       std::vector<CharacterMesh>& meshes) const;
+    std::vector<CharacterMesh> meshesOf(const osg::Node& character, const Whereabouts& at) const;
     void addGeometry(const osg::Geometry& geometry, const Whereabouts& at);
     void addLight(const osg::LightSource& source, const Whereabouts& at);
     void addCamera(const osg::CameraView& view, const Whereabouts& at);
@@ -138,6 +149,8 @@ private:
     ClipWriter _clips;
     std::deque<WrittenCharacter> _written; ///< keeps addresses
     std::vector<OpenNode> _open;           ///< the next one last
+    SceneGuard _guard = pathGuard();
+    bool _isTooDeep = false; ///< reported
     std::vector<PlacedGeometry> _plain;
     std::map<std::pair<NodePlace*, std::array<double, 16>>, NodePlace*> _unnamed; ///< places without a transform
 };
@@ -189,6 +202,7 @@ std::vector<std::string> SceneExporter::variantsBelow(const osg::Node& scene)
 {
     std::vector<std::string> names;
     std::vector<const osg::Node*> open{&scene};
+    std::unordered_set<const osg::Node*> known{&scene};
     while (!open.empty())
     {
         const osg::Node& node = *open.back();
@@ -197,7 +211,7 @@ std::vector<std::string> SceneExporter::variantsBelow(const osg::Node& scene)
             if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
         const std::vector<Child> children = childrenOf(node);
         for (auto child = children.rbegin(); child != children.rend(); ++child)
-            open.push_back(child->node);
+            if (known.insert(child->node).second) open.push_back(child->node);
     }
     return names;
 }
@@ -218,17 +232,34 @@ void SceneExporter::enter(const osg::Transform& transform, Whereabouts& at)
     transform.computeLocalToWorldMatrix(matrix, nullptr);
     at.toPlace = matrix * at.toPlace;
     if (at.toPlace.isIdentity() && transform.getName().empty()) return;
+    if (at.place && at.place->depth + 2 > NodeWriter::maxDepth)
+    {
+        if (!std::exchange(_isTooDeep, true))
+            _report.warn("transform " + quoted(transform.getName()) + ": more than " +
+                         std::to_string(NodeWriter::maxDepth) +
+                         " nodes are above it; it and what is deeper are merged with the nodes below");
+        return; // toPlace keeps it
+    }
     at.place = &_nodes.place(at.place, at.toPlace, transform.getName());
     at.toPlace.makeIdentity();
+}
+
+/// False, with a warning, for a node whose children shall not be visited.
+bool SceneExporter::mayVisit(const osg::Node& node, std::size_t depth)
+{
+    if (_guard.enter(node, depth)) return true;
+    _report.warn(_guard.fault() + "; what is below is left out");
+    return false;
 }
 
 void SceneExporter::visitChildren(const osg::Node& node, const Whereabouts& at)
 {
     const std::vector<Child> children = childrenOf(node);
-    if (children.empty()) return;
-    const auto shared = std::make_shared<const Whereabouts>(at);
+    if (children.empty() || !mayVisit(node, at.depth)) return;
+    const auto below = std::make_shared<Whereabouts>(at);
+    ++below->depth;
     for (auto child = children.rbegin(); child != children.rend(); ++child)
-        _open.push_back({*child, shared});
+        _open.push_back({*child, below});
 }
 
 /// above: of the node above.
@@ -291,31 +322,81 @@ void SceneExporter::visitAttachment(const JointAttachment& attachment, const Whe
     visitChildren(attachment, at);
 }
 
+/// Joints from a root to the farthest one.
+std::size_t depthOf(const Skeleton& skeleton)
+{
+    std::vector<std::size_t> depths;
+    for (const Joint& joint : skeleton.joints()) // parents first
+        depths.push_back(1 + (joint.parent < 0 ? 0 : depths[static_cast<std::size_t>(joint.parent)]));
+    return depths.empty() ? 0 : *std::max_element(depths.begin(), depths.end());
+}
+
 /// toAbove: from the axes of the character's file to the node above.
 template <typename Character>
 void SceneExporter::visitCharacter(const Character& character, const osg::Matrixd& toAbove, const Whereabouts& at)
 {
-    std::vector<CharacterMesh> meshes;
-    for (const Child& child : childrenOf(character))
-        collectMeshes({child.node, at.isHidden || child.isHidden}, at.state, meshes);
-    _written.push_back(
-        _characters.write(setOf(character), meshes, toAbove * at.toPlace, character.getName(), at.place));
+    const std::size_t depth = (at.place ? at.place->depth : 0) + 2 + depthOf(setOf(character)->skeleton());
+    if (depth > NodeWriter::maxDepth)
+        return _report.warn("character " + quoted(character.getName()) + ": its joints would be deeper than " +
+                            std::to_string(NodeWriter::maxDepth) + " nodes; left out");
+    const osg::Matrixd toPlace = toAbove * at.toPlace;
+    const CharacterReach reach(setOf(character), (at.place ? at.place->reach : TransformBound()) *
+                                                     TransformBound::of(glm::make_mat4(toPlace.ptr())));
+    if (!reach.fits())
+        return _report.warn("character " + quoted(character.getName()) + ": its joints or their inverse binds lie " +
+                            beyondFarthest() + "; left out");
+    for (const std::string& clip : reach.clipsLeftOut())
+        _report.warn("clip " + quoted(clip) + ": it takes joints " + beyondFarthest() + "; left out");
+    std::vector<CharacterMesh> meshes = meshesOf(character, at);
+    const auto isFar = [&](const CharacterMesh& each)
+    {
+        const bool isNear = reach.reaches(*each.mesh, _geometries);
+        if (!isNear)
+            _report.warn("mesh " + quoted(each.mesh->getName()) + ": its vertices lie " + beyondFarthest() +
+                         "; left out");
+        return !isNear;
+    };
+    meshes.erase(std::remove_if(meshes.begin(), meshes.end(), isFar), meshes.end());
+    _written.push_back(_characters.write(reach.set(), meshes, toPlace, character.getName(), at.place));
     Whereabouts below = at;
     below.character = &_written.back();
     enter(character, below);
     visitChildren(character, below);
 }
 
-void SceneExporter::collectMeshes(const Child& child, const osg::ref_ptr<const osg::StateSet>& above,
-                                  std::vector<CharacterMesh>& meshes) const
+/// The meshes below a character; those below transforms are others'. at: of the character.
+std::vector<CharacterMesh> SceneExporter::meshesOf(const osg::Node& character, const Whereabouts& at) const
 {
-    const osg::Node& node = *child.node;
-    const osg::ref_ptr<const osg::StateSet> own = stateBelow(above, node);
-    if (const auto* const mesh = dynamic_cast<const SkinnedGeometry*>(&node))
-        meshes.push_back({mesh, own, child.isHidden});
-    else if (!node.asTransform())
-        for (const Child& below : childrenOf(node))
-            collectMeshes({below.node, child.isHidden || below.isHidden}, own, meshes);
+    struct Open
+    {
+        Child child;
+        osg::ref_ptr<const osg::StateSet> above;
+        std::size_t depth;
+    };
+    std::vector<CharacterMesh> meshes;
+    std::vector<Open> open; // the next one last
+    SceneGuard guard = pathGuard();
+    const auto enter =
+        [&](const osg::Node& node, bool isHidden, const osg::ref_ptr<const osg::StateSet>& state, std::size_t depth)
+    {
+        const std::vector<Child> children = childrenOf(node);
+        if (children.empty() || !guard.enter(node, depth)) return; // visitChildren() warns
+        for (auto child = children.rbegin(); child != children.rend(); ++child)
+            open.push_back({{child->node, isHidden || child->isHidden}, state, depth + 1});
+    };
+    enter(character, at.isHidden, at.state, at.depth);
+    while (!open.empty())
+    {
+        const Open next = std::move(open.back());
+        open.pop_back();
+        if (guard.isBeyondMaxPaths()) return {}; // glb() refuses the scene
+        const osg::ref_ptr<const osg::StateSet> own = stateBelow(next.above, *next.child.node);
+        if (const auto* const mesh = dynamic_cast<const SkinnedGeometry*>(next.child.node))
+            meshes.push_back({mesh, own, next.child.isHidden});
+        else if (!next.child.node->asTransform())
+            enter(*next.child.node, next.child.isHidden, own, next.depth);
+    }
+    return meshes;
 }
 
 void SceneExporter::addGeometry(const osg::Geometry& geometry, const Whereabouts& at)
@@ -328,20 +409,25 @@ void SceneExporter::addLight(const osg::LightSource& source, const Whereabouts& 
     const auto* const light = dynamic_cast<const PunctualLight*>(source.getLight());
     if (!light) return _report.warn("light " + quoted(source.getName()) + ": it is no PunctualLight; left out");
     if (at.isHidden) return _report.warn("light " + quoted(source.getName()) + ": it is hidden; left out");
-    // See PunctualLight::setIntensity().
+    // See PunctualLight::setIntensity(). The base class sets any numbers.
     const osg::Vec4 diffuse = light->getDiffuse();
     const float most = std::max({diffuse.x(), diffuse.y(), diffuse.z()});
+    const double outer = std::min(osg::PI_2, osg::DegreesToRadians(double(light->getSpotCutoff())));
+    const PunctualLight::Kind kind = light->getKind();
+    const auto isIntensity = [](float number)
+    { return number >= 0.0f && number * osg::PI <= std::numeric_limits<float>::max(); };
+    if (!isIntensity(diffuse.x()) || !isIntensity(diffuse.y()) || !isIntensity(diffuse.z()) ||
+        (kind == PunctualLight::Kind::Spot && !(outer > 0.0)))
+        return _report.warn("light " + quoted(source.getName()) + ": its colour or cone is out of range; left out");
     json made{{"intensity", most * osg::PI}};
     if (!source.getName().empty()) made["name"] = source.getName();
     if (most > 0.0f) made["color"] = {diffuse.x() / most, diffuse.y() / most, diffuse.z() / most};
     if (light->getRange() > 0.0f) made["range"] = light->getRange();
-    const PunctualLight::Kind kind = light->getKind();
     made["type"] = kind == PunctualLight::Kind::Directional ? "directional"
                    : kind == PunctualLight::Kind::Spot      ? "spot"
                                                             : "point";
-    if (kind == PunctualLight::Kind::Spot)
-        made["spot"] = {{"innerConeAngle", osg::DegreesToRadians(light->getInnerConeAngle())},
-                        {"outerConeAngle", std::min(osg::PI_2, osg::DegreesToRadians(double(light->getSpotCutoff())))}};
+    if (const double inner = osg::DegreesToRadians(light->getInnerConeAngle()); kind == PunctualLight::Kind::Spot)
+        made["spot"] = {{"innerConeAngle", inner < outer ? inner : 0.0}, {"outerConeAngle", outer}};
     const char* const extension = "KHR_lights_punctual";
     _writer.useExtension(extension);
     const std::size_t number = append(_writer.document["extensions"][extension]["lights"], std::move(made));
@@ -359,10 +445,12 @@ void SceneExporter::addCamera(const osg::CameraView& view, const Whereabouts& at
     constexpr double nearest = 0.01, farthest = 10000.0;
     json made = json::object();
     double height = 0.0;
-    if (view.getUserValue(orthographicHeightName, height))
+    if (view.getUserValue(orthographicHeightName, height) && height != 0.0 &&
+        std::abs(height) <= std::numeric_limits<float>::max())
         made = {{"type", "orthographic"},
                 {"orthographic", {{"xmag", height / 2.0}, {"ymag", height / 2.0}, {"znear", 0.0}, {"zfar", farthest}}}};
-    else if (view.getFieldOfViewMode() == osg::CameraView::VERTICAL && view.getFieldOfView() > 0.0)
+    else if (view.getFieldOfViewMode() == osg::CameraView::VERTICAL && view.getFieldOfView() > 0.0 &&
+             view.getFieldOfView() < 180.0)
         made = {{"type", "perspective"},
                 {"perspective", {{"yfov", osg::DegreesToRadians(view.getFieldOfView())}, {"znear", nearest}}}};
     else
@@ -407,6 +495,13 @@ void SceneExporter::writeGeometries()
         }
         if (!number->second) continue;
         const auto& [above, isHidden] = place;
+        const TransformBound reach = above ? above->reach : TransformBound();
+        if (!std::all_of(parts.begin(), parts.end(),
+                         [&](const auto& part) { return isNear(reach, _geometries.radiusOf(*part.first)); }))
+        {
+            _report.warn("mesh " + quoted(name) + ": its vertices lie " + beyondFarthest() + "; left out");
+            continue;
+        }
         const std::size_t node =
             isHidden ? _nodes.add(name, JointTransform(), above) : _nodes.nodeFor(above, "mesh", name);
         _nodes.at(node)["mesh"] = *number->second;
@@ -426,11 +521,9 @@ void SceneExporter::writeVariants()
 
 Result<std::string> SceneExporter::glb() const
 {
+    if (_guard.isBeyondMaxPaths()) return Error{_guard.fault()};
     if (!_writer.document.contains("nodes")) return Error{"there is nothing in the scene that glTF could store"};
-    if (_writer.size() > mostGlbBytes / 2) return Error{"the scene is too large for a GLB"};
-    std::string bytes = _writer.glb();
-    if (bytes.size() > mostGlbBytes) return Error{"the scene is too large for a GLB"};
-    return bytes;
+    return _writer.glb(_report);
 }
 
 } // namespace

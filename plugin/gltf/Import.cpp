@@ -9,8 +9,8 @@
 #include "gltf/scene/Clips.h"
 #include "gltf/scene/Drawables.h"
 #include "gltf/scene/Joints.h"
-#include "gltf/scene/TransformBound.h"
 
+#include <osgGpuAnimation/animation/bounds/TransformBound.h>
 #include <osgGpuAnimation/nodes/CharacterKeys.h>
 #include <osgGpuAnimation/nodes/mesh/MaterialVariants.h>
 
@@ -127,7 +127,7 @@ Result<bool> Importer::makeSet(const NodeTree& tree, const Joints& joints, const
     if (joints.skeleton.jointCount() == 0)
     {
         for (const ClipFile& file : _clipFiles)
-            _report.warn(file.name + ": the model has no joints; its clips are left out");
+            _report.unmet(file.name + ": the model has no joints", "its clips are left out");
         return true;
     }
     Clips clips = readClips(_model, joints, morphs, _budget, _report);

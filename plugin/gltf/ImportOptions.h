@@ -3,6 +3,7 @@
 
 #include <osgGpuAnimation/animation/Playback.h>
 #include <osgGpuAnimation/animation/Result.h>
+#include <osgGpuAnimation/nodes/mesh/SceneVisitor.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -54,10 +55,10 @@ struct ImportOptions
 
     std::size_t maxJsonBytes = std::size_t(512) << 20; ///< of the JSON text, data URIs included
     std::size_t maxJsonDepth = 256;
-    std::size_t maxNodeDepth = 4096;                       ///< nodes from a root to a leaf
-    std::size_t maxElements = 1u << 24;                    ///< of any one array of the document
-    std::size_t maxDocumentBytes = std::size_t(448) << 20; ///< memory for the JSON, without the data it points to
-    std::size_t maxDecodedBytes = std::size_t(2) << 30;    ///< see MemoryBudget
+    std::size_t maxNodeDepth = osgGpuAnimation::maxNodeDepth; ///< nodes from a root to a leaf
+    std::size_t maxElements = 1u << 24;                       ///< of any one array of the document
+    std::size_t maxDocumentBytes = std::size_t(448) << 20;    ///< memory for the JSON, without the data it points to
+    std::size_t maxDecodedBytes = std::size_t(2) << 30;       ///< see MemoryBudget
 };
 
 /// An option for supportsOption(), like `clip=NAME`, and a line of help.

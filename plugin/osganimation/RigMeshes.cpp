@@ -4,6 +4,8 @@
 #include "osganimation/MorphMeshes.h"
 
 #include <osgGpuAnimation/nodes/CharacterProgram.h>
+#include <osgGpuAnimation/nodes/mesh/PrimitiveRange.h>
+#include <osgGpuAnimation/nodes/mesh/SceneVisitor.h>
 #include <osgGpuAnimation/nodes/OsgMatrix.h>
 
 #include <osg/LightSource>
@@ -25,12 +27,13 @@ constexpr std::size_t mostInfluences = 4 * SkinnedGeometry::maxInfluenceSets;
 /// All weights of one vertex: indices of RigMesh::bones.
 using VertexWeights = std::vector<std::pair<unsigned short, float>>;
 
-class MeshFinder : public osg::NodeVisitor
+class MeshFinder : public SceneVisitor
 {
 public:
+    using SceneVisitor::apply;
     MeshFinder(osgAnimation::Skeleton& skeleton, const std::vector<BoneJoint>& bones,
                std::vector<std::string>& warnings)
-        : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN), _skeleton(skeleton), _bones(bones), _warnings(warnings)
+        : SceneVisitor(Shared::EachPath, TRAVERSE_ALL_CHILDREN), _skeleton(skeleton), _bones(bones), _warnings(warnings)
     {
         for (std::size_t i = 0; i < bones.size(); ++i)
         {
@@ -38,8 +41,6 @@ public:
             _byName.emplace(bones[i].bone->getName(), static_cast<int>(i));
         }
     }
-
-    void apply(osg::Node& node) override { traverse(node); }
 
     void apply(osg::Drawable& drawable) override
     {
@@ -149,10 +150,11 @@ private:
     std::map<std::vector<osg::StateSet*>, osg::ref_ptr<osg::StateSet>> _merged;
 };
 
-class RemainsFinder : public osg::NodeVisitor
+class RemainsFinder : public SceneVisitor
 {
 public:
-    RemainsFinder() : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN) {}
+    using SceneVisitor::apply;
+    RemainsFinder() : SceneVisitor(Shared::Once, TRAVERSE_ALL_CHILDREN) {}
     void apply(osg::Node& node) override
     {
         const bool isMorph = dynamic_cast<osgAnimation::UpdateMorph*>(node.getUpdateCallback());
@@ -222,15 +224,17 @@ void setInfluences(SkinnedGeometry& mesh, const std::vector<VertexWeights>& weig
     }
 }
 
-/// The arrays, which stay shared with the scene's geometry.
-void copyArrays(const osg::Geometry& from, SkinnedGeometry& mesh)
+/// The arrays, which stay shared with the scene's geometry. False: a primitive set was left out.
+bool copyArrays(const osg::Geometry& from, SkinnedGeometry& mesh)
 {
     mesh.setVertexArray(const_cast<osg::Array*>(from.getVertexArray()));
     mesh.setNormalArray(const_cast<osg::Array*>(from.getNormalArray()));
     for (unsigned int unit = 0; unit < from.getNumTexCoordArrays(); ++unit)
         mesh.setTexCoordArray(unit, const_cast<osg::Array*>(from.getTexCoordArray(unit)));
     for (unsigned int i = 0; i < from.getNumPrimitiveSets(); ++i)
-        mesh.addPrimitiveSet(const_cast<osg::PrimitiveSet*>(from.getPrimitiveSet(i)));
+        if (isWithin(from.getPrimitiveSet(i), mesh.getVertexCount()))
+            mesh.addPrimitiveSet(const_cast<osg::PrimitiveSet*>(from.getPrimitiveSet(i)));
+    return mesh.getNumPrimitiveSets() == from.getNumPrimitiveSets();
 }
 
 /// The character's program multiplies the vertices' colours and the material, of which the fixed pipeline takes one.
@@ -258,7 +262,9 @@ osg::ref_ptr<SkinnedGeometry> skinnedMesh(const RigMesh& mesh, const AnimationSe
     const osg::Geometry& source = rig && rig->getSourceGeometry() ? *rig->getSourceGeometry() : *mesh.geometry;
     osg::ref_ptr<SkinnedGeometry> made = new SkinnedGeometry;
     made->setName(mesh.geometry->getName().empty() ? source.getName() : mesh.geometry->getName());
-    copyArrays(source, *made);
+    if (!copyArrays(source, *made))
+        warnings.push_back("mesh \"" + made->getName() +
+                           "\": a primitive set is missing or has indices beyond its vertices; left out");
     if (morph >= 0)
     {
         made->setVertexArray(morphSource(*mesh.morph, false));

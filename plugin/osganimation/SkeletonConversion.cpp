@@ -7,6 +7,7 @@
 
 #include <osgGpuAnimation/animation/ClipBuilder.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
+#include <osgGpuAnimation/nodes/mesh/SceneVisitor.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
 #include <osgAnimation/AnimationManagerBase>
@@ -40,10 +41,11 @@ Callback* callbackOf(osg::Node& node)
 }
 
 /// What the conversion looks for in a scene.
-class SceneParts : public osg::NodeVisitor
+class SceneParts : public SceneVisitor
 {
 public:
-    SceneParts() : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN) {}
+    using SceneVisitor::apply;
+    SceneParts() : SceneVisitor(Shared::Once, TRAVERSE_ALL_CHILDREN) {}
 
     void apply(osg::Node& node) override
     {
@@ -66,10 +68,11 @@ public:
 
 /// Takes the update callbacks (as osgAnimation's UpdateMaterial) from the attributes below a node, and gives them back
 /// in the end. StateSet's merge() and its copies do not count them for the update traversal; setUpdateCallback() does.
-class AttributeCallbacks : public osg::NodeVisitor
+class AttributeCallbacks : public SceneVisitor
 {
 public:
-    explicit AttributeCallbacks(osg::Node& node) : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN)
+    using SceneVisitor::apply;
+    explicit AttributeCallbacks(osg::Node& node) : SceneVisitor(Shared::Once, TRAVERSE_ALL_CHILDREN)
     {
         node.accept(*this);
         for (const auto& [attribute, callback] : _callbacks)
@@ -118,7 +121,7 @@ public:
     const std::set<std::string>& targets() const { return _targets; }
 
 private:
-    bool findBones(osg::Node& node, int parent);
+    bool findBones();
     Result<std::shared_ptr<const AnimationSet>> makeSet(const std::vector<Manager>& managers);
     void addClips(const std::vector<Manager>& managers, AnimationParts& parts);
     bool addWeights(const osgAnimation::Animation& animation, const AnimationParts& parts, ClipBuilder& builder);
@@ -132,23 +135,41 @@ private:
     std::set<std::string> _targets;
 };
 
-bool SkeletonConverter::findBones(osg::Node& node, int parent)
+/// False, with a warning, if the skeleton has to stay.
+bool SkeletonConverter::findBones()
 {
-    auto* const bone = dynamic_cast<osgAnimation::Bone*>(&node);
-    int here = parent;
-    if (bone)
+    struct Place
     {
-        here = static_cast<int>(_bones.size());
-        _bones.push_back({bone, callbackOf<osgAnimation::UpdateBone>(*bone), bone->getBoneParent() ? parent : -1});
-        if (!hasNoShear(BoneMotion(*bone, _bones.back().update, nullptr).at(0.0)))
+        osg::Node* node;
+        int bone; ///< the nearest one above
+        std::size_t depth;
+    };
+    SceneGuard guard(SceneGuard::Shared::EachPath);
+    std::vector<Place> open{{&_skeleton, -1, 0}}; // the next one last
+    while (!open.empty())
+    {
+        Place place = open.back();
+        open.pop_back();
+        if (auto* const bone = dynamic_cast<osgAnimation::Bone*>(place.node))
         {
-            stay("bone \"" + bone->getName() + "\" is sheared; it stays as it is");
+            const int parent = bone->getBoneParent() ? place.bone : -1;
+            place.bone = static_cast<int>(_bones.size());
+            _bones.push_back({bone, callbackOf<osgAnimation::UpdateBone>(*bone), parent});
+            if (!hasNoShear(BoneMotion(*bone, _bones.back().update, nullptr).at(0.0)))
+            {
+                stay("bone \"" + bone->getName() + "\" is sheared; it stays as it is");
+                return false;
+            }
+        }
+        osg::Group* const group = place.node->asGroup();
+        if (group && !guard.enter(*group, place.depth))
+        {
+            stay(guard.fault() + "; it stays as it is");
             return false;
         }
+        for (unsigned int i = group ? group->getNumChildren() : 0; i-- > 0;)
+            open.push_back({group->getChild(i), place.bone, place.depth + 1});
     }
-    osg::Group* const group = node.asGroup();
-    for (unsigned int i = 0; group && i < group->getNumChildren(); ++i)
-        if (!findBones(*group->getChild(i), here)) return false;
     return true;
 }
 
@@ -245,7 +266,7 @@ void SkeletonConverter::addChildren(AnimatedCharacter& character)
 
 osg::ref_ptr<AnimatedCharacter> SkeletonConverter::character(const std::vector<Manager>& managers)
 {
-    if (!findBones(_skeleton, -1)) return nullptr;
+    if (!findBones()) return nullptr;
     if (_bones.empty())
     {
         stay("it has no bones; it stays as it is");
@@ -289,6 +310,7 @@ Conversion convertOsgAnimation(osg::Node& node)
     result.node = &node;
     SceneParts scene;
     node.accept(scene);
+    if (!scene.guard().fault().empty()) result.warnings.push_back(scene.guard().fault() + "; not visited");
     std::set<std::string> taken;
     for (const osg::ref_ptr<osgAnimation::Skeleton>& skeleton : scene.skeletons)
     {

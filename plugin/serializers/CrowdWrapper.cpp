@@ -31,7 +31,7 @@ enum Version : std::int32_t
 bool hasLevels(const AnimatedCrowd& crowd)
 {
     const std::shared_ptr<const CharacterLevels>& levels = crowd.getCharacterLevels();
-    return levels && levels->isOf(crowd, crowd.getAnimationSet());
+    return crowd.getPixelError() > 0.0f && levels && levels->isOf(crowd, crowd.getAnimationSet());
 }
 
 /// The playback data after an instance's placement.

@@ -59,7 +59,7 @@ units and numbers; matrices are column-major. Times beyond the clip hold its end
 
 const char* const renderHelp =
     R"(Draws FILE through EGL (by Mesa's software renderer on a machine without a GPU). One camera, in front and to the
-side, shows everything in all pictures; with --camera, one of the file's.
+side, shows everything in all pictures; with --view, from another direction; with --camera, one of the file's.
 
   osggpuanim render fox.glb -o fox.png
   osggpuanim render fox.glb --clip Walk --time 0.3 --size 1920x1080 -o walk.png
@@ -67,7 +67,13 @@ side, shows everything in all pictures; with --camera, one of the file's.
   osggpuanim render knight.glb --clips combat.glb --clip Block -o block.png
   osggpuanim render fox.glb.20x20.crowd -o foxes.png         400 foxes, each at its own clip and time
   osggpuanim render fox.glb --environment sunset.hdr -o sunset.png
-  osggpuanim render fox.glb --frames 60 --fps 30 -o fox.png  fox.0001.png ... fox.0060.png, the first at --time)";
+  osggpuanim render fox.glb --frames 60 --fps 30 -o fox.png  fox.0001.png ... fox.0060.png, the first at --time
+  osggpuanim render fox.glb --view 90,10 -o left.png         the left side of the fox, from a little above
+  osggpuanim render fox.glb --turntable 36 -o turn.png       turn.0001.png ... turn.0036.png, one every 10 degrees
+
+OSG's plugins read scenes (.osg, .osgb, ...) and all pictures for --environment but Radiance HDR. They trust their
+files: give them none of unknown origin. Plugins come from the library path alone (OSG_LIBRARY_PATH, the system's
+folders), never from the current folder.)";
 
 const char* const convertHelp =
     R"(Writes FILE with its clips, and those of other files for the joints of the same names (retargeted where the rest pose
@@ -118,6 +124,18 @@ void readSize(const std::string& text, RenderCommand& command)
                                                  std::to_string(RenderCommand::maxSize));
     command.width = width;
     command.height = height;
+}
+
+/// "90,10" to a direction; throws CLI11's validation error.
+ViewDirection readView(const std::string& text)
+{
+    ViewDirection view;
+    char rest = '\0';
+    const bool isPair = std::sscanf(text.c_str(), "%lf,%lf%c", &view.azimuth, &view.elevation, &rest) == 2;
+    if (!isPair || !std::isfinite(view.azimuth) || !(std::abs(view.elevation) <= 90.0))
+        throw CLI::ValidationError("--view",
+                                   "'" + text + "' is not AZIMUTH,ELEVATION with an elevation from -90 to 90");
+    return view;
 }
 
 /// Adds an option whose values are those words, the default among them being the target's value.
@@ -236,9 +254,18 @@ void CommandLine::addRender()
     _renderApp->add_option("--variant", _render.variant,
                            "A variant of the file's materials: its name, or its number where none has that name; "
                            "default: none");
-    _renderApp->add_option("--camera", _render.camera,
-                           "A camera of the file: its name, or its number where none has that name; default: a view "
-                           "of everything");
+    CLI::Option* camera =
+        _renderApp->add_option("--camera", _render.camera,
+                               "A camera of the file: its name, or its number where none has that name; default: a "
+                               "view of everything");
+    _renderApp
+        ->add_option_function<std::string>(
+            "--view", [this](const std::string& text) { _render.view = readView(text); },
+            "From where, in degrees: 0,0 is level, in front; azimuth 90 is the model's left side; elevation 90 is "
+            "above; "
+            "default: about 29,15")
+        ->option_text("AZIMUTH,ELEVATION")
+        ->excludes(camera);
     _renderApp->add_option("--time", _render.time, "Seconds; clips loop (default 0)")->check(checkFinite);
     _renderApp
         ->add_option_function<std::string>(
@@ -246,6 +273,13 @@ void CommandLine::addRender()
         ->option_text("WxH");
     CLI::Option* frames = _renderApp->add_option("--frames", _render.frames, "How many pictures, numbered from 0001")
                               ->check(CLI::Range(1, 1000000));
+    _renderApp
+        ->add_option("--turntable", _render.turntable,
+                     "How many pictures around everything, numbered from 0001, the first from --view; the camera moves "
+                     "counter-clockwise, seen from above")
+        ->check(CLI::Range(1, 1000000))
+        ->excludes(frames)
+        ->excludes(camera);
     _renderApp->add_option("--fps", _render.framesPerSecond, "Pictures a second (default 30)")
         ->check(CLI::Range(0.001, 100000.0))
         ->needs(frames);
@@ -257,7 +291,8 @@ void CommandLine::addRender()
     _renderApp
         ->add_option(
             "--environment", _render.environment,
-            "An equirectangular picture (.hdr and what OSG's plugins read) in place of the studio; not with --look")
+            "An equirectangular picture in place of the studio; not with --look. Radiance .hdr of any origin; OSG's "
+            "plugins read the other formats and trust them")
         ->option_text("FILE")
         ->excludes(look);
     _renderApp->add_option("-o,--output", _render.output, "OUT.png")->required()->check(checkPng);

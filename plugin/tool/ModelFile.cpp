@@ -8,7 +8,8 @@
 #include "gltf/file/ModelBytes.h"
 #include "gltf/file/ProgressLine.h"
 
-#include <osg/NodeVisitor>
+#include <osgGpuAnimation/nodes/mesh/SceneVisitor.h>
+
 #include <osgDB/FileNameUtils>
 #include <osgDB/Registry>
 
@@ -36,10 +37,11 @@ bool isSceneFormat(const std::string& fileName)
 }
 
 /// Searches for an osgAnimation::Skeleton, by name: the tool does not link osgAnimation.
-class SkeletonFinder : public osg::NodeVisitor
+class SkeletonFinder : public SceneVisitor
 {
 public:
-    SkeletonFinder() : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN) {}
+    using SceneVisitor::apply;
+    SkeletonFinder() : SceneVisitor(Shared::Once, TRAVERSE_ALL_CHILDREN) {}
     void apply(osg::Node& node) override
     {
         found =
@@ -139,7 +141,9 @@ Result<gltf::ImportedModel> readModel(const std::string& fileName, const gltf::I
     Result<gltf::ImportedModel> imported = gltf::importModel(bytes.value(), fileName, options);
     if (!imported && !isCalledGltf(fileName))
         return Error{"the file is neither .gltf nor .glb: " + imported.error().message};
-    if (!imported || (messages.warnings.empty() && messages.notes.empty())) return imported;
+    if (!imported) return imported;
+    if (!imported.value().messages.unmet.empty()) return Error{imported.value().messages.unmet.front()};
+    if (messages.warnings.empty() && messages.notes.empty()) return imported;
     gltf::ImportedModel model = imported.value();
     const auto putFirst = [](std::vector<std::string>& all, const std::vector<std::string>& first)
     { all.insert(all.begin(), first.begin(), first.end()); };

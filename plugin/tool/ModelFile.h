@@ -27,7 +27,7 @@ Result<osg::ref_ptr<osg::Node>> readScene(const std::string& fileName, gltf::Rep
 
 /// Reads and imports a .gltf or .glb, a file of a format that Assimp reads where the build has it, or a scene that
 /// OSG's plugins read, which is exported to glTF first; in the file's own axes if options.noRotation says so. Errors:
-/// the file does not exist, is a folder, is empty, cannot be read, or the import refuses it.
+/// the file does not exist, is a folder, is empty, cannot be read, or the import refuses it; a file of clips adds none.
 Result<gltf::ImportedModel> readModel(const std::string& fileName, const gltf::ImportOptions& options);
 
 } // namespace osgGpuAnimation::tool

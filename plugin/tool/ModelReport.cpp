@@ -2,10 +2,10 @@
 #include "tool/ModelReport.h"
 
 #include <osgGpuAnimation/gpu/buffers/AnimationBuffers.h>
+#include <osgGpuAnimation/nodes/mesh/SceneVisitor.h>
 #include <osgGpuAnimation/nodes/OsgMatrix.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
-#include <osg/NodeVisitor>
 #include <osg/Texture>
 
 #include <algorithm>
@@ -23,10 +23,11 @@ namespace
 using nlohmann::ordered_json;
 
 /// Adds up the arrays, indices and images below a node, shared ones once.
-class ByteCounter : public osg::NodeVisitor
+class ByteCounter : public SceneVisitor
 {
 public:
-    ByteCounter() : osg::NodeVisitor(osg::NodeVisitor::TRAVERSE_ALL_CHILDREN) {}
+    using SceneVisitor::apply;
+    ByteCounter() : SceneVisitor(Shared::Once, TRAVERSE_ALL_CHILDREN) {}
 
     void apply(osg::Node& node) override
     {
@@ -43,7 +44,7 @@ public:
         for (const osg::ref_ptr<osg::Array>& array : arrays)
             if (_seen.insert(array.get()).second) meshBytes += array->getTotalDataSize();
         for (const osg::ref_ptr<osg::PrimitiveSet>& primitives : geometry->getPrimitiveSetList())
-            if (_seen.insert(primitives.get()).second) meshBytes += primitives->getTotalDataSize();
+            if (primitives && _seen.insert(primitives.get()).second) meshBytes += primitives->getTotalDataSize();
     }
 
     std::size_t meshBytes = 0;

@@ -3,9 +3,9 @@
 
 #include <osgGpuAnimation/gpu/EglGraphicsContext.h>
 #include <osgGpuAnimation/nodes/Environment.h>
-#include <osgGpuAnimation/nodes/viewing/Standpoint.h>
 #include <osgGpuAnimation/nodes/viewing/StartView.h>
 
+#include <osg/BoundingBox>
 #include <osg/Depth>
 #include <osg/Geometry>
 #include <osg/GLExtensions>
@@ -125,9 +125,9 @@ public:
     mutable osg::ref_ptr<osg::Image> image;
 };
 
-PictureViewer::PictureViewer() : _reader(new ReadPixels), _studio(new Environment)
+PictureViewer::PictureViewer() : _reader(new ReadPixels)
 {
-    _studio->setToneMapping(true);
+    setSurroundings(new Environment);
 }
 
 PictureViewer::~PictureViewer() = default;
@@ -161,7 +161,14 @@ Result<std::unique_ptr<PictureViewer>> PictureViewer::create(int width, int heig
     return made;
 }
 
-void PictureViewer::show(osg::Node* scene, const std::vector<osg::Vec3d>& points)
+void PictureViewer::setSurroundings(const osg::ref_ptr<Environment>& surroundings)
+{
+    _studio = surroundings;
+    _studio->setToneMapping(true);
+}
+
+void PictureViewer::show(osg::Node* scene, const std::vector<osg::Vec3d>& points,
+                         const std::optional<ViewDirection>& from)
 {
     osg::ref_ptr<osg::Group> all = new osg::Group;
     all->addChild(makeBackground());
@@ -170,11 +177,23 @@ void PictureViewer::show(osg::Node* scene, const std::vector<osg::Vec3d>& points
 
     osg::Camera* camera = _viewer.getCamera();
     const double aspect = camera->getViewport()->aspectRatio();
-    const Standpoint place = raisedStandpoint(points, fieldOfView, aspect, margin);
-    camera->setViewMatrixAsLookAt(place.eye, place.middle, osg::Vec3d(0, 0, 1));
+    _place = from ? standpointFrom(*from, points, fieldOfView, aspect, margin)
+                  : raisedStandpoint(points, fieldOfView, aspect, margin);
+    osg::BoundingBoxd box;
+    for (const osg::Vec3d& point : points)
+        box.expandBy(point);
+    _axis = box.center();
+    turn(0.0);
     // The cull traversal computes the near and far planes.
-    camera->setProjectionMatrixAsPerspective(fieldOfView, aspect, place.radius / 100.0, place.radius * 100.0);
+    camera->setProjectionMatrixAsPerspective(fieldOfView, aspect, _place.radius / 100.0, _place.radius * 100.0);
     _viewer.realize();
+}
+
+void PictureViewer::turn(double degrees)
+{
+    const osg::Quat turned(osg::DegreesToRadians(degrees), osg::Vec3d(0, 0, 1));
+    _viewer.getCamera()->setViewMatrixAsLookAt(_axis + turned * (_place.eye - _axis),
+                                               _axis + turned * (_place.middle - _axis), turned * _place.up);
 }
 
 void PictureViewer::lookThrough(const osg::CameraView& view)

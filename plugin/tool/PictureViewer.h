@@ -3,6 +3,7 @@
 
 #include <osgGpuAnimation/animation/Result.h>
 #include <osgGpuAnimation/nodes/Environment.h>
+#include <osgGpuAnimation/nodes/viewing/Standpoint.h>
 
 #include <osg/CameraView>
 #include <osg/Image>
@@ -10,6 +11,7 @@
 #include <osgViewer/Viewer>
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace osgGpuAnimation::tool
@@ -37,11 +39,13 @@ public:
     static Result<std::unique_ptr<PictureViewer>> create(int width, int height, Look look);
     ~PictureViewer();
 
-    /// An equirectangular picture in place of the studio. Call it before show(). Error: as of
-    /// Environment::setPanorama().
-    Result<bool> setPanorama(osg::Image* panorama) { return _studio->setPanorama(panorama); }
-    /// Places the camera so that it sees all these points from -Y, a little from +X and from above.
-    void show(osg::Node* scene, const std::vector<osg::Vec3d>& points);
+    /// Surroundings in place of the studio. Call it before show().
+    void setSurroundings(const osg::ref_ptr<Environment>& surroundings);
+    /// Places the camera so that it sees all these points, from that direction or as raisedStandpoint() does.
+    void show(osg::Node* scene, const std::vector<osg::Vec3d>& points, const std::optional<ViewDirection>& from);
+    /// Moves the camera around the vertical line through the middle of these points, away from its first place:
+    /// degrees, counter-clockwise from above.
+    void turn(double degrees);
     /// From here on, sees what that camera of the scene sees, wherever it moves.
     void lookThrough(const osg::CameraView& view);
     /// Draws a frame at that simulation time (seconds): RGB, 8 bits each. Null if GL reports an error.
@@ -55,6 +59,8 @@ private:
     osgViewer::Viewer _viewer;
     osg::ref_ptr<ReadPixels> _reader;
     Look _look = Look::Studio;
+    Standpoint _place;                         ///< of show()
+    osg::Vec3d _axis;                          ///< a point on the line of turn()
     osg::ref_ptr<const osg::CameraView> _view; ///< null: the standpoint of show()
     osg::ref_ptr<Environment> _studio;         ///< of Look::Studio
 };

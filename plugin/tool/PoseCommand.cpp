@@ -2,6 +2,7 @@
 #include "tool/PoseCommand.h"
 
 #include "gltf/file/ProgressLine.h"
+#include "gltf/file/SavedFile.h"
 #include "tool/CpuPoseEvaluator.h"
 #include "tool/GpuPoseEvaluator.h"
 #include "tool/ModelFile.h"
@@ -10,7 +11,6 @@
 #include <osgGpuAnimation/animation/AnimationController.h>
 
 #include <algorithm>
-#include <fstream>
 #include <iostream>
 #include <memory>
 
@@ -140,12 +140,11 @@ Result<bool> PoseCommand::run() const
     const Result<std::string> text = evaluate(model.value(), wanted, *this);
     if (!text) return named(file, text.error());
 
-    std::ofstream stream;
-    if (!output.empty()) stream.open(output, std::ios::binary);
-    std::ostream& out = output.empty() ? std::cout : stream;
-    if (!(out << text.value() << std::flush))
-        return Error{(output.empty() ? "standard output" : output) + ": cannot be written"};
-    return true;
+    if (output.empty())
+        return std::cout << text.value() << std::flush ? Result<bool>(true)
+                                                       : Error{"standard output: cannot be written"};
+    const Result<bool> saved = gltf::saveFile(output, text.value());
+    return saved ? saved : named(output, saved.error());
 }
 
 } // namespace osgGpuAnimation::tool

@@ -3,12 +3,14 @@
 
 #include "crowd/CrowdGrid.h"
 #include "gltf/file/ProgressLine.h"
+#include "gltf/file/SavedFile.h"
 #include "tool/CpuPoseEvaluator.h"
 #include "tool/ModelFile.h"
 
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 #include <osgGpuAnimation/nodes/studio/ModelExtent.h>
 
+#include <osg/BoundingBox>
 #include <osgDB/FileNameUtils>
 #include <osgDB/FileUtils>
 #include <osgDB/Registry>
@@ -88,21 +90,47 @@ std::string numbered(const std::string& output, std::size_t number)
 Result<bool> writePicture(const osg::Image* image, const std::string& file, const std::string& name)
 {
     if (!image) return Error{file + ": OpenGL reported an error while drawing"};
-    // writeImageFile() would print an error of its own.
-    if (!osgDB::Registry::instance()->writeImage(*image, name, nullptr).success())
-        return Error{name + ": cannot be written"};
-    return true;
+    osgDB::ReaderWriter* const png = osgDB::Registry::instance()->getReaderWriterForExtension("png");
+    if (!png) return Error{name + ": OSG's plugin for .png is not found"};
+    std::ostringstream bytes; // the plugin does not notice that a disk is full
+    if (!png->writeImage(*image, bytes, nullptr).success()) return Error{name + ": OSG cannot write it"};
+    const Result<bool> saved = gltf::saveFile(name, bytes.str());
+    return saved ? saved : Error{name + ": " + saved.error().message};
 }
 
-/// The picture of that file; null without a name.
-Result<osg::ref_ptr<osg::Image>> readPicture(const std::string& name)
+/// Surroundings of the panorama in that file. Only Radiance HDR has a reader that does not trust it.
+Result<osg::ref_ptr<Environment>> readSurroundings(const std::string& name)
 {
-    if (name.empty()) return osg::ref_ptr<osg::Image>();
-    if (!osgDB::fileExists(name)) return Error{name + ": no such file"};
+    if (osgDB::getLowerCaseFileExtension(name) == "hdr") return Environment::fromFile(name);
+    if (!osgDB::fileExists(name)) return Error{name + ": there is no such file"};
     // readImageFile() would print an error of its own.
     osgDB::ReaderWriter::ReadResult read = osgDB::Registry::instance()->readImage(name, nullptr);
     if (!read.validImage()) return Error{name + ": not a picture that OSG's plugins read"};
-    return osg::ref_ptr<osg::Image>(read.getImage());
+    osg::ref_ptr<Environment> surroundings = new Environment;
+    const Result<bool> taken = surroundings->setPanorama(read.getImage());
+    if (!taken) return Error{name + ": " + taken.error().message};
+    return surroundings;
+}
+
+/// The ends of a cylinder with a vertical axis around the points: what they fill while they turn about it.
+std::vector<osg::Vec3d> turned(const std::vector<osg::Vec3d>& points)
+{
+    osg::BoundingBoxd box;
+    for (const osg::Vec3d& point : points)
+        box.expandBy(point);
+    double radius = 0.0;
+    for (const osg::Vec3d& point : points)
+        radius = std::max(radius, std::hypot(point.x() - box.center().x(), point.y() - box.center().y()));
+    std::vector<osg::Vec3d> ends;
+    constexpr int corners = 64;
+    for (int corner = 0; corner < corners; ++corner)
+        for (const double height : {box.zMin(), box.zMax()})
+        {
+            const double angle = 2.0 * osg::PI * corner / corners;
+            ends.emplace_back(box.center().x() + radius * std::cos(angle), box.center().y() + radius * std::sin(angle),
+                              height);
+        }
+    return ends;
 }
 
 } // namespace
@@ -136,68 +164,67 @@ Result<bool> RenderCommand::run() const
     if (look == Look::File && model.value().lights.empty())
         std::cerr << "osggpuanim: " << modelFile << ": the file has no lights; only a faint surrounding lights it"
                   << std::endl;
-    const Result<osg::ref_ptr<osg::Image>> panorama = readPicture(environment);
-    if (!panorama) return panorama.error();
+    const Result<osg::ref_ptr<Environment>> surroundings =
+        environment.empty() ? osg::ref_ptr<Environment>(new Environment) : readSurroundings(environment);
+    if (!surroundings) return surroundings.error();
     Result<std::unique_ptr<PictureViewer>> viewer = PictureViewer::create(width, height, look);
     if (!viewer) return Error{file + ": " + viewer.error().message};
-    if (panorama.value())
-    {
-        const Result<bool> taken = viewer.value()->setPanorama(panorama.value());
-        if (!taken) return Error{environment + ": " + taken.error().message};
-    }
+    viewer.value()->setSurroundings(surroundings.value());
     return isCrowd ? drawCrowd(*viewer.value(), *model.value().root, grid) : drawModel(*viewer.value(), model.value());
 }
 
 std::vector<double> RenderCommand::times() const
 {
-    std::vector<double> times;
-    for (int frame = 0; frame < frames.value_or(1); ++frame)
+    std::vector<double> times(static_cast<std::size_t>(turntable.value_or(0)), time);
+    for (int frame = 0; !turntable && frame < frames.value_or(1); ++frame)
         times.push_back(time + frame / framesPerSecond);
     return times;
 }
 
-std::string RenderCommand::outputOf(std::size_t frame) const
+Result<bool> RenderCommand::show(PictureViewer& viewer, osg::Node& scene, const std::vector<osg::Vec3d>& points) const
 {
-    return frames ? numbered(output, frame + 1) : output;
+    if (points.empty()) return Error{file + ": there is nothing to draw; a file of clips needs a model, see --clips"};
+    viewer.show(&scene, turntable ? turned(points) : points, view);
+    return true;
+}
+
+Result<bool> RenderCommand::drawPictures(PictureViewer& viewer,
+                                         const std::function<double(double)>& simulationTime) const
+{
+    gltf::ProgressLine progress("drawing");
+    const std::vector<double> times = this->times();
+    for (std::size_t picture = 0; picture < times.size(); ++picture)
+    {
+        progress.set(picture, times.size());
+        if (turntable) viewer.turn(360.0 * static_cast<double>(picture) / *turntable);
+        const osg::ref_ptr<osg::Image> image = viewer.draw(simulationTime(times[picture]));
+        const std::string name = frames || turntable ? numbered(output, picture + 1) : output;
+        if (const Result<bool> written = writePicture(image, file, name); !written) return written;
+    }
+    return true;
 }
 
 Result<bool> RenderCommand::drawModel(PictureViewer& viewer, const gltf::ImportedModel& model) const
 {
-    gltf::ProgressLine progress("drawing");
-    const std::vector<double> times = this->times();
-    const std::vector<osg::Vec3d> points = pointsOf(model, times);
-    if (points.empty())
-        std::cerr << "osggpuanim: " << file << ": there is nothing to draw; a file of clips needs a model, see --clips"
-                  << std::endl;
-    viewer.show(model.root, points);
+    if (const Result<bool> shown = show(viewer, *model.root, pointsOf(model, times())); !shown) return shown;
     if (model.startCamera) viewer.lookThrough(*model.startCamera);
-    for (std::size_t frame = 0; frame < times.size(); ++frame)
-    {
-        progress.set(frame, times.size());
-        if (model.character) showTime(model.character->getController(), times[frame]);
-        const Result<bool> written = writePicture(viewer.draw(times[frame] - time).get(), file, outputOf(frame));
-        if (!written) return written;
-    }
-    return true;
+    return drawPictures(viewer,
+                        [&](double seconds)
+                        {
+                            if (model.character) showTime(model.character->getController(), seconds);
+                            return seconds - time;
+                        });
 }
 
 Result<bool> RenderCommand::drawCrowd(PictureViewer& viewer, osg::Node& model, const crowd::CrowdOptions& grid) const
 {
-    gltf::ProgressLine progress("drawing");
     const Result<osg::ref_ptr<AnimatedCrowd>> crowd = crowd::makeCrowd(model, grid);
     if (!crowd) return Error{grid.modelFile + ": " + crowd.error().message};
     osg::ref_ptr<osg::Group> scene = new osg::Group;
     scene->addChild(crowd.value());
-    viewer.show(scene, osgGpuAnimation::pointsOf(*scene));
+    if (const Result<bool> shown = show(viewer, *scene, osgGpuAnimation::pointsOf(*scene)); !shown) return shown;
     viewer.draw(0.0); // the time from which the clips run
-    const std::vector<double> times = this->times();
-    for (std::size_t frame = 0; frame < times.size(); ++frame)
-    {
-        progress.set(frame, times.size());
-        const Result<bool> written = writePicture(viewer.draw(times[frame]).get(), file, outputOf(frame));
-        if (!written) return written;
-    }
-    return true;
+    return drawPictures(viewer, [](double seconds) { return seconds; });
 }
 
 } // namespace osgGpuAnimation::tool

@@ -7,6 +7,7 @@
 
 #include <osgGpuAnimation/animation/Result.h>
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,7 +16,7 @@ namespace osgGpuAnimation::tool
 {
 
 /// `osggpuanim render`: draws pictures of a file without a display. One camera, in front and to the side, shows
-/// everything in all pictures, unless a camera of the file is asked for.
+/// everything in all pictures, unless another direction, a way around, or a camera of the file is asked for.
 struct RenderCommand
 {
     static constexpr int maxSize = 8192; ///< pixels, each way
@@ -29,18 +30,23 @@ struct RenderCommand
     double time = 0.0;                  ///< seconds; clips loop
     int width = 800;                    ///< pixels, [1, maxSize]
     int height = 600;
-    std::optional<int> frames; ///< the number of numbered pictures; none: one picture, named `output`
+    std::optional<ViewDirection> view; ///< none: raisedStandpoint(), or `camera`
+    std::optional<int> turntable;      ///< the number of numbered pictures around the model; none: one view
+    std::optional<int> frames;         ///< the number of numbered pictures over time; none: one time
     double framesPerSecond = 30.0;
     Look look = Look::Studio;
     std::string environment; ///< an equirectangular picture in place of the studio; empty: none
-    std::string output;      ///< a .png; with `frames` OUT.png becomes OUT.0001.png, OUT.0002.png …
+    std::string output;      ///< a .png; numbered, OUT.png becomes OUT.0001.png, OUT.0002.png …
 
     /// Error messages begin with the name of the file at fault.
     Result<bool> run() const;
 
 private:
-    std::vector<double> times() const;             ///< seconds, by frame
-    std::string outputOf(std::size_t frame) const; ///< the file's name
+    std::vector<double> times() const; ///< seconds, by picture
+    /// points: of the scene, at all times. Error: there are none.
+    Result<bool> show(PictureViewer& viewer, osg::Node& scene, const std::vector<osg::Vec3d>& points) const;
+    /// simulationTime: of the viewer, from a picture's time; called before the picture is drawn.
+    Result<bool> drawPictures(PictureViewer& viewer, const std::function<double(double)>& simulationTime) const;
     Result<bool> drawModel(PictureViewer& viewer, const gltf::ImportedModel& model) const;
     Result<bool> drawCrowd(PictureViewer& viewer, osg::Node& model, const crowd::CrowdOptions& grid) const;
 };

@@ -228,6 +228,46 @@ TEST_P(PosedJointsGLTest, aPoseThatDoesNotFitShowsNothing)
         EXPECT_LE(difference(*set, i, clip), 1e-5) << i;
 }
 
+/// 60 joints in a chain, each a unit along x from its parent and of that scale.
+std::shared_ptr<const AnimationSet> chainSet(float scale)
+{
+    std::vector<Joint> joints;
+    Skin skin;
+    for (int joint = 0; joint < 60; ++joint)
+    {
+        joints.push_back({"joint " + std::to_string(joint), joint - 1, {}, joint});
+        joints.back().rest.translation.x = 1.0f;
+        joints.back().rest.scale = glm::vec4(scale, scale, scale, 0.0f);
+        skin.joints.push_back(joint);
+        skin.inverseBinds.emplace_back();
+    }
+    return AnimationSet::create({Skeleton::create(std::move(joints)).value(), {skin}, {}, {}, {}}).value();
+}
+
+// Products beyond 1e18 are limited in the twin and in the shaders.
+TEST_P(PosedJointsGLTest, palettesOfHugeScalesAreFinite)
+{
+    PoseInstruction rest, scaled;
+    const auto large = chainSet(1e10f), plain = chainSet(1.0f);
+    const auto pose = std::make_shared<JointPose>(plain);
+    for (std::size_t joint = 0; joint < 60; ++joint)
+        ASSERT_TRUE(pose->setScale(joint, glm::vec3(1e10f, -1e10f, joint % 2 == 0 ? 1e10f : 0.0f)));
+    scaled.poses.push_back(pose);
+    scaled.samples[0] = {0, 0.0f, 1.0f, 16u};
+    PoseBatch restBatch(large), scaledBatch(plain);
+    restBatch.add(rest);
+    scaledBatch.add(scaled);
+    for (const auto& [batch, instruction] : {std::pair(&restBatch, &rest), std::pair(&scaledBatch, &scaled)})
+    {
+        SCOPED_TRACE(batch == &restBatch ? "the rest pose" : "posed joints");
+        ASSERT_TRUE(pipeline->evaluate(state(), *batch, 0));
+        const std::vector<AffineMatrix> palette = pipeline->readPalette(state(), batch->set(), 0, 0);
+        EXPECT_TRUE(std::all_of(palette.begin(), palette.end(), [](const auto& entry) { return entry.isFinite(); }));
+        EXPECT_LE(difference(batch->set(), 0, *instruction), 1e-5);
+    }
+    EXPECT_EQ(glGetError(), GLenum(GL_NO_ERROR));
+}
+
 INSTANTIATE_TEST_SUITE_P(Forms, PosedJointsGLTest,
                          ::testing::Values(PosePipeline::Form::Fused, PosePipeline::Form::Separate));
 

@@ -227,7 +227,30 @@ TEST_F(HouseTest, readmeIsALandingPage)
     EXPECT_LE(lineCount(fileText(fs::path(OSGGPUANIMATION_SOURCE_FOLDER) / "README.md")), maxReadmeLines);
 }
 
+/// The packages of a script that no other release of Debian has under that name: libdraco7, clang-14.
+std::vector<std::string> packagesWithVersions(const std::string& script)
+{
+    const std::regex version(R"([\s(]((lib[a-z0-9.+-]*|[a-z+-]+-)[0-9]+(t64)?)(?=[\s)]))");
+    std::vector<std::string> found;
+    for (std::sregex_iterator match(script.begin(), script.end(), version), end; match != end; ++match)
+        found.push_back((*match)[1]);
+    return found;
+}
+
+TEST_F(HouseTest, setupNamesPackagesThatEveryDebianHas)
+{
+    const std::string setup = fileText(fs::path(OSGGPUANIMATION_SOURCE_FOLDER) / "tests/setup.sh");
+    EXPECT_NE(setup.find("libdraco-dev"), std::string::npos) << "the check must have something to check";
+    EXPECT_EQ(joined(packagesWithVersions(setup)), "");
+}
+
 // Each check is seen to fail on a planted fault.
+
+TEST(PlantedPackageTest, versionsAreSeen)
+{
+    EXPECT_EQ(joined(packagesWithVersions("a=(g++ g++-12 libturbojpeg0-dev libdraco7\n libpng16-16t64 python3 file)")),
+              "g++-12\nlibdraco7\nlibpng16-16t64\n");
+}
 
 const char plantedOrder[] = "# lowest first\n"
                             "osg_nodes/osgGpuAnimation/animation/math/Aabb3d\n"

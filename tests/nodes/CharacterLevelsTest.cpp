@@ -3,6 +3,7 @@
 #include "support/ShownSurface.h"
 
 #include <osgGpuAnimation/animation/Pose.h>
+#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/CharacterProgram.h>
 #include <osgGpuAnimation/nodes/lod/CharacterLevels.h>
 #include <osgGpuAnimation/nodes/lod/MergedParts.h>
@@ -108,6 +109,22 @@ const MaterialsCase materialsCases[] = {
              arm.parts[part]->setNodeMask(2);
      }},
 };
+
+TEST(CharacterLevelsTest, aCrowdKeepsThemWithoutAPixelError)
+{
+    const Arm arm;
+    const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(arm.set, arm.parts);
+    ASSERT_TRUE(crowd->setPixelError(1.0f));
+    const std::shared_ptr<const CharacterLevels> first = crowd->getCharacterLevels();
+    ASSERT_TRUE(first);
+    ASSERT_TRUE(crowd->setPixelError(0.0f));
+    crowd->update(0.0);
+    ASSERT_TRUE(crowd->setPixelError(1.0f));
+    EXPECT_EQ(crowd->getCharacterLevels(), first);
+    arm.parts[0]->setNodeMask(0);
+    ASSERT_TRUE(crowd->setPixelError(1.0f));
+    EXPECT_NE(crowd->getCharacterLevels(), first) << "other meshes";
+}
 
 TEST(CharacterLevelsTest, partsOfOneMaterialBecomeOneMesh)
 {

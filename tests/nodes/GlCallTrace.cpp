@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "nodes/GlCallTrace.h"
 
+#include "support/GlBindings.h"
+
 #include <osg/GL>
 #include <osg/GLExtensions>
 
@@ -120,6 +122,27 @@ void checkFeedbackDraw()
         if (buffer == written) conflicts.push_back(draw + where);
 }
 
+osg::State* watched = nullptr;
+GLint watchedFramebuffer = -1; ///< -1: none
+int bindingChecksMade = 0;
+std::set<std::string> differences;
+
+/// OSG asks GL for errors: nothing of ours is going on.
+void checkBindings()
+{
+    if (!watched || isFeedbackActive) return;
+    osg::State& state = *watched;
+    watched = nullptr; // the queries below are not watched
+    isTracing = false;
+    for (const std::string& difference : GlBindings(state).differences())
+        differences.insert(difference);
+    if (const GLint bound = GlBindings::drawFramebuffer(); watchedFramebuffer >= 0 && bound != watchedFramebuffer)
+        differences.insert("draw framebuffer: " + std::to_string(bound));
+    ++bindingChecksMade;
+    isTracing = true;
+    watched = &state;
+}
+
 constexpr const char* beginName = "glBeginTransformFeedback";
 constexpr const char* endName = "glEndTransformFeedback";
 constexpr const char* instancedName = "glDrawArraysInstanced";
@@ -223,7 +246,8 @@ struct Unwrapper
 
 } // namespace
 
-GlCallTrace::GlCallTrace(osg::State& state) : _gl(state.get<osg::GLExtensions>())
+GlCallTrace::GlCallTrace(osg::State& state)
+    : _state(state), _gl(state.get<osg::GLExtensions>()), _errorChecks(state.getCheckForGLErrors())
 {
     forEachPointer(*_gl, Wrapper());
     callsMade.clear();
@@ -235,8 +259,29 @@ GlCallTrace::GlCallTrace(osg::State& state) : _gl(state.get<osg::GLExtensions>()
 
 GlCallTrace::~GlCallTrace()
 {
+    watched = nullptr;
     isTracing = false;
     forEachPointer(*_gl, Unwrapper());
+    _state.setCheckForGLErrors(_errorChecks);
+}
+
+void GlCallTrace::watchBindings(bool withFramebuffer)
+{
+    _state.setCheckForGLErrors(osg::State::ONCE_PER_ATTRIBUTE);
+    differences.clear();
+    bindingChecksMade = 0;
+    watchedFramebuffer = withFramebuffer ? GlBindings::drawFramebuffer() : -1;
+    watched = &_state;
+}
+
+const std::set<std::string>& GlCallTrace::bindingDifferences() const
+{
+    return differences;
+}
+
+int GlCallTrace::bindingChecks() const
+{
+    return bindingChecksMade;
 }
 
 std::map<std::string, int> GlCallTrace::calls() const
@@ -282,6 +327,12 @@ extern "C"
     {
         osgGpuAnimation::note("glGetBooleanv");
         osgGpuAnimation::next<decltype(glGetBooleanv)>("glGetBooleanv")(name, values);
+    }
+
+    GLenum GLAPIENTRY glGetError()
+    {
+        osgGpuAnimation::checkBindings();
+        return osgGpuAnimation::next<decltype(glGetError)>("glGetError")();
     }
 
     void GLAPIENTRY glFinish()

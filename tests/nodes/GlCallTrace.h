@@ -4,6 +4,7 @@
 #include <osg/State>
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -31,8 +32,18 @@ public:
     /// Each other binding that a written buffer had at such a draw, "feedback draw 3: texture unit 11".
     const std::vector<std::string>& feedbackConflicts() const;
 
+    /// From here on, compares GL's bindings with osg::State's record (GlBindings) whenever OSG asks GL for errors:
+    /// after each attribute that it applies and around each geometry. withFramebuffer: also the draw framebuffer with
+    /// the present one, in scenes where OSG binds no other.
+    void watchBindings(bool withFramebuffer);
+    /// What differed, each difference once.
+    const std::set<std::string>& bindingDifferences() const;
+    int bindingChecks() const; ///< since watchBindings()
+
 private:
+    osg::State& _state;
     osg::GLExtensions* _gl;
+    osg::State::CheckForGLErrors _errorChecks;
 };
 
 } // namespace osgGpuAnimation

@@ -6,7 +6,6 @@
 
 #include <gtest/gtest.h>
 #include <osg/Notify>
-#include <osgDB/ReadFile>
 
 #include <string>
 
@@ -25,10 +24,10 @@ TEST(ReadmeSurroundingsTest, Surroundings)
         sunset += "\x80\x40\x20\x81";
     folder.write("sunset.hdr", sunset);
     const osg::ref_ptr<osg::Node> model = new osg::Group;
+    auto read = Environment::fromFile("sunset.hdr");
+    if (!read) OSG_WARN << read.error().message << std::endl;
     osg::ref_ptr<Environment> environment = new Environment;
-    Result<bool> taken = environment->setPanorama(osgDB::readRefImageFile("sunset.hdr"));
-    if (!taken) OSG_WARN << taken.error().message << std::endl;
-    EXPECT_TRUE(taken);
+    if (read) environment = read.value();
     environment->setIntensity(0.8f);
     environment->setRotation(osg::PI_2f);
     environment->setToneMapping(true);

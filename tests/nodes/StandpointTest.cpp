@@ -29,4 +29,29 @@ TEST(StandpointTest, pointsFillPicturesOfEveryShape)
     }
 }
 
+TEST(StandpointTest, directionsAreAroundAndAboveTheFront)
+{
+    const double half = std::sqrt(0.5);
+    const struct
+    {
+        ViewDirection from;
+        osg::Vec3d toEye;
+        osg::Vec3d up;
+    } cases[] = {
+        {{0, 0}, {0, -1, 0}, {0, 0, 1}},    {{90, 0}, {1, 0, 0}, {0, 0, 1}},
+        {{-90, 0}, {-1, 0, 0}, {0, 0, 1}},  {{180, 45}, {0, half, half}, {0, -half, half}},
+        {{0, 90}, {0, 0, 1}, {0, 1, 0}},    {{90, 90}, {0, 0, 1}, {-1, 0, 0}},
+        {{0, -90}, {0, 0, -1}, {0, -1, 0}}, {{405, 0}, {half, -half, 0}, {0, 0, 1}},
+    };
+    const std::vector<osg::Vec3d> points{{9, 9, 9}, {11, 9, 9}, {9, 11, 9}, {9, 9, 11}, {11, 11, 11}};
+    for (const auto& [from, toEye, up] : cases)
+    {
+        const Standpoint place = standpointFrom(from, points, 30.0, 1.0, 1.1);
+        osg::Vec3d found = place.eye - place.middle;
+        found.normalize();
+        EXPECT_LT((found - toEye).length(), 1e-9) << from.azimuth << ' ' << from.elevation;
+        EXPECT_LT((place.up - up).length(), 1e-9) << from.azimuth << ' ' << from.elevation;
+    }
+}
+
 } // namespace osgGpuAnimation

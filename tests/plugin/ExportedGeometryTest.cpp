@@ -137,6 +137,44 @@ TEST(ExportedGeometryTest, pointsLinesAndTrianglesAreListsOfTheirOwn)
     }
 }
 
+struct RunsCase
+{
+    const char* name;
+    GLenum mode;
+    std::vector<GLsizei> lengths; ///< of a DrawArrayLengths over eight vertices
+    int writtenMode;
+    Numbers indices;
+};
+
+TEST(ExportedGeometryTest, incompletePrimitivesAreCutOffAndRunsStayApart)
+{
+    const RunsCase cases[] = {
+        {"triangles", GL_TRIANGLES, {4, 3}, 4, {0, 1, 2, 4, 5, 6}},
+        {"strips", GL_TRIANGLE_STRIP, {4, 3}, 4, {0, 1, 2, 1, 3, 2, 4, 5, 6}},
+        {"fans", GL_TRIANGLE_FAN, {4, 4}, 4, {0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7}},
+        {"polygons", GL_POLYGON, {2, 4}, 4, {2, 3, 4, 2, 4, 5}},
+        {"quads", GL_QUADS, {5}, 4, {0, 1, 2, 0, 2, 3}},
+        {"strips of quads", GL_QUAD_STRIP, {5, 3}, 4, {0, 1, 2, 1, 3, 2}},
+        {"lines", GL_LINES, {5}, 1, {0, 1, 2, 3}},
+        {"strips of lines", GL_LINE_STRIP, {2, 3}, 1, {0, 1, 2, 3, 3, 4}},
+        {"loops", GL_LINE_LOOP, {2, 3}, 1, {0, 1, 1, 0, 2, 3, 3, 4, 4, 2}},
+        {"a strip of lines", GL_LINE_STRIP, {3}, 3, {0, 1, 2}},
+    };
+    for (const RunsCase& each : cases)
+    {
+        SCOPED_TRACE(each.name);
+        const osg::ref_ptr<osg::Geometry> geometry = plainTriangle("runs");
+        geometry->setVertexArray(new osg::Vec3Array(8));
+        osg::ref_ptr<osg::DrawArrayLengths> runs = new osg::DrawArrayLengths(each.mode);
+        runs->insert(runs->end(), each.lengths.begin(), each.lengths.end());
+        geometry->setPrimitiveSet(0, runs);
+        const GlbParts made = exported(*geometry);
+        const Json& primitive = made.json["meshes"][0]["primitives"][0];
+        EXPECT_EQ(primitive["mode"], each.writtenMode);
+        EXPECT_EQ(made.numbers(primitive["indices"]), each.indices);
+    }
+}
+
 /// Influences are scaled to 1, a joint occurs once, and meshes of one joint may differ in their number of vertices.
 TEST(ExportedGeometryTest, influencesAreThoseThatGltfAllows)
 {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/data/Accessor.h"
-#include "gltf/scene/TransformBound.h"
 #include "gltf/scene/TriangleMesh.h"
 #include "plugin/EncodedPicture.h"
 #include "plugin/ImportedFile.h"
@@ -8,6 +7,7 @@
 #include "plugin/PointerFile.h"
 #include "support/ScratchFolder.h"
 
+#include <osgGpuAnimation/animation/bounds/TransformBound.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/PbrMaterial.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/JointTransform.h>
 
+#include <layout.glsl>
+
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace osgGpuAnimation
@@ -20,6 +24,17 @@ glm::dvec4 row(const AffineMatrix& matrix, std::size_t index)
 glm::vec3 product(const AffineMatrix& matrix, const glm::dvec4& v)
 {
     return glm::vec3(glm::dvec3(glm::dot(row(matrix, 0), v), glm::dot(row(matrix, 1), v), glm::dot(row(matrix, 2), v)));
+}
+
+/// As world.glsl does.
+glm::vec4 limited(const glm::dvec4& row)
+{
+    glm::vec4 result;
+    for (int i = 0; i < 4; ++i)
+        result[i] = std::isnan(row[i])
+                        ? 0.0f
+                        : static_cast<float>(std::clamp(row[i], -POSE_LARGEST_NUMBER, POSE_LARGEST_NUMBER));
+    return result;
 }
 
 bool areFinite(const glm::vec4& v)
@@ -69,9 +84,17 @@ AffineMatrix operator*(const AffineMatrix& a, const AffineMatrix& b)
     for (std::size_t r = 0; r < 3; ++r)
     {
         const glm::dvec4 left = row(a, r);
-        result.rows[r] = glm::vec4(left.x * b0 + left.y * b1 + left.z * b2 + glm::dvec4(0.0, 0.0, 0.0, left.w));
+        result.rows[r] = limited(left.x * b0 + left.y * b1 + left.z * b2 + glm::dvec4(0.0, 0.0, 0.0, left.w));
     }
     return result;
+}
+
+glm::dmat4 limitedProduct(const glm::dmat4& a, const glm::dmat4& b)
+{
+    glm::dmat4 product = a * b;
+    for (int column = 0; column < 4; ++column)
+        product[column] = glm::clamp(product[column], -POSE_LARGEST_NUMBER, POSE_LARGEST_NUMBER);
+    return product;
 }
 
 namespace Rotation
@@ -97,9 +120,11 @@ AffineMatrix JointTransform::toMatrix() const
 {
     const glm::dmat3 turn = Rotation::matrix(Rotation::unit(glm::dvec4(rotation)));
     const glm::dvec4 size(scale);
-    return AffineMatrix::fromColumns(glm::dmat4(glm::dvec4(turn[0] * size.x, 0.0), glm::dvec4(turn[1] * size.y, 0.0),
-                                                glm::dvec4(turn[2] * size.z, 0.0),
-                                                glm::dvec4(glm::dvec3(translation), 1.0)));
+    AffineMatrix matrix;
+    for (int row = 0; row < 3; ++row)
+        matrix.rows[static_cast<std::size_t>(row)] =
+            limited({turn[0][row] * size.x, turn[1][row] * size.y, turn[2][row] * size.z, translation[row]});
+    return matrix;
 }
 
 bool JointTransform::isFinite() const

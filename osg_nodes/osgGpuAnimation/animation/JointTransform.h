@@ -35,8 +35,12 @@ struct AffineMatrix
 
 static_assert(sizeof(AffineMatrix) == 48, "a palette entry is 48 bytes on the GPU");
 
-/// a · b: applies b first, then a. Computes in double precision and rounds once.
+/// a · b: applies b first, then a. Computes in double precision and rounds once. Numbers beyond ±1e18 are limited
+/// (POSE_LARGEST_NUMBER) and those that are no number become 0, as in the shaders, so that chains stay finite.
 AffineMatrix operator*(const AffineMatrix& a, const AffineMatrix& b);
+
+/// The same in double precision, without rounding. Both are finite.
+glm::dmat4 limitedProduct(const glm::dmat4& a, const glm::dmat4& b);
 
 /// The cubic Hermite form between a and b at x in [0, 1] (glTF 2.0, appendix C.5). out: the tangent after a. in: the
 /// tangent before b. Both tangents are multiplied by the length of the interval.
@@ -89,7 +93,8 @@ struct JointTransform
     glm::vec4 rotation{0, 0, 0, 1};    ///< unit quaternion x, y, z, w
     glm::vec4 scale{1, 1, 1, 0};       ///< xyz; w is 0
 
-    /// L = T · R · S for column vectors (glTF 2.0, section 3.5.3). Normalizes the rotation first.
+    /// L = T · R · S for column vectors (glTF 2.0, section 3.5.3). Normalizes the rotation first; limited as products
+    /// are.
     AffineMatrix toMatrix() const;
     bool isFinite() const; ///< true if all twelve numbers are finite
 

@@ -482,7 +482,7 @@ public:
     {
         glm::dmat4 matrix(1.0);
         for (; joint >= 0; joint = _skeleton.joint(static_cast<std::size_t>(joint)).parent)
-            matrix = (*this)[joint].toMatrix().toColumns() * matrix;
+            matrix = limitedProduct((*this)[joint].toMatrix().toColumns(), matrix);
         return matrix;
     }
 

@@ -102,7 +102,8 @@ private:
 };
 
 /// The CPU twin of the GPU stages, for tools, picking and tests. It computes jointToModel parents first and
-/// entry = jointToModel · inverseBind: the direct form, which tests compare with the shaders' shorter one.
+/// entry = jointToModel · inverseBind: the direct form, which tests compare with the shaders' shorter one. Palettes are
+/// finite whatever the values: products are limited to ±1e18, here and in the shaders.
 namespace Pose
 {
 

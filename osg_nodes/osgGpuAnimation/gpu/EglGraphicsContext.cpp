@@ -238,13 +238,20 @@ Result<bool> EglGraphicsContext::open()
     // Each thread has its own current API; the initial one is OpenGL ES.
     if (!eglBindAPI(EGL_OPENGL_API)) return eglFailure("no desktop OpenGL");
 
-    EGLConfig config = chooseConfig(_display, *_traits);
-    if (!config && _traits->samples)
+    Result<bool> created = createSurface();
+    if (_traits->samples && (!created || !hasColors()))
     {
         OSG_INFO << "EglGraphicsContext: no multisampling with " << _traits->samples << " samples" << std::endl;
+        destroySurface();
         _traits->samples = _traits->sampleBuffers = 0;
-        config = chooseConfig(_display, *_traits);
+        created = createSurface();
     }
+    return created;
+}
+
+Result<bool> EglGraphicsContext::createSurface()
+{
+    EGLConfig config = chooseConfig(_display, *_traits);
     if (!config) return eglFailure("no configuration with the colour, depth and stencil bits asked for");
 
     const auto* shared = dynamic_cast<EglGraphicsContext*>(_traits->sharedContext.get());
@@ -260,6 +267,25 @@ Result<bool> EglGraphicsContext::open()
         return eglFailure("no pbuffer of " + std::to_string(_traits->width) + "x" + std::to_string(_traits->height));
     }
     return true;
+}
+
+void EglGraphicsContext::destroySurface()
+{
+    if (_surface) eglDestroySurface(_display, _surface);
+    if (_context) eglDestroyContext(_display, _context);
+    _surface = nullptr;
+    _context = nullptr;
+}
+
+bool EglGraphicsContext::hasColors() const
+{
+    const CurrentContextKeeper keeper;
+    if (!eglMakeCurrent(_display, _surface, _surface, _context)) return false;
+    std::array<unsigned char, 4> color{};
+    glReadPixels(0, 0, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, color.data());
+    const bool isRead = glGetError() == GL_NO_ERROR;
+    eglMakeCurrent(_display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    return isRead;
 }
 
 void EglGraphicsContext::setUpState()
@@ -315,11 +341,8 @@ void EglGraphicsContext::closeImplementation()
     if (_display)
     {
         if (_context && eglGetCurrentContext() == _context) releaseContextImplementation();
-        if (_surface) eglDestroySurface(_display, _surface);
-        if (_context) eglDestroyContext(_display, _context);
+        destroySurface();
     }
-    _surface = nullptr;
-    _context = nullptr;
     _display = nullptr;
     _realized = false;
 }

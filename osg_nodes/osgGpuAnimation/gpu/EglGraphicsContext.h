@@ -26,7 +26,8 @@ class EglGraphicsContext : public osg::GraphicsContext
 {
 public:
     /// Uses these traits: width, height; red, green, blue, alpha, depth, stencil (least numbers of bits); samples (if
-    /// the platform does not support that number, the context has no multisampling and getTraits() has 0 samples);
+    /// the platform does not support that number, the context has no multisampling and getTraits() has 0 samples; so
+    /// it is in Mesa 25.0, which gives a multisampled pbuffer no buffer of colours);
     /// sharedContext (an EglGraphicsContext); glContextProfileMask (1 core, 2 compatibility, 0: compatibility);
     /// glContextVersion ("major.minor"; ignored below 3.2; core is at least 3.3).
     /// Errors: no EGL display, no such configuration, profile or size; the message contains EGL's error code.
@@ -64,6 +65,11 @@ protected:
 
 private:
     Result<bool> open();
+    /// Creates _context and _surface as the traits say.
+    Result<bool> createSurface();
+    void destroySurface();
+    /// True if pixels of _surface can be read. In Mesa 25.0 that is an error if it has samples.
+    bool hasColors() const;
     void setUpState();
 
     // EGL's handles are pointers to void, so this header does not need EGL's.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/gpu/FeedbackPass.h>
 
+#include <osgGpuAnimation/gpu/buffers/BufferTexture.h>
+
 #include <layout.glsl>
 
 #include <osg/Notify>
@@ -17,33 +19,20 @@
 namespace osgGpuAnimation
 {
 
-namespace
-{
-
-/// The active unit is OSG's again only after osg::State::getActiveTextureUnit() is made active.
-void unbindBufferTexture(osg::State& state, int unit)
-{
-    state.get<osg::GLExtensions>()->glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
-    glBindTexture(GL_TEXTURE_BUFFER, 0);
-    state.haveAppliedTextureAttribute(static_cast<unsigned int>(unit), osg::StateAttribute::TEXTURE);
-}
-
-} // namespace
-
 FeedbackScope::FeedbackScope(osg::State& state, GLuint vertexArray)
     : _state(state), _discard(state, GL_RASTERIZER_DISCARD, true)
 {
+    _state.getCurrentVertexArrayState()->unbindVertexBufferObject(); // the passes bind others, and none at the end
     _state.bindVertexArrayObject(vertexArray);
     // The last draw of a mesh left its palette there, which the passes may write.
-    unbindBufferTexture(state, POSE_PALETTE_UNIT);
+    bindBufferTexture(state, POSE_PALETTE_UNIT, 0);
 }
 
 FeedbackScope::~FeedbackScope()
 {
     osg::GLExtensions* gl = _state.get<osg::GLExtensions>();
-    for (int unit = 0; unit < unitCount; ++unit)
-        if (_textures[static_cast<std::size_t>(unit)] != 0) unbindBufferTexture(_state, unit);
-    gl->glActiveTexture(GL_TEXTURE0 + _state.getActiveTextureUnit());
+    for (unsigned int unit = 0; unit < unitCount; ++unit)
+        if (_textures[unit] != 0) bindBufferTexture(_state, unit, 0);
     gl->glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, 0);
     gl->glUseProgram(0);
     _state.setLastAppliedProgramObject(nullptr);
@@ -55,17 +44,8 @@ void FeedbackScope::bindTexture(int unit, GLuint texture)
 {
     GLuint& bound = _textures[static_cast<std::size_t>(unit)];
     if (bound == texture) return;
-    if (unit != _active) _state.get<osg::GLExtensions>()->glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
-    glBindTexture(GL_TEXTURE_BUFFER, texture);
-    _active = unit;
+    bindBufferTexture(_state, static_cast<unsigned int>(unit), texture);
     bound = texture;
-}
-
-void FeedbackScope::forgetActiveTexture()
-{
-    if (_active < 0) return;
-    glBindTexture(GL_TEXTURE_BUFFER, 0);
-    _textures[static_cast<std::size_t>(_active)] = 0;
 }
 
 FeedbackVertexArrays::Names& FeedbackVertexArrays::of(osg::State& state)

@@ -31,15 +31,12 @@ public:
 
     /// Binds a buffer texture to a unit below unitCount, unless the scope has bound it there.
     void bindTexture(int unit, GLuint texture);
-    /// Call it after BufferTexture::reserve(), which leaves the active unit without a texture.
-    void forgetActiveTexture();
 
     static constexpr int unitCount = 10; ///< texture units that passes may use
 
 private:
     osg::State& _state;
     std::array<GLuint, unitCount> _textures{}; ///< by unit; 0: none
-    int _active = -1;                          ///< the active unit; -1: none of these
     osg::State::ApplyModeProxy _discard;
 };
 

@@ -194,7 +194,8 @@ void PosePipeline::Parts::makeSeparatePasses()
     if (localPass) return;
     using namespace shaders;
     localPass.reset(new FeedbackPass(*gl, "local", {local_glsl, local_vert}, rowOutputs));
-    worldPass.reset(new FeedbackPass(*gl, "world", {world_glsl, world_vert}, rowOutputs));
+    worldPass.reset(
+        new FeedbackPass(*gl, "world", {"const bool hasLimits = true;\n", world_glsl, world_vert}, rowOutputs));
 }
 
 SetResources& PosePipeline::Parts::resourcesOf(const PoseBatch& batch)
@@ -319,10 +320,9 @@ bool PosePipeline::Parts::evaluateFused(FeedbackScope& scope, FeedbackVertexArra
     if (const std::size_t most = std::max(oddEntries(set), garmentEntries); most > 0)
         scratch.reserve(most * chunk.width * matrixBytes);
     if (constraints) corrections.reserve(constraints->plan().correctionCount * chunk.width * rotationBytes);
-    scope.forgetActiveTexture();
     const BufferTexture& entries = constraints ? constraints->entries() : buffers.entries();
     chunk.bindInstances(*gl, arrays);
-    PoseVariant variant = PoseVariant::of(batch);
+    PoseVariant variant = PoseVariant::of(batch, buffers.isModest());
     if (chunk.hasSamplesAsAttributes()) variant.sampleCount = static_cast<int>(chunk.sampleStride);
     variant.isRootLevel = true;
     variant.hasRoots = !chunk.uploadedRootMatrices.empty();
@@ -422,7 +422,6 @@ bool PosePipeline::Parts::solveConstraint(const LevelInput& input, const PoseBat
     const auto joints = static_cast<std::size_t>(shape.chainLength);
     FeedbackScope& scope = input.scope;
     solved.reserve(joints * jointBytes);
-    scope.forgetActiveTexture();
     useMixInput(scope, pass, input.set, input.buffers, input.chunk);
     pass.setTexture(scope, "parentLevels", unitPrevious, input.parentLevels);
     pass.setInt("firstParent", static_cast<int>(input.firstParent));
@@ -480,10 +479,9 @@ bool PosePipeline::Parts::evaluateSeparate(FeedbackScope& scope, const PoseBatch
     const std::size_t trackVertices = set.trackCount() * chunk.width;
     mixedTracks.reserve(trackVertices * sizeof(JointTransform));
     scratch.reserve(trackVertices * matrixBytes);
-    scope.forgetActiveTexture();
 
     makeSeparatePasses();
-    PoseVariant variant = PoseVariant::of(batch);
+    PoseVariant variant = PoseVariant::of(batch, buffers.isModest());
     variant.setMotion(buffers.anyTrack());
     variant.translationMotion = std::max(variant.translationMotion, PartMotion::Constant);
     variant.scaleMotion = std::max(variant.scaleMotion, PartMotion::Constant);

@@ -13,11 +13,11 @@
 #include <osgGpuAnimation/nodes/mesh/MaterialVariants.h>
 #include <osgGpuAnimation/nodes/mesh/MeshNames.h>
 #include <osgGpuAnimation/nodes/mesh/PaletteEntryBounds.h>
+#include <osgGpuAnimation/nodes/mesh/SceneVisitor.h>
 #include <osgGpuAnimation/nodes/mesh/Wardrobe.h>
 #include <osgGpuAnimation/nodes/OsgMatrix.h>
 #include <osgGpuAnimation/nodes/picking/PosedMesh.h>
 
-#include <osg/NodeVisitor>
 #include <osg/observer_ptr>
 #include <osgUtil/CullVisitor>
 
@@ -516,10 +516,11 @@ void RootMotionCallback::operator()(osg::Node* node, osg::NodeVisitor* visitor)
 
 AnimatedCharacter* findCharacter(osg::Node& node)
 {
-    class Finder : public osg::NodeVisitor
+    class Finder : public SceneVisitor
     {
     public:
-        Finder() : osg::NodeVisitor(osg::NodeVisitor::TRAVERSE_ALL_CHILDREN) {}
+        using SceneVisitor::apply;
+        Finder() : SceneVisitor(Shared::Once, TRAVERSE_ALL_CHILDREN) {}
         void apply(osg::MatrixTransform& transform) override
         {
             if (!found) found = dynamic_cast<AnimatedCharacter*>(&transform);

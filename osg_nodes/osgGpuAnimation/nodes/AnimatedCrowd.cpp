@@ -506,10 +506,10 @@ void AnimatedCrowd::prepareSharedPoses()
 {
     const bool isOn = _pixelError > 0.0f && getAnimationSet().paletteSize() > 0;
     if (_sharedPoses) _sharedPoses->forgetUnused();
-    if (!isOn || !_characterLevels)
-        _characterLevels = isOn ? std::make_shared<const CharacterLevels>(*this, getAnimationSet()) : nullptr;
-    if (isOn == (_sharedPoses != nullptr) && (!isOn || _sharedPoses->isOf(*this))) return;
-    _sharedPoses = isOn ? std::make_unique<SharedPoses>(*this, getAnimationSet()) : nullptr;
+    if (!isOn) return; // both are kept for the next pixel error
+    if (!_characterLevels) _characterLevels = std::make_shared<const CharacterLevels>(*this, getAnimationSet());
+    if (!_sharedPoses || !_sharedPoses->isOf(*this))
+        _sharedPoses = std::make_unique<SharedPoses>(*this, getAnimationSet());
 }
 
 void AnimatedCrowd::visitInstances(osg::NodeVisitor& visitor)

@@ -149,8 +149,8 @@ public:
     /// default): all triangles and exact poses. Range, cost, limits and errors: see AnimatedCharacter::setPixelError().
     Result<bool> setPixelError(float pixels);
     float getPixelError() const { return _pixelError; } ///< pixels, at least 0
-    /// The levels of detail of the character as a whole, for the kit's own serializers. Null: without a pixel error.
-    /// setPixelError() creates them unless those that are set match the meshes.
+    /// The levels of detail of the character as a whole, for the kit's own serializers. Null: there was no pixel error
+    /// yet. setPixelError() creates them unless those that are set match the meshes; a pixel error of 0 keeps them.
     const std::shared_ptr<const CharacterLevels>& getCharacterLevels() const { return _characterLevels; }
     /// Sets what setPixelError() would create, for the kit's own serializers: call it before setPixelError().
     void setCharacterLevels(std::shared_ptr<const CharacterLevels> levels) { _characterLevels = std::move(levels); }
@@ -208,8 +208,8 @@ private:
     std::optional<double> _updateTime;                       ///< seconds of simulation time
     std::unique_ptr<WorldTargets> _worldTargets;             ///< never null
     float _pixelError = 0.0f;                                ///< pixels
-    std::unique_ptr<SharedPoses> _sharedPoses;               ///< null: no pixel error
-    std::shared_ptr<const CharacterLevels> _characterLevels; ///< null: without a pixel error
+    std::unique_ptr<SharedPoses> _sharedPoses;               ///< null: no pixel error yet
+    std::shared_ptr<const CharacterLevels> _characterLevels; ///< null: no pixel error yet
     std::shared_ptr<VariantMeshes> _variantMeshes;           ///< never null, shared with the character and clones
 };
 

@@ -2,6 +2,7 @@
 #include <osgGpuAnimation/nodes/Environment.h>
 
 #include <osgGpuAnimation/nodes/OsgMatrix.h>
+#include <osgGpuAnimation/nodes/shading/HdrPicture.h>
 #include <osgGpuAnimation/nodes/shading/PrefilteredMap.h>
 
 #include <layout.glsl>
@@ -52,6 +53,16 @@ Environment::Environment(const Environment& other, const osg::CopyOp& copyop)
       _toneMapping(other._toneMapping), _panorama(other._panorama), _faces(other._faces), _map(other._map),
       _harmonics(other._harmonics), _intensities(other._intensities)
 {
+}
+
+Result<osg::ref_ptr<Environment>> Environment::fromFile(const std::string& file)
+{
+    const Result<osg::ref_ptr<osg::Image>> picture = readHdrFile(file);
+    if (!picture) return picture.error();
+    osg::ref_ptr<Environment> environment = new Environment;
+    const Result<bool> taken = environment->setPanorama(picture.value());
+    if (!taken) return Error{file + ": " + taken.error().message};
+    return environment;
 }
 
 void Environment::setStudio()

@@ -8,6 +8,8 @@
 #include <osg/TextureCubeMap>
 #include <osg/Uniform>
 
+#include <string>
+
 namespace osgGpuAnimation
 {
 
@@ -17,9 +19,9 @@ class RadianceCube;
 /// the character program or the surface program. They replace the ambient light of OSG's lights; the lights themselves
 /// still shine. Without an Environment, the ambient light is an even surrounding.
 ///
-///     osg::ref_ptr<Environment> environment = new Environment;
-///     const Result<bool> taken = environment->setPanorama(osgDB::readRefImageFile("sunset.hdr"));
-///     if (!taken) OSG_WARN << taken.error().message << std::endl;
+///     const Result<osg::ref_ptr<Environment>> read = Environment::fromFile("sunset.hdr");
+///     if (!read) return read.error();
+///     const osg::ref_ptr<Environment>& environment = read.value();
 ///     environment->setIntensity(0.8f);
 ///     environment->addChild(model);
 ///
@@ -38,6 +40,12 @@ public:
     /// Shares the pictures and what was made of them, however deep the copy is.
     Environment(const Environment& other, const osg::CopyOp& copyop = osg::CopyOp::SHALLOW_COPY);
     META_Node(osgGpuAnimation, Environment)
+
+    /// Surroundings of a panorama in the format Radiance HDR, which may be of any origin: this reader is the kit's own.
+    /// At most 16384 x 8192 pixels and 1 GiB. For other formats pass osgDB::readRefImageFile() to setPanorama(): OSG's
+    /// readers trust their files. file: no search path. Errors start with the name of the file: it does not exist or
+    /// is not regular; a fault in it (`row 3: expected …, found …`); the errors of setPanorama().
+    static Result<osg::ref_ptr<Environment>> fromFile(const std::string& file);
 
     /// The studio: a formula without textures, with a gradient from below to above and three soft lights.
     void setStudio();

@@ -8,6 +8,7 @@
 #include <osgGpuAnimation/nodes/feet/PlantedTimes.h>
 #include <osgGpuAnimation/nodes/frame/CharacterStates.h>
 #include <osgGpuAnimation/nodes/frame/WorldTargets.h>
+#include <osgGpuAnimation/nodes/mesh/SceneVisitor.h>
 #include <osgGpuAnimation/nodes/OsgMatrix.h>
 
 #include <osg/Notify>
@@ -380,10 +381,11 @@ private:
 
 osg::Node* findNamed(osg::Node& top, const std::string& name)
 {
-    class Finder : public osg::NodeVisitor
+    class Finder : public SceneVisitor
     {
     public:
-        explicit Finder(const std::string& name) : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN), _name(name) {}
+        using SceneVisitor::apply;
+        explicit Finder(const std::string& name) : SceneVisitor(Shared::Once, TRAVERSE_ALL_CHILDREN), _name(name) {}
         void apply(osg::Node& node) override
         {
             if (!found && node.getName() == _name) found = &node;

@@ -323,7 +323,11 @@ osg::VertexArrayState* SkinnedGeometry::createVertexArrayStateImplementation(osg
 void SkinnedGeometry::compileGLObjects(osg::RenderInfo& renderInfo) const
 {
     // Without a vertex array object to prepare, the first draw creates the buffers.
-    if (!MeshVertexArrays::isNumberShared(*renderInfo.getState())) osg::Geometry::compileGLObjects(renderInfo);
+    if (MeshVertexArrays::isNumberShared(*renderInfo.getState())) return;
+    osg::Geometry::compileGLObjects(renderInfo);
+    // OSG unbinds the array buffer and leaves it in the record.
+    if (osg::VertexArrayState* arrays = _vertexArrayStateList[renderInfo.getContextID()].get())
+        arrays->setCurrentVertexBufferObject(nullptr);
 }
 
 void SkinnedGeometry::drawInstances(osg::RenderInfo& renderInfo, const PaletteBinding& binding,
@@ -410,7 +414,7 @@ void SkinnedGeometry::drawPrimitives(osg::State& state, int count, int level) co
         setOutset(state, reduced.outset);
         if (reduced.elements)
             drawInstanced(state, *reduced.elements, count, usesBuffers);
-        else
+        else if (_primitives[i])
             drawInstanced(state, *_primitives[i], count, usesBuffers);
     }
 }

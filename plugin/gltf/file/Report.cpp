@@ -34,6 +34,12 @@ void Report::note(std::string message)
     add(_messages.notes, _notes, std::move(message));
 }
 
+void Report::unmet(const std::string& message, const std::string& consequence)
+{
+    _messages.unmet.push_back(message);
+    warn(message + "; " + consequence);
+}
+
 std::string printable(std::string_view text, std::size_t most)
 {
     static const char digits[] = "0123456789abcdef";

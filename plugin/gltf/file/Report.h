@@ -19,6 +19,8 @@ struct Messages
 {
     std::vector<std::string> warnings;
     std::vector<std::string> notes; ///< not faults, for example an unknown extension in extensionsUsed
+    /// What the caller asked for and does not get, for example a file of clips for other joints; warnings, too.
+    std::vector<std::string> unmet;
 };
 
 /// Collects the messages of one load. A file may hold a million faults: after the first hundred of a kind, one line
@@ -32,6 +34,9 @@ public:
 
     void warn(std::string message);
     void note(std::string message);
+    /// A warning of both, about a request of the caller: `clips "run.glb": the file has no clips`, what follows from
+    /// it.
+    void unmet(const std::string& message, const std::string& consequence);
 
 private:
     Messages& _messages;

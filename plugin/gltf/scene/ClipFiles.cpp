@@ -7,8 +7,8 @@
 #include "gltf/scene/Clips.h"
 #include "gltf/scene/Joints.h"
 #include "gltf/scene/NodeTree.h"
-#include "gltf/scene/TransformBound.h"
 
+#include <osgGpuAnimation/animation/bounds/TransformBound.h>
 #include <osgGpuAnimation/animation/retarget/ClipRetargeter.h>
 #include <osgGpuAnimation/animation/retarget/JointNames.h>
 #include <osgGpuAnimation/nodes/mesh/PropertyPointer.h>
@@ -27,6 +27,8 @@ namespace osgGpuAnimation::gltf
 
 namespace
 {
+
+const char* const leftOutText = "its clips are left out";
 
 constexpr std::size_t mostNameBytes = std::size_t(1) << 20; // of a file of joint names
 
@@ -213,7 +215,7 @@ ClipJoints readClipJoints(const std::string& modelFile, const ImportOptions& opt
     Result<JsonTree> read = readNames(folder, options, bytes, report);
     if (!read)
     {
-        report.warn(joints.name + ": " + read.error().message + "; joints are matched by equal names");
+        report.unmet(joints.name + ": " + read.error().message, "joints are matched by equal names");
         return joints;
     }
     JsonTree tree = std::move(read).value();
@@ -270,7 +272,7 @@ std::vector<ClipFile> readClipFiles(const std::string& modelFile, const ImportOp
         if (set)
             files.push_back({name, set.value()});
         else
-            report.warn(name + ": " + set.error().message + "; its clips are left out");
+            report.unmet(name + ": " + set.error().message, leftOutText);
     }
     return files;
 }
@@ -302,7 +304,7 @@ std::shared_ptr<const AnimationSet> withClipsOf(const std::shared_ptr<const Anim
 {
     const auto refuse = [&](const std::string& why)
     {
-        report.warn(file.name + ": " + why + "; its clips are left out");
+        report.unmet(file.name + ": " + why, leftOutText);
         return set;
     };
     std::size_t bytes = 0;
@@ -330,6 +332,7 @@ std::shared_ptr<const AnimationSet> withClipsOf(const std::shared_ptr<const Anim
                         "; clip skipped");
     }
     if (clips.size() == result.value().set->clips().size()) return result.value().set;
+    if (clips.size() == set->clips().size()) return refuse("none of its clips can be played");
     Result<std::shared_ptr<const AnimationSet>> rest = set->withClips(std::move(clips));
     return rest ? rest.value() : set;
 }

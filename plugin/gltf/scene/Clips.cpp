@@ -4,8 +4,8 @@
 #include "gltf/data/Accessor.h"
 #include "gltf/document/AnimationPointers.h"
 #include "gltf/file/Report.h"
-#include "gltf/scene/TransformBound.h"
 
+#include <osgGpuAnimation/animation/bounds/TransformBound.h>
 #include <osgGpuAnimation/animation/Clip.h>
 #include <osgGpuAnimation/animation/ClipBuilder.h>
 

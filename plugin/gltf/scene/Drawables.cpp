@@ -140,7 +140,6 @@ osg::ref_ptr<osg::Geometry> Drawables::make(const DrawablePlace& place)
     geometry->setName(sourceMesh.name);
     geometry->setUseDisplayList(false);
     geometry->setUseVertexBufferObjects(true);
-    geometry->setUseVertexArrayObject(true);
     geometry->setVertexArray(mesh->positions);
     if (mesh->normals) geometry->setNormalArray(mesh->normals, osg::Array::BIND_PER_VERTEX);
     if (mesh->texCoords) geometry->setTexCoordArray(0, mesh->texCoords, osg::Array::BIND_PER_VERTEX);

@@ -4,9 +4,9 @@
 #include "gltf/scene/Materials.h"
 #include "gltf/scene/Meshes.h"
 #include "gltf/scene/NodeTree.h"
-#include "gltf/scene/TransformBound.h"
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/animation/bounds/TransformBound.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
 #include <osg/Geometry>

@@ -6,7 +6,8 @@
 #include "gltf/document/AnimationPointers.h"
 #include "gltf/file/Report.h"
 #include "gltf/scene/NodeTransform.h"
-#include "gltf/scene/TransformBound.h"
+
+#include <osgGpuAnimation/animation/bounds/TransformBound.h>
 
 #include <algorithm>
 

@@ -5,10 +5,11 @@
 #include "gltf/data/MaterialVariants.h"
 #include "gltf/data/VertexAttributes.h"
 #include "gltf/file/Report.h"
-#include "gltf/scene/TransformBound.h"
 #include "gltf/scene/TriangleMesh.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -19,6 +20,18 @@ namespace
 {
 
 constexpr int modeTriangles = 4;
+
+/// The largest distance of the points from the origin; infinite for NaN.
+double radiusOf(const osg::Vec3Array& points)
+{
+    double farthest = 0.0;
+    for (const osg::Vec3& point : points)
+    {
+        const double squared = osg::Vec3d(point).length2();
+        if (!(squared <= farthest)) farthest = std::isnan(squared) ? std::numeric_limits<double>::infinity() : squared;
+    }
+    return std::sqrt(farthest);
+}
 
 template <typename Array>
 void pick(osg::ref_ptr<Array>& array, const std::vector<std::uint32_t>& vertices)

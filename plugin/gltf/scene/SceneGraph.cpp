@@ -7,8 +7,8 @@
 #include "gltf/scene/Instancing.h"
 #include "gltf/scene/Joints.h"
 #include "gltf/scene/NodeTransform.h"
-#include "gltf/scene/TransformBound.h"
 
+#include <osgGpuAnimation/animation/bounds/TransformBound.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/mesh/MeshNames.h>
 #include <osgGpuAnimation/nodes/OsgMatrix.h>

@@ -121,6 +121,7 @@ void CharacterWriter::writeSkins(const AnimationSet& set, WrittenCharacter& made
         nlohmann::json skin = nlohmann::json::object();
         if (isOfSet && !set.skins()[number].name.empty()) skin["name"] = set.skins()[number].name;
         std::vector<float> matrices;
+        std::set<std::size_t> nodes;
         for (std::size_t place = 0; place < _skins[number].size(); ++place)
         {
             const PaletteEntry& entry = set.palette()[_skins[number][place]];
@@ -128,7 +129,12 @@ void CharacterWriter::writeSkins(const AnimationSet& set, WrittenCharacter& made
             for (int column = 0; column < 4; ++column)
                 for (std::size_t row = 0; row < 4; ++row)
                     matrices.push_back(row < 3 ? inverseBind.rows[row][column] : column < 3 ? 0.0f : 1.0f);
-            skin["joints"].push_back(made.nodeOfJoint[static_cast<std::size_t>(entry.joint)]);
+            std::size_t node = made.nodeOfJoint[static_cast<std::size_t>(entry.joint)];
+            // A skin has each node once: a joint with two inverse bind matrices gets a node below it.
+            if (!nodes.insert(node).second)
+                node = _nodes.add(set.skeleton().joint(static_cast<std::size_t>(entry.joint)).name, JointTransform(),
+                                  &_nodes.placeOf(node));
+            skin["joints"].push_back(node);
             for (int joint = entry.joint; joint >= 0;
                  joint = set.skeleton().joint(static_cast<std::size_t>(joint)).parent)
                 made.isInSkin[static_cast<std::size_t>(joint)] = true;

@@ -4,6 +4,7 @@
 #include "gltf/write/ClipKeys.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <string>
 #include <utility>
@@ -54,6 +55,11 @@ void addMarkers(const std::vector<ClipMarker>& markers, nlohmann::json& animatio
 void ClipWriter::addChannel(nlohmann::json& animation, std::size_t node, const char* path, const char* type,
                             const ClipKeys& keys)
 {
+    // The slopes of a spline with keys close together may be beyond floats.
+    if (!std::all_of(keys.values.begin(), keys.values.end(), [](float number) { return std::isfinite(number); }))
+        return _report.warn("clip " + quoted(animation.value("name", "")) + ": the " + path + " of node " +
+                            quoted(_writer.document["nodes"][node].value("name", "")) +
+                            " has slopes beyond floats; left out");
     nlohmann::json sampler{{"input", _writer.addFloats(keys.times, "SCALAR", GlbWriter::Use::Times)},
                            {"output", _writer.addFloats(keys.values, type, GlbWriter::Use::Values)}};
     if (keys.interpolation != ClipKeys().interpolation) sampler["interpolation"] = keys.interpolation;

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/write/GeometryWriter.h"
 
+#include <osgGpuAnimation/animation/bounds/TransformBound.h>
 #include <osgGpuAnimation/nodes/mesh/MaterialVariants.h>
+#include <osgGpuAnimation/nodes/mesh/PrimitiveRange.h>
 
 #include <layout.glsl>
 
 #include <osg/Material>
-#include <osg/TriangleIndexFunctor>
 
 #include <algorithm>
 #include <cmath>
@@ -48,6 +49,12 @@ std::vector<float> numbersOf(const osg::Array* array, std::size_t components)
                       appendNumbers<osg::Vec4ubArray>(*array, components, 1.0f / 255.0f, numbers) ||
                       appendNumbers<osg::Vec3ubArray>(*array, components, 1.0f / 255.0f, numbers));
     return numbers;
+}
+
+/// False: 0 is written in its place, as the import would refuse it.
+bool isWritten(float number)
+{
+    return std::abs(number) <= TransformBound::farthest;
 }
 
 bool isOfEachVertex(const osg::Array* array, std::size_t vertices)
@@ -110,12 +117,6 @@ ColorUse colorUseOf(const osg::Geometry& geometry, const osg::StateSet& state)
     return {isShown, isShown};
 }
 
-struct TriangleCollector
-{
-    void operator()(unsigned int a, unsigned int b, unsigned int c) { corners.insert(corners.end(), {a, b, c}); }
-    std::vector<std::uint32_t> corners;
-};
-
 /// A list of indices with glTF's mode, which is GL's number.
 struct IndexedPart
 {
@@ -128,32 +129,93 @@ bool isOfTriangles(GLenum mode)
     return mode >= GL_TRIANGLES && mode <= GL_POLYGON;
 }
 
-std::vector<IndexedPart> partsOf(const osg::Geometry& geometry)
+/// The numbers of indices that a set draws one after the other.
+std::vector<unsigned int> runsOf(const osg::PrimitiveSet& set)
 {
-    osg::TriangleIndexFunctor<TriangleCollector> triangles;
-    std::vector<IndexedPart> parts;
-    for (unsigned int number = 0; number < geometry.getNumPrimitiveSets(); ++number)
+    const auto* const lengths = dynamic_cast<const osg::DrawArrayLengths*>(&set);
+    if (!lengths) return {set.getNumIndices()};
+    return {lengths->begin(), lengths->end()};
+}
+
+/// Appends the triangles of a run; osg::TriangleIndexFunctor reads beyond incomplete ones.
+template <typename At>
+void appendTriangles(GLenum mode, unsigned int count, At at, std::vector<std::uint32_t>& out)
+{
+    const auto add = [&](unsigned int a, unsigned int b, unsigned int c) {
+        out.insert(out.end(), {at(a), at(b), at(c)});
+    };
+    const bool isOfQuads = mode == GL_QUADS || mode == GL_QUAD_STRIP;
+    const unsigned int step = mode == GL_TRIANGLES ? 3 : mode == GL_QUADS ? 4 : mode == GL_QUAD_STRIP ? 2 : 1;
+    for (unsigned int last = isOfQuads ? 3 : 2; last < count; last += step)
     {
-        const osg::PrimitiveSet& set = *geometry.getPrimitiveSet(number);
-        if (isOfTriangles(set.getMode()))
-            set.accept(triangles);
-        else if (set.getMode() < GL_TRIANGLES)
+        if (mode == GL_TRIANGLE_FAN || mode == GL_POLYGON)
+            add(0, last - 1, last);
+        else if (mode == GL_TRIANGLE_STRIP && last % 2 != 0)
+            add(last - 2, last, last - 1);
+        else if (!isOfQuads)
+            add(last - 2, last - 1, last);
+        else
         {
-            IndexedPart part{static_cast<int>(set.getMode()), {}};
-            for (unsigned int i = 0; i < set.getNumIndices(); ++i)
-                part.indices.push_back(set.index(i));
-            parts.push_back(std::move(part));
+            add(last - 3, last - 2, last - 1);
+            mode == GL_QUADS ? add(last - 3, last - 1, last) : add(last - 2, last, last - 1);
         }
     }
-    parts.insert(parts.begin(), {GL_TRIANGLES, std::move(triangles.corners)});
+}
+
+/// Appends the lines of a strip or loop.
+template <typename At>
+void appendLines(GLenum mode, unsigned int count, At at, std::vector<std::uint32_t>& out)
+{
+    for (unsigned int last = 1; last < count; ++last)
+        out.insert(out.end(), {at(last - 1), at(last)});
+    if (mode == GL_LINE_LOOP && count > 1) out.insert(out.end(), {at(count - 1), at(0)});
+}
+
+/// A list for triangles, then one for each other set. outFault: why a set is left out; null: none is.
+std::vector<IndexedPart> partsOf(const osg::Geometry& geometry, std::size_t vertices, const char*& outFault)
+{
+    constexpr std::size_t mostIndices = std::size_t(1) << 27; // sets that overlap may have any number
+    outFault = nullptr;
+    std::vector<IndexedPart> parts(1);
+    std::size_t indices = 0;
+    for (unsigned int number = 0; number < geometry.getNumPrimitiveSets(); ++number)
+    {
+        const osg::PrimitiveSet* const set = geometry.getPrimitiveSet(number);
+        if (!isWithin(set, vertices) || indices + set->getNumIndices() > mostIndices)
+        {
+            outFault = set ? "indices beyond its vertices, or too few; a part is left out"
+                           : "a primitive set is missing; left out";
+            continue;
+        }
+        indices += set->getNumIndices();
+        const GLenum mode = set->getMode();
+        if (!isOfTriangles(mode) && mode >= GL_TRIANGLES) continue;
+        const std::vector<unsigned int> runs = runsOf(*set);
+        const bool areStrips = runs.size() > 1 && (mode == GL_LINE_STRIP || mode == GL_LINE_LOOP);
+        IndexedPart own{static_cast<int>(areStrips ? GL_LINES : mode), {}};
+        unsigned int first = 0;
+        for (const unsigned int count : runs)
+        {
+            const auto at = [&](unsigned int i) { return static_cast<std::uint32_t>(set->index(first + i)); };
+            if (isOfTriangles(mode))
+                appendTriangles(mode, count, at, parts.front().indices);
+            else if (areStrips)
+                appendLines(mode, count, at, own.indices);
+            else
+                for (unsigned int i = 0; i < count; ++i)
+                    own.indices.push_back(at(i));
+            first += count;
+        }
+        if (own.mode == GL_LINES) own.indices.resize(own.indices.size() / 2 * 2); // without an incomplete line
+        if (!own.indices.empty()) parts.push_back(std::move(own));
+    }
     return parts;
 }
 
-bool isDrawable(const IndexedPart& part, std::size_t vertices)
+bool isDrawable(const IndexedPart& part)
 {
     const std::size_t least = part.mode == GL_POINTS ? 1 : part.mode == GL_TRIANGLES ? 3 : 2;
-    return part.indices.size() >= least &&
-           std::all_of(part.indices.begin(), part.indices.end(), [&](std::uint32_t i) { return i < vertices; });
+    return part.indices.size() >= least;
 }
 
 bool isLitByFaces(const osg::StateSet& state)
@@ -165,16 +227,32 @@ bool isLitByFaces(const osg::StateSet& state)
 
 } // namespace
 
+double GeometryWriter::radiusOf(const osg::Geometry& geometry)
+{
+    const auto [known, isNew] = _radii.try_emplace(geometry.getVertexArray());
+    if (!isNew) return known->second;
+    const Values numbers = numbersOf(geometry.getVertexArray(), 3);
+    double squared = 0.0;
+    for (std::size_t at = 0; at + 2 < numbers.size(); at += 3)
+    {
+        osg::Vec3d point;
+        for (int i = 0; i < 3; ++i)
+            if (const float number = numbers[at + static_cast<std::size_t>(i)]; isWritten(number)) point[i] = number;
+        squared = std::max(squared, point.length2());
+    }
+    return known->second = std::sqrt(squared);
+}
+
 GeometryWriter::Values GeometryWriter::finite(Values values)
 {
     bool isFinite = true;
     for (float& value : values)
-        if (!std::isfinite(value))
+        if (!isWritten(value))
         {
             isFinite = false;
             value = 0.0f;
         }
-    if (!isFinite) _report.warn(_label + ": numbers that are not finite are written as 0");
+    if (!isFinite) _report.warn(_label + ": numbers that are not finite or beyond 1e18 are written as 0");
     return values;
 }
 
@@ -374,6 +452,7 @@ json GeometryWriter::mappingsOf(const osg::Geometry& geometry, unsigned int coor
 json GeometryWriter::primitivesOf(const osg::Geometry& geometry, const osg::StateSet& state, const SkinPlaces* skin)
 {
     json primitives = json::array();
+    if (_writer.isFull()) return primitives; // GlbWriter::glb() refuses it
     _label = "mesh " + quoted(geometry.getName());
     const osg::Array* const positions = geometry.getVertexArray();
     const std::size_t vertices = positions ? positions->getNumElements() : 0;
@@ -400,12 +479,13 @@ json GeometryWriter::primitivesOf(const osg::Geometry& geometry, const osg::Stat
         common["extensions"]["KHR_materials_variants"]["mappings"] = std::move(mappings);
         _writer.useExtension("KHR_materials_variants");
     }
-    for (const IndexedPart& part : partsOf(geometry))
+    const char* fault = nullptr;
+    for (const IndexedPart& part : partsOf(geometry, vertices, fault))
     {
         if (part.indices.empty()) continue;
-        if (!isDrawable(part, vertices))
+        if (!isDrawable(part))
         {
-            _report.warn(_label + ": indices beyond its vertices, or too few; a part is left out");
+            fault = "indices beyond its vertices, or too few; a part is left out";
             continue;
         }
         json primitive = common;
@@ -413,6 +493,7 @@ json GeometryWriter::primitivesOf(const osg::Geometry& geometry, const osg::Stat
         primitive["indices"] = _writer.addIndices(part.indices);
         primitives.push_back(std::move(primitive));
     }
+    if (fault) _report.warn(_label + ": " + fault);
     return primitives;
 }
 

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/write/GlbWriter.h"
 
+#include "gltf/document/MemoryBudget.h"
+#include "gltf/ImportOptions.h"
+
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <utility>
@@ -31,6 +35,53 @@ void appendNumber(std::string& to, std::uint32_t number)
     for (int shift = 0; shift < 32; shift += 8)
         to += static_cast<char>(number >> shift & 0xff);
 }
+
+/// The place of a value in the document, for messages.
+struct JsonPlace
+{
+    const JsonPlace* outer = nullptr; ///< null: the document
+    std::string_view member;          ///< empty: an element
+    std::size_t index = 0;
+
+    std::string text() const
+    {
+        const std::string before = outer ? outer->text() : "";
+        if (member.empty()) return elementName(before, index);
+        return before + (before.empty() ? "" : ".") + printable(member);
+    }
+};
+
+/// Mends the document, and counts what the import counts.
+struct DocumentCheck
+{
+    Report& report;
+    std::size_t bytes = 0; ///< see ImportOptions::maxDocumentBytes
+
+    void visit(nlohmann::json& value, const JsonPlace* place)
+    {
+        bytes += bytesOfJsonValue;
+        if (value.is_string()) bytes += value.get_ref<const std::string&>().size() * bytesOfJsonLetter;
+        if (value.is_number_float() && !std::isfinite(value.get<double>()))
+        {
+            report.warn(place->text() + ": it is not finite; written as 0");
+            value = 0.0;
+        }
+        std::size_t index = 0;
+        if (value.is_array())
+            for (nlohmann::json& element : value)
+            {
+                const JsonPlace inner{place, {}, index++};
+                visit(element, &inner);
+            }
+        if (value.is_object())
+            for (auto& [key, member] : value.items())
+            {
+                const JsonPlace inner{place, key, 0};
+                bytes += key.size() * bytesOfJsonLetter;
+                visit(member, &inner);
+            }
+    }
+};
 
 } // namespace
 
@@ -97,18 +148,25 @@ void GlbWriter::useExtension(const std::string& name)
     if (std::find(used.begin(), used.end(), name) == used.end()) used.push_back(name);
 }
 
-std::string GlbWriter::glb() const
+Result<std::string> GlbWriter::glb(Report& report) const
 {
+    const Error tooLarge{"the scene is too large for a GLB"};
+    if (isFull()) return tooLarge;
     constexpr std::uint32_t version = 2, jsonChunk = 0x4e4f534a, binaryChunk = 0x004e4942; // "JSON", "BIN\0"
     std::string binary = _binary;
     binary.resize((binary.size() + 3) / 4 * 4);
     nlohmann::json whole = document;
     if (!binary.empty())
         whole["buffers"] = nlohmann::json::array({nlohmann::json::object({{"byteLength", binary.size()}})});
+    DocumentCheck check{report};
+    check.visit(whole, nullptr);
+    if (check.bytes > ImportOptions().maxDocumentBytes)
+        return Error{"the scene has more nodes, meshes, materials and names than the import reads"};
     // Names of a file may be no UTF-8.
     std::string text = whole.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
     text.resize((text.size() + 3) / 4 * 4, ' ');
     const std::size_t chunks = 12 + 8 + text.size() + (binary.empty() ? 0 : 8 + binary.size());
+    if (chunks > maxBytes) return tooLarge;
     std::string bytes = "glTF";
     bytes.reserve(chunks);
     appendNumber(bytes, version);

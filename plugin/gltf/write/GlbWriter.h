@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "gltf/file/Report.h"
+
 #include <nlohmann/json.hpp>
 
 #include <cstddef>
@@ -18,7 +20,7 @@ namespace osgGpuAnimation::gltf
 ///     GlbWriter writer;
 ///     attributes["POSITION"] = writer.addFloats(positions, "VEC3", GlbWriter::Use::Vertices);
 ///     writer.document["meshes"].push_back(...);
-///     const std::string glb = writer.glb();
+///     const Result<std::string> glb = writer.glb(report);
 class GlbWriter
 {
 public:
@@ -45,9 +47,15 @@ public:
     void useExtension(const std::string& name);
 
     std::size_t size() const { return _binary.size(); } ///< bytes of the buffer
-    std::string glb() const;
+    /// True if the buffer has reached 2 GiB, which glb() refuses.
+    bool isFull() const { return _binary.size() > maxBytes / 2; }
+    /// Numbers of the document that are not finite, which JSON cannot hold, become 0, with a warning that names them.
+    /// Errors: the file would be larger than a GLB can be (4 GiB), or its document than the import reads.
+    Result<std::string> glb(Report& report) const;
 
 private:
+    static constexpr std::size_t maxBytes = 0xffffffffu;
+
     std::size_t addAccessor(std::size_t view, int componentType, std::size_t count, const char* type);
 
     std::string _binary;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace osgGpuAnimation::gltf
@@ -53,6 +54,39 @@ float alphaCutoffOf(const osg::StateSet& state)
     const auto* const test = dynamic_cast<const osg::AlphaFunc*>(state.getAttribute(osg::StateAttribute::ALPHAFUNC));
     if (cutoff == 0.0f && test && isOn(state, GL_ALPHA_TEST)) cutoff = test->getReferenceValue();
     return cutoff;
+}
+
+/// Limits a factor. NaN becomes the least value. Returns true if it was out of range by more than rounding.
+bool limit(float& factor, float least, float most)
+{
+    const float given = factor;
+    factor = given > least ? std::min(given, most) : least;
+    return !(std::abs(factor - given) <= 1e-5f);
+}
+
+/// Limits all factors to their ranges in glTF. Returns true if one was out of range.
+bool limitFactors(PbrMaterial& material)
+{
+    constexpr float any = std::numeric_limits<float>::max();
+    bool isLimited = false;
+    const auto toUnit = [&](float& factor) { isLimited = limit(factor, 0.0f, 1.0f) || isLimited; };
+    const auto toRange = [&](float& factor, float least) { isLimited = limit(factor, least, any) || isLimited; };
+    for (int i = 0; i < 4; ++i)
+        toUnit(material.baseColor[i]);
+    for (int i = 0; i < 3; ++i)
+    {
+        toUnit(material.emissive[i]);
+        toUnit(material.sheenColor[i]);
+        material.isSpecularGlossiness ? toUnit(material.specularColor[i]) : toRange(material.specularColor[i], 0.0f);
+    }
+    for (float* factor :
+         {&material.metallic, &material.roughness, &material.occlusionStrength, &material.specular, &material.clearcoat,
+          &material.clearcoatRoughness, &material.sheenRoughness, &material.transmission})
+        toUnit(*factor);
+    toRange(material.emissiveStrength, 0.0f);
+    toRange(material.normalScale, -any);
+    toRange(material.clearcoatNormalScale, -any);
+    return isLimited;
 }
 
 } // namespace
@@ -202,9 +236,13 @@ std::size_t MaterialWriter::materialOf(const osg::StateSet& state, unsigned int 
     _transforms = state.getUniform("textureTransforms");
     PbrMaterial material = pbrMaterialOf(state).value_or(fixedMaterialOf(state));
     if (isColored) material.baseColor.set(1.0f, 1.0f, 1.0f, 1.0f);
+    const bool isLimited = limitFactors(material);
     json made = written(state, std::move(material));
     const auto [place, isNew] = _materials.try_emplace(made.dump(-1, ' ', false, json::error_handler_t::replace));
-    if (isNew) place->second = append(_writer.document["materials"], std::move(made));
+    if (!isNew) return place->second;
+    place->second = append(_writer.document["materials"], std::move(made));
+    if (isLimited)
+        _report.warn(elementName("materials", place->second) + ": factors out of their range, which are limited");
     return place->second;
 }
 

@@ -1,23 +1,60 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/write/NodeWriter.h"
 
-#include "gltf/scene/NodeTransform.h"
+#include <glm/geometric.hpp>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
 namespace osgGpuAnimation::gltf
 {
 
+namespace
+{
+
+struct CheckedTransform
+{
+    NodeTransform transform; ///< the identity if there is a fault
+    std::string fault;       ///< empty: none
+    TransformBound reach;
+};
+
+/// above: the bound of the place above.
+CheckedTransform checked(const osg::Matrixd& matrix, const TransformBound& above)
+{
+    const CheckedTransform faulty{{}, "its numbers are beyond floats", above};
+    const auto isFloat = [](double number) { return std::abs(number) <= std::numeric_limits<float>::max(); };
+    if (!std::all_of(matrix.ptr(), matrix.ptr() + 16, isFloat)) return faulty;
+    if (matrix(0, 3) != 0.0 || matrix(1, 3) != 0.0 || matrix(2, 3) != 0.0 || matrix(3, 3) != 1.0)
+        return {{}, "it is not affine", above};
+    tinygltf::Node source;
+    source.matrix.assign(matrix.ptr(), matrix.ptr() + 16); // OSG's rows are glTF's columns
+    CheckedTransform made{decompose(source), "", above};
+    // Scales are lengths of columns, which may be beyond floats where the columns' numbers are not.
+    if (!made.transform.inner.isFinite()) return faulty;
+    if (made.transform.outer && !made.transform.outer->isFinite()) return faulty;
+    if (made.transform.outer) made.reach = made.reach * TransformBound::of(*made.transform.outer);
+    made.reach = made.reach * TransformBound::of(made.transform.inner);
+    return isNear(made.reach, 0.0) ? made : CheckedTransform{{}, "it takes what is below " + beyondFarthest(), above};
+}
+
+} // namespace
+
 NodePlace& NodeWriter::place(NodePlace* above, const osg::Matrixd& toAbove, const std::string& name)
 {
-    _places.push_back({above, toAbove, name, std::nullopt});
+    const CheckedTransform own = checked(toAbove, above ? above->reach : TransformBound());
+    if (!own.fault.empty()) _report.warn("transform " + quoted(name) + ": " + own.fault + "; left out");
+    const std::size_t depth = (above ? above->depth : 0) + (own.transform.outer ? 2 : 1);
+    _places.push_back({above, own.transform, name, std::nullopt, depth, own.reach});
     return _places.back();
 }
 
 NodePlace& NodeWriter::placeOf(std::size_t node)
 {
-    _places.push_back({nullptr, {}, "", node});
+    _places.push_back({nullptr, {}, "", node, _depths[node], _reaches[node]});
     return _places.back();
 }
 
@@ -25,32 +62,28 @@ std::size_t NodeWriter::add(const std::string& name, const JointTransform& toAbo
 {
     nlohmann::json node = nlohmann::json::object();
     if (!name.empty()) node["name"] = name;
-    const glm::vec4 &t = toAbove.translation, &r = toAbove.rotation, &s = toAbove.scale;
+    const glm::vec4 &t = toAbove.translation, &s = toAbove.scale;
+    glm::vec4 r = toAbove.rotation;
+    if (!(std::abs(glm::dot(r, r) - 1.0f) < 1e-3f)) r = glm::vec4(Rotation::unit(glm::dvec4(r)));
     if (glm::vec3(t) != glm::vec3(0.0f)) node["translation"] = {t.x, t.y, t.z};
     if (r != glm::vec4(0, 0, 0, 1)) node["rotation"] = {r.x, r.y, r.z, r.w};
     if (glm::vec3(s) != glm::vec3(1.0f)) node["scale"] = {s.x, s.y, s.z};
+    if (above) nodeOf(*above); // exists first
     const std::size_t number = append(_writer.document["nodes"], std::move(node));
+    _depths.push_back(1 + (above ? _depths[*above->node] : 0));
+    _reaches.push_back((above ? _reaches[*above->node] : TransformBound()) * TransformBound::of(toAbove));
     if (above)
-        at(nodeOf(*above))["children"].push_back(number);
+        at(*above->node)["children"].push_back(number);
     else
         _writer.document["scenes"][0]["nodes"].push_back(number);
     return number;
 }
 
-std::size_t NodeWriter::addMatrix(const std::string& name, const osg::Matrixd& toAbove, NodePlace* above)
+std::size_t NodeWriter::add(const std::string& name, const NodeTransform& toAbove, NodePlace* above)
 {
-    tinygltf::Node source;
-    source.matrix.assign(toAbove.ptr(), toAbove.ptr() + 16); // OSG's rows are glTF's columns
-    if (!toAbove.valid() || toAbove(0, 3) != 0.0 || toAbove(1, 3) != 0.0 || toAbove(2, 3) != 0.0 ||
-        toAbove(3, 3) != 1.0)
-    {
-        _report.warn("transform " + quoted(name) + ": it is not affine; left out");
-        source.matrix.clear();
-    }
-    const NodeTransform transform = decompose(source);
-    if (!transform.outer) return add(name, transform.inner, above);
-    NodePlace& outer = placeOf(add(name.empty() ? name : name + " shear", *transform.outer, above));
-    return add(name, transform.inner, &outer);
+    if (!toAbove.outer) return add(name, toAbove.inner, above);
+    NodePlace& outer = placeOf(add(name.empty() ? name : name + " shear", *toAbove.outer, above));
+    return add(name, toAbove.inner, &outer);
 }
 
 std::size_t NodeWriter::nodeOf(NodePlace& place)
@@ -59,7 +92,7 @@ std::size_t NodeWriter::nodeOf(NodePlace& place)
     for (NodePlace* each = &place; each && !each->node; each = each->above)
         missing.push_back(each);
     for (auto each = missing.rbegin(); each != missing.rend(); ++each) // a node above exists first: no recursion
-        (*each)->node = addMatrix((*each)->name, (*each)->toAbove, (*each)->above);
+        (*each)->node = add((*each)->name, (*each)->toAbove, (*each)->above);
     return *place.node;
 }
 

@@ -2,16 +2,22 @@
 #pragma once
 
 #include "gltf/file/Report.h"
+#include "gltf/scene/NodeTransform.h"
 #include "gltf/write/GlbWriter.h"
 
+#include <osgGpuAnimation/animation/bounds/TransformBound.h>
 #include <osgGpuAnimation/animation/JointTransform.h>
+#include <osgGpuAnimation/nodes/mesh/SceneVisitor.h>
 
 #include <osg/Matrixd>
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <deque>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace osgGpuAnimation::gltf
 {
@@ -19,16 +25,31 @@ namespace osgGpuAnimation::gltf
 /// A place of the scene graph, which becomes a node of the file as soon as a mesh, light or camera needs it.
 struct NodePlace
 {
-    NodePlace* above = nullptr;      ///< null: the scene
-    osg::Matrixd toAbove;            ///< affine
+    NodePlace* above = nullptr; ///< null: the scene
+    NodeTransform toAbove;
     std::string name;                ///< may be empty
     std::optional<std::size_t> node; ///< once it is needed
+    std::size_t depth = 0;           ///< nodes from a root to the place's own
+    TransformBound reach;            ///< from the place to the scene
 };
 
-/// Writes the nodes of a file (glTF 2.0, section 3.5), each as T · R · S. A matrix that shears becomes two nodes.
+/// True if the import reads points within the radius at such a place. It bounds some products in another way, hence the
+/// factor.
+inline bool isNear(const TransformBound& reach, double radius)
+{
+    return 2.0 * std::max({reach.stretch, reach.distance, reach.of(radius)}) <= TransformBound::farthest &&
+           std::isfinite(reach.stretch + reach.distance);
+}
+
+/// Writes the nodes of a file (glTF 2.0, section 3.5), each as T · R · S. A matrix that shears becomes two nodes; one
+/// that is not affine, or takes what is below farther out than the import reads, is left out, with a warning.
 class NodeWriter
 {
 public:
+    /// The largest depth of a place with places below it: the import's limit without one place that shears and a node
+    /// of its own for a mesh or light.
+    static constexpr std::size_t maxDepth = maxNodeDepth - 4;
+
     NodeWriter(GlbWriter& writer, Report& report) : _writer(writer), _report(report) {}
 
     /// A place that exists as long as the writer. above: null: the scene.
@@ -50,11 +71,14 @@ public:
     nlohmann::json& at(std::size_t node) { return _writer.document["nodes"][node]; }
 
 private:
-    std::size_t addMatrix(const std::string& name, const osg::Matrixd& toAbove, NodePlace* above);
+    std::size_t add(const std::string& name, const NodeTransform& toAbove, NodePlace* above);
 
     GlbWriter& _writer;
     Report& _report;
     std::deque<NodePlace> _places; ///< keeps addresses
+    // By node:
+    std::vector<std::size_t> _depths;     ///< the nodes from a root to it
+    std::vector<TransformBound> _reaches; ///< from it to the scene
 };
 
 } // namespace osgGpuAnimation::gltf

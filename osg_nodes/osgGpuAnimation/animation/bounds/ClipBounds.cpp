@@ -300,7 +300,8 @@ Box boundsOfJoints(const AnimationSet& set)
     for (const AffineMatrix& joint : joints)
     {
         const glm::vec3 origin = joint.transformPoint(glm::vec3(0.0f));
-        if (glm::all(glm::lessThan(glm::dvec3(glm::abs(origin)), glm::dvec3(Aabb3d::limit)))) box.add(origin);
+        // Products are limited to the same number.
+        if (glm::all(glm::lessThan(glm::abs(origin), glm::vec3(static_cast<float>(Aabb3d::limit))))) box.add(origin);
     }
     return box;
 }

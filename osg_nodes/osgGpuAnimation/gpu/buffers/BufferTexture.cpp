@@ -3,12 +3,24 @@
 
 #include <osg/Texture>
 
+#ifndef GL_TEXTURE_BINDING_BUFFER
+#define GL_TEXTURE_BINDING_BUFFER 0x8C2C
+#endif
+
 #include <algorithm>
 #include <atomic>
 #include <cassert>
 
 namespace osgGpuAnimation
 {
+
+void bindBufferTexture(osg::State& state, unsigned int unit, GLuint texture)
+{
+    state.setActiveTextureUnit(unit);
+    glBindTexture(GL_TEXTURE_BUFFER, texture);
+    if (state.getLastAppliedTextureAttribute(unit, osg::StateAttribute::TEXTURE))
+        state.haveAppliedTextureAttribute(unit, osg::StateAttribute::TEXTURE);
+}
 
 void BufferTexture::create()
 {
@@ -26,9 +38,11 @@ bool BufferTexture::reserve(std::size_t bytes)
     _capacity = std::max(bytes, _capacity + _capacity / 8);
     _gl->glBindBuffer(GL_TEXTURE_BUFFER, _buffer);
     _gl->glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(_capacity), nullptr, GL_DYNAMIC_COPY);
+    GLint bound = 0; // to the active unit; this query is as rare as new storage
+    glGetIntegerv(GL_TEXTURE_BINDING_BUFFER, &bound);
     glBindTexture(GL_TEXTURE_BUFFER, _texture);
     _gl->glTexBuffer(GL_TEXTURE_BUFFER, _format, _buffer);
-    glBindTexture(GL_TEXTURE_BUFFER, 0);
+    glBindTexture(GL_TEXTURE_BUFFER, static_cast<GLuint>(bound));
     _gl->glBindBuffer(GL_TEXTURE_BUFFER, 0);
     return true;
 }

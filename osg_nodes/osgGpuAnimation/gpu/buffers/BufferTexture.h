@@ -2,12 +2,17 @@
 #pragma once
 
 #include <osg/GLExtensions>
+#include <osg/State>
 
 #include <cstddef>
 #include <cstdint>
 
 namespace osgGpuAnimation
 {
+
+/// Binds a buffer texture, or 0, to a texture unit and makes the unit active. If OSG has applied a texture of its own
+/// to the unit, it applies that again before the next drawable.
+void bindBufferTexture(osg::State& state, unsigned int unit, GLuint texture);
 
 /// A GL buffer object that shaders read as a buffer texture, in one graphics context. It creates GL names at first
 /// use. Call release() with the context current, or discard() after the end of the context.

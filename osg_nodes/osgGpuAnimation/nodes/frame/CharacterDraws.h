@@ -26,7 +26,12 @@ public:
     /// Called at the start of a cull traversal.
     void clear() { _draws.clear(); }
     /// Adds a draw of the mesh for the instances of the binding; more instances may follow.
-    void add(const SkinnedGeometry& mesh, const PaletteBinding& binding) { _draws.push_back({&mesh, &binding}); }
+    void add(const SkinnedGeometry& mesh, const PaletteBinding& binding)
+    {
+        Draw& draw = _draws.emplace_back(); // a Draw that is copied here makes g++ 14 warn of a null pointer
+        draw.mesh = &mesh;
+        draw.binding = &binding;
+    }
 
     using osg::Drawable::accept;
     bool supports(const osg::PrimitiveFunctor&) const override { return true; }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/frame/CullScopes.h>
 
+#include <osgGpuAnimation/nodes/mesh/SceneVisitor.h>
+
 #include <osg/MatrixTransform>
 #include <osgUtil/Optimizer>
 #include <osgViewer/View>
@@ -67,14 +69,15 @@ osg::Matrix pathToWorld(const osg::NodePath& path, const std::vector<osg::Matrix
 }
 
 /// The camera of the osgViewer::View that shows the node; null if there is none.
-osg::Camera* viewCameraAbove(osg::Node& node)
+osg::Camera* viewCameraAbove(const osg::Node& node)
 {
-    const auto* camera = dynamic_cast<const osg::Camera*>(&node);
-    if (camera && dynamic_cast<const osgViewer::View*>(camera->getView()))
-        return const_cast<osg::Camera*>(camera->getView()->getCamera());
-    for (osg::Group* parent : node.getParents())
-        if (osg::Camera* found = viewCameraAbove(*parent)) return found;
-    return nullptr;
+    const auto viewOf = [](const osg::Node& each) -> const osg::View*
+    {
+        const auto* camera = dynamic_cast<const osg::Camera*>(&each);
+        return camera ? dynamic_cast<const osgViewer::View*>(camera->getView()) : nullptr;
+    };
+    const osg::Node* found = findAbove(node, [&](const osg::Node& each) { return viewOf(each) != nullptr; });
+    return found ? const_cast<osg::Camera*>(viewOf(*found)->getCamera()) : nullptr;
 }
 
 /// The actions of runAfterUpdate() in one frame. A viewer runs the update callbacks of its cameras after those of its

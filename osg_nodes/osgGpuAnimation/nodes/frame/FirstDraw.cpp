@@ -4,6 +4,7 @@
 #include <osgGpuAnimation/gpu/passes/FeedbackTimer.h>
 #include <osgGpuAnimation/gpu/PosePipeline.h>
 #include <osgGpuAnimation/nodes/frame/InstancedDraw.h>
+#include <osgGpuAnimation/nodes/mesh/SceneVisitor.h>
 
 #include <osg/UserDataContainer>
 #include <osgUtil/GLObjectsVisitor>
@@ -72,13 +73,13 @@ struct StatedMesh
 
 /// The meshes below a character, with the state sets of the nodes down to them; one mesh for each state. Nothing below
 /// nodes that add state when they are culled.
-class MeshCollector : public osg::NodeVisitor
+class MeshCollector : public SceneVisitor
 {
 public:
+    using SceneVisitor::apply;
     /// isInstanced: only the meshes of instanced draws.
     MeshCollector(StateSets above, bool isInstanced)
-        : osg::NodeVisitor(osg::NodeVisitor::TRAVERSE_ACTIVE_CHILDREN), _above(std::move(above)),
-          _isInstanced(isInstanced)
+        : SceneVisitor(Shared::EachPath, TRAVERSE_ACTIVE_CHILDREN), _above(std::move(above)), _isInstanced(isInstanced)
     {
     }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/frame/InstancedDraw.h>
 
+#include <osgGpuAnimation/gpu/buffers/BufferTexture.h>
 #include <osgGpuAnimation/nodes/OsgMatrix.h>
 
 #include <layout.glsl>
@@ -90,17 +91,11 @@ MeshVertexArrays::MeshVertexArrays(osg::State& state)
 
 MeshVertexArrays::~MeshVertexArrays()
 {
-    if (_isContextsOwn)
-    {
-        _state.getCurrentVertexArrayState()->unbindVertexBufferObject();
-        _state.getCurrentVertexArrayState()->unbindElementBufferObject();
-    }
-    if (isNumberShared(_state))
-    {
-        // Another context may write the palette next; FeedbackScope unbinds it in its own context alone.
-        _state.setActiveTextureUnit(POSE_PALETTE_UNIT);
-        glBindTexture(GL_TEXTURE_BUFFER, 0);
-    }
+    // GL's array buffer is no part of a vertex array object: the next geometry with client arrays would read from it.
+    _state.getCurrentVertexArrayState()->unbindVertexBufferObject();
+    if (_isContextsOwn) _state.getCurrentVertexArrayState()->unbindElementBufferObject();
+    // Another context may write the palette next; FeedbackScope unbinds it in its own context alone.
+    if (isNumberShared(_state)) bindBufferTexture(_state, POSE_PALETTE_UNIT, 0);
     // A vertex array that stays bound would lose its element buffer when OSG compiles objects between frames.
     _state.unbindVertexArrayObject();
 }
@@ -132,8 +127,7 @@ void bindPalette(osg::State& state, const PalettePlace& place, int influences, i
     {
         if (const GLint location = program->getUniformLocation(name); location >= 0) gl->glUniform1i(location, value);
     };
-    state.setActiveTextureUnit(POSE_PALETTE_UNIT);
-    glBindTexture(GL_TEXTURE_BUFFER, place.texture);
+    bindBufferTexture(state, POSE_PALETTE_UNIT, place.texture);
     set(paletteName, POSE_PALETTE_UNIT);
     set(strideName, place.stride);
     set(instanceName, place.instance);
@@ -145,11 +139,7 @@ void bindPalette(osg::State& state, const PalettePlace& place, int influences, i
     }
     set(tintsName, POSE_TINT_UNIT);
     set(tintedName, place.tints != 0 ? 1 : 0);
-    if (place.tints != 0)
-    {
-        state.setActiveTextureUnit(POSE_TINT_UNIT);
-        glBindTexture(GL_TEXTURE_BUFFER, place.tints);
-    }
+    if (place.tints != 0) bindBufferTexture(state, POSE_TINT_UNIT, place.tints);
 }
 
 void setOutset(osg::State& state, float outset)
@@ -188,8 +178,7 @@ void PlacedDraw::use() const
     static const unsigned int placementsName = osg::Uniform::getNameID("posePlacements");
     const auto bind = [&](unsigned int name, int unit, GLuint texture)
     {
-        _state.setActiveTextureUnit(static_cast<unsigned int>(unit));
-        glBindTexture(GL_TEXTURE_BUFFER, texture);
+        bindBufferTexture(_state, static_cast<unsigned int>(unit), texture);
         const GLint location = program->getUniformLocation(name);
         if (location >= 0) _state.get<osg::GLExtensions>()->glUniform1i(location, unit);
     };

@@ -33,8 +33,9 @@ std::size_t trianglesOf(const MergedParts::Meshes& parts, const AnimationSet& se
         const std::shared_ptr<const LodLevels> levels = part->getLodLevels(set);
         for (unsigned int i = 0; i < part->getNumPrimitiveSets(); ++i)
         {
-            const osg::DrawElements* reduced = levels->reduced(i, level).elements;
-            indices += reduced ? reduced->getNumIndices() : part->getPrimitiveSet(i)->getNumIndices();
+            const osg::PrimitiveSet* drawn = levels->reduced(i, level).elements;
+            if (!drawn) drawn = part->getPrimitiveSet(i);
+            if (drawn) indices += drawn->getNumIndices();
         }
     }
     return indices / 3;
@@ -52,7 +53,7 @@ CharacterLevels::Part::Part(const SkinnedGeometry& mesh)
       state(mesh.getStateSet()), mask(mesh.getNodeMask())
 {
     for (const osg::ref_ptr<osg::PrimitiveSet>& set : mesh.getPrimitiveSetList())
-        primitives.push_back({set, set->getModifiedCount()});
+        primitives.push_back({set, set ? set->getModifiedCount() : 0});
 }
 
 bool CharacterLevels::Part::isOf(const SkinnedGeometry& present) const
@@ -62,7 +63,7 @@ bool CharacterLevels::Part::isOf(const SkinnedGeometry& present) const
     const osg::Geometry::PrimitiveSetList& sets = present.getPrimitiveSetList();
     return std::equal(sets.begin(), sets.end(), primitives.begin(), primitives.end(),
                       [](const osg::ref_ptr<osg::PrimitiveSet>& set, const Primitives& known)
-                      { return set == known.set && set->getModifiedCount() == known.modifiedCount; });
+                      { return set == known.set && (!set || set->getModifiedCount() == known.modifiedCount); });
 }
 
 bool CharacterLevels::isOf(const osg::Group& meshes, const AnimationSet& set) const

@@ -132,7 +132,7 @@ bool isWorthPoses(const osg::Geometry& mesh, const AnimationSet& set)
 {
     std::size_t most = 0;
     for (const osg::ref_ptr<osg::PrimitiveSet>& primitives : mesh.getPrimitiveSetList())
-        most = std::max<std::size_t>(most, primitives->getNumIndices() / 3);
+        if (primitives) most = std::max<std::size_t>(most, primitives->getNumIndices() / 3);
     return most >= std::max(fewTriangles, set.paletteSize() / entriesATriangle);
 }
 
@@ -247,7 +247,7 @@ LodLevels::LodLevels(const osg::Geometry& mesh)
     : _vertices(mesh.getVertexArray()), _modifiedCount(_vertices ? _vertices->getModifiedCount() : 0)
 {
     for (const osg::ref_ptr<osg::PrimitiveSet>& primitives : mesh.getPrimitiveSetList())
-        _primitives.push_back({primitives, primitives->getModifiedCount(), {}});
+        _primitives.push_back({primitives, primitives ? primitives->getModifiedCount() : 0, {}});
 }
 
 LodLevels::LodLevels(const osg::Geometry& mesh, const AnimationSet& set, const Skinning& skin) : LodLevels(mesh)
@@ -280,6 +280,7 @@ void LodLevels::addSteps(const PosedSurface& surface, int finest, int coarsest, 
                          std::set<std::size_t>& outBeyond) const
 {
     primitives.steps.clear();
+    if (!primitives.original) return;
     const std::vector<std::uint32_t> original = trianglesOf(*primitives.original, surface.vertexCount());
     if (original.size() < 3 * fewTriangles) return;
     MeshSimplifier simplifier(surface, original);
@@ -369,7 +370,8 @@ bool LodLevels::isOf(const osg::Geometry& mesh) const
     for (unsigned int i = 0; i < _primitives.size(); ++i)
     {
         const osg::PrimitiveSet* now = mesh.getPrimitiveSet(i);
-        if (now != _primitives[i].original || now->getModifiedCount() != _primitives[i].modifiedCount) return false;
+        if (now != _primitives[i].original || (now && now->getModifiedCount() != _primitives[i].modifiedCount))
+            return false;
     }
     return true;
 }

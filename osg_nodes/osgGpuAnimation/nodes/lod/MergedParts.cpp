@@ -44,7 +44,7 @@ bool MergedParts::accepts(const SkinnedGeometry& part)
     if (part.getNodeMask() == 0 || part.getDrawCallback() || part.getCullCallback()) return false;
     if (!part.getMorphTargets().empty() || part.getVertexCount() == 0 || part.getNumPrimitiveSets() == 0) return false;
     for (const osg::ref_ptr<osg::PrimitiveSet>& primitives : part.getPrimitiveSetList())
-        if (LodLevels::trianglesOf(*primitives, part.getVertexCount()).empty()) return false;
+        if (!primitives || LodLevels::trianglesOf(*primitives, part.getVertexCount()).empty()) return false;
     return SurfaceColor::of(part).has_value();
 }
 

@@ -5,6 +5,7 @@
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/nodes/mesh/MaterialVariants.h>
 #include <osgGpuAnimation/nodes/mesh/PaletteEntryBounds.h>
+#include <osgGpuAnimation/nodes/mesh/SceneVisitor.h>
 #include <osgGpuAnimation/nodes/PbrMaterial.h>
 #include <osgGpuAnimation/nodes/shading/PunctualLight.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
@@ -13,12 +14,12 @@
 #include <osg/LOD>
 #include <osg/Material>
 #include <osg/Math>
-#include <osg/NodeVisitor>
 #include <osg/ValueObject>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <string_view>
 #include <utility>
 
 namespace osgGpuAnimation
@@ -41,11 +42,11 @@ const char* const iorName = "extensions/KHR_materials_ior/ior";
 const char* const specularColorName = "extensions/KHR_materials_specular/specularColorFactor";
 
 /// name: one of PropertyMember::all().
-const PropertyMember& memberNamed(Object object, const std::string& name)
+const PropertyMember& memberNamed(Object object, std::string_view name)
 {
     static const auto members = []
     {
-        std::map<std::pair<Object, std::string>, const PropertyMember*> byName;
+        std::map<std::pair<Object, std::string_view>, const PropertyMember*> byName;
         for (const PropertyMember& member : PropertyMember::all())
             byName[{member.object, member.name}] = &member;
         return byName;
@@ -155,10 +156,11 @@ osg::Light* shownLight(osg::Light& light)
 
 /// Calls visit for the lights and camera views at and below a node, but for those of other characters below.
 template <typename Visit>
-class MarkedNodes : public osg::NodeVisitor
+class MarkedNodes : public SceneVisitor
 {
 public:
-    explicit MarkedNodes(Visit visit) : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN), _visit(std::move(visit))
+    using SceneVisitor::apply;
+    explicit MarkedNodes(Visit visit) : SceneVisitor(Shared::Once, TRAVERSE_ALL_CHILDREN), _visit(std::move(visit))
     {
         setNodeMaskOverride(~0u);
     }
@@ -425,7 +427,7 @@ void AnimatedProperties::setMaterials(osg::StateSet& state, int material) const
 void AnimatedProperties::setMaterial(osg::StateSet& state, const PropertyPointer& pointer) const
 {
     const PropertyMember& member = *pointer.member;
-    const auto value = [&](const std::string& name)
+    const auto value = [&](std::string_view name)
     { return valueOf(memberNamed(Object::Material, name), pointer.index); };
     const std::array<float, 4> own = valueOf(member, pointer.index);
     setNumbers(state, member.uniform, member.component, member.count, own.data());

@@ -3,6 +3,7 @@
 
 #include <osgGpuAnimation/animation/bounds/ClipBounds.h>
 #include <osgGpuAnimation/animation/bounds/MixBounds.h>
+#include <osgGpuAnimation/nodes/mesh/SceneVisitor.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
 #include <osg/Array>
@@ -37,14 +38,15 @@ inline Box toBox(const osg::BoundingBox& box)
 }
 
 /// function(SkinnedGeometry&), for every mesh at or below the node, hidden ones included; not those of characters and
-/// crowds below a character or crowd, as a rider is below a horse.
+/// crowds below a character or crowd, as a rider is below a horse. See SceneVisitor for broken scenes.
 template <typename Function>
 void forEachMeshBelow(osg::Node& node, Function function)
 {
-    class Visitor : public osg::NodeVisitor
+    class Visitor : public SceneVisitor
     {
     public:
-        explicit Visitor(Function& function) : NodeVisitor(TRAVERSE_ALL_CHILDREN), _function(function)
+        using SceneVisitor::apply;
+        explicit Visitor(Function& function) : SceneVisitor(Shared::Once, TRAVERSE_ALL_CHILDREN), _function(function)
         {
             setNodeMaskOverride(~0u); // a mesh that is hidden now may be shown later
         }

@@ -3,6 +3,7 @@
 
 #include <osgGpuAnimation/animation/keyframes/PosedKeyframe.h>
 #include <osgGpuAnimation/animation/Pose.h>
+#include <osgGpuAnimation/nodes/mesh/PrimitiveRange.h>
 
 #include <layout.glsl>
 
@@ -108,7 +109,11 @@ osg::ref_ptr<osg::Geometry> PosedMeshes::pose(const SkinnedGeometry& mesh, bool 
         posed->setColorArray(const_cast<osg::Array*>(mesh.getColorArray()));
     }
     posed->setTexCoordArrayList(mesh.getTexCoordArrayList());
-    posed->setPrimitiveSetList(mesh.getPrimitiveSetList());
+    osg::Geometry::PrimitiveSetList drawn = mesh.getPrimitiveSetList();
+    const std::size_t vertices = posed->getVertexArray()->getNumElements();
+    drawn.erase(std::remove_if(drawn.begin(), drawn.end(), [&](const auto& set) { return !isWithin(set, vertices); }),
+                drawn.end());
+    posed->setPrimitiveSetList(drawn);
     // Visitors look up textures in the state and do not change it.
     posed->setStateSet(const_cast<osg::StateSet*>(mesh.getStateSet()));
     if (withNormals && posed->getStateSet() && !posed->getTexCoordArray(0))

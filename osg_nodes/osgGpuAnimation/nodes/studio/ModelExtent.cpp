@@ -5,6 +5,7 @@
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/nodes/mesh/PaletteEntryBounds.h>
+#include <osgGpuAnimation/nodes/mesh/SceneVisitor.h>
 
 #include <osg/ComputeBoundsVisitor>
 #include <osg/Geometry>
@@ -38,10 +39,11 @@ std::set<std::size_t> outerInstances(const AnimatedCrowd& crowd)
     return outer;
 }
 
-class PointCollector : public osg::NodeVisitor
+class PointCollector : public SceneVisitor
 {
 public:
-    PointCollector() : osg::NodeVisitor(NODE_VISITOR, TRAVERSE_ACTIVE_CHILDREN) {}
+    using SceneVisitor::apply;
+    PointCollector() : SceneVisitor(Shared::EachPath, TRAVERSE_ACTIVE_CHILDREN) {}
 
     void apply(osg::Transform& transform) override
     {
@@ -84,11 +86,29 @@ private:
     }
 };
 
+/// OSG's visitor of bounds, with the guard of SceneVisitor.
+class Bounds : public osg::ComputeBoundsVisitor
+{
+public:
+    using osg::ComputeBoundsVisitor::apply;
+    void apply(osg::Node& node) override
+    {
+        if (_guard.enter(node, getNodePath().size())) traverse(node);
+    }
+    void apply(osg::Transform& transform) override
+    {
+        if (_guard.enter(transform, getNodePath().size())) osg::ComputeBoundsVisitor::apply(transform);
+    }
+
+private:
+    SceneGuard _guard{SceneGuard::Shared::EachPath};
+};
+
 } // namespace
 
 osg::BoundingBoxd extentOf(osg::Group& group)
 {
-    osg::ComputeBoundsVisitor visitor;
+    Bounds visitor;
     group.osg::Group::traverse(visitor);
     return osg::BoundingBoxd(visitor.getBoundingBox());
 }

@@ -29,14 +29,12 @@ double fittingDistance(const std::vector<osg::Vec3d>& points, const Standpoint& 
     return distance;
 }
 
-} // namespace
-
-Standpoint raisedStandpoint(const std::vector<osg::Vec3d>& points, double fieldOfView, double aspect, double margin)
+/// back: from the model to the eye, of length 1.
+Standpoint fittingStandpoint(const osg::Vec3d& back, const osg::Vec3d& up, const std::vector<osg::Vec3d>& points,
+                             double fieldOfView, double aspect, double margin)
 {
-    osg::Vec3d back(0.55, -1.0, 0.3);
-    back.normalize();
     const double tangent = std::tan(osg::DegreesToRadians(fieldOfView) / 2.0) / margin;
-    osg::Vec3d right = osg::Vec3d(0, 0, 1) ^ back;
+    osg::Vec3d right = up ^ back;
     right.normalize();
     const osg::Vec3d axes[] = {right, back ^ right, back};
     osg::BoundingBoxd box; // along those axes
@@ -45,6 +43,7 @@ Standpoint raisedStandpoint(const std::vector<osg::Vec3d>& points, double fieldO
     if (!box.valid()) box.set(-1, -1, -1, 1, 1, 1);
 
     Standpoint place;
+    place.up = up;
     place.middle = axes[0] * box.center().x() + axes[1] * box.center().y() + axes[2] * box.center().z();
     place.radius = std::max(box.radius(), 1e-6);
     double distance = fittingDistance(points, place, axes, tangent, aspect);
@@ -64,6 +63,26 @@ Standpoint raisedStandpoint(const std::vector<osg::Vec3d>& points, double fieldO
     }
     place.eye = place.middle + back * distance;
     return place;
+}
+
+} // namespace
+
+Standpoint standpointFrom(const ViewDirection& direction, const std::vector<osg::Vec3d>& points, double fieldOfView,
+                          double aspect, double margin)
+{
+    const double azimuth = osg::DegreesToRadians(direction.azimuth);
+    const double elevation = osg::DegreesToRadians(direction.elevation);
+    const osg::Vec3d level(std::sin(azimuth), -std::cos(azimuth), 0.0), above(0.0, 0.0, 1.0);
+    return fittingStandpoint(level * std::cos(elevation) + above * std::sin(elevation),
+                             above * std::cos(elevation) - level * std::sin(elevation), points, fieldOfView, aspect,
+                             margin);
+}
+
+Standpoint raisedStandpoint(const std::vector<osg::Vec3d>& points, double fieldOfView, double aspect, double margin)
+{
+    osg::Vec3d back(0.55, -1.0, 0.3);
+    back.normalize();
+    return fittingStandpoint(back, osg::Vec3d(0, 0, 1), points, fieldOfView, aspect, margin);
 }
 
 void goHome(const osgGA::GUIEventAdapter& event, osgViewer::View& view, const Standpoint& place, const osg::Vec3d& up)

@@ -3,10 +3,10 @@
 
 #include <osgGpuAnimation/nodes/frame/CullScopes.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
+#include <osgGpuAnimation/nodes/mesh/SceneVisitor.h>
 #include <osgGpuAnimation/nodes/OsgMatrix.h>
 #include <osgGpuAnimation/nodes/viewing/Standpoint.h>
 
-#include <osg/NodeVisitor>
 #include <osg/ValueObject>
 #include <osgGA/CameraManipulator>
 
@@ -19,10 +19,11 @@ namespace
 {
 
 /// Finds the first CameraView of a name.
-class CameraFinder : public osg::NodeVisitor
+class CameraFinder : public SceneVisitor
 {
 public:
-    explicit CameraFinder(const std::string& name) : osg::NodeVisitor(TRAVERSE_ALL_CHILDREN), _name(name) {}
+    using SceneVisitor::apply;
+    explicit CameraFinder(const std::string& name) : SceneVisitor(Shared::Once, TRAVERSE_ALL_CHILDREN), _name(name) {}
 
     void apply(osg::CameraView& view) override
     {
@@ -45,9 +46,8 @@ osg::CameraView* findCamera(osg::Node& node, const std::string& name)
 
 bool isBelowAttachment(const osg::Node& node)
 {
-    for (const osg::Group* parent : node.getParents())
-        if (dynamic_cast<const JointAttachment*>(parent) || isBelowAttachment(*parent)) return true;
-    return false;
+    return findAbove(node,
+                     [](const osg::Node& each) { return dynamic_cast<const JointAttachment*>(&each) != nullptr; });
 }
 
 /// The position of the camera, and its target: manipulators turn about it.

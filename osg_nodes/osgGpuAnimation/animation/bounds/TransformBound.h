@@ -4,13 +4,12 @@
 #include <osgGpuAnimation/animation/AnimationSet.h>
 
 #include <glm/mat4x4.hpp>
-#include <osg/Array>
 
 #include <cstddef>
 #include <string>
 #include <vector>
 
-namespace osgGpuAnimation::gltf
+namespace osgGpuAnimation
 {
 
 /// An upper bound for the lengths that an affine matrix, or any matrix of a set, produces. A product of factors that
@@ -24,6 +23,7 @@ struct TransformBound
     double distance = 0.0; ///< the largest distance of the transformed origin
 
     static TransformBound of(const glm::dmat4& matrix);
+    static TransformBound of(const JointTransform& transform);
     /// Applies the inner bound first.
     TransformBound operator*(const TransformBound& inner) const;
     void add(const TransformBound& other);
@@ -42,10 +42,12 @@ bool fits(const Skeleton& skeleton, const Clip& clip);
 /// The end of messages about transforms that are too large.
 std::string beyondFarthest();
 
-/// The largest distance of the points from the origin; infinite for NaN.
-double radiusOf(const osg::Vec3Array& points);
-
 /// One per palette entry, over the rest pose and all clips; 0 for entries of weights.
 std::vector<TransformBound> boundsOfEntries(const AnimationSet& set);
 
-} // namespace osgGpuAnimation::gltf
+/// True if the shaders compute finite palettes of the set without limiting products (see POSE_LARGEST_NUMBER), in all
+/// mixes of its rest pose and clips, with root matrices of numbers up to `farthest`. Posed joints and additive layers
+/// are not part of it. Reads all keyframes.
+bool hasModestPalette(const AnimationSet& set);
+
+} // namespace osgGpuAnimation

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "gltf/scene/TransformBound.h"
+#include <osgGpuAnimation/animation/bounds/TransformBound.h>
+
+#include <layout.glsl>
 
 #include <glm/geometric.hpp>
 
@@ -7,8 +9,10 @@
 #include <cmath>
 #include <limits>
 
-namespace osgGpuAnimation::gltf
+namespace osgGpuAnimation
 {
+
+static_assert(TransformBound::farthest == POSE_LARGEST_NUMBER, "the import lets nothing through that shaders limit");
 
 namespace
 {
@@ -63,6 +67,13 @@ TransformBound TransformBound::of(const glm::dmat4& matrix)
     return {std::sqrt(squares), glm::length(glm::dvec3(matrix[3]))};
 }
 
+TransformBound TransformBound::of(const JointTransform& transform)
+{
+    Largest own;
+    own.add(&transform, 1);
+    return {own.scale, own.translation};
+}
+
 TransformBound TransformBound::operator*(const TransformBound& inner) const
 {
     return {stretch * inner.stretch, of(inner.distance)};
@@ -73,6 +84,19 @@ void TransformBound::add(const TransformBound& other)
     stretch = std::max(stretch, other.stretch);
     distance = std::max(distance, other.distance);
 }
+
+namespace
+{
+
+/// Of each joint in the clip.
+void addClip(const Clip& clip, std::vector<Largest>& locals)
+{
+    for (std::size_t keyframe = 0; keyframe < clip.keyframeCount(); ++keyframe)
+        for (std::size_t joint = 0; joint < locals.size(); ++joint)
+            locals[joint].add(clip.at(keyframe, joint), clip.transformsPerTrack());
+}
+
+} // namespace
 
 std::vector<TransformBound> boundsAtRest(const Skeleton& skeleton)
 {
@@ -85,9 +109,7 @@ std::vector<TransformBound> boundsAtRest(const Skeleton& skeleton)
 std::vector<TransformBound> boundsOfClip(const Skeleton& skeleton, const Clip& clip)
 {
     std::vector<Largest> locals(skeleton.jointCount());
-    for (std::size_t keyframe = 0; keyframe < clip.keyframeCount(); ++keyframe)
-        for (std::size_t joint = 0; joint < locals.size(); ++joint)
-            locals[joint].add(clip.at(keyframe, joint), clip.transformsPerTrack());
+    addClip(clip, locals);
     return chained(skeleton, locals);
 }
 
@@ -107,18 +129,6 @@ std::string beyondFarthest()
     return "farther out than 1e18, the limit for float numbers";
 }
 
-double radiusOf(const osg::Vec3Array& points)
-{
-    double farthest = 0.0;
-    for (const osg::Vec3& point : points)
-    {
-        const double squared =
-            glm::dot(glm::dvec3(point.x(), point.y(), point.z()), glm::dvec3(point.x(), point.y(), point.z()));
-        if (!(squared <= farthest)) farthest = std::isnan(squared) ? std::numeric_limits<double>::infinity() : squared;
-    }
-    return std::sqrt(farthest);
-}
-
 std::vector<TransformBound> boundsOfEntries(const AnimationSet& set)
 {
     std::vector<TransformBound> joints = boundsAtRest(set.skeleton());
@@ -136,4 +146,32 @@ std::vector<TransformBound> boundsOfEntries(const AnimationSet& set)
     return entries;
 }
 
-} // namespace osgGpuAnimation::gltf
+bool hasModestPalette(const AnimationSet& set)
+{
+    // Joints of several clips may meet in one pose.
+    std::vector<Largest> locals(set.skeleton().jointCount());
+    for (std::size_t joint = 0; joint < locals.size(); ++joint)
+        locals[joint].add(&set.restPose()[joint], 1);
+    for (const Clip& clip : set.clips())
+        addClip(clip, locals);
+    const std::vector<TransformBound> toModel = chained(set.skeleton(), locals);
+    const auto boundOf = [](const AffineMatrix& matrix) { return TransformBound::of(matrix.toColumns()); };
+    // As world.glsl multiplies: parentEntry * (parentBind * (local * inverseBind)).
+    for (const PaletteEntry& entry : set.palette())
+    {
+        if (entry.joint < 0) continue;
+        TransformBound inner = boundOf(entry.inverseBind), above;
+        const Largest& local = locals[static_cast<std::size_t>(entry.joint)];
+        if (entry.track >= 0) inner = TransformBound{local.scale, local.translation} * inner;
+        const TransformBound outer = boundOf(entry.parentBind) * inner;
+        if (entry.parent >= 0)
+        {
+            const PaletteEntry& parent = set.palette()[static_cast<std::size_t>(entry.parent)];
+            above = toModel[static_cast<std::size_t>(parent.joint)] * boundOf(parent.inverseBind);
+        }
+        if (!inner.fits() || !outer.fits() || !(above * outer).fits()) return false;
+    }
+    return true;
+}
+
+} // namespace osgGpuAnimation

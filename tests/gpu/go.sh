@@ -8,7 +8,8 @@
 #     bench   the benchmark (BENCH: its options)
 # Default: all, in this order, within LIMIT seconds together (560). The machine needs a driver with EGL and OpenGL 3.3,
 # bash and xz; python3 for poses; scikit-image and SciPy for looks. OUT (default: out/ beside this file) gets the logs
-# and table.md, which is printed last. Exit status 0: everything that was asked for ran and passed.
+# and table.md, which is printed last; results of an earlier run are deleted there. Exit status 0:
+# everything that was asked for ran and passed.
 set -euo pipefail
 
 sections=nodes,skins,weights,positions,bbox # as in tests/tool/oracle.cmake

@@ -1,24 +1,25 @@
 # SPDX-License-Identifier: MIT
-# The set-up that scenes/view.sh, tests/run.sh, tests/sanitize.sh and .ci/run share; for `source`, not to be run. It sets
-# `root` (the repository) and `build` (its build folder) and offers install_missing PACKAGE..., configure_release [CMAKE'S
-# OPTION...] and build_targets [TARGET...].
+# The set-up that .ci/run and the scripts in scenes/ and tests/ share; for `source`, not to be run. It sets `root` (the
+# repository), `build` (its build folder) and lists of packages and programs, and offers install_missing PACKAGE...,
+# configure_release [CMAKE'S OPTION...] and build_targets [TARGET...].
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build=$root/build
 
-# Debian's names, in every release alike: no library has the number of its version, the -dev packages bring it in.
-# What builds and what shows (osgviewer, Mesa's software renderer).
+# Names that every release of Debian has. Packages for building and viewing.
 view_packages=(
     g++ cmake ninja-build
     libopenscenegraph-dev libtinygltf-dev libdraco-dev libmeshoptimizer-dev libglm-dev libcli11-dev nlohmann-json3-dev
     libpng-dev libturbojpeg0-dev libwebp-dev libassimp-dev
     libgl-dev libegl-dev openscenegraph libgl1-mesa-dri
 )
-# What the tests need besides, and what .ci/run does.
+# Further packages for the tests, and for .ci/run.
 test_packages=(
     libgtest-dev libbenchmark-dev glslang-tools python3 python3-skimage python3-scipy python3-pil xvfb xauth dpkg-dev file
 )
 ci_packages=(git clang clang-format doxygen mesa-vulkan-drivers mmdebstrap)
+# The test programs with suites named ...GLTest, for other drivers; tests/gpu/missing.sh checks that none is left out.
+gl_tests=(gpu_tests nodes_tests plugin_tests tool_tests osganimation_tests)
 
 is_installed()
 {
@@ -54,8 +55,8 @@ install_missing()
     as_root env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends "${missing[@]}"
 }
 
-# Configures a release build in $build. Without an option that says so, a new folder has no tests, and another stays with
-# or without. OSGGPUANIMATION_WERROR=ON in the environment makes warnings errors.
+# Configures a release build in $build. Unless an option says otherwise, a new folder has no tests; an existing folder
+# keeps its setting. OSGGPUANIMATION_WERROR=ON in the environment makes warnings errors.
 configure_release()
 {
     local options=()

@@ -4,6 +4,7 @@
 # Runs the GL tests on another driver than llvmpipe's OpenGL: Mesa's zink, over llvmpipe's Vulkan. Debian:
 # mesa-vulkan-drivers. Exit status 0: all passed, and none was skipped.
 set -euo pipefail
+source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
 XDG_RUNTIME_DIR=$(mktemp -d) # Vulkan's loader complains without one.
 export XDG_RUNTIME_DIR
@@ -14,5 +15,5 @@ export OSGGPUANIMATION_RENDERER=zink
 VK_ICD_FILENAMES=$(echo /usr/share/vulkan/icd.d/lvp_icd.*.json)
 export VK_ICD_FILENAMES
 # Two programs at a time, each in a context of its own.
-printf '%s\n' nodes plugin gpu tool |
-    xargs -P 2 -I '{}' env "$1/{}_tests" --gtest_filter='*GLTest.*' --gtest_brief=1
+printf '%s\n' "${gl_tests[@]}" |
+    xargs -P 2 -I '{}' env "$1/{}" --gtest_filter='*GLTest.*' --gtest_brief=1

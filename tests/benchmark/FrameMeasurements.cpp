@@ -77,7 +77,7 @@ std::string checkAlike(osg::Node& all, osg::Node& fewer, SetPixelError setPixelE
 {
     constexpr int samples = 8, sides = 4;
     const osg::BoundingSphere sight = all.getBound();
-    setPixelError(samples * pixelError);
+    if (const Result<bool> set = setPixelError(samples * pixelError); !set) return set.error().message;
     std::vector<std::shared_ptr<StagedViewer>> viewers;
     for (osg::Node* scene : {&all, &fewer})
     {
@@ -104,7 +104,7 @@ std::string checkAlike(osg::Node& all, osg::Node& fewer, SetPixelError setPixelE
             return "from side " + std::to_string(side) + " levels of detail show " + std::to_string(pixels[1]) +
                    " pixels, all triangles " + std::to_string(pixels[0]);
     }
-    setPixelError(pixelError);
+    if (const Result<bool> set = setPixelError(pixelError); !set) return set.error().message;
     // The Wanderer's coarsest levels are 11 % too thin.
     if (20 * std::abs(ofAll - ofFewer) <= 3 * ofAll && ofAll > 0) return "";
     return "from " + std::to_string(sides) + " sides levels of detail show " + std::to_string(ofFewer) +
@@ -186,7 +186,7 @@ Result<bool> measureFrames(const Subject& subject, const Effort& effort, Report&
         ReferenceScene apart(subject, kit, ReferenceMode::HardwareApart, count);
         std::vector<Contestant> contestants;
         CharacterScene fewer(subject, count);
-        fewer.setPixelError(pixelError);
+        if (const Result<bool> set = fewer.setPixelError(pixelError); !set) return set.error();
         for (osg::Node* scene :
              {ours.root.get(), software.root.get(), hardware.root.get(), apart.root.get(), fewer.root.get()})
         {
@@ -196,7 +196,7 @@ Result<bool> measureFrames(const Subject& subject, const Effort& effort, Report&
         }
         race(contestants, effort.frameRounds);
         if (const std::string wrong = check(contestants); !wrong.empty()) return Error{wrong};
-        const auto setPixelError = [&](float pixels) { fewer.setPixelError(pixels); };
+        const auto setPixelError = [&](float pixels) { return fewer.setPixelError(pixels); };
         if (const std::string wrong = checkAlike(*ours.root, *fewer.root, setPixelError); !wrong.empty())
             return Error{wrong};
         contestants[0].viewer->makeCurrent();
@@ -212,8 +212,8 @@ Result<bool> measureCrowd(const Subject& subject, const Effort& effort, Report& 
     {
         std::cerr << subject.name << ": a crowd of " << count << std::endl;
         const CrowdScene all(subject, count), fewer(subject, count);
-        const auto setPixelError = [&](float pixels) { static_cast<void>(fewer.root->setPixelError(pixels)); };
-        setPixelError(pixelError);
+        const auto setPixelError = [&](float pixels) { return fewer.root->setPixelError(pixels); };
+        if (const Result<bool> set = setPixelError(pixelError); !set) return set.error();
         std::vector<osg::ref_ptr<osg::Node>> scenes{all.root, fewer.root};
         if (hasNodes) scenes.push_back(CharacterScene(subject, count).root);
         std::vector<Contestant> contestants;
@@ -262,7 +262,8 @@ Result<bool> measureStart(const Subject& subject, const Effort& effort, Report& 
     std::cerr << subject.name << ": first frame and memory" << std::endl;
     constexpr std::size_t count = 1000, few = 10; // few: the one-time cost of programs and of the set
     const osg::BoundingSphere sight = CharacterScene(subject, count).root->getBound();
-    CharacterScene(subject, 1).setPixelError(pixelError); // levels of detail are made while a file is loaded
+    // Levels of detail are made while a file is loaded.
+    if (const Result<bool> set = CharacterScene(subject, 1).setPixelError(pixelError); !set) return set.error();
     std::vector<double> seconds, secondsOfFewer, elapsed, bytes, beyond, beyondOfFewer, compiled, beyondCompiled;
     for (int round = 0; round < std::min(effort.frameRounds, 3); ++round)
     {
@@ -271,7 +272,7 @@ Result<bool> measureStart(const Subject& subject, const Effort& effort, Report& 
             [&]
             {
                 CharacterScene scene(subject, count);
-                scene.setPixelError(pixelError);
+                static_cast<void>(scene.setPixelError(pixelError)); // which was accepted above
                 return scene;
             },
             sight);

@@ -54,10 +54,11 @@ void CharacterScene::pause()
         character->getController().pause();
 }
 
-void CharacterScene::setPixelError(float pixels)
+Result<bool> CharacterScene::setPixelError(float pixels)
 {
     for (const osg::ref_ptr<AnimatedCharacter>& character : characters)
-        static_cast<void>(character->setPixelError(pixels));
+        if (Result<bool> set = character->setPixelError(pixels); !set) return set;
+    return true;
 }
 
 std::string CharacterScene::check(osg::State& state) const

@@ -2,21 +2,22 @@
 # SPDX-License-Identifier: MIT
 # Usage: [OUT=FOLDER] [LIMIT=SECONDS] go.sh [PART...]
 # Runs what tests/gpu/pack.sh packed, on a machine with a graphics card; a software renderer serves, too. Parts:
-#     tests   the GL tests (FILTER: others, as for --gtest_filter)
+#     tests   the GL tests but those of glslangValidator (FILTER: others, as for --gtest_filter)
 #     poses   the oracle's poses, evaluated by the card, within 1e-5 of the model's size
 #     looks   pictures against the reference pictures
 #     bench   the benchmark (BENCH: its options)
 # Default: all, in this order, within LIMIT seconds together (560). The machine needs a driver with EGL and OpenGL 3.3,
 # bash and xz; python3 for poses; scikit-image and SciPy for looks. OUT (default: out/ beside this file) gets the logs
-# and table.md, which is printed last. Exit status 0: everything that was asked for ran and passed.
+# and table.md, which is printed last; results of an earlier run are deleted there. Exit status 0:
+# everything that was asked for ran and passed.
 set -euo pipefail
 
-tests=(gpu_tests nodes_tests plugin_tests tool_tests osganimation_tests)
 sections=nodes,skins,weights,positions,bbox # as in tests/tool/oracle.cmake
 read -ra options <<<"${BENCH:---quick --only pose --only crowd --only field --only mixed}"
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-project=$here/project
-shared=$here/shared
+unpacked=$here/unpacked # with everything that is written besides OUT
+project=$unpacked/project
+shared=$unpacked/shared
 build=$project/build
 tool=$build/bin/osggpuanim
 mkdir -p "${OUT:=$here/out}"
@@ -32,28 +33,34 @@ fail()
 unpack()
 {
     [ -f "$here/pack.tar.xz" ] || fail "there is no $here/pack.tar.xz; tests/gpu/pack.sh makes it"
-    rm -rf "$project" "$shared"
-    tar -C "$here" -xJf "$here/pack.tar.xz"
-    # The machine's own libraries are newer, and its driver may need that.
-    /sbin/ldconfig -p | awk '/x86-64/ { print $1 }' | (cd "$build/lib" && xargs rm -f --)
+    rm -rf "$unpacked"
+    mkdir "$unpacked"
+    tar -C "$unpacked" -xJf "$here/pack.tar.xz"
 }
 
 check_pack()
 {
     local part
-    cd "$project"
-    for part in "${tests[@]/#/build/bin/}" build/bin/osggpuanim{,_benchmark} build/lib/osgPlugins-* \
-        scenes tests/plugin/fixtures tests/tool/check_{oracle,looks}.py \
-        ../shared/{assets,oracle,looks/models,looks/pictures}; do
-        [ -e "$part" ] || fail "$part is not in the pack"
+    for part in paths tests parts; do
+        [ -s "$unpacked/$part" ] || fail "$part is not in the pack"
     done
+    while read -r part; do
+        [ -e "$unpacked/$part" ] || fail "$part is not in the pack"
+    done <"$unpacked/parts"
+    mapfile -t tests <"$unpacked/tests"
+}
+
+# The machine's own libraries are newer, and its driver may need that.
+prefer_libraries_of_machine()
+{
+    /sbin/ldconfig -p | awk '/x86-64/ { print $1 }' | (cd "$build/lib" && xargs rm -f --)
 }
 
 # The paths that the tests were compiled with.
 link_paths()
 {
     local root folder part
-    { read -r root && read -r folder; } <"$here/paths"
+    { read -r root && read -r folder; } <"$unpacked/paths"
     for part in build scenes tests/plugin/fixtures; do
         link "$project/$part" "$root/$part"
     done
@@ -77,7 +84,8 @@ find_driver()
         export OSGGPUANIMATION_EGL_PLATFORM=${OSGGPUANIMATION_EGL_PLATFORM:-device}
         break
     done
-    export LD_LIBRARY_PATH=$build/lib OSG_LIBRARY_PATH=$build/lib OSGGPUANIMATION_REQUIRE_GL=1
+    export LD_LIBRARY_PATH=$build/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
+    export OSG_LIBRARY_PATH=$build/lib OSGGPUANIMATION_REQUIRE_GL=1
     for folder in /usr/local/nvidia/lib{64,}; do
         [ ! -d "$folder" ] || LD_LIBRARY_PATH+=:$folder
     done
@@ -86,13 +94,15 @@ find_driver()
 # What draws.
 describe()
 {
-    nvidia-smi --query-gpu=name,driver_version --format=csv,noheader 2>/dev/null || true
-    "$tool" pose "$project/scenes/Wanderer.glb" --bind --evaluator gpu -o "$here/pose.json" >"$here/log" 2>&1 ||
-        fail "the tool does not evaluate a pose: $(cat "$here/log")"
-    grep -oE 'osggpuanim, GPU: [^"]+' "$here/pose.json"
+    local pose=$unpacked/pose.json status=0
+    timed nvidia-smi --query-gpu=name,driver_version --format=csv,noheader 2>/dev/null || true
+    timed "$tool" pose "$project/scenes/Wanderer.glb" --bind --evaluator gpu -o "$pose" >"$unpacked/log" 2>&1 ||
+        status=$?
+    [ $status -eq 0 ] || fail "the tool does not evaluate a pose, exit status $status: $(cat "$unpacked/log")"
+    grep -soE 'osggpuanim, GPU: [^"]+' "$pose" || fail "the tool's pose names no GPU"
 }
 
-# Runs a command until LIMIT at most.
+# Runs a command until LIMIT at most; exit status 124: the time is over.
 timed()
 {
     local left=$((${LIMIT:-560} - SECONDS))
@@ -110,12 +120,12 @@ begin()
 try()
 {
     count=$((count + 1))
-    if timed "${@:2}" >"$here/log" 2>&1; then
+    if timed "${@:2}" >"$unpacked/log" 2>&1; then
         passed=$((passed + 1))
     else
         failed+=("$1")
     fi
-    { echo "== $1"; cat "$here/log"; } >>"$out/$part.log"
+    { echo "== $1"; cat "$unpacked/log"; } >>"$out/$part.log"
 }
 
 end()
@@ -132,16 +142,17 @@ run_tests()
     for program in "${tests[@]}"; do
         begin "$program"
         status=0
-        timed "$build/bin/$program" --gtest_filter="${FILTER:-*GLTest*}" >"$here/log" 2>&1 || status=$?
-        cat "$here/log" >>"$out/tests.log"
-        count=$(sed -nE 's/^\[=+\] Running ([0-9]+) tests? from.*/\1/p' "$here/log")
+        timed "$build/bin/$program" --gtest_filter="${FILTER:-*GLTest*-ShaderLanguageGLTest.*}" >"$unpacked/log" 2>&1 ||
+            status=$?
+        cat "$unpacked/log" >>"$out/tests.log"
+        count=$(sed -nE 's/^\[=+\] Running ([0-9]+) tests? from.*/\1/p' "$unpacked/log")
         count=${count:-0}
-        passed=$(grep -c '^\[       OK' "$here/log") || true
+        passed=$(grep -c '^\[       OK' "$unpacked/log") || true
         # Failed and skipped tests, and the last one of a program that crashed or ran out of time.
-        sed -nE 's/^\[  (FAILED|SKIPPED) +\] ([^ ,]+\.[^ ,]+).*/\2/p' "$here/log" | sort -u >"$here/names"
-        mapfile -t failed <"$here/names"
+        sed -nE 's/^\[  (FAILED|SKIPPED) +\] ([^ ,]+\.[^ ,]+).*/\2/p' "$unpacked/log" | sort -u >"$unpacked/names"
+        mapfile -t failed <"$unpacked/names"
         if [ $status -gt 1 ]; then
-            failed+=("$(sed -n 's/^\[ RUN      \] //p' "$here/log" | tail -1): exit status $status")
+            failed+=("$(sed -n 's/^\[ RUN      \] //p' "$unpacked/log" | tail -1): exit status $status")
         elif [ ${#failed[@]} -eq 0 ] && { [ $status -eq 1 ] || [ "$passed" -ne "$count" ]; }; then
             failed=("exit status $status")
         fi
@@ -164,22 +175,22 @@ run_looks()
 {
     local file
     begin looks
-    mkdir -p "$here/pictures"
+    mkdir -p "$unpacked/pictures"
     for file in "$shared"/looks/pictures/*.png; do
         [[ $file != *.integrated.png ]] || continue
         try "$(basename "$file" .png)" \
-            python3 tests/tool/check_looks.py "$tool" "$shared" "$(basename "$file" .png)" "$here/pictures"
+            python3 tests/tool/check_looks.py "$tool" "$shared" "$(basename "$file" .png)" "$unpacked/pictures"
     done
-    tar -C "$here" -c pictures | xz >"$out/pictures.tar.xz"
+    tar -C "$unpacked" -c pictures | xz >"$out/pictures.tar.xz"
     end
 }
 
 run_bench()
 {
     begin bench
-    try bench "$build/bin/osggpuanim_benchmark" "$here/bench" \
+    try bench "$build/bin/osggpuanim_benchmark" "$unpacked/bench" \
         "$shared"/assets/{Fox/Fox,CesiumMan/CesiumMan,Knight/Knight}.glb "${options[@]}"
-    [ ! -f "$here/bench/benchmark.json" ] || cp "$here/bench/benchmark.json" "$out"
+    [ ! -f "$unpacked/bench/benchmark.json" ] || cp "$unpacked/bench/benchmark.json" "$out"
     end
     cat "$out/bench.log"
 }
@@ -191,10 +202,12 @@ for part in "$@"; do
     [ "$part" != looks ] || modules=skimage,scipy,PIL
 done
 [[ " $* " != *" looks "* && " $* " != *" poses "* ]] || python3 -c "import $modules" || fail "python3 needs $modules"
-rm -f "$out"/{tests,poses,looks,bench}.log
+rm -f "$out"/{{tests,poses,looks,bench}.log,table.md,pictures.tar.xz,benchmark.json} # of an earlier run
 unpack
-check_pack # and go there
+check_pack
+cd "$project"
 link_paths
+prefer_libraries_of_machine
 find_driver
 {
     describe

@@ -192,8 +192,11 @@ TEST(AccessorTest, SparseValuesReplaceAndLeaveTheBufferAlone)
         auto& sparse = one.accessor().sparse;
         sparse.isSparse = true;
         sparse.count = 2;
-        sparse.indices = {0, one.view(type.indices), type.componentType};
-        sparse.values = {one.view(bytesOf({9, 7, 8})), 4};
+        sparse.indices.byteOffset = 0;
+        sparse.indices.bufferView = one.view(type.indices);
+        sparse.indices.componentType = type.componentType;
+        sparse.values.bufferView = one.view(bytesOf({9, 7, 8}));
+        sparse.values.byteOffset = 4;
         EXPECT_EQ(readFloats(one.model, 0), (std::vector<float>{7, 2, 8}));
         EXPECT_EQ(one.model.buffers[0].data, bytesOf({1, 2, 3}));
         one.accessor().bufferView = -1;

@@ -33,17 +33,19 @@ settings()
 # In the bare system, with processes and mounts of its own that end with it; OSGGPUANIMATION_… of the environment are passed.
 inside()
 {
+    local passed
+    mapfile -t passed < <(env | grep '^OSGGPUANIMATION_')
     unshare --mount --pid --fork --kill-child --mount-proc="$folder/proc" chroot "$folder" \
-        env -i PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin HOME=/root \
-        $(env | grep '^OSGGPUANIMATION_') "$@"
+        env -i PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin HOME=/root "${passed[@]}" "$@"
 }
 
 if [ ! -d "$folder/src" ]; then # which is made last
     rm -rf "$folder"
     mkdir -p "$folder"
-    settings >"$folder.apt"
-    sources | mmdebstrap --variant=minbase --aptopt="$folder.apt" "$name" "$folder" -
-    rm "$folder.apt"
+    aptopt=$(mktemp) && chmod 644 "$aptopt"
+    trap 'rm -f "$aptopt"' EXIT
+    settings >"$aptopt"
+    sources | mmdebstrap --variant=minbase --aptopt="$aptopt" "$name" "$folder" -
 fi
 
 tree=/src/osgGpuAnimation
@@ -51,14 +53,14 @@ mkdir -p "$folder$tree"
 find "$folder$tree" -mindepth 1 -maxdepth 1 ! -name build -exec rm -rf '{}' +
 git -C "$root" -c safe.directory='*' ls-files -z --cached --others --exclude-standard |
     tar -C "$root" --null --files-from=- -c | tar -C "$folder$tree" -x
-if [ -d "$root/../shared" ]; then
+if [ $# -eq 1 ] && [ -d "$root/../shared" ]; then # the tests need it
     rm -rf "$folder/src/shared"
     cp -rL "$root/../shared" "$folder/src/shared"
 fi
 
 echo "Debian $name ($(cat "$folder/etc/debian_version")) on $(date -u +%F): scenes/view.sh"
 time inside "$tree/scenes/view.sh" </dev/null
-[ -s "$folder$tree/build/Wanderer.png" ]
+[ -s "$folder$tree/build/Wanderer.png" ] || { echo "scenes/view.sh drew no picture" >&2; exit 1; }
 [ $# -eq 1 ] || exit 0
 echo "Debian $name: tests/run.sh"
 export OSGGPUANIMATION_REQUIRE_GL=1

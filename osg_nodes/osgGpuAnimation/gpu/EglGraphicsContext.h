@@ -26,8 +26,8 @@ class EglGraphicsContext : public osg::GraphicsContext
 {
 public:
     /// Uses these traits: width, height; red, green, blue, alpha, depth, stencil (least numbers of bits); samples (if
-    /// the platform does not support that number, the context has no multisampling and getTraits() has 0 samples; so
-    /// it is in Mesa 25.0, which gives a multisampled pbuffer no buffer of colours);
+    /// the platform does not support that number, the context has no multisampling and getTraits() has 0 samples, for
+    /// example in Mesa 25.0, whose multisampled pbuffers have no colour buffer);
     /// sharedContext (an EglGraphicsContext); glContextProfileMask (1 core, 2 compatibility, 0: compatibility);
     /// glContextVersion ("major.minor"; ignored below 3.2; core is at least 3.3).
     /// Errors: no EGL display, no such configuration, profile or size; the message contains EGL's error code.

@@ -127,7 +127,7 @@ Result<bool> Importer::makeSet(const NodeTree& tree, const Joints& joints, const
     if (joints.skeleton.jointCount() == 0)
     {
         for (const ClipFile& file : _clipFiles)
-            _report.unmet(file.name + ": the model has no joints", "its clips are left out");
+            _report.unmet(file.name + ": the model has no joints", leftOutText);
         return true;
     }
     Clips clips = readClips(_model, joints, morphs, _budget, _report);
@@ -153,7 +153,13 @@ void Importer::addClipFiles()
 {
     int animation = static_cast<int>(_model.animations.size());
     for (const ClipFile& file : _clipFiles)
-        _result.set = withClipsOf(_result.set, file, _clipJoints, _budget, _report);
+    {
+        const auto set = withClipsOf(_result.set, file, _clipJoints, _budget, _report);
+        if (set)
+            _result.set = set.value();
+        else
+            _report.unmet(set.error().message, leftOutText);
+    }
     warnOfUnknownJoints(_clipJoints, _result.set->skeleton(), _clipFiles, _report);
     while (_result.animationOfClip.size() < _result.set->clips().size())
         _result.animationOfClip.push_back(animation++);
@@ -297,14 +303,16 @@ Result<bool> Importer::play(int clip)
 
 } // namespace
 
-Result<ImportedModel> importModel(const std::string& bytes, const std::string& fileName, const ImportOptions& options)
+Result<ImportedModel> importModel(const std::string& bytes, const std::string& fileName, const ImportOptions& options,
+                                  Messages* outOfFailure)
 {
     ImportedModel result;
     const Result<tinygltf::Model> model = loadDocument(bytes, fileName, options, result.messages);
-    if (!model) return model.error();
-    const Result<bool> imported = Importer(model.value(), fileName, options, result).run();
-    if (!imported) return imported.error();
-    return result;
+    const Result<bool> imported =
+        model ? Importer(model.value(), fileName, options, result).run() : Result<bool>(model.error());
+    if (imported) return result;
+    if (outOfFailure) *outOfFailure = std::move(result.messages);
+    return imported.error();
 }
 
 } // namespace osgGpuAnimation::gltf

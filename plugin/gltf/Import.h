@@ -50,6 +50,8 @@ struct ImportedModel
 
 /// Imports a file's content; see loadDocument() for bytes and fileName.
 /// Errors: those of loadDocument(); the options name a clip, scene, variant or camera that the file does not have.
-Result<ImportedModel> importModel(const std::string& bytes, const std::string& fileName, const ImportOptions& options);
+/// outOfFailure: the messages before an error, which may explain it.
+Result<ImportedModel> importModel(const std::string& bytes, const std::string& fileName, const ImportOptions& options,
+                                  Messages* outOfFailure = nullptr);
 
 } // namespace osgGpuAnimation::gltf

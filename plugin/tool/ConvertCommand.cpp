@@ -26,12 +26,6 @@ namespace
 
 using Scene = osg::ref_ptr<osg::Node>;
 
-void printWarnings(const std::string& file, const gltf::Messages& messages)
-{
-    for (const std::string& warning : messages.warnings)
-        std::cerr << "osggpuanim: " << file << ": " << warning << std::endl;
-}
-
 class CharacterFinder : public SceneVisitor
 {
 public:
@@ -45,7 +39,8 @@ public:
     std::vector<AnimatedCharacter*> characters;
 };
 
-/// What the import does to its own characters. Error: what was asked for is not done.
+/// What the import does to its own characters. Error: what was asked for is not done, for example no character takes
+/// the clips of a file.
 Result<bool> addClips(osg::Node& scene, const std::string& file, const gltf::ImportOptions& options,
                       gltf::Messages& messages)
 {
@@ -57,7 +52,8 @@ Result<bool> addClips(osg::Node& scene, const std::string& file, const gltf::Imp
     if (!messages.unmet.empty()) return Error{messages.unmet.front()};
     if (finder.characters.empty() && (!clipFiles.empty() || options.compact))
         return Error{"there is no character whose clips could be changed"};
-    std::vector<bool> isAdded(clipFiles.size(), false); // to one of the characters, at least
+    std::vector<bool> isAdded(clipFiles.size(), false);  // to one of the characters, at least
+    std::vector<std::string> refusals(clipFiles.size()); // by the first character that refuses
     for (AnimatedCharacter* const character : finder.characters)
     {
         gltf::MemoryBudget budget(options.maxDecodedBytes);
@@ -65,9 +61,15 @@ Result<bool> addClips(osg::Node& scene, const std::string& file, const gltf::Imp
         gltf::warnOfUnknownJoints(joints, set->skeleton(), clipFiles, report);
         for (std::size_t i = 0; i < clipFiles.size(); ++i)
         {
-            const std::shared_ptr<const AnimationSet> before = set;
-            set = gltf::withClipsOf(before, clipFiles[i], joints, budget, report);
-            if (set != before) isAdded[i] = true;
+            const auto with = gltf::withClipsOf(set, clipFiles[i], joints, budget, report);
+            if (with)
+            {
+                set = with.value();
+                isAdded[i] = true;
+                continue;
+            }
+            report.warn(with.error().message + "; " + gltf::leftOutText);
+            if (refusals[i].empty()) refusals[i] = with.error().message;
         }
         if (!clipFiles.empty())
             if (const Result<bool> changed = character->setAnimationSet(set); !changed) return changed;
@@ -75,7 +77,8 @@ Result<bool> addClips(osg::Node& scene, const std::string& file, const gltf::Imp
         const Result<CompactedCharacter> compacted = compactClipsOf(*character, *options.compact);
         if (!compacted) return compacted.error();
     }
-    if (std::find(isAdded.begin(), isAdded.end(), false) != isAdded.end()) return Error{messages.unmet.front()};
+    for (std::size_t i = 0; i < clipFiles.size(); ++i)
+        if (!isAdded[i]) return Error{refusals[i]};
     return true;
 }
 
@@ -87,9 +90,8 @@ Result<Scene> readWithClips(const std::string& file, const gltf::ImportOptions& 
     const Result<Scene> scene = readScene(file, report);
     if (!scene) return scene;
     const Result<bool> added = addClips(*scene.value(), file, options, messages);
-    if (!added) return added.error();
-    printWarnings(file, messages);
-    return scene;
+    printWarnings(file, messages, added ? "" : added.error().message);
+    return added ? scene : Result<Scene>(added.error());
 }
 
 Result<Scene> read(const std::string& file, const gltf::ImportOptions& options)
@@ -110,25 +112,39 @@ Result<std::string> glbOf(const osg::Node& scene, const std::string& file)
     return bytes;
 }
 
-/// Collects the classes that OSG's writers leave out: they warn and succeed.
-class LostClasses : public osg::NotifyHandler
+/// Collects the warnings of OSG's writers, which leave something out, warn, and succeed.
+class WriterWarnings : public osg::NotifyHandler
 {
 public:
     void notify(osg::NotifySeverity severity, const char* text) override
     {
-        const std::string message = osgDB::trimEnclosingSpaces(text);
-        if (message.find("Unsupported") == std::string::npos) // "...: Unsupported wrapper class NAME"
-            before->notify(severity, text);
-        else
-            names.push_back(message.substr(message.rfind(' ') + 1));
+        if (severity != osg::WARN && severity != osg::FATAL) return before->notify(severity, text);
+        const std::string warning = osgDB::trimEnclosingSpaces(text);
+        if (std::find(warnings.begin(), warnings.end(), warning) == warnings.end()) warnings.push_back(warning);
+    }
+
+    /// One at least: an error of them.
+    Error error() const
+    {
+        const std::string unsupported = "Unsupported wrapper class ";
+        if (const std::size_t place = warnings.front().find(unsupported); place != std::string::npos)
+        {
+            const std::string name = warnings.front().substr(place + unsupported.size());
+            return {"OSG cannot write " + name + ": is osgdb_serializers_" +
+                    osgDB::convertToLowerCase(name.substr(0, name.find(':'))) +
+                    " in the library path (OSG_LIBRARY_PATH)?"};
+        }
+        std::string text = "OSG's writer warns";
+        for (std::size_t i = 0; i < std::min<std::size_t>(warnings.size(), 3); ++i)
+            text += (i == 0 ? ": " : "; ") + warnings[i];
+        return {text};
     }
 
     const osg::ref_ptr<osg::NotifyHandler> before = osg::getNotifyHandler();
-    std::vector<std::string> names; ///< `osgGpuAnimation::AnimatedCharacter`
+    std::vector<std::string> warnings; ///< each once
 };
 
-/// The scene in the format of OSG's with that extension. Errors: there is no such writer, it fails, or it leaves
-/// something out.
+/// The scene in the format of OSG's with that extension. Errors: there is no such writer, it fails, or it warns.
 Result<std::string> osgFileOf(const osg::Node& scene, const std::string& extension)
 {
     osgDB::ReaderWriter* const format = osgDB::Registry::instance()->getReaderWriterForExtension(extension);
@@ -136,19 +152,16 @@ Result<std::string> osgFileOf(const osg::Node& scene, const std::string& extensi
     const osg::ref_ptr<osgDB::Options> options = new osgDB::Options;
     options->setPluginStringData("fileType", extension == "osgb" ? "Binary" : extension == "osgt" ? "Ascii" : "XML");
     const osg::NotifySeverity level = osg::getNotifyLevel();
-    const osg::ref_ptr<LostClasses> lost = new LostClasses;
+    const osg::ref_ptr<WriterWarnings> warned = new WriterWarnings;
     osg::setNotifyLevel(std::max(level, osg::WARN));
-    osg::setNotifyHandler(lost);
+    osg::setNotifyHandler(warned);
     std::ostringstream stream;
     const osgDB::ReaderWriter::WriteResult written = format->writeNode(scene, stream, options);
-    osg::setNotifyHandler(lost->before);
+    osg::setNotifyHandler(warned->before);
     osg::setNotifyLevel(level);
     if (!written.success()) return Error{"OSG cannot write it: " + written.message()};
-    if (lost->names.empty()) return stream.str();
-    const std::string& name = lost->names.front();
-    return Error{"OSG cannot write " + name + "; expected the plugin osgdb_serializers_" +
-                 osgDB::convertToLowerCase(name.substr(0, name.find(':'))) +
-                 " in the library path (OSG_LIBRARY_PATH), found none"};
+    if (!warned->warnings.empty()) return warned->error();
+    return stream.str();
 }
 
 } // namespace

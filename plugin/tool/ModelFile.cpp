@@ -15,6 +15,7 @@
 
 #include <filesystem>
 #include <iostream>
+#include <utility>
 
 namespace osgGpuAnimation::tool
 {
@@ -65,6 +66,27 @@ Result<std::string> readGltf(const std::string& fileName, const gltf::ImportOpti
     return gltf::exportModel(*scene.value(), report);
 }
 
+/// messages: takes those of the file, also before an error.
+Result<gltf::ImportedModel> importFile(const std::string& fileName, const gltf::ImportOptions& options,
+                                       gltf::Messages& messages)
+{
+    const gltf::ProgressLine progress("reading " + osgDB::getSimpleFileName(fileName));
+    const Result<std::string> bytes = readGltf(fileName, options, messages);
+    if (!bytes) return bytes.error();
+    gltf::Messages ofFailure;
+    Result<gltf::ImportedModel> imported = gltf::importModel(bytes.value(), fileName, options, &ofFailure);
+    const gltf::Messages& own = imported ? imported.value().messages : ofFailure;
+    messages.warnings.insert(messages.warnings.end(), own.warnings.begin(), own.warnings.end());
+    messages.notes.insert(messages.notes.end(), own.notes.begin(), own.notes.end());
+    if (!imported && !isCalledGltf(fileName))
+        return Error{"the file is neither .gltf nor .glb: " + imported.error().message};
+    if (!imported) return imported;
+    if (!own.unmet.empty()) return Error{own.unmet.front()};
+    gltf::ImportedModel model = std::move(imported).value();
+    model.messages = messages;
+    return model;
+}
+
 /// An error, or true.
 Result<bool> checkRegularFile(const std::string& fileName)
 {
@@ -98,11 +120,20 @@ Result<gltf::ImportOptions> importOptions(const std::vector<std::string>& clipsF
     return options;
 }
 
-void printClipWarnings(const gltf::ImportedModel& model)
+void printWarnings(const std::string& file, const gltf::Messages& messages, const std::string& error)
 {
-    for (const std::string& warning : model.messages.warnings)
+    for (const std::string& warning : messages.warnings)
+        if (error.empty() || warning.rfind(error, 0) != 0)
+            std::cerr << "osggpuanim: " << file << ": " << warning << std::endl;
+}
+
+void printClipWarnings(const std::string& file, const gltf::Messages& messages)
+{
+    gltf::Messages ofClips;
+    for (const std::string& warning : messages.warnings)
         if (warning.rfind("clips ", 0) == 0 || warning.rfind("clipJoints ", 0) == 0)
-            std::cerr << "osggpuanim: " << warning << std::endl;
+            ofClips.warnings.push_back(warning);
+    printWarnings(file, ofClips);
 }
 
 bool isModelFormat(const std::string& fileName)
@@ -134,21 +165,9 @@ Result<gltf::ImportedModel> readModel(const std::string& fileName, const gltf::I
     const Result<bool> regular = checkRegularFile(fileName);
     if (!regular && (std::filesystem::exists(fileName) || !isSceneFormat(fileName))) return regular.error();
 
-    const gltf::ProgressLine progress("reading " + osgDB::getSimpleFileName(fileName));
     gltf::Messages messages;
-    const Result<std::string> bytes = readGltf(fileName, options, messages);
-    if (!bytes) return bytes.error();
-    Result<gltf::ImportedModel> imported = gltf::importModel(bytes.value(), fileName, options);
-    if (!imported && !isCalledGltf(fileName))
-        return Error{"the file is neither .gltf nor .glb: " + imported.error().message};
-    if (!imported) return imported;
-    if (!imported.value().messages.unmet.empty()) return Error{imported.value().messages.unmet.front()};
-    if (messages.warnings.empty() && messages.notes.empty()) return imported;
-    gltf::ImportedModel model = imported.value();
-    const auto putFirst = [](std::vector<std::string>& all, const std::vector<std::string>& first)
-    { all.insert(all.begin(), first.begin(), first.end()); };
-    putFirst(model.messages.warnings, messages.warnings);
-    putFirst(model.messages.notes, messages.notes);
+    const Result<gltf::ImportedModel> model = importFile(fileName, options, messages);
+    if (!model) printWarnings(fileName, messages, model.error().message);
     return model;
 }
 

@@ -15,8 +15,10 @@ namespace osgGpuAnimation::tool
 /// message begins with its name.
 Result<gltf::ImportOptions> importOptions(const std::vector<std::string>& clipsFiles, const std::string& clipJoints);
 
-/// Prints the warnings about clips of other files on standard error.
-void printClipWarnings(const gltf::ImportedModel& model);
+/// Prints the warnings about that file on standard error. error: is printed next, so its own warning is left out.
+void printWarnings(const std::string& file, const gltf::Messages& messages, const std::string& error = std::string());
+/// Only those about clips of other files.
+void printClipWarnings(const std::string& file, const gltf::Messages& messages);
 
 /// True for names of files that readModel() reads, by their extension.
 bool isModelFormat(const std::string& fileName);
@@ -28,6 +30,7 @@ Result<osg::ref_ptr<osg::Node>> readScene(const std::string& fileName, gltf::Rep
 /// Reads and imports a .gltf or .glb, a file of a format that Assimp reads where the build has it, or a scene that
 /// OSG's plugins read, which is exported to glTF first; in the file's own axes if options.noRotation says so. Errors:
 /// the file does not exist, is a folder, is empty, cannot be read, or the import refuses it; a file of clips adds none.
+/// The warnings before an error are printed: they may explain it.
 Result<gltf::ImportedModel> readModel(const std::string& fileName, const gltf::ImportOptions& options);
 
 } // namespace osgGpuAnimation::tool

@@ -76,9 +76,9 @@ void setUpLight(osgViewer::Viewer& viewer, Look look)
 }
 
 /// The scene in its surroundings.
-osg::ref_ptr<osg::Group> lit(osg::Node* scene, Look look, Environment* studio)
+osg::ref_ptr<osg::Group> lit(osg::Node* scene, Look look, Environment* surroundings)
 {
-    osg::ref_ptr<osg::Group> group = look == Look::Studio ? studio : new osg::Group;
+    osg::ref_ptr<osg::Group> group = look == Look::Studio ? surroundings : new osg::Group;
     if (look != Look::Studio)
     {
         const float radiance = surroundingOf(look);
@@ -163,8 +163,8 @@ Result<std::unique_ptr<PictureViewer>> PictureViewer::create(int width, int heig
 
 void PictureViewer::setSurroundings(const osg::ref_ptr<Environment>& surroundings)
 {
-    _studio = surroundings;
-    _studio->setToneMapping(true);
+    _surroundings = surroundings;
+    _surroundings->setToneMapping(true);
 }
 
 void PictureViewer::show(osg::Node* scene, const std::vector<osg::Vec3d>& points,
@@ -172,7 +172,7 @@ void PictureViewer::show(osg::Node* scene, const std::vector<osg::Vec3d>& points
 {
     osg::ref_ptr<osg::Group> all = new osg::Group;
     all->addChild(makeBackground());
-    all->addChild(lit(scene, _look, _studio));
+    all->addChild(lit(scene, _look, _surroundings));
     _viewer.setSceneData(all);
 
     osg::Camera* camera = _viewer.getCamera();

@@ -62,7 +62,7 @@ private:
     Standpoint _place;                         ///< of show()
     osg::Vec3d _axis;                          ///< a point on the line of turn()
     osg::ref_ptr<const osg::CameraView> _view; ///< null: the standpoint of show()
-    osg::ref_ptr<Environment> _studio;         ///< of Look::Studio
+    osg::ref_ptr<Environment> _surroundings;   ///< of Look::Studio
 };
 
 } // namespace osgGpuAnimation::tool

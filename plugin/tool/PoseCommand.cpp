@@ -136,7 +136,7 @@ Result<bool> PoseCommand::run() const
     options.clip = wanted.clip;
     const Result<gltf::ImportedModel> model = readModel(file, options);
     if (!model) return named(file, model.error());
-    printClipWarnings(model.value());
+    printClipWarnings(file, model.value().messages);
     const Result<std::string> text = evaluate(model.value(), wanted, *this);
     if (!text) return named(file, text.error());
 

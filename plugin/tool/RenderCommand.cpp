@@ -159,8 +159,7 @@ Result<bool> RenderCommand::run() const
                      osgDB::getNameLessExtension(modelFile) + "` draws in the studio's light"};
     const Result<gltf::ImportedModel> model = readModel(modelFile, options);
     if (!model) return Error{modelFile + ": " + model.error().message};
-    for (const std::string& warning : model.value().messages.warnings)
-        std::cerr << "osggpuanim: " << modelFile << ": " << warning << std::endl;
+    printWarnings(modelFile, model.value().messages);
     if (look == Look::File && model.value().lights.empty())
         std::cerr << "osggpuanim: " << modelFile << ": the file has no lights; only a faint surrounding lights it"
                   << std::endl;
@@ -206,7 +205,8 @@ Result<bool> RenderCommand::drawPictures(PictureViewer& viewer,
 
 Result<bool> RenderCommand::drawModel(PictureViewer& viewer, const gltf::ImportedModel& model) const
 {
-    if (const Result<bool> shown = show(viewer, *model.root, pointsOf(model, times())); !shown) return shown;
+    const std::vector<double> posed = turntable ? std::vector<double>{time} : times();
+    if (const Result<bool> shown = show(viewer, *model.root, pointsOf(model, posed)); !shown) return shown;
     if (model.startCamera) viewer.lookThrough(*model.startCamera);
     return drawPictures(viewer,
                         [&](double seconds)

@@ -20,7 +20,7 @@ namespace osgGpuAnimation::tool
 class LibraryPathOnly : public osgDB::FindFileCallback
 {
 public:
-    /// The current folder is no part of the path, unless the user has named it: empty elements mean it.
+    /// Removes empty elements, which mean the current folder.
     LibraryPathOnly()
     {
         osgDB::FilePathList& folders = osgDB::Registry::instance()->getLibraryFilePathList();

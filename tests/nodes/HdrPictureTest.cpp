@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "support/PeakMemory.h"
 #include "support/ScratchFolder.h"
 
 #include <osgGpuAnimation/nodes/Environment.h>
@@ -12,7 +13,8 @@
 #include <cstring>
 #include <random>
 #include <string>
-#include <vector>
+#include <sys/resource.h>
+#include <unistd.h>
 
 namespace osgGpuAnimation
 {
@@ -39,17 +41,6 @@ std::string flatPicture()
     for (int i = 0; i < 128; ++i)
         bytes += pixel(i + 3, 255 - i, 7 * i % 256, 2 * i + (i % 2));
     return bytes;
-}
-
-/// 300 x 2 pixels in runs that repeat the pixel before them; a run of 258 takes two digits.
-std::string repeatedPicture()
-{
-    std::string bytes = headerOf(300, 2);
-    bytes +=
-        pixel(200, 100, 50, 130) + pixel(1, 1, 1, 2) + pixel(1, 1, 1, 1) + pixel(9, 8, 7, 120) + pixel(1, 1, 1, 40);
-    for (int i = 0; i < 299; ++i)
-        bytes += pixel(i % 256, 2, 3, 128);
-    return bytes + pixel(1, 1, 1, 1);
 }
 
 /// 64 x 64 pixels as OSG's writer encodes them: each channel by itself, with runs. It confuses width and height.
@@ -84,7 +75,7 @@ std::string rowOf8()
 TEST(HdrPictureTest, picturesAreWhatOsgReads)
 {
     const ScratchFolder folder;
-    for (const std::string& bytes : {flatPicture(), repeatedPicture(), encodedPicture(folder), rgbe(rowOf8(), 8, 1)})
+    for (const std::string& bytes : {flatPicture(), encodedPicture(folder), rgbe(rowOf8(), 8, 1)})
     {
         const std::string file = folder.write("picture.hdr", bytes);
         const osg::ref_ptr<osg::Image> expected = osgDB::readRefImageFile(file);
@@ -115,8 +106,7 @@ TEST(HdrPictureTest, faultsNameTheRowWhatWasExpectedAndFound)
          "expected an empty line and -Y HEIGHT +X WIDTH after the header, found the end of the file"},
         {"#?RGBE\n\n-Y 4 +X 8", "expected an empty line and -Y HEIGHT +X WIDTH after the header, found the end of the "
                                 "file"},
-        {"#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 4 +X 8\n",
-         "expected FORMAT=32-bit_rle_rgbe, found \"FORMAT=32-bit_rle_xyze\""},
+        {"#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 4 +X 8\n", "expected RGBE, found XYZE"},
         {"#?RGBE\n\n+X 8 -Y 4\n", "expected -Y HEIGHT +X WIDTH, at most -Y 8192 +X 16384, found \"+X 8 -Y 4\""},
         {"#?RGBE\n\n-Y 4\n", "expected -Y HEIGHT +X WIDTH, at most -Y 8192 +X 16384, found \"-Y 4\""},
         {"#?RGBE\n\n-Y 4 +X 8 9\n", "expected -Y HEIGHT +X WIDTH, at most -Y 8192 +X 16384, found \"-Y 4 +X 8 9\""},
@@ -136,12 +126,7 @@ TEST(HdrPictureTest, faultsNameTheRowWhatWasExpectedAndFound)
         {rgbe(pixel(2, 2, 0, 8) + "\x09" + three + three), "row 0: expected 1 to 8 values, found 9"},
         {rgbe(pixel(2, 2, 0, 8) + std::string(2, '\0') + three), "row 0: expected 1 to 8 values, found 0"},
         {rgbe(pixel(2, 2, 0, 8) + "\x80" + three + three), "row 0: expected 1 to 8 values, found 128"},
-        {rgbe(pixel(1, 1, 1, 1) + three), "row 0: expected a run of at most 0 pixels, found 1"},
-        {rgbe(gray + pixel(1, 1, 1, 8) + three), "row 0: expected a run of at most 7 pixels, found 8"},
-        {rgbe(gray + pixel(1, 1, 1, 0) + pixel(1, 1, 1, 1) + three),
-         "row 0: expected a run of at most 7 pixels, found 256"},
-        {rgbe(gray + pixel(1, 1, 1, 0) + pixel(1, 1, 1, 0) + pixel(1, 1, 1, 0) + pixel(1, 1, 1, 255) + three),
-         "row 0: expected a run of at most 7 pixels, found 16711680"},
+        {rgbe(gray + pixel(1, 1, 1, 7) + three), "row 0: expected pixels or runs of channels, found a run of pixels"},
         {rgbe(gray + gray + three, 2, 2), ""}, // what follows the last row does not count
     };
     for (const auto& [bytes, message] : cases)
@@ -164,6 +149,7 @@ TEST(HdrPictureTest, surroundingsOfAFileNameItInTheirErrors)
         {folder.file("none.hdr"), "there is no such file"},
         {folder.file(""), "is not a regular file"},
         {"/dev/zero", "is not a regular file"},
+        {"/proc/self/mem", "expected a picture that begins with"}, // a regular file whose first byte cannot be read
         {folder.write("cut.hdr", rgbe(rowOf8())), "expected 4 rows"},
         {folder.write("square.hdr", rgbe(sunset, 8, 2)), "twice as many pixels across as up, found 8x2"},
     };
@@ -179,6 +165,21 @@ TEST(HdrPictureTest, surroundingsOfAFileNameItInTheirErrors)
     const Result<osg::ref_ptr<Environment>> refused = Environment::fromFile(large);
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().message, large + ": expected at most 1 GiB, found 1073741825 bytes");
+}
+
+TEST(HdrPictureTest, tooLittleMemoryIsAnError)
+{
+    if (!memoryIsMeasurable) GTEST_SKIP() << "the limit would bind the sanitizer";
+    std::size_t pages = 0;
+    ASSERT_TRUE(std::ifstream("/proc/self/statm") >> pages);
+    rlimit before{};
+    getrlimit(RLIMIT_AS, &before);
+    rlimit limit = before;
+    limit.rlim_cur = pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE)) + (rlim_t(256) << 20);
+    setrlimit(RLIMIT_AS, &limit);
+    const Result<osg::ref_ptr<osg::Image>> read = decodeHdr(rgbe(std::string(32768, '\2'), 16384, 8192));
+    setrlimit(RLIMIT_AS, &before);
+    EXPECT_EQ(read ? "" : read.error().message, "expected memory for the picture, found too little");
 }
 
 /// Changes up to eight bytes, cuts the end off, or takes bytes out of the middle.
@@ -197,12 +198,12 @@ std::string mutant(std::string bytes, std::mt19937& random)
 TEST(HdrPictureTest, mutantsAreAPictureOrAnError)
 {
     const ScratchFolder folder;
-    const std::string sources[] = {flatPicture(), repeatedPicture(), encodedPicture(folder)};
+    const std::string sources[] = {flatPicture(), encodedPicture(folder)};
     std::mt19937 random(32);
     int pictures = 0, errors = 0;
     for (int i = 0; i < 9000; ++i)
     {
-        const Result<osg::ref_ptr<osg::Image>> read = decodeHdr(mutant(sources[i % 3], random));
+        const Result<osg::ref_ptr<osg::Image>> read = decodeHdr(mutant(sources[i % 2], random));
         EXPECT_TRUE(read || !read.error().message.empty());
         ++(read ? pictures : errors);
     }

@@ -5,7 +5,6 @@
 #include <osgGpuAnimation/nodes/Environment.h>
 
 #include <gtest/gtest.h>
-#include <osg/Notify>
 
 #include <string>
 
@@ -25,9 +24,7 @@ TEST(ReadmeSurroundingsTest, Surroundings)
     folder.write("sunset.hdr", sunset);
     const osg::ref_ptr<osg::Node> model = new osg::Group;
     auto read = Environment::fromFile("sunset.hdr");
-    if (!read) OSG_WARN << read.error().message << std::endl;
-    osg::ref_ptr<Environment> environment = new Environment;
-    if (read) environment = read.value();
+    osg::ref_ptr<Environment> environment = read ? read.value().get() : new Environment;
     environment->setIntensity(0.8f);
     environment->setRotation(osg::PI_2f);
     environment->setToneMapping(true);

@@ -6,11 +6,13 @@
 #include <gtest/gtest.h>
 
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
 #include <sys/resource.h>
+#include <unistd.h>
 
 namespace osgGpuAnimation::gltf
 {
@@ -54,6 +56,22 @@ private:
     rlimit _before{};
 };
 
+/// Permissions do not bind root: while it exists, root is another user.
+class BoundByPermissions
+{
+public:
+    BoundByPermissions() : _isOther(geteuid() == 0 && seteuid(65534) == 0) {}
+    BoundByPermissions(const BoundByPermissions&) = delete;
+    BoundByPermissions& operator=(const BoundByPermissions&) = delete;
+    ~BoundByPermissions()
+    {
+        if (_isOther && seteuid(0) != 0) std::abort();
+    }
+
+private:
+    const bool _isOther;
+};
+
 TEST(SavedFileTest, aFileIsWrittenAsAWholeOrStaysAsItWas)
 {
     const ScratchFolder folder;
@@ -90,6 +108,50 @@ TEST(SavedFileTest, linksAndDevicesStayWhatTheyAre)
     EXPECT_EQ(messageOf(saveFile(none, "new")), "");
     EXPECT_EQ(messageOf(saveFile(full, "new")), "cannot be written: No space left on device");
     EXPECT_TRUE(fs::is_symlink(none) && fs::is_symlink(full));
+}
+
+TEST(SavedFileTest, linksToNoFileMakeTheFile)
+{
+    const ScratchFolder folder;
+    fs::create_directory(folder.file("below"));
+    fs::create_symlink("below/second.glb", folder.file("first.glb"));
+    fs::create_symlink("a.glb", folder.file("below/second.glb"));
+    fs::create_symlink("loop.glb", folder.file("loop.glb"));
+    EXPECT_EQ(messageOf(saveFile(folder.file("first.glb"), "new")), "");
+    EXPECT_TRUE(fs::is_symlink(folder.file("first.glb")) && fs::is_symlink(folder.file("below/second.glb")));
+    EXPECT_EQ(contentOf(folder.file("below/a.glb")), "new");
+    EXPECT_EQ(messageOf(saveFile(folder.file("loop.glb"), "new")),
+              "cannot be written: Too many levels of symbolic links");
+}
+
+// Process numbers repeat, in containers within minutes.
+TEST(SavedFileTest, filesOfInterruptedProgramsAreNoObstacle)
+{
+    const ScratchFolder folder;
+    const std::string process = "a.glb." + std::to_string(getpid());
+    const std::string stale[] = {folder.write(process + ".part", "old"), folder.write(process + "-0.part", "old"),
+                                 folder.write(process + "-1.part", "old")};
+    EXPECT_EQ(messageOf(saveFile(folder.file("a.glb"), "new")), "");
+    EXPECT_EQ(contentOf(folder.file("a.glb")), "new");
+    for (const std::string& file : stale)
+        EXPECT_EQ(contentOf(file), "old") << file;
+}
+
+TEST(SavedFileTest, aFileIsWrittenWhereNoOtherCanBeMade)
+{
+    const ScratchFolder folder;
+    const std::string file = folder.write("a.glb", "old"), longest = folder.file(std::string(255, 'x'));
+    EXPECT_EQ(messageOf(saveFile(longest, "new")), "");
+    EXPECT_EQ(contentOf(longest), "new");
+    fs::permissions(file, fs::perms::all);
+    fs::permissions(folder.file(""), fs::perms(0555));
+    {
+        const BoundByPermissions bound;
+        EXPECT_EQ(messageOf(saveFile(file, "new")), "");
+        EXPECT_EQ(messageOf(saveFile(folder.file("b.glb"), "new")), "cannot be written: Permission denied");
+    }
+    EXPECT_EQ(contentOf(file), "new");
+    fs::permissions(folder.file(""), fs::perms::owner_all);
 }
 
 } // namespace

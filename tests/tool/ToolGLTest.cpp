@@ -263,6 +263,48 @@ TEST_F(ToolGLTest, rendersFromADirectionAndAround)
     EXPECT_FALSE(std::filesystem::exists(folder.file("turn.png")));
 }
 
+/// A house whose left wall is green and whose right wall is blue.
+static std::string colouredHouse()
+{
+    json house = json::parse(swingingFlag());
+    for (const auto& [colour, side] : {std::pair(json{0, 0.8, 0, 1}, 1.0), std::pair(json{0, 0, 0.8, 1}, -1.0)})
+    {
+        json mesh = house["meshes"][0];
+        mesh["primitives"][0]["material"] = house["materials"].size();
+        house["nodes"].push_back({{"mesh", house["meshes"].size()},
+                                  {"rotation", {0, std::sqrt(0.5), 0, std::sqrt(0.5)}},
+                                  {"translation", {side, 1, 0}}});
+        house["scenes"][0]["nodes"].push_back(house["nodes"].size() - 1);
+        house["meshes"].push_back(mesh);
+        house["materials"].push_back({{"pbrMetallicRoughness", {{"baseColorFactor", colour}}}, {"doubleSided", true}});
+    }
+    return house.dump();
+}
+
+TEST_F(ToolGLTest, theTurntableShowsTheLeftSideSecond)
+{
+    const std::string house = folder.write("house.gltf", colouredHouse());
+    const Process around = Process::run(OSGGPUANIM, {"render", house, "--view", "0,10", "--turntable", "4", "--size",
+                                                     "64x64", "-o", folder.file("turn.png")});
+    ASSERT_EQ(around.status, 0) << around.err;
+    const std::tuple<const char*, const char*, int> sides[] = {{"90,10", "turn.0002.png", 1},
+                                                               {"270,10", "turn.0004.png", 2}};
+    for (const auto& [view, turned, channel] : sides)
+    {
+        const Process seen = Process::run(
+            OSGGPUANIM, {"render", house, "--view", view, "--size", "64x64", "-o", folder.file("view.png")});
+        ASSERT_EQ(seen.status, 0) << seen.err;
+        for (const std::string& name : {std::string("view.png"), std::string(turned)})
+        {
+            const osg::ref_ptr<osg::Image> image = osgDB::readRefImageFile(folder.file(name));
+            ASSERT_TRUE(image);
+            const osg::Vec4 middle = colour(*image, 32, 32);
+            for (const int other : {0, 1, 2})
+                EXPECT_TRUE(other == channel || middle[channel] > middle[other] + 0.2f) << view << ' ' << name;
+        }
+    }
+}
+
 TEST_F(ToolGLTest, rendersNumberedPicturesThatMove)
 {
     const Process done = Process::run(OSGGPUANIM, {"render", flag, "--clip", "Swing", "--size", "64x64", "--frames",

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/file/SavedFile.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <iterator>
 #include <system_error>
 #include <unistd.h>
 
@@ -13,6 +15,8 @@ namespace osgGpuAnimation::gltf
 
 namespace
 {
+
+namespace fs = std::filesystem;
 
 /// mode: of std::fopen(). 0, or the system's error number.
 int writeBytes(const std::string& file, const char* mode, std::string_view bytes)
@@ -25,25 +29,52 @@ int writeBytes(const std::string& file, const char* mode, std::string_view bytes
     return isWritten && !isClosed ? errno : failure;
 }
 
+/// The file at the end of symbolic links, which may not exist.
+std::string linkTarget(const std::string& file)
+{
+    fs::path target = file;
+    std::error_code failure;
+    while (fs::is_symlink(fs::symlink_status(target, failure)))
+        target = target.parent_path() / fs::read_symlink(target, failure);
+    return target.string();
+}
+
+/// By a new file that takes the name of the target. status: of the target.
+int replaceFile(const std::string& target, const fs::file_status& status, std::string_view bytes)
+{
+    std::string part;
+    int code = EEXIST; // an interrupted program may have left a file
+    for (int number = 0; code == EEXIST && number < 1000; ++number)
+    {
+        part = target + '.' + std::to_string(getpid()) + '-' + std::to_string(number) + ".part";
+        code = writeBytes(part, "wbx", bytes);
+    }
+    if (code == EEXIST) return code;
+    std::error_code failure;
+    if (code == 0 && fs::exists(status)) fs::permissions(part, status.permissions(), failure);
+    if (code == 0 && std::rename(part.c_str(), target.c_str()) != 0) code = errno;
+    if (code != 0) fs::remove(part, failure);
+    return code;
+}
+
+/// True for errors of a folder whose files may be writable nevertheless.
+bool isOfFolder(int code)
+{
+    constexpr int codes[] = {EACCES, EPERM, EROFS, EBUSY, EXDEV, ENAMETOOLONG};
+    return std::find(std::begin(codes), std::end(codes), code) != std::end(codes);
+}
+
 } // namespace
 
 Result<bool> saveFile(const std::string& file, std::string_view bytes)
 {
-    namespace fs = std::filesystem;
     std::error_code failure;
     const fs::file_status status = fs::status(file, failure);
-    const auto result = [](int code)
-    { return code == 0 ? Result<bool>(true) : Error{std::string("cannot be written: ") + std::strerror(code)}; };
-    if (fs::exists(status) && !fs::is_regular_file(status)) return result(writeBytes(file, "wb", bytes));
-    const std::string target = fs::exists(status) ? fs::canonical(file, failure).string() : file; // not a link to it
-    if (target.empty()) return result(failure.value());
-    const std::string part = target + '.' + std::to_string(getpid()) + ".part";
-    int code = writeBytes(part, "wbx", bytes);
-    if (code == EEXIST) return result(code); // somebody else's
-    if (code == 0 && fs::exists(status)) fs::permissions(part, status.permissions(), failure);
-    if (code == 0 && std::rename(part.c_str(), target.c_str()) != 0) code = errno;
-    if (code != 0) fs::remove(part, failure);
-    return result(code);
+    const bool isSpecial = fs::exists(status) && !fs::is_regular_file(status);
+    int code = fs::status_known(status) ? 0 : failure.value();
+    if (code == 0 && !isSpecial) code = replaceFile(linkTarget(file), status, bytes);
+    if (isOfFolder(code) || (code == 0 && isSpecial)) code = writeBytes(file, "wb", bytes);
+    return code == 0 ? Result<bool>(true) : Error{std::string("cannot be written: ") + std::strerror(code)};
 }
 
 } // namespace osgGpuAnimation::gltf

@@ -28,8 +28,6 @@ namespace osgGpuAnimation::gltf
 namespace
 {
 
-const char* const leftOutText = "its clips are left out";
-
 constexpr std::size_t mostNameBytes = std::size_t(1) << 20; // of a file of joint names
 
 /// "Motion" is Assimp's name for the clip of each BVH.
@@ -299,14 +297,11 @@ std::vector<bool> nodesMovedBy(const std::vector<ClipFile>& files, const ClipJoi
     return nodes;
 }
 
-std::shared_ptr<const AnimationSet> withClipsOf(const std::shared_ptr<const AnimationSet>& set, const ClipFile& file,
-                                                const ClipJoints& joints, MemoryBudget& budget, Report& report)
+Result<std::shared_ptr<const AnimationSet>> withClipsOf(const std::shared_ptr<const AnimationSet>& set,
+                                                        const ClipFile& file, const ClipJoints& joints,
+                                                        MemoryBudget& budget, Report& report)
 {
-    const auto refuse = [&](const std::string& why)
-    {
-        report.unmet(file.name + ": " + why, leftOutText);
-        return set;
-    };
+    const auto refuse = [&](const std::string& why) { return Error{file.name + ": " + why}; };
     std::size_t bytes = 0;
     for (const Clip& clip : file.set->clips())
         bytes += clip.keyframeCount() * clip.transformsPerTrack() * set->trackCount() * sizeof(JointTransform);
@@ -334,7 +329,7 @@ std::shared_ptr<const AnimationSet> withClipsOf(const std::shared_ptr<const Anim
     if (clips.size() == result.value().set->clips().size()) return result.value().set;
     if (clips.size() == set->clips().size()) return refuse("none of its clips can be played");
     Result<std::shared_ptr<const AnimationSet>> rest = set->withClips(std::move(clips));
-    return rest ? rest.value() : set;
+    return rest ? rest : refuse(rest.error().message);
 }
 
 } // namespace osgGpuAnimation::gltf

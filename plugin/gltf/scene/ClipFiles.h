@@ -17,6 +17,9 @@
 namespace osgGpuAnimation::gltf
 {
 
+/// The consequence for a file of clips that cannot be added, see Report::unmet().
+constexpr const char* leftOutText = "its clips are left out";
+
 /// The clips of another file, see ImportOptions::clipsFiles.
 struct ClipFile
 {
@@ -56,11 +59,12 @@ std::vector<ClipFile> readClipFiles(const std::string& modelFile, const ImportOp
 std::vector<bool> nodesMovedBy(const std::vector<ClipFile>& files, const ClipJoints& joints,
                                const tinygltf::Model& model);
 
-/// The set with the clips of the file after its own, see AnimationSet::withClipsOf(). If that fails, or the clips
-/// exceed the budget, the set is returned as it is, with a warning; a clip that takes a joint too far is left out. A
-/// warning lists the joints without a counterpart; those of the set only if skins name them. A given counterpart that
-/// the file does not have does not count.
-std::shared_ptr<const AnimationSet> withClipsOf(const std::shared_ptr<const AnimationSet>& set, const ClipFile& file,
-                                                const ClipJoints& joints, MemoryBudget& budget, Report& report);
+/// The set with the clips of the file after its own, at least one, see AnimationSet::withClipsOf(). Errors, which begin
+/// with the name of the file: those of that function; the clips exceed the budget; none can be played.
+/// Warnings: a clip that takes a joint too far is left out; the joints without a counterpart, those of the set only if
+/// skins name them. A given counterpart that the file does not have is ignored.
+Result<std::shared_ptr<const AnimationSet>> withClipsOf(const std::shared_ptr<const AnimationSet>& set,
+                                                        const ClipFile& file, const ClipJoints& joints,
+                                                        MemoryBudget& budget, Report& report);
 
 } // namespace osgGpuAnimation::gltf

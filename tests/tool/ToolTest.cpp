@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <gtest/gtest.h>
+#include <osg/Version>
 #include <osgDB/ReadFile>
 #include <osgDB/Registry>
 #include <osgDB/WriteFile>
@@ -17,7 +18,9 @@
 #include <filesystem>
 #include <regex>
 #include <set>
+#include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace osgGpuAnimation
@@ -48,6 +51,15 @@ void expectBounds(const json& found, const std::array<double, 6>& expected)
     ASSERT_EQ(found.size(), 2u) << found;
     for (std::size_t i = 0; i < 6; ++i)
         EXPECT_NEAR(found[i / 3][i % 3].get<double>(), expected[i], 1e-3) << found;
+}
+
+std::vector<std::string> linesOf(const std::string& text)
+{
+    std::istringstream stream(text);
+    std::vector<std::string> lines;
+    for (std::string line; std::getline(stream, line);)
+        lines.push_back(line);
+    return lines;
 }
 
 std::string joined(const Arguments& arguments)
@@ -218,9 +230,58 @@ TEST_F(ToolTest, convertNeedsOneCharacterForEachFileOfClips)
     const Process added = run({"convert", scene, "--clips", flag, "--clips", doorClips, "-o", out});
     EXPECT_EQ(added.status, 0) << added.err;
     std::filesystem::remove(out);
-    const Process refused = run({"convert", scene, "--clips", flag, "--clips", lidClips, "-o", out});
-    EXPECT_EQ(refused.status, 1) << refused.err;
-    EXPECT_NE(refused.err.find("lid.gltf"), std::string::npos) << refused.err;
+    for (const auto& [first, second] :
+         {std::pair(flag, lidClips), std::pair(doorClips, lidClips), std::pair(lidClips, doorClips)})
+    {
+        const Process refused = run({"convert", scene, "--clips", first, "--clips", second, "-o", out});
+        EXPECT_EQ(refused.status, 1) << refused.err;
+        EXPECT_NE(linesOf(refused.err).back().find("both.osgb: clips \"" + lidClips), std::string::npos) << refused.err;
+        EXPECT_FALSE(std::filesystem::exists(out));
+    }
+}
+
+TEST_F(ToolTest, warningsComeBeforeTheErrorThatTheyExplain)
+{
+    setenv("OSG_LIBRARY_PATH", OSGGPUANIMATION_PLUGIN_FOLDER, 1);
+    json door = json::parse(swingingFlag());
+    door["nodes"][0]["name"] = "door";
+    door["nodes"][1]["name"] = "knob";
+    const std::string clips = folder.write("door.gltf", door.dump()), scene = folder.file("flag.osgb"),
+                      names = folder.write("names.json", R"({"hing": "door"})");
+    ASSERT_EQ(run({"convert", "FLAG", "-o", scene}).status, 0);
+    const std::string noJoints = "clips \"" + clips;
+    const std::pair<Arguments, std::string> cases[] = {
+        {{"inspect", "FLAG"}, noJoints},
+        {{"pose", "FLAG", "--time", "0"}, noJoints},
+        {{"pose", "FLAG", "--time", "0", "--clip", "Wave"}, "Wave"},
+        {{"render", "FLAG", "-o", folder.file("out.png")}, noJoints},
+        {{"convert", "FLAG", "-o", folder.file("out.glb")}, noJoints},
+        {{"convert", scene, "-o", folder.file("out.glb")}, noJoints},
+    };
+    for (auto [line, message] : cases)
+    {
+        line.insert(line.end(), {"--clips", clips, "--clip-joints", names});
+        const Process done = run(line);
+        EXPECT_EQ(done.status, 1) << joined(line) << done.err;
+        const std::vector<std::string> said = linesOf(done.err);
+        ASSERT_EQ(said.size(), message == noJoints ? 2u : 3u)
+            << joined(line) << done.err; // the error is no warning, too
+        EXPECT_NE(said[said.size() - 2].find("the model has no joint \"hing\""), std::string::npos) << done.err;
+        EXPECT_NE(said.back().find(message), std::string::npos) << done.err;
+    }
+}
+
+/// The system's loader says what is wrong with a plugin.
+TEST_F(ToolTest, convertQuotesTheWarningsOfOsgsWriter)
+{
+    const std::string plugins = "osgPlugins-" + std::string(osgGetVersion()), out = folder.file("out.osgb");
+    std::filesystem::create_directory(folder.file(plugins));
+    folder.write(plugins + "/osgdb_serializers_osggpuanimation.so", "no library");
+    setenv("OSG_LIBRARY_PATH", folder.file("").c_str(), 1);
+    const Process done = run({"convert", "FLAG", "-o", out});
+    EXPECT_EQ(done.status, 1) << done.err;
+    EXPECT_NE(done.err.find("out.osgb: OSG's writer warns: "), std::string::npos) << done.err;
+    EXPECT_NE(done.err.find("osgdb_serializers_osggpuanimation.so: file too short"), std::string::npos) << done.err;
     EXPECT_FALSE(std::filesystem::exists(out));
 }
 

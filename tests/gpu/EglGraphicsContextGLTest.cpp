@@ -189,8 +189,8 @@ TEST_F(EglGraphicsContextGLTest, multisamplesOrSaysThatItDoesNot)
     EXPECT_EQ(samples > 0, made.value()->getTraits()->samples > 0);
     const std::string renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
     const std::string version = reinterpret_cast<const char*>(glGetString(GL_VERSION));
-    if (renderer.find("llvmpipe") == 0 && version.find("Mesa 22.") != std::string::npos)
-        EXPECT_EQ(samples, 4) << "this driver has them";
+    const bool hasSamples = renderer.find("llvmpipe") == 0 && version.find("Mesa 22.") != std::string::npos;
+    EXPECT_TRUE(samples == 4 || !hasSamples) << samples;
     EXPECT_EQ(clearAndRead(0.0f, 0.2f, 1.0f), (Colour{0, 51, 255, 255}));
 }
 

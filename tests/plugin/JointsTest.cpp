@@ -120,7 +120,7 @@ TEST(JointsTest, transformsBeyondFloatAreRefusedByName)
     file.skin({hip});
     const Result<Joints> joints = buildJoints(file.model, buildNodeTree(file.model, {}).value());
     ASSERT_FALSE(joints);
-    EXPECT_NE(joints.error().message.find("nodes[0] \"hip\""), std::string::npos);
+    EXPECT_NE(joints.error().message.find("nodes[0] \"hip\""), std::string::npos) << joints.error().message;
 }
 
 TEST(SkinsTest, keepsTheFilesOrderAndMatrices)

@@ -95,11 +95,6 @@ std::vector<bool> jointNodes(const tinygltf::Model& model, const NodeTree& tree,
     return joints;
 }
 
-bool isFinite(const JointTransform& joint)
-{
-    return joint.toMatrix().isFinite();
-}
-
 std::vector<AffineMatrix> readInverseBinds(const tinygltf::Model& model, const tinygltf::Skin& skin)
 {
     std::vector<AffineMatrix> matrices(skin.joints.size());
@@ -183,7 +178,7 @@ Result<Joints> buildJoints(const tinygltf::Model& model, const NodeTree& tree, c
         const auto index = static_cast<std::size_t>(node);
         if (!isJoint[index]) continue;
         const NodeTransform transform = decompose(model.nodes[index]);
-        if (!isFinite(transform.inner) || (transform.outer && !isFinite(*transform.outer)))
+        if (!transform.inner.isFinite() || (transform.outer && !transform.outer->isFinite()))
             return Error{namedElement("nodes", index, model.nodes[index].name) +
                          ": its transform is beyond what float numbers hold"};
         int parent = tree.parents[index] < 0 ? -1 : inputOfNode[static_cast<std::size_t>(tree.parents[index])];

@@ -17,8 +17,8 @@ constexpr int maxHdrWidth = 16384;
 constexpr int maxHdrHeight = 8192;
 
 /// Decodes a Radiance HDR picture (Ward, "Real Pixels", Graphics Gems II, 1991): a header, `-Y HEIGHT +X WIDTH`, and
-/// rows of RGBE, flat or with run-length encoded channels (the older runs of pixels are refused). The data may be of any
-/// origin.
+/// rows of RGBE, flat or with run-length encoded channels (the older runs of pixels are refused). The data may be of
+/// any origin.
 ///
 /// The image is RGB, GL_FLOAT, linear, the first row of the file at the top: the values of OSG's reader, component *
 /// 2^(exponent - 136). EXPOSURE and the other variables of the header are ignored.

@@ -153,8 +153,11 @@ TEST(AccessorTest, TheLastColumnOfAMatrixNeedsNoPadding)
                     auto& sparse = one.accessor().sparse;
                     sparse.isSparse = true;
                     sparse.count = int(count);
-                    sparse.indices = {0, one.view({0, 1}), TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE};
-                    sparse.values = {one.view(Bytes(bytes)), 0};
+                    sparse.indices.byteOffset = 0;
+                    sparse.indices.bufferView = one.view({0, 1});
+                    sparse.indices.componentType = TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE;
+                    sparse.values.bufferView = one.view(Bytes(bytes));
+                    sparse.values.byteOffset = 0;
                 }
                 MemoryBudget budget(1000);
                 return validateAccessors(one.model, 0, budget).has_value();

@@ -162,7 +162,11 @@ TEST(MeshoptDecompressionTest, FiltersAreUndone)
     std::vector<float> exponential(count * 4);
     meshopt_encodeFilterOct(oct.data(), count, 4, 8, vectors.data());
     meshopt_encodeFilterQuat(quat.data(), count, 8, 12, vectors.data());
+#if MESHOPTIMIZER_VERSION >= 200
+    meshopt_encodeFilterExp(exponential.data(), count, 16, 15, vectors.data(), meshopt_EncodeExpSharedVector);
+#else
     meshopt_encodeFilterExp(exponential.data(), count, 16, 15, vectors.data());
+#endif
     struct Filter
     {
         const char* name;

@@ -142,12 +142,32 @@ void ModelBuilder::channel(int node, const std::string& path, const std::vector<
     animation.channels.push_back(channel);
 }
 
+namespace
+{
+
+/// tinygltf 2.9 writes a node's light from a member of the node, and removes the extension without it.
+template <typename Node>
+auto setLight(Node& node, int light, int) -> decltype(void(node.light = light))
+{
+    node.light = light;
+}
+
+template <typename Node>
+void setLight(Node&, int, long)
+{
+}
+
+} // namespace
+
 std::string ModelBuilder::text() const
 {
     std::ostringstream stream;
     tinygltf::TinyGLTF writer;
     tinygltf::Model copy = model;
     if (copy.buffers[0].data.empty()) copy.buffers.clear();
+    for (tinygltf::Node& node : copy.nodes)
+        if (const auto lamp = node.extensions.find("KHR_lights_punctual"); lamp != node.extensions.end())
+            setLight(node, lamp->second.Get("light").GetNumberAsInt(), 0);
     writer.WriteGltfSceneToStream(&copy, stream, false, false);
     return stream.str();
 }

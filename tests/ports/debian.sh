@@ -30,12 +30,14 @@ settings()
     echo 'Acquire::Check-Valid-Until "false";'
 }
 
-# In the bare system, with processes and mounts of its own that end with it; OSGGPUANIMATION_… of the environment are passed.
+# In the bare system, with this machine's devices (terminals), and with processes and mounts of its own that end with it;
+# OSGGPUANIMATION_… of the environment are passed.
 inside()
 {
     local passed
     mapfile -t passed < <(env | grep '^OSGGPUANIMATION_')
-    unshare --mount --pid --fork --kill-child --mount-proc="$folder/proc" chroot "$folder" \
+    unshare --mount --pid --fork --kill-child --mount-proc="$folder/proc" \
+        sh -c 'mount --rbind /dev "$0/dev" && exec chroot "$0" "$@"' "$folder" \
         env -i PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin HOME=/root "${passed[@]}" "$@"
 }
 

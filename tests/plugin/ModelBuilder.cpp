@@ -145,15 +145,28 @@ void ModelBuilder::channel(int node, const std::string& path, const std::vector<
 namespace
 {
 
-/// tinygltf 2.9 writes a node's light from a member of the node, and removes the extension without it.
+// tinygltf 2.9 writes a node's light and levels of detail from members of the node, and removes the extensions without
+// them. The second function of each name is for versions without the member.
 template <typename Node>
-auto setLight(Node& node, int light, int) -> decltype(void(node.light = light))
+auto setLight(Node& node, const tinygltf::Value& extension, int) -> decltype(void(node.light))
 {
-    node.light = light;
+    node.light = extension.Get("light").GetNumberAsInt();
 }
 
 template <typename Node>
-void setLight(Node&, int, long)
+void setLight(Node&, const tinygltf::Value&, long)
+{
+}
+
+template <typename Node>
+auto setLods(Node& node, const tinygltf::Value& extension, int) -> decltype(void(node.lods))
+{
+    for (const tinygltf::Value& id : extension.Get("ids").template Get<tinygltf::Value::Array>())
+        node.lods.push_back(id.GetNumberAsInt());
+}
+
+template <typename Node>
+void setLods(Node&, const tinygltf::Value&, long)
 {
 }
 
@@ -166,8 +179,11 @@ std::string ModelBuilder::text() const
     tinygltf::Model copy = model;
     if (copy.buffers[0].data.empty()) copy.buffers.clear();
     for (tinygltf::Node& node : copy.nodes)
-        if (const auto lamp = node.extensions.find("KHR_lights_punctual"); lamp != node.extensions.end())
-            setLight(node, lamp->second.Get("light").GetNumberAsInt(), 0);
+        for (const auto& [name, extension] : node.extensions)
+        {
+            if (name == "KHR_lights_punctual") setLight(node, extension, 0);
+            if (name == "MSFT_lod") setLods(node, extension, 0);
+        }
     writer.WriteGltfSceneToStream(&copy, stream, false, false);
     return stream.str();
 }

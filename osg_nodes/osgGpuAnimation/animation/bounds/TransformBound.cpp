@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace osgGpuAnimation
 {
@@ -38,6 +37,14 @@ struct Largest
     }
 };
 
+/// Of each joint in the clip.
+void addClip(const Clip& clip, std::vector<Largest>& locals)
+{
+    for (std::size_t keyframe = 0; keyframe < clip.keyframeCount(); ++keyframe)
+        for (std::size_t joint = 0; joint < locals.size(); ++joint)
+            locals[joint].add(clip.at(keyframe, joint), clip.transformsPerTrack());
+}
+
 std::vector<TransformBound> chained(const Skeleton& skeleton, const std::vector<Largest>& locals)
 {
     std::vector<TransformBound> bounds;
@@ -49,6 +56,11 @@ std::vector<TransformBound> chained(const Skeleton& skeleton, const std::vector<
         bounds.push_back(parent < 0 ? local : bounds[static_cast<std::size_t>(parent)] * local);
     }
     return bounds;
+}
+
+TransformBound boundOf(const AffineMatrix& matrix)
+{
+    return TransformBound::of(matrix.toColumns());
 }
 
 bool isSmall(const glm::vec4& numbers)
@@ -84,19 +96,6 @@ void TransformBound::add(const TransformBound& other)
     stretch = std::max(stretch, other.stretch);
     distance = std::max(distance, other.distance);
 }
-
-namespace
-{
-
-/// Of each joint in the clip.
-void addClip(const Clip& clip, std::vector<Largest>& locals)
-{
-    for (std::size_t keyframe = 0; keyframe < clip.keyframeCount(); ++keyframe)
-        for (std::size_t joint = 0; joint < locals.size(); ++joint)
-            locals[joint].add(clip.at(keyframe, joint), clip.transformsPerTrack());
-}
-
-} // namespace
 
 std::vector<TransformBound> boundsAtRest(const Skeleton& skeleton)
 {
@@ -141,8 +140,7 @@ std::vector<TransformBound> boundsOfEntries(const AnimationSet& set)
     std::vector<TransformBound> entries;
     for (const PaletteEntry& entry : set.palette())
         entries.push_back(entry.joint < 0 ? TransformBound{0.0, 0.0}
-                                          : joints[static_cast<std::size_t>(entry.joint)] *
-                                                TransformBound::of(entry.inverseBind.toColumns()));
+                                          : joints[static_cast<std::size_t>(entry.joint)] * boundOf(entry.inverseBind));
     return entries;
 }
 
@@ -155,7 +153,6 @@ bool hasModestPalette(const AnimationSet& set)
     for (const Clip& clip : set.clips())
         addClip(clip, locals);
     const std::vector<TransformBound> toModel = chained(set.skeleton(), locals);
-    const auto boundOf = [](const AffineMatrix& matrix) { return TransformBound::of(matrix.toColumns()); };
     // As world.glsl multiplies: parentEntry * (parentBind * (local * inverseBind)).
     for (const PaletteEntry& entry : set.palette())
     {

@@ -4,6 +4,7 @@
 #include "assimp/SceneConversion.h"
 #include "gltf/file/Uri.h"
 
+#include <assimp/commonMetaData.h>
 #include <assimp/config.h>
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/Importer.hpp>
@@ -11,10 +12,14 @@
 #include <assimp/postprocess.h>
 #include <assimp/ProgressHandler.hpp>
 #include <assimp/scene.h>
+#include <assimp/version.h>
 
 #include <chrono>
 #include <filesystem>
+#include <set>
+#include <string>
 #include <system_error>
+#include <vector>
 
 namespace osgGpuAnimation::assimp
 {
@@ -67,6 +72,45 @@ private:
         std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(maxSeconds));
 };
 
+/// Assimp 5.4 alone gives the bones of FBX files offsets from the parent's local matrix in place of the mesh's world
+/// matrix (its issue 5642).
+bool hasOffsetsOfParents(const aiScene& scene)
+{
+    aiString format;
+    return aiGetVersionMajor() == 5 && aiGetVersionMinor() == 4 && scene.mMetaData &&
+           scene.mMetaData->Get(AI_METADATA_SOURCE_FORMAT, format) &&
+           std::string(format.C_Str()).find("FBX") != std::string::npos;
+}
+
+void correctOffsets(const aiScene& scene)
+{
+    struct Place
+    {
+        const aiNode* node;
+        aiMatrix4x4 local, world;
+    };
+    std::set<const aiMesh*> corrected;                  // the first node that has it gave it its offsets
+    std::vector<Place> open{{scene.mRootNode, {}, {}}}; // offsets come before the root's turn
+    while (!open.empty())
+    {
+        const Place parent = open.back();
+        open.pop_back();
+        for (unsigned int i = parent.node->mNumChildren; i > 0; --i)
+        {
+            const aiNode* const node = parent.node->mChildren[i - 1];
+            const Place place{node, node->mTransformation, parent.world * node->mTransformation};
+            open.push_back(place);
+            for (unsigned int number = 0; number < node->mNumMeshes; ++number)
+            {
+                const aiMesh* const mesh = scene.mMeshes[node->mMeshes[number]];
+                if (!corrected.insert(mesh).second) continue;
+                for (unsigned int bone = 0; bone < mesh->mNumBones; ++bone)
+                    mesh->mBones[bone]->mOffsetMatrix *= aiMatrix4x4(parent.local).Inverse() * place.world;
+            }
+        }
+    }
+}
+
 std::string firstLine(const std::string& text)
 {
     return text.substr(0, text.find('\n'));
@@ -79,12 +123,12 @@ bool isFormat(const std::string& extension)
     return !extension.empty() && Assimp::Importer().IsExtensionSupported(extension);
 }
 
-Result<std::string> readAsGlb(const std::string& fileName, const gltf::ImportOptions& options, gltf::Report& report)
+Result<const aiScene*> readScene(Assimp::Importer& importer, const std::string& fileName,
+                                 const gltf::ImportOptions& options)
 {
     std::error_code failure;
     if (std::filesystem::file_size(fileName, failure) > maxFileBytes && !failure)
         return Error{"the file has more than " + std::to_string(maxFileBytes) + " bytes"};
-    Assimp::Importer importer;
     importer.SetIOHandler(new FolderFiles(fileName, options.allowOutsideFiles)); // the importer deletes both
     importer.SetProgressHandler(new TimeLimit);
     // Otherwise each joint of FBX becomes a chain of nodes with names of Assimp's own.
@@ -94,7 +138,15 @@ Result<std::string> readAsGlb(const std::string& fileName, const gltf::ImportOpt
                       aiProcess_JoinIdenticalVertices | aiProcess_GenSmoothNormals | aiProcess_GlobalScale |
                       aiProcess_FindInvalidData | aiProcess_ValidateDataStructure);
     if (!scene) return Error{"Assimp cannot read it: " + gltf::printable(firstLine(importer.GetErrorString()), 300)};
-    return glbOf(*scene, fileName, options, report);
+    if (hasOffsetsOfParents(*scene)) correctOffsets(*scene);
+    return scene;
+}
+
+Result<std::string> readAsGlb(const std::string& fileName, const gltf::ImportOptions& options, gltf::Report& report)
+{
+    Assimp::Importer importer;
+    const Result<const aiScene*> scene = readScene(importer, fileName, options);
+    return scene ? glbOf(*scene.value(), fileName, options, report) : scene.error();
 }
 
 } // namespace osgGpuAnimation::assimp

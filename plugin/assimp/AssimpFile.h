@@ -8,6 +8,13 @@
 
 #include <string>
 
+struct aiScene;
+
+namespace Assimp
+{
+class Importer;
+}
+
 namespace osgGpuAnimation::assimp
 {
 
@@ -19,6 +26,10 @@ namespace osgGpuAnimation::assimp
 /// the time (maxSeconds, between the steps at which Assimp asks), and the result (options.maxDecodedBytes).
 /// Errors: those bounds; Assimp cannot read the file; see glbOf().
 Result<std::string> readAsGlb(const std::string& fileName, const gltf::ImportOptions& options, gltf::Report& report);
+
+/// The scene behind readAsGlb(), owned by the importer, with what is wrong in a version of Assimp mended.
+Result<const aiScene*> readScene(Assimp::Importer& importer, const std::string& fileName,
+                                 const gltf::ImportOptions& options);
 
 /// True for an extension (`fbx`) of Assimp's list.
 bool isFormat(const std::string& extension);

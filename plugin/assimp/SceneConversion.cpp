@@ -40,7 +40,8 @@ bool isFinite(const aiMatrix4x4& matrix)
     return std::isfinite(sum);
 }
 
-/// Turns the scene's axes to glTF's: +Y up, +Z forward. Identity where the metadata says nothing else.
+/// Turns the scene's axes to glTF's: +Y up, +Z forward. Identity where the metadata says nothing else, and where the
+/// root is turned already, as by Assimp from 5.4 on.
 aiMatrix4x4 axesToYUp(const aiScene& scene)
 {
     const char* const keys[3][2] = {
@@ -54,7 +55,8 @@ aiMatrix4x4 axesToYUp(const aiScene& scene)
             return {};
         turn[row][axis] = sign < 0 ? -1.0f : 1.0f;
     }
-    return std::abs(turn.Determinant()) == 1.0f ? turn : aiMatrix4x4();
+    const bool isTurned = scene.mRootNode->mTransformation.Equal(turn);
+    return std::abs(turn.Determinant()) == 1.0f && !isTurned ? turn : aiMatrix4x4();
 }
 
 class SceneWriter

@@ -129,6 +129,18 @@ TEST_F(AssimpPosesTest, filesOfDoom3AndDirectXTakeThePosesOfAssimpsScene)
     expectSamePoses(folder.write("flag.x", xFile()));
 }
 
+// Assimp 5.4 gives other offset matrices, and turns the root itself.
+TEST_F(AssimpPosesTest, skinsOfFbxRestWhereTheFileHasThem)
+{
+    const gltf::ImportedModel model = imported(folder.write("sheet.fbx", skinnedFbx()));
+    ASSERT_TRUE(model.set);
+    const std::vector<glm::dvec3> found = gltf::ModelVertices(model, -1, 0.0).positions(model.primitives.at(0));
+    const glm::dvec3 expected[] = {{2, 3, 0}, {3, 3, 0}, {2, 4, 0}};
+    ASSERT_EQ(found.size(), 3u);
+    for (std::size_t vertex = 0; vertex < 3; ++vertex)
+        EXPECT_LT(glm::length(found[vertex] - expected[vertex]), 1e-5) << vertex;
+}
+
 } // namespace
 
 } // namespace osgGpuAnimation

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "assimp/AssimpScene.h"
 
-#include <assimp/config.h>
-#include <assimp/postprocess.h>
+#include "assimp/AssimpFile.h"
 
 #include <glm/ext/matrix_transform.hpp>
 #include <glm/ext/quaternion_double.hpp>
@@ -83,10 +82,7 @@ void forEachKeyTime(const aiAnimation& animation, const Visit& visit)
 
 AssimpScene::AssimpScene(const std::string& file)
 {
-    _importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
-    _scene = _importer.ReadFile(file, aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_LimitBoneWeights |
-                                          aiProcess_JoinIdenticalVertices | aiProcess_GenSmoothNormals |
-                                          aiProcess_GlobalScale);
+    if (const Result<const aiScene*> read = assimp::readScene(_importer, file, {})) _scene = read.value();
 }
 
 double AssimpScene::start(unsigned int animation) const

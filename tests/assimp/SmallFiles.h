@@ -6,6 +6,79 @@
 namespace osgGpuAnimation
 {
 
+/// FBX 7.4 in centimetres, z upwards: a triangle on a node that is scaled by 100 below a shelf; a bone moves all of it,
+/// and at rest it leaves it where it is: (2, 3, 0), (3, 3, 0) and (2, 4, 0) m in glTF's axes.
+inline std::string skinnedFbx()
+{
+    return R"(; FBX 7.4.0 project file
+FBXHeaderExtension:  {
+	FBXVersion: 7400
+}
+GlobalSettings:  {
+	Properties70:  {
+		P: "UpAxis", "int", "Integer", "",2
+		P: "UpAxisSign", "int", "Integer", "",1
+		P: "FrontAxis", "int", "Integer", "",1
+		P: "FrontAxisSign", "int", "Integer", "",-1
+		P: "CoordAxis", "int", "Integer", "",0
+		P: "CoordAxisSign", "int", "Integer", "",1
+		P: "UnitScaleFactor", "double", "Number", "",1
+	}
+}
+Objects:  {
+	Model: 1, "Model::bone", "LimbNode" {
+		Properties70:  {
+			P: "Lcl Translation", "Lcl Translation", "", "A",0,0,150
+		}
+	}
+	Model: 2, "Model::shelf", "Null" {
+		Properties70:  {
+			P: "Lcl Translation", "Lcl Translation", "", "A",200,0,0
+		}
+	}
+	Model: 3, "Model::sheet", "Mesh" {
+		Properties70:  {
+			P: "Lcl Translation", "Lcl Translation", "", "A",0,0,300
+			P: "Lcl Scaling", "Lcl Scaling", "", "A",100,100,100
+		}
+	}
+	Geometry: 4, "Geometry::", "Mesh" {
+		Vertices: *9 {
+			a: 0,0,0,1,0,0,0,0,1
+		}
+		PolygonVertexIndex: *3 {
+			a: 0,1,-3
+		}
+	}
+	Deformer: 5, "Deformer::", "Skin" {
+	}
+	Deformer: 6, "SubDeformer::", "Cluster" {
+		Indexes: *3 {
+			a: 0,1,2
+		}
+		Weights: *3 {
+			a: 1,1,1
+		}
+		Transform: *16 {
+			a: 100,0,0,0,0,100,0,0,0,0,100,0,200,0,150,1
+		}
+		TransformLink: *16 {
+			a: 1,0,0,0,0,1,0,0,0,0,1,0,0,0,150,1
+		}
+	}
+}
+Connections:  {
+	C: "OO",1,0
+	C: "OO",2,0
+	C: "OO",3,2
+	C: "OO",4,3
+	C: "OO",5,4
+	C: "OO",6,5
+	C: "OO",1,6
+}
+)";
+}
+
 /// Doom 3: an arm of two bones, 2 units each, with one triangle at each bone; material `arm.tga`.
 inline std::string md5Mesh()
 {

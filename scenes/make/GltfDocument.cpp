@@ -70,7 +70,6 @@ int GltfDocument::addTexture(const std::string& name, const std::vector<std::uin
     _model.images.push_back(image);
 
     tinygltf::Sampler sampler;
-    sampler.name = name;
     sampler.magFilter = TINYGLTF_TEXTURE_FILTER_LINEAR;
     sampler.minFilter = TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_LINEAR;
     sampler.wrapS = sampler.wrapT = repeats ? TINYGLTF_TEXTURE_WRAP_REPEAT : TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;

@@ -112,6 +112,11 @@ vec3 originOf(mat3x4 matrix)
     return vec3(matrix[0].w, matrix[1].w, matrix[2].w);
 }
 
+mat3x4 localOf(JointTransform t)
+{
+    return limitedLocal(localMatrix(t.translation, t.rotation, t.scale));
+}
+
 // The inverse of the 3x3 part; false if there is none.
 bool invert(mat3x4 matrix, out mat3 inverted)
 {
@@ -127,7 +132,7 @@ mat3x4 chainMatrix(int end)
 {
     mat3x4 matrix = mat3x4(1.0);
     for (int joint = 0; joint < end; ++joint)
-        matrix = multiplied(matrix, localMatrix(chain[joint].translation, chain[joint].rotation, chain[joint].scale));
+        matrix = multiplied(matrix, localOf(chain[joint]));
     return matrix;
 }
 
@@ -205,7 +210,7 @@ bool solveLookAt(LookAt look, Goal goal)
     vec3 up = look.up;
     for (int joint = chainLength - 1; joint >= 0; --joint)
     {
-        mat3x4 matrix = localMatrix(chain[joint].translation, chain[joint].rotation, chain[joint].scale);
+        mat3x4 matrix = localOf(chain[joint]);
         eye = pointIn(matrix, eye);
         forward = vectorIn(matrix, forward);
         up = vectorIn(matrix, up);
@@ -254,7 +259,7 @@ bool solveTwoBone(vec3 hinge, float softReach, Goal goal)
     vec3 middle = originOf(mid);
     mat3x4 end = mid;
     for (int joint = midPlace + 1; joint < chainLength; ++joint)
-        end = multiplied(end, localMatrix(chain[joint].translation, chain[joint].rotation, chain[joint].scale));
+        end = multiplied(end, localOf(chain[joint]));
     float upper = distance(middle, start);
     float lower = distance(originOf(end), middle);
     float limb = upper + lower;

@@ -63,7 +63,7 @@ void main()
         vec4 joint = texelFetch(jointsAbove, firstAbove + place);
         JointTransform atRest = fetchRest(int(joint.x));
         JointTransform above = mixedJoint(joint, RestParts(atRest.translation, atRest.scale));
-        toModel = multiplied(toModel, localMatrix(above.translation, above.rotation, above.scale));
+        toModel = multiplied(toModel, localOf(above));
     }
     vec4 mixed[chainLength];
     for (int joint = 0; joint < chainLength; ++joint)

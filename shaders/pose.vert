@@ -41,7 +41,7 @@ void main()
         if (hasCorrections)
             t.rotation = texelFetch(corrections, correctionTexel(int(head.w), gl_VertexID, instanceCount));
         matrix = isWeights ? mat3x4(t.translation, t.rotation, t.scale)
-                           : limited(localMatrix(t.translation, t.rotation, t.scale));
+                           : limitedLocal(localMatrix(t.translation, t.rotation, t.scale));
     }
     if (!isWeights)
     {

@@ -14,7 +14,7 @@ out vec4 row2;
 
 mat3x4 localOf(int track, int instance)
 {
-    return limited(fetchMatrix(localMatrices, (track * instanceCount + instance) * POSE_TEXELS_PER_MATRIX));
+    return limitedLocal(fetchMatrix(localMatrices, (track * instanceCount + instance) * POSE_TEXELS_PER_MATRIX));
 }
 
 void main()

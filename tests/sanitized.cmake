@@ -8,7 +8,7 @@ if(OSGGPUANIMATION_SANITIZER STREQUAL address)
          nodes/CharacterDrawsGLTest.cpp nodes/EventChangesTest.cpp nodes/GlCallTrace.cpp nodes/GlObjectsGLTest.cpp
          plugin/CloningGLTest.cpp plugin/SerializersGLTest.cpp)
 endif()
-add_executable(sanitized_tests EXCLUDE_FROM_ALL ${sanitized_sources} ${support_sources})
+add_executable(sanitized_tests EXCLUDE_FROM_ALL ${sanitized_sources} $<TARGET_OBJECTS:test_support>)
 set(OSGGPUANIMATION_UNITY ON) # for this program in any case: its files are the other programs' too
 # Those with names like others have stay apart.
 list(FILTER sanitized_sources INCLUDE REGEX "GLTest|GlCallTrace")

@@ -55,13 +55,14 @@ install_missing()
     as_root env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends "${missing[@]}"
 }
 
-# Configures a release build in $build. Unless an option says otherwise, a new folder has no tests; an existing folder
-# keeps its setting. OSGGPUANIMATION_WERROR=ON in the environment makes warnings errors.
+# Configures a release build in $build. Unless an option says otherwise, a new folder has no tests and compiles several
+# sources as one (not with OSGGPUANIMATION_UNITY=OFF in the environment); an existing folder keeps its settings.
+# OSGGPUANIMATION_WERROR=ON in the environment makes warnings errors.
 configure_release()
 {
     local options=()
     # A build folder keeps the generator it was made with.
-    [ -f "$build/CMakeCache.txt" ] || options=(-G Ninja -DBUILD_TESTING=OFF)
+    [ -f "$build/CMakeCache.txt" ] || options=(-G Ninja -DBUILD_TESTING=OFF "-DOSGGPUANIMATION_UNITY=${OSGGPUANIMATION_UNITY:-ON}")
     [ -z "${OSGGPUANIMATION_WERROR:-}" ] || options+=("-DOSGGPUANIMATION_WERROR=$OSGGPUANIMATION_WERROR")
     cmake -S "$root" -B "$build" "${options[@]}" -DCMAKE_BUILD_TYPE=Release "$@"
 }

@@ -259,8 +259,9 @@ TEST(GroundFeetEdgesTest, copiesHaveAllSettings)
     const osg::ref_ptr<GroundFeet> feet = new GroundFeet;
     feet->setGroundName("stage");
     feet->setTraversalMask(0xF0);
-    EXPECT_TRUE(feet->setLegs({{"left", "toes.L"}}) && feet->setReach(0.3) && feet->setMaxTilt(0.2) &&
-                feet->setLockDistance(0.4) && feet->setWeight(0.5) && feet->setMaxDistance(6.0));
+    EXPECT_TRUE(feet->setLegs({{"left", "toes.L"}}));
+    EXPECT_TRUE(feet->setReach(0.3) && feet->setMaxTilt(0.2) && feet->setLockDistance(0.4) && feet->setWeight(0.5) &&
+                feet->setMaxDistance(6.0));
     const osg::ref_ptr<GroundFeet> copy = osg::clone(feet.get());
     EXPECT_EQ(copy->getGroundName(), "stage");
     EXPECT_EQ(copy->getTraversalMask(), 0xF0u);

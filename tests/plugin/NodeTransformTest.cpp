@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/scene/NodeTransform.h"
 
+#include <glm/ext/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
-#include <glm/gtx/transform.hpp>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,27 +21,28 @@ struct MatrixCase
     bool shears;
 };
 
-const glm::dmat4 turn = glm::rotate(1.1, glm::normalize(glm::dvec3(1, -2, 0.5)));
-const glm::dmat4 place = glm::translate(glm::dvec3(3, -4, 5));
-const glm::dmat4 uneven = glm::scale(glm::dvec3(2, 0.25, 1.5));
+const glm::dmat4 unit(1.0);
+const glm::dmat4 turn = glm::rotate(unit, 1.1, glm::normalize(glm::dvec3(1, -2, 0.5)));
+const glm::dmat4 place = glm::translate(unit, glm::dvec3(3, -4, 5));
+const glm::dmat4 uneven = glm::scale(unit, glm::dvec3(2, 0.25, 1.5));
 
 const MatrixCase cases[] = {
     {"nothing", glm::dmat4(1.0), false},
     {"translation", place, false},
     {"rotation", turn, false},
-    {"half a turn", glm::rotate(std::acos(-1.0), glm::dvec3(0, 1, 0)), false},
+    {"half a turn", glm::rotate(unit, std::acos(-1.0), glm::dvec3(0, 1, 0)), false},
     {"all three", place* turn* uneven, false},
-    {"mirrored", place* turn* glm::scale(glm::dvec3(-1, 1, 1)), false},
-    {"point reflection", glm::scale(glm::dvec3(-1.0)), false},
-    {"flat", turn* glm::scale(glm::dvec3(1, 0, 2)), false},
-    {"a line", turn* glm::scale(glm::dvec3(0, 0, 2)), false},
-    {"a point", place* glm::scale(glm::dvec3(0.0)), false},
+    {"mirrored", place* turn* glm::scale(unit, glm::dvec3(-1, 1, 1)), false},
+    {"point reflection", glm::scale(unit, glm::dvec3(-1.0)), false},
+    {"flat", turn* glm::scale(unit, glm::dvec3(1, 0, 2)), false},
+    {"a line", turn* glm::scale(unit, glm::dvec3(0, 0, 2)), false},
+    {"a point", place* glm::scale(unit, glm::dvec3(0.0)), false},
     {"scaled after turning", place* uneven* turn, true},
-    {"mirrored and sheared", uneven* turn* glm::scale(glm::dvec3(1, -1, 1)), true},
+    {"mirrored and sheared", uneven* turn* glm::scale(unit, glm::dvec3(1, -1, 1)), true},
     {"shear", glm::dmat4(1, 0, 0, 0, 0.7, 1, 0, 0, 0, 0, 1, 0, 1, 2, 3, 1), true},
-    {"sheared flat", glm::scale(glm::dvec3(2, 1, 0)) * turn, true},
-    {"tiny", glm::scale(glm::dvec3(1e-6)) * turn, false},
-    {"tiny and sheared", glm::scale(glm::dvec3(1e-6, 2e-6, 1e-6)) * turn, true},
+    {"sheared flat", glm::scale(unit, glm::dvec3(2, 1, 0)) * turn, true},
+    {"tiny", glm::scale(unit, glm::dvec3(1e-6)) * turn, false},
+    {"tiny and sheared", glm::scale(unit, glm::dvec3(1e-6, 2e-6, 1e-6)) * turn, true},
 };
 
 tinygltf::Node nodeOf(const glm::dmat4& matrix)

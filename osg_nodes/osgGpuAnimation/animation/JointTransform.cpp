@@ -26,17 +26,6 @@ glm::vec3 product(const AffineMatrix& matrix, const glm::dvec4& v)
     return glm::vec3(glm::dvec3(glm::dot(row(matrix, 0), v), glm::dot(row(matrix, 1), v), glm::dot(row(matrix, 2), v)));
 }
 
-/// As world.glsl does.
-glm::vec4 limited(const glm::dvec4& row)
-{
-    glm::vec4 result;
-    for (int i = 0; i < 4; ++i)
-        result[i] = std::isnan(row[i])
-                        ? 0.0f
-                        : static_cast<float>(std::clamp(row[i], -POSE_LARGEST_NUMBER, POSE_LARGEST_NUMBER));
-    return result;
-}
-
 bool areFinite(const glm::vec4& v)
 {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z) && std::isfinite(v.w);
@@ -73,6 +62,16 @@ bool AffineMatrix::isIdentity() const
 bool AffineMatrix::isFinite() const
 {
     return areFinite(rows[0]) && areFinite(rows[1]) && areFinite(rows[2]);
+}
+
+glm::vec4 limited(const glm::dvec4& row)
+{
+    glm::vec4 result;
+    for (int i = 0; i < 4; ++i)
+        result[i] = std::isnan(row[i])
+                        ? 0.0f
+                        : static_cast<float>(std::clamp(row[i], -POSE_LARGEST_NUMBER, POSE_LARGEST_NUMBER));
+    return result;
 }
 
 AffineMatrix operator*(const AffineMatrix& a, const AffineMatrix& b)

@@ -35,8 +35,11 @@ struct AffineMatrix
 
 static_assert(sizeof(AffineMatrix) == 48, "a palette entry is 48 bytes on the GPU");
 
-/// a · b: applies b first, then a. Computes in double precision and rounds once. Numbers beyond ±1e18 are limited
-/// (POSE_LARGEST_NUMBER) and those that are no number become 0, as in the shaders, so that chains stay finite.
+/// A row of a matrix as the shaders take it: numbers beyond ±1e18 are limited (POSE_LARGEST_NUMBER), and those that are
+/// no number become 0, so that chains stay finite.
+glm::vec4 limited(const glm::dvec4& row);
+
+/// a · b: applies b first, then a. Computes in double precision, rounds once, and limits the rows.
 AffineMatrix operator*(const AffineMatrix& a, const AffineMatrix& b);
 
 /// The same in double precision, without rounding. Both are finite.

@@ -24,8 +24,8 @@ PackedEntry packed(const PaletteEntry& entry, const std::vector<JointTransform>&
     out[0] = glm::vec4(entry.parent, entry.track, entry.kind == PaletteEntry::Kind::Weights, 0);
     for (std::size_t row = 0; row < 3; ++row)
     {
-        out[1 + row] = entry.parentBind.rows[row];
-        out[4 + row] = entry.inverseBind.rows[row];
+        out[1 + row] = limited(entry.parentBind.rows[row]);
+        out[4 + row] = limited(entry.inverseBind.rows[row]);
     }
     if (entry.track < 0) return out;
     const JointTransform& rest = restPose[static_cast<std::size_t>(entry.track)];

@@ -131,14 +131,13 @@ TEST_F(GpuCostsTest, theCountsAreThoseOfTheResults)
     for (const Row& count : counts)
     {
         const auto found = std::find_if(measured.begin(), measured.end(),
-                                        [&](const Row& row) { return row.front() == count.front() + ", before"; });
+                                        [&](const Row& row) { return row.front() == count.front(); });
         if (found == measured.end()) continue;
-        ASSERT_NE(found + 1, measured.end());
         for (std::size_t column = 1; column < count.size(); ++column)
-            EXPECT_EQ(count[column], (found + 1)->at(column)) << count.front();
+            EXPECT_EQ(count[column], found->at(column)) << count.front();
         ++compared;
     }
-    EXPECT_EQ(compared, 2u); // poses and bytes
+    EXPECT_EQ(compared, 5u); // all but the palette entries, which follow from the file
 }
 
 } // namespace osgGpuAnimation

@@ -39,7 +39,7 @@ double bytesInUse();
 /// The row with its labels.
 Row named(Row row, const Subject& subject, std::size_t count, const std::string& what, const char* unit,
           const char* other);
-/// A row of our figure alone; bar: the limit in words.
+/// A row of our figure alone; bar: the limit in words; empty: there is none.
 Row limited(const Figure& ours, double limit, const std::string& bar, const Subject& subject, std::size_t count,
             const std::string& what, const char* unit);
 

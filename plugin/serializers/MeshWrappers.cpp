@@ -38,50 +38,29 @@ void transferArray(ValueStream& stream, const char* name, osg::ref_ptr<Array>& a
     stream.close();
 }
 
-bool hasMorphTangents(const SkinnedGeometry& mesh)
-{
-    const std::vector<MorphTarget>& targets = mesh.getMorphTargets();
-    return std::any_of(targets.begin(), targets.end(), [](const MorphTarget& target) { return target.tangents; });
-}
-
-/// In place of the morph's index: targets with tangents follow, and the index itself. The first form had none.
-constexpr std::int32_t withTangents = -2;
-
 void transferMorphTargets(ValueStream& stream, SkinnedGeometry& mesh)
 {
-    std::int32_t form = hasMorphTangents(mesh) ? withTangents : 0;
     std::int32_t morph = mesh.getMorph(), entry = mesh.getMorphEntry();
     std::vector<MorphTarget> targets;
     if (!stream.isReading()) targets = mesh.getMorphTargets();
-    if (form == withTangents) stream.value(form);
-    stream.value(morph);
-    if (stream.isReading() && morph == withTangents)
-    {
-        form = morph;
-        stream.value(morph);
-    }
-    stream.value(entry).endLine();
+    stream.values(morph, entry).endLine();
     const auto transferTarget = [&](MorphTarget& target)
     {
         transferArray(stream, "Positions", target.positions);
         transferArray(stream, "Normals", target.normals);
         transferArray(stream, "Colors", target.colors);
         transferArray(stream, "TextureCoordinates", target.textureCoordinates);
-        if (form == withTangents) transferArray(stream, "Tangents", target.tangents);
+        transferArray(stream, "Tangents", target.tangents);
     };
     stream.list("Targets", targets, transferTarget);
     if (stream.hasRead()) mesh.setMorphTargets(morph, entry, std::move(targets));
 }
 
-/// In place of the skinning mode: the levels of detail follow.
-constexpr std::int32_t withLevels = -2;
-
-/// Earlier versions stored here whether a mesh was skinned once a frame. That is read and dropped.
 void transferLevels(ValueStream& stream, SkinnedGeometry& mesh)
 {
-    std::int32_t form = withLevels;
-    stream.value(form).endLine();
-    if (form == withLevels) transferLodLevels(stream, mesh);
+    stream.begin();
+    transferLodLevels(stream, mesh);
+    stream.close();
 }
 
 /// As the glTF reader does for the core profile; a texture does not store it.
@@ -104,8 +83,7 @@ void addMeshProperties(osgDB::ObjectWrapper* wrapper)
     addProperty(wrapper, "Influences", &transferInfluences);
     addProperty<SkinnedGeometry>(wrapper, "MorphTargets", &transferMorphTargets,
                                  [](const SkinnedGeometry& mesh) { return !mesh.getMorphTargets().empty(); });
-    // The property keeps the name of its first content: a binary file has no place for another one.
-    addProperty<SkinnedGeometry>(wrapper, "Skinning", &transferLevels,
+    addProperty<SkinnedGeometry>(wrapper, "LodLevels", &transferLevels,
                                  [](const SkinnedGeometry& mesh) { return mesh.findLodLevels() != nullptr; });
     wrapper->addFinishedObjectReadCallback(new MipmapsAfterReading);
 }

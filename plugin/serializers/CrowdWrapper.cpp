@@ -18,16 +18,6 @@ void transferCrowdSet(ValueStream& stream, AnimatedCrowd& crowd)
     transferSet(stream, crowd, crowd.getSharedAnimationSet());
 }
 
-/// Crowds with default settings stay readable for earlier versions.
-enum Version : std::int32_t
-{
-    plain = 1,
-    withPixelError = 2,
-    withUpdateRate = 3, ///< no longer written
-    withFileToNode = 4, ///< and pixel error
-    withLevels = 5,     ///< and all of the above, except for the update rate
-};
-
 bool hasLevels(const AnimatedCrowd& crowd)
 {
     const std::shared_ptr<const CharacterLevels>& levels = crowd.getCharacterLevels();
@@ -101,19 +91,13 @@ void transferList(ValueStream& stream, AnimatedCrowd& crowd)
 
 void transferInstances(ValueStream& stream, AnimatedCrowd& crowd)
 {
-    std::int32_t version = crowd.getPixelError() > 0.0f ? withPixelError : plain;
-    if (!crowd.getFileToNode().isIdentity()) version = withFileToNode;
-    if (hasLevels(crowd)) version = withLevels;
     osg::Vec3d origin = crowd.getOrigin();
-    double pixelError = static_cast<double>(crowd.getPixelError()), updatePixels = 0.0;
-    std::int32_t updatesEvery = 1;
-    stream.limited("the version of a crowd", version, plain, withLevels);
-    stream.values(origin.x(), origin.y(), origin.z());
-    if (version >= withPixelError) stream.value(pixelError);
-    if (version == withUpdateRate) stream.values(updatesEvery, updatePixels);
-    if (version >= withFileToNode) transferFileToNode(stream, crowd);
+    double pixelError = static_cast<double>(crowd.getPixelError());
+    bool isWithLevels = hasLevels(crowd);
+    stream.version("a crowd").values(origin.x(), origin.y(), origin.z(), pixelError, isWithLevels);
+    transferFileToNode(stream, crowd);
     stream.endLine();
-    if (version == withLevels) transferCharacterLevels(stream, crowd);
+    if (isWithLevels) transferCharacterLevels(stream, crowd);
     if (stream.hasRead())
     {
         if (!crowd.setOrigin(origin)) stream.fail("a crowd: its origin is not finite");
@@ -125,23 +109,13 @@ void transferInstances(ValueStream& stream, AnimatedCrowd& crowd)
 void addCrowdProperties(osgDB::ObjectWrapper* wrapper)
 {
     addProperty(wrapper, "AnimationSet", &transferCrowdSet);
-    addProperty<AnimatedCrowd>(wrapper, "Instances", &transferInstances,
-                               [](const AnimatedCrowd& crowd) {
-                                   return crowd.getNumInstances() > 0 || crowd.getPixelError() > 0.0f ||
-                                          !crowd.getFileToNode().isIdentity();
-                               });
+    addProperty(wrapper, "Instances", &transferInstances);
 }
 
 osgDB::RegisterWrapperProxy crowd([]() -> osg::Object* { return new AnimatedCrowd; }, "osgGpuAnimation::AnimatedCrowd",
                                   "osgGpuAnimation::ExactNumbers osg::Object osg::Node osg::Group osg::Transform "
                                   "osgGpuAnimation::AnimatedCrowd",
                                   &addCrowdProperties);
-
-// Earlier crowds had an event callback that turned the viewer's home view.
-osgDB::RegisterWrapperProxy tiltedHome([]() -> osg::Object* { return new FormerCallback; },
-                                       "osgGpuAnimation::TiltedHome",
-                                       "osg::Object osg::Callback osgGpuAnimation::TiltedHome",
-                                       [](osgDB::ObjectWrapper*) {});
 
 } // namespace
 

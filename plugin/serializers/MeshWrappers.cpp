@@ -4,11 +4,11 @@
 
 #include <osgGpuAnimation/nodes/CharacterProgram.h>
 #include <osgGpuAnimation/nodes/mesh/PaletteEntryBounds.h>
-#include <osgGpuAnimation/nodes/shading/MipmapUpload.h>
 #include <osgGpuAnimation/nodes/shading/ShaderPermutations.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
 #include <osg/Notify>
+#include <osg/Texture>
 
 #include <algorithm>
 #include <optional>
@@ -38,58 +38,43 @@ void transferArray(ValueStream& stream, const char* name, osg::ref_ptr<Array>& a
     stream.close();
 }
 
-bool hasMorphTangents(const SkinnedGeometry& mesh)
-{
-    const std::vector<MorphTarget>& targets = mesh.getMorphTargets();
-    return std::any_of(targets.begin(), targets.end(), [](const MorphTarget& target) { return target.tangents; });
-}
-
-/// In place of the morph's index: targets with tangents follow, and the index itself. The first form had none.
-constexpr std::int32_t withTangents = -2;
-
 void transferMorphTargets(ValueStream& stream, SkinnedGeometry& mesh)
 {
-    std::int32_t form = hasMorphTangents(mesh) ? withTangents : 0;
     std::int32_t morph = mesh.getMorph(), entry = mesh.getMorphEntry();
     std::vector<MorphTarget> targets;
     if (!stream.isReading()) targets = mesh.getMorphTargets();
-    if (form == withTangents) stream.value(form);
-    stream.value(morph);
-    if (stream.isReading() && morph == withTangents)
-    {
-        form = morph;
-        stream.value(morph);
-    }
-    stream.value(entry).endLine();
+    stream.values(morph, entry).endLine();
     const auto transferTarget = [&](MorphTarget& target)
     {
         transferArray(stream, "Positions", target.positions);
         transferArray(stream, "Normals", target.normals);
         transferArray(stream, "Colors", target.colors);
         transferArray(stream, "TextureCoordinates", target.textureCoordinates);
-        if (form == withTangents) transferArray(stream, "Tangents", target.tangents);
+        transferArray(stream, "Tangents", target.tangents);
     };
     stream.list("Targets", targets, transferTarget);
     if (stream.hasRead()) mesh.setMorphTargets(morph, entry, std::move(targets));
 }
 
-/// In place of the skinning mode: the levels of detail follow.
-constexpr std::int32_t withLevels = -2;
-
-/// Earlier versions stored here whether a mesh was skinned once a frame. That is read and dropped.
 void transferLevels(ValueStream& stream, SkinnedGeometry& mesh)
 {
-    std::int32_t form = withLevels;
-    stream.value(form).endLine();
-    if (form == withLevels) transferLodLevels(stream, mesh);
+    stream.begin();
+    transferLodLevels(stream, mesh);
+    stream.close();
 }
 
-/// A stored texture does not say how it is uploaded.
+/// As the glTF reader does for the core profile; a texture does not store it.
 struct MipmapsAfterReading : osgDB::FinishedObjectReadCallback
 {
     void objectRead(osgDB::InputStream&, osg::Object& object) override
     {
-        if (osg::StateSet* state = static_cast<SkinnedGeometry&>(object).getStateSet()) uploadWithMipmaps(*state);
+        osg::StateSet* state = static_cast<SkinnedGeometry&>(object).getStateSet();
+        for (unsigned int unit = 0; state && unit < state->getNumTextureAttributeLists(); ++unit)
+        {
+            auto* texture = dynamic_cast<osg::Texture*>(state->getTextureAttribute(unit, osg::StateAttribute::TEXTURE));
+            const auto filter = texture ? texture->getFilter(osg::Texture::MIN_FILTER) : osg::Texture::LINEAR;
+            if (filter != osg::Texture::LINEAR && filter != osg::Texture::NEAREST) texture->allocateMipmapLevels();
+        }
     }
 };
 
@@ -98,8 +83,7 @@ void addMeshProperties(osgDB::ObjectWrapper* wrapper)
     addProperty(wrapper, "Influences", &transferInfluences);
     addProperty<SkinnedGeometry>(wrapper, "MorphTargets", &transferMorphTargets,
                                  [](const SkinnedGeometry& mesh) { return !mesh.getMorphTargets().empty(); });
-    // The property keeps the name of its first content: a binary file has no place for another one.
-    addProperty<SkinnedGeometry>(wrapper, "Skinning", &transferLevels,
+    addProperty<SkinnedGeometry>(wrapper, "LodLevels", &transferLevels,
                                  [](const SkinnedGeometry& mesh) { return mesh.findLodLevels() != nullptr; });
     wrapper->addFinishedObjectReadCallback(new MipmapsAfterReading);
 }

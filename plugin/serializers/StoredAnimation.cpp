@@ -13,7 +13,6 @@
 
 #include <osg/Notify>
 
-#include <algorithm>
 #include <map>
 #include <mutex>
 
@@ -74,13 +73,6 @@ void transferMorphs(ValueStream& stream, std::vector<MorphWeights>& morphs)
                 });
 }
 
-/// The versions of a stored set: before the first, all clips are exact; sets without constraints do not need the
-/// second, those without garments not the third, and those without compact clips not the last: before it, compact
-/// clips have other keyframes, see StoredCompactClips.h.
-constexpr std::int32_t versionWithCompactClips = 2;
-constexpr std::int32_t versionWithConstraints = 3;
-constexpr std::int32_t versionWithGarments = 4;
-constexpr std::int32_t versionWithBitCounts = 5;
 constexpr std::size_t floatsATransform = sizeof(JointTransform) / sizeof(float);
 /// Of all compact clips of a set together; the default of the glTF reader's budget.
 constexpr std::size_t maxCompactBytes = std::size_t(2) << 30;
@@ -118,16 +110,13 @@ ClipParts toParts(const Clip& clip, std::size_t jointCount)
     return parts;
 }
 
-void transferClip(ValueStream& stream, std::int32_t version, ClipParts& clip, std::size_t& compactBytesLeft)
+void transferClip(ValueStream& stream, ClipParts& clip, std::size_t& compactBytesLeft)
 {
     bool isCompact = clip.compactTracks != nullptr;
     stream.property("Clip").value(clip.name).limited("a clip's form", clip.form, Clip::Form::Spline);
-    if (version >= versionWithCompactClips) stream.value(isCompact);
-    stream.endLine();
+    stream.value(isCompact).endLine();
     stream.block("Times", clip.times, 8);
-    if (isCompact && version < versionWithBitCounts)
-        readFormerCompactKeyframes(stream, clip, compactBytesLeft);
-    else if (isCompact)
+    if (isCompact)
         transferCompactKeyframes(stream, clip, compactBytesLeft);
     else
         stream.block("Keyframes", clip.data, floatsATransform);
@@ -139,8 +128,8 @@ void transferClip(ValueStream& stream, std::int32_t version, ClipParts& clip, st
 /// A clip that cannot be created makes the file unreadable; the message names it. Compact clips store their tracks and
 /// records (see CompactTracks), the transforms at rest and the morph weights. Memory holds all their keyframes, so
 /// these are limited.
-void transferClips(ValueStream& stream, std::int32_t version, std::size_t jointCount,
-                   const std::vector<MorphWeights>& morphs, std::vector<Clip>& clips)
+void transferClips(ValueStream& stream, std::size_t jointCount, const std::vector<MorphWeights>& morphs,
+                   std::vector<Clip>& clips)
 {
     std::size_t trackCount = jointCount, compactBytesLeft = maxCompactBytes;
     for (const MorphWeights& morph : morphs)
@@ -152,7 +141,7 @@ void transferClips(ValueStream& stream, std::int32_t version, std::size_t jointC
         if (!stream.isReading()) parts = toParts(clips[c], jointCount);
         parts.jointCount = jointCount;
         parts.trackCount = trackCount;
-        transferClip(stream, version, parts, compactBytesLeft);
+        transferClip(stream, parts, compactBytesLeft);
         if (!stream.hasRead()) continue;
         Result<Clip> clip = Clip::create(std::move(parts));
         if (!clip) return stream.fail(clip.error().message);
@@ -211,7 +200,6 @@ private:
 
 void StoredAnimationSet::transferContents(ValueStream& stream, StoredAnimationSet& stored)
 {
-    std::int32_t version = versionWithCompactClips;
     std::vector<Constraint> constraints;
     std::vector<Joint> joints;
     std::vector<Skin> skins, garments;
@@ -227,19 +215,15 @@ void StoredAnimationSet::transferContents(ValueStream& stream, StoredAnimationSe
         clips = set->clips();
         constraints = set->constraints();
         garments = set->garments();
-        if (!constraints.empty()) version = versionWithConstraints;
-        if (!garments.empty()) version = versionWithGarments;
-        const auto isCompact = [](const Clip& clip) { return clip.compactTracks() != nullptr; };
-        if (std::any_of(clips.begin(), clips.end(), isCompact)) version = versionWithBitCounts;
     }
-    stream.limited("the version of an animation set", version, 1, versionWithBitCounts).endLine();
+    stream.version("an animation set").endLine();
     transferJoints(stream, joints);
     transferSkins(stream, "Skins", skins);
     transferRigidJoints(stream, rigidJoints);
     transferMorphs(stream, morphs);
-    transferClips(stream, version, joints.size(), morphs, clips);
-    if (version >= versionWithConstraints) transferConstraints(stream, constraints);
-    if (version >= versionWithGarments) transferSkins(stream, "Garments", garments);
+    transferClips(stream, joints.size(), morphs, clips);
+    transferConstraints(stream, constraints);
+    transferSkins(stream, "Garments", garments);
     if (!stream.hasRead()) return;
     Result<Skeleton> skeleton = toSkeleton(joints);
     if (!skeleton) return stream.fail(skeleton.error().message);
@@ -258,21 +242,11 @@ void transferFade(ValueStream& stream, const char* name, LayerSnapshot::FadeStat
 
 void transferActiveClip(ValueStream& stream, LayerSnapshot::ActiveClip& activeClip)
 {
-    stream.property("Voice").values(activeClip.clip, activeClip.time, activeClip.speed);
+    stream.property("ActiveClip").values(activeClip.clip, activeClip.time, activeClip.speed);
     stream.limited("a loop mode", activeClip.loopMode, LoopMode::PingPong);
     stream.values(activeClip.isReturning, activeClip.isFresh, activeClip.share);
-    stream.values(activeClip.shareBefore, activeClip.phaseGroup).endLine();
-}
-
-/// Versions of a stored controller, whose layers may have blend spaces, then poses as well, and whose constraints may
-/// have targets. The lowest possible one is written, so that earlier versions read what they know.
-constexpr std::int32_t versionWithBlends = 2, versionWithPoses = 3, versionWithTargets = 4;
-
-std::int32_t versionFor(const LayerSnapshot& layer)
-{
-    if (!layer.pose.empty() || layer.poseShare.from > 0.0 || layer.poseShare.to > 0.0) return versionWithPoses;
-    const bool hasBlends = !layer.spaces.empty() || layer.parameter != glm::dvec2(0.0) || layer.isPhaseShared;
-    return hasBlends ? versionWithBlends : 1;
+    stream.values(activeClip.shareBefore, activeClip.phaseGroup);
+    stream.values(activeClip.space, activeClip.point, activeClip.weight).endLine();
 }
 
 /// A space that cannot be created becomes null, with a warning; its layer then does not play.
@@ -301,8 +275,6 @@ void transferBlends(ValueStream& stream, const AnimationSet& set, LayerSnapshot&
 {
     stream.property("Parameter").values(layer.parameter.x, layer.parameter.y, layer.isPhaseShared).endLine();
     stream.list("Spaces", layer.spaces, [&](LayerSnapshot::ActiveSpace& space) { transferSpace(stream, set, space); });
-    for (LayerSnapshot::ActiveClip& activeClip : layer.activeClips)
-        stream.property("Part").values(activeClip.space, activeClip.point, activeClip.weight).endLine();
 }
 
 void transferPosedTrack(ValueStream& stream, JointPose::Track& track)
@@ -321,7 +293,7 @@ void transferPose(ValueStream& stream, LayerSnapshot& layer)
     transferFade(stream, "PoseShare", layer.poseShare);
 }
 
-void transferLayer(ValueStream& stream, LayerSnapshot& layer)
+void transferLayer(ValueStream& stream, const AnimationSet& set, LayerSnapshot& layer)
 {
     using Layer = AnimationLayer;
     stream.property("Layer").limited("a layer's state", layer.state, PlayState::Ended);
@@ -329,26 +301,19 @@ void transferLayer(ValueStream& stream, LayerSnapshot& layer)
     stream.limited("a layer's mode", layer.mode, Layer::Mode::Additive);
     stream.limited("a layer's reference", layer.reference, Layer::Reference::FirstFrame).value(layer.blendPriority);
     stream.endLine();
-    stream.list("Voices", layer.activeClips,
+    stream.list("ActiveClips", layer.activeClips,
                 [&](LayerSnapshot::ActiveClip& activeClip) { transferActiveClip(stream, activeClip); });
     transferFade(stream, "Crossfade", layer.crossfade);
     transferFade(stream, "Weight", layer.weight);
     stream.block("Mask", layer.mask, 8);
+    transferBlends(stream, set, layer);
+    transferPose(stream, layer);
 }
 
 osgDB::RegisterWrapperProxy storedSet([]() -> osg::Object* { return new StoredAnimationSet; },
                                       "osgGpuAnimation::StoredAnimationSet", "osgGpuAnimation::StoredAnimationSet",
                                       [](osgDB::ObjectWrapper* wrapper)
                                       { addProperty(wrapper, "Contents", &StoredAnimationSet::transferContents); });
-
-/// The chain without FormerCallbacks. They keep their own links, because other nodes may start with them.
-osg::Callback* withoutFormer(osg::Callback* first)
-{
-    while (dynamic_cast<FormerCallback*>(first))
-        first = first->getNestedCallback();
-    if (first) first->setNestedCallback(withoutFormer(first->getNestedCallback()));
-    return first;
-}
 
 } // namespace
 
@@ -366,33 +331,27 @@ void transferAnimationSet(ValueStream& stream, std::shared_ptr<const AnimationSe
 
 void transferController(ValueStream& stream, AnimationController& controller)
 {
-    std::int32_t version = 1;
-    for (std::size_t i = 0; !stream.isReading() && i < controller.layerCount(); ++i)
-        version = std::max(version, versionFor(controller.layer(i).snapshot()));
-    if (!stream.isReading() && hasTargets(controller)) version = versionWithTargets;
-    stream.limited("the version of a controller", version, 1, versionWithTargets).endLine();
+    stream.version("a controller").endLine();
     const std::size_t layers = stream.open("Layers", controller.layerCount());
     if (layers > maxLayers) stream.fail(std::to_string(layers) + " layers, at most " + std::to_string(maxLayers));
     for (std::size_t i = 0; i < layers && stream.isGood(); ++i)
     {
         LayerSnapshot layer;
         if (!stream.isReading()) layer = controller.layer(i).snapshot();
-        transferLayer(stream, layer);
-        if (version >= versionWithBlends) transferBlends(stream, controller.set(), layer);
-        if (version >= versionWithPoses) transferPose(stream, layer);
+        transferLayer(stream, controller.set(), layer);
         if (!stream.hasRead()) continue;
         if (const Result<bool> restored = controller.layer(i).restore(layer); !restored)
             OSG_WARN << "osgGpuAnimation: layer " << i << " of a character: " << restored.error().message
                      << "; it does not play" << std::endl;
     }
     stream.close();
-    if (version >= versionWithTargets) transferTargets(stream, controller);
+    transferTargets(stream, controller);
 }
 
-void dropFormerCallbacks(osg::Node& node)
+void transferMatrix(ValueStream& stream, osg::Matrixd& matrix)
 {
-    node.setUpdateCallback(withoutFormer(node.getUpdateCallback()));
-    node.setEventCallback(withoutFormer(node.getEventCallback()));
+    for (int number = 0; number < 16; ++number)
+        stream.value(matrix.ptr()[number]);
 }
 
 } // namespace osgGpuAnimation::serializers

@@ -27,22 +27,12 @@ std::optional<std::string> findFault(const SkinnedGeometry& mesh, const Animatio
 /// Removes, with a warning, every SkinnedGeometry with a fault below the group.
 void removeUnfitMeshes(osg::Group& group, const AnimationSet& set);
 
-/// A callback that earlier versions had. Files contain it; reading drops it from characters and crowds, and elsewhere
-/// it only continues the traversal.
-class FormerCallback : public osg::NodeCallback
-{
-};
-
-/// Removes every FormerCallback from the node's update and event callbacks. Nodes may share their callbacks.
-void dropFormerCallbacks(osg::Node& node);
-
 /// The set of a character or crowd, whose meshes are read before it. set: the owner's, for writing.
 template <typename Owner>
 void transferSet(ValueStream& stream, Owner& owner, std::shared_ptr<const AnimationSet> set)
 {
     transferAnimationSet(stream, set);
     if (!stream.hasRead()) return;
-    dropFormerCallbacks(owner);
     removeUnfitMeshes(owner, *set);
     stream.require("", owner.setAnimationSet(set));
 }
@@ -51,13 +41,13 @@ void transferSet(ValueStream& stream, Owner& owner, std::shared_ptr<const Animat
 /// set does not change, with a warning.
 void transferController(ValueStream& stream, AnimationController& controller);
 
-/// The sixteen numbers of a node's getFileToNode().
+void transferMatrix(ValueStream& stream, osg::Matrixd& matrix);
+
 template <typename Node>
 void transferFileToNode(ValueStream& stream, Node& node)
 {
     osg::Matrixd matrix = node.getFileToNode();
-    for (int number = 0; number < 16; ++number)
-        stream.value(matrix.ptr()[number]);
+    transferMatrix(stream, matrix);
     if (stream.hasRead()) stream.require("a node: ", node.setFileToNode(matrix));
 }
 

@@ -3,8 +3,6 @@
 
 #include <osgGpuAnimation/animation/keyframes/CompactTracks.h>
 
-#include <algorithm>
-#include <cmath>
 #include <cstring>
 
 namespace osgGpuAnimation::serializers
@@ -54,15 +52,6 @@ Result<bool> fillKeyframes(const CompactParts& compact, ClipParts& clip, std::si
     return true;
 }
 
-/// Packing would replace numbers that are not finite.
-Result<bool> checkFinite(const ClipParts& clip)
-{
-    const bool isFinite = std::all_of(clip.data.begin(), clip.data.end(),
-                                      [](const JointTransform& transform) { return transform.isFinite(); });
-    if (isFinite) return true;
-    return Error{"clip \"" + clip.name + "\": a number of its compact keyframes is not finite"};
-}
-
 void transferWords(ValueStream& stream, glm::uvec3& words)
 {
     for (int axis = 0; axis < 3; ++axis)
@@ -108,102 +97,6 @@ void transferRecords(ValueStream& stream, CompactTracks& tracks)
                 });
 }
 
-/// Columns of three numbers of 20 bits, one for each part that moves. They are decoded and packed again, with as many
-/// bits.
-class FormerCompactKeyframes
-{
-public:
-    static void read(ValueStream& stream, ClipParts& clip, std::size_t& bytesLeft)
-    {
-        FormerCompactKeyframes former;
-        stream.list("Compact", former._tracks, [&](Track& track) { transferTrack(stream, track); });
-        CompactParts parts;
-        stream.block("Held", parts.held, floatsATransform);
-        stream.block("Weights", parts.weights, floatsATransform);
-        stream.block("Packed", former._packed, 3);
-        if (!stream.hasRead()) return;
-        stream.require("", former.fit(clip));
-        if (stream.isGood()) stream.require("", fillKeyframes(parts, clip, bytesLeft));
-        if (!stream.isGood()) return;
-        former.decode(clip);
-        stream.require("", checkFinite(clip));
-        if (!stream.isGood()) return;
-        CompactTracks tracks = CompactTracks::finest(clip.data, clip.trackCount, clip.jointCount);
-        // A record that would be too large leaves the clip exact.
-        if (tracks.pack(clip.data, clip.trackCount))
-            clip.compactTracks = std::make_shared<const CompactTracks>(std::move(tracks));
-    }
-
-private:
-    static constexpr float largest = 1048575.0f, placeUnit = 1048576.0f; ///< 20 bits
-    static constexpr float rotationZero = 524288.0f, rotationStep = 1.348702e-6f;
-
-    /// A translation or a scale: value = base + step * number, axis by axis.
-    struct Range
-    {
-        glm::vec3 base{0.0f}, step{0.0f};
-    };
-    /// Columns of a keyframe; -1: the part is constant.
-    struct Track
-    {
-        std::int32_t translation = -1, rotation = -1, scale = -1;
-        Range translationRange, scaleRange;
-    };
-
-    static void transferTrack(ValueStream& stream, Track& track)
-    {
-        stream.property("Track").values(track.translation, track.rotation, track.scale);
-        for (Range* range : {&track.translationRange, &track.scaleRange})
-            stream.floats(&range->base.x, 3).floats(&range->step.x, 3);
-        stream.endLine();
-    }
-
-    Result<bool> fit(const ClipParts& clip)
-    {
-        const std::size_t keyframes = clip.times.size();
-        _columnCount = keyframes == 0 ? 0 : _packed.size() / 3 / keyframes;
-        bool isFit = clip.form == Clip::Form::Linear && _tracks.size() == clip.jointCount &&
-                     _packed.size() == 3 * _columnCount * keyframes;
-        for (const Track& track : _tracks)
-            for (const std::int32_t column : {track.translation, track.rotation, track.scale})
-                isFit = isFit && column >= -1 && (column < 0 || static_cast<std::size_t>(column) < _columnCount);
-        if (isFit) return true;
-        return Error{"clip \"" + clip.name + "\": its compact keyframes do not fit the clip"};
-    }
-
-    void decode(ClipParts& clip) const
-    {
-        for (std::size_t k = 0; k < clip.times.size(); ++k)
-            for (std::size_t joint = 0; joint < _tracks.size(); ++joint)
-            {
-                const Track& track = _tracks[joint];
-                JointTransform& transform = clip.data[k * clip.trackCount + joint];
-                std::uint32_t place = 0;
-                const auto vectorAt = [&](std::int32_t column, const Range& range)
-                { return glm::vec4(range.base + range.step * numbers(k, column, place), 0.0f); };
-                if (track.translation >= 0) transform.translation = vectorAt(track.translation, track.translationRange);
-                if (track.scale >= 0) transform.scale = vectorAt(track.scale, track.scaleRange);
-                if (track.rotation < 0) continue;
-                const glm::vec3 components = (numbers(k, track.rotation, place) - rotationZero) * rotationStep;
-                transform.rotation = CompactTracks::rotationOf(components, place);
-            }
-    }
-
-    /// The file has x, y and z + place * 2^20. Returns whole numbers in [0, largest]; 0 for NaN.
-    glm::vec3 numbers(std::size_t keyframe, std::int32_t column, std::uint32_t& outPlace) const
-    {
-        const auto whole = [](float number, float most) { return std::floor(std::min(std::max(0.0f, number), most)); };
-        const float* packed = &_packed[3 * (keyframe * _columnCount + static_cast<std::size_t>(column))];
-        const float last = whole(packed[2], 4.0f * placeUnit - 1.0f);
-        outPlace = static_cast<std::uint32_t>(last / placeUnit);
-        return {whole(packed[0], largest), whole(packed[1], largest), last - static_cast<float>(outPlace) * placeUnit};
-    }
-
-    std::vector<Track> _tracks; ///< one per joint
-    std::vector<float> _packed;
-    std::size_t _columnCount = 0;
-};
-
 } // namespace
 
 void transferCompactKeyframes(ValueStream& stream, ClipParts& clip, std::size_t& bytesLeft)
@@ -220,11 +113,6 @@ void transferCompactKeyframes(ValueStream& stream, ClipParts& clip, std::size_t&
     for (CompactTracks::Track& track : compact.tracks.tracks)
         track.rotation.setRanges(track.rotation.ranges);
     clip.compactTracks = std::make_shared<const CompactTracks>(std::move(compact.tracks));
-}
-
-void readFormerCompactKeyframes(ValueStream& stream, ClipParts& clip, std::size_t& bytesLeft)
-{
-    FormerCompactKeyframes::read(stream, clip, bytesLeft);
 }
 
 } // namespace osgGpuAnimation::serializers

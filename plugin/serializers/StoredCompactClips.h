@@ -15,8 +15,4 @@ namespace osgGpuAnimation::serializers
 /// See CompactTracks: its tracks and records, the transforms of joints at rest, and the morph weights.
 void transferCompactKeyframes(ValueStream& stream, ClipParts& clip, std::size_t& bytesLeft);
 
-/// Those of the versions 2 to 4 of a stored set: columns of three numbers of 20 bits. If they do not fit into a record,
-/// the clip becomes exact.
-void readFormerCompactKeyframes(ValueStream& stream, ClipParts& clip, std::size_t& bytesLeft);
-
 } // namespace osgGpuAnimation::serializers

@@ -85,11 +85,6 @@ void transferConstraints(ValueStream& stream, std::vector<Constraint>& constrain
                 });
 }
 
-bool hasTargets(const AnimationController& controller)
-{
-    return !targetsOf(controller).empty();
-}
-
 void transferTargets(ValueStream& stream, AnimationController& controller)
 {
     std::vector<StoredTarget> targets;

@@ -14,9 +14,6 @@ namespace osgGpuAnimation::serializers
 /// The declarations of a set.
 void transferConstraints(ValueStream& stream, std::vector<Constraint>& constraints);
 
-/// True if the application has set a target of some constraint.
-bool hasTargets(const AnimationController& controller);
-
 /// The targets of a controller. Reading expects a controller of the same set; a target that does not fit the set is
 /// dropped, with a warning.
 void transferTargets(ValueStream& stream, AnimationController& controller);

@@ -141,6 +141,16 @@ ValueStream& ValueStream::limited(const char* subject, std::int32_t& integer, st
     return *this;
 }
 
+ValueStream& ValueStream::version(const char* subject)
+{
+    constexpr std::int32_t expected = 1;
+    std::int32_t found = expected;
+    number(found);
+    if (found != expected)
+        fail(std::string(subject) + " has version " + std::to_string(found) + ", expected " + std::to_string(expected));
+    return *this;
+}
+
 template <typename Number>
 ValueStream& ValueStream::numbers(Number* values, std::size_t count)
 {

@@ -65,6 +65,8 @@ public:
     }
     /// An integer in [least, most]; any other makes the file unreadable and reads as `least`.
     ValueStream& limited(const char* subject, std::int32_t& integer, std::int32_t least, std::int32_t most);
+    /// The version of the format, of which there is one; another one makes the file unreadable.
+    ValueStream& version(const char* subject);
     /// An enum whose values are 0 to `last`.
     template <typename Enum>
     ValueStream& limited(const char* subject, Enum& value, Enum last)

@@ -61,7 +61,7 @@ link_paths()
 {
     local root folder part
     { read -r root && read -r folder; } <"$unpacked/paths"
-    for part in build scenes tests/plugin/fixtures; do
+    for part in build scenes; do
         link "$project/$part" "$root/$part"
     done
     link "$shared" "$folder"

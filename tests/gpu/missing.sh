@@ -49,7 +49,7 @@ for file in "$here"/../*/*GLTest.cpp; do
 done
 
 # A project whose programs and libraries are empty files.
-mkdir -p "$project"/{scenes/directing,tests/{gpu,tool,plugin/fixtures},build/{bin,lib/osgPlugins-0}}
+mkdir -p "$project"/{scenes/directing,tests/{gpu,tool},build/{bin,lib/osgPlugins-0}}
 mkdir -p "$folder"/parent/shared/{assets,oracle,bad_gltf,looks/{models,pictures}}
 cp "$here/../setup.sh" "$project/tests"
 cp "$here"/{pack,go}.sh "$project/tests/gpu"
@@ -64,7 +64,7 @@ printf '%s\n' "CMAKE_HOME_DIRECTORY:INTERNAL=$project" "OSGGPUANIMATION_SHARED_A
     >"$project/build/CMakeCache.txt"
 expect "ldd cannot read $project/build/bin/osggpuanim" "$project/tests/gpu/pack.sh"
 for part in "${programs[@]/#/project/build/bin/}" project/build/lib/osgPlugins-0/osgdb_ours.so \
-    project/scenes/{Wanderer.glb,directing} project/tests/{plugin/fixtures,tool/check_{oracle,looks}.py} \
+    project/scenes/{Wanderer.glb,directing} project/tests/tool/check_{oracle,looks}.py \
     shared/{assets,oracle,bad_gltf,looks/{models,pictures,compare.py}}; do
     missing=$part
     case $part in *.glb | *.so) missing=$(dirname "$part")/\*.${part##*.} ;; esac

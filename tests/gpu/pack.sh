@@ -66,7 +66,6 @@ ours=("$build"/lib/osgPlugins-*)
 copy "$build"/lib/*.so* project/build/lib
 copy "${ours[0]}"/*.so "project/build/lib/${ours[0]##*/}"
 copy "$root"/scenes/*.glb "$root/scenes/directing" project/scenes
-copy "$root/tests/plugin/fixtures" project/tests/plugin
 copy "$root"/tests/tool/check_{oracle,looks}.py project/tests/tool
 copy "$shared"/{assets,oracle,bad_gltf} shared
 copy "$shared"/looks/{models,pictures,compare.py} shared/looks

@@ -84,7 +84,6 @@ TEST_F(SerializersTest, layersGoOnWhereTheyWere)
 TEST_F(SerializersTest, blendSpacesContinueWhereTheyWere)
 {
     AnimationController& controller = character().getController();
-    EXPECT_EQ(textOf(*scene).find("Spaces"), std::string::npos) << "without one, files are as before";
     const auto space = BlendSpace::create(controller.set(), {{"Slow slide", 0.0}, {"clip 1", 2.0}});
     ASSERT_TRUE(space) << space.error().message;
     AnimationLayer& upper = controller.layer(1);
@@ -211,17 +210,13 @@ TEST_F(SerializersTest, drawnAloneComesBack)
             }
 }
 
-TEST_F(SerializersTest, whatIsAsByDefaultIsReadableAsBefore)
+TEST_F(SerializersTest, aCrowdOfAnotherVersionIsRefused)
 {
-    ASSERT_TRUE(character().setFileToNode({}));
     const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(character());
-    ASSERT_TRUE(crowd->add(osg::Matrixd(), AnimationController(crowd->getSharedAnimationSet())));
-    EXPECT_NE(textOf(*crowd).find("Instances 1 "), std::string::npos);
-    EXPECT_NE(textOf(*scene).find("ClipBounds 1 \n"), std::string::npos);
-    character().setDrawnTogether(false);
-    ASSERT_TRUE(crowd->setPixelError(0.5f));
-    EXPECT_NE(textOf(*crowd).find("Instances 5 "), std::string::npos) << "with levels of detail";
-    EXPECT_NE(textOf(*scene).find("ClipBounds 5 \n"), std::string::npos);
+    const std::string text = std::regex_replace(textOf(*crowd), std::regex("Instances 1 "), "Instances 5 ");
+    const std::string file = files.folder.write("crowd.osgt", text);
+    EXPECT_NE(osgDB::Registry::instance()->readNode(file, nullptr).message().find("a crowd has version 5, expected 1"),
+              std::string::npos);
 }
 
 TEST_F(SerializersTest, aCrowdKeepsItsInstances)
@@ -307,8 +302,7 @@ TEST_F(SerializersTest, posesAreKept)
     EXPECT_NE(log->text.find("a pose with values of track 9"), std::string::npos) << log->text;
 }
 
-// Earlier versions read 1, and then 2, at most.
-TEST_F(SerializersTest, aControllerHasTheLowestVersionForItsLayers)
+TEST_F(SerializersTest, layersWithClipsSpacesAndPosesComeBack)
 {
     AnimationController& controller = character().getController();
     const auto space = BlendSpace::create(controller.set(), {{"Slow slide", 0.0}, {"clip 1", 2.0}}).value();
@@ -317,22 +311,21 @@ TEST_F(SerializersTest, aControllerHasTheLowestVersionForItsLayers)
     struct Case
     {
         const char* name;
-        int version;
         std::function<void()> setUp;
     };
     const Case cases[] = {
-        {"clips", 1, [&] { setUpLayers(controller); }},
-        {"a pose in which nothing is set, beside a clip", 1, [&] { controller.layer(0).pose(); }},
-        {"a blend space", 2, [&] { playSpace(controller.layer(0)); }},
-        {"a pose beside a clip", 3, [&] { setPose(controller.layer(0)); }},
-        {"an empty pose that hides the clips", 3, [&] { controller.layer(0).showPose(); }},
-        {"a blend space in one layer, a pose in another", 3,
+        {"clips", [&] { setUpLayers(controller); }},
+        {"a pose in which nothing is set, beside a clip", [&] { controller.layer(0).pose(); }},
+        {"a blend space", [&] { playSpace(controller.layer(0)); }},
+        {"a pose beside a clip", [&] { setPose(controller.layer(0)); }},
+        {"an empty pose that hides the clips", [&] { controller.layer(0).showPose(); }},
+        {"a blend space in one layer, a pose in another",
          [&]
          {
              playSpace(controller.layer(0));
              setPose(controller.layer(1));
          }},
-        {"a blend space that fades to a pose", 3,
+        {"a blend space that fades to a pose",
          [&]
          {
              playSpace(controller.layer(0));
@@ -347,7 +340,6 @@ TEST_F(SerializersTest, aControllerHasTheLowestVersionForItsLayers)
         controller = AnimationController(controller.sharedSet());
         ASSERT_TRUE(controller.play(0));
         one.setUp();
-        EXPECT_NE(textOf(*scene).find("Controller " + std::to_string(one.version) + " "), std::string::npos);
         for (const char* format : storedFormats)
         {
             const osg::ref_ptr<osg::Node> read = files.throughFile(*scene, format);
@@ -394,7 +386,7 @@ TEST_F(SerializersTest, theWhiteTextureIsKnownInCopiesAndFiles)
     for (const char* format : storedFormats)
         EXPECT_TRUE(isWhiteTexture(textureOf(*files.throughFile(*scene, format)))) << format;
     EXPECT_FALSE(isWhiteTexture(nullptr));
-    copy->setName(""); // files of earlier versions have no name
+    copy->setName("");
     EXPECT_FALSE(isWhiteTexture(copy));
 }
 
@@ -423,22 +415,8 @@ TEST_F(SerializersTest, compactClipsStayCompact)
     }
 }
 
-TEST_F(SerializersTest, setsOfTheFirstVersionAreRead)
-{
-    ASSERT_TRUE(files.throughFile(*scene, "osgt"));
-    std::string text = readBytes(files.folder.file("scene.osgt"));
-    const std::string second = text;
-    text = std::regex_replace(text, std::regex("Contents 2"), "Contents 1");
-    text = std::regex_replace(text, std::regex("(Clip .*) 0 0 *\n"), "$1 0\n");
-    ASSERT_NE(text, second);
-    const osg::ref_ptr<osg::Node> read = osgDB::readRefNodeFile(files.folder.write("first.osgt", text));
-    ASSERT_TRUE(read && findCharacter(*read)) << log->text;
-    EXPECT_TRUE(haveSameKeyframes(character().getAnimationSet(), findCharacter(*read)->getAnimationSet()));
-}
-
 TEST_F(SerializersTest, constraintsAndTheirTargetsComeBack)
 {
-    EXPECT_EQ(textOf(*scene).find("Constraints"), std::string::npos) << "without one, files are as before";
     LookAt look{"look", {"hips", "spine \"1\""}, {0.25f, 0.75f}, {1, 0, 0}, {0, 0, 1}, {0.1f, 0, 0}, 1.5f, 0.5f};
     const auto set =
         limbOf({jointAt("hips", {0, 1, 0}), jointAt("spine \"1\"", {0, 1, 0}), jointAt("hand", {0, 1, 0.1f})},
@@ -446,7 +424,6 @@ TEST_F(SerializersTest, constraintsAndTheirTargetsComeBack)
     ASSERT_TRUE(set) << set.error().message;
     const osg::ref_ptr<AnimatedCharacter> limb = new AnimatedCharacter(set.value());
     AnimationController& controller = limb->getController();
-    EXPECT_EQ(textOf(*limb).find("Targets"), std::string::npos);
     ASSERT_TRUE(controller.constraint("look").setTarget({2, 3, 4}));
     ASSERT_TRUE(controller.constraint("look").setWeight(0.5f));
     ASSERT_TRUE(controller.constraint("reach").setTarget({0.5f, 2, 0.5f}));

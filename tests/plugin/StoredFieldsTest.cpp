@@ -270,7 +270,7 @@ TEST_F(StoredFieldsTest, ofMorphTargets)
     target.colors = filled(osg::ref_ptr<osg::Vec4Array>(new osg::Vec4Array));
     target.textureCoordinates = filled(osg::ref_ptr<osg::Vec2Array>(new osg::Vec2Array));
     const int morph = mesh.getMorph(), entry = mesh.getMorphEntry();
-    for (const bool hasTangents : {false, true}) // the second form of the property
+    for (const bool hasTangents : {false, true})
     {
         if (hasTangents) target.tangents = filled(osg::ref_ptr<osg::Vec3Array>(new osg::Vec3Array));
         mesh.setMorphTargets(morph, entry, {target});

@@ -131,6 +131,14 @@ TEST_F(TexturesGLTest, mipmapsOfColorsAreMixedInLinearLight)
     EXPECT_NEAR(lastPixel(2).r(), 0.5f, 0.02f);
 }
 
+TEST_F(TexturesCoreGLTest, mipmapsAreMadeInTheCoreProfile)
+{
+    TextureFile file(encodedPicture("png", 4, 4));
+    apply(*file.textures().texture(0, ColorSpace::Srgb));
+    EXPECT_NEAR(lastPixel(2).r(), 0.735f, 0.02f);
+    takeGLErrors(); // of GL_GENERATE_MIPMAP, which an OSG for the compatibility profile sets first
+}
+
 TEST_F(TexturesGLTest, aPictureServesSeveralColorSpaces)
 {
     TextureFile file(encodedPicture("png", 4, 4));

@@ -7,7 +7,6 @@
 
 #include <osgGpuAnimation/animation/bounds/JointRange.h>
 #include <osgGpuAnimation/nodes/mesh/MaterialVariants.h>
-#include <osgGpuAnimation/nodes/shading/MipmapUpload.h>
 
 #include <layout.glsl>
 
@@ -177,9 +176,7 @@ osg::StateSet* Drawables::stateSet(const MeshPrimitive& mesh, MaterialUse use, i
     use.material = material;
     use.coordinates = mesh.coordinates & _materials.wantedCoordinates(material);
     use.tangents = mesh.tangents && _materials.hasNormalMap(material);
-    osg::StateSet* made = _materials.stateSet(use);
-    if (use.palette) uploadWithMipmaps(*made);
-    return made;
+    return _materials.stateSet(use);
 }
 
 void Drawables::setVariants(SkinnedGeometry& geometry, const MeshPrimitive& mesh, const PrimitiveMaterials& materials,

@@ -4,7 +4,7 @@
 #include "gltf/file/Report.h"
 #include "gltf/ImportOptions.h"
 
-#include <osgGpuAnimation/animation/Result.h>
+#include <osgGpuAnimation/math/Result.h>
 
 #include <string>
 

@@ -3,7 +3,7 @@
 
 #include "gltf/ImportOptions.h"
 
-#include <osgGpuAnimation/animation/Result.h>
+#include <osgGpuAnimation/math/Result.h>
 
 #include <cstddef>
 #include <cstdint>

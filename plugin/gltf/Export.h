@@ -3,7 +3,7 @@
 
 #include "gltf/file/Report.h"
 
-#include <osgGpuAnimation/animation/Result.h>
+#include <osgGpuAnimation/math/Result.h>
 
 #include <osg/Node>
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/Playback.h>
-#include <osgGpuAnimation/animation/Result.h>
+#include <osgGpuAnimation/math/Result.h>
 #include <osgGpuAnimation/nodes/mesh/SceneVisitor.h>
 
 #include <cstddef>

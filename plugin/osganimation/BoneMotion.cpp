@@ -3,6 +3,7 @@
 
 #include "osganimation/CurveKeys.h"
 
+#include <osgGpuAnimation/math/Rotation.h>
 #include <osgGpuAnimation/nodes/OsgMatrix.h>
 
 #include <glm/common.hpp>

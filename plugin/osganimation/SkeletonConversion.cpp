@@ -5,7 +5,8 @@
 #include "osganimation/MorphMeshes.h"
 #include "osganimation/RigMeshes.h"
 
-#include <osgGpuAnimation/animation/ClipBuilder.h>
+#include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/authoring/ClipBuilder.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
 #include <osgGpuAnimation/nodes/mesh/SceneVisitor.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>

@@ -4,7 +4,7 @@
 #include "serializers/ValueStream.h"
 
 #include <osgGpuAnimation/animation/AnimationController.h>
-#include <osgGpuAnimation/animation/Skeleton.h>
+#include <osgGpuAnimation/animation/Constraint.h>
 
 #include <vector>
 

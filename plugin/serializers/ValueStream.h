@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <osgGpuAnimation/animation/JointTransform.h>
-#include <osgGpuAnimation/animation/Result.h>
+#include <osgGpuAnimation/math/JointTransform.h>
+#include <osgGpuAnimation/math/Result.h>
 
 #include <glm/vec3.hpp>
 #include <osgDB/InputStream>

@@ -3,7 +3,7 @@
 
 #include "tool/PoseRequest.h"
 
-#include <osgGpuAnimation/animation/Result.h>
+#include <osgGpuAnimation/math/Result.h>
 
 #include <string>
 #include <vector>

@@ -5,7 +5,7 @@
 #include "gltf/Import.h"
 #include "tool/PictureViewer.h"
 
-#include <osgGpuAnimation/animation/Result.h>
+#include <osgGpuAnimation/math/Result.h>
 
 #include <functional>
 #include <optional>

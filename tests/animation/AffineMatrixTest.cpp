@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <osgGpuAnimation/animation/JointTransform.h>
+#include <osgGpuAnimation/math/JointTransform.h>
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/AnimationController.h>
+#include <osgGpuAnimation/animation/AnimationSet.h>
 
 #include "AllocationCount.h"
-#include <osgGpuAnimation/animation/ClipBuilder.h>
+#include <osgGpuAnimation/authoring/ClipBuilder.h>
 
 #include <gtest/gtest.h>
 

@@ -3,8 +3,8 @@
 
 #include "support/RandomCharacter.h"
 #include <osgGpuAnimation/animation/bounds/JointRange.h>
-#include <osgGpuAnimation/animation/ClipBuilder.h>
 #include <osgGpuAnimation/animation/Pose.h>
+#include <osgGpuAnimation/authoring/ClipBuilder.h>
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,9 @@
 #include "support/JointSteps.h"
 
 #include <osgGpuAnimation/animation/AnimationController.h>
-#include <osgGpuAnimation/animation/ClipBuilder.h>
+#include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/authoring/ClipBuilder.h>
+#include <osgGpuAnimation/authoring/WithRootMotion.h>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>

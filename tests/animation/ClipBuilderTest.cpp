@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include <osgGpuAnimation/animation/ClipBuilder.h>
+#include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/authoring/ClipBuilder.h>
 
 #include "support/RandomCharacter.h"
 #include <osgGpuAnimation/animation/Pose.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <osgGpuAnimation/animation/ClipBuilder.h>
+#include <osgGpuAnimation/authoring/ClipBuilder.h>
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "support/RandomSet.h"
 
+#include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/animation/bounds/ClipTravel.h>
-#include <osgGpuAnimation/animation/ClipBuilder.h>
 #include <osgGpuAnimation/animation/Pose.h>
+#include <osgGpuAnimation/authoring/ClipBuilder.h>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include <osgGpuAnimation/animation/ClipBuilder.h>
+#include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/authoring/ClipBuilder.h>
+#include <osgGpuAnimation/authoring/CompactClips.h>
+#include <osgGpuAnimation/authoring/WithRootMotion.h>
 
 #include "support/GaitSet.h"
 #include "support/PoseErrors.h"

@@ -2,6 +2,8 @@
 #include "support/Limb.h"
 #include "support/RandomSet.h"
 
+#include <osgGpuAnimation/math/Rotation.h>
+
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -2,8 +2,9 @@
 #include "support/GaitSet.h"
 
 #include <osgGpuAnimation/animation/AnimationController.h>
-#include <osgGpuAnimation/animation/ClipBuilder.h>
 #include <osgGpuAnimation/animation/Pose.h>
+#include <osgGpuAnimation/authoring/ClipBuilder.h>
+#include <osgGpuAnimation/authoring/FootContacts.h>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>

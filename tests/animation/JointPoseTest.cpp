@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/animation/Pose.h>
+#include <osgGpuAnimation/authoring/CompactClips.h>
+#include <osgGpuAnimation/math/Rotation.h>
 
 #include "support/MixedPose.h"
 #include "support/PoseErrors.h"
@@ -9,8 +12,8 @@
 
 #include <osgGpuAnimation/animation/AnimationController.h>
 #include <osgGpuAnimation/animation/bounds/JointRange.h>
-#include <osgGpuAnimation/animation/ClipBuilder.h>
 #include <osgGpuAnimation/animation/keyframes/PosedKeyframe.h>
+#include <osgGpuAnimation/authoring/ClipBuilder.h>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include <osgGpuAnimation/animation/JointTransform.h>
+#include <osgGpuAnimation/math/JointTransform.h>
+#include <osgGpuAnimation/math/Rotation.h>
 
 #include "support/ReferencePose.h"
 

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/AnimationLayer.h>
+#include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/authoring/WithRootMotion.h>
 
 #include <osgGpuAnimation/animation/AnimationController.h>
-#include <osgGpuAnimation/animation/ClipBuilder.h>
 #include <osgGpuAnimation/animation/JointMask.h>
+#include <osgGpuAnimation/authoring/ClipBuilder.h>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/AnimationController.h>
+#include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/authoring/WithRootMotion.h>
 
 #include "support/GaitSet.h"
 
-#include <osgGpuAnimation/animation/ClipBuilder.h>
 #include <osgGpuAnimation/animation/JointMask.h>
 #include <osgGpuAnimation/animation/Pose.h>
+#include <osgGpuAnimation/authoring/ClipBuilder.h>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/bounds/ClipBounds.h>
+#include <osgGpuAnimation/math/Rotation.h>
 
 #include <osgGpuAnimation/animation/bounds/JointRange.h>
-#include <osgGpuAnimation/animation/JointTransform.h>
+#include <osgGpuAnimation/math/JointTransform.h>
 
 #include <glm/geometric.hpp>
 #include <glm/mat4x4.hpp>

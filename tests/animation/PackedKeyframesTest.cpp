@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/animation/keyframes/PackedKeyframes.h>
+#include <osgGpuAnimation/authoring/CompactClips.h>
 
 #include "support/PoseErrors.h"
 #include "support/RandomSet.h"
-#include <osgGpuAnimation/animation/ClipBuilder.h>
+#include <osgGpuAnimation/authoring/ClipBuilder.h>
 
 #include <layout.glsl>
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/animation/bounds/TransformBound.h>
-#include <osgGpuAnimation/animation/ClipBuilder.h>
 #include <osgGpuAnimation/animation/Pose.h>
+#include <osgGpuAnimation/authoring/ClipBuilder.h>
 
 #include <gtest/gtest.h>
 

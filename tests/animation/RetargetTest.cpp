@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/authoring/WithRootMotion.h>
 
 #include "support/RandomSet.h"
-#include <osgGpuAnimation/animation/ClipBuilder.h>
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/animation/retarget/JointNames.h>
 #include <osgGpuAnimation/animation/retarget/RigMatch.h>
+#include <osgGpuAnimation/authoring/ClipBuilder.h>
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include <osgGpuAnimation/animation/ClipBuilder.h>
+#include <osgGpuAnimation/authoring/ClipBuilder.h>
+#include <osgGpuAnimation/authoring/WithRootMotion.h>
+#include <osgGpuAnimation/math/Rotation.h>
 
 #include "AllocationCount.h"
 #include <osgGpuAnimation/animation/AnimationController.h>

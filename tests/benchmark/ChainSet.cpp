@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "ChainSet.h"
 
-#include <osgGpuAnimation/animation/ClipBuilder.h>
+#include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/authoring/ClipBuilder.h>
 
 #include <cmath>
 

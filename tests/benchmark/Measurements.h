@@ -5,7 +5,7 @@
 #include "Report.h"
 #include "Subject.h"
 
-#include <osgGpuAnimation/animation/Result.h>
+#include <osgGpuAnimation/math/Result.h>
 
 #include <osg/GraphicsContext>
 

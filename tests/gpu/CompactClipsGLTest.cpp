@@ -4,8 +4,10 @@
 #include "support/RandomLayers.h"
 #include "support/RandomSet.h"
 
-#include <osgGpuAnimation/animation/ClipBuilder.h>
+#include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/animation/Pose.h>
+#include <osgGpuAnimation/authoring/ClipBuilder.h>
+#include <osgGpuAnimation/authoring/CompactClips.h>
 #include <osgGpuAnimation/gpu/PosePipeline.h>
 
 #include <algorithm>

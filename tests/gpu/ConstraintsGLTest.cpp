@@ -6,8 +6,9 @@
 #include "support/RandomSet.h"
 #include "support/ReferenceBlend.h"
 
-#include <osgGpuAnimation/animation/ClipBuilder.h>
+#include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/animation/Pose.h>
+#include <osgGpuAnimation/authoring/ClipBuilder.h>
 #include <osgGpuAnimation/gpu/PosePipeline.h>
 
 #include <glm/gtc/matrix_transform.hpp>

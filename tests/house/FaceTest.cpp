@@ -35,7 +35,7 @@ std::vector<std::string> matches(const std::string& text, const std::regex& patt
 std::set<std::string> publicHeaders()
 {
     std::set<std::string> headers;
-    for (const char* folder : {"animation", "gpu", "nodes"})
+    for (const char* folder : {"math", "animation", "authoring", "gpu", "nodes"})
         for (const auto& entry : fs::directory_iterator(kit / folder))
             if (entry.path().extension() == ".h")
                 headers.insert(std::string(folder) + "/" + entry.path().filename().string());
@@ -50,7 +50,8 @@ std::set<std::string> setOf(const std::vector<std::string>& names)
 /// Paths between backticks: `tests/run.sh`, `animation/Pose` (a header with its source), `nodes/frame`.
 std::vector<std::string> namedPaths(const std::string& markdown)
 {
-    static const std::regex path(R"(`((?:animation|gpu|nodes|plugin|shaders|tests|scenes|osg_nodes)/[\w./-]*)`)");
+    static const std::regex path(
+        R"(`((?:math|animation|authoring|gpu|nodes|plugin|shaders|tests|scenes|osg_nodes)/[\w./-]*)`)");
     return matches(markdown, path);
 }
 
@@ -66,7 +67,7 @@ bool isPath(const std::string& path)
 
 TEST(FaceTest, theTableOfHeadersIsComplete)
 {
-    static const std::regex row(R"(\| `((?:animation|gpu|nodes)/\w+\.h)` \|)");
+    static const std::regex row(R"(\| `((?:math|animation|authoring|gpu|nodes)/\w+\.h)` \|)");
     EXPECT_EQ(setOf(matches(fileText(root / "osg_nodes/doc/application.md"), row)), publicHeaders());
 }
 

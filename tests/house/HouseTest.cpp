@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include <regex>
 #include <set>
@@ -12,8 +13,9 @@
 #include <string>
 #include <vector>
 
-// The house: which room may include which, and how large rooms and folders may be. A room is a header with its source.
-// The order is the list in tests/house/rooms.txt, lowest first: a room includes only rooms above its own line.
+// The house: which layer may include which, and how large rooms may be. A room is a header with its source. The order
+// of the layers is the list in tests/house/layers.txt, lowest first. Within a layer, no rooms include each other in a
+// circle.
 
 namespace osgGpuAnimation
 {
@@ -26,21 +28,36 @@ namespace fs = std::filesystem;
 using Texts =
     std::map<std::string, std::string>; ///< by path below the repository's root, such as "plugin/gltf/Import.h"
 
-constexpr std::size_t maxRoomsInFolder = 14;
 constexpr std::size_t maxFileLines = 600;
+constexpr std::size_t maxRoomLines = 650;
 constexpr std::size_t minSourceLines = 30; ///< shorter sources belong to a neighbour's room, with few exceptions
 constexpr std::size_t maxShortSources = 10;
 constexpr std::size_t maxReadmeLines = 150;
 
+/// Rooms with more lines. None may be added; a room that has become smaller leaves the list.
+const std::set<std::string> largeRooms = {
+    "osg_nodes/osgGpuAnimation/animation/AnimationController",
+    "osg_nodes/osgGpuAnimation/animation/AnimationLayer",
+    "osg_nodes/osgGpuAnimation/animation/AnimationSet",
+    "osg_nodes/osgGpuAnimation/animation/ClipMixer",
+    "osg_nodes/osgGpuAnimation/animation/Pose",
+    "osg_nodes/osgGpuAnimation/gpu/PosePipeline",
+    "osg_nodes/osgGpuAnimation/nodes/AnimatedCharacter",
+    "osg_nodes/osgGpuAnimation/nodes/AnimatedCrowd",
+    "osg_nodes/osgGpuAnimation/nodes/GroundFeet",
+    "osg_nodes/osgGpuAnimation/nodes/mesh/AnimatedProperties",
+};
+
 /// Headers of other people that a folder must not include.
-struct Layer
+struct Libraries
 {
     const char* folder;
     const char* forbidden;
 };
 
-const Layer layers[] = {
-    {"osg_nodes/osgGpuAnimation/animation/", R"(^(osg|osg[A-Z]\w*|GL|EGL|OpenThreads)/|^tiny_gltf)"},
+const Libraries libraries[] = {
+    {"osg_nodes/osgGpuAnimation/(math|animation|authoring)/",
+     R"(^(osg|osg[A-Z]\w*|GL|EGL|OpenThreads|nlohmann)/|^tiny_gltf)"},
     {"osg_nodes/osgGpuAnimation/gpu/", R"(^tiny_gltf|^osg(Viewer|DB|GA)/)"},
     {"osg_nodes/osgGpuAnimation/nodes/", R"(^tiny_gltf|^osgDB/)"},
     {"plugin/gltf/", R"(^osgViewer/)"},
@@ -64,67 +81,126 @@ std::string roomOf(const std::string& path)
 }
 
 /// The room that an include names, whichever of the include paths it is below; empty: none of ours.
-std::string roomOfInclude(const std::string& include, const std::map<std::string, std::size_t>& order)
+std::string roomOfInclude(const std::string& include, const std::set<std::string>& rooms)
 {
     for (const char* below : {"osg_nodes/", "plugin/"})
-        if (const std::string room = below + roomOf(include); order.count(room) != 0) return room;
+        if (const std::string room = below + roomOf(include); rooms.count(room) != 0) return room;
     return {};
 }
 
-std::map<std::string, std::size_t> orderOf(const std::string& list)
+std::set<std::string> roomsOf(const Texts& texts)
 {
-    std::map<std::string, std::size_t> order;
-    std::istringstream lines(list);
-    for (std::string line; std::getline(lines, line);)
-        if (!line.empty() && line[0] != '#') order.emplace(line, order.size());
-    return order;
+    std::set<std::string> rooms;
+    for (const auto& [path, text] : texts)
+        rooms.insert(roomOf(path));
+    return rooms;
 }
 
-/// Includes against the order, quoted includes that name no room by its path, rooms that the list does not have,
-/// entries of the list without a room.
-std::vector<std::string> faultsOfOrder(const Texts& texts, const std::map<std::string, std::size_t>& order)
+using Layers = std::vector<std::string>; ///< folders such as "plugin/gltf/", lowest first
+
+Layers layersOf(const std::string& list)
+{
+    Layers layers;
+    std::istringstream lines(list);
+    for (std::string line; std::getline(lines, line);)
+        if (!line.empty() && line[0] != '#') layers.push_back(line);
+    return layers;
+}
+
+/// The number of the layer with the longest path; layers.size(): none.
+std::size_t layerOf(const std::string& room, const Layers& layers)
+{
+    std::size_t found = layers.size();
+    for (std::size_t i = 0; i < layers.size(); ++i)
+        if (room.rfind(layers[i], 0) == 0 && (found == layers.size() || layers[i].size() > layers[found].size()))
+            found = i;
+    return found;
+}
+
+/// Includes of higher layers, quoted includes that name no room by its path, files below no layer, layers without a
+/// file.
+std::vector<std::string> faultsOfOrder(const Texts& texts, const Layers& layers)
 {
     std::vector<std::string> faults;
-    std::set<std::string> seen;
+    const std::set<std::string> rooms = roomsOf(texts);
+    std::set<std::size_t> seen;
     for (const auto& [path, text] : texts)
     {
-        const auto own = order.find(roomOf(path));
-        if (own == order.end())
-        {
-            faults.push_back(path + " is no room of the list");
-            continue;
-        }
-        seen.insert(own->first);
+        const std::size_t own = layerOf(path, layers);
+        if (own == layers.size()) faults.push_back(path + " is in no layer of the list");
+        seen.insert(own);
         for (const std::string& include : includesOf(text))
         {
-            const std::string other = roomOfInclude(include, order);
-            if (!other.empty() && order.at(other) > own->second)
+            const std::string other = roomOfInclude(include, rooms);
+            if (!other.empty() && layerOf(other, layers) > own)
                 faults.push_back(path + " includes " + other + ", which lies above it");
         }
         for (const std::string& include : includesOf(text, "\""))
-            if (roomOfInclude(include, order).empty()) faults.push_back(path + " includes " + include + ", no room");
+            if (roomOfInclude(include, rooms).empty()) faults.push_back(path + " includes " + include + ", no room");
     }
-    for (const auto& [room, place] : order)
-        if (seen.count(room) == 0) faults.push_back(room + " is on the list, but not in the tree");
+    for (std::size_t layer = 0; layer < layers.size(); ++layer)
+        if (seen.count(layer) == 0) faults.push_back(layers[layer] + " is on the list, but not in the tree");
     return faults;
+}
+
+/// The rooms that each room includes.
+std::map<std::string, std::set<std::string>> includedRooms(const Texts& texts)
+{
+    const std::set<std::string> rooms = roomsOf(texts);
+    std::map<std::string, std::set<std::string>> included;
+    for (const auto& [path, text] : texts)
+    {
+        std::set<std::string>& others = included[roomOf(path)];
+        for (const std::string& include : includesOf(text))
+            if (const std::string other = roomOfInclude(include, rooms); !other.empty() && other != roomOf(path))
+                others.insert(other);
+    }
+    return included;
+}
+
+/// One circle of rooms, if there is any.
+std::vector<std::string> faultsOfCircles(const Texts& texts)
+{
+    std::map<std::string, std::set<std::string>> left = includedRooms(texts);
+    const auto isLeft = [&](const std::string& room) { return left.count(room) != 0; };
+    // Rooms that include no other room are taken away, then those that included only these, and so on.
+    for (std::size_t before = 0; before != left.size();)
+    {
+        before = left.size();
+        for (auto room = left.begin(); room != left.end();)
+            room = std::any_of(room->second.begin(), room->second.end(), isLeft) ? std::next(room) : left.erase(room);
+    }
+    if (left.empty()) return {};
+    // Each of the others includes one of them: following the includes ends in a circle.
+    std::vector<std::string> way{left.begin()->first};
+    while (std::count(way.begin(), way.end(), way.back()) == 1)
+    {
+        const std::set<std::string>& others = left.at(way.back());
+        way.push_back(*std::find_if(others.begin(), others.end(), isLeft));
+    }
+    std::string circle = "a circle";
+    for (auto room = std::find(way.begin(), way.end(), way.back()); room != way.end(); ++room)
+        circle += (circle == "a circle" ? ": " : " includes ") + *room;
+    return {circle};
 }
 
 bool isFace(const std::string& room)
 {
-    static const std::regex face(R"(^osg_nodes/osgGpuAnimation/((animation|gpu|nodes)/)?\w+$)");
+    static const std::regex face(R"(^osg_nodes/osgGpuAnimation/((math|animation|authoring|gpu|nodes)/)?\w+$)");
     return std::regex_match(room, face);
 }
 
 /// Headers of faces that include rooms which are not installed.
-std::vector<std::string> faultsOfFaces(const Texts& texts, const std::map<std::string, std::size_t>& order)
+std::vector<std::string> faultsOfFaces(const Texts& texts)
 {
     std::vector<std::string> faults;
+    const std::set<std::string> rooms = roomsOf(texts);
     for (const auto& [path, text] : texts)
     {
         if (path.back() != 'h' || !isFace(roomOf(path))) continue;
         for (const std::string& include : includesOf(text))
         {
-            const std::string other = roomOfInclude(include, order);
+            const std::string other = roomOfInclude(include, rooms);
             const bool isPart = !other.empty() && !isFace(other);
             if (isPart || include == "layout.glsl") faults.push_back(path + " includes " + include);
         }
@@ -132,14 +208,14 @@ std::vector<std::string> faultsOfFaces(const Texts& texts, const std::map<std::s
     return faults;
 }
 
-std::vector<std::string> faultsOfLayers(const Texts& texts)
+std::vector<std::string> faultsOfLibraries(const Texts& texts)
 {
     std::vector<std::string> faults;
     for (const auto& [path, text] : texts)
-        for (const Layer& layer : layers)
+        for (const Libraries& those : libraries)
         {
-            if (path.rfind(layer.folder, 0) != 0) continue;
-            const std::regex forbidden(layer.forbidden);
+            if (!std::regex_search(path, std::regex(std::string("^") + those.folder))) continue;
+            const std::regex forbidden(those.forbidden);
             for (const std::string& include : includesOf(text))
                 if (include.rfind("osgGpuAnimation/", 0) != 0 && std::regex_search(include, forbidden))
                     faults.push_back(path + " includes " + include);
@@ -155,18 +231,20 @@ std::size_t lineCount(const std::string& text)
 std::vector<std::string> faultsOfSizes(const Texts& texts)
 {
     std::vector<std::string> faults;
-    std::map<std::string, std::set<std::string>> folders;
+    std::map<std::string, std::size_t> roomLines;
     std::vector<std::string> shortSources;
     for (const auto& [path, text] : texts)
     {
-        folders[path.substr(0, path.rfind('/'))].insert(roomOf(path));
         const std::size_t lines = lineCount(text);
+        roomLines[roomOf(path)] += lines;
         if (lines > maxFileLines) faults.push_back(path + " has " + std::to_string(lines) + " lines");
         if (path.back() == 'p' && lines < minSourceLines) shortSources.push_back(path);
     }
-    for (const auto& [folder, rooms] : folders)
-        if (rooms.size() > maxRoomsInFolder)
-            faults.push_back(folder + " has " + std::to_string(rooms.size()) + " rooms");
+    for (const auto& [room, lines] : roomLines)
+        if (lines > maxRoomLines && largeRooms.count(room) == 0)
+            faults.push_back(room + " has " + std::to_string(lines) + " lines");
+        else if (lines <= maxRoomLines && largeRooms.count(room) != 0)
+            faults.push_back(room + " is no large room any more");
     if (shortSources.size() > maxShortSources)
         for (const std::string& path : shortSources)
             faults.push_back(path + " is one of " + std::to_string(shortSources.size()) + " short sources");
@@ -197,27 +275,31 @@ class HouseTest : public ::testing::Test
 {
 protected:
     const Texts texts = readHouse();
-    const std::map<std::string, std::size_t> order =
-        orderOf(fileText(fs::path(OSGGPUANIMATION_SOURCE_FOLDER) / "tests/house/rooms.txt"));
+    const Layers layers = layersOf(fileText(fs::path(OSGGPUANIMATION_SOURCE_FOLDER) / "tests/house/layers.txt"));
 };
 
-TEST_F(HouseTest, roomsIncludeOnlyLowerRooms)
+TEST_F(HouseTest, layersIncludeOnlyLowerLayers)
 {
     EXPECT_GT(texts.size(), 100u) << "the check must have something to check";
-    EXPECT_EQ(joined(faultsOfOrder(texts, order)), "");
+    EXPECT_EQ(joined(faultsOfOrder(texts, layers)), "");
+}
+
+TEST_F(HouseTest, noRoomsIncludeEachOtherInACircle)
+{
+    EXPECT_EQ(joined(faultsOfCircles(texts)), "");
 }
 
 TEST_F(HouseTest, layersIncludeOnlyTheirOwnLibraries)
 {
-    EXPECT_EQ(joined(faultsOfLayers(texts)), "");
+    EXPECT_EQ(joined(faultsOfLibraries(texts)), "");
 }
 
 TEST_F(HouseTest, headersOfFacesIncludeNothingButFaces)
 {
-    EXPECT_EQ(joined(faultsOfFaces(texts, order)), "");
+    EXPECT_EQ(joined(faultsOfFaces(texts)), "");
 }
 
-TEST_F(HouseTest, roomsAndFoldersAreOfReadableSize)
+TEST_F(HouseTest, roomsAreOfReadableSize)
 {
     EXPECT_EQ(joined(faultsOfSizes(texts)), "");
 }
@@ -252,11 +334,25 @@ TEST(PlantedPackageTest, versionsAreSeen)
               "g++-12\nlibdraco7\nlibpng16-16t64\n");
 }
 
-const char plantedOrder[] = "# lowest first\n"
-                            "osg_nodes/osgGpuAnimation/animation/math/Aabb3d\n"
-                            "osg_nodes/osgGpuAnimation/animation/Clip\n"
-                            "osg_nodes/osgGpuAnimation/nodes/AnimatedCharacter\n"
-                            "plugin/gltf/Import\n";
+const char plantedLayers[] = "# lowest first\n"
+                             "osg_nodes/osgGpuAnimation/math/\n"
+                             "osg_nodes/osgGpuAnimation/animation/\n"
+                             "osg_nodes/osgGpuAnimation/authoring/\n"
+                             "osg_nodes/osgGpuAnimation/gpu/\n"
+                             "osg_nodes/osgGpuAnimation/nodes/\n"
+                             "plugin/gltf/\n"
+                             "plugin/\n";
+
+/// Empty headers, at least one in each layer.
+const char* const plantedHeaders[] = {"osg_nodes/osgGpuAnimation/math/Box.h",
+                                      "osg_nodes/osgGpuAnimation/animation/Clip.h",
+                                      "osg_nodes/osgGpuAnimation/animation/Pose.h",
+                                      "osg_nodes/osgGpuAnimation/animation/bounds/MixBounds.h",
+                                      "osg_nodes/osgGpuAnimation/authoring/ClipBuilder.h",
+                                      "osg_nodes/osgGpuAnimation/gpu/PoseBatch.h",
+                                      "osg_nodes/osgGpuAnimation/nodes/AnimatedCharacter.h",
+                                      "plugin/gltf/Import.h",
+                                      "plugin/ReaderWriterGltf.h"};
 
 struct Planted
 {
@@ -271,13 +367,13 @@ class PlantedIncludeTest : public ::testing::TestWithParam<Planted>
 
 TEST_P(PlantedIncludeTest, isSeen)
 {
-    const std::map<std::string, std::size_t> order = orderOf(plantedOrder);
     Texts texts;
-    for (const auto& [room, place] : order)
-        texts[room + ".h"];
+    for (const char* header : plantedHeaders)
+        texts[header];
     texts[GetParam().path] = GetParam().text;
-    std::vector<std::string> faults = faultsOfOrder(texts, order);
-    for (const std::vector<std::string>& more : {faultsOfFaces(texts, order), faultsOfLayers(texts)})
+    std::vector<std::string> faults = faultsOfOrder(texts, layersOf(plantedLayers));
+    for (const std::vector<std::string>& more :
+         {faultsOfCircles(texts), faultsOfFaces(texts), faultsOfLibraries(texts)})
         faults.insert(faults.end(), more.begin(), more.end());
     if (*GetParam().fault == '\0')
         EXPECT_EQ(joined(faults), "");
@@ -287,27 +383,54 @@ TEST_P(PlantedIncludeTest, isSeen)
 
 INSTANTIATE_TEST_SUITE_P(
     Planted, PlantedIncludeTest,
-    ::testing::Values(Planted{"osg_nodes/osgGpuAnimation/animation/math/Aabb3d.cpp",
-                              "#include <osgGpuAnimation/animation/Clip.h>\n", "lies above it"},
-                      Planted{"osg_nodes/osgGpuAnimation/animation/Clip.cpp",
-                              "  #  include <osgGpuAnimation/nodes/AnimatedCharacter.h>\n", "lies above it"},
-                      Planted{"osg_nodes/osgGpuAnimation/nodes/AnimatedCharacter.cpp", "#include \"gltf/Import.h\"\n",
-                              "lies above it"},
-                      Planted{"plugin/gltf/Import.cpp", "#include \"Other.h\"\n", "no room"},
-                      Planted{"osg_nodes/osgGpuAnimation/animation/New.cpp", "", "is no room of the list"},
-                      Planted{"osg_nodes/osgGpuAnimation/animation/Clip.h",
-                              "#include <osgGpuAnimation/animation/math/Aabb3d.h>\n", "Clip.h includes"},
-                      Planted{"osg_nodes/osgGpuAnimation/animation/Clip.cpp", "#include <osg/Vec3>\n",
-                              "includes osg/Vec3"},
-                      Planted{"osg_nodes/osgGpuAnimation/nodes/AnimatedCharacter.cpp", "#include <tiny_gltf.h>\n",
-                              "includes tiny_gltf.h"},
-                      Planted{"osg_nodes/osgGpuAnimation/animation/Clip.cpp",
-                              "#include <osgGpuAnimation/animation/math/Aabb3d.h>\n#include <glm/vec3.hpp>\n", ""},
-                      Planted{"plugin/gltf/Import.cpp", "#include <osgGpuAnimation/nodes/AnimatedCharacter.h>\n", ""}));
+    ::testing::Values(
+        Planted{"osg_nodes/osgGpuAnimation/math/Box.cpp", "#include <osgGpuAnimation/animation/Clip.h>\n",
+                "lies above it"},
+        Planted{"osg_nodes/osgGpuAnimation/animation/Clip.cpp", "#include <osgGpuAnimation/authoring/ClipBuilder.h>\n",
+                "lies above it"},
+        Planted{"osg_nodes/osgGpuAnimation/animation/bounds/MixBounds.cpp",
+                "#include <osgGpuAnimation/gpu/PoseBatch.h>\n", "lies above it"},
+        Planted{"osg_nodes/osgGpuAnimation/authoring/ClipBuilder.cpp", "#include <osgGpuAnimation/gpu/PoseBatch.h>\n",
+                "lies above it"},
+        Planted{"osg_nodes/osgGpuAnimation/gpu/PoseBatch.cpp", "#include <osgGpuAnimation/nodes/AnimatedCharacter.h>\n",
+                "lies above it"},
+        Planted{"osg_nodes/osgGpuAnimation/animation/Clip.cpp",
+                "  #  include <osgGpuAnimation/nodes/AnimatedCharacter.h>\n", "lies above it"},
+        Planted{"osg_nodes/osgGpuAnimation/nodes/AnimatedCharacter.cpp", "#include \"gltf/Import.h\"\n",
+                "lies above it"},
+        Planted{"plugin/gltf/Import.cpp", "#include \"ReaderWriterGltf.h\"\n", "lies above it"},
+        Planted{"plugin/gltf/Import.cpp", "#include \"Other.h\"\n", "no room"},
+        Planted{"osg_nodes/osgGpuAnimation/New.h", "\n", "is in no layer"},
+        Planted{"osg_nodes/osgGpuAnimation/animation/Clip.h",
+                "#include <osgGpuAnimation/animation/bounds/MixBounds.h>\n", "Clip.h includes"},
+        Planted{"osg_nodes/osgGpuAnimation/animation/Clip.cpp", "#include <osg/Vec3>\n", "includes osg/Vec3"},
+        Planted{"osg_nodes/osgGpuAnimation/math/Box.h", "#include <osg/Vec3>\n", "includes osg/Vec3"},
+        Planted{"osg_nodes/osgGpuAnimation/authoring/ClipBuilder.cpp", "#include <osg/Vec3>\n", "includes osg/Vec3"},
+        Planted{"osg_nodes/osgGpuAnimation/nodes/AnimatedCharacter.cpp", "#include <tiny_gltf.h>\n",
+                "includes tiny_gltf.h"},
+        Planted{"osg_nodes/osgGpuAnimation/animation/Clip.cpp",
+                "#include <osgGpuAnimation/math/Box.h>\n#include <glm/vec3.hpp>\n", ""},
+        Planted{"osg_nodes/osgGpuAnimation/authoring/ClipBuilder.h", "#include <osgGpuAnimation/animation/Clip.h>\n",
+                ""},
+        Planted{"plugin/gltf/Import.cpp", "#include <osgGpuAnimation/nodes/AnimatedCharacter.h>\n", ""}));
 
-TEST(PlantedRoomTest, missingRoomIsSeen)
+TEST(PlantedRoomTest, circlesAreSeen)
 {
-    EXPECT_EQ(faultsOfOrder({}, orderOf("plugin/gltf/Import\n")).size(), 1u);
+    Texts texts;
+    texts["plugin/A.h"] = "#include \"B.h\"\n";
+    texts["plugin/B.h"];
+    texts["plugin/B.cpp"] = "#include \"B.h\"\n#include \"C.h\"\n";
+    texts["plugin/C.h"];
+    texts["plugin/0.cpp"] = "#include \"A.h\"\n"; // outside the circle
+    EXPECT_TRUE(faultsOfCircles(texts).empty());
+    texts["plugin/C.cpp"] = "#include \"A.h\"\n";
+    EXPECT_EQ(joined(faultsOfCircles(texts)),
+              "a circle: plugin/A includes plugin/B includes plugin/C includes plugin/A\n");
+}
+
+TEST(PlantedRoomTest, missingLayerIsSeen)
+{
+    EXPECT_EQ(faultsOfOrder({}, layersOf("plugin/gltf/\n")).size(), 1u);
 }
 
 TEST(PlantedRoomTest, sizesAreSeen)
@@ -317,9 +440,13 @@ TEST(PlantedRoomTest, sizesAreSeen)
     texts["plugin/Long.cpp"] = std::string(maxFileLines + 1, '\n');
     EXPECT_EQ(faultsOfSizes(texts).size(), 1u);
     texts.clear();
-    for (std::size_t room = 0; room <= maxRoomsInFolder; ++room)
-        texts["plugin/Room" + std::to_string(room) + ".h"] = "\n";
+    texts["plugin/Long.h"] = std::string(maxRoomLines / 2 + 1, '\n');
+    EXPECT_TRUE(faultsOfSizes(texts).empty());
+    texts["plugin/Long.cpp"] = std::string(maxRoomLines / 2, '\n');
     EXPECT_EQ(faultsOfSizes(texts).size(), 1u);
+    texts.clear();
+    texts[*largeRooms.begin() + ".h"] = "\n";
+    EXPECT_EQ(faultsOfSizes(texts).size(), 1u) << "a room that is large no more";
     texts.clear();
     for (std::size_t room = 0; room <= maxShortSources; ++room)
         texts["plugin/" + std::to_string(room) + "/Room.cpp"] = "\n";

@@ -2,8 +2,10 @@
 #include "nodes/TriangleBox.h"
 #include "support/TestCharacter.h"
 
-#include <osgGpuAnimation/animation/ClipBuilder.h>
+#include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/animation/StateMachine.h>
+#include <osgGpuAnimation/authoring/ClipBuilder.h>
+#include <osgGpuAnimation/authoring/WithRootMotion.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
 

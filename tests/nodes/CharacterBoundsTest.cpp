@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "support/TestCharacter.h"
 
-#include <osgGpuAnimation/animation/ClipBuilder.h>
+#include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/animation/Pose.h>
+#include <osgGpuAnimation/authoring/ClipBuilder.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 
 #include <osg/ComputeBoundsVisitor>

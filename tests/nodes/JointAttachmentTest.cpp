@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/authoring/WithRootMotion.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
 
 #include "support/TestCharacter.h"
 
-#include <osgGpuAnimation/animation/ClipBuilder.h>
 #include <osgGpuAnimation/animation/JointMask.h>
+#include <osgGpuAnimation/authoring/ClipBuilder.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 

@@ -2,8 +2,9 @@
 #include "nodes/UpdateVisits.h"
 #include "support/NotifyLog.h"
 
-#include <osgGpuAnimation/animation/ClipBuilder.h>
+#include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/animation/Pose.h>
+#include <osgGpuAnimation/authoring/ClipBuilder.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/OsgMatrix.h>
 #include <osgGpuAnimation/nodes/SpringBones.h>

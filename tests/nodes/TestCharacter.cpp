@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "support/TestCharacter.h"
 
-#include <osgGpuAnimation/animation/ClipBuilder.h>
+#include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/authoring/ClipBuilder.h>
 #include <osgGpuAnimation/nodes/CharacterProgram.h>
 
 #include <cmath>

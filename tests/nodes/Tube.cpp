@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "nodes/Tube.h"
 
-#include <osgGpuAnimation/animation/ClipBuilder.h>
+#include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/authoring/ClipBuilder.h>
 #include <osgGpuAnimation/nodes/CharacterProgram.h>
 
 #include <gtest/gtest.h>

@@ -3,7 +3,8 @@
 #include "plugin/PluginFolder.h"
 #include "support/ScratchFolder.h"
 
-#include <osgGpuAnimation/animation/ClipBuilder.h>
+#include <osgGpuAnimation/authoring/ClipBuilder.h>
+#include <osgGpuAnimation/authoring/WithRootMotion.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>

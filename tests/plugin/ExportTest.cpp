@@ -6,7 +6,8 @@
 #include "plugin/RoundTrip.h"
 #include "plugin/StoredScene.h"
 
-#include <osgGpuAnimation/animation/ClipBuilder.h>
+#include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/authoring/ClipBuilder.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/shading/PunctualLight.h>
 

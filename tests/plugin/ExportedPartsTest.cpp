@@ -6,7 +6,8 @@
 #include "plugin/PointerFile.h"
 #include "plugin/RoundTrip.h"
 
-#include <osgGpuAnimation/animation/ClipBuilder.h>
+#include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/authoring/ClipBuilder.h>
 #include <osgGpuAnimation/nodes/mesh/AnimatedProperties.h>
 #include <osgGpuAnimation/nodes/mesh/MeshNames.h>
 #include <osgGpuAnimation/nodes/PbrMaterial.h>

@@ -2,8 +2,10 @@
 #include "gltf/Import.h"
 #include "plugin/SharedAssets.h"
 
-#include <osgGpuAnimation/animation/ClipBuilder.h>
+#include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/animation/Pose.h>
+#include <osgGpuAnimation/authoring/ClipBuilder.h>
+#include <osgGpuAnimation/authoring/FootContacts.h>
 
 #include <gtest/gtest.h>
 

@@ -3,9 +3,12 @@
 #include "support/ScratchFolder.h"
 #include "support/WorkingFolder.h"
 
-#include <osgGpuAnimation/animation/ClipBuilder.h>
+#include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/animation/JointMask.h>
 #include <osgGpuAnimation/animation/StateMachine.h>
+#include <osgGpuAnimation/authoring/ClipBuilder.h>
+#include <osgGpuAnimation/authoring/FootContacts.h>
+#include <osgGpuAnimation/authoring/WithRootMotion.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/GroundFeet.h>

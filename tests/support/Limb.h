@@ -3,6 +3,7 @@
 
 #include <osgGpuAnimation/animation/AnimationController.h>
 #include <osgGpuAnimation/animation/Pose.h>
+#include <osgGpuAnimation/math/Rotation.h>
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>

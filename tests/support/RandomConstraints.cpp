@@ -3,6 +3,7 @@
 
 #include <osgGpuAnimation/animation/constraints/ConstraintChain.h>
 #include <osgGpuAnimation/animation/Pose.h>
+#include <osgGpuAnimation/math/Rotation.h>
 
 #include <glm/geometric.hpp>
 

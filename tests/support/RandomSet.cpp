@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "support/RandomSet.h"
 
-#include <osgGpuAnimation/animation/ClipBuilder.h>
+#include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/authoring/ClipBuilder.h>
 
 #include <layout.glsl>
 

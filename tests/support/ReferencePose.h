@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <osgGpuAnimation/animation/ClipBuilder.h>
+#include <osgGpuAnimation/authoring/ClipBuilder.h>
+#include <osgGpuAnimation/math/Hermite.h>
 
 #include <glm/mat4x4.hpp>
 

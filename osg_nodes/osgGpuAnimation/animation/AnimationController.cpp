@@ -5,6 +5,7 @@
 #include <osgGpuAnimation/animation/constraints/ConstraintGoals.h>
 #include <osgGpuAnimation/animation/playback/BlendList.h>
 #include <osgGpuAnimation/animation/playback/FrameEvents.h>
+#include <osgGpuAnimation/math/Rotation.h>
 
 #include <glm/gtc/constants.hpp>
 

@@ -3,6 +3,7 @@
 
 #include <osgGpuAnimation/animation/AnimationLayer.h>
 #include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/animation/BlendSpace.h>
 #include <osgGpuAnimation/animation/Playback.h>
 #include <osgGpuAnimation/animation/RootMotion.h>
 

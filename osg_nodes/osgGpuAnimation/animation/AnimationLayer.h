@@ -2,7 +2,9 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/animation/BlendSpace.h>
 #include <osgGpuAnimation/animation/ClipMixer.h>
+#include <osgGpuAnimation/animation/Fade.h>
 #include <osgGpuAnimation/animation/Playback.h>
 #include <osgGpuAnimation/animation/Pose.h>
 

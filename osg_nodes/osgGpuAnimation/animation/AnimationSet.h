@@ -2,8 +2,10 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/Clip.h>
-#include <osgGpuAnimation/animation/Result.h>
+#include <osgGpuAnimation/animation/Constraint.h>
+#include <osgGpuAnimation/animation/PaletteEntry.h>
 #include <osgGpuAnimation/animation/Skeleton.h>
+#include <osgGpuAnimation/math/Result.h>
 
 #include <array>
 #include <cstddef>

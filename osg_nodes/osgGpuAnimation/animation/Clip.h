@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <osgGpuAnimation/animation/JointTransform.h>
-#include <osgGpuAnimation/animation/Result.h>
 #include <osgGpuAnimation/animation/RootMotion.h>
+#include <osgGpuAnimation/math/JointTransform.h>
+#include <osgGpuAnimation/math/Result.h>
 
 #include <cstddef>
 #include <map>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <osgGpuAnimation/animation/BlendSpace.h>
+#include <osgGpuAnimation/animation/Fade.h>
 #include <osgGpuAnimation/animation/Playback.h>
 
 #include <glm/vec2.hpp>

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/RootMotion.h>
 
-#include <osgGpuAnimation/animation/JointTransform.h>
+#include <osgGpuAnimation/math/Hermite.h>
+#include <osgGpuAnimation/math/JointTransform.h>
 
 #include <glm/common.hpp>
 #include <glm/gtc/quaternion.hpp>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/Skeleton.h>
 
+#include <osgGpuAnimation/math/Rotation.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <numeric>

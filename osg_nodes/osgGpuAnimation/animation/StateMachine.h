@@ -3,8 +3,9 @@
 
 #include <osgGpuAnimation/animation/AnimationController.h>
 #include <osgGpuAnimation/animation/AnimationSet.h>
+#include <osgGpuAnimation/animation/BlendSpace.h>
 #include <osgGpuAnimation/animation/Playback.h>
-#include <osgGpuAnimation/animation/Result.h>
+#include <osgGpuAnimation/math/Result.h>
 
 #include <memory>
 #include <optional>

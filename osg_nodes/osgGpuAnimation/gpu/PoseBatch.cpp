@@ -3,6 +3,7 @@
 
 #include <osgGpuAnimation/animation/constraints/AxisTurns.h>
 #include <osgGpuAnimation/animation/keyframes/PosedKeyframe.h>
+#include <osgGpuAnimation/math/Rotation.h>
 
 #include <layout.glsl>
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
-#include <osgGpuAnimation/animation/Result.h>
+#include <osgGpuAnimation/math/Result.h>
 
 #include <osg/Callback>
 #include <osg/Node>

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/AnimationController.h>
-#include <osgGpuAnimation/animation/JointTransform.h>
 #include <osgGpuAnimation/animation/Pose.h>
-#include <osgGpuAnimation/animation/Result.h>
 #include <osgGpuAnimation/animation/RootMotion.h>
+#include <osgGpuAnimation/math/JointTransform.h>
+#include <osgGpuAnimation/math/Result.h>
 
 #include <glm/gtc/type_ptr.hpp>
 #include <glm/matrix.hpp>

@@ -2,6 +2,7 @@
 #include <osgGpuAnimation/nodes/SpringBones.h>
 
 #include <osgGpuAnimation/animation/Pose.h>
+#include <osgGpuAnimation/math/Rotation.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/frame/CharacterStates.h>
 #include <osgGpuAnimation/nodes/OsgMatrix.h>

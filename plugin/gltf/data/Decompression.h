@@ -4,7 +4,7 @@
 #include "gltf/document/JsonTree.h"
 #include "gltf/document/MemoryBudget.h"
 
-#include <osgGpuAnimation/animation/Result.h>
+#include <osgGpuAnimation/math/Result.h>
 
 #include <tiny_gltf.h>
 

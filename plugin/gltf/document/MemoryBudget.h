@@ -3,7 +3,7 @@
 
 #include "gltf/document/JsonTree.h"
 
-#include <osgGpuAnimation/animation/Result.h>
+#include <osgGpuAnimation/math/Result.h>
 
 #include <cstddef>
 #include <optional>

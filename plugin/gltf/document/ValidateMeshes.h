@@ -4,7 +4,7 @@
 #include "gltf/document/MemoryBudget.h"
 #include "gltf/file/Report.h"
 
-#include <osgGpuAnimation/animation/Result.h>
+#include <osgGpuAnimation/math/Result.h>
 
 #include <tiny_gltf.h>
 

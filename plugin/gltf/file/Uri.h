@@ -3,7 +3,7 @@
 
 #include "gltf/file/ModelBytes.h"
 
-#include <osgGpuAnimation/animation/Result.h>
+#include <osgGpuAnimation/math/Result.h>
 
 #include <cstddef>
 #include <filesystem>

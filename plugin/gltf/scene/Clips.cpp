@@ -7,7 +7,7 @@
 
 #include <osgGpuAnimation/animation/bounds/TransformBound.h>
 #include <osgGpuAnimation/animation/Clip.h>
-#include <osgGpuAnimation/animation/ClipBuilder.h>
+#include <osgGpuAnimation/authoring/ClipBuilder.h>
 
 #include <cmath>
 #include <optional>

@@ -3,7 +3,7 @@
 
 #include "gltf/ImportOptions.h"
 
-#include <osgGpuAnimation/animation/Result.h>
+#include <osgGpuAnimation/math/Result.h>
 
 #include <glm/mat4x4.hpp>
 #include <tiny_gltf.h>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/write/ClipKeys.h"
 
+#include <osgGpuAnimation/math/Hermite.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>

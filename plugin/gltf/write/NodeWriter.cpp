@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/write/NodeWriter.h"
 
+#include <osgGpuAnimation/math/Rotation.h>
+
 #include <glm/geometric.hpp>
 
 #include <algorithm>

@@ -6,7 +6,7 @@
 #include "gltf/write/GlbWriter.h"
 
 #include <osgGpuAnimation/animation/bounds/TransformBound.h>
-#include <osgGpuAnimation/animation/JointTransform.h>
+#include <osgGpuAnimation/math/JointTransform.h>
 #include <osgGpuAnimation/nodes/mesh/SceneVisitor.h>
 
 #include <osg/Matrixd>

@@ -2,6 +2,7 @@
 #include <osgGpuAnimation/animation/bounds/ClipBounds.h>
 
 #include <osgGpuAnimation/animation/Pose.h>
+#include <osgGpuAnimation/math/Rotation.h>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>

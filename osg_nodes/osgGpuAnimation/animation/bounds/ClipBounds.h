@@ -3,7 +3,7 @@
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/animation/keyframes/TrackBlend.h>
-#include <osgGpuAnimation/animation/math/Box.h>
+#include <osgGpuAnimation/math/Box.h>
 
 #include <vector>
 

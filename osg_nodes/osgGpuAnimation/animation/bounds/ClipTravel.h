@@ -2,7 +2,7 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
-#include <osgGpuAnimation/animation/math/Box.h>
+#include <osgGpuAnimation/math/Box.h>
 
 #include <algorithm>
 #include <array>

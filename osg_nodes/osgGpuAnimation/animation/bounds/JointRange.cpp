@@ -2,7 +2,8 @@
 #include <osgGpuAnimation/animation/bounds/JointRange.h>
 
 #include <osgGpuAnimation/animation/keyframes/PosedKeyframe.h>
-#include <osgGpuAnimation/animation/math/Box.h>
+#include <osgGpuAnimation/math/Box.h>
+#include <osgGpuAnimation/math/Rotation.h>
 
 #include <layout.glsl>
 

@@ -3,6 +3,7 @@
 
 #include <osgGpuAnimation/animation/bounds/JointRange.h>
 #include <osgGpuAnimation/animation/constraints/ConstraintChain.h>
+#include <osgGpuAnimation/math/Rotation.h>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>

@@ -3,7 +3,7 @@
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/animation/ClipMixer.h>
-#include <osgGpuAnimation/animation/math/Box.h>
+#include <osgGpuAnimation/math/Box.h>
 
 #include <cstdint>
 #include <map>

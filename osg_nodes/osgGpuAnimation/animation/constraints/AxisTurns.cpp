@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/constraints/AxisTurns.h>
 
-#include <osgGpuAnimation/animation/JointTransform.h>
+#include <osgGpuAnimation/math/JointTransform.h>
 
 #include <glm/geometric.hpp>
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <osgGpuAnimation/animation/Result.h>
+#include <osgGpuAnimation/animation/Constraint.h>
 #include <osgGpuAnimation/animation/Skeleton.h>
+#include <osgGpuAnimation/math/Result.h>
 
 #include <glm/vec3.hpp>
 

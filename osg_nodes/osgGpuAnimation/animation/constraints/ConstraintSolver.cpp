@@ -2,6 +2,7 @@
 #include <osgGpuAnimation/animation/constraints/ConstraintSolver.h>
 
 #include <osgGpuAnimation/animation/constraints/AxisTurns.h>
+#include <osgGpuAnimation/math/Rotation.h>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>

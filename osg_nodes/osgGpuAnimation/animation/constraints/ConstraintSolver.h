@@ -2,7 +2,7 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/constraints/ConstraintChain.h>
-#include <osgGpuAnimation/animation/JointTransform.h>
+#include <osgGpuAnimation/math/JointTransform.h>
 
 #include <glm/mat4x4.hpp>
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/keyframes/CompactTracks.h>
 
+#include <osgGpuAnimation/math/Rotation.h>
+
 #include <layout.glsl>
 
 #include <glm/common.hpp>

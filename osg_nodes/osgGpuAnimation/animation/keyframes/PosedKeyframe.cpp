@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/keyframes/PosedKeyframe.h>
 
+#include <osgGpuAnimation/math/Rotation.h>
+
 #include <layout.glsl>
 
 #include <glm/geometric.hpp>

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/animation/keyframes/TrackBlend.h>
 
+#include <osgGpuAnimation/math/Hermite.h>
+#include <osgGpuAnimation/math/Rotation.h>
+
 #include <layout.glsl>
 
 #include <glm/common.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <osgGpuAnimation/animation/JointTransform.h>
+#include <osgGpuAnimation/math/JointTransform.h>
 
 #include <cstddef>
 

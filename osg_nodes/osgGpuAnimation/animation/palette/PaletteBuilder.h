@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <osgGpuAnimation/animation/PaletteEntry.h>
 #include <osgGpuAnimation/animation/Skeleton.h>
 
 #include <vector>

@@ -2,6 +2,7 @@
 #include <osgGpuAnimation/animation/retarget/RigMatch.h>
 
 #include <osgGpuAnimation/animation/retarget/JointNames.h>
+#include <osgGpuAnimation/math/Rotation.h>
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <osgGpuAnimation/animation/JointTransform.h>
 #include <osgGpuAnimation/gpu/buffers/BufferTexture.h>
+#include <osgGpuAnimation/math/JointTransform.h>
 
 #include <osg/GLObjects>
 #include <osg/State>

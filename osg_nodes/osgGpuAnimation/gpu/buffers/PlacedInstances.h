@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <osgGpuAnimation/animation/JointTransform.h>
 #include <osgGpuAnimation/gpu/buffers/BufferTexture.h>
 #include <osgGpuAnimation/gpu/buffers/SharedBlocks.h>
+#include <osgGpuAnimation/math/JointTransform.h>
 
 #include <osg/GLObjects>
 #include <osg/State>

@@ -3,6 +3,7 @@
 
 #include <osgGpuAnimation/animation/AnimationController.h>
 #include <osgGpuAnimation/animation/Pose.h>
+#include <osgGpuAnimation/authoring/FootContacts.h>
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <osgGpuAnimation/animation/keyframes/BitAllocator.h>
+#include <osgGpuAnimation/authoring/keyframes/BitAllocator.h>
 
 #include <osgGpuAnimation/animation/Pose.h>
 

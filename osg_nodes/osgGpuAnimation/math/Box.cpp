@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <osgGpuAnimation/animation/math/Box.h>
+#include <osgGpuAnimation/math/Box.h>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>

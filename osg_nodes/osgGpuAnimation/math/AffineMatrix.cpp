@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <osgGpuAnimation/animation/JointTransform.h>
+#include <osgGpuAnimation/math/AffineMatrix.h>
 
 #include <layout.glsl>
 
@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 namespace osgGpuAnimation
 {
@@ -24,11 +25,6 @@ glm::dvec4 row(const AffineMatrix& matrix, std::size_t index)
 glm::vec3 product(const AffineMatrix& matrix, const glm::dvec4& v)
 {
     return glm::vec3(glm::dvec3(glm::dot(row(matrix, 0), v), glm::dot(row(matrix, 1), v), glm::dot(row(matrix, 2), v)));
-}
-
-bool areFinite(const glm::vec4& v)
-{
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z) && std::isfinite(v.w);
 }
 
 } // namespace
@@ -64,6 +60,11 @@ bool AffineMatrix::isFinite() const
     return areFinite(rows[0]) && areFinite(rows[1]) && areFinite(rows[2]);
 }
 
+bool areFinite(const glm::vec4& v)
+{
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z) && std::isfinite(v.w);
+}
+
 glm::vec4 limited(const glm::dvec4& row)
 {
     glm::vec4 result;
@@ -94,48 +95,6 @@ glm::dmat4 limitedProduct(const glm::dmat4& a, const glm::dmat4& b)
     for (int column = 0; column < 4; ++column)
         product[column] = glm::clamp(product[column], -POSE_LARGEST_NUMBER, POSE_LARGEST_NUMBER);
     return product;
-}
-
-namespace Rotation
-{
-
-glm::dvec4 unit(const glm::dvec4& q)
-{
-    const double squared = glm::dot(q, q);
-    if (!(squared > 0.0) || !std::isfinite(squared)) return glm::dvec4(0.0, 0.0, 0.0, 1.0);
-    return q / std::sqrt(squared);
-}
-
-glm::dvec4 slerp(const glm::dvec4& a, const glm::dvec4& b, double alpha)
-{
-    const glm::dvec4 from = unit(a);
-    // At alpha 0 the result does not depend on b, which may be too large to be squared.
-    return alpha == 0.0 ? from : numbers(glm::slerp(quaternion(from), quaternion(unit(b)), alpha));
-}
-
-} // namespace Rotation
-
-AffineMatrix JointTransform::toMatrix() const
-{
-    const glm::dmat3 turn = Rotation::matrix(Rotation::unit(glm::dvec4(rotation)));
-    const glm::dvec4 size(scale);
-    AffineMatrix matrix;
-    for (int row = 0; row < 3; ++row)
-        matrix.rows[static_cast<std::size_t>(row)] =
-            limited({turn[0][row] * size.x, turn[1][row] * size.y, turn[2][row] * size.z, translation[row]});
-    return matrix;
-}
-
-bool JointTransform::isFinite() const
-{
-    return areFinite(translation) && areFinite(rotation) && areFinite(scale);
-}
-
-float& JointTransform::number(std::size_t index)
-{
-    const auto place = static_cast<glm::vec4::length_type>(index % 4);
-    if (index < 4) return translation[place];
-    return index < 8 ? rotation[place] : scale[place];
 }
 
 } // namespace osgGpuAnimation

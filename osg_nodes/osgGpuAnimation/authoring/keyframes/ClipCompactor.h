@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <osgGpuAnimation/animation/keyframes/PoseDistance.h>
+#include <osgGpuAnimation/authoring/keyframes/PoseDistance.h>
 
 #include <vector>
 

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include <osgGpuAnimation/animation/keyframes/ChannelCurve.h>
+#include <osgGpuAnimation/authoring/keyframes/ChannelCurve.h>
+
+#include <osgGpuAnimation/math/Hermite.h>
+#include <osgGpuAnimation/math/Rotation.h>
 
 #include <glm/geometric.hpp>
 

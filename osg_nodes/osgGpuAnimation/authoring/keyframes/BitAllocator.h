@@ -2,7 +2,7 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/keyframes/CompactTracks.h>
-#include <osgGpuAnimation/animation/keyframes/PoseDistance.h>
+#include <osgGpuAnimation/authoring/keyframes/PoseDistance.h>
 
 #include <array>
 #include <utility>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <osgGpuAnimation/animation/keyframes/PoseDistance.h>
+#include <osgGpuAnimation/authoring/keyframes/PoseDistance.h>
 
 #include <osgGpuAnimation/animation/Pose.h>
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include <osgGpuAnimation/animation/keyframes/ClipCompactor.h>
+#include <osgGpuAnimation/authoring/keyframes/ClipCompactor.h>
 
-#include <osgGpuAnimation/animation/keyframes/BitAllocator.h>
 #include <osgGpuAnimation/animation/keyframes/CompactTracks.h>
 #include <osgGpuAnimation/animation/keyframes/TrackBlend.h>
+#include <osgGpuAnimation/authoring/keyframes/BitAllocator.h>
+#include <osgGpuAnimation/math/Rotation.h>
 
 #include <glm/geometric.hpp>
 

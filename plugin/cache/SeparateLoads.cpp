@@ -13,29 +13,17 @@ namespace osgGpuAnimation
 namespace
 {
 
-class OwnNodes : public SceneVisitor
+bool isOwn(const osg::Node& node)
 {
-public:
-    using SceneVisitor::apply;
-    OwnNodes() : SceneVisitor(Shared::Once, TRAVERSE_ALL_CHILDREN) {}
-
-    void apply(osg::Transform& transform) override
-    {
-        areThere = areThere || dynamic_cast<AnimatedCharacter*>(&transform) || dynamic_cast<AnimatedCrowd*>(&transform);
-        if (!areThere) traverse(transform);
-    }
-
-    bool areThere = false;
-};
+    return dynamic_cast<const AnimatedCharacter*>(&node) || dynamic_cast<const AnimatedCrowd*>(&node);
+}
 
 SeparateLoads::Result separated(const SeparateLoads::Result& read, const osgDB::Options* options, int hint)
 {
     SeparateLoads::Result result = read;
     osg::Node* node = result.getNode();
     if (!node || !options || (options->getObjectCacheHint() & hint) == 0) return result;
-    OwnNodes own;
-    node->accept(own);
-    if (!own.areThere) return result;
+    if (!visitUntil(*node, isOwn)) return result;
     return SeparateLoads::Result(osg::clone(node, osg::CopyOp::DEEP_COPY_NODES), result.status());
 }
 

@@ -150,21 +150,13 @@ private:
     std::map<std::vector<osg::StateSet*>, osg::ref_ptr<osg::StateSet>> _merged;
 };
 
-class RemainsFinder : public SceneVisitor
+/// Anything but groups, geodes and morphs.
+bool isRemainder(const osg::Node& node)
 {
-public:
-    using SceneVisitor::apply;
-    RemainsFinder() : SceneVisitor(Shared::Once, TRAVERSE_ALL_CHILDREN) {}
-    void apply(osg::Node& node) override
-    {
-        const bool isMorph = dynamic_cast<osgAnimation::UpdateMorph*>(node.getUpdateCallback());
-        hasRemains = hasRemains || (node.getUpdateCallback() && !isMorph) || node.getEventCallback() ||
-                     node.getCullCallback() || dynamic_cast<osg::LightSource*>(&node) ||
-                     (!node.asGroup() && !node.asGeode());
-        if (!hasRemains) traverse(node);
-    }
-    bool hasRemains = false;
-};
+    const bool isMorph = dynamic_cast<const osgAnimation::UpdateMorph*>(node.getUpdateCallback());
+    return (node.getUpdateCallback() && !isMorph) || node.getEventCallback() || node.getCullCallback() ||
+           dynamic_cast<const osg::LightSource*>(&node) || (!node.asGroup() && !node.asGeode());
+}
 
 /// By vertex. osgAnimation divides the weights by their sum.
 std::vector<VertexWeights> weightsOf(const osgAnimation::VertexInfluenceMap& map, const RigMesh& mesh,
@@ -296,9 +288,7 @@ osg::ref_ptr<SkinnedGeometry> skinnedMesh(const RigMesh& mesh, const AnimationSe
 
 bool isEmpty(osg::Node& node)
 {
-    RemainsFinder finder;
-    node.accept(finder);
-    return !finder.hasRemains;
+    return !visitUntil(node, isRemainder);
 }
 
 } // namespace osgGpuAnimation::osganimation

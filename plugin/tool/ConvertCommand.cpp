@@ -26,18 +26,18 @@ namespace
 
 using Scene = osg::ref_ptr<osg::Node>;
 
-class CharacterFinder : public SceneVisitor
+/// Hidden ones, too.
+std::vector<AnimatedCharacter*> charactersIn(osg::Node& scene)
 {
-public:
-    using SceneVisitor::apply;
-    CharacterFinder() : SceneVisitor(Shared::Once, TRAVERSE_ALL_CHILDREN) { setNodeMaskOverride(~0u); }
-    void apply(osg::MatrixTransform& node) override
+    std::vector<AnimatedCharacter*> characters;
+    const auto take = [&](osg::Node& node)
     {
         if (auto* const character = dynamic_cast<AnimatedCharacter*>(&node)) characters.push_back(character);
-        traverse(node);
-    }
-    std::vector<AnimatedCharacter*> characters;
-};
+        return false;
+    };
+    visitUntil(scene, take, ~0u);
+    return characters;
+}
 
 /// What the import does to its own characters. Error: what was asked for is not done, for example no character takes
 /// the clips of a file.
@@ -45,16 +45,15 @@ Result<bool> addClips(osg::Node& scene, const std::string& file, const gltf::Imp
                       gltf::Messages& messages)
 {
     gltf::Report report(messages);
-    CharacterFinder finder;
-    scene.accept(finder);
+    const std::vector<AnimatedCharacter*> characters = charactersIn(scene);
     const std::vector<gltf::ClipFile> clipFiles = gltf::readClipFiles(file, options, report);
     const gltf::ClipJoints joints = gltf::readClipJoints(file, options, report);
     if (!messages.unmet.empty()) return Error{messages.unmet.front()};
-    if (finder.characters.empty() && (!clipFiles.empty() || options.compact))
+    if (characters.empty() && (!clipFiles.empty() || options.compact))
         return Error{"there is no character whose clips could be changed"};
     std::vector<bool> isAdded(clipFiles.size(), false);  // to one of the characters, at least
     std::vector<std::string> refusals(clipFiles.size()); // by the first character that refuses
-    for (AnimatedCharacter* const character : finder.characters)
+    for (AnimatedCharacter* const character : characters)
     {
         gltf::MemoryBudget budget(options.maxDecodedBytes);
         std::shared_ptr<const AnimationSet> set = character->getController().sharedSet();

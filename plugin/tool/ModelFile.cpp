@@ -37,20 +37,11 @@ bool isSceneFormat(const std::string& fileName)
            osgDB::Registry::instance()->getReaderWriterForExtension(extension);
 }
 
-/// Searches for an osgAnimation::Skeleton, by name: the tool does not link osgAnimation.
-class SkeletonFinder : public SceneVisitor
+/// By name: the tool does not link osgAnimation.
+bool isSkeleton(const osg::Node& node)
 {
-public:
-    using SceneVisitor::apply;
-    SkeletonFinder() : SceneVisitor(Shared::Once, TRAVERSE_ALL_CHILDREN) {}
-    void apply(osg::Node& node) override
-    {
-        found =
-            found || (std::string(node.libraryName()) == "osgAnimation" && std::string(node.className()) == "Skeleton");
-        if (!found) traverse(node);
-    }
-    bool found = false;
-};
+    return std::string(node.libraryName()) == "osgAnimation" && std::string(node.className()) == "Skeleton";
+}
 
 /// The file as glTF; of another format where Assimp or OSG reads it.
 Result<std::string> readGltf(const std::string& fileName, const gltf::ImportOptions& options, gltf::Messages& messages)
@@ -151,9 +142,7 @@ Result<osg::ref_ptr<osg::Node>> readScene(const std::string& fileName, gltf::Rep
     if (read.status() == osgDB::ReaderWriter::ReadResult::FILE_NOT_FOUND) return Error{"there is no such file"};
     const osg::ref_ptr<osg::Node> scene = read.getNode();
     if (!scene) return Error{"OSG cannot read it" + (read.message().empty() ? "" : ": " + read.message())};
-    SkeletonFinder finder;
-    scene->accept(finder);
-    if (finder.found && osgDB::getLowerCaseFileExtension(fileName) != "gpuanim")
+    if (visitUntil(*scene, isSkeleton) && osgDB::getLowerCaseFileExtension(fileName) != "gpuanim")
         report.warn("its characters of osgAnimation keep their pose; " + osgDB::getSimpleFileName(fileName) +
                     ".gpuanim has their clips");
     return scene;

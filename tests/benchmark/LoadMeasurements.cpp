@@ -19,7 +19,7 @@ constexpr double milliseconds = 1e3;
 std::optional<Error> loadOurs(const std::string& fileName, Spent& spent)
 {
     const Stopwatch stopwatch;
-    const Result<std::string> bytes = gltf::readWholeFile(fileName);
+    const Result<std::string> bytes = gltf::readModelFile(fileName, {});
     if (!bytes) return bytes.error();
     const Result<gltf::ImportedModel> model = gltf::importModel(bytes.value(), fileName, {});
     spent = stopwatch.elapsed();

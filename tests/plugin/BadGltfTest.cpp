@@ -48,7 +48,7 @@ Answer readModel(const std::string& bytes, const std::string& path)
 
 Answer readFile(const std::string& path, Reader reader)
 {
-    const Result<std::string> bytes = readWholeFile(path);
+    const Result<std::string> bytes = readModelFile(path, {});
     if (!bytes) return {true, {bytes.error().message}};
     return reader(bytes.value(), path);
 }

@@ -124,7 +124,7 @@ TEST_F(ModelFolderTest, WholeFilesSayWhatIsWrong)
 {
     scratch.write("empty.glb", "");
     fs::resize_file(scratch.write("holes.glb", "glTF"), (std::uintmax_t(1) << 32) + 1); // a sparse file
-    EXPECT_EQ(readWholeFile(scratch.file("outside.bin")).value(), "outside");
+    EXPECT_EQ(readModelFile(scratch.file("outside.bin"), {}).value(), "outside");
     const std::pair<const char*, const char*> faults[] = {{"none.glb", "does not exist"},
                                                           {"model", "a folder"},
                                                           {"empty.glb", "is empty"},
@@ -132,7 +132,7 @@ TEST_F(ModelFolderTest, WholeFilesSayWhatIsWrong)
                                                           {"model/pipe", "a pipe"}};
     for (const auto& [name, message] : faults)
     {
-        const Result<std::string> content = readWholeFile(scratch.file(name));
+        const Result<std::string> content = readModelFile(scratch.file(name), {});
         ASSERT_FALSE(content) << name;
         EXPECT_NE(content.error().message.find(message), std::string::npos) << content.error().message;
     }

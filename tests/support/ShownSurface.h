@@ -78,7 +78,7 @@ private:
     {
         std::vector<std::uint32_t> vertices;
         for (const osg::ref_ptr<osg::PrimitiveSet>& primitives : mesh.getPrimitiveSetList())
-            for (const std::uint32_t vertex : LodLevels::trianglesOf(*primitives, mesh.getVertexCount()))
+            for (const std::uint32_t vertex : LodLevels::trianglesOf(primitives, mesh.getVertexCount()))
                 vertices.push_back(vertex);
         std::sort(vertices.begin(), vertices.end());
         vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
@@ -94,7 +94,7 @@ private:
         for (unsigned int i = 0; i < mesh.getNumPrimitiveSets(); ++i)
         {
             const LodLevels::Reduced reduced = levels ? levels->reduced(i, level) : LodLevels::Reduced();
-            const osg::PrimitiveSet& drawn = reduced.elements ? *reduced.elements : *mesh.getPrimitiveSet(i);
+            const osg::PrimitiveSet* drawn = reduced.elements ? reduced.elements : mesh.getPrimitiveSet(i);
             const std::vector<std::uint32_t> corners = LodLevels::trianglesOf(drawn, positions.size());
             for (std::size_t corner = 0; corner + 2 < corners.size(); corner += 3)
             {

@@ -518,21 +518,7 @@ void RootMotionCallback::operator()(osg::Node* node, osg::NodeVisitor* visitor)
 
 AnimatedCharacter* findCharacter(osg::Node& node)
 {
-    class Finder : public SceneVisitor
-    {
-    public:
-        using SceneVisitor::apply;
-        Finder() : SceneVisitor(Shared::Once, TRAVERSE_ALL_CHILDREN) {}
-        void apply(osg::MatrixTransform& transform) override
-        {
-            if (!found) found = dynamic_cast<AnimatedCharacter*>(&transform);
-            if (!found) traverse(transform);
-        }
-        AnimatedCharacter* found = nullptr;
-    };
-    Finder finder;
-    node.accept(finder);
-    return finder.found;
+    return findBelow<AnimatedCharacter>(node);
 }
 
 Result<CompactedCharacter> compactClipsOf(AnimatedCharacter& character, double fraction)

@@ -379,28 +379,6 @@ private:
     std::vector<std::optional<GroundPoint>> _points;
 };
 
-osg::Node* findNamed(osg::Node& top, const std::string& name)
-{
-    class Finder : public SceneVisitor
-    {
-    public:
-        using SceneVisitor::apply;
-        explicit Finder(const std::string& name) : SceneVisitor(Shared::Once, TRAVERSE_ALL_CHILDREN), _name(name) {}
-        void apply(osg::Node& node) override
-        {
-            if (!found && node.getName() == _name) found = &node;
-            if (!found) traverse(node);
-        }
-        osg::Node* found = nullptr;
-
-    private:
-        const std::string& _name;
-    };
-    Finder finder(name);
-    top.accept(finder);
-    return finder.found;
-}
-
 /// True, and the setting has the value, if it is in the range.
 bool setWithin(double least, double most, double value, double& setting)
 {
@@ -550,7 +528,7 @@ osg::ref_ptr<osg::Node> GroundFeet::groundIn(osg::Node& scene, unsigned int fram
     const std::pair<const osg::Node*, unsigned int> search(&scene, frame);
     osg::ref_ptr<osg::Node> ground = getGround();
     if (ground || _groundName.empty() || search == _lastSearch) return ground;
-    _ground = ground = findNamed(scene, _groundName);
+    _ground = ground = findBelow<osg::Node>(scene, &_groundName);
     if (ground) return ground;
     _lastSearch = search;
     if (!std::exchange(_hasWarned, true))

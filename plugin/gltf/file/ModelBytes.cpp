@@ -190,12 +190,6 @@ Result<std::string> RegularFile::readWhole() const
     return content;
 }
 
-Result<std::string> readWholeFile(const std::string& path)
-{
-    const Result<RegularFile> file = RegularFile::open(path);
-    return file ? file.value().readWhole() : file.error();
-}
-
 Result<GlbContainer> splitContainer(std::string_view bytes, Report& report)
 {
     if (bytes.empty()) return Error{"the file is empty: neither JSON nor a binary glTF header"};

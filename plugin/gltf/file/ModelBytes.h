@@ -45,10 +45,6 @@ private:
 /// The prefix of errors about a file: its path, clipped if it is long, and a colon.
 std::string subjectOfFile(const std::string& path);
 
-/// The content of a file that the user named. Errors: it does not exist, is not a regular file, is empty, is larger
-/// than 4 GiB or cannot be read.
-Result<std::string> readWholeFile(const std::string& path);
-
 /// The parts of a file, as views into its bytes.
 struct GlbContainer
 {
@@ -72,7 +68,8 @@ std::optional<Error> checkJsonBytes(std::size_t bytes, std::size_t limit);
 
 // The input of importModel(). Files and streams beyond the limits are refused before they are read.
 
-/// All of a file. Errors (without the file's name): those of readWholeFile(), more JSON than options.maxJsonBytes.
+/// All of a file that the user named. Errors: it does not exist, is not a regular file, is empty, is larger than 4 GiB
+/// or cannot be read; more JSON than options.maxJsonBytes.
 Result<std::string> readModelFile(const std::string& path, const ImportOptions& options);
 
 /// The rest of a stream, at most mostBytes. Errors: it fails, holds more, or has more JSON than options.maxJsonBytes.

@@ -10,8 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <type_traits>
 
 namespace osgGpuAnimation
 {
@@ -265,37 +263,6 @@ bool CompactTracks::pack(std::vector<JointTransform>& data, std::size_t trackCou
         }
     unpack(data, trackCount);
     return true;
-}
-
-CompactTracks CompactTracks::finest(const std::vector<JointTransform>& data, std::size_t trackCount,
-                                    std::size_t jointCount)
-{
-    CompactTracks compact;
-    compact.tracks.resize(jointCount);
-    const std::size_t keyframeCount = trackCount == 0 ? 0 : data.size() / trackCount;
-    for (std::size_t joint = 0; joint < jointCount; ++joint)
-    {
-        Track& track = compact.tracks[joint];
-        const auto set = [&](auto& part, glm::vec4 JointTransform::*which)
-        {
-            const PartKeys keys{&data[joint], trackCount, keyframeCount, which};
-            if (!keys.move()) return;
-            glm::vec3 least, most;
-            if constexpr (std::is_same_v<decltype(part), RotationPart&>)
-            {
-                part.place = keys.omittedPlace();
-                keys.range(part.place, least, most);
-            }
-            else
-                keys.range(least, most);
-            part.firstBit = 0;
-            part.setRange(least, most, glm::uvec3(mostBits));
-        };
-        set(track.translation, &JointTransform::translation);
-        set(track.rotation, &JointTransform::rotation);
-        set(track.scale, &JointTransform::scale);
-    }
-    return compact;
 }
 
 bool CompactTracks::isFor(std::size_t jointCount, std::size_t keyframeCount) const

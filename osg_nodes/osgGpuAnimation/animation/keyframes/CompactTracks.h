@@ -75,9 +75,6 @@ struct CompactTracks
     /// moving parts in data by their decoded values. False if a record would have more than mostTexels.
     /// data: trackCount transforms per keyframe; the first tracks.size() of them are joints.
     bool pack(std::vector<JointTransform>& data, std::size_t trackCount);
-    /// Tracks with the moving parts of data, where values keep at least 20 bits of their range. To be packed.
-    static CompactTracks finest(const std::vector<JointTransform>& data, std::size_t trackCount,
-                                std::size_t jointCount);
 
     /// True if the sizes match a clip with these numbers of joints and keyframes and all numbers are valid.
     bool isFor(std::size_t jointCount, std::size_t keyframeCount) const;

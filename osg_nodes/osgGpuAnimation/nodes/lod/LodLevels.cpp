@@ -206,11 +206,11 @@ float largestScale(const AffineMatrix& matrix)
     return std::sqrt(largest);
 }
 
-std::vector<std::uint32_t> LodLevels::trianglesOf(const osg::PrimitiveSet& primitives, std::size_t vertexCount)
+std::vector<std::uint32_t> LodLevels::trianglesOf(const osg::PrimitiveSet* primitives, std::size_t vertexCount)
 {
     std::vector<std::uint32_t> indices;
-    const osg::DrawElements* elements = primitives.getDrawElements();
-    if (!elements || primitives.getMode() != GL_TRIANGLES || !elements->getDataPointer()) return indices;
+    const osg::DrawElements* elements = primitives ? primitives->getDrawElements() : nullptr;
+    if (!elements || elements->getMode() != GL_TRIANGLES || !elements->getDataPointer()) return indices;
     for (unsigned int i = 0; i + 2 < elements->getNumIndices(); i += 3)
         for (unsigned int corner = i; corner < i + 3; ++corner)
         {
@@ -280,8 +280,7 @@ void LodLevels::addSteps(const PosedSurface& surface, int finest, int coarsest, 
                          std::set<std::size_t>& outBeyond) const
 {
     primitives.steps.clear();
-    if (!primitives.original) return;
-    const std::vector<std::uint32_t> original = trianglesOf(*primitives.original, surface.vertexCount());
+    const std::vector<std::uint32_t> original = trianglesOf(primitives.original, surface.vertexCount());
     if (original.size() < 3 * fewTriangles) return;
     MeshSimplifier simplifier(surface, original);
     const Extent whole = extentOf(surface, original);
@@ -352,7 +351,7 @@ Result<bool> LodLevels::restore(std::size_t primitiveSet, Steps steps)
             return Error{subject + ": level " + std::to_string(step.level) + " with an error of " +
                          std::to_string(step.error) + " and an outset of " + std::to_string(step.outset)};
         const std::size_t count = step.elements->getNumIndices();
-        if (count == 0 || trianglesOf(*step.elements, vertexCount).size() != count)
+        if (count == 0 || trianglesOf(step.elements, vertexCount).size() != count)
             return Error{subject + ": " + std::to_string(count) + " indices that are not whole triangles of " +
                          std::to_string(vertexCount) + " vertices"};
         step.elements->setElementBufferObject(_buffer);

@@ -112,8 +112,8 @@ public:
     /// The largest error of the mesh's reduced triangles at a level; at most errorOf(level).
     double foundError(int level) const;
 
-    /// Whole triangles, by vertex; empty for other primitives and for vertices that do not exist.
-    static std::vector<std::uint32_t> trianglesOf(const osg::PrimitiveSet& primitives, std::size_t vertexCount);
+    /// Whole triangles, by vertex; empty for null, other primitives and vertices that do not exist.
+    static std::vector<std::uint32_t> trianglesOf(const osg::PrimitiveSet* primitives, std::size_t vertexCount);
 
     void releaseGLObjects(osg::State* state) const;
     void resizeGLObjectBuffers(unsigned int maxSize) const;

@@ -44,7 +44,7 @@ bool MergedParts::accepts(const SkinnedGeometry& part)
     if (part.getNodeMask() == 0 || part.getDrawCallback() || part.getCullCallback()) return false;
     if (!part.getMorphTargets().empty() || part.getVertexCount() == 0 || part.getNumPrimitiveSets() == 0) return false;
     for (const osg::ref_ptr<osg::PrimitiveSet>& primitives : part.getPrimitiveSetList())
-        if (!primitives || LodLevels::trianglesOf(*primitives, part.getVertexCount()).empty()) return false;
+        if (LodLevels::trianglesOf(primitives, part.getVertexCount()).empty()) return false;
     return SurfaceColor::of(part).has_value();
 }
 
@@ -96,7 +96,7 @@ void MergedParts::addTriangles()
 {
     for (std::size_t part = 0; part < _parts.size(); ++part)
         for (const osg::ref_ptr<osg::PrimitiveSet>& primitives : _parts[part]->getPrimitiveSetList())
-            for (const std::uint32_t vertex : LodLevels::trianglesOf(*primitives, _parts[part]->getVertexCount()))
+            for (const std::uint32_t vertex : LodLevels::trianglesOf(primitives, _parts[part]->getVertexCount()))
                 _indices.push_back(_firstOf[part] + vertex);
 }
 

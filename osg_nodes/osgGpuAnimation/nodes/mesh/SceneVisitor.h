@@ -71,6 +71,46 @@ private:
     SceneGuard _guard;
 };
 
+/// Visits each node at and below top once, in the order of a traversal of all children, until visit(osg::Node&) returns
+/// true, which is then the result. maskOverride: of the visitor; ~0u visits hidden nodes, too.
+template <typename Visit>
+bool visitUntil(osg::Node& top, Visit visit, osg::Node::NodeMask maskOverride = 0)
+{
+    class Visitor : public SceneVisitor
+    {
+    public:
+        using SceneVisitor::apply;
+        explicit Visitor(Visit& visit) : SceneVisitor(Shared::Once, TRAVERSE_ALL_CHILDREN), _visit(visit) {}
+        void apply(osg::Node& node) override
+        {
+            isDone = isDone || _visit(node);
+            if (!isDone) traverse(node);
+        }
+        bool isDone = false;
+
+    private:
+        Visit& _visit;
+    };
+    Visitor visitor(visit);
+    visitor.setNodeMaskOverride(maskOverride);
+    top.accept(visitor);
+    return visitor.isDone;
+}
+
+/// The first node of that class, and perhaps that name, at or below top; null: none.
+template <typename Class>
+Class* findBelow(osg::Node& top, const std::string* name = nullptr)
+{
+    Class* found = nullptr;
+    const auto take = [&](osg::Node& node)
+    {
+        if (!name || node.getName() == *name) found = dynamic_cast<Class*>(&node);
+        return found != nullptr;
+    };
+    visitUntil(top, take);
+    return found;
+}
+
 /// The node, or the first one above it, that isWanted(const osg::Node&) accepts; null: none. Asks each node once.
 template <typename IsWanted>
 const osg::Node* findAbove(const osg::Node& node, IsWanted isWanted)

@@ -18,32 +18,6 @@ namespace osgGpuAnimation
 namespace
 {
 
-/// Finds the first CameraView of a name.
-class CameraFinder : public SceneVisitor
-{
-public:
-    using SceneVisitor::apply;
-    explicit CameraFinder(const std::string& name) : SceneVisitor(Shared::Once, TRAVERSE_ALL_CHILDREN), _name(name) {}
-
-    void apply(osg::CameraView& view) override
-    {
-        if (!found && view.getName() == _name) found = &view;
-        if (!found) traverse(view);
-    }
-
-    osg::CameraView* found = nullptr;
-
-private:
-    const std::string& _name;
-};
-
-osg::CameraView* findCamera(osg::Node& node, const std::string& name)
-{
-    CameraFinder finder(name);
-    node.accept(finder);
-    return finder.found;
-}
-
 bool isBelowAttachment(const osg::Node& node)
 {
     return findAbove(node,
@@ -112,7 +86,7 @@ bool StartView::handle(const osgGA::GUIEventAdapter& event, osgGA::GUIActionAdap
     case Event::KEYDOWN:
         if (_hasStarted && event.getKey() == Event::KEY_Space)
         {
-            const osg::CameraView* const camera = findCamera(*node, _camera);
+            const osg::CameraView* const camera = findBelow<osg::CameraView>(*node, &_camera);
             _isFollowing = camera && isBelowAttachment(*camera);
         }
         break;
@@ -124,7 +98,7 @@ bool StartView::handle(const osgGA::GUIEventAdapter& event, osgGA::GUIActionAdap
 
 void StartView::start(const osgGA::GUIEventAdapter& event, osgViewer::View& view, osg::Node& node)
 {
-    const osg::CameraView* const camera = findCamera(node, _camera);
+    const osg::CameraView* const camera = findBelow<osg::CameraView>(node, &_camera);
     _hasStarted = true;
     _view = &view;
     if (!camera) return;
@@ -146,7 +120,7 @@ void StartView::followAfterUpdate(osg::Node& node)
 
 void StartView::follow(osg::Node& node)
 {
-    const osg::CameraView* const camera = findCamera(node, _camera);
+    const osg::CameraView* const camera = findBelow<osg::CameraView>(node, &_camera);
     // Not lock(): a viewer on the stack, as osgviewer's, has no references.
     if (camera && _view.valid() && isMarked(*camera)) setProjection(*_view->getCamera(), *camera);
     if (camera && _view.valid() && _view->getCameraManipulator())

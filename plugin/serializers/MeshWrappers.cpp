@@ -4,11 +4,11 @@
 
 #include <osgGpuAnimation/nodes/CharacterProgram.h>
 #include <osgGpuAnimation/nodes/mesh/PaletteEntryBounds.h>
+#include <osgGpuAnimation/nodes/shading/Mipmaps.h>
 #include <osgGpuAnimation/nodes/shading/ShaderPermutations.h>
 #include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
 #include <osg/Notify>
-#include <osg/Texture>
 
 #include <algorithm>
 #include <optional>
@@ -68,13 +68,7 @@ struct MipmapsAfterReading : osgDB::FinishedObjectReadCallback
 {
     void objectRead(osgDB::InputStream&, osg::Object& object) override
     {
-        osg::StateSet* state = static_cast<SkinnedGeometry&>(object).getStateSet();
-        for (unsigned int unit = 0; state && unit < state->getNumTextureAttributeLists(); ++unit)
-        {
-            auto* texture = dynamic_cast<osg::Texture*>(state->getTextureAttribute(unit, osg::StateAttribute::TEXTURE));
-            const auto filter = texture ? texture->getFilter(osg::Texture::MIN_FILTER) : osg::Texture::LINEAR;
-            if (filter != osg::Texture::LINEAR && filter != osg::Texture::NEAREST) texture->allocateMipmapLevels();
-        }
+        generateMipmaps(static_cast<SkinnedGeometry&>(object).getStateSet());
     }
 };
 

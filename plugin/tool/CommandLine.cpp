@@ -192,10 +192,24 @@ void addCompact(CLI::App& command, double& fraction)
         ->option_text("FRACTION");
 }
 
+/// CLI11 from 2.5 on breaks the lines of descriptions and footers anew, those of examples too, unless it is told not
+/// to.
+template <typename Formatter>
+auto keepLines(Formatter& formatter, int) -> decltype(formatter.enable_footer_formatting(false))
+{
+    formatter.enable_description_formatting(false);
+    formatter.enable_footer_formatting(false);
+}
+template <typename Formatter>
+void keepLines(Formatter&, long)
+{
+}
+
 } // namespace
 
 CommandLine::CommandLine() : _app(description, "osggpuanim")
 {
+    keepLines(*_app.get_formatter(), 0); // which the commands share
     _app.footer(std::string("`osggpuanim COMMAND --help` says more.") + exitStatus);
     _app.require_subcommand(1);
     addInspect();

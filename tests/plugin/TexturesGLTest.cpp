@@ -3,6 +3,8 @@
 #include "plugin/EncodedPicture.h"
 #include "support/GLTest.h"
 
+#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
+
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -134,8 +136,14 @@ TEST_F(TexturesGLTest, mipmapsOfColorsAreMixedInLinearLight)
 TEST_F(TexturesCoreGLTest, mipmapsAreMadeInTheCoreProfile)
 {
     TextureFile file(encodedPicture("png", 4, 4));
-    apply(*file.textures().texture(0, ColorSpace::Srgb));
+    const osg::ref_ptr<osg::Texture2D> texture = file.textures().texture(0, ColorSpace::Srgb);
+    apply(*texture);
     EXPECT_NEAR(lastPixel(2).r(), 0.735f, 0.02f);
+    const osg::ref_ptr<SkinnedGeometry> mesh = new SkinnedGeometry;
+    mesh->getOrCreateStateSet()->setTextureAttribute(0, texture);
+    mesh->releaseGLObjects(&state());
+    apply(*texture);
+    EXPECT_NEAR(lastPixel(2).r(), 0.735f, 0.02f) << "after a release";
     takeGLErrors(); // of GL_GENERATE_MIPMAP, which an OSG for the compatibility profile sets first
 }
 

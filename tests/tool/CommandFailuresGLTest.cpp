@@ -275,7 +275,7 @@ std::vector<std::string> ownLines(const std::string& err)
 std::set<std::string> optionsOf(const std::string& command)
 {
     const std::string help = Process::run(OSGGPUANIM, {command, "--help"}).out;
-    const std::regex option("\n  (?:-., *|-.,)?(--[a-z-]+)");
+    const std::regex option("\n {2,10}(?:-., *)?(--[a-z-]+)");
     std::set<std::string> options;
     for (std::sregex_iterator found(help.begin(), help.end(), option), end; found != end; ++found)
         options.insert((*found)[1]);

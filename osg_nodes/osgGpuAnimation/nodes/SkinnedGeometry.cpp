@@ -9,6 +9,7 @@
 #include <osgGpuAnimation/nodes/mesh/MaterialVariants.h>
 #include <osgGpuAnimation/nodes/mesh/MeshVisits.h>
 #include <osgGpuAnimation/nodes/mesh/MorphDeltas.h>
+#include <osgGpuAnimation/nodes/shading/Mipmaps.h>
 
 #include <layout.glsl>
 
@@ -431,6 +432,7 @@ void SkinnedGeometry::bindPalette(osg::State& state, const PalettePlace& place) 
 void SkinnedGeometry::releaseGLObjects(osg::State* state) const
 {
     osg::Geometry::releaseGLObjects(state);
+    generateMipmaps(_stateset);
     if (_morphDeltas->texture) _morphDeltas->texture->releaseGLObjects(state);
     if (const auto levels = _lod->known(*this)) levels->releaseGLObjects(state);
     releaseVariantStates(*this, state);
@@ -439,6 +441,7 @@ void SkinnedGeometry::releaseGLObjects(osg::State* state) const
 void SkinnedGeometry::resizeGLObjectBuffers(unsigned int maxSize)
 {
     osg::Geometry::resizeGLObjectBuffers(maxSize);
+    generateMipmaps(_stateset);
     if (_morphDeltas->texture) _morphDeltas->texture->resizeGLObjectBuffers(maxSize);
     if (const auto levels = _lod->known(*this)) levels->resizeGLObjectBuffers(maxSize);
     resizeVariantStates(*this, maxSize);

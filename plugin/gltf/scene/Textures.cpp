@@ -5,6 +5,8 @@
 #include "gltf/data/Picture.h"
 #include "gltf/file/Report.h"
 
+#include <osgGpuAnimation/nodes/shading/Mipmaps.h>
+
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
@@ -229,13 +231,10 @@ osg::ref_ptr<osg::Texture2D> Textures::make(const tinygltf::Texture& source, Col
     // glTF and OSG both use OpenGL's numbers; the schema has checked them, and -1 says that the file gives no filter.
     texture->setWrap(osg::Texture::WRAP_S, static_cast<osg::Texture::WrapMode>(sampler.wrapS));
     texture->setWrap(osg::Texture::WRAP_T, static_cast<osg::Texture::WrapMode>(sampler.wrapT));
-    const osg::Texture::FilterMode minFilter = sampler.minFilter < 0
-                                                   ? osg::Texture::LINEAR_MIPMAP_LINEAR
-                                                   : static_cast<osg::Texture::FilterMode>(sampler.minFilter);
-    texture->setFilter(osg::Texture::MIN_FILTER, minFilter);
-    // By glGenerateMipmap. An OSG for the compatibility profile alone sets GL_GENERATE_MIPMAP, which the core profile
-    // does not have; the texture would be black there.
-    if (minFilter != osg::Texture::LINEAR && minFilter != osg::Texture::NEAREST) texture->allocateMipmapLevels();
+    texture->setFilter(osg::Texture::MIN_FILTER, sampler.minFilter < 0
+                                                     ? osg::Texture::LINEAR_MIPMAP_LINEAR
+                                                     : static_cast<osg::Texture::FilterMode>(sampler.minFilter));
+    generateMipmaps(*texture);
     texture->setFilter(osg::Texture::MAG_FILTER, sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST
                                                      ? osg::Texture::NEAREST
                                                      : osg::Texture::LINEAR);

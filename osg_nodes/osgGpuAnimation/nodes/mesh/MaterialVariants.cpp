@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/mesh/MaterialVariants.h>
 
+#include <osgGpuAnimation/nodes/shading/Mipmaps.h>
+
 #include <osg/UserDataContainer>
 
 #include <algorithm>
@@ -116,12 +118,22 @@ osg::StateSet* variantState(const osg::Geometry& mesh, const std::string& varian
 
 void releaseVariantStates(const osg::Geometry& mesh, osg::State* state)
 {
-    forEachVariantState(mesh, [state](osg::StateSet& other) { other.releaseGLObjects(state); });
+    const auto release = [state](osg::StateSet& other)
+    {
+        other.releaseGLObjects(state);
+        generateMipmaps(&other);
+    };
+    forEachVariantState(mesh, release);
 }
 
 void resizeVariantStates(osg::Geometry& mesh, unsigned int maxSize)
 {
-    forEachVariantState(mesh, [maxSize](osg::StateSet& other) { other.resizeGLObjectBuffers(maxSize); });
+    const auto resize = [maxSize](osg::StateSet& other)
+    {
+        other.resizeGLObjectBuffers(maxSize);
+        generateMipmaps(&other);
+    };
+    forEachVariantState(mesh, resize);
 }
 
 void VariantMeshes::show(osg::Group& group, const std::string& variant)

@@ -87,25 +87,27 @@ void correctOffsets(const aiScene& scene)
     struct Place
     {
         const aiNode* node;
-        aiMatrix4x4 local, world;
+        aiMatrix4x4 world;
     };
-    std::set<const aiMesh*> corrected;                  // the first node that has it gave it its offsets
-    std::vector<Place> open{{scene.mRootNode, {}, {}}}; // offsets come before the root's turn
+    std::set<const aiMesh*> corrected;              // the first node that has it gave it its offsets
+    std::vector<Place> open{{scene.mRootNode, {}}}; // offsets come before the root's turn
     while (!open.empty())
     {
         const Place parent = open.back();
         open.pop_back();
+        aiMatrix4x4 withoutLocal = parent.node == scene.mRootNode ? aiMatrix4x4() : parent.node->mTransformation;
+        withoutLocal.Inverse();
         for (unsigned int i = parent.node->mNumChildren; i > 0; --i)
         {
             const aiNode* const node = parent.node->mChildren[i - 1];
-            const Place place{node, node->mTransformation, parent.world * node->mTransformation};
-            open.push_back(place);
+            const aiMatrix4x4 world = parent.world * node->mTransformation;
+            open.push_back({node, world});
             for (unsigned int number = 0; number < node->mNumMeshes; ++number)
             {
                 const aiMesh* const mesh = scene.mMeshes[node->mMeshes[number]];
                 if (!corrected.insert(mesh).second) continue;
                 for (unsigned int bone = 0; bone < mesh->mNumBones; ++bone)
-                    mesh->mBones[bone]->mOffsetMatrix *= aiMatrix4x4(parent.local).Inverse() * place.world;
+                    mesh->mBones[bone]->mOffsetMatrix *= withoutLocal * world;
             }
         }
     }

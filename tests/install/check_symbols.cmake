@@ -4,7 +4,8 @@
 # exports it, and only functions of the kit mention its types in their parameters (GLM's); run-time type information of
 # function types (GCC 14) is the same from any build. A plugin exports osgdb_NAME.
 set(third_parties "8tinygltf|8nlohmann|3CLI|5draco|3glm|stbi|stb_")
-set(ours "^_ZN[KVRO]*15osgGpuAnimation|^_ZT[IS]P?F")
+set(function_types "^_ZT[IS]P?F")
+set(ours "^_ZN[KVRO]*15osgGpuAnimation|${function_types}")
 
 # Sets `result` to the symbols; brackets and semicolons would split a list.
 function(exported result file)
@@ -30,7 +31,7 @@ foreach(file IN LISTS files)
         string(REPLACE "3glm" "" without_glm "${symbol}")
         if((name MATCHES "^osgdb_" AND NOT symbol MATCHES "^osgdb_[a-z]+$")
            OR (symbol MATCHES "${third_parties}" AND NOT symbol MATCHES "${ours}")
-           OR (without_glm MATCHES "${third_parties}" AND NOT symbol MATCHES "^_ZT[IS]P?F"))
+           OR (without_glm MATCHES "${third_parties}" AND NOT symbol MATCHES "${function_types}"))
             string(APPEND faults "\n  ${readable}")
         endif()
     endforeach()

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Lights a surface with OSG's lights, then applies the shadow maps of osgShadow's techniques and fog: with MATERIAL_PBR as
 // glTF's metallic-roughness material in linear light, else the base colour in display space like the fixed pipeline. In a
-// core profile, which has no lights: a headlight. DRAW_...: see ShaderKey in nodes/shading/ShaderPermutations.h. Included
+// core profile, which has no lights: a headlight. DRAW_...: see ShaderKey in looks/shading/ShaderPermutations.h. Included
 // above: color.glsl, material.glsl, pbr.glsl, environment.glsl.
 #pragma import_defines(MATERIAL_PBR, MATERIAL_BLENDED, TONE_MAPPING)
 

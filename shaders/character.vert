@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Draws a SkinnedGeometry (DRAW_SKINNED), or a mesh that does not move, with the inputs of character.frag. DRAW_...: see
-// ShaderKey in nodes/shading/ShaderPermutations.h. POSE_COLORED: 1: the mesh has colours; 2: only its morph targets have
+// ShaderKey in looks/shading/ShaderPermutations.h. POSE_COLORED: 1: the mesh has colours; 2: only its morph targets have
 // colours. Included above: color.glsl.
 #pragma import_defines(POSE_COLORED, POSE_INSTANCED, MATERIAL_PBR, MATERIAL_TANGENTS, MATERIAL_MORE_COORDINATES)
 #pragma import_defines(MATERIAL_TEXTURE_TRANSFORM)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The surroundings that light a surface, see nodes/Environment.h. ENVIRONMENT: 1: the analytic studio; 2: a prefiltered cube
+// The surroundings that light a surface, see looks/Environment.h. ENVIRONMENT: 1: the analytic studio; 2: a prefiltered cube
 // map with spherical harmonics; none: the ambient light of OSG's lights, evenly from all directions.
 #pragma import_defines(ENVIRONMENT)
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The values of glTF's material (2.0, section 3.9) at a fragment. To use them in another program, link this shader, see
-// materialShader() in nodes/CharacterProgram.h, declare
+// materialShader() in looks/CharacterProgram.h, declare
 //     void osgGpuAnimationMaterial(out vec4 baseColor, out vec3 emission, out vec3 metallicRoughnessOcclusion,
 //                                  out vec3 normal);
 // and call it. Colours are linear with MATERIAL_PBR, else as displayed; the normal is in eye space, normalized, and points

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One level of one face of a prefiltered cube map, see nodes/shading/PrefilteredMap.h: the radiance that GGX reflects of the
+// One level of one face of a prefiltered cube map, see looks/environment/PrefilteredMap.h: the radiance that GGX reflects of the
 // surroundings, with the eye in the direction of the normal (Karis, "Real Shading in Unreal Engine 4", 2013). Each sample
 // reads the mipmap whose pixels are as large as the sample's share of all directions (Krivanek and Colbert, "Real-time
 // Shading with Filtered Importance Sampling", 2008).

@@ -3,7 +3,7 @@
 
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
-#include <osgGpuAnimation/nodes/mesh/SceneVisitor.h>
+#include <osgGpuAnimation/scene/traversal/SceneVisitor.h>
 
 #include <osgDB/Registry>
 

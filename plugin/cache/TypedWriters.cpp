@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cache/TypedWriters.h"
 
-#include <osgGpuAnimation/nodes/mesh/PaletteEntryBounds.h>
+#include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
 
 #include <osg/Notify>
 #include <osgDB/FileNameUtils>

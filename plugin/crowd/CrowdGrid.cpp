@@ -4,8 +4,8 @@
 #include "gltf/file/ProgressLine.h"
 #include "gltf/file/Report.h"
 
+#include <osgGpuAnimation/frame/PoseStatistics.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
-#include <osgGpuAnimation/nodes/PoseStatistics.h>
 
 #include <osg/Notify>
 

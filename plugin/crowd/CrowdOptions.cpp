@@ -4,8 +4,8 @@
 #include "gltf/file/Report.h"
 #include "gltf/ImportOptions.h"
 
+#include <osgGpuAnimation/frame/stage/LodSelection.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
-#include <osgGpuAnimation/nodes/lod/LodSelection.h>
 
 #include <osgDB/FileNameUtils>
 

@@ -8,14 +8,14 @@
 #include "gltf/write/GlbWriter.h"
 #include "gltf/write/NodeWriter.h"
 
+#include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
+#include <osgGpuAnimation/looks/shading/PunctualLight.h>
+#include <osgGpuAnimation/mesh/geometry/MaterialVariants.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
-#include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
-#include <osgGpuAnimation/nodes/mesh/MaterialVariants.h>
-#include <osgGpuAnimation/nodes/mesh/SceneVisitor.h>
-#include <osgGpuAnimation/nodes/shading/PunctualLight.h>
 #include <osgGpuAnimation/nodes/viewing/StartView.h>
+#include <osgGpuAnimation/scene/traversal/SceneVisitor.h>
 
 #include <glm/gtc/type_ptr.hpp>
 #include <osg/CameraView>

@@ -11,8 +11,8 @@
 #include "gltf/scene/Joints.h"
 
 #include <osgGpuAnimation/animation/bounds/TransformBound.h>
+#include <osgGpuAnimation/mesh/geometry/MaterialVariants.h>
 #include <osgGpuAnimation/nodes/CharacterKeys.h>
-#include <osgGpuAnimation/nodes/mesh/MaterialVariants.h>
 
 #include <osgDB/FileNameUtils>
 

@@ -3,7 +3,7 @@
 
 #include "gltf/file/Report.h"
 
-#include <osgGpuAnimation/nodes/lod/LodSelection.h>
+#include <osgGpuAnimation/frame/stage/LodSelection.h>
 
 #include <algorithm>
 #include <cctype>

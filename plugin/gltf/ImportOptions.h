@@ -3,7 +3,7 @@
 
 #include <osgGpuAnimation/animation/Playback.h>
 #include <osgGpuAnimation/math/Result.h>
-#include <osgGpuAnimation/nodes/mesh/SceneVisitor.h>
+#include <osgGpuAnimation/scene/traversal/SceneVisitor.h>
 
 #include <cstddef>
 #include <cstdint>

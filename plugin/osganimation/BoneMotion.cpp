@@ -4,7 +4,7 @@
 #include "osganimation/CurveKeys.h"
 
 #include <osgGpuAnimation/math/Rotation.h>
-#include <osgGpuAnimation/nodes/OsgMatrix.h>
+#include <osgGpuAnimation/scene/OsgMatrix.h>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>

@@ -3,7 +3,7 @@
 
 #include <osgGpuAnimation/animation/Clip.h>
 #include <osgGpuAnimation/animation/Skeleton.h>
-#include <osgGpuAnimation/nodes/MorphTarget.h>
+#include <osgGpuAnimation/mesh/MorphTarget.h>
 
 #include <osgAnimation/Animation>
 #include <osgAnimation/MorphGeometry>

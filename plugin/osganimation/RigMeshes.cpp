@@ -3,10 +3,10 @@
 
 #include "osganimation/MorphMeshes.h"
 
-#include <osgGpuAnimation/nodes/CharacterProgram.h>
-#include <osgGpuAnimation/nodes/mesh/PrimitiveRange.h>
-#include <osgGpuAnimation/nodes/mesh/SceneVisitor.h>
-#include <osgGpuAnimation/nodes/OsgMatrix.h>
+#include <osgGpuAnimation/looks/CharacterProgram.h>
+#include <osgGpuAnimation/mesh/geometry/PrimitiveRange.h>
+#include <osgGpuAnimation/scene/OsgMatrix.h>
+#include <osgGpuAnimation/scene/traversal/SceneVisitor.h>
 
 #include <osg/LightSource>
 #include <osg/Material>

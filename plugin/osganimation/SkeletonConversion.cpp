@@ -7,9 +7,9 @@
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/authoring/ClipBuilder.h>
+#include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
-#include <osgGpuAnimation/nodes/mesh/SceneVisitor.h>
-#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
+#include <osgGpuAnimation/scene/traversal/SceneVisitor.h>
 
 #include <osgAnimation/AnimationManagerBase>
 #include <osgAnimation/MorphGeometry>

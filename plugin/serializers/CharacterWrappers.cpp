@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "serializers/StoredAnimation.h"
 
+#include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
+#include <osgGpuAnimation/frame/PoseStatistics.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/CharacterKeys.h>
-#include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
-#include <osgGpuAnimation/nodes/PoseStatistics.h>
 
 #include <cmath>
 #include <cstdint>

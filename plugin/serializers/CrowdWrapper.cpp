@@ -2,10 +2,10 @@
 #include "serializers/StoredAnimation.h"
 #include "serializers/StoredLevels.h"
 
+#include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
+#include <osgGpuAnimation/mesh/lod/CharacterLevels.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
-#include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
-#include <osgGpuAnimation/nodes/lod/CharacterLevels.h>
-#include <osgGpuAnimation/nodes/OsgMatrix.h>
+#include <osgGpuAnimation/scene/OsgMatrix.h>
 
 namespace osgGpuAnimation::serializers
 {

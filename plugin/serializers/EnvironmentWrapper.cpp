@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "serializers/ValueStream.h"
 
-#include <osgGpuAnimation/nodes/Environment.h>
+#include <osgGpuAnimation/looks/Environment.h>
 
 #include <osg/Notify>
 

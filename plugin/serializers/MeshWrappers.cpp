@@ -2,11 +2,11 @@
 #include "serializers/StoredAnimation.h"
 #include "serializers/StoredLevels.h"
 
-#include <osgGpuAnimation/nodes/CharacterProgram.h>
-#include <osgGpuAnimation/nodes/mesh/PaletteEntryBounds.h>
-#include <osgGpuAnimation/nodes/shading/Mipmaps.h>
-#include <osgGpuAnimation/nodes/shading/ShaderPermutations.h>
-#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
+#include <osgGpuAnimation/looks/CharacterProgram.h>
+#include <osgGpuAnimation/looks/shading/Mipmaps.h>
+#include <osgGpuAnimation/looks/shading/ShaderPermutations.h>
+#include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
+#include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 
 #include <osg/Notify>
 

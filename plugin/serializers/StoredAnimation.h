@@ -5,7 +5,7 @@
 
 #include <osgGpuAnimation/animation/AnimationController.h>
 #include <osgGpuAnimation/animation/AnimationSet.h>
-#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
+#include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 
 #include <osg/Group>
 

@@ -3,9 +3,9 @@
 
 #include "serializers/StoredAnimation.h"
 
-#include <osgGpuAnimation/nodes/lod/CharacterLevels.h>
-#include <osgGpuAnimation/nodes/lod/LodLevels.h>
-#include <osgGpuAnimation/nodes/mesh/PaletteEntryBounds.h>
+#include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
+#include <osgGpuAnimation/mesh/lod/CharacterLevels.h>
+#include <osgGpuAnimation/mesh/lod/LodLevels.h>
 
 #include <osg/Notify>
 

@@ -3,8 +3,8 @@
 
 #include "serializers/ValueStream.h"
 
+#include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
-#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
 namespace osgGpuAnimation::serializers
 {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "serializers/ValueStream.h"
 
-#include <osgGpuAnimation/nodes/shading/PunctualLight.h>
+#include <osgGpuAnimation/looks/shading/PunctualLight.h>
 #include <osgGpuAnimation/nodes/viewing/StartView.h>
 
 #include <osg/Notify>

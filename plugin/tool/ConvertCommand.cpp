@@ -7,7 +7,7 @@
 #include "gltf/scene/ClipFiles.h"
 #include "tool/ModelFile.h"
 
-#include <osgGpuAnimation/nodes/mesh/SceneVisitor.h>
+#include <osgGpuAnimation/scene/traversal/SceneVisitor.h>
 
 #include <osg/Notify>
 #include <osgDB/FileNameUtils>

@@ -2,7 +2,7 @@
 #include "tool/CpuPoseEvaluator.h"
 
 #include <osgGpuAnimation/animation/Pose.h>
-#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
+#include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 
 namespace osgGpuAnimation::tool
 {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "tool/GpuPoseEvaluator.h"
 
-#include <osgGpuAnimation/nodes/CharacterProgram.h>
+#include <osgGpuAnimation/looks/CharacterProgram.h>
 
 #include <ShaderSources.h>
 

@@ -5,8 +5,8 @@
 
 #include <osgGpuAnimation/gpu/EglGraphicsContext.h>
 #include <osgGpuAnimation/gpu/PosePipeline.h>
-#include <osgGpuAnimation/nodes/frame/PaletteBinding.h>
-#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
+#include <osgGpuAnimation/mesh/draw/PaletteBinding.h>
+#include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 
 #include <osg/Program>
 #include <osg/StateSet>

@@ -8,7 +8,7 @@
 #include "gltf/file/ModelBytes.h"
 #include "gltf/file/ProgressLine.h"
 
-#include <osgGpuAnimation/nodes/mesh/SceneVisitor.h>
+#include <osgGpuAnimation/scene/traversal/SceneVisitor.h>
 
 #include <osgDB/FileNameUtils>
 #include <osgDB/Registry>

@@ -2,9 +2,9 @@
 #include "tool/ModelReport.h"
 
 #include <osgGpuAnimation/gpu/buffers/AnimationBuffers.h>
-#include <osgGpuAnimation/nodes/mesh/SceneVisitor.h>
-#include <osgGpuAnimation/nodes/OsgMatrix.h>
-#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
+#include <osgGpuAnimation/mesh/SkinnedGeometry.h>
+#include <osgGpuAnimation/scene/OsgMatrix.h>
+#include <osgGpuAnimation/scene/traversal/SceneVisitor.h>
 
 #include <osg/Texture>
 

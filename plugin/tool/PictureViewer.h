@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <osgGpuAnimation/looks/Environment.h>
 #include <osgGpuAnimation/math/Result.h>
-#include <osgGpuAnimation/nodes/Environment.h>
 #include <osgGpuAnimation/nodes/viewing/Standpoint.h>
 
 #include <osg/CameraView>

@@ -7,7 +7,7 @@
 #include "tool/CpuPoseEvaluator.h"
 #include "tool/ModelFile.h"
 
-#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
+#include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 #include <osgGpuAnimation/nodes/studio/ModelExtent.h>
 
 #include <osg/BoundingBox>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "Props.h"
 
-#include <osgGpuAnimation/nodes/CharacterProgram.h>
-#include <osgGpuAnimation/nodes/PbrMaterial.h>
+#include <osgGpuAnimation/looks/CharacterProgram.h>
+#include <osgGpuAnimation/looks/PbrMaterial.h>
 
 #include <osg/LightSource>
 #include <osg/Math>

@@ -11,9 +11,9 @@
 
 #include <osgGpuAnimation/animation/JointMask.h>
 #include <osgGpuAnimation/gpu/EglGraphicsContext.h>
+#include <osgGpuAnimation/looks/Environment.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
-#include <osgGpuAnimation/nodes/Environment.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
 #include <osgGpuAnimation/nodes/studio/Studio.h>
 

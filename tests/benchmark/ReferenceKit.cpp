@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "ReferenceKit.h"
 
-#include <osgGpuAnimation/nodes/OsgMatrix.h>
-#include <osgGpuAnimation/nodes/shading/ShaderPermutations.h>
-#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
+#include <osgGpuAnimation/looks/shading/ShaderPermutations.h>
+#include <osgGpuAnimation/mesh/SkinnedGeometry.h>
+#include <osgGpuAnimation/scene/OsgMatrix.h>
 
 #include <osgAnimation/Channel>
 #include <osgAnimation/RigTransformHardware>

@@ -4,8 +4,8 @@
 #include "PoseCrowd.h"
 
 #include <osgGpuAnimation/animation/Pose.h>
-#include <osgGpuAnimation/nodes/OsgMatrix.h>
-#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
+#include <osgGpuAnimation/mesh/SkinnedGeometry.h>
+#include <osgGpuAnimation/scene/OsgMatrix.h>
 
 #include <osg/Notify>
 #include <osgUtil/UpdateVisitor>

@@ -3,7 +3,7 @@
 #include "Measurements.h"
 #include "Scenes.h"
 
-#include <osgGpuAnimation/nodes/Environment.h>
+#include <osgGpuAnimation/looks/Environment.h>
 
 #include <iostream>
 

@@ -6,13 +6,13 @@
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/authoring/ClipBuilder.h>
+#include <osgGpuAnimation/looks/CharacterProgram.h>
+#include <osgGpuAnimation/looks/PbrMaterial.h>
+#include <osgGpuAnimation/looks/shading/PunctualLight.h>
+#include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
-#include <osgGpuAnimation/nodes/CharacterProgram.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
-#include <osgGpuAnimation/nodes/PbrMaterial.h>
-#include <osgGpuAnimation/nodes/shading/PunctualLight.h>
-#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 #include <osgGpuAnimation/nodes/viewing/StartView.h>
 
 #include <fuzzer/FuzzedDataProvider.h>

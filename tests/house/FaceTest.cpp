@@ -35,7 +35,7 @@ std::vector<std::string> matches(const std::string& text, const std::regex& patt
 std::set<std::string> publicHeaders()
 {
     std::set<std::string> headers;
-    for (const char* folder : {"math", "animation", "authoring", "gpu", "nodes"})
+    for (const char* folder : {"math", "animation", "authoring", "gpu", "scene", "looks", "mesh", "frame", "nodes"})
         for (const auto& entry : fs::directory_iterator(kit / folder))
             if (entry.path().extension() == ".h")
                 headers.insert(std::string(folder) + "/" + entry.path().filename().string());
@@ -51,7 +51,7 @@ std::set<std::string> setOf(const std::vector<std::string>& names)
 std::vector<std::string> namedPaths(const std::string& markdown)
 {
     static const std::regex path(
-        R"(`((?:math|animation|authoring|gpu|nodes|plugin|shaders|tests|scenes|osg_nodes)/[\w./-]*)`)");
+        R"(`((?:math|animation|authoring|gpu|scene|looks|mesh|frame|nodes|plugin|shaders|tests|scenes|osg_nodes)/[\w./-]*)`)");
     return matches(markdown, path);
 }
 
@@ -67,7 +67,7 @@ bool isPath(const std::string& path)
 
 TEST(FaceTest, theTableOfHeadersIsComplete)
 {
-    static const std::regex row(R"(\| `((?:math|animation|authoring|gpu|nodes)/\w+\.h)` \|)");
+    static const std::regex row(R"(\| `((?:math|animation|authoring|gpu|scene|looks|mesh|frame|nodes)/\w+\.h)` \|)");
     EXPECT_EQ(setOf(matches(fileText(root / "osg_nodes/doc/application.md"), row)), publicHeaders());
 }
 

@@ -45,7 +45,7 @@ const std::set<std::string> largeRooms = {
     "osg_nodes/osgGpuAnimation/nodes/AnimatedCharacter",
     "osg_nodes/osgGpuAnimation/nodes/AnimatedCrowd",
     "osg_nodes/osgGpuAnimation/nodes/GroundFeet",
-    "osg_nodes/osgGpuAnimation/nodes/mesh/AnimatedProperties",
+    "osg_nodes/osgGpuAnimation/nodes/properties/AnimatedProperties",
 };
 
 /// Headers of other people that a folder must not include.
@@ -59,7 +59,7 @@ const Libraries libraries[] = {
     {"osg_nodes/osgGpuAnimation/(math|animation|authoring)/",
      R"(^(osg|osg[A-Z]\w*|GL|EGL|OpenThreads|nlohmann)/|^tiny_gltf)"},
     {"osg_nodes/osgGpuAnimation/gpu/", R"(^tiny_gltf|^osg(Viewer|DB|GA)/)"},
-    {"osg_nodes/osgGpuAnimation/nodes/", R"(^tiny_gltf|^osgDB/)"},
+    {"osg_nodes/osgGpuAnimation/(scene|looks|mesh|frame|nodes)/", R"(^tiny_gltf|^osgDB/)"},
     {"plugin/gltf/", R"(^osgViewer/)"},
 };
 
@@ -186,7 +186,8 @@ std::vector<std::string> faultsOfCircles(const Texts& texts)
 
 bool isFace(const std::string& room)
 {
-    static const std::regex face(R"(^osg_nodes/osgGpuAnimation/((math|animation|authoring|gpu|nodes)/)?\w+$)");
+    static const std::regex face(
+        R"(^osg_nodes/osgGpuAnimation/((math|animation|authoring|gpu|scene|looks|mesh|frame|nodes)/)?\w+$)");
     return std::regex_match(room, face);
 }
 

@@ -6,8 +6,8 @@
 #include <osgGpuAnimation/animation/StateMachine.h>
 #include <osgGpuAnimation/authoring/ClipBuilder.h>
 #include <osgGpuAnimation/authoring/WithRootMotion.h>
+#include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
-#include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
 
 #include <osg/Geometry>
 #include <osg/TriangleFunctor>

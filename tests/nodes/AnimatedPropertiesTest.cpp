@@ -2,9 +2,9 @@
 #include "nodes/Tube.h"
 
 #include <osgGpuAnimation/animation/Pose.h>
+#include <osgGpuAnimation/mesh/geometry/MaterialVariants.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
-#include <osgGpuAnimation/nodes/mesh/AnimatedProperties.h>
-#include <osgGpuAnimation/nodes/mesh/MaterialVariants.h>
+#include <osgGpuAnimation/nodes/properties/AnimatedProperties.h>
 
 #include <gtest/gtest.h>
 #include <osg/Light>

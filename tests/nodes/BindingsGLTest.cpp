@@ -6,8 +6,8 @@
 #include "support/ViewerGLTest.h"
 
 #include <osgGpuAnimation/gpu/PosePipeline.h>
+#include <osgGpuAnimation/looks/Environment.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
-#include <osgGpuAnimation/nodes/Environment.h>
 
 #include <layout.glsl>
 

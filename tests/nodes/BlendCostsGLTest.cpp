@@ -3,9 +3,9 @@
 #include "support/ViewerGLTest.h"
 
 #include <osgGpuAnimation/animation/Pose.h>
+#include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/gpu/PosePipeline.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
-#include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
 
 #include <osg/Group>
 

@@ -4,8 +4,8 @@
 #include "support/TestCharacter.h"
 
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
-#include <osgGpuAnimation/nodes/mesh/SceneVisitor.h>
 #include <osgGpuAnimation/nodes/studio/ModelExtent.h>
+#include <osgGpuAnimation/scene/traversal/SceneVisitor.h>
 
 #include <gtest/gtest.h>
 #include <osg/Geometry>

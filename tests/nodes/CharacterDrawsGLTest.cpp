@@ -4,7 +4,7 @@
 #include "support/ViewerGLTest.h"
 
 #include <osgGpuAnimation/gpu/PosePipeline.h>
-#include <osgGpuAnimation/nodes/CharacterProgram.h>
+#include <osgGpuAnimation/looks/CharacterProgram.h>
 
 #include <layout.glsl>
 

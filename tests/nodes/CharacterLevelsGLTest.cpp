@@ -2,8 +2,8 @@
 #include "nodes/Tube.h"
 #include "support/ViewerGLTest.h"
 
+#include <osgGpuAnimation/looks/CharacterProgram.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
-#include <osgGpuAnimation/nodes/CharacterProgram.h>
 
 #include <osg/Material>
 #include <osg/Texture2D>

@@ -3,10 +3,10 @@
 #include "support/ShownSurface.h"
 
 #include <osgGpuAnimation/animation/Pose.h>
+#include <osgGpuAnimation/looks/CharacterProgram.h>
+#include <osgGpuAnimation/mesh/lod/CharacterLevels.h>
+#include <osgGpuAnimation/mesh/lod/MergedParts.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
-#include <osgGpuAnimation/nodes/CharacterProgram.h>
-#include <osgGpuAnimation/nodes/lod/CharacterLevels.h>
-#include <osgGpuAnimation/nodes/lod/MergedParts.h>
 
 #include <osg/Material>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <osgGpuAnimation/nodes/frame/CharacterStates.h>
+#include <osgGpuAnimation/nodes/callbacks/CharacterStates.h>
 
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 

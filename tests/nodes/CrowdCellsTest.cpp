@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <osgGpuAnimation/nodes/crowd/CrowdCells.h>
+#include <osgGpuAnimation/frame/crowd/CrowdCells.h>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>

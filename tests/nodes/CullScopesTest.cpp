@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <osgGpuAnimation/nodes/frame/CullScopes.h>
+#include <osgGpuAnimation/scene/traversal/CullScopes.h>
 
 #include <gtest/gtest.h>
 

@@ -3,10 +3,10 @@
 #include "nodes/StudioPanorama.h"
 #include "support/ViewerGLTest.h"
 
-#include <osgGpuAnimation/nodes/CharacterProgram.h>
-#include <osgGpuAnimation/nodes/Environment.h>
-#include <osgGpuAnimation/nodes/PbrMaterial.h>
-#include <osgGpuAnimation/nodes/shading/PrefilteredMap.h>
+#include <osgGpuAnimation/looks/CharacterProgram.h>
+#include <osgGpuAnimation/looks/Environment.h>
+#include <osgGpuAnimation/looks/environment/PrefilteredMap.h>
+#include <osgGpuAnimation/looks/PbrMaterial.h>
 
 #include <osg/FrontFace>
 #include <osg/Geometry>

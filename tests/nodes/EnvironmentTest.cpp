@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "nodes/StudioPanorama.h"
 
-#include <osgGpuAnimation/nodes/Environment.h>
-#include <osgGpuAnimation/nodes/shading/RadianceCube.h>
+#include <osgGpuAnimation/looks/Environment.h>
+#include <osgGpuAnimation/looks/environment/RadianceCube.h>
 
 #include <gtest/gtest.h>
 

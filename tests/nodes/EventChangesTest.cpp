@@ -2,8 +2,8 @@
 #include "support/TestCharacter.h"
 
 #include <osgGpuAnimation/animation/JointMask.h>
+#include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
-#include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
 
 #include <gtest/gtest.h>
 #include <osg/observer_ptr>

@@ -3,7 +3,7 @@
 #include "support/TestCharacter.h"
 #include "support/ViewerGLTest.h"
 
-#include <osgGpuAnimation/nodes/Environment.h>
+#include <osgGpuAnimation/looks/Environment.h>
 
 #include <osg/MatrixTransform>
 #include <osg/Texture2D>

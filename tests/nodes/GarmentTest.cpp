@@ -2,10 +2,10 @@
 #include "nodes/Tube.h"
 #include "support/VertexDistance.h"
 
+#include <osgGpuAnimation/mesh/geometry/MaterialVariants.h>
+#include <osgGpuAnimation/mesh/geometry/MeshNames.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
-#include <osgGpuAnimation/nodes/mesh/MaterialVariants.h>
-#include <osgGpuAnimation/nodes/mesh/MeshNames.h>
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>

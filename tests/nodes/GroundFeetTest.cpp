@@ -5,7 +5,7 @@
 #include "support/NotifyLog.h"
 
 #include <osgGpuAnimation/animation/Pose.h>
-#include <osgGpuAnimation/nodes/OsgMatrix.h>
+#include <osgGpuAnimation/scene/OsgMatrix.h>
 
 #include <osg/Geometry>
 #include <osg/Group>

@@ -2,8 +2,8 @@
 #include "support/PeakMemory.h"
 #include "support/ScratchFolder.h"
 
-#include <osgGpuAnimation/nodes/Environment.h>
-#include <osgGpuAnimation/nodes/shading/HdrPicture.h>
+#include <osgGpuAnimation/looks/Environment.h>
+#include <osgGpuAnimation/looks/environment/HdrPicture.h>
 
 #include <gtest/gtest.h>
 #include <osgDB/ReadFile>

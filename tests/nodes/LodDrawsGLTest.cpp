@@ -3,8 +3,8 @@
 #include "support/PrimitiveCount.h"
 #include "support/ViewerGLTest.h"
 
+#include <osgGpuAnimation/frame/stage/LodSelection.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
-#include <osgGpuAnimation/nodes/lod/LodSelection.h>
 
 #include <set>
 

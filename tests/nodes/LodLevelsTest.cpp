@@ -2,7 +2,7 @@
 #include "nodes/Tube.h"
 #include "support/TestCharacter.h"
 
-#include <osgGpuAnimation/nodes/lod/LodLevels.h>
+#include <osgGpuAnimation/mesh/lod/LodLevels.h>
 
 #include <gtest/gtest.h>
 

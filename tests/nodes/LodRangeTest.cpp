@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "support/TestCharacter.h"
 
+#include <osgGpuAnimation/frame/stage/LodSelection.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
-#include <osgGpuAnimation/nodes/lod/LodSelection.h>
 
 #include <gtest/gtest.h>
 

@@ -3,8 +3,8 @@
 #include "support/TestCharacter.h"
 
 #include <osgGpuAnimation/animation/Pose.h>
+#include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
-#include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
 
 #include <osg/ComputeBoundsVisitor>

@@ -3,7 +3,7 @@
 #include "support/TestCharacter.h"
 
 #include <osgGpuAnimation/animation/Pose.h>
-#include <osgGpuAnimation/nodes/CharacterProgram.h>
+#include <osgGpuAnimation/looks/CharacterProgram.h>
 
 #include <osg/Image>
 #include <osg/Material>

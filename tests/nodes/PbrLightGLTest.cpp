@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "nodes/PbrPanelGLTest.h"
 
+#include <osgGpuAnimation/looks/Environment.h>
+#include <osgGpuAnimation/looks/shading/PunctualLight.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
-#include <osgGpuAnimation/nodes/Environment.h>
-#include <osgGpuAnimation/nodes/shading/PunctualLight.h>
 
 #include <layout.glsl>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "support/ViewerGLTest.h"
 
-#include <osgGpuAnimation/nodes/CharacterProgram.h>
-#include <osgGpuAnimation/nodes/Environment.h>
-#include <osgGpuAnimation/nodes/PbrMaterial.h>
+#include <osgGpuAnimation/looks/CharacterProgram.h>
+#include <osgGpuAnimation/looks/Environment.h>
+#include <osgGpuAnimation/looks/PbrMaterial.h>
 
 #include <osg/Geometry>
 #include <osg/LightModel>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nodes/PbrPanelGLTest.h"
 
-#include <osgGpuAnimation/nodes/Environment.h>
+#include <osgGpuAnimation/looks/Environment.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <osgGpuAnimation/nodes/PbrMaterial.h>
+#include <osgGpuAnimation/looks/PbrMaterial.h>
 
 #include <gtest/gtest.h>
 #include <osg/BlendFunc>

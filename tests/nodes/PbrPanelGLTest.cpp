@@ -3,7 +3,7 @@
 
 #include "nodes/Panel.h"
 
-#include <osgGpuAnimation/nodes/CharacterProgram.h>
+#include <osgGpuAnimation/looks/CharacterProgram.h>
 
 #include <layout.glsl>
 

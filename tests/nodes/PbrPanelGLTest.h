@@ -3,7 +3,7 @@
 
 #include "support/ViewerGLTest.h"
 
-#include <osgGpuAnimation/nodes/PbrMaterial.h>
+#include <osgGpuAnimation/looks/PbrMaterial.h>
 
 #include <osg/Geometry>
 #include <osg/Light>

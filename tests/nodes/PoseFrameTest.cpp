@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <osgGpuAnimation/nodes/frame/PoseFrame.h>
+#include <osgGpuAnimation/frame/stage/PoseFrame.h>
 
 #include <gtest/gtest.h>
 

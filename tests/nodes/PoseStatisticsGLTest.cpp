@@ -3,9 +3,9 @@
 #include "support/TestCharacter.h"
 #include "support/ViewerGLTest.h"
 
+#include <osgGpuAnimation/frame/PoseStatistics.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/CharacterKeys.h>
-#include <osgGpuAnimation/nodes/PoseStatistics.h>
 
 #include <osg/Group>
 #include <osgUtil/Statistics>

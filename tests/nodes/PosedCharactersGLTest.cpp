@@ -4,9 +4,9 @@
 
 #include <osgGpuAnimation/animation/keyframes/PosedKeyframe.h>
 #include <osgGpuAnimation/animation/Pose.h>
+#include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/gpu/PosePipeline.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
-#include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
 
 #include <osgUtil/LineSegmentIntersector>
 

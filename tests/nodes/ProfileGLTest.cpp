@@ -3,8 +3,8 @@
 #include "support/TestCharacter.h"
 #include "support/ViewerGLTest.h"
 
+#include <osgGpuAnimation/looks/PbrMaterial.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
-#include <osgGpuAnimation/nodes/PbrMaterial.h>
 
 #include <osg/GLExtensions>
 #include <osg/Image>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "nodes/Tube.h"
 
+#include <osgGpuAnimation/looks/PbrMaterial.h>
+#include <osgGpuAnimation/looks/shading/PunctualLight.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
-#include <osgGpuAnimation/nodes/mesh/AnimatedProperties.h>
-#include <osgGpuAnimation/nodes/PbrMaterial.h>
-#include <osgGpuAnimation/nodes/shading/PunctualLight.h>
+#include <osgGpuAnimation/nodes/properties/AnimatedProperties.h>
 
 #include <osg/CameraView>
 #include <osg/LightSource>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <osgGpuAnimation/nodes/shading/PunctualLight.h>
+#include <osgGpuAnimation/looks/shading/PunctualLight.h>
 
 #include <gtest/gtest.h>
 #include <osg/Math>

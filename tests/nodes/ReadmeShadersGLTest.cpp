@@ -2,10 +2,10 @@
 #include "nodes/Panel.h"
 #include "support/ViewerGLTest.h"
 
+#include <osgGpuAnimation/looks/CharacterProgram.h>
+#include <osgGpuAnimation/looks/PbrMaterial.h>
+#include <osgGpuAnimation/looks/shading/ShaderPermutations.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
-#include <osgGpuAnimation/nodes/CharacterProgram.h>
-#include <osgGpuAnimation/nodes/PbrMaterial.h>
-#include <osgGpuAnimation/nodes/shading/ShaderPermutations.h>
 
 #include <osgFX/AnisotropicLighting>
 #include <osgFX/Cartoon>
@@ -24,7 +24,7 @@ osg::ref_ptr<osg::Program> makeOwnProgram()
 {
     // clang-format off
 osg::ref_ptr<osg::Program> program = new osg::Program;
-program->addShader(skinShader());                                          // osgGpuAnimation/nodes/CharacterProgram.h
+program->addShader(skinShader());                                          // osgGpuAnimation/looks/CharacterProgram.h
 program->addShader(new osg::Shader(osg::Shader::VERTEX, R"(#version 140
     void osgGpuAnimationSkin(inout vec4 vertex, inout vec3 normal);
     out vec3 viewNormal;
@@ -124,7 +124,7 @@ TEST_F(ReadmeShadersGLTest, aMaterialOfOnesOwnIsShown)
     const osg::ref_ptr<AnimatedCharacter> panel = makePanelCharacter();
     osg::Geometry* const mesh = static_cast<osg::Geometry*>(panel->getChild(0));
     // clang-format off
-PbrMaterial material;                                    // osgGpuAnimation/nodes/PbrMaterial.h
+PbrMaterial material;                                    // osgGpuAnimation/looks/PbrMaterial.h
 material.baseColor.set(0.8f, 0.2f, 0.1f, 1.0f);          // linear
 material.metallic = 0.0f;
 material.roughness = 0.4f;

@@ -2,7 +2,7 @@
 #include "support/ScratchFolder.h"
 #include "support/WorkingFolder.h"
 
-#include <osgGpuAnimation/nodes/Environment.h>
+#include <osgGpuAnimation/looks/Environment.h>
 
 #include <gtest/gtest.h>
 

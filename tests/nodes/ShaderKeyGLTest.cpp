@@ -2,8 +2,8 @@
 #include "nodes/LitSurfaceGLTest.h"
 #include "nodes/Panel.h"
 
-#include <osgGpuAnimation/nodes/CharacterProgram.h>
-#include <osgGpuAnimation/nodes/shading/ShaderPermutations.h>
+#include <osgGpuAnimation/looks/CharacterProgram.h>
+#include <osgGpuAnimation/looks/shading/ShaderPermutations.h>
 
 #include <osg/ColorMask>
 #include <osg/Material>

@@ -9,9 +9,9 @@
 #include <osgGpuAnimation/gpu/passes/PoseVariant.h>
 #include <osgGpuAnimation/gpu/PoseBatch.h>
 #include <osgGpuAnimation/gpu/PosePipeline.h>
-#include <osgGpuAnimation/nodes/CharacterProgram.h>
-#include <osgGpuAnimation/nodes/shading/PrefilteredMap.h>
-#include <osgGpuAnimation/nodes/shading/ShaderPermutations.h>
+#include <osgGpuAnimation/looks/CharacterProgram.h>
+#include <osgGpuAnimation/looks/environment/PrefilteredMap.h>
+#include <osgGpuAnimation/looks/shading/ShaderPermutations.h>
 
 #include <ShaderSources.h>
 

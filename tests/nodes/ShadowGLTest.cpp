@@ -2,8 +2,8 @@
 #include "nodes/Panel.h"
 #include "support/ViewerGLTest.h"
 
+#include <osgGpuAnimation/looks/PbrMaterial.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
-#include <osgGpuAnimation/nodes/PbrMaterial.h>
 
 #include <osg/LightSource>
 #include <osg/ShapeDrawable>

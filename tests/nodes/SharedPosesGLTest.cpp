@@ -4,10 +4,10 @@
 #include "support/ViewerGLTest.h"
 
 #include <osgGpuAnimation/animation/Pose.h>
+#include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/gpu/PosePipeline.h>
+#include <osgGpuAnimation/mesh/lod/LodLevels.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
-#include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
-#include <osgGpuAnimation/nodes/lod/LodLevels.h>
 
 #include <glm/geometric.hpp>
 

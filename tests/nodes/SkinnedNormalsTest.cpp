@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
+#include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>

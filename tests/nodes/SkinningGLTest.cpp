@@ -4,9 +4,9 @@
 
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/gpu/PosePipeline.h>
-#include <osgGpuAnimation/nodes/CharacterProgram.h>
-#include <osgGpuAnimation/nodes/frame/PaletteBinding.h>
-#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
+#include <osgGpuAnimation/looks/CharacterProgram.h>
+#include <osgGpuAnimation/mesh/draw/PaletteBinding.h>
+#include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 
 #include <glm/geometric.hpp>
 #include <osg/Program>

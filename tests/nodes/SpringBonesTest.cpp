@@ -6,8 +6,8 @@
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/authoring/ClipBuilder.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
-#include <osgGpuAnimation/nodes/OsgMatrix.h>
 #include <osgGpuAnimation/nodes/SpringBones.h>
+#include <osgGpuAnimation/scene/OsgMatrix.h>
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/type_ptr.hpp>

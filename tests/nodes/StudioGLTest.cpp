@@ -4,7 +4,7 @@
 #include "support/ThreadingModels.h"
 #include "support/ViewerGLTest.h"
 
-#include <osgGpuAnimation/nodes/PbrMaterial.h>
+#include <osgGpuAnimation/looks/PbrMaterial.h>
 #include <osgGpuAnimation/nodes/studio/Studio.h>
 #include <osgGpuAnimation/nodes/viewing/RaisedHome.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <osgGpuAnimation/nodes/shading/RadianceCube.h>
+#include <osgGpuAnimation/looks/environment/RadianceCube.h>
 
 #include <osg/Image>
 #include <osg/Math>

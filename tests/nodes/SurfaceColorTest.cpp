@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "support/TestCharacter.h"
 
-#include <osgGpuAnimation/nodes/CharacterProgram.h>
-#include <osgGpuAnimation/nodes/lod/SurfaceColor.h>
+#include <osgGpuAnimation/looks/CharacterProgram.h>
+#include <osgGpuAnimation/mesh/lod/SurfaceColor.h>
 
 #include <osg/BlendFunc>
 #include <osg/CullFace>

@@ -4,8 +4,8 @@
 #include "nodes/Tube.h"
 #include "support/TestCharacter.h"
 
+#include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
-#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
 #include <osg/BlendFunc>
 #include <osg/Material>

@@ -2,8 +2,8 @@
 #include "nodes/Panel.h"
 #include "support/ViewerGLTest.h"
 
-#include <osgGpuAnimation/nodes/PbrMaterial.h>
-#include <osgGpuAnimation/nodes/shading/ShaderPermutations.h>
+#include <osgGpuAnimation/looks/PbrMaterial.h>
+#include <osgGpuAnimation/looks/shading/ShaderPermutations.h>
 
 #include <osg/BlendFunc>
 #include <osg/ClipPlane>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <osgGpuAnimation/nodes/lod/SurfaceViews.h>
+#include <osgGpuAnimation/authoring/mesh/SurfaceViews.h>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>

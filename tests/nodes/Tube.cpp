@@ -3,7 +3,7 @@
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/authoring/ClipBuilder.h>
-#include <osgGpuAnimation/nodes/CharacterProgram.h>
+#include <osgGpuAnimation/looks/CharacterProgram.h>
 
 #include <gtest/gtest.h>
 

@@ -3,8 +3,8 @@
 #include "osganimation/SkeletonConversion.h"
 #include "osganimation/SmallRig.h"
 
+#include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
-#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
 #include <gtest/gtest.h>
 #include <osg/BlendFunc>

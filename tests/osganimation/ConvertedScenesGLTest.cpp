@@ -6,8 +6,8 @@
 #include "support/ScratchFolder.h"
 #include "support/ViewerGLTest.h"
 
+#include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
-#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
 #include <osg/LightSource>
 #include <osgAnimation/BasicAnimationManager>

@@ -4,7 +4,7 @@
 #include "plugin/StoredScene.h"
 
 #include <osgGpuAnimation/animation/Pose.h>
-#include <osgGpuAnimation/nodes/shading/PunctualLight.h>
+#include <osgGpuAnimation/looks/shading/PunctualLight.h>
 
 #include <gtest/gtest.h>
 #include <osg/Math>

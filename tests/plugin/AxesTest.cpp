@@ -5,9 +5,9 @@
 
 #include <osgGpuAnimation/authoring/ClipBuilder.h>
 #include <osgGpuAnimation/authoring/WithRootMotion.h>
+#include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
-#include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
 
 #include <osg/ComputeBoundsVisitor>
 #include <osgDB/ReadFile>

@@ -3,10 +3,10 @@
 #include "plugin/SharedAssets.h"
 
 #include <osgGpuAnimation/animation/Pose.h>
+#include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
+#include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
-#include <osgGpuAnimation/nodes/mesh/PaletteEntryBounds.h>
-#include <osgGpuAnimation/nodes/OsgMatrix.h>
-#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
+#include <osgGpuAnimation/scene/OsgMatrix.h>
 
 #include <gtest/gtest.h>
 #include <osgDB/ReadFile>

@@ -3,8 +3,8 @@
 #include "support/ShownSurface.h"
 
 #include <osgGpuAnimation/animation/Pose.h>
+#include <osgGpuAnimation/mesh/lod/CharacterLevels.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
-#include <osgGpuAnimation/nodes/lod/CharacterLevels.h>
 
 #include <gtest/gtest.h>
 

@@ -6,8 +6,8 @@
 
 #include <osgGpuAnimation/animation/keyframes/CompactTracks.h>
 #include <osgGpuAnimation/animation/keyframes/PackedKeyframes.h>
-#include <osgGpuAnimation/nodes/mesh/PaletteEntryBounds.h>
-#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
+#include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
+#include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 
 #include <gtest/gtest.h>
 

@@ -5,11 +5,11 @@
 #include "support/ViewerGLTest.h"
 
 #include <osgGpuAnimation/animation/Pose.h>
+#include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/gpu/PosePipeline.h>
+#include <osgGpuAnimation/looks/CharacterProgram.h>
+#include <osgGpuAnimation/mesh/lod/CharacterLevels.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
-#include <osgGpuAnimation/nodes/CharacterProgram.h>
-#include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
-#include <osgGpuAnimation/nodes/lod/CharacterLevels.h>
 
 #include <cmath>
 #include <cstdio>

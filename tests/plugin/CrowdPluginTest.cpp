@@ -2,8 +2,8 @@
 #include "plugin/PseudoLoaderTest.h"
 #include "support/NotifyLog.h"
 
+#include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
-#include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
 
 #include <osgDB/FileNameUtils>
 

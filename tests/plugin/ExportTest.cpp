@@ -8,8 +8,8 @@
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/authoring/ClipBuilder.h>
+#include <osgGpuAnimation/looks/shading/PunctualLight.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
-#include <osgGpuAnimation/nodes/shading/PunctualLight.h>
 
 #include <osg/CameraView>
 #include <osg/Geode>

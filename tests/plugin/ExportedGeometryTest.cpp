@@ -4,10 +4,10 @@
 #include "plugin/ModelBuilder.h"
 #include "plugin/RoundTrip.h"
 
+#include <osgGpuAnimation/looks/shading/PunctualLight.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
-#include <osgGpuAnimation/nodes/mesh/AnimatedProperties.h>
-#include <osgGpuAnimation/nodes/shading/PunctualLight.h>
+#include <osgGpuAnimation/nodes/properties/AnimatedProperties.h>
 
 #include <osg/CameraView>
 #include <osg/LightSource>

@@ -3,7 +3,7 @@
 #include "gltf/write/PictureWriter.h"
 #include "plugin/ExportedDocument.h"
 
-#include <osgGpuAnimation/nodes/PbrMaterial.h>
+#include <osgGpuAnimation/looks/PbrMaterial.h>
 
 #include <osg/AlphaFunc>
 #include <osg/Material>

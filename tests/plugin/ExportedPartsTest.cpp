@@ -8,10 +8,10 @@
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/authoring/ClipBuilder.h>
-#include <osgGpuAnimation/nodes/mesh/AnimatedProperties.h>
-#include <osgGpuAnimation/nodes/mesh/MeshNames.h>
-#include <osgGpuAnimation/nodes/PbrMaterial.h>
-#include <osgGpuAnimation/nodes/shading/PunctualLight.h>
+#include <osgGpuAnimation/looks/PbrMaterial.h>
+#include <osgGpuAnimation/looks/shading/PunctualLight.h>
+#include <osgGpuAnimation/mesh/geometry/MeshNames.h>
+#include <osgGpuAnimation/nodes/properties/AnimatedProperties.h>
 
 #include <osg/LightSource>
 #include <osg/LOD>

@@ -4,8 +4,8 @@
 #include "plugin/LoadedDocument.h"
 #include "plugin/StoredScene.h"
 
+#include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
-#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
 #include <osg/LOD>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "plugin/ImportedFile.h"
 
-#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
+#include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 
 #include <gtest/gtest.h>
 #include <osg/FrontFace>

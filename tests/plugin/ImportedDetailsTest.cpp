@@ -8,9 +8,9 @@
 #include "support/ScratchFolder.h"
 
 #include <osgGpuAnimation/animation/bounds/TransformBound.h>
+#include <osgGpuAnimation/looks/PbrMaterial.h>
+#include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
-#include <osgGpuAnimation/nodes/PbrMaterial.h>
-#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
 #include <osg/FrontFace>
 #include <osg/Material>

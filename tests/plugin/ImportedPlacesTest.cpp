@@ -3,8 +3,8 @@
 #include "plugin/ModelBuilder.h"
 #include "support/ScratchFolder.h"
 
+#include <osgGpuAnimation/looks/shading/PunctualLight.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
-#include <osgGpuAnimation/nodes/shading/PunctualLight.h>
 
 #include <osg/CameraView>
 #include <osg/LightSource>

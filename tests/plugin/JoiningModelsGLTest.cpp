@@ -5,8 +5,8 @@
 #include "support/ScratchFolder.h"
 #include "support/ViewerGLTest.h"
 
+#include <osgGpuAnimation/looks/Environment.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
-#include <osgGpuAnimation/nodes/Environment.h>
 
 #include <osg/Geometry>
 #include <osgDB/ReadFile>

@@ -5,9 +5,9 @@
 #include "support/ThreadingModels.h"
 #include "support/ViewerGLTest.h"
 
+#include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
-#include <osgGpuAnimation/nodes/mesh/PaletteEntryBounds.h>
 
 #include <osgDB/ReadFile>
 #include <osgUtil/Optimizer>

@@ -2,10 +2,10 @@
 #include "plugin/ModelImport.h"
 
 #include <osgGpuAnimation/animation/Pose.h>
+#include <osgGpuAnimation/authoring/mesh/MeshConnectivity.h>
+#include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
+#include <osgGpuAnimation/mesh/lod/LodLevels.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
-#include <osgGpuAnimation/nodes/lod/LodLevels.h>
-#include <osgGpuAnimation/nodes/lod/MeshConnectivity.h>
-#include <osgGpuAnimation/nodes/mesh/PaletteEntryBounds.h>
 
 #include <gtest/gtest.h>
 

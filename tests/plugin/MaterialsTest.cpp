@@ -3,7 +3,7 @@
 #include "plugin/EncodedPicture.h"
 #include "plugin/ModelBuilder.h"
 
-#include <osgGpuAnimation/nodes/CharacterProgram.h>
+#include <osgGpuAnimation/looks/CharacterProgram.h>
 
 #include <gtest/gtest.h>
 #include <osg/AlphaFunc>

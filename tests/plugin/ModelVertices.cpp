@@ -2,7 +2,7 @@
 #include "plugin/ModelVertices.h"
 
 #include <osgGpuAnimation/animation/Pose.h>
-#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
+#include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 
 namespace osgGpuAnimation::gltf
 {

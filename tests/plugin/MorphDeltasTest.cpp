@@ -3,7 +3,7 @@
 #include "plugin/ModelBuilder.h"
 #include "plugin/StoredScene.h"
 
-#include <osgGpuAnimation/nodes/mesh/PaletteEntryBounds.h>
+#include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
 
 #include <gtest/gtest.h>
 

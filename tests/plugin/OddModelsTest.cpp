@@ -2,7 +2,7 @@
 #include "plugin/ImportedFile.h"
 #include "plugin/ModelVertices.h"
 
-#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
+#include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 
 #include <gtest/gtest.h>
 

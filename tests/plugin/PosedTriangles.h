@@ -2,7 +2,7 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/AnimationController.h>
-#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
+#include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 
 #include <osg/Matrixd>
 

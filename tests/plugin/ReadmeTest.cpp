@@ -3,10 +3,10 @@
 #include "support/ScratchFolder.h"
 #include "support/WorkingFolder.h"
 
+#include <osgGpuAnimation/frame/PoseStatistics.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
-#include <osgGpuAnimation/nodes/PoseStatistics.h>
 
 #include <osg/MatrixTransform>
 #include <osgDB/FileUtils>

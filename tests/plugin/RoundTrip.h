@@ -4,8 +4,8 @@
 #include "gltf/Export.h"
 #include "gltf/Import.h"
 
+#include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
-#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
 #include <osg/NodeVisitor>
 

@@ -6,12 +6,12 @@
 #include <osgGpuAnimation/animation/JointMask.h>
 #include <osgGpuAnimation/animation/keyframes/CompactTracks.h>
 #include <osgGpuAnimation/animation/keyframes/PackedKeyframes.h>
+#include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
+#include <osgGpuAnimation/frame/PoseStatistics.h>
+#include <osgGpuAnimation/looks/CharacterProgram.h>
+#include <osgGpuAnimation/looks/shading/ShaderPermutations.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
-#include <osgGpuAnimation/nodes/CharacterProgram.h>
-#include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
-#include <osgGpuAnimation/nodes/PoseStatistics.h>
-#include <osgGpuAnimation/nodes/shading/ShaderPermutations.h>
 
 #include <gtest/gtest.h>
 #include <osg/Texture2D>

@@ -2,7 +2,7 @@
 #include "plugin/StoredScene.h"
 #include "support/NotifyLog.h"
 
-#include <osgGpuAnimation/nodes/Environment.h>
+#include <osgGpuAnimation/looks/Environment.h>
 
 #include <gtest/gtest.h>
 #include <osg/MatrixTransform>

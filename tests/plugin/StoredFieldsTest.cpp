@@ -6,9 +6,9 @@
 
 #include <osgGpuAnimation/animation/AnimationLayer.h>
 #include <osgGpuAnimation/animation/RootMotion.h>
+#include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
-#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
 #include <gtest/gtest.h>
 

@@ -3,10 +3,10 @@
 #include "plugin/SharedAssets.h"
 #include "plugin/StoredArm.h"
 
+#include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
+#include <osgGpuAnimation/mesh/lod/CharacterLevels.h>
+#include <osgGpuAnimation/mesh/lod/LodLevels.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
-#include <osgGpuAnimation/nodes/lod/CharacterLevels.h>
-#include <osgGpuAnimation/nodes/lod/LodLevels.h>
-#include <osgGpuAnimation/nodes/mesh/PaletteEntryBounds.h>
 
 #include <osg/MatrixTransform>
 

@@ -3,7 +3,7 @@
 #include "plugin/EncodedPicture.h"
 #include "support/GLTest.h"
 
-#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
+#include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 
 #include <gtest/gtest.h>
 

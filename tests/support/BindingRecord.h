@@ -2,7 +2,7 @@
 #pragma once
 
 #include <osgGpuAnimation/gpu/buffers/PlacedInstances.h>
-#include <osgGpuAnimation/nodes/frame/PaletteBinding.h>
+#include <osgGpuAnimation/mesh/draw/PaletteBinding.h>
 
 #include <osg/Drawable>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <osgGpuAnimation/nodes/lod/LodSelection.h>
-#include <osgGpuAnimation/nodes/lod/MeshConnectivity.h>
+#include <osgGpuAnimation/authoring/mesh/MeshConnectivity.h>
+#include <osgGpuAnimation/frame/stage/LodSelection.h>
 
 #include <glm/geometric.hpp>
 

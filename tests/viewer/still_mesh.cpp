@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Usage: still_mesh CHARACTER.glb STILL.osgt
 // Stores the first frame of the file's first clip as plain osg::Geometry that the fixed pipeline draws.
+#include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
-#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
 
 #include <osg/TriangleIndexFunctor>
 #include <osgDB/ReadFile>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/CharacterKeys.h>
 
-#include <osgGpuAnimation/nodes/CharacterProgram.h>
-#include <osgGpuAnimation/nodes/PoseStatistics.h>
+#include <osgGpuAnimation/frame/PoseStatistics.h>
+#include <osgGpuAnimation/looks/CharacterProgram.h>
 
 #include <osg/ApplicationUsage>
 #include <osg/Depth>

@@ -4,12 +4,12 @@
 #include <osgGpuAnimation/animation/constraints/ConstraintChain.h>
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
+#include <osgGpuAnimation/nodes/callbacks/CharacterStates.h>
+#include <osgGpuAnimation/nodes/callbacks/WorldTargets.h>
 #include <osgGpuAnimation/nodes/feet/GroundedFoot.h>
 #include <osgGpuAnimation/nodes/feet/PlantedTimes.h>
-#include <osgGpuAnimation/nodes/frame/CharacterStates.h>
-#include <osgGpuAnimation/nodes/frame/WorldTargets.h>
-#include <osgGpuAnimation/nodes/mesh/SceneVisitor.h>
-#include <osgGpuAnimation/nodes/OsgMatrix.h>
+#include <osgGpuAnimation/scene/OsgMatrix.h>
+#include <osgGpuAnimation/scene/traversal/SceneVisitor.h>
 
 #include <osg/Notify>
 #include <osg/Transform>

@@ -4,8 +4,8 @@
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/math/Rotation.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
-#include <osgGpuAnimation/nodes/frame/CharacterStates.h>
-#include <osgGpuAnimation/nodes/OsgMatrix.h>
+#include <osgGpuAnimation/nodes/callbacks/CharacterStates.h>
+#include <osgGpuAnimation/scene/OsgMatrix.h>
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/type_ptr.hpp>

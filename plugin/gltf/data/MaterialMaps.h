@@ -3,7 +3,7 @@
 
 #include "gltf/data/TextureCoordinates.h"
 
-#include <osgGpuAnimation/nodes/PbrMaterial.h>
+#include <osgGpuAnimation/looks/PbrMaterial.h>
 
 #include <tiny_gltf.h>
 

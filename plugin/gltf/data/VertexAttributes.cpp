@@ -3,7 +3,7 @@
 
 #include "gltf/data/Accessor.h"
 
-#include <osgGpuAnimation/nodes/PbrMaterial.h>
+#include <osgGpuAnimation/looks/PbrMaterial.h>
 
 #include <cstring>
 

@@ -3,7 +3,7 @@
 
 #include "gltf/data/TextureCoordinates.h"
 
-#include <osgGpuAnimation/nodes/MorphTarget.h>
+#include <osgGpuAnimation/mesh/MorphTarget.h>
 
 #include <osg/Array>
 #include <tiny_gltf.h>

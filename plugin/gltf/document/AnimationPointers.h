@@ -5,7 +5,7 @@
 #include "gltf/file/Report.h"
 
 #include <osgGpuAnimation/animation/Skeleton.h>
-#include <osgGpuAnimation/nodes/mesh/AnimatedProperties.h>
+#include <osgGpuAnimation/nodes/properties/AnimatedProperties.h>
 
 #include <tiny_gltf.h>
 

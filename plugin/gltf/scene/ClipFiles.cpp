@@ -11,7 +11,7 @@
 #include <osgGpuAnimation/animation/bounds/TransformBound.h>
 #include <osgGpuAnimation/animation/retarget/ClipRetargeter.h>
 #include <osgGpuAnimation/animation/retarget/JointNames.h>
-#include <osgGpuAnimation/nodes/mesh/PropertyPointer.h>
+#include <osgGpuAnimation/nodes/properties/PropertyPointer.h>
 
 #include <osgDB/FileNameUtils>
 

@@ -6,7 +6,7 @@
 #include "gltf/scene/Influences.h"
 
 #include <osgGpuAnimation/animation/bounds/JointRange.h>
-#include <osgGpuAnimation/nodes/mesh/MaterialVariants.h>
+#include <osgGpuAnimation/mesh/geometry/MaterialVariants.h>
 
 #include <layout.glsl>
 

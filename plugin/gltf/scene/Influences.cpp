@@ -4,7 +4,7 @@
 #include "gltf/data/Accessor.h"
 #include "gltf/data/VertexAttributes.h"
 
-#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
+#include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 
 #include <algorithm>
 #include <cassert>

@@ -3,7 +3,7 @@
 
 #include "gltf/document/AnimationPointers.h"
 
-#include <osgGpuAnimation/nodes/CharacterProgram.h>
+#include <osgGpuAnimation/looks/CharacterProgram.h>
 
 #include <osg/AlphaFunc>
 #include <osg/CullFace>

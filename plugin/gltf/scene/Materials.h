@@ -5,7 +5,7 @@
 #include "gltf/file/Report.h"
 #include "gltf/scene/Textures.h"
 
-#include <osgGpuAnimation/nodes/PbrMaterial.h>
+#include <osgGpuAnimation/looks/PbrMaterial.h>
 
 #include <osg/StateSet>
 #include <osg/Vec4>

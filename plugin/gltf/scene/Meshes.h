@@ -7,7 +7,7 @@
 
 #include <osg/Array>
 #include <osg/PrimitiveSet>
-#include <osgGpuAnimation/nodes/MorphTarget.h>
+#include <osgGpuAnimation/mesh/MorphTarget.h>
 #include <tiny_gltf.h>
 
 #include <cstdint>

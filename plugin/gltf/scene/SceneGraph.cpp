@@ -9,9 +9,9 @@
 #include "gltf/scene/NodeTransform.h"
 
 #include <osgGpuAnimation/animation/bounds/TransformBound.h>
+#include <osgGpuAnimation/mesh/geometry/MeshNames.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
-#include <osgGpuAnimation/nodes/mesh/MeshNames.h>
-#include <osgGpuAnimation/nodes/OsgMatrix.h>
+#include <osgGpuAnimation/scene/OsgMatrix.h>
 
 #include <glm/gtc/type_ptr.hpp>
 #include <glm/matrix.hpp>

@@ -5,7 +5,7 @@
 #include "gltf/data/Picture.h"
 #include "gltf/file/Report.h"
 
-#include <osgGpuAnimation/nodes/shading/Mipmaps.h>
+#include <osgGpuAnimation/looks/shading/Mipmaps.h>
 
 #include <algorithm>
 #include <atomic>

@@ -5,7 +5,7 @@
 #include "gltf/scene/NodeTree.h"
 #include "gltf/view/NodePlaces.h"
 
-#include <osgGpuAnimation/nodes/shading/PunctualLight.h>
+#include <osgGpuAnimation/looks/shading/PunctualLight.h>
 
 #include <osg/LightSource>
 #include <osg/Vec3d>

@@ -5,7 +5,7 @@
 
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
-#include <osgGpuAnimation/nodes/OsgMatrix.h>
+#include <osgGpuAnimation/scene/OsgMatrix.h>
 
 #include <osg/MatrixTransform>
 

@@ -5,7 +5,7 @@
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/animation/bounds/TransformBound.h>
-#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
+#include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 
 #include <memory>
 #include <string>

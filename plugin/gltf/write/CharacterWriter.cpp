@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/write/CharacterWriter.h"
 
-#include <osgGpuAnimation/nodes/mesh/MeshNames.h>
+#include <osgGpuAnimation/mesh/geometry/MeshNames.h>
 
 #include <algorithm>
 #include <set>

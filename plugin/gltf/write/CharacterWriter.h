@@ -6,7 +6,7 @@
 #include "gltf/write/NodeWriter.h"
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
-#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
+#include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 
 #include <osg/Matrixd>
 #include <osg/ref_ptr>

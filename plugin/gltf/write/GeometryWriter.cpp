@@ -2,8 +2,8 @@
 #include "gltf/write/GeometryWriter.h"
 
 #include <osgGpuAnimation/animation/bounds/TransformBound.h>
-#include <osgGpuAnimation/nodes/mesh/MaterialVariants.h>
-#include <osgGpuAnimation/nodes/mesh/PrimitiveRange.h>
+#include <osgGpuAnimation/mesh/geometry/MaterialVariants.h>
+#include <osgGpuAnimation/mesh/geometry/PrimitiveRange.h>
 
 #include <layout.glsl>
 

@@ -5,7 +5,7 @@
 #include "gltf/write/GlbWriter.h"
 #include "gltf/write/MaterialWriter.h"
 
-#include <osgGpuAnimation/nodes/SkinnedGeometry.h>
+#include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 
 #include <osg/Geometry>
 #include <osg/StateSet>

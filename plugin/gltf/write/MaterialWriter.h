@@ -4,7 +4,7 @@
 #include "gltf/write/GlbWriter.h"
 #include "gltf/write/PictureWriter.h"
 
-#include <osgGpuAnimation/nodes/PbrMaterial.h>
+#include <osgGpuAnimation/looks/PbrMaterial.h>
 
 #include <osg/StateSet>
 #include <osg/Uniform>

@@ -7,7 +7,7 @@
 
 #include <osgGpuAnimation/animation/bounds/TransformBound.h>
 #include <osgGpuAnimation/math/JointTransform.h>
-#include <osgGpuAnimation/nodes/mesh/SceneVisitor.h>
+#include <osgGpuAnimation/scene/traversal/SceneVisitor.h>
 
 #include <osg/Matrixd>
 

@@ -3,7 +3,7 @@
 
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
-#include <osgGpuAnimation/nodes/frame/WorldTargets.h>
+#include <osgGpuAnimation/nodes/callbacks/WorldTargets.h>
 
 #include <osg/Camera>
 #include <osgUtil/LineSegmentIntersector>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/studio/ModelExtent.h>
 
+#include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
+#include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
-#include <osgGpuAnimation/nodes/crowd/CrowdInstances.h>
-#include <osgGpuAnimation/nodes/mesh/PaletteEntryBounds.h>
-#include <osgGpuAnimation/nodes/mesh/SceneVisitor.h>
+#include <osgGpuAnimation/scene/traversal/SceneVisitor.h>
 
 #include <osg/ComputeBoundsVisitor>
 #include <osg/Geometry>

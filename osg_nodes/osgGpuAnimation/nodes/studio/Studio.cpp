@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/studio/Studio.h>
 
-#include <osgGpuAnimation/nodes/frame/CullScopes.h>
-#include <osgGpuAnimation/nodes/shading/PrefilteredMap.h>
+#include <osgGpuAnimation/looks/environment/PrefilteredMap.h>
 #include <osgGpuAnimation/nodes/studio/KeyShadow.h>
 #include <osgGpuAnimation/nodes/studio/ModelExtent.h>
+#include <osgGpuAnimation/scene/traversal/CullScopes.h>
 
 #include <osg/LightModel>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <osgGpuAnimation/nodes/Environment.h>
+#include <osgGpuAnimation/looks/Environment.h>
 #include <osgGpuAnimation/nodes/studio/Backdrop.h>
 
 namespace osgGpuAnimation

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/viewing/StartView.h>
 
-#include <osgGpuAnimation/nodes/frame/CullScopes.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
-#include <osgGpuAnimation/nodes/mesh/SceneVisitor.h>
-#include <osgGpuAnimation/nodes/OsgMatrix.h>
 #include <osgGpuAnimation/nodes/viewing/Standpoint.h>
+#include <osgGpuAnimation/scene/OsgMatrix.h>
+#include <osgGpuAnimation/scene/traversal/CullScopes.h>
+#include <osgGpuAnimation/scene/traversal/SceneVisitor.h>
 
 #include <osg/ValueObject>
 #include <osgGA/CameraManipulator>

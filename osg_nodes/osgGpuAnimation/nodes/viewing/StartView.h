@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <osgGpuAnimation/nodes/mesh/AnimatedProperties.h>
+#include <osgGpuAnimation/nodes/properties/AnimatedProperties.h>
 
 #include <osg/Camera>
 #include <osg/CameraView>

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osgGpuAnimation/animation/AnimationController.h>
+#include <osgGpuAnimation/animation/bounds/ClipBounds.h>
+#include <osgGpuAnimation/animation/bounds/MixBounds.h>
+#include <osgGpuAnimation/animation/StateMachine.h>
+#include <osgGpuAnimation/frame/crowd/CrowdCells.h>
+#include <osgGpuAnimation/gpu/buffers/SharedBlocks.h>
+#include <osgGpuAnimation/gpu/PoseBatch.h>
+
+#include <osg/Vec3d>
+#include <osg/Vec4>
+
+#include <glm/vec4.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <unordered_map>
+#include <vector>
+
+namespace osgGpuAnimation
+{
+
+/// A tint in 32 bits: RGBA, 8 bits each, red lowest. Components are limited to [0, 1]; NaN counts as 0.
+inline std::uint32_t toRgba(const osg::Vec4& color)
+{
+    std::uint32_t rgba = 0;
+    for (int channel = 0; channel < 4; ++channel)
+    {
+        const float value = color[channel] > 0.0f ? std::min(color[channel], 1.0f) : 0.0f;
+        rgba |= static_cast<std::uint32_t>(std::lround(value * 255.0f)) << 8 * channel;
+    }
+    return rgba;
+}
+
+inline osg::Vec4 toColor(std::uint32_t rgba)
+{
+    const auto channel = [rgba](int shift) { return static_cast<float>(rgba >> shift & 255u) / 255.0f; };
+    return {channel(0), channel(8), channel(16), channel(24)};
+}
+
+/// The playback of an instance that loops one clip (AnimationController::isPlainLoop): the controller's state in 24
+/// bytes. Its time follows from the crowd's clock, so it needs no advance().
+class CrowdPlayback
+{
+public:
+    CrowdPlayback() = default; ///< shows the rest pose
+    /// controller: isPlainLoop(). clock: the crowd's, in seconds.
+    CrowdPlayback(const AnimationController& controller, double clock);
+
+    int clip() const { return _clip; } ///< -1: none, the rest pose
+    /// Clip time in seconds, in [0, duration). duration: of the clip.
+    double time(double duration, double clock) const
+    {
+        return loopTime(_isPaused ? _offset : _offset + _speed * clock, duration);
+    }
+    /// The time of a loop in seconds, in [0, duration). unrolled: the clip seconds of all its rounds.
+    static double loopTime(double unrolled, double duration)
+    {
+        // Rounds to the nearest integer, without a call of the library: beyond 2^51 loops the time is 0.
+        constexpr double toInteger = 1.5 * (std::uint64_t(1) << 52);
+        const double loops = (unrolled / duration + toInteger) - toInteger;
+        double time = unrolled - loops * duration;
+        time += time < 0.0 ? duration : 0.0;
+        return time >= 0.0 && time < duration ? time : 0.0;
+    }
+    double time(const AnimationSet& set, double clock) const; ///< The same.
+    BlendSample sample(const AnimationSet& set, double clock) const { return set.sampleAt(_clip, time(set, clock)); }
+    /// Sets the clip and the times of a member.
+    void describe(CrowdMember& member) const;
+    /// A controller in the same state.
+    AnimationController controller(const std::shared_ptr<const AnimationSet>& set, double clock) const;
+
+private:
+    double _offset = 0.0; ///< clip seconds at clock 0; if paused, at any clock
+    double _speed = 1.0;
+    int _clip = -1;
+    bool _isPaused = false;
+};
+
+/// The instances of an AnimatedCrowd as dense arrays, one array per property. A handle identifies an instance for its
+/// lifetime; its index changes when other instances are removed.
+class CrowdInstances
+{
+public:
+    using Handle = std::uint64_t; ///< lower half: place in the index table; upper half: its number of earlier uses
+    using EventCallback = std::function<void(Handle, const AnimationEvent&)>;
+
+    /// set: null counts as an empty one.
+    explicit CrowdInstances(std::shared_ptr<const AnimationSet> set) : _set(AnimationSet::orEmpty(std::move(set))) {}
+    CrowdInstances(const CrowdInstances& other);
+    CrowdInstances& operator=(const CrowdInstances&) = delete;
+
+    const std::shared_ptr<const AnimationSet>& set() const { return _set; }
+    void setSet(std::shared_ptr<const AnimationSet> set) { _set = std::move(set); } ///< only without instances
+    std::size_t size() const { return _rootMatrices.size(); }
+    static constexpr std::size_t none = ~std::size_t(0);
+    std::size_t indexOf(Handle handle) const; ///< none: no such instance
+    Handle handleOf(std::size_t index) const { return _handles[index]; }
+
+    /// clipBounds: the box of an instance in the rest pose, then one per clip, in the character's space. mixBounds: for
+    /// instances with poses of the application or constraints; null: none.
+    void setClipBounds(const std::vector<Box>& clipBounds, std::shared_ptr<const MixBounds> mixBounds = nullptr);
+
+    /// rootMatrix: relative to the crowd's origin. position: the exact translation, in the crowd's space.
+    Handle add(const AffineMatrix& rootMatrix, const osg::Vec3d& position, const AnimationController& controller,
+               std::uint32_t tint);
+    void remove(std::size_t index);
+    void move(std::size_t index, const AffineMatrix& rootMatrix, const osg::Vec3d& position);
+    void setTint(std::size_t index, std::uint32_t tint);
+
+    const AffineMatrix& rootMatrix(std::size_t index) const { return _rootMatrices[index]; }
+    const osg::Vec3d& position(std::size_t index) const { return _positions[index]; }
+    /// Centre, radius; radius below 0: empty.
+    const glm::vec4& sphere(std::size_t index) const { return _cells.sphere(index); }
+    float scale(std::size_t index) const { return _scales[index]; } ///< the largest of its root matrix
+    std::uint32_t tint(std::size_t index) const { return _tints[index]; }
+    PoseInstruction instruction(std::size_t index) const;
+    PoseBatch::BlendCost blendCost(std::size_t index) const; ///< of its instruction
+    /// True if a constraint has an effect on it.
+    bool isConstrained(std::size_t index) const { return _controllers[index] && _controllers[index]->isConstrained(); }
+    /// Valid until the next advance(), which may replace it by a CrowdPlayback.
+    AnimationController& controller(std::size_t index);
+    AnimationController controllerCopy(std::size_t index) const;
+    /// The box around the boxes of all instances, each of the clip that it plays; of all clips if it mixes several; of
+    /// its mix if it has a JointPose.
+    Box bounds() const;
+    /// Without a controller there is none.
+    RootMotion takeRootMotion(std::size_t index)
+    {
+        return _controllers[index] ? _controllers[index]->takeRootMotion() : RootMotion();
+    }
+    /// The number of instances with a controller.
+    std::size_t controllerCount() const;
+    double clock() const { return _clock; } ///< seconds; see CrowdMember
+    /// Identifies this object and no copy.
+    const std::shared_ptr<const void>& identity() const { return _identity; }
+    /// Snapshots for frames, by index. Tints: empty if all are white.
+    SharedBlocks<AffineMatrix>::Snapshot placements() const { return _rootMatrices.snapshot(); }
+    SharedBlocks<std::uint32_t>::Snapshot tints() const
+    {
+        return _tinted > 0 ? _tints.snapshot() : SharedBlocks<std::uint32_t>::Snapshot();
+    }
+
+    /// Replaces the callbacks of all instances, and of those that are added later. Empty: removes them. Copies of this
+    /// object do not copy it. All instances keep a controller as long as there is one.
+    void setEventCallback(EventCallback callback);
+    /// advance() updates the machine of an instance; the instance keeps a controller. Null: removes the machine.
+    void setStateMachine(std::size_t index, std::unique_ptr<StateMachine> machine);
+    /// Null: none. Valid until the instance or its machine is removed.
+    StateMachine* stateMachine(std::size_t index);
+
+    /// Advances all instances and appends their events. True if spheres have changed.
+    bool advance(double seconds, PendingEvents& outEvents);
+
+    /// See CrowdCells.
+    void findSeen(const std::vector<glm::vec4>& planes, SeenMembers& outSeen) const
+    {
+        _cells.findSeen(planes, outSeen);
+    }
+    /// Adds the instances to the batch, in the order of the indices.
+    void addTo(PoseBatch& batch, const std::vector<std::uint32_t>& indices) const;
+
+private:
+    static std::size_t placeOf(Handle handle) { return handle & 0xFFFFFFFFu; } ///< in _indexOfPlace
+    /// The box of an instance with a JointPose, in the character's space.
+    struct PosedBox
+    {
+        std::vector<PlayedClip> played;
+        Box box;
+    };
+
+    const Box& boxOf(std::size_t index) const;
+    CrowdMember memberOf(std::size_t index) const;
+    void updateMember(std::size_t index) { _cells.set(index, memberOf(index)); }
+    bool updatePosedBox(std::size_t index);
+    void listenTo(std::size_t index);
+    Handle newHandle(std::size_t index);
+
+    std::shared_ptr<const AnimationSet> _set;
+    double _clock = 0.0; ///< seconds
+    std::vector<Box> _clipBounds;
+    Box _allBounds; ///< of instances with a controller
+    std::shared_ptr<const MixBounds> _mixBounds;
+    SharedBlocks<AffineMatrix> _rootMatrices;
+    std::vector<osg::Vec3d> _positions;
+    CrowdCells _cells;
+    std::vector<float> _scales;
+    SharedBlocks<std::uint32_t> _tints;
+    std::vector<CrowdPlayback> _playbacks;
+    std::vector<std::unique_ptr<AnimationController>> _controllers; ///< mostly null
+    std::vector<std::uint32_t> _controlled;                         ///< the indices of those that are not null
+    bool _isControlledKnown = true;                                 ///< false: _controlled is out of date
+    std::vector<std::unique_ptr<PosedBox>> _posedBoxes;             ///< null without a JointPose
+    std::vector<Handle> _handles;
+    std::vector<std::uint32_t> _indexOfPlace; ///< by the lower half of a handle
+    std::vector<std::uint32_t> _usesOfPlace;
+    std::vector<std::uint32_t> _freePlaces;
+    std::size_t _tinted = 0; ///< instances that are not white
+    std::shared_ptr<const void> _identity = std::make_shared<char>();
+    std::shared_ptr<const EventCallback> _eventCallback;
+    std::unordered_map<Handle, std::unique_ptr<StateMachine>> _machines;
+};
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/looks/CharacterProgram.h>
+
+#include <osgGpuAnimation/looks/shading/ShaderPermutations.h>
+
+#include <layout.glsl>
+#include <ShaderSources.h>
+
+#include <string>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+/// GLSL 1.40 is enough for skinning and, in a compatibility context, keeps the names of the fixed pipeline.
+osg::ref_ptr<osg::Shader> makeSkinShader()
+{
+    return new osg::Shader(osg::Shader::VERTEX,
+                           std::string("#version 140\n") + shaders::layout_glsl + shaders::skin_glsl);
+}
+
+osg::ref_ptr<osg::Shader> makeSurfaceVertexShader()
+{
+    const std::string text = std::string("#version 140\n#define DRAW_SKINNED 1\n#define DRAW_COLOR 1\n") +
+                             "#define DRAW_TEXTURE_MATRIX 0\n#define DRAW_CLIP_PLANES 0\n" + shaders::color_glsl +
+                             shaders::character_vert;
+    return new osg::Shader(osg::Shader::VERTEX, text);
+}
+
+osg::ref_ptr<osg::Shader> makeMaterialShader()
+{
+    // The kit's own program gets the colours of the applied osg::Material instead.
+    const std::string colors = "#define materialDiffuse baseColorFactor\n#define materialEmission emissiveFactor\n";
+    return new osg::Shader(osg::Shader::FRAGMENT, "#version 140\n" + colors + shaders::material_glsl);
+}
+
+osg::ref_ptr<osg::Program> makeCharacterProgram()
+{
+    osg::ref_ptr<osg::Program> program = new ShaderPermutations(skinShader());
+    program->setName("osgGpuAnimation character");
+    bindSkinAttributes(*program);
+    return program;
+}
+
+osg::ref_ptr<osg::Program> makeSurfaceProgram()
+{
+    osg::ref_ptr<osg::Program> program = new ShaderPermutations;
+    program->setName("osgGpuAnimation surface");
+    bindSkinAttributes(*program);
+    return program;
+}
+
+void applyProgram(osg::StateSet& stateSet, osg::Program* program, osg::StateAttribute::GLModeValue value)
+{
+    stateSet.setAttributeAndModes(program, value);
+    stateSet.getOrCreateUniform("baseColorTexture", osg::Uniform::SAMPLER_2D)->set(0);
+    if (!stateSet.getUniform("alphaCutoff")) stateSet.addUniform(new osg::Uniform("alphaCutoff", 0.0f));
+    if (!stateSet.getUniform("unlit")) stateSet.addUniform(new osg::Uniform("unlit", false));
+}
+
+} // namespace
+
+osg::ref_ptr<osg::Shader> skinShader()
+{
+    static SharedObject<osg::Shader> shared;
+    return shared.get(makeSkinShader);
+}
+
+osg::ref_ptr<osg::Shader> surfaceVertexShader()
+{
+    static SharedObject<osg::Shader> shared;
+    return shared.get(makeSurfaceVertexShader);
+}
+
+osg::ref_ptr<osg::Shader> materialShader()
+{
+    static SharedObject<osg::Shader> shared;
+    return shared.get(makeMaterialShader);
+}
+
+void bindSkinAttributes(osg::Program& program)
+{
+    program.addBindAttribLocation("poseEntries0", POSE_ENTRIES_0_LOCATION);
+    program.addBindAttribLocation("poseWeights0", POSE_WEIGHTS_0_LOCATION);
+    program.addBindAttribLocation("poseEntries1", POSE_ENTRIES_1_LOCATION);
+    program.addBindAttribLocation("poseWeights1", POSE_WEIGHTS_1_LOCATION);
+    program.addBindAttribLocation("poseInstanceRow0", POSE_INSTANCE_ROW_0_LOCATION);
+    program.addBindAttribLocation("poseInstanceRow1", POSE_INSTANCE_ROW_1_LOCATION);
+    program.addBindAttribLocation("poseInstanceRow2", POSE_INSTANCE_ROW_2_LOCATION);
+    program.addBindAttribLocation("poseInstancePose", POSE_INSTANCE_POSE_LOCATION);
+    program.addBindAttribLocation("poseTangent", POSE_TANGENT_LOCATION);
+    program.addBindAttribLocation("poseCoordinates", POSE_COORDINATES_LOCATION);
+}
+
+osg::ref_ptr<osg::Program> characterProgram()
+{
+    static SharedObject<osg::Program> shared;
+    return shared.get(makeCharacterProgram);
+}
+
+void applyCharacterProgram(osg::StateSet& stateSet)
+{
+    // osgShadow's casting cameras override the program with none, which would draw the bind pose.
+    applyProgram(stateSet, characterProgram(), osg::StateAttribute::ON | osg::StateAttribute::PROTECTED);
+    if (!stateSet.getTextureAttribute(0, osg::StateAttribute::TEXTURE))
+        stateSet.setTextureAttributeAndModes(0, whiteTexture());
+}
+
+osg::ref_ptr<osg::Program> surfaceProgram()
+{
+    static SharedObject<osg::Program> shared;
+    return shared.get(makeSurfaceProgram);
+}
+
+void applySurfaceProgram(osg::StateSet& stateSet, bool colored)
+{
+    applyProgram(stateSet, surfaceProgram(), osg::StateAttribute::ON);
+    if (colored) stateSet.setDefine("POSE_COLORED", "1");
+}
+
+void applySkinDefines(osg::StateSet& stateSet, int influences, bool hasMorphs)
+{
+    stateSet.setDefine("POSE_INFLUENCES", std::to_string(influences));
+    if (hasMorphs)
+        stateSet.removeDefine("POSE_NO_MORPHS");
+    else
+        stateSet.setDefine("POSE_NO_MORPHS");
+}
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,305 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/looks/environment/PrefilteredMap.h>
+
+#include <osg/GLExtensions>
+#include <osg/Notify>
+#include <osg/State>
+#include <ShaderSources.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#ifndef GL_RGBA16F_ARB
+#define GL_RGBA16F_ARB 0x881A
+#endif
+#ifndef GL_VERTEX_ARRAY_BINDING
+#define GL_VERTEX_ARRAY_BINDING 0x85B5
+#endif
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+GLint valueOf(GLenum name)
+{
+    GLint value = 0;
+    glGetIntegerv(name, &value);
+    return value;
+}
+
+/// RAII: sets a GL mode and restores it.
+class ModeScope
+{
+public:
+    ModeScope(GLenum mode, bool isOn) : _mode(mode), _wasOn(glIsEnabled(mode) == GL_TRUE), _isOn(isOn) { set(_isOn); }
+    ~ModeScope() { set(_wasOn); }
+    ModeScope(const ModeScope&) = delete;
+    ModeScope& operator=(const ModeScope&) = delete;
+
+private:
+    void set(bool isOn) const
+    {
+        if (_wasOn == _isOn) return;
+        if (isOn)
+            glEnable(_mode);
+        else
+            glDisable(_mode);
+    }
+
+    GLenum _mode;
+    bool _wasOn, _isOn;
+};
+
+/// RAII: GL draws whole pictures into framebuffer objects, whatever the scene has set. The destructor restores what GL
+/// had, which is what OSG expects. Only the texture of the active unit is left to the caller.
+class DrawingScope
+{
+public:
+    explicit DrawingScope(osg::State& state) : _gl(state.get<osg::GLExtensions>())
+    {
+        state.unbindPixelBufferObject();
+        for (const GLenum mode : {GL_DEPTH_TEST, GL_BLEND, GL_SCISSOR_TEST, GL_CULL_FACE, GL_COLOR_LOGIC_OP})
+            _modes.push_back(std::make_unique<ModeScope>(mode, false));
+        for (GLenum plane = 0; plane < 6; ++plane)
+            _modes.push_back(std::make_unique<ModeScope>(GL_CLIP_PLANE0 + plane, false));
+        // The core profile does not know it.
+        if (state.getLastAppliedMode(GL_ALPHA_TEST))
+            _modes.push_back(std::make_unique<ModeScope>(GL_ALPHA_TEST, false));
+        _modes.push_back(std::make_unique<ModeScope>(GL_TEXTURE_CUBE_MAP_SEAMLESS, true));
+        glGetIntegerv(GL_VIEWPORT, _viewport);
+        glGetIntegerv(GL_POLYGON_MODE, _polygonMode);
+        glGetBooleanv(GL_COLOR_WRITEMASK, _colorMask);
+        glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+        glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+        glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+        glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
+        _gl->glGenVertexArrays(1, &_ownVertexArray);
+        _gl->glBindVertexArray(_ownVertexArray);
+        _gl->glGenFramebuffers(1, &_ownFramebuffer);
+        _gl->glBindFramebuffer(GL_FRAMEBUFFER_EXT, _ownFramebuffer);
+    }
+
+    ~DrawingScope()
+    {
+        _gl->glBindFramebuffer(GL_DRAW_FRAMEBUFFER_EXT, static_cast<GLuint>(_drawFramebuffer));
+        _gl->glBindFramebuffer(GL_READ_FRAMEBUFFER_EXT, static_cast<GLuint>(_readFramebuffer));
+        _gl->glDeleteFramebuffers(1, &_ownFramebuffer);
+        _gl->glBindVertexArray(static_cast<GLuint>(_vertexArray));
+        _gl->glDeleteVertexArrays(1, &_ownVertexArray);
+        _gl->glUseProgram(static_cast<GLuint>(_program));
+        glPixelStorei(GL_UNPACK_ALIGNMENT, _alignment);
+        glPixelStorei(GL_UNPACK_ROW_LENGTH, _rowLength);
+        glColorMask(_colorMask[0], _colorMask[1], _colorMask[2], _colorMask[3]);
+        restorePolygonMode();
+        glViewport(_viewport[0], _viewport[1], _viewport[2], _viewport[3]);
+    }
+
+    DrawingScope(const DrawingScope&) = delete;
+    DrawingScope& operator=(const DrawingScope&) = delete;
+
+private:
+    /// The core profile has one mode for both sides.
+    void restorePolygonMode() const
+    {
+        const auto front = static_cast<GLenum>(_polygonMode[0]), back = static_cast<GLenum>(_polygonMode[1]);
+        glPolygonMode(GL_FRONT_AND_BACK, front);
+        if (back != front && back != 0) glPolygonMode(GL_BACK, back);
+    }
+
+    osg::GLExtensions* _gl;
+    std::vector<std::unique_ptr<ModeScope>> _modes;
+    GLint _viewport[4], _polygonMode[2] = {GL_FILL, 0};
+    GLboolean _colorMask[4];
+    GLint _drawFramebuffer = valueOf(GL_DRAW_FRAMEBUFFER_BINDING_EXT);
+    GLint _readFramebuffer = valueOf(GL_READ_FRAMEBUFFER_BINDING_EXT);
+    GLint _vertexArray = valueOf(GL_VERTEX_ARRAY_BINDING), _program = valueOf(GL_CURRENT_PROGRAM);
+    GLint _alignment = valueOf(GL_UNPACK_ALIGNMENT), _rowLength = valueOf(GL_UNPACK_ROW_LENGTH);
+    GLuint _ownVertexArray = 0, _ownFramebuffer = 0;
+};
+
+/// A compiled shader, or 0 with a warning.
+GLuint makeShader(osg::GLExtensions& gl, GLenum type, const char* source)
+{
+    const GLuint shader = gl.glCreateShader(type);
+    const char* const texts[] = {"#version 330\n", source};
+    gl.glShaderSource(shader, 2, const_cast<const GLchar**>(texts), nullptr);
+    gl.glCompileShader(shader);
+    GLint isCompiled = GL_FALSE;
+    gl.glGetShaderiv(shader, GL_COMPILE_STATUS, &isCompiled);
+    if (isCompiled) return shader;
+    std::string log;
+    gl.getShaderInfoLog(shader, log);
+    OSG_WARN << "osgGpuAnimation: a shader of the surroundings does not compile: " << log << std::endl;
+    gl.glDeleteShader(shader);
+    return 0;
+}
+
+/// RAII: the program that draws a level of a face. valid() is false, with a warning, if it does not compile or link.
+class PrefilterProgram
+{
+public:
+    explicit PrefilterProgram(osg::GLExtensions& gl) : _gl(gl), _program(gl.glCreateProgram())
+    {
+        const GLuint vertex = makeShader(gl, GL_VERTEX_SHADER, shaders::prefilter_vert);
+        const GLuint fragment = makeShader(gl, GL_FRAGMENT_SHADER, shaders::prefilter_frag);
+        for (const GLuint shader : {vertex, fragment})
+        {
+            if (shader == 0) continue;
+            gl.glAttachShader(_program, shader);
+            gl.glDeleteShader(shader);
+        }
+        if (vertex == 0 || fragment == 0) return;
+        gl.glLinkProgram(_program);
+        gl.glGetProgramiv(_program, GL_LINK_STATUS, &_isLinked);
+        if (_isLinked)
+        {
+            gl.glUseProgram(_program);
+            return;
+        }
+        std::string log;
+        gl.getProgramInfoLog(_program, log);
+        OSG_WARN << "osgGpuAnimation: the program of the surroundings does not link: " << log << std::endl;
+    }
+    ~PrefilterProgram() { _gl.glDeleteProgram(_program); }
+    PrefilterProgram(const PrefilterProgram&) = delete;
+    PrefilterProgram& operator=(const PrefilterProgram&) = delete;
+
+    bool valid() const { return _isLinked == GL_TRUE; }
+    void set(const char* uniform, int value) { _gl.glUniform1i(_gl.glGetUniformLocation(_program, uniform), value); }
+    void set(const char* uniform, float value) { _gl.glUniform1f(_gl.glGetUniformLocation(_program, uniform), value); }
+
+private:
+    osg::GLExtensions& _gl;
+    GLuint _program;
+    GLint _isLinked = GL_FALSE;
+};
+
+GLenum faceTarget(int face)
+{
+    return GL_TEXTURE_CUBE_MAP_POSITIVE_X + static_cast<GLenum>(face);
+}
+
+/// Gives the texture that is bound its levels. pixels: black, or null: undefined.
+void allocateLevels(int count, const float* pixels)
+{
+    for (int level = 0; level < count; ++level)
+        for (int face = 0; face < 6; ++face)
+            glTexImage2D(faceTarget(face), level, GL_RGBA16F_ARB, RadianceCube::side >> level,
+                         RadianceCube::side >> level, 0, GL_RGBA, GL_FLOAT, pixels);
+    glTexParameteri(GL_TEXTURE_CUBE_MAP, GL_TEXTURE_BASE_LEVEL, 0);
+    glTexParameteri(GL_TEXTURE_CUBE_MAP, GL_TEXTURE_MAX_LEVEL, count - 1);
+}
+
+/// RAII: binds a cube map with the radiance and all its mipmaps to the active unit.
+class SourceTexture
+{
+public:
+    SourceTexture(osg::GLExtensions& gl, const RadianceCube& radiance)
+    {
+        glGenTextures(1, &_name);
+        glBindTexture(GL_TEXTURE_CUBE_MAP, _name);
+        for (int face = 0; face < 6; ++face)
+            glTexImage2D(faceTarget(face), 0, GL_RGBA16F_ARB, RadianceCube::side, RadianceCube::side, 0, GL_RGB,
+                         GL_FLOAT, radiance.face(face).data());
+        glTexParameteri(GL_TEXTURE_CUBE_MAP, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+        glTexParameteri(GL_TEXTURE_CUBE_MAP, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+        gl.glGenerateMipmap(GL_TEXTURE_CUBE_MAP);
+    }
+    ~SourceTexture() { glDeleteTextures(1, &_name); }
+    SourceTexture(const SourceTexture&) = delete;
+    SourceTexture& operator=(const SourceTexture&) = delete;
+
+private:
+    GLuint _name = 0;
+};
+
+/// Makes all levels of the texture that is bound black.
+void blacken(osg::State& state, int levels)
+{
+    state.unbindPixelBufferObject();
+    const std::vector<float> black(static_cast<std::size_t>(RadianceCube::side * RadianceCube::side * 4), 0.0f);
+    const GLint rowLength = valueOf(GL_UNPACK_ROW_LENGTH);
+    glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
+    allocateLevels(levels, black.data());
+    glPixelStorei(GL_UNPACK_ROW_LENGTH, rowLength);
+}
+
+/// Draws all levels of all faces into the texture. The state's context must be current. Binds no texture to the active
+/// unit in the end. Returns false, and draws nothing, if the program cannot be used.
+bool prefilter(osg::State& state, GLuint texture, const RadianceCube& radiance)
+{
+    osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
+    const DrawingScope scope(state);
+    PrefilterProgram program(gl);
+    if (!program.valid()) return false;
+    const SourceTexture source(gl, radiance);
+    program.set("radiance", static_cast<int>(state.getActiveTextureUnit()));
+    program.set("side", static_cast<float>(RadianceCube::side));
+    for (int level = 0; level < PrefilteredMap::levels; ++level)
+    {
+        const int size = RadianceCube::side >> level;
+        const float roughness = static_cast<float>(level) / (PrefilteredMap::levels - 1);
+        program.set("alpha", roughness * roughness);
+        program.set("size", static_cast<float>(size));
+        glViewport(0, 0, size, size);
+        for (int face = 0; face < 6; ++face)
+        {
+            gl.glFramebufferTexture2D(GL_FRAMEBUFFER_EXT, GL_COLOR_ATTACHMENT0_EXT, faceTarget(face), texture, level);
+            program.set("face", face);
+            glDrawArrays(GL_TRIANGLES, 0, 3);
+        }
+    }
+    return true;
+}
+
+} // namespace
+
+PrefilteredMap::PrefilteredMap(const RadianceCube& radiance) : _radiance(&radiance)
+{
+    setName("osgGpuAnimation surroundings");
+    setInternalFormat(GL_RGBA16F_ARB);
+    setTextureSize(RadianceCube::side, RadianceCube::side);
+    setFilter(MIN_FILTER, LINEAR_MIPMAP_LINEAR);
+    setFilter(MAG_FILTER, LINEAR);
+    for (const WrapParameter wrap : {WRAP_S, WRAP_T, WRAP_R})
+        setWrap(wrap, CLAMP_TO_EDGE);
+    setUseHardwareMipMapGeneration(false);
+    setResizeNonPowerOfTwoHint(false);
+}
+
+void PrefilteredMap::allocate(osg::State& state) const
+{
+    const unsigned int contextId = state.getContextID();
+    const osg::ref_ptr<TextureObject> made = generateTextureObject(
+        this, contextId, GL_TEXTURE_CUBE_MAP, levels, GL_RGBA16F_ARB, RadianceCube::side, RadianceCube::side, 1, 0);
+    _textureObjectBuffer[contextId] = made;
+    made->setAllocated(levels, GL_RGBA16F_ARB, RadianceCube::side, RadianceCube::side, 1, 0);
+    made->bind();
+    applyTexParameters(GL_TEXTURE_CUBE_MAP, state);
+    allocateLevels(levels, nullptr);
+}
+
+void PrefilteredMap::apply(osg::State& state) const
+{
+    if (TextureObject* existing = getTextureObject(state.getContextID()))
+    {
+        existing->bind();
+        if (getTextureParameterDirty(state.getContextID())) applyTexParameters(GL_TEXTURE_CUBE_MAP, state);
+        return;
+    }
+    allocate(state);
+    TextureObject* made = getTextureObject(state.getContextID());
+    const osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
+    const bool canDraw = gl.glVersion >= 3.3f;
+    if (!canDraw)
+        OSG_WARN << "osgGpuAnimation: this context has OpenGL " << gl.glVersion
+                 << "; surroundings from a picture need 3.3 and are not reflected" << std::endl;
+    const bool isDrawn = canDraw && prefilter(state, made->id(), *_radiance);
+    made->bind();
+    if (!isDrawn) blacken(state, levels);
+}
+
+} // namespace osgGpuAnimation

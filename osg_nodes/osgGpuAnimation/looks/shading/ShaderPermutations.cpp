@@ -1,0 +1,380 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/looks/shading/ShaderPermutations.h>
+
+#include <osgGpuAnimation/looks/PbrMaterial.h>
+#include <osgGpuAnimation/looks/shading/PunctualLight.h>
+#include <osgGpuAnimation/scene/traversal/CullScopes.h>
+
+#include <osg/ColorMask>
+#include <osg/Fog>
+#include <osg/GLExtensions>
+#include <osg/Light>
+#include <osg/Material>
+#include <osg/TexGen>
+#include <osg/Texture>
+#include <ShaderSources.h>
+
+#include <array>
+#include <initializer_list>
+#include <string>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+constexpr unsigned int lightCount = 8;
+constexpr unsigned int generatedUnits = 8; ///< texture units with coordinate generation in OpenGL 2
+
+template <typename Attribute>
+const Attribute* applied(const osg::State& state, osg::StateAttribute::Type type, unsigned int member = 0)
+{
+    return static_cast<const Attribute*>(state.getLastAppliedAttribute(type, member));
+}
+
+/// The value of a mode in the stack of state sets. In the core profile OSG does not switch the fixed pipeline's modes,
+/// but users still set them.
+template <typename ModeOf>
+bool isSetOn(osg::State& state, ModeOf modeOf)
+{
+    osg::StateAttribute::GLModeValue value = osg::StateAttribute::OFF;
+    for (const osg::StateSet* stateSet : state.getStateSetStack())
+    {
+        const osg::StateAttribute::GLModeValue here =
+            stateSet ? modeOf(*stateSet) : osg::StateAttribute::GLModeValue(osg::StateAttribute::INHERIT);
+        if (here & osg::StateAttribute::INHERIT) continue;
+        if ((value & osg::StateAttribute::OVERRIDE) && !(here & osg::StateAttribute::PROTECTED)) continue;
+        value = here;
+    }
+    return (value & osg::StateAttribute::ON) != 0;
+}
+
+bool isLightingOn(osg::State& state)
+{
+    if (!state.getUseModelViewAndProjectionUniforms()) return state.getLastAppliedMode(GL_LIGHTING);
+    return isSetOn(state, [](const osg::StateSet& stateSet) { return stateSet.getMode(GL_LIGHTING); });
+}
+
+bool isTexturingOn(osg::State& state)
+{
+    if (isWhiteTexture(state.getLastAppliedTextureAttribute(0, osg::StateAttribute::TEXTURE))) return false;
+    if (!state.getUseModelViewAndProjectionUniforms()) return state.getLastAppliedTextureMode(0, GL_TEXTURE_2D);
+    return isSetOn(state, [](const osg::StateSet& stateSet) { return stateSet.getTextureMode(0, GL_TEXTURE_2D); });
+}
+
+bool isColorMasked(const osg::State& state)
+{
+    const auto* mask = applied<osg::ColorMask>(state, osg::StateAttribute::COLORMASK);
+    return mask && !mask->getRedMask() && !mask->getGreenMask() && !mask->getBlueMask() && !mask->getAlphaMask();
+}
+
+/// True if blending or an alpha cutoff is set near the program in the stack of state sets.
+bool leavesPartsOut(osg::State& state)
+{
+    const osg::State::StateSetStack& way = state.getStateSetStack();
+    for (auto stateSet = way.rbegin(); stateSet != way.rend(); ++stateSet)
+    {
+        if (!*stateSet) continue;
+        float cutoff = 0.0f;
+        const osg::Uniform* uniform = (*stateSet)->getUniform("alphaCutoff");
+        if ((*stateSet)->getMode(GL_BLEND) & osg::StateAttribute::ON) return true;
+        if (uniform && uniform->get(cutoff)) return cutoff > 0.0f;
+    }
+    return false;
+}
+
+/// The uniform that the program will use, from the state set being applied or those above; null: none.
+const osg::Uniform* uniformOf(osg::State& state, const std::string& name)
+{
+    const auto known = state.getUniformMap().find(name);
+    const bool hasAbove = known != state.getUniformMap().end() && !known->second.uniformVec.empty();
+    const osg::State::StateSetStack& way = state.getStateSetStack();
+    const osg::StateSet::RefUniformPair* own = way.empty() || !way.back() ? nullptr : way.back()->getUniformPair(name);
+    if (!hasAbove) return own ? own->first.get() : nullptr;
+    const auto& [above, value] = known->second.uniformVec.back();
+    const bool isOverridden =
+        (value & osg::StateAttribute::OVERRIDE) && !(own && (own->second & osg::StateAttribute::PROTECTED));
+    return own && !isOverridden ? own->first.get() : above;
+}
+
+bool isOn(osg::State& state, const std::string& name)
+{
+    const osg::Uniform* uniform = uniformOf(state, name);
+    if (!uniform) return false;
+    const auto isSet = [](const auto* numbers) { return numbers && !numbers->empty() && numbers->front() != 0; };
+    return isSet(uniform->getIntArray()) || isSet(uniform->getUIntArray()) || isSet(uniform->getFloatArray());
+}
+
+bool isShiny(const osg::State& state)
+{
+    const auto* material = applied<osg::Material>(state, osg::StateAttribute::MATERIAL);
+    if (!material) return false; // OpenGL's default specular colour is black
+    const osg::Vec4& specular = material->getSpecular(osg::Material::FRONT);
+    return material->getColorMode() == osg::Material::SPECULAR || specular.x() != 0.0f || specular.y() != 0.0f ||
+           specular.z() != 0.0f;
+}
+
+bool isPointLight(const osg::State& state, unsigned int index)
+{
+    const auto* light = applied<osg::Light>(state, osg::StateAttribute::LIGHT, index);
+    return light && light->getPosition().w() != 0.0f;
+}
+
+/// Null: an osg::Light of another class.
+const PunctualLight* punctualLight(const osg::State& state, unsigned int index)
+{
+    return dynamic_cast<const PunctualLight*>(applied<osg::Light>(state, osg::StateAttribute::LIGHT, index));
+}
+
+bool isShadowMap(const osg::State& state, unsigned int unit)
+{
+    if (!state.getLastAppliedTextureMode(unit, GL_TEXTURE_GEN_S)) return false;
+    if (!state.getLastAppliedTextureMode(unit, GL_TEXTURE_2D)) return false;
+    const auto* texture =
+        dynamic_cast<const osg::Texture*>(state.getLastAppliedTextureAttribute(unit, osg::StateAttribute::TEXTURE));
+    return texture && texture->getShadowComparison() && texture->getTextureTarget() == GL_TEXTURE_2D;
+}
+
+bool hasUniform(const osg::State& state, const char* name)
+{
+    const auto known = state.getUniformMap().find(name);
+    return known != state.getUniformMap().end() && !known->second.uniformVec.empty();
+}
+
+ShaderKey::Fog fogOf(const osg::State& state)
+{
+    const auto* fog = applied<osg::Fog>(state, osg::StateAttribute::FOG);
+    if (!fog || !state.getLastAppliedMode(GL_FOG)) return ShaderKey::Fog::None;
+    switch (fog->getMode())
+    {
+    case osg::Fog::LINEAR:
+        return ShaderKey::Fog::Linear;
+    case osg::Fog::EXP:
+        return ShaderKey::Fog::Exp;
+    default:
+        return ShaderKey::Fog::Exp2;
+    }
+}
+
+void readLights(const osg::State& state, ShaderKey& surface)
+{
+    surface.lights = 0;
+    for (unsigned int index = 0; index < lightCount; ++index)
+    {
+        if (!state.getLastAppliedMode(GL_LIGHT0 + index)) continue;
+        surface.lights |= static_cast<std::uint8_t>(1u << index);
+        if (!isPointLight(state, index)) continue;
+        surface.pointLights |= static_cast<std::uint8_t>(1u << index);
+        if (punctualLight(state, index)) surface.punctualLights |= static_cast<std::uint8_t>(1u << index);
+    }
+    for (unsigned int unit = 1; unit < generatedUnits; ++unit)
+        if (isShadowMap(state, unit)) surface.shadowMaps |= static_cast<std::uint8_t>(1u << unit);
+    surface.hasShadowBias = surface.shadowMaps != 0 && hasUniform(state, "osgShadow_ambientBias");
+    surface.hasShadowSplits = surface.shadowMaps != 0 && hasUniform(state, "zShadow0");
+}
+
+osg::Shader* makeShader(osg::Shader::Type type, const std::string& defines, std::initializer_list<const char*> sources)
+{
+    std::string text = "#version 140\n" + defines;
+    for (const char* source : sources)
+        text += source;
+    return new osg::Shader(type, text);
+}
+
+void setShadowUnits(osg::State& state)
+{
+    static const unsigned int mapsName = osg::Uniform::getNameID("shadowMaps");
+    static constexpr std::array<GLint, 7> units{1, 2, 3, 4, 5, 6, 7};
+    const osg::Program::PerContextProgram* program = state.getLastAppliedProgramObject();
+    if (!program) return;
+    state.get<osg::GLExtensions>()->glUniform1iv(program->getUniformLocation(mapsName),
+                                                 static_cast<GLsizei>(units.size()), units.data());
+}
+
+void setPunctualLights(osg::State& state, unsigned int lights)
+{
+    static const unsigned int name = osg::Uniform::getNameID("punctualLights");
+    const osg::Program::PerContextProgram* program = state.getLastAppliedProgramObject();
+    if (!program) return;
+    std::array<osg::Vec4, lightCount> numbers;
+    for (unsigned int index = 0; index < lightCount; ++index)
+        if (lights & (1u << index)) numbers[index] = punctualLight(state, index)->coneAndRange();
+    state.get<osg::GLExtensions>()->glUniform4fv(program->getUniformLocation(name), lightCount, numbers[0].ptr());
+}
+
+bool givesWayToColors(const osg::Material& material)
+{
+    return material.getColorMode() == osg::Material::DIFFUSE ||
+           material.getColorMode() == osg::Material::AMBIENT_AND_DIFFUSE;
+}
+
+/// gl_FrontMaterial is unreliable in the compatibility profile and missing in the core profile.
+void setMaterial(osg::State& state)
+{
+    static const unsigned int diffuseName = osg::Uniform::getNameID("materialDiffuse");
+    static const unsigned int emissionName = osg::Uniform::getNameID("materialEmission");
+    const osg::Program::PerContextProgram* program = state.getLastAppliedProgramObject();
+    if (!program) return;
+    const auto* material = applied<osg::Material>(state, osg::StateAttribute::MATERIAL);
+    const bool isOwn = material && !givesWayToColors(*material);
+    osg::Vec4 diffuse = isOwn ? material->getDiffuse(osg::Material::FRONT) : osg::Vec4(1, 1, 1, 1);
+    osg::Vec4 emission = material ? material->getEmission(osg::Material::FRONT) : osg::Vec4(0, 0, 0, 1);
+    if (isDefined(state, "MATERIAL_PBR"))
+    {
+        diffuse = linearColor(diffuse);
+        emission = linearColor(emission);
+    }
+    const osg::GLExtensions& gl = *state.get<osg::GLExtensions>();
+    gl.glUniform4fv(program->getUniformLocation(diffuseName), 1, diffuse.ptr());
+    gl.glUniform3fv(program->getUniformLocation(emissionName), 1, emission.ptr());
+}
+
+osg::ref_ptr<osg::Texture2D> makeWhiteTexture()
+{
+    osg::ref_ptr<osg::Image> image = new osg::Image;
+    image->allocateImage(1, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE);
+    image->setColor(osg::Vec4(1, 1, 1, 1), 0, 0);
+    osg::ref_ptr<osg::Texture2D> white = new osg::Texture2D(image);
+    white->setName(whiteTextureName);
+    // OSG's default, GL_CLAMP, blends with the black border.
+    white->setWrap(osg::Texture::WRAP_S, osg::Texture::REPEAT);
+    white->setWrap(osg::Texture::WRAP_T, osg::Texture::REPEAT);
+    return white;
+}
+
+} // namespace
+
+ShaderKey ShaderKey::of(osg::State& state)
+{
+    ShaderKey surface;
+    surface.lights = 0;
+    surface.isDepthOnly = isDefined(state, "POSE_DEPTH_ONLY") || isColorMasked(state);
+    surface.isAlphaNeeded = surface.isDepthOnly && leavesPartsOut(state);
+    surface.isLit = !surface.isDepthOnly && isLightingOn(state) && !isOn(state, "unlit");
+    surface.hasFlatNormals = surface.isLit && isOn(state, "flatNormals");
+    surface.hasSpecular = surface.isLit && isShiny(state);
+    surface.isTextured = (!surface.isDepthOnly || surface.isAlphaNeeded) && isTexturingOn(state);
+    surface.hasTextureMatrix =
+        surface.isTextured && state.getLastAppliedTextureAttribute(0, osg::StateAttribute::TEXMAT) != nullptr;
+    for (unsigned int plane = 0; plane < 6; ++plane)
+        surface.hasClipPlanes = surface.hasClipPlanes || state.getLastAppliedMode(GL_CLIP_PLANE0 + plane);
+    if (surface.isLit) readLights(state, surface);
+    if (!surface.isDepthOnly) surface.fog = fogOf(state);
+    surface.isEncoded = !state.getLastAppliedMode(GL_FRAMEBUFFER_SRGB);
+    return surface;
+}
+
+std::string ShaderKey::defines() const
+{
+    const auto line = [](const char* name, unsigned int value)
+    { return std::string("#define ") + name + " " + std::to_string(value) + "\n"; };
+    return line("DRAW_COLOR", !isDepthOnly) + line("DRAW_ALPHA", isAlphaNeeded) + line("DRAW_LIGHTING", isLit) +
+           line("DRAW_FLAT_NORMALS", hasFlatNormals) + line("DRAW_SPECULAR", hasSpecular) +
+           line("DRAW_TEXTURE", isTextured) + line("DRAW_TEXTURE_MATRIX", hasTextureMatrix) +
+           line("DRAW_CLIP_PLANES", hasClipPlanes) + line("DRAW_LIGHTS", lights) +
+           line("DRAW_POINT_LIGHTS", pointLights) + line("DRAW_PUNCTUAL_LIGHTS", punctualLights) +
+           line("DRAW_SHADOW_MAPS", shadowMaps) + line("DRAW_SHADOW_BIAS", hasShadowBias) +
+           line("DRAW_SHADOW_SPLITS", hasShadowSplits) + line("DRAW_ENCODED", isEncoded) +
+           line("DRAW_FOG", static_cast<unsigned int>(fog));
+}
+
+bool isWhiteTexture(const osg::StateAttribute* texture)
+{
+    return texture && texture->getName() == whiteTextureName;
+}
+
+osg::ref_ptr<osg::Texture2D> whiteTexture()
+{
+    static SharedObject<osg::Texture2D> shared;
+    return shared.get(makeWhiteTexture);
+}
+
+ShaderPermutations::ShaderPermutations(const ShaderPermutations& other, const osg::CopyOp& copyop)
+    : osg::Program(other, copyop), _skin(other._skin)
+{
+}
+
+osg::ref_ptr<osg::Program> ShaderPermutations::variant(const ShaderKey& surface) const
+{
+    const std::lock_guard<std::mutex> lock(_mutex);
+    osg::ref_ptr<osg::Program>& program = _variants[surface];
+    if (program) return program;
+    program = new osg::Program;
+    program->setName("osgGpuAnimation character");
+    if (_skin) program->addShader(_skin);
+    for (const auto& [name, location] : getAttribBindingList())
+        program->addBindAttribLocation(name, location);
+    const std::string defines = surface.defines() + "#define DRAW_SKINNED " + (_skin ? "1\n" : "0\n");
+    program->addShader(makeShader(osg::Shader::VERTEX, defines, {shaders::color_glsl, shaders::character_vert}));
+    program->addShader(makeShader(osg::Shader::FRAGMENT, defines,
+                                  {shaders::color_glsl, shaders::material_glsl, shaders::pbr_glsl,
+                                   shaders::environment_glsl, shaders::character_frag}));
+    return program;
+}
+
+bool ShaderPermutations::sharesSkin(const osg::Program& other) const
+{
+    for (unsigned int i = 0; i < other.getNumShaders(); ++i)
+        if (other.getShader(i) == _skin) return true;
+    return false;
+}
+
+/// The outermost overriding program that links skin.glsl, or null.
+const osg::Program* ShaderPermutations::overriding(osg::State& state) const
+{
+    for (const auto& [attribute, value] : state.getAttributeVec(this))
+    {
+        const auto* other = dynamic_cast<const osg::Program*>(attribute);
+        if ((value & osg::StateAttribute::OVERRIDE) && other && other != this && sharesSkin(*other)) return other;
+    }
+    return nullptr;
+}
+
+void ShaderPermutations::apply(osg::State& state) const
+{
+    if (const osg::Program* other = overriding(state))
+        other->apply(state);
+    else
+    {
+        const ShaderKey surface = ShaderKey::of(state);
+        variant(surface)->apply(state);
+        if (surface.shadowMaps != 0) setShadowUnits(state);
+        if (surface.punctualLights != 0) setPunctualLights(state, surface.punctualLights);
+        setMaterial(state);
+    }
+    // The next StateSet may have other modes with the same program, which OSG would consider applied.
+    state.haveAppliedAttribute(osg::StateAttribute::PROGRAM);
+}
+
+// A compile traversal applies no defines, and every mesh that moves has some: prepareFirstDraw() compiles its programs.
+void ShaderPermutations::compileGLObjects(osg::State& state) const
+{
+    if (!_skin) variant(ShaderKey())->compileGLObjects(state);
+}
+
+void ShaderPermutations::setThreadSafeRefUnref(bool threadSafe)
+{
+    osg::Program::setThreadSafeRefUnref(threadSafe);
+    const std::lock_guard<std::mutex> lock(_mutex);
+    for (const auto& [surface, program] : _variants)
+        program->setThreadSafeRefUnref(threadSafe);
+}
+
+void ShaderPermutations::resizeGLObjectBuffers(unsigned int maxSize)
+{
+    osg::Program::resizeGLObjectBuffers(maxSize);
+    const std::lock_guard<std::mutex> lock(_mutex);
+    for (const auto& [surface, program] : _variants)
+        program->resizeGLObjectBuffers(maxSize);
+}
+
+void ShaderPermutations::releaseGLObjects(osg::State* state) const
+{
+    osg::Program::releaseGLObjects(state);
+    const std::lock_guard<std::mutex> lock(_mutex);
+    for (const auto& [surface, program] : _variants)
+        program->releaseGLObjects(state);
+}
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/mesh/lod/CharacterLevels.h>
+
+#include <osgGpuAnimation/animation/Pose.h>
+#include <osgGpuAnimation/mesh/lod/MergedMesh.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+// As a share of the parts' size: finer levels would show the missing textures; coarser ones are a few pixels large.
+constexpr double finestShare = 1.0 / 128.0, coarsestShare = 0.25;
+constexpr double worthwhile = 0.9; ///< a level has at most this share of the triangles before
+constexpr std::size_t fewestTriangles = 8;
+constexpr double coarser = 1.19;               ///< a limit, relative to the one before
+constexpr std::size_t posedVertices = 300'000; ///< in all key poses
+constexpr std::size_t otherPoses = 256;        ///< beside the key poses
+// A mesh is used from the level on at which its picture has that structural similarity, with pixels that are twice the
+// level's error: a pixel error of 0.5.
+constexpr double leastSimilarity = 0.98, usualPixel = 2.0;
+
+/// Of the parts at a level of their own.
+std::size_t trianglesOf(const MergedParts::Meshes& parts, const AnimationSet& set, int level)
+{
+    std::size_t indices = 0;
+    for (const SkinnedGeometry* part : parts)
+    {
+        const std::shared_ptr<const LodLevels> levels = part->getLodLevels(set);
+        for (unsigned int i = 0; i < part->getNumPrimitiveSets(); ++i)
+        {
+            const osg::PrimitiveSet* drawn = levels->reduced(i, level).elements;
+            if (!drawn) drawn = part->getPrimitiveSet(i);
+            if (drawn) indices += drawn->getNumIndices();
+        }
+    }
+    return indices / 3;
+}
+
+std::size_t trianglesOf(const SkinnedGeometry& merged)
+{
+    return merged.getPrimitiveSet(0)->getNumIndices() / 3;
+}
+
+} // namespace
+
+CharacterLevels::Part::Part(const SkinnedGeometry& mesh)
+    : mesh(&mesh), vertices(mesh.getVertexArray()), modifiedCount(vertices ? vertices->getModifiedCount() : 0),
+      state(mesh.getStateSet()), mask(mesh.getNodeMask())
+{
+    for (const osg::ref_ptr<osg::PrimitiveSet>& set : mesh.getPrimitiveSetList())
+        primitives.push_back({set, set ? set->getModifiedCount() : 0});
+}
+
+bool CharacterLevels::Part::isOf(const SkinnedGeometry& present) const
+{
+    if (&present != mesh || present.getVertexArray() != vertices || present.getStateSet() != state) return false;
+    if (present.getNodeMask() != mask || (vertices && vertices->getModifiedCount() != modifiedCount)) return false;
+    const osg::Geometry::PrimitiveSetList& sets = present.getPrimitiveSetList();
+    return std::equal(sets.begin(), sets.end(), primitives.begin(), primitives.end(),
+                      [](const osg::ref_ptr<osg::PrimitiveSet>& set, const Primitives& known)
+                      { return set == known.set && (!set || set->getModifiedCount() == known.modifiedCount); });
+}
+
+bool CharacterLevels::isOf(const osg::Group& meshes, const AnimationSet& set) const
+{
+    bool isSame = &set == _set;
+    std::size_t count = 0;
+    forEachMesh(meshes,
+                [&](const SkinnedGeometry& mesh)
+                {
+                    isSame = isSame && count < _parts.size() && _parts[count].isOf(mesh);
+                    ++count;
+                });
+    return isSame && count == _parts.size();
+}
+
+std::vector<CharacterLevels::Part> CharacterLevels::partsOf(const osg::Group& meshes)
+{
+    std::vector<Part> parts;
+    forEachMesh(meshes, [&](const SkinnedGeometry& mesh) { parts.emplace_back(mesh); });
+    return parts;
+}
+
+CharacterLevels::CharacterLevels(const osg::Group& meshes, const AnimationSet& set)
+    : CharacterLevels(partsOf(meshes), set)
+{
+    std::size_t vertices = 0;
+    for (const Part& part : _parts)
+        vertices += part.mesh->getVertexCount();
+    if (set.paletteSize() == 0 || _parts.size() > maxParts || vertices > maxVertices) return;
+    std::vector<Indices> groups;
+    for (std::size_t part = 0; part < _parts.size(); ++part)
+    {
+        const SkinnedGeometry& mesh = *_parts[part].mesh;
+        if (!MergedParts::accepts(mesh)) continue;
+        const auto alike = std::find_if(groups.begin(), groups.end(),
+                                        [&](const Indices& group)
+                                        { return MergedParts::areAlike(*_parts[group.front()].mesh, mesh); });
+        if (alike == groups.end())
+            groups.push_back({part});
+        else
+            alike->push_back(part);
+    }
+    if (groups.empty()) return;
+    std::vector<std::vector<AffineMatrix>> palettes;
+    const MeasuredPoses measured(set, LodLevels::poseCountOf(vertices, posedVertices), otherPoses);
+    for (const PoseInstruction& pose : measured.poses)
+        Pose::evaluate(set, pose, AffineMatrix(), palettes.emplace_back());
+    for (const Indices& group : groups)
+        merge(group, set, palettes, measured.keyPoseCount);
+}
+
+void CharacterLevels::merge(const Indices& indices, const AnimationSet& set, const MergedParts::Palettes& palettes,
+                            std::size_t keyPoseCount)
+{
+    MergedParts::Meshes meshes;
+    for (const std::size_t part : indices)
+        meshes.push_back(_parts[part].mesh);
+    const MergedParts parts(meshes, palettes, keyPoseCount);
+    if (!parts.isValid()) return;
+    MergedMesh mesh(parts);
+    Merged merged{indices, {}};
+    const double least = finestShare * parts.size(), most = coarsestShare * parts.size();
+    const int finest = LodLevels::levelOf(least), coarsest = LodLevels::levelOf(most);
+    for (double limit = least; limit <= most; limit *= coarser)
+    {
+        const std::size_t before = mesh.triangleCount();
+        mesh.reduce(limit);
+        if (mesh.triangleCount() == 0) break;
+        if (mesh.triangleCount() == before) continue;
+        const double error = mesh.fit();
+        int level = std::max(finest, LodLevels::levelFor(error));
+        while (level <= coarsest && mesh.similarity(usualPixel * LodLevels::errorOf(level)) < leastSimilarity)
+            ++level;
+        if (level > coarsest) continue;
+        while (!merged.steps.empty() && merged.steps.back().level >= level)
+            merged.steps.pop_back();
+        const double enough = merged.steps.empty()
+                                  ? static_cast<double>(trianglesOf(meshes, set, level))
+                                  : worthwhile * static_cast<double>(trianglesOf(*merged.steps.back().mesh));
+        if (static_cast<double>(mesh.triangleCount()) <= enough) merged.steps.push_back({level, mesh.make(), error});
+        if (mesh.triangleCount() <= fewestTriangles) break;
+    }
+    if (!merged.steps.empty()) include(std::move(merged));
+}
+
+void CharacterLevels::include(Merged merged)
+{
+    const int first = merged.steps.front().level;
+    _finest = _finest == LodLevels::allTriangles ? first : std::min(_finest, first);
+    _coarsest = std::max(_coarsest, merged.steps.back().level);
+    _merged.push_back(std::move(merged));
+}
+
+Result<std::shared_ptr<const CharacterLevels>>
+CharacterLevels::restored(const osg::Group& meshes, const AnimationSet& set, std::vector<Merged> merged)
+{
+    const std::shared_ptr<CharacterLevels> levels(new CharacterLevels(partsOf(meshes), set));
+    for (std::size_t i = 0; i < merged.size(); ++i)
+        if (const Result<bool> taken = levels->restore(std::move(merged[i])); !taken)
+            return Error{"merged parts " + std::to_string(i) + ": " + taken.error().message};
+    return std::shared_ptr<const CharacterLevels>(levels);
+}
+
+Result<bool> CharacterLevels::restore(Merged merged)
+{
+    std::size_t first = 0;
+    for (const std::size_t part : merged.parts)
+    {
+        if (part < first || part >= _parts.size())
+            return Error{"part " + std::to_string(part) + " of " + std::to_string(_parts.size())};
+        if (isMerged(*_parts[part].mesh, std::numeric_limits<int>::max()))
+            return Error{"part " + std::to_string(part) + " a second time"};
+        first = part + 1;
+    }
+    if (merged.parts.empty() || merged.steps.empty()) return Error{"no parts or no levels"};
+    int previous = LodLevels::allTriangles;
+    for (const Step& step : merged.steps)
+    {
+        if (!LodLevels::mayFollow(previous, step.level, step.error))
+            return Error{"level " + std::to_string(step.level) + " with an error of " + std::to_string(step.error)};
+        previous = step.level;
+    }
+    include(std::move(merged));
+    return true;
+}
+
+const CharacterLevels::Step* CharacterLevels::Merged::at(int level) const
+{
+    const Step* found = nullptr;
+    for (const Step& step : steps)
+        if (step.level <= level) found = &step;
+    return found;
+}
+
+double CharacterLevels::foundError(int level) const
+{
+    double largest = 0.0;
+    for (const Merged& merged : _merged)
+        if (const Step* step = merged.at(level)) largest = std::max(largest, step->error);
+    return largest;
+}
+
+bool CharacterLevels::isMerged(const SkinnedGeometry& part, int level) const
+{
+    const auto isPart = [&](std::size_t index) { return _parts[index].mesh == &part; };
+    return std::any_of(_merged.begin(), _merged.end(),
+                       [&](const Merged& merged)
+                       { return merged.at(level) && std::any_of(merged.parts.begin(), merged.parts.end(), isPart); });
+}
+
+void CharacterLevels::releaseGLObjects(osg::State* state) const
+{
+    for (const Merged& merged : _merged)
+        for (const Step& step : merged.steps)
+            step.mesh->releaseGLObjects(state);
+}
+
+void CharacterLevels::resizeGLObjectBuffers(unsigned int maxSize) const
+{
+    for (const Merged& merged : _merged)
+        for (const Step& step : merged.steps)
+            step.mesh->resizeGLObjectBuffers(maxSize);
+}
+
+} // namespace osgGpuAnimation

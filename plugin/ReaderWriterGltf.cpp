@@ -52,9 +52,9 @@ public:
     }
     WriteResult writeNode(const osg::Node& node, std::ostream& stream, const Options*) const override
     {
-        const auto save = [&](const std::string& bytes) -> Result<bool>
+        const auto save = [&](const std::string& bytes) -> Result<void>
         {
-            if (stream << bytes << std::flush) return true;
+            if (stream << bytes << std::flush) return {};
             return Error{"the stream cannot be written"};
         };
         return write(node, "scene.glb", save);
@@ -107,7 +107,7 @@ osgDB::ReaderWriter::WriteResult ReaderWriterGltf::write(const osg::Node& node, 
         for (const std::string& warning : messages.warnings)
             OSG_WARN << fileName << ": " << warning << std::endl;
         if (!bytes) return WriteResult(bytes.error().message);
-        const Result<bool> saved = save(bytes.value());
+        const Result<void> saved = save(bytes.value());
         return saved ? WriteResult(WriteResult::FILE_SAVED) : WriteResult(saved.error().message);
     }
     catch (const std::bad_alloc&)

@@ -113,7 +113,7 @@ Result<osg::ref_ptr<AnimatedCrowd>> makeCrowd(osg::Node& model, const CrowdOptio
     if (options.pixelError)
     {
         const gltf::ProgressLine progress("computing levels of detail");
-        if (const Result<bool> taken = crowd->setPixelError(*options.pixelError); !taken) return taken.error();
+        if (const Result<void> taken = crowd->setPixelError(*options.pixelError); !taken) return taken.error();
     }
     crowd->addEventCallback(new PoseStatistics);
     return crowd;

@@ -37,7 +37,7 @@ bool readNumber(const std::string& text, Number& out)
     return number.has_value();
 }
 
-Result<bool> readSize(const std::string& size, CrowdOptions& out)
+Result<void> readSize(const std::string& size, CrowdOptions& out)
 {
     const std::size_t cross = size.find_first_of("xX");
     if (cross == std::string::npos || !readNumber(size.substr(0, cross), out.columns) ||
@@ -47,7 +47,7 @@ Result<bool> readSize(const std::string& size, CrowdOptions& out)
     if (out.rows > AnimatedCrowd::maxInstances / out.columns)
         return Error{"a crowd of " + size + " exceeds the limit of " + std::to_string(AnimatedCrowd::maxInstances) +
                      " instances"};
-    return true;
+    return {};
 }
 
 /// The parts between commas.
@@ -147,7 +147,7 @@ Result<CrowdOptions> parseCrowd(const std::string& name, const std::string& opti
     if (dot == std::string::npos || dot == 0)
         return Error{gltf::quoted(name) + " is not a model's file with a size, like fox.glb.40x40.crowd"};
     crowd.modelFile = name.substr(0, dot);
-    const Result<bool> size = readSize(name.substr(dot + 1), crowd);
+    const Result<void> size = readSize(name.substr(dot + 1), crowd);
     if (!size) return size.error();
     for (const gltf::OptionWord& word : gltf::splitOptions(options))
         if (!apply(word, crowd))

@@ -98,18 +98,18 @@ public:
     }
 
     /// An error, or true.
-    Result<bool> run();
+    Result<void> run();
 
 private:
-    Result<bool> makeSet(const NodeTree& tree, const Joints& joints, const Morphs& morphs);
+    Result<void> makeSet(const NodeTree& tree, const Joints& joints, const Morphs& morphs);
     void addClipFiles();
     void makeGraph(const NodeTree& tree, const Joints& joints, const Morphs& morphs, int variant);
     void nameVariants(int variant);
     std::vector<bool> nodesThatCarry(const Joints& joints) const;
-    Result<bool> chooseStart();
-    Result<bool> finishClips();
+    Result<void> chooseStart();
+    Result<void> finishClips();
     void describeFile(const NodeTree& tree);
-    Result<bool> play(int clip);
+    Result<void> play(int clip);
 
     const tinygltf::Model& _model;
     const std::string _fileName; ///< without folder and extension
@@ -122,13 +122,13 @@ private:
     const ClipJoints _clipJoints; ///< of those files
 };
 
-Result<bool> Importer::makeSet(const NodeTree& tree, const Joints& joints, const Morphs& morphs)
+Result<void> Importer::makeSet(const NodeTree& tree, const Joints& joints, const Morphs& morphs)
 {
     if (joints.skeleton.jointCount() == 0)
     {
         for (const ClipFile& file : _clipFiles)
             _report.unmet(file.name + ": the model has no joints", leftOutText);
-        return true;
+        return {};
     }
     Clips clips = readClips(_model, joints, morphs, _budget, _report);
     _result.animationOfClip = std::move(clips.animationOfClip);
@@ -146,7 +146,7 @@ Result<bool> Importer::makeSet(const NodeTree& tree, const Joints& joints, const
                      " palette entries are needed, at most " + std::to_string(mostPaletteEntries) + " are possible"};
     _result.set = set.value();
     addClipFiles();
-    return true;
+    return {};
 }
 
 void Importer::addClipFiles()
@@ -223,20 +223,20 @@ std::vector<bool> Importer::nodesThatCarry(const Joints& joints) const
     return carries;
 }
 
-Result<bool> Importer::chooseStart()
+Result<void> Importer::chooseStart()
 {
-    if (!_options.camera) return true;
+    if (!_options.camera) return {};
     const Result<std::size_t> chosen = chooseCamera(_result.cameras, *_options.camera);
     if (!chosen) return chosen.error();
     _result.startCamera = _result.cameras[chosen.value()].view;
     startWith(_result.cameras[chosen.value()], *_result.root);
-    return true;
+    return {};
 }
 
 /// Needs the meshes: they bound the effect of a joint's error, and some have levels of detail.
-Result<bool> Importer::finishClips()
+Result<void> Importer::finishClips()
 {
-    if (!_result.character) return true;
+    if (!_result.character) return {};
     if (_options.compact && !_result.set->clips().empty())
     {
         Result<CompactedCharacter> compacted = compactClipsOf(*_result.character, *_options.compact);
@@ -260,7 +260,7 @@ void Importer::describeFile(const NodeTree& tree)
     _result.generator = _model.asset.generator;
 }
 
-Result<bool> Importer::run()
+Result<void> Importer::run()
 {
     const Result<NodeTree> tree = buildNodeTree(_model, _options);
     if (!tree) return tree.error();
@@ -269,7 +269,7 @@ Result<bool> Importer::run()
     const Result<Joints> joints = buildJoints(_model, tree.value(), moved);
     if (!joints) return joints.error();
     const Morphs morphs = readMorphs(_model);
-    const Result<bool> made = makeSet(tree.value(), joints.value(), morphs);
+    const Result<void> made = makeSet(tree.value(), joints.value(), morphs);
     if (!made) return made.error();
     _result.variantNames = variantNames(_model);
     const Result<int> variant = chooseVariant(_result.variantNames, _options);
@@ -277,23 +277,23 @@ Result<bool> Importer::run()
     const Result<int> clip = chooseClip(_result, _options);
     if (!clip) return clip.error();
     makeGraph(tree.value(), joints.value(), morphs, variant.value());
-    const Result<bool> started = chooseStart();
+    const Result<void> started = chooseStart();
     if (!started) return started.error();
-    const Result<bool> finished = finishClips();
+    const Result<void> finished = finishClips();
     if (!finished) return finished.error();
     describeFile(tree.value());
     return play(clip.value());
 }
 
-Result<bool> Importer::play(int clip)
+Result<void> Importer::play(int clip)
 {
-    if (!_result.character) return true;
+    if (!_result.character) return {};
     if (!_options.noKeys) _result.character->addEventCallback(new CharacterKeys(_options.fadeSeconds));
     AnimationController& controller = _result.character->getController();
     controller.setSpeed(_options.speed);
     controller.setLoopMode(_options.loopMode);
-    if (clip < 0) return true;
-    const Result<bool> playing = controller.play(static_cast<std::size_t>(clip));
+    if (clip < 0) return {};
+    const Result<void> playing = controller.play(static_cast<std::size_t>(clip));
     if (playing && _options.start)
         controller.seek(*_options.start);
     else if (playing && _options.randomStart)
@@ -308,8 +308,8 @@ Result<ImportedModel> importModel(const std::string& bytes, const std::string& f
 {
     ImportedModel result;
     const Result<tinygltf::Model> model = loadDocument(bytes, fileName, options, result.messages);
-    const Result<bool> imported =
-        model ? Importer(model.value(), fileName, options, result).run() : Result<bool>(model.error());
+    const Result<void> imported =
+        model ? Importer(model.value(), fileName, options, result).run() : Result<void>(model.error());
     if (imported) return result;
     if (outOfFailure) *outOfFailure = std::move(result.messages);
     return imported.error();

@@ -188,7 +188,7 @@ void SkeletonConverter::addClips(const std::vector<Manager>& managers, Animation
                 isMoving = true;
                 _targets.insert(_bones[i].update->getName());
                 for (Channel& channel : motion.channels(parts.skeleton.jointOfInput(i)))
-                    if (const Result<bool> added = builder.add(std::move(channel)); !added)
+                    if (const Result<void> added = builder.add(std::move(channel)); !added)
                         _warnings.push_back("animation \"" + animation->getName() + "\", bone \"" +
                                             _bones[i].bone->getName() + "\": " + added.error().message);
             }
@@ -211,7 +211,7 @@ bool SkeletonConverter::addWeights(const osgAnimation::Animation& animation, con
         if (!motion.isMoving()) continue;
         isMoving = true;
         _targets.insert(mesh.weights->getTargetNames().begin(), mesh.weights->getTargetNames().end());
-        if (const Result<bool> added = builder.add(motion.channel(target)); !added)
+        if (const Result<void> added = builder.add(motion.channel(target)); !added)
             _warnings.push_back("animation \"" + animation.getName() + "\", mesh \"" + mesh.geometry->getName() +
                                 "\": " + added.error().message);
     }

@@ -30,7 +30,7 @@ Source sourceOf(const Environment& environment)
 }
 
 /// The picture may be a file that is no longer there: the studio takes its place.
-void report(const Result<bool>& taken)
+void report(const Result<void>& taken)
 {
     if (!taken) OSG_WARN << "osgGpuAnimation: surroundings are the studio: " << taken.error().message << std::endl;
 }

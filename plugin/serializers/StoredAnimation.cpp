@@ -340,7 +340,7 @@ void transferController(ValueStream& stream, AnimationController& controller)
         if (!stream.isReading()) layer = controller.layer(i).snapshot();
         transferLayer(stream, controller.set(), layer);
         if (!stream.hasRead()) continue;
-        if (const Result<bool> restored = controller.layer(i).restore(layer); !restored)
+        if (const Result<void> restored = controller.layer(i).restore(layer); !restored)
             OSG_WARN << "osgGpuAnimation: layer " << i << " of a character: " << restored.error().message
                      << "; it does not play" << std::endl;
     }

@@ -34,7 +34,7 @@ CompactParts toCompactParts(const ClipParts& clip)
 
 /// Fills data with the transforms at rest and the weights. Subtracts the bytes of the keyframes from bytesLeft. Error:
 /// the parts do not fit each other or exceed bytesLeft.
-Result<bool> fillKeyframes(const CompactParts& compact, ClipParts& clip, std::size_t& bytesLeft)
+Result<void> fillKeyframes(const CompactParts& compact, ClipParts& clip, std::size_t& bytesLeft)
 {
     const std::size_t keyframes = clip.times.size(), weightTracks = clip.trackCount - clip.jointCount;
     if (compact.held.size() != clip.jointCount || compact.weights.size() != keyframes * weightTracks)
@@ -49,7 +49,7 @@ Result<bool> fillKeyframes(const CompactParts& compact, ClipParts& clip, std::si
         clip.data.insert(clip.data.end(), weights, weights + static_cast<std::ptrdiff_t>(weightTracks));
         weights += static_cast<std::ptrdiff_t>(weightTracks);
     }
-    return true;
+    return {};
 }
 
 void transferWords(ValueStream& stream, glm::uvec3& words)

@@ -54,11 +54,11 @@ void restore(const StoredTarget& stored, AnimationController& controller)
 {
     ConstraintHandle handle = controller.constraint(stored.constraint);
     const ConstraintTarget& target = stored.target;
-    std::vector<Result<bool>> results{handle.setTarget(target.position), handle.setShownTarget(stored.shown),
+    std::vector<Result<void>> results{handle.setTarget(target.position), handle.setShownTarget(stored.shown),
                                       handle.setWeight(target.weight), handle.setPole(target.pole),
                                       handle.setTwist(target.twist)};
     if (target.rotation != glm::vec4(0.0f)) results.push_back(handle.setRotation(target.rotation));
-    for (const Result<bool>& result : results)
+    for (const Result<void>& result : results)
         if (!result)
         {
             static_cast<void>(handle.clear());

@@ -15,7 +15,7 @@ namespace
 {
 
 /// A value that the light cannot have, as of a cone beyond 90 degrees, costs that value alone.
-void report(const Result<bool>& taken)
+void report(const Result<void>& taken)
 {
     if (!taken) OSG_WARN << "osgGpuAnimation: a stored light keeps its own: " << taken.error().message << std::endl;
 }

@@ -338,13 +338,13 @@ int CommandLine::run(int argc, char** argv)
         std::cerr << "osggpuanim: " << messageOf(fault, _app) << "\nRun with --help for more information." << std::endl;
         return statusWrongUsage;
     }
-    const Result<bool> done = runCommand();
+    const Result<void> done = runCommand();
     if (done) return statusDone;
     std::cerr << "osggpuanim: " << done.error().message << std::endl;
     return statusFileAtFault;
 }
 
-Result<bool> CommandLine::runCommand() const
+Result<void> CommandLine::runCommand() const
 {
     if (_inspectApp->parsed()) return _inspect.run();
     if (_poseApp->parsed()) return _pose.run();

@@ -27,7 +27,7 @@ private:
     void addPose();
     void addRender();
     void addConvert();
-    Result<bool> runCommand() const;
+    Result<void> runCommand() const;
 
     CLI::App _app;
     CLI::App* _inspectApp = nullptr;

@@ -41,7 +41,7 @@ std::vector<AnimatedCharacter*> charactersIn(osg::Node& scene)
 
 /// What the import does to its own characters. Error: what was asked for is not done, for example no character takes
 /// the clips of a file.
-Result<bool> addClips(osg::Node& scene, const std::string& file, const gltf::ImportOptions& options,
+Result<void> addClips(osg::Node& scene, const std::string& file, const gltf::ImportOptions& options,
                       gltf::Messages& messages)
 {
     gltf::Report report(messages);
@@ -71,14 +71,14 @@ Result<bool> addClips(osg::Node& scene, const std::string& file, const gltf::Imp
             if (refusals[i].empty()) refusals[i] = with.error().message;
         }
         if (!clipFiles.empty())
-            if (const Result<bool> changed = character->setAnimationSet(set); !changed) return changed;
+            if (const Result<void> changed = character->setAnimationSet(set); !changed) return changed;
         if (!options.compact) continue;
         const Result<CompactedCharacter> compacted = compactClipsOf(*character, *options.compact);
         if (!compacted) return compacted.error();
     }
     for (std::size_t i = 0; i < clipFiles.size(); ++i)
         if (!isAdded[i]) return Error{refusals[i]};
-    return true;
+    return {};
 }
 
 /// A scene stays what it is: readModel() would export it to glTF.
@@ -88,7 +88,7 @@ Result<Scene> readWithClips(const std::string& file, const gltf::ImportOptions& 
     gltf::Report report(messages);
     const Result<Scene> scene = readScene(file, report);
     if (!scene) return scene;
-    const Result<bool> added = addClips(*scene.value(), file, options, messages);
+    const Result<void> added = addClips(*scene.value(), file, options, messages);
     printWarnings(file, messages, added ? "" : added.error().message);
     return added ? scene : Result<Scene>(added.error());
 }
@@ -165,7 +165,7 @@ Result<std::string> osgFileOf(const osg::Node& scene, const std::string& extensi
 
 } // namespace
 
-Result<bool> ConvertCommand::run() const
+Result<void> ConvertCommand::run() const
 {
     const Result<gltf::ImportOptions> given = importOptions(clips, clipJoints);
     if (!given) return given.error();
@@ -179,9 +179,9 @@ Result<bool> ConvertCommand::run() const
     const Result<std::string> bytes =
         extension == "glb" ? glbOf(*scene.value(), output) : osgFileOf(*scene.value(), extension);
     if (!bytes) return Error{output + ": " + bytes.error().message};
-    const Result<bool> saved = gltf::saveFile(output, bytes.value());
+    const Result<void> saved = gltf::saveFile(output, bytes.value());
     if (!saved) return Error{output + ": " + saved.error().message};
-    return true;
+    return {};
 }
 
 } // namespace osgGpuAnimation::tool

@@ -19,7 +19,7 @@ struct ConvertCommand
     std::string output;             ///< a .glb, .osgb, .osgt or .osgx
 
     /// Error messages begin with the name of the file at fault.
-    Result<bool> run() const;
+    Result<void> run() const;
 };
 
 } // namespace osgGpuAnimation::tool

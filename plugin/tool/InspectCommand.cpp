@@ -10,7 +10,7 @@
 namespace osgGpuAnimation::tool
 {
 
-Result<bool> InspectCommand::run() const
+Result<void> InspectCommand::run() const
 {
     const Result<gltf::ImportOptions> given = importOptions(clips, clipJoints);
     if (!given) return given.error();
@@ -28,7 +28,7 @@ Result<bool> InspectCommand::run() const
     const auto replace = nlohmann::ordered_json::error_handler_t::replace;
     std::cout << (json ? report.dump(2, ' ', false, replace) + "\n" : reportText(report)) << std::flush;
     if (!std::cout) return Error{"standard output: cannot be written"};
-    return true;
+    return {};
 }
 
 } // namespace osgGpuAnimation::tool

@@ -19,7 +19,7 @@ struct InspectCommand
     bool json = false;              ///< prints JSON instead of text
 
     /// Error messages begin with the name of the file at fault.
-    Result<bool> run() const;
+    Result<void> run() const;
 };
 
 } // namespace osgGpuAnimation::tool

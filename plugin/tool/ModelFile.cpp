@@ -79,7 +79,7 @@ Result<gltf::ImportedModel> importFile(const std::string& fileName, const gltf::
 }
 
 /// An error, or true.
-Result<bool> checkRegularFile(const std::string& fileName)
+Result<void> checkRegularFile(const std::string& fileName)
 {
     std::error_code failure;
     const std::filesystem::file_status status = std::filesystem::status(fileName, failure);
@@ -87,7 +87,7 @@ Result<bool> checkRegularFile(const std::string& fileName)
     if (std::filesystem::is_directory(status)) return Error{"is a folder, not a file"};
     // Reading a pipe or a device could block or never end.
     if (!std::filesystem::is_regular_file(status)) return Error{"is not a regular file"};
-    return true;
+    return {};
 }
 
 } // namespace
@@ -151,7 +151,7 @@ Result<osg::ref_ptr<osg::Node>> readScene(const std::string& fileName, gltf::Rep
 Result<gltf::ImportedModel> readModel(const std::string& fileName, const gltf::ImportOptions& options)
 {
     // Where there is no such file, the name may be one for a pseudo-loader.
-    const Result<bool> regular = checkRegularFile(fileName);
+    const Result<void> regular = checkRegularFile(fileName);
     if (!regular && (std::filesystem::exists(fileName) || !isSceneFormat(fileName))) return regular.error();
 
     gltf::Messages messages;

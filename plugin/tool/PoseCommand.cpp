@@ -119,7 +119,7 @@ Error named(const std::string& file, const Error& error)
 
 } // namespace
 
-Result<bool> PoseCommand::run() const
+Result<void> PoseCommand::run() const
 {
     PoseRequest wanted = request;
     if (!like.empty())
@@ -141,9 +141,8 @@ Result<bool> PoseCommand::run() const
     if (!text) return named(file, text.error());
 
     if (output.empty())
-        return std::cout << text.value() << std::flush ? Result<bool>(true)
-                                                       : Error{"standard output: cannot be written"};
-    const Result<bool> saved = gltf::saveFile(output, text.value());
+        return std::cout << text.value() << std::flush ? Result<void>() : Error{"standard output: cannot be written"};
+    const Result<void> saved = gltf::saveFile(output, text.value());
     return saved ? saved : named(output, saved.error());
 }
 

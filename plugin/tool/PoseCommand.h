@@ -29,7 +29,7 @@ struct PoseCommand
     std::string output; ///< empty: standard output
 
     /// Error messages begin with the name of the file at fault.
-    Result<bool> run() const;
+    Result<void> run() const;
 };
 
 } // namespace osgGpuAnimation::tool

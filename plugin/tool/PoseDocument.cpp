@@ -78,7 +78,7 @@ Result<PoseDocument> PoseDocument::create(const gltf::ImportedModel& model, cons
     PoseDocument document(model);
     document.addHeader(request, clip, fileName, evaluator);
     document.addSkins();
-    if (Result<bool> added = document.addPrimitives(request); !added) return added.error();
+    if (Result<void> added = document.addPrimitives(request); !added) return added.error();
     document._document["frames"] = ordered_json::array();
     return document;
 }
@@ -122,7 +122,7 @@ void PoseDocument::addSkins()
     }
 }
 
-Result<bool> PoseDocument::addPrimitives(const PoseRequest& request)
+Result<void> PoseDocument::addPrimitives(const PoseRequest& request)
 {
     ordered_json& primitives = _document["primitives"] = ordered_json::array();
     for (const gltf::ImportedPrimitive& drawn : _model.primitives)
@@ -147,7 +147,7 @@ Result<bool> PoseDocument::addPrimitives(const PoseRequest& request)
                                   {"sampled", _sampled.back()}});
         }
     }
-    return true;
+    return {};
 }
 
 void PoseDocument::add(double time, const EvaluatedPose& pose)

@@ -36,7 +36,7 @@ private:
 
     void addHeader(const PoseRequest& request, int clip, const std::string& fileName, const std::string& evaluator);
     void addSkins();
-    Result<bool> addPrimitives(const PoseRequest& request);
+    Result<void> addPrimitives(const PoseRequest& request);
     nlohmann::ordered_json nodeMatrices(const EvaluatedPose& pose) const;
     nlohmann::ordered_json skinMatrices(const EvaluatedPose& pose) const;
     nlohmann::ordered_json weights(const EvaluatedPose& pose) const;

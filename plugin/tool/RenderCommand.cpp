@@ -87,14 +87,14 @@ std::string numbered(const std::string& output, std::size_t number)
     return (path.parent_path() / name.str()).string();
 }
 
-Result<bool> writePicture(const osg::Image* image, const std::string& file, const std::string& name)
+Result<void> writePicture(const osg::Image* image, const std::string& file, const std::string& name)
 {
     if (!image) return Error{file + ": OpenGL reported an error while drawing"};
     osgDB::ReaderWriter* const png = osgDB::Registry::instance()->getReaderWriterForExtension("png");
     if (!png) return Error{name + ": OSG's plugin for .png is not found"};
     std::ostringstream bytes; // the plugin does not notice that a disk is full
     if (!png->writeImage(*image, bytes, nullptr).success()) return Error{name + ": OSG cannot write it"};
-    const Result<bool> saved = gltf::saveFile(name, bytes.str());
+    const Result<void> saved = gltf::saveFile(name, bytes.str());
     return saved ? saved : Error{name + ": " + saved.error().message};
 }
 
@@ -107,7 +107,7 @@ Result<osg::ref_ptr<Environment>> readSurroundings(const std::string& name)
     osgDB::ReaderWriter::ReadResult read = osgDB::Registry::instance()->readImage(name, nullptr);
     if (!read.validImage()) return Error{name + ": not a picture that OSG's plugins read"};
     osg::ref_ptr<Environment> surroundings = new Environment;
-    const Result<bool> taken = surroundings->setPanorama(read.getImage());
+    const Result<void> taken = surroundings->setPanorama(read.getImage());
     if (!taken) return Error{name + ": " + taken.error().message};
     return surroundings;
 }
@@ -135,7 +135,7 @@ std::vector<osg::Vec3d> turned(const std::vector<osg::Vec3d>& points)
 
 } // namespace
 
-Result<bool> RenderCommand::run() const
+Result<void> RenderCommand::run() const
 {
     const bool isCrowd = osgDB::getLowerCaseFileExtension(file) == "crowd";
     const Result<crowd::CrowdOptions> wanted =
@@ -180,14 +180,14 @@ std::vector<double> RenderCommand::times() const
     return times;
 }
 
-Result<bool> RenderCommand::show(PictureViewer& viewer, osg::Node& scene, const std::vector<osg::Vec3d>& points) const
+Result<void> RenderCommand::show(PictureViewer& viewer, osg::Node& scene, const std::vector<osg::Vec3d>& points) const
 {
     if (points.empty()) return Error{file + ": there is nothing to draw; a file of clips needs a model, see --clips"};
     viewer.show(&scene, turntable ? turned(points) : points, view);
-    return true;
+    return {};
 }
 
-Result<bool> RenderCommand::drawPictures(PictureViewer& viewer,
+Result<void> RenderCommand::drawPictures(PictureViewer& viewer,
                                          const std::function<double(double)>& simulationTime) const
 {
     gltf::ProgressLine progress("drawing");
@@ -198,15 +198,15 @@ Result<bool> RenderCommand::drawPictures(PictureViewer& viewer,
         if (turntable) viewer.turn(360.0 * static_cast<double>(picture) / *turntable);
         const osg::ref_ptr<osg::Image> image = viewer.draw(simulationTime(times[picture]));
         const std::string name = frames || turntable ? numbered(output, picture + 1) : output;
-        if (const Result<bool> written = writePicture(image, file, name); !written) return written;
+        if (const Result<void> written = writePicture(image, file, name); !written) return written;
     }
-    return true;
+    return {};
 }
 
-Result<bool> RenderCommand::drawModel(PictureViewer& viewer, const gltf::ImportedModel& model) const
+Result<void> RenderCommand::drawModel(PictureViewer& viewer, const gltf::ImportedModel& model) const
 {
     const std::vector<double> posed = turntable ? std::vector<double>{time} : times();
-    if (const Result<bool> shown = show(viewer, *model.root, pointsOf(model, posed)); !shown) return shown;
+    if (const Result<void> shown = show(viewer, *model.root, pointsOf(model, posed)); !shown) return shown;
     if (model.startCamera) viewer.lookThrough(*model.startCamera);
     return drawPictures(viewer,
                         [&](double seconds)
@@ -216,13 +216,13 @@ Result<bool> RenderCommand::drawModel(PictureViewer& viewer, const gltf::Importe
                         });
 }
 
-Result<bool> RenderCommand::drawCrowd(PictureViewer& viewer, osg::Node& model, const crowd::CrowdOptions& grid) const
+Result<void> RenderCommand::drawCrowd(PictureViewer& viewer, osg::Node& model, const crowd::CrowdOptions& grid) const
 {
     const Result<osg::ref_ptr<AnimatedCrowd>> crowd = crowd::makeCrowd(model, grid);
     if (!crowd) return Error{grid.modelFile + ": " + crowd.error().message};
     osg::ref_ptr<osg::Group> scene = new osg::Group;
     scene->addChild(crowd.value());
-    if (const Result<bool> shown = show(viewer, *scene, osgGpuAnimation::pointsOf(*scene)); !shown) return shown;
+    if (const Result<void> shown = show(viewer, *scene, osgGpuAnimation::pointsOf(*scene)); !shown) return shown;
     viewer.draw(0.0); // the time from which the clips run
     return drawPictures(viewer, [](double seconds) { return seconds; });
 }

@@ -39,16 +39,16 @@ struct RenderCommand
     std::string output;      ///< a .png; numbered, OUT.png becomes OUT.0001.png, OUT.0002.png …
 
     /// Error messages begin with the name of the file at fault.
-    Result<bool> run() const;
+    Result<void> run() const;
 
 private:
     std::vector<double> times() const; ///< seconds, by picture
     /// points: of the scene, at all times. Error: there are none.
-    Result<bool> show(PictureViewer& viewer, osg::Node& scene, const std::vector<osg::Vec3d>& points) const;
+    Result<void> show(PictureViewer& viewer, osg::Node& scene, const std::vector<osg::Vec3d>& points) const;
     /// simulationTime: of the viewer, from a picture's time; called before the picture is drawn.
-    Result<bool> drawPictures(PictureViewer& viewer, const std::function<double(double)>& simulationTime) const;
-    Result<bool> drawModel(PictureViewer& viewer, const gltf::ImportedModel& model) const;
-    Result<bool> drawCrowd(PictureViewer& viewer, osg::Node& model, const crowd::CrowdOptions& grid) const;
+    Result<void> drawPictures(PictureViewer& viewer, const std::function<double(double)>& simulationTime) const;
+    Result<void> drawModel(PictureViewer& viewer, const gltf::ImportedModel& model) const;
+    Result<void> drawCrowd(PictureViewer& viewer, osg::Node& model, const crowd::CrowdOptions& grid) const;
 };
 
 } // namespace osgGpuAnimation::tool

@@ -115,7 +115,7 @@ LookAt makeLook(float turnSpeed)
     return look;
 }
 
-Result<bool> addConstraints(AnimatedCharacter& wanderer, const std::vector<Constraint>& constraints)
+Result<void> addConstraints(AnimatedCharacter& wanderer, const std::vector<Constraint>& constraints)
 {
     const auto set = wanderer.getAnimationSet().withConstraints(constraints);
     if (!set) return set.error();
@@ -124,7 +124,7 @@ Result<bool> addConstraints(AnimatedCharacter& wanderer, const std::vector<Const
 
 } // namespace
 
-Result<bool> addLook(AnimatedCharacter& wanderer)
+Result<void> addLook(AnimatedCharacter& wanderer)
 {
     return addConstraints(wanderer, {makeLook(0.0f)});
 }
@@ -142,32 +142,32 @@ Result<osg::ref_ptr<SpringBones>> addSprings(AnimatedCharacter& wanderer)
         }
     const SpringCollider back{"Chest", osg::Vec3(0.0f, -0.1f, 0.0f), osg::Vec3(0.0f, 0.2f, 0.0f), 0.16f};
     const osg::ref_ptr<SpringBones> springs = new SpringBones;
-    const Result<bool> set = springs->setChains(wanderer.getAnimationSet(), {scarf, hood}, {back});
+    const Result<void> set = springs->setChains(wanderer.getAnimationSet(), {scarf, hood}, {back});
     if (!set) return set.error();
     wanderer.addUpdateCallback(springs);
     return springs;
 }
 
-Result<bool> playGaits(AnimatedCharacter& wanderer, double speed)
+Result<void> playGaits(AnimatedCharacter& wanderer, double speed)
 {
     const auto gaits =
         BlendSpace::create(wanderer.getAnimationSet(), {{"Walk", 0.71}, {"Run", 2.1}}, {"left foot", "right foot"});
     if (!gaits) return gaits.error();
     AnimationLayer& gait = wanderer.getController().layer(0);
-    Result<bool> played = gait.play(gaits.value());
+    Result<void> played = gait.play(gaits.value());
     if (!played) return played;
     gait.setParameter(speed);
     return gait.setGroundSpeed(speed);
 }
 
-Result<bool> addGroundFeet(AnimatedCharacter& wanderer, osg::Node& ground)
+Result<void> addGroundFeet(AnimatedCharacter& wanderer, osg::Node& ground)
 {
-    const Result<bool> added =
+    const Result<void> added =
         addConstraints(wanderer, {TwoBoneIk{"left leg", "UpperLeg_L", "LowerLeg_L", "Foot_L"},
                                   TwoBoneIk{"right leg", "UpperLeg_R", "LowerLeg_R", "Foot_R"}, makeLook(3.0f)});
     if (!added) return added;
     const osg::ref_ptr<GroundFeet> feet = new GroundFeet(ground);
-    const Result<bool> set =
+    const Result<void> set =
         feet->setLegs(wanderer.getAnimationSet(), {{"left leg", "Toes_L"}, {"right leg", "Toes_R"}});
     if (set) wanderer.addUpdateCallback(feet);
     return set;
@@ -187,9 +187,9 @@ Result<osg::ref_ptr<osg::Node>> makeHill(const osg::Node& model)
     AnimatedCharacter* wanderer = findCharacter(*copy);
     if (!wanderer) return Error{"the model has no character"};
     wanderer->addUpdateCallback(new Walk);
-    if (const Result<bool> feet = addGroundFeet(*wanderer, *ground); !feet) return feet.error();
-    if (const Result<bool> gaits = playGaits(*wanderer, 0.7); !gaits) return gaits.error();
-    if (const Result<bool> followed = wanderer->constraint("look").follow(lantern); !followed) return followed.error();
+    if (const Result<void> feet = addGroundFeet(*wanderer, *ground); !feet) return feet.error();
+    if (const Result<void> gaits = playGaits(*wanderer, 0.7); !gaits) return gaits.error();
+    if (const Result<void> followed = wanderer->constraint("look").follow(lantern); !followed) return followed.error();
     if (const auto springs = addSprings(*wanderer); !springs) return springs.error();
     return osg::ref_ptr<osg::Node>(hill);
 }
@@ -200,7 +200,7 @@ Result<osg::ref_ptr<osg::Node>> makeGazers(const osg::Node& model)
     const osg::ref_ptr<osg::Node> copy = osg::clone(&model, osg::CopyOp::DEEP_COPY_NODES);
     AnimatedCharacter* wanderer = findCharacter(*copy);
     if (!wanderer) return Error{"the model has no character"};
-    if (const Result<bool> look = addLook(*wanderer); !look) return look.error();
+    if (const Result<void> look = addLook(*wanderer); !look) return look.error();
     const osg::ref_ptr<osg::MatrixTransform> bird = new osg::MatrixTransform(
         osg::Matrixd::scale(1.2, 1.2, 1.2) * osg::Matrixd::rotate(0.6, osg::Vec3d(0, 1, 0)) *
         osg::Matrixd::rotate(-1.2, osg::Vec3d(0, 0, 1)) * osg::Matrixd::translate(2.9, -0.8, 3.0));
@@ -215,7 +215,7 @@ Result<osg::ref_ptr<osg::Node>> makeGazers(const osg::Node& model)
     for (int i = 0; i < columns * rows; ++i)
     {
         AnimationController controller(crowd->getSharedAnimationSet());
-        if (const Result<bool> played = controller.play("Idle"); !played) return played.error();
+        if (const Result<void> played = controller.play("Idle"); !played) return played.error();
         controller.seek(between(0.0, 5.0));
         const osg::Vec3d place(1.1 * (i % columns - 0.5 * columns) + between(-0.3, 0.3),
                                1.1 * (i / columns) + between(-0.3, 0.3), 0.0);
@@ -225,7 +225,7 @@ Result<osg::ref_ptr<osg::Node>> makeGazers(const osg::Node& model)
             crowd->add(osg::Matrixd::rotate(facing, osg::Vec3d(0, 0, 1)) * osg::Matrixd::translate(place), controller,
                        osg::Vec4(shade, shade * between(0.9, 1.0), shade * between(0.8, 1.0), 1.0));
         if (!instance) return instance.error();
-        if (const Result<bool> followed = crowd->constraint(instance.value(), "look").follow(bird); !followed)
+        if (const Result<void> followed = crowd->constraint(instance.value(), "look").follow(bird); !followed)
             return followed.error();
     }
     return osg::ref_ptr<osg::Node>(square);

@@ -11,13 +11,13 @@ namespace osgGpuAnimation
 {
 
 /// Declares the constraint "look" of a wanderer's chest, neck and head.
-Result<bool> addLook(AnimatedCharacter& wanderer);
+Result<void> addLook(AnimatedCharacter& wanderer);
 /// Lets a wanderer's scarf and hood swing.
 Result<osg::ref_ptr<SpringBones>> addSprings(AnimatedCharacter& wanderer);
 /// Plays the blend space from Walk to Run. speed: metres a second, in [0.71, 2.1].
-Result<bool> playGaits(AnimatedCharacter& wanderer, double speed);
+Result<void> playGaits(AnimatedCharacter& wanderer, double speed);
 /// Keeps a wanderer's feet on the ground; the constraint "look" is declared, too.
-Result<bool> addGroundFeet(AnimatedCharacter& wanderer, osg::Node& ground);
+Result<void> addGroundFeet(AnimatedCharacter& wanderer, osg::Node& ground);
 
 /// A wanderer who follows a path over hilly ground, faster and slower, with the feet on the ground and the scarf on
 /// springs, and looks at a lantern that flies beside it. model: Wanderer.glb.

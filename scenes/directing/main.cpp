@@ -266,7 +266,7 @@ public:
 };
 
 /// surroundings: of the scene. seconds: of the animation before the picture is taken.
-Result<bool> draw(osg::Node* scene, Environment* surroundings, const Sight& sight, double seconds,
+Result<void> draw(osg::Node* scene, Environment* surroundings, const Sight& sight, double seconds,
                   const std::string& file)
 {
     osg::ref_ptr<osg::GraphicsContext::Traits> traits = new osg::GraphicsContext::Traits;
@@ -303,7 +303,7 @@ Result<bool> draw(osg::Node* scene, Environment* surroundings, const Sight& sigh
     }
     viewer.renderingTraversals();
     if (!osgDB::writeImageFile(*reader->image, file)) return Error{file + ": cannot be written"};
-    return true;
+    return {};
 }
 
 int view(const osg::Node& model)

@@ -248,10 +248,10 @@ TEST(AnimationControllerTest, RefusesWhatItCannotDoAndStaysAsItWas)
     AnimationController controller(makeSet());
     ASSERT_TRUE(controller.play(walk));
     controller.advance(0.5);
-    const Result<bool> byName = controller.play("Fly");
+    const Result<void> byName = controller.play("Fly");
     ASSERT_FALSE(byName);
     EXPECT_EQ(byName.error().message, "there is no clip \"Fly\"; the clips are \"Walk\", \"Instant\"");
-    const Result<bool> byIndex = controller.play(2);
+    const Result<void> byIndex = controller.play(2);
     ASSERT_FALSE(byIndex);
     EXPECT_EQ(byIndex.error().message, "there is no clip 2; the clips are \"Walk\", \"Instant\"");
     for (double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL})

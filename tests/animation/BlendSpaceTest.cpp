@@ -350,7 +350,7 @@ TEST(BlendSpaceTest, CrossfadesBetweenSpacesAndClipsDoNotJump)
                 if (random() % static_cast<unsigned int>(every) == 0)
                 {
                     const auto& space = random() % 2 ? line : plane;
-                    const Result<bool> begun = random() % 3 ? controller.crossfade(space, seconds, {{}, sync})
+                    const Result<void> begun = random() % 3 ? controller.crossfade(space, seconds, {{}, sync})
                                                             : controller.crossfade(random() % 3, seconds, {{}, sync});
                     ASSERT_TRUE(begun) << begun.error().message;
                     ASSERT_LE(controller.layer(0).mixer().activeClipCount(), ClipMixer::maxActiveClips);
@@ -385,7 +385,7 @@ TEST(BlendSpaceTest, SnapshotsAndCopiesContinueExactly)
         first.setParameter(0.8);
         first.advance(0.1);
         AnimationController copy(first), restored(set), other(makeSteppingSet(), first);
-        const Result<bool> isRestored = restored.layer(0).restore(first.layer(0).snapshot());
+        const Result<void> isRestored = restored.layer(0).restore(first.layer(0).snapshot());
         ASSERT_TRUE(isRestored) << isRestored.error().message;
         copy.setParameter(0.1);
         copy.setParameter(0.8);

@@ -44,7 +44,7 @@ Clip build(std::vector<Channel> channels)
     ClipBuilder builder(skeleton, morphs());
     for (Channel& c : channels)
     {
-        const Result<bool> added = builder.add(std::move(c));
+        const Result<void> added = builder.add(std::move(c));
         EXPECT_TRUE(added) << added.error().message;
     }
     return builder.build("clip");
@@ -284,13 +284,13 @@ TEST(ClipBuilderTest, FaultyChannelsAreRefusedByNameAndCostNothingElse)
     ClipBuilder builder(skeleton, morphs());
     for (const Case& c : cases)
     {
-        const Result<bool> added = builder.add(c.channel);
+        const Result<void> added = builder.add(c.channel);
         ASSERT_FALSE(added) << c.message;
         EXPECT_NE(added.error().message.find(c.message), std::string::npos) << added.error().message;
     }
     const Channel good = channel(Path::Translation, Interpolation::Linear, {0, 1}, {0, 0, 0, 1, 1, 1});
     EXPECT_TRUE(builder.add(good));
-    const Result<bool> twice = builder.add(good);
+    const Result<void> twice = builder.add(good);
     ASSERT_FALSE(twice);
     EXPECT_EQ(twice.error().message, "translation of joint 0: another channel has this target already");
     EXPECT_EQ(builder.build("good").keyframeCount(), 2u);

@@ -67,7 +67,7 @@ TEST(ConstraintHandleTest, ARefusalNamesTheConstraintAndTheValue)
     ConstraintHandle fast = controller.constraint("fast"), leg = controller.constraint("leg");
     struct Case
     {
-        Result<bool> result;
+        Result<void> result;
         const char* message;
     };
     const Case cases[] = {

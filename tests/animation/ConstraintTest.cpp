@@ -441,7 +441,7 @@ TEST(ConstraintTest, badNumbersAreErrorsAndKeepThePreviousTarget)
     EXPECT_FALSE(limb.setTwist(infinite));
     EXPECT_EQ(limb.target().position, glm::vec3(1, 2, 0));
     EXPECT_FALSE(controller.constraint("look").setRotation({0, 0, 0, 1}));
-    const Result<bool> unknown = controller.constraint("nose").setTarget({0, 0, 1});
+    const Result<void> unknown = controller.constraint("nose").setTarget({0, 0, 1});
     ASSERT_FALSE(unknown);
     EXPECT_NE(unknown.error().message.find("\"nose\"; the constraints are \"look\", \"limb\""), std::string::npos);
     ASSERT_TRUE(limb.setWeight(7.0f));

@@ -193,12 +193,12 @@ TEST(CrossfadeTest, RefusesWhatItCannotDoAndStaysAsItWas)
     const PoseInstruction before = controller.instruction();
     for (double bad : {-1.0, std::nan(""), HUGE_VAL})
     {
-        const Result<bool> refused = controller.crossfade("Run", bad);
+        const Result<void> refused = controller.crossfade("Run", bad);
         ASSERT_FALSE(refused);
         EXPECT_EQ(refused.error().message.rfind("a crossfade to clip \"Run\" of ", 0), 0u) << refused.error().message;
     }
     EXPECT_FALSE(controller.crossfade(9, 0.5));
-    const Result<bool> unknown = controller.crossfade("Fly", 0.5);
+    const Result<void> unknown = controller.crossfade("Fly", 0.5);
     ASSERT_FALSE(unknown);
     EXPECT_EQ(unknown.error().message, "there is no clip \"Fly\"; the clips are \"Idle\", \"Walk\", \"Run\", \"Turn\"");
     EXPECT_EQ(controller.clip(), 1);

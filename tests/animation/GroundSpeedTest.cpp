@@ -59,7 +59,7 @@ TEST(GroundSpeedTest, AClipIsMeasuredByItsFeet)
     AnimationController controller(set);
     EXPECT_FALSE(controller.layer(0).setGroundSpeed(1.0)) << "nothing plays";
     ASSERT_TRUE(controller.play("Run"));
-    const Result<bool> none = controller.layer(0).setGroundSpeed(std::nan(""));
+    const Result<void> none = controller.layer(0).setGroundSpeed(std::nan(""));
     ASSERT_FALSE(none);
     EXPECT_EQ(none.error().message, "a ground speed of nan: it must be finite");
     ASSERT_TRUE(controller.layer(0).setGroundSpeed(-1.6));
@@ -67,7 +67,7 @@ TEST(GroundSpeedTest, AClipIsMeasuredByItsFeet)
     AnimationController standing(
         makeGaitSet()->withClips({ClipBuilder(makeGaitSet()->skeleton(), {}).build("Stand")}).value());
     ASSERT_TRUE(standing.play("Stand"));
-    const Result<bool> refused = standing.layer(0).setGroundSpeed(1.0);
+    const Result<void> refused = standing.layer(0).setGroundSpeed(1.0);
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().message,
               "a ground speed for clip \"Stand\": its feet stand, so no speed fits; setSpeed() sets one");

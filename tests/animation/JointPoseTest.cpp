@@ -198,7 +198,7 @@ TEST(JointPoseTest, refusesBadInputAndKeepsThePose)
         EXPECT_FALSE(one.set(pose));
         EXPECT_EQ(pose.keyframe().serial(), serial);
     }
-    const Result<bool> refused = JointPose(set).setTransforms(withNone);
+    const Result<void> refused = JointPose(set).setTransforms(withNone);
     ASSERT_FALSE(refused);
     EXPECT_NE(refused.error().message.find("joint 7 \"" + set->skeleton().joint(7).name + "\""), std::string::npos);
 }

@@ -153,7 +153,7 @@ TEST(LayerSnapshotTest, CopiesAndRestoredLayersContinueExactly)
                 restored = AnimationController(set);
                 for (std::size_t layer = 0; layer < first.layerCount(); ++layer)
                 {
-                    const Result<bool> isRestored = restored.layer(layer).restore(first.layer(layer).snapshot());
+                    const Result<void> isRestored = restored.layer(layer).restore(first.layer(layer).snapshot());
                     ASSERT_TRUE(isRestored) << isRestored.error().message;
                 }
                 copy = first;
@@ -233,7 +233,7 @@ TEST(LayerSnapshotTest, FaultsAreNamedAndTheEdgesAreAccepted)
         AnimationController controller(set);
         LayerSnapshot kept = good;
         cases[i].change(kept);
-        const Result<bool> isRestored = controller.layer(0).restore(kept);
+        const Result<void> isRestored = controller.layer(0).restore(kept);
         ASSERT_EQ(static_cast<bool>(isRestored), *cases[i].message == '\0') << cases[i].message;
         if (isRestored) continue;
         EXPECT_NE(isRestored.error().message.find(cases[i].message), std::string::npos) << isRestored.error().message;

@@ -141,7 +141,7 @@ TEST(MisuseTest, ASetWithoutClips)
 {
     const auto set = makeGaitSet()->withClips({}).value();
     AnimationController controller(set);
-    const Result<bool> played = controller.play(0);
+    const Result<void> played = controller.play(0);
     ASSERT_FALSE(played);
     EXPECT_EQ(played.error().message, "there is no clip 0; the clips are none");
     EXPECT_FALSE(controller.crossfade("Walk", 0.5));
@@ -165,7 +165,7 @@ TEST(MisuseTest, MasksOfOtherSetsAreRefusedAndTheOldOneStays)
     AnimationLayer& layer = controller.layer(1);
     ASSERT_TRUE(layer.setMask(JointMask(*set, 0.5f)));
     const std::uint32_t mask = layer.mask();
-    const Result<bool> refused = layer.setMask(JointMask(*other, 1.0f));
+    const Result<void> refused = layer.setMask(JointMask(*other, 1.0f));
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().message.rfind("a mask of 1 tracks for a set of ", 0), 0u) << refused.error().message;
     EXPECT_EQ(layer.mask(), mask);

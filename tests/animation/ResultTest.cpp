@@ -36,7 +36,7 @@ TEST(NullSetTest, AControllerAndAStateMachineAnswer)
     {
         EXPECT_EQ(controller.set().skeleton().jointCount(), 0u);
         EXPECT_NE(controller.sharedSet(), nullptr);
-        const Result<bool> played = controller.play("Walk");
+        const Result<void> played = controller.play("Walk");
         ASSERT_FALSE(played);
         EXPECT_EQ(played.error().message, "there is no clip \"Walk\"; the clips are none");
         EXPECT_EQ(controller.advance(0.5).sampleCount, 1u);

@@ -7,7 +7,7 @@
 namespace osgGpuAnimation::benchmark
 {
 
-Result<bool> measureChunks(const Subject& subject, const Effort& effort, osg::GraphicsContext& context, Report& report)
+Result<void> measureChunks(const Subject& subject, const Effort& effort, osg::GraphicsContext& context, Report& report)
 {
     constexpr std::size_t sizes[] = {64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384};
     constexpr double frameTime = 1.0 / 60.0;
@@ -36,7 +36,7 @@ Result<bool> measureChunks(const Subject& subject, const Effort& effort, osg::Gr
             report.add(row);
         }
     }
-    return true;
+    return {};
 }
 
 } // namespace osgGpuAnimation::benchmark

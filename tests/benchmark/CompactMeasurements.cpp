@@ -9,7 +9,7 @@
 namespace osgGpuAnimation::benchmark
 {
 
-Result<bool> measureCompact(const Subject& subject, const Effort& effort, osg::GraphicsContext& context, Report& report)
+Result<void> measureCompact(const Subject& subject, const Effort& effort, osg::GraphicsContext& context, Report& report)
 {
     constexpr double frameTime = 1.0 / 60.0;
     std::cerr << subject.name << ": pose of compact clips" << std::endl;
@@ -30,7 +30,7 @@ Result<bool> measureCompact(const Subject& subject, const Effort& effort, osg::G
     row.unit = "ns a joint";
     row.otherName = "exact clips, " + std::to_string(PackedKeyframes(*subject.model.set).byteSize()) + " bytes";
     report.add(row);
-    return true;
+    return {};
 }
 
 } // namespace osgGpuAnimation::benchmark

@@ -117,13 +117,13 @@ std::function<Spent()> stepOf(PoseCrowd& crowd, const Chains& chains)
 
 } // namespace
 
-Result<bool> measureConstraints(const Subject& subject, const Effort& effort, osg::GraphicsContext& context,
+Result<void> measureConstraints(const Subject& subject, const Effort& effort, osg::GraphicsContext& context,
                                 Report& report)
 {
     const Chains* chains = nullptr;
     for (const Chains& known : chainsOfSubjects)
         if (subject.name == known.subject) chains = &known;
-    if (!chains) return true;
+    if (!chains) return {};
     std::cerr << subject.name << ": pose with constraints" << std::endl;
     const auto looking = subject.set().withConstraints(looksOf(*chains));
     const auto aiming = subject.set().withConstraints(aimsOf(*chains));
@@ -165,7 +165,7 @@ Result<bool> measureConstraints(const Subject& subject, const Effort& effort, os
         row.isMet = row.ratio.median <= bars[i].ratio;
         report.add(row);
     }
-    return true;
+    return {};
 }
 
 } // namespace osgGpuAnimation::benchmark

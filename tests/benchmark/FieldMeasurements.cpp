@@ -123,7 +123,7 @@ Result<double> bytesOfField(const Subject& subject, double& outPoses)
         viewing.frame();
         before = bytesInUse();
         const osg::ref_ptr<AnimatedCrowd> field = makeField(subject, step);
-        if (const Result<bool> set = field->setPixelError(fieldPixelError); !set) return set.error();
+        if (const Result<void> set = field->setPixelError(fieldPixelError); !set) return set.error();
         root->addChild(field);
         for (int frame = 0; frame < 3; ++frame)
             viewing.frame();
@@ -139,11 +139,11 @@ Result<double> bytesOfField(const Subject& subject, double& outPoses)
 
 } // namespace
 
-Result<bool> measureField(const Subject& subject, const Effort& effort, Report& report)
+Result<void> measureField(const Subject& subject, const Effort& effort, Report& report)
 {
     std::cerr << subject.name << ": a field of " << places << std::endl;
     const osg::ref_ptr<AnimatedCrowd> field = makeField(subject);
-    if (const Result<bool> set = field->setPixelError(fieldPixelError); !set) return set.error();
+    if (const Result<void> set = field->setPixelError(fieldPixelError); !set) return set.error();
     const osg::BoundingSphere bound = field->getBound();
     Result<Contestant> made = contestant(field, bound, 1280, 720);
     if (!made) return made.error();
@@ -188,15 +188,15 @@ Result<bool> measureField(const Subject& subject, const Effort& effort, Report& 
     }
     lookAcross(viewer, bound);
     if (!osg::isGLExtensionOrVersionSupported(viewer.state().getContextID(), "GL_ARB_pipeline_statistics_query", 4.6f))
-        return true;
+        return {};
     addRow("the field, triangles drawn", "a frame", {countedInFrame(contestants.front(), primitivesClipped)});
     addRow("the field, vertices shaded, poses' too", "a frame",
            {countedInFrame(contestants.front(), shaderInvocations)});
     if (const std::string errors = viewer.takeErrors(); !errors.empty()) return Error{"GL reports " + errors};
-    return true;
+    return {};
 }
 
-Result<bool> measureMixed(const std::vector<Subject>& subjects, const Effort& effort, Report& report)
+Result<void> measureMixed(const std::vector<Subject>& subjects, const Effort& effort, Report& report)
 {
     std::cerr << "a field of " << places << " of " << subjects.size() << " kinds" << std::endl;
     osg::ref_ptr<osg::Group> root = new osg::Group;
@@ -204,7 +204,7 @@ Result<bool> measureMixed(const std::vector<Subject>& subjects, const Effort& ef
     for (std::size_t kind = 0; kind < subjects.size(); ++kind)
     {
         crowds.emplace_back(subjects[kind], kind, subjects.size());
-        if (const Result<bool> set = crowds.back().node().setPixelError(fieldPixelError); !set) return set.error();
+        if (const Result<void> set = crowds.back().node().setPixelError(fieldPixelError); !set) return set.error();
         root->addChild(&crowds.back().node());
     }
     Result<Contestant> made = contestant(root, root->getBound(), 1280, 720);
@@ -249,10 +249,10 @@ Result<bool> measureMixed(const std::vector<Subject>& subjects, const Effort& ef
     addRow("placements set", "ms", std::move(moving));
     addRow("poses evaluated", "a frame", std::move(poses));
     addRow("uploaded", "bytes an instance", std::move(bytes));
-    return true;
+    return {};
 }
 
-Result<bool> measureMemory(const Subject& subject, const Effort&, Report& report)
+Result<void> measureMemory(const Subject& subject, const Effort&, Report& report)
 {
     std::cerr << subject.name << ": memory of a field" << std::endl;
     double poses = 0.0;
@@ -262,7 +262,7 @@ Result<bool> measureMemory(const Subject& subject, const Effort&, Report& report
     const double mebibytes = bytes.value() / (1024.0 * 1024.0);
     report.add(limited(figureOf({mebibytes}), 64.0, "≤ 64 MiB", subject, places,
                        "the field, memory beyond the set, CPU and GPU", "MiB"));
-    return true;
+    return {};
 }
 
 } // namespace osgGpuAnimation::benchmark

@@ -77,7 +77,7 @@ std::string checkAlike(osg::Node& all, osg::Node& fewer, SetPixelError setPixelE
 {
     constexpr int samples = 8, sides = 4;
     const osg::BoundingSphere sight = all.getBound();
-    if (const Result<bool> set = setPixelError(samples * pixelError); !set) return set.error().message;
+    if (const Result<void> set = setPixelError(samples * pixelError); !set) return set.error().message;
     std::vector<std::shared_ptr<StagedViewer>> viewers;
     for (osg::Node* scene : {&all, &fewer})
     {
@@ -104,7 +104,7 @@ std::string checkAlike(osg::Node& all, osg::Node& fewer, SetPixelError setPixelE
             return "from side " + std::to_string(side) + " levels of detail show " + std::to_string(pixels[1]) +
                    " pixels, all triangles " + std::to_string(pixels[0]);
     }
-    if (const Result<bool> set = setPixelError(pixelError); !set) return set.error().message;
+    if (const Result<void> set = setPixelError(pixelError); !set) return set.error().message;
     // The Wanderer's coarsest levels are 11 % too thin.
     if (20 * std::abs(ofAll - ofFewer) <= 3 * ofAll && ofAll > 0) return "";
     return "from " + std::to_string(sides) + " sides levels of detail show " + std::to_string(ofFewer) +
@@ -172,7 +172,7 @@ Result<double> footprint(MakeScene makeScene, const osg::BoundingSphere& sight)
 
 } // namespace
 
-Result<bool> measureFrames(const Subject& subject, const Effort& effort, Report& report)
+Result<void> measureFrames(const Subject& subject, const Effort& effort, Report& report)
 {
     report.describePlot(framePlot(subject), subject.name + ", whole frame at 64x64: CPU time a character", "characters",
                         "ms a character");
@@ -186,7 +186,7 @@ Result<bool> measureFrames(const Subject& subject, const Effort& effort, Report&
         ReferenceScene apart(subject, kit, ReferenceMode::HardwareApart, count);
         std::vector<Contestant> contestants;
         CharacterScene fewer(subject, count);
-        if (const Result<bool> set = fewer.setPixelError(pixelError); !set) return set.error();
+        if (const Result<void> set = fewer.setPixelError(pixelError); !set) return set.error();
         for (osg::Node* scene :
              {ours.root.get(), software.root.get(), hardware.root.get(), apart.root.get(), fewer.root.get()})
         {
@@ -203,17 +203,17 @@ Result<bool> measureFrames(const Subject& subject, const Effort& effort, Report&
         if (const std::string wrong = ours.check(contestants[0].viewer->state()); !wrong.empty()) return Error{wrong};
         addFrameRows(subject, count, contestants, effort, report);
     }
-    return true;
+    return {};
 }
 
-Result<bool> measureCrowd(const Subject& subject, const Effort& effort, Report& report)
+Result<void> measureCrowd(const Subject& subject, const Effort& effort, Report& report)
 {
     const auto race = [&](std::size_t count, int rounds, bool hasNodes) -> Result<std::vector<Contestant>>
     {
         std::cerr << subject.name << ": a crowd of " << count << std::endl;
         const CrowdScene all(subject, count), fewer(subject, count);
         const auto setPixelError = [&](float pixels) { return fewer.root->setPixelError(pixels); };
-        if (const Result<bool> set = setPixelError(pixelError); !set) return set.error();
+        if (const Result<void> set = setPixelError(pixelError); !set) return set.error();
         std::vector<osg::ref_ptr<osg::Node>> scenes{all.root, fewer.root};
         if (hasNodes) scenes.push_back(CharacterScene(subject, count).root);
         std::vector<Contestant> contestants;
@@ -254,16 +254,16 @@ Result<bool> measureCrowd(const Subject& subject, const Effort& effort, Report& 
         row.isMet = row.ours.median <= 0.15;
         report.add(row);
     }
-    return true;
+    return {};
 }
 
-Result<bool> measureStart(const Subject& subject, const Effort& effort, Report& report)
+Result<void> measureStart(const Subject& subject, const Effort& effort, Report& report)
 {
     std::cerr << subject.name << ": first frame and memory" << std::endl;
     constexpr std::size_t count = 1000, few = 10; // few: the one-time cost of programs and of the set
     const osg::BoundingSphere sight = CharacterScene(subject, count).root->getBound();
     // Levels of detail are made while a file is loaded.
-    if (const Result<bool> set = CharacterScene(subject, 1).setPixelError(pixelError); !set) return set.error();
+    if (const Result<void> set = CharacterScene(subject, 1).setPixelError(pixelError); !set) return set.error();
     std::vector<double> seconds, secondsOfFewer, elapsed, bytes, beyond, beyondOfFewer, compiled, beyondCompiled;
     for (int round = 0; round < std::min(effort.frameRounds, 3); ++round)
     {
@@ -306,7 +306,7 @@ Result<bool> measureStart(const Subject& subject, const Effort& effort, Report& 
     const double limit = 4.0 + 48.0 * static_cast<double>(subject.set().paletteSize()) / 1024.0;
     report.add(limited(figureOf(bytes), limit, "≤ 4 KiB + 48 B an entry", subject, count, "memory, CPU and GPU",
                        "KiB a character"));
-    return true;
+    return {};
 }
 
 } // namespace osgGpuAnimation::benchmark

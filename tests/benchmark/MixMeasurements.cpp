@@ -7,7 +7,7 @@
 namespace osgGpuAnimation::benchmark
 {
 
-Result<bool> measureSamples(const Subject& subject, const Effort& effort, osg::GraphicsContext& context, Report& report)
+Result<void> measureSamples(const Subject& subject, const Effort& effort, osg::GraphicsContext& context, Report& report)
 {
     constexpr std::size_t samples = 4;
     constexpr double frameTime = 1.0 / 60.0;
@@ -48,7 +48,7 @@ Result<bool> measureSamples(const Subject& subject, const Effort& effort, osg::G
         row.otherName = "1 blend sample";
         report.add(row);
     }
-    return true;
+    return {};
 }
 
 } // namespace osgGpuAnimation::benchmark

@@ -95,7 +95,7 @@ osg::ref_ptr<AnimatedCrowd> makeWall(const Subject& subject, double spacing)
 }
 
 /// Of instances of that height in pixels: with the pixel error, and exact ones.
-Result<bool> comparePictures(const Subject& subject, int pixels, Report& report)
+Result<void> comparePictures(const Subject& subject, int pixels, Report& report)
 {
     const osg::BoundingBox box = subject.model.character->getClipBounds(-1);
     const double tall = box.zMax() - box.zMin(), spacing = 2.0 * tall;
@@ -112,7 +112,7 @@ Result<bool> comparePictures(const Subject& subject, int pixels, Report& report)
     std::vector<Picture> pictures;
     for (const float error : {0.0f, samples * fieldPixelError})
     {
-        if (const Result<bool> set = wall->setPixelError(error); !set) return set.error();
+        if (const Result<void> set = wall->setPixelError(error); !set) return set.error();
         for (int frame = 0; frame < 2; ++frame)
             viewer.frame(0.0);
         pictures.push_back(pictureOf(viewer, width, samples));
@@ -130,7 +130,7 @@ Result<bool> comparePictures(const Subject& subject, int pixels, Report& report)
     addRow("pictures, coverage", "%", coverage, std::abs(coverage - 100.0) <= 2.0, "98 to 102 %");
     const double similarity = structuralSimilarity(pictures[0], pictures[1]);
     addRow("pictures, structural similarity", "%", 100.0 * similarity, similarity >= 0.98, "≥ 98 %");
-    return true;
+    return {};
 }
 
 /// The mean brightness of the drawn pixels of each row; below 0 where few are drawn.
@@ -149,7 +149,7 @@ std::vector<double> brightnessOfRows(const Picture& picture)
 
 /// The largest change of brightness from some rows of the field to the next ones that the pixel error brings: a line
 /// where levels change.
-Result<bool> compareRows(const Subject& subject, Report& report)
+Result<void> compareRows(const Subject& subject, Report& report)
 {
     constexpr std::size_t band = 8; // rows on each side
     constexpr int width = 1280, height = 720;
@@ -160,7 +160,7 @@ Result<bool> compareRows(const Subject& subject, Report& report)
     std::vector<std::vector<double>> rows;
     for (const float error : {0.0f, fieldPixelError})
     {
-        if (const Result<bool> set = field->setPixelError(error); !set) return set.error();
+        if (const Result<void> set = field->setPixelError(error); !set) return set.error();
         made.value()->frame(0.0);
         rows.push_back(brightnessOfRows(pictureOf(*made.value(), width, 1)));
     }
@@ -178,16 +178,16 @@ Result<bool> compareRows(const Subject& subject, Report& report)
     }
     report.add(limited(figureOf({100.0 * largest}), 2.0, "≤ 2 %", subject, places,
                        "pictures, the field's largest step of brightness", "%"));
-    return true;
+    return {};
 }
 
 } // namespace
 
-Result<bool> measurePictures(const Subject& subject, const Effort&, Report& report)
+Result<void> measurePictures(const Subject& subject, const Effort&, Report& report)
 {
     std::cerr << subject.name << ": pictures" << std::endl;
     for (const int pixels : {4, 8, 16})
-        if (const Result<bool> compared = comparePictures(subject, pixels, report); !compared) return compared;
+        if (const Result<void> compared = comparePictures(subject, pixels, report); !compared) return compared;
     return compareRows(subject, report);
 }
 

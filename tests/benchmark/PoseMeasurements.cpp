@@ -100,7 +100,7 @@ void addPoseRows(const Subject& subject, std::size_t count, const PoseSeries& se
 }
 
 /// Poses that the application writes in every frame, in place of clips.
-Result<bool> measureStreaming(const Subject& subject, const Effort& effort, osg::GraphicsContext& context,
+Result<void> measureStreaming(const Subject& subject, const Effort& effort, osg::GraphicsContext& context,
                               Report& report)
 {
     std::cerr << subject.name << ": streaming poses" << std::endl;
@@ -139,7 +139,7 @@ Result<bool> measureStreaming(const Subject& subject, const Effort& effort, osg:
         "no pose new");
     add(compared(series[2], series[3], perCharacter, false), "pose of posed joints, without upload", "µs a character",
         "a clip");
-    return true;
+    return {};
 }
 
 void addGrowth(const Subject& subject, const std::map<std::size_t, Figure>& perCharacter, Report& report)
@@ -165,7 +165,7 @@ void addGrowth(const Subject& subject, const std::map<std::size_t, Figure>& perC
 
 } // namespace
 
-Result<bool> measurePose(const Subject& subject, const Effort& effort, osg::GraphicsContext& context, Report& report)
+Result<void> measurePose(const Subject& subject, const Effort& effort, osg::GraphicsContext& context, Report& report)
 {
     report.describePlot(posePlot, "Pose: CPU time a joint, from advance() to the finished palette", "characters",
                         "ns a joint");
@@ -187,7 +187,7 @@ Result<bool> measurePose(const Subject& subject, const Effort& effort, osg::Grap
     return measureStreaming(subject, effort, context, report);
 }
 
-Result<bool> measureDepth(const Effort& effort, osg::GraphicsContext& context, Report& report)
+Result<void> measureDepth(const Effort& effort, osg::GraphicsContext& context, Report& report)
 {
     constexpr std::size_t joints = 64;
     constexpr std::size_t shallow = 8;
@@ -224,7 +224,7 @@ Result<bool> measureDepth(const Effort& effort, osg::GraphicsContext& context, R
     row.bar = "≤ 1.3";
     row.isMet = row.ratio.median <= 1.3;
     report.add(row);
-    return true;
+    return {};
 }
 
 } // namespace osgGpuAnimation::benchmark

@@ -54,11 +54,11 @@ void CharacterScene::pause()
         character->getController().pause();
 }
 
-Result<bool> CharacterScene::setPixelError(float pixels)
+Result<void> CharacterScene::setPixelError(float pixels)
 {
     for (const osg::ref_ptr<AnimatedCharacter>& character : characters)
-        if (Result<bool> set = character->setPixelError(pixels); !set) return set;
-    return true;
+        if (Result<void> set = character->setPixelError(pixels); !set) return set;
+    return {};
 }
 
 std::string CharacterScene::check(osg::State& state) const

@@ -21,7 +21,7 @@ struct CharacterScene
 
     /// Pauses all characters.
     void pause();
-    Result<bool> setPixelError(float pixels); ///< of all characters
+    Result<void> setPixelError(float pixels); ///< of all characters
     /// Compares some palettes with the CPU twin's after a frame, with its GL state. Empty if they agree.
     std::string check(osg::State& state) const;
 

@@ -42,7 +42,7 @@ Result<std::vector<Contestant>> crowds(const Subject& fixed, const Subject& lit,
     for (const Subject* subject : {&fixed, &lit})
     {
         const CrowdScene scene(*subject, count);
-        if (const Result<bool> set = scene.root->setPixelError(0.5f); !set) return set.error();
+        if (const Result<void> set = scene.root->setPixelError(0.5f); !set) return set.error();
         Result<Contestant> made = contestant(scene.root, scene.root->getBound());
         if (!made) return made.error();
         contestants.push_back(std::move(made.value()));
@@ -52,7 +52,7 @@ Result<std::vector<Contestant>> crowds(const Subject& fixed, const Subject& lit,
 
 } // namespace
 
-Result<bool> measureShading(const Subject& subject, const Effort& effort, Report& report)
+Result<void> measureShading(const Subject& subject, const Effort& effort, Report& report)
 {
     std::cerr << subject.name << ": shading" << std::endl;
     std::vector<Subject> subjects;
@@ -94,7 +94,7 @@ Result<bool> measureShading(const Subject& subject, const Effort& effort, Report
         row.isMet = row.ratio.median <= each.most;
         report.add(row);
     }
-    return true;
+    return {};
 }
 
 } // namespace osgGpuAnimation::benchmark

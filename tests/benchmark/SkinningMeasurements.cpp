@@ -8,7 +8,7 @@
 namespace osgGpuAnimation::benchmark
 {
 
-Result<bool> measureDraws(const Subject& subject, const Effort& effort, Report& report)
+Result<void> measureDraws(const Subject& subject, const Effort& effort, Report& report)
 {
     std::cerr << subject.name << ": draws" << std::endl;
     const std::size_t count = effort.frameCount;
@@ -38,7 +38,7 @@ Result<bool> measureDraws(const Subject& subject, const Effort& effort, Report& 
                      subject, count, "skinned draw, one by one", "µs a character", "the same without skinning"));
     report.add(named(compared(contestants[0].draw, contestants[3].draw, 1e6 / static_cast<double>(count), false),
                      subject, count, "skinned draw", "µs a character", "the same triangles in one colour"));
-    return true;
+    return {};
 }
 
 } // namespace osgGpuAnimation::benchmark

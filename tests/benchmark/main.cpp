@@ -97,50 +97,50 @@ std::map<std::string, std::string> describeMachine()
     return machine;
 }
 
-Result<bool> measureSubject(const Request& request, const Effort& effort, const Subject& subject,
+Result<void> measureSubject(const Request& request, const Effort& effort, const Subject& subject,
                             osg::GraphicsContext& context, Report& report)
 {
-    const std::pair<const char*, Result<bool> (*)(const Subject&, const Effort&, Report&)> inViewers[] = {
+    const std::pair<const char*, Result<void> (*)(const Subject&, const Effort&, Report&)> inViewers[] = {
         {"frames", measureFrames}, {"crowd", measureCrowd},       {"field", measureField},
         {"draws", measureDraws},   {"pictures", measurePictures}, {"shading", measureShading},
         {"start", measureStart},   {"memory", measureMemory},     {"load", measureLoad}};
     if (request.has("samples"))
-        if (Result<bool> done = measureSamples(subject, effort, context, report); !done) return done;
+        if (Result<void> done = measureSamples(subject, effort, context, report); !done) return done;
     if (request.has("constraints"))
-        if (Result<bool> done = measureConstraints(subject, effort, context, report); !done) return done;
+        if (Result<void> done = measureConstraints(subject, effort, context, report); !done) return done;
     if (request.has("chunks"))
-        if (Result<bool> done = measureChunks(subject, effort, context, report); !done) return done;
+        if (Result<void> done = measureChunks(subject, effort, context, report); !done) return done;
     if (request.has("compact"))
-        if (Result<bool> done = measureCompact(subject, effort, context, report); !done) return done;
+        if (Result<void> done = measureCompact(subject, effort, context, report); !done) return done;
     if (request.has("pose"))
-        if (Result<bool> done = measurePose(subject, effort, context, report); !done) return done;
+        if (Result<void> done = measurePose(subject, effort, context, report); !done) return done;
     context.releaseContext();
     for (const auto& [part, measure] : inViewers)
         if (request.has(part))
-            if (Result<bool> done = measure(subject, effort, report); !done) return done;
+            if (Result<void> done = measure(subject, effort, report); !done) return done;
     context.makeCurrent();
-    return true;
+    return {};
 }
 
-Result<bool> measureAll(const Request& request, osg::GraphicsContext& context, Report& report)
+Result<void> measureAll(const Request& request, osg::GraphicsContext& context, Report& report)
 {
     const osg::ref_ptr<WarningWatch> watch = new WarningWatch;
     osg::setNotifyHandler(watch);
     const Effort effort = request.isQuick ? Effort::quick() : Effort();
     if (request.has("depth"))
-        if (Result<bool> done = measureDepth(effort, context, report); !done) return done;
+        if (Result<void> done = measureDepth(effort, context, report); !done) return done;
     const std::vector<Subject> subjects = loadSubjects(request);
     if (subjects.empty()) return Error{"no file holds an animated character"};
     for (const Subject& subject : subjects)
-        if (Result<bool> done = measureSubject(request, effort, subject, context, report); !done)
+        if (Result<void> done = measureSubject(request, effort, subject, context, report); !done)
             return Error{subject.name + ": " + done.error().message};
     context.releaseContext();
     if (request.has("mixed"))
-        if (Result<bool> done = measureMixed(subjects, effort, report); !done) return done;
+        if (Result<void> done = measureMixed(subjects, effort, report); !done) return done;
     context.makeCurrent();
     if (const std::string errors = takeGlErrors(); !errors.empty()) return Error{"GL reports " + errors};
     if (!watch->warnings().empty()) return Error{"OSG says: " + watch->warnings()};
-    return true;
+    return {};
 }
 
 /// Keeps freed memory in the process. By default glibc may return the memory of llvmpipe's draws to the kernel and
@@ -164,7 +164,7 @@ int run(const Request& request)
     }
     const std::map<std::string, std::string> machine = describeMachine();
     Report report;
-    if (const Result<bool> done = measureAll(request, *context.value(), report); !done)
+    if (const Result<void> done = measureAll(request, *context.value(), report); !done)
     {
         std::cerr << "no report, since a result is wrong: " << done.error().message << std::endl;
         return 1;

@@ -202,7 +202,7 @@ TEST(EnvironmentTest, faultyPanoramasAreRefusedWithAMessage)
     ASSERT_TRUE(environment->setPanorama(kept));
     for (const FaultCase& each : cases)
     {
-        const Result<bool> taken = environment->setPanorama(each.panorama);
+        const Result<void> taken = environment->setPanorama(each.panorama);
         ASSERT_FALSE(taken) << each.message;
         EXPECT_EQ(taken.error().message, each.message);
         EXPECT_EQ(environment->getPanorama(), kept);
@@ -225,7 +225,7 @@ TEST(EnvironmentTest, faultyFacesAreRefusedWithAMessage)
     const osg::ref_ptr<Environment> environment = new Environment;
     for (const auto& [message, faces] : cases)
     {
-        const Result<bool> taken = environment->setFaces(faces);
+        const Result<void> taken = environment->setFaces(faces);
         ASSERT_FALSE(taken) << message;
         EXPECT_EQ(taken.error().message, message);
         EXPECT_EQ(environment->getFaces(), nullptr);

@@ -392,7 +392,7 @@ TEST(MeshNamesTest, nodesAreFoundBeforeMeshes)
     EXPECT_EQ(body->findMesh("Cube"), body->getChild(2));
     EXPECT_EQ(body->findMesh("Plane"), body->getChild(1)) << "a mesh's name";
     EXPECT_EQ(body->findMesh("Shield"), nullptr);
-    const Result<bool> hidden = body->setMeshVisible("Shield", false);
+    const Result<void> hidden = body->setMeshVisible("Shield", false);
     ASSERT_FALSE(hidden);
     EXPECT_EQ(hidden.error().message, "there is no mesh \"Shield\"; the meshes are \"arm\", \"Sword\", \"Cube\"");
 }

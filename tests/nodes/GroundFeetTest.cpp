@@ -443,7 +443,7 @@ TEST(GroundFeetTest, refusesLegsThatTheSetDoesNotHave)
     ASSERT_TRUE(feet.setLegs(*set, {{"right", "toes.R"}}));
     for (const FaultCase& c : cases)
     {
-        const Result<bool> taken = feet.setLegs(*set, c.legs);
+        const Result<void> taken = feet.setLegs(*set, c.legs);
         ASSERT_FALSE(taken) << c.name;
         EXPECT_NE(taken.error().message.find(c.message), std::string::npos) << taken.error().message;
         ASSERT_EQ(feet.getLegs().size(), 1u) << c.name;

@@ -33,7 +33,7 @@ void expectTakesPixelErrors(Animated& animated)
     for (const auto& [pixels, isTaken] : pixelErrorCases)
     {
         ASSERT_TRUE(animated.setPixelError(2.0f));
-        const Result<bool> taken = animated.setPixelError(pixels);
+        const Result<void> taken = animated.setPixelError(pixels);
         EXPECT_EQ(static_cast<bool>(taken), isTaken) << pixels;
         EXPECT_EQ(animated.getPixelError(), isTaken ? pixels : 2.0f);
         if (taken) continue;

@@ -112,7 +112,7 @@ TEST_F(NodePosesTest, badMatricesAreErrorsAndKeepThePreviousPose)
                             {{wanted[0], wanted[1]}, "2"}};
     for (const Fault& fault : faults)
     {
-        const Result<bool> posed = character->setModelTransforms(0, fault.matrices);
+        const Result<void> posed = character->setModelTransforms(0, fault.matrices);
         ASSERT_FALSE(posed) << fault.message;
         EXPECT_NE(posed.error().message.find(fault.message), std::string::npos) << posed.error().message;
         for (std::size_t joint = 0; joint < 3; ++joint)

@@ -214,7 +214,7 @@ TEST(SpringBonesEdgesTest, valuesAtTheEndsOfTheirRangesAreTaken)
         EXPECT_TRUE(springs->setChains(*set, {{{joint, {"b"}}, {0}}}, {{"b", {}, std::nullopt, 0.0f}}));
     const auto refused = [&](std::vector<SpringChain> chains, const char* message)
     {
-        const Result<bool> result = springs->setChains(*set, std::move(chains));
+        const Result<void> result = springs->setChains(*set, std::move(chains));
         ASSERT_FALSE(result) << message;
         EXPECT_NE(result.error().message.find(message), std::string::npos) << result.error().message;
         EXPECT_EQ(springs->getChains().size(), 1u);

@@ -503,7 +503,7 @@ TEST(SpringBonesTest, faultsAreNamedAndChangeNothing)
         SpringChain chain = tail();
         std::vector<SpringCollider> colliders = obstacles();
         each.spoil(chain, colliders);
-        const Result<bool> set = dog.springs->setChains(dog.character->getAnimationSet(), {chain}, colliders);
+        const Result<void> set = dog.springs->setChains(dog.character->getAnimationSet(), {chain}, colliders);
         ASSERT_FALSE(set) << each.name;
         EXPECT_NE(set.error().message.find(each.message), std::string::npos) << set.error().message;
         EXPECT_EQ(dog.springs->getChains().size(), 1u);

@@ -17,7 +17,7 @@ Clip makeClip(const Skeleton& skeleton, const char* name, Channel::Path path, st
               std::vector<double> values)
 {
     ClipBuilder builder(skeleton, {});
-    const Result<bool> added =
+    const Result<void> added =
         builder.add({path, Channel::Interpolation::Linear, 0, std::move(times), std::move(values)});
     assert(added && "the test's own channel is valid");
     (void)added;
@@ -72,7 +72,7 @@ osg::ref_ptr<AnimatedCharacter> makeTestCharacter()
     osg::ref_ptr<AnimatedCharacter> character = new AnimatedCharacter(testCharacterSet());
     character->addChild(makeTestSquare(1));
     character->computeClipBounds();
-    const Result<bool> playing = character->getController().play("shift");
+    const Result<void> playing = character->getController().play("shift");
     assert(playing && "the clip is there");
     (void)playing;
     return character;

@@ -28,7 +28,7 @@ std::string contentOf(const std::string& file)
     return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-std::string messageOf(const Result<bool>& result)
+std::string messageOf(const Result<void>& result)
 {
     return result ? "" : result.error().message;
 }

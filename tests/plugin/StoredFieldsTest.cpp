@@ -119,7 +119,7 @@ TEST_F(StoredFieldsTest, ofALayer)
     ASSERT_TRUE(pose.setTranslation(0, {1, 2, 3}));
     layer.pose = pose.tracks();
     AnimationLayer& over = character().getController().layer(1);
-    const Result<bool> restored = over.restore(layer);
+    const Result<void> restored = over.restore(layer);
     ASSERT_TRUE(restored) << restored.error().message;
     const LayerSnapshot expected = over.snapshot(); // what the layer keeps
     EXPECT_TRUE(fieldsOf(expected.spaces.at(0)) == fieldsOf(layer.spaces[0]));

@@ -197,7 +197,7 @@ TEST(VariantsTest, clonesShowTheirOwnAndShareTheMeshesOfAVariant)
     EXPECT_EQ(&meshOf(*third), &meshOf(*fourth));
     EXPECT_EQ(meshOf(*third).getBoundingBox(), larger);
 
-    const Result<bool> refused = third->setMaterialVariant("blue");
+    const Result<void> refused = third->setMaterialVariant("blue");
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().message, "there is no material variant \"blue\"; the variants are \"plain\", "
                                        "\"red one\", \"gold\", \"plain 2\"");

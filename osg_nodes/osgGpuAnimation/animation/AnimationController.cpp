@@ -268,7 +268,7 @@ ConstraintHandle::ConstraintHandle(AnimationController& controller, const std::s
 }
 
 template <typename Change>
-Result<bool> ConstraintHandle::change(bool isValid, const char* what, Change change)
+Result<void> ConstraintHandle::change(bool isValid, const char* what, Change change)
 {
     if (!_index) return _index.error();
     const ConstraintChain& chain = _controller->set().constraintChains()[_index.value()];
@@ -276,10 +276,10 @@ Result<bool> ConstraintHandle::change(bool isValid, const char* what, Change cha
     change(_controller->goal(_index.value()));
     if (chain.turnSpeed > 0.0) _controller->_goals->advance(_controller->set().constraintChains(), 0.0);
     _controller->_goals->write(_controller->_instruction.targets);
-    return true;
+    return {};
 }
 
-Result<bool> ConstraintHandle::setTarget(const glm::vec3& position)
+Result<void> ConstraintHandle::setTarget(const glm::vec3& position)
 {
     const std::string fault = faultOf("its target", position);
     return change(fault.empty(), fault.c_str(),
@@ -290,20 +290,20 @@ Result<bool> ConstraintHandle::setTarget(const glm::vec3& position)
                   });
 }
 
-Result<bool> ConstraintHandle::setWeight(float weight)
+Result<void> ConstraintHandle::setWeight(float weight)
 {
     return change(!std::isnan(weight), "its weight is nan",
                   [&](ConstraintGoal& goal) { goal.target.weight = std::min(std::max(weight, 0.0f), 1.0f); });
 }
 
-Result<bool> ConstraintHandle::setPole(const glm::vec3& direction)
+Result<void> ConstraintHandle::setPole(const glm::vec3& direction)
 {
     const glm::dvec3 unit = AxisTurns::direction(glm::dvec3(direction), glm::dvec3(0.0));
     const std::string fault = faultOf("its pole", direction);
     return change(fault.empty(), fault.c_str(), [&](ConstraintGoal& goal) { goal.target.pole = glm::vec3(unit); });
 }
 
-Result<bool> ConstraintHandle::setTwist(float radians)
+Result<void> ConstraintHandle::setTwist(float radians)
 {
     // The nearest equal angle: shaders compute sines of small angles only.
     const double turn = glm::two_pi<double>();
@@ -314,7 +314,7 @@ Result<bool> ConstraintHandle::setTwist(float radians)
                   [&](ConstraintGoal& goal) { goal.target.twist = static_cast<float>(angle); });
 }
 
-Result<bool> ConstraintHandle::setRotation(const glm::vec4& rotation)
+Result<void> ConstraintHandle::setRotation(const glm::vec4& rotation)
 {
     std::string fault;
     if (_index && _controller->set().constraintChains()[_index.value()].isLookAt)
@@ -330,7 +330,7 @@ Result<bool> ConstraintHandle::setRotation(const glm::vec4& rotation)
                   });
 }
 
-Result<bool> ConstraintHandle::clear()
+Result<void> ConstraintHandle::clear()
 {
     return change(true, "", [](ConstraintGoal& goal) { goal = ConstraintGoal(); });
 }
@@ -358,7 +358,7 @@ glm::vec3 ConstraintHandle::shownTarget() const
     return goal && goal->shown ? *goal->shown : target().position;
 }
 
-Result<bool> ConstraintHandle::setShownTarget(const glm::vec3& position)
+Result<void> ConstraintHandle::setShownTarget(const glm::vec3& position)
 {
     const std::string fault = faultOf("its shown target", position);
     return change(fault.empty(), fault.c_str(),

@@ -37,18 +37,18 @@ public:
 
     /// Gives the constraint a target; without one it has no effect. With a turn speed the target is reached over the
     /// next advance() calls. Further error: a coordinate is beyond farthestTarget.
-    Result<bool> setTarget(const glm::vec3& position);
+    Result<void> setTarget(const glm::vec3& position);
     /// Sets the share of the constraint, clamped to [0, 1]. The default is 1.
-    Result<bool> setWeight(float weight);
+    Result<void> setWeight(float weight);
     /// Sets the direction of the up axis or of the limb's mid joint, see ConstraintTarget::pole. 0: none.
-    Result<bool> setPole(const glm::vec3& direction);
+    Result<void> setPole(const glm::vec3& direction);
     /// Sets a further turn about the line to the target, in radians.
-    Result<bool> setTwist(float radians);
+    Result<void> setTwist(float radians);
     /// Sets the rotation of the limb's end joint: a quaternion x, y, z, w of any length, or 0 for none. Further error:
     /// the constraint is a look-at.
-    Result<bool> setRotation(const glm::vec4& rotation);
+    Result<void> setRotation(const glm::vec4& rotation);
     /// Removes the target and restores the defaults: the clips alone move the chain.
-    Result<bool> clear();
+    Result<void> clear();
 
     /// What was set; its weight is the application's, whether or not there is a target. Defaults without such a
     /// constraint.
@@ -58,13 +58,13 @@ public:
     glm::vec3 shownTarget() const;
     /// Sets the target that the chain shows now, for a stored controller. Has no effect without a turn speed. Errors:
     /// those of setTarget().
-    Result<bool> setShownTarget(const glm::vec3& position);
+    Result<void> setShownTarget(const glm::vec3& position);
 
 private:
     friend class AnimationController;
     ConstraintHandle(AnimationController& controller, const std::string& name);
     template <typename Change>
-    Result<bool> change(bool isValid, const char* what, Change change);
+    Result<void> change(bool isValid, const char* what, Change change);
     const ConstraintGoal* find() const; ///< null: nothing was set
 
     AnimationController* _controller;
@@ -114,22 +114,22 @@ public:
     std::size_t layerCount() const { return 1 + _upper.size(); } ///< at least 1
 
     // Of the base layer; see AnimationLayer.
-    Result<bool> play(std::size_t clip) { return _base.play(clip); }        ///< See AnimationLayer::play().
-    Result<bool> play(const std::string& name) { return _base.play(name); } ///< See AnimationLayer::play().
+    Result<void> play(std::size_t clip) { return _base.play(clip); }        ///< See AnimationLayer::play().
+    Result<void> play(const std::string& name) { return _base.play(name); } ///< See AnimationLayer::play().
     /// See AnimationLayer::crossfade().
-    Result<bool> crossfade(std::size_t clip, double seconds, const CrossfadeOptions& options = {})
+    Result<void> crossfade(std::size_t clip, double seconds, const CrossfadeOptions& options = {})
     {
         return _base.crossfade(clip, seconds, options);
     }
     /// See AnimationLayer::crossfade().
-    Result<bool> crossfade(const std::string& name, double seconds, const CrossfadeOptions& options = {})
+    Result<void> crossfade(const std::string& name, double seconds, const CrossfadeOptions& options = {})
     {
         return _base.crossfade(name, seconds, options);
     }
     /// See AnimationLayer::play().
-    Result<bool> play(std::shared_ptr<const BlendSpace> space) { return _base.play(std::move(space)); }
+    Result<void> play(std::shared_ptr<const BlendSpace> space) { return _base.play(std::move(space)); }
     /// See AnimationLayer::crossfade().
-    Result<bool> crossfade(std::shared_ptr<const BlendSpace> space, double seconds,
+    Result<void> crossfade(std::shared_ptr<const BlendSpace> space, double seconds,
                            const CrossfadeOptions& options = {})
     {
         return _base.crossfade(std::move(space), seconds, options);

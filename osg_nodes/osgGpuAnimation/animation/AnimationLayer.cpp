@@ -28,12 +28,12 @@ ClipPlayback AnimationLayer::playbackOf(std::size_t clip, LoopMode loopMode) con
     return ClipPlayback(static_cast<int>(clip), set().clips()[clip].duration(), _speed, loopMode);
 }
 
-Result<bool> AnimationLayer::play(std::size_t clip)
+Result<void> AnimationLayer::play(std::size_t clip)
 {
     return crossfade(clip, 0.0);
 }
 
-Result<bool> AnimationLayer::play(const std::string& name)
+Result<void> AnimationLayer::play(const std::string& name)
 {
     const Result<std::size_t> clip = set().clipNamed(name);
     if (!clip) return clip.error();
@@ -43,7 +43,7 @@ Result<bool> AnimationLayer::play(const std::string& name)
 namespace
 {
 
-Result<bool> checkFade(const std::string& target, double seconds, const CrossfadeOptions& options)
+Result<void> checkFade(const std::string& target, double seconds, const CrossfadeOptions& options)
 {
     if (!std::isfinite(seconds) || seconds < 0.0)
         return Error{"a crossfade to " + target + " of " + std::to_string(seconds) +
@@ -51,12 +51,12 @@ Result<bool> checkFade(const std::string& target, double seconds, const Crossfad
     if (options.speed && !std::isfinite(*options.speed))
         return Error{"a crossfade to " + target + " at a speed of " + std::to_string(*options.speed) +
                      ": expected a finite number"};
-    return true;
+    return {};
 }
 
 } // namespace
 
-Result<bool> AnimationLayer::crossfade(std::size_t clip, double seconds, const CrossfadeOptions& options)
+Result<void> AnimationLayer::crossfade(std::size_t clip, double seconds, const CrossfadeOptions& options)
 {
     const Result<std::size_t> known = set().clipAt(clip);
     if (!known) return known.error();
@@ -66,7 +66,7 @@ Result<bool> AnimationLayer::crossfade(std::size_t clip, double seconds, const C
     if (options.loopMode) _loopMode = *options.loopMode;
     begin(playbackOf(clip, _loopMode), seconds, options);
     rebuildInstruction();
-    return true;
+    return {};
 }
 
 /// Starts a clip at once or by a fade, at the phase of what the options name. A pose that hides all clips fades out
@@ -87,12 +87,12 @@ void AnimationLayer::begin(ClipPlayback playback, double seconds, const Crossfad
     _state = PlayState::Playing;
 }
 
-Result<bool> AnimationLayer::play(std::shared_ptr<const BlendSpace> space)
+Result<void> AnimationLayer::play(std::shared_ptr<const BlendSpace> space)
 {
     return crossfade(std::move(space), 0.0);
 }
 
-Result<bool> AnimationLayer::crossfade(std::shared_ptr<const BlendSpace> space, double seconds,
+Result<void> AnimationLayer::crossfade(std::shared_ptr<const BlendSpace> space, double seconds,
                                        const CrossfadeOptions& options)
 {
     if (!space || !space->fits(set())) return Error{"the blend space is null or not made for this animation set"};
@@ -106,7 +106,7 @@ Result<bool> AnimationLayer::crossfade(std::shared_ptr<const BlendSpace> space, 
     begin(playbackOf(space->points()[point].clip, _loopMode), seconds, options);
     _mixer.spread(std::move(space), point, _parameter);
     rebuildInstruction();
-    return true;
+    return {};
 }
 
 bool AnimationLayer::setParameter(double x, double y)
@@ -131,7 +131,7 @@ void AnimationLayer::setPhaseShared(bool isShared)
     if (!isShared) _mixer.setRoundsPerSecond(std::nullopt);
 }
 
-Result<bool> AnimationLayer::crossfade(const std::string& name, double seconds, const CrossfadeOptions& options)
+Result<void> AnimationLayer::crossfade(const std::string& name, double seconds, const CrossfadeOptions& options)
 {
     const Result<std::size_t> clip = set().clipNamed(name);
     if (!clip) return clip.error();
@@ -218,7 +218,7 @@ bool AnimationLayer::setSpeed(double speed)
     return true;
 }
 
-Result<bool> AnimationLayer::setGroundSpeed(double speed)
+Result<void> AnimationLayer::setGroundSpeed(double speed)
 {
     if (!std::isfinite(speed)) return Error{"a ground speed of " + std::to_string(speed) + ": it must be finite"};
     if (_mixer.isEmpty()) return Error{"a ground speed for a layer that plays nothing"};
@@ -233,7 +233,7 @@ Result<bool> AnimationLayer::setGroundSpeed(double speed)
     else
         return Error{"a ground speed for clip \"" + set().clips()[static_cast<std::size_t>(clip())].name() +
                      "\": its feet stand, so no speed fits; setSpeed() sets one"};
-    return true;
+    return {};
 }
 
 void AnimationLayer::setLoopMode(LoopMode mode)
@@ -257,13 +257,13 @@ bool AnimationLayer::fadeWeight(float weight, double seconds, FadeCurve curve)
     return true;
 }
 
-Result<bool> AnimationLayer::setMask(const JointMask& mask)
+Result<void> AnimationLayer::setMask(const JointMask& mask)
 {
     const Result<std::shared_ptr<const SetMask>> used = set().useMask(mask.weights());
     if (!used) return used.error();
     _mask = used.value();
     rebuildInstruction();
-    return true;
+    return {};
 }
 
 void AnimationLayer::clearMask()
@@ -507,7 +507,7 @@ LayerSnapshot AnimationLayer::snapshot() const
     return snapshot;
 }
 
-Result<bool> AnimationLayer::restore(const LayerSnapshot& snapshot)
+Result<void> AnimationLayer::restore(const LayerSnapshot& snapshot)
 {
     const AnimationSet& set = this->set();
     if (const std::optional<std::string> fault = findFault(snapshot, set)) return Error{"a layer with " + *fault};
@@ -522,7 +522,7 @@ Result<bool> AnimationLayer::restore(const LayerSnapshot& snapshot)
     if (!snapshot.pose.empty() || Fade(snapshot.poseShare).value() > 0.0)
     {
         posed = std::make_shared<Posed>(Posed{std::make_shared<JointPose>(_owner->_set), Fade(snapshot.poseShare)});
-        if (const Result<bool> set = posed->pose->setTracks(snapshot.pose); !set) return set.error();
+        if (const Result<void> set = posed->pose->setTracks(snapshot.pose); !set) return set.error();
     }
     const Result<std::vector<ClipMixer::ActiveSpace>> spaces = spacesOf(snapshot, set);
     if (!spaces) return Error{"a layer with " + spaces.error().message};
@@ -554,7 +554,7 @@ Result<bool> AnimationLayer::restore(const LayerSnapshot& snapshot)
     _parameter = snapshot.parameter;
     _isPhaseShared = snapshot.isPhaseShared;
     rebuildInstruction();
-    return true;
+    return {};
 }
 
 } // namespace osgGpuAnimation

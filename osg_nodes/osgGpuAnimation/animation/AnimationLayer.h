@@ -76,22 +76,22 @@ public:
     /// Plays a clip from its beginning (from its end if the speed is negative) without a crossfade, at the layer's
     /// speed and in its loop mode. Error: no such clip; the message lists the existing names, and the layer is
     /// unchanged.
-    Result<bool> play(std::size_t clip);
-    Result<bool> play(const std::string& name); ///< The same by name.
+    Result<void> play(std::size_t clip);
+    Result<void> play(const std::string& name); ///< The same by name.
 
     /// Fades from the visible mix (a clip, a running crossfade or nothing) to a clip. Clips that fade out play on.
     /// seconds: the length of the fade; 0 replaces the mix at once. Errors, with the layer unchanged: no such clip;
     /// seconds that are negative or not finite; a speed in the options that is not finite.
-    Result<bool> crossfade(std::size_t clip, double seconds, const CrossfadeOptions& options = {});
+    Result<void> crossfade(std::size_t clip, double seconds, const CrossfadeOptions& options = {});
     /// The same by name.
-    Result<bool> crossfade(const std::string& name, double seconds, const CrossfadeOptions& options = {});
+    Result<void> crossfade(const std::string& name, double seconds, const CrossfadeOptions& options = {});
 
     /// The same for a blend space, at the layer's parameter, see setParameter(). With Sync::Phase its clips start at
     /// the phase of the current clip. clip(), time() and so on refer to the clip with the largest weight. Errors, with
     /// the layer unchanged: the space is null or not made for the layer's set; those of a clip.
-    Result<bool> play(std::shared_ptr<const BlendSpace> space);
+    Result<void> play(std::shared_ptr<const BlendSpace> space);
     /// The same with a fade.
-    Result<bool> crossfade(std::shared_ptr<const BlendSpace> space, double seconds,
+    Result<void> crossfade(std::shared_ptr<const BlendSpace> space, double seconds,
                            const CrossfadeOptions& options = {});
     /// Sets the parameter of the current blend space and of later ones; spaces that fade out keep theirs. The phase
     /// stays, so the pose is continuous in the parameter. Returns false, without a change, if a number is not finite.
@@ -130,7 +130,7 @@ public:
     /// before any scale of the node); negative: backwards. Call it again after play(), crossfade() or setParameter(). A
     /// clip whose feet stand takes speed 1 for a ground speed of 0. Errors, with the layer unchanged: a speed that is
     /// not finite; nothing plays; the feet of the clip stand (see measureGroundSpeed()).
-    Result<bool> setGroundSpeed(double speed);
+    Result<void> setGroundSpeed(double speed);
     /// Sets the loop mode of the current clip and of later ones; the time stays. A layer in state Ended remains in it
     /// until play(), crossfade() or seek().
     void setLoopMode(LoopMode mode);
@@ -139,7 +139,7 @@ public:
     LayerSnapshot snapshot() const;
     /// Restores a snapshot of a layer of the same set, or of a set with equal tracks and clips, and continues exactly.
     /// Error: the snapshot is not valid for the set; the layer is then unchanged.
-    Result<bool> restore(const LayerSnapshot& snapshot);
+    Result<void> restore(const LayerSnapshot& snapshot);
 
     PlayState state() const { return _state; }                                  ///< see PlayState
     bool isPlaying() const { return _state == PlayState::Playing; }             ///< true in state Playing
@@ -162,7 +162,7 @@ public:
 
     /// Copies the weights. A mask that changes may be set again in every frame: one that nobody uses any more is freed.
     /// Errors: the mask does not fit the joints and morphs of this set; MaskTable::maxMasks different masks are in use.
-    Result<bool> setMask(const JointMask& mask);
+    Result<void> setMask(const JointMask& mask);
     void clearMask();                                                ///< The layer affects all tracks.
     std::uint32_t mask() const { return _mask ? _mask->number : 0; } ///< number of the mask in the set, 0: none
 
@@ -243,7 +243,7 @@ private:
 /// The complete state of an AnimationLayer as plain numbers, also in the middle of a crossfade.
 ///
 ///     LayerSnapshot kept = controller.layer(1).snapshot();
-///     Result<bool> restored = other.layer(1).restore(kept);
+///     Result<void> restored = other.layer(1).restore(kept);
 struct LayerSnapshot
 {
     using FadeState = Fade::State; ///< The state of a fade.

@@ -63,7 +63,7 @@ Result<std::vector<double>> stopsOf(const Clip& clip, const std::vector<std::str
 }
 
 /// Sets the stops of all points.
-Result<bool> findStops(const AnimationSet& set, std::vector<BlendSpace::Point>& points,
+Result<void> findStops(const AnimationSet& set, std::vector<BlendSpace::Point>& points,
                        const std::vector<std::string>& markers)
 {
     for (BlendSpace::Point& point : points)
@@ -75,7 +75,7 @@ Result<bool> findStops(const AnimationSet& set, std::vector<BlendSpace::Point>& 
         point.stops = stops.value();
         if (!(point.duration() > 0.0)) point.stops.assign(markers.empty() ? 2 : markers.size() + 1, 0.0);
     }
-    return true;
+    return {};
 }
 
 } // namespace
@@ -101,7 +101,7 @@ Result<std::shared_ptr<const BlendSpace>> BlendSpace::create(const AnimationSet&
         return Error{"a blend space of " + std::to_string(points.size()) + " positions: 1 to " +
                      std::to_string(maxPositions) + " are possible"};
     if (const auto fault = findFaultInPlaces(points)) return Error{"a blend space: " + *fault};
-    if (const Result<bool> found = findStops(set, points, syncMarkers); !found)
+    if (const Result<void> found = findStops(set, points, syncMarkers); !found)
         return Error{"a blend space: " + found.error().message};
     std::shared_ptr<BlendSpace> space(new BlendSpace);
     for (const Point& point : points)

@@ -167,7 +167,7 @@ bool JointPose::setMorphWeight(std::size_t morph, std::size_t target, float weig
     return true;
 }
 
-Result<bool> JointPose::setTransforms(const std::vector<JointTransform>& transforms)
+Result<void> JointPose::setTransforms(const std::vector<JointTransform>& transforms)
 {
     const std::size_t count = _set->skeleton().jointCount();
     if (transforms.size() != count) return wrongCount("transforms", transforms.size(), count);
@@ -183,10 +183,10 @@ Result<bool> JointPose::setTransforms(const std::vector<JointTransform>& transfo
     else
         change().setTransforms(transforms);
     if (!isInside) growExtent(0, count);
-    return true;
+    return {};
 }
 
-Result<bool> JointPose::setModelTransforms(const std::vector<AffineMatrix>& jointToModel)
+Result<void> JointPose::setModelTransforms(const std::vector<AffineMatrix>& jointToModel)
 {
     const Skeleton& skeleton = _set->skeleton();
     if (jointToModel.size() != skeleton.jointCount())
@@ -252,7 +252,7 @@ std::vector<JointPose::Track> JointPose::tracks() const
     return tracks;
 }
 
-Result<bool> JointPose::setTracks(const std::vector<Track>& tracks)
+Result<void> JointPose::setTracks(const std::vector<Track>& tracks)
 {
     JointPose pose(_set);
     for (const Track& stored : tracks)
@@ -287,7 +287,7 @@ Result<bool> JointPose::setTracks(const std::vector<Track>& tracks)
     }
     *this = pose;
     renewExtent();
-    return true;
+    return {};
 }
 
 /// Makes a larger extent if one of these joints has left the present one.

@@ -52,11 +52,11 @@ public:
 
     /// Sets all joints, as motion capture does in every frame. transforms: one per joint.
     /// Errors, without a change: a wrong number of transforms; a value is refused; the message names the joint.
-    Result<bool> setTransforms(const std::vector<JointTransform>& transforms);
+    Result<void> setTransforms(const std::vector<JointTransform>& transforms);
     /// The same for matrices to the model's space, as a physics engine has them. jointToModel: one per joint, in the
     /// file's axes. A joint shows its translation, rotation and scale; a shear between it and its parent is dropped.
     /// The joints below a sheared joint keep their places in the model. Further error: a matrix has no inverse.
-    Result<bool> setModelTransforms(const std::vector<AffineMatrix>& jointToModel);
+    Result<void> setModelTransforms(const std::vector<AffineMatrix>& jointToModel);
 
     void reset();                       ///< Nothing is set any more.
     bool reset(std::size_t joint);      ///< The joint shows the layers below. False: no such joint.
@@ -77,7 +77,7 @@ public:
     std::vector<Track> tracks() const; ///< all tracks with values
     /// Replaces the pose by stored values. Errors, without a change: no such track; a joint of which a part is set only
     /// partly; a value is refused.
-    Result<bool> setTracks(const std::vector<Track>& tracks);
+    Result<void> setTracks(const std::vector<Track>& tracks);
 
     /// The content, for the mix stage.
     const PosedKeyframe& keyframe() const { return *_keyframe; }

@@ -118,12 +118,12 @@ Result<std::shared_ptr<const StateGraph>> StateGraph::create(const AnimationSet&
     std::shared_ptr<StateGraph> graph(new StateGraph);
     for (const StateDescription& state : description.states)
     {
-        const Result<bool> added = graph->addState(set, state);
+        const Result<void> added = graph->addState(set, state);
         if (!added) return Error{"state \"" + state.name + "\": " + added.error().message};
     }
     for (std::size_t t = 0; t < description.transitions.size(); ++t)
     {
-        const Result<bool> added = graph->addTransition(description.transitions[t]);
+        const Result<void> added = graph->addTransition(description.transitions[t]);
         if (!added) return Error{"transition " + std::to_string(t) + ": " + added.error().message};
     }
     for (const std::string& trigger : graph->_triggers)
@@ -139,7 +139,7 @@ Result<std::shared_ptr<const StateGraph>> StateGraph::create(const AnimationSet&
     return std::shared_ptr<const StateGraph>(std::move(graph));
 }
 
-Result<bool> StateGraph::addState(const AnimationSet& set, const StateDescription& description)
+Result<void> StateGraph::addState(const AnimationSet& set, const StateDescription& description)
 {
     if (description.name.empty()) return Error{"it has no name"};
     if (findState(description.name) >= 0) return Error{"another has this name already"};
@@ -147,7 +147,7 @@ Result<bool> StateGraph::addState(const AnimationSet& set, const StateDescriptio
     if (description.blend)
     {
         if (!description.clip.empty()) return Error{"it has a clip and a blend space"};
-        if (const Result<bool> added = addBlend(set, *description.blend, state); !added) return added.error();
+        if (const Result<void> added = addBlend(set, *description.blend, state); !added) return added.error();
     }
     else
     {
@@ -163,10 +163,10 @@ Result<bool> StateGraph::addState(const AnimationSet& set, const StateDescriptio
         state.groundSpeed = static_cast<int>(parameter.value());
     }
     _states.push_back(std::move(state));
-    return true;
+    return {};
 }
 
-Result<bool> StateGraph::addBlend(const AnimationSet& set, const StateBlendDescription& description, State& state)
+Result<void> StateGraph::addBlend(const AnimationSet& set, const StateBlendDescription& description, State& state)
 {
     const auto space = BlendSpace::create(set, description.positions, description.syncMarkers);
     if (!space) return space.error();
@@ -180,7 +180,7 @@ Result<bool> StateGraph::addBlend(const AnimationSet& set, const StateBlendDescr
         if (!parameter) return parameter.error();
         state.parameters.push_back(parameter.value());
     }
-    return true;
+    return {};
 }
 
 Result<std::size_t> StateGraph::addParameter(const std::string& name)
@@ -190,7 +190,7 @@ Result<std::size_t> StateGraph::addParameter(const std::string& name)
     return indexAdding(name, _parameters);
 }
 
-Result<bool> StateGraph::addTransition(const TransitionDescription& description)
+Result<void> StateGraph::addTransition(const TransitionDescription& description)
 {
     Transition transition{-1, 0, {}, description.seconds, {description.curve, description.sync}};
     if (!description.from.empty())
@@ -210,13 +210,13 @@ Result<bool> StateGraph::addTransition(const TransitionDescription& description)
     if (description.when.empty()) return Error{"it has no conditions"};
     for (const std::string& text : description.when)
     {
-        const Result<bool> added = addCondition(transition, text);
+        const Result<void> added = addCondition(transition, text);
         if (!added) return added.error();
     }
     if (waitsForAnEnd(transition) && !hasAnEnd(transition))
         return Error{"\"finished\" is never true: no source state plays once"};
     _transitions.push_back(std::move(transition));
-    return true;
+    return {};
 }
 
 bool StateGraph::waitsForAnEnd(const Transition& transition)
@@ -236,7 +236,7 @@ bool StateGraph::hasAnEnd(const Transition& transition) const
     return false;
 }
 
-Result<bool> StateGraph::addCondition(Transition& transition, const std::string& text)
+Result<void> StateGraph::addCondition(Transition& transition, const std::string& text)
 {
     const Result<StateCondition> condition = StateCondition::parse(text);
     if (!condition) return condition.error();
@@ -247,7 +247,7 @@ Result<bool> StateGraph::addCondition(Transition& transition, const std::string&
     else if (!parsed.parameter.empty())
         compiled.parameter = indexAdding(parsed.parameter, _parameters);
     transition.conditions.push_back(compiled);
-    return true;
+    return {};
 }
 
 Result<std::size_t> StateGraph::stateNamed(const std::string& name) const

@@ -148,11 +148,11 @@ private:
     friend class StateMachine;
     StateGraph() = default;
 
-    Result<bool> addState(const AnimationSet& set, const StateDescription& description);
-    Result<bool> addBlend(const AnimationSet& set, const StateBlendDescription& description, State& state);
+    Result<void> addState(const AnimationSet& set, const StateDescription& description);
+    Result<void> addBlend(const AnimationSet& set, const StateBlendDescription& description, State& state);
     Result<std::size_t> addParameter(const std::string& name);
-    Result<bool> addTransition(const TransitionDescription& description);
-    Result<bool> addCondition(Transition& transition, const std::string& text);
+    Result<void> addTransition(const TransitionDescription& description);
+    Result<void> addCondition(Transition& transition, const std::string& text);
     Result<std::size_t> stateNamed(const std::string& name) const;
     static bool waitsForAnEnd(const Transition& transition);
     bool hasAnEnd(const Transition& transition) const;

@@ -227,7 +227,7 @@ std::pair<std::size_t, std::size_t> ClipBuilder::keysOf(const Channel& channel) 
     return {first, first + 1};
 }
 
-Result<bool> ClipBuilder::add(Channel channel)
+Result<void> ClipBuilder::add(Channel channel)
 {
     const auto subject = [&] { return describe(channel); };
     const std::size_t targets = channel.path == Path::Weights ? _weightCounts.size() : _jointCount;
@@ -247,7 +247,7 @@ Result<bool> ClipBuilder::add(Channel channel)
 
     std::fill(first, end, true);
     _channels.push_back(std::move(channel));
-    return true;
+    return {};
 }
 
 std::vector<ChannelCurve> ClipBuilder::curves() const

@@ -37,7 +37,7 @@ public:
     /// floats; a wrong number of values; values that are not finite; a target out of range; a rotation of length 0; a
     /// weight that the morph does not have; a second channel with the same target and path (and weight). After an error
     /// the builder ignores that channel and remains usable.
-    Result<bool> add(Channel channel);
+    Result<void> add(Channel channel);
 
     /// Creates the clip of all channels that were added since the last build(). Without channels the clip has one
     /// keyframe, the rest pose at time 0.

@@ -69,7 +69,7 @@ public:
 
 private:
     bool isStill(const Clip& clip, std::size_t joint) const;
-    Result<bool> findParent(const Clip& clip);
+    Result<void> findParent(const Clip& clip);
     double yawOf(const glm::dquat& rotation) const;
     void removeTranslation(Clip& clip, RootMotionCurve& curve) const;
     void removeYaw(Clip& clip, RootMotionCurve& curve) const;
@@ -94,7 +94,7 @@ bool RootMotionExtractor::isStill(const Clip& clip, std::size_t joint) const
     return true;
 }
 
-Result<bool> RootMotionExtractor::findParent(const Clip& clip)
+Result<void> RootMotionExtractor::findParent(const Clip& clip)
 {
     _parentToModel = glm::dmat4(1.0);
     _parentRotation = glm::identity<glm::dquat>();
@@ -111,7 +111,7 @@ Result<bool> RootMotionExtractor::findParent(const Clip& clip)
     if (!isSimilarity(glm::dmat3(_parentToModel)))
         return Error{"joint \"" + _skeleton.joint(_joint).name +
                      "\" is under a scale that is not the same in all directions: its motion cannot be taken out"};
-    return true;
+    return {};
 }
 
 Result<Clip> RootMotionExtractor::extract(const Clip& clip)
@@ -119,7 +119,7 @@ Result<Clip> RootMotionExtractor::extract(const Clip& clip)
     if (const RootMotionCurve* taken = clip.rootMotion())
         return Error{"clip \"" + clip.name() + "\" has had its root motion taken out already, from joint \"" +
                      _skeleton.joint(taken->joint).name + "\""};
-    const Result<bool> hasParent = findParent(clip);
+    const Result<void> hasParent = findParent(clip);
     if (!hasParent) return hasParent.error();
     Clip stripped = clip;
     stripped._compactTracks = nullptr;

@@ -214,7 +214,7 @@ Result<osg::ref_ptr<EglGraphicsContext>> EglGraphicsContext::create(osg::Graphic
         return Error{"EGL: a context needs traits with a width and a height above 0"};
     osg::ref_ptr<EglGraphicsContext> context = new EglGraphicsContext;
     context->_traits = traits;
-    if (Result<bool> opened = context->open(); !opened) return opened.error();
+    if (Result<void> opened = context->open(); !opened) return opened.error();
     context->setUpState();
     return context;
 }
@@ -229,7 +229,7 @@ Result<osg::ref_ptr<EglGraphicsContext>> EglGraphicsContext::create(int width, i
     return create(traits.get());
 }
 
-Result<bool> EglGraphicsContext::open()
+Result<void> EglGraphicsContext::open()
 {
     _traits->pbuffer = true;
     _traits->doubleBuffer = false;
@@ -238,7 +238,7 @@ Result<bool> EglGraphicsContext::open()
     // Each thread has its own current API; the initial one is OpenGL ES.
     if (!eglBindAPI(EGL_OPENGL_API)) return eglFailure("no desktop OpenGL");
 
-    Result<bool> created = createSurface();
+    Result<void> created = createSurface();
     if (_traits->samples && (!created || !hasColors()))
     {
         OSG_INFO << "EglGraphicsContext: no multisampling with " << _traits->samples << " samples" << std::endl;
@@ -249,7 +249,7 @@ Result<bool> EglGraphicsContext::open()
     return created;
 }
 
-Result<bool> EglGraphicsContext::createSurface()
+Result<void> EglGraphicsContext::createSurface()
 {
     EGLConfig config = chooseConfig(_display, *_traits);
     if (!config) return eglFailure("no configuration with the colour, depth and stencil bits asked for");
@@ -266,7 +266,7 @@ Result<bool> EglGraphicsContext::createSurface()
     {
         return eglFailure("no pbuffer of " + std::to_string(_traits->width) + "x" + std::to_string(_traits->height));
     }
-    return true;
+    return {};
 }
 
 void EglGraphicsContext::destroySurface()

@@ -64,9 +64,9 @@ protected:
     ~EglGraphicsContext() override;
 
 private:
-    Result<bool> open();
+    Result<void> open();
     /// Creates _context and _surface as the traits say.
-    Result<bool> createSurface();
+    Result<void> createSurface();
     void destroySurface();
     /// True if pixels of _surface can be read. In Mesa 25.0 that is an error if it has samples.
     bool hasColors() const;

@@ -60,7 +60,7 @@ Result<osg::ref_ptr<Environment>> Environment::fromFile(const std::string& file)
     const Result<osg::ref_ptr<osg::Image>> picture = readHdrFile(file);
     if (!picture) return picture.error();
     osg::ref_ptr<Environment> environment = new Environment;
-    const Result<bool> taken = environment->setPanorama(picture.value());
+    const Result<void> taken = environment->setPanorama(picture.value());
     if (!taken) return Error{file + ": " + taken.error().message};
     return environment;
 }
@@ -73,22 +73,22 @@ void Environment::setStudio()
     _harmonics = nullptr;
 }
 
-Result<bool> Environment::setPanorama(osg::Image* panorama)
+Result<void> Environment::setPanorama(osg::Image* panorama)
 {
     if (!panorama) return Error{"a panorama: expected a picture, found null"};
     const Result<osg::ref_ptr<const RadianceCube>> radiance = RadianceCube::fromPanorama(*panorama);
     if (!radiance) return radiance.error();
     setPictures(panorama, nullptr, *radiance.value());
-    return true;
+    return {};
 }
 
-Result<bool> Environment::setFaces(osg::TextureCubeMap* faces)
+Result<void> Environment::setFaces(osg::TextureCubeMap* faces)
 {
     if (!faces) return Error{"the faces of surroundings: expected a cube map, found null"};
     const Result<osg::ref_ptr<const RadianceCube>> radiance = RadianceCube::fromFaces(*faces);
     if (!radiance) return radiance.error();
     setPictures(nullptr, faces, *radiance.value());
-    return true;
+    return {};
 }
 
 void Environment::setPictures(osg::Image* panorama, osg::TextureCubeMap* faces, const RadianceCube& radiance)

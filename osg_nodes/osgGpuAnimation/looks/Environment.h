@@ -52,11 +52,11 @@ public:
     /// An equirectangular picture, twice as wide as high. Its middle is in the direction +X, from there -Y lies to the
     /// right; the first row of pixels is below (-Z), the last above (+Z). Errors, which leave the surroundings as they
     /// are: null, no pixels, another shape, another pixel format; the message contains what was found.
-    Result<bool> setPanorama(osg::Image* panorama);
+    Result<void> setPanorama(osg::Image* panorama);
     /// The six images of a cube map, of one size, as GL samples them (OpenGL 4.6, table 8.19; the first row of a side
     /// face is above) with POSITIVE_Y above: POSITIVE_X is in the direction +X, POSITIVE_Y +Z, POSITIVE_Z -Y. osgDB's
     /// readers put the first row below: turn what they read by osg::Image::flipVertical(). Errors as of a panorama.
-    Result<bool> setFaces(osg::TextureCubeMap* faces);
+    Result<void> setFaces(osg::TextureCubeMap* faces);
 
     osg::Image* getPanorama() const { return _panorama; }    ///< null: the studio or faces
     osg::TextureCubeMap* getFaces() const { return _faces; } ///< null: the studio or a panorama

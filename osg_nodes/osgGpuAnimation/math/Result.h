@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdio>
 #include <cstdlib>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -32,6 +33,13 @@ struct Error
     std::string message; ///< one or more sentences for the developer
 };
 
+/// Prints the mistake of a caller and ends the program.
+[[noreturn]] inline void resultMisuse(const char* mistake, const std::string& message)
+{
+    std::fprintf(stderr, "osgGpuAnimation: %s%s\n", mistake, message.c_str());
+    std::abort();
+}
+
 /// A value or an error. The caller must check it. A call of value() without a value, or of error() without an error, is
 /// a mistake of the caller: it prints a message, with the error's own, and ends the program by std::abort(), in every
 /// kind of build.
@@ -51,7 +59,7 @@ public:
     /// The value. The Result must hold one.
     const T& value() const&
     {
-        if (!*this) endProgram("value() of a Result that holds the error: ", error().message);
+        if (!*this) resultMisuse("value() of a Result that holds the error: ", error().message);
         return *std::get_if<T>(&_content);
     }
     /// The value, to move from. The Result must hold one.
@@ -59,18 +67,36 @@ public:
     /// The error. The Result must hold one.
     const Error& error() const
     {
-        if (*this) endProgram("error() of a Result that holds a value", "");
+        if (*this) resultMisuse("error() of a Result that holds a value", "");
         return *std::get_if<Error>(&_content);
     }
 
 private:
-    [[noreturn]] static void endProgram(const char* mistake, const std::string& message)
+    std::variant<T, Error> _content;
+};
+
+/// Success or an error. The caller must check it.
+///
+///     Result<void> closed = file.close();
+///     if (!closed) return closed.error();
+template <>
+class [[nodiscard]] Result<void>
+{
+public:
+    Result() = default;                               ///< Success.
+    Result(Error error) : _error(std::move(error)) {} ///< Holds an error.
+
+    explicit operator bool() const { return !_error; } ///< True: success.
+
+    /// The error. The Result must hold one.
+    const Error& error() const
     {
-        std::fprintf(stderr, "osgGpuAnimation: %s%s\n", mistake, message.c_str());
-        std::abort();
+        if (*this) resultMisuse("error() of a Result that holds a value", "");
+        return *_error;
     }
 
-    std::variant<T, Error> _content;
+private:
+    std::optional<Error> _error;
 };
 
 } // namespace osgGpuAnimation

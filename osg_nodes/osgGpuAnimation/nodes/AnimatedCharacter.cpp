@@ -78,48 +78,48 @@ NodeConstraint::NodeConstraint(AnimationController* controller, const std::strin
 {
 }
 
-Result<bool> NodeConstraint::setTarget(const osg::Vec3d& position)
+Result<void> NodeConstraint::setTarget(const osg::Vec3d& position)
 {
     if (!_controller) return noInstance();
-    Result<bool> taken =
+    Result<void> taken =
         _controller->constraint(_name).setTarget(toGlm(position * osg::Matrixd::inverse(_fileToSpace)));
     if (taken) _worldTargets->remove(_instance, _name);
     return taken;
 }
 
-Result<bool> NodeConstraint::setWorldTarget(const osg::Vec3d& position)
+Result<void> NodeConstraint::setWorldTarget(const osg::Vec3d& position)
 {
-    Result<bool> taken = setTarget(position * osg::Matrixd::inverse(_spaceToWorld));
+    Result<void> taken = setTarget(position * osg::Matrixd::inverse(_spaceToWorld));
     if (taken) _worldTargets->set(_instance, _name, {nullptr, false, position});
     return taken;
 }
 
-Result<bool> NodeConstraint::follow(osg::Node* node, const osg::Vec3d& position)
+Result<void> NodeConstraint::follow(osg::Node* node, const osg::Vec3d& position)
 {
     if (!node) return Error{"constraint \"" + _name + "\": there is no node to follow"};
-    Result<bool> taken = setTarget(position * toWorld(*node, true) * osg::Matrixd::inverse(_spaceToWorld));
+    Result<void> taken = setTarget(position * toWorld(*node, true) * osg::Matrixd::inverse(_spaceToWorld));
     if (taken) _worldTargets->set(_instance, _name, {node, true, position});
     return taken;
 }
 
-Result<bool> NodeConstraint::setWeight(float weight)
+Result<void> NodeConstraint::setWeight(float weight)
 {
     return _controller ? _controller->constraint(_name).setWeight(weight) : noInstance();
 }
 
-Result<bool> NodeConstraint::setPole(const osg::Vec3d& direction)
+Result<void> NodeConstraint::setPole(const osg::Vec3d& direction)
 {
     if (!_controller) return noInstance();
     const osg::Vec3d inFile = osg::Matrixd::transform3x3(direction, osg::Matrixd::inverse(_fileToSpace));
     return _controller->constraint(_name).setPole(toGlm(inFile));
 }
 
-Result<bool> NodeConstraint::setTwist(double radians)
+Result<void> NodeConstraint::setTwist(double radians)
 {
     return _controller ? _controller->constraint(_name).setTwist(static_cast<float>(radians)) : noInstance();
 }
 
-Result<bool> NodeConstraint::setRotation(const osg::Quat& rotation)
+Result<void> NodeConstraint::setRotation(const osg::Quat& rotation)
 {
     if (!_controller) return noInstance();
     osg::Vec3d translation, scale;
@@ -130,7 +130,7 @@ Result<bool> NodeConstraint::setRotation(const osg::Quat& rotation)
         glm::vec4(glm::dvec4(inFile.x(), inFile.y(), inFile.z(), inFile.w())));
 }
 
-Result<bool> NodeConstraint::clear()
+Result<void> NodeConstraint::clear()
 {
     if (!_controller) return noInstance();
     _worldTargets->remove(_instance, _name);
@@ -168,7 +168,7 @@ AnimatedCharacter::AnimatedCharacter(const AnimatedCharacter& other, const osg::
 
 AnimatedCharacter::~AnimatedCharacter() = default;
 
-Result<bool> AnimatedCharacter::setAnimationSet(std::shared_ptr<const AnimationSet> newSet)
+Result<void> AnimatedCharacter::setAnimationSet(std::shared_ptr<const AnimationSet> newSet)
 {
     const bool isFirst = getAnimationSet().paletteSize() == 0;
     if (!newSet || (!isFirst && newSet->paletteSize() != getAnimationSet().paletteSize()))
@@ -197,9 +197,9 @@ void AnimatedCharacter::takeWorldTargets()
         });
 }
 
-Result<bool> AnimatedCharacter::setPixelError(float pixels)
+Result<void> AnimatedCharacter::setPixelError(float pixels)
 {
-    const Result<bool> prepared = LodRange::prepare(pixels, *this, getAnimationSet());
+    const Result<void> prepared = LodRange::prepare(pixels, *this, getAnimationSet());
     if (prepared) _pixelError = pixels;
     return prepared;
 }
@@ -216,7 +216,7 @@ std::vector<std::string> AnimatedCharacter::getMaterialVariants() const
     return names;
 }
 
-Result<bool> AnimatedCharacter::setMaterialVariant(const std::string& name)
+Result<void> AnimatedCharacter::setMaterialVariant(const std::string& name)
 {
     const std::vector<std::string> names = getMaterialVariants();
     if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end())
@@ -226,7 +226,7 @@ Result<bool> AnimatedCharacter::setMaterialVariant(const std::string& name)
     _variantMeshes->show(*this, name);
     _materialVariant = name;
     rebindProperties();
-    return true;
+    return {};
 }
 
 Result<WornGarment> AnimatedCharacter::wear(osg::Node* garment)
@@ -290,7 +290,7 @@ SkinnedGeometry* AnimatedCharacter::findMesh(const std::string& name) const
     return firstMeshNamed(*this, name);
 }
 
-Result<bool> AnimatedCharacter::setMeshVisible(const std::string& name, bool isVisible)
+Result<void> AnimatedCharacter::setMeshVisible(const std::string& name, bool isVisible)
 {
     const Result<std::vector<SkinnedGeometry*>> meshes = meshesNamed(*this, name);
     if (!meshes) return meshes.error();
@@ -299,16 +299,16 @@ Result<bool> AnimatedCharacter::setMeshVisible(const std::string& name, bool isV
     const std::vector<SkinnedGeometry*> own = meshesNamed(*this, name).value();
     _variantMeshes->setVisible(*this, {own.begin(), own.end()}, isVisible);
     rebindProperties();
-    return true;
+    return {};
 }
 
-Result<bool> AnimatedCharacter::setFileToNode(const osg::Matrixd& fileToNode)
+Result<void> AnimatedCharacter::setFileToNode(const osg::Matrixd& fileToNode)
 {
     const Result<AffineMatrix> root = toRootMatrix(fileToNode, "the transform from the file's axes", true);
     if (!root) return root.error();
     _axes = std::make_shared<const Axes>(Axes{fileToNode, root.value()});
     if (_clipBounds) setMeshBounds();
-    return true;
+    return {};
 }
 
 Result<osg::Matrixd> AnimatedCharacter::jointToModel(std::size_t joint) const
@@ -325,7 +325,7 @@ Result<osg::Matrixd> AnimatedCharacter::jointToModel(const std::string& joint) c
     return jointToModel(index.value());
 }
 
-Result<bool> AnimatedCharacter::setModelTransforms(std::size_t layer, const std::vector<osg::Matrixd>& jointToModel)
+Result<void> AnimatedCharacter::setModelTransforms(std::size_t layer, const std::vector<osg::Matrixd>& jointToModel)
 {
     return poseJoints(*_controller, layer, jointToModel, _axes->fileToNode);
 }
@@ -529,7 +529,7 @@ Result<CompactedCharacter> compactClipsOf(AnimatedCharacter& character, double f
     result.tolerance = fraction * result.longestSide;
     Result<CompactedSet> compacted = compactClips(character.getAnimationSet(), boxes, {result.tolerance});
     if (!compacted) return compacted.error();
-    const Result<bool> taken = character.setAnimationSet(compacted.value().set);
+    const Result<void> taken = character.setAnimationSet(compacted.value().set);
     if (!taken) return taken.error();
     result.errors = compacted.value().errors;
     return result;

@@ -41,22 +41,22 @@ class NodeConstraint
 {
 public:
     /// Gives the constraint a target that moves with the character (of an instance: not with its placement).
-    Result<bool> setTarget(const osg::Vec3d& position);
+    Result<void> setTarget(const osg::Vec3d& position);
     /// Gives it a target in world space. Its place relative to the character is computed at the end of every update
     /// traversal; without a viewer by AnimatedCharacter::update().
-    Result<bool> setWorldTarget(const osg::Vec3d& position);
+    Result<void> setWorldTarget(const osg::Vec3d& position);
     /// Gives it a node as target, or a position in the node's space. The node is held weakly: after its end the last
     /// target remains. The target is the node's place at the end of the update traversal, so a node that an update
     /// callback moves is followed in the same frame; what moves later (a camera by its manipulator) is followed one
     /// frame later. Of several places of a node the first counts. Error: node is null.
-    Result<bool> follow(osg::Node* node, const osg::Vec3d& position = osg::Vec3d());
-    Result<bool> setWeight(float weight); ///< See ConstraintHandle::setWeight().
+    Result<void> follow(osg::Node* node, const osg::Vec3d& position = osg::Vec3d());
+    Result<void> setWeight(float weight); ///< See ConstraintHandle::setWeight().
     /// See ConstraintHandle::setPole().
-    Result<bool> setPole(const osg::Vec3d& direction);
-    Result<bool> setTwist(double radians); ///< See ConstraintHandle::setTwist().
+    Result<void> setPole(const osg::Vec3d& direction);
+    Result<void> setTwist(double radians); ///< See ConstraintHandle::setTwist().
     /// Sets the rotation of the limb's end joint; see ConstraintHandle::setRotation().
-    Result<bool> setRotation(const osg::Quat& rotation);
-    Result<bool> clear(); ///< See ConstraintHandle::clear(). Ends setWorldTarget() and follow().
+    Result<void> setRotation(const osg::Quat& rotation);
+    Result<void> clear(); ///< See ConstraintHandle::clear(). Ends setWorldTarget() and follow().
 
 private:
     friend class AnimatedCharacter;
@@ -123,12 +123,12 @@ public:
     /// controller continues with the clips of the same indices (see AnimationController), and the bounds are computed
     /// again. Call it before cloning, so that the clones share the set. A character without a set accepts any set.
     /// Error: the palette size of the set differs from that of the present set.
-    Result<bool> setAnimationSet(std::shared_ptr<const AnimationSet> set);
+    Result<void> setAnimationSet(std::shared_ptr<const AnimationSet> set);
 
     /// Sets the transform from the axes of the set's file to the character's own space: the plugin for glTF turns +Y up
     /// to +Z up with it. Default: the identity. Call it before cloning and before a crowd is made of the character.
     /// Errors: the matrix is not finite, not affine, or its determinant is not above 0.
-    Result<bool> setFileToNode(const osg::Matrixd& fileToNode);
+    Result<void> setFileToNode(const osg::Matrixd& fileToNode);
     const osg::Matrixd& getFileToNode() const { return _axes->fileToNode; } ///< affine, with an inverse
 
     /// The present transform of a joint, from joint space to the character's own space. The CPU twin computes it from
@@ -144,7 +144,7 @@ public:
     /// layer: see AnimationController::layer(). jointToModel: one per joint, from joint space to the character's own
     /// space. Errors, which leave the pose unchanged: a wrong number of matrices; a matrix is not finite, not affine or
     /// has no inverse.
-    Result<bool> setModelTransforms(std::size_t layer, const std::vector<osg::Matrixd>& jointToModel);
+    Result<void> setModelTransforms(std::size_t layer, const std::vector<osg::Matrixd>& jointToModel);
 
     /// The root motion since the last call, in the character's own space: preMult() it to the matrix that places the
     /// character. The identity without root motion (see withRootMotion).
@@ -180,7 +180,7 @@ public:
     /// (see MeshSimplifier); the next cull creates those of later changes. No levels are built for meshes that are not
     /// direct children or for vertices beyond LodRange::maxVertices.
     /// pixels: in [0, LodRange::largestPixelError]. Error: pixels is out of range or NaN.
-    Result<bool> setPixelError(float pixels);
+    Result<void> setPixelError(float pixels);
     float getPixelError() const { return _pixelError; } ///< pixels, at least 0
 
     /// Shows the meshes in a variant of the file's materials (glTF: KHR_materials_variants), whose maps the import has
@@ -188,7 +188,7 @@ public:
     /// the variant changes is replaced by another drawable over the same arrays. Call it during the update traversal or
     /// between frames. name: one of getMaterialVariants(); empty: the default materials. Error: another name; the
     /// message lists the names.
-    Result<bool> setMaterialVariant(const std::string& name);
+    Result<void> setMaterialVariant(const std::string& name);
     /// The name of the present variant; empty: the default materials.
     const std::string& getMaterialVariant() const { return _materialVariant; }
     /// The names in the file's order, then those of garments.
@@ -221,7 +221,7 @@ public:
     /// of their own: a direct child that changes is replaced by another drawable over the same arrays, as with material
     /// variants. Bounds do not change. Call it during the update traversal or between frames. Error: there is no such
     /// mesh; the message lists the nodes' names.
-    Result<bool> setMeshVisible(const std::string& name, bool isVisible);
+    Result<void> setMeshVisible(const std::string& name, bool isVisible);
 
     /// A mesh below this node in the present pose, in the character's own space. The CPU twin computes it, and the
     /// result is kept until the pose changes. Intersectors test it in place of the mesh. withNormals: with normals and

@@ -178,7 +178,7 @@ std::size_t AnimatedCrowd::getNumInstances() const
     return _instances->size();
 }
 
-Result<bool> AnimatedCrowd::setAnimationSet(std::shared_ptr<const AnimationSet> newSet)
+Result<void> AnimatedCrowd::setAnimationSet(std::shared_ptr<const AnimationSet> newSet)
 {
     if (getNumInstances() > 0 || getAnimationSet().paletteSize() > 0) return Error{"a crowd that has a set keeps it"};
     if (!newSet) return Error{"a crowd needs a set"};
@@ -203,7 +203,7 @@ Result<AnimatedCrowd::Instance> AnimatedCrowd::add(const osg::Matrixd& placement
     return _instances->add(root.value(), (_fileToNode * placement).getTrans(), controller, toRgba(tint));
 }
 
-Result<bool> AnimatedCrowd::setFileToNode(const osg::Matrixd& fileToNode)
+Result<void> AnimatedCrowd::setFileToNode(const osg::Matrixd& fileToNode)
 {
     if (const Result<AffineMatrix> root = toRootMatrix(fileToNode, "the transform from the file's axes", true); !root)
         return root.error();
@@ -215,7 +215,7 @@ Result<bool> AnimatedCrowd::setFileToNode(const osg::Matrixd& fileToNode)
     }
     _fileToNode = fileToNode;
     dirtyBound();
-    return true;
+    return {};
 }
 
 bool AnimatedCrowd::remove(Instance instance)
@@ -226,7 +226,7 @@ bool AnimatedCrowd::remove(Instance instance)
     return true;
 }
 
-Result<bool> AnimatedCrowd::setPlacement(Instance instance, const osg::Matrixd& placement)
+Result<void> AnimatedCrowd::setPlacement(Instance instance, const osg::Matrixd& placement)
 {
     const std::size_t index = _instances->indexOf(instance);
     if (index == CrowdInstances::none) return noSuchInstance();
@@ -234,15 +234,15 @@ Result<bool> AnimatedCrowd::setPlacement(Instance instance, const osg::Matrixd& 
     if (!root) return root.error();
     _instances->move(index, root.value(), (_fileToNode * placement).getTrans());
     dirtyBound();
-    return true;
+    return {};
 }
 
-Result<bool> AnimatedCrowd::setTint(Instance instance, const osg::Vec4& tint)
+Result<void> AnimatedCrowd::setTint(Instance instance, const osg::Vec4& tint)
 {
     const std::size_t index = _instances->indexOf(instance);
     if (index == CrowdInstances::none) return noSuchInstance();
     _instances->setTint(index, toRgba(tint));
-    return true;
+    return {};
 }
 
 osg::Vec4 AnimatedCrowd::getTint(Instance instance) const
@@ -275,13 +275,13 @@ void AnimatedCrowd::setInstanceEventCallback(std::function<void(Instance, const 
     dirtyBound();
 }
 
-Result<bool> AnimatedCrowd::setStateGraph(Instance instance, std::shared_ptr<const StateGraph> graph, std::size_t layer)
+Result<void> AnimatedCrowd::setStateGraph(Instance instance, std::shared_ptr<const StateGraph> graph, std::size_t layer)
 {
     const std::size_t index = _instances->indexOf(instance);
     if (index == CrowdInstances::none) return noSuchInstance();
     _instances->setStateMachine(index, graph ? std::make_unique<StateMachine>(std::move(graph), layer) : nullptr);
     dirtyBound();
-    return true;
+    return {};
 }
 
 StateMachine* AnimatedCrowd::getStateMachine(Instance instance)
@@ -312,7 +312,7 @@ NodeConstraint AnimatedCrowd::constraint(Instance instance, const std::string& n
     return {getController(instance), name, fromFile, toWorld(*this, false), *_worldTargets, instance};
 }
 
-Result<bool> AnimatedCrowd::setModelTransforms(Instance instance, std::size_t layer,
+Result<void> AnimatedCrowd::setModelTransforms(Instance instance, std::size_t layer,
                                                const std::vector<osg::Matrixd>& jointToCrowd)
 {
     if (!contains(instance)) return noSuchInstance();
@@ -425,12 +425,12 @@ SkinnedGeometry* AnimatedCrowd::findMesh(const std::string& name) const
     return firstMeshNamed(*this, name);
 }
 
-Result<bool> AnimatedCrowd::setMeshVisible(const std::string& name, bool isVisible)
+Result<void> AnimatedCrowd::setMeshVisible(const std::string& name, bool isVisible)
 {
     const Result<std::vector<SkinnedGeometry*>> meshes = meshesNamed(*this, name);
     if (!meshes) return meshes.error();
     _variantMeshes->setVisible(*this, {meshes.value().begin(), meshes.value().end()}, isVisible);
-    return true;
+    return {};
 }
 
 void AnimatedCrowd::accept(osg::NodeVisitor& visitor)
@@ -493,13 +493,13 @@ void AnimatedCrowd::cull(osgUtil::CullVisitor& visitor)
         if (!dynamic_cast<const SkinnedGeometry*>(child.get())) child->accept(visitor);
 }
 
-Result<bool> AnimatedCrowd::setPixelError(float pixels)
+Result<void> AnimatedCrowd::setPixelError(float pixels)
 {
-    if (const Result<bool> set = LodRange::prepare(pixels, *this, getAnimationSet()); !set) return set;
+    if (const Result<void> set = LodRange::prepare(pixels, *this, getAnimationSet()); !set) return set;
     _pixelError = pixels;
     if (_characterLevels && !_characterLevels->isOf(*this, getAnimationSet())) _characterLevels = nullptr;
     prepareSharedPoses();
-    return true;
+    return {};
 }
 
 void AnimatedCrowd::prepareSharedPoses()

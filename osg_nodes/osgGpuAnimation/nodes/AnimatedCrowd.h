@@ -74,11 +74,11 @@ public:
 
     /// Gives a set to a crowd without one and computes the bounds from the present meshes. Errors: set is null; the
     /// crowd has instances or a set.
-    Result<bool> setAnimationSet(std::shared_ptr<const AnimationSet> set);
+    Result<void> setAnimationSet(std::shared_ptr<const AnimationSet> set);
 
     /// The transform from the axes of the set's file to the space that placements start from, see
     /// AnimatedCharacter::setFileToNode(). Instances keep their placements.
-    Result<bool> setFileToNode(const osg::Matrixd& fileToNode);
+    Result<void> setFileToNode(const osg::Matrixd& fileToNode);
     const osg::Matrixd& getFileToNode() const { return _fileToNode; } ///< affine, with an inverse
 
     /// Adds an instance. placement: affine, from the character's space to the space of this node. controller: built for
@@ -89,8 +89,8 @@ public:
                          const osg::Vec4& tint = osg::Vec4(1, 1, 1, 1));
     bool remove(Instance instance); ///< false: no such instance
     /// Errors: those of add(); no such instance.
-    Result<bool> setPlacement(Instance instance, const osg::Matrixd& placement);
-    Result<bool> setTint(Instance instance, const osg::Vec4& tint); ///< error: no such instance
+    Result<void> setPlacement(Instance instance, const osg::Matrixd& placement);
+    Result<void> setTint(Instance instance, const osg::Vec4& tint); ///< error: no such instance
     /// The tint of an instance, rounded to 8 bits a component; white if no such instance exists.
     osg::Vec4 getTint(Instance instance) const;
     bool contains(Instance instance) const; ///< true until the instance is removed
@@ -112,7 +112,7 @@ public:
 
     /// Poses all joints in a layer of an instance, see AnimatedCharacter::setModelTransforms(). jointToCrowd: one per
     /// joint, from joint space to the space of this node. Further error: no such instance.
-    Result<bool> setModelTransforms(Instance instance, std::size_t layer,
+    Result<void> setModelTransforms(Instance instance, std::size_t layer,
                                     const std::vector<osg::Matrixd>& jointToCrowd);
 
     /// update() calls the callback with the events of all instances, in the order and at the times of
@@ -123,7 +123,7 @@ public:
     /// Lets a state machine drive a layer of an instance: update() updates it before it advances the instance. graph:
     /// null removes the machine. layer: see StateMachine. Copies of the crowd have copies of the machines; stored
     /// scenes have none. Error: no such instance.
-    Result<bool> setStateGraph(Instance instance, std::shared_ptr<const StateGraph> graph, std::size_t layer = 0);
+    Result<void> setStateGraph(Instance instance, std::shared_ptr<const StateGraph> graph, std::size_t layer = 0);
     /// The state machine of an instance, for its parameters and triggers. Null: none. Valid until it is replaced or
     /// removed.
     StateMachine* getStateMachine(Instance instance);
@@ -141,13 +141,13 @@ public:
     /// Shows or hides meshes of all instances, see AnimatedCharacter::setMeshVisible(). Instances that show other
     /// meshes are a crowd of their own. With a pixel error, call setPixelError() again: it makes the levels of detail
     /// of what is visible now. Not while the crowd is culled.
-    Result<bool> setMeshVisible(const std::string& name, bool isVisible);
+    Result<void> setMeshVisible(const std::string& name, bool isVisible);
 
     /// The largest error of the drawn surface on screen, in pixels: instances are drawn with fewer triangles while the
     /// error stays below it, with one instanced draw per mesh primitive and level, those of a few pixels as one mesh
     /// per material without textures, and those that loop one clip share poses as far as the error permits. 0 (the
     /// default): all triangles and exact poses. Range, cost, limits and errors: see AnimatedCharacter::setPixelError().
-    Result<bool> setPixelError(float pixels);
+    Result<void> setPixelError(float pixels);
     float getPixelError() const { return _pixelError; } ///< pixels, at least 0
     /// The levels of detail of the character as a whole, for the kit's own serializers. Null: there was no pixel error
     /// yet. setPixelError() creates them unless those that are set match the meshes; a pixel error of 0 keeps them.

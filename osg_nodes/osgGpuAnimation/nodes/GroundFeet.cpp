@@ -477,19 +477,19 @@ std::string GroundFeet::getGroundName() const
     return ground ? ground->getName() : _nodeName;
 }
 
-Result<bool> GroundFeet::setLegs(const AnimationSet& set, std::vector<GroundLeg> legs)
+Result<void> GroundFeet::setLegs(const AnimationSet& set, std::vector<GroundLeg> legs)
 {
     for (const GroundLeg& leg : legs)
         if (const Result<Leg> resolved = resolve(set, leg); !resolved) return resolved.error();
     return setLegs(std::move(legs));
 }
 
-Result<bool> GroundFeet::setLegs(std::vector<GroundLeg> legs)
+Result<void> GroundFeet::setLegs(std::vector<GroundLeg> legs)
 {
     if (const std::optional<Error> fault = faultOf(legs)) return *fault;
     _legs = std::move(legs);
     _states->forgetLegs();
-    return true;
+    return {};
 }
 
 bool GroundFeet::setReach(double reach)

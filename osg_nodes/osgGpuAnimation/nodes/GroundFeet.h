@@ -87,10 +87,10 @@ public:
 
     /// Replaces all legs. Errors, without a change: a constraint that the set has not, or that is a look-at; a toe that
     /// is not below the ankle; those of the next function. The message names the leg.
-    Result<bool> setLegs(const AnimationSet& set, std::vector<GroundLeg> legs);
+    Result<void> setLegs(const AnimationSet& set, std::vector<GroundLeg> legs);
     /// The same without a set, for scene files: each character's set is checked at its first update. Errors, without a
     /// change: two legs with one constraint; a sole that is not finite; one of the two markers alone.
-    Result<bool> setLegs(std::vector<GroundLeg> legs);
+    Result<void> setLegs(std::vector<GroundLeg> legs);
     const std::vector<GroundLeg>& getLegs() const { return _legs; } ///< see setLegs()
 
     // The following setters return false, without a change, if a number is out of range or NaN.

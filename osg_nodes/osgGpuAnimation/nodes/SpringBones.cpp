@@ -461,7 +461,7 @@ SpringBones::SpringBones(const SpringBones& other, const osg::CopyOp& copyop)
 
 SpringBones::~SpringBones() = default;
 
-Result<bool> SpringBones::setChains(const AnimationSet& set, std::vector<SpringChain> chains,
+Result<void> SpringBones::setChains(const AnimationSet& set, std::vector<SpringChain> chains,
                                     std::vector<SpringCollider> colliders)
 {
     const Result<Springs> resolved = resolve(set, chains, colliders);
@@ -469,13 +469,13 @@ Result<bool> SpringBones::setChains(const AnimationSet& set, std::vector<SpringC
     return setChains(std::move(chains), std::move(colliders));
 }
 
-Result<bool> SpringBones::setChains(std::vector<SpringChain> chains, std::vector<SpringCollider> colliders)
+Result<void> SpringBones::setChains(std::vector<SpringChain> chains, std::vector<SpringCollider> colliders)
 {
     if (const std::optional<Error> fault = faultOf(chains, colliders)) return *fault;
     _chains = std::move(chains);
     _colliders = std::move(colliders);
     _states->clear();
-    return true;
+    return {};
 }
 
 void SpringBones::setLayer(std::size_t layer)

@@ -72,12 +72,12 @@ public:
     /// Replaces all chains. Errors, without a change: a joint that the set has not; a joint that is no descendant of
     /// the one before it, or has the same place; a joint in two chains; those of the next function. The message names
     /// the chain and the joint.
-    Result<bool> setChains(const AnimationSet& set, std::vector<SpringChain> chains,
+    Result<void> setChains(const AnimationSet& set, std::vector<SpringChain> chains,
                            std::vector<SpringCollider> colliders = {});
     /// The same without a set, for scene files: each character's set is checked at its first update, and a character
     /// whose set does not fit stays as it is, with a warning. Errors, without a change: a chain of less than two
     /// joints; a collider that does not exist; a value out of range or not finite.
-    Result<bool> setChains(std::vector<SpringChain> chains, std::vector<SpringCollider> colliders = {});
+    Result<void> setChains(std::vector<SpringChain> chains, std::vector<SpringCollider> colliders = {});
     const std::vector<SpringChain>& getChains() const { return _chains; }          ///< see setChains()
     const std::vector<SpringCollider>& getColliders() const { return _colliders; } ///< see setChains()
 

@@ -70,7 +70,7 @@ inline osg::Matrixd toOsg(const RootMotion& motion, const osg::Matrixd& fileToNo
 /// Poses all joints in a layer, see JointPose::setModelTransforms(). jointToNode: one per joint, from the joint's space
 /// to a node's. fileToNode: from the file's axes to the node's. Errors, without a change: those of
 /// setModelTransforms(); a matrix is not affine.
-inline Result<bool> poseJoints(AnimationController& controller, std::size_t layer,
+inline Result<void> poseJoints(AnimationController& controller, std::size_t layer,
                                const std::vector<osg::Matrixd>& jointToNode, const osg::Matrixd& fileToNode)
 {
     const osg::Matrixd nodeToFile = osg::Matrixd::inverse(fileToNode);

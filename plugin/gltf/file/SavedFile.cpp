@@ -66,7 +66,7 @@ bool isOfFolder(int code)
 
 } // namespace
 
-Result<bool> saveFile(const std::string& file, std::string_view bytes)
+Result<void> saveFile(const std::string& file, std::string_view bytes)
 {
     std::error_code failure;
     const fs::file_status status = fs::status(file, failure);
@@ -74,7 +74,7 @@ Result<bool> saveFile(const std::string& file, std::string_view bytes)
     int code = fs::status_known(status) ? 0 : failure.value();
     if (code == 0 && !isSpecial) code = replaceFile(linkTarget(file), status, bytes);
     if (isOfFolder(code) || (code == 0 && isSpecial)) code = writeBytes(file, "wb", bytes);
-    return code == 0 ? Result<bool>(true) : Error{std::string("cannot be written: ") + std::strerror(code)};
+    return code == 0 ? Result<void>() : Error{std::string("cannot be written: ") + std::strerror(code)};
 }
 
 } // namespace osgGpuAnimation::gltf

@@ -14,6 +14,6 @@ namespace osgGpuAnimation::gltf
 /// Some files are written to directly, and incomplete after an error: pipes and devices; files in a folder that takes
 /// no new file, or does not let one replace them, for example mount points.
 /// Error, without the file's name: `cannot be written: No space left on device`.
-Result<bool> saveFile(const std::string& file, std::string_view bytes);
+Result<void> saveFile(const std::string& file, std::string_view bytes);
 
 } // namespace osgGpuAnimation::gltf

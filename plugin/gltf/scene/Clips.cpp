@@ -135,7 +135,7 @@ bool ClipReader::addChannel(const tinygltf::Animation& animation, std::size_t in
     if (property && property->member->isBoolean)
         for (double& value : channel.values)
             value = value == 0.0 ? 0.0 : 1.0;
-    const Result<bool> added = _builder.add(std::move(channel));
+    const Result<void> added = _builder.add(std::move(channel));
     return added ? true : fail(added.error().message);
 }
 

@@ -36,15 +36,15 @@ Result<osg::ref_ptr<PunctualLight>> makeLight(const tinygltf::Light& light, unsi
 {
     osg::ref_ptr<PunctualLight> made = new PunctualLight(kindOf(light), number);
     const osg::Vec3 color(osg::Vec3d(light.color[0], light.color[1], light.color[2]));
-    const Result<bool> set = made->setIntensity(color, static_cast<float>(light.intensity));
+    const Result<void> set = made->setIntensity(color, static_cast<float>(light.intensity));
     if (!set) return set.error();
-    const Result<bool> ends = made->setRange(static_cast<float>(light.range));
+    const Result<void> ends = made->setRange(static_cast<float>(light.range));
     if (!ends) return ends.error();
     if (light.type != "spot") return made;
     // Rounded to floats, pi / 2 is more than 90 degrees, and two angles may be equal.
     const float outer = std::min(90.0f, static_cast<float>(osg::RadiansToDegrees(light.spot.outerConeAngle)));
     const float inner = static_cast<float>(osg::RadiansToDegrees(light.spot.innerConeAngle));
-    const Result<bool> cone = made->setCone(std::min(inner, outer * 0.9999f), outer);
+    const Result<void> cone = made->setCone(std::min(inner, outer * 0.9999f), outer);
     if (!cone) return cone.error();
     return made;
 }

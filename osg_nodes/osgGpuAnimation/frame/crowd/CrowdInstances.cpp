@@ -36,7 +36,7 @@ AnimationController CrowdPlayback::controller(const std::shared_ptr<const Animat
     AnimationController controller(set);
     controller.setSpeed(_speed);
     if (_clip < 0) return controller;
-    const Result<bool> playing = controller.play(static_cast<std::size_t>(_clip));
+    const Result<void> playing = controller.play(static_cast<std::size_t>(_clip));
     assert(playing && "the clip came from a controller of the same set");
     if (!playing) return controller;
     controller.seek(time(*set, clock));

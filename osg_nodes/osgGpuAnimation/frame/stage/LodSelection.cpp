@@ -19,12 +19,12 @@ std::string LodRange::describePixelErrors()
     return "a number of pixels from 0 to " + std::to_string(largestPixelError);
 }
 
-Result<bool> LodRange::prepare(float pixels, const osg::Group& meshes, const AnimationSet& set)
+Result<void> LodRange::prepare(float pixels, const osg::Group& meshes, const AnimationSet& set)
 {
     if (!isPixelError(pixels))
         return Error{"a pixel error of " + std::to_string(pixels) + ": it must be " + describePixelErrors()};
     if (pixels > 0.0f && set.paletteSize() > 0) static_cast<void>(LodRange(meshes, set));
-    return true;
+    return {};
 }
 
 LodRange::LodRange(const osg::Group& meshes, const AnimationSet& set, std::shared_ptr<const CharacterLevels> merged)

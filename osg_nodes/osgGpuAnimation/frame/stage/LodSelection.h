@@ -37,7 +37,7 @@ public:
     static std::string describePixelErrors();
     /// Creates the levels of the SkinnedGeometry among a group's children, unless the pixel error is 0 or the set is
     /// empty. Error: pixels is out of range.
-    static Result<bool> prepare(float pixels, const osg::Group& meshes, const AnimationSet& set);
+    static Result<void> prepare(float pixels, const osg::Group& meshes, const AnimationSet& set);
 
     LodRange() = default;
     /// The range of the SkinnedGeometry among a group's children. Only this constructor creates missing levels; meshes

@@ -67,7 +67,7 @@ Result<Picture> takeHeader(std::string_view& bytes)
 }
 
 /// Takes a row: its pixels, or each channel by itself in runs of a value and sequences of values.
-Result<bool> takeRow(std::string_view& bytes, Row& row)
+Result<void> takeRow(std::string_view& bytes, Row& row)
 {
     const auto at = [&](std::size_t place) { return std::size_t(static_cast<unsigned char>(bytes[place])); };
     const Error cut = fault("a row of " + std::to_string(row.size()) + " pixels", "the end of the file");
@@ -80,7 +80,7 @@ Result<bool> takeRow(std::string_view& bytes, Row& row)
         // Before 1991 this pixel repeated the one before it; no writer scales a pixel to it.
         const auto isRun = [](const auto& pixel) { return pixel[0] == 1 && pixel[1] == 1 && pixel[2] == 1; };
         if (std::any_of(row.begin(), row.end(), isRun)) return fault("pixels or runs of channels", "a run of pixels");
-        return true;
+        return {};
     }
     const std::size_t width = at(2) * 256 + at(3);
     if (width != row.size())
@@ -99,7 +99,7 @@ Result<bool> takeRow(std::string_view& bytes, Row& row)
                 row[x++][channel] = static_cast<unsigned char>(at(isRun ? 1 : 1 + i));
             bytes.remove_prefix(1 + values);
         }
-    return true;
+    return {};
 }
 
 const char* const tooLittleMemory = "expected memory for the picture, found too little";
@@ -118,7 +118,7 @@ try
     Row row(static_cast<std::size_t>(image.s()));
     for (int y = 0; y < image.t(); ++y)
     {
-        const Result<bool> taken = takeRow(bytes, row);
+        const Result<void> taken = takeRow(bytes, row);
         if (!taken) return Error{"row " + std::to_string(y) + ": " + taken.error().message};
         auto* out = reinterpret_cast<float*>(image.data(0, static_cast<unsigned int>(image.t() - 1 - y)));
         for (const auto& pixel : row)

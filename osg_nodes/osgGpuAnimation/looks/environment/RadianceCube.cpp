@@ -171,12 +171,12 @@ RadiancePicture readPicture(const osg::Image& image, int step)
     return picture;
 }
 
-Result<bool> checkImage(const osg::Image* image)
+Result<void> checkImage(const osg::Image* image)
 {
     if (!image || !image->data() || image->s() < 1 || image->t() < 1)
         return Error{"expected a picture, found no pixels"};
     if (image->r() != 1) return Error{"expected a picture of one layer, found " + std::to_string(image->r())};
-    if (formatOf(image->getPixelFormat()).count > 0 && isReadable(image->getDataType())) return true;
+    if (formatOf(image->getPixelFormat()).count > 0 && isReadable(image->getDataType())) return {};
     std::ostringstream message;
     message << "expected RGB or luminance of 8 or 16 bits, half floats or floats, found the pixel format 0x" << std::hex
             << image->getPixelFormat() << " with the data type 0x" << image->getDataType();
@@ -286,7 +286,7 @@ osg::Vec3f RadianceCube::direction(int face, float s, float t)
 
 Result<osg::ref_ptr<const RadianceCube>> RadianceCube::fromPanorama(const osg::Image& panorama)
 {
-    const Result<bool> checked = checkImage(&panorama);
+    const Result<void> checked = checkImage(&panorama);
     if (!checked) return Error{"a panorama: " + checked.error().message};
     if (panorama.s() != 2 * panorama.t())
         return Error{"a panorama: expected twice as many pixels across as up, found " +
@@ -313,7 +313,7 @@ Result<osg::ref_ptr<const RadianceCube>> RadianceCube::fromFaces(const osg::Text
     for (unsigned int face = 0; face < 6; ++face)
     {
         const osg::Image* image = faces.getImage(face);
-        const Result<bool> checked = checkImage(image);
+        const Result<void> checked = checkImage(image);
         const std::string subject = std::string("the face ") + faceNames[face] + ": ";
         if (!checked) return Error{subject + checked.error().message};
         if (image->s() != first->s() || image->t() != first->s())

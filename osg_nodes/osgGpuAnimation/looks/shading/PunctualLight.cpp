@@ -80,7 +80,7 @@ PunctualLight::Kind PunctualLight::getKind() const
     return getSpotCutoff() < noCutoff ? Kind::Spot : Kind::Point;
 }
 
-Result<bool> PunctualLight::setIntensity(const osg::Vec3& color, float intensity)
+Result<void> PunctualLight::setIntensity(const osg::Vec3& color, float intensity)
 {
     const osg::Vec3 radiance = color * (intensity / static_cast<float>(osg::PI));
     for (const float number : {color.x(), color.y(), color.z(), intensity, radiance.x(), radiance.y(), radiance.z()})
@@ -88,10 +88,10 @@ Result<bool> PunctualLight::setIntensity(const osg::Vec3& color, float intensity
     setAmbient(osg::Vec4(0.0f, 0.0f, 0.0f, 1.0f));
     setDiffuse(osg::Vec4(radiance, 1.0f));
     setSpecular(osg::Vec4(radiance, 1.0f));
-    return true;
+    return {};
 }
 
-Result<bool> PunctualLight::setCone(float innerAngle, float outerAngle)
+Result<void> PunctualLight::setCone(float innerAngle, float outerAngle)
 {
     if (!(innerAngle >= 0.0f && innerAngle < outerAngle && outerAngle <= 90.0f))
         return Error{"a light's cone is from " + std::to_string(innerAngle) + " to " + std::to_string(outerAngle) +
@@ -99,14 +99,14 @@ Result<bool> PunctualLight::setCone(float innerAngle, float outerAngle)
     _innerConeAngle = innerAngle;
     setSpotCutoff(outerAngle);
     setSpotExponent(exponentOf(cosineOf(innerAngle), cosineOf(outerAngle)));
-    return true;
+    return {};
 }
 
-Result<bool> PunctualLight::setRange(float range)
+Result<void> PunctualLight::setRange(float range)
 {
     if (!isFiniteAndNotNegative(range)) return Error{"a light's range is " + std::to_string(range)};
     _range = range;
-    return true;
+    return {};
 }
 
 osg::Vec4 PunctualLight::coneAndRange() const

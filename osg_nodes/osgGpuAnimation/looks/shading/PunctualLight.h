@@ -57,16 +57,16 @@ public:
     /// Sets diffuse and specular to color * intensity / pi, and ambient to black.
     /// color: linear RGB, at least 0. intensity: lux or candela, at least 0, see Kind. Error: one, or their
     /// product, is negative or not finite.
-    Result<bool> setIntensity(const osg::Vec3& color, float intensity);
+    Result<void> setIntensity(const osg::Vec3& color, float intensity);
 
     /// Sets the cone of a spot: full intensity within the inner angle, none beyond the outer one (the cutoff). Sets the
     /// spot exponent, too.
     /// Both in degrees from the axis, 0 <= inner < outer <= 90. Error: others.
-    Result<bool> setCone(float innerAngle, float outerAngle);
+    Result<void> setCone(float innerAngle, float outerAngle);
     float getInnerConeAngle() const { return _innerConeAngle; } ///< degrees; 0 but for spots. Outer: getSpotCutoff()
 
     /// Sets the distance at which the light ends. range: scene units; 0: unlimited. Error: negative or not finite.
-    Result<bool> setRange(float range);
+    Result<void> setRange(float range);
     float getRange() const { return _range; } ///< scene units; 0 (the default): unlimited
 
     /// (scale, offset, 1 / range², 0) of the extension's formulas; all but the offset 1 are 0 for a light without cone

@@ -162,12 +162,12 @@ CharacterLevels::restored(const osg::Group& meshes, const AnimationSet& set, std
 {
     const std::shared_ptr<CharacterLevels> levels(new CharacterLevels(partsOf(meshes), set));
     for (std::size_t i = 0; i < merged.size(); ++i)
-        if (const Result<bool> taken = levels->restore(std::move(merged[i])); !taken)
+        if (const Result<void> taken = levels->restore(std::move(merged[i])); !taken)
             return Error{"merged parts " + std::to_string(i) + ": " + taken.error().message};
     return std::shared_ptr<const CharacterLevels>(levels);
 }
 
-Result<bool> CharacterLevels::restore(Merged merged)
+Result<void> CharacterLevels::restore(Merged merged)
 {
     std::size_t first = 0;
     for (const std::size_t part : merged.parts)
@@ -187,7 +187,7 @@ Result<bool> CharacterLevels::restore(Merged merged)
         previous = step.level;
     }
     include(std::move(merged));
-    return true;
+    return {};
 }
 
 const CharacterLevels::Step* CharacterLevels::Merged::at(int level) const

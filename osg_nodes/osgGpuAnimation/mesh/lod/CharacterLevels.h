@@ -92,7 +92,7 @@ private:
 
     static std::vector<Part> partsOf(const osg::Group& meshes);
     CharacterLevels(std::vector<Part> parts, const AnimationSet& set) : _set(&set), _parts(std::move(parts)) {}
-    Result<bool> restore(Merged merged);
+    Result<void> restore(Merged merged);
     void merge(const Indices& indices, const AnimationSet& set, const std::vector<std::vector<AffineMatrix>>& palettes,
                std::size_t keyPoseCount);
     void include(Merged merged);

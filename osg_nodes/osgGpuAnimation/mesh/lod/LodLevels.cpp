@@ -335,11 +335,11 @@ Result<std::shared_ptr<const LodLevels>> LodLevels::restored(const osg::Geometry
         if (!primitives) return Error{"a missing primitive set"};
     const std::shared_ptr<LodLevels> levels(new LodLevels(mesh));
     for (std::size_t i = 0; i < steps.size(); ++i)
-        if (const Result<bool> taken = levels->restore(i, std::move(steps[i])); !taken) return taken.error();
+        if (const Result<void> taken = levels->restore(i, std::move(steps[i])); !taken) return taken.error();
     return std::shared_ptr<const LodLevels>(levels);
 }
 
-Result<bool> LodLevels::restore(std::size_t primitiveSet, Steps steps)
+Result<void> LodLevels::restore(std::size_t primitiveSet, Steps steps)
 {
     const std::size_t vertexCount = _vertices ? _vertices->getNumElements() : 0;
     int previous = allTriangles;
@@ -359,7 +359,7 @@ Result<bool> LodLevels::restore(std::size_t primitiveSet, Steps steps)
     }
     includeRange(steps);
     _primitives[primitiveSet].steps = std::move(steps);
-    return true;
+    return {};
 }
 
 bool LodLevels::isOf(const osg::Geometry& mesh) const

@@ -127,7 +127,7 @@ private:
     };
 
     explicit LodLevels(const osg::Geometry& mesh); ///< without steps
-    Result<bool> restore(std::size_t primitiveSet, Steps steps);
+    Result<void> restore(std::size_t primitiveSet, Steps steps);
     void includeRange(const Steps& steps);
     void addSteps(const PosedSurface& surface, int finest, int coarsest, Primitives& primitives,
                   std::set<std::size_t>& outBeyond) const;

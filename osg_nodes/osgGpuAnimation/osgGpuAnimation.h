@@ -43,8 +43,12 @@
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/CharacterKeys.h>
+#include <osgGpuAnimation/nodes/CharacterMeshes.h>
+#include <osgGpuAnimation/nodes/CompactedCharacter.h>
 #include <osgGpuAnimation/nodes/GroundFeet.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
+#include <osgGpuAnimation/nodes/NodeConstraint.h>
+#include <osgGpuAnimation/nodes/RootMotionCallback.h>
 #include <osgGpuAnimation/nodes/SpringBones.h>
 #include <osgGpuAnimation/nodes/StateGraphFile.h>
 #include <osgGpuAnimation/scene/OsgMatrix.h>

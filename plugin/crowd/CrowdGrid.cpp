@@ -97,7 +97,7 @@ Result<osg::ref_ptr<AnimatedCrowd>> makeCrowd(osg::Node& model, const CrowdOptio
     const osg::Matrixd placement = character->getWorldMatrices().front();
     const double spacing =
         options.spacing.value_or((1.0 + gap) * widthOf(*character, placement, clips.value(), options.isYUp));
-    crowd->setOrigin(placement.getTrans());
+    if (const Result<void> taken = crowd->setOrigin(placement.getTrans()); !taken) return taken.error();
     std::mt19937 random(options.seed);
     for (std::size_t place = 0; place < options.columns * options.rows; ++place)
     {
@@ -113,7 +113,8 @@ Result<osg::ref_ptr<AnimatedCrowd>> makeCrowd(osg::Node& model, const CrowdOptio
     if (options.pixelError)
     {
         const gltf::ProgressLine progress("computing levels of detail");
-        if (const Result<void> taken = crowd->setPixelError(*options.pixelError); !taken) return taken.error();
+        if (const Result<void> taken = crowd->getMeshes().setPixelError(*options.pixelError); !taken)
+            return taken.error();
     }
     crowd->addEventCallback(new PoseStatistics);
     return crowd;

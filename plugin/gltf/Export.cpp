@@ -13,6 +13,7 @@
 #include <osgGpuAnimation/mesh/geometry/MaterialVariants.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+#include <osgGpuAnimation/nodes/detail/CrowdDetail.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
 #include <osgGpuAnimation/nodes/viewing/StartView.h>
 #include <osgGpuAnimation/scene/traversal/SceneVisitor.h>
@@ -275,8 +276,9 @@ void SceneExporter::visit(const Child& child, const Whereabouts& above)
     {
         _report.warn("crowd " + quoted(node.getName()) + ": glTF has no crowds of characters; one of its " +
                      std::to_string(crowd->getNumInstances()) + " instances is written");
-        const osg::Matrixd placement =
-            crowd->getNumInstances() > 0 ? crowd->getPlacement(crowd->getInstances().handleOf(0)) : osg::Matrixd();
+        const osg::Matrixd placement = crowd->getNumInstances() > 0
+                                           ? crowd->getPlacement(CrowdDetail::instances(*crowd).handleOf(0))
+                                           : osg::Matrixd();
         return visitCharacter(*crowd, crowd->getFileToNode() * placement, at);
     }
     if (const auto* const attachment = dynamic_cast<const JointAttachment*>(&node))

@@ -13,6 +13,7 @@
 #include <osgGpuAnimation/animation/bounds/TransformBound.h>
 #include <osgGpuAnimation/mesh/geometry/MaterialVariants.h>
 #include <osgGpuAnimation/nodes/CharacterKeys.h>
+#include <osgGpuAnimation/nodes/CompactedCharacter.h>
 
 #include <osgDB/FileNameUtils>
 
@@ -207,7 +208,7 @@ void Importer::nameVariants(int variant)
     setVariantNames(*_result.character, _result.variantNames);
     if (variant >= 0)
         static_cast<void>(
-            _result.character->setMaterialVariant(_result.variantNames[static_cast<std::size_t>(variant)]));
+            _result.character->getMeshes().setVariant(_result.variantNames[static_cast<std::size_t>(variant)]));
 }
 
 /// By node: it stands still and has a light or a camera.
@@ -246,7 +247,7 @@ Result<void> Importer::finishClips()
     }
     _result.character->computeClipBounds();
     const ProgressLine progress("computing levels of detail");
-    return _result.character->setPixelError(static_cast<float>(_options.pixelError));
+    return _result.character->getMeshes().setPixelError(static_cast<float>(_options.pixelError));
 }
 
 void Importer::describeFile(const NodeTree& tree)

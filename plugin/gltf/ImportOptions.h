@@ -3,6 +3,7 @@
 
 #include <osgGpuAnimation/animation/Playback.h>
 #include <osgGpuAnimation/math/Result.h>
+#include <osgGpuAnimation/nodes/CompactedCharacter.h>
 #include <osgGpuAnimation/scene/traversal/SceneVisitor.h>
 
 #include <cstddef>
@@ -32,7 +33,7 @@ struct ImportOptions
     LoopMode loopMode = LoopMode::Loop;
     double fadeSeconds = 0.3;      ///< of the keys' crossfades, see CharacterKeys
     std::optional<double> compact; ///< largest error of compact clips, see CompactedCharacter; above 0; none: exact
-    double pixelError = 0.0;       ///< see AnimatedCharacter::setPixelError; 0 or more
+    double pixelError = 0.0;       ///< see CharacterMeshes::setPixelError; 0 or more
     /// Files whose clips follow the model's own, see readClipFiles(): relative to the model's folder, else to the
     /// current one; in or below the model's folder, or anywhere with allowOutsideFiles.
     std::vector<std::string> clipsFiles;

@@ -6,7 +6,9 @@
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/CharacterKeys.h>
+#include <osgGpuAnimation/nodes/detail/CrowdDetail.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
+#include <osgGpuAnimation/nodes/RootMotionCallback.h>
 
 #include <cmath>
 #include <cstdint>
@@ -22,23 +24,24 @@ namespace
 
 void transferCharacterSet(ValueStream& stream, AnimatedCharacter& character)
 {
-    transferSet(stream, character, character.getController().sharedSet());
+    transferSet(stream, character, character.getController().sharedSet(),
+                [&](const auto& set) { return character.setAnimationSet(set); });
 }
 
 void transferSettings(ValueStream& stream, AnimatedCharacter& character)
 {
     bool hasClipBounds = character.getClipBounds(-1).valid(); // reading computes the bounds again
     bool isDrawnTogether = character.isDrawnTogether();
-    double pixelError = static_cast<double>(character.getPixelError());
-    std::string variant = character.getMaterialVariant();
+    double pixelError = static_cast<double>(character.getMeshes().getPixelError());
+    std::string variant = character.getMeshes().getVariant();
     stream.values(hasClipBounds, isDrawnTogether, pixelError, variant);
     transferFileToNode(stream, character);
     stream.endLine();
     if (!stream.hasRead()) return;
     character.setDrawnTogether(isDrawnTogether);
-    stream.require("a character: ", character.setMaterialVariant(variant));
+    stream.require("a character: ", character.getMeshes().setVariant(variant));
     if (hasClipBounds) character.computeClipBounds();
-    stream.require("a character: ", character.setPixelError(static_cast<float>(pixelError)));
+    stream.require("a character: ", character.getMeshes().setPixelError(static_cast<float>(pixelError)));
 }
 
 void transferState(ValueStream& stream, AnimatedCharacter& character)
@@ -62,7 +65,7 @@ std::optional<std::uint64_t> storedInstance(const JointAttachment& attachment)
         for (const osg::Node* node : path)
             if (const auto* crowd = dynamic_cast<const AnimatedCrowd*>(node))
                 if (crowd->contains(*attachment.getInstance()))
-                    return crowd->getInstances().indexOf(*attachment.getInstance());
+                    return CrowdDetail::instances(*crowd).indexOf(*attachment.getInstance());
     return std::nullopt;
 }
 

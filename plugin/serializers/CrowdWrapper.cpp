@@ -5,6 +5,7 @@
 #include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/mesh/lod/CharacterLevels.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+#include <osgGpuAnimation/nodes/detail/CrowdDetail.h>
 #include <osgGpuAnimation/scene/OsgMatrix.h>
 
 namespace osgGpuAnimation::serializers
@@ -15,13 +16,14 @@ namespace
 
 void transferCrowdSet(ValueStream& stream, AnimatedCrowd& crowd)
 {
-    transferSet(stream, crowd, crowd.getSharedAnimationSet());
+    transferSet(stream, crowd, crowd.getSharedAnimationSet(),
+                [&](const auto& set) { return CrowdDetail::setAnimationSet(crowd, set); });
 }
 
 bool hasLevels(const AnimatedCrowd& crowd)
 {
-    const std::shared_ptr<const CharacterLevels>& levels = crowd.getCharacterLevels();
-    return crowd.getPixelError() > 0.0f && levels && levels->isOf(crowd, crowd.getAnimationSet());
+    const std::shared_ptr<const CharacterLevels>& levels = CrowdDetail::levels(crowd);
+    return crowd.getMeshes().getPixelError() > 0.0f && levels && levels->isOf(crowd, crowd.getAnimationSet());
 }
 
 /// The playback data after an instance's placement.
@@ -79,8 +81,8 @@ void transferList(ValueStream& stream, AnimatedCrowd& crowd)
     {
         StoredInstance instance{{}, 0, AnimationController(crowd.getSharedAnimationSet())};
         if (!stream.isReading())
-            instance = {crowd.getInstances().rootMatrix(i), crowd.getInstances().tint(i),
-                        crowd.getInstances().controllerCopy(i)};
+            instance = {CrowdDetail::instances(crowd).rootMatrix(i), CrowdDetail::instances(crowd).tint(i),
+                        CrowdDetail::instances(crowd).controllerCopy(i)};
         transferInstance(stream, instance);
         if (!stream.hasRead()) continue;
         stream.require("an instance of a crowd: ", crowd.add(toPlacement * toOsg(instance.root, crowd.getOrigin()),
@@ -92,16 +94,18 @@ void transferList(ValueStream& stream, AnimatedCrowd& crowd)
 void transferInstances(ValueStream& stream, AnimatedCrowd& crowd)
 {
     osg::Vec3d origin = crowd.getOrigin();
-    double pixelError = static_cast<double>(crowd.getPixelError());
+    double pixelError = static_cast<double>(crowd.getMeshes().getPixelError());
     bool isWithLevels = hasLevels(crowd);
-    stream.version("a crowd").values(origin.x(), origin.y(), origin.z(), pixelError, isWithLevels);
+    std::string variant = crowd.getMeshes().getVariant();
+    stream.version("a crowd").values(origin.x(), origin.y(), origin.z(), pixelError, isWithLevels, variant);
     transferFileToNode(stream, crowd);
     stream.endLine();
     if (isWithLevels) transferCharacterLevels(stream, crowd);
     if (stream.hasRead())
     {
-        if (!crowd.setOrigin(origin)) stream.fail("a crowd: its origin is not finite");
-        stream.require("a crowd: ", crowd.setPixelError(static_cast<float>(pixelError)));
+        stream.require("a crowd: ", crowd.setOrigin(origin));
+        stream.require("a crowd: ", crowd.getMeshes().setVariant(variant));
+        stream.require("a crowd: ", crowd.getMeshes().setPixelError(static_cast<float>(pixelError)));
     }
     transferList(stream, crowd);
 }

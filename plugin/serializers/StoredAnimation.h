@@ -27,14 +27,15 @@ std::optional<std::string> findFault(const SkinnedGeometry& mesh, const Animatio
 /// Removes, with a warning, every SkinnedGeometry with a fault below the group.
 void removeUnfitMeshes(osg::Group& group, const AnimationSet& set);
 
-/// The set of a character or crowd, whose meshes are read before it. set: the owner's, for writing.
-template <typename Owner>
-void transferSet(ValueStream& stream, Owner& owner, std::shared_ptr<const AnimationSet> set)
+/// The set of a character or crowd, whose meshes are read before it. set: the owner's, for writing. give(set): gives
+/// the set that was read to the owner, and returns a Result<void>.
+template <typename Give>
+void transferSet(ValueStream& stream, osg::Group& owner, std::shared_ptr<const AnimationSet> set, Give give)
 {
     transferAnimationSet(stream, set);
     if (!stream.hasRead()) return;
     removeUnfitMeshes(owner, *set);
-    stream.require("", owner.setAnimationSet(set));
+    stream.require("", give(set));
 }
 
 /// The present state of all layers. Reading expects a controller of the same set; a layer whose state does not fit the

@@ -6,6 +6,7 @@
 #include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
 #include <osgGpuAnimation/mesh/lod/CharacterLevels.h>
 #include <osgGpuAnimation/mesh/lod/LodLevels.h>
+#include <osgGpuAnimation/nodes/detail/CrowdDetail.h>
 
 #include <osg/Notify>
 
@@ -130,7 +131,7 @@ void transferCharacterLevels(ValueStream& stream, AnimatedCrowd& crowd)
     const Checksum checksum = checksumOf(crowd);
     std::int32_t sum = checksum.value();
     std::vector<CharacterLevels::Merged> levels;
-    if (!stream.isReading()) levels = crowd.getCharacterLevels()->merged();
+    if (!stream.isReading()) levels = CrowdDetail::levels(crowd)->merged();
     stream.property("Checksum").value(sum).endLine();
     stream.list("Merged", levels, [&](CharacterLevels::Merged& merged) { transferMerged(stream, merged); });
     if (!stream.hasRead()) return;
@@ -138,7 +139,7 @@ void transferCharacterLevels(ValueStream& stream, AnimatedCrowd& crowd)
     if (const auto fault = findFault(levels, crowd.getAnimationSet())) return warn(crowd, "crowd", *fault);
     const auto restored = CharacterLevels::restored(crowd, crowd.getAnimationSet(), std::move(levels));
     if (!restored) return warn(crowd, "crowd", restored.error().message);
-    crowd.setCharacterLevels(restored.value());
+    CrowdDetail::setLevels(crowd, restored.value());
 }
 
 } // namespace osgGpuAnimation::serializers

@@ -7,6 +7,7 @@
 #include "gltf/scene/ClipFiles.h"
 #include "tool/ModelFile.h"
 
+#include <osgGpuAnimation/nodes/CompactedCharacter.h>
 #include <osgGpuAnimation/scene/traversal/SceneVisitor.h>
 
 #include <osg/Notify>

@@ -123,7 +123,7 @@ Result<double> bytesOfField(const Subject& subject, double& outPoses)
         viewing.frame();
         before = bytesInUse();
         const osg::ref_ptr<AnimatedCrowd> field = makeField(subject, step);
-        if (const Result<void> set = field->setPixelError(fieldPixelError); !set) return set.error();
+        if (const Result<void> set = field->getMeshes().setPixelError(fieldPixelError); !set) return set.error();
         root->addChild(field);
         for (int frame = 0; frame < 3; ++frame)
             viewing.frame();
@@ -143,7 +143,7 @@ Result<void> measureField(const Subject& subject, const Effort& effort, Report& 
 {
     std::cerr << subject.name << ": a field of " << places << std::endl;
     const osg::ref_ptr<AnimatedCrowd> field = makeField(subject);
-    if (const Result<void> set = field->setPixelError(fieldPixelError); !set) return set.error();
+    if (const Result<void> set = field->getMeshes().setPixelError(fieldPixelError); !set) return set.error();
     const osg::BoundingSphere bound = field->getBound();
     Result<Contestant> made = contestant(field, bound, 1280, 720);
     if (!made) return made.error();
@@ -204,7 +204,8 @@ Result<void> measureMixed(const std::vector<Subject>& subjects, const Effort& ef
     for (std::size_t kind = 0; kind < subjects.size(); ++kind)
     {
         crowds.emplace_back(subjects[kind], kind, subjects.size());
-        if (const Result<void> set = crowds.back().node().setPixelError(fieldPixelError); !set) return set.error();
+        if (const Result<void> set = crowds.back().node().getMeshes().setPixelError(fieldPixelError); !set)
+            return set.error();
         root->addChild(&crowds.back().node());
     }
     Result<Contestant> made = contestant(root, root->getBound(), 1280, 720);

@@ -112,7 +112,7 @@ Result<void> comparePictures(const Subject& subject, int pixels, Report& report)
     std::vector<Picture> pictures;
     for (const float error : {0.0f, samples * fieldPixelError})
     {
-        if (const Result<void> set = wall->setPixelError(error); !set) return set.error();
+        if (const Result<void> set = wall->getMeshes().setPixelError(error); !set) return set.error();
         for (int frame = 0; frame < 2; ++frame)
             viewer.frame(0.0);
         pictures.push_back(pictureOf(viewer, width, samples));
@@ -160,7 +160,7 @@ Result<void> compareRows(const Subject& subject, Report& report)
     std::vector<std::vector<double>> rows;
     for (const float error : {0.0f, fieldPixelError})
     {
-        if (const Result<void> set = field->setPixelError(error); !set) return set.error();
+        if (const Result<void> set = field->getMeshes().setPixelError(error); !set) return set.error();
         made.value()->frame(0.0);
         rows.push_back(brightnessOfRows(pictureOf(*made.value(), width, 1)));
     }

@@ -57,7 +57,7 @@ void CharacterScene::pause()
 Result<void> CharacterScene::setPixelError(float pixels)
 {
     for (const osg::ref_ptr<AnimatedCharacter>& character : characters)
-        if (Result<void> set = character->setPixelError(pixels); !set) return set;
+        if (Result<void> set = character->getMeshes().setPixelError(pixels); !set) return set;
     return {};
 }
 

@@ -42,7 +42,7 @@ Result<std::vector<Contestant>> crowds(const Subject& fixed, const Subject& lit,
     for (const Subject* subject : {&fixed, &lit})
     {
         const CrowdScene scene(*subject, count);
-        if (const Result<void> set = scene.root->setPixelError(0.5f); !set) return set.error();
+        if (const Result<void> set = scene.root->getMeshes().setPixelError(0.5f); !set) return set.error();
         Result<Contestant> made = contestant(scene.root, scene.root->getBound());
         if (!made) return made.error();
         contestants.push_back(std::move(made.value()));

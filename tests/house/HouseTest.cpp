@@ -42,10 +42,6 @@ const std::set<std::string> largeRooms = {
     "osg_nodes/osgGpuAnimation/animation/ClipMixer",
     "osg_nodes/osgGpuAnimation/animation/Pose",
     "osg_nodes/osgGpuAnimation/gpu/PosePipeline",
-    "osg_nodes/osgGpuAnimation/nodes/AnimatedCharacter",
-    "osg_nodes/osgGpuAnimation/nodes/AnimatedCrowd",
-    "osg_nodes/osgGpuAnimation/nodes/GroundFeet",
-    "osg_nodes/osgGpuAnimation/nodes/properties/AnimatedProperties",
 };
 
 /// Headers of other people that a folder must not include.

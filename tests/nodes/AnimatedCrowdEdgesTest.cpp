@@ -8,6 +8,7 @@
 #include <osgGpuAnimation/authoring/WithRootMotion.h>
 #include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+#include <osgGpuAnimation/nodes/detail/CrowdDetail.h>
 
 #include <osg/Geometry>
 #include <osg/TriangleFunctor>
@@ -36,7 +37,7 @@ AnimationController shiftingAt(const std::shared_ptr<const AnimationSet>& set, d
 
 double timeOf(const AnimatedCrowd& crowd, std::size_t index)
 {
-    return crowd.getInstances().controllerCopy(index).time();
+    return CrowdDetail::instances(crowd).controllerCopy(index).time();
 }
 
 /// The file's +X is the node's +Y.
@@ -102,7 +103,9 @@ TEST(AnimatedCrowdEdgesTest, hiddenMeshesAreNoPrimitives)
     ASSERT_TRUE(crowd->add(osg::Matrixd(), shiftingAt(crowd->getSharedAnimationSet(), 0.0)));
     crowd->getChild(0)->setNodeMask(0);
     osg::TriangleFunctor<TriangleBox> seen;
-    crowd->acceptInstances(seen);
+    for (std::size_t i = 0; i < crowd->getNumInstances(); ++i)
+        forEachMesh(*crowd, [&](const SkinnedGeometry& mesh)
+                    { crowd->getPosedMesh(CrowdDetail::instances(*crowd).handleOf(i), mesh)->accept(seen); });
     EXPECT_EQ(seen.triangles, 0);
 }
 
@@ -112,10 +115,10 @@ TEST(AnimatedCrowdEdgesTest, aCrowdAndItsCopiesHaveTheSettingsOfTheCharacter)
     character->setName("fox");
     character->getOrCreateStateSet()->setMode(GL_CULL_FACE, osg::StateAttribute::ON);
     character->setDrawnTogether(false);
-    ASSERT_TRUE(character->setPixelError(3.0f));
+    ASSERT_TRUE(character->getMeshes().setPixelError(3.0f));
     ASSERT_TRUE(character->setFileToNode(turned));
     const osg::ref_ptr<AnimatedCharacter> copy = osg::clone(character.get());
-    EXPECT_EQ(copy->getPixelError(), 3.0f);
+    EXPECT_EQ(copy->getMeshes().getPixelError(), 3.0f);
     EXPECT_EQ(copy->getFileToNode(), turned);
     EXPECT_FALSE(copy->isDrawnTogether());
     character->update(1.0);
@@ -127,7 +130,7 @@ TEST(AnimatedCrowdEdgesTest, aCrowdAndItsCopiesHaveTheSettingsOfTheCharacter)
     {
         EXPECT_EQ(crowd->getName(), "fox");
         EXPECT_EQ(crowd->getStateSet(), character->getStateSet());
-        EXPECT_EQ(crowd->getPixelError(), 3.0f);
+        EXPECT_EQ(crowd->getMeshes().getPixelError(), 3.0f);
         EXPECT_EQ(crowd->getFileToNode(), turned);
         crowd = osg::clone(crowd.get());
     }
@@ -142,7 +145,7 @@ TEST(AnimatedCrowdEdgesTest, copiesDrawTheTints)
                                isTinted ? red : osg::Vec4(1, 1, 1, 1)));
     const osg::ref_ptr<AnimatedCrowd> copy = osg::clone(crowd.get());
     PoseBatch batch(copy->getSharedAnimationSet());
-    copy->getInstances().addTo(batch, {1, 0});
+    CrowdDetail::instances(*copy).addTo(batch, {1, 0});
     ASSERT_EQ(batch.tints().size(), 2u);
     EXPECT_EQ(batch.tints()[0], 0xFF0000FFu);
     EXPECT_EQ(batch.tints()[1], 0xFFFFFFFFu);
@@ -160,18 +163,18 @@ TEST(AnimatedCrowdEdgesTest, whatIsRemovedTakesAllThatItHas)
     poseFar(posed);
     const AnimatedCrowd::Instance far = crowd->add(osg::Matrixd(), posed).value();
     crowd->update(0.0);
-    const glm::vec4 sphere = crowd->getInstances().sphere(crowd->getInstances().indexOf(plain));
-    const glm::vec4 farSphere = crowd->getInstances().sphere(crowd->getInstances().indexOf(far));
+    const glm::vec4 sphere = CrowdDetail::instances(*crowd).sphere(CrowdDetail::instances(*crowd).indexOf(plain));
+    const glm::vec4 farSphere = CrowdDetail::instances(*crowd).sphere(CrowdDetail::instances(*crowd).indexOf(far));
     EXPECT_GT(farSphere.x + farSphere.w, 50.0f);
     ASSERT_TRUE(crowd->remove(machined)); // the last instance takes its place
     for (const double time : {0.0, 0.5, 1.0})
     {
         if (time > 0.0) crowd->update(time);
         ASSERT_TRUE(crowd->setPlacement(far, osg::Matrixd()) && crowd->setPlacement(plain, osg::Matrixd()));
-        EXPECT_EQ(crowd->getInstances().sphere(crowd->getInstances().indexOf(far)), farSphere);
-        EXPECT_EQ(crowd->getInstances().sphere(crowd->getInstances().indexOf(plain)), sphere);
+        EXPECT_EQ(CrowdDetail::instances(*crowd).sphere(CrowdDetail::instances(*crowd).indexOf(far)), farSphere);
+        EXPECT_EQ(CrowdDetail::instances(*crowd).sphere(CrowdDetail::instances(*crowd).indexOf(plain)), sphere);
     }
-    EXPECT_NEAR(timeOf(*crowd, crowd->getInstances().indexOf(plain)), 1.0, 1e-9);
+    EXPECT_NEAR(timeOf(*crowd, CrowdDetail::instances(*crowd).indexOf(plain)), 1.0, 1e-9);
     const AnimatedCrowd::Instance next = crowd->add(osg::Matrixd(), shiftingAt(set, 0.0)).value();
     EXPECT_FALSE(crowd->getStateMachine(next));
 }
@@ -210,7 +213,7 @@ TEST(AnimatedCrowdEdgesTest, theMembersOfCellsFollowTheirInstances)
     }
     const auto check = [&](std::size_t controlled)
     {
-        const CrowdInstances& instances = crowd->getInstances();
+        const CrowdInstances& instances = CrowdDetail::instances(*crowd);
         SeenMembers seen;
         instances.findSeen({}, seen);
         EXPECT_EQ(seen.size(), instances.size());

@@ -5,6 +5,7 @@
 #include <osgGpuAnimation/animation/StateMachine.h>
 #include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+#include <osgGpuAnimation/nodes/detail/CrowdDetail.h>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
@@ -94,7 +95,7 @@ TEST(AnimatedCrowdTest, oneCallbackNamesTheInstances)
     crowd->setInstanceEventCallback({});
     crowd->update(50.0);
     EXPECT_EQ(heard.size(), 2u);
-    EXPECT_EQ(crowd->getInstances().controllerCount(), 0u) << "plain loops again";
+    EXPECT_EQ(CrowdDetail::instances(*crowd).controllerCount(), 0u) << "plain loops again";
 }
 
 TEST(AnimatedCrowdTest, stateMachinesDriveInstances)
@@ -192,12 +193,12 @@ TEST(AnimatedCrowdTest, compactPlaybackKeepsTheControllersTime)
             {
                 crowd->update(100.0 + 0.0713 * frame);
                 controller.advance(0.0713);
-                const BlendSample shown = crowd->getInstances().instruction(0).samples[0];
+                const BlendSample shown = CrowdDetail::instances(*crowd).instruction(0).samples[0];
                 const BlendSample expected = controller.instruction().samples[0];
                 ASSERT_EQ(shown.keyframe, expected.keyframe) << frame;
                 ASSERT_NEAR(shown.alpha, expected.alpha, 1e-6) << frame;
             }
-            EXPECT_EQ(crowd->getInstances().controllerCount(), 0u);
+            EXPECT_EQ(CrowdDetail::instances(*crowd).controllerCount(), 0u);
             EXPECT_NEAR(crowd->getController(instance)->time(), controller.time(), 1e-9);
             EXPECT_EQ(crowd->getController(instance)->state(), controller.state());
             EXPECT_EQ(crowd->getController(instance)->speed(), controller.speed());
@@ -209,18 +210,18 @@ TEST(AnimatedCrowdTest, controllersAreThereOnlyAsLongAsNeeded)
     const osg::ref_ptr<AnimatedCrowd> crowd = emptyCrowd();
     const AnimatedCrowd::Instance instance = crowd->add(osg::Matrixd(), playing("shift")).value();
     crowd->update(0.0);
-    EXPECT_EQ(crowd->getInstances().controllerCount(), 0u);
+    EXPECT_EQ(CrowdDetail::instances(*crowd).controllerCount(), 0u);
     ASSERT_TRUE(crowd->getController(instance)->crossfade("turn", 0.5));
     crowd->update(0.25);
-    EXPECT_EQ(crowd->getInstances().controllerCount(), 1u);
-    EXPECT_EQ(crowd->getInstances().instruction(0).sampleCount, 2u);
+    EXPECT_EQ(CrowdDetail::instances(*crowd).controllerCount(), 1u);
+    EXPECT_EQ(CrowdDetail::instances(*crowd).instruction(0).sampleCount, 2u);
     crowd->update(0.75);
-    EXPECT_EQ(crowd->getInstances().controllerCount(), 0u);
+    EXPECT_EQ(CrowdDetail::instances(*crowd).controllerCount(), 0u);
     EXPECT_EQ(crowd->getController(instance)->clip(), 1);
     EXPECT_NEAR(crowd->getController(instance)->time(), 0.75, 1e-12);
     crowd->getController(instance)->layer(1);
     crowd->update(1.0);
-    EXPECT_EQ(crowd->getInstances().controllerCount(), 1u);
+    EXPECT_EQ(CrowdDetail::instances(*crowd).controllerCount(), 1u);
 }
 
 TEST(AnimatedCrowdTest, boundsHoldEveryInstance)
@@ -241,7 +242,7 @@ TEST(AnimatedCrowdTest, boundsHoldWhateverAControllerMayPlay)
     const AnimatedCrowd::Instance instance = crowd->add(osg::Matrixd(), playing("turn")).value();
     const auto holds = [&](const osg::Vec3d& corner)
     {
-        const glm::vec4& sphere = crowd->getInstances().sphere(0);
+        const glm::vec4& sphere = CrowdDetail::instances(*crowd).sphere(0);
         return (osg::Vec3d(sphere.x, sphere.y, sphere.z) - corner).length() <= sphere.w + 1e-6;
     };
     const osg::Vec3d shifted(3, 0, 1);
@@ -252,7 +253,7 @@ TEST(AnimatedCrowdTest, boundsHoldWhateverAControllerMayPlay)
     crowd->update(0.25);
     EXPECT_TRUE(holds(shifted));
     crowd->update(1.0);
-    ASSERT_EQ(crowd->getInstances().controllerCount(), 0u);
+    ASSERT_EQ(CrowdDetail::instances(*crowd).controllerCount(), 0u);
     EXPECT_TRUE(holds(shifted));
     EXPECT_FALSE(holds({0, 0, -1})) << "the former clip's";
 }
@@ -305,14 +306,14 @@ TEST(AnimatedCrowdTest, pickingTellsTheInstanceAsItIsPosed)
     const auto line = hitAt(72.0);
     ASSERT_EQ(line->getIntersections().size(), 1u);
     const osgUtil::LineSegmentIntersector::Intersection& hit = *line->getIntersections().begin();
-    EXPECT_EQ(AnimatedCrowd::instanceOf(hit), names[7]);
+    EXPECT_EQ(instanceOf(hit), names[7]);
     EXPECT_NEAR((hit.getWorldIntersectPoint() - osg::Vec3d(72, 0, 0.4)).length(), 0.0, 1e-5);
     EXPECT_TRUE(hitAt(70.5)->getIntersections().empty()) << "there it is in the bind pose alone";
     EXPECT_TRUE(hitAt(2.0)->getIntersections().empty()) << "removed";
     ASSERT_TRUE(crowd->setPlacement(names[7], osg::Matrixd::translate(75.0, 0, 0)));
     EXPECT_TRUE(hitAt(72.0)->getIntersections().empty()) << "moved after it was posed";
     EXPECT_EQ(hitAt(77.0)->getIntersections().size(), 1u);
-    EXPECT_FALSE(AnimatedCrowd::instanceOf(osgUtil::LineSegmentIntersector::Intersection()));
+    EXPECT_FALSE(instanceOf(osgUtil::LineSegmentIntersector::Intersection()));
 }
 
 TEST(AnimatedCrowdTest, primitiveFunctorsGetAllInstancesInTheirPose)
@@ -321,7 +322,9 @@ TEST(AnimatedCrowdTest, primitiveFunctorsGetAllInstancesInTheirPose)
     for (int i = 0; i < 3; ++i)
         ASSERT_TRUE(crowd->add(osg::Matrixd::translate(10.0 * i, 0, 0), playing("shift", 1.0)));
     osg::TriangleFunctor<TriangleBox> count;
-    crowd->acceptInstances(count);
+    for (std::size_t i = 0; i < crowd->getNumInstances(); ++i)
+        forEachMesh(*crowd, [&](const SkinnedGeometry& mesh)
+                    { crowd->getPosedMesh(CrowdDetail::instances(*crowd).handleOf(i), mesh)->accept(count); });
     EXPECT_EQ(count.triangles, 6);
     EXPECT_EQ(count.box._min, osg::Vec3(1, 0, 0));
     EXPECT_EQ(count.box._max, osg::Vec3(22, 0, 1));
@@ -332,9 +335,9 @@ TEST(AnimatedCrowdTest, tintsAreHeldBetweenBlackAndWhite)
     const osg::ref_ptr<AnimatedCrowd> crowd = emptyCrowd();
     const osg::Vec4 bright(2.0f, -1.0f, std::nanf(""), 0.2f);
     const AnimatedCrowd::Instance instance = crowd->add(osg::Matrixd(), playing("shift"), bright).value();
-    EXPECT_EQ(crowd->getInstances().tint(0), 0x330000FFu);
+    EXPECT_EQ(CrowdDetail::instances(*crowd).tint(0), 0x330000FFu);
     ASSERT_TRUE(crowd->setTint(instance, {0, 1e30f, 1, 1}));
-    EXPECT_EQ(crowd->getInstances().tint(0), 0xFFFFFF00u);
+    EXPECT_EQ(CrowdDetail::instances(*crowd).tint(0), 0xFFFFFF00u);
 }
 
 TEST(AnimatedCrowdTest, aCloneHasInstancesOfItsOwn)
@@ -347,7 +350,8 @@ TEST(AnimatedCrowdTest, aCloneHasInstancesOfItsOwn)
     for (const double time : {0.75, 1.25})
     {
         other->update(time);
-        EXPECT_NEAR(other->getInstances().controllerCopy(0).time(), time, 1e-9) << "it goes on where the first was";
+        EXPECT_NEAR(CrowdDetail::instances(*other).controllerCopy(0).time(), time, 1e-9)
+            << "it goes on where the first was";
     }
     ASSERT_TRUE(other->setPlacement(instance, osg::Matrixd::translate(5, 0, 0)));
     EXPECT_EQ(crowd->getPlacement(instance).getTrans(), osg::Vec3d(1, 0, 0));
@@ -360,7 +364,7 @@ TEST(AnimatedCrowdTest, aCloneHasInstancesOfItsOwn)
 TEST(AnimatedCrowdTest, theFirstInstanceLeavesAnOriginThatWasSet)
 {
     const osg::ref_ptr<AnimatedCrowd> crowd = emptyCrowd();
-    crowd->setOrigin({-100, 50, 0});
+    EXPECT_TRUE(crowd->setOrigin({-100, 50, 0}));
     const AnimatedCrowd::Instance instance = crowd->add(osg::Matrixd::translate(1, 2, 3), playing("shift")).value();
     EXPECT_EQ(crowd->getOrigin(), osg::Vec3d(-100, 50, 0));
     EXPECT_EQ(crowd->getPlacement(instance).getTrans(), osg::Vec3d(1, 2, 3));
@@ -369,7 +373,7 @@ TEST(AnimatedCrowdTest, theFirstInstanceLeavesAnOriginThatWasSet)
 TEST(AnimatedCrowdTest, matricesOfBothWaysAreInverseInEveryReferenceFrame)
 {
     const osg::ref_ptr<AnimatedCrowd> crowd = emptyCrowd();
-    crowd->setOrigin({10, 20, 30});
+    EXPECT_TRUE(crowd->setOrigin({10, 20, 30}));
     const osg::Matrixd above = osg::Matrixd::rotate(0.5, 0, 0, 1) * osg::Matrixd::translate(1, 2, 3);
     const osg::Vec3d point(7, -5, 4);
     for (const auto frame : {osg::Transform::RELATIVE_RF, osg::Transform::ABSOLUTE_RF})
@@ -404,7 +408,7 @@ TEST(AnimatedCrowdTest, movingTheOriginLeavesInstancesWhereTheyAre)
 {
     const osg::ref_ptr<AnimatedCrowd> crowd = emptyCrowd();
     const AnimatedCrowd::Instance instance = crowd->add(osg::Matrixd::translate(1, 2, 3), playing("shift")).value();
-    crowd->setOrigin({-100, 50, 0});
+    EXPECT_TRUE(crowd->setOrigin({-100, 50, 0}));
     EXPECT_EQ(crowd->getPlacement(instance).getTrans(), osg::Vec3d(1, 2, 3));
 }
 
@@ -486,8 +490,9 @@ TEST(AnimatedCrowdTest, anOriginIsReversible)
         for (int cell = 0; cell < 12; ++cell)
             EXPECT_NEAR(crowd->getPlacement(instance).ptr()[cell], wanted.ptr()[cell], 1e-6);
         // What is drawn is the same as before, too.
-        const std::size_t index = crowd->getInstances().indexOf(instance);
-        EXPECT_EQ(crowd->getInstances().rootMatrix(index).rows, copy->getInstances().rootMatrix(index).rows);
+        const std::size_t index = CrowdDetail::instances(*crowd).indexOf(instance);
+        EXPECT_EQ(CrowdDetail::instances(*crowd).rootMatrix(index).rows,
+                  CrowdDetail::instances(*copy).rootMatrix(index).rows);
     }
 }
 

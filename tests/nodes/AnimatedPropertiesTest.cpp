@@ -95,7 +95,7 @@ TEST(AnimatedPropertiesTest, hiddenLightsLightAgainInCopies)
     EXPECT_EQ(lightOf(*body).getDiffuse().x(), 0.0f);
     const osg::ref_ptr<AnimatedCharacter> other = cloneOf(*body),
                                           copy = osg::clone(body.get(), osg::CopyOp::DEEP_COPY_ALL);
-    ASSERT_TRUE(body->setMaterialVariant("")); // looks for the lights again
+    ASSERT_TRUE(body->getMeshes().setVariant("")); // looks for the lights again
     for (AnimatedCharacter* character : {body.get(), other.get(), copy.get()})
     {
         EXPECT_EQ(lightOf(*character).getDiffuse().x(), 0.0f);
@@ -112,17 +112,17 @@ TEST(AnimatedPropertiesTest, meshesAreVisibleIfClipAndApplicationShowThem)
         for (const bool showsClip : {true, false, true, false})
         {
             const osg::Node::NodeMask expected = showsApplication && showsClip ? 0xF0u : 0u;
-            ASSERT_TRUE(body->setMeshVisible("arm", showsApplication));
+            ASSERT_TRUE(body->getMeshes().setVisible("arm", showsApplication));
             pose(*body, 0.5f, showsClip);
             EXPECT_EQ(meshOf(*body).getNodeMask(), expected);
-            ASSERT_TRUE(body->setMeshVisible("arm", showsApplication));
-            ASSERT_TRUE(body->setMaterialVariant(""));
+            ASSERT_TRUE(body->getMeshes().setVisible("arm", showsApplication));
+            ASSERT_TRUE(body->getMeshes().setVariant(""));
             EXPECT_EQ(meshOf(*body).getNodeMask(), expected);
             const osg::ref_ptr<AnimatedCharacter> other = cloneOf(*body);
             pose(*other, 0.5f, true);
             EXPECT_EQ(meshOf(*other).getNodeMask(), showsApplication ? 0xF0u : 0u);
             EXPECT_EQ(meshOf(*body).getNodeMask(), expected);
-            ASSERT_TRUE(other->setMeshVisible("arm", true));
+            ASSERT_TRUE(other->getMeshes().setVisible("arm", true));
             EXPECT_EQ(meshOf(*other).getNodeMask(), 0xF0u);
         }
 }
@@ -131,7 +131,7 @@ TEST(AnimatedPropertiesTest, meshesHiddenAtRestAreImportedWithMask0)
 {
     const osg::ref_ptr<AnimatedCharacter> body = makePainted();
     meshOf(*body).setNodeMask(0);
-    ASSERT_TRUE(body->setMaterialVariant(""));
+    ASSERT_TRUE(body->getMeshes().setVariant(""));
     pose(*body, 0.5f, true);
     EXPECT_EQ(meshOf(*body).getNodeMask(), ~0u);
 }
@@ -150,7 +150,7 @@ TEST(AnimatedPropertiesTest, garmentsDoNotTakeTheMaterialsOfTheBody)
     EXPECT_EQ(redOf(*body), 0.75f);
     EXPECT_EQ(redOf(*body, 1), 0.5f) << "at rest";
     EXPECT_NE(meshOf(*body, 1).getNodeMask(), 0u);
-    ASSERT_TRUE(body->setMaterialVariant("red"));
+    ASSERT_TRUE(body->getMeshes().setVariant("red"));
     pose(*body, 0.75f, true);
     EXPECT_EQ(redOf(*body, 1), 0.5f);
     pose(*garment, 0.375f, true);
@@ -163,7 +163,7 @@ TEST(AnimatedPropertiesTest, variantsPlayOnWhenAGarmentIsWorn)
     osg::Geometry& arm = meshOf(*body);
     const osg::ref_ptr<osg::StateSet> plain = arm.getStateSet();
     setVariantStates(arm, plain, {{"red", makeMaterial()}});
-    ASSERT_TRUE(body->setMaterialVariant("red"));
+    ASSERT_TRUE(body->getMeshes().setVariant("red"));
     pose(*body, 0.25f, true);
     ASSERT_TRUE(body->wear(garment));
     EXPECT_EQ(redOf(*body), 0.25f);

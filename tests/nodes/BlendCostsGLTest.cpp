@@ -6,6 +6,7 @@
 #include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/gpu/PosePipeline.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+#include <osgGpuAnimation/nodes/detail/CrowdDetail.h>
 
 #include <osg/Group>
 
@@ -91,8 +92,8 @@ TEST_F(BlendCostsGLTest, ofACrowdThoseWhoFadeAreMixedApart)
     for (std::size_t number = 0; number < everybody; ++number)
     {
         const std::size_t slot = isFading(number) ? 1 : 0;
-        expectPose(crowd->getInstances().controllerCopy(number), crowd->getInstances().rootMatrix(number), slot,
-                   found[slot]++);
+        expectPose(CrowdDetail::instances(*crowd).controllerCopy(number),
+                   CrowdDetail::instances(*crowd).rootMatrix(number), slot, found[slot]++);
     }
 }
 

@@ -148,10 +148,10 @@ TEST(BrokenScenesTest, primitiveSetsBeyondTheVerticesAreNotRead)
     sets.insert(sets.begin(), {nullptr, new osg::DrawArrays(GL_TRIANGLES, 0, 2'000'000'000)});
     const osg::ref_ptr<AnimatedCharacter> character = new AnimatedCharacter(testCharacterSet());
     character->addChild(square);
-    EXPECT_TRUE(character->setPixelError(1.0f));
+    EXPECT_TRUE(character->getMeshes().setPixelError(1.0f));
     const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*character);
-    EXPECT_TRUE(crowd->setPixelError(1.0f));
-    EXPECT_TRUE(crowd->setPixelError(2.0f));
+    EXPECT_TRUE(crowd->getMeshes().setPixelError(1.0f));
+    EXPECT_TRUE(crowd->getMeshes().setPixelError(2.0f));
     EXPECT_EQ(character->getPosedMesh(*square)->getNumPrimitiveSets(), 1u);
 }
 

@@ -163,7 +163,7 @@ void expectAlike(const Shown& found, const Shown& expected, double pixels)
 TEST_F(CharacterLevelsGLTest, farInstancesAreDrawnAsOneMesh)
 {
     const osg::ref_ptr<AnimatedCrowd> all = makeCrowd(), merged = makeCrowd();
-    ASSERT_TRUE(merged->setPixelError(pixelError));
+    ASSERT_TRUE(merged->getMeshes().setPixelError(pixelError));
     for (const double pixels : {8.0, 6.0})
     {
         const Shown expected(*pictureAt(*all, pixels));
@@ -191,7 +191,7 @@ const LookCase lookCases[] = {
      [](AnimatedCrowd& crowd)
      {
          for (unsigned int part = 4; part < 12; ++part)
-             EXPECT_TRUE(crowd.setMeshVisible("part " + std::to_string(part), false));
+             EXPECT_TRUE(crowd.getMeshes().setVisible("part " + std::to_string(part), false));
      },
      partCount / 2},
     {"a new StateSet",
@@ -223,7 +223,7 @@ TEST_F(CharacterLevelsGLTest, thePresentLookIsDrawn)
     {
         SCOPED_TRACE(look.name);
         const osg::ref_ptr<AnimatedCrowd> all = makeCrowd(), merged = makeCrowd();
-        ASSERT_TRUE(merged->setPixelError(pixelError));
+        ASSERT_TRUE(merged->getMeshes().setPixelError(pixelError));
         const Shown before(*pictureAt(*merged, pixels));
         EXPECT_EQ(mergedMeshes(*merged).size(), 1u);
         look.change(*all);
@@ -235,7 +235,7 @@ TEST_F(CharacterLevelsGLTest, thePresentLookIsDrawn)
         EXPECT_EQ(drawnMeshes().size(), look.parts);
         EXPECT_NEAR(found.pixels, expected.pixels, 0.1 * expected.pixels);
         EXPECT_LT((found.color - expected.color).length(), 2.0f * visible);
-        ASSERT_TRUE(merged->setPixelError(pixelError));
+        ASSERT_TRUE(merged->getMeshes().setPixelError(pixelError));
         const Shown expectedFar(*pictureAt(*all, farPixels));
         expectAlike(Shown(*pictureAt(*merged, farPixels)), expectedFar, farPixels);
         EXPECT_EQ(mergedMeshes(*merged).size(), 1u) << "made anew";
@@ -245,7 +245,7 @@ TEST_F(CharacterLevelsGLTest, thePresentLookIsDrawn)
 TEST_F(CharacterLevelsGLTest, theirGLObjectsComeAndGoWithTheCrowds)
 {
     const osg::ref_ptr<AnimatedCrowd> crowd = makeCrowd();
-    ASSERT_TRUE(crowd->setPixelError(pixelError));
+    ASSERT_TRUE(crowd->getMeshes().setPixelError(pixelError));
     const osg::ref_ptr<osg::Image> before = pictureAt(*crowd, 6.0);
     const std::set<SkinnedGeometry*> merged = mergedMeshes(*crowd);
     ASSERT_EQ(merged.size(), 1u);
@@ -262,7 +262,7 @@ TEST_F(CharacterLevelsGLTest, theirGLObjectsComeAndGoWithTheCrowds)
 TEST_F(CharacterLevelsGLTest, copiesShareThem)
 {
     const osg::ref_ptr<AnimatedCrowd> crowd = makeCrowd();
-    ASSERT_TRUE(crowd->setPixelError(pixelError));
+    ASSERT_TRUE(crowd->getMeshes().setPixelError(pixelError));
     const osg::ref_ptr<AnimatedCrowd> copy = osg::clone(crowd.get());
     const osg::ref_ptr<osg::Image> expected = pictureAt(*crowd, 6.0);
     const std::set<SkinnedGeometry*> merged = mergedMeshes(*crowd);
@@ -275,9 +275,9 @@ TEST_F(CharacterLevelsGLTest, copiesShareThem)
 TEST_F(CharacterLevelsGLTest, withoutAPixelErrorNothingRemainsOfThem)
 {
     const osg::ref_ptr<AnimatedCrowd> never = makeCrowd(), once = makeCrowd();
-    ASSERT_TRUE(once->setPixelError(pixelError));
+    ASSERT_TRUE(once->getMeshes().setPixelError(pixelError));
     pictureAt(*once, 6.0);
-    ASSERT_TRUE(once->setPixelError(0.0f));
+    ASSERT_TRUE(once->getMeshes().setPixelError(0.0f));
     for (const double pixels : {24.0, 6.0})
     {
         const osg::ref_ptr<osg::Image> expected = pictureAt(*never, pixels), found = pictureAt(*once, pixels);

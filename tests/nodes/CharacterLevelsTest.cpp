@@ -7,6 +7,7 @@
 #include <osgGpuAnimation/mesh/lod/CharacterLevels.h>
 #include <osgGpuAnimation/mesh/lod/MergedParts.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+#include <osgGpuAnimation/nodes/detail/CrowdDetail.h>
 
 #include <osg/Material>
 
@@ -114,16 +115,16 @@ TEST(CharacterLevelsTest, aCrowdKeepsThemWithoutAPixelError)
 {
     const Arm arm;
     const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(arm.set, arm.parts);
-    ASSERT_TRUE(crowd->setPixelError(1.0f));
-    const std::shared_ptr<const CharacterLevels> first = crowd->getCharacterLevels();
+    ASSERT_TRUE(crowd->getMeshes().setPixelError(1.0f));
+    const std::shared_ptr<const CharacterLevels> first = CrowdDetail::levels(*crowd);
     ASSERT_TRUE(first);
-    ASSERT_TRUE(crowd->setPixelError(0.0f));
+    ASSERT_TRUE(crowd->getMeshes().setPixelError(0.0f));
     crowd->update(0.0);
-    ASSERT_TRUE(crowd->setPixelError(1.0f));
-    EXPECT_EQ(crowd->getCharacterLevels(), first);
+    ASSERT_TRUE(crowd->getMeshes().setPixelError(1.0f));
+    EXPECT_EQ(CrowdDetail::levels(*crowd), first);
     arm.parts[0]->setNodeMask(0);
-    ASSERT_TRUE(crowd->setPixelError(1.0f));
-    EXPECT_NE(crowd->getCharacterLevels(), first) << "other meshes";
+    ASSERT_TRUE(crowd->getMeshes().setPixelError(1.0f));
+    EXPECT_NE(CrowdDetail::levels(*crowd), first) << "other meshes";
 }
 
 TEST(CharacterLevelsTest, partsOfOneMaterialBecomeOneMesh)

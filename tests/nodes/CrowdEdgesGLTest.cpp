@@ -250,8 +250,8 @@ TEST_F(CrowdEdgesGLTest, tintsAreTheInstancesOwnAtEveryLevelOfDetail)
     const auto makeCrowd = [&]
     {
         osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*tube);
-        EXPECT_TRUE(crowd->setPixelError(0.25f));
-        crowd->setOrigin(osg::Vec3d());
+        EXPECT_TRUE(crowd->getMeshes().setPixelError(0.25f));
+        EXPECT_TRUE(crowd->setOrigin(osg::Vec3d()));
         return crowd;
     };
     const osg::ref_ptr<AnimatedCrowd> all = makeCrowd();

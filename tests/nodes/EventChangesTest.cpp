@@ -4,6 +4,7 @@
 #include <osgGpuAnimation/animation/JointMask.h>
 #include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+#include <osgGpuAnimation/nodes/detail/CrowdDetail.h>
 
 #include <gtest/gtest.h>
 #include <osg/observer_ptr>
@@ -279,7 +280,7 @@ struct CrowdStage
 
     double timeOf(AnimatedCrowd::Instance instance) const
     {
-        return crowd->getInstances().controllerCopy(crowd->getInstances().indexOf(instance)).time();
+        return CrowdDetail::instances(*crowd).controllerCopy(CrowdDetail::instances(*crowd).indexOf(instance)).time();
     }
 
     osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(testCharacterSet(), {makeTestSquare(1)});

@@ -340,7 +340,7 @@ TEST(GarmentTest, isPicked)
         const std::optional<PickedJoint> picked = jointOf(hit);
         ASSERT_TRUE(picked);
         EXPECT_EQ(picked->set->skeleton().joint(picked->joint).name, "elbow");
-        EXPECT_EQ(AnimatedCrowd::instanceOf(hit) == instance, height > 0.0);
+        EXPECT_EQ(instanceOf(hit) == instance, height > 0.0);
     }
 }
 
@@ -365,15 +365,15 @@ TEST(GarmentTest, showsVariantsOfItsMaterials)
     const osg::ref_ptr<osg::StateSet> plain = meshAt(*garment, 0).getStateSet(), red = new osg::StateSet;
     setVariantStates(meshAt(*garment, 0), plain, {{"red", red}});
     ASSERT_TRUE(body->wear(garment));
-    EXPECT_EQ(body->getMaterialVariants(), std::vector<std::string>{"red"});
-    ASSERT_TRUE(body->setMaterialVariant("red"));
+    EXPECT_EQ(body->getMeshes().getVariants(), std::vector<std::string>{"red"});
+    ASSERT_TRUE(body->getMeshes().setVariant("red"));
     EXPECT_EQ(body->getChild(1)->getStateSet(), red);
     EXPECT_EQ(garment->getChild(0)->getStateSet(), plain);
     EXPECT_TRUE(body->takeOff(garment)) << "in another variant it is the same garment";
     EXPECT_EQ(body->getNumChildren(), 1u);
     ASSERT_TRUE(body->wear(garment));
     EXPECT_EQ(body->getChild(1)->getStateSet(), red) << "the variant of the body when it is put on";
-    EXPECT_EQ(cloneOf(*body)->getMaterialVariant(), "red");
+    EXPECT_EQ(cloneOf(*body)->getMeshes().getVariant(), "red");
 }
 
 TEST(MeshNamesTest, nodesAreFoundBeforeMeshes)
@@ -387,12 +387,12 @@ TEST(MeshNamesTest, nodesAreFoundBeforeMeshes)
     setNodeName(*body->getChild(1), "Sword");
     setNodeName(*body->getChild(2), "Cube");
     setNodeName(*body->getChild(3), "Cube");
-    EXPECT_EQ(body->findMesh("arm"), body->getChild(0));
-    EXPECT_EQ(body->findMesh("Sword"), body->getChild(1));
-    EXPECT_EQ(body->findMesh("Cube"), body->getChild(2));
-    EXPECT_EQ(body->findMesh("Plane"), body->getChild(1)) << "a mesh's name";
-    EXPECT_EQ(body->findMesh("Shield"), nullptr);
-    const Result<void> hidden = body->setMeshVisible("Shield", false);
+    EXPECT_EQ(body->getMeshes().find("arm"), body->getChild(0));
+    EXPECT_EQ(body->getMeshes().find("Sword"), body->getChild(1));
+    EXPECT_EQ(body->getMeshes().find("Cube"), body->getChild(2));
+    EXPECT_EQ(body->getMeshes().find("Plane"), body->getChild(1)) << "a mesh's name";
+    EXPECT_EQ(body->getMeshes().find("Shield"), nullptr);
+    const Result<void> hidden = body->getMeshes().setVisible("Shield", false);
     ASSERT_FALSE(hidden);
     EXPECT_EQ(hidden.error().message, "there is no mesh \"Shield\"; the meshes are \"arm\", \"Sword\", \"Cube\"");
 }
@@ -403,22 +403,22 @@ TEST(MeshNamesTest, clonesShowMeshesOfTheirOwn)
     osg::Node* const shown = body->getChild(0);
     shown->setNodeMask(0xF0);
     const osg::BoundingBox bounds = body->getCurrentBounds();
-    ASSERT_TRUE(second->setMeshVisible("arm", false));
-    ASSERT_TRUE(third->setMeshVisible("arm", false));
+    ASSERT_TRUE(second->getMeshes().setVisible("arm", false));
+    ASSERT_TRUE(third->getMeshes().setVisible("arm", false));
     EXPECT_EQ(body->getChild(0), shown);
     EXPECT_EQ(shown->getNodeMask(), 0xF0u);
     EXPECT_EQ(second->getChild(0)->getNodeMask(), 0u);
     EXPECT_EQ(second->getChild(0), third->getChild(0)) << "who hides the same is drawn together";
     second->computeClipBounds();
     EXPECT_EQ(second->getCurrentBounds(), bounds) << "it may be shown at any time";
-    ASSERT_TRUE(second->setMeshVisible("arm", true));
+    ASSERT_TRUE(second->getMeshes().setVisible("arm", true));
     EXPECT_EQ(second->getChild(0), shown);
     const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*third);
     EXPECT_EQ(crowd->getChild(0)->getNodeMask(), 0u);
-    ASSERT_TRUE(crowd->setMeshVisible("arm", true));
-    EXPECT_NE(crowd->findMesh("arm")->getNodeMask(), 0u);
+    ASSERT_TRUE(crowd->getMeshes().setVisible("arm", true));
+    EXPECT_NE(crowd->getMeshes().find("arm")->getNodeMask(), 0u);
     EXPECT_EQ(third->getChild(0)->getNodeMask(), 0u);
-    EXPECT_FALSE(crowd->setMeshVisible("leg", true));
+    EXPECT_FALSE(crowd->getMeshes().setVisible("leg", true));
 }
 
 // As the file's own levels of detail are: below an osg::LOD, the first one without a largest size.
@@ -435,17 +435,17 @@ TEST(MeshNamesTest, levelsOfDetailAreOneMesh)
         levels->getChild(levels->getNumChildren() - 1)->setName(name);
     }
     body->addChild(levels);
-    EXPECT_EQ(body->findMesh("hand"), levels->getChild(0));
+    EXPECT_EQ(body->getMeshes().find("hand"), levels->getChild(0));
     for (const bool isVisible : {false, true})
     {
-        ASSERT_TRUE(body->setMeshVisible("hand", isVisible));
+        ASSERT_TRUE(body->getMeshes().setVisible("hand", isVisible));
         for (unsigned int level = 0; level < 2; ++level)
             EXPECT_EQ(levels->getChild(level)->getNodeMask() != 0, isVisible) << level;
     }
     EXPECT_EQ(levels->getMinRange(0), 100.0f);
     ASSERT_TRUE(other->wear(body));
     EXPECT_EQ(other->getNumChildren(), 3u) << "the first level is worn";
-    EXPECT_NE(other->findMesh("hand"), nullptr);
+    EXPECT_NE(other->getMeshes().find("hand"), nullptr);
     EXPECT_TRUE(other->takeOff(body));
 }
 
@@ -460,28 +460,28 @@ TEST(MeshNamesTest, clonesShareLevelsOfDetailUntilOneChanges)
     levels->addChild(hand, 0.0f, std::numeric_limits<float>::max());
     body->addChild(levels);
     const osg::ref_ptr<AnimatedCharacter> hidden = osg::clone(body.get()), painted = osg::clone(body.get());
-    ASSERT_TRUE(hidden->setMeshVisible("arm", false));
+    ASSERT_TRUE(hidden->getMeshes().setVisible("arm", false));
     EXPECT_EQ(hidden->getChild(1), levels);
-    ASSERT_TRUE(hidden->setMeshVisible("hand", false));
-    ASSERT_TRUE(painted->setMaterialVariant("red"));
-    EXPECT_EQ(body->findMesh("hand"), hand);
+    ASSERT_TRUE(hidden->getMeshes().setVisible("hand", false));
+    ASSERT_TRUE(painted->getMeshes().setVariant("red"));
+    EXPECT_EQ(body->getMeshes().find("hand"), hand);
     EXPECT_EQ(levels->getChild(0), hand);
-    EXPECT_EQ(hidden->findMesh("hand")->getNodeMask(), 0u);
-    EXPECT_EQ(painted->findMesh("hand")->getStateSet(), red);
+    EXPECT_EQ(hidden->getMeshes().find("hand")->getNodeMask(), 0u);
+    EXPECT_EQ(painted->getMeshes().find("hand")->getStateSet(), red);
 }
 
 TEST(MeshNamesTest, hiddenMeshesKeepTheirNodeMask)
 {
     const osg::ref_ptr<AnimatedCharacter> body = makeBody();
     const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*makeBody());
-    body->findMesh("arm")->setNodeMask(0xF0);
-    crowd->findMesh("arm")->setNodeMask(0x0F);
+    body->getMeshes().find("arm")->setNodeMask(0xF0);
+    crowd->getMeshes().find("arm")->setNodeMask(0x0F);
     for (const bool isVisible : {false, true, false, true})
     {
-        ASSERT_TRUE(body->setMeshVisible("arm", isVisible));
-        ASSERT_TRUE(crowd->setMeshVisible("arm", isVisible));
-        EXPECT_EQ(body->findMesh("arm")->getNodeMask(), isVisible ? 0xF0u : 0u);
-        EXPECT_EQ(crowd->findMesh("arm")->getNodeMask(), isVisible ? 0x0Fu : 0u);
+        ASSERT_TRUE(body->getMeshes().setVisible("arm", isVisible));
+        ASSERT_TRUE(crowd->getMeshes().setVisible("arm", isVisible));
+        EXPECT_EQ(body->getMeshes().find("arm")->getNodeMask(), isVisible ? 0xF0u : 0u);
+        EXPECT_EQ(crowd->getMeshes().find("arm")->getNodeMask(), isVisible ? 0x0Fu : 0u);
     }
 }
 

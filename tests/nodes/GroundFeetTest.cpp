@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/nodes/feet/FeetState.h>
 #include <osgGpuAnimation/nodes/GroundFeet.h>
 
 #include "nodes/Walker.h"
@@ -164,7 +165,7 @@ TEST_P(GroundFeetOnTest, PlantedFeetTouchTheGroundAndDoNotSlide)
     int checked = 0;
     constexpr double step = 1.0 / 60.0;
     // A foot that comes down just behind the edge of a step downwards reaches its ground within the blend.
-    const double settled = GetParam().isDown ? GroundFeet::blendSeconds - 0.5 * step : 0.0;
+    const double settled = GetParam().isDown ? FeetState::blendSeconds - 0.5 * step : 0.0;
     for (int frame = 0; frame < 600; ++frame)
     {
         stroll.walk(step, 1.05 * Walker::speed); // without the lock feet slide by 3 cm

@@ -36,7 +36,7 @@ protected:
     {
         const osg::ref_ptr<osg::Group> group = new osg::Group;
         const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*makeTestCharacter());
-        crowd->setOrigin(origin);
+        EXPECT_TRUE(crowd->setOrigin(origin));
         AnimationController controller(crowd->getSharedAnimationSet());
         EXPECT_TRUE(controller.play("shift"));
         for (const double x : {-3.0, 0.5})

@@ -2,6 +2,7 @@
 #include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/authoring/WithRootMotion.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
+#include <osgGpuAnimation/nodes/RootMotionCallback.h>
 
 #include "support/TestCharacter.h"
 

@@ -65,11 +65,11 @@ void fillUp(AnimatedCharacter& character)
 TEST_F(LodDrawsGLTest, whatComesAfterTheMostVerticesIsDrawnWhole)
 {
     const osg::ref_ptr<AnimatedCharacter> character = makeTubeCharacter(armSet());
-    ASSERT_TRUE(character->setPixelError(pixelError));
+    ASSERT_TRUE(character->getMeshes().setPixelError(pixelError));
     EXPECT_LT(trianglesOf(*character), tubeTriangles / 4);
     fillUp(*character);
     character->addChild(makeShownTube(character->getAnimationSet()));
-    ASSERT_TRUE(character->setPixelError(pixelError));
+    ASSERT_TRUE(character->getMeshes().setPixelError(pixelError));
     for (const osg::ref_ptr<osg::Node>& scene : std::vector<osg::ref_ptr<osg::Node>>{character, crowdOf(*character)})
     {
         const GLuint triangles = trianglesOf(*scene);
@@ -82,7 +82,7 @@ TEST_F(LodDrawsGLTest, whatComesAfterTheMostVerticesIsDrawnWhole)
 TEST_F(LodDrawsGLTest, whatReachesBehindTheEyeIsDrawnWhole)
 {
     const osg::ref_ptr<AnimatedCharacter> character = makeTubeCharacter(armSet());
-    ASSERT_TRUE(character->setPixelError(pixelError));
+    ASSERT_TRUE(character->getMeshes().setPixelError(pixelError));
     const osg::BoundingSphere bound = character->getBound(); // the crowd's instance has the same
     for (const auto& animated : std::vector<osg::ref_ptr<osg::Node>>{character, crowdOf(*character)})
     {
@@ -106,7 +106,7 @@ TEST_F(LodDrawsGLTest, aTurnDoesNotChangeTheLevel)
     std::set<GLuint> counts;
     for (const float error : {0.02f, 0.03f, 0.05f, 0.08f, 0.13f, 0.21f, 0.34f})
     {
-        ASSERT_TRUE(character->setPixelError(error));
+        ASSERT_TRUE(character->getMeshes().setPixelError(error));
         std::vector<GLuint> triangles;
         for (const osg::Vec3d& towards : {osg::Vec3d(1, 0, 0), osg::Vec3d(1, 1, 1)})
         {
@@ -124,7 +124,7 @@ TEST_F(LodDrawsGLTest, aTurnDoesNotChangeTheLevel)
 TEST_F(LodDrawsGLTest, whatIsNotTheCharactersOwnChildIsDrawnWhole)
 {
     const osg::ref_ptr<AnimatedCharacter> character = makeTubeCharacter(armSet());
-    ASSERT_TRUE(character->setPixelError(pixelError));
+    ASSERT_TRUE(character->getMeshes().setPixelError(pixelError));
     const osg::ref_ptr<osg::Group> group = new osg::Group;
     group->addChild(makeShownTube(character->getAnimationSet()));
     character->addChild(group);
@@ -140,7 +140,7 @@ TEST_F(LodDrawsGLTest, charactersOfASetHaveLevelsOfTheirOwnMeshes)
     for (int i = 0; i < 4; ++i)
     {
         const osg::ref_ptr<AnimatedCharacter> character = makeTubeCharacter(set);
-        ASSERT_TRUE(character->setPixelError(pixelError));
+        ASSERT_TRUE(character->getMeshes().setPixelError(pixelError));
         // The mesh is set after setPixelError(), so the cull traversal has to build its levels.
         character->setChild(0, makeShownTube(*set));
         if (i % 2 == 1) character->insertChild(0, makeBlank(1));
@@ -149,7 +149,7 @@ TEST_F(LodDrawsGLTest, charactersOfASetHaveLevelsOfTheirOwnMeshes)
     EXPECT_LT(trianglesOf(*scene), tubeTriangles);
 
     const osg::ref_ptr<AnimatedCharacter> large = makeTubeCharacter(set);
-    ASSERT_TRUE(large->setPixelError(pixelError));
+    ASSERT_TRUE(large->getMeshes().setPixelError(pixelError));
     fillUp(*large);
     large->addChild(makeShownTube(*set));
     scene->addChild(large);

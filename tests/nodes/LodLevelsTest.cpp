@@ -91,7 +91,7 @@ TEST(LodLevelsTest, aNewSetMakesTheLevelsOfItsPoses)
     const osg::ref_ptr<AnimatedCharacter> character = new AnimatedCharacter(still);
     const osg::ref_ptr<SkinnedGeometry> tube = makeTube(*still);
     character->addChild(tube);
-    ASSERT_TRUE(character->setPixelError(1.0f));
+    ASSERT_TRUE(character->getMeshes().setPixelError(1.0f));
     const int level = -10;
     const std::size_t straight = drawn(*tube, *tube->getLodLevels(*still), level);
     ASSERT_TRUE(character->setAnimationSet(bending));

@@ -92,7 +92,7 @@ protected:
     osg::ref_ptr<osg::Group> makeScene(const PictureCase& look, bool isCrowd, float pixelError)
     {
         const osg::ref_ptr<AnimatedCharacter> tube = makeCharacter(look.surface);
-        EXPECT_TRUE(tube->setPixelError(pixelError));
+        EXPECT_TRUE(tube->getMeshes().setPixelError(pixelError));
         const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*tube);
         const osg::ref_ptr<osg::Group> scene = look.makeShadows ? makeShadowed(look.makeShadows) : new osg::Group;
         if (!look.makeShadows) scene->addChild(makeLight());

@@ -32,10 +32,10 @@ void expectTakesPixelErrors(Animated& animated)
 {
     for (const auto& [pixels, isTaken] : pixelErrorCases)
     {
-        ASSERT_TRUE(animated.setPixelError(2.0f));
-        const Result<void> taken = animated.setPixelError(pixels);
+        ASSERT_TRUE(animated.getMeshes().setPixelError(2.0f));
+        const Result<void> taken = animated.getMeshes().setPixelError(pixels);
         EXPECT_EQ(static_cast<bool>(taken), isTaken) << pixels;
-        EXPECT_EQ(animated.getPixelError(), isTaken ? pixels : 2.0f);
+        EXPECT_EQ(animated.getMeshes().getPixelError(), isTaken ? pixels : 2.0f);
         if (taken) continue;
         EXPECT_NE(taken.error().message.find("it must be a number of pixels from 0 to 1000000"), std::string::npos);
     }

@@ -5,6 +5,7 @@
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+#include <osgGpuAnimation/nodes/detail/CrowdDetail.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
 
 #include <osg/ComputeBoundsVisitor>
@@ -159,7 +160,7 @@ TEST(NodeConstraintsTest, instancesOfACrowdHaveTargetsOfTheirOwn)
     for (const osg::Vec3d& target : {osg::Vec3d(100, 0, 5), osg::Vec3d(100, 0, -5), osg::Vec3d(95, 0, 0)})
     {
         ASSERT_TRUE(crowd->constraint(first, "look").setTarget(target));
-        const glm::vec4& sphere = crowd->getInstances().sphere(crowd->getInstances().indexOf(first));
+        const glm::vec4& sphere = CrowdDetail::instances(*crowd).sphere(CrowdDetail::instances(*crowd).indexOf(first));
         const osg::ref_ptr<osg::Geometry> posed = crowd->getPosedMesh(first, mesh);
         for (const osg::Vec3& vertex : dynamic_cast<const osg::Vec3Array&>(*posed->getVertexArray()))
         {
@@ -173,7 +174,7 @@ TEST(NodeConstraintsTest, instancesOfACrowdHaveTargetsOfTheirOwn)
     crowd->update(0.2);
     ASSERT_TRUE(crowd->constraint(first, "look").clear());
     crowd->update(0.3);
-    EXPECT_EQ(crowd->getInstances().controllerCount(), 0u);
+    EXPECT_EQ(CrowdDetail::instances(*crowd).controllerCount(), 0u);
 }
 
 // The Walker's left leg: its file is turned to +Z up, and the person has turned.

@@ -7,6 +7,7 @@
 #include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/gpu/PosePipeline.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+#include <osgGpuAnimation/nodes/detail/CrowdDetail.h>
 
 #include <osgUtil/LineSegmentIntersector>
 
@@ -124,9 +125,10 @@ TEST_F(PosedCharactersGLTest, ofACrowdThoseWithoutAPoseStayInTheirBatch)
     std::map<std::size_t, std::size_t> found;
     for (std::size_t number = 0; number < everybody; ++number)
     {
-        const std::size_t slot = number % every == 0 ? 1 : 0, index = crowd->getInstances().indexOf(instances[number]);
-        EXPECT_LE(differenceFromTwin(crowd->getInstances().controllerCopy(index),
-                                     crowd->getInstances().rootMatrix(index), slot, found[slot]++),
+        const std::size_t slot = number % every == 0 ? 1 : 0,
+                          index = CrowdDetail::instances(*crowd).indexOf(instances[number]);
+        EXPECT_LE(differenceFromTwin(CrowdDetail::instances(*crowd).controllerCopy(index),
+                                     CrowdDetail::instances(*crowd).rootMatrix(index), slot, found[slot]++),
                   1e-5);
     }
     EXPECT_EQ(found[1], everybody / every);

@@ -119,7 +119,7 @@ TEST(PosedMeshTest, allIntersectorsNameTheDrawnMesh)
                 EXPECT_EQ(hit.drawable, character->getChild(0)) << "the crowd shares it";
                 EXPECT_EQ(hit.nodePath.back(), character->getChild(0));
                 EXPECT_EQ(hit.nodePath.size(), 3u);
-                EXPECT_EQ(AnimatedCrowd::instanceOf(hit), isCrowd ? std::optional(instance) : std::nullopt);
+                EXPECT_EQ(instanceOf(hit), isCrowd ? std::optional(instance) : std::nullopt);
             }
         };
         expectNamed(ray->getIntersections());
@@ -150,11 +150,11 @@ TEST(PosedMeshTest, crowdsArePickedBelowInsertedGroups)
         ASSERT_EQ(line->getIntersections().size(), 101u) << "all instances, and the ground once";
         auto hit = line->getIntersections().begin();
         EXPECT_EQ(hit->drawable, ground);
-        EXPECT_FALSE(AnimatedCrowd::instanceOf(*hit));
+        EXPECT_FALSE(instanceOf(*hit));
         for (const AnimatedCrowd::Instance instance : instances)
         {
             ++hit;
-            ASSERT_EQ(AnimatedCrowd::instanceOf(*hit), instance);
+            ASSERT_EQ(instanceOf(*hit), instance);
             EXPECT_EQ(hit->drawable, character->getChild(0));
             ASSERT_TRUE(jointOf(*hit));
             EXPECT_EQ(jointOf(*hit)->instance, instance);

@@ -8,6 +8,7 @@
 #include <osgGpuAnimation/gpu/PosePipeline.h>
 #include <osgGpuAnimation/mesh/lod/LodLevels.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+#include <osgGpuAnimation/nodes/detail/CrowdDetail.h>
 
 #include <glm/geometric.hpp>
 
@@ -78,7 +79,7 @@ protected:
     double pixelAt(const std::vector<glm::dvec3>& positions, std::size_t index) const
     {
         double depth = 1e30;
-        const AffineMatrix& root = _crowd->getInstances().rootMatrix(index);
+        const AffineMatrix& root = CrowdDetail::instances(*_crowd).rootMatrix(index);
         const osg::Matrixd toEye = osg::Matrixd::translate(_crowd->getOrigin()) * _crowdView;
         for (const glm::dvec3& position : positions)
         {
@@ -86,7 +87,7 @@ protected:
             depth = std::min(depth, -(osg::Vec3d(placed.x, placed.y, placed.z) * toEye).z());
         }
         const double perUnit = pictureSide() / (2.0 * std::tan(0.5 * osg::DegreesToRadians(fieldOfView)) * depth);
-        return 1.0 / (perUnit * static_cast<double>(_crowd->getInstances().scale(index)));
+        return 1.0 / (perUnit * static_cast<double>(CrowdDetail::instances(*_crowd).scale(index)));
     }
 
     osg::ref_ptr<AnimatedCrowd> _crowd;
@@ -117,7 +118,7 @@ TEST_F(SharedPosesGLTest, posesAndLevelsTogetherStayWithinThePixelError)
     for (const float pixelError : {0.5f, 2.0f})
     {
         SCOPED_TRACE(pixelError);
-        ASSERT_TRUE(_crowd->setPixelError(pixelError));
+        ASSERT_TRUE(_crowd->getMeshes().setPixelError(pixelError));
         drawNext(0.0);
         const std::uint64_t before = pipeline().getCounters().instancesEvaluated;
         drawNext(0.37);
@@ -132,8 +133,8 @@ TEST_F(SharedPosesGLTest, posesAndLevelsTogetherStayWithinThePixelError)
             {
                 const PlacedInstances::Drawn& instance = draw.placed->drawn[i];
                 std::vector<AffineMatrix> exact;
-                Pose::evaluate(_crowd->getAnimationSet(), _crowd->getInstances().instruction(instance.instance),
-                               AffineMatrix(), exact);
+                Pose::evaluate(_crowd->getAnimationSet(),
+                               CrowdDetail::instances(*_crowd).instruction(instance.instance), AffineMatrix(), exact);
                 std::vector<glm::dvec3> positions;
                 const double ofPose = farthestApart(
                     mesh(), pipeline().readPalette(state(), _crowd->getAnimationSet(), draw.slot, instance.pose), exact,
@@ -151,7 +152,7 @@ TEST_F(SharedPosesGLTest, posesAndLevelsTogetherStayWithinThePixelError)
 
 TEST_F(SharedPosesGLTest, uploadsFollowWhatChanges)
 {
-    ASSERT_TRUE(_crowd->setPixelError(1.0f));
+    ASSERT_TRUE(_crowd->getMeshes().setPixelError(1.0f));
     const auto bytesAt = [&](double time)
     {
         const auto bytes = [&]
@@ -176,7 +177,7 @@ TEST_F(SharedPosesGLTest, uploadsFollowWhatChanges)
 // The buffer of placements is a new one after instances have come.
 TEST_F(SharedPosesGLTest, aCrowdThatGrowsKeepsItsPlaces)
 {
-    ASSERT_TRUE(_crowd->setPixelError(0.1f));
+    ASSERT_TRUE(_crowd->getMeshes().setPixelError(0.1f));
     drawNext(0.0);
     drawNext(0.1);
     AnimationController controller(_crowd->getSharedAnimationSet());
@@ -186,7 +187,7 @@ TEST_F(SharedPosesGLTest, aCrowdThatGrowsKeepsItsPlaces)
     drawNext(0.2);
     EXPECT_GT(sharing(), 0u);
     const osg::ref_ptr<osg::Image> shared = picture().copy();
-    ASSERT_TRUE(_crowd->setPixelError(0.0f));
+    ASSERT_TRUE(_crowd->getMeshes().setPixelError(0.0f));
     drawNext(0.2);
     EXPECT_LE(Picture::meanDifference(*shared, picture().image()), 0.02);
 }
@@ -199,7 +200,7 @@ TEST_F(SharedPosesGLTest, othersKeepPosesOfTheirOwn)
     const std::uint64_t before = pipeline().getCounters().instancesEvaluated;
     drawNext(0.1);
     const std::uint64_t everybody = pipeline().getCounters().instancesEvaluated - before;
-    ASSERT_TRUE(_crowd->setPixelError(1.0f));
+    ASSERT_TRUE(_crowd->getMeshes().setPixelError(1.0f));
     drawNext(0.2);
     EXPECT_LE(sharing(), everybody);
     EXPECT_GT(sharing(), everybody * 3 / 4) << "the others leave nothing to poses after their level of detail";
@@ -217,7 +218,7 @@ TEST_F(SharedPosesGLTest, theyLookAsWithPosesOfTheirOwn)
     for (std::size_t i = 0; i < _instances.size(); i += 3)
         ASSERT_TRUE(_crowd->setTint(_instances[i], osg::Vec4(1, 0.2f, 0.1f, 1)));
     const osg::ref_ptr<osg::Image> exact = pictureOf(_crowd, {0.0, 0.45});
-    ASSERT_TRUE(_crowd->setPixelError(0.25f));
+    ASSERT_TRUE(_crowd->getMeshes().setPixelError(0.25f));
     drawNext(0.45);
     EXPECT_GT(sharing(), 0u);
     EXPECT_LE(Picture::meanDifference(*exact, picture().image()), 0.025);
@@ -249,7 +250,7 @@ TEST_F(SharedPosesGLTest, moreThanAChunkOfPosesIsDrawnAndEachIsEvaluatedOnce)
     viewer().getCamera()->setViewMatrixAsLookAt(osg::Vec3d(0, -500, 0), osg::Vec3d(), osg::Vec3d(0, 0, 1));
     pictureOf(crowd, {0.0, 0.1});
     const int expected = picture().pixelsDrawn();
-    ASSERT_TRUE(crowd->setPixelError(static_cast<float>(0.0036 / pixel)));
+    ASSERT_TRUE(crowd->getMeshes().setPixelError(static_cast<float>(0.0036 / pixel)));
     const std::uint64_t before = pipeline().getCounters().instancesEvaluated;
     pictureOf(crowd, {0.2});
     const std::uint64_t evaluated = pipeline().getCounters().instancesEvaluated - before;
@@ -266,7 +267,7 @@ TEST_F(SharedPosesGLTest, meshesBelowOtherNodesMove)
     group->addChild(&mesh());
     _crowd->removeChild(0, 1);
     _crowd->addChild(group);
-    ASSERT_TRUE(_crowd->setPixelError(0.5f));
+    ASSERT_TRUE(_crowd->getMeshes().setPixelError(0.5f));
     const osg::ref_ptr<osg::Image> early = pictureOf(_crowd, {0.0, 0.1});
     const osg::ref_ptr<osg::Image> late = pictureOf(_crowd, {0.6});
     EXPECT_GT(Picture::pixelsDifferent(*early, *late), 100);
@@ -276,7 +277,7 @@ TEST_F(SharedPosesGLTest, timesBeyondAllNumbersShowTheStart)
 {
     for (const AnimatedCrowd::Instance instance : _instances)
         _crowd->getController(instance)->setSpeed(1e308);
-    ASSERT_TRUE(_crowd->setPixelError(0.5f));
+    ASSERT_TRUE(_crowd->getMeshes().setPixelError(0.5f));
     const osg::ref_ptr<osg::Image> first = pictureOf(_crowd, {0.0, 10.0, 30.0});
     EXPECT_GT(sharing(), 0u);
     EXPECT_GT(picture().pixelsDrawn(), 100);
@@ -285,7 +286,7 @@ TEST_F(SharedPosesGLTest, timesBeyondAllNumbersShowTheStart)
 // Cameras that see the same take the same list; a copy has placements of its own.
 TEST_F(SharedPosesGLTest, copiesAreIndependent)
 {
-    ASSERT_TRUE(_crowd->setPixelError(1.0f));
+    ASSERT_TRUE(_crowd->getMeshes().setPixelError(1.0f));
     const osg::ref_ptr<AnimatedCrowd> copy = osg::clone(_crowd.get());
     const osg::ref_ptr<osg::Image> before = pictureOf(_crowd, {0.0, 0.2});
     for (const AnimatedCrowd::Instance instance : _instances)

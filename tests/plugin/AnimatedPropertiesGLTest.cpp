@@ -285,7 +285,7 @@ TEST_F(AnimatedPropertiesGLTest, storedScenesShowAgainWhatIsHiddenNow)
     const ImportedModel model = importedFrom(file.document());
     model.root->getOrCreateStateSet()->setMode(GL_LIGHTING, osg::StateAttribute::ON);
     at(*model.root, 1.0);
-    ASSERT_TRUE(model.character->setMeshVisible("still", false));
+    ASSERT_TRUE(model.character->getMeshes().setVisible("still", false));
     for (const char* format : {"osgb", "osgt", "osgx"})
     {
         SCOPED_TRACE(format);

@@ -399,7 +399,7 @@ TEST(AnimationPointersTest, everyFactorReachesItsUniform)
         for (std::size_t i = 0; i < expected.size(); ++i)
             EXPECT_NEAR(shown(*copy)[i], expected[i], 1e-6f);
         EXPECT_EQ(shown(*model.character), atRest);
-        ASSERT_TRUE(copy->setMaterialVariant(""));
+        ASSERT_TRUE(copy->getMeshes().setVariant(""));
         copy->update(1.0);
         EXPECT_NEAR(shown(*copy)[0], expected[0], 1e-6f);
     }

@@ -8,6 +8,8 @@
 #include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+#include <osgGpuAnimation/nodes/detail/CrowdDetail.h>
+#include <osgGpuAnimation/nodes/RootMotionCallback.h>
 
 #include <osg/ComputeBoundsVisitor>
 #include <osgDB/ReadFile>
@@ -178,7 +180,8 @@ TEST_F(AxesTest, storedScenesKeepTheAxes)
             EXPECT_EQ(again.getFileToNode(), crowd->getFileToNode());
             ASSERT_EQ(again.getNumInstances(), crowd->getNumInstances());
             for (std::size_t i = 0; i < crowd->getNumInstances(); ++i)
-                EXPECT_EQ(again.getInstances().rootMatrix(i).rows, crowd->getInstances().rootMatrix(i).rows);
+                EXPECT_EQ(CrowdDetail::instances(again).rootMatrix(i).rows,
+                          CrowdDetail::instances(*crowd).rootMatrix(i).rows);
         }
     }
 }

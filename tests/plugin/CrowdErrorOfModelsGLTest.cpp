@@ -10,6 +10,7 @@
 #include <osgGpuAnimation/looks/CharacterProgram.h>
 #include <osgGpuAnimation/mesh/lod/CharacterLevels.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+#include <osgGpuAnimation/nodes/detail/CrowdDetail.h>
 
 #include <cmath>
 #include <cstdio>
@@ -78,12 +79,12 @@ protected:
     double pixelAt(const std::vector<glm::dvec3>& positions, std::size_t index) const
     {
         double depth = 1e30;
-        const AffineMatrix& root = crowd->getInstances().rootMatrix(index);
+        const AffineMatrix& root = CrowdDetail::instances(*crowd).rootMatrix(index);
         for (const glm::dvec3& position : positions)
             depth = std::min(depth, static_cast<double>(root.transformPoint(glm::vec3(position)).y));
         depth += crowd->getOrigin().y();
         const double perUnit = pictureSide() / (2.0 * std::tan(0.5 * osg::DegreesToRadians(fieldOfView)) * depth);
-        return 1.0 / (perUnit * static_cast<double>(crowd->getInstances().scale(index)));
+        return 1.0 / (perUnit * static_cast<double>(CrowdDetail::instances(*crowd).scale(index)));
     }
 
     std::vector<glm::dvec3> positionsIn(const std::vector<AffineMatrix>& palette) const
@@ -106,7 +107,7 @@ protected:
 
 TEST_P(CrowdErrorOfModelsGLTest, posesAndLevelsTogetherStayWithinThePixelError)
 {
-    ASSERT_TRUE(crowd->setPixelError(pixelError));
+    ASSERT_TRUE(crowd->getMeshes().setPixelError(pixelError));
     drawAt(0.0);
     record->draws.clear();
     drawAt(0.37);
@@ -121,7 +122,7 @@ TEST_P(CrowdErrorOfModelsGLTest, posesAndLevelsTogetherStayWithinThePixelError)
         {
             const PlacedInstances::Drawn& instance = draw.placed->drawn[i];
             std::vector<AffineMatrix> exact;
-            Pose::evaluate(set, crowd->getInstances().instruction(instance.instance), AffineMatrix(), exact);
+            Pose::evaluate(set, CrowdDetail::instances(*crowd).instruction(instance.instance), AffineMatrix(), exact);
             const double limit = static_cast<double>(pixelError) * pixelAt(positionsIn(exact), instance.instance);
             const ShownSurface surface(*crowd, set, &levels, draw.level,
                                        PosePipeline::of(state())->readPalette(state(), set, draw.slot, instance.pose));

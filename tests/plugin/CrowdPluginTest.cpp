@@ -4,6 +4,7 @@
 
 #include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+#include <osgGpuAnimation/nodes/detail/CrowdDetail.h>
 
 #include <osgDB/FileNameUtils>
 
@@ -30,7 +31,7 @@ protected:
 
     static osg::Vec3d placeOf(const AnimatedCrowd& crowd, std::size_t index)
     {
-        return crowd.getPlacement(crowd.getInstances().handleOf(index)).getTrans();
+        return crowd.getPlacement(CrowdDetail::instances(crowd).handleOf(index)).getTrans();
     }
 
     static std::vector<std::pair<int, double>> playedBy(const AnimatedCrowd& crowd)
@@ -38,7 +39,7 @@ protected:
         std::vector<std::pair<int, double>> played;
         for (std::size_t index = 0; index < crowd.getNumInstances(); ++index)
         {
-            const AnimationController controller = crowd.getInstances().controllerCopy(index);
+            const AnimationController controller = CrowdDetail::instances(crowd).controllerCopy(index);
             played.emplace_back(controller.clip(), controller.time());
         }
         return played;
@@ -91,7 +92,7 @@ TEST_F(CrowdPluginTest, readsColumnsAndRowsByTheBounds)
     EXPECT_NEAR(placeOf(*crowd, 0).x() + placeOf(*crowd, 11).x(), 0.0, 1e-4 * spacing);
     EXPECT_NEAR(placeOf(*crowd, 0).y() + placeOf(*crowd, 11).y(), 0.0, 1e-4 * spacing);
     EXPECT_EQ(placeOf(*crowd, 0).z(), placeOf(*crowd, 11).z());
-    const osg::Matrixd placement = crowd->getPlacement(crowd->getInstances().handleOf(0));
+    const osg::Matrixd placement = crowd->getPlacement(CrowdDetail::instances(*crowd).handleOf(0));
     EXPECT_EQ(osg::Matrixd::transform3x3(osg::Vec3d(0, 1, 0), crowd->getFileToNode() * placement), osg::Vec3d(0, 0, 1))
         << "+Z is up, as for the model itself";
     EXPECT_EQ(osg::Matrixd::transform3x3(osg::Vec3d(0, 0, 1), placement), osg::Vec3d(0, 0, 1));
@@ -134,8 +135,8 @@ TEST_F(CrowdPluginTest, takesOptions)
     for (const char* clips : {"clips=Slide", "clips=1", "clips=\"Slide,1\""})
         for (const auto& [clip, time] : playedBy(*readCrowd("arm.gltf.3x3.crowd", clips)))
             EXPECT_EQ(clip, 1) << clips;
-    EXPECT_EQ(readCrowd("arm.gltf.2x2.crowd", "")->getPixelError(), 0.0f);
-    EXPECT_EQ(readCrowd("arm.gltf.2x2.crowd", "pixelError=0.5")->getPixelError(), 0.5f);
+    EXPECT_EQ(readCrowd("arm.gltf.2x2.crowd", "")->getMeshes().getPixelError(), 0.0f);
+    EXPECT_EQ(readCrowd("arm.gltf.2x2.crowd", "pixelError=0.5")->getMeshes().getPixelError(), 0.5f);
     const osg::ref_ptr<AnimatedCrowd> wide = readCrowd("arm.gltf.2x2.crowd", "spacing=7.5");
     EXPECT_NEAR(placeOf(*wide, 1).x() - placeOf(*wide, 0).x(), 7.5, 1e-6);
     EXPECT_NEAR(placeOf(*wide, 2).y() - placeOf(*wide, 0).y(), 7.5, 1e-6);

@@ -127,7 +127,7 @@ TEST(ExportedPartsTest, meshesAreFoundByTheirNodesNames)
     ASSERT_TRUE(read);
     for (const char* name : {"Hat", "Coat"})
     {
-        const SkinnedGeometry* const mesh = findCharacter(*read)->findMesh(name);
+        const SkinnedGeometry* const mesh = findCharacter(*read)->getMeshes().find(name);
         ASSERT_TRUE(mesh) << name;
         EXPECT_EQ(mesh->getName(), "Mesh");
         EXPECT_EQ(nodeNameOf(*mesh), name);
@@ -138,12 +138,12 @@ TEST(ExportedPartsTest, hiddenMeshesComeBackHidden)
 {
     const ImportedModel model = imported(skinnedFile("Hat", "Coat"));
     ASSERT_TRUE(model.root);
-    ASSERT_TRUE(findCharacter(*model.root)->setMeshVisible("Coat", false));
+    ASSERT_TRUE(findCharacter(*model.root)->getMeshes().setVisible("Coat", false));
     const osg::ref_ptr<osg::Group> read = throughGlb(*model.root);
     ASSERT_TRUE(read);
     for (const auto& [name, isHidden] : {std::pair("Hat", false), std::pair("Coat", true)})
     {
-        const SkinnedGeometry* const mesh = findCharacter(*read)->findMesh(name);
+        const SkinnedGeometry* const mesh = findCharacter(*read)->getMeshes().find(name);
         ASSERT_TRUE(mesh) << name;
         EXPECT_EQ(mesh->getNodeMask() == 0, isHidden) << name;
     }
@@ -462,7 +462,7 @@ TEST(ExportedPartsTest, variantsAreWrittenBesideTheOwnMaterial)
         ASSERT_TRUE(model.root);
         if (*shown)
         {
-            ASSERT_TRUE(findCharacter(*model.root)->setMaterialVariant(shown));
+            ASSERT_TRUE(findCharacter(*model.root)->getMeshes().setVariant(shown));
         }
         const Json document = documentOf(*model.root);
         const Json& primitive = document["meshes"][0]["primitives"][0];

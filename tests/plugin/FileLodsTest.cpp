@@ -146,7 +146,7 @@ TEST(FileLodsTest, variantsChangeEveryLevel)
     document["meshes"][0]["primitives"][0]["extensions"]["KHR_materials_variants"]["mappings"] = {
         {{"material", 1}, {"variants", {0}}}};
     const ImportedModel model = importedDocument(document);
-    ASSERT_TRUE(model.character->setMaterialVariant("red"));
+    ASSERT_TRUE(model.character->getMeshes().setVariant("red"));
     const osg::LOD& lod = *lodsOf(*model.character)[0];
     for (unsigned int level = 0; level < lod.getNumChildren(); ++level)
         EXPECT_EQ(lod.getChild(level)->getStateSet()->getName(), "red") << level;

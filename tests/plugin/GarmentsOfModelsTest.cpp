@@ -129,7 +129,7 @@ public:
             const auto& mesh = dynamic_cast<const SkinnedGeometry&>(*whole->getChild(i));
             std::string node = mesh.getName();
             (void)mesh.getUserValue("osgGpuAnimation.node", node);
-            const SkinnedGeometry* other = dressed.findMesh(node);
+            const SkinnedGeometry* other = dressed.getMeshes().find(node);
             EXPECT_NE(other, nullptr) << node;
             if (!other) continue;
             largest = std::max(largest, largestDistance(*whole->getPosedMesh(mesh), *dressed.getPosedMesh(*other)));
@@ -207,7 +207,7 @@ TEST(GarmentsOfModelsTest, areKeptInStoredScenes)
     {
         KnightsClothes knight(dressing);
         ASSERT_TRUE(knight.body->wear(knight.garment));
-        ASSERT_TRUE(knight.body->setMeshVisible("Round_Shield", false));
+        ASSERT_TRUE(knight.body->getMeshes().setVisible("Round_Shield", false));
         knight.play("Running_A", 0.3);
         const osg::ref_ptr<osg::Group> scene = new osg::Group;
         scene->addChild(knight.body);
@@ -222,10 +222,10 @@ TEST(GarmentsOfModelsTest, areKeptInStoredScenes)
             EXPECT_EQ(first.getController().sharedSet(), second.getController().sharedSet());
             EXPECT_EQ(first.getAnimationSet().paletteSize(), knight.body->getAnimationSet().paletteSize());
             EXPECT_LT(knight.largestDistanceOf(first), 2.5e-6);
-            EXPECT_EQ(first.findMesh("Round_Shield")->getNodeMask(), 0u);
-            ASSERT_TRUE(first.setMeshVisible("Round_Shield", true));
+            EXPECT_EQ(first.getMeshes().find("Round_Shield")->getNodeMask(), 0u);
+            ASSERT_TRUE(first.getMeshes().setVisible("Round_Shield", true));
             EXPECT_EQ(trianglesOf(first), trianglesOf(*knight.whole));
-            EXPECT_TRUE(second.takeOff(second.findMesh("Knight_Cape")));
+            EXPECT_TRUE(second.takeOff(second.getMeshes().find("Knight_Cape")));
             EXPECT_EQ(second.getNumChildren(), knight.whole->getNumChildren() - clothes.size());
             EXPECT_TRUE(second.getAnimationSet().garments().empty());
             EXPECT_EQ(first.getNumChildren(), knight.whole->getNumChildren());
@@ -242,12 +242,12 @@ TEST(GarmentsOfModelsTest, meshesAreFoundByTheNamesOfTheirNodes)
     file.slide(hand);
     const ImportedModel model = imported(file);
     ASSERT_TRUE(model.character);
-    EXPECT_EQ(model.character->findMesh("Sword"), primitiveOf(model, sword).geometry);
-    EXPECT_EQ(model.character->findMesh("Hand"), nullptr);
+    EXPECT_EQ(model.character->getMeshes().find("Sword"), primitiveOf(model, sword).geometry);
+    EXPECT_EQ(model.character->getMeshes().find("Hand"), nullptr);
     const StoredScene files;
     const osg::ref_ptr<osg::Node> read = files.throughFile(*model.root, "osgb");
     ASSERT_TRUE(read);
-    EXPECT_NE(findCharacter(*read)->findMesh("Sword"), nullptr);
+    EXPECT_NE(findCharacter(*read)->getMeshes().find("Sword"), nullptr);
 }
 
 TEST_F(KnightsClothesGLTest, showTheWholeKnight)
@@ -267,8 +267,8 @@ TEST_F(KnightsClothesGLTest, showTheWholeKnight)
         const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*knight.body);
         ASSERT_TRUE(crowd->add(osg::Matrixd(), knight.body->getController()));
         EXPECT_EQ(Picture::pixelsDifferent(*pictureOf(crowd, {0.0}), *expected), 0);
-        ASSERT_TRUE(knight.body->setMeshVisible("Knight_Cape", false));
-        ASSERT_TRUE(knight.whole->setMeshVisible("Knight_Cape", false));
+        ASSERT_TRUE(knight.body->getMeshes().setVisible("Knight_Cape", false));
+        ASSERT_TRUE(knight.whole->getMeshes().setVisible("Knight_Cape", false));
         const osg::ref_ptr<osg::Image> without = pictureOf(knight.whole, {0.0});
         EXPECT_EQ(Picture::pixelsDifferent(*pictureOf(knight.body, {0.0}), *without), 0);
         EXPECT_GT(Picture::pixelsDifferent(*without, *expected), 10);

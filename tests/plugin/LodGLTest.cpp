@@ -42,20 +42,20 @@ protected:
     {
         const osg::ref_ptr<osg::Node> model = osgDB::readRefNodeFile(file);
         const osg::ref_ptr<AnimatedCharacter> character = findCharacter(*model);
-        EXPECT_TRUE(character->setPixelError(pixelError));
+        EXPECT_TRUE(character->getMeshes().setPixelError(pixelError));
         const osg::Matrixd upright = character->getWorldMatrices().front();
         osg::ref_ptr<osg::Group> scene = new osg::Group;
         osg::ref_ptr<AnimatedCrowd> crowd;
         if (isCrowd)
         {
             crowd = new AnimatedCrowd(*character);
-            EXPECT_EQ(crowd->getPixelError(), pixelError);
+            EXPECT_EQ(crowd->getMeshes().getPixelError(), pixelError);
             scene->addChild(crowd);
         }
         for (int i = 0; i < across * across; ++i)
         {
             const osg::ref_ptr<AnimatedCharacter> copy = osg::clone(character.get(), osg::CopyOp::DEEP_COPY_NODES);
-            EXPECT_EQ(copy->getPixelError(), pixelError);
+            EXPECT_EQ(copy->getMeshes().getPixelError(), pixelError);
             copy->getController().seek(0.17 * i);
             const double gap = 2.0 * character->getBound().radius();
             copy->setMatrix(upright * osg::Matrix::translate(gap * (i % across - across / 2), gap * (i / across), 0.0));

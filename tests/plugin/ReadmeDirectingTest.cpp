@@ -13,6 +13,7 @@
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/GroundFeet.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
+#include <osgGpuAnimation/nodes/RootMotionCallback.h>
 #include <osgGpuAnimation/nodes/SpringBones.h>
 #include <osgGpuAnimation/nodes/StateGraphFile.h>
 

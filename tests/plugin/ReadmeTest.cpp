@@ -97,8 +97,8 @@ TEST_F(ReadmeTest, crowds)
     }
     EXPECT_EQ(crowd->getController(fox.value())->clip(), crowd->getAnimationSet().findClip("Walk"));
 
-    if (auto pixels = crowd->setPixelError(0.5f); !pixels) std::cerr << pixels.error().message << std::endl;
-    EXPECT_EQ(crowd->getPixelError(), 0.5f);
+    if (auto pixels = crowd->getMeshes().setPixelError(0.5f); !pixels) std::cerr << pixels.error().message << std::endl;
+    EXPECT_EQ(crowd->getMeshes().getPixelError(), 0.5f);
 
     osg::ref_ptr<osgUtil::LineSegmentIntersector> ray =
         new osgUtil::LineSegmentIntersector(osg::Vec3d(101, 20, 100), osg::Vec3d(101, 20, -100));
@@ -106,7 +106,7 @@ TEST_F(ReadmeTest, crowds)
     crowd->accept(visitor);
     ASSERT_TRUE(ray->containsIntersections());
     osgUtil::LineSegmentIntersector::Intersection hit = ray->getFirstIntersection();
-    auto instance = AnimatedCrowd::instanceOf(hit);
+    auto instance = instanceOf(hit);
     EXPECT_EQ(instance, fox.value());
 
     const AnimatedCrowd::Instance leaver = fox.value();
@@ -164,9 +164,9 @@ TEST_F(ReadmeTest, garmentsAndParts)
     EXPECT_EQ(fox->getNumChildren(), 2 * before);
     if (!fox->takeOff(coat)) std::cout << "the coat was not worn" << std::endl;
     EXPECT_EQ(fox->getNumChildren(), before);
-    if (fox->findMesh("Lantern")) succeeded(fox->setMeshVisible("Lantern", false));
-    EXPECT_EQ(fox->findMesh("Lantern")->getNodeMask(), 0u);
-    EXPECT_NE(fox->findMesh("Body")->getNodeMask(), 0u);
+    if (fox->getMeshes().find("Lantern")) succeeded(fox->getMeshes().setVisible("Lantern", false));
+    EXPECT_EQ(fox->getMeshes().find("Lantern")->getNodeMask(), 0u);
+    EXPECT_NE(fox->getMeshes().find("Body")->getNodeMask(), 0u);
 }
 
 TEST_F(ReadmeTest, ourPluginIsChosenByAnAlias)

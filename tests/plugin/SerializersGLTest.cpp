@@ -146,14 +146,14 @@ TEST_P(SerializersGLTest, crowdsAtLevelsOfDetailDrawTheSameTriangles)
     std::map<float, std::vector<osg::ref_ptr<osg::Node>>> read; // by pixel error
     for (const float pixels : {0.5f, 4.0f})
     {
-        ASSERT_TRUE(crowd->setPixelError(pixels));
+        ASSERT_TRUE(crowd->getMeshes().setPixelError(pixels));
         for (const char* format : {"osgb", "osgt", "osgx"})
             read[pixels].push_back(files.throughFile(*crowd, format));
     }
     for (const auto& [pixels, crowds] : read)
     {
         SCOPED_TRACE(pixels);
-        ASSERT_TRUE(crowd->setPixelError(pixels));
+        ASSERT_TRUE(crowd->getMeshes().setPixelError(pixels));
         const auto expected = pictures(*crowd);
         const GLuint primitives = count->primitives();
         for (const osg::ref_ptr<osg::Node>& again : crowds)

@@ -12,6 +12,7 @@
 #include <osgGpuAnimation/looks/shading/ShaderPermutations.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+#include <osgGpuAnimation/nodes/detail/CrowdDetail.h>
 
 #include <gtest/gtest.h>
 #include <osg/Texture2D>
@@ -178,20 +179,20 @@ TEST_F(SerializersTest, pixelErrorsComeBack)
     for (const char* format : storedFormats)
         for (const float pixels : {0.0f, 0.3f})
         {
-            ASSERT_TRUE(character().setPixelError(pixels));
-            ASSERT_TRUE(crowd->setPixelError(pixels));
+            ASSERT_TRUE(character().getMeshes().setPixelError(pixels));
+            ASSERT_TRUE(crowd->getMeshes().setPixelError(pixels));
             const osg::ref_ptr<osg::Node> again = files.throughFile(*scene, format);
             const osg::ref_ptr<osg::Node> crowdAgain = files.throughFile(*crowd, format);
             ASSERT_TRUE(again && crowdAgain) << format;
-            EXPECT_EQ(findCharacter(*again)->getPixelError(), pixels) << format;
+            EXPECT_EQ(findCharacter(*again)->getMeshes().getPixelError(), pixels) << format;
             EXPECT_EQ(findCharacter(*again)->getClipBounds(0)._max, character().getClipBounds(0)._max) << format;
-            EXPECT_EQ(dynamic_cast<AnimatedCrowd&>(*crowdAgain).getPixelError(), pixels) << format;
+            EXPECT_EQ(dynamic_cast<AnimatedCrowd&>(*crowdAgain).getMeshes().getPixelError(), pixels) << format;
         }
     for (const float wrong : {-0.5f, std::nanf(""), std::numeric_limits<float>::infinity()})
     {
-        EXPECT_FALSE(character().setPixelError(wrong));
-        EXPECT_FALSE(crowd->setPixelError(wrong));
-        EXPECT_EQ(crowd->getPixelError(), 0.3f);
+        EXPECT_FALSE(character().getMeshes().setPixelError(wrong));
+        EXPECT_FALSE(crowd->getMeshes().setPixelError(wrong));
+        EXPECT_EQ(crowd->getMeshes().getPixelError(), 0.3f);
     }
 }
 
@@ -202,11 +203,11 @@ TEST_F(SerializersTest, drawnAloneComesBack)
             for (const float pixels : {0.0f, 0.3f})
             {
                 character().setDrawnTogether(isTogether);
-                ASSERT_TRUE(character().setPixelError(pixels));
+                ASSERT_TRUE(character().getMeshes().setPixelError(pixels));
                 const osg::ref_ptr<osg::Node> again = files.throughFile(*scene, format);
                 ASSERT_TRUE(again) << format;
                 EXPECT_EQ(findCharacter(*again)->isDrawnTogether(), isTogether) << format;
-                EXPECT_EQ(findCharacter(*again)->getPixelError(), pixels) << format;
+                EXPECT_EQ(findCharacter(*again)->getMeshes().getPixelError(), pixels) << format;
             }
 }
 
@@ -222,7 +223,7 @@ TEST_F(SerializersTest, aCrowdOfAnotherVersionIsRefused)
 TEST_F(SerializersTest, aCrowdKeepsItsInstances)
 {
     osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(character());
-    crowd->setOrigin(osg::Vec3d(1e6, -2e6, 30));
+    EXPECT_TRUE(crowd->setOrigin(osg::Vec3d(1e6, -2e6, 30)));
     crowd->addEventCallback(new PoseStatistics);
     AnimationController controller(crowd->getSharedAnimationSet());
     ASSERT_TRUE(crowd->add(osg::Matrixd::translate(1e6, -2e6, 31), controller));
@@ -248,13 +249,14 @@ TEST_F(SerializersTest, aCrowdKeepsItsInstances)
         EXPECT_TRUE(dynamic_cast<PoseStatistics*>(back->getEventCallback()));
         EXPECT_EQ(back->getNumChildren(), crowd->getNumChildren());
         EXPECT_NEAR((back->getBound().center() - crowd->getBound().center()).length(), 0.0, 1e-9);
-        EXPECT_EQ(back->getInstances().controllerCount(), crowd->getInstances().controllerCount());
+        EXPECT_EQ(CrowdDetail::instances(*back).controllerCount(), CrowdDetail::instances(*crowd).controllerCount());
         for (std::size_t i = 0; i < crowd->getNumInstances(); ++i)
         {
-            AnimationController first = crowd->getInstances().controllerCopy(i);
-            AnimationController second = back->getInstances().controllerCopy(i);
-            EXPECT_EQ(back->getInstances().rootMatrix(i).rows, crowd->getInstances().rootMatrix(i).rows);
-            EXPECT_EQ(back->getInstances().tint(i), crowd->getInstances().tint(i));
+            AnimationController first = CrowdDetail::instances(*crowd).controllerCopy(i);
+            AnimationController second = CrowdDetail::instances(*back).controllerCopy(i);
+            EXPECT_EQ(CrowdDetail::instances(*back).rootMatrix(i).rows,
+                      CrowdDetail::instances(*crowd).rootMatrix(i).rows);
+            EXPECT_EQ(CrowdDetail::instances(*back).tint(i), CrowdDetail::instances(*crowd).tint(i));
             EXPECT_EQ(second.state(), first.state());
             EXPECT_LE(paletteDifference(first, second), 1e-6f);
             EXPECT_LE(paletteDifference((first.advance(0.6), first), (second.advance(0.6), second)), 1e-6f);
@@ -444,7 +446,7 @@ TEST_F(SerializersTest, constraintsAndTheirTargetsComeBack)
         EXPECT_EQ(findCharacter(*read)->getAnimationSet().constraints().size(), 3u);
         AnimationController first = controller;
         AnimationController second = findCharacter(*read)->getController();
-        AnimationController instance = back->getInstances().controllerCopy(0);
+        AnimationController instance = CrowdDetail::instances(*back).controllerCopy(0);
         for (int step = 0; step < 20; ++step)
         {
             EXPECT_LE(paletteDifference(first, second), 1e-6f) << "step " << step;

@@ -7,6 +7,7 @@
 #include <osgGpuAnimation/mesh/lod/CharacterLevels.h>
 #include <osgGpuAnimation/mesh/lod/LodLevels.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+#include <osgGpuAnimation/nodes/detail/CrowdDetail.h>
 
 #include <osg/MatrixTransform>
 
@@ -94,9 +95,9 @@ void expectSameLevels(const SkinnedGeometry& expected, const SkinnedGeometry& fo
 
 void expectSameMerged(const AnimatedCrowd& expected, const AnimatedCrowd& found)
 {
-    ASSERT_TRUE(expected.getCharacterLevels() && found.getCharacterLevels());
-    EXPECT_TRUE(found.getCharacterLevels()->isOf(found, found.getAnimationSet()));
-    const auto &before = expected.getCharacterLevels()->merged(), &after = found.getCharacterLevels()->merged();
+    ASSERT_TRUE(CrowdDetail::levels(expected) && CrowdDetail::levels(found));
+    EXPECT_TRUE(CrowdDetail::levels(found)->isOf(found, found.getAnimationSet()));
+    const auto &before = CrowdDetail::levels(expected)->merged(), &after = CrowdDetail::levels(found)->merged();
     ASSERT_EQ(after.size(), before.size());
     for (std::size_t i = 0; i < before.size(); ++i)
     {
@@ -143,14 +144,14 @@ void changeLevels(AnimatedCrowd& crowd)
 {
     for (SkinnedGeometry* mesh : meshesOf(crowd))
         changeLevels(*mesh);
-    std::vector<CharacterLevels::Merged> merged = crowd.getCharacterLevels()->merged();
+    std::vector<CharacterLevels::Merged> merged = CrowdDetail::levels(crowd)->merged();
     for (CharacterLevels::Merged& parts : merged)
     {
         if (parts.steps.size() > 1) parts.steps.erase(parts.steps.begin());
         for (CharacterLevels::Step& step : parts.steps)
             step.error /= 3.0;
     }
-    crowd.setCharacterLevels(CharacterLevels::restored(crowd, crowd.getAnimationSet(), merged).value());
+    CrowdDetail::setLevels(crowd, CharacterLevels::restored(crowd, crowd.getAnimationSet(), merged).value());
 }
 
 struct FaultCase
@@ -182,9 +183,9 @@ protected:
     {
         scene = osgDB::readRefNodeFile(file);
         ASSERT_TRUE(scene);
-        ASSERT_TRUE(findCharacter(*scene)->setPixelError(0.5f));
+        ASSERT_TRUE(findCharacter(*scene)->getMeshes().setPixelError(0.5f));
         crowd = new AnimatedCrowd(*findCharacter(*scene));
-        ASSERT_TRUE(crowd->setPixelError(0.5f));
+        ASSERT_TRUE(crowd->getMeshes().setPixelError(0.5f));
         ASSERT_TRUE(crowd->add({}, AnimationController(crowd->getSharedAnimationSet())));
     }
 
@@ -257,7 +258,7 @@ const FaultCase mergedFaults[] = {
 TEST_F(StoredLevelsTest, comeBackAsTheyWere)
 {
     ASSERT_GT(stepsOf(*meshesOf(*crowd).front()), 1u);
-    ASSERT_FALSE(crowd->getCharacterLevels()->merged().empty());
+    ASSERT_FALSE(CrowdDetail::levels(*crowd)->merged().empty());
     changeLevels(*crowd); // shares its meshes with the character
     for (const char* format : storedFormats)
     {
@@ -279,7 +280,7 @@ TEST_F(StoredLevelsTest, comeBackForRealCharacters)
 {
     SKIP_WITHOUT_SHARED_FILE("assets/Knight/Knight.glb");
     makeCrowd(sharedFile("assets/Knight/Knight.glb"));
-    ASSERT_FALSE(crowd->getCharacterLevels()->merged().empty());
+    ASSERT_FALSE(CrowdDetail::levels(*crowd)->merged().empty());
     changeLevels(*crowd);
     const osg::ref_ptr<osg::Node> read = files.throughFile(*crowd, "osgb");
     const auto* back = dynamic_cast<AnimatedCrowd*>(read.get());
@@ -295,10 +296,10 @@ TEST_F(StoredLevelsTest, comeBackForRealCharacters)
 TEST_F(StoredLevelsTest, areMadeWhereAFileHasNone)
 {
     const osg::ref_ptr<AnimatedCrowd> before = new AnimatedCrowd(*crowd);
-    const std::shared_ptr<const CharacterLevels> merged = crowd->getCharacterLevels();
+    const std::shared_ptr<const CharacterLevels> merged = CrowdDetail::levels(*crowd);
     for (SkinnedGeometry* mesh : meshesOf(*crowd))
         mesh->forgetLodLevels();
-    crowd->setCharacterLevels(nullptr);
+    CrowdDetail::setLevels(*crowd, nullptr);
     EXPECT_EQ(stored("osgt").find("Levels"), std::string::npos);
     for (const char* format : storedFormats)
     {

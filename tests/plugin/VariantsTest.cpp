@@ -135,9 +135,9 @@ TEST(VariantsTest, theOptionChoosesByNameOrNumber)
         SCOPED_TRACE(choice.option);
         const ImportedModel model = importedIn(choice.option);
         ASSERT_TRUE(model.character);
-        EXPECT_EQ(model.character->getMaterialVariants(),
+        EXPECT_EQ(model.character->getMeshes().getVariants(),
                   (std::vector<std::string>{"plain", "red one", "gold", "plain 2"}));
-        EXPECT_EQ(model.character->getMaterialVariant(), choice.name);
+        EXPECT_EQ(model.character->getMeshes().getVariant(), choice.name);
         ASSERT_EQ(model.primitives.size(), 2u);
         for (const ImportedPrimitive& made : model.primitives) // the moving one, the still one
             EXPECT_EQ(made.geometry->getStateSet()->getName(), choice.material);
@@ -163,41 +163,41 @@ TEST(VariantsTest, clonesShowTheirOwnAndShareTheMeshesOfAVariant)
 {
     const ImportedModel model = importedIn("");
     AnimatedCharacter& first = *model.character;
-    ASSERT_TRUE(first.setPixelError(1.0f));
+    ASSERT_TRUE(first.getMeshes().setPixelError(1.0f));
     const osg::ref_ptr<AnimatedCharacter> second = cloneOf(first), third = cloneOf(first);
     ASSERT_EQ(&meshOf(*second), &meshOf(first));
 
-    ASSERT_TRUE(second->setMaterialVariant("red one"));
+    ASSERT_TRUE(second->getMeshes().setVariant("red one"));
     EXPECT_EQ(shown(*second), "red");
     EXPECT_EQ(shown(first), "own");
-    EXPECT_EQ(first.getMaterialVariant(), "");
+    EXPECT_EQ(first.getMeshes().getVariant(), "");
     const auto& own = dynamic_cast<const SkinnedGeometry&>(meshOf(first));
     const auto& red = dynamic_cast<const SkinnedGeometry&>(meshOf(*second));
     EXPECT_EQ(red.getVertexArray(), own.getVertexArray());
     EXPECT_EQ(red.getLodLevels(first.getAnimationSet()), own.getLodLevels(first.getAnimationSet()));
     EXPECT_EQ(red.getBoundingBox(), own.getBoundingBox());
 
-    ASSERT_TRUE(third->setMaterialVariant("red one"));
+    ASSERT_TRUE(third->getMeshes().setVariant("red one"));
     EXPECT_EQ(&meshOf(*third), &meshOf(*second)); // so they are drawn together
     EXPECT_EQ(shown(*cloneOf(*second)), "red");
-    ASSERT_TRUE(third->setMaterialVariant("gold"));
+    ASSERT_TRUE(third->getMeshes().setVariant("gold"));
     EXPECT_EQ(shown(*third), "golden");
     EXPECT_EQ(shown(*second), "red");
-    ASSERT_TRUE(second->setMaterialVariant("plain")); // the mesh has no mapping for it
-    ASSERT_TRUE(third->setMaterialVariant(""));
+    ASSERT_TRUE(second->getMeshes().setVariant("plain")); // the mesh has no mapping for it
+    ASSERT_TRUE(third->getMeshes().setVariant(""));
     EXPECT_EQ(&meshOf(*second), &meshOf(first));
     EXPECT_EQ(&meshOf(*third), &meshOf(first));
 
     // A mesh that another clone shows holds what this one plays, too.
     const osg::ref_ptr<AnimatedCharacter> fourth = cloneOf(first);
-    ASSERT_TRUE(fourth->setMaterialVariant("gold"));
+    ASSERT_TRUE(fourth->getMeshes().setVariant("gold"));
     const osg::BoundingBox larger(osg::Vec3(-50, -50, -50), osg::Vec3(50, 50, 50));
     const_cast<osg::Drawable&>(meshOf(*third)).setInitialBound(larger);
-    ASSERT_TRUE(third->setMaterialVariant("gold"));
+    ASSERT_TRUE(third->getMeshes().setVariant("gold"));
     EXPECT_EQ(&meshOf(*third), &meshOf(*fourth));
     EXPECT_EQ(meshOf(*third).getBoundingBox(), larger);
 
-    const Result<void> refused = third->setMaterialVariant("blue");
+    const Result<void> refused = third->getMeshes().setVariant("blue");
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().message, "there is no material variant \"blue\"; the variants are \"plain\", "
                                        "\"red one\", \"gold\", \"plain 2\"");
@@ -213,15 +213,15 @@ TEST(VariantsTest, areKeptInScenes)
         const osg::ref_ptr<osg::Node> scene = files.throughFile(*model.root, format);
         AnimatedCharacter* character = scene ? findCharacter(*scene) : nullptr;
         ASSERT_TRUE(character);
-        EXPECT_EQ(character->getMaterialVariants(), model.character->getMaterialVariants());
-        EXPECT_EQ(character->getMaterialVariant(), "red one");
+        EXPECT_EQ(character->getMeshes().getVariants(), model.character->getMeshes().getVariants());
+        EXPECT_EQ(character->getMeshes().getVariant(), "red one");
         EXPECT_EQ(shown(*character), "red");
         const osg::Drawable* red = &meshOf(*character);
-        ASSERT_TRUE(character->setMaterialVariant("red one"));
+        ASSERT_TRUE(character->getMeshes().setVariant("red one"));
         EXPECT_EQ(&meshOf(*character), red); // its StateSet is that of the variant
-        ASSERT_TRUE(character->setMaterialVariant(""));
+        ASSERT_TRUE(character->getMeshes().setVariant(""));
         EXPECT_EQ(shown(*character), "own");
-        ASSERT_TRUE(character->setMaterialVariant("gold"));
+        ASSERT_TRUE(character->getMeshes().setVariant("gold"));
         EXPECT_EQ(shown(*character), "golden");
     }
 }

@@ -28,7 +28,7 @@ SoakScene::SoakScene(osg::ref_ptr<osg::Node> model, std::size_t fieldCount, std:
         _root->addChild(child);
     const double density = std::max(1.0, static_cast<double>(fieldCount) / mostInstances);
     _reach = 15.0 * _model->getBound().radius() * std::sqrt(density);
-    static_cast<void>(_field->setPixelError(0.5f)); // in range
+    static_cast<void>(_field->getMeshes().setPixelError(0.5f)); // in range
     while (_fieldInstances.size() < fieldCount)
         _fieldInstances.push_back(addTo(*_field, random));
 }

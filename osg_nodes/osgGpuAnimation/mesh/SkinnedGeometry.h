@@ -109,7 +109,7 @@ public:
     };
     Colors getColors() const; ///< from the colour array and the morph targets
 
-    /// The levels of detail, see AnimatedCharacter::setPixelError(). The first call creates them from poses of the set.
+    /// The levels of detail, see CharacterMeshes::setPixelError(). The first call creates them from poses of the set.
     std::shared_ptr<const LodLevels> getLodLevels(const AnimationSet& set) const;
     /// The same without creating any, for the kit's own serializers. Null: not created, or the mesh has changed.
     std::shared_ptr<const LodLevels> findLodLevels() const;

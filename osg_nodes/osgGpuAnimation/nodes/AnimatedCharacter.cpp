@@ -1,26 +1,19 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 
-#include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/animation/bounds/MixBounds.h>
 #include <osgGpuAnimation/animation/Pose.h>
-#include <osgGpuAnimation/authoring/ClipBuilder.h>
-#include <osgGpuAnimation/authoring/CompactClips.h>
 #include <osgGpuAnimation/frame/characters/FirstDraw.h>
 #include <osgGpuAnimation/frame/stage/LodSelection.h>
 #include <osgGpuAnimation/frame/stage/PoseStage.h>
-#include <osgGpuAnimation/mesh/geometry/MaterialVariants.h>
-#include <osgGpuAnimation/mesh/geometry/MeshNames.h>
 #include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
 #include <osgGpuAnimation/mesh/geometry/PosedMesh.h>
 #include <osgGpuAnimation/nodes/callbacks/WorldTargets.h>
-#include <osgGpuAnimation/nodes/properties/AnimatedProperties.h>
 #include <osgGpuAnimation/nodes/properties/Wardrobe.h>
 #include <osgGpuAnimation/scene/OsgMatrix.h>
 #include <osgGpuAnimation/scene/traversal/CullScopes.h>
 #include <osgGpuAnimation/scene/traversal/SceneVisitor.h>
 
-#include <osg/observer_ptr>
 #include <osgUtil/CullVisitor>
 
 #include <algorithm>
@@ -30,13 +23,6 @@ namespace osgGpuAnimation
 
 namespace
 {
-
-EntryBoxes entryBoxesOf(osg::Node& node, const AnimationSet& set)
-{
-    PaletteEntryBounds bounds(set);
-    forEachMeshBelow(node, [&](const SkinnedGeometry& mesh) { bounds.add(mesh); });
-    return bounds.boxes();
-}
 
 /// The constraints with an effect, bit c for constraint c.
 std::uint64_t constraintsOf(const AnimationController& controller)
@@ -63,86 +49,14 @@ std::vector<const SkinnedGeometry*> wornMeshes(const AnimatedCharacter& garment)
     return meshes;
 }
 
-Error noInstance()
-{
-    return Error{"the crowd has no such instance (any more)"};
-}
-
 } // namespace
-
-NodeConstraint::NodeConstraint(AnimationController* controller, const std::string& name,
-                               const osg::Matrixd& fileToSpace, const osg::Matrixd& spaceToWorld,
-                               WorldTargets& worldTargets, std::uint64_t instance)
-    : _controller(controller), _name(name), _fileToSpace(fileToSpace), _spaceToWorld(spaceToWorld),
-      _worldTargets(&worldTargets), _instance(instance)
-{
-}
-
-Result<void> NodeConstraint::setTarget(const osg::Vec3d& position)
-{
-    if (!_controller) return noInstance();
-    Result<void> taken =
-        _controller->constraint(_name).setTarget(toGlm(position * osg::Matrixd::inverse(_fileToSpace)));
-    if (taken) _worldTargets->remove(_instance, _name);
-    return taken;
-}
-
-Result<void> NodeConstraint::setWorldTarget(const osg::Vec3d& position)
-{
-    Result<void> taken = setTarget(position * osg::Matrixd::inverse(_spaceToWorld));
-    if (taken) _worldTargets->set(_instance, _name, {nullptr, false, position});
-    return taken;
-}
-
-Result<void> NodeConstraint::follow(osg::Node* node, const osg::Vec3d& position)
-{
-    if (!node) return Error{"constraint \"" + _name + "\": there is no node to follow"};
-    Result<void> taken = setTarget(position * toWorld(*node, true) * osg::Matrixd::inverse(_spaceToWorld));
-    if (taken) _worldTargets->set(_instance, _name, {node, true, position});
-    return taken;
-}
-
-Result<void> NodeConstraint::setWeight(float weight)
-{
-    return _controller ? _controller->constraint(_name).setWeight(weight) : noInstance();
-}
-
-Result<void> NodeConstraint::setPole(const osg::Vec3d& direction)
-{
-    if (!_controller) return noInstance();
-    const osg::Vec3d inFile = osg::Matrixd::transform3x3(direction, osg::Matrixd::inverse(_fileToSpace));
-    return _controller->constraint(_name).setPole(toGlm(inFile));
-}
-
-Result<void> NodeConstraint::setTwist(double radians)
-{
-    return _controller ? _controller->constraint(_name).setTwist(static_cast<float>(radians)) : noInstance();
-}
-
-Result<void> NodeConstraint::setRotation(const osg::Quat& rotation)
-{
-    if (!_controller) return noInstance();
-    osg::Vec3d translation, scale;
-    osg::Quat turn, scaleAxes;
-    _fileToSpace.decompose(translation, turn, scale, scaleAxes);
-    const osg::Quat inFile = rotation * turn.inverse();
-    return _controller->constraint(_name).setRotation(
-        glm::vec4(glm::dvec4(inFile.x(), inFile.y(), inFile.z(), inFile.w())));
-}
-
-Result<void> NodeConstraint::clear()
-{
-    if (!_controller) return noInstance();
-    _worldTargets->remove(_instance, _name);
-    return _controller->constraint(_name).clear();
-}
 
 AnimatedCharacter::AnimatedCharacter() : AnimatedCharacter(nullptr) {}
 
 AnimatedCharacter::AnimatedCharacter(std::shared_ptr<const AnimationSet> set)
     : _controller(std::make_unique<AnimationController>(std::move(set))),
-      _worldTargets(std::make_unique<WorldTargets>()), _variantMeshes(std::make_shared<VariantMeshes>()),
-      _wardrobe(std::make_shared<Wardrobe>()), _properties(AnimatedProperties::of(getAnimationSet()))
+      _worldTargets(std::make_unique<WorldTargets>()), _meshes(*this, _controller.get(), nullptr),
+      _wardrobe(std::make_shared<Wardrobe>())
 {
     static const std::shared_ptr<const Axes> identity = std::make_shared<const Axes>();
     _axes = identity;
@@ -156,10 +70,9 @@ AnimatedCharacter::AnimatedCharacter(const AnimatedCharacter& other, const osg::
     : osg::MatrixTransform(other, copyop), _controller(std::make_unique<AnimationController>(*other._controller)),
       _axes(other._axes), _clipBounds(other._clipBounds), _mixBounds(other._mixBounds), _updateTime(other._updateTime),
       _worldTargets(std::make_unique<WorldTargets>(*other._worldTargets)), _isDrawnTogether(other._isDrawnTogether),
-      _pixelError(other._pixelError), _materialVariant(other._materialVariant), _variantMeshes(other._variantMeshes),
-      _wardrobe(other._wardrobe), _properties(AnimatedProperties::of(getAnimationSet()))
+      _meshes(*this, _controller.get(), nullptr), _wardrobe(other._wardrobe)
 {
-    if (_properties) _properties->bind(*this); // the children are the other's, too
+    _meshes.copySettings(other._meshes);
     // osg::Node copies its other callbacks, but not the event callbacks.
     setEventCallback(copyop(other.getEventCallback()));
     // The update traversal must reach this node without a callback.
@@ -175,11 +88,11 @@ Result<void> AnimatedCharacter::setAnimationSet(std::shared_ptr<const AnimationS
         return Error{"a set of " + std::to_string(newSet ? newSet->paletteSize() : 0) +
                      " palette entries for the meshes of one of " + std::to_string(getAnimationSet().paletteSize())};
     *_controller = AnimationController(std::move(newSet), *_controller);
-    _properties = AnimatedProperties::of(getAnimationSet());
+    _meshes.forgetProperties();
     if (_clipBounds) computeClipBounds();
     // The levels of detail depend on the poses of the clips.
     if (!isFirst) forEachMeshBelow(*this, [](SkinnedGeometry& mesh) { mesh.forgetLodLevels(); });
-    return setPixelError(_pixelError);
+    return _meshes.setPixelError(_meshes.getPixelError());
 }
 
 NodeConstraint AnimatedCharacter::constraint(const std::string& name)
@@ -197,38 +110,6 @@ void AnimatedCharacter::takeWorldTargets()
         });
 }
 
-Result<void> AnimatedCharacter::setPixelError(float pixels)
-{
-    const Result<void> prepared = LodRange::prepare(pixels, *this, getAnimationSet());
-    if (prepared) _pixelError = pixels;
-    return prepared;
-}
-
-std::vector<std::string> AnimatedCharacter::getMaterialVariants() const
-{
-    std::vector<std::string> names = variantNamesOf(*this);
-    const auto addNames = [&](const SkinnedGeometry& mesh)
-    {
-        for (const std::string& name : variantNamesOf(mesh))
-            if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
-    };
-    forEachMesh(*this, addNames);
-    return names;
-}
-
-Result<void> AnimatedCharacter::setMaterialVariant(const std::string& name)
-{
-    const std::vector<std::string> names = getMaterialVariants();
-    if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end())
-        return Error{"there is no material variant \"" + name + "\"; the variants are " +
-                     quotedNames(names, [](const std::string& known) { return known; })};
-    if (_properties) _properties->restoreMasks();
-    _variantMeshes->show(*this, name);
-    _materialVariant = name;
-    rebindProperties();
-    return {};
-}
-
 Result<WornGarment> AnimatedCharacter::wear(osg::Node* garment)
 {
     AnimatedCharacter* source = garment ? findCharacter(*garment) : nullptr;
@@ -241,10 +122,8 @@ Result<WornGarment> AnimatedCharacter::wear(osg::Node* garment)
     if (!fitted) return fitted.error();
     for (const osg::ref_ptr<SkinnedGeometry>& mesh : fitted.value().meshes)
         addChild(mesh);
-    if (_properties) _properties->restoreMasks();
-    if (!_materialVariant.empty()) _variantMeshes->show(*this, _materialVariant);
+    _meshes.showVariant();
     useOutfit(fitted.value().set);
-    rebindProperties();
     return WornGarment{fitted.value().addedEntries, fitted.value().followed, fitted.value().leftOut};
 }
 
@@ -282,24 +161,7 @@ void AnimatedCharacter::useOutfit(const std::shared_ptr<const AnimationSet>& set
         _played.clear();
         dirtyBound();
     }
-    (void)setPixelError(_pixelError);
-}
-
-SkinnedGeometry* AnimatedCharacter::findMesh(const std::string& name) const
-{
-    return firstMeshNamed(*this, name);
-}
-
-Result<void> AnimatedCharacter::setMeshVisible(const std::string& name, bool isVisible)
-{
-    const Result<std::vector<SkinnedGeometry*>> meshes = meshesNamed(*this, name);
-    if (!meshes) return meshes.error();
-    if (_properties && !_properties->isBound()) _properties->bind(*this);
-    if (_properties) _properties->restoreMasks();
-    const std::vector<SkinnedGeometry*> own = meshesNamed(*this, name).value();
-    _variantMeshes->setVisible(*this, {own.begin(), own.end()}, isVisible);
-    rebindProperties();
-    return {};
+    (void)_meshes.setPixelError(_meshes.getPixelError());
 }
 
 Result<void> AnimatedCharacter::setFileToNode(const osg::Matrixd& fileToNode)
@@ -341,14 +203,9 @@ void AnimatedCharacter::update(double simulationTime)
     if (_updateTime && simulationTime != *_updateTime) _controller->advance(simulationTime - *_updateTime, events);
     _updateTime = simulationTime;
     updateBounds();
-    if (_properties) showProperties();
+    _meshes.showProperties();
     if (!_worldTargets->isEmpty())
-        runAfterUpdate(*this,
-                       [character = osg::observer_ptr<AnimatedCharacter>(this)]
-                       {
-                           osg::ref_ptr<AnimatedCharacter> present;
-                           if (character.lock(present)) present->takeWorldTargets();
-                       });
+        runAfterUpdateOf(*this, [](AnimatedCharacter& character) { character.takeWorldTargets(); });
     if (events.isEmpty()) return;
     runAfterUpdate(*this,
                    [events, character = osg::observer_ptr<AnimatedCharacter>(this)]
@@ -357,20 +214,6 @@ void AnimatedCharacter::update(double simulationTime)
                        osg::ref_ptr<AnimatedCharacter> present;
                        if (character.lock(present)) present->updateBounds();
                    });
-}
-
-/// After changes to the meshes with the masks that the application gave them.
-void AnimatedCharacter::rebindProperties()
-{
-    if (!_properties || !_properties->isBound()) return;
-    _properties->bind(*this);
-    showProperties();
-}
-
-void AnimatedCharacter::showProperties()
-{
-    if (!_properties->isBound()) _properties->bind(*this);
-    _properties->apply(getAnimationSet(), _controller->instruction());
 }
 
 void AnimatedCharacter::updateBounds()
@@ -464,11 +307,11 @@ void AnimatedCharacter::traverse(osg::NodeVisitor& visitor)
             traverseWithBounds(*this, now, visitor);
         else if (!keepFlattenedPlace(*this, visitor))
             osg::MatrixTransform::traverse(visitor);
-        prepareFirstDraw(visitor, {*this, *_controller, _axes->rootMatrix, _pixelError, _isDrawnTogether});
+        prepareFirstDraw(visitor, {*this, *_controller, _axes->rootMatrix, _meshes.getPixelError(), _isDrawnTogether});
         return;
     }
     const DepthPass pass(*cullVisitor);
-    PoseStage::draw(*cullVisitor, {*this, *_controller, _axes->rootMatrix, _pixelError, _isDrawnTogether});
+    PoseStage::draw(*cullVisitor, {*this, *_controller, _axes->rootMatrix, _meshes.getPixelError(), _isDrawnTogether});
 }
 
 osg::BoundingBox AnimatedCharacter::boundsOf(const std::vector<PlayedClip>& played) const
@@ -501,38 +344,9 @@ osg::BoundingSphere AnimatedCharacter::computeBound() const
     return osg::BoundingSphere(transformed(box, getMatrix()));
 }
 
-RootMotionCallback::RootMotionCallback(const RootMotionCallback& other, const osg::CopyOp& copyop)
-    : osg::Object(other, copyop), osg::Callback(other, copyop), osg::NodeCallback(other, copyop)
-{
-}
-
-void RootMotionCallback::operator()(osg::Node* node, osg::NodeVisitor* visitor)
-{
-    if (auto* character = dynamic_cast<AnimatedCharacter*>(node))
-    {
-        const osg::Matrixd motion = character->takeRootMotion();
-        if (!motion.isIdentity()) character->preMult(motion);
-    }
-    traverse(node, visitor);
-}
-
 AnimatedCharacter* findCharacter(osg::Node& node)
 {
     return findBelow<AnimatedCharacter>(node);
-}
-
-Result<CompactedCharacter> compactClipsOf(AnimatedCharacter& character, double fraction)
-{
-    const EntryBoxes boxes = entryBoxesOf(character, character.getAnimationSet());
-    CompactedCharacter result;
-    result.longestSide = longestSide(character.getAnimationSet(), boxes);
-    result.tolerance = fraction * result.longestSide;
-    Result<CompactedSet> compacted = compactClips(character.getAnimationSet(), boxes, {result.tolerance});
-    if (!compacted) return compacted.error();
-    const Result<void> taken = character.setAnimationSet(compacted.value().set);
-    if (!taken) return taken.error();
-    result.errors = compacted.value().errors;
-    return result;
 }
 
 } // namespace osgGpuAnimation

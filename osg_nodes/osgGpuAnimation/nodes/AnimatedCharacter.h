@@ -3,9 +3,10 @@
 
 #include <osgGpuAnimation/animation/AnimationController.h>
 #include <osgGpuAnimation/mesh/SkinnedGeometry.h>
+#include <osgGpuAnimation/nodes/CharacterMeshes.h>
+#include <osgGpuAnimation/nodes/NodeConstraint.h>
 
 #include <osg/BoundingBox>
-#include <osg/Callback>
 #include <osg/Geometry>
 #include <osg/MatrixTransform>
 #include <osg/PrimitiveSet>
@@ -20,57 +21,11 @@
 namespace osgGpuAnimation
 {
 
-class AnimatedProperties;
 class MixBounds;
 class PosedMeshes;
-class VariantMeshes;
 class Wardrobe;
 class WorldTargets;
 struct PlayedClip;
-
-/// A constraint of an AnimatedCharacter or of an instance of an AnimatedCrowd, in OSG's types. A handle is used at once
-/// and not kept:
-///
-///     fox->constraint("look").setTarget(osg::Vec3d(0, -3, 1));
-///     fox->constraint("look").follow(bird);
-///
-/// Positions, directions and rotations are in the character's own space, of an instance in the space of its placement
-/// (OSG: +Z up), unless the function says otherwise. All functions return an error, without a change, if there is no
-/// such constraint or instance, or a number is not finite. See ConstraintHandle for the limits.
-class NodeConstraint
-{
-public:
-    /// Gives the constraint a target that moves with the character (of an instance: not with its placement).
-    Result<void> setTarget(const osg::Vec3d& position);
-    /// Gives it a target in world space. Its place relative to the character is computed at the end of every update
-    /// traversal; without a viewer by AnimatedCharacter::update().
-    Result<void> setWorldTarget(const osg::Vec3d& position);
-    /// Gives it a node as target, or a position in the node's space. The node is held weakly: after its end the last
-    /// target remains. The target is the node's place at the end of the update traversal, so a node that an update
-    /// callback moves is followed in the same frame; what moves later (a camera by its manipulator) is followed one
-    /// frame later. Of several places of a node the first counts. Error: node is null.
-    Result<void> follow(osg::Node* node, const osg::Vec3d& position = osg::Vec3d());
-    Result<void> setWeight(float weight); ///< See ConstraintHandle::setWeight().
-    /// See ConstraintHandle::setPole().
-    Result<void> setPole(const osg::Vec3d& direction);
-    Result<void> setTwist(double radians); ///< See ConstraintHandle::setTwist().
-    /// Sets the rotation of the limb's end joint; see ConstraintHandle::setRotation().
-    Result<void> setRotation(const osg::Quat& rotation);
-    Result<void> clear(); ///< See ConstraintHandle::clear(). Ends setWorldTarget() and follow().
-
-private:
-    friend class AnimatedCharacter;
-    friend class AnimatedCrowd;
-    NodeConstraint(AnimationController* controller, const std::string& name, const osg::Matrixd& fileToSpace,
-                   const osg::Matrixd& spaceToWorld, WorldTargets& worldTargets, std::uint64_t instance);
-
-    AnimationController* _controller; ///< null: there is no such instance
-    std::string _name;
-    osg::Matrixd _fileToSpace;
-    osg::Matrixd _spaceToWorld;
-    WorldTargets* _worldTargets;
-    std::uint64_t _instance;
-};
 
 /// What AnimatedCharacter::wear() has done.
 struct WornGarment
@@ -174,25 +129,9 @@ public:
     void setDrawnTogether(bool together) { _isDrawnTogether = together; }
     bool isDrawnTogether() const { return _isDrawnTogether; } ///< default: true
 
-    /// The largest error of the drawn surface on screen, in pixels: meshes are drawn with fewer triangles while the
-    /// error stays below it, see LodLevels. 0 (the default): all triangles. Each camera selects the level by distance,
-    /// with the measure of small feature culling. The call creates the levels of the present meshes, which takes time
-    /// (see MeshSimplifier); the next cull creates those of later changes. No levels are built for meshes that are not
-    /// direct children or for vertices beyond LodRange::maxVertices.
-    /// pixels: in [0, LodRange::largestPixelError]. Error: pixels is out of range or NaN.
-    Result<void> setPixelError(float pixels);
-    float getPixelError() const { return _pixelError; } ///< pixels, at least 0
-
-    /// Shows the meshes in a variant of the file's materials (glTF: KHR_materials_variants), whose maps the import has
-    /// loaded. Clones show variants of their own; those that show the same one are drawn together. A direct child that
-    /// the variant changes is replaced by another drawable over the same arrays. Call it during the update traversal or
-    /// between frames. name: one of getMaterialVariants(); empty: the default materials. Error: another name; the
-    /// message lists the names.
-    Result<void> setMaterialVariant(const std::string& name);
-    /// The name of the present variant; empty: the default materials.
-    const std::string& getMaterialVariant() const { return _materialVariant; }
-    /// The names in the file's order, then those of garments.
-    std::vector<std::string> getMaterialVariants() const;
+    /// Visibility, material variants and levels of detail of the meshes; clones have their own.
+    CharacterMeshes& getMeshes() { return _meshes; }
+    const CharacterMeshes& getMeshes() const { return _meshes; } ///< the same, read only
 
     /// Adds the meshes of a garment from another file, bound to this character's joints by name, see
     /// "Garments" in the guide:
@@ -211,17 +150,8 @@ public:
     Result<WornGarment> wear(osg::Node* garment);
     /// Removes the meshes of a garment, and the palette entries that only the garments put on last have needed.
     /// garment: that of wear(), of this character or a clone of it, or a clone of the garment; or one of the garment's
-    /// meshes below this node, as hits and findMesh() name them. False: this character does not wear it.
+    /// meshes below this node, as hits and CharacterMeshes::find() name them. False: this character does not wear it.
     bool takeOff(const osg::Node* garment);
-
-    /// The first mesh among the children that a node of that name shows in the file; if there is none, the first mesh
-    /// of that name. Null: neither exists. Clones share it.
-    SkinnedGeometry* findMesh(const std::string& name) const;
-    /// Shows or hides the meshes of a node of the file, or if there is no such node, of that name. Clones show meshes
-    /// of their own: a direct child that changes is replaced by another drawable over the same arrays, as with material
-    /// variants. Bounds do not change. Call it during the update traversal or between frames. Error: there is no such
-    /// mesh; the message lists the nodes' names.
-    Result<void> setMeshVisible(const std::string& name, bool isVisible);
 
     /// A mesh below this node in the present pose, in the character's own space. The CPU twin computes it, and the
     /// result is kept until the pose changes. Intersectors test it in place of the mesh. withNormals: with normals and
@@ -257,8 +187,6 @@ private:
     void setMeshBounds();
     void updateBounds();
     void takeWorldTargets();
-    void showProperties();
-    void rebindProperties();
     osg::BoundingBox boundsOf(const std::vector<PlayedClip>& played) const;
     void growMeshes(const osg::BoundingBox& box);
 
@@ -275,48 +203,11 @@ private:
     mutable std::unique_ptr<PosedMeshes> _posedMeshes; ///< created on demand; copies do not share it
     mutable std::once_flag _posedMeshesMade;
     bool _isDrawnTogether = true;
-    float _pixelError = 0.0f;
-    std::string _materialVariant;
-    std::shared_ptr<VariantMeshes> _variantMeshes;   ///< never null, shared with clones
-    std::shared_ptr<Wardrobe> _wardrobe;             ///< never null, shared with clones
-    std::unique_ptr<AnimatedProperties> _properties; ///< null: the set has none
-};
-
-/// Moves its AnimatedCharacter by the root motion of the clips: after each update it multiplies the character's matrix
-/// by the motion.
-///
-///     fox->addUpdateCallback(new RootMotionCallback);
-///
-/// It has no state, so copies of a character may share it.
-class RootMotionCallback : public osg::NodeCallback
-{
-public:
-    RootMotionCallback() = default;
-    /// A copy; the callback has no state.
-    RootMotionCallback(const RootMotionCallback& other, const osg::CopyOp& copyop);
-    META_Object(osgGpuAnimation, RootMotionCallback)
-
-    /// Applies the root motion since the last call, then continues the traversal.
-    void operator()(osg::Node* node, osg::NodeVisitor* visitor) override;
-
-protected:
-    ~RootMotionCallback() override = default;
+    CharacterMeshes _meshes;
+    std::shared_ptr<Wardrobe> _wardrobe; ///< never null, shared with clones
 };
 
 /// The first AnimatedCharacter at or below the node, depth first; null if none exists.
 AnimatedCharacter* findCharacter(osg::Node& node);
-
-/// The errors of a character's compact clips.
-struct CompactedCharacter
-{
-    double longestSide = 0.0;   ///< of the model, in its own units
-    double tolerance = 0.0;     ///< the largest allowed error, in the model's units
-    std::vector<double> errors; ///< one per clip, in the model's units; 0: the clip stays exact
-};
-
-/// Replaces the character's clips by compact ones (see compactClips): no vertex moves by more than the fraction of the
-/// model's longest side. Call it after all meshes are added and before cloning.
-/// fraction: above 0. Errors: those of compactClips() and AnimatedCharacter::setAnimationSet(); the model has no size.
-Result<CompactedCharacter> compactClipsOf(AnimatedCharacter& character, double fraction);
 
 } // namespace osgGpuAnimation

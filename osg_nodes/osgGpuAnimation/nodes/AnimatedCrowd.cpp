@@ -6,11 +6,11 @@
 #include <osgGpuAnimation/animation/StateMachine.h>
 #include <osgGpuAnimation/frame/crowd/CrowdBatches.h>
 #include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
+#include <osgGpuAnimation/frame/crowd/InstanceVisits.h>
 #include <osgGpuAnimation/frame/crowd/SharedPoses.h>
 #include <osgGpuAnimation/frame/stage/LodSelection.h>
 #include <osgGpuAnimation/frame/stage/PoseStage.h>
 #include <osgGpuAnimation/mesh/geometry/MaterialVariants.h>
-#include <osgGpuAnimation/mesh/geometry/MeshNames.h>
 #include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/callbacks/WorldTargets.h>
@@ -19,7 +19,6 @@
 #include <osgGpuAnimation/scene/traversal/CullScopes.h>
 #include <osgGpuAnimation/scene/traversal/MeshVisits.h>
 
-#include <osg/observer_ptr>
 #include <osgUtil/CullVisitor>
 #include <osgUtil/IntersectionVisitor>
 #include <osgUtil/Statistics>
@@ -33,16 +32,6 @@ namespace osgGpuAnimation
 
 namespace
 {
-
-void computeBounds(CrowdInstances& instances, const osg::Group& crowd)
-{
-    const AnimationSet& set = *instances.set();
-    std::vector<const SkinnedGeometry*> meshes;
-    forEachMesh(crowd, [&](const SkinnedGeometry& mesh) { meshes.push_back(&mesh); });
-    MixBounds::Boxes boxes = mixBoxesOf(meshes, set);
-    const std::vector<Box> bounds = boundsOfClips(set, boxes.ofClips);
-    instances.setClipBounds(bounds, std::make_shared<const MixBounds>(set, std::move(boxes)));
-}
 
 Error noSuchInstance()
 {
@@ -59,63 +48,12 @@ osg::Matrixd rootFrom(const osg::Vec3d& origin, const osg::Matrixd& fileToNode, 
 
 } // namespace
 
-/// RAII: the instance whose meshes this thread visits.
-class AnimatedCrowd::InstanceScope
-{
-public:
-    explicit InstanceScope(std::size_t index) : _outer(current) { current = index; }
-    ~InstanceScope() { current = _outer; }
-
-    static inline thread_local std::size_t current = CrowdInstances::none;
-
-private:
-    std::size_t _outer;
-};
-
-/// An instance for intersectors, posed only if its sphere is hit. It is no part of the hits' node paths.
-class AnimatedCrowd::IntersectedInstance : public osg::Node
-{
-public:
-    IntersectedInstance(AnimatedCrowd& crowd, const std::vector<osg::Node*>& children)
-        : _crowd(crowd), _children(children)
-    {
-    }
-
-    void setIndex(std::size_t index)
-    {
-        _index = index;
-        dirtyBound();
-    }
-
-    void traverse(osg::NodeVisitor& visitor) override
-    {
-        const InstanceScope scope(_index);
-        auto& intersection = static_cast<osgUtil::IntersectionVisitor&>(visitor);
-        intersection.pushModelMatrix(
-            new InstanceMatrix(*intersection.getModelMatrix(), _crowd.getInstances().handleOf(_index)));
-        for (osg::Node* child : _children)
-            child->accept(visitor);
-        intersection.popModelMatrix();
-    }
-
-    osg::BoundingSphere computeBound() const override
-    {
-        const glm::vec4& sphere = _crowd.getInstances().sphere(_index);
-        return {osg::Vec3(sphere.x, sphere.y, sphere.z), sphere.w};
-    }
-
-private:
-    AnimatedCrowd& _crowd;
-    const std::vector<osg::Node*>& _children;
-    std::size_t _index = 0;
-};
-
 AnimatedCrowd::AnimatedCrowd() : AnimatedCrowd(nullptr, {}) {}
 
 AnimatedCrowd::AnimatedCrowd(std::shared_ptr<const AnimationSet> set,
                              const std::vector<osg::ref_ptr<SkinnedGeometry>>& meshes)
     : _instances(std::make_unique<CrowdInstances>(std::move(set))), _posed(std::make_unique<PosedInstances>()),
-      _worldTargets(std::make_unique<WorldTargets>()), _variantMeshes(std::make_shared<VariantMeshes>())
+      _worldTargets(std::make_unique<WorldTargets>()), _meshes(*this, nullptr, _instances->set())
 {
     // Not STATIC: the Optimizer must not flatten the transforms above into the bind pose.
     setDataVariance(osg::Object::DYNAMIC);
@@ -123,15 +61,15 @@ AnimatedCrowd::AnimatedCrowd(std::shared_ptr<const AnimationSet> set,
     setNumChildrenRequiringUpdateTraversal(getNumChildrenRequiringUpdateTraversal() + 1);
     for (const osg::ref_ptr<SkinnedGeometry>& mesh : meshes)
         addChild(mesh);
-    if (!meshes.empty()) computeBounds(*_instances, *this);
+    if (!meshes.empty()) computeBounds();
 }
 
 AnimatedCrowd::AnimatedCrowd(const AnimatedCharacter& character)
     : AnimatedCrowd(character.getController().sharedSet(), {})
 {
     _fileToNode = character.getFileToNode();
-    _pixelError = character.getPixelError();
-    _variantMeshes = character._variantMeshes;
+    _meshes.copySettings(character.getMeshes());
+    setVariantNames(*this, variantNamesOf(character));
     setName(character.getName());
     if (character.getStateSet()) setStateSet(const_cast<osg::StateSet*>(character.getStateSet()));
     addUnanimated(character, getAnimationSet(), *this);
@@ -141,31 +79,31 @@ AnimatedCrowd::AnimatedCrowd(const AnimatedCharacter& character)
     if (std::any_of(bounds.begin(), bounds.end(), [](const Box& box) { return !box.empty(); }))
         _instances->setClipBounds(bounds, character._mixBounds);
     else
-        computeBounds(*_instances, *this);
+        computeBounds();
 }
 
 AnimatedCrowd::AnimatedCrowd(const AnimatedCrowd& other, const osg::CopyOp& copyop)
     : osg::Transform(other, copyop), _instances(std::make_unique<CrowdInstances>(*other._instances)),
       _posed(std::make_unique<PosedInstances>()), _fileToNode(other._fileToNode), _origin(other._origin),
       _hasOrigin(other._hasOrigin), _updateTime(other._updateTime),
-      _worldTargets(std::make_unique<WorldTargets>(*other._worldTargets)), _pixelError(other._pixelError),
-      _sharedPoses(other._sharedPoses ? std::make_unique<SharedPoses>(*other._sharedPoses) : nullptr),
-      _characterLevels(other._characterLevels), _variantMeshes(other._variantMeshes)
+      _worldTargets(std::make_unique<WorldTargets>(*other._worldTargets)), _meshes(*this, nullptr, _instances->set()),
+      _sharedPoses(other._sharedPoses ? std::make_unique<SharedPoses>(*other._sharedPoses) : nullptr)
 {
+    _meshes.copySettings(other._meshes);
     // The update traversal must reach this node without a callback.
     setNumChildrenRequiringUpdateTraversal(getNumChildrenRequiringUpdateTraversal() + 1);
 }
 
 AnimatedCrowd::~AnimatedCrowd() = default;
 
-const AnimationSet& AnimatedCrowd::getAnimationSet() const
+void AnimatedCrowd::computeBounds()
 {
-    return *_instances->set();
-}
-
-const std::shared_ptr<const AnimationSet>& AnimatedCrowd::getSharedAnimationSet() const
-{
-    return _instances->set();
+    const AnimationSet& set = getAnimationSet();
+    std::vector<const SkinnedGeometry*> meshes;
+    forEachMesh(*this, [&](const SkinnedGeometry& mesh) { meshes.push_back(&mesh); });
+    MixBounds::Boxes boxes = mixBoxesOf(meshes, set);
+    const std::vector<Box> bounds = boundsOfClips(set, boxes.ofClips);
+    _instances->setClipBounds(bounds, std::make_shared<const MixBounds>(set, std::move(boxes)));
 }
 
 bool AnimatedCrowd::contains(Instance instance) const
@@ -176,16 +114,6 @@ bool AnimatedCrowd::contains(Instance instance) const
 std::size_t AnimatedCrowd::getNumInstances() const
 {
     return _instances->size();
-}
-
-Result<void> AnimatedCrowd::setAnimationSet(std::shared_ptr<const AnimationSet> newSet)
-{
-    if (getNumInstances() > 0 || getAnimationSet().paletteSize() > 0) return Error{"a crowd that has a set keeps it"};
-    if (!newSet) return Error{"a crowd needs a set"};
-    _instances->setSet(std::move(newSet));
-    computeBounds(*_instances, *this);
-    dirtyBound();
-    return setPixelError(_pixelError);
 }
 
 Result<AnimatedCrowd::Instance> AnimatedCrowd::add(const osg::Matrixd& placement, const AnimationController& controller,
@@ -257,9 +185,7 @@ Result<osg::Matrixd> AnimatedCrowd::jointToCrowd(Instance instance, std::size_t 
     if (index == CrowdInstances::none) return noSuchInstance();
     const std::size_t count = getAnimationSet().skeleton().jointCount();
     if (joint >= count) return Error{"there is no joint " + std::to_string(joint) + " among " + std::to_string(count)};
-    osg::Matrixd root = toOsg(_instances->rootMatrix(index));
-    root.setTrans(_instances->position(index));
-    return toOsg(Pose::jointToModel(getAnimationSet(), _instances->instruction(index), joint)) * root;
+    return toOsg(Pose::jointToModel(getAnimationSet(), _instances->instruction(index), joint)) * fileToSpace(index);
 }
 
 Result<osg::Matrixd> AnimatedCrowd::jointToCrowd(Instance instance, const std::string& joint) const
@@ -344,12 +270,13 @@ osg::Matrixd AnimatedCrowd::takeRootMotion(Instance instance)
     return index == CrowdInstances::none ? osg::Matrixd() : toOsg(_instances->takeRootMotion(index), _fileToNode);
 }
 
-bool AnimatedCrowd::setOrigin(const osg::Vec3d& origin)
+Result<void> AnimatedCrowd::setOrigin(const osg::Vec3d& origin)
 {
-    if (!std::isfinite(origin.length())) return false;
-    constexpr double farthest = std::numeric_limits<float>::max();
+    if (!std::isfinite(origin.length())) return Error{"the origin is not finite"};
+    constexpr double maxDistance = std::numeric_limits<float>::max();
     for (std::size_t index = 0; index < getNumInstances(); ++index)
-        if (!((_instances->position(index) - origin).length() < farthest)) return false;
+        if (!((_instances->position(index) - origin).length() < maxDistance))
+            return Error{"instance " + std::to_string(index) + " is too far from the origin for a float"};
     for (std::size_t index = 0; index < getNumInstances(); ++index)
     {
         AffineMatrix root = _instances->rootMatrix(index);
@@ -361,7 +288,7 @@ bool AnimatedCrowd::setOrigin(const osg::Vec3d& origin)
     _origin = origin;
     _hasOrigin = true;
     dirtyBound();
-    return true;
+    return {};
 }
 
 void AnimatedCrowd::update(double simulationTime)
@@ -371,17 +298,11 @@ void AnimatedCrowd::update(double simulationTime)
     prepareSharedPoses();
     PendingEvents events;
     if (_instances->advance(step, events)) dirtyBound();
-    if (!_worldTargets->isEmpty())
-        runAfterUpdate(*this,
-                       [crowd = osg::observer_ptr<AnimatedCrowd>(this)]
-                       {
-                           osg::ref_ptr<AnimatedCrowd> present;
-                           if (crowd.lock(present)) present->takeWorldTargets();
-                       });
+    if (!_worldTargets->isEmpty()) runAfterUpdateOf(*this, [](AnimatedCrowd& crowd) { crowd.takeWorldTargets(); });
     if (!events.isEmpty()) runAfterUpdate(*this, [events] { events.deliver(); });
 }
 
-std::optional<AnimatedCrowd::Instance> AnimatedCrowd::instanceOfMatrix(const osg::RefMatrix* matrix)
+std::optional<AnimatedCrowd::Instance> detail::instanceOfMatrix(const osg::RefMatrix* matrix)
 {
     const auto* ofInstance = dynamic_cast<const InstanceMatrix*>(matrix);
     return ofInstance ? std::optional(ofInstance->getInstance()) : std::nullopt;
@@ -394,7 +315,7 @@ osg::ref_ptr<osg::Geometry> AnimatedCrowd::getPosedMesh(Instance instance, const
 
 osg::ref_ptr<osg::Geometry> AnimatedCrowd::getPosedMesh(const SkinnedGeometry& mesh, bool withNormals) const
 {
-    return posedMesh(InstanceScope::current, mesh, withNormals);
+    return posedMesh(VisitedInstance::current(), mesh, withNormals);
 }
 
 osg::ref_ptr<osg::Geometry> AnimatedCrowd::posedMesh(std::size_t index, const SkinnedGeometry& mesh,
@@ -410,29 +331,6 @@ osg::ref_ptr<osg::Geometry> AnimatedCrowd::posedMesh(std::size_t index, const Sk
         ->of(mesh, getSharedAnimationSet(), _instances->instruction(index), _instances->rootMatrix(index), withNormals);
 }
 
-void AnimatedCrowd::acceptInstances(osg::PrimitiveFunctor& functor) const
-{
-    for (std::size_t index = 0; index < getNumInstances(); ++index)
-        forEachMesh(*this,
-                    [&](const SkinnedGeometry& mesh)
-                    {
-                        if (mesh.getNodeMask() != 0) getPosedMesh(_instances->handleOf(index), mesh)->accept(functor);
-                    });
-}
-
-SkinnedGeometry* AnimatedCrowd::findMesh(const std::string& name) const
-{
-    return firstMeshNamed(*this, name);
-}
-
-Result<void> AnimatedCrowd::setMeshVisible(const std::string& name, bool isVisible)
-{
-    const Result<std::vector<SkinnedGeometry*>> meshes = meshesNamed(*this, name);
-    if (!meshes) return meshes.error();
-    _variantMeshes->setVisible(*this, {meshes.value().begin(), meshes.value().end()}, isVisible);
-    return {};
-}
-
 void AnimatedCrowd::accept(osg::NodeVisitor& visitor)
 {
     const std::optional<double> time = updateTimeOf(visitor);
@@ -446,9 +344,9 @@ void AnimatedCrowd::traverse(osg::NodeVisitor& visitor)
     if (osgUtil::CullVisitor* cullVisitor = visitor.asCullVisitor())
         cull(*cullVisitor);
     else if (dynamic_cast<osgUtil::IntersectionVisitor*>(&visitor) || isFileWriter(visitor))
-        visitInstances(visitor);
+        visitInstances(*this, *_instances, visitor);
     else if (dynamic_cast<osgUtil::StatsVisitor*>(&visitor))
-        count(visitor);
+        visitMeshesPerInstance(*this, getNumInstances(), visitor);
     else if (const Box now = computesBounds(visitor) ? _instances->bounds() : Box(); !now.empty())
         traverseWithBounds(*this, toOsg(now), visitor);
     else if (!keepFlattenedPlace(*this, visitor))
@@ -466,8 +364,8 @@ void AnimatedCrowd::cull(osgUtil::CullVisitor& visitor)
     if (seen.size() > 0 && getAnimationSet().paletteSize() > 0)
     {
         view.look(seen);
-        if (_pixelError > 0.0f) lods = LodRange(*this, getAnimationSet(), _characterLevels);
-        const LodScale scale(visitor, PoseStage::lodView(visitor), _pixelError, lods);
+        if (_meshes.getPixelError() > 0.0f) lods = LodRange(*this, getAnimationSet(), _meshes._levels);
+        const LodScale scale(visitor, PoseStage::lodView(visitor), _meshes.getPixelError(), lods);
         draws = submitSeen(PoseStage::frame(visitor), *_instances, scale, _sharedPoses.get(), seen);
     }
     for (const DrawState& draw : draws)
@@ -493,68 +391,25 @@ void AnimatedCrowd::cull(osgUtil::CullVisitor& visitor)
         if (!dynamic_cast<const SkinnedGeometry*>(child.get())) child->accept(visitor);
 }
 
-Result<void> AnimatedCrowd::setPixelError(float pixels)
-{
-    if (const Result<void> set = LodRange::prepare(pixels, *this, getAnimationSet()); !set) return set;
-    _pixelError = pixels;
-    if (_characterLevels && !_characterLevels->isOf(*this, getAnimationSet())) _characterLevels = nullptr;
-    prepareSharedPoses();
-    return {};
-}
-
 void AnimatedCrowd::prepareSharedPoses()
 {
-    const bool isOn = _pixelError > 0.0f && getAnimationSet().paletteSize() > 0;
     if (_sharedPoses) _sharedPoses->forgetUnused();
-    if (!isOn) return; // both are kept for the next pixel error
-    if (!_characterLevels) _characterLevels = std::make_shared<const CharacterLevels>(*this, getAnimationSet());
-    if (!_sharedPoses || !_sharedPoses->isOf(*this))
+    _meshes.createLevels();
+    const bool isOn = _meshes.getPixelError() > 0.0f && getAnimationSet().paletteSize() > 0;
+    if (isOn && (!_sharedPoses || !_sharedPoses->isOf(*this))) // kept for the next pixel error
         _sharedPoses = std::make_unique<SharedPoses>(*this, getAnimationSet());
-}
-
-void AnimatedCrowd::visitInstances(osg::NodeVisitor& visitor)
-{
-    std::vector<osg::Node*> ofInstances;
-    for (const osg::ref_ptr<osg::Node>& child : _children)
-    {
-        bool hasMesh = false;
-        forEachMeshBelow(*child, [&](const SkinnedGeometry&) { hasMesh = true; });
-        hasMesh ? ofInstances.push_back(child) : child->accept(visitor);
-    }
-    const osg::ref_ptr<IntersectedInstance> intersected = new IntersectedInstance(*this, ofInstances);
-    for (std::size_t index = 0; index < getNumInstances(); ++index)
-    {
-        const InstanceScope scope(index);
-        intersected->setIndex(index);
-        if (dynamic_cast<osgUtil::IntersectionVisitor*>(&visitor))
-            visitor.apply(*intersected);
-        else
-            for (osg::Node* child : ofInstances)
-                child->accept(visitor);
-    }
-}
-
-// Statistics count a mesh once per instance.
-void AnimatedCrowd::count(osg::NodeVisitor& visitor)
-{
-    for (const osg::ref_ptr<osg::Node>& child : _children)
-    {
-        std::size_t times = dynamic_cast<SkinnedGeometry*>(child.get()) ? getNumInstances() : 1;
-        while (times-- > 0)
-            child->accept(visitor);
-    }
 }
 
 void AnimatedCrowd::releaseGLObjects(osg::State* state) const
 {
     osg::Transform::releaseGLObjects(state);
-    if (_characterLevels) _characterLevels->releaseGLObjects(state);
+    if (_meshes._levels) _meshes._levels->releaseGLObjects(state);
 }
 
 void AnimatedCrowd::resizeGLObjectBuffers(unsigned int maxSize)
 {
     osg::Transform::resizeGLObjectBuffers(maxSize);
-    if (_characterLevels) _characterLevels->resizeGLObjectBuffers(maxSize);
+    if (_meshes._levels) _meshes._levels->resizeGLObjectBuffers(maxSize);
 }
 
 osg::BoundingSphere AnimatedCrowd::computeBound() const

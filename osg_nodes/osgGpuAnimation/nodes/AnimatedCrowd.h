@@ -3,8 +3,9 @@
 
 #include <osgGpuAnimation/animation/AnimationController.h>
 #include <osgGpuAnimation/mesh/SkinnedGeometry.h>
+#include <osgGpuAnimation/nodes/CharacterMeshes.h>
+#include <osgGpuAnimation/nodes/NodeConstraint.h>
 
-#include <osg/PrimitiveSet>
 #include <osg/Transform>
 #include <osgUtil/CullVisitor>
 
@@ -18,14 +19,11 @@ namespace osgGpuAnimation
 {
 
 class AnimatedCharacter;
-class CharacterLevels;
 class CrowdInstances;
-class NodeConstraint;
 class PosedInstances;
 class SharedPoses;
 class StateGraph;
 class StateMachine;
-class VariantMeshes;
 class WorldTargets;
 
 /// Thousands of instances of one character in one node, each with its own placement, controller and tint. One instanced
@@ -54,7 +52,7 @@ public:
     using Instance = std::uint64_t;
     static constexpr std::size_t maxInstances = 1000000; ///< in one crowd
 
-    /// A crowd with an empty set; setAnimationSet() gives it another.
+    /// A crowd with an empty set, for OSG's serializers.
     AnimatedCrowd();
     /// set: null counts as an empty one. meshes: built for the set's palette.
     AnimatedCrowd(std::shared_ptr<const AnimationSet> set, const std::vector<osg::ref_ptr<SkinnedGeometry>>& meshes);
@@ -68,13 +66,9 @@ public:
     void accept(osg::NodeVisitor& visitor) override;
 
     /// The skeleton, palette layout and clips of all instances.
-    const AnimationSet& getAnimationSet() const;
+    const AnimationSet& getAnimationSet() const { return *_meshes._set; }
     /// The same set with shared ownership, for new controllers.
-    const std::shared_ptr<const AnimationSet>& getSharedAnimationSet() const;
-
-    /// Gives a set to a crowd without one and computes the bounds from the present meshes. Errors: set is null; the
-    /// crowd has instances or a set.
-    Result<void> setAnimationSet(std::shared_ptr<const AnimationSet> set);
+    const std::shared_ptr<const AnimationSet>& getSharedAnimationSet() const { return _meshes._set; }
 
     /// The transform from the axes of the set's file to the space that placements start from, see
     /// AnimatedCharacter::setFileToNode(). Instances keep their placements.
@@ -98,7 +92,7 @@ public:
 
     /// The controller of an instance, for crossfades and layers; valid until the next update(). Null: no such instance.
     AnimationController* getController(Instance instance);
-    /// The constraint of that name of an instance, in the space that placements lead to. Include AnimatedCharacter.h.
+    /// The constraint of that name of an instance, in the space that placements lead to.
     NodeConstraint constraint(Instance instance, const std::string& name);
     /// The placement of an instance; the identity if no such instance exists (see contains()).
     osg::Matrixd getPlacement(Instance instance) const;
@@ -127,51 +121,23 @@ public:
     /// The state machine of an instance, for its parameters and triggers. Null: none. Valid until it is replaced or
     /// removed.
     StateMachine* getStateMachine(Instance instance);
-    /// The arrays of all instances, for the kit's own plugins and tests.
-    const CrowdInstances& getInstances() const { return *_instances; }
-
     /// Sets the point that placements are stored relative to, as floats; the default is the first instance's position.
     /// Existing instances keep their placements; a later origin does not depend on the ones before.
-    /// False, without a change: the origin is not finite, or an instance is too far from it for a float.
-    bool setOrigin(const osg::Vec3d& origin);
+    /// Errors, without a change: the origin is not finite; an instance is too far from it for a float.
+    Result<void> setOrigin(const osg::Vec3d& origin);
     const osg::Vec3d& getOrigin() const { return _origin; } ///< in the space of this node
 
-    /// The first mesh of that name, see AnimatedCharacter::findMesh().
-    SkinnedGeometry* findMesh(const std::string& name) const;
-    /// Shows or hides meshes of all instances, see AnimatedCharacter::setMeshVisible(). Instances that show other
-    /// meshes are a crowd of their own. With a pixel error, call setPixelError() again: it makes the levels of detail
-    /// of what is visible now. Not while the crowd is culled.
-    Result<void> setMeshVisible(const std::string& name, bool isVisible);
-
-    /// The largest error of the drawn surface on screen, in pixels: instances are drawn with fewer triangles while the
-    /// error stays below it, with one instanced draw per mesh primitive and level, those of a few pixels as one mesh
-    /// per material without textures, and those that loop one clip share poses as far as the error permits. 0 (the
-    /// default): all triangles and exact poses. Range, cost, limits and errors: see AnimatedCharacter::setPixelError().
-    Result<void> setPixelError(float pixels);
-    float getPixelError() const { return _pixelError; } ///< pixels, at least 0
-    /// The levels of detail of the character as a whole, for the kit's own serializers. Null: there was no pixel error
-    /// yet. setPixelError() creates them unless those that are set match the meshes; a pixel error of 0 keeps them.
-    const std::shared_ptr<const CharacterLevels>& getCharacterLevels() const { return _characterLevels; }
-    /// Sets what setPixelError() would create, for the kit's own serializers: call it before setPixelError().
-    void setCharacterLevels(std::shared_ptr<const CharacterLevels> levels) { _characterLevels = std::move(levels); }
+    /// Visibility, material variants and levels of detail of the meshes, for all instances.
+    CharacterMeshes& getMeshes() { return _meshes; }
+    const CharacterMeshes& getMeshes() const { return _meshes; } ///< the same, read only
 
     /// Advances all instances by the time since the last update; the first call only stores the time.
     /// simulationTime: seconds. Event callbacks are called as those of AnimatedCharacter::update().
     void update(double simulationTime);
 
-    /// The instance of a hit: an Intersection of any of OSG's intersectors. Empty: the hit is in no crowd. See
-    /// jointOf() for the joint.
-    template <typename Intersection>
-    static std::optional<Instance> instanceOf(const Intersection& hit)
-    {
-        return instanceOfMatrix(hit.matrix.get());
-    }
     /// The mesh in the present pose of the instance, in the crowd's space. The CPU twin computes it. It has no vertices
     /// if no such instance exists.
     osg::ref_ptr<osg::Geometry> getPosedMesh(Instance instance, const SkinnedGeometry& mesh) const;
-    /// Passes the primitives of all instances in their present poses to the functor. Slow: the CPU twin computes them.
-    void acceptInstances(osg::PrimitiveFunctor& functor) const;
-
     /// Cull submits and draws the visible instances; intersectors and writers of other file formats meet posed meshes;
     /// statistics count every instance; visitors that compute bounds get the box around all instances as they play now.
     void traverse(osg::NodeVisitor& visitor) override;
@@ -187,30 +153,38 @@ protected:
     ~AnimatedCrowd() override;
 
 private:
-    class InstanceScope;
-    class IntersectedInstance;
+    friend struct CrowdDetail;
 
-    static std::optional<Instance> instanceOfMatrix(const osg::RefMatrix* matrix);
+    void computeBounds();
     osg::ref_ptr<osg::Geometry> getPosedMesh(const SkinnedGeometry& mesh, bool withNormals) const override;
     osg::ref_ptr<osg::Geometry> posedMesh(std::size_t index, const SkinnedGeometry& mesh, bool withNormals) const;
     void takeWorldTargets();
     void prepareSharedPoses();
     osg::Matrixd fileToSpace(std::size_t index) const;
     void cull(osgUtil::CullVisitor& visitor);
-    void visitInstances(osg::NodeVisitor& visitor);
-    void count(osg::NodeVisitor& visitor);
 
     std::unique_ptr<CrowdInstances> _instances; ///< never null
     std::unique_ptr<PosedInstances> _posed;     ///< copies do not share it
     osg::Matrixd _fileToNode;
     osg::Vec3d _origin;
     bool _hasOrigin = false;
-    std::optional<double> _updateTime;                       ///< seconds of simulation time
-    std::unique_ptr<WorldTargets> _worldTargets;             ///< never null
-    float _pixelError = 0.0f;                                ///< pixels
-    std::unique_ptr<SharedPoses> _sharedPoses;               ///< null: no pixel error yet
-    std::shared_ptr<const CharacterLevels> _characterLevels; ///< null: no pixel error yet
-    std::shared_ptr<VariantMeshes> _variantMeshes;           ///< never null, shared with the character and clones
+    std::optional<double> _updateTime;           ///< seconds of simulation time
+    std::unique_ptr<WorldTargets> _worldTargets; ///< never null
+    CharacterMeshes _meshes;
+    std::unique_ptr<SharedPoses> _sharedPoses; ///< null: no pixel error yet
 };
+
+namespace detail
+{
+std::optional<AnimatedCrowd::Instance> instanceOfMatrix(const osg::RefMatrix* matrix);
+}
+
+/// The instance of a hit: an Intersection of any of OSG's intersectors. Empty: the hit is in no crowd. See jointOf()
+/// for the joint.
+template <typename Intersection>
+std::optional<AnimatedCrowd::Instance> instanceOf(const Intersection& hit)
+{
+    return detail::instanceOfMatrix(hit.matrix.get());
+}
 
 } // namespace osgGpuAnimation

@@ -58,10 +58,6 @@ struct GroundLeg
 class GroundFeet : public osg::NodeCallback
 {
 public:
-    static constexpr double blendSeconds = 0.1;   ///< until a change of the ground below a foot is followed completely
-    static constexpr double settleSeconds = 0.15; ///< time constant of the character's height
-    static constexpr double longestStep = 1.0;    ///< seconds; a longer step of the time starts anew
-
     /// The ground is the whole scene above the character.
     GroundFeet();
     /// ground: held weakly, see setGround().

@@ -207,7 +207,7 @@ std::optional<PickedJoint> pick(const Intersection& hit)
     PickedJoint picked;
     picked.mesh = dynamic_cast<const SkinnedGeometry*>(hit.drawable.get());
     if (!picked.mesh) return std::nullopt;
-    const std::optional<AnimatedCrowd::Instance> instance = AnimatedCrowd::instanceOf(hit);
+    const std::optional<AnimatedCrowd::Instance> instance = instanceOf(hit);
     for (const osg::Node* node : hit.nodePath)
     {
         const auto* crowd = instance ? dynamic_cast<const AnimatedCrowd*>(node) : nullptr;

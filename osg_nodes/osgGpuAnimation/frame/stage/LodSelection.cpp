@@ -16,7 +16,7 @@ namespace osgGpuAnimation
 
 std::string LodRange::describePixelErrors()
 {
-    return "a number of pixels from 0 to " + std::to_string(largestPixelError);
+    return "a number of pixels from 0 to " + std::to_string(maxPixelError);
 }
 
 Result<void> LodRange::prepare(float pixels, const osg::Group& meshes, const AnimationSet& set)

@@ -29,10 +29,10 @@ class LodRange
 public:
     /// The largest sum of vertices in a group. Meshes beyond it get no levels, unless another group contains them.
     static constexpr std::size_t maxVertices = 10 * LodLevels::maxVertices;
-    static constexpr int largestPixelError = 1'000'000; ///< pixels
+    static constexpr int maxPixelError = 1'000'000; ///< pixels
 
     /// True if setPixelError() of characters and crowds accepts the value.
-    static bool isPixelError(double pixels) { return pixels >= 0.0 && pixels <= largestPixelError; }
+    static bool isPixelError(double pixels) { return pixels >= 0.0 && pixels <= maxPixelError; }
     /// The accepted range, for messages.
     static std::string describePixelErrors();
     /// Creates the levels of the SkinnedGeometry among a group's children, unless the pixel error is 0 or the set is

@@ -30,10 +30,6 @@ namespace
 
 using Object = PropertyMember::Object;
 
-const char* const materialMark = "osgGpuAnimation.material";
-const char* const lightMark = "osgGpuAnimation.light";
-const char* const cameraMark = "osgGpuAnimation.camera";
-const char* const visibilityMark = "osgGpuAnimation.visibility";
 const char* const maskKey = "osgGpuAnimation.nodeMask";
 const char* const transformsName = "textureTransforms";
 
@@ -52,28 +48,6 @@ const PropertyMember& memberNamed(Object object, std::string_view name)
         return byName;
     }();
     return *members.at({object, name});
-}
-
-std::optional<int> markOf(const osg::Object& object, const char* mark)
-{
-    int index = 0;
-    return object.getUserValue(mark, index) ? std::optional<int>(index) : std::nullopt;
-}
-
-/// The nodes of markVisibility(). A saved scene may hold any text.
-std::vector<int> visibilityOf(const osg::Object& object)
-{
-    std::string text;
-    std::vector<int> nodes;
-    if (!object.getUserValue(visibilityMark, text)) return nodes;
-    for (std::size_t begin = 0; begin < text.size();)
-    {
-        const std::size_t end = std::min(text.find(' ', begin), text.size());
-        if (const std::optional<int> node = parsePointerIndex(std::string_view(text).substr(begin, end - begin)))
-            nodes.push_back(*node);
-        begin = end + 1;
-    }
-    return nodes;
 }
 
 /// Writes numbers into a uniform of floats or vectors; nothing if there is none.
@@ -103,27 +77,6 @@ osg::ref_ptr<osg::StateSet> ownState(const osg::StateSet& state)
         own->setAttribute(osg::clone(material, osg::CopyOp::SHALLOW_COPY));
     own->setDataVariance(osg::Object::DYNAMIC); // the next update waits until it is drawn
     return own;
-}
-
-bool isMeshMarked(const osg::Drawable& mesh)
-{
-    return !visibilityOf(mesh).empty() || (mesh.getStateSet() && markOf(*mesh.getStateSet(), materialMark));
-}
-
-/// Copies of the object share its user data, which is therefore replaced.
-osg::UserDataContainer& ownUserData(osg::Object& object)
-{
-    osg::ref_ptr<osg::UserDataContainer> own = new osg::DefaultUserDataContainer;
-    if (const osg::UserDataContainer* shared = object.getUserDataContainer()) own = osg::clone(shared);
-    object.setUserDataContainer(own);
-    return *own;
-}
-
-void removeMark(osg::Object& object, const char* mark)
-{
-    osg::UserDataContainer& data = ownUserData(object);
-    const unsigned int index = data.getUserObjectIndex(mark);
-    if (index < data.getNumUserObjects()) data.removeUserObject(index);
 }
 
 /// The mask that the application gives the mesh: 0 hides it whatever the clips do.
@@ -170,12 +123,12 @@ public:
     }
     void apply(osg::LightSource& source) override
     {
-        if (markOf(source, lightMark) || !visibilityOf(source).empty()) _visit(source);
+        if (markOf(source) || !visibilityOf(source).empty()) _visit(source);
         traverse(source);
     }
     void apply(osg::CameraView& view) override
     {
-        if (isMarked(view)) _visit(view);
+        if (markOf(view)) _visit(view);
         traverse(view);
     }
 
@@ -191,34 +144,6 @@ void forEachMarked(osg::Node& node, Visit visit)
 }
 
 } // namespace
-
-void markMaterial(osg::StateSet& stateSet, int material)
-{
-    stateSet.setUserValue(materialMark, material);
-}
-
-void markLight(osg::LightSource& source, int light)
-{
-    source.setUserValue(lightMark, light);
-}
-
-void markCamera(osg::CameraView& view, int camera)
-{
-    view.setUserValue(cameraMark, camera);
-}
-
-bool isMarked(const osg::CameraView& view)
-{
-    return markOf(view, cameraMark).has_value();
-}
-
-void markVisibility(osg::Node& node, const std::vector<int>& nodes)
-{
-    std::string text;
-    for (const int each : nodes)
-        text += (text.empty() ? "" : " ") + std::to_string(each);
-    node.setUserValue(visibilityMark, text);
-}
 
 void setTextureTransform(osg::StateSet& stateSet, int number, const float* offset, float rotation, const float* scale)
 {
@@ -247,13 +172,13 @@ UnanimatedMeshes::~UnanimatedMeshes() = default;
 
 osg::StateSet* UnanimatedMeshes::stateAtRest(osg::StateSet* state)
 {
-    const std::optional<int> material = state ? markOf(*state, materialMark) : std::nullopt;
+    const std::optional<int> material = state ? markOf(*state) : std::nullopt;
     if (!material) return state;
     osg::ref_ptr<osg::StateSet>& own = _states[state];
     if (own) return own;
     own = ownState(*state);
     own->setDataVariance(osg::Object::STATIC);
-    removeMark(*own, materialMark);
+    removeMark(*own);
     if (_properties) _properties->setMaterials(*own, *material);
     return own;
 }
@@ -280,7 +205,7 @@ void UnanimatedMeshes::release(osg::Geometry& copy)
         copy.setNodeMask(isShown ? applicationMask(copy) : 0);
     }
     copy.setStateSet(stateAtRest(copy.getStateSet()));
-    removeMark(copy, visibilityMark); // gives the copy its own user data, which the variants belong to
+    removeVisibility(copy); // gives the copy its own user data, which the variants belong to
     if (!names.empty()) setVariantStates(copy, defaultState, variants);
 }
 
@@ -364,13 +289,13 @@ void AnimatedProperties::bindChildren(osg::Group& character, OwnStates& owned)
             continue;
         }
         osg::StateSet* state = mesh->getStateSet();
-        if (state && markOf(*state, materialMark))
+        if (state && markOf(*state))
         {
             osg::ref_ptr<osg::StateSet>& own = owned[state];
             if (!own)
             {
                 own = ownState(*state);
-                _materials.push_back({*markOf(*state, materialMark), own});
+                _materials.push_back({*markOf(*state), own});
             }
             mesh->setStateSet(own);
         }
@@ -392,12 +317,12 @@ void AnimatedProperties::bindBelow(osg::Node& node)
                   [&](osg::Node& marked)
                   {
                       if (auto* view = dynamic_cast<osg::CameraView*>(&marked))
-                          return _cameras.push_back({*markOf(*view, cameraMark), view});
+                          return _cameras.push_back({*markOf(*view), view});
                       auto& source = static_cast<osg::LightSource&>(marked);
                       osg::Light* light = source.getLight();
                       if (!light) return;
                       osg::Light* shown = shownLight(*light);
-                      _lights.push_back({markOf(source, lightMark).value_or(-1), &source, shown ? shown : light,
+                      _lights.push_back({markOf(source).value_or(-1), &source, shown ? shown : light,
                                          visibilityOf(source), shown == nullptr});
                   });
 }

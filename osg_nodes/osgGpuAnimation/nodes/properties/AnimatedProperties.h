@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <osgGpuAnimation/nodes/properties/PropertyMarks.h>
 #include <osgGpuAnimation/nodes/properties/PropertyPointer.h>
 
 #include <osg/CameraView>
@@ -27,14 +28,6 @@ struct PoseInstruction;
 // The properties of a file that clips animate beside joints and morph weights: factors and texture transforms of
 // materials, lights, cameras, and the visibility of nodes. The set has their curves (see MorphWeights); the import
 // marks the objects of the scene that they change.
-
-// The marks of the import: user values, so that OSG's own serializers keep them. The numbers are the file's.
-void markMaterial(osg::StateSet& stateSet, int material); ///< a material with animated properties
-void markLight(osg::LightSource& source, int light);      ///< an animated light, a PunctualLight
-void markCamera(osg::CameraView& view, int camera);       ///< an animated camera
-bool isMarked(const osg::CameraView& view);               ///< by markCamera()
-/// A drawable or a light. nodes: it is visible while all these nodes are.
-void markVisibility(osg::Node& node, const std::vector<int>& nodes);
 
 /// The name of the user value (double, scene units) that an osg::CameraView has if its projection is parallel: the
 /// height of what it shows. OSG's CameraView has only fields of view.

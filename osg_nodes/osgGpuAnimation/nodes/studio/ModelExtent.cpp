@@ -5,6 +5,7 @@
 #include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+#include <osgGpuAnimation/nodes/detail/CrowdDetail.h>
 #include <osgGpuAnimation/scene/traversal/SceneVisitor.h>
 
 #include <osg/ComputeBoundsVisitor>
@@ -30,7 +31,10 @@ std::set<std::size_t> outerInstances(const AnimatedCrowd& crowd)
         {
             if (x == 0 && y == 0) continue;
             const auto along = [&](std::size_t index)
-            { return x * crowd.getInstances().position(index).x() + y * crowd.getInstances().position(index).y(); };
+            {
+                return x * CrowdDetail::instances(crowd).position(index).x() +
+                       y * CrowdDetail::instances(crowd).position(index).y();
+            };
             std::size_t farthest = 0;
             for (std::size_t index = 1; index < crowd.getNumInstances(); ++index)
                 if (along(index) > along(farthest)) farthest = index;
@@ -52,7 +56,7 @@ public:
         else if (auto* crowd = dynamic_cast<AnimatedCrowd*>(&transform))
             for (const std::size_t index : outerInstances(*crowd))
                 forEachMesh(*crowd, [&](const SkinnedGeometry& mesh)
-                            { add(*crowd->getPosedMesh(crowd->getInstances().handleOf(index), mesh)); });
+                            { add(*crowd->getPosedMesh(CrowdDetail::instances(*crowd).handleOf(index), mesh)); });
         traverse(transform);
     }
 

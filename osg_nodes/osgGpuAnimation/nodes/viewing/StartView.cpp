@@ -110,19 +110,18 @@ void StartView::start(const osgGA::GUIEventAdapter& event, osgViewer::View& view
 
 void StartView::followAfterUpdate(osg::Node& node)
 {
-    runAfterUpdate(node,
-                   [self = osg::ref_ptr<StartView>(this), watched = osg::observer_ptr<osg::Node>(&node)]
-                   {
-                       osg::ref_ptr<osg::Node> present;
-                       if (self->_isFollowing && watched.lock(present)) self->follow(*present);
-                   });
+    runAfterUpdateOf(node,
+                     [self = osg::ref_ptr<StartView>(this)](osg::Node& watched)
+                     {
+                         if (self->_isFollowing) self->follow(watched);
+                     });
 }
 
 void StartView::follow(osg::Node& node)
 {
     const osg::CameraView* const camera = findBelow<osg::CameraView>(node, &_camera);
     // Not lock(): a viewer on the stack, as osgviewer's, has no references.
-    if (camera && _view.valid() && isMarked(*camera)) setProjection(*_view->getCamera(), *camera);
+    if (camera && _view.valid() && markOf(*camera)) setProjection(*_view->getCamera(), *camera);
     if (camera && _view.valid() && _view->getCameraManipulator())
         _view->getCameraManipulator()->setByMatrix(viewToWorld(*camera));
 }

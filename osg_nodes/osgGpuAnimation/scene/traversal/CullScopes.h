@@ -4,6 +4,7 @@
 #include <osg/Camera>
 #include <osg/Node>
 #include <osg/NodeVisitor>
+#include <osg/observer_ptr>
 #include <osg/State>
 #include <osg/StateSet>
 #include <osgUtil/CullVisitor>
@@ -87,5 +88,16 @@ bool keepFlattenedPlace(osg::Node& node, osg::NodeVisitor& visitor);
 /// Runs the action after the update traversal, when no group iterates over its children: below a view of osgViewer, a
 /// temporary callback of the view's camera runs all actions of the frame in order. Without a viewer it runs at once.
 void runAfterUpdate(osg::Node& node, std::function<void()> action);
+/// action(node), unless the node no longer exists then.
+template <typename Node, typename Action>
+void runAfterUpdateOf(Node& node, Action action)
+{
+    runAfterUpdate(node,
+                   [action, observed = osg::observer_ptr<Node>(&node)]
+                   {
+                       osg::ref_ptr<Node> present;
+                       if (observed.lock(present)) action(*present);
+                   });
+}
 
 } // namespace osgGpuAnimation

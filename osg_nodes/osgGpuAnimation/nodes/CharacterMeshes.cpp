@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/nodes/CharacterMeshes.h>
+
+#include <osgGpuAnimation/animation/AnimationController.h>
+#include <osgGpuAnimation/frame/stage/LodSelection.h>
+#include <osgGpuAnimation/mesh/geometry/MaterialVariants.h>
+#include <osgGpuAnimation/mesh/geometry/MeshNames.h>
+#include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
+#include <osgGpuAnimation/nodes/properties/AnimatedProperties.h>
+
+#include <algorithm>
+
+namespace osgGpuAnimation
+{
+
+CharacterMeshes::CharacterMeshes(osg::Group& node, const AnimationController* controller,
+                                 std::shared_ptr<const AnimationSet> set)
+    : _node(node), _controller(controller), _set(std::move(set)), _variantMeshes(std::make_shared<VariantMeshes>()),
+      _properties(controller ? AnimatedProperties::of(controller->set()) : nullptr)
+{
+}
+
+void CharacterMeshes::copySettings(const CharacterMeshes& other)
+{
+    _variantMeshes = other._variantMeshes;
+    _variant = other._variant;
+    _pixelError = other._pixelError;
+    _levels = other._levels;
+    if (_properties) _properties->bind(_node); // the children are the other's, too
+}
+
+CharacterMeshes::~CharacterMeshes() = default;
+
+const AnimationSet& CharacterMeshes::set() const
+{
+    return _controller ? _controller->set() : *_set;
+}
+
+void CharacterMeshes::takeSet(std::shared_ptr<const AnimationSet> set)
+{
+    _set = std::move(set);
+}
+
+void CharacterMeshes::forgetProperties()
+{
+    _properties = AnimatedProperties::of(set());
+}
+
+SkinnedGeometry* CharacterMeshes::find(const std::string& name) const
+{
+    const Result<std::vector<SkinnedGeometry*>> meshes = meshesNamed(_node, name);
+    return meshes ? meshes.value().front() : nullptr;
+}
+
+/// Calls change() while the meshes have the masks that the application gave them.
+template <typename Change>
+void CharacterMeshes::change(Change change)
+{
+    if (_properties) _properties->restoreMasks();
+    change();
+    if (!_properties || !_properties->isBound()) return;
+    _properties->bind(_node);
+    showProperties();
+}
+
+Result<void> CharacterMeshes::setVisible(const std::string& name, bool isVisible)
+{
+    if (const auto meshes = meshesNamed(_node, name); !meshes) return meshes.error();
+    if (_properties && !_properties->isBound()) _properties->bind(_node);
+    change(
+        [&]
+        {
+            const std::vector<SkinnedGeometry*> own = meshesNamed(_node, name).value();
+            _variantMeshes->setVisible(_node, {own.begin(), own.end()}, isVisible);
+        });
+    return {};
+}
+
+std::vector<std::string> CharacterMeshes::getVariants() const
+{
+    std::vector<std::string> names = variantNamesOf(_node);
+    const auto addNames = [&](const SkinnedGeometry& mesh)
+    {
+        for (const std::string& name : variantNamesOf(mesh))
+            if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    };
+    forEachMesh(_node, addNames);
+    return names;
+}
+
+Result<void> CharacterMeshes::setVariant(const std::string& name)
+{
+    const std::vector<std::string> names = getVariants();
+    if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end())
+        return Error{"there is no material variant \"" + name + "\"; the variants are " +
+                     quotedNames(names, [](const std::string& known) { return known; })};
+    _variant = name;
+    change([&] { _variantMeshes->show(_node, name); });
+    return {};
+}
+
+void CharacterMeshes::showVariant()
+{
+    change(
+        [&]
+        {
+            if (!_variant.empty()) _variantMeshes->show(_node, _variant);
+        });
+}
+
+void CharacterMeshes::showProperties()
+{
+    if (!_properties) return;
+    if (!_properties->isBound()) _properties->bind(_node);
+    _properties->apply(set(), _controller->instruction());
+}
+
+Result<void> CharacterMeshes::setPixelError(float pixels)
+{
+    const Result<void> prepared = LodRange::prepare(pixels, _node, set());
+    if (!prepared) return prepared;
+    _pixelError = pixels;
+    if (_levels && !_levels->isOf(_node, set())) _levels = nullptr;
+    createLevels();
+    return {};
+}
+
+void CharacterMeshes::createLevels()
+{
+    const bool isNeeded = !_controller && _pixelError > 0.0f && set().paletteSize() > 0;
+    if (isNeeded && !_levels) _levels = std::make_shared<const CharacterLevels>(_node, set());
+}
+
+} // namespace osgGpuAnimation

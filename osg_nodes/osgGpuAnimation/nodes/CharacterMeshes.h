@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <osgGpuAnimation/mesh/SkinnedGeometry.h>
+
+#include <osg/Group>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace osgGpuAnimation
+{
+
+class AnimatedProperties;
+class AnimationController;
+class CharacterLevels;
+class VariantMeshes;
+
+/// The meshes of an AnimatedCharacter, or of all instances of an AnimatedCrowd: which are visible, in which variant of
+/// the file's materials, and with how many triangles. Instances that show other meshes or another variant are a crowd
+/// of their own.
+///
+///     knight->getMeshes().setVisible("1H_Sword", false);
+///     shoe->getMeshes().setVariant("midnight");
+///     crowd->getMeshes().setPixelError(0.5f);
+///
+/// Changes belong in the update traversal or between frames, and not into the cull of a crowd.
+class CharacterMeshes
+{
+public:
+    CharacterMeshes(const CharacterMeshes&) = delete;
+    CharacterMeshes& operator=(const CharacterMeshes&) = delete;
+    ~CharacterMeshes();
+
+    /// The first mesh among the node's children that a node of that name shows in the file; if there is none, the first
+    /// mesh of that name. Null: neither exists. Clones share it.
+    SkinnedGeometry* find(const std::string& name) const;
+    /// Shows or hides the meshes of a node of the file, or if there is no such node, of that name. Clones show meshes
+    /// of their own: a direct child that changes is replaced by another drawable over the same arrays, as with material
+    /// variants. Bounds do not change. With a pixel error of a crowd, call setPixelError() again: it creates the levels
+    /// of detail of what is visible now. Error: there is no such mesh; the message lists the nodes' names.
+    Result<void> setVisible(const std::string& name, bool isVisible);
+
+    /// Shows the meshes in a variant of the file's materials (glTF: KHR_materials_variants), whose maps the import has
+    /// loaded. Clones show variants of their own; those that show the same one are drawn together. A direct child that
+    /// the variant changes is replaced by another drawable over the same arrays. name: one of getVariants(); empty: the
+    /// default materials. Error: another name; the message lists the names.
+    Result<void> setVariant(const std::string& name);
+    const std::string& getVariant() const { return _variant; } ///< the present one; empty: the default materials
+    std::vector<std::string> getVariants() const;              ///< in the file's order, then those of garments
+
+    /// Sets the largest error of the drawn surface on screen: meshes are drawn with fewer triangles while the error
+    /// stays below it, see LodLevels. 0 (the default): all triangles. Each camera selects the level by distance, with
+    /// the measure of small feature culling. The call creates the levels of the present meshes, which takes time (see
+    /// MeshSimplifier); the next cull creates those of later changes. No levels are created for meshes that are not
+    /// direct children or for vertices beyond LodRange::maxVertices.
+    /// A crowd draws instances of a few pixels as one mesh per material without textures, and those that loop one clip
+    /// share poses as far as the error permits; 0: exact poses.
+    /// pixels: in [0, LodRange::maxPixelError]. Error: pixels is out of range or NaN.
+    Result<void> setPixelError(float pixels);
+    float getPixelError() const { return _pixelError; } ///< pixels, at least 0
+
+private:
+    friend class AnimatedCharacter;
+    friend class AnimatedCrowd;
+    friend struct CrowdDetail;
+
+    /// node: their parent. controller: of the character; null: a crowd. set: of the crowd.
+    CharacterMeshes(osg::Group& node, const AnimationController* controller, std::shared_ptr<const AnimationSet> set);
+
+    void copySettings(const CharacterMeshes& other); ///< other: of a node with the same meshes
+    const AnimationSet& set() const;
+    void takeSet(std::shared_ptr<const AnimationSet> set); ///< another set of the crowd
+    void forgetProperties();                               ///< after another set of the character
+    void showVariant();                                    ///< after the node has got further meshes
+    void showProperties();                                 ///< those of the controller's present pose
+    void createLevels();                                   ///< of the crowd, unless they exist
+    template <typename Change>
+    void change(Change change);
+
+    osg::Group& _node;
+    const AnimationController* _controller = nullptr; ///< null: a crowd
+    std::shared_ptr<const AnimationSet> _set;         ///< the crowd's; null: a character
+    std::shared_ptr<VariantMeshes> _variantMeshes;    ///< never null, shared with clones and crowds
+    std::unique_ptr<AnimatedProperties> _properties;  ///< null: the set has none, or a crowd
+    std::string _variant;
+    float _pixelError = 0.0f;                       ///< pixels
+    std::shared_ptr<const CharacterLevels> _levels; ///< of the crowd as a whole; null: no pixel error yet
+};
+
+} // namespace osgGpuAnimation

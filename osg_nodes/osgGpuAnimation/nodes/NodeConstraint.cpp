@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/nodes/NodeConstraint.h>
+
+#include <osgGpuAnimation/animation/AnimationController.h>
+#include <osgGpuAnimation/nodes/callbacks/WorldTargets.h>
+#include <osgGpuAnimation/scene/OsgMatrix.h>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+Error noInstance()
+{
+    return Error{"the crowd has no such instance (any more)"};
+}
+
+} // namespace
+
+NodeConstraint::NodeConstraint(AnimationController* controller, const std::string& name,
+                               const osg::Matrixd& fileToSpace, const osg::Matrixd& spaceToWorld,
+                               WorldTargets& worldTargets, std::uint64_t instance)
+    : _controller(controller), _name(name), _fileToSpace(fileToSpace), _spaceToWorld(spaceToWorld),
+      _worldTargets(&worldTargets), _instance(instance)
+{
+}
+
+Result<void> NodeConstraint::setTarget(const osg::Vec3d& position)
+{
+    if (!_controller) return noInstance();
+    Result<void> taken =
+        _controller->constraint(_name).setTarget(toGlm(position * osg::Matrixd::inverse(_fileToSpace)));
+    if (taken) _worldTargets->remove(_instance, _name);
+    return taken;
+}
+
+Result<void> NodeConstraint::setWorldTarget(const osg::Vec3d& position)
+{
+    Result<void> taken = setTarget(position * osg::Matrixd::inverse(_spaceToWorld));
+    if (taken) _worldTargets->set(_instance, _name, {nullptr, false, position});
+    return taken;
+}
+
+Result<void> NodeConstraint::follow(osg::Node* node, const osg::Vec3d& position)
+{
+    if (!node) return Error{"constraint \"" + _name + "\": there is no node to follow"};
+    Result<void> taken = setTarget(position * toWorld(*node, true) * osg::Matrixd::inverse(_spaceToWorld));
+    if (taken) _worldTargets->set(_instance, _name, {node, true, position});
+    return taken;
+}
+
+Result<void> NodeConstraint::setWeight(float weight)
+{
+    return _controller ? _controller->constraint(_name).setWeight(weight) : noInstance();
+}
+
+Result<void> NodeConstraint::setPole(const osg::Vec3d& direction)
+{
+    if (!_controller) return noInstance();
+    const osg::Vec3d inFile = osg::Matrixd::transform3x3(direction, osg::Matrixd::inverse(_fileToSpace));
+    return _controller->constraint(_name).setPole(toGlm(inFile));
+}
+
+Result<void> NodeConstraint::setTwist(double radians)
+{
+    return _controller ? _controller->constraint(_name).setTwist(static_cast<float>(radians)) : noInstance();
+}
+
+Result<void> NodeConstraint::setRotation(const osg::Quat& rotation)
+{
+    if (!_controller) return noInstance();
+    osg::Vec3d translation, scale;
+    osg::Quat turn, scaleAxes;
+    _fileToSpace.decompose(translation, turn, scale, scaleAxes);
+    const osg::Quat inFile = rotation * turn.inverse();
+    return _controller->constraint(_name).setRotation(
+        glm::vec4(glm::dvec4(inFile.x(), inFile.y(), inFile.z(), inFile.w())));
+}
+
+Result<void> NodeConstraint::clear()
+{
+    if (!_controller) return noInstance();
+    _worldTargets->remove(_instance, _name);
+    return _controller->constraint(_name).clear();
+}
+
+} // namespace osgGpuAnimation

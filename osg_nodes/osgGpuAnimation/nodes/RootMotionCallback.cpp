@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/nodes/RootMotionCallback.h>
+
+#include <osgGpuAnimation/nodes/AnimatedCharacter.h>
+
+namespace osgGpuAnimation
+{
+
+RootMotionCallback::RootMotionCallback(const RootMotionCallback& other, const osg::CopyOp& copyop)
+    : osg::Object(other, copyop), osg::Callback(other, copyop), osg::NodeCallback(other, copyop)
+{
+}
+
+void RootMotionCallback::operator()(osg::Node* node, osg::NodeVisitor* visitor)
+{
+    if (auto* character = dynamic_cast<AnimatedCharacter*>(node))
+    {
+        const osg::Matrixd motion = character->takeRootMotion();
+        if (!motion.isIdentity()) character->preMult(motion);
+    }
+    traverse(node, visitor);
+}
+
+} // namespace osgGpuAnimation

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/nodes/properties/PropertyMarks.h>
+
+#include <osgGpuAnimation/nodes/properties/PropertyPointer.h>
+
+#include <osg/ValueObject>
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+const char* const materialMark = "osgGpuAnimation.material";
+const char* const lightMark = "osgGpuAnimation.light";
+const char* const cameraMark = "osgGpuAnimation.camera";
+const char* const visibilityMark = "osgGpuAnimation.visibility";
+
+std::optional<int> indexOf(const osg::Object& object, const char* mark)
+{
+    int index = 0;
+    return object.getUserValue(mark, index) ? std::optional<int>(index) : std::nullopt;
+}
+
+void removeMark(osg::Object& object, const char* mark)
+{
+    osg::UserDataContainer& data = ownUserData(object);
+    const unsigned int index = data.getUserObjectIndex(mark);
+    if (index < data.getNumUserObjects()) data.removeUserObject(index);
+}
+
+} // namespace
+
+void markMaterial(osg::StateSet& stateSet, int material)
+{
+    stateSet.setUserValue(materialMark, material);
+}
+
+void markLight(osg::LightSource& source, int light)
+{
+    source.setUserValue(lightMark, light);
+}
+
+void markCamera(osg::CameraView& view, int camera)
+{
+    view.setUserValue(cameraMark, camera);
+}
+
+void markVisibility(osg::Node& node, const std::vector<int>& nodes)
+{
+    std::string text;
+    for (const int each : nodes)
+        text += (text.empty() ? "" : " ") + std::to_string(each);
+    node.setUserValue(visibilityMark, text);
+}
+
+std::optional<int> markOf(const osg::StateSet& stateSet)
+{
+    return indexOf(stateSet, materialMark);
+}
+
+std::optional<int> markOf(const osg::LightSource& source)
+{
+    return indexOf(source, lightMark);
+}
+
+std::optional<int> markOf(const osg::CameraView& view)
+{
+    return indexOf(view, cameraMark);
+}
+
+// A saved scene may hold any text.
+std::vector<int> visibilityOf(const osg::Object& object)
+{
+    std::string text;
+    std::vector<int> nodes;
+    if (!object.getUserValue(visibilityMark, text)) return nodes;
+    for (std::size_t begin = 0; begin < text.size();)
+    {
+        const std::size_t end = std::min(text.find(' ', begin), text.size());
+        if (const std::optional<int> node = parsePointerIndex(std::string_view(text).substr(begin, end - begin)))
+            nodes.push_back(*node);
+        begin = end + 1;
+    }
+    return nodes;
+}
+
+bool isMeshMarked(const osg::Drawable& mesh)
+{
+    return !visibilityOf(mesh).empty() || (mesh.getStateSet() && markOf(*mesh.getStateSet()));
+}
+
+osg::UserDataContainer& ownUserData(osg::Object& object)
+{
+    osg::ref_ptr<osg::UserDataContainer> own = new osg::DefaultUserDataContainer;
+    if (const osg::UserDataContainer* shared = object.getUserDataContainer()) own = osg::clone(shared);
+    object.setUserDataContainer(own);
+    return *own;
+}
+
+void removeMark(osg::StateSet& stateSet)
+{
+    removeMark(stateSet, materialMark);
+}
+
+void removeVisibility(osg::Object& object)
+{
+    removeMark(object, visibilityMark);
+}
+
+} // namespace osgGpuAnimation

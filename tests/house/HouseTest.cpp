@@ -41,7 +41,6 @@ const std::set<std::string> largeRooms = {
     "osg_nodes/osgGpuAnimation/animation/AnimationSet",
     "osg_nodes/osgGpuAnimation/animation/ClipMixer",
     "osg_nodes/osgGpuAnimation/animation/Pose",
-    "osg_nodes/osgGpuAnimation/gpu/PosePipeline",
 };
 
 /// Headers of other people that a folder must not include.

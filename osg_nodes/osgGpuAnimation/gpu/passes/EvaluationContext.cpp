@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/gpu/passes/EvaluationContext.h>
+
+#include <osgGpuAnimation/gpu/passes/TextureUnits.h>
+
+#include <ShaderSources.h>
+
+#ifndef GL_COPY_READ_BUFFER
+#define GL_COPY_READ_BUFFER 0x8F36
+#define GL_COPY_WRITE_BUFFER 0x8F37
+#endif
+
+namespace osgGpuAnimation
+{
+
+namespace
+{
+
+constexpr std::initializer_list<const char*> rowOutputs{"row0", "row1", "row2"};
+
+} // namespace
+
+EvaluationContext::EvaluationContext(osg::GLExtensions& extensions)
+    : gl(&extensions), vertexArrays(extensions), scratch(extensions, GL_RGBA32F_ARB),
+      mixedTracks(extensions, GL_RGBA32F_ARB), solved(extensions, GL_RGBA32F_ARB),
+      corrections(extensions, GL_RGBA32F_ARB)
+{
+    osg::setGLExtensionFuncPtr(copyBufferSubData, "glCopyBufferSubData");
+}
+
+FeedbackPass& EvaluationContext::posePass(const PoseVariant& variant)
+{
+    Pass& pass = _posePasses[variant];
+    if (!pass) pass = variant.makePosePass(*gl);
+    return *pass;
+}
+
+FeedbackPass& EvaluationContext::mixPass(const PoseVariant& variant)
+{
+    Pass& pass = _mixPasses[variant];
+    if (!pass) pass = variant.makeMixPass(*gl);
+    return *pass;
+}
+
+FeedbackPass& EvaluationContext::constraintPass(const ConstraintShape& shape, const PoseVariant& variant)
+{
+    Pass& pass = _constraintPasses[{shape, variant}];
+    if (!pass) pass = variant.makeConstraintPass(*gl, shape);
+    return *pass;
+}
+
+FeedbackPass& EvaluationContext::localPass()
+{
+    using namespace shaders;
+    if (!_localPass) _localPass.reset(new FeedbackPass(*gl, "local", {local_glsl, local_vert}, rowOutputs));
+    return *_localPass;
+}
+
+FeedbackPass& EvaluationContext::worldPass()
+{
+    using namespace shaders;
+    const char* const limits = "const bool hasLimits = true;\n";
+    if (!_worldPass) _worldPass.reset(new FeedbackPass(*gl, "world", {limits, world_glsl, world_vert}, rowOutputs));
+    return *_worldPass;
+}
+
+void EvaluationContext::useMixInput(FeedbackScope& scope, FeedbackPass& pass, const AnimationSet& set,
+                                    const AnimationBuffers& buffers, const PosePalette::Chunk& chunk) const
+{
+    pass.use();
+    pass.setTexture(scope, "keyframes", unitKeyframes, buffers.keyframes().texture());
+    pass.setTexture(scope, "samples", unitSamples, chunk.samples.texture());
+    pass.setTexture(scope, "masks", unitMasks, buffers.masks().texture());
+    pass.setInt("maskStride", static_cast<int>(AnimationBuffers::texelsPerMask(set)));
+    if (!chunk.uploadedPosed.empty())
+    {
+        pass.setTexture(scope, "posedKeyframes", unitPosed, chunk.posed.texture());
+        pass.setInt("firstPosed", static_cast<int>(chunk.firstPosed));
+        pass.setInt("trackCount", static_cast<int>(set.trackCount()));
+    }
+    pass.setInt("sampleStride", static_cast<int>(chunk.sampleStride));
+    pass.setInt("instanceCount", static_cast<int>(chunk.width));
+    pass.setInt("restTexel", static_cast<int>(buffers.restTexel()));
+    pass.setInt("jointCount", static_cast<int>(set.skeleton().jointCount()));
+}
+
+void EvaluationContext::copy(const BufferTexture& from, const BufferTexture& to, std::size_t unitBytes,
+                             const std::vector<UnitCopy>& copies) const
+{
+    if (copies.empty()) return;
+    gl->glBindBuffer(GL_COPY_READ_BUFFER, from.buffer());
+    gl->glBindBuffer(GL_COPY_WRITE_BUFFER, to.buffer());
+    for (const UnitCopy& copy : copies)
+        copyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, static_cast<GLintptr>(copy.from * unitBytes),
+                          static_cast<GLintptr>(copy.to * unitBytes), static_cast<GLsizeiptr>(copy.count * unitBytes));
+    gl->glBindBuffer(GL_COPY_READ_BUFFER, 0);
+    gl->glBindBuffer(GL_COPY_WRITE_BUFFER, 0);
+}
+
+template <typename Action>
+void EvaluationContext::forEachPass(Action action)
+{
+    for (auto* passes : {&_posePasses, &_mixPasses})
+        for (auto& [variant, pass] : *passes)
+            action(pass);
+    for (auto& [shape, pass] : _constraintPasses)
+        action(pass);
+    for (Pass* pass : {&_localPass, &_worldPass})
+        if (*pass) action(*pass);
+}
+
+void EvaluationContext::release()
+{
+    forEachPass([](Pass& pass) { pass->release(); });
+    for (BufferTexture* buffer : {&scratch, &mixedTracks, &solved, &corrections})
+        buffer->release();
+    vertexArrays.release();
+    discard();
+}
+
+void EvaluationContext::discard()
+{
+    forEachPass([](Pass& pass) { pass.reset(); });
+    _posePasses.clear();
+    _mixPasses.clear();
+    _constraintPasses.clear();
+    for (BufferTexture* buffer : {&scratch, &mixedTracks, &solved, &corrections})
+        buffer->discard();
+    vertexArrays.discard();
+}
+
+} // namespace osgGpuAnimation

@@ -2,6 +2,7 @@
 #include "nodes/TriangleBox.h"
 #include "support/TestCharacter.h"
 
+#include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
 #include <osgGpuAnimation/animation/StateMachine.h>
 #include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>

@@ -90,7 +90,7 @@ TEST(PosedMeshTest, allIntersectorsNameTheDrawnMesh)
 {
     const osg::ref_ptr<AnimatedCharacter> character = shiftedCharacter();
     const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*character);
-    crowd->add(osg::Matrix::translate(20, 0, 0), character->getController()).value();
+    EXPECT_TRUE(crowd->add(osg::Matrix::translate(20, 0, 0), character->getController()));
     const AnimatedCrowd::Instance instance =
         crowd->add(osg::Matrix::translate(10, 0, 0), character->getController()).value();
     const osg::ref_ptr<osg::Group> scene = new osg::Group;
@@ -241,7 +241,7 @@ TEST(PosedMeshTest, normalsTurnWithTheirVertices)
     auto& mesh = dynamic_cast<SkinnedGeometry&>(*character->getChild(0));
     auto* bind = dynamic_cast<osg::Vec3Array*>(mesh.getNormalArray());
     std::fill(bind->begin(), bind->end(), osg::Vec3(1, 0, 0));
-    character->getController().play("turn").value();
+    EXPECT_TRUE(character->getController().play("turn"));
     character->getController().setLoopMode(LoopMode::Once);
     character->getController().seek(1.0);
     EXPECT_FALSE(character->getPosedMesh(mesh)->getNormalArray()) << "not requested";

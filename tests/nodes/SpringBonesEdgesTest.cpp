@@ -121,7 +121,7 @@ TEST(SpringBonesEdgesTest, jointsReturnToTheRestOfTheSkeletonWhateverTheClipDoes
     Hanging animated(rod(), {chain}, {}, "b");
     animated.settle(1.0);
     EXPECT_LT((animated.direction("b", "c") - osg::Vec3d(1, 0, 0)).length(), 1e-4);
-    animated.springs->setChains({}).value();
+    EXPECT_TRUE(animated.springs->setChains({}));
     animated.updateTo(1.1);
     EXPECT_GT((animated.direction("b", "c") - osg::Vec3d(1, 0, 0)).length(), 0.5) << "the clip";
 }

@@ -4,6 +4,7 @@
 #include "support/ShownSurface.h"
 #include "support/ViewerGLTest.h"
 
+#include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/gpu/PosePipeline.h>

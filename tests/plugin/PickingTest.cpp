@@ -3,6 +3,7 @@
 #include "plugin/PosedTriangles.h"
 #include "plugin/SharedAssets.h"
 
+#include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
 
 #include <gtest/gtest.h>

@@ -298,20 +298,8 @@ void SkinnedGeometry::drawImplementation(osg::RenderInfo& renderInfo) const
     const PosePipeline* pipeline = PosePipeline::of(state);
     if (!pipeline) return;
     const MeshVertexArrays arrays(state);
-    if (binding->getSerial() != 0)
-        drawInstancedMesh(renderInfo, *binding, *pipeline);
-    else if (binding->getPlaced())
-        drawPlaced(renderInfo, *binding, *pipeline);
-    else if (binding->getInstanceCount() > 1 || binding->getLevel() != LodLevels::allTriangles)
-        drawInstances(renderInfo, *binding, *pipeline);
-    else if (const PalettePlace place =
-                 pipeline->place(*binding->getAnimationSet(), binding->getSlot(), binding->getInstance());
-             place.texture != 0)
-    {
-        bindPalette(state, place);
-        setOutset(state, 0.0f);
-        osg::Geometry::drawImplementation(renderInfo);
-    }
+    const InstanceRuns runs(state, *pipeline, *binding);
+    drawInstances(renderInfo, *binding, runs);
 }
 
 osg::VertexArrayState* SkinnedGeometry::createVertexArrayStateImplementation(osg::RenderInfo& renderInfo) const
@@ -331,72 +319,29 @@ void SkinnedGeometry::compileGLObjects(osg::RenderInfo& renderInfo) const
         arrays->setCurrentVertexBufferObject(nullptr);
 }
 
-void SkinnedGeometry::drawInstances(osg::RenderInfo& renderInfo, const PaletteBinding& binding,
-                                    const PosePipeline& pipeline) const
-{
-    const auto draw = [&](osg::State& state)
-    {
-        const std::size_t end = binding.getInstance() + binding.getInstanceCount();
-        for (std::size_t first = binding.getInstance(); first < end;)
-        {
-            // One draw covers the instances of one palette chunk.
-            const PalettePlace place = pipeline.place(*binding.getAnimationSet(), binding.getSlot(), first);
-            if (place.texture == 0 || place.chunkEnd <= first) break;
-            const std::size_t count = std::min(end, place.chunkEnd) - first;
-            bindPalette(state, place);
-            drawPrimitives(state, static_cast<int>(count), binding.getLevel());
-            first += count;
-        }
-    };
-    withVertexArrays(renderInfo, draw);
-}
-
-void SkinnedGeometry::drawPlaced(osg::RenderInfo& renderInfo, const PaletteBinding& binding,
-                                 const PosePipeline& pipeline) const
-{
-    const PlacedDraw placed(*renderInfo.getState(), pipeline, binding);
-    if (placed.place().texture == 0) return;
-    const auto draw = [&](osg::State& state)
-    {
-        bindPalette(state, placed.place());
-        placed.use();
-        drawPrimitives(state, static_cast<int>(binding.getInstanceCount()), binding.getLevel());
-    };
-    withVertexArrays(renderInfo, draw);
-}
-
-void SkinnedGeometry::drawInstancedMesh(osg::RenderInfo& renderInfo, const PaletteBinding& binding,
-                                        const PosePipeline& pipeline) const
-{
-    const InstancedDraw placed(*renderInfo.getState(), binding);
-    const auto draw = [&](osg::State& state)
-    {
-        for (std::size_t first = 0; first < binding.getInstanceTransforms().size();)
-        {
-            const InstancedDraw::Run run = placed.run(pipeline, first);
-            if (run.place.texture == 0) break;
-            placed.use(first);
-            bindPalette(state, run.place);
-            drawPrimitives(state, static_cast<int>(run.count), binding.getLevel());
-            first += run.count;
-        }
-    };
-    withVertexArrays(renderInfo, draw);
-}
-
 // As osg::Geometry::drawImplementation except for the primitives, which would draw their own number of instances
 // instead of the frame's.
-template <typename Draw>
-void SkinnedGeometry::withVertexArrays(osg::RenderInfo& renderInfo, Draw draw) const
+void SkinnedGeometry::drawInstances(osg::RenderInfo& renderInfo, const PaletteBinding& binding,
+                                    const InstanceRuns& runs) const
 {
-    if (containsDeprecatedData()) return;
+    InstanceRuns::Run run = runs.at(0);
+    if (run.place.texture == 0 || containsDeprecatedData()) return;
     osg::State& state = *renderInfo.getState();
+    bindPalette(state, run.place); // before the arrays: the upload of morph targets binds a buffer
     const bool usesBuffers = state.useVertexBufferObject(_supportsVertexBufferObjects && _useVertexBufferObjects);
     const bool usesArrayObject = usesBuffers && state.useVertexArrayObject(_useVertexArrayObject);
     osg::VertexArrayState* arrays = state.getCurrentVertexArrayState();
     arrays->setVertexBufferObjectSupported(usesBuffers);
     drawVertexArraysImplementation(renderInfo);
-    draw(state);
+    for (std::size_t first = 0; run.place.texture != 0;)
+    {
+        runs.use(first);
+        drawPrimitives(state, static_cast<int>(run.count), binding.getLevel());
+        first += run.count;
+        if (first >= binding.getDrawnCount()) break;
+        run = runs.at(first);
+        bindPalette(state, run.place);
+    }
     if (usesBuffers && !usesArrayObject)
     {
         arrays->unbindVertexBufferObject();

@@ -16,10 +16,10 @@
 namespace osgGpuAnimation
 {
 
+class InstanceRuns;
 class LodLevels;
 class MeshLod;
 class PaletteBinding;
-class PosePipeline;
 class SkinnedGeometry;
 struct MorphDeltas;
 struct PalettePlace;
@@ -144,12 +144,7 @@ protected:
     ~SkinnedGeometry() override;
 
 private:
-    void drawInstances(osg::RenderInfo& renderInfo, const PaletteBinding& binding, const PosePipeline& pipeline) const;
-    void drawPlaced(osg::RenderInfo& renderInfo, const PaletteBinding& binding, const PosePipeline& pipeline) const;
-    void drawInstancedMesh(osg::RenderInfo& renderInfo, const PaletteBinding& binding,
-                           const PosePipeline& pipeline) const;
-    template <typename Draw>
-    void withVertexArrays(osg::RenderInfo& renderInfo, Draw draw) const;
+    void drawInstances(osg::RenderInfo& renderInfo, const PaletteBinding& binding, const InstanceRuns& runs) const;
     void drawPrimitives(osg::State& state, int count, int level) const;
     void bindPalette(osg::State& state, const PalettePlace& place) const;
     template <typename Move>

@@ -63,7 +63,7 @@ SkinnedGeometry* asShared(osg::Node* child)
 bool canBeDrawnTogether(const SkinnedGeometry& mesh)
 {
     return !mesh.getCullCallback() && !mesh.getDrawCallback() && mesh.getBoundingBox().valid() &&
-           isOrderedByState(mesh.getStateSet()) && !InstancedDraw::isRefusedBy(mesh);
+           isOrderedByState(mesh.getStateSet()) && !InstanceRuns::isRefusedBy(mesh);
 }
 
 bool CharacterDraws::Group::holds(const Group& other) const

@@ -68,7 +68,7 @@ bool canBeDrawnTogether(const SkinnedGeometry& mesh);
 /// state, form a group: the first is drawn normally, all others by one instanced draw per mesh primitive.
 ///
 /// Always drawn normally: meshes with callbacks, with vertex arrays at the locations of placements
-/// (InstancedDraw::isRefusedBy), in bins sorted by depth or traversal, or below other nodes; all meshes if near and far
+/// (InstanceRuns::isRefusedBy), in bins sorted by depth or traversal, or below other nodes; all meshes if near and far
 /// planes come from primitives; characters with their own StateSet.
 class CharacterDraws
 {

@@ -21,6 +21,10 @@ bool isSame(const BlendSample& a, const BlendSample& b)
     return a.keyframe == b.keyframe && a.alpha == b.alpha && a.weight == b.weight && a.control == b.control;
 }
 
+// The defines of skin.glsl that say where the placements come from; without one, the palette has them.
+const char* const sharedPoses = "POSE_PLACED";
+const char* const transforms = "POSE_INSTANCED"; ///< of characters, which have no tints
+
 /// Adds, because several cameras may evaluate poses in one frame.
 void addTo(osg::Stats& stats, unsigned int frameNumber, const char* attribute, double amount)
 {
@@ -85,8 +89,8 @@ void PoseFrame::reset()
     _samples.clear();
     _targets.clear();
     _shared.clear();
-    for (StatePool* pool : {&_plainStates, &_tintedStates, &_instancedStates, &_placedStates, &_placedTintedStates})
-        pool->reset();
+    for (auto& [defines, pool] : _states)
+        pool.reset();
 }
 
 SubmittedPose PoseFrame::submit(const osg::Node& node, const AnimationController& controller,
@@ -212,7 +216,7 @@ DrawState PoseFrame::placedState(const AnimationSet& set, std::size_t slot,
                                  std::size_t count, int level)
 {
     const std::lock_guard<std::mutex> lock(_mutex);
-    const DrawState state = (placed->tints.empty() ? _placedStates : _placedTintedStates).next();
+    const DrawState state = nextState(sharedPoses, !placed->tints.empty());
     state.binding->setPlaced(_batchesOfSet[&set][slot]->content->sharedSet(), slot, placed, first, count);
     state.binding->setLevel(level);
     return state;
@@ -220,7 +224,7 @@ DrawState PoseFrame::placedState(const AnimationSet& set, std::size_t slot,
 
 DrawState PoseFrame::stateOf(const Batch& batch, std::size_t instance, std::size_t instanceCount, int level)
 {
-    const DrawState state = (batch.content->tints().empty() ? _plainStates : _tintedStates).next();
+    const DrawState state = nextState(nullptr, !batch.content->tints().empty());
     state.binding->set(batch.content->sharedSet(), batch.slot, instance, instanceCount);
     state.binding->setLevel(level);
     return state;
@@ -236,22 +240,24 @@ DrawState PoseFrame::partState(const AnimationSet& set, std::size_t slot, std::s
 DrawState PoseFrame::instancedState(const AnimationSet& set, std::size_t slot, int level)
 {
     const std::lock_guard<std::mutex> lock(_mutex);
-    const DrawState state = _instancedStates.next();
+    const DrawState state = nextState(transforms, false);
     state.binding->setInstanced(_batchesOfSet[&set][slot]->content->sharedSet(), slot);
     state.binding->setLevel(level);
     return state;
 }
 
-DrawState PoseFrame::StatePool::next()
+/// placements: one of the defines above, or null.
+DrawState PoseFrame::nextState(const char* placements, bool isTinted)
 {
-    if (used == states.size())
+    StatePool& pool = _states[{placements, isTinted}];
+    if (pool.used == pool.states.size())
     {
-        states.push_back(new osg::StateSet);
-        states.back()->setAttribute(new PaletteBinding);
-        for (const char* define : defines)
-            states.back()->setDefine(define);
+        pool.states.push_back(new osg::StateSet);
+        pool.states.back()->setAttribute(new PaletteBinding);
+        if (placements) pool.states.back()->setDefine(placements);
+        if (isTinted) pool.states.back()->setDefine("POSE_TINTED");
     }
-    osg::StateSet& state = *states[used++];
+    osg::StateSet& state = *pool.states[pool.used++];
     return {&state, &bindingOf(state)};
 }
 

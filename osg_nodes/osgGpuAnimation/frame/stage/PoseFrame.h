@@ -15,9 +15,11 @@
 #include <osg/Stats>
 
 #include <atomic>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 namespace osgGpuAnimation
@@ -126,11 +128,9 @@ private:
     /// States that frames reuse.
     struct StatePool
     {
-        std::vector<const char*> defines; ///< for the program
         std::vector<osg::ref_ptr<osg::StateSet>> states;
         std::size_t used = 0;
 
-        DrawState next();
         void reset();
     };
 
@@ -143,6 +143,7 @@ private:
     Batch& addBatch(std::unique_ptr<PoseBatch> content);
     std::unique_ptr<PoseBatch> spareBatch(std::shared_ptr<const AnimationSet> set);
     DrawState stateOf(const Batch& batch, std::size_t instance, std::size_t instanceCount, int level);
+    DrawState nextState(const char* placements, bool isTinted);
 
     std::mutex _mutex;
     unsigned int _frameNumber = 0;
@@ -156,12 +157,8 @@ private:
     std::vector<BlendSample> _samples;      ///< of the submitted instructions
     std::vector<ConstraintTarget> _targets; ///< of the submitted instructions
     std::vector<Shared> _shared;
-    std::shared_ptr<std::atomic<std::size_t>> _maxTexels; ///< the context's
-    StatePool _plainStates{{}, {}, 0};
-    StatePool _tintedStates{{"POSE_TINTED"}, {}, 0};
-    StatePool _instancedStates{{"POSE_INSTANCED"}, {}, 0}; ///< characters have no tints
-    StatePool _placedStates{{"POSE_PLACED"}, {}, 0};
-    StatePool _placedTintedStates{{"POSE_PLACED", "POSE_TINTED"}, {}, 0};
+    std::shared_ptr<std::atomic<std::size_t>> _maxTexels;      ///< the context's
+    std::map<std::pair<const char*, bool>, StatePool> _states; ///< by the arguments of nextState()
 };
 
 } // namespace osgGpuAnimation

@@ -150,27 +150,88 @@ void setOutset(osg::State& state, float outset)
     if (location >= 0) state.get<osg::GLExtensions>()->glUniform1f(location, outset);
 }
 
-PlacedDraw::PlacedDraw(osg::State& state, const PosePipeline& pipeline, const PaletteBinding& binding) : _state(state)
+InstanceRuns::InstanceRuns(osg::State& state, const PosePipeline& pipeline, const PaletteBinding& binding)
+    : _state(state), _pipeline(pipeline), _binding(binding)
 {
-    const std::shared_ptr<const PlacedInstances>& placed = binding.getPlaced();
-    const PalettePlace palette = pipeline.place(*binding.getAnimationSet(), binding.getSlot(), 0);
+    if (binding.getPlaced()) findPlaced();
+    if (binding.getSerial() == 0) return;
+    const osg::Program::PerContextProgram* program = state.getLastAppliedProgramObject();
+    if (program && program->getAttribLocation("poseInstancePose") == POSE_INSTANCE_POSE_LOCATION)
+        _transforms = &InstanceTransformBuffers::of(state).buffer(binding.getSerial(), binding.getInstanceTransforms());
+}
+
+InstanceRuns::~InstanceRuns()
+{
+    if (_transforms)
+    {
+        const osg::GLExtensions& gl = *_state.get<osg::GLExtensions>();
+        for (const unsigned int location : attributeLocations)
+        {
+            gl.glDisableVertexAttribArray(location);
+            gl.glVertexAttribDivisor(location, 0);
+        }
+    }
+    else if (_binding.getSerial() != 0)
+    {
+        _state.applyModelViewMatrix(new osg::RefMatrix);
+        _state.applyModelViewAndProjectionUniformsIfRequired();
+    }
+}
+
+/// Leaves the run without a palette if a buffer texture of the context cannot hold the placements or the poses.
+void InstanceRuns::findPlaced()
+{
+    const std::shared_ptr<const PlacedInstances>& placed = _binding.getPlaced();
+    const PalettePlace palette = _pipeline.place(*_binding.getAnimationSet(), _binding.getSlot(), 0);
     if (palette.texture == 0) return;
     if (palette.chunkEnd >= placed->poseCount)
-        _textures = PlacedInstanceBuffers::of(state).textures(placed, pipeline.getMaxTexels());
+        _textures = PlacedInstanceBuffers::of(_state).textures(placed, _pipeline.getMaxTexels());
     if (_textures.drawn == 0)
     {
         static std::atomic<bool> isReported{false};
         if (isReported.exchange(true)) return;
-        OSG_WARN << "osgGpuAnimation: the buffer textures of this context hold " << pipeline.getMaxTexels()
+        OSG_WARN << "osgGpuAnimation: the buffer textures of this context hold " << _pipeline.getMaxTexels()
                  << " texels, fewer than a crowd needs that shares poses; it is drawn from the next frame on\n";
         return;
     }
-    _place = palette;
-    _place.instance = static_cast<int>(binding.getInstance());
-    _place.tints = _textures.tints;
+    _placed = {palette, _binding.getInstanceCount()};
+    _placed.place.instance = static_cast<int>(_binding.getInstance());
+    _placed.place.tints = _textures.tints;
 }
 
-void PlacedDraw::use() const
+InstanceRuns::Run InstanceRuns::at(std::size_t first) const
+{
+    if (_binding.getPlaced()) return _placed;
+    return _binding.getSerial() != 0 ? runOfTransforms(first) : runOfBatch(first);
+}
+
+InstanceRuns::Run InstanceRuns::runOfBatch(std::size_t first) const
+{
+    const std::size_t instance = _binding.getInstance() + first;
+    const PalettePlace place = _pipeline.place(*_binding.getAnimationSet(), _binding.getSlot(), instance);
+    if (place.texture == 0 || place.chunkEnd <= instance) return {};
+    return {place, std::min(_binding.getInstanceCount() - first, place.chunkEnd - instance)};
+}
+
+InstanceRuns::Run InstanceRuns::runOfTransforms(std::size_t first) const
+{
+    const std::vector<InstanceTransform>& placements = _binding.getInstanceTransforms();
+    Run run{_pipeline.place(*_binding.getAnimationSet(), _binding.getSlot(), poseOf(placements[first])), 1};
+    if (!_transforms || run.place.texture == 0) return run;
+    const auto isInChunk = [&](std::size_t pose) { return pose >= run.place.chunkBegin && pose < run.place.chunkEnd; };
+    while (first + run.count < placements.size() && isInChunk(poseOf(placements[first + run.count])))
+        ++run.count;
+    run.place.instance = -static_cast<int>(run.place.chunkBegin);
+    return run;
+}
+
+void InstanceRuns::use(std::size_t first) const
+{
+    if (_binding.getPlaced()) usePlaced();
+    if (_binding.getSerial() != 0) useTransforms(first);
+}
+
+void InstanceRuns::usePlaced() const
 {
     const osg::Program::PerContextProgram* program = _state.getLastAppliedProgramObject();
     if (!program) return;
@@ -186,60 +247,24 @@ void PlacedDraw::use() const
     bind(placementsName, POSE_PLACEMENT_UNIT, _textures.placements);
 }
 
-InstancedDraw::InstancedDraw(osg::State& state, const PaletteBinding& binding) : _state(state), _binding(binding)
+void InstanceRuns::useTransforms(std::size_t first) const
 {
-    const osg::Program::PerContextProgram* program = state.getLastAppliedProgramObject();
-    if (!program || program->getAttribLocation("poseInstancePose") != POSE_INSTANCE_POSE_LOCATION) return;
-    _transforms = &InstanceTransformBuffers::of(state).buffer(binding.getSerial(), binding.getInstanceTransforms());
-}
-
-InstancedDraw::~InstancedDraw()
-{
-    if (_transforms)
+    if (!_transforms)
     {
-        const osg::GLExtensions& gl = *_state.get<osg::GLExtensions>();
-        for (const unsigned int location : attributeLocations)
-        {
-            gl.glDisableVertexAttribArray(location);
-            gl.glVertexAttribDivisor(location, 0);
-        }
-        return;
+        _state.applyModelViewMatrix(new osg::RefMatrix(toOsg(_binding.getInstanceTransforms()[first].toEye)));
+        return _state.applyModelViewAndProjectionUniformsIfRequired();
     }
-    _state.applyModelViewMatrix(new osg::RefMatrix);
-    _state.applyModelViewAndProjectionUniformsIfRequired();
-}
-
-InstancedDraw::Run InstancedDraw::run(const PosePipeline& pipeline, std::size_t first) const
-{
-    const std::vector<InstanceTransform>& placements = _binding.getInstanceTransforms();
-    Run run{pipeline.place(*_binding.getAnimationSet(), _binding.getSlot(), poseOf(placements[first])), 1};
-    if (!_transforms || run.place.texture == 0) return run;
-    const auto isInChunk = [&](std::size_t pose) { return pose >= run.place.chunkBegin && pose < run.place.chunkEnd; };
-    while (first + run.count < placements.size() && isInChunk(poseOf(placements[first + run.count])))
-        ++run.count;
-    run.place.instance = -static_cast<int>(run.place.chunkBegin);
-    return run;
-}
-
-void InstancedDraw::use(std::size_t first) const
-{
-    if (_transforms)
+    // The buffer that is bound below is unknown to OSG.
+    _state.getCurrentVertexArrayState()->unbindVertexBufferObject();
+    std::size_t offset = first * sizeof(InstanceTransform);
+    for (const unsigned int location : attributeLocations)
     {
-        // The buffer that is bound below is unknown to OSG.
-        _state.getCurrentVertexArrayState()->unbindVertexBufferObject();
-        std::size_t offset = first * sizeof(InstanceTransform);
-        for (const unsigned int location : attributeLocations)
-        {
-            _transforms->bindAttributes(location, 1, sizeof(InstanceTransform), offset, 1);
-            offset += BufferTexture::texelBytes;
-        }
-        return;
+        _transforms->bindAttributes(location, 1, sizeof(InstanceTransform), offset, 1);
+        offset += BufferTexture::texelBytes;
     }
-    _state.applyModelViewMatrix(new osg::RefMatrix(toOsg(_binding.getInstanceTransforms()[first].toEye)));
-    _state.applyModelViewAndProjectionUniformsIfRequired();
 }
 
-bool InstancedDraw::isRefusedBy(const osg::Geometry& mesh)
+bool InstanceRuns::isRefusedBy(const osg::Geometry& mesh)
 {
     // Contexts may alias numbered attributes with texture coordinates and secondary colours.
     return mesh.getNumTexCoordArrays() > 1 || mesh.getSecondaryColorArray() ||

@@ -42,52 +42,48 @@ void bindPalette(osg::State& state, const PalettePlace& place, int influences, i
 /// For the next draws, after bindPalette(): see LodLevels::Reduced.
 void setOutset(osg::State& state, float outset);
 
-/// The draw of instances with shared poses: the list of the drawn instances and the placements of all.
-class PlacedDraw
+/// RAII: the instances of a PaletteBinding for the draws of one mesh, as runs that one draw each shows. Where their
+/// placements come from:
+/// - consecutive instances of the batch: the palette has them;
+/// - instances with shared poses: buffer textures, with the placements of all instances of the crowd;
+/// - characters that are drawn together: vertex attributes with a divisor (faster in llvmpipe than a fetch by index).
+///   Programs that do not link skin.glsl get one draw per character, with its placement in the model-view matrix.
+class InstanceRuns
 {
 public:
-    PlacedDraw(osg::State& state, const PosePipeline& pipeline, const PaletteBinding& binding);
-
-    /// For bindPalette(), from the first drawn instance on. Its texture is 0 if a buffer texture of the context cannot
-    /// hold the placements or the poses.
-    const PalettePlace& place() const { return _place; }
-    /// Binds the list and the placements and sets their uniforms, after bindPalette().
-    void use() const;
-
-private:
-    osg::State& _state;
-    PalettePlace _place;
-    PlacedInstanceBuffers::Textures _textures;
-};
-
-/// RAII: passes the placements of several characters to the program for the draws of one mesh. Programs that do not
-/// link skin.glsl get one draw per character, with its placement in the model-view matrix.
-class InstancedDraw
-{
-public:
-    /// The placements of one draw and their palette.
+    /// Instances with one palette.
     struct Run
     {
-        PalettePlace place; ///< texture 0: no palette
+        PalettePlace place; ///< for bindPalette(); texture 0: no palette
         std::size_t count = 0;
     };
 
-    InstancedDraw(osg::State& state, const PaletteBinding& binding);
-    ~InstancedDraw();
-    InstancedDraw(const InstancedDraw&) = delete;
-    InstancedDraw& operator=(const InstancedDraw&) = delete;
+    InstanceRuns(osg::State& state, const PosePipeline& pipeline, const PaletteBinding& binding);
+    ~InstanceRuns();
+    InstanceRuns(const InstanceRuns&) = delete;
+    InstanceRuns& operator=(const InstanceRuns&) = delete;
 
-    /// The longest run that starts with that placement.
-    Run run(const PosePipeline& pipeline, std::size_t first) const;
-    /// Binds the placements before the draw of the run that starts there. The mesh's vertex arrays must be set up.
+    /// The longest run that starts with the drawn instance of that number.
+    Run at(std::size_t first) const;
+    /// Binds the placements before the draw of the run that starts there, after bindPalette(). The mesh's vertex arrays
+    /// must be set up.
     void use(std::size_t first) const;
 
     /// True if the mesh has vertex arrays at the locations of placements.
     static bool isRefusedBy(const osg::Geometry& mesh);
 
 private:
+    void findPlaced();
+    Run runOfBatch(std::size_t first) const;
+    Run runOfTransforms(std::size_t first) const;
+    void usePlaced() const;
+    void useTransforms(std::size_t first) const;
+
     osg::State& _state;
+    const PosePipeline& _pipeline;
     const PaletteBinding& _binding;
+    Run _placed; ///< of instances with shared poses
+    PlacedInstanceBuffers::Textures _textures;
     const BufferTexture* _transforms = nullptr; ///< null: one draw per character
 };
 

@@ -205,7 +205,7 @@ TEST(PoseBatchTest, aClearedBatchIsAsNew)
     EXPECT_EQ(batch.sampleStride(), 1u);
     EXPECT_EQ(batch.firstPosed(1), 0u);
     EXPECT_EQ(batch.firstPosed(2), 1u);
-    EXPECT_EQ(batch.mostPosed(), 1u);
+    EXPECT_EQ(batch.maxPosed(), 1u);
     EXPECT_FALSE(batch.needs().layers || batch.needs().masks || batch.needs().additive);
 }
 

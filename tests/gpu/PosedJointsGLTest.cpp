@@ -189,7 +189,7 @@ TEST_P(PosedJointsGLTest, smallBufferTexturesTakeManyPosesInChunks)
         batch.add(stack);
     }
     one.add(stacks[0]);
-    EXPECT_EQ(batch.mostPosed(), 4u);
+    EXPECT_EQ(batch.maxPosed(), 4u);
     const auto draws = [&](const PoseBatch& drawn)
     {
         const std::size_t before = pipeline->getCounters().feedbackDraws;

@@ -473,10 +473,10 @@ TEST(PbrMaterialTest, onlyTheFirstExtensionMapsHaveUnits)
     material.clearcoat = 1.0f;
     const osg::ref_ptr<osg::StateSet> state = new osg::StateSet;
     applyPbrMaterial(*state, material);
-    for (int unit = 0; unit < PbrMaterial::mostExtensionMaps + 2; ++unit)
+    for (int unit = 0; unit < PbrMaterial::maxExtensionMaps + 2; ++unit)
         EXPECT_EQ(state->getTextureAttribute(static_cast<unsigned int>(EXTENSION_MAPS_UNIT + unit),
                                              osg::StateAttribute::TEXTURE) != nullptr,
-                  unit < PbrMaterial::mostExtensionMaps)
+                  unit < PbrMaterial::maxExtensionMaps)
             << unit;
     const osg::StateSet::DefineList& defines = state->getDefineList();
     for (const char* used :

@@ -18,7 +18,7 @@ struct Line
     const char* label;
     const char* attribute;
     float multiplier; ///< from the attribute to the displayed number
-    float most;       ///< the largest number in the graph
+    float max;        ///< the largest number in the graph
 };
 
 constexpr Line lines[] = {
@@ -42,7 +42,7 @@ void addLinesTo(osgViewer::StatsHandler& handler)
     const osg::Vec4 color(1.0f, 0.8f, 0.5f, 1.0f);
     for (const Line& line : lines)
         handler.addUserStatsLine(line.label, color, color, line.attribute, line.multiplier, true, false, "", "",
-                                 line.most);
+                                 line.max);
 }
 
 } // namespace

@@ -112,7 +112,7 @@ bool PoseBatch::usePose(const PoseInstruction& instruction, BlendSample& sample)
     if (_firstPosed.empty()) _firstPosed.assign(_size + 1, 0);
     sample.keyframe = static_cast<std::uint32_t>(_posed.size());
     _posed.push_back(pose->sharedKeyframe());
-    _mostPosed = std::max<std::size_t>(_mostPosed, _posed.size() - _firstPosed[_size]);
+    _maxPosed = std::max<std::size_t>(_maxPosed, _posed.size() - _firstPosed[_size]);
     _needs.posed = true;
     return true;
 }
@@ -292,7 +292,7 @@ void PoseBatch::clear()
     _masks.clear();
     _posed.clear();
     _firstPosed.clear();
-    _mostPosed = 0;
+    _maxPosed = 0;
 }
 
 void PoseBatch::reset(std::shared_ptr<const AnimationSet> set)

@@ -121,7 +121,7 @@ public:
     {
         return instance < _firstPosed.size() ? _firstPosed[instance] : _posed.size();
     }
-    std::size_t mostPosed() const { return _mostPosed; } ///< the largest number of posed keyframes of any instance
+    std::size_t maxPosed() const { return _maxPosed; } ///< the largest number of posed keyframes of any instance
     /// True if the instruction has the poses of the instance, with the same content.
     bool hasPoses(std::size_t instance, const PoseInstruction& instruction) const;
     /// True if both have the same set and the same instances, byte by byte.
@@ -148,7 +148,7 @@ private:
     std::vector<std::shared_ptr<const SetMask>> _masks;
     std::vector<std::shared_ptr<const PosedKeyframe>> _posed;
     std::vector<std::uint32_t> _firstPosed; ///< by instance; empty: no instance has posed keyframes
-    std::size_t _mostPosed = 0;
+    std::size_t _maxPosed = 0;
 };
 
 } // namespace osgGpuAnimation

@@ -153,12 +153,12 @@ void setMap(osg::StateSet& stateSet, const PbrMaterial::Map& map, int unit, cons
     stateSet.setDefine(define, std::to_string(map.coordinates));
 }
 
-/// The first mostExtensionMaps maps have a texture unit.
+/// The first maxExtensionMaps maps have a texture unit.
 void setExtensionMaps(osg::StateSet& stateSet, const PbrMaterial& material)
 {
     int used = 0;
     for (const ExtensionMapSlot& slot : extensionMaps)
-        if ((material.*slot.map).texture && material.hasEffect(slot.map) && used < PbrMaterial::mostExtensionMaps)
+        if ((material.*slot.map).texture && material.hasEffect(slot.map) && used < PbrMaterial::maxExtensionMaps)
             setMap(stateSet, material.*slot.map, EXTENSION_MAPS_UNIT + used++, slot.sampler, slot.define);
 }
 

@@ -74,7 +74,7 @@ struct PbrMaterial
 
     /// Of those after emissiveMap that have an effect, in the order specularColorMap, clear coat, sheen, specularMap,
     /// transmission; the others are left out.
-    static constexpr int mostExtensionMaps = 3;
+    static constexpr int maxExtensionMaps = 3;
 
     bool hasTangents = false;        ///< the meshes have the vertex attribute 4: xyz, and the bitangent's sign
     bool hasMoreCoordinates = false; ///< the meshes have the vertex attribute 9, see Map

@@ -25,7 +25,7 @@ namespace
 {
 
 constexpr double fadeSeconds = 0.25; ///< from the springs to the clips and back
-constexpr double mostSubsteps = SpringBones::longestStep / SpringBones::substep + 1.0;
+constexpr double maxSubsteps = SpringBones::longestStep / SpringBones::substep + 1.0;
 constexpr double gridTolerance = 1e-6; ///< of a substep: sums of frame times miss the substep's time by rounding
 
 glm::dvec3 toDouble(const osg::Vec3& vector)
@@ -209,9 +209,9 @@ bool pushOut(const SpringCollider& collider, const glm::dmat4& jointToWorld, dou
         const double squared = glm::dot(along, along), projected = glm::dot(along, away);
         if (squared > 0.0) away -= along * std::clamp(projected / squared, 0.0, 1.0);
     }
-    const double distance = glm::length(away), least = scale * (static_cast<double>(collider.radius) + radius);
-    if (!(distance < least) || distance == 0.0) return false;
-    place += away * (least / distance - 1.0);
+    const double distance = glm::length(away), min = scale * (static_cast<double>(collider.radius) + radius);
+    if (!(distance < min) || distance == 0.0) return false;
+    place += away * (min / distance - 1.0);
     return true;
 }
 
@@ -256,7 +256,7 @@ public:
         {
             const double first = std::floor(start / SpringBones::substep + gridTolerance) + 1.0;
             const double last = std::floor(time / SpringBones::substep + gridTolerance);
-            const int count = static_cast<int>(std::clamp(last - first + 1.0, 0.0, mostSubsteps));
+            const int count = static_cast<int>(std::clamp(last - first + 1.0, 0.0, maxSubsteps));
             double now = start;
             for (int i = 0; i < count; ++i)
             {

@@ -22,7 +22,7 @@ namespace
 // Keeps the order of the members: without "start" the first state is the start.
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t largestText = 1 << 16;
+constexpr std::size_t maxText = 1 << 16;
 constexpr int deepest = 256;
 
 /// An error in a member; parseStateGraph() catches it.
@@ -59,7 +59,7 @@ private:
 
 Error tooLong(std::uintmax_t size)
 {
-    return Error{std::to_string(size) + " bytes, at most " + std::to_string(largestText) + " are read"};
+    return Error{std::to_string(size) + " bytes, at most " + std::to_string(maxText) + " are read"};
 }
 
 template <typename T>
@@ -230,7 +230,7 @@ StateGraphDescription toDescription(const Json& json)
 
 Result<std::shared_ptr<const StateGraph>> parseStateGraph(const AnimationSet& set, const std::string& json)
 {
-    if (json.size() > largestText) return tooLong(json.size());
+    if (json.size() > maxText) return tooLong(json.size());
     try
     {
         ParserWatch watch;
@@ -256,7 +256,7 @@ Result<std::shared_ptr<const StateGraph>> readStateGraphFile(const AnimationSet&
     if (!std::filesystem::is_regular_file(status)) return Error{file + ": is not a plain file"};
     const std::uintmax_t size = std::filesystem::file_size(file, error);
     if (error) return Error{file + ": " + error.message()};
-    if (size > largestText) return Error{file + ": " + tooLong(size).message};
+    if (size > maxText) return Error{file + ": " + tooLong(size).message};
     std::ifstream stream(file, std::ios::binary);
     const std::string text{std::istreambuf_iterator<char>(stream), {}};
     if (!stream.good() && !stream.eof()) return Error{file + ": cannot be read"};

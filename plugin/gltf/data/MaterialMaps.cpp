@@ -165,9 +165,9 @@ MaterialMaps mapsOf(const tinygltf::Material& material, bool allMaps,
     {
         if (map.place == &PbrMaterial::specularColorMap && isConverted != (map.extension == specularGlossiness))
             continue;
-        const MapUse use = !factors.hasEffect(map.place)            ? MapUse::WithoutEffect
-                           : units < PbrMaterial::mostExtensionMaps ? MapUse::Shown
-                                                                    : MapUse::NoTextureUnit;
+        const MapUse use = !factors.hasEffect(map.place)           ? MapUse::WithoutEffect
+                           : units < PbrMaterial::maxExtensionMaps ? MapUse::Shown
+                                                                   : MapUse::NoTextureUnit;
         const tinygltf::TextureInfo texture = textureOf(extensionOf(material.extensions, map.extension), map.member);
         const std::string path = "extensions/" + std::string(map.extension) + '/';
         if (reader.add(path, map.member, texture, map.place, map.isColor, use)) ++units;

@@ -22,7 +22,7 @@ enum class MapUse
     Shown,
     WithoutEffect, ///< the factor of its extension is 0
     NoCoordinates, ///< a vertex has no room for its texture coordinates
-    NoTextureUnit, ///< beyond PbrMaterial::mostExtensionMaps
+    NoTextureUnit, ///< beyond PbrMaterial::maxExtensionMaps
 };
 
 /// One map of a material.

@@ -96,8 +96,8 @@ void CrowdView::look(const SeenMembers& seen)
     const osg::Matrix& toEye = *_visitor.getModelViewMatrix();
     const glm::vec4 depthOf(-toEye(0, 2), -toEye(1, 2), -toEye(2, 2), -toEye(3, 2));
     const float scale = glm::length(glm::vec3(depthOf));
-    float nearest = 1e30f, farthest = -1e30f;
-    glm::vec4 nearestSphere(0.0f, 0.0f, 0.0f, -1.0f), farthestSphere = nearestSphere;
+    float nearest = 1e30f, max = -1e30f;
+    glm::vec4 firstSphere(0.0f, 0.0f, 0.0f, -1.0f), lastSphere = firstSphere;
     const auto lookAt = [&](const SeenMembers::Span& span)
     {
         for (const CrowdMember* member = span.begin; member != span.end; ++member)
@@ -107,8 +107,8 @@ void CrowdView::look(const SeenMembers& seen)
             const float reach = sphere.w * scale;
             // Instances behind the eye do not affect the near plane.
             if (depth + reach < 0.0f) continue;
-            if (depth - reach < nearest) nearest = depth - reach, nearestSphere = sphere;
-            if (depth + reach > farthest) farthest = depth + reach, farthestSphere = sphere;
+            if (depth - reach < nearest) nearest = depth - reach, firstSphere = sphere;
+            if (depth + reach > max) max = depth + reach, lastSphere = sphere;
         }
     };
     const auto middleOf = [&](const SeenMembers::Span& span)
@@ -122,13 +122,13 @@ void CrowdView::look(const SeenMembers& seen)
     for (const SeenMembers::Span& span : seen.spans())
     {
         const float half = glm::dot(glm::abs(glm::vec3(depthOf)), span.half) + span.radius * scale;
-        if (middleOf(span) - half < nearest || middleOf(span) + half > farthest) lookAt(span);
+        if (middleOf(span) - half < nearest || middleOf(span) + half > max) lookAt(span);
     }
-    if (nearestSphere.w < 0.0f) return;
-    _depth = 0.5f * (nearest + farthest);
+    if (firstSphere.w < 0.0f) return;
+    _depth = 0.5f * (nearest + max);
     if (_visitor.getComputeNearFarMode() == osg::CullSettings::DO_NOT_COMPUTE_NEAR_FAR) return;
-    _visitor.updateCalculatedNearFar(toEye, boxAround(nearestSphere));
-    _visitor.updateCalculatedNearFar(toEye, boxAround(farthestSphere));
+    _visitor.updateCalculatedNearFar(toEye, boxAround(firstSphere));
+    _visitor.updateCalculatedNearFar(toEye, boxAround(lastSphere));
 }
 
 void CrowdView::draw(SkinnedGeometry& mesh, const PaletteBinding& binding)

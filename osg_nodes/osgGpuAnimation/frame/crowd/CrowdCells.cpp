@@ -56,11 +56,11 @@ std::size_t CrowdCells::KeyHash::operator()(const Key& key) const
 /// Beyond the largest coordinate, cells have no end.
 CrowdCells::Key CrowdCells::keyOf(const glm::vec4& sphere) const
 {
-    constexpr float largest = 1 << 30;
+    constexpr float maxCell = 1 << 30;
     Key key;
     for (int axis = 0; axis < 3; ++axis)
         key[static_cast<std::size_t>(axis)] =
-            static_cast<std::int32_t>(std::floor(std::min(std::max(sphere[axis] / _edge, -largest), largest)));
+            static_cast<std::int32_t>(std::floor(std::min(std::max(sphere[axis] / _edge, -maxCell), maxCell)));
     return key;
 }
 
@@ -167,7 +167,7 @@ void CrowdCells::findSeen(const std::vector<glm::vec4>& planes, SeenMembers& out
 {
     outSeen._spans.clear();
     outSeen._partial.clear();
-    std::size_t whole = 0, mostCopies = 0;
+    std::size_t whole = 0, maxCopies = 0;
     std::vector<glm::vec4> crossing;
     for (const Cell& cell : _cells)
     {
@@ -177,10 +177,10 @@ void CrowdCells::findSeen(const std::vector<glm::vec4>& planes, SeenMembers& out
         if (!findCrossing(planes, span, crossing)) continue;
         const bool isPartial = cell.hasUnseen || !crossing.empty();
         if (isPartial) outSeen._partial.push_back(outSeen._spans.size());
-        (isPartial ? mostCopies : whole) += count;
+        (isPartial ? maxCopies : whole) += count;
         outSeen._spans.push_back(span);
     }
-    if (outSeen._copies.size() < mostCopies) outSeen._copies.resize(mostCopies);
+    if (outSeen._copies.size() < maxCopies) outSeen._copies.resize(maxCopies);
     CrowdMember* copies = outSeen._copies.data();
     for (const std::size_t partial : outSeen._partial)
     {

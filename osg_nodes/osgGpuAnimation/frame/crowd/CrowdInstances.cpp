@@ -201,7 +201,7 @@ CrowdInstances::Handle CrowdInstances::add(const AffineMatrix& rootMatrix, const
     const bool isPlain = controller.isPlainLoop();
     _rootMatrices.add(rootMatrix);
     _positions.push_back(position);
-    _scales.push_back(largestScale(rootMatrix));
+    _scales.push_back(maxScale(rootMatrix));
     _tints.add(tint);
     _tinted += tint != PoseBatch::white;
     _playbacks.push_back(isPlain ? CrowdPlayback(controller, _clock) : CrowdPlayback());
@@ -239,7 +239,7 @@ void CrowdInstances::move(std::size_t index, const AffineMatrix& rootMatrix, con
 {
     _rootMatrices.set(index, rootMatrix);
     _positions[index] = position;
-    _scales[index] = largestScale(rootMatrix);
+    _scales[index] = maxScale(rootMatrix);
     updateMember(index);
 }
 

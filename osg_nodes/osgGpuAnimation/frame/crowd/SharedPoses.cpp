@@ -37,7 +37,7 @@ std::size_t bandOf(float error)
 }
 
 /// 0 for band 0.
-float leastErrorOf(std::size_t band)
+float minErrorOf(std::size_t band)
 {
     const std::uint32_t bits = static_cast<std::uint32_t>(band) << bitsInBand;
     float error;
@@ -76,10 +76,10 @@ public:
             }
     }
 
-    /// Numbers the steps that instances show and adds their poses to batches. function(): an empty batch. mostPoses: of
+    /// Numbers the steps that instances show and adds their poses to batches. function(): an empty batch. maxPoses: of
     /// a batch.
     template <typename Function>
-    std::vector<std::unique_ptr<PoseBatch>> makeBatches(std::size_t mostPoses, Function function)
+    std::vector<std::unique_ptr<PoseBatch>> makeBatches(std::size_t maxPoses, Function function)
     {
         std::vector<std::unique_ptr<PoseBatch>> batches;
         std::uint32_t number = 0;
@@ -92,7 +92,7 @@ public:
             {
                 const std::size_t place = 64 * word + static_cast<std::size_t>(__builtin_ctzll(bits));
                 if (!poses) poses = _meshes.clips[_storage.clips[place / stepsOfClip]].poses.data();
-                if (number % mostPoses == 0) batches.push_back(function());
+                if (number % maxPoses == 0) batches.push_back(function());
                 batches.back()->addSample(poses[place % stepsOfClip]);
             }
         }
@@ -105,10 +105,10 @@ public:
     void write(std::size_t firstPose, std::size_t poseCount, std::vector<PlacedInstances::Drawn>& out,
                Function function) const
     {
-        std::size_t most = 0;
+        std::size_t max = 0;
         for (const auto& [level, shown] : _storage.shownOfLevel)
-            most += shown.size();
-        out.reserve(most);
+            max += shown.size();
+        out.reserve(max);
         for (const auto& [level, shown] : _storage.shownOfLevel)
         {
             const std::size_t first = out.size();
@@ -130,8 +130,8 @@ public:
 
 private:
     static constexpr std::uint32_t none = ~std::uint32_t(0);
-    static constexpr std::size_t stepsOfClip = (mostSteps / 64 + 1) * 64; ///< whole words of bits
-    using Shown = std::vector<PlacedInstances::Drawn>;                    ///< poses are places: clips and their steps
+    static constexpr std::size_t stepsOfClip = (maxSteps / 64 + 1) * 64; ///< whole words of bits
+    using Shown = std::vector<PlacedInstances::Drawn>;                   ///< poses are places: clips and their steps
     struct Band
     {
         Shown* shown;  ///< null: the band is new
@@ -162,7 +162,7 @@ private:
         const SharedClip* shared;
         Shown* shown;
         std::uint32_t firstPlace; ///< of the steps of its clip
-        float reach;              ///< in steps, in [0, mostSteps]
+        float reach;              ///< in steps, in [0, maxSteps]
     };
     /// Kept from cull to cull.
     struct Storage
@@ -210,11 +210,11 @@ private:
             const auto clip = static_cast<std::size_t>(member->clip - CrowdMember::controlled);
             const SharedClip& shared = _meshes.clips[clip];
             const float reach = (error - band.ofLevel) * shared.stepsPerTravel;
-            const bool shares = reach >= shared.leastReach;
+            const bool shares = reach >= shared.minReach;
             // Without a branch that no processor could predict.
             outOthers[others] = member->index;
             _storage.chosen[sharing] = {member, &shared, band.shown, firstOf(clip),
-                                        std::min(std::max(reach, 0.0f), static_cast<float>(mostSteps))};
+                                        std::min(std::max(reach, 0.0f), static_cast<float>(maxSteps))};
             others += !shares;
             sharing += shares;
         }
@@ -249,11 +249,11 @@ private:
             const float travel = _storage.travels[i];
             const int begin = static_cast<int>(travel - chosen.reach);
             const int first = std::max(begin + static_cast<int>(static_cast<float>(begin) < travel - chosen.reach), 0);
-            const int last = std::min(static_cast<int>(travel + chosen.reach), mostSteps);
+            const int last = std::min(static_cast<int>(travel + chosen.reach), maxSteps);
             const std::uint32_t step = roundest(static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last));
             // From there on all steps reach the middle.
-            const bool reachesMiddle = chosen.reach >= static_cast<float>(mostSteps / 2);
-            const std::uint32_t place = chosen.firstPlace + (reachesMiddle ? mostSteps / 2 : step);
+            const bool reachesMiddle = chosen.reach >= static_cast<float>(maxSteps / 2);
+            const std::uint32_t place = chosen.firstPlace + (reachesMiddle ? maxSteps / 2 : step);
             _storage.shown[place / 64].bits |= std::uint64_t(1) << place % 64;
             chosen.shown->push_back({place, chosen.member->index});
         }
@@ -274,7 +274,7 @@ private:
         Band& band = _storage.bands[number];
         if (!band.shown)
         {
-            const int level = _scale.levelWithin(leastErrorOf(number));
+            const int level = _scale.levelWithin(minErrorOf(number));
             band = {&_storage.shownOfLevel[level], static_cast<float>(_scale.foundError(level))};
         }
         return band;
@@ -325,7 +325,7 @@ SharedPoses::SharedPoses(const osg::Group& crowd, const AnimationSet& set)
     for (std::size_t entry = 0; isMorphed && entry < boxes.reaches.size(); ++entry)
         if (const Box& box = boxes.ofClips[entry]; !box.empty())
             boxes.reaches[entry] = std::max(boxes.reaches[entry], glm::distance(box.min, box.max));
-    computed->clips.emplace_back().leastReach = std::numeric_limits<float>::infinity();
+    computed->clips.emplace_back().minReach = std::numeric_limits<float>::infinity();
     computed->clips.emplace_back().poses.emplace_back();
     for (std::size_t clip = 0; clip < set.clips().size(); ++clip)
     {
@@ -333,13 +333,13 @@ SharedPoses::SharedPoses(const osg::Group& crowd, const AnimationSet& set)
         shared.travel = ClipTravel(set, clip, boxes.ofClips, boxes.reaches);
         shared.duration = set.clips()[clip].duration();
         const float length = shared.travel.length();
-        const int steps = length > 0.0f ? mostSteps : 0;
+        const int steps = length > 0.0f ? maxSteps : 0;
         for (int step = 0; step <= steps; ++step)
             shared.poses.push_back(
-                shared.travel.sampleAt(length * static_cast<float>(step) / static_cast<float>(mostSteps)));
+                shared.travel.sampleAt(length * static_cast<float>(step) / static_cast<float>(maxSteps)));
         if (steps == 0) continue;
         shared.stepsPerTravel = static_cast<float>(steps) / length;
-        shared.leastReach = 0.5f;
+        shared.minReach = 0.5f;
     }
     _meshes = computed;
 }
@@ -358,7 +358,7 @@ void SharedPoses::forgetUnused()
 /// The list itself, or an equal one that was drawn since the update before and is on the GPU.
 std::shared_ptr<const PlacedInstances> SharedPoses::shared(std::shared_ptr<PlacedInstances> placed) const
 {
-    constexpr std::size_t mostKept = 16; // of a crowd without updates
+    constexpr std::size_t maxKept = 16; // of a crowd without updates
     const auto isSame = [&](const std::shared_ptr<const PlacedInstances>& known)
     {
         return known->crowd == placed->crowd && known->placements == placed->placements &&
@@ -369,7 +369,7 @@ std::shared_ptr<const PlacedInstances> SharedPoses::shared(std::shared_ptr<Place
     const std::lock_guard<std::mutex> lock(_mutex);
     if (const auto known = std::find_if(_latest.begin(), _latest.end(), isSame); known != _latest.end()) return *known;
     const auto before = std::find_if(_before.begin(), _before.end(), isSame);
-    if (_latest.size() == mostKept) _latest.erase(_latest.begin());
+    if (_latest.size() == maxKept) _latest.erase(_latest.begin());
     return _latest.emplace_back(before != _before.end() ? *before : placed);
 }
 
@@ -381,7 +381,7 @@ std::vector<DrawState> SharedPoses::submit(PoseFrame& frame, const CrowdInstance
         (instances.size() + SharedBlocks<AffineMatrix>::blockSize) * POSE_TEXELS_PER_MATRIX;
     PosePipeline::Options options;
     options.maxTexels = frame.getMaxTexels();
-    const std::size_t mostPoses = PosePipeline::chunkCapacity(set, options);
+    const std::size_t maxPoses = PosePipeline::chunkCapacity(set, options);
     std::vector<DrawState> draws;
     if (placementTexels > frame.getMaxTexels())
     {
@@ -392,7 +392,7 @@ std::vector<DrawState> SharedPoses::submit(PoseFrame& frame, const CrowdInstance
     collection.take(seen, outOthers);
     std::size_t firstPose = 0;
     for (std::unique_ptr<PoseBatch>& batch :
-         collection.makeBatches(mostPoses, [&] { return frame.makeBatch(instances.set()); }))
+         collection.makeBatches(maxPoses, [&] { return frame.makeBatch(instances.set()); }))
     {
         struct Run
         {

@@ -18,14 +18,14 @@
 namespace osgGpuAnimation
 {
 
-/// The poses that instances of a crowd with a pixel error share: those at `mostSteps` steps of equal ClipTravel of each
+/// The poses that instances of a crowd with a pixel error share: those at `maxSteps` steps of equal ClipTravel of each
 /// clip. The distance of a vertex from its exact place, plus the error of the level of detail, stays within the pixel
 /// error. Instances whose error is less than half a step have poses of their own, and so do those with a controller:
 /// the crowd submits them itself.
 class SharedPoses
 {
 public:
-    static constexpr int mostSteps = 1024; ///< of a clip
+    static constexpr int maxSteps = 1024; ///< of a clip
 
     /// crowd: the node with the meshes.
     SharedPoses(const osg::Group& crowd, const AnimationSet& set);
@@ -58,7 +58,7 @@ private:
         ClipTravel travel{};
         double duration = 0.0;            ///< seconds
         float stepsPerTravel = 0.0f;      ///< 0: a clip without motion
-        float leastReach = -1.0f;         ///< in steps; an instance that reaches less has a pose of its own
+        float minReach = -1.0f;           ///< in steps; an instance that reaches less has a pose of its own
         std::vector<BlendSample> poses{}; ///< by step
     };
     /// What depends on the meshes.

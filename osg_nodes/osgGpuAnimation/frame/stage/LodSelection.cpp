@@ -51,10 +51,10 @@ LodRange::LodRange(const osg::Group& meshes, const AnimationSet& set, std::share
 double LodRange::foundError(int level) const
 {
     if (level == LodLevels::allTriangles) return 0.0;
-    double largest = _merged ? _merged->foundError(level) : 0.0;
+    double max = _merged ? _merged->foundError(level) : 0.0;
     for (const auto& [mesh, levels] : _ofMeshes)
-        if (!_merged || !_merged->isMerged(*mesh, level)) largest = std::max(largest, levels->foundError(level));
-    return largest;
+        if (!_merged || !_merged->isMerged(*mesh, level)) max = std::max(max, levels->foundError(level));
+    return max;
 }
 
 namespace

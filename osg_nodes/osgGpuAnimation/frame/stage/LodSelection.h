@@ -105,7 +105,7 @@ public:
     /// The nearest point decides; a sphere that reaches behind the eye gets all triangles.
     int level(const glm::vec3& centre, float radius, const AffineMatrix& rootMatrix) const
     {
-        return levelWithin(allowedError(centre, radius, largestScale(rootMatrix)));
+        return levelWithin(allowedError(centre, radius, maxScale(rootMatrix)));
     }
     /// The error that the pixel error allows for a sphere, in the units of the set; at most 0: none. scale: the largest
     /// of the placement.

@@ -75,8 +75,8 @@ AnimationBuffers::AnimationBuffers(osg::GLExtensions& gl, const AnimationSet& se
 
 const ConstraintBuffers& AnimationBuffers::constraints(const AnimationSet& set, std::uint64_t active)
 {
-    constexpr std::size_t most = 64; // applications switch constraints on and off in any combination
-    if (_constraints.size() >= most && _constraints.count(active) == 0)
+    constexpr std::size_t max = 64; // applications switch constraints on and off in any combination
+    if (_constraints.size() >= max && _constraints.count(active) == 0)
     {
         for (auto& [of, buffers] : _constraints)
             buffers->release();

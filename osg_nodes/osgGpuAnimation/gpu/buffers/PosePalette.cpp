@@ -93,7 +93,7 @@ void PosePalette::Chunk::bindInstances(osg::GLExtensions& gl, FeedbackVertexArra
 
 std::size_t PosePalette::posedTexels(const PoseBatch& batch)
 {
-    return batch.mostPosed() * batch.set().trackCount() * POSE_TEXELS_PER_TRANSFORM;
+    return batch.maxPosed() * batch.set().trackCount() * POSE_TEXELS_PER_TRANSFORM;
 }
 
 /// Uploads the posed keyframes of the chunk that have changed. first: the chunk's first instance. True if one has.

@@ -25,7 +25,7 @@ namespace osgGpuAnimation
 namespace
 {
 
-constexpr float largest = 65504.0f; ///< of half floats
+constexpr float maxHalf = 65504.0f; ///< of half floats
 const char* const faceNames[] = {"POSITIVE_X", "NEGATIVE_X", "POSITIVE_Y", "NEGATIVE_Y", "POSITIVE_Z", "NEGATIVE_Z"};
 
 std::string sizeText(int width, int height)
@@ -100,7 +100,7 @@ public:
         if (_type == GL_UNSIGNED_BYTE) return _bytes[*bytes];
         if (_type == GL_UNSIGNED_SHORT) return linearOf(static_cast<float>(read<std::uint16_t>(bytes)) / 65535.0f);
         const float value = _type == GL_FLOAT ? read<float>(bytes) : floatOfHalf(read<std::uint16_t>(bytes));
-        return std::isfinite(value) ? std::clamp(value, 0.0f, largest) : 0.0f;
+        return std::isfinite(value) ? std::clamp(value, 0.0f, maxHalf) : 0.0f;
     }
 
 private:
@@ -257,7 +257,7 @@ osg::Vec3f brightest(const std::vector<Patch>& patches)
 {
     constexpr float sharpness = 40.0f, lowest = 0.1736f; // the sine of 10 degrees
     osg::Vec3f towards(0, 1, 0);
-    double most = 0.0;
+    double max = 0.0;
     for (const Patch& candidate : patches)
     {
         if (candidate.towards.y() < lowest) continue;
@@ -265,9 +265,9 @@ osg::Vec3f brightest(const std::vector<Patch>& patches)
         for (const Patch& patch : patches)
             if (const float cosine = candidate.towards * patch.towards; cosine > 0.8f)
                 sum += groundLight(patch) * static_cast<double>(std::exp(sharpness * (cosine - 1.0f)));
-        if (sum > 1.0001 * most)
+        if (sum > 1.0001 * max)
         {
-            most = sum;
+            max = sum;
             towards = candidate.towards;
         }
     }

@@ -14,7 +14,7 @@ namespace
 {
 
 constexpr float noCutoff = 180.0f; ///< OpenGL's value for lights that are no spots
-constexpr double largestExponent = 128.0;
+constexpr double maxExponent = 128.0;
 
 double cosineOf(float degrees)
 {
@@ -27,7 +27,7 @@ float exponentOf(double cosInner, double cosOuter)
 {
     const double flux = 1.0 - cosInner + (cosInner - cosOuter) / 3.0;
     const auto fluxOf = [cosOuter](double e) { return (1.0 - std::pow(cosOuter, e + 1.0)) / (e + 1.0); };
-    double low = 0.0, high = largestExponent; // the flux falls with the exponent
+    double low = 0.0, high = maxExponent; // the flux falls with the exponent
     for (int step = 0; step < 40; ++step)
     {
         const double middle = 0.5 * (low + high);

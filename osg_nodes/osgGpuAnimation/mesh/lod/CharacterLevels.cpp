@@ -22,7 +22,7 @@ constexpr std::size_t posedVertices = 300'000; ///< in all key poses
 constexpr std::size_t otherPoses = 256;        ///< beside the key poses
 // A mesh is used from the level on at which its picture has that structural similarity, with pixels that are twice the
 // level's error: a pixel error of 0.5.
-constexpr double leastSimilarity = 0.98, usualPixel = 2.0;
+constexpr double minSimilarity = 0.98, usualPixel = 2.0;
 
 /// Of the parts at a level of their own.
 std::size_t trianglesOf(const MergedParts::Meshes& parts, const AnimationSet& set, int level)
@@ -125,9 +125,9 @@ void CharacterLevels::merge(const Indices& indices, const AnimationSet& set, con
     if (!parts.isValid()) return;
     MergedMesh mesh(parts);
     Merged merged{indices, {}};
-    const double least = finestShare * parts.size(), most = coarsestShare * parts.size();
-    const int finest = LodLevels::levelOf(least), coarsest = LodLevels::levelOf(most);
-    for (double limit = least; limit <= most; limit *= coarser)
+    const double min = finestShare * parts.size(), max = coarsestShare * parts.size();
+    const int finest = LodLevels::levelOf(min), coarsest = LodLevels::levelOf(max);
+    for (double limit = min; limit <= max; limit *= coarser)
     {
         const std::size_t before = mesh.triangleCount();
         mesh.reduce(limit);
@@ -135,7 +135,7 @@ void CharacterLevels::merge(const Indices& indices, const AnimationSet& set, con
         if (mesh.triangleCount() == before) continue;
         const double error = mesh.fit();
         int level = std::max(finest, LodLevels::levelFor(error));
-        while (level <= coarsest && mesh.similarity(usualPixel * LodLevels::errorOf(level)) < leastSimilarity)
+        while (level <= coarsest && mesh.similarity(usualPixel * LodLevels::errorOf(level)) < minSimilarity)
             ++level;
         if (level > coarsest) continue;
         while (!merged.steps.empty() && merged.steps.back().level >= level)
@@ -200,10 +200,10 @@ const CharacterLevels::Step* CharacterLevels::Merged::at(int level) const
 
 double CharacterLevels::foundError(int level) const
 {
-    double largest = 0.0;
+    double error = 0.0;
     for (const Merged& merged : _merged)
-        if (const Step* step = merged.at(level)) largest = std::max(largest, step->error);
-    return largest;
+        if (const Step* step = merged.at(level)) error = std::max(error, step->error);
+    return error;
 }
 
 bool CharacterLevels::isMerged(const SkinnedGeometry& part, int level) const

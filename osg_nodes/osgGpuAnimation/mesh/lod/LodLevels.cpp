@@ -53,13 +53,13 @@ float distanceOf(const Joints& a, const Joints& b)
 // the character's size divided so: coarser levels save little more and make small characters thin.
 constexpr int finestFraction = 8;
 constexpr int coarsestFraction = 5;
-constexpr int mostBeyondSize = 10;            ///< powers of two above the mesh's size; it is one triangle there
+constexpr int maxBeyondSize = 10;             ///< powers of two above the mesh's size; it is one triangle there
 constexpr double worthwhile = 0.85;           ///< a level has at most this share of the previous level's triangles
 constexpr std::size_t measuredPerKeyPose = 4; ///< poses
-constexpr int mostAttempts = 8;               ///< with more key poses each
+constexpr int maxAttempts = 8;                ///< with more key poses each
 constexpr std::size_t fewTriangles = 16;      ///< meshes with fewer get no levels
 constexpr std::size_t entriesATriangle = 8;
-constexpr double mostOutset = 0.25; ///< of a level's error
+constexpr double maxOutset = 0.25; ///< of a level's error
 constexpr int levelsPerOctave = 2;
 
 template <typename OsgArray, typename Vector>
@@ -130,10 +130,10 @@ Extent extentOf(const PosedSurface& surface, const std::vector<std::uint32_t>& i
 /// parts get no levels.
 bool isWorthPoses(const osg::Geometry& mesh, const AnimationSet& set)
 {
-    std::size_t most = 0;
+    std::size_t triangles = 0;
     for (const osg::ref_ptr<osg::PrimitiveSet>& primitives : mesh.getPrimitiveSetList())
-        if (primitives) most = std::max<std::size_t>(most, primitives->getNumIndices() / 3);
-    return most >= std::max(fewTriangles, set.paletteSize() / entriesATriangle);
+        if (primitives) triangles = std::max<std::size_t>(triangles, primitives->getNumIndices() / 3);
+    return triangles >= std::max(fewTriangles, set.paletteSize() / entriesATriangle);
 }
 
 template <typename Elements>
@@ -178,9 +178,9 @@ std::vector<PoseInstruction> keyPoses(const AnimationSet& set, std::size_t count
     }
     while (chosen.size() < count && !pool.empty())
     {
-        const auto farthest = std::max_element(distances.begin(), distances.end());
-        if (!(*farthest > 0.0f)) break;
-        const auto index = static_cast<std::size_t>(farthest - distances.begin());
+        const auto next = std::max_element(distances.begin(), distances.end());
+        if (!(*next > 0.0f)) break;
+        const auto index = static_cast<std::size_t>(next - distances.begin());
         chosen.push_back(pool[index]);
         for (std::size_t other = 0; other < pool.size(); ++other)
             distances[other] = std::min(distances[other], distanceOf(joints[other], joints[index]));
@@ -188,22 +188,22 @@ std::vector<PoseInstruction> keyPoses(const AnimationSet& set, std::size_t count
     return chosen;
 }
 
-MeasuredPoses::MeasuredPoses(const AnimationSet& set, std::size_t mostKeyPoses, std::size_t otherPoseCount)
-    : poses(keyPoses(set, mostKeyPoses)), keyPoseCount(poses.size())
+MeasuredPoses::MeasuredPoses(const AnimationSet& set, std::size_t maxKeyPoses, std::size_t otherPoseCount)
+    : poses(keyPoses(set, maxKeyPoses)), keyPoseCount(poses.size())
 {
     const std::vector<PoseInstruction> others = spreadPoses(set, otherPoseCount);
     poses.insert(poses.end(), others.begin(), others.end());
 }
 
-float largestScale(const AffineMatrix& matrix)
+float maxScale(const AffineMatrix& matrix)
 {
-    float largest = 0.0f;
+    float max = 0.0f;
     for (int axis = 0; axis < 3; ++axis)
     {
         const float x = matrix.rows[0][axis], y = matrix.rows[1][axis], z = matrix.rows[2][axis];
-        largest = std::max(largest, x * x + y * y + z * z);
+        max = std::max(max, x * x + y * y + z * z);
     }
-    return std::sqrt(largest);
+    return std::sqrt(max);
 }
 
 std::vector<std::uint32_t> LodLevels::trianglesOf(const osg::PrimitiveSet* primitives, std::size_t vertexCount)
@@ -222,13 +222,13 @@ std::vector<std::uint32_t> LodLevels::trianglesOf(const osg::PrimitiveSet* primi
 
 std::size_t LodLevels::poseCountOf(std::size_t vertices, std::size_t posedVertices)
 {
-    return std::clamp(posedVertices / std::max<std::size_t>(vertices, 1), fewestPoses, mostPoses);
+    return std::clamp(posedVertices / std::max<std::size_t>(vertices, 1), minPoses, maxPoses);
 }
 
 int LodLevels::levelOf(double error)
 {
     if (!(error > 0.0 && std::isfinite(error))) return allTriangles;
-    const int level = static_cast<int>(std::floor(levelsPerOctave * std::log2(error / (1.0 + mostOutset))));
+    const int level = static_cast<int>(std::floor(levelsPerOctave * std::log2(error / (1.0 + maxOutset))));
     return errorOf(level + 1) <= error ? level + 1 : level; // rounding
 }
 
@@ -240,7 +240,7 @@ int LodLevels::levelFor(double error)
 
 double LodLevels::errorOf(int level)
 {
-    return level == allTriangles ? 0.0 : (1.0 + mostOutset) * std::exp2(static_cast<double>(level) / levelsPerOctave);
+    return level == allTriangles ? 0.0 : (1.0 + maxOutset) * std::exp2(static_cast<double>(level) / levelsPerOctave);
 }
 
 LodLevels::LodLevels(const osg::Geometry& mesh)
@@ -261,8 +261,8 @@ LodLevels::LodLevels(const osg::Geometry& mesh, const AnimationSet& set, const S
     const int finest = levelsPerOctave * (std::ilogb(size) - finestFraction);
     const int coarsest =
         levelsPerOctave * std::min(std::ilogb(std::max(size, sizeOf(boundsOfJoints(set)))) - coarsestFraction,
-                                   std::ilogb(size) + mostBeyondSize);
-    for (int attempt = 0; attempt < mostAttempts; ++attempt)
+                                   std::ilogb(size) + maxBeyondSize);
+    for (int attempt = 0; attempt < maxAttempts; ++attempt)
     {
         std::set<std::size_t> beyond;
         for (Primitives& primitives : _primitives)
@@ -288,13 +288,13 @@ void LodLevels::addSteps(const PosedSurface& surface, int finest, int coarsest, 
     for (int level = finest; level <= coarsest; level += levelsPerOctave)
     {
         if (simplifier.triangleCount() <= 1) break;
-        const double limit = errorOf(level) / (1.0 + mostOutset);
+        const double limit = errorOf(level) / (1.0 + maxOutset);
         simplifier.reduce(limit, level < coarsest);
         if (static_cast<double>(simplifier.triangleCount()) >= worthwhile * static_cast<double>(kept)) continue;
         const std::vector<std::uint32_t> indices = simplifier.indices();
         const Extent extent = extentOf(surface, indices);
         const double lost = extent.area > 0.0 ? (whole.volume - extent.volume) / extent.area : 0.0;
-        const double outset = std::clamp(lost, 0.0, mostOutset * limit);
+        const double outset = std::clamp(lost, 0.0, maxOutset * limit);
         std::size_t worst = 0;
         const double error = simplifier.error(&worst) + outset;
         if (error > errorOf(level) && worst >= surface.keyPoses) outBeyond.insert(worst);
@@ -386,10 +386,10 @@ LodLevels::Reduced LodLevels::reduced(std::size_t primitiveSet, int level) const
 
 double LodLevels::foundError(int level) const
 {
-    double largest = 0.0;
+    double error = 0.0;
     for (std::size_t i = 0; i < _primitives.size(); ++i)
-        largest = std::max(largest, reduced(i, level).error);
-    return largest;
+        error = std::max(error, reduced(i, level).error);
+    return error;
 }
 
 void LodLevels::releaseGLObjects(osg::State* state) const

@@ -28,7 +28,7 @@ std::vector<PoseInstruction> keyPoses(const AnimationSet& set, std::size_t count
 /// clips, at most a quarter of them in one clip. Both counts: at least 4.
 struct MeasuredPoses
 {
-    MeasuredPoses(const AnimationSet& set, std::size_t mostKeyPoses, std::size_t otherPoseCount);
+    MeasuredPoses(const AnimationSet& set, std::size_t maxKeyPoses, std::size_t otherPoseCount);
 
     std::vector<PoseInstruction> poses; ///< the key poses come first
     std::size_t keyPoseCount;
@@ -37,7 +37,7 @@ struct MeasuredPoses
 struct PosedSurface;
 
 /// The largest length of a transformed unit axis.
-float largestScale(const AffineMatrix& matrix);
+float maxScale(const AffineMatrix& matrix);
 
 /// Reduced triangles for a mesh over the same vertices, so that palettes, influences and morph targets do not change. A
 /// **level** is the exponent of the largest error as a power of the square root of two, in the character's own units
@@ -59,9 +59,9 @@ public:
     static constexpr int allTriangles = std::numeric_limits<int>::min(); ///< the level without error
     static constexpr std::size_t maxVertices = 100'000; ///< of a mesh with levels; such a mesh takes seconds
     /// The number of key poses in which the error of so many vertices is measured: as many as posedVertices allows, in
-    /// [fewestPoses, mostPoses].
+    /// [minPoses, maxPoses].
     static std::size_t poseCountOf(std::size_t vertices, std::size_t posedVertices = 21'000);
-    static constexpr std::size_t fewestPoses = 12, mostPoses = 48;
+    static constexpr std::size_t minPoses = 12, maxPoses = 48;
 
     /// The coarsest level within the error, in the character's units; allTriangles if the error is not above 0.
     static int levelOf(double error);

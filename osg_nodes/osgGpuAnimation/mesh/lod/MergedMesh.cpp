@@ -13,7 +13,7 @@ namespace osgGpuAnimation
 namespace
 {
 
-constexpr double mostForOutlines = 0.3, mostForCoverage = 0.045; ///< moves of vertices, as shares of the limit
+constexpr double maxForOutlines = 0.3, maxForCoverage = 0.045; ///< moves of vertices, as shares of the limit
 constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 
 } // namespace
@@ -33,8 +33,8 @@ double MergedMesh::fit()
 {
     takeTriangles();
     const std::vector<glm::vec3> unmoved = _mesh.positions;
-    _views.fitOutlines(_mesh, mostForOutlines * _limit);
-    _views.fitCoverage(_mesh, mostForCoverage * _limit);
+    _views.fitOutlines(_mesh, maxForOutlines * _limit);
+    _views.fitCoverage(_mesh, maxForCoverage * _limit);
     const std::vector<glm::vec3> moved = _mesh.positions;
     PosedSurface::Poses poses = _parts.posesOf(_mesh);
     double error = _simplifier.errorOfMoved(poses, _vertexOf);

@@ -18,7 +18,7 @@ namespace osgGpuAnimation
 ///
 ///     MergedMesh merged(parts);
 ///     merged.reduce(error);
-///     if (merged.fit() <= largestError && merged.similarity(pixel) > 0.98) draw(merged.make());
+///     if (merged.fit() <= maxError && merged.similarity(pixel) > 0.98) draw(merged.make());
 class MergedMesh
 {
 public:

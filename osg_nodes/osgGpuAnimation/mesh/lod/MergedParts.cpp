@@ -213,7 +213,7 @@ void MergedParts::setInfluences(const CoarseMesh& mesh, SkinnedGeometry& geometr
     osg::ref_ptr<osg::Vec4usArray> entries[SkinnedGeometry::maxInfluenceSets];
     osg::ref_ptr<osg::Vec4Array> weights[SkinnedGeometry::maxInfluenceSets];
     const auto count = static_cast<unsigned int>(mesh.sources.size());
-    std::size_t most = 0;
+    std::size_t max = 0;
     for (unsigned int i = 0; i < SkinnedGeometry::maxInfluenceSets; ++i)
     {
         entries[i] = new osg::Vec4usArray(count);
@@ -231,9 +231,9 @@ void MergedParts::setInfluences(const CoarseMesh& mesh, SkinnedGeometry& geometr
                                                   (*weights[number / 4])[vertex][place] = weight;
                                                   ++number;
                                               });
-        most = std::max(most, number);
+        max = std::max(max, number);
     }
-    for (unsigned int i = 0; 4 * i < most; ++i)
+    for (unsigned int i = 0; 4 * i < max; ++i)
         geometry.setInfluences(i, entries[i], weights[i]);
 }
 

@@ -77,13 +77,13 @@ std::vector<glm::vec3> normalsOf(const CoarseMesh& mesh)
 SurfaceViews::Cell nearest(const SurfaceViews::Cell& cell, const std::vector<SurfaceViews::Cell>& cells)
 {
     SurfaceViews::Cell found = cells.front();
-    int least = std::numeric_limits<int>::max();
+    int min = std::numeric_limits<int>::max();
     for (const SurfaceViews::Cell& other : cells)
     {
         const SurfaceViews::Cell way = other - cell;
         const int squaredDistance = way.x * way.x + way.y * way.y;
-        if (squaredDistance >= least) continue;
-        least = squaredDistance;
+        if (squaredDistance >= min) continue;
+        min = squaredDistance;
         found = other;
     }
     return found;
@@ -172,7 +172,7 @@ void MergedViews::addMoves(const CoarseMesh& mesh, const Poses& poses, std::size
         add(nearest(cell, outline), cell);
 }
 
-void MergedViews::fitOutlines(CoarseMesh& mesh, double most) const
+void MergedViews::fitOutlines(CoarseMesh& mesh, double max) const
 {
     const std::vector<glm::vec3> unmoved = mesh.positions;
     std::vector<std::vector<glm::mat3>> turns(SurfaceViews::viewCount); // by view, then vertex
@@ -189,13 +189,13 @@ void MergedViews::fitOutlines(CoarseMesh& mesh, double most) const
         {
             if (!(moves.weights[vertex] > 0.0f)) continue;
             const glm::vec3 way = mesh.positions[vertex] + moves.sums[vertex] / moves.weights[vertex] - unmoved[vertex];
-            const float length = glm::length(way), longest = static_cast<float>(most);
+            const float length = glm::length(way), longest = static_cast<float>(max);
             mesh.positions[vertex] = unmoved[vertex] + way * (length > longest ? longest / length : 1.0f);
         }
     }
 }
 
-void MergedViews::fitCoverage(CoarseMesh& mesh, double most) const
+void MergedViews::fitCoverage(CoarseMesh& mesh, double max) const
 {
     const std::vector<glm::vec3> normals = normalsOf(mesh), unmoved = mesh.positions;
     const auto move = [&](double length)
@@ -204,18 +204,18 @@ void MergedViews::fitCoverage(CoarseMesh& mesh, double most) const
             mesh.positions[vertex] = unmoved[vertex] + static_cast<float>(length) * normals[vertex];
     };
     double best = 0.0;
-    std::size_t least = std::numeric_limits<std::size_t>::max();
+    std::size_t min = std::numeric_limits<std::size_t>::max();
     for (const double share : {0.0, 0.5, -0.5, 1.0, -1.0})
     {
-        move(share * most);
+        move(share * max);
         const Poses poses = _parts.posesOf(mesh, SurfaceViews::poseCount);
         const std::size_t covered = _views.coveredCells({poses, mesh.indices, false});
         const std::size_t missing = std::max(covered, _covered) - std::min(covered, _covered); // or too many
-        if (missing >= least) continue;
-        least = missing;
+        if (missing >= min) continue;
+        min = missing;
         best = share;
     }
-    move(best * most);
+    move(best * max);
 }
 
 /// Of the mesh. positions: in the view's pose.

@@ -27,10 +27,10 @@ public:
 
     /// Moves the vertices, by at most that length, until the outlines of the mesh in the views are near those of the
     /// parts: iterations of nearest points (Besl and McKay, A Method for Registration of 3-D Shapes, 1992).
-    void fitOutlines(CoarseMesh& mesh, double most) const;
+    void fitOutlines(CoarseMesh& mesh, double max) const;
     /// Moves the vertices along their normals, by at most that length, until the mesh covers as much of the views
     /// as the parts do: hidden outlines and small pieces would shrink it.
-    void fitCoverage(CoarseMesh& mesh, double most) const;
+    void fitCoverage(CoarseMesh& mesh, double max) const;
 
     using Poses = PosedSurface::Poses;
     /// The brightness of the views of a mesh, by view, then cell.

@@ -10,9 +10,9 @@ namespace osgGpuAnimation
 namespace
 {
 
-constexpr double smallestJump = 1e-4; ///< of the leg's length: smaller changes of the ground's height are no jumps
-constexpr double smallestTurn = 1e-3; ///< of the ground's normal, for the same
-constexpr double largestPivot = 0.8;  ///< radians by which a character turns over a locked foot
+constexpr double minJump = 1e-4; ///< of the leg's length: smaller changes of the ground's height are no jumps
+constexpr double minTurn = 1e-3; ///< of the ground's normal, for the same
+constexpr double maxPivot = 0.8; ///< radians by which a character turns over a locked foot
 
 const osg::Vec3d upwards(0.0, 0.0, 1.0);
 
@@ -32,12 +32,12 @@ std::optional<GroundPoint> supportOf(const GroundedFoot::Ground& ground, double 
 }
 
 /// The direction, at most so far from the vertical.
-osg::Vec3d limitedTilt(osg::Vec3d direction, double largest)
+osg::Vec3d limitedTilt(osg::Vec3d direction, double max)
 {
     direction.normalize();
     osg::Vec3d side(direction.x(), direction.y(), 0.0);
-    if (direction.z() >= std::cos(largest) || !(side.normalize() > 0.0)) return direction;
-    return upwards * std::cos(largest) + side * std::sin(largest);
+    if (direction.z() >= std::cos(max) || !(side.normalize() > 0.0)) return direction;
+    return upwards * std::cos(max) + side * std::sin(max);
 }
 
 /// The share of a difference that is left after a step, if it vanishes within `left` seconds.
@@ -62,7 +62,7 @@ void GroundedFoot::takePose(const LegPose& pose)
     _length = (pose.knee - pose.hip).length() + (pose.ankle.getTrans() - pose.knee).length();
 }
 
-void GroundedFoot::lock(bool isPlanted, double heading, double seconds, double largestShift)
+void GroundedFoot::lock(bool isPlanted, double heading, double seconds, double maxShift)
 {
     if (!_isLocked)
     {
@@ -72,7 +72,7 @@ void GroundedFoot::lock(bool isPlanted, double heading, double seconds, double l
     }
     const bool wasLocked = _isLocked;
     if (!isPlanted || (!_isLocked && _shiftLeft == 0.0)) _mayLock = true;
-    if (!_isLocked && isPlanted && _mayLock && largestShift > 0.0)
+    if (!_isLocked && isPlanted && _mayLock && maxShift > 0.0)
     {
         _isLocked = true;
         _lockPlace = place();
@@ -82,7 +82,7 @@ void GroundedFoot::lock(bool isPlanted, double heading, double seconds, double l
     {
         const osg::Vec3d shift(_lockPlace.x() - _below.x(), _lockPlace.y() - _below.y(), 0.0);
         const double pivot = std::remainder(_lockHeading - heading, 2.0 * osg::PI);
-        _isLocked = isPlanted && shift.length() <= largestShift && std::abs(pivot) <= largestPivot;
+        _isLocked = isPlanted && shift.length() <= maxShift && std::abs(pivot) <= maxPivot;
         if (_isLocked)
         {
             _shift = shift;
@@ -101,8 +101,8 @@ void GroundedFoot::lock(bool isPlanted, double heading, double seconds, double l
 
 void GroundedFoot::standOn(const Ground& below, const Ground& landing, double seconds, bool isNew)
 {
-    std::optional<GroundPoint> support = supportOf(below, smallestJump * _length);
-    const std::optional<GroundPoint> next = supportOf(landing, smallestJump * _length);
+    std::optional<GroundPoint> support = supportOf(below, minJump * _length);
+    const std::optional<GroundPoint> next = supportOf(landing, minJump * _length);
     if (next && (!support || next->heightAt(place()) > support->heightAt(place()))) support = next;
     const GroundPoint ground = support ? *support : GroundPoint{place(), _pose.up};
     const double share = remainder(seconds, _liftLeft);
@@ -110,7 +110,7 @@ void GroundedFoot::standOn(const Ground& below, const Ground& landing, double se
     _lean *= share;
     const double jump = isNew ? 0.0 : _ground.heightAt(place()) - ground.heightAt(place());
     const osg::Vec3d turn = isNew ? osg::Vec3d() : _ground.normal - ground.normal;
-    if (std::abs(jump) > smallestJump * _length || turn.length() > smallestTurn)
+    if (std::abs(jump) > minJump * _length || turn.length() > minTurn)
     {
         _lift += jump;
         _lean += turn;

@@ -36,9 +36,9 @@ public:
     void takePose(const LegPose& pose);
     double length() const { return _length; } ///< of the leg
 
-    /// Keeps the place of a planted foot until it lifts. heading: of the character, radians. largestShift: between the
+    /// Keeps the place of a planted foot until it lifts. heading: of the character, radians. maxShift: between the
     /// places in the clips and in the world; beyond it the foot loses its place.
-    void lock(bool isPlanted, double heading, double seconds, double largestShift);
+    void lock(bool isPlanted, double heading, double seconds, double maxShift);
 
     /// Places of a foot to sample the ground below.
     struct Probes

@@ -332,7 +332,7 @@ std::array<float, 4> AnimatedProperties::valueOf(const PropertyMember& member, i
     std::array<float, 4> value = member.rest;
     const auto first = _firstNumbers.find({&member, index});
     for (std::size_t i = 0; first != _firstNumbers.end() && i < member.count; ++i)
-        value[i] = std::clamp(_numbers[first->second + i], member.least, member.most);
+        value[i] = std::clamp(_numbers[first->second + i], member.min, member.max);
     return value;
 }
 

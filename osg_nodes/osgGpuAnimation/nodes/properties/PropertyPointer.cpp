@@ -14,7 +14,7 @@ namespace
 
 using Object = PropertyMember::Object;
 
-constexpr float largest = std::numeric_limits<float>::max();
+constexpr float maxFloat = std::numeric_limits<float>::max();
 constexpr float halfPi = 1.57079633f;
 
 /// A texture of a material whose coordinates have a number of their own.
@@ -52,15 +52,15 @@ PropertyMember factor(const char* name, const char* uniform, std::size_t compone
     return member;
 }
 
-PropertyMember upTo(PropertyMember member, float most)
+PropertyMember upTo(PropertyMember member, float max)
 {
-    member.most = most;
+    member.max = max;
     return member;
 }
 
-PropertyMember from(PropertyMember member, float least)
+PropertyMember from(PropertyMember member, float min)
 {
-    member.least = least;
+    member.min = min;
     return member;
 }
 
@@ -81,24 +81,24 @@ void addMaterials(std::vector<PropertyMember>& all)
     all.push_back(factor("pbrMetallicRoughness/baseColorFactor", "baseColorFactor", 0, 4, {1, 1, 1, 1}));
     all.push_back(factor("pbrMetallicRoughness/metallicFactor", "materialFactors", 0, 1, {1}));
     all.push_back(factor("pbrMetallicRoughness/roughnessFactor", "materialFactors", 1, 1, {1}));
-    all.push_back(from(upTo(factor("normalTexture/scale", "materialFactors", 2, 1, {1}), largest), -largest));
+    all.push_back(from(upTo(factor("normalTexture/scale", "materialFactors", 2, 1, {1}), maxFloat), -maxFloat));
     all.push_back(factor("occlusionTexture/strength", "materialFactors", 3, 1, {1}));
-    all.push_back(upTo(factor("alphaCutoff", "alphaCutoff", 0, 1, {0.5f}), largest));
+    all.push_back(upTo(factor("alphaCutoff", "alphaCutoff", 0, 1, {0.5f}), maxFloat));
     all.push_back(in("emission", factor("emissiveFactor", "emissiveFactor", 0, 3)));
     all.push_back(in("emission", upTo(factor("extensions/KHR_materials_emissive_strength/emissiveStrength",
                                              "emissiveStrength", 0, 1, {1}),
-                                      largest)));
-    all.push_back(in("reflection", upTo(factor("extensions/KHR_materials_ior/ior", "", 0, 1, {1.5f}), largest)));
+                                      maxFloat)));
+    all.push_back(in("reflection", upTo(factor("extensions/KHR_materials_ior/ior", "", 0, 1, {1.5f}), maxFloat)));
     all.push_back(
         in("reflection",
-           upTo(factor("extensions/KHR_materials_specular/specularColorFactor", "", 0, 3, {1, 1, 1}), largest)));
+           upTo(factor("extensions/KHR_materials_specular/specularColorFactor", "", 0, 3, {1, 1, 1}), maxFloat)));
     all.push_back(factor("extensions/KHR_materials_specular/specularFactor", "materialSpecular", 3, 1, {1}));
     all.push_back(factor("extensions/KHR_materials_clearcoat/clearcoatFactor", "materialClearcoat", 0));
     all.push_back(factor("extensions/KHR_materials_clearcoat/clearcoatRoughnessFactor", "materialClearcoat", 1));
     all.push_back(from(
         upTo(factor("extensions/KHR_materials_clearcoat/clearcoatNormalTexture/scale", "materialClearcoat", 2, 1, {1}),
-             largest),
-        -largest));
+             maxFloat),
+        -maxFloat));
     all.push_back(factor("extensions/KHR_materials_sheen/sheenColorFactor", "materialSheen", 0, 3));
     all.push_back(factor("extensions/KHR_materials_sheen/sheenRoughnessFactor", "materialSheen", 3));
     all.push_back(factor("extensions/KHR_materials_transmission/transmissionFactor", "materialTransmission", 0));
@@ -110,8 +110,8 @@ void addMaterials(std::vector<PropertyMember>& all)
             member.name = std::string(slot.name) + "/extensions/KHR_texture_transform/" + part;
             member.count = static_cast<std::size_t>(count);
             member.rest = {rest, rest};
-            member.least = -largest;
-            member.most = largest;
+            member.min = -maxFloat;
+            member.max = maxFloat;
             member.group = member.texture = slot.name;
             member.define = slot.define;
             all.push_back(member);
@@ -123,13 +123,13 @@ std::vector<PropertyMember> makeMembers()
     std::vector<PropertyMember> all;
     addMaterials(all);
     const auto light = [](PropertyMember member) { return of(Object::Light, in("light", std::move(member))); };
-    all.push_back(light(upTo(factor("color", "", 0, 3, {1, 1, 1}), largest)));
-    all.push_back(light(upTo(factor("intensity", "", 0, 1, {1}), largest)));
-    all.push_back(light(upTo(factor("range", "", 0), largest)));
+    all.push_back(light(upTo(factor("color", "", 0, 3, {1, 1, 1}), maxFloat)));
+    all.push_back(light(upTo(factor("intensity", "", 0, 1, {1}), maxFloat)));
+    all.push_back(light(upTo(factor("range", "", 0), maxFloat)));
     all.push_back(light(upTo(factor("spot/innerConeAngle", "", 0), halfPi)));
     all.push_back(light(upTo(factor("spot/outerConeAngle", "", 0, 1, {halfPi / 2.0f}), halfPi)));
     all.push_back(of(Object::Camera, from(upTo(factor("perspective/yfov", "", 0), 3.14f), 1e-3f)));
-    all.push_back(of(Object::Camera, from(upTo(factor("orthographic/ymag", "", 0), largest), -largest)));
+    all.push_back(of(Object::Camera, from(upTo(factor("orthographic/ymag", "", 0), maxFloat), -maxFloat)));
     PropertyMember visible = of(Object::Node, factor("extensions/KHR_node_visibility/visible", "", 0, 1, {1}));
     visible.isBoolean = true;
     all.push_back(visible);

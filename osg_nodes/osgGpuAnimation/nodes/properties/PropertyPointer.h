@@ -27,8 +27,8 @@ struct PropertyMember
     std::string name;             ///< the pointer's part after the object, as `pbrMetallicRoughness/metallicFactor`
     std::size_t count = 1;        ///< numbers of a value, at most 4
     std::array<float, 4> rest{};  ///< the specification's default value
-    float least = 0.0f;           ///< smaller numbers count as this
-    float most = 1.0f;            ///< larger numbers count as this
+    float min = 0.0f;             ///< smaller numbers count as this
+    float max = 1.0f;             ///< larger numbers count as this
     bool isBoolean = false;       ///< 0: false
     std::string group{};          ///< members of one group are set together: a set has all or none; empty: no group
     const char* uniform = "";     ///< of a material: the uniform that holds it

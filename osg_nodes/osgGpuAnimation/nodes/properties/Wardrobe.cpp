@@ -42,14 +42,14 @@ void forEachEntry(const SkinnedGeometry& mesh, Function function)
         mesh.forEachInfluence(vertex, [&](std::size_t entry, float) { function(entry); });
 }
 
-double farthestVertex(const std::vector<const SkinnedGeometry*>& meshes)
+double maxVertexDistance(const std::vector<const SkinnedGeometry*>& meshes)
 {
-    double farthest = 0.0;
+    double max = 0.0;
     for (const SkinnedGeometry* mesh : meshes)
         if (const auto* vertices = dynamic_cast<const osg::Vec3Array*>(mesh->getVertexArray()))
             for (const osg::Vec3& vertex : *vertices)
-                farthest = std::max(farthest, static_cast<double>(vertex.length()));
-    return farthest;
+                max = std::max(max, static_cast<double>(vertex.length()));
+    return max;
 }
 
 /// True if the matrices move no point within the radius around the origin to places that differ by more than
@@ -75,7 +75,7 @@ public:
     Fitter(const AnimationSet& garment, const std::vector<const SkinnedGeometry*>& meshes, const AnimationSet& body)
         : _garment(garment), _body(body),
           _joints(findCounterparts(namesIn(garment.skeleton().joints()), namesIn(body.skeleton().joints()), {})),
-          _radius(farthestVertex(meshes)), _entries(garment.paletteSize(), -1)
+          _radius(maxVertexDistance(meshes)), _entries(garment.paletteSize(), -1)
     {
         std::vector<bool> isUsed(garment.paletteSize(), false);
         for (const SkinnedGeometry* mesh : meshes)
@@ -97,10 +97,10 @@ public:
                          quotedList(namesIn(body->skeleton().joints()))};
         FittedGarment fitted{body, {}, _further.joints.size(), _followed, {}};
         if (_further.joints.empty()) return fitted;
-        constexpr std::size_t most = 65536; // entries are 16-bit numbers
-        if (body->paletteSize() + _further.joints.size() > most)
+        constexpr std::size_t maxEntries = 65536; // entries are 16-bit numbers
+        if (body->paletteSize() + _further.joints.size() > maxEntries)
             return Error{"the palette would have " + std::to_string(body->paletteSize() + _further.joints.size()) +
-                         " entries, more than " + std::to_string(most)};
+                         " entries, more than " + std::to_string(maxEntries)};
         std::vector<Skin> garments = body->garments();
         garments.push_back(_further);
         Result<std::shared_ptr<const AnimationSet>> set = body->withGarments(std::move(garments));

@@ -20,7 +20,7 @@ namespace
 {
 
 /// Of a mesh that does not move; a larger one counts by the corners of its box.
-constexpr std::size_t largestVertexCount = 100000;
+constexpr std::size_t maxVertexCount = 100000;
 
 /// The outermost instances in eight horizontal directions.
 std::set<std::size_t> outerInstances(const AnimatedCrowd& crowd)
@@ -35,10 +35,10 @@ std::set<std::size_t> outerInstances(const AnimatedCrowd& crowd)
                 return x * CrowdDetail::instances(crowd).position(index).x() +
                        y * CrowdDetail::instances(crowd).position(index).y();
             };
-            std::size_t farthest = 0;
+            std::size_t max = 0;
             for (std::size_t index = 1; index < crowd.getNumInstances(); ++index)
-                if (along(index) > along(farthest)) farthest = index;
-            outer.insert(farthest);
+                if (along(index) > along(max)) max = index;
+            outer.insert(max);
         }
     return outer;
 }
@@ -63,7 +63,7 @@ public:
     void apply(osg::Geometry& geometry) override
     {
         const osg::Array* vertices = geometry.getVertexArray();
-        if (dynamic_cast<const osg::Vec3Array*>(vertices) && vertices->getNumElements() <= largestVertexCount)
+        if (dynamic_cast<const osg::Vec3Array*>(vertices) && vertices->getNumElements() <= maxVertexCount)
             add(geometry);
         else
             apply(static_cast<osg::Drawable&>(geometry));

@@ -46,10 +46,4 @@ Result<std::vector<SkinnedGeometry*>> meshesNamed(const osg::Group& group, const
                  quotedNames(names, [](const std::string& known) { return known; })};
 }
 
-SkinnedGeometry* firstMeshNamed(const osg::Group& group, const std::string& name)
-{
-    const Result<std::vector<SkinnedGeometry*>> meshes = meshesNamed(group, name);
-    return meshes ? meshes.value().front() : nullptr;
-}
-
 } // namespace osgGpuAnimation

@@ -21,6 +21,5 @@ std::string nodeNameOf(const osg::Object& mesh);
 /// The meshes of the group (see forEachMesh()) of that node's name; if there are none, those of that mesh's name.
 /// Error: there are none; the message lists the nodes' names.
 Result<std::vector<SkinnedGeometry*>> meshesNamed(const osg::Group& group, const std::string& name);
-SkinnedGeometry* firstMeshNamed(const osg::Group& group, const std::string& name); ///< null: there is none
 
 } // namespace osgGpuAnimation

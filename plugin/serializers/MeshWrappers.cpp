@@ -5,6 +5,7 @@
 #include <osgGpuAnimation/looks/CharacterProgram.h>
 #include <osgGpuAnimation/looks/shading/Mipmaps.h>
 #include <osgGpuAnimation/looks/shading/ShaderPermutations.h>
+#include <osgGpuAnimation/mesh/detail/MeshDetail.h>
 #include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
 #include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 
@@ -78,7 +79,7 @@ void addMeshProperties(osgDB::ObjectWrapper* wrapper)
     addProperty<SkinnedGeometry>(wrapper, "MorphTargets", &transferMorphTargets,
                                  [](const SkinnedGeometry& mesh) { return !mesh.getMorphTargets().empty(); });
     addProperty<SkinnedGeometry>(wrapper, "LodLevels", &transferLevels,
-                                 [](const SkinnedGeometry& mesh) { return mesh.findLodLevels() != nullptr; });
+                                 [](const SkinnedGeometry& mesh) { return MeshDetail::findLevels(mesh) != nullptr; });
     wrapper->addFinishedObjectReadCallback(new MipmapsAfterReading);
 }
 

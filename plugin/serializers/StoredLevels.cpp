@@ -3,6 +3,7 @@
 
 #include "serializers/StoredAnimation.h"
 
+#include <osgGpuAnimation/mesh/detail/MeshDetail.h>
 #include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
 #include <osgGpuAnimation/mesh/lod/CharacterLevels.h>
 #include <osgGpuAnimation/mesh/lod/LodLevels.h>
@@ -114,7 +115,7 @@ void transferLodLevels(ValueStream& stream, SkinnedGeometry& mesh)
     std::vector<LodLevels::Steps> levels;
     if (!stream.isReading())
         for (unsigned int i = 0; i < mesh.getNumPrimitiveSets(); ++i)
-            levels.push_back(mesh.findLodLevels()->steps(i));
+            levels.push_back(MeshDetail::findLevels(mesh)->steps(i));
     stream.property("Checksum").value(sum).endLine();
     stream.list("Levels", levels,
                 [&](LodLevels::Steps& steps)
@@ -123,7 +124,7 @@ void transferLodLevels(ValueStream& stream, SkinnedGeometry& mesh)
     if (sum != checksum.value()) return warn(mesh, "mesh", "its vertices or primitives have changed");
     const Result<std::shared_ptr<const LodLevels>> restored = LodLevels::restored(mesh, std::move(levels));
     if (!restored) return warn(mesh, "mesh", restored.error().message);
-    mesh.setLodLevels(restored.value());
+    MeshDetail::setLevels(mesh, restored.value());
 }
 
 void transferCharacterLevels(ValueStream& stream, AnimatedCrowd& crowd)

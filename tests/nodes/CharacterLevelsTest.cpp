@@ -210,7 +210,7 @@ TEST(CharacterLevelsTest, theFoundErrorIsThatOfAllVertices)
     const Arm arm;
     const CharacterLevels levels(*arm.meshes, *arm.set);
     ASSERT_NE(levels.finest(), LodLevels::allTriangles);
-    std::vector<PoseInstruction> poses = keyPoses(*arm.set, LodLevels::fewestPoses);
+    std::vector<PoseInstruction> poses = keyPoses(*arm.set, LodLevels::minPoses);
     const std::size_t keyPoseCount = poses.size();
     std::mt19937 random(5);
     for (int i = 0; i < 50; ++i)

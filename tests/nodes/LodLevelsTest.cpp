@@ -2,6 +2,7 @@
 #include "nodes/Tube.h"
 #include "support/TestCharacter.h"
 
+#include <osgGpuAnimation/mesh/detail/MeshDetail.h>
 #include <osgGpuAnimation/mesh/lod/LodLevels.h>
 
 #include <gtest/gtest.h>
@@ -93,11 +94,11 @@ TEST(LodLevelsTest, aNewSetMakesTheLevelsOfItsPoses)
     character->addChild(tube);
     ASSERT_TRUE(character->getMeshes().setPixelError(1.0f));
     const int level = -10;
-    const std::size_t straight = drawn(*tube, *tube->getLodLevels(*still), level);
+    const std::size_t straight = drawn(*tube, *MeshDetail::levels(*tube, *still), level);
     ASSERT_TRUE(character->setAnimationSet(bending));
-    EXPECT_GT(drawn(*tube, *tube->getLodLevels(*bending), level), 2 * straight);
+    EXPECT_GT(drawn(*tube, *MeshDetail::levels(*tube, *bending), level), 2 * straight);
     ASSERT_TRUE(character->setAnimationSet(still));
-    EXPECT_EQ(drawn(*tube, *tube->getLodLevels(*still), level), straight);
+    EXPECT_EQ(drawn(*tube, *MeshDetail::levels(*tube, *still), level), straight);
 }
 
 TEST(LodLevelsTest, speakOfTheCharactersUnitsWhateverTheMeshs)

@@ -6,6 +6,7 @@
 #include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
 #include <osgGpuAnimation/gpu/PosePipeline.h>
+#include <osgGpuAnimation/mesh/detail/MeshDetail.h>
 #include <osgGpuAnimation/mesh/lod/LodLevels.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/detail/CrowdDetail.h>
@@ -128,7 +129,7 @@ TEST_F(SharedPosesGLTest, posesAndLevelsTogetherStayWithinThePixelError)
         for (const BindingRecord::Draw& draw : _record->draws)
         {
             if (!draw.placed) continue; // poses of their own
-            const double ofLevel = mesh().getLodLevels(_crowd->getAnimationSet())->foundError(draw.level);
+            const double ofLevel = MeshDetail::levels(mesh(), _crowd->getAnimationSet())->foundError(draw.level);
             for (std::size_t i = draw.first; i < draw.first + draw.count; ++i, ++drawn)
             {
                 const PlacedInstances::Drawn& instance = draw.placed->drawn[i];

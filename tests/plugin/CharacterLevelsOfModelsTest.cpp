@@ -63,7 +63,7 @@ protected:
 
 void CharacterLevelsOfModelsTest::expectErrorsInTheKeyPoses() const
 {
-    for (const PoseInstruction& pose : keyPoses(*model.set, LodLevels::fewestPoses))
+    for (const PoseInstruction& pose : keyPoses(*model.set, LodLevels::minPoses))
     {
         const std::vector<AffineMatrix> palette = paletteAt(pose);
         for (int level = levels->finest(); level <= levels->coarsest(); ++level)

@@ -5,6 +5,7 @@
 #include "support/ThreadingModels.h"
 #include "support/ViewerGLTest.h"
 
+#include <osgGpuAnimation/mesh/detail/MeshDetail.h>
 #include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
@@ -242,7 +243,7 @@ TEST_F(LodGLTest, everyThreadingModelDrawsTheSame)
         const osg::ref_ptr<osg::Group> scene = makeScene(ownScene("Serpent.glb"), true, 0.5f);
         scene->addChild(makeScene(ownScene("Serpent.glb"), false, 0.5f));
         // The cull traversal has to build the levels.
-        forEachMeshBelow(*scene, [](SkinnedGeometry& mesh) { mesh.forgetLodLevels(); });
+        forEachMeshBelow(*scene, [](SkinnedGeometry& mesh) { MeshDetail::forgetLevels(mesh); });
         context().releaseContext();
         viewer().setThreadingModel(model);
         viewer().setSceneData(scene);

@@ -3,6 +3,7 @@
 #include "plugin/SharedAssets.h"
 #include "plugin/StoredArm.h"
 
+#include <osgGpuAnimation/mesh/detail/MeshDetail.h>
 #include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
 #include <osgGpuAnimation/mesh/lod/CharacterLevels.h>
 #include <osgGpuAnimation/mesh/lod/LodLevels.h>
@@ -61,7 +62,7 @@ std::vector<SkinnedGeometry*> meshesOf(const osg::Group& group)
 
 std::size_t stepsOf(const SkinnedGeometry& mesh)
 {
-    const std::shared_ptr<const LodLevels> levels = mesh.findLodLevels();
+    const std::shared_ptr<const LodLevels> levels = MeshDetail::findLevels(mesh);
     return levels ? levels->steps(0).size() : 0;
 }
 
@@ -74,7 +75,8 @@ void expectSameElements(const osg::DrawElements& expected, const osg::DrawElemen
 
 void expectSameLevels(const SkinnedGeometry& expected, const SkinnedGeometry& found)
 {
-    const std::shared_ptr<const LodLevels> before = expected.findLodLevels(), after = found.findLodLevels();
+    const std::shared_ptr<const LodLevels> before = MeshDetail::findLevels(expected),
+                                           after = MeshDetail::findLevels(found);
     ASSERT_TRUE(before && after);
     EXPECT_EQ(after->finest(), before->finest());
     EXPECT_EQ(after->coarsest(), before->coarsest());
@@ -132,12 +134,12 @@ void changeLevels(SkinnedGeometry& mesh)
     std::vector<LodLevels::Steps> levels;
     for (unsigned int i = 0; i < mesh.getNumPrimitiveSets(); ++i)
     {
-        levels.push_back(mesh.findLodLevels()->steps(i));
+        levels.push_back(MeshDetail::findLevels(mesh)->steps(i));
         if (!levels.back().empty()) levels.back().erase(levels.back().begin());
         for (LodLevels::Step& step : levels.back())
             step.error /= 3.0;
     }
-    mesh.setLodLevels(LodLevels::restored(mesh, levels).value());
+    MeshDetail::setLevels(mesh, LodLevels::restored(mesh, levels).value());
 }
 
 void changeLevels(AnimatedCrowd& crowd)
@@ -298,7 +300,7 @@ TEST_F(StoredLevelsTest, areMadeWhereAFileHasNone)
     const osg::ref_ptr<AnimatedCrowd> before = new AnimatedCrowd(*crowd);
     const std::shared_ptr<const CharacterLevels> merged = CrowdDetail::levels(*crowd);
     for (SkinnedGeometry* mesh : meshesOf(*crowd))
-        mesh->forgetLodLevels();
+        MeshDetail::forgetLevels(*mesh);
     CrowdDetail::setLevels(*crowd, nullptr);
     EXPECT_EQ(stored("osgt").find("Levels"), std::string::npos);
     for (const char* format : storedFormats)
@@ -351,7 +353,7 @@ TEST_F(StoredLevelsTest, faultsOfMergedPartsCostTheLevelsAlone)
 TEST_F(StoredLevelsTest, changedAndMissingBytesDoNoHarm)
 {
     const std::string sound = stored("osgb");
-    const LodLevels::Steps steps = meshesOf(*crowd).front()->findLodLevels()->steps(0);
+    const LodLevels::Steps steps = MeshDetail::findLevels(*meshesOf(*crowd).front())->steps(0);
     const auto placeOf = [&](const osg::DrawElements& elements) {
         return sound.find(
             std::string(static_cast<const char*>(elements.getDataPointer()), elements.getTotalDataSize()));

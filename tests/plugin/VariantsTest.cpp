@@ -174,7 +174,7 @@ TEST(VariantsTest, clonesShowTheirOwnAndShareTheMeshesOfAVariant)
     const auto& own = dynamic_cast<const SkinnedGeometry&>(meshOf(first));
     const auto& red = dynamic_cast<const SkinnedGeometry&>(meshOf(*second));
     EXPECT_EQ(red.getVertexArray(), own.getVertexArray());
-    EXPECT_EQ(red.getLodLevels(first.getAnimationSet()), own.getLodLevels(first.getAnimationSet()));
+    EXPECT_EQ(MeshDetail::levels(red, first.getAnimationSet()), MeshDetail::levels(own, first.getAnimationSet()));
     EXPECT_EQ(red.getBoundingBox(), own.getBoundingBox());
 
     ASSERT_TRUE(third->getMeshes().setVariant("red one"));

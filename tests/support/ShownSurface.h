@@ -3,6 +3,8 @@
 
 #include <osgGpuAnimation/authoring/mesh/MeshConnectivity.h>
 #include <osgGpuAnimation/frame/stage/LodSelection.h>
+#include <osgGpuAnimation/mesh/detail/MeshDetail.h>
+#include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
 
 #include <glm/geometric.hpp>
 
@@ -36,7 +38,7 @@ public:
         {
             const bool isPart = parts.count(&mesh) > 0;
             if (isPart && !isShown(mesh)) return;
-            add(mesh, isPart ? mesh.getLodLevels(set).get() : nullptr, level, palette);
+            add(mesh, isPart ? MeshDetail::levels(mesh, set).get() : nullptr, level, palette);
         };
         if (merged)
             merged->forEachMeshAt(level, meshes, show);

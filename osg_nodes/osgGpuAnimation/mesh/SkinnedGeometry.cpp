@@ -150,7 +150,7 @@ void SkinnedGeometry::setInfluences(unsigned int influenceSet, osg::Vec4usArray*
         const int used = getWeights(i) ? influencesUsed(*getWeights(i)) : 0;
         if (used > 0) _influences = std::max(_influences, static_cast<int>(4 * i) + used);
     }
-    forgetLodLevels();
+    _lod->forget();
     dirtyBound();
 }
 
@@ -173,7 +173,7 @@ void SkinnedGeometry::setRigidEntry(unsigned short entry)
     }
     _rigidEntry = entry;
     _influences = 1;
-    forgetLodLevels();
+    _lod->forget();
     dirtyBound();
 }
 
@@ -192,7 +192,7 @@ void SkinnedGeometry::setMorphTargets(int morph, int entry, std::vector<MorphTar
     _morphDeltas->texture = nullptr; // packed again unless another mesh uses them: the arrays may have changed
     *_morphDeltas = packMorphTargets(_morphTargets, vertexCount);
     if (_morph < 0) _morphDeltas->texture = nullptr;
-    forgetLodLevels();
+    _lod->forget();
     dirtyBound();
 }
 
@@ -265,28 +265,6 @@ SkinnedGeometry::Colors SkinnedGeometry::getColors() const
     const auto* overall = binding == osg::Array::BIND_OVERALL ? dynamic_cast<const osg::Vec4Array*>(array) : nullptr;
     const bool isWhite = overall && !overall->empty() && overall->front() == osg::Vec4(1, 1, 1, 1);
     return isWhite && !areMorphed ? Colors::White : Colors::Array;
-}
-
-std::shared_ptr<const LodLevels> SkinnedGeometry::getLodLevels(const AnimationSet& set) const
-{
-    return _lod->of(*this, set,
-                    [this](const std::vector<AffineMatrix>& palette, std::vector<glm::dvec3>& out)
-                    { computePositions(palette, out); });
-}
-
-std::shared_ptr<const LodLevels> SkinnedGeometry::findLodLevels() const
-{
-    return _lod->known(*this);
-}
-
-void SkinnedGeometry::setLodLevels(std::shared_ptr<const LodLevels> levels)
-{
-    _lod->set(std::move(levels));
-}
-
-void SkinnedGeometry::forgetLodLevels()
-{
-    _lod->forget();
 }
 
 void SkinnedGeometry::drawImplementation(osg::RenderInfo& renderInfo) const

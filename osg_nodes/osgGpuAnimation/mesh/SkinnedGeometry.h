@@ -109,14 +109,6 @@ public:
     };
     Colors getColors() const; ///< from the colour array and the morph targets
 
-    /// The levels of detail, see CharacterMeshes::setPixelError(). The first call creates them from poses of the set.
-    std::shared_ptr<const LodLevels> getLodLevels(const AnimationSet& set) const;
-    /// The same without creating any, for the kit's own serializers. Null: not created, or the mesh has changed.
-    std::shared_ptr<const LodLevels> findLodLevels() const;
-    void setLodLevels(std::shared_ptr<const LodLevels> levels); ///< of this mesh, see LodLevels::restored()
-    /// Discards the levels of detail, for example after a change of the clips; getLodLevels() creates new ones.
-    void forgetLodLevels();
-
     /// The number of elements of the vertex array; 0 without one.
     std::size_t getVertexCount() const { return getVertexArray() ? getVertexArray()->getNumElements() : 0; }
 
@@ -144,6 +136,8 @@ protected:
     ~SkinnedGeometry() override;
 
 private:
+    friend struct MeshDetail;
+
     void drawInstances(osg::RenderInfo& renderInfo, const PaletteBinding& binding, const InstanceRuns& runs) const;
     void drawPrimitives(osg::State& state, int count, int level) const;
     void bindPalette(osg::State& state, const PalettePlace& place) const;

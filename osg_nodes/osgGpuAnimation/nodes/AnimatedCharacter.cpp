@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/mesh/detail/MeshDetail.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 
 #include <osgGpuAnimation/animation/bounds/MixBounds.h>
@@ -91,7 +92,7 @@ Result<void> AnimatedCharacter::setAnimationSet(std::shared_ptr<const AnimationS
     _meshes.forgetProperties();
     if (_clipBounds) computeClipBounds();
     // The levels of detail depend on the poses of the clips.
-    if (!isFirst) forEachMeshBelow(*this, [](SkinnedGeometry& mesh) { mesh.forgetLodLevels(); });
+    if (!isFirst) forEachMeshBelow(*this, [](SkinnedGeometry& mesh) { MeshDetail::forgetLevels(mesh); });
     return _meshes.setPixelError(_meshes.getPixelError());
 }
 
@@ -307,11 +308,13 @@ void AnimatedCharacter::traverse(osg::NodeVisitor& visitor)
             traverseWithBounds(*this, now, visitor);
         else if (!keepFlattenedPlace(*this, visitor))
             osg::MatrixTransform::traverse(visitor);
-        prepareFirstDraw(visitor, {*this, *_controller, _axes->rootMatrix, _meshes.getPixelError(), _isDrawnTogether});
+        prepareFirstDraw(
+            visitor, {*this, *_controller, _axes->rootMatrix, _meshes.getPixelError(), _isDrawnTogether});
         return;
     }
     const DepthPass pass(*cullVisitor);
-    PoseStage::draw(*cullVisitor, {*this, *_controller, _axes->rootMatrix, _meshes.getPixelError(), _isDrawnTogether});
+    PoseStage::draw(*cullVisitor,
+                    {*this, *_controller, _axes->rootMatrix, _meshes.getPixelError(), _isDrawnTogether});
 }
 
 osg::BoundingBox AnimatedCharacter::boundsOf(const std::vector<PlayedClip>& played) const

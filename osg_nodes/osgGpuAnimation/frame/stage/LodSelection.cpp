@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/frame/stage/LodSelection.h>
+#include <osgGpuAnimation/mesh/detail/MeshDetail.h>
 
 #include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
 #include <osgGpuAnimation/scene/traversal/CullScopes.h>
@@ -43,7 +44,7 @@ LodRange::LodRange(const osg::Group& meshes, const AnimationSet& set, std::share
                 {
                     vertices += mesh.getVertexCount();
                     if (vertices > maxVertices) return;
-                    _ofMeshes.emplace_back(&mesh, mesh.getLodLevels(set));
+                    _ofMeshes.emplace_back(&mesh, MeshDetail::levels(mesh, set));
                     add(*_ofMeshes.back().second);
                 });
 }

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/mesh/detail/MeshDetail.h>
+#include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
 #include <osgGpuAnimation/mesh/lod/CharacterLevels.h>
 
 #include <osgGpuAnimation/animation/Pose.h>
@@ -30,7 +32,7 @@ std::size_t trianglesOf(const MergedParts::Meshes& parts, const AnimationSet& se
     std::size_t indices = 0;
     for (const SkinnedGeometry* part : parts)
     {
-        const std::shared_ptr<const LodLevels> levels = part->getLodLevels(set);
+        const std::shared_ptr<const LodLevels> levels = MeshDetail::levels(*part, set);
         for (unsigned int i = 0; i < part->getNumPrimitiveSets(); ++i)
         {
             const osg::PrimitiveSet* drawn = levels->reduced(i, level).elements;

@@ -186,7 +186,7 @@ Result<void> measureFrames(const Subject& subject, const Effort& effort, Report&
         ReferenceScene apart(subject, kit, ReferenceMode::HardwareApart, count);
         std::vector<Contestant> contestants;
         CharacterScene fewer(subject, count);
-        if (const Result<void> set = fewer.getMeshes().setPixelError(pixelError); !set) return set.error();
+        if (const Result<void> set = fewer.setPixelError(pixelError); !set) return set.error();
         for (osg::Node* scene :
              {ours.root.get(), software.root.get(), hardware.root.get(), apart.root.get(), fewer.root.get()})
         {
@@ -196,7 +196,7 @@ Result<void> measureFrames(const Subject& subject, const Effort& effort, Report&
         }
         race(contestants, effort.frameRounds);
         if (const std::string wrong = check(contestants); !wrong.empty()) return Error{wrong};
-        const auto setPixelError = [&](float pixels) { return fewer.getMeshes().setPixelError(pixels); };
+        const auto setPixelError = [&](float pixels) { return fewer.setPixelError(pixels); };
         if (const std::string wrong = checkAlike(*ours.root, *fewer.root, setPixelError); !wrong.empty())
             return Error{wrong};
         contestants[0].viewer->makeCurrent();
@@ -263,7 +263,7 @@ Result<void> measureStart(const Subject& subject, const Effort& effort, Report& 
     constexpr std::size_t count = 1000, few = 10; // few: the one-time cost of programs and of the set
     const osg::BoundingSphere sight = CharacterScene(subject, count).root->getBound();
     // Levels of detail are made while a file is loaded.
-    if (const Result<void> set = CharacterScene(subject, 1).getMeshes().setPixelError(pixelError); !set)
+    if (const Result<void> set = CharacterScene(subject, 1).setPixelError(pixelError); !set)
         return set.error();
     std::vector<double> seconds, secondsOfFewer, elapsed, bytes, beyond, beyondOfFewer, compiled, beyondCompiled;
     for (int round = 0; round < std::min(effort.frameRounds, 3); ++round)
@@ -273,7 +273,7 @@ Result<void> measureStart(const Subject& subject, const Effort& effort, Report& 
             [&]
             {
                 CharacterScene scene(subject, count);
-                static_cast<void>(scene.getMeshes().setPixelError(pixelError)); // which was accepted above
+                static_cast<void>(scene.setPixelError(pixelError)); // which was accepted above
                 return scene;
             },
             sight);

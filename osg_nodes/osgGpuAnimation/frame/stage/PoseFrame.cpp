@@ -21,10 +21,6 @@ bool isSame(const BlendSample& a, const BlendSample& b)
     return a.keyframe == b.keyframe && a.alpha == b.alpha && a.weight == b.weight && a.control == b.control;
 }
 
-// The defines of skin.glsl that say where the placements come from; without one, the palette has them.
-const char* const sharedPoses = "POSE_PLACED";
-const char* const transforms = "POSE_INSTANCED"; ///< of characters, which have no tints
-
 /// Adds, because several cameras may evaluate poses in one frame.
 void addTo(osg::Stats& stats, unsigned int frameNumber, const char* attribute, double amount)
 {
@@ -89,8 +85,9 @@ void PoseFrame::reset()
     _samples.clear();
     _targets.clear();
     _shared.clear();
-    for (auto& [defines, pool] : _states)
-        pool.reset();
+    for (auto& pools : _states)
+        for (StatePool& pool : pools)
+            pool.reset();
 }
 
 SubmittedPose PoseFrame::submit(const osg::Node& node, const AnimationController& controller,
@@ -216,7 +213,7 @@ DrawState PoseFrame::placedState(const AnimationSet& set, std::size_t slot,
                                  std::size_t count, int level)
 {
     const std::lock_guard<std::mutex> lock(_mutex);
-    const DrawState state = nextState(sharedPoses, !placed->tints.empty());
+    const DrawState state = nextState(OfSharedPoses, !placed->tints.empty());
     state.binding->setPlaced(_batchesOfSet[&set][slot]->content->sharedSet(), slot, placed, first, count);
     state.binding->setLevel(level);
     return state;
@@ -224,7 +221,7 @@ DrawState PoseFrame::placedState(const AnimationSet& set, std::size_t slot,
 
 DrawState PoseFrame::stateOf(const Batch& batch, std::size_t instance, std::size_t instanceCount, int level)
 {
-    const DrawState state = nextState(nullptr, !batch.content->tints().empty());
+    const DrawState state = nextState(OfPalette, !batch.content->tints().empty());
     state.binding->set(batch.content->sharedSet(), batch.slot, instance, instanceCount);
     state.binding->setLevel(level);
     return state;
@@ -240,21 +237,21 @@ DrawState PoseFrame::partState(const AnimationSet& set, std::size_t slot, std::s
 DrawState PoseFrame::instancedState(const AnimationSet& set, std::size_t slot, int level)
 {
     const std::lock_guard<std::mutex> lock(_mutex);
-    const DrawState state = nextState(transforms, false);
+    const DrawState state = nextState(OfTransforms, false);
     state.binding->setInstanced(_batchesOfSet[&set][slot]->content->sharedSet(), slot);
     state.binding->setLevel(level);
     return state;
 }
 
-/// placements: one of the defines above, or null.
-DrawState PoseFrame::nextState(const char* placements, bool isTinted)
+DrawState PoseFrame::nextState(Placements placements, bool isTinted)
 {
-    StatePool& pool = _states[{placements, isTinted}];
+    StatePool& pool = _states[placements][isTinted ? 1 : 0];
     if (pool.used == pool.states.size())
     {
         pool.states.push_back(new osg::StateSet);
         pool.states.back()->setAttribute(new PaletteBinding);
-        if (placements) pool.states.back()->setDefine(placements);
+        if (placements == OfTransforms) pool.states.back()->setDefine("POSE_INSTANCED");
+        if (placements == OfSharedPoses) pool.states.back()->setDefine("POSE_PLACED");
         if (isTinted) pool.states.back()->setDefine("POSE_TINTED");
     }
     osg::StateSet& state = *pool.states[pool.used++];

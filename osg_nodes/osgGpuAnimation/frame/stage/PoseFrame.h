@@ -14,12 +14,11 @@
 #include <osg/StateSet>
 #include <osg/Stats>
 
+#include <array>
 #include <atomic>
-#include <map>
 #include <memory>
 #include <mutex>
 #include <unordered_map>
-#include <utility>
 #include <vector>
 
 namespace osgGpuAnimation
@@ -143,7 +142,14 @@ private:
     Batch& addBatch(std::unique_ptr<PoseBatch> content);
     std::unique_ptr<PoseBatch> spareBatch(std::shared_ptr<const AnimationSet> set);
     DrawState stateOf(const Batch& batch, std::size_t instance, std::size_t instanceCount, int level);
-    DrawState nextState(const char* placements, bool isTinted);
+    /// Where the placements of a draw come from.
+    enum Placements
+    {
+        OfPalette,
+        OfTransforms, ///< of characters, which have no tints
+        OfSharedPoses,
+    };
+    DrawState nextState(Placements placements, bool isTinted);
 
     std::mutex _mutex;
     unsigned int _frameNumber = 0;
@@ -157,8 +163,8 @@ private:
     std::vector<BlendSample> _samples;      ///< of the submitted instructions
     std::vector<ConstraintTarget> _targets; ///< of the submitted instructions
     std::vector<Shared> _shared;
-    std::shared_ptr<std::atomic<std::size_t>> _maxTexels;      ///< the context's
-    std::map<std::pair<const char*, bool>, StatePool> _states; ///< by the arguments of nextState()
+    std::shared_ptr<std::atomic<std::size_t>> _maxTexels; ///< the context's
+    std::array<std::array<StatePool, 2>, 3> _states;      ///< by the arguments of nextState()
 };
 
 } // namespace osgGpuAnimation

@@ -39,6 +39,7 @@
 #include <osgGpuAnimation/math/Result.h>
 #include <osgGpuAnimation/math/Rotation.h>
 #include <osgGpuAnimation/mesh/MorphTarget.h>
+#include <osgGpuAnimation/mesh/PosedMeshSource.h>
 #include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
@@ -46,9 +47,14 @@
 #include <osgGpuAnimation/nodes/CharacterMeshes.h>
 #include <osgGpuAnimation/nodes/CompactedCharacter.h>
 #include <osgGpuAnimation/nodes/GroundFeet.h>
+#include <osgGpuAnimation/nodes/GroundLeg.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
+#include <osgGpuAnimation/nodes/JointLines.h>
 #include <osgGpuAnimation/nodes/NodeConstraint.h>
+#include <osgGpuAnimation/nodes/PickedJoint.h>
 #include <osgGpuAnimation/nodes/RootMotionCallback.h>
 #include <osgGpuAnimation/nodes/SpringBones.h>
+#include <osgGpuAnimation/nodes/SpringChain.h>
 #include <osgGpuAnimation/nodes/StateGraphFile.h>
+#include <osgGpuAnimation/nodes/WornGarment.h>
 #include <osgGpuAnimation/scene/OsgMatrix.h>

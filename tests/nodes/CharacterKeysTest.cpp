@@ -4,6 +4,7 @@
 #include "support/TestCharacter.h"
 
 #include <osgGpuAnimation/nodes/CharacterKeys.h>
+#include <osgGpuAnimation/nodes/JointLines.h>
 
 #include <gtest/gtest.h>
 #include <osg/ApplicationUsage>

@@ -6,6 +6,7 @@
 #include <osgGpuAnimation/mesh/geometry/MeshNames.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
+#include <osgGpuAnimation/nodes/PickedJoint.h>
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>

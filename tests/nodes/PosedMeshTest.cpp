@@ -4,6 +4,7 @@
 
 #include <osgGpuAnimation/animation/JointMask.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
+#include <osgGpuAnimation/nodes/PickedJoint.h>
 
 #include <gtest/gtest.h>
 #include <osg/KdTree>

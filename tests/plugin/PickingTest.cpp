@@ -5,6 +5,7 @@
 
 #include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
+#include <osgGpuAnimation/nodes/PickedJoint.h>
 
 #include <gtest/gtest.h>
 #include <osg/MatrixTransform>

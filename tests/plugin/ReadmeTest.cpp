@@ -7,6 +7,7 @@
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
+#include <osgGpuAnimation/nodes/PickedJoint.h>
 
 #include <osg/MatrixTransform>
 #include <osgDB/FileUtils>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <osgGpuAnimation/mesh/PosedMeshSource.h>
 #include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 
 #include <osgGpuAnimation/gpu/PosePipeline.h>

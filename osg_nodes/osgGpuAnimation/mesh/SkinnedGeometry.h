@@ -24,19 +24,6 @@ class SkinnedGeometry;
 struct MorphDeltas;
 struct PalettePlace;
 
-/// A node above SkinnedGeometry that has a present pose. Intersectors and writers of other file formats meet its posed
-/// meshes in place of the meshes below it.
-class PosedMeshSource
-{
-public:
-    /// The mesh in the present pose, in the node's own space. withNormals: with normals and colours, if the mesh has
-    /// them.
-    virtual osg::ref_ptr<osg::Geometry> getPosedMesh(const SkinnedGeometry& mesh, bool withNormals) const = 0;
-
-protected:
-    ~PosedMeshSource() = default;
-};
-
 /// A mesh drawn from the palette: vertex arrays in bind pose and, per vertex, the palette entries that move it with
 /// their weights. A mesh belongs to no character: it serves all instances of a set, and the AnimatedCharacter above it
 /// selects the palette during cull.

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/AnimationController.h>
+#include <osgGpuAnimation/mesh/PosedMeshSource.h>
 #include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 #include <osgGpuAnimation/nodes/CharacterMeshes.h>
 #include <osgGpuAnimation/nodes/NodeConstraint.h>
+#include <osgGpuAnimation/nodes/WornGarment.h>
 
 #include <osg/BoundingBox>
 #include <osg/Geometry>
@@ -26,16 +28,6 @@ class PosedMeshes;
 class Wardrobe;
 class WorldTargets;
 struct PlayedClip;
-
-/// What AnimatedCharacter::wear() has done.
-struct WornGarment
-{
-    /// Palette entries that only this garment needs: 48 bytes a character; 0: no pose work.
-    std::size_t addedEntries = 0;
-    /// Joints of the garment that the character lacks: their vertices follow the nearest joint above that it has.
-    std::vector<std::string> followed;
-    std::vector<std::string> leftOut; ///< morphs of the garment that the character lacks: their targets are left out
-};
 
 /// One animated character: owns a controller, shares an AnimationSet, and has its SkinnedGeometry drawables as
 /// children. Its matrix places the character in its parent, like any MatrixTransform's.

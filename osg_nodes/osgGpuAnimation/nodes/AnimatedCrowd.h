@@ -2,6 +2,7 @@
 #pragma once
 
 #include <osgGpuAnimation/animation/AnimationController.h>
+#include <osgGpuAnimation/mesh/PosedMeshSource.h>
 #include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 #include <osgGpuAnimation/nodes/CharacterMeshes.h>
 #include <osgGpuAnimation/nodes/NodeConstraint.h>

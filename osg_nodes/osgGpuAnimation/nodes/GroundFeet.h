@@ -3,6 +3,7 @@
 
 #include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/math/Result.h>
+#include <osgGpuAnimation/nodes/GroundLeg.h>
 
 #include <osg/Callback>
 #include <osg/Node>
@@ -16,22 +17,6 @@
 
 namespace osgGpuAnimation
 {
-
-/// A leg whose foot stands on the ground.
-struct GroundLeg
-{
-    /// The name of a TwoBoneIk of the set, from the hip to the ankle. Its target belongs to the GroundFeet.
-    std::string constraint;
-    /// The joint at the ball of the foot, below the ankle: the ground is sampled below it and below the ankle, and a
-    /// planted foot turns about it. Empty: the ankle alone.
-    std::string toe{};
-    /// The height of the sole of a planted foot in the clips, in the character's own space. Finite.
-    double sole = 0.0;
-    /// The names of the markers at which the foot touches and leaves the ground. Clips without a marker of the first
-    /// name, or both empty: the times that findFootContacts() finds.
-    std::string touchMarker{};
-    std::string leaveMarker{}; ///< see touchMarker
-};
 
 /// Keeps the feet of its AnimatedCharacter on the scene below: on slopes, stairs and uneven ground.
 ///

@@ -4,8 +4,8 @@
 
 #include <osgGpuAnimation/animation/Pose.h>
 
+#include <algorithm>
 #include <cmath>
-#include <iostream>
 
 namespace osgGpuAnimation::benchmark
 {
@@ -39,25 +39,6 @@ const Chains chainsOfSubjects[] = {
      {{"chest", "head"}, {"lowerarm.l", "wrist.l", "hand.l"}},
      {{"upperleg.l", "lowerleg.l", "foot.l"}, {"upperleg.r", "lowerleg.r", "foot.r"}}}};
 
-std::vector<Constraint> looksOf(const Chains& chains)
-{
-    return {LookAt{"first look", chains.looks[0]}, LookAt{"second look", chains.looks[1]}};
-}
-
-/// The last joints alone look.
-std::vector<Constraint> aimsOf(const Chains& chains)
-{
-    return {LookAt{"first aim", {chains.looks[0].back()}}, LookAt{"second aim", {chains.looks[1].back()}}};
-}
-
-std::vector<Constraint> legsOf(const Chains& chains)
-{
-    std::vector<Constraint> legs;
-    for (const Names& leg : chains.legs)
-        legs.push_back(TwoBoneIk{leg[2], leg[0], leg[1], leg[2]});
-    return legs;
-}
-
 /// The place of a joint at rest, in model space.
 glm::vec3 restPlace(const AnimationSet& set, const std::string& joint)
 {
@@ -90,7 +71,7 @@ public:
         {
             const float angle = _phase + static_cast<float>(character);
             const glm::vec3 away(std::cos(angle), 0.5f, std::sin(angle));
-            static_cast<void>(controller.constraint(move.constraint).setTarget(move.around + move.radius * away));
+            taken(controller.constraint(move.constraint).setTarget(move.around + move.radius * away));
         }
     }
 
@@ -105,67 +86,56 @@ private:
     float _phase = 0.0f;
 };
 
-/// A crowd whose constraints have new targets in every step, which the time does not include.
-std::function<Spent()> stepOf(PoseCrowd& crowd, const Chains& chains)
-{
-    return [&crowd, moves = TargetMoves(crowd.set(), chains)]() mutable
-    {
-        crowd.forEach([&](std::size_t character, AnimationController& controller) { moves(character, controller); });
-        return crowd.step(1.0 / 60.0);
-    };
-}
-
 } // namespace
 
-Result<void> measureConstraints(const Subject& subject, const Effort& effort, osg::GraphicsContext& context,
-                                Report& report)
+void measureConstraints(const Subject& subject, Run& run)
 {
-    const Chains* chains = nullptr;
-    for (const Chains& known : chainsOfSubjects)
-        if (subject.name == known.subject) chains = &known;
-    if (!chains) return {};
-    std::cerr << subject.name << ": pose with constraints" << std::endl;
-    const auto looking = subject.set().withConstraints(looksOf(*chains));
-    const auto aiming = subject.set().withConstraints(aimsOf(*chains));
-    const auto walking = subject.set().withConstraints(legsOf(*chains));
-    if (!looking) return looking.error();
-    if (!aiming) return aiming.error();
-    if (!walking) return walking.error();
-    PoseCrowd plain(subject.model.set, subject.clip, effort.barCount, context);
-    PoseCrowd unused(looking.value(), subject.clip, effort.barCount, context);
-    PoseCrowd aims(aiming.value(), subject.clip, effort.barCount, context);
-    PoseCrowd looks(looking.value(), subject.clip, effort.barCount, context);
-    PoseCrowd legs(walking.value(), subject.clip, effort.barCount, context);
-    const auto step = [](PoseCrowd& crowd) { return [&crowd] { return crowd.step(1.0 / 60.0); }; };
-    const std::vector<Series> series = interleaved(effort.rounds, {step(plain), step(unused), stepOf(aims, *chains),
-                                                                   stepOf(looks, *chains), stepOf(legs, *chains)});
-    for (PoseCrowd* crowd : {&plain, &unused, &aims, &looks, &legs})
-        if (const std::string wrong = crowd->check(); !wrong.empty()) return Error{wrong};
-
-    struct Bar
+    const auto* const chains = std::find_if(std::begin(chainsOfSubjects), std::end(chainsOfSubjects),
+                                            [&](const Chains& known) { return subject.name == known.subject; });
+    if (chains == std::end(chainsOfSubjects)) return;
+    const auto& [name, looks, legs] = *chains;
+    const std::vector<Constraint> looking{LookAt{"first look", looks[0]}, LookAt{"second look", looks[1]}};
+    const struct
     {
         const char* what;
-        const char* bar;
-        double ratio;
-    };
-    const Bar bars[] = {{"pose, constraints without targets", "≤ 1.03", 1.03},
-                        {"pose with two look-ats of one joint", "≤ 1.3", 1.3},
-                        {"pose with two look-ats of two or three joints", "≤ 1.3", 1.3},
-                        {"pose with two legs of two-bone inverse kinematics", "≤ 1.5", 1.5}};
-    const double perJoint = 1e9 / static_cast<double>(effort.barCount * subject.jointCount());
-    for (std::size_t i = 0; i < std::size(bars); ++i)
+        double bar;
+        bool hasTargets;
+        std::vector<Constraint> constraints;
+    } variants[] = {{"pose, constraints without targets", 1.03, false, looking},
+                    {"pose with two look-ats of one joint",
+                     1.3,
+                     true,
+                     {LookAt{"first aim", {looks[0].back()}}, LookAt{"second aim", {looks[1].back()}}}},
+                    {"pose with two look-ats of two or three joints", 1.3, true, looking},
+                    {"pose with two legs of two-bone inverse kinematics",
+                     1.5,
+                     true,
+                     {TwoBoneIk{"left", legs[0][0], legs[0][1], legs[0][2]},
+                      TwoBoneIk{"right", legs[1][0], legs[1][1], legs[1][2]}}}};
+    std::vector<std::unique_ptr<PoseCrowd>> crowds;
+    std::vector<std::function<Spent()>> contestants;
+    const auto compete = [&](const std::shared_ptr<const AnimationSet>& set, bool hasTargets)
     {
-        Row row = compared(series[i + 1], series[0], perJoint, false);
-        row.subject = subject.name;
-        row.count = effort.barCount;
-        row.what = bars[i].what;
-        row.unit = "ns a joint";
-        row.otherName = "no constraints";
-        row.bar = bars[i].bar;
-        row.isMet = row.ratio.median <= bars[i].ratio;
-        report.add(row);
-    }
-    return {};
+        crowds.push_back(std::make_unique<PoseCrowd>(set, subject.clip, run.barCount, run.context));
+        contestants.push_back(
+            [&crowd = *crowds.back(), hasTargets, moves = TargetMoves(*set, *chains)]() mutable
+            {
+                for (std::size_t i = 0; hasTargets && i < crowd.count(); ++i) // the time does not include this
+                    moves(i, crowd.controllers[i]);
+                return crowd.step();
+            });
+    };
+    compete(subject.model.set, false);
+    for (const auto& variant : variants)
+        compete(taken(subject.set().withConstraints(variant.constraints)), variant.hasTargets);
+    const std::vector<Series> series = interleaved(run.rounds, contestants);
+    for (const auto& crowd : crowds)
+        crowd->check();
+    const double perJoint = 1e9 / static_cast<double>(run.barCount * subject.jointCount());
+    for (std::size_t i = 0; i < std::size(variants); ++i)
+        run.report.add(Row(subject.name, run.barCount, variants[i].what, "ns a joint", series[i + 1], perJoint)
+                           .against("no constraints", series[0])
+                           .atMost(variants[i].bar));
 }
 
 } // namespace osgGpuAnimation::benchmark

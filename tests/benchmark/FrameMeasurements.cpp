@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "Contestant.h"
 #include "Measurements.h"
 #include "Scenes.h"
-
-#include <algorithm>
-#include <iostream>
-#include <map>
 
 namespace osgGpuAnimation::benchmark
 {
@@ -15,299 +10,208 @@ namespace
 
 constexpr float pixelError = 0.5f;
 
-/// One plot per subject.
-std::string framePlot(const Subject& subject)
+/// hasBars: the bars are for this number of characters.
+void addFrameRows(const Subject& subject, std::size_t count, bool hasBars, const std::vector<Costs>& costs,
+                  Report& report)
 {
-    return "frame-over-n-" + subject.name + ".svg";
-}
-
-double frameBar(const Subject& subject)
-{
+    const double milliseconds = 1e3 / static_cast<double>(count);
+    const auto row = [&](const char* what, const Costs& ours)
+    { return Row(subject.name, count, what, "ms a character", ours.whole, milliseconds); };
+    const Costs &ours = costs[0], &software = costs[1], &hardware = costs[2], &apart = costs[3], &fewer = costs[4];
+    report.add(row("whole frame, 64x64", ours).fasterThan("osgAnimation hardware, a program each", apart.whole));
     const std::map<std::string, double> bars{{"Fox", 1.5}, {"CesiumMan", 6.0}, {"Knight", 3.0}};
-    const auto known = bars.find(subject.name);
-    return known == bars.end() ? 0.0 : known->second;
-}
-
-void addFrameRows(const Subject& subject, std::size_t count, const std::vector<Contestant>& contestants,
-                  const Effort& effort, Report& report)
-{
-    const double characters = static_cast<double>(count);
-    const double milliseconds = 1e3 / characters;
-    const char* names[] = {"osgGpuAnimation", "osgAnimation software", "osgAnimation hardware",
-                           "osgAnimation hardware, a program each", "osgGpuAnimation, pixel error 0.5"};
-    for (std::size_t i = 0; i < contestants.size(); ++i)
-        report.addPoint(framePlot(subject), names[i], characters, cpuOf(contestants[i].whole).median * milliseconds);
-    if (count != effort.frameCount) return;
-    report.add(named(compared(contestants[0].whole, contestants[3].whole, milliseconds, true), subject, count,
-                     "whole frame, 64x64", "ms a character", "osgAnimation hardware, a program each"));
-    const bool isHardwareBetter = cpuOf(contestants[2].whole).median < cpuOf(contestants[1].whole).median;
-    const Contestant& better = contestants[isHardwareBetter ? 2 : 1];
-    const char* name = isHardwareBetter ? "osgAnimation hardware" : "osgAnimation software";
-    Row row = named(compared(contestants[0].whole, better.whole, milliseconds, true), subject, count,
-                    "whole frame, 64x64", "ms a character", name);
-    if (frameBar(subject) > 0.0)
+    const bool isHardwareFaster = figureOf(hardware.whole).median < figureOf(software.whole).median;
+    for (const bool isHardware : {!isHardwareFaster, isHardwareFaster}) // the faster mode has the bar
     {
-        row.bar = frameBar(subject) == 1.5 ? "≥ 1.5" : frameBar(subject) == 6.0 ? "≥ 6" : "≥ 3";
-        row.isMet = row.ratio.median >= frameBar(subject);
+        const Series& theirs = (isHardware ? hardware : software).whole;
+        const std::string name = isHardware ? "osgAnimation hardware" : "osgAnimation software";
+        Row against = row("whole frame, 64x64", ours).fasterThan(name, theirs);
+        const auto bar = bars.find(subject.name);
+        if (isHardware == isHardwareFaster && hasBars && bar != bars.end()) against.atLeast(bar->second);
+        report.add(against);
+        if (isHardware == isHardwareFaster)
+            report.add(row("whole frame, 64x64, pixel error 0.5", fewer).fasterThan(name + ", all triangles", theirs));
     }
-    report.add(row);
-    for (const bool isAgainstOurs : {false, true})
-        report.add(named(
-            compared(contestants[4].whole, isAgainstOurs ? contestants[0].whole : better.whole, milliseconds, true),
-            subject, count, "whole frame, 64x64, pixel error 0.5", "ms a character",
-            isAgainstOurs ? "all triangles" : (std::string(name) + ", all triangles").c_str()));
-    row = named({}, subject, count, "update + cull, separate nodes, pixel error 0.5", "µs a character", "");
-    row.ours = compared(contestants[4].updateAndCull, better.updateAndCull, 1e6 / characters, true).ours;
-    row.bar = "ours ≤ 5 µs";
-    row.isMet = row.ours.median <= 5.0;
-    report.add(row);
-    row = named(compared(contestants[0].updateAndCull, better.updateAndCull, 1e6 / characters, true), subject, count,
-                "update + cull, separate nodes", "µs a character", name);
-    row.bar = "ours ≤ 5 µs";
-    row.isMet = row.ours.median <= 5.0;
-    report.add(row);
+    report.add(row("whole frame, 64x64, pixel error 0.5", fewer).fasterThan("all triangles", ours.whole));
+    if (hasBars)
+        report.add(Row(subject.name, count, "update + cull, separate nodes", "µs a character", ours.updateAndCull,
+                       1e3 * milliseconds)
+                       .atMost(5.0));
 }
 
 /// Compares the pixels that levels of detail cover with those of all triangles, from four sides. The pictures, and the
 /// pixel error with them, are 8 times as large as those that are measured: the levels and poses are the same, but a few
 /// hundred pixels of which each character covers less than one would differ by a tenth and more by chance.
-/// setPixelError: of fewer. Empty if they agree.
+/// setPixelError: of fewer.
 template <typename SetPixelError>
-std::string checkAlike(osg::Node& all, osg::Node& fewer, SetPixelError setPixelError)
+void requireAlike(osg::Node& all, osg::Node& fewer, SetPixelError setPixelError)
 {
     constexpr int samples = 8, sides = 4;
     const osg::BoundingSphere sight = all.getBound();
-    if (const Result<void> set = setPixelError(samples * pixelError); !set) return set.error().message;
-    std::vector<std::shared_ptr<StagedViewer>> viewers;
-    for (osg::Node* scene : {&all, &fewer})
+    setPixelError(samples * pixelError);
+    StagedViewer exact(&all, sight, samples * 64), reduced(&fewer, sight, samples * 64);
+    const auto requireLess = [](int difference, double share, int pixels, const std::string& from)
     {
-        Result<std::shared_ptr<StagedViewer>> made = StagedViewer::create(scene, sight, samples * 64);
-        if (!made) return made.error().message;
-        viewers.push_back(std::move(made.value()));
-    }
-    int ofAll = 0, ofFewer = 0;
+        if (pixels == 0 || std::abs(difference) > share * pixels)
+            throw std::runtime_error("from " + from + " levels of detail show " + std::to_string(difference) +
+                                     " pixels more than all triangles, which show " + std::to_string(pixels));
+    };
+    int pixelsOfAll = 0, difference = 0;
     for (int side = 0; side < sides; ++side)
     {
         const osg::Vec3d back = osg::Quat(osg::PI_2 * side, osg::Z_AXIS) * osg::Vec3d(0.9, -3.0, 2.4);
-        int pixels[2];
-        for (std::size_t i = 0; i < 2; ++i)
+        for (StagedViewer* viewer : {&exact, &reduced})
         {
-            viewers[i]->lookFrom(sight.center() + back * sight.radius(), sight.center(), 35.0);
-            viewers[i]->frame(0.1);
-            if (const std::string errors = viewers[i]->takeErrors(); !errors.empty()) return "GL reports " + errors;
-            pixels[i] = viewers[i]->pixelsDrawn();
+            viewer->lookFrom(sight.center() + back * sight.radius(), sight.center(), 35.0);
+            viewer->frameAt(0.1);
+            viewer->requireNoErrors();
         }
-        ofAll += pixels[0];
-        ofFewer += pixels[1];
+        const int pixels = exact.pixelsDrawn(), more = reduced.pixelsDrawn() - pixels;
         // In one pose and from one side, the coarsest levels are up to 17 % too thin or too wide.
-        if (5 * std::abs(pixels[0] - pixels[1]) > pixels[0])
-            return "from side " + std::to_string(side) + " levels of detail show " + std::to_string(pixels[1]) +
-                   " pixels, all triangles " + std::to_string(pixels[0]);
+        requireLess(more, 0.2, pixels, "side " + std::to_string(side));
+        pixelsOfAll += pixels;
+        difference += more;
     }
-    if (const Result<void> set = setPixelError(pixelError); !set) return set.error().message;
-    // The Wanderer's coarsest levels are 11 % too thin.
-    if (20 * std::abs(ofAll - ofFewer) <= 3 * ofAll && ofAll > 0) return "";
-    return "from " + std::to_string(sides) + " sides levels of detail show " + std::to_string(ofFewer) +
-           " pixels, all triangles " + std::to_string(ofAll);
+    requireLess(difference, 0.15, pixelsOfAll, "four sides"); // the Wanderer's coarsest levels are 11 % too thin
+    setPixelError(pixelError);
 }
 
-/// The cost of the first frame of a scene.
+/// The cost of the first frame of a scene, in CPU seconds.
 struct Start
 {
-    Spent spent;          ///< the nodes made, and the first frame
-    double beyond = 0.0;  ///< CPU seconds of the first frame alone beyond an ordinary frame
-    double compile = 0.0; ///< CPU seconds of the compile traversal before it; 0: none
-    int pixels = 0;       ///< that differ from the background
+    double whole = 0.0;   ///< the nodes made, and the first frame
+    double beyond = 0.0;  ///< the first frame alone beyond an ordinary frame
+    double compile = 0.0; ///< a compile traversal before it
 };
 
 /// isCompiled: a compile traversal of OSG visits the scene before it is attached.
 template <typename MakeScene>
-Result<Start> start(MakeScene makeScene, const osg::BoundingSphere& sight, bool isCompiled = false)
+Start start(MakeScene makeScene, const osg::BoundingSphere& sight, bool isCompiled = false)
 {
     osg::ref_ptr<osg::Group> root = new osg::Group;
-    Result<Contestant> made = contestant(root, sight);
-    if (!made) return made.error();
-    Contestant viewing = made.value();
-    viewing.frame();
+    StagedViewer viewer(root, sight);
+    viewer.frame();
     Start start;
     const Stopwatch stopwatch;
-    auto scene = makeScene();
+    const CharacterScene scene = makeScene();
     const Stopwatch compile;
-    if (isCompiled) viewing.viewer->compile(*scene.root);
-    if (isCompiled) start.compile = compile.elapsed().cpu;
+    if (isCompiled) viewer.compile(*scene.root);
+    start.compile = compile.elapsed().cpu;
     root->addChild(scene.root);
     const Stopwatch first;
-    viewing.frame();
-    start.spent = stopwatch.elapsed();
+    viewer.frame();
+    start.whole = stopwatch.elapsed().cpu;
     start.beyond = first.elapsed().cpu;
     std::vector<double> ordinary;
     for (int frame = 0; frame < 5; ++frame)
-        ordinary.push_back(viewing.frame().whole().cpu);
+        ordinary.push_back(viewer.frame().whole().cpu);
     start.beyond -= figureOf(ordinary).median;
-    if (const std::string errors = viewing.viewer->takeErrors(); !errors.empty()) return Error{errors};
-    start.pixels = viewing.viewer->pixelsDrawn();
+    viewer.requireNoErrors();
+    if (viewer.pixelsDrawn() < 4) throw std::runtime_error("an empty picture");
     return start;
 }
 
-/// The memory of a scene on the CPU and the GPU after three frames, in bytes.
-template <typename MakeScene>
-Result<double> footprint(MakeScene makeScene, const osg::BoundingSphere& sight)
+/// The memory of so many characters on the CPU and the GPU after three frames, in bytes.
+double footprint(const Subject& subject, std::size_t count, const osg::BoundingSphere& sight)
 {
     osg::ref_ptr<osg::Group> root = new osg::Group;
-    Result<Contestant> made = contestant(root, sight);
-    if (!made) return made.error();
-    Contestant viewing = made.value();
-    viewing.viewer->lookAside();
-    viewing.frame();
+    StagedViewer viewer(root, sight);
+    viewer.lookAside();
+    viewer.frame();
     const double before = bytesInUse();
-    auto scene = makeScene();
+    const CharacterScene scene(subject, count);
     root->addChild(scene.root);
     for (int frame = 0; frame < 3; ++frame)
-        viewing.frame();
+        viewer.frame();
     const double bytes = bytesInUse() - before;
-    if (const std::string errors = viewing.viewer->takeErrors(); !errors.empty()) return Error{errors};
-    if (const std::string wrong = scene.check(viewing.viewer->state()); !wrong.empty()) return Error{wrong};
+    viewer.requireNoErrors();
+    scene.check(viewer.currentState());
     return bytes;
 }
 
 } // namespace
 
-Result<void> measureFrames(const Subject& subject, const Effort& effort, Report& report)
+void measureFrames(const Subject& subject, Run& run)
 {
-    report.describePlot(framePlot(subject), subject.name + ", whole frame at 64x64: CPU time a character", "characters",
-                        "ms a character");
-    ReferenceKit kit(subject);
-    for (const std::size_t count : effort.frameCounts)
+    const ReferenceKit kit(subject);
+    for (const std::size_t count : run.frameCounts)
     {
-        std::cerr << subject.name << ": frames of " << count << std::endl;
-        CharacterScene ours(subject, count);
-        ReferenceScene software(subject, kit, ReferenceMode::Software, count);
-        ReferenceScene hardware(subject, kit, ReferenceMode::Hardware, count);
-        ReferenceScene apart(subject, kit, ReferenceMode::HardwareApart, count);
-        std::vector<Contestant> contestants;
-        CharacterScene fewer(subject, count);
-        if (const Result<void> set = fewer.setPixelError(pixelError); !set) return set.error();
-        for (osg::Node* scene :
-             {ours.root.get(), software.root.get(), hardware.root.get(), apart.root.get(), fewer.root.get()})
-        {
-            Result<Contestant> made = contestant(scene, ours.root->getBound());
-            if (!made) return made.error();
-            contestants.push_back(std::move(made.value()));
-        }
-        race(contestants, effort.frameRounds);
-        if (const std::string wrong = check(contestants); !wrong.empty()) return Error{wrong};
-        const auto setPixelError = [&](float pixels) { return fewer.setPixelError(pixels); };
-        if (const std::string wrong = checkAlike(*ours.root, *fewer.root, setPixelError); !wrong.empty())
-            return Error{wrong};
-        contestants[0].viewer->makeCurrent();
-        if (const std::string wrong = ours.check(contestants[0].viewer->state()); !wrong.empty()) return Error{wrong};
-        addFrameRows(subject, count, contestants, effort, report);
+        CharacterScene ours(subject, count), fewer(subject, count);
+        fewer.setPixelError(pixelError);
+        const ReferenceScene software(subject, kit, ReferenceMode::Software, count);
+        const ReferenceScene hardware(subject, kit, ReferenceMode::Hardware, count);
+        const ReferenceScene apart(subject, kit, ReferenceMode::HardwareApart, count);
+        const Viewers viewers =
+            viewersOf({ours.root, software.root, hardware.root, apart.root, fewer.root}, ours.root->getBound());
+        const std::vector<Costs> costs = race(viewers, Run::frameRounds);
+        requireAlike(*ours.root, *fewer.root, [&](float pixels) { fewer.setPixelError(pixels); });
+        ours.check(viewers[0]->currentState());
+        addFrameRows(subject, count, count == run.frameCount, costs, run.report);
     }
-    return {};
 }
 
-Result<void> measureCrowd(const Subject& subject, const Effort& effort, Report& report)
+void measureCrowd(const Subject& subject, Run& run)
 {
-    const auto race = [&](std::size_t count, int rounds, bool hasNodes) -> Result<std::vector<Contestant>>
+    const auto raced = [&](std::size_t count, int rounds, bool hasNodes)
     {
-        std::cerr << subject.name << ": a crowd of " << count << std::endl;
-        const CrowdScene all(subject, count), fewer(subject, count);
-        const auto setPixelError = [&](float pixels) { return fewer.root->getMeshes().setPixelError(pixels); };
-        if (const Result<void> set = setPixelError(pixelError); !set) return set.error();
-        std::vector<osg::ref_ptr<osg::Node>> scenes{all.root, fewer.root};
+        const osg::ref_ptr<AnimatedCrowd> all = makeCrowd(subject, count), fewer = makeCrowd(subject, count);
+        const auto setPixelError = [&](float pixels) { taken(fewer->getMeshes().setPixelError(pixels)); };
+        setPixelError(pixelError);
+        std::vector<osg::ref_ptr<osg::Node>> scenes{all, fewer};
         if (hasNodes) scenes.push_back(CharacterScene(subject, count).root);
-        std::vector<Contestant> contestants;
-        for (const osg::ref_ptr<osg::Node>& scene : scenes)
-        {
-            Result<Contestant> made = contestant(scene, scenes.front()->getBound());
-            if (!made) return made.error();
-            contestants.push_back(std::move(made.value()));
-        }
-        benchmark::race(contestants, rounds);
-        if (const std::string wrong = check(contestants); !wrong.empty()) return Error{wrong};
-        if (const std::string wrong = checkAlike(*all.root, *fewer.root, setPixelError); !wrong.empty())
-            return Error{wrong};
-        return contestants;
+        const Viewers viewers = viewersOf(scenes, all->getBound());
+        std::vector<Costs> costs = race(viewers, rounds);
+        requireAlike(*all, *fewer, setPixelError);
+        return costs;
     };
-    const Result<std::vector<Contestant>> both = race(effort.frameCount, effort.frameRounds, true);
-    if (!both) return both.error();
-    const double characters = static_cast<double>(effort.frameCount);
-    report.add(named(compared(both.value()[0].whole, both.value()[2].whole, 1e3 / characters, true), subject,
-                     effort.frameCount, "whole frame of a crowd node", "ms a character", "separate nodes"));
-    const Result<std::vector<Contestant>> large = race(effort.crowdCount, 1, false);
-    if (!large) return large.error();
-    for (const auto& [count, contestants] :
-         {std::pair(effort.frameCount, &both.value()), std::pair(effort.crowdCount, &large.value())})
-        report.add(
-            named(compared((*contestants)[1].whole, (*contestants)[0].whole, 1e3 / static_cast<double>(count), true),
-                  subject, count, "whole frame of a crowd node, pixel error 0.5", "ms a character", "all triangles"));
-    for (const std::size_t which : {std::size_t(0), std::size_t(1)})
-    {
-        Row row =
-            named({}, subject, effort.crowdCount,
-                  which == 0 ? "update + cull, crowd" : "update + cull, crowd, pixel error 0.5", "µs a character", "");
-        std::vector<double> seconds;
-        for (const Spent& spent : large.value()[which].updateAndCull)
-            seconds.push_back(1e6 * spent.cpu / static_cast<double>(effort.crowdCount));
-        row.ours = figureOf(seconds);
-        row.bar = "≤ 0.15 µs";
-        row.isMet = row.ours.median <= 0.15;
-        report.add(row);
-    }
-    return {};
+    const std::vector<Costs> both = raced(run.frameCount, Run::frameRounds, true);
+    run.report.add(Row(subject.name, run.frameCount, "whole frame of a crowd node", "ms a character", both[0].whole,
+                       1e3 / static_cast<double>(run.frameCount))
+                       .fasterThan("separate nodes", both[2].whole));
+    const std::vector<Costs> large = raced(run.crowdCount, 1, false);
+    const char* const names[] = {"update + cull, crowd", "update + cull, crowd, pixel error 0.5"};
+    for (std::size_t i = 0; i < large.size(); ++i)
+        run.report.add(Row(subject.name, run.crowdCount, names[i], "µs a character", large[i].updateAndCull,
+                           1e6 / static_cast<double>(run.crowdCount))
+                           .atMost(0.15));
 }
 
-Result<void> measureStart(const Subject& subject, const Effort& effort, Report& report)
+void measureStart(const Subject& subject, Run& run)
 {
-    std::cerr << subject.name << ": first frame and memory" << std::endl;
     constexpr std::size_t count = 1000, few = 10; // few: the one-time cost of programs and of the set
-    const osg::BoundingSphere sight = CharacterScene(subject, count).root->getBound();
-    // Levels of detail are made while a file is loaded.
-    if (const Result<void> set = CharacterScene(subject, 1).setPixelError(pixelError); !set)
-        return set.error();
-    std::vector<double> seconds, secondsOfFewer, elapsed, bytes, beyond, beyondOfFewer, compiled, beyondCompiled;
-    for (int round = 0; round < std::min(effort.frameRounds, 3); ++round)
+    const auto makeAll = [&] { return CharacterScene(subject, count); };
+    const auto makeFewer = [&]
     {
-        const Result<Start> many = start([&] { return CharacterScene(subject, count); }, sight);
-        const Result<Start> fewer = start(
-            [&]
-            {
-                CharacterScene scene(subject, count);
-                static_cast<void>(scene.setPixelError(pixelError)); // which was accepted above
-                return scene;
-            },
-            sight);
-        const Result<Start> prepared = start([&] { return CharacterScene(subject, count); }, sight, true);
-        if (!many || !fewer) return many ? fewer.error() : many.error();
-        if (!prepared) return prepared.error();
-        const Result<double> ofMany = footprint([&] { return CharacterScene(subject, count); }, sight);
-        const Result<double> ofFew = footprint([&] { return CharacterScene(subject, few); }, sight);
-        if (!ofMany || !ofFew) return ofMany ? ofFew.error() : ofMany.error();
-        if (many.value().pixels < 4 || fewer.value().pixels < 4) return Error{"an empty picture"};
-        seconds.push_back(many.value().spent.cpu);
-        elapsed.push_back(many.value().spent.wall);
-        secondsOfFewer.push_back(fewer.value().spent.cpu);
-        beyond.push_back(1e3 * many.value().beyond);
-        beyondOfFewer.push_back(1e3 * fewer.value().beyond);
-        compiled.push_back(1e3 * prepared.value().compile);
-        beyondCompiled.push_back(1e3 * prepared.value().beyond);
-        bytes.push_back((ofMany.value() - ofFew.value()) / (1024.0 * (count - few)));
+        CharacterScene scene(subject, count);
+        scene.setPixelError(pixelError);
+        return scene;
+    };
+    const osg::BoundingSphere sight = makeAll().root->getBound();
+    CharacterScene(subject, 1).setPixelError(pixelError); // levels of detail are made while a file is loaded
+    std::vector<double> whole, wholeOfFewer, beyond, beyondOfFewer, compile, beyondCompiled, bytes;
+    for (int round = 0; round < Run::frameRounds; ++round)
+    {
+        const Start all = start(makeAll, sight), fewer = start(makeFewer, sight),
+                    compiled = start(makeAll, sight, true);
+        whole.push_back(all.whole);
+        wholeOfFewer.push_back(fewer.whole);
+        beyond.push_back(1e3 * all.beyond);
+        beyondOfFewer.push_back(1e3 * fewer.beyond);
+        compile.push_back(1e3 * compiled.compile);
+        beyondCompiled.push_back(1e3 * compiled.beyond);
+        bytes.push_back((footprint(subject, count, sight) - footprint(subject, few, sight)) / (1024.0 * (count - few)));
     }
-    for (const auto& [what, figures] :
-         {std::pair("first frame, nodes made and drawn", &seconds),
-          std::pair("first frame, nodes made and drawn, by the clock", &elapsed),
-          std::pair("first frame, nodes made and drawn, pixel error 0.5", &secondsOfFewer)})
-        report.add(limited(figureOf(*figures), 0.3, "≤ 0.3 s", subject, count, what, "s"));
-    for (const auto& [what, figures] :
-         {std::pair("first frame beyond an ordinary one", &beyond),
-          std::pair("first frame beyond an ordinary one, pixel error 0.5", &beyondOfFewer),
-          std::pair("compile traversal", &compiled),
-          std::pair("first frame after a compile traversal, beyond an ordinary one", &beyondCompiled)})
-        report.add(limited(figureOf(*figures), 0.0, "", subject, count, what, "ms"));
-    const double limit = 4.0 + 48.0 * static_cast<double>(subject.set().paletteSize()) / 1024.0;
-    report.add(limited(figureOf(bytes), limit, "≤ 4 KiB + 48 B an entry", subject, count, "memory, CPU and GPU",
-                       "KiB a character"));
-    return {};
+    const auto row = [&](const char* what, const char* unit, const std::vector<double>& values)
+    { return Row(subject.name, count, what, unit, figureOf(values)); };
+    run.report.add(row("first frame, nodes made and drawn", "s", whole).atMost(0.3));
+    run.report.add(row("first frame, nodes made and drawn, pixel error 0.5", "s", wholeOfFewer).atMost(0.3));
+    run.report.add(row("first frame beyond an ordinary one", "ms", beyond));
+    run.report.add(row("first frame beyond an ordinary one, pixel error 0.5", "ms", beyondOfFewer));
+    run.report.add(row("compile traversal", "ms", compile));
+    run.report.add(row("first frame after a compile traversal, beyond an ordinary one", "ms", beyondCompiled));
+    // 4 KiB and 48 bytes an entry
+    run.report.add(row("memory, CPU and GPU", "KiB a character", bytes)
+                       .atMost(4.0 + 48.0 * static_cast<double>(subject.set().paletteSize()) / 1024.0));
 }
 
 } // namespace osgGpuAnimation::benchmark

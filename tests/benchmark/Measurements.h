@@ -1,75 +1,83 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "Effort.h"
 #include "Report.h"
+#include "StagedViewer.h"
 #include "Subject.h"
-
-#include <osgGpuAnimation/math/Result.h>
-
-#include <osg/GraphicsContext>
 
 namespace osgGpuAnimation::benchmark
 {
 
-// Each function adds its rows and points to the report. Error: GL reported an error or a result was wrong, which makes
-// the measurement invalid.
+/// The number of rounds and characters of a run, its graphics context and its report.
+struct Run
+{
+    osg::GraphicsContext& context; ///< current when a measurement begins
+    Report& report;
+    int rounds = 7;                 ///< of fast measurements
+    int loadRounds = 21;            ///< of loading a file
+    std::size_t frameCount = 1000;  ///< characters, for the bars of whole frames
+    std::size_t barCount = 1000;    ///< characters, for other bars
+    std::size_t crowdCount = 10000; ///< instances, for the crowd's bar
+    std::vector<std::size_t> poseCounts{1, 10, 100, 1000, 10000};
+    std::vector<std::size_t> frameCounts{1, 10, 100, 1000};
+
+    static constexpr int frameRounds = 3;                  ///< of whole frames
+    static constexpr std::size_t maxReferenceCount = 1000; ///< characters of osgAnimation
+
+    void beQuick()
+    {
+        rounds = 5;
+        loadRounds = 11;
+        frameCount = 100;
+        poseCounts = {10, 100, 1000, 10000};
+        frameCounts = {10, 100};
+    }
+};
+
+// Each function adds its rows and points to the report. It throws if GL reports an error or a result is wrong, which
+// makes the measurement invalid.
 
 /// The work from advance() to the finished palette, compared with osgAnimation's update traversal and with the
-/// FeedbackFloor. Requires a current context.
-Result<void> measurePose(const Subject& subject, const Effort& effort, osg::GraphicsContext& context, Report& report);
+/// FeedbackFloor; and poses that the application writes.
+void measurePose(const Subject& subject, Run& run);
+/// Four blend samples per character compared with one; layers and crossfades add samples.
+void measureSamples(const Subject& subject, Run& run);
+/// Look-ats and two-bone inverse kinematics compared with the same characters without, for subjects whose joints are
+/// known.
+void measureConstraints(const Subject& subject, Run& run);
+/// The same characters in chunks of different sizes.
+void measureChunks(const Subject& subject, Run& run);
+/// Compact clips compared with exact ones: pose and bytes.
+void measureCompact(const Subject& subject, Run& run);
+/// The cost per joint in chains of 1 to 64 joints.
+void measureDepth(Run& run);
 
-/// Four blend samples per character compared with one; layers and crossfades add samples. Requires a current context.
-Result<void> measureSamples(const Subject& subject, const Effort& effort, osg::GraphicsContext& context,
-                            Report& report);
+// The following ones have viewers and contexts of their own.
 
-/// Look-ats and two-bone inverse kinematics compared with the same characters without. Requires a current context.
-Result<void> measureConstraints(const Subject& subject, const Effort& effort, osg::GraphicsContext& context,
-                                Report& report);
-
-/// The same characters in chunks of different sizes. Requires a current context.
-Result<void> measureChunks(const Subject& subject, const Effort& effort, osg::GraphicsContext& context, Report& report);
-
-/// Compact clips compared with exact ones: pose and bytes. Requires a current context.
-Result<void> measureCompact(const Subject& subject, const Effort& effort, osg::GraphicsContext& context,
-                            Report& report);
-
-/// The cost per joint in chains of 8 to 64 joints. Requires a current context.
-Result<void> measureDepth(const Effort& effort, osg::GraphicsContext& context, Report& report);
-
-/// Whole frames, their stages, memory and the first frame; each scene has its own viewer.
-Result<void> measureFrames(const Subject& subject, const Effort& effort, Report& report);
-
+/// Whole frames and their stages.
+void measureFrames(const Subject& subject, Run& run);
+/// One crowd node compared with the same number of separate nodes: whole frames and their CPU time.
+void measureCrowd(const Subject& subject, Run& run);
+/// The memory and the first frame of many characters.
+void measureStart(const Subject& subject, Run& run);
 /// Skinned draws compared with unskinned draws of the same meshes and shader, and with the cheapest draw of the
 /// triangles.
-Result<void> measureDraws(const Subject& subject, const Effort& effort, Report& report);
-
+void measureDraws(const Subject& subject, Run& run);
 /// glTF's shading of a picture that the character fills, under one light and in the studio, compared with the fixed
 /// pipeline's look.
-Result<void> measureShading(const Subject& subject, const Effort& effort, Report& report);
-
-/// One crowd node compared with the same number of separate nodes: whole frames and their CPU time.
-Result<void> measureCrowd(const Subject& subject, const Effort& effort, Report& report);
-
+void measureShading(const Subject& subject, Run& run);
 /// A field of 99,856 instances of a crowd with a pixel error, of which the camera sees half: whole frames, poses and
 /// bytes.
-Result<void> measureField(const Subject& subject, const Effort& effort, Report& report);
-
-/// A crowd of 99,856 of all subjects in turns; everyone walks and one camera flies through: times and counts a frame.
-Result<void> measureMixed(const std::vector<Subject>& subjects, const Effort& effort, Report& report);
-
+void measureField(const Subject& subject, Run& run);
+/// A field of all subjects in turns; everyone walks and one camera flies through: times and counts a frame.
+void measureMixed(const std::vector<Subject>& subjects, Run& run);
 /// Pictures of instances with a pixel error of 0.5 against those with all triangles and exact poses: 100 of 4, 8 and 16
 /// pixels of height, 8x8 supersampled (coverage, and the structural similarity of Wang et al., Image Quality
 /// Assessment, 2004), and the field (steps of brightness from row to row).
-Result<void> measurePictures(const Subject& subject, const Effort& effort, Report& report);
-
-/// The memory of a field of 99,856 beyond that of a field of one, on the CPU and the GPU.
-Result<void> measureMemory(const Subject& subject, const Effort& effort, Report& report);
-
-/// The memory and the first frame of many characters.
-Result<void> measureStart(const Subject& subject, const Effort& effort, Report& report);
-
+void measurePictures(const Subject& subject, Run& run);
+/// The memory of a field of 99,856 beyond that of a small one, on the CPU and the GPU.
+void measureMemory(const Subject& subject, Run& run);
 /// Loading the subject's file, compared with tinygltf's parsing and image decoding.
-Result<void> measureLoad(const Subject& subject, const Effort& effort, Report& report);
+void measureLoad(const Subject& subject, Run& run);
 
 } // namespace osgGpuAnimation::benchmark

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "Contestant.h"
-#include "Field.h"
 #include "Measurements.h"
+#include "Scenes.h"
 
 #include <algorithm>
 #include <cmath>
-#include <iostream>
 #include <numeric>
 #include <random>
 
@@ -95,15 +93,13 @@ osg::ref_ptr<AnimatedCrowd> makeWall(const Subject& subject, double spacing)
 }
 
 /// Of instances of that height in pixels: with the pixel error, and exact ones.
-Result<void> comparePictures(const Subject& subject, int pixels, Report& report)
+void comparePictures(const Subject& subject, int pixels, Report& report)
 {
     const osg::BoundingBox box = subject.model.character->getClipBounds(-1);
     const double tall = box.zMax() - box.zMin(), spacing = 2.0 * tall;
     const int width = 2 * pixels * across;
     const osg::ref_ptr<AnimatedCrowd> wall = makeWall(subject, spacing);
-    Result<std::shared_ptr<StagedViewer>> made = StagedViewer::create(wall, wall->getBound(), samples * width);
-    if (!made) return made.error();
-    StagedViewer& viewer = *made.value();
+    StagedViewer viewer(wall, wall->getBound(), samples * width);
     constexpr double fieldOfView = 10.0; // degrees
     const osg::Vec3d centre(-0.5 * spacing, 0.5 * (box.yMin() + box.yMax()),
                             0.5 * (box.zMin() + box.zMax()) - 0.5 * spacing);
@@ -112,83 +108,77 @@ Result<void> comparePictures(const Subject& subject, int pixels, Report& report)
     std::vector<Picture> pictures;
     for (const float error : {0.0f, samples * fieldPixelError})
     {
-        if (const Result<void> set = wall->getMeshes().setPixelError(error); !set) return set.error();
+        taken(wall->getMeshes().setPixelError(error));
         for (int frame = 0; frame < 2; ++frame)
-            viewer.frame(0.0);
+            viewer.frameAt(0.0);
         pictures.push_back(pictureOf(viewer, width, samples));
     }
-    if (const std::string errors = viewer.takeErrors(); !errors.empty()) return Error{"GL reports " + errors};
-    const auto addRow = [&](const std::string& what, const char* unit, double value, bool isMet, const char* bar)
+    viewer.requireNoErrors();
+    const auto row = [&](const std::string& what, double value)
     {
-        Row row = named({}, subject, across * across, what + ", " + std::to_string(pixels) + " pixels tall", unit, "");
-        row.ours = figureOf({value});
-        row.bar = bar;
-        row.isMet = isMet;
-        report.add(row);
+        return Row(subject.name, across * across, "pictures, " + what + ", " + std::to_string(pixels) + " pixels tall",
+                   "%", figureOf(100.0 * value));
     };
-    const double coverage = 100.0 * pictures[1].drawn / pictures[0].drawn;
-    addRow("pictures, coverage", "%", coverage, std::abs(coverage - 100.0) <= 2.0, "98 to 102 %");
-    const double similarity = structuralSimilarity(pictures[0], pictures[1]);
-    addRow("pictures, structural similarity", "%", 100.0 * similarity, similarity >= 0.98, "≥ 98 %");
-    return {};
+    Row coverage = row("coverage", pictures[1].drawn / pictures[0].drawn);
+    coverage.bar = "98 to 102 %";
+    coverage.isMet = std::abs(coverage.ours.median - 100.0) <= 2.0;
+    report.add(coverage);
+    report.add(row("structural similarity", structuralSimilarity(pictures[0], pictures[1])).atLeast(98.0));
 }
 
 /// The mean brightness of the drawn pixels of each row; below 0 where few are drawn.
 std::vector<double> brightnessOfRows(const Picture& picture)
 {
-    constexpr int fewest = 200; // pixels
+    constexpr int minDrawn = 200; // pixels
     std::vector<double> rows;
     for (auto row = picture.brightness.begin(); row != picture.brightness.end(); row += picture.width)
     {
         const auto drawn = picture.width - std::count(row, row + picture.width, 0.0);
-        rows.push_back(drawn < fewest ? -1.0
-                                      : std::accumulate(row, row + picture.width, 0.0) / static_cast<double>(drawn));
+        rows.push_back(drawn < minDrawn ? -1.0
+                                        : std::accumulate(row, row + picture.width, 0.0) / static_cast<double>(drawn));
     }
     return rows;
 }
 
 /// The largest change of brightness from some rows of the field to the next ones that the pixel error brings: a line
 /// where levels change.
-Result<void> compareRows(const Subject& subject, Report& report)
+void compareRows(const Subject& subject, Report& report)
 {
     constexpr std::size_t band = 8; // rows on each side
     constexpr int width = 1280, height = 720;
-    const osg::ref_ptr<AnimatedCrowd> field = makeField(subject);
-    Result<std::shared_ptr<StagedViewer>> made = StagedViewer::create(field, field->getBound(), width, height);
-    if (!made) return made.error();
-    lookAcross(*made.value(), field->getBound());
+    const Field field(subject);
+    const osg::BoundingSphere bound = field.node().getBound();
+    StagedViewer viewer(&field.node(), bound, width, height);
+    lookAcross(viewer, bound);
     std::vector<std::vector<double>> rows;
     for (const float error : {0.0f, fieldPixelError})
     {
-        if (const Result<void> set = field->getMeshes().setPixelError(error); !set) return set.error();
-        made.value()->frame(0.0);
-        rows.push_back(brightnessOfRows(pictureOf(*made.value(), width, 1)));
+        taken(field.node().getMeshes().setPixelError(error));
+        viewer.frameAt(0.0);
+        rows.push_back(brightnessOfRows(pictureOf(viewer, width, 1)));
     }
+    viewer.requireNoErrors();
     std::vector<double> ratios;
     for (std::size_t row = 0; row < rows[0].size(); ++row)
         if (rows[0][row] > 0.0 && rows[1][row] > 0.0) ratios.push_back(rows[1][row] / rows[0][row]);
-    if (const std::string errors = made.value()->takeErrors(); !errors.empty()) return Error{"GL reports " + errors};
-    if (ratios.size() < 2 * band) return Error{"the field's picture has " + std::to_string(ratios.size()) + " rows"};
+    if (ratios.size() < 2 * band)
+        throw std::runtime_error("the field's picture has " + std::to_string(ratios.size()) + " rows");
     double largest = 0.0;
-    for (std::size_t row = band; row + band <= ratios.size(); ++row)
-    {
-        const auto at = ratios.begin() + static_cast<std::ptrdiff_t>(row);
+    for (auto at = ratios.begin() + band; at + band <= ratios.end(); ++at)
         largest = std::max(largest,
                            std::abs(std::accumulate(at, at + band, 0.0) / std::accumulate(at - band, at, 0.0) - 1.0));
-    }
-    report.add(limited(figureOf({100.0 * largest}), 2.0, "≤ 2 %", subject, places,
-                       "pictures, the field's largest step of brightness", "%"));
-    return {};
+    report.add(
+        Row(subject.name, places, "pictures, the field's largest step of brightness", "%", figureOf(100.0 * largest))
+            .atMost(2.0));
 }
 
 } // namespace
 
-Result<void> measurePictures(const Subject& subject, const Effort&, Report& report)
+void measurePictures(const Subject& subject, Run& run)
 {
-    std::cerr << subject.name << ": pictures" << std::endl;
     for (const int pixels : {4, 8, 16})
-        if (const Result<void> compared = comparePictures(subject, pixels, report); !compared) return compared;
-    return compareRows(subject, report);
+        comparePictures(subject, pixels, run.report);
+    compareRows(subject, run.report);
 }
 
 } // namespace osgGpuAnimation::benchmark

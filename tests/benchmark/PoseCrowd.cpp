@@ -5,7 +5,6 @@
 #include "Subject.h"
 
 #include <osgGpuAnimation/animation/Pose.h>
-#include <osgGpuAnimation/gpu/FeedbackPass.h>
 
 #include <cmath>
 
@@ -29,125 +28,91 @@ void main()
 
 PoseCrowd::PoseCrowd(std::shared_ptr<const AnimationSet> set, std::size_t clip, std::size_t count,
                      osg::GraphicsContext& context)
-    : _set(std::move(set)), _controllers(count, AnimationController(_set)),
-      _batches(PoseBatch::blendCostCount, PoseBatch(_set)), _places(count), _context(&context)
+    : controllers(count, AnimationController(set)), _set(set), _clip(clip),
+      _batches(PoseBatch::blendCostCount, PoseBatch(set)), _places(count), _context(&context)
 {
     static std::size_t slots = 0;
     _firstSlot = slots;
     slots += _batches.size();
     for (std::size_t i = 0; i < count; ++i)
     {
-        static_cast<void>(_controllers[i].play(clip));
-        _controllers[i].seek(phaseOf(i, _controllers[i].duration()));
+        static_cast<void>(controllers[i].play(clip));
+        controllers[i].seek(phaseOf(i, controllers[i].duration()));
     }
 }
 
-PoseCrowd::~PoseCrowd() = default;
-
-void PoseCrowd::crossfade(std::size_t clip, std::size_t every)
+void PoseCrowd::addSamples(std::size_t every)
 {
     constexpr double hours = 36000.0;
     for (std::size_t i = 0; i < count(); i += every)
-    {
-        static_cast<void>(_controllers[i].crossfade(clip, hours));
-        _controllers[i].advance(0.4 * hours);
-    }
+        for (int sample = 1; sample < 4; ++sample)
+        {
+            static_cast<void>(controllers[i].crossfade(_clip, hours));
+            controllers[i].advance(0.4 * hours);
+        }
 }
 
-PoseCrowd::Place PoseCrowd::add(const PoseInstruction& instruction)
+Spent PoseCrowd::step()
 {
-    std::size_t batch = 0;
-    while (_isDealtOut && !_batches[batch].accepts(instruction))
-        ++batch;
-    return {batch, _batches[batch].add(instruction)};
-}
-
-Spent PoseCrowd::step(double seconds, PosePipeline::Form form)
-{
-    osg::State& state = *_context->getState();
-    PosePipeline* pipeline = PosePipeline::of(state);
-    if (!pipeline) return {};
-    pipeline->options().form = form;
-    pipeline->options().chunkSize = _chunkSize;
     glFinish();
     const Stopwatch stopwatch;
-    refill(seconds);
-    submit(*pipeline);
+    refill();
+    submit();
     return stopwatch.elapsed();
 }
 
-void PoseCrowd::refill(double seconds)
+void PoseCrowd::refill()
 {
     for (PoseBatch& batch : _batches)
         batch.clear();
     for (std::size_t i = 0; i < count(); ++i)
-        _places[i] = add(_controllers[i].advance(seconds));
-}
-
-void PoseCrowd::submit(PosePipeline& pipeline)
-{
-    for (std::size_t batch = 0; batch < _batches.size(); ++batch)
-        if (_batches[batch].size() > 0) pipeline.evaluate(*_context->getState(), _batches[batch], _firstSlot + batch);
-    glFinish();
-}
-
-Spent PoseCrowd::streamPoses(double seconds)
-{
-    if (_captured.empty())
-        for (int frame = 0; frame < 16; ++frame)
-        {
-            _captured.emplace_back();
-            Pose::mix(*_set, _controllers[0].advance(0.05), _captured.back());
-            _captured.back().resize(_set->skeleton().jointCount());
-        }
-    for (AnimationController& controller : _controllers)
-        if (!controller.layer(0).findPose()) controller.layer(0).showPose();
-    const Stopwatch stopwatch;
-    for (AnimationController& controller : _controllers)
-        static_cast<void>(controller.layer(0).pose().setTransforms(_captured[++_capturedFrame % _captured.size()]));
-    refill(seconds);
-    return stopwatch.elapsed();
-}
-
-void PoseCrowd::fade()
-{
-    for (AnimationController& controller : _controllers)
-        controller.layer(0).setWeight(controller.layer(0).weight() == 1.0f ? 0.99f : 1.0f);
+    {
+        const PoseInstruction& instruction = controllers[i].advance(frameTime);
+        std::size_t batch = 0;
+        while (!_batches[batch].accepts(instruction))
+            ++batch;
+        _places[i] = {batch, _batches[batch].add(instruction)};
+    }
 }
 
 Spent PoseCrowd::evaluate()
 {
-    PosePipeline* pipeline = PosePipeline::of(*_context->getState());
-    if (!pipeline) return {};
     glFinish();
     const Stopwatch stopwatch;
-    submit(*pipeline);
+    submit();
     return stopwatch.elapsed();
 }
 
-std::string PoseCrowd::check()
+void PoseCrowd::submit()
 {
-    osg::State& state = *_context->getState();
-    PosePipeline* pipeline = PosePipeline::of(state);
-    if (!pipeline) return "there is no pose pipeline";
-    for (const std::size_t instance : {std::size_t(0), count() / 2, count() - 1})
-    {
-        const Place& place = _places[instance];
-        const std::string wrong =
-            difference(*_set, _controllers[instance].instruction(),
-                       pipeline->readPalette(state, *_set, _firstSlot + place.batch, place.instance));
-        if (!wrong.empty()) return "instance " + std::to_string(instance) + ": " + wrong;
-    }
-    return takeGlErrors();
+    pipeline().options().form = options.form;
+    pipeline().options().chunkSize = options.chunkSize;
+    for (std::size_t batch = 0; batch < _batches.size(); ++batch)
+        if (_batches[batch].size() > 0) pipeline().evaluate(*_context->getState(), _batches[batch], _firstSlot + batch);
+    glFinish();
 }
 
-FeedbackFloor::FeedbackFloor(std::size_t matrices, Primitive primitive, osg::GraphicsContext& context)
-    : _matrices(primitive == Primitive::Triangles ? (matrices + 2) / 3 * 3 : matrices), _primitive(primitive),
-      _context(&context),
-      _pass(*context.getState()->get<osg::GLExtensions>(), "floor", {floorShader}, {"row0", "row1", "row2"}),
-      _out(*context.getState()->get<osg::GLExtensions>(), GL_RGBA32F_ARB)
+PosePipeline& PoseCrowd::pipeline() const
 {
-    context.getState()->get<osg::GLExtensions>()->glGenVertexArrays(1, &_vertexArray);
+    PosePipeline* pipeline = PosePipeline::of(*_context->getState());
+    if (!pipeline) throw std::runtime_error("there is no pose pipeline");
+    return *pipeline;
+}
+
+void PoseCrowd::check() const
+{
+    for (const std::size_t i : {std::size_t(0), count() / 2, count() - 1})
+        requireEqual(
+            *_set, controllers[i].instruction(),
+            pipeline().readPalette(*_context->getState(), *_set, _firstSlot + _places[i].batch, _places[i].instance));
+    requireNoGlErrors();
+}
+
+FeedbackFloor::FeedbackFloor(std::size_t matrices, osg::GraphicsContext& context)
+    : _matrices(matrices), _context(&context), _gl(*context.getState()->get<osg::GLExtensions>()),
+      _pass(_gl, "floor", {floorShader}, {"row0", "row1", "row2"}), _out(_gl, GL_RGBA32F_ARB)
+{
+    _gl.glGenVertexArrays(1, &_vertexArray);
     _out.reserve(_matrices * sizeof(AffineMatrix));
 }
 
@@ -155,7 +120,7 @@ FeedbackFloor::~FeedbackFloor()
 {
     _pass.release();
     _out.release();
-    _context->getState()->get<osg::GLExtensions>()->glDeleteVertexArrays(1, &_vertexArray);
+    _gl.glDeleteVertexArrays(1, &_vertexArray);
 }
 
 Spent FeedbackFloor::step()
@@ -165,21 +130,18 @@ Spent FeedbackFloor::step()
     {
         const FeedbackScope scope(*_context->getState(), _vertexArray);
         _pass.use();
-        if (_primitive == Primitive::Points)
-            _pass.run(0, _matrices, _out.buffer(), 0);
-        else
-            _pass.runInstanced(_matrices, 1, 0, _out.buffer(), 0);
+        _pass.run(0, _matrices, _out.buffer(), 0);
     }
     glFinish();
     return stopwatch.elapsed();
 }
 
-std::string difference(const AnimationSet& set, const PoseInstruction& instruction,
-                       const std::vector<AffineMatrix>& palette, const AffineMatrix& rootMatrix)
+void requireEqual(const AnimationSet& set, const PoseInstruction& instruction, const std::vector<AffineMatrix>& palette,
+                  const AffineMatrix& rootMatrix)
 {
     std::vector<AffineMatrix> expected;
     Pose::evaluate(set, instruction, rootMatrix, expected);
-    if (palette.size() != expected.size()) return "there is no palette";
+    if (palette.size() != expected.size()) throw std::runtime_error("there is no palette");
     float size = 1.0f;
     float largest = 0.0f;
     for (std::size_t entry = 0; entry < expected.size(); ++entry)
@@ -188,11 +150,12 @@ std::string difference(const AnimationSet& set, const PoseInstruction& instructi
             {
                 const float wanted = expected[entry].rows[row][column];
                 const float got = palette[entry].rows[row][column];
-                if (!std::isfinite(got)) return "entry " + std::to_string(entry) + " is no number";
+                if (!std::isfinite(got)) throw std::runtime_error("an entry of a palette is no number");
                 size = std::max(size, std::abs(wanted));
                 largest = std::max(largest, std::abs(wanted - got));
             }
-    return largest <= 1e-4f * size ? "" : "differs from the CPU's by " + std::to_string(largest);
+    if (largest > 1e-4f * size)
+        throw std::runtime_error("a palette differs from the CPU's by " + std::to_string(largest));
 }
 
 } // namespace osgGpuAnimation::benchmark

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "Stopwatch.h"
+#include "Series.h"
 
 #include <osgGpuAnimation/animation/AnimationController.h>
 #include <osgGpuAnimation/gpu/buffers/BufferTexture.h>
@@ -10,7 +10,6 @@
 #include <osgGpuAnimation/gpu/PosePipeline.h>
 
 #include <memory>
-#include <string>
 #include <vector>
 
 namespace osgGpuAnimation::benchmark
@@ -23,89 +22,61 @@ class PoseCrowd
 public:
     PoseCrowd(std::shared_ptr<const AnimationSet> set, std::size_t clip, std::size_t count,
               osg::GraphicsContext& context);
-    ~PoseCrowd();
 
-    /// Every n-th instance starts a crossfade that never ends; it adds one blend sample.
-    void crossfade(std::size_t clip, std::size_t every = 1);
-    /// True: one batch per blend cost, as in PoseFrame. False: one batch for all.
-    void setDealtOut(bool isDealtOut) { _isDealtOut = isDealtOut; }
+    std::vector<AnimationController> controllers;
+    PosePipeline::Options options;
 
-    /// The number of instances that step() passes to the pipeline at a time.
-    void setChunkSize(std::size_t instances) { _chunkSize = instances; }
+    /// Every n-th instance starts a crossfade to the clip it plays, three times; the fades never end. It then has four
+    /// blend samples.
+    void addSamples(std::size_t every = 1);
 
-    /// Advances all controllers and computes all palettes; returns when the GPU has finished.
-    Spent step(double seconds, PosePipeline::Form form = PosePipeline::Form::Fused);
+    /// Advances all controllers by a frame and computes all palettes; returns when the GPU has finished.
+    Spent step();
+    void refill();    ///< The first half of step(): fills the batches, one per blend cost, as in PoseFrame.
+    Spent evaluate(); ///< The second half, of the batches that are filled.
 
-    /// Writes all joints of all instances anew, as motion capture does, advances the controllers and fills the batches:
-    /// the CPU side of a frame of poses. Every instance shows its pose in place of the clip.
-    Spent streamPoses(double seconds);
-    void fade(); ///< Changes the weights of all base layers a little.
-    /// Advances all controllers without new poses and fills the batches.
-    void refill(double seconds);
-    /// Computes the palettes of the batches that are filled; returns when the GPU has finished.
-    Spent evaluate();
+    /// Requires palettes that agree with the CPU twin's and no GL error.
+    void check() const;
 
-    /// Compares some palettes with the CPU twin's. Empty if they agree.
-    std::string check();
-
-    std::size_t count() const { return _controllers.size(); }
+    std::size_t count() const { return controllers.size(); }
     const AnimationSet& set() const { return *_set; }
 
-    /// Calls function(index, controller) for all characters.
-    template <typename Function>
-    void forEach(Function function)
-    {
-        for (std::size_t i = 0; i < count(); ++i)
-            function(i, _controllers[i]);
-    }
-
 private:
-    std::shared_ptr<const AnimationSet> _set;
-    std::vector<AnimationController> _controllers;
     struct Place
     {
         std::size_t batch, instance;
     };
-    Place add(const PoseInstruction& instruction);
-    void submit(PosePipeline& pipeline);
+    void submit();
+    PosePipeline& pipeline() const;
 
+    std::shared_ptr<const AnimationSet> _set;
+    std::size_t _clip;
     std::vector<PoseBatch> _batches;
-    std::vector<Place> _places;                         ///< of the last step, one per character
-    std::vector<std::vector<JointTransform>> _captured; ///< the frames of streamPoses()
-    std::size_t _capturedFrame = 0;
-    bool _isDealtOut = true;
+    std::vector<Place> _places; ///< of the last step, one per character
     osg::ref_ptr<osg::GraphicsContext> _context;
     std::size_t _firstSlot;
-    std::size_t _chunkSize = PosePipeline::usualChunkSize;
 };
 
-/// A feedback pass that only writes as many bytes as a palette: the lower bound of the cost. It writes points as the
-/// pipeline does, or triangles with up to two matrices more, the cheapest primitive in llvmpipe.
+/// A feedback pass of points that only writes as many bytes as a palette: the lower bound of the cost.
 class FeedbackFloor
 {
 public:
-    enum class Primitive
-    {
-        Points,
-        Triangles,
-    };
-
-    FeedbackFloor(std::size_t matrices, Primitive primitive, osg::GraphicsContext& context);
+    FeedbackFloor(std::size_t matrices, osg::GraphicsContext& context);
     ~FeedbackFloor();
 
     Spent step();
 
 private:
     std::size_t _matrices;
-    Primitive _primitive;
     osg::ref_ptr<osg::GraphicsContext> _context;
+    osg::GLExtensions& _gl;
     FeedbackPass _pass;
     BufferTexture _out;
     GLuint _vertexArray = 0;
 };
 
-/// Compares the palette with the CPU twin's for the instruction. Empty if they agree to 1e-4 of its largest number.
-std::string difference(const AnimationSet& set, const PoseInstruction& instruction,
-                       const std::vector<AffineMatrix>& palette, const AffineMatrix& rootMatrix = {});
+/// Requires a palette that agrees with the CPU twin's for the instruction to 1e-4 of its largest number.
+void requireEqual(const AnimationSet& set, const PoseInstruction& instruction, const std::vector<AffineMatrix>& palette,
+                  const AffineMatrix& rootMatrix = {});
 
 } // namespace osgGpuAnimation::benchmark

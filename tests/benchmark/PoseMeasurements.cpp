@@ -3,9 +3,10 @@
 #include "Measurements.h"
 #include "PoseCrowd.h"
 #include "Scenes.h"
-#include "StagedViewer.h"
 
-#include <iostream>
+#include <osgGpuAnimation/animation/keyframes/PackedKeyframes.h>
+#include <osgGpuAnimation/animation/Pose.h>
+
 #include <map>
 
 namespace osgGpuAnimation::benchmark
@@ -14,217 +15,218 @@ namespace osgGpuAnimation::benchmark
 namespace
 {
 
-constexpr const char* posePlot = "pose-over-n.svg";
-constexpr const char* depthPlot = "pose-over-depth.svg";
-constexpr double frameTime = 1.0 / 60.0;
+/// A crowd of the subject as it is.
+PoseCrowd crowdOf(const Subject& subject, Run& run)
+{
+    return PoseCrowd(subject.model.set, subject.clip, run.barCount, run.context);
+}
+
+double perJoint(const Subject& subject, std::size_t count)
+{
+    return 1e9 / static_cast<double>(count * subject.jointCount());
+}
 
 /// The times for one number of a subject's characters.
 struct PoseSeries
 {
-    Series ours, floor, triangleFloor, bones, hardware;
+    Series ours, bones, floor; ///< bones: empty if there are too many characters for osgAnimation
 };
 
-Result<PoseSeries> poseSeries(const Subject& subject, ReferenceKit& kit, std::size_t count, const Effort& effort,
-                              osg::GraphicsContext& context)
+PoseSeries poseSeries(const Subject& subject, const ReferenceKit& kit, std::size_t count, Run& run)
 {
-    PoseCrowd crowd(subject.model.set, subject.clip, count, context);
-    const std::size_t matrices = subject.set().paletteSize() * count;
-    FeedbackFloor floor(matrices, FeedbackFloor::Primitive::Points, context);
-    FeedbackFloor triangleFloor(matrices, FeedbackFloor::Primitive::Triangles, context);
-    std::vector<std::function<Spent()>> contestants{[&] { return crowd.step(frameTime); }};
-
-    std::unique_ptr<ReferenceScene> bones, hardware;
+    PoseCrowd crowd(subject.model.set, subject.clip, count, run.context);
+    FeedbackFloor floor(subject.set().paletteSize() * count, run.context);
+    const auto step = [&] { return crowd.step(); };
+    const auto stepOfFloor = [&] { return floor.step(); };
+    if (count > Run::maxReferenceCount)
+    {
+        const std::vector<Series> series = interleaved(run.rounds, {step, stepOfFloor});
+        crowd.check();
+        return {series[0], {}, series[1]};
+    }
+    ReferenceScene bones(subject, kit, ReferenceMode::Bones, count);
     double time = 0.0;
-    const auto updating = [&time](ReferenceScene& scene)
+    const auto update = [&]
     {
         const Stopwatch stopwatch;
-        scene.update(time += frameTime);
+        bones.update(time += frameTime);
         return stopwatch.elapsed();
     };
-    // The pose and each floor run after an update of osgAnimation, so that all start with cold caches.
-    const bool hasReference = count <= effort.largestReference;
-    if (hasReference)
+    // The pose and the floor run after an update of osgAnimation, so that both start with cold caches.
+    const std::vector<Series> series = interleaved(run.rounds, {step, update, stepOfFloor, update});
+    crowd.check();
+    for (const double moment : {0.4, 1.7, 3.1})
+        bones.check(subject, moment);
+    return {series[0], series[1], series[2]};
+}
+
+/// Poses that the application writes in every frame, as motion capture does, in place of clips.
+void measureStreaming(const Subject& subject, Run& run)
+{
+    PoseCrowd posed = crowdOf(subject, run), clips = crowdOf(subject, run);
+    std::vector<std::vector<JointTransform>> captured(16);
+    for (std::vector<JointTransform>& frame : captured)
     {
-        bones = std::make_unique<ReferenceScene>(subject, kit, ReferenceMode::Bones, count);
-        hardware = std::make_unique<ReferenceScene>(subject, kit, ReferenceMode::Hardware, count);
-        contestants.push_back([&] { return updating(*bones); });
+        Pose::mix(subject.set(), posed.controllers[0].advance(0.05), frame);
+        frame.resize(subject.jointCount());
     }
-    contestants.push_back([&] { return floor.step(); });
-    if (hasReference) contestants.push_back([&] { return updating(*hardware); });
-    contestants.push_back([&] { return triangleFloor.step(); });
-    if (hasReference) contestants.push_back([&] { return updating(*bones); });
-    std::vector<Series> series = interleaved(effort.rounds, contestants);
-    if (const std::string wrong = crowd.check(); !wrong.empty()) return Error{wrong};
-    if (bones)
-        for (const double moment : {0.4, 1.7, 3.1})
-            if (const std::string wrong = bones->check(subject, moment); !wrong.empty()) return Error{wrong};
-    if (!hasReference) return PoseSeries{series[0], series[1], series[2], {}, {}};
-    return PoseSeries{series[0], series[2], series[4], series[1], series[3]};
-}
-
-void addPosePoints(const Subject& subject, std::size_t count, const PoseSeries& series, Report& report)
-{
-    const double characters = static_cast<double>(count);
-    const double nanoseconds = 1e9 / (characters * static_cast<double>(subject.jointCount()));
-    report.addPoint(posePlot, subject.name, characters, cpuOf(series.ours).median * nanoseconds);
-    report.addPoint(posePlot, subject.name + ", floor", characters, cpuOf(series.floor).median * nanoseconds);
-    report.addPoint(posePlot, subject.name + ", osgAnimation", characters, cpuOf(series.bones).median * nanoseconds);
-}
-
-void addPoseRows(const Subject& subject, std::size_t count, const PoseSeries& series, Report& report)
-{
-    const double characters = static_cast<double>(count);
-    const double perJoint = 1e9 / (characters * static_cast<double>(subject.jointCount()));
-    const double perEntry = 1e9 / (characters * static_cast<double>(subject.set().paletteSize()));
-    const auto add = [&](Row row, const char* what, const char* unit, const char* other)
+    for (AnimationController& controller : posed.controllers)
+        controller.layer(0).showPose();
+    std::size_t frame = 0;
+    const auto stream = [&]
     {
-        row.subject = subject.name;
-        row.count = count;
-        row.what = what;
-        row.unit = unit;
-        row.otherName = other;
-        report.add(std::move(row));
+        const Stopwatch stopwatch;
+        for (AnimationController& controller : posed.controllers)
+            taken(controller.layer(0).pose().setTransforms(captured[++frame % captured.size()]));
+        posed.refill();
+        return stopwatch.elapsed();
     };
-    Row row = compared(series.ours, series.bones, perJoint, true);
-    row.bar = "≥ 7";
-    row.isMet = row.ratio.median >= 7.0;
-    add(row, "pose", "ns a joint", "osgAnimation's update of bones alone");
-    add(compared(series.ours, series.hardware, perJoint, true), "pose", "ns a joint",
-        "osgAnimation's update with the palettes of its hardware mode");
-    row = compared(series.ours, series.floor, perEntry, false);
-    row.bar = "≤ 2.5";
-    row.isMet = row.ratio.median <= 2.5;
-    add(row, "pose", "ns a palette entry", "an empty feedback pass");
-    add(compared(series.ours, series.triangleFloor, perEntry, false), "pose", "ns a palette entry",
-        "an empty feedback pass of triangles");
-}
-
-/// Poses that the application writes in every frame, in place of clips.
-Result<void> measureStreaming(const Subject& subject, const Effort& effort, osg::GraphicsContext& context,
-                              Report& report)
-{
-    std::cerr << subject.name << ": streaming poses" << std::endl;
-    PoseCrowd crowd(subject.model.set, subject.clip, effort.barCount, context);
-    PoseCrowd clips(subject.model.set, subject.clip, effort.barCount, context);
-    const std::vector<Series> series =
-        interleaved(effort.rounds, {[&] { return crowd.streamPoses(frameTime); }, [&] { return crowd.evaluate(); },
-                                    [&]
-                                    {
-                                        crowd.fade(); // other samples, the same poses
-                                        crowd.refill(frameTime);
-                                        return crowd.evaluate();
-                                    },
-                                    [&]
-                                    {
-                                        clips.refill(frameTime);
-                                        return clips.evaluate();
-                                    }});
-    for (PoseCrowd* one : {&crowd, &clips})
-        if (const std::string wrong = one->check(); !wrong.empty()) return Error{wrong};
-    const auto add = [&](Row row, const char* what, const char* unit, const char* other)
+    const auto fade = [&] // other samples, the same poses
     {
-        row.subject = subject.name;
-        row.count = effort.barCount;
-        row.what = what;
-        row.unit = unit;
-        row.otherName = other;
-        report.add(std::move(row));
+        for (AnimationController& controller : posed.controllers)
+            controller.layer(0).setWeight(controller.layer(0).weight() == 1.0f ? 0.99f : 1.0f);
+        posed.refill();
+        return posed.evaluate();
     };
-    const double perCharacter = 1e6 / static_cast<double>(effort.barCount);
-    Row row = compared(series[0], series[1], perCharacter, false);
-    row.bar = "ours ≤ 1.5 for 51 joints";
-    row.isMet = row.ours.median <= 1.5 * static_cast<double>(subject.jointCount()) / 51.0;
-    add(row, "streaming all joints, from setTransforms() to the batch", "µs a character", "upload and pose");
-    add(compared(series[1], series[2], perCharacter, false), "upload and pose, all poses new", "µs a character",
-        "no pose new");
-    add(compared(series[2], series[3], perCharacter, false), "pose of posed joints, without upload", "µs a character",
-        "a clip");
-    return {};
+    const auto play = [&]
+    {
+        clips.refill();
+        return clips.evaluate();
+    };
+    const std::vector<Series> series = interleaved(run.rounds, {stream, [&] { return posed.evaluate(); }, fade, play});
+    posed.check();
+    clips.check();
+    const auto row = [&](const char* what, const Series& ours)
+    { return Row(subject.name, run.barCount, what, "µs a character", ours, 1e6 / static_cast<double>(run.barCount)); };
+    run.report.add(row("streaming all joints, from setTransforms() to the batch", series[0])
+                       .atMost(1.5 * static_cast<double>(subject.jointCount()) / 51.0));
+    run.report.add(row("upload and pose, all poses new", series[1]).against("no pose new", series[2]));
+    run.report.add(row("pose of posed joints, without upload", series[2]).against("a clip", series[3]));
 }
 
-void addGrowth(const Subject& subject, const std::map<std::size_t, Figure>& perCharacter, Report& report)
+void addGrowth(const Subject& subject, const Figure& few, const Figure& many, Report& report)
 {
-    const auto few = perCharacter.find(100);
-    const auto many = perCharacter.find(10000);
-    if (few == perCharacter.end() || many == perCharacter.end()) return;
-    Row row;
-    row.subject = subject.name;
-    row.count = 10000;
-    row.what = "growth of the pose";
-    row.unit = "µs a character";
-    row.ours = many->second;
+    Row row(subject.name, 10000, "growth of the pose", "µs a character", many);
     row.otherName = "the same at N = 100";
-    row.other = few->second;
-    const double ratio = row.ours.median / row.other.median;
-    row.ratio = {ratio, row.ours.low / row.other.high, row.ours.high / row.other.low};
-    row.wallRatio = row.ratio; // both are CPU time: these series have no common rounds with wall times
-    row.bar = "≤ 1.15";
-    row.isMet = ratio <= 1.15;
-    report.add(row);
+    row.other = few;
+    row.ratio = {many.median / few.median, many.low / few.high, many.high / few.low};
+    report.add(row.atMost(1.15));
 }
 
 } // namespace
 
-Result<void> measurePose(const Subject& subject, const Effort& effort, osg::GraphicsContext& context, Report& report)
+void measurePose(const Subject& subject, Run& run)
 {
-    report.describePlot(posePlot, "Pose: CPU time a joint, from advance() to the finished palette", "characters",
-                        "ns a joint");
-    ReferenceKit kit(subject);
+    const ReferenceKit kit(subject);
     std::map<std::size_t, Figure> perCharacter;
-    for (const std::size_t count : effort.poseCounts)
+    for (const std::size_t count : run.poseCounts)
     {
-        std::cerr << subject.name << ": pose of " << count << std::endl;
-        context.makeCurrent();
-        const Result<PoseSeries> series = poseSeries(subject, kit, count, effort, context);
-        if (!series) return series.error();
-        addPosePoints(subject, count, series.value(), report);
-        const double microseconds = 1e6 / static_cast<double>(count);
-        const Figure ours = cpuOf(series.value().ours);
-        perCharacter[count] = {ours.median * microseconds, ours.low * microseconds, ours.high * microseconds};
-        if (count == effort.barCount) addPoseRows(subject, count, series.value(), report);
+        const PoseSeries series = poseSeries(subject, kit, count, run);
+        perCharacter[count] = figureOf(series.ours, 1e6 / static_cast<double>(count));
+        Row floor(subject.name, count, "pose", "ns a joint", series.ours, perJoint(subject, count)), bones = floor;
+        floor.against("an empty feedback pass", series.floor);
+        bones.fasterThan("osgAnimation's update of bones alone", series.bones);
+        if (count == run.barCount)
+        {
+            floor.atMost(2.5);
+            bones.atLeast(7.0);
+        }
+        run.report.add(floor);
+        if (!series.bones.empty()) run.report.add(bones);
     }
-    addGrowth(subject, perCharacter, report);
-    return measureStreaming(subject, effort, context, report);
+    addGrowth(subject, perCharacter.at(100), perCharacter.at(10000), run.report);
+    measureStreaming(subject, run);
 }
 
-Result<void> measureDepth(const Effort& effort, osg::GraphicsContext& context, Report& report)
+void measureSamples(const Subject& subject, Run& run)
+{
+    PoseCrowd one = crowdOf(subject, run), four = crowdOf(subject, run), some = crowdOf(subject, run);
+    four.addSamples();
+    some.addSamples(20); // some characters crossfade, as in a typical crowd
+    const std::vector<Series> series =
+        interleaved(run.rounds, {[&] { return one.step(); }, [&] { return four.step(); }, [&] { return some.step(); }});
+    for (const PoseCrowd* crowd : {&one, &four, &some})
+        crowd->check();
+    const auto row = [&](const char* what, const Series& ours)
+    {
+        return Row(subject.name, run.barCount, what, "ns a joint", ours, perJoint(subject, run.barCount))
+            .against("1 blend sample", series[0]);
+    };
+    run.report.add(row("pose of 4 blend samples", series[1]).atMost(2.5));
+    run.report.add(row("pose where 5 % have 4 blend samples", series[2]));
+}
+
+void measureChunks(const Subject& subject, Run& run)
+{
+    constexpr std::size_t sizes[] = {64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384};
+    for (const std::size_t count : {run.barCount, run.crowdCount})
+    {
+        std::vector<std::unique_ptr<PoseCrowd>> crowds;
+        std::vector<std::function<Spent()>> contestants;
+        for (const std::size_t size : sizes)
+        {
+            crowds.push_back(std::make_unique<PoseCrowd>(subject.model.set, subject.clip, count, run.context));
+            crowds.back()->options.chunkSize = size;
+            contestants.push_back([crowd = crowds.back().get()] { return crowd->step(); });
+        }
+        const std::vector<Series> series = interleaved(run.rounds, contestants);
+        for (std::size_t i = 0; i < crowds.size() && (i == 0 || sizes[i - 1] < count); ++i)
+        {
+            crowds[i]->check();
+            run.report.add(Row(subject.name, count, "pose in chunks of " + std::to_string(sizes[i]), "ns a joint",
+                               series[i], perJoint(subject, count))
+                               .against("of 16384", series.back()));
+        }
+    }
+}
+
+void measureCompact(const Subject& subject, Run& run)
+{
+    const Subject compact = taken(loadSubject(subject.fileName, true, 1e-4));
+    PoseCrowd exactCrowd = crowdOf(subject, run), compactCrowd = crowdOf(compact, run);
+    const std::vector<Series> series =
+        interleaved(4 * run.rounds, {[&] { return compactCrowd.step(); }, [&] { return exactCrowd.step(); }});
+    compactCrowd.check();
+    exactCrowd.check();
+    const auto bytes = [](const Subject& of)
+    { return ", " + std::to_string(PackedKeyframes(of.set()).byteSize()) + " bytes"; };
+    run.report.add(Row(subject.name, run.barCount, "pose of clips within 1e-4 of the size" + bytes(compact),
+                       "ns a joint", series[0], perJoint(subject, run.barCount))
+                       .against("exact clips" + bytes(subject), series[1]));
+}
+
+void measureDepth(Run& run)
 {
     constexpr std::size_t joints = 64;
-    constexpr std::size_t shallow = 8;
-    report.describePlot(depthPlot, "Pose over the depth of the skeleton (64 joints in chains, 1,000 characters)",
-                        "joints from root to leaf", "ns a joint");
     std::vector<std::unique_ptr<PoseCrowd>> crowds;
     std::vector<std::function<Spent()>> contestants;
-    const std::vector<std::size_t> depths{1, 2, 4, shallow, 16, 32, joints};
+    const std::vector<std::size_t> depths{1, 2, 4, 8, 16, 32, joints};
     for (const std::size_t depth : depths)
     {
-        crowds.push_back(std::make_unique<PoseCrowd>(makeChains(joints / depth, depth), 0, effort.barCount, context));
-        PoseCrowd* crowd = crowds.back().get();
-        contestants.push_back([crowd] { return crowd->step(frameTime); });
-        contestants.push_back([crowd] { return crowd->step(frameTime, PosePipeline::Form::Separate); });
+        crowds.push_back(std::make_unique<PoseCrowd>(makeChains(joints / depth, depth), 0, run.barCount, run.context));
+        for (const PosePipeline::Form form : {PosePipeline::Form::Fused, PosePipeline::Form::Separate})
+            contestants.push_back(
+                [crowd = crowds.back().get(), form]
+                {
+                    crowd->options.form = form;
+                    return crowd->step();
+                });
     }
-    std::cerr << "chains: pose over depth" << std::endl;
-    const std::vector<Series> series = interleaved(effort.rounds, contestants);
-    const double nanoseconds = 1e9 / static_cast<double>(joints * effort.barCount);
-    std::size_t shallowAt = 0;
+    const std::vector<Series> series = interleaved(run.rounds, contestants);
+    const double nanoseconds = 1e9 / static_cast<double>(joints * run.barCount);
+    std::map<std::size_t, Series> fused;
+    const auto row = [&](std::size_t depth)
+    {
+        return Row("chains of " + std::to_string(depth), run.barCount, "pose over depth", "ns a joint", fused[depth],
+                   nanoseconds);
+    };
     for (std::size_t i = 0; i < depths.size(); ++i)
     {
-        if (const std::string wrong = crowds[i]->check(); !wrong.empty()) return Error{wrong};
-        if (depths[i] == shallow) shallowAt = 2 * i;
-        const auto depth = static_cast<double>(depths[i]);
-        report.addPoint(depthPlot, "fused, a draw a level", depth, cpuOf(series[2 * i]).median * nanoseconds);
-        report.addPoint(depthPlot, "separate, the walk", depth, cpuOf(series[2 * i + 1]).median * nanoseconds);
+        crowds[i]->check();
+        fused[depths[i]] = series[2 * i];
+        run.report.add(row(depths[i]).against("three passes and a walk to the root", series[2 * i + 1]));
     }
-    Row row = compared(series[2 * (depths.size() - 1)], series[shallowAt], nanoseconds, false);
-    row.subject = "chains of 64";
-    row.count = effort.barCount;
-    row.what = "pose over depth";
-    row.unit = "ns a joint";
-    row.otherName = "chains of 8";
-    row.bar = "≤ 1.3";
-    row.isMet = row.ratio.median <= 1.3;
-    report.add(row);
-    return {};
+    run.report.add(row(joints).against("chains of 8", fused[8]).atMost(1.3));
 }
 
 } // namespace osgGpuAnimation::benchmark

@@ -90,14 +90,11 @@ osg::ref_ptr<osg::Program> makeProgram(const osg::Geometry& mesh, const std::str
 /// The cheapest program that draws the triangles: the position and one colour.
 osg::Program* leastProgram()
 {
-    static const osg::ref_ptr<osg::Program> program = []
-    {
-        osg::ref_ptr<osg::Program> made = new osg::Program;
-        made->addShader(new osg::Shader(osg::Shader::VERTEX, leastVertexShader));
-        made->addShader(new osg::Shader(osg::Shader::FRAGMENT, leastFragmentShader));
-        return made;
-    }();
-    return program.get();
+    static const osg::ref_ptr<osg::Program> program = new osg::Program;
+    if (program->getNumShaders() > 0) return program;
+    program->addShader(new osg::Shader(osg::Shader::VERTEX, leastVertexShader));
+    program->addShader(new osg::Shader(osg::Shader::FRAGMENT, leastFragmentShader));
+    return program;
 }
 
 std::string boneName(std::size_t entry)
@@ -115,26 +112,20 @@ osg::Quat toQuat(const glm::vec4& q)
     return {q.x, q.y, q.z, q.w};
 }
 
-/// The clip at each of its keyframes. If the first one is after time 0, a copy at 0 precedes it, because osgAnimation
-/// plays from the first keyframe on.
-template <typename Container, typename Convert>
-osg::ref_ptr<Container> keyframesOf(const Clip& clip, std::size_t joint, Convert convert)
+/// The values of a joint at each keyframe of the clip. If the first one is after time 0, a copy at 0 precedes it,
+/// because osgAnimation plays from the first keyframe on.
+template <typename Channel, typename Convert>
+osg::ref_ptr<osgAnimation::Channel> makeChannel(const Clip& clip, std::size_t joint, const std::string& bone,
+                                                const char* name, Convert convert)
 {
-    using Key = typename Container::KeyType;
-    osg::ref_ptr<Container> container = new Container;
-    if (clip.times().front() > 0.0f) container->push_back(Key(0.0, convert(*clip.at(0, joint))));
-    for (std::size_t keyframe = 0; keyframe < clip.keyframeCount(); ++keyframe)
-        container->push_back(Key(static_cast<double>(clip.times()[keyframe]), convert(*clip.at(keyframe, joint))));
-    return container;
-}
-
-template <typename Channel, typename Container>
-osg::ref_ptr<osgAnimation::Channel> makeChannel(int entry, const char* name, Container* keyframes)
-{
+    using Key = typename Channel::KeyframeContainerType::KeyType;
     osg::ref_ptr<Channel> channel = new Channel;
     channel->setName(name);
-    channel->setTargetName(boneName(static_cast<std::size_t>(entry)));
-    channel->getOrCreateSampler()->setKeyframeContainer(keyframes);
+    channel->setTargetName(bone);
+    auto& keyframes = *channel->getOrCreateSampler()->getOrCreateKeyframeContainer();
+    if (clip.times().front() > 0.0f) keyframes.push_back(Key(0.0, convert(*clip.at(0, joint))));
+    for (std::size_t keyframe = 0; keyframe < clip.keyframeCount(); ++keyframe)
+        keyframes.push_back(Key(static_cast<double>(clip.times()[keyframe]), convert(*clip.at(keyframe, joint))));
     return channel;
 }
 
@@ -155,20 +146,19 @@ void ReferenceKit::shareChannels(std::size_t joint)
 {
     const AnimationSet& set = _subject.set();
     const Clip& clip = set.clips()[_subject.clip];
-    const int entry = set.mainEntry(static_cast<int>(joint));
-    const auto vectors = [&](glm::vec4 JointTransform::*part, const char* name)
+    const std::string bone = boneName(static_cast<std::size_t>(set.mainEntry(static_cast<int>(joint))));
+    const auto shareVectors = [&](glm::vec4 JointTransform::*part, const char* name)
     {
-        if (!isDriven(set, clip, joint, part)) return;
         const auto convert = [part](const JointTransform& t) { return toVec3(t.*part); };
-        _channels.push_back(
-            {entry, name, keyframesOf<osgAnimation::Vec3KeyframeContainer>(clip, joint, convert), nullptr});
+        if (isDriven(set, clip, joint, part))
+            _channels.push_back(makeChannel<osgAnimation::Vec3LinearChannel>(clip, joint, bone, name, convert));
     };
-    vectors(&JointTransform::translation, "translate");
-    vectors(&JointTransform::scale, "scale");
-    if (!isDriven(set, clip, joint, &JointTransform::rotation)) return;
+    shareVectors(&JointTransform::translation, "translate");
+    shareVectors(&JointTransform::scale, "scale");
     const auto convert = [](const JointTransform& t) { return toQuat(t.rotation); };
-    _channels.push_back(
-        {entry, "rotate", nullptr, keyframesOf<osgAnimation::QuatKeyframeContainer>(clip, joint, convert)});
+    if (isDriven(set, clip, joint, &JointTransform::rotation))
+        _channels.push_back(
+            makeChannel<osgAnimation::QuatSphericalLinearChannel>(clip, joint, bone, "rotate", convert));
 }
 
 void ReferenceKit::shareMesh(const gltf::ImportedPrimitive& primitive)
@@ -231,19 +221,14 @@ osg::ref_ptr<osgAnimation::Animation> ReferenceKit::makeAnimation(double phase) 
 {
     osg::ref_ptr<osgAnimation::Animation> animation = new osgAnimation::Animation;
     animation->setPlayMode(osgAnimation::Animation::LOOP);
-    for (const SharedChannel& channel : _channels)
-        if (channel.rotations)
-            animation->addChannel(makeChannel<osgAnimation::QuatSphericalLinearChannel>(channel.entry, channel.name,
-                                                                                        channel.rotations.get()));
-        else
-            animation->addChannel(
-                makeChannel<osgAnimation::Vec3LinearChannel>(channel.entry, channel.name, channel.vectors.get()));
+    for (const osg::ref_ptr<osgAnimation::Channel>& channel : _channels)
+        animation->addChannel(channel->clone()); // shares the keyframes
     animation->computeDuration();
     animation->setStartTime(-phase);
     return animation;
 }
 
-ReferenceCharacter ReferenceKit::make(ReferenceMode mode, double phase)
+ReferenceCharacter ReferenceKit::make(ReferenceMode mode, double phase) const
 {
     ReferenceCharacter character;
     character.skeleton = new osgAnimation::Skeleton;

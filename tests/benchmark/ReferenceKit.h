@@ -47,16 +47,9 @@ class ReferenceKit
 public:
     explicit ReferenceKit(const Subject& subject);
 
-    ReferenceCharacter make(ReferenceMode mode, double phase);
+    ReferenceCharacter make(ReferenceMode mode, double phase) const;
 
 private:
-    struct SharedChannel
-    {
-        int entry;
-        const char* name;
-        osg::ref_ptr<osgAnimation::Vec3KeyframeContainer> vectors; ///< of translations and scales
-        osg::ref_ptr<osgAnimation::QuatKeyframeContainer> rotations;
-    };
     struct SharedMesh
     {
         osg::ref_ptr<osg::Geometry> source; ///< in bind pose, drawn without skinning
@@ -73,8 +66,8 @@ private:
     osg::ref_ptr<osg::Geometry> makeRig(const SharedMesh& mesh, ReferenceMode mode) const;
 
     const Subject& _subject;
-    std::vector<bool> _isNeeded; ///< by palette entry: true if it needs a bone
-    std::vector<SharedChannel> _channels;
+    std::vector<bool> _isNeeded;                                ///< by palette entry: true if it needs a bone
+    std::vector<osg::ref_ptr<osgAnimation::Channel>> _channels; ///< each character has clones
     std::vector<SharedMesh> _meshes;
 };
 

@@ -30,9 +30,11 @@ std::string text(const Figure& figure)
     return digits(figure.median) + " (" + digits(figure.low) + " – " + digits(figure.high) + ")";
 }
 
-Figure scaled(Figure figure, double scale)
+std::string text(const char* comparison, double limit)
 {
-    return {figure.median * scale, figure.low * scale, figure.high * scale};
+    std::ostringstream bar;
+    bar << comparison << " " << limit;
+    return bar.str();
 }
 
 nlohmann::json json(const Figure& figure)
@@ -48,46 +50,67 @@ nlohmann::json json(const Row& row)
                        {"unit", row.unit},
                        {"ours", json(row.ours)}};
     if (!row.otherName.empty())
-    {
-        out["otherName"] = row.otherName;
-        out["other"] = json(row.other);
-        out["cpuRatio"] = json(row.ratio);
-        out["wallRatio"] = json(row.wallRatio);
-    }
+        out.update({{"otherName", row.otherName}, {"other", json(row.other)}, {"cpuRatio", json(row.ratio)}});
     if (!row.bar.empty()) out["bar"] = {{"text", row.bar}, {"met", row.isMet}};
     return out;
 }
 
 } // namespace
 
-void Report::add(Row row)
+Row::Row(std::string subject, std::size_t count, std::string what, std::string unit, Figure ours)
+    : subject(std::move(subject)), count(count), what(std::move(what)), unit(std::move(unit)), ours(ours)
 {
-    _rows.push_back(std::move(row));
 }
 
-void Report::addPoint(const std::string& plot, const std::string& line, double x, double y)
+Row::Row(std::string subject, std::size_t count, std::string what, std::string unit, Series ours, double scale)
+    : Row(std::move(subject), count, std::move(what), std::move(unit), figureOf(ours, scale))
 {
-    _plots[plot].addPoint(line, x, y);
+    _ours = std::move(ours);
+    _scale = scale;
 }
 
-void Report::describePlot(const std::string& plot, const std::string& title, const std::string& xTitle,
-                          const std::string& yTitle)
+Row& Row::against(const std::string& name, const Series& theirs)
 {
-    _plots[plot].describe(title, xTitle, yTitle);
+    otherName = name;
+    other = figureOf(theirs, _scale);
+    ratio = ratioOf(_ours, theirs);
+    return *this;
+}
+
+Row& Row::fasterThan(const std::string& name, const Series& theirs)
+{
+    against(name, theirs);
+    ratio = ratioOf(theirs, _ours);
+    return *this;
+}
+
+Row& Row::atMost(double limit)
+{
+    bar = text("≤", limit);
+    isMet = barred() <= limit;
+    return *this;
+}
+
+Row& Row::atLeast(double limit)
+{
+    bar = text("≥", limit);
+    isMet = barred() >= limit;
+    return *this;
 }
 
 void Report::printTable(std::ostream& out) const
 {
-    out << "| what | subject | N | ours | against | theirs | ratio, CPU | ratio, wall | bar |\n"
-        << "| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n";
+    out << "| what | subject | N | ours | against | theirs | ratio, CPU | bar |\n"
+        << "| --- | --- | --- | --- | --- | --- | --- | --- |\n";
     for (const Row& row : _rows)
     {
-        const bool isCompared = !row.otherName.empty();
         out << "| " << row.what << " | " << row.subject << " | " << row.count << " | " << text(row.ours) << " "
-            << row.unit << " | " << (isCompared ? row.otherName : "–") << " | " << (isCompared ? text(row.other) : "–")
-            << " | " << (isCompared ? text(row.ratio) : "–") << " | "
-            << (isCompared ? digits(row.wallRatio.median) : "–") << " | "
-            << (row.bar.empty() ? "–" : row.bar + (row.isMet ? ": met" : ": **missed**")) << " |\n";
+            << row.unit << " | ";
+        if (row.otherName.empty())
+            out << "– | – | –";
+        else
+            out << row.otherName << " | " << text(row.other) << " | " << text(row.ratio);
+        out << " | " << (row.bar.empty() ? "–" : row.bar + (row.isMet ? ": met" : ": **missed**")) << " |\n";
     }
 }
 
@@ -100,24 +123,7 @@ bool Report::write(const std::string& folder, const std::map<std::string, std::s
         document["rows"].push_back(json(row));
     std::ofstream file(folder + "/benchmark.json");
     file << document.dump(1) << "\n";
-    bool isWritten = static_cast<bool>(file.flush());
-    for (const auto& [name, plot] : _plots)
-    {
-        std::ofstream picture(folder + "/" + name);
-        plot.write(picture);
-        isWritten = isWritten && picture.flush();
-    }
-    return isWritten;
-}
-
-Row compared(const Series& ours, const Series& other, double scale, bool isSpeedup)
-{
-    Row row;
-    row.ours = scaled(cpuOf(ours), scale);
-    row.other = scaled(cpuOf(other), scale);
-    row.ratio = isSpeedup ? cpuRatio(other, ours) : cpuRatio(ours, other);
-    row.wallRatio = isSpeedup ? wallRatio(other, ours) : wallRatio(ours, other);
-    return row;
+    return static_cast<bool>(file.flush());
 }
 
 } // namespace osgGpuAnimation::benchmark

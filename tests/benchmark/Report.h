@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "Plot.h"
 #include "Series.h"
 
 #include <iosfwd>
@@ -12,30 +11,44 @@
 namespace osgGpuAnimation::benchmark
 {
 
-/// A row of the table: our figure against another contestant's or against a limit.
+/// A row of the table: our figure, alone or against another contestant's, and perhaps a limit:
+///
+///     report.add(Row(subject, 1000, "skinned draw", "µs a character", ours, 1e3).against("unskinned",
+///     other).atMost(1.6));
 struct Row
 {
     std::string subject;
-    std::size_t count = 0; ///< characters
+    std::size_t count; ///< characters
     std::string what;
-    std::string unit;      ///< of ours and other, such as `µs a joint`
-    Figure ours;           ///< CPU time, unless the unit says otherwise
+    std::string unit; ///< of ours and other, such as `µs a joint`
+    Figure ours;
     std::string otherName; ///< empty if there is none
     Figure other;
-    Figure ratio; ///< CPU time; the bar limits it
-    Figure wallRatio;
+    Figure ratio;      ///< of CPU times
     std::string bar;   ///< empty: none
-    bool isMet = true; ///< true if the ratio (or ours) is within the bar
+    bool isMet = true; ///< true if the ratio (ours, if there is none) is within the bar
+
+    Row(std::string subject, std::size_t count, std::string what, std::string unit, Figure ours);
+    /// scale: the factor from CPU seconds to the unit.
+    Row(std::string subject, std::size_t count, std::string what, std::string unit, Series ours, double scale);
+
+    Row& against(const std::string& name, const Series& theirs);    ///< The ratio is ours / theirs.
+    Row& fasterThan(const std::string& name, const Series& theirs); ///< The ratio is theirs / ours.
+    Row& atMost(double limit);
+    Row& atLeast(double limit);
+
+private:
+    double barred() const { return otherName.empty() ? ours.median : ratio.median; }
+
+    Series _ours;
+    double _scale = 1.0;
 };
 
-/// Collects the results and writes them as a table, JSON and plots.
+/// Collects the results and writes them as a table and as JSON.
 class Report
 {
 public:
-    void add(Row row);
-    void addPoint(const std::string& plot, const std::string& line, double x, double y);
-    void describePlot(const std::string& plot, const std::string& title, const std::string& xTitle,
-                      const std::string& yTitle);
+    void add(Row row) { _rows.push_back(std::move(row)); }
 
     void printTable(std::ostream& out) const; ///< Markdown
     /// environment: names and values that are written with the figures. False: a file cannot be written.
@@ -43,11 +56,6 @@ public:
 
 private:
     std::vector<Row> _rows;
-    std::map<std::string, Plot> _plots; ///< by file name
 };
-
-/// A row of two contestants. scale: the factor from CPU seconds to the unit. The ratio is other / ours if isSpeedup,
-/// else ours / other.
-Row compared(const Series& ours, const Series& other, double scale, bool isSpeedup);
 
 } // namespace osgGpuAnimation::benchmark

@@ -11,6 +11,8 @@
 #include <osgUtil/UpdateVisitor>
 
 #include <cmath>
+#include <map>
+#include <random>
 
 namespace osgGpuAnimation::benchmark
 {
@@ -25,6 +27,14 @@ osg::Matrixd placement(const Subject& subject, std::size_t number, std::size_t c
     const double spacing = 1.5 * subject.model.root->getBound().radius();
     return osg::Matrixd::translate(spacing * static_cast<double>(number % columns),
                                    spacing * static_cast<double>(number / columns), 0.0);
+}
+
+/// The distance of neighbours on a field, in the units of the subject's file.
+double spacingOf(const Subject& subject)
+{
+    const std::map<std::string, double> known{{"Fox", 110.0}, {"CesiumMan", 1.1}, {"Knight", 2.2}, {"Wanderer", 1.1}};
+    const auto bar = known.find(subject.name);
+    return bar == known.end() ? 1.3 * subject.model.root->getBound().radius() : bar->second;
 }
 
 double durationOf(const Subject& subject)
@@ -54,41 +64,39 @@ void CharacterScene::pause()
         character->getController().pause();
 }
 
-Result<void> CharacterScene::setPixelError(float pixels)
+void CharacterScene::setPixelError(float pixels)
 {
     for (const osg::ref_ptr<AnimatedCharacter>& character : characters)
-        if (Result<void> set = character->getMeshes().setPixelError(pixels); !set) return set;
-    return {};
+        taken(character->getMeshes().setPixelError(pixels));
 }
 
-std::string CharacterScene::check(osg::State& state) const
+void CharacterScene::check(osg::State& state) const
 {
     PosePipeline* pipeline = PosePipeline::of(state);
-    if (!pipeline) return "there is no pose pipeline";
+    if (!pipeline) throw std::runtime_error("there is no pose pipeline");
     for (const std::size_t i : {std::size_t(0), characters.size() / 2, characters.size() - 1})
     {
         // All characters are visible, so their indices in the frame's batch are those of the nodes.
         const AnimationController& controller = characters[i]->getController();
-        const std::string wrong =
-            difference(controller.set(), controller.instruction(), pipeline->readPalette(state, controller.set(), 0, i),
-                       toAffine(characters[i]->getFileToNode()));
-        if (!wrong.empty()) return "character " + std::to_string(i) + ": " + wrong;
+        requireEqual(controller.set(), controller.instruction(), pipeline->readPalette(state, controller.set(), 0, i),
+                     toAffine(characters[i]->getFileToNode()));
     }
-    return "";
 }
 
-CrowdScene::CrowdScene(const Subject& subject, std::size_t count) : root(new AnimatedCrowd(*subject.model.character))
+osg::ref_ptr<AnimatedCrowd> makeCrowd(const Subject& subject, std::size_t count)
 {
+    osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*subject.model.character);
     for (std::size_t i = 0; i < count; ++i)
     {
-        AnimationController controller(root->getSharedAnimationSet());
+        AnimationController controller(crowd->getSharedAnimationSet());
         static_cast<void>(controller.play(subject.clip));
         controller.seek(phaseOf(i, durationOf(subject)));
-        static_cast<void>(root->add(placement(subject, i, count), controller));
+        taken(crowd->add(placement(subject, i, count), controller));
     }
+    return crowd;
 }
 
-ReferenceScene::ReferenceScene(const Subject& subject, ReferenceKit& kit, ReferenceMode mode, std::size_t count)
+ReferenceScene::ReferenceScene(const Subject& subject, const ReferenceKit& kit, ReferenceMode mode, std::size_t count)
 {
     for (std::size_t i = 0; i < count; ++i)
     {
@@ -113,7 +121,7 @@ void ReferenceScene::update(double time)
     root->accept(visitor);
 }
 
-std::string ReferenceScene::check(const Subject& subject, double time)
+void ReferenceScene::check(const Subject& subject, double time)
 {
     update(time);
     for (const std::size_t i : {std::size_t(0), characters.size() / 2, characters.size() - 1})
@@ -126,10 +134,9 @@ std::string ReferenceScene::check(const Subject& subject, double time)
         Pose::evaluate(subject.set(), controller.instruction(), AffineMatrix(), palette);
         // osgAnimation computes some times in float, and its quaternions round differently.
         if (const double largest = largestDifference(characters[i], palette); !(largest < 1e-3))
-            return "osgAnimation's character " + std::to_string(i) + " differs by " + std::to_string(largest) +
-                   " of its size";
+            throw std::runtime_error("osgAnimation's character " + std::to_string(i) + " differs by " +
+                                     std::to_string(largest) + " of its size");
     }
-    return "";
 }
 
 osg::ref_ptr<osg::Group> makeUnskinnedScene(const Subject& subject, std::size_t count, Shading shading)
@@ -148,6 +155,37 @@ osg::ref_ptr<osg::Group> makeUnskinnedScene(const Subject& subject, std::size_t 
         root->addChild(place);
     }
     return root;
+}
+
+Field::Field(const Subject& subject, std::size_t step, std::size_t first)
+    : _spacing(spacingOf(subject)), _crowd(new AnimatedCrowd(*subject.model.character))
+{
+    std::mt19937 random(1);
+    for (std::size_t place = first; place < places; place += step)
+    {
+        AnimationController controller(_crowd->getSharedAnimationSet());
+        static_cast<void>(controller.play(random() % subject.set().clips().size()));
+        controller.seek(phaseOf(place, controller.duration()));
+        const double x = _spacing * static_cast<double>(place % columns);
+        const double y = _spacing * static_cast<double>(place / columns);
+        _members.push_back({place, taken(_crowd->add(osg::Matrixd::translate(x, y, 0.0), controller))});
+    }
+}
+
+void Field::walk(double way)
+{
+    const osg::Matrixd small = osg::Matrixd::scale(osg::Vec3d(1, 1, 1) / _spacing);
+    for (const auto& [place, instance] : _members)
+    {
+        const double x = static_cast<double>(place % columns), y = static_cast<double>(place / columns);
+        taken(_crowd->setPlacement(instance, small * osg::Matrixd::translate(x, y + way, 0.0)));
+    }
+}
+
+void lookAcross(StagedViewer& viewer, const osg::BoundingSphere& field)
+{
+    const osg::Vec3d centre = field.center();
+    viewer.lookFrom(centre + osg::Vec3d(0.0, -0.74, 0.06) * field.radius(), centre, 30.0);
 }
 
 } // namespace osgGpuAnimation::benchmark

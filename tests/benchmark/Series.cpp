@@ -2,6 +2,7 @@
 #include "Series.h"
 
 #include <algorithm>
+#include <ctime>
 
 namespace osgGpuAnimation::benchmark
 {
@@ -9,23 +10,21 @@ namespace osgGpuAnimation::benchmark
 namespace
 {
 
-Figure ratio(const Series& dividend, const Series& divisor, double Spent::*clock)
+double now(clockid_t clock)
 {
-    std::vector<double> values;
-    for (std::size_t round = 0; round < std::min(dividend.size(), divisor.size()); ++round)
-        if (divisor[round].*clock > 0.0) values.push_back(dividend[round].*clock / (divisor[round].*clock));
-    return figureOf(std::move(values));
-}
-
-Figure figure(const Series& series, double Spent::*clock)
-{
-    std::vector<double> values;
-    for (const Spent& spent : series)
-        values.push_back(spent.*clock);
-    return figureOf(std::move(values));
+    timespec time{};
+    clock_gettime(clock, &time);
+    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
 } // namespace
+
+Stopwatch::Stopwatch() : _start{now(CLOCK_PROCESS_CPUTIME_ID), now(CLOCK_MONOTONIC)} {}
+
+Spent Stopwatch::elapsed() const
+{
+    return {now(CLOCK_PROCESS_CPUTIME_ID) - _start.cpu, now(CLOCK_MONOTONIC) - _start.wall};
+}
 
 Figure figureOf(std::vector<double> values)
 {
@@ -36,24 +35,25 @@ Figure figureOf(std::vector<double> values)
     return {median, values[last / 4], values[last - last / 4]};
 }
 
-Figure cpuOf(const Series& series)
+Figure figureOf(double value)
 {
-    return figure(series, &Spent::cpu);
+    return {value, value, value};
 }
 
-Figure wallOf(const Series& series)
+Figure figureOf(const Series& series, double scale, double Spent::*clock)
 {
-    return figure(series, &Spent::wall);
+    std::vector<double> values;
+    for (const Spent& spent : series)
+        values.push_back(scale * (spent.*clock));
+    return figureOf(std::move(values));
 }
 
-Figure cpuRatio(const Series& dividend, const Series& divisor)
+Figure ratioOf(const Series& dividend, const Series& divisor)
 {
-    return ratio(dividend, divisor, &Spent::cpu);
-}
-
-Figure wallRatio(const Series& dividend, const Series& divisor)
-{
-    return ratio(dividend, divisor, &Spent::wall);
+    std::vector<double> values;
+    for (std::size_t round = 0; round < std::min(dividend.size(), divisor.size()); ++round)
+        if (divisor[round].cpu > 0.0) values.push_back(dividend[round].cpu / divisor[round].cpu);
+    return figureOf(std::move(values));
 }
 
 std::vector<Series> interleaved(int rounds, const std::vector<std::function<Spent()>>& contestants)

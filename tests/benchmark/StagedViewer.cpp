@@ -6,32 +6,48 @@
 #include <osgUtil/GLObjectsVisitor>
 #include <osgViewer/Renderer>
 
+#include <malloc.h>
+
 #include <sstream>
-#include <vector>
 
 namespace osgGpuAnimation::benchmark
 {
 
-Result<std::shared_ptr<StagedViewer>> StagedViewer::create(osg::Node* scene, const osg::BoundingSphere& sight,
-                                                           int width, int height)
+void require(const std::string& wrong)
+{
+    if (!wrong.empty()) throw std::runtime_error(wrong);
+}
+
+void requireNoGlErrors()
+{
+    std::ostringstream errors;
+    for (int kept = 0; kept < 32; ++kept)
+    {
+        const GLenum error = glGetError();
+        if (error == GL_NO_ERROR) break;
+        errors << (kept == 0 ? "GL reports" : "") << " 0x" << std::hex << error;
+    }
+    require(errors.str());
+}
+
+StagedViewer::StagedViewer(osg::Node* scene, const osg::BoundingSphere& sight, int width, int height) : _sight(sight)
 {
     if (height == 0) height = width;
-    Result<osg::ref_ptr<EglGraphicsContext>> context = EglGraphicsContext::create(width, height);
-    if (!context) return context.error();
-    std::shared_ptr<StagedViewer> made(new StagedViewer(context.value()));
-    osgViewer::Viewer& viewer = made->_viewer;
-    viewer.setThreadingModel(osgViewer::ViewerBase::SingleThreaded);
-    viewer.setReleaseContextAtEndOfFrameHint(false);
-    osg::Camera* camera = viewer.getCamera();
-    camera->setGraphicsContext(context.value());
+    _context = taken(EglGraphicsContext::create(width, height));
+    _viewer.setThreadingModel(osgViewer::ViewerBase::SingleThreaded);
+    _viewer.setReleaseContextAtEndOfFrameHint(false);
+    osg::Camera* camera = _viewer.getCamera();
+    camera->setGraphicsContext(_context);
     camera->setViewport(0, 0, width, height);
     camera->setClearColor(osg::Vec4(0, 0, 0, 0));
     camera->setCullingMode(osg::CullSettings::VIEW_FRUSTUM_CULLING);
-    viewer.setSceneData(scene);
-    made->lookAt(sight);
-    viewer.realize();
-    if (!viewer.isRealized()) return Error{"the viewer cannot be realized"};
-    return made;
+    _viewer.setSceneData(scene);
+    osg::Vec3d back(0.3, -1.0, 0.8);
+    back.normalize();
+    camera->setViewMatrixAsLookAt(sight.center() + back * sight.radius() * 4.0, sight.center(), osg::Vec3d(0, 0, 1));
+    camera->setProjectionMatrixAsPerspective(35.0, 1.0, sight.radius(), sight.radius() * 10.0);
+    _viewer.realize();
+    if (!_viewer.isRealized()) throw std::runtime_error("the viewer cannot be realized");
 }
 
 StagedViewer::~StagedViewer()
@@ -39,16 +55,6 @@ StagedViewer::~StagedViewer()
     // The scene must release its GL objects first: OSG destroys its vertex array states at exit, after what they use.
     _context->close();
     _viewer.setSceneData(nullptr);
-}
-
-void StagedViewer::lookAt(const osg::BoundingSphere& sight)
-{
-    _sight = sight;
-    osg::Vec3d back(0.3, -1.0, 0.8);
-    back.normalize();
-    osg::Camera* camera = _viewer.getCamera();
-    camera->setViewMatrixAsLookAt(sight.center() + back * sight.radius() * 4.0, sight.center(), osg::Vec3d(0, 0, 1));
-    camera->setProjectionMatrixAsPerspective(35.0, 1.0, sight.radius(), sight.radius() * 10.0);
 }
 
 void StagedViewer::lookFrom(const osg::Vec3d& eye, const osg::Vec3d& centre, double fieldOfView)
@@ -62,9 +68,8 @@ void StagedViewer::lookFrom(const osg::Vec3d& eye, const osg::Vec3d& centre, dou
 
 void StagedViewer::compile(osg::Node& scene)
 {
-    _context->makeCurrent();
     osgUtil::GLObjectsVisitor visitor;
-    visitor.setState(_context->getState());
+    visitor.setState(&currentState());
     visitor.compile(scene);
     glFinish();
 }
@@ -77,7 +82,7 @@ void StagedViewer::lookAside()
     camera->setViewMatrix(camera->getViewMatrix() * osg::Matrixd::translate(1000.0 * _sight.radius(), 0.0, 0.0));
 }
 
-FrameCost StagedViewer::frame(double time)
+FrameCost StagedViewer::frameAt(double time)
 {
     FrameCost cost;
     _context->makeCurrent();
@@ -107,10 +112,10 @@ FrameCost StagedViewer::frame(double time)
     return cost;
 }
 
-std::string StagedViewer::takeErrors()
+void StagedViewer::requireNoErrors()
 {
     _context->makeCurrent();
-    return takeGlErrors();
+    requireNoGlErrors();
 }
 
 std::vector<unsigned char> StagedViewer::pixels()
@@ -131,16 +136,46 @@ int StagedViewer::pixelsDrawn()
     return drawn;
 }
 
-std::string takeGlErrors()
+osg::State& StagedViewer::currentState()
 {
-    std::ostringstream errors;
-    for (int kept = 0; kept < 32; ++kept)
+    _context->makeCurrent();
+    return *_context->getState();
+}
+
+Viewers viewersOf(const std::vector<osg::ref_ptr<osg::Node>>& scenes, const osg::BoundingSphere& sight)
+{
+    Viewers viewers;
+    for (const osg::ref_ptr<osg::Node>& scene : scenes)
+        viewers.push_back(std::make_unique<StagedViewer>(scene, sight));
+    return viewers;
+}
+
+std::vector<Costs> race(const Viewers& viewers, int rounds)
+{
+    std::vector<Costs> costs(viewers.size());
+    for (const auto& viewer : viewers)
+        for (int frame = 0; frame < 3; ++frame)
+            viewer->frame();
+    for (int round = 0; round < rounds; ++round)
+        for (std::size_t i = 0; i < viewers.size(); ++i)
+        {
+            const FrameCost cost = viewers[i]->frame();
+            costs[i].whole.push_back(cost.whole());
+            costs[i].updateAndCull.push_back(cost.updateAndCull());
+            costs[i].draw.push_back(cost.draw);
+        }
+    for (std::size_t i = 0; i < viewers.size(); ++i)
     {
-        const GLenum error = glGetError();
-        if (error == GL_NO_ERROR) break;
-        errors << "0x" << std::hex << error << " ";
+        viewers[i]->requireNoErrors();
+        if (viewers[i]->pixelsDrawn() < 4) throw std::runtime_error("scene " + std::to_string(i) + " is empty");
     }
-    return errors.str();
+    return costs;
+}
+
+double bytesInUse()
+{
+    const struct mallinfo2 info = mallinfo2();
+    return static_cast<double>(info.uordblks + info.hblkhd);
 }
 
 } // namespace osgGpuAnimation::benchmark

@@ -2,6 +2,7 @@
 #include "Subject.h"
 
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 
@@ -23,15 +24,7 @@ std::size_t drivenJoints(const AnimationSet& set, const Clip& clip)
 
 } // namespace
 
-std::size_t Subject::vertexCount() const
-{
-    std::size_t count = 0;
-    for (const gltf::ImportedPrimitive& primitive : model.primitives)
-        count += primitive.vertexCount;
-    return count;
-}
-
-Result<Subject> loadSubject(const std::string& name, const std::string& fileName, bool fixedLighting, double compact)
+Result<Subject> loadSubject(const std::string& fileName, bool fixedLighting, double compact)
 {
     std::ifstream stream(fileName, std::ios::binary);
     const std::string bytes(std::istreambuf_iterator<char>(stream), {});
@@ -41,7 +34,7 @@ Result<Subject> loadSubject(const std::string& name, const std::string& fileName
     if (compact > 0.0) options.compact = compact;
     Result<gltf::ImportedModel> model = gltf::importModel(bytes, fileName, options);
     if (!model) return model.error();
-    Subject subject{name, fileName, std::move(model.value()), 0};
+    Subject subject{std::filesystem::path(fileName).stem().string(), fileName, std::move(model).value(), 0};
     if (!subject.model.set || subject.set().clips().empty()) return Error{"nothing moves"};
     std::size_t most = 0;
     for (std::size_t clip = 0; clip < subject.set().clips().size(); ++clip)

@@ -11,20 +11,18 @@ namespace osgGpuAnimation::benchmark
 /// A character to measure: an imported file and the clip to play.
 struct Subject
 {
-    std::string name;
+    std::string name; ///< of the file, without its extension
     std::string fileName;
     gltf::ImportedModel model;
     std::size_t clip = 0; ///< the clip that moves the most joints; the first one of several
 
     const AnimationSet& set() const { return *model.set; }
     std::size_t jointCount() const { return set().skeleton().jointCount(); }
-    std::size_t vertexCount() const; ///< of all its meshes
 };
 
 /// fixedLighting: with the fixed pipeline's look, as osgAnimation draws. compact: see gltf::ImportOptions; 0: exact.
 /// Errors: those of the import; no clip of the file moves anything.
-Result<Subject> loadSubject(const std::string& name, const std::string& fileName, bool fixedLighting,
-                            double compact = 0.0);
+Result<Subject> loadSubject(const std::string& fileName, bool fixedLighting, double compact = 0.0);
 
 /// True if a property of the joint changes in the clip or differs from the rest pose.
 /// part: JointTransform::translation, rotation or scale.

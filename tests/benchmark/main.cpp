@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "Measurements.h"
-#include "StagedViewer.h"
-#include "WarningWatch.h"
 
 #include <osgGpuAnimation/gpu/EglGraphicsContext.h>
 
+#include <osg/Notify>
+
 #include <malloc.h>
 
-#include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <map>
 #include <set>
 #include <thread>
 
@@ -21,7 +21,7 @@ namespace
 
 constexpr const char* usage = R"(osggpuanim_benchmark [options] OUTPUT_FOLDER FILE...
     measures this kit against osgAnimation with the characters of glTF files, prints a table and writes benchmark.json
-    and plots into the folder
+    into the folder
     --quick           fewer characters and rounds
     --only PART       pose, samples, constraints, chunks, compact, depth, frames, crowd, field, mixed, pictures, draws,
                       shading, start, memory or load; several times, too
@@ -44,12 +44,11 @@ bool parse(int count, char** words, Request& request)
     for (int i = 1; i < count; ++i)
     {
         const std::string word = words[i];
-        const bool hasValue = i + 1 < count;
         if (word == "--quick")
             request.isQuick = true;
         else if (word == "--return-memory")
             request.returnsMemory = true;
-        else if (word == "--only" && hasValue)
+        else if (word == "--only" && i + 1 < count)
             request.parts.insert(words[++i]);
         else if (word.rfind("--", 0) == 0)
             return false;
@@ -61,24 +60,30 @@ bool parse(int count, char** words, Request& request)
     return !request.files.empty();
 }
 
-std::vector<Subject> loadSubjects(const Request& request)
+/// Records OSG's messages and passes them on to standard error. Figures are invalid if a program did not link (OSG
+/// prints a notice) or a GL error occurred (OSG prints it and clears glGetError).
+struct WarningWatch : osg::NotifyHandler
+{
+    void notify(osg::NotifySeverity severity, const char* message) override
+    {
+        std::cerr << message << std::flush;
+        if (severity <= osg::NOTICE) warnings += message;
+    }
+    std::string warnings;
+};
+
+std::vector<Subject> loadSubjects(const std::vector<std::string>& files)
 {
     std::vector<Subject> subjects;
-    for (const std::string& file : request.files)
+    for (const std::string& file : files)
     {
-        const std::string name = std::filesystem::path(file).stem().string();
-        Result<Subject> subject = loadSubject(name, file, true);
-        if (!subject)
-        {
+        Result<Subject> subject = loadSubject(file, true);
+        if (subject)
+            subjects.push_back(std::move(subject).value());
+        else
             std::cerr << file << ": " << subject.error().message << ", left out" << std::endl;
-            continue;
-        }
-        std::cerr << name << ": " << subject.value().jointCount() << " joints, " << subject.value().set().paletteSize()
-                  << " palette entries, " << subject.value().set().levelCount() << " levels, "
-                  << subject.value().vertexCount() << " vertices, clip "
-                  << subject.value().set().clips()[subject.value().clip].name() << std::endl;
-        subjects.push_back(std::move(subject.value()));
     }
+    if (subjects.empty()) throw std::runtime_error("no file holds an animated character");
     return subjects;
 }
 
@@ -97,50 +102,35 @@ std::map<std::string, std::string> describeMachine()
     return machine;
 }
 
-Result<void> measureSubject(const Request& request, const Effort& effort, const Subject& subject,
-                            osg::GraphicsContext& context, Report& report)
-{
-    const std::pair<const char*, Result<void> (*)(const Subject&, const Effort&, Report&)> inViewers[] = {
-        {"frames", measureFrames}, {"crowd", measureCrowd},       {"field", measureField},
-        {"draws", measureDraws},   {"pictures", measurePictures}, {"shading", measureShading},
-        {"start", measureStart},   {"memory", measureMemory},     {"load", measureLoad}};
-    if (request.has("samples"))
-        if (Result<void> done = measureSamples(subject, effort, context, report); !done) return done;
-    if (request.has("constraints"))
-        if (Result<void> done = measureConstraints(subject, effort, context, report); !done) return done;
-    if (request.has("chunks"))
-        if (Result<void> done = measureChunks(subject, effort, context, report); !done) return done;
-    if (request.has("compact"))
-        if (Result<void> done = measureCompact(subject, effort, context, report); !done) return done;
-    if (request.has("pose"))
-        if (Result<void> done = measurePose(subject, effort, context, report); !done) return done;
-    context.releaseContext();
-    for (const auto& [part, measure] : inViewers)
-        if (request.has(part))
-            if (Result<void> done = measure(subject, effort, report); !done) return done;
-    context.makeCurrent();
-    return {};
-}
+constexpr std::pair<const char*, void (*)(const Subject&, Run&)> parts[] = {
+    {"samples", measureSamples}, {"constraints", measureConstraints},
+    {"chunks", measureChunks},   {"compact", measureCompact},
+    {"pose", measurePose},       {"frames", measureFrames},
+    {"crowd", measureCrowd},     {"field", measureField},
+    {"draws", measureDraws},     {"pictures", measurePictures},
+    {"shading", measureShading}, {"start", measureStart},
+    {"memory", measureMemory},   {"load", measureLoad}};
 
-Result<void> measureAll(const Request& request, osg::GraphicsContext& context, Report& report)
+void measureAll(const Request& request, Run& run)
 {
+    const auto measure = [&](const char* part, const std::string& subject, const auto& function)
+    {
+        if (!request.has(part)) return;
+        std::cerr << subject << ": " << part << std::endl;
+        run.context.makeCurrent();
+        function();
+    };
     const osg::ref_ptr<WarningWatch> watch = new WarningWatch;
     osg::setNotifyHandler(watch);
-    const Effort effort = request.isQuick ? Effort::quick() : Effort();
-    if (request.has("depth"))
-        if (Result<void> done = measureDepth(effort, context, report); !done) return done;
-    const std::vector<Subject> subjects = loadSubjects(request);
-    if (subjects.empty()) return Error{"no file holds an animated character"};
+    measure("depth", "chains", [&] { measureDepth(run); });
+    const std::vector<Subject> subjects = loadSubjects(request.files);
     for (const Subject& subject : subjects)
-        if (Result<void> done = measureSubject(request, effort, subject, context, report); !done)
-            return Error{subject.name + ": " + done.error().message};
-    context.releaseContext();
-    if (request.has("mixed"))
-        if (Result<void> done = measureMixed(subjects, effort, report); !done) return done;
-    context.makeCurrent();
-    if (const std::string errors = takeGlErrors(); !errors.empty()) return Error{"GL reports " + errors};
-    if (!watch->warnings().empty()) return Error{"OSG says: " + watch->warnings()};
-    return {};
+        for (const auto& [part, function] : parts)
+            measure(part, subject.name, [&, function = function] { function(subject, run); });
+    measure("mixed", "all", [&] { measureMixed(subjects, run); });
+    run.context.makeCurrent();
+    requireNoGlErrors();
+    if (!watch->warnings.empty()) throw std::runtime_error("OSG says: " + watch->warnings);
 }
 
 /// Keeps freed memory in the process. By default glibc may return the memory of llvmpipe's draws to the kernel and
@@ -156,19 +146,13 @@ void keepFreedMemory()
 int run(const Request& request)
 {
     if (!request.returnsMemory) keepFreedMemory();
-    const Result<osg::ref_ptr<EglGraphicsContext>> context = EglGraphicsContext::create(64, 64);
-    if (!context || !context.value()->realize() || !context.value()->makeCurrent())
-    {
-        std::cerr << "no GL: " << (context ? "the context does not realize" : context.error().message) << std::endl;
-        return 1;
-    }
+    const osg::ref_ptr<EglGraphicsContext> context = taken(EglGraphicsContext::create(64, 64));
+    if (!context->realize() || !context->makeCurrent()) throw std::runtime_error("the GL context does not realize");
     const std::map<std::string, std::string> machine = describeMachine();
     Report report;
-    if (const Result<void> done = measureAll(request, *context.value(), report); !done)
-    {
-        std::cerr << "no report, since a result is wrong: " << done.error().message << std::endl;
-        return 1;
-    }
+    Run run{*context, report};
+    if (request.isQuick) run.beQuick();
+    measureAll(request, run);
     for (const auto& [name, value] : machine)
         std::cout << name << ": " << value << "\n";
     std::cout << "\n";
@@ -186,7 +170,18 @@ int main(int count, char** words)
 {
     using namespace osgGpuAnimation::benchmark;
     Request request;
-    if (parse(count, words, request)) return run(request);
-    std::cerr << usage;
-    return 2;
+    if (!parse(count, words, request))
+    {
+        std::cerr << usage;
+        return 2;
+    }
+    try
+    {
+        return run(request);
+    }
+    catch (const std::exception& error)
+    {
+        std::cerr << "no report: " << error.what() << std::endl;
+        return 1;
+    }
 }

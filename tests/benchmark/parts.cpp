@@ -3,8 +3,6 @@
 #include "ChainSet.h"
 
 #include <osgGpuAnimation/animation/AnimationController.h>
-#include <osgGpuAnimation/animation/Pose.h>
-#include <osgGpuAnimation/gpu/PoseBatch.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 
@@ -17,52 +15,20 @@
 namespace
 {
 
-using osgGpuAnimation::AffineMatrix;
 using osgGpuAnimation::AnimationController;
 using osgGpuAnimation::AnimationSet;
-using osgGpuAnimation::PoseBatch;
 using osgGpuAnimation::benchmark::makeChains;
-namespace Pose = osgGpuAnimation::Pose;
-
-AnimationController playing(const std::shared_ptr<const AnimationSet>& set)
-{
-    AnimationController controller(set);
-    static_cast<void>(controller.play(0));
-    return controller;
-}
-
-void advance(benchmark::State& state)
-{
-    AnimationController controller = playing(makeChains(8, 8));
-    for (auto _ : state)
-        benchmark::DoNotOptimize(controller.advance(1.0 / 60.0));
-}
-BENCHMARK(advance);
 
 void advanceOfTwoLayers(benchmark::State& state)
 {
-    AnimationController controller = playing(makeChains(8, 8));
+    AnimationController controller(makeChains(8, 8));
+    static_cast<void>(controller.play(0));
     static_cast<void>(controller.layer(1).play(0));
     controller.layer(1).setWeight(0.5);
     for (auto _ : state)
         benchmark::DoNotOptimize(controller.advance(1.0 / 60.0));
 }
 BENCHMARK(advanceOfTwoLayers);
-
-void fillBatch(benchmark::State& state)
-{
-    const auto set = makeChains(8, 8);
-    const AnimationController controller = playing(set);
-    PoseBatch batch(set);
-    for (auto _ : state)
-    {
-        batch.clear();
-        for (int instance = 0; instance < 1000; ++instance)
-            batch.add(controller.instruction());
-    }
-    state.SetItemsProcessed(state.iterations() * 1000);
-}
-BENCHMARK(fillBatch);
 
 /// The update of a crowd whose clips rest. The range: how many of 10,000 look at a node that moves.
 void follow(benchmark::State& state)
@@ -86,20 +52,6 @@ void follow(benchmark::State& state)
     state.SetItemsProcessed(state.iterations() * 10000);
 }
 BENCHMARK(follow)->Arg(0)->Arg(10000);
-
-void poseOnTheCpu(benchmark::State& state)
-{
-    const auto set = makeChains(8, 8);
-    AnimationController controller = playing(set);
-    std::vector<AffineMatrix> palette;
-    for (auto _ : state)
-    {
-        Pose::evaluate(*set, controller.advance(1.0 / 60.0), AffineMatrix(), palette);
-        benchmark::DoNotOptimize(palette.data());
-    }
-    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(set->paletteSize()));
-}
-BENCHMARK(poseOnTheCpu);
 
 } // namespace
 

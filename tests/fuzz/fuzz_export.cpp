@@ -38,7 +38,7 @@ using namespace osgGpuAnimation::gltf;
 namespace
 {
 
-constexpr std::size_t mostNodes = 40;
+constexpr std::size_t maxNodes = 40;
 
 /// Makes a scene from bytes.
 class SceneMaker
@@ -66,28 +66,20 @@ private:
         return chance(3) ? _bytes.ConsumeRandomLengthString(6) : std::string(1, char('a' + below(3)));
     }
 
-    osg::Group& anyGroup() { return *_groups[static_cast<std::size_t>(below(int(_groups.size())))]; }
+    template <typename List>
+    auto& any(List& list)
+    {
+        return list[static_cast<std::size_t>(below(static_cast<int>(std::size(list))))];
+    }
+    osg::Group& anyGroup() { return *any(_groups); }
 
     double number()
     {
-        static const double odd[] = {0.0,
-                                     1.0,
-                                     -1.0,
-                                     0.5,
-                                     2.0,
-                                     180.0,
-                                     1e-30,
-                                     -1e-300,
-                                     1e20,
-                                     3e38,
-                                     -3.4028234663852886e38,
-                                     1e39,
-                                     1e300,
-                                     std::numeric_limits<double>::infinity(),
-                                     -std::numeric_limits<double>::infinity(),
-                                     std::numeric_limits<double>::quiet_NaN()};
-        if (chance(4)) return odd[below(16)];
-        return below(2001) / 1000.0 - 1.0;
+        constexpr double infinity = std::numeric_limits<double>::infinity();
+        static const double odd[] = {
+            0.0,  1.0,   -1.0,     0.5,       2.0,         180.0, 1e-30, -1e-300, 1e20, 3e38, -3.4028234663852886e38,
+            1e39, 1e300, infinity, -infinity, std::nan("")};
+        return chance(4) ? any(odd) : below(2001) / 1000.0 - 1.0;
     }
     float real() { return static_cast<float>(number()); }
     osg::Vec3 vec3() { return {real(), real(), real()}; }
@@ -131,32 +123,15 @@ private:
     {
         osg::ref_ptr<osg::Array> made;
         if (chance(8)) count = below(10);
-        switch (isUsual && !chance(8) ? 0 : below(8))
-        {
-        case 0:
-            made = filled<osg::Vec3Array>(count);
-            break;
-        case 1:
-            made = filled<osg::Vec2Array>(count);
-            break;
-        case 2:
-            made = filled<osg::Vec4Array>(count);
-            break;
-        case 3:
-            made = filled<osg::Vec3dArray>(count);
-            break;
-        case 4:
-            made = filled<osg::Vec4ubArray>(count);
-            break;
-        case 5:
-            made = new osg::FloatArray(static_cast<unsigned int>(count));
-            break;
-        case 6:
-            made = filled<osg::Vec4dArray>(count);
-            break;
-        default:
-            return nullptr;
-        }
+        const int kind = isUsual && !chance(8) ? 0 : below(8);
+        if (kind == 0) made = filled<osg::Vec3Array>(count);
+        if (kind == 1) made = filled<osg::Vec2Array>(count);
+        if (kind == 2) made = filled<osg::Vec4Array>(count);
+        if (kind == 3) made = filled<osg::Vec3dArray>(count);
+        if (kind == 4) made = filled<osg::Vec4ubArray>(count);
+        if (kind == 5) made = new osg::FloatArray(static_cast<unsigned int>(count));
+        if (kind == 6) made = filled<osg::Vec4dArray>(count);
+        if (!made) return nullptr;
         made->setBinding(chance(6) ? static_cast<osg::Array::Binding>(below(5)) : osg::Array::BIND_PER_VERTEX);
         return made;
     }
@@ -179,51 +154,34 @@ private:
     osg::PrimitiveSet* primitives(int vertices)
     {
         const auto mode = static_cast<GLenum>(chance(8) ? below(16) : chance(2) ? GL_TRIANGLES : below(10));
-        switch (below(7))
-        {
-        case 0:
-        case 1:
-            return new osg::DrawArrays(mode, chance(4) ? anyCount(vertices) : 0, anyCount(vertices));
-        case 2:
-        {
-            auto* const made = new osg::DrawArrayLengths(mode, chance(4) ? anyCount(vertices) : 0);
-            for (int i = below(4); i > 0; --i)
-                made->push_back(anyCount(vertices));
-            return made;
-        }
-        case 3:
-            return elements<osg::DrawElementsUByte>(mode, vertices);
-        case 4:
-            return elements<osg::DrawElementsUShort>(mode, vertices);
-        case 5:
-            return elements<osg::DrawElementsUInt>(mode, vertices);
-        default:
-            return nullptr;
-        }
+        const int kind = below(7), first = chance(4) ? anyCount(vertices) : 0;
+        if (kind < 2) return new osg::DrawArrays(mode, first, anyCount(vertices));
+        if (kind == 2) return elements<osg::DrawElementsUByte>(mode, vertices);
+        if (kind == 3) return elements<osg::DrawElementsUShort>(mode, vertices);
+        if (kind == 4) return elements<osg::DrawElementsUInt>(mode, vertices);
+        if (kind == 5) return nullptr;
+        auto* const made = new osg::DrawArrayLengths(mode, first);
+        for (int i = below(4); i > 0; --i)
+            made->push_back(anyCount(vertices));
+        return made;
     }
 
     osg::ref_ptr<osg::Texture2D> texture()
     {
-        if (!_textures.empty() && chance(2)) return _textures[static_cast<std::size_t>(below(int(_textures.size())))];
+        if (!_textures.empty() && chance(2)) return any(_textures);
         const osg::ref_ptr<osg::Image> image = new osg::Image;
         static const GLenum formats[] = {GL_RGB, GL_RGBA, GL_LUMINANCE, GL_BGRA, GL_ALPHA, GL_RED};
         static const GLenum types[] = {GL_UNSIGNED_BYTE, GL_UNSIGNED_SHORT, GL_FLOAT};
-        if (!chance(8)) image->allocateImage(1 + below(4), 1 + below(4), 1, formats[below(6)], types[below(3)]);
+        if (!chance(8)) image->allocateImage(1 + below(4), 1 + below(4), 1, any(formats), any(types));
         if (image->data())
             std::fill_n(image->data(), image->getTotalSizeInBytes(), static_cast<unsigned char>(below(256)));
         image->setName(name());
         const osg::ref_ptr<osg::Texture2D> made = new osg::Texture2D(chance(16) ? nullptr : image.get());
         static const osg::Texture::WrapMode wraps[] = {osg::Texture::CLAMP, osg::Texture::REPEAT, osg::Texture::MIRROR,
                                                        osg::Texture::CLAMP_TO_BORDER};
-        made->setWrap(osg::Texture::WRAP_S, wraps[below(4)]);
+        made->setWrap(osg::Texture::WRAP_S, any(wraps));
         _textures.push_back(made);
         return made;
-    }
-
-    PbrMaterial::Map map()
-    {
-        if (chance(3)) return {texture(), below(3)};
-        return {};
     }
 
     void setState(osg::Node& node)
@@ -235,31 +193,22 @@ private:
         {
             PbrMaterial material;
             material.baseColor = vec4();
-            material.emissive = vec3();
-            material.metallic = real();
-            material.roughness = real();
-            material.normalScale = real();
-            material.occlusionStrength = real();
-            material.emissiveStrength = real();
-            material.specular = real();
-            material.specularColor = vec3();
-            material.clearcoat = real();
-            material.clearcoatRoughness = real();
-            material.clearcoatNormalScale = real();
-            material.sheenColor = vec3();
-            material.sheenRoughness = real();
-            material.transmission = real();
+            for (osg::Vec3 PbrMaterial::*color :
+                 {&PbrMaterial::emissive, &PbrMaterial::specularColor, &PbrMaterial::sheenColor})
+                material.*color = vec3();
+            for (float PbrMaterial::*factor :
+                 {&PbrMaterial::metallic, &PbrMaterial::roughness, &PbrMaterial::normalScale,
+                  &PbrMaterial::occlusionStrength, &PbrMaterial::emissiveStrength, &PbrMaterial::specular,
+                  &PbrMaterial::clearcoat, &PbrMaterial::clearcoatRoughness, &PbrMaterial::clearcoatNormalScale,
+                  &PbrMaterial::sheenRoughness, &PbrMaterial::transmission})
+                material.*factor = real();
+            for (PbrMaterial::Map PbrMaterial::*map :
+                 {&PbrMaterial::baseColorMap, &PbrMaterial::normalMap, &PbrMaterial::occlusionMap,
+                  &PbrMaterial::emissiveMap, &PbrMaterial::metallicRoughnessMap, &PbrMaterial::clearcoatNormalMap,
+                  &PbrMaterial::sheenColorMap, &PbrMaterial::specularMap, &PbrMaterial::transmissionMap})
+                if (chance(3)) material.*map = {texture(), below(3)};
             material.isSpecularGlossiness = chance(4);
             material.isBlended = chance(4);
-            material.baseColorMap = map();
-            material.normalMap = map();
-            material.occlusionMap = map();
-            material.emissiveMap = map();
-            material.metallicRoughnessMap = map();
-            material.clearcoatNormalMap = map();
-            material.sheenColorMap = map();
-            material.specularMap = map();
-            material.transmissionMap = map();
             applyPbrMaterial(state, material);
         }
         else
@@ -445,55 +394,35 @@ private:
 
     osg::ref_ptr<osg::Group> group()
     {
-        switch (below(6))
-        {
-        case 0:
-            return new osg::Group;
-        case 1:
-        {
-            const osg::ref_ptr<osg::Switch> made = new osg::Switch;
-            made->setNewChildDefaultValue(chance(2));
-            return made;
-        }
-        case 2:
-            return new osg::LOD;
-        case 3:
+        const int kind = below(6);
+        if (kind == 0) return new osg::Group;
+        if (kind == 1) return new osg::LOD;
+        if (kind > 3) return new osg::MatrixTransform(matrix());
+        if (kind == 3)
         {
             const osg::ref_ptr<JointAttachment> made = new JointAttachment(name());
             static_cast<void>(made->setOffset(matrix()));
             return made;
         }
-        default:
-            return new osg::MatrixTransform(matrix());
-        }
+        const osg::ref_ptr<osg::Switch> made = new osg::Switch;
+        made->setNewChildDefaultValue(chance(2));
+        return made;
     }
 
     osg::ref_ptr<osg::Node> node(const AnimatedCharacter* above, int depth)
     {
         if (!_groups.empty() && chance(10)) return &anyGroup();
-        osg::ref_ptr<osg::Group> made;
-        switch (below(8))
-        {
-        case 0:
-        case 1:
+        const int kind = below(8);
+        if (kind == 0) return light();
+        if (kind == 1) return camera();
+        if (kind == 2 && above) return skinned(above->getAnimationSet());
+        if (kind == 3 || kind == 4)
         {
             const osg::ref_ptr<osg::Geometry> geometry = new osg::Geometry;
             fillGeometry(*geometry);
             return geometry;
         }
-        case 2:
-            return light();
-        case 3:
-            return camera();
-        case 4:
-            made = character();
-            break;
-        case 5:
-            if (above) return skinned(above->getAnimationSet());
-            [[fallthrough]];
-        default:
-            made = group();
-        }
+        const osg::ref_ptr<osg::Group> made = kind == 5 ? character() : group();
         fill(*made, dynamic_cast<const AnimatedCharacter*>(made.get()), depth + 1);
         return made;
     }
@@ -502,7 +431,7 @@ private:
     {
         if (depth > 0) group.setName(name());
         setState(group);
-        for (int child = 1 + below(3); child > 0 && depth < 12 && _count < mostNodes && _bytes.remaining_bytes() > 0;
+        for (int child = 1 + below(3); child > 0 && depth < 12 && _count < maxNodes && _bytes.remaining_bytes() > 0;
              --child)
         {
             ++_count;

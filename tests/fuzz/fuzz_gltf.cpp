@@ -1,19 +1,12 @@
 // SPDX-License-Identifier: MIT
 // libFuzzer target: the text of a .gltf in its own folder with a data.bin and a picture.png.
-#include "fuzz/DocumentMutator.h"
-#include "fuzz/ImportOnce.h"
+#include "fuzz/Fuzzing.h"
 
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
 #include <filesystem>
 #include <fstream>
-#include <string>
 #include <unistd.h>
 
 using namespace osgGpuAnimation::gltf;
-
-extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t most);
 
 namespace
 {
@@ -46,22 +39,12 @@ private:
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
     static const Folder folder;
-    importOnce(std::string(reinterpret_cast<const char*>(data), size), folder.model());
+    importOnce(data, size, folder.model());
     return 0;
 }
 
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t most,
                                                unsigned int seed)
 {
-    std::minstd_rand random(seed);
-    if (random() % 4 != 0)
-    {
-        const auto text = mutateDocument(std::string(reinterpret_cast<const char*>(data), size), random);
-        if (text && text->size() <= most)
-        {
-            std::copy(text->begin(), text->end(), data);
-            return text->size();
-        }
-    }
-    return LLVMFuzzerMutate(data, size, most);
+    return mutate(data, size, most, seed, mutateDocument);
 }

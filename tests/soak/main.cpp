@@ -5,20 +5,22 @@
 // detail, of which every frame replaces, moves and redirects 1 %. Prints GL errors and the growth of allocated memory
 // since the first minute, measured with the window closed and the scene empty but for the field. Exit status 0: no GL
 // error, and at most 2 % growth.
+#include "support/ThreadingModels.h"
 
-#include "SoakScene.h"
-#include "SoakViewer.h"
+#include <osgGpuAnimation/gpu/EglGraphicsContext.h>
+#include <osgGpuAnimation/nodes/AnimatedCharacter.h>
+#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 
 #include <osgDB/ReadFile>
+#include <osgViewer/Viewer>
 
 #include <algorithm>
-#include <chrono>
-#include <cstdlib>
-#include <cstring>
-#include <fstream>
+#include <atomic>
+#include <cmath>
 #include <iostream>
 #include <malloc.h>
 #include <numeric>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -26,6 +28,236 @@ namespace
 {
 
 using namespace osgGpuAnimation;
+
+constexpr unsigned int maxClones = 60;
+constexpr std::size_t maxInstances = 200;
+
+/// A member of a list at random.
+template <typename List>
+auto& anyOf(List& list, std::mt19937& random)
+{
+    return list[std::uniform_int_distribution<std::size_t>(0, std::size(list) - 1)(random)];
+}
+
+bool oneOf(int count, std::mt19937& random)
+{
+    return std::uniform_int_distribution<int>(1, count)(random) == 1;
+}
+
+/// A scene that changes between frames: characters are cloned from a model and removed, crowd instances are added and
+/// removed, clips change. Beside them a field of instances keeps its number.
+class SoakScene
+{
+public:
+    /// model: contains a character; it is not changed.
+    SoakScene(osg::ref_ptr<osg::Node> model, std::size_t fieldCount, std::mt19937& random)
+        : _random(random), _model(model), _crowd(new AnimatedCrowd(*findCharacter(*model))),
+          _field(new AnimatedCrowd(*findCharacter(*model)))
+    {
+        for (osg::Node* child : std::initializer_list<osg::Node*>{_clones, _crowd, _field})
+            root->addChild(child);
+        const double density = std::max(1.0, static_cast<double>(fieldCount) / maxInstances);
+        _reach = 15.0 * _model->getBound().radius() * std::sqrt(density);
+        static_cast<void>(_field->getMeshes().setPixelError(0.5f)); // in range
+        while (_fieldInstances.size() < fieldCount)
+            _fieldInstances.push_back(addTo(*_field));
+    }
+
+    void change()
+    {
+        changeClones();
+        changeCrowd();
+        changeField();
+    }
+
+    /// Removes everything but the field.
+    void clear()
+    {
+        _clones->removeChildren(0, _clones->getNumChildren());
+        for (const AnimatedCrowd::Instance instance : _instances)
+            _crowd->remove(instance);
+        _instances.clear();
+    }
+
+    const osg::ref_ptr<osg::Group> root = new osg::Group;
+
+private:
+    osg::Matrixd randomPlace()
+    {
+        std::uniform_real_distribution<double> along(-_reach, _reach);
+        const double x = along(_random);
+        return osg::Matrixd::translate(x, along(_random), 0.0);
+    }
+
+    void changeClip(AnimationController& controller)
+    {
+        if (controller.set().clips().empty()) return;
+        const std::string& name = anyOf(controller.set().clips(), _random).name();
+        static_cast<void>(oneOf(2, _random) ? controller.crossfade(name, 0.3) : controller.play(name)); // it is there
+        controller.setSpeed(std::uniform_real_distribution<double>(0.5, 2.0)(_random));
+    }
+
+    void changeClones()
+    {
+        if (oneOf(2, _random) && _clones->getNumChildren() < maxClones)
+        {
+            osg::ref_ptr<osg::MatrixTransform> place = new osg::MatrixTransform(randomPlace());
+            place->addChild(osg::clone(_model.get(), osg::CopyOp::DEEP_COPY_NODES));
+            _clones->addChild(place);
+        }
+        else if (_clones->getNumChildren() > 0)
+            _clones->removeChild(anyClone());
+        if (_clones->getNumChildren() > 0) changeClip(findCharacter(*_clones->getChild(anyClone()))->getController());
+    }
+
+    unsigned int anyClone()
+    {
+        return std::uniform_int_distribution<unsigned int>(0, _clones->getNumChildren() - 1)(_random);
+    }
+
+    void changeCrowd()
+    {
+        if (!_instances.empty() && (oneOf(3, _random) || _instances.size() >= maxInstances))
+        {
+            AnimatedCrowd::Instance& removed = anyOf(_instances, _random);
+            _crowd->remove(removed);
+            removed = _instances.back();
+            _instances.pop_back();
+        }
+        else
+            _instances.push_back(addTo(*_crowd));
+        if (!_instances.empty()) changeClip(*_crowd->getController(anyOf(_instances, _random)));
+    }
+
+    void changeField()
+    {
+        for (std::size_t change = 0; change < _fieldInstances.size() / 100; ++change)
+        {
+            AnimatedCrowd::Instance& replaced = anyOf(_fieldInstances, _random);
+            _field->remove(replaced);
+            replaced = addTo(*_field);
+            static_cast<void>(_field->setPlacement(anyOf(_fieldInstances, _random), randomPlace())); // it is there
+            changeClip(*_field->getController(anyOf(_fieldInstances, _random)));
+        }
+    }
+
+    AnimatedCrowd::Instance addTo(AnimatedCrowd& crowd)
+    {
+        AnimationController controller(crowd.getSharedAnimationSet());
+        changeClip(controller);
+        return crowd.add(randomPlace(), controller).value(); // the place is finite, the set the crowd's
+    }
+
+    std::mt19937& _random;
+    osg::ref_ptr<osg::Node> _model;
+    osg::ref_ptr<osg::Group> _clones = new osg::Group;
+    osg::ref_ptr<AnimatedCrowd> _crowd;
+    std::vector<AnimatedCrowd::Instance> _instances;
+    osg::ref_ptr<AnimatedCrowd> _field;
+    std::vector<AnimatedCrowd::Instance> _fieldInstances;
+    double _reach; ///< of places along x and y
+};
+
+class ErrorCount : public osg::Camera::DrawCallback
+{
+public:
+    explicit ErrorCount(std::atomic<int>& errors) : _errors(errors) {}
+    void operator()(osg::RenderInfo&) const override
+    {
+        for (int kept = 0; kept < 32 && glGetError() != GL_NO_ERROR; ++kept)
+            ++_errors;
+    }
+
+private:
+    std::atomic<int>& _errors;
+};
+
+/// Draws a scene without a display, by two cameras side by side, while the window's size, the cameras and the threading
+/// model change. One viewer for all windows: osgViewer never frees a few hundred bytes per viewer (its list of Scenes).
+class SoakViewer
+{
+public:
+    SoakViewer(osg::Group& scene, std::mt19937& random) : _random(random), _scene(&scene)
+    {
+        _viewer->setKeyEventSetsDone(0);
+        _viewer->setThreadingModel(osgViewer::ViewerBase::SingleThreaded);
+        for (osg::Camera* camera : {_viewer->getCamera(), _second.get()})
+            camera->setFinalDrawCallback(new ErrorCount(_glErrors));
+        _viewer->addSlave(_second, osg::Matrixd(), osg::Matrixd::rotate(osg::DegreesToRadians(50.0), osg::Y_AXIS));
+        _viewer->setSceneData(_scene);
+    }
+    ~SoakViewer() { close(); }
+
+    /// Opens a window of some size. False: no GL.
+    bool open()
+    {
+        std::uniform_int_distribution<int> size(100, 500);
+        const int width = size(_random), height = size(_random), half = width / 2;
+        const Result<osg::ref_ptr<EglGraphicsContext>> window = EglGraphicsContext::create(width, height);
+        if (!window)
+        {
+            std::cerr << window.error().message << std::endl;
+            return false;
+        }
+        _window = window.value();
+        osg::Camera& camera = *_viewer->getCamera();
+        camera.setGraphicsContext(_window);
+        camera.setViewport(0, 0, half, height);
+        camera.setProjectionMatrixAsPerspective(40.0, double(half) / height, 1.0, 10000.0);
+        _second->setGraphicsContext(_window);
+        _second->setViewport(half, 0, width - half, height);
+        _viewer->realize();
+        return _viewer->isRealized();
+    }
+
+    void close()
+    {
+        if (!_window) return;
+        _viewer->stopThreading();
+        _window->close();
+        for (osg::Camera* camera : {_viewer->getCamera(), _second.get()})
+            camera->setGraphicsContext(nullptr);
+        _window = nullptr;
+    }
+
+    void frame(double time) { _viewer->frame(time); }
+
+    void moveCamera()
+    {
+        std::uniform_real_distribution<double> way(-1.0, 1.0);
+        const double x = way(_random), y = way(_random);
+        look(osg::Vec3d(x, y, 0.3 + 0.2 * way(_random)), osg::Z_AXIS);
+    }
+
+    void changeThreading() { _viewer->setThreadingModel(anyOf(threadingModels, _random)); }
+
+    /// Draws everything, since cameras and batches keep memory for what they drew; with draw threads a camera keeps two
+    /// frames.
+    void settle(double time)
+    {
+        _viewer->setThreadingModel(osgViewer::ViewerBase::DrawThreadPerContext);
+        look(osg::Vec3d(0.0, 0.0, 40.0), osg::Y_AXIS);
+        for (int frames = 0; frames < 3; ++frames)
+            _viewer->frame(time);
+    }
+
+    int glErrors() const { return _glErrors; }
+
+private:
+    /// from: from the scene's centre, in its radii.
+    void look(const osg::Vec3d& from, const osg::Vec3d& up)
+    {
+        const osg::BoundingSphere bound = _scene->getBound();
+        _viewer->getCamera()->setViewMatrixAsLookAt(bound.center() + from * bound.radius(), bound.center(), up);
+    }
+
+    std::mt19937& _random;
+    std::atomic<int> _glErrors{0};
+    osg::ref_ptr<osg::Group> _scene;
+    osg::ref_ptr<osgViewer::Viewer> _viewer = new osgViewer::Viewer;
+    osg::ref_ptr<osg::Camera> _second = new osg::Camera; ///< a slave of the viewer's camera, looks another way
+    osg::ref_ptr<osg::GraphicsContext> _window;
+};
 
 struct Arguments
 {
@@ -39,15 +271,16 @@ bool parse(int count, char** words, Arguments& arguments)
 {
     for (int i = 1; i < count; ++i)
     {
+        const std::string word = words[i];
         const bool hasValue = i + 1 < count;
-        if (std::strcmp(words[i], "--seconds") == 0 && hasValue)
+        if (word == "--seconds" && hasValue)
             arguments.seconds = std::atof(words[++i]);
-        else if (std::strcmp(words[i], "--seed") == 0 && hasValue)
+        else if (word == "--seed" && hasValue)
             arguments.seed = static_cast<unsigned int>(std::atoi(words[++i]));
-        else if (std::strcmp(words[i], "--field") == 0 && hasValue)
+        else if (word == "--field" && hasValue)
             arguments.field = static_cast<std::size_t>(std::max(0, std::atoi(words[++i])));
-        else if (words[i][0] != '-' && arguments.file.empty())
-            arguments.file = words[i];
+        else if (word[0] != '-' && arguments.file.empty())
+            arguments.file = word;
         else
             return false;
     }
@@ -63,16 +296,6 @@ std::size_t allocatedBytes()
     return all.uordblks + all.hblkhd;
 }
 
-/// Resident memory in KiB after malloc_trim(). It is printed, but not checked.
-long residentMemory()
-{
-    malloc_trim(0);
-    std::ifstream status("/proc/self/status");
-    for (std::string line; std::getline(status, line);)
-        if (line.rfind("VmRSS:", 0) == 0) return std::atol(line.c_str() + 6);
-    return 0;
-}
-
 /// 0 if there are no values. Not the median: memory at rest with a field varies by some 5 % from window to window.
 double mean(const std::vector<std::size_t>& values)
 {
@@ -80,46 +303,33 @@ double mean(const std::vector<std::size_t>& values)
            static_cast<double>(std::max<std::size_t>(1, values.size()));
 }
 
-class Clock
-{
-public:
-    double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - _start).count(); }
-
-private:
-    std::chrono::steady_clock::time_point _start = std::chrono::steady_clock::now();
-};
-
-void changeViewer(SoakViewer& viewer, unsigned int frame, std::mt19937& random)
-{
-    if (frame % 7 == 0) viewer.moveCamera(random);
-    if (frame % 20 == 0) viewer.changeThreading(random);
-}
-
 int soak(const Arguments& arguments, osg::ref_ptr<osg::Node> model)
 {
     std::mt19937 random(arguments.seed);
     SoakScene scene(model, arguments.field, random);
     const unsigned int framesOfAWindow = arguments.field > 10000 ? 20 : 200; // a field's take long
-    SoakViewer viewer(scene.root());
-    const Clock clock;
+    SoakViewer viewer(*scene.root, random);
+    if (!viewer.open()) return 1;
+    const osg::Timer timer;
     const double warmUp = std::min(60.0, arguments.seconds / 3);
     std::vector<std::size_t> atRest, atRestAtFirst; // with the window closed and the scene empty but for the field
     unsigned int frame = 0;
-    while (clock.seconds() < arguments.seconds)
+    while (timer.time_s() < arguments.seconds)
     {
-        scene.change(random);
-        changeViewer(viewer, frame, random);
+        scene.change();
+        if (frame % 7 == 0) viewer.moveCamera();
+        if (frame % 20 == 0) viewer.changeThreading();
         viewer.frame(frame / 60.0);
         if (++frame % framesOfAWindow != 0) continue;
         viewer.settle(frame / 60.0);
         viewer.close();
         scene.clear();
-        const double seconds = clock.seconds();
+        const double seconds = timer.time_s();
         const std::size_t bytes = allocatedBytes();
         (seconds < warmUp ? atRestAtFirst : atRest).push_back(bytes);
         std::cout << static_cast<int>(seconds) << " s, " << frame << " frames, " << bytes << " bytes at rest, "
-                  << residentMemory() << " KiB resident, " << viewer.glErrors() << " GL errors" << std::endl;
-        if (!viewer.open(random)) return 1;
+                  << viewer.glErrors() << " GL errors" << std::endl;
+        if (!viewer.open()) return 1;
     }
     const double before = mean(atRestAtFirst), after = mean(atRest);
     const double growth = before > 0.0 ? 100.0 * (after - before) / before : 100.0;

@@ -4,7 +4,10 @@
 #include <osgGpuAnimation/animation/AnimationSet.h>
 #include <osgGpuAnimation/animation/Pose.h>
 
+#include <glm/geometric.hpp>
 #include <layout.glsl>
+
+#include <optional>
 
 namespace osgGpuAnimation::reference
 {
@@ -12,34 +15,20 @@ namespace osgGpuAnimation::reference
 namespace
 {
 
-Numbers numbers(const glm::vec4& v)
+constexpr glm::dvec4 Track::*parts[] = {&Track::translation, &Track::rotation, &Track::scale};
+
+Numbers numbers(const glm::dvec4& v)
 {
     return {v.x, v.y, v.z, v.w};
 }
 
-double dot(const Numbers& a, const Numbers& b)
+glm::dvec4 vector(const Numbers& v)
 {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < a.size(); ++i)
-        sum += a[i] * b[i];
-    return sum;
+    return {v[0], v[1], v[2], v[3]};
 }
 
-Numbers scaled(Numbers v, double factor)
-{
-    for (double& c : v)
-        c *= factor;
-    return v;
-}
-
-Numbers plus(Numbers a, const Numbers& b)
-{
-    for (std::size_t i = 0; i < a.size(); ++i)
-        a[i] += b[i];
-    return a;
-}
-
-Numbers multiplied(const Numbers& a, const Numbers& b)
+/// The product of two quaternions.
+glm::dvec4 multiplied(const glm::dvec4& a, const glm::dvec4& b)
 {
     return {
         a[3] * b[0] + a[0] * b[3] + a[1] * b[2] - a[2] * b[1], a[3] * b[1] - a[0] * b[2] + a[1] * b[3] + a[2] * b[0],
@@ -60,7 +49,7 @@ public:
     Track result()
     {
         const JointTransform& rest = _set.restPose()[_track];
-        Track total{numbers(rest.translation), numbers(rest.rotation), numbers(rest.scale)};
+        Track total{rest.translation, rest.rotation, rest.scale};
         std::size_t i = 0;
         while (i < _instruction.sampleCount && !isDifference(i))
         {
@@ -70,7 +59,7 @@ public:
             total = over(total, i, end);
             i = end;
         }
-        if (!_isWeights) total.rotation = normalized(total.rotation);
+        if (!_isWeights) total.rotation = glm::normalize(total.rotation);
         addDifferences(total, i);
         return total;
     }
@@ -100,39 +89,31 @@ private:
     /// 1 for each number that the sample has, else 0.
     Track cover(std::size_t i) const
     {
-        Track cover{Numbers(4, 1.0), Numbers(4, 1.0), Numbers(4, 1.0)};
-        if (!has(i, POSE_SAMPLE_POSED)) return cover;
-        const std::uint32_t numbers = posed(i).numbers;
-        for (std::size_t n = 0; n < 4; ++n)
+        const std::uint32_t numbers = has(i, POSE_SAMPLE_POSED) ? posed(i).numbers : ~0u;
+        const auto four = [&](int first)
         {
-            cover.translation[n] = numbers >> n & 1u;
-            cover.rotation[n] = numbers >> (n + 4) & 1u;
-            cover.scale[n] = numbers >> (n + 8) & 1u;
-        }
-        return cover;
+            return glm::dvec4(numbers >> first & 1u, numbers >> (first + 1) & 1u, numbers >> (first + 2) & 1u,
+                              numbers >> (first + 3) & 1u);
+        };
+        return {four(0), four(4), four(8)};
     }
 
-    const JointTransform* keyframe(std::size_t clip, std::size_t place) const
+    glm::dvec4 mixed(const JointTransform* a, const JointTransform* b, double t, bool isSpline,
+                     glm::vec4 JointTransform::*part, bool isRotation)
     {
-        return _set.clips()[clip].at(place, _track);
-    }
-
-    Numbers mixed(const JointTransform* a, const JointTransform* b, double t, bool isSpline,
-                  glm::vec4 JointTransform::*part, bool isRotation)
-    {
-        const Numbers from = numbers(a->*part), to = numbers(b->*part);
+        const glm::dvec4 from = a->*part, to = b->*part;
         const bool isSlerped = isRotation && (!isSpline || a->translation.w == 1.0f);
         if (isSlerped)
         {
-            const Numbers p = normalized(from), q = normalized(to);
-            if (t > 0.0) closestDecision = std::min(closestDecision, std::abs(dot(p, q)));
-            return slerp(p, q, t);
+            const glm::dvec4 p = glm::normalize(from), q = glm::normalize(to);
+            if (t > 0.0) closestDecision = std::min(closestDecision, std::abs(glm::dot(p, q)));
+            return vector(slerp(numbers(p), numbers(q), t));
         }
-        if (!isSpline) return plus(scaled(from, 1 - t), scaled(to, t));
-        Numbers sum = plus(scaled(from, 2 * t * t * t - 3 * t * t + 1), scaled(to, 3 * t * t - 2 * t * t * t));
-        sum = plus(sum, scaled(numbers(a[2].*part), t * t * t - 2 * t * t + t));
-        sum = plus(sum, scaled(numbers(b[1].*part), t * t * t - t * t));
-        return isRotation ? normalized(sum) : sum;
+        if (!isSpline) return from * (1.0 - t) + to * t;
+        const glm::dvec4 outgoing = a[2].*part, incoming = b[1].*part;
+        const glm::dvec4 sum = from * (2 * t * t * t - 3 * t * t + 1) + to * (3 * t * t - 2 * t * t * t) +
+                               outgoing * (t * t * t - 2 * t * t + t) + incoming * (t * t * t - t * t);
+        return isRotation ? glm::normalize(sum) : sum;
     }
 
     Track sampled(std::size_t i)
@@ -141,7 +122,7 @@ private:
         if (has(i, POSE_SAMPLE_POSED))
         {
             const JointTransform values = posed(i).values;
-            return {numbers(values.translation), numbers(values.rotation), numbers(values.scale)};
+            return {values.translation, values.rotation, values.scale};
         }
         const JointTransform* a = &_set.restPose()[_track];
         const JointTransform* b = a;
@@ -153,55 +134,47 @@ private:
             if (sample.keyframe < first || sample.keyframe >= first + content.keyframeCount()) continue;
             const std::size_t place = sample.keyframe - first;
             const bool isLast = place + 1 >= content.keyframeCount();
-            a = keyframe(clip, place);
-            b = isLast ? a : keyframe(clip, place + 1);
+            a = content.at(place, _track);
+            b = isLast ? a : content.at(place + 1, _track);
             isSpline = content.form() == Clip::Form::Spline;
         }
         const double t = static_cast<double>(sample.alpha);
-        Track track{mixed(a, b, t, isSpline, &JointTransform::translation, false),
-                    mixed(a, b, t, isSpline, &JointTransform::rotation, !_isWeights),
-                    mixed(a, b, t, isSpline, &JointTransform::scale, false)};
-        return track;
-    }
-
-    void add(Track& sum, const Track& track, double factor)
-    {
-        sum.translation = plus(sum.translation, scaled(track.translation, factor));
-        sum.rotation = plus(sum.rotation, scaled(track.rotation, factor));
-        sum.scale = plus(sum.scale, scaled(track.scale, factor));
+        return {mixed(a, b, t, isSpline, &JointTransform::translation, false),
+                mixed(a, b, t, isSpline, &JointTransform::rotation, !_isWeights),
+                mixed(a, b, t, isSpline, &JointTransform::scale, false)};
     }
 
     /// b, or -b if b is in the opposite hemisphere of a.
-    Numbers onSide(const Numbers& a, const Numbers& b)
+    glm::dvec4 onSide(const glm::dvec4& a, const glm::dvec4& b)
     {
         if (_isWeights) return b;
-        const double along = dot(a, b);
-        if (along != 0.0) closestDecision = std::min(closestDecision, std::abs(along) / std::sqrt(dot(a, a)));
-        return along < 0.0 ? scaled(b, -1.0) : b;
+        const double along = glm::dot(a, b);
+        if (along != 0.0) closestDecision = std::min(closestDecision, std::abs(along) / glm::length(a));
+        return along < 0.0 ? -b : b;
     }
 
     /// The numbers of a part: `mixed` where the weights sum to 1, the rest from below.
-    static Numbers filled(const Numbers& below, Numbers mixed, const Numbers& whole)
+    static glm::dvec4 filled(const glm::dvec4& below, const glm::dvec4& mixed, const glm::dvec4& whole)
     {
-        for (std::size_t n = 0; n < mixed.size(); ++n)
-            mixed[n] = mixed[n] / std::max(whole[n], 1.0) + below[n] * (1.0 - std::min(whole[n], 1.0));
-        return mixed;
+        return mixed / glm::max(whole, 1.0) + below * (1.0 - glm::min(whole, 1.0));
     }
 
     Track over(const Track& below, std::size_t first, std::size_t end)
     {
-        Track whole{Numbers(4), Numbers(4), Numbers(4)};
-        Track mixed = whole;
-        Numbers side;
+        Track whole, mixed; // a number that a sample has not is 0
+        std::optional<glm::dvec4> side;
         for (std::size_t i = first; i < end; ++i)
         {
             if (weight(i) == 0.0) continue;
             Track track = sampled(i);
             const Track has = cover(i);
-            if (side.empty() && has.rotation[0] > 0.0) side = track.rotation;
-            if (has.rotation[0] > 0.0) track.rotation = onSide(side, track.rotation);
-            add(mixed, track, weight(i)); // a number that the sample has not is 0
-            add(whole, has, weight(i));
+            if (!side && has.rotation[0] > 0.0) side = track.rotation;
+            if (has.rotation[0] > 0.0) track.rotation = onSide(*side, track.rotation);
+            for (const auto part : parts)
+            {
+                mixed.*part += track.*part * weight(i);
+                whole.*part += has.*part * weight(i);
+            }
         }
         if (whole.rotation[0] > 0.0 && whole.rotation[0] < 1.0) mixed.rotation = onSide(below.rotation, mixed.rotation);
         return {filled(below.translation, mixed.translation, whole.translation),
@@ -210,43 +183,35 @@ private:
 
     void addDifferences(Track& total, std::size_t first)
     {
-        Numbers turn(3), growth(3, 1.0);
+        glm::dvec3 turn(0.0), growth(1.0);
         for (std::size_t i = first; i + 1 < _instruction.sampleCount; i += 2)
         {
             const double share = weight(i + 1);
             if (share == 0.0) continue;
-            Track from = sampled(i), to = sampled(i + 1);
-            const Track has = cover(i + 1);
-            for (Numbers Track::*part : {&Track::translation, &Track::rotation, &Track::scale})
-                for (std::size_t n = 0; n < 4; ++n)
+            const Track from = sampled(i), has = cover(i + 1);
+            Track to = sampled(i + 1);
+            for (const auto part : parts)
+                for (int n = 0; n < 4; ++n)
                     if ((has.*part)[n] == 0.0) (to.*part)[n] = (from.*part)[n];
-            total.translation =
-                plus(total.translation, scaled(plus(to.translation, scaled(from.translation, -1)), share));
+            total.translation += share * (to.translation - from.translation);
             if (_isWeights)
             {
-                total.rotation = plus(total.rotation, scaled(plus(to.rotation, scaled(from.rotation, -1)), share));
-                total.scale = plus(total.scale, scaled(plus(to.scale, scaled(from.scale, -1)), share));
+                total.rotation += share * (to.rotation - from.rotation);
+                total.scale += share * (to.scale - from.scale);
                 continue;
             }
-            const Numbers inverse{-from.rotation[0], -from.rotation[1], -from.rotation[2], from.rotation[3]};
-            const Numbers d = onSide({0, 0, 0, 1}, multiplied(inverse, to.rotation));
-            const double half = std::acos(std::min(d[3], 1.0));
-            const double sine = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-            for (std::size_t c = 0; c < 3; ++c)
-            {
-                turn[c] += sine < 1e-9 ? share * d[c] : share * d[c] * half / sine;
+            const glm::dvec4 inverse(-glm::dvec3(from.rotation), from.rotation.w);
+            const glm::dvec4 d = onSide({0, 0, 0, 1}, multiplied(inverse, to.rotation));
+            const double half = std::acos(std::min(d.w, 1.0)), sine = glm::length(glm::dvec3(d));
+            turn += glm::dvec3(d) * (sine < 1e-9 ? share : share * half / sine);
+            for (int c = 0; c < 3; ++c)
                 if (std::abs(from.scale[c]) > 1e-6) growth[c] *= 1.0 + share * (to.scale[c] / from.scale[c] - 1.0);
-            }
         }
         if (_isWeights) return;
-        const double pi = std::acos(-1.0);
-        const double length = std::sqrt(turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2]);
-        const double angle = std::min(length, pi);
+        const double length = glm::length(turn), angle = std::min(length, std::acos(-1.0));
         const double factor = length < 1e-12 ? 0.0 : std::sin(angle) / length;
-        total.rotation =
-            multiplied(total.rotation, {turn[0] * factor, turn[1] * factor, turn[2] * factor, std::cos(angle)});
-        for (std::size_t c = 0; c < 3; ++c)
-            total.scale[c] *= growth[c];
+        total.rotation = multiplied(total.rotation, glm::dvec4(turn * factor, std::cos(angle)));
+        total.scale *= glm::dvec4(growth, 1.0);
     }
 
     const AnimationSet& _set;
@@ -274,7 +239,8 @@ std::vector<glm::dmat4> BlendedPose::palette(const AnimationSet& set) const
     std::vector<glm::dmat4> joints;
     for (std::size_t j = 0; j < set.skeleton().jointCount(); ++j)
     {
-        const glm::dmat4 local = localMatrix(tracks[j].translation, tracks[j].rotation, tracks[j].scale);
+        const Track& track = tracks[j];
+        const glm::dmat4 local = localMatrix(numbers(track.translation), numbers(track.rotation), numbers(track.scale));
         const int parent = set.skeleton().joint(j).parent;
         joints.push_back(parent < 0 ? local : joints[static_cast<std::size_t>(parent)] * local);
     }
@@ -290,9 +256,9 @@ std::vector<glm::dmat4> BlendedPose::palette(const AnimationSet& set) const
         glm::dmat4 rows(1.0);
         for (int column = 0; column < 4; ++column)
         {
-            rows[column][0] = block.translation[static_cast<std::size_t>(column)];
-            rows[column][1] = block.rotation[static_cast<std::size_t>(column)];
-            rows[column][2] = block.scale[static_cast<std::size_t>(column)];
+            rows[column][0] = block.translation[column];
+            rows[column][1] = block.rotation[column];
+            rows[column][2] = block.scale[column];
         }
         entries.push_back(rows);
     }

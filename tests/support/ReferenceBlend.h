@@ -15,7 +15,7 @@ namespace osgGpuAnimation::reference
 /// The numbers of one track: three of translation, four of rotation, three of scale; a weight block has all twelve.
 struct Track
 {
-    Numbers translation, rotation, scale;
+    glm::dvec4 translation{0.0}, rotation{0.0}, scale{0.0};
 };
 
 struct BlendedPose

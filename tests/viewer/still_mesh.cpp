@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
 // Usage: still_mesh CHARACTER.glb STILL.osgt
-// Stores the first frame of the file's first clip as plain osg::Geometry that the fixed pipeline draws.
+// Stores the first frame of the first clip of the file's first character as plain osg::Geometry that the fixed pipeline
+// draws.
+#include <osgGpuAnimation/mesh/geometry/PaletteEntryBounds.h>
+#include <osgGpuAnimation/mesh/lod/LodLevels.h>
 #include <osgGpuAnimation/mesh/SkinnedGeometry.h>
 #include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 
-#include <osg/TriangleIndexFunctor>
 #include <osgDB/ReadFile>
 #include <osgDB/WriteFile>
 
-#include <iostream>
 #include <vector>
 
 namespace
@@ -16,44 +17,19 @@ namespace
 
 using namespace osgGpuAnimation;
 
-template <typename Wanted>
-class Collector : public osg::NodeVisitor
-{
-public:
-    Collector() : osg::NodeVisitor(osg::NodeVisitor::TRAVERSE_ALL_CHILDREN) { setNodeMaskOverride(~0u); }
-    void apply(osg::Node& node) override
-    {
-        if (auto* wanted = dynamic_cast<Wanted*>(&node)) found.push_back(wanted);
-        traverse(node);
-    }
-    std::vector<osg::ref_ptr<Wanted>> found;
-};
-
-template <typename Wanted>
-std::vector<osg::ref_ptr<Wanted>> below(osg::Node& node)
-{
-    Collector<Wanted> collector;
-    node.accept(collector);
-    return collector.found;
-}
-
-struct TriangleIndices
-{
-    void operator()(unsigned int a, unsigned int b, unsigned int c) { indices.insert(indices.end(), {a, b, c}); }
-    std::vector<unsigned int> indices;
-};
-
 /// Gives each triangle vertices of its own, with its normal.
 void makeFlat(osg::Geometry& mesh)
 {
-    osg::TriangleIndexFunctor<TriangleIndices> triangles;
-    mesh.accept(triangles);
+    std::vector<std::uint32_t> corners;
+    for (const osg::ref_ptr<osg::PrimitiveSet>& primitives : mesh.getPrimitiveSetList())
+        for (const std::uint32_t corner : LodLevels::trianglesOf(primitives, mesh.getVertexArray()->getNumElements()))
+            corners.push_back(corner);
     const auto gathered = [&](const auto& array)
     {
         auto result = osg::clone(&array, osg::CopyOp::SHALLOW_COPY);
         result->clear();
-        for (const unsigned int index : triangles.indices)
-            result->push_back(array[index]);
+        for (const std::uint32_t corner : corners)
+            result->push_back(array[corner]);
         return result;
     };
     osg::ref_ptr<osg::Vec3Array> positions = gathered(static_cast<osg::Vec3Array&>(*mesh.getVertexArray()));
@@ -91,8 +67,7 @@ osg::ref_ptr<osg::Geometry> still(const AnimatedCharacter& character, const Skin
     return plain;
 }
 
-template <typename Old>
-void replace(Old& old, osg::Node& with)
+void replace(osg::Node& old, osg::Node& with)
 {
     const osg::Node::ParentList parents = old.getParents();
     for (osg::Group* parent : parents)
@@ -107,20 +82,20 @@ int main(int argc, char** argv)
     const osg::ref_ptr<osgDB::Options> options = new osgDB::Options("start=0 speed=0 lighting=fixed");
     osg::ref_ptr<osg::Group> root = new osg::Group;
     const osg::ref_ptr<osg::Node> model = osgDB::readRefNodeFile(argv[1], options);
-    if (!model) return 1;
+    const osg::ref_ptr<AnimatedCharacter> character = model ? findCharacter(*model) : nullptr;
+    if (!character) return 1;
     root->addChild(model);
-    for (const osg::ref_ptr<AnimatedCharacter>& character : below<AnimatedCharacter>(*root))
-    {
-        const osg::BoundingSphere bound = character->getBound(); // of its meshes, which are replaced below
-        for (const osg::ref_ptr<SkinnedGeometry>& mesh : below<SkinnedGeometry>(*character))
-            replace(*mesh, *still(*character, *mesh));
-        osg::ref_ptr<osg::MatrixTransform> place = new osg::MatrixTransform(character->getMatrix());
-        place->setInitialBound(bound);
-        place->setName(character->getName());
-        place->setStateSet(character->getStateSet());
-        for (unsigned int i = 0; i < character->getNumChildren(); ++i)
-            place->addChild(character->getChild(i));
-        replace(*character, *place);
-    }
+    const osg::BoundingSphere bound = character->getBound(); // of its meshes, which are replaced below
+    std::vector<osg::ref_ptr<SkinnedGeometry>> meshes;
+    forEachMeshBelow(*character, [&](SkinnedGeometry& mesh) { meshes.push_back(&mesh); });
+    for (const osg::ref_ptr<SkinnedGeometry>& mesh : meshes)
+        replace(*mesh, *still(*character, *mesh));
+    osg::ref_ptr<osg::MatrixTransform> place = new osg::MatrixTransform(character->getMatrix());
+    place->setInitialBound(bound);
+    place->setName(character->getName());
+    place->setStateSet(character->getStateSet());
+    for (unsigned int i = 0; i < character->getNumChildren(); ++i)
+        place->addChild(character->getChild(i));
+    replace(*character, *place);
     return osgDB::writeNodeFile(*root->getChild(0), argv[2], new osgDB::Options("WriteImageHint=IncludeData")) ? 0 : 1;
 }

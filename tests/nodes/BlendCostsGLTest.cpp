@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include "support/TestCharacter.h"
+#include "nodes/TwinPose.h"
+#include "support/TestCrowd.h"
 #include "support/ViewerGLTest.h"
 
-#include <osgGpuAnimation/animation/Pose.h>
+#include <osgGpuAnimation/animation/keyframes/PosedKeyframe.h>
 #include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
-#include <osgGpuAnimation/gpu/PosePipeline.h>
-#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/detail/CrowdDetail.h>
 
 #include <osg/Group>
 
-#include <algorithm>
-#include <cmath>
+// Instances that crossfade, or whose joints the application poses, cost more: they are evaluated in a batch apart.
 
 namespace osgGpuAnimation
 {
@@ -19,11 +17,11 @@ namespace osgGpuAnimation
 namespace
 {
 
-constexpr std::size_t everybody = 400;
+constexpr std::size_t everybody = 400, every = 20;
 
-bool isFading(std::size_t number)
+bool isDear(std::size_t number)
 {
-    return number % 20 == 0;
+    return number % every == 0;
 }
 
 osg::Matrixd placeOf(std::size_t number)
@@ -31,47 +29,37 @@ osg::Matrixd placeOf(std::size_t number)
     return osg::Matrixd::translate(-4.0 + 0.01 * static_cast<double>(number), 0.0, 0.0);
 }
 
-void start(AnimationController& controller, std::size_t number)
+AnimationController fading(std::size_t number)
 {
-    ASSERT_TRUE(controller.play("shift"));
-    controller.seek(0.003 * static_cast<double>(number));
-    if (isFading(number))
-    {
-        ASSERT_TRUE(controller.crossfade("turn", 10.0));
-    }
+    AnimationController controller = playing("shift", 0.003 * static_cast<double>(number));
+    EXPECT_TRUE(!isDear(number) || controller.crossfade("turn", 10.0));
+    return controller;
 }
 
-double largestDifference(const std::vector<AffineMatrix>& left, const std::vector<AffineMatrix>& right)
-{
-    double largest = left.size() == right.size() && !left.empty() ? 0.0 : 1e30;
-    for (std::size_t entry = 0; entry < left.size() && largest < 1e30; ++entry)
-        for (std::size_t row = 0; row < 3; ++row)
-            for (int column = 0; column < 4; ++column)
-                largest =
-                    std::max<double>(largest, std::abs(left[entry].rows[row][column] - right[entry].rows[row][column]));
-    return largest;
-}
-
-/// Many instances that play one clip, and some that crossfade.
 class BlendCostsGLTest : public ViewerGLTest
 {
 protected:
-    PosePipeline& pipeline() { return *PosePipeline::of(state()); }
-
-    void expectPose(const AnimationController& controller, const AffineMatrix& root, std::size_t slot,
-                    std::size_t instance)
-    {
-        std::vector<AffineMatrix> twin;
-        Pose::evaluate(controller.set(), controller.instruction(), root, twin);
-        const auto shown = pipeline().readPalette(state(), controller.set(), slot, instance);
-        EXPECT_LT(largestDifference(shown, twin), 1e-5) << "slot " << slot << ", instance " << instance;
-    }
+    PosePipeline::Counters counters() { return PosePipeline::of(state())->getCounters(); }
 
     std::uint64_t bytesUploadedAt(double time)
     {
-        const std::uint64_t before = pipeline().getCounters().bytesUploaded;
+        const std::uint64_t before = counters().bytesUploaded;
         drawAt(time);
-        return pipeline().getCounters().bytesUploaded - before;
+        return counters().bytesUploaded - before;
+    }
+
+    /// Those of the crowd who are dear are in the second batch, in their order.
+    void expectApart(const AnimatedCrowd& crowd)
+    {
+        std::size_t found[2] = {};
+        for (std::size_t number = 0; number < everybody; ++number)
+        {
+            const std::size_t slot = isDear(number) ? 1 : 0;
+            EXPECT_LT(differenceFromTwin(state(), CrowdDetail::instances(crowd).controllerCopy(number),
+                                         CrowdDetail::instances(crowd).rootMatrix(number), slot, found[slot]++),
+                      1e-5)
+                << number;
+        }
     }
 };
 
@@ -79,22 +67,34 @@ TEST_F(BlendCostsGLTest, ofACrowdThoseWhoFadeAreMixedApart)
 {
     osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*makeTestCharacter());
     for (std::size_t number = 0; number < everybody; ++number)
-    {
-        AnimationController controller(testCharacterSet());
-        start(controller, number);
-        ASSERT_TRUE(crowd->add(placeOf(number), controller));
-    }
+        ASSERT_TRUE(crowd->add(placeOf(number), fading(number)));
     viewer().setSceneData(crowd);
     drawAt(0.0);
     drawAt(0.25);
-    EXPECT_EQ(bytesUploadedAt(0.5), 16 * (everybody * 19 / 20 + 2 * everybody / 20));
-    std::size_t found[2] = {};
+    EXPECT_EQ(bytesUploadedAt(0.5), 16 * (everybody - everybody / every + 2 * everybody / every));
+    expectApart(*crowd);
+}
+
+TEST_F(BlendCostsGLTest, ofACrowdThoseWithAPoseAreMixedApart)
+{
+    constexpr std::size_t tip = 1;
+    osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*makeTestCharacter());
+    std::vector<AnimatedCrowd::Instance> instances;
     for (std::size_t number = 0; number < everybody; ++number)
-    {
-        const std::size_t slot = isFading(number) ? 1 : 0;
-        expectPose(CrowdDetail::instances(*crowd).controllerCopy(number),
-                   CrowdDetail::instances(*crowd).rootMatrix(number), slot, found[slot]++);
-    }
+        instances.push_back(crowd->add(placeOf(number), playing("shift")).value());
+    viewer().setSceneData(crowd);
+    drawAt(0.0);
+    drawAt(0.1);
+    for (std::size_t number = 0; number < everybody; number += every)
+        crowd->getController(instances[number])->layer(1).pose().setRotation(tip, glm::quat(0.8f, 0.0f, 0.6f, 0.0f));
+    const PosePipeline::Counters before = counters();
+    drawAt(0.2);
+    EXPECT_EQ(counters().feedbackDraws - before.feedbackDraws, 2 * testCharacterSet()->levelCount());
+    expectApart(*crowd);
+    // In the next frame only samples and one pose are uploaded.
+    crowd->getController(instances[every])->layer(1).pose().setRotation(tip, glm::quat(0.6f, 0.0f, 0.8f, 0.0f));
+    const std::size_t keyframe = testCharacterSet()->trackCount() * sizeof(JointTransform);
+    EXPECT_EQ(bytesUploadedAt(0.3), keyframe + 16 * (everybody + everybody / every));
 }
 
 TEST_F(BlendCostsGLTest, ofSeparateCharactersThoseWhoFadeAreMixedApart)
@@ -104,21 +104,20 @@ TEST_F(BlendCostsGLTest, ofSeparateCharactersThoseWhoFadeAreMixedApart)
     for (std::size_t number = 0; number < everybody; ++number)
     {
         osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
-        start(character->getController(), number);
+        character->getController() = fading(number);
         character->setMatrix(placeOf(number));
         root->addChild(character);
         characters.push_back(character);
     }
-    viewer().setSceneData(root);
-    drawAt(0.0);
-    drawAt(0.25);
-    drawAt(0.5);
+    pictureOf(root, {0.0, 0.25, 0.5});
     // The first minBatchSize characters share one batch at any blend cost; later ones join the batch of their cost.
     std::size_t found[2] = {};
     for (std::size_t number = 0; number < everybody; ++number)
     {
-        const std::size_t slot = found[0] < PoseBatch::minBatchSize || isFading(number) ? 0 : 1;
-        expectPose(characters[number]->getController(), AffineMatrix(), slot, found[slot]++);
+        const std::size_t slot = found[0] < PoseBatch::minBatchSize || isDear(number) ? 0 : 1;
+        EXPECT_LT(differenceFromTwin(state(), characters[number]->getController(), AffineMatrix(), slot, found[slot]++),
+                  1e-5)
+            << number;
     }
 }
 
@@ -126,17 +125,13 @@ TEST_F(BlendCostsGLTest, fewStayInOneBatch)
 {
     osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*makeTestCharacter());
     for (std::size_t number = 0; number < PoseBatch::minBatchSize; ++number)
-    {
-        AnimationController controller(testCharacterSet());
-        start(controller, number);
-        ASSERT_TRUE(crowd->add(placeOf(number), controller));
-    }
+        ASSERT_TRUE(crowd->add(placeOf(number), fading(number)));
     viewer().setSceneData(crowd);
     drawAt(0.0);
-    const PosePipeline::Counters before = pipeline().getCounters();
+    const PosePipeline::Counters before = counters();
     drawAt(0.25);
-    EXPECT_EQ(pipeline().getCounters().feedbackDraws - before.feedbackDraws, testCharacterSet()->levelCount());
-    EXPECT_EQ(pipeline().getCounters().instancesEvaluated - before.instancesEvaluated, PoseBatch::minBatchSize);
+    EXPECT_EQ(counters().feedbackDraws - before.feedbackDraws, testCharacterSet()->levelCount());
+    EXPECT_EQ(counters().instancesEvaluated - before.instancesEvaluated, PoseBatch::minBatchSize);
 }
 
 } // namespace

@@ -4,13 +4,9 @@
 #include "support/ViewerGLTest.h"
 
 #include <osgGpuAnimation/gpu/PosePipeline.h>
-#include <osgGpuAnimation/looks/CharacterProgram.h>
-
-#include <layout.glsl>
 
 #include <osg/Group>
 #include <osg/Material>
-#include <osg/Texture2D>
 
 #include <functional>
 
@@ -179,58 +175,6 @@ TEST_F(CharacterDrawsGLTest, drawnTogetherTheyLookAsOneByOne)
     }
 }
 
-osg::ref_ptr<osg::Program> programWithOwnColors(unsigned int location)
-{
-    osg::ref_ptr<osg::Program> program = new osg::Program;
-    program->addShader(skinShader());
-    program->addShader(new osg::Shader(osg::Shader::VERTEX, R"(#version 140
-        void osgGpuAnimationSkin(inout vec4 vertex, inout vec3 normal);
-        in vec4 ownColor;
-        out vec4 color;
-        void main()
-        {
-            vec4 vertex = gl_Vertex;
-            vec3 normal = gl_Normal;
-            osgGpuAnimationSkin(vertex, normal);
-            color = ownColor;
-            gl_Position = gl_ModelViewProjectionMatrix * vertex;
-        })"));
-    program->addShader(new osg::Shader(osg::Shader::FRAGMENT, R"(#version 140
-        in vec4 color;
-        out vec4 fragment;
-        void main() { fragment = color; })"));
-    bindSkinAttributes(*program);
-    program->addBindAttribLocation("ownColor", location);
-    return program;
-}
-
-// Instanced draws use attributes once an instance. A mesh that later has its own array there uses it once a vertex.
-TEST_F(CharacterDrawsGLTest, theirAttributesAreTheMeshsOwnAgainAfterwards)
-{
-    const osg::Vec4 colors[] = {{1, 0, 0, 1}, {0, 1, 0, 1}, {0, 0, 1, 1}, {1, 1, 0, 1}};
-    for (const unsigned int location : {POSE_INSTANCE_ROW_0_LOCATION, POSE_INSTANCE_ROW_1_LOCATION,
-                                        POSE_INSTANCE_ROW_2_LOCATION, POSE_INSTANCE_POSE_LOCATION})
-    {
-        SCOPED_TRACE(location);
-        const auto colored = [&](osg::Group& scene)
-        {
-            for (unsigned int mesh = 0; mesh < 2; ++mesh)
-            {
-                auto& square = dynamic_cast<SkinnedGeometry&>(*characterOf(scene, 0).getChild(mesh));
-                square.setVertexAttribArray(location, new osg::Vec4Array(4, const_cast<osg::Vec4*>(colors)),
-                                            osg::Array::BIND_PER_VERTEX);
-                square.getStateSet()->setAttributeAndModes(programWithOwnColors(location));
-            }
-            return pictureOf(scene, true);
-        };
-        const osg::ref_ptr<osg::Image> expected = colored(*makeCharacters(everybody));
-        EXPECT_GT(picture().pixelsDrawn(), 300);
-        const osg::ref_ptr<osg::Group> scene = makeCharacters(everybody);
-        pictureOf(*scene, true);
-        EXPECT_EQ(Picture::pixelsDifferent(*expected, *colored(*scene)), 0);
-    }
-}
-
 TEST_F(CharacterDrawsGLTest, nearAndFarAreFittedToAll)
 {
     const osg::ref_ptr<osg::Group> scene = makeCharacters(everybody);
@@ -248,42 +192,10 @@ TEST_F(CharacterDrawsGLTest, chunksOfPalettesAreDrawnOneAfterAnother)
     const osg::ref_ptr<osg::Image> whole = pictureOf(*scene, true);
     const std::size_t texels = PosePipeline::of(state())->options().maxTexels;
     PosePipeline::of(state())->options().maxTexels = 6 * 3 * testCharacterSet()->paletteSize(); // six per chunk
-    characterOf(*scene, 0).getController().seek(0.01);
-    characterOf(*scene, 0).getController().seek(0.0);
-    for (int index = 0; index < everybody; ++index)
-        characterOf(*scene, index).setDrawnTogether(true);
     drawAt(0.0);
     EXPECT_LE(Picture::pixelsDifferent(*whole, picture().image()), 0);
     EXPECT_EQ(drawsOf(*scene), 2 + 2 * 4);
     PosePipeline::of(state())->options().maxTexels = texels;
-}
-
-TEST_F(CharacterDrawsGLTest, everyCameraSeesItsOwn)
-{
-    const osg::ref_ptr<osg::Group> scene = makeCharacters(everybody);
-    osg::ref_ptr<osg::Camera> inset = new osg::Camera;
-    inset->setRenderOrder(osg::Camera::POST_RENDER);
-    inset->setClearMask(GL_DEPTH_BUFFER_BIT);
-    inset->setViewport(32, 0, 32, 32);
-    inset->setReferenceFrame(osg::Transform::ABSOLUTE_RF);
-    inset->setProjectionMatrixAsOrtho(-4, 4, -4, 4, 1, 20);
-    inset->setViewMatrixAsLookAt({0, -10, 2}, {0, 0, 0}, {0, 0, 1});
-    inset->addChild(scene);
-    osg::ref_ptr<osg::Group> root = new osg::Group;
-    const auto pictureOfBoth = [&](bool isTogether)
-    {
-        for (int index = 0; index < everybody; ++index)
-            characterOf(*scene, index).setDrawnTogether(isTogether);
-        viewer().setSceneData(root);
-        drawAt(0.0);
-        drawAt(0.0);
-        return picture().copy();
-    };
-    root->addChild(inset);
-    root->addChild(scene);
-    const osg::ref_ptr<osg::Image> apart = pictureOfBoth(false);
-    EXPECT_LE(Picture::pixelsDifferent(*apart, *pictureOfBoth(true)), 8);
-    EXPECT_EQ(drawsOf(*root), 2 * (2 + 2));
 }
 
 } // namespace

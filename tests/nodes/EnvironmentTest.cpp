@@ -53,14 +53,14 @@ struct FormatCase
     osg::Vec3f radiance;
 };
 
-const std::vector<FormatCase>& formatCases()
+std::vector<FormatCase> formatCases()
 {
     using Bytes = std::vector<unsigned char>;
     using Shorts = std::vector<unsigned short>;
     using Floats = std::vector<float>;
     constexpr float infinite = std::numeric_limits<float>::infinity(), none = std::numeric_limits<float>::quiet_NaN();
     // sRGB: 188 of 255 is 0.503, 128 of 255 is 0.216.
-    static const std::vector<FormatCase> cases{
+    return {
         {"floats", even(GL_RGB, GL_FLOAT, Floats{0.25f, 2.0f, 30.0f}), {0.25f, 2.0f, 30.0f}},
         {"floats with alpha", even(GL_RGBA, GL_FLOAT, Floats{1.0f, 2.0f, 3.0f, 0.0f}), {1.0f, 2.0f, 3.0f}},
         {"half floats", even(GL_RGB, GL_HALF_FLOAT, Shorts{0x3c00, 0x4400, 0x3400}), {1.0f, 4.0f, 0.25f}},
@@ -77,7 +77,6 @@ const std::vector<FormatCase>& formatCases()
         {"out of range", even(GL_RGB, GL_FLOAT, Floats{-3.0f, 1e30f, 1.0f}), {0.0f, 65504.0f, 1.0f}},
         {"half floats, not finite", even(GL_RGB, GL_HALF_FLOAT, Shorts{0x7c00, 0x7e01, 0xbc00}), {0.0f, 0.0f, 0.0f}},
     };
-    return cases;
 }
 
 TEST(EnvironmentTest, picturesAreReadAsLinearRadiance)
@@ -101,55 +100,46 @@ TEST(EnvironmentTest, picturesAreReadAsLinearRadiance)
 struct SlopeCase
 {
     const char* name;
-    float (*radiance)(const osg::Vec3f& direction);
+    float (*radiance)(const osg::Vec3f& direction); ///< beside an even one of 2
     std::size_t harmonic;
     float expected; ///< the irradiance over pi of cosines keeps 2/3, of the second degree 1/4
 };
 
 const SlopeCase slopeCases[] = {
-    {"brighter above", [](const osg::Vec3f& d) { return 2.0f + d.y(); }, 1, 2.0f / 3.0f},
-    {"brighter at +Z", [](const osg::Vec3f& d) { return 2.0f + d.z(); }, 2, 2.0f / 3.0f},
-    {"brighter at +X", [](const osg::Vec3f& d) { return 2.0f + d.x(); }, 3, 2.0f / 3.0f},
-    {"xy", [](const osg::Vec3f& d) { return 2.0f + d.x() * d.y(); }, 4, 0.25f},
-    {"yz", [](const osg::Vec3f& d) { return 2.0f + d.y() * d.z(); }, 5, 0.25f},
-    {"3zz - 1", [](const osg::Vec3f& d) { return 2.0f + 3.0f * d.z() * d.z() - 1.0f; }, 6, 0.25f},
-    {"xz", [](const osg::Vec3f& d) { return 2.0f + d.x() * d.z(); }, 7, 0.25f},
-    {"xx - yy", [](const osg::Vec3f& d) { return 2.0f + d.x() * d.x() - d.y() * d.y(); }, 8, 0.25f},
+    {"brighter above", [](const osg::Vec3f& d) { return d.y(); }, 1, 2.0f / 3.0f},
+    {"brighter at +Z", [](const osg::Vec3f& d) { return d.z(); }, 2, 2.0f / 3.0f},
+    {"brighter at +X", [](const osg::Vec3f& d) { return d.x(); }, 3, 2.0f / 3.0f},
+    {"xy", [](const osg::Vec3f& d) { return d.x() * d.y(); }, 4, 0.25f},
+    {"yz", [](const osg::Vec3f& d) { return d.y() * d.z(); }, 5, 0.25f},
+    {"3zz - 1", [](const osg::Vec3f& d) { return 3.0f * d.z() * d.z() - 1.0f; }, 6, 0.25f},
+    {"xz", [](const osg::Vec3f& d) { return d.x() * d.z(); }, 7, 0.25f},
+    {"xx - yy", [](const osg::Vec3f& d) { return d.x() * d.x() - d.y() * d.y(); }, 8, 0.25f},
 };
 
 TEST(EnvironmentTest, irradianceHasTheHarmonicsOfThePictures)
 {
     for (const SlopeCase& each : slopeCases)
     {
-        SCOPED_TRACE(each.name);
-        const auto radiance = [&](const osg::Vec3f& d) { return osg::Vec3f(1, 1, 1) * each.radiance(d); };
-        const auto panorama = RadianceCube::fromPanorama(*makePanorama(256, radiance));
-        const auto faces = RadianceCube::fromFaces(*makeFaces(32, radiance));
-        ASSERT_TRUE(panorama && faces);
-        for (const auto& cube : {panorama.value(), faces.value()})
+        const auto radiance = [&](const osg::Vec3f& d) { return osg::Vec3f(1, 1, 1) * (2.0f + each.radiance(d)); };
+        for (const auto& cube : {RadianceCube::fromPanorama(*makePanorama(256, radiance)),
+                                 RadianceCube::fromFaces(*makeFaces(32, radiance))})
         {
-            const std::array<osg::Vec3f, 9> harmonics = cube->harmonics();
-            EXPECT_NEAR(harmonics[0].x(), 2.0f, 0.005f);
+            ASSERT_TRUE(cube);
+            const std::array<osg::Vec3f, 9> harmonics = cube.value()->harmonics();
+            EXPECT_NEAR(harmonics[0].x(), 2.0f, 0.005f) << each.name;
             for (std::size_t i = 1; i < harmonics.size(); ++i)
-                EXPECT_NEAR(harmonics[i].x(), i == each.harmonic ? each.expected : 0.0f, 0.005f) << i;
+                EXPECT_NEAR(harmonics[i].x(), i == each.harmonic ? each.expected : 0.0f, 0.005f) << each.name << i;
         }
     }
-}
-
-/// A checkered step in longitude, so that each half of the picture has its own mean.
-float stepped(const osg::Vec3f& d)
-{
-    return 1.0f + (d.x() > 0.0f ? 0.5f : 0.0f);
 }
 
 // Pictures of more pixels than faces have are reduced as they are read: 2,100 pixels across leave a part of a block.
 TEST(EnvironmentTest, largePicturesAreReduced)
 {
-    const auto radiance = [](const osg::Vec3f& d) { return osg::Vec3f(1, 1, 1) * stepped(d); };
+    const auto radiance = [](const osg::Vec3f& d) { return osg::Vec3f(1, 1, 1) * (d.x() > 0.0f ? 1.5f : 1.0f); };
     const auto expected = RadianceCube::fromPanorama(*makePanorama(1024, radiance)).value()->harmonics();
-    const auto panorama = RadianceCube::fromPanorama(*makePanorama(2100, radiance)).value();
-    const auto faces = RadianceCube::fromFaces(*makeFaces(515, radiance)).value();
-    for (const auto& cube : {panorama, faces})
+    for (const auto& cube : {RadianceCube::fromPanorama(*makePanorama(2100, radiance)).value(),
+                             RadianceCube::fromFaces(*makeFaces(515, radiance)).value()})
     {
         const auto found = cube->harmonics();
         for (std::size_t i = 0; i < found.size(); ++i)
@@ -173,61 +163,46 @@ TEST(EnvironmentTest, aPanoramaIsClosed)
     }
 }
 
-struct FaultCase
-{
-    const char* message;
-    osg::ref_ptr<osg::Image> panorama;
-};
-
-TEST(EnvironmentTest, faultyPanoramasAreRefusedWithAMessage)
+TEST(EnvironmentTest, faultyPicturesAreRefusedWithAMessage)
 {
     const std::vector<unsigned char> white{255, 255, 255};
     const osg::ref_ptr<osg::Image> layers = new osg::Image;
     layers->allocateImage(8, 4, 3, GL_RGB, GL_UNSIGNED_BYTE);
-    const FaultCase cases[] = {
+    const std::string formats = "a panorama: expected RGB or luminance of 8 or 16 bits, half floats or floats, found ";
+    const std::pair<std::string, osg::ref_ptr<osg::Image>> panoramas[] = {
         {"a panorama: expected a picture, found null", nullptr},
         {"a panorama: expected a picture, found no pixels", new osg::Image},
         {"a panorama: expected twice as many pixels across as up, found 4x4",
          even(GL_RGB, GL_UNSIGNED_BYTE, white, 4, 4)},
         {"a panorama: expected a picture of one layer, found 3", layers},
-        {"a panorama: expected RGB or luminance of 8 or 16 bits, half floats or floats, found the pixel format 0x1902 "
-         "with the data type 0x1401",
+        {formats + "the pixel format 0x1902 with the data type 0x1401",
          even(GL_DEPTH_COMPONENT, GL_UNSIGNED_BYTE, std::vector<unsigned char>{1})},
-        {"a panorama: expected RGB or luminance of 8 or 16 bits, half floats or floats, found the pixel format 0x1907 "
-         "with the data type 0x1405",
+        {formats + "the pixel format 0x1907 with the data type 0x1405",
          even(GL_RGB, GL_UNSIGNED_INT, std::vector<unsigned int>{1, 1, 1})},
     };
     const osg::ref_ptr<Environment> environment = new Environment;
     const osg::ref_ptr<osg::Image> kept = even(GL_RGB, GL_UNSIGNED_BYTE, white);
     ASSERT_TRUE(environment->setPanorama(kept));
-    for (const FaultCase& each : cases)
+    for (const auto& [message, panorama] : panoramas)
     {
-        const Result<void> taken = environment->setPanorama(each.panorama);
-        ASSERT_FALSE(taken) << each.message;
-        EXPECT_EQ(taken.error().message, each.message);
+        const Result<void> taken = environment->setPanorama(panorama);
+        EXPECT_EQ(taken ? "" : taken.error().message, message);
         EXPECT_EQ(environment->getPanorama(), kept);
     }
-}
-
-TEST(EnvironmentTest, faultyFacesAreRefusedWithAMessage)
-{
-    const std::vector<unsigned char> white{255, 255, 255};
-    const osg::ref_ptr<osg::Image> fine = even(GL_RGB, GL_UNSIGNED_BYTE, white, 4, 4);
-    const osg::ref_ptr<osg::Image> wide = even(GL_RGB, GL_UNSIGNED_BYTE, white, 8, 4);
-    const osg::ref_ptr<osg::Image> large = even(GL_RGB, GL_UNSIGNED_BYTE, white, 8, 8);
-    const std::pair<const char*, osg::ref_ptr<osg::TextureCubeMap>> cases[] = {
+    const osg::ref_ptr<osg::Image> fine = even(GL_RGB, GL_UNSIGNED_BYTE, white, 4, 4),
+                                   wide = even(GL_RGB, GL_UNSIGNED_BYTE, white, 8, 4),
+                                   large = even(GL_RGB, GL_UNSIGNED_BYTE, white, 8, 8);
+    const std::pair<std::string, osg::ref_ptr<osg::TextureCubeMap>> cubes[] = {
         {"the faces of surroundings: expected a cube map, found null", nullptr},
         {"the face POSITIVE_X: expected a picture, found no pixels", new osg::TextureCubeMap},
         {"the face NEGATIVE_Z: expected a picture, found no pixels", cubeOf({fine, fine, fine, fine, fine})},
         {"the face POSITIVE_X: expected 8x8 pixels, found 8x4", cubeOf({wide, wide, wide, wide, wide, wide})},
         {"the face NEGATIVE_Y: expected 4x4 pixels, found 8x8", cubeOf({fine, fine, fine, large, fine, fine})},
     };
-    const osg::ref_ptr<Environment> environment = new Environment;
-    for (const auto& [message, faces] : cases)
+    for (const auto& [message, faces] : cubes)
     {
         const Result<void> taken = environment->setFaces(faces);
-        ASSERT_FALSE(taken) << message;
-        EXPECT_EQ(taken.error().message, message);
+        EXPECT_EQ(taken ? "" : taken.error().message, message);
         EXPECT_EQ(environment->getFaces(), nullptr);
     }
 }
@@ -246,27 +221,6 @@ TEST(EnvironmentTest, numbersOutOfRangeAreRefused)
         environment->setRotation(wrong);
         EXPECT_EQ(environment->getRotation(), 2.0f) << wrong;
     }
-}
-
-TEST(EnvironmentTest, copiesAndTheNextSourceReplaceTheFormer)
-{
-    const osg::ref_ptr<Environment> environment = new Environment;
-    const osg::ref_ptr<osg::Image> panorama = makePanorama(16, studioRadiance);
-    ASSERT_TRUE(environment->setPanorama(panorama));
-    environment->setIntensity(0.5f);
-    environment->setRotation(1.0f);
-    environment->setToneMapping(true);
-    const osg::ref_ptr<Environment> copy = new Environment(*environment, osg::CopyOp::DEEP_COPY_ALL);
-    EXPECT_EQ(copy->getPanorama(), panorama);
-    EXPECT_EQ(copy->getIntensity(), 0.5f);
-    EXPECT_EQ(copy->getRotation(), 1.0f);
-    EXPECT_TRUE(copy->getToneMapping());
-    ASSERT_TRUE(environment->setFaces(makeFaces(4, studioRadiance)));
-    EXPECT_EQ(environment->getPanorama(), nullptr);
-    EXPECT_NE(environment->getFaces(), nullptr);
-    environment->setStudio();
-    EXPECT_EQ(environment->getFaces(), nullptr);
-    EXPECT_EQ(copy->getPanorama(), panorama);
 }
 
 osg::Vec3f direction(float x, float y, float z)

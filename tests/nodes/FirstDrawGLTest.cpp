@@ -3,8 +3,6 @@
 #include "support/TestCharacter.h"
 #include "support/ViewerGLTest.h"
 
-#include <osgGpuAnimation/looks/Environment.h>
-
 #include <osg/MatrixTransform>
 #include <osg/Texture2D>
 #include <osgUtil/GLObjectsVisitor>
@@ -30,15 +28,6 @@ protected:
         _root = new osg::Group;
         pictureOf(_root, {0.0});
         return *_root;
-    }
-
-    /// The content of the framebuffer.
-    osg::ref_ptr<osg::Image> shownNow()
-    {
-        osg::ref_ptr<osg::Image> shown = new osg::Image;
-        shown->readPixels(0, 0, picture().image().s(), picture().image().t(), picture().image().getPixelFormat(),
-                          GL_UNSIGNED_BYTE);
-        return shown;
     }
 
     void compileAtOnce(osg::Node& node)
@@ -89,73 +78,34 @@ osg::ref_ptr<osg::Node> makeCharacters(int count)
     return group;
 }
 
-struct CompileCase
-{
-    const char* name;
-    bool isAtOnce;
-    int characters;
-};
-
-const CompileCase cases[] = {
-    {"one, by GLObjectsVisitor", true, 1},
-    {"three, by GLObjectsVisitor", true, 3},
-    {"one, by IncrementalCompileOperation", false, 1},
-    {"three, by IncrementalCompileOperation", false, 3},
-};
-
 } // namespace
 
 TEST_F(FirstDrawGLTest, theFirstFrameAfterACompileTraversalCompilesNothing)
 {
-    for (const CompileCase& each : cases)
-    {
-        SCOPED_TRACE(each.name);
-        beginAgain().addChild(makeCharacters(each.characters));
-        osg::ref_ptr<osg::Image> expected;
+    for (const int characters : {1, 3})
+        for (const bool isAtOnce : {true, false})
         {
+            SCOPED_TRACE(testing::Message() << characters << (isAtOnce ? ", by GLObjectsVisitor" : ", incremental"));
+            beginAgain().addChild(makeCharacters(characters));
+            osg::ref_ptr<osg::Image> expected;
+            {
+                const GlCallTrace trace(state());
+                drawAt(0.5);
+                expected = picture().copy();
+                EXPECT_GT(trace.count("glLinkProgram"), 1) << "otherwise the trace sees none";
+            }
+            EXPECT_GT(picture().pixelsDrawn(), 50);
+            osg::Group& root = beginAgain();
+            const osg::ref_ptr<osg::Node> scene = makeCharacters(characters);
+            isAtOnce ? compileAtOnce(*scene) : compileByAndBy(*scene);
+            root.addChild(scene);
             const GlCallTrace trace(state());
             drawAt(0.5);
-            expected = picture().copy();
-            EXPECT_GT(trace.count("glLinkProgram"), 1) << "otherwise the trace sees none";
+            EXPECT_EQ(trace.count("glCompileShader"), 0);
+            EXPECT_EQ(trace.count("glLinkProgram"), 0);
+            EXPECT_EQ(Picture::pixelsDifferent(*expected, picture().image()), 0);
+            EXPECT_NO_GL_ERROR();
         }
-        EXPECT_GT(picture().pixelsDrawn(), 50);
-
-        osg::Group& root = beginAgain();
-        const osg::ref_ptr<osg::Node> scene = makeCharacters(each.characters);
-        if (each.isAtOnce)
-            compileAtOnce(*scene);
-        else
-            compileByAndBy(*scene);
-        root.addChild(scene);
-        const GlCallTrace trace(state());
-        drawAt(0.5);
-        EXPECT_EQ(trace.count("glCompileShader"), 0);
-        EXPECT_EQ(trace.count("glLinkProgram"), 0);
-        EXPECT_EQ(Picture::pixelsDifferent(*expected, picture().image()), 0);
-        EXPECT_NO_GL_ERROR();
-    }
-}
-
-// A light of the scene, surroundings, shadows: the traversal does not know the programs, so it links those of poses
-// alone.
-TEST_F(FirstDrawGLTest, noProgramIsCompiledInVain)
-{
-    const auto linked = [&](osg::Node& node)
-    {
-        const GlCallTrace trace(state());
-        compileAtOnce(node);
-        return trace.count("glLinkProgram");
-    };
-    beginAgain();
-    const int ofPlain = linked(*makeCharacters(1));
-    beginAgain();
-    const osg::ref_ptr<osg::Node> lit = makeCharacters(1);
-    lit->getOrCreateStateSet()->setMode(GL_LIGHT1, osg::StateAttribute::ON);
-    EXPECT_EQ(linked(*lit), ofPlain - 1);
-    beginAgain();
-    const osg::ref_ptr<Environment> surroundings = new Environment;
-    surroundings->addChild(makeCharacters(1));
-    EXPECT_EQ(linked(*surroundings), ofPlain - 1);
 }
 
 // Applications compile more than once: when they attach a scene, and after each change of the graphics context.
@@ -163,11 +113,10 @@ TEST_F(FirstDrawGLTest, aCompileTraversalBetweenFramesChangesNoPicture)
 {
     osg::Group& root = beginAgain();
     root.addChild(makeCharacters(3));
-    osg::ref_ptr<osg::Geometry> fixed = osg::createTexturedQuadGeometry({-3, 0, -3}, {1, 0, 0}, {0, 0, 1});
-    root.addChild(fixed);
+    root.addChild(osg::createTexturedQuadGeometry({-3, 0, -3}, {1, 0, 0}, {0, 0, 1}));
     drawAt(0.5);
     drawAt(0.5);
-    const osg::ref_ptr<osg::Image> before = picture().copy();
+    const osg::ref_ptr<osg::Image> before = picture().copy(), shown = new osg::Image;
     // In clip space, where matrices that no frame has set would draw it, it covers the picture.
     const osg::ref_ptr<AnimatedCharacter> wide = makeTestCharacter();
     const osg::Vec3 corners[] = {{-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0}};
@@ -177,7 +126,8 @@ TEST_F(FirstDrawGLTest, aCompileTraversalBetweenFramesChangesNoPicture)
     {
         compileAtOnce(root);
         compileAtOnce(*wide);
-        EXPECT_EQ(Picture::pixelsDifferent(*before, *shownNow()), 0) << "it draws into the frame, round " << round;
+        shown->readPixels(0, 0, before->s(), before->t(), before->getPixelFormat(), GL_UNSIGNED_BYTE);
+        EXPECT_EQ(Picture::pixelsDifferent(*before, *shown), 0) << "it draws into the frame, round " << round;
         drawAt(0.5);
         EXPECT_EQ(Picture::pixelsDifferent(*before, picture().image()), 0) << round;
         EXPECT_NO_GL_ERROR();

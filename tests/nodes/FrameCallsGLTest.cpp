@@ -184,40 +184,6 @@ TEST_F(FrameCallsGLTest, noBufferThatFeedbackWritesHasAnotherBinding)
     }
 }
 
-TEST_F(FrameCallsGLTest, theTraceSeesWhereAWrittenBufferIsBound)
-{
-    viewer().setSceneData(movingScene(false));
-    drawAt(0.0);
-    const GlCallTrace trace(state());
-    const PalettePlace place = PosePipeline::of(state())->place(*testCharacterSet(), 0, 0);
-    osg::GLExtensions& gl = *state().get<osg::GLExtensions>();
-    gl.glActiveTexture(GL_TEXTURE0 + 20);
-    glBindTexture(GL_TEXTURE_BUFFER, place.texture);
-    drawAt(0.1);
-    const std::vector<std::string>& found = trace.feedbackConflicts();
-    EXPECT_TRUE(std::any_of(found.begin(), found.end(),
-                            [](const std::string& conflict)
-                            { return conflict.find(": texture unit 20") != std::string::npos; }));
-    gl.glActiveTexture(GL_TEXTURE0 + 20);
-    glBindTexture(GL_TEXTURE_BUFFER, 0);
-    gl.glActiveTexture(GL_TEXTURE0 + state().getActiveTextureUnit());
-}
-
-TEST_F(FrameCallsGLTest, theTraceSeesWhatItLooksFor)
-{
-    viewer().setSceneData(characters(1));
-    drawAt(0.0);
-    const GlCallTrace trace(state());
-    GLint viewport[4];
-    glGetIntegerv(GL_VIEWPORT, viewport);
-    glFinish();
-    unsigned char pixel[4];
-    glReadPixels(0, 0, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, pixel);
-    EXPECT_EQ(trace.count("glGetIntegerv"), 1);
-    EXPECT_EQ(trace.count("glFinish"), 1);
-    EXPECT_EQ(trace.count("glReadPixels"), 1);
-}
-
 } // namespace
 
 } // namespace osgGpuAnimation

@@ -8,6 +8,7 @@
 
 #include <tuple>
 #include <type_traits>
+#include <utility>
 
 #include <dlfcn.h>
 
@@ -19,11 +20,6 @@ namespace
 
 std::map<std::string, int> callsMade;
 bool isTracing = false;
-
-void note(const char* name)
-{
-    if (isTracing) ++callsMade[name];
-}
 
 /// The function of that name in the libraries behind this program.
 template <typename Function>
@@ -44,59 +40,29 @@ GLint integer(GLenum name)
     return value;
 }
 
-/// A binding point of buffers and the query of what it holds.
-struct BindingPoint
-{
-    const char* name;
-    GLenum query;
-    GLenum maxIndices; ///< the query of the number of indexed points behind the general one; 0: none
-    float since;       ///< OpenGL's version
-};
+/// Binding points of buffers that OpenGL 3.3 has, and the queries of what they hold.
+constexpr std::pair<const char*, GLenum> bindingPoints[] = {{"array", GL_ARRAY_BUFFER_BINDING_ARB},
+                                                            {"element array", GL_ELEMENT_ARRAY_BUFFER_BINDING_ARB},
+                                                            {"pixel pack", 0x88ED},
+                                                            {"pixel unpack", 0x88EF},
+                                                            {"texture buffer", 0x8C2A},
+                                                            {"copy read", 0x8F36},
+                                                            {"copy write", 0x8F37},
+                                                            {"uniform", 0x8A28}};
 
-constexpr BindingPoint bindingPoints[] = {
-    {"array", GL_ARRAY_BUFFER_BINDING_ARB, 0, 1.5f},
-    {"element array", GL_ELEMENT_ARRAY_BUFFER_BINDING_ARB, 0, 1.5f},
-    {"pixel pack", 0x88ED, 0, 2.1f},
-    {"pixel unpack", 0x88EF, 0, 2.1f},
-    {"texture buffer", 0x8C2A, 0, 3.1f},
-    {"copy read", 0x8F36, 0, 3.1f},
-    {"copy write", 0x8F37, 0, 3.1f},
-    {"uniform", 0x8A28, 0x8A2F, 3.1f},
-    {"draw indirect", 0x8F43, 0, 4.0f},
-    {"atomic counter", 0x92C1, 0x92DC, 4.2f},
-    {"shader storage", 0x90D3, 0x90DD, 4.3f},
-    {"dispatch indirect", 0x90EF, 0, 4.3f},
-    {"query", 0x9193, 0, 4.4f},
-};
-
-/// Every binding point that holds a buffer, but for those of feedback.
+/// What every binding point holds, but for those of feedback; 0: nothing.
 std::vector<std::pair<std::string, GLint>> boundBuffers()
 {
-    using GetIndexed = void(GL_APIENTRY*)(GLenum, GLuint, GLint*);
     using GetAttribute = void(GL_APIENTRY*)(GLuint, GLenum, GLint*);
-    static const auto getIndexed = reinterpret_cast<GetIndexed>(osg::getGLExtensionFuncPtr("glGetIntegeri_v"));
     static const auto getAttribute = reinterpret_cast<GetAttribute>(osg::getGLExtensionFuncPtr("glGetVertexAttribiv"));
     std::vector<std::pair<std::string, GLint>> found;
-    const auto add = [&](const std::string& where, GLint buffer)
-    {
-        if (buffer != 0) found.emplace_back(where, buffer);
-    };
-    for (const BindingPoint& point : bindingPoints)
-    {
-        if (extensions->glVersion < point.since) continue;
-        add(point.name, integer(point.query));
-        for (GLint i = 0, end = point.maxIndices ? integer(point.maxIndices) : 0; i < end; ++i)
-        {
-            GLint buffer = 0;
-            getIndexed(point.query, static_cast<GLuint>(i), &buffer);
-            add(point.name + (" " + std::to_string(i)), buffer);
-        }
-    }
+    for (const auto& [name, query] : bindingPoints)
+        found.emplace_back(name, integer(query));
     for (GLint i = 0, end = integer(0x8869); i < end; ++i) // GL_MAX_VERTEX_ATTRIBS
     {
         GLint buffer = 0;
         getAttribute(static_cast<GLuint>(i), 0x889F, &buffer); // GL_VERTEX_ATTRIB_ARRAY_BUFFER_BINDING
-        add("vertex attribute " + std::to_string(i), buffer);
+        found.emplace_back("vertex attribute " + std::to_string(i), buffer);
     }
     const GLint active = integer(GL_ACTIVE_TEXTURE);
     for (GLint i = 0, end = integer(0x8B4D); i < end; ++i) // GL_MAX_COMBINED_TEXTURE_IMAGE_UNITS
@@ -105,7 +71,7 @@ std::vector<std::pair<std::string, GLint>> boundBuffers()
         if (integer(0x8C2C) == 0) continue; // GL_TEXTURE_BINDING_BUFFER
         GLint buffer = 0;
         glGetTexLevelParameteriv(0x8C2A, 0, 0x8C2D, &buffer); // GL_TEXTURE_BUFFER_DATA_STORE_BINDING
-        add("texture unit " + std::to_string(i), buffer);
+        found.emplace_back("texture unit " + std::to_string(i), buffer);
     }
     extensions->glActiveTexture(static_cast<GLenum>(active));
     return found;
@@ -143,113 +109,76 @@ void checkBindings()
     watched = &state;
 }
 
-constexpr const char* beginName = "glBeginTransformFeedback";
-constexpr const char* endName = "glEndTransformFeedback";
-constexpr const char* instancedName = "glDrawArraysInstanced";
+/// Notes a call that is to come, and checks what it draws.
+void enter(const std::string& name)
+{
+    if (name == "glGetError") return checkBindings();
+    if (isTracing) ++callsMade[name];
+    if (name == "glBeginTransformFeedback") isFeedbackActive = true;
+    if (name == "glEndTransformFeedback") isFeedbackActive = false;
+    if (name == "glDrawArrays" || name == "glDrawArraysInstanced") checkFeedbackDraw();
+}
 
-struct MapTag;
-struct MapRangeTag;
-struct GetSubDataTag;
-struct BeginQueryTag;
-struct QueryResultTag;
-struct QueryResult64Tag;
-struct TimeStampTag;
-struct WaitTag;
-struct BeginFeedbackTag;
-struct EndFeedbackTag;
-struct UploadTag;
-struct UploadPartTag;
-struct GetUniformLocationTag;
-struct DrawInstancedTag;
-struct DrawBaseInstanceTag;
-struct AttributeDivisorTag;
-struct UniformTag;
-struct CompileTag;
-struct LinkTag;
+/// A function that OSG fetches by pointer, replaced.
+template <auto pointer>
+struct Wrapped;
 
-/// One wrapped pointer of GLExtensions: Tag tells pointers of one type apart.
-template <typename Tag, typename Return, typename... Arguments>
-struct Wrapped
+template <typename Return, typename... Arguments, Return (GL_APIENTRY* osg::GLExtensions::*pointer)(Arguments...)>
+struct Wrapped<pointer>
 {
     static inline Return(GL_APIENTRY* real)(Arguments...) = nullptr;
-    static inline const char* name = "";
+    static inline std::string name;
     static Return GL_APIENTRY call(Arguments... arguments)
     {
-        note(name);
-        if constexpr (std::is_same_v<Tag, UniformTag>)
-            if (std::get<0>(std::tie(arguments...)) < 0) note("glUniform1i of a uniform that is not there");
-        if (name == beginName) isFeedbackActive = true;
-        if (name == endName) isFeedbackActive = false;
-        if (name == instancedName) checkFeedbackDraw();
+        enter(name);
+        if constexpr (std::is_same_v<std::tuple<Arguments...>, std::tuple<GLint, GLint>>)
+            if (name == "glUniform1i" && std::get<0>(std::tie(arguments...)) < 0)
+                enter("glUniform1i of a uniform that is not there");
         return real(arguments...);
     }
-};
-
-template <typename Tag, typename Return, typename... Arguments>
-void wrap(Return(GL_APIENTRY*& pointer)(Arguments...), const char* name)
-{
-    using W = Wrapped<Tag, Return, Arguments...>;
-    if (!pointer || pointer == &W::call) return;
-    W::real = pointer;
-    W::name = name;
-    pointer = &W::call;
-}
-
-template <typename Tag, typename Return, typename... Arguments>
-void unwrap(Return(GL_APIENTRY*& pointer)(Arguments...))
-{
-    using W = Wrapped<Tag, Return, Arguments...>;
-    if (pointer == &W::call) pointer = W::real;
-}
-
-template <typename Function>
-void forEachPointer(osg::GLExtensions& gl, Function function)
-{
-    function(static_cast<MapTag*>(nullptr), gl.glMapBuffer, "glMapBuffer");
-    function(static_cast<MapRangeTag*>(nullptr), gl.glMapBufferRange, "glMapBufferRange");
-    function(static_cast<GetSubDataTag*>(nullptr), gl.glGetBufferSubData, "glGetBufferSubData");
-    function(static_cast<BeginQueryTag*>(nullptr), gl.glBeginQuery, "glBeginQuery");
-    function(static_cast<QueryResultTag*>(nullptr), gl.glGetQueryObjectuiv, "glGetQueryObjectuiv");
-    function(static_cast<QueryResult64Tag*>(nullptr), gl.glGetQueryObjectui64v, "glGetQueryObjectui64v");
-    function(static_cast<TimeStampTag*>(nullptr), gl.glQueryCounter, "glQueryCounter");
-    function(static_cast<WaitTag*>(nullptr), gl.glClientWaitSync, "glClientWaitSync");
-    function(static_cast<BeginFeedbackTag*>(nullptr), gl.glBeginTransformFeedback, beginName);
-    function(static_cast<EndFeedbackTag*>(nullptr), gl.glEndTransformFeedback, endName);
-    function(static_cast<UploadTag*>(nullptr), gl.glBufferData, "glBufferData");
-    function(static_cast<UploadPartTag*>(nullptr), gl.glBufferSubData, "glBufferSubData");
-    function(static_cast<DrawInstancedTag*>(nullptr), gl.glDrawArraysInstanced, instancedName);
-    function(static_cast<DrawBaseInstanceTag*>(nullptr), gl.glDrawArraysInstancedBaseInstance, instancedName);
-    function(static_cast<AttributeDivisorTag*>(nullptr), gl.glVertexAttribDivisor, "glVertexAttribDivisor");
-    function(static_cast<UniformTag*>(nullptr), gl.glUniform1i, "glUniform1i");
-    function(static_cast<GetUniformLocationTag*>(nullptr), gl.glGetUniformLocation, "glGetUniformLocation");
-    function(static_cast<CompileTag*>(nullptr), gl.glCompileShader, "glCompileShader");
-    function(static_cast<LinkTag*>(nullptr), gl.glLinkProgram, "glLinkProgram");
-}
-
-struct Wrapper
-{
-    template <typename Tag, typename Pointer>
-    void operator()(Tag*, Pointer& pointer, const char* name) const
+    static void wrap(osg::GLExtensions& gl, const char* itsName)
     {
-        wrap<Tag>(pointer, name);
+        if (!(gl.*pointer) || gl.*pointer == &call) return;
+        real = std::exchange(gl.*pointer, &call);
+        name = itsName;
+    }
+    static void unwrap(osg::GLExtensions& gl)
+    {
+        if (gl.*pointer == &call) gl.*pointer = real;
     }
 };
 
-struct Unwrapper
+template <typename Visit>
+void forEachPointer(Visit visit)
 {
-    template <typename Tag, typename Pointer>
-    void operator()(Tag*, Pointer& pointer, const char*) const
-    {
-        unwrap<Tag>(pointer);
-    }
-};
+    using Gl = osg::GLExtensions;
+    visit(Wrapped<&Gl::glMapBuffer>(), "glMapBuffer");
+    visit(Wrapped<&Gl::glMapBufferRange>(), "glMapBufferRange");
+    visit(Wrapped<&Gl::glGetBufferSubData>(), "glGetBufferSubData");
+    visit(Wrapped<&Gl::glBeginQuery>(), "glBeginQuery");
+    visit(Wrapped<&Gl::glGetQueryObjectuiv>(), "glGetQueryObjectuiv");
+    visit(Wrapped<&Gl::glGetQueryObjectui64v>(), "glGetQueryObjectui64v");
+    visit(Wrapped<&Gl::glQueryCounter>(), "glQueryCounter");
+    visit(Wrapped<&Gl::glClientWaitSync>(), "glClientWaitSync");
+    visit(Wrapped<&Gl::glBeginTransformFeedback>(), "glBeginTransformFeedback");
+    visit(Wrapped<&Gl::glEndTransformFeedback>(), "glEndTransformFeedback");
+    visit(Wrapped<&Gl::glBufferData>(), "glBufferData");
+    visit(Wrapped<&Gl::glBufferSubData>(), "glBufferSubData");
+    visit(Wrapped<&Gl::glDrawArraysInstanced>(), "glDrawArraysInstanced");
+    visit(Wrapped<&Gl::glDrawArraysInstancedBaseInstance>(), "glDrawArraysInstanced");
+    visit(Wrapped<&Gl::glVertexAttribDivisor>(), "glVertexAttribDivisor");
+    visit(Wrapped<&Gl::glUniform1i>(), "glUniform1i");
+    visit(Wrapped<&Gl::glGetUniformLocation>(), "glGetUniformLocation");
+    visit(Wrapped<&Gl::glCompileShader>(), "glCompileShader");
+    visit(Wrapped<&Gl::glLinkProgram>(), "glLinkProgram");
+}
 
 } // namespace
 
 GlCallTrace::GlCallTrace(osg::State& state)
     : _state(state), _gl(state.get<osg::GLExtensions>()), _errorChecks(state.getCheckForGLErrors())
 {
-    forEachPointer(*_gl, Wrapper());
+    forEachPointer([this](auto wrapped, const char* name) { wrapped.wrap(*_gl, name); });
     callsMade.clear();
     conflicts.clear();
     feedbackDrawsChecked = 0;
@@ -261,7 +190,7 @@ GlCallTrace::~GlCallTrace()
 {
     watched = nullptr;
     isTracing = false;
-    forEachPointer(*_gl, Unwrapper());
+    forEachPointer([this](auto wrapped, const char*) { wrapped.unwrap(*_gl); });
     _state.setCheckForGLErrors(_errorChecks);
 }
 
@@ -307,58 +236,24 @@ int GlCallTrace::count(const std::string& name) const
 
 } // namespace osgGpuAnimation
 
+using namespace osgGpuAnimation;
+
 // The program's own functions stand before the libraries': calls from OSG and from the kit come here first.
-extern "C"
-{
-
-    void GLAPIENTRY glGetIntegerv(GLenum name, GLint* values)
-    {
-        osgGpuAnimation::note("glGetIntegerv");
-        osgGpuAnimation::next<decltype(glGetIntegerv)>("glGetIntegerv")(name, values);
+#define BEFORE_THE_LIBRARYS(Return, function, parameters, ...)                                                         \
+    extern "C" Return GLAPIENTRY function parameters                                                                   \
+    {                                                                                                                  \
+        enter(#function);                                                                                              \
+        return next<decltype(function)>(#function)(__VA_ARGS__);                                                       \
     }
 
-    void GLAPIENTRY glGetFloatv(GLenum name, GLfloat* values)
-    {
-        osgGpuAnimation::note("glGetFloatv");
-        osgGpuAnimation::next<decltype(glGetFloatv)>("glGetFloatv")(name, values);
-    }
-
-    void GLAPIENTRY glGetBooleanv(GLenum name, GLboolean* values)
-    {
-        osgGpuAnimation::note("glGetBooleanv");
-        osgGpuAnimation::next<decltype(glGetBooleanv)>("glGetBooleanv")(name, values);
-    }
-
-    GLenum GLAPIENTRY glGetError()
-    {
-        osgGpuAnimation::checkBindings();
-        return osgGpuAnimation::next<decltype(glGetError)>("glGetError")();
-    }
-
-    void GLAPIENTRY glFinish()
-    {
-        osgGpuAnimation::note("glFinish");
-        osgGpuAnimation::next<decltype(glFinish)>("glFinish")();
-    }
-
-    void GLAPIENTRY glReadPixels(GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLenum type,
-                                 GLvoid* out)
-    {
-        osgGpuAnimation::note("glReadPixels");
-        osgGpuAnimation::next<decltype(glReadPixels)>("glReadPixels")(x, y, width, height, format, type, out);
-    }
-
-    void GLAPIENTRY glGetTexImage(GLenum target, GLint level, GLenum format, GLenum type, GLvoid* out)
-    {
-        osgGpuAnimation::note("glGetTexImage");
-        osgGpuAnimation::next<decltype(glGetTexImage)>("glGetTexImage")(target, level, format, type, out);
-    }
-
-    void GLAPIENTRY glDrawArrays(GLenum mode, GLint first, GLsizei count)
-    {
-        osgGpuAnimation::note("glDrawArrays");
-        osgGpuAnimation::checkFeedbackDraw();
-        osgGpuAnimation::next<decltype(glDrawArrays)>("glDrawArrays")(mode, first, count);
-    }
-
-} // extern "C"
+BEFORE_THE_LIBRARYS(void, glGetIntegerv, (GLenum name, GLint* values), name, values)
+BEFORE_THE_LIBRARYS(void, glGetFloatv, (GLenum name, GLfloat* values), name, values)
+BEFORE_THE_LIBRARYS(void, glGetBooleanv, (GLenum name, GLboolean* values), name, values)
+BEFORE_THE_LIBRARYS(GLenum, glGetError, (), )
+BEFORE_THE_LIBRARYS(void, glFinish, (), )
+BEFORE_THE_LIBRARYS(void, glReadPixels,
+                    (GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLenum type, GLvoid* out), x, y,
+                    width, height, format, type, out)
+BEFORE_THE_LIBRARYS(void, glGetTexImage, (GLenum target, GLint level, GLenum format, GLenum type, GLvoid* out), target,
+                    level, format, type, out)
+BEFORE_THE_LIBRARYS(void, glDrawArrays, (GLenum mode, GLint first, GLsizei count), mode, first, count)

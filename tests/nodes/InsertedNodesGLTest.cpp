@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "support/TestCharacter.h"
+#include "support/TestCrowd.h"
 #include "support/ViewerGLTest.h"
-
-#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 
 #include <osg/Group>
 #include <osgFX/Scribe>
@@ -19,32 +17,6 @@ namespace
 class InsertedNodesGLTest : public ViewerGLTest
 {
 protected:
-    static osg::ref_ptr<osg::Group> makeCharacters()
-    {
-        const osg::ref_ptr<osg::Group> group = new osg::Group;
-        for (const double x : {-3.0, 0.5})
-        {
-            const osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
-            character->setMatrix(osg::Matrix::translate(x, 0, 0));
-            group->addChild(character);
-        }
-        return group;
-    }
-
-    /// The origin is far outside the picture: so are the bounds of the mesh below the crowd.
-    static osg::ref_ptr<osg::Group> makeCrowd(const osg::Vec3d& origin)
-    {
-        const osg::ref_ptr<osg::Group> group = new osg::Group;
-        const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*makeTestCharacter());
-        EXPECT_TRUE(crowd->setOrigin(origin));
-        AnimationController controller(crowd->getSharedAnimationSet());
-        EXPECT_TRUE(controller.play("shift"));
-        for (const double x : {-3.0, 0.5})
-            EXPECT_TRUE(crowd->add(osg::Matrix::translate(x, 0, 0), controller));
-        group->addChild(crowd);
-        return group;
-    }
-
     /// Inserts the node above the first mesh of each character and crowd.
     static void insert(osg::Group& scene, osg::Group& node)
     {
@@ -77,22 +49,33 @@ protected:
 
 TEST_F(InsertedNodesGLTest, charactersStayVisible)
 {
-    expectVisible(*makeCharacters());
+    const osg::ref_ptr<osg::Group> scene = new osg::Group;
+    for (const double x : {-3.0, 0.5})
+    {
+        const osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
+        character->setMatrix(osg::Matrix::translate(x, 0, 0));
+        scene->addChild(character);
+    }
+    expectVisible(*scene);
 }
 
+// With the origin far outside the picture, the bounds of the mesh below the crowd are there, too.
 TEST_F(InsertedNodesGLTest, crowdsStayVisible)
 {
-    for (const osg::Vec3d& origin : {osg::Vec3d(0, 0, 0), osg::Vec3d(100, 0, 0), osg::Vec3d(0, -100, 0)})
-    {
-        SCOPED_TRACE(testing::Message() << origin.x() << " " << origin.y());
-        expectVisible(*makeCrowd(origin));
-    }
-}
-
-TEST_F(InsertedNodesGLTest, crowdsStayVisibleWithComputedNearAndFarPlanes)
-{
-    viewer().getCamera()->setComputeNearFarMode(osg::CullSettings::COMPUTE_NEAR_FAR_USING_BOUNDING_VOLUMES);
-    expectVisible(*makeCrowd(osg::Vec3d(0, -100, 0)));
+    using Settings = osg::CullSettings;
+    for (const auto mode : {Settings::DO_NOT_COMPUTE_NEAR_FAR, Settings::COMPUTE_NEAR_FAR_USING_BOUNDING_VOLUMES})
+        for (const osg::Vec3d& origin : {osg::Vec3d(0, 0, 0), osg::Vec3d(100, 0, 0), osg::Vec3d(0, -100, 0)})
+        {
+            SCOPED_TRACE(testing::Message() << origin.x() << " " << origin.y() << ", mode " << mode);
+            viewer().getCamera()->setComputeNearFarMode(mode);
+            const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*makeTestCharacter());
+            EXPECT_TRUE(crowd->setOrigin(origin));
+            addInstances(*crowd, {osg::Matrix::translate(-3, 0, 0), osg::Matrix::translate(0.5, 0, 0)},
+                         playing("shift"));
+            const osg::ref_ptr<osg::Group> scene = new osg::Group;
+            scene->addChild(crowd);
+            expectVisible(*scene);
+        }
 }
 
 } // namespace osgGpuAnimation

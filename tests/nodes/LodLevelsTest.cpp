@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "nodes/Tube.h"
-#include "support/TestCharacter.h"
+#include "support/TestCrowd.h"
 
 #include <osgGpuAnimation/mesh/detail/MeshDetail.h>
 #include <osgGpuAnimation/mesh/lod/LodLevels.h>
-
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <ctime>
@@ -17,6 +15,17 @@ namespace osgGpuAnimation
 
 namespace
 {
+
+LodLevels::Skinning skinningOf(const SkinnedGeometry& mesh)
+{
+    return [&mesh](const std::vector<AffineMatrix>& palette, std::vector<glm::dvec3>& outPositions)
+    { mesh.computePositions(palette, outPositions); };
+}
+
+LodLevels levelsOf(const SkinnedGeometry& mesh, const AnimationSet& set)
+{
+    return LodLevels(mesh, set, skinningOf(mesh));
+}
 
 /// The number of drawn indices of the first primitive set.
 std::size_t drawn(const SkinnedGeometry& mesh, const LodLevels& levels, int level)
@@ -30,10 +39,14 @@ bool has(const LodLevels& levels)
     return levels.finest() != LodLevels::allTriangles;
 }
 
-LodLevels::Skinning skinningOf(const SkinnedGeometry& mesh)
+osg::Vec3Array& positionsOf(SkinnedGeometry& mesh)
 {
-    return [&mesh](const std::vector<AffineMatrix>& palette, std::vector<glm::dvec3>& outPositions)
-    { mesh.computePositions(palette, outPositions); };
+    return static_cast<osg::Vec3Array&>(*mesh.getVertexArray());
+}
+
+osg::DrawElementsUShort& trianglesOf(SkinnedGeometry& mesh)
+{
+    return static_cast<osg::DrawElementsUShort&>(*mesh.getPrimitiveSet(0));
 }
 
 TEST(LodLevelsTest, areNumberedInHalfOctaves)
@@ -54,24 +67,30 @@ TEST(LodLevelsTest, areNumberedInHalfOctaves)
         EXPECT_EQ(LodLevels::levelOf(nothing), LodLevels::allTriangles);
 }
 
-TEST(LodLevelsTest, keepAnElbowThatBendsInAClip)
+TEST(LodLevelsTest, keepAnElbowThatBendsInAClipAndFollowANewSet)
 {
-    const std::shared_ptr<const AnimationSet> bending = armSet();
-    const auto still = bending->withClips({}).value();
-    const osg::ref_ptr<SkinnedGeometry> tube = makeTube(*bending);
-    const LodLevels ofBending(*tube, *bending, skinningOf(*tube)), ofStill(*tube, *still, skinningOf(*tube));
+    const auto bending = armSet(), still = bending->withClips({}).value();
+    const osg::ref_ptr<AnimatedCharacter> character = new AnimatedCharacter(still);
+    const osg::ref_ptr<SkinnedGeometry> tube = makeTube(*still);
+    character->addChild(tube);
+    ASSERT_TRUE(character->getMeshes().setPixelError(1.0f));
     const int level = -10; // 1/32; the tube is 1 thick
-    EXPECT_LT(drawn(*tube, ofStill, level), 300u) << "straight, it needs but its ends";
-    EXPECT_GT(drawn(*tube, ofBending, level), 2 * drawn(*tube, ofStill, level));
-    EXPECT_LT(drawn(*tube, ofBending, level), tube->getPrimitiveSet(0)->getNumIndices() / 4);
-    EXPECT_EQ(drawn(*tube, ofBending, LodLevels::allTriangles), tube->getPrimitiveSet(0)->getNumIndices());
+    const auto drawnOf = [&](const AnimationSet& set) { return drawn(*tube, *MeshDetail::levels(*tube, set), level); };
+    const std::size_t straight = drawnOf(*still);
+    EXPECT_LT(straight, 300u) << "straight, it needs but its ends";
+    ASSERT_TRUE(character->setAnimationSet(bending));
+    EXPECT_GT(drawnOf(*bending), 2 * straight);
+    EXPECT_LT(drawnOf(*bending), tube->getPrimitiveSet(0)->getNumIndices() / 4);
+    EXPECT_EQ(drawn(*tube, *MeshDetail::levels(*tube, *bending), LodLevels::allTriangles), trianglesOf(*tube).size());
+    ASSERT_TRUE(character->setAnimationSet(still));
+    EXPECT_EQ(drawnOf(*still), straight);
 }
 
 TEST(LodLevelsTest, haveTheVolumeOfTheMesh)
 {
     const std::shared_ptr<const AnimationSet> bending = armSet();
     const osg::ref_ptr<SkinnedGeometry> tube = makeTube(*bending);
-    const LodLevels levels(*tube, *bending, skinningOf(*tube));
+    const LodLevels levels = levelsOf(*tube, *bending);
     EXPECT_EQ(levels.reduced(0, LodLevels::allTriangles).outset, 0.0f);
     EXPECT_GT(levels.reduced(0, levels.coarsest()).outset, 0.02 * std::exp2(0.5 * levels.coarsest()));
     for (int level = levels.finest(); level <= levels.coarsest(); ++level)
@@ -85,22 +104,6 @@ TEST(LodLevelsTest, haveTheVolumeOfTheMesh)
     EXPECT_EQ(levels.foundError(levels.finest() - 1), 0.0);
 }
 
-TEST(LodLevelsTest, aNewSetMakesTheLevelsOfItsPoses)
-{
-    const std::shared_ptr<const AnimationSet> bending = armSet();
-    const auto still = bending->withClips({}).value();
-    const osg::ref_ptr<AnimatedCharacter> character = new AnimatedCharacter(still);
-    const osg::ref_ptr<SkinnedGeometry> tube = makeTube(*still);
-    character->addChild(tube);
-    ASSERT_TRUE(character->getMeshes().setPixelError(1.0f));
-    const int level = -10;
-    const std::size_t straight = drawn(*tube, *MeshDetail::levels(*tube, *still), level);
-    ASSERT_TRUE(character->setAnimationSet(bending));
-    EXPECT_GT(drawn(*tube, *MeshDetail::levels(*tube, *bending), level), 2 * straight);
-    ASSERT_TRUE(character->setAnimationSet(still));
-    EXPECT_EQ(drawn(*tube, *MeshDetail::levels(*tube, *still), level), straight);
-}
-
 TEST(LodLevelsTest, speakOfTheCharactersUnitsWhateverTheMeshs)
 {
     // The same tube, a hundred times as large in its own space and scaled down by its palette.
@@ -111,11 +114,10 @@ TEST(LodLevelsTest, speakOfTheCharactersUnitsWhateverTheMeshs)
     const auto set = AnimationSet::create(std::move(parts)).value();
     const auto armed = armSet();
     const osg::ref_ptr<SkinnedGeometry> tube = makeTube(*armed), large = makeTube(*armed);
-    for (osg::Vec3& position : static_cast<osg::Vec3Array&>(*large->getVertexArray()))
+    for (osg::Vec3& position : positionsOf(*large))
         position *= 100.0f;
     large->setRigidEntry(static_cast<unsigned short>(set->entryOfSkin(0, 0)));
-    const LodLevels levels(*tube, *armed->withClips({}).value(), skinningOf(*tube)),
-        ofLarge(*large, *set, skinningOf(*large));
+    const LodLevels levels = levelsOf(*tube, *armed->withClips({}).value()), ofLarge = levelsOf(*large, *set);
     ASSERT_TRUE(has(levels));
     EXPECT_EQ(ofLarge.finest(), levels.finest());
     EXPECT_EQ(ofLarge.coarsest(), levels.coarsest());
@@ -144,7 +146,7 @@ TEST(LodLevelsTest, keepTextureCoordinatesOnTheirSideOfASeam)
     strip->setTexCoordArray(0, texCoords);
     strip->setRigidEntry(static_cast<unsigned short>(set->entryOfRigidJoint(1)));
     strip->addPrimitiveSet(triangles);
-    const LodLevels levels(*strip, *set->withClips({}).value(), skinningOf(*strip));
+    const LodLevels levels = levelsOf(*strip, *set->withClips({}).value());
     const osg::DrawElements* few = levels.reduced(0, levels.finest()).elements;
     ASSERT_NE(few, nullptr);
     EXPECT_LE(few->getNumIndices(), 3u * 40u) << "it is flat";
@@ -153,53 +155,39 @@ TEST(LodLevelsTest, keepTextureCoordinatesOnTheirSideOfASeam)
             EXPECT_EQ(few->index(i) < 441, few->index(i + corner) < 441) << "triangle " << i / 3;
 }
 
+struct NothingCase
+{
+    const char* name;
+    void (*change)(SkinnedGeometry&);
+};
+
+const NothingCase nothingCases[] = {
+    {"lines", [](SkinnedGeometry& mesh) { trianglesOf(mesh).setMode(GL_LINES); }},
+    {"not a number", [](SkinnedGeometry& mesh) { positionsOf(mesh)[5].x() = std::nanf(""); }},
+    {"beyond all bounds", [](SkinnedGeometry& mesh) { positionsOf(mesh)[5].x() = 3e38f; }},
+    {"all at one place",
+     [](SkinnedGeometry& mesh)
+     {
+         for (osg::Vec3& position : positionsOf(mesh))
+             position.set(1, 2, 3);
+     }},
+    {"an index out of range", [](SkinnedGeometry& mesh) { trianglesOf(mesh)[7] = 60000; }},
+    {"no vertices", [](SkinnedGeometry& mesh) { mesh.setVertexArray(nullptr); }},
+    {"no primitives", [](SkinnedGeometry& mesh) { mesh.removePrimitiveSet(0, 1); }},
+    {"no indices", [](SkinnedGeometry& mesh) { trianglesOf(mesh).clear(); }},
+    {"without indices",
+     [](SkinnedGeometry& mesh) { mesh.setPrimitiveSet(0, new osg::DrawArrays(GL_TRIANGLES, 0, 3 * tubeColumns)); }},
+};
+
 TEST(LodLevelsTest, areNotMadeWhereThereIsNothingToGain)
 {
     const auto set = armSet();
-    const auto none = [&](const char* what, const auto& change)
+    for (const NothingCase& nothing : nothingCases)
     {
         const osg::ref_ptr<SkinnedGeometry> tube = makeTube(*set);
-        change(*tube);
-        EXPECT_FALSE(has(LodLevels(*tube, *set, skinningOf(*tube)))) << what;
-    };
-    const auto positionsOf = [](SkinnedGeometry& mesh) -> osg::Vec3Array&
-    { return static_cast<osg::Vec3Array&>(*mesh.getVertexArray()); };
-    none("lines", [](SkinnedGeometry& mesh) { mesh.getPrimitiveSet(0)->setMode(GL_LINES); });
-    none("not a number", [&](SkinnedGeometry& mesh) { positionsOf(mesh)[5].x() = std::nanf(""); });
-    none("beyond all bounds", [&](SkinnedGeometry& mesh) { positionsOf(mesh)[5].x() = 3e38f; });
-    none("all at one place",
-         [&](SkinnedGeometry& mesh)
-         {
-             for (osg::Vec3& position : positionsOf(mesh))
-                 position.set(1, 2, 3);
-         });
-    none("an index out of range",
-         [](SkinnedGeometry& mesh) { static_cast<osg::DrawElementsUShort&>(*mesh.getPrimitiveSet(0))[7] = 60000; });
-    none("no vertices", [](SkinnedGeometry& mesh) { mesh.setVertexArray(nullptr); });
-    none("no primitives", [](SkinnedGeometry& mesh) { mesh.removePrimitiveSet(0, 1); });
-    none("no indices",
-         [](SkinnedGeometry& mesh) { static_cast<osg::DrawElementsUShort&>(*mesh.getPrimitiveSet(0)).clear(); });
-    none("without indices",
-         [](SkinnedGeometry& mesh) { mesh.setPrimitiveSet(0, new osg::DrawArrays(GL_TRIANGLES, 0, 3 * tubeColumns)); });
-}
-
-TEST(LodLevelsTest, endOnFansOfThousands)
-{
-    // All triangles share one vertex; in the second mesh all other vertices are at two positions.
-    const auto set = armSet();
-    const osg::ref_ptr<SkinnedGeometry> tube = makeTube(*set);
-    auto& triangles = static_cast<osg::DrawElementsUShort&>(*tube->getPrimitiveSet(0));
-    triangles.clear();
-    for (GLushort vertex = 1; vertex + 1 < static_cast<GLushort>(tube->getVertexCount()); ++vertex)
-        for (const int corner : {0, int(vertex), vertex + 1})
-            triangles.push_back(static_cast<GLushort>(corner));
-    const LodLevels fan(*tube, *set, skinningOf(*tube));
-    EXPECT_LE(drawn(*tube, fan, 20), triangles.size());
-    auto& positions = static_cast<osg::Vec3Array&>(*tube->getVertexArray());
-    for (std::size_t vertex = 1; vertex < positions.size(); ++vertex)
-        positions[vertex].set(vertex % 2, 1, 0);
-    const LodLevels doubles(*tube, *set, skinningOf(*tube));
-    EXPECT_GE(drawn(*tube, doubles, 20), 3u);
+        nothing.change(*tube);
+        EXPECT_FALSE(has(levelsOf(*tube, *set))) << nothing.name;
+    }
 }
 
 /// A flat disc: rings of `points` vertices around a centre vertex that all triangles of the first ring share.
@@ -232,21 +220,14 @@ TEST(LodLevelsTest, takeNoTimeByTheSquareOfTheTrianglesAtAPoint)
     {
         const osg::ref_ptr<SkinnedGeometry> disc = makeDisc(points, 3);
         const std::clock_t begin = std::clock(); // CPU time: other programs may run
-        const LodLevels levels(*disc, *armSet(), skinningOf(*disc));
-        EXPECT_LT(drawn(*disc, levels, 20), disc->getPrimitiveSet(0)->getNumIndices());
+        EXPECT_LT(drawn(*disc, levelsOf(*disc, *armSet()), 20), disc->getPrimitiveSet(0)->getNumIndices());
         return double(std::clock() - begin) / CLOCKS_PER_SEC;
     };
     const double secondsForAnEighth = secondsFor(750);
     // Linear: 8 times; quadratic: 64 times.
     EXPECT_LT(secondsFor(6000), 20 * secondsForAnEighth);
-}
-
-TEST(LodLevelsTest, areNotMadeOfVeryLargeMeshes)
-{
-    const osg::ref_ptr<SkinnedGeometry> disc = makeDisc(LodLevels::maxVertices / 2, 2);
-    const LodLevels levels(*disc, *armSet(), skinningOf(*disc));
-    EXPECT_EQ(levels.finest(), LodLevels::allTriangles);
-    EXPECT_EQ(drawn(*disc, levels, 20), disc->getPrimitiveSet(0)->getNumIndices());
+    const osg::ref_ptr<SkinnedGeometry> tooLarge = makeDisc(LodLevels::maxVertices / 2, 2);
+    EXPECT_FALSE(has(levelsOf(*tooLarge, *armSet())));
 }
 
 TEST(LodLevelsTest, areMadeOncePerMeshAndAnewWhenItChanges)
@@ -269,6 +250,30 @@ TEST(LodLevelsTest, areMadeOncePerMeshAndAnewWhenItChanges)
     EXPECT_NE(detail.of(*tube, *set, skinningOf(*tube)), seen.front());
     tube->getPrimitiveSet(0)->dirty();
     EXPECT_EQ(detail.known(*tube), nullptr);
+}
+
+template <typename Animated>
+void expectTakesPixelErrors(Animated& animated)
+{
+    const float infinity = std::numeric_limits<float>::infinity();
+    const std::pair<float, bool> cases[] = {{0.0f, true},    {0.5f, true},      {1e6f, true},          {-0.5f, false},
+                                            {1.1e6f, false}, {infinity, false}, {std::nanf(""), false}};
+    for (const auto& [pixels, isTaken] : cases)
+    {
+        ASSERT_TRUE(animated.getMeshes().setPixelError(2.0f));
+        const Result<void> taken = animated.getMeshes().setPixelError(pixels);
+        EXPECT_EQ(static_cast<bool>(taken), isTaken) << pixels;
+        EXPECT_EQ(animated.getMeshes().getPixelError(), isTaken ? pixels : 2.0f);
+        if (taken) continue;
+        EXPECT_NE(taken.error().message.find("it must be a number of pixels from 0 to 1000000"), std::string::npos);
+    }
+}
+
+TEST(PixelErrorTest, charactersAndCrowdsTakeTheSame)
+{
+    expectTakesPixelErrors(*makeTestCharacter());
+    expectTakesPixelErrors(*osg::ref_ptr<AnimatedCharacter>(new AnimatedCharacter));
+    expectTakesPixelErrors(*makeCrowd(*makeTestCharacter()));
 }
 
 } // namespace

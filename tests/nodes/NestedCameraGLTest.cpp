@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "support/TestCharacter.h"
+#include "support/TestCrowd.h"
 #include "support/ThreadingModels.h"
 #include "support/ViewerGLTest.h"
-
-#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 
 #include <osg/Geometry>
 #include <osg/Texture2D>
@@ -18,22 +16,20 @@ using Threading = osgViewer::ViewerBase::ThreadingModel;
 
 const osg::Vec4 filmBackground(0, 0.4f, 0, 1);
 
-/// Two characters and a crowd of one, in the upper half of the picture.
+/// Characters that share a mesh, and so a draw, and a crowd beside them, in the upper half of the picture.
 osg::ref_ptr<osg::Group> makeScene()
 {
     osg::ref_ptr<osg::Group> group = new osg::Group;
     osg::ref_ptr<AnimatedCharacter> first = makeTestCharacter();
-    for (int i = 0; i < 2; ++i)
+    for (int i = 0; i < 3; ++i)
     {
         osg::ref_ptr<AnimatedCharacter> character = osg::clone(first.get(), osg::CopyOp::DEEP_COPY_NODES);
-        character->getController().setSpeed(0.5 + i);
-        character->setMatrix(osg::Matrix::translate(-3.5, 0, 0.5 + 1.5 * i));
+        character->getController().setSpeed(0.3 + 0.4 * i);
+        character->setMatrix(osg::Matrix::translate(-3.5, 0, 0.25 + 1.25 * i));
         group->addChild(character);
     }
     osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*first);
-    AnimationController controller(crowd->getSharedAnimationSet());
-    EXPECT_TRUE(controller.play("turn"));
-    EXPECT_TRUE(crowd->add(osg::Matrix::translate(2, 0, 2), controller));
+    addInstances(*crowd, {osg::Matrix::translate(2, 0, 2), osg::Matrix::translate(3, 0, 2.5)}, playing("turn"));
     group->addChild(crowd);
     return group;
 }
@@ -73,11 +69,11 @@ osg::ref_ptr<osg::Texture2D> makeTexture()
     return texture;
 }
 
-/// One camera renders characters to a texture, which the viewer shows.
-class NestedCameraGLTest : public ViewerGLTest, public ::testing::WithParamInterface<Threading>
+/// Draws the same frames under each threading model of osgViewer.
+class ThreadingGLTest : public ViewerGLTest, public ::testing::WithParamInterface<Threading>
 {
 protected:
-    /// The scene drawn directly, with a viewport of that size.
+    /// The last picture of a new scene, drawn directly in one thread with a viewport of that size.
     osg::ref_ptr<osg::Image> direct(int size, const osg::Vec4& background)
     {
         osg::Camera& camera = *viewer().getCamera();
@@ -85,6 +81,7 @@ protected:
         camera.setClearColor(background);
         camera.setViewport(0, 0, size, size);
         osg::ref_ptr<osg::Image> image = drawn(makeScene(), osgViewer::ViewerBase::SingleThreaded);
+        EXPECT_GT(picture().pixelsDrawn(), size);
         camera.setClearColor(before);
         camera.setViewport(0, 0, 64, 64);
         return image;
@@ -96,43 +93,52 @@ protected:
         viewer().setThreadingModel(threading);
         viewer().setSceneData(scene);
         viewer().realize();
-        for (const double seconds : {0.0, 0.5, 1.7, 2.3})
-            viewer().frame(seconds);
+        for (int frame = 0; frame <= 20; ++frame)
+            viewer().frame(0.115 * frame);
         viewer().stopThreading();
         context().makeCurrent();
         EXPECT_NO_GL_ERROR();
         return picture().copy();
     }
+};
 
-    void expectPictures(bool areSeenByBoth)
+TEST_P(ThreadingGLTest, drawsTheFramesOwnPoses)
+{
+    const osg::ref_ptr<osg::Image> expected = direct(64, viewer().getCamera()->getClearColor());
+    EXPECT_EQ(Picture::pixelsDifferent(*expected, *drawn(makeScene(), GetParam())), 0);
+}
+
+/// One camera renders characters to a texture, which the viewer shows.
+class NestedCameraGLTest : public ThreadingGLTest
+{
+};
+
+TEST_P(NestedCameraGLTest, filmsWhatItAloneSeesOrTheViewerToo)
+{
+    for (const bool areSeenByBoth : {false, true})
     {
         const osg::Vec4 background = viewer().getCamera()->getClearColor();
         osg::ref_ptr<osg::Image> expected =
             areSeenByBoth ? direct(64, background) : drawn(new osg::Group, osgViewer::ViewerBase::SingleThreaded);
-        const osg::ref_ptr<osg::Image> film = direct(32, filmBackground);
-        EXPECT_GT(picture().pixelsDrawn(), 40);
-        expected->copySubImage(32, 0, 0, film);
-
+        expected->copySubImage(32, 0, 0, direct(32, filmBackground));
         osg::ref_ptr<osg::Texture2D> texture = makeTexture();
         osg::ref_ptr<osg::Group> scene = makeScene(), root = new osg::Group;
         root->addChild(makeScreen(*texture));
         root->addChild(makeCamera(*texture, *scene));
         if (areSeenByBoth) root->addChild(scene);
-        EXPECT_EQ(Picture::pixelsDifferent(*expected, *drawn(root, GetParam())), 0);
+        EXPECT_EQ(Picture::pixelsDifferent(*expected, *drawn(root, GetParam())), 0) << areSeenByBoth;
     }
-};
-
-TEST_P(NestedCameraGLTest, filmsWhatItAloneSees)
-{
-    expectPictures(false);
 }
 
-TEST_P(NestedCameraGLTest, filmsWhatTheViewerSeesToo)
+std::string nameOf(const ::testing::TestParamInfo<Threading>& info)
 {
-    expectPictures(true);
+    const char* names[] = {"SingleThreaded", "CullDrawThreadPerContext", "DrawThreadPerContext",
+                           "CullThreadPerCameraDrawThreadPerContext"};
+    return names[info.index];
 }
 
-INSTANTIATE_TEST_SUITE_P(Models, NestedCameraGLTest, ::testing::ValuesIn(threadingModels));
+INSTANTIATE_TEST_SUITE_P(Models, ThreadingGLTest, ::testing::ValuesIn(threadingModels), nameOf);
+INSTANTIATE_TEST_SUITE_P(Models, NestedCameraGLTest, ::testing::ValuesIn(threadingModels), nameOf);
 
 } // namespace
 

@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "nodes/Walker.h"
-#include "support/TestCharacter.h"
+#include "support/TestCrowd.h"
 
-#include <osgGpuAnimation/animation/Pose.h>
 #include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
-#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/detail/CrowdDetail.h>
 #include <osgGpuAnimation/nodes/JointAttachment.h>
 
 #include <osg/ComputeBoundsVisitor>
-#include <osg/MatrixTransform>
-
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
@@ -28,9 +23,7 @@ osg::ref_ptr<AnimatedCharacter> makeLooking()
     osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
     LookAt look{"look", {"base"}};
     look.forward = {1, 0, 0};
-    const auto set = character->getAnimationSet().withConstraints({look});
-    EXPECT_TRUE(set) << set.error().message;
-    EXPECT_TRUE(character->setAnimationSet(set.value()));
+    EXPECT_TRUE(character->setAnimationSet(character->getAnimationSet().withConstraints({look}).value()));
     EXPECT_TRUE(character->setFileToNode(osg::Matrix::rotate(osg::Vec3(0, 1, 0), osg::Vec3(0, 0, 1))));
     return character;
 }
@@ -38,8 +31,7 @@ osg::ref_ptr<AnimatedCharacter> makeLooking()
 /// The direction in which joint "base" looks, in the character's own space.
 osg::Vec3d gaze(const AnimatedCharacter& character)
 {
-    const osg::Matrixd base = character.jointToModel("base").value();
-    return osg::Matrixd::transform3x3(osg::Vec3d(1, 0, 0), base);
+    return osg::Matrixd::transform3x3(osg::Vec3d(1, 0, 0), character.jointToModel("base").value());
 }
 
 void expectNear(const osg::Vec3d& found, const osg::Vec3d& wanted)
@@ -47,27 +39,29 @@ void expectNear(const osg::Vec3d& found, const osg::Vec3d& wanted)
     EXPECT_LE((found - wanted).length(), 1e-5) << found.x() << " " << found.y() << " " << found.z();
 }
 
+const osg::Matrixd quarterLeft = osg::Matrix::rotate(osg::PI_2, osg::Vec3(0, 0, 1));
+
 } // namespace
 
 TEST(NodeConstraintsTest, targetsAreInTheCharactersOwnSpaceOrInTheWorld)
 {
     const osg::ref_ptr<AnimatedCharacter> character = makeLooking();
-    character->setMatrix(osg::Matrix::rotate(osg::PI_2, osg::Vec3(0, 0, 1)) * osg::Matrix::translate(10, 0, 0));
-    ASSERT_TRUE(character->constraint("look").setTarget(osg::Vec3d(0, 0, 5)));
+    const auto look = [&] { return character->constraint("look"); };
+    character->setMatrix(quarterLeft * osg::Matrix::translate(10, 0, 0));
+    ASSERT_TRUE(look().setTarget(osg::Vec3d(0, 0, 5)));
     expectNear(gaze(*character), osg::Vec3d(0, 0, 1));
-    ASSERT_TRUE(character->constraint("look").setTarget(osg::Vec3d(0, 5, 0)));
+    ASSERT_TRUE(look().setTarget(osg::Vec3d(0, 5, 0)));
     expectNear(gaze(*character), osg::Vec3d(0, 1, 0));
-    // The character stands at (10, 0, 0) and has turned to the left.
-    ASSERT_TRUE(character->constraint("look").setWorldTarget(osg::Vec3d(10, 7, 0)));
+    ASSERT_TRUE(look().setWorldTarget(osg::Vec3d(10, 7, 0)));
     expectNear(gaze(*character), osg::Vec3d(1, 0, 0));
     character->setMatrix(osg::Matrix::translate(10, 0, 0));
     character->update(0.0);
     expectNear(gaze(*character), osg::Vec3d(0, 1, 0));
-    ASSERT_TRUE(character->constraint("look").setTarget(osg::Vec3d(0, 0, 5)));
+    ASSERT_TRUE(look().setTarget(osg::Vec3d(0, 0, 5)));
     character->update(0.0);
     expectNear(gaze(*character), osg::Vec3d(0, 0, 1));
-    ASSERT_TRUE(character->constraint("look").setWorldTarget(osg::Vec3d(10, 7, 0)));
-    ASSERT_TRUE(character->constraint("look").clear());
+    ASSERT_TRUE(look().setWorldTarget(osg::Vec3d(10, 7, 0)));
+    ASSERT_TRUE(look().clear());
     character->update(0.0);
     EXPECT_FALSE(character->getController().isConstrained());
 }
@@ -80,10 +74,14 @@ TEST(NodeConstraintsTest, aFollowedNodeIsHeldWeakly)
     expectNear(gaze(*character), osg::Vec3d(0, 1, 0));
     bird->setMatrix(osg::Matrix::translate(0, 0, 9));
     const osg::ref_ptr<AnimatedCharacter> copy = osg::clone(character.get(), osg::CopyOp::DEEP_COPY_NODES);
+    for (AnimatedCharacter* each : {character.get(), copy.get()})
+    {
+        each->update(0.0);
+        expectNear(gaze(*each), osg::Vec3d(0, 0, 1));
+    }
+    bird->setMatrix(osg::Matrix::translate(std::nan(""), 0, 0)); // it flies off: the last good target remains
     character->update(0.0);
-    copy->update(0.0);
     expectNear(gaze(*character), osg::Vec3d(0, 0, 1));
-    expectNear(gaze(*copy), osg::Vec3d(0, 0, 1));
     EXPECT_EQ(bird->referenceCount(), 1);
     bird = nullptr;
     character->update(0.0);
@@ -98,8 +96,8 @@ TEST(NodeConstraintsTest, attachmentsMeshesAndBoundsHaveThePoseOfTheTwin)
     const osg::ref_ptr<JointAttachment> held = new JointAttachment("side");
     character->addChild(held);
     character->update(0.0);
-    const osg::BoundingSphere still = character->getBound();
-    EXPECT_LT(still.radius(), 2.0);
+    EXPECT_LT(character->getBound().radius(), 2.0);
+    const auto& mesh = dynamic_cast<const SkinnedGeometry&>(*character->getChild(0));
     for (const osg::Vec3d& target :
          {osg::Vec3d(0, 0, 9), osg::Vec3d(0, 0, -9), osg::Vec3d(-9, 0, 0), osg::Vec3d(0, 9, 0)})
     {
@@ -111,20 +109,13 @@ TEST(NodeConstraintsTest, attachmentsMeshesAndBoundsHaveThePoseOfTheTwin)
         osg::Matrix ofSide;
         ASSERT_TRUE(held->computeLocalToWorldMatrix(ofSide, &along));
         expectNear(ofSide.getTrans(), gaze(*character) * 2.0);
-        for (unsigned int child = 0; child < character->getNumChildren(); ++child)
-            if (const auto* mesh = dynamic_cast<const SkinnedGeometry*>(character->getChild(child)))
-            {
-                const auto posed = character->getPosedMesh(*mesh);
-                osg::BoundingBox bounds = character->getCurrentBounds();
-                bounds.expandBy(bounds._min - osg::Vec3(1e-4f, 1e-4f, 1e-4f));
-                bounds.expandBy(bounds._max + osg::Vec3(1e-4f, 1e-4f, 1e-4f));
-                for (const osg::Vec3& vertex : static_cast<const osg::Vec3Array&>(*posed->getVertexArray()))
-                {
-                    EXPECT_TRUE(bounds.contains(vertex));
-                    const osg::BoundingSphere& sphere = character->getBound();
-                    EXPECT_LE((osg::Vec3(sphere.center()) - vertex).length(), sphere.radius() + 1e-4f);
-                }
-            }
+        const osg::ref_ptr<osg::Geometry> posed = character->getPosedMesh(mesh);
+        const osg::BoundingSphere& sphere = character->getBound();
+        for (const osg::Vec3& vertex : static_cast<const osg::Vec3Array&>(*posed->getVertexArray()))
+        {
+            EXPECT_TRUE(character->getCurrentBounds().contains(vertex, 1e-4f));
+            EXPECT_LE((osg::Vec3(sphere.center()) - vertex).length(), sphere.radius() + 1e-4f);
+        }
     }
 }
 
@@ -132,28 +123,21 @@ TEST(NodeConstraintsTest, instancesOfACrowdHaveTargetsOfTheirOwn)
 {
     const osg::ref_ptr<AnimatedCharacter> character = makeLooking();
     const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*character);
-    AnimationController controller(crowd->getSharedAnimationSet());
+    const AnimationController controller(crowd->getSharedAnimationSet());
     const AnimatedCrowd::Instance first = crowd->add(osg::Matrix::translate(100, 0, 0), controller).value();
     const AnimatedCrowd::Instance second =
-        crowd->add(osg::Matrix::rotate(osg::PI_2, osg::Vec3(0, 0, 1)) * osg::Matrix::translate(200, 0, 0), controller)
-            .value();
+        crowd->add(quarterLeft * osg::Matrix::translate(200, 0, 0), controller).value();
     const osg::ref_ptr<osg::MatrixTransform> bird = new osg::MatrixTransform(osg::Matrix::translate(200, 0, 50));
     ASSERT_TRUE(crowd->constraint(first, "look").setTarget(osg::Vec3d(100, 5, 0)));
     ASSERT_TRUE(crowd->constraint(second, "look").follow(bird));
     crowd->update(0.0);
     const auto gazeOf = [&](AnimatedCrowd::Instance instance)
-    {
-        const AnimationController& present = *crowd->getController(instance);
-        const AffineMatrix base = Pose::jointToModel(present.set(), present.instruction(), 0);
-        const glm::vec3 axis = base.transformVector({1, 0, 0});
-        // From the file's axes to the character's: +Y becomes +Z.
-        return osg::Vec3d(axis.x, -axis.z, axis.y);
-    };
+    { return osg::Matrixd::transform3x3(osg::Vec3d(1, 0, 0), crowd->jointToCrowd(instance, "base").value()); };
     expectNear(gazeOf(first), osg::Vec3d(0, 1, 0));
     expectNear(gazeOf(second), osg::Vec3d(0, 0, 1));
     bird->setMatrix(osg::Matrix::translate(200, 50, 0));
     crowd->update(0.1);
-    expectNear(gazeOf(second), osg::Vec3d(1, 0, 0));
+    expectNear(gazeOf(second), osg::Vec3d(0, 1, 0));
     const auto& mesh = dynamic_cast<const SkinnedGeometry&>(*crowd->getChild(0));
     osg::ComputeBoundsVisitor bounds;
     crowd->accept(bounds);
@@ -165,8 +149,7 @@ TEST(NodeConstraintsTest, instancesOfACrowdHaveTargetsOfTheirOwn)
         for (const osg::Vec3& vertex : dynamic_cast<const osg::Vec3Array&>(*posed->getVertexArray()))
         {
             EXPECT_LE((vertex - osg::Vec3(sphere.x, sphere.y, sphere.z)).length(), sphere.w + 1e-4f);
-            const osg::Vec3d place = osg::Vec3d(vertex) + crowd->getOrigin();
-            EXPECT_TRUE(bounds.getBoundingBox().contains(place, 1e-3f)) << "of all targets";
+            EXPECT_TRUE(bounds.getBoundingBox().contains(osg::Vec3d(vertex) + crowd->getOrigin(), 1e-3f));
         }
     }
     crowd->remove(second);
@@ -188,10 +171,9 @@ TEST(NodeConstraintsTest, polesTwistsAndRotationsAreInTheCharactersOwnSpace)
     ASSERT_TRUE(leg.setTarget(ankle));
     osg::Vec3d along = ankle - hip;
     along.normalize();
-    // From the line between hip and ankle to the knee.
-    const auto kneeWay = [&]
+    // The direction across the line between hip and ankle.
+    const auto across = [&](osg::Vec3d way)
     {
-        osg::Vec3d way = placeOf("shank.L") - hip;
         way -= along * (way * along);
         way.normalize();
         return way;
@@ -199,12 +181,11 @@ TEST(NodeConstraintsTest, polesTwistsAndRotationsAreInTheCharactersOwnSpace)
     for (const osg::Vec3d& pole : {osg::Vec3d(1, 0, 0), osg::Vec3d(1, -2, 0.5), osg::Vec3d(-1, 1, 0)})
     {
         ASSERT_TRUE(leg.setPole(pole) && leg.setTwist(0.0));
-        osg::Vec3d wanted = pole - along * (pole * along);
-        wanted.normalize();
         expectNear(placeOf("foot.L"), ankle);
-        EXPECT_LT((kneeWay() - wanted).length(), 1e-3) << pole.x();
+        EXPECT_LT((across(placeOf("shank.L") - hip) - across(pole)).length(), 1e-3) << pole.x();
         ASSERT_TRUE(leg.setTwist(0.5));
-        EXPECT_LT((kneeWay() - osg::Quat(0.5, along) * wanted).length(), 1e-3) << "right-handed about the line";
+        EXPECT_LT((across(placeOf("shank.L") - hip) - osg::Quat(0.5, along) * across(pole)).length(), 1e-3)
+            << "right-handed about the line";
     }
     const osg::Quat turn(0.8, osg::Vec3d(1, 2, 3));
     ASSERT_TRUE(leg.setRotation(turn));
@@ -217,25 +198,121 @@ TEST(NodeConstraintsTest, polesTwistsAndRotationsAreInTheCharactersOwnSpace)
 TEST(NodeConstraintsTest, badInputIsAnErrorAndKeepsThePose)
 {
     const osg::ref_ptr<AnimatedCharacter> character = makeLooking();
-    ASSERT_TRUE(character->constraint("look").setTarget(osg::Vec3d(0, 9, 0)));
-    const double nan = std::numeric_limits<double>::quiet_NaN(), infinite = std::numeric_limits<double>::infinity();
-    for (const osg::Vec3d& bad : {osg::Vec3d(nan, 0, 0), osg::Vec3d(0, infinite, 0), osg::Vec3d(0, 0, 1e30)})
+    NodeConstraint look = character->constraint("look");
+    ASSERT_TRUE(look.setTarget(osg::Vec3d(0, 9, 0)));
+    const double infinite = std::numeric_limits<double>::infinity();
+    for (const osg::Vec3d& bad : {osg::Vec3d(std::nan(""), 0, 0), osg::Vec3d(0, infinite, 0), osg::Vec3d(0, 0, 1e30)})
     {
-        EXPECT_FALSE(character->constraint("look").setTarget(bad));
-        EXPECT_FALSE(character->constraint("look").setWorldTarget(bad));
-        EXPECT_FALSE(character->constraint("look").setPole(bad));
+        EXPECT_FALSE(look.setTarget(bad));
+        EXPECT_FALSE(look.setWorldTarget(bad));
+        EXPECT_FALSE(look.setPole(bad));
     }
     EXPECT_FALSE(character->constraint("nose").setTarget(osg::Vec3d()));
-    EXPECT_FALSE(character->constraint("look").setRotation(osg::Quat()));
-    // A node that flies off: the last good target remains.
-    const osg::ref_ptr<osg::MatrixTransform> bird = new osg::MatrixTransform(osg::Matrix::translate(0, 0, 9));
-    ASSERT_TRUE(character->constraint("look").follow(bird));
-    bird->setMatrix(osg::Matrix::translate(nan, 0, 0));
-    character->update(0.0);
-    expectNear(gaze(*character), osg::Vec3d(0, 0, 1));
-    // A target in the joint itself: the pose of the clip.
-    ASSERT_TRUE(character->constraint("look").setTarget(osg::Vec3d(0, 0, 0)));
+    EXPECT_FALSE(look.setRotation(osg::Quat()));
+    expectNear(gaze(*character), osg::Vec3d(0, 1, 0));
+    ASSERT_TRUE(look.setTarget(osg::Vec3d(0, 0, 0))); // in the joint itself: the pose of the clip
     expectNear(gaze(*character), osg::Vec3d(1, 0, 0));
+}
+
+namespace
+{
+
+using Matrices = std::vector<osg::Matrixd>;
+
+osg::Matrixd placed(double scale, double angle, const osg::Vec3d& axis, const osg::Vec3d& place)
+{
+    return osg::Matrixd::scale(scale, scale, scale) * osg::Matrixd::rotate(angle, axis) *
+           osg::Matrixd::translate(place);
+}
+
+double distanceOf(const osg::Matrixd& a, const osg::Matrixd& b)
+{
+    double largest = 0.0;
+    for (int cell = 0; cell < 16; ++cell)
+        largest = std::max(largest, std::abs(a.ptr()[cell] - b.ptr()[cell]));
+    return largest;
+}
+
+/// A chain of three joints in a file with +Y up, in centimetres.
+class NodePosesTest : public ::testing::Test
+{
+protected:
+    NodePosesTest()
+    {
+        const Skeleton chain = Skeleton::create({{"a", -1, {}, 0}, {"b", 0, {}, 1}, {"c", 1, {}, 2}}).value();
+        character = new AnimatedCharacter(AnimationSet::create({chain, {}, {}, {}, {}, {}}).value());
+        EXPECT_TRUE(character->setFileToNode(osg::Matrixd::rotate(osg::Vec3d(0, 1, 0), osg::Vec3d(0, 0, 1)) *
+                                             osg::Matrixd::scale(0.01, 0.01, 0.01)));
+        character->setMatrix(osg::Matrixd::translate(100, 0, 0));
+    }
+
+    osg::Matrixd shown(std::size_t joint) const { return character->jointToModel(joint).value(); }
+
+    osg::ref_ptr<AnimatedCharacter> character;
+    /// Rotated and scaled parents, in metres.
+    const Matrices wanted{placed(2.0, 0.7, {1, 0, 0}, {0, 1, 2}), placed(0.5, -1.1, {0, 1, 1}, {0.5, 1, 2.5}),
+                          placed(1.5, 2.9, {0, 0, 1}, {1, 1, 3})};
+};
+
+} // namespace
+
+TEST_F(NodePosesTest, jointsTakeMatricesOfTheCharactersOrTheCrowdsSpace)
+{
+    ASSERT_TRUE(character->setModelTransforms(0, wanted));
+    const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*character);
+    const osg::Vec3d far(1e6, 2e6, 0);
+    const AnimatedCrowd::Instance instance =
+        crowd->add(placed(3.0, 0.4, {0, 0, 1}, far), AnimationController(crowd->getSharedAnimationSet())).value();
+    Matrices placedThere;
+    for (const osg::Matrixd& matrix : wanted)
+        placedThere.push_back(matrix * osg::Matrixd::translate(far));
+    ASSERT_TRUE(crowd->setModelTransforms(instance, 1, placedThere));
+    for (std::size_t joint = 0; joint < 3; ++joint)
+    {
+        EXPECT_LE(distanceOf(shown(joint), wanted[joint]), 1e-5) << joint;
+        EXPECT_LE(distanceOf(crowd->jointToCrowd(instance, joint).value(), placedThere[joint]), 2e-5) << joint;
+    }
+    crowd->remove(instance);
+    EXPECT_FALSE(crowd->setModelTransforms(instance, 1, placedThere));
+}
+
+TEST_F(NodePosesTest, badMatricesAreErrorsAndKeepThePreviousPose)
+{
+    ASSERT_TRUE(character->setModelTransforms(0, wanted));
+    const Matrices before{shown(0), shown(1), shown(2)};
+    const auto changed = [&](int row, int column, double value)
+    {
+        Matrices matrices = wanted;
+        matrices[1](row, column) = value;
+        return matrices;
+    };
+    const std::pair<Matrices, const char*> faults[] = {
+        {changed(0, 0, std::nan("")), "not finite"},
+        {changed(3, 2, HUGE_VAL), "not finite"},
+        {changed(1, 3, 0.5), "not affine"},
+        {changed(3, 3, std::nan("")), "not affine"},
+        {{wanted[0], osg::Matrixd::scale(1, 0, 1), wanted[2]}, "no inverse"},
+        {{wanted[0], wanted[1]}, "2"}};
+    for (const auto& [matrices, message] : faults)
+    {
+        const Result<void> posed = character->setModelTransforms(0, matrices);
+        ASSERT_FALSE(posed) << message;
+        EXPECT_NE(posed.error().message.find(message), std::string::npos) << posed.error().message;
+        for (std::size_t joint = 0; joint < 3; ++joint)
+            EXPECT_EQ(shown(joint), before[joint]);
+    }
+}
+
+// The parent's scale differs by axis, so the rotated child is sheared, which a joint cannot be.
+TEST_F(NodePosesTest, jointsBelowAShearKeepTheirPlaces)
+{
+    Matrices sheared = wanted;
+    sheared[0] = osg::Matrixd::scale(1, 3, 0.5) * osg::Matrixd::translate(0, 0, 1);
+    sheared[1] = osg::Matrixd::rotate(0.6, osg::Vec3d(1, 1, 0)) * osg::Matrixd::translate(1, 0, 0) * sheared[0];
+    sheared[1].preMult(osg::Matrixd(1, 0.4, 0, 0, 0, 1, 0, 0, 0, 0.3, 1, 0, 0, 0, 0, 1));
+    ASSERT_TRUE(character->setModelTransforms(0, sheared));
+    for (std::size_t joint = 0; joint < 3; ++joint)
+        EXPECT_LE((shown(joint).getTrans() - sheared[joint].getTrans()).length(), 1e-5) << joint;
 }
 
 } // namespace osgGpuAnimation

@@ -1,12 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include <osgGpuAnimation/looks/PbrMaterial.h>
 
+#include <layout.glsl>
+
 #include <gtest/gtest.h>
 #include <osg/BlendFunc>
 #include <osg/Depth>
 
-#include <functional>
+#include <algorithm>
+#include <set>
 #include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace osgGpuAnimation
 {
@@ -15,37 +21,6 @@ namespace
 {
 
 using Map = PbrMaterial::Map;
-
-constexpr Map PbrMaterial::*allMaps[] = {
-    &PbrMaterial::baseColorMap,       &PbrMaterial::metallicRoughnessMap, &PbrMaterial::normalMap,
-    &PbrMaterial::occlusionMap,       &PbrMaterial::emissiveMap,          &PbrMaterial::specularColorMap,
-    &PbrMaterial::specularMap,        &PbrMaterial::clearcoatMap,         &PbrMaterial::clearcoatRoughnessMap,
-    &PbrMaterial::clearcoatNormalMap, &PbrMaterial::sheenColorMap,        &PbrMaterial::sheenRoughnessMap,
-    &PbrMaterial::transmissionMap};
-
-/// All numbers, flags and maps.
-std::string valuesOf(const PbrMaterial& m)
-{
-    std::ostringstream text;
-    const auto add = [&](const char* name, std::initializer_list<float> values)
-    {
-        text << name;
-        for (const float value : values)
-            text << ' ' << value;
-        text << '\n';
-    };
-    add("base colour", {m.baseColor.r(), m.baseColor.g(), m.baseColor.b(), m.baseColor.a()});
-    add("factors", {m.metallic, m.roughness, m.normalScale, m.occlusionStrength});
-    add("emission", {m.emissive.x(), m.emissive.y(), m.emissive.z(), m.emissiveStrength});
-    add("specular", {m.specularColor.x(), m.specularColor.y(), m.specularColor.z(), m.specular});
-    add("coat", {m.clearcoat, m.clearcoatRoughness, m.clearcoatNormalScale});
-    add("sheen", {m.sheenColor.x(), m.sheenColor.y(), m.sheenColor.z(), m.sheenRoughness});
-    add("transmission", {m.transmission});
-    text << "flags " << m.isSpecularGlossiness << m.isBlended << m.hasTangents << m.hasMoreCoordinates << '\n';
-    for (const auto map : allMaps)
-        text << ((m.*map).texture ? (m.*map).texture->getName() : "none") << ' ' << (m.*map).coordinates << '\n';
-    return text.str();
-}
 
 Map mapOf(const char* name, int coordinates)
 {
@@ -102,33 +77,108 @@ PbrMaterial clothMaterial()
     return m;
 }
 
+/// withUniforms: also the values, of which a material leaves those that its defines do not need.
+std::string contentsOf(const osg::StateSet& state, bool withUniforms)
+{
+    std::ostringstream text;
+    text << "hint " << state.getRenderingHint();
+    for (const auto& [name, define] : state.getDefineList())
+        text << ", " << name << ' ' << define.first;
+    for (const auto& attribute : state.getAttributeList())
+        text << ", " << attribute.second.first->className();
+    for (const auto& [mode, value] : state.getModeList())
+        text << ", mode " << mode << ' ' << value;
+    for (const auto& [name, uniform] : state.getUniformList())
+    {
+        if (!withUniforms) break;
+        text << ", " << name;
+        const osg::FloatArray* numbers = uniform.first->getFloatArray();
+        for (std::size_t i = 0; numbers && i < numbers->size(); ++i)
+            text << ' ' << (*numbers)[i];
+    }
+    for (unsigned int unit = 0; unit < state.getTextureAttributeList().size(); ++unit)
+        if (const auto* map = state.getTextureAttribute(unit, osg::StateAttribute::TEXTURE))
+            text << ", map " << unit << ' ' << map->getName();
+    for (unsigned int unit = 0; unit < state.getTextureModeList().size(); ++unit)
+        if (!state.getTextureModeList()[unit].empty()) text << ", mode of unit " << unit;
+    return text.str();
+}
+
 TEST(PbrMaterialTest, isReadBackAsItWasSetAlsoAfterAnother)
 {
     EXPECT_FALSE(pbrMaterialOf(*new osg::StateSet));
     const osg::ref_ptr<osg::StateSet> used = new osg::StateSet;
+    std::set<std::string> different;
     for (const auto& make : {coreMaterial, coatedMaterial, clothMaterial, +[] { return PbrMaterial(); }, coreMaterial})
     {
-        const PbrMaterial material = make();
-        const osg::ref_ptr<osg::StateSet> fresh = new osg::StateSet;
-        for (const auto& state : {fresh, used})
-        {
-            applyPbrMaterial(*state, material);
-            ASSERT_TRUE(pbrMaterialOf(*state));
-            EXPECT_EQ(valuesOf(*pbrMaterialOf(*state)), valuesOf(material)) << (state == used ? "used" : "fresh");
-        }
+        const osg::ref_ptr<osg::StateSet> fresh = new osg::StateSet, copy = new osg::StateSet;
+        applyPbrMaterial(*fresh, make());
+        applyPbrMaterial(*used, make());
+        different.insert(contentsOf(*fresh, true));
+        EXPECT_EQ(contentsOf(*used, false), contentsOf(*fresh, false));
+        ASSERT_TRUE(pbrMaterialOf(*used));
+        applyPbrMaterial(*copy, *pbrMaterialOf(*used));
+        EXPECT_EQ(contentsOf(*copy, true), contentsOf(*fresh, true));
     }
+    EXPECT_EQ(different.size(), 4u);
 }
 
-TEST(PbrMaterialTest, mapsHaveAnEffectWithTheirFactors)
+TEST(PbrMaterialTest, blendingOfTheApplicationStays)
 {
-    PbrMaterial blue;
-    EXPECT_FALSE(blue.hasEffect(&PbrMaterial::sheenColorMap));
-    blue.sheenColor.set(0, 0, 0.1f);
-    EXPECT_TRUE(blue.hasEffect(&PbrMaterial::sheenColorMap));
-    EXPECT_TRUE(blue.hasEffect(&PbrMaterial::sheenRoughnessMap));
-    EXPECT_FALSE(blue.hasEffect(&PbrMaterial::clearcoatRoughnessMap));
-    EXPECT_FALSE(blue.hasEffect(&PbrMaterial::transmissionMap));
-    EXPECT_TRUE(blue.hasEffect(&PbrMaterial::specularMap));
+    const osg::ref_ptr<osg::StateSet> state = new osg::StateSet;
+    state->setMode(GL_BLEND, osg::StateAttribute::ON);
+    state->setRenderingHint(osg::StateSet::TRANSPARENT_BIN);
+    for (int round = 0; round < 2; ++round)
+        applyPbrMaterial(*state, coreMaterial());
+    EXPECT_EQ(state->getMode(GL_BLEND), static_cast<osg::StateAttribute::GLModeValue>(osg::StateAttribute::ON));
+    EXPECT_EQ(state->getRenderingHint(), osg::StateSet::TRANSPARENT_BIN);
+}
+
+// GL 3.3 has 16 units a shader stage at least: of the maps that have an effect, the first three are used.
+TEST(PbrMaterialTest, theFirstMapsOfExtensionsThatHaveAnEffectHaveUnits)
+{
+    const struct
+    {
+        const char* factors;
+        std::vector<const char*> maps; ///< in the order of their units
+        void (*set)(PbrMaterial& m);
+    } cases[] = {
+        {"none", {"specular"}, [](PbrMaterial&) {}},
+        {"blue sheen",
+         {"sheen colour", "sheen roughness", "specular"},
+         [](PbrMaterial& m) { m.sheenColor.z() = 0.1f; }},
+        {"transmission", {"specular", "transmission"}, [](PbrMaterial& m) { m.transmission = 0.1f; }},
+        {"coat",
+         {"coat", "coat roughness", "coat normal"},
+         [](PbrMaterial& m) { m.clearcoat = m.transmission = m.sheenColor.x() = 1.0f; }},
+    };
+    for (const auto& each : cases)
+    {
+        PbrMaterial material;
+        material.specularMap = mapOf("specular", 0);
+        material.sheenColorMap = mapOf("sheen colour", 0);
+        material.sheenRoughnessMap = mapOf("sheen roughness", 0);
+        material.transmissionMap = mapOf("transmission", 0);
+        material.clearcoatMap = mapOf("coat", 0);
+        material.clearcoatRoughnessMap = mapOf("coat roughness", 0);
+        material.clearcoatNormalMap = mapOf("coat normal", 0);
+        each.set(material);
+        const osg::ref_ptr<osg::StateSet> state = new osg::StateSet;
+        applyPbrMaterial(*state, material);
+        std::vector<std::string> found;
+        for (unsigned int unit = EXTENSION_MAPS_UNIT; unit < 32; ++unit)
+            if (const auto* map = state->getTextureAttribute(unit, osg::StateAttribute::TEXTURE))
+                found.push_back(map->getName());
+        EXPECT_EQ(found, std::vector<std::string>(each.maps.begin(), each.maps.end())) << each.factors;
+        const osg::StateSet::DefineList& defines = state->getDefineList();
+        for (const auto& [define, name] : {std::pair("MATERIAL_SPECULAR_MAP", "specular"),
+                                           {"MATERIAL_SHEEN_COLOR_MAP", "sheen colour"},
+                                           {"MATERIAL_TRANSMISSION_MAP", "transmission"},
+                                           {"MATERIAL_CLEARCOAT_MAP", "coat"},
+                                           {"MATERIAL_CLEARCOAT_NORMAL_MAP", "coat normal"}})
+            EXPECT_EQ(defines.count(define), std::size_t(std::count(found.begin(), found.end(), name)))
+                << each.factors << ": " << define;
+    }
 }
 
 TEST(PbrMaterialTest, blendedSurfacesHideNothingByTheirDepths)

@@ -4,12 +4,12 @@
 #include "nodes/Walker.h"
 
 #include <osgGpuAnimation/animation/AnimationController.h>
+#include <osgGpuAnimation/animation/JointMask.h>
 
 #include <glm/geometric.hpp>
 
 #include <gtest/gtest.h>
 
-#include <functional>
 #include <limits>
 
 // The left foot of the Walker. Markers: "Stand" (2 s) plants it from 1.5 s to 0.5 s in the next round, "Walk" (0.9 s)
@@ -35,92 +35,44 @@ std::shared_ptr<const AnimationSet> markedSet()
     return set->withClips(clips).value();
 }
 
+/// A controller plays the base clip with one of the layer's clips over it.
 struct PlantedCase
 {
     const char* name;
-    std::function<void(AnimationController&)> change; ///< of a controller that plays "Stand"
+    const char* clip;
+    double time; ///< of the clip
     bool isPlanted;
     double secondsToTouch = never;
+    double speed = 1.0;
+    LoopMode loop = LoopMode::Loop;
+    float over = 0.0f; ///< the weight of a layer that plays "Walk" from 0.1 s on
+    AnimationLayer::Mode mode = AnimationLayer::Mode::Override;
+    const char* mask = nullptr; ///< of the layer: a joint and those below it
+    double crossfade = 0.0;     ///< seconds that a fade of 0.2 s to "Walk" has run
 };
 
-void layWalkOver(AnimationController& controller, float weight, AnimationLayer::Mode mode)
-{
-    controller.seek(0.2);
-    AnimationLayer& layer = controller.layer(1);
-    layer.setMode(mode);
-    EXPECT_TRUE(layer.play("Walk"));
-    layer.seek(0.1);
-    layer.setWeight(weight);
-}
+using Mode = AnimationLayer::Mode;
 
 const PlantedCase plantedCases[] = {
-    {"in the next round", [](auto& c) { c.seek(0.2); }, true},
-    {"just before the touch", [](auto& c) { c.seek(1.499); }, false, 0.001},
-    {"at the touch", [](auto& c) { c.seek(1.5); }, true},
-    {"just before it leaves", [](auto& c) { c.seek(0.499); }, true},
-    {"when it leaves", [](auto& c) { c.seek(0.5); }, false, 1.0},
-    {"at twice the speed",
-     [](auto& c)
-     {
-         c.seek(1.0);
-         c.setSpeed(2.0);
-     },
-     false, 0.25},
-    {"backwards",
-     [](auto& c)
-     {
-         c.seek(1.0);
-         c.setSpeed(-1.0);
-     },
-     false},
-    {"back and forth",
-     [](auto& c)
-     {
-         c.setLoopMode(LoopMode::PingPong);
-         c.seek(1.0);
-     },
-     false},
-    {"paused",
-     [](auto& c)
-     {
-         c.seek(1.0);
-         c.pause();
-     },
-     false},
-    {"a touch in the next round",
-     [](auto& c)
-     {
-         EXPECT_TRUE(c.play("Walk"));
-         c.seek(0.6);
-     },
-     false, 0.5},
-    {"no next round",
-     [](auto& c)
-     {
-         c.setLoopMode(LoopMode::Once);
-         EXPECT_TRUE(c.play("Walk"));
-         c.seek(0.6);
-     },
-     false},
-    {"a clip of one pose", [](auto& c) { EXPECT_TRUE(c.play("Pose")); }, true},
-    {"a layer of more than half the weight", [](auto& c) { layWalkOver(c, 0.6f, AnimationLayer::Mode::Override); },
-     false, 0.1},
-    {"a layer of less", [](auto& c) { layWalkOver(c, 0.4f, AnimationLayer::Mode::Override); }, true},
-    {"an additive layer", [](auto& c) { layWalkOver(c, 1.0f, AnimationLayer::Mode::Additive); }, true},
-    {"a quarter of a crossfade",
-     [](auto& c)
-     {
-         EXPECT_TRUE(c.crossfade("Walk", 0.2));
-         c.advance(0.05);
-     },
-     true},
-    {"three quarters of a crossfade",
-     [](auto& c)
-     {
-         EXPECT_TRUE(c.crossfade("Walk", 0.2));
-         c.advance(0.15);
-     },
-     false, 0.05},
+    {"in the next round", "Stand", 0.2, true},
+    {"just before the touch", "Stand", 1.499, false, 0.001},
+    {"at the touch", "Stand", 1.5, true},
+    {"just before it leaves", "Stand", 0.499, true},
+    {"when it leaves", "Stand", 0.5, false, 1.0},
+    {"at twice the speed", "Stand", 1.0, false, 0.25, 2.0},
+    {"backwards", "Stand", 1.0, false, never, -1.0},
+    {"back and forth", "Stand", 1.0, false, never, 1.0, LoopMode::PingPong},
+    {"a touch in the next round", "Walk", 0.6, false, 0.5},
+    {"no next round", "Walk", 0.6, false, never, 1.0, LoopMode::Once},
+    {"a clip of one pose", "Pose", 0.0, true},
+    {"a layer of more than half the weight", "Stand", 0.2, false, 0.1, 1.0, LoopMode::Loop, 0.6f},
+    {"a layer of less", "Stand", 0.2, true, never, 1.0, LoopMode::Loop, 0.4f},
+    {"an additive layer", "Stand", 0.2, true, never, 1.0, LoopMode::Loop, 1.0f, Mode::Additive},
+    {"a layer of the leg", "Stand", 0.2, false, 0.1, 1.0, LoopMode::Loop, 1.0f, Mode::Override, "thigh.L"},
+    {"a layer of the other leg", "Stand", 0.2, true, never, 1.0, LoopMode::Loop, 1.0f, Mode::Override, "thigh.R"},
+    {"a quarter of a crossfade", "Stand", 0.0, true, never, 1.0, LoopMode::Loop, 0.0f, Mode::Override, nullptr, 0.05},
+    {"three quarters of a crossfade", "Stand", 0.0, false, 0.05, 1.0, LoopMode::Loop, 0.0f, Mode::Override, nullptr,
+     0.15},
 };
 
 } // namespace
@@ -134,8 +86,24 @@ TEST(PlantedTimesTest, areThoseOfTheMarkersOfWhatDecidesTheFoot)
     {
         SCOPED_TRACE(c.name);
         AnimationController controller(set);
-        ASSERT_TRUE(controller.play("Stand"));
-        c.change(controller);
+        controller.setLoopMode(c.loop);
+        ASSERT_TRUE(controller.play(c.clip));
+        controller.seek(c.time);
+        controller.setSpeed(c.speed);
+        if (c.over > 0.0f)
+        {
+            AnimationLayer& layer = controller.layer(1);
+            layer.setMode(c.mode);
+            ASSERT_TRUE(layer.play("Walk"));
+            layer.seek(0.1);
+            layer.setWeight(c.over);
+            ASSERT_TRUE(!c.mask || layer.setMask(JointMask::subtree(*set, c.mask).value()));
+        }
+        if (c.crossfade > 0.0)
+        {
+            ASSERT_TRUE(controller.crossfade("Walk", 0.2));
+            controller.advance(c.crossfade);
+        }
         const PlantedTimes::Now now = times.now(controller);
         EXPECT_EQ(now.isPlanted, c.isPlanted);
         if (c.secondsToTouch == never)
@@ -143,19 +111,15 @@ TEST(PlantedTimesTest, areThoseOfTheMarkersOfWhatDecidesTheFoot)
         else
             EXPECT_NEAR(now.secondsToTouch, c.secondsToTouch, 1e-6); // durations are floats
     }
-}
-
-TEST(PlantedTimesTest, aLandingHasThePlacesOfTheClipAtItsTouch)
-{
-    const std::shared_ptr<const AnimationSet> set = markedSet();
-    PlantedTimes times(set->skeleton().jointNamed("foot.L").value(), set->skeleton().jointNamed("toes.L").value(),
-                       "down", "up");
-    AnimationController controller(set);
-    ASSERT_TRUE(controller.play("Stand"));
-    controller.seek(1.4);
-    const PlantedTimes::Now now = times.now(controller);
-    EXPECT_LT(glm::distance(now.ankle, glm::dvec3(0.1, 0.08, 0.0)), 1e-4);
-    EXPECT_LT(glm::distance(now.contact, glm::dvec3(0.1, 0.02, 0.14)), 1e-4);
+    AnimationController paused(set);
+    ASSERT_TRUE(paused.play("Stand"));
+    paused.seek(1.4);
+    // A landing has the places of the clip at its touch.
+    EXPECT_LT(glm::distance(times.now(paused).ankle, glm::dvec3(0.1, 0.08, 0.0)), 1e-4);
+    EXPECT_LT(glm::distance(times.now(paused).contact, glm::dvec3(0.1, 0.02, 0.14)), 1e-4);
+    EXPECT_NEAR(times.now(paused).secondsToTouch, 0.1, 1e-6);
+    paused.pause();
+    EXPECT_EQ(times.now(paused).secondsToTouch, never);
 }
 
 } // namespace osgGpuAnimation

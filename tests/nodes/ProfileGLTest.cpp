@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "nodes/Panel.h"
+#include "support/NotifyLog.h"
 #include "support/TestCharacter.h"
 #include "support/ViewerGLTest.h"
 
@@ -11,7 +12,9 @@
 #include <osg/LightModel>
 #include <osg/LightSource>
 #include <osg/Material>
-#include <osg/Notify>
+
+#include <algorithm>
+#include <string>
 
 #ifndef GL_FRAMEBUFFER_SRGB
 #define GL_FRAMEBUFFER_SRGB 0x8DB9
@@ -62,7 +65,7 @@ osg::ref_ptr<osg::Group> makeScene()
     return group;
 }
 
-constexpr ProfileCase stock{"Stock", 0, "1.0", 0};
+constexpr ProfileCase stock{"Stock", 0, "1.0", 0}, core{"Core33", 1, "3.3", 0};
 
 class ProfileGLTest : public ViewerGLTest
 {
@@ -76,11 +79,23 @@ protected:
         return wanted;
     }
 
-    void changeTo(const ProfileCase& profile)
+    void TearDown() override
     {
+        osg::setNotifyHandler(new osg::StandardNotifyHandler);
+        // In the core profile an OSG with the fixed pipeline, such as Debian's, causes GL errors (matrices, materials,
+        // mipmap modes) and warns about them.
+        if (_profile.profileMask == 1 && !IsSkipped() && !HasFatalFailure()) takeGLErrors();
         ViewerGLTest::TearDown();
+    }
+
+    /// False: the context is not there, and the test is skipped or has failed.
+    bool changeTo(const ProfileCase& profile)
+    {
+        TearDown();
         _profile = profile;
-        ViewerGLTest::SetUp();
+        SetUp();
+        osg::setNotifyHandler(log = new NotifyLog(osg::WARN));
+        return !HasFatalFailure() && !IsSkipped();
     }
 
     osg::ref_ptr<osg::Image> pictureOf(osg::Node* scene)
@@ -91,6 +106,8 @@ protected:
         return ViewerGLTest::pictureOf(scene, {0, 0.25, 0.5});
     }
 
+    osg::ref_ptr<NotifyLog> log; ///< of OSG's warnings in the present context
+
 private:
     ProfileCase _profile = stock;
 };
@@ -99,30 +116,15 @@ class ProfilesGLTest : public ProfileGLTest, public ::testing::WithParamInterfac
 {
 };
 
-/// Records OSG's warnings.
-class Warnings : public osg::NotifyHandler
-{
-public:
-    void notify(osg::NotifySeverity severity, const char* message) override
-    {
-        if (severity <= osg::WARN && *message != '\n') texts.push_back(message);
-    }
-    std::vector<std::string> texts;
-};
-
 TEST_P(ProfilesGLTest, charactersAndCrowdsLookTheSame)
 {
     const osg::ref_ptr<osg::Image> expected = pictureOf(makeScene());
     EXPECT_GT(picture().pixelsDrawn(), 3 * 200);
-    changeTo(GetParam());
-    if (HasFatalFailure() || IsSkipped()) return;
+    if (!changeTo(GetParam())) return;
     ASSERT_EQ(context().isCoreProfile(), GetParam().profileMask == 1);
-    osg::setNotifyHandler(new Warnings); // about the fixed pipeline in the core profile, see below
-    const osg::ref_ptr<osg::Image> found = pictureOf(makeScene());
     // Multisampling softens edges: four panels with four edges of 16 pixels each, two pixels wide.
-    EXPECT_LE(Picture::pixelsDifferent(*expected, *found), GetParam().samples > 0 ? 4 * 4 * 16 * 2 : 0);
-    osg::setNotifyHandler(new osg::StandardNotifyHandler);
-    if (context().isCoreProfile()) takeGLErrors();
+    EXPECT_LE(Picture::pixelsDifferent(*expected, *pictureOf(makeScene())),
+              GetParam().samples > 0 ? 4 * 4 * 16 * 2 : 0);
 }
 
 /// Counts the draws of a mesh, and those that leave a GL error.
@@ -132,8 +134,7 @@ public:
     void drawImplementation(osg::RenderInfo& renderInfo, const osg::Drawable* drawable) const override
     {
         while (glGetError() != GL_NO_ERROR)
-        {
-        }
+            continue;
         drawable->drawImplementation(renderInfo);
         ++draws;
         if (glGetError() != GL_NO_ERROR) ++errors;
@@ -142,25 +143,16 @@ public:
     mutable int errors = 0;
 };
 
-// In the core profile an OSG with the fixed pipeline, such as Debian's, causes GL errors (matrices, materials, mipmap
-// modes) and warns about them. The test therefore checks for errors around each mesh.
 TEST_P(ProfilesGLTest, leavesNoGlErrors)
 {
-    changeTo(GetParam());
-    if (HasFatalFailure() || IsSkipped()) return;
+    if (!changeTo(GetParam())) return;
     osg::ref_ptr<osg::Group> scene = makeScene();
     osg::ref_ptr<ErrorNotes> notes = new ErrorNotes;
     static_cast<osg::Drawable&>(*scene->getChild(0)->asGroup()->getChild(0)).setDrawCallback(notes);
-    osg::ref_ptr<Warnings> warnings = new Warnings;
-    osg::setNotifyHandler(warnings);
     pictureOf(scene);
-    osg::setNotifyHandler(new osg::StandardNotifyHandler);
     EXPECT_EQ(notes->draws, 6); // the character's and the crowd's, three frames
     EXPECT_EQ(notes->errors, 0);
-    if (context().isCoreProfile())
-        takeGLErrors();
-    else
-        EXPECT_TRUE(warnings->texts.empty()) << warnings->texts.front();
+    EXPECT_TRUE(context().isCoreProfile() || log->text.empty()) << log->text;
 }
 
 /// Replaces the context's functions by those of OpenGL 2.1 during its lifetime. (OSG keeps them for the next context
@@ -197,17 +189,12 @@ TEST_F(ProfileGLTest, withoutFeedbackAndInstancingAllElseIsDrawnAndOneMessageSay
     const osg::ref_ptr<osg::Node> plain = makeBaked(*makePanelCharacter());
     scene->addChild(plain);
     const osg::ref_ptr<osg::Image> expected = pictureOf(plain);
-    changeTo(stock);
+    ASSERT_TRUE(changeTo(stock));
     const OldDriver old(*state().get<osg::GLExtensions>());
-    osg::ref_ptr<Warnings> warnings = new Warnings;
-    osg::setNotifyHandler(warnings);
-    const osg::ref_ptr<osg::Image> found = pictureOf(scene);
-    osg::setNotifyHandler(new osg::StandardNotifyHandler);
-    EXPECT_EQ(Picture::pixelsDifferent(*expected, *found), 0);
-    ASSERT_EQ(warnings->texts.size(), 1u);
-    EXPECT_NE(warnings->texts[0].find("OpenGL 2.1; animated characters need 3.3"), std::string::npos)
-        << warnings->texts[0];
-    EXPECT_NO_GL_ERROR();
+    EXPECT_EQ(Picture::pixelsDifferent(*expected, *pictureOf(scene)), 0);
+    const std::size_t message = log->text.find("OpenGL 2.1; animated characters need 3.3");
+    EXPECT_NE(message, std::string::npos) << log->text;
+    EXPECT_EQ(std::count(log->text.begin(), log->text.end(), '\n'), 1) << log->text;
 }
 
 constexpr auto on = osg::StateAttribute::ON, off = osg::StateAttribute::OFF, inherit = osg::StateAttribute::INHERIT;
@@ -241,11 +228,9 @@ TEST_F(ProfileGLTest, overriddenAndProtectedModesCountInEveryProfile)
                              { state.setMode(GL_LIGHTING, value); },
                              [](osg::StateSet& state, osg::StateAttribute::GLModeValue value)
                              { state.setTextureMode(0, GL_TEXTURE_2D, value); }};
-    for (const ProfileCase& profile : {stock, ProfileCase{"Core33", 1, "3.3", 0}})
+    for (const ProfileCase& profile : {stock, core})
     {
-        changeTo(profile);
-        if (HasFatalFailure() || IsSkipped()) return;
-        osg::setNotifyHandler(new Warnings); // of the fixed pipeline in the core profile, see above
+        if (!changeTo(profile)) return;
         const osg::ref_ptr<osg::Group> root = new osg::Group, above = new osg::Group;
         const osg::ref_ptr<AnimatedCharacter> character = makePanelCharacter();
         character->setMatrix(osg::Matrix::rotate(0.9, 0, 0, 1)); // a headlight shades it
@@ -272,36 +257,39 @@ TEST_F(ProfileGLTest, overriddenAndProtectedModesCountInEveryProfile)
                     << &values - modeCases;
             pictureWith({inherit, inherit, on, true});
         }
-        osg::setNotifyHandler(new osg::StandardNotifyHandler);
-        if (context().isCoreProfile()) takeGLErrors();
     }
 }
 
-TEST_F(ProfileGLTest, emissionIsAddedInEveryProfile)
+/// A panel with emission under 0.8 of a light from the eye and 0.2 from all around, or without any.
+osg::ref_ptr<osg::Node> makeGlowing(bool isPbr, bool isLit)
 {
-    for (const ProfileCase& profile : {stock, ProfileCase{"Core33", 1, "3.3", 0}})
-    {
-        changeTo(profile);
-        if (HasFatalFailure() || IsSkipped()) return;
-        osg::setNotifyHandler(new Warnings); // of the fixed pipeline in the core profile, see above
-        const osg::ref_ptr<AnimatedCharacter> character = makePanelCharacter();
-        osg::StateSet& state = *character->getChild(0)->getStateSet();
-        state.setMode(GL_LIGHTING, on);
-        state.setTextureMode(0, GL_TEXTURE_2D, off);
-        osg::ref_ptr<osg::Material> material = new osg::Material;
-        material->setDiffuse(osg::Material::FRONT_AND_BACK, osg::Vec4(0.25f, 0.25f, 0.25f, 1));
-        state.setAttribute(material);
-        const osg::Vec4 plain = pictureOf(character)->getColor(32u, 32u);
-        material->setEmission(osg::Material::FRONT_AND_BACK, osg::Vec4(0.5f, 0, 0.25f, 1));
-        const osg::Vec4 glowing = pictureOf(character)->getColor(32u, 32u);
-        for (const auto& [channel, added] : {std::pair(0, 0.5f), std::pair(1, 0.0f), std::pair(2, 0.25f)})
-            EXPECT_NEAR(glowing[channel] - plain[channel], added, 0.01f) << profile.name << ", channel " << channel;
-        osg::setNotifyHandler(new osg::StandardNotifyHandler);
-        if (context().isCoreProfile()) takeGLErrors();
-    }
+    const osg::ref_ptr<AnimatedCharacter> character = makePanelCharacter();
+    character->setMatrix(osg::Matrix::rotate(0.6, 0, 0, 1));
+    osg::StateSet& own = *character->getChild(0)->getStateSet();
+    PbrMaterial material;
+    material.metallic = 0.4f;
+    material.emissive.set(0, 0.1f, 0);
+    if (isPbr)
+        applyPbrMaterial(own, material);
+    else
+        static_cast<osg::Material&>(*own.getAttribute(osg::StateAttribute::MATERIAL))
+            .setEmission(osg::Material::FRONT_AND_BACK, osg::Vec4(0, 0.1f, 0, 1));
+    const osg::ref_ptr<osg::LightSource> source = new osg::LightSource;
+    source->getLight()->setPosition(osg::Vec4(0, -1, 0, 0));
+    source->getLight()->setAmbient(osg::Vec4(0, 0, 0, 1));
+    source->getLight()->setDiffuse(osg::Vec4(0.8f, 0.8f, 0.8f, 1));
+    source->getLight()->setSpecular(osg::Vec4(0, 0, 0, 1));
+    const osg::ref_ptr<osg::LightModel> model = new osg::LightModel;
+    model->setAmbientIntensity(osg::Vec4(0.2f, 0.2f, 0.2f, 1));
+    const osg::ref_ptr<osg::Group> scene = isLit ? source.get() : new osg::Group;
+    scene->addChild(character);
+    scene->getOrCreateStateSet()->setMode(GL_LIGHTING, on);
+    if (isLit) source->setStateSetModes(*scene->getStateSet(), on);
+    if (isLit) scene->getStateSet()->setAttribute(model);
+    return scene;
 }
 
-// The core profile has no lights: 0.8 of a light from the eye and 0.2 from all around take their place.
+// The core profile has no lights: such a light from the eye and such a surrounding take their place.
 TEST_F(ProfileGLTest, aHeadlightTakesThePlaceOfLightsInTheCoreProfile)
 {
     for (const bool isPbr : {false, true})
@@ -309,39 +297,12 @@ TEST_F(ProfileGLTest, aHeadlightTakesThePlaceOfLightsInTheCoreProfile)
         osg::ref_ptr<osg::Image> pictures[2];
         for (const bool isCore : {false, true})
         {
-            changeTo(isCore ? ProfileCase{"Core33", 1, "3.3", 0} : stock);
-            if (HasFatalFailure() || IsSkipped()) return;
-            if (isCore) osg::setNotifyHandler(new Warnings); // of the fixed pipeline, see above
-            const osg::ref_ptr<AnimatedCharacter> character = makePanelCharacter();
-            character->setMatrix(osg::Matrix::rotate(0.6, 0, 0, 1));
-            osg::StateSet& own = *character->getChild(0)->getStateSet();
-            PbrMaterial material;
-            material.metallic = 0.4f;
-            material.emissive.set(0, 0.1f, 0);
-            if (isPbr)
-                applyPbrMaterial(own, material);
-            else
-                static_cast<osg::Material&>(*own.getAttribute(osg::StateAttribute::MATERIAL))
-                    .setEmission(osg::Material::FRONT_AND_BACK, osg::Vec4(0, 0.1f, 0, 1));
-            const osg::ref_ptr<osg::LightSource> source = new osg::LightSource;
-            source->getLight()->setPosition(osg::Vec4(0, -1, 0, 0));
-            source->getLight()->setAmbient(osg::Vec4(0, 0, 0, 1));
-            source->getLight()->setDiffuse(osg::Vec4(0.8f, 0.8f, 0.8f, 1));
-            source->getLight()->setSpecular(osg::Vec4(0, 0, 0, 1));
-            const osg::ref_ptr<osg::LightModel> model = new osg::LightModel;
-            model->setAmbientIntensity(osg::Vec4(0.2f, 0.2f, 0.2f, 1));
-            const osg::ref_ptr<osg::Group> scene = isCore ? new osg::Group : source.get();
-            scene->addChild(character);
-            scene->getOrCreateStateSet()->setMode(GL_LIGHTING, on);
-            if (!isCore) source->setStateSetModes(*scene->getStateSet(), on);
-            if (!isCore) scene->getStateSet()->setAttribute(model);
+            if (!changeTo(isCore ? core : stock)) return;
             // So far away that the way to the eye is the same everywhere.
             viewer().getCamera()->setProjectionMatrixAsOrtho(-4, 4, -4, 4, 1, 4000);
             viewer().getCamera()->setViewMatrixAsLookAt({0, -2000, 0}, {0, 0, 0}, {0, 0, 1});
-            pictures[isCore ? 1 : 0] = pictureOf(scene);
+            pictures[isCore ? 1 : 0] = pictureOf(makeGlowing(isPbr, !isCore));
             EXPECT_GT(picture().pixelsDrawn(), 150);
-            osg::setNotifyHandler(new osg::StandardNotifyHandler);
-            if (isCore) takeGLErrors();
         }
         EXPECT_EQ(Picture::pixelsDifferent(*pictures[0], *pictures[1], 2.5f / 255), 0) << isPbr;
     }
@@ -371,8 +332,7 @@ TEST_F(ProfileGLTest, colorsAreEncodedByAnSrgbFramebuffer)
 }
 
 INSTANTIATE_TEST_SUITE_P(Profiles, ProfilesGLTest,
-                         ::testing::Values(stock, ProfileCase{"Core33", 1, "3.3", 0},
-                                           ProfileCase{"Core45", 1, "4.5", 0},
+                         ::testing::Values(stock, core, ProfileCase{"Core45", 1, "4.5", 0},
                                            ProfileCase{"Compatibility33", 2, "3.3", 0},
                                            ProfileCase{"Multisampled", 0, "1.0", 4}),
                          [](const auto& info) { return std::string(info.param.name); });

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: MIT
+#include "nodes/GlCallTrace.h"
 #include "nodes/Panel.h"
+#include "support/ScratchFolder.h"
+#include "support/TestCharacter.h"
 #include "support/ViewerGLTest.h"
+#include "support/WorkingFolder.h"
 
 #include <osgGpuAnimation/looks/CharacterProgram.h>
+#include <osgGpuAnimation/looks/Environment.h>
 #include <osgGpuAnimation/looks/PbrMaterial.h>
 #include <osgGpuAnimation/looks/shading/ShaderPermutations.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
@@ -12,6 +17,10 @@
 #include <osgFX/Outline>
 #include <osgFX/Scribe>
 #include <osgFX/SpecularHighlights>
+#include <osgUtil/GLObjectsVisitor>
+#include <osgUtil/IncrementalCompileOperation>
+
+// Snippets of the guides; tests/house/SnippetTest.cpp compares these statements with them.
 
 namespace osgGpuAnimation
 {
@@ -117,7 +126,6 @@ TEST_F(ReadmeShadersGLTest, skinsWithOneCallOnAMeshAndFromAbove)
     }
 }
 
-// A program that cannot skin would draw the bind pose.
 // "Materials" there, verbatim.
 TEST_F(ReadmeShadersGLTest, aMaterialOfOnesOwnIsShown)
 {
@@ -134,10 +142,9 @@ applyCharacterProgram(state);                            // a SkinnedGeometry; o
     // clang-format on
     state.setTextureMode(0, GL_TEXTURE_2D, osg::StateAttribute::OFF);
     const osg::ref_ptr<osg::Image> image = pictureOf(panel);
-    int red = 0;
-    for (int y = 0; y < image->t(); ++y)
-        for (int x = 0; x < image->s(); ++x)
-            red += image->getColor(x, y).r() > 1.5f * image->getColor(x, y).g() && image->getColor(x, y).r() > 0.3f;
+    int red = 0; // the others are a highlight
+    for (int pixel = 0; pixel < 64 * 64; ++pixel)
+        red += image->getColor(pixel % 64, pixel / 64).r() > 1.5f * image->getColor(pixel % 64, pixel / 64).g();
     EXPECT_GT(red, 20);
 }
 
@@ -152,35 +159,22 @@ TEST_F(ReadmeShadersGLTest, aProgramMayReadTheMaterial)
     state.setTextureMode(0, GL_TEXTURE_2D, osg::StateAttribute::OFF);
     state.setTextureAttribute(0, whiteTexture());
     state.setAttributeAndModes(makeOwnLight());
-    const osg::ref_ptr<osg::Image> image = pictureOf(panel);
-    EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
-    double red = 0.0, green = 0.0;
-    for (int y = 0; y < image->t(); ++y)
-        for (int x = 0; x < image->s(); ++x)
-        {
-            if (image->getColor(x, y) == image->getColor(0, 0)) continue;
-            red = std::max<double>(red, image->getColor(x, y).r());
-            green = std::max<double>(green, image->getColor(x, y).g());
-        }
-    EXPECT_NEAR(red, 0.5, 0.02);
-    EXPECT_NEAR(green, 0.6, 0.02);
+    const osg::Vec4 found = colorOfTheMiddle(*pictureOf(panel));
+    EXPECT_NO_GL_ERROR();
+    EXPECT_NEAR(found.r(), 0.5f, 0.02f);
+    EXPECT_NEAR(found.g(), 0.6f, 0.02f);
 }
 
 TEST_F(ReadmeShadersGLTest, aProgramFromAboveThatDoesNotSkinIsNotTaken)
 {
     const osg::ref_ptr<osg::Image> plain = pictureOf(makePanelCharacter());
-    for (osg::ref_ptr<osg::Program> program :
-         {osg::ref_ptr<osg::Program>(new osg::Program), []
-          {
-              osg::ref_ptr<osg::Program> red = new osg::Program;
-              red->addShader(
-                  new osg::Shader(osg::Shader::FRAGMENT, "void main() { gl_FragColor = vec4(1, 0, 0, 1); }"));
-              return red;
-          }()})
+    const osg::ref_ptr<osg::Program> fixed = new osg::Program, red = new osg::Program;
+    red->addShader(new osg::Shader(osg::Shader::FRAGMENT, "void main() { gl_FragColor = vec4(1, 0, 0, 1); }"));
+    for (const osg::ref_ptr<osg::Program>& program : {fixed, red})
     {
         osg::ref_ptr<AnimatedCharacter> character = makePanelCharacter();
         overrideBy(*character, *program);
-        EXPECT_EQ(Picture::pixelsDifferent(*plain, *pictureOf(character)), 0);
+        EXPECT_EQ(Picture::pixelsDifferent(*plain, *pictureOf(character)), 0); // it would draw the bind pose
     }
 }
 
@@ -198,6 +192,46 @@ TEST_F(ReadmeShadersGLTest, effectsOfOsgFxShowTheAnimatedPose)
         EXPECT_LE(outlineDifference(*plain, *pictureOf(effect)), linePixels) << effect->effectName();
         EXPECT_NO_GL_ERROR();
     }
+}
+
+// On start-up, in the guide application.md.
+using ReadmeStartGLTest = ViewerGLTest;
+
+TEST_F(ReadmeStartGLTest, aSceneIsCompiledOnRealize)
+{
+    osgViewer::Viewer& viewer = this->viewer();
+    const osg::ref_ptr<osg::Node> scene = makeTestCharacter();
+    viewer.setSceneData(scene);
+    viewer.setRealizeOperation(new osgUtil::GLObjectsOperation(scene));
+    viewer.setIncrementalCompileOperation(new osgUtil::IncrementalCompileOperation);
+    viewer.realize();
+    context().makeCurrent();
+    const GlCallTrace trace(state());
+    drawAt(0.0);
+    EXPECT_EQ(trace.count("glLinkProgram"), 0);
+    EXPECT_GT(picture().pixelsDrawn(), 50);
+    EXPECT_NO_GL_ERROR();
+}
+
+// On surroundings, in the guide shading.md.
+TEST(ReadmeSurroundingsTest, Surroundings)
+{
+    const ScratchFolder folder;
+    const WorkingFolder inside(folder.file(""));
+    std::string sunset = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 8\n";
+    for (int pixel = 0; pixel < 32; ++pixel)
+        sunset += "\x80\x40\x20\x81";
+    folder.write("sunset.hdr", sunset);
+    const osg::ref_ptr<osg::Node> model = new osg::Group;
+    auto read = Environment::fromFile("sunset.hdr");
+    osg::ref_ptr<Environment> environment = read ? read.value().get() : new Environment;
+    environment->setIntensity(0.8f);
+    environment->setRotation(osg::PI_2f);
+    environment->setToneMapping(true);
+    environment->addChild(model);
+    ASSERT_TRUE(environment->getPanorama());
+    EXPECT_EQ(environment->getPanorama()->s(), 8);
+    EXPECT_EQ(environment->getPanorama()->getDataType(), static_cast<GLenum>(GL_FLOAT));
 }
 
 } // namespace

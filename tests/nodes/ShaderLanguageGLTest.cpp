@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <utility>
 
 namespace osgGpuAnimation
 {
@@ -28,63 +29,50 @@ namespace
 /// The sources of a program as GL gets them, each with its ending for glslangValidator.
 using Sources = std::vector<std::pair<std::string, std::string>>;
 
-/// While it lives, keeps the sources of every program that is linked in a context.
+std::set<Sources> linkedPrograms;
+
+/// While it lives, keeps the sources of every program that is linked in a context, in linkedPrograms.
 class LinkedPrograms
 {
 public:
-    explicit LinkedPrograms(osg::GLExtensions& gl)
-        : _gl(&gl), _real{gl.glShaderSource, gl.glAttachShader, gl.glLinkProgram}
+    explicit LinkedPrograms(osg::GLExtensions& gl) : _gl(gl)
     {
-        current = this;
-        gl.glShaderSource = [](GLuint shader, GLsizei count, const GLchar** texts, const GLint* lengths)
-        { current->setSource(shader, count, texts, lengths); };
-        gl.glAttachShader = [](GLuint program, GLuint shader)
-        {
-            current->_attached[program].push_back(current->_shaders[shader]);
-            current->_real.attach(program, shader);
-        };
-        gl.glLinkProgram = [](GLuint program)
-        {
-            current->programs.insert(current->_attached[program]);
-            current->_attached.erase(program);
-            current->_real.link(program);
-        };
+        linkedPrograms.clear();
+        extensions = &gl;
+        real = std::exchange(gl.glLinkProgram,
+                             [](GLuint program)
+                             {
+                                 linkedPrograms.insert(sourcesOf(program));
+                                 real(program);
+                             });
     }
-    ~LinkedPrograms()
-    {
-        _gl->glShaderSource = _real.source;
-        _gl->glAttachShader = _real.attach;
-        _gl->glLinkProgram = _real.link;
-    }
+    ~LinkedPrograms() { _gl.glLinkProgram = real; }
     LinkedPrograms(const LinkedPrograms&) = delete;
     LinkedPrograms& operator=(const LinkedPrograms&) = delete;
 
-    std::set<Sources> programs;
-
 private:
-    struct Functions
+    static Sources sourcesOf(GLuint program)
     {
-        decltype(osg::GLExtensions::glShaderSource) source;
-        decltype(osg::GLExtensions::glAttachShader) attach;
-        decltype(osg::GLExtensions::glLinkProgram) link;
-    };
-
-    void setSource(GLuint shader, GLsizei count, const GLchar** texts, const GLint* lengths)
-    {
-        std::string text;
+        Sources sources;
+        GLuint shaders[8];
+        GLsizei count = 0, length = 0;
+        extensions->glGetAttachedShaders(program, 8, &count, shaders);
         for (GLsizei i = 0; i < count; ++i)
-            text += lengths && lengths[i] >= 0 ? std::string(texts[i], static_cast<std::size_t>(lengths[i])) : texts[i];
-        GLint type = 0;
-        _gl->glGetShaderiv(shader, GL_SHADER_TYPE, &type);
-        _shaders[shader] = {type == GL_VERTEX_SHADER ? ".vert" : ".frag", text};
-        _real.source(shader, count, texts, lengths);
+        {
+            GLint type = 0, size = 0;
+            extensions->glGetShaderiv(shaders[i], GL_SHADER_TYPE, &type);
+            extensions->glGetShaderiv(shaders[i], GL_SHADER_SOURCE_LENGTH, &size);
+            std::string text(static_cast<std::size_t>(size), '\0');
+            extensions->glGetShaderSource(shaders[i], size, &length, text.data());
+            text.resize(static_cast<std::size_t>(length));
+            sources.emplace_back(type == GL_VERTEX_SHADER ? ".vert" : ".frag", text);
+        }
+        return sources;
     }
 
-    static inline LinkedPrograms* current = nullptr;
-    osg::GLExtensions* _gl;
-    Functions _real;
-    std::map<GLuint, Sources::value_type> _shaders;
-    std::map<GLuint, Sources> _attached;
+    static inline decltype(osg::GLExtensions::glLinkProgram) real = nullptr;
+    static inline osg::GLExtensions* extensions = nullptr;
+    osg::GLExtensions& _gl;
 };
 
 /// What Khronos's reference compiler says of the programs: those that it refuses, with its message.
@@ -258,12 +246,12 @@ TEST_F(ShaderLanguageGLTest, everyProgramPassesTheReferenceCompiler)
         SCOPED_TRACE(isCore ? "core profile" : "compatibility profile");
         if (isCore) changeToCoreProfile();
         if (HasFatalFailure() || IsSkipped()) return;
-        LinkedPrograms linked(gl());
+        const LinkedPrograms linked(gl());
         linkSurfaces();
         if (!isCore) linkPosePasses(); // which are the same in both
         linkPrefilter();
-        EXPECT_GT(linked.programs.size(), isCore ? 20u : 60u);
-        for (const std::string& message : refused(linked.programs, !isCore))
+        EXPECT_GT(linkedPrograms.size(), isCore ? 20u : 60u);
+        for (const std::string& message : refused(linkedPrograms, !isCore))
             ADD_FAILURE() << message;
     }
     takeGLErrors(); // an OSG with the fixed pipeline makes errors of its own in the core profile

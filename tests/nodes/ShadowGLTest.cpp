@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "nodes/Panel.h"
+#include "support/TestCharacter.h"
 #include "support/ViewerGLTest.h"
 
 #include <osgGpuAnimation/looks/PbrMaterial.h>
@@ -196,6 +197,45 @@ INSTANTIATE_TEST_SUITE_P(
                       TechniqueCase{"ParallelSplitShadowMap", make<osgShadow::ParallelSplitShadowMap>, true, 2},
                       TechniqueCase{"SoftShadowMap", make<osgShadow::SoftShadowMap>}),
     [](const auto& info) { return std::string(info.param.name); });
+
+/// osgShadow's technique, which fits the camera of its map to the bounds of the scene.
+class FittedShadowMap : public osgShadow::ShadowMap
+{
+public:
+    /// Half the height of what the map shows, at the distance of its middle, in units of the scene.
+    double reach() const
+    {
+        double left, right, bottom, top, zNear, zFar;
+        if (_camera->getProjectionMatrixAsOrtho(left, right, bottom, top, zNear, zFar) && right > 0.0) return top;
+        if (!_camera->getProjectionMatrixAsFrustum(left, right, bottom, top, zNear, zFar)) return 0.0;
+        return top / zNear * 0.5 * (zNear + zFar);
+    }
+};
+
+using ShadowBoundsGLTest = ViewerGLTest;
+
+TEST_F(ShadowBoundsGLTest, aShadowMapIsFittedToWhatPlays)
+{
+    for (const char* clip : {"shift", "turn"})
+    {
+        const osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
+        ASSERT_TRUE(character->getController().play(clip));
+        const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*character);
+        ASSERT_TRUE(crowd->add(osg::Matrixd::translate(1, 2, 3), character->getController()));
+        const double radius = static_cast<double>(character->getCurrentBounds().radius());
+        for (osg::Node* subject : std::initializer_list<osg::Node*>{character, crowd})
+        {
+            const osg::ref_ptr<FittedShadowMap> technique = new FittedShadowMap;
+            const osg::ref_ptr<osg::LightSource> light = new osg::LightSource;
+            light->getLight()->setPosition(osg::Vec4(-0.5f, -1.0f, 0.7f, 0.0f));
+            const osg::ref_ptr<osgShadow::ShadowedScene> scene = new osgShadow::ShadowedScene(technique);
+            scene->addChild(subject);
+            scene->addChild(light);
+            pictureOf(scene, {0.0, 0.1});
+            EXPECT_NEAR(technique->reach(), radius, 0.05 * radius) << clip << ' ' << subject->className();
+        }
+    }
+}
 
 } // namespace
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "nodes/Tube.h"
 #include "support/BindingRecord.h"
+#include "support/TestCrowd.h"
 #include "support/ViewerGLTest.h"
 
 #include <osgGpuAnimation/animation/Pose.h>
@@ -8,7 +9,6 @@
 #include <osgGpuAnimation/gpu/PosePipeline.h>
 #include <osgGpuAnimation/mesh/detail/MeshDetail.h>
 #include <osgGpuAnimation/mesh/lod/LodLevels.h>
-#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/detail/CrowdDetail.h>
 
 #include <glm/geometric.hpp>
@@ -175,24 +175,6 @@ TEST_F(SharedPosesGLTest, uploadsFollowWhatChanges)
         << "one walks";
 }
 
-// The buffer of placements is a new one after instances have come.
-TEST_F(SharedPosesGLTest, aCrowdThatGrowsKeepsItsPlaces)
-{
-    ASSERT_TRUE(_crowd->getMeshes().setPixelError(0.1f));
-    drawNext(0.0);
-    drawNext(0.1);
-    AnimationController controller(_crowd->getSharedAnimationSet());
-    ASSERT_TRUE(controller.play(0));
-    for (int i = 0; i < 5000; ++i)
-        ASSERT_TRUE(_crowd->add(osg::Matrixd::translate(0, -1e5, 0), controller)) << "behind the eye";
-    drawNext(0.2);
-    EXPECT_GT(sharing(), 0u);
-    const osg::ref_ptr<osg::Image> shared = picture().copy();
-    ASSERT_TRUE(_crowd->getMeshes().setPixelError(0.0f));
-    drawNext(0.2);
-    EXPECT_LE(Picture::meanDifference(*shared, picture().image()), 0.02);
-}
-
 // Crossfades, events and the like have controllers; without a pixel error nobody shares.
 TEST_F(SharedPosesGLTest, othersKeepPosesOfTheirOwn)
 {
@@ -212,90 +194,41 @@ TEST_F(SharedPosesGLTest, othersKeepPosesOfTheirOwn)
     drawNext(0.9);
     drawNext(1.0);
     EXPECT_GT(sharing(), 0u) << "loops again";
+    for (const AnimatedCrowd::Instance instance : _instances)
+        _crowd->getController(instance)->setSpeed(1e308);
+    const osg::ref_ptr<osg::Image> first = pictureOf(_crowd, {1.0, 10.0, 30.0});
+    EXPECT_GT(sharing(), 0u) << "times beyond all numbers show the start";
+    EXPECT_GT(picture().pixelsDrawn(), 100);
 }
 
+// The buffer of placements is a new one after instances have come; a copy has placements of its own.
 TEST_F(SharedPosesGLTest, theyLookAsWithPosesOfTheirOwn)
 {
     for (std::size_t i = 0; i < _instances.size(); i += 3)
         ASSERT_TRUE(_crowd->setTint(_instances[i], osg::Vec4(1, 0.2f, 0.1f, 1)));
     const osg::ref_ptr<osg::Image> exact = pictureOf(_crowd, {0.0, 0.45});
     ASSERT_TRUE(_crowd->getMeshes().setPixelError(0.25f));
-    drawNext(0.45);
-    EXPECT_GT(sharing(), 0u);
-    EXPECT_LE(Picture::meanDifference(*exact, picture().image()), 0.025);
-    // A context whose buffer textures are too small for the placements, known from its first frame on.
-    pipeline().options().maxTexels = across * across;
-    drawNext(0.45);
-    drawNext(0.45);
-    EXPECT_EQ(sharing(), 0u);
-    EXPECT_LE(Picture::meanDifference(*exact, picture().image()), 0.025);
-}
-
-// A batch of shared poses fits a chunk of the palette: ten clips have more steps than that.
-TEST_F(SharedPosesGLTest, moreThanAChunkOfPosesIsDrawnAndEachIsEvaluatedOnce)
-{
-    constexpr int side = 66, clips = 10, places = side * side;
-    const auto set = armSet(false, clips);
-    const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*makeTubeCharacter(set));
-    for (int i = 0; i < 2 * places; ++i) // each with one behind it that is alike
+    const auto expectShared = [&](bool areShared)
     {
-        const int place = i % places;
-        AnimationController controller(set);
-        ASSERT_TRUE(controller.play(static_cast<std::size_t>(place % clips)));
-        controller.seek(static_cast<double>(place) / places);
-        const double x = 12.0 * (place % side - side / 2), z = 12.0 * (place / side - side / 2);
-        ASSERT_TRUE(crowd->add(osg::Matrixd::translate(x, i < places ? 0.0 : 20.0, z), controller));
-    }
-    const double half = 6.0 * side, pixel = 2.0 * half / pictureSide();
-    viewer().getCamera()->setProjectionMatrixAsOrtho(-half, half, -half, half, 1, 1000);
-    viewer().getCamera()->setViewMatrixAsLookAt(osg::Vec3d(0, -500, 0), osg::Vec3d(), osg::Vec3d(0, 0, 1));
-    pictureOf(crowd, {0.0, 0.1});
-    const int expected = picture().pixelsDrawn();
-    ASSERT_TRUE(crowd->getMeshes().setPixelError(static_cast<float>(0.0036 / pixel)));
-    const std::uint64_t before = pipeline().getCounters().instancesEvaluated;
-    pictureOf(crowd, {0.2});
-    const std::uint64_t evaluated = pipeline().getCounters().instancesEvaluated - before;
-    EXPECT_GT(evaluated, PosePipeline::usualChunkSize);
-    EXPECT_LE(evaluated, static_cast<std::uint64_t>(places));
-    EXPECT_GE(PlacedInstanceBuffers::of(state()).getBytesUploaded(), 16u * places) << "all share";
-    pictureOf(crowd, {0.1});
-    EXPECT_NEAR(picture().pixelsDrawn(), expected, 0.005 * expected);
-}
-
-TEST_F(SharedPosesGLTest, meshesBelowOtherNodesMove)
-{
-    const osg::ref_ptr<osg::Group> group = new osg::Group;
-    group->addChild(&mesh());
-    _crowd->removeChild(0, 1);
-    _crowd->addChild(group);
-    ASSERT_TRUE(_crowd->getMeshes().setPixelError(0.5f));
-    const osg::ref_ptr<osg::Image> early = pictureOf(_crowd, {0.0, 0.1});
-    const osg::ref_ptr<osg::Image> late = pictureOf(_crowd, {0.6});
-    EXPECT_GT(Picture::pixelsDifferent(*early, *late), 100);
-}
-
-TEST_F(SharedPosesGLTest, timesBeyondAllNumbersShowTheStart)
-{
-    for (const AnimatedCrowd::Instance instance : _instances)
-        _crowd->getController(instance)->setSpeed(1e308);
-    ASSERT_TRUE(_crowd->getMeshes().setPixelError(0.5f));
-    const osg::ref_ptr<osg::Image> first = pictureOf(_crowd, {0.0, 10.0, 30.0});
-    EXPECT_GT(sharing(), 0u);
-    EXPECT_GT(picture().pixelsDrawn(), 100);
-}
-
-// Cameras that see the same take the same list; a copy has placements of its own.
-TEST_F(SharedPosesGLTest, copiesAreIndependent)
-{
-    ASSERT_TRUE(_crowd->getMeshes().setPixelError(1.0f));
+        drawNext(0.45);
+        drawNext(0.45);
+        EXPECT_EQ(sharing() > 0, areShared);
+        EXPECT_LE(Picture::meanDifference(*exact, picture().image()), 0.025);
+    };
+    expectShared(true);
+    AnimationController controller(_crowd->getSharedAnimationSet());
+    ASSERT_TRUE(controller.play(0));
+    addInstances(*_crowd, std::vector<osg::Matrixd>(5000, osg::Matrixd::translate(0, -1e5, 0)), controller);
+    expectShared(true); // the others are behind the eye
     const osg::ref_ptr<AnimatedCrowd> copy = osg::clone(_crowd.get());
-    const osg::ref_ptr<osg::Image> before = pictureOf(_crowd, {0.0, 0.2});
     for (const AnimatedCrowd::Instance instance : _instances)
         ASSERT_TRUE(copy->setPlacement(instance, osg::Matrixd::translate(0, 0, 1e6)));
-    pictureOf(copy, {0.2});
-    const osg::ref_ptr<osg::Image> after = pictureOf(_crowd, {0.2});
-    EXPECT_EQ(Picture::pixelsDifferent(*before, *after, 0.0f), 0);
-    EXPECT_GT(picture().pixelsDrawn(), 100);
+    pictureOf(copy, {0.45});
+    viewer().setSceneData(_crowd);
+    expectShared(true);
+    // A context whose buffer textures are too small for the placements, known from its first frame on.
+    pipeline().options().maxTexels = across * across;
+    expectShared(false);
 }
 
 } // namespace osgGpuAnimation

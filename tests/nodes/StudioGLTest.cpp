@@ -43,17 +43,15 @@ protected:
     /// The brightness of a point on the ground, relative to that of one far from the model in the same row.
     double brightness(const osg::Image& image, double x, double y)
     {
-        const osg::Vec4 color = colorAt(image, osg::Vec3d(x, y, 0)), far = colorAt(image, osg::Vec3d(-2.8, y, 0));
-        return color.g() / far.g();
-    }
-
-private:
-    osg::Vec4 colorAt(const osg::Image& image, const osg::Vec3d& point)
-    {
         const osg::Camera& camera = *viewer().getCamera();
-        const osg::Vec3d pixel =
-            point * camera.getViewMatrix() * camera.getProjectionMatrix() * camera.getViewport()->computeWindowMatrix();
-        return image.getColor(static_cast<int>(pixel.x()), static_cast<int>(pixel.y()));
+        const osg::Matrix toPixels =
+            camera.getViewMatrix() * camera.getProjectionMatrix() * camera.getViewport()->computeWindowMatrix();
+        const auto greenAt = [&](const osg::Vec3d& point)
+        {
+            const osg::Vec3d pixel = point * toPixels;
+            return image.getColor(static_cast<int>(pixel.x()), static_cast<int>(pixel.y())).g();
+        };
+        return greenAt({x, y, 0}) / greenAt({-2.8, y, 0});
     }
 };
 
@@ -83,33 +81,25 @@ osg::ref_ptr<osg::Image> sunnySky(osg::Vec3f towards, float strength = 200.0f)
 TEST_P(StudioGLTest, inSurroundingsFromAPictureTheShadowIsThatOfTheirBrightestLight)
 {
     const osg::ref_ptr<Studio> studio = makeScene();
-    const auto shadowAt = [&](double x, double y) { return brightness(*pictureOf(studio, {0.0}), x, y) < 0.85; };
-    EXPECT_TRUE(shadowAt(0.5, 0.5));
-    EXPECT_FALSE(shadowAt(0.5, -0.5));
+    const auto expectShadow = [&](bool isBehind, bool isInFront)
+    {
+        const osg::ref_ptr<osg::Image> image = pictureOf(studio, {0.0});
+        EXPECT_EQ(brightness(*image, 0.5, 0.5) < 0.85, isBehind);
+        EXPECT_EQ(brightness(*image, 0.5, -0.5) < 0.85, isInFront);
+        return brightness(*image, 0.5, -0.5);
+    };
+    expectShadow(true, false);
     ASSERT_TRUE(studio->setPanorama(sunnySky({0, 1, -1}))); // behind the model
-    EXPECT_FALSE(shadowAt(0.5, 0.5));
-    EXPECT_TRUE(shadowAt(0.5, -0.5));
+    const double dark = expectShadow(false, true);
+    ASSERT_TRUE(studio->setPanorama(sunnySky({0, 1, -1}, 20.0f)));
+    EXPECT_GT(expectShadow(false, true), dark + 0.1) << "as dark as the light is strong";
     studio->setRotation(osg::PIf);
-    EXPECT_TRUE(shadowAt(0.5, 0.5));
-    EXPECT_FALSE(shadowAt(0.5, -0.5));
+    expectShadow(true, false);
     ASSERT_TRUE(studio->setPanorama(makePanorama(64, [](const osg::Vec3f&) { return osg::Vec3f(1, 1, 1); })));
-    EXPECT_FALSE(shadowAt(0.5, 0.5));
-    EXPECT_FALSE(shadowAt(0.5, -0.5));
+    expectShadow(false, false);
     studio->setStudio();
     studio->setRotation(0.0f);
-    EXPECT_TRUE(shadowAt(0.5, 0.5));
-}
-
-TEST_P(StudioGLTest, theShadowIsAsDarkAsTheLightIsStrong)
-{
-    const osg::ref_ptr<Studio> studio = makeScene();
-    std::vector<double> found;
-    for (const float strength : {200.0f, 20.0f})
-    {
-        ASSERT_TRUE(studio->setPanorama(sunnySky({0, 1, -1}, strength)));
-        found.push_back(brightness(*pictureOf(studio, {0.0}), 0.5, -0.5));
-    }
-    EXPECT_GT(found[1], found[0] + 0.1);
+    expectShadow(true, false);
 }
 
 /// A level rectangle.
@@ -254,8 +244,6 @@ TEST_P(StudioGLTest, severalWindowsShowTheSamePictureAlsoAfterAResize)
     viewer().getCamera()->setViewport(0, 0, 96, 96);
     const osg::ref_ptr<osg::Image> small = pictureOf(studio, {0.5});
     viewer().getCamera()->setViewport(0, 0, 128, 128);
-    const osg::ref_ptr<osg::Image> later = pictureOf(studio, {0.9});
-    EXPECT_GT(Picture::pixelsDifferent(*later, *large), 50);
     viewer().setSceneData(nullptr);
     context().releaseContext();
     for (const auto threading : threadingModels)
@@ -280,9 +268,9 @@ TEST_P(StudioGLTest, severalWindowsShowTheSamePictureAlsoAfterAResize)
         EXPECT_EQ(Picture::pixelsDifferent(*small, windows[1].picture->image()), 0) << "resized";
         windows[1].context->close(); // the other one keeps its GL objects
         both.startThreading();
-        both.frame(0.9);
+        both.frame(0.5);
         both.stopThreading();
-        EXPECT_EQ(Picture::pixelsDifferent(*later, windows[0].picture->image()), 0) << "the other window is closed";
+        EXPECT_EQ(Picture::pixelsDifferent(*large, windows[0].picture->image()), 0) << "the other window is closed";
     }
     context().makeCurrent();
 }

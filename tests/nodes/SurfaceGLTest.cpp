@@ -49,6 +49,16 @@ osg::ref_ptr<osg::Light> light(int number, const osg::Vec4& position)
     return result;
 }
 
+/// Sets a material that replaces the mesh's, and returns it.
+osg::Material& overrideMaterial(osg::StateSet& state, const osg::Vec4& color)
+{
+    osg::ref_ptr<osg::Material> material = new osg::Material;
+    material->setDiffuse(osg::Material::FRONT_AND_BACK, color);
+    material->setAmbient(osg::Material::FRONT_AND_BACK, color);
+    state.setAttributeAndModes(material, on | override);
+    return *material;
+}
+
 void addFog(osg::StateSet& state, osg::Fog::Mode mode)
 {
     osg::ref_ptr<osg::Fog> fog = new osg::Fog;
@@ -122,29 +132,20 @@ TEST_P(SurfaceGLTest, changesPbrSurfacesToo)
 TEST_F(SurfaceGLTest, modesChangeFromMeshToMesh)
 {
     const auto nothing = [](osg::StateSet&) {};
-    osg::ref_ptr<osg::Group> lit = new osg::Group;
-    osg::ref_ptr<osg::Group> both = new osg::Group;
-    osg::ref_ptr<osg::Group> plain = new osg::Group;
+    const osg::ref_ptr<osg::Group> lit = new osg::Group, plain = new osg::Group, both = new osg::Group;
     plain->getOrCreateStateSet()->setMode(GL_LIGHTING, off);
-    for (int i = 0; i < 2; ++i)
+    for (const osg::ref_ptr<osg::Group>& group : {lit, plain})
     {
         osg::ref_ptr<AnimatedCharacter> character = makePanelCharacter();
-        character->setMatrix(osg::Matrix::translate(i == 0 ? -2.5 : 1.5, 0, 0));
-        (i == 0 ? lit : plain)->addChild(character);
+        character->setMatrix(osg::Matrix::translate(group == lit ? -2.5 : 1.5, 0, 0));
+        group->addChild(character);
+        both->addChild(group);
     }
-    both->addChild(lit);
-    both->addChild(plain);
-    const osg::ref_ptr<osg::Image> one = pictureOf(lit, nothing);
-    const osg::ref_ptr<osg::Image> other = pictureOf(plain, nothing);
-    for (int frame = 0; frame < 2; ++frame)
-    {
-        const osg::ref_ptr<osg::Image> together = pictureOf(both, nothing);
-        int different = 0;
-        for (int y = 0; y < 128; ++y)
-            for (int x = 0; x < 128; ++x)
-                different += together->getColor(x, y) != (x < 64 ? one : other)->getColor(x, y);
-        EXPECT_EQ(different, 0);
-    }
+    const osg::ref_ptr<osg::Image> one = pictureOf(lit, nothing), other = pictureOf(plain, nothing);
+    const osg::ref_ptr<osg::Image> together = pictureOf(both, nothing);
+    for (int y = 0; y < 128; ++y)
+        for (int x = 0; x < 128; ++x)
+            ASSERT_EQ(together->getColor(x, y), (x < 64 ? one : other)->getColor(x, y)) << x << ", " << y;
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -162,28 +163,24 @@ INSTANTIATE_TEST_SUITE_P(
         StateCase{"TextureMatrix", [](osg::StateSet& state)
                   { state.setTextureAttributeAndModes(0, new osg::TexMat(osg::Matrix::translate(0.25, 0, 0))); }},
         StateCase{"AnotherMaterial",
+                  [](osg::StateSet& state) {
+                      overrideMaterial(state, {0.2f, 0.9f, 0.3f, 0.5f});
+                  }},
+        StateCase{"EmissionWithoutTexture",
                   [](osg::StateSet& state)
                   {
-                      osg::ref_ptr<osg::Material> material = new osg::Material;
-                      for (auto set : {&osg::Material::setAmbient, &osg::Material::setDiffuse})
-                          (material.get()->*set)(osg::Material::FRONT_AND_BACK, osg::Vec4(0.2f, 0.9f, 0.3f, 0.5f));
-                      state.setAttributeAndModes(material, on | override);
+                      state.setTextureMode(0, GL_TEXTURE_2D, off | override);
+                      overrideMaterial(state, {0.2f, 0.2f, 0.2f, 1})
+                          .setEmission(osg::Material::FRONT_AND_BACK, osg::Vec4(0.5f, 0, 0.25f, 1));
                   }},
         StateCase{"ColorsInTheMaterialsPlace",
-                  [](osg::StateSet& state)
-                  {
-                      osg::ref_ptr<osg::Material> material = new osg::Material;
-                      material->setDiffuse(osg::Material::FRONT_AND_BACK, osg::Vec4(0.2f, 0.9f, 0.3f, 1.0f));
-                      material->setColorMode(osg::Material::AMBIENT_AND_DIFFUSE);
-                      state.setAttributeAndModes(material, on | override);
+                  [](osg::StateSet& state) {
+                      overrideMaterial(state, {0.2f, 0.9f, 0.3f, 1}).setColorMode(osg::Material::AMBIENT_AND_DIFFUSE);
                   }},
         StateCase{"BlendedOver",
                   [](osg::StateSet& state)
                   {
-                      osg::ref_ptr<osg::Material> material = new osg::Material;
-                      for (auto set : {&osg::Material::setAmbient, &osg::Material::setDiffuse})
-                          (material.get()->*set)(osg::Material::FRONT_AND_BACK, osg::Vec4(0.8f, 0.8f, 0.8f, 0.3f));
-                      state.setAttributeAndModes(material, on | override);
+                      overrideMaterial(state, {0.8f, 0.8f, 0.8f, 0.3f});
                       state.setAttributeAndModes(new osg::BlendFunc, on | override);
                   }},
         StateCase{"AmbientOfTheLightModel",
@@ -201,12 +198,9 @@ INSTANTIATE_TEST_SUITE_P(
         StateCase{"AGlossyLightBehind",
                   [](osg::StateSet& state)
                   {
-                      osg::ref_ptr<osg::Material> material = new osg::Material;
-                      for (auto set : {&osg::Material::setAmbient, &osg::Material::setDiffuse})
-                          (material.get()->*set)(osg::Material::FRONT_AND_BACK, osg::Vec4(0.8f, 0.8f, 0.8f, 1));
-                      material->setSpecular(osg::Material::FRONT_AND_BACK, osg::Vec4(1, 1, 1, 1));
-                      material->setShininess(osg::Material::FRONT_AND_BACK, 2);
-                      state.setAttributeAndModes(material, on | override);
+                      osg::Material& material = overrideMaterial(state, {0.8f, 0.8f, 0.8f, 1});
+                      material.setSpecular(osg::Material::FRONT_AND_BACK, osg::Vec4(1, 1, 1, 1));
+                      material.setShininess(osg::Material::FRONT_AND_BACK, 2);
                       osg::ref_ptr<osg::Light> behind = light(3, osg::Vec4(0.3f, 0.5f, 0.2f, 0));
                       behind->setAmbient(osg::Vec4(0, 0, 0, 1));
                       behind->setSpecular(osg::Vec4(1, 1, 1, 1));

@@ -13,7 +13,7 @@
 namespace osgGpuAnimation
 {
 
-std::shared_ptr<const AnimationSet> armSet(bool hasMorph, std::size_t clips)
+std::shared_ptr<const AnimationSet> armSet(bool hasMorph)
 {
     JointTransform elbow;
     elbow.translation.x = 4.0f;
@@ -30,7 +30,7 @@ std::shared_ptr<const AnimationSet> armSet(bool hasMorph, std::size_t clips)
     {
         EXPECT_TRUE(builder.add({Channel::Path::Weights, Channel::Interpolation::Linear, 0, {0, 1}, {0, 1}}));
     }
-    parts.clips.assign(clips, builder.build("bend"));
+    parts.clips = {builder.build("bend")};
     return AnimationSet::create(std::move(parts)).value();
 }
 

@@ -13,8 +13,8 @@ constexpr unsigned int tubeColumns = 64, tubeRows = 16;
 constexpr unsigned int tubeTriangles = 2 * tubeColumns * tubeRows;
 
 /// Two joints; the second, 4 units along x, rotates by 90 degrees about z during the clip's second. hasMorph: adds a
-/// weight that rises from 0 to 1 during the clip. clips: so many of the same content.
-std::shared_ptr<const AnimationSet> armSet(bool hasMorph = false, std::size_t clips = 1);
+/// weight that rises from 0 to 1 during the clip.
+std::shared_ptr<const AnimationSet> armSet(bool hasMorph = false);
 
 /// A tube of 1,024 quads along x from 0 to 8, with open ends, that the two joints bend in the middle; it has only
 /// positions and influences.

@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "support/TestCharacter.h"
-
-#include <osgGpuAnimation/nodes/AnimatedCharacter.h>
-#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
+#include "nodes/UpdateVisits.h"
+#include "support/TestCrowd.h"
 
 #include <osg/AnimationPath>
-#include <osgUtil/UpdateVisitor>
-
-#include <gtest/gtest.h>
 
 #include <functional>
 
@@ -18,15 +13,6 @@ namespace osgGpuAnimation
 
 namespace
 {
-
-void updateAt(osg::Node& scene, double time)
-{
-    const osg::ref_ptr<osg::FrameStamp> stamp = new osg::FrameStamp;
-    stamp->setSimulationTime(time);
-    osgUtil::UpdateVisitor visitor;
-    visitor.setFrameStamp(stamp);
-    scene.accept(visitor);
-}
 
 osg::ref_ptr<osg::AnimationPathCallback> pathAlongX()
 {
@@ -60,7 +46,7 @@ class Actor : public AnimatedCharacter
 {
 public:
     Actor() = default;
-    explicit Actor(std::shared_ptr<const AnimationSet> set) : AnimatedCharacter(std::move(set)) {}
+    Actor(const AnimatedCharacter& other, const osg::CopyOp& copyop) : AnimatedCharacter(other, copyop) {}
     Actor(const Actor& other, const osg::CopyOp& copyop) : AnimatedCharacter(other, copyop) {}
     META_Node(application, Actor)
 };
@@ -69,49 +55,14 @@ struct Callbacks
 {
     const char* name;
     std::function<void(osg::Node&)> set;
+    bool endsTraversal = false; ///< which stops derived classes, whose META_Node replaces accept()
 };
-
-void PrintTo(const Callbacks& callbacks, std::ostream* out)
-{
-    *out << callbacks.name;
-}
-
-class UpdateTest : public ::testing::TestWithParam<Callbacks>
-{
-};
-
-osg::ref_ptr<AnimatedCrowd> makeCrowd(AnimatedCrowd::Instance& outInstance)
-{
-    const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*makeTestCharacter());
-    AnimationController controller(crowd->getSharedAnimationSet());
-    EXPECT_TRUE(controller.play("shift"));
-    outInstance = crowd->add(osg::Matrix(), controller).value();
-    return crowd;
-}
-
-} // namespace
-
-TEST_P(UpdateTest, clipsAdvance)
-{
-    const osg::ref_ptr<osg::Group> scene = new osg::Group;
-    const osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
-    AnimatedCrowd::Instance instance = 0;
-    const osg::ref_ptr<AnimatedCrowd> crowd = makeCrowd(instance);
-    scene->addChild(character);
-    scene->addChild(crowd);
-    GetParam().set(*character);
-    GetParam().set(*crowd);
-    for (const double time : {4.0, 4.5, 4.5, 5.25})
-        updateAt(*scene, time);
-    EXPECT_DOUBLE_EQ(character->getController().time(), 1.25);
-    EXPECT_DOUBLE_EQ(crowd->getController(instance)->time(), 1.25);
-}
 
 const Callbacks callbacks[] = {
     {"none", [](osg::Node& node) { node.setUpdateCallback(nullptr); }},
-    {"asConstructed", [](osg::Node&) {}},
-    {"aPath", [](osg::Node& node) { node.setUpdateCallback(pathAlongX()); }},
-    {"oneThatEndsTheTraversal", [](osg::Node& node) { node.setUpdateCallback(new Blind); }},
+    {"as constructed", [](osg::Node&) {}},
+    {"a path", [](osg::Node& node) { node.setUpdateCallback(pathAlongX()); }},
+    {"one that ends the traversal", [](osg::Node& node) { node.setUpdateCallback(new Blind); }, true},
     {"nested",
      [](osg::Node& node)
      {
@@ -119,7 +70,7 @@ const Callbacks callbacks[] = {
          node.getUpdateCallback()->addNestedCallback(new TimeSeen);
      }},
     {"added", [](osg::Node& node) { node.addUpdateCallback(pathAlongX()); }},
-    {"setAndRemoved",
+    {"set and removed",
      [](osg::Node& node)
      {
          const osg::ref_ptr<osg::Callback> path = pathAlongX();
@@ -128,97 +79,78 @@ const Callbacks callbacks[] = {
      }},
 };
 
-INSTANTIATE_TEST_SUITE_P(Callbacks, UpdateTest, ::testing::ValuesIn(callbacks),
-                         [](const auto& info) { return std::string(info.param.name); });
+} // namespace
 
-TEST(UpdateOrderTest, callbacksRunAfterTheUpdate)
+TEST(UpdateTest, clipsOfAllAdvanceWhateverTheirCallbacks)
+{
+    for (const Callbacks& each : callbacks)
+    {
+        const osg::ref_ptr<AnimatedCharacter> first = makeTestCharacter();
+        const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*first);
+        const AnimatedCrowd::Instance instance = crowd->add(osg::Matrix(), playing("shift")).value();
+        each.set(*first);
+        each.set(*crowd);
+        const osg::ref_ptr<osg::Group> scene = new osg::Group, second = new osg::Group;
+        scene->addChild(second);
+        for (const auto how : {osg::CopyOp::SHALLOW_COPY, osg::CopyOp::DEEP_COPY_NODES})
+        {
+            scene->addChild(osg::clone(first.get(), how));
+            scene->addChild(osg::clone(crowd.get(), how));
+            if (!each.endsTraversal) scene->addChild(new Actor(*first, how));
+        }
+        second->addChild(scene->getChild(1)); // several parents advance it once
+        UpdateVisits updates;
+        for (const double time : {4.0, 4.5, 4.5, 5.25})
+            updates.visit(*scene, time);
+        for (unsigned int i = 1; i < scene->getNumChildren(); ++i)
+        {
+            auto* character = dynamic_cast<AnimatedCharacter*>(scene->getChild(i));
+            auto* copy = dynamic_cast<AnimatedCrowd*>(scene->getChild(i));
+            const double time = character ? character->getController().time() : copy->getController(instance)->time();
+            EXPECT_DOUBLE_EQ(time, 1.25) << each.name << ", child " << i;
+        }
+        EXPECT_DOUBLE_EQ(first->getController().time(), 0.0) << "clones advance on their own";
+    }
+}
+
+TEST(UpdateTest, callbacksRunAfterTheUpdate)
 {
     const osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
     const osg::ref_ptr<TimeSeen> first = new TimeSeen, second = new TimeSeen;
     character->setUpdateCallback(first);
     character->addUpdateCallback(pathAlongX());
     character->addUpdateCallback(second);
-    updateAt(*character, 1.0);
-    updateAt(*character, 1.5);
+    UpdateVisits updates;
+    updates.visit(*character, 1.0);
+    updates.visit(*character, 1.5);
     EXPECT_DOUBLE_EQ(first->time, 0.5);
     EXPECT_DOUBLE_EQ(second->time, 0.5);
     EXPECT_DOUBLE_EQ(character->getMatrix().getTrans().x(), 5.0) << "the path moves the character";
 }
 
-TEST(UpdateOrderTest, severalParentsAdvanceACharacterOnce)
-{
-    const osg::ref_ptr<osg::Group> scene = new osg::Group;
-    const osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
-    for (int i = 0; i < 3; ++i)
-    {
-        scene->addChild(new osg::Group);
-        scene->getChild(i)->asGroup()->addChild(character);
-    }
-    updateAt(*scene, 1.0);
-    updateAt(*scene, 1.5);
-    EXPECT_DOUBLE_EQ(character->getController().time(), 0.5);
-}
-
-TEST(UpdateOrderTest, clonesAdvanceOnTheirOwn)
-{
-    const osg::ref_ptr<osg::Group> scene = new osg::Group;
-    const osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
-    AnimatedCrowd::Instance instance = 0;
-    const osg::ref_ptr<AnimatedCrowd> crowd = makeCrowd(instance);
-    for (const osg::CopyOp::Options flags : {osg::CopyOp::SHALLOW_COPY, osg::CopyOp::DEEP_COPY_NODES})
-        for (const bool hasPath : {false, true})
-        {
-            character->setUpdateCallback(hasPath ? pathAlongX() : nullptr);
-            scene->addChild(osg::clone(character.get(), flags));
-            scene->addChild(osg::clone(crowd.get(), flags));
-        }
-    updateAt(*scene, 1.0);
-    updateAt(*scene, 1.5);
-    for (unsigned int i = 0; i < scene->getNumChildren(); i += 2)
-    {
-        EXPECT_DOUBLE_EQ(dynamic_cast<AnimatedCharacter&>(*scene->getChild(i)).getController().time(), 0.5);
-        EXPECT_DOUBLE_EQ(dynamic_cast<AnimatedCrowd&>(*scene->getChild(i + 1)).getController(instance)->time(), 0.5);
-    }
-    EXPECT_DOUBLE_EQ(character->getController().time(), 0.0);
-}
-
-TEST(UpdateOrderTest, aMaskedCharacterWaits)
+TEST(UpdateTest, aMaskedCharacterWaitsAndOtherVisitorsDoNotAdvance)
 {
     const osg::ref_ptr<osg::Group> scene = new osg::Group;
     const osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
     scene->addChild(character);
-    updateAt(*scene, 1.0);
+    UpdateVisits updates;
+    updates.visit(*scene, 1.0);
     character->setNodeMask(0);
-    updateAt(*scene, 1.5);
+    updates.visit(*scene, 1.5);
     EXPECT_DOUBLE_EQ(character->getController().time(), 0.0);
     character->setNodeMask(~0u);
-    updateAt(*scene, 1.75);
-    EXPECT_DOUBLE_EQ(character->getController().time(), 0.75) << "equal times show equal poses";
-}
-
-TEST(UpdateOrderTest, derivedClassesAdvance)
-{
-    const osg::ref_ptr<Actor> actor = new Actor(testCharacterSet());
-    EXPECT_TRUE(actor->getController().play("shift"));
-    updateAt(*actor, 1.0);
-    updateAt(*actor, 1.5);
-    EXPECT_DOUBLE_EQ(actor->getController().time(), 0.5);
-}
-
-TEST(UpdateOrderTest, otherVisitorsDoNotAdvance)
-{
-    const osg::ref_ptr<AnimatedCharacter> character = makeTestCharacter();
-    updateAt(*character, 1.0);
     const osg::ref_ptr<osg::FrameStamp> stamp = new osg::FrameStamp;
-    stamp->setSimulationTime(2.0);
+    stamp->setSimulationTime(1.6);
     for (const osg::NodeVisitor::VisitorType type :
          {osg::NodeVisitor::EVENT_VISITOR, osg::NodeVisitor::NODE_VISITOR, osg::NodeVisitor::INTERSECTION_VISITOR})
     {
         osg::NodeVisitor visitor(type, osg::NodeVisitor::TRAVERSE_ALL_CHILDREN);
         visitor.setFrameStamp(stamp);
-        character->accept(visitor);
+        scene->accept(visitor);
     }
     EXPECT_DOUBLE_EQ(character->getController().time(), 0.0);
+    updates.visit(*scene, 1.75);
+    EXPECT_DOUBLE_EQ(character->getController().time(), 0.75) << "equal times show equal poses";
 }
 
 } // namespace osgGpuAnimation

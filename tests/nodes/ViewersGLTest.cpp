@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "support/NotifyLog.h"
-#include "support/TestCharacter.h"
+#include "support/TestCrowd.h"
 #include "support/ThreadingModels.h"
 #include "support/ViewerGLTest.h"
 
 #include <osgGpuAnimation/gpu/PosePipeline.h>
-#include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 
 #include <layout.glsl>
 
@@ -33,10 +32,7 @@ osg::ref_ptr<osg::Group> makeScene()
         group->addChild(character);
     }
     osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*makeTestCharacter());
-    AnimationController controller(crowd->getSharedAnimationSet());
-    EXPECT_TRUE(controller.play("turn"));
-    EXPECT_TRUE(crowd->add(osg::Matrix::translate(1.5, 0, 2), controller));
-    EXPECT_TRUE(crowd->add(osg::Matrix::translate(1.5, 0, -2), controller));
+    addInstances(*crowd, {osg::Matrix::translate(1.5, 0, 2), osg::Matrix::translate(1.5, 0, -2)}, playing("turn"));
     group->addChild(crowd);
     return group;
 }
@@ -59,16 +55,34 @@ void setCamera(osg::Camera& camera, osg::GraphicsContext* context, Picture* pict
     camera.setFinalDrawCallback(picture);
 }
 
+/// Adds a view of the scene on that context, and returns its picture.
+osg::ref_ptr<Picture> addView(osgViewer::CompositeViewer& viewers, osg::Node* scene, EglGraphicsContext* context)
+{
+    osg::ref_ptr<Picture> picture = new Picture;
+    osg::ref_ptr<osgViewer::View> view = new osgViewer::View;
+    setCamera(*view->getCamera(), context, picture);
+    view->setSceneData(scene);
+    viewers.addView(view);
+    return picture;
+}
+
+void draw(osgViewer::ViewerBase& viewer)
+{
+    viewer.realize();
+    for (const double time : {0.0, 1.0, 2.3})
+        viewer.frame(time);
+}
+
 /// One scene in several contexts, views and cameras at once.
 class ViewersGLTest : public ViewerGLTest
 {
 protected:
-    /// The expected picture at that time, drawn in one context and one thread.
-    osg::ref_ptr<osg::Image> expectedAt(double time)
+    /// The picture at 2.3 seconds, drawn in one context and one thread.
+    osg::ref_ptr<osg::Image> expectedPicture()
     {
         viewer().setSceneData(makeScene());
         drawAt(0);
-        drawAt(time);
+        drawAt(2.3);
         EXPECT_GT(picture().pixelsDrawn(), 200);
         osg::ref_ptr<osg::Image> image = picture().copy();
         viewer().setSceneData(nullptr);
@@ -94,7 +108,7 @@ class TwoContextsGLTest : public ViewersGLTest, public ::testing::WithParamInter
 
 TEST_P(TwoContextsGLTest, aSlaveCameraOnAContextOfItsOwnShowsTheSameUnderEveryThreadingModel)
 {
-    const osg::ref_ptr<osg::Image> expected = expectedAt(2.3);
+    const osg::ref_ptr<osg::Image> expected = expectedPicture();
     osg::ref_ptr<EglGraphicsContext> first = makeContext();
     osg::ref_ptr<EglGraphicsContext> second = makeContext(GetParam().areShared ? first.get() : nullptr);
     osg::ref_ptr<Picture> ofFirst = new Picture, ofSecond = new Picture;
@@ -138,59 +152,10 @@ INSTANTIATE_TEST_SUITE_P(Contexts, TwoContextsGLTest,
                          ::testing::Values(TwoContextsCase{"Apart", false}, TwoContextsCase{"Shared", true}),
                          [](const auto& info) { return std::string(info.param.name); });
 
-TEST_F(ViewersGLTest, twoViewsOfACompositeViewerShowOneScene)
-{
-    const osg::ref_ptr<osg::Image> expected = expectedAt(2.3);
-    for (const Threading threading : threadingModels)
-    {
-        osgViewer::CompositeViewer composite;
-        composite.setThreadingModel(threading);
-        osg::ref_ptr<osg::Group> scene = makeScene();
-        osg::ref_ptr<Picture> pictures[] = {new Picture, new Picture};
-        for (const osg::ref_ptr<Picture>& picture : pictures)
-        {
-            osg::ref_ptr<osgViewer::View> view = new osgViewer::View;
-            setCamera(*view->getCamera(), makeContext(), picture);
-            view->setSceneData(scene);
-            composite.addView(view);
-        }
-        composite.realize();
-        for (const double time : {0.0, 1.0, 2.3})
-            composite.frame(time);
-        composite.stopThreading();
-        for (const osg::ref_ptr<Picture>& picture : pictures)
-            EXPECT_EQ(Picture::pixelsDifferent(*expected, picture->image()), 0) << threading;
-    }
-}
-
-TEST_F(ViewersGLTest, aContextThatSharesComesWhenTheFirstHasDrawn)
-{
-    const osg::ref_ptr<osg::Image> expected = expectedAt(2.3);
-    osg::ref_ptr<osg::Group> scene = makeScene();
-    osgViewer::CompositeViewer composite;
-    composite.setThreadingModel(osgViewer::ViewerBase::SingleThreaded);
-    osg::ref_ptr<EglGraphicsContext> contexts[2];
-    osg::ref_ptr<Picture> pictures[2];
-    for (int i = 0; i < 2; ++i)
-    {
-        contexts[i] = makeContext(contexts[0]);
-        pictures[i] = new Picture;
-        osg::ref_ptr<osgViewer::View> view = new osgViewer::View;
-        setCamera(*view->getCamera(), contexts[i], pictures[i]);
-        view->setSceneData(scene);
-        composite.addView(view);
-        composite.realize();
-        for (const double time : {0.0, 1.0, 2.3})
-            composite.frame(time);
-        for (int drawn = 0; drawn <= i; ++drawn)
-            EXPECT_EQ(Picture::pixelsDifferent(*expected, pictures[drawn]->image()), 0) << i << drawn;
-    }
-}
-
 // With the name of another context's vertex array object the picture may be right, but the call is an error.
 TEST_F(ViewersGLTest, contextsThatShareEvaluateTheirOwnCharactersWithoutErrors)
 {
-    const osg::ref_ptr<osg::Image> expected = expectedAt(2.3);
+    const osg::ref_ptr<osg::Image> expected = expectedPicture();
     const osg::ref_ptr<NotifyLog> log = new NotifyLog(osg::NOTICE);
     osg::setNotifyHandler(log); // OSG reports GL errors there
     {
@@ -198,16 +163,9 @@ TEST_F(ViewersGLTest, contextsThatShareEvaluateTheirOwnCharactersWithoutErrors)
         composite.setThreadingModel(osgViewer::ViewerBase::SingleThreaded);
         const osg::ref_ptr<EglGraphicsContext> first = makeContext();
         const osg::ref_ptr<EglGraphicsContext> contexts[] = {first, makeContext(first)};
-        for (const osg::ref_ptr<EglGraphicsContext>& context : contexts)
-        {
-            osg::ref_ptr<osgViewer::View> view = new osgViewer::View;
-            setCamera(*view->getCamera(), context, new Picture);
-            view->setSceneData(makeScene());
-            composite.addView(view);
-        }
-        composite.realize();
-        for (const double time : {0.0, 1.0, 2.3})
-            composite.frame(time);
+        const osg::ref_ptr<Picture> pictures[] = {addView(composite, makeScene(), contexts[0]),
+                                                  addView(composite, makeScene(), contexts[1])};
+        draw(composite);
         for (unsigned int i = 0; i < 2; ++i)
         {
             // The next frame of either context writes the palettes that this one's meshes have read.
@@ -217,8 +175,7 @@ TEST_F(ViewersGLTest, contextsThatShareEvaluateTheirOwnCharactersWithoutErrors)
             glGetIntegerv(GL_TEXTURE_BINDING_BUFFER_ARB, &palette);
             EXPECT_EQ(palette, 0) << i;
             contexts[i]->releaseContext();
-            const osg::Camera::DrawCallback* drawn = composite.getView(i)->getCamera()->getFinalDrawCallback();
-            EXPECT_EQ(Picture::pixelsDifferent(*expected, static_cast<const Picture*>(drawn)->image()), 0) << i;
+            EXPECT_EQ(Picture::pixelsDifferent(*expected, pictures[i]->image()), 0) << i;
         }
     }
     osg::setNotifyHandler(new osg::StandardNotifyHandler);
@@ -227,9 +184,8 @@ TEST_F(ViewersGLTest, contextsThatShareEvaluateTheirOwnCharactersWithoutErrors)
 
 TEST_F(ViewersGLTest, nothingIsDynamicThatIsDrawn)
 {
-    class DynamicDrawables : public osg::NodeVisitor
+    struct DynamicDrawables : osg::NodeVisitor
     {
-    public:
         DynamicDrawables() : osg::NodeVisitor(osg::NodeVisitor::TRAVERSE_ALL_CHILDREN) {}
         void apply(osg::Drawable& drawable) override
         {
@@ -238,8 +194,7 @@ TEST_F(ViewersGLTest, nothingIsDynamicThatIsDrawn)
             if (const osg::StateSet* state = drawable.getStateSet())
                 dynamic += state->getDataVariance() == osg::Object::DYNAMIC;
         }
-        int drawables = 0;
-        int dynamic = 0;
+        int drawables = 0, dynamic = 0;
     } visitor;
     makeScene()->accept(visitor);
     EXPECT_EQ(visitor.drawables, 5);
@@ -248,20 +203,17 @@ TEST_F(ViewersGLTest, nothingIsDynamicThatIsDrawn)
 
 TEST_F(ViewersGLTest, aWindowIsClosedAndOpenedAgainOverOneScene)
 {
-    const osg::ref_ptr<osg::Image> expected = expectedAt(2.3);
+    const osg::ref_ptr<osg::Image> expected = expectedPicture();
     osg::ref_ptr<osg::Group> scene = makeScene();
     osgViewer::Viewer other;
     other.setThreadingModel(osgViewer::ViewerBase::SingleThreaded);
-    other.setKeyEventSetsDone(0);
     for (int round = 0; round < 3; ++round)
     {
         osg::ref_ptr<Picture> picture = new Picture;
         osg::ref_ptr<EglGraphicsContext> window = makeContext();
         setCamera(*other.getCamera(), window, picture);
         other.setSceneData(scene);
-        other.realize();
-        other.frame(0);
-        other.frame(2.3);
+        draw(other);
         EXPECT_EQ(Picture::pixelsDifferent(*expected, picture->image()), 0) << round;
         other.setThreadingModel(osgViewer::ViewerBase::SingleThreaded);
         window->close();

@@ -1,22 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "plugin/ModelBuilder.h"
-#include "plugin/PluginFolder.h"
-#include "support/ScratchFolder.h"
+#include "plugin/StoredScene.h"
 
-#include <osgGpuAnimation/authoring/ClipBuilder.h>
-#include <osgGpuAnimation/authoring/WithRootMotion.h>
 #include <osgGpuAnimation/frame/crowd/CrowdInstances.h>
-#include <osgGpuAnimation/nodes/AnimatedCharacter.h>
 #include <osgGpuAnimation/nodes/AnimatedCrowd.h>
 #include <osgGpuAnimation/nodes/detail/CrowdDetail.h>
-#include <osgGpuAnimation/nodes/RootMotionCallback.h>
 
 #include <osg/ComputeBoundsVisitor>
-#include <osgDB/ReadFile>
-#include <osgDB/WriteFile>
 #include <osgUtil/IntersectionVisitor>
 #include <osgUtil/LineSegmentIntersector>
-#include <osgUtil/UpdateVisitor>
 
 #include <gtest/gtest.h>
 
@@ -53,43 +45,27 @@ class AxesTest : public ::testing::Test
 protected:
     void SetUp() override
     {
-        usePluginsOfTheBuild();
-        _file = _folder.write("pole.gltf", poleModel());
         model = load("");
         character = findCharacter(*model);
         ASSERT_NE(character, nullptr);
     }
 
-    std::string file(const std::string& name) const { return _folder.file(name); }
-
     osg::ref_ptr<osg::Node> load(const std::string& options) const
     {
-        return osgDB::readRefNodeFile(_file, new osgDB::Options(options));
+        return osgDB::readRefNodeFile(files.folder.write("pole.gltf", poleModel()), new osgDB::Options(options));
     }
 
+    StoredScene files;
     osg::ref_ptr<osg::Node> model;
     AnimatedCharacter* character = nullptr;
-
-private:
-    ScratchFolder _folder;
-    std::string _file;
 };
 
 void expectNear(const osg::Vec3d& actual, const osg::Vec3d& expected, double tolerance = 1e-6)
 {
-    EXPECT_NEAR((actual - expected).length(), 0.0, tolerance)
-        << actual.x() << ' ' << actual.y() << ' ' << actual.z() << " instead of " << expected.x() << ' ' << expected.y()
-        << ' ' << expected.z();
+    EXPECT_LE((actual - expected).length(), tolerance) << actual.x() << ' ' << actual.y() << ' ' << actual.z();
 }
 
 } // namespace
-
-TEST_F(AxesTest, jointsAreInTheNodesSpace)
-{
-    character->getController().pause();
-    character->getController().seek(0.5);
-    expectNear(character->jointToModel("top").value().getTrans(), {0.0, -1.5, 2.0});
-}
 
 TEST_F(AxesTest, withNoRotationBothHaveTheFilesAxes)
 {
@@ -100,36 +76,25 @@ TEST_F(AxesTest, withNoRotationBothHaveTheFilesAxes)
     expectNear(unturned.getClipBounds(0)._max, {0.25, 2.0, 3.0}, 1e-3);
 }
 
-TEST_F(AxesTest, whatStaysStillIsTurnedToo)
-{
-    osg::ComputeBoundsVisitor bounds;
-    model->asGroup()->getChild(1)->accept(bounds);
-    expectNear(bounds.getBoundingBox()._min, {5.0, 0.0, 0.0});
-    expectNear(bounds.getBoundingBox()._max, {6.0, 0.0, 1.0});
-}
-
 TEST_F(AxesTest, boundsAreInTheNodesSpace)
 {
-    const osg::ref_ptr<osg::Node> lying = load("noRotation");
-    for (const int clip : {-1, 0})
-    {
-        // A quarter turn is exact.
-        const osg::BoundingBox box = findCharacter(*lying)->getClipBounds(clip);
-        EXPECT_EQ(character->getClipBounds(clip)._min, osg::Vec3(box.xMin(), -box.zMax(), box.yMin()));
-        EXPECT_EQ(character->getClipBounds(clip)._max, osg::Vec3(box.xMax(), -box.zMin(), box.yMax()));
-    }
     expectNear(character->getClipBounds(0)._min, {0.0, -3.0, 0.0}, 1e-3);
     expectNear(character->getClipBounds(0)._max, {0.25, 0.0, 2.0}, 1e-3);
     EXPECT_EQ(character->getCurrentBounds()._min, character->getClipBounds(0)._min);
     EXPECT_TRUE(character->getBound().contains(osg::Vec3(0.0f, -3.0f, 2.0f)));
     const auto& mesh = dynamic_cast<const SkinnedGeometry&>(*character->getChild(0));
     EXPECT_EQ(mesh.getBoundingBox()._max, character->getClipBounds(0)._max) << "not of the bind pose";
+    osg::ComputeBoundsVisitor stone;
+    model->asGroup()->getChild(1)->accept(stone);
+    expectNear(stone.getBoundingBox()._min, {5.0, 0.0, 0.0});
+    expectNear(stone.getBoundingBox()._max, {6.0, 0.0, 1.0});
 }
 
-TEST_F(AxesTest, posedMeshesAndHitsAreInTheNodesSpace)
+TEST_F(AxesTest, jointsPosedMeshesAndHitsAreInTheNodesSpace)
 {
     character->getController().pause();
     character->getController().seek(0.5);
+    expectNear(character->jointToModel("top").value().getTrans(), {0.0, -1.5, 2.0});
     const auto& mesh = dynamic_cast<const SkinnedGeometry&>(*character->getChild(0));
     expectNear(character->getPosedMesh(mesh)->getBoundingBox()._max, {0.25, -1.5, 2.0});
     const osg::ref_ptr<osgUtil::LineSegmentIntersector> ray =
@@ -138,41 +103,30 @@ TEST_F(AxesTest, posedMeshesAndHitsAreInTheNodesSpace)
     model->accept(picking);
     ASSERT_TRUE(ray->containsIntersections());
     expectNear(ray->getFirstIntersection().getWorldIntersectPoint(), {0.05, -1.5, 1.0});
-    expectNear(ray->getFirstIntersection().getLocalIntersectPoint(), {0.05, -1.5, 1.0});
 }
 
-TEST_F(AxesTest, clonesKeepTheAxes)
+TEST_F(AxesTest, clonesAndStoredScenesKeepTheAxes)
 {
     const osg::ref_ptr<osg::Node> clone = osg::clone(model.get(), osg::CopyOp::DEEP_COPY_NODES);
     EXPECT_EQ(findCharacter(*clone)->getFileToNode(), character->getFileToNode());
-    expectNear(findCharacter(*clone)->jointToModel("top").value().getTrans(), {0.0, 0.0, 2.0});
-}
-
-TEST_F(AxesTest, storedScenesKeepTheAxes)
-{
     osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*character);
     // Neither a quarter turn nor a rotation.
     const osg::Matrixd odd = osg::Matrixd::scale(0.7, 1.1, 2.0) * osg::Matrixd::rotate(0.3, osg::Vec3d(1, 2, 3)) *
                              osg::Matrixd::translate(1, 2, 3);
-    for (const bool isOdd : {false, true})
+    AnimationController controller(crowd->getSharedAnimationSet());
+    osg::ref_ptr<osg::Group> scene = new osg::Group;
+    scene->addChild(model);
+    scene->addChild(crowd);
+    for (const osg::Matrixd& axes : {character->getFileToNode(), odd})
     {
-        if (isOdd)
-        {
-            ASSERT_TRUE(character->setFileToNode(odd));
-            ASSERT_TRUE(crowd->setFileToNode(odd));
-        }
-        AnimationController controller(crowd->getSharedAnimationSet());
+        ASSERT_TRUE(character->setFileToNode(axes));
+        ASSERT_TRUE(crowd->setFileToNode(axes));
         ASSERT_TRUE(
             crowd->add(osg::Matrixd::rotate(0.4, osg::Vec3d(0, 0, 1)) * osg::Matrixd::translate(9, 8, 7), controller));
-        osg::ref_ptr<osg::Group> scene = new osg::Group;
-        scene->addChild(model);
-        scene->addChild(crowd);
         for (const char* format : {"osgb", "osgt", "osgx"})
         {
             SCOPED_TRACE(format);
-            const std::string path = file(std::string("scene.") + format);
-            ASSERT_TRUE(osgDB::writeNodeFile(*scene, path));
-            const osg::ref_ptr<osg::Node> read = osgDB::readRefNodeFile(path);
+            const osg::ref_ptr<osg::Node> read = files.throughFile(*scene, format);
             ASSERT_TRUE(read && findCharacter(*read));
             EXPECT_EQ(findCharacter(*read)->getFileToNode(), character->getFileToNode());
             EXPECT_EQ(findCharacter(*read)->getClipBounds(0)._max, character->getClipBounds(0)._max);
@@ -214,48 +168,6 @@ TEST_F(AxesTest, instancesKeepTheirPlacementsInOtherAxes)
     expectNear(crowd->getBound().center(), {100.25, 22.0, 0.0});
     ASSERT_TRUE(crowd->setFileToNode(character->getFileToNode()));
     expectNear(crowd->getBound().center(), {100.25, 20.0, 2.0});
-}
-
-TEST_F(AxesTest, aCrowdOfACharacterStandsUpright)
-{
-    const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*character);
-    AnimationController controller(crowd->getSharedAnimationSet());
-    ASSERT_TRUE(crowd->add(osg::Matrixd::translate(100, 20, 0), controller));
-    expectNear(crowd->getBound().center(), {100.125, 20.0, 1.0});
-}
-
-TEST_F(AxesTest, rootMotionMovesTheNodeOverTheGround)
-{
-    const auto set = withRootMotion(character->getAnimationSet(), "hips", {true, false, false});
-    ASSERT_TRUE(set);
-    ASSERT_TRUE(character->setAnimationSet(set.value()));
-    character->addUpdateCallback(new RootMotionCallback);
-    osgUtil::UpdateVisitor visitor;
-    const osg::ref_ptr<osg::FrameStamp> stamp = new osg::FrameStamp;
-    visitor.setFrameStamp(stamp);
-    for (const double time : {0.0, 0.25, 0.5})
-    {
-        stamp->setSimulationTime(time);
-        model->accept(visitor);
-    }
-    expectNear(character->getMatrix().getTrans(), {0.0, -1.5, 0.0});
-    character->removeUpdateCallback(character->getUpdateCallback());
-    stamp->setSimulationTime(0.75);
-    model->accept(visitor);
-    expectNear(character->takeRootMotion().getTrans(), {0.0, -0.75, 0.0});
-    EXPECT_TRUE(character->takeRootMotion().isIdentity());
-
-    const osg::ref_ptr<AnimatedCrowd> crowd = new AnimatedCrowd(*character);
-    const osg::Matrixd turned =
-        osg::Matrixd::rotate(osg::PI_2, osg::Vec3d(0, 0, 1)) * osg::Matrixd::translate(10, 0, 0);
-    const AnimatedCrowd::Instance pole = crowd->add(turned, character->getController()).value();
-    crowd->update(0.0);
-    crowd->update(0.5);
-    ASSERT_TRUE(crowd->setPlacement(pole, crowd->takeRootMotion(pole) * crowd->getPlacement(pole)));
-    expectNear(crowd->getPlacement(pole).getTrans(), {11.5, 0.0, 0.0});
-    EXPECT_TRUE(crowd->takeRootMotion(pole).isIdentity());
-    ASSERT_TRUE(crowd->remove(pole));
-    EXPECT_TRUE(crowd->takeRootMotion(pole).isIdentity());
 }
 
 } // namespace osgGpuAnimation

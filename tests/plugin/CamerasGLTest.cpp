@@ -22,33 +22,19 @@ namespace osgGpuAnimation::gltf
 namespace
 {
 
-int perspective(ModelBuilder& file, const std::string& name, double yfov)
+/// A node with a camera of its own.
+int cameraNode(ModelBuilder& file, const std::string& name, const std::string& type, double size,
+               const std::vector<double>& place, int parent = -1)
 {
     tinygltf::Camera camera;
     camera.name = name;
-    camera.type = "perspective";
-    camera.perspective.yfov = yfov;
-    camera.perspective.znear = 0.1;
-    camera.perspective.zfar = 100.0;
+    camera.type = type;
+    camera.perspective.yfov = camera.orthographic.xmag = camera.orthographic.ymag = size;
+    camera.perspective.znear = camera.orthographic.znear = 0.1;
+    camera.perspective.zfar = camera.orthographic.zfar = 100.0;
     file.model.cameras.push_back(camera);
-    return static_cast<int>(file.model.cameras.size()) - 1;
-}
-
-int orthographic(ModelBuilder& file, double ymag)
-{
-    tinygltf::Camera camera;
-    camera.type = "orthographic";
-    camera.orthographic.xmag = camera.orthographic.ymag = ymag;
-    camera.orthographic.znear = 0.1;
-    camera.orthographic.zfar = 100.0;
-    file.model.cameras.push_back(camera);
-    return static_cast<int>(file.model.cameras.size()) - 1;
-}
-
-int cameraNode(ModelBuilder& file, int camera, const std::vector<double>& place, int parent = -1)
-{
     const int node = file.node("tripod", parent);
-    file.at(node).camera = camera;
+    file.at(node).camera = static_cast<int>(file.model.cameras.size()) - 1;
     file.at(node).translation = place;
     return node;
 }
@@ -59,8 +45,8 @@ ModelBuilder triangleFile()
 {
     ModelBuilder file;
     file.node("leaf", -1, file.triangle());
-    cameraNode(file, perspective(file, "wide", osg::PI_2), {0.0, 0.0, 2.0});
-    cameraNode(file, orthographic(file, 2.0), {0.0, 0.0, 2.0});
+    cameraNode(file, "wide", "perspective", osg::PI_2, {0.0, 0.0, 2.0});
+    cameraNode(file, "", "orthographic", 2.0, {0.0, 0.0, 2.0});
     return file;
 }
 
@@ -109,22 +95,26 @@ protected:
 
 } // namespace
 
-TEST_F(CamerasGLTest, aViewerStartsWithTheCameraAskedFor)
+TEST_F(CamerasGLTest, aViewerStartsWithTheChosenCameraAlsoFromStoredScenes)
 {
-    for (const bool isYUp : {false, true})
-        for (const char* camera : {"wide", "0", "tripod", "1"})
+    const StoredScene files;
+    for (const bool isYUp : {true, false})
+        for (const char* camera : {"0", "1", "tripod", "wide"})
         {
             ImportOptions options = with(camera);
             options.noRotation = isYUp;
             viewer().getCameraManipulator()->setAutoComputeHomePosition(true);
-            EXPECT_TRUE(showsTriangle(*pictureOf(imported(triangleFile(), options).root))) << camera;
+            const ImportedModel model = imported(triangleFile(), options);
+            EXPECT_TRUE(showsTriangle(*pictureOf(model.root))) << camera;
+            for (const char* format : {"osgb", "osgt", "osgx"})
+            {
+                if (isYUp) continue;
+                const osg::ref_ptr<osg::Node> stored = files.throughFile(*model.root, format);
+                ASSERT_TRUE(stored) << format;
+                EXPECT_TRUE(showsTriangle(*pictureOf(stored))) << camera << " in " << format;
+            }
         }
-}
-
-TEST_F(CamerasGLTest, itIsTheManipulatorsHome)
-{
-    const ImportedModel model = imported(triangleFile(), with("wide"));
-    pictureOf(model.root);
+    // It is the manipulator's home.
     viewer().getCameraManipulator()->setByMatrix(osg::Matrixd::translate(0, 0, 50));
     drawAt(0.1);
     EXPECT_FALSE(showsTriangle(picture().image()));
@@ -133,27 +123,13 @@ TEST_F(CamerasGLTest, itIsTheManipulatorsHome)
     EXPECT_TRUE(showsTriangle(picture().image()));
 }
 
-TEST_F(CamerasGLTest, storedScenesStartWithItToo)
-{
-    const StoredScene files;
-    for (const char* camera : {"wide", "tripod"})
-        for (const char* format : {"osgb", "osgt", "osgx"})
-        {
-            const osg::ref_ptr<osg::Node> stored =
-                files.throughFile(*imported(triangleFile(), with(camera)).root, format);
-            ASSERT_TRUE(stored) << format;
-            EXPECT_TRUE(showsTriangle(*pictureOf(stored))) << camera << " in " << format;
-        }
-}
-
 // The camera slides by one unit along X in one second, and is never a frame late.
 TEST_F(CamerasGLTest, aMovingCameraIsFollowedUntilTheMouseIsUsed)
 {
     ModelBuilder file = triangleFile();
     const int cart = file.node("cart");
-    cameraNode(file, perspective(file, "ride", 1.0), {0.0, 0.0, 3.0}, cart);
-    file.animation("go");
-    file.slide(cart);
+    cameraNode(file, "ride", "perspective", 1.0, {0.0, 0.0, 3.0}, cart);
+    file.slidingClip("go", cart);
     viewer().unref_nodelete(); // like osgviewer's, which is on the stack: nobody holds it
     for (const bool isScrolled : {false, true})
     {
@@ -193,9 +169,9 @@ TEST_F(CamerasGLTest, withoutTheOptionAndWithoutAManipulatorNothingHappens)
 TEST(CamerasTest, viewsHaveTheFilesNumbersAndNames)
 {
     ModelBuilder file = triangleFile();
-    cameraNode(file, 0, {1.0, 0.0, 0.0});
-    const int unnamed = cameraNode(file, 1, {2.0, 0.0, 0.0});
-    file.at(unnamed).name.clear();
+    const int second = file.node("second"), unnamed = file.node("");
+    file.at(second).camera = 0;
+    file.at(unnamed).camera = 1;
     const ImportedModel model = imported(file);
     const char* const names[] = {"wide", "tripod", "wide 2", "camera 1"};
     ASSERT_EQ(model.cameras.size(), std::size(names));
@@ -213,20 +189,30 @@ TEST(CamerasTest, viewsHaveTheFilesNumbersAndNames)
     EXPECT_EQ(imported(file, with("wide 2")).startCamera->getName(), "wide 2");
 }
 
-TEST(CamerasTest, anUnknownCameraIsAnErrorThatListsThem)
+// A camera's name counts more than its number, which is that of the file, not of the scene.
+TEST(CamerasTest, areChosenByNameThenByTheFilesNumber)
 {
-    ImportOptions none = with("0");
-    none.noCameras = true;
-    const std::pair<ImportOptions, const char*> cases[] = {
-        {with("2"), "camera \"2\" was asked for; the scene's cameras are: \"wide\", \"tripod\""},
-        {with("narrow"), "camera \"narrow\" was asked for; the scene's cameras are: \"wide\", \"tripod\""},
-        {none, "camera \"0\" was asked for; the scene's cameras are: none"}};
-    for (const auto& [options, message] : cases)
-    {
-        const Result<ImportedModel> model = importModel(triangleFile().text(), "", options);
-        ASSERT_FALSE(model);
-        EXPECT_EQ(model.error().message, message);
-    }
+    ModelBuilder file;
+    for (const char* name : {"unused", "3", "film", "plan"})
+        cameraNode(file, name, "perspective", 0.5, {});
+    file.node("stone", -1, file.triangle());
+    file.at(0).camera = 2;
+    file.at(1).camera = 3;
+    file.at(2).camera = 1;
+    file.at(3).camera = -1;
+    const std::pair<const char*, const char*> cases[] = {{"film", "film"}, {"3", "3"}, {"2", "film"}, {"1", "3"}};
+    for (const auto& [wish, expected] : cases)
+        EXPECT_EQ(imported(file, with(wish)).startCamera->getName(), expected) << wish;
+    for (const bool noCameras : {false, true})
+        for (const char* wish : {"0", "4", "narrow"})
+        {
+            ImportOptions options = with(wish);
+            options.noCameras = noCameras;
+            expectRefused(file.text(),
+                          "camera \"" + std::string(wish) + "\" was asked for; the scene's cameras are: " +
+                              (noCameras ? "none" : "\"film\", \"plan\", \"3\""),
+                          options);
+        }
 }
 
 } // namespace osgGpuAnimation::gltf

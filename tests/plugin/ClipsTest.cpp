@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/scene/Clips.h"
+#include "plugin/ImportedFile.h"
 #include "plugin/ModelBuilder.h"
 
 #include <gtest/gtest.h>
-
-#include <cmath>
+#include <nlohmann/json.hpp>
 
 namespace osgGpuAnimation::gltf
 {
@@ -23,10 +23,7 @@ struct ReadClips
         clips = readClips(file.model, joints, readMorphs(file.model), budget, report);
     }
 
-    std::string warning(std::size_t index) const
-    {
-        return index < messages.warnings.size() ? messages.warnings[index] : "";
-    }
+    std::string warning() const { return messages.warnings.empty() ? "" : messages.warnings[0]; }
 
     Messages messages;
     Clips clips;
@@ -36,9 +33,7 @@ struct ReadClips
 ModelBuilder slidingArm()
 {
     ModelBuilder file;
-    file.node("arm");
-    file.animation("good");
-    file.slide(0);
+    file.slidingClip("good", file.node("arm"));
     return file;
 }
 
@@ -47,77 +42,74 @@ bool mentions(const std::string& text, const std::string& part)
     return text.find(part) != std::string::npos;
 }
 
-struct FaultCase
+/// One more channel of the clip "bad", and its warning; empty: the clip stays.
+struct Fault
 {
     const char* name;
-    void (*spoil)(ModelBuilder&); ///< adds the animation "bad", or a fault in it
-    bool clipStays;
-    const char* warning; ///< part of the only warning; empty: no warning
+    int node;
+    const char* path;
+    std::vector<float> times;
+    std::vector<float> values;
+    const char* warning;
 };
 
-const FaultCase faults[] = {
-    {"channel without node", [](ModelBuilder& file) { file.slide(-1); }, true, ""},
-    {"times that fall",
-     [](ModelBuilder& file) {
-         file.channel(0, "scale", {1, 0}, TINYGLTF_TYPE_VEC3, {0, 0, 0, 1, 1, 1});
-     },
-     false, "animations[1] \"bad\".channels[1]"},
-    {"values missing",
-     [](ModelBuilder& file) {
-         file.channel(0, "scale", {0, 1}, TINYGLTF_TYPE_VEC3, {0, 0, 0});
-     },
-     false, "animations[1] \"bad\".channels[1]"},
-    {"rotation of length 0",
-     [](ModelBuilder& file) {
-         file.channel(0, "rotation", {0, 1}, TINYGLTF_TYPE_VEC4, {0, 0, 0, 0, 0, 0, 0, 1});
-     },
-     false, "animations[1] \"bad\".channels[1]"},
+const Fault faults[] = {
+    {"channel without node", -1, "translation", {0, 1}, {0, 0, 0, 1, 0, 0}, ""},
+    {"times that fall", 0, "scale", {1, 0}, {0, 0, 0, 1, 1, 1}, "animations[1] \"bad\".channels[1]"},
+    {"values missing", 0, "scale", {0, 1}, {0, 0, 0}, "animations[1] \"bad\".channels[1]"},
+    {"rotation of length 0", 0, "rotation", {0, 1}, {0, 0, 0, 0, 0, 0, 0, 1}, "animations[1] \"bad\".channels[1]"},
 };
+
+/// A clip of one second with these extras, through the whole import.
+ImportedModel withExtras(const std::string& extras)
+{
+    ModelBuilder file;
+    file.slidingClip("slide", file.node("arm"));
+    nlohmann::json document = nlohmann::json::parse(file.text());
+    document["animations"][0]["extras"] = nlohmann::json::parse(extras);
+    return imported(document.dump());
+}
+
+const std::vector<ClipMarker>& markersOf(const ImportedModel& model)
+{
+    return model.set->clips().at(0).markers();
+}
 
 } // namespace
 
 TEST(ClipsTest, oneFaultCostsAtMostOneClip)
 {
-    for (const FaultCase& fault : faults)
+    for (const Fault& fault : faults)
     {
         SCOPED_TRACE(fault.name);
         ModelBuilder file = slidingArm();
-        file.animation("bad");
-        file.slide(0);
-        fault.spoil(file);
-        file.animation("last");
-        file.slide(0);
+        file.slidingClip("bad", 0);
+        const bool isRotation = std::string(fault.path) == "rotation";
+        file.channel(fault.node, fault.path, fault.times, isRotation ? TINYGLTF_TYPE_VEC4 : TINYGLTF_TYPE_VEC3,
+                     fault.values);
+        file.slidingClip("last", 0);
         const ReadClips read(file);
-        ASSERT_EQ(read.clips.clips.size(), fault.clipStays ? 3u : 2u);
+        ASSERT_EQ(read.clips.clips.size(), *fault.warning ? 2u : 3u);
         EXPECT_EQ(read.clips.animationOfClip.back(), 2);
         EXPECT_EQ(read.clips.clips.back().name(), "last");
         EXPECT_DOUBLE_EQ(read.clips.clips.back().duration(), 1.0);
         EXPECT_EQ(read.clips.clips.back().keyframeCount(), 2u); // nothing of the bad clip remains
-        ASSERT_EQ(read.messages.warnings.size(), *fault.warning ? 1u : 0u) << read.warning(0);
-        EXPECT_TRUE(mentions(read.warning(0), fault.warning)) << read.warning(0);
+        ASSERT_EQ(read.messages.warnings.size(), *fault.warning ? 1u : 0u) << read.warning();
+        EXPECT_TRUE(mentions(read.warning(), fault.warning)) << read.warning();
     }
 }
 
 TEST(ClipsTest, namesAreTheFilesOrStable)
 {
     ModelBuilder file = slidingArm();
-    file.animation("");
-    file.slide(0);
-    file.animation("good");
-    file.slide(0);
+    file.slidingClip("", 0);
+    file.slidingClip("good", 0);
+    file.animation("emptied");
     const ReadClips read(file);
-    ASSERT_EQ(read.clips.clips.size(), 3u);
+    ASSERT_EQ(read.clips.clips.size(), 3u) << "without a channel there is no clip";
     EXPECT_EQ(read.clips.clips[0].name(), "good");
     EXPECT_EQ(read.clips.clips[1].name(), "clip 1");
     EXPECT_EQ(read.clips.clips[2].name(), "good");
-}
-
-TEST(ClipsTest, anEmptiedAnimationIsNoClip)
-{
-    ModelBuilder file = slidingArm();
-    file.animation("emptied");
-    const ReadClips read(file);
-    EXPECT_EQ(read.clips.clips.size(), 1u);
     EXPECT_TRUE(read.messages.warnings.empty());
 }
 
@@ -128,87 +120,94 @@ TEST(ClipsTest, aShearedNodeIsNotDriven)
     const ReadClips read(file);
     ASSERT_EQ(read.clips.clips.size(), 1u);
     EXPECT_EQ(read.clips.clips[0].keyframeCount(), 1u);
-    EXPECT_TRUE(mentions(read.warning(0), "matrix that shears"));
+    EXPECT_TRUE(mentions(read.warning(), "matrix that shears"));
 }
 
 TEST(ClipsTest, keyframesAreLimited)
 {
     const ReadClips read(slidingArm(), 80); // less than two keyframes of 48 bytes, more than the keys
     EXPECT_TRUE(read.clips.clips.empty());
-    EXPECT_TRUE(mentions(read.warning(0), "animations[0] \"good\": its keyframes would take")) << read.warning(0);
+    EXPECT_TRUE(mentions(read.warning(), "animations[0] \"good\": its keyframes would take")) << read.warning();
     const ReadClips keysToo(slidingArm(), 60);
     EXPECT_TRUE(keysToo.clips.clips.empty());
-    EXPECT_TRUE(mentions(keysToo.warning(0), "its keys take too many bytes")) << keysToo.warning(0);
-}
-
-// The keys are freed with their clip: its 64 bytes count once, its keyframes (about 100 bytes) stay.
-TEST(ClipsTest, keysOfEarlierClipsDoNotCount)
-{
-    ModelBuilder file = slidingArm();
-    for (int i = 0; i < 2; ++i)
-        file.model.animations.push_back(file.model.animations[0]);
-    const ReadClips read(file, 340);
-    EXPECT_EQ(read.clips.clips.size(), 3u) << read.warning(0);
-}
-
-TEST(ClipsTest, weightsDriveTheMorphOfTheirNode)
-{
-    ModelBuilder file;
-    const int mesh = file.triangle();
-    const int positions = file.primitive(mesh).attributes["POSITION"];
-    file.primitive(mesh).targets = {{{"POSITION", positions}}, {{"POSITION", positions}}};
-    file.model.meshes[0].weights = {0.25, 0.5};
-    const int first = file.node("first", -1, mesh);
-    const int second = file.node("second", -1, mesh);
-    file.at(second).weights = {1, 0};
-    file.animation("blink");
-    file.channel(second, "weights", {0, 1}, TINYGLTF_TYPE_SCALAR, {0, 0, 1, 0.5f});
-    const Morphs morphs = readMorphs(file.model);
-    ASSERT_EQ(morphs.weights.size(), 2u);
-    EXPECT_EQ(morphs.weights[static_cast<std::size_t>(morphs.ofNode[static_cast<std::size_t>(first)])].defaults,
-              (std::vector<float>{0.25f, 0.5f}));
-    EXPECT_EQ(morphs.weights[static_cast<std::size_t>(morphs.ofNode[static_cast<std::size_t>(second)])].defaults,
-              (std::vector<float>{1.0f, 0.0f}));
-    const ReadClips read(file);
-    ASSERT_EQ(read.clips.clips.size(), 1u) << read.warning(0);
-    const Clip& clip = read.clips.clips[0];
-    const JointTransform& last = clip.data()[clip.keyframeStride() + 3]; // two joints, then the morphs
-    EXPECT_EQ(last.translation.x, 1.0f);
-    EXPECT_EQ(last.translation.y, 0.5f);
+    EXPECT_TRUE(mentions(keysToo.warning(), "its keys take too many bytes")) << keysToo.warning();
+    // The keys are freed with their clip: its 64 bytes count once, its keyframes (about 100 bytes) stay.
+    ModelBuilder three = slidingArm();
+    three.model.animations.resize(3, three.model.animations[0]);
+    EXPECT_EQ(ReadClips(three, 340).clips.clips.size(), 3u);
 }
 
 TEST(ClipsTest, normalizedIntegersAreTheNumbersTheyStandFor)
 {
-    struct Type
+    const std::pair<int, unsigned int> types[] = {{TINYGLTF_COMPONENT_TYPE_BYTE, 127},
+                                                  {TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE, 255},
+                                                  {TINYGLTF_COMPONENT_TYPE_SHORT, 32767},
+                                                  {TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, 65535}};
+    for (const auto& [type, one] : types)
     {
-        int component;
-        unsigned int one;
-    };
-    for (const Type& type :
-         {Type{TINYGLTF_COMPONENT_TYPE_BYTE, 127}, Type{TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE, 255},
-          Type{TINYGLTF_COMPONENT_TYPE_SHORT, 32767}, Type{TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, 65535}})
-    {
-        SCOPED_TRACE(type.component);
+        SCOPED_TRACE(type);
         ModelBuilder file;
         const int mesh = file.triangle();
         file.primitive(mesh).targets = {file.primitive(mesh).attributes};
         file.node("face", -1, mesh);
         file.animation("quantized");
         file.channel(0, "rotation", {0, 1}, TINYGLTF_TYPE_VEC4, {});
+        file.model.animations[0].samplers[0].output =
+            file.integers(TINYGLTF_TYPE_VEC4, type, {0, 0, 0, one, 0, 0, one, 0});
+        file.model.accessors.back().normalized = true;
         file.channel(0, "weights", {0, 1}, TINYGLTF_TYPE_SCALAR, {});
-        std::vector<tinygltf::AnimationSampler>& samplers = file.model.animations[0].samplers;
-        samplers[0].output = file.integers(TINYGLTF_TYPE_VEC4, type.component, {0, 0, 0, type.one, 0, 0, type.one, 0});
-        samplers[1].output = file.integers(TINYGLTF_TYPE_SCALAR, type.component, {0, type.one});
-        for (const tinygltf::AnimationSampler& sampler : samplers)
-            file.model.accessors[static_cast<std::size_t>(sampler.output)].normalized = true;
+        file.model.animations[0].samplers[1].output = file.integers(TINYGLTF_TYPE_SCALAR, type, {0, one});
+        file.model.accessors.back().normalized = true;
         const ReadClips read(file);
-        ASSERT_EQ(read.clips.clips.size(), 1u) << read.warning(0);
+        ASSERT_EQ(read.clips.clips.size(), 1u) << read.warning();
         const Clip& clip = read.clips.clips[0];
-        ASSERT_EQ(clip.trackCount(), 2u);
         const JointTransform* const last = clip.data().data() + (clip.keyframeCount() - 1) * clip.keyframeStride();
         EXPECT_EQ(std::abs(last[0].rotation.z), 1.0f);
         EXPECT_EQ(last[1].translation.x, 1.0f) << "the first weight";
     }
+}
+
+TEST(MarkersTest, comeFromTheExtrasInOrderOfTime)
+{
+    const ImportedModel model = withExtras(
+        R"({"markers":[{"time":0.75,"name":"right"},{"time":0.25,"name":"left","more":1},{"time":9,"name":"end"}]})");
+    expectWarnings(model, {});
+    const std::vector<ClipMarker>& markers = markersOf(model);
+    ASSERT_EQ(markers.size(), 3u);
+    EXPECT_EQ(markers[0].name, "left");
+    EXPECT_EQ(markers[0].time, 0.25);
+    EXPECT_EQ(markers[1].name, "right");
+    EXPECT_EQ(markers[2].time, 1.0) << "beyond the end: at the end";
+}
+
+TEST(MarkersTest, aFaultCostsTheMarkerWithAWarning)
+{
+    const std::pair<const char*, const char*> faults[] = {
+        {R"({"time":-1,"name":"a"})", "a time below 0"},
+        {R"({"time":"x","name":"a"})", "no number as its time"},
+        {R"({"time":null,"name":"a"})", "no number as its time"},
+        {R"({"name":"a"})", "no number as its time"},
+        {R"({"time":0.5})", "no text as its name"},
+        {R"({"time":0.5,"name":7})", "no text as its name"},
+        {"3", "no object"},
+        {"null", "no object"},
+    };
+    for (const auto& [marker, message] : faults)
+    {
+        SCOPED_TRACE(marker);
+        const ImportedModel model =
+            withExtras(R"({"markers":[)" + std::string(marker) + R"(,{"time":0.5,"name":"good"}]})");
+        expectWarnings(model, {"animations[0] \"slide\".extras.markers[0]: " + std::string(message)});
+        ASSERT_EQ(markersOf(model).size(), 1u);
+        EXPECT_EQ(markersOf(model)[0].name, "good");
+    }
+    for (const char* extras : {"{}", "7", "[]", R"("markers")", R"({"marker":[1]})", R"({"markers":[]})"})
+    {
+        const ImportedModel model = withExtras(extras);
+        expectWarnings(model, {});
+        EXPECT_TRUE(markersOf(model).empty()) << extras;
+    }
+    expectWarnings(withExtras(R"({"markers":"none"})"), {"extras.markers: no array"});
 }
 
 } // namespace osgGpuAnimation::gltf

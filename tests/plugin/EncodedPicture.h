@@ -48,4 +48,14 @@ inline std::string encodedPicture(const std::string& kind, int width, int height
     return stream.str();
 }
 
+/// The picture as a data URI.
+inline std::string uriOf(const std::string& picture)
+{
+    constexpr const char* digits = "0123456789ABCDEF";
+    std::string uri = "data:application/octet-stream,";
+    for (const char byte : picture)
+        uri.append({'%', digits[static_cast<unsigned char>(byte) / 16], digits[static_cast<unsigned char>(byte) % 16]});
+    return uri;
+}
+
 } // namespace osgGpuAnimation

@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "gltf/scene/Joints.h"
+#include "gltf/scene/NodeTransform.h"
 #include "plugin/ModelBuilder.h"
 
+#include <glm/ext/matrix_transform.hpp>
+#include <glm/gtc/quaternion.hpp>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <random>
 #include <set>
 
 namespace osgGpuAnimation::gltf
@@ -34,14 +39,76 @@ std::set<std::string> jointNames(const ModelBuilder& file)
 
 using Names = std::set<std::string>;
 
-} // namespace
-
-TEST(JointsTest, nothingMovesWithoutSkinOrClip)
+struct MatrixCase
 {
-    ModelBuilder file;
-    file.node("child", file.node("root"), file.triangle());
-    EXPECT_EQ(jointNames(file), Names{});
+    const char* name;
+    glm::dmat4 matrix;
+    bool shears;
+};
+
+const glm::dmat4 unit(1.0);
+const glm::dmat4 turn = glm::rotate(unit, 1.1, glm::normalize(glm::dvec3(1, -2, 0.5)));
+const glm::dmat4 place = glm::translate(unit, glm::dvec3(3, -4, 5));
+const glm::dmat4 uneven = glm::scale(unit, glm::dvec3(2, 0.25, 1.5));
+
+const MatrixCase cases[] = {
+    {"nothing", glm::dmat4(1.0), false},
+    {"translation", place, false},
+    {"rotation", turn, false},
+    {"half a turn", glm::rotate(unit, std::acos(-1.0), glm::dvec3(0, 1, 0)), false},
+    {"all three", place* turn* uneven, false},
+    {"mirrored", place* turn* glm::scale(unit, glm::dvec3(-1, 1, 1)), false},
+    {"point reflection", glm::scale(unit, glm::dvec3(-1.0)), false},
+    {"flat", turn* glm::scale(unit, glm::dvec3(1, 0, 2)), false},
+    {"a line", turn* glm::scale(unit, glm::dvec3(0, 0, 2)), false},
+    {"a point", place* glm::scale(unit, glm::dvec3(0.0)), false},
+    {"scaled after turning", place* uneven* turn, true},
+    {"mirrored and sheared", uneven* turn* glm::scale(unit, glm::dvec3(1, -1, 1)), true},
+    {"shear", glm::dmat4(1, 0, 0, 0, 0.7, 1, 0, 0, 0, 0, 1, 0, 1, 2, 3, 1), true},
+    {"sheared flat", glm::scale(unit, glm::dvec3(2, 1, 0)) * turn, true},
+    {"tiny", glm::scale(unit, glm::dvec3(1e-6)) * turn, false},
+    {"tiny and sheared", glm::scale(unit, glm::dvec3(1e-6, 2e-6, 1e-6)) * turn, true},
+};
+
+tinygltf::Node nodeOf(const glm::dmat4& matrix)
+{
+    tinygltf::Node node;
+    for (int i = 0; i < 16; ++i)
+        node.matrix.push_back(matrix[i / 4][i % 4]);
+    return node;
 }
+
+/// Largest difference of an element, relative to the largest element of its kind.
+double difference(const glm::dmat4& expected, const glm::dmat4& found)
+{
+    double largest[] = {1e-30, 1.0}, worst[] = {0.0, 0.0}; // of rotation and scale, of the translation
+    for (int column = 0; column < 4; ++column)
+        for (int row = 0; row < 3; ++row)
+        {
+            const int kind = column / 3;
+            largest[kind] = std::max(largest[kind], std::abs(expected[column][row]));
+            worst[kind] = std::max(worst[kind], std::abs(expected[column][row] - found[column][row]));
+        }
+    return std::max(worst[0] / largest[0], worst[1] / largest[1]);
+}
+
+void expectSame(const MatrixCase& wanted)
+{
+    SCOPED_TRACE(wanted.name);
+    const NodeTransform transform = decompose(nodeOf(wanted.matrix));
+    EXPECT_EQ(transform.outer.has_value(), wanted.shears);
+    glm::dmat4 product = transform.inner.toMatrix().toColumns();
+    EXPECT_NEAR(glm::length(transform.inner.rotation), 1.0f, 1e-6f);
+    if (transform.outer)
+    {
+        product = transform.outer->toMatrix().toColumns() * product;
+        EXPECT_EQ(glm::vec3(transform.inner.translation), glm::vec3(0));
+        EXPECT_EQ(glm::vec3(transform.inner.scale), glm::vec3(1));
+    }
+    EXPECT_LE(difference(wanted.matrix, product), 1e-6); // a few roundings to float
+}
+
+} // namespace
 
 TEST(JointsTest, skinJointsAndTheirAncestors)
 {
@@ -51,6 +118,7 @@ TEST(JointsTest, skinJointsAndTheirAncestors)
     const int between = file.node("between", root);
     const int hip = file.node("hip", between);
     file.node("socket", hip); // nothing depends on it
+    EXPECT_EQ(jointNames(file), Names{}) << "without a skin or clip";
     file.at(file.node("body", hip, file.skinnedTriangle())).skin = file.skin({hip});
     EXPECT_EQ(jointNames(file), (Names{"root", "between", "hip"}));
 }
@@ -63,21 +131,16 @@ TEST(JointsTest, targetsOfClipsAndTheMeshesBelow)
     file.node("sword", file.node("hand", arm), file.triangle());
     file.node("empty", arm);
     file.node("stone", root, file.triangle());
-    file.animation("wave");
-    file.slide(arm);
+    file.slidingClip("wave", arm);
     EXPECT_EQ(jointNames(file), (Names{"root", "arm", "hand", "sword"}));
     const Built built(file);
     EXPECT_EQ(rigidJoints(file.model, built.tree, built.joints),
               std::vector<int>{built.joints.skeleton.findJoint("sword")});
-}
-
-TEST(JointsTest, aMorphingMeshIsAJoint)
-{
-    ModelBuilder file;
-    const int mesh = file.triangle();
-    file.primitive(mesh).targets.push_back({{"POSITION", file.primitive(mesh).attributes["POSITION"]}});
-    file.node("face", -1, mesh);
-    EXPECT_EQ(jointNames(file), Names{"face"});
+    ModelBuilder morphing;
+    const int mesh = morphing.triangle();
+    morphing.primitive(mesh).targets.push_back(morphing.primitive(mesh).attributes);
+    morphing.node("face", -1, mesh);
+    EXPECT_EQ(jointNames(morphing), Names{"face"});
 }
 
 TEST(JointsTest, aSkinFollowsJointsOutsideTheScene)
@@ -112,35 +175,41 @@ TEST(JointsTest, aShearedNodeTakesTwoJoints)
     EXPECT_EQ(skeleton.joint(static_cast<std::size_t>(built.joints.ofNode[1])).parent, inner);
 }
 
-TEST(JointsTest, transformsBeyondFloatAreRefusedByName)
+TEST(NodeTransformTest, aMatrixIsOneJointOrTwo)
 {
-    ModelBuilder file;
-    const int hip = file.node("hip");
-    file.at(hip).translation = {1e300, 0, 0};
-    file.skin({hip});
-    const Result<Joints> joints = buildJoints(file.model, buildNodeTree(file.model, {}).value());
-    ASSERT_FALSE(joints);
-    EXPECT_NE(joints.error().message.find("nodes[0] \"hip\""), std::string::npos) << joints.error().message;
+    for (const MatrixCase& wanted : cases)
+        expectSame(wanted);
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> number(-2.0, 2.0);
+    for (int i = 0; i < 1000; ++i)
+    {
+        glm::dmat4 matrix(1.0);
+        for (int column = 0; column < 4; ++column)
+            for (int row = 0; row < 3; ++row)
+                matrix[column][row] = number(random);
+        expectSame({"random", matrix, true});
+    }
 }
 
-TEST(SkinsTest, keepsTheFilesOrderAndMatrices)
+TEST(NodeTransformTest, rotationsAreMadeUnit)
 {
-    ModelBuilder file;
-    const int hip = file.node("hip");
-    const int knee = file.node("knee", hip);
-    file.skin({knee, hip});
-    file.skin({hip, knee});
-    std::vector<float> numbers(32, 0.0f);
-    for (std::size_t i = 0; i < 16; ++i)
-        numbers[i] = static_cast<float>(i);
-    file.model.skins[1].inverseBindMatrices = file.floats(TINYGLTF_TYPE_MAT4, numbers);
-    const Built built(file);
-    const std::vector<Skin> skins = readSkins(file.model, built.joints);
-    ASSERT_EQ(skins.size(), 2u);
-    EXPECT_EQ(skins[0].joints, (std::vector<int>{built.joints.ofNode[1], built.joints.ofNode[0]}));
-    EXPECT_TRUE(skins[0].inverseBinds[0].isIdentity());
-    EXPECT_TRUE(skins[0].inverseBinds[1].isIdentity());
-    EXPECT_EQ(skins[1].inverseBinds[0].rows[1], glm::vec4(1, 5, 9, 13)); // columns in the file, rows here
+    tinygltf::Node node;
+    node.rotation = {0, 0, 10, 0};
+    EXPECT_EQ(decompose(node).inner.rotation, glm::vec4(0, 0, 1, 0));
+    node.rotation = {0, 0, 0, 0};
+    EXPECT_EQ(decompose(node).inner.rotation, glm::vec4(0, 0, 0, 1));
+    EXPECT_EQ(localMatrix(node), glm::dmat4(1.0));
+}
+
+TEST(NodeTransformTest, bothWaysOfOneNodeAgree)
+{
+    tinygltf::Node node;
+    node.translation = {1, 2, 3};
+    node.rotation = {0.1, -0.4, 0.2, 0.7};
+    node.scale = {2, -1, 0.5};
+    const NodeTransform transform = decompose(node);
+    EXPECT_LE(difference(localMatrix(node), transform.inner.toMatrix().toColumns()), 1e-6);
+    EXPECT_LE(difference(localMatrix(node), decompose(nodeOf(localMatrix(node))).inner.toMatrix().toColumns()), 1e-6);
 }
 
 } // namespace osgGpuAnimation::gltf

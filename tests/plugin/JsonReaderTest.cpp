@@ -19,25 +19,34 @@ Result<JsonTree> read(const std::string& text, Messages& messages, const ImportO
 }
 
 /// The text after reading and writing, or the error.
-std::string rewritten(const std::string& text)
+std::string rewritten(const std::string& text, const ImportOptions& options = {})
 {
     Messages messages;
-    Result<JsonTree> tree = read(text, messages);
+    Result<JsonTree> tree = read(text, messages, options);
     if (!tree) return tree.error().message;
     JsonTree taken = std::move(tree).value();
     return writeJson(taken.root());
 }
 
-std::string nested(std::size_t depth, char open, char close)
+std::string nested(std::size_t depth)
 {
-    return R"({"a":)" + std::string(depth, open) + std::string(depth, close) + '}';
+    return R"({"a":)" + std::string(depth, '[') + std::string(depth, ']') + '}';
+}
+
+const std::string longUri = "data:;base64," + std::string(3000, 'A');
+
+/// A document whose second buffer has that URI, as it is written in JSON.
+std::string withUri(const std::string& uri, const std::string& list = "buffers")
+{
+    return "{ \"a\\\"[{\":\"b:\", \"" + list + "\" : [{\"uri\":\"x\"},{ \"uri\" : \"" + uri +
+           "\",\"name\":\"last\"}],\"end\":[]}";
 }
 
 } // namespace
 
-TEST(JsonReaderTest, WritesWhatItReads)
+TEST(JsonReaderTest, writesWhatItReads)
 {
-    const std::pair<const char*, const char*> texts[] = {
+    const std::pair<std::string, std::string> texts[] = {
         {R"({})", R"({})"},
         {R"({"a":[],"b":{}})", R"({"a":[],"b":{}})"},
         {R"( { "a" : [ 1 , -2.5 , true , false , null , "x" ] } )", R"({"a":[1,-2.5,true,false,null,"x"]})"},
@@ -49,8 +58,9 @@ TEST(JsonReaderTest, WritesWhatItReads)
         EXPECT_EQ(rewritten(text), expected);
 }
 
-TEST(JsonReaderTest, RefusesWhatIsNoJson)
+TEST(JsonReaderTest, refusesFaultyTexts)
 {
+    const std::string whole = withUri(longUri);
     const std::pair<std::string, const char*> texts[] = {
         {"", "JSON syntax"},
         {"{\"a\":1", "JSON syntax"},
@@ -60,82 +70,112 @@ TEST(JsonReaderTest, RefusesWhatIsNoJson)
         {"{} {}", "JSON syntax"},
         {"[1]", "an object as the root"},
         {"7", "an object as the root"},
+        {std::string("{}\0{}", 5), "after the NUL at byte 2, found more at byte 3"},
+        {whole.substr(0, whole.size() - 1), "JSON syntax"},
+        {whole.substr(0, whole.find("AAA") + 2000), "JSON syntax"},
+        {whole.substr(0, whole.find("\"name") + 3), "JSON syntax"},
+        {"}]" + whole + "]", "JSON syntax"},
+        {whole + "]", "(counted without the data URIs)"},
     };
     for (const auto& [text, message] : texts)
         EXPECT_NE(rewritten(text).find(message), std::string::npos) << text << " -> " << rewritten(text);
-}
-
-TEST(JsonReaderTest, NulIsNoEndOfTheText)
-{
-    Messages messages;
-    EXPECT_TRUE(read(std::string("{}\0\0", 4), messages)); // some writers pad a GLB's chunk like this
-    ASSERT_EQ(messages.warnings.size(), 1u);
-    EXPECT_EQ(messages.warnings[0], "JSON: expected the end of the text at byte 2, found 2 bytes of NUL; ignored");
-    EXPECT_NE(rewritten(std::string("{}\0{}", 5)).find("after the NUL at byte 2, found more at byte 3"),
-              std::string::npos);
-}
-
-TEST(JsonReaderTest, MessagesStayShortAndPrintable)
-{
     const std::string message = rewritten("{\"a\":" + std::string(100000, '\xff'));
     EXPECT_LT(message.size(), 500u);
     for (const char c : message)
         EXPECT_TRUE(c >= 0x20 && c < 0x7f) << int(c);
 }
 
-TEST(JsonReaderTest, KeepsToItsLimits)
+TEST(JsonReaderTest, nulAtTheEndIsIgnored)
 {
     Messages messages;
-    ImportOptions options;
-    options.maxJsonDepth = 5; // the root is level 1
-    EXPECT_TRUE(read(nested(4, '[', ']'), messages, options));
-    const Result<JsonTree> deep = read(nested(5, '[', ']'), messages, options);
-    ASSERT_FALSE(deep);
-    EXPECT_NE(deep.error().message.find("maxJsonDepth"), std::string::npos);
-
-    options.maxJsonDepth = 1000000; // a larger limit than any stack allows has no effect
-    EXPECT_FALSE(read(nested(100000, '[', ']'), messages, options));
-
-    options.maxElements = 3;
-    EXPECT_TRUE(read(R"({"a":[1,2,3]})", messages, options));
-    const Result<JsonTree> many = read(R"({"a":[1,2,3,4]})", messages, options);
-    ASSERT_FALSE(many);
-    EXPECT_NE(many.error().message.find("maxElements"), std::string::npos);
-
-    options = ImportOptions();
-    options.maxDocumentBytes = 512;
-    const Result<JsonTree> heavy = read(R"({"a":[1,2,3,4]})", messages, options);
-    ASSERT_FALSE(heavy);
-    EXPECT_NE(heavy.error().message.find("maxDocumentBytes"), std::string::npos);
+    EXPECT_TRUE(read(std::string("{}\0\0", 4), messages)); // some writers pad a GLB's chunk like this
+    ASSERT_EQ(messages.warnings.size(), 1u);
+    EXPECT_EQ(messages.warnings[0], "JSON: expected the end of the text at byte 2, found 2 bytes of NUL; ignored");
 }
 
-TEST(JsonReaderTest, LastOfTwoEqualKeysCountsWithAWarning)
+TEST(JsonReaderTest, keepsToItsLimits)
+{
+    ImportOptions shallow, endless, few, light;
+    shallow.maxJsonDepth = 5;       // the root is level 1
+    endless.maxJsonDepth = 1000000; // a larger limit than any stack allows has no effect
+    few.maxElements = 3;
+    light.maxDocumentBytes = 512;
+    EXPECT_EQ(rewritten(nested(4), shallow), nested(4));
+    EXPECT_NE(rewritten(nested(5), shallow).find("maxJsonDepth"), std::string::npos);
+    EXPECT_NE(rewritten(nested(100000), endless), nested(100000));
+    EXPECT_EQ(rewritten(R"({"a":[1,2,3]})", few), R"({"a":[1,2,3]})");
+    EXPECT_NE(rewritten(R"({"a":[1,2,3,4]})", few).find("maxElements"), std::string::npos);
+    EXPECT_NE(rewritten(R"({"a":[1,2,3,4]})", light).find("maxDocumentBytes"), std::string::npos);
+}
+
+TEST(JsonReaderTest, theLastOfTwoEqualKeysCountsWithAWarning)
 {
     Messages messages;
-    Result<JsonTree> read1 = read(R"({"x":[{"mesh":1,"a":{},"mesh":2,"mesh":3}]})", messages);
-    ASSERT_TRUE(read1);
-    JsonTree tree = std::move(read1).value();
+    Result<JsonTree> result = read(R"({"x":[{"mesh":1,"a":{},"mesh":2,"mesh":3}]})", messages);
+    ASSERT_TRUE(result);
+    JsonTree tree = std::move(result).value();
     EXPECT_EQ(writeJson(tree.root()), R"({"x":[{"a":{},"mesh":3}]})");
     ASSERT_FALSE(messages.warnings.empty());
     EXPECT_EQ(messages.warnings[0], "x[0].mesh: the key appears twice; the last counts");
 }
 
-TEST(JsonReaderTest, ValuesAreFoundAndLeftOut)
+TEST(JsonTextTest, longDataUrisOfBuffersAndImagesStayWhereTheyAre)
 {
+    for (const char* list : {"buffers", "images"})
+    {
+        const std::string whole = withUri(longUri, list);
+        JsonText text(whole);
+        EXPECT_EQ(text.text(), withUri("", list));
+        EXPECT_EQ(text.dataBytes(), longUri.size());
+        EXPECT_LT(text.otherBytes(), 50u);
+        EXPECT_FALSE(text.dataAt(5)); // a":, b, list, uri, x, uri
+        ASSERT_TRUE(text.dataAt(6));
+
+        Messages messages;
+        JsonTree tree = read(whole, messages).value();
+        JsonValue::Iterator element = tree.root()[list].begin();
+        EXPECT_EQ((*element)["uri"].text(), "x");
+        ++element;
+        EXPECT_EQ((*element)["uri"].text(), longUri);
+        EXPECT_EQ((*element)["uri"].text().data(), whole.data() + whole.find("data:"));
+        EXPECT_EQ((*element)["name"].text(), "last");
+    }
+}
+
+TEST(JsonTextTest, valuesAreCountedOutsideStrings)
+{
+    const std::pair<const char*, std::size_t> texts[] = {
+        {"{}", 2}, {"7", 1}, {R"({"a,[{\"":[1,2,{"b":"{,"}]})", 6}, {"[1,2", 3}, {"", 1}};
+    for (const auto& [text, values] : texts)
+        EXPECT_EQ(JsonText(text).mostValues(), values) << text;
+    EXPECT_EQ(JsonText("{\"a\":\"" + longUri).otherBytes(), 1 + longUri.size());
+    EXPECT_EQ(JsonText("\"\\").otherBytes(), 1u);
+    EXPECT_EQ(JsonText("\"").otherBytes(), 0u);
+}
+
+TEST(JsonTextTest, otherStringsAreTheParsers)
+{
+    const std::string texts[] = {
+        withUri(longUri, "nodes"),                                  // another list
+        withUri("data:;base64,AAAA"),                               // short
+        withUri("data:;base64,\\/" + std::string(3000, 'A')),       // with an escape
+        withUri("data:,\xc3\xbc" + std::string(3000, 'A')),         // not ASCII
+        withUri(std::string(3000, 'A')),                            // a path
+        R"({"buffers":{"uri":")" + longUri + R"("}})",              // no element
+        R"({"buffers":[{"name":")" + longUri + R"("}]})",           // no URI
+        R"({"buffers":[{"uri":[")" + longUri + R"("]}]})",          // deeper
+        R"({"buffers":[{"uri":{")" + longUri + R"(":"x"}}]})",      // a key
+        R"({"extras":{"buffers":[{"uri":")" + longUri + R"("}]}})", // elsewhere
+    };
     Messages messages;
-    Result<JsonTree> read1 = read(R"({"a":{"b":[1,{"c":2}],"d":8.0},"e":"text"})", messages);
-    ASSERT_TRUE(read1);
-    JsonTree tree = std::move(read1).value();
-    const JsonValue root = tree.root(), a = root["a"];
-    EXPECT_EQ(a.size(), 2u);
-    EXPECT_TRUE(a["d"].isInteger());
-    EXPECT_EQ(root["e"].text(), "text");
-    EXPECT_FALSE(root["none"]["of"]["these"]);
-    EXPECT_EQ(a["b"].description(), "an array of 2");
-    a["b"].dropFrom(a);
-    EXPECT_FALSE(a["b"]);
-    EXPECT_EQ(a.size(), 1u);
-    EXPECT_EQ(writeJson(root), R"({"a":{"d":8},"e":"text"})");
+    for (const std::string& whole : texts)
+    {
+        JsonText text(whole);
+        EXPECT_EQ(text.text().data(), whole.data()) << whole.substr(0, 60);
+        EXPECT_EQ(text.dataBytes(), 0u);
+        EXPECT_GT(text.otherBytes(), whole.size() > 3000 ? 3000u : 40u) << whole.substr(0, 60);
+        EXPECT_TRUE(read(whole, messages)) << whole.substr(0, 60);
+    }
 }
 
 } // namespace osgGpuAnimation::gltf

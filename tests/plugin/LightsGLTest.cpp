@@ -3,6 +3,7 @@
 #include "plugin/StoredScene.h"
 #include "support/ViewerGLTest.h"
 
+#include <gtest/gtest.h>
 #include <osg/Math>
 #include <osgUtil/Optimizer>
 
@@ -19,12 +20,41 @@ namespace osgGpuAnimation::gltf
 namespace
 {
 
-const double pi = osg::PI;
-
-tinygltf::Light light(const std::string& type, double intensity)
+tinygltf::Light light(const std::string& type, const std::string& name = "")
 {
     tinygltf::Light made;
     made.type = type;
+    made.name = name;
+    made.color = {1.0, 0.5, 0.25};
+    made.intensity = 3.0;
+    return made;
+}
+
+const PunctualLight& lightOf(const ImportedLight& imported)
+{
+    return dynamic_cast<const PunctualLight&>(*imported.source->getLight());
+}
+
+/// A triangle and three lights.
+ModelBuilder threeLights()
+{
+    ModelBuilder file;
+    file.node("leaf", -1, file.triangle());
+    file.lamp(light("directional"), "sun node");
+    tinygltf::Light bulb = light("point", "bulb"), torch = light("spot", "torch");
+    bulb.range = 7.0;
+    file.lamp(bulb, "", {1.0, 0.0, 0.0});
+    torch.spot.innerConeAngle = osg::PI / 12.0;
+    torch.spot.outerConeAngle = osg::PI / 6.0;
+    file.lamp(torch, "", {2.0, 0.0, 0.0});
+    return file;
+}
+
+const double pi = osg::PI;
+
+tinygltf::Light whiteLight(const std::string& type, double intensity)
+{
+    tinygltf::Light made = light(type);
     made.intensity = intensity;
     made.color = {1.0, 1.0, 1.0};
     return made;
@@ -34,33 +64,16 @@ tinygltf::Light light(const std::string& type, double intensity)
 int wall(ModelBuilder& file)
 {
     std::vector<float> positions, normals;
-    const auto add = [&](int x, int y)
-    {
-        positions.insert(positions.end(),
-                         {0.25f * static_cast<float>(x) - 4.0f, 0.25f * static_cast<float>(y) - 4.0f, 0});
-        normals.insert(normals.end(), {0, 0, 1});
-    };
     for (int x = 0; x < 32; ++x)
         for (int y = 0; y < 32; ++y)
-        {
-            for (const auto& [right, up] : {std::pair(0, 0), std::pair(1, 0), std::pair(0, 1)})
-                add(x + right, y + up);
-            for (const auto& [right, up] : {std::pair(1, 0), std::pair(1, 1), std::pair(0, 1)})
-                add(x + right, y + up);
-        }
+            for (const auto& [right, up] : {std::pair(0, 0), {1, 0}, {0, 1}, {1, 0}, {1, 1}, {0, 1}})
+            {
+                const auto place = [](int step) { return 0.25f * static_cast<float>(step) - 4.0f; };
+                positions.insert(positions.end(), {place(x + right), place(y + up), 0});
+                normals.insert(normals.end(), {0, 0, 1});
+            }
     return file.mesh({{"POSITION", file.floats(TINYGLTF_TYPE_VEC3, positions)},
                       {"NORMAL", file.floats(TINYGLTF_TYPE_VEC3, normals)}});
-}
-
-/// Adds the light below the parent.
-int addLight(ModelBuilder& file, const tinygltf::Light& light, const std::vector<double>& place, int parent = -1)
-{
-    const int node = file.node("lamp", parent);
-    file.at(node).translation = place;
-    tinygltf::Value::Object members{{"light", tinygltf::Value(static_cast<int>(file.model.lights.size()))}};
-    file.at(node).extensions["KHR_lights_punctual"] = tinygltf::Value(members);
-    file.model.lights.push_back(light);
-    return node;
 }
 
 /// The wall, still or drawn from the palette.
@@ -76,20 +89,15 @@ ModelBuilder wallFile(bool isMoving = false)
 class LightsGLTest : public ViewerGLTest
 {
 protected:
-    /// A group above the scene with GL's lighting, and no light but the scene's.
-    osg::ref_ptr<osg::Group> lit(osg::Node* scene)
+    /// With GL's lighting, and no light but the scene's.
+    osg::ref_ptr<osg::Image> pictureOf(osg::Node* scene, const std::vector<double>& times = {0.0})
     {
         viewer().setLightingMode(osg::View::NO_LIGHT);
         viewer().getCamera()->setViewMatrixAsLookAt({0, 0, 10}, {0, 0, 0}, {0, 1, 0});
         osg::ref_ptr<osg::Group> group = new osg::Group;
         group->getOrCreateStateSet()->setMode(GL_LIGHTING, osg::StateAttribute::ON);
         group->addChild(scene);
-        return group;
-    }
-
-    osg::ref_ptr<osg::Image> pictureOf(osg::Node* scene, const std::vector<double>& times = {0.0})
-    {
-        const osg::ref_ptr<osg::Image> taken = ViewerGLTest::pictureOf(lit(scene), times);
+        const osg::ref_ptr<osg::Image> taken = ViewerGLTest::pictureOf(group, times);
         EXPECT_NO_GL_ERROR();
         return taken;
     }
@@ -101,10 +109,7 @@ protected:
         return imported(file, options);
     }
 
-    osg::ref_ptr<osg::Image> pictureOf(const ModelBuilder& file, const std::vector<double>& times = {0.0})
-    {
-        return pictureOf(model(file).root, times);
-    }
+    osg::ref_ptr<osg::Image> pictureOf(const ModelBuilder& file) { return pictureOf(model(file).root); }
 
     /// The red of the wall's point.
     static float at(const osg::Image& image, double x, double y)
@@ -118,51 +123,100 @@ protected:
 
 } // namespace
 
-// Candela per square metre of distance are lux: equal illuminance looks equal, and four times as far takes 16 times.
-TEST_F(LightsGLTest, equalIlluminanceLooksEqualWhateverTheLight)
+TEST(LightsTest, lightsAreOpenGLsFromSevenDown)
 {
-    const double lux = 0.5 * pi;
-    tinygltf::Light wide = light("spot", 16.0 * lux);
-    wide.spot.innerConeAngle = 0.5;
-    wide.spot.outerConeAngle = 0.6;
-    for (const bool isMoving : {false, true})
+    ModelBuilder file = threeLights();
+    file.lamp(0, "second sun");
+    const ImportedModel model = imported(file);
+    ASSERT_EQ(model.lights.size(), 4u);
+    const PunctualLight::Kind kinds[] = {PunctualLight::Kind::Directional, PunctualLight::Kind::Point,
+                                         PunctualLight::Kind::Spot, PunctualLight::Kind::Directional};
+    const char* const names[] = {"sun node", "bulb", "torch", "second sun"};
+    for (int i = 0; i < 4; ++i)
     {
-        const std::tuple<const char*, tinygltf::Light, double> cases[] = {{"sun", light("directional", lux), 3.0},
-                                                                          {"point", light("point", lux), 1.0},
-                                                                          {"far", light("point", 16.0 * lux), 4.0},
-                                                                          {"spot", wide, 4.0}};
-        ModelBuilder dark = wallFile(isMoving);
-        const float unlit = at(*pictureOf(dark), 0.0, 0.0);
-        float first = -1.0f;
-        for (const auto& [name, source, distance] : cases)
-        {
-            ModelBuilder file = wallFile(isMoving);
-            addLight(file, source, {0.0625, 0.0625, distance});
-            const float middle = at(*pictureOf(file), 0.0, 0.0);
-            if (first < 0.0f) first = middle;
-            EXPECT_GT(middle, unlit + 0.2f) << name;
-            EXPECT_LT(middle, 0.99f) << name;
-            // Vertices of the fixed pipeline are up to 0.18 units beside the pixel.
-            EXPECT_NEAR(middle, first, 0.02f) << name << (isMoving ? ", moving" : ", still");
-        }
+        const PunctualLight& made = lightOf(model.lights[static_cast<std::size_t>(i)]);
+        EXPECT_EQ(made.getLightNum(), 7 - i); // applications begin at 0
+        EXPECT_EQ(made.getKind(), kinds[i]);
+        EXPECT_EQ(made.getName(), names[i]);
+        EXPECT_NEAR(made.getDiffuse().y(), 1.5 / osg::PI, 1e-6);
+        EXPECT_EQ(model.root->getStateSet()->getMode(GL_LIGHT7 - static_cast<unsigned int>(i)),
+                  osg::StateAttribute::GLModeValue(osg::StateAttribute::ON));
     }
+    EXPECT_EQ(model.lights[3].light, 0);
+    EXPECT_EQ(lightOf(model.lights[1]).getRange(), 7.0f);
+    EXPECT_NEAR(lightOf(model.lights[2]).getInnerConeAngle(), 15.0f, 1e-4f);
+    EXPECT_NEAR(lightOf(model.lights[2]).getSpotCutoff(), 30.0f, 1e-4f);
+    expectWarnings(model, {});
+    EXPECT_TRUE(model.messages.notes.empty());
 }
 
-TEST_F(LightsGLTest, aSpotLightsItsConeAndColor)
+TEST(LightsTest, lightsDoNotCountForTheScenesBounds)
 {
-    tinygltf::Light narrow = light("spot", 20.0 * pi);
-    narrow.spot.outerConeAngle = 0.3; // 1.2 units of the wall from 4 units before it
-    narrow.color = {1.0, 0.0, 0.0};
-    for (const bool isMoving : {false, true})
+    ModelBuilder file = threeLights();
+    file.lamp(light("point"), "far", {1e6, 0.0, 0.0});
+    ImportOptions without;
+    without.noLights = true;
+    const ImportedModel model = imported(file), dark = imported(file, without);
+    EXPECT_EQ(model.root->getBound().radius(), dark.root->getBound().radius());
+    EXPECT_TRUE(dark.lights.empty());
+    EXPECT_FALSE(dark.root->getStateSet());
+}
+
+// Nearest to the middle of the drawn meshes, in the file's axes, numbered in the file's order.
+TEST(LightsTest, ofManyTheNearestSevenAndTheSunRemain)
+{
+    ModelBuilder file;
+    file.at(file.node("leaf", -1, file.triangle())).translation = {0.0, 50.0, 0.0};
+    file.lamp(light("point", "near in the turned scene"), "", {0.0, 0.0, 50.0});
+    file.lamp(light("directional", "sun"), "", {0.0, -1e5, 0.0});
+    for (int y = 90; y >= 0; y -= 10)
+        file.lamp(light("point", std::to_string(y)), "", {0.0, static_cast<double>(y), 0.0});
+    const ImportedModel model = imported(file);
+    std::string kept;
+    int number = 7;
+    for (const ImportedLight& made : model.lights)
     {
-        ModelBuilder file = wallFile(isMoving);
-        addLight(file, narrow, {1.0, -1.0, 4.0});
-        const osg::ref_ptr<osg::Image> picture = pictureOf(file), dark = pictureOf(wallFile(isMoving));
-        EXPECT_GT(at(*picture, 1.0, -1.0), at(*dark, 1.0, -1.0) + 0.2f);
-        EXPECT_EQ(picture->getColor(40u, 24u).y(), dark->getColor(40u, 24u).y());
-        EXPECT_EQ(at(*picture, 3.0, -1.0), at(*dark, 3.0, -1.0));
-        EXPECT_EQ(at(*picture, -1.0, 1.0), at(*dark, -1.0, 1.0));
+        if (!made.source) continue;
+        kept += made.source->getName() + ' ';
+        EXPECT_EQ(lightOf(made).getLightNum(), number--);
     }
+    EXPECT_EQ(kept, "sun 80 70 60 50 40 30 ");
+    expectWarnings(model, {"12 lights, OpenGL has 7"});
+}
+
+TEST(LightsTest, aLightBeyondFloatNumbersIsLeftOut)
+{
+    ModelBuilder file = threeLights();
+    file.model.lights[0].color = {1e30, 1.0, 1.0};
+    file.model.lights[0].intensity = 1e30;
+    const ImportedModel model = imported(file);
+    expectWarnings(model, {"lights[0]: a light's color or intensity"});
+    EXPECT_FALSE(model.lights[0].source);
+    EXPECT_EQ(lightOf(model.lights[1]).getLightNum(), 7);
+}
+
+// An application may give a light values that glTF has no name for: the scene stays readable.
+TEST(LightsTest, storedLightsHaveAllTheirValues)
+{
+    const StoredScene files;
+    for (const bool isWider : {false, true})
+        for (const ImportedLight& made : imported(threeLights()).lights)
+        {
+            osg::Light& light = *made.source->getLight();
+            if (isWider && lightOf(made).getKind() != PunctualLight::Kind::Spot) continue;
+            if (isWider) light.setSpotCutoff(120.0f);
+            light.setSpotExponent(7.0f);
+            for (const char* format : {"osgb", "osgt", "osgx"})
+            {
+                const osg::ref_ptr<osg::Node> stored = files.throughFile(*made.source, format);
+                const auto* source = dynamic_cast<const osg::LightSource*>(stored.get());
+                ASSERT_TRUE(source && source->getLight()) << format;
+                EXPECT_EQ(source->getLight()->getSpotCutoff(), light.getSpotCutoff()) << format;
+                EXPECT_EQ(source->getLight()->getDiffuse(), light.getDiffuse()) << format;
+                EXPECT_TRUE(isWider || source->getLight()->compare(light) == 0) << format;
+                EXPECT_FALSE(source->getBound().valid()) << format;
+            }
+        }
 }
 
 // The light is below a node that is no joint, below an animated one: where the node above is, to the left or right.
@@ -170,38 +224,38 @@ TEST_F(LightsGLTest, aLightMovesWithItsNodeAndInCopiesToo)
 {
     ModelBuilder file = wallFile();
     const int arm = file.node("arm");
-    addLight(file, light("point", pi), {-2.0, 0.0, 1.0}, arm);
+    file.lamp(whiteLight("point", pi), "lamp", {-2.0, 0.0, 1.0}, arm);
     file.animation("swing");
     file.channel(arm, "translation", {0, 1}, TINYGLTF_TYPE_VEC3, {0, 0, 0, 4, 0, 0});
     const ImportedModel made = model(file);
     ASSERT_EQ(made.lights.size(), 1u);
     const osg::ref_ptr<osg::Node> copy = osg::clone(made.root.get(), osg::CopyOp::DEEP_COPY_NODES);
-    osg::ref_ptr<osg::Image> expected[2];
+    osg::ref_ptr<osg::Image> expected;
     for (osg::Node* scene : {static_cast<osg::Node*>(made.root.get()), copy.get()})
     {
         const osg::ref_ptr<osg::Image> before = pictureOf(scene, {0.0});
         const osg::ref_ptr<osg::Image> after = pictureOf(scene, {0.0, 0.999});
         EXPECT_GT(at(*before, -2.0, 0.0), at(*before, 2.0, 0.0) + 0.2f);
         EXPECT_GT(at(*after, 2.0, 0.0), at(*after, -2.0, 0.0) + 0.2f);
-        if (!expected[0])
+        if (expected)
         {
-            expected[0] = before;
-            expected[1] = after;
+            EXPECT_EQ(Picture::pixelsDifferent(*after, *expected), 0);
         }
-        EXPECT_EQ(Picture::pixelsDifferent(*before, *expected[0]), 0);
-        EXPECT_EQ(Picture::pixelsDifferent(*after, *expected[1]), 0);
+        expected = after;
     }
 }
 
-TEST_F(LightsGLTest, onlyTheFilesModelIsLit)
+TEST_F(LightsGLTest, onlyTheFilesModelIsLitAndByLightsOutsideTheViewToo)
 {
-    ModelBuilder dark = wallFile(), sunny = wallFile();
-    sunny.at(0).translation = {100.0, 0.0, 0.0}; // out of sight
-    addLight(sunny, light("directional", 0.5 * pi), {0.0, 0.0, 1.0});
+    ModelBuilder dark = wallFile(), sunny = wallFile(true);
+    sunny.lamp(whiteLight("directional", 0.5 * pi), "lamp", {500.0, 0.0, 0.0});
+    const osg::ref_ptr<osg::Image> alone = pictureOf(dark);
+    EXPECT_GT(at(*pictureOf(sunny), 0.0, 0.0), at(*alone, 0.0, 0.0) + 0.2f);
+    sunny.at(0).translation = {100.0, 0.0, 0.0};
+    sunny.model.animations.clear();
     const osg::ref_ptr<osg::Group> both = new osg::Group;
     both->addChild(model(dark).root);
     both->addChild(model(sunny).root);
-    const osg::ref_ptr<osg::Image> alone = pictureOf(dark);
     EXPECT_EQ(Picture::pixelsDifferent(*pictureOf(both.get()), *alone), 0);
 }
 
@@ -213,12 +267,12 @@ TEST_F(LightsGLTest, lightsStayWhereTheyAreThroughToolsAndFiles)
     file.at(tower).translation = {1.0, 1.0, 0.0};
     file.at(tower).rotation = {0.0, 0.0, std::sqrt(0.5), std::sqrt(0.5)};
     file.node("roof", tower, file.triangle());
-    tinygltf::Light lamp = light("spot", 8.0 * pi);
+    tinygltf::Light lamp = whiteLight("spot", 8.0 * pi);
     lamp.range = 6.0;
     lamp.spot.innerConeAngle = 0.2;
     lamp.spot.outerConeAngle = 0.4;
     // The Optimizer must not flatten its transform into the mesh.
-    file.at(addLight(file, lamp, {-2.0, 0.0, 4.0}, tower)).mesh = file.triangle();
+    file.at(file.lamp(lamp, "lamp", {-2.0, 0.0, 4.0}, tower)).mesh = file.triangle();
     const osg::ref_ptr<osg::Image> expected = pictureOf(file);
     EXPECT_GT(at(*expected, 1.0, -1.0), at(*expected, -2.0, -1.0) + 0.2f);
 
@@ -231,13 +285,6 @@ TEST_F(LightsGLTest, lightsStayWhereTheyAreThroughToolsAndFiles)
         ASSERT_TRUE(stored) << format;
         EXPECT_EQ(Picture::pixelsDifferent(*pictureOf(stored.get()), *expected), 0) << format;
     }
-}
-
-TEST_F(LightsGLTest, aLightOutsideTheViewStillShines)
-{
-    ModelBuilder file = wallFile(true);
-    addLight(file, light("directional", 0.5 * pi), {500.0, 0.0, 0.0});
-    EXPECT_GT(at(*pictureOf(file), 0.0, 0.0), at(*pictureOf(wallFile(true)), 0.0, 0.0) + 0.2f);
 }
 
 } // namespace osgGpuAnimation::gltf

@@ -48,6 +48,36 @@ Json baseDocument()
     return document;
 }
 
+Json richDocument()
+{
+    Json made = baseDocument();
+    made["extensionsUsed"] = {"KHR_lights_punctual", "KHR_materials_variants"};
+    made["extensions"]["KHR_lights_punctual"]["lights"] =
+        Json::parse(R"([{"type":"directional","color":[1,0.5,0.25],"intensity":3},{"type":"point","range":9},
+                        {"type":"spot","spot":{"innerConeAngle":0.1,"outerConeAngle":0.5},"name":"lamp"}])");
+    for (int node = 0; node < 3; ++node)
+        made["nodes"][node]["extensions"]["KHR_lights_punctual"]["light"] = node;
+    made["cameras"] = Json::parse(R"([{"type":"perspective","perspective":{"yfov":0.7,"znear":0.1}},
+                                      {"type":"orthographic","orthographic":{"xmag":1,"ymag":2,"zfar":9,"znear":0}}])");
+    made["nodes"][0]["camera"] = 0;
+    made["nodes"][1]["camera"] = 1;
+    const char* const variants = "KHR_materials_variants";
+    made["extensions"][variants]["variants"] =
+        Json::parse(R"([{"name":"plain"},{"name":"red one"},{"name":"gold"},{"name":"plain"}])");
+    made["materials"][0]["name"] = "own";
+    made["materials"].push_back(Json::parse(R"({"name":"red","pbrMetallicRoughness":{"baseColorFactor":[1,0,0,1]}})"));
+    made["materials"].push_back(Json::parse(R"({"name":"golden","alphaMode":"BLEND"})"));
+    made["meshes"][0]["primitives"][0]["extensions"][variants] =
+        Json::parse(R"({"mappings":[{"material":1,"variants":[1]},{"material":2,"variants":[2,3]}]})");
+    made["meshes"].push_back(made["meshes"][0]);
+    Json& still = made["meshes"][1]["primitives"][0]["attributes"];
+    still.erase("JOINTS_0");
+    still.erase("WEIGHTS_0");
+    made["scenes"][0]["nodes"].push_back(made["nodes"].size());
+    made["nodes"].push_back({{"name", "still"}, {"mesh", 1}});
+    return made;
+}
+
 std::string LoadedDocument::text() const
 {
     std::string all = model ? "loaded" : "refused: " + model.error().message;

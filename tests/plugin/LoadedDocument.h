@@ -13,22 +13,10 @@ namespace osgGpuAnimation::gltf
 
 // A small valid document that tests change, and the result of loadDocument().
 
-/// The accessors of the base document.
-enum BaseAccessor
-{
-    positions,
-    normals,
-    joints,
-    weights,
-    slideTimes,
-    slideValues,
-    turnTimes,
-    turnValues,
-    inverseBinds,
-    baseAccessors ///< how many there are
-};
+/// The accessor of the base document's positions; others follow.
+constexpr int positions = 0;
 
-/// Its nodes: body is the skinned mesh, hip the parent of knee.
+/// The base document's nodes: body is the skinned mesh, hip the parent of knee.
 enum BaseNode
 {
     hip,
@@ -40,6 +28,10 @@ enum BaseNode
 ModelBuilder baseModel();
 /// The same as JSON, with a material, a texture, a sampler and a picture.
 nlohmann::json baseDocument();
+/// The base document with optional parts: a still copy of its mesh, one of three lights at each of the first nodes, two
+/// cameras, and the materials "own", "red" and "golden". Both meshes are red in variant 1 and golden in variants 2 and
+/// 3, of which the last has the name of the first.
+nlohmann::json richDocument();
 
 /// The result of loading a document.
 struct LoadedDocument

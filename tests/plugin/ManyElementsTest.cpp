@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Small files that require much memory or time.
-#include "gltf/Import.h"
-#include "plugin/ModelBuilder.h"
+#include "plugin/ImportedFile.h"
 #include "support/PeakMemory.h"
 
 #include <gtest/gtest.h>
@@ -20,71 +19,54 @@ namespace osgGpuAnimation::gltf
 namespace
 {
 
-constexpr unsigned int vertices = 99999;
-constexpr int nodes = 20000;
-
-/// One mesh of 99,999 vertices.
-struct LargeMesh : ModelBuilder
+enum class Kind
 {
-    std::map<std::string, int> attributes{
-        {"POSITION", floats(TINYGLTF_TYPE_VEC3, std::vector<float>(3 * vertices, 1.0f))}};
-
-    void beSkinned()
-    {
-        const std::vector<unsigned int> joints(4 * vertices, 0);
-        std::vector<float> weights;
-        for (unsigned int i = 0; i < vertices; ++i)
-            weights.insert(weights.end(), {1, 0, 0, 0});
-        attributes["JOINTS_0"] = integers(TINYGLTF_TYPE_VEC4, TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE, joints);
-        attributes["WEIGHTS_0"] = floats(TINYGLTF_TYPE_VEC4, weights);
-    }
+    Static,
+    OnAnimatedJoint,
+    Skinned, ///< one skin per node, all with the same joint
+    Morphing ///< with their own weights
 };
 
-std::string staticNodes()
+/// 20,000 nodes with one mesh of 99,999 vertices.
+std::string manyNodes(Kind kind)
 {
-    LargeMesh file;
-    const int mesh = file.mesh(file.attributes);
-    for (int i = 0; i < nodes; ++i)
-        file.node("", -1, mesh);
-    return file.text();
-}
-
-std::string nodesOnAnAnimatedJoint()
-{
-    LargeMesh file;
-    const int mesh = file.mesh(file.attributes);
-    const int joint = file.node("joint");
-    file.animation("slide");
-    file.slide(joint);
-    for (int i = 0; i < nodes; ++i)
-        file.node("", joint, mesh);
-    return file.text();
-}
-
-/// One skin per node, all with the same joint.
-std::string skinnedNodes()
-{
-    LargeMesh file;
-    file.beSkinned();
-    const int mesh = file.mesh(file.attributes);
-    const int joint = file.node("joint");
-    for (int i = 0; i < nodes; ++i)
+    constexpr std::size_t vertices = 99999;
+    ModelBuilder file;
+    std::map<std::string, int> attributes;
+    attributes["POSITION"] = file.floats(TINYGLTF_TYPE_VEC3, std::vector<float>(3 * vertices, 1.0f));
+    if (kind == Kind::Skinned)
     {
-        const int skin = file.skin({joint});
-        file.at(file.node("", -1, mesh)).skin = skin;
+        attributes["JOINTS_0"] = file.integers(TINYGLTF_TYPE_VEC4, TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE,
+                                               std::vector<unsigned int>(4 * vertices, 0));
+        std::vector<float> weights;
+        for (std::size_t i = 0; i < vertices; ++i)
+            weights.insert(weights.end(), {1, 0, 0, 0});
+        attributes["WEIGHTS_0"] = file.floats(TINYGLTF_TYPE_VEC4, weights);
+    }
+    const int mesh = file.mesh(attributes), joint = file.node("joint");
+    if (kind == Kind::OnAnimatedJoint) file.slidingClip("slide", joint);
+    if (kind == Kind::Morphing) file.primitive(mesh).targets.push_back(attributes);
+    for (int i = 0; i < 20000; ++i)
+    {
+        const int node = file.node("", kind == Kind::OnAnimatedJoint ? joint : -1, mesh);
+        if (kind == Kind::Skinned) file.at(node).skin = file.skin({joint});
+        if (kind == Kind::Morphing) file.at(node).weights = {0.5};
     }
     return file.text();
 }
 
-/// Nodes with their own morph weights.
-std::string morphingNodes()
+/// The element so many times.
+std::string list(const std::string& element, std::size_t count)
 {
-    LargeMesh file;
-    const int mesh = file.mesh(file.attributes);
-    file.primitive(mesh).targets.push_back({{"POSITION", file.attributes["POSITION"]}});
-    for (int i = 0; i < nodes; ++i)
-        file.at(file.node("", -1, mesh)).weights = {0.5};
-    return file.text();
+    std::string text = element;
+    for (std::size_t i = 1; i < count; ++i)
+        text += ',' + element;
+    return text;
+}
+
+std::string documentOf(const std::string& members)
+{
+    return R"({"asset":{"version":"2.0"},)" + members + '}';
 }
 
 /// Ten buffers of that many bytes each in data URIs.
@@ -92,10 +74,7 @@ std::string dataUris(std::size_t bytes)
 {
     const std::string buffer = R"({"byteLength":)" + std::to_string(bytes) + R"(,"uri":"data:;base64,)" +
                                std::string(bytes / 3 * 4, 'A') + "\"}";
-    std::string text = R"({"asset":{"version":"2.0"},"buffers":[)" + buffer;
-    for (int i = 1; i < 10; ++i)
-        text += ',' + buffer;
-    return text + "]}";
+    return documentOf("\"buffers\":[" + list(buffer, 10) + ']');
 }
 
 /// One long string that is not a data URI.
@@ -105,48 +84,60 @@ std::string longName(std::size_t letters)
 }
 
 /// A document with a list of `count` empty objects.
-std::string emptyObjects(const std::string& list, std::size_t count)
+std::string emptyObjects(const std::string& name, std::size_t count)
 {
-    std::string text = R"({"asset":{"version":"2.0"},")" + list + "\":[{}";
-    for (std::size_t i = 1; i < count; ++i)
-        text += ",{}";
-    return text + "]}";
+    return documentOf('"' + name + "\":[" + list("{}", count) + ']');
 }
 
-struct ManyCase
+std::string extras(std::size_t values)
+{
+    return documentOf(R"("nodes":[{"extras":{"all":[)" + list("0", values) + "]}}]");
+}
+
+struct Case
 {
     const char* name;
     std::string text;
-    const char* message; ///< part of the error; empty: the model is drawn
+    const char* message = ""; ///< part of the error; empty: the model is drawn
+    std::size_t ImportOptions::*limit = nullptr;
+    std::size_t value = 0; ///< of the limit
 };
 
 } // namespace
 
 TEST(ManyElementsTest, staySmallAndQuick)
 {
-    const ManyCase cases[] = {
-        {"static", staticNodes(), ""},
-        {"on an animated joint", nodesOnAnAnimatedJoint(), ""},
-        {"skinned", skinnedNodes(), ""},
-        {"morphing", morphingNodes(), ""},
-        {"ten data URIs of 12 MB", dataUris(12000000), ""},
-        {"a long string", longName(70000000), ""},
+    const auto maxDocument = &ImportOptions::maxDocumentBytes;
+    const Case cases[] = {
+        {"static", manyNodes(Kind::Static)},
+        {"on an animated joint", manyNodes(Kind::OnAnimatedJoint)},
+        {"skinned", manyNodes(Kind::Skinned)},
+        {"morphing", manyNodes(Kind::Morphing)},
+        {"ten data URIs of 12 MB", dataUris(12000000)},
+        {"data URIs count before they are decoded", dataUris(12000000),
+         "buffers[8].byteLength: expected at most 100000000 bytes", &ImportOptions::maxDecodedBytes, 100000000},
+        {"a long string", longName(70000000)},
         {"a longer string", longName(100000000), "JSON: expected strings of at most"},
-        {"300,000 empty nodes", emptyObjects("nodes", 300000), ""},
+        {"300,000 empty nodes", emptyObjects("nodes", 300000)},
         {"1,000,000 empty nodes", emptyObjects("nodes", 1000000), "nodes: expected a document of at most"},
         {"1,000,000 empty materials", emptyObjects("materials", 1000000), "materials: expected a document of at most"},
+        {"1,000 empty nodes", emptyObjects("nodes", 1000), "", maxDocument, 1000000},
+        {"2,000 empty nodes", emptyObjects("nodes", 2000), "limit maxDocumentBytes), found 2000", maxDocument, 1000000},
+        // A value of extras takes more than twice the 48 bytes of a value in the tree.
+        {"extras", extras(250), "", maxDocument, 100000},
+        {"more extras", extras(500), "limit maxDocumentBytes", maxDocument, 100000},
     };
-    for (const ManyCase& many : cases)
+    for (const Case& one : cases)
     {
         const long before = peakMemory();
-        SCOPED_TRACE(many.name);
+        SCOPED_TRACE(one.name);
+        ImportOptions options;
+        if (one.limit) options.*one.limit = one.value;
         const std::clock_t start = std::clock(); // CPU time: other programs may run
-        const Result<ImportedModel> model = importModel(many.text, "", {});
-        EXPECT_EQ(bool(model), *many.message == '\0');
-        if (!model)
-        {
-            EXPECT_NE(model.error().message.find(many.message), std::string::npos) << model.error().message;
-        }
+        if (*one.message == '\0')
+            imported(one.text, options);
+        else
+            expectRefused(one.text, one.message, options);
         EXPECT_LT(double(std::clock() - start) / CLOCKS_PER_SEC, mostSeconds);
         if (memoryIsMeasurable)
         {
@@ -183,11 +174,7 @@ TEST(ManyElementsTest, noObjectHasManyParents)
             ModelBuilder file;
             const int mesh = file.triangle();
             const int node = file.node("many", -1, mesh);
-            if (isMoving)
-            {
-                file.animation("slide");
-                file.slide(node);
-            }
+            if (isMoving) file.slidingClip("slide", node);
             if (isOneMesh)
             {
                 file.primitive(mesh).mode = TINYGLTF_MODE_TRIANGLE_STRIP; // so that each has a drawable of its own
@@ -196,53 +183,13 @@ TEST(ManyElementsTest, noObjectHasManyParents)
             else
                 for (int i = 0; i < 10000; ++i)
                     file.node("", node, mesh);
-            const Result<ImportedModel> model = importModel(file.text(), "", {});
-            ASSERT_TRUE(model) << model.error().message;
-            EXPECT_GE(model.value().primitives.size(), 10000u);
+            const ImportedModel model = imported(file);
+            EXPECT_GE(model.primitives.size(), 10000u);
             MostParents visitor;
-            model.value().root->accept(visitor);
+            model.root->accept(visitor);
             EXPECT_LE(visitor.most, 4096u);
             EXPECT_LE(visitor.stateSets.size(), 3u) << "still shared: OSG sorts by them";
         }
-}
-
-TEST(ManyElementsTest, dataUrisCountBeforeTheyAreDecoded)
-{
-    ImportOptions options;
-    options.maxDecodedBytes = 100000000;
-    const Result<ImportedModel> model = importModel(dataUris(12000000), "", options);
-    ASSERT_FALSE(model);
-    EXPECT_EQ(model.error().message.rfind("buffers[8].byteLength: expected at most 100000000 bytes", 0), 0u)
-        << model.error().message;
-}
-
-TEST(ManyElementsTest, theDocumentsLimitIsTheCallers)
-{
-    ImportOptions options;
-    options.maxDocumentBytes = 1000000;
-    EXPECT_TRUE(importModel(emptyObjects("nodes", 1000), "", options));
-    const Result<ImportedModel> refused = importModel(emptyObjects("nodes", 2000), "", options);
-    ASSERT_FALSE(refused);
-    EXPECT_NE(refused.error().message.find("limit maxDocumentBytes), found 2000"), std::string::npos)
-        << refused.error().message;
-}
-
-// A value of extras takes more than twice the 48 bytes of a value in the tree.
-TEST(ManyElementsTest, everyValueOfExtrasCounts)
-{
-    const auto withExtras = [](int values)
-    {
-        std::string text = R"({"asset":{"version":"2.0"},"nodes":[{"extras":{"all":[0)";
-        for (int i = 1; i < values; ++i)
-            text += ",0";
-        return text + "]}}]}";
-    };
-    ImportOptions options;
-    options.maxDocumentBytes = 100000;
-    EXPECT_TRUE(importModel(withExtras(250), "", options));
-    const Result<ImportedModel> refused = importModel(withExtras(500), "", options);
-    ASSERT_FALSE(refused);
-    EXPECT_NE(refused.error().message.find("limit maxDocumentBytes"), std::string::npos) << refused.error().message;
 }
 
 } // namespace osgGpuAnimation::gltf

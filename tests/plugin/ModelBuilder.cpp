@@ -1,12 +1,46 @@
 // SPDX-License-Identifier: MIT
 #include "plugin/ModelBuilder.h"
 
+#include <nlohmann/json.hpp>
+
 #include <cstdint>
 #include <cstring>
 #include <sstream>
 
 namespace osgGpuAnimation::gltf
 {
+
+namespace
+{
+
+tinygltf::Value valueOfJson(const nlohmann::json& json)
+{
+    using Value = tinygltf::Value;
+    if (json.is_object())
+    {
+        Value::Object members;
+        for (const auto& [name, member] : json.items())
+            members[name] = valueOfJson(member);
+        return Value(members);
+    }
+    if (json.is_array())
+    {
+        Value::Array elements;
+        for (const nlohmann::json& element : json)
+            elements.push_back(valueOfJson(element));
+        return Value(elements);
+    }
+    if (json.is_string()) return Value(json.get<std::string>());
+    if (json.is_boolean()) return Value(json.get<bool>());
+    return json.is_number_integer() ? Value(json.get<int>()) : Value(json.get<double>());
+}
+
+} // namespace
+
+tinygltf::Value valueOf(const std::string& json)
+{
+    return valueOfJson(nlohmann::json::parse(json));
+}
 
 ModelBuilder::ModelBuilder()
 {
@@ -111,6 +145,34 @@ int ModelBuilder::node(const std::string& name, int parent, int mesh)
     return index;
 }
 
+int ModelBuilder::lamp(const tinygltf::Light& light, const std::string& name, const std::vector<double>& place,
+                       int parent)
+{
+    model.lights.push_back(light);
+    return lamp(static_cast<int>(model.lights.size()) - 1, name, place, parent);
+}
+
+int ModelBuilder::lamp(int light, const std::string& name, const std::vector<double>& place, int parent)
+{
+    const int made = node(name, parent);
+    at(made).translation = place;
+    at(made).extensions["KHR_lights_punctual"] = valueOf("{\"light\":" + std::to_string(light) + "}");
+    return made;
+}
+
+int ModelBuilder::texture(const std::string& picture)
+{
+    tinygltf::Texture texture;
+    texture.name = "texture"; // without a member it is not written
+    if (!picture.empty())
+    {
+        texture.source = static_cast<int>(model.images.size());
+        model.images.emplace_back().image.assign(picture.begin(), picture.end());
+    }
+    model.textures.push_back(texture);
+    return static_cast<int>(model.textures.size()) - 1;
+}
+
 int ModelBuilder::skin(const std::vector<int>& joints)
 {
     tinygltf::Skin skin;
@@ -146,27 +208,19 @@ namespace
 {
 
 // tinygltf 2.9 writes a node's light and levels of detail from members of the node, and removes the extensions without
-// them. The second function of each name is for versions without the member.
+// them. The second function is for versions without the members.
 template <typename Node>
-auto setLight(Node& node, const tinygltf::Value& extension, int) -> decltype(void(node.light))
+auto setMembers(Node& node, int) -> decltype(void(node.light), void(node.lods))
 {
-    node.light = extension.Get("light").GetNumberAsInt();
-}
-
-template <typename Node>
-void setLight(Node&, const tinygltf::Value&, long)
-{
-}
-
-template <typename Node>
-auto setLods(Node& node, const tinygltf::Value& extension, int) -> decltype(void(node.lods))
-{
-    for (const tinygltf::Value& id : extension.Get("ids").template Get<tinygltf::Value::Array>())
+    const auto light = node.extensions.find("KHR_lights_punctual"), lods = node.extensions.find("MSFT_lod");
+    if (light != node.extensions.end()) node.light = light->second.Get("light").GetNumberAsInt();
+    if (lods == node.extensions.end()) return;
+    for (const tinygltf::Value& id : lods->second.Get("ids").template Get<tinygltf::Value::Array>())
         node.lods.push_back(id.GetNumberAsInt());
 }
 
 template <typename Node>
-void setLods(Node&, const tinygltf::Value&, long)
+void setMembers(Node&, long)
 {
 }
 
@@ -179,11 +233,7 @@ std::string ModelBuilder::text() const
     tinygltf::Model copy = model;
     if (copy.buffers[0].data.empty()) copy.buffers.clear();
     for (tinygltf::Node& node : copy.nodes)
-        for (const auto& [name, extension] : node.extensions)
-        {
-            if (name == "KHR_lights_punctual") setLight(node, extension, 0);
-            if (name == "MSFT_lod") setLods(node, extension, 0);
-        }
+        setMembers(node, 0);
     writer.WriteGltfSceneToStream(&copy, stream, false, false);
     return stream.str();
 }

@@ -10,13 +10,15 @@
 namespace osgGpuAnimation::gltf
 {
 
+/// The value of an extension from its JSON.
+tinygltf::Value valueOf(const std::string& json);
+
 /// Puts small glTF documents together for tests, in memory or as the text of a .gltf.
 ///
 ///     ModelBuilder file;
 ///     const int mesh = file.triangle();
 ///     const int node = file.node("arm", -1, mesh);
-///     file.animation("wave");
-///     file.slide(node);
+///     file.slidingClip("wave", node);
 class ModelBuilder
 {
 public:
@@ -38,6 +40,12 @@ public:
     /// A node below the parent; -1: a root of the scene.
     int node(const std::string& name, int parent = -1, int mesh = -1);
     tinygltf::Node& at(int node) { return model.nodes[static_cast<std::size_t>(node)]; }
+    /// A node with a light, or with one more place of a light of the file.
+    int lamp(const tinygltf::Light& light, const std::string& name = "lamp", const std::vector<double>& place = {},
+             int parent = -1);
+    int lamp(int light, const std::string& name, const std::vector<double>& place = {}, int parent = -1);
+    /// A texture of that picture, which text() leaves out; of none, for materials that need texture coordinates.
+    int texture(const std::string& picture = "");
     /// A skin without inverse binds.
     int skin(const std::vector<int>& joints);
     /// An animation without channels.
@@ -47,6 +55,13 @@ public:
                  const std::vector<float>& values, const std::string& interpolation = "LINEAR");
     /// A translation from 0 to (1, 0, 0) in one second.
     void slide(int node) { channel(node, "translation", {0, 1}, TINYGLTF_TYPE_VEC3, {0, 0, 0, 1, 0, 0}); }
+
+    /// An animation that slides the node.
+    void slidingClip(const std::string& name, int node)
+    {
+        animation(name);
+        slide(node);
+    }
 
     /// The text of a .gltf file with its buffers inside.
     std::string text() const;

@@ -68,6 +68,12 @@ public:
         text.resize((text.size() + 3) / 4 * 4, ' ');
         return loadDocument(glb({{jsonChunk, text}, {binaryChunk, binary}}), "", {}, messages);
     }
+    /// The error of loading it; empty without one.
+    std::string error() const
+    {
+        const Result<tinygltf::Model> model = load();
+        return model ? "" : model.error().message;
+    }
 
     std::string& data() { return _data; }
 

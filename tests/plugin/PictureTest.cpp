@@ -5,9 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cstring>
-#include <iterator>
 #include <string>
 #include <vector>
 
@@ -69,210 +67,170 @@ std::string animatedWebp()
     return webp("VP8X", littleEndian(0x02, 4) + littleEndian(1, 3) + littleEndian(1, 3)); // 2 x 2 pixels
 }
 
-Result<PictureHeader> read(const std::string& text)
-{
-    return readPictureHeader(Bytes(text.begin(), text.end()));
-}
-
 Bytes bytesOf(const std::string& text)
 {
     return Bytes(text.begin(), text.end());
 }
 
-/// Both steps.
-Result<osg::ref_ptr<osg::Image>> decodeImage(const Bytes& bytes)
+Result<PictureHeader> read(const std::string& text)
 {
-    const Result<PictureHeader> header = readPictureHeader(bytes);
-    if (!header) return header.error();
-    return decodePicture(bytes);
+    return readPictureHeader(bytesOf(text));
 }
 
-struct DamageCase
+/// Both steps.
+Result<osg::ref_ptr<osg::Image>> decodeImage(const std::string& text)
+{
+    const Result<PictureHeader> header = read(text);
+    if (!header) return header.error();
+    return decodePicture(bytesOf(text));
+}
+
+/// A PNG of 2 x 2 pixels with another byte at that place.
+std::string changed(std::size_t at, int byte)
+{
+    std::string png = encodedPicture("png", 2, 2);
+    png[at] = static_cast<char>(byte);
+    return png;
+}
+
+std::string cut(const std::string& bytes, std::size_t missing)
+{
+    return bytes.substr(0, bytes.size() - missing);
+}
+
+std::string jpegOf16Bits()
+{
+    std::string jpeg = encodedPicture("jpg", 2, 2);
+    jpeg[jpeg.find("\xff\xc0") + 4] = 16;
+    return jpeg;
+}
+
+std::string webpOfOtherPixels()
+{
+    const std::string webp = encodedPicture("lossless.webp", 64, 64);
+    return webp.substr(0, 25) + std::string(webp.size() - 25, '\xff');
+}
+
+std::string manyScans()
+{
+    std::string bytes = jpeg(16000, 16000, 500000);
+    for (int i = 0; i < 20; ++i)
+        bytes += std::string("\xff\xda\0\x08\x01\x01\0\1\x3f\0", 10);
+    return bytes;
+}
+
+struct Fault
 {
     const char* name;
-    void (*damage)(Bytes& png);
-    const char* message;
-};
-
-const DamageCase damages[] = {
-    {"empty", [](Bytes& png) { png.clear(); }, "expected a PNG, JPEG or WebP, found other data"},
-    {"text", [](Bytes& png) { png.assign(100, 'x'); }, "expected a PNG, JPEG or WebP, found other data"},
-    {"cut in the header", [](Bytes& png) { png.resize(20); }, "expected a PNG with IHDR"},
-    {"cut off", [](Bytes& png) { png.resize(png.size() - 20); }, "cut off"},
-    {"chunk past the end", [](Bytes& png) { png[33] = 0x7f; }, "cut off"},
-    {"other pixels than their checksum", [](Bytes& png) { png[45] ^= 0xff; }, "damaged"},
-    {"another chunk in the header's place", [](Bytes& png) { png[12] = 'J'; }, "expected a PNG with IHDR"},
-    {"a JPEG of 16 bits a channel",
-     [](Bytes& png)
-     {
-         png = bytesOf(encodedPicture("jpg", 2, 2));
-         const unsigned char frame[] = {0xff, 0xc0};
-         *(std::search(png.begin(), png.end(), std::begin(frame), std::end(frame)) + 4) = 16;
-     },
-     "damaged"},
-    {"no width", [](Bytes& png) { png[18] = png[19] = 0; }, "found 0 x 2"},
-    {"15874 x 15874", [](Bytes& png) { png[18] = png[22] = 0x3e; }, "far too little"},
-    {"2147483647 pixels", [](Bytes& png) { png[16] = 0x7f; }, "expected a picture from 1 x 1 to"},
-    {"a WebP that is cut off",
-     [](Bytes& png)
-     {
-         png = bytesOf(encodedPicture("webp", 64, 64));
-         png.resize(png.size() - 2);
-     },
-     "expected a WebP of its length, found one that is cut off"},
-    {"a WebP that ends after its first bytes", [](Bytes& png) { png = bytesOf(webp("VP8L", "")); },
-     "cut off or damaged"},
-    {"a WebP of other pixels",
-     [](Bytes& png)
-     {
-         png = bytesOf(encodedPicture("lossless.webp", 64, 64));
-         std::fill(png.begin() + 25, png.end(), static_cast<unsigned char>(0xff));
-     },
-     "the picture is damaged"},
-    {"an animated WebP", [](Bytes& png) { png = bytesOf(animatedWebp()); }, "found an animation"},
-    {"16383 x 16383 as a lossless WebP", [](Bytes& png) { png = bytesOf(losslessWebp(16383, 16383, 20)); },
-     "expected data for a picture of 16383 x 16383, found far too little"},
-    {"KTX2", [](Bytes& png) { png = bytesOf("\xabKTX 20\xbb\r\n\x1a\n and more"); },
-     "expected a PNG, JPEG or WebP, found KTX2"},
-    {"DDS", [](Bytes& png) { png = bytesOf("DDS |"); }, "found DDS"},
-    {"AVIF", [](Bytes& png) { png = bytesOf(std::string("\0\0\0\x1c", 4) + "ftypavif"); }, "found AVIF"},
-    {"a JPEG that ends",
-     [](Bytes& png) {
-         png = {0xff, 0xd8, 0xff, 0xe0, 0x00};
-     },
-     "cut off or damaged"},
-    {"a JPEG of segments without end",
-     [](Bytes& png)
-     {
-         png.assign(64, 0xff);
-         png[1] = 0xd8;
-     },
-     "cut off or damaged"},
+    std::string bytes;
+    const char* message; ///< part of the error
 };
 
 } // namespace
 
-TEST(PictureTest, TellsFormatAndSize)
+TEST(PictureTest, tellsFormatAndSize)
 {
-    const Result<PictureHeader> small = read(png(3, 2, 20));
-    ASSERT_TRUE(small) << small.error().message;
-    EXPECT_EQ(small.value().mimeType, "image/png");
-    EXPECT_EQ(small.value().width, 3u);
-    EXPECT_EQ(small.value().height, 2u);
-    EXPECT_EQ(small.value().decodedBytes, 24u);
-    EXPECT_EQ(read(png(3, 2, 20, 16, 6)).value().decodedBytes, 48u);
-    const Result<PictureHeader> photo = read(jpeg(100, 50, 10));
-    ASSERT_TRUE(photo) << photo.error().message;
-    EXPECT_EQ(photo.value().mimeType, "image/jpeg");
-    EXPECT_EQ(photo.value().width, 100u);
-    EXPECT_EQ(photo.value().height, 50u);
-    const Result<PictureHeader> flat = read(losslessWebp(4096, 4095, 20));
-    ASSERT_TRUE(flat) << flat.error().message;
-    EXPECT_EQ(flat.value().mimeType, "image/webp");
-    EXPECT_EQ(flat.value().width, 4096u);
-    EXPECT_EQ(flat.value().height, 4095u);
-}
-
-TEST(PictureTest, RefusesBombsAndDamage)
-{
-    const std::string good = png(3, 2, 20);
-    std::string scans;
-    for (int i = 0; i < 20; ++i)
-        scans += std::string("\xff\xda\0\x08\x01\x01\0\1\x3f\0", 10);
-    EXPECT_TRUE(read(jpeg(16000, 16000, 500000)));
-    const std::pair<const char*, std::string> files[] = {
-        {"more scans than a large picture may have", jpeg(16000, 16000, 500000) + scans},
-        {"nothing", ""},
-        {"text", "this is no picture at all"},
-        {"a width of 0", png(0, 2, 20)},
-        {"a height of 0", jpeg(100, 0, 10)},
-        {"more than a texture has", png(16385, 1, 1000)},
-        {"2^31 - 1 a side", png(2147483647, 2147483647, 1000)},
-        {"more than the data can stand for", png(16000, 16000, 20)},
-        {"the same as a JPEG", jpeg(60000, 60000, 20)},
-        {"large as a JPEG", jpeg(16000, 16000, 20)},
-        {"cut before IEND", good.substr(0, good.size() - 3)},
-        {"cut in IDAT", good.substr(0, 45)},
-        {"cut in IHDR", good.substr(0, 20)},
-        {"a colour type that is none", png(3, 2, 20, 8, 5)},
-        {"a depth of 0", png(3, 2, 20, 0, 2)},
-        {"a JPEG without a frame", std::string("\xff\xd8\xff\xda\x00\x03!", 7)},
-        {"a JPEG of markers", "\xff\xd8" + std::string(50, '\xff')},
-        {"a segment past the end", std::string("\xff\xd8\xff\xe0\xff\xff", 6)},
+    struct Case
+    {
+        std::string bytes;
+        const char* mimeType;
+        std::uint32_t width, height;
+        std::size_t decodedBytes;
     };
-    for (const auto& [what, bytes] : files)
+    const Case cases[] = {{png(3, 2, 20), "image/png", 3, 2, 24},
+                          {png(3, 2, 20, 16, 6), "image/png", 3, 2, 48},
+                          {jpeg(100, 50, 10), "image/jpeg", 100, 50, 4 * 100 * 50},
+                          {losslessWebp(4096, 4095, 20), "image/webp", 4096, 4095, std::size_t(4) * 4096 * 4095}};
+    for (const Case& each : cases)
     {
-        const Result<PictureHeader> header = read(bytes);
-        EXPECT_FALSE(header) << what;
+        const Result<PictureHeader> header = read(each.bytes);
+        ASSERT_TRUE(header) << header.error().message;
+        EXPECT_EQ(header.value().mimeType, each.mimeType);
+        EXPECT_EQ(header.value().width, each.width);
+        EXPECT_EQ(header.value().height, each.height);
+        EXPECT_EQ(header.value().decodedBytes, each.decodedBytes);
     }
 }
 
-TEST(PictureTest, theLargestSideIsAccepted)
+TEST(PictureTest, refusesBombsAndDamage)
 {
-    const std::uint32_t most = PictureHeader::maxPixelsPerSide;
-    for (const std::string& file : {png(most, 1, 1000), png(1, most, 1000), jpeg(most, 1, 1000), jpeg(1, most, 1000)})
-        EXPECT_TRUE(read(file));
-    for (const std::string& file :
-         {png(most + 1, 1, 1000), png(1, most + 1, 1000), jpeg(most + 1, 1, 1000), jpeg(1, most + 1, 1000)})
-        EXPECT_NE(read(file).error().message.find("expected a picture from 1 x 1 to"), std::string::npos);
-}
-
-TEST(PictureTest, AnswersEveryTruncation)
-{
-    for (const std::string& whole : {png(3, 2, 20), jpeg(100, 50, 10), encodedPicture("webp", 16, 16, GL_RGBA),
-                                     encodedPicture("lossless.webp", 16, 16)})
-        for (std::size_t length = 0; length < whole.size(); ++length)
-            static_cast<void>(read(whole.substr(0, length)).operator bool());
-}
-
-TEST(PictureTest, decodesEachFormatWhateverItIsCalled)
-{
-    for (const char* kind : {"png", "jpg", "webp", "lossless.webp"})
+    const std::string good = encodedPicture("png", 2, 2);
+    const std::uint32_t largest = PictureHeader::maxPixelsPerSide;
+    const Fault faults[] = {
+        {"nothing", "", "expected a PNG, JPEG or WebP, found other data"},
+        {"text", "this is no picture at all", "expected a PNG, JPEG or WebP, found other data"},
+        {"KTX2", "\xabKTX 20\xbb\r\n\x1a\n and more", "expected a PNG, JPEG or WebP, found KTX2"},
+        {"DDS", "DDS |", "found DDS"},
+        {"AVIF", std::string("\0\0\0\x1c", 4) + "ftypavif", "found AVIF"},
+        {"a PNG cut in the header", good.substr(0, 20), "expected a PNG with IHDR"},
+        {"another chunk in the header's place", changed(12, 'J'), "expected a PNG with IHDR"},
+        {"a PNG cut in IDAT", good.substr(0, 45), "cut off"},
+        {"a PNG cut before IEND", cut(good, 3), "cut off"},
+        {"a PNG chunk past the end", changed(33, 0x7f), "cut off"},
+        {"other pixels than their checksum", changed(45, ~good[45]), "damaged"},
+        {"no width", changed(19, 0), "found 0 x 2"},
+        {"no height", jpeg(100, 0, 10), ""},
+        {"2^31 - 1 a side", png(2147483647, 2147483647, 1000), "expected a picture from 1 x 1 to"},
+        {"too wide a PNG", png(largest + 1, 1, 1000), "expected a picture from 1 x 1 to"},
+        {"too high a PNG", png(1, largest + 1, 1000), "expected a picture from 1 x 1 to"},
+        {"too wide a JPEG", jpeg(largest + 1, 1, 1000), "expected a picture from 1 x 1 to"},
+        {"too high a JPEG", jpeg(1, largest + 1, 1000), "expected a picture from 1 x 1 to"},
+        {"a PNG of too little data", png(16000, 16000, 20), "far too little"},
+        {"a JPEG of too little data", jpeg(16000, 16000, 20), "far too little"},
+        {"a JPEG of many scans", manyScans(), ""},
+        {"a colour type that is none", png(3, 2, 20, 8, 5), ""},
+        {"a depth of 0", png(3, 2, 20, 0, 2), ""},
+        {"a JPEG without a frame", std::string("\xff\xd8\xff\xda\x00\x03!", 7), ""},
+        {"a JPEG that ends", std::string("\xff\xd8\xff\xe0\x00", 5), "cut off or damaged"},
+        {"a JPEG of a segment past the end", std::string("\xff\xd8\xff\xe0\xff\xff", 6), ""},
+        {"a JPEG of segments without end", "\xff\xd8" + std::string(62, '\xff'), "cut off or damaged"},
+        {"a JPEG of 16 bits a channel", jpegOf16Bits(), "damaged"},
+        {"a WebP that is cut off", cut(encodedPicture("webp", 64, 64), 2),
+         "expected a WebP of its length, found one that is cut off"},
+        {"a WebP that ends after its first bytes", webp("VP8L", ""), "cut off or damaged"},
+        {"a WebP of other pixels", webpOfOtherPixels(), "the picture is damaged"},
+        {"an animated WebP", animatedWebp(), "found an animation"},
+        {"a lossless WebP of too little data", losslessWebp(16383, 16383, 20),
+         "expected data for a picture of 16383 x 16383, found far too little"},
+    };
+    for (const Fault& fault : faults)
     {
-        const Bytes bytes = bytesOf(encodedPicture(kind, 64, 64));
-        const auto image = decodeImage(bytes);
-        ASSERT_TRUE(image) << kind << ": " << image.error().message;
-        EXPECT_EQ(image.value()->s(), 64);
-        EXPECT_EQ(image.value()->t(), 64);
-        EXPECT_EQ(readPictureHeader(bytes).value().decodedBytes, 4u * 64u * 64u);
-        EXPECT_GT(image.value()->getColor(0, 63).r(), 0.8f); // the upper half is red
-        EXPECT_LT(image.value()->getColor(0, 0).r(), 0.2f);
+        SCOPED_TRACE(fault.name);
+        const auto image = decodeImage(fault.bytes);
+        ASSERT_FALSE(image);
+        EXPECT_NE(image.error().message.find(fault.message), std::string::npos) << image.error().message;
     }
+    for (const std::string& file : {png(largest, 1, 1000), png(1, largest, 1000), jpeg(largest, 1, 1000),
+                                    jpeg(1, largest, 1000), jpeg(16000, 16000, 500000)})
+        EXPECT_TRUE(read(file)) << "large, but not too large";
 }
 
-TEST(PictureTest, aWebpKeepsItsAlpha)
+TEST(PictureTest, decodesEachFormat)
 {
-    for (const char* kind : {"webp", "lossless.webp"})
+    const std::pair<const char*, GLenum> cases[] = {
+        {"png", GL_RGB},   {"png", GL_RGBA},          {"jpg", GL_RGB},           {"webp", GL_RGB},
+        {"webp", GL_RGBA}, {"lossless.webp", GL_RGB}, {"lossless.webp", GL_RGBA}};
+    for (const auto& [kind, format] : cases)
     {
         SCOPED_TRACE(kind);
-        EXPECT_EQ(decodeImage(bytesOf(encodedPicture(kind, 64, 64))).value()->getPixelFormat(), GLenum(GL_RGB));
-        const auto image = decodeImage(bytesOf(encodedPicture(kind, 64, 64, GL_RGBA)));
+        const std::string bytes = encodedPicture(kind, 64, 64, format);
+        const auto image = decodeImage(bytes);
         ASSERT_TRUE(image) << image.error().message;
-        EXPECT_EQ(image.value()->getPixelFormat(), GLenum(GL_RGBA));
+        EXPECT_EQ(image.value()->s(), 64);
+        EXPECT_EQ(image.value()->t(), 64);
+        EXPECT_EQ(image.value()->getPixelFormat(), format);
+        EXPECT_EQ(read(bytes).value().decodedBytes, 4u * 64u * 64u);
+        EXPECT_GT(image.value()->getColor(0, 63).r(), 0.8f); // the upper half is red
+        EXPECT_LT(image.value()->getColor(0, 0).r(), 0.2f);
         EXPECT_EQ(image.value()->getColor(0, 63).a(), 1.0f);
-        EXPECT_NEAR(image.value()->getColor(0, 0).a(), 0.5f, 0.01f);
+        EXPECT_NEAR(image.value()->getColor(0, 0).a(), format == GL_RGBA ? 0.5f : 1.0f, 0.01f);
         EXPECT_NEAR(image.value()->getColor(0, 0).b(), 1.0f, 0.05f); // not multiplied by alpha
-    }
-}
-
-TEST(PictureTest, damageIsAnError)
-{
-    for (const DamageCase& damage : damages)
-    {
-        SCOPED_TRACE(damage.name);
-        Bytes png = bytesOf(encodedPicture("png", 2, 2));
-        damage.damage(png);
-        const auto image = decodeImage(png);
-        ASSERT_FALSE(image);
-        EXPECT_NE(image.error().message.find(damage.message), std::string::npos) << image.error().message;
     }
 }
 
 TEST(PictureTest, aJpegThatIsCutOffKeepsItsPixels)
 {
-    Bytes jpg = bytesOf(encodedPicture("jpg", 64, 64));
-    jpg.resize(jpg.size() - 40);
-    const auto image = decodeImage(jpg);
+    const auto image = decodeImage(cut(encodedPicture("jpg", 64, 64), 40));
     ASSERT_TRUE(image) << image.error().message;
     EXPECT_GT(image.value()->getColor(0, 63).r(), 0.8f);
 }
@@ -280,9 +238,9 @@ TEST(PictureTest, aJpegThatIsCutOffKeepsItsPixels)
 TEST(PictureTest, gammaDoesNotCount)
 {
     std::string png = encodedPicture("png", 2, 2);
-    const auto plain = decodeImage(bytesOf(png));
+    const auto plain = decodeImage(png);
     png.insert(33, std::string("\0\0\0\4gAMA\0\1\x86\xa0\x31\xe8\x96\x5f", 16)); // 1.0, with its checksum
-    const auto marked = decodeImage(bytesOf(png));
+    const auto marked = decodeImage(png);
     ASSERT_TRUE(plain && marked);
     ASSERT_EQ(plain.value()->getTotalSizeInBytes(), marked.value()->getTotalSizeInBytes());
     EXPECT_EQ(0, std::memcmp(plain.value()->data(), marked.value()->data(), plain.value()->getTotalSizeInBytes()));

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "gltf/Import.h"
 #include "plugin/EncodedPicture.h"
-#include "plugin/ModelBuilder.h"
+#include "plugin/ImportedFile.h"
 
-#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include <string>
@@ -84,15 +82,12 @@ public:
     }
 };
 
-/// The import of a document. Without one the test fails.
+/// The import of a document, which causes no warning.
 inline ImportedModel importedFrom(const nlohmann::json& document, const ImportOptions& options = {})
 {
-    const Result<ImportedModel> model = importModel(document.dump(), "", options);
-    EXPECT_TRUE(model) << model.error().message;
-    if (!model) return {};
-    for (const std::string& warning : model.value().messages.warnings)
-        ADD_FAILURE() << warning;
-    return model.value();
+    const ImportedModel model = imported(document.dump(), options);
+    expectWarnings(model, {});
+    return model;
 }
 
 } // namespace osgGpuAnimation::gltf

@@ -25,20 +25,17 @@ protected:
     void SetUp() override
     {
         usePluginsOfTheBuild();
-        _level = osg::getNotifyLevel();
         osg::setNotifyLevel(osg::NOTICE);
         osg::setNotifyHandler(log);
     }
     void TearDown() override
     {
         osg::setNotifyHandler(new osg::StandardNotifyHandler);
-        osg::setNotifyLevel(_level);
+        osg::setNotifyLevel(level);
     }
 
+    const osg::NotifySeverity level = osg::getNotifyLevel();
     osg::ref_ptr<NotifyLog> log = new NotifyLog(osg::DEBUG_FP);
-
-private:
-    osg::NotifySeverity _level = osg::NOTICE;
 };
 
 TEST_P(QuietFilesTest, printNothingAtNotice)
@@ -65,7 +62,12 @@ INSTANTIATE_TEST_SUITE_P(Files, QuietFilesTest,
                          ::testing::Values("Wanderer.glb", "Serpent.glb", "assets/Fox/Fox.glb",
                                            "assets/CesiumMan/CesiumMan.glb", "assets/Knight/Knight.glb",
                                            "assets/AnimatedMorphCube/AnimatedMorphCube.gltf",
-                                           "assets/SimpleSkin/SimpleSkin.gltf"));
+                                           "assets/SimpleSkin/SimpleSkin.gltf"),
+                         [](const auto& info)
+                         {
+                             const std::string name = info.param.substr(info.param.rfind('/') + 1);
+                             return name.substr(0, name.find('.'));
+                         });
 
 } // namespace
 

@@ -10,7 +10,7 @@
 namespace osgGpuAnimation::gltf
 {
 
-/// A .glb as two: the model without animations, and its nodes and animations without meshes and skins.
+/// A .glb with a JSON document for tests to change: as a whole, or without animations.
 class SplitModel
 {
 public:
@@ -22,27 +22,14 @@ public:
         _binary = glbBytes.substr(28 + jsonBytes, numberAt(glbBytes, 20 + jsonBytes));
     }
 
-    nlohmann::json& document() { return _document; } ///< of both
-    std::string& binary() { return _binary; }        ///< the BIN chunk
+    nlohmann::json& document() { return _document; }
+    std::string& binary() { return _binary; } ///< the BIN chunk
 
     std::string mesh() const
     {
         nlohmann::json mesh = _document;
         mesh.erase("animations");
         return glbOf(mesh);
-    }
-    std::string clips() const
-    {
-        nlohmann::json clips = _document;
-        for (const char* part : {"meshes", "skins", "materials", "textures", "images", "samplers"})
-            clips.erase(part);
-        for (nlohmann::json& node : clips["nodes"])
-        {
-            node.erase("mesh");
-            node.erase("skin");
-            node.erase("weights");
-        }
-        return glbOf(clips);
     }
     std::string whole() const { return glbOf(_document); }
 

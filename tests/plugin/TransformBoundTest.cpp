@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: MIT
 // Numbers that are finite alone but overflow together.
-#include "gltf/Import.h"
-#include "plugin/ModelBuilder.h"
+#include "plugin/ImportedFile.h"
+#include "support/RandomSet.h"
 
-#include <osgGpuAnimation/animation/AnimationController.h>
+#include <osgGpuAnimation/animation/bounds/TransformBound.h>
 #include <osgGpuAnimation/animation/Pose.h>
 
 #include <gtest/gtest.h>
 #include <osg/ComputeBoundsVisitor>
 
-#include <algorithm>
 #include <cmath>
-#include <memory>
 #include <string>
 
 namespace osgGpuAnimation::gltf
@@ -23,57 +21,24 @@ namespace
 constexpr float huge = 3e38f;
 const std::vector<float> farAway{0, 0, 0, huge, 0, 0, 0, -huge, 0};
 
-bool isFinite(const JointTransform& transform)
-{
-    return transform.toMatrix().isFinite();
-}
-
-bool areFinite(const std::vector<JointTransform>& transforms)
-{
-    return std::all_of(transforms.begin(), transforms.end(),
-                       [](const JointTransform& transform) { return isFinite(transform); });
-}
-
-/// True if the keyframes, the palette's static data, and the palette at several times of every clip are finite.
-bool isFinite(const std::shared_ptr<const AnimationSet>& shared)
-{
-    const AnimationSet& set = *shared;
-    bool good = areFinite(set.restPose());
-    for (const Clip& clip : set.clips())
-        good = good && areFinite(clip.data());
-    for (const PaletteEntry& entry : set.palette())
-        good = good && entry.inverseBind.isFinite() && entry.parentBind.isFinite();
-    AnimationController controller(shared);
-    for (std::size_t clip = 0; clip < set.clips().size(); ++clip)
-    {
-        good = good && controller.play(clip);
-        for (const double part : {0.0, 0.3, 0.5, 0.9, 1.0})
-        {
-            controller.seek(part * set.clips()[clip].duration());
-            std::vector<AffineMatrix> palette;
-            Pose::evaluate(set, controller.instruction(), AffineMatrix(), palette);
-            for (const AffineMatrix& matrix : palette)
-                good = good && matrix.isFinite();
-        }
-    }
-    return good;
-}
-
+/// True if the keyframes, the palette in the middle of every clip, and the bounds are finite.
 bool isFinite(const ImportedModel& model)
 {
-    bool good = !model.set || isFinite(model.set);
-    for (const ImportedPrimitive& primitive : model.primitives)
+    bool good = true;
+    for (std::size_t clip = 0; model.set && clip < model.set->clips().size(); ++clip)
     {
-        const auto& vertices = static_cast<const osg::Vec3Array&>(*primitive.geometry->getVertexArray());
-        for (const osg::Vec3& vertex : vertices)
-            good = good && vertex.valid() && std::isfinite(vertex.length());
+        for (const JointTransform& transform : model.set->clips()[clip].data())
+            good = good && transform.toMatrix().isFinite();
+        std::vector<AffineMatrix> palette;
+        Pose::evaluate(*model.set, instructionAt(*model.set, static_cast<int>(clip), 0.3), AffineMatrix(), palette);
+        for (const AffineMatrix& matrix : palette)
+            good = good && matrix.isFinite();
     }
     const osg::BoundingSphere bound = model.root->getBound();
     osg::ComputeBoundsVisitor bounds;
     model.root->accept(bounds);
     const osg::BoundingBox& box = bounds.getBoundingBox();
-    return good && (!bound.valid() || std::isfinite(bound.radius2())) &&
-           (!box.valid() || (std::isfinite(box.radius2()) && std::isfinite(box.center().length())));
+    return good && (!bound.valid() || std::isfinite(bound.radius2())) && (!box.valid() || std::isfinite(box.radius2()));
 }
 
 /// A node that slides with a mesh over these positions.
@@ -82,23 +47,21 @@ struct Sliding : ModelBuilder
     explicit Sliding(const std::vector<float>& positions = {0, 0, 0, 1, 0, 0, 0, 1, 0})
     {
         arm = node("arm", -1, mesh({{"POSITION", floats(TINYGLTF_TYPE_VEC3, positions)}}));
-        animation("slide");
-        slide(arm);
+        slidingClip("slide", arm);
     }
-    void drive(const char* path, const std::vector<float>& values, const char* interpolation = "LINEAR")
+    std::string wild(const char* path, int type, const std::vector<float>& values, const char* interpolation)
     {
         animation("wild");
-        channel(arm, path, {0, 1}, std::string(path) == "rotation" ? TINYGLTF_TYPE_VEC4 : TINYGLTF_TYPE_VEC3, values,
-                interpolation);
+        channel(arm, path, {0, 1}, type, values, interpolation);
+        return text();
     }
     int arm = -1;
 };
 
 std::string clip(const char* path, const std::vector<float>& values, const char* interpolation)
 {
-    Sliding file;
-    file.drive(path, values, interpolation);
-    return file.text();
+    const int type = std::string(path) == "rotation" ? TINYGLTF_TYPE_VEC4 : TINYGLTF_TYPE_VEC3;
+    return Sliding().wild(path, type, values, interpolation);
 }
 
 /// An arm with a scale and a place, below a node with the same scale.
@@ -135,12 +98,13 @@ std::string skinned(float inverseBind)
     return file.text();
 }
 
-std::string morphed(float weight)
+/// A mesh with one target, whose vertices the target moves by that; at rest and at the end of a clip.
+std::string morphed(float offset, float weightAtRest, float weight)
 {
     Sliding file;
-    file.primitive(0).targets = {{{"POSITION", file.floats(TINYGLTF_TYPE_VEC3, {1, 0, 0, 1, 0, 0, 1, 0, 0})}}};
-    file.model.meshes[0].weights = {weight};
-    return file.text();
+    file.primitive(0).targets = {{{"POSITION", file.floats(TINYGLTF_TYPE_VEC3, {offset, 0, 0, 1, 0, 0, 1, 0, 0})}}};
+    file.model.meshes[0].weights = {weightAtRest};
+    return file.wild("weights", TINYGLTF_TYPE_SCALAR, {0, weight}, "LINEAR");
 }
 
 struct ReachCase
@@ -180,23 +144,56 @@ TEST(TransformBoundTest, nothingBeyondFloatNumbersComesThrough)
         {"nearer place below a scale", restBelowScales(1e8, 1e9), "", false, 1, 1},
         {"inverse bind", skinned(1e30f), "skins[0].inverseBindMatrices", true, 0, 0},
         {"tiny inverse bind", skinned(1e-30f), "", false, 0, 1},
-        {"morph weight", morphed(1e30f), beyond, false, 0, 0},
+        {"morph weight", morphed(1, 1e30f, 0), beyond, false, 1, 0},
+        {"morph weight of a clip", morphed(1e10f, 0, 0.5e10f), beyond, false, 2, 0},
+        {"morph weight below 0", morphed(1e10f, 0, -0.5e10f), beyond, false, 2, 0},
+        {"modest weights", morphed(1e10f, 0, -0.5f), "", false, 2, 1},
     };
     for (const ReachCase& reach : cases)
     {
         SCOPED_TRACE(reach.name);
-        const Result<ImportedModel> model = importModel(reach.text, "", {});
-        ASSERT_EQ(!model, reach.isRefused) << (model ? "" : model.error().message);
-        std::string said = model ? "" : model.error().message;
-        for (std::size_t i = 0; model && i < model.value().messages.warnings.size(); ++i)
-            said += model.value().messages.warnings[i] + '\n';
+        if (reach.isRefused)
+        {
+            expectRefused(reach.text, reach.message);
+            continue;
+        }
+        const ImportedModel model = imported(reach.text);
+        std::string said;
+        for (const std::string& warning : model.messages.warnings)
+            said += warning + '\n';
         EXPECT_NE(said.find(reach.message), std::string::npos) << said;
         EXPECT_EQ(said.empty(), *reach.message == '\0') << said;
-        if (!model) continue;
-        EXPECT_TRUE(isFinite(model.value()));
-        EXPECT_EQ(model.value().set ? model.value().set->clips().size() : 0u, reach.clips);
-        EXPECT_EQ(model.value().primitives.size(), reach.primitives);
+        EXPECT_TRUE(isFinite(model));
+        EXPECT_EQ(model.set ? model.set->clips().size() : 0u, reach.clips);
+        EXPECT_EQ(model.primitives.size(), reach.primitives);
     }
+}
+
+// A bound of a clip is that of its largest axis, and a spline may reach the sum of its value and tangents.
+TEST(TransformBoundTest, boundsOfClipsTakeTheLargestAxisAndTheTangents)
+{
+    Joint joint{"joint", -1, {}, 0};
+    joint.rest.scale = {1, -4, 2, 0};
+    joint.rest.translation = {3, 4, 0, 0};
+    const Skeleton skeleton = Skeleton::create({joint}).value();
+    EXPECT_EQ(boundsAtRest(skeleton)[0].stretch, 4.0);
+    EXPECT_EQ(boundsAtRest(skeleton)[0].distance, 5.0);
+    ClipParts parts;
+    parts.name = "spline";
+    parts.form = Clip::Form::Spline;
+    parts.jointCount = parts.trackCount = 1;
+    parts.times = {0, 1};
+    for (int i = 0; i < 6; ++i) // value, tangent before, tangent after
+    {
+        JointTransform transform;
+        transform.translation = {0, i == 4 ? 10 : 1, 0, 0};
+        transform.scale = {1, 1, i == 5 ? -20 : 2, 0};
+        parts.data.push_back(transform);
+    }
+    const Result<Clip> clip = Clip::create(parts);
+    ASSERT_TRUE(clip) << clip.error().message;
+    EXPECT_EQ(boundsOfClip(skeleton, clip.value())[0].distance, 12.0);
+    EXPECT_EQ(boundsOfClip(skeleton, clip.value())[0].stretch, 24.0);
 }
 
 } // namespace osgGpuAnimation::gltf

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "support/GLTest.h"
-#include "support/Process.h"
-#include "support/ScratchFolder.h"
+#include "tool/ToolRuns.h"
 
-#include <nlohmann/json.hpp>
 #include <osg/Math>
 #include <osg/Vec3d>
 #include <osgDB/ReadFile>
@@ -54,10 +52,14 @@ const LightCase cases[] = {
     {"PointOnASmootherWall", R"({"type":"point","intensity":3.0})", {0.3, 0.2, 2.0}, 0.0, 0.4},
 };
 
+constexpr const char* secondLight =
+    R"({"type":"spot","intensity":0.5,"color":[0.1,0.3,0.2],"range":7.0,"spot":{"outerConeAngle":0.4}})";
+
 json fileOf(const LightCase& each)
 {
     json file = json::parse(R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0,1,2]}],
-        "nodes":[{"mesh":0},{"camera":0},{"name":"lamp","extensions":{"KHR_lights_punctual":{"light":0}}}],
+        "nodes":[{"mesh":0},{"camera":0},{"children":[3],"extensions":{"KHR_lights_punctual":{"light":0}}},
+                 {"extensions":{"KHR_lights_punctual":{"light":1}}}],
         "cameras":[{"name":"eye","type":"perspective","perspective":{"znear":0.1,"aspectRatio":1.0}}],
         "meshes":[{"primitives":[{"attributes":{"POSITION":0,"NORMAL":1},"mode":5,"material":0}]}],
         "materials":[{"pbrMetallicRoughness":{"metallicFactor":0.0}}],
@@ -70,7 +72,8 @@ json fileOf(const LightCase& each)
     file["nodes"][2]["translation"] = {each.place.x(), each.place.y(), each.place.z()};
     file["nodes"][2]["rotation"] = {std::sin(each.turn / 2.0), 0.0, 0.0, std::cos(each.turn / 2.0)};
     file["materials"][0]["pbrMetallicRoughness"]["roughnessFactor"] = each.roughness;
-    file["extensions"]["KHR_lights_punctual"]["lights"] = json::array({json::parse(each.light)});
+    // And another one beside it, of its own number, cone and range.
+    file["extensions"]["KHR_lights_punctual"]["lights"] = {json::parse(each.light), json::parse(secondLight)};
     return file;
 }
 
@@ -131,45 +134,44 @@ void PrintTo(const LightCase& each, std::ostream* out)
     *out << each.light;
 }
 
-class FileLightsGLTest : public GLTest, public ::testing::WithParamInterface<LightCase>
+class FileLightsGLTest : public ToolRuns<GLTest>, public ::testing::WithParamInterface<LightCase>
 {
 protected:
-    osg::ref_ptr<osg::Image> rendered(const json& file)
+    osg::ref_ptr<osg::Image> rendered(const json& file) const
     {
         const float numbers[] = {-5, -5, 0, 5, -5, 0, -5, 5, 0, 5, 5, 0, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1};
-        _folder.write("wall.bin", std::string(reinterpret_cast<const char*>(numbers), sizeof numbers));
-        const std::string picture = _folder.file("wall.png"), size = std::to_string(side);
-        const Process done =
-            Process::run(OSGGPUANIM, {"render", _folder.write("wall.gltf", file.dump()), "--look", "file", "--camera",
-                                      "eye", "--size", size + "x" + size, "-o", picture});
-        EXPECT_EQ(done.status, 0) << done.err;
+        folder.write("wall.bin", std::string(reinterpret_cast<const char*>(numbers), sizeof numbers));
+        const std::string picture = folder.file("wall.png"), size = std::to_string(side);
+        outputOf({"render", folder.write("wall.gltf", file.dump()), "--look", "file", "--camera", "eye", "--size",
+                  size + "x" + size, "-o", picture});
         return osgDB::readRefImageFile(picture);
     }
-
-private:
-    ScratchFolder _folder;
 };
 
 TEST_P(FileLightsGLTest, aWhiteWallHasTheRadianceOfTheFormula)
 {
     const json file = fileOf(GetParam());
-    const json& light = file["extensions"]["KHR_lights_punctual"]["lights"][0];
     const osg::ref_ptr<osg::Image> image = rendered(file);
     ASSERT_TRUE(image);
-    const std::vector<double> color = light.value("color", std::vector<double>{1.0, 1.0, 1.0});
     double least = 1.0, most = 0.0, worst = 0.0;
     for (int y = 0; y < side; ++y)
         for (int x = 0; x < side; ++x)
         {
             const osg::Vec3d point(seen * ((x + 0.5) * 2.0 / side - 1.0), seen * ((y + 0.5) * 2.0 / side - 1.0), 0.0);
-            osg::Vec3d toEye = osg::Vec3d(0.0, 0.0, eyeDistance) - point;
+            osg::Vec3d toEye = osg::Vec3d(0.0, 0.0, eyeDistance) - point,
+                       radiance(surrounding, surrounding, surrounding);
             toEye.normalize();
-            const Arriving from = arriving(GetParam(), light, point);
-            const double radiance = from.illuminance * reflected(from.toLight, toEye, GetParam().roughness);
-            const osg::Vec4 found = image->getColor(static_cast<unsigned int>(x), static_cast<unsigned int>(y));
+            for (const json& light : file["extensions"]["KHR_lights_punctual"]["lights"])
+            {
+                const Arriving from = arriving(GetParam(), light, point);
+                const std::vector<double> color = light.value("color", std::vector<double>{1.0, 1.0, 1.0});
+                radiance += osg::Vec3d(color[0], color[1], color[2]) * from.illuminance *
+                            reflected(from.toLight, toEye, GetParam().roughness);
+            }
+            const osg::Vec4 found = image->getColor(x, y);
             for (int channel = 0; channel < 3; ++channel)
             {
-                const double expected = encoded(surrounding + color[static_cast<std::size_t>(channel)] * radiance);
+                const double expected = encoded(radiance[channel]);
                 worst = std::max(worst, std::abs(expected - static_cast<double>(found[channel])));
                 least = std::min(least, expected);
                 most = std::max(most, expected);

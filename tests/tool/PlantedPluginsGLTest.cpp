@@ -12,10 +12,11 @@
 #include <cstdlib>
 #include <dlfcn.h>
 #include <filesystem>
+#include <iterator>
 #include <link.h>
 #include <set>
+#include <sstream>
 #include <string>
-#include <vector>
 
 // Libraries in the current folder, under all names for which OSG and the system ask: the tool loads none of them.
 
@@ -105,38 +106,39 @@ protected:
 
 TEST_F(PlantedPluginsGLTest, noCommandLoadsThem)
 {
-    const std::vector<std::string> lines[] = {
-        {"inspect", "flag.gltf"},
-        {"inspect", "model.nosuch"},
-        {"inspect", "cube.obj"},
-        {"inspect", "effect.osg"},
-        {"inspect", "library.osg"},
-        {"inspect", "effect.osgt"},
-        {"inspect", "flag.gltf.gpuanim"},
-        {"inspect", "missing.fbx"},
-        {"pose", "flag.gltf", "--time", "0"},
-        {"render", "flag.gltf", "--size", "8x8", "-o", "flag.png"},
-        {"render", "flag.gltf.2x2.crowd", "--size", "8x8", "-o", "crowd.png"},
-        {"render", "flag.gltf", "--environment", "sky.hdr", "--size", "8x8", "-o", "flag.png"},
-        {"render", "flag.gltf", "--environment", "sky.png", "--size", "8x8", "-o", "flag.png"},
-        {"render", "flag.gltf", "--environment", "sky.jpg", "--size", "8x8", "-o", "flag.png"},
-        {"render", "flag.gltf", "--environment", "sky.bmp", "--size", "8x8", "-o", "flag.png"},
-        {"convert", "flag.gltf", "-o", "flag.glb"},
-        {"convert", "flag.gltf", "-o", "flag.osgb"},
-        {"convert", "flag.gltf", "-o", "flag.osgx"},
-        {"convert", "effect.osgt", "-o", "effect.osgb"},
+    const char* const lines[] = {
+        "inspect flag.gltf",
+        "inspect model.nosuch",
+        "inspect cube.obj",
+        "inspect effect.osg",
+        "inspect library.osg",
+        "inspect effect.osgt",
+        "inspect flag.gltf.gpuanim",
+        "inspect missing.fbx",
+        "pose flag.gltf --time 0",
+        "render flag.gltf --size 8x8 -o flag.png",
+        "render flag.gltf.2x2.crowd --size 8x8 -o crowd.png",
+        "render flag.gltf --environment sky.hdr --size 8x8 -o flag.png",
+        "render flag.gltf --environment sky.png --size 8x8 -o flag.png",
+        "render flag.gltf --environment sky.jpg --size 8x8 -o flag.png",
+        "render flag.gltf --environment sky.bmp --size 8x8 -o flag.png",
+        "convert flag.gltf -o flag.glb",
+        "convert flag.gltf -o flag.osgb",
+        "convert flag.gltf -o flag.osgx",
+        "convert effect.osgt -o effect.osgb",
     };
     // An empty element of a path is the current folder.
     for (const std::string& path : {std::string(), ":" + std::string(OSGGPUANIMATION_PLUGIN_FOLDER)})
     {
         setenv("OSG_LIBRARY_PATH", path.c_str(), 1);
-        for (const std::vector<std::string>& line : lines)
+        for (const char* line : lines)
         {
-            const Process done = Process::run(OSGGPUANIM, line);
-            EXPECT_TRUE(done.status == 0 || done.status == 1) << line[0] << ' ' << line[1] << ": " << done.err;
+            std::istringstream words(line);
+            const Process done = Process::run(OSGGPUANIM, {std::istream_iterator<std::string>(words), {}});
+            EXPECT_TRUE(done.status == 0 || done.status == 1) << line << ": " << done.err;
             // OSG's words where a plugin finds another library in the place of one that it needs.
             EXPECT_EQ(done.err.find("an error occurred while trying to open"), std::string::npos) << done.err;
-            EXPECT_FALSE(fs::remove(marker)) << line[0] << ' ' << line[1] << ' ' << line.back();
+            EXPECT_FALSE(fs::remove(marker)) << line;
         }
     }
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "tool/SmallGltf.h"
 
+#include <nlohmann/json.hpp>
+
 #include <cstdint>
 #include <cstring>
 #include <vector>
@@ -10,6 +12,8 @@ namespace osgGpuAnimation
 
 namespace
 {
+
+using nlohmann::json;
 
 std::string base64(const std::vector<float>& numbers)
 {
@@ -60,6 +64,29 @@ std::string swingingFlag()
 {"buffer":0,"byteOffset":136,"byteLength":8},{"buffer":0,"byteOffset":144,"byteLength":24}],
 "buffers":[{"byteLength":168,"uri":"data:application/octet-stream;base64,)" +
            base64(numbers) + "\"}]}\n";
+}
+
+std::string renamedFlag(const char* hinge, const char* flag)
+{
+    json document = json::parse(swingingFlag());
+    document["nodes"][0]["name"] = hinge;
+    document["nodes"][1]["name"] = flag;
+    return document.dump();
+}
+
+std::string filmedFlag()
+{
+    json document = json::parse(swingingFlag());
+    document["cameras"] = json::parse(R"([{"name":"film","type":"perspective","perspective":{"yfov":1,"znear":0.1}},
+        {"name":"plan","type":"orthographic","orthographic":{"xmag":4,"ymag":4,"znear":0.1,"zfar":99}}])");
+    document["extensionsUsed"] = {"KHR_lights_punctual"};
+    document["extensions"]["KHR_lights_punctual"]["lights"] = json::parse(R"([{"name":"sun","type":"directional"}])");
+    document["nodes"].push_back({{"camera", 0}, {"translation", {0, 1, 5}}});
+    document["nodes"].push_back({{"camera", 1}, {"translation", {0, 0, 5}}});
+    document["nodes"].push_back({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+    document["nodes"][0]["children"] = {1, 2};
+    document["scenes"][0]["nodes"] = {0, 3, 4};
+    return document.dump();
 }
 
 } // namespace osgGpuAnimation

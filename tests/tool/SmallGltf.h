@@ -11,4 +11,11 @@ namespace osgGpuAnimation
 /// its XY plane.
 std::string swingingFlag();
 
+/// With these names of the nodes.
+std::string renamedFlag(const char* hinge, const char* flag);
+
+/// With two cameras before it, "film" on the hinge, which follows it, and "plan", which stands still (orthographic, 8
+/// units high), and a directional light, "sun".
+std::string filmedFlag();
+
 } // namespace osgGpuAnimation
